@@ -1,0 +1,36 @@
+# Flags that every one of our targets shares, and the two helpers that declare a room and its tests.
+
+add_library(octafront_flags INTERFACE)
+target_compile_features(octafront_flags INTERFACE cxx_std_20)
+# Contraction to fused multiply-add breaks the floating-point filters of the exact predicates.
+target_compile_options(octafront_flags INTERFACE -ffp-contract=off -Wall -Wextra -Wshadow -Wpedantic)
+if(OCTAFRONT_SANITIZE)
+  target_compile_options(octafront_flags INTERFACE -fsanitize=${OCTAFRONT_SANITIZE} -fno-omit-frame-pointer
+                                                   -fno-sanitize-recover=all)
+  target_link_options(octafront_flags INTERFACE -fsanitize=${OCTAFRONT_SANITIZE})
+endif()
+
+# octafront_room(NAME SOURCES ... [ROOMS ...] [LIBS ...])
+# One static library per folder of src/: it can be built and tested alone. ROOMS are the rooms it may include from.
+function(octafront_room name)
+  cmake_parse_arguments(ROOM "" "" "SOURCES;ROOMS;LIBS" ${ARGN})
+  add_library(octafront_${name} STATIC ${ROOM_SOURCES})
+  set_target_properties(octafront_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  target_include_directories(octafront_${name} PUBLIC ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src)
+  target_link_libraries(octafront_${name} PRIVATE octafront_flags)
+  foreach(room IN LISTS ROOM_ROOMS)
+    target_link_libraries(octafront_${name} PUBLIC octafront_${room})
+  endforeach()
+  target_link_libraries(octafront_${name} PUBLIC ${ROOM_LIBS})
+endfunction()
+
+# octafront_test(NAME SOURCES ... [ROOMS ...]): a GoogleTest binary tests/NAME, linked with just those rooms.
+function(octafront_test name)
+  cmake_parse_arguments(T "" "" "SOURCES;ROOMS;LIBS" ${ARGN})
+  add_executable(test_${name} ${T_SOURCES})
+  target_link_libraries(test_${name} PRIVATE octafront_flags octafront_test_support GTest::gtest_main ${T_LIBS})
+  foreach(room IN LISTS T_ROOMS)
+    target_link_libraries(test_${name} PRIVATE octafront_${room})
+  endforeach()
+  gtest_discover_tests(test_${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600)
+endfunction()

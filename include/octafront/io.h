@@ -1,0 +1,44 @@
+#pragma once
+
+#include <octafront/size_field.h>
+#include <octafront/surface_mesh.h>
+#include <octafront/tet_mesh.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace octafront {
+
+/// A surface as a file has it: nothing merged, nothing repaired. Polygons are divided into triangles;
+/// `face_of_triangle` says from which face of the file (counted from 0) each one came.
+struct SurfaceFile {
+  SurfaceMesh surface;
+  std::vector<std::uint32_t> face_of_triangle;
+  std::string format;               ///< e.g. "binary STL"
+  std::vector<std::string> notes;   ///< what a user should know, e.g. "12 polygons divided into triangles"
+};
+
+/// Reads STL (binary, ASCII), OBJ, OFF or PLY (ASCII, both binary byte orders), recognised by content; the name only
+/// breaks ties. Coordinates keep double precision. OBJ groups and materials, and ASCII STL solids, become patches.
+/// Throws InputError with file, line or byte offset, and the reason. Memory is bounded by a small multiple of the size
+/// of the file, whatever its header claims.
+SurfaceFile read_surface(const std::filesystem::path& file);
+
+/// Writes by the ending of the name: .stl (binary), .obj, .off, .ply (binary). The file is written beside and renamed
+/// into place: on failure an older file stays whole. Throws OutputError.
+void write_surface(const std::filesystem::path& file, const SurfaceMesh& surface);
+
+/// Writes by the ending of the name: .vtu (compressed binary, with region, patch and beta per element), .msh (Gmsh 4.1),
+/// .mesh (MEDIT). Written beside and renamed into place. Throws OutputError; unknown endings before any work.
+void write_mesh(const std::filesystem::path& file, const TetMesh& mesh);
+
+/// Throws OutputError if the ending of `file` is none that write_mesh (or write_surface) knows, or its folder does not
+/// exist or cannot be written: to be called before long work.
+void check_mesh_target(const std::filesystem::path& file);
+void check_surface_target(const std::filesystem::path& file);
+
+/// Reads a tetrahedral mesh: .vtu as written here, Gmsh .msh 4.1 (ASCII and binary), MEDIT .mesh. Throws InputError.
+TetMesh read_mesh(const std::filesystem::path& file);
+
+}  // namespace octafront

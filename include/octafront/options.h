@@ -1,0 +1,61 @@
+#pragma once
+
+#include <octafront/vec.h>
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace octafront {
+
+/// Where element sizes come from. Every source is optional; where several speak, the smallest size wins.
+/// With no source at all an automatic size is chosen from the model (see make_size_field).
+struct SizeOptions {
+  std::optional<double> size;             ///< uniform edge length, input units, > 0
+  std::optional<std::int64_t> elements;   ///< target number of tetrahedra, > 0; the sizes are scaled to meet it
+  std::optional<double> curvature;        ///< elements per full turn of a curved surface, >= 3
+  std::optional<double> gap;              ///< elements across thin walls and narrow gaps, > 0
+  std::optional<double> min_size;         ///< no size falls below this, input units
+  std::optional<double> max_size;         ///< no size rises above this, input units
+  double gradation = 0.2;                 ///< |h(x) - h(y)| <= gradation |x - y|; in [0.01, 1]
+  enum class Interior { kUniform, kGraded };
+  /// kUniform: sizes inside stay at most the largest size on the surface (the paper's Cmax).
+  /// kGraded: sizes grow inward at the gradation, up to max_size.
+  Interior interior = Interior::kUniform;
+  std::function<double(Vec3)> callback;   ///< a further source; must return a size > 0; may be empty
+};
+
+/// How the surface is triangulated anew.
+struct SurfaceOptions {
+  bool keep = false;              ///< the input triangles become the boundary, exactly
+  double feature_angle = 40;      ///< degrees between face normals from which an edge is kept as a feature; (0, 180)
+};
+
+/// How the volume is filled.
+struct VolumeOptions {
+  /// Distance of the ideal point from the face, as a multiple of the size there (the paper says 1; a regular
+  /// tetrahedron wants sqrt(2/3)).
+  double ideal_distance = 0.81649658092772603;
+  enum class Ranking { kQuality, kSolidAngle };
+  Ranking ranking = Ranking::kQuality;  ///< order of the candidates: by beta of the new tetrahedron, or as in the paper
+};
+
+/// How the mesh is improved after it is complete.
+struct ImproveOptions {
+  enum class Level { kNone, kPaper, kFast, kDefault, kBest };
+  Level level = Level::kDefault;
+  double relaxation = 0.7;  ///< phi of the paper's weighted Laplacian, (0, 1]
+  int sweeps = 4;           ///< sweeps of the Laplacian, >= 0
+};
+
+/// Everything that steers generate().
+struct Options {
+  SizeOptions size;
+  SurfaceOptions surface;
+  VolumeOptions volume;
+  ImproveOptions improve;
+};
+
+}  // namespace octafront

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <octafront/vec.h>
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <vector>
+
+namespace octafront {
+
+/// The edge length wanted at each point, in input units: continuous, positive, and graded,
+///   |h(x) - h(y)| <= gradation * |x - y|.
+/// Example: h = 1 on a wall and gradation 0.3 give h = 4 at distance 10.
+///
+/// A value type that shares its immutable data; copies are cheap and safe to use from many threads.
+class SizeField {
+ public:
+  /// The same size everywhere. Requires h > 0.
+  static SizeField uniform(double h);
+  /// Any function; the caller answers for its gradation. `lo` and `hi` bound its values (it is clamped to them).
+  static SizeField from_function(std::function<double(Vec3)> h, double lo, double hi);
+
+  /// The wanted edge length at p. Outside the background grid: the value at the nearest point of it.
+  double at(Vec3 p) const;
+  double min_size() const;
+  double max_size() const;
+
+  struct Impl;
+  explicit SizeField(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}
+  const Impl& impl() const { return *impl_; }
+
+ private:
+  std::shared_ptr<const Impl> impl_;
+};
+
+}  // namespace octafront

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <octafront/vec.h>
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace octafront {
+
+/// Index of a vertex in the `points` of its mesh. 32 bits: a mesh holds fewer than 2^32 - 1 vertices.
+using VertexIndex = std::uint32_t;
+/// "No such vertex, face, element or patch".
+inline constexpr std::uint32_t kNone = 0xffffffffu;
+
+/// Vertex indices, counter-clockwise when seen from outside the body.
+using Triangle = std::array<VertexIndex, 3>;
+/// Two vertex indices; as a key of an undirected edge the smaller one comes first.
+using Edge = std::array<VertexIndex, 2>;
+
+/// A triangle surface as flat arrays.
+///
+/// What the library calls a *clean* surface is closed, oriented outward, 2-manifold, and free of self-intersections:
+/// each edge has exactly two triangles that run through it in opposite directions, and the triangles around each vertex
+/// form one fan. A shell inside another one, facing the other way, bounds a cavity.
+struct SurfaceMesh {
+  std::vector<Vec3> points;         ///< input units
+  std::vector<Triangle> triangles;  ///< indices into points
+  std::vector<std::uint32_t> patch;  ///< one per triangle: which named part of the surface it belongs to; empty: all 0
+  std::vector<std::string> patch_names;  ///< patch p is patch_names[p]; may be shorter than the number of patches
+
+  std::uint32_t patch_of(std::size_t triangle) const { return patch.empty() ? 0 : patch[triangle]; }
+  friend bool operator==(const SurfaceMesh&, const SurfaceMesh&) = default;
+};
+
+/// The smallest axis-parallel box around the vertices.
+Box3 bounding_box(const std::vector<Vec3>& points);
+
+/// Volume enclosed by a closed surface that faces outward (cavities count negative). Unit: input unit cubed.
+double enclosed_volume(const SurfaceMesh& surface);
+
+/// Sum of the areas of the triangles. Unit: input unit squared.
+double area(const SurfaceMesh& surface);
+
+}  // namespace octafront

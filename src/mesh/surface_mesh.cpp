@@ -1,0 +1,28 @@
+#include <octafront/surface_mesh.h>
+
+namespace octafront {
+
+Box3 bounding_box(const std::vector<Vec3>& points) {
+  Box3 box;
+  for (const Vec3& p : points) box.add(p);
+  return box;
+}
+
+double enclosed_volume(const SurfaceMesh& surface) {
+  if (surface.points.empty()) return 0;
+  // Measured from the middle, so that a model far from the origin loses no digits.
+  const Vec3 o = bounding_box(surface.points).center();
+  double six_volume = 0;
+  for (const Triangle& t : surface.triangles)
+    six_volume += dot(surface.points[t[0]] - o, cross(surface.points[t[1]] - o, surface.points[t[2]] - o));
+  return six_volume / 6;
+}
+
+double area(const SurfaceMesh& surface) {
+  double twice = 0;
+  for (const Triangle& t : surface.triangles)
+    twice += length(cross(surface.points[t[1]] - surface.points[t[0]], surface.points[t[2]] - surface.points[t[0]]));
+  return twice / 2;
+}
+
+}  // namespace octafront

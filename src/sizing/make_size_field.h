@@ -1,0 +1,38 @@
+#pragma once
+
+#include <octafront/options.h>
+#include <octafront/report.h>
+#include <octafront/run_context.h>
+#include <octafront/size_field.h>
+#include <octafront/surface_mesh.h>
+
+#include "surface/features.h"
+
+#include <filesystem>
+
+namespace octafront {
+
+/// Builds the octree background grid from the sources of `options` on a clean surface: 2:1 balanced, sizes at leaf
+/// corners, graded, continuous inside leaves. Throws OptionError for contradictions and values out of range.
+/// With options.elements the sizes are scaled until expected_tets() meets it.
+SizeField make_size_field(const SurfaceMesh& surface, const Features& features, const SizeOptions& options,
+                          const RunContext& context, StageReport& report);
+
+/// For a surface that is kept: sizes from its own triangles (robust against needles and jumps), graded, combined with
+/// the sources of `options` inside.
+SizeField size_field_of_surface(const SurfaceMesh& surface, const SizeOptions& options, const RunContext& context,
+                                StageReport& report);
+
+/// How many tetrahedra a mesh of the inside of `surface` by these sizes will have; integral of c / h^3, c measured.
+double expected_tets(const SizeField& sizes, const SurfaceMesh& surface);
+
+/// The size field capped to `factor` of its own value within `radius(i)` of points[i], graded again.
+SizeField capped_near(const SizeField& sizes, const std::vector<Vec3>& points, double factor, double gradation);
+
+/// All sizes multiplied by `factor`.
+SizeField scaled(const SizeField& sizes, double factor);
+
+/// Writes the background grid's leaves as a VTU of hexahedra with size per corner, level per cell. Throws OutputError.
+void write_size_field(const std::filesystem::path& file, const SizeField& sizes);
+
+}  // namespace octafront

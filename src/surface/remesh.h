@@ -1,0 +1,29 @@
+#pragma once
+
+#include <octafront/options.h>
+#include <octafront/report.h>
+#include <octafront/run_context.h>
+#include <octafront/size_field.h>
+#include <octafront/surface_mesh.h>
+
+#include "surface/features.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace octafront {
+
+/// A surface triangulated to the size field, and how it relates to the one it was made from.
+struct Remeshed {
+  SurfaceMesh surface;                 ///< clean, same topology; vertices lie on the input surface; patches kept
+  Features features;                   ///< of `surface`
+  std::vector<std::uint32_t> source;   ///< per triangle: the input triangle that lies nearest to its centroid
+  SizeField sizes;                     ///< what was asked, capped where self-intersections forced smaller elements
+};
+
+/// The surface front. Requires a clean surface (see surface_mesh.h). The result is checked: closed, manifold, same
+/// components and genus, no self-intersection, features present; throws MeshingError if no attempt passes.
+Remeshed remesh_surface(const SurfaceMesh& surface, const Features& features, const SizeField& sizes,
+                        const SurfaceOptions& options, const RunContext& context, StageReport& report);
+
+}  // namespace octafront

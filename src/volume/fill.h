@@ -1,0 +1,20 @@
+#pragma once
+
+#include <octafront/options.h>
+#include <octafront/report.h>
+#include <octafront/run_context.h>
+#include <octafront/size_field.h>
+#include <octafront/surface_mesh.h>
+#include <octafront/tet_mesh.h>
+
+namespace octafront {
+
+/// Fills a clean surface with tetrahedra of the wanted size: the volume front, then the closing of what it leaves.
+/// The boundary of the result is `surface`, triangle for triangle; the first points of the result are those of the
+/// surface in their order; mesh.boundary lists the surface's triangles in their order, with their patches; regions
+/// are numbered by body (outer shell and its cavities) in order of the first triangle.
+/// Throws MeshingError if a cavity stays open.
+TetMesh fill_volume(const SurfaceMesh& surface, const SizeField& sizes, const VolumeOptions& options,
+                    const RunContext& context, StageReport& report);
+
+}  // namespace octafront

@@ -1,0 +1,33 @@
+#pragma once
+
+// The little closed surfaces that tests name. All are clean: closed, outward, manifold, not self-intersecting.
+
+#include <octafront/surface_mesh.h>
+
+namespace octafront::testing {
+
+/// [0, 1]^3, each side divided into n x n squares of two triangles; patch = side 0..5.
+SurfaceMesh cube(int n = 1);
+
+/// The regular tetrahedron-like corner (0,0,0) (1,0,0) (0,1,0) (0,0,1).
+SurfaceMesh unit_tetrahedron();
+
+/// Icosahedron divided `levels` times, projected to the sphere of radius r about the origin: 20 * 4^levels triangles.
+SurfaceMesh icosphere(int levels, double r = 1);
+
+/// Torus about the z axis, n segments around and m segments of the tube.
+SurfaceMesh torus(int n, int m, double major = 1, double minor = 0.35);
+
+/// A sphere with a concentric spherical cavity.
+SurfaceMesh hollow_sphere(int levels, double outer = 1, double inner = 0.5);
+
+/// `b` appended to `a`, indices shifted; nothing is merged.
+SurfaceMesh joined(SurfaceMesh a, const SurfaceMesh& b);
+
+/// The same surface facing the other way.
+SurfaceMesh reversed(SurfaceMesh surface);
+
+/// Each vertex p becomes scale * p + shift.
+SurfaceMesh transformed(SurfaceMesh surface, double scale, Vec3 shift);
+
+}  // namespace octafront::testing
