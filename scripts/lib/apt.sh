@@ -1,0 +1,25 @@
+# Sourced by the scripts: installs Debian packages that are missing.
+
+# need_packages NAME...: asks for root rights only if something is missing.
+need_packages() {
+  local missing=()
+  for package in "$@"; do
+    dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'install ok installed' || missing+=("$package")
+  done
+  [ ${#missing[@]} -eq 0 ] && return 0
+  local sudo=""
+  if [ "$(id -u)" -ne 0 ]; then
+    command -v sudo >/dev/null || {
+      echo "missing Debian packages: ${missing[*]}; install them as root: apt-get install ${missing[*]}" >&2
+      return 1
+    }
+    sudo=sudo
+  fi
+  echo "installing ${missing[*]} ..."
+  $sudo apt-get -qq update
+  DEBIAN_FRONTEND=noninteractive $sudo apt-get -qq install -y --no-install-recommends "${missing[@]}" >/dev/null
+}
+
+# What building needs, and what the tests need beyond it.
+build_packages=(g++ cmake ninja-build libtbb-dev zlib1g-dev libfmt-dev libcli11-dev nlohmann-json3-dev)
+test_packages=(libgtest-dev librapidcheck-dev)
