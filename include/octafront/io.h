@@ -33,6 +33,13 @@ void write_surface(const std::filesystem::path& file, const SurfaceMesh& surface
 /// .mesh (MEDIT). Written beside and renamed into place. Throws OutputError; unknown endings before any work.
 void write_mesh(const std::filesystem::path& file, const TetMesh& mesh);
 
+/// Writes the background grid of a size field as .vtu: hexahedra with the size at their corners and their level.
+/// A field without a grid (uniform, from a function) has nothing to show: OutputError.
+void write_size_field(const std::filesystem::path& file, const SizeField& sizes);
+
+/// Writes text (a report) beside and renames it into place. Throws OutputError.
+void write_text(const std::filesystem::path& file, const std::string& text);
+
 /// Throws OutputError if the ending of `file` is none that write_mesh (or write_surface) knows, or its folder does not
 /// exist or cannot be written: to be called before long work.
 void check_mesh_target(const std::filesystem::path& file);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <octafront/quality.h>
+
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -17,5 +19,33 @@ struct StageReport {
 
   void count(std::string key, double value) { counters.emplace_back(std::move(key), value); }
 };
+
+/// Edge lengths made over edge lengths wanted (size field at the middle of the edge), over all edges of a mesh.
+struct SizeSummary {
+  std::uint64_t edges = 0;
+  double mean_ratio = 0;
+  double share_within = 0;  ///< part of the edges with a ratio within [0.7, 1.4]
+};
+
+/// What a whole run did and made.
+struct Report {
+  std::vector<StageReport> stages;  ///< in the order in which they ran
+  std::uint64_t points = 0, tets = 0, boundary_faces = 0;
+  std::uint32_t bodies = 0;
+  double volume = 0;           ///< of the mesh, input unit cubed
+  double input_volume = 0;     ///< enclosed by the repaired input
+  double expected_tets = 0;    ///< predicted by the size field before meshing
+  QualitySummary quality;
+  SizeSummary surface_edges, volume_edges;
+  double wall_seconds = 0, cpu_seconds = 0;
+  std::uint64_t peak_memory_bytes = 0;  ///< of the process
+  std::uint64_t hash = 0;               ///< of the mesh, bit for bit (coordinates and connectivity)
+};
+
+/// The report as indented JSON, one object; keys as the fields above, units in the names.
+std::string to_json(const Report& report);
+
+/// The report as a table for a terminal, at most 100 columns wide.
+std::string to_table(const Report& report);
 
 }  // namespace octafront

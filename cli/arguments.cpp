@@ -1,0 +1,80 @@
+#include "arguments.h"
+
+#include <map>
+
+namespace octafront::cli {
+
+void declare_input(CLI::App& command, Arguments& a) {
+  command.add_option("input", a.input, "Closed surface: STL, OBJ, OFF or PLY, recognised by content")
+      ->required()
+      ->type_name("FILE");
+}
+
+void declare_output(CLI::App& command, Arguments& a, const std::string& what, bool required) {
+  auto* option = command.add_option("-o,--output", a.output, what)->type_name("FILE");
+  if (required) option->required();
+}
+
+void declare_run(CLI::App& command, Arguments& a) {
+  auto* group = command.add_option_group("Run");
+  group->add_option("--json", a.json, "Write the report as JSON")->type_name("FILE");
+  group->add_option("--threads", a.threads, "Threads at most; 0: all of the machine. The result is the same")
+      ->check(CLI::Range(0, 1024));
+  group->add_flag("-q,--quiet", a.quiet, "Print nothing but errors");
+}
+
+void declare_sizes(CLI::App& command, Arguments& a) {
+  SizeOptions& o = a.options.size;
+  auto* group = command.add_option_group("Sizes", "None given: an automatic size. Several: the smallest wins");
+  group->add_option("--size", o.size, "Edge length, in units of the input")->type_name("H");
+  group->add_option("--elements", o.elements, "Number of tetrahedra wanted, met within 15 %")->type_name("N");
+  group->add_option("--curvature", o.curvature, "Elements per full turn of a curved surface")->type_name("K");
+  group->add_option("--gap", o.gap, "Elements across thin walls and narrow gaps")->type_name("K");
+  group->add_option("--min-size", o.min_size, "No size falls below this")->type_name("H");
+  group->add_option("--max-size", o.max_size, "No size rises above this")->type_name("H");
+  group->add_option("--grading", o.gradation, "How fast sizes may change: |h(x) - h(y)| <= G |x - y|")
+      ->type_name("G")
+      ->capture_default_str();
+  static const std::map<std::string, SizeOptions::Interior> kInterior{{"uniform", SizeOptions::Interior::kUniform},
+                                                                      {"graded", SizeOptions::Interior::kGraded}};
+  group
+      ->add_option("--interior", o.interior,
+                   "uniform: inside no larger than on the surface; graded: growing inward [uniform]")
+      ->transform(CLI::CheckedTransformer(kInterior, CLI::ignore_case))
+      ->type_name("MODE");
+}
+
+void declare_surface(CLI::App& command, Arguments& a) {
+  SurfaceOptions& o = a.options.surface;
+  auto* group = command.add_option_group("Surface");
+  group->add_flag("--keep-surface", o.keep, "The input triangles become the boundary, exactly");
+  group->add_option("--feature-angle", o.feature_angle, "Edges that bend by more degrees than this are kept")
+      ->type_name("DEG")
+      ->capture_default_str();
+}
+
+void declare_volume(CLI::App& command, Arguments& a) {
+  static const std::map<std::string, ImproveOptions::Level> kLevel{{"none", ImproveOptions::Level::kNone},
+                                                                   {"paper", ImproveOptions::Level::kPaper},
+                                                                   {"fast", ImproveOptions::Level::kFast},
+                                                                   {"default", ImproveOptions::Level::kDefault},
+                                                                   {"best", ImproveOptions::Level::kBest}};
+  static const std::map<std::string, VolumeOptions::Ranking> kRanking{
+      {"quality", VolumeOptions::Ranking::kQuality}, {"solid-angle", VolumeOptions::Ranking::kSolidAngle}};
+  auto* group = command.add_option_group("Volume");
+  group->add_option("--ideal-distance", a.options.volume.ideal_distance,
+                    "Ideal point above its face, as a multiple of the size there")
+      ->type_name("X")
+      ->capture_default_str();
+  group->add_option("--ranking", a.options.volume.ranking, "Order of candidates: quality, solid-angle [quality]")
+      ->transform(CLI::CheckedTransformer(kRanking, CLI::ignore_case))
+      ->type_name("RULE");
+  group->add_option("--improve", a.options.improve.level, "none, paper, fast, default, best [default]")
+      ->transform(CLI::CheckedTransformer(kLevel, CLI::ignore_case))
+      ->type_name("LEVEL");
+  group->add_option("--relaxation", a.options.improve.relaxation, "phi of the paper's weighted Laplacian")
+      ->type_name("PHI")
+      ->capture_default_str();
+}
+
+}  // namespace octafront::cli

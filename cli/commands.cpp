@@ -1,0 +1,97 @@
+#include "commands.h"
+
+#include <octafront/octafront.h>
+
+#include "terminal.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+namespace octafront::cli {
+
+namespace {
+
+void say(const Arguments& a, const std::string& text) {
+  clear_progress();
+  if (!a.quiet) std::fputs(text.c_str(), stdout);
+}
+
+SurfaceFile read_input(const Arguments& a, const RunContext& context) {
+  context.report("reading", -1);
+  SurfaceFile file = read_surface(a.input);
+  say(a, fmt::format("{}: {}, {} triangles\n", a.input.string(), file.format, file.surface.triangles.size()));
+  for (const std::string& note : file.notes) say(a, "note (reading): " + note + "\n");
+  return file;
+}
+
+void write_report(const Arguments& a, const Report& report) {
+  say(a, to_table(report));
+  if (!a.json.empty()) write_text(a.json, to_json(report));
+}
+
+// Tetrahedral meshes are told from surfaces by the ending: no surface format shares one with them.
+bool is_tet_mesh_file(const std::filesystem::path& file) {
+  const std::string ending = file.extension().string();
+  return ending == ".vtu" || ending == ".msh" || ending == ".mesh";
+}
+
+int check_tet_mesh(const Arguments& a) {
+  const TetMesh mesh = read_mesh(a.input);
+  const auto defect = first_defect(mesh);
+  if (defect) throw InputError(fmt::format("{}: not a valid mesh: {}", a.input.string(), *defect));
+  const QualitySummary q = summarize_quality(mesh);
+  say(a, fmt::format("{}: a valid mesh of {} tetrahedra; least beta {:.4f}, mean {:.4f}, dihedral angles {:.1f} to {:.1f} "
+                     "degrees\n",
+                     a.input.string(), mesh.tets.size(), q.beta_min, q.beta_mean, q.dihedral_min, q.dihedral_max));
+  return 0;
+}
+
+}  // namespace
+
+int run_mesh(const Arguments& a) {
+  check_mesh_target(a.output);
+  const RunContext context = terminal_context(a.threads, a.quiet);
+  const SurfaceFile file = read_input(a, context);
+  const Result result = generate(file.surface, a.options, context);
+  context.report("writing", -1);
+  write_mesh(a.output, result.mesh);
+  write_report(a, result.report);
+  say(a, fmt::format("written: {}\n", a.output.string()));
+  return 0;
+}
+
+int run_surface(const Arguments& a) {
+  check_surface_target(a.output);
+  const RunContext context = terminal_context(a.threads, a.quiet);
+  const SurfaceResult result = generate_surface(read_input(a, context).surface, a.options, context);
+  write_surface(a.output, result.surface);
+  write_report(a, result.report);
+  say(a, fmt::format("written: {}\n", a.output.string()));
+  return 0;
+}
+
+int run_size(const Arguments& a) {
+  const RunContext context = terminal_context(a.threads, a.quiet);
+  const SizeResult result = generate_sizes(read_input(a, context).surface, a.options, context);
+  if (!a.output.empty()) write_size_field(a.output, result.sizes);
+  write_report(a, result.report);
+  if (!a.output.empty()) say(a, fmt::format("written: {}\n", a.output.string()));
+  return 0;
+}
+
+int run_check(const Arguments& a) {
+  if (is_tet_mesh_file(a.input)) return check_tet_mesh(a);
+  const RunContext context = terminal_context(a.threads, a.quiet);
+  const SurfaceFile file = read_input(a, context);
+  const RepairedSurface repaired = repair_surface(file.surface, file.face_of_triangle);
+  for (const std::string& note : repaired.notes) say(a, "would repair: " + note + "\n");
+  const SurfaceDefects defects = find_defects(repaired);
+  if (!defects.clean()) throw InputError(fmt::format("{}:\n{}", a.input.string(), defects.describe()));
+  say(a, fmt::format("{}: clean: {} {}, {} {}, volume {:.6g}\n", a.input.string(), repaired.bodies,
+                     repaired.bodies == 1 ? "body" : "bodies", repaired.cavities,
+                     repaired.cavities == 1 ? "cavity" : "cavities", enclosed_volume(repaired.surface)));
+  return 0;
+}
+
+}  // namespace octafront::cli

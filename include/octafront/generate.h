@@ -1,0 +1,47 @@
+#pragma once
+
+#include <octafront/options.h>
+#include <octafront/report.h>
+#include <octafront/repair.h>
+#include <octafront/run_context.h>
+#include <octafront/size_field.h>
+#include <octafront/surface_mesh.h>
+#include <octafront/tet_mesh.h>
+
+namespace octafront {
+
+/// A tetrahedral mesh, the sizes it was made to, and what was done.
+struct Result {
+  TetMesh mesh;
+  SizeField sizes;
+  Report report;
+};
+
+/// From a closed surface to a valid tetrahedral mesh: repair, features, size field, surface front, volume front,
+/// improvement, check. The surface may be any triangle soup; what repair cannot mend is refused.
+///
+/// Example: generate(read_surface("bracket.stl").surface) meshes at an automatic size.
+///
+/// The result keeps every law of first_defect(), and depends on nothing but `surface` and `options`.
+/// Throws OptionError, InputError (defects, listed), MeshingError, Cancelled.
+Result generate(const SurfaceMesh& surface, const Options& options = {}, const RunContext& context = {});
+
+/// The run up to the surface front: what the boundary of the mesh will be.
+struct SurfaceResult {
+  SurfaceMesh surface;
+  SizeField sizes;
+  Report report;
+};
+SurfaceResult generate_surface(const SurfaceMesh& surface, const Options& options = {}, const RunContext& context = {});
+
+/// The run up to the size field; report.expected_tets is its prediction.
+struct SizeResult {
+  SizeField sizes;
+  Report report;
+};
+SizeResult generate_sizes(const SurfaceMesh& surface, const Options& options = {}, const RunContext& context = {});
+
+/// Throws OptionError with a sentence if the options contradict each other or lie outside their ranges.
+void check_options(const Options& options);
+
+}  // namespace octafront

@@ -1,0 +1,16 @@
+#pragma once
+
+// Everything that users of the library include.
+
+#include <octafront/error.h>
+#include <octafront/generate.h>
+#include <octafront/io.h>
+#include <octafront/options.h>
+#include <octafront/quality.h>
+#include <octafront/repair.h>
+#include <octafront/report.h>
+#include <octafront/run_context.h>
+#include <octafront/size_field.h>
+#include <octafront/surface_mesh.h>
+#include <octafront/tet_mesh.h>
+#include <octafront/validity.h>

@@ -1,0 +1,23 @@
+#!/usr/bin/env bash
+# Builds Octafront and meshes a surface. Installs what is missing (Debian 12).
+#   scripts/quickstart.sh [INPUT] [octafront mesh options ...]
+# Writes out/NAME.vtu and out/NAME.json, and prints the quality table. INPUT is a model of samples/ by default.
+set -euo pipefail
+caller=$PWD
+cd "$(dirname "$0")/.."
+source scripts/lib/apt.sh
+
+input=${1:-samples/bracket.stl}
+[ $# -gt 0 ] && shift
+if [ ! -e "$input" ] && [ -e "$caller/$input" ]; then input=$caller/$input; fi
+[ -f "$input" ] || { echo "quickstart: no such file: $input" >&2; exit 3; }
+
+need_packages "${build_packages[@]}"
+cmake --preset release -DOCTAFRONT_BUILD_TESTS=OFF -DOCTAFRONT_BUILD_BENCH=OFF -DOCTAFRONT_BUILD_EXAMPLES=OFF \
+  -B build/quickstart >/dev/null
+cmake --build build/quickstart --target octafront_cli
+
+name=$(basename "${input%.*}")
+mkdir -p out
+build/quickstart/cli/octafront mesh "$input" -o "out/$name.vtu" --json "out/$name.json" "$@"
+echo "open out/$name.vtu in ParaView; the report is out/$name.json"

@@ -1,0 +1,91 @@
+#include <octafront/tet_mesh.h>
+
+#include "pipeline/pipeline.h"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <bit>
+#include <span>
+
+namespace octafront {
+
+namespace {
+
+std::uint64_t edge_key(VertexIndex a, VertexIndex b) {
+  return (std::uint64_t{std::min(a, b)} << 32) | std::max(a, b);
+}
+
+SizeSummary summarize(std::vector<std::uint64_t>& keys, const std::vector<Vec3>& points, const SizeField& sizes) {
+  constexpr double kShortest = 0.7, kLongest = 1.4;  // the band in which users call a length "as asked"
+  std::sort(keys.begin(), keys.end());
+  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+  SizeSummary summary;
+  summary.edges = keys.size();
+  if (keys.empty()) return summary;
+  std::uint64_t within = 0;
+  double sum = 0;
+  for (const std::uint64_t key : keys) {
+    const Vec3 a = points[key >> 32], b = points[key & 0xffffffffu];
+    const double ratio = distance(a, b) / sizes.at((a + b) * 0.5);
+    sum += ratio;
+    within += ratio >= kShortest && ratio <= kLongest;
+  }
+  summary.mean_ratio = sum / static_cast<double>(keys.size());
+  summary.share_within = static_cast<double>(within) / static_cast<double>(keys.size());
+  return summary;
+}
+
+class Fnv {
+ public:
+  template <class T>
+  void add(const T& value) {
+    for (const unsigned char byte : std::bit_cast<std::array<unsigned char, sizeof(T)>>(value))
+      hash_ = (hash_ ^ byte) * 0x100000001b3ull;
+  }
+  std::uint64_t value() const { return hash_; }
+
+ private:
+  std::uint64_t hash_ = 0xcbf29ce484222325ull;
+};
+
+}  // namespace
+
+SizeSummary summarize_surface_edges(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
+                                    const SizeField& sizes) {
+  std::vector<std::uint64_t> keys;
+  keys.reserve(triangles.size() * 3);
+  for (const auto& [a, b, c] : triangles) keys.insert(keys.end(), {edge_key(a, b), edge_key(b, c), edge_key(c, a)});
+  return summarize(keys, points, sizes);
+}
+
+SizeSummary summarize_volume_edges(const TetMesh& mesh, const SizeField& sizes) {
+  std::vector<std::uint64_t> keys;
+  // Every edge of a large mesh would cost more memory than the mesh itself: take an evenly spread part of the tets.
+  constexpr std::size_t kSample = 500'000;
+  const std::size_t step = std::max<std::size_t>(1, mesh.tets.size() / kSample);
+  for (std::size_t t = 0; t < mesh.tets.size(); t += step)
+    for (const auto& [i, j] : kTetEdges) keys.push_back(edge_key(mesh.tets[t][i], mesh.tets[t][j]));
+  return summarize(keys, mesh.points, sizes);
+}
+
+std::uint64_t mesh_hash(const TetMesh& mesh) {
+  Fnv hash;
+  for (const Vec3& p : mesh.points)
+    for (int axis = 0; axis < 3; ++axis) hash.add(p[axis]);
+  for (const Tet& tet : mesh.tets)
+    for (const VertexIndex v : tet) hash.add(v);
+  for (const Triangle& face : mesh.boundary)
+    for (const VertexIndex v : face) hash.add(v);
+  for (const std::uint32_t region : mesh.region) hash.add(region);
+  for (const std::uint32_t patch : mesh.patch) hash.add(patch);
+  return hash.value();
+}
+
+std::uint64_t peak_memory_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+}  // namespace octafront

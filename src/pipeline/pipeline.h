@@ -1,0 +1,23 @@
+#pragma once
+
+// pipeline: the list of stages. Takes a surface and options, runs the rooms one after the other, times them, and
+// leaves a checked mesh and a report. The public face is octafront/generate.h.
+
+#include <octafront/report.h>
+#include <octafront/size_field.h>
+#include <octafront/tet_mesh.h>
+
+namespace octafront {
+
+/// Edge lengths over wanted lengths: of the boundary's edges, and of all edges of the mesh.
+SizeSummary summarize_surface_edges(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
+                                    const SizeField& sizes);
+SizeSummary summarize_volume_edges(const TetMesh& mesh, const SizeField& sizes);
+
+/// A fingerprint of coordinates (bits), tets, regions, boundary and patches: equal meshes, equal hash (FNV-1a, 64 bits).
+std::uint64_t mesh_hash(const TetMesh& mesh);
+
+/// Largest resident memory of this process so far.
+std::uint64_t peak_memory_bytes();
+
+}  // namespace octafront

@@ -1,0 +1,63 @@
+#include <octafront/report.h>
+
+#include <nlohmann/json.hpp>
+
+#include <fmt/format.h>
+
+namespace octafront {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json json_of(const StageReport& stage) {
+  Json counters = Json::object();
+  for (const auto& [key, value] : stage.counters) counters[key] = value;
+  return {{"name", stage.name},
+          {"wall_seconds", stage.wall_seconds},
+          {"cpu_seconds", stage.cpu_seconds},
+          {"counters", counters},
+          {"notes", stage.notes}};
+}
+
+Json json_of(const QualitySummary& q) {
+  return {{"beta_mean", q.beta_mean},
+          {"beta_min", q.beta_min},
+          {"beta_classes", q.beta_classes},
+          {"beta_class_bounds", {0, 0.2, 0.4, 0.6, 0.8, 1}},
+          {"dihedral_min_degrees", q.dihedral_min},
+          {"dihedral_max_degrees", q.dihedral_max},
+          {"dihedral_histogram", q.dihedral_histogram},
+          {"dihedral_class_degrees", 10}};
+}
+
+Json json_of(const SizeSummary& s) {
+  return {{"edges", s.edges}, {"mean_ratio", s.mean_ratio}, {"share_within_0.7_1.4", s.share_within}};
+}
+
+}  // namespace
+
+std::string to_json(const Report& report) {
+  Json stages = Json::array();
+  for (const StageReport& stage : report.stages) stages.push_back(json_of(stage));
+  Json j{{"points", report.points},
+         {"tets", report.tets},
+         {"boundary_faces", report.boundary_faces},
+         {"bodies", report.bodies},
+         {"volume", report.volume},
+         {"input_volume", report.input_volume},
+         {"expected_tets", report.expected_tets}};
+  if (report.tets > 0) {
+    j["quality"] = json_of(report.quality);
+    j["volume_edges"] = json_of(report.volume_edges);
+    j["hash"] = fmt::format("{:016x}", report.hash);
+  }
+  if (report.surface_edges.edges > 0) j["surface_edges"] = json_of(report.surface_edges);
+  j["stages"] = stages;
+  j["wall_seconds"] = report.wall_seconds;
+  j["cpu_seconds"] = report.cpu_seconds;
+  j["peak_memory_bytes"] = report.peak_memory_bytes;
+  return j.dump(2) + "\n";
+}
+
+}  // namespace octafront

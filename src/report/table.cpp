@@ -1,0 +1,79 @@
+#include <octafront/report.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace octafront {
+
+namespace {
+
+// 1234567 -> "1 234 567"
+std::string grouped(std::uint64_t n) {
+  std::string digits = std::to_string(n);
+  for (int at = static_cast<int>(digits.size()) - 3; at > 0; at -= 3) digits.insert(static_cast<std::size_t>(at), " ");
+  return digits;
+}
+
+std::string bar(double share) {
+  constexpr int kWidth = 40;
+  return std::string(static_cast<std::size_t>(std::lround(share * kWidth)), '#');
+}
+
+std::string stage_lines(const Report& report) {
+  std::string out = fmt::format("{:<34}{:>10}{:>10}\n", "stage", "wall s", "cpu s");
+  for (const StageReport& s : report.stages)
+    out += fmt::format("  {:<32}{:>10.3f}{:>10.3f}\n", s.name, s.wall_seconds, s.cpu_seconds);
+  out += fmt::format("  {:<32}{:>10.3f}{:>10.3f}\n", "total", report.wall_seconds, report.cpu_seconds);
+  return out;
+}
+
+std::string note_lines(const Report& report) {
+  std::string out;
+  for (const StageReport& s : report.stages)
+    for (const std::string& note : s.notes) out += fmt::format("note ({}): {}\n", s.name, note);
+  return out;
+}
+
+std::string quality_lines(const QualitySummary& q) {
+  constexpr const char* kClasses[5] = {"0.0 - 0.2", "0.2 - 0.4", "0.4 - 0.6", "0.6 - 0.8", "0.8 - 1.0"};
+  std::string out = "quality, beta = 3 r / R\n";
+  for (int c = 0; c < 5; ++c) {
+    const double share = static_cast<double>(q.beta_classes[c]) / static_cast<double>(std::max<std::uint64_t>(1, q.elements));
+    out += fmt::format("  {}{:>16}{:>9.3f} %  {}\n", kClasses[c], grouped(q.beta_classes[c]), 100 * share, bar(share));
+  }
+  out += fmt::format("  mean {:.4f}, least {:.4f} (tet {})\n", q.beta_mean, q.beta_min, q.beta_min_tet);
+  out += fmt::format("  dihedral angles from {:.1f} to {:.1f} degrees\n", q.dihedral_min, q.dihedral_max);
+  return out;
+}
+
+std::string size_line(const char* what, const SizeSummary& s) {
+  return fmt::format("  {:<16}mean {:.3f} of the length wanted, {:.1f} % within 0.7 - 1.4\n", what, s.mean_ratio,
+                     100 * s.share_within);
+}
+
+}  // namespace
+
+std::string to_table(const Report& report) {
+  std::string out;
+  if (report.tets > 0)
+    out += fmt::format("{} tetrahedra, {} vertices, {} boundary triangles, {} {}\n", grouped(report.tets),
+                       grouped(report.points), grouped(report.boundary_faces), report.bodies,
+                       report.bodies == 1 ? "body" : "bodies");
+  else if (report.boundary_faces > 0)
+    out += fmt::format("{} triangles, {} vertices\n", grouped(report.boundary_faces), grouped(report.points));
+  out += fmt::format("{} tetrahedra expected from the sizes\n", grouped(static_cast<std::uint64_t>(report.expected_tets)));
+  if (report.boundary_faces > 0)
+    out += fmt::format("volume {:.6g} (input {:.6g}, {:+.3f} %)\n", report.volume, report.input_volume,
+                       100 * (report.volume / report.input_volume - 1));
+  if (report.tets > 0) out += "\n" + quality_lines(report.quality);
+  if (report.surface_edges.edges > 0) out += "edge lengths\n" + size_line("surface", report.surface_edges);
+  if (report.volume_edges.edges > 0) out += size_line("volume", report.volume_edges);
+  out += "\n" + stage_lines(report);
+  out += fmt::format("peak memory {:.0f} MB\n", static_cast<double>(report.peak_memory_bytes) / 1e6);
+  out += note_lines(report);
+  return out;
+}
+
+}  // namespace octafront

@@ -1,0 +1,134 @@
+#include <octafront/error.h>
+#include <octafront/generate.h>
+#include <octafront/validity.h>
+
+#include "support/named_surfaces.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numbers>
+#include <set>
+
+namespace octafront {
+namespace {
+
+struct Sample {
+  const char* name;
+  SurfaceMesh surface;
+  double size;
+};
+
+std::vector<Sample> closed_samples() {
+  return {{"cube", testing::cube(1), 0.15},
+          {"tetrahedron", testing::unit_tetrahedron(), 0.12},
+          {"sphere", testing::icosphere(4), 0.2},
+          {"torus", testing::torus(64, 32), 0.15},
+          {"hollow sphere", testing::hollow_sphere(4), 0.2},
+          {"two bodies", testing::joined(testing::cube(4), testing::transformed(testing::icosphere(3), 0.4, {2, 0, 0})),
+           0.15}};
+}
+
+Options sized(double h) {
+  Options o;
+  o.size.size = h;
+  return o;
+}
+
+TEST(Generate, FillsTheSurfaceItWasGiven) {
+  for (const Sample& s : closed_samples()) {
+    SCOPED_TRACE(s.name);
+    const Result r = generate(s.surface, sized(s.size));
+    EXPECT_EQ(first_defect(r.mesh), std::nullopt);
+    EXPECT_NEAR(r.report.volume / enclosed_volume(s.surface), 1, 0.03);
+    EXPECT_GT(r.report.quality.beta_min, 0.1);
+    EXPECT_GT(r.report.quality.beta_mean, 0.8);
+    EXPECT_NEAR(r.report.volume_edges.mean_ratio, 1, 0.15);
+  }
+}
+
+TEST(Generate, KeepsTheSurfaceExactlyWhenAsked) {
+  for (Sample s : closed_samples()) {
+    if (std::string(s.name) == "cube") s.surface = testing::cube(6);
+    SCOPED_TRACE(s.name);
+    Options o = sized(s.size);
+    o.surface.keep = true;
+    const Result r = generate(s.surface, o);
+    EXPECT_EQ(first_defect(r.mesh, s.surface), std::nullopt);
+    EXPECT_EQ(r.mesh.source.size(), s.surface.triangles.size());
+  }
+}
+
+TEST(Generate, KeepsPatchesOfACube) {
+  const Result r = generate(testing::cube(2), sized(0.2));
+  ASSERT_EQ(r.mesh.patch.size(), r.mesh.boundary.size());
+  std::array<double, 6> patch_area{};
+  for (std::size_t f = 0; f < r.mesh.boundary.size(); ++f) {
+    const auto& [a, b, c] = r.mesh.boundary[f];
+    const auto& p = r.mesh.points;
+    patch_area.at(r.mesh.patch[f]) += length(cross(p[b] - p[a], p[c] - p[a])) / 2;
+  }
+  for (const double area : patch_area) EXPECT_NEAR(area, 1, 1e-9);
+}
+
+TEST(Generate, NumbersBodiesAsRegions) {
+  const SurfaceMesh two = testing::joined(testing::icosphere(2), testing::transformed(testing::icosphere(2), 1, {3, 0, 0}));
+  const Result r = generate(two, sized(0.4));
+  EXPECT_EQ(std::set<std::uint32_t>(r.mesh.region.begin(), r.mesh.region.end()), (std::set<std::uint32_t>{0, 1}));
+  for (std::size_t t = 0; t < r.mesh.tets.size(); ++t) {
+    const bool right = r.mesh.points[r.mesh.tets[t][0]].x > 1.5;
+    EXPECT_EQ(r.mesh.region[t], right ? 1u : 0u);
+  }
+}
+
+TEST(Generate, MeetsTheNumberOfElements) {
+  for (const std::int64_t n : {3'000, 20'000, 100'000}) {
+    for (const SurfaceMesh& s : {testing::cube(2), testing::icosphere(4), testing::torus(48, 24)}) {
+      Options o;
+      o.size.elements = n;
+      const Result r = generate(s, o);
+      EXPECT_NEAR(static_cast<double>(r.mesh.tets.size()) / static_cast<double>(n), 1, 0.15);
+    }
+  }
+}
+
+TEST(Generate, RefusesAnOpenSurfaceAndSaysWhere) {
+  SurfaceMesh open = testing::cube(2);
+  open.triangles.pop_back();
+  open.patch.pop_back();
+  try {
+    generate(open);
+    ADD_FAILURE() << "an open surface was accepted";
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("open"), std::string::npos) << e.what();
+  }
+}
+
+TEST(Generate, RefusesASelfIntersectingSurface) {
+  const SurfaceMesh crossing = testing::joined(testing::cube(2), testing::transformed(testing::cube(2), 1, {0.53, 0.51, 0.57}));
+  EXPECT_THROW(generate(crossing), InputError);
+}
+
+TEST(Generate, RefusesAnEmptySurface) { EXPECT_THROW(generate(SurfaceMesh{}), InputError); }
+
+TEST(Generate, StopsWhenAsked) {
+  std::atomic<bool> cancel{false};
+  RunContext context;
+  context.cancel = &cancel;
+  context.progress = [&](std::string_view stage, double) {
+    if (stage == "volume front") cancel = true;
+  };
+  EXPECT_THROW(generate(testing::icosphere(3), sized(0.1), context), Cancelled);
+}
+
+TEST(Generate, SurfaceAndSizesAreWhatTheWholeRunUses) {
+  const SurfaceMesh s = testing::torus(48, 24);
+  const SurfaceResult surface = generate_surface(s, sized(0.2));
+  const Result whole = generate(s, sized(0.2));
+  EXPECT_EQ(surface.surface.triangles.size(), whole.mesh.boundary.size());
+  EXPECT_EQ(surface.sizes.at({0.3, 0.2, 0.1}), whole.sizes.at({0.3, 0.2, 0.1}));
+  EXPECT_NEAR(generate_sizes(s, sized(0.2)).report.expected_tets / static_cast<double>(whole.mesh.tets.size()), 1, 0.25);
+}
+
+}  // namespace
+}  // namespace octafront

@@ -1,0 +1,96 @@
+// The same shape in other clothes, and the same run again: what must not change, does not.
+
+#include <octafront/generate.h>
+#include <octafront/validity.h>
+
+#include "support/named_surfaces.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+namespace octafront {
+namespace {
+
+Options sized(double h) {
+  Options o;
+  o.size.size = h;
+  return o;
+}
+
+SurfaceMesh permuted(const SurfaceMesh& s, unsigned seed) {
+  std::mt19937 random(seed);
+  std::vector<VertexIndex> new_to_old(s.points.size());
+  for (VertexIndex v = 0; v < new_to_old.size(); ++v) new_to_old[v] = v;
+  std::shuffle(new_to_old.begin(), new_to_old.end(), random);
+  std::vector<VertexIndex> old_to_new(new_to_old.size());
+  SurfaceMesh out;
+  for (VertexIndex v = 0; v < new_to_old.size(); ++v) {
+    old_to_new[new_to_old[v]] = v;
+    out.points.push_back(s.points[new_to_old[v]]);
+  }
+  for (const auto& [a, b, c] : s.triangles) out.triangles.push_back({old_to_new[b], old_to_new[c], old_to_new[a]});
+  std::shuffle(out.triangles.begin(), out.triangles.end(), random);
+  return out;
+}
+
+TEST(Laws, SameInputSameMesh) {
+  for (const SurfaceMesh& s : {testing::torus(40, 20), testing::cube(3)}) {
+    const Result first = generate(s, sized(0.15));
+    for (const int threads : {1, 2, 3, 8}) {
+      RunContext context;
+      context.threads = threads;
+      const Result again = generate(s, sized(0.15), context);
+      EXPECT_EQ(again.report.hash, first.report.hash) << threads << " threads";
+      EXPECT_EQ(again.mesh, first.mesh);
+    }
+  }
+}
+
+TEST(Laws, ScaleAndShiftChangeNothingEssential) {
+  const SurfaceMesh s = testing::torus(40, 20);
+  const Result plain = generate(s, sized(0.2));
+  const struct {
+    double scale;
+    Vec3 shift;
+  } kClothes[] = {{1e-6, {0, 0, 0}}, {1e6, {0, 0, 0}}, {1, {1e4, -2e4, 3e4}}, {1e3, {-1e6, 0, 5e5}}};
+  for (const auto& [scale, shift] : kClothes) {
+    SCOPED_TRACE(scale);
+    const Result r = generate(testing::transformed(s, scale, shift), sized(0.2 * scale));
+    EXPECT_EQ(first_defect(r.mesh), std::nullopt);
+    EXPECT_NEAR(static_cast<double>(r.mesh.tets.size()) / static_cast<double>(plain.mesh.tets.size()), 1, 0.05);
+    EXPECT_NEAR(r.report.quality.beta_mean, plain.report.quality.beta_mean, 0.02);
+    EXPECT_NEAR(r.report.volume / (plain.report.volume * scale * scale * scale), 1, 1e-3);
+  }
+}
+
+TEST(Laws, OrderOfTheInputChangesNothingEssential) {
+  const SurfaceMesh s = testing::torus(40, 20);
+  const Result plain = generate(s, sized(0.2));
+  for (unsigned seed = 1; seed <= 3; ++seed) {
+    SCOPED_TRACE(seed);
+    const Result r = generate(permuted(s, seed), sized(0.2));
+    EXPECT_EQ(first_defect(r.mesh), std::nullopt);
+    EXPECT_NEAR(static_cast<double>(r.mesh.tets.size()) / static_cast<double>(plain.mesh.tets.size()), 1, 0.05);
+    EXPECT_NEAR(r.report.quality.beta_mean, plain.report.quality.beta_mean, 0.02);
+  }
+}
+
+TEST(Laws, RepairedClothesChangeNothingEssential) {
+  const SurfaceMesh s = testing::torus(40, 20);
+  const Result plain = generate(s, sized(0.2));
+  SurfaceMesh soup;
+  for (const Triangle& t : s.triangles) {
+    const auto first = static_cast<VertexIndex>(soup.points.size());
+    for (const VertexIndex v : t) soup.points.push_back(s.points[v]);
+    soup.triangles.push_back({first, first + 1, first + 2});
+  }
+  for (std::size_t t = 0; t < soup.triangles.size(); t += 3) std::swap(soup.triangles[t][0], soup.triangles[t][1]);
+  const Result r = generate(testing::reversed(soup), sized(0.2));
+  EXPECT_EQ(first_defect(r.mesh), std::nullopt);
+  EXPECT_NEAR(static_cast<double>(r.mesh.tets.size()) / static_cast<double>(plain.mesh.tets.size()), 1, 0.05);
+}
+
+}  // namespace
+}  // namespace octafront

@@ -1,0 +1,52 @@
+#include <octafront/error.h>
+#include <octafront/generate.h>
+
+#include "support/named_surfaces.h"
+
+#include <gtest/gtest.h>
+
+namespace octafront {
+namespace {
+
+void expect_refused(const Options& options, const std::string& fragment) {
+  try {
+    generate_sizes(testing::cube(), options);
+    ADD_FAILURE() << "accepted; expected a refusal with: " << fragment;
+  } catch (const OptionError& e) {
+    EXPECT_NE(std::string(e.what()).find(fragment), std::string::npos) << e.what();
+  }
+}
+
+TEST(Options, RefusesWhatContradictsItself) {
+  Options o;
+  o.size.size = 0.1;
+  o.size.elements = 1000;
+  expect_refused(o, "contradict");
+  o = {};
+  o.size.min_size = 2;
+  o.size.max_size = 1;
+  expect_refused(o, "larger than max-size");
+}
+
+TEST(Options, RefusesValuesOutOfRange) {
+  for (const double h : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
+    Options o;
+    o.size.size = h;
+    expect_refused(o, "size must be a number above 0");
+  }
+  Options o;
+  o.size.curvature = 2;
+  expect_refused(o, "at least 3");
+  o = {};
+  o.size.gradation = 0;
+  expect_refused(o, "grading");
+  o = {};
+  o.surface.feature_angle = 180;
+  expect_refused(o, "feature-angle");
+  o = {};
+  o.size.elements = 0;
+  expect_refused(o, "elements");
+}
+
+}  // namespace
+}  // namespace octafront
