@@ -7,3 +7,4 @@
 
 #include "geometry/measures.h"
 #include "geometry/predicates.h"
+#include "geometry/triangle_intersection.h"

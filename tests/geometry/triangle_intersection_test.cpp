@@ -1,0 +1,151 @@
+#include "geometry/triangle_intersection.h"
+
+#include "geometry/predicates.h"
+#include "geometry/rational_oracle.h"
+#include "support/lattice_points.h"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+namespace octafront {
+namespace {
+
+using testing::rational;
+using testing::RationalPoint;
+
+// Enough points for two triangles, on a lattice so small that every degeneracy is common. Often all in one plane.
+std::vector<Vec3> lattice_points(int n) {
+  const int range = *rc::gen::element(1, 2, 4);
+  const bool flat = testing::lattice_coordinate(2) == 0;
+  std::vector<Vec3> points;
+  for (int i = 0; i < n; ++i) {
+    Vec3 p = testing::lattice_point(range);
+    if (flat) p.z = p.x - p.y;
+    points.push_back(p);
+  }
+  return points;
+}
+
+// Two triangles with `shared` common vertices: ids 0 ... shared - 1.
+struct Pair {
+  std::vector<Vec3> points;
+  Triangle s, t;
+};
+
+Pair triangle_pair(int shared) {
+  Pair p{lattice_points(6 - shared), {0, 1, 2}, {}};
+  for (int i = 0; i < 3; ++i) p.t[i] = static_cast<VertexIndex>(i < shared ? i : 3 + i - shared);
+  // Any corner may come first and either side face up.
+  for (Triangle* t : {&p.s, &p.t}) {
+    std::rotate(t->begin(), t->begin() + *rc::gen::resize(100, rc::gen::inRange(0, 3)), t->end());
+    if (*rc::gen::arbitrary<bool>()) std::swap((*t)[0], (*t)[1]);
+  }
+  return p;
+}
+
+std::array<Vec3, 3> corners(const Pair& p, const Triangle& t) {
+  return {p.points[t[0]], p.points[t[1]], p.points[t[2]]};
+}
+
+bool degenerate(const std::array<Vec3, 3>& t) {
+  return collinear(t[0], t[1], t[2]);
+}
+
+bool oracle_conflict(const Pair& p, int shared) {
+  const auto s = corners(p, p.s), t = corners(p, p.t);
+  const auto common = testing::intersection_with_triangle({rational(s[0]), rational(s[1]), rational(s[2])}, t);
+  return std::any_of(common.begin(), common.end(), [&](const RationalPoint& x) {
+    if (shared == 0) return true;
+    return !testing::on_segment(x, p.points[0], p.points[shared - 1]);
+  });
+}
+
+// RapidCheck's hundred cases are few for a lattice of degeneracies: each case looks at many pairs.
+constexpr int kPairs = 200;
+
+void expect_oracle_agrees(int shared) {
+  for (int i = 0; i < kPairs; ++i) {
+    const Pair p = triangle_pair(shared);
+    if (degenerate(corners(p, p.s)) || degenerate(corners(p, p.t))) continue;
+    const bool conflict = oracle_conflict(p, shared);
+    RC_ASSERT(triangles_conflict(p.points, p.s, p.t) == conflict);
+    RC_ASSERT(triangles_conflict(p.points, p.t, p.s) == conflict);
+    if (shared == 0) RC_ASSERT(triangles_meet(corners(p, p.s), corners(p, p.t)) == conflict);
+  }
+}
+
+RC_GTEST_PROP(TrianglesConflict, AgreesWithRationalsWhenNothingIsShared, ()) {
+  expect_oracle_agrees(0);
+}
+
+RC_GTEST_PROP(TrianglesConflict, AgreesWithRationalsAtASharedVertex, ()) {
+  expect_oracle_agrees(1);
+}
+
+RC_GTEST_PROP(TrianglesConflict, AgreesWithRationalsAtASharedEdge, ()) {
+  expect_oracle_agrees(2);
+}
+
+TEST(TrianglesConflict, SeesItselfAndDuplicates) {
+  const std::vector<Vec3> points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  EXPECT_TRUE(triangles_conflict(points, {0, 1, 2}, {0, 1, 2}));
+  EXPECT_TRUE(triangles_conflict(points, {0, 1, 2}, {2, 1, 0}));
+  EXPECT_TRUE(triangles_conflict(points, {0, 1, 2}, {3, 4, 5}));
+}
+
+TEST(TrianglesConflict, SeparatesByOneUlp) {
+  const double above = std::nextafter(1.0, 2.0);
+  const std::vector<Vec3> points{{0, 0, 1}, {9, 0, 1}, {0, 9, 1}, {1, 1, above}, {2, 1, 2}, {1, 2, 3}};
+  EXPECT_FALSE(triangles_conflict(points, {0, 1, 2}, {3, 4, 5}));
+  auto touching = points;
+  touching[3].z = 1;
+  EXPECT_TRUE(triangles_conflict(touching, {0, 1, 2}, {3, 4, 5}));
+}
+
+bool oracle_segment_meets(Vec3 p, Vec3 q, const std::array<Vec3, 3>& t) {
+  return !testing::intersection_with_triangle({rational(p), rational(q)}, t).empty();
+}
+
+RC_GTEST_PROP(SegmentTriangleHit, AgreesWithRationals, ()) {
+  for (int i = 0; i < kPairs; ++i) {
+    const auto x = lattice_points(5);
+    const std::array<Vec3, 3> t{x[0], x[1], x[2]};
+    if (degenerate(t)) continue;
+    const SegmentHit hit = segment_triangle_hit(x[3], x[4], t);
+    RC_ASSERT(static_cast<bool>(hit) == oracle_segment_meets(x[3], x[4], t));
+    if (hit.kind != SegmentHit::Kind::kPoint) continue;
+    const auto common = testing::intersection_with_triangle({rational(x[3]), rational(x[4])}, t);
+    for (const RationalPoint& c : common) {
+      RC_ASSERT(c == common.front());
+      int edges = 0;
+      for (int e = 0; e < 3; ++e) edges += testing::on_segment(c, t[(e + 1) % 3], t[(e + 2) % 3]);
+      RC_ASSERT(edges == static_cast<int>(hit.part));
+      if (hit.part == SegmentHit::Part::kEdge)
+        RC_ASSERT(testing::on_segment(c, t[(hit.index + 1) % 3], t[(hit.index + 2) % 3]));
+      if (hit.part == SegmentHit::Part::kCorner) RC_ASSERT(c == rational(t[hit.index]));
+      RC_ASSERT((c == rational(x[3])) == (hit.end == 0));
+      RC_ASSERT((c == rational(x[4])) == (hit.end == 1));
+    }
+  }
+}
+
+RC_GTEST_PROP(SegmentTriangleConflict, AgreesWithRationals, ()) {
+  for (int i = 0; i < kPairs; ++i) {
+    const auto x = lattice_points(5);
+    const std::array<Vec3, 3> t{x[0], x[1], x[2]};
+    if (degenerate(t)) continue;
+    RC_ASSERT(segment_triangle_conflict({x[3], x[4]}, {3, 4}, t, {0, 1, 2}) == oracle_segment_meets(x[3], x[4], t));
+    for (VertexIndex corner = 0; corner < 3; ++corner) {
+      if (x[3] == t[corner]) continue;
+      const auto common = testing::intersection_with_triangle({rational(t[corner]), rational(x[3])}, t);
+      const bool more = std::any_of(common.begin(), common.end(), [&](auto& c) { return c != rational(t[corner]); });
+      RC_ASSERT(segment_triangle_conflict({t[corner], x[3]}, {corner, 3}, t, {0, 1, 2}) == more);
+      RC_ASSERT(segment_triangle_conflict({x[3], t[corner]}, {3, corner}, t, {0, 1, 2}) == more);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace octafront
