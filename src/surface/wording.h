@@ -1,0 +1,20 @@
+#pragma once
+
+#include <octafront/vec.h>
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+namespace octafront {
+
+/// "1 hole", "3 holes"; `many` where it is not `one` with an s.
+std::string counted(std::uint64_t n, const std::string& one, const std::string& many = "");
+
+/// " (face 17)", " (faces 3, 8 and 12)", " (first: faces 3, 8, 12, 14 and 20)"; empty for no faces.
+std::string in_faces(std::span<const std::uint32_t> faces);
+
+/// "(0.31, 2, 0.5)"
+std::string at_point(Vec3 p);
+
+}  // namespace octafront

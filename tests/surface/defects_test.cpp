@@ -1,0 +1,123 @@
+#include <octafront/repair.h>
+
+#include "support/named_surfaces.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+namespace octafront {
+namespace {
+
+SurfaceDefects defects_of(const SurfaceMesh& surface) {
+  return find_defects(repair_surface(surface));
+}
+
+TEST(Defects, NamedSurfacesAreClean) {
+  for (const SurfaceMesh& s : {testing::cube(3), testing::unit_tetrahedron(), testing::icosphere(2),
+                               testing::torus(12, 8), testing::hollow_sphere(1)}) {
+    const SurfaceDefects defects = defects_of(s);
+    EXPECT_TRUE(defects.clean()) << defects.describe();
+    EXPECT_EQ(defects.describe(), "");
+  }
+}
+
+TEST(Defects, TwoHolesAreCountedWithTheirEdges) {
+  SurfaceMesh s = testing::icosphere(2);
+  s.triangles.erase(s.triangles.begin() + 100);
+  s.triangles.erase(s.triangles.begin() + 5);
+  const SurfaceDefects defects = defects_of(s);
+  EXPECT_EQ(defects.open_edges.count, 6u);
+  EXPECT_EQ(defects.open_loops, 2u);
+  ASSERT_EQ(defects.open_edges.first.size(), 6u);
+  EXPECT_NE(defects.describe().find("2 holes (6 open edges)"), std::string::npos) << defects.describe();
+}
+
+TEST(Defects, HolesThatTouchInAVertexAreTwo) {
+  SurfaceMesh s = testing::cube(4);
+  s.patch.clear();
+  // Two triangles that share a vertex but no edge.
+  const Triangle first = s.triangles[9];
+  for (std::size_t t = 10; t < s.triangles.size(); ++t) {
+    int shared = 0;
+    for (const VertexIndex v : s.triangles[t]) shared += std::count(first.begin(), first.end(), v);
+    if (shared != 1) continue;
+    s.triangles.erase(s.triangles.begin() + t);
+    break;
+  }
+  s.triangles.erase(s.triangles.begin() + 9);
+  const SurfaceDefects defects = defects_of(s);
+  EXPECT_EQ(defects.open_edges.count, 6u);
+  EXPECT_EQ(defects.open_loops, 2u);
+  EXPECT_EQ(defects.non_manifold_vertices.count, 1u);
+}
+
+TEST(Defects, CubesThatShareAnEdge) {
+  const SurfaceMesh s = testing::joined(testing::cube(), testing::transformed(testing::cube(), 1, {1, 1, 0}));
+  const SurfaceDefects defects = defects_of(s);
+  EXPECT_EQ(defects.non_manifold_edges.count, 1u);
+  ASSERT_EQ(defects.non_manifold_edges.first.size(), 1u);
+  EXPECT_EQ(defects.non_manifold_edges.first[0].at, (Vec3{1, 1, 0.5}));
+  EXPECT_EQ(defects.non_manifold_edges.first[0].faces.size(), 4u);
+  EXPECT_EQ(defects.non_manifold_vertices.count, 0u);
+}
+
+TEST(Defects, CubesThatShareAVertex) {
+  const SurfaceMesh s = testing::joined(testing::cube(), testing::transformed(testing::cube(), 1, {1, 1, 1}));
+  const SurfaceDefects defects = defects_of(s);
+  EXPECT_EQ(defects.non_manifold_vertices.count, 1u);
+  ASSERT_EQ(defects.non_manifold_vertices.first.size(), 1u);
+  EXPECT_EQ(defects.non_manifold_vertices.first[0].at, (Vec3{1, 1, 1}));
+  EXPECT_EQ(defects.non_manifold_vertices.first[0].faces.size(), 2u);
+  EXPECT_EQ(defects.non_manifold_edges.count, 0u);
+}
+
+SurfaceMesh moebius_strip(int n) {
+  SurfaceMesh s;
+  for (int i = 0; i < n; ++i) {
+    const double u = 6.283185307179586 * i / n;
+    for (const double w : {-0.3, 0.3}) {
+      const double r = 1 + w * std::cos(u / 2);
+      s.points.push_back({r * std::cos(u), r * std::sin(u), w * std::sin(u / 2)});
+    }
+  }
+  for (int i = 0; i < n; ++i) {
+    const auto a = static_cast<VertexIndex>(2 * i), b = a + 1;
+    VertexIndex c = (a + 2) % (2 * n), d = (b + 2) % (2 * n);
+    if (i == n - 1) std::swap(c, d);
+    s.triangles.push_back({a, c, b});
+    s.triangles.push_back({b, c, d});
+  }
+  return s;
+}
+
+TEST(Defects, MoebiusStripCannotBeOriented) {
+  const RepairedSurface repaired = repair_surface(moebius_strip(16));
+  const SurfaceDefects defects = find_defects(repaired);
+  EXPECT_GE(defects.misoriented_edges.count, 1u);
+  EXPECT_EQ(defects.open_loops, 1u);
+  ASSERT_FALSE(repaired.notes.empty());
+  EXPECT_NE(repaired.notes.back().find("cannot be oriented"), std::string::npos);
+}
+
+TEST(Defects, PlacesNameInputFacesInOrder) {
+  SurfaceMesh s = testing::cube(6);
+  s.triangles.erase(s.triangles.begin() + 50, s.triangles.begin() + 90);
+  std::vector<std::uint32_t> face(s.triangles.size());
+  for (std::uint32_t t = 0; t < face.size(); ++t) face[t] = 1000 + 7 * t;
+  s.patch.clear();
+  const SurfaceDefects defects = find_defects(repair_surface(s, face));
+  ASSERT_EQ(defects.open_edges.first.size(), 10u);
+  EXPECT_GT(defects.open_edges.count, 10u);
+  for (std::size_t i = 0; i < 10; ++i) {
+    const auto& faces = defects.open_edges.first[i].faces;
+    ASSERT_EQ(faces.size(), 1u);
+    EXPECT_EQ((faces[0] - 1000) % 7, 0u);
+    EXPECT_TRUE(i == 0 || defects.open_edges.first[i - 1].faces[0] <= faces[0]);
+  }
+}
+
+}  // namespace
+}  // namespace octafront
