@@ -1,0 +1,100 @@
+#pragma once
+
+// A tetrahedral mesh that can be changed in place: half-face neighbours, a tetrahedron of each vertex, a free list.
+// Taken from a TetMesh and given back to it; boundary triangles keep their number, patch and source throughout.
+
+#include <octafront/tet_mesh.h>
+
+#include "improve/shape.h"
+
+#include <span>
+#include <vector>
+
+namespace octafront::improve {
+
+/// Face i of tet t (opposite corner i) as one number, 4 t + i.
+using HalfFace = std::uint32_t;
+
+/// Across a boundary face lies kBoundaryBit | number of the boundary triangle. Limits a mesh to 2^29 tetrahedra.
+inline constexpr std::uint32_t kBoundaryBit = 0x80000000u;
+inline constexpr bool is_boundary(HalfFace across) {
+  return (across & kBoundaryBit) != 0;
+}
+
+/// The tetrahedra around an edge, in order, with the other two corners of each.
+struct EdgeRing {
+  std::vector<TetIndex> tets;
+  /// Corners around the edge (a, b), counter-clockwise seen from b: tet k is positive as (a, b, ring[k], ring[k + 1]).
+  /// As many as tets if closed, one more if the edge lies on the boundary.
+  std::vector<VertexIndex> ring;
+  bool closed = true;
+};
+
+class EditMesh {
+ public:
+  /// Requires a valid mesh. Throws MeshingError if faces do not match (with their corners).
+  explicit EditMesh(TetMesh&& mesh);
+
+  /// The mesh back, compacted: live tets in order of their slots, unused vertices dropped, order kept.
+  TetMesh release();
+
+  std::size_t slots() const { return tets_.size(); }
+  std::size_t vertices() const { return points_.size(); }
+  std::size_t live_tets() const { return tets_.size() - free_.size(); }
+  bool alive(TetIndex t) const { return tets_[t][0] != kNone; }
+  const Tet& tet(TetIndex t) const { return tets_[t]; }
+  Vec3 point(VertexIndex v) const { return points_[v]; }
+  const Shape& shape(TetIndex t) const { return shapes_[t]; }
+  HalfFace across(HalfFace h) const { return across_[h]; }
+  bool on_boundary(VertexIndex v) const { return on_boundary_[v] != 0; }
+  /// Any tet at v; kNone if v is no longer used.
+  TetIndex tet_of(VertexIndex v) const { return tet_of_[v]; }
+
+  /// Corner of t at which v lies. Requires that it does.
+  int corner_of(TetIndex t, VertexIndex v) const {
+    const Tet& c = tets_[t];
+    return c[0] == v ? 0 : c[1] == v ? 1 : c[2] == v ? 2 : 3;
+  }
+
+  /// The half-faces opposite v of the tets around it; boundary faces at v are not among them.
+  void star(VertexIndex v, std::vector<HalfFace>& faces) const;
+
+  /// The tets around the edge between corners i and j of t, from t on.
+  void edge_ring(TetIndex t, int i, int j, EdgeRing& out) const;
+
+  /// Moves a vertex and sets the shapes of its star (faces as from star(), shapes in the same order).
+  void move(VertexIndex v, Vec3 to, std::span<const HalfFace> star_faces, const ShapeBatch& shapes);
+
+  /// Puts new tets in place of old ones that fill the same space. Returns where they are: `created` in order.
+  /// Requires: same outer faces; shapes as of the new ones; one region.
+  void replace(std::span<const TetIndex> old_tets, std::span<const Tet> new_tets, std::span<const Shape> shapes,
+               std::vector<TetIndex>& created);
+
+  /// A new vertex inside, to be used by the next replace().
+  VertexIndex add_vertex(Vec3 p);
+
+  /// Worst of each measure over the mesh.
+  Floor floor() const;
+  /// Sum of beta over the mesh, in a fixed order.
+  double beta_sum() const;
+
+ private:
+  void connect();
+  void compute_shapes();
+
+  std::vector<Vec3> points_;
+  std::vector<Tet> tets_;
+  std::vector<HalfFace> across_;
+  std::vector<Shape> shapes_;
+  std::vector<std::uint32_t> region_;
+  std::vector<TetIndex> tet_of_;
+  std::vector<std::uint8_t> on_boundary_;
+  std::vector<TetIndex> free_;
+  TetMesh rest_;  ///< boundary, patches, sources, names: carried through
+  bool had_regions_ = false;
+
+  mutable std::vector<std::uint32_t> tet_mark_;
+  mutable std::uint32_t mark_ = 0;
+};
+
+}  // namespace octafront::improve

@@ -1,0 +1,71 @@
+#include "improve/passes.h"
+#include "improve/star_edit.h"
+
+#include <cmath>
+
+namespace octafront::improve {
+namespace {
+
+/// Mean of the neighbours of a vertex, each counted once, weighted by the length of the edge to it.
+class NeighbourMean {
+ public:
+  explicit NeighbourMean(const EditMesh& mesh) : mesh_(mesh), seen_(mesh.vertices(), kNone) {}
+
+  Vec3 operator()(VertexIndex v, const std::vector<HalfFace>& star) {
+    const Vec3 p = mesh_.point(v);
+    Vec3 sum;
+    double weights = 0;
+    for (const HalfFace h : star)
+      for (const int corner : kTetFaces[h % 4]) {
+        const VertexIndex u = mesh_.tet(h / 4)[corner];
+        if (seen_[u] == v) continue;
+        seen_[u] = v;
+        const Vec3 edge = mesh_.point(u) - p;
+        const double weight = length(edge);
+        sum += weight * edge;
+        weights += weight;
+      }
+    return weights > 0 ? p + sum / weights : p;
+  }
+
+ private:
+  const EditMesh& mesh_;
+  std::vector<VertexIndex> seen_;  ///< the last vertex whose neighbour this one was
+};
+
+bool allowed(const EditMesh& mesh, const StarEdit& star, MoveRule rule) {
+  float old_worst = 2, new_worst = 2;
+  double gain = 0;
+  const ShapeBatch& batch = star.batch();
+  for (int i = 0; i < batch.size; ++i) {
+    const Shape before = mesh.shape(star.faces()[i] / 4), after = batch.shape(i);
+    const bool paper = rule == MoveRule::kWorstRises;
+    old_worst = std::min(old_worst, paper ? before.beta : score(before));
+    new_worst = std::min(new_worst, paper ? after.beta : score(after));
+    gain += double{after.beta} - double{before.beta};
+  }
+  if (rule == MoveRule::kWorstRises) return new_worst > old_worst;
+  return gain > 0 && (new_worst > old_worst || new_worst > kMeanRisesGuard);
+}
+
+}  // namespace
+
+PassResult laplacian_sweep(EditMesh& mesh, double relaxation, MoveRule rule, const RunContext& context) {
+  PassResult result;
+  const Floor floor = mesh.floor();
+  StarEdit star(mesh);
+  NeighbourMean mean(mesh);
+  for (VertexIndex v = 0; v < mesh.vertices(); ++v) {
+    if (v % 1024 == 0) context.check();
+    if (mesh.on_boundary(v) || mesh.tet_of(v) == kNone || !star.load(v)) continue;
+    ++result.tried;
+    const Vec3 p = mesh.point(v);
+    star.evaluate(p + relaxation * (mean(v, star.faces()) - p));
+    if (!allowed(mesh, star, rule) || !star.acceptable(floor)) continue;
+    star.commit();
+    ++result.done;
+  }
+  return result;
+}
+
+}  // namespace octafront::improve

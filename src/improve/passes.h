@@ -1,0 +1,42 @@
+#pragma once
+
+// The single passes of improvement, each of which leaves the mesh valid by exact signs and the worst element of the
+// mesh, by beta, by smallest and by largest dihedral angle, no worse than it was. schedule.cpp strings them together.
+
+#include <octafront/run_context.h>
+
+#include "improve/edit_mesh.h"
+
+#include <cstdint>
+
+namespace octafront::improve {
+
+/// What a pass did.
+struct PassResult {
+  std::uint64_t tried = 0;  ///< places looked at
+  std::uint64_t done = 0;   ///< places changed
+};
+
+/// When a vertex may go to where the Laplacian wants it.
+enum class MoveRule {
+  kWorstRises,  ///< the worst beta around the vertex must rise (the paper's smoothing)
+  kMeanRises,   ///< the mean beta around it must rise, and its worst score may fall, but not below kMeanRisesGuard
+};
+/// Elements above this score may get worse in exchange for a better mean.
+inline constexpr float kMeanRisesGuard = 0.6f;
+
+/// One sweep over the inner vertices in order of their index: each goes the part `relaxation` of the way to the mean of
+/// its neighbours, weighted by the length of the edges to them, if the rule allows.
+PassResult laplacian_sweep(EditMesh& mesh, double relaxation, MoveRule rule, const RunContext& context);
+
+/// Removes edges (up to a ring of kLongestRing tetrahedra, by dynamic programming) and faces (2-3 flips) of the
+/// elements with a score below `threshold`, wherever the worst score of the changed place rises; goes on with what it
+/// made.
+PassResult reconnect(EditMesh& mesh, float threshold, const RunContext& context);
+inline constexpr int kLongestRing = 7;
+
+/// Moves the inner vertices of the elements with a score below `threshold` to where the worst score around them is
+/// best, as near as a few steps come.
+PassResult optimize_vertices(EditMesh& mesh, float threshold, const RunContext& context);
+
+}  // namespace octafront::improve

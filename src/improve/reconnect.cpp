@@ -1,0 +1,182 @@
+// Changes of connection that raise the worst score of the place they change: removal of an edge, the new triangulation
+// of its ring found by dynamic programming (Klincsek 1980; Shewchuk, "Two discrete optimization algorithms for the
+// topological improvement of tetrahedral meshes", 2002), and of a face between two tetrahedra (2-3 flip). The 3-2 and
+// the 4-4 flip are removals of edges with rings of three and four.
+
+#include "geometry/predicates.h"
+#include "improve/passes.h"
+
+#include <array>
+
+namespace octafront::improve {
+namespace {
+
+/// A way to refill the place of some tets, and the worst score that it has.
+struct Refill {
+  std::vector<TetIndex> old_tets;
+  std::vector<Tet> new_tets;
+  std::vector<Shape> shapes;
+  float worst = -1;
+
+  void clear() {
+    old_tets.clear();
+    new_tets.clear();
+    shapes.clear();
+    worst = -1;
+  }
+};
+
+class Reconnector {
+ public:
+  Reconnector(EditMesh& mesh, const Floor& floor) : mesh_(mesh), floor_(floor) {}
+
+  /// Makes the best change there is at tet t; the tets made are in created(). False if none is better.
+  bool improve(TetIndex t) {
+    best_.clear();
+    for (const auto& [i, j] : kTetEdges) try_edge(t, i, j);
+    for (int i = 0; i < 4; ++i) try_face(t, i);
+    if (best_.worst < 0) return false;
+    mesh_.replace(best_.old_tets, best_.new_tets, best_.shapes, created_);
+    return true;
+  }
+
+  const std::vector<TetIndex>& created() const { return created_; }
+
+ private:
+  float worst_of(const std::vector<TetIndex>& tets) const {
+    float worst = 1;
+    for (const TetIndex t : tets) worst = std::min(worst, score(mesh_.shape(t)));
+    return worst;
+  }
+
+  void add_candidate(const Tet& t) {
+    batch_.add(mesh_.point(t[0]), mesh_.point(t[1]), mesh_.point(t[2]), mesh_.point(t[3]));
+  }
+
+  /// Score of candidate i of the batch, -1 if it may not be used.
+  float usable_score(int i, const Tet& t) const {
+    const Shape s = batch_.shape(i);
+    if (!floor_.below(s)) return -1;
+    if (s.beta < kCertainBeta &&
+        orient3d(mesh_.point(t[0]), mesh_.point(t[1]), mesh_.point(t[2]), mesh_.point(t[3])) <= 0)
+      return -1;
+    return score(s);
+  }
+
+  void try_edge(TetIndex t, int i, int j) {
+    const VertexIndex a = mesh_.tet(t)[i], b = mesh_.tet(t)[j];
+    mesh_.edge_ring(t, i, j, ring_);
+    const int n = static_cast<int>(ring_.ring.size());
+    if (!ring_.closed || n < 3 || n > kLongestRing) return;
+    const float before = worst_of(ring_.tets);
+    evaluate_triangles(a, b, n);
+    const float after = triangulate(n);
+    if (after <= before || after <= best_.worst) return;
+    best_.clear();
+    best_.old_tets = ring_.tets;
+    best_.worst = after;
+    emit(a, b, 0, n - 1);
+  }
+
+  /// Both tets on each triangle (i, k, j) of the ring; value_ gets the worse score of the two.
+  void evaluate_triangles(VertexIndex a, VertexIndex b, int n) {
+    batch_.size = 0;
+    const auto& r = ring_.ring;
+    for (int i = 0; i < n; ++i)
+      for (int k = i + 1; k < n; ++k)
+        for (int j = k + 1; j < n; ++j) {
+          index_[i][k][j] = batch_.size;
+          add_candidate({r[i], r[k], r[j], b});
+          add_candidate({r[i], r[j], r[k], a});
+        }
+    batch_.evaluate();
+    for (int i = 0; i < n; ++i)
+      for (int k = i + 1; k < n; ++k)
+        for (int j = k + 1; j < n; ++j) {
+          const int at = index_[i][k][j];
+          value_[i][k][j] =
+              std::min(usable_score(at, {r[i], r[k], r[j], b}), usable_score(at + 1, {r[i], r[j], r[k], a}));
+        }
+  }
+
+  /// Best worst score of the ring's triangulations; the choices stay in apex_.
+  float triangulate(int n) {
+    std::array<std::array<float, kLongestRing>, kLongestRing> best;
+    for (int i = 0; i + 1 < n; ++i) best[i][i + 1] = 2;
+    for (int span = 2; span < n; ++span)
+      for (int i = 0; i + span < n; ++i) {
+        const int j = i + span;
+        best[i][j] = -2;
+        for (int k = i + 1; k < j; ++k) {
+          const float value = std::min({best[i][k], best[k][j], value_[i][k][j]});
+          if (value > best[i][j]) best[i][j] = value, apex_[i][j] = k;
+        }
+      }
+    return best[0][n - 1];
+  }
+
+  void emit(VertexIndex a, VertexIndex b, int i, int j) {
+    if (j - i < 2) return;
+    const int k = apex_[i][j], at = index_[i][k][j];
+    const auto& r = ring_.ring;
+    best_.new_tets.push_back({r[i], r[k], r[j], b});
+    best_.new_tets.push_back({r[i], r[j], r[k], a});
+    best_.shapes.push_back(batch_.shape(at));
+    best_.shapes.push_back(batch_.shape(at + 1));
+    emit(a, b, i, k);
+    emit(a, b, k, j);
+  }
+
+  void try_face(TetIndex t, int i) {
+    const HalfFace o = mesh_.across(4 * t + i);
+    if (is_boundary(o)) return;
+    const VertexIndex a = mesh_.tet(t)[i], b = mesh_.tet(o / 4)[o % 4];
+    const auto& f = kTetFaces[i];
+    const VertexIndex x = mesh_.tet(t)[f[0]], y = mesh_.tet(t)[f[1]], z = mesh_.tet(t)[f[2]];
+    const std::array<Tet, 3> made{{{a, b, x, y}, {a, b, y, z}, {a, b, z, x}}};
+    batch_.size = 0;
+    for (const Tet& m : made) add_candidate(m);
+    batch_.evaluate();
+    float after = 1;
+    for (int k = 0; k < 3; ++k) after = std::min(after, usable_score(k, made[k]));
+    if (after <= std::min(score(mesh_.shape(t)), score(mesh_.shape(o / 4))) || after <= best_.worst) return;
+    best_.clear();
+    best_.old_tets = {t, o / 4};
+    best_.new_tets.assign(made.begin(), made.end());
+    for (int k = 0; k < 3; ++k) best_.shapes.push_back(batch_.shape(k));
+    best_.worst = after;
+  }
+
+  EditMesh& mesh_;
+  Floor floor_;
+  EdgeRing ring_;
+  Refill best_;
+  ShapeBatch batch_;
+  std::vector<TetIndex> created_;
+  int index_[kLongestRing][kLongestRing][kLongestRing];
+  float value_[kLongestRing][kLongestRing][kLongestRing];
+  int apex_[kLongestRing][kLongestRing];
+};
+
+}  // namespace
+
+PassResult reconnect(EditMesh& mesh, float threshold, const RunContext& context) {
+  PassResult result;
+  std::vector<TetIndex> queue;
+  for (TetIndex t = 0; t < mesh.slots(); ++t)
+    if (mesh.alive(t) && score(mesh.shape(t)) < threshold) queue.push_back(t);
+  Reconnector reconnector(mesh, mesh.floor());
+  for (std::size_t k = 0; k < queue.size(); ++k) {
+    if (k % 1024 == 0) context.check();
+    const TetIndex t = queue[k];
+    if (!mesh.alive(t) || score(mesh.shape(t)) >= threshold) continue;
+    ++result.tried;
+    if (!reconnector.improve(t)) continue;
+    ++result.done;
+    for (const TetIndex made : reconnector.created())
+      if (score(mesh.shape(made)) < threshold) queue.push_back(made);
+  }
+  return result;
+}
+
+}  // namespace octafront::improve

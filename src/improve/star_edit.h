@@ -1,0 +1,40 @@
+#pragma once
+
+// The star of a vertex made ready for trying other places for it.
+
+#include "improve/edit_mesh.h"
+
+#include <vector>
+
+namespace octafront::improve {
+
+/// Loads a vertex's star once, evaluates it for any place of the vertex, and commits the last place evaluated.
+class StarEdit {
+ public:
+  explicit StarEdit(EditMesh& mesh) : mesh_(mesh) {}
+
+  /// False if the star is too large to be worth it (over ShapeBatch::kBatch elements).
+  bool load(VertexIndex v);
+  const std::vector<HalfFace>& faces() const { return faces_; }
+  /// Worst score of the star as it stands in the mesh.
+  float current_worst() const;
+
+  void evaluate(Vec3 at) {
+    at_ = at;
+    batch_.evaluate_star(at);
+  }
+  const ShapeBatch& batch() const { return batch_; }
+  float worst_score() const;
+  /// All elements strictly above the floor, and positive by exact signs where that is not certain.
+  bool acceptable(const Floor& floor) const;
+  void commit() { mesh_.move(vertex_, at_, faces_, batch_); }
+
+ private:
+  EditMesh& mesh_;
+  VertexIndex vertex_ = kNone;
+  Vec3 at_;
+  std::vector<HalfFace> faces_;
+  ShapeBatch batch_;
+};
+
+}  // namespace octafront::improve

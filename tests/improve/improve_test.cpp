@@ -1,0 +1,85 @@
+#include "improve/improve.h"
+
+#include <octafront/error.h>
+#include <octafront/quality.h>
+
+#include "improve/start_meshes.h"
+
+#include <gtest/gtest.h>
+
+namespace octafront {
+namespace {
+
+using namespace testing;
+using Level = ImproveOptions::Level;
+
+TetMesh improved(TetMesh mesh, Level level) {
+  ImproveOptions options;
+  options.level = level;
+  StageReport report;
+  improve_mesh(mesh, SizeField::uniform(0.1), options, {}, report);
+  return mesh;
+}
+
+TEST(Improve, NoneChangesNothing) {
+  const TetMesh mesh = perturbed(kuhn_cube(4), 0.4, 1);
+  EXPECT_EQ(improved(mesh, Level::kNone), mesh);
+}
+
+TEST(Improve, EveryLevelMakesBetterElementsOnTheSameBoundary) {
+  const TetMesh start = perturbed(kuhn_cube(6), 0.6, 2);
+  const QualitySummary before = summarize_quality(start);
+  for (const Level level : {Level::kPaper, Level::kFast, Level::kDefault, Level::kBest}) {
+    const TetMesh mesh = improved(start, level);
+    const QualitySummary after = summarize_quality(mesh);
+    EXPECT_GE(after.beta_min, before.beta_min);
+    EXPECT_GT(after.beta_mean, before.beta_mean);
+    EXPECT_EQ(mesh.boundary.size(), start.boundary.size());
+    if (level != Level::kPaper) {
+      EXPECT_GE(after.dihedral_min, before.dihedral_min);
+      EXPECT_LE(after.dihedral_max, before.dihedral_max);
+    }
+  }
+}
+
+TEST(Improve, IsDeterministic) {
+  const TetMesh start = perturbed(kuhn_cube(5), 0.6, 3);
+  EXPECT_EQ(improved(start, Level::kDefault), improved(start, Level::kDefault));
+}
+
+TEST(Improve, DoesNotDependOnUnits) {
+  const TetMesh start = perturbed(kuhn_cube(5), 0.6, 4);
+  const TetMesh once = improved(start, Level::kDefault);
+  for (const double scale : {0x1p-30, 0x1p+40}) {
+    const TetMesh other = improved(transformed(start, scale, {}), Level::kDefault);
+    EXPECT_EQ(other.tets, once.tets);
+    EXPECT_EQ(other, transformed(once, scale, {}));
+  }
+}
+
+TEST(Improve, KeepsRegionsApart) {
+  TetMesh two = perturbed(kuhn_cube(4), 0.6, 5);
+  TetMesh other = transformed(perturbed(kuhn_cube(4), 0.6, 6), 1, {5, 0, 0});
+  const auto shift = static_cast<VertexIndex>(two.points.size());
+  two.region.assign(two.tets.size(), 3);
+  two.region.resize(two.tets.size() + other.tets.size(), 7);
+  two.points.insert(two.points.end(), other.points.begin(), other.points.end());
+  for (Tet t : other.tets) two.tets.push_back({t[0] + shift, t[1] + shift, t[2] + shift, t[3] + shift});
+  for (Triangle t : other.boundary) two.boundary.push_back({t[0] + shift, t[1] + shift, t[2] + shift});
+  two.patch.clear(), two.source.clear();
+  const TetMesh mesh = improved(two, Level::kDefault);
+  ASSERT_EQ(mesh.region.size(), mesh.tets.size());
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+    EXPECT_EQ(mesh.region[t], mesh.points[mesh.tets[t][0]].x < 3 ? 3u : 7u);
+}
+
+TEST(Improve, RefusesOptionsOutOfRange) {
+  ImproveOptions options;
+  options.relaxation = 1.5;
+  TetMesh mesh = kuhn_cube(2);
+  StageReport report;
+  EXPECT_THROW(improve_mesh(mesh, SizeField::uniform(1), options, {}, report), OptionError);
+}
+
+}  // namespace
+}  // namespace octafront

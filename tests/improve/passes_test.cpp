@@ -1,0 +1,158 @@
+#include "improve/passes.h"
+
+#include "geometry/measures.h"
+#include "geometry/predicates.h"
+#include "improve/start_meshes.h"
+
+#include <gtest/gtest.h>
+
+namespace octafront::improve {
+namespace {
+
+using namespace octafront::testing;
+
+std::vector<Vec3> boundary_corners(const TetMesh& mesh) {
+  std::vector<Vec3> corners;
+  for (const Triangle& t : mesh.boundary)
+    for (const VertexIndex v : t) corners.push_back(mesh.points[v]);
+  return corners;
+}
+
+void expect_laws(const TetMesh& before, const TetMesh& after) {
+  for (const Tet& t : after.tets)
+    ASSERT_EQ(orient3d(after.points[t[0]], after.points[t[1]], after.points[t[2]], after.points[t[3]]), 1);
+  EXPECT_NO_THROW(EditMesh(TetMesh{after}));  // faces match each other and the boundary
+  EXPECT_NEAR(volume(after), volume(before), 1e-12 * volume(before));
+  EXPECT_EQ(boundary_corners(before), boundary_corners(after));
+  EXPECT_EQ(before.patch, after.patch);
+  EXPECT_EQ(before.source, after.source);
+}
+
+double worst_beta(const TetMesh& mesh) {
+  double worst = 2;
+  for (const Tet& t : mesh.tets)
+    worst =
+        std::min(worst, tet_radius_ratio(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]));
+  return worst;
+}
+
+TEST(EditMesh, GivesBackWhatItTook) {
+  const TetMesh mesh = perturbed(kuhn_cube(4), 0.3, 1);
+  EXPECT_EQ(EditMesh(TetMesh{mesh}).release(), mesh);
+}
+
+TEST(EditMesh, RefusesFacesThatDoNotMatch) {
+  TetMesh mesh = kuhn_cube(2);
+  mesh.tets.pop_back();
+  EXPECT_ANY_THROW(EditMesh(std::move(mesh)));
+}
+
+TEST(EditMesh, FindsStarsAndRings) {
+  const EditMesh mesh(kuhn_cube(2));
+  std::vector<HalfFace> star;
+  mesh.star(13, star);  // the centre
+  EXPECT_EQ(star.size(), 24u);
+  EdgeRing ring;
+  for (TetIndex t = 0; t < mesh.slots(); ++t)
+    for (const auto& [i, j] : kTetEdges) {
+      mesh.edge_ring(t, i, j, ring);
+      ASSERT_EQ(ring.ring.size(), ring.tets.size() + (ring.closed ? 0 : 1));
+      const VertexIndex a = mesh.tet(t)[i], b = mesh.tet(t)[j];
+      for (std::size_t k = 0; k < ring.tets.size(); ++k)
+        ASSERT_EQ(orient3d(mesh.point(a), mesh.point(b), mesh.point(ring.ring[k]),
+                           mesh.point(ring.ring[(k + 1) % ring.ring.size()])),
+                  1);
+    }
+}
+
+TEST(Shape, AgreesWithTheMeasuresOfTheLibrary) {
+  const TetMesh mesh = perturbed(kuhn_cube(3), 0.5, 3);
+  EditMesh edit{TetMesh{mesh}};
+  for (TetIndex t = 0; t < mesh.tets.size(); ++t) {
+    const Tet& c = mesh.tets[t];
+    const Vec3 a = mesh.points[c[0]], b = mesh.points[c[1]], p = mesh.points[c[2]], q = mesh.points[c[3]];
+    const auto cosines = dihedral_cosines(a, b, p, q);
+    EXPECT_NEAR(edit.shape(t).beta, tet_radius_ratio(a, b, p, q), 1e-6);
+    EXPECT_NEAR(edit.shape(t).small, 1 - *std::max_element(cosines.begin(), cosines.end()), 1e-6);
+    EXPECT_NEAR(edit.shape(t).large, 1 + *std::min_element(cosines.begin(), cosines.end()), 1e-6);
+    const Shape alone = shape_of(a, b, p, q);
+    EXPECT_EQ(edit.shape(t).beta, alone.beta);
+    EXPECT_EQ(edit.shape(t).small, alone.small);
+    EXPECT_EQ(edit.shape(t).large, alone.large);
+  }
+}
+
+TEST(Reconnect, RemovesTheEdgeOfARing) {
+  for (int ring = 3; ring <= kLongestRing; ++ring) {
+    SCOPED_TRACE(ring);
+    const TetMesh before = edge_ring_mesh(ring, 0.9);
+    EditMesh edit{TetMesh{before}};
+    const float worst = edit.floor().worst_score();
+    const PassResult result = reconnect(edit, 1.0f, {});
+    const float better = edit.floor().worst_score();
+    const TetMesh after = edit.release();
+    expect_laws(before, after);
+    EXPECT_GT(better, worst);
+    EXPECT_EQ(result.done, 1u);
+    EXPECT_EQ(after.tets.size(), 2u * (ring - 2));
+  }
+}
+
+TEST(Reconnect, FlipsTheFaceBetweenTwoFlatTetrahedra) {
+  TetMesh before;
+  before.points = {{2, 0, 0}, {-1, 1.8, 0}, {-1, -1.8, 0}, {0, 0, 0.6}, {0, 0, -0.6}};
+  before.tets = {{0, 1, 2, 3}, {0, 2, 1, 4}};
+  before = with_boundary(std::move(before));
+  EditMesh edit{TetMesh{before}};
+  EXPECT_EQ(reconnect(edit, 1.0f, {}).done, 1u);
+  const TetMesh after = edit.release();
+  EXPECT_EQ(after.tets.size(), 3u);
+  EXPECT_GT(worst_beta(after), worst_beta(before));
+  expect_laws(before, after);
+}
+
+TEST(Laplacian, RestoresAPerturbedGrid) {
+  const TetMesh before = perturbed(kuhn_cube(6), 0.45, 5);
+  EditMesh edit{TetMesh{before}};
+  for (int sweep = 0; sweep < 30; ++sweep) laplacian_sweep(edit, 1, MoveRule::kMeanRises, {});
+  const TetMesh after = edit.release();
+  expect_laws(before, after);
+  EXPECT_GT(worst_beta(after), 0.5);  // the grid itself has .717
+}
+
+TEST(Passes, LeaveAValidMeshWhoseWorstIsNoWorse) {
+  for (std::uint32_t seed = 1; seed <= 12; ++seed) {
+    SCOPED_TRACE(seed);
+    const TetMesh start = perturbed(kuhn_cube(3 + seed % 4), 0.25 + 0.1 * (seed % 9), seed);
+    EditMesh edit{TetMesh{start}};
+    const auto run = [&](auto&& pass) {
+      const Floor before = edit.floor();
+      pass();
+      const Floor after = edit.floor();
+      EXPECT_GE(after.beta, before.beta);
+      EXPECT_GE(after.small, before.small);
+      EXPECT_GE(after.large, before.large);
+    };
+    for (int round = 0; round < 3; ++round) {
+      run([&] { laplacian_sweep(edit, 0.7, round % 2 ? MoveRule::kMeanRises : MoveRule::kWorstRises, {}); });
+      run([&] { reconnect(edit, 0.6f, {}); });
+      run([&] { optimize_vertices(edit, 0.6f, {}); });
+    }
+    const TetMesh after = edit.release();
+    expect_laws(start, after);
+    EXPECT_GE(worst_beta(after), worst_beta(start));
+  }
+}
+
+TEST(Optimize, RaisesTheWorstAroundABadVertex) {
+  TetMesh start = kuhn_cube(2);
+  start.points[13] = {0.85, 0.7, 0.55};
+  EditMesh edit{TetMesh{start}};
+  const float before = edit.floor().worst_score();
+  EXPECT_EQ(optimize_vertices(edit, 1.0f, {}).done, 1u);
+  EXPECT_GT(edit.floor().worst_score(), before + 0.2f);
+  expect_laws(start, edit.release());
+}
+
+}  // namespace
+}  // namespace octafront::improve
