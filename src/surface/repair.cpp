@@ -96,11 +96,11 @@ void nest(Draft& draft, const Pieces& pieces, RepairedSurface& result) {
   if (shells.inside_out > 0)
     result.notes.push_back(fmt::format("{} {} inside out and {} turned{}.", counted(shells.inside_out, "shell"),
                                        was(shells.inside_out), was(shells.inside_out),
-                                       in_faces(shells.turned_first_faces)));
+                                       in_faces(shells.inside_out_faces)));
   if (shells.turned_cavities > 0)
     result.notes.push_back(fmt::format("{} inside others {} turned to bound cavities{}.",
                                        counted(shells.turned_cavities, "shell"), was(shells.turned_cavities),
-                                       in_faces(shells.turned_first_faces)));
+                                       in_faces(shells.turned_cavity_faces)));
 }
 
 }  // namespace

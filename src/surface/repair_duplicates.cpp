@@ -53,45 +53,20 @@ std::vector<Group> find_groups(const std::vector<Triangle>& triangles, const Edg
   return groups;
 }
 
-/// Groups that hang together over edges without any other face form a sheet. It is needed where its border edges have
-/// an odd number of other faces: without it they would be open.
+/// Groups that hang together over edges without any other face form a sheet. Whether a sheet stays, one triangle of
+/// each group, or goes, is chosen such that as few edges as possible have an odd number of faces: those would be open.
 class Sheets {
  public:
   Sheets(const std::vector<Triangle>& triangles, const EdgeTable& table, const std::vector<Group>& groups)
-      : triangles_(triangles), groups_(groups), parent_(groups.size()), tally_(groups.size()) {
+      : triangles_(triangles), groups_(groups), parent_(groups.size()), sheets_(groups.size()) {
     std::iota(parent_.begin(), parent_.end(), 0u);
-    std::vector<std::uint32_t> group_of(triangles.size(), kNone);
-    for (std::uint32_t g = 0; g < groups.size(); ++g)
-      for (const std::uint32_t t : groups[g].triangles) group_of[t] = g;
-
-    std::vector<std::pair<std::uint32_t, std::size_t>> border;  // group, other faces
-    std::vector<std::uint32_t> here;                            // groups at the edge
-    for (std::size_t e = 0; e < table.size(); ++e) {
-      here.clear();
-      std::size_t single = 0;
-      for (const std::uint32_t h : table.uses(e)) {
-        if (group_of[h / 3] == kNone)
-          ++single;
-        else
-          here.push_back(group_of[h / 3]);
-      }
-      if (here.empty()) continue;
-      std::sort(here.begin(), here.end());
-      here.erase(std::unique(here.begin(), here.end()), here.end());
-      if (here.size() == 2 && single == 0)
-        parent_[find(here[0])] = find(here[1]);
-      else
-        for (const std::uint32_t g : here) border.push_back({g, single + here.size() - 1});
-    }
-    for (const auto& [g, others] : border) ++(others % 2 == 1 ? tally_[find(g)].odd : tally_[find(g)].even);
-    for (std::uint32_t g = 0; g < groups.size(); ++g) tally_[find(g)].balanced &= balance(g) == 0;
+    read_edges(table);
+    for (std::uint32_t g = 0; g < groups.size(); ++g) sheets_[find(g)].balanced &= balance(g) == 0;
+    link_borders();
+    choose();
   }
 
-  /// Nothing of the group's sheet is needed to keep the rest closed.
-  bool is_superfluous(std::uint32_t g) {
-    const Tally& tally = tally_[find(g)];
-    return tally.balanced && tally.even > tally.odd;
-  }
+  bool stays(std::uint32_t g) { return sheets_[find(g)].stays; }
 
   /// The triangle of the group that stays if one does: the first of those that most agree with.
   std::uint32_t keeper(std::uint32_t g) const {
@@ -102,10 +77,78 @@ class Sheets {
   }
 
  private:
-  struct Tally {
-    std::size_t odd = 0, even = 0;
-    bool balanced = true;
+  struct Sheet {
+    std::vector<std::uint32_t> border;  // edges with an odd number of groups of this sheet
+    bool balanced = true;               // as many triangles face one way as the other, in every group
+    bool stays = false;
   };
+  struct BorderEdge {
+    std::size_t singles;                // faces that have no duplicate
+    std::vector<std::uint32_t> groups;  // ascending
+    bool odd;                           // number of faces, with the sheets as they are chosen now
+  };
+
+  void read_edges(const EdgeTable& table) {
+    std::vector<std::uint32_t> group_of(triangles_.size(), kNone);
+    for (std::uint32_t g = 0; g < groups_.size(); ++g)
+      for (const std::uint32_t t : groups_[g].triangles) group_of[t] = g;
+    std::vector<std::uint32_t> here;
+    for (std::size_t e = 0; e < table.size(); ++e) {
+      here.clear();
+      for (const std::uint32_t h : table.uses(e))
+        if (group_of[h / 3] != kNone) here.push_back(group_of[h / 3]);
+      if (here.empty()) continue;
+      const std::size_t singles = table.uses(e).size() - here.size();
+      std::sort(here.begin(), here.end());
+      here.erase(std::unique(here.begin(), here.end()), here.end());
+      if (here.size() == 2 && singles == 0)
+        parent_[find(here[1])] = find(here[0]);
+      else
+        edges_.push_back({singles, here, singles % 2 == 1});
+    }
+  }
+
+  void link_borders() {
+    for (std::uint32_t e = 0; e < edges_.size(); ++e) {
+      for (const std::uint32_t g : edges_[e].groups) {
+        std::vector<std::uint32_t>& border = sheets_[find(g)].border;
+        if (!border.empty() && border.back() == e)
+          border.pop_back();
+        else
+          border.push_back(e);
+      }
+    }
+  }
+
+  void choose() {
+    for (std::uint32_t g = 0; g < groups_.size(); ++g) sheets_[g].stays = parent_[g] == g && sheets_[g].border.empty();
+    // Each change leaves fewer odd edges, so this ends.
+    for (bool changed = true; changed;) {
+      changed = false;
+      for (Sheet& sheet : sheets_) {
+        const auto odd =
+            std::count_if(sheet.border.begin(), sheet.border.end(), [&](std::uint32_t e) { return edges_[e].odd; });
+        if (2 * odd <= static_cast<std::ptrdiff_t>(sheet.border.size())) continue;
+        change(sheet);
+        changed = true;
+      }
+    }
+    // A sheet that touches nothing else is a face written twice if its layers face the same way.
+    for (Sheet& sheet : sheets_)
+      if (!sheet.stays && !sheet.balanced && is_free(sheet)) change(sheet);
+  }
+
+  void change(Sheet& sheet) {
+    sheet.stays = !sheet.stays;
+    for (const std::uint32_t e : sheet.border) edges_[e].odd = !edges_[e].odd;
+  }
+
+  bool is_free(const Sheet& sheet) {
+    return std::all_of(sheet.border.begin(), sheet.border.end(), [&](std::uint32_t e) {
+      return edges_[e].singles == 0 &&
+             std::none_of(edges_[e].groups.begin(), edges_[e].groups.end(), [&](std::uint32_t g) { return stays(g); });
+    });
+  }
 
   /// Triangles that face like the group's first one, less those that face the other way.
   int balance(std::uint32_t g) const {
@@ -123,7 +166,8 @@ class Sheets {
   const std::vector<Triangle>& triangles_;
   const std::vector<Group>& groups_;
   std::vector<std::uint32_t> parent_;
-  std::vector<Tally> tally_;
+  std::vector<Sheet> sheets_;  // at the index of the group that stands for it
+  std::vector<BorderEdge> edges_;
 };
 
 }  // namespace
@@ -138,12 +182,12 @@ Duplicates drop_duplicates(Draft& draft) {
   Sheets sheets(triangles, table, groups);
   std::size_t in_superfluous = 0;
   for (std::uint32_t g = 0; g < groups.size(); ++g)
-    if (sheets.is_superfluous(g)) in_superfluous += groups[g].triangles.size();
+    if (!sheets.stays(g)) in_superfluous += groups[g].triangles.size();
   // A model that is nothing but a sheet stays as an open surface: that tells more than nothing at all.
   const bool only_sheets = in_superfluous == triangles.size();
   std::vector<char> marked(triangles.size(), 0);
   for (std::uint32_t g = 0; g < groups.size(); ++g) {
-    const bool drop_all = sheets.is_superfluous(g) && !only_sheets;
+    const bool drop_all = !sheets.stays(g) && !only_sheets;
     const std::uint32_t kept = drop_all ? kNone : sheets.keeper(g);
     for (const std::uint32_t t : groups[g].triangles) {
       if (t == kept) continue;

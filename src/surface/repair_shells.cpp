@@ -135,10 +135,12 @@ Shells orient_shells(Draft& draft, const Pieces& pieces) {
     const std::uint32_t p = pieces.piece_of_triangle[t];
     if (!turn[p]) continue;
     std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
-    if (!seen[p]) shells.turned_first_faces.push_back(draft.face[t]);
+    if (!seen[p])
+      (nesting.depth[p] % 2 == 0 ? shells.inside_out_faces : shells.turned_cavity_faces).push_back(draft.face[t]);
     seen[p] = 1;
   }
-  sort_unique(shells.turned_first_faces);
+  sort_unique(shells.inside_out_faces);
+  sort_unique(shells.turned_cavity_faces);
   number_bodies(shells, nesting);
   return shells;
 }

@@ -64,7 +64,7 @@ struct Shells {
   std::vector<std::uint32_t> body_of_piece;
   std::uint32_t bodies = 0, cavities = 0;
   std::uint64_t inside_out = 0, turned_cavities = 0;
-  InputFaces turned_first_faces;  ///< the first face of each piece that was turned
+  InputFaces inside_out_faces, turned_cavity_faces;  ///< the first face of each piece that was turned
 };
 /// Turns closed pieces outward, and those that lie inside an odd number of others inward.
 Shells orient_shells(Draft& draft, const Pieces& pieces);
