@@ -1,0 +1,69 @@
+#include "cavity/excavation.h"
+
+#include <algorithm>
+
+namespace octafront {
+
+Excavation::Excavation(WorkMesh& mesh, Cavities& cavities, std::uint32_t cavity)
+    : mesh_(mesh), cavities_(cavities), merged_{cavity} {
+  for (const Wall& w : cavities.walls(cavity)) walls_.emplace(key_of(w), w);
+}
+
+Excavation::~Excavation() {
+  if (committed_) return;
+  for (const TetIndex t : removed_) mesh_.restore(t);
+}
+
+std::vector<Wall> Excavation::walls() const {
+  std::vector<Wall> list;
+  list.reserve(walls_.size());
+  for (const auto& [key, wall] : walls_) list.push_back(wall);
+  return list;
+}
+
+void Excavation::toggle(const Wall& wall) {
+  const auto [it, is_new] = walls_.try_emplace(key_of(wall), wall);
+  if (!is_new) walls_.erase(it);
+}
+
+void Excavation::take_out(TetIndex t) {
+  mesh_.remove(t);
+  removed_.push_back(t);
+  const Tet tet = mesh_.tet(t);
+  for (const auto& f : kTetFaces) {
+    const Wall inward{tet[f[0]], tet[f[2]], tet[f[1]]};
+    // Behind this face may lie another cavity: then the two become one.
+    const std::uint32_t other = cavities_.owner(key_of(inward));
+    if (other != kNone && merged_.insert(other).second)
+      for (const Wall& w : cavities_.walls(other)) toggle(w);
+    toggle(inward);
+  }
+}
+
+bool Excavation::grow_through(const Wall& wall) {
+  const TetIndex t = mesh_.tet_behind(wall);
+  if (t == kNone) return false;
+  take_out(t);
+  return true;
+}
+
+bool Excavation::grow_ring() {
+  std::set<VertexIndex> corners;
+  for (const auto& [key, wall] : walls_) corners.insert(key.begin(), key.end());
+  std::vector<TetIndex> ring;
+  for (const VertexIndex v : corners) {
+    const std::vector<TetIndex> around = mesh_.around(v);
+    ring.insert(ring.end(), around.begin(), around.end());
+  }
+  std::sort(ring.begin(), ring.end());
+  ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
+  for (const TetIndex t : ring) take_out(t);
+  return !ring.empty();
+}
+
+void Excavation::commit() {
+  for (const std::uint32_t c : merged_) cavities_.close(c);
+  committed_ = true;
+}
+
+}  // namespace octafront

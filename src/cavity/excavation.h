@@ -1,0 +1,42 @@
+#pragma once
+
+#include "cavity/work_mesh.h"
+
+#include <set>
+#include <vector>
+
+namespace octafront {
+
+/// A cavity that grows by the removal of tetrahedra around it, as a transaction: nothing is lost until commit(), and an
+/// excavation that ends without it puts everything back.
+class Excavation {
+ public:
+  Excavation(WorkMesh& mesh, Cavities& cavities, std::uint32_t cavity);
+  ~Excavation();
+  Excavation(const Excavation&) = delete;
+  Excavation& operator=(const Excavation&) = delete;
+
+  /// The walls in a fixed order.
+  std::vector<Wall> walls() const;
+  std::size_t size() const { return walls_.size(); }
+  bool empty() const { return walls_.empty(); }
+  /// Removes the tetrahedron behind a wall; false if there is none: the wall is part of the surface.
+  bool grow_through(const Wall& wall);
+  /// Removes all tetrahedra that touch a vertex of the walls; false if there are none.
+  bool grow_ring();
+  /// The cavity, and those that it has run into, have been filled.
+  void commit();
+
+ private:
+  void take_out(TetIndex t);
+  void toggle(const Wall& wall);
+
+  WorkMesh& mesh_;
+  Cavities& cavities_;
+  std::map<TriangleKey, Wall> walls_;
+  std::vector<TetIndex> removed_;
+  std::set<std::uint32_t> merged_;
+  bool committed_ = false;
+};
+
+}  // namespace octafront

@@ -1,0 +1,108 @@
+#include "cavity/work_mesh.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace octafront {
+
+TriangleKey key_of(const Triangle& t) {
+  TriangleKey key = t;
+  std::sort(key.begin(), key.end());
+  return key;
+}
+
+WorkMesh::WorkMesh(std::vector<Vec3> points, std::vector<Tet> tets)
+    : points_(std::move(points)), tets_(std::move(tets)), alive_(tets_.size(), true), first_(points_.size() + 1, 0) {
+  for (const Tet& t : tets_)
+    for (const VertexIndex v : t) ++first_[v + 1];
+  std::partial_sum(first_.begin(), first_.end(), first_.begin());
+  incident_.resize(first_.back());
+  std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
+  for (TetIndex t = 0; t < tets_.size(); ++t)
+    for (const VertexIndex v : tets_[t]) incident_[next[v]++] = t;
+}
+
+VertexIndex WorkMesh::add_point(Vec3 p) {
+  points_.push_back(p);
+  return static_cast<VertexIndex>(points_.size() - 1);
+}
+
+TetIndex WorkMesh::add(const Tet& tet) {
+  const auto id = static_cast<TetIndex>(tets_.size());
+  tets_.push_back(tet);
+  alive_.push_back(true);
+  for (const VertexIndex v : tet) added_[v].push_back(id);
+  return id;
+}
+
+std::vector<TetIndex> WorkMesh::around(VertexIndex v) const {
+  std::vector<TetIndex> found;
+  if (v + 1 < first_.size())
+    for (std::uint32_t i = first_[v]; i < first_[v + 1]; ++i)
+      if (alive_[incident_[i]]) found.push_back(incident_[i]);
+  if (const auto it = added_.find(v); it != added_.end())
+    for (const TetIndex t : it->second)
+      if (alive_[t]) found.push_back(t);
+  return found;
+}
+
+TetIndex WorkMesh::tet_behind(const Triangle& outward) const {
+  for (const TetIndex t : around(outward[0])) {
+    const Tet& tet = tets_[t];
+    for (const auto& f : kTetFaces)
+      for (int k = 0; k < 3; ++k)
+        if (tet[f[k]] == outward[0] && tet[f[(k + 1) % 3]] == outward[1] && tet[f[(k + 2) % 3]] == outward[2]) return t;
+  }
+  return kNone;
+}
+
+std::vector<Tet> WorkMesh::take_tets() {
+  std::size_t kept = 0;
+  for (std::size_t t = 0; t < tets_.size(); ++t)
+    if (alive_[t]) tets_[kept++] = tets_[t];
+  tets_.resize(kept);
+  alive_.clear();
+  incident_ = {};
+  added_.clear();
+  return std::move(tets_);
+}
+
+Cavities::Cavities(const std::vector<Wall>& walls) {
+  std::vector<std::uint32_t> parent(walls.size());
+  std::iota(parent.begin(), parent.end(), 0u);
+  const auto root = [&](std::uint32_t w) {
+    while (parent[w] != w) w = parent[w] = parent[parent[w]];
+    return w;
+  };
+  std::map<Edge, std::uint32_t> wall_at_edge;
+  for (std::uint32_t w = 0; w < walls.size(); ++w)
+    for (int i = 0; i < 3; ++i) {
+      const VertexIndex a = walls[w][i], b = walls[w][(i + 1) % 3];
+      const auto [it, is_new] = wall_at_edge.try_emplace({std::min(a, b), std::max(a, b)}, w);
+      if (is_new) continue;
+      const std::uint32_t p = root(w), q = root(it->second);
+      parent[std::max(p, q)] = std::min(p, q);
+    }
+  std::vector<std::uint32_t> number(walls.size(), kNone);
+  for (std::uint32_t w = 0; w < walls.size(); ++w) {
+    std::uint32_t& n = number[root(w)];
+    if (n == kNone) {
+      n = static_cast<std::uint32_t>(walls_.size());
+      walls_.emplace_back();
+    }
+    walls_[n].push_back(walls[w]);
+    owner_[key_of(walls[w])] = n;
+  }
+}
+
+std::uint32_t Cavities::owner(const TriangleKey& key) const {
+  const auto it = owner_.find(key);
+  return it == owner_.end() ? kNone : it->second;
+}
+
+void Cavities::close(std::size_t cavity) {
+  for (const Wall& w : walls_[cavity]) owner_.erase(key_of(w));
+  walls_[cavity].clear();
+}
+
+}  // namespace octafront

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <octafront/surface_mesh.h>
+#include <octafront/tet_mesh.h>
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <unordered_map>
+#include <vector>
+
+namespace octafront {
+
+/// A wall of a cavity: (a, b, c) such that (a, b, c, p) is positive for a point p of the cavity next to it.
+using Wall = Triangle;
+/// The corners of a triangle in ascending order.
+using TriangleKey = std::array<VertexIndex, 3>;
+TriangleKey key_of(const Triangle& t);
+
+/// A tetrahedral mesh under repair: tetrahedra come and go, and know their vertices' other tetrahedra.
+class WorkMesh {
+ public:
+  /// Takes the mesh over; vertex numbers and tetrahedron numbers stay as they are.
+  WorkMesh(std::vector<Vec3> points, std::vector<Tet> tets);
+
+  const std::vector<Vec3>& points() const { return points_; }
+  Vec3 at(VertexIndex v) const { return points_[v]; }
+  VertexIndex add_point(Vec3 p);
+  TetIndex add(const Tet& tet);
+  void remove(TetIndex t) { alive_[t] = false; }
+  void restore(TetIndex t) { alive_[t] = true; }
+  bool alive(TetIndex t) const { return alive_[t]; }
+  const Tet& tet(TetIndex t) const { return tets_[t]; }
+  /// The living tetrahedra around a vertex, in order of their number.
+  std::vector<TetIndex> around(VertexIndex v) const;
+  /// The living tetrahedron that has `outward` as a face, seen counter-clockwise from outside; kNone if none has.
+  TetIndex tet_behind(const Triangle& outward) const;
+
+  /// The living tetrahedra; leaves the object empty.
+  std::vector<Tet> take_tets();
+  std::vector<Vec3> take_points() { return std::move(points_); }
+
+ private:
+  std::vector<Vec3> points_;
+  std::vector<Tet> tets_;
+  std::vector<bool> alive_;
+  std::vector<std::uint32_t> first_;  ///< per original vertex: start of its tetrahedra in `incident_`
+  std::vector<TetIndex> incident_;
+  std::unordered_map<VertexIndex, std::vector<TetIndex>> added_;  ///< looked up, never iterated
+};
+
+/// The cavities of a mesh: sets of walls connected by edges. Each is closed and oriented; it may be pinched.
+class Cavities {
+ public:
+  explicit Cavities(const std::vector<Wall>& walls);
+
+  std::size_t size() const { return walls_.size(); }
+  const std::vector<Wall>& walls(std::size_t cavity) const { return walls_[cavity]; }
+  /// The cavity that a wall with these corners belongs to, or kNone.
+  std::uint32_t owner(const TriangleKey& key) const;
+  void close(std::size_t cavity);
+
+ private:
+  std::vector<std::vector<Wall>> walls_;  ///< empty: closed
+  std::map<TriangleKey, std::uint32_t> owner_;
+};
+
+}  // namespace octafront

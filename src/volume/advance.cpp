@@ -1,0 +1,79 @@
+#include "volume/advance.h"
+
+#include <utility>
+
+namespace octafront {
+
+namespace {
+
+constexpr std::size_t kFacesBetweenChecks = 512;
+
+/// The queues of one run.
+class Queues {
+ public:
+  Queues(Front& front, std::size_t most_tets, const RunContext& context, FrontCounters& counters, Attempt& attempt)
+      : front_(front), most_tets_(most_tets), context_(context), counters_(counters), attempt_(attempt) {}
+
+  AdvanceResult run(std::vector<QueuedFace> layer) {
+    work_off(std::move(layer), 0);
+    for (std::size_t level = 1; level < kLimits.size() && !over_budget();) {
+      std::vector<QueuedFace> held = take_held();
+      if (held.empty()) break;
+      counters_.retries += held.size();
+      const std::size_t before = front_.tets().size();
+      work_off(std::move(held), level);
+      // What has changed may let stricter levels succeed again: only a round without any success goes up.
+      level = front_.tets().size() == before ? level + 1 : 1;
+    }
+    AdvanceResult result;
+    result.over_budget = over_budget();
+    for (const QueuedFace& q : take_held()) result.left.push_back(q.face);
+    return result;
+  }
+
+ private:
+  void work_off(std::vector<QueuedFace> layer, std::size_t level) {
+    std::vector<QueuedFace> next;
+    while (!layer.empty()) {
+      ++counters_.layers;
+      for (const QueuedFace& q : layer) {
+        if (counters_.attempts % kFacesBetweenChecks == 0) context_.check();
+        if (over_budget()) return;
+        if (!front_.alive(q)) continue;
+        if (!attempt_.advance(q.face, kLimits[level], next)) held_.push_back(q);
+      }
+      layer.swap(next);
+      next.clear();
+      level = 0;
+    }
+  }
+
+  std::vector<QueuedFace> take_held() {
+    std::vector<QueuedFace> held;
+    for (const QueuedFace& q : std::exchange(held_, {}))
+      if (front_.alive(q)) held.push_back(q);
+    return held;
+  }
+
+  bool over_budget() const { return front_.tets().size() > most_tets_; }
+
+  Front& front_;
+  std::size_t most_tets_;
+  const RunContext& context_;
+  FrontCounters& counters_;
+  Attempt& attempt_;
+  std::vector<QueuedFace> held_;
+};
+
+}  // namespace
+
+AdvanceResult advance_front(Front& front, std::vector<QueuedFace> layer, const SizeField& sizes,
+                            const VolumeOptions& options, std::size_t most_tets, const RunContext& context,
+                            FrontCounters& counters) {
+  Attempt attempt(front, sizes, options, counters);
+  AdvanceResult result = Queues(front, most_tets, context, counters, attempt).run(std::move(layer));
+  counters.faces_found += attempt.faces_found();
+  return result;
+}
+
+}  // namespace octafront

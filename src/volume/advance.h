@@ -1,0 +1,23 @@
+#pragma once
+
+#include <octafront/run_context.h>
+
+#include "volume/attempt.h"
+#include "volume/front.h"
+
+#include <vector>
+
+namespace octafront {
+
+struct AdvanceResult {
+  std::vector<FaceIndex> left;  ///< faces that found no tetrahedron at the last level: the walls of what remains open
+  bool over_budget = false;     ///< stopped after `most_tets`: the front leaks, or sizes are out of proportion
+};
+
+/// Works off the queues: the current layer Qc in order, the faces it leaves make the next layer Qn, until both are
+/// empty; faces without an acceptable tetrahedron wait in Qh and try again at the next level of `kLimits`.
+AdvanceResult advance_front(Front& front, std::vector<QueuedFace> layer, const SizeField& sizes,
+                            const VolumeOptions& options, std::size_t most_tets, const RunContext& context,
+                            FrontCounters& counters);
+
+}  // namespace octafront

@@ -1,0 +1,228 @@
+#include "volume/attempt.h"
+
+#include <octafront/quality.h>
+
+#include "geometry/measures.h"
+#include "geometry/predicates.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace octafront {
+
+namespace {
+
+constexpr Neighborhood::Index kNewVertex = kNone;
+/// A candidate lies at least this share of the ideal point's distance away from the face's centroid (the paper's
+/// tenth).
+constexpr double kNearestCandidate = 0.1;
+/// The size used for a face stays within these multiples of its own longest edge: a kept surface may have triangles
+/// that are much larger or smaller than what is wanted around them, and an apex at the wanted distance would make a
+/// sliver.
+constexpr double kLeastSizePerEdge = 0.45, kMostSizePerEdge = 2.0;
+
+/// Squared distance between the segments (p, p + u) and (q, q + v).
+double squared_segment_distance(Vec3 p, Vec3 u, Vec3 q, Vec3 v) {
+  const Vec3 w = p - q;
+  const double a = dot(u, u), b = dot(u, v), c = dot(v, v), d = dot(u, w), e = dot(v, w);
+  const double det = a * c - b * b;
+  double s = det > 1e-12 * a * c ? std::clamp((b * e - c * d) / det, 0.0, 1.0) : 0.0;
+  double t = (b * s + e) / c;
+  if (t < 0 || t > 1) {
+    t = std::clamp(t, 0.0, 1.0);
+    s = std::clamp((b * t - d) / a, 0.0, 1.0);
+  }
+  return squared_length(w + u * s - v * t);
+}
+
+}  // namespace
+
+Attempt::Attempt(Front& front, const SizeField& sizes, const VolumeOptions& options, FrontCounters& counters)
+    : front_(front), sizes_(sizes), options_(options), counters_(counters) {}
+
+void Attempt::place(FaceIndex face, const Limits& limits) {
+  base_ = front_.corners(face);
+  double size = 0, longest = 0;
+  for (int i = 0; i < 3; ++i) {
+    at_[i] = front_.at(base_[i]);
+    size += front_.vertex(base_[i]).size / 3.0;
+  }
+  for (int i = 0; i < 3; ++i) longest = std::max(longest, distance(at_[i], at_[(i + 1) % 3]));
+  size = std::clamp(size, kLeastSizePerEdge * longest, kMostSizePerEdge * longest);
+  normal_ = normalized(cross(at_[1] - at_[0], at_[2] - at_[0]));
+  ideal_distance_ = options_.ideal_distance * limits.ideal_factor;
+  ideal_at_ = (at_[0] + at_[1] + at_[2]) / 3 + normal_ * (ideal_distance_ * size);
+  const double r = limits.search_radius * size;
+  Box3 box{ideal_at_ - Vec3{r, r, r}, ideal_at_ + Vec3{r, r, r}};
+  for (const Vec3 p : at_) box.add(p);
+  near_.gather(front_, face, box, size);
+  for (int i = 0; i < 3; ++i) local_[i] = near_.to_local(at_[i]);
+  ideal_ = normal_ * ideal_distance_;
+}
+
+void Attempt::collect_candidates(const Limits& limits) {
+  candidates_.clear();
+  const double r2 = limits.search_radius * limits.search_radius;
+  const double least = kNearestCandidate * ideal_distance_;
+  for (Index i = 3; i < near_.size(); ++i) {
+    const Vec3 p = near_.local(i);
+    if (squared_length(p - ideal_) > r2 || dot(p, normal_) <= 0 || squared_length(p) < least * least) continue;
+    const double quality = radius_ratio(local_[0], local_[1], local_[2], p);
+    if (quality < limits.least_quality) continue;
+    candidates_.push_back({i, quality, quality});
+  }
+  if (options_.ranking == VolumeOptions::Ranking::kSolidAngle)
+    for (Candidate& c : candidates_) {
+      const Vec3 p = near_.local(c.index), a = local_[0] - p, b = local_[1] - p, d = local_[2] - p;
+      const double la = length(a), lb = length(b), ld = length(d);
+      c.rank =
+          std::atan2(std::abs(dot(a, cross(b, d))), la * lb * ld + dot(a, b) * ld + dot(b, d) * la + dot(a, d) * lb);
+    }
+  std::sort(candidates_.begin(), candidates_.end(), [&](const Candidate& a, const Candidate& b) {
+    return a.rank != b.rank ? a.rank > b.rank : near_.vertex(a.index) < near_.vertex(b.index);
+  });
+}
+
+Attempt::Contact Attempt::contact_of(Index apex) const {
+  Contact contact;
+  for (const auto& f : near_.faces()) {
+    const auto& c = f.corner;
+    if (c[0] != apex && c[1] != apex && c[2] != apex) continue;
+    unsigned touched = 0;
+    for (int j = 0; j < 3; ++j)
+      if (c[j] < 3) touched |= 1u << c[j];
+    for (int i = 0; i < 3; ++i) contact.edge[i] = contact.edge[i] || (touched >> i & 1);
+    // Side i has the two corners other than i; the front face must run the other way, which validity ensures.
+    for (int i = 0; i < 3; ++i)
+      if (touched == (7u & ~(1u << i))) contact.face[i] = f.face, ++contact.closed;
+  }
+  return contact;
+}
+
+bool Attempt::edges_short_enough(Vec3 apex, const Contact& contact, double longest) const {
+  for (int i = 0; i < 3; ++i)
+    if (!contact.edge[i] && squared_length(apex - local_[i]) > longest * longest) return false;
+  return true;
+}
+
+/// The tetrahedron meets every face of the neighbourhood in nothing but shared corners, edges and faces.
+bool Attempt::is_valid(Index apex, Vec3 apex_at, VertexIndex apex_id) {
+  const auto tet_corner = [&](Index i) { return i < 3 || i == apex; };
+  for (const auto& f : near_.faces()) {
+    const auto& c = f.corner;
+    if (near_.code(c[0]) & near_.code(c[1]) & near_.code(c[2]) & Neighborhood::kOutside) continue;
+    const int shared = tet_corner(c[0]) + tet_corner(c[1]) + tet_corner(c[2]);
+    if (shared == 3) {
+      // A side of the tetrahedron: it must be seen from its unfilled side, so have the orientation (j, i, apex).
+      int k = 0;
+      while (c[k] != apex) ++k;
+      if ((c[(k + 1) % 3] + 1) % 3 == c[(k + 2) % 3]) return false;
+      continue;
+    }
+    ++counters_.exact_tests;
+    const std::array<NamedPoint, 4> tet{
+        {{base_[0], at_[0]}, {base_[1], at_[1]}, {base_[2], at_[2]}, {apex_id, apex_at}}};
+    std::array<NamedPoint, 3> face;
+    for (int j = 0; j < 3; ++j) face[j] = {near_.vertex(c[j]), front_.at(near_.vertex(c[j]))};
+    if (meets_beyond_shared_simplex(tet, face)) return false;
+  }
+  return true;
+}
+
+bool Attempt::keeps_clear(Index apex, Vec3 apex_local, const Contact& contact, const Limits& limits) const {
+  const double least = limits.edge_clearance * limits.edge_clearance;
+  for (const auto& f : near_.faces()) {
+    for (int j = 0; j < 3; ++j) {
+      const Index p = f.corner[j], q = f.corner[(j + 1) % 3];
+      // Each edge has two faces that run through it in opposite directions: once is enough.
+      if (p > q || p == apex || q == apex) continue;
+      if (near_.code(p) & near_.code(q) & Neighborhood::kClear) continue;
+      const Vec3 a = near_.local(p), ab = near_.local(q) - a;
+      for (Index i = 0; i < 3; ++i) {
+        if (contact.edge[i] || p == i || q == i) continue;
+        if (squared_segment_distance(local_[i], apex_local - local_[i], a, ab) < least) return false;
+      }
+    }
+  }
+  return true;
+}
+
+bool Attempt::clear_of_faces(Vec3 apex, float least) const {
+  for (const auto& f : near_.faces()) {
+    const auto& c = f.corner;
+    if (near_.code(c[0]) & near_.code(c[1]) & near_.code(c[2]) & Neighborhood::kClear) continue;
+    const Vec3 p = near_.local(c[0]), q = near_.local(c[1]), r = near_.local(c[2]);
+    const Vec3 n = cross(q - p, r - p), w = apex - p;
+    const double height = dot(w, n), area2 = squared_length(n);
+    if (height * height > least * least * area2) continue;
+    // Beside the triangle, its edges and corners are what is near: keeps_clear sees to those.
+    if (dot(cross(q - p, w), n) >= 0 && dot(cross(w, r - p), n) >= 0 && dot(cross(r - q, apex - q), n) >= 0)
+      return false;
+  }
+  return true;
+}
+
+bool Attempt::try_candidate(const Candidate& candidate, const Limits& limits) {
+  ++counters_.candidates;
+  const Index apex = candidate.index;
+  const Vec3 p = near_.local(apex);
+  contact_ = contact_of(apex);
+  const bool closes_all = contact_.closed == 3;
+  if (!closes_all && !edges_short_enough(p, contact_, limits.longest_edge)) return false;
+  const VertexIndex id = near_.vertex(apex);
+  const Vec3 apex_at = front_.at(id);
+  if (orient3d(at_[0], at_[1], at_[2], apex_at) <= 0) return false;
+  const Vec3 exact_p = near_.to_local(apex_at);
+  near_.classify({plane_through(local_[1], local_[2], exact_p), plane_through(local_[2], local_[0], exact_p),
+                  plane_through(local_[0], local_[1], exact_p)},
+                 static_cast<float>(limits.edge_clearance));
+  // Corners of the tetrahedron count as outside on the planes that contain them.
+  constexpr Neighborhood::Code kBase = 8;
+  near_.code(0) = kBase | 2 | 4;
+  near_.code(1) = kBase | 1 | 4;
+  near_.code(2) = kBase | 1 | 2;
+  near_.code(apex) = 1 | 2 | 4;
+  if (!is_valid(apex, apex_at, id)) return false;
+  return closes_all || keeps_clear(apex, p, contact_, limits);
+}
+
+bool Attempt::try_ideal_point(const Limits& limits) {
+  if (!front_.domain().contains(ideal_at_) || orient3d(at_[0], at_[1], at_[2], ideal_at_) <= 0) return false;
+  contact_ = Contact{};
+  near_.classify({plane_through(local_[1], local_[2], ideal_), plane_through(local_[2], local_[0], ideal_),
+                  plane_through(local_[0], local_[1], ideal_)},
+                 static_cast<float>(limits.edge_clearance));
+  constexpr Neighborhood::Code kBase = 8;
+  near_.code(0) = kBase | 2 | 4;
+  near_.code(1) = kBase | 1 | 4;
+  near_.code(2) = kBase | 1 | 2;
+  return is_valid(kNewVertex, ideal_at_, kNone) && keeps_clear(kNewVertex, ideal_, contact_, limits) &&
+         clear_of_faces(ideal_, static_cast<float>(limits.face_clearance));
+}
+
+bool Attempt::advance(FaceIndex face, const Limits& limits, std::vector<QueuedFace>& created) {
+  ++counters_.attempts;
+  place(face, limits);
+  collect_candidates(limits);
+  for (const Candidate& c : candidates_) {
+    if (!try_candidate(c, limits)) continue;
+    commit(face, near_.vertex(c.index), contact_, created);
+    return true;
+  }
+  if (!try_ideal_point(limits)) return false;
+  ++counters_.ideal_points;
+  commit(face, front_.add_vertex(ideal_at_, sizes_.at(ideal_at_)), contact_, created);
+  return true;
+}
+
+void Attempt::commit(FaceIndex face, VertexIndex apex, const Contact& contact, std::vector<QueuedFace>& created) {
+  front_.add_tet(base_, apex);
+  front_.remove_face(face);
+  for (int i = 0; i < 3; ++i)
+    if (contact.face[i] != kNone) front_.remove_face(contact.face[i]);
+  for (int i = 0; i < 3; ++i)
+    if (contact.face[i] == kNone)
+      created.push_back(front_.queued(front_.add_face({base_[(i + 1) % 3], base_[(i + 2) % 3], apex})));
+}
+
+}  // namespace octafront

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <octafront/options.h>
+#include <octafront/size_field.h>
+
+#include "volume/limits.h"
+#include "volume/meeting.h"
+#include "volume/neighborhood.h"
+
+#include <vector>
+
+namespace octafront {
+
+/// Counters of the front; they depend on input and options alone.
+struct FrontCounters {
+  std::uint64_t attempts = 0, candidates = 0, exact_tests = 0, ideal_points = 0, retries = 0, layers = 0,
+                faces_found = 0;
+};
+
+/// Tries to advance one face: ideal point, candidates in order, validity, levers. Keeps its scratch between calls.
+class Attempt {
+ public:
+  Attempt(Front& front, const SizeField& sizes, const VolumeOptions& options, FrontCounters& counters);
+
+  /// Builds the first acceptable tetrahedron on `face` and updates the front; the faces that it adds go to `created`.
+  /// False if there is none within `limits`: nothing has changed then.
+  bool advance(FaceIndex face, const Limits& limits, std::vector<QueuedFace>& created);
+
+  std::uint64_t faces_found() const { return near_.faces_found; }
+
+ private:
+  using Index = Neighborhood::Index;
+  struct Candidate {
+    Index index;
+    double rank;
+    double quality;
+  };
+  /// How the front already touches the tetrahedron on the base face with a given apex.
+  struct Contact {
+    std::array<FaceIndex, 3> face{kNone, kNone, kNone};  // front face that side i (opposite corner i) closes
+    std::array<bool, 3> edge{};                          // edge corner i - apex is on the front
+    int closed = 0;
+  };
+
+  void place(FaceIndex face, const Limits& limits);
+  void collect_candidates(const Limits& limits);
+  bool try_candidate(const Candidate& candidate, const Limits& limits);
+  bool try_ideal_point(const Limits& limits);
+  Contact contact_of(Index apex) const;
+  bool edges_short_enough(Vec3 apex, const Contact& contact, double longest) const;
+  bool is_valid(Index apex, Vec3 apex_at, VertexIndex apex_id);
+  bool keeps_clear(Index apex, Vec3 apex_local, const Contact& contact, const Limits& limits) const;
+  bool clear_of_faces(Vec3 apex_local, float least) const;
+  void commit(FaceIndex face, VertexIndex apex, const Contact& contact, std::vector<QueuedFace>& created);
+
+  Front& front_;
+  const SizeField& sizes_;
+  const VolumeOptions& options_;
+  FrontCounters& counters_;
+  Neighborhood near_;
+  std::vector<Candidate> candidates_;
+
+  // The base face of the current attempt.
+  Triangle base_{};
+  std::array<Vec3, 3> at_{}, local_{};
+  Vec3 normal_;  // unit, local
+  Vec3 ideal_;   // local
+  Vec3 ideal_at_;
+  double ideal_distance_ = 0;  // local
+  Contact contact_;            // of the candidate tried last
+};
+
+}  // namespace octafront

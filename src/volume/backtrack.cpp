@@ -1,0 +1,55 @@
+#include "volume/backtrack.h"
+
+#include "volume/advance.h"
+
+#include <algorithm>
+
+namespace octafront {
+
+namespace {
+
+/// A cavity that asks for more tetrahedra than this for each wall is not being closed but blown up.
+constexpr std::size_t kTetsPerWall = 60;
+
+/// The vertices of the walls, numbered in ascending order.
+std::vector<VertexIndex> corners_of(const std::vector<Wall>& walls) {
+  std::vector<VertexIndex> corners;
+  for (const Wall& w : walls) corners.insert(corners.end(), w.begin(), w.end());
+  std::sort(corners.begin(), corners.end());
+  corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
+  return corners;
+}
+
+}  // namespace
+
+bool close_by_front(WorkMesh& mesh, Cavities& cavities, std::uint32_t cavity, const BacktrackVariant& variant,
+                    const SizeField& sizes, const VolumeOptions& options, const RunContext& context) {
+  Excavation excavation(mesh, cavities, cavity);
+  for (int ring = 0; ring < variant.rings; ++ring)
+    if (!excavation.grow_ring()) return false;
+  const std::vector<Wall> walls = excavation.walls();
+  std::vector<VertexIndex> global = corners_of(walls);
+  Box3 box;
+  for (const VertexIndex v : global) box.add(mesh.at(v));
+  Front front(box, sizes.min_size());
+  for (const VertexIndex v : global) front.add_vertex(mesh.at(v), sizes.at(mesh.at(v)));
+  const auto local = [&](VertexIndex v) {
+    return static_cast<VertexIndex>(std::lower_bound(global.begin(), global.end(), v) - global.begin());
+  };
+  std::vector<QueuedFace> layer;
+  for (const Wall& w : walls) layer.push_back(front.queued(front.add_face({local(w[0]), local(w[1]), local(w[2])})));
+  VolumeOptions other = options;
+  other.ideal_distance *= variant.ideal_factor;
+  other.ranking = variant.ranking;
+  FrontCounters counters;
+  const AdvanceResult result =
+      advance_front(front, std::move(layer), sizes, other, 1000 + kTetsPerWall * walls.size(), context, counters);
+  if (result.over_budget || !result.left.empty()) return false;
+  for (std::size_t v = global.size(); v < front.vertices().size(); ++v)
+    global.push_back(mesh.add_point(front.at(static_cast<VertexIndex>(v))));
+  for (const Tet& t : front.tets()) mesh.add({global[t[0]], global[t[1]], global[t[2]], global[t[3]]});
+  excavation.commit();
+  return true;
+}
+
+}  // namespace octafront

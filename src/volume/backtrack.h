@@ -1,0 +1,23 @@
+#pragma once
+
+#include <octafront/options.h>
+#include <octafront/run_context.h>
+#include <octafront/size_field.h>
+
+#include "cavity/excavation.h"
+
+namespace octafront {
+
+/// How a cavity is to be advanced once more.
+struct BacktrackVariant {
+  int rings = 1;            ///< of tetrahedra taken out around the cavity first
+  double ideal_factor = 1;  ///< shortens the ideal point's distance
+  VolumeOptions::Ranking ranking = VolumeOptions::Ranking::kQuality;
+};
+
+/// Backtracking: takes rings of tetrahedra out around a cavity and lets a front of its own fill it with other choices.
+/// True if that closed it; otherwise nothing has changed.
+bool close_by_front(WorkMesh& mesh, Cavities& cavities, std::uint32_t cavity, const BacktrackVariant& variant,
+                    const SizeField& sizes, const VolumeOptions& options, const RunContext& context);
+
+}  // namespace octafront

@@ -1,0 +1,172 @@
+#include "volume/fill.h"
+
+#include <octafront/error.h>
+
+#include "core/stage_timer.h"
+#include "volume/advance.h"
+#include "volume/ladder.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+namespace octafront {
+
+namespace {
+
+/// The triangles in an order that follows space and not the input's numbering: along a Morton curve through their
+/// centroids, so that the front's first layer, and with it the memory, is local.
+std::vector<std::uint32_t> spatial_order(const SurfaceMesh& surface, const Box3& box) {
+  const Vec3 e = box.extent();
+  const double scale = 1048575.0 / std::max({e.x, e.y, e.z, 1e-300});
+  const auto spread = [](std::uint64_t x) {
+    x = (x | x << 32) & 0x1f00000000ffff;
+    x = (x | x << 16) & 0x1f0000ff0000ff;
+    x = (x | x << 8) & 0x100f00f00f00f00f;
+    x = (x | x << 4) & 0x10c30c30c30c30c3;
+    return (x | x << 2) & 0x1249249249249249;
+  };
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> keyed;
+  keyed.reserve(surface.triangles.size());
+  for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
+    const auto& [a, b, c] = surface.triangles[t];
+    const Vec3 m = ((surface.points[a] + surface.points[b] + surface.points[c]) / 3 - box.lo) * scale;
+    keyed.emplace_back(spread(static_cast<std::uint64_t>(m.x)) | spread(static_cast<std::uint64_t>(m.y)) << 1 |
+                           spread(static_cast<std::uint64_t>(m.z)) << 2,
+                       t);
+  }
+  std::sort(keyed.begin(), keyed.end());
+  std::vector<std::uint32_t> order;
+  order.reserve(keyed.size());
+  for (const auto& [key, t] : keyed) order.push_back(t);
+  return order;
+}
+
+std::vector<QueuedFace> start_front(Front& front, const SurfaceMesh& surface, const SizeField& sizes) {
+  for (const Vec3 p : surface.points) front.add_vertex(p, sizes.at(p));
+  std::vector<QueuedFace> layer;
+  layer.reserve(surface.triangles.size());
+  for (const std::uint32_t t : spatial_order(surface, front.domain())) {
+    const auto& [a, b, c] = surface.triangles[t];
+    layer.push_back(front.queued(front.add_face({a, c, b})));
+  }
+  return layer;
+}
+
+/// Far more than any honest run makes: a guard against fronts that leak.
+std::size_t tet_budget(const SurfaceMesh& surface, const SizeField& sizes) {
+  const Box3 box = bounding_box(surface.points);
+  const Vec3 e = box.extent() / sizes.min_size();
+  const double finest = 100 * e.x * e.y * e.z;
+  return static_cast<std::size_t>(std::min(4e9, 1e5 + 2000.0 * static_cast<double>(surface.triangles.size()) + finest));
+}
+
+/// Joins what tetrahedra connect: a body's outer shell and its cavities.
+class VertexSets {
+ public:
+  explicit VertexSets(std::size_t vertices) : parent_(vertices) { std::iota(parent_.begin(), parent_.end(), 0u); }
+  VertexIndex root(VertexIndex v) {
+    while (parent_[v] != v) v = parent_[v] = parent_[parent_[v]];
+    return v;
+  }
+  void join(VertexIndex a, VertexIndex b) {
+    a = root(a), b = root(b);
+    parent_[std::max(a, b)] = std::min(a, b);
+  }
+
+ private:
+  std::vector<VertexIndex> parent_;
+};
+
+bool has_one_shell(const SurfaceMesh& surface) {
+  VertexSets sets(surface.points.size());
+  for (const auto& [a, b, c] : surface.triangles) sets.join(a, b), sets.join(b, c);
+  const VertexIndex first = sets.root(surface.triangles[0][0]);
+  return std::all_of(surface.triangles.begin(), surface.triangles.end(),
+                     [&](const Triangle& t) { return sets.root(t[0]) == first; });
+}
+
+/// Bodies numbered by their first triangle, per tetrahedron; empty if there is only one.
+std::vector<std::uint32_t> regions_of(const TetMesh& mesh, const SurfaceMesh& surface) {
+  if (has_one_shell(surface)) return {};
+  VertexSets sets(mesh.points.size());
+  for (const Tet& t : mesh.tets)
+    for (int i = 1; i < 4; ++i) sets.join(t[0], t[i]);
+  std::vector<std::uint32_t> number(mesh.points.size(), kNone), region;
+  std::uint32_t bodies = 0;
+  for (const Triangle& t : surface.triangles) {
+    std::uint32_t& n = number[sets.root(t[0])];
+    if (n == kNone) n = bodies++;
+  }
+  region.reserve(mesh.tets.size());
+  for (const Tet& t : mesh.tets) region.push_back(number[sets.root(t[0])]);
+  return region;
+}
+
+/// Points that the closing of cavities has left without a tetrahedron go; those of the surface keep their numbers.
+void drop_unused_points(TetMesh& mesh, std::size_t surface_points) {
+  std::vector<VertexIndex> new_index(mesh.points.size(), kNone);
+  for (std::size_t v = 0; v < surface_points; ++v) new_index[v] = 0;
+  for (const Tet& t : mesh.tets)
+    for (const VertexIndex v : t) new_index[v] = 0;
+  VertexIndex used = 0;
+  for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+    if (new_index[v] == kNone) continue;
+    mesh.points[used] = mesh.points[v];
+    new_index[v] = used++;
+  }
+  mesh.points.resize(used);
+  for (Tet& t : mesh.tets)
+    for (VertexIndex& v : t) v = new_index[v];
+}
+
+void report_front(StageReport& report, const FrontCounters& counters, std::size_t tets, std::size_t left) {
+  report.count("front tetrahedra", static_cast<double>(tets));
+  report.count("layers", static_cast<double>(counters.layers));
+  report.count("attempts", static_cast<double>(counters.attempts));
+  report.count("faces gathered", static_cast<double>(counters.faces_found));
+  report.count("candidates tried", static_cast<double>(counters.candidates));
+  report.count("exact tests", static_cast<double>(counters.exact_tests));
+  report.count("ideal points", static_cast<double>(counters.ideal_points));
+  report.count("retries", static_cast<double>(counters.retries));
+  report.count("faces left", static_cast<double>(left));
+}
+
+}  // namespace
+
+TetMesh fill_volume(const SurfaceMesh& surface, const SizeField& sizes, const VolumeOptions& options,
+                    const RunContext& context, StageReport& report) {
+  const StageTimer timer(report);
+  if (surface.triangles.empty()) throw InputError("the surface has no triangles: nothing to fill");
+  TetMesh mesh;
+  std::vector<Wall> walls;
+  {
+    Front front(bounding_box(surface.points), sizes.min_size());
+    std::vector<QueuedFace> layer = start_front(front, surface, sizes);
+    FrontCounters counters;
+    const AdvanceResult result =
+        advance_front(front, std::move(layer), sizes, options, tet_budget(surface, sizes), context, counters);
+    report_front(report, counters, front.tets().size(), result.left.size());
+    if (result.over_budget)
+      throw MeshingError("the front made " + std::to_string(front.tets().size()) +
+                         " tetrahedra without closing; check the surface for self-intersections, or choose a larger "
+                         "element size");
+    for (const FaceIndex f : result.left) walls.push_back(front.corners(f));
+    mesh.points.reserve(front.vertices().size());
+    for (const FrontVertex& v : front.vertices()) mesh.points.push_back(v.at);
+    mesh.tets = std::move(front.tets());
+  }
+  if (!walls.empty()) {
+    close_cavities(mesh, walls, sizes, options, context, report);
+    drop_unused_points(mesh, surface.points.size());
+  }
+  report.count("tetrahedra", static_cast<double>(mesh.tets.size()));
+  mesh.region = regions_of(mesh, surface);
+  mesh.boundary = surface.triangles;
+  mesh.patch = surface.patch;
+  mesh.patch_names = surface.patch_names;
+  return mesh;
+}
+
+}  // namespace octafront

@@ -1,0 +1,50 @@
+#include "volume/front.h"
+
+#include <octafront/error.h>
+
+#include <utility>
+
+namespace octafront {
+
+namespace {
+/// Cells of the index at level 0 in units of the smallest size; 1.5 to 2 is a flat optimum.
+constexpr double kCellPerSize = 1.8;
+}  // namespace
+
+Front::Front(const Box3& domain, double finest_size) : domain_(domain), index_(domain, kCellPerSize * finest_size) {}
+
+VertexIndex Front::add_vertex(Vec3 at, double size) {
+  if (vertices_.size() >= kNone) throw MeshingError("more than 2^32 - 1 vertices: choose a larger element size");
+  vertices_.push_back({at, static_cast<float>(size), 0});
+  return static_cast<VertexIndex>(vertices_.size() - 1);
+}
+
+FaceIndex Front::add_face(const Triangle& corners) {
+  FaceIndex face;
+  if (free_.empty()) {
+    face = static_cast<FaceIndex>(faces_.size());
+    faces_.emplace_back();
+  } else {
+    face = free_.back();
+    free_.pop_back();
+  }
+  faces_[face].corners = corners;
+  Box3 box;
+  for (const VertexIndex v : corners) box.add(vertices_[v].at);
+  index_.insert(face, corners, box);
+  ++active_;
+  return face;
+}
+
+void Front::remove_face(FaceIndex face) {
+  index_.remove(face);
+  ++faces_[face].generation;
+  free_.push_back(face);
+  --active_;
+}
+
+void Front::add_tet(const Triangle& face, VertexIndex apex) {
+  tets_.push_back({face[0], face[1], face[2], apex});
+}
+
+}  // namespace octafront

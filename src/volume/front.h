@@ -1,0 +1,66 @@
+#pragma once
+
+#include <octafront/size_field.h>
+#include <octafront/surface_mesh.h>
+#include <octafront/tet_mesh.h>
+
+#include "volume/front_index.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace octafront {
+
+struct FrontVertex {
+  Vec3 at;
+  float size = 0;                   ///< wanted edge length here
+  mutable std::uint32_t local = 0;  ///< scratch of Neighborhood
+};
+
+/// A face that waits in a queue. Ids of faces are used again; the generation tells whether it is still the same face.
+struct QueuedFace {
+  FaceIndex face;
+  std::uint32_t generation;
+};
+
+/// The boundary between what is filled and what is not: oriented triangles (a, b, c) that face the unfilled side, so
+/// that (a, b, c, p) is positive for a point p to which the face may advance; and the tetrahedra made so far.
+class Front {
+ public:
+  /// Nothing yet; faces will lie within `domain`.
+  Front(const Box3& domain, double finest_size);
+
+  VertexIndex add_vertex(Vec3 at, double size);
+  FaceIndex add_face(const Triangle& corners);
+  void remove_face(FaceIndex face);
+  /// Records the tetrahedron (face, apex); the faces are the caller's business.
+  void add_tet(const Triangle& face, VertexIndex apex);
+
+  const std::vector<FrontVertex>& vertices() const { return vertices_; }
+  const FrontVertex& vertex(VertexIndex v) const { return vertices_[v]; }
+  Vec3 at(VertexIndex v) const { return vertices_[v].at; }
+  const Triangle& corners(FaceIndex face) const { return faces_[face].corners; }
+  QueuedFace queued(FaceIndex face) const { return {face, faces_[face].generation}; }
+  bool alive(QueuedFace q) const { return faces_[q.face].generation == q.generation; }
+  std::size_t active_faces() const { return active_; }
+  const FrontIndex& index() const { return index_; }
+  std::vector<Tet>& tets() { return tets_; }
+  const std::vector<Tet>& tets() const { return tets_; }
+  const Box3& domain() const { return domain_; }
+
+ private:
+  struct Face {
+    Triangle corners;
+    std::uint32_t generation = 0;
+  };
+
+  Box3 domain_;
+  FrontIndex index_;
+  std::vector<FrontVertex> vertices_;
+  std::vector<Face> faces_;
+  std::vector<FaceIndex> free_;
+  std::size_t active_ = 0;
+  std::vector<Tet> tets_;
+};
+
+}  // namespace octafront

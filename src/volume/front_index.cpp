@@ -1,0 +1,225 @@
+#include "volume/front_index.h"
+
+#include <bit>
+#include <cmath>
+
+namespace octafront {
+
+namespace {
+
+/// Largest extent of a face's box that a level takes, as a share of its cell. The box searched is grown by half of it,
+/// so smaller is less to search in uniform regions; 0.7 with cells of 1.8 h takes almost every face of size h.
+constexpr double kExtentShare = 0.7;
+constexpr int kBrickBits = 2;
+constexpr int kBrickSide = 1 << kBrickBits;
+constexpr int kCellBits = 20;  // cells along an axis at level 0
+
+std::uint64_t key_of(int level, const std::array<int, 3>& brick) {
+  // One is added so that no key is 0.
+  return ((static_cast<std::uint64_t>(level) << 54) | (static_cast<std::uint64_t>(brick[0]) << 36) |
+          (static_cast<std::uint64_t>(brick[1]) << 18) | static_cast<std::uint64_t>(brick[2])) +
+         1;
+}
+
+std::uint64_t scrambled(std::uint64_t key) {
+  key *= 0x9e3779b97f4a7c15ull;
+  return key ^ (key >> 29);
+}
+
+}  // namespace
+
+FrontIndex::FrontIndex(const Box3& domain, double finest_cell) : free_block_(kNone) {
+  const Vec3 e = domain.extent();
+  const double widest = std::max({e.x, e.y, e.z});
+  finest_cell = std::max(finest_cell, widest / ((1 << kCellBits) - 16));
+  // Two cells of margin: boxes that are searched may reach beyond the domain.
+  origin_ = domain.lo - Vec3{2 * finest_cell, 2 * finest_cell, 2 * finest_cell};
+  for (int l = 0; l < kLevels; ++l) {
+    cell_[l] = std::ldexp(finest_cell, l);
+    per_cell_[l] = 1 / cell_[l];
+  }
+  keys_.assign(1024, 0);
+  brick_of_key_.assign(1024, kNone);
+}
+
+std::uint32_t FrontIndex::brick_at(int level, const Cell& brick) const {
+  const std::uint64_t key = key_of(level, brick), mask = keys_.size() - 1;
+  for (std::uint64_t i = scrambled(key) & mask;; i = (i + 1) & mask) {
+    if (keys_[i] == key) return brick_of_key_[i];
+    if (keys_[i] == 0) return kNone;
+  }
+}
+
+void FrontIndex::grow_table() {
+  std::vector<std::uint64_t> keys(2 * keys_.size(), 0);
+  std::vector<std::uint32_t> bricks(keys.size(), kNone);
+  const std::uint64_t mask = keys.size() - 1;
+  for (std::size_t k = 0; k < keys_.size(); ++k) {
+    if (keys_[k] == 0) continue;
+    std::uint64_t i = scrambled(keys_[k]) & mask;
+    while (keys[i] != 0) i = (i + 1) & mask;
+    keys[i] = keys_[k];
+    bricks[i] = brick_of_key_[k];
+  }
+  keys_ = std::move(keys);
+  brick_of_key_ = std::move(bricks);
+}
+
+std::uint32_t FrontIndex::make_brick(int level, const Cell& brick) {
+  if (2 * (bricks_.size() + 1) > keys_.size()) grow_table();
+  const auto id = static_cast<std::uint32_t>(bricks_.size());
+  Brick& b = bricks_.emplace_back();
+  b.level = level;
+  b.head.fill(kNone);
+  const double side = cell_[level] * kBrickSide;
+  b.origin = origin_ + Vec3{brick[0] * side, brick[1] * side, brick[2] * side};
+  const std::uint64_t key = key_of(level, brick), mask = keys_.size() - 1;
+  std::uint64_t i = scrambled(key) & mask;
+  while (keys_[i] != 0) i = (i + 1) & mask;
+  keys_[i] = key;
+  brick_of_key_[i] = id;
+  return id;
+}
+
+std::uint32_t FrontIndex::new_block(std::uint32_t cell, std::uint32_t next) {
+  std::uint32_t id = free_block_;
+  if (id != kNone) {
+    free_block_ = blocks_[id].next;
+  } else {
+    id = static_cast<std::uint32_t>(blocks_.size());
+    blocks_.emplace_back();
+    // Unused slots overlap nothing.
+    for (int axis = 0; axis < 3; ++axis)
+      for (int s = 0; s < kWidth; ++s) blocks_[id].lo[axis][s] = 1e30f, blocks_[id].hi[axis][s] = -1e30f;
+  }
+  blocks_[id].cell = cell;
+  blocks_[id].next = next;
+  blocks_[id].count = 0;
+  return id;
+}
+
+void FrontIndex::insert(FaceIndex face, const Triangle& corners, const Box3& box) {
+  const Vec3 extent = box.extent(), middle = box.center() - origin_;
+  const double widest = std::max({extent.x, extent.y, extent.z});
+  int level = 0;
+  while (level + 1 < kLevels && widest > kExtentShare * cell_[level]) ++level;
+  const int limit = std::max(1, (1 << kCellBits) >> level) - 1;
+  Cell cell, brick;
+  for (int axis = 0; axis < 3; ++axis) {
+    cell[axis] = std::clamp(static_cast<int>(middle[axis] * per_cell_[level]), 0, limit);
+    brick[axis] = cell[axis] >> kBrickBits;
+    cell[axis] &= kBrickSide - 1;
+  }
+  std::uint32_t b = brick_at(level, brick);
+  if (b == kNone) b = make_brick(level, brick);
+  const int c = cell[0] + kBrickSide * (cell[1] + kBrickSide * cell[2]);
+  std::uint32_t head = bricks_[b].head[c];
+  if (head == kNone || blocks_[head].count == kWidth) {
+    head = new_block(b * 64 + c, head);
+    bricks_[b].head[c] = head;
+    bricks_[b].occupied |= std::uint64_t{1} << c;
+  }
+  Block& block = blocks_[head];
+  const std::uint32_t slot = block.count++;
+  const Vec3 lo = box.lo - bricks_[b].origin, hi = box.hi - bricks_[b].origin;
+  for (int axis = 0; axis < 3; ++axis) {
+    // Rounding to float keeps order, so boxes that overlap still overlap after it.
+    block.lo[axis][slot] = static_cast<float>(lo[axis]);
+    block.hi[axis][slot] = static_cast<float>(hi[axis]);
+    block.corner[axis][slot] = corners[axis];
+  }
+  block.face[slot] = face;
+  if (face >= place_.size()) place_.resize(std::max<std::size_t>(face + 1, 2 * place_.size()), kNone);
+  place_[face] = head * kWidth + slot;
+  ++faces_at_level_[level];
+}
+
+void FrontIndex::remove(FaceIndex face) {
+  const std::uint32_t place = place_[face];
+  Block& hole = blocks_[place / kWidth];
+  const std::uint32_t slot = place % kWidth;
+  Brick& brick = bricks_[hole.cell / 64];
+  const std::uint32_t c = hole.cell % 64, head = brick.head[c];
+  Block& first = blocks_[head];
+  const std::uint32_t last = --first.count;
+  for (int axis = 0; axis < 3; ++axis) {
+    hole.lo[axis][slot] = first.lo[axis][last];
+    hole.hi[axis][slot] = first.hi[axis][last];
+    hole.corner[axis][slot] = first.corner[axis][last];
+    first.lo[axis][last] = 1e30f;
+    first.hi[axis][last] = -1e30f;
+  }
+  hole.face[slot] = first.face[last];
+  place_[hole.face[slot]] = place;
+  place_[face] = kNone;
+  if (last == 0) {
+    brick.head[c] = first.next;
+    if (first.next == kNone) brick.occupied &= ~(std::uint64_t{1} << c);
+    first.next = free_block_;
+    free_block_ = head;
+  }
+  --faces_at_level_[brick.level];
+}
+
+void FrontIndex::find(const Box3& box, std::vector<Found>& out) const {
+  for (int level = 0; level < kLevels; ++level)
+    if (faces_at_level_[level] != 0) find_in_level(level, box, out);
+}
+
+void FrontIndex::find_in_level(int level, const Box3& box, std::vector<Found>& out) const {
+  const double reach = 0.5 * kExtentShare * cell_[level] * 1.0001;
+  const int limit = std::max(1, (1 << kCellBits) >> level) - 1;
+  Cell lo, hi;
+  for (int axis = 0; axis < 3; ++axis) {
+    lo[axis] = static_cast<int>(
+        std::clamp((box.lo[axis] - origin_[axis] - reach) * per_cell_[level], 0.0, static_cast<double>(limit)));
+    hi[axis] = static_cast<int>(
+        std::clamp((box.hi[axis] - origin_[axis] + reach) * per_cell_[level], 0.0, static_cast<double>(limit)));
+  }
+  // Bits of a brick's cells with x (y, z) coordinate in a range.
+  const auto range_x = [](int l, int h) { return 0x1111111111111111ull * (((2u << h) - 1) & ~((1u << l) - 1)); };
+  const auto range_y = [](int l, int h) {
+    std::uint64_t row = 0;
+    for (int y = l; y <= h; ++y) row |= 0xfull << (4 * y);
+    return row * 0x0001000100010001ull;
+  };
+  const auto range_z = [](int l, int h) {
+    std::uint64_t slab = 0;
+    for (int z = l; z <= h; ++z) slab |= 0xffffull << (16 * z);
+    return slab;
+  };
+  const auto first = [&](int axis, int b) { return std::max(lo[axis] - b * kBrickSide, 0); };
+  const auto last = [&](int axis, int b) { return std::min(hi[axis] - b * kBrickSide, kBrickSide - 1); };
+  for (int z = lo[2] >> kBrickBits; z <= hi[2] >> kBrickBits; ++z) {
+    const std::uint64_t in_z = range_z(first(2, z), last(2, z));
+    for (int y = lo[1] >> kBrickBits; y <= hi[1] >> kBrickBits; ++y) {
+      const std::uint64_t in_yz = in_z & range_y(first(1, y), last(1, y));
+      for (int x = lo[0] >> kBrickBits; x <= hi[0] >> kBrickBits; ++x) {
+        const std::uint32_t b = brick_at(level, {x, y, z});
+        if (b == kNone) continue;
+        const std::uint64_t cells = bricks_[b].occupied & in_yz & range_x(first(0, x), last(0, x));
+        if (cells != 0) find_in_brick(bricks_[b], cells, box, out);
+      }
+    }
+  }
+}
+
+void FrontIndex::find_in_brick(const Brick& brick, std::uint64_t cells, const Box3& box,
+                               std::vector<Found>& out) const {
+  const Vec3 l = box.lo - brick.origin, h = box.hi - brick.origin;
+  const float lo[3] = {static_cast<float>(l.x), static_cast<float>(l.y), static_cast<float>(l.z)};
+  const float hi[3] = {static_cast<float>(h.x), static_cast<float>(h.y), static_cast<float>(h.z)};
+  for (; cells != 0; cells &= cells - 1) {
+    for (std::uint32_t id = brick.head[std::countr_zero(cells)]; id != kNone; id = blocks_[id].next) {
+      const Block& block = blocks_[id];
+      std::uint8_t overlap[kWidth];
+      for (int s = 0; s < kWidth; ++s)
+        overlap[s] = (block.lo[0][s] <= hi[0]) & (block.hi[0][s] >= lo[0]) & (block.lo[1][s] <= hi[1]) &
+                     (block.hi[1][s] >= lo[1]) & (block.lo[2][s] <= hi[2]) & (block.hi[2][s] >= lo[2]);
+      for (int s = 0; s < static_cast<int>(block.count); ++s)
+        if (overlap[s]) out.push_back({block.face[s], {block.corner[0][s], block.corner[1][s], block.corner[2][s]}});
+    }
+  }
+}
+
+}  // namespace octafront

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <octafront/surface_mesh.h>
+#include <octafront/vec.h>
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace octafront {
+
+using FaceIndex = std::uint32_t;
+
+/// Where the active front is: finds the faces whose boxes overlap a box.
+///
+/// A face lives in one cell of one level of a hierarchy of grids: the level whose cells are just large enough for it
+/// (cell >= 1.43 times its largest extent), the cell that holds the middle of its box. Sizes that differ by any factor
+/// therefore cost the same. A cell keeps its faces in blocks of 16, coordinate by coordinate, as single-precision boxes
+/// relative to the brick (4 x 4 x 4 cells) they lie in; a brick has one bit for each of its
+/// cells, so empty cells cost nothing. Faces leave when they are consumed: what is searched is only the active front.
+/// The order of answers depends on the order of insertions and removals alone.
+class FrontIndex {
+ public:
+  struct Found {
+    FaceIndex face;
+    Triangle corners;
+  };
+
+  /// `domain` bounds every face that will ever be inserted; `finest_cell` is the cell of level 0 (raised where the
+  /// domain has more than 2^20 of them along an axis).
+  FrontIndex(const Box3& domain, double finest_cell);
+
+  /// Requires that `face` is not in the index.
+  void insert(FaceIndex face, const Triangle& corners, const Box3& box);
+  void remove(FaceIndex face);
+  /// Appends the faces whose boxes overlap `box` (conservatively) to `out`.
+  void find(const Box3& box, std::vector<Found>& out) const;
+
+ private:
+  static constexpr int kWidth = 16;  // faces in a block
+  static constexpr int kLevels = 22;
+  struct Block {
+    float lo[3][kWidth], hi[3][kWidth];
+    std::uint32_t corner[3][kWidth];
+    FaceIndex face[kWidth];
+    std::uint32_t next, cell, count;  // cell: brick * 64 + cell of the brick
+  };
+  struct Brick {
+    std::uint64_t occupied = 0;
+    Vec3 origin;
+    int level = 0;
+    std::array<std::uint32_t, 64> head;
+  };
+  using Cell = std::array<int, 3>;
+
+  std::uint32_t brick_at(int level, const Cell& brick) const;
+  std::uint32_t make_brick(int level, const Cell& brick);
+  std::uint32_t new_block(std::uint32_t cell, std::uint32_t next);
+  void grow_table();
+  void find_in_level(int level, const Box3& box, std::vector<Found>& out) const;
+  void find_in_brick(const Brick& brick, std::uint64_t cells, const Box3& box, std::vector<Found>& out) const;
+
+  Vec3 origin_;
+  std::array<double, kLevels> cell_{}, per_cell_{};
+  std::array<std::uint32_t, kLevels> faces_at_level_{};
+  std::vector<Block> blocks_;
+  std::uint32_t free_block_;
+  std::vector<Brick> bricks_;
+  std::vector<std::uint64_t> keys_;  // open addressing; 0 = empty
+  std::vector<std::uint32_t> brick_of_key_;
+  std::vector<std::uint32_t> place_;  // per face: block * 16 + slot
+};
+
+}  // namespace octafront

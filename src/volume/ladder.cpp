@@ -1,0 +1,88 @@
+#include "volume/ladder.h"
+
+#include <octafront/error.h>
+
+#include "cavity/cavity.h"
+#include "core/stage_timer.h"
+#include "volume/backtrack.h"
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+namespace octafront {
+
+namespace {
+
+using Ranking = VolumeOptions::Ranking;
+
+/// Other choices, in the order in which they are tried.
+constexpr std::array<BacktrackVariant, 4> kBeforeStar{{{1, 1.0, Ranking::kQuality},
+                                                       {1, 0.8, Ranking::kSolidAngle},
+                                                       {2, 1.0, Ranking::kQuality},
+                                                       {2, 0.7, Ranking::kQuality}}};
+constexpr std::array<BacktrackVariant, 3> kAfterStar{
+    {{3, 1.0, Ranking::kQuality}, {3, 0.6, Ranking::kSolidAngle}, {4, 0.8, Ranking::kQuality}}};
+
+struct RungCounts {
+  int cavities = 0, by_front = 0, by_star = 0, growth_steps = 0;
+};
+
+SurfaceMesh surface_of(const WorkMesh& mesh, const std::vector<Wall>& walls) {
+  SurfaceMesh surface;
+  std::map<VertexIndex, VertexIndex> local;
+  for (const Wall& w : walls) {
+    Triangle outward{w[0], w[2], w[1]};
+    for (VertexIndex& v : outward) {
+      const auto [it, is_new] = local.try_emplace(v, static_cast<VertexIndex>(surface.points.size()));
+      if (is_new) surface.points.push_back(mesh.at(v));
+      v = it->second;
+    }
+    surface.triangles.push_back(outward);
+  }
+  return surface;
+}
+
+[[noreturn]] void give_up(const WorkMesh& mesh, const std::vector<Wall>& walls) {
+  SurfaceMesh surface = surface_of(mesh, walls);
+  const Vec3 p = bounding_box(surface.points).center();
+  throw OpenCavityError("a cavity of " + std::to_string(walls.size()) + " faces near (" + std::to_string(p.x) + ", " +
+                            std::to_string(p.y) + ", " + std::to_string(p.z) +
+                            ") could not be filled; please report it with the surface",
+                        std::move(surface));
+}
+
+}  // namespace
+
+void close_cavities(TetMesh& mesh, const std::vector<Wall>& walls, const SizeField& sizes, const VolumeOptions& options,
+                    const RunContext& context, StageReport& report) {
+  const double start = process_cpu_seconds();
+  WorkMesh work(std::move(mesh.points), std::move(mesh.tets));
+  Cavities cavities(walls);
+  RungCounts counts;
+  for (std::uint32_t c = 0; c < cavities.size(); ++c) {
+    if (cavities.walls(c).empty()) continue;
+    context.check();
+    ++counts.cavities;
+    const auto by_front = [&](const BacktrackVariant& variant) {
+      const bool closed = close_by_front(work, cavities, c, variant, sizes, options, context);
+      counts.by_front += closed;
+      return closed;
+    };
+    if (std::any_of(kBeforeStar.begin(), kBeforeStar.end(), by_front)) continue;
+    const StarResult star = close_by_star(work, cavities, c);
+    counts.growth_steps += star.growth_steps;
+    counts.by_star += star.closed;
+    if (star.closed || std::any_of(kAfterStar.begin(), kAfterStar.end(), by_front)) continue;
+    give_up(work, cavities.walls(c));
+  }
+  mesh.points = work.take_points();
+  mesh.tets = work.take_tets();
+  report.count("cavities", counts.cavities);
+  report.count("closed by backtracking", counts.by_front);
+  report.count("closed by kernel points", counts.by_star);
+  report.count("growth steps", counts.growth_steps);
+  report.count("closing CPU seconds", process_cpu_seconds() - start);
+}
+
+}  // namespace octafront

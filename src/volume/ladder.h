@@ -1,0 +1,21 @@
+#pragma once
+
+#include <octafront/options.h>
+#include <octafront/report.h>
+#include <octafront/run_context.h>
+#include <octafront/size_field.h>
+#include <octafront/tet_mesh.h>
+
+#include "cavity/work_mesh.h"
+
+#include <vector>
+
+namespace octafront {
+
+/// Closes what the front has left open, rung by rung: backtracking with other choices and growing rings, a kernel point
+/// with growth, and at last recovery of the cavity's walls in a Delaunay mesh. `walls` face the open side.
+/// Counts in `report` which rung closed how many. Throws OpenCavityError with the first cavity that stays open.
+void close_cavities(TetMesh& mesh, const std::vector<Wall>& walls, const SizeField& sizes, const VolumeOptions& options,
+                    const RunContext& context, StageReport& report);
+
+}  // namespace octafront
