@@ -62,8 +62,9 @@ void declare_volume(CLI::App& command, Arguments& a) {
   static const std::map<std::string, VolumeOptions::Ranking> kRanking{
       {"quality", VolumeOptions::Ranking::kQuality}, {"solid-angle", VolumeOptions::Ranking::kSolidAngle}};
   auto* group = command.add_option_group("Volume");
-  group->add_option("--ideal-distance", a.options.volume.ideal_distance,
-                    "Ideal point above its face, as a multiple of the size there")
+  group
+      ->add_option("--ideal-distance", a.options.volume.ideal_distance,
+                   "Ideal point above its face, as a multiple of the size there")
       ->type_name("X")
       ->capture_default_str();
   group->add_option("--ranking", a.options.volume.ranking, "Order of candidates: quality, solid-angle [quality]")

@@ -3,7 +3,6 @@
 #include <octafront/options.h>
 
 #include <CLI/CLI.hpp>
-
 #include <filesystem>
 #include <string>
 

@@ -4,9 +4,9 @@
 
 #include "terminal.h"
 
-#include <fmt/format.h>
-
 #include <cstdio>
+
+#include <fmt/format.h>
 
 namespace octafront::cli {
 
@@ -41,9 +41,10 @@ int check_tet_mesh(const Arguments& a) {
   const auto defect = first_defect(mesh);
   if (defect) throw InputError(fmt::format("{}: not a valid mesh: {}", a.input.string(), *defect));
   const QualitySummary q = summarize_quality(mesh);
-  say(a, fmt::format("{}: a valid mesh of {} tetrahedra; least beta {:.4f}, mean {:.4f}, dihedral angles {:.1f} to {:.1f} "
-                     "degrees\n",
-                     a.input.string(), mesh.tets.size(), q.beta_min, q.beta_mean, q.dihedral_min, q.dihedral_max));
+  say(a,
+      fmt::format("{}: a valid mesh of {} tetrahedra; least beta {:.4f}, mean {:.4f}, dihedral angles {:.1f} to {:.1f} "
+                  "degrees\n",
+                  a.input.string(), mesh.tets.size(), q.beta_min, q.beta_mean, q.dihedral_min, q.dihedral_max));
   return 0;
 }
 

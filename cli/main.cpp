@@ -4,11 +4,11 @@
 #include "commands.h"
 #include "terminal.h"
 
-#include <fmt/format.h>
-
 #include <cstdio>
 #include <functional>
 #include <new>
+
+#include <fmt/format.h>
 
 namespace {
 
@@ -16,7 +16,15 @@ using namespace octafront;
 using namespace octafront::cli;
 
 // Status codes of the command line, by cause.
-enum Status { kDone = 0, kInternal = 1, kUsage = 2, kInputRefused = 3, kNoMesh = 4, kNotWritten = 5, kInterrupted = 130 };
+enum Status {
+  kDone = 0,
+  kInternal = 1,
+  kUsage = 2,
+  kInputRefused = 3,
+  kNoMesh = 4,
+  kNotWritten = 5,
+  kInterrupted = 130
+};
 
 int fail(Status status, const char* message) {
   clear_progress();

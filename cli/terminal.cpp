@@ -1,9 +1,9 @@
 #include "terminal.h"
 
-#include <fmt/format.h>
-
 #include <csignal>
 #include <cstdio>
+
+#include <fmt/format.h>
 #include <unistd.h>
 
 namespace octafront::cli {
@@ -13,7 +13,9 @@ namespace {
 std::atomic<bool> interrupted{false};
 bool progress_shown = false;
 
-void on_signal(int) { interrupted.store(true); }
+void on_signal(int) {
+  interrupted.store(true);
+}
 
 }  // namespace
 

@@ -22,4 +22,4 @@ need_packages() {
 
 # What building needs, and what the tests need beyond it.
 build_packages=(g++ cmake ninja-build libtbb-dev zlib1g-dev libfmt-dev libcli11-dev nlohmann-json3-dev)
-test_packages=(libgtest-dev librapidcheck-dev)
+test_packages=(libgtest-dev librapidcheck-dev python3)

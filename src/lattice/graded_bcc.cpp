@@ -8,7 +8,9 @@ namespace {
 
 using Cell = std::array<std::uint32_t, 3>;
 
-LatticeSite site_of(const Cell& c) { return pack_site(c[0], c[1], c[2]); }
+LatticeSite site_of(const Cell& c) {
+  return pack_site(c[0], c[1], c[2]);
+}
 
 LatticeSite center_site(OctreeKey leaf) {
   Cell c = leaf.corner();
@@ -53,8 +55,8 @@ class LeafFace {
     // Corner of this face that lies in the middle of the parent's face: on the inner side along u and along v.
     const bool middle_high_u = !(child >> u_ & 1), middle_high_v = !(child >> v_ & 1);
     const int f = corner_number(middle_high_u, middle_high_v);
-    const LatticeSite middle = site_of(corner(f)), m1 = site_of(corner((f + 1) % 4)), outer = site_of(corner((f + 2) % 4)),
-                      m2 = site_of(corner((f + 3) % 4));
+    const LatticeSite middle = site_of(corner(f)), m1 = site_of(corner((f + 1) % 4)),
+                      outer = site_of(corner((f + 2) % 4)), m2 = site_of(corner((f + 3) % 4));
     LatticeSite above = center_site(large), below = center_site(leaf_);
     if (!high_) std::swap(above, below);
     // The corners run counter-clockwise seen from +axis, where `above` lies.
@@ -85,9 +87,7 @@ class LeafFace {
     return is_finer(step(leaf_, away, kSide[i])) || is_finer(step(across, away, kSide[i]));
   }
 
-  bool is_finer(OctreeKey cell) const {
-    return cell.is_valid() && tree_.leaf(tree_.find(cell)).level() > cell.level();
-  }
+  bool is_finer(OctreeKey cell) const { return cell.is_valid() && tree_.leaf(tree_.find(cell)).level() > cell.level(); }
 
   const Octree& tree_;
   OctreeKey leaf_;
@@ -97,7 +97,9 @@ class LeafFace {
 
 }  // namespace
 
-Vec3 position(const RootCube& root, LatticeSite site) { return root.position(unpack_site(site)); }
+Vec3 position(const RootCube& root, LatticeSite site) {
+  return root.position(unpack_site(site));
+}
 
 void for_each_lattice_tet(const Octree& tree, const std::function<void(const std::array<LatticeSite, 4>&)>& visit) {
   for (const OctreeKey leaf : tree.leaves()) {

@@ -4,10 +4,10 @@
 // Stuffing: Fast Tetrahedral Meshes with Good Dihedral Angles", 2007, section 3.
 //
 // Its points are the corners and the centres of the leaves. Two leaves of equal size that share a face give, for each
-// edge of that face, the tetrahedron of the two centres and the edge; where a smaller leaf has a corner in the middle of
-// the edge, that one is bisected. Where a leaf meets four smaller ones, each of them gives two half-pyramids on its own
-// side and two quartered tetrahedra on the large leaf's side; both share the diagonal of the small face that ends in the
-// middle of the large one:
+// edge of that face, the tetrahedron of the two centres and the edge; where a smaller leaf has a corner in the middle
+// of the edge, that one is bisected. Where a leaf meets four smaller ones, each of them gives two half-pyramids on its
+// own side and two quartered tetrahedra on the large leaf's side; both share the diagonal of the small face that ends
+// in the middle of the large one:
 //
 //      C ------- M2 ------- +        C   corner of the large face        F   its middle
 //      |  .      |          |        M1, M2   middles of its edges
@@ -42,8 +42,8 @@ inline constexpr int kFinestLatticeLevel = OctreeKey::kMaxLevel - 1;
 /// Where a site lies.
 Vec3 position(const RootCube& root, LatticeSite site);
 
-/// Calls `visit` for every tetrahedron of the lattice inside the root cube, each once, positive (see tet_mesh.h), in the
-/// order of the leaves. REQUIRES: the tree is balanced, and no leaf is finer than kFinestLatticeLevel.
+/// Calls `visit` for every tetrahedron of the lattice inside the root cube, each once, positive (see tet_mesh.h), in
+/// the order of the leaves. REQUIRES: the tree is balanced, and no leaf is finer than kFinestLatticeLevel.
 void for_each_lattice_tet(const Octree& tree, const std::function<void(const std::array<LatticeSite, 4>&)>& visit);
 
 }  // namespace octafront

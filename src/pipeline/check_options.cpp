@@ -39,7 +39,8 @@ void check_options(const Options& options) {
           "feature-angle is in degrees, between 0 and 180");
   require(options.volume.ideal_distance >= 0.4 && options.volume.ideal_distance <= 1.5,
           "ideal-distance is a multiple of the element size, between 0.4 and 1.5");
-  require(options.improve.relaxation > 0 && options.improve.relaxation <= 1, "relaxation must be above 0 and at most 1");
+  require(options.improve.relaxation > 0 && options.improve.relaxation <= 1,
+          "relaxation must be above 0 and at most 1");
   require(options.improve.sweeps >= 0, "sweeps must not be negative");
 }
 

@@ -10,10 +10,10 @@
 #include "surface/remesh.h"
 #include "volume/fill.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+
+#include <fmt/format.h>
 
 namespace octafront {
 
@@ -100,7 +100,8 @@ TetMesh volume_stage(const Remeshed& boundary, const Options& options, const Run
 void check_result(const TetMesh& mesh, const SurfaceMesh& boundary, const RunContext& context, Report& report) {
   run_stage(report, context, "check", [&](StageReport&) {
     if (const auto defect = first_defect(mesh, boundary))
-      throw MeshingError("the mesh made is not valid, which is a bug of ours; please report it with the input. " + *defect);
+      throw MeshingError("the mesh made is not valid, which is a bug of ours; please report it with the input. " +
+                         *defect);
   });
 }
 
@@ -176,9 +177,8 @@ Result generate(const SurfaceMesh& surface, const Options& options, const RunCon
   SizeField sizes = size_stage(prepared, options, context, report);
   Remeshed boundary = keep_surface(prepared, sizes);
   TetMesh mesh = mesh_to_target(prepared, sizes, options, context, report, boundary);
-  run_stage(report, context, "improve", [&](StageReport& stage) {
-    improve_mesh(mesh, boundary.sizes, options.improve, context, stage);
-  });
+  run_stage(report, context, "improve",
+            [&](StageReport& stage) { improve_mesh(mesh, boundary.sizes, options.improve, context, stage); });
   check_result(mesh, boundary.surface, context, report);
   finish_report(mesh, boundary.sizes, report);
   close_report(report);

@@ -2,11 +2,11 @@
 
 #include "pipeline/pipeline.h"
 
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <bit>
 #include <span>
+
+#include <sys/resource.h>
 
 namespace octafront {
 

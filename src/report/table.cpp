@@ -1,9 +1,9 @@
 #include <octafront/report.h>
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+
+#include <fmt/format.h>
 
 namespace octafront {
 
@@ -40,7 +40,8 @@ std::string quality_lines(const QualitySummary& q) {
   constexpr const char* kClasses[5] = {"0.0 - 0.2", "0.2 - 0.4", "0.4 - 0.6", "0.6 - 0.8", "0.8 - 1.0"};
   std::string out = "quality, beta = 3 r / R\n";
   for (int c = 0; c < 5; ++c) {
-    const double share = static_cast<double>(q.beta_classes[c]) / static_cast<double>(std::max<std::uint64_t>(1, q.elements));
+    const double share =
+        static_cast<double>(q.beta_classes[c]) / static_cast<double>(std::max<std::uint64_t>(1, q.elements));
     out += fmt::format("  {}{:>16}{:>9.3f} %  {}\n", kClasses[c], grouped(q.beta_classes[c]), 100 * share, bar(share));
   }
   out += fmt::format("  mean {:.4f}, least {:.4f} (tet {})\n", q.beta_mean, q.beta_min, q.beta_min_tet);
@@ -63,7 +64,8 @@ std::string to_table(const Report& report) {
                        report.bodies == 1 ? "body" : "bodies");
   else if (report.boundary_faces > 0)
     out += fmt::format("{} triangles, {} vertices\n", grouped(report.boundary_faces), grouped(report.points));
-  out += fmt::format("{} tetrahedra expected from the sizes\n", grouped(static_cast<std::uint64_t>(report.expected_tets)));
+  out +=
+      fmt::format("{} tetrahedra expected from the sizes\n", grouped(static_cast<std::uint64_t>(report.expected_tets)));
   if (report.boundary_faces > 0)
     out += fmt::format("volume {:.6g} (input {:.6g}, {:+.3f} %)\n", report.volume, report.input_volume,
                        100 * (report.volume / report.input_volume - 1));

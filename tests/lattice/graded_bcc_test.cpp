@@ -4,11 +4,11 @@
 
 #include "geometry/predicates.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <map>
 #include <random>
+
+#include <gtest/gtest.h>
 
 namespace octafront {
 namespace {
@@ -27,7 +27,8 @@ Octree random_tree(unsigned seed, int cells, int deepest) {
         }
   std::uniform_int_distribution<std::uint32_t> unit(0, OctreeKey::kSide - 1);
   std::uniform_int_distribution<int> level(1, deepest);
-  for (int i = 0; i < cells; ++i) divided.divide(OctreeKey::containing(unit(random), unit(random), unit(random), level(random)));
+  for (int i = 0; i < cells; ++i)
+    divided.divide(OctreeKey::containing(unit(random), unit(random), unit(random), level(random)));
   divided.close();
   return divided.tree();
 }

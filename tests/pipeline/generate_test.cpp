@@ -4,11 +4,11 @@
 
 #include "support/named_surfaces.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <numbers>
 #include <set>
+
+#include <gtest/gtest.h>
 
 namespace octafront {
 namespace {
@@ -72,7 +72,8 @@ TEST(Generate, KeepsPatchesOfACube) {
 }
 
 TEST(Generate, NumbersBodiesAsRegions) {
-  const SurfaceMesh two = testing::joined(testing::icosphere(2), testing::transformed(testing::icosphere(2), 1, {3, 0, 0}));
+  const SurfaceMesh two =
+      testing::joined(testing::icosphere(2), testing::transformed(testing::icosphere(2), 1, {3, 0, 0}));
   const Result r = generate(two, sized(0.4));
   EXPECT_EQ(std::set<std::uint32_t>(r.mesh.region.begin(), r.mesh.region.end()), (std::set<std::uint32_t>{0, 1}));
   for (std::size_t t = 0; t < r.mesh.tets.size(); ++t) {
@@ -105,11 +106,14 @@ TEST(Generate, RefusesAnOpenSurfaceAndSaysWhere) {
 }
 
 TEST(Generate, RefusesASelfIntersectingSurface) {
-  const SurfaceMesh crossing = testing::joined(testing::cube(2), testing::transformed(testing::cube(2), 1, {0.53, 0.51, 0.57}));
+  const SurfaceMesh crossing =
+      testing::joined(testing::cube(2), testing::transformed(testing::cube(2), 1, {0.53, 0.51, 0.57}));
   EXPECT_THROW(generate(crossing), InputError);
 }
 
-TEST(Generate, RefusesAnEmptySurface) { EXPECT_THROW(generate(SurfaceMesh{}), InputError); }
+TEST(Generate, RefusesAnEmptySurface) {
+  EXPECT_THROW(generate(SurfaceMesh{}), InputError);
+}
 
 TEST(Generate, StopsWhenAsked) {
   std::atomic<bool> cancel{false};
@@ -127,7 +131,8 @@ TEST(Generate, SurfaceAndSizesAreWhatTheWholeRunUses) {
   const Result whole = generate(s, sized(0.2));
   EXPECT_EQ(surface.surface.triangles.size(), whole.mesh.boundary.size());
   EXPECT_EQ(surface.sizes.at({0.3, 0.2, 0.1}), whole.sizes.at({0.3, 0.2, 0.1}));
-  EXPECT_NEAR(generate_sizes(s, sized(0.2)).report.expected_tets / static_cast<double>(whole.mesh.tets.size()), 1, 0.25);
+  EXPECT_NEAR(generate_sizes(s, sized(0.2)).report.expected_tets / static_cast<double>(whole.mesh.tets.size()), 1,
+              0.25);
 }
 
 }  // namespace

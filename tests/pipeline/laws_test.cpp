@@ -5,10 +5,10 @@
 
 #include "support/named_surfaces.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <random>
+
+#include <gtest/gtest.h>
 
 namespace octafront {
 namespace {

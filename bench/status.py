@@ -1,0 +1,138 @@
+"""Meshes every model of bench/models.csv and writes docs/status.md: what works, what does not, and why.
+
+Usage: bench/run.sh status [--only SUBSTRING] [--timeout SECONDS]
+Each mesh is written to a file and judged by octafront_evaluate, which reads it back.
+"""
+import argparse
+import csv
+import json
+import pathlib
+import subprocess
+import tempfile
+import time
+
+KEPT_MIN_ANGLE = 15  # degrees: the kept surfaces that the front is promised to fill
+
+
+def run(command, timeout):
+    """(exit status or None if it took too long, stdout, stderr, wall seconds)"""
+    start = time.monotonic()
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, timeout=timeout)
+        return done.returncode, done.stdout, done.stderr, time.monotonic() - start
+    except subprocess.TimeoutExpired:
+        return None, "", "no end within the time limit", time.monotonic() - start
+
+
+def mesh_and_judge(build, model, options, timeout):
+    with tempfile.TemporaryDirectory() as folder:
+        out, report = pathlib.Path(folder, "mesh.vtu"), pathlib.Path(folder, "report.json")
+        status, _, message, seconds = run(
+            [build / "cli/octafront", "mesh", model, "-o", out, "--json", report, "-q", *options], timeout)
+        row = {"status": status, "message": message.strip(), "seconds": seconds}
+        if status == 0:
+            kept = ["--kept"] if "--keep-surface" in options else []
+            _, judged, error, _ = run([build / "bench/octafront_evaluate", out, model, *kept], timeout)
+            row |= json.loads(judged) if judged else {"defect": error}
+            row["report"] = json.loads(report.read_text())
+        return row
+
+
+def verdict(row, need_truth):
+    if row["status"] is None:
+        return "no end"
+    if row["status"] != 0:
+        return f"exit {row['status']}"
+    if row["defect"]:
+        return "INVALID"
+    if need_truth and (row["hausdorff_percent"] > 0.5 or abs(row["volume_percent"]) > 0.5):
+        return "valid, boundary off"
+    return "valid"
+
+
+def first_line(message, limit=110):
+    lines = [line for line in message.replace("octafront: ", "").splitlines() if line.strip()]
+    text = lines[0] if lines else ""
+    return (text[: limit - 3] + "..." if len(text) > limit else text).replace("|", "/")
+
+
+def clean_tables(build, rows, timeout):
+    auto, kept = [], []
+    for row in rows:
+        model = pathlib.Path("models/clean", row["file"])
+        a = mesh_and_judge(build, model, [], timeout)
+        auto.append((row, a))
+        print(f"{row['file']:32} {verdict(a, True):20} {a['seconds']:.1f} s {first_line(a['message'])}", flush=True)
+        if float(row["min_angle"]) > KEPT_MIN_ANGLE:
+            k = mesh_and_judge(build, model, ["--keep-surface"], timeout)
+            kept.append((row, k))
+            print(f"{'  kept':32} {verdict(k, False):20} {k['seconds']:.1f} s {first_line(k['message'])}", flush=True)
+    return auto, kept
+
+
+def line(row, r, need_truth):
+    cells = [row["file"], row["faces"], verdict(r, need_truth)]
+    if r["status"] == 0 and not r["defect"]:
+        cells += [f"{r['tets']:,}", f"{r['beta_mean']:.3f}", f"{r['beta_min']:.3f}", f"{r['dihedral_min']:.1f}"]
+        cells += [f"{r['hausdorff_percent']:.3f}", f"{r['volume_percent']:+.3f}"]
+        cells += [f"{r['seconds']:.1f}", f"{r['report']['peak_memory_bytes'] / 1e6:.0f}"]
+    else:
+        cells += [first_line(r["message"] or str(r.get("defect")))] + [""] * 5 + [f"{r['seconds']:.1f}", ""]
+    return "| " + " | ".join(cells) + " |"
+
+
+def table(pairs, need_truth):
+    head = ["model", "faces", "result", "tets", "mean β", "min β", "min dihedral °", "Hausdorff % of diagonal",
+            "volume %", "s", "MB"]
+    out = ["| " + " | ".join(head) + " |", "|" + " --- |" * len(head)]
+    return out + [line(row, r, need_truth) for row, r in pairs]
+
+
+def dirty_table(build, rows, timeout):
+    out = ["| model | known defects | result | message |", "| --- | --- | --- | --- |"]
+    counts = {}
+    for row in rows:
+        r = mesh_and_judge(build, pathlib.Path("models/dirty", row["file"]), [], timeout)
+        v = verdict(r, False)
+        counts[v] = counts.get(v, 0) + 1
+        out.append(f"| {row['file']} | {row['defects']} | {v} | {first_line(r['message'], 160)} |")
+        print(f"{row['file']:32} {v:20} {r['seconds']:.1f} s {first_line(r['message'])}", flush=True)
+    return out, counts
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("build", type=pathlib.Path)
+    parser.add_argument("--only", default="", help="models whose name contains this; docs/status.md is not written")
+    parser.add_argument("--timeout", type=float, default=300, help="seconds per model")
+    args = parser.parse_args()
+    rows = [r for r in csv.DictReader(open("bench/models.csv")) if args.only in r["file"]]
+    auto, kept = clean_tables(args.build, [r for r in rows if r["set"] == "clean"], args.timeout)
+    dirty, counts = dirty_table(args.build, [r for r in rows if r["set"] == "dirty"], args.timeout)
+
+    good = sum(verdict(r, True) == "valid" for _, r in auto)
+    valid = sum(verdict(r, True).startswith("valid") for _, r in auto)
+    kept_good = sum(verdict(r, False) == "valid" for _, r in kept)
+    summary = [
+        f"- Automatic size: **{valid} of {len(auto)}** clean models give a valid mesh, {good} of them with both "
+        "Hausdorff distance and volume within 0.5 %.",
+        f"- `--keep-surface`, on the clean models whose smallest angle is above {KEPT_MIN_ANGLE}°: "
+        f"**{kept_good} of {len(kept)}** valid, with the input triangles as the boundary.",
+        f"- Dirty models: {', '.join(f'{n} × {v}' for v, n in sorted(counts.items()))}.",
+    ]
+    print("\n".join(summary))
+    if args.only:
+        return
+    text = ["# Status over all test models", "",
+            "Written by `bench/run.sh status` (models: `scripts/get-models.sh`; two cores of a shared machine, so times "
+            "are rough). Every file is read back and judged by `bench/evaluate.cpp`: validity by exact signs, two-sided "
+            "Hausdorff distance to the input by sampling, volume against the enclosed volume of the input.", "",
+            *summary, "", "## Clean models, automatic size", "", *table(auto, True), "",
+            "## Clean models, surface kept", "", *table(kept, False), "", "## Dirty models", "",
+            "O open, E non-manifold edge, V non-manifold vertex, S self-intersection, R misoriented, I inside out, "
+            "D degenerate, U unused vertices. Exit 3 is a refusal with a message, of which the first line is shown; "
+            "what repair can mend is meshed.", "", *dirty, ""]
+    pathlib.Path("docs/status.md").write_text("\n".join(text))
+
+
+main()

@@ -1,0 +1,28 @@
+#pragma once
+
+// lattice: the graded body-centred cubic lattice, and the part of it that lies deep inside a surface. Takes a surface
+// and sizes, leaves the core of the mesh and its skin, from which the volume front fills the shell out to the surface.
+
+#include <octafront/run_context.h>
+#include <octafront/size_field.h>
+#include <octafront/surface_mesh.h>
+#include <octafront/tet_mesh.h>
+
+#include <vector>
+
+namespace octafront {
+
+/// The tetrahedra of the lattice that lie deep inside a surface.
+struct LatticeCore {
+  std::vector<Vec3> points;
+  std::vector<Tet> tets;  ///< positive
+  /// The boundary of `tets`, each triangle counter-clockwise seen from within the core: joined to the surrounding
+  /// surface, the skin bounds the shell that is left to fill. It may touch itself in edges and points, never cross.
+  std::vector<Triangle> skin;
+};
+
+/// The lattice inside `surface`, by cells of the wanted size, no point of it nearer to the surface than the size there
+/// times kCoreClearance. Empty where the surface is too narrow for one. REQUIRES a clean surface.
+LatticeCore build_lattice_core(const SurfaceMesh& surface, const SizeField& sizes, const RunContext& context);
+
+}  // namespace octafront

@@ -1,0 +1,114 @@
+#include "lattice/lattice_octree.h"
+
+#include "lattice/graded_bcc.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace octafront {
+
+namespace {
+
+// Leaves come in powers of two of one another; a cell is divided while that brings it nearer, as a ratio, to what is
+// wanted.
+constexpr double kTooLarge = std::numbers::sqrt2;
+
+// The size that most of the surface wants: that of its middle triangle by size. The root is chosen so that one level of
+// the octree has exactly this size, and a uniform size is met exactly.
+double common_size(const SurfaceMesh& surface, const SizeField& sizes) {
+  std::vector<double> sample;
+  const std::size_t step = 1 + surface.triangles.size() / 1000;
+  for (std::size_t t = 0; t < surface.triangles.size(); t += step) {
+    const auto& [a, b, c] = surface.triangles[t];
+    sample.push_back(sizes.at((surface.points[a] + surface.points[b] + surface.points[c]) / 3));
+  }
+  const auto middle = sample.begin() + static_cast<std::ptrdiff_t>(sample.size() / 2);
+  std::nth_element(sample.begin(), middle, sample.end());
+  return *middle;
+}
+
+RootCube choose_root(const Box3& box, double leaf_side) {
+  const Vec3 extent = box.extent();
+  double side = leaf_side;
+  while (side < std::max({extent.x, extent.y, extent.z})) side *= 2;
+  return {box.center() - Vec3{side, side, side} * 0.5, side};
+}
+
+class Divider {
+ public:
+  Divider(const SurfaceMesh& surface, const TriangleTree& triangles, const SizeField& sizes, const RootCube& root,
+          const RunContext& context)
+      : triangles_(triangles), sizes_(sizes), root_(root), context_(context) {
+    boxes_.reserve(surface.triangles.size());
+    for (const Triangle& t : surface.triangles) {
+      Box3& box = boxes_.emplace_back();
+      for (const VertexIndex v : t) box.add(surface.points[v]);
+    }
+  }
+
+  DividedCells run() {
+    std::vector<std::uint32_t> all(boxes_.size());
+    for (std::uint32_t t = 0; t < all.size(); ++t) all[t] = t;
+    visit_cut(OctreeKey::root(), all);
+    divided_.close();
+    return std::move(divided_);
+  }
+
+ private:
+  Box3 box_of(OctreeKey cell) const {
+    const Vec3 lo = root_.corner_of(cell);
+    const double side = root_.side_of(cell);
+    return {lo, lo + Vec3{side, side, side}};
+  }
+
+  bool too_large(OctreeKey cell) const {
+    if (cell.level() >= kFinestLatticeLevel) return false;
+    const double side = root_.side_of(cell), limit = side / (kTooLarge * kLatticeSidePerEdge);
+    if (limit > sizes_.max_size()) return true;
+    if (limit <= sizes_.min_size()) return false;
+    return sizes_.at(root_.center_of(cell)) < limit;
+  }
+
+  // A cell that triangles run through.
+  void visit_cut(OctreeKey cell, const std::vector<std::uint32_t>& near) {
+    if (!too_large(cell)) return;
+    context_.check();
+    divided_.divide(cell);
+    for (int i = 0; i < 8; ++i) {
+      const OctreeKey child = cell.child(i);
+      const Box3 box = box_of(child);
+      std::vector<std::uint32_t> here;
+      for (const std::uint32_t t : near)
+        if (boxes_[t].overlaps(box)) here.push_back(t);
+      if (!here.empty())
+        visit_cut(child, here);
+      else if (triangles_.contains(box.center()))
+        visit_inside(child);
+    }
+  }
+
+  void visit_inside(OctreeKey cell) {
+    if (!too_large(cell)) return;
+    divided_.divide(cell);
+    for (int i = 0; i < 8; ++i) visit_inside(cell.child(i));
+  }
+
+  const TriangleTree& triangles_;
+  const SizeField& sizes_;
+  RootCube root_;
+  const RunContext& context_;
+  std::vector<Box3> boxes_;
+  DividedCells divided_;
+};
+
+}  // namespace
+
+LatticeOctree build_lattice_octree(const SurfaceMesh& surface, const TriangleTree& triangles, const SizeField& sizes,
+                                   const RunContext& context) {
+  const double leaf_side = kLatticeSidePerEdge * common_size(surface, sizes);
+  const RootCube root = choose_root(bounding_box(surface.points), leaf_side);
+  return {root, Divider(surface, triangles, sizes, root, context).run().tree()};
+}
+
+}  // namespace octafront

@@ -1,0 +1,144 @@
+"""The command line as a user meets it: cli_test.py OCTAFRONT SAMPLES_DIR."""
+import json
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+OCTAFRONT, SAMPLES = sys.argv[1], pathlib.Path(sys.argv[2])
+
+TETRAHEDRON = """OFF
+4 4 0
+0 0 0
+1 0 0
+0 1 0
+0 0 1
+3 1 2 3
+3 0 3 2
+3 0 1 3
+3 0 2 1
+"""
+
+
+class CommandLine(unittest.TestCase):
+    def setUp(self):
+        self.scratch = tempfile.TemporaryDirectory()
+        self.dir = pathlib.Path(self.scratch.name)
+        self.part = self.dir / "part.off"
+        self.part.write_text(TETRAHEDRON)
+
+    def tearDown(self):
+        self.scratch.cleanup()
+
+    def run_cli(self, *arguments, status=0):
+        done = subprocess.run([OCTAFRONT, *map(str, arguments)], capture_output=True, text=True, timeout=120)
+        self.assertEqual(done.returncode, status, done.stdout + done.stderr)
+        return done
+
+    def files(self):
+        return sorted(p.name for p in self.dir.iterdir())
+
+    def test_meshes_to_every_format_and_reports(self):
+        for ending in ("vtu", "msh", "mesh"):
+            out, report = self.dir / f"part.{ending}", self.dir / "report.json"
+            done = self.run_cli("mesh", self.part, "-o", out, "--size", 0.2, "--json", report)
+            self.assertIn("tetrahedra", done.stdout)
+            self.assertIn("0.8 - 1.0", done.stdout)
+            self.assertEqual(done.stderr, "", "quiet when piped")
+            r = json.loads(report.read_text())
+            self.assertGreater(r["tets"], 50)
+            self.assertEqual(sum(r["quality"]["beta_classes"]), r["tets"])
+            self.assertIn(f"a valid mesh of {r['tets']} tetrahedra", self.run_cli("check", out).stdout)
+
+    def test_same_input_same_file(self):
+        a, b = self.dir / "a.vtu", self.dir / "b.vtu"
+        self.run_cli("mesh", self.part, "-o", a, "--size", 0.15, "--threads", 1)
+        self.run_cli("mesh", self.part, "-o", b, "--size", 0.15, "--threads", 3)
+        self.assertEqual(a.read_bytes(), b.read_bytes())
+
+    def test_keep_surface_keeps_it(self):
+        report = self.dir / "report.json"
+        self.run_cli("mesh", self.part, "-o", self.dir / "kept.vtu", "--keep-surface", "--json", report)
+        self.assertEqual(json.loads(report.read_text())["boundary_faces"], 4)
+
+    def test_surface_and_size_run_that_far(self):
+        done = self.run_cli("surface", self.part, "-o", self.dir / "surface.stl", "--size", 0.2)
+        self.assertIn("triangles", done.stdout)
+        self.assertIn("clean", self.run_cli("check", self.dir / "surface.stl").stdout)
+        done = self.run_cli("size", self.part, "-o", self.dir / "grid.vtu")
+        self.assertIn("tetrahedra expected", done.stdout)
+        self.assertTrue((self.dir / "grid.vtu").stat().st_size > 0)
+
+    def test_quiet_prints_nothing(self):
+        done = self.run_cli("mesh", self.part, "-o", self.dir / "q.vtu", "--size", 0.3, "-q")
+        self.assertEqual((done.stdout, done.stderr), ("", ""))
+
+    def test_usage_errors_are_status_2(self):
+        self.run_cli(status=2)
+        self.run_cli("mesh", self.part, status=2)
+        self.run_cli("mesh", self.part, "-o", self.dir / "o.vtu", "--size", "much", status=2)
+        self.run_cli("mesh", self.part, "-o", self.dir / "o.vtu", "--interior", "dense", status=2)
+        done = self.run_cli("mesh", self.part, "-o", self.dir / "o.vtu", "--size", 1, "--elements", 10, status=2)
+        self.assertIn("contradict", done.stderr)
+        self.assertNotIn("o.vtu", self.files())
+
+    def test_help_and_version(self):
+        self.assertIn("Sizes", self.run_cli("mesh", "--help").stdout)
+        self.assertRegex(self.run_cli("--version").stdout, r"\d+\.\d+\.\d+")
+
+    def refuse(self, text, fragment, name="bad.off"):
+        bad = self.dir / name
+        bad.write_bytes(text if isinstance(text, bytes) else text.encode())
+        for command in (["check", bad], ["mesh", bad, "-o", self.dir / "bad.vtu"]):
+            done = self.run_cli(*command, status=3)
+            self.assertIn(fragment, done.stderr)
+        self.assertNotIn("bad.vtu", self.files())
+
+    def test_bad_input_is_refused_with_a_reason(self):
+        self.refuse("", "empty")
+        self.refuse(TETRAHEDRON.replace("1 0 0", "nan 0 0"), "nan")
+        self.refuse(TETRAHEDRON[:-8], "bad.off")
+        self.refuse(TETRAHEDRON.replace("4 4 0", "4 4000000000 0"), "4000000000")
+        self.refuse(TETRAHEDRON.replace("3 0 2 1", "3 0 2 9"), "9")
+        self.refuse(b"\x89PNG\r\n\x1a\n" + bytes(100), "bad.stl", "bad.stl")
+        missing = self.run_cli("check", self.dir / "absent.stl", status=3)
+        self.assertIn("absent.stl", missing.stderr)
+
+    def test_an_open_surface_is_refused_with_the_place(self):
+        self.refuse(TETRAHEDRON.replace("4 4 0", "4 3 0").replace("3 0 2 1\n", ""), "open")
+
+    def test_output_that_cannot_be_written_is_status_5(self):
+        self.run_cli("mesh", self.part, "-o", self.dir / "absent" / "o.vtu", status=5)
+        self.run_cli("mesh", self.part, "-o", self.dir / "o.unknown", status=5)
+
+    def test_an_old_file_survives_a_failed_run(self):
+        out = self.dir / "o.vtu"
+        out.write_text("precious")
+        bad = self.dir / "bad.off"
+        bad.write_text(TETRAHEDRON[:-8])
+        self.run_cli("mesh", bad, "-o", out, status=3)
+        self.assertEqual(out.read_text(), "precious")
+
+    def test_interrupt_ends_cleanly(self):
+        out = self.dir / "big.vtu"
+        run = subprocess.Popen([OCTAFRONT, "mesh", self.part, "-o", out, "--elements", "3000000"],
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        time.sleep(1.0)
+        run.send_signal(signal.SIGINT)
+        _, error = run.communicate(timeout=30)
+        self.assertEqual(run.returncode, 130, error)
+        self.assertIn("interrupted", error)
+        self.assertEqual(self.files(), ["part.off"])
+
+    def test_shipped_samples_are_clean(self):
+        samples = [p for p in SAMPLES.iterdir() if p.suffix in (".stl", ".obj", ".off", ".ply")]
+        self.assertGreaterEqual(len(samples), 5)
+        for sample in samples:
+            with self.subTest(sample=sample.name):
+                self.assertIn("clean", self.run_cli("check", sample).stdout)
+
+
+unittest.main(argv=sys.argv[:1], verbosity=2)
