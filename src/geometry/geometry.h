@@ -5,6 +5,10 @@
 // alternatives; a tree over triangles for nearest points, boxes and rays. Takes coordinates and index triples, leaves
 // signs, numbers and ids; knows nothing of meshes as a whole.
 
+#include "geometry/hausdorff.h"
 #include "geometry/measures.h"
 #include "geometry/predicates.h"
+#include "geometry/self_intersection.h"
+#include "geometry/triangle_box.h"
 #include "geometry/triangle_intersection.h"
+#include "geometry/triangle_tree.h"

@@ -13,7 +13,9 @@ namespace detail {
 int orient3d_exact(Vec3 a, Vec3 b, Vec3 c, Vec3 d);
 int orient2d_exact(double ax, double ay, double bx, double by, double cx, double cy);
 int insphere_exact(Vec3 a, Vec3 b, Vec3 c, Vec3 d, Vec3 e);
-constexpr int sign(double x) { return (x > 0) - (x < 0); }
+constexpr int sign(double x) {
+  return (x > 0) - (x < 0);
+}
 }  // namespace detail
 
 /// Sign of ((b - a) x (c - a)) . (d - a): +1 if (a, b, c, d) is a positive tetrahedron (see tet_mesh.h), 0 if coplanar.
@@ -21,7 +23,8 @@ inline int orient3d(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
   const Vec3 u = b - a, v = c - a, w = d - a;
   const double vw = v.y * w.z, wv = v.z * w.y, vx = v.z * w.x, xv = v.x * w.z, vy = v.x * w.y, yv = v.y * w.x;
   const double det = u.x * (vw - wv) + u.y * (vx - xv) + u.z * (vy - yv);
-  const double permanent = std::abs(u.x) * (std::abs(vw) + std::abs(wv)) + std::abs(u.y) * (std::abs(vx) + std::abs(xv)) +
+  const double permanent = std::abs(u.x) * (std::abs(vw) + std::abs(wv)) +
+                           std::abs(u.y) * (std::abs(vx) + std::abs(xv)) +
                            std::abs(u.z) * (std::abs(vy) + std::abs(yv));
   // Shewchuk's bound A for this expression, (7 + 56 eps) eps with eps = 2^-53.
   const double bound = 7.7715611723761027e-16 * permanent;

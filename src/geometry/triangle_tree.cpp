@@ -1,0 +1,223 @@
+#include "geometry/triangle_tree.h"
+
+#include "geometry/measures.h"
+#include "geometry/predicates.h"
+
+#include <algorithm>
+
+namespace octafront {
+
+// Median splits along the longest side of the box of centroids. Equal centroids are ordered by index, so the tree does
+// not depend on how the library selects.
+struct TriangleTree::Builder {
+  struct Entry {
+    Vec3 middle;
+    Box3 box;
+    std::uint32_t triangle;
+  };
+
+  TriangleTree& tree;
+  std::vector<Entry> entries;
+
+  void split(std::uint32_t begin, std::uint32_t end) {
+    const std::size_t n = tree.nodes_.size();
+    tree.nodes_.emplace_back();
+    Box3 box, middles;
+    for (std::uint32_t i = begin; i < end; ++i) {
+      box.add(entries[i].box);
+      middles.add(entries[i].middle);
+    }
+    tree.nodes_[n].box = box;
+    if (end - begin <= kLeafSize) {
+      tree.nodes_[n].first = begin;
+      tree.nodes_[n].count = end - begin;
+      std::sort(entries.begin() + begin, entries.begin() + end,
+                [](const Entry& a, const Entry& b) { return a.triangle < b.triangle; });
+      return;
+    }
+    const Vec3 e = middles.extent();
+    const int axis = e.x >= e.y && e.x >= e.z ? 0 : e.y >= e.z ? 1 : 2;
+    const std::uint32_t middle = begin + (end - begin) / 2;
+    std::nth_element(entries.begin() + begin, entries.begin() + middle, entries.begin() + end,
+                     [axis](const Entry& a, const Entry& b) {
+                       const double x = a.middle[axis], y = b.middle[axis];
+                       return x != y ? x < y : a.triangle < b.triangle;
+                     });
+    split(begin, middle);
+    tree.nodes_[n].first = static_cast<std::uint32_t>(tree.nodes_.size());
+    split(middle, end);
+  }
+};
+
+TriangleTree::TriangleTree(std::span<const Vec3> points, std::span<const Triangle> triangles) {
+  if (triangles.empty()) return;
+  Builder builder{*this, {}};
+  builder.entries.reserve(triangles.size());
+  const auto corners = [&](std::size_t t) {
+    return TriangleCorners{points[triangles[t][0]], points[triangles[t][1]], points[triangles[t][2]]};
+  };
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    const Box3 box = box_of(corners(t));
+    builder.entries.push_back({box.center(), box, static_cast<std::uint32_t>(t)});
+  }
+  nodes_.reserve(triangles.size());
+  builder.split(0, static_cast<std::uint32_t>(triangles.size()));
+  items_.reserve(triangles.size());
+  item_of_triangle_.resize(triangles.size());
+  for (const auto& entry : builder.entries) {
+    item_of_triangle_[entry.triangle] = static_cast<std::uint32_t>(items_.size());
+    items_.push_back({corners(entry.triangle), entry.triangle});
+  }
+}
+
+TriangleTree::Nearest TriangleTree::nearest(Vec3 p, double limit_squared) const {
+  Nearest best;
+  best.squared_distance = limit_squared;
+  if (empty()) return best;
+  struct Entry {
+    std::uint32_t node;
+    double squared_distance;
+  };
+  std::array<Entry, kMaxDepth> stack;
+  int depth = 0;
+  stack[depth++] = {0, squared_distance(p, nodes_[0].box)};
+  while (depth > 0) {
+    const auto [n, d] = stack[--depth];
+    if (d >= best.squared_distance) continue;
+    const Node& node = nodes_[n];
+    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+      const auto& [a, b, c] = items_[i].corners;
+      const Vec3 q = closest_point_on_triangle(p, a, b, c);
+      const double dq = squared_distance(p, q);
+      if (dq < best.squared_distance) best = {q, items_[i].triangle, dq};
+    }
+    if (node.count > 0) continue;
+    Entry near{n + 1, squared_distance(p, nodes_[n + 1].box)};
+    Entry far{node.first, squared_distance(p, nodes_[node.first].box)};
+    if (far.squared_distance < near.squared_distance) std::swap(near, far);
+    stack[depth++] = far;
+    stack[depth++] = near;
+  }
+  return best;
+}
+
+namespace {
+
+// Volumes of the ray with the edges have one sign where it passes through. Each edge gives its two triangles the same
+// number up to sign, so that no ray slips between them (S. Woop, C. Benthin, I. Wald 2013, without their shear).
+double ray_parameter(Vec3 origin, Vec3 direction, const TriangleCorners& t) {
+  const Vec3 a = t[0] - origin, b = t[1] - origin, c = t[2] - origin;
+  const double u = dot(direction, cross(b, c)), v = dot(direction, cross(c, a)), w = dot(direction, cross(a, b));
+  if ((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0)) return -1;
+  const double sum = u + v + w;
+  if (sum == 0) return -1;
+  return dot(direction, (a * u + b * v + c * w) / sum) / squared_length(direction);
+}
+
+struct Slabs {
+  Vec3 origin, inverse;
+
+  // Where the ray enters the box; beyond t_max if it does not meet it before.
+  double entry(const Box3& box, double t_max) const {
+    // Rounding may move the ends of the interval by a few units in the last place.
+    constexpr double kGrow = 1 + 4 * std::numeric_limits<double>::epsilon();
+    double from = 0, to = t_max;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (!std::isfinite(inverse[axis])) {
+        if (origin[axis] < box.lo[axis] || origin[axis] > box.hi[axis]) return TriangleTree::kFar;
+        continue;
+      }
+      const double lo = (box.lo[axis] - origin[axis]) * inverse[axis];
+      const double hi = (box.hi[axis] - origin[axis]) * inverse[axis];
+      from = std::max(from, std::min(lo, hi));
+      to = std::min(to, std::max(lo, hi) * kGrow);
+    }
+    return from <= to ? from : TriangleTree::kFar;
+  }
+};
+
+}  // namespace
+
+TriangleTree::RayHit TriangleTree::first_hit(Vec3 origin, Vec3 direction, double t_max) const {
+  RayHit best{t_max, kNone};
+  if (empty()) return best;
+  const Slabs slabs{origin, {1 / direction.x, 1 / direction.y, 1 / direction.z}};
+  struct Entry {
+    std::uint32_t node;
+    double t;
+  };
+  std::array<Entry, kMaxDepth> stack;
+  int depth = 0;
+  stack[depth++] = {0, slabs.entry(nodes_[0].box, t_max)};
+  while (depth > 0) {
+    const auto [n, entry] = stack[--depth];
+    if (entry > best.t || entry == kFar) continue;
+    const Node& node = nodes_[n];
+    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+      const double t = ray_parameter(origin, direction, items_[i].corners);
+      if (t >= 0 && (t < best.t || (t == best.t && items_[i].triangle < best.triangle))) best = {t, items_[i].triangle};
+    }
+    if (node.count > 0) continue;
+    Entry near{n + 1, slabs.entry(nodes_[n + 1].box, best.t)};
+    Entry far{node.first, slabs.entry(nodes_[node.first].box, best.t)};
+    if (far.t < near.t) std::swap(near, far);
+    stack[depth++] = far;
+    stack[depth++] = near;
+  }
+  return best;
+}
+
+namespace {
+
+// Orientation of (a, b, p) seen along z, where p is moved by (e, e^2) for an infinitely small e: never 0 unless a and b
+// coincide in this view. (Simulation of simplicity; H. Edelsbrunner, E. P. Muecke 1990.)
+int moved_orientation(Vec3 a, Vec3 b, Vec3 p) {
+  const int s = orient2d(a.x, a.y, b.x, b.y, p.x, p.y);
+  if (s != 0) return s;
+  if (a.y != b.y) return a.y > b.y ? 1 : -1;
+  return detail::sign(b.x - a.x);
+}
+
+// Orientation, seen from above, of the triangle if the line through p along z, moved as above, passes through it; else
+// 0. A triangle parallel to z is never met.
+int crossing(const TriangleCorners& t, Vec3 p) {
+  const int first = moved_orientation(t[0], t[1], p);
+  return first == moved_orientation(t[1], t[2], p) && first == moved_orientation(t[2], t[0], p) ? first : 0;
+}
+
+}  // namespace
+
+TriangleTree::Crossings TriangleTree::crossings(Vec3 p) const {
+  Crossings found;
+  if (empty() || !box().contains(p)) return found;
+  // Toward the nearer end of the box.
+  const bool up = p.z > box().center().z;
+  const auto on_ray = [&](const Box3& b) {
+    return b.lo.x <= p.x && p.x <= b.hi.x && b.lo.y <= p.y && p.y <= b.hi.y && (up ? b.hi.z >= p.z : b.lo.z <= p.z);
+  };
+  for_each_leaf(on_ray, [&](const Item& item) {
+    const TriangleCorners& t = item.corners;
+    const Box3 b = box_of(t);
+    if (found.on_surface || !on_ray(b)) return;
+    if (b.contains(p) && segment_triangle_hit(p, p, t)) found.on_surface = true;
+    const int turn = crossing(t, p);
+    if (turn == 0) return;
+    const int side = orient3d(t[0], t[1], t[2], p);
+    if (turn * side != (up ? -1 : 1)) return;
+    ++found.count;
+    found.winding += up ? turn : -turn;
+  });
+  return found;
+}
+
+TriangleTree::Location TriangleTree::locate(Vec3 p) const {
+  const Crossings c = crossings(p);
+  if (c.on_surface) return Location::kOnSurface;
+  return c.count % 2 == 1 ? Location::kInside : Location::kOutside;
+}
+
+int TriangleTree::winding_number(Vec3 p) const {
+  return crossings(p).winding;
+}
+
+}  // namespace octafront
