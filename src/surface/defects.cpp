@@ -56,7 +56,9 @@ std::string SurfaceDefects::describe() const {
       "Separate the parts, e.g. in MeshLab with \"Repair Non Manifold Vertices by Splitting\" and a "
       "small displacement, or join them by more than a point.");
   octafront::describe(text, self_intersections,
-                      counted(self_intersections.count, "pair") + " of faces that cut or touch each other", "near",
+                      (self_intersections.count >= defects::kMostPairs ? "at least " : "") +
+                          counted(self_intersections.count, "pair") + " of faces that cut or touch each other",
+                      "near",
                       "Unite overlapping parts, e.g. with a boolean union, or remove the faces and close the hole.");
   octafront::describe(text, degenerate_faces, counted(degenerate_faces.count, "face") + " without area", "at",
                       "Remove them and close the gaps.");
@@ -70,6 +72,7 @@ SurfaceDefects find_defects(const RepairedSurface& repaired) {
   defects::find_bad_edges(repaired, table, found);
   defects::find_bad_vertices(repaired, table, found);
   defects::find_degenerate_faces(repaired, found);
+  defects::find_self_intersections(repaired, found);
   return found;
 }
 

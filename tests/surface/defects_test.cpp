@@ -119,5 +119,43 @@ TEST(Defects, PlacesNameInputFacesInOrder) {
   }
 }
 
+TEST(Defects, ShellsThatCutEachOther) {
+  const SurfaceMesh s =
+      testing::joined(testing::icosphere(1), testing::transformed(testing::icosphere(1), 1, {0.7, 0.1, 0}));
+  const SurfaceDefects defects = defects_of(s);
+  EXPECT_GT(defects.self_intersections.count, 10u);
+  ASSERT_EQ(defects.self_intersections.first.size(), 10u);
+  for (const auto& place : defects.self_intersections.first) {
+    ASSERT_EQ(place.faces.size(), 2u);
+    EXPECT_LT(place.faces[0], 80u);
+    EXPECT_GE(place.faces[1], 80u);
+    EXPECT_NEAR(length(place.at), 1, 0.2);
+  }
+  EXPECT_FALSE(defects.clean());
+}
+
+TEST(Defects, ShellsThatTouchInAPointOfAFace) {
+  // The tip of the second tetrahedron lies inside a face of the first.
+  SurfaceMesh tip = testing::transformed(testing::unit_tetrahedron(), 1, {0.25, 0.25, -1});
+  tip.points[3] = {0.25, 0.25, 0};
+  const SurfaceDefects defects = defects_of(testing::joined(testing::unit_tetrahedron(), tip));
+  EXPECT_EQ(defects.self_intersections.count, 3u);
+  EXPECT_EQ(defects.self_intersections.first[0].at, (Vec3{0.25, 0.25, 0}));
+  SurfaceMesh apart = tip;
+  apart.points[3].z = -1e-40;
+  EXPECT_TRUE(defects_of(testing::joined(testing::unit_tetrahedron(), apart)).clean());
+}
+
+TEST(Defects, MessageSaysHowManyWhereAndWhatToDo) {
+  SurfaceMesh s = testing::transformed(testing::cube(), 2, {0, 0, 0});
+  s.triangles.pop_back();
+  s.patch.clear();
+  EXPECT_EQ(
+      defects_of(s).describe(),
+      "1 hole (3 open edges): edge at (0, 1, 2) (face 0); edge at (1, 2, 2) (face 6); edge at (1, 1, 2) (face 10). "
+      "Close the surface, e.g. in MeshLab with \"Close Holes\"; if faces only fail to touch, with \"Merge Close "
+      "Vertices\".\n");
+}
+
 }  // namespace
 }  // namespace octafront
