@@ -28,14 +28,22 @@ struct FromFunction final : SizeField::Impl {
 
 }  // namespace
 
-SizeField SizeField::uniform(double h) { return SizeField(std::make_shared<Uniform>(h)); }
+SizeField SizeField::uniform(double h) {
+  return SizeField(std::make_shared<Uniform>(h));
+}
 
 SizeField SizeField::from_function(std::function<double(Vec3)> h, double lo, double hi) {
   return SizeField(std::make_shared<FromFunction>(std::move(h), lo, hi));
 }
 
-double SizeField::at(Vec3 p) const { return impl_->at(p); }
-double SizeField::min_size() const { return impl_->min_size(); }
-double SizeField::max_size() const { return impl_->max_size(); }
+double SizeField::at(Vec3 p) const {
+  return impl_->at(p);
+}
+double SizeField::min_size() const {
+  return impl_->min_size();
+}
+double SizeField::max_size() const {
+  return impl_->max_size();
+}
 
 }  // namespace octafront

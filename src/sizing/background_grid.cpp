@@ -1,0 +1,211 @@
+#include "sizing/background_grid.h"
+
+#include "sizing/gradation.h"
+
+#include <algorithm>
+#include <limits>
+#include <span>
+#include <utility>
+
+namespace octafront {
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// Sizes in a leaf that differ by less count as equal.
+constexpr double kPlainRatio = 1.02;
+
+/// A sample in units of the root cube's side.
+struct Sample {
+  OctreeKey cell;
+  Vec3 p, n;
+  double h, reach;
+};
+
+std::vector<Sample> sorted_samples(const RootCube& root, const std::vector<SizeSample>& samples) {
+  std::vector<std::pair<OctreeKey, std::uint32_t>> order(samples.size());
+  for (std::uint32_t i = 0; i < samples.size(); ++i) order[i] = {root.cell(samples[i].p), i};
+  std::sort(order.begin(), order.end());
+  std::vector<Sample> sorted(samples.size());
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const SizeSample& s = samples[order[k].second];
+    sorted[k] = {order[k].first, (s.p - root.lo) / root.side, s.n, s.h / root.side, s.reach / root.side};
+  }
+  return sorted;
+}
+
+double side_of(OctreeKey cell) {
+  return 1.0 / (1u << cell.level());
+}
+
+class GridMaker {
+ public:
+  GridMaker(const RootCube& root, const std::vector<SizeSample>& samples, const GridRules& rules,
+            const RunContext& context)
+      : root_(root),
+        samples_(sorted_samples(root, samples)),
+        rules_(rules),
+        context_(context),
+        ceiling_(rules.ceiling / root.side) {}
+
+  std::shared_ptr<OctreeField> run() {
+    divide_by_samples(OctreeKey::root(), samples_);
+    make_field();
+    if (rules_.interior_below_surface && !samples_.empty()) {
+      ceiling_ = std::min(ceiling_, largest_at_samples());
+    }
+    if (divide_by_field()) {
+      make_field();
+    } else {
+      fill_field();
+    }
+    field_->find_range();
+    return field_;
+  }
+
+ private:
+  /// `inside`: the samples in the cell.
+  void divide_by_samples(OctreeKey cell, std::span<const Sample> inside) {
+    if (inside.empty() || cell.level() == OctreeKey::kMaxLevel) return;
+    double low = kInfinity, high = 0;
+    for (const Sample& s : inside) {
+      low = std::min(low, s.h);
+      high = std::max(high, s.h);
+    }
+    if (side_of(cell) <= rules_.leaf_per_size * low) return;
+    if (!rules_.resolve_surface && high <= kPlainRatio * low && cell.level() >= rules_.plain_level) return;
+    cells_.divide(cell);
+    for (int i = 0; i < 8; ++i) {
+      const OctreeKey child = cell.child(i);
+      const auto end = std::partition_point(inside.begin(), inside.end(),
+                                            [&](const Sample& s) { return s.cell.id() <= child.range_max(); });
+      divide_by_samples(child, {inside.begin(), end});
+      inside = {end, inside.end()};
+    }
+  }
+
+  /// What the samples in a leaf allow at its corners. A sample speaks for its tangent plane: its size holds along the
+  /// normal within the leaf, so that a surface of one size has that size, and rises at the gradation along the plane.
+  std::vector<double> corner_caps() const {
+    std::vector<double> caps(corners_.size(), kInfinity);
+    const auto lay_on = [&](std::uint32_t corner, const Sample& s) {
+      const auto& u = corners_.position[corner];
+      const Vec3 d = Vec3{double(u[0]), double(u[1]), double(u[2])} / OctreeKey::kSide - s.p;
+      const double along = dot(d, s.n);
+      const double offset = std::sqrt(std::max(0.0, squared_length(d) - along * along));
+      caps[corner] = std::min(caps[corner], s.h + rules_.gradation * std::max(0.0, offset - s.reach));
+    };
+    std::size_t next = 0;
+    for (std::size_t l = 0; l < tree_.size() && next < samples_.size(); ++l) {
+      const std::uint64_t last = tree_.leaf(l).range_max();
+      for (; next < samples_.size() && samples_[next].cell.id() <= last; ++next) {
+        for (const std::uint32_t corner : corners_.of_leaf[l]) {
+          if (!corners_.hangs(corner)) lay_on(corner, samples_[next]);
+          for (const auto& share : corners_.shares_of(corner)) lay_on(share.corner, samples_[next]);
+        }
+      }
+    }
+    return caps;
+  }
+
+  void make_field() {
+    cells_.close();
+    tree_ = cells_.tree();
+    corners_ = octree_corners(tree_);
+    context_.check();
+    value_ = graded_corner_values(tree_, corners_, corner_caps(), rules_.gradation, ceiling_, context_);
+    fill_field();
+  }
+
+  /// Values above the ceiling are cut off at the free corners; hanging ones follow.
+  void fill_field() {
+    for (std::uint32_t c = 0; c < corners_.size(); ++c) value_[c] = std::min(value_[c], ceiling_);
+    for (std::uint32_t c = 0; c < corners_.size(); ++c) {
+      if (!corners_.hangs(c)) continue;
+      value_[c] = 0;
+      for (const OctreeCorners::Share& s : corners_.shares_of(c)) value_[c] += s.weight * value_[s.corner];
+    }
+    field_ = std::make_shared<OctreeField>();
+    field_->root = root_;
+    field_->gradation = rules_.gradation;
+    field_->h.resize(tree_.size());
+    for (std::size_t l = 0; l < tree_.size(); ++l) {
+      for (int k = 0; k < 8; ++k) field_->h[l][k] = value_[corners_.of_leaf[l][k]];
+    }
+    field_->tree = tree_;
+  }
+
+  /// The largest size that is wanted on the surface and that gradation allows there.
+  double largest_at_samples() const {
+    double largest = 0;
+    std::size_t next = 0;
+    for (std::size_t l = 0; l < tree_.size() && next < samples_.size(); ++l) {
+      const std::uint64_t last = tree_.leaf(l).range_max();
+      const double scale = 1u << tree_.leaf(l).level();
+      const auto corner = tree_.leaf(l).corner();
+      const auto local = [&](double x, int axis) {
+        return std::clamp((x - double(corner[axis]) / OctreeKey::kSide) * scale, 0.0, 1.0);
+      };
+      for (; next < samples_.size() && samples_[next].cell.id() <= last; ++next) {
+        const Vec3 p = samples_[next].p;
+        const double h = trilinear(field_->h[l], local(p.x, 0), local(p.y, 1), local(p.z, 2));
+        largest = std::max(largest, std::min(h, samples_[next].h));
+      }
+    }
+    return largest;
+  }
+
+  /// Leaves that are too large for the graded sizes in them are divided. True if there are any.
+  bool divide_by_field() {
+    bool any = false;
+    std::size_t next = 0;
+    for (std::size_t l = 0; l < tree_.size(); ++l) {
+      const std::uint64_t last = tree_.leaf(l).range_max();
+      const std::size_t first = next;
+      while (next < samples_.size() && samples_[next].cell.id() <= last) ++next;
+      const double factor = rules_.leaf_per_size * (next > first ? 1 : 2);
+      any = divide_leaf(tree_.leaf(l), field_->h[l], factor) || any;
+    }
+    return any;
+  }
+
+  bool divide_leaf(OctreeKey cell, const std::array<double, 8>& h, double factor) {
+    double low = kInfinity, high = 0;
+    for (const double v : h) {
+      low = std::min({low, v, ceiling_});
+      high = std::max(high, std::min(v, ceiling_));
+    }
+    if (side_of(cell) <= factor * low || high <= kPlainRatio * low || cell.level() == OctreeKey::kMaxLevel)
+      return false;
+    cells_.divide(cell);
+    for (int i = 0; i < 8; ++i) {
+      std::array<double, 8> part;
+      for (int k = 0; k < 8; ++k) {
+        const auto at = [&](int axis) { return 0.5 * ((i >> axis & 1) + (k >> axis & 1)); };
+        part[k] = trilinear(h, at(0), at(1), at(2));
+      }
+      divide_leaf(cell.child(i), part, factor);
+    }
+    return true;
+  }
+
+  const RootCube& root_;
+  std::vector<Sample> samples_;
+  const GridRules& rules_;
+  const RunContext& context_;
+  double ceiling_;
+  DividedCells cells_;
+  Octree tree_;
+  OctreeCorners corners_;
+  std::vector<double> value_;
+  std::shared_ptr<OctreeField> field_;
+};
+
+}  // namespace
+
+std::shared_ptr<OctreeField> make_background_grid(const RootCube& root, const std::vector<SizeSample>& samples,
+                                                  const GridRules& rules, const RunContext& context) {
+  return GridMaker(root, samples, rules, context).run();
+}
+
+}  // namespace octafront

@@ -1,0 +1,46 @@
+#include <octafront/error.h>
+
+#include "sizing/size_sources.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace octafront {
+
+namespace {
+
+void require(bool holds, const std::string& sentence) {
+  if (!holds) throw OptionError(sentence);
+}
+
+void require_positive(const char* name, const std::optional<double>& value) {
+  require(!value || (std::isfinite(*value) && *value > 0),
+          fmt::format("{} must be a number above 0, but is {}", name, value.value_or(0)));
+}
+
+}  // namespace
+
+void check_size_options(const SizeOptions& o) {
+  require_positive("size", o.size);
+  require_positive("gap", o.gap);
+  require_positive("feature-elements", o.feature_elements);
+  require_positive("min-size", o.min_size);
+  require_positive("max-size", o.max_size);
+  require(!o.elements || *o.elements >= 1,
+          fmt::format("elements must be at least 1, but is {}", o.elements.value_or(0)));
+  require(!o.elements || *o.elements <= kMostElements,
+          fmt::format("elements is {}, but a mesh can hold {} at most", o.elements.value_or(0), kMostElements));
+  require(!(o.size && o.elements), "size and elements contradict each other: give one of them");
+  require(!o.curvature || (std::isfinite(*o.curvature) && *o.curvature >= 3),
+          fmt::format("curvature counts elements per full turn and must be at least 3, but is {}",
+                      o.curvature.value_or(0)));
+  require(!(o.min_size && o.max_size) || *o.min_size <= *o.max_size,
+          fmt::format("min-size {} is larger than max-size {}", o.min_size.value_or(0), o.max_size.value_or(0)));
+  require(!(o.size && o.min_size) || *o.size >= *o.min_size,
+          fmt::format("size {} is smaller than min-size {}", o.size.value_or(0), o.min_size.value_or(0)));
+  require(o.gradation >= 0.01 && o.gradation <= 1,
+          fmt::format("grading is {}: it must lie between 0.01 (slow growth) and 1 (fast)", o.gradation));
+}
+
+}  // namespace octafront

@@ -1,0 +1,144 @@
+#include "sizing/curvature.h"
+
+#include "geometry/measures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace octafront {
+
+namespace {
+
+/// Radius of the ball in mean edges: smaller ones follow the noise of scans, larger ones dilute narrow fillets.
+constexpr double kBallRadius = 3;
+/// A ball answers for the triangles within this part of its radius.
+constexpr double kAnsweredPart = 0.5;
+/// Edge of an equilateral triangle of area 1.
+constexpr double kEdgeOfUnitArea = 1.5196713713031851;
+
+/// A symmetric tensor and the area that it was gathered over.
+struct TensorSum {
+  double xx = 0, yy = 0, zz = 0, xy = 0, yz = 0, zx = 0, area = 0;
+
+  void add(const TensorSum& b) {
+    xx += b.xx, yy += b.yy, zz += b.zz, xy += b.xy, yz += b.yz, zx += b.zx, area += b.area;
+  }
+  void add_line(Vec3 d, double w) {
+    xx += w * d.x * d.x, yy += w * d.y * d.y, zz += w * d.z * d.z;
+    xy += w * d.x * d.y, yz += w * d.y * d.z, zx += w * d.z * d.x;
+  }
+  double trace() const { return xx + yy + zz; }
+};
+
+/// Largest magnitude of the eigenvalues, by the trigonometric solution of the characteristic cubic.
+double spectral_radius(const TensorSum& t) {
+  const double mean = t.trace() / 3, x = t.xx - mean, y = t.yy - mean, z = t.zz - mean;
+  const double off = t.xy * t.xy + t.yz * t.yz + t.zx * t.zx;
+  const double p = std::sqrt((x * x + y * y + z * z + 2 * off) / 6);
+  if (p == 0) return std::abs(mean);
+  const double det = x * (y * z - t.yz * t.yz) - t.xy * (t.xy * z - t.yz * t.zx) + t.zx * (t.xy * t.yz - y * t.zx);
+  const double angle = std::acos(std::clamp(det / (2 * p * p * p), -1.0, 1.0)) / 3;
+  const double most = mean + 2 * p * std::cos(angle);
+  const double least = mean + 2 * p * std::cos(angle + 2 * std::numbers::pi / 3);
+  return std::max(std::abs(most), std::abs(least));
+}
+
+class CurvatureFinder {
+ public:
+  CurvatureFinder(const SurfaceMesh& surface, const FaceNeighbours& across) : surface_(surface), across_(across) {
+    const std::size_t faces = surface.triangles.size();
+    normal_.resize(faces);
+    center_.resize(faces);
+    own_.resize(faces);
+    for (std::size_t f = 0; f < faces; ++f) {
+      const auto [a, b, c] = corners(f);
+      const Vec3 n = double_area_normal(a, b, c);
+      own_[f].area = 0.5 * length(n);
+      normal_[f] = normalized(n);
+      center_[f] = centroid(a, b, c);
+    }
+    for (std::size_t f = 0; f < faces; ++f) add_edges(f);
+  }
+
+  SurfaceCurvature run(const RunContext& context) {
+    const std::size_t faces = own_.size();
+    SurfaceCurvature result;
+    result.largest.assign(faces, -1);
+    result.sum.assign(faces, 0);
+    visited_by_.assign(faces, kNone);
+    for (std::uint32_t f = 0; f < faces; ++f) {
+      if (f % 1024 == 0) context.check();
+      if (result.largest[f] < 0) answer_around(f, result);
+    }
+    return result;
+  }
+
+ private:
+  std::array<Vec3, 3> corners(std::size_t f) const {
+    const Triangle& t = surface_.triangles[f];
+    return {surface_.points[t[0]], surface_.points[t[1]], surface_.points[t[2]]};
+  }
+
+  /// Each face takes half of the turning at each of its edges.
+  void add_edges(std::size_t f) {
+    const auto p = corners(f);
+    for (int i = 0; i < 3; ++i) {
+      const std::uint32_t g = across_[f][i];
+      if (g == kNone) continue;
+      const Vec3 along = p[(i + 1) % 3] - p[i];
+      const double l = length(along);
+      if (l == 0) continue;
+      const Vec3 d = along / l;
+      const double turn = std::atan2(dot(cross(normal_[f], normal_[g]), d), dot(normal_[f], normal_[g]));
+      own_[f].add_line(d, 0.5 * turn * l);
+    }
+  }
+
+  double ball_radius(std::uint32_t f) const {
+    double sum = own_[f].area;
+    int n = 1;
+    for (const std::uint32_t g : across_[f]) {
+      if (g != kNone) sum += own_[g].area, ++n;
+    }
+    return kBallRadius * kEdgeOfUnitArea * std::sqrt(sum / n);
+  }
+
+  void answer_around(std::uint32_t seed, SurfaceCurvature& result) {
+    const double radius = ball_radius(seed), r2 = radius * radius;
+    ball_.assign(1, seed);
+    visited_by_[seed] = seed;
+    TensorSum sum;
+    for (std::size_t i = 0; i < ball_.size(); ++i) {
+      sum.add(own_[ball_[i]]);
+      for (const std::uint32_t g : across_[ball_[i]]) {
+        if (g == kNone || visited_by_[g] == seed || squared_distance(center_[g], center_[seed]) > r2) continue;
+        visited_by_[g] = seed;
+        ball_.push_back(g);
+      }
+    }
+    const double largest = sum.area > 0 ? spectral_radius(sum) / sum.area : 0;
+    const double trace = sum.area > 0 ? sum.trace() / sum.area : 0;
+    for (const std::uint32_t f : ball_) {
+      if (result.largest[f] >= 0) continue;
+      if (f != seed && squared_distance(center_[f], center_[seed]) > kAnsweredPart * kAnsweredPart * r2) continue;
+      result.largest[f] = largest;
+      result.sum[f] = trace;
+    }
+  }
+
+  const SurfaceMesh& surface_;
+  const FaceNeighbours& across_;
+  std::vector<Vec3> normal_, center_;
+  std::vector<TensorSum> own_;
+  std::vector<std::uint32_t> visited_by_, ball_;
+};
+
+}  // namespace
+
+SurfaceCurvature surface_curvature(const SurfaceMesh& surface, const FaceNeighbours& across,
+                                   const RunContext& context) {
+  return CurvatureFinder(surface, across).run(context);
+}
+
+}  // namespace octafront

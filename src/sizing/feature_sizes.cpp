@@ -1,0 +1,101 @@
+#include "sizing/feature_sizes.h"
+
+#include <algorithm>
+
+namespace octafront {
+
+namespace {
+
+/// The feature edges at each vertex, as a compressed list.
+struct Incidence {
+  std::vector<std::uint32_t> first, edges;
+};
+
+Incidence edges_at_vertices(std::size_t vertices, const std::vector<Edge>& edges) {
+  Incidence in;
+  in.first.assign(vertices + 1, 0);
+  for (const Edge& e : edges) ++in.first[e[0] + 1], ++in.first[e[1] + 1];
+  for (std::size_t v = 0; v < vertices; ++v) in.first[v + 1] += in.first[v];
+  in.edges.resize(in.first.back());
+  std::vector<std::uint32_t> next(in.first.begin(), in.first.end() - 1);
+  for (std::uint32_t e = 0; e < edges.size(); ++e) {
+    for (const VertexIndex v : edges[e]) in.edges[next[v]++] = e;
+  }
+  return in;
+}
+
+class CurveWalker {
+ public:
+  CurveWalker(const SurfaceMesh& surface, const Features& features)
+      : surface_(surface),
+        edges_(features.edges),
+        at_(edges_at_vertices(surface.points.size(), features.edges)),
+        used_(features.edges.size(), 0),
+        is_end_(surface.points.size(), 0) {
+    for (const VertexIndex v : features.corners) is_end_[v] = 1;
+    for (VertexIndex v = 0; v < surface.points.size(); ++v) {
+      const std::uint32_t n = at_.first[v + 1] - at_.first[v];
+      if (n != 0 && n != 2) is_end_[v] = 1;
+    }
+  }
+
+  std::vector<FeatureCurve> run() {
+    std::vector<FeatureCurve> curves;
+    for (VertexIndex v = 0; v < surface_.points.size(); ++v) {
+      if (!is_end_[v]) continue;
+      for (std::uint32_t i = at_.first[v]; i < at_.first[v + 1]; ++i) {
+        if (!used_[at_.edges[i]]) curves.push_back(walk(v, at_.edges[i]));
+      }
+    }
+    for (std::uint32_t e = 0; e < edges_.size(); ++e) {
+      if (!used_[e]) curves.push_back(walk(edges_[e][0], e));
+    }
+    return curves;
+  }
+
+ private:
+  FeatureCurve walk(VertexIndex start, std::uint32_t edge) {
+    FeatureCurve curve;
+    curve.vertices.push_back(start);
+    for (VertexIndex v = start;;) {
+      used_[edge] = 1;
+      const VertexIndex next = edges_[edge][0] == v ? edges_[edge][1] : edges_[edge][0];
+      curve.length += distance(surface_.points[v], surface_.points[next]);
+      curve.vertices.push_back(next);
+      if (next == start || is_end_[next]) return curve;
+      const std::uint32_t i = at_.first[next];
+      edge = at_.edges[i] == edge ? at_.edges[i + 1] : at_.edges[i];
+      v = next;
+    }
+  }
+
+  const SurfaceMesh& surface_;
+  const std::vector<Edge>& edges_;
+  Incidence at_;
+  std::vector<std::uint8_t> used_, is_end_;
+};
+
+}  // namespace
+
+std::vector<FeatureCurve> feature_curves(const SurfaceMesh& surface, const Features& features) {
+  return CurveWalker(surface, features).run();
+}
+
+std::vector<SizeSample> feature_samples(const SurfaceMesh& surface, const Features& features, double elements,
+                                        double floor, double ceiling) {
+  std::vector<SizeSample> samples;
+  for (const FeatureCurve& curve : feature_curves(surface, features)) {
+    const bool closed = curve.vertices.front() == curve.vertices.back();
+    const double h = std::max(floor, curve.length / (closed ? std::max(3.0, 2 * elements) : elements));
+    if (h >= ceiling) continue;
+    for (std::size_t i = 0; i + 1 < curve.vertices.size(); ++i) {
+      const Vec3 a = surface.points[curve.vertices[i]], b = surface.points[curve.vertices[i + 1]];
+      const int parts = static_cast<int>(std::ceil(distance(a, b) / h)) + 1;
+      for (int k = 0; k < parts; ++k) samples.push_back({a + (b - a) * (double(k) / parts), {}, h});
+    }
+    samples.push_back({surface.points[curve.vertices.back()], {}, h});
+  }
+  return samples;
+}
+
+}  // namespace octafront

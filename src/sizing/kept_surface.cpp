@@ -1,0 +1,67 @@
+// Sizes for a surface whose triangles stay as they are.
+
+#include "geometry/measures.h"
+#include "sizing/face_neighbours.h"
+#include "sizing/make_size_field.h"
+#include "sizing/size_sources.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace octafront {
+
+namespace {
+
+/// Edge of an equilateral triangle of area 1.
+constexpr double kEdgeOfUnitArea = 1.5196713713031851;
+
+/// The edge length that a triangle stands for: between that of the equilateral triangle of its area, which a needle
+/// makes too small, and the mean length of its edges, which it makes too large.
+double size_of(Vec3 a, Vec3 b, Vec3 c) {
+  const double mean = (distance(a, b) + distance(b, c) + distance(c, a)) / 3;
+  return std::sqrt(kEdgeOfUnitArea * std::sqrt(triangle_area(a, b, c)) * mean);
+}
+
+/// Per triangle: the mean over it and its neighbours in logarithms, so that single needles and jumps do not decide.
+std::vector<double> face_sizes(const SurfaceMesh& surface) {
+  std::vector<double> own(surface.triangles.size());
+  for (std::size_t f = 0; f < own.size(); ++f) {
+    const Triangle& t = surface.triangles[f];
+    own[f] = size_of(surface.points[t[0]], surface.points[t[1]], surface.points[t[2]]);
+  }
+  const FaceNeighbours across = smooth_face_neighbours(surface, {});
+  std::vector<double> smooth(own.size());
+  for (std::size_t f = 0; f < own.size(); ++f) {
+    double sum = std::log(std::max(own[f], std::numeric_limits<double>::min())), n = 1;
+    for (const std::uint32_t g : across[f]) {
+      if (g != kNone && own[g] > 0) sum += std::log(own[g]), n += 1;
+    }
+    smooth[f] = std::exp(sum / n);
+  }
+  return smooth;
+}
+
+}  // namespace
+
+SizeField size_field_of_surface(const SurfaceMesh& surface, const SizeOptions& options, const RunContext& context,
+                                StageReport& report) {
+  check_size_options(options);
+  const RootCube root = RootCube::around(bounding_box(surface.points), 0.02);
+  const double floor = options.min_size.value_or(model_extent(surface) * 1e-5);
+  std::vector<double> face = face_sizes(surface);
+  for (double& h : face) h = std::max(h, floor);
+  SizeAtPlace at_place;
+  if (options.callback) at_place = [&](const PlaceOnSurface& s) { return options.callback(s.p); };
+  GridRules rules;
+  rules.gradation = options.gradation;
+  rules.interior_below_surface = options.interior == SizeOptions::Interior::kUniform;
+  rules.resolve_surface = !rules.interior_below_surface;
+  rules.ceiling = std::min({root.side, options.max_size.value_or(HUGE_VAL), options.size.value_or(HUGE_VAL)});
+  const auto grid = make_background_grid(root, sample_surface(surface, face, at_place, context), rules, context);
+  report.count("leaves", static_cast<double>(grid->tree.size()));
+  report.count("levels", grid->tree.depth());
+  return SizeField(grid);
+}
+
+}  // namespace octafront

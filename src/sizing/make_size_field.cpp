@@ -1,0 +1,111 @@
+#include "sizing/make_size_field.h"
+
+#include <octafront/error.h>
+
+#include "sizing/background_grid.h"
+#include "sizing/size_sources.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace octafront {
+
+namespace {
+
+/// Room between the model and the faces of the root cube.
+constexpr double kRootMargin = 0.02;
+/// --elements: sizes are scaled until the expected number is this close.
+constexpr double kCountTolerance = 0.01;
+constexpr int kMostScalings = 10;
+
+GridRules rules_for(const WantedSizes& wanted, const SizeOptions& options, const RootCube& root) {
+  GridRules rules;
+  rules.gradation = options.gradation;
+  rules.interior_below_surface = options.interior == SizeOptions::Interior::kUniform;
+  rules.resolve_surface = !rules.interior_below_surface;
+  rules.ceiling = std::min(wanted.ceiling, root.side);
+  return rules;
+}
+
+WantedSizes scaled(const WantedSizes& wanted, double factor, const SizeOptions& options) {
+  const double low = options.min_size.value_or(0), high = options.max_size.value_or(HUGE_VAL);
+  WantedSizes result = wanted;
+  for (double& h : result.face) h = std::clamp(h * factor, low, high);
+  for (SizeSample& s : result.points) s.h = std::clamp(s.h * factor, low, high);
+  result.ceiling = std::clamp(result.ceiling * factor, low, high);
+  if (wanted.at_place) {
+    result.at_place = [f = wanted.at_place, factor, low, high](const PlaceOnSurface& p) {
+      return std::clamp(f(p) * factor, low, high);
+    };
+  }
+  return result;
+}
+
+SizeField grid_field(const SurfaceMesh& surface, const WantedSizes& wanted, const SizeOptions& options,
+                     const RunContext& context) {
+  const RootCube root = RootCube::around(bounding_box(surface.points), kRootMargin);
+  const GridRules rules = rules_for(wanted, options, root);
+  std::vector<SizeSample> samples = sample_surface(surface, wanted.face, wanted.at_place, context);
+  samples.insert(samples.end(), wanted.points.begin(), wanted.points.end());
+  return SizeField(make_background_grid(root, samples, rules, context));
+}
+
+SizeField scaled_to_count(const SurfaceMesh& surface, const WantedSizes& wanted, const SizeOptions& options,
+                          const RunContext& context, StageReport& report) {
+  const double target = std::log(static_cast<double>(*options.elements));
+  // Secant steps in logarithms; the count falls with about the third power of the sizes.
+  double x = 0, slope = -3, last_x = 0, last_y = 0;
+  SizeField best = grid_field(surface, wanted, options, context);
+  double y = std::log(expected_tets(best, surface));
+  double best_miss = std::abs(y - target);
+  int steps = 0;
+  for (; best_miss > kCountTolerance && steps < kMostScalings; ++steps) {
+    last_x = x;
+    last_y = y;
+    x += (target - y) / slope;
+    SizeField field = grid_field(surface, scaled(wanted, std::exp(x), options), options, context);
+    y = std::log(expected_tets(field, surface));
+    if (std::abs(y - target) < best_miss) {
+      best_miss = std::abs(y - target);
+      best = std::move(field);
+    }
+    if (x != last_x) slope = std::clamp((y - last_y) / (x - last_x), -4.0, -1.0);
+  }
+  report.count("scalings", steps);
+  if (best_miss > 0.05) {
+    report.notes.push_back(fmt::format("{} elements were asked for, but the limits on the size give {:.3g}",
+                                       *options.elements, expected_tets(best, surface)));
+  }
+  return best;
+}
+
+void refuse_huge_counts(const SurfaceMesh& surface, const WantedSizes& wanted) {
+  const double largest = *std::max_element(wanted.face.begin(), wanted.face.end());
+  const double count = kTetsPerCube * std::abs(enclosed_volume(surface)) / (largest * largest * largest);
+  if (count <= static_cast<double>(kMostElements)) return;
+  throw OptionError(fmt::format(
+      "a size of {:.4g} would give about {:.3g} elements, more than the {} that a mesh can hold: ask for a larger size",
+      largest, count, kMostElements));
+}
+
+}  // namespace
+
+SizeField make_size_field(const SurfaceMesh& surface, const Features& features, const SizeOptions& options,
+                          const RunContext& context, StageReport& report) {
+  check_size_options(options);
+  if (surface.triangles.empty()) throw InputError("the surface has no triangles: there is nothing to choose sizes for");
+  const WantedSizes wanted = wanted_sizes(surface, features, options, context, report);
+  if (!options.elements) refuse_huge_counts(surface, wanted);
+  const SizeField field = options.elements ? scaled_to_count(surface, wanted, options, context, report)
+                                           : grid_field(surface, wanted, options, context);
+  const OctreeField& grid = *as_octree_field(field);
+  report.count("leaves", static_cast<double>(grid.tree.size()));
+  report.count("levels", grid.tree.depth());
+  report.count("smallest size", field.min_size());
+  report.count("largest size", field.max_size());
+  return field;
+}
+
+}  // namespace octafront

@@ -1,0 +1,32 @@
+#include "sizing/octree_field.h"
+
+#include <algorithm>
+
+namespace octafront {
+
+double OctreeField::at(Vec3 p) const {
+  const std::size_t l = tree.find(root.cell(p));
+  const OctreeKey key = tree.leaf(l);
+  const auto corner = key.corner();
+  const double scale = (1u << key.level()) / root.side, unit = 1.0 / key.side();
+  const auto local = [&](int axis) {
+    return std::clamp((p[axis] - root.lo[axis]) * scale - corner[axis] * unit, 0.0, 1.0);
+  };
+  return trilinear(h[l], local(0), local(1), local(2)) * root.side;
+}
+
+void OctreeField::find_range() {
+  low = high = h.front()[0];
+  for (const auto& leaf : h) {
+    for (const double v : leaf) {
+      low = std::min(low, v);
+      high = std::max(high, v);
+    }
+  }
+}
+
+const OctreeField* as_octree_field(const SizeField& sizes) {
+  return dynamic_cast<const OctreeField*>(&sizes.impl());
+}
+
+}  // namespace octafront

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "sizing/octree.h"
+#include "sizing/size_field_impl.h"
+
+#include <array>
+#include <vector>
+
+namespace octafront {
+
+/// The background grid as a size field: sizes at leaf corners, trilinear between them.
+struct OctreeField final : SizeField::Impl {
+  RootCube root;
+  Octree tree;
+  std::vector<std::array<double, 8>> h;  ///< per leaf, corner i with the halves of child i; in units of root.side
+  double low = 0, high = 0;              ///< least and greatest of h
+  double gradation = 0;
+
+  double at(Vec3 p) const override;
+  double min_size() const override { return low * root.side; }
+  double max_size() const override { return high * root.side; }
+  /// Fills in low and high.
+  void find_range();
+};
+
+/// The field behind `sizes` if it is a background grid, else null.
+const OctreeField* as_octree_field(const SizeField& sizes);
+
+/// Interpolation of eight corner values at local coordinates in [0, 1].
+inline double trilinear(const std::array<double, 8>& v, double x, double y, double z) {
+  const double v00 = v[0] + x * (v[1] - v[0]), v10 = v[2] + x * (v[3] - v[2]);
+  const double v01 = v[4] + x * (v[5] - v[4]), v11 = v[6] + x * (v[7] - v[6]);
+  const double v0 = v00 + y * (v10 - v00), v1 = v01 + y * (v11 - v01);
+  return v0 + z * (v1 - v0);
+}
+
+}  // namespace octafront

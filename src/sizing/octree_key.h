@@ -1,0 +1,123 @@
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cassert>
+#include <compare>
+#include <cstdint>
+
+namespace octafront {
+
+/// A cell of the octree as one integer: its level and its place on the Z-order (Morton) curve.
+///
+///   bit   63 ... 61   60 ...................................................... 0
+///          0  0  0    ddd ddd ddd ... ddd   1   000 000 ... 000
+///                     level digits, root    |   three zeros for each level
+///                     first, zyx each       |   that the cell is above kMaxLevel
+///                                        marker
+///
+/// Digit k names the child taken on the way from level k - 1 to level k: bit 0 of it is the half along x, bit 1 along
+/// y, bit 2 along z. The root has no digits: its id is the marker alone, 1 << 60. Id 0 is no cell.
+///
+/// Order. Ids are unique over all levels. Cells of one level sort along the curve; the cells inside a cell have ids in
+/// [range_min(), range_max()], and its own id lies in the middle of them: children 0-3 before it, 4-7 behind. Leaves
+/// that cover the root cube without overlap, sorted by id, are in the order of the curve.
+///
+/// Coordinates. The root cube has kSide units along each axis; a cell of level l has side kSide >> l. A cell is the
+/// half-open box [x, x + side) x [y, y + side) x [z, z + side).
+///
+/// (The scheme of a level marker behind a curve position is that of S2 cell ids; the curve here is plain Morton order.)
+class OctreeKey {
+ public:
+  static constexpr int kMaxLevel = 20;
+  static constexpr std::uint32_t kSide = 1u << kMaxLevel;
+
+  constexpr OctreeKey() = default;
+  static constexpr OctreeKey root() { return OctreeKey(std::uint64_t{1} << (3 * kMaxLevel)); }
+  static constexpr OctreeKey from_id(std::uint64_t id) { return OctreeKey(id); }
+  /// The cell of `level` that contains the unit (x, y, z). REQUIRES: x, y, z < kSide, 0 <= level <= kMaxLevel.
+  static constexpr OctreeKey containing(std::uint32_t x, std::uint32_t y, std::uint32_t z, int level = kMaxLevel) {
+    const std::uint64_t position = (interleave(x) | interleave(y) << 1 | interleave(z) << 2) << 1 | 1;
+    const std::uint64_t marker = marker_of(level);
+    return OctreeKey((position & (0 - marker)) | marker);
+  }
+
+  constexpr std::uint64_t id() const { return id_; }
+  /// True if the id is that of a cell.
+  constexpr bool is_valid() const {
+    return id_ != 0 && id_ < std::uint64_t{2} << (3 * kMaxLevel) && std::countr_zero(id_) % 3 == 0;
+  }
+  constexpr int level() const { return kMaxLevel - std::countr_zero(id_) / 3; }
+  /// Side in units: kSide >> level().
+  constexpr std::uint32_t side() const { return kSide >> level(); }
+  /// Lower corner in units.
+  constexpr std::array<std::uint32_t, 3> corner() const {
+    const std::uint64_t digits = (id_ - marker()) >> 1;
+    return {compact(digits), compact(digits >> 1), compact(digits >> 2)};
+  }
+
+  /// The cell one level up. REQUIRES: level() > 0.
+  constexpr OctreeKey parent() const {
+    const std::uint64_t up = marker() << 3;
+    return OctreeKey((id_ & (0 - up)) | up);
+  }
+  /// The cell of `level` that contains this one. REQUIRES: level <= this->level().
+  constexpr OctreeKey ancestor(int level) const {
+    const std::uint64_t up = marker_of(level);
+    return OctreeKey((id_ & (0 - up)) | up);
+  }
+  /// Child i, with the halves x = i & 1, y = i >> 1 & 1, z = i >> 2. REQUIRES: level() < kMaxLevel.
+  constexpr OctreeKey child(int i) const {
+    const std::uint64_t m = marker();
+    return OctreeKey(id_ - m + (2 * static_cast<std::uint64_t>(i) + 1) * (m >> 3));
+  }
+  /// Which child of its parent it is. REQUIRES: level() > 0.
+  constexpr int child_number() const { return static_cast<int>(id_ / (marker() << 1) & 7); }
+
+  /// Least and greatest id of the cells inside, itself included.
+  constexpr std::uint64_t range_min() const { return id_ - (marker() - 1); }
+  constexpr std::uint64_t range_max() const { return id_ + (marker() - 1); }
+  /// True if `other` is this cell or lies inside it.
+  constexpr bool contains(OctreeKey other) const { return range_min() <= other.id_ && other.id_ <= range_max(); }
+
+  /// The cell of the same level `dx, dy, dz` cells away; an invalid key (id 0) outside the root cube.
+  constexpr OctreeKey neighbour(int dx, int dy, int dz) const {
+    const std::array<std::uint32_t, 3> c = corner();
+    const std::int64_t s = side();
+    const std::int64_t x = c[0] + dx * s, y = c[1] + dy * s, z = c[2] + dz * s;
+    if (x < 0 || y < 0 || z < 0 || x >= kSide || y >= kSide || z >= kSide) return OctreeKey();
+    return containing(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), static_cast<std::uint32_t>(z),
+                      level());
+  }
+
+  friend constexpr bool operator==(OctreeKey, OctreeKey) = default;
+  friend constexpr auto operator<=>(OctreeKey, OctreeKey) = default;
+
+ private:
+  constexpr explicit OctreeKey(std::uint64_t id) : id_(id) {}
+  constexpr std::uint64_t marker() const { return id_ & (0 - id_); }
+  static constexpr std::uint64_t marker_of(int level) { return std::uint64_t{1} << (3 * (kMaxLevel - level)); }
+
+  /// Spreads the low 21 bits to every third bit.
+  static constexpr std::uint64_t interleave(std::uint64_t v) {
+    v &= 0x1fffff;
+    v = (v | v << 32) & 0x1f00000000ffff;
+    v = (v | v << 16) & 0x1f0000ff0000ff;
+    v = (v | v << 8) & 0x100f00f00f00f00f;
+    v = (v | v << 4) & 0x10c30c30c30c30c3;
+    return (v | v << 2) & 0x1249249249249249;
+  }
+  /// The inverse: gathers every third bit.
+  static constexpr std::uint32_t compact(std::uint64_t v) {
+    v &= 0x1249249249249249;
+    v = (v ^ v >> 2) & 0x10c30c30c30c30c3;
+    v = (v ^ v >> 4) & 0x100f00f00f00f00f;
+    v = (v ^ v >> 8) & 0x1f0000ff0000ff;
+    v = (v ^ v >> 16) & 0x1f00000000ffff;
+    return static_cast<std::uint32_t>((v ^ v >> 32) & 0x1fffff);
+  }
+
+  std::uint64_t id_ = 0;
+};
+
+}  // namespace octafront

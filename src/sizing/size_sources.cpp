@@ -1,0 +1,155 @@
+#include "sizing/size_sources.h"
+
+#include <octafront/error.h>
+
+#include "geometry/measures.h"
+#include "sizing/curvature.h"
+#include "sizing/feature_sizes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <fmt/format.h>
+
+namespace octafront {
+
+namespace {
+
+/// The automatic choice. Base size: extent / 30 makes some 20,000 elements of a ball. Curvature of 20 elements per turn
+/// keeps chords within 1.6 % of the radius of curvature.
+constexpr double kExtentPerSize = 30;
+constexpr double kAutomaticCurvature = 20;
+constexpr double kAutomaticFeatureElements = 1;
+/// Sources that follow details stop at this part of the base size unless min_size says otherwise: a spike or a crease
+/// of noise must not ask for elements without bound.
+constexpr double kAutomaticFloor = 1.0 / 12;
+constexpr double kChosenFloor = 1.0 / 200;
+/// Chords cut corners: the automatic choice is scaled until the volume lost so, as predicted, is below this part.
+constexpr double kVolumeLoss = 0.003;
+constexpr double kLeastAutomaticScale = 0.3;
+
+/// What the user's options come to, once defaults are filled in.
+struct Choice {
+  bool automatic = false;
+  double base = 0, floor = 0;
+  double curvature = 0, feature_elements = 0;  ///< 0: not asked
+};
+
+Choice choose(const SurfaceMesh& surface, const SizeOptions& o) {
+  Choice c;
+  c.automatic = !o.size && !o.curvature && !o.gap && !o.feature_elements && !o.facets && !o.callback;
+  c.base = o.size ? *o.size : model_extent(surface) / kExtentPerSize;
+  if (o.max_size)
+    c.base = o.size ? std::min(c.base, *o.max_size) : (c.automatic ? std::min(c.base, *o.max_size) : *o.max_size);
+  c.base = std::max(c.base, o.min_size.value_or(0));
+  c.floor = o.min_size.value_or(c.base * (c.automatic ? kAutomaticFloor : kChosenFloor));
+  c.curvature = o.curvature.value_or(c.automatic ? kAutomaticCurvature : 0);
+  c.feature_elements = o.feature_elements.value_or(c.automatic ? kAutomaticFeatureElements : 0);
+  return c;
+}
+
+/// Facet areas averaged over each triangle and its neighbours, as sizes: the side of a square of that area. This is the
+/// paper's rule, by which a leaf is divided while its face is larger than the facets inside it.
+void apply_facets(const SurfaceMesh& surface, const FaceNeighbours& across, double floor, std::vector<double>& face) {
+  std::vector<double> areas(surface.triangles.size());
+  for (std::size_t f = 0; f < areas.size(); ++f) {
+    const Triangle& t = surface.triangles[f];
+    areas[f] = triangle_area(surface.points[t[0]], surface.points[t[1]], surface.points[t[2]]);
+  }
+  for (std::size_t f = 0; f < areas.size(); ++f) {
+    double sum = areas[f];
+    int n = 1;
+    for (const std::uint32_t g : across[f]) {
+      if (g != kNone) sum += areas[g], ++n;
+    }
+    face[f] = std::min(face[f], std::max(floor, std::sqrt(sum / n)));
+  }
+}
+
+void apply_curvature(const SurfaceCurvature& curvature, double elements, double floor, std::vector<double>& face) {
+  const double turn = 2 * std::numbers::pi / elements;
+  for (std::size_t f = 0; f < face.size(); ++f) {
+    if (curvature.largest[f] * face[f] > turn) face[f] = std::max(floor, turn / curvature.largest[f]);
+  }
+}
+
+/// Vertices on the surface and edges of length h between them: the triangles lie h^2 (k1 + k2) / 16 below it on
+/// average.
+double predicted_volume_loss(const SurfaceMesh& surface, const SurfaceCurvature& curvature,
+                             const std::vector<double>& face) {
+  double sum = 0;
+  for (std::size_t f = 0; f < face.size(); ++f) {
+    const Triangle& t = surface.triangles[f];
+    sum += triangle_area(surface.points[t[0]], surface.points[t[1]], surface.points[t[2]]) * curvature.sum[f] *
+           face[f] * face[f] / 16;
+  }
+  return std::abs(sum);
+}
+
+double automatic_scale(const SurfaceMesh& surface, const SurfaceCurvature& curvature, const std::vector<double>& face) {
+  const double loss = predicted_volume_loss(surface, curvature, face);
+  const double allowed = kVolumeLoss * std::abs(enclosed_volume(surface));
+  return loss > allowed ? std::max(kLeastAutomaticScale, std::sqrt(allowed / loss)) : 1;
+}
+
+/// The callback's answer, checked.
+double ask(const std::function<double(Vec3)>& callback, Vec3 p) {
+  const double h = callback(p);
+  if (!(h > 0)) {
+    throw OptionError(fmt::format("the size callback returned {} at ({:.6g}, {:.6g}, {:.6g}): sizes must be above 0", h,
+                                  p.x, p.y, p.z));
+  }
+  return h;
+}
+
+}  // namespace
+
+double model_extent(const SurfaceMesh& surface) {
+  const Vec3 origin = bounding_box(surface.points).center();
+  double mass = 0, square = 0;
+  Vec3 moment;
+  for (const Triangle& t : surface.triangles) {
+    const Vec3 a = surface.points[t[0]] - origin, b = surface.points[t[1]] - origin, c = surface.points[t[2]] - origin;
+    const double area = triangle_area(a, b, c);
+    const Vec3 sum = a + b + c;
+    mass += area;
+    moment += sum * (area / 3);
+    square += area / 12 * (squared_length(a) + squared_length(b) + squared_length(c) + squared_length(sum));
+  }
+  if (!(mass > 0)) return 0;
+  return 2 * std::sqrt(3 * std::max(0.0, square / mass - squared_length(moment / mass)));
+}
+
+WantedSizes wanted_sizes(const SurfaceMesh& surface, const Features& features, const SizeOptions& options,
+                         const RunContext& context, StageReport& report) {
+  const Choice choice = choose(surface, options);
+  WantedSizes wanted;
+  wanted.face.assign(surface.triangles.size(), choice.base);
+  double scale = 1;
+  if (choice.curvature > 0 || options.facets) {
+    const FaceNeighbours across = smooth_face_neighbours(surface, features.edges);
+    if (options.facets) apply_facets(surface, across, choice.floor, wanted.face);
+    if (choice.curvature > 0) {
+      const SurfaceCurvature curvature = surface_curvature(surface, across, context);
+      apply_curvature(curvature, choice.curvature, choice.floor, wanted.face);
+      if (choice.automatic) scale = automatic_scale(surface, curvature, wanted.face);
+    }
+  }
+  if (choice.feature_elements > 0) {
+    wanted.points = feature_samples(surface, features, choice.feature_elements, choice.floor, choice.base);
+  }
+  for (double& h : wanted.face) h = std::max(h * scale, options.min_size.value_or(0));
+  if (options.callback) wanted.at_place = [f = options.callback](const PlaceOnSurface& s) { return ask(f, s.p); };
+  const bool graded = options.interior == SizeOptions::Interior::kGraded;
+  wanted.ceiling = graded ? options.max_size.value_or(std::numeric_limits<double>::infinity()) : choice.base * scale;
+  wanted.ceiling = std::max(wanted.ceiling, options.min_size.value_or(0));
+  const auto [least, most] = std::minmax_element(wanted.face.begin(), wanted.face.end());
+  wanted.even = !wanted.at_place && wanted.points.empty() && *least == *most;
+  report.count("base size", choice.base * scale);
+  report.count("extent", model_extent(surface));
+  return wanted;
+}
+
+}  // namespace octafront

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <octafront/options.h>
+#include <octafront/report.h>
+#include <octafront/run_context.h>
+#include <octafront/surface_mesh.h>
+
+#include "sizing/background_grid.h"
+#include "sizing/surface_samples.h"
+#include "surface/features.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace octafront {
+
+/// Tetrahedra per cube of the wanted edge length: those of a regular tetrahedron, 6 sqrt(2), were space filled by them.
+inline constexpr double kTetsPerCube = 8.4852813742385695;
+/// Indices of elements are 32 bits wide, those of half-faces are four times as large.
+inline constexpr std::int64_t kMostElements = std::int64_t{1} << 30;
+
+/// What all sources together want on a surface, before any of it is put into a grid. Input units.
+struct WantedSizes {
+  std::vector<double> face;        ///< per triangle
+  std::vector<SizeSample> points;  ///< at feature curves and the like
+  SizeAtPlace at_place;            ///< asked at each sample of the surface; may be empty
+  double ceiling = 0;              ///< no size inside rises above this
+  bool even = false;               ///< one size everywhere
+};
+
+/// A measure of the model that neither rotation nor triangulation changes: 2 sqrt(3) times the root mean square
+/// distance of the surface from its centre of gravity. A sphere's is the diagonal of its bounding box, a rod's is its
+/// length.
+double model_extent(const SurfaceMesh& surface);
+
+/// Asks every source that `options` names; the automatic choice if it names none. Throws OptionError.
+WantedSizes wanted_sizes(const SurfaceMesh& surface, const Features& features, const SizeOptions& options,
+                         const RunContext& context, StageReport& report);
+
+/// Throws OptionError for values out of range and for contradictions.
+void check_size_options(const SizeOptions& options);
+
+}  // namespace octafront

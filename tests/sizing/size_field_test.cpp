@@ -1,0 +1,229 @@
+#include <octafront/error.h>
+#include <octafront/size_field.h>
+
+#include "sizing/make_size_field.h"
+#include "sizing/octree_field.h"
+#include "support/named_surfaces.h"
+
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+namespace octafront {
+namespace {
+
+using testing::cube;
+using testing::icosphere;
+using testing::torus;
+using testing::transformed;
+
+SizeField make(const SurfaceMesh& surface, const SizeOptions& options, const Features& features = {}) {
+  StageReport report;
+  return make_size_field(surface, features, options, RunContext{}, report);
+}
+
+/// Fields of many kinds on one surface each.
+struct Case {
+  std::string name;
+  SurfaceMesh surface;
+  SizeOptions options;
+};
+
+std::vector<Case> cases() {
+  std::vector<Case> list;
+  list.push_back({"automatic sphere", icosphere(3), {}});
+  list.push_back({"automatic torus", torus(60, 24), {}});
+  SizeOptions o;
+  o.size = 0.1;
+  list.push_back({"uniform cube", cube(3), o});
+  o.interior = SizeOptions::Interior::kGraded;
+  o.max_size = 0.5;
+  list.push_back({"graded cube", cube(3), o});
+  o = {};
+  o.curvature = 40;
+  o.gradation = 0.4;
+  list.push_back({"curved torus", torus(60, 24, 1, 0.1), o});
+  o = {};
+  o.callback = [](Vec3 p) { return 0.02 + 0.5 * length(p - Vec3{1, 0, 0}); };
+  o.gradation = 0.15;
+  list.push_back({"callback", icosphere(3), o});
+  o.interior = SizeOptions::Interior::kGraded;
+  list.push_back({"graded callback", icosphere(3), o});
+  return list;
+}
+
+Vec3 random_point(std::mt19937& random, const Box3& box) {
+  std::uniform_real_distribution<double> u(-0.1, 1.1);
+  const Vec3 e = box.extent();
+  return {box.lo.x + u(random) * e.x, box.lo.y + u(random) * e.y, box.lo.z + u(random) * e.z};
+}
+
+TEST(SizeField, ObeysItsGradationBetweenAnyTwoPoints) {
+  std::mt19937 random(1);
+  for (const Case& c : cases()) {
+    SCOPED_TRACE(c.name);
+    const SizeField h = make(c.surface, c.options);
+    const Box3 box = bounding_box(c.surface.points);
+    std::uniform_real_distribution<double> exponent(-4, 0);
+    for (int n = 0; n < 20000; ++n) {
+      const Vec3 p = random_point(random, box);
+      const Vec3 q = p + (random_point(random, box) - p) * std::pow(10, exponent(random));
+      ASSERT_LE(std::abs(h.at(p) - h.at(q)), c.options.gradation * distance(p, q) * (1 + 1e-9) + 1e-14 * h.max_size());
+    }
+  }
+}
+
+TEST(SizeField, IsContinuousAcrossLeaves) {
+  for (const Case& c : cases()) {
+    SCOPED_TRACE(c.name);
+    const SizeField field = make(c.surface, c.options);
+    const OctreeField& grid = *as_octree_field(field);
+    EXPECT_TRUE(grid.tree.is_balanced());
+    std::mt19937 random(2);
+    std::uniform_real_distribution<double> u(0, 1);
+    for (std::size_t l = 0; l < grid.tree.size(); ++l) {
+      const Vec3 lo = grid.root.corner_of(grid.tree.leaf(l));
+      const double side = grid.root.side_of(grid.tree.leaf(l));
+      Vec3 p = lo + side * Vec3{u(random), u(random), u(random)};
+      const int axis = static_cast<int>(l % 3);
+      p[axis] = lo[axis];
+      Vec3 below = p;
+      below[axis] -= 1e-12 * grid.root.side;
+      ASSERT_NEAR(field.at(p), field.at(below), 1e-11 * grid.root.side);
+    }
+  }
+}
+
+TEST(SizeField, KeepsWithinItsLimits) {
+  SizeOptions o;
+  o.min_size = 0.05;
+  o.max_size = 0.09;
+  o.curvature = 30;
+  const SizeField h = make(torus(60, 24), o);
+  EXPECT_GE(h.min_size(), 0.05 * (1 - 1e-9));
+  EXPECT_LE(h.max_size(), 0.09 * (1 + 1e-9));
+}
+
+TEST(SizeField, UniformSizeIsThatSizeEverywhere) {
+  SizeOptions o;
+  o.size = 0.07;
+  const SizeField h = make(icosphere(3), o);
+  EXPECT_DOUBLE_EQ(h.min_size(), 0.07);
+  EXPECT_DOUBLE_EQ(h.max_size(), 0.07);
+  EXPECT_LT(as_octree_field(h)->tree.size(), 20000u);
+}
+
+TEST(SizeField, CurvatureOfASphereGivesElementsPerTurn) {
+  SizeOptions o;
+  o.curvature = 24;
+  o.max_size = 10;
+  const SurfaceMesh sphere = icosphere(5);
+  const SizeField h = make(sphere, o);
+  for (const Vec3 p : sphere.points) ASSERT_NEAR(h.at(p), 2 * M_PI / 24, 0.05 * 2 * M_PI / 24);
+}
+
+TEST(SizeField, InteriorStaysBelowTheSurfaceUnlessGraded) {
+  SizeOptions o;
+  o.callback = [](Vec3 p) { return 0.05 + 0.05 * std::abs(p.x); };
+  o.max_size = 1;
+  const SurfaceMesh sphere = icosphere(4);
+  const SizeField uniform = make(sphere, o);
+  EXPECT_LE(uniform.max_size(), 0.1 * 1.02);
+  o.interior = SizeOptions::Interior::kGraded;
+  const SizeField graded = make(sphere, o);
+  EXPECT_GT(graded.at({0, 0, 0}), 0.18);
+  EXPECT_NEAR(graded.at({1, 0, 0}), 0.1, 0.01);
+}
+
+TEST(SizeField, FollowsScaleAndShift) {
+  const SurfaceMesh surface = torus(50, 20);
+  const SizeField h = make(surface, {});
+  for (const double scale : {1e-6, 0.25, 1e6}) {
+    const Vec3 shift = scale * Vec3{3, -2, 5};
+    const SizeField other = make(transformed(surface, scale, shift), {});
+    std::mt19937 random(3);
+    for (int n = 0; n < 200; ++n) {
+      const Vec3 p = random_point(random, bounding_box(surface.points));
+      ASSERT_NEAR(other.at(scale * p + shift) / scale, h.at(p), 0.02 * h.at(p));
+    }
+  }
+}
+
+TEST(SizeField, IsTheSameEveryTime) {
+  const SizeField a = make(torus(60, 24), {}), b = make(torus(60, 24), {});
+  EXPECT_EQ(as_octree_field(a)->h, as_octree_field(b)->h);
+}
+
+TEST(ExpectedTets, OfACube) {
+  SizeOptions o;
+  o.size = 0.05;
+  const double n = expected_tets(make(cube(4), o), cube(4));
+  EXPECT_NEAR(n, 8.4852813742385695 * 8000, 1);
+  o.callback = [](Vec3) { return 0.05; };
+  EXPECT_NEAR(expected_tets(make(cube(4), o), cube(4)), n, 0.01 * n);
+}
+
+TEST(ExpectedTets, MeetsTheTarget) {
+  for (const std::int64_t elements : {3000, 100000, 2000000}) {
+    SizeOptions o;
+    o.elements = elements;
+    const SurfaceMesh surface = torus(60, 24);
+    EXPECT_NEAR(expected_tets(make(surface, o), surface), elements, 0.02 * elements);
+  }
+}
+
+TEST(CappedNear, LowersTheSizeThereAndStaysGraded) {
+  for (const SizeField& h : {SizeField::uniform(0.2), make(icosphere(3), {})}) {
+    const Vec3 at{1, 0, 0};
+    const SizeField capped = capped_near(h, {at, {0, 1, 0}}, 0.5, 0.2);
+    EXPECT_NEAR(capped.at(at), 0.5 * h.at(at), 0.05 * h.at(at));
+    EXPECT_NEAR(capped.at({-1, 0, 0}), h.at({-1, 0, 0}), 0.02 * h.at({-1, 0, 0}));
+    std::mt19937 random(5);
+    Box3 box;
+    box.add(Vec3{-1, -1, -1});
+    box.add(Vec3{1, 1, 1});
+    for (int n = 0; n < 5000; ++n) {
+      const Vec3 p = random_point(random, box), q = random_point(random, box);
+      ASSERT_LE(capped.at(p), h.at(p) * (1 + 1e-9));
+      ASSERT_LE(std::abs(capped.at(p) - capped.at(q)), 0.2 * distance(p, q) * (1 + 1e-9));
+    }
+  }
+}
+
+TEST(Scaled, MultipliesAllSizes) {
+  const SizeField h = make(torus(60, 24), {}), twice = scaled(h, 2);
+  EXPECT_DOUBLE_EQ(twice.at({1, 0.2, 0.1}), 2 * h.at({1, 0.2, 0.1}));
+  EXPECT_DOUBLE_EQ(scaled(SizeField::uniform(3), 2).at({}), 6);
+}
+
+TEST(KeptSurface, SizesAreThoseOfItsTriangles) {
+  const SurfaceMesh sphere = icosphere(4);
+  StageReport report;
+  const SizeField h = size_field_of_surface(sphere, {}, RunContext{}, report);
+  const Triangle t = sphere.triangles[7];
+  EXPECT_NEAR(h.at(sphere.points[t[0]]), distance(sphere.points[t[0]], sphere.points[t[1]]), 0.15 * h.min_size());
+}
+
+TEST(SizeOptions, ContradictionsAreRefused) {
+  const auto refused = [](auto&& change) {
+    SizeOptions o;
+    change(o);
+    EXPECT_THROW(make(cube(), o), OptionError);
+  };
+  refused([](SizeOptions& o) { o.size = 0; });
+  refused([](SizeOptions& o) { o.size = -1; });
+  refused([](SizeOptions& o) { o.size = std::nan(""); });
+  refused([](SizeOptions& o) { o.size = 1, o.elements = 5; });
+  refused([](SizeOptions& o) { o.elements = 0; });
+  refused([](SizeOptions& o) { o.min_size = 2, o.max_size = 1; });
+  refused([](SizeOptions& o) { o.size = 1, o.min_size = 2; });
+  refused([](SizeOptions& o) { o.gradation = 0; });
+  refused([](SizeOptions& o) { o.gradation = 1.5; });
+  refused([](SizeOptions& o) { o.curvature = 2; });
+  refused([](SizeOptions& o) { o.size = 1e-5; });
+  refused([](SizeOptions& o) { o.callback = [](Vec3) { return -1.0; }; });
+}
+
+}  // namespace
+}  // namespace octafront
