@@ -17,6 +17,8 @@ struct SizeOptions {
   std::optional<std::int64_t> elements;   ///< target number of tetrahedra, > 0; the sizes are scaled to meet it
   std::optional<double> curvature;        ///< elements per full turn of a curved surface, >= 3
   std::optional<double> gap;              ///< elements across thin walls and narrow gaps, > 0
+  std::optional<double> feature_elements; ///< elements along each feature curve at least (closed curves: twice that), > 0
+  bool facets = false;                    ///< the paper's rule: grid leaves follow the areas of the input's facets
   std::optional<double> min_size;         ///< no size falls below this, input units
   std::optional<double> max_size;         ///< no size rises above this, input units
   double gradation = 0.2;                 ///< |h(x) - h(y)| <= gradation |x - y|; in [0.01, 1]
