@@ -1,0 +1,167 @@
+#include "surface/remesh.h"
+
+#include "geometry/triangle_tree.h"
+#include "sizing/make_size_field.h"
+#include "surface/coarsen.h"
+#include "surface/insertion.h"
+#include "surface/surface_crossings.h"
+#include "surface/surface_improve.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace octafront {
+
+namespace {
+
+using namespace remeshing;
+
+/// Rounds of capping the sizes around what crosses.
+constexpr int kMostRounds = 8;
+/// Sizes around crossing triangles become this part of what they were.
+constexpr double kCap = 0.6;
+/// ... and grow from there at this rate.
+constexpr double kCapGradation = 0.2;
+
+struct Counts {
+  std::uint64_t placed = 0, tried = 0;
+  InsertionCounts insertion;
+  CoarsenCounts coarsen;
+  ImproveCounts improve;
+  std::uint64_t crossings = 0;
+  int rounds = 0;
+};
+
+/// The parts of the working mesh that are alive, numbered anew in their order.
+struct Compacted {
+  Remeshed result;
+  std::vector<std::uint32_t> vertex_face;  ///< per vertex: an input face that it lies in
+  std::vector<std::uint8_t> is_inner;      ///< per vertex: not on a feature
+};
+
+Compacted compacted(const WorkingMesh& mesh, const SurfaceMesh& input, const SizeField& sizes) {
+  Compacted c{{{}, {}, {}, sizes}, {}, {}};
+  SurfaceMesh& s = c.result.surface;
+  std::vector<VertexIndex> old_to_new(mesh.points.size(), kNone);
+  for (VertexIndex v = 0; v < mesh.points.size(); ++v) {
+    if (mesh.outgoing[v] == kNone) continue;
+    old_to_new[v] = static_cast<VertexIndex>(s.points.size());
+    s.points.push_back(mesh.points[v]);
+    c.vertex_face.push_back(mesh.face[v]);
+    c.is_inner.push_back(mesh.is_free(v));
+    if (mesh.kind[v] == VertexKind::kCorner) c.result.features.corners.push_back(old_to_new[v]);
+  }
+  s.patch_names = input.patch_names;
+  for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t) {
+    if (mesh.is_removed(t)) continue;
+    Triangle triangle;
+    for (std::uint32_t i = 0; i < 3; ++i) {
+      const HalfedgeIndex h = 3 * t + i;
+      triangle[i] = old_to_new[mesh.start[h]];
+      if (mesh.is_feature[h] && h < mesh.twin[h]) {
+        const VertexIndex a = triangle[i], b = old_to_new[mesh.end(h)];
+        c.result.features.edges.push_back({std::min(a, b), std::max(a, b)});
+      }
+    }
+    s.triangles.push_back(triangle);
+    if (!input.patch.empty()) s.patch.push_back(mesh.patch[t]);
+  }
+  std::sort(c.result.features.edges.begin(), c.result.features.edges.end());
+  return c;
+}
+
+/// How much of the input's triangulation an attempt may change.
+enum class Method { kFull, kInsertOnly };
+
+Compacted attempt(Method method, const SurfaceMesh& surface, const Features& features, const SizeField& sizes,
+                  const RunContext& context, Counts& counts) {
+  InputSurface input = make_input_surface(surface, {});
+  set_features(input, features_at_scale(input, features, sizes));
+  std::vector<Curve> curves = chain_curves(input, features.corners, sizes);
+  divide_curves(input, sizes, curves);
+  const FrontPoints front = place_points(input, curves, sizes, context);
+  counts.placed = front.points.size();
+  counts.tried = front.candidates;
+  counts.insertion = {};
+  counts.coarsen = {};
+  counts.improve = {};
+  WorkingMesh mesh = insert_points(input, curves, front, context, counts.insertion);
+  if (method == Method::kFull) {
+    remove_input_vertices(mesh, context, counts.coarsen);
+    improve_surface(mesh, input, sizes, context, counts.improve);
+  } else {
+    counts.coarsen.input_vertices_left = surface.points.size();
+  }
+  return compacted(mesh, surface, sizes);
+}
+
+std::vector<Vec3> centers_of(const SurfaceMesh& surface, const std::vector<std::array<std::uint32_t, 2>>& pairs) {
+  std::vector<std::uint32_t> triangles;
+  for (const auto& [s, t] : pairs) triangles.insert(triangles.end(), {s, t});
+  std::sort(triangles.begin(), triangles.end());
+  triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
+  std::vector<Vec3> centers;
+  for (const std::uint32_t t : triangles) {
+    const auto [a, b, c] = surface.triangles[t];
+    centers.push_back((surface.points[a] + surface.points[b] + surface.points[c]) / 3);
+  }
+  return centers;
+}
+
+/// The last resort on a clean surface: its own triangles.
+Remeshed input_as_it_is(const SurfaceMesh& surface, const Features& features, const SizeField& sizes) {
+  Remeshed kept{surface, features, {}, sizes};
+  kept.source.resize(surface.triangles.size());
+  std::iota(kept.source.begin(), kept.source.end(), 0u);
+  return kept;
+}
+
+/// Per triangle the input triangle nearest to its centroid.
+void find_sources(const SurfaceMesh& input, Remeshed& result) {
+  const TriangleTree tree(input);
+  const SurfaceMesh& s = result.surface;
+  result.source.reserve(s.triangles.size());
+  for (const auto& [a, b, c] : s.triangles) {
+    result.source.push_back(tree.nearest((s.points[a] + s.points[b] + s.points[c]) / 3).triangle);
+  }
+}
+
+void report_counts(const Counts& counts, StageReport& report) {
+  report.count("points placed", static_cast<double>(counts.placed));
+  report.count("places tried", static_cast<double>(counts.tried));
+  report.count("points inserted", static_cast<double>(counts.insertion.inserted));
+  report.count("points skipped", static_cast<double>(counts.insertion.skipped));
+  report.count("collapses", static_cast<double>(counts.coarsen.collapses));
+  report.count("flips", static_cast<double>(counts.coarsen.flips + counts.improve.flips));
+  report.count("smoothing moves", static_cast<double>(counts.improve.moves));
+  report.count("input vertices left", static_cast<double>(counts.coarsen.input_vertices_left));
+  report.count("crossing pairs mended", static_cast<double>(counts.crossings));
+  report.count("rounds", counts.rounds);
+}
+
+}  // namespace
+
+Remeshed remesh_surface(const SurfaceMesh& surface, const Features& features, const SizeField& sizes,
+                        const SurfaceOptions&, const RunContext& context, StageReport& report) {
+  Counts counts;
+  SizeField capped = sizes;
+  for (counts.rounds = 1; counts.rounds <= kMostRounds + 1; ++counts.rounds) {
+    const bool is_last = counts.rounds > kMostRounds;
+    const Method method = is_last ? Method::kInsertOnly : Method::kFull;
+    Compacted c = attempt(method, surface, features, capped, context, counts);
+    const auto crossings = find_crossings(c.result.surface);
+    if (crossings.empty()) {
+      find_sources(surface, c.result);
+      report_counts(counts, report);
+      if (is_last) report.notes.push_back("the surface's own vertices were kept: coarser triangles would cross");
+      return std::move(c.result);
+    }
+    counts.crossings += crossings.size();
+    capped = capped_near(capped, centers_of(c.result.surface, crossings), kCap, kCapGradation);
+  }
+  report_counts(counts, report);
+  report.notes.push_back("the surface was kept as it is: every other triangulation tried crosses itself");
+  return input_as_it_is(surface, features, capped);
+}
+
+}  // namespace octafront

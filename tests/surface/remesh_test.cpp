@@ -1,0 +1,230 @@
+#include "surface/remesh.h"
+
+#include <octafront/error.h>
+#include <octafront/quality.h>
+
+#include "support/named_surfaces.h"
+#include "surface/halfedge_mesh.h"
+#include "surface/surface_crossings.h"
+
+#include <map>
+#include <numbers>
+#include <set>
+
+#include <gtest/gtest.h>
+
+namespace octafront {
+namespace {
+
+using namespace octafront::testing;
+
+struct NamedSurface {
+  std::string name;
+  SurfaceMesh surface;
+  double h;
+};
+
+/// A closed cylinder of n side needles and two fans, as CAD programs write it.
+SurfaceMesh needle_cylinder(int n, double radius, double height) {
+  SurfaceMesh s;
+  for (int i = 0; i < n; ++i) {
+    const double a = 2 * std::numbers::pi * i / n;
+    s.points.push_back({radius * std::cos(a), radius * std::sin(a), 0});
+    s.points.push_back({radius * std::cos(a), radius * std::sin(a), height});
+  }
+  const auto at = [&](int i, int top) { return static_cast<VertexIndex>(2 * (i % n) + top); };
+  for (int i = 0; i < n; ++i) {
+    s.triangles.push_back({at(i, 0), at(i + 1, 0), at(i + 1, 1)});
+    s.triangles.push_back({at(i, 0), at(i + 1, 1), at(i, 1)});
+  }
+  for (int i = 1; i + 1 < n; ++i) {
+    s.triangles.push_back({at(0, 0), at(i + 1, 0), at(i, 0)});
+    s.triangles.push_back({at(0, 1), at(i, 1), at(i + 1, 1)});
+  }
+  return s;
+}
+
+SurfaceMesh box(double x, double y, double z) {
+  SurfaceMesh s = cube(1);
+  for (Vec3& p : s.points) p = {p.x * x, p.y * y, p.z * z};
+  return s;
+}
+
+Remeshed remesh(const SurfaceMesh& surface, double h) {
+  StageReport report;
+  return remesh_surface(surface, detect_features(surface, 40), SizeField::uniform(h), {}, {}, report);
+}
+
+/// Two spheres, one inside the other, closer than the elements are long.
+SurfaceMesh close_sheets() {
+  return joined(icosphere(4, 1), reversed(icosphere(4, 0.93)));
+}
+
+std::vector<NamedSurface> samples() {
+  return {{"fine sphere", icosphere(4), 0.25},
+          {"coarse sphere", icosphere(1), 0.15},
+          {"torus", torus(60, 24), 0.12},
+          {"cube of twelve triangles", cube(1), 0.1},
+          {"cube of many", cube(12), 0.3},
+          {"cube smaller than its size", cube(3), 3},
+          {"cylinder of needles", needle_cylinder(180, 1, 5), 0.2},
+          {"cylinder, finer than its needles", needle_cylinder(12, 1, 2), 0.08},
+          {"thin plate", box(1, 1, 0.01), 0.1},
+          {"nested shells", hollow_sphere(3), 0.2},
+          {"close sheets", close_sheets(), 0.2},
+          {"two bodies", joined(cube(2), transformed(icosphere(3), 0.5, {3, 0, 0})), 0.15},
+          {"tetrahedron", unit_tetrahedron(), 0.1}};
+}
+
+/// V - E + F, after checking that every edge has two sides and every vertex one fan.
+long euler_characteristic(const SurfaceMesh& s) {
+  std::map<Edge, int> halfedges;
+  for (const Triangle& t : s.triangles) {
+    for (int i = 0; i < 3; ++i) ++halfedges[{t[i], t[(i + 1) % 3]}];
+  }
+  for (const auto& [e, n] : halfedges) {
+    EXPECT_EQ(n, 1) << "edge " << e[0] << " " << e[1];
+    EXPECT_TRUE(halfedges.contains({e[1], e[0]})) << "edge " << e[0] << " " << e[1];
+  }
+  const remeshing::HalfedgeMesh mesh = remeshing::make_halfedge_mesh(s);
+  std::vector<int> triangles_at(s.points.size(), 0);
+  for (const Triangle& t : s.triangles) {
+    for (const VertexIndex v : t) ++triangles_at[v];
+  }
+  for (VertexIndex v = 0; v < s.points.size(); ++v) {
+    int fan = 0;
+    mesh.for_each_outgoing(v, [&](std::uint32_t) { ++fan; });
+    EXPECT_EQ(fan, triangles_at[v]) << "vertex " << v;
+  }
+  return static_cast<long>(s.points.size()) - static_cast<long>(halfedges.size() / 2) +
+         static_cast<long>(s.triangles.size());
+}
+
+std::uint32_t component_count(const SurfaceMesh& s) {
+  std::uint32_t n = 0;
+  remeshing::component_of_triangle(remeshing::make_halfedge_mesh(s), n);
+  return n;
+}
+
+TEST(Remesh, KeepsTopologyAndNeverCrossesItself) {
+  for (const NamedSurface& sample : samples()) {
+    SCOPED_TRACE(sample.name);
+    const Remeshed r = remesh(sample.surface, sample.h);
+    EXPECT_EQ(euler_characteristic(r.surface), euler_characteristic(sample.surface));
+    EXPECT_EQ(component_count(r.surface), component_count(sample.surface));
+    EXPECT_TRUE(remeshing::find_crossings(r.surface).empty());
+    EXPECT_GT(enclosed_volume(r.surface), 0);
+    EXPECT_EQ(r.source.size(), r.surface.triangles.size());
+  }
+}
+
+TEST(Remesh, MakesEdgesOfTheWantedLengthAndGoodTriangles) {
+  for (const NamedSurface& sample : {NamedSurface{"sphere", icosphere(4), 0.12},
+                                     {"coarse sphere", icosphere(1), 0.08},
+                                     {"torus", torus(90, 40), 0.1},
+                                     {"cube", cube(1), 0.05},
+                                     {"cylinder of needles", needle_cylinder(180, 1, 5), 0.12}}) {
+    SCOPED_TRACE(sample.name);
+    const SurfaceMesh s = remesh(sample.surface, sample.h).surface;
+    double quality = 0, length = 0, within = 0;
+    for (const auto& [a, b, c] : s.triangles) {
+      quality += radius_ratio(s.points[a], s.points[b], s.points[c]);
+      for (const double l : {distance(s.points[a], s.points[b]), distance(s.points[b], s.points[c]),
+                             distance(s.points[c], s.points[a])}) {
+        length += l / sample.h;
+        within += l >= 0.7 * sample.h && l <= 1.4 * sample.h;
+      }
+    }
+    const auto triangles = static_cast<double>(s.triangles.size());
+    EXPECT_GT(quality / triangles, 0.97);
+    EXPECT_NEAR(length / triangles / 3, 1, 0.05);
+    EXPECT_GT(within / triangles / 3, 0.98);
+  }
+}
+
+TEST(Remesh, CubeStaysACube) {
+  const SurfaceMesh input = cube(1);
+  const Remeshed r = remesh(input, 0.13);
+  EXPECT_NEAR(enclosed_volume(r.surface), 1, 1e-12);
+  EXPECT_EQ(r.features.corners.size(), 8u);
+  for (const auto& [a, b] : r.features.edges) {
+    for (const VertexIndex v : {a, b}) {
+      const Vec3 p = r.surface.points[v];
+      int on = 0;
+      for (int axis = 0; axis < 3; ++axis) on += std::min(std::abs(p[axis]), std::abs(p[axis] - 1)) < 1e-12;
+      EXPECT_GE(on, 2);
+    }
+  }
+  double feature_length = 0;
+  for (const auto& [a, b] : r.features.edges) feature_length += distance(r.surface.points[a], r.surface.points[b]);
+  EXPECT_NEAR(feature_length, 12, 1e-9);
+  std::map<std::uint32_t, double> patch_area;
+  for (std::size_t t = 0; t < r.surface.triangles.size(); ++t) {
+    const auto [a, b, c] = r.surface.triangles[t];
+    const Vec3 p = r.surface.points[a];
+    patch_area[r.surface.patch_of(t)] += 0.5 * length(cross(r.surface.points[b] - p, r.surface.points[c] - p));
+    EXPECT_EQ(input.patch_of(r.source[t]), r.surface.patch_of(t));
+  }
+  EXPECT_EQ(patch_area.size(), 6u);
+  for (const auto& [patch, a] : patch_area) EXPECT_NEAR(a, 1, 1e-12) << "patch " << patch;
+}
+
+TEST(Remesh, KeepsPatchBordersInsideFlatSides) {
+  SurfaceMesh input = cube(8);
+  for (std::size_t t = 0; t < input.triangles.size(); ++t) {
+    const auto [a, b, c] = input.triangles[t];
+    input.patch[t] = (input.points[a].x + input.points[b].x + input.points[c].x) / 3 < 0.5 ? 0 : 1;
+  }
+  const Remeshed r = remesh(input, 0.07);
+  double left = 0;
+  for (std::size_t t = 0; t < r.surface.triangles.size(); ++t) {
+    const auto [a, b, c] = r.surface.triangles[t];
+    const Vec3 p = r.surface.points[a];
+    if (r.surface.patch_of(t) == 0) left += 0.5 * length(cross(r.surface.points[b] - p, r.surface.points[c] - p));
+  }
+  EXPECT_NEAR(left, 3, 1e-9);
+}
+
+TEST(Remesh, IsDeterministic) {
+  const SurfaceMesh input = torus(40, 20);
+  EXPECT_EQ(remesh(input, 0.1).surface, remesh(input, 0.1).surface);
+}
+
+TEST(Remesh, ScaleByAPowerOfTwoChangesNothing) {
+  const SurfaceMesh input = needle_cylinder(40, 1, 3);
+  const SurfaceMesh small = remesh(input, 0.2).surface;
+  const SurfaceMesh large = remesh(transformed(input, 1024, {}), 0.2 * 1024).surface;
+  EXPECT_EQ(transformed(small, 1024, {}), large);
+}
+
+TEST(Remesh, FarFromTheOriginThingsAreAlike) {
+  const SurfaceMesh input = icosphere(3);
+  const SurfaceMesh here = remesh(input, 0.1).surface;
+  const SurfaceMesh there = remesh(transformed(input, 1, {1000, -2000, 500}), 0.1).surface;
+  EXPECT_NEAR(static_cast<double>(there.triangles.size()) / static_cast<double>(here.triangles.size()), 1, 0.03);
+  EXPECT_NEAR(enclosed_volume(there), enclosed_volume(here), 0.01 * enclosed_volume(here));
+}
+
+TEST(Remesh, FollowsAGradedField) {
+  const SurfaceMesh input = icosphere(5);
+  const auto h = [](Vec3 p) { return 0.05 + 0.1 * (p.z + 1); };
+  StageReport report;
+  const SizeField sizes = SizeField::from_function(h, 0.05, 0.25);
+  const SurfaceMesh s = remesh_surface(input, {}, sizes, {}, {}, report).surface;
+  double sum = 0;
+  for (const auto& [a, b, c] : s.triangles) {
+    sum += distance(s.points[a], s.points[b]) / h((s.points[a] + s.points[b]) * 0.5);
+  }
+  EXPECT_NEAR(sum / static_cast<double>(s.triangles.size()), 1, 0.06);
+}
+
+TEST(Remesh, StopsWhenAsked) {
+  const std::atomic<bool> stop{true};
+  RunContext context;
+  context.cancel = &stop;
+  StageReport report;
+  EXPECT_THROW(remesh_surface(icosphere(3), {}, SizeField::uniform(0.1), {}, context, report), Cancelled);
+}
+
+}  // namespace
+}  // namespace octafront
