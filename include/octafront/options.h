@@ -38,8 +38,8 @@ struct SurfaceOptions {
 /// How the volume is filled.
 struct VolumeOptions {
   /// Distance of the ideal point from the face, as a multiple of the size there (the paper says 1; a regular
-  /// tetrahedron wants sqrt(2/3)).
-  double ideal_distance = 0.81649658092772603;
+  /// tetrahedron wants 0.816; a little less leaves better elements, see docs/volume-front.md). In [0.3, 1.5].
+  double ideal_distance = 0.75;
   enum class Ranking { kQuality, kSolidAngle };
   Ranking ranking = Ranking::kQuality;  ///< order of the candidates: by beta of the new tetrahedron, or as in the paper
 };

@@ -40,6 +40,26 @@ double squared_segment_distance(Vec3 p, Vec3 u, Vec3 q, Vec3 v) {
 Attempt::Attempt(Front& front, const SizeField& sizes, const VolumeOptions& options, FrontCounters& counters)
     : front_(front), sizes_(sizes), options_(options), counters_(counters) {}
 
+/// Every tetrahedron that may be made lies in the hull of the base face and the sphere of candidates.
+SearchRegion Attempt::region_to_search(double radius) const {
+  SearchRegion region;
+  const Vec3 centroid = (at_[0] + at_[1] + at_[2]) / 3;
+  region.box = {ideal_at_ - Vec3{radius, radius, radius}, ideal_at_ + Vec3{radius, radius, radius}};
+  double base_radius = 0;
+  for (const Vec3 p : at_) {
+    region.box.add(p);
+    base_radius = std::max(base_radius, distance(centroid, p));
+  }
+  // A sphere about a point of the axis: the height at which the base and the candidates' sphere need the same radius.
+  const double height = distance(centroid, ideal_at_), top = height + radius;
+  const double up = std::clamp((top * top - base_radius * base_radius) / (2 * top), 0.0, height);
+  region.center = centroid + normal_ * up;
+  region.radius = std::max(std::hypot(base_radius, up), top - up);
+  region.normal = normal_;
+  region.offset = dot(normal_, centroid);
+  return region;
+}
+
 void Attempt::place(FaceIndex face, const Limits& limits) {
   base_ = front_.corners(face);
   double size = 0, longest = 0;
@@ -53,9 +73,7 @@ void Attempt::place(FaceIndex face, const Limits& limits) {
   ideal_distance_ = options_.ideal_distance * limits.ideal_factor;
   ideal_at_ = (at_[0] + at_[1] + at_[2]) / 3 + normal_ * (ideal_distance_ * size);
   const double r = limits.search_radius * size;
-  Box3 box{ideal_at_ - Vec3{r, r, r}, ideal_at_ + Vec3{r, r, r}};
-  for (const Vec3 p : at_) box.add(p);
-  near_.gather(front_, face, box, size);
+  near_.gather(front_, face, region_to_search(r), size);
   for (int i = 0; i < 3; ++i) local_[i] = near_.to_local(at_[i]);
   ideal_ = normal_ * ideal_distance_;
 }
@@ -130,8 +148,11 @@ bool Attempt::is_valid(Index apex, Vec3 apex_at, VertexIndex apex_id) {
 }
 
 bool Attempt::keeps_clear(Index apex, Vec3 apex_local, const Contact& contact, const Limits& limits) const {
+  if (contact.edge[0] && contact.edge[1] && contact.edge[2]) return true;
   const double least = limits.edge_clearance * limits.edge_clearance;
   for (const auto& f : near_.faces()) {
+    const auto& c = f.corner;
+    if (near_.code(c[0]) & near_.code(c[1]) & near_.code(c[2]) & Neighborhood::kClear) continue;
     for (int j = 0; j < 3; ++j) {
       const Index p = f.corner[j], q = f.corner[(j + 1) % 3];
       // Each edge has two faces that run through it in opposite directions: once is enough.

@@ -42,6 +42,7 @@ class Attempt {
     int closed = 0;
   };
 
+  SearchRegion region_to_search(double radius) const;
   void place(FaceIndex face, const Limits& limits);
   void collect_candidates(const Limits& limits);
   bool try_candidate(const Candidate& candidate, const Limits& limits);

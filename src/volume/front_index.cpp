@@ -3,6 +3,10 @@
 #include <bit>
 #include <cmath>
 
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
+
 namespace octafront {
 
 namespace {
@@ -27,6 +31,60 @@ std::uint64_t scrambled(std::uint64_t key) {
 }
 
 }  // namespace
+
+/// A search region in single precision, relative to a brick.
+struct LocalRegion {
+  LocalRegion(const SearchRegion& region, Vec3 origin) {
+    const Vec3 l = region.box.lo - origin, h = region.box.hi - origin, c = region.center - origin;
+    // The sphere and the plane are computed with, so they get room for the rounding; the box is only compared.
+    const double extent = std::max(
+        {std::abs(l.x), std::abs(l.y), std::abs(l.z), std::abs(h.x), std::abs(h.y), std::abs(h.z), region.radius});
+    const double slack = kSlackPerExtent * extent;
+    for (int axis = 0; axis < 3; ++axis) {
+      lo[axis] = static_cast<float>(l[axis]);
+      hi[axis] = static_cast<float>(h[axis]);
+      center[axis] = static_cast<float>(c[axis]);
+      normal[axis] = static_cast<float>(region.normal[axis]);
+    }
+    const double r = region.radius + slack;
+    squared_radius = static_cast<float>(r * r);
+    behind = static_cast<float>(region.offset - dot(region.normal, origin) - slack);
+  }
+  static constexpr double kSlackPerExtent = 4e-6;
+  float lo[3], hi[3], center[3], normal[3], squared_radius, behind;
+};
+
+/// Four faces at a time, in what the compiler maps to the vector unit of any x86-64 or arm64.
+using Float4 = float __attribute__((vector_size(16)));
+using Int4 = int __attribute__((vector_size(16)));
+
+static unsigned bits_of(Int4 mask) {
+#ifdef __SSE2__
+  return static_cast<unsigned>(_mm_movemask_ps(reinterpret_cast<__m128>(mask)));
+#else
+  return (mask[0] & 1u) | (mask[1] & 2u) | (mask[2] & 4u) | (mask[3] & 8u);
+#endif
+}
+
+unsigned FrontIndex::reach_into(const Block& block, const LocalRegion& region) {
+  const auto maximum = [](Float4 a, Float4 b) { return a > b ? a : b; };
+  unsigned hits = 0;
+  for (int s = 0; s < kWidth; s += 4) {
+    Int4 overlap = Int4{} - 1;
+    Float4 squared{}, height{};
+    for (int axis = 0; axis < 3; ++axis) {
+      const Float4 lo = *reinterpret_cast<const Float4*>(&block.lo[axis][s]);
+      const Float4 hi = *reinterpret_cast<const Float4*>(&block.hi[axis][s]);
+      overlap &= (lo <= region.hi[axis]) & (hi >= region.lo[axis]);
+      const Float4 off = maximum(maximum(lo - region.center[axis], region.center[axis] - hi), Float4{});
+      squared += off * off;
+      height += region.normal[axis] * (region.normal[axis] > 0 ? hi : lo);
+    }
+    overlap &= (squared <= region.squared_radius) & (height >= region.behind);
+    hits |= bits_of(overlap) << s;
+  }
+  return hits;
+}
 
 FrontIndex::FrontIndex(const Box3& domain, double finest_cell) : free_block_(kNone) {
   const Vec3 e = domain.extent();
@@ -161,12 +219,13 @@ void FrontIndex::remove(FaceIndex face) {
   --faces_at_level_[brick.level];
 }
 
-void FrontIndex::find(const Box3& box, std::vector<Found>& out) const {
+void FrontIndex::find(const SearchRegion& region, std::vector<Found>& out) const {
   for (int level = 0; level < kLevels; ++level)
-    if (faces_at_level_[level] != 0) find_in_level(level, box, out);
+    if (faces_at_level_[level] != 0) find_in_level(level, region, out);
 }
 
-void FrontIndex::find_in_level(int level, const Box3& box, std::vector<Found>& out) const {
+void FrontIndex::find_in_level(int level, const SearchRegion& region, std::vector<Found>& out) const {
+  const Box3& box = region.box;
   const double reach = 0.5 * kExtentShare * cell_[level] * 1.0001;
   const int limit = std::max(1, (1 << kCellBits) >> level) - 1;
   Cell lo, hi;
@@ -198,26 +257,22 @@ void FrontIndex::find_in_level(int level, const Box3& box, std::vector<Found>& o
         const std::uint32_t b = brick_at(level, {x, y, z});
         if (b == kNone) continue;
         const std::uint64_t cells = bricks_[b].occupied & in_yz & range_x(first(0, x), last(0, x));
-        if (cells != 0) find_in_brick(bricks_[b], cells, box, out);
+        if (cells != 0) find_in_brick(bricks_[b], cells, region, out);
       }
     }
   }
 }
 
-void FrontIndex::find_in_brick(const Brick& brick, std::uint64_t cells, const Box3& box,
+void FrontIndex::find_in_brick(const Brick& brick, std::uint64_t cells, const SearchRegion& region,
                                std::vector<Found>& out) const {
-  const Vec3 l = box.lo - brick.origin, h = box.hi - brick.origin;
-  const float lo[3] = {static_cast<float>(l.x), static_cast<float>(l.y), static_cast<float>(l.z)};
-  const float hi[3] = {static_cast<float>(h.x), static_cast<float>(h.y), static_cast<float>(h.z)};
+  const LocalRegion local(region, brick.origin);
   for (; cells != 0; cells &= cells - 1) {
     for (std::uint32_t id = brick.head[std::countr_zero(cells)]; id != kNone; id = blocks_[id].next) {
       const Block& block = blocks_[id];
-      std::uint8_t overlap[kWidth];
-      for (int s = 0; s < kWidth; ++s)
-        overlap[s] = (block.lo[0][s] <= hi[0]) & (block.hi[0][s] >= lo[0]) & (block.lo[1][s] <= hi[1]) &
-                     (block.hi[1][s] >= lo[1]) & (block.lo[2][s] <= hi[2]) & (block.hi[2][s] >= lo[2]);
-      for (int s = 0; s < static_cast<int>(block.count); ++s)
-        if (overlap[s]) out.push_back({block.face[s], {block.corner[0][s], block.corner[1][s], block.corner[2][s]}});
+      for (unsigned hits = reach_into(block, local); hits != 0; hits &= hits - 1) {
+        const int s = std::countr_zero(hits);
+        out.push_back({block.face[s], {block.corner[0][s], block.corner[1][s], block.corner[2][s]}});
+      }
     }
   }
 }

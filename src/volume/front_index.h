@@ -11,7 +11,18 @@ namespace octafront {
 
 using FaceIndex = std::uint32_t;
 
-/// Where the active front is: finds the faces whose boxes overlap a box.
+/// What may touch a new tetrahedron: faces whose boxes overlap `box`, come nearer to `center` than `radius`, and are
+/// not entirely behind the plane normal . x = offset. Each of the three is a bound of its own; all are culled
+/// conservatively.
+struct SearchRegion {
+  Box3 box;
+  Vec3 center;
+  double radius = 0;
+  Vec3 normal;  ///< unit length
+  double offset = 0;
+};
+
+/// Where the active front is: finds the faces whose boxes reach into a region.
 ///
 /// A face lives in one cell of one level of a hierarchy of grids: the level whose cells are just large enough for it
 /// (cell >= 1.43 times its largest extent), the cell that holds the middle of its box. Sizes that differ by any factor
@@ -33,13 +44,13 @@ class FrontIndex {
   /// Requires that `face` is not in the index.
   void insert(FaceIndex face, const Triangle& corners, const Box3& box);
   void remove(FaceIndex face);
-  /// Appends the faces whose boxes overlap `box` (conservatively) to `out`.
-  void find(const Box3& box, std::vector<Found>& out) const;
+  /// Appends the faces that reach into the region to `out`; some that just miss it may be among them.
+  void find(const SearchRegion& region, std::vector<Found>& out) const;
 
  private:
   static constexpr int kWidth = 16;  // faces in a block
   static constexpr int kLevels = 22;
-  struct Block {
+  struct alignas(16) Block {
     float lo[3][kWidth], hi[3][kWidth];
     std::uint32_t corner[3][kWidth];
     FaceIndex face[kWidth];
@@ -57,8 +68,10 @@ class FrontIndex {
   std::uint32_t make_brick(int level, const Cell& brick);
   std::uint32_t new_block(std::uint32_t cell, std::uint32_t next);
   void grow_table();
-  void find_in_level(int level, const Box3& box, std::vector<Found>& out) const;
-  void find_in_brick(const Brick& brick, std::uint64_t cells, const Box3& box, std::vector<Found>& out) const;
+  static unsigned reach_into(const Block& block, const struct LocalRegion& region);
+  void find_in_level(int level, const SearchRegion& region, std::vector<Found>& out) const;
+  void find_in_brick(const Brick& brick, std::uint64_t cells, const SearchRegion& region,
+                     std::vector<Found>& out) const;
 
   Vec3 origin_;
   std::array<double, kLevels> cell_{}, per_cell_{};

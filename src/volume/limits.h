@@ -19,7 +19,7 @@ struct Limits {
 
 /// One for each attempt: a face that finds no tetrahedron waits until everything else is done, then tries the next.
 inline constexpr std::array<Limits, 5> kLimits{{
-    {0.8, 1.0, 1.4, 0.15, 0.25, 0.2},
+    {0.65, 1.0, 1.5, 0.3, 0.25, 0.2},
     {1.0, 0.8, 1.55, 0.1, 0.15, 0.1},
     {1.3, 0.6, 2.0, 0.05, 0.05, 0.03},
     {2.0, 0.5, std::numeric_limits<double>::infinity(), 0.02, 0.02, 0},

@@ -38,7 +38,7 @@ Neighborhood::Index Neighborhood::local_index(const Front& front, VertexIndex v)
   return vertex.local;
 }
 
-void Neighborhood::gather(const Front& front, FaceIndex base, const Box3& box, double unit) {
+void Neighborhood::gather(const Front& front, FaceIndex base, const SearchRegion& region, double unit) {
   const Triangle& corners = front.corners(base);
   origin_ = (front.at(corners[0]) + front.at(corners[1]) + front.at(corners[2])) / 3;
   unit_ = unit;
@@ -49,7 +49,7 @@ void Neighborhood::gather(const Front& front, FaceIndex base, const Box3& box, d
   y_.clear();
   z_.clear();
   faces_.clear();
-  front.index().find(box, found_);
+  front.index().find(region, found_);
   faces_found += found_.size();
   for (const VertexIndex v : corners) local_index(front, v);
   for (const auto& f : found_) {

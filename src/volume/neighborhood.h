@@ -29,8 +29,8 @@ class Neighborhood {
   static constexpr Code kOutside = 15, kClear = 240;
 
   /// Collects around `base`; faces that lie strictly behind its plane are left out, since no tetrahedron on it can
-  /// reach them. `box` is to be searched; `unit` the wanted size. The corners of the base become vertices 0, 1, 2.
-  void gather(const Front& front, FaceIndex base, const Box3& box, double unit);
+  /// reach them. `unit` is the wanted size. The corners of the base become vertices 0, 1, 2.
+  void gather(const Front& front, FaceIndex base, const SearchRegion& region, double unit);
 
   /// Codes of all vertices against three planes.
   void classify(const std::array<Plane, 3>& planes, float margin);
