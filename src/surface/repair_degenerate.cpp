@@ -91,7 +91,8 @@ class FlatFaces {
     const auto [p, r, q] = along_line(f);
     unlink(f);
     dropped_[f] = 1;
-    const std::vector<std::uint32_t> neighbours = faces_at_[key(p, q)];
+    std::vector<std::uint32_t> neighbours;
+    neighbours.swap(faces_at_[key(p, q)]);
     for (const std::uint32_t g : neighbours) {
       unlink(g);
       Triangle& half = mesh_.triangles[g];

@@ -45,20 +45,19 @@ void add_exact_determinant(ExactSum& sum, Vec3 a, Vec3 b, Vec3 c) {
 /// A piece is closed if along each edge its own triangles run back as often as forth.
 std::vector<char> closed_pieces(const std::vector<Triangle>& triangles, const EdgeTable& table, const Pieces& pieces) {
   std::vector<char> closed = pieces.orientable;
-  std::vector<std::pair<std::uint32_t, int>> balance;  // piece, runs from the smaller vertex less runs from the larger
+  std::vector<std::pair<std::uint32_t, int>> runs;  // piece, 1 from the smaller vertex to the larger, -1 back
   for (std::size_t e = 0; e < table.size(); ++e) {
-    balance.clear();
-    for (const std::uint32_t h : table.uses(e)) {
-      const std::uint32_t piece = pieces.piece_of_triangle[h / 3];
-      const int run = start_of(triangles, h) == table.edges[e][0] ? 1 : -1;
-      const auto at = std::find_if(balance.begin(), balance.end(), [&](const auto& b) { return b.first == piece; });
-      if (at == balance.end())
-        balance.push_back({piece, run});
-      else
-        at->second += run;
+    runs.clear();
+    for (const std::uint32_t h : table.uses(e))
+      runs.push_back({pieces.piece_of_triangle[h / 3], start_of(triangles, h) == table.edges[e][0] ? 1 : -1});
+    if (runs.size() == 2 && runs[0].first == runs[1].first && runs[0].second != runs[1].second) continue;
+    std::sort(runs.begin(), runs.end());
+    for (std::size_t i = 0; i < runs.size();) {
+      const std::uint32_t piece = runs[i].first;
+      int balance = 0;
+      for (; i < runs.size() && runs[i].first == piece; ++i) balance += runs[i].second;
+      if (balance != 0) closed[piece] = 0;
     }
-    for (const auto& [piece, runs] : balance)
-      if (runs != 0) closed[piece] = 0;
   }
   return closed;
 }
