@@ -2,6 +2,8 @@
 
 #include <octafront/error.h>
 
+#include "improve/spatial_order.h"
+
 #include <algorithm>
 #include <array>
 
@@ -40,14 +42,15 @@ class FaceMatcher {
   std::uint32_t match(const std::array<VertexIndex, 3>& face, std::uint32_t id) {
     Entry* first = entries_.data() + begin_[face[0]];
     Entry* last = entries_.data() + next_[face[0]];
+    const std::uint64_t others = std::uint64_t{face[1]} << 32 | face[2];
     for (Entry* e = first; e != last; ++e)
-      if (e->b == face[1] && e->c == face[2]) {
+      if (e->others == others) {
         const std::uint32_t found = e->id;
         *e = *(last - 1);
         --next_[face[0]];
         return found;
       }
-    *last = {face[1], face[2], id};
+    *last = {others, id};
     ++next_[face[0]];
     return kNone;
   }
@@ -56,7 +59,7 @@ class FaceMatcher {
 
  private:
   struct Entry {
-    VertexIndex b, c;
+    std::uint64_t others;
     std::uint32_t id;
   };
   std::vector<std::uint32_t> begin_, next_;
@@ -96,16 +99,33 @@ class SmallFaceTable {
 }  // namespace
 
 EditMesh::EditMesh(TetMesh&& mesh) {
-  points_ = std::move(mesh.points);
-  tets_ = std::move(mesh.tets);
-  had_regions_ = !mesh.region.empty();
-  region_ = std::move(mesh.region);
-  region_.resize(tets_.size(), 0);
+  if (mesh.tets.size() >= kBoundaryBit / 4) throw MeshingError("improvement holds at most 2^29 tetrahedra");
+  take(mesh);
   rest_ = std::move(mesh);
-  if (tets_.size() >= kBoundaryBit / 4) throw MeshingError("improvement holds at most 2^29 tetrahedra");
   connect();
   compute_shapes();
   tet_mark_.assign(tets_.size(), 0);
+}
+
+void EditMesh::take(TetMesh& mesh) {
+  original_ = spatial_order(mesh.points);
+  std::vector<VertexIndex> new_of_old(mesh.points.size());
+  points_.reserve(mesh.points.size());
+  for (VertexIndex v = 0; v < original_.size(); ++v) {
+    new_of_old[original_[v]] = v;
+    points_.push_back(mesh.points[original_[v]]);
+  }
+  for (Tet& t : mesh.tets)
+    for (VertexIndex& v : t) v = new_of_old[v];
+  for (Triangle& t : mesh.boundary)
+    for (VertexIndex& v : t) v = new_of_old[v];
+  had_regions_ = !mesh.region.empty();
+  tets_.reserve(mesh.tets.size());
+  region_.reserve(mesh.tets.size());
+  for (const TetIndex t : order_by_least_corner(mesh.tets, points_.size())) {
+    tets_.push_back(mesh.tets[t]);
+    region_.push_back(had_regions_ ? mesh.region[t] : 0);
+  }
 }
 
 void EditMesh::connect() {
@@ -157,14 +177,16 @@ void EditMesh::compute_shapes() {
 
 TetMesh EditMesh::release() {
   TetMesh mesh = std::move(rest_);
+  // Vertices go back to where they were; those that improvement added follow.
+  std::vector<VertexIndex> here(points_.size());
+  for (VertexIndex v = 0; v < points_.size(); ++v) here[v < original_.size() ? original_[v] : v] = v;
   std::vector<VertexIndex> new_of_old(points_.size(), kNone);
-  VertexIndex used = 0;
-  for (VertexIndex v = 0; v < points_.size(); ++v)
+  mesh.points.clear();
+  for (const VertexIndex v : here)
     if (tet_of_[v] != kNone) {
-      new_of_old[v] = used;
-      points_[used++] = points_[v];
+      new_of_old[v] = static_cast<VertexIndex>(mesh.points.size());
+      mesh.points.push_back(points_[v]);
     }
-  points_.resize(used);
   std::size_t kept = 0;
   for (TetIndex t = 0; t < tets_.size(); ++t) {
     if (!alive(t)) continue;
@@ -176,7 +198,6 @@ TetMesh EditMesh::release() {
   region_.resize(kept);
   for (Triangle& t : mesh.boundary)
     for (VertexIndex& v : t) v = new_of_old[v];
-  mesh.points = std::move(points_);
   mesh.tets = std::move(tets_);
   if (had_regions_) mesh.region = std::move(region_);
   return mesh;

@@ -1,7 +1,8 @@
 #pragma once
 
 // A tetrahedral mesh that can be changed in place: half-face neighbours, a tetrahedron of each vertex, a free list.
-// Taken from a TetMesh and given back to it; boundary triangles keep their number, patch and source throughout.
+// Taken from a TetMesh and given back to it; boundary triangles keep their number, patch and source throughout. Inside,
+// vertices and tets are numbered along a space-filling curve, for the cache.
 
 #include <octafront/tet_mesh.h>
 
@@ -35,7 +36,8 @@ class EditMesh {
   /// Requires a valid mesh. Throws MeshingError if faces do not match (with their corners).
   explicit EditMesh(TetMesh&& mesh);
 
-  /// The mesh back, compacted: live tets in order of their slots, unused vertices dropped, order kept.
+  /// The mesh back, compacted: vertices in the order they came in, without unused ones, new ones behind; tets in order
+  /// of space.
   TetMesh release();
 
   std::size_t slots() const { return tets_.size(); }
@@ -79,6 +81,7 @@ class EditMesh {
   double beta_sum() const;
 
  private:
+  void take(TetMesh& mesh);
   void connect();
   void compute_shapes();
 
@@ -90,7 +93,8 @@ class EditMesh {
   std::vector<TetIndex> tet_of_;
   std::vector<std::uint8_t> on_boundary_;
   std::vector<TetIndex> free_;
-  TetMesh rest_;  ///< boundary, patches, sources, names: carried through
+  std::vector<VertexIndex> original_;  ///< the number of each vertex in the mesh that was taken
+  TetMesh rest_;                       ///< boundary, patches, sources, names: carried through
   bool had_regions_ = false;
 
   mutable std::vector<std::uint32_t> tet_mark_;

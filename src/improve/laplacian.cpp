@@ -1,5 +1,6 @@
 #include "improve/passes.h"
 #include "improve/star_edit.h"
+#include "improve/star_table.h"
 
 #include <cmath>
 
@@ -11,7 +12,7 @@ class NeighbourMean {
  public:
   explicit NeighbourMean(const EditMesh& mesh) : mesh_(mesh), seen_(mesh.vertices(), kNone) {}
 
-  Vec3 operator()(VertexIndex v, const std::vector<HalfFace>& star) {
+  Vec3 operator()(VertexIndex v, std::span<const HalfFace> star) {
     const Vec3 p = mesh_.point(v);
     Vec3 sum;
     double weights = 0;
@@ -40,30 +41,42 @@ bool allowed(const EditMesh& mesh, const StarEdit& star, MoveRule rule) {
   for (int i = 0; i < batch.size; ++i) {
     const Shape before = mesh.shape(star.faces()[i] / 4), after = batch.shape(i);
     const bool paper = rule == MoveRule::kWorstRises;
-    old_worst = std::min(old_worst, paper ? before.beta : score(before));
-    new_worst = std::min(new_worst, paper ? after.beta : score(after));
+    old_worst = std::min(old_worst, paper ? before.beta : before.score);
+    new_worst = std::min(new_worst, paper ? after.beta : after.score);
     gain += double{after.beta} - double{before.beta};
   }
   if (rule == MoveRule::kWorstRises) return new_worst > old_worst;
   return gain > 0 && (new_worst > old_worst || new_worst > kMeanRisesGuard);
 }
 
-}  // namespace
-
-PassResult laplacian_sweep(EditMesh& mesh, double relaxation, MoveRule rule, const RunContext& context) {
+PassResult laplacian_sweep(EditMesh& mesh, const StarTable& stars, double relaxation, MoveRule rule,
+                           const RunContext& context) {
   PassResult result;
   const Floor floor = mesh.floor();
   StarEdit star(mesh);
   NeighbourMean mean(mesh);
   for (VertexIndex v = 0; v < mesh.vertices(); ++v) {
     if (v % 1024 == 0) context.check();
-    if (mesh.on_boundary(v) || mesh.tet_of(v) == kNone || !star.load(v)) continue;
+    if (mesh.on_boundary(v) || mesh.tet_of(v) == kNone || !star.load(v, stars.of(v))) continue;
     ++result.tried;
     const Vec3 p = mesh.point(v);
     star.evaluate(p + relaxation * (mean(v, star.faces()) - p));
     if (!allowed(mesh, star, rule) || !star.acceptable(floor)) continue;
     star.commit();
     ++result.done;
+  }
+  return result;
+}
+
+}  // namespace
+
+PassResult laplacian_sweeps(EditMesh& mesh, int sweeps, double relaxation, MoveRule rule, const RunContext& context) {
+  PassResult result;
+  const StarTable stars(mesh);
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    const PassResult one = laplacian_sweep(mesh, stars, relaxation, rule, context);
+    result.tried += one.tried;
+    result.done += one.done;
   }
   return result;
 }

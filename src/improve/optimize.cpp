@@ -134,7 +134,7 @@ PassResult optimize_vertices(EditMesh& mesh, float threshold, const RunContext& 
   std::vector<std::uint8_t> seen(mesh.vertices(), 0);
   for (TetIndex t = 0; t < mesh.slots(); ++t) {
     if (t % 4096 == 0) context.check();
-    if (!mesh.alive(t) || score(mesh.shape(t)) >= threshold) continue;
+    if (!mesh.alive(t) || mesh.shape(t).score >= threshold) continue;
     for (const VertexIndex v : mesh.tet(t)) {
       if (mesh.on_boundary(v) || seen[v]) continue;
       seen[v] = 1;

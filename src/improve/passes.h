@@ -25,9 +25,9 @@ enum class MoveRule {
 /// Elements above this score may get worse in exchange for a better mean.
 inline constexpr float kMeanRisesGuard = 0.6f;
 
-/// One sweep over the inner vertices in order of their index: each goes the part `relaxation` of the way to the mean of
+/// Sweeps over the inner vertices in order of their index: each goes the part `relaxation` of the way to the mean of
 /// its neighbours, weighted by the length of the edges to them, if the rule allows.
-PassResult laplacian_sweep(EditMesh& mesh, double relaxation, MoveRule rule, const RunContext& context);
+PassResult laplacian_sweeps(EditMesh& mesh, int sweeps, double relaxation, MoveRule rule, const RunContext& context);
 
 /// Removes edges (up to a ring of kLongestRing tetrahedra, by dynamic programming) and faces (2-3 flips) of the
 /// elements with a score below `threshold`, wherever the worst score of the changed place rises; goes on with what it

@@ -45,7 +45,7 @@ class Reconnector {
  private:
   float worst_of(const std::vector<TetIndex>& tets) const {
     float worst = 1;
-    for (const TetIndex t : tets) worst = std::min(worst, score(mesh_.shape(t)));
+    for (const TetIndex t : tets) worst = std::min(worst, mesh_.shape(t).score);
     return worst;
   }
 
@@ -60,7 +60,7 @@ class Reconnector {
     if (s.beta < kCertainBeta &&
         orient3d(mesh_.point(t[0]), mesh_.point(t[1]), mesh_.point(t[2]), mesh_.point(t[3])) <= 0)
       return -1;
-    return score(s);
+    return s.score;
   }
 
   void try_edge(TetIndex t, int i, int j) {
@@ -68,35 +68,45 @@ class Reconnector {
     mesh_.edge_ring(t, i, j, ring_);
     const int n = static_cast<int>(ring_.ring.size());
     if (!ring_.closed || n < 3 || n > kLongestRing) return;
-    const float before = worst_of(ring_.tets);
-    evaluate_triangles(a, b, n);
+    const float bar = std::max(worst_of(ring_.tets), best_.worst);
+    // Each edge of the ring is in one triangle of the new triangulation: if none on the first edge will do, none will.
+    batch_.size = 0;
+    add_triangles(a, b, 0, 1, n);
+    batch_.evaluate();
+    if (value_triangles(a, b, 0, 1, n) <= bar) return;
+    for (int i = 0; i < n; ++i)
+      for (int k = i + 1 + (i == 0); k < n; ++k) add_triangles(a, b, i, k, n);
+    batch_.evaluate();
+    for (int i = 0; i < n; ++i)
+      for (int k = i + 1 + (i == 0); k < n; ++k) value_triangles(a, b, i, k, n);
     const float after = triangulate(n);
-    if (after <= before || after <= best_.worst) return;
+    if (after <= bar) return;
     best_.clear();
     best_.old_tets = ring_.tets;
     best_.worst = after;
     emit(a, b, 0, n - 1);
   }
 
-  /// Both tets on each triangle (i, k, j) of the ring; value_ gets the worse score of the two.
-  void evaluate_triangles(VertexIndex a, VertexIndex b, int n) {
-    batch_.size = 0;
+  /// Adds both tets on each triangle (i, k, j) of the ring, j from k + 1 on.
+  void add_triangles(VertexIndex a, VertexIndex b, int i, int k, int n) {
     const auto& r = ring_.ring;
-    for (int i = 0; i < n; ++i)
-      for (int k = i + 1; k < n; ++k)
-        for (int j = k + 1; j < n; ++j) {
-          index_[i][k][j] = batch_.size;
-          add_candidate({r[i], r[k], r[j], b});
-          add_candidate({r[i], r[j], r[k], a});
-        }
-    batch_.evaluate();
-    for (int i = 0; i < n; ++i)
-      for (int k = i + 1; k < n; ++k)
-        for (int j = k + 1; j < n; ++j) {
-          const int at = index_[i][k][j];
-          value_[i][k][j] =
-              std::min(usable_score(at, {r[i], r[k], r[j], b}), usable_score(at + 1, {r[i], r[j], r[k], a}));
-        }
+    for (int j = k + 1; j < n; ++j) {
+      index_[i][k][j] = batch_.size;
+      add_candidate({r[i], r[k], r[j], b});
+      add_candidate({r[i], r[j], r[k], a});
+    }
+  }
+
+  /// Sets value_ of the same triangles to the worse score of the two tets. Returns the best value.
+  float value_triangles(VertexIndex a, VertexIndex b, int i, int k, int n) {
+    const auto& r = ring_.ring;
+    float best = -1;
+    for (int j = k + 1; j < n; ++j) {
+      const int at = index_[i][k][j];
+      value_[i][k][j] = std::min(usable_score(at, {r[i], r[k], r[j], b}), usable_score(at + 1, {r[i], r[j], r[k], a}));
+      best = std::max(best, value_[i][k][j]);
+    }
+    return best;
   }
 
   /// Best worst score of the ring's triangulations; the choices stay in apex_.
@@ -139,7 +149,7 @@ class Reconnector {
     batch_.evaluate();
     float after = 1;
     for (int k = 0; k < 3; ++k) after = std::min(after, usable_score(k, made[k]));
-    if (after <= std::min(score(mesh_.shape(t)), score(mesh_.shape(o / 4))) || after <= best_.worst) return;
+    if (after <= std::min(mesh_.shape(t).score, mesh_.shape(o / 4).score) || after <= best_.worst) return;
     best_.clear();
     best_.old_tets = {t, o / 4};
     best_.new_tets.assign(made.begin(), made.end());
@@ -164,17 +174,17 @@ PassResult reconnect(EditMesh& mesh, float threshold, const RunContext& context)
   PassResult result;
   std::vector<TetIndex> queue;
   for (TetIndex t = 0; t < mesh.slots(); ++t)
-    if (mesh.alive(t) && score(mesh.shape(t)) < threshold) queue.push_back(t);
+    if (mesh.alive(t) && mesh.shape(t).score < threshold) queue.push_back(t);
   Reconnector reconnector(mesh, mesh.floor());
   for (std::size_t k = 0; k < queue.size(); ++k) {
     if (k % 1024 == 0) context.check();
     const TetIndex t = queue[k];
-    if (!mesh.alive(t) || score(mesh.shape(t)) >= threshold) continue;
+    if (!mesh.alive(t) || mesh.shape(t).score >= threshold) continue;
     ++result.tried;
     if (!reconnector.improve(t)) continue;
     ++result.done;
     for (const TetIndex made : reconnector.created())
-      if (score(mesh.shape(made)) < threshold) queue.push_back(made);
+      if (mesh.shape(made).score < threshold) queue.push_back(made);
   }
   return result;
 }

@@ -19,8 +19,8 @@ class Schedule {
   Schedule(EditMesh& mesh, const RunContext& context, StageReport& report)
       : mesh_(mesh), context_(context), report_(report), started_(process_cpu_seconds()) {}
 
-  void laplacian(double relaxation, MoveRule rule) {
-    note("laplacian moves", laplacian_sweep(mesh_, relaxation, rule, context_));
+  void laplacian(int sweeps, double relaxation, MoveRule rule) {
+    note("laplacian moves", laplacian_sweeps(mesh_, sweeps, relaxation, rule, context_));
   }
   void flips(float threshold) { note("reconnections", reconnect(mesh_, threshold, context_)); }
   void optimize(float threshold) { note("optimised vertices", optimize_vertices(mesh_, threshold, context_)); }
@@ -50,12 +50,12 @@ constexpr float kOptimizeThreshold = 0.5f;
 void run_schedule(Schedule& run, const ImproveOptions& options) {
   using Level = ImproveOptions::Level;
   if (options.level == Level::kPaper) {
-    for (int sweep = 0; sweep < options.sweeps; ++sweep) run.laplacian(options.relaxation, MoveRule::kWorstRises);
+    run.laplacian(options.sweeps, options.relaxation, MoveRule::kWorstRises);
     return;
   }
   const int rounds = options.level == Level::kFast ? 1 : options.level == Level::kDefault ? 3 : 8;
   run.flips(kFlipThreshold);
-  for (int sweep = 0; sweep < 2; ++sweep) run.laplacian(options.relaxation, MoveRule::kMeanRises);
+  run.laplacian(2, options.relaxation, MoveRule::kMeanRises);
   run.flips(kFlipThreshold);
   for (int round = 0; round < rounds; ++round) {
     run.optimize(kOptimizeThreshold);

@@ -36,8 +36,7 @@ OCTAFRONT_INLINE void shape_of_edges(Vec3 u, Vec3 v, Vec3 w, double& beta, doubl
   // The cosine of a dihedral angle is minus the product of the unit normals.
   small = 1 + lesser(lesser(lesser(ab, ac), lesser(ad, bc)), lesser(bd, cd));
   large = 1 - greater(greater(greater(ab, ac), greater(ad, bc)), greater(bd, cd));
-  const double positive = std::sqrt(
-      lesser(beta * beta, lesser(double{detail::kSmallWeight} * small, double{detail::kLargeWeight} * large)));
+  const double positive = std::sqrt(lesser(beta * beta, lesser(kSmallWeight * small, kLargeWeight * large)));
   quality = beta > 0 ? positive : lesser(beta, 0);
 }
 
@@ -114,7 +113,7 @@ Floor ShapeBatch::floor() const {
 Shape shape_of(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
   double beta, small, large, quality;
   shape_of_edges(b - a, c - a, d - a, beta, small, large, quality);
-  return {static_cast<float>(beta), static_cast<float>(small), static_cast<float>(large)};
+  return {static_cast<float>(beta), static_cast<float>(small), static_cast<float>(large), static_cast<float>(quality)};
 }
 
 }  // namespace octafront::improve

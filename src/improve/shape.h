@@ -10,27 +10,21 @@
 
 namespace octafront::improve {
 
-/// The measures that no pass may lower at the worst element of the mesh. All rise as the element gets better.
+/// What an element is worth. The first three are the measures that no pass may lower at the worst element of the mesh;
+/// all rise as the element gets better.
 struct Shape {
   float beta;   ///< 3 r / R, as radius_ratio() of quality.h; <= 0 if flat or inverted
   float small;  ///< 1 - cos(smallest dihedral angle), in [0, 2/3]
   float large;  ///< 1 + cos(largest dihedral angle), in [0, 4/3]
+  float score;  ///< all three in one number: beta, or what the angles are worth, whichever is less; see below
 };
 
-/// Angles that count as bad as beta = kReferenceBeta. An element of beta .45 has typically such angles.
-inline constexpr double kReferenceBeta = 0.45, kReferenceSmallAngle = 23, kReferenceLargeAngle = 141;  // degrees
-
-namespace detail {
-// kReferenceBeta^2 / (1 - cos 23 deg) and kReferenceBeta^2 / (1 + cos 141 deg).
-inline constexpr float kSmallWeight = 2.5473f, kLargeWeight = 0.90867f;
-}  // namespace detail
-
-/// One number for all three: beta, or what the angles are worth, whichever is less. In (0, 1] for valid elements; not
-/// positive for others.
-inline float score(const Shape& s) {
-  if (!(s.beta > 0)) return std::min(s.beta, 0.0f);
-  return std::sqrt(std::min({s.beta * s.beta, detail::kSmallWeight * s.small, detail::kLargeWeight * s.large}));
-}
+/// Angles that are worth as much as beta = kReferenceBeta are 23 degrees for the smallest and 141 degrees for the
+/// largest: the typical angles of an element of that beta. score = min(beta, a sin(smallest / 2), b cos(largest / 2)),
+/// in (0, 1] for positive elements, not positive for others; kSmallWeight and kLargeWeight are a^2 / 2 and b^2 / 2.
+inline constexpr double kReferenceBeta = 0.45;
+inline constexpr double kSmallWeight = kReferenceBeta * kReferenceBeta / (1 - 0.92050485345244037);  // cos 23 deg
+inline constexpr double kLargeWeight = kReferenceBeta * kReferenceBeta / (1 - 0.77714596145697090);  // -cos 141 deg
 
 /// At this computed beta or above an element is certainly positive: V >= 4/3 pi r^3 with r >= beta R / 3 makes the
 /// determinant at least 7e-10 R^3, and its rounding error is below 4e-14 R^3 (see orient3d). Below it, exact signs
@@ -39,17 +33,16 @@ inline constexpr float kCertainBeta = 1e-3f;
 
 /// Lower bounds of the three measures, each by itself.
 struct Floor {
-  float beta = 2, small = 2, large = 2;
+  float beta = 2, small = 2, large = 2, score = 2;
 
   void add(const Shape& s) {
     beta = std::min(beta, s.beta);
     small = std::min(small, s.small);
     large = std::min(large, s.large);
+    score = std::min(score, s.score);
   }
-  /// Strictly above in all three: rounding to float is monotone, so the exact values are above too.
+  /// Strictly above in the three measures: rounding to float is monotone, so the exact values are above too.
   bool below(const Shape& s) const { return s.beta > beta && s.small > small && s.large > large; }
-  /// The worst possible score of an element that meets these bounds.
-  float worst_score() const { return score({beta, small, large}); }
 };
 
 /// Shapes of up to kBatch elements at once, in structure-of-arrays form for the vector units.
@@ -60,7 +53,7 @@ struct ShapeBatch {
   int size = 0;
   alignas(64) double corner[4][3][kBatch];  ///< [corner][axis][element]
   alignas(64) double beta[kBatch], small[kBatch], large[kBatch];
-  alignas(64) double quality[kBatch];  ///< score() in double precision, for derivatives
+  alignas(64) double quality[kBatch];  ///< the score, in double precision for derivatives
 
   bool full() const { return size == kBatch; }
   /// Adds an element that shares corner 0 with the others.
@@ -78,7 +71,8 @@ struct ShapeBatch {
   void evaluate();
 
   Shape shape(int i) const {
-    return {static_cast<float>(beta[i]), static_cast<float>(small[i]), static_cast<float>(large[i])};
+    return {static_cast<float>(beta[i]), static_cast<float>(small[i]), static_cast<float>(large[i]),
+            static_cast<float>(quality[i])};
   }
   Floor floor() const;
 

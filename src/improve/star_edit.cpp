@@ -5,8 +5,13 @@
 namespace octafront::improve {
 
 bool StarEdit::load(VertexIndex v) {
+  mesh_.star(v, walked_);
+  return load(v, walked_);
+}
+
+bool StarEdit::load(VertexIndex v, std::span<const HalfFace> faces) {
   vertex_ = v;
-  mesh_.star(v, faces_);
+  faces_ = faces;
   batch_.size = 0;
   if (faces_.size() > ShapeBatch::kBatch) return false;
   for (const HalfFace h : faces_) {
@@ -19,7 +24,7 @@ bool StarEdit::load(VertexIndex v) {
 
 float StarEdit::current_worst() const {
   float worst = 1;
-  for (const HalfFace h : faces_) worst = std::min(worst, score(mesh_.shape(h / 4)));
+  for (const HalfFace h : faces_) worst = std::min(worst, mesh_.shape(h / 4).score);
   return worst;
 }
 

@@ -15,7 +15,9 @@ class StarEdit {
 
   /// False if the star is too large to be worth it (over ShapeBatch::kBatch elements).
   bool load(VertexIndex v);
-  const std::vector<HalfFace>& faces() const { return faces_; }
+  /// The same for a star that is known; `faces` must outlive its use.
+  bool load(VertexIndex v, std::span<const HalfFace> faces);
+  std::span<const HalfFace> faces() const { return faces_; }
   /// Worst score of the star as it stands in the mesh.
   float current_worst() const;
 
@@ -33,7 +35,8 @@ class StarEdit {
   EditMesh& mesh_;
   VertexIndex vertex_ = kNone;
   Vec3 at_;
-  std::vector<HalfFace> faces_;
+  std::vector<HalfFace> walked_;
+  std::span<const HalfFace> faces_;
   ShapeBatch batch_;
 };
 

@@ -4,6 +4,8 @@
 #include "geometry/predicates.h"
 #include "improve/start_meshes.h"
 
+#include <set>
+
 #include <gtest/gtest.h>
 
 namespace octafront::improve {
@@ -38,7 +40,10 @@ double worst_beta(const TetMesh& mesh) {
 
 TEST(EditMesh, GivesBackWhatItTook) {
   const TetMesh mesh = perturbed(kuhn_cube(4), 0.3, 1);
-  EXPECT_EQ(EditMesh(TetMesh{mesh}).release(), mesh);
+  TetMesh back = EditMesh(TetMesh{mesh}).release();
+  EXPECT_EQ(std::set(back.tets.begin(), back.tets.end()), std::set(mesh.tets.begin(), mesh.tets.end()));
+  back.tets = mesh.tets;  // only their order may differ
+  EXPECT_EQ(back, mesh);
 }
 
 TEST(EditMesh, RefusesFacesThatDoNotMatch) {
@@ -50,8 +55,11 @@ TEST(EditMesh, RefusesFacesThatDoNotMatch) {
 TEST(EditMesh, FindsStarsAndRings) {
   const EditMesh mesh(kuhn_cube(2));
   std::vector<HalfFace> star;
-  mesh.star(13, star);  // the centre
-  EXPECT_EQ(star.size(), 24u);
+  for (VertexIndex v = 0; v < mesh.vertices(); ++v)
+    if (!mesh.on_boundary(v)) {
+      mesh.star(v, star);
+      EXPECT_EQ(star.size(), 24u);
+    }
   EdgeRing ring;
   for (TetIndex t = 0; t < mesh.slots(); ++t)
     for (const auto& [i, j] : kTetEdges) {
@@ -87,9 +95,9 @@ TEST(Reconnect, RemovesTheEdgeOfARing) {
     SCOPED_TRACE(ring);
     const TetMesh before = edge_ring_mesh(ring, 0.9);
     EditMesh edit{TetMesh{before}};
-    const float worst = edit.floor().worst_score();
+    const float worst = edit.floor().score;
     const PassResult result = reconnect(edit, 1.0f, {});
-    const float better = edit.floor().worst_score();
+    const float better = edit.floor().score;
     const TetMesh after = edit.release();
     expect_laws(before, after);
     EXPECT_GT(better, worst);
@@ -114,7 +122,7 @@ TEST(Reconnect, FlipsTheFaceBetweenTwoFlatTetrahedra) {
 TEST(Laplacian, RestoresAPerturbedGrid) {
   const TetMesh before = perturbed(kuhn_cube(6), 0.45, 5);
   EditMesh edit{TetMesh{before}};
-  for (int sweep = 0; sweep < 30; ++sweep) laplacian_sweep(edit, 1, MoveRule::kMeanRises, {});
+  laplacian_sweeps(edit, 30, 1, MoveRule::kMeanRises, {});
   const TetMesh after = edit.release();
   expect_laws(before, after);
   EXPECT_GT(worst_beta(after), 0.5);  // the grid itself has .717
@@ -134,7 +142,7 @@ TEST(Passes, LeaveAValidMeshWhoseWorstIsNoWorse) {
       EXPECT_GE(after.large, before.large);
     };
     for (int round = 0; round < 3; ++round) {
-      run([&] { laplacian_sweep(edit, 0.7, round % 2 ? MoveRule::kMeanRises : MoveRule::kWorstRises, {}); });
+      run([&] { laplacian_sweeps(edit, 1, 0.7, round % 2 ? MoveRule::kMeanRises : MoveRule::kWorstRises, {}); });
       run([&] { reconnect(edit, 0.6f, {}); });
       run([&] { optimize_vertices(edit, 0.6f, {}); });
     }
@@ -148,9 +156,9 @@ TEST(Optimize, RaisesTheWorstAroundABadVertex) {
   TetMesh start = kuhn_cube(2);
   start.points[13] = {0.85, 0.7, 0.55};
   EditMesh edit{TetMesh{start}};
-  const float before = edit.floor().worst_score();
+  const float before = edit.floor().score;
   EXPECT_EQ(optimize_vertices(edit, 1.0f, {}).done, 1u);
-  EXPECT_GT(edit.floor().worst_score(), before + 0.2f);
+  EXPECT_GT(edit.floor().score, before + 0.2f);
   expect_laws(start, edit.release());
 }
 
