@@ -40,6 +40,9 @@ struct VolumeOptions {
   /// Distance of the ideal point from the face, as a multiple of the size there (the paper says 1; a regular
   /// tetrahedron wants 0.816; a little less leaves better elements, see docs/volume-front.md). In [0.3, 1.5].
   double ideal_distance = 0.75;
+  enum class Core { kNone, kLattice };
+  /// kLattice: deep inside, the graded body-centred cubic lattice is the mesh, and the front fills the shell around it.
+  Core core = Core::kLattice;
   enum class Ranking { kQuality, kSolidAngle };
   Ranking ranking = Ranking::kQuality;  ///< order of the candidates: by beta of the new tetrahedron, or as in the paper
 };

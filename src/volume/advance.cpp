@@ -14,8 +14,9 @@ class Queues {
   Queues(Front& front, std::size_t most_tets, const RunContext& context, FrontCounters& counters, Attempt& attempt)
       : front_(front), most_tets_(most_tets), context_(context), counters_(counters), attempt_(attempt) {}
 
-  AdvanceResult run(std::vector<QueuedFace> layer) {
+  AdvanceResult run(std::vector<QueuedFace> layer, std::vector<QueuedFace> passive) {
     work_off(std::move(layer), 0);
+    work_off(std::move(passive), 0);
     for (std::size_t level = 1; level < kLimits.size() && !over_budget();) {
       std::vector<QueuedFace> held = take_held();
       if (held.empty()) break;
@@ -67,11 +68,11 @@ class Queues {
 
 }  // namespace
 
-AdvanceResult advance_front(Front& front, std::vector<QueuedFace> layer, const SizeField& sizes,
-                            const VolumeOptions& options, std::size_t most_tets, const RunContext& context,
-                            FrontCounters& counters) {
+AdvanceResult advance_front(Front& front, std::vector<QueuedFace> layer, std::vector<QueuedFace> passive,
+                            const SizeField& sizes, const VolumeOptions& options, std::size_t most_tets,
+                            const RunContext& context, FrontCounters& counters) {
   Attempt attempt(front, sizes, options, counters);
-  AdvanceResult result = Queues(front, most_tets, context, counters, attempt).run(std::move(layer));
+  AdvanceResult result = Queues(front, most_tets, context, counters, attempt).run(std::move(layer), std::move(passive));
   counters.faces_found += attempt.faces_found();
   return result;
 }

@@ -15,9 +15,10 @@ struct AdvanceResult {
 };
 
 /// Works off the queues: the current layer Qc in order, the faces it leaves make the next layer Qn, until both are
-/// empty; faces without an acceptable tetrahedron wait in Qh and try again at the next level of `kLimits`.
-AdvanceResult advance_front(Front& front, std::vector<QueuedFace> layer, const SizeField& sizes,
-                            const VolumeOptions& options, std::size_t most_tets, const RunContext& context,
-                            FrontCounters& counters);
+/// empty; faces without an acceptable tetrahedron wait in Qh and try again at the next level of `kLimits`. The
+/// `passive` faces are only met by the others; what is left of them advances when the layers are done.
+AdvanceResult advance_front(Front& front, std::vector<QueuedFace> layer, std::vector<QueuedFace> passive,
+                            const SizeField& sizes, const VolumeOptions& options, std::size_t most_tets,
+                            const RunContext& context, FrontCounters& counters);
 
 }  // namespace octafront

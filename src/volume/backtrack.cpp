@@ -43,7 +43,7 @@ bool close_by_front(WorkMesh& mesh, Cavities& cavities, std::uint32_t cavity, co
   other.ranking = variant.ranking;
   FrontCounters counters;
   const AdvanceResult result =
-      advance_front(front, std::move(layer), sizes, other, 1000 + kTetsPerWall * walls.size(), context, counters);
+      advance_front(front, std::move(layer), {}, sizes, other, 1000 + kTetsPerWall * walls.size(), context, counters);
   if (result.over_budget || !result.left.empty()) return false;
   for (std::size_t v = global.size(); v < front.vertices().size(); ++v)
     global.push_back(mesh.add_point(front.at(static_cast<VertexIndex>(v))));

@@ -2,7 +2,7 @@
 
 #include <octafront/error.h>
 
-#include "core/stage_timer.h"
+#include "lattice/core.h"
 #include "volume/advance.h"
 #include "volume/ladder.h"
 
@@ -52,6 +52,18 @@ std::vector<QueuedFace> start_front(Front& front, const SurfaceMesh& surface, co
     layer.push_back(front.queued(front.add_face({a, c, b})));
   }
   return layer;
+}
+
+/// Puts the core's tetrahedra in place; returns its skin, which the front has to meet.
+std::vector<QueuedFace> add_core(Front& front, const LatticeCore& core, const SizeField& sizes) {
+  const auto first = static_cast<VertexIndex>(front.vertices().size());
+  for (const Vec3 p : core.points) front.add_vertex(p, sizes.at(p));
+  for (const auto& [a, b, c, d] : core.tets) front.tets().push_back({a + first, b + first, c + first, d + first});
+  std::vector<QueuedFace> skin;
+  skin.reserve(core.skin.size());
+  for (const auto& [a, b, c] : core.skin)
+    skin.push_back(front.queued(front.add_face({a + first, c + first, b + first})));
+  return skin;
 }
 
 /// Far more than any honest run makes: a guard against fronts that leak.
@@ -137,16 +149,22 @@ void report_front(StageReport& report, const FrontCounters& counters, std::size_
 
 TetMesh fill_volume(const SurfaceMesh& surface, const SizeField& sizes, const VolumeOptions& options,
                     const RunContext& context, StageReport& report) {
-  const StageTimer timer(report);
   if (surface.triangles.empty()) throw InputError("the surface has no triangles: nothing to fill");
   TetMesh mesh;
   std::vector<Wall> walls;
   {
     Front front(bounding_box(surface.points), sizes.min_size());
     std::vector<QueuedFace> layer = start_front(front, surface, sizes);
+    std::vector<QueuedFace> skin;
+    if (options.core == VolumeOptions::Core::kLattice) {
+      const LatticeCore core = build_lattice_core(surface, sizes, context);
+      report.count("core tetrahedra", static_cast<double>(core.tets.size()));
+      skin = add_core(front, core, sizes);
+    }
+    const std::size_t budget = front.tets().size() + tet_budget(surface, sizes);
     FrontCounters counters;
     const AdvanceResult result =
-        advance_front(front, std::move(layer), sizes, options, tet_budget(surface, sizes), context, counters);
+        advance_front(front, std::move(layer), std::move(skin), sizes, options, budget, context, counters);
     report_front(report, counters, front.tets().size(), result.left.size());
     if (result.over_budget)
       throw MeshingError("the front made " + std::to_string(front.tets().size()) +
