@@ -1,35 +1,121 @@
 #include "geometry/predicates.h"
 
+#include "geometry/double_double.h"
 #include "geometry/expansion.h"
+#include "geometry/wide_integer.h"
+
+// What the filters leave open goes through up to three stages, each exact when it answers:
+//   1. coordinates on a lattice of 41 bits about one of the points: integers. Most degenerate cases of practice end
+//   here.
+//   2. double-double arithmetic with an error bound: near-degenerate cases of full-precision coordinates.
+//   3. expansions of any length: exactly degenerate, full-precision coordinates. Rare.
 
 namespace octafront {
 
 namespace {
 
 using exact::difference;
+using exact::DoubleDouble;
+using exact::exact_difference;
+using exact::Int128;
 
-// a * d - b * c, exactly.
-template <class E>
-auto minor(const E& a, const E& b, const E& c, const E& d) {
+// a * d - b * c.
+template <class T>
+auto minor(const T& a, const T& b, const T& c, const T& d) {
   return a * d - b * c;
 }
 
-}  // namespace
+// Rows of coordinate differences p - o, each split into the rounded difference and its error.
+template <std::size_t N>
+std::array<DoubleDouble, 3 * N> differences(const std::array<Vec3, N>& points, Vec3 o) {
+  std::array<DoubleDouble, 3 * N> d;
+  for (std::size_t i = 0; i < N; ++i) {
+    d[3 * i] = exact_difference(points[i].x, o.x);
+    d[3 * i + 1] = exact_difference(points[i].y, o.y);
+    d[3 * i + 2] = exact_difference(points[i].z, o.z);
+  }
+  return d;
+}
 
-namespace detail {
+template <std::size_t N>
+std::optional<std::array<std::int64_t, N>> lattice_differences(const std::array<DoubleDouble, N>& d) {
+  std::array<double, N> rounded;
+  for (std::size_t i = 0; i < N; ++i) {
+    if (d[i].lo != 0) return std::nullopt;
+    rounded[i] = d[i].hi;
+  }
+  return exact::on_lattice(rounded);
+}
 
-int orient3d_exact(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
+template <class Product, class T>
+Product determinant(const std::array<T, 9>& m) {
+  const auto product = [](T a, T b) { return Product(a) * Product(b); };
+  const Product x = product(m[4], m[8]) - product(m[5], m[7]);
+  const Product y = product(m[5], m[6]) - product(m[3], m[8]);
+  const Product z = product(m[3], m[7]) - product(m[4], m[6]);
+  return Product(m[0]) * x + Product(m[1]) * y + Product(m[2]) * z;
+}
+
+double determinant_permanent(const std::array<DoubleDouble, 9>& d) {
+  const auto m = [&](int i) { return std::abs(d[i].hi); };
+  return m(0) * (m(4) * m(8) + m(5) * m(7)) + m(1) * (m(5) * m(6) + m(3) * m(8)) + m(2) * (m(3) * m(7) + m(4) * m(6));
+}
+
+int orient3d_expansion(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
   const auto ux = difference(b.x, a.x), uy = difference(b.y, a.y), uz = difference(b.z, a.z);
   const auto vx = difference(c.x, a.x), vy = difference(c.y, a.y), vz = difference(c.z, a.z);
   const auto wx = difference(d.x, a.x), wy = difference(d.y, a.y), wz = difference(d.z, a.z);
   return (minor(vy, vz, wy, wz) * ux + minor(vz, vx, wz, wx) * uy + minor(vx, vy, wx, wy) * uz).sign();
 }
 
-int orient2d_exact(double ax, double ay, double bx, double by, double cx, double cy) {
-  return minor(difference(ax, cx), difference(ay, cy), difference(bx, cx), difference(by, cy)).sign();
+// The insphere determinant of four rows of differences to e, by its column of lifts; `combine` adds the four products
+// of a 3 x 3 determinant and a lift, with signs so that inside is positive for a positive tetrahedron.
+template <class Product, class T, class Combine>
+auto insphere_determinant(const std::array<T, 12>& m, Combine&& combine) {
+  const auto x = [&](int row) { return Product(m[3 * row]); };
+  const auto y = [&](int row) { return Product(m[3 * row + 1]); };
+  const auto z = [&](int row) { return Product(m[3 * row + 2]); };
+  const auto flat = [&](int i, int j) { return x(i) * y(j) - x(j) * y(i); };
+  const Product ab = flat(0, 1), bc = flat(1, 2), cd = flat(2, 3), da = flat(3, 0), ac = flat(0, 2), bd = flat(1, 3);
+  const auto lift = [&](int i) { return x(i) * x(i) + y(i) * y(i) + z(i) * z(i); };
+  return combine(z(1) * cd - z(2) * bd + z(3) * bc, lift(0), z(2) * da + z(3) * ac + z(0) * cd, lift(1),
+                 z(3) * ab + z(0) * bd + z(1) * da, lift(2), z(0) * bc - z(1) * ac + z(2) * ab, lift(3));
 }
 
-int insphere_exact(Vec3 a, Vec3 b, Vec3 c, Vec3 d, Vec3 e) {
+int insphere_lattice(const std::array<std::int64_t, 12>& m) {
+  return insphere_determinant<Int128>(
+      m, [](Int128 bcd, Int128 a, Int128 cda, Int128 b, Int128 dab, Int128 c, Int128 abc, Int128 d) {
+        exact::Int256 sum;
+        sum.add_product(bcd, a);
+        sum.add_product(-cda, b);
+        sum.add_product(dab, c);
+        sum.add_product(-abc, d);
+        return sum.sign();
+      });
+}
+
+DoubleDouble insphere_double_double(const std::array<DoubleDouble, 12>& m) {
+  using D = DoubleDouble;
+  return insphere_determinant<D>(
+      m, [](D bcd, D a, D cda, D b, D dab, D c, D abc, D d) { return (bcd * a - cda * b) + (dab * c - abc * d); });
+}
+
+double insphere_permanent(const std::array<DoubleDouble, 12>& m) {
+  struct Magnitude {
+    double value;
+    Magnitude(DoubleDouble d) : value(std::abs(d.hi)) {}
+    explicit Magnitude(double v) : value(v) {}
+    Magnitude operator*(Magnitude o) const { return Magnitude(value * o.value); }
+    Magnitude operator+(Magnitude o) const { return Magnitude(value + o.value); }
+    Magnitude operator-(Magnitude o) const { return Magnitude(value + o.value); }
+  };
+  using M = Magnitude;
+  return insphere_determinant<M>(
+             m, [](M bcd, M a, M cda, M b, M dab, M c, M abc, M d) { return bcd * a + cda * b + dab * c + abc * d; })
+      .value;
+}
+
+int insphere_expansion(Vec3 a, Vec3 b, Vec3 c, Vec3 d, Vec3 e) {
   struct Row {
     exact::Expansion<2> x, y, z;
   };
@@ -39,10 +125,46 @@ int insphere_exact(Vec3 a, Vec3 b, Vec3 c, Vec3 d, Vec3 e) {
     return minor(q.y, q.z, r.y, r.z) * p.x + minor(q.z, q.x, r.z, r.x) * p.y + minor(q.x, q.y, r.x, r.y) * p.z;
   };
   const Row ra = row(a), rb = row(b), rc = row(c), rd = row(d);
-  // Expanded by the column of lifts; signs so that inside is positive for a positive (a, b, c, d).
   return ((det3(rb, rc, rd) * lift(ra) - det3(ra, rc, rd) * lift(rb)) +
           (det3(ra, rb, rd) * lift(rc) - det3(ra, rb, rc) * lift(rd)))
       .sign();
+}
+
+// Roundings on the longest path of each formula, times 8 u^2, doubled and rounded up to a power of two.
+constexpr double kOrient3dBound = 0x1p-98;
+constexpr double kInsphereBound = 0x1p-97;
+
+}  // namespace
+
+namespace detail {
+
+int orient3d_exact(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
+  if (a == b || a == c || a == d || b == c || b == d || c == d) return 0;
+  const auto m = differences(std::array{b, c, d}, a);
+  if (const auto lattice = lattice_differences(m)) return exact::sign(determinant<Int128>(*lattice));
+  const DoubleDouble det = determinant<DoubleDouble>(m);
+  if (std::abs(det.hi) > kOrient3dBound * determinant_permanent(m)) return det.sign();
+  return orient3d_expansion(a, b, c, d);
+}
+
+int orient2d_exact(double ax, double ay, double bx, double by, double cx, double cy) {
+  const DoubleDouble acx = exact_difference(ax, cx), acy = exact_difference(ay, cy);
+  const DoubleDouble bcx = exact_difference(bx, cx), bcy = exact_difference(by, cy);
+  if (acx.lo == 0 && acy.lo == 0 && bcx.lo == 0 && bcy.lo == 0) {
+    // Exact products as pairs compare by their rounded value, then by their error.
+    const auto l = exact::two_product(acx.hi, bcy.hi), r = exact::two_product(acy.hi, bcx.hi);
+    return l.hi != r.hi ? sign(l.hi - r.hi) : (l.lo > r.lo) - (l.lo < r.lo);
+  }
+  return minor(difference(ax, cx), difference(ay, cy), difference(bx, cx), difference(by, cy)).sign();
+}
+
+int insphere_exact(Vec3 a, Vec3 b, Vec3 c, Vec3 d, Vec3 e) {
+  if (a == e || b == e || c == e || d == e) return 0;
+  const auto m = differences(std::array{a, b, c, d}, e);
+  if (const auto lattice = lattice_differences(m)) return insphere_lattice(*lattice);
+  const DoubleDouble det = insphere_double_double(m);
+  if (std::abs(det.hi) > kInsphereBound * insphere_permanent(m)) return det.sign();
+  return insphere_expansion(a, b, c, d, e);
 }
 
 }  // namespace detail

@@ -1,9 +1,13 @@
 #pragma once
 
 // Exact signs. Every decision about topology in this library is one of these: a floating-point filter first (inline),
-// then expansion arithmetic (J. R. Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric
-// Predicates", 1997). Requires that the compiler neither contracts nor reassociates; see cmake/OctafrontTargets.cmake.
-// Exact for coordinates whose products neither overflow nor underflow: magnitudes within about 1e-50 ... 1e50.
+// then exact stages of rising cost; see predicates.cpp (J. R. Shewchuk, "Adaptive Precision Floating-Point Arithmetic
+// and Fast Robust Geometric Predicates", 1997). Requires that the compiler neither contracts nor reassociates; see
+// cmake/OctafrontTargets.cmake.
+//
+// Exact for finite coordinates that are 0 or of magnitude 1e-40 ... 1e50: then no product of five differences
+// overflows, and none of its bits underflows. (Coordinates are multiples of 2^-53 * 1e-40, so the lowest bit of such a
+// product is above 1e-280; the highest is below 1e255.)
 
 #include <octafront/vec.h>
 
@@ -30,6 +34,7 @@ inline int orient3d(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
   const double bound = 7.7715611723761027e-16 * permanent;
   if (det > bound) return 1;
   if (det < -bound) return -1;
+  if (permanent == 0) return 0;  // all products vanish: common on axis-parallel planes
   return detail::orient3d_exact(a, b, c, d);
 }
 
