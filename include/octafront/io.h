@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace octafront {
@@ -45,7 +46,20 @@ void write_text(const std::filesystem::path& file, const std::string& text);
 void check_mesh_target(const std::filesystem::path& file);
 void check_surface_target(const std::filesystem::path& file);
 
-/// Reads a tetrahedral mesh: .vtu as written here, Gmsh .msh 4.1 (ASCII and binary), MEDIT .mesh. Throws InputError.
+/// Reads a tetrahedral mesh: .vtu (not only as written here), Gmsh .msh 4.1 and 2.2 (ASCII and binary), MEDIT .mesh.
+/// Inverted tetrahedra are turned, other kinds of elements and unused vertices are left out, and a boundary face that
+/// the file lacks is added. Throws InputError.
 TetMesh read_mesh(const std::filesystem::path& file);
+
+/// What is known of a file format, for help texts.
+struct FormatInfo {
+  std::string_view name;     ///< e.g. "STL"
+  std::string_view ending;   ///< e.g. ".stl"
+  bool reads_surface, writes_surface, reads_mesh, writes_mesh;
+  std::string_view carries;  ///< what survives in it, e.g. "double precision, no patches"
+};
+
+/// All formats, those of surfaces first.
+std::vector<FormatInfo> known_formats();
 
 }  // namespace octafront

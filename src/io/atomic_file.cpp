@@ -1,0 +1,177 @@
+#include "io/atomic_file.h"
+
+#include <octafront/error.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <system_error>
+#include <vector>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace octafront::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path folder_of(const fs::path& file) {
+  return file.has_parent_path() ? file.parent_path() : fs::path(".");
+}
+
+/// A name beside the target that no other writer uses.
+fs::path temporary_name(const fs::path& target) {
+  static std::atomic<unsigned> counter{0};
+  return folder_of(target) / fmt::format(".octafront-{}-{}.tmp", ::getpid(), counter++);
+}
+
+/// Replacing a link would cut it; what it points to is replaced instead.
+fs::path links_followed(const fs::path& file) {
+  std::error_code error;
+  if (!fs::is_symlink(file, error)) return file;
+  const fs::path real = fs::weakly_canonical(file, error);
+  return error ? file : real;
+}
+
+}  // namespace
+
+void check_writable(const fs::path& target) {
+  const std::string name = target.string();
+  const fs::path file = links_followed(target);
+  const fs::path folder = folder_of(file);
+  std::error_code error;
+  if (file.filename().empty()) throw OutputError(fmt::format("{}: is not the name of a file", name));
+  if (!fs::is_directory(folder, error))
+    throw OutputError(
+        fmt::format("{}: cannot be written: there is no folder {}; create it first", name, folder.string()));
+  const fs::file_status status = fs::status(file, error);
+  if (fs::is_directory(status)) throw OutputError(fmt::format("{}: cannot be written: it is a folder", name));
+  if (fs::exists(status) && !fs::is_regular_file(status))
+    throw OutputError(fmt::format("{}: cannot be written: it is not a plain file", name));
+  if (::access(folder.c_str(), W_OK | X_OK) != 0)
+    throw OutputError(fmt::format("{}: cannot be written: the folder {}: {}", name, folder.string(),
+                                  std::generic_category().message(errno)));
+}
+
+AtomicFile::AtomicFile(const fs::path& target) : name_(target.string()), target_(links_followed(target)) {
+  check_writable(target);
+  struct stat status {};
+  if (::stat(target_.c_str(), &status) == 0) mode_ = status.st_mode & 07777;
+#ifdef O_TMPFILE
+  // Giving a name to a nameless file goes through /proc.
+  if (::access("/proc/self/fd", X_OK) == 0)
+    fd_ = ::open(folder_of(target_).c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, mode_);
+#endif
+  if (fd_ < 0) open_named();
+}
+
+void AtomicFile::open_named() {
+  temporary_ = temporary_name(target_);
+  fd_ = ::open(temporary_.c_str(), O_CREAT | O_EXCL | O_RDWR | O_CLOEXEC, mode_);
+  if (fd_ >= 0) return;
+  const int error = errno;
+  temporary_.clear();
+  fail("cannot be created", error);
+}
+
+AtomicFile::~AtomicFile() {
+  if (fd_ >= 0) ::close(fd_);
+  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+}
+
+void AtomicFile::fail(std::string_view what, int error) const {
+  throw OutputError(fmt::format("{}: {}: {} (at byte {}); an older file of this name is unchanged", name_, what,
+                                std::generic_category().message(error), position()));
+}
+
+void AtomicFile::write_out(const char* bytes, std::size_t size) {
+  while (size > 0) {
+    const ssize_t done = ::write(fd_, bytes, size);
+    if (done < 0) {
+      if (errno == EINTR) continue;
+      fail("cannot be written", errno);
+    }
+    bytes += done;
+    size -= static_cast<std::size_t>(done);
+    flushed_ += static_cast<std::uint64_t>(done);
+  }
+}
+
+void AtomicFile::flush() {
+  const std::size_t size = filled_;
+  filled_ = 0;
+  write_out(buffer_.get(), size);
+}
+
+void AtomicFile::write(const void* bytes, std::size_t size) {
+  if (size > kBuffer - filled_) flush();
+  if (size >= kBuffer) return write_out(static_cast<const char*>(bytes), size);
+  std::memcpy(buffer_.get() + filled_, bytes, size);
+  filled_ += size;
+}
+
+void AtomicFile::overwrite(std::uint64_t position, const void* bytes, std::size_t size) {
+  flush();
+  const char* from = static_cast<const char*>(bytes);
+  while (size > 0) {
+    const ssize_t done = ::pwrite(fd_, from, size, static_cast<off_t>(position));
+    if (done < 0) {
+      if (errno == EINTR) continue;
+      fail("cannot be written", errno);
+    }
+    from += done;
+    position += static_cast<std::uint64_t>(done);
+    size -= static_cast<std::size_t>(done);
+  }
+}
+
+void AtomicFile::give_name() {
+  const fs::path name = temporary_name(target_);
+  const std::string self = fmt::format("/proc/self/fd/{}", fd_);
+  if (::linkat(AT_FDCWD, self.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0) {
+    temporary_ = name;
+  } else {
+    copy_to_named();
+  }
+}
+
+/// Some file systems make nameless files but cannot name them.
+void AtomicFile::copy_to_named() {
+  const int nameless = fd_;
+  const std::uint64_t size = flushed_;
+  fd_ = -1;
+  flushed_ = 0;
+  try {
+    open_named();
+    for (std::uint64_t at = 0; at < size;) {
+      const ssize_t got = ::pread(nameless, buffer_.get(), kBuffer, static_cast<off_t>(at));
+      if (got <= 0) fail("cannot be copied", got < 0 ? errno : EIO);
+      write_out(buffer_.get(), static_cast<std::size_t>(got));
+      at += static_cast<std::uint64_t>(got);
+    }
+  } catch (...) {
+    ::close(nameless);
+    throw;
+  }
+  ::close(nameless);
+  if (::fsync(fd_) != 0) fail("cannot be written to the disk", errno);
+}
+
+void AtomicFile::commit() {
+  flush();
+  // A new file has the mode that the user's mask leaves; an old one keeps its own, which the mask must not touch.
+  struct stat status {};
+  if (::stat(target_.c_str(), &status) == 0) ::fchmod(fd_, status.st_mode & 07777);
+  if (::fsync(fd_) != 0 && errno != EINVAL && errno != EROFS) fail("cannot be written to the disk", errno);
+  if (temporary_.empty()) give_name();
+  const int closing = fd_;
+  fd_ = -1;
+  if (::close(closing) != 0) fail("cannot be closed", errno);
+  if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail("cannot be renamed into place", errno);
+  temporary_.clear();
+}
+
+}  // namespace octafront::io

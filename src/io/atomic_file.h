@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace octafront::io {
+
+/// A file that appears under its name only when it is complete. It is written without a name where the file system can
+/// do that (so that even a killed process leaves nothing), else under a temporary name beside the target; commit()
+/// flushes it to the disk and renames it into place. Whatever goes wrong before, an older file stays as it was, and the
+/// temporary one is removed. All members throw OutputError with the reason of the operating system.
+class AtomicFile {
+ public:
+  explicit AtomicFile(const std::filesystem::path& target);
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  void write(const void* bytes, std::size_t size);
+  void write(std::string_view text) { write(text.data(), text.size()); }
+  /// Bytes written so far.
+  std::uint64_t position() const { return flushed_ + filled_; }
+  /// Replaces bytes written before.
+  void overwrite(std::uint64_t position, const void* bytes, std::size_t size);
+  void commit();
+
+  /// As given, for messages.
+  const std::string& name() const { return name_; }
+
+ private:
+  void open_named();
+  void flush();
+  void write_out(const char* bytes, std::size_t size);
+  void give_name();
+  void copy_to_named();
+  [[noreturn]] void fail(std::string_view what, int error) const;
+
+  static constexpr std::size_t kBuffer = std::size_t{1} << 18;
+
+  std::string name_;
+  std::filesystem::path target_;     ///< links followed
+  std::filesystem::path temporary_;  ///< empty while the file has no name
+  std::unique_ptr<char[]> buffer_{new char[kBuffer]};
+  std::size_t filled_ = 0;
+  std::uint64_t flushed_ = 0;
+  unsigned mode_ = 0666;
+  int fd_ = -1;
+};
+
+/// Throws OutputError if `target` cannot be a new file or replace an old one: folder missing or not writable, or the
+/// name taken by something that is no file.
+void check_writable(const std::filesystem::path& target);
+
+}  // namespace octafront::io

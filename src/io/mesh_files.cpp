@@ -1,0 +1,55 @@
+#include <octafront/error.h>
+#include <octafront/io.h>
+
+#include "io/formats.h"
+#include "io/readers.h"
+#include "io/recognize.h"
+
+#include <fmt/format.h>
+
+namespace octafront {
+
+namespace io {
+
+TetMesh read_mesh_bytes(const Input& input) {
+  switch (recognize_mesh(input)) {
+    case MeshKind::kVtu:
+      return read_vtu(input);
+    case MeshKind::kMsh:
+      return read_msh(input);
+    default:
+      return read_medit(input);
+  }
+}
+
+}  // namespace io
+
+namespace {
+
+const io::Format& mesh_format(const std::filesystem::path& file) {
+  const io::Format* format = io::format_of(file);
+  if (format == nullptr || format->write_mesh == nullptr)
+    throw OutputError(fmt::format("{}: the ending \"{}\" names no mesh format; use one of {}", file.string(),
+                                  file.extension().string(), io::endings_that(&FormatInfo::writes_mesh)));
+  return *format;
+}
+
+}  // namespace
+
+TetMesh read_mesh(const std::filesystem::path& file) {
+  return io::read_mesh_bytes(io::LoadedFile(file).input());
+}
+
+void check_mesh_target(const std::filesystem::path& file) {
+  mesh_format(file);
+  io::check_writable(file);
+}
+
+void write_mesh(const std::filesystem::path& file, const TetMesh& mesh) {
+  const io::Format& format = mesh_format(file);
+  io::AtomicFile out(file);
+  format.write_mesh(out, mesh);
+  out.commit();
+}
+
+}  // namespace octafront

@@ -1,0 +1,154 @@
+// VTK unstructured grids: ours (see write_vtu.cpp), and those of other programs as far as they hold linear tetrahedra.
+
+#include "io/raw_mesh.h"
+#include "io/readers.h"
+#include "io/vtk_xml.h"
+
+#include <array>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace octafront::io {
+namespace {
+
+constexpr std::int64_t kVtkTriangle = 5, kVtkTetra = 10;
+
+class Vtu {
+ public:
+  explicit Vtu(const Input& input) : input_(input), xml_(read_vtk_xml(input)) {}
+
+  TetMesh read() {
+    read_points();
+    read_cells();
+    read_names();
+    return ordered_mesh(std::move(raw_), input_);
+  }
+
+ private:
+  const VtkArray& require(std::string_view section, std::string_view name) const {
+    const VtkArray* array = xml_.find(section, name);
+    if (array == nullptr)
+      input_.fail(fmt::format("has no array \"{}\" in <{}>; the file is damaged: export it again", name, section));
+    return *array;
+  }
+
+  void check_length(const VtkArray& array, std::uint64_t length, std::uint64_t wanted) const {
+    if (length != wanted)
+      input_.fail_at_line(array.at, fmt::format("array {} has {} values, not {}; the file is damaged: export it again",
+                                                in_quotes(array.name), length, wanted));
+  }
+
+  void read_points() {
+    const VtkArray& array = require("Points", "");
+    const std::vector<double> xyz = vtk_reals(xml_, array, input_);
+    // Compared by division: the product may overflow.
+    if (xyz.size() % 3 != 0 || xyz.size() / 3 != xml_.points)
+      input_.fail_at_line(array.at,
+                          fmt::format("array {} has {} values, not 3 for each of {} points; the file is damaged: "
+                                      "export it again",
+                                      in_quotes(array.name), xyz.size(), xml_.points));
+    if (xml_.points >= kNone) input_.fail(fmt::format("holds more than {} points", kNone - 1));
+    raw_.points.reserve(xml_.points);
+    for (std::size_t i = 0; i < xyz.size(); i += 3) {
+      const Vec3 p{xyz[i], xyz[i + 1], xyz[i + 2]};
+      if (!is_finite(p))
+        input_.fail_at_line(array.at, fmt::format("point {} is ({}, {}, {}), which is no place", i / 3, p.x, p.y, p.z));
+      raw_.points.push_back(p);
+    }
+  }
+
+  /// The values of a cell array, if there is one; `shift` turns numbers from 0 into references from 1.
+  std::optional<std::vector<std::int64_t>> cell_integers(std::string_view name, std::int64_t shift) const {
+    const VtkArray* array = xml_.find("CellData", name);
+    if (array == nullptr || array->components != 1 || array->type.starts_with("Float")) return std::nullopt;
+    std::vector<std::int64_t> values = vtk_integers(xml_, *array, input_);
+    check_length(*array, values.size(), xml_.cells);
+    constexpr std::int64_t kMost = std::int64_t{1} << 62;
+    for (std::int64_t& v : values) v = v < kMost ? v + shift : kMost;
+    return values;
+  }
+
+  /// Ours, or what meshio makes of Gmsh's and MEDIT's references.
+  std::vector<std::int64_t> references(std::string_view ours) const {
+    if (auto values = cell_integers(ours, 1)) return *std::move(values);
+    if (auto values = cell_integers("gmsh:physical", 0)) return *std::move(values);
+    if (auto values = cell_integers("medit:ref", 0)) return *std::move(values);
+    return {};
+  }
+
+  template <std::size_t N>
+  std::array<VertexIndex, N> corners(const std::vector<std::int64_t>& connectivity, std::uint64_t first,
+                                     std::uint64_t cell) const {
+    std::array<VertexIndex, N> all;
+    for (std::size_t k = 0; k < N; ++k) {
+      const std::int64_t v = connectivity[first + k];
+      if (v < 0 || static_cast<std::uint64_t>(v) >= raw_.points.size())
+        input_.fail(
+            fmt::format("cell {} has the corner {}, but the file has only {} points; the file is damaged: export "
+                        "it again",
+                        cell, v, raw_.points.size()));
+      all[k] = static_cast<VertexIndex>(v);
+    }
+    return all;
+  }
+
+  void read_cells() {
+    const VtkArray &connectivity_array = require("Cells", "connectivity"), &offsets_array = require("Cells", "offsets"),
+                   &types_array = require("Cells", "types");
+    const std::vector<std::int64_t> types = vtk_integers(xml_, types_array, input_);
+    check_length(types_array, types.size(), xml_.cells);
+    const std::vector<std::int64_t> offsets = vtk_integers(xml_, offsets_array, input_);
+    check_length(offsets_array, offsets.size(), xml_.cells);
+    const std::vector<std::int64_t> connectivity = vtk_integers(xml_, connectivity_array, input_);
+    const std::vector<std::int64_t> regions = references("region"), patches = references("patch");
+    const auto sources = cell_integers("source", 0);
+    std::int64_t begin = 0;
+    for (std::uint64_t c = 0; c < xml_.cells; ++c) {
+      const std::int64_t end = offsets[c], size = end - begin;
+      if (end < begin || static_cast<std::uint64_t>(end) > connectivity.size())
+        input_.fail_at_line(offsets_array.at, fmt::format("cell {} has corners {} to {} of {}; the file is damaged: "
+                                                          "export it again",
+                                                          c, begin, end, connectivity.size()));
+      const auto first = static_cast<std::uint64_t>(begin);
+      if (types[c] == kVtkTetra && size == 4) {
+        raw_.tets.push_back(corners<4>(connectivity, first, c));
+        raw_.tet_ref.push_back(regions.empty() ? 1 : regions[c]);
+      } else if (types[c] == kVtkTriangle && size == 3) {
+        raw_.triangles.push_back(corners<3>(connectivity, first, c));
+        raw_.triangle_ref.push_back(patches.empty() ? 1 : patches[c]);
+        if (sources) raw_.triangle_source.push_back(source_face((*sources)[c]));
+      } else {
+        ++raw_.other_elements;
+      }
+      begin = end;
+    }
+  }
+
+  static std::uint32_t source_face(std::int64_t face) {
+    return face >= 0 && face < std::int64_t{kNone} ? static_cast<std::uint32_t>(face) : kNone;
+  }
+
+  void read_names() {
+    constexpr std::string_view kPrefix = "patch ";
+    for (const VtkArray& array : xml_.arrays) {
+      if (array.section != "FieldData" || !array.name.starts_with(kPrefix) || array.format != "ascii") continue;
+      const std::vector<std::int64_t> number = vtk_integers(xml_, array, input_);
+      if (number.size() == 1 && number[0] < kNone)
+        raw_.surface_names[number[0] + 1] = array.name.substr(kPrefix.size());
+    }
+  }
+
+  const Input& input_;
+  VtkXml xml_;
+  RawMesh raw_;
+};
+
+}  // namespace
+
+TetMesh read_vtu(const Input& input) {
+  return Vtu(input).read();
+}
+
+}  // namespace octafront::io

@@ -1,0 +1,110 @@
+#include "io/atomic_file.h"
+
+#include <octafront/error.h>
+#include <octafront/io.h>
+
+#include "small_files.h"
+
+#include <csignal>
+#include <filesystem>
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace octafront::io {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::file_bytes;
+using testing::TemporaryFolder;
+
+std::size_t files_in(const fs::path& folder) {
+  return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+}
+
+TEST(AtomicFile, AppearsOnlyWhenCommitted) {
+  const TemporaryFolder folder;
+  const auto target = folder / "a.txt";
+  testing::write_bytes(target, "old");
+  {
+    AtomicFile file(target);
+    file.write("new");
+    EXPECT_EQ(file_bytes(target), "old");
+  }
+  EXPECT_EQ(file_bytes(target), "old");
+  EXPECT_EQ(files_in(folder.path()), 1U);
+  AtomicFile file(target);
+  file.write("new");
+  file.commit();
+  EXPECT_EQ(file_bytes(target), "new");
+  EXPECT_EQ(files_in(folder.path()), 1U);
+}
+
+TEST(AtomicFile, OverwritesWhatWasWritten) {
+  const TemporaryFolder folder;
+  const std::string large(1 << 20, 'x');
+  AtomicFile file(folder / "a");
+  file.write("0000");
+  file.write(large);
+  file.write("end");
+  file.overwrite(1, "12", 2);
+  EXPECT_EQ(file.position(), large.size() + 7);
+  file.commit();
+  EXPECT_EQ(file_bytes(folder / "a"), "0120" + large + "end");
+}
+
+TEST(AtomicFile, KeepsModeAndFollowsLinks) {
+  const TemporaryFolder folder;
+  testing::write_bytes(folder / "real", "old");
+  ::chmod((folder / "real").c_str(), 0640);
+  fs::create_symlink("real", folder / "link");
+  AtomicFile file(folder / "link");
+  file.write("new");
+  file.commit();
+  EXPECT_TRUE(fs::is_symlink(folder / "link"));
+  EXPECT_EQ(file_bytes(folder / "real"), "new");
+  EXPECT_EQ(static_cast<unsigned>(fs::status(folder / "real").permissions()), 0640U);
+}
+
+std::string output_error(const std::function<void()>& write) {
+  try {
+    write();
+  } catch (const OutputError& error) {
+    return error.what();
+  }
+  ADD_FAILURE() << "no OutputError was thrown";
+  return {};
+}
+
+TEST(AtomicFile, SaysWhyItCannotWrite) {
+  const TemporaryFolder folder;
+  EXPECT_NE(output_error([&] { AtomicFile(folder / "none/a"); }).find("no folder"), std::string::npos);
+  EXPECT_NE(output_error([&] { AtomicFile{folder.path()}; }).find("it is a folder"), std::string::npos);
+  EXPECT_NE(output_error([&] { AtomicFile("/dev/null"); }).find("not a plain file"), std::string::npos);
+  EXPECT_NE(output_error([&] { check_mesh_target(folder / "a.docx"); }).find(".vtu, .msh, .mesh"), std::string::npos);
+  EXPECT_NE(output_error([&] { check_surface_target(folder / "a"); }).find(".stl, .obj, .off, .ply"),
+            std::string::npos);
+}
+
+TEST(AtomicFile, AFullDiskLeavesTheOldFile) {
+  const TemporaryFolder folder;
+  const auto target = folder / "a.mesh";
+  testing::write_bytes(target, "old");
+  // A limit on the size of files fails like a full disk.
+  rlimit before{};
+  getrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, SIG_IGN);
+  rlimit small = before;
+  small.rlim_cur = 100;
+  setrlimit(RLIMIT_FSIZE, &small);
+  const std::string message = output_error([&] { write_mesh(target, testing::two_tets()); });
+  setrlimit(RLIMIT_FSIZE, &before);
+  EXPECT_NE(message.find("File too large"), std::string::npos) << message;
+  EXPECT_EQ(file_bytes(target), "old");
+  EXPECT_EQ(files_in(folder.path()), 1U);
+}
+
+}  // namespace
+}  // namespace octafront::io
