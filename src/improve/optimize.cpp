@@ -31,7 +31,7 @@ class VertexOptimizer {
     if (worst >= threshold) return false;
     const float start = worst;
     Vec3 at = mesh_.point(v);
-    const double edge = mean_edge(at);
+    const double edge = star_.batch().mean_edge(at);
     double reach = kFirstReach * edge * edge;
     bool moved = false;
     for (int step = 0; step < kSteps; ++step) {
@@ -60,13 +60,6 @@ class VertexOptimizer {
   }
 
  private:
-  double mean_edge(Vec3 at) const {
-    double sum = 0;
-    const ShapeBatch& b = star_.batch();
-    for (int i = 0; i < b.size; ++i) sum += distance(at, {b.corner[1][0][i], b.corner[1][1][i], b.corner[1][2][i]});
-    return sum / b.size;
-  }
-
   /// Scores and their gradients at `at`.
   void linearize(Vec3 at, double step) {
     star_.evaluate(at);

@@ -29,6 +29,10 @@ inline constexpr float kMeanRisesGuard = 0.6f;
 /// its neighbours, weighted by the length of the edges to them, if the rule allows.
 PassResult laplacian_sweeps(EditMesh& mesh, int sweeps, double relaxation, MoveRule rule, const RunContext& context);
 
+/// Sweeps over the inner vertices: each goes towards where the sum of (1 - beta)^2 around it is least, if that falls
+/// and the worst score around it rises or stays above kMeanRisesGuard.
+PassResult smooth_mean(EditMesh& mesh, int sweeps, const RunContext& context);
+
 /// Removes edges (up to a ring of kLongestRing tetrahedra, by dynamic programming) and faces (2-3 flips) of the
 /// elements with a score below `threshold`, wherever the worst score of the changed place rises; goes on with what it
 /// made.

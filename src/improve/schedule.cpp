@@ -22,6 +22,7 @@ class Schedule {
   void laplacian(int sweeps, double relaxation, MoveRule rule) {
     note("laplacian moves", laplacian_sweeps(mesh_, sweeps, relaxation, rule, context_));
   }
+  void smooth_mean(int sweeps) { note("moves for the mean", improve::smooth_mean(mesh_, sweeps, context_)); }
   void flips(float threshold) { note("reconnections", reconnect(mesh_, threshold, context_)); }
   void optimize(float threshold) { note("optimised vertices", optimize_vertices(mesh_, threshold, context_)); }
 
@@ -43,23 +44,55 @@ class Schedule {
   int passes_ = 0;
 };
 
-/// Scores below which elements are worked on, first on the plain mesh, then after smoothing.
-constexpr float kFlipThreshold = 0.5f;
-constexpr float kOptimizeThreshold = 0.5f;
+/// Scores below which elements are worked on. The reference elements of shape.h have .45; .6 is about 30 degrees.
+constexpr float kWanted = 0.6f, kWantedBest = 0.65f;
+/// Reconnection below this serves the mean.
+constexpr float kGood = 0.8f;
+
+void run_fast(Schedule& run, const ImproveOptions& options) {
+  run.laplacian(2, options.relaxation, MoveRule::kMeanRises);
+  run.flips(kWanted);
+  run.optimize(kWanted);
+  run.flips(kWanted);
+}
+
+void run_default(Schedule& run, const ImproveOptions& options) {
+  run.laplacian(2, options.relaxation, MoveRule::kMeanRises);
+  run.flips(kWanted);
+  run.smooth_mean(2);
+  run.flips(kWanted);
+  for (int round = 0; round < 3; ++round) {
+    run.optimize(kWanted);
+    run.flips(kWanted);
+  }
+}
+
+void run_best(Schedule& run, const ImproveOptions& options) {
+  run.laplacian(2, options.relaxation, MoveRule::kMeanRises);
+  run.flips(kWantedBest);
+  for (int round = 0; round < 4; ++round) {
+    run.smooth_mean(2);
+    run.flips(kGood);
+  }
+  run.smooth_mean(2);
+  for (int round = 0; round < 5; ++round) {
+    run.optimize(kWantedBest);
+    run.flips(kWantedBest);
+  }
+}
 
 void run_schedule(Schedule& run, const ImproveOptions& options) {
-  using Level = ImproveOptions::Level;
-  if (options.level == Level::kPaper) {
-    run.laplacian(options.sweeps, options.relaxation, MoveRule::kWorstRises);
-    return;
-  }
-  const int rounds = options.level == Level::kFast ? 1 : options.level == Level::kDefault ? 3 : 8;
-  run.flips(kFlipThreshold);
-  run.laplacian(2, options.relaxation, MoveRule::kMeanRises);
-  run.flips(kFlipThreshold);
-  for (int round = 0; round < rounds; ++round) {
-    run.optimize(kOptimizeThreshold);
-    run.flips(kFlipThreshold);
+  switch (options.level) {
+    case ImproveOptions::Level::kNone:
+      return;
+    case ImproveOptions::Level::kPaper:
+      return run.laplacian(options.sweeps, options.relaxation, MoveRule::kWorstRises);
+    case ImproveOptions::Level::kFast:
+      return run_fast(run, options);
+    case ImproveOptions::Level::kDefault:
+      return run_default(run, options);
+    case ImproveOptions::Level::kBest:
+      return run_best(run, options);
   }
 }
 

@@ -19,20 +19,36 @@ OCTAFRONT_INLINE double lesser(double a, double b) {
   return a < b ? a : b;
 }
 
+constexpr double kTiny = 1e-300;  // keeps flat elements from dividing zero by zero
+
+/// Twice the areas of the four faces of an element, with their inward normals, and what beta is made of.
+struct Faces {
+  Vec3 na, nb, nc, nd;
+  double la, lb, lc, ld;
+};
+
+OCTAFRONT_INLINE Faces faces_of_edges(Vec3 u, Vec3 v, Vec3 w) {
+  Faces f;
+  f.nb = cross(v, w), f.nc = cross(w, u), f.nd = cross(u, v);
+  f.na = -(f.nb + f.nc + f.nd);  // area normals of a closed surface sum to zero
+  f.la = std::sqrt(squared_length(f.na) + kTiny), f.lb = std::sqrt(squared_length(f.nb) + kTiny);
+  f.lc = std::sqrt(squared_length(f.nc) + kTiny), f.ld = std::sqrt(squared_length(f.nd) + kTiny);
+  return f;
+}
+
+OCTAFRONT_INLINE double beta_of(const Faces& f, Vec3 u, Vec3 v, Vec3 w) {
+  const double det = dot(f.nd, w);
+  const Vec3 center = squared_length(u) * f.nb + squared_length(v) * f.nc + squared_length(w) * f.nd;
+  return 6 * det * std::abs(det) / ((f.la + f.lb + f.lc + f.ld) * std::sqrt(squared_length(center) + kTiny));
+}
+
 OCTAFRONT_INLINE void shape_of_edges(Vec3 u, Vec3 v, Vec3 w, double& beta, double& small, double& large,
                                      double& quality) {
-  // Inward area normals of the faces opposite the four corners; those of a closed surface sum to zero.
-  const Vec3 nb = cross(v, w), nc = cross(w, u), nd = cross(u, v), na = -(nb + nc + nd);
-  const double det = dot(nd, w);
-  constexpr double kTiny = 1e-300;  // keeps flat elements from dividing zero by zero
-  const double la = std::sqrt(squared_length(na) + kTiny), lb = std::sqrt(squared_length(nb) + kTiny),
-               lc = std::sqrt(squared_length(nc) + kTiny), ld = std::sqrt(squared_length(nd) + kTiny);
-  const Vec3 center = squared_length(u) * nb + squared_length(v) * nc + squared_length(w) * nd;
-  const double radius = std::sqrt(squared_length(center) + kTiny);
-  beta = 6 * det * std::abs(det) / ((la + lb + lc + ld) * radius);
-  const double ia = 1 / la, ib = 1 / lb, ic = 1 / lc, id = 1 / ld;
-  const double ab = dot(na, nb) * (ia * ib), ac = dot(na, nc) * (ia * ic), ad = dot(na, nd) * (ia * id),
-               bc = dot(nb, nc) * (ib * ic), bd = dot(nb, nd) * (ib * id), cd = dot(nc, nd) * (ic * id);
+  const Faces f = faces_of_edges(u, v, w);
+  beta = beta_of(f, u, v, w);
+  const double ia = 1 / f.la, ib = 1 / f.lb, ic = 1 / f.lc, id = 1 / f.ld;
+  const double ab = dot(f.na, f.nb) * (ia * ib), ac = dot(f.na, f.nc) * (ia * ic), ad = dot(f.na, f.nd) * (ia * id),
+               bc = dot(f.nb, f.nc) * (ib * ic), bd = dot(f.nb, f.nd) * (ib * id), cd = dot(f.nc, f.nd) * (ic * id);
   // The cosine of a dihedral angle is minus the product of the unit normals.
   small = 1 + lesser(lesser(lesser(ab, ac), lesser(ad, bc)), lesser(bd, cd));
   large = 1 - greater(greater(greater(ab, ac), greater(ad, bc)), greater(bd, cd));
@@ -50,6 +66,17 @@ OCTAFRONT_INLINE void star_kernel(ShapeBatch& s, Vec3 apex) {
   }
 }
 
+OCTAFRONT_INLINE void star_beta_kernel(ShapeBatch& s, Vec3 apex) {
+  const int n = s.size;
+  for (int i = 0; i < n; ++i) {
+    const Vec3 b{s.corner[1][0][i], s.corner[1][1][i], s.corner[1][2][i]};
+    const Vec3 c{s.corner[2][0][i], s.corner[2][1][i], s.corner[2][2][i]};
+    const Vec3 d{s.corner[3][0][i], s.corner[3][1][i], s.corner[3][2][i]};
+    const Vec3 u = b - apex, v = c - apex, w = d - apex;
+    s.beta[i] = beta_of(faces_of_edges(u, v, w), u, v, w);
+  }
+}
+
 OCTAFRONT_INLINE void element_kernel(ShapeBatch& s) {
   const int n = s.size;
   for (int i = 0; i < n; ++i) {
@@ -63,11 +90,15 @@ OCTAFRONT_INLINE void element_kernel(ShapeBatch& s) {
 
 struct Kernels {
   void (*star)(ShapeBatch&, Vec3);
+  void (*star_beta)(ShapeBatch&, Vec3);
   void (*elements)(ShapeBatch&);
 };
 
 void star_plain(ShapeBatch& s, Vec3 apex) {
   star_kernel(s, apex);
+}
+void star_beta_plain(ShapeBatch& s, Vec3 apex) {
+  star_beta_kernel(s, apex);
 }
 void elements_plain(ShapeBatch& s) {
   element_kernel(s);
@@ -77,18 +108,21 @@ void elements_plain(ShapeBatch& s) {
 __attribute__((target("avx2"))) void star_avx2(ShapeBatch& s, Vec3 apex) {
   star_kernel(s, apex);
 }
+__attribute__((target("avx2"))) void star_beta_avx2(ShapeBatch& s, Vec3 apex) {
+  star_beta_kernel(s, apex);
+}
 __attribute__((target("avx2"))) void elements_avx2(ShapeBatch& s) {
   element_kernel(s);
 }
 
 Kernels best_kernels() {
   __builtin_cpu_init();
-  if (__builtin_cpu_supports("avx2")) return {star_avx2, elements_avx2};
-  return {star_plain, elements_plain};
+  if (__builtin_cpu_supports("avx2")) return {star_avx2, star_beta_avx2, elements_avx2};
+  return {star_plain, star_beta_plain, elements_plain};
 }
 #else
 Kernels best_kernels() {
-  return {star_plain, elements_plain};
+  return {star_plain, star_beta_plain, elements_plain};
 }
 #endif
 
@@ -104,10 +138,24 @@ void ShapeBatch::evaluate() {
   kKernels.elements(*this);
 }
 
-Floor ShapeBatch::floor() const {
-  Floor f;
-  for (int i = 0; i < size; ++i) f.add(shape(i));
-  return f;
+double ShapeBatch::deficit() const {
+  double sum[4] = {0, 0, 0, 0};
+  int i = 0;
+  for (; i + 4 <= size; i += 4)
+    for (int k = 0; k < 4; ++k) sum[k] += (1 - beta[i + k]) * (1 - beta[i + k]);
+  for (int k = 0; i < size; ++i, ++k) sum[k] += (1 - beta[i]) * (1 - beta[i]);
+  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+}
+
+double ShapeBatch::deficit_at(Vec3 apex) {
+  kKernels.star_beta(*this, apex);
+  return deficit();
+}
+
+double ShapeBatch::mean_edge(Vec3 apex) const {
+  double sum = 0;
+  for (int i = 0; i < size; ++i) sum += distance(apex, {corner[1][0][i], corner[1][1][i], corner[1][2][i]});
+  return sum / size;
 }
 
 Shape shape_of(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {

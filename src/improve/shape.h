@@ -74,7 +74,12 @@ struct ShapeBatch {
     return {static_cast<float>(beta[i]), static_cast<float>(small[i]), static_cast<float>(large[i]),
             static_cast<float>(quality[i])};
   }
-  Floor floor() const;
+  /// Sum of (1 - beta)^2, in a fixed order.
+  double deficit() const;
+  /// The same for corner 0 at `apex`, evaluating nothing but beta: half the cost of evaluate_star().
+  double deficit_at(Vec3 apex);
+  /// Mean distance of `apex` from the corners of the opposite faces.
+  double mean_edge(Vec3 apex) const;
 
  private:
   void set(int k, Vec3 p) {

@@ -75,10 +75,10 @@ TEST(EditMesh, FindsStarsAndRings) {
 
 TEST(Shape, AgreesWithTheMeasuresOfTheLibrary) {
   const TetMesh mesh = perturbed(kuhn_cube(3), 0.5, 3);
-  EditMesh edit{TetMesh{mesh}};
-  for (TetIndex t = 0; t < mesh.tets.size(); ++t) {
-    const Tet& c = mesh.tets[t];
-    const Vec3 a = mesh.points[c[0]], b = mesh.points[c[1]], p = mesh.points[c[2]], q = mesh.points[c[3]];
+  const EditMesh edit{TetMesh{mesh}};
+  for (TetIndex t = 0; t < edit.slots(); ++t) {
+    const Tet& c = edit.tet(t);
+    const Vec3 a = edit.point(c[0]), b = edit.point(c[1]), p = edit.point(c[2]), q = edit.point(c[3]);
     const auto cosines = dihedral_cosines(a, b, p, q);
     EXPECT_NEAR(edit.shape(t).beta, tet_radius_ratio(a, b, p, q), 1e-6);
     EXPECT_NEAR(edit.shape(t).small, 1 - *std::max_element(cosines.begin(), cosines.end()), 1e-6);
@@ -128,6 +128,23 @@ TEST(Laplacian, RestoresAPerturbedGrid) {
   EXPECT_GT(worst_beta(after), 0.5);  // the grid itself has .717
 }
 
+TEST(SmoothMean, LowersTheSumOfSquaredDeficits) {
+  const TetMesh start = perturbed(kuhn_cube(6), 0.45, 5);
+  EditMesh edit{TetMesh{start}};
+  const auto deficit = [&] {
+    double sum = 0;
+    for (TetIndex t = 0; t < edit.slots(); ++t) sum += (1 - edit.shape(t).beta) * (1 - edit.shape(t).beta);
+    return sum;
+  };
+  double before = deficit();
+  for (int sweep = 0; sweep < 4; ++sweep) {
+    EXPECT_GT(smooth_mean(edit, 1, {}).done, 0u);
+    EXPECT_LT(deficit(), before);
+    before = deficit();
+  }
+  expect_laws(start, edit.release());
+}
+
 TEST(Passes, LeaveAValidMeshWhoseWorstIsNoWorse) {
   for (std::uint32_t seed = 1; seed <= 12; ++seed) {
     SCOPED_TRACE(seed);
@@ -144,6 +161,7 @@ TEST(Passes, LeaveAValidMeshWhoseWorstIsNoWorse) {
     for (int round = 0; round < 3; ++round) {
       run([&] { laplacian_sweeps(edit, 1, 0.7, round % 2 ? MoveRule::kMeanRises : MoveRule::kWorstRises, {}); });
       run([&] { reconnect(edit, 0.6f, {}); });
+      run([&] { smooth_mean(edit, 1, {}); });
       run([&] { optimize_vertices(edit, 0.6f, {}); });
     }
     const TetMesh after = edit.release();
