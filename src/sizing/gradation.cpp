@@ -1,4 +1,4 @@
-// Exact gradation of a trilinear field by a front that rises like water.
+// Exact gradation of a trilinear field.
 //
 // Along x the derivative of a trilinear function does not depend on x and is bilinear in y and z; so |grad h|^2 is
 // convex along each axis and takes its largest value over a leaf at one of the eight corners. There the gradient is
@@ -9,189 +9,248 @@
 //
 // (Bounds on single edges do not give that: three edges of slope g at one corner have a gradient of sqrt(3) g.)
 //
-// Which values to lower where (*) fails is a choice; ours treats all alike. Let a level t rise from 0, and all corners
-// with it, each until it is stopped for good: by its cap, or because a constraint (*) that it takes part in would break
-// if it rose further. At any time min(h, t) obeys (*), so the end result does. Corners stop in the order of their
-// values: this is Dijkstra's algorithm with (*) in place of edge lengths. In one constraint the corners that still rise
-// are at t and the others at their values, hanging corners are combinations of both, hence (*) is a quadratic
-// inequality in t. Its larger root can grow while corners stop (a neighbour that stopped early leaves the others more
-// room), so it is computed anew when a corner's turn comes.
+// Three steps. A shortest-path sweep over the corners, along edges and diagonals of leaves, gives values that are too
+// large by up to that factor near single small sizes, and nearly right elsewhere. Then leaves are visited from small to
+// large sizes, and where (*) fails the highest of the four values are cut off at the level at which it holds; a few
+// rounds suffice, since every cut is made by smaller values, which are settled before. What is left (below kTolerance)
+// is removed by shrinking all differences by one factor. (Stopping corners exactly, in the order of their values, while
+// a level rises needs no last step, but each corner has to be asked several times: twenty times slower.)
 
 #include "sizing/gradation.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <numbers>
 #include <queue>
 
 namespace octafront {
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Keeps (*) true in spite of rounding.
 constexpr double kSafety = 1 - 1e-9;
+/// Slopes that exceed the gradation by less are left to the last step, which takes as much off all differences of size.
+constexpr double kTolerance = 1e-3;
+/// Rounds end when nothing exceeds it; this bound is never met in practice, and what exceeds it then is shrunk away
+/// too.
+constexpr int kMostRounds = 60;
+/// Hanging corners of one leaf that share a free corner can move each other in circles; after these rounds all that
+/// lies behind a hanging corner is cut at the level.
+constexpr int kGentleRounds = 6;
 
-class RisingFront {
+class Grader {
  public:
-  RisingFront(const Octree& tree, const OctreeCorners& corners, const std::vector<double>& caps, double gradation,
-              double ceiling)
-      : tree_(tree),
-        corners_(corners),
-        caps_(caps),
-        slope_(gradation * kSafety),
-        ceiling_(ceiling),
-        value_(corners.size(), ceiling),
-        stopped_(corners.size(), 0) {
-    collect_leaves();
+  Grader(const Octree& tree, const OctreeCorners& corners, const std::vector<double>& caps, double gradation,
+         double ceiling)
+      : tree_(tree), corners_(corners), slope_(gradation * kSafety), value_(corners.size()) {
+    for (std::size_t c = 0; c < value_.size(); ++c) value_[c] = std::min(caps[c], ceiling);
   }
 
   std::vector<double> run(const RunContext& context) {
-    for (std::uint32_t c = 0; c < corners_.size(); ++c) {
-      if (!corners_.hangs(c) && caps_[c] < ceiling_) propose(c, caps_[c]);
+    sweep_shortest_paths(context);
+    order_leaves();
+    changed_.assign(value_.size(), 0);
+    for (int round = 1; round <= kMostRounds; ++round) {
+      context.check();
+      if (!cut_steep_leaves(round)) break;
     }
-    for (std::size_t steps = 0; !heap_.empty(); ++steps) {
-      if (steps % 4096 == 0) context.check();
-      const Proposal p = heap_.top();
-      heap_.pop();
-      if (stopped_[p.corner] || p.level > value_[p.corner]) continue;
-      level_ = std::max(level_, p.level);
-      if (p.level < caps_[p.corner]) {
-        const double room = std::min({room_of(p.corner), caps_[p.corner], ceiling_});
-        if (room > p.level * (1 + 1e-12)) {
-          value_[p.corner] = ceiling_;
-          propose(p.corner, room);
-          continue;
-        }
-      }
-      stop(p.corner);
-    }
-    for (std::uint32_t c = 0; c < corners_.size(); ++c) {
-      if (corners_.hangs(c)) value_[c] = interpolated(c);
-    }
+    shrink();
+    for (std::uint32_t c = 0; c < value_.size(); ++c) value_[c] = at(c);
     return std::move(value_);
   }
 
  private:
-  struct Proposal {
-    double level;
-    std::uint32_t corner;
-    bool operator<(const Proposal& b) const { return level != b.level ? level > b.level : corner > b.corner; }
-  };
-  /// h of a leaf's corner as a function of the level: fixed + rising * t.
-  struct Line {
-    double fixed, rising;
-  };
-
-  template <class Visit>
-  void for_each_share(std::uint32_t corner, Visit&& visit) const {
-    if (!corners_.hangs(corner)) return visit(corner, 1.0);
-    for (const OctreeCorners::Share& s : corners_.shares_of(corner)) visit(s.corner, s.weight);
-  }
-
-  /// leaves_[first_leaf_[c] ... first_leaf_[c + 1]): the leaves whose corners depend on the free corner c.
-  void collect_leaves() {
-    std::vector<std::uint32_t> last(corners_.size(), ~0u);
-    first_leaf_.assign(corners_.size() + 1, 0);
-    const auto visit_pairs = [&](auto&& visit) {
-      std::fill(last.begin(), last.end(), ~0u);
-      for (std::uint32_t l = 0; l < tree_.size(); ++l) {
-        for (const std::uint32_t corner : corners_.of_leaf[l]) {
-          for_each_share(corner, [&](std::uint32_t free, double) {
-            if (last[free] == l) return;
-            last[free] = l;
-            visit(free, l);
-          });
-        }
-      }
-    };
-    visit_pairs([&](std::uint32_t free, std::uint32_t) { ++first_leaf_[free + 1]; });
-    for (std::size_t c = 0; c < corners_.size(); ++c) first_leaf_[c + 1] += first_leaf_[c];
-    leaves_.resize(first_leaf_.back());
-    std::vector<std::uint32_t> next(first_leaf_.begin(), first_leaf_.end() - 1);
-    visit_pairs([&](std::uint32_t free, std::uint32_t l) { leaves_[next[free]++] = l; });
-  }
-
-  double interpolated(std::uint32_t corner) const {
+  double at(std::uint32_t corner) const {
+    if (!corners_.hangs(corner)) return value_[corner];
     double sum = 0;
     for (const OctreeCorners::Share& s : corners_.shares_of(corner)) sum += s.weight * value_[s.corner];
     return sum;
   }
 
-  void propose(std::uint32_t corner, double level) {
-    if (stopped_[corner] || !(level < value_[corner])) return;
-    value_[corner] = level;
-    heap_.push({level, corner});
-  }
+  // --- shortest paths: Dijkstra with sources everywhere; hanging corners take part like others here
 
-  /// The level at which the constraint of corner c of a leaf becomes an equality.
-  static double level_of_equality(const std::array<Line, 8>& h, int c, double bound) {
-    double a = 0, b = 0, rest = -bound * bound;
-    for (int axis = 1; axis < 8; axis *= 2) {
-      const double fixed = h[c ^ axis].fixed - h[c].fixed, rising = h[c ^ axis].rising - h[c].rising;
-      a += rising * rising;
-      b += rising * fixed;
-      rest += fixed * fixed;
+  struct Label {
+    double value;
+    std::uint32_t corner;
+    bool operator<(const Label& b) const { return value != b.value ? value > b.value : corner > b.corner; }
+  };
+
+  void collect_leaves() {
+    first_leaf_.assign(corners_.size() + 1, 0);
+    for (const auto& leaf : corners_.of_leaf) {
+      for (const std::uint32_t c : leaf) ++first_leaf_[c + 1];
     }
-    if (a == 0) return kInfinity;
-    return (std::sqrt(std::max(0.0, b * b - a * rest)) - b) / a;
+    for (std::size_t c = 0; c < corners_.size(); ++c) first_leaf_[c + 1] += first_leaf_[c];
+    leaves_.resize(first_leaf_.back());
+    std::vector<std::uint32_t> next(first_leaf_.begin(), first_leaf_.end() - 1);
+    for (std::uint32_t l = 0; l < tree_.size(); ++l) {
+      for (std::uint32_t k = 0; k < 8; ++k) leaves_[next[corners_.of_leaf[l][k]]++] = 8 * l + k;
+    }
   }
 
-  /// For each corner of the leaf: the level at which the first of the constraints that it is part of binds. False if
-  /// nothing in the leaf rises any more.
-  bool rooms_in(std::uint32_t leaf, std::array<double, 8>& room) const {
-    std::array<Line, 8> h;
-    bool rising = false;
-    for (int k = 0; k < 8; ++k) {
-      h[k] = {0, 0};
-      for_each_share(corners_.of_leaf[leaf][k], [&](std::uint32_t free, double weight) {
-        (stopped_[free] ? h[k].fixed : h[k].rising) += stopped_[free] ? weight * value_[free] : weight;
+  /// Calls visit(corner, value) for each corner that `from` shares a leaf with and that its value limits.
+  template <class Visit>
+  void for_each_limited(std::uint32_t from, Visit&& visit) const {
+    constexpr double kLength[4] = {0, 1, std::numbers::sqrt2, std::numbers::sqrt3};
+    for (std::uint32_t i = first_leaf_[from]; i < first_leaf_[from + 1]; ++i) {
+      const std::uint32_t leaf = leaves_[i] / 8, k = leaves_[i] % 8;
+      const double rise = slope_ / (1u << tree_.leaf(leaf).level());
+      for (std::uint32_t d = 1; d < 8; ++d) {
+        const std::uint32_t to = corners_.of_leaf[leaf][k ^ d];
+        const double v = value_[from] + rise * kLength[(d & 1) + (d >> 1 & 1) + (d >> 2)];
+        if (v < value_[to]) visit(to, v);
+      }
+    }
+  }
+
+  void sweep_shortest_paths(const RunContext& context) {
+    collect_leaves();
+    std::vector<Label> start;
+    for (std::uint32_t c = 0; c < value_.size(); ++c) {
+      bool limits = false;
+      for_each_limited(c, [&](std::uint32_t, double) { limits = true; });
+      if (limits) start.push_back({value_[c], c});
+    }
+    std::priority_queue<Label> heap(std::less<Label>(), std::move(start));
+    for (std::size_t steps = 0; !heap.empty(); ++steps) {
+      if (steps % 4096 == 0) context.check();
+      const Label label = heap.top();
+      heap.pop();
+      if (label.value > value_[label.corner]) continue;
+      for_each_limited(label.corner, [&](std::uint32_t to, double v) {
+        value_[to] = v;
+        heap.push({v, to});
       });
-      rising = rising || h[k].rising > 0;
     }
-    if (!rising) return false;
-    room.fill(kInfinity);
-    const double bound = slope_ / (1u << tree_.leaf(leaf).level());
-    for (int c = 0; c < 8; ++c) {
-      const double t = std::max(level_, level_of_equality(h, c, bound));
-      for (const int k : {c, c ^ 1, c ^ 2, c ^ 4}) room[k] = std::min(room[k], t);
-    }
-    return true;
   }
 
-  double room_of(std::uint32_t corner) const {
-    double least = kInfinity;
-    std::array<double, 8> room;
-    for (std::uint32_t i = first_leaf_[corner]; i < first_leaf_[corner + 1]; ++i) {
-      if (!rooms_in(leaves_[i], room)) continue;
-      for (int k = 0; k < 8; ++k) {
-        for_each_share(corners_.of_leaf[leaves_[i]][k], [&](std::uint32_t free, double) {
-          if (free == corner) least = std::min(least, room[k]);
-        });
-      }
+  // --- cuts
+
+  /// Leaves in the order of their smallest corner.
+  void order_leaves() {
+    std::vector<std::pair<double, std::uint32_t>> order(tree_.size());
+    for (std::uint32_t l = 0; l < tree_.size(); ++l) {
+      double least = value_[corners_.of_leaf[l][0]];
+      for (const std::uint32_t c : corners_.of_leaf[l]) least = std::min(least, value_[c]);
+      order[l] = {least, l};
     }
-    return least;
+    std::sort(order.begin(), order.end());
+    order_.resize(order.size());
+    for (std::size_t i = 0; i < order.size(); ++i) order_[i] = order[i].second;
+    plain_.resize(tree_.size());
+    for (std::size_t l = 0; l < tree_.size(); ++l) {
+      const auto& c = corners_.of_leaf[l];
+      plain_[l] = std::none_of(c.begin(), c.end(), [&](std::uint32_t k) { return corners_.hangs(k); });
+    }
   }
 
-  void stop(std::uint32_t corner) {
-    stopped_[corner] = 1;
-    std::array<double, 8> room;
-    for (std::uint32_t i = first_leaf_[corner]; i < first_leaf_[corner + 1]; ++i) {
-      if (!rooms_in(leaves_[i], room)) continue;
-      for (int k = 0; k < 8; ++k) {
-        for_each_share(corners_.of_leaf[leaves_[i]][k], [&](std::uint32_t free, double) { propose(free, room[k]); });
+  double bound_of(std::uint32_t leaf) const { return slope_ / (1u << tree_.leaf(leaf).level()); }
+
+  bool changed_since(std::uint32_t leaf, int round) const {
+    for (const std::uint32_t c : corners_.of_leaf[leaf]) {
+      if (changed_[c] >= round) return true;
+      for (const OctreeCorners::Share& s : corners_.shares_of(c)) {
+        if (changed_[s.corner] >= round) return true;
       }
     }
+    return false;
+  }
+
+  static double squared_slope(const std::array<double, 8>& h, int c) {
+    const double x = h[c ^ 1] - h[c], y = h[c ^ 2] - h[c], z = h[c ^ 4] - h[c];
+    return x * x + y * y + z * z;
+  }
+
+  std::array<double, 8> values_of(std::uint32_t leaf) const {
+    std::array<double, 8> h;
+    const auto& corner = corners_.of_leaf[leaf];
+    for (int k = 0; k < 8; ++k) h[k] = plain_[leaf] ? value_[corner[k]] : at(corner[k]);
+    return h;
+  }
+
+  /// True if anything was cut.
+  bool cut_steep_leaves(int round) {
+    bool any = false;
+    for (const std::uint32_t leaf : order_) {
+      if (!changed_since(leaf, round - 1)) continue;
+      const double bound = bound_of(leaf), tolerated = bound * bound * (1 + kTolerance) * (1 + kTolerance);
+      std::array<double, 8> h = values_of(leaf);
+      for (int c = 0; c < 8; ++c) {
+        if (squared_slope(h, c) <= tolerated) continue;
+        any = true;
+        cut(leaf, c, level_of_cut(h, c, bound), round, h);
+        h = values_of(leaf);
+      }
+    }
+    return any;
+  }
+
+  /// The level at which (*) holds with equality once the values above it are cut off there.
+  static double level_of_cut(const std::array<double, 8>& h, int c, double bound) {
+    std::array<double, 4> v{h[c], h[c ^ 1], h[c ^ 2], h[c ^ 4]};
+    std::array<double, 4> sorted = v;
+    std::sort(sorted.begin(), sorted.end());
+    for (int top = 3; top > 0; --top) {
+      // Values from sorted[top] on are at the level t, the others below it: a t^2 + 2 b t + rest = 0.
+      double a = 0, b = 0, rest = -bound * bound;
+      const bool center_rises = v[0] >= sorted[top];
+      for (int i = 1; i < 4; ++i) {
+        const bool rises = v[i] >= sorted[top];
+        const double fixed = (rises ? 0 : v[i]) - (center_rises ? 0 : v[0]);
+        const double rising = double(rises) - double(center_rises);
+        a += rising * rising;
+        b += rising * fixed;
+        rest += fixed * fixed;
+      }
+      if (a == 0) continue;
+      const double root = b * b - a * rest;
+      const double t = root < 0 ? -1 : (std::sqrt(root) - b) / a;
+      if (t >= sorted[top - 1]) return t;
+    }
+    return sorted[0];
+  }
+
+  void cut(std::uint32_t leaf, int c, double level, int round, const std::array<double, 8>& h) {
+    for (const int k : {c, c ^ 1, c ^ 2, c ^ 4}) {
+      if (h[k] <= level) continue;
+      const std::uint32_t corner = corners_.of_leaf[leaf][k];
+      if (!corners_.hangs(corner)) {
+        value_[corner] = level;
+        changed_[corner] = round;
+        continue;
+      }
+      // The shares above the level give way in proportion to what they are above it.
+      double above = 0;
+      for (const auto& s : corners_.shares_of(corner)) above += s.weight * std::max(0.0, value_[s.corner] - level);
+      const double part = round > kGentleRounds ? 1.0 : std::min(1.0, (at(corner) - level) / above);
+      for (const auto& s : corners_.shares_of(corner)) {
+        if (value_[s.corner] <= level) continue;
+        value_[s.corner] -= part * (value_[s.corner] - level);
+        changed_[s.corner] = round;
+      }
+    }
+  }
+
+  /// Takes out of all differences what still exceeds the slope.
+  void shrink() {
+    double steepest = 1;
+    for (std::uint32_t leaf = 0; leaf < tree_.size(); ++leaf) {
+      const std::array<double, 8> h = values_of(leaf);
+      const double bound = bound_of(leaf);
+      for (int c = 0; c < 8; ++c) steepest = std::max(steepest, squared_slope(h, c) / (bound * bound));
+    }
+    if (steepest == 1) return;
+    const double least = *std::min_element(value_.begin(), value_.end()), by = 1 / std::sqrt(steepest);
+    for (double& v : value_) v = least + (v - least) * by;
   }
 
   const Octree& tree_;
   const OctreeCorners& corners_;
-  const std::vector<double>& caps_;
-  double slope_, ceiling_, level_ = 0;
-  std::vector<double> value_;  ///< the final value, or the lowest proposal so far
-  std::vector<std::uint8_t> stopped_;
-  std::vector<std::uint32_t> first_leaf_, leaves_;
-  std::priority_queue<Proposal> heap_;
+  double slope_;
+  std::vector<double> value_;
+  std::vector<int> changed_;  ///< per corner: the round of its last cut
+  std::vector<std::uint8_t> plain_;
+  std::vector<std::uint32_t> first_leaf_, leaves_, order_;
 };
 
 }  // namespace
@@ -199,7 +258,7 @@ class RisingFront {
 std::vector<double> graded_corner_values(const Octree& tree, const OctreeCorners& corners,
                                          const std::vector<double>& caps, double gradation, double ceiling,
                                          const RunContext& context) {
-  return RisingFront(tree, corners, caps, gradation, ceiling).run(context);
+  return Grader(tree, corners, caps, gradation, ceiling).run(context);
 }
 
 }  // namespace octafront
