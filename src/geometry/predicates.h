@@ -22,20 +22,38 @@ constexpr int sign(double x) {
 }
 }  // namespace detail
 
-/// Sign of ((b - a) x (c - a)) . (d - a): +1 if (a, b, c, d) is a positive tetrahedron (see tet_mesh.h), 0 if coplanar.
-inline int orient3d(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
+namespace detail {
+struct Orient3dEstimate {
+  double det, permanent;
+  // Shewchuk's bound A for this expression, (7 + 56 eps) eps with eps = 2^-53.
+  int certain_sign() const {
+    const double bound = 7.7715611723761027e-16 * permanent;
+    return (det > bound) - (det < -bound);
+  }
+};
+
+inline Orient3dEstimate orient3d_estimate(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
   const Vec3 u = b - a, v = c - a, w = d - a;
   const double vw = v.y * w.z, wv = v.z * w.y, vx = v.z * w.x, xv = v.x * w.z, vy = v.x * w.y, yv = v.y * w.x;
-  const double det = u.x * (vw - wv) + u.y * (vx - xv) + u.z * (vy - yv);
-  const double permanent = std::abs(u.x) * (std::abs(vw) + std::abs(wv)) +
-                           std::abs(u.y) * (std::abs(vx) + std::abs(xv)) +
-                           std::abs(u.z) * (std::abs(vy) + std::abs(yv));
-  // Shewchuk's bound A for this expression, (7 + 56 eps) eps with eps = 2^-53.
-  const double bound = 7.7715611723761027e-16 * permanent;
-  if (det > bound) return 1;
-  if (det < -bound) return -1;
-  if (permanent == 0) return 0;  // all products vanish: common on axis-parallel planes
+  return {u.x * (vw - wv) + u.y * (vx - xv) + u.z * (vy - yv), std::abs(u.x) * (std::abs(vw) + std::abs(wv)) +
+                                                                   std::abs(u.y) * (std::abs(vx) + std::abs(xv)) +
+                                                                   std::abs(u.z) * (std::abs(vy) + std::abs(yv))};
+}
+}  // namespace detail
+
+/// Sign of ((b - a) x (c - a)) . (d - a): +1 if (a, b, c, d) is a positive tetrahedron (see tet_mesh.h), 0 if coplanar.
+inline int orient3d(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
+  const auto estimate = detail::orient3d_estimate(a, b, c, d);
+  const int certain = estimate.certain_sign();
+  if (certain != 0) return certain;
+  if (estimate.permanent == 0) return 0;  // all products vanish: common on axis-parallel planes
   return detail::orient3d_exact(a, b, c, d);
+}
+
+/// The sign of orient3d where floating point is sure of it, else 0: for tests that have a cheaper way out than the
+/// exact sign of nearly coplanar points.
+inline int orient3d_filter(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
+  return detail::orient3d_estimate(a, b, c, d).certain_sign();
 }
 
 /// Sign of the area of (a, b, c) in the plane: +1 counter-clockwise, 0 collinear.

@@ -102,28 +102,69 @@ bool some_edge_meets(const TriangleCorners& s, const std::array<int, 3>& side, c
   return false;
 }
 
+// Corners of a triangle in the order of its turns: the apex i, then the ends of the edge opposite it.
+struct Fan {
+  Vec3 apex, first, second;
+  Fan(const TriangleCorners& t, int i) : apex(t[i]), first(t[next(i)]), second(t[prev(i)]) {}
+};
+
+// True if, seen along an axis along which s is not degenerate, a line through the common apex separates the rest of two
+// triangles: an edge of s or an edge of t. Then they have only the apex in common; nearly coplanar neighbours end here.
+bool cones_apart_in_view(const Projection& view, const Fan& s, const Fan& t) {
+  if (view.turn == 0) return false;
+  const auto side_of_first = [&](Vec3 p) { return view.orient(s.apex, s.first, p) * view.turn; };
+  const auto side_of_second = [&](Vec3 p) { return view.orient(s.second, s.apex, p) * view.turn; };
+  if (side_of_first(t.first) < 0 && side_of_first(t.second) < 0) return true;
+  if (side_of_second(t.first) < 0 && side_of_second(t.second) < 0) return true;
+  const auto separates = [&](Vec3 end, Vec3 other) {
+    const int side = view.orient(t.apex, end, s.first);
+    return side != 0 && view.orient(t.apex, end, s.second) == side && view.orient(t.apex, end, other) * side <= 0;
+  };
+  return separates(t.first, t.second) || separates(t.second, t.first);
+}
+
+bool certainly_one_side(const TriangleCorners& t, Vec3 p, Vec3 q) {
+  const int side = orient3d_filter(t[0], t[1], t[2], p);
+  return side != 0 && side == orient3d_filter(t[0], t[1], t[2], q);
+}
+
 // Triangles that share corner s[i] = t[j]. If they share more, they share a segment from there to the far edge of one
 // of them, for both are cones over their far edges.
 bool conflict_beyond_corner(const TriangleCorners& s, int i, const TriangleCorners& t, int j) {
-  const Vec3 s1 = s[next(i)], s2 = s[prev(i)], t1 = t[next(j)], t2 = t[prev(j)];
-  const int side_t1 = orient3d(s[0], s[1], s[2], t1), side_t2 = orient3d(s[0], s[1], s[2], t2);
-  if (side_t1 * side_t2 > 0) return false;
-  const int side_s1 = orient3d(t[0], t[1], t[2], s1), side_s2 = orient3d(t[0], t[1], t[2], s2);
-  if (side_s1 * side_s2 > 0) return false;
-  return segment_meets(t1, side_t1, t2, side_t2, s) || segment_meets(s1, side_s1, s2, side_s2, t);
+  const Fan u(s, i), v(t, j);
+  if (certainly_one_side(s, v.first, v.second) || certainly_one_side(t, u.first, u.second)) return false;
+  if (cones_apart_in_view(projection_of(s), u, v)) return false;
+  const int side_v1 = orient3d(s[0], s[1], s[2], v.first), side_v2 = orient3d(s[0], s[1], s[2], v.second);
+  if (side_v1 * side_v2 > 0) return false;
+  const int side_u1 = orient3d(t[0], t[1], t[2], u.first), side_u2 = orient3d(t[0], t[1], t[2], u.second);
+  if (side_u1 * side_u2 > 0) return false;
+  return segment_meets(v.first, side_v1, v.second, side_v2, s) || segment_meets(u.first, side_u1, u.second, side_u2, t);
 }
 
-// Triangles that share the edges opposite s[i] and t[j].
+// Triangles that share the edges opposite s[i] and t[j]. On either side of the edge in any view, or not in one plane,
+// they have nothing else in common.
 bool conflict_beyond_edge(const TriangleCorners& s, int i, const TriangleCorners& t, int j) {
-  if (orient3d(s[0], s[1], s[2], t[j]) != 0) return false;
-  const Projection plane = projection_of(s);
-  return plane.orient(s[next(i)], s[prev(i)], t[j]) * plane.turn >= 0;
+  if (orient3d_filter(s[0], s[1], s[2], t[j]) != 0) return false;
+  const Projection view = projection_of(s);
+  if (view.orient(s[next(i)], s[prev(i)], t[j]) * view.turn < 0) return false;
+  return orient3d(s[0], s[1], s[2], t[j]) == 0;
+}
+
+// True if an edge of s, seen along an axis along which s is not degenerate, has all of t strictly outside.
+bool apart_in_view(const TriangleCorners& s, const TriangleCorners& t) {
+  const Projection view = projection_of(s);
+  return view.turn != 0 && edge_separates(view, s, view.turn, t);
+}
+
+bool certainly_one_side(const TriangleCorners& t, const TriangleCorners& points) {
+  return certainly_one_side(t, points[0], points[1]) && certainly_one_side(t, points[0], points[2]);
 }
 
 }  // namespace
 
 bool triangles_meet(const TriangleCorners& s, const TriangleCorners& t) {
   if (!boxes_meet(s, t)) return false;
+  if (certainly_one_side(s, t) || certainly_one_side(t, s) || apart_in_view(s, t)) return false;
   const auto t_side = sides_of_plane(s, t);
   if (strictly_one_side(t_side)) return false;
   const auto s_side = sides_of_plane(t, s);
