@@ -21,9 +21,12 @@ constexpr double kNearestCandidate = 0.1;
 /// sliver.
 constexpr double kLeastSizePerEdge = 0.45, kMostSizePerEdge = 2.0;
 
-/// Squared distance between the segments (p, p + u) and (q, q + v).
-double squared_segment_distance(Vec3 p, Vec3 u, Vec3 q, Vec3 v) {
-  const Vec3 w = p - q;
+/// The segments (p, p + u) and (q, q + v) come nearer to each other than the root of `squared`.
+bool segments_nearer_than(double squared, Vec3 p, Vec3 u, Vec3 q, Vec3 v) {
+  const Vec3 w = p - q, n = cross(u, v);
+  // The distance of the lines is a bound that needs no division and settles most.
+  const double volume = dot(w, n);
+  if (volume * volume > squared * squared_length(n)) return false;
   const double a = dot(u, u), b = dot(u, v), c = dot(v, v), d = dot(u, w), e = dot(v, w);
   const double det = a * c - b * b;
   double s = det > 1e-12 * a * c ? std::clamp((b * e - c * d) / det, 0.0, 1.0) : 0.0;
@@ -32,7 +35,7 @@ double squared_segment_distance(Vec3 p, Vec3 u, Vec3 q, Vec3 v) {
     t = std::clamp(t, 0.0, 1.0);
     s = std::clamp((b * t - d) / a, 0.0, 1.0);
   }
-  return squared_length(w + u * s - v * t);
+  return squared_length(w + u * s - v * t) < squared;
 }
 
 }  // namespace
@@ -161,7 +164,7 @@ bool Attempt::keeps_clear(Index apex, Vec3 apex_local, const Contact& contact, c
       const Vec3 a = near_.local(p), ab = near_.local(q) - a;
       for (Index i = 0; i < 3; ++i) {
         if (contact.edge[i] || p == i || q == i) continue;
-        if (squared_segment_distance(local_[i], apex_local - local_[i], a, ab) < least) return false;
+        if (segments_nearer_than(least, local_[i], apex_local - local_[i], a, ab)) return false;
       }
     }
   }

@@ -7,8 +7,8 @@
 namespace octafront {
 
 namespace {
-/// Cells of the index at level 0 in units of the smallest size; 1.5 to 2 is a flat optimum.
-constexpr double kCellPerSize = 1.8;
+/// Cells of the index at level 0 in units of the smallest size; 2 to 2.4 is a flat optimum.
+constexpr double kCellPerSize = 2.2;
 }  // namespace
 
 Front::Front(const Box3& domain, double finest_size) : domain_(domain), index_(domain, kCellPerSize * finest_size) {}

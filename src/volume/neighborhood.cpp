@@ -25,18 +25,41 @@ Neighborhood::Plane plane_through(Vec3 a, Vec3 b, Vec3 c) {
           static_cast<float>(dot(unit, a))};
 }
 
-Neighborhood::Index Neighborhood::local_index(const Front& front, VertexIndex v) {
-  const FrontVertex& vertex = front.vertex(v);
-  // vertex.local is only a hint: it holds if the vertex is really listed there.
-  if (vertex.local < vertex_.size() && vertex_[vertex.local] == v) return vertex.local;
-  vertex.local = size();
-  vertex_.push_back(v);
-  const Vec3 p = to_local(vertex.at);
-  x_.push_back(static_cast<float>(p.x));
-  y_.push_back(static_cast<float>(p.y));
-  z_.push_back(static_cast<float>(p.z));
-  return vertex.local;
-}
+/// Lists the vertices once each; grows by plain stores into arrays that are large enough beforehand.
+class Neighborhood::Listing {
+ public:
+  Listing(Neighborhood& near, const Front& front, std::size_t most)
+      : vertices_(front.vertices().data()), origin_(near.origin_), scale_(near.per_unit_) {
+    near.vertex_.resize(most);
+    near.x_.resize(most);
+    near.y_.resize(most);
+    near.z_.resize(most);
+    vertex_ = near.vertex_.data();
+    x_ = near.x_.data();
+    y_ = near.y_.data();
+    z_ = near.z_.data();
+  }
+  Index add(VertexIndex v) {
+    const FrontVertex& vertex = vertices_[v];
+    // vertex.local is only a hint: it holds if the vertex is really listed there.
+    if (vertex.local < size_ && vertex_[vertex.local] == v) return vertex.local;
+    vertex.local = size_;
+    vertex_[size_] = v;
+    x_[size_] = static_cast<float>((vertex.at.x - origin_.x) * scale_);
+    y_[size_] = static_cast<float>((vertex.at.y - origin_.y) * scale_);
+    z_[size_] = static_cast<float>((vertex.at.z - origin_.z) * scale_);
+    return size_++;
+  }
+  Index size() const { return size_; }
+
+ private:
+  const FrontVertex* vertices_;
+  Vec3 origin_;
+  double scale_;
+  VertexIndex* vertex_;
+  float *x_, *y_, *z_;
+  Index size_ = 0;
+};
 
 void Neighborhood::gather(const Front& front, FaceIndex base, const SearchRegion& region, double unit) {
   const Triangle& corners = front.corners(base);
@@ -44,26 +67,21 @@ void Neighborhood::gather(const Front& front, FaceIndex base, const SearchRegion
   unit_ = unit;
   per_unit_ = 1 / unit;
   found_.clear();
-  vertex_.clear();
-  x_.clear();
-  y_.clear();
-  z_.clear();
-  faces_.clear();
   front.index().find(region, found_);
   faces_found += found_.size();
-  for (const VertexIndex v : corners) local_index(front, v);
-  for (const auto& f : found_) {
-    if (f.face == base) continue;
-    faces_.push_back(
-        {{local_index(front, f.corners[0]), local_index(front, f.corners[1]), local_index(front, f.corners[2])},
-         f.face});
-  }
+  Listing listing(*this, front, 3 * found_.size() + 3);
+  for (const VertexIndex v : corners) listing.add(v);
+  faces_.clear();
+  for (const auto& f : found_)
+    if (f.face != base)
+      faces_.push_back({{listing.add(f.corners[0]), listing.add(f.corners[1]), listing.add(f.corners[2])}, f.face});
+  size_ = listing.size();
   float extent = 0;
-  for (Index i = 0; i < size(); ++i)
+  for (Index i = 0; i < size_; ++i)
     extent = std::max(extent, std::max(std::abs(x_[i]), std::max(std::abs(y_[i]), std::abs(z_[i]))));
   error_ = kErrorPerExtent * extent;
-  code_.resize(size());
-  base_code_.resize(size());
+  code_.resize(size_);
+  base_code_.resize(size_);
   const Vec3 a = to_local(front.at(corners[0])), b = to_local(front.at(corners[1])), c = to_local(front.at(corners[2]));
   drop_faces_behind(plane_through(a, c, b));
 }

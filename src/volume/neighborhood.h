@@ -35,7 +35,7 @@ class Neighborhood {
   /// Codes of all vertices against three planes.
   void classify(const std::array<Plane, 3>& planes, float margin);
 
-  Index size() const { return static_cast<Index>(vertex_.size()); }
+  Index size() const { return size_; }
   VertexIndex vertex(Index i) const { return vertex_[i]; }
   Vec3 local(Index i) const { return {x_[i], y_[i], z_[i]}; }
   Vec3 to_local(Vec3 p) const { return (p - origin_) * per_unit_; }
@@ -50,12 +50,13 @@ class Neighborhood {
   std::uint64_t faces_found = 0;  ///< over all calls
 
  private:
-  Index local_index(const Front& front, VertexIndex v);
+  class Listing;
   void drop_faces_behind(const Plane& base);
 
   Vec3 origin_;
   double unit_ = 1, per_unit_ = 1;
   float error_ = 0;
+  Index size_ = 0;  ///< of the arrays below, which may be longer
   std::vector<FrontIndex::Found> found_;
   std::vector<VertexIndex> vertex_;
   std::vector<float> x_, y_, z_;
