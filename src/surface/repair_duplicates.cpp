@@ -121,7 +121,12 @@ class Sheets {
   }
 
   void choose() {
-    for (std::uint32_t g = 0; g < groups_.size(); ++g) sheets_[g].stays = parent_[g] == g && sheets_[g].border.empty();
+    for (std::uint32_t g = 0; g < groups_.size(); ++g) {
+      Sheet& sheet = sheets_[g];
+      if (find(g) != g) continue;
+      // Where the input has no open edges, an odd number of layers is one too many to cancel out.
+      if (groups_[g].triangles.size() % 2 == 1 || sheet.border.empty()) change(sheet);
+    }
     // Each change leaves fewer odd edges, so this ends.
     for (bool changed = true; changed;) {
       changed = false;
@@ -143,11 +148,9 @@ class Sheets {
     for (const std::uint32_t e : sheet.border) edges_[e].odd = !edges_[e].odd;
   }
 
-  bool is_free(const Sheet& sheet) {
-    return std::all_of(sheet.border.begin(), sheet.border.end(), [&](std::uint32_t e) {
-      return edges_[e].singles == 0 &&
-             std::none_of(edges_[e].groups.begin(), edges_[e].groups.end(), [&](std::uint32_t g) { return stays(g); });
-    });
+  bool is_free(const Sheet& sheet) const {
+    return std::all_of(sheet.border.begin(), sheet.border.end(),
+                       [&](std::uint32_t e) { return edges_[e].singles == 0 && edges_[e].groups.size() == 1; });
   }
 
   /// Triangles that face like the group's first one, less those that face the other way.

@@ -278,6 +278,55 @@ TEST(Repair, PatchesAndFacesFollow) {
   }
 }
 
+/// Triangles between few points of a lattice: every kind of trouble at once.
+SurfaceMesh lattice_soup(std::mt19937& random) {
+  SurfaceMesh s;
+  const int points = 4 + static_cast<int>(random() % 30), side = 2 + static_cast<int>(random() % 3);
+  for (int k = 0; k < points; ++k)
+    s.points.push_back({double(random() % side), double(random() % side), double(random() % side)});
+  const int triangles = 1 + static_cast<int>(random() % 200);
+  for (int k = 0; k < triangles; ++k) {
+    Triangle t;
+    for (VertexIndex& v : t) v = static_cast<VertexIndex>(random() % points);
+    s.triangles.push_back(t);
+  }
+  return s;
+}
+
+TEST(Repair, OfAnySoupLeavesNothingToRepair) {
+  std::mt19937 random(6);
+  for (int round = 0; round < 300; ++round) {
+    const SurfaceMesh soup = lattice_soup(random);
+    const RepairedSurface once = repair_surface(soup);
+    const RepairedSurface twice = repair_surface(once.surface);
+    EXPECT_EQ(twice.surface, once.surface);
+    EXPECT_EQ(twice.bodies, once.bodies);
+    EXPECT_EQ(twice.cavities, once.cavities);
+    const SurfaceDefects defects = find_defects(once);
+    EXPECT_EQ(defects.degenerate_faces.count, 0u);
+    EXPECT_EQ(defects.clean(), defects.describe().empty());
+    std::set<std::set<VertexIndex>> faces;
+    for (const Triangle& t : once.surface.triangles) faces.insert({t[0], t[1], t[2]});
+    EXPECT_EQ(faces.size(), once.surface.triangles.size());
+  }
+}
+
+TEST(Repair, NeverOpensWhatHasOnlyEvenEdges) {
+  std::mt19937 random(7);
+  for (int round = 0; round < 300; ++round) {
+    // Sums of closed shells, however they touch, overlap or coincide, have an even number of faces at each edge.
+    SurfaceMesh s;
+    const int shells = 1 + static_cast<int>(random() % 6);
+    for (int k = 0; k < shells; ++k) {
+      const Vec3 shift{double(random() % 3), double(random() % 3), double(random() % 2)};
+      const SurfaceMesh cube = testing::transformed(testing::cube(1 + static_cast<int>(random() % 2)), 2, shift);
+      s = testing::joined(s, random() % 2 ? cube : testing::reversed(cube));
+    }
+    s.patch.clear();
+    EXPECT_EQ(find_defects(repair_surface(s)).open_edges.count, 0u);
+  }
+}
+
 TEST(Repair, EmptySurfaceStaysEmpty) {
   const RepairedSurface repaired = repair_surface({});
   EXPECT_TRUE(repaired.surface.triangles.empty());
