@@ -1,6 +1,7 @@
 #include "sizing/background_grid.h"
 
 #include "sizing/gradation.h"
+#include "sizing/inside_fraction.h"
 
 #include <algorithm>
 #include <limits>
@@ -19,7 +20,7 @@ constexpr double kPlainRatio = 1.02;
 struct Sample {
   OctreeKey cell;
   Vec3 p, n;
-  double h, reach;
+  double h, reach, area;
 };
 
 std::vector<Sample> sorted_samples(const RootCube& root, const std::vector<SizeSample>& samples) {
@@ -29,7 +30,8 @@ std::vector<Sample> sorted_samples(const RootCube& root, const std::vector<SizeS
   std::vector<Sample> sorted(samples.size());
   for (std::size_t k = 0; k < order.size(); ++k) {
     const SizeSample& s = samples[order[k].second];
-    sorted[k] = {order[k].first, (s.p - root.lo) / root.side, s.n, s.h / root.side, s.reach / root.side};
+    sorted[k] = {order[k].first,  (s.p - root.lo) / root.side, s.n,
+                 s.h / root.side, s.reach / root.side,         s.area / (root.side * root.side)};
   }
   return sorted;
 }
@@ -157,9 +159,12 @@ class GridMaker {
 
   /// Leaves that are too large for the graded sizes in them are divided. True if there are any.
   bool divide_by_field() {
+    const std::vector<double> inside = inside_fractions_of_samples();
     bool any = false;
     std::size_t next = 0;
     for (std::size_t l = 0; l < tree_.size(); ++l) {
+      if (inside[l] == 0 && !(next < samples_.size() && samples_[next].cell.id() <= tree_.leaf(l).range_max()))
+        continue;
       const std::uint64_t last = tree_.leaf(l).range_max();
       const std::size_t first = next;
       while (next < samples_.size() && samples_[next].cell.id() <= last) ++next;
@@ -167,6 +172,15 @@ class GridMaker {
       any = divide_leaf(tree_.leaf(l), field_->h[l], factor) || any;
     }
     return any;
+  }
+
+  std::vector<double> inside_fractions_of_samples() const {
+    std::vector<SurfacePiece> pieces;
+    for (const Sample& s : samples_) {
+      if (s.area > 0) pieces.push_back({s.p, s.n * s.area});
+    }
+    if (pieces.empty()) return std::vector<double>(tree_.size(), 1.0);
+    return inside_fractions(RootCube{}, tree_, pieces);
   }
 
   bool divide_leaf(OctreeKey cell, const std::array<double, 8>& h, double factor) {

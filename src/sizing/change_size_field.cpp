@@ -14,7 +14,7 @@ namespace {
 /// A cap holds unchanged within this many of the old sizes around its point, and rises at the gradation from there.
 constexpr double kCapReach = 1.5;
 /// As GridRules::leaf_per_size.
-constexpr double kLeafPerSize = 1.5;
+constexpr double kLeafPerSize = 2;
 
 struct Cap {
   Vec3 p;

@@ -91,9 +91,9 @@ std::vector<SizeSample> feature_samples(const SurfaceMesh& surface, const Featur
     for (std::size_t i = 0; i + 1 < curve.vertices.size(); ++i) {
       const Vec3 a = surface.points[curve.vertices[i]], b = surface.points[curve.vertices[i + 1]];
       const int parts = static_cast<int>(std::ceil(distance(a, b) / h)) + 1;
-      for (int k = 0; k < parts; ++k) samples.push_back({a + (b - a) * (double(k) / parts), {}, h});
+      for (int k = 0; k < parts; ++k) samples.push_back({a + (b - a) * (double(k) / parts), {}, h, 0.5 * h});
     }
-    samples.push_back({surface.points[curve.vertices.back()], {}, h});
+    samples.push_back({surface.points[curve.vertices.back()], {}, h, 0.5 * h});
   }
   return samples;
 }

@@ -5,10 +5,12 @@
 #include "geometry/measures.h"
 #include "sizing/curvature.h"
 #include "sizing/feature_sizes.h"
+#include "sizing/gaps.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numbers>
 
 #include <fmt/format.h>
@@ -22,9 +24,11 @@ namespace {
 constexpr double kExtentPerSize = 30;
 constexpr double kAutomaticCurvature = 20;
 constexpr double kAutomaticFeatureElements = 1;
+constexpr double kAutomaticGap = 1;
 /// Sources that follow details stop at this part of the base size unless min_size says otherwise: a spike or a crease
 /// of noise must not ask for elements without bound.
-constexpr double kAutomaticFloor = 1.0 / 12;
+constexpr double kAutomaticFloor = 1.0 / 5;
+constexpr double kAutomaticGapFloor = 1.0 / 12;
 constexpr double kChosenFloor = 1.0 / 200;
 /// Chords cut corners: the automatic choice is scaled until the volume lost so, as predicted, is below this part.
 constexpr double kVolumeLoss = 0.003;
@@ -33,8 +37,8 @@ constexpr double kLeastAutomaticScale = 0.3;
 /// What the user's options come to, once defaults are filled in.
 struct Choice {
   bool automatic = false;
-  double base = 0, floor = 0;
-  double curvature = 0, feature_elements = 0;  ///< 0: not asked
+  double base = 0, floor = 0, gap_floor = 0;
+  double curvature = 0, gap = 0, feature_elements = 0;  ///< 0: not asked
 };
 
 Choice choose(const SurfaceMesh& surface, const SizeOptions& o) {
@@ -45,6 +49,8 @@ Choice choose(const SurfaceMesh& surface, const SizeOptions& o) {
     c.base = o.size ? std::min(c.base, *o.max_size) : (c.automatic ? std::min(c.base, *o.max_size) : *o.max_size);
   c.base = std::max(c.base, o.min_size.value_or(0));
   c.floor = o.min_size.value_or(c.base * (c.automatic ? kAutomaticFloor : kChosenFloor));
+  c.gap_floor = o.min_size.value_or(c.base * (c.automatic ? kAutomaticGapFloor : kChosenFloor));
+  c.gap = o.gap.value_or(c.automatic ? kAutomaticGap : 0);
   c.curvature = o.curvature.value_or(c.automatic ? kAutomaticCurvature : 0);
   c.feature_elements = o.feature_elements.value_or(c.automatic ? kAutomaticFeatureElements : 0);
   return c;
@@ -104,6 +110,20 @@ double ask(const std::function<double(Vec3)>& callback, Vec3 p) {
   return h;
 }
 
+/// The sources that are asked place by place, in one function; empty if there are none.
+SizeAtPlace sizes_at_places(const SurfaceMesh& surface, const Choice& choice, const SizeOptions& options) {
+  SizeAtPlace gap, callback;
+  if (choice.gap > 0) {
+    const auto gaps = std::make_shared<GapFinder>(surface, choice.gap_floor, choice.base * choice.gap);
+    gap = [gaps, elements = choice.gap, floor = choice.gap_floor](const PlaceOnSurface& place) {
+      return std::max(floor, gaps->width(place) / elements);
+    };
+  }
+  if (options.callback) callback = [f = options.callback](const PlaceOnSurface& s) { return ask(f, s.p); };
+  if (!gap || !callback) return gap ? gap : callback;
+  return [gap, callback](const PlaceOnSurface& s) { return std::min(gap(s), callback(s)); };
+}
+
 }  // namespace
 
 double model_extent(const SurfaceMesh& surface) {
@@ -141,7 +161,7 @@ WantedSizes wanted_sizes(const SurfaceMesh& surface, const Features& features, c
     wanted.points = feature_samples(surface, features, choice.feature_elements, choice.floor, choice.base);
   }
   for (double& h : wanted.face) h = std::max(h * scale, options.min_size.value_or(0));
-  if (options.callback) wanted.at_place = [f = options.callback](const PlaceOnSurface& s) { return ask(f, s.p); };
+  wanted.at_place = sizes_at_places(surface, choice, options);
   const bool graded = options.interior == SizeOptions::Interior::kGraded;
   wanted.ceiling = graded ? options.max_size.value_or(std::numeric_limits<double>::infinity()) : choice.base * scale;
   wanted.ceiling = std::max(wanted.ceiling, options.min_size.value_or(0));

@@ -33,7 +33,7 @@ class Sampler {
                         "alone would need more than {} samples; ask for larger sizes or give a min-size",
                         h, p.x, p.y, p.z, kMostSamples));
       }
-      samples_.push_back({p, n, h, kReachOfEdge * std::sqrt(longest)});
+      samples_.push_back({p, n, h, kReachOfEdge * std::sqrt(longest), triangle_area(a, b, c)});
     } else if (longest == ab) {
       halve(c, a, b, n, face);
     } else if (longest == bc) {

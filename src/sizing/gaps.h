@@ -1,0 +1,41 @@
+#pragma once
+
+#include <octafront/surface_mesh.h>
+
+#include "geometry/triangle_tree.h"
+#include "sizing/octree.h"
+#include "sizing/surface_samples.h"
+
+#include <limits>
+#include <unordered_map>
+#include <vector>
+
+namespace octafront {
+
+/// Walls and gaps: how far it is from a place of the surface to the sheet that faces it, along the inward and the
+/// outward normal. Places that lie close together on one side share an answer, so that dense scans cost no more than
+/// coarse ones.
+class GapFinder {
+ public:
+  static constexpr double kOpen = std::numeric_limits<double>::infinity();
+
+  /// Looks as far as `reach`; nothing nearer than `nearest` is told apart from it.
+  GapFinder(const SurfaceMesh& surface, double nearest, double reach);
+
+  /// Distance to the facing sheet; kOpen if there is none within reach. Sheets that meet at more than about 45 degrees
+  /// do not face each other: an edge is no gap. The answer depends on which place of a neighbourhood was asked first.
+  double width(const PlaceOnSurface& place);
+
+ private:
+  double measure(const PlaceOnSurface& place) const;
+  double distance_along(const PlaceOnSurface& place, Vec3 direction) const;
+
+  TriangleTree tree_;
+  std::vector<Vec3> normal_;
+  RootCube root_;
+  double nearest_, reach_;
+  int level_;  ///< of the cells whose places share an answer
+  std::unordered_map<std::uint64_t, double> known_;
+};
+
+}  // namespace octafront
