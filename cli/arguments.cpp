@@ -61,7 +61,15 @@ void declare_volume(CLI::App& command, Arguments& a) {
                                                                    {"best", ImproveOptions::Level::kBest}};
   static const std::map<std::string, VolumeOptions::Ranking> kRanking{
       {"quality", VolumeOptions::Ranking::kQuality}, {"solid-angle", VolumeOptions::Ranking::kSolidAngle}};
+  static const std::map<std::string, VolumeOptions::Core> kCore{{"lattice", VolumeOptions::Core::kLattice},
+                                                                {"none", VolumeOptions::Core::kNone}};
   auto* group = command.add_option_group("Volume");
+  group
+      ->add_option(
+          "--core", a.options.volume.core,
+          "lattice: the inside is a lattice, the front fills the shell around it; none: all by the front [lattice]")
+      ->transform(CLI::CheckedTransformer(kCore, CLI::ignore_case))
+      ->type_name("KIND");
   group
       ->add_option("--ideal-distance", a.options.volume.ideal_distance,
                    "Ideal point above its face, as a multiple of the size there")
