@@ -1,0 +1,91 @@
+#pragma once
+
+#include <octafront/run_context.h>
+
+#include "recovery/delaunay.h"
+#include "recovery/segment_walk.h"
+#include "recovery/subdivided_surface.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace octafront::recovery {
+
+/// Counters of the recovery of edges and facets.
+struct RecoveryCounts {
+  std::uint64_t missing_edges = 0, edges_by_flips = 0, edge_points = 0, crossing_points = 0;
+  std::uint64_t missing_facets = 0, facets_by_flips = 0, facet_points = 0;
+};
+
+/// Makes every edge and every facet of a surface a union of edges and faces of the mesh: by flips where they suffice,
+/// else by Steiner points on the surface, at exact coordinates. Afterwards each face of the mesh that lies on the
+/// surface has the number of its facet in surface.facets() as label.
+///
+/// It ends: a Steiner point is put strictly inside a crossed tet (or exactly into a crossing), which cuts the segment
+/// into parts that together cross nothing more than it did; a part that crosses one face only, between two tets that
+/// have its ends as apexes, is made by one flip. See docs/recovery.md.
+class BoundaryRecovery {
+ public:
+  BoundaryRecovery(ExactPoints& points, TetComplex& mesh, SubdividedSurface& surface, VertexIndex frame,
+                   const RunContext& context)
+      : points_(points),
+        mesh_(mesh),
+        surface_(surface),
+        flipper_(points, mesh, surface.edges()),
+        frame_(frame),
+        context_(context) {}
+
+  /// Throws MeshingError, with the place, if the surface turns out to intersect itself.
+  void run();
+  const RecoveryCounts& counts() const { return counts_; }
+
+ private:
+  // Edges.
+  std::vector<Edge> missing_edges();
+  void recover_edges(std::vector<Edge> wanted);
+  bool edge_by_flips(VertexIndex a, VertexIndex b);
+  bool improve_once(const SegmentHindrance& hindrance, bool random);
+  bool improve_at(const Crossing& c, const SegmentHindrance& hindrance, bool random);
+  VertexIndex divide_edge(VertexIndex a, VertexIndex b);
+  VertexIndex place_inside(VertexIndex a, VertexIndex b, TetIndex tet, double enter, double leave);
+  VertexIndex place_at_crossing(VertexIndex a, VertexIndex b, const Crossing& c, double at);
+  void insert(VertexIndex s, std::span<const TetIndex> tets);
+  Edge line_of(VertexIndex a, VertexIndex b) const;
+  double parameter(const Edge& line, VertexIndex v) const;
+
+  // Facets.
+  void recover_facets();
+  void recover_facet(std::uint32_t f, std::vector<std::uint32_t>& stack);
+  HalfFace find_face(const Triangle& f);
+  bool facet_by_flips(const Triangle& f);
+  void crossing_edges(const Triangle& f, std::vector<Edge>& edges, std::vector<TetIndex>& tets);
+  void divide_facet(std::uint32_t f);
+
+  std::uint32_t random() {
+    random_ ^= random_ << 13;
+    random_ ^= random_ >> 17;
+    return random_ ^= random_ << 5;
+  }
+
+  struct Carrier {  ///< the line on which a Steiner point was made
+    VertexIndex from = kNone, to = kNone;
+    double t = 0;
+  };
+
+  ExactPoints& points_;
+  TetComplex& mesh_;
+  SubdividedSurface& surface_;
+  Flipper flipper_;
+  VertexIndex frame_;
+  const RunContext& context_;
+  RecoveryCounts counts_;
+  SegmentWalk walk_;
+  std::vector<Carrier> carrier_;  ///< of vertex frame_ + kFrameVertices + i
+  std::vector<TetIndex> tets_;
+  std::vector<VertexIndex> link_;
+  std::uint32_t random_ = 2463534242u;
+  bool strict_ = false;  ///< only flips that make a wanted edge at once
+};
+
+}  // namespace octafront::recovery

@@ -1,0 +1,240 @@
+#include <octafront/error.h>
+
+#include "recovery/boundary_recovery.h"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+
+namespace octafront::recovery {
+
+namespace {
+
+// A segment that crosses more than this is not worked on by flips, it is divided first.
+constexpr std::size_t kMaxCrossings = 400;
+constexpr std::size_t kFlippedCrossings = 64;
+constexpr int kRandomPasses = 6;
+
+double squared_distance(Vec3 a, Vec3 b) {
+  return squared_length(a - b);
+}
+
+// The dyadic number of the fewest bits in [lo, hi], a part of (0, 1); NaN if it needs more than 50.
+double short_dyadic(double lo, double hi) {
+  if (!(lo > 0 && lo < hi && hi < 1)) return std::nan("");
+  for (int bits = 1; bits <= 50; ++bits) {
+    const double t = std::ldexp(std::ceil(std::ldexp(lo, bits)), -bits);
+    if (t <= hi) return t;
+  }
+  return std::nan("");
+}
+
+}  // namespace
+
+std::vector<Edge> BoundaryRecovery::missing_edges() {
+  std::vector<Edge> missing;
+  std::vector<VertexIndex> seen_from(points_.size(), kNone);
+  VertexIndex from = kNone;
+  for (const Edge& e : surface_.edge_list()) {
+    if (e[0] != from) {
+      from = e[0];
+      if (from % 256 == 0) context_.check();
+      for (const TetIndex t : mesh_.star(from)) {
+        for (const VertexIndex v : mesh_.corner[t]) seen_from[v] = from;
+      }
+    }
+    if (seen_from[e[1]] != from) missing.push_back(e);
+  }
+  std::ranges::stable_sort(missing, {},
+                           [&](const Edge& e) { return squared_distance(points_.at(e[0]), points_.at(e[1])); });
+  return missing;
+}
+
+void BoundaryRecovery::recover_edges(std::vector<Edge> wanted) {
+  std::deque<Edge> queue(wanted.begin(), wanted.end());
+  std::vector<Edge> diagonals;
+  while (!queue.empty()) {
+    context_.check();
+    const auto [a, b] = queue.front();
+    queue.pop_front();
+    if (!surface_.edges().contains(a, b)) continue;  // divided in the meantime
+    if (edge_by_flips(a, b)) {
+      ++counts_.edges_by_flips;
+      continue;
+    }
+    const VertexIndex s = divide_edge(a, b);
+    diagonals.clear();
+    surface_.split_edge(a, b, s, diagonals);
+    queue.push_front({s, b});
+    queue.push_front({a, s});
+    queue.insert(queue.end(), diagonals.begin(), diagonals.end());
+  }
+}
+
+bool BoundaryRecovery::edge_by_flips(VertexIndex a, VertexIndex b) {
+  const SegmentHindrance hindrance(points_, a, b, frame_);
+  bool random_pass = false;
+  for (int idle = 0; idle < (strict_ ? 1 : kRandomPasses);) {
+    walk_segment(points_, mesh_, a, b, kMaxCrossings, walk_);
+    if (walk_.present) return true;
+    if (walk_.crossings.size() > kFlippedCrossings) return false;
+    if (strict_ && (walk_.crossings.size() > 1 || walk_.crossings[0].is_edge)) return false;
+    const bool improved = improve_once(hindrance, random_pass);
+    idle += random_pass;
+    random_pass = !improved;
+  }
+  walk_segment(points_, mesh_, a, b, kMaxCrossings, walk_);
+  return walk_.present;
+}
+
+bool BoundaryRecovery::improve_once(const SegmentHindrance& hindrance, bool random_pass) {
+  const std::size_t n = walk_.crossings.size(), first = random_pass ? random() % n : 0;
+  for (std::size_t k = 0; k < n; ++k) {
+    if (improve_at(walk_.crossings[(first + k) % n], hindrance, random_pass)) return true;
+    if (random_pass) break;  // the mesh may have changed
+  }
+  return false;
+}
+
+bool BoundaryRecovery::improve_at(const Crossing& c, const SegmentHindrance& hindrance, bool random_pass) {
+  // In a random pass a change that leaves the hindrance as it is counts too.
+  const double limit = random_pass ? 0 : -0.5;
+  const int depth = random_pass ? 1 : 0;
+  if (c.is_edge) return flipper_.remove_edge_deep(c.tet, c.x, c.y, hindrance, limit, depth);
+  if (flipper_.flip_face(c.face, hindrance, limit)) return true;
+  const Triangle f = mesh_.face(c.face);
+  const unsigned shift = random_pass ? random() % 3 : 0;
+  for (unsigned i = 0; i < 3; ++i) {
+    const VertexIndex p = f[(i + shift) % 3], q = f[(i + shift + 1) % 3];
+    if (!mesh_.alive(c.tet) || !mesh_.has(c.tet, p) || !mesh_.has(c.tet, q)) return false;
+    if (flipper_.remove_edge_deep(c.tet, p, q, hindrance, limit, depth)) return true;
+  }
+  return false;
+}
+
+Edge BoundaryRecovery::line_of(VertexIndex a, VertexIndex b) const {
+  const auto carrier = [&](VertexIndex v) {
+    return v >= frame_ + kFrameVertices
+               ? Edge{carrier_[v - frame_ - kFrameVertices].from, carrier_[v - frame_ - kFrameVertices].to}
+               : Edge{kNone, kNone};
+  };
+  const Edge ca = carrier(a), cb = carrier(b);
+  const auto ends = [](const Edge& line, VertexIndex v) { return line[0] == v || line[1] == v; };
+  if (ca[0] != kNone && (ends(ca, b) || ca == cb)) return ca;
+  if (cb[0] != kNone && ends(cb, a)) return cb;
+  return {a, b};
+}
+
+double BoundaryRecovery::parameter(const Edge& line, VertexIndex v) const {
+  if (v == line[0]) return 0;
+  if (v == line[1]) return 1;
+  return carrier_[v - frame_ - kFrameVertices].t;
+}
+
+VertexIndex BoundaryRecovery::divide_edge(VertexIndex a, VertexIndex b) {
+  const std::vector<Crossing>& crossings = walk_.crossings;
+  // Where along the segment the crossings lie, about.
+  const Vec3 pa = points_.at(a), direction = points_.at(b) - pa;
+  std::vector<double> at;
+  for (const Crossing& c : crossings) {
+    double t = 0;
+    if (c.is_edge) {
+      const Vec3 x = points_.at(c.x), d = points_.at(c.y) - x, n = cross(direction, d);
+      t = dot(cross(x - pa, d), n) / squared_length(n);
+    } else {
+      const Triangle f = mesh_.face(c.face);
+      const Vec3 n = cross(points_.at(f[1]) - points_.at(f[0]), points_.at(f[2]) - points_.at(f[0]));
+      t = dot(points_.at(f[0]) - pa, n) / dot(direction, n);
+    }
+    at.push_back(t);
+  }
+  // The longest inner pieces first. The first and the last piece touch an end: a point there would bring nothing.
+  std::vector<std::size_t> order;
+  for (std::size_t i = 1; i < crossings.size(); ++i) {
+    if (crossings[i].piece_face == kNone && at[i] > at[i - 1]) order.push_back(i);
+  }
+  std::ranges::stable_sort(order, std::greater{}, [&](std::size_t i) { return at[i] - at[i - 1]; });
+  if (order.size() > 4) order.resize(4);
+  for (const std::size_t i : order) {
+    if (const VertexIndex s = place_inside(a, b, crossings[i].piece_tet, at[i - 1], at[i]); s != kNone) return s;
+  }
+  std::size_t best = crossings.size() / 2;
+  for (std::size_t i = 0; i < crossings.size(); ++i) {
+    const bool better_kind = crossings[i].is_edge && !crossings[best].is_edge;
+    const bool nearer = std::abs(at[i] - 0.5) < std::abs(at[best] - 0.5);
+    if (better_kind || (crossings[i].is_edge == crossings[best].is_edge && nearer)) best = i;
+  }
+  return place_at_crossing(a, b, crossings[best], at[best]);
+}
+
+VertexIndex BoundaryRecovery::place_inside(VertexIndex a, VertexIndex b, TetIndex tet, double enter, double leave) {
+  const Edge line = line_of(a, b);
+  const double ta = parameter(line, a), tb = parameter(line, b);
+  for (const double margin : {0.25, 0.4, 0.49}) {
+    double lo = ta + (tb - ta) * (enter + margin * (leave - enter));
+    double hi = ta + (tb - ta) * (leave - margin * (leave - enter));
+    if (lo > hi) std::swap(lo, hi);
+    const double t = short_dyadic(lo, hi);
+    if (std::isnan(t)) continue;
+    const VertexIndex s = points_.add_between(line[0], line[1], t);
+    bool inside = true;
+    for (HalfFace h = 4 * tet; h < 4 * tet + 4 && inside; ++h) {
+      const Triangle f = mesh_.face(h);
+      inside = points_.orient(f[0], f[1], f[2], s) < 0;
+    }
+    if (!inside) {
+      points_.pop();
+      continue;
+    }
+    carrier_.push_back({line[0], line[1], t});
+    insert(s, {&tet, 1});
+    ++counts_.edge_points;
+    return s;
+  }
+  return kNone;
+}
+
+VertexIndex BoundaryRecovery::place_at_crossing(VertexIndex a, VertexIndex b, const Crossing& c, double at) {
+  const Edge line = line_of(a, b);
+  const double ta = parameter(line, a), tb = parameter(line, b);
+  VertexIndex s = kNone;
+  if (c.is_edge) {
+    VertexIndex o = frame_;
+    while (o < frame_ + kFrameVertices - 1 && points_.orient(c.x, c.y, o, a) == 0) ++o;
+    s = points_.add_crossing(line[0], line[1], c.x, c.y, o);
+    mesh_.ring(c.x, c.y, c.tet, kNone, tets_, link_);
+  } else {
+    const Triangle f = mesh_.face(c.face);
+    s = points_.add_crossing(line[0], line[1], f[0], f[1], f[2]);
+    tets_ = {c.face / 4, mesh_.opposite(c.face) / 4};
+  }
+  carrier_.push_back({line[0], line[1], ta + (tb - ta) * at});
+  insert(s, tets_);
+  ++counts_.crossing_points;
+  return s;
+}
+
+void BoundaryRecovery::insert(VertexIndex s, std::span<const TetIndex> tets) {
+  mesh_.tet_at.resize(points_.size(), kNone);
+  const std::uint32_t inside = mesh_.new_mark();
+  for (const TetIndex t : tets) mesh_.mark(t) = inside;
+  std::vector<Tet> fresh;
+  for (const TetIndex t : tets) {
+    for (HalfFace h = 4 * t; h < 4 * t + 4; ++h) {
+      if (const HalfFace o = mesh_.opposite(h); o != kNone && mesh_.mark(o / 4) == inside) continue;
+      const Triangle f = mesh_.face(h);
+      fresh.push_back({f[0], f[2], f[1], s});
+    }
+  }
+  const std::vector<TetIndex> old(tets.begin(), tets.end());
+  mesh_.replace(old, fresh);
+}
+
+void BoundaryRecovery::run() {
+  std::vector<Edge> missing = missing_edges();
+  counts_.missing_edges = missing.size();
+  recover_edges(std::move(missing));
+  recover_facets();
+}
+
+}  // namespace octafront::recovery

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <octafront/surface_mesh.h>
+
+#include "geometry/predicates.h"
+#include "recovery/big_float.h"
+
+#include <array>
+#include <vector>
+
+namespace octafront::recovery {
+
+/// Homogeneous coordinates (x, y, z, w) of the point (x, y, z) / w, w > 0.
+using Homogeneous = std::array<BigFloat, 4>;
+
+/// The vertices of the recovery: given points, which are doubles, and Steiner points on edges and facets, whose exact
+/// place is a rational. All signs are exact.
+class ExactPoints {
+ public:
+  /// A point with double coordinates.
+  VertexIndex add(Vec3 p);
+  /// The point a + t (b - a). Requires that 1 - t does not round.
+  VertexIndex add_between(VertexIndex a, VertexIndex b, double t);
+  /// The point where the line (p, q) meets the plane (a, b, c). Requires that p and q are strictly on two sides of it.
+  VertexIndex add_crossing(VertexIndex p, VertexIndex q, VertexIndex a, VertexIndex b, VertexIndex c);
+  /// Forgets the last point.
+  void pop();
+  /// Vertex v becomes the double point p.
+  void move(VertexIndex v, Vec3 p);
+
+  VertexIndex size() const { return static_cast<VertexIndex>(point_.size()); }
+  /// The point itself, or the nearest doubles of a Steiner point (relative error below 2^-50).
+  Vec3 at(VertexIndex v) const { return point_[v]; }
+  bool is_double(VertexIndex v) const { return v < first_steiner_ || steiner_[v - first_steiner_].empty(); }
+
+  /// The sign of orient3d (geometry/predicates.h) of four vertices.
+  int orient(VertexIndex a, VertexIndex b, VertexIndex c, VertexIndex d) const {
+    if (a < first_steiner_ && b < first_steiner_ && c < first_steiner_ && d < first_steiner_) {
+      return orient3d(point_[a], point_[b], point_[c], point_[d]);
+    }
+    return orient_steiner(a, b, c, d);
+  }
+  /// The same with the double point p as the last one.
+  int orient(VertexIndex a, VertexIndex b, VertexIndex c, Vec3 p) const;
+
+ private:
+  using MaybeHomogeneous = std::vector<BigFloat>;  ///< empty, or four coordinates
+
+  int orient_steiner(VertexIndex a, VertexIndex b, VertexIndex c, VertexIndex d) const;
+  int orient_exact(const std::array<VertexIndex, 4>& v) const;
+  Homogeneous homogeneous(VertexIndex v) const;
+  VertexIndex add(Homogeneous h);
+
+  std::vector<Vec3> point_;
+  VertexIndex first_steiner_ = kNone;
+  std::vector<MaybeHomogeneous> steiner_;  ///< from first_steiner_ on
+};
+
+}  // namespace octafront::recovery

@@ -1,0 +1,99 @@
+#include "recovery/recover.h"
+
+#include <octafront/error.h>
+
+#include "core/stage_timer.h"
+#include "recovery/boundary_recovery.h"
+#include "recovery/carve.h"
+#include "recovery/delaunay.h"
+
+#include <algorithm>
+
+namespace octafront {
+
+namespace {
+
+using namespace recovery;
+
+struct Input {
+  ExactPoints points;
+  std::vector<bool> used;
+};
+
+Input read_input(const SurfaceMesh& surface) {
+  Input in;
+  for (const Vec3& p : surface.points) {
+    if (!is_finite(p)) throw MeshingError("a vertex of the surface is not finite");
+    in.points.add(p);
+  }
+  in.used.assign(surface.points.size(), false);
+  for (const Triangle& t : surface.triangles) {
+    for (const VertexIndex v : t) in.used[v] = true;
+  }
+  return in;
+}
+
+std::vector<Triangle> merged(std::vector<Triangle> triangles, const std::vector<VertexIndex>& same_as) {
+  for (Triangle& t : triangles) {
+    for (VertexIndex& v : t) v = same_as[v];
+  }
+  return triangles;
+}
+
+// Vertices that lie inside follow those of the surface.
+TetMesh extract(const SurfaceMesh& surface, const ExactPoints& points, const TetComplex& mesh) {
+  TetMesh result;
+  result.points = surface.points;
+  std::vector<VertexIndex> number(points.size(), kNone);
+  for (VertexIndex v = 0; v < surface.points.size(); ++v) number[v] = v;
+  for (TetIndex t = 0; t < mesh.slots(); ++t) {
+    if (!mesh.alive(t)) continue;
+    Tet c = mesh.corner[t];
+    for (VertexIndex& v : c) {
+      if (number[v] == kNone) {
+        number[v] = static_cast<VertexIndex>(result.points.size());
+        result.points.push_back(points.at(v));
+      }
+      v = number[v];
+    }
+    result.tets.push_back(c);
+  }
+  result.boundary = surface.triangles;
+  result.patch = surface.patch;
+  result.patch_names = surface.patch_names;
+  return result;
+}
+
+void count(StageReport& report, const RecoveryCounts& c) {
+  report.count("edges missing", static_cast<double>(c.missing_edges));
+  report.count("edges recovered by flips", static_cast<double>(c.edges_by_flips));
+  report.count("facets missing", static_cast<double>(c.missing_facets));
+  report.count("facets recovered by flips", static_cast<double>(c.facets_by_flips));
+  report.count("points on edges", static_cast<double>(c.edge_points));
+  report.count("points at crossings", static_cast<double>(c.crossing_points));
+  report.count("points on facets", static_cast<double>(c.facet_points));
+}
+
+}  // namespace
+
+TetMesh recover_volume(const SurfaceMesh& surface, const RunContext& context, StageReport& report) {
+  const StageTimer timer(report);
+  report.name = "recover";
+  if (surface.triangles.empty()) return {};
+  auto [points, used] = read_input(surface);
+  TetComplex mesh;
+  std::vector<VertexIndex> same_as;
+  const VertexIndex frame = delaunay(points, used, mesh, same_as, context);
+  SubdividedSurface subdivided(merged(surface.triangles, same_as), points.size());
+  BoundaryRecovery recovery(points, mesh, subdivided, frame, context);
+  recovery.run();
+  carve(points, subdivided, mesh);
+  count(report, recovery.counts());
+  TetMesh result = extract(surface, points, mesh);
+  if (result.points.size() > surface.points.size()) {
+    throw MeshingError("the surface needs points that this version cannot place inside");
+  }
+  return result;
+}
+
+}  // namespace octafront
