@@ -1,0 +1,13 @@
+#pragma once
+
+// mesh: what is true of surfaces and tetrahedral meshes as a whole. Adjacency of triangles and tetrahedra, topology of
+// surfaces, quality, and the laws that every mesh keeps before it leaves the library (octafront/validity.h). Takes the
+// flat arrays of the public headers, leaves tables of indices that follow the input's order alone.
+
+#include <octafront/quality.h>
+#include <octafront/surface_mesh.h>
+#include <octafront/tet_mesh.h>
+#include <octafront/validity.h>
+
+#include "mesh/adjacency.h"
+#include "mesh/surface_topology.h"
