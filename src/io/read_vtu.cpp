@@ -133,7 +133,7 @@ class Vtu {
   void read_names() {
     constexpr std::string_view kPrefix = "patch ";
     for (const VtkArray& array : xml_.arrays) {
-      if (array.section != "FieldData" || !array.name.starts_with(kPrefix) || array.format != "ascii") continue;
+      if (array.section != "FieldData" || !array.name.starts_with(kPrefix)) continue;
       const std::vector<std::int64_t> number = vtk_integers(xml_, array, input_);
       if (number.size() == 1 && number[0] < kNone)
         raw_.surface_names[number[0] + 1] = array.name.substr(kPrefix.size());

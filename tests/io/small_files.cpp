@@ -28,11 +28,12 @@ void append(std::string& bytes, T value, bool big_endian) {
 
 /// Vertices with a confidence before and a list behind the coordinates, an element of no use, then the faces.
 std::string ply(const std::string& format, bool big_endian) {
-  std::string s = "ply\nformat " + format +
-                  " 1.0\ncomment made by a test\nelement vertex 4\nproperty uchar confidence\nproperty float z\n"
-                  "property double y\nproperty short x\nproperty list uchar short marks\nelement edge 1\n"
-                  "property int a\nelement face 4\nproperty float weight\nproperty list int ushort vertex_index\n"
-                  "end_header\n";
+  std::string s = "ply\nformat ";
+  s += format;
+  s += " 1.0\ncomment made by a test\nelement vertex 4\nproperty uchar confidence\nproperty float z\n"
+       "property double y\nproperty short x\nproperty list uchar short marks\nelement edge 1\n"
+       "property int a\nelement face 4\nproperty float weight\nproperty list int ushort vertex_index\n"
+       "end_header\n";
   const SurfaceMesh tet = unit_tetrahedron();
   if (format == "ascii") {
     for (const Vec3& p : tet.points)
