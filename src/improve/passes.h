@@ -43,4 +43,8 @@ inline constexpr int kLongestRing = 7;
 /// best, as near as a few steps come.
 PassResult optimize_vertices(EditMesh& mesh, float threshold, const RunContext& context);
 
+/// Replaces elements with a score below `threshold`, worst first, and some around them, by the star of a new vertex
+/// where that raises the worst score of the place.
+PassResult insert_vertices(EditMesh& mesh, float threshold, const RunContext& context);
+
 }  // namespace octafront::improve

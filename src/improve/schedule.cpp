@@ -1,10 +1,12 @@
 #include <octafront/error.h>
 
 #include "core/stage_timer.h"
+#include "improve/explain.h"
 #include "improve/improve.h"
 #include "improve/passes.h"
 
-#include <chrono>
+#include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -24,9 +26,33 @@ class Schedule {
   }
   void smooth_mean(int sweeps) { note("moves for the mean", improve::smooth_mean(mesh_, sweeps, context_)); }
   void flips(float threshold) { note("reconnections", reconnect(mesh_, threshold, context_)); }
+  void insert(float threshold) { note("inserted vertices", insert_vertices(mesh_, threshold, context_)); }
   void optimize(float threshold) { note("optimised vertices", optimize_vertices(mesh_, threshold, context_)); }
 
+  /// Says what stays poor and why.
+  void explain() {
+    const Shortfall s = explain_shortfall(mesh_, kReported);
+    report_.count(fmt::format("elements below {:.1f}", kReported), static_cast<double>(s.elements));
+    report_.count("forced by the angle between boundary faces", static_cast<double>(s.forced_by_angle));
+    report_.count("forced by a boundary triangle", static_cast<double>(s.forced_by_triangle));
+    report_.count("not forced", static_cast<double>(s.not_forced));
+    if (s.elements == 0) return;
+    std::string note = fmt::format(
+        "{} elements stay below {:.1f} (beta, or angles of that worth): {} where boundary faces meet at a small angle, "
+        "{} "
+        "on boundary triangles of poor shape, {} for neither reason",
+        s.elements, kReported, s.forced_by_angle, s.forced_by_triangle, s.not_forced);
+    if (s.worst_not_forced != kNone) {
+      const Vec3 p = mesh_.point(mesh_.tet(s.worst_not_forced)[0]);
+      note += fmt::format("; the worst of these, {:.3f}, near ({}, {}, {})", mesh_.shape(s.worst_not_forced).score, p.x,
+                          p.y, p.z);
+    }
+    report_.notes.push_back(std::move(note));
+  }
+
  private:
+  static constexpr float kReported = 0.4f;
+
   void note(const char* what, const PassResult& result) {
     const double now = process_cpu_seconds();
     report_.count(fmt::format("pass {}: {}", ++passes_, what), static_cast<double>(result.done));
@@ -46,6 +72,8 @@ class Schedule {
 
 /// Scores below which elements are worked on. The reference elements of shape.h have .45; .6 is about 30 degrees.
 constexpr float kWanted = 0.6f, kWantedBest = 0.65f;
+/// Below this a new vertex is worth its elements.
+constexpr float kPoor = 0.5f;
 /// Reconnection below this serves the mean.
 constexpr float kGood = 0.8f;
 
@@ -65,6 +93,11 @@ void run_default(Schedule& run, const ImproveOptions& options) {
     run.optimize(kWanted);
     run.flips(kWanted);
   }
+  for (int round = 0; round < 2; ++round) {
+    run.insert(kPoor);
+    run.optimize(kWanted);
+    run.flips(kWanted);
+  }
 }
 
 void run_best(Schedule& run, const ImproveOptions& options) {
@@ -78,7 +111,10 @@ void run_best(Schedule& run, const ImproveOptions& options) {
   for (int round = 0; round < 5; ++round) {
     run.optimize(kWantedBest);
     run.flips(kWantedBest);
+    if (round >= 1) run.insert(kWanted);
   }
+  run.optimize(kWantedBest);
+  run.flips(kWantedBest);
 }
 
 void run_schedule(Schedule& run, const ImproveOptions& options) {
@@ -112,6 +148,7 @@ void improve_mesh(TetMesh& mesh, const SizeField&, const ImproveOptions& options
   EditMesh edit(TetMesh{mesh});
   Schedule run(edit, context, report);
   run_schedule(run, options);
+  run.explain();
   mesh = edit.release();
 }
 

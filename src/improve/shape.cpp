@@ -1,5 +1,7 @@
 #include "improve/shape.h"
 
+#include "geometry/predicates.h"
+
 // The kernel is plain arithmetic without branches, compiled once for each width of vector unit and chosen at run time.
 // All versions give the same bits: no contraction, no reassociation.
 
@@ -136,6 +138,25 @@ void ShapeBatch::evaluate_star(Vec3 apex) {
 
 void ShapeBatch::evaluate() {
   kKernels.elements(*this);
+}
+
+double ShapeBatch::worst() const {
+  double least = 1;
+  for (int i = 0; i < size; ++i) least = lesser(quality[i], least);
+  return least;
+}
+
+bool ShapeBatch::star_acceptable(Vec3 apex, const Floor& floor) const {
+  for (int i = 0; i < size; ++i) {
+    const Shape s = shape(i);
+    if (!floor.below(s)) return false;
+    if (s.beta >= kCertainBeta) continue;
+    const Vec3 b{corner[1][0][i], corner[1][1][i], corner[1][2][i]};
+    const Vec3 c{corner[2][0][i], corner[2][1][i], corner[2][2][i]};
+    const Vec3 d{corner[3][0][i], corner[3][1][i], corner[3][2][i]};
+    if (orient3d(apex, b, c, d) <= 0) return false;
+  }
+  return true;
 }
 
 double ShapeBatch::deficit() const {

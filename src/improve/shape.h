@@ -74,6 +74,11 @@ struct ShapeBatch {
     return {static_cast<float>(beta[i]), static_cast<float>(small[i]), static_cast<float>(large[i]),
             static_cast<float>(quality[i])};
   }
+  /// The least score, 1 if empty.
+  double worst() const;
+  /// True if all elements, as evaluated with corner 0 at `apex`, are strictly above the floor, and positive by exact
+  /// signs where that is not certain.
+  bool star_acceptable(Vec3 apex, const Floor& floor) const;
   /// Sum of (1 - beta)^2, in a fixed order.
   double deficit() const;
   /// The same for corner 0 at `apex`, evaluating nothing but beta: half the cost of evaluate_star().

@@ -27,10 +27,12 @@ class StarEdit {
   }
   /// Sum of (1 - beta)^2 of the star with the vertex elsewhere; for comparison only, not to be committed.
   double deficit_at(Vec3 at) { return batch_.deficit_at(at); }
+  ShapeBatch& batch() { return batch_; }
   const ShapeBatch& batch() const { return batch_; }
-  float worst_score() const;
-  /// All elements strictly above the floor, and positive by exact signs where that is not certain.
-  bool acceptable(const Floor& floor) const;
+  float worst_score() const { return static_cast<float>(batch_.worst()); }
+  /// True if all elements, as evaluated, are strictly above the floor, and positive with the vertex at `at`.
+  bool acceptable(Vec3 at, const Floor& floor) const { return batch_.star_acceptable(at, floor); }
+  bool acceptable(const Floor& floor) const { return batch_.star_acceptable(at_, floor); }
   void commit() { mesh_.move(vertex_, at_, faces_, batch_); }
 
  private:

@@ -2,6 +2,7 @@
 
 #include "geometry/measures.h"
 #include "geometry/predicates.h"
+#include "improve/explain.h"
 #include "improve/start_meshes.h"
 
 #include <set>
@@ -128,6 +129,35 @@ TEST(Laplacian, RestoresAPerturbedGrid) {
   EXPECT_GT(worst_beta(after), 0.5);  // the grid itself has .717
 }
 
+TEST(Insert, PutsAVertexWhereNoReconnectionHelps) {
+  const TetMesh before = edge_ring_mesh(kLongestRing + 3, 0.95);
+  EditMesh edit{TetMesh{before}};
+  const float worst = edit.floor().score;
+  EXPECT_GT(insert_vertices(edit, 1.0f, {}).done, 0u);
+  EXPECT_GT(edit.floor().score, worst);
+  const TetMesh after = edit.release();
+  EXPECT_GT(after.points.size(), before.points.size());
+  expect_laws(before, after);
+}
+
+TEST(Explain, NamesWhatTheBoundaryForces) {
+  TetMesh wedge;  // two faces at five degrees
+  wedge.points = {{0, 0, 0}, {1, 0, 0}, {0.5, 1, 0}, {0.5, 1, 0.0875}};
+  wedge.tets = {{0, 1, 2, 3}};
+  const Shortfall angle = explain_shortfall(EditMesh(with_boundary(wedge)), 0.4f);
+  EXPECT_EQ(angle.elements, 1u);
+  EXPECT_EQ(angle.forced_by_angle, 1u);
+
+  TetMesh needle;  // upright on a needle of a triangle
+  needle.points = {{0, 0, 0}, {1, 0, 0}, {0.5, 0.02, 0}, {0.5, 0.01, 0.8}};
+  needle.tets = {{0, 1, 2, 3}};
+  const Shortfall triangle = explain_shortfall(EditMesh(with_boundary(needle)), 0.4f);
+  EXPECT_EQ(triangle.elements, 1u);
+  EXPECT_EQ(triangle.not_forced, 0u);
+
+  EXPECT_EQ(explain_shortfall(EditMesh(kuhn_cube(2)), 0.4f).elements, 0u);
+}
+
 TEST(SmoothMean, LowersTheSumOfSquaredDeficits) {
   const TetMesh start = perturbed(kuhn_cube(6), 0.45, 5);
   EditMesh edit{TetMesh{start}};
@@ -163,6 +193,7 @@ TEST(Passes, LeaveAValidMeshWhoseWorstIsNoWorse) {
       run([&] { reconnect(edit, 0.6f, {}); });
       run([&] { smooth_mean(edit, 1, {}); });
       run([&] { optimize_vertices(edit, 0.6f, {}); });
+      run([&] { insert_vertices(edit, 0.4f, {}); });
     }
     const TetMesh after = edit.release();
     expect_laws(start, after);

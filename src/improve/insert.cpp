@@ -1,0 +1,143 @@
+// A new vertex in the place of a bad element: a cavity grows from the element, face by face, and is filled by the star
+// of one point, put where the worst score of that star is greatest. The growth absorbs the neighbour behind the face
+// whose new element is worst. (In the spirit of the insertion of Klingner & Shewchuk, "Aggressive tetrahedral mesh
+// improvement", 2007.) Vertices that end up inside the cavity go: the same step removes vertices that are in the way.
+
+#include "improve/maximize_worst.h"
+#include "improve/passes.h"
+
+#include <algorithm>
+
+namespace octafront::improve {
+namespace {
+
+constexpr int kLargestCavity = 48;   ///< tets
+constexpr int kClimbSteps = 4;       ///< per growth step
+constexpr int kLastSteps = 12;       ///< for the best cavity
+constexpr float kLeastGain = 0.02f;  ///< more elements must be worth it
+constexpr int kPatience = 10;        ///< growth steps without a better star before giving up
+
+class Inserter {
+ public:
+  Inserter(EditMesh& mesh, const Floor& floor) : mesh_(mesh), floor_(floor) {}
+
+  /// True if tet t was replaced by something better; the tets made are in created().
+  bool improve(TetIndex t) {
+    find_best_cavity(t);
+    if (best_size_ == 0) return false;
+    tets_.resize(best_size_);
+    load_star();
+    maximizer_.climb(star_, best_place_, kLastSteps, [](Vec3) { return true; });
+    const Vec3 p = maximizer_.place();
+    star_.evaluate_star(p);
+    if (static_cast<float>(star_.worst()) <= worst_of_cavity() + kLeastGain || !star_.star_acceptable(p, floor_))
+      return false;
+    commit(p);
+    return true;
+  }
+
+  const std::vector<TetIndex>& created() const { return created_; }
+
+ private:
+  bool in_cavity(TetIndex t) const { return std::find(tets_.begin(), tets_.end(), t) != tets_.end(); }
+
+  float worst_of_cavity() const {
+    float worst = 1;
+    for (const TetIndex t : tets_) worst = std::min(worst, mesh_.shape(t).score);
+    return worst;
+  }
+
+  /// Grows the cavity and notes how far it was when its star was best compared with what it replaces.
+  void find_best_cavity(TetIndex t) {
+    tets_.assign(1, t);
+    best_size_ = 0;
+    const Tet& c = mesh_.tet(t);
+    Vec3 p = (mesh_.point(c[0]) + mesh_.point(c[1]) + mesh_.point(c[2]) + mesh_.point(c[3])) * 0.25;
+    double best_gain = 0;
+    for (int since_best = 0; since_best < kPatience && tets_.size() <= kLargestCavity; ++since_best) {
+      load_star();
+      if (faces_.size() > ShapeBatch::kBatch) return;
+      maximizer_.climb(star_, p, kClimbSteps, [](Vec3) { return true; });
+      p = maximizer_.place();
+      star_.evaluate_star(p);
+      const double gain = star_.worst() - worst_of_cavity();
+      if (gain > best_gain) {
+        best_gain = gain;
+        best_size_ = tets_.size();
+        best_place_ = p;
+        since_best = 0;
+      }
+      if (!absorb_behind_worst_face()) return;
+    }
+  }
+
+  /// The outer faces of the cavity, seen from inside, as a star about a point to be chosen.
+  void load_star() {
+    faces_.clear();
+    star_.size = 0;
+    for (const TetIndex t : tets_)
+      for (int i = 0; i < 4; ++i) {
+        const HalfFace o = mesh_.across(4 * t + i);
+        if (!is_boundary(o) && in_cavity(o / 4)) continue;
+        faces_.push_back(4 * t + i);
+        if (faces_.size() > ShapeBatch::kBatch) return;
+        const Tet& c = mesh_.tet(t);
+        const auto& f = kTetFaces[i];
+        star_.add(mesh_.point(c[f[0]]), mesh_.point(c[f[1]]), mesh_.point(c[f[2]]));
+      }
+  }
+
+  bool absorb_behind_worst_face() {
+    int worst = -1;
+    for (int i = 0; i < star_.size; ++i)
+      if (!is_boundary(mesh_.across(faces_[i])) && (worst < 0 || star_.quality[i] < star_.quality[worst])) worst = i;
+    if (worst < 0) return false;
+    tets_.push_back(mesh_.across(faces_[worst]) / 4);
+    return true;
+  }
+
+  void commit(Vec3 p) {
+    const VertexIndex v = mesh_.add_vertex(p);
+    new_tets_.clear();
+    shapes_.clear();
+    for (std::size_t k = 0; k < faces_.size(); ++k) {
+      const Tet& c = mesh_.tet(faces_[k] / 4);
+      const auto& f = kTetFaces[faces_[k] % 4];
+      new_tets_.push_back({v, c[f[0]], c[f[1]], c[f[2]]});
+      shapes_.push_back(star_.shape(static_cast<int>(k)));
+    }
+    mesh_.replace(tets_, new_tets_, shapes_, created_);
+  }
+
+  EditMesh& mesh_;
+  Floor floor_;
+  std::vector<TetIndex> tets_;   ///< the cavity, in order of growth
+  std::vector<HalfFace> faces_;  ///< its outer faces, as seen from the tets inside
+  std::size_t best_size_ = 0;
+  Vec3 best_place_;
+  ShapeBatch star_;
+  WorstMaximizer maximizer_;
+  std::vector<Tet> new_tets_;
+  std::vector<Shape> shapes_;
+  std::vector<TetIndex> created_;
+};
+
+}  // namespace
+
+PassResult insert_vertices(EditMesh& mesh, float threshold, const RunContext& context) {
+  PassResult result;
+  std::vector<std::pair<float, TetIndex>> bad;
+  for (TetIndex t = 0; t < mesh.slots(); ++t)
+    if (mesh.alive(t) && mesh.shape(t).score < threshold) bad.push_back({mesh.shape(t).score, t});
+  std::sort(bad.begin(), bad.end());
+  Inserter inserter(mesh, mesh.floor());
+  for (const auto& [score, t] : bad) {
+    context.check();
+    if (!mesh.alive(t) || mesh.shape(t).score >= threshold) continue;
+    ++result.tried;
+    result.done += inserter.improve(t);
+  }
+  return result;
+}
+
+}  // namespace octafront::improve
