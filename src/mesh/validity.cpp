@@ -96,7 +96,8 @@ FacesByCorner group_faces(const TetMesh& mesh) {
   g.first.assign(mesh.points.size() + 1, 0);
   const auto for_each_face = [&](const auto& visit) {
     for (std::uint32_t t = 0; t < mesh.tets.size(); ++t)
-      for (HalfFace h = 4 * t; h < 4 * t + 4; ++h) visit(corners_of(mesh.tets, h), t, false);
+      for (const auto& [i, j, k] : kTetFaces)
+        visit(Triangle{mesh.tets[t][i], mesh.tets[t][j], mesh.tets[t][k]}, t, false);
     for (std::uint32_t f = 0; f < mesh.boundary.size(); ++f) visit(mesh.boundary[f], f, true);
   };
   for_each_face([&](const Triangle& t, std::uint32_t, bool) { ++g.first[std::min({t[0], t[1], t[2]}) + 1]; });
