@@ -4,15 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace octafront {
 
 namespace {
 
-// Leaves come in powers of two of one another; a cell is divided while that brings it nearer, as a ratio, to what is
-// wanted.
-constexpr double kTooLarge = std::numbers::sqrt2;
+// Leaves come in powers of two of one another: a cell is divided while its side is more than this times the wanted one.
+// Sides then lie between 0.75 and 1.5 of it; over that range, evenly in the logarithm, the mean of side^-3 is 1, so that
+// the lattice makes as many elements as the sizes ask for.
+constexpr double kTooLarge = 1.5;
 
 // The size that most of the surface wants: that of its middle triangle by size. The root is chosen so that one level of
 // the octree has exactly this size, and a uniform size is met exactly.

@@ -1,0 +1,51 @@
+"""Every fetched model through the command line: models_test.py OCTAFRONT MODELS_DIR.
+
+Clean models must give a mesh (the tool checks it before it writes); dirty ones a mesh or a refusal with a reason.
+"""
+import concurrent.futures
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+SKIPPED = 77
+SECONDS_PER_MODEL = 300
+
+
+def run(octafront, model, *options):
+    """None if all is well, else what went wrong."""
+    with tempfile.TemporaryDirectory() as folder:
+        out = pathlib.Path(folder, "mesh.vtu")
+        try:
+            done = subprocess.run([octafront, "mesh", model, "-o", out, "--threads", "1", "-q", *options],
+                                  capture_output=True, text=True, timeout=SECONDS_PER_MODEL)
+        except subprocess.TimeoutExpired:
+            return "no end"
+        dirty = model.parent.name == "dirty"
+        if done.returncode == 0:
+            return None if out.exists() else "status 0 but no mesh"
+        if dirty and done.returncode == 3 and len(done.stderr) > 30 and not out.exists():
+            return None
+        return f"status {done.returncode}: {done.stderr.strip()[:300]}"
+
+
+def main(octafront, models):
+    models = pathlib.Path(models)
+    jobs = [(m,) for m in sorted(models.glob("clean/*"))]
+    # Where only robustness counts, a coarse mesh is enough.
+    jobs += [(m, "--elements", "20000") for m in sorted(models.glob("dirty/*"))]
+    if not jobs:
+        print(f"no models in {models}: run scripts/get-models.sh to fetch them")
+        return SKIPPED
+    failures = 0
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        for job, wrong in zip(jobs, pool.map(lambda j: run(octafront, *j), jobs)):
+            if wrong:
+                failures += 1
+                print(f"{job[0].parent.name}/{job[0].name}: {wrong}", flush=True)
+    print(f"{len(jobs) - failures} passed, {failures} failed")
+    return 1 if failures else 0
+
+
+sys.exit(main(*sys.argv[1:]))
