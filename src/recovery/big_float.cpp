@@ -8,7 +8,7 @@ namespace octafront::recovery {
 
 namespace {
 
-using Wide = unsigned __int128;
+__extension__ using Wide = unsigned __int128;
 
 }  // namespace
 

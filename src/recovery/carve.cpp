@@ -36,6 +36,7 @@ void carve(const ExactPoints& points, const SubdividedSurface& surface, TetCompl
   for (TetIndex t = 0; t < mesh.slots(); ++t) {
     for (HalfFace h = 4 * t; mesh.alive(t) && h < 4 * t + 4; ++h) {
       const std::uint32_t f = mesh.label[t][h % 4];
+      if (mesh.opposite(h) == kNone) claim(t, Side::kOutside);
       if (f == kNone) continue;
       // Seen from inside, outward is away: the tet inside sees the facet as its own outward face.
       claim(t, same_turn(mesh.face(h), surface.facets()[f].corners) ? Side::kInside : Side::kOutside);

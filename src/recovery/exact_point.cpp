@@ -57,6 +57,13 @@ VertexIndex ExactPoints::add(Homogeneous h) {
   return size() - 1;
 }
 
+VertexIndex ExactPoints::add_copy(VertexIndex v) {
+  point_.push_back(Vec3(point_[v]));
+  if (first_steiner_ != kNone)
+    steiner_.push_back(v < first_steiner_ ? MaybeHomogeneous{} : MaybeHomogeneous(steiner_[v - first_steiner_]));
+  return size() - 1;
+}
+
 void ExactPoints::pop() {
   point_.pop_back();
   if (first_steiner_ != kNone) steiner_.pop_back();

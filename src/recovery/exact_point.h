@@ -23,6 +23,8 @@ class ExactPoints {
   VertexIndex add_between(VertexIndex a, VertexIndex b, double t);
   /// The point where the line (p, q) meets the plane (a, b, c). Requires that p and q are strictly on two sides of it.
   VertexIndex add_crossing(VertexIndex p, VertexIndex q, VertexIndex a, VertexIndex b, VertexIndex c);
+  /// Another point at the place of v.
+  VertexIndex add_copy(VertexIndex v);
   /// Forgets the last point.
   void pop();
   /// Vertex v becomes the double point p.

@@ -6,6 +6,7 @@
 #include "recovery/boundary_recovery.h"
 #include "recovery/carve.h"
 #include "recovery/delaunay.h"
+#include "recovery/steiner_lift.h"
 
 #include <algorithm>
 
@@ -64,7 +65,7 @@ TetMesh extract(const SurfaceMesh& surface, const ExactPoints& points, const Tet
   return result;
 }
 
-void count(StageReport& report, const RecoveryCounts& c) {
+void count(StageReport& report, const RecoveryCounts& c, const LiftCounts& l) {
   report.count("edges missing", static_cast<double>(c.missing_edges));
   report.count("edges recovered by flips", static_cast<double>(c.edges_by_flips));
   report.count("facets missing", static_cast<double>(c.missing_facets));
@@ -72,6 +73,9 @@ void count(StageReport& report, const RecoveryCounts& c) {
   report.count("points on edges", static_cast<double>(c.edge_points));
   report.count("points at crossings", static_cast<double>(c.crossing_points));
   report.count("points on facets", static_cast<double>(c.facet_points));
+  report.count("points merged", static_cast<double>(l.collapsed));
+  report.count("points lifted", static_cast<double>(l.lifted));
+  report.count("points deferred", static_cast<double>(l.deferred));
 }
 
 }  // namespace
@@ -84,16 +88,15 @@ TetMesh recover_volume(const SurfaceMesh& surface, const RunContext& context, St
   TetComplex mesh;
   std::vector<VertexIndex> same_as;
   const VertexIndex frame = delaunay(points, used, mesh, same_as, context);
-  SubdividedSurface subdivided(merged(surface.triangles, same_as), points.size());
+  const std::vector<Triangle> triangles = merged(surface.triangles, same_as);
+  SubdividedSurface subdivided(triangles, points.size());
   BoundaryRecovery recovery(points, mesh, subdivided, frame, context);
   recovery.run();
   carve(points, subdivided, mesh);
-  count(report, recovery.counts());
-  TetMesh result = extract(surface, points, mesh);
-  if (result.points.size() > surface.points.size()) {
-    throw MeshingError("the surface needs points that this version cannot place inside");
-  }
-  return result;
+  SteinerLift lift(points, mesh, triangles, frame + kFrameVertices, frame, context);
+  lift.run();
+  count(report, recovery.counts(), lift.counts());
+  return extract(surface, points, mesh);
 }
 
 }  // namespace octafront

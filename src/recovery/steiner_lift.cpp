@@ -1,0 +1,330 @@
+#include "recovery/steiner_lift.h"
+
+#include <octafront/error.h>
+#include <octafront/quality.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace octafront::recovery {
+
+namespace {
+
+constexpr int kRounds = 4;
+// Candidates that are compared before the best is taken.
+constexpr int kEnoughCandidates = 12;
+// Cavities larger than this bring distant elements in for nothing.
+constexpr std::size_t kMaxCavity = 400;
+
+}  // namespace
+
+double SteinerLift::random_unit() {
+  random_ ^= random_ << 13;
+  random_ ^= random_ >> 7;
+  random_ ^= random_ << 17;
+  return static_cast<double>(random_ >> 11) * 0x1p-53;
+}
+
+// At a pinched edge a point has several stars that meet in faces nowhere: one copy for each.
+void SteinerLift::split_umbrellas() {
+  const VertexIndex end = points_.size();
+  std::vector<std::vector<TetIndex>> tets_of(end - first_steiner_);
+  for (TetIndex t = 0; t < mesh_.slots(); ++t) {
+    if (!mesh_.alive(t)) continue;
+    for (const VertexIndex v : mesh_.corner[t]) {
+      if (v >= first_steiner_) tets_of[v - first_steiner_].push_back(t);
+    }
+  }
+  for (VertexIndex s = first_steiner_; s < end; ++s) {
+    std::vector<TetIndex>& rest = tets_of[s - first_steiner_];
+    while (!rest.empty()) {
+      std::vector<TetIndex> component = mesh_.star_from(s, rest.front());
+      std::ranges::sort(component);
+      std::erase_if(rest, [&](TetIndex t) { return std::ranges::binary_search(component, t); });
+      VertexIndex name = s;
+      if (!rest.empty()) {
+        name = points_.add_copy(s);
+        mesh_.tet_at.push_back(kNone);
+      }
+      for (const TetIndex t : component) std::ranges::replace(mesh_.corner[t], s, name);
+      mesh_.tet_at[name] = component.front();
+    }
+  }
+}
+
+VertexIndex SteinerLift::off_plane(std::uint32_t parent) const {
+  const Triangle& t = triangles_[parent];
+  VertexIndex o = frame_;
+  while (o < frame_ + 3 && points_.orient(t[0], t[1], t[2], o) == 0) ++o;
+  return o;
+}
+
+std::vector<SteinerLift::Fan> SteinerLift::fans_around(VertexIndex s) {
+  struct Spoke {
+    VertexIndex from, to;
+    std::uint32_t parent;
+  };
+  std::vector<Spoke> spokes;
+  star_ = mesh_.star(s);
+  for (const TetIndex t : star_) {
+    for (HalfFace h = 4 * t; h < 4 * t + 4; ++h) {
+      if (mesh_.opposite(h) != kNone || mesh_.apex(h) == s) continue;
+      Triangle f = mesh_.face(h);
+      while (f[0] != s) std::ranges::rotate(f, f.begin() + 1);
+      spokes.push_back({f[1], f[2], mesh_.label[t][h % 4]});
+    }
+  }
+  // In turn, starting where the parent changes.
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < spokes.size(); ++i) {
+    for (const Spoke& before : spokes) {
+      if (before.to == spokes[i].from && before.parent != spokes[i].parent) first = i;
+    }
+  }
+  std::vector<Fan> fans;
+  VertexIndex at = spokes[first].from;
+  for (std::size_t n = 0; n < spokes.size(); ++n) {
+    const auto next = std::ranges::find(spokes, at, &Spoke::from);
+    if (next == spokes.end()) throw std::logic_error("the boundary around a point is no disc");
+    if (fans.empty() || fans.back().parent != next->parent) fans.push_back({next->parent, {at}, false});
+    fans.back().chain.push_back(next->to);
+    at = next->to;
+  }
+  if (fans.size() == 1) {
+    fans[0].closed = true;
+    fans[0].chain.pop_back();
+  }
+  return fans;
+}
+
+bool SteinerLift::is_ear(const std::vector<VertexIndex>& polygon, std::size_t i, VertexIndex o, int up) const {
+  const std::size_t n = polygon.size();
+  const VertexIndex a = polygon[(i + n - 1) % n], b = polygon[i], c = polygon[(i + 1) % n];
+  const auto turn = [&](VertexIndex u, VertexIndex v, VertexIndex w) { return points_.orient(u, v, w, o) * up; };
+  if (turn(a, b, c) <= 0) return false;
+  return std::ranges::none_of(polygon, [&](VertexIndex v) {
+    return v != a && v != b && v != c && turn(a, b, v) >= 0 && turn(b, c, v) >= 0 && turn(c, a, v) >= 0;
+  });
+}
+
+// The polygon that the fan covers, divided without its centre.
+bool SteinerLift::triangulate(const Fan& fan, std::vector<LabelledFace>& faces) const {
+  const Triangle& plane = triangles_[fan.parent];
+  const VertexIndex o = off_plane(fan.parent);
+  const int up = points_.orient(plane[0], plane[1], plane[2], o);
+  std::vector<VertexIndex> polygon = fan.chain;
+  while (polygon.size() >= 3) {
+    const std::size_t n = polygon.size();
+    std::size_t best = n;
+    double best_quality = -1;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (!is_ear(polygon, i, o, up)) continue;
+      const double q =
+          radius_ratio(points_.at(polygon[(i + n - 1) % n]), points_.at(polygon[i]), points_.at(polygon[(i + 1) % n]));
+      if (best == n || q > best_quality) {
+        best = i;
+        best_quality = q;
+      }
+    }
+    if (best == n) return false;
+    faces.push_back({{polygon[(best + n - 1) % n], polygon[best], polygon[(best + 1) % n]}, fan.parent});
+    polygon.erase(polygon.begin() + static_cast<std::ptrdiff_t>(best));
+  }
+  return true;
+}
+
+// The worst element if s moves onto `target`; negative if one would not be positive or is worse than `at_least`.
+double SteinerLift::collapse_quality(VertexIndex s, VertexIndex target, double at_least) const {
+  double worst = 1;
+  for (const TetIndex t : star_) {
+    if (mesh_.has(t, target)) continue;
+    Tet c = mesh_.corner[t];
+    std::ranges::replace(c, s, target);
+    worst = std::min(worst, radius_ratio(points_.at(c[0]), points_.at(c[1]), points_.at(c[2]), points_.at(c[3])));
+    if (worst <= at_least && at_least > 0) return -1;
+    if (points_.orient(c[0], c[1], c[2], c[3]) <= 0) return -1;
+  }
+  return std::max(worst, 0.0);
+}
+
+void SteinerLift::collapse_onto(VertexIndex s, VertexIndex target) {
+  std::vector<Tet> fresh;
+  std::vector<LabelledFace> boundary;
+  for (const TetIndex t : star_) {
+    if (!mesh_.has(t, target)) {
+      fresh.push_back(mesh_.corner[t]);
+      std::ranges::replace(fresh.back(), s, target);
+    }
+    for (HalfFace h = 4 * t; h < 4 * t + 4; ++h) {
+      Triangle f = mesh_.face(h);
+      if (mesh_.opposite(h) != kNone || mesh_.apex(h) == s || std::ranges::count(f, target) > 0) continue;
+      std::ranges::replace(f, s, target);
+      boundary.push_back({f, mesh_.label[t][h % 4]});
+    }
+  }
+  mesh_.replace(star_, fresh, s, boundary);
+  mesh_.tet_at[s] = kNone;
+}
+
+// Onto a neighbour that lies on all input triangles on which s lies.
+bool SteinerLift::collapse(VertexIndex s) {
+  const std::vector<Fan> fans = fans_around(s);
+  std::vector<VertexIndex> targets = fans[0].chain;
+  if (fans.size() == 2) targets = {fans[0].chain.front(), fans[0].chain.back()};
+  VertexIndex best = kNone;
+  double best_quality = -1;
+  for (const VertexIndex target : targets) {
+    const double q = collapse_quality(s, target, best_quality);
+    if (q < 0 || (best != kNone && q <= best_quality)) continue;
+    best = target;
+    best_quality = q;
+  }
+  if (best == kNone) return false;
+  collapse_onto(s, best);
+  return true;
+}
+
+// The tets around s, and behind every face that x does not see strictly the next one. False if a boundary face hides x.
+bool SteinerLift::grow_cavity(VertexIndex s, Vec3 x, std::size_t limit) {
+  cavity_ = star_;
+  const std::uint32_t inside = mesh_.new_mark();
+  for (const TetIndex t : cavity_) mesh_.mark(t) = inside;
+  for (std::size_t k = 0; k < cavity_.size(); ++k) {
+    const TetIndex t = cavity_[k];
+    for (HalfFace h = 4 * t; h < 4 * t + 4; ++h) {
+      const HalfFace o = mesh_.opposite(h);
+      if (o != kNone && mesh_.mark(o / 4) == inside) continue;
+      const Triangle f = mesh_.face(h);
+      if (o == kNone && (f[0] == s || f[1] == s || f[2] == s)) continue;
+      if (points_.orient(f[0], f[1], f[2], x) < 0) continue;
+      if (o == kNone || cavity_.size() >= limit) return false;
+      mesh_.mark(o / 4) = inside;
+      cavity_.push_back(o / 4);
+    }
+  }
+  rim_.clear();
+  for (const TetIndex t : cavity_) {
+    for (HalfFace h = 4 * t; h < 4 * t + 4; ++h) {
+      const HalfFace o = mesh_.opposite(h);
+      if (o != kNone && mesh_.mark(o / 4) == inside) continue;
+      const Triangle f = mesh_.face(h);
+      if (o != kNone || (f[0] != s && f[1] != s && f[2] != s)) rim_.push_back(f);
+    }
+  }
+  return true;
+}
+
+double SteinerLift::cavity_quality(Vec3 x, const std::vector<LabelledFace>& boundary) const {
+  double worst = 1;
+  const auto look = [&](const Triangle& f) {
+    worst = std::min(worst, radius_ratio(points_.at(f[0]), points_.at(f[2]), points_.at(f[1]), x));
+  };
+  for (const Triangle& f : rim_) look(f);
+  for (const LabelledFace& f : boundary) look(f.corners);
+  return worst;
+}
+
+bool SteinerLift::place(VertexIndex s, Vec3 x, const std::vector<Fan>& fans,
+                        const std::vector<LabelledFace>& boundary) {
+  for (const Fan& fan : fans) {
+    const Triangle& t = triangles_[fan.parent];
+    if (points_.orient(t[0], t[1], t[2], x) >= 0) return false;
+  }
+  if (!grow_cavity(s, x, kMaxCavity)) return false;
+  std::vector<Tet> fresh;
+  const auto cone = [&](const Triangle& f) { fresh.push_back({f[0], f[2], f[1], s}); };
+  for (const Triangle& f : rim_) cone(f);
+  for (const LabelledFace& f : boundary) cone(f.corners);
+  mesh_.replace(cavity_, fresh, s, boundary);
+  points_.move(s, x);
+  return true;
+}
+
+bool SteinerLift::lift(VertexIndex s, int round) {
+  const std::vector<Fan> fans = fans_around(s);
+  std::vector<LabelledFace> boundary;
+  for (const Fan& fan : fans) {
+    if (!triangulate(fan, boundary)) return false;
+  }
+  const Vec3 at = points_.at(s);
+  Vec3 inward, middle;
+  for (const Fan& fan : fans) {
+    const Triangle& t = triangles_[fan.parent];
+    const Vec3 a = points_.at(t[0]);
+    inward -= normalized(cross(points_.at(t[1]) - a, points_.at(t[2]) - a));
+  }
+  inward = normalized(inward);
+  double size = 0;
+  std::size_t n = 0;
+  for (const TetIndex t : star_) {
+    for (const VertexIndex v : mesh_.corner[t]) {
+      if (v == s) continue;
+      middle += points_.at(v) - at;
+      size = std::max(size, distance(points_.at(v), at));
+      ++n;
+    }
+  }
+  middle = middle / static_cast<double>(n);
+  const double smallest = 1e-17 * (length(at) + size);
+  double best_quality = -1;
+  Vec3 best = at;
+  int found = 0;
+  int tries_after_first = 0;
+  for (double h = 0.7; h * size > smallest && found < kEnoughCandidates; h *= 0.7) {
+    if (found > 0 && ++tries_after_first > 8) break;
+    for (int k = 0; k < 4 + 2 * round; ++k) {
+      Vec3 direction = k == 0 ? middle * (1 / size) : k == 1 ? inward : inward + middle * (2 / size);
+      if (k > 1) direction += Vec3{random_unit() - 0.5, random_unit() - 0.5, random_unit() - 0.5} * (k % 2 ? 1.5 : 0.5);
+      const Vec3 x = at + normalized(direction) * (h * size);
+      bool seen = true;
+      for (const Fan& fan : fans) {
+        const Triangle& t = triangles_[fan.parent];
+        seen = seen && points_.orient(t[0], t[1], t[2], x) < 0;
+      }
+      if (!seen || !grow_cavity(s, x, kMaxCavity)) continue;
+      ++found;
+      const double q = cavity_quality(x, boundary);
+      if (q <= best_quality) continue;
+      best_quality = q;
+      best = x;
+    }
+  }
+  return found > 0 && place(s, best, fans, boundary);
+}
+
+void SteinerLift::run() {
+  if (points_.size() == first_steiner_) return;
+  split_umbrellas();
+  std::vector<VertexIndex> open;
+  for (VertexIndex s = first_steiner_; s < points_.size(); ++s) {
+    if (mesh_.tet_at[s] != kNone) open.push_back(s);
+  }
+  for (bool changed = true; changed;) {
+    context_.check();
+    const std::size_t before = open.size();
+    std::erase_if(open, [&](VertexIndex s) { return collapse(s); });
+    changed = open.size() < before;
+    counts_.collapsed += before - open.size();
+  }
+  // Points inside facets first: the others then see fewer of them.
+  std::ranges::stable_partition(open, [&](VertexIndex s) { return fans_around(s).size() == 1; });
+  for (int round = 0; round < kRounds && !open.empty(); ++round) {
+    const std::size_t before = open.size();
+    std::erase_if(open, [&](VertexIndex s) {
+      context_.check();
+      return lift(s, round);
+    });
+    counts_.lifted += before - open.size();
+    if (round == 0) counts_.deferred = open.size();
+  }
+  if (open.empty()) return;
+  const Vec3 p = points_.at(open.front());
+  throw MeshingError(
+      fmt::format("no place was found inside for {} points that the surface needs, the first near ({}, {}, "
+                  "{}): the gap there may be too thin for double precision",
+                  open.size(), p.x, p.y, p.z));
+}
+
+}  // namespace octafront::recovery

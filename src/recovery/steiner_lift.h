@@ -1,0 +1,73 @@
+#pragma once
+
+#include <octafront/run_context.h>
+
+#include "recovery/exact_point.h"
+#include "recovery/tet_complex.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace octafront::recovery {
+
+struct LiftCounts {
+  std::uint64_t collapsed = 0, lifted = 0, deferred = 0, removed = 0;
+};
+
+/// Takes the Steiner points off the surface: after run() the boundary of the mesh is the input's triangles, one for
+/// one, and all points are doubles. Points that can be merged into a neighbour on the surface are, the others move
+/// inside.
+class SteinerLift {
+ public:
+  /// `triangles`: the input's, to which the labels of boundary faces refer. Vertices from first_steiner on are Steiner
+  /// points. `frame`: the first of four vertices away from the surface that are not coplanar.
+  SteinerLift(ExactPoints& points, TetComplex& mesh, const std::vector<Triangle>& triangles, VertexIndex first_steiner,
+              VertexIndex frame, const RunContext& context)
+      : points_(points),
+        mesh_(mesh),
+        triangles_(triangles),
+        first_steiner_(first_steiner),
+        frame_(frame),
+        context_(context) {}
+
+  /// Throws MeshingError, with the place, if no doubles were found for a point.
+  void run();
+  const LiftCounts& counts() const { return counts_; }
+
+ private:
+  /// The boundary faces around a Steiner point that lie on one input triangle: fans over the chain of its vertices,
+  /// counter-clockwise seen from outside. Closed (the point lies inside the triangle) or open (on its edge).
+  struct Fan {
+    std::uint32_t parent = kNone;
+    std::vector<VertexIndex> chain;
+    bool closed = false;
+  };
+
+  void split_umbrellas();
+  std::vector<Fan> fans_around(VertexIndex s);
+  bool triangulate(const Fan& fan, std::vector<LabelledFace>& faces) const;
+  bool is_ear(const std::vector<VertexIndex>& polygon, std::size_t i, VertexIndex off_plane, int up) const;
+  VertexIndex off_plane(std::uint32_t parent) const;
+
+  bool collapse(VertexIndex s);
+  double collapse_quality(VertexIndex s, VertexIndex target, double at_least) const;
+  void collapse_onto(VertexIndex s, VertexIndex target);
+
+  bool lift(VertexIndex s, int round);
+  bool grow_cavity(VertexIndex s, Vec3 x, std::size_t limit);
+  double cavity_quality(Vec3 x, const std::vector<LabelledFace>& boundary) const;
+  bool place(VertexIndex s, Vec3 x, const std::vector<Fan>& fans, const std::vector<LabelledFace>& boundary);
+  double random_unit();
+
+  ExactPoints& points_;
+  TetComplex& mesh_;
+  const std::vector<Triangle>& triangles_;
+  VertexIndex first_steiner_, frame_;
+  const RunContext& context_;
+  LiftCounts counts_;
+  std::vector<TetIndex> star_, cavity_;
+  std::vector<Triangle> rim_;
+  std::uint64_t random_ = 88172645463325252u;
+};
+
+}  // namespace octafront::recovery
