@@ -24,6 +24,15 @@ std::array<VertexIndex, 3> sorted_face(const Triangle& t) {
   return sorted_face(Tet{kNone, t[0], t[1], t[2]}, 0);
 }
 
+/// The two other corners p and q of a tet, named so that (i, j, p, q) is positive.
+std::array<int, 2> other_corners(int i, int j) {
+  int p = 0;
+  while (p == i || p == j) ++p;
+  const int q = 6 - i - j - p;
+  const bool odd = ((i < j) + (i < p) + (i < q) + (j < p) + (j < q) + (p < q)) % 2 != 0;
+  return odd ? std::array<int, 2>{q, p} : std::array<int, 2>{p, q};
+}
+
 /// Faces in buckets by their least corner: whoever comes second to a pair of other corners finds the first.
 class FaceMatcher {
  public:
@@ -225,12 +234,7 @@ void EditMesh::edge_ring(TetIndex t, int i, int j, EdgeRing& out) const {
   out.tets.clear();
   out.ring.clear();
   out.closed = true;
-  // The two other corners, named so that (a, b, p, q) is positive.
-  int p = 0;
-  while (p == i || p == j) ++p;
-  int q = 6 - i - j - p;
-  const bool odd = ((i < j) + (i < p) + (i < q) + (j < p) + (j < q) + (p < q)) % 2 != 0;
-  if (odd) std::swap(p, q);
+  const auto [p, q] = other_corners(i, j);
   // Turning from p to q leaves each tet through the face opposite its first ring corner.
   TetIndex at = t;
   VertexIndex from = tets_[t][p], to = tets_[t][q];
@@ -259,6 +263,27 @@ void EditMesh::edge_ring(TetIndex t, int i, int j, EdgeRing& out) const {
     from = tets_[at][o % 4];
     out.tets.insert(out.tets.begin(), at);
     out.ring.insert(out.ring.begin(), from);
+  }
+}
+
+bool EditMesh::edge_ring_where_worst(TetIndex t, int i, int j, std::size_t longest, EdgeRing& out) const {
+  out.tets.clear();
+  out.ring.clear();
+  out.closed = true;
+  const auto [p, q] = other_corners(i, j);
+  TetIndex at = t;
+  VertexIndex from = tets_[t][p], to = tets_[t][q];
+  const VertexIndex start = from;
+  for (;;) {
+    out.tets.push_back(at);
+    out.ring.push_back(from);
+    if (to == start) return true;
+    if (out.tets.size() == longest) return false;
+    const HalfFace o = across_[4 * at + corner_of(at, from)];
+    if (is_boundary(o) || worse(o / 4, t)) return false;
+    at = o / 4;
+    from = to;
+    to = tets_[at][o % 4];
   }
 }
 

@@ -64,6 +64,10 @@ class EditMesh {
   /// The tets around the edge between corners i and j of t, from t on.
   void edge_ring(TetIndex t, int i, int j, EdgeRing& out) const;
 
+  /// The same, but gives up, false, once the ring is known to be open, to have more than `longest` tets, or to have a
+  /// tet with a lower score than t (of equals, the one with the lower number counts as lower).
+  bool edge_ring_where_worst(TetIndex t, int i, int j, std::size_t longest, EdgeRing& out) const;
+
   /// Moves a vertex and sets the shapes of its star (faces as from star(), shapes in the same order).
   void move(VertexIndex v, Vec3 to, std::span<const HalfFace> star_faces, const ShapeBatch& shapes);
 
@@ -79,6 +83,12 @@ class EditMesh {
   Floor floor() const;
   /// Sum of beta over the mesh, in a fixed order.
   double beta_sum() const;
+
+  /// t is worse than `than`; of equals, the one with the lower number.
+  bool worse(TetIndex t, TetIndex than) const {
+    const float a = shapes_[t].score, b = shapes_[than].score;
+    return a != b ? a < b : t < than;
+  }
 
  private:
   void take(TetMesh& mesh);

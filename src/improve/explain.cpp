@@ -3,6 +3,7 @@
 #include "geometry/measures.h"
 #include "improve/maximize_worst.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace octafront::improve {
@@ -62,6 +63,10 @@ class Explainer {
   WorstMaximizer maximizer_;
 };
 
+bool spans_boundary(const EditMesh& mesh, TetIndex t) {
+  return std::all_of(mesh.tet(t).begin(), mesh.tet(t).end(), [&](VertexIndex v) { return mesh.on_boundary(v); });
+}
+
 }  // namespace
 
 Shortfall explain_shortfall(const EditMesh& mesh, float threshold) {
@@ -74,6 +79,8 @@ Shortfall explain_shortfall(const EditMesh& mesh, float threshold) {
       ++s.forced_by_angle;
     } else if (explainer.forced_by_triangle(t)) {
       ++s.forced_by_triangle;
+    } else if (spans_boundary(mesh, t)) {
+      ++s.in_thin_places;
     } else {
       ++s.not_forced;
       if (s.worst_not_forced == kNone || mesh.shape(t).score < mesh.shape(s.worst_not_forced).score)

@@ -11,6 +11,7 @@ struct Shortfall {
   std::uint64_t elements = 0;            ///< with a score below the threshold
   std::uint64_t forced_by_angle = 0;     ///< at an edge where the boundary faces enclose too small an angle
   std::uint64_t forced_by_triangle = 0;  ///< on a boundary triangle that no better tetrahedron fits
+  std::uint64_t in_thin_places = 0;  ///< with all four corners on the boundary: no room for another vertex was found
   std::uint64_t not_forced = 0;
   TetIndex worst_not_forced = kNone;  ///< slot in the mesh
 };

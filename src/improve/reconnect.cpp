@@ -30,7 +30,8 @@ class Reconnector {
  public:
   Reconnector(EditMesh& mesh, const Floor& floor) : mesh_(mesh), floor_(floor) {}
 
-  /// Makes the best change there is at tet t; the tets made are in created(). False if none is better.
+  /// Makes the best change there is at tet t, of those where t is the worst element concerned; the tets made are in
+  /// created(). False if none is better.
   bool improve(TetIndex t) {
     best_.clear();
     for (const auto& [i, j] : kTetEdges) try_edge(t, i, j);
@@ -43,12 +44,6 @@ class Reconnector {
   const std::vector<TetIndex>& created() const { return created_; }
 
  private:
-  float worst_of(const std::vector<TetIndex>& tets) const {
-    float worst = 1;
-    for (const TetIndex t : tets) worst = std::min(worst, mesh_.shape(t).score);
-    return worst;
-  }
-
   void add_candidate(const Tet& t) {
     batch_.add(mesh_.point(t[0]), mesh_.point(t[1]), mesh_.point(t[2]), mesh_.point(t[3]));
   }
@@ -65,10 +60,9 @@ class Reconnector {
 
   void try_edge(TetIndex t, int i, int j) {
     const VertexIndex a = mesh_.tet(t)[i], b = mesh_.tet(t)[j];
-    mesh_.edge_ring(t, i, j, ring_);
+    if (!mesh_.edge_ring_where_worst(t, i, j, kLongestRing, ring_)) return;
     const int n = static_cast<int>(ring_.ring.size());
-    if (!ring_.closed || n < 3 || n > kLongestRing) return;
-    const float bar = std::max(worst_of(ring_.tets), best_.worst);
+    const float bar = std::max(mesh_.shape(t).score, best_.worst);
     // Each edge of the ring is in one triangle of the new triangulation: if none on the first edge will do, none will.
     batch_.size = 0;
     add_triangles(a, b, 0, 1, n);
@@ -139,7 +133,7 @@ class Reconnector {
 
   void try_face(TetIndex t, int i) {
     const HalfFace o = mesh_.across(4 * t + i);
-    if (is_boundary(o)) return;
+    if (is_boundary(o) || mesh_.worse(o / 4, t)) return;
     const VertexIndex a = mesh_.tet(t)[i], b = mesh_.tet(o / 4)[o % 4];
     const auto& f = kTetFaces[i];
     const VertexIndex x = mesh_.tet(t)[f[0]], y = mesh_.tet(t)[f[1]], z = mesh_.tet(t)[f[2]];
@@ -149,7 +143,7 @@ class Reconnector {
     batch_.evaluate();
     float after = 1;
     for (int k = 0; k < 3; ++k) after = std::min(after, usable_score(k, made[k]));
-    if (after <= std::min(mesh_.shape(t).score, mesh_.shape(o / 4).score) || after <= best_.worst) return;
+    if (after <= std::max(mesh_.shape(t).score, best_.worst)) return;
     best_.clear();
     best_.old_tets = {t, o / 4};
     best_.new_tets.assign(made.begin(), made.end());

@@ -35,13 +35,14 @@ class Schedule {
     report_.count(fmt::format("elements below {:.1f}", kReported), static_cast<double>(s.elements));
     report_.count("forced by the angle between boundary faces", static_cast<double>(s.forced_by_angle));
     report_.count("forced by a boundary triangle", static_cast<double>(s.forced_by_triangle));
+    report_.count("between boundary vertices only", static_cast<double>(s.in_thin_places));
     report_.count("not forced", static_cast<double>(s.not_forced));
     if (s.elements == 0) return;
     std::string note = fmt::format(
         "{} elements stay below {:.1f} (beta, or angles of that worth): {} where boundary faces meet at a small angle, "
         "{} "
-        "on boundary triangles of poor shape, {} for neither reason",
-        s.elements, kReported, s.forced_by_angle, s.forced_by_triangle, s.not_forced);
+        "on boundary triangles of poor shape, {} between boundary vertices only, {} for no such reason",
+        s.elements, kReported, s.forced_by_angle, s.forced_by_triangle, s.in_thin_places, s.not_forced);
     if (s.worst_not_forced != kNone) {
       const Vec3 p = mesh_.point(mesh_.tet(s.worst_not_forced)[0]);
       note += fmt::format("; the worst of these, {:.3f}, near ({}, {}, {})", mesh_.shape(s.worst_not_forced).score, p.x,
@@ -86,10 +87,11 @@ void run_fast(Schedule& run, const ImproveOptions& options) {
 
 void run_default(Schedule& run, const ImproveOptions& options) {
   run.laplacian(2, options.relaxation, MoveRule::kMeanRises);
+  run.flips(kGood);
+  run.smooth_mean(1);
   run.flips(kWanted);
-  run.smooth_mean(2);
-  run.flips(kWanted);
-  for (int round = 0; round < 3; ++round) {
+  run.smooth_mean(1);
+  for (int round = 0; round < 2; ++round) {
     run.optimize(kWanted);
     run.flips(kWanted);
   }
@@ -102,12 +104,10 @@ void run_default(Schedule& run, const ImproveOptions& options) {
 
 void run_best(Schedule& run, const ImproveOptions& options) {
   run.laplacian(2, options.relaxation, MoveRule::kMeanRises);
-  run.flips(kWantedBest);
   for (int round = 0; round < 4; ++round) {
-    run.smooth_mean(2);
     run.flips(kGood);
+    run.smooth_mean(2);
   }
-  run.smooth_mean(2);
   for (int round = 0; round < 5; ++round) {
     run.optimize(kWantedBest);
     run.flips(kWantedBest);
