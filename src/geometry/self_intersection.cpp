@@ -41,7 +41,7 @@ class SelfIntersectionSearch {
       if (a == b || tree_.nodes_[a].box.overlaps(tree_.nodes_[b].box)) next(Task{a, b});
     };
     if (t.a == t.b) {
-      const std::uint32_t left = t.a + 1, right = tree_.nodes_[t.a].first;
+      const std::uint32_t left = tree_.nodes_[t.a].first, right = left + 1;
       add(left, left);
       add(right, right);
       add(left, right);
@@ -50,8 +50,8 @@ class SelfIntersectionSearch {
     if (is_leaf(t.a) || (!is_leaf(t.b) && squared_length(tree_.nodes_[t.a].box.extent()) <
                                               squared_length(tree_.nodes_[t.b].box.extent())))
       std::swap(t.a, t.b);
-    add(t.a + 1, t.b);
     add(tree_.nodes_[t.a].first, t.b);
+    add(tree_.nodes_[t.a].first + 1, t.b);
   }
 
   std::vector<Task> split_tasks() const {

@@ -19,20 +19,17 @@ struct TriangleTree::Builder {
   TriangleTree& tree;
   std::vector<Entry> entries;
 
-  void split(std::uint32_t begin, std::uint32_t end) {
-    const std::size_t n = tree.nodes_.size();
-    tree.nodes_.emplace_back();
+  // Fills node n and all below it.
+  void split(std::uint32_t n, std::uint32_t begin, std::uint32_t end) {
     Box3 box, middles;
     for (std::uint32_t i = begin; i < end; ++i) {
       box.add(entries[i].box);
       middles.add(entries[i].middle);
     }
-    tree.nodes_[n].box = box;
     if (end - begin <= kLeafSize) {
-      tree.nodes_[n].first = begin;
-      tree.nodes_[n].count = end - begin;
       std::sort(entries.begin() + begin, entries.begin() + end,
                 [](const Entry& a, const Entry& b) { return a.triangle < b.triangle; });
+      tree.nodes_[n] = {box, begin, end - begin};
       return;
     }
     const Vec3 e = middles.extent();
@@ -43,9 +40,11 @@ struct TriangleTree::Builder {
                        const double x = a.middle[axis], y = b.middle[axis];
                        return x != y ? x < y : a.triangle < b.triangle;
                      });
-    split(begin, middle);
-    tree.nodes_[n].first = static_cast<std::uint32_t>(tree.nodes_.size());
-    split(middle, end);
+    const auto child = static_cast<std::uint32_t>(tree.nodes_.size());
+    tree.nodes_[n] = {box, child, 0};
+    tree.nodes_.resize(child + 2);
+    split(child, begin, middle);
+    split(child + 1, middle, end);
   }
 };
 
@@ -61,7 +60,8 @@ TriangleTree::TriangleTree(std::span<const Vec3> points, std::span<const Triangl
     builder.entries.push_back({box.center(), box, static_cast<std::uint32_t>(t)});
   }
   nodes_.reserve(triangles.size());
-  builder.split(0, static_cast<std::uint32_t>(triangles.size()));
+  nodes_.resize(1);
+  builder.split(0, 0, static_cast<std::uint32_t>(triangles.size()));
   items_.reserve(triangles.size());
   item_of_triangle_.resize(triangles.size());
   for (const auto& entry : builder.entries) {
@@ -70,34 +70,52 @@ TriangleTree::TriangleTree(std::span<const Vec3> points, std::span<const Triangl
   }
 }
 
+// Goes down from the root by keys of boxes (0 at the nearest), always into the nearer child first; calls visit(leaf),
+// which may lower the limit, for all leaves whose key is below it by then.
+template <class Key, class Visit>
+void TriangleTree::descend(const double& limit, Key&& key, Visit&& visit) const {
+  if (empty() || key(nodes_[0].box) >= limit) return;
+  std::array<std::uint32_t, kMaxDepth> waiting;
+  std::array<double, kMaxDepth> waiting_key;
+  int depth = 0;
+  const Node* node = nodes_.data();
+  for (;;) {
+    if (node->count == 0) {
+      const double left = key(nodes_[node->first].box), right = key(nodes_[node->first + 1].box);
+      const std::uint32_t nearer = left <= right ? node->first : node->first + 1;
+      const double far_key = left <= right ? right : left;
+      if (far_key < limit) {
+        waiting[depth] = 2 * node->first + 1 - nearer;
+        waiting_key[depth++] = far_key;
+      }
+      if (std::min(left, right) < limit) {
+        node = &nodes_[nearer];
+        continue;
+      }
+    } else {
+      visit(*node);
+    }
+    do {
+      if (depth == 0) return;
+      --depth;
+    } while (waiting_key[depth] >= limit);
+    node = &nodes_[waiting[depth]];
+  }
+}
+
 TriangleTree::Nearest TriangleTree::nearest(Vec3 p, double limit_squared) const {
   Nearest best;
   best.squared_distance = limit_squared;
-  if (empty()) return best;
-  struct Entry {
-    std::uint32_t node;
-    double squared_distance;
-  };
-  std::array<Entry, kMaxDepth> stack;
-  int depth = 0;
-  stack[depth++] = {0, squared_distance(p, nodes_[0].box)};
-  while (depth > 0) {
-    const auto [n, d] = stack[--depth];
-    if (d >= best.squared_distance) continue;
-    const Node& node = nodes_[n];
-    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-      const auto& [a, b, c] = items_[i].corners;
-      const Vec3 q = closest_point_on_triangle(p, a, b, c);
-      const double dq = squared_distance(p, q);
-      if (dq < best.squared_distance) best = {q, items_[i].triangle, dq};
-    }
-    if (node.count > 0) continue;
-    Entry near{n + 1, squared_distance(p, nodes_[n + 1].box)};
-    Entry far{node.first, squared_distance(p, nodes_[node.first].box)};
-    if (far.squared_distance < near.squared_distance) std::swap(near, far);
-    stack[depth++] = far;
-    stack[depth++] = near;
-  }
+  descend(
+      best.squared_distance, [p](const Box3& box) { return squared_distance(p, box); },
+      [&](const Node& leaf) {
+        for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
+          const auto& [a, b, c] = items_[i].corners;
+          const Vec3 q = closest_point_on_triangle(p, a, b, c);
+          const double d = squared_distance(p, q);
+          if (d < best.squared_distance) best = {q, items_[i].triangle, d};
+        }
+      });
   return best;
 }
 
@@ -140,30 +158,19 @@ struct Slabs {
 
 TriangleTree::RayHit TriangleTree::first_hit(Vec3 origin, Vec3 direction, double t_max) const {
   RayHit best{t_max, kNone};
-  if (empty()) return best;
   const Slabs slabs{origin, {1 / direction.x, 1 / direction.y, 1 / direction.z}};
-  struct Entry {
-    std::uint32_t node;
-    double t;
-  };
-  std::array<Entry, kMaxDepth> stack;
-  int depth = 0;
-  stack[depth++] = {0, slabs.entry(nodes_[0].box, t_max)};
-  while (depth > 0) {
-    const auto [n, entry] = stack[--depth];
-    if (entry > best.t || entry == kFar) continue;
-    const Node& node = nodes_[n];
-    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-      const double t = ray_parameter(origin, direction, items_[i].corners);
-      if (t >= 0 && (t < best.t || (t == best.t && items_[i].triangle < best.triangle))) best = {t, items_[i].triangle};
-    }
-    if (node.count > 0) continue;
-    Entry near{n + 1, slabs.entry(nodes_[n + 1].box, best.t)};
-    Entry far{node.first, slabs.entry(nodes_[node.first].box, best.t)};
-    if (far.t < near.t) std::swap(near, far);
-    stack[depth++] = far;
-    stack[depth++] = near;
-  }
+  // Beyond the best hit by a rounding, so that ties are seen and go to the smaller index.
+  double limit = std::nextafter(t_max, kFar);
+  descend(
+      limit, [&](const Box3& box) { return slabs.entry(box, limit); },
+      [&](const Node& leaf) {
+        for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
+          const double t = ray_parameter(origin, direction, items_[i].corners);
+          if (t < 0 || t > best.t || (t == best.t && items_[i].triangle > best.triangle)) continue;
+          best = {t, items_[i].triangle};
+          limit = std::nextafter(t, kFar);
+        }
+      });
   return best;
 }
 

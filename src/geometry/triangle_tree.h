@@ -81,10 +81,10 @@ class TriangleTree {
     TriangleCorners corners;
     std::uint32_t triangle;
   };
-  // Depth first: the left child of an inner node follows it.
+  // Children lie side by side, since searches look at both.
   struct Node {
     Box3 box;
-    std::uint32_t first = 0;  // leaf: its first item; inner: its right child
+    std::uint32_t first = 0;  // leaf: its first item; inner: its left child, then the right one
     std::uint32_t count = 0;  // items of a leaf; 0: inner
   };
   struct Crossings {
@@ -95,6 +95,9 @@ class TriangleTree {
 
   Crossings crossings(Vec3 p) const;
 
+  template <class Key, class Visit>
+  void descend(const double& limit, Key&& key, Visit&& visit) const;
+
   template <class Enter, class Visit>
   void for_each_leaf(Enter&& enter, Visit&& visit) const {
     if (empty()) return;
@@ -102,12 +105,11 @@ class TriangleTree {
     int depth = 0;
     stack[depth++] = 0;
     while (depth > 0) {
-      const std::uint32_t n = stack[--depth];
-      const Node& node = nodes_[n];
+      const Node& node = nodes_[stack[--depth]];
       if (!enter(node.box)) continue;
       if (node.count == 0) {
+        stack[depth++] = node.first + 1;
         stack[depth++] = node.first;
-        stack[depth++] = n + 1;
       }
       for (std::uint32_t i = node.first; i < node.first + node.count; ++i) visit(items_[i]);
     }
