@@ -7,6 +7,7 @@ namespace octafront {
 namespace {
 
 constexpr std::size_t kFacesBetweenChecks = 512;
+constexpr int kMostRounds = 8;
 
 /// The queues of one run.
 class Queues {
@@ -17,14 +18,16 @@ class Queues {
   AdvanceResult run(std::vector<QueuedFace> layer, std::vector<QueuedFace> passive) {
     work_off(std::move(layer), 0);
     work_off(std::move(passive), 0);
-    for (std::size_t level = 1; level < kLimits.size() && !over_budget();) {
-      std::vector<QueuedFace> held = take_held();
-      if (held.empty()) break;
-      counters_.retries += held.size();
+    // Each round lets the faces that wait try all levels; a success may have made room for others, so there are
+    // several.
+    for (int round = 0; round < kMostRounds && !over_budget(); ++round) {
       const std::size_t before = front_.tets().size();
-      work_off(std::move(held), level);
-      // What has changed may let stricter levels succeed again: only a round without any success goes up.
-      level = front_.tets().size() == before ? level + 1 : 1;
+      for (std::size_t level = 1; level < kLimits.size() && !over_budget(); ++level) {
+        std::vector<QueuedFace> held = take_held();
+        counters_.retries += held.size();
+        work_off(std::move(held), level);
+      }
+      if (front_.tets().size() == before) break;
     }
     AdvanceResult result;
     result.over_budget = over_budget();

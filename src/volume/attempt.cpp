@@ -233,7 +233,7 @@ bool Attempt::advance(FaceIndex face, const Limits& limits, std::vector<QueuedFa
     commit(face, near_.vertex(c.index), contact_, created);
     return true;
   }
-  if (!try_ideal_point(limits)) return false;
+  if (!limits.new_points || !try_ideal_point(limits)) return false;
   ++counters_.ideal_points;
   commit(face, front_.add_vertex(ideal_at_, sizes_.at(ideal_at_)), contact_, created);
   return true;

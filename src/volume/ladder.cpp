@@ -5,6 +5,7 @@
 #include "cavity/cavity.h"
 #include "core/stage_timer.h"
 #include "volume/backtrack.h"
+#include "volume/recover_cavity.h"
 
 #include <algorithm>
 #include <array>
@@ -24,27 +25,16 @@ constexpr std::array<BacktrackVariant, 4> kBeforeStar{{{1, 1.0, Ranking::kQualit
 constexpr std::array<BacktrackVariant, 3> kAfterStar{
     {{3, 1.0, Ranking::kQuality}, {3, 0.6, Ranking::kSolidAngle}, {4, 0.8, Ranking::kQuality}}};
 
+/// The bare cavity first: rings only help where no doubles fit between its walls.
+constexpr std::array<int, 4> kRecoveryRings{0, 1, 2, 4};
+
 struct RungCounts {
-  int cavities = 0, by_front = 0, by_star = 0, growth_steps = 0;
+  int cavities = 0, by_front = 0, by_star = 0, growth_steps = 0, by_recovery = 0;
 };
 
-SurfaceMesh surface_of(const WorkMesh& mesh, const std::vector<Wall>& walls) {
-  SurfaceMesh surface;
-  std::map<VertexIndex, VertexIndex> local;
-  for (const Wall& w : walls) {
-    Triangle outward{w[0], w[2], w[1]};
-    for (VertexIndex& v : outward) {
-      const auto [it, is_new] = local.try_emplace(v, static_cast<VertexIndex>(surface.points.size()));
-      if (is_new) surface.points.push_back(mesh.at(v));
-      v = it->second;
-    }
-    surface.triangles.push_back(outward);
-  }
-  return surface;
-}
-
 [[noreturn]] void give_up(const WorkMesh& mesh, const std::vector<Wall>& walls) {
-  SurfaceMesh surface = surface_of(mesh, walls);
+  std::vector<VertexIndex> global;
+  SurfaceMesh surface = surface_of(mesh, walls, global);
   const Vec3 p = bounding_box(surface.points).center();
   throw OpenCavityError("a cavity of " + std::to_string(walls.size()) + " faces near (" + std::to_string(p.x) + ", " +
                             std::to_string(p.y) + ", " + std::to_string(p.z) +
@@ -74,6 +64,11 @@ void close_cavities(TetMesh& mesh, const std::vector<Wall>& walls, const SizeFie
     counts.growth_steps += star.growth_steps;
     counts.by_star += star.closed;
     if (star.closed || std::any_of(kAfterStar.begin(), kAfterStar.end(), by_front)) continue;
+    const auto by_recovery = [&](int rings) { return close_by_recovery(work, cavities, c, rings, context); };
+    if (std::any_of(kRecoveryRings.begin(), kRecoveryRings.end(), by_recovery)) {
+      ++counts.by_recovery;
+      continue;
+    }
     give_up(work, cavities.walls(c));
   }
   mesh.points = work.take_points();
@@ -81,6 +76,7 @@ void close_cavities(TetMesh& mesh, const std::vector<Wall>& walls, const SizeFie
   report.count("cavities", counts.cavities);
   report.count("closed by backtracking", counts.by_front);
   report.count("closed by kernel points", counts.by_star);
+  report.count("closed by recovery", counts.by_recovery);
   report.count("growth steps", counts.growth_steps);
   report.count("closing CPU seconds", process_cpu_seconds() - start);
 }

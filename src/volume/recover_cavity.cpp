@@ -1,0 +1,47 @@
+#include "volume/recover_cavity.h"
+
+#include <octafront/error.h>
+
+#include "recovery/recover.h"
+
+namespace octafront {
+
+SurfaceMesh surface_of(const WorkMesh& mesh, const std::vector<Wall>& walls, std::vector<VertexIndex>& global) {
+  SurfaceMesh surface;
+  std::map<VertexIndex, VertexIndex> local;
+  for (const Wall& w : walls) {
+    Triangle outward{w[0], w[2], w[1]};
+    for (VertexIndex& v : outward) {
+      const auto [it, is_new] = local.try_emplace(v, static_cast<VertexIndex>(global.size()));
+      if (is_new) {
+        surface.points.push_back(mesh.at(v));
+        global.push_back(v);
+      }
+      v = it->second;
+    }
+    surface.triangles.push_back(outward);
+  }
+  return surface;
+}
+
+bool close_by_recovery(WorkMesh& mesh, Cavities& cavities, std::uint32_t cavity, int rings, const RunContext& context) {
+  Excavation excavation(mesh, cavities, cavity);
+  for (int ring = 0; ring < rings; ++ring)
+    if (!excavation.grow_ring()) return false;
+  std::vector<VertexIndex> global;
+  const SurfaceMesh surface = surface_of(mesh, excavation.walls(), global);
+  TetMesh filling;
+  try {
+    StageReport unused;
+    filling = recover_volume(surface, context, unused);
+  } catch (const MeshingError&) {
+    return false;  // the next rung, a larger cavity, gives other walls
+  }
+  for (std::size_t v = global.size(); v < filling.points.size(); ++v)
+    global.push_back(mesh.add_point(filling.points[v]));
+  for (const Tet& t : filling.tets) mesh.add({global[t[0]], global[t[1]], global[t[2]], global[t[3]]});
+  excavation.commit();
+  return true;
+}
+
+}  // namespace octafront
