@@ -3,6 +3,10 @@
 #include "surface/defects_steps.h"
 #include "surface/wording.h"
 
+#include <algorithm>
+#include <set>
+#include <vector>
+
 #include <fmt/format.h>
 
 namespace octafront {
@@ -10,14 +14,26 @@ namespace {
 
 constexpr std::size_t kShownPlaces = 3;  // per kind, in describe(): enough to look there
 
-std::string places_of(const SurfaceDefects::Kind& kind, const char* where) {
-  std::string text;
-  const std::size_t shown = std::min(kind.first.size(), kShownPlaces);
-  for (std::size_t i = 0; i < shown; ++i) {
-    const SurfaceDefects::Place& place = kind.first[i];
-    text += i == 0 ? (kind.count > shown ? "first: " : "") : "; ";
-    text += fmt::format("{} {}{}", where, at_point(place.at), in_faces(place.faces));
+/// The first places that have no face in common: neighbouring faces tell nothing new.
+std::vector<const SurfaceDefects::Place*> distinct_places(const SurfaceDefects::Kind& kind) {
+  std::vector<const SurfaceDefects::Place*> distinct;
+  std::set<std::uint32_t> shown;
+  for (const SurfaceDefects::Place& place : kind.first) {
+    if (distinct.size() == kShownPlaces) break;
+    const bool near =
+        std::any_of(place.faces.begin(), place.faces.end(), [&](std::uint32_t face) { return shown.contains(face); });
+    if (near) continue;
+    distinct.push_back(&place);
+    shown.insert(place.faces.begin(), place.faces.end());
   }
+  return distinct;
+}
+
+std::string places_of(const SurfaceDefects::Kind& kind, const char* where) {
+  const auto places = distinct_places(kind);
+  std::string text = kind.count > places.size() ? "first: " : "";
+  for (std::size_t i = 0; i < places.size(); ++i)
+    text += fmt::format("{}{} {}{}", i == 0 ? "" : "; ", where, at_point(places[i]->at), in_faces(places[i]->faces));
   return text;
 }
 
@@ -72,7 +88,7 @@ SurfaceDefects find_defects(const RepairedSurface& repaired) {
   defects::find_bad_edges(repaired, table, found);
   defects::find_bad_vertices(repaired, table, found);
   defects::find_degenerate_faces(repaired, found);
-  defects::find_self_intersections(repaired, found);
+  defects::find_self_intersections(repaired, table, found);
   return found;
 }
 

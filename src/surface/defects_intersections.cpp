@@ -11,6 +11,10 @@ namespace {
 
 constexpr std::size_t kShown = 10;
 
+/// All faces of an edge are near each other. Where they are more than this they are left out, since comparing every two
+/// would take minutes; such an edge is a defect already.
+constexpr std::size_t kMostFacesOfEdge = 1000;
+
 TriangleCorners corners_of(const SurfaceMesh& mesh, std::uint32_t t) {
   const auto [a, b, c] = mesh.triangles[t];
   return {mesh.points[a], mesh.points[b], mesh.points[c]};
@@ -47,14 +51,17 @@ Vec3 meeting_point(const SurfaceMesh& mesh, std::uint32_t s, std::uint32_t t) {
 
 }  // namespace
 
-void find_self_intersections(const RepairedSurface& repaired, SurfaceDefects& defects) {
+void find_self_intersections(const RepairedSurface& repaired, const EdgeTable& table, SurfaceDefects& defects) {
   const SurfaceMesh& mesh = repaired.surface;
-  // Faces without area are a defect of their own.
+  std::vector<char> left_out(mesh.triangles.size(), 0);
+  for (std::size_t e = 0; e < table.size(); ++e)
+    if (table.uses(e).size() > kMostFacesOfEdge)
+      for (const std::uint32_t h : table.uses(e)) left_out[h / 3] = 1;
   std::vector<std::uint32_t> proper;
   std::vector<Triangle> triangles;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto [a, b, c] = corners_of(mesh, t);
-    if (collinear(a, b, c)) continue;
+    if (left_out[t] || collinear(a, b, c)) continue;  // faces without area are a defect of their own
     proper.push_back(t);
     triangles.push_back(mesh.triangles[t]);
   }

@@ -20,7 +20,7 @@ void find_bad_vertices(const RepairedSurface& repaired, const EdgeTable& table, 
 void find_degenerate_faces(const RepairedSurface& repaired, SurfaceDefects& defects);
 
 /// Pairs of faces that meet elsewhere than in what they share; counting stops at kMostPairs.
-void find_self_intersections(const RepairedSurface& repaired, SurfaceDefects& defects);
+void find_self_intersections(const RepairedSurface& repaired, const EdgeTable& table, SurfaceDefects& defects);
 inline constexpr std::uint64_t kMostPairs = 1'000'000;
 
 /// Keeps the first places of a kind, in order of their faces.

@@ -58,7 +58,10 @@ class NestingSearch {
 
   std::vector<std::uint32_t> pieces_around(std::uint32_t inner, const Extremes& extremes) {
     touched_.clear();
-    for (const VertexIndex v : extremes.vertex) probe(inner, mesh_.points[v]);
+    for (const VertexIndex v : extremes.vertex) {
+      probe(inner, mesh_.points[v]);
+      if (touched_.empty()) return {};  // what is not around the first vertex is not around the piece
+    }
     std::vector<std::uint32_t> around;
     for (const std::uint32_t piece : touched_) {
       const Tally& tally = tally_[piece];
