@@ -1,6 +1,8 @@
 #include "surface/curves.h"
 
 #include <algorithm>
+#include <map>
+#include <utility>
 
 namespace octafront::remeshing {
 
@@ -15,8 +17,19 @@ constexpr double kScaleCosine = 0.866;
 constexpr double kShort = 1.5, kShortDangling = 4;
 /// A chain with two loose ends is noise below this length.
 constexpr double kShortIsolated = 1;
+/// Edges that are no features but turn by more than 12 degrees are rough. Where most edges beside a chain are, the
+/// surface is a scan with angles of all kinds, of which some happen to be sharp, and a chain must be this long.
+constexpr double kRoughCosine = 0.978;
+constexpr double kRoughPart = 0.45, kShortRough = 3;
+/// A chain this short between junctions, blunter than 65 degrees and somewhat rough is a rung between lines that are
+/// one line at scale; one that hangs loose is a whisker.
+constexpr double kShortRung = 0.7, kShortWhisker = 1;
+constexpr double kBluntCosine = 0.423, kSomewhatRough = 0.15;
+/// Of two chains between the same corners both shorter than this the blunter one is noise: a sharp line that runs
+/// across triangles shows as edges on both sides of it.
+constexpr double kShortDouble = 1;
 /// Removing chains joins others; that settles within a few rounds.
-constexpr int kRounds = 4;
+constexpr int kRounds = 6;
 
 Vec3 normal_aside(const InputSurface& input, HalfedgeIndex h, double size) {
   const HalfedgeMesh& mesh = input.mesh;
@@ -40,13 +53,22 @@ bool holds_at_scale(const InputSurface& input, HalfedgeIndex h, double size) {
 struct ChainFacts {
   double length = 0;  ///< in element sizes
   double sharp = 0;   ///< part of it that holds at scale
+  double cosine = 0;  ///< mean, of the angle between its faces
+  double rough = 0;   ///< part of the edges beside it that are rough
   bool border = false;
   int loose_ends = 0;
+  bool between_junctions = false;  ///< three chains or more meet at both ends
+  Edge ends{};
 };
 
 bool is_noise(const ChainFacts& f) {
   if (f.border) return false;
   if (f.loose_ends == 2 && f.length < kShortIsolated) return true;
+  if (f.rough > kRoughPart && f.length < kShortRough) return true;
+  if (f.cosine > kBluntCosine && f.rough > kSomewhatRough) {
+    if (f.loose_ends == 1 && f.length < kShortWhisker) return true;
+    if (f.between_junctions && f.length < kShortRung) return true;
+  }
   if (f.sharp >= 0.5 * f.length) return false;
   return f.length < (f.loose_ends > 0 ? kShortDangling : kShort);
 }
@@ -86,21 +108,62 @@ class NoiseFilter {
     }
   }
 
+  double cosine(HalfedgeIndex h) const {
+    return dot(marked_.face_normal[h / 3], marked_.face_normal[marked_.mesh.twin[h] / 3]);
+  }
+
+  void count_beside(VertexIndex v, double& rough, double& all) const {
+    const HalfedgeMesh& mesh = marked_.mesh;
+    mesh.for_each_outgoing(v, [&](HalfedgeIndex h) {
+      if (mesh.is_feature[h]) return;
+      ++all;
+      rough += cosine(h) < kRoughCosine;
+    });
+  }
+
+  ChainFacts facts_of(const Curve& c, const std::vector<std::uint32_t>& degree) const {
+    const HalfedgeMesh& mesh = marked_.mesh;
+    ChainFacts f;
+    const VertexIndex first = mesh.start[c.halfedges.front()], last = mesh.end(c.halfedges.back());
+    double rough = 0, all = 0;
+    count_beside(first, rough, all);
+    for (const HalfedgeIndex h : c.halfedges) {
+      const double l = distance(mesh.points[mesh.start[h]], mesh.points[mesh.end(h)]) / size_[h];
+      f.length += l;
+      f.sharp += sharp_[h] ? l : 0;
+      f.cosine += cosine(h) / static_cast<double>(c.halfedges.size());
+      f.border |= marked_.patch[h / 3] != marked_.patch[mesh.twin[h] / 3];
+      count_beside(mesh.end(h), rough, all);
+    }
+    f.rough = all > 0 ? rough / all : 0;
+    f.loose_ends = (degree[first] == 1) + (degree[last] == 1);
+    f.between_junctions = degree[first] > 2 && degree[last] > 2;
+    f.ends = {std::min(first, last), std::max(first, last)};
+    return f;
+  }
+
+  void drop(const Curve& c) {
+    for (const HalfedgeIndex h : c.halfedges) marked_.mesh.set_feature(h, false);
+  }
+
   void drop_noise() {
     HalfedgeMesh& mesh = marked_.mesh;
     std::vector<std::uint32_t> degree(mesh.points.size(), 0);
     for (HalfedgeIndex h = 0; h < mesh.start.size(); ++h) degree[mesh.start[h]] += mesh.is_feature[h];
-    for (const Curve& c : chain_curves(marked_, {}, sizes_)) {
-      ChainFacts f;
-      for (const HalfedgeIndex h : c.halfedges) {
-        const double l = distance(mesh.points[mesh.start[h]], mesh.points[mesh.end(h)]) / size_[h];
-        f.length += l;
-        f.sharp += sharp_[h] ? l : 0;
-        f.border |= marked_.patch[h / 3] != marked_.patch[mesh.twin[h] / 3];
+    const std::vector<Curve> curves = chain_curves(marked_, {}, sizes_);
+    std::vector<ChainFacts> facts;
+    for (const Curve& c : curves) facts.push_back(facts_of(c, degree));
+    std::map<Edge, std::size_t> sharpest;
+    for (std::size_t i = 0; i < curves.size(); ++i) {
+      if (is_noise(facts[i])) {
+        drop(curves[i]);
+      } else if (facts[i].length < kShortDouble && facts[i].ends[0] != facts[i].ends[1]) {
+        const auto [it, is_first] = sharpest.try_emplace(facts[i].ends, i);
+        if (is_first) continue;
+        std::size_t blunter = i;
+        if (facts[i].border || facts[i].cosine < facts[it->second].cosine) std::swap(blunter, it->second);
+        if (!facts[blunter].border) drop(curves[blunter]);
       }
-      f.loose_ends = (degree[mesh.start[c.halfedges.front()]] == 1) + (degree[mesh.end(c.halfedges.back())] == 1);
-      if (!is_noise(f)) continue;
-      for (const HalfedgeIndex h : c.halfedges) mesh.set_feature(h, false);
     }
   }
 

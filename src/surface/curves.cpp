@@ -8,8 +8,10 @@ namespace octafront::remeshing {
 
 namespace {
 
-/// Directions along the curve that differ by more than this over an element's size make a corner: cos 40 degrees.
+/// Directions along the curve that differ by more than 40 degrees over an element's size make a corner ...
 constexpr double kCornerCosine = 0.766;
+/// ... of several within this distance the sharpest, unless they turn by more than 75 degrees.
+constexpr double kCornerDistance = 0.8, kSharpCornerCosine = 0.259;
 /// A division point this close to a vertex of the curve, in segments, is that vertex. Two points are a segment apart:
 /// they never become the same vertex.
 constexpr double kSnapToVertex = 0.02;
@@ -47,6 +49,55 @@ Vec3 point_along(const HalfedgeMesh& mesh, const FeatureGraph& graph, HalfedgeIn
   }
 }
 
+struct Bend {
+  double cosine;  ///< of the turn
+  VertexIndex vertex;
+};
+
+Bend bend_at(const HalfedgeMesh& mesh, const FeatureGraph& graph, VertexIndex v, double reach) {
+  std::vector<Vec3> directions;
+  mesh.for_each_outgoing(v, [&](HalfedgeIndex h) {
+    if (mesh.is_feature[h]) directions.push_back(normalized(point_along(mesh, graph, h, reach) - mesh.points[v]));
+  });
+  return {-dot(directions[0], directions[1]), v};
+}
+
+/// Whether there is a corner within `reach` along either side of the curve.
+bool has_corner_near(const HalfedgeMesh& mesh, const FeatureGraph& graph, VertexIndex v, double reach) {
+  bool found = false;
+  mesh.for_each_outgoing(v, [&](HalfedgeIndex h) {
+    if (!mesh.is_feature[h]) return;
+    double path = 0;
+    const HalfedgeIndex first = h;
+    for (HalfedgeIndex at = h; at != kNone; at = continued(mesh, at)) {
+      path += edge_length(mesh, at);
+      if (path > reach) break;
+      if (graph.corner[mesh.end(at)]) found = true;
+      if (graph.degree[mesh.end(at)] != 2 || mesh.end(at) == mesh.start[first]) break;
+    }
+  });
+  return found;
+}
+
+/// Vertices inside chains where they bend, the sharpest first.
+void mark_bends(const HalfedgeMesh& mesh, const std::vector<VertexIndex>& corners, const SizeField& sizes,
+                FeatureGraph& graph) {
+  std::vector<Bend> bends;
+  for (const VertexIndex v : corners) {
+    if (graph.degree[v] != 2) continue;
+    const Bend bend = bend_at(mesh, graph, v, 0.5 * sizes.at(mesh.points[v]));
+    if (bend.cosine < kCornerCosine) bends.push_back(bend);
+  }
+  std::sort(bends.begin(), bends.end(), [](const Bend& a, const Bend& b) {
+    return a.cosine != b.cosine ? a.cosine < b.cosine : a.vertex < b.vertex;
+  });
+  for (const Bend& bend : bends) {
+    const double reach = kCornerDistance * sizes.at(mesh.points[bend.vertex]);
+    if (bend.cosine >= kSharpCornerCosine && has_corner_near(mesh, graph, bend.vertex, reach)) continue;
+    graph.corner[bend.vertex] = 1;
+  }
+}
+
 FeatureGraph make_graph(const InputSurface& input, const std::vector<VertexIndex>& corners, const SizeField& sizes) {
   const HalfedgeMesh& mesh = input.mesh;
   FeatureGraph graph;
@@ -54,15 +105,7 @@ FeatureGraph make_graph(const InputSurface& input, const std::vector<VertexIndex
   for (HalfedgeIndex h = 0; h < mesh.start.size(); ++h) graph.degree[mesh.start[h]] += mesh.is_feature[h];
   graph.corner.assign(mesh.points.size(), 0);
   for (VertexIndex v = 0; v < mesh.points.size(); ++v) graph.corner[v] = graph.degree[v] != 0 && graph.degree[v] != 2;
-  for (const VertexIndex v : corners) {
-    if (graph.degree[v] != 2) continue;
-    const double reach = 0.5 * sizes.at(mesh.points[v]);
-    std::vector<Vec3> directions;
-    mesh.for_each_outgoing(v, [&](HalfedgeIndex h) {
-      if (mesh.is_feature[h]) directions.push_back(normalized(point_along(mesh, graph, h, reach) - mesh.points[v]));
-    });
-    if (-dot(directions[0], directions[1]) < kCornerCosine) graph.corner[v] = 1;
-  }
+  mark_bends(mesh, corners, sizes, graph);
   return graph;
 }
 

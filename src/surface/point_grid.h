@@ -2,6 +2,7 @@
 
 #include <octafront/vec.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -21,15 +22,18 @@ class PointGrid {
     const int level = std::ilogb(size);
     lowest_ = points_.empty() ? level : std::min(lowest_, level);
     highest_ = points_.empty() ? level : std::max(highest_, level);
+    largest_ = std::max(largest_, size);
     points_.push_back({p, key_of(cell_of(p, level), level), kEmpty});
     link(static_cast<std::uint32_t>(points_.size() - 1));
   }
 
-  /// Calls visit(id, point) for every point within `radius` of p, of a size within a factor of about four of `size`.
+  /// Calls visit(id, point) for every point nearer to p than `reach` times the mean of `size` and its own size (rounded
+  /// up to a power of two, so some are farther), if the sizes are within a factor of two to four.
   template <class Visit>
-  void for_each_near(Vec3 p, double radius, double size, Visit visit) const {
+  void for_each_near(Vec3 p, double size, double reach, Visit visit) const {
     const int level = std::ilogb(size);
     for (int l = std::max(level - kLevels, lowest_); l <= std::min(level + kLevels, highest_); ++l) {
+      const double radius = 0.5 * reach * (size + std::min(std::ldexp(2.0, l), largest_));
       const Cell lo = cell_of(p - Vec3{radius, radius, radius}, l), hi = cell_of(p + Vec3{radius, radius, radius}, l);
       for (std::int64_t z = lo.z; z <= hi.z; ++z) {
         for (std::int64_t y = lo.y; y <= hi.y; ++y) {
@@ -41,7 +45,7 @@ class PointGrid {
 
  private:
   static constexpr std::uint32_t kEmpty = 0xffffffffu;
-  static constexpr int kLevels = 2;
+  static constexpr int kLevels = 1;
 
   struct Cell {
     std::int64_t x, y, z;
@@ -87,6 +91,7 @@ class PointGrid {
   std::vector<Entry> points_;
   std::vector<std::uint32_t> table_;
   int lowest_ = 0, highest_ = 0;
+  double largest_ = 0;
 };
 
 }  // namespace octafront::remeshing

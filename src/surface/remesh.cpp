@@ -1,9 +1,9 @@
 #include "surface/remesh.h"
 
-#include "geometry/triangle_tree.h"
 #include "sizing/make_size_field.h"
 #include "surface/coarsen.h"
 #include "surface/insertion.h"
+#include "surface/source_triangles.h"
 #include "surface/surface_crossings.h"
 #include "surface/surface_improve.h"
 
@@ -73,9 +73,9 @@ Compacted compacted(const WorkingMesh& mesh, const SurfaceMesh& input, const Siz
 /// How much of the input's triangulation an attempt may change.
 enum class Method { kFull, kInsertOnly };
 
-Compacted attempt(Method method, const SurfaceMesh& surface, const Features& features, const SizeField& sizes,
-                  const RunContext& context, Counts& counts) {
-  InputSurface input = make_input_surface(surface, {});
+Compacted attempt(Method method, const SurfaceMesh& surface, InputSurface& input, const Features& features,
+                  const SizeField& sizes, const RunContext& context, Counts& counts) {
+  set_features(input, {});
   set_features(input, features_at_scale(input, features, sizes));
   std::vector<Curve> curves = chain_curves(input, features.corners, sizes);
   divide_curves(input, sizes, curves);
@@ -116,16 +116,6 @@ Remeshed input_as_it_is(const SurfaceMesh& surface, const Features& features, co
   return kept;
 }
 
-/// Per triangle the input triangle nearest to its centroid.
-void find_sources(const SurfaceMesh& input, Remeshed& result) {
-  const TriangleTree tree(input);
-  const SurfaceMesh& s = result.surface;
-  result.source.reserve(s.triangles.size());
-  for (const auto& [a, b, c] : s.triangles) {
-    result.source.push_back(tree.nearest((s.points[a] + s.points[b] + s.points[c]) / 3).triangle);
-  }
-}
-
 void report_counts(const Counts& counts, StageReport& report) {
   report.count("points placed", static_cast<double>(counts.placed));
   report.count("places tried", static_cast<double>(counts.tried));
@@ -145,13 +135,14 @@ Remeshed remesh_surface(const SurfaceMesh& surface, const Features& features, co
                         const SurfaceOptions&, const RunContext& context, StageReport& report) {
   Counts counts;
   SizeField capped = sizes;
+  InputSurface input = make_input_surface(surface, {});
   for (counts.rounds = 1; counts.rounds <= kMostRounds + 1; ++counts.rounds) {
     const bool is_last = counts.rounds > kMostRounds;
     const Method method = is_last ? Method::kInsertOnly : Method::kFull;
-    Compacted c = attempt(method, surface, features, capped, context, counts);
+    Compacted c = attempt(method, surface, input, features, capped, context, counts);
     const auto crossings = find_crossings(c.result.surface);
     if (crossings.empty()) {
-      find_sources(surface, c.result);
+      c.result.source = source_triangles(input, surface, c.result.surface, c.vertex_face, c.is_inner);
       report_counts(counts, report);
       if (is_last) report.notes.push_back("the surface's own vertices were kept: coarser triangles would cross");
       return std::move(c.result);

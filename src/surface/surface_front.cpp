@@ -99,7 +99,7 @@ class Front {
     point.h = sizes_.at(x.p);
     point.parent = parent;
     bool is_free = true;
-    grid_.for_each_near(x.p, 1.5 * kSpacing * point.h, point.h, [&](std::uint32_t id, Vec3 q) {
+    grid_.for_each_near(x.p, point.h, kSpacing, [&](std::uint32_t id, Vec3 q) {
       if (!is_free) return;
       const double near = kSpacing * 0.5 * (point.h + result_.points[id].h);
       if (squared_length(q - x.p) < near * near && same_sheet(point, result_.points[id])) is_free = false;
@@ -147,7 +147,7 @@ class Front {
     const Vec3 axis = std::abs(n.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
     Vec3 u = normalized(cross(axis, n)), v = cross(n, u);
     neighbours_.clear();
-    grid_.for_each_near(point.p, 1.5 * kReach * point.h, point.h, [&](std::uint32_t other, Vec3 q) {
+    grid_.for_each_near(point.p, point.h, kReach, [&](std::uint32_t other, Vec3 q) {
       if (other == id) return;
       const double reach = kReach * 0.5 * (point.h + result_.points[other].h);
       const Vec3 d = q - point.p;

@@ -1,6 +1,7 @@
 #include "surface/surface_improve.h"
 
 #include "surface/local_guards.h"
+#include "surface/surface_lengths.h"
 
 #include <algorithm>
 #include <numbers>
@@ -30,20 +31,31 @@ class SurfaceImprover {
         is_uniform_(sizes.min_size() == sizes.max_size()) {}
 
   void run() {
+    adopt_leftovers();
     delaunay();
-    count_valences();
     for (int round = 0; round < kRounds; ++round) {
+      if (round > 0) adjust_lengths(mesh_, input_, sizes_, counts_);
+      count_valences();
       equalize_valences();
       smooth();
       smooth();
       delaunay();
-      count_valences();
     }
     smooth();
     delaunay();
   }
 
  private:
+  /// Input vertices that could not be collapsed away are vertices like others from here on.
+  void adopt_leftovers() {
+    for (VertexIndex v = 0; v < mesh_.points.size(); ++v) {
+      if (mesh_.outgoing[v] == kNone) continue;
+      if (mesh_.kind[v] == VertexKind::kRemovable) mesh_.kind[v] = VertexKind::kFree;
+      if (mesh_.kind[v] == VertexKind::kRemovableCurve) mesh_.kind[v] = VertexKind::kCurve;
+      if (!(mesh_.size[v] > 0)) mesh_.size[v] = sizes_.at(mesh_.points[v]);
+    }
+  }
+
   void delaunay() {
     edges_.clear();
     for (HalfedgeIndex h = 0; h < mesh_.start.size(); ++h) {
@@ -55,7 +67,6 @@ class SurfaceImprover {
   /// Valence minus the one wanted: six inside a patch, on features one triangle for each 60 degrees of a sector.
   void count_valences() {
     excess_.assign(mesh_.points.size(), -6);
-    sector_.assign(mesh_.points.size(), 0);
     for (HalfedgeIndex h = 0; h < mesh_.start.size(); ++h) {
       if (mesh_.start[h] != kNone) ++excess_[mesh_.start[h]];
     }
@@ -184,7 +195,7 @@ class SurfaceImprover {
   ImproveCounts& counts_;
   bool is_uniform_;
   std::vector<HalfedgeIndex> edges_;
-  std::vector<int> excess_, sector_;
+  std::vector<int> excess_;
   std::vector<std::pair<Vec3, Vec3>> ring_;
 };
 

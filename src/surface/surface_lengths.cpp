@@ -1,0 +1,146 @@
+#include "surface/surface_lengths.h"
+
+#include "surface/local_guards.h"
+#include "surface/star_collapse.h"
+
+#include <algorithm>
+
+namespace octafront::remeshing {
+
+namespace {
+
+/// Lengths beyond these, in wanted sizes, are mended; the front and smoothing leave few.
+constexpr double kLong = 1.5, kShort = 0.6;
+/// Triangles below this squared quality are bad (2r/R of about 0.5).
+constexpr double kBad = 0.2;
+/// An operation on a bad triangle must raise the worst around by this factor, so that two never undo each other.
+constexpr double kGain = 1.3;
+constexpr TurnLimits kLimits{0.2, -0.3};
+/// A split point lies near the middle of its edge, or the walk to it went astray.
+constexpr double kAstray = 0.35;
+
+class LengthAdjuster {
+ public:
+  LengthAdjuster(WorkingMesh& mesh, const InputSurface& input, const SizeField& sizes, ImproveCounts& counts)
+      : mesh_(mesh), input_(input), sizes_(sizes), counts_(counts), star_(mesh) {}
+
+  void run() {
+    for (VertexIndex v = 0; v < mesh_.points.size(); ++v) {
+      if (mesh_.kind[v] == VertexKind::kFree && mesh_.outgoing[v] != kNone) collapse_if_short(v);
+    }
+    const std::size_t halfedges = mesh_.start.size();
+    for (HalfedgeIndex h = 0; h < halfedges; ++h) {
+      if (mesh_.start[h] != kNone && h < mesh_.twin[h] && !mesh_.is_feature[h]) split_if_long(h);
+    }
+    for (std::uint32_t t = 0; t < mesh_.triangle_count(); ++t) {
+      if (!mesh_.is_removed(t) && quality(3 * t) < kBad) mend(t);
+    }
+  }
+
+ private:
+  /// Squared quality of the triangle of h.
+  double quality(HalfedgeIndex h) const {
+    return squared_quality(mesh_.points[mesh_.start[h]], mesh_.points[mesh_.end(h)], mesh_.points[mesh_.apex(h)]);
+  }
+  double relative_length(HalfedgeIndex h) const {
+    const VertexIndex a = mesh_.start[h], b = mesh_.end(h);
+    return 2 * distance(mesh_.points[a], mesh_.points[b]) / (mesh_.size[a] + mesh_.size[b]);
+  }
+
+  void collapse_if_short(VertexIndex v) {
+    bool is_short = false;
+    mesh_.for_each_outgoing(v, [&](HalfedgeIndex h) { is_short = is_short || relative_length(h) < kShort; });
+    if (!is_short) return;
+    star_.gather(v);
+    const double now = star_.quality_now();
+    for (std::size_t i = 0; i < star_.ring().size(); ++i) {
+      const HalfedgeIndex h = star_.ring()[i];
+      if (relative_length(h) >= kShort || star_.longest_after(i) > kLong) continue;
+      if (!(star_.quality_after(i, kLimits, std::min(0.5 * now, kBad)) > 0) || !mesh_.may_collapse(h)) continue;
+      mesh_.collapse(h);
+      ++counts_.collapses;
+      return;
+    }
+  }
+
+  void split_if_long(HalfedgeIndex h) {
+    if (relative_length(h) <= kLong) return;
+    HalfedgeIndex from = h;
+    if (mesh_.kind[mesh_.start[from]] != VertexKind::kFree) from = mesh_.twin[h];
+    const VertexIndex u = mesh_.start[from];
+    if (mesh_.kind[u] != VertexKind::kFree) return;
+    const Vec3 p = mesh_.points[u], q = mesh_.points[mesh_.end(from)], n = mesh_.normal[u];
+    const Vec3 d = normalized((q - p) - n * dot(q - p, n));
+    const double l = distance(p, q);
+    SurfacePoint x;
+    if (walk(input_, {p, mesh_.face[u]}, d, n, 0.5 * l, x) != WalkEnd::kArrived) return;
+    if (distance(x.p, (p + q) * 0.5) > kAstray * l || !split_is_sound(from, x.p)) return;
+    const VertexIndex v =
+        mesh_.add_vertex(x.p, VertexKind::kFree, input_.normal_at(x.face, x.p), sizes_.at(x.p), x.face);
+    mesh_.split_edge(from, v);
+    ++counts_.splits;
+  }
+
+  bool split_is_sound(HalfedgeIndex h, Vec3 x) const {
+    const HalfedgeIndex g = mesh_.twin[h];
+    const Vec3 star = mesh_.area_vector(h / 3) + mesh_.area_vector(g / 3);
+    for (const HalfedgeIndex side : {next_of(h), previous_of(h), next_of(g), previous_of(g)}) {
+      const Vec3 a = mesh_.points[mesh_.start[side]] - x, b = mesh_.points[mesh_.end(side)] - x;
+      if (!turns_little(cross(a, b), star, kLimits.star)) return false;
+    }
+    return true;
+  }
+
+  void mend(std::uint32_t t) {
+    for (HalfedgeIndex h = 3 * t; h < 3 * t + 3; ++h) {
+      if (flip_if_better(h)) return;
+    }
+    for (HalfedgeIndex h = 3 * t; h < 3 * t + 3; ++h) {
+      if (mesh_.kind[mesh_.start[h]] == VertexKind::kFree && remove_if_better(mesh_.start[h])) return;
+    }
+  }
+
+  bool flip_if_better(HalfedgeIndex h) {
+    if (mesh_.is_feature[h]) return false;
+    const HalfedgeIndex g = mesh_.twin[h];
+    const Vec3 a = mesh_.points[mesh_.start[h]], b = mesh_.points[mesh_.end(h)];
+    const Vec3 c = mesh_.points[mesh_.apex(h)], d = mesh_.points[mesh_.apex(g)];
+    const double before = std::min(quality(h), quality(g));
+    if (!(std::min(squared_quality(a, d, c), squared_quality(b, c, d)) > kGain * before)) return false;
+    if (!flip_is_sound(mesh_, h, kLimits) || !mesh_.may_flip(h)) return false;
+    mesh_.flip(h);
+    ++counts_.flips;
+    return true;
+  }
+
+  bool remove_if_better(VertexIndex v) {
+    star_.gather(v);
+    double best = kGain * star_.quality_now();
+    HalfedgeIndex chosen = kNone;
+    for (std::size_t i = 0; i < star_.ring().size(); ++i) {
+      const HalfedgeIndex h = star_.ring()[i];
+      const double quality = star_.quality_after(i, kLimits, best);
+      if (!(quality > best) || star_.longest_after(i) > kLong || !mesh_.may_collapse(h)) continue;
+      best = quality;
+      chosen = h;
+    }
+    if (chosen == kNone) return false;
+    mesh_.collapse(chosen);
+    ++counts_.collapses;
+    return true;
+  }
+
+  WorkingMesh& mesh_;
+  const InputSurface& input_;
+  const SizeField& sizes_;
+  ImproveCounts& counts_;
+  StarCollapse star_;
+};
+
+}  // namespace
+
+void adjust_lengths(WorkingMesh& mesh, const InputSurface& input, const SizeField& sizes, ImproveCounts& counts) {
+  LengthAdjuster(mesh, input, sizes, counts).run();
+}
+
+}  // namespace octafront::remeshing

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <octafront/size_field.h>
+
+#include "surface/surface_improve.h"
+
+namespace octafront::remeshing {
+
+/// Mends what the front left too long, too short or too flat: splits long edges inside patches, collapses short ones,
+/// and removes vertices (or turns edges) of bad triangles where that makes the worst triangle around better.
+void adjust_lengths(WorkingMesh& mesh, const InputSurface& input, const SizeField& sizes, ImproveCounts& counts);
+
+}  // namespace octafront::remeshing
