@@ -33,10 +33,15 @@ PassResult laplacian_sweeps(EditMesh& mesh, int sweeps, double relaxation, MoveR
 /// and the worst score around it rises or stays above kMeanRisesGuard.
 PassResult smooth_mean(EditMesh& mesh, int sweeps, const RunContext& context);
 
+/// What a reconnection must make better.
+enum class Goal {
+  kWorst,  ///< the worst score of the changed place
+  kMean,   ///< the sum of (1 - beta)^2 over the changed place, with new elements above kMeanRisesGuard only
+};
+
 /// Removes edges (up to a ring of kLongestRing tetrahedra, by dynamic programming) and faces (2-3 flips) of the
-/// elements with a score below `threshold`, wherever the worst score of the changed place rises; goes on with what it
-/// made.
-PassResult reconnect(EditMesh& mesh, float threshold, const RunContext& context);
+/// elements with a score below `threshold`, wherever that serves the goal; goes on with what it made.
+PassResult reconnect(EditMesh& mesh, float threshold, Goal goal, const RunContext& context);
 inline constexpr int kLongestRing = 7;
 
 /// Moves the inner vertices of the elements with a score below `threshold` to where the worst score around them is

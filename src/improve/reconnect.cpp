@@ -11,24 +11,24 @@
 namespace octafront::improve {
 namespace {
 
-/// A way to refill the place of some tets, and the worst score that it has.
+/// A way to refill the place of some tets, and by how much it is better than what is there.
 struct Refill {
   std::vector<TetIndex> old_tets;
   std::vector<Tet> new_tets;
   std::vector<Shape> shapes;
-  float worst = -1;
+  float gain = 0;
 
   void clear() {
     old_tets.clear();
     new_tets.clear();
     shapes.clear();
-    worst = -1;
+    gain = 0;
   }
 };
 
 class Reconnector {
  public:
-  Reconnector(EditMesh& mesh, const Floor& floor) : mesh_(mesh), floor_(floor) {}
+  Reconnector(EditMesh& mesh, const Floor& floor, Goal goal) : mesh_(mesh), floor_(floor), goal_(goal) {}
 
   /// Makes the best change there is at tet t, of those where t is the worst element concerned; the tets made are in
   /// created(). False if none is better.
@@ -36,7 +36,7 @@ class Reconnector {
     best_.clear();
     for (const auto& [i, j] : kTetEdges) try_edge(t, i, j);
     for (int i = 0; i < 4; ++i) try_face(t, i);
-    if (best_.worst < 0) return false;
+    if (best_.gain <= 0) return false;
     mesh_.replace(best_.old_tets, best_.new_tets, best_.shapes, created_);
     return true;
   }
@@ -44,40 +44,49 @@ class Reconnector {
   const std::vector<TetIndex>& created() const { return created_; }
 
  private:
+  static constexpr float kUnusable = -1e6f;  ///< below the sum of any usable values
+
   void add_candidate(const Tet& t) {
     batch_.add(mesh_.point(t[0]), mesh_.point(t[1]), mesh_.point(t[2]), mesh_.point(t[3]));
   }
 
-  /// Score of candidate i of the batch, -1 if it may not be used.
-  float usable_score(int i, const Tet& t) const {
+  /// What an element adds to the value of a place, larger being better: its score, or less its squared deficit.
+  float value_of(const Shape& s) const { return goal_ == Goal::kWorst ? s.score : -(1 - s.beta) * (1 - s.beta); }
+  float combined(float a, float b) const { return goal_ == Goal::kWorst ? std::min(a, b) : a + b; }
+  float neutral() const { return goal_ == Goal::kWorst ? 2.0f : 0.0f; }
+
+  /// The value of candidate i of the batch, kUnusable if it may not be used.
+  float usable_value(int i, const Tet& t) const {
     const Shape s = batch_.shape(i);
-    if (!floor_.below(s)) return -1;
+    if (!floor_.below(s) || (goal_ == Goal::kMean && s.score < kMeanRisesGuard)) return kUnusable;
     if (s.beta < kCertainBeta &&
         orient3d(mesh_.point(t[0]), mesh_.point(t[1]), mesh_.point(t[2]), mesh_.point(t[3])) <= 0)
-      return -1;
-    return s.score;
+      return kUnusable;
+    return value_of(s);
   }
 
   void try_edge(TetIndex t, int i, int j) {
     const VertexIndex a = mesh_.tet(t)[i], b = mesh_.tet(t)[j];
     if (!mesh_.edge_ring_where_worst(t, i, j, kLongestRing, ring_)) return;
     const int n = static_cast<int>(ring_.ring.size());
-    const float bar = std::max(mesh_.shape(t).score, best_.worst);
+    float before = neutral();
+    for (const TetIndex r : ring_.tets) before = combined(before, value_of(mesh_.shape(r)));
+    const float bar = before + best_.gain;
     // Each edge of the ring is in one triangle of the new triangulation: if none on the first edge will do, none will.
     batch_.size = 0;
     add_triangles(a, b, 0, 1, n);
     batch_.evaluate();
     if (value_triangles(a, b, 0, 1, n) <= bar) return;
-    for (int i = 0; i < n; ++i)
-      for (int k = i + 1 + (i == 0); k < n; ++k) add_triangles(a, b, i, k, n);
+    for (int i1 = 0; i1 < n; ++i1)
+      for (int k = i1 + 1 + (i1 == 0); k < n; ++k) add_triangles(a, b, i1, k, n);
     batch_.evaluate();
-    for (int i = 0; i < n; ++i)
-      for (int k = i + 1 + (i == 0); k < n; ++k) value_triangles(a, b, i, k, n);
+    for (int i1 = 0; i1 < n; ++i1)
+      for (int k = i1 + 1 + (i1 == 0); k < n; ++k) value_triangles(a, b, i1, k, n);
     const float after = triangulate(n);
     if (after <= bar) return;
     best_.clear();
     best_.old_tets = ring_.tets;
-    best_.worst = after;
+    best_.gain = after - before;
     emit(a, b, 0, n - 1);
   }
 
@@ -91,28 +100,28 @@ class Reconnector {
     }
   }
 
-  /// Sets value_ of the same triangles to the worse score of the two tets. Returns the best value.
+  /// Sets value_ of the same triangles to that of the two tets. Returns the best value.
   float value_triangles(VertexIndex a, VertexIndex b, int i, int k, int n) {
     const auto& r = ring_.ring;
-    float best = -1;
+    float best = kUnusable;
     for (int j = k + 1; j < n; ++j) {
       const int at = index_[i][k][j];
-      value_[i][k][j] = std::min(usable_score(at, {r[i], r[k], r[j], b}), usable_score(at + 1, {r[i], r[j], r[k], a}));
+      value_[i][k][j] = combined(usable_value(at, {r[i], r[k], r[j], b}), usable_value(at + 1, {r[i], r[j], r[k], a}));
       best = std::max(best, value_[i][k][j]);
     }
     return best;
   }
 
-  /// Best worst score of the ring's triangulations; the choices stay in apex_.
+  /// Best value of the ring's triangulations; the choices stay in apex_.
   float triangulate(int n) {
     std::array<std::array<float, kLongestRing>, kLongestRing> best;
-    for (int i = 0; i + 1 < n; ++i) best[i][i + 1] = 2;
+    for (int i = 0; i + 1 < n; ++i) best[i][i + 1] = neutral();
     for (int span = 2; span < n; ++span)
       for (int i = 0; i + span < n; ++i) {
         const int j = i + span;
-        best[i][j] = -2;
+        best[i][j] = 4 * kUnusable;
         for (int k = i + 1; k < j; ++k) {
-          const float value = std::min({best[i][k], best[k][j], value_[i][k][j]});
+          const float value = combined(combined(best[i][k], best[k][j]), value_[i][k][j]);
           if (value > best[i][j]) best[i][j] = value, apex_[i][j] = k;
         }
       }
@@ -141,18 +150,20 @@ class Reconnector {
     batch_.size = 0;
     for (const Tet& m : made) add_candidate(m);
     batch_.evaluate();
-    float after = 1;
-    for (int k = 0; k < 3; ++k) after = std::min(after, usable_score(k, made[k]));
-    if (after <= std::max(mesh_.shape(t).score, best_.worst)) return;
+    const float before = combined(value_of(mesh_.shape(t)), value_of(mesh_.shape(o / 4)));
+    float after = neutral();
+    for (int k = 0; k < 3; ++k) after = combined(after, usable_value(k, made[k]));
+    if (after <= before + best_.gain) return;
     best_.clear();
     best_.old_tets = {t, o / 4};
     best_.new_tets.assign(made.begin(), made.end());
     for (int k = 0; k < 3; ++k) best_.shapes.push_back(batch_.shape(k));
-    best_.worst = after;
+    best_.gain = after - before;
   }
 
   EditMesh& mesh_;
   Floor floor_;
+  Goal goal_;
   EdgeRing ring_;
   Refill best_;
   ShapeBatch batch_;
@@ -164,12 +175,12 @@ class Reconnector {
 
 }  // namespace
 
-PassResult reconnect(EditMesh& mesh, float threshold, const RunContext& context) {
+PassResult reconnect(EditMesh& mesh, float threshold, Goal goal, const RunContext& context) {
   PassResult result;
   std::vector<TetIndex> queue;
   for (TetIndex t = 0; t < mesh.slots(); ++t)
     if (mesh.alive(t) && mesh.shape(t).score < threshold) queue.push_back(t);
-  Reconnector reconnector(mesh, mesh.floor());
+  Reconnector reconnector(mesh, mesh.floor(), goal);
   for (std::size_t k = 0; k < queue.size(); ++k) {
     if (k % 1024 == 0) context.check();
     const TetIndex t = queue[k];

@@ -25,7 +25,10 @@ class Schedule {
     note("laplacian moves", laplacian_sweeps(mesh_, sweeps, relaxation, rule, context_));
   }
   void smooth_mean(int sweeps) { note("moves for the mean", improve::smooth_mean(mesh_, sweeps, context_)); }
-  void flips(float threshold) { note("reconnections", reconnect(mesh_, threshold, context_)); }
+  void mean_flips(float threshold) {
+    note("reconnections for the mean", reconnect(mesh_, threshold, Goal::kMean, context_));
+  }
+  void flips(float threshold) { note("reconnections", reconnect(mesh_, threshold, Goal::kWorst, context_)); }
   void insert(float threshold) { note("inserted vertices", insert_vertices(mesh_, threshold, context_)); }
   void optimize(float threshold) { note("optimised vertices", optimize_vertices(mesh_, threshold, context_)); }
 
@@ -75,8 +78,8 @@ class Schedule {
 constexpr float kWanted = 0.6f, kWantedBest = 0.65f;
 /// Below this a new vertex is worth its elements.
 constexpr float kPoor = 0.5f;
-/// Reconnection below this serves the mean.
-constexpr float kGood = 0.8f;
+/// Below these, reconnection serves the mean.
+constexpr float kGood = 0.8f, kGoodBest = 0.9f;
 
 void run_fast(Schedule& run, const ImproveOptions& options) {
   run.laplacian(2, options.relaxation, MoveRule::kMeanRises);
@@ -87,7 +90,8 @@ void run_fast(Schedule& run, const ImproveOptions& options) {
 
 void run_default(Schedule& run, const ImproveOptions& options) {
   run.laplacian(2, options.relaxation, MoveRule::kMeanRises);
-  run.flips(kGood);
+  run.flips(kWanted);
+  run.mean_flips(kGood);
   run.smooth_mean(1);
   run.flips(kWanted);
   run.smooth_mean(1);
@@ -104,10 +108,12 @@ void run_default(Schedule& run, const ImproveOptions& options) {
 
 void run_best(Schedule& run, const ImproveOptions& options) {
   run.laplacian(2, options.relaxation, MoveRule::kMeanRises);
+  run.flips(kWantedBest);
   for (int round = 0; round < 4; ++round) {
-    run.flips(kGood);
+    run.mean_flips(kGoodBest);
     run.smooth_mean(2);
   }
+  run.flips(kWantedBest);
   for (int round = 0; round < 5; ++round) {
     run.optimize(kWantedBest);
     run.flips(kWantedBest);
