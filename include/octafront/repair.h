@@ -49,6 +49,7 @@ struct SurfaceDefects {
   Kind non_manifold_vertices;    ///< vertices, not on such edges, whose faces form more than one fan
   Kind self_intersections;       ///< pairs of faces that meet elsewhere than in the corners and edges they share
   Kind degenerate_faces;         ///< faces without area that repair could not do without
+  bool no_faces = false;         ///< nothing is left to mesh
   std::uint64_t open_loops = 0;  ///< closed chains of open edges: the holes
 
   bool clean() const;

@@ -49,10 +49,11 @@ bool SurfaceDefects::clean() const {
   for (const Kind* kind : {&open_edges, &non_manifold_edges, &misoriented_edges, &non_manifold_vertices,
                            &self_intersections, &degenerate_faces})
     if (kind->count > 0) return false;
-  return true;
+  return !no_faces;
 }
 
 std::string SurfaceDefects::describe() const {
+  if (no_faces) return "No face is left: the input has none with an area.\n";
   std::string text;
   octafront::describe(text, open_edges,
                       fmt::format("{} ({})", counted(open_loops, "hole"), counted(open_edges.count, "open edge")),
@@ -84,6 +85,7 @@ std::string SurfaceDefects::describe() const {
 SurfaceDefects find_defects(const RepairedSurface& repaired) {
   SurfaceDefects found;
   const SurfaceMesh& mesh = repaired.surface;
+  found.no_faces = mesh.triangles.empty();
   const EdgeTable table = make_edge_table(mesh.points.size(), mesh.triangles);
   defects::find_bad_edges(repaired, table, found);
   defects::find_bad_vertices(repaired, table, found);

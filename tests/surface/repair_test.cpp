@@ -327,10 +327,17 @@ TEST(Repair, NeverOpensWhatHasOnlyEvenEdges) {
   }
 }
 
-TEST(Repair, EmptySurfaceStaysEmpty) {
-  const RepairedSurface repaired = repair_surface({});
-  EXPECT_TRUE(repaired.surface.triangles.empty());
-  EXPECT_TRUE(find_defects(repaired).clean());
+TEST(Repair, NothingLeftIsADefect) {
+  SurfaceMesh flat;
+  flat.points = {{0, 0, 0}, {1, 1, 1}, {2, 2, 2}};
+  flat.triangles = {{0, 1, 2}, {2, 2, 1}};
+  for (const SurfaceMesh& s : {SurfaceMesh{}, flat}) {
+    const RepairedSurface repaired = repair_surface(s);
+    EXPECT_TRUE(repaired.surface.triangles.empty());
+    EXPECT_TRUE(repaired.surface.points.empty());
+    EXPECT_FALSE(find_defects(repaired).clean());
+    EXPECT_NE(find_defects(repaired).describe(), "");
+  }
 }
 
 TEST(Repair, DamagedInputIsRefused) {
