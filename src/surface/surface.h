@@ -1,0 +1,12 @@
+#pragma once
+
+// surface: everything that happens to the input before there is a volume. Takes triangles as a file has them; repairs
+// them without moving a vertex (repair.h), says what keeps them from being meshed (repair.h), finds the lines and
+// points that must stay (features.h), and triangulates the surface anew to the size field (remesh.h). Leaves a clean
+// surface: closed, outward, manifold, free of self-intersections, which surface_check.h verifies.
+
+#include <octafront/repair.h>
+
+#include "surface/features.h"
+#include "surface/remesh.h"
+#include "surface/surface_check.h"
