@@ -10,27 +10,81 @@ namespace octafront {
 
 namespace {
 
-/// Mean of 1 / h^3 over a leaf by the two-point Gauss rule along each axis.
-double mean_inverse_cube(const std::array<double, 8>& h) {
+/// The inside is filled by a lattice whose cells have powers of two of one edge length: that which most of the surface
+/// wants. A cell is divided while its edges are more than kLatticeTooLong times the wanted ones.
+constexpr double kLatticeTooLong = 1.5;
+
+/// Where the lattice steps from one cell size to the next it has more elements; how often it does grows with the slope.
+/// Measured over 80 models at automatic size: with 1.8 all predictions lie within 12 %, with 0 a tenth of them beyond
+/// 15 %.
+constexpr double kTetsPerSlope = 1.8;
+
+double lattice_size(double h, double common) {
+  const double exponent = std::floor(std::log2(kLatticeTooLong * h / common));
+  return common * std::exp2(exponent);
+}
+
+/// The size that half of the triangles to come will exceed: the median over the surface, each part of it weighted by
+/// the number of its triangles. In units of the root's side, as the pieces are.
+double common_size(const OctreeField& field, const std::vector<SurfacePiece>& pieces) {
+  std::vector<std::pair<double, double>> sizes;
+  sizes.reserve(pieces.size());
+  double all = 0;
+  for (const SurfacePiece& piece : pieces) {
+    const double h = field.at(piece.p) / field.root.side, count = length(piece.n) / (h * h);
+    sizes.push_back({h, count});
+    all += count;
+  }
+  std::sort(sizes.begin(), sizes.end());
+  double below = 0;
+  for (const auto& [h, count] : sizes) {
+    below += count;
+    if (below >= 0.5 * all) return h;
+  }
+  return field.high;
+}
+
+/// Mean of 1 / h^3 over a leaf by the two-point Gauss rule along each axis; `size_at` turns the wanted size into the
+/// made.
+template <class SizeAt>
+double mean_inverse_cube(const std::array<double, 8>& h, SizeAt&& size_at) {
   constexpr double kAt[2] = {0.21132486540518713, 0.78867513459481287};
   const auto [low, high] = std::minmax_element(h.begin(), h.end());
-  if (*low == *high) return 1 / (*low * *low * *low);
+  const auto inverse_cube = [&](double wanted) {
+    const double made = size_at(wanted);
+    return 1 / (made * made * made);
+  };
+  if (*low == *high) return inverse_cube(*low);
   double sum = 0;
-  for (int i = 0; i < 8; ++i) {
-    const double v = trilinear(h, kAt[i & 1], kAt[i >> 1 & 1], kAt[i >> 2]);
-    sum += 1 / (v * v * v);
-  }
+  for (int i = 0; i < 8; ++i) sum += inverse_cube(trilinear(h, kAt[i & 1], kAt[i >> 1 & 1], kAt[i >> 2]));
   return sum / 8;
+}
+
+/// How fast the size changes in a leaf of the given side: the gradient at its centre.
+double slope_in(const std::array<double, 8>& h, double side) {
+  double sum = 0;
+  for (int axis = 1; axis < 8; axis *= 2) {
+    double rise = 0;
+    for (int k = 0; k < 8; ++k) rise += (k & axis) ? h[k] : -h[k];
+    sum += rise * rise / 16;
+  }
+  return std::sqrt(sum) / side;
 }
 
 double integral_over_grid(const OctreeField& field, const SurfaceMesh& surface) {
   const std::vector<SurfacePiece> pieces = surface_pieces(field.root, field.tree, surface);
   const std::vector<double> fraction = inside_fractions(field.root, field.tree, pieces);
+  const double common = common_size(field, pieces);
   double sum = 0;
   for (std::size_t l = 0; l < field.tree.size(); ++l) {
     if (fraction[l] == 0) continue;
     const double side = 1.0 / (1u << field.tree.leaf(l).level());
-    sum += fraction[l] * side * side * side * mean_inverse_cube(field.h[l]);
+    const bool lattice = fraction[l] == 1;
+    const double steps = 1 + kTetsPerSlope * slope_in(field.h[l], side);
+    const double per_volume =
+        lattice ? steps * mean_inverse_cube(field.h[l], [&](double h) { return lattice_size(h, common); })
+                : mean_inverse_cube(field.h[l], [](double h) { return h; });
+    sum += fraction[l] * side * side * side * per_volume;
   }
   return sum;
 }

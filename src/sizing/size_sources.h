@@ -14,8 +14,10 @@
 
 namespace octafront {
 
-/// Tetrahedra per cube of the wanted edge length: those of a regular tetrahedron, 6 sqrt(2), were space filled by them.
-inline constexpr double kTetsPerCube = 8.4852813742385695;
+/// Tetrahedra per cube of the wanted edge length. Measured on uniform sizes of 1/20 and 1/50 of the diagonal over some
+/// twenty models: 9.24 with a spread of 3 %. (Space filled by regular tetrahedra would have 6 sqrt(2) = 8.49, the
+/// body-centred cubic lattice of that mean edge length has 9.45.)
+inline constexpr double kTetsPerCube = 9.24;
 /// Indices of elements are 32 bits wide, those of half-faces are four times as large.
 inline constexpr std::int64_t kMostElements = std::int64_t{1} << 30;
 

@@ -3,6 +3,7 @@
 
 #include "sizing/make_size_field.h"
 #include "sizing/octree_field.h"
+#include "sizing/size_sources.h"
 #include "support/named_surfaces.h"
 
 #include <cmath>
@@ -213,7 +214,7 @@ TEST(ExpectedTets, OfACube) {
   SizeOptions o;
   o.size = 0.05;
   const double n = expected_tets(make(cube(4), o), cube(4));
-  EXPECT_NEAR(n, 8.4852813742385695 * 8000, 1);
+  EXPECT_NEAR(n, kTetsPerCube * 8000, 1);
   o.callback = [](Vec3) { return 0.05; };
   EXPECT_NEAR(expected_tets(make(cube(4), o), cube(4)), n, 0.01 * n);
 }
