@@ -45,7 +45,7 @@ PassResult reconnect(EditMesh& mesh, float threshold, Goal goal, const RunContex
 inline constexpr int kLongestRing = 7;
 
 /// Moves the inner vertices of the elements with a score below `threshold` to where the worst score around them is
-/// best, as near as a few steps come.
+/// best, as near as a few steps come, unless that costs the mean too much.
 PassResult optimize_vertices(EditMesh& mesh, float threshold, const RunContext& context);
 
 /// Replaces elements with a score below `threshold`, worst first, and some around them, by the star of a new vertex

@@ -26,4 +26,13 @@ float StarEdit::current_worst() const {
   return worst;
 }
 
+double StarEdit::current_deficit() const {
+  double sum = 0;
+  for (const HalfFace h : faces_) {
+    const double lack = 1 - double{mesh_.shape(h / 4).beta};
+    sum += lack * lack;
+  }
+  return sum;
+}
+
 }  // namespace octafront::improve

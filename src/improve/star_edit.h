@@ -20,6 +20,8 @@ class StarEdit {
   std::span<const HalfFace> faces() const { return faces_; }
   /// Worst score of the star as it stands in the mesh.
   float current_worst() const;
+  /// Sum of (1 - beta)^2 of the star as it stands in the mesh.
+  double current_deficit() const;
 
   void evaluate(Vec3 at) {
     at_ = at;
