@@ -2,8 +2,9 @@
 #include "surface/defects_steps.h"
 
 #include <algorithm>
-#include <array>
 #include <numeric>
+#include <span>
+#include <tuple>
 #include <utility>
 
 namespace octafront::defects {
@@ -44,68 +45,76 @@ Partition find_fans(const std::vector<Triangle>& triangles, const EdgeTable& tab
   return fans;
 }
 
-/// Walks along open edges and counts a hole whenever the walk comes back to one of its vertices, and a walk that ends
-/// at another kind of edge as one.
-class HoleWalk {
- public:
-  HoleWalk(std::size_t vertices, const std::vector<Edge>& open)
-      : open_(open), walked_(open.size(), 0), on_path_(vertices, 0), first_(vertices + 1, 0), at_(2 * open.size()) {
-    for (const Edge& e : open)
-      for (const VertexIndex v : e) ++first_[v + 1];
-    for (std::size_t v = 0; v < vertices; ++v) first_[v + 1] += first_[v];
-    next_.assign(first_.begin(), first_.end() - 1);
-    for (std::uint32_t k = 0; k < open.size(); ++k)
-      for (const VertexIndex v : open[k]) at_[next_[v]++] = k;
-    next_.assign(first_.begin(), first_.end() - 1);
-  }
+/// An open edge at one of its vertices.
+struct OpenEnd {
+  VertexIndex vertex;
+  std::uint32_t fan;   // that the edge is the border of
+  bool starts;         // its face runs from the vertex
+  std::uint32_t edge;  // among the open ones
+  Vec3 direction;      // from the vertex, of length 1
 
-  std::uint64_t count() {
-    std::uint64_t holes = 0;
-    for (std::uint32_t k = 0; k < open_.size(); ++k)
-      if (!walked_[k]) holes += walk_from(open_[k][0]);
-    return holes;
-  }
-
- private:
-  std::uint64_t walk_from(VertexIndex start) {
-    std::uint64_t holes = 0;
-    path_.assign(1, start);
-    on_path_[start] = 1;
-    for (std::uint32_t k = take_edge(start); k != kNone; k = take_edge(path_.back())) {
-      const VertexIndex v = open_[k][0] == path_.back() ? open_[k][1] : open_[k][0];
-      if (on_path_[v]) {
-        ++holes;
-        for (; path_.back() != v; path_.pop_back()) on_path_[path_.back()] = 0;
-      } else {
-        on_path_[v] = 1;
-        path_.push_back(v);
-      }
-    }
-    if (path_.size() > 1) ++holes;
-    for (const VertexIndex v : path_) on_path_[v] = 0;
-    return holes;
-  }
-
-  std::uint32_t take_edge(VertexIndex v) {
-    for (std::uint32_t& n = next_[v]; n < first_[v + 1]; ++n) {
-      if (walked_[at_[n]]) continue;
-      walked_[at_[n]] = 1;
-      return at_[n];
-    }
-    return kNone;
-  }
-
-  const std::vector<Edge>& open_;
-  std::vector<char> walked_, on_path_;            // per open edge; per vertex
-  std::vector<std::uint32_t> first_, next_, at_;  // open edges at each vertex
-  std::vector<VertexIndex> path_;
+  auto key() const { return std::tuple{vertex, fan, starts, edge}; }
 };
 
-std::uint64_t count_holes(std::size_t vertices, const EdgeTable& table) {
-  std::vector<Edge> open;
+std::vector<OpenEnd> open_ends(const SurfaceMesh& mesh, const std::vector<std::uint32_t>& open, Partition& fans) {
+  std::vector<OpenEnd> ends;
+  for (std::uint32_t k = 0; k < open.size(); ++k) {
+    const VertexIndex a = start_of(mesh.triangles, open[k]), b = end_of(mesh.triangles, open[k]);
+    const Vec3 along = normalized(mesh.points[b] - mesh.points[a]);
+    ends.push_back({a, fans.find(corner_at(mesh.triangles, open[k] / 3, a)), true, k, along});
+    ends.push_back({b, fans.find(corner_at(mesh.triangles, open[k] / 3, b)), false, k, -along});
+  }
+  std::sort(ends.begin(), ends.end(), [](const OpenEnd& a, const OpenEnd& b) { return a.key() < b.key(); });
+  return ends;
+}
+
+/// Joins the edges at one vertex that follow each other along the rim of a hole: the one that arrives is the border of
+/// one fan, the one that leaves that of the next fan; of several the one at the smallest angle. Edges of which a rim
+/// cannot be made, beside non-manifold ones, are joined as they come.
+void join_rims(std::span<const OpenEnd> ends, Partition& rims) {
+  std::vector<std::tuple<double, std::uint32_t, std::uint32_t>> pairs;
+  for (std::uint32_t in = 0; in < ends.size(); ++in)
+    for (std::uint32_t out = 0; out < ends.size(); ++out)
+      if (!ends[in].starts && ends[out].starts)
+        pairs.push_back(
+            {(ends[in].fan == ends[out].fan ? 2 : 0) - dot(ends[in].direction, ends[out].direction), in, out});
+  std::sort(pairs.begin(), pairs.end());
+  std::vector<char> joined(ends.size(), 0);
+  for (const auto& [rank, in, out] : pairs) {
+    if (joined[in] || joined[out]) continue;
+    joined[in] = joined[out] = 1;
+    rims.join(ends[in].edge, ends[out].edge);
+  }
+  std::uint32_t left = kNone;
+  for (std::uint32_t k = 0; k < ends.size(); ++k) {
+    if (joined[k]) continue;
+    if (left == kNone) {
+      left = k;
+    } else {
+      rims.join(ends[left].edge, ends[k].edge);
+      left = kNone;
+    }
+  }
+}
+
+std::uint64_t count_holes(const SurfaceMesh& mesh, const EdgeTable& table, Partition& fans) {
+  std::vector<std::uint32_t> open;
   for (std::size_t e = 0; e < table.size(); ++e)
-    if (table.uses(e).size() == 1) open.push_back(table.edges[e]);
-  return open.empty() ? 0 : HoleWalk(vertices, open).count();
+    if (table.uses(e).size() == 1) open.push_back(table.uses(e)[0]);
+  const std::vector<OpenEnd> ends = open_ends(mesh, open, fans);
+  Partition rims(open.size());
+  for (std::size_t i = 0; i < ends.size();) {
+    std::size_t end = i;
+    while (end < ends.size() && ends[end].vertex == ends[i].vertex) ++end;
+    // So many fans about one vertex have no order; each has its own rim then.
+    constexpr std::size_t kMostEnds = 200;
+    const std::size_t at_once = end - i <= kMostEnds ? end - i : 2;
+    for (; i < end; i += at_once) join_rims({ends.data() + i, std::min(at_once, end - i)}, rims);
+    i = end;
+  }
+  std::uint64_t holes = 0;
+  for (std::uint32_t k = 0; k < open.size(); ++k) holes += rims.find(k) == k;
+  return holes;
 }
 
 void find_pinched_vertices(const RepairedSurface& repaired, const EdgeTable& table, Partition& fans,
@@ -173,7 +182,7 @@ void find_bad_edges(const RepairedSurface& repaired, const EdgeTable& table, Sur
 
 void find_bad_vertices(const RepairedSurface& repaired, const EdgeTable& table, SurfaceDefects& defects) {
   Partition fans = find_fans(repaired.surface.triangles, table);
-  defects.open_loops = count_holes(repaired.surface.points.size(), table);
+  defects.open_loops = count_holes(repaired.surface, table, fans);
   find_pinched_vertices(repaired, table, fans, defects);
 }
 

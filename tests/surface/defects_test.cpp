@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <utility>
 
 #include <gtest/gtest.h>
@@ -116,6 +117,24 @@ TEST(Defects, PlacesNameInputFacesInOrder) {
     ASSERT_EQ(faces.size(), 1u);
     EXPECT_EQ((faces[0] - 1000) % 7, 0u);
     EXPECT_TRUE(i == 0 || defects.open_edges.first[i - 1].faces[0] <= faces[0]);
+  }
+}
+
+TEST(Defects, OrderOfTheInputChangesNoCount) {
+  std::mt19937 random(1);
+  for (int round = 0; round < 20; ++round) {
+    SurfaceMesh s = testing::icosphere(3);
+    for (Vec3& p : s.points) p = p * (1 + 1e-3 * (random() % 1000) / 1000);
+    std::shuffle(s.triangles.begin(), s.triangles.end(), random);
+    s.triangles.resize(s.triangles.size() / 20 * (2 + random() % 18));
+    const SurfaceDefects before = defects_of(s);
+    std::shuffle(s.triangles.begin(), s.triangles.end(), random);
+    for (Triangle& t : s.triangles) std::rotate(t.begin(), t.begin() + random() % 3, t.end());
+    const SurfaceDefects after = defects_of(s);
+    EXPECT_EQ(after.open_edges.count, before.open_edges.count);
+    EXPECT_EQ(after.open_loops, before.open_loops);
+    EXPECT_EQ(after.non_manifold_vertices.count, before.non_manifold_vertices.count);
+    EXPECT_EQ(after.self_intersections.count, before.self_intersections.count);
   }
 }
 
