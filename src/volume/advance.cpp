@@ -12,8 +12,9 @@ constexpr int kMostRounds = 8;
 /// The queues of one run.
 class Queues {
  public:
-  Queues(Front& front, std::size_t most_tets, const RunContext& context, FrontCounters& counters, Attempt& attempt)
-      : front_(front), most_tets_(most_tets), context_(context), counters_(counters), attempt_(attempt) {}
+  Queues(Front& front, const AdvanceBudget& budget, const RunContext& context, FrontCounters& counters,
+         Attempt& attempt)
+      : front_(front), budget_(budget), context_(context), counters_(counters), attempt_(attempt) {}
 
   AdvanceResult run(std::vector<QueuedFace> layer, std::vector<QueuedFace> passive) {
     work_off(std::move(layer), 0);
@@ -59,10 +60,10 @@ class Queues {
     return held;
   }
 
-  bool over_budget() const { return front_.tets().size() > most_tets_; }
+  bool over_budget() const { return front_.tets().size() > budget_.tets || counters_.face_tests > budget_.face_tests; }
 
   Front& front_;
-  std::size_t most_tets_;
+  AdvanceBudget budget_;
   const RunContext& context_;
   FrontCounters& counters_;
   Attempt& attempt_;
@@ -72,10 +73,10 @@ class Queues {
 }  // namespace
 
 AdvanceResult advance_front(Front& front, std::vector<QueuedFace> layer, std::vector<QueuedFace> passive,
-                            const SizeField& sizes, const VolumeOptions& options, std::size_t most_tets,
+                            const SizeField& sizes, const VolumeOptions& options, const AdvanceBudget& budget,
                             const RunContext& context, FrontCounters& counters) {
   Attempt attempt(front, sizes, options, counters);
-  AdvanceResult result = Queues(front, most_tets, context, counters, attempt).run(std::move(layer), std::move(passive));
+  AdvanceResult result = Queues(front, budget, context, counters, attempt).run(std::move(layer), std::move(passive));
   counters.faces_found += attempt.faces_found();
   return result;
 }

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace octafront {
 
@@ -16,7 +17,10 @@ constexpr Neighborhood::Index kNewVertex = kNone;
 /// A candidate lies at least this share of the ideal point's distance away from the face's centroid (the paper's
 /// tenth).
 constexpr double kNearestCandidate = 0.1;
-/// The size used for a face stays within these multiples of its own longest edge: a kept surface may have triangles
+/// Candidates that are tried for a face. More than this lie in reach only of faces much larger than their surroundings,
+/// where trying all would cost the square of the neighbourhood.
+constexpr std::size_t kMostCandidates = 40;
+/// The size used for a face stays within these multiples of its own edges: a kept surface may have triangles
 /// that are much larger or smaller than what is wanted around them, and an apex at the wanted distance would make a
 /// sliver.
 constexpr double kLeastSizePerEdge = 0.45, kMostSizePerEdge = 2.0;
@@ -71,8 +75,11 @@ void Attempt::place(FaceIndex face, const Limits& limits) {
     size += front_.vertex(base_[i]).size / 3.0;
   }
   for (int i = 0; i < 3; ++i) longest = std::max(longest, distance(at_[i], at_[(i + 1) % 3]));
-  size = std::clamp(size, kLeastSizePerEdge * longest, kMostSizePerEdge * longest);
-  normal_ = normalized(cross(at_[1] - at_[0], at_[2] - at_[0]));
+  const Vec3 twice_area = cross(at_[1] - at_[0], at_[2] - at_[0]);
+  // The edge of the equilateral triangle of the same area: a needle's length says nothing about what fits on it.
+  const double edge = std::sqrt(length(twice_area) * 2 / std::numbers::sqrt3);
+  size = std::clamp(size, kLeastSizePerEdge * edge, kMostSizePerEdge * longest);
+  normal_ = normalized(twice_area);
   ideal_distance_ = options_.ideal_distance * limits.ideal_factor;
   ideal_at_ = (at_[0] + at_[1] + at_[2]) / 3 + normal_ * (ideal_distance_ * size);
   const double r = limits.search_radius * size;
@@ -99,9 +106,13 @@ void Attempt::collect_candidates(const Limits& limits) {
       c.rank =
           std::atan2(std::abs(dot(a, cross(b, d))), la * lb * ld + dot(a, b) * ld + dot(b, d) * la + dot(a, d) * lb);
     }
-  std::sort(candidates_.begin(), candidates_.end(), [&](const Candidate& a, const Candidate& b) {
+  const auto better = [&](const Candidate& a, const Candidate& b) {
     return a.rank != b.rank ? a.rank > b.rank : near_.vertex(a.index) < near_.vertex(b.index);
-  });
+  };
+  const std::size_t tried = std::min(candidates_.size(), kMostCandidates);
+  std::partial_sort(candidates_.begin(), candidates_.begin() + static_cast<std::ptrdiff_t>(tried), candidates_.end(),
+                    better);
+  candidates_.resize(tried);
 }
 
 Attempt::Contact Attempt::contact_of(Index apex) const {
@@ -128,26 +139,34 @@ bool Attempt::edges_short_enough(Vec3 apex, const Contact& contact, double longe
 
 /// The tetrahedron meets every face of the neighbourhood in nothing but shared corners, edges and faces.
 bool Attempt::is_valid(Index apex, Vec3 apex_at, VertexIndex apex_id) {
-  const auto tet_corner = [&](Index i) { return i < 3 || i == apex; };
-  for (const auto& f : near_.faces()) {
-    const auto& c = f.corner;
-    if (near_.code(c[0]) & near_.code(c[1]) & near_.code(c[2]) & Neighborhood::kOutside) continue;
-    const int shared = tet_corner(c[0]) + tet_corner(c[1]) + tet_corner(c[2]);
-    if (shared == 3) {
-      // A side of the tetrahedron: it must be seen from its unfilled side, so have the orientation (j, i, apex).
-      int k = 0;
-      while (c[k] != apex) ++k;
-      if ((c[(k + 1) % 3] + 1) % 3 == c[(k + 2) % 3]) return false;
-      continue;
-    }
-    ++counters_.exact_tests;
-    const std::array<NamedPoint, 4> tet{
-        {{base_[0], at_[0]}, {base_[1], at_[1]}, {base_[2], at_[2]}, {apex_id, apex_at}}};
-    std::array<NamedPoint, 3> face;
-    for (int j = 0; j < 3; ++j) face[j] = {near_.vertex(c[j]), front_.at(near_.vertex(c[j]))};
-    if (meets_beyond_shared_simplex(tet, face)) return false;
+  const auto& faces = near_.faces();
+  // What blocked the last candidate is asked first: it often blocks the next one too.
+  if (blocker_ < faces.size() && blocks(faces[blocker_], apex, apex_at, apex_id)) return false;
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    if (!blocks(faces[i], apex, apex_at, apex_id)) continue;
+    blocker_ = i;
+    return false;
   }
   return true;
+}
+
+/// The tetrahedron meets a face in more than shared corners, edges and faces.
+bool Attempt::blocks(const Neighborhood::LocalFace& f, Index apex, Vec3 apex_at, VertexIndex apex_id) {
+  const auto tet_corner = [&](Index i) { return i < 3 || i == apex; };
+  const auto& c = f.corner;
+  if (near_.code(c[0]) & near_.code(c[1]) & near_.code(c[2]) & Neighborhood::kOutside) return false;
+  const int shared = tet_corner(c[0]) + tet_corner(c[1]) + tet_corner(c[2]);
+  if (shared == 3) {
+    // A side of the tetrahedron: it must be seen from its unfilled side, so have the orientation (j, i, apex).
+    int k = 0;
+    while (c[k] != apex) ++k;
+    return (c[(k + 1) % 3] + 1) % 3 == c[(k + 2) % 3];
+  }
+  ++counters_.exact_tests;
+  const std::array<NamedPoint, 4> tet{{{base_[0], at_[0]}, {base_[1], at_[1]}, {base_[2], at_[2]}, {apex_id, apex_at}}};
+  std::array<NamedPoint, 3> face;
+  for (int j = 0; j < 3; ++j) face[j] = {near_.vertex(c[j]), front_.at(near_.vertex(c[j]))};
+  return meets_beyond_shared_simplex(tet, face);
 }
 
 bool Attempt::keeps_clear(Index apex, Vec3 apex_local, const Contact& contact, const Limits& limits) const {
@@ -188,6 +207,7 @@ bool Attempt::clear_of_faces(Vec3 apex, float least) const {
 
 bool Attempt::try_candidate(const Candidate& candidate, const Limits& limits) {
   ++counters_.candidates;
+  counters_.face_tests += near_.faces().size();
   const Index apex = candidate.index;
   const Vec3 p = near_.local(apex);
   contact_ = contact_of(apex);
@@ -227,6 +247,7 @@ bool Attempt::try_ideal_point(const Limits& limits) {
 bool Attempt::advance(FaceIndex face, const Limits& limits, std::vector<QueuedFace>& created) {
   ++counters_.attempts;
   place(face, limits);
+  blocker_ = near_.faces().size();
   collect_candidates(limits);
   for (const Candidate& c : candidates_) {
     if (!try_candidate(c, limits)) continue;

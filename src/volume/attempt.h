@@ -13,8 +13,8 @@ namespace octafront {
 
 /// Counters of the front; they depend on input and options alone.
 struct FrontCounters {
-  std::uint64_t attempts = 0, candidates = 0, exact_tests = 0, ideal_points = 0, retries = 0, layers = 0,
-                faces_found = 0;
+  std::uint64_t attempts = 0, candidates = 0, face_tests = 0, exact_tests = 0, ideal_points = 0, retries = 0,
+                layers = 0, faces_found = 0;
 };
 
 /// Tries to advance one face: ideal point, candidates in order, validity, levers. Keeps its scratch between calls.
@@ -50,6 +50,7 @@ class Attempt {
   Contact contact_of(Index apex) const;
   bool edges_short_enough(Vec3 apex, const Contact& contact, double longest) const;
   bool is_valid(Index apex, Vec3 apex_at, VertexIndex apex_id);
+  bool blocks(const Neighborhood::LocalFace& face, Index apex, Vec3 apex_at, VertexIndex apex_id);
   bool keeps_clear(Index apex, Vec3 apex_local, const Contact& contact, const Limits& limits) const;
   bool clear_of_faces(Vec3 apex_local, float least) const;
   void commit(FaceIndex face, VertexIndex apex, const Contact& contact, std::vector<QueuedFace>& created);
@@ -69,6 +70,7 @@ class Attempt {
   Vec3 ideal_at_;
   double ideal_distance_ = 0;  // local
   Contact contact_;            // of the candidate tried last
+  std::size_t blocker_ = 0;    // face that the last candidate met
 };
 
 }  // namespace octafront

@@ -11,6 +11,9 @@ namespace {
 /// A cavity that asks for more tetrahedra than this for each wall is not being closed but blown up.
 constexpr std::size_t kTetsPerWall = 60;
 
+/// A trial that succeeds on a well-shaped surface needs a tenth of this; what needs more seldom succeeds at all.
+constexpr std::uint64_t kFaceTestsPerTrial = 200'000;
+
 /// The vertices of the walls, numbered in ascending order.
 std::vector<VertexIndex> corners_of(const std::vector<Wall>& walls) {
   std::vector<VertexIndex> corners;
@@ -23,7 +26,9 @@ std::vector<VertexIndex> corners_of(const std::vector<Wall>& walls) {
 }  // namespace
 
 bool close_by_front(WorkMesh& mesh, Cavities& cavities, std::uint32_t cavity, const BacktrackVariant& variant,
-                    const SizeField& sizes, const VolumeOptions& options, const RunContext& context) {
+                    const SizeField& sizes, const VolumeOptions& options, const RunContext& context,
+                    std::uint64_t& face_tests) {
+  if (face_tests == 0) return false;
   Excavation excavation(mesh, cavities, cavity);
   for (int ring = 0; ring < variant.rings; ++ring)
     if (!excavation.grow_ring()) return false;
@@ -43,7 +48,9 @@ bool close_by_front(WorkMesh& mesh, Cavities& cavities, std::uint32_t cavity, co
   other.ranking = variant.ranking;
   FrontCounters counters;
   const AdvanceResult result =
-      advance_front(front, std::move(layer), {}, sizes, other, 1000 + kTetsPerWall * walls.size(), context, counters);
+      advance_front(front, std::move(layer), {}, sizes, other,
+                    {1000 + kTetsPerWall * walls.size(), std::min(face_tests, kFaceTestsPerTrial)}, context, counters);
+  face_tests -= std::min(face_tests, counters.face_tests);
   if (result.over_budget || !result.left.empty()) return false;
   for (std::size_t v = global.size(); v < front.vertices().size(); ++v)
     global.push_back(mesh.add_point(front.at(static_cast<VertexIndex>(v))));

@@ -16,8 +16,10 @@ struct BacktrackVariant {
 };
 
 /// Backtracking: takes rings of tetrahedra out around a cavity and lets a front of its own fill it with other choices.
-/// True if that closed it; otherwise nothing has changed.
+/// True if that closed it; otherwise nothing has changed. `face_tests` is the work that may be spent; what was spent is
+/// taken off it.
 bool close_by_front(WorkMesh& mesh, Cavities& cavities, std::uint32_t cavity, const BacktrackVariant& variant,
-                    const SizeField& sizes, const VolumeOptions& options, const RunContext& context);
+                    const SizeField& sizes, const VolumeOptions& options, const RunContext& context,
+                    std::uint64_t& face_tests);
 
 }  // namespace octafront

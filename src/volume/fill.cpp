@@ -139,6 +139,7 @@ void report_front(StageReport& report, const FrontCounters& counters, std::size_
   report.count("attempts", static_cast<double>(counters.attempts));
   report.count("faces gathered", static_cast<double>(counters.faces_found));
   report.count("candidates tried", static_cast<double>(counters.candidates));
+  report.count("face tests", static_cast<double>(counters.face_tests));
   report.count("exact tests", static_cast<double>(counters.exact_tests));
   report.count("ideal points", static_cast<double>(counters.ideal_points));
   report.count("retries", static_cast<double>(counters.retries));
@@ -161,7 +162,7 @@ TetMesh fill_volume(const SurfaceMesh& surface, const SizeField& sizes, const Vo
       report.count("core tetrahedra", static_cast<double>(core.tets.size()));
       skin = add_core(front, core, sizes);
     }
-    const std::size_t budget = front.tets().size() + tet_budget(surface, sizes);
+    const AdvanceBudget budget{front.tets().size() + tet_budget(surface, sizes)};
     FrontCounters counters;
     const AdvanceResult result =
         advance_front(front, std::move(layer), std::move(skin), sizes, options, budget, context, counters);
