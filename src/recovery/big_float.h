@@ -1,9 +1,31 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
 namespace octafront::recovery {
+
+/// Little-endian limbs of an integer; short ones live inside the object.
+class Limbs {
+ public:
+  std::size_t size() const { return size_; }
+  bool empty() const { return size_ == 0; }
+  std::uint64_t* data() { return size_ > kShort ? long_.data() : short_.data(); }
+  const std::uint64_t* data() const { return size_ > kShort ? long_.data() : short_.data(); }
+  std::uint64_t operator[](std::size_t i) const { return data()[i]; }
+  std::uint64_t back() const { return data()[size_ - 1]; }
+  /// `n` limbs, all zero.
+  void assign_zero(std::size_t n);
+  /// Keeps the limbs [first, last).
+  void keep(std::size_t first, std::size_t last);
+
+ private:
+  static constexpr std::size_t kShort = 14;
+  std::size_t size_ = 0;
+  std::array<std::uint64_t, kShort> short_;
+  std::vector<std::uint64_t> long_;
+};
 
 /// An exact number m * 2^(64 e) with an integer m of any length: sums, differences and products of doubles never round.
 /// The exponent counts whole limbs, so that adding aligns without shifting bits.
@@ -23,7 +45,7 @@ class BigFloat {
   friend double quotient(const BigFloat& numerator, const BigFloat& denominator);
 
  private:
-  using Limbs = std::vector<std::uint64_t>;
+  static int compare_magnitude(const BigFloat& a, const BigFloat& b);
   static BigFloat sum(const BigFloat& a, const BigFloat& b, bool b_negative);
   void trim();
   /// The number as mantissa * 2^exponent with mantissa in [2^63, 2^64), truncated.

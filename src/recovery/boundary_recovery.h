@@ -41,9 +41,11 @@ class BoundaryRecovery {
   const RecoveryCounts& counts() const { return counts_; }
 
  private:
+  void learn_planes();
+
   // Edges.
   std::vector<Edge> missing_edges();
-  void recover_edges(std::vector<Edge> wanted);
+  void recover_edges(const std::vector<Edge>& wanted);
   bool edge_by_flips(VertexIndex a, VertexIndex b);
   bool improve_once(const SegmentHindrance& hindrance, bool random);
   bool improve_at(const Crossing& c, const SegmentHindrance& hindrance, bool random);
@@ -52,15 +54,27 @@ class BoundaryRecovery {
   VertexIndex place_at_crossing(VertexIndex a, VertexIndex b, const Crossing& c, double at);
   void insert(VertexIndex s, std::span<const TetIndex> tets);
   Edge line_of(VertexIndex a, VertexIndex b) const;
+  Edge crossed_line(VertexIndex x, VertexIndex y) const;
   double parameter(const Edge& line, VertexIndex v) const;
 
   // Facets.
+  /// A convex part of an input triangle, counter-clockwise seen from outside; its sides are edges of the mesh. Corners
+  /// may be straight.
+  struct Polygon {
+    std::vector<VertexIndex> corners;
+    std::uint32_t parent;
+  };
   void recover_facets();
-  void recover_facet(std::uint32_t f, std::vector<std::uint32_t>& stack);
+  void recover_polygon(const Polygon& polygon, std::vector<Polygon>& stack);
+  void recover_triangle(const Polygon& triangle, std::vector<Polygon>& stack);
+  bool adopt_face(const Polygon& polygon, std::vector<Polygon>& stack);
+  void cut_polygon(const Polygon& polygon, std::vector<Polygon>& stack);
+  int turn(std::uint32_t parent, VertexIndex a, VertexIndex b, VertexIndex c) const;
+  bool label_face(const Triangle& corners, std::uint32_t parent);
   HalfFace find_face(const Triangle& f);
-  bool facet_by_flips(const Triangle& f);
+  bool facet_by_flips(const Triangle& f, std::uint32_t parent);
   void crossing_edges(const Triangle& f, std::vector<Edge>& edges, std::vector<TetIndex>& tets);
-  void divide_facet(std::uint32_t f);
+  VertexIndex point_on_facet(const Triangle& corners, std::uint32_t parent);
 
   std::uint32_t random() {
     random_ ^= random_ << 13;
@@ -71,6 +85,7 @@ class BoundaryRecovery {
   struct Carrier {  ///< the line on which a Steiner point was made
     VertexIndex from = kNone, to = kNone;
     double t = 0;
+    Edge crossed{kNone, kNone};  ///< the line of the mesh edge that it divides as well
   };
 
   ExactPoints& points_;
@@ -85,6 +100,7 @@ class BoundaryRecovery {
   std::vector<TetIndex> tets_;
   std::vector<VertexIndex> link_;
   std::uint32_t random_ = 2463534242u;
+  bool planes_known_ = false;
   bool strict_ = false;  ///< only flips that make a wanted edge at once
 };
 

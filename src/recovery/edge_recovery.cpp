@@ -1,6 +1,7 @@
 #include <octafront/error.h>
 
 #include "recovery/boundary_recovery.h"
+#include "recovery/facet_planes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -35,7 +36,7 @@ std::vector<Edge> BoundaryRecovery::missing_edges() {
   std::vector<Edge> missing;
   std::vector<VertexIndex> seen_from(points_.size(), kNone);
   VertexIndex from = kNone;
-  for (const Edge& e : surface_.edge_list()) {
+  for (const Edge& e : surface_.input_edges()) {
     if (e[0] != from) {
       from = e[0];
       if (from % 256 == 0) context_.check();
@@ -50,24 +51,20 @@ std::vector<Edge> BoundaryRecovery::missing_edges() {
   return missing;
 }
 
-void BoundaryRecovery::recover_edges(std::vector<Edge> wanted) {
+void BoundaryRecovery::recover_edges(const std::vector<Edge>& wanted) {
   std::deque<Edge> queue(wanted.begin(), wanted.end());
-  std::vector<Edge> diagonals;
   while (!queue.empty()) {
     context_.check();
     const auto [a, b] = queue.front();
     queue.pop_front();
-    if (!surface_.edges().contains(a, b)) continue;  // divided in the meantime
     if (edge_by_flips(a, b)) {
       ++counts_.edges_by_flips;
       continue;
     }
     const VertexIndex s = divide_edge(a, b);
-    diagonals.clear();
-    surface_.split_edge(a, b, s, diagonals);
+    surface_.split_edge(a, b, s);
     queue.push_front({s, b});
     queue.push_front({a, s});
-    queue.insert(queue.end(), diagonals.begin(), diagonals.end());
   }
 }
 
@@ -125,6 +122,17 @@ Edge BoundaryRecovery::line_of(VertexIndex a, VertexIndex b) const {
   return {a, b};
 }
 
+// Parts of an edge that was crossed before lie on its line; the ends of that line have shorter coordinates.
+Edge BoundaryRecovery::crossed_line(VertexIndex x, VertexIndex y) const {
+  const auto crossed = [&](VertexIndex v) {
+    return v >= frame_ + kFrameVertices ? carrier_[v - frame_ - kFrameVertices].crossed : Edge{kNone, kNone};
+  };
+  const Edge cx = crossed(x), cy = crossed(y);
+  if (cx[0] != kNone && (cx[0] == y || cx[1] == y || cx == cy)) return cx;
+  if (cy[0] != kNone && (cy[0] == x || cy[1] == x)) return cy;
+  return {x, y};
+}
+
 double BoundaryRecovery::parameter(const Edge& line, VertexIndex v) const {
   if (v == line[0]) return 0;
   if (v == line[1]) return 1;
@@ -132,6 +140,7 @@ double BoundaryRecovery::parameter(const Edge& line, VertexIndex v) const {
 }
 
 VertexIndex BoundaryRecovery::divide_edge(VertexIndex a, VertexIndex b) {
+  learn_planes();
   const std::vector<Crossing>& crossings = walk_.crossings;
   // Where along the segment the crossings lie, about.
   const Vec3 pa = points_.at(a), direction = points_.at(b) - pa;
@@ -186,7 +195,7 @@ VertexIndex BoundaryRecovery::place_inside(VertexIndex a, VertexIndex b, TetInde
       points_.pop();
       continue;
     }
-    carrier_.push_back({line[0], line[1], t});
+    carrier_.push_back({line[0], line[1], t, {kNone, kNone}});
     insert(s, {&tet, 1});
     ++counts_.edge_points;
     return s;
@@ -198,17 +207,17 @@ VertexIndex BoundaryRecovery::place_at_crossing(VertexIndex a, VertexIndex b, co
   const Edge line = line_of(a, b);
   const double ta = parameter(line, a), tb = parameter(line, b);
   VertexIndex s = kNone;
+  Edge crossed{kNone, kNone};
   if (c.is_edge) {
-    VertexIndex o = frame_;
-    while (o < frame_ + kFrameVertices - 1 && points_.orient(c.x, c.y, o, a) == 0) ++o;
-    s = points_.add_crossing(line[0], line[1], c.x, c.y, o);
+    crossed = crossed_line(c.x, c.y);
+    s = points_.add_crossing(line[0], line[1], crossed[0], crossed[1]);
     mesh_.ring(c.x, c.y, c.tet, kNone, tets_, link_);
   } else {
     const Triangle f = mesh_.face(c.face);
     s = points_.add_crossing(line[0], line[1], f[0], f[1], f[2]);
     tets_ = {c.face / 4, mesh_.opposite(c.face) / 4};
   }
-  carrier_.push_back({line[0], line[1], ta + (tb - ta) * at});
+  carrier_.push_back({line[0], line[1], ta + (tb - ta) * at, crossed});
   insert(s, tets_);
   ++counts_.crossing_points;
   return s;
@@ -230,10 +239,17 @@ void BoundaryRecovery::insert(VertexIndex s, std::span<const TetIndex> tets) {
   mesh_.replace(old, fresh);
 }
 
+// Only Steiner points need them.
+void BoundaryRecovery::learn_planes() {
+  if (planes_known_) return;
+  planes_known_ = true;
+  points_.set_planes(surface_.triangles(), facet_planes(points_, surface_.triangles()));
+}
+
 void BoundaryRecovery::run() {
-  std::vector<Edge> missing = missing_edges();
+  const std::vector<Edge> missing = missing_edges();
   counts_.missing_edges = missing.size();
-  recover_edges(std::move(missing));
+  recover_edges(missing);
   recover_facets();
 }
 

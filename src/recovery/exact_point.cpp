@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <stdexcept>
 
 namespace octafront::recovery {
 
@@ -47,21 +49,68 @@ VertexIndex ExactPoints::add(Vec3 p) {
   return size() - 1;
 }
 
-VertexIndex ExactPoints::add(Homogeneous h) {
+VertexIndex ExactPoints::add(Homogeneous h, std::vector<std::uint32_t> planes) {
   if (h[3].sign() < 0) {
     for (BigFloat& x : h) x = -x;
   }
   if (first_steiner_ == kNone) first_steiner_ = size();
   point_.push_back({quotient(h[0], h[3]), quotient(h[1], h[3]), quotient(h[2], h[3])});
-  steiner_.emplace_back(std::make_move_iterator(h.begin()), std::make_move_iterator(h.end()));
+  steiner_.push_back({{h.begin(), h.end()}, std::move(planes)});
   return size() - 1;
 }
 
 VertexIndex ExactPoints::add_copy(VertexIndex v) {
   point_.push_back(Vec3(point_[v]));
   if (first_steiner_ != kNone)
-    steiner_.push_back(v < first_steiner_ ? MaybeHomogeneous{} : MaybeHomogeneous(steiner_[v - first_steiner_]));
+    steiner_.push_back(v < first_steiner_ ? Steiner{} : Steiner(steiner_[v - first_steiner_]));
   return size() - 1;
+}
+
+void ExactPoints::set_planes(const std::vector<Triangle>& triangles, const std::vector<std::uint32_t>& plane) {
+  plane_of_triangle_ = plane;
+  first_plane_.assign(point_.size() + 1, 0);
+  for (const Triangle& t : triangles) {
+    for (const VertexIndex v : t) ++first_plane_[v + 1];
+  }
+  for (std::size_t v = 1; v < first_plane_.size(); ++v) first_plane_[v] += first_plane_[v - 1];
+  plane_at_.resize(3 * triangles.size());
+  std::vector<std::uint32_t> next(first_plane_.begin(), first_plane_.end() - 1);
+  for (std::size_t f = 0; f < triangles.size(); ++f) {
+    for (const VertexIndex v : triangles[f]) plane_at_[next[v]++] = plane[f];
+  }
+  for (std::size_t v = 0; v + 1 < first_plane_.size(); ++v) {
+    std::sort(plane_at_.begin() + first_plane_[v], plane_at_.begin() + first_plane_[v + 1]);
+  }
+}
+
+void ExactPoints::add_plane(VertexIndex v, std::uint32_t plane) {
+  std::vector<std::uint32_t>& planes = steiner_[v - first_steiner_].planes;
+  planes.insert(std::ranges::lower_bound(planes, plane), plane);
+}
+
+ExactPoints::Planes ExactPoints::planes_of(VertexIndex v) const {
+  if (v >= first_steiner_) return steiner_[v - first_steiner_].planes;
+  if (v + 1 >= first_plane_.size()) return {};
+  return Planes(plane_at_).subspan(first_plane_[v], first_plane_[v + 1] - first_plane_[v]);
+}
+
+std::vector<std::uint32_t> ExactPoints::shared_planes(VertexIndex a, VertexIndex b) const {
+  std::vector<std::uint32_t> shared;
+  std::ranges::set_intersection(planes_of(a), planes_of(b), std::back_inserter(shared));
+  shared.erase(std::ranges::unique(shared).begin(), shared.end());
+  return shared;
+}
+
+bool ExactPoints::share_plane(const std::array<VertexIndex, 4>& v) const {
+  std::array<Planes, 4> planes;
+  for (int i = 0; i < 4; ++i) {
+    planes[i] = planes_of(v[i]);
+    if (planes[i].empty()) return false;
+    if (planes[i].size() < planes[0].size()) std::swap(planes[i], planes[0]);
+  }
+  return std::ranges::any_of(planes[0], [&](std::uint32_t p) {
+    return std::all_of(planes.begin() + 1, planes.end(), [p](Planes s) { return std::ranges::binary_search(s, p); });
+  });
 }
 
 void ExactPoints::pop() {
@@ -72,12 +121,12 @@ void ExactPoints::pop() {
 
 void ExactPoints::move(VertexIndex v, Vec3 p) {
   point_[v] = p;
-  if (v >= first_steiner_) steiner_[v - first_steiner_].clear();
+  if (v >= first_steiner_) steiner_[v - first_steiner_] = {};
 }
 
 Homogeneous ExactPoints::homogeneous(VertexIndex v) const {
   if (!is_double(v)) {
-    const MaybeHomogeneous& h = steiner_[v - first_steiner_];
+    const std::vector<BigFloat>& h = steiner_[v - first_steiner_].coordinate;
     return {h[0], h[1], h[2], h[3]};
   }
   return {BigFloat(point_[v].x), BigFloat(point_[v].y), BigFloat(point_[v].z), BigFloat(1.0)};
@@ -86,7 +135,8 @@ Homogeneous ExactPoints::homogeneous(VertexIndex v) const {
 VertexIndex ExactPoints::add_between(VertexIndex a, VertexIndex b, double t) {
   const Homogeneous p = homogeneous(a), q = homogeneous(b);
   const BigFloat wp = BigFloat(1 - t) * q[3], wq = BigFloat(t) * p[3];
-  return add(Homogeneous{wp * p[0] + wq * q[0], wp * p[1] + wq * q[1], wp * p[2] + wq * q[2], p[3] * q[3]});
+  return add(Homogeneous{wp * p[0] + wq * q[0], wp * p[1] + wq * q[1], wp * p[2] + wq * q[2], p[3] * q[3]},
+             shared_planes(a, b));
 }
 
 VertexIndex ExactPoints::add_crossing(VertexIndex p, VertexIndex q, VertexIndex a, VertexIndex b, VertexIndex c) {
@@ -95,7 +145,23 @@ VertexIndex ExactPoints::add_crossing(VertexIndex p, VertexIndex q, VertexIndex 
   const BigFloat dp = value(plane, hp), dq = value(plane, hq);
   Homogeneous h;
   for (int i = 0; i < 4; ++i) h[i] = hp[i] * dq - hq[i] * dp;
-  return add(std::move(h));
+  return add(std::move(h), shared_planes(p, q));
+}
+
+VertexIndex ExactPoints::add_crossing(VertexIndex p, VertexIndex q, VertexIndex x, VertexIndex y) {
+  const Homogeneous hp = homogeneous(p), hq = homogeneous(q), hx = homogeneous(x), hy = homogeneous(y);
+  // Seen along an axis in which the two lines do not coincide, (x, y) is the linear form l.
+  for (int axis = 0; axis < 3; ++axis) {
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    const std::array<BigFloat, 3> l{det2(hx[v], hx[3], hy[v], hy[3]), -det2(hx[u], hx[3], hy[u], hy[3]),
+                                    det2(hx[u], hx[v], hy[u], hy[v])};
+    const BigFloat dp = l[0] * hp[u] + l[1] * hp[v] + l[2] * hp[3], dq = l[0] * hq[u] + l[1] * hq[v] + l[2] * hq[3];
+    if (dp.sign() * dq.sign() >= 0) continue;
+    Homogeneous h;
+    for (int i = 0; i < 4; ++i) h[i] = hp[i] * dq - hq[i] * dp;
+    return add(std::move(h), shared_planes(p, q));
+  }
+  throw std::logic_error("two segments that should cross do not");
 }
 
 int ExactPoints::orient_steiner(VertexIndex a, VertexIndex b, VertexIndex c, VertexIndex d) const {
@@ -104,7 +170,7 @@ int ExactPoints::orient_steiner(VertexIndex a, VertexIndex b, VertexIndex c, Ver
     return orient3d(point_[a], point_[b], point_[c], point_[d]);
   }
   if (const int s = filtered_orient(point_[a], point_[b], point_[c], point_[d])) return s;
-  return orient_exact(v);
+  return share_plane(v) ? 0 : orient_exact(v);
 }
 
 int ExactPoints::orient_exact(const std::array<VertexIndex, 4>& v) const {

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kPasses = 8;
 // A facet that was divided this often is finished without flips that could bring new edges into its way.
-constexpr int kDivisionsBeforeStrict = 8;
+constexpr int kDivisionsBeforeStrict = 40;
 
 Edge ordered(VertexIndex a, VertexIndex b) {
   return {std::min(a, b), std::max(a, b)};
@@ -67,8 +67,9 @@ void BoundaryRecovery::crossing_edges(const Triangle& f, std::vector<Edge>& edge
   }
 }
 
-bool BoundaryRecovery::facet_by_flips(const Triangle& f) {
-  const FacetHindrance hindrance(points_, f);
+// Counts what crosses the whole input triangle: what one part of it gains may not be at the cost of another.
+bool BoundaryRecovery::facet_by_flips(const Triangle& f, std::uint32_t parent) {
+  const FacetHindrance hindrance(points_, surface_.triangles()[parent]);
   std::vector<Edge> edges;
   std::vector<TetIndex> tets;
   for (int idle = 0; idle < kPasses;) {
@@ -90,15 +91,14 @@ bool BoundaryRecovery::facet_by_flips(const Triangle& f) {
   return edges.empty();
 }
 
-void BoundaryRecovery::divide_facet(std::uint32_t f) {
-  const SubdividedSurface::Facet facet = surface_.facets()[f];
-  const Triangle plane = surface_.facets()[facet.parent].corners;
+VertexIndex BoundaryRecovery::point_on_facet(const Triangle& corners, std::uint32_t parent) {
+  const Triangle& plane = surface_.triangles()[parent];
   std::vector<Edge> edges;
   std::vector<TetIndex> tets;
-  crossing_edges(facet.corners, edges, tets);
+  crossing_edges(corners, edges, tets);
   // The most central of the crossings.
   const Vec3 a = points_.at(plane[0]), n = cross(points_.at(plane[1]) - a, points_.at(plane[2]) - a);
-  const Vec3 center = (points_.at(facet.corners[0]) + points_.at(facet.corners[1]) + points_.at(facet.corners[2])) / 3;
+  const Vec3 center = (points_.at(corners[0]) + points_.at(corners[1]) + points_.at(corners[2])) / 3;
   std::size_t best = 0;
   double best_distance = -1;
   for (std::size_t i = 0; i < edges.size(); ++i) {
@@ -109,56 +109,143 @@ void BoundaryRecovery::divide_facet(std::uint32_t f) {
     best_distance = d;
   }
   const auto [p, q] = edges[best];
+  learn_planes();
   const VertexIndex s = points_.add_crossing(p, q, plane[0], plane[1], plane[2]);
+  points_.add_plane(s, points_.plane_of(parent));
   carrier_.push_back({});
   ++counts_.facet_points;
   mesh_.ring(p, q, tets[best], kNone, tets_, link_);
   insert(s, tets_);
-  std::vector<Edge> new_edges;
-  surface_.split_facet(f, s, new_edges);
-  recover_edges(new_edges);
+  return s;
 }
 
-void BoundaryRecovery::recover_facet(std::uint32_t f, std::vector<std::uint32_t>& stack) {
-  const Triangle corners = surface_.facets()[f].corners;
-  HalfFace h = find_face(corners);
-  if (h == kNone) {
-    ++counts_.missing_facets;
-    if (facet_by_flips(corners)) {
-      ++counts_.facets_by_flips;
-      h = find_face(corners);
-    }
-  }
-  if (h != kNone) {
-    mesh_.set_label(h, f);
+// The sense of rotation of three points of the parent's plane, seen from outside.
+int BoundaryRecovery::turn(std::uint32_t parent, VertexIndex a, VertexIndex b, VertexIndex c) const {
+  const Triangle& t = surface_.triangles()[parent];
+  VertexIndex o = frame_;
+  int up = 0;
+  while ((up = points_.orient(t[0], t[1], t[2], o)) == 0) ++o;
+  return points_.orient(a, b, c, o) * up;
+}
+
+bool BoundaryRecovery::label_face(const Triangle& corners, std::uint32_t parent) {
+  const HalfFace h = find_face(corners);
+  if (h == kNone) return false;
+  mesh_.set_label(h, surface_.add_facet(corners, parent));
+  return true;
+}
+
+void BoundaryRecovery::recover_triangle(const Polygon& triangle, std::vector<Polygon>& stack) {
+  const Triangle corners{triangle.corners[0], triangle.corners[1], triangle.corners[2]};
+  if (label_face(corners, triangle.parent)) return;
+  ++counts_.missing_facets;
+  if (facet_by_flips(corners, triangle.parent)) {
+    ++counts_.facets_by_flips;
+    if (!label_face(corners, triangle.parent))
+      throw std::logic_error("a facet that nothing crosses is not in the mesh");
     return;
   }
-  const std::size_t known = surface_.facets().size();
-  divide_facet(f);
-  for (std::size_t g = surface_.facets().size(); g-- > known;) stack.push_back(static_cast<std::uint32_t>(g));
+  const VertexIndex s = point_on_facet(corners, triangle.parent);
+  std::vector<Edge> spokes;
+  for (const VertexIndex v : corners) {
+    spokes.push_back({v, s});
+    surface_.add_edge(v, s);
+  }
+  recover_edges(spokes);
+  for (int i = 0; i < 3; ++i) {
+    Polygon part{{corners[i]}, triangle.parent};
+    surface_.expand(corners[(i + 1) % 3], s, part.corners);
+    surface_.expand(s, corners[i], part.corners);
+    stack.push_back(std::move(part));
+  }
+}
+
+// A face of the mesh that lies in the polygon along one of its sides becomes a facet.
+bool BoundaryRecovery::adopt_face(const Polygon& polygon, std::vector<Polygon>& stack) {
+  const std::vector<VertexIndex>& c = polygon.corners;
+  const std::size_t n = c.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const VertexIndex u = c[i], v = c[(i + 1) % n];
+    const TetIndex start = tet_with_edge(points_, mesh_, u, v);
+    if (start == kNone || !mesh_.ring(u, v, start, kNone, tets_, link_)) continue;
+    for (std::size_t k = 2; k < n; ++k) {
+      const std::size_t at = (i + k) % n;
+      const VertexIndex w = c[at];
+      if (std::ranges::count(link_, w) == 0 || turn(polygon.parent, u, v, w) <= 0) continue;
+      if (!label_face({u, v, w}, polygon.parent)) continue;
+      surface_.add_edge(v, w);
+      surface_.add_edge(w, u);
+      Polygon left{{}, polygon.parent}, right{{}, polygon.parent};
+      for (std::size_t j = 1; j <= k; ++j) left.corners.push_back(c[(i + j) % n]);
+      for (std::size_t j = k; j <= n; ++j) right.corners.push_back(c[(i + j) % n]);
+      for (Polygon* part : {&left, &right}) {
+        if (part->corners.size() > 2) stack.push_back(std::move(*part));
+      }
+      return true;
+    }
+  }
+  return false;
+}
+
+// Along the shortest diagonal, if possible one that the mesh has.
+void BoundaryRecovery::cut_polygon(const Polygon& polygon, std::vector<Polygon>& stack) {
+  const std::vector<VertexIndex>& c = polygon.corners;
+  const std::size_t n = c.size();
+  const auto off_line = [&](std::size_t i, std::size_t j) {
+    for (std::size_t k = i + 1; k != j; ++k) {
+      if (turn(polygon.parent, c[i], c[k % n], c[j % n]) != 0) return true;
+    }
+    return false;
+  };
+  Edge best{kNone, kNone};
+  std::pair<bool, double> best_cost;
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = i + 2; j < n && j - i + 1 < n; ++j) {
+      if (!off_line(i, j) || !off_line(j, i + n)) continue;
+      const bool absent = tet_with_edge(points_, mesh_, c[i], c[j]) == kNone;
+      const std::pair cost(absent, distance(points_.at(c[i]), points_.at(c[j])));
+      if (best[0] != kNone && !(cost < best_cost)) continue;
+      best = {static_cast<VertexIndex>(i), static_cast<VertexIndex>(j)};
+      best_cost = cost;
+    }
+  }
+  if (best[0] == kNone) throw std::logic_error("a polygon without a diagonal");
+  const auto [i, j] = best;
+  surface_.add_edge(c[i], c[j]);
+  recover_edges({{c[i], c[j]}});
+  Polygon left{{c.begin() + i, c.begin() + j}, polygon.parent}, right{{}, polygon.parent};
+  surface_.expand(c[j], c[i], left.corners);
+  surface_.expand(c[i], c[j], right.corners);
+  for (std::size_t k = j; k < i + n; ++k) right.corners.push_back(c[k % n]);
+  stack.push_back(std::move(left));
+  stack.push_back(std::move(right));
+}
+
+void BoundaryRecovery::recover_polygon(const Polygon& polygon, std::vector<Polygon>& stack) {
+  if (polygon.corners.size() == 3) {
+    recover_triangle(polygon, stack);
+  } else if (!adopt_face(polygon, stack)) {
+    cut_polygon(polygon, stack);
+  }
 }
 
 void BoundaryRecovery::recover_facets() {
-  const auto n = static_cast<std::uint32_t>(surface_.facets().size());
-  std::vector<std::uint32_t> stack;
+  const std::vector<Triangle>& triangles = surface_.triangles();
   std::vector<std::uint32_t> absent;
-  for (std::uint32_t f = 0; f < n; ++f) {
-    if (!surface_.facets()[f].alive) continue;
+  for (std::uint32_t f = 0; f < triangles.size(); ++f) {
     if (f % 256 == 0) context_.check();
-    if (const HalfFace h = find_face(surface_.facets()[f].corners); h != kNone) {
-      mesh_.set_label(h, f);
-    } else {
-      absent.push_back(f);
-    }
+    if (surface_.is_divided(triangles[f]) || !label_face(triangles[f], f)) absent.push_back(f);
   }
-  for (const std::uint32_t root : absent) {
-    stack.assign(1, root);
+  std::vector<Polygon> stack;
+  for (const std::uint32_t f : absent) {
+    stack.assign(1, {{}, f});
+    for (int i = 0; i < 3; ++i) surface_.expand(triangles[f][i], triangles[f][(i + 1) % 3], stack[0].corners);
     for (int divisions = 0; !stack.empty(); ++divisions) {
       context_.check();
       strict_ = divisions > kDivisionsBeforeStrict;
-      const std::uint32_t f = stack.back();
+      const Polygon polygon = std::move(stack.back());
       stack.pop_back();
-      if (surface_.facets()[f].alive) recover_facet(f, stack);
+      recover_polygon(polygon, stack);
     }
     strict_ = false;
   }

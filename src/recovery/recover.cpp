@@ -89,7 +89,7 @@ TetMesh recover_volume(const SurfaceMesh& surface, const RunContext& context, St
   std::vector<VertexIndex> same_as;
   const VertexIndex frame = delaunay(points, used, mesh, same_as, context);
   const std::vector<Triangle> triangles = merged(surface.triangles, same_as);
-  SubdividedSurface subdivided(triangles, points.size());
+  SubdividedSurface subdivided(triangles);
   BoundaryRecovery recovery(points, mesh, subdivided, frame, context);
   recovery.run();
   carve(points, subdivided, mesh);

@@ -9,37 +9,39 @@
 
 namespace octafront::recovery {
 
-/// The input's triangles, divided by Steiner points on their edges and inside them. Facet f < the number of input
-/// triangles starts as input triangle f.
+/// The edges of the surface, divided by Steiner points, and the facets into which the input's triangles are cut once
+/// their edges are in the mesh.
 class SubdividedSurface {
  public:
   struct Facet {
     Triangle corners;      ///< counter-clockwise seen from outside
     std::uint32_t parent;  ///< the input triangle
-    bool alive = true;
   };
 
-  SubdividedSurface(const std::vector<Triangle>& triangles, VertexIndex vertices);
+  explicit SubdividedSurface(const std::vector<Triangle>& triangles);
 
+  const std::vector<Triangle>& triangles() const { return triangles_; }
+  /// What the labels of the mesh's faces refer to.
   const std::vector<Facet>& facets() const { return facets_; }
+  /// All undivided edges; the mesh must keep those that it has.
   const EdgeSet& edges() const { return edges_; }
-  /// All undirected edges, smaller vertex first, sorted.
-  std::vector<Edge> edge_list() const;
-  /// The living facets that have the edge (a, b).
-  std::vector<std::uint32_t> facets_around(VertexIndex a, VertexIndex b) const;
+  /// The input's undirected edges, smaller vertex first, sorted.
+  std::vector<Edge> input_edges() const;
 
-  /// Vertex s, inside edge (a, b), divides it and its facets. Appends the new edges that are not parts of (a, b).
-  void split_edge(VertexIndex a, VertexIndex b, VertexIndex s, std::vector<Edge>& new_edges);
-  /// Vertex s, inside facet f, divides it into three. Appends the new edges.
-  void split_facet(std::uint32_t f, VertexIndex s, std::vector<Edge>& new_edges);
+  void add_edge(VertexIndex a, VertexIndex b) { edges_.insert(a, b); }
+  /// Vertex s, inside edge (a, b), divides it.
+  void split_edge(VertexIndex a, VertexIndex b, VertexIndex s);
+  /// Appends a and all points that divide the edge from a to b, in order, without b.
+  void expand(VertexIndex a, VertexIndex b, std::vector<VertexIndex>& chain) const;
+  /// True if an edge of the triangle is divided.
+  bool is_divided(const Triangle& t) const;
+  std::uint32_t add_facet(const Triangle& corners, std::uint32_t parent);
 
  private:
-  void add_facet(const Triangle& corners, std::uint32_t parent);
-
+  const std::vector<Triangle>& triangles_;
   std::vector<Facet> facets_;
   EdgeSet edges_;
-  std::vector<std::uint32_t> first_, facet_at_;                 ///< input facets per vertex, compressed
-  std::map<VertexIndex, std::vector<std::uint32_t>> added_at_;  ///< facets that came later
+  std::map<Edge, VertexIndex> middle_;  ///< of a divided edge, smaller vertex first
 };
 
 }  // namespace octafront::recovery
