@@ -51,6 +51,11 @@ void declare_surface(CLI::App& command, Arguments& a) {
   group->add_option("--feature-angle", o.feature_angle, "Edges that bend by more degrees than this are kept")
       ->type_name("DEG")
       ->capture_default_str();
+  group
+      ->add_option("--max-deviation", o.max_deviation,
+                   "Smaller elements where the surface would stray farther from the input [0.4 % of the diagonal with "
+                   "automatic sizes, else none]")
+      ->type_name("D");
 }
 
 void declare_volume(CLI::App& command, Arguments& a) {

@@ -33,6 +33,9 @@ struct SizeOptions {
 struct SurfaceOptions {
   bool keep = false;              ///< the input triangles become the boundary, exactly
   double feature_angle = 40;      ///< degrees between face normals from which an edge is kept as a feature; (0, 180)
+  /// Where the new surface strays farther from the input than this (input units, > 0), the sizes are made smaller, for a
+  /// few rounds. Without a value the sizes alone decide.
+  std::optional<double> max_deviation;
 };
 
 /// How the volume is filled.

@@ -37,6 +37,8 @@ void check_options(const Options& options) {
   check_size(options.size);
   require(options.surface.feature_angle > 0 && options.surface.feature_angle < 180,
           "feature-angle is in degrees, between 0 and 180");
+  require(!options.surface.max_deviation || *options.surface.max_deviation > 0,
+          "max-deviation is a distance in the units of the input, above 0");
   require(options.volume.ideal_distance >= 0.4 && options.volume.ideal_distance <= 1.5,
           "ideal-distance is a multiple of the element size, between 0.4 and 1.5");
   require(options.improve.relaxation > 0 && options.improve.relaxation <= 1,

@@ -70,10 +70,22 @@ SizeField size_stage(const Prepared& p, const Options& options, const RunContext
   return sizes;
 }
 
+// With sizes of our own choosing the surface stays true by default; sizes that the user gave are left as they are.
+constexpr double kAutomaticDeviation = 0.004;  // of the diagonal; sampled, so that 0.005 is kept in all
+
+SurfaceOptions true_to_input(const Prepared& p, const Options& options) {
+  SurfaceOptions surface = options.surface;
+  const SizeOptions& size = options.size;
+  if (!surface.max_deviation && !size.size && !size.elements && !size.callback)
+    surface.max_deviation = kAutomaticDeviation * bounding_box(p.repaired.surface.points).diagonal();
+  return surface;
+}
+
 Remeshed surface_stage(const Prepared& p, const SizeField& sizes, const Options& options, const RunContext& context,
                        Report& report) {
   return run_stage(report, context, "surface front", [&](StageReport& stage) {
-    Remeshed remeshed = remesh_surface(p.repaired.surface, p.features, sizes, options.surface, context, stage);
+    const SurfaceOptions surface = true_to_input(p, options);
+    Remeshed remeshed = remesh_surface(p.repaired.surface, p.features, sizes, surface, context, stage);
     stage.count("triangles", static_cast<double>(remeshed.surface.triangles.size()));
     return remeshed;
   });

@@ -3,12 +3,15 @@
 #include "sizing/make_size_field.h"
 #include "surface/coarsen.h"
 #include "surface/insertion.h"
+#include "surface/point_grid.h"
 #include "surface/source_triangles.h"
 #include "surface/surface_crossings.h"
+#include "surface/surface_deviation.h"
 #include "surface/surface_improve.h"
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 
 namespace octafront {
 
@@ -20,7 +23,10 @@ using namespace remeshing;
 constexpr int kMostRounds = 8;
 /// Sizes around crossing triangles become this part of what they were.
 constexpr double kCap = 0.6;
-/// ... and grow from there at this rate.
+/// The same where the new surface strays too far from the input, and for how many rounds.
+constexpr double kDeviationCap = 0.7;
+constexpr int kMostDeviationRounds = 4;
+/// Capped sizes grow from there at this rate.
 constexpr double kCapGradation = 0.2;
 
 struct Counts {
@@ -29,7 +35,7 @@ struct Counts {
   CoarsenCounts coarsen;
   ImproveCounts improve;
   std::uint64_t crossings = 0;
-  int rounds = 0;
+  int rounds = 0, deviation_rounds = 0;
 };
 
 /// The parts of the working mesh that are alive, numbered anew in their order.
@@ -108,6 +114,21 @@ std::vector<Vec3> centers_of(const SurfaceMesh& surface, const std::vector<std::
   return centers;
 }
 
+/// The sizes made smaller around the places; of those within half a size of each other one is enough.
+SizeField capped_around(const SizeField& sizes, const std::vector<Vec3>& places, double factor) {
+  std::vector<Vec3> kept;
+  PointGrid grid(places.front());
+  for (const Vec3 p : places) {
+    const double h = sizes.at(p);
+    bool is_new = true;
+    grid.for_each_near(p, h, 0.5, [&](std::uint32_t, Vec3) { is_new = false; });
+    if (!is_new) continue;
+    kept.push_back(p);
+    grid.add(p, h);
+  }
+  return capped_near(sizes, kept, factor, kCapGradation);
+}
+
 /// The last resort on a clean surface: its own triangles.
 Remeshed input_as_it_is(const SurfaceMesh& surface, const Features& features, const SizeField& sizes) {
   Remeshed kept{surface, features, {}, sizes};
@@ -127,28 +148,41 @@ void report_counts(const Counts& counts, StageReport& report) {
   report.count("input vertices left", static_cast<double>(counts.coarsen.input_vertices_left));
   report.count("crossing pairs mended", static_cast<double>(counts.crossings));
   report.count("rounds", counts.rounds);
+  report.count("rounds for deviation", counts.deviation_rounds);
 }
 
 }  // namespace
 
 Remeshed remesh_surface(const SurfaceMesh& surface, const Features& features, const SizeField& sizes,
-                        const SurfaceOptions&, const RunContext& context, StageReport& report) {
+                        const SurfaceOptions& options, const RunContext& context, StageReport& report) {
   Counts counts;
   SizeField capped = sizes;
   InputSurface input = make_input_surface(surface, {});
+  std::optional<TriangleTree> tree;
+  if (options.max_deviation) tree.emplace(surface);
   for (counts.rounds = 1; counts.rounds <= kMostRounds + 1; ++counts.rounds) {
     const bool is_last = counts.rounds > kMostRounds;
     const Method method = is_last ? Method::kInsertOnly : Method::kFull;
     Compacted c = attempt(method, surface, input, features, capped, context, counts);
     const auto crossings = find_crossings(c.result.surface);
-    if (crossings.empty()) {
-      c.result.source = source_triangles(input, surface, c.result.surface, c.vertex_face, c.is_inner);
-      report_counts(counts, report);
-      if (is_last) report.notes.push_back("the surface's own vertices were kept: coarser triangles would cross");
-      return std::move(c.result);
-    }
     counts.crossings += crossings.size();
-    capped = capped_near(capped, centers_of(c.result.surface, crossings), kCap, kCapGradation);
+    if (!crossings.empty()) {
+      capped = capped_around(capped, centers_of(c.result.surface, crossings), kCap);
+      continue;
+    }
+    if (tree) {
+      const auto places = places_beyond(*options.max_deviation, c.result.surface, surface, *tree);
+      if (!places.empty() && !is_last && counts.deviation_rounds < kMostDeviationRounds) {
+        ++counts.deviation_rounds;
+        capped = capped_around(capped, places, kDeviationCap);
+        continue;
+      }
+      report.count("places beyond the deviation", static_cast<double>(places.size()));
+    }
+    c.result.source = source_triangles(input, surface, c.result.surface, c.vertex_face, c.is_inner);
+    report_counts(counts, report);
+    if (is_last) report.notes.push_back("the surface's own vertices were kept: coarser triangles would cross");
+    return std::move(c.result);
   }
   report_counts(counts, report);
   report.notes.push_back("the surface was kept as it is: every other triangulation tried crosses itself");

@@ -3,6 +3,7 @@
 #include <octafront/error.h>
 #include <octafront/quality.h>
 
+#include "geometry/hausdorff.h"
 #include "support/named_surfaces.h"
 #include "surface/halfedge_mesh.h"
 #include "surface/surface_crossings.h"
@@ -216,6 +217,19 @@ TEST(Remesh, FollowsAGradedField) {
     sum += distance(s.points[a], s.points[b]) / h((s.points[a] + s.points[b]) * 0.5);
   }
   EXPECT_NEAR(sum / static_cast<double>(s.triangles.size()), 1, 0.06);
+}
+
+TEST(Remesh, StaysWithinTheAskedDeviation) {
+  const SurfaceMesh input = torus(60, 24);
+  SurfaceOptions options;
+  options.max_deviation = 0.01;
+  StageReport loose, tight;
+  const auto h = SizeField::uniform(0.4);
+  const SurfaceMesh coarse = remesh_surface(input, {}, h, {}, {}, loose).surface;
+  const Remeshed fine = remesh_surface(input, {}, h, options, {}, tight);
+  EXPECT_GT(hausdorff_distance(coarse, input, 1e-3).lower, 0.02);
+  EXPECT_LT(hausdorff_distance(fine.surface, input, 1e-3).upper, 0.015);
+  EXPECT_LT(fine.sizes.min_size(), 0.4);
 }
 
 TEST(Remesh, StopsWhenAsked) {
