@@ -13,7 +13,7 @@ namespace {
 /// Radius of the ball in mean edges: smaller ones follow the noise of scans, larger ones dilute narrow fillets.
 constexpr double kBallRadius = 3;
 /// A ball answers for the triangles within this part of its radius.
-constexpr double kAnsweredPart = 0.5;
+constexpr double kAnsweredPart = 0.7;
 /// Edge of an equilateral triangle of area 1.
 constexpr double kEdgeOfUnitArea = 1.5196713713031851;
 

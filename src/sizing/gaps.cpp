@@ -12,7 +12,7 @@ namespace {
 /// Cosine of the angle between normals from which sheets face each other.
 constexpr double kFacing = -0.7;
 /// Answers are shared within cells of this part of the reach.
-constexpr double kSharedPart = 0.125;
+constexpr double kSharedPart = 0.25;
 
 /// Which of the six sides of a cube the normal points to: sheets back to back share no answer.
 std::uint64_t side_of_cube(Vec3 n) {

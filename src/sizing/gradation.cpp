@@ -9,18 +9,17 @@
 //
 // (Bounds on single edges do not give that: three edges of slope g at one corner have a gradient of sqrt(3) g.)
 //
-// Three steps. A shortest-path sweep over the corners, along edges and diagonals of leaves, gives values that are too
-// large by up to that factor near single small sizes, and nearly right elsewhere. Then leaves are visited from small to
-// large sizes, and where (*) fails the highest of the four values are cut off at the level at which it holds; a few
-// rounds suffice, since every cut is made by smaller values, which are settled before. What is left (below kTolerance)
-// is removed by shrinking all differences by one factor. (Stopping corners exactly, in the order of their values, while
-// a level rises needs no last step, but each corner has to be asked several times: twenty times slower.)
+// Three steps. A shortest-path sweep over the corners, along the edges of leaves, gives values that are too large by up
+// to that factor. (Diagonals as well bring it nearer, but cost more than they save below.) Then leaves are visited from
+// small to large sizes, and where (*) fails the highest of the four values are cut off at the level at which it holds;
+// a few rounds suffice, since every cut is made by smaller values, which are settled before. What is left (below
+// kTolerance) is removed by shrinking all differences by one factor. (Stopping corners exactly, in the order of their
+// values, while a level rises needs no last step, but each corner has to be asked several times: twenty times slower.)
 
 #include "sizing/gradation.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <queue>
 
 namespace octafront {
@@ -49,7 +48,8 @@ class Grader {
   std::vector<double> run(const RunContext& context) {
     sweep_shortest_paths(context);
     order_leaves();
-    changed_.assign(value_.size(), 0);
+    collect_dependents();
+    dirty_.assign(tree_.size(), 1);
     for (int round = 1; round <= kMostRounds; ++round) {
       context.check();
       if (!cut_steep_leaves(round)) break;
@@ -88,16 +88,15 @@ class Grader {
     }
   }
 
-  /// Calls visit(corner, value) for each corner that `from` shares a leaf with and that its value limits.
+  /// Calls visit(corner, value) for each corner that an edge of a leaf joins to `from` and that its value limits.
   template <class Visit>
   void for_each_limited(std::uint32_t from, Visit&& visit) const {
-    constexpr double kLength[4] = {0, 1, std::numbers::sqrt2, std::numbers::sqrt3};
     for (std::uint32_t i = first_leaf_[from]; i < first_leaf_[from + 1]; ++i) {
       const std::uint32_t leaf = leaves_[i] / 8, k = leaves_[i] % 8;
       const double rise = slope_ / (1u << tree_.leaf(leaf).level());
-      for (std::uint32_t d = 1; d < 8; ++d) {
+      for (std::uint32_t d = 1; d < 8; d *= 2) {
         const std::uint32_t to = corners_.of_leaf[leaf][k ^ d];
-        const double v = value_[from] + rise * kLength[(d & 1) + (d >> 1 & 1) + (d >> 2)];
+        const double v = value_[from] + rise;
         if (v < value_[to]) visit(to, v);
       }
     }
@@ -146,14 +145,27 @@ class Grader {
 
   double bound_of(std::uint32_t leaf) const { return slope_ / (1u << tree_.leaf(leaf).level()); }
 
-  bool changed_since(std::uint32_t leaf, int round) const {
-    for (const std::uint32_t c : corners_.of_leaf[leaf]) {
-      if (changed_[c] >= round) return true;
-      for (const OctreeCorners::Share& s : corners_.shares_of(c)) {
-        if (changed_[s.corner] >= round) return true;
-      }
+  /// dependents_[first_dependent_[c] ... first_dependent_[c + 1]): the hanging corners that the free corner c is part
+  /// of.
+  void collect_dependents() {
+    first_dependent_.assign(corners_.size() + 1, 0);
+    for (const OctreeCorners::Share& s : corners_.shares) ++first_dependent_[s.corner + 1];
+    for (std::size_t c = 0; c < corners_.size(); ++c) first_dependent_[c + 1] += first_dependent_[c];
+    dependents_.resize(corners_.shares.size());
+    std::vector<std::uint32_t> next(first_dependent_.begin(), first_dependent_.end() - 1);
+    for (std::uint32_t c = 0; c < corners_.size(); ++c) {
+      for (const OctreeCorners::Share& s : corners_.shares_of(c)) dependents_[next[s.corner]++] = c;
     }
-    return false;
+  }
+
+  /// Lowers a free corner; the leaves that see it have to be looked at (again).
+  void lower(std::uint32_t corner, double value) {
+    value_[corner] = value;
+    const auto mark = [&](std::uint32_t c) {
+      for (std::uint32_t i = first_leaf_[c]; i < first_leaf_[c + 1]; ++i) dirty_[leaves_[i] / 8] = 1;
+    };
+    mark(corner);
+    for (std::uint32_t i = first_dependent_[corner]; i < first_dependent_[corner + 1]; ++i) mark(dependents_[i]);
   }
 
   static double squared_slope(const std::array<double, 8>& h, int c) {
@@ -172,7 +184,8 @@ class Grader {
   bool cut_steep_leaves(int round) {
     bool any = false;
     for (const std::uint32_t leaf : order_) {
-      if (!changed_since(leaf, round - 1)) continue;
+      if (!dirty_[leaf]) continue;
+      dirty_[leaf] = 0;
       const double bound = bound_of(leaf), tolerated = bound * bound * (1 + kTolerance) * (1 + kTolerance);
       std::array<double, 8> h = values_of(leaf);
       for (int c = 0; c < 8; ++c) {
@@ -215,8 +228,7 @@ class Grader {
       if (h[k] <= level) continue;
       const std::uint32_t corner = corners_.of_leaf[leaf][k];
       if (!corners_.hangs(corner)) {
-        value_[corner] = level;
-        changed_[corner] = round;
+        lower(corner, level);
         continue;
       }
       // The shares above the level give way in proportion to what they are above it.
@@ -225,8 +237,7 @@ class Grader {
       const double part = round > kGentleRounds ? 1.0 : std::min(1.0, (at(corner) - level) / above);
       for (const auto& s : corners_.shares_of(corner)) {
         if (value_[s.corner] <= level) continue;
-        value_[s.corner] -= part * (value_[s.corner] - level);
-        changed_[s.corner] = round;
+        lower(s.corner, value_[s.corner] - part * (value_[s.corner] - level));
       }
     }
   }
@@ -248,9 +259,8 @@ class Grader {
   const OctreeCorners& corners_;
   double slope_;
   std::vector<double> value_;
-  std::vector<int> changed_;  ///< per corner: the round of its last cut
-  std::vector<std::uint8_t> plain_;
-  std::vector<std::uint32_t> first_leaf_, leaves_, order_;
+  std::vector<std::uint8_t> plain_, dirty_;  ///< per leaf
+  std::vector<std::uint32_t> first_leaf_, leaves_, order_, first_dependent_, dependents_;
 };
 
 }  // namespace

@@ -82,18 +82,22 @@ OctreeKey larger_leaf_at(const Octree& tree, Units p) {
   return OctreeKey();
 }
 
-/// Adds the free corners behind `corner` with `weight`; equal ones are merged.
-void add_share(std::vector<OctreeCorners::Share>& sum, std::uint32_t corner, double weight) {
-  for (OctreeCorners::Share& s : sum) {
-    if (s.corner == corner) {
-      s.weight += weight;
+/// Adds a free corner to the list that begins at `first`; equal ones are merged.
+void add_share(std::vector<OctreeCorners::Share>& pool, std::size_t first, std::uint32_t corner, double weight) {
+  for (std::size_t i = first; i < pool.size(); ++i) {
+    if (pool[i].corner == corner) {
+      pool[i].weight += weight;
       return;
     }
   }
-  sum.push_back({corner, weight});
+  pool.push_back({corner, weight});
 }
 
-using ShareLists = std::vector<std::vector<OctreeCorners::Share>>;
+/// The shares of the hanging corners, in the order in which they are found.
+struct ShareLists {
+  std::vector<OctreeCorners::Share> pool;
+  std::vector<std::array<std::uint32_t, 2>> range;  ///< per hanging corner: from where to where in the pool
+};
 
 /// The masters of a hanging corner: both ends along each axis on which it lies halfway.
 void find_shares(const OctreeCorners& corners, const Numbering& numbers, const HangingCorner& h,
@@ -105,19 +109,23 @@ void find_shares(const OctreeCorners& corners, const Numbering& numbers, const H
   for (int a = 0; a < 3; ++a) {
     if (p[a] != lo[a] && p[a] != lo[a] + side) half_axes[n++] = a;
   }
-  std::vector<OctreeCorners::Share> sum;
+  const std::size_t first = lists.pool.size();
   const double weight = n == 1 ? 0.5 : 0.25;
   for (int m = 0; m < 1 << n; ++m) {
     Units q = p;
     for (int k = 0; k < n; ++k) q[half_axes[k]] = lo[half_axes[k]] + (m >> k & 1 ? side : 0);
     const std::uint32_t master = numbers.find(q);
     if (slot[master] == 0) {
-      add_share(sum, master, weight);
-    } else {
-      for (const OctreeCorners::Share s : lists[slot[master]]) add_share(sum, s.corner, weight * s.weight);
+      add_share(lists.pool, first, master, weight);
+      continue;
+    }
+    const auto [begin, end] = lists.range[slot[master] - 1];
+    for (std::uint32_t i = begin; i < end; ++i) {
+      const OctreeCorners::Share s = lists.pool[i];
+      add_share(lists.pool, first, s.corner, weight * s.weight);
     }
   }
-  lists[slot[h.corner]] = std::move(sum);
+  lists.range[slot[h.corner] - 1] = {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(lists.pool.size())};
 }
 
 std::vector<HangingCorner> hanging_corners(const Octree& tree, const OctreeCorners& corners) {
@@ -154,13 +162,15 @@ OctreeCorners octree_corners(const Octree& tree) {
   const std::vector<HangingCorner> hanging = hanging_corners(tree, corners);
   std::vector<std::uint32_t> slot(corners.size(), 0);
   for (std::size_t i = 0; i < hanging.size(); ++i) slot[hanging[i].corner] = static_cast<std::uint32_t>(i + 1);
-  ShareLists lists(hanging.size() + 1);
+  ShareLists lists;
+  lists.range.resize(hanging.size());
   for (const HangingCorner& h : hanging) find_shares(corners, numbers, h, slot, lists);
   corners.first_share.reserve(corners.size() + 1);
   for (std::uint32_t c = 0; c < corners.size(); ++c) {
     corners.first_share.push_back(static_cast<std::uint32_t>(corners.shares.size()));
-    const auto& list = lists[slot[c]];
-    corners.shares.insert(corners.shares.end(), list.begin(), list.end());
+    if (slot[c] == 0) continue;
+    const auto [begin, end] = lists.range[slot[c] - 1];
+    corners.shares.insert(corners.shares.end(), lists.pool.begin() + begin, lists.pool.begin() + end);
   }
   corners.first_share.push_back(static_cast<std::uint32_t>(corners.shares.size()));
   return corners;
