@@ -66,15 +66,16 @@ class BoundaryRecovery {
   };
   void recover_facets();
   void recover_polygon(const Polygon& polygon, std::vector<Polygon>& stack);
-  void recover_triangle(const Polygon& triangle, std::vector<Polygon>& stack);
   bool adopt_face(const Polygon& polygon, std::vector<Polygon>& stack);
-  void cut_polygon(const Polygon& polygon, std::vector<Polygon>& stack);
+  void divide_polygon(const Polygon& polygon, std::vector<Polygon>& stack);
   int turn(std::uint32_t parent, VertexIndex a, VertexIndex b, VertexIndex c) const;
   bool label_face(const Triangle& corners, std::uint32_t parent);
   HalfFace find_face(const Triangle& f);
-  bool facet_by_flips(const Triangle& f, std::uint32_t parent);
-  void crossing_edges(const Triangle& f, std::vector<Edge>& edges, std::vector<TetIndex>& tets);
-  VertexIndex point_on_facet(const Triangle& corners, std::uint32_t parent);
+  bool facet_by_flips(const Polygon& polygon);
+  void crossing_edges(const Polygon& polygon, std::vector<Edge>& edges, std::vector<TetIndex>& tets);
+  void crossing_edge_at_side(const Polygon& polygon, std::size_t side, std::vector<Edge>& edges,
+                             std::vector<TetIndex>& tets);
+  VertexIndex point_on_facet(const Polygon& polygon);
 
   std::uint32_t random() {
     random_ ^= random_ << 13;

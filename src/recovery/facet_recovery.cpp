@@ -32,26 +32,13 @@ HalfFace BoundaryRecovery::find_face(const Triangle& f) {
   return kNone;
 }
 
-void BoundaryRecovery::crossing_edges(const Triangle& f, std::vector<Edge>& edges, std::vector<TetIndex>& tets) {
+// One edge that crosses the polygon, next to one of its sides; then all others, from ring to ring.
+void BoundaryRecovery::crossing_edges(const Polygon& polygon, std::vector<Edge>& edges, std::vector<TetIndex>& tets) {
   edges.clear();
   tets.clear();
-  const TetIndex start = tet_with_edge(points_, mesh_, f[0], f[1]);
-  if (start == kNone) throw std::logic_error("a facet is searched before its edges are there");
-  mesh_.ring(f[0], f[1], start, kNone, tets_, link_);
-  for (std::size_t i = 0; i < tets_.size() && edges.empty(); ++i) {
-    const VertexIndex p = link_[i], q = link_[(i + 1) % link_.size()];
-    if (p == f[2] || q == f[2]) continue;
-    const int before = points_.orient(f[0], f[1], p, f[2]), after = points_.orient(f[0], f[1], f[2], q);
-    if (before == 0 && after > 0) {
-      const Vec3 v = points_.at(p);
-      throw MeshingError(
-          fmt::format("the surface touches itself at vertex {} ({}, {}, {}); repair it there", p, v.x, v.y, v.z));
-    }
-    if (before <= 0 || after <= 0) continue;
-    edges.push_back(ordered(p, q));
-    tets.push_back(tets_[i]);
-  }
-  const FacetHindrance hindrance(points_, f);
+  const std::size_t n = polygon.corners.size();
+  for (std::size_t i = 0; i < n && edges.empty(); ++i) crossing_edge_at_side(polygon, i, edges, tets);
+  const FacetHindrance hindrance(points_, surface_.triangles()[polygon.parent]);
   std::set<Edge> known(edges.begin(), edges.end());
   for (std::size_t k = 0; k < edges.size(); ++k) {
     if (!mesh_.ring(edges[k][0], edges[k][1], tets[k], kNone, tets_, link_)) continue;
@@ -67,38 +54,67 @@ void BoundaryRecovery::crossing_edges(const Triangle& f, std::vector<Edge>& edge
   }
 }
 
+void BoundaryRecovery::crossing_edge_at_side(const Polygon& polygon, std::size_t side, std::vector<Edge>& edges,
+                                             std::vector<TetIndex>& tets) {
+  const std::vector<VertexIndex>& c = polygon.corners;
+  const std::size_t n = c.size();
+  const VertexIndex u = c[side], v = c[(side + 1) % n];
+  std::size_t k = 2;
+  while (k < n && turn(polygon.parent, u, v, c[(side + k) % n]) <= 0) ++k;
+  const VertexIndex w = c[(side + k) % n];
+  const TetIndex start = tet_with_edge(points_, mesh_, u, v);
+  if (start == kNone || k == n) throw std::logic_error("a facet is searched before its edges are there");
+  mesh_.ring(u, v, start, kNone, tets_, link_);
+  for (std::size_t i = 0; i < tets_.size(); ++i) {
+    const VertexIndex p = link_[i], q = link_[(i + 1) % link_.size()];
+    if (p == w || q == w) continue;
+    const int before = points_.orient(u, v, p, w), after = points_.orient(u, v, w, q);
+    if (after <= 0 || before < 0) continue;
+    if (before > 0) {
+      edges.push_back(ordered(p, q));
+      tets.push_back(tets_[i]);
+      return;
+    }
+    if (std::ranges::count(c, p) > 0) continue;  // a face of the mesh lies in the polygon here
+    const Vec3 at = points_.at(p);
+    throw MeshingError(
+        fmt::format("the surface touches itself at vertex {} ({}, {}, {}); repair it there", p, at.x, at.y, at.z));
+  }
+}
+
 // Counts what crosses the whole input triangle: what one part of it gains may not be at the cost of another.
-bool BoundaryRecovery::facet_by_flips(const Triangle& f, std::uint32_t parent) {
-  const FacetHindrance hindrance(points_, surface_.triangles()[parent]);
+bool BoundaryRecovery::facet_by_flips(const Polygon& polygon) {
+  const FacetHindrance hindrance(points_, surface_.triangles()[polygon.parent]);
   std::vector<Edge> edges;
   std::vector<TetIndex> tets;
   for (int idle = 0; idle < kPasses;) {
-    crossing_edges(f, edges, tets);
+    crossing_edges(polygon, edges, tets);
     if (edges.empty()) return true;
     const bool random_pass = idle > 0;
     const std::size_t n = edges.size(), first = random_pass ? random() % n : 0;
     bool better = false;
     for (std::size_t k = 0; k < n && !better; ++k) {
       const auto [p, q] = edges[(first + k) % n];
-      const TetIndex t = tets[(first + k) % n];
+      const TetIndex t = flipper_.find_tet(tets[(first + k) % n], p, q);
+      if (t == kNone) continue;
       const bool deep = random_pass && !strict_;
       better = flipper_.remove_edge_deep(t, p, q, hindrance, -0.5, deep ? 2 : 0);
-      if (deep) break;  // the mesh may have changed
     }
     if (!better) ++idle;
   }
-  crossing_edges(f, edges, tets);
+  crossing_edges(polygon, edges, tets);
   return edges.empty();
 }
 
-VertexIndex BoundaryRecovery::point_on_facet(const Triangle& corners, std::uint32_t parent) {
-  const Triangle& plane = surface_.triangles()[parent];
+VertexIndex BoundaryRecovery::point_on_facet(const Polygon& polygon) {
+  const Triangle& plane = surface_.triangles()[polygon.parent];
   std::vector<Edge> edges;
   std::vector<TetIndex> tets;
-  crossing_edges(corners, edges, tets);
+  crossing_edges(polygon, edges, tets);
   // The most central of the crossings.
   const Vec3 a = points_.at(plane[0]), n = cross(points_.at(plane[1]) - a, points_.at(plane[2]) - a);
-  const Vec3 center = (points_.at(corners[0]) + points_.at(corners[1]) + points_.at(corners[2])) / 3;
+  Vec3 center;
+  for (const VertexIndex v : polygon.corners) center += points_.at(v) / static_cast<double>(polygon.corners.size());
   std::size_t best = 0;
   double best_distance = -1;
   for (std::size_t i = 0; i < edges.size(); ++i) {
@@ -111,7 +127,7 @@ VertexIndex BoundaryRecovery::point_on_facet(const Triangle& corners, std::uint3
   const auto [p, q] = edges[best];
   learn_planes();
   const VertexIndex s = points_.add_crossing(p, q, plane[0], plane[1], plane[2]);
-  points_.add_plane(s, points_.plane_of(parent));
+  points_.add_plane(s, points_.plane_of(polygon.parent));
   carrier_.push_back({});
   ++counts_.facet_points;
   mesh_.ring(p, q, tets[best], kNone, tets_, link_);
@@ -135,31 +151,6 @@ bool BoundaryRecovery::label_face(const Triangle& corners, std::uint32_t parent)
   return true;
 }
 
-void BoundaryRecovery::recover_triangle(const Polygon& triangle, std::vector<Polygon>& stack) {
-  const Triangle corners{triangle.corners[0], triangle.corners[1], triangle.corners[2]};
-  if (label_face(corners, triangle.parent)) return;
-  ++counts_.missing_facets;
-  if (facet_by_flips(corners, triangle.parent)) {
-    ++counts_.facets_by_flips;
-    if (!label_face(corners, triangle.parent))
-      throw std::logic_error("a facet that nothing crosses is not in the mesh");
-    return;
-  }
-  const VertexIndex s = point_on_facet(corners, triangle.parent);
-  std::vector<Edge> spokes;
-  for (const VertexIndex v : corners) {
-    spokes.push_back({v, s});
-    surface_.add_edge(v, s);
-  }
-  recover_edges(spokes);
-  for (int i = 0; i < 3; ++i) {
-    Polygon part{{corners[i]}, triangle.parent};
-    surface_.expand(corners[(i + 1) % 3], s, part.corners);
-    surface_.expand(s, corners[i], part.corners);
-    stack.push_back(std::move(part));
-  }
-}
-
 // A face of the mesh that lies in the polygon along one of its sides becomes a facet.
 bool BoundaryRecovery::adopt_face(const Polygon& polygon, std::vector<Polygon>& stack) {
   const std::vector<VertexIndex>& c = polygon.corners;
@@ -173,6 +164,7 @@ bool BoundaryRecovery::adopt_face(const Polygon& polygon, std::vector<Polygon>& 
       const VertexIndex w = c[at];
       if (std::ranges::count(link_, w) == 0 || turn(polygon.parent, u, v, w) <= 0) continue;
       if (!label_face({u, v, w}, polygon.parent)) continue;
+      if (n == 3) return true;
       surface_.add_edge(v, w);
       surface_.add_edge(w, u);
       Polygon left{{}, polygon.parent}, right{{}, polygon.parent};
@@ -187,46 +179,34 @@ bool BoundaryRecovery::adopt_face(const Polygon& polygon, std::vector<Polygon>& 
   return false;
 }
 
-// Along the shortest diagonal, if possible one that the mesh has.
-void BoundaryRecovery::cut_polygon(const Polygon& polygon, std::vector<Polygon>& stack) {
-  const std::vector<VertexIndex>& c = polygon.corners;
-  const std::size_t n = c.size();
-  const auto off_line = [&](std::size_t i, std::size_t j) {
-    for (std::size_t k = i + 1; k != j; ++k) {
-      if (turn(polygon.parent, c[i], c[k % n], c[j % n]) != 0) return true;
-    }
-    return false;
-  };
-  Edge best{kNone, kNone};
-  std::pair<bool, double> best_cost;
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t j = i + 2; j < n && j - i + 1 < n; ++j) {
-      if (!off_line(i, j) || !off_line(j, i + n)) continue;
-      const bool absent = tet_with_edge(points_, mesh_, c[i], c[j]) == kNone;
-      const std::pair cost(absent, distance(points_.at(c[i]), points_.at(c[j])));
-      if (best[0] != kNone && !(cost < best_cost)) continue;
-      best = {static_cast<VertexIndex>(i), static_cast<VertexIndex>(j)};
-      best_cost = cost;
-    }
+// A point where an edge crosses the polygon, joined with all corners.
+void BoundaryRecovery::divide_polygon(const Polygon& polygon, std::vector<Polygon>& stack) {
+  const VertexIndex s = point_on_facet(polygon);
+  std::vector<Edge> spokes;
+  for (const VertexIndex v : polygon.corners) {
+    spokes.push_back({v, s});
+    surface_.add_edge(v, s);
   }
-  if (best[0] == kNone) throw std::logic_error("a polygon without a diagonal");
-  const auto [i, j] = best;
-  surface_.add_edge(c[i], c[j]);
-  recover_edges({{c[i], c[j]}});
-  Polygon left{{c.begin() + i, c.begin() + j}, polygon.parent}, right{{}, polygon.parent};
-  surface_.expand(c[j], c[i], left.corners);
-  surface_.expand(c[i], c[j], right.corners);
-  for (std::size_t k = j; k < i + n; ++k) right.corners.push_back(c[k % n]);
-  stack.push_back(std::move(left));
-  stack.push_back(std::move(right));
+  recover_edges(spokes);
+  const std::size_t n = polygon.corners.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const VertexIndex u = polygon.corners[i], v = polygon.corners[(i + 1) % n];
+    Polygon part{{u}, polygon.parent};
+    surface_.expand(v, s, part.corners);
+    surface_.expand(s, u, part.corners);
+    stack.push_back(std::move(part));
+  }
 }
 
 void BoundaryRecovery::recover_polygon(const Polygon& polygon, std::vector<Polygon>& stack) {
-  if (polygon.corners.size() == 3) {
-    recover_triangle(polygon, stack);
-  } else if (!adopt_face(polygon, stack)) {
-    cut_polygon(polygon, stack);
+  if (adopt_face(polygon, stack)) return;
+  ++counts_.missing_facets;
+  if (!facet_by_flips(polygon)) {
+    divide_polygon(polygon, stack);
+    return;
   }
+  ++counts_.facets_by_flips;
+  if (!adopt_face(polygon, stack)) throw std::logic_error("a facet that nothing crosses is not in the mesh");
 }
 
 void BoundaryRecovery::recover_facets() {

@@ -79,6 +79,9 @@ class Flipper {
   /// in the end; the hindrance does not rise.
   bool remove_edge_deep(TetIndex t, VertexIndex p, VertexIndex q, const Hindrance& hindrance, double limit, int depth);
 
+  /// A tet with the edge (p, q), `guess` if it has it; kNone if the mesh has no such edge.
+  TetIndex find_tet(TetIndex guess, VertexIndex p, VertexIndex q);
+
   static constexpr std::size_t kMaxRing = 11;
 
  private:
@@ -87,7 +90,6 @@ class Flipper {
   bool remove_with_budget(TetIndex t, VertexIndex p, VertexIndex q, const Hindrance& hindrance, double limit,
                           VertexIndex ear, int depth);
   bool shrink_ring(TetIndex t, VertexIndex p, VertexIndex q, const Hindrance& hindrance, VertexIndex ear, int depth);
-  TetIndex find_tet(TetIndex guess, VertexIndex p, VertexIndex q);
 
   const ExactPoints& points_;
   TetComplex& mesh_;
