@@ -177,25 +177,26 @@ bool is_refused(const Read& read) {
 }
 
 TEST(TruncatedFiles, AreRefusedAtEveryLength) {
-  for (const auto& [name, bytes] : testing::small_surface_files()) {
-    SCOPED_TRACE(name);
+  for (const testing::SmallFile& file : testing::small_surface_files()) {
+    SCOPED_TRACE(file.name);
     // A line less of OBJ is a file like any other; so is a missing digit, or end of line, at the very end of others.
-    const bool is_obj = name.ends_with(".obj");
-    const std::size_t tail = name == "headless.off" || name == "glued.off" ? 3 : 2;
-    for (std::size_t length = 0; length < bytes.size(); ++length) {
+    const bool is_obj = file.name.ends_with(".obj");
+    const std::size_t tail = file.name == "headless.off" || file.name == "glued.off" ? 3 : 2;
+    for (std::size_t length = 0; length < file.bytes.size(); ++length) {
       // The first of two solids is a file in itself.
-      if (name == "text.stl" && length >= bytes.find("endsolid") + 8 && length <= bytes.find("SOLID")) continue;
-      const std::string prefix = bytes.substr(0, length);
-      const bool refused = is_refused([&] { surface_of(prefix, name); });
-      if (is_obj || length + tail >= bytes.size()) continue;
-      EXPECT_TRUE(refused) << length << " of " << bytes.size();
+      if (file.name == "text.stl" && length >= file.bytes.find("endsolid") + 8 && length <= file.bytes.find("SOLID"))
+        continue;
+      const std::string prefix = file.bytes.substr(0, length);
+      const bool refused = is_refused([&] { surface_of(prefix, file.name); });
+      if (is_obj || length + tail >= file.bytes.size()) continue;
+      EXPECT_TRUE(refused) << length << " of " << file.bytes.size();
     }
   }
-  for (const auto& [name, bytes] : testing::small_mesh_files()) {
-    SCOPED_TRACE(name);
-    for (std::size_t length = 0; length + 2 < bytes.size(); ++length) {
-      const std::string prefix = bytes.substr(0, length);
-      EXPECT_TRUE(is_refused([&] { mesh_of(prefix, name); })) << length << " of " << bytes.size();
+  for (const testing::SmallFile& file : testing::small_mesh_files()) {
+    SCOPED_TRACE(file.name);
+    for (std::size_t length = 0; length + 2 < file.bytes.size(); ++length) {
+      const std::string prefix = file.bytes.substr(0, length);
+      EXPECT_TRUE(is_refused([&] { mesh_of(prefix, file.name); })) << length << " of " << file.bytes.size();
     }
   }
 }
@@ -206,10 +207,10 @@ TEST(FlippedBytes, NeverCrash) {
     for (unsigned k = 0; k <= random() % 4; ++k) bytes[random() % bytes.size()] = static_cast<char>(random());
     return bytes;
   };
-  for (const auto& [name, bytes] : testing::small_surface_files())
-    for (int i = 0; i < 2000; ++i) is_refused([&, broken = flip(bytes)] { surface_of(broken, name); });
-  for (const auto& [name, bytes] : testing::small_mesh_files())
-    for (int i = 0; i < 2000; ++i) is_refused([&, broken = flip(bytes)] { mesh_of(broken, name); });
+  for (const testing::SmallFile& file : testing::small_surface_files())
+    for (int i = 0; i < 2000; ++i) is_refused([&, broken = flip(file.bytes)] { surface_of(broken, file.name); });
+  for (const testing::SmallFile& file : testing::small_mesh_files())
+    for (int i = 0; i < 2000; ++i) is_refused([&, broken = flip(file.bytes)] { mesh_of(broken, file.name); });
 }
 
 }  // namespace

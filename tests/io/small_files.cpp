@@ -36,13 +36,11 @@ std::string ply(const std::string& format, bool big_endian) {
        "end_header\n";
   const SurfaceMesh tet = unit_tetrahedron();
   if (format == "ascii") {
-    for (const Vec3& p : tet.points)
-      s += "7 " + std::to_string(int(p.z)) + ' ' + std::to_string(int(p.y)) + ' ' + std::to_string(int(p.x)) +
-           " 2 5 6\n";
-    s += "3\n";
-    for (const auto& [a, b, c] : tet.triangles)
-      s += "0.5 3 " + std::to_string(a) + ' ' + std::to_string(b) + ' ' + std::to_string(c) + '\n';
-    return s;
+    std::ostringstream text;
+    for (const Vec3& p : tet.points) text << "7 " << p.z << ' ' << p.y << ' ' << p.x << " 2 5 6\n";
+    text << "3\n";
+    for (const auto& [a, b, c] : tet.triangles) text << "0.5 3 " << a << ' ' << b << ' ' << c << '\n';
+    return s + text.str();
   }
   for (const Vec3& p : tet.points) {
     append<std::uint8_t>(s, 7, big_endian);
