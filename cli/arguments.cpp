@@ -30,6 +30,9 @@ void declare_sizes(CLI::App& command, Arguments& a) {
   group->add_option("--elements", o.elements, "Number of tetrahedra wanted, met within 15 %")->type_name("N");
   group->add_option("--curvature", o.curvature, "Elements per full turn of a curved surface")->type_name("K");
   group->add_option("--gap", o.gap, "Elements across thin walls and narrow gaps")->type_name("K");
+  group->add_option("--feature-elements", o.feature_elements, "Elements along each feature curve at least")
+      ->type_name("K");
+  group->add_flag("--facets", o.facets, "Sizes follow the areas of the input's facets (the paper's rule)");
   group->add_option("--min-size", o.min_size, "No size falls below this")->type_name("H");
   group->add_option("--max-size", o.max_size, "No size rises above this")->type_name("H");
   group->add_option("--grading", o.gradation, "How fast sizes may change: |h(x) - h(y)| <= G |x - y|")
@@ -48,6 +51,12 @@ void declare_surface(CLI::App& command, Arguments& a) {
   SurfaceOptions& o = a.options.surface;
   auto* group = command.add_option_group("Surface");
   group->add_flag("--keep-surface", o.keep, "The input triangles become the boundary, exactly");
+  group
+      ->add_option(
+          "--max-deviation", o.max_deviation,
+          "Farthest distance from the input, in its units; smaller elements where needed. With automatic sizes: "
+          "0.4 % of the diagonal")
+      ->type_name("D");
   group->add_option("--feature-angle", o.feature_angle, "Edges that bend by more degrees than this are kept")
       ->type_name("DEG")
       ->capture_default_str();
@@ -59,7 +68,7 @@ void declare_surface(CLI::App& command, Arguments& a) {
 }
 
 void declare_volume(CLI::App& command, Arguments& a) {
-  static const std::map<std::string, ImproveOptions::Level> kLevel{{"none", ImproveOptions::Level::kNone},
+  static const std::map<std::string, ImproveOptions::Level> kLevel{{"none", ImproveOptions::Level::kOff},
                                                                    {"paper", ImproveOptions::Level::kPaper},
                                                                    {"fast", ImproveOptions::Level::kFast},
                                                                    {"default", ImproveOptions::Level::kDefault},
@@ -67,7 +76,7 @@ void declare_volume(CLI::App& command, Arguments& a) {
   static const std::map<std::string, VolumeOptions::Ranking> kRanking{
       {"quality", VolumeOptions::Ranking::kQuality}, {"solid-angle", VolumeOptions::Ranking::kSolidAngle}};
   static const std::map<std::string, VolumeOptions::Core> kCore{{"lattice", VolumeOptions::Core::kLattice},
-                                                                {"none", VolumeOptions::Core::kNone}};
+                                                                {"none", VolumeOptions::Core::kOff}};
   auto* group = command.add_option_group("Volume");
   group
       ->add_option(

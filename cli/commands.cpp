@@ -48,13 +48,32 @@ int check_tet_mesh(const Arguments& a) {
   return 0;
 }
 
+// The place that stayed open, as a small file that can be sent to us instead of the whole model.
+[[noreturn]] void fail_with_cavity(const Arguments& a, const OpenCavityError& error) {
+  std::filesystem::path file = a.output;
+  file.replace_extension(".cavity.off");
+  write_surface(file, error.cavity);
+  throw MeshingError(
+      fmt::format("{}\nThe open cavity is in {}. This is a bug of ours: please report it with that file "
+                  "(or the input) and the command line; meanwhile another --size may succeed.",
+                  error.what(), file.string()));
+}
+
+Result generate_or_explain(const Arguments& a, const RunContext& context) {
+  const SurfaceFile file = read_input(a, context);
+  try {
+    return generate(file.surface, a.options, context);
+  } catch (const OpenCavityError& error) {
+    fail_with_cavity(a, error);
+  }
+}
+
 }  // namespace
 
 int run_mesh(const Arguments& a) {
   check_mesh_target(a.output);
   const RunContext context = terminal_context(a.threads, a.quiet);
-  const SurfaceFile file = read_input(a, context);
-  const Result result = generate(file.surface, a.options, context);
+  const Result result = generate_or_explain(a, context);
   context.report("writing", -1);
   write_mesh(a.output, result.mesh);
   write_report(a, result.report);

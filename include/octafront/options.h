@@ -43,7 +43,7 @@ struct VolumeOptions {
   /// Distance of the ideal point from the face, as a multiple of the size there (the paper says 1; a regular
   /// tetrahedron wants 0.816; a little less leaves better elements, see docs/volume-front.md). In [0.3, 1.5].
   double ideal_distance = 0.75;
-  enum class Core { kNone, kLattice };
+  enum class Core { kOff, kLattice };
   /// kLattice: deep inside, the graded body-centred cubic lattice is the mesh, and the front fills the shell around it.
   Core core = Core::kLattice;
   enum class Ranking { kQuality, kSolidAngle };
@@ -52,7 +52,7 @@ struct VolumeOptions {
 
 /// How the mesh is improved after it is complete.
 struct ImproveOptions {
-  enum class Level { kNone, kPaper, kFast, kDefault, kBest };
+  enum class Level { kOff, kPaper, kFast, kDefault, kBest };
   Level level = Level::kDefault;
   double relaxation = 0.7;  ///< phi of the paper's weighted Laplacian, (0, 1]
   int sweeps = 4;           ///< sweeps of the Laplacian, >= 0

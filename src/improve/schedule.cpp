@@ -125,7 +125,7 @@ void run_best(Schedule& run, const ImproveOptions& options) {
 
 void run_schedule(Schedule& run, const ImproveOptions& options) {
   switch (options.level) {
-    case ImproveOptions::Level::kNone:
+    case ImproveOptions::Level::kOff:
       return;
     case ImproveOptions::Level::kPaper:
       return run.laplacian(options.sweeps, options.relaxation, MoveRule::kWorstRises);
@@ -150,7 +150,7 @@ void check_options(const ImproveOptions& options) {
 void improve_mesh(TetMesh& mesh, const SizeField&, const ImproveOptions& options, const RunContext& context,
                   StageReport& report) {
   check_options(options);
-  if (options.level == ImproveOptions::Level::kNone || mesh.tets.empty()) return;
+  if (options.level == ImproveOptions::Level::kOff || mesh.tets.empty()) return;
   EditMesh edit(TetMesh{mesh});
   Schedule run(edit, context, report);
   run_schedule(run, options);

@@ -23,7 +23,7 @@ TetMesh improved(TetMesh mesh, Level level) {
 
 TEST(Improve, NoneChangesNothing) {
   const TetMesh mesh = perturbed(kuhn_cube(4), 0.4, 1);
-  EXPECT_EQ(improved(mesh, Level::kNone), mesh);
+  EXPECT_EQ(improved(mesh, Level::kOff), mesh);
 }
 
 TEST(Improve, EveryLevelMakesBetterElementsOnTheSameBoundary) {

@@ -45,7 +45,7 @@ TEST(Options, RefusesValuesOutOfRange) {
   expect_refused(o, "feature-angle");
   o = {};
   o.size.elements = 0;
-  expect_refused(o, "elements");
+  expect_refused(o, "elements must be at least 1");
 }
 
 }  // namespace
