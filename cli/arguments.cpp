@@ -51,12 +51,6 @@ void declare_surface(CLI::App& command, Arguments& a) {
   SurfaceOptions& o = a.options.surface;
   auto* group = command.add_option_group("Surface");
   group->add_flag("--keep-surface", o.keep, "The input triangles become the boundary, exactly");
-  group
-      ->add_option(
-          "--max-deviation", o.max_deviation,
-          "Farthest distance from the input, in its units; smaller elements where needed. With automatic sizes: "
-          "0.4 % of the diagonal")
-      ->type_name("D");
   group->add_option("--feature-angle", o.feature_angle, "Edges that bend by more degrees than this are kept")
       ->type_name("DEG")
       ->capture_default_str();
