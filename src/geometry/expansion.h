@@ -5,6 +5,9 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <type_traits>
+#include <vector>
 
 namespace octafront::exact {
 
@@ -29,20 +32,24 @@ inline TwoDoubles two_product(double a, double b) {
   return {p, x.lo * y.lo - (((p - x.hi * y.hi) - x.lo * y.hi) - x.hi * y.lo)};
 }
 
+// Long expansions, which only insphere has, live on the heap: worker threads may have small stacks.
+inline constexpr int kLongestOnStack = 256;
+
 template <int N>
 struct Expansion {
-  std::array<double, N> term;
+  static constexpr bool kOnStack = N <= kLongestOnStack;
+  std::conditional_t<kOnStack, std::array<double, N>, std::vector<double>> term;
   int size = 0;
 
   void push(double t) {
-    if (t != 0) term[size++] = t;
+    if (t == 0) return;
+    if constexpr (kOnStack)
+      term[size] = t;
+    else
+      term.push_back(t);
+    ++size;
   }
   int sign() const { return size == 0 ? 0 : (term[size - 1] > 0) - (term[size - 1] < 0); }
-  double estimate() const {
-    double sum = 0;
-    for (int i = 0; i < size; ++i) sum += term[i];
-    return sum;
-  }
 };
 
 inline Expansion<2> difference(double a, double b) {
@@ -50,20 +57,6 @@ inline Expansion<2> difference(double a, double b) {
   const TwoDoubles s = two_sum(a, -b);
   r.push(s.lo);
   r.push(s.hi);
-  return r;
-}
-
-/// e + b, b one double.
-template <int N>
-Expansion<N + 1> grow(const Expansion<N>& e, double b) {
-  Expansion<N + 1> r;
-  double q = b;
-  for (int i = 0; i < e.size; ++i) {
-    const TwoDoubles s = two_sum(q, e.term[i]);
-    q = s.hi;
-    r.push(s.lo);
-  }
-  r.push(q);
   return r;
 }
 
@@ -119,14 +112,12 @@ Expansion<2 * N> scale(const Expansion<N>& e, double b) {
 
 template <int N, int M>
 Expansion<2 * N * M> operator*(const Expansion<N>& a, const Expansion<M>& b) {
-  Expansion<2 * N * M> r, sum;
+  Expansion<2 * N * M> r;
   for (int j = 0; j < b.size; ++j) {
-    const Expansion<2 * N> s = scale(a, b.term[j]);
     // r + s has at most 2N(j + 1) terms, which fit.
-    const auto wide = r + s;
-    sum.size = wide.size;
-    for (int i = 0; i < wide.size; ++i) sum.term[i] = wide.term[i];
-    r = sum;
+    const auto wide = r + scale(a, b.term[j]);
+    r = {};
+    for (int i = 0; i < wide.size; ++i) r.push(wide.term[i]);
   }
   return r;
 }

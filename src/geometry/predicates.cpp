@@ -4,11 +4,11 @@
 #include "geometry/expansion.h"
 #include "geometry/wide_integer.h"
 
-// What the filters leave open goes through up to three stages, each exact when it answers:
-//   1. coordinates on a lattice of 41 bits about one of the points: integers. Most degenerate cases of practice end
-//   here.
+// What the filters leave open goes through up to four stages, each exact when it answers:
+//   1. differences on a lattice of 41 bits: 128-bit integers. Most degenerate cases of practice end here.
 //   2. double-double arithmetic with an error bound: near-degenerate cases of full-precision coordinates.
-//   3. expansions of any length: exactly degenerate, full-precision coordinates. Rare.
+//   3. coordinates on a lattice of 61 bits: wider integers. Exact degeneracies such as corners of a box.
+//   4. expansions of any length: coordinates of very different magnitude. Rare.
 
 namespace octafront {
 
@@ -18,6 +18,10 @@ using exact::difference;
 using exact::DoubleDouble;
 using exact::exact_difference;
 using exact::Int128;
+using exact::WideInteger;
+
+// Determinants of three differences below 2^41 stay within 127 bits, insphere of differences below 2^62 within 6 limbs.
+constexpr int kDifferenceBits = 41, kCoordinateBits = 61;
 
 // a * d - b * c.
 template <class T>
@@ -44,7 +48,21 @@ std::optional<std::array<std::int64_t, N>> lattice_differences(const std::array<
     if (d[i].lo != 0) return std::nullopt;
     rounded[i] = d[i].hi;
   }
-  return exact::on_lattice(rounded);
+  return exact::on_lattice<kDifferenceBits>(rounded);
+}
+
+// Rows of coordinate differences p - o as integers of at most kCoordinateBits + 1 bits.
+template <std::size_t N>
+std::optional<std::array<std::int64_t, 3 * N>> coordinate_lattice(const std::array<Vec3, N>& points, Vec3 o) {
+  std::array<double, 3 * N + 3> coordinates;
+  for (std::size_t i = 0; i <= N; ++i)
+    for (int axis = 0; axis < 3; ++axis)
+      coordinates[3 * i + static_cast<std::size_t>(axis)] = i < N ? points[i][axis] : o[axis];
+  const auto lattice = exact::on_lattice<kCoordinateBits>(coordinates);
+  if (!lattice) return std::nullopt;
+  std::array<std::int64_t, 3 * N> rows;
+  for (std::size_t i = 0; i < 3 * N; ++i) rows[i] = (*lattice)[i] - (*lattice)[3 * N + i % 3];
+  return rows;
 }
 
 template <class Product, class T>
@@ -59,6 +77,22 @@ Product determinant(const std::array<T, 9>& m) {
 double determinant_permanent(const std::array<DoubleDouble, 9>& d) {
   const auto m = [&](int i) { return std::abs(d[i].hi); };
   return m(0) * (m(4) * m(8) + m(5) * m(7)) + m(1) * (m(5) * m(6) + m(3) * m(8)) + m(2) * (m(3) * m(7) + m(4) * m(6));
+}
+
+// x * a + y * b + z * c.
+WideInteger<4> wide_sum(Int128 x, Int128 a, Int128 y, Int128 b, Int128 z, Int128 c) {
+  WideInteger<4> sum;
+  sum.add_product(WideInteger<2>(x), WideInteger<2>(a));
+  sum.add_product(WideInteger<2>(y), WideInteger<2>(b));
+  sum.add_product(WideInteger<2>(z), WideInteger<2>(c));
+  return sum;
+}
+
+int orient3d_wide(const std::array<std::int64_t, 9>& m) {
+  const auto product = [&](int i, int j) { return static_cast<Int128>(m[i]) * m[j]; };
+  return wide_sum(m[0], product(4, 8) - product(5, 7), m[1], product(5, 6) - product(3, 8), m[2],
+                  product(3, 7) - product(4, 6))
+      .sign();
 }
 
 int orient3d_expansion(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
@@ -85,13 +119,26 @@ auto insphere_determinant(const std::array<T, 12>& m, Combine&& combine) {
 int insphere_lattice(const std::array<std::int64_t, 12>& m) {
   return insphere_determinant<Int128>(
       m, [](Int128 bcd, Int128 a, Int128 cda, Int128 b, Int128 dab, Int128 c, Int128 abc, Int128 d) {
-        exact::Int256 sum;
-        sum.add_product(bcd, a);
-        sum.add_product(-cda, b);
-        sum.add_product(dab, c);
-        sum.add_product(-abc, d);
+        WideInteger<4> sum = wide_sum(bcd, a, -cda, b, dab, c);
+        sum.add_product(WideInteger<2>(-abc), WideInteger<2>(d));
         return sum.sign();
       });
+}
+
+int insphere_wide(const std::array<std::int64_t, 12>& m) {
+  const auto product = [&](int i, int j) { return static_cast<Int128>(m[i]) * m[j]; };
+  const auto flat = [&](int i, int j) { return product(3 * i, 3 * j + 1) - product(3 * j, 3 * i + 1); };
+  const auto z = [&](int i) { return static_cast<Int128>(m[3 * i + 2]); };
+  const auto lift = [&](int i) {
+    return WideInteger<2>(product(3 * i, 3 * i) + product(3 * i + 1, 3 * i + 1) + product(3 * i + 2, 3 * i + 2));
+  };
+  const Int128 ab = flat(0, 1), bc = flat(1, 2), cd = flat(2, 3), da = flat(3, 0), ac = flat(0, 2), bd = flat(1, 3);
+  WideInteger<6> sum;
+  sum.add_product(wide_sum(z(1), cd, -z(2), bd, z(3), bc), lift(0));
+  sum.add_product(wide_sum(-z(2), da, -z(3), ac, -z(0), cd), lift(1));
+  sum.add_product(wide_sum(z(3), ab, z(0), bd, z(1), da), lift(2));
+  sum.add_product(wide_sum(-z(0), bc, z(1), ac, -z(2), ab), lift(3));
+  return sum.sign();
 }
 
 DoubleDouble insphere_double_double(const std::array<DoubleDouble, 12>& m) {
@@ -144,6 +191,7 @@ int orient3d_exact(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
   if (const auto lattice = lattice_differences(m)) return exact::sign(determinant<Int128>(*lattice));
   const DoubleDouble det = determinant<DoubleDouble>(m);
   if (std::abs(det.hi) > kOrient3dBound * determinant_permanent(m)) return det.sign();
+  if (const auto lattice = coordinate_lattice(std::array{b, c, d}, a)) return orient3d_wide(*lattice);
   return orient3d_expansion(a, b, c, d);
 }
 
@@ -164,6 +212,7 @@ int insphere_exact(Vec3 a, Vec3 b, Vec3 c, Vec3 d, Vec3 e) {
   if (const auto lattice = lattice_differences(m)) return insphere_lattice(*lattice);
   const DoubleDouble det = insphere_double_double(m);
   if (std::abs(det.hi) > kInsphereBound * insphere_permanent(m)) return det.sign();
+  if (const auto lattice = coordinate_lattice(std::array{a, b, c, d}, e)) return insphere_wide(*lattice);
   return insphere_expansion(a, b, c, d, e);
 }
 

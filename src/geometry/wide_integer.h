@@ -1,7 +1,7 @@
 #pragma once
 
-// Integers of 128 and 256 bits, for the many inputs whose coordinates lie on a lattice: integers, single-precision
-// floats, multiples of a unit. Their predicates are exact in a few dozen integer operations.
+// Integers of fixed width, for the many inputs whose coordinates lie on a lattice: integers, single-precision floats,
+// multiples of a unit. Their predicates are exact in a few dozen integer operations.
 
 #include <array>
 #include <bit>
@@ -19,50 +19,75 @@ constexpr int sign(Int128 x) {
   return (x > 0) - (x < 0);
 }
 
-/// A sum of products of 128-bit integers, exact while it stays within 255 bits.
-class Int256 {
+/// A two's complement integer of N 64-bit limbs, lowest first. Exact while it stays within 64 N - 1 bits.
+template <std::size_t N>
+class WideInteger {
  public:
-  void add_product(Int128 a, Int128 b) {
-    const bool negative = (a < 0) != (b < 0);
-    const UInt128 x = a < 0 ? -static_cast<UInt128>(a) : static_cast<UInt128>(a);
-    const UInt128 y = b < 0 ? -static_cast<UInt128>(b) : static_cast<UInt128>(b);
-    const std::uint64_t x0 = static_cast<std::uint64_t>(x), x1 = static_cast<std::uint64_t>(x >> 64);
-    const std::uint64_t y0 = static_cast<std::uint64_t>(y), y1 = static_cast<std::uint64_t>(y >> 64);
-    const UInt128 p00 = static_cast<UInt128>(x0) * y0, p01 = static_cast<UInt128>(x0) * y1;
-    const UInt128 p10 = static_cast<UInt128>(x1) * y0, p11 = static_cast<UInt128>(x1) * y1;
-    const UInt128 middle = (p00 >> 64) + static_cast<std::uint64_t>(p01) + static_cast<std::uint64_t>(p10);
-    const UInt128 low = (middle << 64) | static_cast<std::uint64_t>(p00);
-    const UInt128 high = p11 + (p01 >> 64) + (p10 >> 64) + (middle >> 64);
-    if (negative) {
-      high_ -= high + (low_ < low);
-      low_ -= low;
-    } else {
-      low_ += low;
-      high_ += high + (low_ < low);
+  WideInteger() = default;
+  WideInteger(Int128 x) {
+    limb_[0] = static_cast<std::uint64_t>(x);
+    for (std::size_t i = 1; i < N; ++i) limb_[i] = static_cast<std::uint64_t>(i == 1 ? x >> 64 : x >> 127);
+  }
+
+  /// Adds a * b.
+  template <std::size_t A, std::size_t B>
+  void add_product(const WideInteger<A>& a, const WideInteger<B>& b) {
+    static_assert(A + B <= N);
+    const auto x = a.magnitude();
+    const auto y = b.magnitude();
+    std::array<std::uint64_t, N> product{};
+    for (std::size_t i = 0; i < A; ++i) {
+      UInt128 carry = 0;
+      for (std::size_t j = 0; j < B; ++j) {
+        carry += static_cast<UInt128>(x[i]) * y[j] + product[i + j];
+        product[i + j] = static_cast<std::uint64_t>(carry);
+        carry >>= 64;
+      }
+      product[i + B] = static_cast<std::uint64_t>(carry);
+    }
+    // Subtraction adds the complement and one.
+    const std::uint64_t flip = a.is_negative() != b.is_negative() ? ~std::uint64_t{0} : 0;
+    UInt128 carry = flip & 1;
+    for (std::size_t i = 0; i < N; ++i) {
+      carry += static_cast<UInt128>(limb_[i]) + (product[i] ^ flip);
+      limb_[i] = static_cast<std::uint64_t>(carry);
+      carry >>= 64;
     }
   }
 
   int sign() const {
-    if (static_cast<Int128>(high_) < 0) return -1;
-    return (high_ | low_) != 0;
+    if (is_negative()) return -1;
+    std::uint64_t any = 0;
+    for (const std::uint64_t l : limb_) any |= l;
+    return any != 0;
+  }
+  bool is_negative() const { return limb_[N - 1] >> 63 != 0; }
+  std::array<std::uint64_t, N> magnitude() const {
+    std::array<std::uint64_t, N> m{};
+    const std::uint64_t flip = is_negative() ? ~std::uint64_t{0} : 0;
+    UInt128 carry = flip & 1;
+    for (std::size_t i = 0; i < N; ++i) {
+      carry += limb_[i] ^ flip;
+      m[i] = static_cast<std::uint64_t>(carry);
+      carry >>= 64;
+    }
+    return m;
   }
 
  private:
-  UInt128 low_ = 0, high_ = 0;
+  std::array<std::uint64_t, N> limb_{};
 };
 
-/// The doubles times one power of two, as integers below 2^kLatticeBits in magnitude; nullopt if they are not all on
-/// such a lattice. The sign of a polynomial that is homogeneous in them is kept.
-inline constexpr int kLatticeBits = 41;
-
-template <std::size_t N>
+/// The doubles times one power of two, as integers below 2^kBits in magnitude; nullopt if they are not all on such a
+/// lattice. The sign of a polynomial that is homogeneous in them is kept.
+template <int kBits, std::size_t N>
 std::optional<std::array<std::int64_t, N>> on_lattice(const std::array<double, N>& values) {
+  static_assert(kBits <= 62);
   double largest = 0;
   for (const double v : values) largest = std::fmax(largest, std::abs(v));
-  constexpr int kBias = 1023;
+  constexpr int kBias = 1023, kInfinite = 2 * kBias + 1;
   const int exponent = static_cast<int>(std::bit_cast<std::uint64_t>(largest) >> 52);  // biased
-  const int scale_exponent = kLatticeBits - 1 - (exponent - kBias) + kBias;
-  constexpr int kInfinite = 2 * kBias + 1;
+  const int scale_exponent = kBits - 1 - (exponent - kBias) + kBias;
   if (exponent == 0 || exponent == kInfinite || scale_exponent <= 0 || scale_exponent >= kInfinite) return std::nullopt;
   const double scale = std::bit_cast<double>(static_cast<std::uint64_t>(scale_exponent) << 52);
   std::array<std::int64_t, N> integers;

@@ -193,12 +193,13 @@ TEST(Predicates, AreExactAtTheEndsOfTheirRange) {
   }
 }
 
-RC_GTEST_PROP(Int256, SumsProductsExactly, ()) {
+RC_GTEST_PROP(WideInteger, SumsProductsExactly, ()) {
   std::mt19937_64 random(*rc::gen::arbitrary<std::uint64_t>());
-  // Signed integers of up to 120 bits as high * 2^60 + low, so that doubles can carry them to the oracle.
+  // Signed integers of up to 112 bits as high * 2^60 + low, so that doubles can carry them to the oracle.
   const auto half = [&] { return static_cast<std::int64_t>(random() >> 12) - (std::int64_t{1} << 51); };
-  exact::Int256 sum;
-  BigInteger expected;
+  exact::WideInteger<4> sum;
+  exact::WideInteger<6> cubes;
+  BigInteger expected, expected_cubes;
   for (int i = 0; i < 6; ++i) {
     std::array<std::int64_t, 4> h{half(), half(), half(), half()};
     if (i % 2 == 1) h[0] = h[2] = 0;
@@ -206,11 +207,33 @@ RC_GTEST_PROP(Int256, SumsProductsExactly, ()) {
     const auto big = [&](int k) {
       return BigInteger(static_cast<double>(h[k]), 60) + BigInteger(static_cast<double>(h[k + 1]), 0);
     };
-    sum.add_product(wide(0), wide(2));
+    sum.add_product(exact::WideInteger<2>(wide(0)), exact::WideInteger<2>(wide(2)));
     expected = expected + big(0) * big(2);
     RC_ASSERT(sum.sign() == expected.sign());
+    cubes.add_product(sum, exact::WideInteger<2>(wide(0)));
+    expected_cubes = expected_cubes + expected * big(0);
+    RC_ASSERT(cubes.sign() == expected_cubes.sign());
   }
-  RC_ASSERT(exact::Int256{}.sign() == 0);
+  exact::WideInteger<4> zero;
+  zero.add_product(exact::WideInteger<2>(-3), exact::WideInteger<2>(7));
+  zero.add_product(exact::WideInteger<2>(21), exact::WideInteger<2>(1));
+  RC_ASSERT(zero.sign() == 0);
+}
+
+// Corners of a box are cospherical and in fours coplanar, whatever doubles its sides have.
+RC_GTEST_PROP(Predicates, KnowTheCornersOfAnyBox, ()) {
+  std::mt19937_64 random(*rc::gen::resize(100, rc::gen::arbitrary<std::uint64_t>()));
+  std::uniform_real_distribution<double> real(-1, 1);
+  const double thin = std::ldexp(1.0, -*rc::gen::resize(100, rc::gen::inRange(0, 60)));
+  const Vec3 lo{real(random), real(random), real(random)}, hi{real(random) * thin, real(random), real(random)};
+  const auto corner = [&](int i) { return Vec3{i & 1 ? hi.x : lo.x, i & 2 ? hi.y : lo.y, i & 4 ? hi.z : lo.z}; };
+  for (const auto& [a, b, c, d] : {std::array{0, 1, 2, 3}, {0, 1, 6, 7}, {1, 3, 4, 6}, {0, 3, 4, 7}})
+    RC_ASSERT(orient3d(corner(a), corner(b), corner(c), corner(d)) ==
+              oracle_orient3d(corner(a), corner(b), corner(c), corner(d)));
+  for (int e = 0; e < 8; ++e) {
+    RC_ASSERT(insphere(corner(0), corner(1), corner(2), corner(4), corner(e)) == 0);
+    RC_ASSERT(insphere(corner(1), corner(7), corner(4), corner(2), corner(e)) == 0);
+  }
 }
 
 TEST(NamedSurfaces, FaceOutward) {
