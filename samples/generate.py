@@ -8,74 +8,10 @@ can be counted. Lengths are in millimetres.
 """
 import math
 import os
-import struct
 import sys
 
-
-class Surface:
-    """Points, triangles (counter-clockwise from outside) and a patch name for each triangle."""
-
-    def __init__(self):
-        self.points, self.triangles, self.patches = [], [], []
-
-    def add_point(self, p):
-        self.points.append(tuple(p))
-        return len(self.points) - 1
-
-    def add_triangle(self, a, b, c, patch="surface"):
-        self.triangles.append((a, b, c))
-        self.patches.append(patch)
-
-    def add_quad(self, a, b, c, d, patch="surface"):
-        """Divided along the shorter diagonal."""
-        p = self.points
-        if math.dist(p[a], p[c]) <= math.dist(p[b], p[d]):
-            self.add_triangle(a, b, c, patch)
-            self.add_triangle(a, c, d, patch)
-        else:
-            self.add_triangle(a, b, d, patch)
-            self.add_triangle(b, c, d, patch)
-
-    def append(self, other, inside_out=False):
-        shift = len(self.points)
-        self.points += other.points
-        for (a, b, c), patch in zip(other.triangles, other.patches):
-            if inside_out:
-                b, c = c, b
-            self.add_triangle(a + shift, b + shift, c + shift, patch)
-
-
-def volume(s):
-    total = 0
-    for a, b, c in s.triangles:
-        (ax, ay, az), (bx, by, bz), (cx, cy, cz) = s.points[a], s.points[b], s.points[c]
-        total += ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx)
-    return total / 6
-
-
-def check(s):
-    """Closed, 2-manifold at edges and vertices, outward, every point used."""
-    edges = set()
-    around = {}
-    for t in s.triangles:
-        for k in range(3):
-            a, b, c = t[k], t[(k + 1) % 3], t[(k + 2) % 3]
-            assert a != b and (a, b) not in edges, "an edge is used twice in one direction"
-            edges.add((a, b))
-            around.setdefault(a, {})[b] = c
-    assert all((b, a) in edges for a, b in edges), "the surface is open"
-    for fan in around.values():
-        start = at = next(iter(fan))
-        length = 0
-        while True:
-            at = fan[at]
-            length += 1
-            if at == start:
-                break
-        assert length == len(fan), "the triangles at a vertex form more than one fan"
-    assert len(around) == len(s.points), "a point is unused"
-    assert len(set(s.points)) == len(s.points), "two points are equal"
-    assert volume(s) > 0, "the surface is inside out"
+from gyroid import GyroidBlock
+from surface import Surface, check, cross, dot, sub, unit, volume, write_obj, write_off, write_ply, write_stl
 
 
 # ---------------------------------------------------------------------------------------------------- flat patterns
@@ -155,7 +91,7 @@ def thickened(pattern, place, layers, wall_patch):
 def bracket():
     """A plate of 5 mm bent by a right angle with an inner radius of 6 mm; two bolt holes in each leg."""
     block, cells, thickness, inner = 20.0, 6, 5.0, 6.0
-    long_leg, short_leg, width = 3 * block, 2 * block, 2 * block
+    width = 2 * block
     bend_steps = 7
     pattern = Pattern()
     steps = [block * k / cells for k in range(cells + 1)]
@@ -227,24 +163,7 @@ def gear():
     return thickened(pattern, lambda x, y, layer: (x, y, height * layer / layers), layers, wall_patch)
 
 
-# ------------------------------------------------------------------------------------------------------- torus knot
-
-
-def sub(a, b):
-    return tuple(x - y for x, y in zip(a, b))
-
-
-def dot(a, b):
-    return sum(x * y for x, y in zip(a, b))
-
-
-def cross(a, b):
-    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
-
-
-def unit(a):
-    length = math.sqrt(dot(a, a))
-    return tuple(x / length for x in a)
+# ---------------------------------------------------------------------------------------------------- curved shapes
 
 
 def torus_knot():
@@ -281,174 +200,11 @@ def torus_knot():
     return s
 
 
-# ----------------------------------------------------------------------------------------------------------- gyroid
-
-
-class GyroidBlock:
-    """The sheet |gyroid| <= level, cut to a cube: marching tetrahedra inside, clipped triangles on the sides, then
-    smoothing that keeps every vertex on its surface, side or edge."""
-
-    def __init__(self, side=30.0, periods=1.0, cells=16, level=0.6, phase=math.pi / 4):
-        self.side, self.cells, self.level = side, cells, level
-        self.wave = 2 * math.pi * periods / side
-        self.step, self.phase = side / cells, phase
-        self.surface = Surface()
-        self.vertex_of, self.value_of = {}, {}
-        self.on_sheet = []
-
-    def value(self, p):
-        """Negative inside."""
-        x, y, z = (self.wave * c + self.phase for c in p)
-        g = math.sin(x) * math.cos(y) + math.sin(y) * math.cos(z) + math.sin(z) * math.cos(x)
-        return abs(g) - self.level
-
-    def gradient(self, p):
-        x, y, z = (self.wave * c + self.phase for c in p)
-        g = math.sin(x) * math.cos(y) + math.sin(y) * math.cos(z) + math.sin(z) * math.cos(x)
-        sign = self.wave if g > 0 else -self.wave
-        return (sign * (math.cos(x) * math.cos(y) - math.sin(z) * math.sin(x)),
-                sign * (math.cos(y) * math.cos(z) - math.sin(x) * math.sin(y)),
-                sign * (math.cos(z) * math.cos(x) - math.sin(y) * math.sin(z)))
-
-    def place(self, node):
-        return tuple(self.step * c for c in node)
-
-    def node_value(self, node):
-        if node not in self.value_of:
-            self.value_of[node] = self.value(self.place(node))
-        return self.value_of[node]
-
-    def inner_vertex(self, node):
-        if node not in self.vertex_of:
-            self.vertex_of[node] = self.surface.add_point(self.place(node))
-            self.on_sheet.append(False)
-        return self.vertex_of[node]
-
-    def cut_vertex(self, a, b):
-        key = (min(a, b), max(a, b))
-        if key not in self.vertex_of:
-            p, q = self.place(key[0]), self.place(key[1])
-            f, g = self.node_value(key[0]), self.node_value(key[1])
-            t = min(0.85, max(0.15, f / (f - g)))  # not too near to the nodes: no needles
-            self.vertex_of[key] = self.surface.add_point(tuple(x + t * (y - x) for x, y in zip(p, q)))
-            self.on_sheet.append(True)
-        return self.vertex_of[key]
-
-    def cut_tetrahedron(self, nodes):
-        """nodes: a positive tetrahedron."""
-        inside = [self.node_value(n) < 0 for n in nodes]
-        count = sum(inside)
-        if count in (0, 4):
-            return
-        cut = self.cut_vertex
-        if count in (1, 3):
-            apex = inside.index(count == 1)
-            # The other corners, counter-clockwise seen from the apex's far side.
-            b, c, d = ([1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1])[apex]
-            t = [cut(nodes[apex], nodes[k]) for k in (b, c, d)]
-            if count == 3:
-                t.reverse()
-            self.surface.add_triangle(*t, "sheet")
-        else:
-            i, j = (k for k in range(4) if inside[k])
-            k, m = {(0, 1): (2, 3), (0, 2): (3, 1), (0, 3): (1, 2), (1, 2): (0, 3), (1, 3): (2, 0), (2, 3): (0, 1)}[i, j]
-            n = nodes
-            self.surface.add_quad(cut(n[i], n[m]), cut(n[j], n[m]), cut(n[j], n[k]), cut(n[i], n[k]), "sheet")
-
-    def cut_side(self, nodes, patch):
-        """nodes: a triangle of the cube's side, counter-clockwise from outside; keeps the part inside the sheet."""
-        polygon = []
-        for k in range(3):
-            a, b = nodes[k], nodes[(k + 1) % 3]
-            a_in, b_in = self.node_value(a) < 0, self.node_value(b) < 0
-            if a_in:
-                polygon.append(self.inner_vertex(a))
-            if a_in != b_in:
-                polygon.append(self.cut_vertex(a, b))
-        if len(polygon) == 3:
-            self.surface.add_triangle(*polygon, patch)
-        elif len(polygon) == 4:
-            self.surface.add_quad(*polygon, patch)
-
-    def march(self):
-        n = self.cells
-        orders = {(0, 1, 2): 1, (1, 2, 0): 1, (2, 0, 1): 1, (0, 2, 1): -1, (1, 0, 2): -1, (2, 1, 0): -1}
-        for i in range(n):
-            for j in range(n):
-                for k in range(n):
-                    for order, sign in orders.items():
-                        g = [i, j, k]
-                        nodes = [tuple(g)]
-                        for axis in order:
-                            g[axis] += 1
-                            nodes.append(tuple(g))
-                        if sign < 0:
-                            nodes[2], nodes[3] = nodes[3], nodes[2]
-                        self.cut_tetrahedron(nodes)
-                        self.cut_sides_of(nodes)
-
-    def cut_sides_of(self, nodes):
-        for b, c, d in ((1, 2, 3), (0, 3, 2), (0, 1, 3), (0, 2, 1)):
-            face = (nodes[b], nodes[c], nodes[d])
-            for axis in range(3):
-                for end, name in ((0, "low"), (self.cells, "high")):
-                    if all(node[axis] == end for node in face):
-                        self.cut_side(face, f"{name} {'xyz'[axis]}")
-
-    def smooth(self, sweeps=15):
-        s = self.surface
-        star = [[] for _ in s.points]
-        for t in s.triangles:
-            for k in range(3):
-                star[t[k]].append((t[(k + 1) % 3], t[(k + 2) % 3]))
-        fixed = [[axis for axis in range(3) if min(p[axis], self.side - p[axis]) < 1e-9] for p in s.points]
-        for _ in range(sweeps):
-            for v, p in enumerate(s.points):
-                # A vertex of a side, or an edge of the block, only looks at those of the same side or edge; a vertex where
-                # the sheet meets a side only at those on that curve.
-                like = [s.points[w] for w, _ in star[v]
-                        if set(fixed[v]) <= set(fixed[w]) and (self.on_sheet[w] or not self.on_sheet[v])]
-                if len(fixed[v]) == 3 or len(like) < 2 or (len(fixed[v]) == 2 and self.on_sheet[v]):
-                    goal = p
-                else:
-                    goal = tuple(x + 0.5 * (sum(q[a] for q in like) / len(like) - x) for a, x in enumerate(p))
-                goal = self.back(goal, p, fixed[v]) if self.on_sheet[v] else \
-                    tuple(p[a] if a in fixed[v] else goal[a] for a in range(3))
-                if self.keeps_shape(star[v], p, goal):
-                    s.points[v] = goal
-
-    def keeps_shape(self, star, old, new):
-        """No triangle turns by more than 60 degrees, or loses more than two thirds of its area."""
-        for b, c in star:
-            q, r = self.surface.points[b], self.surface.points[c]
-            m, n = cross(sub(q, old), sub(r, old)), cross(sub(q, new), sub(r, new))
-            if dot(m, n) < 0.5 * math.sqrt(dot(m, m) * dot(n, n)) or dot(n, n) < 0.1 * dot(m, m):
-                return False
-        return True
-
-    def back(self, goal, old, fixed):
-        """Newton's way to the sheet's surface within the side or edge of the vertex."""
-        p = [old[a] if a in fixed else goal[a] for a in range(3)]
-        for _ in range(8):
-            g = [0 if a in fixed else x for a, x in enumerate(self.gradient(p))]
-            square = dot(g, g)
-            if square < 1e-12:
-                return old
-            f = self.value(p)
-            p = [x - f / square * y for x, y in zip(p, g)]
-        if math.dist(p, old) > 0.5 * self.step or any(x < 0 or x > self.side for x in p):
-            return old
-        return tuple(p)
-
-
 def gyroid():
     block = GyroidBlock()
     block.march()
     block.smooth()
     return block.surface
-
-
-# ------------------------------------------------------------------------------------------------------------ shell
 
 
 def rounded_box(half, radius, flat_cells, arc_cells):
@@ -523,63 +279,6 @@ def shell():
     s = rounded_box((30, 20, 15), 8, 8, 4)
     s.append(ellipsoid((20, 12, 9), 3), inside_out=True)
     return s
-
-
-# ------------------------------------------------------------------------------------------------------------ files
-
-
-def number(x):
-    """Five decimals are a hundredth of a micrometre."""
-    text = f"{x:.5f}".rstrip("0").rstrip(".")
-    return "0" if text == "-0" else text
-
-
-def write_stl(s, name):
-    with open(name, "wb") as f:
-        f.write(b"bracket, millimetres".ljust(80) + struct.pack("<I", len(s.triangles)))
-        for t in s.triangles:
-            a, b, c = (s.points[v] for v in t)
-            n = cross(sub(b, a), sub(c, a))
-            f.write(struct.pack("<12fH", *unit(n), *a, *b, *c, 0))
-
-
-def write_obj(s, name):
-    with open(name, "w") as f:
-        f.write("# millimetres\n")
-        for p in s.points:
-            f.write("v " + " ".join(map(number, p)) + "\n")
-        for patch in dict.fromkeys(s.patches):
-            f.write(f"g {patch}\n")
-            for t, its in zip(s.triangles, s.patches):
-                if its == patch:
-                    f.write("f " + " ".join(str(v + 1) for v in t) + "\n")
-
-
-def write_off(s, name):
-    with open(name, "w") as f:
-        f.write(f"OFF\n# millimetres\n{len(s.points)} {len(s.triangles)} 0\n")
-        for p in s.points:
-            f.write(" ".join(map(number, p)) + "\n")
-        for t in s.triangles:
-            f.write("3 " + " ".join(map(str, t)) + "\n")
-
-
-def write_ply(s, name, byte_order="little"):
-    order = "<" if byte_order == "little" else ">"
-    names = list(dict.fromkeys(s.patches))
-    with open(name, "wb") as f:
-        header = ["ply", f"format binary_{byte_order}_endian 1.0", "comment millimetres"]
-        header += [f"comment patch {k} {patch}" for k, patch in enumerate(names)] if len(names) > 1 else []
-        header += [f"element vertex {len(s.points)}", "property float x", "property float y", "property float z",
-                   f"element face {len(s.triangles)}", "property list uchar ushort vertex_indices"]
-        header += ["property uchar patch"] if len(names) > 1 else []
-        f.write(("\n".join(header + ["end_header"]) + "\n").encode())
-        for p in s.points:
-            f.write(struct.pack(order + "3f", *p))
-        for t, patch in zip(s.triangles, s.patches):
-            f.write(struct.pack(order + "B3H", 3, *t))
-            if len(names) > 1:
-                f.write(bytes([names.index(patch)]))
 
 
 def main():
