@@ -214,8 +214,8 @@ def rounded_box(half, radius, flat_cells, arc_cells):
     for h in half:
         flat = h - radius
         arc = [radius * math.tan(math.pi / 4 * k / arc_cells) for k in range(1, arc_cells + 1)]
-        lines.append([-flat - x for x in reversed(arc)] + [flat * (2 * k / flat_cells - 1) for k in range(flat_cells + 1)] +
-                     [flat + x for x in arc])
+        middle = [flat * (2 * k / flat_cells - 1) for k in range(flat_cells + 1)]
+        lines.append([-flat - x for x in reversed(arc)] + middle + [flat + x for x in arc])
     index = {}
 
     def vertex(grid):
@@ -283,8 +283,11 @@ def shell():
 
 def main():
     folder = sys.argv[1] if len(sys.argv) > 1 else os.path.dirname(os.path.abspath(__file__))
-    for model, name, write in ((bracket, "bracket.stl", write_stl), (gear, "gear.obj", write_obj),
-                               (torus_knot, "torus_knot.ply", write_ply), (gyroid, "gyroid.ply", lambda s, n: write_ply(s, n, "big")),
+    # One model per reader.
+    for model, name, write in ((bracket, "bracket.stl", write_stl),
+                               (gear, "gear.obj", write_obj),
+                               (torus_knot, "torus_knot.ply", write_ply),
+                               (gyroid, "gyroid.ply", lambda s, n: write_ply(s, n, "big")),
                                (shell, "shell.off", write_off)):
         s = model()
         check(s)

@@ -8,6 +8,7 @@ cd "$(dirname "$0")/.."
 source scripts/lib/apt.sh
 
 minutes=${1:-10}
+[[ $minutes =~ ^[0-9]+$ ]] || { sed -n '2,5s/^# //p' "$0"; exit 2; }
 [ $# -gt 0 ] && shift
 targets=("$@")
 [ ${#targets[@]} -gt 0 ] || targets=(surface mesh)
