@@ -1,13 +1,15 @@
 #include "improve/passes.h"
 #include "improve/star_edit.h"
 #include "improve/star_table.h"
+#include "improve/vertex_blocks.h"
 
 #include <cmath>
 
 namespace octafront::improve {
 namespace {
 
-/// Mean of the neighbours of a vertex, each counted once, weighted by the length of the edge to it.
+/// Mean of the neighbours of a vertex, each counted once, weighted by the length of the edge to it. Blocks of vertices
+/// may use it in parallel: what it marks are a vertex's neighbours, which lie in its block.
 class NeighbourMean {
  public:
   explicit NeighbourMean(const EditMesh& mesh) : mesh_(mesh), seen_(mesh.vertices(), kNone) {}
@@ -49,34 +51,29 @@ bool allowed(const EditMesh& mesh, const StarEdit& star, MoveRule rule) {
   return gain > 0 && (new_worst > old_worst || new_worst > kMeanRisesGuard);
 }
 
-PassResult laplacian_sweep(EditMesh& mesh, const StarTable& stars, double relaxation, MoveRule rule,
-                           const RunContext& context) {
-  PassResult result;
-  const Floor floor = mesh.floor();
-  StarEdit star(mesh);
-  NeighbourMean mean(mesh);
-  for (VertexIndex v = 0; v < mesh.vertices(); ++v) {
-    if (v % 1024 == 0) context.check();
-    if (mesh.on_boundary(v) || mesh.tet_of(v) == kNone || !star.load(v, stars.of(v))) continue;
-    ++result.tried;
-    const Vec3 p = mesh.point(v);
-    star.evaluate(p + relaxation * (mean(v, star.faces()) - p));
-    if (!allowed(mesh, star, rule) || !star.acceptable(floor)) continue;
-    star.commit();
-    ++result.done;
-  }
-  return result;
-}
-
 }  // namespace
 
 PassResult laplacian_sweeps(EditMesh& mesh, int sweeps, double relaxation, MoveRule rule, const RunContext& context) {
   PassResult result;
   const StarTable stars(mesh);
+  const VertexBlocks blocks(mesh, stars);
+  const Floor floor = mesh.floor();
   for (int sweep = 0; sweep < sweeps; ++sweep) {
-    const PassResult one = laplacian_sweep(mesh, stars, relaxation, rule, context);
-    result.tried += one.tried;
-    result.done += one.done;
+    NeighbourMean mean(mesh);  // anew each time: it knows the last vertex that asked, not the sweep
+    result += blocks.run(context, [&](std::span<const VertexIndex> vertices) {
+      PassResult block;
+      StarEdit star(mesh);
+      for (const VertexIndex v : vertices) {
+        if (!star.load(v, stars.of(v))) continue;
+        ++block.tried;
+        const Vec3 p = mesh.point(v);
+        star.evaluate(p + relaxation * (mean(v, star.faces()) - p));
+        if (!allowed(mesh, star, rule) || !star.acceptable(floor)) continue;
+        star.commit();
+        ++block.done;
+      }
+      return block;
+    });
   }
   return result;
 }

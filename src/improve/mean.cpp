@@ -6,6 +6,7 @@
 #include "improve/passes.h"
 #include "improve/star_edit.h"
 #include "improve/star_table.h"
+#include "improve/vertex_blocks.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,7 +22,7 @@ constexpr int kTries = 2;
 
 class MeanSmoother {
  public:
-  explicit MeanSmoother(EditMesh& mesh) : mesh_(mesh), floor_(mesh.floor()), star_(mesh) {}
+  MeanSmoother(EditMesh& mesh, const Floor& floor) : mesh_(mesh), floor_(floor), star_(mesh) {}
 
   /// True if the vertex moved.
   bool run(VertexIndex v, std::span<const HalfFace> faces) {
@@ -74,14 +75,18 @@ class MeanSmoother {
 PassResult smooth_mean(EditMesh& mesh, int sweeps, const RunContext& context) {
   PassResult result;
   const StarTable stars(mesh);
-  MeanSmoother smoother(mesh);
+  const VertexBlocks blocks(mesh, stars);
+  const Floor floor = mesh.floor();
   for (int sweep = 0; sweep < sweeps; ++sweep)
-    for (VertexIndex v = 0; v < mesh.vertices(); ++v) {
-      if (v % 1024 == 0) context.check();
-      if (mesh.on_boundary(v) || mesh.tet_of(v) == kNone) continue;
-      ++result.tried;
-      result.done += smoother.run(v, stars.of(v));
-    }
+    result += blocks.run(context, [&](std::span<const VertexIndex> vertices) {
+      PassResult block;
+      MeanSmoother smoother(mesh, floor);
+      for (const VertexIndex v : vertices) {
+        ++block.tried;
+        block.done += smoother.run(v, stars.of(v));
+      }
+      return block;
+    });
   return result;
 }
 

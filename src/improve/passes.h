@@ -15,6 +15,11 @@ namespace octafront::improve {
 struct PassResult {
   std::uint64_t tried = 0;  ///< places looked at
   std::uint64_t done = 0;   ///< places changed
+
+  PassResult& operator+=(const PassResult& o) {
+    tried += o.tried, done += o.done;
+    return *this;
+  }
 };
 
 /// When a vertex may go to where the Laplacian wants it.
@@ -25,12 +30,12 @@ enum class MoveRule {
 /// Elements above this score may get worse in exchange for a better mean.
 inline constexpr float kMeanRisesGuard = 0.6f;
 
-/// Sweeps over the inner vertices in order of their index: each goes the part `relaxation` of the way to the mean of
-/// its neighbours, weighted by the length of the edges to them, if the rule allows.
+/// Sweeps over the inner vertices, block by block (vertex_blocks.h), in parallel: each goes the part `relaxation` of
+/// the way to the mean of its neighbours, weighted by the length of the edges to them, if the rule allows.
 PassResult laplacian_sweeps(EditMesh& mesh, int sweeps, double relaxation, MoveRule rule, const RunContext& context);
 
-/// Sweeps over the inner vertices: each goes towards where the sum of (1 - beta)^2 around it is least, if that falls
-/// and the worst score around it rises or stays above kMeanRisesGuard.
+/// Sweeps over the inner vertices, block by block, in parallel: each goes towards where the sum of (1 - beta)^2 around
+/// it is least, if that falls and the worst score around it rises or stays above kMeanRisesGuard.
 PassResult smooth_mean(EditMesh& mesh, int sweeps, const RunContext& context);
 
 /// What a reconnection must make better.

@@ -13,11 +13,13 @@ namespace {
 using namespace testing;
 using Level = ImproveOptions::Level;
 
-TetMesh improved(TetMesh mesh, Level level) {
+TetMesh improved(TetMesh mesh, Level level, int threads = 0) {
   ImproveOptions options;
   options.level = level;
   StageReport report;
-  improve_mesh(mesh, SizeField::uniform(0.1), options, {}, report);
+  RunContext context;
+  context.threads = threads;
+  improve_mesh(mesh, SizeField::uniform(0.1), options, context, report);
   return mesh;
 }
 
@@ -45,6 +47,12 @@ TEST(Improve, EveryLevelMakesBetterElementsOnTheSameBoundary) {
 TEST(Improve, IsDeterministic) {
   const TetMesh start = perturbed(kuhn_cube(5), 0.6, 3);
   EXPECT_EQ(improved(start, Level::kDefault), improved(start, Level::kDefault));
+}
+
+TEST(Improve, GivesTheSameOnAnyNumberOfThreads) {
+  const TetMesh start = perturbed(kuhn_cube(22), 0.5, 7);  // several blocks of vertices
+  const TetMesh once = improved(start, Level::kDefault, 1);
+  for (const int threads : {2, 3, 8}) EXPECT_EQ(improved(start, Level::kDefault, threads), once);
 }
 
 TEST(Improve, DoesNotDependOnUnits) {

@@ -1,0 +1,40 @@
+#include "improve/vertex_blocks.h"
+
+#include <algorithm>
+
+namespace octafront::improve {
+namespace {
+
+constexpr VertexIndex kLeastBlock = 4096;  ///< vertices: below this most of a block is its rim
+constexpr VertexIndex kMostBlocks = 256;
+
+bool neighbours_within(const EditMesh& mesh, std::span<const HalfFace> star, VertexIndex first, VertexIndex last) {
+  for (const HalfFace h : star)
+    for (const VertexIndex u : mesh.tet(h / 4))
+      if (u < first || u >= last) return false;
+  return true;
+}
+
+}  // namespace
+
+VertexBlocks::VertexBlocks(const EditMesh& mesh, const StarTable& stars) {
+  const auto n = static_cast<VertexIndex>(mesh.vertices());
+  const VertexIndex size = std::max(kLeastBlock, n / kMostBlocks + 1);
+  std::vector<VertexIndex> waiting;
+  for (VertexIndex v = 0; v < n; ++v)
+    if (!mesh.on_boundary(v) && mesh.tet_of(v) != kNone) waiting.push_back(v);
+  for (const VertexIndex shift : {VertexIndex{0}, size / 2}) {
+    std::vector<std::vector<VertexIndex>> blocks((n + shift) / size + 1);
+    std::vector<VertexIndex> left;
+    for (const VertexIndex v : waiting) {
+      const VertexIndex block = (v + shift) / size;
+      const VertexIndex first = block * size < shift ? 0 : block * size - shift, last = (block + 1) * size - shift;
+      (neighbours_within(mesh, stars.of(v), first, last) ? blocks[block] : left).push_back(v);
+    }
+    stages_.push_back(std::move(blocks));
+    waiting = std::move(left);
+  }
+  stages_.push_back({std::move(waiting)});
+}
+
+}  // namespace octafront::improve

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <octafront/run_context.h>
+
+#include "improve/passes.h"
+#include "improve/star_table.h"
+
+#include <vector>
+
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+
+namespace octafront::improve {
+
+/// The inner vertices in an order of blocks in which they may be moved in parallel, the same for any number of threads.
+/// Blocks are stretches of the numbering, which follows a space-filling curve. A vertex whose neighbours all lie in its
+/// own block shares no element with one of another block. What is left over by the first division is divided anew with
+/// the blocks shifted by half, and what is left by that is one block at the end.
+class VertexBlocks {
+ public:
+  VertexBlocks(const EditMesh& mesh, const StarTable& stars);
+
+  /// Calls `work(vertices)` for each block, which returns what it did; blocks of one stage run in parallel.
+  template <typename Work>
+  PassResult run(const RunContext& context, Work&& work) const {
+    PassResult sum;
+    tbb::task_arena arena(context.threads > 0 ? context.threads : tbb::task_arena::automatic);
+    for (const auto& stage : stages_) {
+      std::vector<PassResult> results(stage.size());
+      arena.execute([&] {
+        tbb::parallel_for(std::size_t{0}, stage.size(), [&](std::size_t b) {
+          context.check();
+          results[b] = work(stage[b]);
+        });
+      });
+      for (const PassResult& r : results) sum += r;
+    }
+    return sum;
+  }
+
+ private:
+  std::vector<std::vector<std::vector<VertexIndex>>> stages_;
+};
+
+}  // namespace octafront::improve
