@@ -10,6 +10,14 @@
 
 namespace octafront {
 
+/// A place with a size of its own: the points within `radius` of a box, which may be a point. The size holds there and
+/// grows at the gradation away from it. A sphere is a point with a radius.
+struct SizeRegion {
+  Vec3 lo, hi;       ///< opposite corners of the box, input units, lo <= hi
+  double radius = 0; ///< >= 0
+  double size = 0;   ///< > 0
+};
+
 /// Where element sizes come from. Every source is optional; where several speak, the smallest size wins.
 /// With no source at all an automatic size is chosen from the model (see make_size_field).
 struct SizeOptions {
@@ -26,7 +34,9 @@ struct SizeOptions {
   /// kUniform: sizes inside stay at most the largest size on the surface (the paper's Cmax).
   /// kGraded: sizes grow inward at the gradation, up to max_size.
   Interior interior = Interior::kUniform;
-  std::function<double(Vec3)> callback;   ///< a further source; must return a size > 0; may be empty
+  /// Further sources, on top of the others or of the automatic choice. --elements does not scale them.
+  std::vector<SizeRegion> regions;
+  std::function<double(Vec3)> callback;   ///< a further source on the surface; must return a size > 0; may be empty
 };
 
 /// How the surface is triangulated anew.

@@ -39,6 +39,16 @@ void check_size_options(const SizeOptions& o) {
           fmt::format("min-size {} is larger than max-size {}", o.min_size.value_or(0), o.max_size.value_or(0)));
   require(!(o.size && o.min_size) || *o.size >= *o.min_size,
           fmt::format("size {} is smaller than min-size {}", o.size.value_or(0), o.min_size.value_or(0)));
+  for (const SizeRegion& r : o.regions) {
+    require(is_finite(r.lo) && is_finite(r.hi) && r.lo.x <= r.hi.x && r.lo.y <= r.hi.y && r.lo.z <= r.hi.z,
+            fmt::format("the region from ({}, {}, {}) to ({}, {}, {}) is no box", r.lo.x, r.lo.y, r.lo.z, r.hi.x,
+                        r.hi.y, r.hi.z));
+    require(
+        std::isfinite(r.size) && r.size > 0 && std::isfinite(r.radius) && r.radius >= 0,
+        fmt::format("the region at ({}, {}, {}) has size {} and radius {}: the size must be above 0, the radius not "
+                    "below",
+                    r.lo.x, r.lo.y, r.lo.z, r.size, r.radius));
+  }
   require(o.gradation >= 0.01 && o.gradation <= 1,
           fmt::format("grading is {}: it must lie between 0.01 (slow growth) and 1 (fast)", o.gradation));
 }

@@ -16,6 +16,10 @@ namespace {
 /// Edge of an equilateral triangle of area 1.
 constexpr double kEdgeOfUnitArea = 1.5196713713031851;
 
+/// Where triangles of very different sizes meet, gradation pulls sizes below most of the triangles. Then all are raised
+/// by the mean shortfall, within limits, so that sizes lie about the triangles as often above as below.
+constexpr double kRaisedFrom = 1.03, kMostRaised = 1.5;
+
 /// The edge length that a triangle stands for: between that of the equilateral triangle of its area, which a needle
 /// makes too small, and the mean length of its edges, which it makes too large.
 double size_of(Vec3 a, Vec3 b, Vec3 c) {
@@ -44,6 +48,20 @@ std::vector<double> face_sizes(const SurfaceMesh& surface) {
 
 }  // namespace
 
+namespace {
+
+/// Gradation only ever makes sizes smaller. By how much, on average over the triangles, in logarithms.
+double mean_shortfall(const SurfaceMesh& surface, const std::vector<double>& face, const OctreeField& grid) {
+  double sum = 0;
+  for (std::size_t f = 0; f < face.size(); ++f) {
+    const Triangle& t = surface.triangles[f];
+    sum += std::log(face[f] / grid.at(centroid(surface.points[t[0]], surface.points[t[1]], surface.points[t[2]])));
+  }
+  return std::exp(sum / static_cast<double>(face.size()));
+}
+
+}  // namespace
+
 SizeField size_field_of_surface(const SurfaceMesh& surface, const SizeOptions& options, const RunContext& context,
                                 StageReport& report) {
   check_size_options(options);
@@ -58,7 +76,13 @@ SizeField size_field_of_surface(const SurfaceMesh& surface, const SizeOptions& o
   rules.interior_below_surface = options.interior == SizeOptions::Interior::kUniform;
   rules.resolve_surface = !rules.interior_below_surface;
   rules.ceiling = std::min({root.side, options.max_size.value_or(HUGE_VAL), options.size.value_or(HUGE_VAL)});
-  const auto grid = make_background_grid(root, sample_surface(surface, face, at_place, context), rules, context);
+  auto grid = make_background_grid(root, sample_surface(surface, face, at_place, context), rules, context);
+  const double shortfall = std::min(kMostRaised, mean_shortfall(surface, face, *grid));
+  if (shortfall > kRaisedFrom) {
+    std::vector<double> raised = face;
+    for (double& h : raised) h *= shortfall;
+    grid = make_background_grid(root, sample_surface(surface, raised, at_place, context), rules, context);
+  }
   report.count("leaves", static_cast<double>(grid->tree.size()));
   report.count("levels", grid->tree.depth());
   return SizeField(grid);

@@ -1,5 +1,13 @@
 #pragma once
 
+// sizing: which edge length is wanted where. Takes a clean surface, its features and the user's options; asks each
+// source of size (curvature, gaps, feature curves, facets, regions, a callback), and leaves a SizeField on an octree:
+// 2:1 balanced, continuous, graded by a law that holds between any two points, with a prediction of the number of
+// elements.
+//
+//   sources (size_sources.h) -> samples of the surface -> octree, divided by them (background_grid.h)
+//     -> corner values (gradation.h) -> OctreeField -> at(p), expected_tets()
+
 #include <octafront/options.h>
 #include <octafront/report.h>
 #include <octafront/run_context.h>
@@ -26,11 +34,15 @@ SizeField size_field_of_surface(const SurfaceMesh& surface, const SizeOptions& o
 /// How many tetrahedra a mesh of the inside of `surface` by these sizes will have; integral of c / h^3, c measured.
 double expected_tets(const SizeField& sizes, const SurfaceMesh& surface);
 
-/// The size field capped to `factor` of its own value within `radius(i)` of points[i], graded again.
+/// The size field capped to `factor` of its own value within 1.5 of these values around each point, graded again.
 SizeField capped_near(const SizeField& sizes, const std::vector<Vec3>& points, double factor, double gradation);
 
 /// All sizes multiplied by `factor`.
 SizeField scaled(const SizeField& sizes, double factor);
+
+/// Reads such a file, edited or not: sizes are cut where they break the gradation. Throws InputError, and OptionError
+/// for a gradation out of range. To mesh by it, let SizeOptions::callback return field.at(p).
+SizeField read_size_field(const std::filesystem::path& file, double gradation = 0.2);
 
 /// Writes the background grid's leaves as a VTU of hexahedra with size per corner, level per cell. Throws OutputError.
 void write_size_field(const std::filesystem::path& file, const SizeField& sizes);

@@ -1,0 +1,125 @@
+#include "sizing/grid_caps.h"
+
+#include "sizing/gradation.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace octafront {
+
+namespace {
+
+/// As GridRules::leaf_per_size.
+constexpr double kLeafPerSize = 2;
+
+/// A background grid divided further around the caps, and graded again.
+class GridCapper {
+ public:
+  GridCapper(const OctreeField& old, const std::vector<SizeCap>& caps, double gradation)
+      : old_(old), caps_(caps), gradation_(gradation), cells_(divided_cells(old.tree)) {}
+
+  std::shared_ptr<OctreeField> run(const RunContext& context) {
+    std::vector<std::uint32_t> all(caps_.size());
+    for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
+    descend(OctreeKey::root(), all);
+    cells_.close();
+    auto field = std::make_shared<OctreeField>();
+    field->root = old_.root;
+    field->gradation = gradation_;
+    field->tree = cells_.tree();
+    corners_ = octree_corners(field->tree);
+    const std::vector<double> limit = corner_limits(field->tree);
+    const std::vector<double> value =
+        graded_corner_values(field->tree, corners_, limit, gradation_, old_.high, context);
+    field->h.resize(field->tree.size());
+    for (std::size_t l = 0; l < field->tree.size(); ++l) {
+      for (int k = 0; k < 8; ++k) field->h[l][k] = value[corners_.of_leaf[l][k]];
+    }
+    field->find_range();
+    return field;
+  }
+
+ private:
+  /// The least that a cap allows in a cell.
+  double least_in(OctreeKey cell, const SizeCap& cap) const {
+    const Vec3 lo = old_.root.corner_of(cell);
+    const double side = old_.root.side_of(cell);
+    const Vec3 hi = lo + Vec3{side, side, side};
+    // Along each axis the nearest point of the cell to the box; the gap between the two boxes is theirs.
+    return cap.at(max(lo, min(max(cap.lo, min(lo, cap.hi)), hi)), gradation_);
+  }
+
+  double old_size_in(OctreeKey cell) const {
+    const std::size_t l = old_.tree.find(cell);
+    if (!old_.tree.leaf(l).contains(cell)) return old_.high * old_.root.side;
+    return *std::max_element(old_.h[l].begin(), old_.h[l].end()) * old_.root.side;
+  }
+
+  /// Divides cells that are too large for the caps in them; `near`: the caps that may matter in the cell.
+  void descend(OctreeKey cell, const std::vector<std::uint32_t>& near) {
+    const double old_size = old_size_in(cell);
+    std::vector<std::uint32_t> here;
+    double least = std::numeric_limits<double>::infinity();
+    for (const std::uint32_t i : near) {
+      const double h = least_in(cell, caps_[i]);
+      if (h >= old_size) continue;
+      here.push_back(i);
+      least = std::min(least, h);
+    }
+    if (here.empty() || old_.root.side_of(cell) <= kLeafPerSize * least || cell.level() == OctreeKey::kMaxLevel) return;
+    cells_.divide(cell);
+    for (int i = 0; i < 8; ++i) descend(cell.child(i), here);
+  }
+
+  /// The old size at each corner, lowered by the caps near it.
+  std::vector<double> corner_limits(const Octree& tree) const {
+    std::vector<double> limit(corners_.size());
+    for (std::size_t c = 0; c < corners_.size(); ++c) {
+      limit[c] = old_.at(old_.root.position(corners_.position[c])) / old_.root.side;
+    }
+    std::vector<std::uint32_t> all(caps_.size());
+    for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
+    std::size_t next = 0;
+    lower(tree, OctreeKey::root(), all, next, limit);
+    return limit;
+  }
+
+  void lower(const Octree& tree, OctreeKey cell, const std::vector<std::uint32_t>& near, std::size_t& next,
+             std::vector<double>& limit) const {
+    const double old_size = old_size_in(cell);
+    std::vector<std::uint32_t> here;
+    for (const std::uint32_t i : near) {
+      if (least_in(cell, caps_[i]) < old_size) here.push_back(i);
+    }
+    if (tree.leaf(next) != cell) {
+      for (int i = 0; i < 8; ++i) lower(tree, cell.child(i), here, next, limit);
+      return;
+    }
+    for (const std::uint32_t corner : corners_.of_leaf[next]) {
+      const auto lay_on = [&](std::uint32_t free) {
+        const Vec3 p = old_.root.position(corners_.position[free]);
+        for (const std::uint32_t i : here) {
+          limit[free] = std::min(limit[free], caps_[i].at(p, gradation_) / old_.root.side);
+        }
+      };
+      if (!corners_.hangs(corner)) lay_on(corner);
+      for (const auto& share : corners_.shares_of(corner)) lay_on(share.corner);
+    }
+    ++next;
+  }
+
+  const OctreeField& old_;
+  const std::vector<SizeCap>& caps_;
+  double gradation_;
+  DividedCells cells_;
+  OctreeCorners corners_;
+};
+
+}  // namespace
+
+std::shared_ptr<OctreeField> capped_grid(const OctreeField& field, const std::vector<SizeCap>& caps, double gradation,
+                                         const RunContext& context) {
+  return GridCapper(field, caps, gradation).run(context);
+}
+
+}  // namespace octafront

@@ -1,0 +1,117 @@
+#include <octafront/error.h>
+
+#include "sizing/make_size_field.h"
+#include "sizing/octree_field.h"
+#include "sizing/size_regions.h"
+#include "support/named_surfaces.h"
+
+#include <filesystem>
+#include <fstream>
+#include <random>
+
+#include <gtest/gtest.h>
+
+namespace octafront {
+namespace {
+
+/// A file in the folder of temporary files that goes away again.
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(const std::string& name) : path_(std::filesystem::path(::testing::TempDir()) / name) {}
+  TemporaryFile(const std::string& name, const std::string& text) : TemporaryFile(name) {
+    std::ofstream(path_, std::ios::binary) << text;
+  }
+  ~TemporaryFile() { std::filesystem::remove(path_); }
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+SizeField make(const SurfaceMesh& surface, const SizeOptions& options) {
+  StageReport report;
+  return make_size_field(surface, {}, options, RunContext{}, report);
+}
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+TEST(SizeFieldFile, ReadsBackAsItWas) {
+  SizeOptions options;
+  options.curvature = 24;
+  const SizeField h = make(testing::torus(50, 20), options);
+  const TemporaryFile file("octafront_grid.vtu");
+  write_size_field(file.path(), h);
+  const SizeField again = read_size_field(file.path());
+  EXPECT_EQ(as_octree_field(again)->tree.leaves(), as_octree_field(h)->tree.leaves());
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> u(-1.5, 1.5);
+  for (int n = 0; n < 2000; ++n) {
+    const Vec3 p{u(random), u(random), 0.3 * u(random)};
+    ASSERT_NEAR(again.at(p), h.at(p), 2e-3 * h.at(p));
+  }
+}
+
+TEST(SizeFieldFile, DamagedFilesAreRefused) {
+  const TemporaryFile file("octafront_grid.vtu");
+  SizeOptions options;
+  options.size = 0.3;
+  write_size_field(file.path(), make(testing::cube(), options));
+  const std::string whole = text_of(file.path());
+  for (const std::size_t length : {std::size_t{0}, std::size_t{40}, whole.size() / 2, whole.size() - 60}) {
+    const TemporaryFile cut("octafront_cut.vtu", whole.substr(0, length));
+    EXPECT_THROW(read_size_field(cut.path()), InputError) << length;
+  }
+  EXPECT_THROW(read_size_field(file.path(), 2), OptionError);
+  EXPECT_THROW(write_size_field(file.path(), SizeField::uniform(1)), OutputError);
+}
+
+TEST(SizeRegions, ComeFromJson) {
+  const TemporaryFile file("octafront_regions.json",
+                           R"([{"box": [[1, 0, 0], [0, 2, 1]], "size": 0.1},
+                               {"sphere": [5, 0, 0], "radius": 2, "size": 0.2}, {"point": [1, 1, 1], "size": 0.05}])");
+  const auto regions = read_size_regions(file.path());
+  ASSERT_EQ(regions.size(), 3u);
+  EXPECT_EQ(regions[0].lo, (Vec3{0, 0, 0}));
+  EXPECT_EQ(regions[0].hi, (Vec3{1, 2, 1}));
+  EXPECT_EQ(regions[1].radius, 2);
+  EXPECT_EQ(regions[2].size, 0.05);
+}
+
+TEST(SizeRegions, ComeFromTables) {
+  const TemporaryFile file("octafront_points.csv", "x,y,z,size\r\n0, 1, 2, 0.5\r\n\n3;4;5;0.25\n");
+  const auto regions = read_size_regions(file.path());
+  ASSERT_EQ(regions.size(), 2u);
+  EXPECT_EQ(regions[0].lo, (Vec3{0, 1, 2}));
+  EXPECT_EQ(regions[1].size, 0.25);
+}
+
+TEST(SizeRegions, BadFilesAreRefused) {
+  for (const char* text : {"", "[{\"box\": [[0,0,0],[1,1,1]]}]", "[{\"point\": [0,0], \"size\": 1}]", "[{]", "{}",
+                           "[{\"point\": [0,0,0], \"size\": -1}]", "[{\"blob\": [0,0,0], \"size\": 1}]",
+                           "0 0 0 1\n0 0 1\n", "0 0 0 nan\n"}) {
+    const TemporaryFile file("octafront_bad.json", text);
+    EXPECT_THROW(read_size_regions(file.path()), InputError) << text;
+  }
+}
+
+TEST(SizeRegions, HoldInsideAndGrowAround) {
+  SizeOptions options;
+  options.size = 0.2;
+  options.regions = {{{0.2, 0.2, 0.2}, {0.4, 0.4, 0.4}, 0, 0.05}, {{1, 1, 1}, {1, 1, 1}, 0.2, 0.1}};
+  const SizeField h = make(testing::cube(4), options);
+  for (const Vec3 p : {Vec3{0.3, 0.3, 0.3}, Vec3{0.21, 0.39, 0.3}}) EXPECT_NEAR(h.at(p), 0.05, 0.003);
+  EXPECT_NEAR(h.at({0.9, 0.9, 0.9}), 0.1, 0.005);
+  EXPECT_NEAR(h.at({0.9, 0.05, 0.1}), 0.14, 0.03);
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> u(0, 1);
+  for (int n = 0; n < 20000; ++n) {
+    const Vec3 p{u(random), u(random), u(random)}, q = p + 0.1 * Vec3{u(random), u(random), u(random)};
+    ASSERT_LE(std::abs(h.at(p) - h.at(q)), 0.2 * distance(p, q) * (1 + 1e-9));
+  }
+}
+
+}  // namespace
+}  // namespace octafront
