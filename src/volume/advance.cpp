@@ -1,12 +1,13 @@
 #include "volume/advance.h"
 
+#include <cmath>
 #include <utility>
 
 namespace octafront {
 
 namespace {
 
-constexpr std::size_t kFacesBetweenChecks = 512;
+constexpr std::size_t kFacesBetweenChecks = 512, kFacesBetweenReports = 1 << 15;
 constexpr int kMostRounds = 8;
 
 /// The queues of one run.
@@ -43,6 +44,8 @@ class Queues {
       ++counters_.layers;
       for (const QueuedFace& q : layer) {
         if (counters_.attempts % kFacesBetweenChecks == 0) context_.check();
+        if (counters_.attempts % kFacesBetweenReports == 0 && std::isfinite(budget_.volume))
+          context_.report("volume", front_.filled_volume() / budget_.volume);
         if (over_budget()) return;
         if (!front_.alive(q)) continue;
         if (!attempt_.advance(q.face, kLimits[level], next)) held_.push_back(q);
@@ -60,7 +63,10 @@ class Queues {
     return held;
   }
 
-  bool over_budget() const { return front_.tets().size() > budget_.tets || counters_.face_tests > budget_.face_tests; }
+  bool over_budget() const {
+    return front_.tets().size() > budget_.tets || front_.filled_volume() > budget_.volume ||
+           counters_.face_tests > budget_.face_tests;
+  }
 
   Front& front_;
   AdvanceBudget budget_;

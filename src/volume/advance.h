@@ -13,7 +13,8 @@ namespace octafront {
 
 /// Where a run stops, whatever remains: counted in work, not in time, so that the result never depends on the machine.
 struct AdvanceBudget {
-  std::size_t tets = 0;  ///< in all
+  std::size_t tets = 0;                                     ///< in all
+  double volume = std::numeric_limits<double>::infinity();  ///< of what the front fills: more means that it leaks
   std::uint64_t face_tests = std::numeric_limits<std::uint64_t>::max();
 };
 

@@ -20,6 +20,9 @@ constexpr double kNearestCandidate = 0.1;
 /// Candidates that are tried for a face. More than this lie in reach only of faces much larger than their surroundings,
 /// where trying all would cost the square of the neighbourhood.
 constexpr std::size_t kMostCandidates = 40;
+/// Where sizes vary, the size for a face is the one this far ahead of it, in units of the size at its corners: the
+/// elements to come are wanted, not those that are there.
+constexpr double kLookAhead = 0.75;
 /// The size used for a face stays within these multiples of its own edges: a kept surface may have triangles
 /// that are much larger or smaller than what is wanted around them, and an apex at the wanted distance would make a
 /// sliver.
@@ -45,7 +48,11 @@ bool segments_nearer_than(double squared, Vec3 p, Vec3 u, Vec3 q, Vec3 v) {
 }  // namespace
 
 Attempt::Attempt(Front& front, const SizeField& sizes, const VolumeOptions& options, FrontCounters& counters)
-    : front_(front), sizes_(sizes), options_(options), counters_(counters) {}
+    : front_(front),
+      sizes_(sizes),
+      options_(options),
+      counters_(counters),
+      sizes_vary_(sizes.min_size() < sizes.max_size()) {}
 
 /// Every tetrahedron that may be made lies in the hull of the base face and the sphere of candidates.
 SearchRegion Attempt::region_to_search(double radius) const {
@@ -75,13 +82,15 @@ void Attempt::place(FaceIndex face, const Limits& limits) {
     size += front_.vertex(base_[i]).size / 3.0;
   }
   for (int i = 0; i < 3; ++i) longest = std::max(longest, distance(at_[i], at_[(i + 1) % 3]));
+  const Vec3 centroid = (at_[0] + at_[1] + at_[2]) / 3;
   const Vec3 twice_area = cross(at_[1] - at_[0], at_[2] - at_[0]);
+  normal_ = normalized(twice_area);
   // The edge of the equilateral triangle of the same area: a needle's length says nothing about what fits on it.
   const double edge = std::sqrt(length(twice_area) * 2 / std::numbers::sqrt3);
+  if (sizes_vary_) size = sizes_.at(centroid + normal_ * (kLookAhead * size));
   size = std::clamp(size, kLeastSizePerEdge * edge, kMostSizePerEdge * longest);
-  normal_ = normalized(twice_area);
   ideal_distance_ = options_.ideal_distance * limits.ideal_factor;
-  ideal_at_ = (at_[0] + at_[1] + at_[2]) / 3 + normal_ * (ideal_distance_ * size);
+  ideal_at_ = centroid + normal_ * (ideal_distance_ * size);
   const double r = limits.search_radius * size;
   near_.gather(front_, face, region_to_search(r), size);
   for (int i = 0; i < 3; ++i) local_[i] = near_.to_local(at_[i]);

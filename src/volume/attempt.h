@@ -59,6 +59,7 @@ class Attempt {
   const SizeField& sizes_;
   const VolumeOptions& options_;
   FrontCounters& counters_;
+  const bool sizes_vary_;
   Neighborhood near_;
   std::vector<Candidate> candidates_;
 

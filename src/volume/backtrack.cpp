@@ -47,9 +47,9 @@ bool close_by_front(WorkMesh& mesh, Cavities& cavities, std::uint32_t cavity, co
   other.ideal_distance *= variant.ideal_factor;
   other.ranking = variant.ranking;
   FrontCounters counters;
-  const AdvanceResult result =
-      advance_front(front, std::move(layer), {}, sizes, other,
-                    {1000 + kTetsPerWall * walls.size(), std::min(face_tests, kFaceTestsPerTrial)}, context, counters);
+  const AdvanceBudget budget{.tets = 1000 + kTetsPerWall * walls.size(),
+                             .face_tests = std::min(face_tests, kFaceTestsPerTrial)};
+  const AdvanceResult result = advance_front(front, std::move(layer), {}, sizes, other, budget, context, counters);
   face_tests -= std::min(face_tests, counters.face_tests);
   if (result.over_budget || !result.left.empty()) return false;
   for (std::size_t v = global.size(); v < front.vertices().size(); ++v)

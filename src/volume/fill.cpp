@@ -66,12 +66,15 @@ std::vector<QueuedFace> add_core(Front& front, const LatticeCore& core, const Si
   return skin;
 }
 
+/// The front fills no more than the surface encloses, up to rounding.
+constexpr double kVolumeSlack = 1.0001;
+
 /// Far more than any honest run makes: a guard against fronts that leak.
 std::size_t tet_budget(const SurfaceMesh& surface, const SizeField& sizes) {
   const Box3 box = bounding_box(surface.points);
   const Vec3 e = box.extent() / sizes.min_size();
   const double finest = 100 * e.x * e.y * e.z;
-  return static_cast<std::size_t>(std::min(4e9, 1e5 + 2000.0 * static_cast<double>(surface.triangles.size()) + finest));
+  return static_cast<std::size_t>(std::min(4e9, 1e5 + 1000.0 * static_cast<double>(surface.triangles.size()) + finest));
 }
 
 /// Joins what tetrahedra connect: a body's outer shell and its cavities.
@@ -162,7 +165,8 @@ TetMesh fill_volume(const SurfaceMesh& surface, const SizeField& sizes, const Vo
       report.count("core tetrahedra", static_cast<double>(core.tets.size()));
       skin = add_core(front, core, sizes);
     }
-    const AdvanceBudget budget{front.tets().size() + tet_budget(surface, sizes)};
+    const AdvanceBudget budget{.tets = front.tets().size() + tet_budget(surface, sizes),
+                               .volume = kVolumeSlack * enclosed_volume(surface)};
     FrontCounters counters;
     const AdvanceResult result =
         advance_front(front, std::move(layer), std::move(skin), sizes, options, budget, context, counters);

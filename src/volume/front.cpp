@@ -2,6 +2,8 @@
 
 #include <octafront/error.h>
 
+#include "geometry/measures.h"
+
 #include <utility>
 
 namespace octafront {
@@ -45,6 +47,7 @@ void Front::remove_face(FaceIndex face) {
 
 void Front::add_tet(const Triangle& face, VertexIndex apex) {
   tets_.push_back({face[0], face[1], face[2], apex});
+  six_volumes_ += six_volumes(at(face[0]), at(face[1]), at(face[2]), at(apex));
 }
 
 }  // namespace octafront

@@ -46,6 +46,8 @@ class Front {
   const FrontIndex& index() const { return index_; }
   std::vector<Tet>& tets() { return tets_; }
   const std::vector<Tet>& tets() const { return tets_; }
+  /// Sum of the volumes of what add_tet() was given.
+  double filled_volume() const { return six_volumes_ / 6; }
   const Box3& domain() const { return domain_; }
 
  private:
@@ -61,6 +63,7 @@ class Front {
   std::vector<FaceIndex> free_;
   std::size_t active_ = 0;
   std::vector<Tet> tets_;
+  double six_volumes_ = 0;
 };
 
 }  // namespace octafront

@@ -25,6 +25,23 @@ std::uint64_t key_of(int level, const std::array<int, 3>& brick) {
          1;
 }
 
+/// Number of a cell in its brick.
+int cell_number(const std::array<int, 3>& cell) {
+  constexpr int kMask = kBrickSide - 1;
+  return (cell[0] & kMask) + kBrickSide * ((cell[1] & kMask) + kBrickSide * (cell[2] & kMask));
+}
+
+/// Bits of a brick's cells with x, y or z coordinate from l to h.
+std::uint64_t range_x(int l, int h) {
+  return 0x1111111111111111ull * (((2u << h) - 1) & ~((1u << l) - 1));
+}
+std::uint64_t range_y(int l, int h) {
+  return 0x0001000100010001ull * (((std::uint64_t{16} << 4 * h) - 1) & ~((std::uint64_t{1} << 4 * l) - 1));
+}
+std::uint64_t range_z(int l, int h) {
+  return (~std::uint64_t{0} >> 16 * (kBrickSide - 1 - h)) & ~((std::uint64_t{1} << 16 * l) - 1);
+}
+
 std::uint64_t scrambled(std::uint64_t key) {
   key *= 0x9e3779b97f4a7c15ull;
   return key ^ (key >> 29);
@@ -128,6 +145,7 @@ std::uint32_t FrontIndex::make_brick(int level, const Cell& brick) {
   const auto id = static_cast<std::uint32_t>(bricks_.size());
   Brick& b = bricks_.emplace_back();
   b.level = level;
+  b.at = brick;
   b.head.fill(kNone);
   const double side = cell_[level] * kBrickSide;
   b.origin = origin_ + Vec3{brick[0] * side, brick[1] * side, brick[2] * side};
@@ -166,16 +184,17 @@ void FrontIndex::insert(FaceIndex face, const Triangle& corners, const Box3& box
   for (int axis = 0; axis < 3; ++axis) {
     cell[axis] = std::clamp(static_cast<int>(middle[axis] * per_cell_[level]), 0, limit);
     brick[axis] = cell[axis] >> kBrickBits;
-    cell[axis] &= kBrickSide - 1;
   }
   std::uint32_t b = brick_at(level, brick);
   if (b == kNone) b = make_brick(level, brick);
-  const int c = cell[0] + kBrickSide * (cell[1] + kBrickSide * cell[2]);
+  const int c = cell_number(cell);
   std::uint32_t head = bricks_[b].head[c];
   if (head == kNone || blocks_[head].count == kWidth) {
     head = new_block(b * 64 + c, head);
     bricks_[b].head[c] = head;
+    const bool was_empty = (bricks_[b].occupied | bricks_[b].below) == 0;
     bricks_[b].occupied |= std::uint64_t{1} << c;
+    if (was_empty) mark_above(b, false);
   }
   Block& block = blocks_[head];
   const std::uint32_t slot = block.count++;
@@ -189,7 +208,7 @@ void FrontIndex::insert(FaceIndex face, const Triangle& corners, const Box3& box
   block.face[slot] = face;
   if (face >= place_.size()) place_.resize(std::max<std::size_t>(face + 1, 2 * place_.size()), kNone);
   place_[face] = head * kWidth + slot;
-  ++faces_at_level_[level];
+  if (faces_at_level_[level]++ == 0) levels_ |= 1u << level;
 }
 
 void FrontIndex::remove(FaceIndex face) {
@@ -212,58 +231,95 @@ void FrontIndex::remove(FaceIndex face) {
   place_[face] = kNone;
   if (last == 0) {
     brick.head[c] = first.next;
-    if (first.next == kNone) brick.occupied &= ~(std::uint64_t{1} << c);
+    const bool cell_is_empty = first.next == kNone;
     first.next = free_block_;
     free_block_ = head;
+    if (cell_is_empty) {
+      brick.occupied &= ~(std::uint64_t{1} << c);
+      if ((brick.occupied | brick.below) == 0) mark_above(static_cast<std::uint32_t>(&brick - bricks_.data()), true);
+    }
   }
-  --faces_at_level_[brick.level];
+  if (--faces_at_level_[brick.level] == 0) levels_ &= ~(1u << brick.level);
+}
+
+void FrontIndex::mark_above(std::uint32_t brick, bool empty) {
+  for (;;) {
+    const int level = bricks_[brick].level + 2;
+    if (level >= kLevels) return;
+    const Cell cell = bricks_[brick].at;
+    const Cell above{cell[0] >> kBrickBits, cell[1] >> kBrickBits, cell[2] >> kBrickBits};
+    std::uint32_t parent = brick_at(level, above);
+    if (parent == kNone) parent = make_brick(level, above);
+    const int c = cell_number(cell);
+    Brick& p = bricks_[parent];
+    const bool was_empty = (p.occupied | p.below) == 0;
+    if (empty)
+      p.below &= ~(std::uint64_t{1} << c);
+    else
+      p.below |= std::uint64_t{1} << c;
+    if (was_empty == ((p.occupied | p.below) == 0)) return;
+    brick = parent;
+  }
 }
 
 void FrontIndex::find(const SearchRegion& region, std::vector<Found>& out) const {
-  for (int level = 0; level < kLevels; ++level)
-    if (faces_at_level_[level] != 0) find_in_level(level, region, out);
+  // From this level up the region overlaps a few bricks; the levels below are reached from it and the one above it.
+  const Vec3 e = region.box.extent();
+  const double widest = std::max({e.x, e.y, e.z});
+  int start = 0;
+  while (start + 2 < kLevels && widest > kBrickSide * cell_[start]) ++start;
+  const bool finer = (levels_ & ((1u << start) - 1)) != 0;
+  for (int level = start; level < kLevels; ++level) {
+    const bool descend = finer && level < start + 2;
+    if (descend || (levels_ >> level & 1) != 0) find_in_level(level, descend, region, out);
+  }
 }
 
-void FrontIndex::find_in_level(int level, const SearchRegion& region, std::vector<Found>& out) const {
-  const Box3& box = region.box;
+std::array<FrontIndex::Cell, 2> FrontIndex::cells_in_reach(int level, const Box3& box) const {
   const double reach = 0.5 * kExtentShare * cell_[level] * 1.0001;
-  const int limit = std::max(1, (1 << kCellBits) >> level) - 1;
-  Cell lo, hi;
+  const double limit = std::max(1, (1 << kCellBits) >> level) - 1;
+  std::array<Cell, 2> range;
   for (int axis = 0; axis < 3; ++axis) {
-    lo[axis] = static_cast<int>(
-        std::clamp((box.lo[axis] - origin_[axis] - reach) * per_cell_[level], 0.0, static_cast<double>(limit)));
-    hi[axis] = static_cast<int>(
-        std::clamp((box.hi[axis] - origin_[axis] + reach) * per_cell_[level], 0.0, static_cast<double>(limit)));
+    const double lo = (box.lo[axis] - origin_[axis] - reach) * per_cell_[level];
+    const double hi = (box.hi[axis] - origin_[axis] + reach) * per_cell_[level];
+    range[0][axis] = static_cast<int>(std::clamp(lo, 0.0, limit));
+    range[1][axis] = static_cast<int>(std::clamp(hi, 0.0, limit));
   }
-  // Bits of a brick's cells with x (y, z) coordinate in a range.
-  const auto range_x = [](int l, int h) { return 0x1111111111111111ull * (((2u << h) - 1) & ~((1u << l) - 1)); };
-  const auto range_y = [](int l, int h) {
-    std::uint64_t row = 0;
-    for (int y = l; y <= h; ++y) row |= 0xfull << (4 * y);
-    return row * 0x0001000100010001ull;
-  };
-  const auto range_z = [](int l, int h) {
-    std::uint64_t slab = 0;
-    for (int z = l; z <= h; ++z) slab |= 0xffffull << (16 * z);
-    return slab;
-  };
-  const auto first = [&](int axis, int b) { return std::max(lo[axis] - b * kBrickSide, 0); };
-  const auto last = [&](int axis, int b) { return std::min(hi[axis] - b * kBrickSide, kBrickSide - 1); };
-  for (int z = lo[2] >> kBrickBits; z <= hi[2] >> kBrickBits; ++z) {
-    const std::uint64_t in_z = range_z(first(2, z), last(2, z));
-    for (int y = lo[1] >> kBrickBits; y <= hi[1] >> kBrickBits; ++y) {
-      const std::uint64_t in_yz = in_z & range_y(first(1, y), last(1, y));
+  return range;
+}
+
+void FrontIndex::find_in_level(int level, bool descend, const SearchRegion& region, std::vector<Found>& out) const {
+  const std::array<Cell, 2> range = cells_in_reach(level, region.box);
+  const auto& [lo, hi] = range;
+  for (int z = lo[2] >> kBrickBits; z <= hi[2] >> kBrickBits; ++z)
+    for (int y = lo[1] >> kBrickBits; y <= hi[1] >> kBrickBits; ++y)
       for (int x = lo[0] >> kBrickBits; x <= hi[0] >> kBrickBits; ++x) {
         const std::uint32_t b = brick_at(level, {x, y, z});
-        if (b == kNone) continue;
-        const std::uint64_t cells = bricks_[b].occupied & in_yz & range_x(first(0, x), last(0, x));
-        if (cells != 0) find_in_brick(bricks_[b], cells, region, out);
+        if (b != kNone) find_in_brick(b, range, descend, region, out);
       }
-    }
+}
+
+void FrontIndex::find_in_brick(std::uint32_t id, const std::array<Cell, 2>& range, bool descend,
+                               const SearchRegion& region, std::vector<Found>& out) const {
+  const Brick& brick = bricks_[id];
+  const auto first = [&](int axis) { return std::max(range[0][axis] - brick.at[axis] * kBrickSide, 0); };
+  const auto last = [&](int axis) { return std::min(range[1][axis] - brick.at[axis] * kBrickSide, kBrickSide - 1); };
+  const std::uint64_t in_range = range_x(first(0), last(0)) & range_y(first(1), last(1)) & range_z(first(2), last(2));
+  if ((brick.occupied & in_range) != 0) find_in_cells(brick, brick.occupied & in_range, region, out);
+  if (!descend || (brick.below & in_range) == 0) return;
+  const std::array<Cell, 2> range_below = cells_in_reach(brick.level - 2, region.box);
+  for (std::uint64_t cells = brick.below & in_range; cells != 0; cells &= cells - 1) {
+    const int c = std::countr_zero(cells);
+    const Cell at{brick.at[0] * kBrickSide + (c & 3), brick.at[1] * kBrickSide + (c >> 2 & 3),
+                  brick.at[2] * kBrickSide + (c >> 4)};
+    const bool reaches = at[0] <= range_below[1][0] >> kBrickBits && at[0] >= range_below[0][0] >> kBrickBits &&
+                         at[1] <= range_below[1][1] >> kBrickBits && at[1] >= range_below[0][1] >> kBrickBits &&
+                         at[2] <= range_below[1][2] >> kBrickBits && at[2] >= range_below[0][2] >> kBrickBits;
+    if (reaches) find_in_brick(brick_at(brick.level - 2, at), range_below, true, region, out);
   }
 }
 
-void FrontIndex::find_in_brick(const Brick& brick, std::uint64_t cells, const SearchRegion& region,
+void FrontIndex::find_in_cells(const Brick& brick, std::uint64_t cells, const SearchRegion& region,
                                std::vector<Found>& out) const {
   const LocalRegion local(region, brick.origin);
   for (; cells != 0; cells &= cells - 1) {

@@ -50,6 +50,7 @@ class FrontIndex {
  private:
   static constexpr int kWidth = 16;  // faces in a block
   static constexpr int kLevels = 22;
+  using Cell = std::array<int, 3>;
   struct alignas(16) Block {
     float lo[3][kWidth], hi[3][kWidth];
     std::uint32_t corner[3][kWidth];
@@ -57,25 +58,32 @@ class FrontIndex {
     std::uint32_t next, cell, count;  // cell: brick * 64 + cell of the brick
   };
   struct Brick {
-    std::uint64_t occupied = 0;
+    std::uint64_t occupied = 0;  ///< cells with faces of this level
+    std::uint64_t below = 0;     ///< cells that are bricks two levels down with anything in or below them
     Vec3 origin;
+    Cell at{};
     int level = 0;
     std::array<std::uint32_t, 64> head;
   };
-  using Cell = std::array<int, 3>;
-
   std::uint32_t brick_at(int level, const Cell& brick) const;
   std::uint32_t make_brick(int level, const Cell& brick);
   std::uint32_t new_block(std::uint32_t cell, std::uint32_t next);
   void grow_table();
+  /// Tells the bricks above that this one is no longer empty, or is empty again.
+  void mark_above(std::uint32_t brick, bool empty);
   static unsigned reach_into(const Block& block, const struct LocalRegion& region);
-  void find_in_level(int level, const SearchRegion& region, std::vector<Found>& out) const;
-  void find_in_brick(const Brick& brick, std::uint64_t cells, const SearchRegion& region,
+  /// The cells of a level that a face may have its middle in if it reaches into `box`.
+  std::array<Cell, 2> cells_in_reach(int level, const Box3& box) const;
+  void find_in_level(int level, bool descend, const SearchRegion& region, std::vector<Found>& out) const;
+  void find_in_brick(std::uint32_t brick, const std::array<Cell, 2>& range, bool descend, const SearchRegion& region,
+                     std::vector<Found>& out) const;
+  void find_in_cells(const Brick& brick, std::uint64_t cells, const SearchRegion& region,
                      std::vector<Found>& out) const;
 
   Vec3 origin_;
   std::array<double, kLevels> cell_{}, per_cell_{};
   std::array<std::uint32_t, kLevels> faces_at_level_{};
+  std::uint32_t levels_ = 0;  ///< bits of the levels with faces
   std::vector<Block> blocks_;
   std::uint32_t free_block_;
   std::vector<Brick> bricks_;

@@ -1,0 +1,90 @@
+#include "cavity/excavation.h"
+
+#include "support/named_surfaces.h"
+
+#include <gtest/gtest.h>
+
+namespace octafront {
+namespace {
+
+/// Six tetrahedra around the long diagonal of the unit cube.
+struct SixInACube {
+  std::vector<Vec3> points;
+  std::vector<Tet> tets;
+  SixInACube() {
+    for (int i = 0; i < 8; ++i) points.push_back({double(i & 1), double(i >> 1 & 1), double(i >> 2 & 1)});
+    constexpr int kAround[6] = {1, 3, 2, 6, 4, 5};
+    for (int i = 0; i < 6; ++i)
+      tets.push_back({0, static_cast<VertexIndex>(kAround[i]), static_cast<VertexIndex>(kAround[(i + 1) % 6]), 7});
+  }
+};
+
+std::vector<Wall> walls_around(const Tet& t) {
+  std::vector<Wall> walls;
+  for (const auto& f : kTetFaces) walls.push_back({t[f[0]], t[f[2]], t[f[1]]});
+  return walls;
+}
+
+TEST(Excavation, RollsBackWithoutCommit) {
+  SixInACube c;
+  const Tet missing = c.tets.back();
+  c.tets.pop_back();
+  WorkMesh mesh(c.points, c.tets);
+  Cavities cavities(walls_around(missing));
+  {
+    Excavation e(mesh, cavities, 0);
+    EXPECT_TRUE(e.grow_ring());
+    EXPECT_EQ(e.size(), 12u);  // the whole cube is open: its surface is what remains
+    EXPECT_FALSE(e.grow_ring());
+  }
+  EXPECT_EQ(cavities.walls(0).size(), 4u);
+  EXPECT_EQ(mesh.take_tets(), c.tets);
+}
+
+TEST(Excavation, StopsAtTheSurface) {
+  SixInACube c;
+  const Tet missing = c.tets.back();
+  c.tets.pop_back();
+  WorkMesh mesh(c.points, c.tets);
+  Cavities cavities(walls_around(missing));
+  Excavation e(mesh, cavities, 0);
+  int grown = 0;
+  for (const Wall& w : e.walls()) grown += e.grow_through(w);
+  EXPECT_EQ(grown, 2);  // of four walls two belong to the cube's surface
+  EXPECT_EQ(e.size(), 8u);
+}
+
+TEST(Excavation, RunsIntoOtherCavitiesAndTakesThemAlong) {
+  SixInACube c;
+  const Tet first = c.tets[0], second = c.tets[3];
+  c.tets.erase(c.tets.begin() + 3);
+  c.tets.erase(c.tets.begin());
+  WorkMesh mesh(c.points, c.tets);
+  std::vector<Wall> walls = walls_around(first);
+  for (const Wall& w : walls_around(second)) walls.push_back(w);
+  Cavities cavities(walls);
+  // They share the long diagonal, so they are one pinched cavity from the start.
+  ASSERT_EQ(cavities.size(), 1u);
+  Excavation e(mesh, cavities, 0);
+  EXPECT_TRUE(e.grow_ring());
+  EXPECT_EQ(e.size(), 12u);
+  e.commit();
+  EXPECT_TRUE(cavities.walls(0).empty());
+  EXPECT_TRUE(mesh.take_tets().empty());
+}
+
+TEST(WorkMesh, FindsTheTetrahedronBehindAFace) {
+  SixInACube c;
+  WorkMesh mesh(c.points, c.tets);
+  for (TetIndex t = 0; t < c.tets.size(); ++t)
+    for (const auto& f : kTetFaces) {
+      const Triangle outward{c.tets[t][f[0]], c.tets[t][f[1]], c.tets[t][f[2]]};
+      EXPECT_EQ(mesh.tet_behind(outward), t);
+      EXPECT_EQ(mesh.tet_behind({outward[1], outward[2], outward[0]}), t);
+    }
+  mesh.remove(2);
+  EXPECT_EQ(mesh.tet_behind({c.tets[2][1], c.tets[2][2], c.tets[2][3]}), kNone);
+}
+
+}  // namespace
+}  // namespace octafront

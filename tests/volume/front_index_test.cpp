@@ -1,0 +1,84 @@
+#include "volume/front_index.h"
+
+#include <cmath>
+#include <map>
+#include <random>
+
+#include <gtest/gtest.h>
+
+namespace octafront {
+namespace {
+
+/// Boxes of sizes over six orders of magnitude come and go; what is found is a superset of what overlaps, each once.
+TEST(FrontIndex, FindsEveryFaceThatReachesIn) {
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> unit(0, 1);
+  const Box3 domain{{-3, 2, 1e3}, {5, 9, 1.01e3}};
+  FrontIndex index(domain, 1e-4);
+  std::map<FaceIndex, Box3> present;
+  // Crowded towards one point, as sizes are: a box is about as large as it is far from there.
+  const Vec3 crowded{0.3, 4.1, 1003};
+  const auto random_box = [&] {
+    const double size = std::pow(10.0, -6 * unit(random));
+    Vec3 lo, hi;
+    for (int axis = 0; axis < 3; ++axis) {
+      lo[axis] = crowded[axis] + size * (2 * unit(random) - 1.5);
+      hi[axis] = lo[axis] + size * unit(random);
+    }
+    return Box3{lo, hi};
+  };
+  std::vector<FrontIndex::Found> found;
+  std::size_t hits = 0;
+  for (FaceIndex step = 0; step < 6000; ++step) {
+    if (present.size() > 500 && unit(random) < 0.5) {
+      auto it = present.lower_bound(static_cast<FaceIndex>(unit(random) * step));
+      if (it == present.end()) it = present.begin();
+      index.remove(it->first);
+      present.erase(it);
+    } else {
+      present[step] = random_box();
+      index.insert(step, {step, step + 1, step + 2}, present[step]);
+    }
+    if (step % 10 != 0) continue;
+    SearchRegion region;
+    region.box = random_box();
+    region.center = region.box.center();
+    region.radius = region.box.diagonal() / 2;
+    region.normal = {1, 0, 0};
+    region.offset = region.box.lo.x;
+    found.clear();
+    index.find(region, found);
+    std::map<FaceIndex, Triangle> seen;
+    for (const auto& f : found) EXPECT_TRUE(seen.emplace(f.face, f.corners).second) << "face twice";
+    for (const auto& [face, box] : present)
+      if (box.overlaps(region.box)) {
+        // The box of the region lies inside its sphere and before its plane.
+        ASSERT_TRUE(seen.contains(face)) << "face " << face << " is missing";
+        EXPECT_EQ(seen[face], (Triangle{face, face + 1, face + 2}));
+        ++hits;
+      }
+    for (const auto& [face, corners] : seen) EXPECT_TRUE(present.contains(face)) << "face " << face << " was removed";
+  }
+  EXPECT_GT(hits, 1000u);
+}
+
+TEST(FrontIndex, LeavesOutWhatLiesBehindThePlaneOrBeyondTheSphere) {
+  const Box3 domain{{0, 0, 0}, {10, 10, 10}};
+  FrontIndex index(domain, 1);
+  index.insert(0, {0, 1, 2}, {{4.9, 4.9, 4.0}, {5.1, 5.1, 4.2}});  // behind
+  index.insert(1, {3, 4, 5}, {{5.9, 5.9, 5.9}, {6.0, 6.0, 6.0}});  // in the box's corner, beyond the sphere
+  index.insert(2, {6, 7, 8}, {{4.9, 4.9, 5.2}, {5.1, 5.1, 5.4}});
+  SearchRegion region;
+  region.box = {{4, 4, 4}, {6, 6, 6}};
+  region.center = {5, 5, 5};
+  region.radius = 1;
+  region.normal = {0, 0, 1};
+  region.offset = 5;
+  std::vector<FrontIndex::Found> found;
+  index.find(region, found);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].face, 2u);
+}
+
+}  // namespace
+}  // namespace octafront
