@@ -17,6 +17,8 @@ constexpr double kScaleCosine = 0.866;
 constexpr double kShort = 1.5, kShortDangling = 4;
 /// A chain with two loose ends is noise below this length.
 constexpr double kShortIsolated = 1;
+/// A closed curve this short has no room for three segments worth the name.
+constexpr double kShortClosed = 0.5;
 /// Edges that are no features but turn by more than 12 degrees are rough. Where most edges beside a chain are, the
 /// surface is a scan with angles of all kinds, of which some happen to be sharp, and a chain must be this long.
 constexpr double kRoughCosine = 0.978;
@@ -57,6 +59,7 @@ struct ChainFacts {
   double rough = 0;   ///< part of the edges beside it that are rough
   bool border = false;
   int loose_ends = 0;
+  bool is_closed = false;
   bool between_junctions = false;  ///< three chains or more meet at both ends
   Edge ends{};
 };
@@ -64,6 +67,7 @@ struct ChainFacts {
 bool is_noise(const ChainFacts& f) {
   if (f.border) return false;
   if (f.loose_ends == 2 && f.length < kShortIsolated) return true;
+  if (f.is_closed && f.length < kShortClosed) return true;
   if (f.rough > kRoughPart && f.length < kShortRough) return true;
   if (f.cosine > kBluntCosine && f.rough > kSomewhatRough) {
     if (f.loose_ends == 1 && f.length < kShortWhisker) return true;
@@ -137,6 +141,7 @@ class NoiseFilter {
     }
     f.rough = all > 0 ? rough / all : 0;
     f.loose_ends = (degree[first] == 1) + (degree[last] == 1);
+    f.is_closed = c.closed;
     f.between_junctions = degree[first] > 2 && degree[last] > 2;
     f.ends = {std::min(first, last), std::max(first, last)};
     return f;

@@ -15,6 +15,9 @@ constexpr double kLong = 1.5, kShort = 0.6;
 constexpr double kBad = 0.2;
 /// An operation on a bad triangle must raise the worst around by this factor, so that two never undo each other.
 constexpr double kGain = 1.3;
+/// Edges between points of curves shorter than this, in wanted sizes, may vanish, with a corner, where they spoil
+/// triangles.
+constexpr double kTiny = 0.2;
 constexpr TurnLimits kLimits{0.2, -0.3};
 /// A split point lies near the middle of its edge, or the walk to it went astray.
 constexpr double kAstray = 0.35;
@@ -98,6 +101,24 @@ class LengthAdjuster {
     for (HalfedgeIndex h = 3 * t; h < 3 * t + 3; ++h) {
       if (mesh_.kind[mesh_.start[h]] == VertexKind::kFree && remove_if_better(mesh_.start[h])) return;
     }
+    for (HalfedgeIndex h = 3 * t; h < 3 * t + 3; ++h) {
+      if (relative_length(h) > kTiny || !(mesh_.on_curve(mesh_.start[h]) && mesh_.on_curve(mesh_.end(h)))) continue;
+      if (merge_if_better(h) || merge_if_better(mesh_.twin[h])) return;
+    }
+  }
+
+  /// Moves the start of a tiny edge between curves to its end: details far below the element size make only slivers.
+  bool merge_if_better(HalfedgeIndex h) {
+    const VertexIndex u = mesh_.start[h], w = mesh_.end(h);
+    star_.gather(u);
+    const auto i = std::find(star_.ring().begin(), star_.ring().end(), h) - star_.ring().begin();
+    const double least = kGain * star_.quality_now();
+    if (!(star_.quality_after(static_cast<std::size_t>(i), kLimits, least) > least)) return false;
+    if (!mesh_.may_collapse(h, true)) return false;
+    if (mesh_.kind[u] == VertexKind::kCorner) mesh_.kind[w] = VertexKind::kCorner;
+    mesh_.collapse(h);
+    ++counts_.collapses;
+    return true;
   }
 
   bool flip_if_better(HalfedgeIndex h) {

@@ -104,11 +104,12 @@ HalfedgeIndex WorkingMesh::flip(HalfedgeIndex h) {
   return bc;
 }
 
-bool WorkingMesh::may_collapse(HalfedgeIndex h) const {
+bool WorkingMesh::may_collapse(HalfedgeIndex h, bool corners_too) const {
   const HalfedgeIndex g = twin[h];
   const VertexIndex u = start[h], w = start[g], a = apex(h), b = apex(g);
-  if (kind[u] == VertexKind::kCorner) return false;
-  if (on_curve(u) && !is_feature[h]) return false;
+  if (kind[u] == VertexKind::kCorner && !corners_too) return false;
+  const bool may_leave_curve = kind[u] == VertexKind::kCorner && on_curve(w);
+  if (on_curve(u) && !is_feature[h] && !may_leave_curve) return false;
   // The edges to a and to b merge in pairs: two features may not.
   if (is_feature[next_of(h)] && is_feature[previous_of(h)]) return false;
   if (is_feature[next_of(g)] && is_feature[previous_of(g)]) return false;

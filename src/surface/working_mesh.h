@@ -42,8 +42,8 @@ struct WorkingMesh : HalfedgeMesh {
   /// Turns the edge of h; returns a half-edge of the new edge.
   HalfedgeIndex flip(HalfedgeIndex h);
   /// Whether the start of h may move to its end and vanish, as far as connections and features go (link condition;
-  /// feature vertices only along their curve; no two curves merge).
-  bool may_collapse(HalfedgeIndex h) const;
+  /// feature vertices only along their curve; no two curves merge; a corner only if `corners_too`, for it is lost).
+  bool may_collapse(HalfedgeIndex h, bool corners_too = false) const;
   /// Moves the start of h to its end, where it vanishes with the two triangles beside h.
   void collapse(HalfedgeIndex h);
 };
