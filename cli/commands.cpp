@@ -25,6 +25,13 @@ SurfaceFile read_input(const Arguments& a, const RunContext& context) {
   return file;
 }
 
+// Messages then name faces as the file numbers them.
+Options options_for(const Arguments& a, const SurfaceFile& file) {
+  Options options = a.options;
+  options.face_of_triangle = file.face_of_triangle;
+  return options;
+}
+
 void write_report(const Arguments& a, const Report& report) {
   say(a, to_table(report));
   if (!a.json.empty()) write_text(a.json, to_json(report));
@@ -62,7 +69,7 @@ int check_tet_mesh(const Arguments& a) {
 Result generate_or_explain(const Arguments& a, const RunContext& context) {
   const SurfaceFile file = read_input(a, context);
   try {
-    return generate(file.surface, a.options, context);
+    return generate(file.surface, options_for(a, file), context);
   } catch (const OpenCavityError& error) {
     fail_with_cavity(a, error);
   }
@@ -84,7 +91,8 @@ int run_mesh(const Arguments& a) {
 int run_surface(const Arguments& a) {
   check_surface_target(a.output);
   const RunContext context = terminal_context(a.threads, a.quiet);
-  const SurfaceResult result = generate_surface(read_input(a, context).surface, a.options, context);
+  const SurfaceFile file = read_input(a, context);
+  const SurfaceResult result = generate_surface(file.surface, options_for(a, file), context);
   write_surface(a.output, result.surface);
   write_report(a, result.report);
   say(a, fmt::format("written: {}\n", a.output.string()));
@@ -93,7 +101,8 @@ int run_surface(const Arguments& a) {
 
 int run_size(const Arguments& a) {
   const RunContext context = terminal_context(a.threads, a.quiet);
-  const SizeResult result = generate_sizes(read_input(a, context).surface, a.options, context);
+  const SurfaceFile file = read_input(a, context);
+  const SizeResult result = generate_sizes(file.surface, options_for(a, file), context);
   if (!a.output.empty()) write_size_field(a.output, result.sizes);
   write_report(a, result.report);
   if (!a.output.empty()) say(a, fmt::format("written: {}\n", a.output.string()));

@@ -74,6 +74,9 @@ struct Options {
   SurfaceOptions surface;
   VolumeOptions volume;
   ImproveOptions improve;
+  /// Per triangle of the input: the face of the file that it came from (SurfaceFile::face_of_triangle), so that messages
+  /// name faces as the user knows them. Empty: triangle i is face i.
+  std::vector<std::uint32_t> face_of_triangle;
 };
 
 }  // namespace octafront

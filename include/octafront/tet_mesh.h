@@ -39,7 +39,7 @@ struct TetMesh {
   std::vector<std::uint32_t> region;   ///< one per tet: number of the body it lies in; empty: all 0
   std::vector<Triangle> boundary;      ///< the boundary faces, counter-clockwise seen from outside
   std::vector<std::uint32_t> patch;    ///< one per boundary face: its patch; empty: all 0
-  std::vector<std::uint32_t> source;   ///< one per boundary face: the input face that it still is, or kNone; may be empty
+  std::vector<std::uint32_t> source;   ///< one per boundary face: the input face nearest to it, itself if kept; may be empty
   std::vector<std::string> patch_names;  ///< as in SurfaceMesh
 
   friend bool operator==(const TetMesh&, const TetMesh&) = default;

@@ -40,7 +40,7 @@ Prepared prepare(const SurfaceMesh& input, const Options& options, const RunCont
   check_options(options);
   Prepared p;
   p.repaired = run_stage(report, context, "repair", [&](StageReport& stage) {
-    RepairedSurface repaired = repair_surface(input);
+    RepairedSurface repaired = repair_surface(input, options.face_of_triangle);
     stage.notes = repaired.notes;
     const SurfaceDefects defects = find_defects(repaired);
     if (!defects.clean()) throw InputError(defects.describe());
@@ -98,13 +98,15 @@ Remeshed keep_surface(const Prepared& p, const SizeField& sizes) {
   return kept;
 }
 
-TetMesh volume_stage(const Remeshed& boundary, const Options& options, const RunContext& context, Report& report) {
+TetMesh volume_stage(const Remeshed& boundary, const std::vector<std::uint32_t>& face_of_triangle,
+                     const Options& options, const RunContext& context, Report& report) {
   TetMesh mesh = run_stage(report, context, "volume front", [&](StageReport& stage) {
     TetMesh filled = fill_volume(boundary.surface, boundary.sizes, options.volume, context, stage);
     stage.count("tets", static_cast<double>(filled.tets.size()));
     return filled;
   });
-  mesh.source = boundary.source;
+  mesh.source.reserve(boundary.source.size());
+  for (const std::uint32_t triangle : boundary.source) mesh.source.push_back(face_of_triangle[triangle]);
   mesh.patch_names = boundary.surface.patch_names;
   return mesh;
 }
@@ -121,7 +123,7 @@ void check_result(const TetMesh& mesh, const SurfaceMesh& boundary, const RunCon
 TetMesh mesh_by_sizes(const Prepared& p, const SizeField& sizes, const Options& options, const RunContext& context,
                       Report& report, Remeshed& boundary) {
   boundary = options.surface.keep ? keep_surface(p, sizes) : surface_stage(p, sizes, options, context, report);
-  return volume_stage(boundary, options, context, report);
+  return volume_stage(boundary, p.repaired.face_of_triangle, options, context, report);
 }
 
 // The prediction misses when a model is mostly surface; then what came out says by how much to scale.
