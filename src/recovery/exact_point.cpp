@@ -1,5 +1,7 @@
 #include "recovery/exact_point.h"
 
+#include "geometry/expansion.h"
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -41,6 +43,45 @@ int filtered_orient(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
   return det > bound ? 1 : det < -bound ? -1 : 0;
 }
 
+// The unevaluated sum of two doubles; each operation has a relative error below 2^-100.
+struct Pair {
+  double hi = 0, lo = 0;
+
+  friend Pair operator-(Pair a, Pair b) {
+    const exact::TwoDoubles s = exact::two_sum(a.hi, -b.hi), t = exact::two_sum(a.lo, -b.lo);
+    const exact::TwoDoubles u = exact::two_sum(s.hi, s.lo + t.hi);
+    const exact::TwoDoubles r = exact::two_sum(u.hi, u.lo + t.lo);
+    return {r.hi, r.lo};
+  }
+  friend Pair operator+(Pair a, Pair b) { return a - Pair{-b.hi, -b.lo}; }
+  friend Pair operator*(Pair a, Pair b) {
+    const exact::TwoDoubles p = exact::two_product(a.hi, b.hi);
+    const exact::TwoDoubles r = exact::two_sum(p.hi, p.lo + (a.hi * b.lo + a.lo * b.hi));
+    return {r.hi, r.lo};
+  }
+};
+
+using PairPoint = std::array<Pair, 3>;
+
+double largest(const PairPoint& p) {
+  return std::max({std::abs(p[0].hi), std::abs(p[1].hi), std::abs(p[2].hi)});
+}
+
+// orient3d of points whose coordinates have a relative error of 2^-99; 0 if that does not decide. The bounds are those
+// of filtered_orient with 2^-95 for 2^-50: room for the errors of Pair.
+int filtered_orient(const std::array<PairPoint, 4>& p) {
+  std::array<PairPoint, 3> d;
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) d[i][k] = p[i + 1][k] - p[0][k];
+  }
+  const auto minor = [&](int i, int j) { return d[1][i] * d[2][j] - d[1][j] * d[2][i]; };
+  const Pair det = d[0][0] * minor(1, 2) + d[0][1] * minor(2, 0) + d[0][2] * minor(0, 1);
+  const double error = 0x1p-94 * std::max({largest(p[0]), largest(p[1]), largest(p[2]), largest(p[3])});
+  const double u = largest(d[0]) + error, v = largest(d[1]) + error, w = largest(d[2]) + error;
+  const double bound = 6.1 * error * (u * v + v * w + w * u) + 0x1p-90 * u * v * w;
+  return det.hi > bound ? 1 : det.hi < -bound ? -1 : 0;
+}
+
 }  // namespace
 
 VertexIndex ExactPoints::add(Vec3 p) {
@@ -54,8 +95,14 @@ VertexIndex ExactPoints::add(Homogeneous h, std::vector<std::uint32_t> planes) {
     for (BigFloat& x : h) x = -x;
   }
   if (first_steiner_ == kNone) first_steiner_ = size();
-  point_.push_back({quotient(h[0], h[3]), quotient(h[1], h[3]), quotient(h[2], h[3])});
-  steiner_.push_back({{h.begin(), h.end()}, std::move(planes)});
+  Vec3 p, rest;
+  for (int i = 0; i < 3; ++i) {
+    p[i] = quotient(h[i], h[3]);
+    rest[i] = quotient(h[i] - h[3] * BigFloat(p[i]), h[3]);
+  }
+  point_.push_back(p);
+  steiner_.push_back({{h.begin(), h.end()}, rest, std::move(planes), {}});
+  steiner_.back().lines.fill({kNone, kNone});
   return size() - 1;
 }
 
@@ -101,6 +148,23 @@ std::vector<std::uint32_t> ExactPoints::shared_planes(VertexIndex a, VertexIndex
   return shared;
 }
 
+// Three of the four on the line of a Steiner point.
+bool ExactPoints::share_line(const std::array<VertexIndex, 4>& v) const {
+  const auto on = [&](VertexIndex u, const Edge& line) {
+    // An end that has moved off is a double point now.
+    if (u == line[0] || u == line[1]) return u < first_steiner_ || !is_double(u);
+    return u >= first_steiner_ && std::ranges::count(steiner_[u - first_steiner_].lines, line) > 0;
+  };
+  for (const VertexIndex u : v) {
+    if (is_double(u)) continue;
+    for (const Edge& line : steiner_[u - first_steiner_].lines) {
+      if (line[0] == kNone) continue;
+      if (std::ranges::count_if(v, [&](VertexIndex w) { return on(w, line); }) >= 3) return true;
+    }
+  }
+  return false;
+}
+
 bool ExactPoints::share_plane(const std::array<VertexIndex, 4>& v) const {
   std::array<Planes, 4> planes;
   for (int i = 0; i < 4; ++i) {
@@ -135,8 +199,11 @@ Homogeneous ExactPoints::homogeneous(VertexIndex v) const {
 VertexIndex ExactPoints::add_between(VertexIndex a, VertexIndex b, double t) {
   const Homogeneous p = homogeneous(a), q = homogeneous(b);
   const BigFloat wp = BigFloat(1 - t) * q[3], wq = BigFloat(t) * p[3];
-  return add(Homogeneous{wp * p[0] + wq * q[0], wp * p[1] + wq * q[1], wp * p[2] + wq * q[2], p[3] * q[3]},
-             shared_planes(a, b));
+  const VertexIndex s =
+      add(Homogeneous{wp * p[0] + wq * q[0], wp * p[1] + wq * q[1], wp * p[2] + wq * q[2], p[3] * q[3]},
+          shared_planes(a, b));
+  steiner_.back().lines[0] = {a, b};
+  return s;
 }
 
 VertexIndex ExactPoints::add_crossing(VertexIndex p, VertexIndex q, VertexIndex a, VertexIndex b, VertexIndex c) {
@@ -145,7 +212,9 @@ VertexIndex ExactPoints::add_crossing(VertexIndex p, VertexIndex q, VertexIndex 
   const BigFloat dp = value(plane, hp), dq = value(plane, hq);
   Homogeneous h;
   for (int i = 0; i < 4; ++i) h[i] = hp[i] * dq - hq[i] * dp;
-  return add(std::move(h), shared_planes(p, q));
+  const VertexIndex s = add(std::move(h), shared_planes(p, q));
+  steiner_.back().lines[0] = {p, q};
+  return s;
 }
 
 VertexIndex ExactPoints::add_crossing(VertexIndex p, VertexIndex q, VertexIndex x, VertexIndex y) {
@@ -159,7 +228,9 @@ VertexIndex ExactPoints::add_crossing(VertexIndex p, VertexIndex q, VertexIndex 
     if (dp.sign() * dq.sign() >= 0) continue;
     Homogeneous h;
     for (int i = 0; i < 4; ++i) h[i] = hp[i] * dq - hq[i] * dp;
-    return add(std::move(h), shared_planes(p, q));
+    const VertexIndex s = add(std::move(h), shared_planes(p, q));
+    steiner_.back().lines = {Edge{p, q}, Edge{x, y}};
+    return s;
   }
   throw std::logic_error("two segments that should cross do not");
 }
@@ -170,7 +241,18 @@ int ExactPoints::orient_steiner(VertexIndex a, VertexIndex b, VertexIndex c, Ver
     return orient3d(point_[a], point_[b], point_[c], point_[d]);
   }
   if (const int s = filtered_orient(point_[a], point_[b], point_[c], point_[d])) return s;
-  return share_plane(v) ? 0 : orient_exact(v);
+  if (share_line(v) || share_plane(v)) return 0;
+  if (const int s = orient_second_filter(v)) return s;
+  return orient_exact(v);
+}
+
+int ExactPoints::orient_second_filter(const std::array<VertexIndex, 4>& v) const {
+  std::array<PairPoint, 4> p;
+  for (int i = 0; i < 4; ++i) {
+    const Vec3 rest = v[i] < first_steiner_ ? Vec3{} : steiner_[v[i] - first_steiner_].rest;
+    for (int k = 0; k < 3; ++k) p[i][k] = {point_[v[i]][k], rest[k]};
+  }
+  return filtered_orient(p);
 }
 
 int ExactPoints::orient_exact(const std::array<VertexIndex, 4>& v) const {

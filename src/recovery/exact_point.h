@@ -58,16 +58,20 @@ class ExactPoints {
  private:
   struct Steiner {
     std::vector<BigFloat> coordinate;   ///< four; empty for a double point
+    Vec3 rest;                          ///< what the rounded point lacks of the exact one, again rounded
     std::vector<std::uint32_t> planes;  ///< sorted
+    std::array<Edge, 2> lines{Edge{kNone, kNone}, Edge{kNone, kNone}};  ///< through two vertices each
   };
   using Planes = std::span<const std::uint32_t>;
 
   int orient_steiner(VertexIndex a, VertexIndex b, VertexIndex c, VertexIndex d) const;
+  int orient_second_filter(const std::array<VertexIndex, 4>& v) const;
   int orient_exact(const std::array<VertexIndex, 4>& v) const;
   Homogeneous homogeneous(VertexIndex v) const;
   VertexIndex add(Homogeneous h, std::vector<std::uint32_t> planes);
   Planes planes_of(VertexIndex v) const;
   std::vector<std::uint32_t> shared_planes(VertexIndex a, VertexIndex b) const;
+  bool share_line(const std::array<VertexIndex, 4>& v) const;
   bool share_plane(const std::array<VertexIndex, 4>& v) const;
 
   std::vector<Vec3> point_;

@@ -9,6 +9,7 @@
 #include "recovery/steiner_lift.h"
 
 #include <algorithm>
+#include <ranges>
 
 namespace octafront {
 
@@ -39,6 +40,34 @@ std::vector<Triangle> merged(std::vector<Triangle> triangles, const std::vector<
     for (VertexIndex& v : t) v = same_as[v];
   }
   return triangles;
+}
+
+// Where the surface has several vertices at one place, the mesh has one of them so far. Each part of its star that
+// hangs together through faces gets the vertex that the surface's triangles have there.
+void restore_coinciding(const SurfaceMesh& surface, const std::vector<VertexIndex>& same_as, TetComplex& mesh) {
+  std::vector<bool> shared(same_as.size(), false);
+  for (VertexIndex v = 0; v < same_as.size(); ++v) {
+    if (same_as[v] != v) shared[same_as[v]] = true;
+  }
+  for (TetIndex t = 0; t < mesh.slots(); ++t) {
+    if (!mesh.alive(t)) continue;
+    for (int i = 0; i < 4; ++i) {
+      const VertexIndex v = mesh.corner[t][i];
+      if (v >= shared.size() || !shared[v]) continue;
+      const std::vector<TetIndex> star = mesh.star_from(v, t);
+      VertexIndex name = kNone;
+      for (const TetIndex u : star) {
+        for (HalfFace h = 4 * u; h < 4 * u + 4; ++h) {
+          if (mesh.opposite(h) != kNone || mesh.apex(h) == v) continue;
+          for (const VertexIndex w : surface.triangles[mesh.label[u][h % 4]]) {
+            if (same_as[w] == v) name = w;
+          }
+        }
+      }
+      if (name == v || name == kNone) continue;
+      for (const TetIndex u : star) std::ranges::replace(mesh.corner[u], v, name);
+    }
+  }
 }
 
 // Vertices that lie inside follow those of the surface.
@@ -96,6 +125,9 @@ TetMesh recover_volume(const SurfaceMesh& surface, const RunContext& context, St
   SteinerLift lift(points, mesh, triangles, frame + kFrameVertices, frame, context);
   lift.run();
   count(report, recovery.counts(), lift.counts());
+  if (!std::ranges::equal(same_as, std::views::iota(VertexIndex{0}, static_cast<VertexIndex>(same_as.size())))) {
+    restore_coinciding(surface, same_as, mesh);
+  }
   return extract(surface, points, mesh);
 }
 

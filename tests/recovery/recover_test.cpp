@@ -4,6 +4,10 @@
 #include <octafront/validity.h>
 
 #include "support/named_surfaces.h"
+#include "support/nasty_surfaces.h"
+
+#include <atomic>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -30,10 +34,82 @@ TEST(RecoverVolume, KeepsNamedSurfaces) {
   expect_kept(testing::hollow_sphere(2));
 }
 
-TEST(RecoverVolume, KeepsThousandsOfCoplanarPoints) { expect_kept(testing::cube(16)); }
+TEST(RecoverVolume, KeepsThousandsOfCoplanarPoints) {
+  expect_kept(testing::cube(16));
+}
 
 TEST(RecoverVolume, KeepsSeveralBodies) {
   expect_kept(testing::joined(testing::cube(2), testing::transformed(testing::icosphere(1), 0.5, {3, 0, 0})));
+}
+
+// No tetrahedralisation without extra points exists.
+TEST(RecoverVolume, FillsTheSchoenhardtPolyhedron) {
+  const SurfaceMesh surface = testing::twisted_prism(3, 30);
+  expect_kept(surface);
+  EXPECT_GT(recovered(surface).points.size(), surface.points.size());
+}
+
+TEST(RecoverVolume, FillsTwistedPrisms) {
+  for (const int n : {4, 5, 6, 9, 17}) expect_kept(testing::twisted_prism(n, 170.0 / n));
+}
+
+TEST(RecoverVolume, FillsChazellesPolyhedron) {
+  for (const int n : {1, 2, 3, 5}) expect_kept(testing::chazelle_polyhedron(n, 1e-3));
+}
+
+TEST(RecoverVolume, KeepsPinchedEdgesAndVertices) {
+  for (std::uint64_t seed = 0; seed < 12; ++seed) {
+    SCOPED_TRACE(seed);
+    expect_kept(testing::random_voxels(3, 0.5, 0, seed));
+    expect_kept(testing::random_voxels(3, 0.5, 0.05, seed));
+  }
+}
+
+TEST(RecoverVolume, KeepsVerticesAtOnePlaceApart) {
+  // Two tetrahedra that touch in a vertex, which each has for itself.
+  SurfaceMesh mirrored = testing::transformed(testing::unit_tetrahedron(), -1, {});
+  for (Triangle& t : mirrored.triangles) std::swap(t[0], t[1]);
+  expect_kept(testing::joined(testing::unit_tetrahedron(), mirrored));
+}
+
+TEST(RecoverVolume, KeepsNastySurfaces) {
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    const testing::NastySurface nasty = testing::nasty_surface(seed);
+    SCOPED_TRACE(nasty.name);
+    expect_kept(nasty.surface);
+  }
+}
+
+TEST(RecoverVolume, IsDeterministic) {
+  const SurfaceMesh surface = testing::nasty_surface(10).surface;
+  EXPECT_EQ(recovered(surface), recovered(surface));
+}
+
+TEST(RecoverVolume, DoesTheSameAtAnyScale) {
+  const SurfaceMesh surface = testing::random_voxels(3, 0.6, 0.1, 4);
+  const TetMesh mesh = recovered(surface);
+  for (const double scale : {0x1p-60, 0x1p60}) {
+    EXPECT_EQ(recovered(testing::transformed(surface, scale, {})).tets, mesh.tets);
+  }
+}
+
+TEST(RecoverVolume, EndsWhenCancelled) {
+  const std::atomic<bool> cancel = true;
+  RunContext context;
+  context.cancel = &cancel;
+  StageReport report;
+  EXPECT_THROW(recover_volume(testing::cube(8), context, report), Cancelled);
+}
+
+TEST(RecoverVolume, RefusesAVertexOnAnEdge) {
+  // One side of the cube is divided at the middle of an edge, the other side of that edge is not.
+  SurfaceMesh surface = testing::cube();
+  const auto middle = static_cast<VertexIndex>(surface.points.size());
+  const Triangle t = surface.triangles[0];
+  surface.points.push_back((surface.points[t[0]] + surface.points[t[1]]) * 0.5);
+  surface.triangles[0] = {t[0], middle, t[2]};
+  surface.triangles.push_back({middle, t[1], t[2]});
+  EXPECT_THROW(recovered(surface), MeshingError);
 }
 
 TEST(RecoverVolume, RefusesAnOpenSurface) {
@@ -42,7 +118,9 @@ TEST(RecoverVolume, RefusesAnOpenSurface) {
   EXPECT_THROW(recovered(open), MeshingError);
 }
 
-TEST(RecoverVolume, RefusesAnInsideOutSurface) { EXPECT_THROW(recovered(testing::reversed(testing::cube())), MeshingError); }
+TEST(RecoverVolume, RefusesAnInsideOutSurface) {
+  EXPECT_THROW(recovered(testing::reversed(testing::cube())), MeshingError);
+}
 
 }  // namespace
 }  // namespace octafront
