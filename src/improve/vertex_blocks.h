@@ -38,6 +38,9 @@ class VertexBlocks {
     return sum;
   }
 
+  /// stages()[s][b]: the vertices of block b of stage s.
+  const std::vector<std::vector<std::vector<VertexIndex>>>& stages() const { return stages_; }
+
  private:
   std::vector<std::vector<std::vector<VertexIndex>>> stages_;
 };

@@ -4,6 +4,7 @@
 #include "geometry/predicates.h"
 #include "improve/explain.h"
 #include "improve/start_meshes.h"
+#include "improve/vertex_blocks.h"
 
 #include <set>
 
@@ -72,6 +73,27 @@ TEST(EditMesh, FindsStarsAndRings) {
                            mesh.point(ring.ring[(k + 1) % ring.ring.size()])),
                   1);
     }
+}
+
+TEST(VertexBlocks, OfOneStageShareNoVertexAndHoldEachInnerOneOnce) {
+  const EditMesh mesh(kuhn_cube(24));
+  const StarTable stars(mesh);
+  const VertexBlocks blocks(mesh, stars);
+  std::vector<int> moved(mesh.vertices(), 0);
+  EXPECT_GT(blocks.stages()[0].size(), 2u);
+  for (const auto& stage : blocks.stages()) {
+    std::vector<std::size_t> owner(mesh.vertices(), stage.size());
+    for (std::size_t b = 0; b < stage.size(); ++b)
+      for (const VertexIndex v : stage[b]) {
+        ++moved[v];
+        for (const HalfFace h : stars.of(v))
+          for (const VertexIndex u : mesh.tet(h / 4)) {
+            ASSERT_TRUE(owner[u] == stage.size() || owner[u] == b);
+            owner[u] = b;
+          }
+      }
+  }
+  for (VertexIndex v = 0; v < mesh.vertices(); ++v) EXPECT_EQ(moved[v], mesh.on_boundary(v) ? 0 : 1);
 }
 
 TEST(Shape, AgreesWithTheMeasuresOfTheLibrary) {
