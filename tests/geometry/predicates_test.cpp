@@ -173,6 +173,18 @@ TEST(Orient3d, UnitTetrahedronIsPositive) {
   EXPECT_EQ(orient3d({0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {0, 0, 1}), -1);
 }
 
+TEST(Predicates, DoNotTrustRoundedDifferences) {
+  // The differences to the first point round to small integers that are coplanar; the points are not.
+  const Vec3 a{0x1p-60, 0, 0}, b{1, 1, 1}, c{2, 3, 5}, d{3, 4, 6};
+  EXPECT_EQ(orient3d(a, b, c, d), oracle_orient3d(a, b, c, d));
+  EXPECT_NE(orient3d(a, b, c, d), 0);
+  // The same with a cube's corners about the last point.
+  const std::array<Vec3, 4> corners{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}}};
+  const int sign = insphere(corners[0], corners[1], corners[2], corners[3], a);
+  EXPECT_EQ(sign, oracle_insphere(corners[0], corners[1], corners[2], corners[3], a));
+  EXPECT_NE(sign, 0);
+}
+
 TEST(Insphere, UnitTetrahedronHoldsItsCentroidAndNotTheFarCorner) {
   const Vec3 a{0, 0, 0}, b{1, 0, 0}, c{0, 1, 0}, d{0, 0, 1};
   EXPECT_EQ(insphere(a, b, c, d, {0.25, 0.25, 0.25}), 1);

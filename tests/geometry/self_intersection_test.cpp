@@ -2,12 +2,14 @@
 
 #include "geometry/hausdorff.h"
 #include "geometry/predicates.h"
-#include "support/lattice_points.h"
 #include "support/named_surfaces.h"
 
 #include <numbers>
+#include <random>
 
 #include <gtest/gtest.h>
+#include <oneapi/tbb/global_control.h>
+#include <rapidcheck.h>
 #include <rapidcheck/gtest.h>
 
 namespace octafront {
@@ -40,12 +42,29 @@ TEST(SelfIntersections, FindTheCurveOfTwoSpheresAndRespectTheLimit) {
   for (const auto& pair : some) EXPECT_TRUE(std::binary_search(expected.begin(), expected.end(), pair));
 }
 
+TEST(SelfIntersections, DoNotDependOnThreads) {
+  const SurfaceMesh one = testing::icosphere(4);
+  const SurfaceMesh two = testing::joined(one, testing::transformed(one, 0.9, {0.3, 0.1, 0.2}));
+  const auto found = [&](std::size_t limit, std::size_t threads) {
+    const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+    return self_intersections(two.points, two.triangles, limit);
+  };
+  for (const std::size_t limit : {5, 1000000}) EXPECT_EQ(found(limit, 1), found(limit, 4));
+}
+
 RC_GTEST_PROP(SelfIntersections, AreThoseOfAllPairs, ()) {
+  // One seed, so that RapidCheck shrinks a number and not hundreds of draws.
+  std::mt19937_64 random(*rc::gen::resize(100, rc::gen::arbitrary<std::uint64_t>()));
+  const auto integer = [&](int lo, int hi) { return std::uniform_int_distribution(lo, hi)(random); };
   SurfaceMesh s;
-  for (int i = 0; i < 40; ++i) s.points.push_back(testing::lattice_point(6));
-  const auto any_vertex = [] { return *rc::gen::resize(100, rc::gen::inRange<VertexIndex>(0, 40)); };
+  for (int i = 0; i < 40; ++i) {
+    const int x = integer(-6, 6), y = integer(-6, 6), z = integer(-6, 6);
+    s.points.push_back({double(x), double(y), double(z)});
+  }
+  const auto any_vertex = [&] { return static_cast<VertexIndex>(integer(0, 39)); };
   while (s.triangles.size() < 60) {
-    const Triangle t{any_vertex(), any_vertex(), any_vertex()};
+    const VertexIndex a = any_vertex(), b = any_vertex();
+    const Triangle t{a, b, any_vertex()};
     if (!collinear(s.points[t[0]], s.points[t[1]], s.points[t[2]])) s.triangles.push_back(t);
   }
   RC_ASSERT(self_intersections(s.points, s.triangles) == all_pairs(s));
