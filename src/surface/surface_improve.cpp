@@ -12,8 +12,8 @@ namespace {
 
 constexpr TurnLimits kFlipLimits{0.7, 0.2};
 constexpr TurnLimits kMoveLimits{0.5, 0.2};
-/// Steps shorter than this, in element sizes, are not worth a walk.
-constexpr double kLeastStep = 2e-3;
+/// Steps shorter than this, in element sizes, are not worth a walk (a fifth of that gains .001 of mean quality).
+constexpr double kLeastStep = 1e-2;
 /// A flip for the sake of valence may not make a triangle worse than this (squared quality).
 constexpr double kValenceFlipQuality = 0.25;
 /// Rounds of flips and smoothing: quality gains little beyond.
