@@ -11,6 +11,8 @@
 #include <algorithm>
 #include <ranges>
 
+#include <fmt/format.h>
+
 namespace octafront {
 
 namespace {
@@ -42,6 +44,29 @@ std::vector<Triangle> merged(std::vector<Triangle> triangles, const std::vector<
   return triangles;
 }
 
+// The vertex at the place of v to which the surface's triangles on this part of its star refer.
+VertexIndex surface_vertex(const SurfaceMesh& surface, const std::vector<VertexIndex>& same_as, const TetComplex& mesh,
+                           VertexIndex v, const std::vector<TetIndex>& star) {
+  VertexIndex name = kNone;
+  for (const TetIndex t : star) {
+    for (HalfFace h = 4 * t; h < 4 * t + 4; ++h) {
+      if (mesh.opposite(h) != kNone || mesh.apex(h) == v) continue;
+      for (const VertexIndex w : surface.triangles[mesh.label[t][h % 4]]) {
+        if (same_as[w] != v || w == name) continue;
+        if (name != kNone) {
+          const Vec3 p = surface.points[v];
+          throw MeshingError(
+              fmt::format("the surface is open: its vertices {} and {} at ({}, {}, {}) are one place of it; "
+                          "merge equal vertices first",
+                          name, w, p.x, p.y, p.z));
+        }
+        name = w;
+      }
+    }
+  }
+  return name;
+}
+
 // Where the surface has several vertices at one place, the mesh has one of them so far. Each part of its star that
 // hangs together through faces gets the vertex that the surface's triangles have there.
 void restore_coinciding(const SurfaceMesh& surface, const std::vector<VertexIndex>& same_as, TetComplex& mesh) {
@@ -55,15 +80,7 @@ void restore_coinciding(const SurfaceMesh& surface, const std::vector<VertexInde
       const VertexIndex v = mesh.corner[t][i];
       if (v >= shared.size() || !shared[v]) continue;
       const std::vector<TetIndex> star = mesh.star_from(v, t);
-      VertexIndex name = kNone;
-      for (const TetIndex u : star) {
-        for (HalfFace h = 4 * u; h < 4 * u + 4; ++h) {
-          if (mesh.opposite(h) != kNone || mesh.apex(h) == v) continue;
-          for (const VertexIndex w : surface.triangles[mesh.label[u][h % 4]]) {
-            if (same_as[w] == v) name = w;
-          }
-        }
-      }
+      const VertexIndex name = surface_vertex(surface, same_as, mesh, v, star);
       if (name == v || name == kNone) continue;
       for (const TetIndex u : star) std::ranges::replace(mesh.corner[u], v, name);
     }

@@ -72,6 +72,14 @@ TEST(RecoverVolume, KeepsVerticesAtOnePlaceApart) {
   expect_kept(testing::joined(testing::unit_tetrahedron(), mirrored));
 }
 
+TEST(RecoverVolume, RefusesVerticesThatShouldBeOne) {
+  SurfaceMesh cut = testing::cube();
+  const VertexIndex twin = static_cast<VertexIndex>(cut.points.size());
+  cut.points.push_back(Vec3(cut.points[cut.triangles[0][0]]));
+  cut.triangles[0][0] = twin;
+  EXPECT_THROW(recovered(cut), MeshingError);
+}
+
 TEST(RecoverVolume, KeepsNastySurfaces) {
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
     const testing::NastySurface nasty = testing::nasty_surface(seed);
