@@ -1,6 +1,7 @@
 #include "lattice/lattice_octree.h"
 
 #include "lattice/graded_bcc.h"
+#include "sizing/make_size_field.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,25 +10,7 @@ namespace octafront {
 
 namespace {
 
-// Leaves come in powers of two of one another: a cell is divided while its side is more than this times the wanted one.
-// Sides then lie between 0.75 and 1.5 of it; over that range, evenly in the logarithm, the mean of side^-3 is 1, so that
-// the lattice makes as many elements as the sizes ask for.
-constexpr double kTooLarge = 1.5;
-
-// The size that most of the surface wants: that of its middle triangle by size. The root is chosen so that one level of
-// the octree has exactly this size, and a uniform size is met exactly.
-double common_size(const SurfaceMesh& surface, const SizeField& sizes) {
-  std::vector<double> sample;
-  const std::size_t step = 1 + surface.triangles.size() / 1000;
-  for (std::size_t t = 0; t < surface.triangles.size(); t += step) {
-    const auto& [a, b, c] = surface.triangles[t];
-    sample.push_back(sizes.at((surface.points[a] + surface.points[b] + surface.points[c]) / 3));
-  }
-  const auto middle = sample.begin() + static_cast<std::ptrdiff_t>(sample.size() / 2);
-  std::nth_element(sample.begin(), middle, sample.end());
-  return *middle;
-}
-
+// One level of the octree gets exactly this leaf side.
 RootCube choose_root(const Box3& box, double leaf_side) {
   const Vec3 extent = box.extent();
   double side = leaf_side;
@@ -64,7 +47,7 @@ class Divider {
 
   bool too_large(OctreeKey cell) const {
     if (cell.level() >= kFinestLatticeLevel) return false;
-    const double side = root_.side_of(cell), limit = side / (kTooLarge * kLatticeSidePerEdge);
+    const double side = root_.side_of(cell), limit = side / (kLatticeTooLong * kLatticeSidePerEdge);
     if (limit > sizes_.max_size()) return true;
     if (limit <= sizes_.min_size()) return false;
     return sizes_.at(root_.center_of(cell)) < limit;
@@ -106,7 +89,7 @@ class Divider {
 
 LatticeOctree build_lattice_octree(const SurfaceMesh& surface, const TriangleTree& triangles, const SizeField& sizes,
                                    const RunContext& context) {
-  const double leaf_side = kLatticeSidePerEdge * common_size(surface, sizes);
+  const double leaf_side = kLatticeSidePerEdge * lattice_cell_size(sizes, surface);
   const RootCube root = choose_root(bounding_box(surface.points), leaf_side);
   return {root, Divider(surface, triangles, sizes, root, context).run().tree()};
 }

@@ -34,6 +34,12 @@ SizeField size_field_of_surface(const SurfaceMesh& surface, const SizeOptions& o
 /// How many tetrahedra a mesh of the inside of `surface` by these sizes will have; integral of c / h^3, c measured.
 double expected_tets(const SizeField& sizes, const SurfaceMesh& surface);
 
+/// The mean edge length of one level of a lattice whose cells come in powers of two of it, each divided while its edges
+/// are longer than kLatticeTooLong times the wanted ones: chosen so that the lattice inside `surface` has as many
+/// elements as the sizes ask for, and near the sizes of the surface.
+double lattice_cell_size(const SizeField& sizes, const SurfaceMesh& surface);
+inline constexpr double kLatticeTooLong = 1.5;
+
 /// The size field capped to `factor` of its own value within 1.5 of these values around each point, graded again.
 SizeField capped_near(const SizeField& sizes, const std::vector<Vec3>& points, double factor, double gradation);
 
