@@ -121,6 +121,7 @@ void count(StageReport& report, const RecoveryCounts& c, const LiftCounts& l) {
   report.count("points on facets", static_cast<double>(c.facet_points));
   report.count("points merged", static_cast<double>(l.collapsed));
   report.count("points lifted", static_cast<double>(l.lifted));
+  report.count("points removed", static_cast<double>(l.removed));
   report.count("points deferred", static_cast<double>(l.deferred));
 }
 

@@ -186,6 +186,30 @@ bool SteinerLift::collapse(VertexIndex s) {
   return true;
 }
 
+// A lifted point goes where a neighbour can take its place and the worst element around it gets no worse.
+bool SteinerLift::merge_inside(VertexIndex v) {
+  star_ = mesh_.star(v);
+  double worst = 1;
+  std::vector<VertexIndex> neighbours;
+  for (const TetIndex t : star_) {
+    const Tet& c = mesh_.corner[t];
+    worst = std::min(worst, radius_ratio(points_.at(c[0]), points_.at(c[1]), points_.at(c[2]), points_.at(c[3])));
+    for (const VertexIndex u : c) {
+      if (u != v && std::ranges::find(neighbours, u) == neighbours.end()) neighbours.push_back(u);
+    }
+  }
+  VertexIndex best = kNone;
+  for (const VertexIndex u : neighbours) {
+    const double q = collapse_quality(v, u, worst);
+    if (q < worst) continue;
+    best = u;
+    worst = q;
+  }
+  if (best == kNone) return false;
+  collapse_onto(v, best);
+  return true;
+}
+
 // The tets around s, and behind every face that x does not see strictly the next one. False if a boundary face hides x.
 bool SteinerLift::grow_cavity(VertexIndex s, Vec3 x, std::size_t limit) {
   cavity_ = star_;
@@ -319,7 +343,15 @@ void SteinerLift::run() {
     counts_.lifted += before - open.size();
     if (round == 0) counts_.deferred = open.size();
   }
-  if (open.empty()) return;
+  if (open.empty()) {
+    for (VertexIndex v = first_steiner_; v < points_.size(); ++v) {
+      if (v % 64 == 0) context_.check();
+      const TetIndex t = mesh_.tet_at[v];
+      // Points that a cavity swallowed point to a tet that is gone.
+      if (t != kNone && mesh_.alive(t) && mesh_.has(t, v)) counts_.removed += merge_inside(v);
+    }
+    return;
+  }
   const Vec3 p = points_.at(open.front());
   throw MeshingError(
       fmt::format("no place was found inside for {} points that the surface needs, the first near ({}, {}, "

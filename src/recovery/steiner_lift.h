@@ -11,7 +11,7 @@
 namespace octafront::recovery {
 
 struct LiftCounts {
-  std::uint64_t collapsed = 0, lifted = 0, deferred = 0, removed = 0;
+  std::uint64_t collapsed = 0, lifted = 0, deferred = 0, removed = 0;  ///< removed: after they were lifted
 };
 
 /// Takes the Steiner points off the surface: after run() the boundary of the mesh is the input's triangles, one for
@@ -52,6 +52,8 @@ class SteinerLift {
   bool collapse(VertexIndex s);
   double collapse_quality(VertexIndex s, VertexIndex target, double at_least) const;
   void collapse_onto(VertexIndex s, VertexIndex target);
+
+  bool merge_inside(VertexIndex v);
 
   bool lift(VertexIndex s, int round);
   bool grow_cavity(VertexIndex s, Vec3 x, std::size_t limit);
