@@ -83,7 +83,7 @@ void declare_volume(CLI::App& command, Arguments& a) {
                    "Ideal point above its face, as a multiple of the size there")
       ->type_name("X")
       ->capture_default_str();
-  group->add_option("--ranking", a.options.volume.ranking, "Order of candidates: quality, solid-angle [quality]")
+  group->add_option("--ranking", a.options.volume.ranking, "Order of candidates: quality, solid-angle [solid-angle]")
       ->transform(CLI::CheckedTransformer(kRanking, CLI::ignore_case))
       ->type_name("RULE");
   group->add_option("--improve", a.options.improve.level, "none, paper, fast, default, best [default]")

@@ -57,7 +57,8 @@ struct VolumeOptions {
   /// kLattice: deep inside, the graded body-centred cubic lattice is the mesh, and the front fills the shell around it.
   Core core = Core::kLattice;
   enum class Ranking { kQuality, kSolidAngle };
-  Ranking ranking = Ranking::kQuality;  ///< order of the candidates: by beta of the new tetrahedron, or as in the paper
+  /// Order of the candidates: by the solid angle at the apex, as in the paper, or by beta of the new tetrahedron.
+  Ranking ranking = Ranking::kSolidAngle;
 };
 
 /// How the mesh is improved after it is complete.

@@ -45,6 +45,16 @@ bool segments_nearer_than(double squared, Vec3 p, Vec3 u, Vec3 q, Vec3 v) {
   return squared_length(w + u * s - v * t) < squared;
 }
 
+/// Rises with the solid angle at p of a triangle: tan(angle / 2) = volume / sum, mapped to [0, 2] without trigonometry.
+/// (A. Van Oosterom and J. Strackee, "The Solid Angle of a Plane Triangle", 1983.)
+double solid_angle_rank(const std::array<Vec3, 3>& triangle, Vec3 p) {
+  const Vec3 a = triangle[0] - p, b = triangle[1] - p, c = triangle[2] - p;
+  const double la = length(a), lb = length(b), lc = length(c);
+  const double volume = std::abs(dot(a, cross(b, c)));
+  const double sum = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
+  return sum >= 0 ? volume / (volume + sum) : 1 - sum / (volume - sum);
+}
+
 }  // namespace
 
 Attempt::Attempt(Front& front, const SizeField& sizes, const VolumeOptions& options, FrontCounters& counters)
@@ -109,12 +119,7 @@ void Attempt::collect_candidates(const Limits& limits) {
     candidates_.push_back({i, quality, quality});
   }
   if (options_.ranking == VolumeOptions::Ranking::kSolidAngle)
-    for (Candidate& c : candidates_) {
-      const Vec3 p = near_.local(c.index), a = local_[0] - p, b = local_[1] - p, d = local_[2] - p;
-      const double la = length(a), lb = length(b), ld = length(d);
-      c.rank =
-          std::atan2(std::abs(dot(a, cross(b, d))), la * lb * ld + dot(a, b) * ld + dot(b, d) * la + dot(a, d) * lb);
-    }
+    for (Candidate& c : candidates_) c.rank = solid_angle_rank(local_, near_.local(c.index));
   const auto better = [&](const Candidate& a, const Candidate& b) {
     return a.rank != b.rank ? a.rank > b.rank : near_.vertex(a.index) < near_.vertex(b.index);
   };
