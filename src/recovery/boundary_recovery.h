@@ -42,6 +42,7 @@ class BoundaryRecovery {
 
  private:
   void learn_planes();
+  [[noreturn]] void refuse_intersection(Vec3 at) const;
 
   // Edges.
   std::vector<Edge> missing_edges();

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <deque>
 
+#include <fmt/format.h>
+
 namespace octafront::recovery {
 
 namespace {
@@ -139,7 +141,16 @@ double BoundaryRecovery::parameter(const Edge& line, VertexIndex v) const {
   return carrier_[v - frame_ - kFrameVertices].t;
 }
 
+void BoundaryRecovery::refuse_intersection(Vec3 at) const {
+  throw MeshingError(fmt::format("the surface intersects itself near ({}, {}, {}); repair it there", at.x, at.y, at.z));
+}
+
 VertexIndex BoundaryRecovery::divide_edge(VertexIndex a, VertexIndex b) {
+  for (const Crossing& c : walk_.crossings) {
+    if (c.is_edge && surface_.edges().contains(c.x, c.y)) refuse_intersection(points_.at(c.x));
+    if (!c.is_edge && mesh_.label[c.face / 4][c.face % 4] != kNone)
+      refuse_intersection(points_.at(mesh_.face(c.face)[0]));
+  }
   learn_planes();
   const std::vector<Crossing>& crossings = walk_.crossings;
   // Where along the segment the crossings lie, about.

@@ -125,6 +125,7 @@ VertexIndex BoundaryRecovery::point_on_facet(const Polygon& polygon) {
     best_distance = d;
   }
   const auto [p, q] = edges[best];
+  if (surface_.edges().contains(p, q)) refuse_intersection(points_.at(p));
   learn_planes();
   const VertexIndex s = points_.add_crossing(p, q, plane[0], plane[1], plane[2]);
   points_.add_plane(s, points_.plane_of(polygon.parent));

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <ranges>
+#include <stdexcept>
 
 #include <fmt/format.h>
 
@@ -127,7 +128,9 @@ void count(StageReport& report, const RecoveryCounts& c, const LiftCounts& l) {
 
 }  // namespace
 
-TetMesh recover_volume(const SurfaceMesh& surface, const RunContext& context, StageReport& report) {
+namespace {
+
+TetMesh recover(const SurfaceMesh& surface, const RunContext& context, StageReport& report) {
   const StageTimer timer(report);
   report.name = "recover";
   if (surface.triangles.empty()) return {};
@@ -147,6 +150,17 @@ TetMesh recover_volume(const SurfaceMesh& surface, const RunContext& context, St
     restore_coinciding(surface, same_as, mesh);
   }
   return extract(surface, points, mesh);
+}
+
+}  // namespace
+
+TetMesh recover_volume(const SurfaceMesh& surface, const RunContext& context, StageReport& report) {
+  try {
+    return recover(surface, context, report);
+  } catch (const std::logic_error& e) {
+    // On a valid surface a bug of ours; else the surface was not what it must be.
+    throw MeshingError(fmt::format("{}; does the surface intersect itself?", e.what()));
+  }
 }
 
 }  // namespace octafront

@@ -1,5 +1,9 @@
 #pragma once
 
+// recovery: the last rung of the closing ladder, and the fast way to a coarse exact mesh. Takes a closed surface,
+// whatever its triangles look like, and leaves tetrahedra whose boundary it is, triangle for triangle. See
+// docs/recovery.md.
+
 #include <octafront/report.h>
 #include <octafront/run_context.h>
 #include <octafront/surface_mesh.h>
@@ -11,7 +15,11 @@ namespace octafront {
 /// triangles as the boundary, exactly, and no size: the last rung, which always ends. The surface may have several
 /// components, cavities, and pinched edges or vertices (as cavities of a front have). Points that had to be added lie
 /// strictly inside and follow those of the surface in `points`. mesh.boundary is surface.triangles in their order.
-/// Throws MeshingError if no doubles exist for a point that is needed.
+/// Vertices that no triangle uses stay in `points` and are used by no tet; equal vertices must be merged, except where
+/// the surface touches itself. Counters of `report`: edges and facets missing and recovered, points made, merged,
+/// lifted. Throws MeshingError, with the place, if no doubles exist for a point that is needed, or if the surface is
+/// open, inside out, or has a vertex on another edge or facet. Cost: 4 us per triangle where little is missing, 50-150
+/// on needles.
 TetMesh recover_volume(const SurfaceMesh& surface, const RunContext& context, StageReport& report);
 
 }  // namespace octafront

@@ -1,8 +1,8 @@
 #include "recovery/big_float.h"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
+
+#include <gtest/gtest.h>
 
 namespace octafront::recovery {
 namespace {

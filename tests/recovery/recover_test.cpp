@@ -120,6 +120,13 @@ TEST(RecoverVolume, RefusesAVertexOnAnEdge) {
   EXPECT_THROW(recovered(surface), MeshingError);
 }
 
+TEST(RecoverVolume, RefusesSurfacesThatIntersect) {
+  const SurfaceMesh cube = testing::cube(2);
+  for (const Vec3 shift : {Vec3{0.3, 0.2, 0.1}, Vec3{0.5, 0.5, 0.5}, Vec3{0.25, 0, 0}}) {
+    EXPECT_THROW(recovered(testing::joined(cube, testing::transformed(cube, 1, shift))), MeshingError);
+  }
+}
+
 TEST(RecoverVolume, RefusesAnOpenSurface) {
   SurfaceMesh open = testing::cube();
   open.triangles.pop_back();
