@@ -16,8 +16,8 @@ namespace {
 using namespace octafront;
 using Json = nlohmann::ordered_json;
 
-// Sampling density of the Hausdorff distance, as a part of the diagonal: a tenth of the 0.5 % that is asked for.
-constexpr double kHausdorffTolerance = 5e-4;
+// Sampling density of the Hausdorff distance, as a part of the diagonal: small against the 0.5 % that is asked for.
+constexpr double kHausdorffTolerance = 1e-4;
 
 SurfaceMesh boundary_of(const TetMesh& mesh) {
   SurfaceMesh boundary;

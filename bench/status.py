@@ -1,9 +1,10 @@
 """Meshes every model of bench/models.csv and writes docs/status.md: what works, what does not, and why.
 
-Usage: bench/run.sh status [--only SUBSTRING] [--timeout SECONDS]
+Usage: bench/run.sh status [--only SUBSTRING] [--jobs N] [--timeout SECONDS]
 Each mesh is written to a file and judged by octafront_evaluate, which reads it back.
 """
 import argparse
+import concurrent.futures
 import csv
 import json
 import pathlib
@@ -56,18 +57,20 @@ def first_line(message, limit=110):
     return (text[: limit - 3] + "..." if len(text) > limit else text).replace("|", "/")
 
 
-def clean_tables(build, rows, timeout):
-    auto, kept = [], []
-    for row in rows:
+def clean_tables(build, rows, timeout, pool):
+    def job(row):
         model = pathlib.Path("models/clean", row["file"])
         a = mesh_and_judge(build, model, [], timeout)
-        auto.append((row, a))
         print(f"{row['file']:32} {verdict(a, True):20} {a['seconds']:.1f} s {first_line(a['message'])}", flush=True)
-        if float(row["min_angle"]) > KEPT_MIN_ANGLE:
-            k = mesh_and_judge(build, model, ["--keep-surface"], timeout)
-            kept.append((row, k))
-            print(f"{'  kept':32} {verdict(k, False):20} {k['seconds']:.1f} s {first_line(k['message'])}", flush=True)
-    return auto, kept
+        if float(row["min_angle"]) <= KEPT_MIN_ANGLE:
+            return a, None
+        k = mesh_and_judge(build, model, ["--keep-surface"], timeout)
+        print(f"{row['file'] + ' kept':32} {verdict(k, False):20} {k['seconds']:.1f} s {first_line(k['message'])}",
+              flush=True)
+        return a, k
+
+    results = list(zip(rows, pool.map(job, rows)))
+    return [(row, a) for row, (a, _) in results], [(row, k) for row, (_, k) in results if k]
 
 
 def line(row, r, need_truth):
@@ -88,11 +91,13 @@ def table(pairs, need_truth):
     return out + [line(row, r, need_truth) for row, r in pairs]
 
 
-def dirty_table(build, rows, timeout):
+def dirty_table(build, rows, timeout, pool):
+    def job(row):
+        return mesh_and_judge(build, pathlib.Path("models/dirty", row["file"]), [], timeout)
+
     out = ["| model | known defects | result | message |", "| --- | --- | --- | --- |"]
     counts = {}
-    for row in rows:
-        r = mesh_and_judge(build, pathlib.Path("models/dirty", row["file"]), [], timeout)
+    for row, r in zip(rows, pool.map(job, rows)):
         v = verdict(r, False)
         counts[v] = counts.get(v, 0) + 1
         out.append(f"| {row['file']} | {row['defects']} | {v} | {first_line(r['message'], 160)} |")
@@ -104,11 +109,13 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("build", type=pathlib.Path)
     parser.add_argument("--only", default="", help="models whose name contains this; docs/status.md is not written")
+    parser.add_argument("--jobs", type=int, default=2, help="models at a time")
     parser.add_argument("--timeout", type=float, default=300, help="seconds per model")
     args = parser.parse_args()
     rows = [r for r in csv.DictReader(open("bench/models.csv")) if args.only in r["file"]]
-    auto, kept = clean_tables(args.build, [r for r in rows if r["set"] == "clean"], args.timeout)
-    dirty, counts = dirty_table(args.build, [r for r in rows if r["set"] == "dirty"], args.timeout)
+    pool = concurrent.futures.ThreadPoolExecutor(args.jobs)
+    auto, kept = clean_tables(args.build, [r for r in rows if r["set"] == "clean"], args.timeout, pool)
+    dirty, counts = dirty_table(args.build, [r for r in rows if r["set"] == "dirty"], args.timeout, pool)
 
     good = sum(verdict(r, True) == "valid" for _, r in auto)
     valid = sum(verdict(r, True).startswith("valid") for _, r in auto)

@@ -3,6 +3,7 @@
 #include <octafront/validity.h>
 
 #include "core/stage_timer.h"
+#include "core/thread_limit.h"
 #include "improve/improve.h"
 #include "pipeline/pipeline.h"
 #include "sizing/make_size_field.h"
@@ -186,6 +187,7 @@ void close_report(Report& report) {
 }  // namespace
 
 Result generate(const SurfaceMesh& surface, const Options& options, const RunContext& context) {
+  const ThreadLimit limit(context.threads);
   Report report;
   const Prepared prepared = prepare(surface, options, context, report);
   SizeField sizes = size_stage(prepared, options, context, report);
@@ -200,6 +202,7 @@ Result generate(const SurfaceMesh& surface, const Options& options, const RunCon
 }
 
 SurfaceResult generate_surface(const SurfaceMesh& surface, const Options& options, const RunContext& context) {
+  const ThreadLimit limit(context.threads);
   Report report;
   const Prepared prepared = prepare(surface, options, context, report);
   const SizeField sizes = size_stage(prepared, options, context, report);
@@ -214,6 +217,7 @@ SurfaceResult generate_surface(const SurfaceMesh& surface, const Options& option
 }
 
 SizeResult generate_sizes(const SurfaceMesh& surface, const Options& options, const RunContext& context) {
+  const ThreadLimit limit(context.threads);
   Report report;
   const Prepared prepared = prepare(surface, options, context, report);
   SizeField sizes = size_stage(prepared, options, context, report);

@@ -1,0 +1,18 @@
+#!/usr/bin/env bash
+# Makes the pictures of the README anew: three meshes, cut open, elements coloured by quality.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+source scripts/lib/apt.sh
+need_packages python3-vtk9 xvfb xauth
+[ -d models/clean ] || scripts/get-models.sh
+octafront=${1:-build/quickstart/cli/octafront}
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+picture() { # name, input, mesh options, render options
+  "$octafront" mesh "$2" -o "$work/$1.vtu" -q $3
+  xvfb-run -a /usr/bin/python3 scripts/render.py "$work/$1.vtu" "docs/images/$1.png" --size 900 700 $4
+}
+picture bracket samples/bracket.stl "" "--cut 0,1,0 --up 0,0,1 --keep 0.5 --view 0.5,1,0.6"
+picture bunny models/clean/bunny00.off "--elements 60000" "--cut 0,0,1 --keep 0.5"
+picture elephant models/clean/refined_elephant.off "--elements 80000" "--cut 0,0,1 --keep 0.5"
