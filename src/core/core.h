@@ -1,8 +1,7 @@
 #pragma once
 
-// core: what every room needs and no room owns: run context (progress, cancel), stage timers, the limit on
-// threads. Takes nothing, knows
-// nothing of meshes.
+// core: what every room needs and no room owns: run context (progress, cancel), stage timers, the limit on threads. Takes
+// nothing, knows nothing of meshes.
 
 #include <octafront/run_context.h>
 
