@@ -15,4 +15,4 @@ picture() { # name, input, mesh options, render options
 }
 picture bracket samples/bracket.stl "" "--cut 0,1,0 --up 0,0,1 --keep 0.5 --view 0.5,1,0.6"
 picture bunny models/clean/bunny00.off "--elements 60000" "--cut 0,0,1 --keep 0.5"
-picture elephant models/clean/refined_elephant.off "--elements 80000" "--cut 0,0,1 --keep 0.5"
+picture fandisk models/clean/fandisk_large.off "--elements 60000" "--cut 0,1,0 --up 0,0,1 --keep 0.6 --view 0.45,1,0.5"
