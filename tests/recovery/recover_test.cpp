@@ -6,8 +6,10 @@
 #include "support/named_surfaces.h"
 #include "support/nasty_surfaces.h"
 
+#include <algorithm>
 #include <atomic>
 #include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -24,6 +26,54 @@ void expect_kept(const SurfaceMesh& surface) {
   const auto defect = first_defect(mesh, surface);
   EXPECT_FALSE(defect) << *defect;
   EXPECT_EQ(mesh.boundary, surface.triangles);
+}
+
+// F. Bagemihl's polyhedron (1948): a reflex edge of Schönhardt's gives way to a chain of points that bends inward. All
+// of them are so near its upper end that they do not see the lower corner across.
+SurfaceMesh bagemihl_polyhedron(int chain, double bend) {
+  SurfaceMesh s = testing::twisted_prism(3, 30);
+  constexpr VertexIndex kFrom = 0, kTo = 4, kLow = 1, kHigh = 3;
+  std::erase_if(s.triangles, [&](const Triangle& t) {
+    return std::ranges::count(t, kFrom) == 1 && std::ranges::count(t, kTo) == 1;
+  });
+  const Vec3 from = s.points[kFrom], to = s.points[kTo];
+  VertexIndex last = kFrom;
+  for (int i = 1; i <= chain + 1; ++i) {
+    const double t = 0.7 + 0.3 * i / (chain + 1.0), inward = bend * 4 * t * (1 - t);
+    VertexIndex next = kTo;
+    if (i <= chain) {
+      const Vec3 p = from * (1 - t) + to * t;
+      next = static_cast<VertexIndex>(s.points.size());
+      s.points.push_back({p.x * (1 - inward), p.y * (1 - inward), p.z});
+    }
+    s.triangles.push_back({last, kLow, next});
+    s.triangles.push_back({last, next, kHigh});
+    last = next;
+  }
+  return s;
+}
+
+// A slab with a tower on it, square in section: a tall, narrow twisted prism whose foot is a hole in the slab's top.
+SurfaceMesh chimney_polyhedron(double width, double height, double twist_degrees) {
+  const SurfaceMesh tower = testing::transformed(testing::twisted_prism(4, twist_degrees, height / width), width, {});
+  SurfaceMesh s;
+  s.points = tower.points;  // 0 to 3 the foot, 4 to 7 the rim
+  for (const Triangle& t : tower.triangles) {
+    if (std::ranges::any_of(t, [](VertexIndex v) { return v > 3; })) s.triangles.push_back(t);
+  }
+  for (const double z : {0.0, -1.0}) {
+    for (const Vec3 corner : {Vec3{1, 0, z}, Vec3{0, 1, z}, Vec3{-1, 0, z}, Vec3{0, -1, z}}) s.points.push_back(corner);
+  }
+  for (VertexIndex i = 0; i < 4; ++i) {
+    const VertexIndex j = (i + 1) % 4, top = 8, bottom = 12;
+    s.triangles.push_back({i, top + i, top + j});
+    s.triangles.push_back({i, top + j, j});
+    s.triangles.push_back({bottom + i, bottom + j, top + j});
+    s.triangles.push_back({bottom + i, top + j, top + i});
+  }
+  s.triangles.push_back({12, 14, 13});
+  s.triangles.push_back({12, 15, 14});
+  return s;
 }
 
 TEST(RecoverVolume, KeepsNamedSurfaces) {
@@ -47,6 +97,25 @@ TEST(RecoverVolume, FillsTheSchoenhardtPolyhedron) {
   const SurfaceMesh surface = testing::twisted_prism(3, 30);
   expect_kept(surface);
   EXPECT_GT(recovered(surface).points.size(), surface.points.size());
+}
+
+// No vertex sees the whole lower triangle, so no tetrahedralisation without extra points exists.
+TEST(RecoverVolume, FillsBagemihlsPolyhedra) {
+  for (const int chain : {1, 2, 5, 20, 100}) {
+    SCOPED_TRACE(chain);
+    const SurfaceMesh surface = bagemihl_polyhedron(chain, 0.01);
+    expect_kept(surface);
+    EXPECT_GT(recovered(surface).points.size(), surface.points.size());
+  }
+}
+
+TEST(RecoverVolume, FillsChimneys) {
+  for (const double width : {0.5, 1e-2, 1e-5}) {
+    for (const double twist : {0.0, 20.0, 40.0}) {
+      SCOPED_TRACE(::testing::Message() << "width " << width << ", twist " << twist);
+      expect_kept(chimney_polyhedron(width, 3, twist));
+    }
+  }
 }
 
 TEST(RecoverVolume, FillsTwistedPrisms) {
