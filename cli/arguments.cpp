@@ -15,9 +15,12 @@ void declare_output(CLI::App& command, Arguments& a, const std::string& what, bo
   if (required) option->required();
 }
 
+void declare_report(CLI::App& command, Arguments& a) {
+  command.add_option("--json", a.json, "Write the report as JSON")->type_name("FILE");
+}
+
 void declare_run(CLI::App& command, Arguments& a) {
   auto* group = command.add_option_group("Run");
-  group->add_option("--json", a.json, "Write the report as JSON")->type_name("FILE");
   group->add_option("--threads", a.threads, "Threads at most; 0: all of the machine. The result is the same")
       ->check(CLI::Range(0, 1024));
   group->add_flag("-q,--quiet", a.quiet, "Print nothing but errors");

@@ -66,21 +66,33 @@ int check_tet_mesh(const Arguments& a) {
                   error.what(), file.string()));
 }
 
-Result generate_or_explain(const Arguments& a, const RunContext& context) {
+// Runs one of the library's generators on the input; its refusals name the file.
+template <class Generator>
+auto run_on_input(const Arguments& a, const RunContext& context, const Generator& generator) {
   const SurfaceFile file = read_input(a, context);
   try {
-    return generate(file.surface, options_for(a, file), context);
+    return generator(file.surface, options_for(a, file), context);
   } catch (const OpenCavityError& error) {
     fail_with_cavity(a, error);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", a.input.string(), error.what()));
   }
+}
+
+// Everything that can be known to fail before the long work.
+void check_report_target(const Arguments& a) {
+  if (a.json.empty()) return;
+  if (a.json == a.output) throw OptionError("--json and --output name the same file");
+  check_text_target(a.json);
 }
 
 }  // namespace
 
 int run_mesh(const Arguments& a) {
   check_mesh_target(a.output);
+  check_report_target(a);
   const RunContext context = terminal_context(a.threads, a.quiet);
-  const Result result = generate_or_explain(a, context);
+  const Result result = run_on_input(a, context, generate);
   context.report("writing", -1);
   write_mesh(a.output, result.mesh);
   write_report(a, result.report);
@@ -90,9 +102,9 @@ int run_mesh(const Arguments& a) {
 
 int run_surface(const Arguments& a) {
   check_surface_target(a.output);
+  check_report_target(a);
   const RunContext context = terminal_context(a.threads, a.quiet);
-  const SurfaceFile file = read_input(a, context);
-  const SurfaceResult result = generate_surface(file.surface, options_for(a, file), context);
+  const SurfaceResult result = run_on_input(a, context, generate_surface);
   write_surface(a.output, result.surface);
   write_report(a, result.report);
   say(a, fmt::format("written: {}\n", a.output.string()));
@@ -100,9 +112,10 @@ int run_surface(const Arguments& a) {
 }
 
 int run_size(const Arguments& a) {
+  if (!a.output.empty()) check_text_target(a.output);
+  check_report_target(a);
   const RunContext context = terminal_context(a.threads, a.quiet);
-  const SurfaceFile file = read_input(a, context);
-  const SizeResult result = generate_sizes(file.surface, options_for(a, file), context);
+  const SizeResult result = run_on_input(a, context, generate_sizes);
   if (!a.output.empty()) write_size_field(a.output, result.sizes);
   write_report(a, result.report);
   if (!a.output.empty()) say(a, fmt::format("written: {}\n", a.output.string()));

@@ -68,6 +68,7 @@ int main(int argc, char** argv) {
   declare_sizes(*mesh, a);
   declare_surface(*mesh, a);
   declare_volume(*mesh, a);
+  declare_report(*mesh, a);
   declare_run(*mesh, a);
   mesh->callback([&] { chosen = [&] { return run_mesh(a); }; });
 
@@ -76,6 +77,7 @@ int main(int argc, char** argv) {
   declare_output(*surface, a, "Surface: .stl, .obj, .off or .ply", true);
   declare_sizes(*surface, a);
   declare_surface(*surface, a);
+  declare_report(*surface, a);
   declare_run(*surface, a);
   surface->callback([&] { chosen = [&] { return run_surface(a); }; });
 
@@ -84,6 +86,7 @@ int main(int argc, char** argv) {
   declare_output(*size, a, "Background grid: .vtu", false);
   declare_sizes(*size, a);
   declare_surface(*size, a);
+  declare_report(*size, a);
   declare_run(*size, a);
   size->callback([&] { chosen = [&] { return run_size(a); }; });
 

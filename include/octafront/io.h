@@ -45,6 +45,8 @@ void write_text(const std::filesystem::path& file, const std::string& text);
 /// exist or cannot be written: to be called before long work.
 void check_mesh_target(const std::filesystem::path& file);
 void check_surface_target(const std::filesystem::path& file);
+/// The same for files of any ending.
+void check_text_target(const std::filesystem::path& file);
 
 /// Reads a tetrahedral mesh: .vtu (not only as written here), Gmsh .msh 4.1 and 2.2 (ASCII and binary), MEDIT .mesh.
 /// Inverted tetrahedra are turned, other kinds of elements and unused vertices are left out, and a boundary face that

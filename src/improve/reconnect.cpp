@@ -26,6 +26,10 @@ struct Refill {
   }
 };
 
+// A change must gain at least this. Sums of the same numbers in another order differ in their last bits: on a regular
+// lattice two refills of equal worth would otherwise replace each other for ever.
+constexpr float kLeastGain = 1e-5f;
+
 class Reconnector {
  public:
   Reconnector(EditMesh& mesh, const Floor& floor, Goal goal) : mesh_(mesh), floor_(floor), goal_(goal) {}
@@ -34,9 +38,10 @@ class Reconnector {
   /// created(). False if none is better.
   bool improve(TetIndex t) {
     best_.clear();
+    best_.gain = kLeastGain;
     for (const auto& [i, j] : kTetEdges) try_edge(t, i, j);
     for (int i = 0; i < 4; ++i) try_face(t, i);
-    if (best_.gain <= 0) return false;
+    if (best_.old_tets.empty()) return false;
     mesh_.replace(best_.old_tets, best_.new_tets, best_.shapes, created_);
     return true;
   }

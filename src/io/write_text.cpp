@@ -10,4 +10,8 @@ void write_text(const std::filesystem::path& file, const std::string& text) {
   out.commit();
 }
 
+void check_text_target(const std::filesystem::path& file) {
+  io::check_writable(file);
+}
+
 }  // namespace octafront

@@ -36,6 +36,20 @@ struct Prepared {
   Features features;
 };
 
+// Doubles that lie too few steps apart leave no room for vertices between them.
+constexpr double kLeastExtent = 1e-12;  // diagonal over the largest coordinate
+
+void refuse_lost_precision(const SurfaceMesh& surface) {
+  const Box3 box = bounding_box(surface.points);
+  const Vec3 far = max(box.hi, -box.lo);
+  const double largest = std::max({far.x, far.y, far.z});
+  if (box.diagonal() < kLeastExtent * largest)
+    throw InputError(fmt::format(
+        "the model is {:.3g} across but lies {:.3g} away from the origin: double precision has too few points "
+        "there to mesh it. Move the model to the origin.",
+        box.diagonal(), largest));
+}
+
 // What every run begins with: a surface that is known to be clean.
 Prepared prepare(const SurfaceMesh& input, const Options& options, const RunContext& context, Report& report) {
   check_options(options);
@@ -45,6 +59,7 @@ Prepared prepare(const SurfaceMesh& input, const Options& options, const RunCont
     stage.notes = repaired.notes;
     const SurfaceDefects defects = find_defects(repaired);
     if (!defects.clean()) throw InputError(defects.describe());
+    refuse_lost_precision(repaired.surface);
     stage.count("triangles", static_cast<double>(repaired.surface.triangles.size()));
     stage.count("bodies", repaired.bodies);
     stage.count("cavities", repaired.cavities);

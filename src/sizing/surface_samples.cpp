@@ -46,6 +46,11 @@ class Sampler {
  private:
   void halve(Vec3 apex, Vec3 from, Vec3 to, Vec3 n, std::uint32_t face) {
     const Vec3 middle = 0.5 * (from + to);
+    if (middle == from || middle == to)
+      throw OptionError(fmt::format(
+          "sizes near ({:.6g}, {:.6g}, {:.6g}) are smaller than the steps between doubles there; ask for larger "
+          "sizes, or move the model to the origin",
+          middle.x, middle.y, middle.z));
     sample(apex, from, middle, n, face);
     sample(apex, middle, to, n, face);
   }

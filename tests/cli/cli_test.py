@@ -114,6 +114,18 @@ class CommandLine(unittest.TestCase):
         self.run_cli("mesh", self.part, "-o", self.dir / "absent" / "o.vtu", status=5)
         self.run_cli("mesh", self.part, "-o", self.dir / "o.unknown", status=5)
 
+    def test_targets_are_checked_before_the_work(self):
+        out = self.dir / "o.vtu"
+        self.run_cli("mesh", self.part, "-o", out, "--json", self.dir / "absent" / "r.json", status=5)
+        self.run_cli("mesh", self.part, "-o", out, "--json", out, status=2)
+        self.assertEqual(self.files(), ["part.off"])
+
+    def test_a_model_too_far_from_the_origin_is_refused(self):
+        far = "".join(" ".join(f"{float(x) + 1e15:.17g}" for x in line.split()) + "\n"
+                      for line in TETRAHEDRON.splitlines()[2:6])
+        self.part.write_text("OFF\n4 4 0\n" + far + "".join(TETRAHEDRON.splitlines(True)[6:]))
+        self.assertIn("origin", self.run_cli("mesh", self.part, "-o", self.dir / "o.vtu", status=3).stderr)
+
     def test_an_old_file_survives_a_failed_run(self):
         out = self.dir / "o.vtu"
         out.write_text("precious")
