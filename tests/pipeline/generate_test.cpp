@@ -93,6 +93,19 @@ TEST(Generate, MeetsTheNumberOfElements) {
   }
 }
 
+// A lattice of equal cells along a square bar: refills of equal worth, over which reconnection once went on for ever.
+TEST(Generate, EndsOnARegularBar) {
+  SurfaceMesh bar = testing::cube(1);
+  for (Vec3& p : bar.points) p = {2.3 + 0.4 * p.x, 2.3 + 0.4 * p.y, -1.3 + 3.6 * p.z};
+  Options o;
+  o.size.elements = 20'000;
+  EXPECT_EQ(first_defect(generate(bar, o).mesh), std::nullopt);
+}
+
+TEST(Generate, RefusesAModelTooFarFromTheOrigin) {
+  EXPECT_THROW(generate(testing::transformed(testing::cube(1), 1, {1e15, 1e15, 1e15})), InputError);
+}
+
 TEST(Generate, RefusesAnOpenSurfaceAndSaysWhere) {
   SurfaceMesh open = testing::cube(2);
   open.triangles.pop_back();
