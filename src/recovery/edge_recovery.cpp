@@ -99,7 +99,12 @@ bool BoundaryRecovery::improve_at(const Crossing& c, const SegmentHindrance& hin
   // In a random pass a change that leaves the hindrance as it is counts too.
   const double limit = random_pass ? 0 : -0.5;
   const int depth = random_pass ? 1 : 0;
-  if (c.is_edge) return flipper_.remove_edge_deep(c.tet, c.x, c.y, hindrance, limit, depth);
+  // A failed attempt at a crossing before may have changed the mesh here.
+  if (!mesh_.alive(c.is_edge ? c.tet : c.face / 4)) return false;
+  if (c.is_edge) {
+    return mesh_.has(c.tet, c.x) && mesh_.has(c.tet, c.y) &&
+           flipper_.remove_edge_deep(c.tet, c.x, c.y, hindrance, limit, depth);
+  }
   if (flipper_.flip_face(c.face, hindrance, limit)) return true;
   const Triangle f = mesh_.face(c.face);
   const unsigned shift = random_pass ? random() % 3 : 0;
