@@ -54,6 +54,8 @@ def verdict(row, need_truth):
 def first_line(message, limit=110):
     lines = [line for line in message.replace("octafront: ", "").splitlines() if line.strip()]
     text = lines[0] if lines else ""
+    if text.startswith("models/"):
+        text = text.partition(": ")[2]
     return (text[: limit - 3] + "..." if len(text) > limit else text).replace("|", "/")
 
 
