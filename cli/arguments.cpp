@@ -74,7 +74,14 @@ void declare_volume(CLI::App& command, Arguments& a) {
       {"quality", VolumeOptions::Ranking::kQuality}, {"solid-angle", VolumeOptions::Ranking::kSolidAngle}};
   static const std::map<std::string, VolumeOptions::Core> kCore{{"lattice", VolumeOptions::Core::kLattice},
                                                                 {"none", VolumeOptions::Core::kOff}};
+  static const std::map<std::string, Method> kMethod{{"octree-aft", Method::kOctreeAft}, {"recover", Method::kRecover}};
   auto* group = command.add_option_group("Volume");
+  group
+      ->add_option("--method", a.options.method,
+                   "octree-aft: the volume front; recover: the input's triangles kept, with as few points inside as "
+                   "possible [octree-aft]")
+      ->transform(CLI::CheckedTransformer(kMethod, CLI::ignore_case))
+      ->type_name("NAME");
   group
       ->add_option(
           "--core", a.options.volume.core,

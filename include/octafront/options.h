@@ -13,38 +13,39 @@ namespace octafront {
 /// A place with a size of its own: the points within `radius` of a box, which may be a point. The size holds there and
 /// grows at the gradation away from it. A sphere is a point with a radius.
 struct SizeRegion {
-  Vec3 lo, hi;       ///< opposite corners of the box, input units, lo <= hi
-  double radius = 0; ///< >= 0
-  double size = 0;   ///< > 0
+  Vec3 lo, hi;        ///< opposite corners of the box, input units, lo <= hi
+  double radius = 0;  ///< >= 0
+  double size = 0;    ///< > 0
 };
 
 /// Where element sizes come from. Every source is optional; where several speak, the smallest size wins.
 /// With no source at all an automatic size is chosen from the model (see make_size_field).
 struct SizeOptions {
-  std::optional<double> size;             ///< uniform edge length, input units, > 0
-  std::optional<std::int64_t> elements;   ///< target number of tetrahedra, > 0; the sizes are scaled to meet it
-  std::optional<double> curvature;        ///< elements per full turn of a curved surface, >= 3
-  std::optional<double> gap;              ///< elements across thin walls and narrow gaps, > 0
-  std::optional<double> feature_elements; ///< elements along each feature curve at least (closed curves: twice that), > 0
-  bool facets = false;                    ///< the paper's rule: grid leaves follow the areas of the input's facets
-  std::optional<double> min_size;         ///< no size falls below this, input units
-  std::optional<double> max_size;         ///< no size rises above this, input units
-  double gradation = 0.2;                 ///< |h(x) - h(y)| <= gradation |x - y|; in [0.01, 1]
+  std::optional<double> size;            ///< uniform edge length, input units, > 0
+  std::optional<std::int64_t> elements;  ///< target number of tetrahedra, > 0; the sizes are scaled to meet it
+  std::optional<double> curvature;       ///< elements per full turn of a curved surface, >= 3
+  std::optional<double> gap;             ///< elements across thin walls and narrow gaps, > 0
+  std::optional<double>
+      feature_elements;            ///< elements along each feature curve at least (closed curves: twice that), > 0
+  bool facets = false;             ///< the paper's rule: grid leaves follow the areas of the input's facets
+  std::optional<double> min_size;  ///< no size falls below this, input units
+  std::optional<double> max_size;  ///< no size rises above this, input units
+  double gradation = 0.2;          ///< |h(x) - h(y)| <= gradation |x - y|; in [0.01, 1]
   enum class Interior { kUniform, kGraded };
   /// kUniform: sizes inside stay at most the largest size on the surface (the paper's Cmax).
   /// kGraded: sizes grow inward at the gradation, up to max_size.
   Interior interior = Interior::kUniform;
   /// Further sources, on top of the others or of the automatic choice. --elements does not scale them.
   std::vector<SizeRegion> regions;
-  std::function<double(Vec3)> callback;   ///< a further source on the surface; must return a size > 0; may be empty
+  std::function<double(Vec3)> callback;  ///< a further source on the surface; must return a size > 0; may be empty
 };
 
 /// How the surface is triangulated anew.
 struct SurfaceOptions {
-  bool keep = false;              ///< the input triangles become the boundary, exactly
-  double feature_angle = 40;      ///< degrees between face normals from which an edge is kept as a feature; (0, 180)
-  /// Where the new surface strays farther from the input than this (input units, > 0), the sizes are made smaller, for a
-  /// few rounds. Without a value the sizes alone decide.
+  bool keep = false;          ///< the input triangles become the boundary, exactly
+  double feature_angle = 40;  ///< degrees between face normals from which an edge is kept as a feature; (0, 180)
+  /// Where the new surface strays farther from the input than this (input units, > 0), the sizes are made smaller, for
+  /// a few rounds. Without a value the sizes alone decide.
   std::optional<double> max_deviation;
 };
 
@@ -69,14 +70,21 @@ struct ImproveOptions {
   int sweeps = 4;           ///< sweeps of the Laplacian, >= 0
 };
 
+/// How the volume gets its tetrahedra.
+enum class Method {
+  kOctreeAft,  ///< the volume front, localised by the octree, around a lattice core
+  kRecover,  ///< the input's triangles kept and filled with as few inner points as possible: coarse, exact, of no size
+};
+
 /// Everything that steers generate().
 struct Options {
+  Method method = Method::kOctreeAft;  ///< kRecover implies surface.keep
   SizeOptions size;
   SurfaceOptions surface;
   VolumeOptions volume;
   ImproveOptions improve;
-  /// Per triangle of the input: the face of the file that it came from (SurfaceFile::face_of_triangle), so that messages
-  /// name faces as the user knows them. Empty: triangle i is face i.
+  /// Per triangle of the input: the face of the file that it came from (SurfaceFile::face_of_triangle), so that
+  /// messages name faces as the user knows them. Empty: triangle i is face i.
   std::vector<std::uint32_t> face_of_triangle;
 };
 

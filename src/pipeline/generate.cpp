@@ -6,10 +6,12 @@
 #include "core/thread_limit.h"
 #include "improve/improve.h"
 #include "pipeline/pipeline.h"
+#include "recovery/recover.h"
 #include "sizing/make_size_field.h"
 #include "surface/features.h"
 #include "surface/remesh.h"
 #include "volume/fill.h"
+#include "volume/regions.h"
 
 #include <algorithm>
 #include <cmath>
@@ -114,13 +116,30 @@ Remeshed keep_surface(const Prepared& p, const SizeField& sizes) {
   return kept;
 }
 
+TetMesh fill_by_recovery(const SurfaceMesh& surface, const RunContext& context, StageReport& stage) {
+  TetMesh mesh = recover_volume(surface, context, stage);
+  mesh.region = regions_of(mesh, surface);
+  mesh.patch = surface.patch;
+  return mesh;
+}
+
+TetMesh fill_by_method(const Remeshed& boundary, const Options& options, const RunContext& context, Report& report) {
+  switch (options.method) {
+    case Method::kOctreeAft:
+      return run_stage(report, context, "volume front", [&](StageReport& stage) {
+        return fill_volume(boundary.surface, boundary.sizes, options.volume, context, stage);
+      });
+    case Method::kRecover:
+      return run_stage(report, context, "recovery",
+                       [&](StageReport& stage) { return fill_by_recovery(boundary.surface, context, stage); });
+  }
+  throw OptionError("there is no such method");
+}
+
 TetMesh volume_stage(const Remeshed& boundary, const std::vector<std::uint32_t>& face_of_triangle,
                      const Options& options, const RunContext& context, Report& report) {
-  TetMesh mesh = run_stage(report, context, "volume front", [&](StageReport& stage) {
-    TetMesh filled = fill_volume(boundary.surface, boundary.sizes, options.volume, context, stage);
-    stage.count("tets", static_cast<double>(filled.tets.size()));
-    return filled;
-  });
+  TetMesh mesh = fill_by_method(boundary, options, context, report);
+  report.stages.back().count("tets", static_cast<double>(mesh.tets.size()));
   mesh.source.reserve(boundary.source.size());
   for (const std::uint32_t triangle : boundary.source) mesh.source.push_back(face_of_triangle[triangle]);
   mesh.patch_names = boundary.surface.patch_names;
@@ -201,8 +220,10 @@ void close_report(Report& report) {
 
 }  // namespace
 
-Result generate(const SurfaceMesh& surface, const Options& options, const RunContext& context) {
+Result generate(const SurfaceMesh& surface, const Options& given, const RunContext& context) {
   const ThreadLimit limit(context.threads);
+  Options options = given;
+  if (options.method == Method::kRecover) options.surface.keep = true;
   Report report;
   const Prepared prepared = prepare(surface, options, context, report);
   SizeField sizes = size_stage(prepared, options, context, report);

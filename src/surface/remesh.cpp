@@ -77,9 +77,9 @@ Compacted compacted(const WorkingMesh& mesh, const SurfaceMesh& input, const Siz
 }
 
 /// How much of the input's triangulation an attempt may change.
-enum class Method { kFull, kInsertOnly };
+enum class Effort { kFull, kInsertOnly };
 
-Compacted attempt(Method method, const SurfaceMesh& surface, InputSurface& input, const Features& features,
+Compacted attempt(Effort effort, const SurfaceMesh& surface, InputSurface& input, const Features& features,
                   const SizeField& sizes, const RunContext& context, Counts& counts) {
   set_features(input, {});
   set_features(input, features_at_scale(input, features, sizes));
@@ -92,7 +92,7 @@ Compacted attempt(Method method, const SurfaceMesh& surface, InputSurface& input
   counts.coarsen = {};
   counts.improve = {};
   WorkingMesh mesh = insert_points(input, curves, front, context, counts.insertion);
-  if (method == Method::kFull) {
+  if (effort == Effort::kFull) {
     remove_input_vertices(mesh, context, counts.coarsen);
     improve_surface(mesh, input, sizes, context, counts.improve);
   } else {
@@ -162,8 +162,8 @@ Remeshed remesh_surface(const SurfaceMesh& surface, const Features& features, co
   if (options.max_deviation) tree.emplace(surface);
   for (counts.rounds = 1; counts.rounds <= kMostRounds + 1; ++counts.rounds) {
     const bool is_last = counts.rounds > kMostRounds;
-    const Method method = is_last ? Method::kInsertOnly : Method::kFull;
-    Compacted c = attempt(method, surface, input, features, capped, context, counts);
+    const Effort effort = is_last ? Effort::kInsertOnly : Effort::kFull;
+    Compacted c = attempt(effort, surface, input, features, capped, context, counts);
     const auto crossings = find_crossings(c.result.surface);
     counts.crossings += crossings.size();
     if (!crossings.empty()) {

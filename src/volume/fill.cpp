@@ -5,11 +5,11 @@
 #include "lattice/core.h"
 #include "volume/advance.h"
 #include "volume/ladder.h"
+#include "volume/regions.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 
 namespace octafront {
 
@@ -75,48 +75,6 @@ std::size_t tet_budget(const SurfaceMesh& surface, const SizeField& sizes) {
   const Vec3 e = box.extent() / sizes.min_size();
   const double finest = 100 * e.x * e.y * e.z;
   return static_cast<std::size_t>(std::min(4e9, 1e5 + 1000.0 * static_cast<double>(surface.triangles.size()) + finest));
-}
-
-/// Joins what tetrahedra connect: a body's outer shell and its cavities.
-class VertexSets {
- public:
-  explicit VertexSets(std::size_t vertices) : parent_(vertices) { std::iota(parent_.begin(), parent_.end(), 0u); }
-  VertexIndex root(VertexIndex v) {
-    while (parent_[v] != v) v = parent_[v] = parent_[parent_[v]];
-    return v;
-  }
-  void join(VertexIndex a, VertexIndex b) {
-    a = root(a), b = root(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<VertexIndex> parent_;
-};
-
-bool has_one_shell(const SurfaceMesh& surface) {
-  VertexSets sets(surface.points.size());
-  for (const auto& [a, b, c] : surface.triangles) sets.join(a, b), sets.join(b, c);
-  const VertexIndex first = sets.root(surface.triangles[0][0]);
-  return std::all_of(surface.triangles.begin(), surface.triangles.end(),
-                     [&](const Triangle& t) { return sets.root(t[0]) == first; });
-}
-
-/// Bodies numbered by their first triangle, per tetrahedron; empty if there is only one.
-std::vector<std::uint32_t> regions_of(const TetMesh& mesh, const SurfaceMesh& surface) {
-  if (has_one_shell(surface)) return {};
-  VertexSets sets(mesh.points.size());
-  for (const Tet& t : mesh.tets)
-    for (int i = 1; i < 4; ++i) sets.join(t[0], t[i]);
-  std::vector<std::uint32_t> number(mesh.points.size(), kNone), region;
-  std::uint32_t bodies = 0;
-  for (const Triangle& t : surface.triangles) {
-    std::uint32_t& n = number[sets.root(t[0])];
-    if (n == kNone) n = bodies++;
-  }
-  region.reserve(mesh.tets.size());
-  for (const Tet& t : mesh.tets) region.push_back(number[sets.root(t[0])]);
-  return region;
 }
 
 /// Points that the closing of cavities has left without a tetrahedron go; those of the surface keep their numbers.

@@ -82,6 +82,17 @@ TEST(Generate, NumbersBodiesAsRegions) {
   }
 }
 
+TEST(Generate, RecoversKeptSurfacesWithTheirPatchesAndRegions) {
+  const SurfaceMesh two = testing::joined(testing::cube(2), testing::transformed(testing::icosphere(2), 1, {3, 0, 0}));
+  Options o;
+  o.method = Method::kRecover;
+  const Result r = generate(two, o);
+  EXPECT_EQ(first_defect(r.mesh, two), std::nullopt);
+  EXPECT_EQ(r.mesh.boundary.size(), two.triangles.size());
+  EXPECT_EQ(r.mesh.patch, two.patch);
+  EXPECT_EQ(std::set<std::uint32_t>(r.mesh.region.begin(), r.mesh.region.end()), (std::set<std::uint32_t>{0, 1}));
+}
+
 TEST(Generate, MeetsTheNumberOfElements) {
   for (const std::int64_t n : {3'000, 20'000, 100'000}) {
     for (const SurfaceMesh& s : {testing::cube(2), testing::icosphere(4), testing::torus(48, 24)}) {
