@@ -1,0 +1,47 @@
+"""Gmsh (Debian: gmsh): HXT, and its Delaunay, on a kept discrete surface."""
+import pathlib
+import re
+
+from . import surfaces
+from .process import finish, run_measured
+
+SCRIPT = """Merge "in.msh";
+Surface Loop(1) = {{1}};
+Volume(1) = {{1}};
+Mesh.Algorithm3D = {algorithm};
+Mesh.Optimize = {optimize};
+Mesh.MeshSizeExtendFromBoundary = 1;
+Mesh.MeshSizeMax = {size:.9g};
+General.NumThreads = {threads};
+Mesh.MaxNumThreads3D = {threads};
+Mesh.Binary = 1;
+Mesh.SaveAll = 1;
+"""
+HXT, DELAUNAY = 10, 1
+
+
+def fill(surface, folder, timeout, algorithm, optimize, threads):
+    """Keeps the triangles of `surface` (OFF). The mesh is binary MSH 4.1."""
+    folder = pathlib.Path(folder)
+    points, triangles = surfaces.read_off(surface)
+    surfaces.write_msh(folder / "in.msh", points, triangles)
+    (folder / "in.geo").write_text(SCRIPT.format(algorithm=algorithm, optimize=int(optimize), threads=threads,
+                                                 size=surfaces.mean_edge(points, triangles)))
+    outcome = run_measured(["gmsh", "-3", "in.geo", "-o", "out.msh", "-format", "msh41", "-bin", "-v", "4", "-nt",
+                            str(threads)], folder, timeout)
+    stage = re.search(r"Done meshing 3D \(Wall [\d.e+-]+s, CPU ([\d.e+-]+)s\)", outcome.log)
+    improved = re.search(r"Done optimizing mesh \(Wall [\d.e+-]+s, CPU ([\d.e+-]+)s\)", outcome.log)
+    if stage:
+        outcome.stage_seconds = float(stage[1]) + (float(improved[1]) if improved else 0.0)
+    failed = re.search(r"Error\s*: (.*)", outcome.log)
+    if failed and not outcome.error:
+        outcome.error = failed[1][:120]
+    return finish(outcome, folder / "out.msh")
+
+
+def fill_hxt(surface, folder, timeout, optimize=True, threads=1):
+    return fill(surface, folder, timeout, HXT, optimize, threads)
+
+
+def fill_delaunay(surface, folder, timeout, optimize=True, threads=1):
+    return fill(surface, folder, timeout, DELAUNAY, optimize, threads)

@@ -1,0 +1,91 @@
+"""Netgen (Debian: netgen): its front on a kept surface, through the library, since the program meshes surfaces anew.
+
+As a program of its own, which fill() runs:  python3 -m peers.netgen SURFACE.off MESH.mesh
+"""
+import ctypes
+import pathlib
+import re
+import resource
+import sys
+
+from . import surfaces
+from .process import finish, run_measured
+
+LIBRARIES = ["/usr/lib/x86_64-linux-gnu/netgen/libnglib.so.6.2", "libnglib.so"]
+
+
+def fill(surface, folder, timeout):
+    """Keeps the triangles of `surface` (OFF). The mesh is MEDIT."""
+    bench = pathlib.Path(__file__).resolve().parent.parent
+    out = pathlib.Path(folder).resolve() / "out.mesh"
+    outcome = run_measured([sys.executable, "-m", "peers.netgen", pathlib.Path(surface).resolve(), out], bench, timeout)
+    stage = re.search(r"filling CPU seconds: ([\d.]+)", outcome.log)
+    if stage:
+        outcome.stage_seconds = float(stage[1])
+    return finish(outcome, out)
+
+
+class Parameters(ctypes.Structure):
+    """The beginning of nglib::Ng_Meshing_Parameters; the constructor fills in the rest."""
+    _fields_ = [("uselocalh", ctypes.c_int), ("maxh", ctypes.c_double), ("minh", ctypes.c_double),
+                ("fineness", ctypes.c_double), ("grading", ctypes.c_double), ("rest", ctypes.c_char * 2048)]
+
+
+def load():
+    for name in LIBRARIES:
+        try:
+            return ctypes.CDLL(name)
+        except OSError:
+            continue
+    raise OSError("libnglib not found (Debian: netgen)")
+
+
+def function(library, mangled, result, *arguments):
+    f = getattr(library, "_ZN5nglib" + mangled)
+    f.restype, f.argtypes = result, arguments
+    return f
+
+
+def fill_in_process(surface, out):
+    points, triangles = surfaces.read_off(surface)
+    library, pointer = load(), ctypes.c_void_p
+    function(library, "7Ng_InitEv", None)()
+    mesh = function(library, "10Ng_NewMeshEv", pointer)()
+    add_point = function(library, "11Ng_AddPointEPPvPd", None, pointer, pointer)
+    add_triangle = function(library, "20Ng_AddSurfaceElementEPPvNS_23Ng_Surface_Element_TypeEPi", None, pointer,
+                            ctypes.c_int, pointer)
+    for p in points:
+        add_point(mesh, (ctypes.c_double * 3)(*p))
+    for a, b, c in triangles:
+        add_triangle(mesh, 1, (ctypes.c_int * 3)(a + 1, b + 1, c + 1))
+    parameters = Parameters()
+    function(library, "21Ng_Meshing_ParametersC1Ev", None, pointer)(ctypes.byref(parameters))
+    parameters.maxh = surfaces.mean_edge(points, triangles)
+    start = resource.getrusage(resource.RUSAGE_SELF)
+    status = function(library, "21Ng_GenerateVolumeMeshEPPvPNS_21Ng_Meshing_ParametersE", ctypes.c_int, pointer,
+                      pointer)(mesh, ctypes.byref(parameters))
+    end = resource.getrusage(resource.RUSAGE_SELF)
+    print(f"filling CPU seconds: {end.ru_utime + end.ru_stime - start.ru_utime - start.ru_stime:.3f}")
+    if status != 0:
+        sys.exit(f"error: netgen returned {status}")
+    save(library, mesh, triangles, out)
+
+
+def save(library, mesh, triangles, out):
+    pointer = ctypes.c_void_p
+    count = lambda name: function(library, name, ctypes.c_int, pointer)(mesh)
+    get_point = function(library, "11Ng_GetPointEPPviPd", None, pointer, ctypes.c_int, pointer)
+    get_tet = function(library, "19Ng_GetVolumeElementEPPviPi", ctypes.c_int, pointer, ctypes.c_int, pointer)
+    xyz, corners = (ctypes.c_double * 3)(), (ctypes.c_int * 10)()
+    points, tets = [], []
+    for i in range(1, count("8Ng_GetNPEPPv") + 1):
+        get_point(mesh, i, xyz)
+        points.append(tuple(xyz))
+    for i in range(1, count("8Ng_GetNEEPPv") + 1):
+        get_tet(mesh, i, corners)
+        tets.append(tuple(c - 1 for c in corners[:4]))
+    surfaces.write_medit(out, points, triangles, tets)
+
+
+if __name__ == "__main__":
+    fill_in_process(sys.argv[1], sys.argv[2])
