@@ -1,8 +1,27 @@
 #include "arguments.h"
 
-#include <map>
+#include <utility>
+#include <vector>
 
 namespace octafront::cli {
+
+namespace {
+
+// An option whose value is one of a few names; the help lists them in the order of `names`.
+template <class Value>
+void add_choice(CLI::App& group, const std::string& option, Value& value,
+                const std::vector<std::pair<std::string, Value>>& names, const std::string& help) {
+  std::string listed, preset;
+  for (const auto& [name, meaning] : names) {
+    listed += (listed.empty() ? "" : "|") + name;
+    if (meaning == value) preset = name;
+  }
+  group.add_option(option, value, help + " [" + preset + "]")
+      ->transform(CLI::CheckedTransformer(names, CLI::ignore_case).description(""))
+      ->type_name(listed);
+}
+
+}  // namespace
 
 void declare_input(CLI::App& command, Arguments& a) {
   command.add_option("input", a.input, "Closed surface: STL, OBJ, OFF or PLY, recognised by content")
@@ -41,13 +60,10 @@ void declare_sizes(CLI::App& command, Arguments& a) {
   group->add_option("--grading", o.gradation, "How fast sizes may change: |h(x) - h(y)| <= G |x - y|")
       ->type_name("G")
       ->capture_default_str();
-  static const std::map<std::string, SizeOptions::Interior> kInterior{{"uniform", SizeOptions::Interior::kUniform},
-                                                                      {"graded", SizeOptions::Interior::kGraded}};
-  group
-      ->add_option("--interior", o.interior,
-                   "uniform: inside no larger than on the surface; graded: growing inward [uniform]")
-      ->transform(CLI::CheckedTransformer(kInterior, CLI::ignore_case))
-      ->type_name("MODE");
+  add_choice<SizeOptions::Interior>(
+      *group, "--interior", o.interior,
+      {{"uniform", SizeOptions::Interior::kUniform}, {"graded", SizeOptions::Interior::kGraded}},
+      "Inside no larger than on the surface, or growing inward");
 }
 
 void declare_surface(CLI::App& command, Arguments& a) {
@@ -65,40 +81,29 @@ void declare_surface(CLI::App& command, Arguments& a) {
 }
 
 void declare_volume(CLI::App& command, Arguments& a) {
-  static const std::map<std::string, ImproveOptions::Level> kLevel{{"none", ImproveOptions::Level::kOff},
-                                                                   {"paper", ImproveOptions::Level::kPaper},
-                                                                   {"fast", ImproveOptions::Level::kFast},
-                                                                   {"default", ImproveOptions::Level::kDefault},
-                                                                   {"best", ImproveOptions::Level::kBest}};
-  static const std::map<std::string, VolumeOptions::Ranking> kRanking{
-      {"quality", VolumeOptions::Ranking::kQuality}, {"solid-angle", VolumeOptions::Ranking::kSolidAngle}};
-  static const std::map<std::string, VolumeOptions::Core> kCore{{"lattice", VolumeOptions::Core::kLattice},
-                                                                {"none", VolumeOptions::Core::kOff}};
-  static const std::map<std::string, Method> kMethod{{"octree-aft", Method::kOctreeAft}, {"recover", Method::kRecover}};
+  using Core = VolumeOptions::Core;
+  using Ranking = VolumeOptions::Ranking;
+  using Level = ImproveOptions::Level;
+  VolumeOptions& o = a.options.volume;
   auto* group = command.add_option_group("Volume");
-  group
-      ->add_option("--method", a.options.method,
-                   "octree-aft: the volume front; recover: the input's triangles kept, with as few points inside as "
-                   "possible [octree-aft]")
-      ->transform(CLI::CheckedTransformer(kMethod, CLI::ignore_case))
-      ->type_name("NAME");
-  group
-      ->add_option(
-          "--core", a.options.volume.core,
-          "lattice: the inside is a lattice, the front fills the shell around it; none: all by the front [lattice]")
-      ->transform(CLI::CheckedTransformer(kCore, CLI::ignore_case))
-      ->type_name("KIND");
-  group
-      ->add_option("--ideal-distance", a.options.volume.ideal_distance,
-                   "Ideal point above its face, as a multiple of the size there")
+  add_choice<Method>(*group, "--method", a.options.method,
+                     {{"octree-aft", Method::kOctreeAft}, {"recover", Method::kRecover}},
+                     "octree-aft: the volume front; recover: the input's triangles kept, with as few points inside as "
+                     "possible");
+  add_choice<Core>(*group, "--core", o.core, {{"lattice", Core::kLattice}, {"none", Core::kOff}},
+                   "lattice: the inside is a lattice, the front fills the shell around it; none: all by the front");
+  group->add_option("--ideal-distance", o.ideal_distance, "Ideal point above its face, as a multiple of the size there")
       ->type_name("X")
       ->capture_default_str();
-  group->add_option("--ranking", a.options.volume.ranking, "Order of candidates: quality, solid-angle [solid-angle]")
-      ->transform(CLI::CheckedTransformer(kRanking, CLI::ignore_case))
-      ->type_name("RULE");
-  group->add_option("--improve", a.options.improve.level, "none, paper, fast, default, best [default]")
-      ->transform(CLI::CheckedTransformer(kLevel, CLI::ignore_case))
-      ->type_name("LEVEL");
+  add_choice<Ranking>(*group, "--ranking", o.ranking,
+                      {{"solid-angle", Ranking::kSolidAngle}, {"quality", Ranking::kQuality}}, "Order of candidates");
+  add_choice<Level>(*group, "--improve", a.options.improve.level,
+                    {{"none", Level::kOff},
+                     {"paper", Level::kPaper},
+                     {"fast", Level::kFast},
+                     {"default", Level::kDefault},
+                     {"best", Level::kBest}},
+                    "How the finished mesh is improved");
   group->add_option("--relaxation", a.options.improve.relaxation, "phi of the paper's weighted Laplacian")
       ->type_name("PHI")
       ->capture_default_str();

@@ -16,8 +16,8 @@ namespace octafront {
 struct SurfaceFile {
   SurfaceMesh surface;
   std::vector<std::uint32_t> face_of_triangle;
-  std::string format;               ///< e.g. "binary STL"
-  std::vector<std::string> notes;   ///< what a user should know, e.g. "12 polygons divided into triangles"
+  std::string format;              ///< e.g. "binary STL"
+  std::vector<std::string> notes;  ///< what a user should know, e.g. "12 polygons divided into triangles"
 };
 
 /// Reads STL (binary, ASCII), OBJ, OFF or PLY (ASCII, both binary byte orders), recognised by content; the name only
@@ -27,11 +27,13 @@ struct SurfaceFile {
 SurfaceFile read_surface(const std::filesystem::path& file);
 
 /// Writes by the ending of the name: .stl (binary), .obj, .off, .ply (binary). The file is written beside and renamed
-/// into place: on failure an older file stays whole. Throws OutputError.
+/// into place: on failure an older file stays whole. Throws OutputError, and OptionError for unknown endings before any
+/// work.
 void write_surface(const std::filesystem::path& file, const SurfaceMesh& surface);
 
-/// Writes by the ending of the name: .vtu (compressed binary, with region, patch and beta per element), .msh (Gmsh 4.1),
-/// .mesh (MEDIT). Written beside and renamed into place. Throws OutputError; unknown endings before any work.
+/// Writes by the ending of the name: .vtu (compressed binary, with region, patch and beta per element), .msh
+/// (Gmsh 4.1), .mesh (MEDIT). Written beside and renamed into place. Throws OutputError, and OptionError for unknown
+/// endings before any work.
 void write_mesh(const std::filesystem::path& file, const TetMesh& mesh);
 
 /// Writes the background grid of a size field as .vtu: hexahedra with the size at their corners and their level.
@@ -41,8 +43,8 @@ void write_size_field(const std::filesystem::path& file, const SizeField& sizes)
 /// Writes text (a report) beside and renames it into place. Throws OutputError.
 void write_text(const std::filesystem::path& file, const std::string& text);
 
-/// Throws OutputError if the ending of `file` is none that write_mesh (or write_surface) knows, or its folder does not
-/// exist or cannot be written: to be called before long work.
+/// Throws OptionError if the ending of `file` is none that write_mesh (or write_surface) knows, OutputError if its
+/// folder does not exist or cannot be written: to be called before long work.
 void check_mesh_target(const std::filesystem::path& file);
 void check_surface_target(const std::filesystem::path& file);
 /// The same for files of any ending.
@@ -55,8 +57,8 @@ TetMesh read_mesh(const std::filesystem::path& file);
 
 /// What is known of a file format, for help texts.
 struct FormatInfo {
-  std::string_view name;     ///< e.g. "STL"
-  std::string_view ending;   ///< e.g. ".stl"
+  std::string_view name;    ///< e.g. "STL"
+  std::string_view ending;  ///< e.g. ".stl"
   bool reads_surface, writes_surface, reads_mesh, writes_mesh;
   std::string_view carries;  ///< what survives in it, e.g. "double precision, no patches"
 };

@@ -29,7 +29,7 @@ namespace {
 const io::Format& mesh_format(const std::filesystem::path& file) {
   const io::Format* format = io::format_of(file);
   if (format == nullptr || format->write_mesh == nullptr)
-    throw OutputError(fmt::format("{}: the ending \"{}\" names no mesh format; use one of {}", file.string(),
+    throw OptionError(fmt::format("{}: the ending \"{}\" names no mesh format; use one of {}", file.string(),
                                   file.extension().string(), io::endings_that(&FormatInfo::writes_mesh)));
   return *format;
 }

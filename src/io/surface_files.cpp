@@ -33,7 +33,7 @@ namespace {
 const io::Format& surface_format(const std::filesystem::path& file) {
   const io::Format* format = io::format_of(file);
   if (format == nullptr || format->write_surface == nullptr)
-    throw OutputError(fmt::format("{}: the ending \"{}\" names no surface format; use one of {}", file.string(),
+    throw OptionError(fmt::format("{}: the ending \"{}\" names no surface format; use one of {}", file.string(),
                                   file.extension().string(), io::endings_that(&FormatInfo::writes_surface)));
   return *format;
 }

@@ -16,7 +16,7 @@ namespace {
 constexpr std::uint64_t kBlockBytes = std::uint64_t{1} << 18;
 /// Compressed at a time: enough for many threads, and still only 16 MB.
 constexpr std::uint64_t kBatch = 32;
-/// On a million tetrahedra level 6 takes four times as long and makes the file 3 % smaller.
+/// On a million tetrahedra level 6 takes three times as long and makes the file 3 % smaller.
 constexpr int kLevel = 1;
 /// Room for the offset behind its tag; blanks there are valid XML, unlike blanks inside the quotes for some readers.
 constexpr std::size_t kOffsetWidth = 20;

@@ -149,7 +149,7 @@ TEST(KnownFormats, CanDoWhatTheySay) {
       EXPECT_TRUE(info.reads_surface);
       EXPECT_EQ(read_surface(file).surface.triangles.size(), 12U);
     } else {
-      EXPECT_THROW(check_surface_target(file), OutputError);
+      EXPECT_THROW(check_surface_target(file), OptionError);
     }
     if (info.writes_mesh) {
       EXPECT_NO_THROW(check_mesh_target(file));
@@ -157,7 +157,7 @@ TEST(KnownFormats, CanDoWhatTheySay) {
       EXPECT_TRUE(info.reads_mesh);
       EXPECT_EQ(read_mesh(file).tets.size(), 2U);
     } else {
-      EXPECT_THROW(check_mesh_target(file), OutputError);
+      EXPECT_THROW(check_mesh_target(file), OptionError);
     }
   }
 }
