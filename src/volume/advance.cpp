@@ -1,90 +1,183 @@
 #include "volume/advance.h"
 
+#include <octafront/error.h>
+
+#include <array>
 #include <cmath>
 #include <utility>
+
+#include <oneapi/tbb/enumerable_thread_specific.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
 
 namespace octafront {
 
 namespace {
 
-constexpr std::size_t kFacesBetweenChecks = 512, kFacesBetweenReports = 1 << 15;
 constexpr int kMostRounds = 8;
+constexpr int kAllLayers = std::numeric_limits<int>::max();
+/// A queue of no more faces than this is worked off to its end in one block.
+constexpr std::size_t kSmallQueue = 1500;
+/// Queued faces in a block: their front fits the second-level cache. From 600 to 4000, time and quality change by less
+/// than what two runs differ by; fewer faces share better among many threads.
+constexpr std::size_t kFacesPerBlock = 1500;
+/// Layers that a block works off in one phase. Its neighbours then meet a step of as many layers in the front, which
+/// costs no quality (1 to 100 layers: mean beta .8237 to .8250, below .2 .049 to .058 %); 1 costs a tenth more time.
+constexpr int kLayersPerPhase = 4;
+/// Where blocks are divided, phase by phase: no plane comes back soon.
+constexpr std::array<double, 4> kQuantiles{0.5, 0.36, 0.64, 0.43};
+/// A phase that settles less than this share of its queue is followed by one without blocks.
+constexpr double kLeastSettled = 0.2;
 
-/// The queues of one run.
-class Queues {
+void add(FrontCounters& sum, const FrontCounters& c) {
+  sum.attempts += c.attempts;
+  sum.candidates += c.candidates;
+  sum.face_tests += c.face_tests;
+  sum.exact_tests += c.exact_tests;
+  sum.ideal_points += c.ideal_points;
+  sum.deferred += c.deferred;
+  sum.faces_found += c.faces_found;
+}
+
+class Phases {
  public:
-  Queues(Front& front, const AdvanceBudget& budget, const RunContext& context, FrontCounters& counters,
-         Attempt& attempt)
-      : front_(front), budget_(budget), context_(context), counters_(counters), attempt_(attempt) {}
+  Phases(FrontState& front, const SizeField& sizes, const VolumeOptions& options, const AdvanceBudget& budget,
+         const RunContext& context, FrontCounters& counters)
+      : front_(front),
+        sizes_(sizes),
+        options_(options),
+        budget_(budget),
+        context_(context),
+        counters_(counters),
+        arena_(context.threads > 0 ? context.threads : tbb::task_arena::automatic) {}
 
-  AdvanceResult run(std::vector<QueuedFace> layer, std::vector<QueuedFace> passive) {
-    work_off(std::move(layer), 0);
-    work_off(std::move(passive), 0);
-    // Each round lets the faces that wait try all levels; a success may have made room for others, so there are
+  bool run() {
+    work_off_queue();
+    queue_up(front_.passive, 0);
+    work_off_queue();
+    // Each round lets the faces that are held try all levels; a success may have made room for others, so there are
     // several.
     for (int round = 0; round < kMostRounds && !over_budget(); ++round) {
-      const std::size_t before = front_.tets().size();
+      const std::size_t before = front_.tets;
       for (std::size_t level = 1; level < kLimits.size() && !over_budget(); ++level) {
-        std::vector<QueuedFace> held = take_held();
-        counters_.retries += held.size();
-        work_off(std::move(held), level);
+        counters_.retries += front_.held.size();
+        queue_up(front_.held, static_cast<std::uint8_t>(level));
+        work_off_queue();
       }
-      if (front_.tets().size() == before) break;
+      if (front_.tets == before) break;
     }
-    AdvanceResult result;
-    result.over_budget = over_budget();
-    for (const QueuedFace& q : take_held()) result.left.push_back(q.face);
-    return result;
+    return !over_budget();
   }
 
  private:
-  void work_off(std::vector<QueuedFace> layer, std::size_t level) {
-    std::vector<QueuedFace> next;
-    while (!layer.empty()) {
-      ++counters_.layers;
-      for (const QueuedFace& q : layer) {
-        if (counters_.attempts % kFacesBetweenChecks == 0) context_.check();
-        if (counters_.attempts % kFacesBetweenReports == 0 && std::isfinite(budget_.volume))
-          context_.report("volume", front_.filled_volume() / budget_.volume);
-        if (over_budget()) return;
-        if (!front_.alive(q)) continue;
-        if (!attempt_.advance(q.face, kLimits[level], next)) held_.push_back(q);
-      }
-      layer.swap(next);
-      next.clear();
-      level = 0;
+  void queue_up(std::vector<Triangle>& faces, std::uint8_t level) {
+    for (const Triangle& t : faces) front_.queue.push_back({t, level, false});
+    faces.clear();
+  }
+
+  void work_off_queue() {
+    bool stuck = false;
+    while (!front_.queue.empty() && !over_budget()) {
+      context_.check();
+      if (std::isfinite(budget_.volume)) context_.report("volume", front_.volume / budget_.volume);
+      const bool small = front_.queue.size() <= kSmallQueue;
+      const std::size_t queued = front_.queue.size();
+      const std::uint64_t deferred_before = counters_.deferred;
+      arena_.execute([&] { phase(small || stuck, small ? kAllLayers : kLayersPerPhase); });
+      const auto deferred = static_cast<double>(counters_.deferred - deferred_before);
+      stuck = deferred > (1 - kLeastSettled) * static_cast<double>(queued);
     }
   }
 
-  std::vector<QueuedFace> take_held() {
-    std::vector<QueuedFace> held;
-    for (const QueuedFace& q : std::exchange(held_, {}))
-      if (front_.alive(q)) held.push_back(q);
-    return held;
+  void phase(bool undivided, int layers) {
+    std::vector<FrontBlock> blocks;
+    if (undivided)
+      blocks.push_back(FrontBlock::whole(front_));
+    else
+      blocks = partition_front(front_, {kFacesPerBlock, kQuantiles[counters_.layers % kQuantiles.size()]});
+    ++counters_.layers;
+    const AdvanceBudget left{budget_.tets - front_.tets, budget_.volume - front_.volume,
+                             budget_.face_tests - counters_.face_tests};
+    std::vector<BlockResult> results(blocks.size());
+    tbb::parallel_for(
+        std::size_t{0}, blocks.size(),
+        [&](std::size_t b) {
+          results[b] = advance_block(front_, blocks[b], layers, sizes_, options_, left, context_, scratch_.local());
+          blocks[b] = {};
+        },
+        tbb::simple_partitioner{});
+    join(results);
+  }
+
+  /// Numbers what the blocks made in their order, and makes their results the front.
+  void join(std::vector<BlockResult>& results) {
+    struct Offsets {
+      std::size_t point, queue, held, passive;
+    };
+    std::vector<Offsets> first;
+    first.reserve(results.size());
+    Offsets end{front_.points.size(), 0, 0, 0};
+    for (const BlockResult& r : results) {
+      first.push_back(end);
+      end.point += r.points.size();
+      end.queue += r.queue.size();
+      end.held += r.held.size();
+      end.passive += r.passive.size();
+      front_.tets += r.tets.size();
+      front_.volume += r.volume;
+      add(counters_, r.counters);
+    }
+    if (end.point >= kNone) throw MeshingError("more than 2^32 - 1 vertices: choose a larger element size");
+    front_.points.resize(end.point);
+    front_.sizes.resize(end.point);
+    front_.queue.resize(end.queue);
+    front_.held.resize(end.held);
+    front_.passive.resize(end.passive);
+    const std::size_t pieces = front_.filled.size();
+    front_.filled.resize(pieces + results.size());
+    tbb::parallel_for(std::size_t{0}, results.size(), [&](std::size_t b) {
+      BlockResult r = std::move(results[b]);
+      const auto own = static_cast<VertexIndex>(r.found.size());
+      const auto first_own = static_cast<VertexIndex>(first[b].point);
+      const auto renumber = [&](auto& corners) {
+        for (VertexIndex& v : corners) v = v < own ? r.found[v] : first_own + (v - own);
+      };
+      for (Tet& t : r.tets) renumber(t);
+      for (WaitingFace& w : r.queue) renumber(w.corners);
+      for (Triangle& t : r.held) renumber(t);
+      for (Triangle& t : r.passive) renumber(t);
+      const auto put = [](const auto& from, auto& to, std::size_t at) {
+        std::copy(from.begin(), from.end(), to.begin() + static_cast<std::ptrdiff_t>(at));
+      };
+      put(r.points, front_.points, first[b].point);
+      put(r.sizes, front_.sizes, first[b].point);
+      put(r.queue, front_.queue, first[b].queue);
+      put(r.held, front_.held, first[b].held);
+      put(r.passive, front_.passive, first[b].passive);
+      r.tets.shrink_to_fit();
+      front_.filled[pieces + b] = std::move(r.tets);
+    });
   }
 
   bool over_budget() const {
-    return front_.tets().size() > budget_.tets || front_.filled_volume() > budget_.volume ||
-           counters_.face_tests > budget_.face_tests;
+    return front_.tets > budget_.tets || front_.volume > budget_.volume || counters_.face_tests > budget_.face_tests;
   }
 
-  Front& front_;
+  FrontState& front_;
+  const SizeField& sizes_;
+  const VolumeOptions& options_;
   AdvanceBudget budget_;
   const RunContext& context_;
   FrontCounters& counters_;
-  Attempt& attempt_;
-  std::vector<QueuedFace> held_;
+  tbb::task_arena arena_;
+  tbb::enumerable_thread_specific<BlockScratch> scratch_;
 };
 
 }  // namespace
 
-AdvanceResult advance_front(Front& front, std::vector<QueuedFace> layer, std::vector<QueuedFace> passive,
-                            const SizeField& sizes, const VolumeOptions& options, const AdvanceBudget& budget,
-                            const RunContext& context, FrontCounters& counters) {
-  Attempt attempt(front, sizes, options, counters);
-  AdvanceResult result = Queues(front, budget, context, counters, attempt).run(std::move(layer), std::move(passive));
-  counters.faces_found += attempt.faces_found();
-  return result;
+bool advance_front(FrontState& front, const SizeField& sizes, const VolumeOptions& options, const AdvanceBudget& budget,
+                   const RunContext& context, FrontCounters& counters) {
+  return Phases(front, sizes, options, budget, context, counters).run();
 }
 
 }  // namespace octafront

@@ -2,32 +2,23 @@
 
 #include <octafront/run_context.h>
 
-#include "volume/attempt.h"
-#include "volume/front.h"
-
-#include <cstdint>
-#include <limits>
-#include <vector>
+#include "volume/block_run.h"
 
 namespace octafront {
 
-/// Where a run stops, whatever remains: counted in work, not in time, so that the result never depends on the machine.
-struct AdvanceBudget {
-  std::size_t tets = 0;                                     ///< in all
-  double volume = std::numeric_limits<double>::infinity();  ///< of what the front fills: more means that it leaks
-  std::uint64_t face_tests = std::numeric_limits<std::uint64_t>::max();
-};
-
-struct AdvanceResult {
-  std::vector<FaceIndex> left;  ///< faces that found no tetrahedron at the last level: the walls of what remains open
-  bool over_budget = false;     ///< stopped by the budget
-};
-
-/// Works off the queues: the current layer Qc in order, the faces it leaves make the next layer Qn, until both are
-/// empty; faces without an acceptable tetrahedron wait in Qh and try again at the next level of `kLimits`. The
-/// `passive` faces are only met by the others; what is left of them advances when the layers are done.
-AdvanceResult advance_front(Front& front, std::vector<QueuedFace> layer, std::vector<QueuedFace> passive,
-                            const SizeField& sizes, const VolumeOptions& options, const AdvanceBudget& budget,
-                            const RunContext& context, FrontCounters& counters);
+/// Works off the queues of a front, until all are empty or nothing more fits.
+///
+/// The work goes in phases. Each phase divides space into blocks (partition.h); a block takes the faces that reach into
+/// it, advances those whose whole search region lies strictly inside it, and gives back what remains. Blocks therefore
+/// touch nothing of each other's and run in parallel; their results are joined in the order of the blocks. Faces that
+/// reach beyond their block wait for the next phase, which divides space at other places. Nothing depends on the number
+/// of threads.
+///
+/// A phase is a layer (the paper's Qc; what it leaves is Qn). Faces without an acceptable tetrahedron are held (Qh) and
+/// try again at the next level of `kLimits`. Passive faces are only met by the others; what is left of them advances
+/// when the layers are done. What is `held` at the end are the walls of what remains open. False if it was stopped by
+/// the budget.
+bool advance_front(FrontState& front, const SizeField& sizes, const VolumeOptions& options, const AdvanceBudget& budget,
+                   const RunContext& context, FrontCounters& counters);
 
 }  // namespace octafront

@@ -28,6 +28,16 @@ constexpr double kLookAhead = 0.75;
 /// sliver.
 constexpr double kLeastSizePerEdge = 0.45, kMostSizePerEdge = 2.0;
 
+/// Candidates are culled in single precision and may lie a rounding error outside of the sphere; this much of the size
+/// is far more than that.
+constexpr double kTerritoryMargin = 1e-3;
+
+bool strictly_inside(const Box3& box, const Box3& territory, double margin) {
+  for (int axis = 0; axis < 3; ++axis)
+    if (box.lo[axis] - margin <= territory.lo[axis] || box.hi[axis] + margin >= territory.hi[axis]) return false;
+  return true;
+}
+
 /// The segments (p, p + u) and (q, q + v) come nearer to each other than the root of `squared`.
 bool segments_nearer_than(double squared, Vec3 p, Vec3 u, Vec3 q, Vec3 v) {
   const Vec3 w = p - q, n = cross(u, v);
@@ -57,10 +67,12 @@ double solid_angle_rank(const std::array<Vec3, 3>& triangle, Vec3 p) {
 
 }  // namespace
 
-Attempt::Attempt(Front& front, const SizeField& sizes, const VolumeOptions& options, FrontCounters& counters)
+Attempt::Attempt(Front& front, const SizeField& sizes, const VolumeOptions& options, const Box3& territory,
+                 FrontCounters& counters)
     : front_(front),
       sizes_(sizes),
       options_(options),
+      territory_(territory),
       counters_(counters),
       sizes_vary_(sizes.min_size() < sizes.max_size()) {}
 
@@ -84,7 +96,7 @@ SearchRegion Attempt::region_to_search(double radius) const {
   return region;
 }
 
-void Attempt::place(FaceIndex face, const Limits& limits) {
+bool Attempt::place(FaceIndex face, const Limits& limits) {
   base_ = front_.corners(face);
   double size = 0, longest = 0;
   for (int i = 0; i < 3; ++i) {
@@ -102,9 +114,12 @@ void Attempt::place(FaceIndex face, const Limits& limits) {
   ideal_distance_ = options_.ideal_distance * limits.ideal_factor;
   ideal_at_ = centroid + normal_ * (ideal_distance_ * size);
   const double r = limits.search_radius * size;
-  near_.gather(front_, face, region_to_search(r), size);
+  const SearchRegion region = region_to_search(r);
+  if (!strictly_inside(region.box, territory_, kTerritoryMargin * size)) return false;
+  near_.gather(front_, face, region, size);
   for (int i = 0; i < 3; ++i) local_[i] = near_.to_local(at_[i]);
   ideal_ = normal_ * ideal_distance_;
+  return true;
 }
 
 void Attempt::collect_candidates(const Limits& limits) {
@@ -258,20 +273,23 @@ bool Attempt::try_ideal_point(const Limits& limits) {
          clear_of_faces(ideal_, static_cast<float>(limits.face_clearance));
 }
 
-bool Attempt::advance(FaceIndex face, const Limits& limits, std::vector<QueuedFace>& created) {
+Attempt::Outcome Attempt::advance(FaceIndex face, const Limits& limits, std::vector<QueuedFace>& created) {
+  if (!place(face, limits)) {
+    ++counters_.deferred;
+    return Outcome::kBeyond;
+  }
   ++counters_.attempts;
-  place(face, limits);
   blocker_ = near_.faces().size();
   collect_candidates(limits);
   for (const Candidate& c : candidates_) {
     if (!try_candidate(c, limits)) continue;
     commit(face, near_.vertex(c.index), contact_, created);
-    return true;
+    return Outcome::kAdvanced;
   }
-  if (!limits.new_points || !try_ideal_point(limits)) return false;
+  if (!limits.new_points || !try_ideal_point(limits)) return Outcome::kStuck;
   ++counters_.ideal_points;
   commit(face, front_.add_vertex(ideal_at_, sizes_.at(ideal_at_)), contact_, created);
-  return true;
+  return Outcome::kAdvanced;
 }
 
 void Attempt::commit(FaceIndex face, VertexIndex apex, const Contact& contact, std::vector<QueuedFace>& created) {

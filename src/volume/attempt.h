@@ -14,17 +14,24 @@ namespace octafront {
 /// Counters of the front; they depend on input and options alone.
 struct FrontCounters {
   std::uint64_t attempts = 0, candidates = 0, face_tests = 0, exact_tests = 0, ideal_points = 0, retries = 0,
-                layers = 0, faces_found = 0;
+                layers = 0, faces_found = 0, deferred = 0;
 };
 
 /// Tries to advance one face: ideal point, candidates in order, validity, levers. Keeps its scratch between calls.
 class Attempt {
  public:
-  Attempt(Front& front, const SizeField& sizes, const VolumeOptions& options, FrontCounters& counters);
+  enum class Outcome {
+    kAdvanced,
+    kStuck,  ///< no acceptable tetrahedron within the limits: nothing has changed
+    kBeyond  ///< what it may reach is not strictly inside the territory: not tried
+  };
+
+  /// No tetrahedron will touch the border of `territory` or what lies beyond it.
+  Attempt(Front& front, const SizeField& sizes, const VolumeOptions& options, const Box3& territory,
+          FrontCounters& counters);
 
   /// Builds the first acceptable tetrahedron on `face` and updates the front; the faces that it adds go to `created`.
-  /// False if there is none within `limits`: nothing has changed then.
-  bool advance(FaceIndex face, const Limits& limits, std::vector<QueuedFace>& created);
+  Outcome advance(FaceIndex face, const Limits& limits, std::vector<QueuedFace>& created);
 
   std::uint64_t faces_found() const { return near_.faces_found; }
 
@@ -43,7 +50,8 @@ class Attempt {
   };
 
   SearchRegion region_to_search(double radius) const;
-  void place(FaceIndex face, const Limits& limits);
+  /// False if the face may reach beyond the territory.
+  bool place(FaceIndex face, const Limits& limits);
   void collect_candidates(const Limits& limits);
   bool try_candidate(const Candidate& candidate, const Limits& limits);
   bool try_ideal_point(const Limits& limits);
@@ -58,6 +66,7 @@ class Attempt {
   Front& front_;
   const SizeField& sizes_;
   const VolumeOptions& options_;
+  const Box3 territory_;
   FrontCounters& counters_;
   const bool sizes_vary_;
   Neighborhood near_;

@@ -34,27 +34,29 @@ bool close_by_front(WorkMesh& mesh, Cavities& cavities, std::uint32_t cavity, co
     if (!excavation.grow_ring()) return false;
   const std::vector<Wall> walls = excavation.walls();
   std::vector<VertexIndex> global = corners_of(walls);
-  Box3 box;
-  for (const VertexIndex v : global) box.add(mesh.at(v));
-  Front front(box, sizes.min_size());
-  for (const VertexIndex v : global) front.add_vertex(mesh.at(v), sizes.at(mesh.at(v)));
+  FrontState front;
+  for (const VertexIndex v : global) {
+    front.domain.add(mesh.at(v));
+    front.points.push_back(mesh.at(v));
+    front.sizes.push_back(static_cast<float>(sizes.at(mesh.at(v))));
+  }
+  front.finest_size = sizes.min_size();
   const auto local = [&](VertexIndex v) {
     return static_cast<VertexIndex>(std::lower_bound(global.begin(), global.end(), v) - global.begin());
   };
-  std::vector<QueuedFace> layer;
-  for (const Wall& w : walls) layer.push_back(front.queued(front.add_face({local(w[0]), local(w[1]), local(w[2])})));
+  for (const Wall& w : walls) front.queue.push_back({{local(w[0]), local(w[1]), local(w[2])}});
   VolumeOptions other = options;
   other.ideal_distance *= variant.ideal_factor;
   other.ranking = variant.ranking;
   FrontCounters counters;
   const AdvanceBudget budget{.tets = 1000 + kTetsPerWall * walls.size(),
                              .face_tests = std::min(face_tests, kFaceTestsPerTrial)};
-  const AdvanceResult result = advance_front(front, std::move(layer), {}, sizes, other, budget, context, counters);
+  const bool within_budget = advance_front(front, sizes, other, budget, context, counters);
   face_tests -= std::min(face_tests, counters.face_tests);
-  if (result.over_budget || !result.left.empty()) return false;
-  for (std::size_t v = global.size(); v < front.vertices().size(); ++v)
-    global.push_back(mesh.add_point(front.at(static_cast<VertexIndex>(v))));
-  for (const Tet& t : front.tets()) mesh.add({global[t[0]], global[t[1]], global[t[2]], global[t[3]]});
+  if (!within_budget || !front.held.empty()) return false;
+  for (std::size_t v = global.size(); v < front.points.size(); ++v) global.push_back(mesh.add_point(front.points[v]));
+  for (const std::vector<Tet>& piece : front.filled)
+    for (const Tet& t : piece) mesh.add({global[t[0]], global[t[1]], global[t[2]], global[t[3]]});
   excavation.commit();
   return true;
 }

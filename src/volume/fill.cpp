@@ -2,6 +2,7 @@
 
 #include <octafront/error.h>
 
+#include "core/stage_timer.h"
 #include "lattice/core.h"
 #include "volume/advance.h"
 #include "volume/ladder.h"
@@ -10,6 +11,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+
+#include <oneapi/tbb/parallel_for.h>
 
 namespace octafront {
 
@@ -43,27 +46,47 @@ std::vector<std::uint32_t> spatial_order(const SurfaceMesh& surface, const Box3&
   return order;
 }
 
-std::vector<QueuedFace> start_front(Front& front, const SurfaceMesh& surface, const SizeField& sizes) {
-  for (const Vec3 p : surface.points) front.add_vertex(p, sizes.at(p));
-  std::vector<QueuedFace> layer;
-  layer.reserve(surface.triangles.size());
-  for (const std::uint32_t t : spatial_order(surface, front.domain())) {
+FrontState start_front(const SurfaceMesh& surface, const SizeField& sizes) {
+  FrontState front;
+  front.domain = bounding_box(surface.points);
+  front.finest_size = sizes.min_size();
+  front.points = surface.points;
+  front.queue.reserve(surface.triangles.size());
+  for (const std::uint32_t t : spatial_order(surface, front.domain)) {
     const auto& [a, b, c] = surface.triangles[t];
-    layer.push_back(front.queued(front.add_face({a, c, b})));
+    front.queue.push_back({{a, c, b}});
   }
-  return layer;
+  return front;
 }
 
-/// Puts the core's tetrahedra in place; returns its skin, which the front has to meet.
-std::vector<QueuedFace> add_core(Front& front, const LatticeCore& core, const SizeField& sizes) {
-  const auto first = static_cast<VertexIndex>(front.vertices().size());
-  for (const Vec3 p : core.points) front.add_vertex(p, sizes.at(p));
-  for (const auto& [a, b, c, d] : core.tets) front.tets().push_back({a + first, b + first, c + first, d + first});
-  std::vector<QueuedFace> skin;
-  skin.reserve(core.skin.size());
-  for (const auto& [a, b, c] : core.skin)
-    skin.push_back(front.queued(front.add_face({a + first, c + first, b + first})));
-  return skin;
+/// Puts the core's tetrahedra in place, and its skin, which the front has to meet.
+void add_core(FrontState& front, LatticeCore core) {
+  const auto first = static_cast<VertexIndex>(front.points.size());
+  front.points.insert(front.points.end(), core.points.begin(), core.points.end());
+  for (Tet& t : core.tets)
+    for (VertexIndex& v : t) v += first;
+  front.passive.reserve(core.skin.size());
+  for (const auto& [a, b, c] : core.skin) front.passive.push_back({a + first, c + first, b + first});
+  front.tets = core.tets.size();
+  front.filled.push_back(std::move(core.tets));
+}
+
+void set_sizes(FrontState& front, const SizeField& sizes) {
+  front.sizes.resize(front.points.size());
+  tbb::parallel_for(std::size_t{0}, front.points.size(),
+                    [&](std::size_t v) { front.sizes[v] = static_cast<float>(sizes.at(front.points[v])); });
+}
+
+/// The pieces one after the other, in one array.
+std::vector<Tet> joined(std::vector<std::vector<Tet>>& pieces, std::size_t total) {
+  std::vector<Tet> tets;
+  if (pieces.size() == 1) return std::move(pieces[0]);
+  tets.reserve(total);
+  for (std::vector<Tet>& piece : pieces) {
+    tets.insert(tets.end(), piece.begin(), piece.end());
+    piece = {};
+  }
+  return tets;
 }
 
 /// The front fills no more than the surface encloses, up to rounding.
@@ -103,6 +126,7 @@ void report_front(StageReport& report, const FrontCounters& counters, std::size_
   report.count("face tests", static_cast<double>(counters.face_tests));
   report.count("exact tests", static_cast<double>(counters.exact_tests));
   report.count("ideal points", static_cast<double>(counters.ideal_points));
+  report.count("faces deferred", static_cast<double>(counters.deferred));
   report.count("retries", static_cast<double>(counters.retries));
   report.count("faces left", static_cast<double>(left));
 }
@@ -115,28 +139,29 @@ TetMesh fill_volume(const SurfaceMesh& surface, const SizeField& sizes, const Vo
   TetMesh mesh;
   std::vector<Wall> walls;
   {
-    Front front(bounding_box(surface.points), sizes.min_size());
-    std::vector<QueuedFace> layer = start_front(front, surface, sizes);
-    std::vector<QueuedFace> skin;
+    FrontState front = start_front(surface, sizes);
     if (options.core == VolumeOptions::Core::kLattice) {
-      const LatticeCore core = build_lattice_core(surface, sizes, context);
+      const double start = process_cpu_seconds();
+      LatticeCore core = build_lattice_core(surface, sizes, context);
       report.count("core tetrahedra", static_cast<double>(core.tets.size()));
-      skin = add_core(front, core, sizes);
+      add_core(front, std::move(core));
+      report.count("core CPU seconds", process_cpu_seconds() - start);
     }
-    const AdvanceBudget budget{.tets = front.tets().size() + tet_budget(surface, sizes),
+    set_sizes(front, sizes);
+    const AdvanceBudget budget{.tets = front.tets + tet_budget(surface, sizes),
                                .volume = kVolumeSlack * enclosed_volume(surface)};
     FrontCounters counters;
-    const AdvanceResult result =
-        advance_front(front, std::move(layer), std::move(skin), sizes, options, budget, context, counters);
-    report_front(report, counters, front.tets().size(), result.left.size());
-    if (result.over_budget)
-      throw MeshingError("the front made " + std::to_string(front.tets().size()) +
+    const double start = process_cpu_seconds();
+    const bool within_budget = advance_front(front, sizes, options, budget, context, counters);
+    report.count("advance CPU seconds", process_cpu_seconds() - start);
+    report_front(report, counters, front.tets, front.held.size());
+    if (!within_budget)
+      throw MeshingError("the front made " + std::to_string(front.tets) +
                          " tetrahedra without closing; check the surface for self-intersections, or choose a larger "
                          "element size");
-    for (const FaceIndex f : result.left) walls.push_back(front.corners(f));
-    mesh.points.reserve(front.vertices().size());
-    for (const FrontVertex& v : front.vertices()) mesh.points.push_back(v.at);
-    mesh.tets = std::move(front.tets());
+    walls = std::move(front.held);
+    mesh.points = std::move(front.points);
+    mesh.tets = joined(front.filled, front.tets);
   }
   if (!walls.empty()) {
     close_cavities(mesh, walls, sizes, options, context, report);

@@ -1,0 +1,141 @@
+#include "volume/block_run.h"
+
+#include "volume/front.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace octafront {
+
+namespace {
+
+constexpr std::size_t kFacesBetweenChecks = 512;
+
+class BlockRun {
+ public:
+  BlockRun(const FrontState& state, const FrontBlock& block, const SizeField& sizes, const VolumeOptions& options,
+           const AdvanceBudget& budget, const RunContext& context, BlockScratch& scratch)
+      : state_(state),
+        block_(block),
+        budget_(budget),
+        context_(context),
+        front_(state.domain, state.finest_size),
+        attempt_(front_, sizes, options, block.territory, result_.counters) {
+    fill_front(scratch.local_number);
+  }
+
+  BlockResult run(int layers) {
+    work_off(layers);
+    result_.counters.faces_found += attempt_.faces_found();
+    collect();
+    return std::move(result_);
+  }
+
+ private:
+  struct Turn {
+    QueuedFace face;
+    std::uint8_t level;
+  };
+
+  void fill_front(std::vector<std::uint32_t>& local) {
+    if (local.size() < state_.points.size()) local.resize(state_.points.size());
+    const auto number = [&](VertexIndex v) {
+      std::vector<VertexIndex>& found = result_.found;
+      if (local[v] < found.size() && found[local[v]] == v) return local[v];
+      local[v] = front_.add_vertex(state_.points[v], state_.sizes[v]);
+      found.push_back(v);
+      return local[v];
+    };
+    for (const FrontBlock::Member m : block_.members) {
+      const Triangle& t = state_.face(m.face);
+      front_.add_face({number(t[0]), number(t[1]), number(t[2])});
+    }
+  }
+
+  /// The first layer: owned faces of the queue; those that have waited for a block to fit them come first.
+  std::vector<Turn> first_layer() const {
+    std::vector<Turn> layer;
+    layer.reserve(block_.queued);
+    for (const bool deferred : {true, false})
+      for (FaceIndex f = 0; f < block_.members.size(); ++f) {
+        const FrontBlock::Member m = block_.members[f];
+        if (!m.owned || m.face >= state_.queue.size() || state_.queue[m.face].deferred != deferred) continue;
+        layer.push_back({front_.queued(f), state_.queue[m.face].level});
+      }
+    return layer;
+  }
+
+  void work_off(int layers) {
+    std::vector<Turn> layer = first_layer();
+    for (; !layer.empty() && layers > 0; --layers) {
+      ++result_.counters.layers;
+      created_.clear();
+      for (const Turn& turn : layer) {
+        if (++turns_ % kFacesBetweenChecks == 0) context_.check();
+        if (over_budget()) return;
+        if (!front_.alive(turn.face)) continue;
+        switch (attempt_.advance(turn.face.face, kLimits[turn.level], created_)) {
+          case Attempt::Outcome::kAdvanced:
+            break;
+          case Attempt::Outcome::kStuck:
+            held_.push_back(turn.face);
+            break;
+          case Attempt::Outcome::kBeyond:
+            deferred_.push_back(turn);
+            break;
+        }
+      }
+      layer.clear();
+      for (const QueuedFace& q : created_)
+        if (front_.alive(q)) layer.push_back({q, 0});
+    }
+    next_ = std::move(layer);
+  }
+
+  bool over_budget() const {
+    return front_.tets().size() > budget_.tets || front_.filled_volume() > budget_.volume ||
+           result_.counters.face_tests > budget_.face_tests;
+  }
+
+  void collect() {
+    for (const Turn& t : deferred_)
+      if (front_.alive(t.face)) result_.queue.push_back({front_.corners(t.face.face), t.level, true});
+    for (const Turn& t : next_)
+      if (front_.alive(t.face)) result_.queue.push_back({front_.corners(t.face.face), t.level, false});
+    const std::size_t first_passive = state_.queue.size() + state_.held.size();
+    for (FaceIndex f = 0; f < block_.members.size(); ++f) {
+      const FrontBlock::Member m = block_.members[f];
+      if (!m.owned || m.face < state_.queue.size() || !front_.alive({f, 0})) continue;
+      (m.face < first_passive ? result_.held : result_.passive).push_back(front_.corners(f));
+    }
+    for (const QueuedFace& q : held_)
+      if (front_.alive(q)) result_.held.push_back(front_.corners(q.face));
+    for (std::size_t v = result_.found.size(); v < front_.vertices().size(); ++v) {
+      result_.points.push_back(front_.vertices()[v].at);
+      result_.sizes.push_back(front_.vertices()[v].size);
+    }
+    result_.tets = std::move(front_.tets());
+    result_.volume = front_.filled_volume();
+  }
+
+  const FrontState& state_;
+  const FrontBlock& block_;
+  AdvanceBudget budget_;
+  const RunContext& context_;
+  BlockResult result_;
+  Front front_;
+  Attempt attempt_;
+  std::vector<QueuedFace> created_, held_;
+  std::vector<Turn> deferred_, next_;
+  std::size_t turns_ = 0;
+};
+
+}  // namespace
+
+BlockResult advance_block(const FrontState& front, const FrontBlock& block, int layers, const SizeField& sizes,
+                          const VolumeOptions& options, const AdvanceBudget& budget, const RunContext& context,
+                          BlockScratch& scratch) {
+  return BlockRun(front, block, sizes, options, budget, context, scratch).run(layers);
+}
+
+}  // namespace octafront

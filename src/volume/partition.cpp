@@ -1,0 +1,122 @@
+#include "volume/partition.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/parallel_invoke.h>
+
+namespace octafront {
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// Least width of a block in mean extents of its queued faces. A face takes part if what it may reach, about two
+/// extents to each side, lies in its block; below this width less than half of them do.
+constexpr double kLeastWidth = 12;
+/// Lists shorter than this are not worth a task of their own.
+constexpr std::size_t kFacesForTask = 4096;
+
+class Divider {
+ public:
+  Divider(const FrontState& front, const PartitionRule& rule) : rule_(rule), boxes_(front.faces()) {
+    queued_ = front.queue.size();
+    tbb::parallel_for(std::size_t{0}, boxes_.size(), [&](std::size_t f) {
+      for (const VertexIndex v : front.face(f)) boxes_[f].add(front.points[v]);
+    });
+  }
+
+  std::vector<FrontBlock> divide(FrontBlock block) const {
+    int axis = 0;
+    double plane = 0;
+    if (block.queued <= rule_.queued_faces || !choose_plane(block, axis, plane)) return {std::move(block)};
+    const bool large = block.members.size() > kFacesForTask;
+    std::array<FrontBlock, 2> half = split(block, axis, plane);
+    block = {};
+    std::array<std::vector<FrontBlock>, 2> blocks;
+    const auto lower = [&] { blocks[0] = divide(std::move(half[0])); };
+    const auto upper = [&] { blocks[1] = divide(std::move(half[1])); };
+    if (large)
+      tbb::parallel_invoke(lower, upper);
+    else
+      lower(), upper();
+    std::move(blocks[1].begin(), blocks[1].end(), std::back_inserter(blocks[0]));
+    return std::move(blocks[0]);
+  }
+
+ private:
+  double middle(std::uint32_t face, int axis) const { return 0.5 * (boxes_[face].lo[axis] + boxes_[face].hi[axis]); }
+
+  /// Across the longest extent of the owned part of the queue that leaves both sides wide enough.
+  bool choose_plane(const FrontBlock& block, int& axis, double& plane) const {
+    std::vector<std::uint32_t> own;
+    own.reserve(block.queued);
+    Box3 extent;
+    double width = 0;
+    for (const FrontBlock::Member m : block.members) {
+      if (!m.owned || m.face >= queued_) continue;
+      own.push_back(m.face);
+      extent.add(boxes_[m.face].center());
+      const Vec3 e = boxes_[m.face].extent();
+      width += std::max({e.x, e.y, e.z});
+    }
+    width *= kLeastWidth / static_cast<double>(own.size());
+    std::array<int, 3> axes{0, 1, 2};
+    const Vec3 e = extent.extent();
+    std::sort(axes.begin(), axes.end(), [&](int a, int b) { return e[a] != e[b] ? e[a] > e[b] : a < b; });
+    for (const int a : axes) {
+      if (e[a] < width) return false;
+      const auto at = own.begin() + static_cast<std::ptrdiff_t>(rule_.quantile * static_cast<double>(own.size()));
+      std::nth_element(own.begin(), at, own.end(),
+                       [&](std::uint32_t f, std::uint32_t g) { return middle(f, a) < middle(g, a); });
+      axis = a;
+      plane = middle(*at, a);
+      if (plane - extent.lo[a] >= 0.5 * width && extent.hi[a] - plane >= 0.5 * width) return true;
+    }
+    return false;
+  }
+
+  std::array<FrontBlock, 2> split(const FrontBlock& block, int axis, double plane) const {
+    std::array<FrontBlock, 2> half;
+    for (FrontBlock& h : half) {
+      h.territory = block.territory;
+      h.members.reserve(block.members.size() * 5 / 8);
+    }
+    half[0].territory.hi[axis] = plane;
+    half[1].territory.lo[axis] = plane;
+    for (const FrontBlock::Member m : block.members) {
+      const bool upper = middle(m.face, axis) >= plane;
+      const bool owned = m.owned;
+      if (boxes_[m.face].lo[axis] <= plane) add(half[0], m.face, owned && !upper);
+      if (boxes_[m.face].hi[axis] >= plane) add(half[1], m.face, owned && upper);
+    }
+    return half;
+  }
+
+  void add(FrontBlock& block, std::uint32_t face, bool owned) const {
+    block.members.push_back({face, owned});
+    block.queued += owned && face < queued_;
+  }
+
+  PartitionRule rule_;
+  std::vector<Box3> boxes_;
+  std::size_t queued_ = 0;
+};
+
+}  // namespace
+
+FrontBlock FrontBlock::whole(const FrontState& front) {
+  FrontBlock block;
+  block.territory = {{-kInfinity, -kInfinity, -kInfinity}, {kInfinity, kInfinity, kInfinity}};
+  block.members.resize(front.faces());
+  for (std::uint32_t f = 0; f < block.members.size(); ++f) block.members[f] = {f, true};
+  block.queued = front.queue.size();
+  return block;
+}
+
+std::vector<FrontBlock> partition_front(const FrontState& front, const PartitionRule& rule) {
+  return Divider(front, rule).divide(FrontBlock::whole(front));
+}
+
+}  // namespace octafront

@@ -1,0 +1,127 @@
+#include <octafront/validity.h>
+
+#include "core/thread_limit.h"
+#include "support/named_surfaces.h"
+#include "volume/advance.h"
+#include "volume/fill.h"
+
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace octafront {
+namespace {
+
+using testing::icosphere;
+
+constexpr double kEdgeOfIcosphere = 1.1;  // of level 0, about; halved by each level
+
+FrontState front_on(const SurfaceMesh& surface, double size) {
+  FrontState front;
+  front.domain = bounding_box(surface.points);
+  front.finest_size = size;
+  front.points = surface.points;
+  front.sizes.assign(surface.points.size(), static_cast<float>(size));
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    const auto& [a, b, c] = surface.triangles[t];
+    // Some of each kind.
+    if (t % 7 == 0)
+      front.held.push_back({a, c, b});
+    else if (t % 5 == 0)
+      front.passive.push_back({a, c, b});
+    else
+      front.queue.push_back({{a, c, b}});
+  }
+  return front;
+}
+
+Box3 box_of(const FrontState& front, std::size_t face) {
+  Box3 box;
+  for (const VertexIndex v : front.face(face)) box.add(front.points[v]);
+  return box;
+}
+
+TEST(Partition, GivesEveryFaceOneOwnerAndListsAllThatReachIn) {
+  const FrontState front = front_on(icosphere(5), kEdgeOfIcosphere / 32);
+  for (const double quantile : {0.5, 0.36, 0.64}) {
+    const std::vector<FrontBlock> blocks = partition_front(front, {800, quantile});
+    ASSERT_GT(blocks.size(), 8u);
+    std::vector<int> owners(front.faces(), 0);
+    for (const FrontBlock& block : blocks) {
+      std::vector<bool> listed(front.faces(), false);
+      std::size_t queued = 0;
+      for (const FrontBlock::Member m : block.members) {
+        listed[m.face] = true;
+        owners[m.face] += m.owned;
+        queued += m.owned && m.face < front.queue.size();
+      }
+      EXPECT_EQ(queued, block.queued);
+      EXPECT_LE(block.queued, 800u);
+      for (std::size_t f = 0; f < front.faces(); ++f)
+        EXPECT_EQ(listed[f], box_of(front, f).overlaps(block.territory)) << f;
+    }
+    for (std::size_t f = 0; f < owners.size(); ++f) EXPECT_EQ(owners[f], 1) << f;
+    for (std::size_t i = 0; i < blocks.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j) {
+        const Box3 &p = blocks[i].territory, &q = blocks[j].territory;
+        bool apart = false;
+        for (int axis = 0; axis < 3; ++axis) apart = apart || p.hi[axis] <= q.lo[axis] || q.hi[axis] <= p.lo[axis];
+        EXPECT_TRUE(apart) << i << " and " << j;
+      }
+  }
+}
+
+TEST(Partition, DoesNotMakeBlocksThatAreTooNarrow) {
+  const FrontState front = front_on(icosphere(2), kEdgeOfIcosphere / 4);
+  EXPECT_EQ(partition_front(front, {1, 0.5}).size(), 1u);
+}
+
+TEST(BlockRun, StaysStrictlyInsideItsTerritory) {
+  const double size = kEdgeOfIcosphere / 32;
+  const FrontState front = front_on(icosphere(5), size);
+  BlockScratch scratch;
+  std::size_t tets = 0;
+  for (const FrontBlock& block : partition_front(front, {1500, 0.5})) {
+    const BlockResult result =
+        advance_block(front, block, 3, SizeField::uniform(size), {}, {.tets = 100'000}, RunContext{}, scratch);
+    tets += result.tets.size();
+    EXPECT_GT(result.counters.deferred, 0u);
+    for (const Tet& t : result.tets)
+      for (const VertexIndex v : t) {
+        const Vec3 p = v < result.found.size() ? front.points[result.found[v]] : result.points[v - result.found.size()];
+        for (int axis = 0; axis < 3; ++axis) {
+          EXPECT_LT(block.territory.lo[axis], p[axis]);
+          EXPECT_LT(p[axis], block.territory.hi[axis]);
+        }
+      }
+  }
+  EXPECT_GT(tets, 5000u);
+}
+
+TetMesh filled_by(int threads, const SurfaceMesh& surface, double size, VolumeOptions::Core core) {
+  const ThreadLimit limit(threads);
+  RunContext context;
+  context.threads = threads;
+  VolumeOptions options;
+  options.core = core;
+  StageReport report;
+  return fill_volume(surface, SizeField::uniform(size), options, context, report);
+}
+
+TEST(Blocks, ThreadsChangeNotOneBit) {
+  const struct {
+    int level;
+    VolumeOptions::Core core;
+  } cases[] = {{4, VolumeOptions::Core::kOff}, {5, VolumeOptions::Core::kLattice}};
+  for (const auto& [level, core] : cases) {
+    const SurfaceMesh surface = icosphere(level);
+    const double size = std::ldexp(kEdgeOfIcosphere, -level);
+    const TetMesh mesh = filled_by(1, surface, size, core);
+    EXPECT_EQ(first_defect(mesh, surface), std::nullopt);
+    for (const int threads : {2, 3, 8, 16}) EXPECT_TRUE(filled_by(threads, surface, size, core) == mesh) << threads;
+  }
+}
+
+}  // namespace
+}  // namespace octafront
