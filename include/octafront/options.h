@@ -73,6 +73,7 @@ struct ImproveOptions {
 /// How the volume gets its tetrahedra.
 enum class Method {
   kOctreeAft,  ///< the volume front, localised by the octree, around a lattice core
+  kOctree,   ///< isosurface stuffing of the octree's lattice: fast, also on surfaces with defects; the boundary is its own
   kRecover,  ///< the input's triangles kept and filled with as few inner points as possible: coarse, exact, of no size
 };
 

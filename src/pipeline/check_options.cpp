@@ -26,6 +26,8 @@ void check_options(const Options& options) {
   require(options.improve.relaxation > 0 && options.improve.relaxation <= 1,
           "relaxation must be above 0 and at most 1");
   require(options.improve.sweeps >= 0, "sweeps must not be negative");
+  require(options.method != Method::kOctree || !surface.keep,
+          "the octree method makes a boundary of its own: it cannot keep the input's triangles");
 }
 
 }  // namespace octafront

@@ -8,6 +8,7 @@
 #include "pipeline/pipeline.h"
 #include "recovery/recover.h"
 #include "sizing/make_size_field.h"
+#include "stuffing/stuff.h"
 #include "surface/features.h"
 #include "surface/remesh.h"
 #include "volume/fill.h"
@@ -36,6 +37,7 @@ auto run_stage(Report& report, const RunContext& context, const char* name, F&& 
 struct Prepared {
   RepairedSurface repaired;
   Features features;
+  SurfaceDomain::Defects defects = SurfaceDomain::Defects::kClean;  ///< other than clean for Method::kOctree only
 };
 
 // Doubles that lie too few steps apart leave no room for vertices between them.
@@ -52,7 +54,29 @@ void refuse_lost_precision(const SurfaceMesh& surface) {
         box.diagonal(), largest));
 }
 
-// What every run begins with: a surface that is known to be clean.
+// Over area times diagonal; a sheet of a thousandth of its width has a hundred times as much.
+constexpr double kLeastVolume = 1e-6;
+
+// Defects are refused, but by the octree method, which lives with them: then they are notes.
+SurfaceDomain::Defects judge_defects(const SurfaceDefects& found, Method method, StageReport& stage) {
+  if (found.clean()) return SurfaceDomain::Defects::kClean;
+  if (method != Method::kOctree || found.no_faces) throw InputError(found.describe());
+  stage.notes.push_back("the surface has defects; inside is where its winding number says so. " + found.describe());
+  const bool closed =
+      found.open_edges.count == 0 && found.non_manifold_edges.count == 0 && found.misoriented_edges.count == 0;
+  return closed ? SurfaceDomain::Defects::kClosed : SurfaceDomain::Defects::kOpen;
+}
+
+// An open surface has no outside that repair could find: what it nearly encloses says which way it faces.
+void face_outward(SurfaceMesh& surface) {
+  const double volume = enclosed_volume(surface), scale = area(surface) * bounding_box(surface.points).diagonal();
+  if (std::abs(volume) < kLeastVolume * scale)
+    throw InputError("the surface is flat, or as much inside out as not: it encloses no volume that could be filled");
+  if (volume > 0) return;
+  for (Triangle& t : surface.triangles) std::swap(t[1], t[2]);
+}
+
+// What every run begins with: a surface that is known to be clean, or not to need to be.
 Prepared prepare(const SurfaceMesh& input, const Options& options, const RunContext& context, Report& report) {
   check_options(options);
   Prepared p;
@@ -60,7 +84,8 @@ Prepared prepare(const SurfaceMesh& input, const Options& options, const RunCont
     RepairedSurface repaired = repair_surface(input, options.face_of_triangle);
     stage.notes = repaired.notes;
     const SurfaceDefects defects = find_defects(repaired);
-    if (!defects.clean()) throw InputError(defects.describe());
+    p.defects = judge_defects(defects, options.method, stage);
+    if (p.defects == SurfaceDomain::Defects::kOpen) face_outward(repaired.surface);
     refuse_lost_precision(repaired.surface);
     stage.count("triangles", static_cast<double>(repaired.surface.triangles.size()));
     stage.count("bodies", repaired.bodies);
@@ -129,6 +154,8 @@ TetMesh fill_by_method(const Remeshed& boundary, const Options& options, const R
       return run_stage(report, context, "volume front", [&](StageReport& stage) {
         return fill_volume(boundary.surface, boundary.sizes, options.volume, context, stage);
       });
+    case Method::kOctree:
+      break;  // needs no triangulated boundary: see stuffing_stage
     case Method::kRecover:
       return run_stage(report, context, "recovery",
                        [&](StageReport& stage) { return fill_by_recovery(boundary.surface, context, stage); });
@@ -146,9 +173,21 @@ TetMesh volume_stage(const Remeshed& boundary, const std::vector<std::uint32_t>&
   return mesh;
 }
 
-void check_result(const TetMesh& mesh, const SurfaceMesh& boundary, const RunContext& context, Report& report) {
+// The octree method makes its boundary itself.
+TetMesh stuffing_stage(const Prepared& p, const SizeField& sizes, const RunContext& context, Report& report) {
+  TetMesh mesh = run_stage(report, context, "stuffing", [&](StageReport& stage) {
+    TetMesh stuffed = stuff_surface(p.repaired.surface, p.features, p.defects, sizes, context, stage);
+    stage.count("tets", static_cast<double>(stuffed.tets.size()));
+    return stuffed;
+  });
+  for (std::uint32_t& triangle : mesh.source) triangle = p.repaired.face_of_triangle[triangle];
+  return mesh;
+}
+
+void check_result(const TetMesh& mesh, const SurfaceMesh& boundary, Method method, const RunContext& context,
+                  Report& report) {
   run_stage(report, context, "check", [&](StageReport&) {
-    if (const auto defect = first_defect(mesh, boundary))
+    if (const auto defect = method == Method::kOctree ? first_defect(mesh) : first_defect(mesh, boundary))
       throw MeshingError("the mesh made is not valid, which is a bug of ours; please report it with the input. " +
                          *defect);
   });
@@ -157,6 +196,10 @@ void check_result(const TetMesh& mesh, const SurfaceMesh& boundary, const RunCon
 // Surface, volume and improvement by given sizes; `boundary` is left as the surface that was filled.
 TetMesh mesh_by_sizes(const Prepared& p, const SizeField& sizes, const Options& options, const RunContext& context,
                       Report& report, Remeshed& boundary) {
+  if (options.method == Method::kOctree) {
+    boundary = keep_surface(p, sizes);
+    return stuffing_stage(p, sizes, context, report);
+  }
   boundary = options.surface.keep ? keep_surface(p, sizes) : surface_stage(p, sizes, options, context, report);
   return volume_stage(boundary, p.repaired.face_of_triangle, options, context, report);
 }
@@ -231,7 +274,7 @@ Result generate(const SurfaceMesh& surface, const Options& given, const RunConte
   TetMesh mesh = mesh_to_target(prepared, sizes, options, context, report, boundary);
   run_stage(report, context, "improve",
             [&](StageReport& stage) { improve_mesh(mesh, boundary.sizes, options.improve, context, stage); });
-  check_result(mesh, boundary.surface, context, report);
+  check_result(mesh, boundary.surface, options.method, context, report);
   finish_report(mesh, boundary.sizes, report);
   close_report(report);
   return {std::move(mesh), boundary.sizes, std::move(report)};

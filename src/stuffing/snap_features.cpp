@@ -1,0 +1,185 @@
+#include "stuffing/snap_features.h"
+
+#include "geometry/measures.h"
+#include "geometry/predicates.h"
+#include "mesh/surface_topology.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+
+namespace octafront {
+
+namespace {
+
+/// A vertex moves at most this far, in units of the size there: about half an edge of the lattice and the warp's reach.
+constexpr double kReach = 0.7;
+/// What beta a move may leave. Where boundary faces meet at a crease the lattice cannot do much better than this, and
+/// improvement starts from it; below it the crease is rather left blunt.
+constexpr double kLeastBeta = 0.12;
+
+/// Smooth parts of a surface: triangles joined over edges that are no feature.
+std::vector<std::uint32_t> smooth_parts(const SurfaceMesh& surface, const Features& features) {
+  std::vector<std::uint32_t> parent(surface.triangles.size());
+  std::iota(parent.begin(), parent.end(), 0u);
+  const auto root = [&](std::uint32_t i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  };
+  std::vector<std::pair<Edge, std::uint32_t>> uses;
+  for (std::uint32_t t = 0; t < surface.triangles.size(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const VertexIndex a = surface.triangles[t][k], b = surface.triangles[t][(k + 1) % 3];
+      uses.push_back({{std::min(a, b), std::max(a, b)}, t});
+    }
+  std::sort(uses.begin(), uses.end());
+  for (std::size_t i = 1; i < uses.size(); ++i) {
+    if (uses[i].first != uses[i - 1].first) continue;
+    if (std::binary_search(features.edges.begin(), features.edges.end(), uses[i].first)) continue;
+    const std::uint32_t a = root(uses[i].second), b = root(uses[i - 1].second);
+    parent[std::max(a, b)] = std::min(a, b);
+  }
+  for (std::uint32_t t = 0; t < parent.size(); ++t) parent[t] = root(t);
+  return parent;
+}
+
+class Snapper {
+ public:
+  Snapper(TetMesh& mesh, const SurfaceMesh& surface, const Features& features, const TriangleTree& triangles,
+          const SizeField& sizes)
+      : mesh_(mesh), surface_(surface), features_(features), triangles_(triangles), sizes_(sizes) {
+    fixed_.assign(mesh.points.size(), 0);
+    list_stars();
+  }
+
+  std::size_t corners = 0, on_curves = 0, refused = 0;
+
+  void snap_corners() {
+    const TriangleTree boundary(mesh_.points, mesh_.boundary);
+    for (const VertexIndex corner : features_.corners) {
+      const Vec3 p = surface_.points[corner];
+      const double reach = kReach * sizes_.at(p);
+      std::vector<std::pair<double, VertexIndex>> near;
+      boundary.for_each_overlapping({p - Vec3{reach, reach, reach}, p + Vec3{reach, reach, reach}},
+                                    [&](std::uint32_t face) {
+                                      for (const VertexIndex v : mesh_.boundary[face])
+                                        near.emplace_back(distance(mesh_.points[v], p), v);
+                                    });
+      std::sort(near.begin(), near.end());
+      near.erase(std::unique(near.begin(), near.end()), near.end());
+      for (const auto& [d, v] : near) {
+        if (d > reach || fixed_[v]) continue;
+        if (!move(v, p)) continue;
+        ++corners;
+        break;
+      }
+    }
+  }
+
+  /// Boundary edges with ends on different smooth parts cross a curve: one end goes onto it.
+  void snap_curves(const RunContext& context) {
+    std::vector<Triangle> segments;
+    for (const auto& [a, b] : features_.edges) segments.push_back({a, b, b});
+    const TriangleTree curves(surface_.points, segments);
+    const std::vector<std::uint32_t> part_of_triangle = smooth_parts(surface_, features_);
+    struct Goal {
+      double squared_distance;
+      VertexIndex vertex;
+      Vec3 at;
+    };
+    std::vector<Goal> goal(mesh_.points.size());
+    std::vector<std::uint32_t> part(mesh_.points.size(), kNone);
+    for (const VertexIndex v : boundary_vertices()) {
+      const Vec3 p = mesh_.points[v];
+      const double reach = kReach * sizes_.at(p);
+      const auto nearest = curves.nearest(p, reach * reach);
+      if (nearest.triangle == kNone) continue;
+      goal[v] = {nearest.squared_distance, v, nearest.point};
+      part[v] = part_of_triangle[triangles_.nearest(p).triangle];
+    }
+    struct Crossing {
+      double squared_distance;
+      VertexIndex near, far;
+    };
+    std::vector<Crossing> crossings;
+    for (const auto& [a, b] : edges_of(mesh_.boundary)) {
+      if (part[a] == kNone || part[b] == kNone || part[a] == part[b]) continue;
+      const bool a_nearer = goal[a].squared_distance <= goal[b].squared_distance;
+      const VertexIndex near = a_nearer ? a : b, far = a_nearer ? b : a;
+      crossings.push_back({goal[near].squared_distance, near, far});
+    }
+    std::sort(crossings.begin(), crossings.end(), [](const Crossing& s, const Crossing& t) {
+      return std::tie(s.squared_distance, s.near, s.far) < std::tie(t.squared_distance, t.near, t.far);
+    });
+    for (const Crossing& c : crossings) {
+      context.check();
+      if (fixed_[c.near] || fixed_[c.far]) continue;
+      if (move(c.near, goal[c.near].at) || move(c.far, goal[c.far].at))
+        ++on_curves;
+      else
+        ++refused;
+    }
+  }
+
+ private:
+  std::vector<VertexIndex> boundary_vertices() const {
+    std::vector<VertexIndex> vertices;
+    for (const Triangle& t : mesh_.boundary) vertices.insert(vertices.end(), t.begin(), t.end());
+    std::sort(vertices.begin(), vertices.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    return vertices;
+  }
+
+  void list_stars() {
+    first_.assign(mesh_.points.size() + 1, 0);
+    std::vector<char> on_boundary(mesh_.points.size(), 0);
+    for (const Triangle& t : mesh_.boundary)
+      for (const VertexIndex v : t) on_boundary[v] = 1;
+    for (const Tet& t : mesh_.tets)
+      for (const VertexIndex v : t) first_[v + 1] += on_boundary[v];
+    for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
+    star_.resize(first_.back());
+    std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
+    for (TetIndex t = 0; t < mesh_.tets.size(); ++t)
+      for (const VertexIndex v : mesh_.tets[t])
+        if (on_boundary[v]) star_[next[v]++] = t;
+  }
+
+  bool move(VertexIndex v, Vec3 to) {
+    const Vec3 old = mesh_.points[v];
+    mesh_.points[v] = to;
+    for (std::uint32_t i = first_[v]; i < first_[v + 1]; ++i) {
+      const Tet& t = mesh_.tets[star_[i]];
+      const Vec3 a = mesh_.points[t[0]], b = mesh_.points[t[1]], c = mesh_.points[t[2]], d = mesh_.points[t[3]];
+      if (orient3d(a, b, c, d) > 0 && tet_radius_ratio(a, b, c, d) >= kLeastBeta) continue;
+      mesh_.points[v] = old;
+      return false;
+    }
+    fixed_[v] = 1;
+    return true;
+  }
+
+  TetMesh& mesh_;
+  const SurfaceMesh& surface_;
+  const Features& features_;
+  const TriangleTree& triangles_;
+  const SizeField& sizes_;
+  std::vector<char> fixed_;
+  std::vector<std::uint32_t> first_, star_;
+};
+
+}  // namespace
+
+void snap_features(TetMesh& mesh, const SurfaceMesh& surface, const Features& features, const TriangleTree& triangles,
+                   const SizeField& sizes, const RunContext& context, StageReport& report) {
+  if (features.edges.empty() && features.corners.empty()) return;
+  Snapper snapper(mesh, surface, features, triangles, sizes);
+  snapper.snap_corners();
+  if (!features.edges.empty()) snapper.snap_curves(context);
+  report.count("vertices snapped to corners", static_cast<double>(snapper.corners));
+  report.count("vertices snapped to curves", static_cast<double>(snapper.on_curves));
+  report.count("crossings left blunt", static_cast<double>(snapper.refused));
+}
+
+}  // namespace octafront

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <octafront/report.h>
+#include <octafront/run_context.h>
+#include <octafront/size_field.h>
+#include <octafront/surface_mesh.h>
+#include <octafront/tet_mesh.h>
+
+#include "geometry/triangle_tree.h"
+#include "surface/features.h"
+
+namespace octafront {
+
+/// Moves boundary vertices of a stuffed mesh onto the corners and feature curves of `surface` near them, wherever every
+/// tetrahedron around the vertex stays positive (exactly) and of fair shape. `triangles` is the tree over `surface`.
+void snap_features(TetMesh& mesh, const SurfaceMesh& surface, const Features& features, const TriangleTree& triangles,
+                   const SizeField& sizes, const RunContext& context, StageReport& report);
+
+}  // namespace octafront

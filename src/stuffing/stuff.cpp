@@ -1,0 +1,67 @@
+#include "stuffing/stuff.h"
+
+#include <octafront/error.h>
+
+#include "geometry/measures.h"
+#include "stuffing/cut_lattice.h"
+#include "stuffing/snap_features.h"
+#include "stuffing/stuffing_octree.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace octafront {
+
+namespace {
+
+/// Connected parts of the mesh, numbered in order of their first tetrahedron; empty if there is only one.
+std::vector<std::uint32_t> connected_parts(const TetMesh& mesh) {
+  std::vector<VertexIndex> parent(mesh.points.size());
+  std::iota(parent.begin(), parent.end(), 0u);
+  const auto root = [&](VertexIndex v) {
+    while (parent[v] != v) v = parent[v] = parent[parent[v]];
+    return v;
+  };
+  for (const Tet& t : mesh.tets)
+    for (int k = 1; k < 4; ++k) {
+      const VertexIndex a = root(t[0]), b = root(t[k]);
+      parent[std::max(a, b)] = std::min(a, b);
+    }
+  std::vector<std::uint32_t> number(mesh.points.size(), kNone), region;
+  std::uint32_t parts = 0;
+  region.reserve(mesh.tets.size());
+  for (const Tet& t : mesh.tets) {
+    std::uint32_t& n = number[root(t[0])];
+    if (n == kNone) n = parts++;
+    region.push_back(n);
+  }
+  return parts > 1 ? region : std::vector<std::uint32_t>{};
+}
+
+void name_boundary(TetMesh& mesh, const SurfaceMesh& surface, const TriangleTree& triangles) {
+  mesh.source.reserve(mesh.boundary.size());
+  for (const auto& [a, b, c] : mesh.boundary)
+    mesh.source.push_back(triangles.nearest(centroid(mesh.points[a], mesh.points[b], mesh.points[c])).triangle);
+  if (surface.patch.empty()) return;
+  for (const std::uint32_t triangle : mesh.source) mesh.patch.push_back(surface.patch[triangle]);
+}
+
+}  // namespace
+
+TetMesh stuff_surface(const SurfaceMesh& surface, const Features& features, SurfaceDomain::Defects defects,
+                      const SizeField& sizes, const RunContext& context, StageReport& report) {
+  const SurfaceDomain domain(surface, defects);
+  const StuffingOctree octree = build_stuffing_octree(surface, domain, sizes, context);
+  report.count("leaves", static_cast<double>(octree.tree.size()));
+  TetMesh mesh = cut_lattice(octree.root, octree.tree, domain, context, report);
+  if (mesh.tets.empty())
+    throw MeshingError("nothing inside the surface is as large as an element: choose a smaller element size");
+  snap_features(mesh, surface, features, domain.triangles(), sizes, context, report);
+  name_boundary(mesh, surface, domain.triangles());
+  mesh.region = connected_parts(mesh);
+  mesh.patch_names = surface.patch_names;
+  report.count("parts", mesh.region.empty() ? 1 : 1 + *std::max_element(mesh.region.begin(), mesh.region.end()));
+  return mesh;
+}
+
+}  // namespace octafront

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <octafront/run_context.h>
+#include <octafront/size_field.h>
+#include <octafront/surface_mesh.h>
+
+#include "sizing/octree.h"
+#include "stuffing/implicit_domain.h"
+
+namespace octafront {
+
+/// The octree below a stuffed lattice.
+struct StuffingOctree {
+  RootCube root;
+  Octree tree;
+};
+
+/// Leaves of the wanted size inside the body, and at least one leaf of that size beyond it all around, so that where
+/// sizes are uniform the boundary runs through leaves of one size only, and nowhere near the wall of the root. Farther
+/// outside leaves stay coarse.
+StuffingOctree build_stuffing_octree(const SurfaceMesh& surface, const SurfaceDomain& domain, const SizeField& sizes,
+                                     const RunContext& context);
+
+}  // namespace octafront
