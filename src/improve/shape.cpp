@@ -52,8 +52,9 @@ OCTAFRONT_INLINE void shape_of_edges(Vec3 u, Vec3 v, Vec3 w, double& beta, doubl
   const double ab = dot(f.na, f.nb) * (ia * ib), ac = dot(f.na, f.nc) * (ia * ic), ad = dot(f.na, f.nd) * (ia * id),
                bc = dot(f.nb, f.nc) * (ib * ic), bd = dot(f.nb, f.nd) * (ib * id), cd = dot(f.nc, f.nd) * (ic * id);
   // The cosine of a dihedral angle is minus the product of the unit normals.
-  small = 1 + lesser(lesser(lesser(ab, ac), lesser(ad, bc)), lesser(bd, cd));
-  large = 1 - greater(greater(greater(ab, ac), greater(ad, bc)), greater(bd, cd));
+  // Rounding may take them below zero, and a NaN from their root would pass every comparison.
+  small = greater(1 + lesser(lesser(lesser(ab, ac), lesser(ad, bc)), lesser(bd, cd)), 0);
+  large = greater(1 - greater(greater(greater(ab, ac), greater(ad, bc)), greater(bd, cd)), 0);
   const double positive = std::sqrt(lesser(beta * beta, lesser(kSmallWeight * small, kLargeWeight * large)));
   quality = beta > 0 ? positive : lesser(beta, 0);
 }

@@ -149,21 +149,32 @@ std::optional<std::string> face_defect(const TetMesh& mesh) {
   return std::nullopt;
 }
 
-// Follows from the other laws, so it guards the checks themselves: equal but for one rounding a term.
+// The sum of six volumes of the tetrahedra (a, b, c, o), with what rounding may do to it: little of the sum where they
+// are large, but much where they are flat.
+struct RoundedSum {
+  double six_volumes = 0, magnitude = 0, products = 0;
+  void add(Vec3 a, Vec3 b, Vec3 c) {
+    const double term = dot(a, cross(b, c));
+    six_volumes += term;
+    magnitude += std::abs(term);
+    products += std::sqrt(squared_length(a) * squared_length(b) * squared_length(c));
+  }
+};
+
+// Follows from the other laws, so it guards the checks themselves: equal but for rounding.
 std::optional<std::string> volume_defect(const TetMesh& mesh) {
   const auto& p = mesh.points;
   const Vec3 o = bounding_box(p).center();
-  double sum = 0, enclosed = 0, magnitude = 0;
-  for (const auto& [a, b, c, d] : mesh.tets) sum += signed_volume(p[a], p[b], p[c], p[d]);
-  for (const auto& [a, b, c] : mesh.boundary) {
-    const double term = dot(p[a] - o, cross(p[b] - o, p[c] - o)) / 6;
-    enclosed += term;
-    magnitude += std::abs(term);
-  }
-  const auto terms = static_cast<double>(mesh.tets.size() + mesh.boundary.size() + 16);
-  const double rounding = std::numeric_limits<double>::epsilon() * terms * (sum + magnitude);
-  if (std::abs(sum - enclosed) <= rounding) return std::nullopt;
-  return fmt::format("the tetrahedra have a volume of {:.17g}, their boundary encloses {:.17g}", sum, enclosed);
+  RoundedSum tets, enclosed;
+  for (const auto& [a, b, c, d] : mesh.tets) tets.add(p[b] - p[a], p[c] - p[a], p[d] - p[a]);
+  for (const auto& [a, b, c] : mesh.boundary) enclosed.add(p[a] - o, p[b] - o, p[c] - o);
+  constexpr double kRoundingsPerTerm = 16, epsilon = std::numeric_limits<double>::epsilon();
+  const auto terms = static_cast<double>(mesh.tets.size() + mesh.boundary.size());
+  const double rounding = epsilon * (terms * (tets.magnitude + enclosed.magnitude) +
+                                     kRoundingsPerTerm * (tets.products + enclosed.products));
+  if (std::abs(tets.six_volumes - enclosed.six_volumes) <= rounding) return std::nullopt;
+  return fmt::format("the tetrahedra have a volume of {:.17g}, their boundary encloses {:.17g}", tets.six_volumes / 6,
+                     enclosed.six_volumes / 6);
 }
 
 // A triangle by its coordinates, rotated so that the least corner comes first.

@@ -129,8 +129,8 @@ TEST(RecoverVolume, FillsChazellesPolyhedron) {
 TEST(RecoverVolume, KeepsPinchedEdgesAndVertices) {
   for (std::uint64_t seed = 0; seed < 12; ++seed) {
     SCOPED_TRACE(seed);
-    expect_kept(testing::random_voxels(3, 0.5, 0, seed));
-    expect_kept(testing::random_voxels(3, 0.5, 0.05, seed));
+    expect_kept(testing::random_voxels(3, 0.5, 0, testing::Pinches::kKept, seed));
+    expect_kept(testing::random_voxels(3, 0.5, 0.05, testing::Pinches::kKept, seed));
   }
 }
 
@@ -163,7 +163,7 @@ TEST(RecoverVolume, IsDeterministic) {
 }
 
 TEST(RecoverVolume, DoesTheSameAtAnyScale) {
-  const SurfaceMesh surface = testing::random_voxels(3, 0.6, 0.1, 4);
+  const SurfaceMesh surface = testing::random_voxels(3, 0.6, 0.1, testing::Pinches::kKept, 4);
   const TetMesh mesh = recovered(surface);
   for (const double scale : {0x1p-60, 0x1p60}) {
     EXPECT_EQ(recovered(testing::transformed(surface, scale, {})).tets, mesh.tets);
