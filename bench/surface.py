@@ -1,0 +1,240 @@
+"""Surface meshes of every clean model at automatic size and two uniform sizes, side by side with other remeshers.
+
+Usage: bench/run.sh surface [--only SUBSTRING] [--jobs N] [--skip-peers]
+Writes docs/surface-status.md and the tables marked "surface" in docs/benchmarks.md. Every surface is judged by
+octafront_judge_surface; those of Gmsh, Netgen and CGAL, where they are installed, by the same program.
+"""
+import argparse
+import concurrent.futures
+import csv
+import json
+import pathlib
+import resource
+import subprocess
+import tempfile
+
+SETTINGS = [("automatic", None), ("diagonal / 40", 40), ("diagonal / 100", 100)]
+SPEED_MODELS = ["bunny00.off", "elephant.off", "fandisk_large.off", "anchor_dense.off", "armadillo.off", "3torus.off"]
+SPEED_TRIANGLES = 500_000
+PEER_MODELS = ["bunny00.off", "elephant.off", "fandisk_large.off", "anchor_dense.off", "armadillo.off", "3torus.off"]
+PEER_DIVISOR = 80
+PEER_TIMEOUT = 120
+MEAN_TARGET = {"automatic": 0.97}
+MARKS = ("<!-- surface: begin -->", "<!-- surface: end -->")
+
+
+def judge(build, model, *arguments, timeout=300):
+    command = [build / "bench/octafront_judge_surface", model, *map(str, arguments)]
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, timeout=timeout)
+    except subprocess.TimeoutExpired:
+        return {"defect": "no end"}
+    if done.returncode != 0:
+        return {"defect": (done.stderr or f"exit {done.returncode}").strip().splitlines()[0]}
+    return json.loads(done.stdout)
+
+
+def misses(r, name):
+    """What a result misses, in words."""
+    if r["defect"]:
+        return ["DEFECT: " + r["defect"][:70]]
+    asked = 0.5 if name == "automatic" else None
+    tests = [
+        (asked and r["hausdorff_lower_percent"] > asked, "Hausdorff"),
+        (r["straight_lines_missing"] > 0, "lines"),
+        (not 0.97 <= r["edge_ratio"] <= 1.03, "length"),
+        (r["edges_within"] < 0.98, "within"),
+        (r["quality_mean"] < MEAN_TARGET.get(name, 0.98), "mean"),
+        (r["quality_min_free"] < 0.4, "least"),
+    ]
+    return [word for is_missed, word in tests if is_missed]
+
+
+def row_of(file, r, name):
+    if r["defect"]:
+        return f"| {file} | {' '.join(misses(r, name))} |" + " |" * 8
+    return "| " + " | ".join([
+        file, f"{r['triangles']:,}", f"{r['hausdorff_percent']:.3f}", f"{r['edge_ratio']:.3f}",
+        f"{100 * r['edges_within']:.1f}", f"{r['quality_mean']:.3f}", f"{r['quality_min_free']:.2f}",
+        f"{r['quality_min']:.2f}", f"{r['straight_lines'] - r['straight_lines_missing']} of {r['straight_lines']}",
+        ", ".join(misses(r, name)) or "-"]) + " |"
+
+
+HEAD = ["model", "triangles", "Hausdorff % of diagonal", "edge length / wanted", "% within .7-1.4", "mean 2r/R",
+        "least, not forced", "least of all", "straight lines kept", "missed"]
+
+
+def head(titles):
+    return ["| " + " | ".join(titles) + " |", "|" + " --- |" * len(titles)]
+
+
+def summary_row(name, results):
+    good = [r for r in results if not r["defect"]]
+    missed = {}
+    for r in good:
+        for word in misses(r, name):
+            missed[word] = missed.get(word, 0) + 1
+    n = len(results)
+    count = lambda word: str(len(good) - missed.get(word, 0))
+    return "| " + " | ".join([name, str(n), str(len(good)), count("lines"),
+                              count("Hausdorff") if name == "automatic" else "-", count("length"), count("within"),
+                              count("mean"), count("least"),
+                              f"{sum(r['quality_mean'] for r in good) / max(1, len(good)):.3f}"]) + " |"
+
+
+SUMMARY = ["size", "models", "checks passed", "straight lines kept", "Hausdorff ≤ .5 %", "length/wanted .97-1.03",
+           "98 % within .7-1.4", "mean 2r/R ≥ .98 (automatic .97)", "least 2r/R ≥ .4 where not forced", "mean of means"]
+
+
+def all_models(build, rows, pool):
+    tables, summary = [], head(SUMMARY)
+    for name, divisor in SETTINGS:
+        def job(row):
+            size = [] if divisor is None else ["--size", float(row["bbox_diagonal"]) / divisor]
+            r = judge(build, f"models/clean/{row['file']}", *size)
+            print(f"{row['file']:32} {name:16} {', '.join(misses(r, name))}", flush=True)
+            return r
+        results = list(pool.map(job, rows))
+        summary.append(summary_row(name, results))
+        tables += ["", f"## Size: {name}", "", *head(HEAD),
+                   *(row_of(row["file"], r, name) for row, r in zip(rows, results))]
+    return summary, tables
+
+
+def speed(build, rows):
+    lines = head(["model", "input triangles", "triangles made", "size field CPU s", "surface front CPU s",
+                  "triangles per CPU second", "share of the size field %"])
+    for file in SPEED_MODELS:
+        if not any(row["file"] == file for row in rows):
+            continue
+        runs = [judge(build, f"models/clean/{file}", "--triangles", SPEED_TRIANGLES) for _ in range(2)]
+        r = min(runs, key=lambda r: r["size_seconds"] + r["front_seconds"])
+        seconds = r["size_seconds"] + r["front_seconds"]
+        lines.append(f"| {file} | {r['input_triangles']:,} | {r['triangles']:,} | {r['size_seconds']:.2f} | "
+                     f"{r['front_seconds']:.2f} | {r['triangles'] / seconds / 1000:.0f} k | "
+                     f"{100 * r['size_seconds'] / seconds:.0f} |")
+        print(lines[-1], flush=True)
+    return lines
+
+
+def cpu_seconds(command, folder):
+    """(CPU seconds or None if it failed)"""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    try:
+        done = subprocess.run(command, cwd=folder, capture_output=True, timeout=PEER_TIMEOUT)
+    except (subprocess.TimeoutExpired, FileNotFoundError):
+        return None
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime - before.ru_utime if done.returncode == 0 else None
+
+
+def make_with_gmsh(stl, size, folder, _):
+    script = pathlib.Path(folder, "remesh.geo")
+    script.write_text(f'Merge "{stl}";\nClassifySurfaces{{40 * Pi / 180, 1, 1, Pi}};\nCreateGeometry;\n'
+                      f"Surface Loop(1) = Surface{{:}};\nMesh.MeshSizeMin = {size};\nMesh.MeshSizeMax = {size};\n"
+                      "Mesh.Binary = 1;\n")
+    return cpu_seconds(["gmsh", "-2", "-nt", "1", "-format", "stl", "-o", "gmsh.stl", script], folder), "gmsh.stl"
+
+
+def make_with_netgen(stl, size, folder, _):
+    driver = pathlib.Path(folder, "remesh.py")
+    driver.write_text("from netgen.stl import *\nfrom netgen.meshing import MeshingParameters, MeshingStep\n"
+                      f"mesh = STLGeometry('{stl}').GenerateMesh(MeshingParameters(maxh={size}, minh={size}, grading=1, "
+                      "perfstepsend=MeshingStep.MESHSURFACE))\n"
+                      "points = [p.p for p in mesh.Points()]\n"
+                      "with open('netgen.off', 'w') as out:\n"
+                      "    faces = [[v.nr - 1 for v in e.vertices] for e in mesh.Elements2D()]\n"
+                      "    out.write(f'OFF\\n{len(points)} {len(faces)} 0\\n')\n"
+                      "    for p in points: out.write('%.17g %.17g %.17g\\n' % tuple(p))\n"
+                      "    for f in faces: out.write('3 %d %d %d\\n' % tuple(f))\n")
+    return cpu_seconds(["python3", driver], folder), "netgen.off"
+
+
+def make_with_cgal(stl, size, folder, build):
+    return cpu_seconds([build / "bench/cgal_remesh", stl, str(size), "cgal.off"], folder), "cgal.off"
+
+
+def build_cgal(build):
+    """The driver of CGAL's remesher, which is under the GPL: built for this comparison only, and only where CGAL is."""
+    target = build / "bench/cgal_remesh"
+    source = pathlib.Path("bench/peers/cgal_remesh.cpp")
+    if target.exists() and target.stat().st_mtime > source.stat().st_mtime:
+        return
+    subprocess.run(["g++", "-std=c++17", "-O2", "-DNDEBUG", source, "-o", target, "-lgmp", "-lmpfr"])
+
+
+PEERS = [("Gmsh, classified and remeshed", make_with_gmsh), ("Netgen, STL mesher", make_with_netgen),
+         ("CGAL, isotropic remeshing", make_with_cgal)]
+
+
+def peers(build, rows):
+    build_cgal(build)
+    lines = head(["model", "remesher", "checks", "triangles", "CPU s", "Hausdorff %", "edge length / wanted",
+                  "% within .7-1.4", "mean 2r/R", "least 2r/R", "straight lines kept"])
+
+    def add(file, name, r, seconds):
+        if "triangles" not in r:
+            lines.append(f"| {file} | {name} | {r['defect'][:80].replace('|', '/')} |" + " |" * 8)
+        else:
+            lines.append("| " + " | ".join([
+                file, name, (r["defect"] or "passed")[:60].replace("|", "/"), f"{r['triangles']:,}", f"{seconds:.2f}",
+                f"{r['hausdorff_percent']:.3f}", f"{r['edge_ratio']:.3f}", f"{100 * r['edges_within']:.1f}",
+                f"{r['quality_mean']:.3f}", f"{r['quality_min']:.2f}",
+                f"{r['straight_lines'] - r['straight_lines_missing']} of {r['straight_lines']}"]) + " |")
+        print(lines[-1], flush=True)
+
+    for row in rows:
+        file = row["file"]
+        if file not in PEER_MODELS:
+            continue
+        model = pathlib.Path("models/clean", file).resolve()
+        size = float(row["bbox_diagonal"]) / PEER_DIVISOR
+        with tempfile.TemporaryDirectory() as folder:
+            r = judge(build, model, "--size", size)
+            add(file, "Octafront", r, r.get("size_seconds", 0) + r.get("front_seconds", 0))
+            stl = pathlib.Path(folder, "in.stl")
+            subprocess.run(["python3", "bench/peers/to_stl.py", model, stl], check=True)
+            for name, make in PEERS:
+                seconds, made = make(stl, size, folder, build.resolve())
+                path = pathlib.Path(folder, made)
+                if seconds is None or not path.exists():
+                    add(file, name, {"defect": "made nothing: an error, a crash or no end"}, 0)
+                else:
+                    add(file, name, judge(build, model, "--size", size, "--made", path), seconds)
+    return lines
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("build", type=pathlib.Path)
+    parser.add_argument("--only", default="", help="models whose name contains this; no page is written")
+    parser.add_argument("--jobs", type=int, default=2, help="models at a time")
+    parser.add_argument("--skip-peers", action="store_true")
+    args = parser.parse_args()
+    rows = [r for r in csv.DictReader(open("bench/models.csv")) if r["set"] == "clean" and args.only in r["file"]]
+    with concurrent.futures.ThreadPoolExecutor(args.jobs) as pool:
+        summary, tables = all_models(args.build, rows, pool)
+    print("\n".join(summary))
+    rates = speed(args.build, rows)
+    compared = [] if args.skip_peers else peers(args.build, rows)
+    if args.only:
+        print("\n".join(tables))
+        return
+    note = ("Written by `bench/run.sh surface`. *Forced* are triangles with a corner between two feature edges that "
+            "enclose less than 13°, or with a feature edge shorter than .35 of the size: details finer than the size.")
+    pathlib.Path("docs/surface-status.md").write_text(
+        "\n".join(["# Surface meshes of all clean models", "", note, "", *summary, *tables, ""]))
+    page = pathlib.Path("docs/benchmarks.md")
+    text = page.read_text()
+    if MARKS[0] not in text:
+        text += f"\n## Surfaces\n\n{MARKS[0]}\n{MARKS[1]}\n"
+    middle = ["`bench/run.sh surface`; model by model: `docs/surface-status.md`. How many of the models reach each target:",
+              "", *summary, "", f"Speed at {SPEED_TRIANGLES:,} triangles, one thread:", "", *rates]
+    if compared:
+        middle += ["", f"The same models at diagonal / {PEER_DIVISOR} by others, one thread, judged by the same program "
+                   "(CPU seconds of theirs include reading and writing files):", "", *compared]
+    before, after = text.split(MARKS[0])[0], text.split(MARKS[1])[1]
+    page.write_text(before + MARKS[0] + "\n" + "\n".join(middle) + "\n" + MARKS[1] + after)
+
+
+main()
