@@ -11,16 +11,16 @@
 #include "surface/features.h"
 #include "surface/surface_check.h"
 
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <numbers>
 #include <optional>
 #include <string>
+
+#include <fmt/format.h>
 
 namespace {
 
@@ -32,7 +32,7 @@ constexpr double kHausdorffTolerance = 4e-4;
 /// Triangles below this 2r/R are bad; from a feature angle below kForcing degrees no better one can be made.
 constexpr double kBad = 0.4, kForcing = 13;
 /// Edges of features shorter than this part of the wanted length are details finer than the size.
-constexpr double kDetail = 0.35;
+constexpr double kDetail = 0.35, kStrip = 0.1;
 constexpr double kStraight = 1e-9, kOnLine = 1e-9;
 /// Straight lines shorter than this many sizes may be noise to the remesher.
 constexpr double kLongLine = 4;
@@ -58,22 +58,38 @@ double cpu_of(const Report& report, const std::string& stage) {
   return 0;
 }
 
-/// The corners of `t` at which two feature edges enclose an angle that no good triangle fits into.
-bool is_forced(const SurfaceMesh& s, const Triangle& t, const std::vector<Edge>& features, const SizeField& sizes) {
-  const auto is_feature = [&](VertexIndex a, VertexIndex b) {
-    return std::binary_search(features.begin(), features.end(), Edge{std::min(a, b), std::max(a, b)});
-  };
+/// Feature edges of a mesh, and which vertices lie on one.
+struct FeatureMarks {
+  std::vector<Edge> edges;
+  std::vector<char> on;
+
+  FeatureMarks(std::vector<Edge> sorted, std::size_t vertices) : edges(std::move(sorted)), on(vertices, 0) {
+    for (const Edge& e : edges) on[e[0]] = on[e[1]] = 1;
+  }
+  bool is_feature(VertexIndex a, VertexIndex b) const {
+    return std::binary_search(edges.begin(), edges.end(), Edge{std::min(a, b), std::max(a, b)});
+  }
+};
+
+/// Whether the features leave no room for a good triangle: they enclose less than kForcing degrees, are divided by
+/// corners closer than kDetail of the size, or run past each other closer than kStrip of the size.
+bool is_forced(const SurfaceMesh& s, const Triangle& t, const FeatureMarks& features, const SizeField& sizes) {
   for (int i = 0; i < 3; ++i) {
     const VertexIndex a = t[i], b = t[(i + 1) % 3], c = t[(i + 2) % 3];
     const Vec3 pa = s.points[a], pb = s.points[b], pc = s.points[c];
-    if (!is_feature(a, b)) continue;
-    if (distance(pa, pb) < kDetail * sizes.at((pa + pb) * 0.5)) return true;
-    if (is_feature(a, c) && angle_at(pa, pb, pc) < kForcing * std::numbers::pi / 180) return true;
+    const double h = sizes.at((pa + pb) * 0.5), l = distance(pa, pb);
+    if (features.on[a] && features.on[b] && l < kStrip * h) return true;
+    if (!features.is_feature(a, b)) continue;
+    if (l < kDetail * h) return true;
+    if (features.is_feature(a, c) && angle_at(pa, pb, pc) < kForcing * std::numbers::pi / 180) return true;
+    const bool is_longest = l >= distance(pb, pc) && l >= distance(pc, pa);
+    if (is_longest && features.on[c] && 2 * triangle_area(pa, pb, pc) < kStrip * h * l) return true;
   }
   return false;
 }
 
-Json shapes(const SurfaceMesh& s, const std::vector<Edge>& features, const SizeField& sizes) {
+Json shapes(const SurfaceMesh& s, const std::vector<Edge>& feature_edges, const SizeField& sizes) {
+  const FeatureMarks features(feature_edges, s.points.size());
   double sum = 0, least = 2, least_free = 2;
   std::size_t bad = 0, bad_free = 0, worst = 0;
   for (std::size_t i = 0; i < s.triangles.size(); ++i) {

@@ -12,6 +12,7 @@ namespace {
 
 /// A cap holds unchanged within this many of the old sizes around its point, and rises at the gradation from there.
 constexpr double kCapReach = 1.5;
+
 struct Scaled final : SizeField::Impl {
   Scaled(SizeField old, double factor) : sizes(std::move(old)), by(factor) {}
   double at(Vec3 p) const override { return sizes.at(p) * by; }
@@ -39,6 +40,12 @@ struct Capped final : SizeField::Impl {
   double gradation, low;
 };
 
+SizeField capped(const SizeField& sizes, std::vector<SizeCap> caps, double gradation) {
+  if (const OctreeField* grid = as_octree_field(sizes))
+    return SizeField(capped_grid(*grid, caps, gradation, RunContext{}));
+  return SizeField(std::make_shared<Capped>(sizes, std::move(caps), gradation));
+}
+
 }  // namespace
 
 SizeField capped_near(const SizeField& sizes, const std::vector<Vec3>& points, double factor, double gradation) {
@@ -49,9 +56,15 @@ SizeField capped_near(const SizeField& sizes, const std::vector<Vec3>& points, d
     const double h = sizes.at(p);
     caps.push_back({p, p, factor * h, kCapReach * h});
   }
-  if (const OctreeField* grid = as_octree_field(sizes))
-    return SizeField(capped_grid(*grid, caps, gradation, RunContext{}));
-  return SizeField(std::make_shared<Capped>(sizes, std::move(caps), gradation));
+  return capped(sizes, std::move(caps), gradation);
+}
+
+SizeField capped_at(const SizeField& sizes, const std::vector<PlacedSize>& places, double gradation) {
+  if (places.empty()) return sizes;
+  std::vector<SizeCap> caps;
+  caps.reserve(places.size());
+  for (const PlacedSize& s : places) caps.push_back({s.p, s.p, s.h, kCapReach * s.h});
+  return capped(sizes, std::move(caps), gradation);
 }
 
 SizeField scaled(const SizeField& sizes, double factor) {

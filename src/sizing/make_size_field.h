@@ -43,6 +43,14 @@ inline constexpr double kLatticeTooLong = 1.5;
 /// The size field capped to `factor` of its own value within 1.5 of these values around each point, graded again.
 SizeField capped_near(const SizeField& sizes, const std::vector<Vec3>& points, double factor, double gradation);
 
+/// A size at a place; input units.
+struct PlacedSize {
+  Vec3 p;
+  double h = 0;
+};
+/// The size field capped to the sizes at the places, within 1.5 of them, graded again from there.
+SizeField capped_at(const SizeField& sizes, const std::vector<PlacedSize>& places, double gradation);
+
 /// All sizes multiplied by `factor`.
 SizeField scaled(const SizeField& sizes, double factor);
 

@@ -3,6 +3,7 @@
 #include "sizing/make_size_field.h"
 #include "surface/coarsen.h"
 #include "surface/insertion.h"
+#include "surface/narrow_strips.h"
 #include "surface/point_grid.h"
 #include "surface/source_triangles.h"
 #include "surface/surface_crossings.h"
@@ -80,9 +81,10 @@ Compacted compacted(const WorkingMesh& mesh, const SurfaceMesh& input, const Siz
 enum class Effort { kFull, kInsertOnly };
 
 Compacted attempt(Effort effort, const SurfaceMesh& surface, InputSurface& input, const Features& features,
-                  const SizeField& sizes, const RunContext& context, Counts& counts) {
+                  const SizeField& asked, const RunContext& context, Counts& counts) {
   set_features(input, {});
-  set_features(input, features_at_scale(input, features, sizes));
+  set_features(input, features_at_scale(input, features, asked));
+  const SizeField sizes = fitted_to_strips(input, asked);
   std::vector<Curve> curves = chain_curves(input, features.corners, sizes);
   divide_curves(input, sizes, curves);
   const FrontPoints front = place_points(input, curves, sizes, context);

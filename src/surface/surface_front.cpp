@@ -18,12 +18,20 @@ constexpr double kReach = 1.5;
 constexpr double kSheetCosine = 0.2;
 /// ... and their offset along the normal stays below this part of their distance.
 constexpr double kSheetOffset = 0.75;
+/// Points are placed again if their number differs by this part from the one wanted; edges differ by half of it.
+constexpr double kSurplus = 0.045;
+constexpr int kMostPlacings = 3;
+/// Sizes are changed by no more than this for it: small models at coarse sizes have no room to make up.
+constexpr double kLeastFactor = 0.9;
+/// A triangle is sampled in this many rows at most.
+constexpr int kMostParts = 64;
 constexpr double kSixtyDegrees = std::numbers::pi / 3;
 
 class Front {
  public:
-  Front(const InputSurface& input, const SizeField& sizes)
-      : input_(input), sizes_(sizes), grid_(bounding_box(input.mesh.points).center()) {}
+  /// Places by `factor` times the sizes inside patches.
+  Front(const InputSurface& input, const SizeField& sizes, double factor)
+      : input_(input), sizes_(sizes), factor_(factor), grid_(bounding_box(input.mesh.points).center()) {}
 
   FrontPoints run(const std::vector<Curve>& curves, const RunContext& context) {
     for (const Curve& c : curves) add_curve(c);
@@ -39,6 +47,9 @@ class Front {
       place_seed(face);
       advance(context);
     }
+    for (FrontPoint& p : result_.points) {
+      if (!p.on_feature) p.h /= factor_;
+    }
     return std::move(result_);
   }
 
@@ -47,6 +58,8 @@ class Front {
     double angle;
     std::uint32_t id;
   };
+
+  double size_at(Vec3 p) const { return factor_ * sizes_.at(p); }
 
   void add(const FrontPoint& point) {
     result_.points.push_back(point);
@@ -96,7 +109,7 @@ class Front {
     point.p = x.p;
     point.face = x.face;
     point.normal = input_.normal_at(x.face, x.p);
-    point.h = sizes_.at(x.p);
+    point.h = size_at(x.p);
     point.parent = parent;
     bool is_free = true;
     grid_.for_each_near(x.p, point.h, kSpacing, [&](std::uint32_t id, Vec3 q) {
@@ -119,7 +132,7 @@ class Front {
     point.p = c;
     point.face = face;
     point.normal = input_.normal_at(face, c);
-    point.h = sizes_.at(c);
+    point.h = size_at(c);
     add(point);
   }
 
@@ -136,7 +149,7 @@ class Front {
 
   /// The wanted length of an edge from `point` in a direction.
   double reach_towards(const FrontPoint& point, Vec3 direction) const {
-    const double there = sizes_.at(point.p + direction * point.h);
+    const double there = size_at(point.p + direction * point.h);
     return 0.5 * (point.h + there);
   }
 
@@ -238,6 +251,7 @@ class Front {
 
   const InputSurface& input_;
   const SizeField& sizes_;
+  double factor_;
   PointGrid grid_;
   FrontPoints result_;
   std::map<VertexIndex, std::uint32_t> of_vertex_;
@@ -246,11 +260,50 @@ class Front {
   std::uint32_t next_ = 0;
 };
 
+/// The integral of 1 / h^2 over a triangle, by its parts no longer than about two sizes.
+double demand_of(Vec3 a, Vec3 b, Vec3 c, const SizeField& sizes) {
+  const Vec3 middle = (a + b + c) / 3;
+  const double longest = std::sqrt(std::max({squared_length(a - b), squared_length(b - c), squared_length(c - a)}));
+  const int n = std::clamp(static_cast<int>(longest / (2 * sizes.at(middle))) + 1, 1, kMostParts);
+  double sum = 0;
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < 2 * (n - i) - 1; ++j) {
+      // Parts come in pairs along a row: upright ones, and between them such as stand on their tip.
+      const double third = j % 2 == 0 ? 1.0 / 3 : 2.0 / 3, u = (i + third) / n, v = (j / 2 + third) / n;
+      const double h = sizes.at(a * (1 - u - v) + b * u + c * v);
+      sum += 1 / (h * h);
+    }
+  }
+  return sum / (n * n) * 0.5 * length(cross(b - a, c - a));
+}
+
+/// The number of points that the sizes ask for: equilateral triangles, two for each point.
+double points_wanted(const InputSurface& input, const SizeField& sizes) {
+  double demand = 0;
+  for (std::uint32_t t = 0; t < input.mesh.triangle_count(); ++t) {
+    demand += demand_of(input.mesh.corner(t, 0), input.mesh.corner(t, 1), input.mesh.corner(t, 2), sizes);
+  }
+  return demand * 2 / std::numbers::sqrt3;
+}
+
 }  // namespace
 
 FrontPoints place_points(const InputSurface& input, const std::vector<Curve>& curves, const SizeField& sizes,
                          const RunContext& context) {
-  return Front(input, sizes).run(curves, context);
+  const double wanted = points_wanted(input, sizes);
+  FrontPoints best;
+  double factor = 1, least = HUGE_VAL;
+  for (int attempt = 0; attempt < kMostPlacings; ++attempt) {
+    FrontPoints made = Front(input, sizes, factor).run(curves, context);
+    const double surplus = static_cast<double>(made.points.size()) / wanted;
+    if (std::abs(surplus - 1) < least) {
+      least = std::abs(surplus - 1);
+      best = std::move(made);
+    }
+    if (least < kSurplus) break;
+    factor = std::clamp(factor * std::sqrt(surplus), kLeastFactor, 1 / kLeastFactor);
+  }
+  return best;
 }
 
 }  // namespace octafront::remeshing

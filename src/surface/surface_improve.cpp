@@ -43,6 +43,7 @@ class SurfaceImprover {
     }
     smooth();
     delaunay();
+    mend_triangles(mesh_, input_, sizes_, counts_);
   }
 
  private:

@@ -15,6 +15,10 @@ constexpr double kLong = 1.5, kShort = 0.6;
 constexpr double kBad = 0.2;
 /// An operation on a bad triangle must raise the worst around by this factor, so that two never undo each other.
 constexpr double kGain = 1.3;
+/// Mending one triangle may spoil or free another.
+constexpr int kMendRounds = 3;
+/// Height of an equilateral triangle.
+constexpr double kEquilateral = 0.8660254037844386;
 /// Edges between points of curves shorter than this, in wanted sizes, may vanish, with a corner, where they spoil
 /// triangles.
 constexpr double kTiny = 0.2;
@@ -35,8 +39,16 @@ class LengthAdjuster {
     for (HalfedgeIndex h = 0; h < halfedges; ++h) {
       if (mesh_.start[h] != kNone && h < mesh_.twin[h] && !mesh_.is_feature[h]) split_if_long(h);
     }
-    for (std::uint32_t t = 0; t < mesh_.triangle_count(); ++t) {
-      if (!mesh_.is_removed(t) && quality(3 * t) < kBad) mend(t);
+    mend_all();
+  }
+
+  void mend_all() {
+    for (int round = 0; round < kMendRounds; ++round) {
+      bool any = false;
+      for (std::uint32_t t = 0; t < mesh_.triangle_count(); ++t) {
+        if (!mesh_.is_removed(t) && quality(3 * t) < kBad) any |= mend(t);
+      }
+      if (!any) break;
     }
   }
 
@@ -94,17 +106,67 @@ class LengthAdjuster {
     return true;
   }
 
-  void mend(std::uint32_t t) {
+  /// True if something was done about the triangle.
+  bool mend(std::uint32_t t) {
     for (HalfedgeIndex h = 3 * t; h < 3 * t + 3; ++h) {
-      if (flip_if_better(h)) return;
+      if (flip_if_better(h)) return true;
     }
     for (HalfedgeIndex h = 3 * t; h < 3 * t + 3; ++h) {
-      if (mesh_.kind[mesh_.start[h]] == VertexKind::kFree && remove_if_better(mesh_.start[h])) return;
+      if (mesh_.kind[mesh_.start[h]] == VertexKind::kFree && move_if_better(mesh_.start[h])) return true;
+    }
+    for (HalfedgeIndex h = 3 * t; h < 3 * t + 3; ++h) {
+      if (mesh_.kind[mesh_.start[h]] == VertexKind::kFree && remove_if_better(mesh_.start[h])) return true;
     }
     for (HalfedgeIndex h = 3 * t; h < 3 * t + 3; ++h) {
       if (relative_length(h) > kTiny || !(mesh_.on_curve(mesh_.start[h]) && mesh_.on_curve(mesh_.end(h)))) continue;
-      if (merge_if_better(h) || merge_if_better(mesh_.twin[h])) return;
+      if (merge_if_better(h) || merge_if_better(mesh_.twin[h])) return true;
     }
+    return false;
+  }
+
+  /// Tries the middle of the neighbours, and the mean of the best places as the triangles around see it, the worse a
+  /// triangle the more it counts.
+  bool move_if_better(VertexIndex v) {
+    const Vec3 p = mesh_.points[v], n = mesh_.normal[v];
+    ring_.clear();
+    Vec3 star;
+    mesh_.for_each_outgoing(v, [&](HalfedgeIndex h) {
+      ring_.push_back({mesh_.points[mesh_.end(h)], mesh_.points[mesh_.apex(h)]});
+      star += mesh_.area_vector(h / 3);
+    });
+    Vec3 middle, ideal;
+    double weights = 0, worst = 1;
+    for (const auto& [a, b] : ring_) {
+      const double q = squared_quality(p, a, b), w = 1 / (q + 0.01);
+      middle += a / static_cast<double>(ring_.size());
+      ideal += ((a + b) * 0.5 + normalized(cross(n, b - a)) * (kEquilateral * distance(a, b))) * w;
+      weights += w;
+      worst = std::min(worst, q);
+    }
+    for (const Vec3 target : {ideal / weights, middle}) {
+      const Vec3 d = (target - p) - n * dot(target - p, n);
+      const double l = length(d);
+      SurfacePoint x;
+      if (!(l > 0) || walk(input_, {p, mesh_.face[v]}, d / l, n, l, x) != WalkEnd::kArrived) continue;
+      if (!(worst_around(x.p, star) > kGain * worst)) continue;
+      mesh_.points[v] = x.p;
+      mesh_.face[v] = x.face;
+      mesh_.normal[v] = input_.normal_at(x.face, x.p);
+      mesh_.size[v] = sizes_.at(x.p);
+      ++counts_.moves;
+      return true;
+    }
+    return false;
+  }
+
+  /// Least squared quality of the ring's triangles with their apex at p; 0 if one turns too far.
+  double worst_around(Vec3 p, Vec3 star) const {
+    double worst = 1;
+    for (const auto& [a, b] : ring_) {
+      if (!turns_little(cross(a - p, b - p), star, kLimits.star)) return 0;
+      worst = std::min(worst, squared_quality(p, a, b));
+    }
+    return worst;
   }
 
   /// Moves the start of a tiny edge between curves to its end: details far below the element size make only slivers.
@@ -156,9 +218,14 @@ class LengthAdjuster {
   const SizeField& sizes_;
   ImproveCounts& counts_;
   StarCollapse star_;
+  std::vector<std::pair<Vec3, Vec3>> ring_;  ///< the far edges of a vertex's triangles
 };
 
 }  // namespace
+
+void mend_triangles(WorkingMesh& mesh, const InputSurface& input, const SizeField& sizes, ImproveCounts& counts) {
+  LengthAdjuster(mesh, input, sizes, counts).mend_all();
+}
 
 void adjust_lengths(WorkingMesh& mesh, const InputSurface& input, const SizeField& sizes, ImproveCounts& counts) {
   LengthAdjuster(mesh, input, sizes, counts).run();

@@ -9,5 +9,7 @@ namespace octafront::remeshing {
 /// Mends what the front left too long, too short or too flat: splits long edges inside patches, collapses short ones,
 /// and removes vertices (or turns edges) of bad triangles where that makes the worst triangle around better.
 void adjust_lengths(WorkingMesh& mesh, const InputSurface& input, const SizeField& sizes, ImproveCounts& counts);
+/// The last of these steps alone: the badly shaped triangles.
+void mend_triangles(WorkingMesh& mesh, const InputSurface& input, const SizeField& sizes, ImproveCounts& counts);
 
 }  // namespace octafront::remeshing
