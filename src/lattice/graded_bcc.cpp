@@ -101,19 +101,23 @@ Vec3 position(const RootCube& root, LatticeSite site) {
   return root.position(unpack_site(site));
 }
 
-void for_each_lattice_tet(const Octree& tree, const std::function<void(const std::array<LatticeSite, 4>&)>& visit) {
-  for (const OctreeKey leaf : tree.leaves()) {
-    for (int side = 0; side < 6; ++side) {
-      const int axis = side / 2;
-      const bool high = side % 2 == 1;
-      const OctreeKey beyond = step(leaf, axis, high ? 1 : -1);
-      if (!beyond.is_valid()) continue;
-      const OctreeKey across = tree.leaf(tree.find(beyond));
-      const LeafFace face(tree, leaf, axis, high);
-      if (across == beyond && high) face.visit_equal(across, visit);
-      if (across.level() < leaf.level()) face.visit_larger(across, visit);
-    }
+void for_each_lattice_tet_of(const Octree& tree, std::size_t i,
+                             const std::function<void(const std::array<LatticeSite, 4>&)>& visit) {
+  const OctreeKey leaf = tree.leaf(i);
+  for (int side = 0; side < 6; ++side) {
+    const int axis = side / 2;
+    const bool high = side % 2 == 1;
+    const OctreeKey beyond = step(leaf, axis, high ? 1 : -1);
+    if (!beyond.is_valid()) continue;
+    const OctreeKey across = tree.leaf(tree.find(beyond));
+    const LeafFace face(tree, leaf, axis, high);
+    if (across == beyond && high) face.visit_equal(across, visit);
+    if (across.level() < leaf.level()) face.visit_larger(across, visit);
   }
+}
+
+void for_each_lattice_tet(const Octree& tree, const std::function<void(const std::array<LatticeSite, 4>&)>& visit) {
+  for (std::size_t i = 0; i < tree.size(); ++i) for_each_lattice_tet_of(tree, i, visit);
 }
 
 }  // namespace octafront

@@ -46,4 +46,8 @@ Vec3 position(const RootCube& root, LatticeSite site);
 /// the order of the leaves. REQUIRES: the tree is balanced, and no leaf is finer than kFinestLatticeLevel.
 void for_each_lattice_tet(const Octree& tree, const std::function<void(const std::array<LatticeSite, 4>&)>& visit);
 
+/// The same for the tetrahedra that leaf `i` has with leaves as large, on its upper sides, and with larger ones.
+void for_each_lattice_tet_of(const Octree& tree, std::size_t i,
+                             const std::function<void(const std::array<LatticeSite, 4>&)>& visit);
+
 }  // namespace octafront

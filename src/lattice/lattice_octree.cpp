@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include <oneapi/tbb/enumerable_thread_specific.h>
+#include <oneapi/tbb/parallel_for.h>
+
 namespace octafront {
 
 namespace {
@@ -17,6 +20,9 @@ RootCube choose_root(const Box3& box, double leaf_side) {
   while (side < std::max({extent.x, extent.y, extent.z})) side *= 2;
   return {box.center() - Vec3{side, side, side} * 0.5, side};
 }
+
+// Cells with fewer triangles are visited in one task.
+constexpr std::size_t kTrianglesForTasks = 1000;
 
 class Divider {
  public:
@@ -34,8 +40,12 @@ class Divider {
     std::vector<std::uint32_t> all(boxes_.size());
     for (std::uint32_t t = 0; t < all.size(); ++t) all[t] = t;
     visit_cut(OctreeKey::root(), all);
-    divided_.close();
-    return std::move(divided_);
+    // Which thread found a cell is chance; a set of cells has no order.
+    DividedCells divided;
+    for (const std::vector<OctreeKey>& cells : divided_)
+      for (const OctreeKey cell : cells) divided.divide(cell);
+    divided.close();
+    return divided;
   }
 
  private:
@@ -57,8 +67,8 @@ class Divider {
   void visit_cut(OctreeKey cell, const std::vector<std::uint32_t>& near) {
     if (!too_large(cell)) return;
     context_.check();
-    divided_.divide(cell);
-    for (int i = 0; i < 8; ++i) {
+    divided_.local().push_back(cell);
+    for_each_child(near.size() > kTrianglesForTasks, [&](int i) {
       const OctreeKey child = cell.child(i);
       const Box3 box = box_of(child);
       std::vector<std::uint32_t> here;
@@ -68,13 +78,21 @@ class Divider {
         visit_cut(child, here);
       else if (triangles_.contains(box.center()))
         visit_inside(child);
-    }
+    });
   }
 
   void visit_inside(OctreeKey cell) {
     if (!too_large(cell)) return;
-    divided_.divide(cell);
+    divided_.local().push_back(cell);
     for (int i = 0; i < 8; ++i) visit_inside(cell.child(i));
+  }
+
+  template <class Visit>
+  static void for_each_child(bool as_tasks, const Visit& visit) {
+    if (as_tasks)
+      tbb::parallel_for(0, 8, visit);
+    else
+      for (int i = 0; i < 8; ++i) visit(i);
   }
 
   const TriangleTree& triangles_;
@@ -82,7 +100,7 @@ class Divider {
   RootCube root_;
   const RunContext& context_;
   std::vector<Box3> boxes_;
-  DividedCells divided_;
+  tbb::enumerable_thread_specific<std::vector<OctreeKey>> divided_;
 };
 
 }  // namespace

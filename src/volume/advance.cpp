@@ -8,7 +8,6 @@
 
 #include <oneapi/tbb/enumerable_thread_specific.h>
 #include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/task_arena.h>
 
 namespace octafront {
 
@@ -43,13 +42,7 @@ class Phases {
  public:
   Phases(FrontState& front, const SizeField& sizes, const VolumeOptions& options, const AdvanceBudget& budget,
          const RunContext& context, FrontCounters& counters)
-      : front_(front),
-        sizes_(sizes),
-        options_(options),
-        budget_(budget),
-        context_(context),
-        counters_(counters),
-        arena_(context.threads > 0 ? context.threads : tbb::task_arena::automatic) {}
+      : front_(front), sizes_(sizes), options_(options), budget_(budget), context_(context), counters_(counters) {}
 
   bool run() {
     work_off_queue();
@@ -83,7 +76,7 @@ class Phases {
       const bool small = front_.queue.size() <= kSmallQueue;
       const std::size_t queued = front_.queue.size();
       const std::uint64_t deferred_before = counters_.deferred;
-      arena_.execute([&] { phase(small || stuck, small ? kAllLayers : kLayersPerPhase); });
+      phase(small || stuck, small ? kAllLayers : kLayersPerPhase);
       const auto deferred = static_cast<double>(counters_.deferred - deferred_before);
       stuck = deferred > (1 - kLeastSettled) * static_cast<double>(queued);
     }
@@ -169,7 +162,6 @@ class Phases {
   AdvanceBudget budget_;
   const RunContext& context_;
   FrontCounters& counters_;
-  tbb::task_arena arena_;
   tbb::enumerable_thread_specific<BlockScratch> scratch_;
 };
 

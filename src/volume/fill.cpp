@@ -13,6 +13,7 @@
 #include <cmath>
 
 #include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
 
 namespace octafront {
 
@@ -131,11 +132,8 @@ void report_front(StageReport& report, const FrontCounters& counters, std::size_
   report.count("faces left", static_cast<double>(left));
 }
 
-}  // namespace
-
-TetMesh fill_volume(const SurfaceMesh& surface, const SizeField& sizes, const VolumeOptions& options,
-                    const RunContext& context, StageReport& report) {
-  if (surface.triangles.empty()) throw InputError("the surface has no triangles: nothing to fill");
+TetMesh fill(const SurfaceMesh& surface, const SizeField& sizes, const VolumeOptions& options,
+             const RunContext& context, StageReport& report) {
   TetMesh mesh;
   std::vector<Wall> walls;
   {
@@ -173,6 +171,15 @@ TetMesh fill_volume(const SurfaceMesh& surface, const SizeField& sizes, const Vo
   mesh.patch = surface.patch;
   mesh.patch_names = surface.patch_names;
   return mesh;
+}
+
+}  // namespace
+
+TetMesh fill_volume(const SurfaceMesh& surface, const SizeField& sizes, const VolumeOptions& options,
+                    const RunContext& context, StageReport& report) {
+  if (surface.triangles.empty()) throw InputError("the surface has no triangles: nothing to fill");
+  tbb::task_arena arena(context.threads > 0 ? context.threads : tbb::task_arena::automatic);
+  return arena.execute([&] { return fill(surface, sizes, options, context, report); });
 }
 
 }  // namespace octafront
