@@ -69,6 +69,8 @@ def scene(cells, edges):
     bar.SetLookupTable(mapper.GetLookupTable())
     bar.SetTitle("beta")
     bar.SetNumberOfLabels(6)
+    bar.SetVerticalTitleSeparation(10)
+    bar.UnconstrainedFontSizeOn()
     bar.SetMaximumWidthInPixels(70)
     bar.SetPosition(0.9, 0.2)
     bar.SetHeight(0.6)
