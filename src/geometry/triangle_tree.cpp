@@ -5,33 +5,75 @@
 
 #include <algorithm>
 
+#include <oneapi/tbb/parallel_invoke.h>
+
 namespace octafront {
 
 // Median splits along the longest side of the box of centroids. Equal centroids are ordered by index, so the tree does
-// not depend on how the library selects.
+// not depend on how the library selects. Both children of a node lie side by side, then what is below the left one,
+// then what is below the right one: places follow from numbers of triangles alone, so halves are built in parallel.
 struct TriangleTree::Builder {
   struct Entry {
     Vec3 middle;
-    Box3 box;
     std::uint32_t triangle;
   };
 
   TriangleTree& tree;
+  std::span<const Vec3> points;
+  std::span<const Triangle> triangles;
   std::vector<Entry> entries;
 
-  // Fills node n and all below it.
-  void split(std::uint32_t n, std::uint32_t begin, std::uint32_t end) {
-    Box3 box, middles;
-    for (std::uint32_t i = begin; i < end; ++i) {
-      box.add(entries[i].box);
-      middles.add(entries[i].middle);
+  // Subtrees with more triangles than this are worth a task of their own.
+  static constexpr std::uint32_t kTask = 20'000;
+
+  TriangleCorners corners(std::uint32_t t) const {
+    return {points[triangles[t][0]], points[triangles[t][1]], points[triangles[t][2]]};
+  }
+
+  // The number of nodes above `count` triangles. On one level of the tree only two such counts occur.
+  static std::uint32_t node_count(std::uint32_t count) {
+    if (count <= kLeafSize) return 1;
+    std::uint64_t smaller = count, of_smaller = 1, of_larger = 0, nodes = 1;  // larger = smaller + 1
+    for (;;) {
+      // Halves of the two counts on the next level: again two that differ by one.
+      const std::uint64_t half = smaller / 2;
+      const bool is_odd = smaller % 2 == 1;
+      const std::uint64_t next_smaller = is_odd ? of_smaller : 2 * of_smaller + of_larger;
+      const std::uint64_t next_larger = is_odd ? of_smaller + 2 * of_larger : of_larger;
+      smaller = half;
+      of_smaller = next_smaller;
+      of_larger = next_larger;
+      nodes += of_smaller + of_larger;
+      if (smaller + 1 <= kLeafSize) break;
+      if (smaller <= kLeafSize) {  // only the larger ones have children
+        nodes += 2 * of_larger;
+        break;
+      }
     }
+    return static_cast<std::uint32_t>(nodes);
+  }
+
+  void make_leaf(std::uint32_t n, std::uint32_t begin, std::uint32_t end) {
+    std::sort(entries.begin() + begin, entries.begin() + end,
+              [](const Entry& a, const Entry& b) { return a.triangle < b.triangle; });
+    Box3 box;
+    for (std::uint32_t i = begin; i < end; ++i) {
+      const std::uint32_t t = entries[i].triangle;
+      tree.items_[i] = {corners(t), t};
+      tree.item_of_triangle_[t] = i;
+      box.add(box_of(tree.items_[i].corners));
+    }
+    tree.nodes_[n] = {box, begin, end - begin};
+  }
+
+  // Fills node n and all below it; the nodes below it begin at `child`.
+  void split(std::uint32_t n, std::uint32_t child, std::uint32_t begin, std::uint32_t end) {
     if (end - begin <= kLeafSize) {
-      std::sort(entries.begin() + begin, entries.begin() + end,
-                [](const Entry& a, const Entry& b) { return a.triangle < b.triangle; });
-      tree.nodes_[n] = {box, begin, end - begin};
+      make_leaf(n, begin, end);
       return;
     }
+    Box3 middles;
+    for (std::uint32_t i = begin; i < end; ++i) middles.add(entries[i].middle);
     const Vec3 e = middles.extent();
     const int axis = e.x >= e.y && e.x >= e.z ? 0 : e.y >= e.z ? 1 : 2;
     const std::uint32_t middle = begin + (end - begin) / 2;
@@ -40,34 +82,31 @@ struct TriangleTree::Builder {
                        const double x = a.middle[axis], y = b.middle[axis];
                        return x != y ? x < y : a.triangle < b.triangle;
                      });
-    const auto child = static_cast<std::uint32_t>(tree.nodes_.size());
+    const std::uint32_t below_left = child + 2, below_right = below_left + node_count(middle - begin) - 1;
+    const auto left = [&] { split(child, below_left, begin, middle); };
+    const auto right = [&] { split(child + 1, below_right, middle, end); };
+    if (end - begin > kTask) {
+      tbb::parallel_invoke(left, right);
+    } else {
+      left();
+      right();
+    }
+    Box3 box = tree.nodes_[child].box;
+    box.add(tree.nodes_[child + 1].box);
     tree.nodes_[n] = {box, child, 0};
-    tree.nodes_.resize(child + 2);
-    split(child, begin, middle);
-    split(child + 1, middle, end);
   }
 };
 
 TriangleTree::TriangleTree(std::span<const Vec3> points, std::span<const Triangle> triangles) {
   if (triangles.empty()) return;
-  Builder builder{*this, {}};
-  builder.entries.reserve(triangles.size());
-  const auto corners = [&](std::size_t t) {
-    return TriangleCorners{points[triangles[t][0]], points[triangles[t][1]], points[triangles[t][2]]};
-  };
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    const Box3 box = box_of(corners(t));
-    builder.entries.push_back({box.center(), box, static_cast<std::uint32_t>(t)});
-  }
-  nodes_.reserve(triangles.size());
-  nodes_.resize(1);
-  builder.split(0, 0, static_cast<std::uint32_t>(triangles.size()));
-  items_.reserve(triangles.size());
-  item_of_triangle_.resize(triangles.size());
-  for (const auto& entry : builder.entries) {
-    item_of_triangle_[entry.triangle] = static_cast<std::uint32_t>(items_.size());
-    items_.push_back({corners(entry.triangle), entry.triangle});
-  }
+  const auto count = static_cast<std::uint32_t>(triangles.size());
+  Builder builder{*this, points, triangles, {}};
+  builder.entries.reserve(count);
+  for (std::uint32_t t = 0; t < count; ++t) builder.entries.push_back({box_of(builder.corners(t)).center(), t});
+  nodes_.resize(Builder::node_count(count));
+  items_.resize(count);
+  item_of_triangle_.resize(count);
+  builder.split(0, 1, 0, count);
 }
 
 // Goes down from the root by keys of boxes (0 at the nearest), always into the nearer child first; calls visit(leaf),

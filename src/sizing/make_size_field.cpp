@@ -20,6 +20,8 @@ constexpr double kRootMargin = 0.02;
 /// --elements: sizes are scaled until the expected number is this close.
 constexpr double kCountTolerance = 0.01;
 constexpr int kMostScalings = 10;
+/// Samples along the side of the root cube where one size holds everywhere: two to a leaf of GridRules::plain_level.
+constexpr double kPlainSamples = 64;
 
 GridRules rules_for(const WantedSizes& wanted, const SizeOptions& options, const RootCube& root) {
   GridRules rules;
@@ -63,11 +65,23 @@ std::vector<SizeCap> caps_of_regions(const SizeOptions& options, const RootCube&
   return caps;
 }
 
+/// Where one size holds everywhere the grid has a plain level of leaves, and samples need be no denser than these.
+std::vector<SizeSample> even_samples(const SurfaceMesh& surface, double h, const RootCube& root,
+                                     const RunContext& context) {
+  const double spacing = std::max(h, root.side / kPlainSamples);
+  std::vector<SizeSample> samples =
+      sample_surface(surface, std::vector<double>(surface.triangles.size(), spacing), {}, context);
+  for (SizeSample& s : samples) s.h = h;
+  return samples;
+}
+
 SizeField grid_field(const SurfaceMesh& surface, const WantedSizes& wanted, const SizeOptions& options,
                      const RunContext& context) {
   const RootCube root = RootCube::around(bounding_box(surface.points), kRootMargin);
   const GridRules rules = rules_for(wanted, options, root);
-  std::vector<SizeSample> samples = sample_surface(surface, wanted.face, wanted.at_place, context);
+  std::vector<SizeSample> samples = wanted.even && !rules.resolve_surface
+                                        ? even_samples(surface, wanted.face.front(), root, context)
+                                        : sample_surface(surface, wanted.face, wanted.at_place, context);
   samples.insert(samples.end(), wanted.points.begin(), wanted.points.end());
   auto grid = make_background_grid(root, samples, rules, context);
   const std::vector<SizeCap> caps = caps_of_regions(options, root);

@@ -48,6 +48,7 @@ class Inserter {
     mesh_.normal.resize(vertices);
     mesh_.face.resize(vertices);
     mesh_.size.assign(vertices, 0);
+    mesh_.changed.assign(vertices, WorkingMesh::kForSmoothing | WorkingMesh::kForFlips);
     mesh_.patch = input.patch;
     mesh_.origin.resize(faces);
     last_.resize(faces);

@@ -10,8 +10,9 @@
 namespace octafront::remeshing {
 
 /// Finds points near a place, for points that each have a size of their own. A point lives in the grid of the level of
-/// its size (cells of side 2^(level+1), its size in [2^level, 2^(level+1))), and a query looks only at levels near its
-/// own: sizes are graded, so points of very different size are never neighbours.
+/// its size, which is in [2^level, 2^(level+1)), in cells of side 2^(level+2): points lie on a surface, so most cells
+/// are empty, and larger ones are fewer to look at. A query looks only at levels near its own: sizes are graded, so
+/// points of very different size are never neighbours.
 class PointGrid {
  public:
   explicit PointGrid(Vec3 origin) : origin_(origin) { table_.assign(1 << 10, kEmpty); }
@@ -57,7 +58,7 @@ class PointGrid {
   };
 
   Cell cell_of(Vec3 p, int level) const {
-    const double scale = std::ldexp(0.5, -level);
+    const double scale = std::ldexp(0.25, -level);
     const auto index = [&](double x) { return static_cast<std::int64_t>(std::floor(x * scale)); };
     const Vec3 d = p - origin_;
     return {index(d.x), index(d.y), index(d.z)};

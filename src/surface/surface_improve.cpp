@@ -59,9 +59,12 @@ class SurfaceImprover {
 
   void delaunay() {
     edges_.clear();
+    const auto may_have_turned = [&](VertexIndex v) { return (mesh_.changed[v] & WorkingMesh::kForFlips) != 0; };
     for (HalfedgeIndex h = 0; h < mesh_.start.size(); ++h) {
-      if (mesh_.start[h] != kNone && h < mesh_.twin[h]) edges_.push_back(h);
+      if (mesh_.start[h] == kNone || h > mesh_.twin[h]) continue;
+      if (may_have_turned(mesh_.start[h]) && may_have_turned(mesh_.end(h))) edges_.push_back(h);
     }
+    for (std::uint8_t& c : mesh_.changed) c &= static_cast<std::uint8_t>(~WorkingMesh::kForFlips);
     counts_.flips += make_delaunay(mesh_, edges_, kFlipLimits);
   }
 
@@ -121,6 +124,8 @@ class SurfaceImprover {
   void smooth() {
     for (VertexIndex v = 0; v < mesh_.points.size(); ++v) {
       if (v % 1024 == 0) context_.check();
+      if ((mesh_.changed[v] & WorkingMesh::kForSmoothing) == 0) continue;
+      mesh_.changed[v] &= static_cast<std::uint8_t>(~WorkingMesh::kForSmoothing);
       if (mesh_.kind[v] == VertexKind::kFree && mesh_.outgoing[v] != kNone) smooth(v);
     }
   }
@@ -178,6 +183,7 @@ class SurfaceImprover {
       mesh_.face[v] = x.face;
       mesh_.normal[v] = normal;
       if (!is_uniform_) mesh_.size[v] = sizes_.at(x.p);
+      mesh_.mark_star_changed(v);
       ++counts_.moves;
       return;
     }

@@ -153,6 +153,7 @@ class LengthAdjuster {
       mesh_.face[v] = x.face;
       mesh_.normal[v] = input_.normal_at(x.face, x.p);
       mesh_.size[v] = sizes_.at(x.p);
+      mesh_.mark_star_changed(v);
       ++counts_.moves;
       return true;
     }

@@ -8,6 +8,7 @@ VertexIndex WorkingMesh::add_vertex(Vec3 p, VertexKind k, Vec3 n, double h, std:
   normal.push_back(n);
   size.push_back(h);
   face.push_back(in_face);
+  changed.push_back(kForSmoothing | kForFlips);
   outgoing.push_back(kNone);
   return static_cast<VertexIndex>(points.size() - 1);
 }
@@ -75,6 +76,7 @@ void WorkingMesh::split_edge(HalfedgeIndex h, VertexIndex x) {
   outgoing[a] = h;
   outgoing[b] = k + 1;
   outgoing[x] = bc;
+  for (const VertexIndex v : {a, b, c, d}) mark_changed(v);
 }
 
 bool WorkingMesh::may_flip(HalfedgeIndex h) const {
@@ -101,6 +103,7 @@ HalfedgeIndex WorkingMesh::flip(HalfedgeIndex h) {
   link(*this, bc, ad, 0);
   outgoing[a] = h;
   outgoing[b] = g;
+  for (const VertexIndex v : {a, b, c, d}) mark_changed(v);
   return bc;
 }
 
@@ -144,6 +147,7 @@ void WorkingMesh::collapse(HalfedgeIndex h) {
   outgoing[w] = ua;
   outgoing[a] = aw;
   outgoing[b] = bu;
+  mark_star_changed(w);
 }
 
 }  // namespace octafront::remeshing

@@ -22,6 +22,15 @@ struct WorkingMesh : HalfedgeMesh {
   std::vector<std::uint32_t> face;    ///< per vertex: an input face that it lies in
   std::vector<std::uint32_t> patch;   ///< per triangle
   std::vector<std::uint32_t> origin;  ///< per triangle: while inserting, the input face it is a part of
+  std::vector<std::uint8_t> changed;  ///< per vertex: kForSmoothing and kForFlips, set by whatever changes around it
+
+  /// Marks for passes that skip what did not change since they last saw it.
+  static constexpr std::uint8_t kForSmoothing = 1, kForFlips = 2;
+  void mark_changed(VertexIndex v) { changed[v] = kForSmoothing | kForFlips; }
+  void mark_star_changed(VertexIndex v) {
+    mark_changed(v);
+    for_each_outgoing(v, [&](HalfedgeIndex h) { mark_changed(end(h)); });
+  }
 
   bool is_removed(std::size_t triangle) const { return start[3 * triangle] == kNone; }
   bool is_free(VertexIndex v) const { return kind[v] == VertexKind::kFree || kind[v] == VertexKind::kRemovable; }
