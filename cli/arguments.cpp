@@ -87,7 +87,7 @@ void declare_volume(CLI::App& command, Arguments& a) {
   VolumeOptions& o = a.options.volume;
   auto* group = command.add_option_group("Volume");
   add_choice<Method>(*group, "--method", a.options.method,
-                     {{"octree-aft", Method::kOctreeAft}, {"octree", Method::kOctree}, {"recover", Method::kRecover}},
+                     {{"octree-aft", Method::kOctreeAft}, {"aft", Method::kAft}, {"octree", Method::kOctree}, {"recover", Method::kRecover}},
                      "octree-aft: the volume front; recover: the input's triangles kept, with as few points inside as "
                      "possible");
   add_choice<Core>(*group, "--core", o.core, {{"lattice", Core::kLattice}, {"none", Core::kOff}},

@@ -73,8 +73,9 @@ struct ImproveOptions {
 /// How the volume gets its tetrahedra.
 enum class Method {
   kOctreeAft,  ///< the volume front, localised by the octree, around a lattice core
-  kOctree,   ///< isosurface stuffing of the octree's lattice: fast, also on surfaces with defects; the boundary is its own
-  kRecover,  ///< the input's triangles kept and filled with as few inner points as possible: coarse, exact, of no size
+  kAft,        ///< the classical front: sizes from the surface alone, no octree, no lattice; for comparison
+  kOctree,     ///< isosurface stuffing of the octree's lattice: fast, also on surfaces with defects; the boundary is its own
+  kRecover,    ///< the input's triangles kept and filled with as few inner points as possible: coarse, exact, of no size
 };
 
 /// Everything that steers generate().

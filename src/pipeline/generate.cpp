@@ -2,6 +2,7 @@
 #include <octafront/generate.h>
 #include <octafront/validity.h>
 
+#include "classic/fill_classic.h"
 #include "core/stage_timer.h"
 #include "core/thread_limit.h"
 #include "improve/improve.h"
@@ -153,6 +154,10 @@ TetMesh fill_by_method(const Remeshed& boundary, const Options& options, const R
     case Method::kOctreeAft:
       return run_stage(report, context, "volume front", [&](StageReport& stage) {
         return fill_volume(boundary.surface, boundary.sizes, options.volume, context, stage);
+      });
+    case Method::kAft:
+      return run_stage(report, context, "volume front", [&](StageReport& stage) {
+        return fill_volume_classic(boundary.surface, options.volume, context, stage);
       });
     case Method::kOctree:
       break;  // needs no triangulated boundary: see stuffing_stage

@@ -101,23 +101,6 @@ std::size_t tet_budget(const SurfaceMesh& surface, const SizeField& sizes) {
   return static_cast<std::size_t>(std::min(4e9, 1e5 + 1000.0 * static_cast<double>(surface.triangles.size()) + finest));
 }
 
-/// Points that the closing of cavities has left without a tetrahedron go; those of the surface keep their numbers.
-void drop_unused_points(TetMesh& mesh, std::size_t surface_points) {
-  std::vector<VertexIndex> new_index(mesh.points.size(), kNone);
-  for (std::size_t v = 0; v < surface_points; ++v) new_index[v] = 0;
-  for (const Tet& t : mesh.tets)
-    for (const VertexIndex v : t) new_index[v] = 0;
-  VertexIndex used = 0;
-  for (std::size_t v = 0; v < mesh.points.size(); ++v) {
-    if (new_index[v] == kNone) continue;
-    mesh.points[used] = mesh.points[v];
-    new_index[v] = used++;
-  }
-  mesh.points.resize(used);
-  for (Tet& t : mesh.tets)
-    for (VertexIndex& v : t) v = new_index[v];
-}
-
 void report_front(StageReport& report, const FrontCounters& counters, std::size_t tets, std::size_t left) {
   report.count("front tetrahedra", static_cast<double>(tets));
   report.count("layers", static_cast<double>(counters.layers));

@@ -1,0 +1,99 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace octafront {
+
+/// The alternating digital tree: points of D-dimensional space in a binary tree, each level of which halves its box
+/// along the next axis. Points come and go; range queries cost O(log n) and what they find. Boxes of 3-space are points
+/// of 6-space. (J. Bonet and J. Peraire, "An Alternating Digital Tree (ADT) Algorithm for 3D Geometric Searching and
+/// Intersection Problems", 1991.)
+template <int D>
+class AlternatingTree {
+ public:
+  using Key = std::array<double, D>;
+
+  /// Points outside [lo, hi] are found as well, only slower.
+  AlternatingTree(const Key& lo, const Key& hi) : lo_(lo), hi_(hi) {}
+
+  /// REQUIRES: `item` is not in the tree. Items are small integers: memory is as large as the largest.
+  void insert(std::uint32_t item, const Key& key) {
+    if (item >= node_of_item_.size()) node_of_item_.resize(item + 1, kNoNode);
+    if (nodes_.empty()) nodes_.emplace_back();
+    Key lo = lo_, hi = hi_;
+    std::uint32_t at = 0;
+    for (int axis = 0;; axis = (axis + 1) % D) {
+      ++nodes_[at].live;
+      // A node that lost its item takes any item on whose way it lies.
+      if (nodes_[at].item == kNoItem) break;
+      const double middle = 0.5 * (lo[axis] + hi[axis]);
+      const bool upper = key[axis] >= middle;
+      (upper ? lo : hi)[axis] = middle;
+      if (nodes_[at].child[upper] == kNoNode) {
+        const auto made = static_cast<std::uint32_t>(nodes_.size());
+        nodes_.emplace_back().parent = at;
+        nodes_[at].child[upper] = made;
+      }
+      at = nodes_[at].child[upper];
+    }
+    nodes_[at].item = item;
+    nodes_[at].key = key;
+    node_of_item_[item] = at;
+  }
+
+  void remove(std::uint32_t item) {
+    std::uint32_t at = node_of_item_[item];
+    nodes_[at].item = kNoItem;
+    node_of_item_[item] = kNoNode;
+    for (; at != kNoNode; at = nodes_[at].parent) --nodes_[at].live;
+  }
+
+  /// Calls visit(item) for each point with from <= key <= to in every coordinate, in an order that depends on the
+  /// history of the tree alone.
+  template <class Visit>
+  void find(const Key& from, const Key& to, const Visit& visit) const {
+    Key lo = lo_, hi = hi_;
+    if (!nodes_.empty()) descend(0, 0, lo, hi, from, to, visit);
+  }
+
+ private:
+  static constexpr std::uint32_t kNoNode = 0xffffffffu, kNoItem = 0xffffffffu;
+  struct Node {
+    Key key{};
+    std::uint32_t item = kNoItem, live = 0, parent = kNoNode;  ///< live: items in the subtree
+    std::array<std::uint32_t, 2> child{kNoNode, kNoNode};
+  };
+
+  template <class Visit>
+  void descend(std::uint32_t at, int axis, Key& lo, Key& hi, const Key& from, const Key& to, const Visit& visit) const {
+    const Node& node = nodes_[at];
+    if (node.live == 0) return;
+    if (node.item != kNoItem && in_range(node.key, from, to)) visit(node.item);
+    const double low = lo[axis], high = hi[axis], middle = 0.5 * (low + high);
+    const int next = (axis + 1) % D;
+    // The outermost boxes are open: points outside the domain lie in them.
+    if (node.child[0] != kNoNode && from[axis] < middle && (to[axis] >= low || low == lo_[axis])) {
+      hi[axis] = middle;
+      descend(node.child[0], next, lo, hi, from, to, visit);
+      hi[axis] = high;
+    }
+    if (node.child[1] != kNoNode && to[axis] >= middle && (from[axis] <= high || high == hi_[axis])) {
+      lo[axis] = middle;
+      descend(node.child[1], next, lo, hi, from, to, visit);
+      lo[axis] = low;
+    }
+  }
+  static bool in_range(const Key& key, const Key& from, const Key& to) {
+    for (int k = 0; k < D; ++k)
+      if (key[k] < from[k] || key[k] > to[k]) return false;
+    return true;
+  }
+
+  Key lo_, hi_;
+  std::vector<Node> nodes_;
+  std::vector<std::uint32_t> node_of_item_;
+};
+
+}  // namespace octafront

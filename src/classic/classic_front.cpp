@@ -1,0 +1,74 @@
+#include "classic/classic_front.h"
+
+#include "geometry/measures.h"
+
+#include <algorithm>
+
+namespace octafront {
+
+namespace {
+
+std::array<double, 3> key_of(Vec3 p) {
+  return {p.x, p.y, p.z};
+}
+std::array<double, 6> key_of(const Box3& b) {
+  return {b.lo.x, b.lo.y, b.lo.z, b.hi.x, b.hi.y, b.hi.z};
+}
+
+}  // namespace
+
+ClassicFront::ClassicFront(const Box3& domain)
+    : domain_(domain),
+      face_tree_(key_of(Box3{domain.lo, domain.lo}), key_of(Box3{domain.hi, domain.hi})),
+      vertex_tree_(key_of(domain.lo), key_of(domain.hi)) {}
+
+VertexIndex ClassicFront::add_vertex(Vec3 at) {
+  points_.push_back(at);
+  faces_at_.push_back(0);
+  return static_cast<VertexIndex>(points_.size() - 1);
+}
+
+ClassicFront::Face ClassicFront::add_face(const Triangle& corners) {
+  const auto face = static_cast<Face>(faces_.size());
+  faces_.push_back(corners);
+  alive_.push_back(1);
+  Box3 box;
+  for (const VertexIndex v : corners) {
+    box.add(points_[v]);
+    if (faces_at_[v]++ == 0) vertex_tree_.insert(v, key_of(points_[v]));
+  }
+  const Vec3 e = box.extent();
+  longest_ = std::max({longest_, e.x, e.y, e.z});
+  face_tree_.insert(face, key_of(box));
+  return face;
+}
+
+void ClassicFront::remove_face(Face face) {
+  alive_[face] = 0;
+  face_tree_.remove(face);
+  for (const VertexIndex v : faces_[face])
+    if (--faces_at_[v] == 0) vertex_tree_.remove(v);
+}
+
+void ClassicFront::add_tet(const Triangle& face, VertexIndex apex) {
+  tets_.push_back({face[0], face[1], face[2], apex});
+  six_volumes_ += six_volumes(at(face[0]), at(face[1]), at(face[2]), at(apex));
+}
+
+double ClassicFront::size_of(Face face) const {
+  const auto& [a, b, c] = faces_[face];
+  return triangle_area(at(a), at(b), at(c));
+}
+
+void ClassicFront::faces_near(const Box3& box, std::vector<Face>& out) const {
+  const Vec3 more{longest_, longest_, longest_};
+  const Vec3 lo = box.lo - more, hi = box.hi + more;
+  face_tree_.find({lo.x, lo.y, lo.z, box.lo.x, box.lo.y, box.lo.z}, {box.hi.x, box.hi.y, box.hi.z, hi.x, hi.y, hi.z},
+                  [&](Face f) { out.push_back(f); });
+}
+
+void ClassicFront::vertices_near(const Box3& box, std::vector<VertexIndex>& out) const {
+  vertex_tree_.find(key_of(box.lo), key_of(box.hi), [&](VertexIndex v) { out.push_back(v); });
+}
+
+}  // namespace octafront

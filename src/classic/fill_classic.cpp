@@ -1,0 +1,132 @@
+#include "classic/fill_classic.h"
+
+#include <octafront/error.h>
+
+#include "classic/classic_attempt.h"
+#include "classic/classic_front.h"
+#include "classic/surface_sizes.h"
+#include "core/stage_timer.h"
+#include "volume/ladder.h"
+#include "volume/regions.h"
+
+#include <algorithm>
+#include <queue>
+#include <utility>
+
+namespace octafront {
+
+namespace {
+
+using Face = ClassicFront::Face;
+
+/// The front fills no more than the surface encloses, up to rounding: more means that it leaks.
+constexpr double kVolumeSlack = 1.0001;
+constexpr int kMostRounds = 8;
+
+/// The smallest face advances first; among equal ones the oldest.
+class Advance {
+ public:
+  Advance(ClassicFront& front, const SizeField& sizes, const VolumeOptions& options, double volume,
+          const RunContext& context, ClassicCounters& counters)
+      : front_(front), volume_(volume), context_(context), attempt_(front, sizes, options, counters) {}
+
+  /// The faces that found no tetrahedron at any level.
+  std::vector<Face> run() {
+    for (Face f = 0; f < front_.face_count(); ++f) queue_.emplace(front_.size_of(f), f);
+    work_off(0);
+    // Each round lets the faces that wait try all levels; a success may have made room for others.
+    for (int round = 0; round < kMostRounds; ++round) {
+      const std::size_t before = front_.tets().size();
+      for (std::size_t level = 1; level < kClassicLimits.size(); ++level) {
+        for (const Face f : std::exchange(held_, {}))
+          if (front_.alive(f)) queue_.emplace(front_.size_of(f), f);
+        work_off(level);
+      }
+      if (front_.tets().size() == before) break;
+    }
+    std::erase_if(held_, [&](Face f) { return !front_.alive(f); });
+    return std::move(held_);
+  }
+
+ private:
+  /// Faces made on the way begin with the strictest limits: they wait for the next turn if these are too strict.
+  void work_off(std::size_t level) {
+    const auto first_new = static_cast<Face>(front_.face_count());
+    std::vector<Face> created;
+    while (!queue_.empty()) {
+      const Face face = queue_.top().second;
+      queue_.pop();
+      if (!front_.alive(face)) continue;
+      if (++steps_ % 256 == 0) check();
+      created.clear();
+      if (!attempt_.advance(face, kClassicLimits[face < first_new ? level : 0], created)) held_.push_back(face);
+      for (const Face f : created) queue_.emplace(front_.size_of(f), f);
+    }
+  }
+
+  void check() {
+    context_.check();
+    if (steps_ % 8192 == 0) context_.report("volume", front_.filled_volume() / volume_);
+    if (front_.filled_volume() > kVolumeSlack * volume_)
+      throw MeshingError(
+          "the front has filled more than the surface encloses; check the surface for self-intersections, "
+          "or choose a larger element size");
+  }
+
+  using Entry = std::pair<double, Face>;
+  ClassicFront& front_;
+  double volume_;
+  const RunContext& context_;
+  ClassicAttempt attempt_;
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;
+  std::vector<Face> held_;
+  std::uint64_t steps_ = 0;
+};
+
+void report_front(StageReport& report, const ClassicCounters& c, std::size_t tets, std::size_t left) {
+  report.count("front tetrahedra", static_cast<double>(tets));
+  report.count("attempts", static_cast<double>(c.attempts));
+  report.count("faces found", static_cast<double>(c.found_faces));
+  report.count("candidates tried", static_cast<double>(c.candidates));
+  report.count("refused: volume", static_cast<double>(c.too_flat));
+  report.count("refused: distance", static_cast<double>(c.too_near));
+  report.count("refused: angle", static_cast<double>(c.too_sharp));
+  report.count("refused: inclusion", static_cast<double>(c.including));
+  report.count("refused: intersection", static_cast<double>(c.intersecting));
+  report.count("ideal points", static_cast<double>(c.ideal_points));
+  report.count("faces left", static_cast<double>(left));
+}
+
+}  // namespace
+
+TetMesh fill_volume_classic(const SurfaceMesh& surface, const VolumeOptions& options, const RunContext& context,
+                            StageReport& report) {
+  if (surface.triangles.empty()) throw InputError("the surface has no triangles: nothing to fill");
+  const SizeField sizes = sizes_from_surface(surface);
+  TetMesh mesh;
+  std::vector<Wall> walls;
+  {
+    ClassicFront front(bounding_box(surface.points));
+    for (const Vec3 p : surface.points) front.add_vertex(p);
+    for (const auto& [a, b, c] : surface.triangles) front.add_face({a, c, b});
+    ClassicCounters counters;
+    const double start = process_cpu_seconds();
+    const std::vector<Face> left = Advance(front, sizes, options, enclosed_volume(surface), context, counters).run();
+    report.count("advance CPU seconds", process_cpu_seconds() - start);
+    report_front(report, counters, front.tets().size(), left.size());
+    for (const Face f : left) walls.push_back(front.corners(f));
+    mesh.points = front.points();
+    mesh.tets = front.tets();
+  }
+  if (!walls.empty()) {
+    close_cavities(mesh, walls, sizes, options, context, report);
+    drop_unused_points(mesh, surface.points.size());
+  }
+  mesh.region = regions_of(mesh, surface);
+  mesh.boundary = surface.triangles;
+  mesh.patch = surface.patch;
+  mesh.patch_names = surface.patch_names;
+  return mesh;
+}
+
+}  // namespace octafront
