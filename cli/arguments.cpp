@@ -86,10 +86,16 @@ void declare_volume(CLI::App& command, Arguments& a) {
   using Level = ImproveOptions::Level;
   VolumeOptions& o = a.options.volume;
   auto* group = command.add_option_group("Volume");
-  add_choice<Method>(*group, "--method", a.options.method,
-                     {{"octree-aft", Method::kOctreeAft}, {"aft", Method::kAft}, {"octree", Method::kOctree}, {"recover", Method::kRecover}},
-                     "octree-aft: the volume front; recover: the input's triangles kept, with as few points inside as "
-                     "possible");
+  add_choice<Method>(
+      *group, "--method", a.options.method,
+      {{"octree-aft", Method::kOctreeAft},
+       {"aft", Method::kAft},
+       {"octree", Method::kOctree},
+       {"recover", Method::kRecover}},
+      "octree-aft: the volume front; aft: the classical front, slow, for comparison; octree: a lattice cut at the "
+      "surface, fast, also with defects, but not on the input's triangles; recover: the input's triangles kept, with "
+      "as few points inside as "
+      "possible");
   add_choice<Core>(*group, "--core", o.core, {{"lattice", Core::kLattice}, {"none", Core::kOff}},
                    "lattice: the inside is a lattice, the front fills the shell around it; none: all by the front");
   group->add_option("--ideal-distance", o.ideal_distance, "Ideal point above its face, as a multiple of the size there")

@@ -2,6 +2,7 @@
 
 #include "arguments.h"
 #include "commands.h"
+#include "compare.h"
 #include "terminal.h"
 
 #include <cstdio>
@@ -94,6 +95,11 @@ int main(int argc, char** argv) {
   declare_input(*check, a);
   declare_run(*check, a);
   check->callback([&] { chosen = [&] { return run_check(a); }; });
+
+  CompareArguments c;
+  auto* compare = app.add_subcommand("compare", "Mesh surfaces with several methods; tables and charts of how they do");
+  declare_compare(*compare, c);
+  compare->callback([&] { chosen = [&] { return run_compare(c); }; });
 
   try {
     app.parse(argc, argv);

@@ -11,15 +11,11 @@ namespace {
 std::array<double, 3> key_of(Vec3 p) {
   return {p.x, p.y, p.z};
 }
-std::array<double, 6> key_of(const Box3& b) {
-  return {b.lo.x, b.lo.y, b.lo.z, b.hi.x, b.hi.y, b.hi.z};
-}
-
 }  // namespace
 
 ClassicFront::ClassicFront(const Box3& domain)
     : domain_(domain),
-      face_tree_(key_of(Box3{domain.lo, domain.lo}), key_of(Box3{domain.hi, domain.hi})),
+      face_tree_(key_of(domain.lo), key_of(domain.hi)),
       vertex_tree_(key_of(domain.lo), key_of(domain.hi)) {}
 
 VertexIndex ClassicFront::add_vertex(Vec3 at) {
@@ -39,7 +35,7 @@ ClassicFront::Face ClassicFront::add_face(const Triangle& corners) {
   }
   const Vec3 e = box.extent();
   longest_ = std::max({longest_, e.x, e.y, e.z});
-  face_tree_.insert(face, key_of(box));
+  face_tree_.insert(face, key_of(box.center()));
   return face;
 }
 
@@ -61,10 +57,14 @@ double ClassicFront::size_of(Face face) const {
 }
 
 void ClassicFront::faces_near(const Box3& box, std::vector<Face>& out) const {
-  const Vec3 more{longest_, longest_, longest_};
-  const Vec3 lo = box.lo - more, hi = box.hi + more;
-  face_tree_.find({lo.x, lo.y, lo.z, box.lo.x, box.lo.y, box.lo.z}, {box.hi.x, box.hi.y, box.hi.z, hi.x, hi.y, hi.z},
-                  [&](Face f) { out.push_back(f); });
+  // A little more than half, for the middle is rounded.
+  const double reach = 0.5001 * longest_;
+  const Vec3 more{reach, reach, reach};
+  face_tree_.find(key_of(box.lo - more), key_of(box.hi + more), [&](Face f) {
+    Box3 b;
+    for (const VertexIndex v : faces_[f]) b.add(points_[v]);
+    if (b.overlaps(box)) out.push_back(f);
+  });
 }
 
 void ClassicFront::vertices_near(const Box3& box, std::vector<VertexIndex>& out) const {

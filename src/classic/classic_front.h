@@ -43,9 +43,9 @@ class ClassicFront {
 
  private:
   Box3 domain_;
-  AlternatingTree<6> face_tree_;
+  AlternatingTree<3> face_tree_;  ///< of the middles of the faces' boxes
   AlternatingTree<3> vertex_tree_;
-  double longest_ = 0;  ///< extent of any face's box so far: bounds where the other end of a box can be
+  double longest_ = 0;  ///< extent of any face's box so far: how far a face reaches from its middle
   std::vector<Vec3> points_;
   std::vector<std::uint32_t> faces_at_;  ///< per vertex
   std::vector<Triangle> faces_;

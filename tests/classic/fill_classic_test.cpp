@@ -45,8 +45,8 @@ TEST(ClassicFront, FindsFacesByTheirBoxes) {
 
 TEST(FillClassic, FillsExactlyTheSurface) {
   for (const SurfaceMesh& s :
-       {testing::cube(6), testing::icosphere(3), testing::torus(40, 20), testing::hollow_sphere(3),
-        testing::joined(testing::cube(5), testing::transformed(testing::icosphere(2), 0.4, {2, 0, 0}))}) {
+       {testing::cube(4), testing::icosphere(2), testing::torus(24, 12), testing::hollow_sphere(2),
+        testing::joined(testing::cube(3), testing::transformed(testing::icosphere(2), 0.4, {2, 0, 0}))}) {
     StageReport report;
     const TetMesh mesh = fill_volume_classic(s, {}, {}, report);
     EXPECT_EQ(first_defect(mesh, s), std::nullopt);
@@ -58,13 +58,13 @@ TEST(FillClassic, FillsExactlyTheSurface) {
 
 TEST(FillClassic, IsTheSameEachTime) {
   StageReport one, two;
-  const SurfaceMesh s = testing::torus(40, 20);
+  const SurfaceMesh s = testing::torus(24, 12);
   EXPECT_EQ(fill_volume_classic(s, {}, {}, one), fill_volume_classic(s, {}, {}, two));
 }
 
 TEST(FillClassic, RefusesASelfIntersectingSurface) {
   const SurfaceMesh s =
-      testing::joined(testing::icosphere(3), testing::transformed(testing::icosphere(3), 1, {0.5, 0, 0}));
+      testing::joined(testing::icosphere(2), testing::transformed(testing::icosphere(2), 1, {0.5, 0, 0}));
   StageReport report;
   EXPECT_THROW(fill_volume_classic(s, {}, {}, report), MeshingError);
 }

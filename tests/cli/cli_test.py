@@ -1,4 +1,5 @@
 """The command line as a user meets it: cli_test.py OCTAFRONT SAMPLES_DIR."""
+import csv
 import json
 import pathlib
 import signal
@@ -144,6 +145,45 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(run.returncode, 130, error)
         self.assertIn("interrupted", error)
         self.assertEqual(self.files(), ["part.off"])
+
+    def test_compare_writes_tables_and_charts(self):
+        samples = sorted(p for p in SAMPLES.iterdir() if p.suffix in (".stl", ".obj", ".off", ".ply"))
+        start = time.monotonic()
+        done = self.run_cli("compare", *samples, "-o", self.dir / "out", "--elements", "4000")
+        self.assertLess(time.monotonic() - start, 60)
+        rows = list(csv.DictReader((self.dir / "out" / "compare.csv").open()))
+        self.assertEqual([r["method"] for r in rows], ["octree-aft", "aft", "octree"] * len(samples))
+        for row in rows:
+            self.assertEqual(row["failure"], "")
+            self.assertAlmostEqual(int(row["elements"]) / 4000, 1, delta=0.3)
+            self.assertAlmostEqual(float(row["volume_over_input"]), 1, delta=0.1)
+        runs = json.loads((self.dir / "out" / "compare.json").read_text())
+        self.assertEqual(len(runs["runs"]), len(rows))
+        self.assertEqual(runs["methods"]["octree-aft"]["failures"], 0)
+        if "without cairo" not in done.stdout:
+            for name in ("beta_classes", "time_elements", "stages"):
+                self.assertTrue((self.dir / "out" / f"{name}.png").read_bytes().startswith(b"\x89PNG"))
+                self.assertIn("<svg", (self.dir / "out" / f"{name}.svg").read_text())
+
+    def test_compare_shows_failures_and_fails_if_there_is_nothing_else(self):
+        bad = self.dir / "open.off"
+        bad.write_text(TETRAHEDRON.replace("4 4 0", "4 3 0").replace("3 0 2 1\n", ""))
+        done = self.run_cli("compare", bad, "-o", self.dir / "out", "--elements", "500", "--methods", "aft,octree")
+        self.assertIn("failed", done.stdout)
+        rows = list(csv.DictReader((self.dir / "out" / "compare.csv").open()))
+        self.assertIn("open", rows[0]["failure"])
+        self.assertEqual(rows[1]["failure"], "", "the octree method meshes an open surface")
+        self.run_cli("compare", bad, "-o", self.dir / "out", "--methods", "aft", status=4)
+        self.run_cli("compare", self.part, "-o", self.part / "x", status=5)
+
+    def test_method_octree_meshes_what_the_others_refuse(self):
+        bad, out = self.dir / "open.off", self.dir / "open.vtu"
+        bad.write_text(TETRAHEDRON.replace("4 4 0", "4 3 0").replace("3 0 2 1\n", ""))
+        self.run_cli("mesh", bad, "-o", out, status=3)
+        done = self.run_cli("mesh", bad, "-o", out, "--method", "octree", "--size", 0.1)
+        self.assertIn("winding number", done.stdout)
+        self.assertIn("a valid mesh", self.run_cli("check", out).stdout)
+        self.run_cli("mesh", self.part, "-o", out, "--method", "octree", "--keep-surface", status=2)
 
     def test_shipped_samples_are_clean(self):
         samples = [p for p in SAMPLES.iterdir() if p.suffix in (".stl", ".obj", ".off", ".ply")]

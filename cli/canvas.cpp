@@ -1,0 +1,119 @@
+#include "canvas.h"
+
+#include <octafront/error.h>
+
+#ifdef OCTAFRONT_WITH_CAIRO
+#include <numbers>
+
+#include <cairo-svg.h>
+#include <cairo.h>
+
+namespace octafront::cli {
+
+namespace {
+
+constexpr double kPixelsPerPoint = 2;
+
+void paint(cairo_surface_t* surface, double scale, const std::function<void(Canvas&)>& chart) {
+  cairo_t* context = cairo_create(surface);
+  cairo_scale(context, scale, scale);
+  cairo_set_source_rgb(context, 1, 1, 1);
+  cairo_paint(context);
+  cairo_select_font_face(context, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
+  Canvas canvas(context);
+  chart(canvas);
+  cairo_destroy(context);
+}
+
+void finish(cairo_surface_t* surface, cairo_status_t status, const std::filesystem::path& file) {
+  cairo_surface_destroy(surface);
+  if (status != CAIRO_STATUS_SUCCESS) throw OutputError(file.string() + ": " + cairo_status_to_string(status));
+}
+
+}  // namespace
+
+void Canvas::set(Colour colour) {
+  cairo_set_source_rgb(context_, (colour >> 16 & 255) / 255.0, (colour >> 8 & 255) / 255.0, (colour & 255) / 255.0);
+}
+
+void Canvas::rectangle(double x, double y, double width, double height, Colour fill) {
+  set(fill);
+  cairo_rectangle(context_, x, y, width, height);
+  cairo_fill(context_);
+}
+
+void Canvas::line(double x0, double y0, double x1, double y1, Colour colour, double width, bool dashed) {
+  set(colour);
+  const double dashes[] = {4, 3};
+  cairo_set_dash(context_, dashes, dashed ? 2 : 0, 0);
+  cairo_set_line_width(context_, width);
+  cairo_move_to(context_, x0, y0);
+  cairo_line_to(context_, x1, y1);
+  cairo_stroke(context_);
+}
+
+void Canvas::dot(double x, double y, double radius, Colour fill) {
+  set(fill);
+  cairo_new_sub_path(context_);
+  cairo_arc(context_, x, y, radius, 0, 2 * std::numbers::pi);
+  cairo_fill(context_);
+}
+
+double Canvas::width_of(const std::string& text, double size) {
+  cairo_set_font_size(context_, size);
+  cairo_text_extents_t extents;
+  cairo_text_extents(context_, text.c_str(), &extents);
+  return extents.x_advance;
+}
+
+void Canvas::text(double x, double y, const std::string& text, double size, Align align, Colour colour, bool upward) {
+  const double shift = align == Align::kLeft ? 0 : width_of(text, size) * (align == Align::kMiddle ? 0.5 : 1);
+  set(colour);
+  cairo_set_font_size(context_, size);
+  cairo_save(context_);
+  cairo_translate(context_, x, y);
+  if (upward) cairo_rotate(context_, -std::numbers::pi / 2);
+  cairo_move_to(context_, -shift, 0);
+  cairo_show_text(context_, text.c_str());
+  cairo_restore(context_);
+}
+
+bool can_draw() {
+  return true;
+}
+
+void draw(const std::filesystem::path& stem, double width, double height, const std::function<void(Canvas&)>& chart) {
+  const std::string svg = stem.string() + ".svg", png = stem.string() + ".png";
+  cairo_surface_t* vector = cairo_svg_surface_create(svg.c_str(), width, height);
+  paint(vector, 1, chart);
+  cairo_surface_finish(vector);
+  finish(vector, cairo_surface_status(vector), svg);
+  cairo_surface_t* pixels = cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(kPixelsPerPoint * width),
+                                                       static_cast<int>(kPixelsPerPoint * height));
+  paint(pixels, kPixelsPerPoint, chart);
+  const cairo_status_t written = cairo_surface_write_to_png(pixels, png.c_str());
+  finish(pixels, written, png);
+}
+
+}  // namespace octafront::cli
+
+#else
+
+namespace octafront::cli {
+
+void Canvas::set(Colour) {}
+void Canvas::rectangle(double, double, double, double, Colour) {}
+void Canvas::line(double, double, double, double, Colour, double, bool) {}
+void Canvas::dot(double, double, double, Colour) {}
+void Canvas::text(double, double, const std::string&, double, Align, Colour, bool) {}
+double Canvas::width_of(const std::string&, double) {
+  return 0;
+}
+bool can_draw() {
+  return false;
+}
+void draw(const std::filesystem::path&, double, double, const std::function<void(Canvas&)>&) {}
+
+}  // namespace octafront::cli
+
+#endif
