@@ -159,5 +159,51 @@ TEST(Generate, SurfaceAndSizesAreWhatTheWholeRunUses) {
               0.25);
 }
 
+TEST(Generate, EveryMethodMakesAValidMesh) {
+  for (const Sample& s : closed_samples())
+    for (const Method method : {Method::kOctreeAft, Method::kAft, Method::kOctree, Method::kRecover}) {
+      SCOPED_TRACE(std::string(s.name) + " " + std::to_string(static_cast<int>(method)));
+      Options o = sized(s.size);
+      o.method = method;
+      const Result r = generate(s.surface, o);
+      EXPECT_EQ(first_defect(r.mesh), std::nullopt);
+      EXPECT_NEAR(r.report.volume / enclosed_volume(s.surface), 1, 0.04);
+      EXPECT_EQ(r.mesh.source.size(), r.mesh.boundary.size());
+      EXPECT_EQ(generate(s.surface, o).mesh, r.mesh);
+    }
+}
+
+TEST(Generate, TheOctreeMethodMeshesOpenAndInsideOutSurfaces) {
+  SurfaceMesh open = testing::icosphere(4);
+  std::erase_if(open.triangles, [&](const Triangle& t) { return open.points[t[0]].z > 0.95; });
+  Options o = sized(0.15);
+  EXPECT_THROW(generate(open, o), InputError);
+  o.method = Method::kOctree;
+  const Result r = generate(open, o);
+  EXPECT_NE(r.report.stages[0].notes.back().find("open"), std::string::npos);
+  EXPECT_NEAR(r.report.volume / (4 * std::numbers::pi / 3), 1, 0.03);
+  EXPECT_NEAR(generate(testing::reversed(open), o).report.volume / r.report.volume, 1, 1e-3);
+  SurfaceMesh sheet = open;
+  for (Vec3& p : sheet.points) p.z = 0;
+  EXPECT_THROW(generate(sheet, o), InputError);
+}
+
+TEST(Generate, TheOctreeMethodSaysWhatItLoses) {
+  SurfaceMesh plate = testing::cube(4);
+  for (Vec3& p : plate.points) p.z *= 0.12;
+  Options o = sized(0.2);
+  o.method = Method::kOctree;
+  try {
+    const Result r = generate(plate, o);
+    ASSERT_LT(r.report.volume / 0.12, 0.97);
+    bool said = false;
+    for (const StageReport& stage : r.report.stages)
+      for (const std::string& note : stage.notes) said = said || note.find("of the volume") != std::string::npos;
+    EXPECT_TRUE(said);
+  } catch (const MeshingError& e) {
+    EXPECT_NE(std::string(e.what()).find("smaller element size"), std::string::npos);
+  }
+}
+
 }  // namespace
 }  // namespace octafront
