@@ -18,6 +18,7 @@ class Outcome:
     cpu_seconds: float = 0.0      # user and system, of the process and its children
     wall_seconds: float = 0.0
     stage_seconds: float | None = None  # CPU seconds of filling alone, as far as the mesher tells
+    stage_wall_seconds: float | None = None
     peak_bytes: int = 0
     log: str = ""
 

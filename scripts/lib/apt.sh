@@ -23,3 +23,5 @@ need_packages() {
 # What building needs, and what the tests need beyond it.
 build_packages=(g++ cmake ninja-build pkg-config libtbb-dev zlib1g-dev libfmt-dev libcli11-dev nlohmann-json3-dev libcairo2-dev)
 test_packages=(libgtest-dev librapidcheck-dev python3)
+# Other meshers, which some benchmarks run beside ours.
+peer_packages=(tetgen gmsh netgen)

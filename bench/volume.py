@@ -1,0 +1,212 @@
+"""The volume front against TetGen, Gmsh's HXT and Netgen on the same kept surfaces: writes docs/volume-bench.md.
+
+Usage: bench/run.sh volume [--counts 100000,1000000] [--models bunny00.off,...] [--threads N] [--timeout SECONDS]
+
+Each model is triangulated anew at uniform sizes, for about the given numbers of tetrahedra; then every mesher fills that
+surface and keeps its triangles. Ours runs without improvement on one thread, with the lattice core and without it.
+Times are CPU seconds (user and system) of the whole process, files included, and of filling alone as each one reports
+it. octafront_evaluate reads every mesh back and judges it.
+"""
+import argparse
+import json
+import math
+import pathlib
+import platform
+import tempfile
+import time
+
+from peers import gmsh, netgen, tetgen
+from peers.process import finish, run_measured
+
+MODELS = ["bunny00.off", "refined_elephant.off", "fandisk_large.off"]
+COUNTS = [100_000, 1_000_000, 4_000_000, 10_000_000]
+PEERS_UP_TO = {"TetGen": 5_000_000, "HXT": 5_000_000, "HXT, not optimised": 5_000_000, "Netgen": 150_000}
+EVALUATED_UP_TO = 12_000_000
+PAGE = pathlib.Path("docs/volume-bench.md")
+
+
+def surface_of_size(build, model, size, out):
+    done = run_measured([build / "cli/octafront", "surface", f"models/clean/{model}", "--size", f"{size:.9g}", "-o", out,
+                         "-q", "--threads", "0"], ".", 600)
+    if done.error:
+        raise SystemExit(f"{model}: {done.error}")
+
+
+def fill_ours(build, surface, folder, timeout, core, threads):
+    folder = pathlib.Path(folder).resolve()
+    mesh, report = folder / "ours.vtu", folder / "report.json"
+    outcome = run_measured([build / "cli/octafront", "mesh", surface, "--keep-surface", "--improve", "none", "--core", core,
+                            "--threads", str(threads), "-o", mesh, "--json", report, "-q"], ".", timeout)
+    if not outcome.error:
+        stage = next(s for s in json.loads(report.read_text())["stages"] if s["name"] == "volume front")
+        outcome.stage_seconds, outcome.stage_wall_seconds = stage["cpu_seconds"], stage["wall_seconds"]
+    return finish(outcome, mesh)
+
+
+def meshers(build):
+    return {
+        "octafront, lattice core": lambda s, f, t: fill_ours(build, s, f, t, "lattice", 1),
+        "octafront, front alone": lambda s, f, t: fill_ours(build, s, f, t, "none", 1),
+        "HXT": lambda s, f, t: gmsh.fill_hxt(s, f, t, optimize=True),
+        "HXT, not optimised": lambda s, f, t: gmsh.fill_hxt(s, f, t, optimize=False),
+        "TetGen": tetgen.fill,
+        "Netgen": netgen.fill,
+    }
+
+
+def evaluate(build, mesh, surface):
+    judged = run_measured([build / "bench/octafront_evaluate", mesh, surface, "--kept"], ".", 600)
+    try:
+        return json.loads(judged.log)
+    except json.JSONDecodeError:
+        return {"defect": judged.error or judged.log.strip()[:100]}
+
+
+def measure(build, name, mesher, surface, count, timeout):
+    with tempfile.TemporaryDirectory() as folder:
+        outcome = mesher(surface, folder, timeout)
+        row = {"mesher": name, "outcome": outcome, "error": outcome.error}
+        if outcome.mesh:
+            quality = evaluate(build, outcome.mesh, surface)
+            row |= {"tets": quality.get("tets", 0), "quality": quality, "error": quality["defect"] or ""}
+    return row
+
+
+def calibrated_sizes(build, model, counts, folder):
+    """Edge lengths for the wanted numbers of elements: what one size makes says what the others will."""
+    probe, size = pathlib.Path(folder, "probe.off"), None
+    sized = run_measured([build / "cli/octafront", "size", f"models/clean/{model}", "--elements", "100000", "--json",
+                          pathlib.Path(folder, "size.json"), "-q"], ".", 600)
+    if sized.error:
+        raise SystemExit(sized.error)
+    report = json.loads(pathlib.Path(folder, "size.json").read_text())
+    size = (report["input_volume"] / 100_000 * 7.5) ** (1 / 3)
+    for _ in range(2):
+        surface_of_size(build, model, size, probe)
+        filled = fill_ours(build, probe, folder, 600, "lattice", 0)
+        tets = json.loads(pathlib.Path(folder, "report.json").read_text())["tets"] if filled.mesh else 100_000
+        size *= (tets / 100_000) ** (1 / 3)
+    return [size * (100_000 / count) ** (1 / 3) for count in counts]
+
+
+def rate(tets, seconds):
+    return tets / seconds / 1000 if seconds else 0.0
+
+
+def table_row(model, row):
+    o = row["outcome"]
+    if row["error"]:
+        return f"| {model} | {row['mesher']} | – | {o.cpu_seconds:.1f} | – | – | – | – | – | – | – | – | {row['error']} |"
+    q, n = row["quality"], row["tets"]
+    share = lambda k: 100 * q["beta_classes"][k] / n
+    return (f"| {model} | {row['mesher']} | {n:,} | {o.cpu_seconds:.2f} | {rate(n, o.cpu_seconds):,.0f} | "
+            f"{o.stage_seconds or 0:.2f} | {rate(n, o.stage_seconds):,.0f} | {o.peak_bytes / n:.0f} | {q['beta_mean']:.3f} | "
+            f"{share(4):.1f} | {share(0):.3f} | {q['dihedral_min']:.1f} | |")
+
+
+HEAD = ("| surface | mesher | tets | process CPU s | k tets/s | filling CPU s | k tets/s | peak bytes/tet | mean β | "
+        "% above .8 | % below .2 | min dihedral ° | |\n" + "|---|---|" + "--:|" * 10 + "---|")
+
+
+def ratios(rows):
+    """Our rates of filling over theirs, per surface."""
+    lines = ["| surface | ours | " + " | ".join(f"over {p}" for p in PEERS_UP_TO) + " |", "|---|---|" + "--:|" * len(PEERS_UP_TO)]
+    for (model, count), group in rows.items():
+        by_name = {r["mesher"]: r for r in group if not r["error"]}
+        of = lambda name, whole: rate(by_name[name]["tets"], by_name[name]["outcome"].cpu_seconds if whole
+                                      else by_name[name]["outcome"].stage_seconds)
+        for ours in ("octafront, lattice core", "octafront, front alone"):
+            if ours not in by_name:
+                continue
+            cells = [f"{of(ours, False) / of(p, False):.1f} ({of(ours, True) / of(p, True):.1f})" if p in by_name else "–"
+                     for p in PEERS_UP_TO]
+            lines.append(f"| {model}, {count:,} | {ours[11:]} | " + " | ".join(cells) + " |")
+    return lines
+
+
+def exponent(points):
+    """Slope of log(seconds) over log(tets) by least squares."""
+    xy = [(math.log(n), math.log(s)) for n, s in points if n and s]
+    if len(xy) < 2:
+        return float("nan")
+    mx, my = (sum(v[k] for v in xy) / len(xy) for k in (0, 1))
+    return sum((x - mx) * (y - my) for x, y in xy) / sum((x - mx) ** 2 for x, _ in xy)
+
+
+def exponents(rows, models):
+    lines = ["| surface | mesher | filling | whole process |", "|---|---|--:|--:|"]
+    for model in models:
+        for name in ("octafront, lattice core", "octafront, front alone", "HXT", "TetGen"):
+            runs = [r for (m, _), group in rows.items() if m == model for r in group
+                    if r["mesher"] == name and not r["error"]]
+            if len(runs) > 2:
+                fits = [exponent([(r["tets"], seconds(r["outcome"])) for r in runs])
+                        for seconds in (lambda o: o.stage_seconds, lambda o: o.cpu_seconds)]
+                lines.append(f"| {model} | {name} | {fits[0]:.2f} | {fits[1]:.2f} |")
+    return lines
+
+
+def speed_up(build, surface, core, threads, pairs, timeout):
+    """Wall seconds of filling with one thread and with `threads`, in turns; the best of each."""
+    best = {1: float("inf"), threads: float("inf")}
+    for _ in range(pairs):
+        for n in best:
+            with tempfile.TemporaryDirectory() as folder:
+                outcome = fill_ours(build, surface, folder, timeout, core, n)
+            if not outcome.error:
+                best[n] = min(best[n], outcome.stage_wall_seconds)
+    return best
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("build", type=pathlib.Path)
+    parser.add_argument("--counts", type=lambda s: [int(c) for c in s.split(",")], default=COUNTS)
+    parser.add_argument("--models", type=lambda s: s.split(","), default=MODELS)
+    parser.add_argument("--threads", type=int, default=2, help="compared with one")
+    parser.add_argument("--timeout", type=float, default=120)
+    parser.add_argument("--page", type=pathlib.Path, default=PAGE)
+    args = parser.parse_args()
+    args.build = args.build.resolve()
+    start, rows, threads = time.time(), {}, ["| surface | ours | 1 thread, wall s | "
+                                             f"{args.threads} threads, wall s | times |", "|---|---|--:|--:|--:|"]
+    table = [HEAD]
+    for model in args.models:
+        with tempfile.TemporaryDirectory() as folder:
+            for count, size in zip(args.counts, calibrated_sizes(args.build, model, args.counts, folder)):
+                surface = pathlib.Path(folder, f"{count}.off")
+                surface_of_size(args.build, model, size, surface)
+                group = rows[model, count] = []
+                for name, mesher in meshers(args.build).items():
+                    if count > PEERS_UP_TO.get(name, EVALUATED_UP_TO):
+                        continue
+                    group.append(measure(args.build, name, mesher, surface, count, args.timeout))
+                    table.append(table_row(model, group[-1]))
+                    print(table[-1], flush=True)
+                if 1_000_000 <= count <= 5_000_000:
+                    for core in ("lattice", "none"):
+                        best = speed_up(args.build, surface, core, args.threads, 2, args.timeout)
+                        threads.append(f"| {model}, {count:,} | core {core} | {best[1]:.2f} | {best[args.threads]:.2f} | "
+                                       f"{best[1] / best[args.threads]:.2f} |")
+                        print(threads[-1], flush=True)
+    sections = {"Ratios of filling rates, of whole processes in brackets": ratios(rows),
+                "Exponents of CPU time over elements": exponents(rows, args.models), "Threads": threads,
+                "All runs": table}
+    minutes = (time.time() - start) / 60
+    text = ("# The volume front against others\n\n" + __doc__.split("\n\n")[2] +
+            f"\n\nWritten by `bench/run.sh volume` in {minutes:.0f} minutes on {platform.machine()}, "
+            f"{cpu_name()}.\n")
+    for title, lines in sections.items():
+        text += f"\n## {title}\n\n" + "\n".join(lines) + "\n"
+    args.page.write_text(text)
+    print(text[:text.index("## All runs")])
+
+
+def cpu_name():
+    for line in open("/proc/cpuinfo"):
+        if line.startswith("model name"):
+            return line.split(":")[1].strip()
+    return "unknown processor"
+
+
+main()
