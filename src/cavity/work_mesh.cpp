@@ -2,8 +2,15 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
+
+#include <oneapi/tbb/parallel_for.h>
 
 namespace octafront {
+
+namespace {
+constexpr std::size_t kTetsPerTask = 1 << 16;
+}  // namespace
 
 TriangleKey key_of(const Triangle& t) {
   TriangleKey key = t;
@@ -11,15 +18,37 @@ TriangleKey key_of(const Triangle& t) {
   return key;
 }
 
-WorkMesh::WorkMesh(std::vector<Vec3> points, std::vector<Tet> tets)
-    : points_(std::move(points)), tets_(std::move(tets)), alive_(tets_.size(), true), first_(points_.size() + 1, 0) {
-  for (const Tet& t : tets_)
-    for (const VertexIndex v : t) ++first_[v + 1];
+WorkMesh::WorkMesh(std::vector<Vec3> points, std::vector<Tet> tets, const std::vector<Box3>& focus)
+    : points_(std::move(points)),
+      tets_(std::move(tets)),
+      original_tets_(tets_.size()),
+      alive_(tets_.size(), true),
+      indexed_(points_.size(), 1) {
+  if (!focus.empty())
+    tbb::parallel_for(std::size_t{0}, points_.size(), [&](std::size_t v) {
+      indexed_[v] = std::any_of(focus.begin(), focus.end(), [&](const Box3& box) { return box.contains(points_[v]); });
+    });
+  index_tets();
+}
+
+void WorkMesh::index_tets() const {
+  std::vector<std::vector<std::pair<VertexIndex, TetIndex>>> found((original_tets_ + kTetsPerTask - 1) / kTetsPerTask);
+  tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t task) {
+    const std::size_t end = std::min((task + 1) * kTetsPerTask, original_tets_);
+    for (std::size_t t = task * kTetsPerTask; t < end; ++t)
+      for (const VertexIndex v : tets_[t])
+        if (indexed_[v]) found[task].emplace_back(v, static_cast<TetIndex>(t));
+  });
+  first_.assign(indexed_.size() + 1, 0);
+  for (const auto& part : found)
+    for (const auto& [v, t] : part) ++first_[v + 1];
   std::partial_sum(first_.begin(), first_.end(), first_.begin());
   incident_.resize(first_.back());
-  std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
-  for (TetIndex t = 0; t < tets_.size(); ++t)
-    for (const VertexIndex v : tets_[t]) incident_[next[v]++] = t;
+  std::vector<std::uint64_t> next(first_.begin(), first_.end() - 1);
+  for (auto& part : found) {
+    for (const auto& [v, t] : part) incident_[next[v]++] = t;
+    part = {};
+  }
 }
 
 VertexIndex WorkMesh::add_point(Vec3 p) {
@@ -37,9 +66,14 @@ TetIndex WorkMesh::add(const Tet& tet) {
 
 std::vector<TetIndex> WorkMesh::around(VertexIndex v) const {
   std::vector<TetIndex> found;
-  if (v + 1 < first_.size())
-    for (std::uint32_t i = first_[v]; i < first_[v + 1]; ++i)
+  if (v < indexed_.size()) {
+    if (!indexed_[v]) {
+      std::fill(indexed_.begin(), indexed_.end(), std::uint8_t{1});
+      index_tets();
+    }
+    for (std::uint64_t i = first_[v]; i < first_[v + 1]; ++i)
       if (alive_[incident_[i]]) found.push_back(incident_[i]);
+  }
   if (const auto it = added_.find(v); it != added_.end())
     for (const TetIndex t : it->second)
       if (alive_[t]) found.push_back(t);

@@ -20,8 +20,9 @@ TriangleKey key_of(const Triangle& t);
 /// A tetrahedral mesh under repair: tetrahedra come and go, and know their vertices' other tetrahedra.
 class WorkMesh {
  public:
-  /// Takes the mesh over; vertex numbers and tetrahedron numbers stay as they are.
-  WorkMesh(std::vector<Vec3> points, std::vector<Tet> tets);
+  /// Takes the mesh over; vertex numbers and tetrahedron numbers stay as they are. Repairs will mostly stay within the
+  /// boxes of `focus`, if there are any: only what lies there is indexed beforehand.
+  WorkMesh(std::vector<Vec3> points, std::vector<Tet> tets, const std::vector<Box3>& focus = {});
 
   const std::vector<Vec3>& points() const { return points_; }
   Vec3 at(VertexIndex v) const { return points_[v]; }
@@ -41,11 +42,15 @@ class WorkMesh {
   std::vector<Vec3> take_points() { return std::move(points_); }
 
  private:
+  void index_tets() const;
+
   std::vector<Vec3> points_;
   std::vector<Tet> tets_;
+  std::size_t original_tets_;
   std::vector<bool> alive_;
-  std::vector<std::uint32_t> first_;  ///< per original vertex: start of its tetrahedra in `incident_`
-  std::vector<TetIndex> incident_;
+  mutable std::vector<std::uint8_t> indexed_;  ///< per original vertex
+  mutable std::vector<std::uint64_t> first_;   ///< per original vertex: start of its tetrahedra in `incident_`
+  mutable std::vector<TetIndex> incident_;
   std::unordered_map<VertexIndex, std::vector<TetIndex>> added_;  ///< looked up, never iterated
 };
 

@@ -79,14 +79,15 @@ void set_sizes(FrontState& front, const SizeField& sizes) {
 }
 
 /// The pieces one after the other, in one array.
-std::vector<Tet> joined(std::vector<std::vector<Tet>>& pieces, std::size_t total) {
-  std::vector<Tet> tets;
+std::vector<Tet> joined(std::vector<std::vector<Tet>>& pieces) {
   if (pieces.size() == 1) return std::move(pieces[0]);
-  tets.reserve(total);
-  for (std::vector<Tet>& piece : pieces) {
-    tets.insert(tets.end(), piece.begin(), piece.end());
-    piece = {};
-  }
+  std::vector<std::size_t> first(pieces.size() + 1, 0);
+  for (std::size_t i = 0; i < pieces.size(); ++i) first[i + 1] = first[i] + pieces[i].size();
+  std::vector<Tet> tets(first.back());
+  tbb::parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t i) {
+    const std::vector<Tet> piece = std::move(pieces[i]);
+    std::copy(piece.begin(), piece.end(), tets.begin() + static_cast<std::ptrdiff_t>(first[i]));
+  });
   return tets;
 }
 
@@ -142,7 +143,7 @@ TetMesh fill(const SurfaceMesh& surface, const SizeField& sizes, const VolumeOpt
                          "element size");
     walls = std::move(front.held);
     mesh.points = std::move(front.points);
-    mesh.tets = joined(front.filled, front.tets);
+    mesh.tets = joined(front.filled);
   }
   if (!walls.empty()) {
     close_cavities(mesh, walls, sizes, options, context, report);

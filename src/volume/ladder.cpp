@@ -37,6 +37,21 @@ struct RungCounts {
   int cavities = 0, by_front = 0, by_star = 0, growth_steps = 0, by_recovery = 0;
 };
 
+/// Where the cavities are, with room for some rings of tetrahedra; nothing if they are too many to tell apart quickly.
+std::vector<Box3> surroundings(const std::vector<Vec3>& points, const Cavities& cavities) {
+  constexpr std::size_t kMost = 64;
+  std::vector<Box3> boxes;
+  if (cavities.size() > kMost) return boxes;
+  for (std::size_t c = 0; c < cavities.size(); ++c) {
+    Box3 box;
+    for (const Wall& w : cavities.walls(c))
+      for (const VertexIndex v : w) box.add(points[v]);
+    const double margin = 2 * box.diagonal();
+    boxes.push_back({box.lo - Vec3{margin, margin, margin}, box.hi + Vec3{margin, margin, margin}});
+  }
+  return boxes;
+}
+
 [[noreturn]] void give_up(const WorkMesh& mesh, const std::vector<Wall>& walls) {
   std::vector<VertexIndex> global;
   SurfaceMesh surface = surface_of(mesh, walls, global);
@@ -53,8 +68,9 @@ void close_cavities(TetMesh& mesh, const std::vector<Wall>& walls, const SizeFie
                     const RunContext& context, StageReport& report) {
   const double start = process_cpu_seconds();
   const std::uint64_t mesh_tets = mesh.tets.size();
-  WorkMesh work(std::move(mesh.points), std::move(mesh.tets));
   Cavities cavities(walls);
+  const std::vector<Box3> focus = surroundings(mesh.points, cavities);
+  WorkMesh work(std::move(mesh.points), std::move(mesh.tets), focus);
   RungCounts counts;
   std::uint64_t face_tests = kBacktrackingFaceTests + kFaceTestsPerTet * mesh_tets;
   for (std::uint32_t c = 0; c < cavities.size(); ++c) {
