@@ -3,10 +3,6 @@
 #include <bit>
 #include <cmath>
 
-#ifdef __SSE2__
-#include <emmintrin.h>
-#endif
-
 namespace octafront {
 
 namespace {
@@ -47,61 +43,28 @@ std::uint64_t scrambled(std::uint64_t key) {
   return key ^ (key >> 29);
 }
 
-}  // namespace
-
 /// A search region in single precision, relative to a brick.
-struct LocalRegion {
-  LocalRegion(const SearchRegion& region, Vec3 origin) {
-    const Vec3 l = region.box.lo - origin, h = region.box.hi - origin, c = region.center - origin;
-    // The sphere and the plane are computed with, so they get room for the rounding; the box is only compared.
-    const double extent = std::max(
-        {std::abs(l.x), std::abs(l.y), std::abs(l.z), std::abs(h.x), std::abs(h.y), std::abs(h.z), region.radius});
-    const double slack = kSlackPerExtent * extent;
-    for (int axis = 0; axis < 3; ++axis) {
-      lo[axis] = static_cast<float>(l[axis]);
-      hi[axis] = static_cast<float>(h[axis]);
-      center[axis] = static_cast<float>(c[axis]);
-      normal[axis] = static_cast<float>(region.normal[axis]);
-    }
-    const double r = region.radius + slack;
-    squared_radius = static_cast<float>(r * r);
-    behind = static_cast<float>(region.offset - dot(region.normal, origin) - slack);
+CullingRegion local_region(const SearchRegion& region, Vec3 origin) {
+  constexpr double kSlackPerExtent = 4e-6;
+  const Vec3 l = region.box.lo - origin, h = region.box.hi - origin, c = region.center - origin;
+  // The sphere and the plane are computed with, so they get room for the rounding; the box is only compared.
+  const double extent = std::max(
+      {std::abs(l.x), std::abs(l.y), std::abs(l.z), std::abs(h.x), std::abs(h.y), std::abs(h.z), region.radius});
+  const double slack = kSlackPerExtent * extent;
+  CullingRegion local;
+  for (int axis = 0; axis < 3; ++axis) {
+    local.lo[axis] = static_cast<float>(l[axis]);
+    local.hi[axis] = static_cast<float>(h[axis]);
+    local.center[axis] = static_cast<float>(c[axis]);
+    local.normal[axis] = static_cast<float>(region.normal[axis]);
   }
-  static constexpr double kSlackPerExtent = 4e-6;
-  float lo[3], hi[3], center[3], normal[3], squared_radius, behind;
-};
-
-/// Four faces at a time, in what the compiler maps to the vector unit of any x86-64 or arm64.
-using Float4 = float __attribute__((vector_size(16)));
-using Int4 = int __attribute__((vector_size(16)));
-
-static unsigned bits_of(Int4 mask) {
-#ifdef __SSE2__
-  return static_cast<unsigned>(_mm_movemask_ps(reinterpret_cast<__m128>(mask)));
-#else
-  return (mask[0] & 1u) | (mask[1] & 2u) | (mask[2] & 4u) | (mask[3] & 8u);
-#endif
+  const double r = region.radius + slack;
+  local.squared_radius = static_cast<float>(r * r);
+  local.behind = static_cast<float>(region.offset - dot(region.normal, origin) - slack);
+  return local;
 }
 
-unsigned FrontIndex::reach_into(const Block& block, const LocalRegion& region) {
-  const auto maximum = [](Float4 a, Float4 b) { return a > b ? a : b; };
-  unsigned hits = 0;
-  for (int s = 0; s < kWidth; s += 4) {
-    Int4 overlap = Int4{} - 1;
-    Float4 squared{}, height{};
-    for (int axis = 0; axis < 3; ++axis) {
-      const Float4 lo = *reinterpret_cast<const Float4*>(&block.lo[axis][s]);
-      const Float4 hi = *reinterpret_cast<const Float4*>(&block.hi[axis][s]);
-      overlap &= (lo <= region.hi[axis]) & (hi >= region.lo[axis]);
-      const Float4 off = maximum(maximum(lo - region.center[axis], region.center[axis] - hi), Float4{});
-      squared += off * off;
-      height += region.normal[axis] * (region.normal[axis] > 0 ? hi : lo);
-    }
-    overlap &= (squared <= region.squared_radius) & (height >= region.behind);
-    hits |= bits_of(overlap) << s;
-  }
-  return hits;
-}
+}  // namespace
 
 FrontIndex::FrontIndex(const Box3& domain, double finest_cell) : free_block_(kNone) {
   const Vec3 e = domain.extent();
@@ -166,7 +129,7 @@ std::uint32_t FrontIndex::new_block(std::uint32_t cell, std::uint32_t next) {
     blocks_.emplace_back();
     // Unused slots overlap nothing.
     for (int axis = 0; axis < 3; ++axis)
-      for (int s = 0; s < kWidth; ++s) blocks_[id].lo[axis][s] = 1e30f, blocks_[id].hi[axis][s] = -1e30f;
+      for (int s = 0; s < kWidth; ++s) blocks_[id].boxes.lo[axis][s] = 1e30f, blocks_[id].boxes.hi[axis][s] = -1e30f;
   }
   blocks_[id].cell = cell;
   blocks_[id].next = next;
@@ -201,8 +164,8 @@ void FrontIndex::insert(FaceIndex face, const Triangle& corners, const Box3& box
   const Vec3 lo = box.lo - bricks_[b].origin, hi = box.hi - bricks_[b].origin;
   for (int axis = 0; axis < 3; ++axis) {
     // Rounding to float keeps order, so boxes that overlap still overlap after it.
-    block.lo[axis][slot] = static_cast<float>(lo[axis]);
-    block.hi[axis][slot] = static_cast<float>(hi[axis]);
+    block.boxes.lo[axis][slot] = static_cast<float>(lo[axis]);
+    block.boxes.hi[axis][slot] = static_cast<float>(hi[axis]);
     block.corner[axis][slot] = corners[axis];
   }
   block.face[slot] = face;
@@ -220,11 +183,11 @@ void FrontIndex::remove(FaceIndex face) {
   Block& first = blocks_[head];
   const std::uint32_t last = --first.count;
   for (int axis = 0; axis < 3; ++axis) {
-    hole.lo[axis][slot] = first.lo[axis][last];
-    hole.hi[axis][slot] = first.hi[axis][last];
+    hole.boxes.lo[axis][slot] = first.boxes.lo[axis][last];
+    hole.boxes.hi[axis][slot] = first.boxes.hi[axis][last];
     hole.corner[axis][slot] = first.corner[axis][last];
-    first.lo[axis][last] = 1e30f;
-    first.hi[axis][last] = -1e30f;
+    first.boxes.lo[axis][last] = 1e30f;
+    first.boxes.hi[axis][last] = -1e30f;
   }
   hole.face[slot] = first.face[last];
   place_[hole.face[slot]] = place;
@@ -321,11 +284,11 @@ void FrontIndex::find_in_brick(std::uint32_t id, const std::array<Cell, 2>& rang
 
 void FrontIndex::find_in_cells(const Brick& brick, std::uint64_t cells, const SearchRegion& region,
                                std::vector<Found>& out) const {
-  const LocalRegion local(region, brick.origin);
+  const CullingRegion local = local_region(region, brick.origin);
   for (; cells != 0; cells &= cells - 1) {
     for (std::uint32_t id = brick.head[std::countr_zero(cells)]; id != kNone; id = blocks_[id].next) {
       const Block& block = blocks_[id];
-      for (unsigned hits = reach_into(block, local); hits != 0; hits &= hits - 1) {
+      for (unsigned hits = cull_boxes(block.boxes, local); hits != 0; hits &= hits - 1) {
         const int s = std::countr_zero(hits);
         out.push_back({block.face[s], {block.corner[0][s], block.corner[1][s], block.corner[2][s]}});
       }

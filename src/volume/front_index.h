@@ -3,6 +3,8 @@
 #include <octafront/surface_mesh.h>
 #include <octafront/vec.h>
 
+#include "volume/box_culling.h"
+
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -48,11 +50,11 @@ class FrontIndex {
   void find(const SearchRegion& region, std::vector<Found>& out) const;
 
  private:
-  static constexpr int kWidth = 16;  // faces in a block
+  static constexpr int kWidth = BoxBlock::kWidth;  // faces in a block
   static constexpr int kLevels = 22;
   using Cell = std::array<int, 3>;
-  struct alignas(16) Block {
-    float lo[3][kWidth], hi[3][kWidth];
+  struct Block {
+    BoxBlock boxes;
     std::uint32_t corner[3][kWidth];
     FaceIndex face[kWidth];
     std::uint32_t next, cell, count;  // cell: brick * 64 + cell of the brick
@@ -71,7 +73,6 @@ class FrontIndex {
   void grow_table();
   /// Tells the bricks above that this one is no longer empty, or is empty again.
   void mark_above(std::uint32_t brick, bool empty);
-  static unsigned reach_into(const Block& block, const struct LocalRegion& region);
   /// The cells of a level that a face may have its middle in if it reaches into `box`.
   std::array<Cell, 2> cells_in_reach(int level, const Box3& box) const;
   void find_in_level(int level, bool descend, const SearchRegion& region, std::vector<Found>& out) const;

@@ -86,5 +86,11 @@ TEST(WorkMesh, FindsTheTetrahedronBehindAFace) {
   EXPECT_EQ(mesh.tet_behind({c.tets[2][1], c.tets[2][2], c.tets[2][3]}), kNone);
 }
 
+TEST(WorkMesh, FocusChangesNoAnswer) {
+  SixInACube c;
+  const WorkMesh all(c.points, c.tets), some(c.points, c.tets, {{{-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1}}});
+  for (VertexIndex v = 0; v < c.points.size(); ++v) EXPECT_EQ(some.around(v), all.around(v)) << v;
+}
+
 }  // namespace
 }  // namespace octafront

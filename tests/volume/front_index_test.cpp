@@ -80,5 +80,32 @@ TEST(FrontIndex, LeavesOutWhatLiesBehindThePlaneOrBeyondTheSphere) {
   EXPECT_EQ(found[0].face, 2u);
 }
 
+TEST(BoxCulling, IsTheSameOnEveryProcessor) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<float> place(0, 8), extent(0, 1), direction(-1, 1);
+  unsigned hits = 0;
+  for (int trial = 0; trial < 2000; ++trial) {
+    BoxBlock boxes;
+    CullingRegion region;
+    for (int axis = 0; axis < 3; ++axis) {
+      for (int s = 0; s < BoxBlock::kWidth; ++s) {
+        boxes.lo[axis][s] = s < 12 ? place(random) : 1e30f;
+        boxes.hi[axis][s] = s < 12 ? boxes.lo[axis][s] + extent(random) : -1e30f;
+      }
+      region.center[axis] = place(random);
+      region.lo[axis] = region.center[axis] - 2;
+      region.hi[axis] = region.center[axis] + 2;
+      region.normal[axis] = direction(random);
+    }
+    region.squared_radius = 4;
+    region.behind = direction(random);
+    const unsigned found = cull_boxes_portable(boxes, region);
+    EXPECT_EQ(found, cull_boxes(boxes, region));
+    EXPECT_EQ(found & 0xf000, 0u);
+    hits += found != 0;
+  }
+  EXPECT_GT(hits, 500u);
+}
+
 }  // namespace
 }  // namespace octafront
