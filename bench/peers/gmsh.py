@@ -1,4 +1,4 @@
-"""Gmsh (Debian: gmsh): HXT, and its Delaunay, on a kept discrete surface."""
+"""Gmsh (Debian: gmsh): HXT, Delaunay and Frontal, on a kept discrete surface or on one triangulated anew."""
 import pathlib
 import re
 
@@ -17,7 +17,24 @@ Mesh.MaxNumThreads3D = {threads};
 Mesh.Binary = 1;
 Mesh.SaveAll = 1;
 """
-HXT, DELAUNAY = 10, 1
+HXT, DELAUNAY, FRONTAL = 10, 1, 4
+
+# As in Gmsh's own tutorial 13: patches between sharp edges, parametrised, are meshed anew.
+REMESH_SCRIPT = """Merge "in.stl";
+ClassifySurfaces{{40 * Pi / 180, 1, 1, Pi}};
+CreateGeometry;
+Surface Loop(1) = Surface{{:}};
+Volume(1) = {{1}};
+Mesh.Algorithm3D = {algorithm};
+Mesh.Optimize = {optimize};
+Mesh.MeshSizeMin = {size:.9g};
+Mesh.MeshSizeMax = {size:.9g};
+Mesh.MeshSizeExtendFromBoundary = 0;
+General.NumThreads = {threads};
+Mesh.MaxNumThreads3D = {threads};
+Mesh.Binary = 1;
+Mesh.SaveAll = 1;
+"""
 
 
 def fill(surface, folder, timeout, algorithm, optimize, threads):
@@ -27,6 +44,19 @@ def fill(surface, folder, timeout, algorithm, optimize, threads):
     surfaces.write_msh(folder / "in.msh", points, triangles)
     (folder / "in.geo").write_text(SCRIPT.format(algorithm=algorithm, optimize=int(optimize), threads=threads,
                                                  size=surfaces.mean_edge(points, triangles)))
+    return run(folder, timeout, threads)
+
+
+def remesh(surface, folder, timeout, size, algorithm, optimize=True, threads=1):
+    """Triangulates `surface` (OFF) anew to `size` and fills it. The mesh is binary MSH 4.1."""
+    folder = pathlib.Path(folder)
+    surfaces.write_stl(folder / "in.stl", *surfaces.read_off(surface))
+    (folder / "in.geo").write_text(REMESH_SCRIPT.format(algorithm=algorithm, optimize=int(optimize), threads=threads,
+                                                        size=size))
+    return run(folder, timeout, threads)
+
+
+def run(folder, timeout, threads):
     outcome = run_measured(["gmsh", "-3", "in.geo", "-o", "out.msh", "-format", "msh41", "-bin", "-v", "4", "-nt",
                             str(threads)], folder, timeout)
     stage = re.search(r"Done meshing 3D \(Wall [\d.e+-]+s, CPU ([\d.e+-]+)s\)", outcome.log)
@@ -45,3 +75,7 @@ def fill_hxt(surface, folder, timeout, optimize=True, threads=1):
 
 def fill_delaunay(surface, folder, timeout, optimize=True, threads=1):
     return fill(surface, folder, timeout, DELAUNAY, optimize, threads)
+
+
+def fill_frontal(surface, folder, timeout, optimize=True, threads=1):
+    return fill(surface, folder, timeout, FRONTAL, optimize, threads)

@@ -1,6 +1,6 @@
-"""Netgen (Debian: netgen): its front on a kept surface, through the library, since the program meshes surfaces anew.
+"""Netgen (Debian: netgen), through its library: its front on a kept surface, and its STL mesher, which triangulates anew.
 
-As a program of its own, which fill() runs:  python3 -m peers.netgen SURFACE.off MESH.mesh
+As a program of its own, which fill() and remesh() run:  python3 -m peers.netgen SURFACE.off MESH.mesh [SIZE]
 """
 import ctypes
 import pathlib
@@ -16,9 +16,19 @@ LIBRARIES = ["/usr/lib/x86_64-linux-gnu/netgen/libnglib.so.6.2", "libnglib.so"]
 
 def fill(surface, folder, timeout):
     """Keeps the triangles of `surface` (OFF). The mesh is MEDIT."""
+    return run(surface, folder, timeout)
+
+
+def remesh(surface, folder, timeout, size):
+    """Triangulates `surface` (OFF) anew to `size` and fills it. The mesh is MEDIT."""
+    return run(surface, folder, timeout, size)
+
+
+def run(surface, folder, timeout, *size):
     bench = pathlib.Path(__file__).resolve().parent.parent
     out = pathlib.Path(folder).resolve() / "out.mesh"
-    outcome = run_measured([sys.executable, "-m", "peers.netgen", pathlib.Path(surface).resolve(), out], bench, timeout)
+    outcome = run_measured([sys.executable, "-m", "peers.netgen", pathlib.Path(surface).resolve(), out,
+                            *size], bench, timeout)
     stage = re.search(r"filling CPU seconds: ([\d.]+)", outcome.log)
     if stage:
         outcome.stage_seconds = float(stage[1])
@@ -61,14 +71,49 @@ def fill_in_process(surface, out):
     parameters = Parameters()
     function(library, "21Ng_Meshing_ParametersC1Ev", None, pointer)(ctypes.byref(parameters))
     parameters.maxh = surfaces.mean_edge(points, triangles)
-    start = resource.getrusage(resource.RUSAGE_SELF)
+    fill_mesh(library, mesh, parameters)
+    save(library, mesh, triangles, out)
+
+
+def fill_mesh(library, mesh, parameters, start=None):
+    pointer = ctypes.c_void_p
+    start = start or resource.getrusage(resource.RUSAGE_SELF)
     status = function(library, "21Ng_GenerateVolumeMeshEPPvPNS_21Ng_Meshing_ParametersE", ctypes.c_int, pointer,
                       pointer)(mesh, ctypes.byref(parameters))
     end = resource.getrusage(resource.RUSAGE_SELF)
     print(f"filling CPU seconds: {end.ru_utime + end.ru_stime - start.ru_utime - start.ru_stime:.3f}")
     if status != 0:
         sys.exit(f"error: netgen returned {status}")
-    save(library, mesh, triangles, out)
+
+
+def remesh_in_process(surface, out, size):
+    points, triangles = surfaces.read_off(surface)
+    library, pointer = load(), ctypes.c_void_p
+    function(library, "7Ng_InitEv", None)()
+    geometry = function(library, "18Ng_STL_NewGeometryEv", pointer)()
+    add = function(library, "18Ng_STL_AddTriangleEPPvPdS2_S2_S2_", None, pointer, pointer, pointer, pointer, pointer)
+    for triangle in triangles:
+        add(geometry, *((ctypes.c_double * 3)(*points[corner]) for corner in triangle), None)
+    parameters = Parameters()
+    function(library, "21Ng_Meshing_ParametersC1Ev", None, pointer)(ctypes.byref(parameters))
+    parameters.maxh = size
+    start = resource.getrusage(resource.RUSAGE_SELF)
+    mesh = function(library, "10Ng_NewMeshEv", pointer)()
+    for name, arguments in (("22Ng_STL_InitSTLGeometryEPPv", (geometry,)),
+                            ("16Ng_STL_MakeEdgesEPPvS1_PNS_21Ng_Meshing_ParametersE",
+                             (geometry, mesh, ctypes.byref(parameters))),
+                            ("26Ng_STL_GenerateSurfaceMeshEPPvS1_PNS_21Ng_Meshing_ParametersE",
+                             (geometry, mesh, ctypes.byref(parameters)))):
+        status = function(library, name, ctypes.c_int, *[pointer] * len(arguments))(*arguments)
+        if status not in (0, 1):  # InitSTLGeometry returns 1 for success
+            sys.exit(f"error: netgen's {name[2:].split('EPP')[0]} returned {status}")
+    fill_mesh(library, mesh, parameters, start)
+    get = function(library, "20Ng_GetSurfaceElementEPPviPi", ctypes.c_int, pointer, ctypes.c_int, pointer)
+    corners, made = (ctypes.c_int * 8)(), []
+    for i in range(1, function(library, "9Ng_GetNSEEPPv", ctypes.c_int, pointer)(mesh) + 1):
+        get(mesh, i, corners)
+        made.append(tuple(c - 1 for c in corners[:3]))
+    save(library, mesh, made, out)
 
 
 def save(library, mesh, triangles, out):
@@ -88,4 +133,7 @@ def save(library, mesh, triangles, out):
 
 
 if __name__ == "__main__":
-    fill_in_process(sys.argv[1], sys.argv[2])
+    if len(sys.argv) > 3:
+        remesh_in_process(sys.argv[1], sys.argv[2], float(sys.argv[3]))
+    else:
+        fill_in_process(sys.argv[1], sys.argv[2])

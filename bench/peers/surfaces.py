@@ -1,5 +1,6 @@
 """Triangle surfaces as OFF files, and what the peers want them as."""
 import math
+import struct
 
 
 def read_off(path):
@@ -43,3 +44,11 @@ def write_medit(path, points, triangles, tets):
         f.write(f"Tetrahedra\n{len(tets)}\n")
         f.writelines(f"{a + 1} {b + 1} {c + 1} {d + 1} 1\n" for a, b, c, d in tets)
         f.write("End\n")
+
+
+def write_stl(path, points, triangles):
+    """Binary STL; normals are left to the reader."""
+    with open(path, "wb") as f:
+        f.write(bytes(80) + struct.pack("<I", len(triangles)))
+        for triangle in triangles:
+            f.write(struct.pack("<12fH", 0, 0, 0, *(x for corner in triangle for x in points[corner]), 0))
