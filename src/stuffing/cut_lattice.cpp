@@ -17,6 +17,10 @@ namespace {
 /// an end would leave a tetrahedron without volume.
 constexpr double kLeastPart = 0.05;
 
+/// Warping leaves no tetrahedron of a uniform lattice below this beta. Where leaves of two sizes meet, other cut points
+/// are tried until one does as well, and warping is refused where all fall below the lesser bound.
+constexpr double kFairShape = 0.1, kLeastShape = 0.03;
+
 /// Lists of what belongs to each site, flat.
 struct SiteLists {
   std::vector<std::uint32_t> first, items;
@@ -67,18 +71,29 @@ class Warp {
   }
 
   void visit(std::uint32_t site) {
-    double least = 1;
-    const LatticeGraph::CutEdge* nearest = nullptr;
+    std::vector<std::pair<double, std::uint32_t>> too_near;
     for (std::uint32_t i = cuts_of_.first[site]; i < cuts_of_.first[site + 1]; ++i) {
-      const auto& cut = graph_.cuts[cuts_of_.items[i]];
+      const std::uint32_t c = cuts_of_.items[i];
+      const auto& cut = graph_.cuts[c];
       // An edge with a warped end is no longer cut.
       if (graph_.side[cut.inside] == 0 || graph_.side[cut.outside] == 0) continue;
-      if (const double n = nearness(site, cut); n < least) least = n, nearest = &cut;
+      if (const double n = nearness(site, cut); n < 1) too_near.emplace_back(n, c);
     }
-    if (nearest == nullptr) return;
-    const Vec3 old = graph_.at[site], from = graph_.at[nearest->inside];
-    graph_.at[site] = from + (graph_.at[nearest->outside] - from) * nearest->part;
-    if (keeps_tets_positive(site)) {
+    if (too_near.empty()) return;
+    std::sort(too_near.begin(), too_near.end());
+    const Vec3 old = graph_.at[site];
+    // The best shape of those tried, the first one that will do.
+    double best = 0;
+    Vec3 best_at = old;
+    for (const auto& [n, c] : too_near) {
+      const auto& cut = graph_.cuts[c];
+      const Vec3 from = graph_.at[cut.inside];
+      graph_.at[site] = from + (graph_.at[cut.outside] - from) * cut.part;
+      if (const double shape = worst_shape_around(site); shape > best) best = shape, best_at = graph_.at[site];
+      if (best >= kFairShape) break;
+    }
+    graph_.at[site] = best_at;
+    if (best >= kLeastShape) {
       graph_.side[site] = 0;
       ++warped;
     } else {
@@ -87,12 +102,16 @@ class Warp {
     }
   }
 
-  bool keeps_tets_positive(std::uint32_t site) const {
+  /// Least beta of the tetrahedra around a site; 0 if one of them is not positive, by exact sign.
+  double worst_shape_around(std::uint32_t site) const {
+    double least = 1;
     for (std::uint32_t i = tets_of_.first[site]; i < tets_of_.first[site + 1]; ++i) {
       const auto& t = graph_.tets[tets_of_.items[i]];
-      if (orient3d(graph_.at[t[0]], graph_.at[t[1]], graph_.at[t[2]], graph_.at[t[3]]) <= 0) return false;
+      const Vec3 a = graph_.at[t[0]], b = graph_.at[t[1]], c = graph_.at[t[2]], d = graph_.at[t[3]];
+      if (orient3d(a, b, c, d) <= 0) return 0;
+      least = std::min(least, tet_radius_ratio(a, b, c, d));
     }
-    return true;
+    return least;
   }
 
   LatticeGraph& graph_;
