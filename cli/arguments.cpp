@@ -29,6 +29,12 @@ void declare_input(CLI::App& command, Arguments& a) {
       ->type_name("FILE");
 }
 
+void declare_mesh_input(CLI::App& command, Arguments& a) {
+  command.add_option("input", a.input, "Tetrahedral mesh: VTU, Gmsh .msh or MEDIT .mesh")
+      ->required()
+      ->type_name("MESH");
+}
+
 void declare_output(CLI::App& command, Arguments& a, const std::string& what, bool required) {
   auto* option = command.add_option("-o,--output", a.output, what)->type_name("FILE");
   if (required) option->required();
@@ -83,7 +89,6 @@ void declare_surface(CLI::App& command, Arguments& a) {
 void declare_volume(CLI::App& command, Arguments& a) {
   using Core = VolumeOptions::Core;
   using Ranking = VolumeOptions::Ranking;
-  using Level = ImproveOptions::Level;
   VolumeOptions& o = a.options.volume;
   auto* group = command.add_option_group("Volume");
   add_choice<Method>(
@@ -103,15 +108,31 @@ void declare_volume(CLI::App& command, Arguments& a) {
       ->capture_default_str();
   add_choice<Ranking>(*group, "--ranking", o.ranking,
                       {{"solid-angle", Ranking::kSolidAngle}, {"quality", Ranking::kQuality}}, "Order of candidates");
-  add_choice<Level>(*group, "--improve", a.options.improve.level,
+}
+
+void declare_improvement(CLI::App& command, Arguments& a) {
+  using Level = ImproveOptions::Level;
+  ImproveOptions& o = a.options.improve;
+  auto* group = command.add_option_group("Improvement");
+  add_choice<Level>(*group, "--improve", o.level,
                     {{"none", Level::kOff},
                      {"paper", Level::kPaper},
                      {"fast", Level::kFast},
                      {"default", Level::kDefault},
                      {"best", Level::kBest}},
                     "How the finished mesh is improved");
-  group->add_option("--relaxation", a.options.improve.relaxation, "phi of the paper's weighted Laplacian")
+  group->add_option("--relaxation", o.relaxation, "phi of the paper's weighted Laplacian")
       ->type_name("PHI")
+      ->capture_default_str();
+  group->add_flag("!--fix-boundary", o.move_boundary, "No vertex of the boundary slides on the surface, no edge turns");
+}
+
+void declare_ground(CLI::App& command, Arguments& a) {
+  auto* group = command.add_option_group("Boundary", "Stays as it is, unless a surface is given");
+  group->add_option("--surface", a.surface, "The surface that was meshed: the boundary may slide along it")
+      ->type_name("FILE");
+  group->add_option("--feature-angle", a.options.surface.feature_angle, "Edges that bend by more degrees are kept")
+      ->type_name("DEG")
       ->capture_default_str();
 }
 

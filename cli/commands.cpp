@@ -43,15 +43,16 @@ bool is_tet_mesh_file(const std::filesystem::path& file) {
   return ending == ".vtu" || ending == ".msh" || ending == ".mesh";
 }
 
+std::string quality_in_words(const QualitySummary& q) {
+  return fmt::format("{} tetrahedra; least beta {:.4f}, mean {:.4f}, dihedral angles {:.1f} to {:.1f} degrees",
+                     q.elements, q.beta_min, q.beta_mean, q.dihedral_min, q.dihedral_max);
+}
+
 int check_tet_mesh(const Arguments& a) {
   const TetMesh mesh = read_mesh(a.input);
   const auto defect = first_defect(mesh);
   if (defect) throw InputError(fmt::format("{}: not a valid mesh: {}", a.input.string(), *defect));
-  const QualitySummary q = summarize_quality(mesh);
-  say(a,
-      fmt::format("{}: a valid mesh of {} tetrahedra; least beta {:.4f}, mean {:.4f}, dihedral angles {:.1f} to {:.1f} "
-                  "degrees\n",
-                  a.input.string(), mesh.tets.size(), q.beta_min, q.beta_mean, q.dihedral_min, q.dihedral_max));
+  say(a, fmt::format("{}: a valid mesh of {}\n", a.input.string(), quality_in_words(summarize_quality(mesh))));
   return 0;
 }
 
@@ -119,6 +120,31 @@ int run_size(const Arguments& a) {
   if (!a.output.empty()) write_size_field(a.output, result.sizes);
   write_report(a, result.report);
   if (!a.output.empty()) say(a, fmt::format("written: {}\n", a.output.string()));
+  return 0;
+}
+
+int run_improve(const Arguments& a) {
+  check_mesh_target(a.output);
+  check_report_target(a);
+  const RunContext context = terminal_context(a.threads, a.quiet);
+  context.report("reading", -1);
+  const TetMesh mesh = read_mesh(a.input);
+  SurfaceMesh surface;
+  if (!a.surface.empty()) surface = read_surface(a.surface).surface;
+  const auto run = [&] {
+    try {
+      return improve_existing(mesh, a.options, a.surface.empty() ? nullptr : &surface, context);
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("{}: {}", a.input.string(), error.what()));
+    }
+  };
+  const Improved result = run();
+  context.report("writing", -1);
+  write_mesh(a.output, result.mesh);
+  say(a, fmt::format("{}: {}\nimproved: ", a.input.string(), quality_in_words(result.before)));
+  say(a, quality_in_words(result.report.quality) + "\n");
+  write_report(a, result.report);
+  say(a, fmt::format("written: {}\n", a.output.string()));
   return 0;
 }
 

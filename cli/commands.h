@@ -8,6 +8,7 @@ namespace octafront::cli {
 int run_mesh(const Arguments& arguments);
 int run_surface(const Arguments& arguments);
 int run_size(const Arguments& arguments);
+int run_improve(const Arguments& arguments);
 int run_check(const Arguments& arguments);
 
 }  // namespace octafront::cli

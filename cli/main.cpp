@@ -69,6 +69,7 @@ int main(int argc, char** argv) {
   declare_sizes(*mesh, a);
   declare_surface(*mesh, a);
   declare_volume(*mesh, a);
+  declare_improvement(*mesh, a);
   declare_report(*mesh, a);
   declare_run(*mesh, a);
   mesh->callback([&] { chosen = [&] { return run_mesh(a); }; });
@@ -90,6 +91,16 @@ int main(int argc, char** argv) {
   declare_report(*size, a);
   declare_run(*size, a);
   size->callback([&] { chosen = [&] { return run_size(a); }; });
+
+  auto* better =
+      app.add_subcommand("improve", "Make the elements of a mesh better: octafront improve in.msh -o out.vtu");
+  declare_mesh_input(*better, a);
+  declare_output(*better, a, "Mesh: .vtu, .msh (Gmsh 4.1) or .mesh (MEDIT)", true);
+  declare_ground(*better, a);
+  declare_improvement(*better, a);
+  declare_report(*better, a);
+  declare_run(*better, a);
+  better->callback([&] { chosen = [&] { return run_improve(a); }; });
 
   auto* check = app.add_subcommand("check", "Say what is wrong with a surface, or with a mesh (.vtu, .msh, .mesh)");
   declare_input(*check, a);

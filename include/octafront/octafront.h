@@ -4,6 +4,7 @@
 
 #include <octafront/error.h>
 #include <octafront/generate.h>
+#include <octafront/improve_existing.h>
 #include <octafront/io.h>
 #include <octafront/options.h>
 #include <octafront/quality.h>

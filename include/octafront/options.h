@@ -68,6 +68,9 @@ struct ImproveOptions {
   Level level = Level::kDefault;
   double relaxation = 0.7;  ///< phi of the paper's weighted Laplacian, (0, 1]
   int sweeps = 4;           ///< sweeps of the Laplacian, >= 0
+  /// Vertices of the boundary may slide along the input surface, and edges inside its patches turn. Off wherever the
+  /// surface is kept.
+  bool move_boundary = true;
 };
 
 /// How the volume gets its tetrahedra.

@@ -75,8 +75,10 @@ class FaceMatcher {
   std::vector<Entry> entries_;
 };
 
+}  // namespace
+
 /// Face matching among the few tets of a replace(): open addressing, sized for the largest cavity at hand.
-class SmallFaceTable {
+class EditMesh::SmallFaceTable {
  public:
   explicit SmallFaceTable(std::size_t faces) {
     std::size_t size = 64;
@@ -104,8 +106,6 @@ class SmallFaceTable {
   };
   std::vector<Slot> slots_;
 };
-
-}  // namespace
 
 EditMesh::EditMesh(TetMesh&& mesh) {
   if (mesh.tets.size() >= kBoundaryBit / 4) throw MeshingError("improvement holds at most 2^29 tetrahedra");
@@ -156,7 +156,9 @@ void EditMesh::connect() {
       const HalfFace h = 4 * t + i, other = matcher.match(sorted_face(tets_[t], i), h);
       if (other == kNone) continue;
       across_[h] = other;
-      if (!is_boundary(other)) across_[other] = h;
+      if (is_boundary(other)) continue;
+      across_[other] = h;
+      if (region_[t] != region_[other / 4]) part(h, other);
     }
   }
   for (HalfFace h = 0; h < across_.size(); ++h)
@@ -165,6 +167,11 @@ void EditMesh::connect() {
       throw MeshingError(fmt::format("face ({}, {}, {}) of tetrahedron {} is neither shared nor on the boundary", f[0],
                                      f[1], f[2], h / 4));
     }
+}
+
+void EditMesh::part(HalfFace h, HalfFace other) {
+  for (const HalfFace side : {h, other}) across_[side] = kBoundaryBit | kBetweenRegions;
+  for (const VertexIndex v : sorted_face(tets_[h / 4], static_cast<int>(h % 4))) on_boundary_[v] = 1;
 }
 
 void EditMesh::compute_shapes() {
@@ -293,7 +300,7 @@ void EditMesh::move(VertexIndex v, Vec3 to, std::span<const HalfFace> star_faces
 }
 
 void EditMesh::replace(std::span<const TetIndex> old_tets, std::span<const Tet> new_tets, std::span<const Shape> shapes,
-                       std::vector<TetIndex>& created) {
+                       std::vector<TetIndex>& created, const BoundaryTurn* turn) {
   // A face seen twice among the old tets lies inside them; what lies across the others must be tied to the new ones.
   SmallFaceTable outside(4 * (old_tets.size() + new_tets.size()));
   for (const TetIndex t : old_tets)
@@ -301,6 +308,7 @@ void EditMesh::replace(std::span<const TetIndex> old_tets, std::span<const Tet> 
   const std::uint32_t region = region_[old_tets[0]];
   for (const TetIndex t : old_tets)
     for (const VertexIndex v : tets_[t]) tet_of_[v] = kNone;
+  if (turn) turn_boundary(*turn, outside);
   created.clear();
   for (std::size_t k = 0; k < new_tets.size(); ++k) {
     TetIndex t;
@@ -336,6 +344,25 @@ void EditMesh::replace(std::span<const TetIndex> old_tets, std::span<const Tet> 
       if (other != kNone && !is_boundary(other)) across_[other] = h;
     }
   }
+}
+
+void EditMesh::turn_boundary(const BoundaryTurn& turn, SmallFaceTable& outside) {
+  for (const HalfFace b : turn.faces) outside.exchange(sorted_face(rest_.boundary[b & ~kBoundaryBit]), kNone);
+  for (int k = 0; k < 2; ++k) {
+    const Triangle& corners = turn.triangles[k];
+    rest_.boundary[turn.faces[k] & ~kBoundaryBit] = corners;
+    // Where a tet goes without another in its place, the triangle lies on its neighbour.
+    const HalfFace behind = outside.exchange(sorted_face(corners), turn.faces[k]);
+    if (behind == kNone) continue;
+    across_[behind] = turn.faces[k];
+    for (const VertexIndex v : corners) tet_of_[v] = behind / 4;
+  }
+}
+
+std::vector<VertexIndex> EditMesh::numbers_here() const {
+  std::vector<VertexIndex> here(original_.size());
+  for (VertexIndex v = 0; v < original_.size(); ++v) here[original_[v]] = v;
+  return here;
 }
 
 VertexIndex EditMesh::add_vertex(Vec3 p) {

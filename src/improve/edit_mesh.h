@@ -22,6 +22,9 @@ inline constexpr bool is_boundary(HalfFace across) {
   return (across & kBoundaryBit) != 0;
 }
 
+/// What lies across a face between two regions: such faces are kept like those of the boundary.
+inline constexpr std::uint32_t kBetweenRegions = 0x7ffffffeu;
+
 /// The tetrahedra around an edge, in order, with the other two corners of each.
 struct EdgeRing {
   std::vector<TetIndex> tets;
@@ -52,6 +55,14 @@ class EditMesh {
   /// Any tet at v; kNone if v is no longer used.
   TetIndex tet_of(VertexIndex v) const { return tet_of_[v]; }
 
+  /// Patch of the boundary triangle that lies across (see across()).
+  std::uint32_t boundary_patch(HalfFace across) const {
+    const std::uint32_t b = across & ~kBoundaryBit;
+    return b == kBetweenRegions ? kNone : rest_.patch.empty() ? 0 : rest_.patch[b];
+  }
+  /// For each vertex of the mesh that was taken, its number here.
+  std::vector<VertexIndex> numbers_here() const;
+
   /// Corner of t at which v lies. Requires that it does.
   int corner_of(TetIndex t, VertexIndex v) const {
     const Tet& c = tets_[t];
@@ -71,10 +82,17 @@ class EditMesh {
   /// Moves a vertex and sets the shapes of its star (faces as from star(), shapes in the same order).
   void move(VertexIndex v, Vec3 to, std::span<const HalfFace> star_faces, const ShapeBatch& shapes);
 
+  /// Two boundary triangles that take the place of two others: numbers of those (as across() gives them) and new
+  /// corners, counter-clockwise seen from outside. The other diagonal of the same four corners.
+  struct BoundaryTurn {
+    std::array<HalfFace, 2> faces;
+    std::array<Triangle, 2> triangles;
+  };
+
   /// Puts new tets in place of old ones that fill the same space. Returns where they are: `created` in order.
-  /// Requires: same outer faces; shapes as of the new ones; one region.
+  /// Requires: same outer faces, or those that differ named in `turn`; shapes as of the new ones; one region.
   void replace(std::span<const TetIndex> old_tets, std::span<const Tet> new_tets, std::span<const Shape> shapes,
-               std::vector<TetIndex>& created);
+               std::vector<TetIndex>& created, const BoundaryTurn* turn = nullptr);
 
   /// A new vertex inside, to be used by the next replace().
   VertexIndex add_vertex(Vec3 p);
@@ -91,7 +109,11 @@ class EditMesh {
   }
 
  private:
+  class SmallFaceTable;
+
+  void turn_boundary(const BoundaryTurn& turn, SmallFaceTable& outside);
   void take(TetMesh& mesh);
+  void part(HalfFace h, HalfFace other);
   void connect();
   void compute_shapes();
 

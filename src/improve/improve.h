@@ -1,8 +1,9 @@
 #pragma once
 
-// improve: better elements from the same boundary. Takes a valid tetrahedral mesh, leaves a valid one: vertices inside
-// have moved, edges and faces inside have been exchanged. Single passes are in passes.h, their order in schedule.cpp,
-// what an element is worth in shape.h, the mesh they work on in edit_mesh.h.
+// improve: better elements in the same body. Takes a valid tetrahedral mesh, leaves a valid one: vertices have moved,
+// edges and faces have been exchanged; those of the boundary only where the surface is given on which they may. Single
+// passes are in passes.h, their order in schedule.cpp, what an element is worth in shape.h, the mesh they work on in
+// edit_mesh.h.
 
 #include <octafront/options.h>
 #include <octafront/report.h>
@@ -10,14 +11,19 @@
 #include <octafront/size_field.h>
 #include <octafront/tet_mesh.h>
 
+#include "improve/boundary_guide.h"
+
 namespace octafront {
 
-/// Makes the elements of a valid mesh better, by the schedule of options.level. The boundary does not change; patches,
-/// sources and regions stay with what they belong to. No pass makes the worst element worse, and none inverts one
-/// (exact signs). `sizes` keeps edge lengths honest. On an exception the mesh is as it was. Throws OptionError,
-/// Cancelled, and MeshingError if the faces of the mesh do not match. The report gets, for each pass, the places looked
-/// at, those changed, and CPU time per element.
-void improve_mesh(TetMesh& mesh, const SizeField& sizes, const ImproveOptions& options, const RunContext& context,
-                  StageReport& report);
+/// Makes the elements of a valid mesh better, by the schedule of options.level. Without `boundary` the boundary does
+/// not change. With it, and unless options.move_boundary is off, vertices of the boundary slide along the surface or
+/// curve that they lie on, corners stay, and edges inside patches may turn; the boundary stays as near to the input as
+/// it was (see BoundaryGuide::keeps_truth), free of self-intersections (exactly), with the same number of triangles,
+/// each of the same patch. Regions stay with what they belong to. No pass makes the worst element worse, and none
+/// inverts one (exact signs). On an exception the mesh is as it was. Throws OptionError, Cancelled, and MeshingError if
+/// the faces of the mesh do not match. The report gets, for each pass, the places looked at, those changed, and CPU
+/// time per element. Returns true if the boundary changed.
+bool improve_mesh(TetMesh& mesh, const improve::BoundaryInput* boundary, const ImproveOptions& options,
+                  const RunContext& context, StageReport& report);
 
 }  // namespace octafront

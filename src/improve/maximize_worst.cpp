@@ -1,5 +1,7 @@
 #include "improve/maximize_worst.h"
 
+#include <algorithm>
+
 namespace octafront::improve {
 namespace {
 
@@ -19,7 +21,7 @@ void WorstMaximizer::begin(ShapeBatch& batch, Vec3 start) {
   difference_ = kDifference * edge;
 }
 
-void WorstMaximizer::linearize(ShapeBatch& batch) {
+void WorstMaximizer::linearize(ShapeBatch& batch, std::span<const Vec3> axes) {
   batch.evaluate_star(at_);
   least_ = 0;
   for (int i = 0; i < size_; ++i) {
@@ -27,12 +29,15 @@ void WorstMaximizer::linearize(ShapeBatch& batch) {
     if (quality_[i] < quality_[least_]) least_ = i;
   }
   worst_ = quality_[least_];
-  for (int axis = 0; axis < 3; ++axis) {
-    Vec3 beside = at_;
-    beside[axis] += difference_;
-    const double by = beside[axis] - at_[axis];
+  for (auto& g : gradient_) std::fill_n(g.begin(), size_, 0.0);
+  for (const Vec3 axis : axes) {
+    const Vec3 beside = at_ + difference_ * axis;
+    const double by = dot(beside - at_, axis);
     batch.evaluate_star(beside);
-    for (int i = 0; i < size_; ++i) gradient_[axis][i] = by != 0 ? (batch.quality[i] - quality_[i]) / by : 0;
+    for (int i = 0; i < size_; ++i) {
+      const double slope = by != 0 ? (batch.quality[i] - quality_[i]) / by : 0;
+      for (int k = 0; k < 3; ++k) gradient_[k][i] += slope * axis[k];
+    }
   }
 }
 

@@ -5,6 +5,7 @@
 #include "improve/shape.h"
 
 #include <array>
+#include <span>
 
 namespace octafront::improve {
 
@@ -18,10 +19,19 @@ class WorstMaximizer {
   /// the worst score and satisfies `allowed(place)`, called with the batch evaluated at the place.
   template <typename Allowed>
   void climb(ShapeBatch& batch, Vec3 start, int steps, Allowed&& allowed) {
+    climb_along(
+        kAxes, [](Vec3&) { return true; }, batch, start, steps, allowed);
+  }
+
+  /// The same for a vertex that goes only along the axes (unit vectors, orthogonal), from where `snap(place)` puts it
+  /// back on what it has to stay on, or says that it cannot.
+  template <typename Snap, typename Allowed>
+  void climb_along(std::span<const Vec3> axes, Snap&& snap, ShapeBatch& batch, Vec3 start, int steps,
+                   Allowed&& allowed) {
     begin(batch, start);
     for (int step = 0; step < steps; ++step) {
-      linearize(batch);
-      if (!advance(batch, allowed)) return;
+      linearize(batch, axes);
+      if (!advance(batch, snap, allowed)) return;
     }
   }
 
@@ -30,26 +40,29 @@ class WorstMaximizer {
   bool moved() const { return moved_; }
 
  private:
+  static constexpr std::array<Vec3, 3> kAxes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
   static constexpr int kShorter = 3;          ///< shorter tries per gradient
   static constexpr double kLeastGain = 2e-3;  ///< predicted gains below this are not worth a try
 
   void begin(ShapeBatch& batch, Vec3 start);
-  void linearize(ShapeBatch& batch);
+  void linearize(ShapeBatch& batch, std::span<const Vec3> axes);
   Vec3 best_step() const;
   double predicted(Vec3 d) const;
 
-  template <typename Allowed>
-  bool advance(ShapeBatch& batch, Allowed&& allowed) {
+  template <typename Snap, typename Allowed>
+  bool advance(ShapeBatch& batch, Snap&& snap, Allowed&& allowed) {
     for (int shorter = 0; shorter <= kShorter; ++shorter, reach_ *= 0.25) {
       const Vec3 d = best_step();
       const double gain = predicted(d) - worst_;
       if (!(gain > kLeastGain)) return false;
-      batch.evaluate_star(at_ + d);
+      Vec3 to = at_ + d;
+      if (!snap(to)) continue;
+      batch.evaluate_star(to);
       const double reached = batch.worst();
-      if (!(reached > worst_) || !allowed(at_ + d)) continue;
+      if (!(reached > worst_) || !allowed(to)) continue;
       if (reached - worst_ > 0.5 * gain) reach_ *= 2;
       worst_ = reached;
-      at_ = at_ + d;
+      at_ = to;
       moved_ = true;
       return true;
     }

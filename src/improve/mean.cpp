@@ -9,7 +9,9 @@
 #include "improve/vertex_blocks.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
 
 namespace octafront::improve {
 namespace {
@@ -19,14 +21,21 @@ constexpr double kFarthest = 0.2;     ///< longest step along an axis, in mean e
 constexpr double kUphill = 0.1;       ///< step where the second derivative gives none, in mean edge lengths
 constexpr double kShorten = 0.4;
 constexpr int kTries = 2;
+constexpr double kLeastSlide = 0.01;  ///< steps on the surface below this, in mean edge lengths, are not worth a search
+
+constexpr std::array<Vec3, 3> kAxes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 
 class MeanSmoother {
  public:
-  MeanSmoother(EditMesh& mesh, const Floor& floor) : mesh_(mesh), floor_(floor), star_(mesh) {}
+  MeanSmoother(EditMesh& mesh, const Floor& floor, const BoundaryGuide* guide)
+      : mesh_(mesh), floor_(floor), star_(mesh) {
+    if (guide) sliding_.emplace(mesh, *guide);
+  }
 
   /// True if the vertex moved.
   bool run(VertexIndex v, std::span<const HalfFace> faces) {
-    if (!star_.load(v, faces)) return false;
+    const bool slides = mesh_.on_boundary(v);
+    if (!star_.load(v, faces) || (slides && !sliding_->load(v, faces))) return false;
     const Vec3 at = mesh_.point(v);
     float old_worst = 1;
     double old_deficit = 0;
@@ -35,12 +44,18 @@ class MeanSmoother {
       old_worst = std::min(old_worst, s.score);
       old_deficit += (1 - double{s.beta}) * (1 - double{s.beta});
     }
-    Vec3 step = newton_step(at, star_.batch().mean_edge(at), old_deficit);
+    const std::span<const Vec3> axes = slides ? sliding_->axes() : kAxes;
+    const double edge = star_.batch().mean_edge(at);
+    Vec3 step = newton_step(at, axes, edge, old_deficit);
+    if (slides && squared_length(step) < kLeastSlide * kLeastSlide * edge * edge) return false;
     for (int k = 0; k < kTries; ++k, step *= kShorten) {
-      star_.evaluate(at + step);
+      Vec3 to = at + step;
+      if (slides && !sliding_->snap(to)) continue;
+      star_.evaluate(to);
       if (!(star_.batch().deficit() < old_deficit)) continue;
       const float worst = star_.worst_score();
       if (!(worst > old_worst || worst > kMeanRisesGuard) || !star_.acceptable(floor_)) continue;
+      if (slides && !sliding_->keeps_truth(to)) continue;
       star_.commit();
       return true;
     }
@@ -48,39 +63,35 @@ class MeanSmoother {
   }
 
  private:
-  Vec3 newton_step(Vec3 at, double edge, double here) {
+  Vec3 newton_step(Vec3 at, std::span<const Vec3> axes, double edge, double here) {
     const double h = kDifference * edge;
     Vec3 step;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double ahead = deficit_beside(at, axis, h), behind = deficit_beside(at, axis, -h);
+    for (const Vec3 axis : axes) {
+      const double ahead = star_.deficit_at(at + h * axis), behind = star_.deficit_at(at - h * axis);
       const double slope = (ahead - behind) / (2 * h), bend = (ahead + behind - 2 * here) / (h * h);
       const double wanted = bend > 0 ? -slope / bend : slope > 0 ? -kUphill * edge : kUphill * edge;
-      step[axis] = std::clamp(wanted, -kFarthest * edge, kFarthest * edge);
+      step += std::clamp(wanted, -kFarthest * edge, kFarthest * edge) * axis;
     }
     return step;
-  }
-
-  double deficit_beside(Vec3 at, int axis, double by) {
-    at[axis] += by;
-    return star_.deficit_at(at);
   }
 
   EditMesh& mesh_;
   Floor floor_;
   StarEdit star_;
+  std::optional<SlidingVertex> sliding_;
 };
 
 }  // namespace
 
-PassResult smooth_mean(EditMesh& mesh, int sweeps, const RunContext& context) {
+PassResult smooth_mean(EditMesh& mesh, int sweeps, const RunContext& context, const BoundaryGuide* guide) {
   PassResult result;
   const StarTable stars(mesh);
-  const VertexBlocks blocks(mesh, stars);
+  const VertexBlocks blocks(mesh, stars, guide);
   const Floor floor = mesh.floor();
   for (int sweep = 0; sweep < sweeps; ++sweep)
     result += blocks.run(context, [&](std::span<const VertexIndex> vertices) {
       PassResult block;
-      MeanSmoother smoother(mesh, floor);
+      MeanSmoother smoother(mesh, floor, guide);
       for (const VertexIndex v : vertices) {
         ++block.tried;
         block.done += smoother.run(v, stars.of(v));

@@ -2,6 +2,8 @@
 #include "improve/passes.h"
 #include "improve/star_edit.h"
 
+#include <optional>
+
 namespace octafront::improve {
 namespace {
 
@@ -11,30 +13,72 @@ constexpr int kSteps = 8;  ///< steps per vertex at most
 /// forces a bad element, good ones around it would otherwise pay for next to nothing.
 constexpr double kPrice = 0.1;
 
+class WorstOptimizer {
+ public:
+  WorstOptimizer(EditMesh& mesh, const BoundaryGuide* guide, float threshold)
+      : mesh_(mesh),
+        guide_(guide),
+        threshold_(threshold),
+        floor_(mesh.floor()),
+        star_(mesh),
+        seen_(mesh.vertices(), 0) {
+    if (guide) sliding_.emplace(mesh, *guide);
+  }
+
+  PassResult around(TetIndex t) {
+    PassResult result;
+    for (const VertexIndex v : mesh_.tet(t)) {
+      const bool slides = mesh_.on_boundary(v);
+      if (seen_[v] || (slides && !(guide_ && guide_->may_slide(v)))) continue;
+      seen_[v] = 1;
+      if (!star_.load(v) || star_.current_worst() >= threshold_) continue;
+      ++result.tried;
+      result.done += slides ? slide(v) : move(v);
+    }
+    return result;
+  }
+
+ private:
+  bool move(VertexIndex v) {
+    maximizer_.climb(star_.batch(), mesh_.point(v), kSteps, [&](Vec3 at) { return star_.acceptable(at, floor_); });
+    return commit();
+  }
+
+  bool slide(VertexIndex v) {
+    if (!sliding_->load(v, star_.faces())) return false;
+    maximizer_.climb_along(
+        sliding_->axes(), [&](Vec3& place) { return sliding_->snap(place); }, star_.batch(), mesh_.point(v), kSteps,
+        [&](Vec3 at) { return star_.acceptable(at, floor_) && sliding_->keeps_truth(at); });
+    return commit();
+  }
+
+  bool commit() {
+    if (!maximizer_.moved()) return false;
+    star_.evaluate(maximizer_.place());
+    const double cost = star_.batch().deficit() - star_.current_deficit();
+    if (star_.worst_score() - star_.current_worst() < kPrice * cost) return false;
+    star_.commit();
+    return true;
+  }
+
+  EditMesh& mesh_;
+  const BoundaryGuide* guide_;
+  float threshold_;
+  Floor floor_;
+  StarEdit star_;
+  std::optional<SlidingVertex> sliding_;
+  WorstMaximizer maximizer_;
+  std::vector<std::uint8_t> seen_;
+};
+
 }  // namespace
 
-PassResult optimize_vertices(EditMesh& mesh, float threshold, const RunContext& context) {
+PassResult optimize_vertices(EditMesh& mesh, float threshold, const RunContext& context, const BoundaryGuide* guide) {
   PassResult result;
-  const Floor floor = mesh.floor();
-  StarEdit star(mesh);
-  WorstMaximizer maximizer;
-  std::vector<std::uint8_t> seen(mesh.vertices(), 0);
+  WorstOptimizer optimizer(mesh, guide, threshold);
   for (TetIndex t = 0; t < mesh.slots(); ++t) {
     if (t % 4096 == 0) context.check();
-    if (!mesh.alive(t) || mesh.shape(t).score >= threshold) continue;
-    for (const VertexIndex v : mesh.tet(t)) {
-      if (mesh.on_boundary(v) || seen[v]) continue;
-      seen[v] = 1;
-      if (!star.load(v) || star.current_worst() >= threshold) continue;
-      ++result.tried;
-      maximizer.climb(star.batch(), mesh.point(v), kSteps, [&](Vec3 at) { return star.acceptable(at, floor); });
-      if (!maximizer.moved()) continue;
-      star.evaluate(maximizer.place());
-      const double cost = star.batch().deficit() - star.current_deficit();
-      if (star.worst_score() - star.current_worst() < kPrice * cost) continue;
-      star.commit();
-      ++result.done;
-    }
+    if (mesh.alive(t) && mesh.shape(t).score < threshold) result += optimizer.around(t);
   }
   return result;
 }

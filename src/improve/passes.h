@@ -5,6 +5,7 @@
 
 #include <octafront/run_context.h>
 
+#include "improve/boundary_guide.h"
 #include "improve/edit_mesh.h"
 
 #include <cstdint>
@@ -34,9 +35,10 @@ inline constexpr float kMeanRisesGuard = 0.6f;
 /// the way to the mean of its neighbours, weighted by the length of the edges to them, if the rule allows.
 PassResult laplacian_sweeps(EditMesh& mesh, int sweeps, double relaxation, MoveRule rule, const RunContext& context);
 
-/// Sweeps over the inner vertices, block by block, in parallel: each goes towards where the sum of (1 - beta)^2 around
-/// it is least, if that falls and the worst score around it rises or stays above kMeanRisesGuard.
-PassResult smooth_mean(EditMesh& mesh, int sweeps, const RunContext& context);
+/// Sweeps over the vertices, block by block, in parallel: each goes towards where the sum of (1 - beta)^2 around it is
+/// least, if that falls and the worst score around it rises or stays above kMeanRisesGuard. Here and below, vertices of
+/// the boundary move as the guide says; without one they stay.
+PassResult smooth_mean(EditMesh& mesh, int sweeps, const RunContext& context, const BoundaryGuide* guide = nullptr);
 
 /// What a reconnection must make better.
 enum class Goal {
@@ -45,13 +47,16 @@ enum class Goal {
 };
 
 /// Removes edges (up to a ring of kLongestRing tetrahedra, by dynamic programming) and faces (2-3 flips) of the
-/// elements with a score below `threshold`, wherever that serves the goal; goes on with what it made.
-PassResult reconnect(EditMesh& mesh, float threshold, Goal goal, const RunContext& context);
+/// elements with a score below `threshold`, wherever that serves the goal; goes on with what it made. With a guide,
+/// for the worst, edges of the boundary too: its two triangles there become those on the other diagonal.
+PassResult reconnect(EditMesh& mesh, float threshold, Goal goal, const RunContext& context,
+                     const BoundaryGuide* guide = nullptr);
 inline constexpr int kLongestRing = 7;
 
-/// Moves the inner vertices of the elements with a score below `threshold` to where the worst score around them is
+/// Moves the vertices of the elements with a score below `threshold` to where the worst score around them is
 /// best, as near as a few steps come, unless that costs the mean too much.
-PassResult optimize_vertices(EditMesh& mesh, float threshold, const RunContext& context);
+PassResult optimize_vertices(EditMesh& mesh, float threshold, const RunContext& context,
+                             const BoundaryGuide* guide = nullptr);
 
 /// Replaces elements with a score below `threshold`, worst first, and some around them, by the star of a new vertex
 /// where that raises the worst score of the place.

@@ -3,10 +3,13 @@
 // topological improvement of tetrahedral meshes", 2002), and of a face between two tetrahedra (2-3 flip). The 3-2 and
 // the 4-4 flip are removals of edges with rings of three and four.
 
+#include "geometry/measures.h"
 #include "geometry/predicates.h"
 #include "improve/passes.h"
 
+#include <algorithm>
 #include <array>
+#include <optional>
 
 namespace octafront::improve {
 namespace {
@@ -17,12 +20,14 @@ struct Refill {
   std::vector<Tet> new_tets;
   std::vector<Shape> shapes;
   float gain = 0;
+  std::optional<EditMesh::BoundaryTurn> turn;  ///< where the removed edge lies on the boundary
 
   void clear() {
     old_tets.clear();
     new_tets.clear();
     shapes.clear();
     gain = 0;
+    turn.reset();
   }
 };
 
@@ -30,9 +35,13 @@ struct Refill {
 // lattice two refills of equal worth would otherwise replace each other for ever.
 constexpr float kLeastGain = 1e-5f;
 
+/// A tet at the boundary that goes without another in its place counts as replaced by one of this score.
+constexpr float kWorthOfNothing = 0.6f;
+
 class Reconnector {
  public:
-  Reconnector(EditMesh& mesh, const Floor& floor, Goal goal) : mesh_(mesh), floor_(floor), goal_(goal) {}
+  Reconnector(EditMesh& mesh, const Floor& floor, Goal goal, const BoundaryGuide* guide)
+      : mesh_(mesh), floor_(floor), goal_(goal), guide_(guide) {}
 
   /// Makes the best change there is at tet t, of those where t is the worst element concerned; the tets made are in
   /// created(). False if none is better.
@@ -41,8 +50,10 @@ class Reconnector {
     best_.gain = kLeastGain;
     for (const auto& [i, j] : kTetEdges) try_edge(t, i, j);
     for (int i = 0; i < 4; ++i) try_face(t, i);
+    if (guide_ && goal_ == Goal::kWorst)
+      for (const auto& [i, j] : kTetEdges) try_boundary_edge(t, i, j);
     if (best_.old_tets.empty()) return false;
-    mesh_.replace(best_.old_tets, best_.new_tets, best_.shapes, created_);
+    mesh_.replace(best_.old_tets, best_.new_tets, best_.shapes, created_, best_.turn ? &*best_.turn : nullptr);
     return true;
   }
 
@@ -73,6 +84,11 @@ class Reconnector {
   void try_edge(TetIndex t, int i, int j) {
     const VertexIndex a = mesh_.tet(t)[i], b = mesh_.tet(t)[j];
     if (!mesh_.edge_ring_where_worst(t, i, j, kLongestRing, ring_)) return;
+    remove_edge(a, b);
+  }
+
+  /// Fills the place of the ring without the edge ab if that is better than the best so far; true if so.
+  bool remove_edge(VertexIndex a, VertexIndex b) {
     const int n = static_cast<int>(ring_.ring.size());
     float before = neutral();
     for (const TetIndex r : ring_.tets) before = combined(before, value_of(mesh_.shape(r)));
@@ -81,18 +97,88 @@ class Reconnector {
     batch_.size = 0;
     add_triangles(a, b, 0, 1, n);
     batch_.evaluate();
-    if (value_triangles(a, b, 0, 1, n) <= bar) return;
+    if (value_triangles(a, b, 0, 1, n) <= bar) return false;
     for (int i1 = 0; i1 < n; ++i1)
       for (int k = i1 + 1 + (i1 == 0); k < n; ++k) add_triangles(a, b, i1, k, n);
     batch_.evaluate();
     for (int i1 = 0; i1 < n; ++i1)
       for (int k = i1 + 1 + (i1 == 0); k < n; ++k) value_triangles(a, b, i1, k, n);
     const float after = triangulate(n);
-    if (after <= bar) return;
+    if (after <= bar) return false;
     best_.clear();
     best_.old_tets = ring_.tets;
     best_.gain = after - before;
     emit(a, b, 0, n - 1);
+    return true;
+  }
+
+  /// Removal of an edge of the boundary: its two triangles become those on the other diagonal. A tet that holds both by
+  /// itself goes without another in its place.
+  void try_boundary_edge(TetIndex t, int i, int j) {
+    const VertexIndex a = mesh_.tet(t)[i], b = mesh_.tet(t)[j];
+    if (!mesh_.on_boundary(a) || !mesh_.on_boundary(b) || !guide_->may_turn(a, b)) return;
+    mesh_.edge_ring(t, i, j, ring_);
+    if (ring_.closed || ring_.ring.size() > kLongestRing) return;
+    for (const TetIndex r : ring_.tets)
+      if (mesh_.worse(r, t)) return;
+    const auto turn = turn_of(a, b);
+    if (!turn) return;
+    if (ring_.tets.size() > 1) {
+      if (remove_edge(a, b)) best_.turn = turn;
+      return;
+    }
+    // Nothing in its place: as good as an element at the threshold of what is worked on.
+    const float gain = kWorthOfNothing - mesh_.shape(t).score;
+    if (gain <= best_.gain) return;
+    best_.clear();
+    best_.old_tets = ring_.tets;
+    best_.gain = gain;
+    best_.turn = turn;
+  }
+
+  /// The boundary after the removal of its edge ab; nullopt if the mesh would not stay valid, or the boundary true.
+  std::optional<EditMesh::BoundaryTurn> turn_of(VertexIndex a, VertexIndex b) {
+    const VertexIndex c = ring_.ring.front(), d = ring_.ring.back();
+    if (guide_->is_frozen(c) || guide_->is_frozen(d)) return std::nullopt;
+    EditMesh::BoundaryTurn turn{{boundary_behind(ring_.tets.front(), ring_.ring[1]),
+                                 boundary_behind(ring_.tets.back(), ring_.ring[ring_.ring.size() - 2])},
+                                {Triangle{c, d, a}, Triangle{d, c, b}}};
+    if (mesh_.boundary_patch(turn.faces[0]) != mesh_.boundary_patch(turn.faces[1])) return std::nullopt;
+    if (is_edge_beyond_ring(c, d)) return std::nullopt;
+    const Vec3 pa = mesh_.point(a), pb = mesh_.point(b), pc = mesh_.point(c), pd = mesh_.point(d);
+    const std::array<TriangleCorners, 2> before{{{pa, pb, pd}, {pb, pa, pc}}}, after{{{pc, pd, pa}, {pd, pc, pb}}};
+    for (const TriangleCorners& x : before)
+      for (const TriangleCorners& y : after)
+        if (!faces_alike(x, y)) return std::nullopt;
+    if (!guide_->keeps_truth(before, after)) return std::nullopt;
+    return turn;
+  }
+
+  HalfFace boundary_behind(TetIndex t, VertexIndex opposite) const {
+    return mesh_.across(4 * t + mesh_.corner_of(t, opposite));
+  }
+
+  /// Two boundary triangles are only turned where the surface is nearly flat.
+  static bool faces_alike(const TriangleCorners& x, const TriangleCorners& y) {
+    constexpr double kTurn = 0.7;  // cosine
+    const Vec3 n = double_area_normal(x[0], x[1], x[2]), m = double_area_normal(y[0], y[1], y[2]);
+    const double along = dot(n, m);
+    return along > 0 && along * along >= kTurn * kTurn * squared_length(n) * squared_length(m);
+  }
+
+  /// True if c and d are joined by an edge that would get a second fan of elements, or of boundary triangles: one that
+  /// is there already, or, where a single tet goes and leaves its edge cd behind, one that lies on the boundary.
+  bool is_edge_beyond_ring(VertexIndex c, VertexIndex d) {
+    mesh_.star(c, star_);
+    for (const HalfFace h : star_) {
+      const TetIndex t = h / 4;
+      const Tet& corners = mesh_.tet(t);
+      if (std::find(corners.begin(), corners.end(), d) == corners.end()) continue;
+      if (ring_.tets.size() > 1) return true;
+      for (int i = 0; i < 4; ++i)
+        if (corners[i] != c && corners[i] != d && is_boundary(mesh_.across(4 * t + i))) return true;
+    }
+    return false;
   }
 
   /// Adds both tets on each triangle (i, k, j) of the ring, j from k + 1 on.
@@ -169,7 +255,9 @@ class Reconnector {
   EditMesh& mesh_;
   Floor floor_;
   Goal goal_;
+  const BoundaryGuide* guide_;
   EdgeRing ring_;
+  std::vector<HalfFace> star_;
   Refill best_;
   ShapeBatch batch_;
   std::vector<TetIndex> created_;
@@ -180,12 +268,13 @@ class Reconnector {
 
 }  // namespace
 
-PassResult reconnect(EditMesh& mesh, float threshold, Goal goal, const RunContext& context) {
+PassResult reconnect(EditMesh& mesh, float threshold, Goal goal, const RunContext& context,
+                     const BoundaryGuide* guide) {
   PassResult result;
   std::vector<TetIndex> queue;
   for (TetIndex t = 0; t < mesh.slots(); ++t)
     if (mesh.alive(t) && mesh.shape(t).score < threshold) queue.push_back(t);
-  Reconnector reconnector(mesh, mesh.floor(), goal);
+  Reconnector reconnector(mesh, mesh.floor(), goal, guide);
   for (std::size_t k = 0; k < queue.size(); ++k) {
     if (k % 1024 == 0) context.check();
     const TetIndex t = queue[k];

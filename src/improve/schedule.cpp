@@ -1,10 +1,13 @@
 #include <octafront/error.h>
 
 #include "core/stage_timer.h"
+#include "geometry/self_intersection.h"
 #include "improve/explain.h"
 #include "improve/improve.h"
 #include "improve/passes.h"
 
+#include <algorithm>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -18,19 +21,21 @@ using namespace improve;
 /// Runs passes and notes what each one did.
 class Schedule {
  public:
-  Schedule(EditMesh& mesh, const RunContext& context, StageReport& report)
-      : mesh_(mesh), context_(context), report_(report), started_(process_cpu_seconds()) {}
+  Schedule(EditMesh& mesh, const BoundaryGuide* guide, const RunContext& context, StageReport& report)
+      : mesh_(mesh), guide_(guide), context_(context), report_(report), started_(process_cpu_seconds()) {}
 
   void laplacian(int sweeps, double relaxation, MoveRule rule) {
     note("laplacian moves", laplacian_sweeps(mesh_, sweeps, relaxation, rule, context_));
   }
   void smooth_mean(int sweeps) { note("moves for the mean", improve::smooth_mean(mesh_, sweeps, context_)); }
+  /// The boundary too.
+  void slide_mean() { note("moves and slides for the mean", improve::smooth_mean(mesh_, 1, context_, guide_)); }
   void mean_flips(float threshold) {
     note("reconnections for the mean", reconnect(mesh_, threshold, Goal::kMean, context_));
   }
-  void flips(float threshold) { note("reconnections", reconnect(mesh_, threshold, Goal::kWorst, context_)); }
+  void flips(float threshold) { note("reconnections", reconnect(mesh_, threshold, Goal::kWorst, context_, guide_)); }
   void insert(float threshold) { note("inserted vertices", insert_vertices(mesh_, threshold, context_)); }
-  void optimize(float threshold) { note("optimised vertices", optimize_vertices(mesh_, threshold, context_)); }
+  void optimize(float threshold) { note("optimised vertices", optimize_vertices(mesh_, threshold, context_, guide_)); }
 
   /// Says what stays poor and why.
   void explain() {
@@ -68,6 +73,7 @@ class Schedule {
   }
 
   EditMesh& mesh_;
+  const BoundaryGuide* guide_;
   const RunContext& context_;
   StageReport& report_;
   double started_;
@@ -92,7 +98,7 @@ void run_default(Schedule& run, const ImproveOptions& options) {
   run.laplacian(2, options.relaxation, MoveRule::kMeanRises);
   run.flips(kWanted);
   run.mean_flips(kGood);
-  run.smooth_mean(1);
+  run.slide_mean();
   run.flips(kWanted);
   run.smooth_mean(1);
   for (int round = 0; round < 2; ++round) {
@@ -111,7 +117,8 @@ void run_best(Schedule& run, const ImproveOptions& options) {
   run.flips(kWantedBest);
   for (int round = 0; round < 4; ++round) {
     run.mean_flips(kGoodBest);
-    run.smooth_mean(2);
+    run.slide_mean();
+    run.smooth_mean(1);
   }
   run.flips(kWantedBest);
   for (int round = 0; round < 5; ++round) {
@@ -145,17 +152,61 @@ void check_options(const ImproveOptions& options) {
     throw OptionError(fmt::format("the number of sweeps must not be negative: {}", options.sweeps));
 }
 
-}  // namespace
+/// How often a boundary that came to cross itself is tried again with the places frozen, before all of it is.
+constexpr int kMostRetries = 3;
 
-void improve_mesh(TetMesh& mesh, const SizeField&, const ImproveOptions& options, const RunContext& context,
-                  StageReport& report) {
-  check_options(options);
-  if (options.level == ImproveOptions::Level::kOff || mesh.tets.empty()) return;
+/// One run of the schedule; vertices in `frozen`, and those around them, stay on the boundary where they are.
+TetMesh improved(const TetMesh& mesh, const BoundaryInput* boundary, const std::vector<VertexIndex>& frozen,
+                 const ImproveOptions& options, const RunContext& context, StageReport& report) {
   EditMesh edit(TetMesh{mesh});
-  Schedule run(edit, context, report);
+  std::optional<BoundaryGuide> guide;
+  if (boundary) guide.emplace(edit, *boundary, frozen);
+  Schedule run(edit, guide ? &*guide : nullptr, context, report);
   run_schedule(run, options);
   run.explain();
-  mesh = edit.release();
+  return edit.release();
+}
+
+bool same_boundary(const TetMesh& a, const TetMesh& b) {
+  return a.boundary == b.boundary && std::all_of(a.boundary.begin(), a.boundary.end(), [&](const Triangle& t) {
+           return std::all_of(t.begin(), t.end(), [&](VertexIndex v) { return a.points[v] == b.points[v]; });
+         });
+}
+
+/// The corners of triangles of the boundary that cross, and of their neighbours. Since all elements are positive, the
+/// mesh is an embedding just if there are none.
+std::vector<VertexIndex> where_boundary_crosses(const TetMesh& mesh) {
+  std::vector<std::uint8_t> near(mesh.points.size(), 0);
+  for (const auto& pair : self_intersections(mesh.points, mesh.boundary))
+    for (const std::uint32_t t : pair)
+      for (const VertexIndex v : mesh.boundary[t]) near[v] = 1;
+  std::vector<VertexIndex> found;
+  for (const Triangle& t : mesh.boundary)
+    if (near[t[0]] || near[t[1]] || near[t[2]]) found.insert(found.end(), t.begin(), t.end());
+  return found;
+}
+
+}  // namespace
+
+bool improve_mesh(TetMesh& mesh, const BoundaryInput* boundary, const ImproveOptions& options,
+                  const RunContext& context, StageReport& report) {
+  check_options(options);
+  if (options.level == ImproveOptions::Level::kOff || mesh.tets.empty()) return false;
+  if (!options.move_boundary || options.level == ImproveOptions::Level::kPaper) boundary = nullptr;
+  std::vector<VertexIndex> frozen;
+  for (int retry = 0;; ++retry) {
+    StageReport attempt = report;
+    TetMesh better = improved(mesh, retry < kMostRetries ? boundary : nullptr, frozen, options, context, attempt);
+    const bool moved = !same_boundary(mesh, better);
+    const std::vector<VertexIndex> crossing = moved ? where_boundary_crosses(better) : std::vector<VertexIndex>{};
+    if (crossing.empty()) {
+      attempt.count("runs with places of the boundary frozen", retry);
+      report = std::move(attempt);
+      mesh = std::move(better);
+      return moved;
+    }
+    frozen.insert(frozen.end(), crossing.begin(), crossing.end());
+  }
 }
 
 }  // namespace octafront

@@ -17,12 +17,12 @@ bool neighbours_within(const EditMesh& mesh, std::span<const HalfFace> star, Ver
 
 }  // namespace
 
-VertexBlocks::VertexBlocks(const EditMesh& mesh, const StarTable& stars) {
+VertexBlocks::VertexBlocks(const EditMesh& mesh, const StarTable& stars, const BoundaryGuide* guide) {
   const auto n = static_cast<VertexIndex>(mesh.vertices());
   const VertexIndex size = std::max(kLeastBlock, n / kMostBlocks + 1);
   std::vector<VertexIndex> waiting;
   for (VertexIndex v = 0; v < n; ++v)
-    if (!mesh.on_boundary(v) && mesh.tet_of(v) != kNone) waiting.push_back(v);
+    if (mesh.tet_of(v) != kNone && (!mesh.on_boundary(v) || (guide && guide->may_slide(v)))) waiting.push_back(v);
   for (const VertexIndex shift : {VertexIndex{0}, size / 2}) {
     std::vector<std::vector<VertexIndex>> blocks((n + shift) / size + 1);
     std::vector<VertexIndex> left;

@@ -12,13 +12,14 @@
 
 namespace octafront::improve {
 
-/// The inner vertices in an order of blocks in which they may be moved in parallel, the same for any number of threads.
-/// Blocks are stretches of the numbering, which follows a space-filling curve. A vertex whose neighbours all lie in its
-/// own block shares no element with one of another block. What is left over by the first division is divided anew with
-/// the blocks shifted by half, and what is left by that is one block at the end.
+/// The inner vertices, and those of the boundary that may slide if a guide is given, in an order of blocks in which
+/// they may be moved in parallel, the same for any number of threads. Blocks are stretches of the numbering, which
+/// follows a space-filling curve. A vertex whose neighbours all lie in its own block shares no element with one of
+/// another block. What is left over by the first division is divided anew with the blocks shifted by half, and what is
+/// left by that is one block at the end.
 class VertexBlocks {
  public:
-  VertexBlocks(const EditMesh& mesh, const StarTable& stars);
+  VertexBlocks(const EditMesh& mesh, const StarTable& stars, const BoundaryGuide* guide = nullptr);
 
   /// Calls `work(vertices)` for each block, which returns what it did; blocks of one stage run in parallel.
   template <typename Work>

@@ -3,10 +3,11 @@
 #include <octafront/validity.h>
 
 #include "classic/fill_classic.h"
-#include "core/stage_timer.h"
 #include "core/thread_limit.h"
 #include "improve/improve.h"
+#include "pipeline/follow_boundary.h"
 #include "pipeline/pipeline.h"
+#include "pipeline/run_stage.h"
 #include "recovery/recover.h"
 #include "sizing/make_size_field.h"
 #include "stuffing/stuff.h"
@@ -23,17 +24,6 @@
 namespace octafront {
 
 namespace {
-
-// Runs one stage: times it, gives it a place in the report, tells the caller about it.
-template <class F>
-auto run_stage(Report& report, const RunContext& context, const char* name, F&& stage) {
-  context.check();
-  context.report(name, -1);
-  StageReport& entry = report.stages.emplace_back();
-  entry.name = name;
-  const StageTimer timer(entry);
-  return stage(entry);
-}
 
 struct Prepared {
   RepairedSurface repaired;
@@ -204,6 +194,19 @@ TetMesh stuffing_stage(const Prepared& p, const SizeField& sizes, const RunConte
   return mesh;
 }
 
+void improve_stage(const Prepared& p, TetMesh& mesh, Remeshed& boundary, const Options& options,
+                   const RunContext& context, Report& report) {
+  run_stage(report, context, "improve", [&](StageReport& stage) {
+    const improve::BoundaryInput input{p.repaired.surface, p.features, boundary.features};
+    const bool moves = !options.surface.keep && options.method == Method::kOctreeAft;
+    if (!improve_mesh(mesh, moves ? &input : nullptr, options.improve, context, stage)) return;
+    renew_sources(mesh, boundary.surface, p.repaired.surface, p.repaired.face_of_triangle);
+    SurfaceMesh& surface = boundary.surface;  // what was filled follows what became of it; its vertices come first
+    std::copy_n(mesh.points.begin(), surface.points.size(), surface.points.begin());
+    surface.triangles = mesh.boundary;
+  });
+}
+
 void check_result(const TetMesh& mesh, const SurfaceMesh& boundary, Method method, const RunContext& context,
                   Report& report) {
   run_stage(report, context, "check", [&](StageReport&) {
@@ -273,6 +276,8 @@ void finish_report(const TetMesh& mesh, const SizeField& sizes, Report& report) 
   report.hash = mesh_hash(mesh);
 }
 
+}  // namespace
+
 void close_report(Report& report) {
   for (const StageReport& stage : report.stages) {
     report.wall_seconds += stage.wall_seconds;
@@ -280,8 +285,6 @@ void close_report(Report& report) {
   }
   report.peak_memory_bytes = peak_memory_bytes();
 }
-
-}  // namespace
 
 Result generate(const SurfaceMesh& surface, const Options& given, const RunContext& context) {
   const ThreadLimit limit(context.threads);
@@ -292,8 +295,7 @@ Result generate(const SurfaceMesh& surface, const Options& given, const RunConte
   SizeField sizes = size_stage(prepared, options, context, report);
   Remeshed boundary = keep_surface(prepared, sizes);
   TetMesh mesh = mesh_to_target(prepared, sizes, options, context, report, boundary);
-  run_stage(report, context, "improve",
-            [&](StageReport& stage) { improve_mesh(mesh, boundary.sizes, options.improve, context, stage); });
+  improve_stage(prepared, mesh, boundary, options, context, report);
   check_result(mesh, boundary.surface, options.method, context, report);
   finish_report(mesh, boundary.sizes, report);
   close_report(report);

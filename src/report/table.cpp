@@ -64,8 +64,9 @@ std::string to_table(const Report& report) {
                        report.bodies == 1 ? "body" : "bodies");
   else if (report.boundary_faces > 0)
     out += fmt::format("{} triangles, {} vertices\n", grouped(report.boundary_faces), grouped(report.points));
-  out +=
-      fmt::format("{} tetrahedra expected from the sizes\n", grouped(static_cast<std::uint64_t>(report.expected_tets)));
+  if (report.expected_tets > 0)
+    out += fmt::format("{} tetrahedra expected from the sizes\n",
+                       grouped(static_cast<std::uint64_t>(report.expected_tets)));
   if (report.boundary_faces > 0)
     out += fmt::format("volume {:.6g} (input {:.6g}, {:+.3f} %)\n", report.volume, report.input_volume,
                        100 * (report.volume / report.input_volume - 1));

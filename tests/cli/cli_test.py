@@ -60,6 +60,23 @@ class CommandLine(unittest.TestCase):
         self.run_cli("mesh", self.part, "-o", b, "--size", 0.15, "--threads", 3)
         self.assertEqual(a.read_bytes(), b.read_bytes())
 
+    def test_improves_meshes_of_every_format(self):
+        for ending in ("vtu", "msh", "mesh"):
+            start, out, report = self.dir / f"start.{ending}", self.dir / "better.vtu", self.dir / "report.json"
+            self.run_cli("mesh", self.part, "-o", start, "--size", 0.2, "--improve", "none")
+            done = self.run_cli("improve", start, "-o", out, "--surface", self.part, "--json", report)
+            self.assertIn("improved:", done.stdout)
+            self.assertGreater(json.loads(report.read_text())["quality"]["beta_mean"], 0.7)
+            self.assertIn("a valid mesh", self.run_cli("check", out).stdout)
+
+    def test_a_broken_mesh_is_not_improved(self):
+        broken = self.dir / "broken.mesh"
+        broken.write_text("MeshVersionFormatted 2\nDimension 3\nVertices 5\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\n"
+                          "0.2 0.2 0.2 0\nTetrahedra 2\n1 2 3 4 1\n1 2 3 5 1\nEnd\n")
+        done = self.run_cli("improve", broken, "-o", self.dir / "out.vtu", status=3)
+        self.assertIn("not a valid mesh", done.stderr)
+        self.assertEqual(self.files(), ["broken.mesh", "part.off"])
+
     def test_keep_surface_keeps_it(self):
         report = self.dir / "report.json"
         self.run_cli("mesh", self.part, "-o", self.dir / "kept.vtu", "--keep-surface", "--json", report)

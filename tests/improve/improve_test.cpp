@@ -19,7 +19,7 @@ TetMesh improved(TetMesh mesh, Level level, int threads = 0) {
   StageReport report;
   RunContext context;
   context.threads = threads;
-  improve_mesh(mesh, SizeField::uniform(0.1), options, context, report);
+  improve_mesh(mesh, nullptr, options, context, report);
   return mesh;
 }
 
@@ -86,7 +86,7 @@ TEST(Improve, RefusesOptionsOutOfRange) {
   options.relaxation = 1.5;
   TetMesh mesh = kuhn_cube(2);
   StageReport report;
-  EXPECT_THROW(improve_mesh(mesh, SizeField::uniform(1), options, {}, report), OptionError);
+  EXPECT_THROW(improve_mesh(mesh, nullptr, options, {}, report), OptionError);
 }
 
 }  // namespace

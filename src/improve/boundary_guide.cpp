@@ -1,0 +1,173 @@
+#include "improve/boundary_guide.h"
+
+#include "geometry/measures.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace octafront::improve {
+namespace {
+
+/// A boundary triangle this near to the input, in edge lengths, is as true as the size asks for: the chord of a circle
+/// of 24 elements is .033 of its length away from it.
+constexpr double kNear = 0.03;
+/// Cosine of the angle between a boundary triangle and the input beneath it that is always allowed.
+constexpr double kFacesAlike = 0.8;
+/// A curve vertex farther from the input's curves than this, in edge lengths, belongs to none of them. Those of the
+/// surface front lie on them to rounding; files round to seven digits.
+constexpr double kOnCurve = 1e-3;
+/// How far from the tangent plane the surface may lie, as a part of the step along it.
+constexpr double kLeaves = 0.5;
+
+Vec3 area_normal(const TriangleCorners& t) {
+  return double_area_normal(t[0], t[1], t[2]);
+}
+
+Edge sorted_edge(VertexIndex a, VertexIndex b) {
+  return a < b ? Edge{a, b} : Edge{b, a};
+}
+
+}  // namespace
+
+BoundaryGuide::BoundaryGuide(const EditMesh& mesh, const BoundaryInput& input, const std::vector<VertexIndex>& frozen)
+    : kind_(mesh.vertices(), Kind::kInner),
+      frozen_(mesh.vertices(), 0),
+      input_(input),
+      tree_(input.surface),
+      curves_(input.surface, input.features) {
+  const std::vector<VertexIndex> here = mesh.numbers_here();
+  for (VertexIndex v = 0; v < kind_.size(); ++v)
+    if (mesh.on_boundary(v)) kind_[v] = Kind::kSurface;
+  std::vector<std::uint8_t> valence(kind_.size(), 0);
+  for (const auto& [a, b] : input.of_mesh.edges) {
+    feature_edges_.push_back(sorted_edge(here[a], here[b]));
+    for (const VertexIndex v : {here[a], here[b]})
+      if (valence[v] < 3) ++valence[v];
+  }
+  std::sort(feature_edges_.begin(), feature_edges_.end());
+  for (VertexIndex v = 0; v < kind_.size(); ++v)
+    if (valence[v] != 0) kind_[v] = valence[v] == 2 ? Kind::kCurve : Kind::kFixed;
+  for (const VertexIndex v : input.of_mesh.corners) kind_[here[v]] = Kind::kFixed;
+  for (const VertexIndex v : frozen) frozen_[here[v]] = 1;
+  freeze_where_regions_meet(mesh);
+  for (VertexIndex v = 0; v < kind_.size(); ++v)
+    if (frozen_[v]) kind_[v] = Kind::kFixed;
+}
+
+void BoundaryGuide::freeze_where_regions_meet(const EditMesh& mesh) {
+  for (HalfFace h = 0; h < 4 * mesh.slots(); ++h)
+    if (mesh.across(h) == (kBoundaryBit | kBetweenRegions))
+      for (const int corner : kTetFaces[h % 4]) frozen_[mesh.tet(h / 4)[corner]] = 1;
+}
+
+bool BoundaryGuide::may_turn(VertexIndex a, VertexIndex b) const {
+  if (is_frozen(a) || is_frozen(b)) return false;
+  return !std::binary_search(feature_edges_.begin(), feature_edges_.end(), sorted_edge(a, b));
+}
+
+bool BoundaryGuide::is_true(const TriangleCorners& t, double limit) const {
+  const auto below = tree_.nearest(centroid(t[0], t[1], t[2]), limit * limit);
+  if (below.triangle == kNone) return false;
+  const Vec3 n = area_normal(t), m = area_normal(tree_.corners(below.triangle));
+  const double along = dot(n, m);
+  return along > 0 && along * along >= kFacesAlike * kFacesAlike * squared_length(n) * squared_length(m);
+}
+
+/// How a triangle lies to the input.
+struct BoundaryGuide::Truth {
+  double squared_distance = 0;  ///< of its centroid: on a smooth surface the sag there is the largest
+  double cosine = 1;            ///< of its angle with the input beneath its centroid
+
+  void add(const Truth& t) {
+    squared_distance = std::max(squared_distance, t.squared_distance);
+    cosine = std::min(cosine, t.cosine);
+  }
+};
+
+BoundaryGuide::Truth BoundaryGuide::truth_of(const TriangleCorners& t) const {
+  const auto below = tree_.nearest(centroid(t[0], t[1], t[2]));
+  const Vec3 n = normalized(area_normal(t)), m = normalized(area_normal(tree_.corners(below.triangle)));
+  return {below.squared_distance, dot(n, m)};
+}
+
+bool BoundaryGuide::keeps_truth(std::span<const TriangleCorners> before, std::span<const TriangleCorners> after) const {
+  double edge = 0;
+  for (const TriangleCorners& t : after) edge += distance(t[0], t[1]) / static_cast<double>(after.size());
+  const double near = kNear * edge;
+  if (std::all_of(after.begin(), after.end(), [&](const TriangleCorners& t) { return is_true(t, near); })) return true;
+  Truth had, has;
+  for (const TriangleCorners& t : before) had.add(truth_of(t));
+  if (had.squared_distance <= near * near && had.cosine >= kFacesAlike) return false;  // it was true and would not be
+  for (const TriangleCorners& t : after) has.add(truth_of(t));
+  return has.squared_distance <= std::max(had.squared_distance, near * near) &&
+         has.cosine >= std::min(had.cosine, kFacesAlike);
+}
+
+bool SlidingVertex::load(VertexIndex v, std::span<const HalfFace> star) {
+  kind_ = guide_.kind(v);
+  at_ = mesh_.point(v);
+  triangles_.clear();
+  normal_ = {};
+  axes_count_ = 0;
+  double edge = 0;
+  bool one_patch = true;
+  for (const HalfFace h : star) {
+    const TetIndex t = h / 4;
+    const int corner = static_cast<int>(h % 4);
+    for (int i = 0; i < 4; ++i) {
+      const HalfFace across = mesh_.across(4 * t + i);
+      if (i == corner || !is_boundary(across)) continue;
+      const auto& f = kTetFaces[i];
+      const int at = f[0] == corner ? 0 : f[1] == corner ? 1 : 2;
+      const Tet& c = mesh_.tet(t);
+      triangles_.push_back({at_, mesh_.point(c[f[(at + 1) % 3]]), mesh_.point(c[f[(at + 2) % 3]])});
+      one_patch &= triangles_.size() == 1 || mesh_.boundary_patch(across) == patch_;
+      patch_ = mesh_.boundary_patch(across);
+      normal_ += area_normal(triangles_.back());
+      edge += distance(at_, triangles_.back()[1]);
+    }
+  }
+  if (triangles_.empty()) return false;
+  edge /= static_cast<double>(triangles_.size());
+  if (kind_ == BoundaryGuide::Kind::kCurve) return load_curve(edge);
+  normal_ = normalized(normal_);
+  if (kind_ != BoundaryGuide::Kind::kSurface || !one_patch || squared_length(normal_) == 0) return false;
+  const Vec3 aside = std::abs(normal_.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+  axes_[0] = normalized(cross(normal_, aside));
+  axes_[1] = cross(normal_, axes_[0]);
+  axes_count_ = 2;
+  return true;
+}
+
+bool SlidingVertex::load_curve(double edge) {
+  const auto place = guide_.curves().nearest(at_, kOnCurve * edge);
+  if (!place) return false;
+  on_curve_ = *place;
+  axes_[0] = guide_.curves().tangent(on_curve_);
+  axes_count_ = 1;
+  return true;
+}
+
+bool SlidingVertex::snap(Vec3& place) const {
+  if (kind_ == BoundaryGuide::Kind::kCurve) {
+    const auto there = guide_.curves().walk(on_curve_, dot(place - at_, axes_[0]));
+    if (there) place = there->at;
+    return there.has_value();
+  }
+  const double squared_step = squared_distance(place, at_);
+  const auto found = guide_.tree().nearest(place, kLeaves * kLeaves * squared_step);
+  if (found.triangle == kNone || guide_.surface().patch_of(found.triangle) != patch_) return false;
+  if (!(dot(area_normal(guide_.tree().corners(found.triangle)), normal_) > 0)) return false;
+  place = found.point;
+  return true;
+}
+
+bool SlidingVertex::keeps_truth(Vec3 place) const {
+  moved_ = triangles_;
+  for (TriangleCorners& t : moved_) t[0] = place;
+  for (std::size_t k = 0; k < moved_.size(); ++k)
+    if (!(dot(area_normal(moved_[k]), area_normal(triangles_[k])) > 0)) return false;
+  return guide_.keeps_truth(triangles_, moved_);
+}
+
+}  // namespace octafront::improve

@@ -1,0 +1,89 @@
+#pragma once
+
+// Where the vertices and edges of the boundary may go: vertices inside patches along the input surface, those of
+// feature curves along their curve, corners nowhere. Every change is judged by how true to the input it leaves the
+// boundary.
+
+#include "improve/edit_mesh.h"
+#include "improve/feature_curves.h"
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace octafront::improve {
+
+/// The surface that the boundary of a mesh stands for; the boundary is a 2-manifold. Everything must outlive the guide.
+struct BoundaryInput {
+  const SurfaceMesh& surface;  ///< clean
+  const Features& features;    ///< of it
+  const Features& of_mesh;     ///< of the boundary of the mesh, in the mesh's numbering
+};
+
+class BoundaryGuide {
+ public:
+  /// Vertices listed in `frozen` (numbers of the mesh that was taken) stay where they are.
+  BoundaryGuide(const EditMesh& mesh, const BoundaryInput& input, const std::vector<VertexIndex>& frozen);
+
+  enum class Kind : std::uint8_t { kInner, kSurface, kCurve, kFixed };
+  Kind kind(VertexIndex v) const { return v < kind_.size() ? kind_[v] : Kind::kInner; }
+  /// Neither inner nor fixed.
+  bool may_slide(VertexIndex v) const { return kind(v) == Kind::kSurface || kind(v) == Kind::kCurve; }
+  /// True if neither the vertex nor an edge around it may change.
+  bool is_frozen(VertexIndex v) const { return v < frozen_.size() && frozen_[v] != 0; }
+  /// True if the boundary edge may turn as far as features and patches go.
+  bool may_turn(VertexIndex a, VertexIndex b) const;
+
+  const SurfaceMesh& surface() const { return input_.surface; }
+  const TriangleTree& tree() const { return tree_; }
+  const FeatureCurves& curves() const { return curves_; }
+
+  /// True if the triangles `after` may replace `before`, one for one, as a part of the boundary: each faces as the
+  /// input does, and its centroid lies near the input; or no worse in either than the worst of `before`.
+  bool keeps_truth(std::span<const TriangleCorners> before, std::span<const TriangleCorners> after) const;
+
+ private:
+  void freeze_where_regions_meet(const EditMesh& mesh);
+  /// True by the fixed limits alone.
+  bool is_true(const TriangleCorners& t, double limit) const;
+  struct Truth;
+  Truth truth_of(const TriangleCorners& t) const;
+
+  std::vector<Kind> kind_;
+  std::vector<std::uint8_t> frozen_;
+  std::vector<Edge> feature_edges_;  ///< in the numbering of the EditMesh, sorted
+  BoundaryInput input_;
+  TriangleTree tree_;
+  FeatureCurves curves_;
+};
+
+/// The boundary triangles around one vertex, and the vertex's freedom to move. One for each worker.
+class SlidingVertex {
+ public:
+  SlidingVertex(const EditMesh& mesh, const BoundaryGuide& guide) : mesh_(mesh), guide_(guide) {}
+
+  /// False if the vertex cannot slide after all. `star` as from EditMesh::star().
+  bool load(VertexIndex v, std::span<const HalfFace> star);
+  /// Unit vectors along which it may go: two in the tangent plane or one along its curve.
+  std::span<const Vec3> axes() const { return {axes_.data(), axes_count_}; }
+  /// Puts a place near the vertex back on the surface or curve; false if it would leave its patch or its sheet.
+  bool snap(Vec3& place) const;
+  /// True if the boundary stays true with the vertex at a place that snap() gave.
+  bool keeps_truth(Vec3 place) const;
+
+ private:
+  bool load_curve(double edge);
+
+  const EditMesh& mesh_;
+  const BoundaryGuide& guide_;
+  BoundaryGuide::Kind kind_ = BoundaryGuide::Kind::kFixed;
+  Vec3 at_, normal_;
+  std::uint32_t patch_ = 0;
+  std::array<Vec3, 2> axes_;
+  std::size_t axes_count_ = 0;
+  FeatureCurves::Place on_curve_;
+  std::vector<TriangleCorners> triangles_;  ///< corner 0 is the vertex
+  mutable std::vector<TriangleCorners> moved_;
+};
+
+}  // namespace octafront::improve

@@ -1,0 +1,199 @@
+// The boundary moves on the surface it stands for, and on nothing else.
+
+#include <octafront/quality.h>
+#include <octafront/validity.h>
+
+#include "improve/improve.h"
+#include "improve/passes.h"
+#include "improve/start_meshes.h"
+#include "surface/features.h"
+
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+namespace octafront::improve {
+namespace {
+
+using namespace octafront::testing;
+
+SurfaceMesh boundary_of(const TetMesh& mesh) {
+  return {mesh.points, mesh.boundary, mesh.patch, {}};
+}
+
+int sides_at(Vec3 p) {
+  int sides = 0;
+  for (int axis = 0; axis < 3; ++axis) sides += p[axis] == 0 || p[axis] == 1;
+  return sides;
+}
+
+/// A cube whose boundary vertices too have been moved, each along the sides of the cube on which it lies.
+TetMesh shaken_cube(int n, double amount, std::uint32_t seed) {
+  TetMesh mesh = perturbed(kuhn_cube(n), amount, seed);
+  std::mt19937 random(seed);
+  for (Vec3& p : mesh.points) {
+    if (sides_at(p) == 0) continue;
+    const Vec3 was = p;
+    for (int axis = 0; axis < 3; ++axis)
+      if (was[axis] != 0 && was[axis] != 1) p[axis] += (random() / 4294967296.0 * 2 - 1) * amount / n;
+    if (first_defect(mesh)) p = was;
+  }
+  return mesh;
+}
+
+struct Cube {
+  TetMesh first = kuhn_cube(1);
+  SurfaceMesh surface = boundary_of(first);
+  Features features = detect_features(surface, 40);
+};
+
+TEST(Boundary, SlidesOnTheSidesAndEdgesOfACube) {
+  const Cube cube;
+  const TetMesh start = shaken_cube(5, 0.3, 2);
+  ASSERT_EQ(first_defect(start), std::nullopt);
+  const Features of_mesh = detect_features(boundary_of(start), 40);
+  const BoundaryInput input{cube.surface, cube.features, of_mesh};
+  ImproveOptions options;
+  StageReport report;
+  TetMesh slid = start, fixed = start;
+  EXPECT_TRUE(improve_mesh(slid, &input, options, {}, report));
+  EXPECT_FALSE(improve_mesh(fixed, nullptr, options, {}, report));
+  EXPECT_EQ(first_defect(slid), std::nullopt);
+  EXPECT_GT(summarize_quality(slid).beta_mean, summarize_quality(fixed).beta_mean);
+  EXPECT_GE(summarize_quality(slid).dihedral_min, summarize_quality(start).dihedral_min);
+  ASSERT_EQ(slid.boundary.size(), start.boundary.size());
+  // The sum of the areas of a patch is that of its side just if it lies on it and covers it once.
+  std::array<double, 6> area{};
+  for (std::size_t t = 0; t < slid.boundary.size(); ++t) {
+    const auto& [a, b, c] = slid.boundary[t];
+    area[slid.patch[t]] += length(cross(slid.points[b] - slid.points[a], slid.points[c] - slid.points[a])) / 2;
+    const int axis = static_cast<int>(slid.patch[t] / 2);
+    for (const VertexIndex v : slid.boundary[t]) EXPECT_NEAR(slid.points[v][axis], slid.patch[t] % 2, 1e-14);
+  }
+  for (const double a : area) EXPECT_NEAR(a, 1, 1e-12);
+  std::size_t moved = 0, corners = 0;
+  for (const Triangle& t : start.boundary)
+    for (const VertexIndex v : t) {
+      moved += start.points[v] != slid.points[v];
+      if (sides_at(start.points[v]) < 3) continue;
+      EXPECT_EQ(start.points[v], slid.points[v]);
+      ++corners;
+    }
+  EXPECT_GT(moved, 0u);
+  EXPECT_GE(corners, 8u);
+}
+
+TEST(Boundary, StaysWhenTold) {
+  const Cube cube;
+  const TetMesh start = shaken_cube(4, 0.3, 3);
+  const Features of_mesh = detect_features(boundary_of(start), 40);
+  const BoundaryInput input{cube.surface, cube.features, of_mesh};
+  ImproveOptions options;
+  options.move_boundary = false;
+  StageReport report;
+  TetMesh mesh = start;
+  EXPECT_FALSE(improve_mesh(mesh, &input, options, {}, report));
+  for (const Triangle& t : start.boundary)
+    for (const VertexIndex v : t) EXPECT_EQ(mesh.points[v], start.points[v]);
+}
+
+TEST(Boundary, IsTheSameOnAnyNumberOfThreads) {
+  const Cube cube;
+  const TetMesh start = shaken_cube(6, 0.25, 4);
+  const Features of_mesh = detect_features(boundary_of(start), 40);
+  const BoundaryInput input{cube.surface, cube.features, of_mesh};
+  TetMesh once;
+  for (const int threads : {1, 2, 3, 8}) {
+    RunContext context;
+    context.threads = threads;
+    TetMesh mesh = start;
+    StageReport report;
+    improve_mesh(mesh, &input, {}, context, report);
+    if (threads == 1) once = mesh;
+    EXPECT_EQ(mesh, once) << threads;
+  }
+}
+
+/// Two good tets on a square, and a flat one below with the other diagonal of the square.
+TetMesh with_sliver_below(double depth) {
+  TetMesh mesh;
+  mesh.points = {{0, 0, 0}, {1, 0, -depth}, {1, 1, 0}, {0, 1, -depth}, {0.5, 0.5, 0.8}};
+  mesh.tets = {{0, 1, 2, 4}, {0, 2, 3, 4}, {0, 1, 3, 2}};
+  return with_boundary(std::move(mesh));
+}
+
+TEST(Boundary, ASliverOnItGoesWithoutAnotherInItsPlace) {
+  const TetMesh start = with_sliver_below(0.02);
+  ASSERT_EQ(first_defect(start), std::nullopt);
+  const SurfaceMesh surface = boundary_of(start);
+  const Features features = detect_features(surface, 40);
+  const BoundaryInput input{surface, features, features};
+  EditMesh edit{TetMesh{start}};
+  const BoundaryGuide guide(edit, input, {});
+  EXPECT_EQ(reconnect(edit, 0.6f, Goal::kWorst, {}, &guide).done, 1u);
+  const TetMesh mesh = edit.release();
+  EXPECT_EQ(first_defect(mesh), std::nullopt);
+  EXPECT_EQ(mesh.tets.size(), 2u);
+}
+
+TEST(Boundary, KeepsARidgeThatIsNoFeature) {
+  const TetMesh start = with_sliver_below(0.3);
+  const SurfaceMesh surface = boundary_of(start);
+  const Features features = detect_features(surface, 150);
+  const BoundaryInput input{surface, features, features};
+  EditMesh edit{TetMesh{start}};
+  const BoundaryGuide guide(edit, input, {});
+  reconnect(edit, 1.0f, Goal::kWorst, {}, &guide);
+  const TetMesh mesh = edit.release();
+  EXPECT_EQ(mesh.boundary, start.boundary);  // elements inside may well change
+  EXPECT_EQ(first_defect(mesh), std::nullopt);
+}
+
+TEST(Boundary, FacesBetweenRegionsAreKept) {
+  TetMesh start = perturbed(kuhn_cube(4), 0.6, 5);
+  std::array<double, 2> before{}, after{};
+  const auto add = [](const TetMesh& mesh, std::array<double, 2>& volume) {
+    for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+      const auto& [a, b, c, d] = mesh.tets[t];
+      const Vec3 p = mesh.points[a];
+      volume[mesh.region[t]] += dot(cross(mesh.points[b] - p, mesh.points[c] - p), mesh.points[d] - p) / 6;
+    }
+  };
+  for (std::size_t t = 0; t < start.tets.size(); ++t) start.region.push_back(t % 7 < 3);
+  add(start, before);
+  ImproveOptions options;
+  options.level = ImproveOptions::Level::kBest;
+  StageReport report;
+  TetMesh mesh = start;
+  improve_mesh(mesh, nullptr, options, {}, report);
+  EXPECT_EQ(first_defect(mesh), std::nullopt);
+  add(mesh, after);
+  for (int r = 0; r < 2; ++r) EXPECT_NEAR(after[r], before[r], 1e-12);
+}
+
+TEST(FeatureCurves, AreWalkedToTheirEndsAndNoFarther) {
+  const Cube cube;
+  const FeatureCurves curves(cube.surface, cube.features);
+  const auto start = curves.nearest({0.3, 1e-9, 0}, 1e-6);
+  ASSERT_TRUE(start);
+  EXPECT_EQ(start->at, (Vec3{0.3, 0, 0}));
+  const double sign = curves.tangent(*start).x;
+  EXPECT_NEAR(curves.walk(*start, 0.5 * sign)->at.x, 0.8, 1e-15);
+  EXPECT_NEAR(curves.walk(*start, -0.2 * sign)->at.x, 0.1, 1e-15);
+  EXPECT_FALSE(curves.walk(*start, 0.8 * sign));
+  EXPECT_FALSE(curves.nearest({0.5, 0.5, 0.5}, 0.1));
+}
+
+TEST(FeatureCurves, AreWalkedAroundBends) {
+  SurfaceMesh surface;  // only its edges matter: a bent line of two segments
+  surface.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}};
+  const Features features{{{0, 1}, {1, 2}}, {0, 2}};
+  const FeatureCurves curves(surface, features);
+  const auto start = curves.nearest({0.5, 0, 0}, 0.1);
+  ASSERT_TRUE(start);
+  EXPECT_EQ(curves.walk(*start, 0.75)->at, (Vec3{1, 0.25, 0}));
+}
+
+}  // namespace
+}  // namespace octafront::improve
