@@ -24,17 +24,20 @@ struct RecoveryCounts {
 ///
 /// It ends: a Steiner point is put strictly inside a crossed tet (or exactly into a crossing), which cuts the segment
 /// into parts that together cross nothing more than it did; a part that crosses one face only, between two tets that
-/// have its ends as apexes, is made by one flip. See docs/recovery.md.
+/// have its ends as apexes, is made by one flip. Other seeds make other choices, which end in other Steiner points. See
+/// docs/recovery.md.
 class BoundaryRecovery {
  public:
   BoundaryRecovery(ExactPoints& points, TetComplex& mesh, SubdividedSurface& surface, VertexIndex frame,
-                   const RunContext& context)
+                   std::uint32_t seed, const RunContext& context)
       : points_(points),
         mesh_(mesh),
         surface_(surface),
         flipper_(points, mesh, surface.edges()),
         frame_(frame),
-        context_(context) {}
+        context_(context),
+        random_(2463534242u + seed),
+        longest_first_(seed % 2 == 1) {}
 
   /// Throws MeshingError, with the place, if the surface turns out to intersect itself.
   void run();
@@ -101,7 +104,8 @@ class BoundaryRecovery {
   std::vector<Carrier> carrier_;  ///< of vertex frame_ + kFrameVertices + i
   std::vector<TetIndex> tets_;
   std::vector<VertexIndex> link_;
-  std::uint32_t random_ = 2463534242u;
+  std::uint32_t random_;
+  bool longest_first_;
   bool planes_known_ = false;
   bool strict_ = false;  ///< only flips that make a wanted edge at once
 };

@@ -48,8 +48,10 @@ std::vector<Edge> BoundaryRecovery::missing_edges() {
     }
     if (seen_from[e[1]] != from) missing.push_back(e);
   }
-  std::ranges::stable_sort(missing, {},
-                           [&](const Edge& e) { return squared_distance(points_.at(e[0]), points_.at(e[1])); });
+  std::ranges::stable_sort(missing, {}, [&](const Edge& e) {
+    const double length = squared_distance(points_.at(e[0]), points_.at(e[1]));
+    return longest_first_ ? -length : length;
+  });
   return missing;
 }
 

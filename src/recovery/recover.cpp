@@ -9,6 +9,7 @@
 #include "recovery/steiner_lift.h"
 
 #include <algorithm>
+#include <optional>
 #include <ranges>
 #include <stdexcept>
 
@@ -126,26 +127,35 @@ void count(StageReport& report, const RecoveryCounts& c, const LiftCounts& l) {
   report.count("points deferred", static_cast<double>(l.deferred));
 }
 
-}  // namespace
+[[noreturn]] void throw_no_place(const ExactPoints& points, const std::vector<VertexIndex>& open) {
+  const Vec3 p = points.at(open.front());
+  throw MeshingError(fmt::format(
+      "no place was found inside for {} points that the surface needs, the first near ({}, {}, {}): the gap "
+      "there may be too thin for double precision",
+      open.size(), p.x, p.y, p.z));
+}
 
-namespace {
+// Steiner points that have no place inside may not be needed after other choices. The last attempt throws.
+constexpr std::uint32_t kAttempts = 6;
 
-TetMesh recover(const SurfaceMesh& surface, const RunContext& context, StageReport& report) {
-  const StageTimer timer(report);
-  report.name = "recover";
-  if (surface.triangles.empty()) return {};
+std::optional<TetMesh> recover(const SurfaceMesh& surface, std::uint32_t attempt, const RunContext& context,
+                               StageReport& report) {
   auto [points, used] = read_input(surface);
   TetComplex mesh;
   std::vector<VertexIndex> same_as;
   const VertexIndex frame = delaunay(points, used, mesh, same_as, context);
   const std::vector<Triangle> triangles = merged(surface.triangles, same_as);
   SubdividedSurface subdivided(triangles);
-  BoundaryRecovery recovery(points, mesh, subdivided, frame, context);
+  BoundaryRecovery recovery(points, mesh, subdivided, frame, attempt, context);
   recovery.run();
   carve(points, subdivided, mesh);
-  SteinerLift lift(points, mesh, triangles, frame + kFrameVertices, frame, context);
-  lift.run();
+  SteinerLift lift(points, mesh, triangles, frame + kFrameVertices, frame, attempt, context);
+  if (const std::vector<VertexIndex> open = lift.run(); !open.empty()) {
+    if (attempt + 1 == kAttempts) throw_no_place(points, open);
+    return std::nullopt;
+  }
   count(report, recovery.counts(), lift.counts());
+  report.count("attempts", attempt + 1);
   if (!std::ranges::equal(same_as, std::views::iota(VertexIndex{0}, static_cast<VertexIndex>(same_as.size())))) {
     restore_coinciding(surface, same_as, mesh);
   }
@@ -155,8 +165,13 @@ TetMesh recover(const SurfaceMesh& surface, const RunContext& context, StageRepo
 }  // namespace
 
 TetMesh recover_volume(const SurfaceMesh& surface, const RunContext& context, StageReport& report) {
+  const StageTimer timer(report);
+  report.name = "recover";
+  if (surface.triangles.empty()) return {};
   try {
-    return recover(surface, context, report);
+    for (std::uint32_t attempt = 0;; ++attempt) {
+      if (std::optional<TetMesh> mesh = recover(surface, attempt, context, report)) return std::move(*mesh);
+    }
   } catch (const std::logic_error& e) {
     // On a valid surface a bug of ours; else the surface was not what it must be.
     throw MeshingError(fmt::format("{}; does the surface intersect itself?", e.what()));

@@ -1,12 +1,9 @@
 #include "recovery/steiner_lift.h"
 
-#include <octafront/error.h>
 #include <octafront/quality.h>
 
 #include <algorithm>
 #include <cmath>
-
-#include <fmt/format.h>
 
 namespace octafront::recovery {
 
@@ -318,8 +315,8 @@ bool SteinerLift::lift(VertexIndex s, int round) {
   return found > 0 && place(s, best, fans, boundary);
 }
 
-void SteinerLift::run() {
-  if (points_.size() == first_steiner_) return;
+std::vector<VertexIndex> SteinerLift::run() {
+  if (points_.size() == first_steiner_) return {};
   split_umbrellas();
   std::vector<VertexIndex> open;
   for (VertexIndex s = first_steiner_; s < points_.size(); ++s) {
@@ -343,20 +340,14 @@ void SteinerLift::run() {
     counts_.lifted += before - open.size();
     if (round == 0) counts_.deferred = open.size();
   }
-  if (open.empty()) {
-    for (VertexIndex v = first_steiner_; v < points_.size(); ++v) {
-      if (v % 64 == 0) context_.check();
-      const TetIndex t = mesh_.tet_at[v];
-      // Points that a cavity swallowed point to a tet that is gone.
-      if (t != kNone && mesh_.alive(t) && mesh_.has(t, v)) counts_.removed += merge_inside(v);
-    }
-    return;
+  if (!open.empty()) return open;
+  for (VertexIndex v = first_steiner_; v < points_.size(); ++v) {
+    if (v % 64 == 0) context_.check();
+    const TetIndex t = mesh_.tet_at[v];
+    // Points that a cavity swallowed point to a tet that is gone.
+    if (t != kNone && mesh_.alive(t) && mesh_.has(t, v)) counts_.removed += merge_inside(v);
   }
-  const Vec3 p = points_.at(open.front());
-  throw MeshingError(
-      fmt::format("no place was found inside for {} points that the surface needs, the first near ({}, {}, "
-                  "{}): the gap there may be too thin for double precision",
-                  open.size(), p.x, p.y, p.z));
+  return {};
 }
 
 }  // namespace octafront::recovery

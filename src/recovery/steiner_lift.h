@@ -20,18 +20,20 @@ struct LiftCounts {
 class SteinerLift {
  public:
   /// `triangles`: the input's, to which the labels of boundary faces refer. Vertices from first_steiner on are Steiner
-  /// points. `frame`: the first of four vertices away from the surface that are not coplanar.
+  /// points. `frame`: the first of four vertices away from the surface that are not coplanar. Random choices follow
+  /// `seed`.
   SteinerLift(ExactPoints& points, TetComplex& mesh, const std::vector<Triangle>& triangles, VertexIndex first_steiner,
-              VertexIndex frame, const RunContext& context)
+              VertexIndex frame, std::uint32_t seed, const RunContext& context)
       : points_(points),
         mesh_(mesh),
         triangles_(triangles),
         first_steiner_(first_steiner),
         frame_(frame),
-        context_(context) {}
+        context_(context),
+        random_(88172645463325252u + seed) {}
 
-  /// Throws MeshingError, with the place, if no doubles were found for a point.
-  void run();
+  /// The points for which no place of doubles was found; the mesh is done if there are none.
+  std::vector<VertexIndex> run();
   const LiftCounts& counts() const { return counts_; }
 
  private:
@@ -69,7 +71,7 @@ class SteinerLift {
   LiftCounts counts_;
   std::vector<TetIndex> star_, cavity_;
   std::vector<Triangle> rim_;
-  std::uint64_t random_ = 88172645463325252u;
+  std::uint64_t random_;
 };
 
 }  // namespace octafront::recovery

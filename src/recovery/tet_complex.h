@@ -70,6 +70,7 @@ class TetComplex {
   /// A fresh mark: no tet carries it yet.
   std::uint32_t new_mark();
   std::uint32_t& mark(TetIndex t) { return mark_[t]; }
+  std::uint32_t mark_of(TetIndex t) const { return mark_[t]; }
 
  private:
   struct RimFace {

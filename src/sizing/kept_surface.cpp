@@ -21,10 +21,11 @@ constexpr double kEdgeOfUnitArea = 1.5196713713031851;
 constexpr double kRaisedFrom = 1.03, kMostRaised = 1.5;
 
 /// The edge length that a triangle stands for: between that of the equilateral triangle of its area, which a needle
-/// makes too small, and the mean length of its edges, which it makes too large.
+/// makes too small, and the mean length of its edges, which it makes too large; nearer to the latter. The even mean of
+/// the two made up to three times the elements where hair-thin needles cover a plane, and none of them better.
 double size_of(Vec3 a, Vec3 b, Vec3 c) {
   const double mean = (distance(a, b) + distance(b, c) + distance(c, a)) / 3;
-  return std::sqrt(kEdgeOfUnitArea * std::sqrt(triangle_area(a, b, c)) * mean);
+  return std::sqrt(mean * std::sqrt(mean * kEdgeOfUnitArea * std::sqrt(triangle_area(a, b, c))));
 }
 
 /// Per triangle: the mean over it and its neighbours in logarithms, so that single needles and jumps do not decide.

@@ -4,6 +4,8 @@
 
 #include "core/stage_timer.h"
 #include "lattice/core.h"
+#include "recovery/recover.h"
+#include "recovery/refine.h"
 #include "volume/advance.h"
 #include "volume/ladder.h"
 #include "volume/regions.h"
@@ -11,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <exception>
 
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
@@ -116,9 +119,10 @@ void report_front(StageReport& report, const FrontCounters& counters, std::size_
   report.count("faces left", static_cast<double>(left));
 }
 
-TetMesh fill(const SurfaceMesh& surface, const SizeField& sizes, const VolumeOptions& options,
-             const RunContext& context, StageReport& report) {
+TetMesh fill_by_front(const SurfaceMesh& surface, const SizeField& sizes, const VolumeOptions& options,
+                      const RunContext& context, StageReport& report) {
   TetMesh mesh;
+  mesh.boundary = surface.triangles;
   std::vector<Wall> walls;
   {
     FrontState front = start_front(surface, sizes);
@@ -149,6 +153,34 @@ TetMesh fill(const SurfaceMesh& surface, const SizeField& sizes, const VolumeOpt
     close_cavities(mesh, walls, sizes, options, context, report);
     drop_unused_points(mesh, surface.points.size());
   }
+  return mesh;
+}
+
+/// The last rung: no front at all. Throws what stopped the front if recovery fails too.
+TetMesh fill_without_front(const SurfaceMesh& surface, const SizeField& sizes, const std::exception_ptr& front_error,
+                           const RunContext& context, StageReport& report) {
+  try {
+    StageReport recovery;
+    TetMesh mesh = recover_volume(surface, context, recovery);
+    refine_interior(mesh, sizes, context, report);
+    return mesh;
+  } catch (const MeshingError&) {
+    std::rethrow_exception(front_error);
+  }
+}
+
+TetMesh fill(const SurfaceMesh& surface, const SizeField& sizes, const VolumeOptions& options,
+             const RunContext& context, StageReport& report) {
+  TetMesh mesh;
+  std::exception_ptr front_error;
+  try {
+    mesh = fill_by_front(surface, sizes, options, context, report);
+  } catch (const MeshingError& error) {
+    front_error = std::current_exception();
+    report.notes.push_back(std::string("the whole volume was filled by recovery, for ") + error.what());
+  }
+  report.count("filled by recovery of the whole surface", front_error != nullptr);
+  if (front_error) mesh = fill_without_front(surface, sizes, front_error, context, report);
   report.count("tetrahedra", static_cast<double>(mesh.tets.size()));
   mesh.region = regions_of(mesh, surface);
   mesh.boundary = surface.triangles;

@@ -13,7 +13,8 @@ namespace octafront {
 /// The boundary of the result is `surface`, triangle for triangle; the first points of the result are those of the
 /// surface in their order; mesh.boundary lists the surface's triangles in their order, with their patches; regions
 /// are numbered by body (outer shell and its cavities) in order of the first triangle.
-/// Throws MeshingError if a cavity stays open.
+/// Where the front leaks or a cavity stays open, recovery of the whole surface takes its place (a note in `report` says
+/// so), with points added inside by the sizes. Throws MeshingError if that fails too.
 TetMesh fill_volume(const SurfaceMesh& surface, const SizeField& sizes, const VolumeOptions& options,
                     const RunContext& context, StageReport& report);
 

@@ -87,6 +87,7 @@ void close_cavities(TetMesh& mesh, const std::vector<Wall>& walls, const SizeFie
     counts.growth_steps += star.growth_steps;
     counts.by_star += star.closed;
     if (star.closed || std::any_of(kAfterStar.begin(), kAfterStar.end(), by_front)) continue;
+    if (cavities.walls(c).size() > mesh.boundary.size()) give_up(work, cavities.walls(c));
     const auto by_recovery = [&](int rings) { return close_by_recovery(work, cavities, c, rings, context); };
     if (std::any_of(kRecoveryRings.begin(), kRecoveryRings.end(), by_recovery)) {
       ++counts.by_recovery;

@@ -14,7 +14,8 @@ namespace octafront {
 
 /// Closes what the front has left open, rung by rung: backtracking with other choices and growing rings, a kernel point
 /// with growth, and at last recovery of the cavity's walls in a Delaunay mesh. `walls` face the open side.
-/// Counts in `report` which rung closed how many. Throws OpenCavityError with the first cavity that stays open.
+/// Counts in `report` which rung closed how many. Throws OpenCavityError with the first cavity that stays open, or has
+/// more walls than mesh.boundary has triangles: then recovery of the whole surface is less work.
 void close_cavities(TetMesh& mesh, const std::vector<Wall>& walls, const SizeField& sizes, const VolumeOptions& options,
                     const RunContext& context, StageReport& report);
 

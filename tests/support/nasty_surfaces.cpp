@@ -187,7 +187,7 @@ SurfaceMesh chazelle(Random& random) {
 
 SurfaceMesh coplanar_needles(Random& random) {
   const int n = random.integer(1, 3);
-  return divided_cube(n, random.integer(1, 300), random);
+  return divided_cube(n, random.integer(1, 150), random);
 }
 
 // Grids with all points on a few planes and spheres.
