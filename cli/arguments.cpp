@@ -1,5 +1,6 @@
 #include "arguments.h"
 
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -19,6 +20,13 @@ void add_choice(CLI::App& group, const std::string& option, Value& value,
   group.add_option(option, value, help + " [" + preset + "]")
       ->transform(CLI::CheckedTransformer(names, CLI::ignore_case).description(""))
       ->type_name(listed);
+}
+
+/// "1e5" is a number of elements too.
+std::int64_t whole_number(double n) {
+  if (!(std::abs(n) < 9e18) || n != std::floor(n))
+    throw CLI::ValidationError("--elements", "needs a whole number, such as 100000 or 1e5");
+  return static_cast<std::int64_t>(n);
 }
 
 }  // namespace
@@ -55,11 +63,24 @@ void declare_sizes(CLI::App& command, Arguments& a) {
   SizeOptions& o = a.options.size;
   auto* group = command.add_option_group("Sizes", "None given: an automatic size. Several: the smallest wins");
   group->add_option("--size", o.size, "Edge length, in units of the input")->type_name("H");
-  group->add_option("--elements", o.elements, "Number of tetrahedra wanted, met within 15 %")->type_name("N");
+  group
+      ->add_option_function<double>(
+          "--elements", [&o](double n) { o.elements = whole_number(n); },
+          "Number of tetrahedra wanted, met within 15 %")
+      ->type_name("N");
   group->add_option("--curvature", o.curvature, "Elements per full turn of a curved surface")->type_name("K");
   group->add_option("--gap", o.gap, "Elements across thin walls and narrow gaps")->type_name("K");
   group->add_option("--feature-elements", o.feature_elements, "Elements along each feature curve at least")
       ->type_name("K");
+  group
+      ->add_option("--regions", a.regions, "Boxes, spheres and points with a size each: JSON, or a table x, y, z, size")
+      ->type_name("FILE");
+  group
+      ->add_option("--size-field", a.size_field,
+                   "Sizes at the vertices of the surface: VTU, VTP (array \"size\"), or a table x, y, z, size")
+      ->type_name("FILE");
+  group->add_option("--size-grid", a.size_grid, "All sizes, as `octafront size -o` writes them, edited or not; alone")
+      ->type_name("FILE");
   group->add_flag("--facets", o.facets, "Sizes follow the areas of the input's facets (the paper's rule)");
   group->add_option("--min-size", o.min_size, "No size falls below this")->type_name("H");
   group->add_option("--max-size", o.max_size, "No size rises above this")->type_name("H");
@@ -84,6 +105,12 @@ void declare_surface(CLI::App& command, Arguments& a) {
                    "Smaller elements where the surface would stray farther from the input [0.4 % of the diagonal with "
                    "automatic sizes, else none]")
       ->type_name("D");
+  group
+      ->add_option("--normal-deviation", o.normal_deviation,
+                   "Smaller elements where triangles would turn by more degrees against the input [none]")
+      ->type_name("DEG");
+  group->add_flag("--patches", o.patches_by_features,
+                  "Each part of the surface that feature edges enclose becomes a patch");
 }
 
 void declare_volume(CLI::App& command, Arguments& a) {

@@ -11,6 +11,7 @@ namespace octafront::cli {
 /// What the user typed, as the commands need it.
 struct Arguments {
   std::filesystem::path input, output, json, surface;
+  std::filesystem::path regions, size_field, size_grid;  ///< files with sizes; empty: none
   Options options;
   int threads = 0;
   bool quiet = false;

@@ -29,6 +29,9 @@ SurfaceFile read_input(const Arguments& a, const RunContext& context) {
 Options options_for(const Arguments& a, const SurfaceFile& file) {
   Options options = a.options;
   options.face_of_triangle = file.face_of_triangle;
+  if (!a.regions.empty()) options.size.regions = read_size_regions(a.regions);
+  if (!a.size_field.empty()) options.size.point_sizes = read_point_sizes(a.size_field);
+  if (!a.size_grid.empty()) options.size.field = read_size_field(a.size_grid, options.size.gradation);
   return options;
 }
 
@@ -113,7 +116,7 @@ int run_surface(const Arguments& a) {
 }
 
 int run_size(const Arguments& a) {
-  if (!a.output.empty()) check_text_target(a.output);
+  if (!a.output.empty()) check_size_field_target(a.output);
   check_report_target(a);
   const RunContext context = terminal_context(a.threads, a.quiet);
   const SizeResult result = run_on_input(a, context, generate_sizes);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <octafront/options.h>
 #include <octafront/size_field.h>
 #include <octafront/surface_mesh.h>
 #include <octafront/tet_mesh.h>
@@ -40,6 +41,21 @@ void write_mesh(const std::filesystem::path& file, const TetMesh& mesh);
 /// A field without a grid (uniform, from a function) has nothing to show: OutputError.
 void write_size_field(const std::filesystem::path& file, const SizeField& sizes);
 
+/// Reads such a file, edited or not: sizes are cut where they break the gradation. For SizeOptions::field. Throws
+/// InputError, and OptionError for a gradation out of range.
+SizeField read_size_field(const std::filesystem::path& file, double gradation = 0.2);
+
+/// Reads regions of refinement from a JSON file,
+///   [{"box": [[0, 0, 0], [1, 2, 1]], "size": 0.1}, {"sphere": [5, 0, 0], "radius": 2, "size": 0.2},
+///    {"point": [1, 1, 1], "size": 0.05}]
+/// each optionally with "radius", or from a table of points, a line "x, y, z, size" each, separated by commas,
+/// semicolons or blanks, with or without a line of titles. For SizeOptions::regions. Throws InputError.
+std::vector<SizeRegion> read_size_regions(const std::filesystem::path& file);
+
+/// Reads sizes at points from such a table, or from the points of a VTU or VTP file with the sizes in its PointData
+/// ("size", or the only array there is). For SizeOptions::point_sizes. Throws InputError.
+std::vector<PointSize> read_point_sizes(const std::filesystem::path& file);
+
 /// Writes text (a report) beside and renames it into place. Throws OutputError.
 void write_text(const std::filesystem::path& file, const std::string& text);
 
@@ -47,6 +63,7 @@ void write_text(const std::filesystem::path& file, const std::string& text);
 /// folder does not exist or cannot be written: to be called before long work.
 void check_mesh_target(const std::filesystem::path& file);
 void check_surface_target(const std::filesystem::path& file);
+void check_size_field_target(const std::filesystem::path& file);
 /// The same for files of any ending.
 void check_text_target(const std::filesystem::path& file);
 

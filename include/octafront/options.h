@@ -1,5 +1,6 @@
 #pragma once
 
+#include <octafront/size_field.h>
 #include <octafront/vec.h>
 
 #include <cstdint>
@@ -16,6 +17,12 @@ struct SizeRegion {
   Vec3 lo, hi;        ///< opposite corners of the box, input units, lo <= hi
   double radius = 0;  ///< >= 0
   double size = 0;    ///< > 0
+};
+
+/// A size at a place; input units.
+struct PointSize {
+  Vec3 p;
+  double size = 0;  ///< > 0
 };
 
 /// Where element sizes come from. Every source is optional; where several speak, the smallest size wins.
@@ -37,6 +44,11 @@ struct SizeOptions {
   Interior interior = Interior::kUniform;
   /// Further sources, on top of the others or of the automatic choice. --elements does not scale them.
   std::vector<SizeRegion> regions;
+  /// Sizes given at the vertices of the surface, linear on its triangles. Where some vertex has no point of its own,
+  /// the nearest point speaks for each place. A source like the others: the smallest wins, gradation holds.
+  std::vector<PointSize> point_sizes;
+  /// All sizes, as read_size_field() returns them: no other source may be given with it, nor limits.
+  std::optional<SizeField> field;
   std::function<double(Vec3)> callback;  ///< a further source on the surface; must return a size > 0; may be empty
 };
 
@@ -47,6 +59,12 @@ struct SurfaceOptions {
   /// Where the new surface strays farther from the input than this (input units, > 0), the sizes are made smaller, for
   /// a few rounds. Without a value the sizes alone decide.
   std::optional<double> max_deviation;
+  /// The same where the new triangles turn by more than this many degrees against the input's surface at their corners
+  /// and centroid; (0, 90].
+  std::optional<double> normal_deviation;
+  /// Each part of the surface that feature edges enclose becomes a patch of its own; parts of a named patch keep its
+  /// name, with a number behind it where there are several.
+  bool patches_by_features = false;
 };
 
 /// How the volume is filled.

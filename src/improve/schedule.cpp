@@ -47,10 +47,11 @@ class Schedule {
     report_.count("not forced", static_cast<double>(s.not_forced));
     if (s.elements == 0) return;
     std::string note = fmt::format(
-        "{} elements stay below {:.1f} (beta, or angles of that worth): {} where boundary faces meet at a small angle, "
-        "{} "
-        "on boundary triangles of poor shape, {} between boundary vertices only, {} for no such reason",
-        s.elements, kReported, s.forced_by_angle, s.forced_by_triangle, s.in_thin_places, s.not_forced);
+        "{} below {:.1f} (beta, or angles of that worth): {} where boundary faces meet at a small angle, {} on "
+        "boundary "
+        "triangles of poor shape, {} between boundary vertices only, {} for no such reason",
+        s.elements == 1 ? "1 element stays" : fmt::format("{} elements stay", s.elements), kReported, s.forced_by_angle,
+        s.forced_by_triangle, s.in_thin_places, s.not_forced);
     if (s.worst_not_forced != kNone) {
       const Vec3 p = mesh_.point(mesh_.tet(s.worst_not_forced)[0]);
       note += fmt::format("; the worst of these, {:.3f}, near ({}, {}, {})", mesh_.shape(s.worst_not_forced).score, p.x,

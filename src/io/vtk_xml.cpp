@@ -24,7 +24,7 @@ std::uint64_t parse_count(const Input& input, const XmlTag& tag, std::string_vie
 
 class VtkXmlReader {
  public:
-  explicit VtkXmlReader(const Input& input) : input_(input), tags_(input) {}
+  VtkXmlReader(const Input& input, VtkKind kind) : input_(input), kind_(kind), tags_(input) {}
 
   VtkXml read() {
     while (!done_) {
@@ -53,8 +53,10 @@ class VtkXmlReader {
   void read_file_tag(const XmlTag& tag) {
     has_file_tag_ = true;
     const std::string_view type = tag.attribute("type");
-    if (type != "UnstructuredGrid")
-      input_.fail(fmt::format("is a VTK file of type {}; expected an UnstructuredGrid (.vtu)", in_quotes(type)));
+    const bool may_be_polygons = kind_ == VtkKind::kAnyMesh;
+    if (type != "UnstructuredGrid" && !(may_be_polygons && type == "PolyData"))
+      input_.fail(fmt::format("is a VTK file of type {}; expected an UnstructuredGrid (.vtu){}", in_quotes(type),
+                              may_be_polygons ? " or PolyData (.vtp)" : ""));
     if (tag.attribute("byte_order", "LittleEndian") != "LittleEndian")
       input_.fail("has its values in big-endian order, which is not read here; save it on a little-endian machine");
     xml_.long_headers = tag.attribute("header_type", "UInt32") == "UInt64";
@@ -69,7 +71,7 @@ class VtkXmlReader {
     if (++pieces_ > 1)
       input_.fail_at_line(tag.at, "a second piece; files of several pieces are not read here: merge them");
     xml_.points = parse_count(input_, tag, "NumberOfPoints", "");
-    xml_.cells = parse_count(input_, tag, "NumberOfCells", "");
+    xml_.cells = parse_count(input_, tag, "NumberOfCells", kind_ == VtkKind::kAnyMesh ? "0" : "");
   }
 
   void read_array(const XmlTag& tag) {
@@ -107,6 +109,7 @@ class VtkXmlReader {
   }
 
   const Input& input_;
+  VtkKind kind_;
   XmlTags tags_;
   VtkXml xml_;
   std::string_view section_;
@@ -202,8 +205,8 @@ const VtkArray* VtkXml::find(std::string_view section, std::string_view name) co
   return nullptr;
 }
 
-VtkXml read_vtk_xml(const Input& input) {
-  return VtkXmlReader(input).read();
+VtkXml read_vtk_xml(const Input& input, VtkKind kind) {
+  return VtkXmlReader(input, kind).read();
 }
 
 }  // namespace octafront::io

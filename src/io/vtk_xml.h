@@ -64,9 +64,11 @@ struct VtkXml {
   const VtkArray* find(std::string_view section, std::string_view name) const;
 };
 
-/// Throws InputError if it is no unstructured grid of one piece in little-endian order, compressed by zlib or not at
-/// all.
-VtkXml read_vtk_xml(const Input& input);
+/// What a file may be: an unstructured grid alone, or polygons (VTP) too.
+enum class VtkKind { kUnstructuredGrid, kAnyMesh };
+
+/// Throws InputError if it is not of that kind, of one piece, in little-endian order, compressed by zlib or not at all.
+VtkXml read_vtk_xml(const Input& input, VtkKind kind = VtkKind::kUnstructuredGrid);
 
 /// The values of an array. Throws InputError; memory grows only with what is really there.
 std::vector<double> vtk_reals(const VtkXml& xml, const VtkArray& array, const Input& input);

@@ -21,6 +21,10 @@ void check_options(const Options& options) {
   require(surface.feature_angle > 0 && surface.feature_angle < 180, "feature-angle is in degrees, between 0 and 180");
   require(!surface.max_deviation || (std::isfinite(*surface.max_deviation) && *surface.max_deviation > 0),
           "max-deviation is a distance in the units of the input, above 0");
+  require(!surface.normal_deviation || (*surface.normal_deviation > 0 && *surface.normal_deviation <= 90),
+          "normal-deviation is in degrees, above 0 and at most 90");
+  require(!(surface.keep && (surface.max_deviation || surface.normal_deviation)),
+          "a surface that is kept does not deviate: max-deviation and normal-deviation cannot be given with it");
   require(options.volume.ideal_distance >= 0.3 && options.volume.ideal_distance <= 1.5,
           "ideal-distance is a multiple of the element size, between 0.3 and 1.5");
   require(options.improve.relaxation > 0 && options.improve.relaxation <= 1,

@@ -11,6 +11,7 @@
 #include "recovery/recover.h"
 #include "sizing/make_size_field.h"
 #include "stuffing/stuff.h"
+#include "surface/feature_patches.h"
 #include "surface/features.h"
 #include "surface/remesh.h"
 #include "volume/fill.h"
@@ -87,6 +88,7 @@ Prepared prepare(const SurfaceMesh& input, const Options& options, const RunCont
     Features features = detect_features(p.repaired.surface, options.surface.feature_angle);
     stage.count("feature edges", static_cast<double>(features.edges.size()));
     stage.count("corners", static_cast<double>(features.corners.size()));
+    if (options.surface.patches_by_features) stage.count("patches", divide_into_patches(p.repaired.surface, features));
     return features;
   });
   report.bodies = p.repaired.bodies;
@@ -110,9 +112,22 @@ constexpr double kAutomaticDeviation = 0.004;  // of the diagonal; sampled, so t
 SurfaceOptions true_to_input(const Prepared& p, const Options& options) {
   SurfaceOptions surface = options.surface;
   const SizeOptions& size = options.size;
-  if (!surface.max_deviation && !size.size && !size.elements && !size.callback)
+  if (!surface.max_deviation && !size.size && !size.elements && !size.callback && !size.field &&
+      size.point_sizes.empty())
     surface.max_deviation = kAutomaticDeviation * bounding_box(p.repaired.surface.points).diagonal();
   return surface;
+}
+
+// A body that loses more than this has lost details that somebody may want.
+constexpr double kLargeLoss = 0.02;
+
+void note_volume_loss(double made, double input, StageReport& stage) {
+  const double change = made / input - 1;
+  if (std::abs(change) < kLargeLoss) return;
+  stage.notes.push_back(
+      fmt::format("elements of this size change the volume by {:+.1f} %: --max-deviation makes them "
+                  "smaller where they stray from the input",
+                  100 * change));
 }
 
 Remeshed surface_stage(const Prepared& p, const SizeField& sizes, const Options& options, const RunContext& context,
@@ -121,6 +136,7 @@ Remeshed surface_stage(const Prepared& p, const SizeField& sizes, const Options&
     const SurfaceOptions surface = true_to_input(p, options);
     Remeshed remeshed = remesh_surface(p.repaired.surface, p.features, sizes, surface, context, stage);
     stage.count("triangles", static_cast<double>(remeshed.surface.triangles.size()));
+    note_volume_loss(enclosed_volume(remeshed.surface), report.input_volume, stage);
     return remeshed;
   });
 }

@@ -59,11 +59,11 @@ SizeField capped_near(const SizeField& sizes, const std::vector<Vec3>& points, d
   return capped(sizes, std::move(caps), gradation);
 }
 
-SizeField capped_at(const SizeField& sizes, const std::vector<PlacedSize>& places, double gradation) {
+SizeField capped_at(const SizeField& sizes, const std::vector<PointSize>& places, double gradation) {
   if (places.empty()) return sizes;
   std::vector<SizeCap> caps;
   caps.reserve(places.size());
-  for (const PlacedSize& s : places) caps.push_back({s.p, s.p, s.h, kCapReach * s.h});
+  for (const PointSize& s : places) caps.push_back({s.p, s.p, s.size, kCapReach * s.size});
   return capped(sizes, std::move(caps), gradation);
 }
 

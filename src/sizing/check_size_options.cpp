@@ -39,6 +39,17 @@ void check_size_options(const SizeOptions& o) {
           fmt::format("min-size {} is larger than max-size {}", o.min_size.value_or(0), o.max_size.value_or(0)));
   require(!(o.size && o.min_size) || *o.size >= *o.min_size,
           fmt::format("size {} is smaller than min-size {}", o.size.value_or(0), o.min_size.value_or(0)));
+  require(!(o.size && o.max_size) || *o.size <= *o.max_size,
+          fmt::format("size {} is larger than max-size {}", o.size.value_or(0), o.max_size.value_or(0)));
+  const bool has_source = o.size || o.elements || o.curvature || o.gap || o.feature_elements || o.facets ||
+                          o.min_size || o.max_size || !o.regions.empty() || !o.point_sizes.empty() || o.callback;
+  require(!(o.field && has_source),
+          "a size grid is all there is to say about the sizes: no other source or limit of sizes can be given with it");
+  for (const PointSize& s : o.point_sizes) {
+    require(is_finite(s.p) && std::isfinite(s.size) && s.size > 0,
+            fmt::format("the size {} at the point ({}, {}, {}) must be above 0, at a finite place", s.size, s.p.x,
+                        s.p.y, s.p.z));
+  }
   for (const SizeRegion& r : o.regions) {
     require(is_finite(r.lo) && is_finite(r.hi) && r.lo.x <= r.hi.x && r.lo.y <= r.hi.y && r.lo.z <= r.hi.z,
             fmt::format("the region from ({}, {}, {}) to ({}, {}, {}) is no box", r.lo.x, r.lo.y, r.lo.z, r.hi.x,

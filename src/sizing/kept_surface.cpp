@@ -3,6 +3,7 @@
 #include "geometry/measures.h"
 #include "sizing/face_neighbours.h"
 #include "sizing/make_size_field.h"
+#include "sizing/region_caps.h"
 #include "sizing/size_sources.h"
 
 #include <algorithm>
@@ -66,27 +67,33 @@ double mean_shortfall(const SurfaceMesh& surface, const std::vector<double>& fac
 SizeField size_field_of_surface(const SurfaceMesh& surface, const SizeOptions& options, const RunContext& context,
                                 StageReport& report) {
   check_size_options(options);
+  if (options.field) return *options.field;
   const RootCube root = RootCube::around(bounding_box(surface.points), 0.02);
   const double floor = options.min_size.value_or(model_extent(surface) * 1e-5);
   std::vector<double> face = face_sizes(surface);
   for (double& h : face) h = std::max(h, floor);
-  SizeAtPlace at_place;
-  if (options.callback) at_place = [&](const PlaceOnSurface& s) { return options.callback(s.p); };
+  const SizeAtPlace at_place = given_sizes(surface, options);
+  const std::vector<SizeSample> points = samples_of_points(options, floor);
+  const auto samples_of = [&](const std::vector<double>& sizes) {
+    std::vector<SizeSample> samples = sample_surface(surface, sizes, at_place, context);
+    samples.insert(samples.end(), points.begin(), points.end());
+    return samples;
+  };
   GridRules rules;
   rules.gradation = options.gradation;
   rules.interior_below_surface = options.interior == SizeOptions::Interior::kUniform;
   rules.resolve_surface = !rules.interior_below_surface;
   rules.ceiling = std::min({root.side, options.max_size.value_or(HUGE_VAL), options.size.value_or(HUGE_VAL)});
-  auto grid = make_background_grid(root, sample_surface(surface, face, at_place, context), rules, context);
+  auto grid = make_background_grid(root, samples_of(face), rules, context);
   const double shortfall = std::min(kMostRaised, mean_shortfall(surface, face, *grid));
   if (shortfall > kRaisedFrom) {
     std::vector<double> raised = face;
     for (double& h : raised) h *= shortfall;
-    grid = make_background_grid(root, sample_surface(surface, raised, at_place, context), rules, context);
+    grid = make_background_grid(root, samples_of(raised), rules, context);
   }
   report.count("leaves", static_cast<double>(grid->tree.size()));
   report.count("levels", grid->tree.depth());
-  return SizeField(grid);
+  return SizeField(with_regions(std::move(grid), options, context));
 }
 
 }  // namespace octafront

@@ -3,7 +3,7 @@
 #include <octafront/error.h>
 
 #include "sizing/background_grid.h"
-#include "sizing/grid_caps.h"
+#include "sizing/region_caps.h"
 #include "sizing/size_sources.h"
 
 #include <algorithm>
@@ -46,25 +46,6 @@ WantedSizes scaled(const WantedSizes& wanted, double factor, const SizeOptions& 
   return result;
 }
 
-/// Regions as caps; what they come to inside the root cube must be a number of elements that a mesh can hold.
-std::vector<SizeCap> caps_of_regions(const SizeOptions& options, const RootCube& root) {
-  std::vector<SizeCap> caps;
-  for (const SizeRegion& r : options.regions) {
-    const double h = std::max(r.size, options.min_size.value_or(0));
-    caps.push_back({r.lo, r.hi, h, r.radius + 0.5 * h});  // leaves reach across the edge of the region
-    const Vec3 reach{r.radius, r.radius, r.radius}, side{root.side, root.side, root.side};
-    const Vec3 extent = max(min(r.hi + reach, root.lo + side) - max(r.lo - reach, root.lo), Vec3{});
-    const double count = kTetsPerCube * extent.x / h * extent.y / h * extent.z / h;
-    if (count > static_cast<double>(kMostElements)) {
-      throw OptionError(
-          fmt::format("size {:.4g} in the region at ({:.6g}, {:.6g}, {:.6g}) would give about {:.3g} elements, "
-                      "more than the {} that a mesh can hold: ask for a larger size",
-                      h, r.lo.x, r.lo.y, r.lo.z, count, kMostElements));
-    }
-  }
-  return caps;
-}
-
 /// Where one size holds everywhere the grid has a plain level of leaves, and samples need be no denser than these.
 std::vector<SizeSample> even_samples(const SurfaceMesh& surface, double h, const RootCube& root,
                                      const RunContext& context) {
@@ -84,8 +65,7 @@ SizeField grid_field(const SurfaceMesh& surface, const WantedSizes& wanted, cons
                                         : sample_surface(surface, wanted.face, wanted.at_place, context);
   samples.insert(samples.end(), wanted.points.begin(), wanted.points.end());
   auto grid = make_background_grid(root, samples, rules, context);
-  const std::vector<SizeCap> caps = caps_of_regions(options, root);
-  return SizeField(caps.empty() ? grid : capped_grid(*grid, caps, options.gradation, context));
+  return SizeField(with_regions(std::move(grid), options, context));
 }
 
 SizeField scaled_to_count(const SurfaceMesh& surface, const WantedSizes& wanted, const SizeOptions& options,
@@ -132,6 +112,7 @@ SizeField make_size_field(const SurfaceMesh& surface, const Features& features, 
                           const RunContext& context, StageReport& report) {
   check_size_options(options);
   if (surface.triangles.empty()) throw InputError("the surface has no triangles: there is nothing to choose sizes for");
+  if (options.field) return *options.field;
   const WantedSizes wanted = wanted_sizes(surface, features, options, context, report);
   if (!options.elements) refuse_huge_counts(surface, wanted);
   const SizeField field = options.elements ? scaled_to_count(surface, wanted, options, context, report)

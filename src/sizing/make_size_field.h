@@ -8,6 +8,7 @@
 //   sources (size_sources.h) -> samples of the surface -> octree, divided by them (background_grid.h)
 //     -> corner values (gradation.h) -> OctreeField -> at(p), expected_tets()
 
+#include <octafront/io.h>
 #include <octafront/options.h>
 #include <octafront/report.h>
 #include <octafront/run_context.h>
@@ -15,8 +16,6 @@
 #include <octafront/surface_mesh.h>
 
 #include "surface/features.h"
-
-#include <filesystem>
 
 namespace octafront {
 
@@ -43,22 +42,10 @@ inline constexpr double kLatticeTooLong = 1.5;
 /// The size field capped to `factor` of its own value within 1.5 of these values around each point, graded again.
 SizeField capped_near(const SizeField& sizes, const std::vector<Vec3>& points, double factor, double gradation);
 
-/// A size at a place; input units.
-struct PlacedSize {
-  Vec3 p;
-  double h = 0;
-};
 /// The size field capped to the sizes at the places, within 1.5 of them, graded again from there.
-SizeField capped_at(const SizeField& sizes, const std::vector<PlacedSize>& places, double gradation);
+SizeField capped_at(const SizeField& sizes, const std::vector<PointSize>& places, double gradation);
 
 /// All sizes multiplied by `factor`.
 SizeField scaled(const SizeField& sizes, double factor);
-
-/// Reads such a file, edited or not: sizes are cut where they break the gradation. Throws InputError, and OptionError
-/// for a gradation out of range. To mesh by it, let SizeOptions::callback return field.at(p).
-SizeField read_size_field(const std::filesystem::path& file, double gradation = 0.2);
-
-/// Writes the background grid's leaves as a VTU of hexahedra with size per corner, level per cell. Throws OutputError.
-void write_size_field(const std::filesystem::path& file, const SizeField& sizes);
 
 }  // namespace octafront

@@ -1,11 +1,10 @@
-#include "sizing/size_regions.h"
+#include <octafront/io.h>
 
 #include "io/input.h"
+#include "sizing/point_table.h"
 
-#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <optional>
 
 #include <fmt/format.h>
 
@@ -64,39 +63,9 @@ std::vector<SizeRegion> from_json(const io::Input& input) {
   return regions;
 }
 
-bool is_separator(char c) {
-  return c == ' ' || c == '\t' || c == ',' || c == ';' || c == '\r';
-}
-
-/// The four numbers of a line; nothing if it has other content.
-std::optional<std::array<double, 4>> four_numbers(std::string_view line) {
-  std::array<double, 4> v{};
-  const char *at = line.data(), *end = at + line.size();
-  for (double& x : v) {
-    while (at != end && is_separator(*at)) ++at;
-    const auto [next, error] = std::from_chars(at, end, x);
-    if (error != std::errc()) return std::nullopt;
-    at = next;
-  }
-  while (at != end && is_separator(*at)) ++at;
-  if (at != end) return std::nullopt;
-  return v;
-}
-
 std::vector<SizeRegion> from_table(const io::Input& input) {
   std::vector<SizeRegion> regions;
-  std::string_view rest = input.bytes;
-  for (bool is_first = true; !rest.empty(); is_first = false) {
-    const std::string_view line = rest.substr(0, rest.find('\n'));
-    rest.remove_prefix(std::min(rest.size(), line.size() + 1));
-    if (line.find_first_not_of(" \t\r") == std::string_view::npos) continue;
-    if (const auto v = four_numbers(line)) {
-      const Vec3 p{(*v)[0], (*v)[1], (*v)[2]};
-      regions.push_back({p, p, 0, (*v)[3]});
-    } else if (!is_first) {
-      input.fail_at_line(line.data(), "is no line of four numbers x, y, z, size");
-    }
-  }
+  for (const PointSize& s : read_point_table(input)) regions.push_back({s.p, s.p, 0, s.size});
   return regions;
 }
 

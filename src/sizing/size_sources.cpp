@@ -6,6 +6,7 @@
 #include "sizing/curvature.h"
 #include "sizing/feature_sizes.h"
 #include "sizing/gaps.h"
+#include "sizing/point_sizes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -41,10 +42,19 @@ struct Choice {
   double curvature = 0, gap = 0, feature_elements = 0;  ///< 0: not asked
 };
 
+double largest_of(const std::vector<PointSize>& points) {
+  double largest = 0;
+  for (const PointSize& s : points) largest = std::max(largest, s.size);
+  return largest;
+}
+
 Choice choose(const SurfaceMesh& surface, const SizeOptions& o) {
   Choice c;
-  c.automatic = !o.size && !o.curvature && !o.gap && !o.feature_elements && !o.facets && !o.callback;
+  c.automatic =
+      !o.size && !o.curvature && !o.gap && !o.feature_elements && !o.facets && !o.callback && o.point_sizes.empty();
   c.base = o.size ? *o.size : model_extent(surface) / kExtentPerSize;
+  // Sizes at points speak for the whole surface: there is no need of a size where nobody asks.
+  if (!o.size && !o.point_sizes.empty()) c.base = largest_of(o.point_sizes);
   if (o.max_size)
     c.base = o.size ? std::min(c.base, *o.max_size) : (c.automatic ? std::min(c.base, *o.max_size) : *o.max_size);
   c.base = std::max(c.base, o.min_size.value_or(0));
@@ -110,21 +120,46 @@ double ask(const std::function<double(Vec3)>& callback, Vec3 p) {
   return h;
 }
 
+SizeAtPlace least_of(const SizeAtPlace& a, const SizeAtPlace& b) {
+  if (!a || !b) return a ? a : b;
+  return [a, b](const PlaceOnSurface& s) { return std::min(a(s), b(s)); };
+}
+
 /// The sources that are asked place by place, in one function; empty if there are none.
 SizeAtPlace sizes_at_places(const SurfaceMesh& surface, const Choice& choice, const SizeOptions& options) {
-  SizeAtPlace gap, callback;
+  SizeAtPlace gap;
   if (choice.gap > 0) {
     const auto gaps = std::make_shared<GapFinder>(surface, choice.gap_floor, choice.base * choice.gap);
     gap = [gaps, elements = choice.gap, floor = choice.gap_floor](const PlaceOnSurface& place) {
       return std::max(floor, gaps->width(place) / elements);
     };
   }
-  if (options.callback) callback = [f = options.callback](const PlaceOnSurface& s) { return ask(f, s.p); };
-  if (!gap || !callback) return gap ? gap : callback;
-  return [gap, callback](const PlaceOnSurface& s) { return std::min(gap(s), callback(s)); };
+  const SizeAtPlace given = given_sizes(surface, options);
+  if (!given || !options.min_size) return least_of(gap, given);
+  return least_of(gap,
+                  [given, floor = *options.min_size](const PlaceOnSurface& s) { return std::max(floor, given(s)); });
 }
 
 }  // namespace
+
+SizeAtPlace given_sizes(const SurfaceMesh& surface, const SizeOptions& options) {
+  SizeAtPlace points, callback;
+  if (!options.point_sizes.empty()) {
+    const auto sizes = std::make_shared<PointSizes>(surface, options.point_sizes);
+    points = [sizes](const PlaceOnSurface& s) { return sizes->at(s); };
+  }
+  if (options.callback) callback = [f = options.callback](const PlaceOnSurface& s) { return ask(f, s.p); };
+  return least_of(points, callback);
+}
+
+std::vector<SizeSample> samples_of_points(const SizeOptions& options, double floor) {
+  std::vector<SizeSample> samples;
+  for (const PointSize& s : options.point_sizes) {
+    const double h = std::max(floor, s.size);
+    samples.push_back({s.p, {}, h, 0});
+  }
+  return samples;
+}
 
 double model_extent(const SurfaceMesh& surface) {
   const Vec3 origin = bounding_box(surface.points).center();
@@ -160,6 +195,8 @@ WantedSizes wanted_sizes(const SurfaceMesh& surface, const Features& features, c
   if (choice.feature_elements > 0) {
     wanted.points = feature_samples(surface, features, choice.feature_elements, choice.floor, choice.base);
   }
+  const std::vector<SizeSample> given = samples_of_points(options, options.min_size.value_or(0));
+  wanted.points.insert(wanted.points.end(), given.begin(), given.end());
   for (double& h : wanted.face) h = std::max(h * scale, options.min_size.value_or(0));
   wanted.at_place = sizes_at_places(surface, choice, options);
   const bool graded = options.interior == SizeOptions::Interior::kGraded;

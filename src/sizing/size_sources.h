@@ -39,6 +39,13 @@ double model_extent(const SurfaceMesh& surface);
 WantedSizes wanted_sizes(const SurfaceMesh& surface, const Features& features, const SizeOptions& options,
                          const RunContext& context, StageReport& report);
 
+/// The sources that are asked place by place and that hold for every kind of surface: options.point_sizes and the
+/// callback, whose answers are checked. Empty if there are none. Refers to `surface`, which must outlive it.
+SizeAtPlace given_sizes(const SurfaceMesh& surface, const SizeOptions& options);
+/// The points of options.point_sizes themselves, no smaller than `floor`: a small size at one corner of a large
+/// triangle must not be missed.
+std::vector<SizeSample> samples_of_points(const SizeOptions& options, double floor);
+
 /// Throws OptionError for values out of range and for contradictions.
 void check_size_options(const SizeOptions& options);
 

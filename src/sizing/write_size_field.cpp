@@ -1,12 +1,15 @@
 // The background grid as a VTK unstructured grid: a hexahedron for each leaf, `size` at the points, `level` per cell.
 
 #include <octafront/error.h>
+#include <octafront/io.h>
 
 #include "io/text_writer.h"
 #include "io/vtu_arrays.h"
 #include "sizing/make_size_field.h"
 #include "sizing/octree_corners.h"
 #include "sizing/octree_field.h"
+
+#include <fmt/format.h>
 
 namespace octafront {
 
@@ -56,6 +59,13 @@ void write_grid(io::AtomicFile& file, const OctreeField& field) {
 }
 
 }  // namespace
+
+void check_size_field_target(const std::filesystem::path& file) {
+  if (file.extension() != ".vtu")
+    throw OptionError(fmt::format("{}: the background grid is written as .vtu, not as \"{}\"", file.string(),
+                                  file.extension().string()));
+  io::check_writable(file);
+}
 
 void write_size_field(const std::filesystem::path& file, const SizeField& sizes) {
   const OctreeField* grid = as_octree_field(sizes);

@@ -82,14 +82,19 @@ std::string SurfaceDefects::describe() const {
   return text;
 }
 
-SurfaceDefects find_defects(const RepairedSurface& repaired) {
+SurfaceDefects defects::find_defects_but_crossings(const RepairedSurface& repaired, const EdgeTable& table) {
   SurfaceDefects found;
+  found.no_faces = repaired.surface.triangles.empty();
+  find_bad_edges(repaired, table, found);
+  find_bad_vertices(repaired, table, found);
+  find_degenerate_faces(repaired, found);
+  return found;
+}
+
+SurfaceDefects find_defects(const RepairedSurface& repaired) {
   const SurfaceMesh& mesh = repaired.surface;
-  found.no_faces = mesh.triangles.empty();
   const EdgeTable table = make_edge_table(mesh.points.size(), mesh.triangles);
-  defects::find_bad_edges(repaired, table, found);
-  defects::find_bad_vertices(repaired, table, found);
-  defects::find_degenerate_faces(repaired, found);
+  SurfaceDefects found = defects::find_defects_but_crossings(repaired, table);
   defects::find_self_intersections(repaired, table, found);
   return found;
 }

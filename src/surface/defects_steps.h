@@ -19,6 +19,9 @@ void find_bad_vertices(const RepairedSurface& repaired, const EdgeTable& table, 
 /// Faces without area.
 void find_degenerate_faces(const RepairedSurface& repaired, SurfaceDefects& defects);
 
+/// All of the above.
+SurfaceDefects find_defects_but_crossings(const RepairedSurface& repaired, const EdgeTable& table);
+
 /// Pairs of faces that meet elsewhere than in what they share; counting stops at kMostPairs.
 void find_self_intersections(const RepairedSurface& repaired, const EdgeTable& table, SurfaceDefects& defects);
 inline constexpr std::uint64_t kMostPairs = 1'000'000;

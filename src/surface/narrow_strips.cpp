@@ -60,7 +60,7 @@ double width_at(const InputSurface& input, HalfedgeIndex h, Vec3 p, double reach
 
 SizeField fitted_to_strips(const InputSurface& input, const SizeField& sizes) {
   const HalfedgeMesh& mesh = input.mesh;
-  std::vector<PlacedSize> places;
+  std::vector<PointSize> places;
   PointGrid kept(mesh.points.empty() ? Vec3{} : mesh.points.front());
   for (HalfedgeIndex h = 0; h < mesh.start.size(); ++h) {
     if (!mesh.is_feature[h]) continue;
@@ -74,7 +74,7 @@ SizeField fitted_to_strips(const InputSurface& input, const SizeField& sizes) {
       if (!(kSizePerWidth * width < kWorthwhile * old) || width < kHopeless * old) continue;
       const double size = std::max(kFloor * old, kSizePerWidth * width);
       bool is_new = true;
-      kept.for_each_near(p, size, kSamePlace, [&](std::uint32_t id, Vec3) { is_new &= places[id].h > 1.1 * size; });
+      kept.for_each_near(p, size, kSamePlace, [&](std::uint32_t id, Vec3) { is_new &= places[id].size > 1.1 * size; });
       if (!is_new) continue;
       places.push_back({p, size});
       kept.add(p, size);

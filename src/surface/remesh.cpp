@@ -6,13 +6,17 @@
 #include "surface/narrow_strips.h"
 #include "surface/point_grid.h"
 #include "surface/source_triangles.h"
+#include "surface/surface_check.h"
 #include "surface/surface_crossings.h"
 #include "surface/surface_deviation.h"
 #include "surface/surface_improve.h"
+#include "surface/surface_turning.h"
 
 #include <algorithm>
 #include <numeric>
 #include <optional>
+
+#include <fmt/format.h>
 
 namespace octafront {
 
@@ -26,7 +30,7 @@ constexpr int kMostRounds = 8;
 constexpr double kCap = 0.6;
 /// The same where the new surface strays too far from the input, and for how many rounds.
 constexpr double kDeviationCap = 0.7;
-constexpr int kMostDeviationRounds = 4;
+constexpr int kMostDeviationRounds = 5;
 /// Capped sizes grow from there at this rate.
 constexpr double kCapGradation = 0.2;
 
@@ -153,42 +157,118 @@ void report_counts(const Counts& counts, StageReport& report) {
   report.count("rounds for deviation", counts.deviation_rounds);
 }
 
+/// Attempts with ever smaller sizes where the last one was not good enough.
+class Remesher {
+ public:
+  Remesher(const SurfaceMesh& surface, const Features& features, const SizeField& sizes, const SurfaceOptions& options,
+           const RunContext& context, StageReport& report)
+      : surface_(surface),
+        features_(features),
+        sizes_(sizes),
+        options_(options),
+        context_(context),
+        report_(report),
+        input_(make_input_surface(surface, {})),
+        kind_(surface) {
+    if (options.max_deviation) tree_.emplace(surface);
+  }
+
+  Remeshed run() {
+    for (counts_.rounds = 1; counts_.rounds <= kMostRounds; ++counts_.rounds) {
+      Compacted c = attempt(Effort::kFull, surface_, input_, features_, sizes_, context_, counts_);
+      if (is_sound(c) && is_true(c)) return finished(c);
+    }
+    Compacted c = attempt(Effort::kInsertOnly, surface_, input_, features_, sizes_, context_, counts_);
+    if (is_sound(c)) {
+      report_.notes.push_back("the surface's own vertices were kept: coarser triangles would cross");
+      c.result.source = sources_of(c);
+      return finished(c);
+    }
+    report_counts(counts_, report_);
+    report_.notes.push_back("the surface was kept as it is: every other triangulation tried crosses itself");
+    return input_as_it_is(surface_, features_, sizes_);
+  }
+
+ private:
+  std::vector<std::uint32_t> sources_of(const Compacted& c) const {
+    return source_triangles(input_, surface_, c.result.surface, c.vertex_face, c.is_inner);
+  }
+
+  /// Whether the surface is clean and of the input's kind; otherwise the sizes are made smaller.
+  bool is_sound(const Compacted& c) {
+    const auto crossings = find_crossings(c.result.surface);
+    counts_.crossings += crossings.size();
+    if (!crossings.empty()) {
+      sizes_ = capped_around(sizes_, centers_of(c.result.surface, crossings), kCap);
+      return false;
+    }
+    if (const auto defect = kind_.first_defect_but_crossings(c.result.surface)) {
+      report_.notes.push_back("an attempt was dropped: " + *defect);
+      sizes_ = scaled(sizes_, kCap);
+      return false;
+    }
+    return true;
+  }
+
+  /// Whether the surface is as near to the input as was asked, or could be made so in the rounds allowed; otherwise the
+  /// sizes are made smaller. Leaves the sources.
+  bool is_true(Compacted& c) {
+    const bool is_last = counts_.rounds == kMostRounds || counts_.deviation_rounds == kMostDeviationRounds;
+    std::vector<Vec3> far;
+    if (tree_) far = places_beyond(*options_.max_deviation, c.result.surface, surface_, *tree_);
+    c.result.source = sources_of(c);
+    std::vector<PointSize> turned;
+    if (options_.normal_deviation) {
+      turned = turned_places(*options_.normal_deviation, c.result.surface, input_, sizes_, c.vertex_face, c.is_inner,
+                             c.result.source);
+    }
+    if ((far.empty() && turned.empty()) || is_last) {
+      if (tree_) report_.count("places beyond the deviation", static_cast<double>(far.size()));
+      if (options_.normal_deviation) report_.count("triangles turned too far", static_cast<double>(turned.size()));
+      note_what_is_left(far.size(), turned.size());
+      return true;
+    }
+    ++counts_.deviation_rounds;
+    if (!far.empty()) sizes_ = capped_around(sizes_, far, kDeviationCap);
+    sizes_ = capped_at(sizes_, turned, kCapGradation);
+    return false;
+  }
+
+  /// What the user asked for and does not get.
+  void note_what_is_left(std::size_t far, std::size_t turned) {
+    if (far > 0)
+      report_.notes.push_back(
+          fmt::format("{} places lie farther than {:.4g} from the input still: a smaller size helps", far,
+                      *options_.max_deviation));
+    if (turned > 0)
+      report_.notes.push_back(
+          fmt::format("{} triangles turn by more than {:.4g} degrees against the input still: it is "
+                      "rough there, or turns sharply without a feature edge",
+                      turned, *options_.normal_deviation));
+  }
+
+  Remeshed finished(Compacted& c) {
+    report_counts(counts_, report_);
+    return std::move(c.result);
+  }
+
+  const SurfaceMesh& surface_;
+  const Features& features_;
+  SizeField sizes_;
+  const SurfaceOptions& options_;
+  const RunContext& context_;
+  StageReport& report_;
+  InputSurface input_;
+  SurfaceKind kind_;
+  std::optional<TriangleTree> tree_;
+  Counts counts_;
+};
+
 }  // namespace
 
 Remeshed remesh_surface(const SurfaceMesh& surface, const Features& features, const SizeField& sizes,
                         const SurfaceOptions& options, const RunContext& context, StageReport& report) {
-  Counts counts;
-  SizeField capped = sizes;
-  InputSurface input = make_input_surface(surface, {});
-  std::optional<TriangleTree> tree;
-  if (options.max_deviation) tree.emplace(surface);
-  for (counts.rounds = 1; counts.rounds <= kMostRounds + 1; ++counts.rounds) {
-    const bool is_last = counts.rounds > kMostRounds;
-    const Effort effort = is_last ? Effort::kInsertOnly : Effort::kFull;
-    Compacted c = attempt(effort, surface, input, features, capped, context, counts);
-    const auto crossings = find_crossings(c.result.surface);
-    counts.crossings += crossings.size();
-    if (!crossings.empty()) {
-      capped = capped_around(capped, centers_of(c.result.surface, crossings), kCap);
-      continue;
-    }
-    if (tree) {
-      const auto places = places_beyond(*options.max_deviation, c.result.surface, surface, *tree);
-      if (!places.empty() && !is_last && counts.deviation_rounds < kMostDeviationRounds) {
-        ++counts.deviation_rounds;
-        capped = capped_around(capped, places, kDeviationCap);
-        continue;
-      }
-      report.count("places beyond the deviation", static_cast<double>(places.size()));
-    }
-    c.result.source = source_triangles(input, surface, c.result.surface, c.vertex_face, c.is_inner);
-    report_counts(counts, report);
-    if (is_last) report.notes.push_back("the surface's own vertices were kept: coarser triangles would cross");
-    return std::move(c.result);
-  }
-  report_counts(counts, report);
-  report.notes.push_back("the surface was kept as it is: every other triangulation tried crosses itself");
-  return input_as_it_is(surface, features, capped);
+  return Remesher(surface, features, sizes, options, context, report).run();
 }
 
 }  // namespace octafront

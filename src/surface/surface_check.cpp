@@ -2,6 +2,8 @@
 
 #include <octafront/repair.h>
 
+#include "surface/defects_steps.h"
+#include "surface/edge_table.h"
 #include "surface/repair_steps.h"
 #include "surface/wording.h"
 
@@ -30,23 +32,29 @@ std::optional<std::string> first_bad_vertex(const SurfaceMesh& surface) {
   return std::nullopt;
 }
 
-/// What does not change when a shell is triangulated anew.
-struct ShellKind {
-  std::uint32_t depth = 0;  ///< number of shells around it
-  std::int64_t genus = 0;
-  int sign = 0;  ///< of the volume it encloses
-  Vec3 at;       ///< a vertex of it
+RepairedSurface as_it_is(const SurfaceMesh& surface) {
+  RepairedSurface as_is;
+  as_is.surface = surface;
+  as_is.face_of_triangle.resize(surface.triangles.size());
+  std::iota(as_is.face_of_triangle.begin(), as_is.face_of_triangle.end(), 0u);
+  return as_is;
+}
 
-  auto key() const { return std::tuple{depth, genus, sign}; }
-};
+std::optional<std::string> first_line(const SurfaceDefects& defects) {
+  if (defects.clean()) return std::nullopt;
+  const std::string all = defects.describe();
+  return all.substr(0, all.find('\n'));
+}
+
+}  // namespace
 
 /// Requires a surface that is closed and manifold.
-std::vector<ShellKind> shell_kinds(const SurfaceMesh& surface) {
+std::vector<SurfaceKind::Shell> SurfaceKind::shells_of(const SurfaceMesh& surface) {
   repair::Draft draft{surface, std::vector<std::uint32_t>(surface.triangles.size())};
   const repair::Pieces pieces = repair::orient_pieces(draft);
   const repair::Nesting nesting = repair::find_nesting(surface, pieces, std::vector<char>(pieces.count(), 1));
   const std::vector<int> sign = repair::volume_signs(surface, pieces);
-  std::vector<ShellKind> kinds(pieces.count());
+  std::vector<Shell> kinds(pieces.count());
   std::vector<std::int64_t> vertices(pieces.count(), 0), faces(pieces.count(), 0);
   std::vector<char> counted_vertex(surface.points.size(), 0);
   for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
@@ -64,37 +72,36 @@ std::vector<ShellKind> shell_kinds(const SurfaceMesh& surface) {
     kinds[p].depth = nesting.depth[p];
     kinds[p].sign = sign[p];
   }
-  std::sort(kinds.begin(), kinds.end(), [](const ShellKind& a, const ShellKind& b) { return a.key() < b.key(); });
+  std::sort(kinds.begin(), kinds.end(), [](const Shell& a, const Shell& b) { return a.key() < b.key(); });
   return kinds;
 }
 
-std::string words(const ShellKind& kind) {
-  return fmt::format("a shell of genus {} inside {}, at {}", kind.genus, counted(kind.depth, "other"),
-                     at_point(kind.at));
+std::string SurfaceKind::words(const Shell& shell) {
+  return fmt::format("a shell of genus {} inside {}, at {}", shell.genus, counted(shell.depth, "other"),
+                     at_point(shell.at));
 }
 
-}  // namespace
+SurfaceKind::SurfaceKind(const SurfaceMesh& input) : wanted_(shells_of(input)) {}
+
+std::optional<std::string> SurfaceKind::first_defect_but_crossings(const SurfaceMesh& result) const {
+  if (auto defect = first_bad_vertex(result)) return defect;
+  const RepairedSurface as_is = as_it_is(result);
+  const EdgeTable table = make_edge_table(result.points.size(), result.triangles);
+  if (auto defect = first_line(defects::find_defects_but_crossings(as_is, table))) return defect;
+  const std::vector<Shell> made = shells_of(result);
+  for (const Shell& shell : made)
+    if (shell.sign != (shell.depth % 2 == 0 ? 1 : -1)) return words(shell) + " is inside out";
+  if (made.size() != wanted_.size())
+    return fmt::format("{} instead of {}", counted(made.size(), "shell"), wanted_.size());
+  for (std::size_t k = 0; k < made.size(); ++k)
+    if (made[k].key() != wanted_[k].key()) return words(made[k]) + " instead of " + words(wanted_[k]);
+  return std::nullopt;
+}
 
 std::optional<std::string> first_surface_defect(const SurfaceMesh& result, const SurfaceMesh& input) {
   if (auto defect = first_bad_vertex(result)) return defect;
-  RepairedSurface as_is;
-  as_is.surface = result;
-  as_is.face_of_triangle.resize(result.triangles.size());
-  std::iota(as_is.face_of_triangle.begin(), as_is.face_of_triangle.end(), 0u);
-  const SurfaceDefects defects = find_defects(as_is);
-  if (!defects.clean()) {
-    const std::string all = defects.describe();
-    return all.substr(0, all.find('\n'));
-  }
-
-  const std::vector<ShellKind> made = shell_kinds(result), wanted = shell_kinds(input);
-  for (const ShellKind& kind : made)
-    if (kind.sign != (kind.depth % 2 == 0 ? 1 : -1)) return words(kind) + " is inside out";
-  if (made.size() != wanted.size())
-    return fmt::format("{} instead of {}", counted(made.size(), "shell"), wanted.size());
-  for (std::size_t k = 0; k < made.size(); ++k)
-    if (made[k].key() != wanted[k].key()) return words(made[k]) + " instead of " + words(wanted[k]);
-  return std::nullopt;
+  if (auto defect = first_line(find_defects(as_it_is(result)))) return defect;
+  return SurfaceKind(input).first_defect_but_crossings(result);
 }
 
 }  // namespace octafront

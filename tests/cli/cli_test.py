@@ -3,6 +3,7 @@ import csv
 import json
 import pathlib
 import signal
+import struct
 import subprocess
 import sys
 import tempfile
@@ -89,6 +90,40 @@ class CommandLine(unittest.TestCase):
         done = self.run_cli("size", self.part, "-o", self.dir / "grid.vtu")
         self.assertIn("tetrahedra expected", done.stdout)
         self.assertTrue((self.dir / "grid.vtu").stat().st_size > 0)
+
+    def test_an_edited_grid_is_passed_back(self):
+        grid, out = self.dir / "grid.vtu", self.dir / "o.vtu"
+        self.run_cli("size", self.part, "-o", grid, "--size", 0.2)
+        self.run_cli("mesh", self.part, "-o", self.dir / "direct.vtu", "--size", 0.2)
+        self.run_cli("mesh", self.part, "-o", out, "--size-grid", grid)
+        count = lambda file: self.run_cli("check", file).stdout.split("mesh of ")[1]
+        self.assertEqual(count(out), count(self.dir / "direct.vtu"))
+        self.assertIn("no other", self.run_cli("mesh", self.part, "-o", out, "--size-grid", grid, "--size", 1,
+                                               status=2).stderr)
+        self.run_cli("size", self.part, "-o", self.dir / "grid.txt", status=2)
+
+    def test_sizes_come_from_files(self):
+        sizes, regions, report = self.dir / "sizes.csv", self.dir / "regions.json", self.dir / "r.json"
+        sizes.write_text("x,y,z,h\n0,0,0,0.05\n1,0,0,0.3\n0,1,0,0.3\n0,0,1,0.3\n")
+        regions.write_text('[{"sphere": [0.2, 0.2, 0.2], "radius": 0.1, "size": 0.03}]')
+        tets = []
+        for option in ([], ["--size-field", sizes], ["--regions", regions]):
+            self.run_cli("mesh", self.part, "-o", self.dir / "o.vtu", "--size", 0.3, "--json", report, *option)
+            tets.append(json.loads(report.read_text())["tets"])
+        self.assertGreater(tets[1], 1.2 * tets[0])
+        self.assertGreater(tets[2], 1.2 * tets[0])
+        self.run_cli("mesh", self.part, "-o", self.dir / "o.vtu", "--regions", sizes.with_name("absent"), status=3)
+
+    def test_numbers_of_elements_may_have_exponents(self):
+        self.run_cli("size", self.part, "--elements", "1e3")
+        for bad in ("1.5", "1e30", "nan", "0"):
+            self.run_cli("size", self.part, "--elements", bad, status=2)
+
+    def test_patches_follow_to_the_mesh(self):
+        self.run_cli("mesh", self.part, "-o", self.dir / "o.msh", "--size", 0.3, "--patches")
+        text = (self.dir / "o.msh").read_bytes()
+        counts = struct.pack("<4q", 0, 0, 4, 1)  # points, curves, surfaces, volumes
+        self.assertTrue(b"$Entities\n" + counts in text)
 
     def test_quiet_prints_nothing(self):
         done = self.run_cli("mesh", self.part, "-o", self.dir / "q.vtu", "--size", 0.3, "-q")

@@ -2,7 +2,6 @@
 
 #include "sizing/make_size_field.h"
 #include "sizing/octree_field.h"
-#include "sizing/size_regions.h"
 #include "support/named_surfaces.h"
 
 #include <filesystem>
@@ -52,6 +51,77 @@ TEST(SizeFieldFile, ReadsBackAsItWas) {
     const Vec3 p{u(random), u(random), 0.3 * u(random)};
     ASSERT_NEAR(again.at(p), h.at(p), 2e-3 * h.at(p));
   }
+}
+
+TEST(PointSizesFile, ReadsTablesAndBothKindsOfVtkFiles) {
+  const std::vector<PointSize> wanted{{{0, 0, 0}, 0.5}, {{1, 0, 0.25}, 2}};
+  const std::string points =
+      "<Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">0 0 0 1 0 .25</DataArray></Points>"
+      "<PointData><DataArray type=\"Float32\" Name=\"h\" format=\"ascii\">.5 2</DataArray></PointData></Piece>";
+  const std::vector<std::string> texts{
+      "x,y,z,size\n0,0,0,0.5\n1,0,0.25,2\n", "0 0 0 .5\n1 0 .25 2",
+      "<VTKFile type=\"PolyData\"><PolyData><Piece NumberOfPoints=\"2\" NumberOfPolys=\"0\">" + points +
+          "</PolyData></VTKFile>",
+      "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid><Piece NumberOfPoints=\"2\" NumberOfCells=\"0\">" + points +
+          "</UnstructuredGrid></VTKFile>"};
+  for (const std::string& text : texts) {
+    SCOPED_TRACE(text);
+    const TemporaryFile file("octafront_sizes", text);
+    const std::vector<PointSize> read = read_point_sizes(file.path());
+    ASSERT_EQ(read.size(), wanted.size());
+    for (std::size_t i = 0; i < read.size(); ++i) {
+      EXPECT_EQ(read[i].p, wanted[i].p);
+      EXPECT_EQ(read[i].size, wanted[i].size);
+    }
+  }
+  for (const std::string text : {"", "0 0 0 -1", "0 0 0", "title\nmore words", "<VTKFile type=\"ImageData\">"}) {
+    SCOPED_TRACE(text);
+    const TemporaryFile file("octafront_sizes", text);
+    EXPECT_THROW(read_point_sizes(file.path()), InputError);
+  }
+}
+
+TEST(PointSizes, AreLinearOnTrianglesAndHoldAtVertices) {
+  const SurfaceMesh surface = testing::cube(1);
+  SizeOptions options;
+  options.gradation = 1;
+  for (const Vec3 p : surface.points) options.point_sizes.push_back({p, 0.1 + 0.2 * p.x});
+  const SizeField h = make(surface, options);
+  for (const Vec3 p : {Vec3{0, 0, 0}, Vec3{0, 0.5, 1}, Vec3{0.5, 0.3, 0}, Vec3{0.25, 1, 0.7}, Vec3{1, 0.4, 0.4}}) {
+    EXPECT_NEAR(h.at(p), 0.1 + 0.2 * p.x, 0.025) << p.x << " " << p.y << " " << p.z;
+  }
+}
+
+TEST(PointSizes, TheNearestSpeaksWhereVerticesHaveNone) {
+  SizeOptions options;
+  options.gradation = 1;
+  options.point_sizes = {{{-1, 0.5, 0.5}, 0.05}, {{2, 0.5, 0.5}, 0.4}};
+  const SizeField h = make(testing::cube(1), options);
+  EXPECT_NEAR(h.at({0, 0.5, 0.5}), 0.05, 0.01);
+  EXPECT_GT(h.at({1, 0.5, 0.5}), 0.3);
+}
+
+TEST(PointSizes, ASmallSizeAtOneCornerOfALargeTriangleIsNotMissed) {
+  const SurfaceMesh surface = testing::cube(1);
+  SizeOptions options;
+  for (const Vec3 p : surface.points) options.point_sizes.push_back({p, p == Vec3{0, 0, 0} ? 0.01 : 5});
+  EXPECT_LT(make(surface, options).at({0, 0, 0}), 0.02);
+}
+
+TEST(SizeFieldOption, TakesNoOtherSource) {
+  SizeOptions options;
+  options.field = SizeField::uniform(0.3);
+  EXPECT_EQ(make(testing::cube(), options).at({0.1, 0.2, 0.3}), 0.3);
+  options.curvature = 12;
+  EXPECT_THROW(make(testing::cube(), options), OptionError);
+}
+
+TEST(KeptSurface, RegionsRefineTheInside) {
+  SizeOptions options;
+  options.regions = {{{0.5, 0.5, 0.5}, {0.5, 0.5, 0.5}, 0.1, 0.02}};
+  StageReport report;
+  const SizeField h = size_field_of_surface(testing::cube(4), options, RunContext{}, report);
+  EXPECT_LT(h.at({0.5, 0.5, 0.5}), 0.03);
 }
 
 TEST(SizeFieldFile, DamagedFilesAreRefused) {

@@ -5,6 +5,7 @@
 
 #include "geometry/hausdorff.h"
 #include "support/named_surfaces.h"
+#include "surface/feature_patches.h"
 #include "surface/halfedge_mesh.h"
 #include "surface/surface_crossings.h"
 
@@ -230,6 +231,75 @@ TEST(Remesh, StaysWithinTheAskedDeviation) {
   EXPECT_GT(hausdorff_distance(coarse, input, 1e-3).lower, 0.02);
   EXPECT_LT(hausdorff_distance(fine.surface, input, 1e-3).upper, 0.015);
   EXPECT_LT(fine.sizes.min_size(), 0.4);
+}
+
+/// The largest angle between a triangle and the sphere's normal at one of its corners, degrees.
+double most_turned(const SurfaceMesh& on_unit_sphere) {
+  double least = 1;
+  for (const auto& [a, b, c] : on_unit_sphere.triangles) {
+    const Vec3 pa = on_unit_sphere.points[a], pb = on_unit_sphere.points[b], pc = on_unit_sphere.points[c];
+    const Vec3 n = normalized(cross(pb - pa, pc - pa));
+    for (const Vec3 p : {pa, pb, pc}) least = std::min(least, dot(n, normalized(p)));
+  }
+  return std::acos(least) * 180 / std::numbers::pi;
+}
+
+TEST(Remesh, StaysWithinTheAskedNormalDeviation) {
+  const SurfaceMesh input = icosphere(5, 1);
+  SurfaceOptions options;
+  StageReport loose, tight;
+  const auto h = SizeField::uniform(0.5);
+  EXPECT_GT(most_turned(remesh_surface(input, {}, h, options, {}, loose).surface), 14);
+  options.normal_deviation = 8;
+  const Remeshed fine = remesh_surface(input, {}, h, options, {}, tight);
+  EXPECT_LT(most_turned(fine.surface), 8.5);
+  EXPECT_LT(fine.sizes.min_size(), 0.4);
+}
+
+TEST(Remesh, DividesTheLinesOfNarrowStripsFiner) {
+  // The rim of the plate is a strip a fifth of the size wide.
+  const Remeshed r = remesh(box(1, 1, 0.02), 0.1);
+  double least = 1;
+  for (const auto& [a, b, c] : r.surface.triangles) {
+    const Vec3 pa = r.surface.points[a], pb = r.surface.points[b], pc = r.surface.points[c];
+    const double x = distance(pa, pb), y = distance(pb, pc), z = distance(pc, pa);
+    least = std::min(least, 4 * squared_length(cross(pb - pa, pc - pa)) / ((x + y + z) * x * y * z));
+  }
+  EXPECT_GT(least, 0.4);
+  EXPECT_NEAR(r.sizes.at({0, 0.5, 0.01}), 0.04, 0.005);
+  EXPECT_NEAR(r.sizes.at({0.5, 0.5, 0.01}), 0.1, 0.01) << "far from the rim nothing changes";
+}
+
+TEST(FeaturePatches, EachFaceOfACubeIsOne) {
+  SurfaceMesh s = cube(4);
+  EXPECT_EQ(divide_into_patches(s, detect_features(s, 40)), 6u);
+  const Remeshed r = remesh(s, 0.2);
+  std::map<std::uint32_t, Vec3> sum;
+  for (std::size_t t = 0; t < r.surface.triangles.size(); ++t) {
+    const auto [a, b, c] = r.surface.triangles[t];
+    sum[r.surface.patch_of(t)] +=
+        cross(r.surface.points[b] - r.surface.points[a], r.surface.points[c] - r.surface.points[a]) / 2;
+  }
+  ASSERT_EQ(sum.size(), 6u);
+  std::set<std::array<int, 3>> directions;
+  for (const auto& [patch, v] : sum) {
+    EXPECT_NEAR(length(v), 1, 1e-12) << "patch " << patch << " is not one whole face";
+    directions.insert({int(std::lround(v.x)), int(std::lround(v.y)), int(std::lround(v.z))});
+  }
+  EXPECT_EQ(directions.size(), 6u);
+}
+
+TEST(FeaturePatches, PartsOfANamedPatchKeepItsName) {
+  SurfaceMesh s = cube(2);
+  s.patch.assign(s.triangles.size(), 0);
+  for (std::size_t t = 0; t < s.triangles.size(); ++t) {
+    const auto [a, b, c] = s.triangles[t];
+    s.patch[t] = s.points[a].z == 1 && s.points[b].z == 1 && s.points[c].z == 1;
+  }
+  s.patch_names = {"wall", "lid"};
+  EXPECT_EQ(divide_into_patches(s, detect_features(s, 40)), 6u);
+  std::multiset<std::string> names(s.patch_names.begin(), s.patch_names.end());
+  EXPECT_EQ(names, (std::multiset<std::string>{"wall.1", "wall.2", "wall.3", "wall.4", "wall.5", "lid"}));
 }
 
 TEST(Remesh, StopsWhenAsked) {
