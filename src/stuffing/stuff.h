@@ -5,7 +5,7 @@
 // J. R. Shewchuk, "Isosurface Stuffing: Fast Tetrahedral Meshes with Good Dihedral Angles", 2007).
 //
 //   stuffing_octree -> lattice_graph (sides, cut edges; implicit_domain says what is inside) -> cut_lattice (warp, cut)
-//     -> snap_features (corners and curves) -> patches, regions
+//     -> manifold (no parts that touch in an edge or a point) -> snap_features (corners and curves) -> patches, regions
 
 #include <octafront/report.h>
 #include <octafront/run_context.h>
@@ -20,7 +20,7 @@ namespace octafront {
 
 /// Fills `surface` by isosurface stuffing. Boundary faces get the patch of the input triangle nearest to them, and that
 /// triangle as their source; regions are numbered by connected parts of the mesh, in order of their first tetrahedron.
-/// The mesh is valid (see first_defect); parts of the body thinner than an element may be lost.
+/// The mesh is valid (see first_defect) and its boundary a closed 2-manifold; parts of the body thinner than an element may be lost.
 /// Throws MeshingError if nothing of the body is as large as an element.
 TetMesh stuff_surface(const SurfaceMesh& surface, const Features& features, SurfaceDomain::Defects defects,
                       const SizeField& sizes, const RunContext& context, StageReport& report);

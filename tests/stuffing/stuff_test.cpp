@@ -4,7 +4,10 @@
 #include <octafront/quality.h>
 #include <octafront/validity.h>
 
+#include "geometry/measures.h"
+#include "mesh/adjacency.h"
 #include "mesh/surface_topology.h"
+#include "stuffing/manifold.h"
 #include "support/named_surfaces.h"
 
 #include <algorithm>
@@ -108,6 +111,32 @@ TEST(Stuffing, IsValidWhereSizesChangeAlongTheSurface) {
   const TetMesh mesh = stuff_surface(sphere, {}, Defects::kClean, sizes, {}, report);
   EXPECT_EQ(first_defect(mesh), std::nullopt);
   EXPECT_NEAR(volume_of(mesh) / enclosed_volume(sphere), 1, 0.02);
+}
+
+// Two tetrahedra of different size that touch in an edge, and one that touches them in a point.
+TEST(Stuffing, DropsWhatTouchesInAnEdgeOrAPoint) {
+  TetMesh mesh;
+  mesh.points = {{0, 0, 0},  {1, 0, 0},  {0, 1, 0},   {0, 0, 1},     {0, -1, 0},
+                 {0, 0, -1}, {0, -2, 0}, {-1, -1, 0}, {-1, -1, 0.5}, {1, 1, 1}};
+  mesh.tets = {{0, 1, 2, 3}, {1, 2, 3, 9}, {0, 1, 4, 5}, {4, 6, 7, 8}};
+  for (Tet& t : mesh.tets)
+    if (signed_volume(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]) < 0)
+      std::swap(t[0], t[1]);
+  mesh.boundary = boundary_triangles(mesh.tets, half_face_neighbors(mesh.tets, mesh.points.size()));
+  ASSERT_FALSE(is_closed_manifold(mesh.boundary, mesh.points.size()));
+  EXPECT_EQ(make_boundary_manifold(mesh, {}), 1u);  // the one below: what it held together falls apart
+  EXPECT_EQ(first_defect(mesh), std::nullopt);
+  EXPECT_TRUE(is_closed_manifold(mesh.boundary, mesh.points.size()));
+  EXPECT_EQ(mesh.tets.size(), 3u);
+}
+
+TEST(Stuffing, BoundaryIsAManifoldWhereWallsAreAsThinAsElements) {
+  for (const double size : {0.2, 0.24, 0.28, 0.33}) {
+    const SurfaceMesh s = testing::hollow_sphere(4, 1, 0.75);
+    const TetMesh mesh = stuffed(s, size);
+    EXPECT_EQ(first_defect(mesh), std::nullopt);
+    EXPECT_TRUE(is_closed_manifold(mesh.boundary, mesh.points.size())) << size;
+  }
 }
 
 TEST(Stuffing, RefusesWhatIsThinnerThanAnElement) {
