@@ -64,7 +64,7 @@ def run(folder, timeout, threads):
     if stage:
         outcome.stage_seconds = float(stage[1]) + (float(improved[1]) if improved else 0.0)
     failed = re.search(r"Error\s*: (.*)", outcome.log)
-    if failed and not outcome.error:
+    if failed:
         outcome.error = failed[1][:120]
     return finish(outcome, folder / "out.msh")
 

@@ -52,3 +52,21 @@ def write_stl(path, points, triangles):
         f.write(bytes(80) + struct.pack("<I", len(triangles)))
         for triangle in triangles:
             f.write(struct.pack("<12fH", 0, 0, 0, *(x for corner in triangle for x in points[corner]), 0))
+
+
+def write_off(path, points, triangles):
+    with open(path, "w") as f:
+        f.write(f"OFF\n{len(points)} {len(triangles)} 0\n")
+        f.writelines(f"{x!r} {y!r} {z!r}\n" for x, y, z in points)
+        f.writelines(f"3 {a} {b} {c}\n" for a, b, c in triangles)
+
+
+def boundary_of_medit(path):
+    """(points, triangles) of the boundary of a mesh that Octafront wrote as MEDIT; only points that are used."""
+    words = open(path).read().split()
+    vertices, faces = words.index("Vertices"), words.index("Triangles")
+    corners = words[faces + 2:faces + 2 + 4 * int(words[faces + 1])]
+    triangles = [tuple(int(v) - 1 for v in corners[i:i + 3]) for i in range(0, len(corners), 4)]
+    number = {v: i for i, v in enumerate(sorted({v for t in triangles for v in t}))}
+    points = [tuple(map(float, words[vertices + 2 + 4 * v:vertices + 5 + 4 * v])) for v in number]
+    return points, [tuple(number[v] for v in t) for t in triangles]
