@@ -1,15 +1,17 @@
 // One evaluator for every mesh, ours or a peer's: octafront_evaluate MESH [SURFACE [--kept]].
-// Reads the written file back and prints one JSON object: validity, quality, and how true the boundary is to SURFACE.
+// Reads the written file back and prints one JSON object: validity, quality, and how true the boundary is to SURFACE;
+// with --kept also what the surface allows at best.
 
 #include <octafront/octafront.h>
 
 #include "geometry/hausdorff.h"
-
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
+#include "surface_bound.h"
 
 #include <cstdio>
+#include <nlohmann/json.hpp>
 #include <string>
+
+#include <fmt/format.h>
 
 namespace {
 
@@ -53,6 +55,12 @@ Json evaluate(const std::string& mesh_file, const std::string& surface_file, boo
   j["defect"] = defect ? Json(*defect) : Json(nullptr);
   add_quality(j, mesh);
   if (!input.triangles.empty()) add_truth(j, mesh, input);
+  if (kept) {
+    const SurfaceBound bound = bound_of(input);
+    j["boundary_points"] = input.points.size();
+    j["surface_beta"] = bound.beta;
+    j["surface_dihedral"] = bound.dihedral;
+  }
   return j;
 }
 
