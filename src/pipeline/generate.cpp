@@ -210,11 +210,22 @@ TetMesh stuffing_stage(const Prepared& p, const SizeField& sizes, const RunConte
   return mesh;
 }
 
+// The boundary of a stuffed mesh in the place of a triangulated surface.
+Remeshed boundary_of_stuffed(const TetMesh& mesh, const SizeField& sizes, double feature_angle) {
+  SurfaceMesh surface{{}, mesh.boundary, mesh.patch, mesh.patch_names};
+  VertexIndex vertices = 0;
+  for (const Triangle& t : surface.triangles) vertices = std::max(vertices, 1 + std::max({t[0], t[1], t[2]}));
+  surface.points.assign(mesh.points.begin(), mesh.points.begin() + vertices);
+  Features features = detect_features(surface, feature_angle);
+  return {std::move(surface), std::move(features), {}, sizes};
+}
+
 void improve_stage(const Prepared& p, TetMesh& mesh, Remeshed& boundary, const Options& options,
                    const RunContext& context, Report& report) {
   run_stage(report, context, "improve", [&](StageReport& stage) {
     const improve::BoundaryInput input{p.repaired.surface, p.features, boundary.features};
-    const bool moves = !options.surface.keep && options.method == Method::kOctreeAft;
+    const bool moves =
+        !options.surface.keep && options.method != Method::kRecover && p.defects == SurfaceDomain::Defects::kClean;
     if (!improve_mesh(mesh, moves ? &input : nullptr, options.improve, context, stage)) return;
     renew_sources(mesh, boundary.surface, p.repaired.surface, p.repaired.face_of_triangle);
     SurfaceMesh& surface = boundary.surface;  // what was filled follows what became of it; its vertices come first
@@ -223,10 +234,9 @@ void improve_stage(const Prepared& p, TetMesh& mesh, Remeshed& boundary, const O
   });
 }
 
-void check_result(const TetMesh& mesh, const SurfaceMesh& boundary, Method method, const RunContext& context,
-                  Report& report) {
+void check_result(const TetMesh& mesh, const SurfaceMesh& boundary, const RunContext& context, Report& report) {
   run_stage(report, context, "check", [&](StageReport&) {
-    if (const auto defect = method == Method::kOctree ? first_defect(mesh) : first_defect(mesh, boundary))
+    if (const auto defect = first_defect(mesh, boundary))
       throw MeshingError("the mesh made is not valid, which is a bug of ours; please report it with the input. " +
                          *defect);
   });
@@ -236,8 +246,9 @@ void check_result(const TetMesh& mesh, const SurfaceMesh& boundary, Method metho
 TetMesh mesh_by_sizes(const Prepared& p, const SizeField& sizes, const Options& options, const RunContext& context,
                       Report& report, Remeshed& boundary) {
   if (options.method == Method::kOctree) {
-    boundary = keep_surface(p, sizes);
-    return stuffing_stage(p, sizes, context, report);
+    TetMesh mesh = stuffing_stage(p, sizes, context, report);
+    boundary = boundary_of_stuffed(mesh, sizes, options.surface.feature_angle);
+    return mesh;
   }
   boundary = options.surface.keep ? keep_surface(p, sizes) : surface_stage(p, sizes, options, context, report);
   return volume_stage(boundary, p.repaired.face_of_triangle, options, context, report);
@@ -312,7 +323,7 @@ Result generate(const SurfaceMesh& surface, const Options& given, const RunConte
   Remeshed boundary = keep_surface(prepared, sizes);
   TetMesh mesh = mesh_to_target(prepared, sizes, options, context, report, boundary);
   improve_stage(prepared, mesh, boundary, options, context, report);
-  check_result(mesh, boundary.surface, options.method, context, report);
+  check_result(mesh, boundary.surface, context, report);
   finish_report(mesh, boundary.sizes, report);
   close_report(report);
   return {std::move(mesh), boundary.sizes, std::move(report)};

@@ -39,6 +39,27 @@ std::vector<std::uint32_t> connected_parts(const TetMesh& mesh) {
   return parts > 1 ? region : std::vector<std::uint32_t>{};
 }
 
+/// Numbers the vertices of the boundary first, in the order of their numbers so far.
+void put_boundary_first(TetMesh& mesh) {
+  std::vector<char> on_boundary(mesh.points.size(), 0);
+  for (const Triangle& t : mesh.boundary)
+    for (const VertexIndex v : t) on_boundary[v] = 1;
+  std::vector<VertexIndex> number(mesh.points.size());
+  std::vector<Vec3> points;
+  points.reserve(mesh.points.size());
+  for (const char wanted : {1, 0})
+    for (std::size_t v = 0; v < number.size(); ++v)
+      if (on_boundary[v] == wanted) {
+        number[v] = static_cast<VertexIndex>(points.size());
+        points.push_back(mesh.points[v]);
+      }
+  mesh.points = std::move(points);
+  for (Tet& t : mesh.tets)
+    for (VertexIndex& v : t) v = number[v];
+  for (Triangle& t : mesh.boundary)
+    for (VertexIndex& v : t) v = number[v];
+}
+
 void name_boundary(TetMesh& mesh, const SurfaceMesh& surface, const TriangleTree& triangles) {
   mesh.source.reserve(mesh.boundary.size());
   for (const auto& [a, b, c] : mesh.boundary)
@@ -58,6 +79,7 @@ TetMesh stuff_surface(const SurfaceMesh& surface, const Features& features, Surf
   report.count("tetrahedra dropped where parts touched", static_cast<double>(make_boundary_manifold(mesh, context)));
   if (mesh.tets.empty())
     throw MeshingError("nothing inside the surface is as large as an element: choose a smaller element size");
+  put_boundary_first(mesh);
   snap_features(mesh, surface, features, domain.triangles(), sizes, context, report);
   name_boundary(mesh, surface, domain.triangles());
   mesh.region = connected_parts(mesh);
