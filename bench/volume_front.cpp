@@ -69,5 +69,11 @@ int main(int argc, char** argv) {
   for (const double d : {0.6, 0.7, 0.75, 0.8165, 0.9, 1.0})
     measure(fmt::format("solid angle, ideal point at {} h", d), sphere, options(d, Ranking::kSolidAngle, Core::kOff));
   measure("quality, ideal point at 0.75 h", sphere, options(0.75, Ranking::kQuality, Core::kOff));
+  for (const auto& [name, order] : {std::pair{"smallest of each layer first", VolumeOptions::Order::kSmallest},
+                                    {"newest first", VolumeOptions::Order::kNewest}}) {
+    VolumeOptions o = options(0.75, Ranking::kSolidAngle, Core::kOff);
+    o.order = order;
+    measure(fmt::format("{}, solid angle, 0.75 h", name), sphere, o);
+  }
   measure("lattice core, solid angle, 0.75 h", sphere, options(0.75, Ranking::kSolidAngle, Core::kLattice));
 }

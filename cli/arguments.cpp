@@ -116,6 +116,7 @@ void declare_surface(CLI::App& command, Arguments& a) {
 void declare_volume(CLI::App& command, Arguments& a) {
   using Core = VolumeOptions::Core;
   using Ranking = VolumeOptions::Ranking;
+  using Order = VolumeOptions::Order;
   VolumeOptions& o = a.options.volume;
   auto* group = command.add_option_group("Volume");
   add_choice<Method>(
@@ -135,6 +136,10 @@ void declare_volume(CLI::App& command, Arguments& a) {
       ->capture_default_str();
   add_choice<Ranking>(*group, "--ranking", o.ranking,
                       {{"solid-angle", Ranking::kSolidAngle}, {"quality", Ranking::kQuality}}, "Order of candidates");
+  add_choice<Order>(
+      *group, "--order", o.order,
+      {{"layers", Order::kLayers}, {"smallest", Order::kSmallest}, {"newest", Order::kNewest}},
+      "Order of the front's faces: layer by layer, the smallest of each layer first, or the newest first");
 }
 
 void declare_improvement(CLI::App& command, Arguments& a) {

@@ -78,6 +78,10 @@ struct VolumeOptions {
   enum class Ranking { kQuality, kSolidAngle };
   /// Order of the candidates: by the solid angle at the apex, as in the paper, or by beta of the new tetrahedron.
   Ranking ranking = Ranking::kSolidAngle;
+  enum class Order { kLayers, kSmallest, kNewest };
+  /// Order of the queue in a block: layer by layer as the faces come; each layer's smallest faces first; or always the
+  /// newest face.
+  Order order = Order::kLayers;
 };
 
 /// How the mesh is improved after it is complete.
@@ -95,8 +99,9 @@ struct ImproveOptions {
 enum class Method {
   kOctreeAft,  ///< the volume front, localised by the octree, around a lattice core
   kAft,        ///< the classical front: sizes from the surface alone, no octree, no lattice; for comparison
-  kOctree,     ///< isosurface stuffing of the octree's lattice: fast, also on surfaces with defects; the boundary is its own
-  kRecover,    ///< the input's triangles kept and filled with as few inner points as possible: coarse, exact, of no size
+  kOctree,   ///< isosurface stuffing of the octree's lattice: fast, also on surfaces with defects; the boundary is its
+             ///< own
+  kRecover,  ///< the input's triangles kept and filled with as few inner points as possible: coarse, exact, of no size
 };
 
 /// Everything that steers generate().

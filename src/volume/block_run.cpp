@@ -19,6 +19,7 @@ class BlockRun {
         block_(block),
         budget_(budget),
         context_(context),
+        order_(options.order),
         front_(state.domain, state.finest_size),
         attempt_(front_, sizes, options, block.territory, result_.counters) {
     fill_front(scratch.local_number);
@@ -67,29 +68,59 @@ class BlockRun {
 
   void work_off(int layers) {
     std::vector<Turn> layer = first_layer();
-    for (; !layer.empty() && layers > 0; --layers) {
+    if (order_ == VolumeOptions::Order::kNewest) return work_off_newest(std::move(layer));
+    for (; !layer.empty() && layers > 0 && !over_budget(); --layers) {
       ++result_.counters.layers;
+      if (order_ == VolumeOptions::Order::kSmallest) sort_by_area(layer);
       created_.clear();
-      for (const Turn& turn : layer) {
-        if (++turns_ % kFacesBetweenChecks == 0) context_.check();
-        if (over_budget()) return;
-        if (!front_.alive(turn.face)) continue;
-        switch (attempt_.advance(turn.face.face, kLimits[turn.level], created_)) {
-          case Attempt::Outcome::kAdvanced:
-            break;
-          case Attempt::Outcome::kStuck:
-            held_.push_back(turn.face);
-            break;
-          case Attempt::Outcome::kBeyond:
-            deferred_.push_back(turn);
-            break;
-        }
-      }
+      for (const Turn& turn : layer) take(turn);
       layer.clear();
       for (const QueuedFace& q : created_)
         if (front_.alive(q)) layer.push_back({q, 0});
     }
     next_ = std::move(layer);
+  }
+
+  /// Depth first: a face's own offspring come before its neighbours.
+  void work_off_newest(std::vector<Turn> stack) {
+    std::reverse(stack.begin(), stack.end());
+    while (!stack.empty() && !over_budget()) {
+      const Turn turn = stack.back();
+      stack.pop_back();
+      created_.clear();
+      take(turn);
+      for (const QueuedFace& q : created_) stack.push_back({q, 0});
+    }
+  }
+
+  void sort_by_area(std::vector<Turn>& layer) const {
+    const auto squared_area = [&](const Turn& t) {
+      const Triangle& c = front_.corners(t.face.face);
+      const Vec3 a = front_.at(c[0]);
+      return squared_length(cross(front_.at(c[1]) - a, front_.at(c[2]) - a));
+    };
+    std::vector<std::pair<double, std::size_t>> keys(layer.size());
+    for (std::size_t i = 0; i < layer.size(); ++i) keys[i] = {squared_area(layer[i]), i};
+    std::sort(keys.begin(), keys.end());
+    std::vector<Turn> sorted;
+    sorted.reserve(layer.size());
+    for (const auto& [area, i] : keys) sorted.push_back(layer[i]);
+    layer = std::move(sorted);
+  }
+
+  void take(const Turn& turn) {
+    if (++turns_ % kFacesBetweenChecks == 0) context_.check();
+    if (over_budget() || !front_.alive(turn.face)) return;
+    switch (attempt_.advance(turn.face.face, kLimits[turn.level], created_)) {
+      case Attempt::Outcome::kAdvanced:
+        break;
+      case Attempt::Outcome::kStuck:
+        held_.push_back(turn.face);
+        break;
+      case Attempt::Outcome::kBeyond:
+        deferred_.push_back(turn);
+        break;
+    }
   }
 
   bool over_budget() const {
@@ -122,6 +153,7 @@ class BlockRun {
   const FrontBlock& block_;
   AdvanceBudget budget_;
   const RunContext& context_;
+  const VolumeOptions::Order order_;
   BlockResult result_;
   Front front_;
   Attempt attempt_;

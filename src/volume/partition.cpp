@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 #include <oneapi/tbb/parallel_for.h>
@@ -12,9 +13,10 @@ namespace octafront {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// Least width of a block in mean extents of its queued faces. A face takes part if what it may reach, about two
-/// extents to each side, lies in its block; below this width less than half of them do.
-constexpr double kLeastWidth = 12;
+/// What a face may reach lies within about this many extents of its box around it.
+constexpr double kReachPerExtent = 2;
+/// A plane may cut the reach of this share of a block's queued faces at most: those would wait for the next phase.
+constexpr double kMostCut = 0.3;
 /// Lists shorter than this are not worth a task of their own.
 constexpr std::size_t kFacesForTask = 4096;
 
@@ -48,31 +50,30 @@ class Divider {
  private:
   double middle(std::uint32_t face, int axis) const { return 0.5 * (boxes_[face].lo[axis] + boxes_[face].hi[axis]); }
 
-  /// Across the longest extent of the owned part of the queue that leaves both sides wide enough.
+  /// Across the longest extent of the owned part of the queue for which the plane cuts few enough.
   bool choose_plane(const FrontBlock& block, int& axis, double& plane) const {
     std::vector<std::uint32_t> own;
     own.reserve(block.queued);
     Box3 extent;
-    double width = 0;
     for (const FrontBlock::Member m : block.members) {
       if (!m.owned || m.face >= queued_) continue;
       own.push_back(m.face);
       extent.add(boxes_[m.face].center());
-      const Vec3 e = boxes_[m.face].extent();
-      width += std::max({e.x, e.y, e.z});
     }
-    width *= kLeastWidth / static_cast<double>(own.size());
     std::array<int, 3> axes{0, 1, 2};
     const Vec3 e = extent.extent();
     std::sort(axes.begin(), axes.end(), [&](int a, int b) { return e[a] != e[b] ? e[a] > e[b] : a < b; });
+    const auto at = own.begin() + static_cast<std::ptrdiff_t>(rule_.quantile * static_cast<double>(own.size()));
     for (const int a : axes) {
-      if (e[a] < width) return false;
-      const auto at = own.begin() + static_cast<std::ptrdiff_t>(rule_.quantile * static_cast<double>(own.size()));
       std::nth_element(own.begin(), at, own.end(),
                        [&](std::uint32_t f, std::uint32_t g) { return middle(f, a) < middle(g, a); });
       axis = a;
       plane = middle(*at, a);
-      if (plane - extent.lo[a] >= 0.5 * width && extent.hi[a] - plane >= 0.5 * width) return true;
+      const auto cut = std::count_if(own.begin(), own.end(), [&](std::uint32_t f) {
+        const Vec3 size = boxes_[f].extent();
+        return std::abs(middle(f, a) - plane) < kReachPerExtent * std::max({size.x, size.y, size.z});
+      });
+      if (static_cast<double>(cut) < kMostCut * static_cast<double>(own.size())) return true;
     }
     return false;
   }

@@ -26,8 +26,8 @@ struct PartitionRule {
   double quantile = 0.5;            ///< where it is divided: share of its queued faces on the lower side
 };
 
-/// Divides space by planes across the longer extents of the queue until no block has too many queued faces, or blocks
-/// become so narrow that most faces would reach beyond them. Blocks therefore follow the sizes of the elements, and
+/// Divides space by planes across the longer extents of the queue until no block has too many queued faces, or a plane
+/// would cut what too many of them reach. Blocks therefore follow the sizes of the elements, and
 /// hold alike amounts of work. The result depends on the front and the rule alone.
 std::vector<FrontBlock> partition_front(const FrontState& front, const PartitionRule& rule);
 
