@@ -4,7 +4,7 @@ Usage: bench/run.sh peers [--models NAME...] [--elements N] [--timeout SECONDS]
 Two comparisons: the surface kept (one that Octafront triangulated to the size, the same for all), and the surface
 triangulated anew by each mesher to the same size. Every mesh is written to a file, and octafront_evaluate judges the
 file. Times are CPU seconds of the whole process, reading and writing included, and of meshing alone where a mesher
-tells it. Writes docs/data/peers.json and the tables between the marks of docs/experiments.md.
+tells it. Prints the tables' rows and writes BUILD/experiments/peers.json, from which docs/experiments.md is made.
 """
 import argparse
 import json
@@ -19,8 +19,6 @@ from peers import cgal, gmsh, netgen, tetgen  # noqa: E402
 from peers.process import finish, run_measured  # noqa: E402
 
 MODELS = ["bunny00", "elephant", "armadillo", "fandisk_large", "anchor_dense"]
-DATA = pathlib.Path("docs/data/peers.json")
-CLASSES = ["< .2", ".2 - .4", ".4 - .6", ".6 - .8", "> .8"]
 
 
 def ours(build, method, surface, folder, timeout, *options):
@@ -128,11 +126,12 @@ def main():
     parser.add_argument("--models", nargs="+", default=MODELS)
     parser.add_argument("--elements", type=int, default=60_000)
     parser.add_argument("--timeout", type=float, default=120)
-    parser.add_argument("--data", type=pathlib.Path, default=DATA)
+    parser.add_argument("--data", type=pathlib.Path)
     args = parser.parse_args()
     rows = compare(args.build.resolve(), args.models, args.elements, args.timeout)
-    args.data.parent.mkdir(parents=True, exist_ok=True)
-    args.data.write_text(json.dumps({"machine": platform.processor() or platform.machine(), "elements": args.elements,
+    data = args.data or args.build / "experiments/peers.json"
+    data.parent.mkdir(parents=True, exist_ok=True)
+    data.write_text(json.dumps({"machine": platform.processor() or platform.machine(), "elements": args.elements,
                                      "timeout": args.timeout, "rows": rows}, indent=1) + "\n")
 
 
