@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <tuple>
 
 namespace octafront {
@@ -19,30 +18,9 @@ constexpr double kReach = 0.7;
 /// improvement starts from it; below it the crease is rather left blunt.
 constexpr double kLeastBeta = 0.12;
 
-/// Smooth parts of a surface: triangles joined over edges that are no feature.
-std::vector<std::uint32_t> smooth_parts(const SurfaceMesh& surface, const Features& features) {
-  std::vector<std::uint32_t> parent(surface.triangles.size());
-  std::iota(parent.begin(), parent.end(), 0u);
-  const auto root = [&](std::uint32_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
-  std::vector<std::pair<Edge, std::uint32_t>> uses;
-  for (std::uint32_t t = 0; t < surface.triangles.size(); ++t)
-    for (int k = 0; k < 3; ++k) {
-      const VertexIndex a = surface.triangles[t][k], b = surface.triangles[t][(k + 1) % 3];
-      uses.push_back({{std::min(a, b), std::max(a, b)}, t});
-    }
-  std::sort(uses.begin(), uses.end());
-  for (std::size_t i = 1; i < uses.size(); ++i) {
-    if (uses[i].first != uses[i - 1].first) continue;
-    if (std::binary_search(features.edges.begin(), features.edges.end(), uses[i].first)) continue;
-    const std::uint32_t a = root(uses[i].second), b = root(uses[i - 1].second);
-    parent[std::max(a, b)] = std::min(a, b);
-  }
-  for (std::uint32_t t = 0; t < parent.size(); ++t) parent[t] = root(t);
-  return parent;
-}
+/// Two vertices near a curve lie on different sides of it if the surface turns by this much between them: curves fade
+/// out, so their sides may be one part of the surface.
+constexpr double kCosOfSides = 0.866;
 
 class Snapper {
  public:
@@ -77,26 +55,26 @@ class Snapper {
     }
   }
 
-  /// Boundary edges with ends on different smooth parts cross a curve: one end goes onto it.
+  /// Boundary edges with ends on different sides of a curve cross it: one end goes onto it.
   void snap_curves(const RunContext& context) {
     std::vector<Triangle> segments;
     for (const auto& [a, b] : features_.edges) segments.push_back({a, b, b});
     const TriangleTree curves(surface_.points, segments);
-    const std::vector<std::uint32_t> part_of_triangle = smooth_parts(surface_, features_);
     struct Goal {
       double squared_distance;
       VertexIndex vertex;
       Vec3 at;
     };
     std::vector<Goal> goal(mesh_.points.size());
-    std::vector<std::uint32_t> part(mesh_.points.size(), kNone);
+    std::vector<Vec3> normal(mesh_.points.size());  // zero: not near a curve
     for (const VertexIndex v : boundary_vertices()) {
       const Vec3 p = mesh_.points[v];
       const double reach = kReach * sizes_.at(p);
       const auto nearest = curves.nearest(p, reach * reach);
       if (nearest.triangle == kNone) continue;
       goal[v] = {nearest.squared_distance, v, nearest.point};
-      part[v] = part_of_triangle[triangles_.nearest(p).triangle];
+      const auto& [a, b, c] = triangles_.corners(triangles_.nearest(p).triangle);
+      normal[v] = unit_normal(a, b, c);
     }
     struct Crossing {
       double squared_distance;
@@ -104,7 +82,7 @@ class Snapper {
     };
     std::vector<Crossing> crossings;
     for (const auto& [a, b] : edges_of(mesh_.boundary)) {
-      if (part[a] == kNone || part[b] == kNone || part[a] == part[b]) continue;
+      if (normal[a] == Vec3{} || normal[b] == Vec3{} || dot(normal[a], normal[b]) > kCosOfSides) continue;
       const bool a_nearer = goal[a].squared_distance <= goal[b].squared_distance;
       const VertexIndex near = a_nearer ? a : b, far = a_nearer ? b : a;
       crossings.push_back({goal[near].squared_distance, near, far});
