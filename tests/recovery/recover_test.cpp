@@ -150,11 +150,16 @@ TEST(RecoverVolume, RefusesVerticesThatShouldBeOne) {
 }
 
 TEST(RecoverVolume, KeepsNastySurfaces) {
-  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
     const testing::NastySurface nasty = testing::nasty_surface(seed);
     SCOPED_TRACE(nasty.name);
     expect_kept(nasty.surface);
   }
+}
+
+// A Steiner point of this has no place inside after the first choices.
+TEST(RecoverVolume, TriesAgainWithOtherChoices) {
+  expect_kept(testing::nasty_surface(1362).surface);
 }
 
 TEST(RecoverVolume, IsDeterministic) {
