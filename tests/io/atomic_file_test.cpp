@@ -68,24 +68,23 @@ TEST(AtomicFile, KeepsModeAndFollowsLinks) {
   EXPECT_EQ(static_cast<unsigned>(fs::status(folder / "real").permissions()), 0640U);
 }
 
-std::string output_error(const std::function<void()>& write) {
+std::string error_of(const std::function<void()>& write) {
   try {
     write();
-  } catch (const OutputError& error) {
+  } catch (const Error& error) {
     return error.what();
   }
-  ADD_FAILURE() << "no OutputError was thrown";
+  ADD_FAILURE() << "nothing was thrown";
   return {};
 }
 
 TEST(AtomicFile, SaysWhyItCannotWrite) {
   const TemporaryFolder folder;
-  EXPECT_NE(output_error([&] { AtomicFile(folder / "none/a"); }).find("no folder"), std::string::npos);
-  EXPECT_NE(output_error([&] { AtomicFile{folder.path()}; }).find("it is a folder"), std::string::npos);
-  EXPECT_NE(output_error([&] { AtomicFile("/dev/null"); }).find("not a plain file"), std::string::npos);
-  EXPECT_NE(output_error([&] { check_mesh_target(folder / "a.docx"); }).find(".vtu, .msh, .mesh"), std::string::npos);
-  EXPECT_NE(output_error([&] { check_surface_target(folder / "a"); }).find(".stl, .obj, .off, .ply"),
-            std::string::npos);
+  EXPECT_NE(error_of([&] { AtomicFile(folder / "none/a"); }).find("no folder"), std::string::npos);
+  EXPECT_NE(error_of([&] { AtomicFile{folder.path()}; }).find("it is a folder"), std::string::npos);
+  EXPECT_NE(error_of([&] { AtomicFile("/dev/null"); }).find("not a plain file"), std::string::npos);
+  EXPECT_NE(error_of([&] { check_mesh_target(folder / "a.docx"); }).find(".vtu, .msh, .mesh"), std::string::npos);
+  EXPECT_NE(error_of([&] { check_surface_target(folder / "a"); }).find(".stl, .obj, .off, .ply"), std::string::npos);
 }
 
 TEST(AtomicFile, AFullDiskLeavesTheOldFile) {
@@ -99,7 +98,7 @@ TEST(AtomicFile, AFullDiskLeavesTheOldFile) {
   rlimit small = before;
   small.rlim_cur = 100;
   setrlimit(RLIMIT_FSIZE, &small);
-  const std::string message = output_error([&] { write_mesh(target, testing::two_tets()); });
+  const std::string message = error_of([&] { write_mesh(target, testing::two_tets()); });
   setrlimit(RLIMIT_FSIZE, &before);
   EXPECT_NE(message.find("File too large"), std::string::npos) << message;
   EXPECT_EQ(file_bytes(target), "old");
