@@ -3,6 +3,7 @@
 #include "geometry/measures.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace octafront {
 
@@ -13,10 +14,14 @@ std::array<double, 3> key_of(Vec3 p) {
 }
 }  // namespace
 
-ClassicFront::ClassicFront(const Box3& domain)
-    : domain_(domain),
-      face_tree_(key_of(domain.lo), key_of(domain.hi)),
-      vertex_tree_(key_of(domain.lo), key_of(domain.hi)) {}
+ClassicFront::ClassicFront(const Box3& domain) : domain_(domain), vertex_tree_(key_of(domain.lo), key_of(domain.hi)) {}
+
+ClassicFront::FaceTree& ClassicFront::tree_for(double extent) {
+  const int power = std::ilogb(extent);
+  for (FaceTree& t : face_trees_)
+    if (t.power == power) return t;
+  return face_trees_.emplace_back(FaceTree{power, AlternatingTree<3>(key_of(domain_.lo), key_of(domain_.hi))});
+}
 
 VertexIndex ClassicFront::add_vertex(Vec3 at) {
   points_.push_back(at);
@@ -34,14 +39,15 @@ ClassicFront::Face ClassicFront::add_face(const Triangle& corners) {
     if (faces_at_[v]++ == 0) vertex_tree_.insert(v, key_of(points_[v]));
   }
   const Vec3 e = box.extent();
-  longest_ = std::max({longest_, e.x, e.y, e.z});
-  face_tree_.insert(face, key_of(box.center()));
+  FaceTree& tree = tree_for(std::max({e.x, e.y, e.z}));
+  tree_of_face_.push_back(static_cast<std::uint8_t>(&tree - face_trees_.data()));
+  tree.tree.insert(face, key_of(box.center()));
   return face;
 }
 
 void ClassicFront::remove_face(Face face) {
   alive_[face] = 0;
-  face_tree_.remove(face);
+  face_trees_[tree_of_face_[face]].tree.remove(face);
   for (const VertexIndex v : faces_[face])
     if (--faces_at_[v] == 0) vertex_tree_.remove(v);
 }
@@ -57,14 +63,16 @@ double ClassicFront::size_of(Face face) const {
 }
 
 void ClassicFront::faces_near(const Box3& box, std::vector<Face>& out) const {
-  // A little more than half, for the middle is rounded.
-  const double reach = 0.5001 * longest_;
-  const Vec3 more{reach, reach, reach};
-  face_tree_.find(key_of(box.lo - more), key_of(box.hi + more), [&](Face f) {
-    Box3 b;
-    for (const VertexIndex v : faces_[f]) b.add(points_[v]);
-    if (b.overlaps(box)) out.push_back(f);
-  });
+  for (const FaceTree& t : face_trees_) {
+    // A little more than half of the largest extent in the tree, for the middle is rounded.
+    const double reach = 1.0001 * std::ldexp(1.0, t.power);
+    const Vec3 more{reach, reach, reach};
+    t.tree.find(key_of(box.lo - more), key_of(box.hi + more), [&](Face f) {
+      Box3 b;
+      for (const VertexIndex v : faces_[f]) b.add(points_[v]);
+      if (b.overlaps(box)) out.push_back(f);
+    });
+  }
 }
 
 void ClassicFront::vertices_near(const Box3& box, std::vector<VertexIndex>& out) const {

@@ -43,9 +43,16 @@ class ClassicFront {
 
  private:
   Box3 domain_;
-  AlternatingTree<3> face_tree_;  ///< of the middles of the faces' boxes
+  /// Faces whose boxes have a largest extent in [2^power, 2^(power + 1)), by the middles of their boxes: a search need
+  /// not reach farther for small faces because there are large ones.
+  struct FaceTree {
+    int power;
+    AlternatingTree<3> tree;
+  };
+  FaceTree& tree_for(double extent);
+  std::vector<FaceTree> face_trees_;
+  std::vector<std::uint8_t> tree_of_face_;
   AlternatingTree<3> vertex_tree_;
-  double longest_ = 0;  ///< extent of any face's box so far: how far a face reaches from its middle
   std::vector<Vec3> points_;
   std::vector<std::uint32_t> faces_at_;  ///< per vertex
   std::vector<Triangle> faces_;
