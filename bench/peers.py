@@ -125,7 +125,7 @@ def main():
     parser.add_argument("build", type=pathlib.Path)
     parser.add_argument("--models", nargs="+", default=MODELS)
     parser.add_argument("--elements", type=int, default=60_000)
-    parser.add_argument("--timeout", type=float, default=120)
+    parser.add_argument("--timeout", type=float, default=90)
     parser.add_argument("--data", type=pathlib.Path)
     args = parser.parse_args()
     rows = compare(args.build.resolve(), args.models, args.elements, args.timeout)
