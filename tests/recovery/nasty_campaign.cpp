@@ -99,6 +99,8 @@ std::optional<std::string> failure(const Mesher& mesher, const SurfaceMesh& surf
   }
 }
 
+constexpr std::uint64_t kSeedsPerLine = 500;  // of progress
+
 struct Tally {
   std::uint64_t passed = 0, failed = 0;
   double slowest_seconds = 0;
@@ -129,7 +131,12 @@ int run_campaign(std::uint64_t count, std::uint64_t first, std::chrono::seconds 
   std::printf("seeds %s to %s, each by recover_volume() and by generate() with the surface kept\n",
               number(first).c_str(), number(first + count - 1).c_str());
   Tally tally;
-  for (std::uint64_t seed = first; seed < first + count; ++seed) mesh_surface(seed, limit, tally);
+  for (std::uint64_t seed = first; seed < first + count; ++seed) {
+    mesh_surface(seed, limit, tally);
+    if ((seed + 1 - first) % kSeedsPerLine != 0) continue;
+    std::printf("%s seeds done, %s failures\n", number(seed + 1 - first).c_str(), number(tally.failed).c_str());
+    std::fflush(stdout);
+  }
   std::printf("the slowest, %.1f s: %s\n", tally.slowest_seconds, tally.slowest.c_str());
   std::printf("%s passed, %s failed\n", number(tally.passed).c_str(), number(tally.failed).c_str());
   return tally.failed == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
