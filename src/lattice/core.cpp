@@ -5,6 +5,7 @@
 #include "lattice/lattice_octree.h"
 #include "lattice/near_leaves.h"
 #include "lattice/site_table.h"
+#include "mesh/index_range.h"
 
 #include <algorithm>
 #include <atomic>
@@ -259,6 +260,7 @@ class CoreBuilder {
   void take_tets() {
     std::vector<std::size_t> first(chunks_.size() + 1, 0);
     for (std::size_t c = 0; c < chunks_.size(); ++c) first[c + 1] = first[c] + chunks_[c].tets.size();
+    require_in_range(first.back(), kMostTets, "tetrahedra");
     core_.tets.resize(first.back());
     tbb::parallel_for(std::size_t{0}, chunks_.size(), [&](std::size_t c) {
       Tet* out = core_.tets.data() + first[c];
@@ -303,6 +305,7 @@ class CoreBuilder {
 LatticeCore build_lattice_core(const SurfaceMesh& surface, const SizeField& sizes, const RunContext& context) {
   const TriangleTree triangles(surface.points, surface.triangles);
   const LatticeOctree lattice = build_lattice_octree(surface, triangles, sizes, context);
+  require_in_range(lattice.tree.size(), kHanging / 2, "leaves of the lattice");
   const ClearSites sites(lattice, surface, triangles, sizes, context);
   const std::size_t leaves = lattice.tree.size();
   std::vector<CoreChunk> chunks((leaves + kLeavesPerChunk - 1) / kLeavesPerChunk);

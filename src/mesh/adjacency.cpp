@@ -1,5 +1,7 @@
 #include "mesh/adjacency.h"
 
+#include "mesh/index_range.h"
+
 #include <algorithm>
 #include <numeric>
 #include <tuple>
@@ -21,6 +23,7 @@ FaceKey::FaceKey(const Triangle& t) : low(t[0]), middle(t[1]), high(t[2]), even(
 FaceTable::FaceTable(std::span<const Tet> tets, std::size_t vertex_count) : first_of_vertex(vertex_count + 2, 0) {
   // Counting sort by the lowest vertex. Counts stand two places ahead, so that after the sums place v + 1 is the
   // cursor of bucket v, and after filling it is the end of it.
+  require_in_range(tets.size(), kMostTetsWithHalfFaces, "tetrahedra with half-faces");
   const auto half_faces = static_cast<HalfFace>(4 * tets.size());
   for (HalfFace h = 0; h < half_faces; ++h) {
     const Triangle t = corners_of(tets, h);
@@ -42,6 +45,7 @@ FaceTable::FaceTable(std::span<const Tet> tets, std::size_t vertex_count) : firs
 }
 
 std::vector<HalfFace> half_face_neighbors(std::span<const Tet> tets, std::size_t vertex_count) {
+  require_in_range(tets.size(), kMostTetsWithHalfFaces, "tetrahedra with half-faces");
   std::vector<HalfFace> across(4 * tets.size(), kNone);
   FaceTable(tets, vertex_count).for_each_face([&](VertexIndex, std::span<const FaceTable::Entry> on_face) {
     if (on_face.size() != 2) return;

@@ -1,6 +1,6 @@
 #include "volume/advance.h"
 
-#include <octafront/error.h>
+#include "mesh/index_range.h"
 
 #include <array>
 #include <cmath>
@@ -120,7 +120,8 @@ class Phases {
       front_.volume += r.volume;
       add(counters_, r.counters);
     }
-    if (end.point >= kNone) throw MeshingError("more than 2^32 - 1 vertices: choose a larger element size");
+    require_in_range(end.point, kMostVertices, "vertices");
+    require_in_range(front_.tets, kMostTets, "tetrahedra");
     front_.points.resize(end.point);
     front_.sizes.resize(end.point);
     front_.queue.resize(end.queue);

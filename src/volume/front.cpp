@@ -1,7 +1,5 @@
 #include "volume/front.h"
 
-#include <octafront/error.h>
-
 #include "geometry/measures.h"
 
 #include <utility>
@@ -16,7 +14,6 @@ constexpr double kCellPerSize = 2.2;
 Front::Front(const Box3& domain, double finest_size) : domain_(domain), index_(domain, kCellPerSize * finest_size) {}
 
 VertexIndex Front::add_vertex(Vec3 at, double size) {
-  if (vertices_.size() >= kNone) throw MeshingError("more than 2^32 - 1 vertices: choose a larger element size");
   vertices_.push_back({at, static_cast<float>(size), 0});
   return static_cast<VertexIndex>(vertices_.size() - 1);
 }

@@ -1,5 +1,6 @@
 #include "mesh/adjacency.h"
 
+#include "mesh/index_range.h"
 #include "mesh/tet_meshes.h"
 
 #include <set>
@@ -19,6 +20,23 @@ TEST(FaceKey, SortsAndKnowsTheParity) {
     EXPECT_FALSE(FaceKey({t[1], t[0], t[2]}).even);
     t = {t[1], t[2], t[0]};
   }
+}
+
+TEST(IndexRange, TellsWhatDoesNotFit) {
+  EXPECT_NO_THROW(require_in_range(kMostVertices, kMostVertices, "vertices"));
+  try {
+    require_in_range((std::uint64_t{1} << 32) + 5, kMostVertices, "vertices");
+    FAIL();
+  } catch (const MeshingError& e) {
+    EXPECT_NE(std::string(e.what()).find("4294967301 vertices"), std::string::npos) << e.what();
+  }
+}
+
+TEST(IndexRange, HalfFacesOfTooManyTetsAreRefusedBeforeAnyIsTouched) {
+  // A span that claims more than it has: whoever looks at an element, crashes.
+  const Tet tet{0, 1, 2, 3};
+  const std::span<const Tet> many(&tet, kMostTetsWithHalfFaces + 1);
+  EXPECT_THROW(half_face_neighbors(many, 4), MeshingError);
 }
 
 TEST(HalfFaceNeighbors, LieOnTheSameFaceFromTheOtherSide) {

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <octafront/error.h>
+#include <octafront/tet_mesh.h>
+
+#include <cstdint>
+#include <string>
+
+namespace octafront {
+
+/// Indices are 32 bits wide and kNone is no index. A half-face is four times a tetrahedron and a bit.
+inline constexpr std::uint64_t kMostVertices = kNone;
+inline constexpr std::uint64_t kMostTets = kNone;
+inline constexpr std::uint64_t kMostTetsWithHalfFaces = std::uint64_t{kNone} / 4;
+
+/// Throws MeshingError if there are more than fit. `what` is in the plural.
+inline void require_in_range(std::uint64_t count, std::uint64_t most, const char* what) {
+  if (count > most)
+    throw MeshingError("the mesh needs " + std::to_string(count) + " " + what + ", more than the " +
+                       std::to_string(most) + " that indices of 32 bits can tell apart: choose a larger element size");
+}
+
+}  // namespace octafront
