@@ -2,6 +2,8 @@
 # The benchmarks, by name. Builds what they need.
 #   bench/run.sh status      every model of bench/models.csv: valid? how true is the boundary?   -> docs/status.md
 #   bench/run.sh pipeline    three models at 100 k and 1 M elements, elements per second and stage -> docs/benchmarks.md
+#   bench/run.sh surface     surfaces of all clean models and beside other remeshers  -> docs/surface-status.md, benchmarks.md
+#   bench/run.sh elements    --elements N met? prediction, sizes in the volume          -> docs/benchmarks.md
 #   bench/run.sh volume      kept surfaces up to 10 M elements, against TetGen, HXT and Netgen -> docs/volume-bench.md
 #   bench/run.sh peers       surfaces kept and made anew, against TetGen, Gmsh, Netgen and CGAL -> build/release/experiments/peers.json
 set -euo pipefail
@@ -9,14 +11,15 @@ cd "$(dirname "$0")/.."
 source scripts/lib/apt.sh
 
 case ${1:-} in
-  status | pipeline | volume | peers) ;;
-  *) sed -n '2,7s/^# \{0,1\}//p' "$0"; exit 2 ;;
+  status | pipeline | surface | elements | volume | peers) ;;
+  *) sed -n '2,9s/^# \{0,1\}//p' "$0"; exit 2 ;;
 esac
 need_packages "${build_packages[@]}" python3
+[ "$1" != surface ] || need_packages gmsh netgen libcgal-dev libgmp-dev libmpfr-dev
 [ "$1" != volume ] || need_packages "${peer_packages[@]}"
 [ "$1" != peers ] || need_packages "${peer_packages[@]}" libcgal-dev libgmp-dev libmpfr-dev libboost-dev
 [ -d models/clean ] || scripts/get-models.sh --ct
 cmake --preset release -DOCTAFRONT_BUILD_TESTS=OFF >/dev/null
-cmake --build --preset release --target octafront_cli octafront_evaluate
+cmake --build --preset release --target octafront_cli octafront_evaluate octafront_judge_surface
 [ "$1" != peers ] || cmake --build --preset release --target peer_cgal_mesh || echo "without CGAL's mesher" >&2
 exec python3 "bench/$1.py" build/release "${@:2}"

@@ -137,17 +137,9 @@ def make_with_gmsh(stl, size, folder, _):
 
 
 def make_with_netgen(stl, size, folder, _):
-    driver = pathlib.Path(folder, "remesh.py")
-    driver.write_text("from netgen.stl import *\nfrom netgen.meshing import MeshingParameters, MeshingStep\n"
-                      f"mesh = STLGeometry('{stl}').GenerateMesh(MeshingParameters(maxh={size}, minh={size}, grading=1, "
-                      "perfstepsend=MeshingStep.MESHSURFACE))\n"
-                      "points = [p.p for p in mesh.Points()]\n"
-                      "with open('netgen.off', 'w') as out:\n"
-                      "    faces = [[v.nr - 1 for v in e.vertices] for e in mesh.Elements2D()]\n"
-                      "    out.write(f'OFF\\n{len(points)} {len(faces)} 0\\n')\n"
-                      "    for p in points: out.write('%.17g %.17g %.17g\\n' % tuple(p))\n"
-                      "    for f in faces: out.write('3 %d %d %d\\n' % tuple(f))\n")
-    return cpu_seconds(["python3", driver], folder), "netgen.off"
+    bench, out = pathlib.Path(__file__).resolve().parent, pathlib.Path(folder, "netgen.off")
+    return cpu_seconds(["python3", "-m", "peers.netgen_surface", pathlib.Path(folder, "in.off"), out, str(size)],
+                       bench), out
 
 
 def make_with_cgal(stl, size, folder, build):
@@ -170,17 +162,16 @@ PEERS = [("Gmsh, classified and remeshed", make_with_gmsh), ("Netgen, STL mesher
 def peers(build, rows):
     build_cgal(build)
     lines = head(["model", "remesher", "checks", "triangles", "CPU s", "Hausdorff %", "edge length / wanted",
-                  "% within .7-1.4", "mean 2r/R", "least 2r/R", "straight lines kept"])
+                  "% within .7-1.4", "mean 2r/R", "least 2r/R"])
 
     def add(file, name, r, seconds):
         if "triangles" not in r:
-            lines.append(f"| {file} | {name} | {r['defect'][:80].replace('|', '/')} |" + " |" * 8)
+            lines.append(f"| {file} | {name} | {r['defect'][:80].replace('|', '/')} |" + " |" * 7)
         else:
             lines.append("| " + " | ".join([
                 file, name, (r["defect"] or "passed")[:60].replace("|", "/"), f"{r['triangles']:,}", f"{seconds:.2f}",
                 f"{r['hausdorff_percent']:.3f}", f"{r['edge_ratio']:.3f}", f"{100 * r['edges_within']:.1f}",
-                f"{r['quality_mean']:.3f}", f"{r['quality_min']:.2f}",
-                f"{r['straight_lines'] - r['straight_lines_missing']} of {r['straight_lines']}"]) + " |")
+                f"{r['quality_mean']:.3f}", f"{r['quality_min']:.2f}"]) + " |")
         print(lines[-1], flush=True)
 
     for row in rows:
@@ -193,7 +184,7 @@ def peers(build, rows):
             r = judge(build, model, "--size", size)
             add(file, "Octafront", r, r.get("size_seconds", 0) + r.get("front_seconds", 0))
             stl = pathlib.Path(folder, "in.stl")
-            subprocess.run(["python3", "bench/peers/to_stl.py", model, stl], check=True)
+            subprocess.run(["python3", "bench/peers/to_stl.py", model, stl, stl.with_suffix(".off")], check=True)
             for name, make in PEERS:
                 seconds, made = make(stl, size, folder, build.resolve())
                 path = pathlib.Path(folder, made)
