@@ -1,10 +1,13 @@
 // New size fields from old ones: scaled, and capped near points.
 
+#include "sizing/gradation.h"
 #include "sizing/grid_caps.h"
 #include "sizing/make_size_field.h"
+#include "sizing/octree_corners.h"
 #include "sizing/octree_field.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace octafront {
 
@@ -46,6 +49,24 @@ SizeField capped(const SizeField& sizes, std::vector<SizeCap> caps, double grada
   return SizeField(std::make_shared<Capped>(sizes, std::move(caps), gradation));
 }
 
+/// Cuts sizes that rise faster than the field's gradation.
+void grade_again(OctreeField& field) {
+  const OctreeCorners corners = octree_corners(field.tree);
+  std::vector<double> caps(corners.size(), HUGE_VAL);
+  double highest = 0;
+  for (std::size_t l = 0; l < field.tree.size(); ++l) {
+    for (int k = 0; k < 8; ++k) {
+      caps[corners.of_leaf[l][k]] = field.h[l][k];
+      highest = std::max(highest, field.h[l][k]);
+    }
+  }
+  const std::vector<double> value =
+      graded_corner_values(field.tree, corners, caps, field.gradation, highest, RunContext{});
+  for (std::size_t l = 0; l < field.tree.size(); ++l) {
+    for (int k = 0; k < 8; ++k) field.h[l][k] = value[corners.of_leaf[l][k]];
+  }
+}
+
 }  // namespace
 
 SizeField capped_near(const SizeField& sizes, const std::vector<Vec3>& points, double factor, double gradation) {
@@ -74,7 +95,7 @@ SizeField scaled(const SizeField& sizes, double factor) {
   for (auto& leaf : copy->h) {
     for (double& v : leaf) v *= factor;
   }
-  copy->gradation *= factor;
+  if (factor > 1) grade_again(*copy);
   copy->find_range();
   return SizeField(std::move(copy));
 }

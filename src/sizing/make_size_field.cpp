@@ -20,6 +20,12 @@ constexpr double kRootMargin = 0.02;
 /// --elements: sizes are scaled until the expected number is this close.
 constexpr double kCountTolerance = 0.01;
 constexpr int kMostScalings = 10;
+/// Elements that the automatic size makes at most, about: some seconds of work, and more than most models need.
+constexpr double kAutomaticBudget = 400'000;
+/// Small sizes are raised by this factor at most: real details, such as a thousand small holes, would be lost.
+constexpr double kMostRaised = 2.7;
+constexpr int kBudgetSteps = 6;
+constexpr double kNearBudget = 0.07;
 /// Samples along the side of the root cube where one size holds everywhere: two to a leaf of GridRules::plain_level.
 constexpr double kPlainSamples = 64;
 
@@ -97,6 +103,40 @@ SizeField scaled_to_count(const SurfaceMesh& surface, const WantedSizes& wanted,
   return best;
 }
 
+WantedSizes raised(const WantedSizes& wanted, double floor) {
+  WantedSizes result = wanted;
+  for (double& h : result.face) h = std::max(h, floor);
+  for (SizeSample& s : result.points) s.h = std::max(s.h, floor);
+  if (wanted.at_place) {
+    result.at_place = [f = wanted.at_place, floor](const PlaceOnSurface& p) { return std::max(f(p), floor); };
+  }
+  return result;
+}
+
+/// Sizes of our own choice must not make a large mesh that nobody asked for, as the noise of a scan does, or a thousand
+/// small holes: then the smallest sizes are raised until the number of elements is within the budget.
+SizeField within_budget(const SurfaceMesh& surface, const WantedSizes& wanted, const SizeOptions& options,
+                        const RunContext& context, SizeField field, StageReport& report) {
+  const double first = expected_tets(field, surface);
+  if (first <= kAutomaticBudget) return field;
+  double low = field.min_size(), high = std::min(wanted.ceiling, kMostRaised * low);
+  for (int step = 0; step < kBudgetSteps; ++step) {
+    const double floor = step == 0 ? high : std::sqrt(low * high);
+    SizeField coarser = grid_field(surface, raised(wanted, floor), options, context);
+    const double count = expected_tets(coarser, surface);
+    const bool is_within = count <= kAutomaticBudget;
+    (is_within ? high : low) = floor;
+    if (is_within || step == 0) field = std::move(coarser);
+    if ((step == 0 && !is_within) || std::abs(count / kAutomaticBudget - 1) < kNearBudget) break;
+  }
+  report.notes.push_back(fmt::format(
+      "the details of this surface ask for {:.2g} million elements; the automatic size stops at {:.4g}, for about "
+      "{:.2g} "
+      "million. For more of the details ask for them, e.g. with --elements, --curvature, --gap or --min-size",
+      first / 1e6, field.min_size(), expected_tets(field, surface) / 1e6));
+  return field;
+}
+
 void refuse_huge_counts(const SurfaceMesh& surface, const WantedSizes& wanted) {
   const double largest = *std::max_element(wanted.face.begin(), wanted.face.end());
   const double count = kTetsPerCube * std::abs(enclosed_volume(surface)) / (largest * largest * largest);
@@ -115,8 +155,10 @@ SizeField make_size_field(const SurfaceMesh& surface, const Features& features, 
   if (options.field) return *options.field;
   const WantedSizes wanted = wanted_sizes(surface, features, options, context, report);
   if (!options.elements) refuse_huge_counts(surface, wanted);
-  const SizeField field = options.elements ? scaled_to_count(surface, wanted, options, context, report)
-                                           : grid_field(surface, wanted, options, context);
+  SizeField field = options.elements ? scaled_to_count(surface, wanted, options, context, report)
+                                     : grid_field(surface, wanted, options, context);
+  if (wanted.automatic && !options.elements)
+    field = within_budget(surface, wanted, options, context, std::move(field), report);
   const OctreeField& grid = *as_octree_field(field);
   report.count("leaves", static_cast<double>(grid.tree.size()));
   report.count("levels", grid.tree.depth());

@@ -45,7 +45,7 @@ SizeField capped_near(const SizeField& sizes, const std::vector<Vec3>& points, d
 /// The size field capped to the sizes at the places, within 1.5 of them, graded again from there.
 SizeField capped_at(const SizeField& sizes, const std::vector<PointSize>& places, double gradation);
 
-/// All sizes multiplied by `factor`.
+/// All sizes multiplied by `factor`; where they then rise faster than the gradation they are cut.
 SizeField scaled(const SizeField& sizes, double factor);
 
 }  // namespace octafront

@@ -203,6 +203,7 @@ WantedSizes wanted_sizes(const SurfaceMesh& surface, const Features& features, c
   wanted.ceiling = graded ? options.max_size.value_or(std::numeric_limits<double>::infinity()) : choice.base * scale;
   wanted.ceiling = std::max(wanted.ceiling, options.min_size.value_or(0));
   const auto [least, most] = std::minmax_element(wanted.face.begin(), wanted.face.end());
+  wanted.automatic = choice.automatic && !options.min_size && !options.max_size;
   wanted.even = !wanted.at_place && wanted.points.empty() && *least == *most;
   report.count("base size", choice.base * scale);
   report.count("extent", model_extent(surface));

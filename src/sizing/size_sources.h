@@ -28,6 +28,7 @@ struct WantedSizes {
   SizeAtPlace at_place;            ///< asked at each sample of the surface; may be empty
   double ceiling = 0;              ///< no size inside rises above this
   bool even = false;               ///< one size everywhere
+  bool automatic = false;          ///< the user left the choice to us
 };
 
 /// A measure of the model that neither rotation nor triangulation changes: 2 sqrt(3) times the root mean square
