@@ -14,9 +14,9 @@ from .process import finish, run_measured
 LIBRARIES = ["/usr/lib/x86_64-linux-gnu/netgen/libnglib.so.6.2", "libnglib.so"]
 
 
-def fill(surface, folder, timeout):
+def fill(surface, folder, timeout, optimize=True):
     """Keeps the triangles of `surface` (OFF). The mesh is MEDIT."""
-    return run(surface, folder, timeout)
+    return run(surface, folder, timeout, *([] if optimize else ["--no-optimization"]))
 
 
 def remesh(surface, folder, timeout, size):
@@ -24,11 +24,11 @@ def remesh(surface, folder, timeout, size):
     return run(surface, folder, timeout, size)
 
 
-def run(surface, folder, timeout, *size):
+def run(surface, folder, timeout, *more):
     bench = pathlib.Path(__file__).resolve().parent.parent
     out = pathlib.Path(folder).resolve() / "out.mesh"
     outcome = run_measured([sys.executable, "-m", "peers.netgen", pathlib.Path(surface).resolve(), out,
-                            *size], bench, timeout)
+                            *more], bench, timeout)
     stage = re.search(r"filling CPU seconds: ([\d.]+)", outcome.log)
     if stage:
         outcome.stage_seconds = float(stage[1])
@@ -38,7 +38,12 @@ def run(surface, folder, timeout, *size):
 class Parameters(ctypes.Structure):
     """The beginning of nglib::Ng_Meshing_Parameters; the constructor fills in the rest."""
     _fields_ = [("uselocalh", ctypes.c_int), ("maxh", ctypes.c_double), ("minh", ctypes.c_double),
-                ("fineness", ctypes.c_double), ("grading", ctypes.c_double), ("rest", ctypes.c_char * 2048)]
+                ("fineness", ctypes.c_double), ("grading", ctypes.c_double), ("elementsperedge", ctypes.c_double),
+                ("elementspercurve", ctypes.c_double), ("closeedgeenable", ctypes.c_int),
+                ("closeedgefact", ctypes.c_double), ("minedgelenenable", ctypes.c_int), ("minedgelen", ctypes.c_double),
+                ("second_order", ctypes.c_int), ("quad_dominated", ctypes.c_int),
+                ("meshsize_filename", ctypes.c_char_p), ("optsurfmeshenable", ctypes.c_int),
+                ("optvolmeshenable", ctypes.c_int), ("optsteps_3d", ctypes.c_int), ("rest", ctypes.c_char * 2048)]
 
 
 def load():
@@ -56,7 +61,7 @@ def function(library, mangled, result, *arguments):
     return f
 
 
-def fill_in_process(surface, out):
+def fill_in_process(surface, out, optimize):
     points, triangles = surfaces.read_off(surface)
     library, pointer = load(), ctypes.c_void_p
     function(library, "7Ng_InitEv", None)()
@@ -71,6 +76,8 @@ def fill_in_process(surface, out):
     parameters = Parameters()
     function(library, "21Ng_Meshing_ParametersC1Ev", None, pointer)(ctypes.byref(parameters))
     parameters.maxh = surfaces.mean_edge(points, triangles)
+    if not optimize:
+        parameters.optvolmeshenable = parameters.optsteps_3d = 0
     fill_mesh(library, mesh, parameters)
     save(library, mesh, triangles, out)
 
@@ -133,7 +140,9 @@ def save(library, mesh, triangles, out):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) > 3:
+    if "--no-optimization" in sys.argv:
+        fill_in_process(sys.argv[1], sys.argv[2], False)
+    elif len(sys.argv) > 3:
         remesh_in_process(sys.argv[1], sys.argv[2], float(sys.argv[3]))
     else:
-        fill_in_process(sys.argv[1], sys.argv[2])
+        fill_in_process(sys.argv[1], sys.argv[2], True)

@@ -93,6 +93,13 @@ struct ImproveOptions {
   /// Vertices of the boundary may slide along the input surface, and edges inside its patches turn. Off wherever the
   /// surface is kept.
   bool move_boundary = true;
+  /// What is looked at after every pass; see after_pass.
+  struct Worst {
+    double beta = 0, dihedral_min = 0, dihedral_max = 0;  ///< degrees; over all elements, from their coordinates
+    bool positive = false;                                ///< every element, by exact sign
+  };
+  /// Called before the first pass and after each one, with its name; costs about a microsecond per element each time.
+  std::function<void(const std::string& pass, const Worst&)> after_pass;
 };
 
 /// How the volume gets its tetrahedra.

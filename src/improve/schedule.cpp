@@ -1,6 +1,8 @@
 #include <octafront/error.h>
+#include <octafront/quality.h>
 
 #include "core/stage_timer.h"
+#include "geometry/predicates.h"
 #include "geometry/self_intersection.h"
 #include "improve/explain.h"
 #include "improve/improve.h"
@@ -18,11 +20,36 @@ namespace {
 
 using namespace improve;
 
+/// From the coordinates, so that it checks what the passes believe of the elements.
+ImproveOptions::Worst worst_of(const EditMesh& mesh) {
+  ImproveOptions::Worst worst{2, 180, 0, true};
+  for (TetIndex t = 0; t < mesh.slots(); ++t) {
+    if (!mesh.alive(t)) continue;
+    const Tet& c = mesh.tet(t);
+    const Vec3 a = mesh.point(c[0]), b = mesh.point(c[1]), p = mesh.point(c[2]), q = mesh.point(c[3]);
+    worst.positive &= orient3d(a, b, p, q) > 0;
+    worst.beta = std::min(worst.beta, radius_ratio(a, b, p, q));
+    for (const double angle : dihedral_angles(a, b, p, q)) {
+      worst.dihedral_min = std::min(worst.dihedral_min, angle);
+      worst.dihedral_max = std::max(worst.dihedral_max, angle);
+    }
+  }
+  return worst;
+}
+
 /// Runs passes and notes what each one did.
 class Schedule {
  public:
-  Schedule(EditMesh& mesh, const BoundaryGuide* guide, const RunContext& context, StageReport& report)
-      : mesh_(mesh), guide_(guide), context_(context), report_(report), started_(process_cpu_seconds()) {}
+  Schedule(EditMesh& mesh, const BoundaryGuide* guide, const ImproveOptions& options, const RunContext& context,
+           StageReport& report)
+      : mesh_(mesh),
+        guide_(guide),
+        options_(options),
+        context_(context),
+        report_(report),
+        started_(process_cpu_seconds()) {
+    if (options_.after_pass) options_.after_pass("start", worst_of(mesh_));
+  }
 
   void laplacian(int sweeps, double relaxation, MoveRule rule) {
     note("laplacian moves", laplacian_sweeps(mesh_, sweeps, relaxation, rule, context_));
@@ -71,10 +98,12 @@ class Schedule {
                   1e6 * (now - started_) / static_cast<double>(mesh_.live_tets()));
     started_ = process_cpu_seconds();
     context_.report("improve", -1);
+    if (options_.after_pass) options_.after_pass(what, worst_of(mesh_));
   }
 
   EditMesh& mesh_;
   const BoundaryGuide* guide_;
+  const ImproveOptions& options_;
   const RunContext& context_;
   StageReport& report_;
   double started_;
@@ -162,7 +191,7 @@ TetMesh improved(const TetMesh& mesh, const BoundaryInput* boundary, const std::
   EditMesh edit(TetMesh{mesh});
   std::optional<BoundaryGuide> guide;
   if (boundary) guide.emplace(edit, *boundary, frozen);
-  Schedule run(edit, guide ? &*guide : nullptr, context, report);
+  Schedule run(edit, guide ? &*guide : nullptr, options, context, report);
   run_schedule(run, options);
   run.explain();
   return edit.release();
