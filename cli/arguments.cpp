@@ -156,6 +156,8 @@ void declare_improvement(CLI::App& command, Arguments& a) {
   group->add_option("--relaxation", o.relaxation, "phi of the paper's weighted Laplacian")
       ->type_name("PHI")
       ->capture_default_str();
+  group->add_option("--improve-time", o.seconds, "Seconds after which no further pass begins (then not repeatable)")
+      ->type_name("S");
   group->add_flag("!--fix-boundary", o.move_boundary, "No vertex of the boundary slides on the surface, no edge turns");
 }
 

@@ -93,6 +93,10 @@ struct ImproveOptions {
   /// Vertices of the boundary may slide along the input surface, and edges inside its patches turn. Off wherever the
   /// surface is kept.
   bool move_boundary = true;
+  /// Wall time, >= 0: the pass that is under way when it is over is finished, the rest left out. A run that it cuts
+  /// short is valid, but no longer the same on every machine; the report says so. Without a value the schedule runs to
+  /// its end.
+  std::optional<double> seconds;
   /// What is looked at after every pass; see after_pass.
   struct Worst {
     double beta = 0, dihedral_min = 0, dihedral_max = 0;  ///< degrees; over all elements, from their coordinates

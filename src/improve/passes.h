@@ -58,6 +58,11 @@ inline constexpr int kLongestRing = 7;
 PassResult optimize_vertices(EditMesh& mesh, float threshold, const RunContext& context,
                              const BoundaryGuide* guide = nullptr);
 
+/// Removes inner vertices of elements with a score below `threshold` by collapse onto a neighbour, where that makes the
+/// mean of (1 - beta)^2 around them a good deal less, no new edge is too long, and the worst score of the place rises
+/// or stays above kMeanRisesGuard.
+PassResult collapse_vertices(EditMesh& mesh, float threshold, const RunContext& context);
+
 /// Replaces elements with a score below `threshold`, worst first, and some around them, by the star of a new vertex
 /// where that raises the worst score of the place.
 PassResult insert_vertices(EditMesh& mesh, float threshold, const RunContext& context);

@@ -9,6 +9,7 @@
 #include "improve/passes.h"
 
 #include <algorithm>
+#include <chrono>
 #include <optional>
 #include <string>
 #include <utility>
@@ -19,6 +20,14 @@ namespace octafront {
 namespace {
 
 using namespace improve;
+
+class Stopwatch {
+ public:
+  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
 
 /// From the coordinates, so that it checks what the passes believe of the elements.
 ImproveOptions::Worst worst_of(const EditMesh& mesh) {
@@ -52,17 +61,32 @@ class Schedule {
   }
 
   void laplacian(int sweeps, double relaxation, MoveRule rule) {
-    note("laplacian moves", laplacian_sweeps(mesh_, sweeps, relaxation, rule, context_));
+    pass("laplacian moves", [&] { return laplacian_sweeps(mesh_, sweeps, relaxation, rule, context_); });
   }
-  void smooth_mean(int sweeps) { note("moves for the mean", improve::smooth_mean(mesh_, sweeps, context_)); }
+  void smooth_mean(int sweeps) {
+    pass("moves for the mean", [&] { return improve::smooth_mean(mesh_, sweeps, context_); });
+  }
   /// The boundary too.
-  void slide_mean() { note("moves and slides for the mean", improve::smooth_mean(mesh_, 1, context_, guide_)); }
-  void mean_flips(float threshold) {
-    note("reconnections for the mean", reconnect(mesh_, threshold, Goal::kMean, context_));
+  void slide_mean() {
+    pass("moves and slides for the mean", [&] { return improve::smooth_mean(mesh_, 1, context_, guide_); });
   }
-  void flips(float threshold) { note("reconnections", reconnect(mesh_, threshold, Goal::kWorst, context_, guide_)); }
-  void insert(float threshold) { note("inserted vertices", insert_vertices(mesh_, threshold, context_)); }
-  void optimize(float threshold) { note("optimised vertices", optimize_vertices(mesh_, threshold, context_, guide_)); }
+  void mean_flips(float threshold) {
+    pass("reconnections for the mean", [&] { return reconnect(mesh_, threshold, Goal::kMean, context_); });
+  }
+  void flips(float threshold) {
+    pass("reconnections", [&] { return reconnect(mesh_, threshold, Goal::kWorst, context_, guide_); });
+  }
+  void collapse(float threshold) {
+    pass("collapsed vertices", [&] { return collapse_vertices(mesh_, threshold, context_); });
+  }
+  void insert(float threshold) {
+    pass("inserted vertices", [&] { return insert_vertices(mesh_, threshold, context_); });
+  }
+  void optimize(float threshold) {
+    pass("optimised vertices", [&] { return optimize_vertices(mesh_, threshold, context_, guide_); });
+  }
+
+  double mean_beta() const { return mesh_.beta_sum() / static_cast<double>(mesh_.live_tets()); }
 
   /// Says what stays poor and why.
   void explain() {
@@ -90,6 +114,16 @@ class Schedule {
  private:
   static constexpr float kReported = 0.4f;
 
+  template <typename Run>
+  void pass(const char* what, Run&& run) {
+    if (late_) return;
+    note(what, run());
+    if (!options_.seconds || !(clock_.seconds() > *options_.seconds)) return;
+    late_ = true;
+    report_.notes.push_back(
+        fmt::format("the {} s for improvement were over after pass {}", *options_.seconds, passes_));
+  }
+
   void note(const char* what, const PassResult& result) {
     const double now = process_cpu_seconds();
     report_.count(fmt::format("pass {}: {}", ++passes_, what), static_cast<double>(result.done));
@@ -107,6 +141,8 @@ class Schedule {
   const RunContext& context_;
   StageReport& report_;
   double started_;
+  Stopwatch clock_;
+  bool late_ = false;
   int passes_ = 0;
 };
 
@@ -124,13 +160,32 @@ void run_fast(Schedule& run, const ImproveOptions& options) {
   run.flips(kWanted);
 }
 
+/// More rounds for the mean as long as one raises it by this: none on meshes that the front made, several on poor ones.
+constexpr double kWorthARound = 0.004;
+constexpr int kMostRounds = 12;
+
+void rounds_for_mean(Schedule& run, float threshold) {
+  double before = run.mean_beta();
+  for (int round = 0; round < kMostRounds; ++round) {
+    run.collapse(threshold);
+    run.mean_flips(threshold);
+    run.slide_mean();
+    const double now = run.mean_beta();
+    if (now - before < kWorthARound) return;
+    before = now;
+  }
+}
+
 void run_default(Schedule& run, const ImproveOptions& options) {
   run.laplacian(2, options.relaxation, MoveRule::kMeanRises);
   run.flips(kWanted);
+  run.collapse(kWanted);
   run.mean_flips(kGood);
   run.slide_mean();
+  const double before = run.mean_beta();
   run.flips(kWanted);
   run.smooth_mean(1);
+  if (run.mean_beta() - before > kWorthARound) rounds_for_mean(run, kGood);
   for (int round = 0; round < 2; ++round) {
     run.optimize(kWanted);
     run.flips(kWanted);
@@ -145,7 +200,9 @@ void run_default(Schedule& run, const ImproveOptions& options) {
 void run_best(Schedule& run, const ImproveOptions& options) {
   run.laplacian(2, options.relaxation, MoveRule::kMeanRises);
   run.flips(kWantedBest);
+  rounds_for_mean(run, kGood);
   for (int round = 0; round < 4; ++round) {
+    run.collapse(kGood);
     run.mean_flips(kGoodBest);
     run.slide_mean();
     run.smooth_mean(1);
@@ -180,6 +237,8 @@ void check_options(const ImproveOptions& options) {
     throw OptionError(fmt::format("the relaxation factor must lie in (0, 1], not {}", options.relaxation));
   if (options.sweeps < 0)
     throw OptionError(fmt::format("the number of sweeps must not be negative: {}", options.sweeps));
+  if (options.seconds && !(*options.seconds >= 0))
+    throw OptionError(fmt::format("the time for improvement must not be negative: {}", *options.seconds));
 }
 
 /// How often a boundary that came to cross itself is tried again with the places frozen, before all of it is.

@@ -55,6 +55,23 @@ TEST(Improve, GivesTheSameOnAnyNumberOfThreads) {
   for (const int threads : {2, 3, 8}) EXPECT_EQ(improved(start, Level::kDefault, threads), once);
 }
 
+TEST(Improve, EndsAfterThePassInWhichItsTimeIsOver) {
+  TetMesh mesh = perturbed(kuhn_cube(5), 0.6, 3);
+  ImproveOptions options;
+  options.seconds = 0;
+  int passes = -1;  // the look at the start
+  options.after_pass = [&](const std::string&, const ImproveOptions::Worst& worst) {
+    EXPECT_TRUE(worst.positive);
+    ++passes;
+  };
+  StageReport report;
+  improve_mesh(mesh, nullptr, options, {}, report);
+  EXPECT_EQ(passes, 1);
+  EXPECT_FALSE(report.notes.empty());
+  options.seconds = -1;
+  EXPECT_THROW(improve_mesh(mesh, nullptr, options, {}, report), OptionError);
+}
+
 TEST(Improve, DoesNotDependOnUnits) {
   const TetMesh start = perturbed(kuhn_cube(5), 0.6, 4);
   const TetMesh once = improved(start, Level::kDefault);

@@ -220,6 +220,7 @@ TEST(Passes, LeaveAValidMeshWhoseWorstIsNoWorse) {
       run([&] { reconnect(edit, 0.6f, Goal::kWorst, {}); });
       run([&] { smooth_mean(edit, 1, {}); });
       run([&] { reconnect(edit, 0.9f, Goal::kMean, {}); });
+      run([&] { collapse_vertices(edit, 0.7f, {}); });
       run([&] { optimize_vertices(edit, 0.6f, {}); });
       run([&] { insert_vertices(edit, 0.4f, {}); });
     }
@@ -227,6 +228,28 @@ TEST(Passes, LeaveAValidMeshWhoseWorstIsNoWorse) {
     expect_laws(start, after);
     EXPECT_GE(worst_beta(after), worst_beta(start));
   }
+}
+
+TEST(Collapse, RemovesAVertexThatStandsTooClose) {
+  TetMesh start = kuhn_cube(3);
+  const Tet split = start.tets[80];
+  const auto v = static_cast<VertexIndex>(start.points.size());
+  const Vec3 p = start.points[split[0]];
+  Vec3 middle;
+  for (const VertexIndex corner : split) middle += start.points[corner] * 0.25;
+  start.points.push_back(p + 0.05 * (middle - p));
+  start.tets[80] = {v, split[1], split[2], split[3]};
+  for (int i = 1; i < 4; ++i) {
+    Tet t = split;
+    t[i] = v;
+    start.tets.push_back(t);
+  }
+  EditMesh edit{TetMesh{start}};
+  EXPECT_EQ(collapse_vertices(edit, 0.4f, {}).done, 1u);
+  const TetMesh after = edit.release();
+  expect_laws(start, after);
+  EXPECT_EQ(after.points.size(), start.points.size() - 1);
+  EXPECT_EQ(after.tets.size(), kuhn_cube(3).tets.size());
 }
 
 TEST(Optimize, RaisesTheWorstAroundABadVertex) {

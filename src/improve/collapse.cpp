@@ -1,0 +1,127 @@
+// Removal of a vertex by the collapse of an edge: the vertex goes to a neighbour, the elements around that edge vanish.
+// Mends what stands too close: meshes of other tools have more of it than ours.
+
+#include "improve/passes.h"
+#include "improve/star_edit.h"
+
+#include <algorithm>
+
+namespace octafront::improve {
+namespace {
+
+/// New edges are at most this many times as long as the mean edge of the star that they replace: sizes stay honest.
+constexpr double kLongest = 2;
+/// What the mean of (1 - beta)^2 must fall to, as a part of what it was; or by how much the worst score must rise.
+constexpr double kFall = 0.9;
+constexpr float kRise = 0.05f;
+
+class Collapser {
+ public:
+  Collapser(EditMesh& mesh, const Floor& floor) : mesh_(mesh), floor_(floor), star_(mesh) {}
+
+  /// True if vertex v is gone.
+  bool improve(VertexIndex v) {
+    if (!star_.load(v)) return false;
+    old_worst_ = star_.current_worst();
+    old_lack_ = star_.current_deficit() / static_cast<double>(star_.faces().size());
+    find_neighbours(v);
+    VertexIndex best = kNone;
+    double least = kFall * old_lack_;
+    for (const VertexIndex u : neighbours_) {
+      const double lack = lack_at(u);
+      if (lack < least) least = lack, best = u;
+    }
+    if (best == kNone) return false;
+    collapse_to(best);
+    return true;
+  }
+
+ private:
+  bool has(HalfFace h, VertexIndex u) const {
+    const Tet& t = mesh_.tet(h / 4);
+    return t[0] == u || t[1] == u || t[2] == u || t[3] == u;
+  }
+
+  void find_neighbours(VertexIndex v) {
+    neighbours_.clear();
+    for (const HalfFace h : star_.faces())
+      for (const VertexIndex u : mesh_.tet(h / 4))
+        if (u != v) neighbours_.push_back(u);
+    std::sort(neighbours_.begin(), neighbours_.end());
+    neighbours_.erase(std::unique(neighbours_.begin(), neighbours_.end()), neighbours_.end());
+    double sum = 0;
+    for (const VertexIndex u : neighbours_) sum += distance(mesh_.point(v), mesh_.point(u));
+    const double mean = sum / static_cast<double>(neighbours_.size());
+    squared_limit_ = kLongest * kLongest * mean * mean;
+  }
+
+  /// Mean of (1 - beta)^2 with the vertex at its neighbour u; 1 if that is not allowed.
+  double lack_at(VertexIndex u) {
+    const Vec3 p = mesh_.point(u);
+    for (const VertexIndex w : neighbours_)
+      if (squared_length(mesh_.point(w) - p) > squared_limit_) return 1;
+    star_.evaluate(p);
+    const ShapeBatch& batch = star_.batch();
+    double sum = 0;
+    float worst = 1;
+    int count = 0;
+    for (int k = 0; k < batch.size; ++k) {
+      if (has(star_.faces()[k], u)) continue;
+      const Shape s = batch.shape(k);
+      if (s.beta < kCertainBeta || !floor_.below(s)) return 1;
+      worst = std::min(worst, s.score);
+      sum += (1 - double{s.beta}) * (1 - double{s.beta});
+      ++count;
+    }
+    if (worst <= old_worst_ && worst <= kMeanRisesGuard) return 1;
+    const double lack = sum / std::max(count, 1);
+    return worst > old_worst_ + kRise ? std::min(lack, lack * kFall) : lack;
+  }
+
+  void collapse_to(VertexIndex u) {
+    star_.evaluate(mesh_.point(u));
+    old_tets_.clear(), new_tets_.clear(), shapes_.clear();
+    for (std::size_t k = 0; k < star_.faces().size(); ++k) {
+      const HalfFace h = star_.faces()[k];
+      old_tets_.push_back(h / 4);
+      if (has(h, u)) continue;
+      Tet t = mesh_.tet(h / 4);
+      t[h % 4] = u;
+      new_tets_.push_back(t);
+      shapes_.push_back(star_.batch().shape(static_cast<int>(k)));
+    }
+    mesh_.replace(old_tets_, new_tets_, shapes_, created_);
+  }
+
+  EditMesh& mesh_;
+  Floor floor_;
+  StarEdit star_;
+  float old_worst_ = 0;
+  double old_lack_ = 0, squared_limit_ = 0;
+  std::vector<VertexIndex> neighbours_;
+  std::vector<TetIndex> old_tets_, created_;
+  std::vector<Tet> new_tets_;
+  std::vector<Shape> shapes_;
+};
+
+}  // namespace
+
+PassResult collapse_vertices(EditMesh& mesh, float threshold, const RunContext& context) {
+  PassResult result;
+  std::vector<std::uint8_t> seen(mesh.vertices(), 0);
+  Collapser collapser(mesh, mesh.floor());
+  for (TetIndex t = 0; t < mesh.slots(); ++t) {
+    if (t % 4096 == 0) context.check();
+    for (int i = 0; i < 4; ++i) {
+      if (!mesh.alive(t) || mesh.shape(t).score >= threshold) break;
+      const VertexIndex v = mesh.tet(t)[i];
+      if (mesh.on_boundary(v) || seen[v]) continue;
+      seen[v] = 1;
+      ++result.tried;
+      result.done += collapser.improve(v);
+    }
+  }
+  return result;
+}
+
+}  // namespace octafront::improve
