@@ -26,6 +26,9 @@ constexpr double kTetsPerSlope = 1.1;
 constexpr int kStepsPerOctave = 48;
 /// What a lattice that misses the number by e-fold is worth in octaves of distance to the surface's own size.
 constexpr double kMissPerOctave = 0.15;
+/// What a lattice that misses the number by e-fold is worth in parts of the volume that are not in cells of the
+/// commonest size. Sizes that differ little then get cells of one size, without the poorer elements in between.
+constexpr double kMissPerMixed = 0.2;
 
 /// What the sizes ask for, in parts: lengths in units of the root's side, elements in units of kTetsPerCube.
 struct Demand {
@@ -51,6 +54,19 @@ double elements_inside(const Demand& demand, double cell) {
   return sum;
 }
 
+/// Part of the volume that lies in cells of the commonest size.
+double largest_share(const Demand& demand, double cell) {
+  std::map<double, double> volume_of;
+  double all = 0, most = 0;
+  for (const auto& [step, volume] : demand.volume) {
+    double& sum = volume_of[lattice_size(size_of_step(step), cell)];
+    sum += volume;
+    all += volume;
+    most = std::max(most, sum);
+  }
+  return all > 0 ? most / all : 1;
+}
+
 double elements_asked_inside(const Demand& demand) {
   double sum = 0;
   for (const auto& [step, volume] : demand.volume) sum += volume / std::pow(size_of_step(step), 3);
@@ -64,7 +80,7 @@ double choose_cell(const Demand& demand) {
   for (int i = -kStepsPerOctave / 2; i <= kStepsPerOctave / 2; ++i) {
     const double octaves = double(i) / kStepsPerOctave, cell = demand.surface_size * std::exp2(octaves);
     const double miss = asked > 0 ? std::abs(std::log(elements_inside(demand, cell) / asked)) : 0;
-    const double cost = miss + kMissPerOctave * std::abs(octaves);
+    const double cost = miss + kMissPerOctave * std::abs(octaves) + kMissPerMixed * (1 - largest_share(demand, cell));
     if (cost < least) {
       least = cost;
       best = cell;
