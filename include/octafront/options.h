@@ -34,6 +34,9 @@ struct SizeOptions {
   std::optional<double> gap;             ///< elements across thin walls and narrow gaps, > 0
   std::optional<double>
       feature_elements;            ///< elements along each feature curve at least (closed curves: twice that), > 0
+  /// Sizes by which triangles stay within this distance of a curved surface; input units, > 0. generate() sets it from
+  /// SurfaceOptions::max_deviation, so that the prediction of elements knows of it.
+  std::optional<double> chord_error;
   bool facets = false;             ///< the paper's rule: grid leaves follow the areas of the input's facets
   std::optional<double> min_size;  ///< no size falls below this, input units
   std::optional<double> max_size;  ///< no size rises above this, input units

@@ -100,8 +100,10 @@ Prepared prepare(const SurfaceMesh& input, const Options& options, const RunCont
 SizeField size_stage(const Prepared& p, const Options& options, const RunContext& context, Report& report) {
   const SurfaceMesh& surface = p.repaired.surface;
   SizeField sizes = run_stage(report, context, "size field", [&](StageReport& stage) {
-    return options.surface.keep ? size_field_of_surface(surface, options.size, context, stage)
-                                : make_size_field(surface, p.features, options.size, context, stage);
+    SizeOptions size = options.size;
+    if (!size.field) size.chord_error = options.surface.max_deviation;
+    return options.surface.keep ? size_field_of_surface(surface, size, context, stage)
+                                : make_size_field(surface, p.features, size, context, stage);
   });
   report.expected_tets = expected_tets(sizes, surface);
   return sizes;

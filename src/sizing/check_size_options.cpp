@@ -24,6 +24,7 @@ void require_positive(const char* name, const std::optional<double>& value) {
 void check_size_options(const SizeOptions& o) {
   require_positive("size", o.size);
   require_positive("gap", o.gap);
+  require_positive("max-deviation", o.chord_error);
   require_positive("feature-elements", o.feature_elements);
   require_positive("min-size", o.min_size);
   require_positive("max-size", o.max_size);

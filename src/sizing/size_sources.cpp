@@ -91,6 +91,14 @@ void apply_curvature(const SurfaceCurvature& curvature, double elements, double 
   }
 }
 
+/// The centroid of an equilateral triangle with its corners on a sphere of curvature k lies k h^2 / 6 below it.
+void apply_chord_error(const SurfaceCurvature& curvature, double error, double floor, std::vector<double>& face) {
+  for (std::size_t f = 0; f < face.size(); ++f) {
+    const double k = curvature.largest[f];
+    if (k * face[f] * face[f] > 6 * error) face[f] = std::max(floor, std::sqrt(6 * error / k));
+  }
+}
+
 /// Vertices on the surface and edges of length h between them: the triangles lie h^2 (k1 + k2) / 16 below it on
 /// average.
 double predicted_volume_loss(const SurfaceMesh& surface, const SurfaceCurvature& curvature,
@@ -183,12 +191,13 @@ WantedSizes wanted_sizes(const SurfaceMesh& surface, const Features& features, c
   WantedSizes wanted;
   wanted.face.assign(surface.triangles.size(), choice.base);
   double scale = 1;
-  if (choice.curvature > 0 || options.facets) {
+  if (choice.curvature > 0 || options.facets || options.chord_error) {
     const FaceNeighbours across = smooth_face_neighbours(surface, features.edges);
     if (options.facets) apply_facets(surface, across, choice.floor, wanted.face);
-    if (choice.curvature > 0) {
+    if (choice.curvature > 0 || options.chord_error) {
       const SurfaceCurvature curvature = surface_curvature(surface, across, context);
-      apply_curvature(curvature, choice.curvature, choice.floor, wanted.face);
+      if (options.chord_error) apply_chord_error(curvature, *options.chord_error, choice.floor, wanted.face);
+      if (choice.curvature > 0) apply_curvature(curvature, choice.curvature, choice.floor, wanted.face);
       if (choice.automatic) scale = automatic_scale(surface, curvature, wanted.face);
     }
   }
