@@ -41,7 +41,10 @@ OCTAFRONT_INLINE Faces faces_of_edges(Vec3 u, Vec3 v, Vec3 w) {
 OCTAFRONT_INLINE double beta_of(const Faces& f, Vec3 u, Vec3 v, Vec3 w) {
   const double det = dot(f.nd, w);
   const Vec3 center = squared_length(u) * f.nb + squared_length(v) * f.nc + squared_length(w) * f.nd;
-  return 6 * det * std::abs(det) / ((f.la + f.lb + f.lc + f.ld) * std::sqrt(squared_length(center) + kTiny));
+  const double beta =
+      6 * det * std::abs(det) / ((f.la + f.lb + f.lc + f.ld) * std::sqrt(squared_length(center) + kTiny));
+  // Where the centre of a flat element cancels to nothing, rounding alone decides the quotient.
+  return greater(lesser(1, beta), -1);
 }
 
 OCTAFRONT_INLINE void shape_of_edges(Vec3 u, Vec3 v, Vec3 w, double& beta, double& small, double& large,

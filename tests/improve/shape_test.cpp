@@ -3,6 +3,8 @@
 #include "geometry/predicates.h"
 #include "support/random.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 namespace octafront::improve {
@@ -18,6 +20,7 @@ TEST(Shape, OfFlatElementsIsANumber) {
   for (int i = 0; i < 20000; ++i) {
     const Vec3 a = point(), b = point(), c = point(), d = point();
     const Shape s = shape_of(a, b, c, d);
+    EXPECT_LE(std::abs(s.beta), 1);
     EXPECT_GE(s.small, 0);
     EXPECT_GE(s.large, 0);
     ASSERT_EQ(s.score, s.score) << "sign " << orient3d(a, b, c, d);
