@@ -48,6 +48,18 @@ class TriangleTree {
                   });
   }
 
+  /// Calls visit(triangle, corners) for each triangle whose box meets the closed box, until one says false; returns
+  /// false if one did.
+  template <class Visit>
+  bool for_each_box_near(const Box3& box, Visit&& visit) const {
+    bool on = true;
+    for_each_leaf([&](const Box3& b) { return on && b.overlaps(box); },
+                  [&](const Item& item) {
+                    if (on && box_of(item.corners).overlaps(box)) on = visit(item.triangle, item.corners);
+                  });
+    return on;
+  }
+
   /// Calls visit(triangle, hit) for each triangle that the closed segment pq meets, exactly; see segment_triangle_hit.
   template <class Visit>
   void for_each_hit(Vec3 p, Vec3 q, Visit&& visit) const {

@@ -16,6 +16,10 @@ constexpr double kFacesAlike = 0.8;
 /// A curve vertex farther from the input's curves than this, in edge lengths, belongs to none of them. Those of the
 /// surface front lie on them to rounding; files round to seven digits.
 constexpr double kOnCurve = 1e-3;
+/// What of the input is gathered around a vertex, in edge lengths: centroids of its triangles, moved, and some more.
+constexpr double kAround = 0.8;
+/// How far the input is looked for among what was gathered, in edge lengths.
+constexpr double kFirstLook = 0.1;
 /// How far from the tangent plane the surface may lie, as a part of the step along it.
 constexpr double kLeaves = 0.5;
 
@@ -33,7 +37,6 @@ BoundaryGuide::BoundaryGuide(const EditMesh& mesh, const BoundaryInput& input, c
     : kind_(mesh.vertices(), Kind::kInner),
       frozen_(mesh.vertices(), 0),
       input_(input),
-      tree_(input.surface),
       curves_(input.surface, input.features) {
   const std::vector<VertexIndex> here = mesh.numbers_here();
   for (VertexIndex v = 0; v < kind_.size(); ++v)
@@ -65,42 +68,37 @@ bool BoundaryGuide::may_turn(VertexIndex a, VertexIndex b) const {
   return !std::binary_search(feature_edges_.begin(), feature_edges_.end(), sorted_edge(a, b));
 }
 
-bool BoundaryGuide::is_true(const TriangleCorners& t, double limit) const {
-  const auto below = tree_.nearest(centroid(t[0], t[1], t[2]), limit * limit);
-  if (below.triangle == kNone) return false;
-  const Vec3 n = area_normal(t), m = area_normal(tree_.corners(below.triangle));
-  const double along = dot(n, m);
-  return along > 0 && along * along >= kFacesAlike * kFacesAlike * squared_length(n) * squared_length(m);
+BoundaryGuide::Truth BoundaryGuide::truth_of(std::span<const TriangleCorners> triangles,
+                                             const NearbyTriangles* nearby) const {
+  Truth truth;
+  for (const TriangleCorners& t : triangles) {
+    const Vec3 middle = centroid(t[0], t[1], t[2]), n = area_normal(t);
+    TriangleTree::Nearest below;
+    if (nearby) below = nearby->nearest(middle, kFirstLook * kFirstLook * squared_distance(t[0], t[1]));
+    if (below.triangle == kNone) below = tree().nearest(middle);
+    const Vec3 m = area_normal(tree().corners(below.triangle));
+    truth.squared_distance = std::max(truth.squared_distance, below.squared_distance);
+    truth.cosine = std::min(truth.cosine, dot(n, m) / std::sqrt(squared_length(n) * squared_length(m)));
+  }
+  return truth;
 }
 
-/// How a triangle lies to the input.
-struct BoundaryGuide::Truth {
-  double squared_distance = 0;  ///< of its centroid: on a smooth surface the sag there is the largest
-  double cosine = 1;            ///< of its angle with the input beneath its centroid
+bool BoundaryGuide::is_true(const Truth& truth, double edge) {
+  return truth.squared_distance <= kNear * kNear * edge * edge && truth.cosine >= kFacesAlike;
+}
 
-  void add(const Truth& t) {
-    squared_distance = std::max(squared_distance, t.squared_distance);
-    cosine = std::min(cosine, t.cosine);
-  }
-};
-
-BoundaryGuide::Truth BoundaryGuide::truth_of(const TriangleCorners& t) const {
-  const auto below = tree_.nearest(centroid(t[0], t[1], t[2]));
-  const Vec3 n = normalized(area_normal(t)), m = normalized(area_normal(tree_.corners(below.triangle)));
-  return {below.squared_distance, dot(n, m)};
+bool BoundaryGuide::keeps_truth(const Truth& had, const Truth& has, double edge) {
+  if (is_true(has, edge)) return true;
+  if (is_true(had, edge)) return false;
+  return has.squared_distance <= std::max(had.squared_distance, kNear * kNear * edge * edge) &&
+         has.cosine >= std::min(had.cosine, kFacesAlike);
 }
 
 bool BoundaryGuide::keeps_truth(std::span<const TriangleCorners> before, std::span<const TriangleCorners> after) const {
   double edge = 0;
   for (const TriangleCorners& t : after) edge += distance(t[0], t[1]) / static_cast<double>(after.size());
-  const double near = kNear * edge;
-  if (std::all_of(after.begin(), after.end(), [&](const TriangleCorners& t) { return is_true(t, near); })) return true;
-  Truth had, has;
-  for (const TriangleCorners& t : before) had.add(truth_of(t));
-  if (had.squared_distance <= near * near && had.cosine >= kFacesAlike) return false;  // it was true and would not be
-  for (const TriangleCorners& t : after) has.add(truth_of(t));
-  return has.squared_distance <= std::max(had.squared_distance, near * near) &&
-         has.cosine >= std::min(had.cosine, kFacesAlike);
+  const Truth has = truth_of(after);
+  return is_true(has, edge) || keeps_truth(truth_of(before), has, edge);
 }
 
 bool SlidingVertex::load(VertexIndex v, std::span<const HalfFace> star) {
@@ -109,7 +107,8 @@ bool SlidingVertex::load(VertexIndex v, std::span<const HalfFace> star) {
   triangles_.clear();
   normal_ = {};
   axes_count_ = 0;
-  double edge = 0;
+  edge_ = 0;
+  had_.reset();
   bool one_patch = true;
   for (const HalfFace h : star) {
     const TetIndex t = h / 4;
@@ -124,12 +123,13 @@ bool SlidingVertex::load(VertexIndex v, std::span<const HalfFace> star) {
       one_patch &= triangles_.size() == 1 || mesh_.boundary_patch(across) == patch_;
       patch_ = mesh_.boundary_patch(across);
       normal_ += area_normal(triangles_.back());
-      edge += distance(at_, triangles_.back()[1]);
+      edge_ += distance(at_, triangles_.back()[1]);
     }
   }
   if (triangles_.empty()) return false;
-  edge /= static_cast<double>(triangles_.size());
-  if (kind_ == BoundaryGuide::Kind::kCurve) return load_curve(edge);
+  edge_ /= static_cast<double>(triangles_.size());
+  nearby_.gather(guide_.tree(), at_, kAround * edge_);
+  if (kind_ == BoundaryGuide::Kind::kCurve) return load_curve();
   normal_ = normalized(normal_);
   if (kind_ != BoundaryGuide::Kind::kSurface || !one_patch || squared_length(normal_) == 0) return false;
   const Vec3 aside = std::abs(normal_.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
@@ -139,8 +139,8 @@ bool SlidingVertex::load(VertexIndex v, std::span<const HalfFace> star) {
   return true;
 }
 
-bool SlidingVertex::load_curve(double edge) {
-  const auto place = guide_.curves().nearest(at_, kOnCurve * edge);
+bool SlidingVertex::load_curve() {
+  const auto place = guide_.curves().nearest(at_, kOnCurve * edge_);
   if (!place) return false;
   on_curve_ = *place;
   axes_[0] = guide_.curves().tangent(on_curve_);
@@ -155,7 +155,7 @@ bool SlidingVertex::snap(Vec3& place) const {
     return there.has_value();
   }
   const double squared_step = squared_distance(place, at_);
-  const auto found = guide_.tree().nearest(place, kLeaves * kLeaves * squared_step);
+  const auto found = nearby_.nearest(place, kLeaves * kLeaves * squared_step);
   if (found.triangle == kNone || guide_.surface().patch_of(found.triangle) != patch_) return false;
   if (!(dot(area_normal(guide_.tree().corners(found.triangle)), normal_) > 0)) return false;
   place = found.point;
@@ -167,7 +167,10 @@ bool SlidingVertex::keeps_truth(Vec3 place) const {
   for (TriangleCorners& t : moved_) t[0] = place;
   for (std::size_t k = 0; k < moved_.size(); ++k)
     if (!(dot(area_normal(moved_[k]), area_normal(triangles_[k])) > 0)) return false;
-  return guide_.keeps_truth(triangles_, moved_);
+  const BoundaryGuide::Truth has = guide_.truth_of(moved_, &nearby_);
+  if (BoundaryGuide::is_true(has, edge_)) return true;
+  if (!had_) had_ = guide_.truth_of(triangles_, &nearby_);
+  return BoundaryGuide::keeps_truth(*had_, has, edge_);
 }
 
 }  // namespace octafront::improve

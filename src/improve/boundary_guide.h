@@ -4,6 +4,7 @@
 // feature curves along their curve, corners nowhere. Every change is judged by how true to the input it leaves the
 // boundary.
 
+#include "geometry/nearby_triangles.h"
 #include "improve/edit_mesh.h"
 #include "improve/feature_curves.h"
 
@@ -16,6 +17,7 @@ namespace octafront::improve {
 /// The surface that the boundary of a mesh stands for; the boundary is a 2-manifold. Everything must outlive the guide.
 struct BoundaryInput {
   const SurfaceMesh& surface;  ///< clean
+  const TriangleTree& tree;    ///< over its triangles
   const Features& features;    ///< of it
   const Features& of_mesh;     ///< of the boundary of the mesh, in the mesh's numbering
 };
@@ -35,25 +37,29 @@ class BoundaryGuide {
   bool may_turn(VertexIndex a, VertexIndex b) const;
 
   const SurfaceMesh& surface() const { return input_.surface; }
-  const TriangleTree& tree() const { return tree_; }
+  const TriangleTree& tree() const { return input_.tree; }
   const FeatureCurves& curves() const { return curves_; }
 
-  /// True if the triangles `after` may replace `before`, one for one, as a part of the boundary: each faces as the
-  /// input does, and its centroid lies near the input; or no worse in either than the worst of `before`.
+  /// How triangles of the boundary lie to the input, at the worst of them.
+  struct Truth {
+    double squared_distance = 0;  ///< of their centroids: on a smooth surface the sag there is the largest
+    double cosine = 1;            ///< of their angle with the input beneath the centroid
+  };
+  /// `nearby`: what of the input is around, where that was gathered.
+  Truth truth_of(std::span<const TriangleCorners> triangles, const NearbyTriangles* nearby = nullptr) const;
+  /// True if triangles of which one would lie so are true by the fixed limits; `edge`: their size.
+  static bool is_true(const Truth& truth, double edge);
+  /// True if triangles that lie like `has` may replace those that lie like `had`: they are true, or no worse.
+  static bool keeps_truth(const Truth& had, const Truth& has, double edge);
+  /// The same for the triangles themselves.
   bool keeps_truth(std::span<const TriangleCorners> before, std::span<const TriangleCorners> after) const;
 
  private:
   void freeze_where_regions_meet(const EditMesh& mesh);
-  /// True by the fixed limits alone.
-  bool is_true(const TriangleCorners& t, double limit) const;
-  struct Truth;
-  Truth truth_of(const TriangleCorners& t) const;
-
   std::vector<Kind> kind_;
   std::vector<std::uint8_t> frozen_;
   std::vector<Edge> feature_edges_;  ///< in the numbering of the EditMesh, sorted
   BoundaryInput input_;
-  TriangleTree tree_;
   FeatureCurves curves_;
 };
 
@@ -72,7 +78,7 @@ class SlidingVertex {
   bool keeps_truth(Vec3 place) const;
 
  private:
-  bool load_curve(double edge);
+  bool load_curve();
 
   const EditMesh& mesh_;
   const BoundaryGuide& guide_;
@@ -83,7 +89,10 @@ class SlidingVertex {
   std::size_t axes_count_ = 0;
   FeatureCurves::Place on_curve_;
   std::vector<TriangleCorners> triangles_;  ///< corner 0 is the vertex
+  double edge_ = 0;  ///< mean length of the boundary edges around it
+  mutable std::optional<BoundaryGuide::Truth> had_;  ///< as the triangles lie now, once that was asked for
   mutable std::vector<TriangleCorners> moved_;
+  NearbyTriangles nearby_;
 };
 
 }  // namespace octafront::improve

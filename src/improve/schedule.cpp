@@ -86,6 +86,17 @@ class Schedule {
     pass("optimised vertices", [&] { return optimize_vertices(mesh_, threshold, context_, guide_); });
   }
 
+  /// Rounds for the worst, until one changes nothing; insertion from round `insert_from` on, below `poor`.
+  void rounds_for_worst(int rounds, float threshold, int insert_from, float poor) {
+    for (int round = 0; round < rounds; ++round) {
+      const std::uint64_t before = changes_;
+      if (round >= insert_from) insert(poor);
+      optimize(threshold);
+      flips(threshold);
+      if (changes_ == before && round >= insert_from) return;
+    }
+  }
+
   double mean_beta() const { return mesh_.beta_sum() / static_cast<double>(mesh_.live_tets()); }
 
   /// Says what stays poor and why.
@@ -127,6 +138,7 @@ class Schedule {
   void note(const char* what, const PassResult& result) {
     const double now = process_cpu_seconds();
     report_.count(fmt::format("pass {}: {}", ++passes_, what), static_cast<double>(result.done));
+    changes_ += result.done;
     report_.count(fmt::format("pass {}: tried", passes_), static_cast<double>(result.tried));
     report_.count(fmt::format("pass {}: us per element", passes_),
                   1e6 * (now - started_) / static_cast<double>(mesh_.live_tets()));
@@ -144,6 +156,7 @@ class Schedule {
   Stopwatch clock_;
   bool late_ = false;
   int passes_ = 0;
+  std::uint64_t changes_ = 0;
 };
 
 /// Scores below which elements are worked on. The reference elements of shape.h have .45; .6 is about 30 degrees.
@@ -186,15 +199,7 @@ void run_default(Schedule& run, const ImproveOptions& options) {
   run.flips(kWanted);
   run.smooth_mean(1);
   if (run.mean_beta() - before > kWorthARound) rounds_for_mean(run, kGood);
-  for (int round = 0; round < 2; ++round) {
-    run.optimize(kWanted);
-    run.flips(kWanted);
-  }
-  for (int round = 0; round < 2; ++round) {
-    run.insert(kPoor);
-    run.optimize(kWanted);
-    run.flips(kWanted);
-  }
+  run.rounds_for_worst(4, kWanted, 2, kPoor);
 }
 
 void run_best(Schedule& run, const ImproveOptions& options) {
@@ -208,13 +213,7 @@ void run_best(Schedule& run, const ImproveOptions& options) {
     run.smooth_mean(1);
   }
   run.flips(kWantedBest);
-  for (int round = 0; round < 5; ++round) {
-    run.optimize(kWantedBest);
-    run.flips(kWantedBest);
-    if (round >= 1) run.insert(kWanted);
-  }
-  run.optimize(kWantedBest);
-  run.flips(kWantedBest);
+  run.rounds_for_worst(8, kWantedBest, 2, kWanted);
 }
 
 void run_schedule(Schedule& run, const ImproveOptions& options) {

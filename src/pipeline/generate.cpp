@@ -226,11 +226,12 @@ Remeshed boundary_of_stuffed(const TetMesh& mesh, const SizeField& sizes, double
 void improve_stage(const Prepared& p, TetMesh& mesh, Remeshed& boundary, const Options& options,
                    const RunContext& context, Report& report) {
   run_stage(report, context, "improve", [&](StageReport& stage) {
-    const improve::BoundaryInput input{p.repaired.surface, p.features, boundary.features};
-    const bool moves =
-        !options.surface.keep && options.method != Method::kRecover && p.defects == SurfaceDomain::Defects::kClean;
+    const bool moves = options.improve.move_boundary && !options.surface.keep && options.method != Method::kRecover &&
+                       p.defects == SurfaceDomain::Defects::kClean;
+    const TriangleTree tree = moves ? TriangleTree(p.repaired.surface) : TriangleTree({}, {});
+    const improve::BoundaryInput input{p.repaired.surface, tree, p.features, boundary.features};
     if (!improve_mesh(mesh, moves ? &input : nullptr, options.improve, context, stage)) return;
-    renew_sources(mesh, boundary.surface, p.repaired.surface, p.repaired.face_of_triangle);
+    renew_sources(mesh, boundary.surface, tree, p.repaired.face_of_triangle);
     SurfaceMesh& surface = boundary.surface;  // what was filled follows what became of it; its vertices come first
     std::copy_n(mesh.points.begin(), surface.points.size(), surface.points.begin());
     surface.triangles = mesh.boundary;

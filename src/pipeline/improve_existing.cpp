@@ -102,9 +102,10 @@ Improved improve_existing(const TetMesh& mesh, const Options& options, const Sur
     run_stage(report, context, "surface",
               [&](StageReport&) { ground = prepare_ground(mesh, *surface, options.surface.feature_angle); });
   run_stage(report, context, "improve", [&](StageReport& stage) {
-    const improve::BoundaryInput on{ground.repaired.surface, ground.features, ground.of_mesh};
+    const TriangleTree tree(ground.repaired.surface);
+    const improve::BoundaryInput on{ground.repaired.surface, tree, ground.features, ground.of_mesh};
     if (improve_mesh(result.mesh, surface ? &on : nullptr, options.improve, context, stage))
-      renew_sources(result.mesh, boundary_of(mesh), ground.repaired.surface, ground.repaired.face_of_triangle);
+      renew_sources(result.mesh, boundary_of(mesh), tree, ground.repaired.face_of_triangle);
   });
   run_stage(report, context, "check", [&](StageReport&) {
     if (const auto defect = first_defect(result.mesh))

@@ -53,7 +53,8 @@ TEST(Boundary, SlidesOnTheSidesAndEdgesOfACube) {
   const TetMesh start = shaken_cube(5, 0.3, 2);
   ASSERT_EQ(first_defect(start), std::nullopt);
   const Features of_mesh = detect_features(boundary_of(start), 40);
-  const BoundaryInput input{cube.surface, cube.features, of_mesh};
+  const TriangleTree tree(cube.surface);
+  const BoundaryInput input{cube.surface, tree, cube.features, of_mesh};
   ImproveOptions options;
   StageReport report;
   TetMesh slid = start, fixed = start;
@@ -88,7 +89,8 @@ TEST(Boundary, StaysWhenTold) {
   const Cube cube;
   const TetMesh start = shaken_cube(4, 0.3, 3);
   const Features of_mesh = detect_features(boundary_of(start), 40);
-  const BoundaryInput input{cube.surface, cube.features, of_mesh};
+  const TriangleTree tree(cube.surface);
+  const BoundaryInput input{cube.surface, tree, cube.features, of_mesh};
   ImproveOptions options;
   options.move_boundary = false;
   StageReport report;
@@ -102,7 +104,8 @@ TEST(Boundary, IsTheSameOnAnyNumberOfThreads) {
   const Cube cube;
   const TetMesh start = shaken_cube(6, 0.25, 4);
   const Features of_mesh = detect_features(boundary_of(start), 40);
-  const BoundaryInput input{cube.surface, cube.features, of_mesh};
+  const TriangleTree tree(cube.surface);
+  const BoundaryInput input{cube.surface, tree, cube.features, of_mesh};
   TetMesh once;
   for (const int threads : {1, 2, 3, 8}) {
     RunContext context;
@@ -128,7 +131,8 @@ TEST(Boundary, ASliverOnItGoesWithoutAnotherInItsPlace) {
   ASSERT_EQ(first_defect(start), std::nullopt);
   const SurfaceMesh surface = boundary_of(start);
   const Features features = detect_features(surface, 40);
-  const BoundaryInput input{surface, features, features};
+  const TriangleTree tree(surface);
+  const BoundaryInput input{surface, tree, features, features};
   EditMesh edit{TetMesh{start}};
   const BoundaryGuide guide(edit, input, {});
   EXPECT_EQ(reconnect(edit, 0.6f, Goal::kWorst, {}, &guide).done, 1u);
@@ -141,7 +145,8 @@ TEST(Boundary, KeepsARidgeThatIsNoFeature) {
   const TetMesh start = with_sliver_below(0.3);
   const SurfaceMesh surface = boundary_of(start);
   const Features features = detect_features(surface, 150);
-  const BoundaryInput input{surface, features, features};
+  const TriangleTree tree(surface);
+  const BoundaryInput input{surface, tree, features, features};
   EditMesh edit{TetMesh{start}};
   const BoundaryGuide guide(edit, input, {});
   reconnect(edit, 1.0f, Goal::kWorst, {}, &guide);
