@@ -18,7 +18,7 @@ from peers import surfaces  # noqa: E402
 CLEAN = pathlib.Path("models/clean")
 MODELS = [CLEAN / f"{name}.off" for name in ("bunny00", "armadillo", "elephant", "bear", "fandisk_large", "dino", "homer",
                                              "knot1", "femur", "turbine", "anchor_dense")]
-DRAGON_SCAN = pathlib.Path("models/dirty/dragon_vrip_res2_ply.off")
+DRAGON_SCAN = pathlib.Path("models/dirty/dragon_vrip_res2.ply")
 SKULL = pathlib.Path("models/ct/skull_534k.off")
 COUNTS = "30000,100000"
 GROWTH = "10000,30000,100000,300000,1000000"
