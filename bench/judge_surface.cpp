@@ -31,8 +31,9 @@ using Json = nlohmann::ordered_json;
 constexpr double kHausdorffTolerance = 4e-4;
 /// Triangles below this 2r/R are bad; from a feature angle below kForcing degrees no better one can be made.
 constexpr double kBad = 0.4, kForcing = 13;
-/// Edges of features shorter than this part of the wanted length are details finer than the size.
-constexpr double kDetail = 0.35, kStrip = 0.1;
+/// Edges of features shorter than this part of the wanted length are details finer than the size, and so are two lines
+/// side by side nearer than this part of the size that was asked for (wider strips get smaller triangles).
+constexpr double kDetail = 0.35, kStrip = 0.08;
 constexpr double kStraight = 1e-9, kOnLine = 1e-9;
 /// Straight lines shorter than this many sizes may be noise to the remesher.
 constexpr double kLongLine = 4;
@@ -49,6 +50,7 @@ struct Arguments {
 struct Judged {
   SurfaceMesh surface;
   SizeField sizes = SizeField::uniform(1);
+  SizeField asked = SizeField::uniform(1);
   Report report;
 };
 
@@ -72,23 +74,26 @@ struct FeatureMarks {
 };
 
 /// Whether the features leave no room for a good triangle: they enclose less than kForcing degrees, are divided by
-/// corners closer than kDetail of the size, or run past each other closer than kStrip of the size.
-bool is_forced(const SurfaceMesh& s, const Triangle& t, const FeatureMarks& features, const SizeField& sizes) {
+/// corners closer than kDetail of the size, or run past each other closer than kStrip of the size asked.
+bool is_forced(const SurfaceMesh& s, const Triangle& t, const FeatureMarks& features, const Judged& made) {
   for (int i = 0; i < 3; ++i) {
     const VertexIndex a = t[i], b = t[(i + 1) % 3], c = t[(i + 2) % 3];
     const Vec3 pa = s.points[a], pb = s.points[b], pc = s.points[c];
-    const double h = sizes.at((pa + pb) * 0.5), l = distance(pa, pb);
-    if (features.on[a] && features.on[b] && l < kStrip * h) return true;
+    const Vec3 middle = (pa + pb) * 0.5;
+    const double l = distance(pa, pb), strip = kStrip * made.asked.at(middle);
+    if (features.on[a] && features.on[b] && l < strip) return true;
     if (!features.is_feature(a, b)) continue;
-    if (l < kDetail * h) return true;
+    if (l < kDetail * made.sizes.at(middle)) return true;
     if (features.is_feature(a, c) && angle_at(pa, pb, pc) < kForcing * std::numbers::pi / 180) return true;
     const bool is_longest = l >= distance(pb, pc) && l >= distance(pc, pa);
-    if (is_longest && features.on[c] && 2 * triangle_area(pa, pb, pc) < kStrip * h * l) return true;
+    if (is_longest && features.on[c] && 2 * triangle_area(pa, pb, pc) < strip * l) return true;
   }
   return false;
 }
 
-Json shapes(const SurfaceMesh& s, const std::vector<Edge>& feature_edges, const SizeField& sizes) {
+Json shapes(const Judged& made, const std::vector<Edge>& feature_edges) {
+  const SurfaceMesh& s = made.surface;
+  const SizeField& sizes = made.sizes;
   const FeatureMarks features(feature_edges, s.points.size());
   double sum = 0, least = 2, least_free = 2;
   std::size_t bad = 0, bad_free = 0, worst = 0;
@@ -99,7 +104,7 @@ Json shapes(const SurfaceMesh& s, const std::vector<Edge>& feature_edges, const 
     least = std::min(least, q);
     if (q >= least_free && q >= kBad) continue;
     bad += q < kBad;
-    if (is_forced(s, t, features, sizes)) continue;
+    if (is_forced(s, t, features, made)) continue;
     bad_free += q < kBad;
     if (q < least_free) worst = i;
     least_free = std::min(least_free, q);
@@ -190,7 +195,7 @@ Json judge(const Judged& made, const SurfaceMesh& input, double feature_angle) {
          {"edges_within", edges.share_within},
          {"straight_lines", lines.size()}};
   j["straight_lines_missing"] = lines_missing(lines, made.surface, found.edges, diagonal);
-  j.update(shapes(made.surface, found.edges, made.sizes));
+  j.update(shapes(made, found.edges));
   return j;
 }
 
@@ -200,7 +205,7 @@ Judged make(const SurfaceMesh& input, const Arguments& a) {
   // Equilateral triangles: area = sqrt(3) / 4 h^2.
   if (a.triangles) options.size.size = std::sqrt(area(input) * 4 / std::sqrt(3.0) / *a.triangles);
   SurfaceResult result = generate_surface(input, options);
-  return {std::move(result.surface), result.sizes, std::move(result.report)};
+  return {std::move(result.surface), result.sizes, generate_sizes(input, options).sizes, std::move(result.report)};
 }
 
 Arguments parse(int argc, char** argv) {
@@ -224,7 +229,7 @@ Json run(const Arguments& a) {
   } else {
     // STL files repeat the corners of every triangle; repair merges what is equal and changes nothing else here.
     made.surface = repair_surface(read_surface(a.made).surface).surface;
-    made.sizes = SizeField::uniform(a.size.value());
+    made.sizes = made.asked = SizeField::uniform(a.size.value());
   }
   if (!a.output.empty()) write_surface(a.output, made.surface);
   Json j = judge(made, input, SurfaceOptions{}.feature_angle);

@@ -115,6 +115,7 @@ Curve follow(const HalfedgeMesh& mesh, const FeatureGraph& graph, HalfedgeIndex 
   for (HalfedgeIndex h = first; h != kNone && !visited[h];) {
     visited[h] = visited[mesh.twin[h]] = 1;
     curve.halfedges.push_back(h);
+    curve.reach.push_back(edge_length(mesh, h) + (curve.reach.empty() ? 0 : curve.reach.back()));
     if (graph.corner[mesh.end(h)]) break;
     h = continued(mesh, h);
   }
@@ -154,6 +155,11 @@ Measure measure(const InputSurface& input, const SizeField& sizes, const Curve& 
   return m;
 }
 
+double along_of(const Curve& curve, std::size_t edge, double t) {
+  const double before = edge > 0 ? curve.reach[edge - 1] : 0;
+  return before + t * (curve.reach[edge] - before);
+}
+
 CurvePoint point_at(const InputSurface& input, const Curve& curve, const Measure& m, std::size_t& piece, double at) {
   while (piece + 1 < m.pieces.size() && m.pieces[piece].sum < at) ++piece;
   const Measure::Piece& q = m.pieces[piece];
@@ -164,6 +170,7 @@ CurvePoint point_at(const InputSurface& input, const Curve& curve, const Measure
   c.t = q.t0 + s * (q.t1 - q.t0);
   const Vec3 a = input.mesh.points[input.mesh.start[c.halfedge]], b = input.mesh.points[input.mesh.end(c.halfedge)];
   c.p = a + (b - a) * c.t;
+  c.along = along_of(curve, q.edge, c.t);
   return c;
 }
 
@@ -218,6 +225,18 @@ std::vector<Curve> chain_curves(const InputSurface& input, const std::vector<Ver
     if (graph.degree[v] != 0 && !graph.corner[v]) chain_from(v);
   }
   return curves;
+}
+
+CurvePoint point_along(const InputSurface& input, const Curve& curve, double along) {
+  const auto at = std::upper_bound(curve.reach.begin(), curve.reach.end() - 1, along) - curve.reach.begin();
+  const double before = at > 0 ? curve.reach[at - 1] : 0, l = curve.reach[at] - before;
+  CurvePoint c;
+  c.halfedge = curve.halfedges[at];
+  c.t = l > 0 ? std::clamp((along - before) / l, 0.0, 1.0) : 0;
+  c.along = along;
+  const Vec3 a = input.mesh.points[input.mesh.start[c.halfedge]], b = input.mesh.points[input.mesh.end(c.halfedge)];
+  c.p = a + (b - a) * c.t;
+  return c;
 }
 
 void divide_curves(const InputSurface& input, const SizeField& sizes, std::vector<Curve>& curves) {

@@ -13,6 +13,7 @@ struct CurvePoint {
   Vec3 p;
   HalfedgeIndex halfedge = kNone;  ///< runs along the curve
   double t = 0;
+  double along = 0;            ///< length of the curve up to the point
   VertexIndex vertex = kNone;  ///< the input vertex that the point is; kNone inside the half-edge
   double h = 0;                ///< wanted size
 };
@@ -21,6 +22,7 @@ struct CurvePoint {
 struct Curve {
   std::vector<HalfedgeIndex> halfedges;  ///< of the input, head to tail
   bool closed = false;                   ///< no corner on it
+  std::vector<double> reach;             ///< length of the curve up to the end of each half-edge
   std::vector<CurvePoint> samples;       ///< in order; the first and the last are the ends (closed: the same point)
   std::vector<CurvePoint> middles;       ///< one for each segment between samples
 };
@@ -37,5 +39,8 @@ std::vector<Curve> chain_curves(const InputSurface& input, const std::vector<Ver
 /// Divides the curves: integral of ds / h rounded to a whole number of segments, spread evenly. Closed curves, and
 /// loops at one corner, get at least three segments, two curves between the same corners never one each.
 void divide_curves(const InputSurface& input, const SizeField& sizes, std::vector<Curve>& curves);
+
+/// The point that lies at this length along the curve.
+CurvePoint point_along(const InputSurface& input, const Curve& curve, double along);
 
 }  // namespace octafront::remeshing

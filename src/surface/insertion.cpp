@@ -48,6 +48,7 @@ class Inserter {
     mesh_.normal.resize(vertices);
     mesh_.face.resize(vertices);
     mesh_.size.assign(vertices, 0);
+    mesh_.place.resize(vertices);
     mesh_.changed.assign(vertices, WorkingMesh::kForSmoothing | WorkingMesh::kForFlips);
     mesh_.patch = input.patch;
     mesh_.origin.resize(faces);
@@ -62,7 +63,7 @@ class Inserter {
   }
 
   WorkingMesh run(const std::vector<Curve>& curves, const RunContext& context) {
-    for (std::size_t c = 0; c < curves.size(); ++c) insert_curve(curves[c], front_.curve_points[c]);
+    for (std::uint32_t c = 0; c < curves.size(); ++c) insert_curve(c, curves[c]);
     for (std::uint32_t i = 0; i < front_.points.size(); ++i) {
       if (i % 1024 == 0) context.check();
       if (!front_.points[i].on_feature) insert_point(i);
@@ -72,7 +73,8 @@ class Inserter {
 
  private:
   /// Division points in the order of the curve: each splits what is left of its half-edge.
-  void insert_curve(const Curve& curve, const std::vector<std::uint32_t>& ids) {
+  void insert_curve(std::uint32_t number, const Curve& curve) {
+    const std::vector<std::uint32_t>& ids = front_.curve_points[number];
     VertexIndex previous = kNone;
     HalfedgeIndex on = kNone;
     for (std::size_t i = 0; i < ids.size(); ++i) {
@@ -80,6 +82,7 @@ class Inserter {
       const bool is_end = (i == 0 || i + 1 == ids.size()) && !curve.closed;
       if (point.vertex != kNone) {
         adopt(ids[i], point.vertex, is_end ? VertexKind::kCorner : VertexKind::kCurve);
+        mesh_.place[point.vertex] = {number, curve.samples[i].along};
         continue;
       }
       if (vertex_of_point_[ids[i]] != kNone) continue;
@@ -88,6 +91,7 @@ class Inserter {
       const HalfedgeIndex h = mesh_.find(from, input_.mesh.end(along));
       const VertexIndex x = mesh_.add_vertex(point.p, VertexKind::kCurve, {}, point.h, point.face);
       mesh_.split_edge(h, x);
+      mesh_.place[x] = {number, curve.samples[i].along};
       vertex_of_point_[ids[i]] = x;
       previous = x;
       on = along;

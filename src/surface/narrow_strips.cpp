@@ -9,8 +9,9 @@ namespace octafront::remeshing {
 
 namespace {
 
-/// Size wanted in a strip, in widths of it: triangles of that base between the lines have 2r/R of .83.
-constexpr double kSizePerWidth = 2;
+/// Size wanted in a strip, in widths of it: triangles of that base between the lines have 2r/R of .94. (At 2 widths
+/// models full of strips lose .01 of their mean; at 1.2 they gain .005 and have a third more triangles.)
+constexpr double kSizePerWidth = 1.5;
 /// No size falls below this part of what it was.
 constexpr double kFloor = 0.3;
 /// Strips narrower than this part of the size stay bad even so.

@@ -100,7 +100,7 @@ Compacted attempt(Effort effort, const SurfaceMesh& surface, InputSurface& input
   WorkingMesh mesh = insert_points(input, curves, front, context, counts.insertion);
   if (effort == Effort::kFull) {
     remove_input_vertices(mesh, context, counts.coarsen);
-    improve_surface(mesh, input, sizes, context, counts.improve);
+    improve_surface(mesh, input, curves, sizes, context, counts.improve);
   } else {
     counts.coarsen.input_vertices_left = surface.points.size();
   }

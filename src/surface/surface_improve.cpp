@@ -1,5 +1,6 @@
 #include "surface/surface_improve.h"
 
+#include "surface/curve_points.h"
 #include "surface/local_guards.h"
 #include "surface/surface_lengths.h"
 
@@ -21,20 +22,21 @@ constexpr int kRounds = 3;
 
 class SurfaceImprover {
  public:
-  SurfaceImprover(WorkingMesh& mesh, const InputSurface& input, const SizeField& sizes, const RunContext& context,
-                  ImproveCounts& counts)
+  SurfaceImprover(WorkingMesh& mesh, const InputSurface& input, const std::vector<Curve>& curves,
+                  const SizeField& sizes, const RunContext& context, ImproveCounts& counts)
       : mesh_(mesh),
         input_(input),
         sizes_(sizes),
         context_(context),
         counts_(counts),
+        curve_points_(mesh, input, curves, sizes),
         is_uniform_(sizes.min_size() == sizes.max_size()) {}
 
   void run() {
     adopt_leftovers();
     delaunay();
     for (int round = 0; round < kRounds; ++round) {
-      if (round > 0) adjust_lengths(mesh_, input_, sizes_, counts_);
+      if (round > 0) adjust_lengths(mesh_, input_, curve_points_, sizes_, counts_);
       count_valences();
       equalize_valences();
       smooth();
@@ -43,7 +45,7 @@ class SurfaceImprover {
     }
     smooth();
     delaunay();
-    mend_triangles(mesh_, input_, sizes_, counts_);
+    mend_triangles(mesh_, input_, curve_points_, sizes_, counts_);
   }
 
  private:
@@ -126,7 +128,9 @@ class SurfaceImprover {
       if (v % 1024 == 0) context_.check();
       if ((mesh_.changed[v] & WorkingMesh::kForSmoothing) == 0) continue;
       mesh_.changed[v] &= static_cast<std::uint8_t>(~WorkingMesh::kForSmoothing);
-      if (mesh_.kind[v] == VertexKind::kFree && mesh_.outgoing[v] != kNone) smooth(v);
+      if (mesh_.outgoing[v] == kNone) continue;
+      if (mesh_.kind[v] == VertexKind::kFree) smooth(v);
+      if (mesh_.kind[v] == VertexKind::kCurve) counts_.moves += curve_points_.slide(v);
     }
   }
 
@@ -200,6 +204,7 @@ class SurfaceImprover {
   const SizeField& sizes_;
   const RunContext& context_;
   ImproveCounts& counts_;
+  CurvePoints curve_points_;
   bool is_uniform_;
   std::vector<HalfedgeIndex> edges_;
   std::vector<int> excess_;
@@ -208,9 +213,9 @@ class SurfaceImprover {
 
 }  // namespace
 
-void improve_surface(WorkingMesh& mesh, const InputSurface& input, const SizeField& sizes, const RunContext& context,
-                     ImproveCounts& counts) {
-  SurfaceImprover(mesh, input, sizes, context, counts).run();
+void improve_surface(WorkingMesh& mesh, const InputSurface& input, const std::vector<Curve>& curves,
+                     const SizeField& sizes, const RunContext& context, ImproveCounts& counts) {
+  SurfaceImprover(mesh, input, curves, sizes, context, counts).run();
 }
 
 }  // namespace octafront::remeshing

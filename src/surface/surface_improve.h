@@ -3,7 +3,7 @@
 #include <octafront/run_context.h>
 #include <octafront/size_field.h>
 
-#include "surface/surface_walk.h"
+#include "surface/curves.h"
 #include "surface/working_mesh.h"
 
 namespace octafront::remeshing {
@@ -13,9 +13,9 @@ struct ImproveCounts {
 };
 
 /// Makes the triangles of the working mesh better: flips towards six triangles a vertex and towards Delaunay, and
-/// smoothing along the input surface. Vertices on curves stay; inside patches they move only where the mean quality of
-/// their triangles rises.
-void improve_surface(WorkingMesh& mesh, const InputSurface& input, const SizeField& sizes, const RunContext& context,
-                     ImproveCounts& counts);
+/// smoothing along the input surface, of division points along their curves. Corners stay; the others move only where
+/// the mean quality of their triangles rises.
+void improve_surface(WorkingMesh& mesh, const InputSurface& input, const std::vector<Curve>& curves,
+                     const SizeField& sizes, const RunContext& context, ImproveCounts& counts);
 
 }  // namespace octafront::remeshing

@@ -15,6 +15,8 @@ constexpr double kLong = 1.5, kShort = 0.6;
 constexpr double kBad = 0.2;
 /// An operation on a bad triangle must raise the worst around by this factor, so that two never undo each other.
 constexpr double kGain = 1.3;
+/// The same for points of curves, by 2r/R.
+constexpr double kCurveGain = 1.15;
 /// Mending one triangle may spoil or free another.
 constexpr int kMendRounds = 3;
 /// Height of an equilateral triangle.
@@ -28,8 +30,9 @@ constexpr double kAstray = 0.35;
 
 class LengthAdjuster {
  public:
-  LengthAdjuster(WorkingMesh& mesh, const InputSurface& input, const SizeField& sizes, ImproveCounts& counts)
-      : mesh_(mesh), input_(input), sizes_(sizes), counts_(counts), star_(mesh) {}
+  LengthAdjuster(WorkingMesh& mesh, const InputSurface& input, CurvePoints& curve_points, const SizeField& sizes,
+                 ImproveCounts& counts)
+      : mesh_(mesh), input_(input), curve_points_(curve_points), sizes_(sizes), counts_(counts), star_(mesh) {}
 
   void run() {
     for (VertexIndex v = 0; v < mesh_.points.size(); ++v) {
@@ -116,6 +119,17 @@ class LengthAdjuster {
     }
     for (HalfedgeIndex h = 3 * t; h < 3 * t + 3; ++h) {
       if (mesh_.kind[mesh_.start[h]] == VertexKind::kFree && remove_if_better(mesh_.start[h])) return true;
+    }
+    for (HalfedgeIndex h = 3 * t; h < 3 * t + 3; ++h) {
+      if (mesh_.kind[mesh_.start[h]] != VertexKind::kCurve || !curve_points_.relieve(mesh_.start[h], kCurveGain))
+        continue;
+      ++counts_.moves;
+      return true;
+    }
+    for (HalfedgeIndex h = 3 * t; h < 3 * t + 3; ++h) {
+      if (!mesh_.is_feature[h] || !curve_points_.split(h, kCurveGain)) continue;
+      ++counts_.splits;
+      return true;
     }
     for (HalfedgeIndex h = 3 * t; h < 3 * t + 3; ++h) {
       if (relative_length(h) > kTiny || !(mesh_.on_curve(mesh_.start[h]) && mesh_.on_curve(mesh_.end(h)))) continue;
@@ -216,6 +230,7 @@ class LengthAdjuster {
 
   WorkingMesh& mesh_;
   const InputSurface& input_;
+  CurvePoints& curve_points_;
   const SizeField& sizes_;
   ImproveCounts& counts_;
   StarCollapse star_;
@@ -224,12 +239,14 @@ class LengthAdjuster {
 
 }  // namespace
 
-void mend_triangles(WorkingMesh& mesh, const InputSurface& input, const SizeField& sizes, ImproveCounts& counts) {
-  LengthAdjuster(mesh, input, sizes, counts).mend_all();
+void mend_triangles(WorkingMesh& mesh, const InputSurface& input, CurvePoints& curve_points, const SizeField& sizes,
+                    ImproveCounts& counts) {
+  LengthAdjuster(mesh, input, curve_points, sizes, counts).mend_all();
 }
 
-void adjust_lengths(WorkingMesh& mesh, const InputSurface& input, const SizeField& sizes, ImproveCounts& counts) {
-  LengthAdjuster(mesh, input, sizes, counts).run();
+void adjust_lengths(WorkingMesh& mesh, const InputSurface& input, CurvePoints& curve_points, const SizeField& sizes,
+                    ImproveCounts& counts) {
+  LengthAdjuster(mesh, input, curve_points, sizes, counts).run();
 }
 
 }  // namespace octafront::remeshing

@@ -8,6 +8,7 @@ VertexIndex WorkingMesh::add_vertex(Vec3 p, VertexKind k, Vec3 n, double h, std:
   normal.push_back(n);
   size.push_back(h);
   face.push_back(in_face);
+  place.emplace_back();
   changed.push_back(kForSmoothing | kForFlips);
   outgoing.push_back(kNone);
   return static_cast<VertexIndex>(points.size() - 1);

@@ -13,6 +13,12 @@ enum class VertexKind : std::uint8_t {
   kCorner,
 };
 
+/// A place on a divided curve.
+struct CurvePlace {
+  std::uint32_t curve = kNone;
+  double along = 0;  ///< length of the curve up to there
+};
+
 /// The surface on its way from the input triangulation to the new one: a closed manifold of the same topology after
 /// every operation. Removed triangles and vertices leave holes in the numbering until compacted() is taken.
 struct WorkingMesh : HalfedgeMesh {
@@ -22,6 +28,7 @@ struct WorkingMesh : HalfedgeMesh {
   std::vector<std::uint32_t> face;    ///< per vertex: an input face that it lies in
   std::vector<std::uint32_t> patch;   ///< per triangle
   std::vector<std::uint32_t> origin;  ///< per triangle: while inserting, the input face it is a part of
+  std::vector<CurvePlace> place;      ///< per vertex: where on a curve it lies, if it may slide there
   std::vector<std::uint8_t> changed;  ///< per vertex: kForSmoothing and kForFlips, set by whatever changes around it
 
   /// Marks for passes that skip what did not change since they last saw it.
