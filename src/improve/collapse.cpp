@@ -1,6 +1,7 @@
 // Removal of a vertex by the collapse of an edge: the vertex goes to a neighbour, the elements around that edge vanish.
 // Mends what stands too close: meshes of other tools have more of it than ours.
 
+#include "improve/edit_blocks.h"
 #include "improve/passes.h"
 #include "improve/star_edit.h"
 
@@ -17,11 +18,12 @@ constexpr float kRise = 0.05f;
 
 class Collapser {
  public:
-  Collapser(EditMesh& mesh, const Floor& floor) : mesh_(mesh), floor_(floor), star_(mesh) {}
+  Collapser(EditBlock& block, const Floor& floor)
+      : block_(block), mesh_(block.mesh()), floor_(floor), star_(block.mesh()) {}
 
-  /// True if vertex v is gone.
-  bool improve(VertexIndex v) {
-    if (!star_.load(v)) return false;
+  /// True if vertex v is gone; its star must lie in the block.
+  bool improve(VertexIndex v, std::span<const HalfFace> faces) {
+    if (!star_.load(v, faces)) return false;
     old_worst_ = star_.current_worst();
     old_lack_ = star_.current_deficit() / static_cast<double>(star_.faces().size());
     find_neighbours(v);
@@ -32,8 +34,7 @@ class Collapser {
       if (lack < least) least = lack, best = u;
     }
     if (best == kNone) return false;
-    collapse_to(best);
-    return true;
+    return collapse_to(best);
   }
 
  private:
@@ -78,7 +79,7 @@ class Collapser {
     return worst > old_worst_ + kRise ? std::min(lack, lack * kFall) : lack;
   }
 
-  void collapse_to(VertexIndex u) {
+  bool collapse_to(VertexIndex u) {
     star_.evaluate(mesh_.point(u));
     old_tets_.clear(), new_tets_.clear(), shapes_.clear();
     for (std::size_t k = 0; k < star_.faces().size(); ++k) {
@@ -90,9 +91,10 @@ class Collapser {
       new_tets_.push_back(t);
       shapes_.push_back(star_.batch().shape(static_cast<int>(k)));
     }
-    mesh_.replace(old_tets_, new_tets_, shapes_, created_);
+    return block_.replace(old_tets_, new_tets_, shapes_, created_);
   }
 
+  EditBlock& block_;
   EditMesh& mesh_;
   Floor floor_;
   StarEdit star_;
@@ -104,24 +106,37 @@ class Collapser {
   std::vector<Shape> shapes_;
 };
 
-}  // namespace
-
-PassResult collapse_vertices(EditMesh& mesh, float threshold, const RunContext& context) {
+/// Each vertex of these elements once; `seen` is shared by all blocks, none of which looks at another's vertices.
+PassResult collapse_block(EditBlock& block, const Floor& floor, const std::vector<TetIndex>& tets, float threshold,
+                          std::vector<std::uint8_t>& seen, std::vector<TetIndex>& left) {
   PassResult result;
-  std::vector<std::uint8_t> seen(mesh.vertices(), 0);
-  Collapser collapser(mesh, mesh.floor());
-  for (TetIndex t = 0; t < mesh.slots(); ++t) {
-    if (t % 4096 == 0) context.check();
+  Collapser collapser(block, floor);
+  const EditMesh& mesh = block.mesh();
+  std::vector<HalfFace> star;
+  for (const TetIndex t : tets) {
+    block.take_cut();
     for (int i = 0; i < 4; ++i) {
       if (!mesh.alive(t) || mesh.shape(t).score >= threshold) break;
       const VertexIndex v = mesh.tet(t)[i];
-      if (mesh.on_boundary(v) || seen[v]) continue;
+      if (mesh.on_boundary(v) || seen[v] || !block.star(v, star)) continue;
       seen[v] = 1;
       ++result.tried;
-      result.done += collapser.improve(v);
+      result.done += collapser.improve(v, star);
     }
+    if (block.take_cut()) left.push_back(t);
   }
   return result;
+}
+
+}  // namespace
+
+PassResult collapse_vertices(EditMesh& mesh, float threshold, const RunContext& context) {
+  std::vector<std::uint8_t> seen(mesh.vertices(), 0);
+  const Floor floor = mesh.floor();
+  return for_each_block(mesh, tets_below(mesh, threshold), context,
+                        [&](EditBlock& block, const std::vector<TetIndex>& tets, std::vector<TetIndex>& left) {
+                          return collapse_block(block, floor, tets, threshold, seen, left);
+                        });
 }
 
 }  // namespace octafront::improve

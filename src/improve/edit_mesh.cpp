@@ -2,6 +2,7 @@
 
 #include <octafront/error.h>
 
+#include "improve/sorted_face.h"
 #include "improve/spatial_order.h"
 
 #include <algorithm>
@@ -11,27 +12,6 @@
 
 namespace octafront::improve {
 namespace {
-
-std::array<VertexIndex, 3> sorted_face(const Tet& t, int i) {
-  VertexIndex a = t[kTetFaces[i][0]], b = t[kTetFaces[i][1]], c = t[kTetFaces[i][2]];
-  if (a > b) std::swap(a, b);
-  if (b > c) std::swap(b, c);
-  if (a > b) std::swap(a, b);
-  return {a, b, c};
-}
-
-std::array<VertexIndex, 3> sorted_face(const Triangle& t) {
-  return sorted_face(Tet{kNone, t[0], t[1], t[2]}, 0);
-}
-
-/// The two other corners p and q of a tet, named so that (i, j, p, q) is positive.
-std::array<int, 2> other_corners(int i, int j) {
-  int p = 0;
-  while (p == i || p == j) ++p;
-  const int q = 6 - i - j - p;
-  const bool odd = ((i < j) + (i < p) + (i < q) + (j < p) + (j < q) + (p < q)) % 2 != 0;
-  return odd ? std::array<int, 2>{q, p} : std::array<int, 2>{p, q};
-}
 
 /// Faces in buckets by their least corner: whoever comes second to a pair of other corners finds the first.
 class FaceMatcher {
@@ -77,36 +57,6 @@ class FaceMatcher {
 
 }  // namespace
 
-/// Face matching among the few tets of a replace(): open addressing, sized for the largest cavity at hand.
-class EditMesh::SmallFaceTable {
- public:
-  explicit SmallFaceTable(std::size_t faces) {
-    std::size_t size = 64;
-    while (size < 2 * faces) size *= 2;
-    slots_.assign(size, {{kNone, kNone, kNone}, kNone});
-  }
-  /// Stores the value of a face that is seen once; a face seen twice is inside and leaves nothing.
-  void toggle(const std::array<VertexIndex, 3>& face, std::uint32_t value) {
-    if (exchange(face, value) != kNone) exchange(face, kNone);
-  }
-  /// The value stored under the face, replaced by `value`; kNone if there was none.
-  std::uint32_t exchange(const std::array<VertexIndex, 3>& face, std::uint32_t value) {
-    const std::size_t mask = slots_.size() - 1;
-    std::size_t at = (face[0] * 0x9E3779B1u + face[1] * 0x85EBCA77u + face[2] * 0xC2B2AE3Du) & mask;
-    while (slots_[at].face[0] != kNone && slots_[at].face != face) at = (at + 1) & mask;
-    const std::uint32_t old = slots_[at].value;
-    slots_[at] = {face, value};
-    return old;
-  }
-
- private:
-  struct Slot {
-    std::array<VertexIndex, 3> face;
-    std::uint32_t value;
-  };
-  std::vector<Slot> slots_;
-};
-
 EditMesh::EditMesh(TetMesh&& mesh) {
   if (mesh.tets.size() >= kBoundaryBit / 4) throw MeshingError("improvement holds at most 2^29 tetrahedra");
   take(mesh);
@@ -120,9 +70,11 @@ void EditMesh::take(TetMesh& mesh) {
   original_ = spatial_order(mesh.points);
   std::vector<VertexIndex> new_of_old(mesh.points.size());
   points_.reserve(mesh.points.size());
+  key_.reserve(mesh.points.size());
   for (VertexIndex v = 0; v < original_.size(); ++v) {
     new_of_old[original_[v]] = v;
     points_.push_back(mesh.points[original_[v]]);
+    key_.push_back(v);
   }
   for (Tet& t : mesh.tets)
     for (VertexIndex& v : t) v = new_of_old[v];
@@ -219,144 +171,9 @@ TetMesh EditMesh::release() {
   return mesh;
 }
 
-void EditMesh::star(VertexIndex v, std::vector<HalfFace>& faces) const {
-  faces.clear();
-  ++mark_;
-  const TetIndex first = tet_of_[v];
-  tet_mark_[first] = mark_;
-  faces.push_back(4 * first + corner_of(first, v));
-  for (std::size_t k = 0; k < faces.size(); ++k) {
-    const TetIndex t = faces[k] / 4;
-    const int i = static_cast<int>(faces[k] % 4);
-    for (int j = 1; j < 4; ++j) {
-      const HalfFace o = across_[4 * t + ((i + j) & 3)];
-      if (is_boundary(o) || tet_mark_[o / 4] == mark_) continue;
-      tet_mark_[o / 4] = mark_;
-      faces.push_back(4 * (o / 4) + corner_of(o / 4, v));
-    }
-  }
-}
-
-void EditMesh::edge_ring(TetIndex t, int i, int j, EdgeRing& out) const {
-  out.tets.clear();
-  out.ring.clear();
-  out.closed = true;
-  const auto [p, q] = other_corners(i, j);
-  // Turning from p to q leaves each tet through the face opposite its first ring corner.
-  TetIndex at = t;
-  VertexIndex from = tets_[t][p], to = tets_[t][q];
-  const VertexIndex start = from;
-  for (;;) {
-    out.tets.push_back(at);
-    out.ring.push_back(from);
-    if (to == start) return;
-    const HalfFace o = across_[4 * at + corner_of(at, from)];
-    if (is_boundary(o)) break;
-    at = o / 4;
-    from = to;
-    to = tets_[at][o % 4];
-  }
-  // An open fan: what lies on the other side of t goes before it.
-  out.ring.push_back(to);
-  out.closed = false;
-  at = t;
-  from = start;
-  to = tets_[t][q];
-  for (;;) {
-    const HalfFace o = across_[4 * at + corner_of(at, to)];
-    if (is_boundary(o)) return;
-    at = o / 4;
-    to = from;
-    from = tets_[at][o % 4];
-    out.tets.insert(out.tets.begin(), at);
-    out.ring.insert(out.ring.begin(), from);
-  }
-}
-
-bool EditMesh::edge_ring_where_worst(TetIndex t, int i, int j, std::size_t longest, EdgeRing& out) const {
-  out.tets.clear();
-  out.ring.clear();
-  out.closed = true;
-  const auto [p, q] = other_corners(i, j);
-  TetIndex at = t;
-  VertexIndex from = tets_[t][p], to = tets_[t][q];
-  const VertexIndex start = from;
-  for (;;) {
-    out.tets.push_back(at);
-    out.ring.push_back(from);
-    if (to == start) return true;
-    if (out.tets.size() == longest) return false;
-    const HalfFace o = across_[4 * at + corner_of(at, from)];
-    if (is_boundary(o) || worse(o / 4, t)) return false;
-    at = o / 4;
-    from = to;
-    to = tets_[at][o % 4];
-  }
-}
-
 void EditMesh::move(VertexIndex v, Vec3 to, std::span<const HalfFace> star_faces, const ShapeBatch& shapes) {
   points_[v] = to;
   for (std::size_t k = 0; k < star_faces.size(); ++k) shapes_[star_faces[k] / 4] = shapes.shape(static_cast<int>(k));
-}
-
-void EditMesh::replace(std::span<const TetIndex> old_tets, std::span<const Tet> new_tets, std::span<const Shape> shapes,
-                       std::vector<TetIndex>& created, const BoundaryTurn* turn) {
-  // A face seen twice among the old tets lies inside them; what lies across the others must be tied to the new ones.
-  SmallFaceTable outside(4 * (old_tets.size() + new_tets.size()));
-  for (const TetIndex t : old_tets)
-    for (int i = 0; i < 4; ++i) outside.toggle(sorted_face(tets_[t], i), across_[4 * t + i]);
-  const std::uint32_t region = region_[old_tets[0]];
-  for (const TetIndex t : old_tets)
-    for (const VertexIndex v : tets_[t]) tet_of_[v] = kNone;
-  if (turn) turn_boundary(*turn, outside);
-  created.clear();
-  for (std::size_t k = 0; k < new_tets.size(); ++k) {
-    TetIndex t;
-    if (k < old_tets.size()) {
-      t = old_tets[k];
-    } else if (!free_.empty()) {
-      t = free_.back();
-      free_.pop_back();
-    } else {
-      t = static_cast<TetIndex>(tets_.size());
-      if (t >= kBoundaryBit / 4) throw MeshingError("improvement holds at most 2^29 tetrahedra");
-      tets_.push_back({});
-      across_.resize(across_.size() + 4);
-      shapes_.push_back({});
-      region_.push_back(region);
-      tet_mark_.push_back(0);
-    }
-    tets_[t] = new_tets[k];
-    shapes_[t] = shapes[k];
-    region_[t] = region;
-    created.push_back(t);
-  }
-  for (std::size_t k = new_tets.size(); k < old_tets.size(); ++k) {
-    tets_[old_tets[k]] = {kNone, kNone, kNone, kNone};
-    free_.push_back(old_tets[k]);
-  }
-  for (const TetIndex t : created) {
-    for (const VertexIndex v : tets_[t]) tet_of_[v] = t;
-    for (int i = 0; i < 4; ++i) {
-      const HalfFace h = 4 * t + i;
-      const HalfFace other = outside.exchange(sorted_face(tets_[t], i), h);
-      across_[h] = other;
-      if (other != kNone && !is_boundary(other)) across_[other] = h;
-    }
-  }
-}
-
-void EditMesh::turn_boundary(const BoundaryTurn& turn, SmallFaceTable& outside) {
-  for (const HalfFace b : turn.faces) outside.exchange(sorted_face(rest_.boundary[b & ~kBoundaryBit]), kNone);
-  for (int k = 0; k < 2; ++k) {
-    const Triangle& corners = turn.triangles[k];
-    rest_.boundary[turn.faces[k] & ~kBoundaryBit] = corners;
-    // Where a tet goes without another in its place, the triangle lies on its neighbour.
-    const HalfFace behind = outside.exchange(sorted_face(corners), turn.faces[k]);
-    if (behind == kNone) continue;
-    across_[behind] = turn.faces[k];
-    for (const VertexIndex v : corners) tet_of_[v] = behind / 4;
-  }
 }
 
 std::vector<VertexIndex> EditMesh::numbers_here() const {
@@ -365,11 +182,24 @@ std::vector<VertexIndex> EditMesh::numbers_here() const {
   return here;
 }
 
-VertexIndex EditMesh::add_vertex(Vec3 p) {
-  points_.push_back(p);
-  tet_of_.push_back(kNone);
-  on_boundary_.push_back(0);
-  return static_cast<VertexIndex>(points_.size() - 1);
+void EditMesh::reserve_tets(std::size_t more) {
+  const std::size_t first = tets_.size(), last = first + more;
+  if (last > kBoundaryBit / 4) throw MeshingError("improvement holds at most 2^29 tetrahedra");
+  tets_.resize(last, {kNone, kNone, kNone, kNone});
+  across_.resize(4 * last);
+  shapes_.resize(last);
+  region_.resize(last);
+  tet_mark_.resize(last, 0);
+  for (std::size_t t = last; t-- > first;) free_.push_back(static_cast<TetIndex>(t));
+}
+
+void EditMesh::reserve_points(std::size_t more) {
+  const std::size_t first = points_.size(), last = first + more;
+  points_.resize(last);
+  tet_of_.resize(last, kNone);
+  on_boundary_.resize(last, 0);
+  key_.resize(last, 0);
+  for (std::size_t v = last; v-- > first;) free_points_.push_back(static_cast<VertexIndex>(v));
 }
 
 Floor EditMesh::floor() const {

@@ -2,7 +2,8 @@
 
 // A tetrahedral mesh that can be changed in place: half-face neighbours, a tetrahedron of each vertex, a free list.
 // Taken from a TetMesh and given back to it; boundary triangles keep their number, patch and source throughout. Inside,
-// vertices and tets are numbered along a space-filling curve, for the cache.
+// vertices and tets are numbered along a space-filling curve, for the cache. Vertices move here; connections are walked
+// and changed by way of an EditBlock (edit_block.h).
 
 #include <octafront/tet_mesh.h>
 
@@ -69,33 +70,8 @@ class EditMesh {
     return c[0] == v ? 0 : c[1] == v ? 1 : c[2] == v ? 2 : 3;
   }
 
-  /// The half-faces opposite v of the tets around it; boundary faces at v are not among them.
-  void star(VertexIndex v, std::vector<HalfFace>& faces) const;
-
-  /// The tets around the edge between corners i and j of t, from t on.
-  void edge_ring(TetIndex t, int i, int j, EdgeRing& out) const;
-
-  /// The same, but gives up, false, once the ring is known to be open, to have more than `longest` tets, or to have a
-  /// tet with a lower score than t (of equals, the one with the lower number counts as lower).
-  bool edge_ring_where_worst(TetIndex t, int i, int j, std::size_t longest, EdgeRing& out) const;
-
   /// Moves a vertex and sets the shapes of its star (faces as from star(), shapes in the same order).
   void move(VertexIndex v, Vec3 to, std::span<const HalfFace> star_faces, const ShapeBatch& shapes);
-
-  /// Two boundary triangles that take the place of two others: numbers of those (as across() gives them) and new
-  /// corners, counter-clockwise seen from outside. The other diagonal of the same four corners.
-  struct BoundaryTurn {
-    std::array<HalfFace, 2> faces;
-    std::array<Triangle, 2> triangles;
-  };
-
-  /// Puts new tets in place of old ones that fill the same space. Returns where they are: `created` in order.
-  /// Requires: same outer faces, or those that differ named in `turn`; shapes as of the new ones; one region.
-  void replace(std::span<const TetIndex> old_tets, std::span<const Tet> new_tets, std::span<const Shape> shapes,
-               std::vector<TetIndex>& created, const BoundaryTurn* turn = nullptr);
-
-  /// A new vertex inside, to be used by the next replace().
-  VertexIndex add_vertex(Vec3 p);
 
   /// Worst of each measure over the mesh.
   Floor floor() const;
@@ -109,9 +85,12 @@ class EditMesh {
   }
 
  private:
-  class SmallFaceTable;
+  friend class EditBlock;
+  friend class EditBlocks;
 
-  void turn_boundary(const BoundaryTurn& turn, SmallFaceTable& outside);
+  /// More slots, on top of the free lists, the first ones uppermost. Throws MeshingError beyond 2^29 tetrahedra.
+  void reserve_tets(std::size_t more);
+  void reserve_points(std::size_t more);
   void take(TetMesh& mesh);
   void part(HalfFace h, HalfFace other);
   void connect();
@@ -124,7 +103,9 @@ class EditMesh {
   std::vector<std::uint32_t> region_;
   std::vector<TetIndex> tet_of_;
   std::vector<std::uint8_t> on_boundary_;
-  std::vector<TetIndex> free_;
+  std::vector<TetIndex> free_;            ///< slots of no tet
+  std::vector<VertexIndex> free_points_;  ///< numbers of no vertex, behind those that were taken
+  std::vector<VertexIndex> key_;          ///< for each vertex: a number that grows along the space-filling curve
   std::vector<VertexIndex> original_;  ///< the number of each vertex in the mesh that was taken
   TetMesh rest_;                       ///< boundary, patches, sources, names: carried through
   bool had_regions_ = false;

@@ -1,6 +1,7 @@
 #include "improve/explain.h"
 
 #include "geometry/measures.h"
+#include "improve/edit_block.h"
 #include "improve/maximize_worst.h"
 
 #include <algorithm>
@@ -11,12 +12,12 @@ namespace {
 
 class Explainer {
  public:
-  Explainer(const EditMesh& mesh, float threshold) : mesh_(mesh), threshold_(threshold) {}
+  Explainer(EditMesh& mesh, float threshold) : block_(mesh), mesh_(mesh), threshold_(threshold) {}
 
   /// Some boundary edge of t encloses an angle that alone keeps every element there below the threshold.
   bool forced_by_angle(TetIndex t) {
     for (const auto& [i, j] : kTetEdges) {
-      mesh_.edge_ring(t, i, j, ring_);
+      block_.edge_ring(t, i, j, ring_);
       if (ring_.closed) continue;
       const double angle = enclosed_angle(mesh_.point(mesh_.tet(t)[i]), mesh_.point(mesh_.tet(t)[j]));
       if (std::sqrt(kSmallWeight * (1 - std::cos(std::min(angle, 1.0)))) < threshold_) return true;
@@ -56,6 +57,7 @@ class Explainer {
     return maximizer_.worst();
   }
 
+  EditBlock block_;
   const EditMesh& mesh_;
   float threshold_;
   EdgeRing ring_;
@@ -69,7 +71,7 @@ bool spans_boundary(const EditMesh& mesh, TetIndex t) {
 
 }  // namespace
 
-Shortfall explain_shortfall(const EditMesh& mesh, float threshold) {
+Shortfall explain_shortfall(EditMesh& mesh, float threshold) {
   Shortfall s;
   Explainer explainer(mesh, threshold);
   for (TetIndex t = 0; t < mesh.slots(); ++t) {

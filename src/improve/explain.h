@@ -16,6 +16,6 @@ struct Shortfall {
   TetIndex worst_not_forced = kNone;  ///< slot in the mesh
 };
 
-Shortfall explain_shortfall(const EditMesh& mesh, float threshold);
+Shortfall explain_shortfall(EditMesh& mesh, float threshold);
 
 }  // namespace octafront::improve

@@ -3,6 +3,7 @@
 // whose new element is worst. (In the spirit of the insertion of Klingner & Shewchuk, "Aggressive tetrahedral mesh
 // improvement", 2007.) Vertices that end up inside the cavity go: the same step removes vertices that are in the way.
 
+#include "improve/edit_blocks.h"
 #include "improve/maximize_worst.h"
 #include "improve/passes.h"
 
@@ -19,9 +20,9 @@ constexpr int kPatience = 10;        ///< growth steps without a better star bef
 
 class Inserter {
  public:
-  Inserter(EditMesh& mesh, const Floor& floor) : mesh_(mesh), floor_(floor) {}
+  Inserter(EditBlock& block, const Floor& floor) : block_(block), mesh_(block.mesh()), floor_(floor) {}
 
-  /// True if tet t was replaced by something better; the tets made are in created().
+  /// True if tet t was replaced by something better.
   bool improve(TetIndex t) {
     find_best_cavity(t);
     if (best_size_ == 0) return false;
@@ -32,11 +33,8 @@ class Inserter {
     star_.evaluate_star(p);
     if (static_cast<float>(star_.worst()) <= worst_of_cavity() + kLeastGain || !star_.star_acceptable(p, floor_))
       return false;
-    commit(p);
-    return true;
+    return commit(p);
   }
-
-  const std::vector<TetIndex>& created() const { return created_; }
 
  private:
   bool in_cavity(TetIndex t) const { return std::find(tets_.begin(), tets_.end(), t) != tets_.end(); }
@@ -91,13 +89,14 @@ class Inserter {
     int worst = -1;
     for (int i = 0; i < star_.size; ++i)
       if (!is_boundary(mesh_.across(faces_[i])) && (worst < 0 || star_.quality[i] < star_.quality[worst])) worst = i;
-    if (worst < 0) return false;
-    tets_.push_back(mesh_.across(faces_[worst]) / 4);
-    return true;
+    const TetIndex behind = worst < 0 ? kNone : block_.behind(faces_[worst]);
+    if (behind != kNone) tets_.push_back(behind);
+    return behind != kNone;
   }
 
-  void commit(Vec3 p) {
-    const VertexIndex v = mesh_.add_vertex(p);
+  bool commit(Vec3 p) {
+    const VertexIndex v = block_.add_vertex(p, mesh_.tet(tets_[0])[0], faces_.size());
+    if (v == kNone) return false;
     new_tets_.clear();
     shapes_.clear();
     for (std::size_t k = 0; k < faces_.size(); ++k) {
@@ -106,9 +105,10 @@ class Inserter {
       new_tets_.push_back({v, c[f[0]], c[f[1]], c[f[2]]});
       shapes_.push_back(star_.shape(static_cast<int>(k)));
     }
-    mesh_.replace(tets_, new_tets_, shapes_, created_);
+    return block_.replace(tets_, new_tets_, shapes_, created_);
   }
 
+  EditBlock& block_;
   EditMesh& mesh_;
   Floor floor_;
   std::vector<TetIndex> tets_;   ///< the cavity, in order of growth
@@ -122,22 +122,37 @@ class Inserter {
   std::vector<TetIndex> created_;
 };
 
+/// Worst first.
+PassResult insert_block(EditBlock& block, const Floor& floor, const std::vector<TetIndex>& tets, float threshold,
+                        std::vector<TetIndex>& left) {
+  PassResult result;
+  const EditMesh& mesh = block.mesh();
+  std::vector<std::pair<float, TetIndex>> bad;
+  for (const TetIndex t : tets)
+    if (mesh.alive(t)) bad.push_back({mesh.shape(t).score, t});
+  std::sort(bad.begin(), bad.end());
+  Inserter inserter(block, floor);
+  for (const auto& [score, t] : bad) {
+    if (!mesh.alive(t) || mesh.shape(t).score >= threshold) continue;
+    ++result.tried;
+    block.take_cut();
+    const bool done = inserter.improve(t);
+    result.done += done;
+    if (!done && block.take_cut()) left.push_back(t);
+  }
+  return result;
+}
+
 }  // namespace
 
 PassResult insert_vertices(EditMesh& mesh, float threshold, const RunContext& context) {
-  PassResult result;
-  std::vector<std::pair<float, TetIndex>> bad;
-  for (TetIndex t = 0; t < mesh.slots(); ++t)
-    if (mesh.alive(t) && mesh.shape(t).score < threshold) bad.push_back({mesh.shape(t).score, t});
-  std::sort(bad.begin(), bad.end());
-  Inserter inserter(mesh, mesh.floor());
-  for (const auto& [score, t] : bad) {
-    context.check();
-    if (!mesh.alive(t) || mesh.shape(t).score >= threshold) continue;
-    ++result.tried;
-    result.done += inserter.improve(t);
-  }
-  return result;
+  const Floor floor = mesh.floor();
+  return for_each_block(
+      mesh, tets_below(mesh, threshold), context,
+      [&](EditBlock& block, const std::vector<TetIndex>& tets, std::vector<TetIndex>& left) {
+        return insert_block(block, floor, tets, threshold, left);
+      },
+      true);
 }
 
 }  // namespace octafront::improve

@@ -1,3 +1,4 @@
+#include "improve/edit_blocks.h"
 #include "improve/maximize_worst.h"
 #include "improve/passes.h"
 #include "improve/star_edit.h"
@@ -15,23 +16,26 @@ constexpr double kPrice = 0.1;
 
 class WorstOptimizer {
  public:
-  WorstOptimizer(EditMesh& mesh, const BoundaryGuide* guide, float threshold)
-      : mesh_(mesh),
+  /// `seen`: vertices that were looked at, by any block: none looks at another's.
+  WorstOptimizer(EditBlock& block, const BoundaryGuide* guide, float threshold, const Floor& floor,
+                 std::vector<std::uint8_t>& seen)
+      : block_(block),
+        mesh_(block.mesh()),
         guide_(guide),
         threshold_(threshold),
-        floor_(mesh.floor()),
-        star_(mesh),
-        seen_(mesh.vertices(), 0) {
-    if (guide) sliding_.emplace(mesh, *guide);
+        floor_(floor),
+        star_(block.mesh()),
+        seen_(seen) {
+    if (guide) sliding_.emplace(mesh_, *guide);
   }
 
   PassResult around(TetIndex t) {
     PassResult result;
     for (const VertexIndex v : mesh_.tet(t)) {
       const bool slides = mesh_.on_boundary(v);
-      if (seen_[v] || (slides && !(guide_ && guide_->may_slide(v)))) continue;
+      if (seen_[v] || (slides && !(guide_ && guide_->may_slide(v))) || !block_.star(v, walked_)) continue;
       seen_[v] = 1;
-      if (!star_.load(v) || star_.current_worst() >= threshold_) continue;
+      if (!star_.load(v, walked_) || star_.current_worst() >= threshold_) continue;
       ++result.tried;
       result.done += slides ? slide(v) : move(v);
     }
@@ -61,6 +65,7 @@ class WorstOptimizer {
     return true;
   }
 
+  EditBlock& block_;
   EditMesh& mesh_;
   const BoundaryGuide* guide_;
   float threshold_;
@@ -68,19 +73,27 @@ class WorstOptimizer {
   StarEdit star_;
   std::optional<SlidingVertex> sliding_;
   WorstMaximizer maximizer_;
-  std::vector<std::uint8_t> seen_;
+  std::vector<HalfFace> walked_;
+  std::vector<std::uint8_t>& seen_;
 };
 
 }  // namespace
 
 PassResult optimize_vertices(EditMesh& mesh, float threshold, const RunContext& context, const BoundaryGuide* guide) {
-  PassResult result;
-  WorstOptimizer optimizer(mesh, guide, threshold);
-  for (TetIndex t = 0; t < mesh.slots(); ++t) {
-    if (t % 4096 == 0) context.check();
-    if (mesh.alive(t) && mesh.shape(t).score < threshold) result += optimizer.around(t);
-  }
-  return result;
+  std::vector<std::uint8_t> seen(mesh.vertices(), 0);
+  const Floor floor = mesh.floor();
+  return for_each_block(mesh, tets_below(mesh, threshold), context,
+                        [&](EditBlock& block, const std::vector<TetIndex>& tets, std::vector<TetIndex>& left) {
+                          PassResult result;
+                          WorstOptimizer optimizer(block, guide, threshold, floor, seen);
+                          for (const TetIndex t : tets) {
+                            if (mesh.shape(t).score >= threshold) continue;
+                            block.take_cut();
+                            result += optimizer.around(t);
+                            if (block.take_cut()) left.push_back(t);
+                          }
+                          return result;
+                        });
 }
 
 }  // namespace octafront::improve

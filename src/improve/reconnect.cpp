@@ -5,6 +5,7 @@
 
 #include "geometry/measures.h"
 #include "geometry/predicates.h"
+#include "improve/edit_blocks.h"
 #include "improve/passes.h"
 
 #include <algorithm>
@@ -20,7 +21,7 @@ struct Refill {
   std::vector<Tet> new_tets;
   std::vector<Shape> shapes;
   float gain = 0;
-  std::optional<EditMesh::BoundaryTurn> turn;  ///< where the removed edge lies on the boundary
+  std::optional<EditBlock::BoundaryTurn> turn;  ///< where the removed edge lies on the boundary
 
   void clear() {
     old_tets.clear();
@@ -40,8 +41,8 @@ constexpr float kWorthOfNothing = 0.6f;
 
 class Reconnector {
  public:
-  Reconnector(EditMesh& mesh, const Floor& floor, Goal goal, const BoundaryGuide* guide)
-      : mesh_(mesh), floor_(floor), goal_(goal), guide_(guide) {}
+  Reconnector(EditBlock& block, const Floor& floor, Goal goal, const BoundaryGuide* guide)
+      : block_(block), mesh_(block.mesh()), floor_(floor), goal_(goal), guide_(guide) {}
 
   /// Makes the best change there is at tet t, of those where t is the worst element concerned; the tets made are in
   /// created(). False if none is better.
@@ -53,8 +54,7 @@ class Reconnector {
     if (guide_ && goal_ == Goal::kWorst)
       for (const auto& [i, j] : kTetEdges) try_boundary_edge(t, i, j);
     if (best_.old_tets.empty()) return false;
-    mesh_.replace(best_.old_tets, best_.new_tets, best_.shapes, created_, best_.turn ? &*best_.turn : nullptr);
-    return true;
+    return block_.replace(best_.old_tets, best_.new_tets, best_.shapes, created_, best_.turn ? &*best_.turn : nullptr);
   }
 
   const std::vector<TetIndex>& created() const { return created_; }
@@ -83,7 +83,7 @@ class Reconnector {
 
   void try_edge(TetIndex t, int i, int j) {
     const VertexIndex a = mesh_.tet(t)[i], b = mesh_.tet(t)[j];
-    if (!mesh_.edge_ring_where_worst(t, i, j, kLongestRing, ring_)) return;
+    if (!block_.edge_ring_where_worst(t, i, j, kLongestRing, ring_)) return;
     remove_edge(a, b);
   }
 
@@ -117,8 +117,7 @@ class Reconnector {
   void try_boundary_edge(TetIndex t, int i, int j) {
     const VertexIndex a = mesh_.tet(t)[i], b = mesh_.tet(t)[j];
     if (!mesh_.on_boundary(a) || !mesh_.on_boundary(b) || !guide_->may_turn(a, b)) return;
-    mesh_.edge_ring(t, i, j, ring_);
-    if (ring_.closed || ring_.ring.size() > kLongestRing) return;
+    if (!block_.edge_ring(t, i, j, ring_) || ring_.closed || ring_.ring.size() > kLongestRing) return;
     for (const TetIndex r : ring_.tets)
       if (mesh_.worse(r, t)) return;
     const auto turn = turn_of(a, b);
@@ -137,10 +136,10 @@ class Reconnector {
   }
 
   /// The boundary after the removal of its edge ab; nullopt if the mesh would not stay valid, or the boundary true.
-  std::optional<EditMesh::BoundaryTurn> turn_of(VertexIndex a, VertexIndex b) {
+  std::optional<EditBlock::BoundaryTurn> turn_of(VertexIndex a, VertexIndex b) {
     const VertexIndex c = ring_.ring.front(), d = ring_.ring.back();
     if (guide_->is_frozen(c) || guide_->is_frozen(d)) return std::nullopt;
-    EditMesh::BoundaryTurn turn{{boundary_behind(ring_.tets.front(), ring_.ring[1]),
+    EditBlock::BoundaryTurn turn{{boundary_behind(ring_.tets.front(), ring_.ring[1]),
                                  boundary_behind(ring_.tets.back(), ring_.ring[ring_.ring.size() - 2])},
                                 {Triangle{c, d, a}, Triangle{d, c, b}}};
     if (mesh_.boundary_patch(turn.faces[0]) != mesh_.boundary_patch(turn.faces[1])) return std::nullopt;
@@ -169,7 +168,7 @@ class Reconnector {
   /// True if c and d are joined by an edge that would get a second fan of elements, or of boundary triangles: one that
   /// is there already, or, where a single tet goes and leaves its edge cd behind, one that lies on the boundary.
   bool is_edge_beyond_ring(VertexIndex c, VertexIndex d) {
-    mesh_.star(c, star_);
+    if (!block_.star(c, star_)) return true;
     for (const HalfFace h : star_) {
       const TetIndex t = h / 4;
       const Tet& corners = mesh_.tet(t);
@@ -232,26 +231,27 @@ class Reconnector {
   }
 
   void try_face(TetIndex t, int i) {
-    const HalfFace o = mesh_.across(4 * t + i);
-    if (is_boundary(o) || mesh_.worse(o / 4, t)) return;
-    const VertexIndex a = mesh_.tet(t)[i], b = mesh_.tet(o / 4)[o % 4];
+    const TetIndex behind = block_.behind(4 * t + i);
+    if (behind == kNone || mesh_.worse(behind, t)) return;
+    const VertexIndex a = mesh_.tet(t)[i], b = mesh_.tet(behind)[mesh_.across(4 * t + i) % 4];
     const auto& f = kTetFaces[i];
     const VertexIndex x = mesh_.tet(t)[f[0]], y = mesh_.tet(t)[f[1]], z = mesh_.tet(t)[f[2]];
     const std::array<Tet, 3> made{{{a, b, x, y}, {a, b, y, z}, {a, b, z, x}}};
     batch_.size = 0;
     for (const Tet& m : made) add_candidate(m);
     batch_.evaluate();
-    const float before = combined(value_of(mesh_.shape(t)), value_of(mesh_.shape(o / 4)));
+    const float before = combined(value_of(mesh_.shape(t)), value_of(mesh_.shape(behind)));
     float after = neutral();
     for (int k = 0; k < 3; ++k) after = combined(after, usable_value(k, made[k]));
     if (after <= before + best_.gain) return;
     best_.clear();
-    best_.old_tets = {t, o / 4};
+    best_.old_tets = {t, behind};
     best_.new_tets.assign(made.begin(), made.end());
     for (int k = 0; k < 3; ++k) best_.shapes.push_back(batch_.shape(k));
     best_.gain = after - before;
   }
 
+  EditBlock& block_;
   EditMesh& mesh_;
   Floor floor_;
   Goal goal_;
@@ -266,26 +266,36 @@ class Reconnector {
   int apex_[kLongestRing][kLongestRing];
 };
 
-}  // namespace
-
-PassResult reconnect(EditMesh& mesh, float threshold, Goal goal, const RunContext& context,
-                     const BoundaryGuide* guide) {
+PassResult reconnect_block(Reconnector& reconnector, EditBlock& block, std::vector<TetIndex> queue, float threshold,
+                           std::vector<TetIndex>& left) {
   PassResult result;
-  std::vector<TetIndex> queue;
-  for (TetIndex t = 0; t < mesh.slots(); ++t)
-    if (mesh.alive(t) && mesh.shape(t).score < threshold) queue.push_back(t);
-  Reconnector reconnector(mesh, mesh.floor(), goal, guide);
+  const EditMesh& mesh = block.mesh();
   for (std::size_t k = 0; k < queue.size(); ++k) {
-    if (k % 1024 == 0) context.check();
     const TetIndex t = queue[k];
     if (!mesh.alive(t) || mesh.shape(t).score >= threshold) continue;
     ++result.tried;
-    if (!reconnector.improve(t)) continue;
+    block.take_cut();
+    if (!reconnector.improve(t)) {
+      if (block.take_cut()) left.push_back(t);
+      continue;
+    }
     ++result.done;
     for (const TetIndex made : reconnector.created())
       if (mesh.shape(made).score < threshold) queue.push_back(made);
   }
   return result;
+}
+
+}  // namespace
+
+PassResult reconnect(EditMesh& mesh, float threshold, Goal goal, const RunContext& context,
+                     const BoundaryGuide* guide) {
+  const Floor floor = mesh.floor();
+  return for_each_block(mesh, tets_below(mesh, threshold), context,
+                        [&](EditBlock& block, const std::vector<TetIndex>& tets, std::vector<TetIndex>& left) {
+                          Reconnector reconnector(block, floor, goal, guide);
+                          return reconnect_block(reconnector, block, tets, threshold, left);
+                        });
 }
 
 }  // namespace octafront::improve

@@ -2,11 +2,6 @@
 
 namespace octafront::improve {
 
-bool StarEdit::load(VertexIndex v) {
-  mesh_.star(v, walked_);
-  return load(v, walked_);
-}
-
 bool StarEdit::load(VertexIndex v, std::span<const HalfFace> faces) {
   vertex_ = v;
   faces_ = faces;

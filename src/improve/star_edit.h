@@ -4,7 +4,7 @@
 
 #include "improve/edit_mesh.h"
 
-#include <vector>
+#include <span>
 
 namespace octafront::improve {
 
@@ -13,9 +13,8 @@ class StarEdit {
  public:
   explicit StarEdit(EditMesh& mesh) : mesh_(mesh) {}
 
-  /// False if the star is too large to be worth it (over ShapeBatch::kBatch elements).
-  bool load(VertexIndex v);
-  /// The same for a star that is known; `faces` must outlive its use.
+  /// `faces`: the star, which must outlive its use. False if it is too large to be worth it (over ShapeBatch::kBatch
+  /// elements).
   bool load(VertexIndex v, std::span<const HalfFace> faces);
   std::span<const HalfFace> faces() const { return faces_; }
   /// Worst score of the star as it stands in the mesh.
@@ -41,7 +40,6 @@ class StarEdit {
   EditMesh& mesh_;
   VertexIndex vertex_ = kNone;
   Vec3 at_;
-  std::vector<HalfFace> walked_;
   std::span<const HalfFace> faces_;
   ShapeBatch batch_;
 };

@@ -1,0 +1,70 @@
+#pragma once
+
+// A schedule by blocks for passes that change connections: the same result for any number of threads.
+
+#include <octafront/run_context.h>
+
+#include "improve/edit_block.h"
+#include "improve/passes.h"
+
+#include <vector>
+
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
+
+namespace octafront::improve {
+
+/// The elements of one stage, block by block.
+class EditBlocks {
+ public:
+  struct Share {
+    EditBlock block;
+    std::vector<TetIndex> tets;  ///< to be worked on, ascending
+    std::vector<TetIndex> left;  ///< those for which the block was too small
+    PassResult result;
+  };
+
+  /// Divides the mesh into stretches of the space-filling curve, shifted by half a block in the second stage; the third
+  /// is the whole mesh. Each block gets those of `tets` that it owns, and slots for new ones, and for as many new
+  /// vertices if asked for; the rest is for finish().
+  EditBlocks(EditMesh& mesh, const std::vector<TetIndex>& tets, int stage, bool adds_vertices);
+  static constexpr int kStages = 3;
+
+  std::vector<Share>& shares() { return shares_; }
+  /// What no block could do, ascending; gives unused slots back.
+  std::vector<TetIndex> finish();
+
+ private:
+  void divide(const std::vector<TetIndex>& tets, VertexIndex size, VertexIndex shift, bool adds_vertices);
+
+  EditMesh& mesh_;
+  std::vector<Share> shares_;
+  std::vector<TetIndex> left_;
+};
+
+/// Calls work(block, tets, left) for each block, in parallel, stage after stage. It works on the tets, adds to `left`
+/// those for which the block was too small (EditBlock::take_cut), and returns what it did.
+template <typename Work>
+PassResult for_each_block(EditMesh& mesh, std::vector<TetIndex> tets, const RunContext& context, Work&& work,
+                          bool adds_vertices = false) {
+  PassResult sum;
+  tbb::task_arena arena(context.threads > 0 ? context.threads : tbb::task_arena::automatic);
+  for (int stage = 0; stage < EditBlocks::kStages && !tets.empty(); ++stage) {
+    EditBlocks blocks(mesh, tets, stage, adds_vertices);
+    auto& shares = blocks.shares();
+    arena.execute([&] {
+      tbb::parallel_for(std::size_t{0}, shares.size(), [&](std::size_t b) {
+        context.check();
+        shares[b].result = work(shares[b].block, shares[b].tets, shares[b].left);
+      });
+    });
+    for (const EditBlocks::Share& s : shares) sum += s.result;
+    tets = blocks.finish();
+  }
+  return sum;
+}
+
+/// The tets with a score below the threshold, ascending.
+std::vector<TetIndex> tets_below(const EditMesh& mesh, float threshold);
+
+}  // namespace octafront::improve
