@@ -128,7 +128,7 @@ bool SlidingVertex::load(VertexIndex v, std::span<const HalfFace> star) {
   }
   if (triangles_.empty()) return false;
   edge_ /= static_cast<double>(triangles_.size());
-  nearby_.gather(guide_.tree(), at_, kAround * edge_);
+  gathered_ = false;
   if (kind_ == BoundaryGuide::Kind::kCurve) return load_curve();
   normal_ = normalized(normal_);
   if (kind_ != BoundaryGuide::Kind::kSurface || !one_patch || squared_length(normal_) == 0) return false;
@@ -148,6 +148,12 @@ bool SlidingVertex::load_curve() {
   return true;
 }
 
+const NearbyTriangles& SlidingVertex::nearby() const {
+  if (!gathered_) nearby_.gather(guide_.tree(), at_, kAround * edge_);
+  gathered_ = true;
+  return nearby_;
+}
+
 bool SlidingVertex::snap(Vec3& place) const {
   if (kind_ == BoundaryGuide::Kind::kCurve) {
     const auto there = guide_.curves().walk(on_curve_, dot(place - at_, axes_[0]));
@@ -155,7 +161,7 @@ bool SlidingVertex::snap(Vec3& place) const {
     return there.has_value();
   }
   const double squared_step = squared_distance(place, at_);
-  const auto found = nearby_.nearest(place, kLeaves * kLeaves * squared_step);
+  const auto found = nearby().nearest(place, kLeaves * kLeaves * squared_step);
   if (found.triangle == kNone || guide_.surface().patch_of(found.triangle) != patch_) return false;
   if (!(dot(area_normal(guide_.tree().corners(found.triangle)), normal_) > 0)) return false;
   place = found.point;
@@ -167,9 +173,9 @@ bool SlidingVertex::keeps_truth(Vec3 place) const {
   for (TriangleCorners& t : moved_) t[0] = place;
   for (std::size_t k = 0; k < moved_.size(); ++k)
     if (!(dot(area_normal(moved_[k]), area_normal(triangles_[k])) > 0)) return false;
-  const BoundaryGuide::Truth has = guide_.truth_of(moved_, &nearby_);
+  const BoundaryGuide::Truth has = guide_.truth_of(moved_, &nearby());
   if (BoundaryGuide::is_true(has, edge_)) return true;
-  if (!had_) had_ = guide_.truth_of(triangles_, &nearby_);
+  if (!had_) had_ = guide_.truth_of(triangles_, &nearby());
   return BoundaryGuide::keeps_truth(*had_, has, edge_);
 }
 

@@ -79,6 +79,7 @@ class SlidingVertex {
 
  private:
   bool load_curve();
+  const NearbyTriangles& nearby() const;
 
   const EditMesh& mesh_;
   const BoundaryGuide& guide_;
@@ -88,11 +89,12 @@ class SlidingVertex {
   std::array<Vec3, 2> axes_;
   std::size_t axes_count_ = 0;
   FeatureCurves::Place on_curve_;
-  std::vector<TriangleCorners> triangles_;  ///< corner 0 is the vertex
-  double edge_ = 0;  ///< mean length of the boundary edges around it
+  std::vector<TriangleCorners> triangles_;           ///< corner 0 is the vertex
+  double edge_ = 0;                                  ///< mean length of the boundary edges around it
   mutable std::optional<BoundaryGuide::Truth> had_;  ///< as the triangles lie now, once that was asked for
   mutable std::vector<TriangleCorners> moved_;
-  NearbyTriangles nearby_;
+  mutable bool gathered_ = false;
+  mutable NearbyTriangles nearby_;  ///< once it was asked for
 };
 
 }  // namespace octafront::improve

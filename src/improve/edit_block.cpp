@@ -145,8 +145,8 @@ TetIndex EditBlock::slot() {
   return t;
 }
 
-bool EditBlock::replace(std::span<const TetIndex> old_tets, std::span<const Tet> new_tets, std::span<const Shape> shapes,
-                       std::vector<TetIndex>& created, const BoundaryTurn* turn) {
+bool EditBlock::replace(std::span<const TetIndex> old_tets, std::span<const Tet> new_tets,
+                        std::span<const Shape> shapes, std::vector<TetIndex>& created, const BoundaryTurn* turn) {
   if (new_tets.size() > old_tets.size() && !has_room(new_tets.size() - old_tets.size())) return false;
   // A face seen twice among the old tets lies inside them; what lies across the others must be tied to the new ones.
   SmallFaceTable outside(4 * (old_tets.size() + new_tets.size()));
@@ -166,6 +166,7 @@ bool EditBlock::replace(std::span<const TetIndex> old_tets, std::span<const Tet>
   }
   for (std::size_t k = new_tets.size(); k < old_tets.size(); ++k) {
     mesh_.tets_[old_tets[k]] = {kNone, kNone, kNone, kNone};
+    mesh_.shapes_[old_tets[k]] = kNoShape;
     free_tets().push_back(old_tets[k]);
   }
   for (const TetIndex t : created) {

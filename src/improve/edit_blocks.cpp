@@ -22,8 +22,7 @@ std::vector<Index> take_last(std::vector<Index>& from, std::size_t count) {
 
 }  // namespace
 
-EditBlocks::EditBlocks(EditMesh& mesh, const std::vector<TetIndex>& tets, int stage, bool adds_vertices)
-    : mesh_(mesh) {
+EditBlocks::EditBlocks(EditMesh& mesh, const std::vector<TetIndex>& tets, int stage, bool adds_vertices) : mesh_(mesh) {
   const auto n = static_cast<VertexIndex>(mesh.original_.size());
   const VertexIndex size = std::max(kLeastBlock, n / kMostBlocks + 1);
   if (stage + 1 == kStages || n <= size) {
@@ -33,8 +32,7 @@ EditBlocks::EditBlocks(EditMesh& mesh, const std::vector<TetIndex>& tets, int st
   divide(tets, size, stage == 0 ? 0 : size / 2, adds_vertices);
 }
 
-void EditBlocks::divide(const std::vector<TetIndex>& tets, VertexIndex size, VertexIndex shift,
-                        bool adds_vertices) {
+void EditBlocks::divide(const std::vector<TetIndex>& tets, VertexIndex size, VertexIndex shift, bool adds_vertices) {
   const auto n = static_cast<VertexIndex>(mesh_.original_.size());
   std::vector<std::vector<TetIndex>> own((n + shift) / size + 1);
   std::size_t room = 0, vertices = 0;
@@ -75,7 +73,7 @@ std::vector<TetIndex> EditBlocks::finish() {
 std::vector<TetIndex> tets_below(const EditMesh& mesh, float threshold) {
   std::vector<TetIndex> found;
   for (TetIndex t = 0; t < mesh.slots(); ++t)
-    if (mesh.alive(t) && mesh.shape(t).score < threshold) found.push_back(t);
+    if (mesh.shape(t).score < threshold) found.push_back(t);
   return found;
 }
 

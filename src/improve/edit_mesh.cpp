@@ -187,7 +187,7 @@ void EditMesh::reserve_tets(std::size_t more) {
   if (last > kBoundaryBit / 4) throw MeshingError("improvement holds at most 2^29 tetrahedra");
   tets_.resize(last, {kNone, kNone, kNone, kNone});
   across_.resize(4 * last);
-  shapes_.resize(last);
+  shapes_.resize(last, kNoShape);
   region_.resize(last);
   tet_mark_.resize(last, 0);
   for (std::size_t t = last; t-- > first;) free_.push_back(static_cast<TetIndex>(t));
@@ -204,8 +204,7 @@ void EditMesh::reserve_points(std::size_t more) {
 
 Floor EditMesh::floor() const {
   Floor f;
-  for (TetIndex t = 0; t < tets_.size(); ++t)
-    if (alive(t)) f.add(shapes_[t]);
+  for (const Shape& s : shapes_) f.add(s);
   return f;
 }
 

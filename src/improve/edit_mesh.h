@@ -106,8 +106,8 @@ class EditMesh {
   std::vector<TetIndex> free_;            ///< slots of no tet
   std::vector<VertexIndex> free_points_;  ///< numbers of no vertex, behind those that were taken
   std::vector<VertexIndex> key_;          ///< for each vertex: a number that grows along the space-filling curve
-  std::vector<VertexIndex> original_;  ///< the number of each vertex in the mesh that was taken
-  TetMesh rest_;                       ///< boundary, patches, sources, names: carried through
+  std::vector<VertexIndex> original_;     ///< the number of each vertex in the mesh that was taken
+  TetMesh rest_;                          ///< boundary, patches, sources, names: carried through
   bool had_regions_ = false;
 
   mutable std::vector<std::uint32_t> tet_mark_;

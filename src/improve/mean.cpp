@@ -19,9 +19,10 @@ namespace {
 constexpr double kDifference = 0.04;  ///< step of the differences, in mean edge lengths: wide enough to see the bend
 constexpr double kFarthest = 0.2;     ///< longest step along an axis, in mean edge lengths
 constexpr double kUphill = 0.1;       ///< step where the second derivative gives none, in mean edge lengths
+constexpr float kGoodEnough = 0.93f;
 constexpr double kShorten = 0.4;
 constexpr int kTries = 2;
-constexpr double kLeastSlide = 0.01;  ///< steps on the surface below this, in mean edge lengths, are not worth a search
+constexpr double kLeastSlide = 0.03;  ///< steps on the surface below this, in mean edge lengths, are not worth a search
 
 constexpr std::array<Vec3, 3> kAxes{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 
@@ -34,6 +35,9 @@ class MeanSmoother {
 
   /// True if the vertex moved.
   bool run(VertexIndex v, std::span<const HalfFace> faces) {
+    float worst_beta = 1;
+    for (const HalfFace h : faces) worst_beta = std::min(worst_beta, mesh_.shape(h / 4).beta);
+    if (worst_beta > kGoodEnough) return false;
     const bool slides = mesh_.on_boundary(v);
     if (!star_.load(v, faces) || (slides && !sliding_->load(v, faces))) return false;
     const Vec3 at = mesh_.point(v);
@@ -46,7 +50,7 @@ class MeanSmoother {
     }
     const std::span<const Vec3> axes = slides ? sliding_->axes() : kAxes;
     const double edge = star_.batch().mean_edge(at);
-    Vec3 step = newton_step(at, axes, edge, old_deficit);
+    Vec3 step = slides ? newton_step(at, axes, edge, old_deficit) : free_step(at, edge, old_deficit);
     if (slides && squared_length(step) < kLeastSlide * kLeastSlide * edge * edge) return false;
     for (int k = 0; k < kTries; ++k, step *= kShorten) {
       Vec3 to = at + step;
@@ -63,6 +67,24 @@ class MeanSmoother {
   }
 
  private:
+  Vec3 free_step(Vec3 at, double edge, double here) {
+    const double h = kDifference * edge;
+    constexpr double r = 0.57735026918962576;
+    constexpr std::array<Vec3, 4> kCorners{{{r, r, r}, {r, -r, -r}, {-r, r, -r}, {-r, -r, r}}};
+    Vec3 sum;
+    double mean = 0;
+    for (const Vec3 d : kCorners) {
+      const double f = star_.deficit_at(at + h * d);
+      sum += (f - here) * d;
+      mean += 0.25 * (f - here);
+    }
+    const Vec3 slope = (0.75 / h) * sum;
+    const double bend = 2 * mean / (h * h), steep = length(slope);
+    if (!(steep > 0)) return {};
+    const double far = bend > 0 ? std::min(steep / bend, kFarthest * edge) : kUphill * edge;
+    return (-far / steep) * slope;
+  }
+
   Vec3 newton_step(Vec3 at, std::span<const Vec3> axes, double edge, double here) {
     const double h = kDifference * edge;
     Vec3 step;

@@ -36,6 +36,8 @@ struct Refill {
 // lattice two refills of equal worth would otherwise replace each other for ever.
 constexpr float kLeastGain = 1e-5f;
 
+constexpr std::size_t kQuickRing = 4;
+
 /// A tet at the boundary that goes without another in its place counts as replaced by one of this score.
 constexpr float kWorthOfNothing = 0.6f;
 
@@ -50,7 +52,8 @@ class Reconnector {
     best_.clear();
     best_.gain = kLeastGain;
     for (const auto& [i, j] : kTetEdges) try_edge(t, i, j);
-    for (int i = 0; i < 4; ++i) try_face(t, i);
+    if (goal_ != Goal::kMeanQuick)
+      for (int i = 0; i < 4; ++i) try_face(t, i);
     if (guide_ && goal_ == Goal::kWorst)
       for (const auto& [i, j] : kTetEdges) try_boundary_edge(t, i, j);
     if (best_.old_tets.empty()) return false;
@@ -74,7 +77,7 @@ class Reconnector {
   /// The value of candidate i of the batch, kUnusable if it may not be used.
   float usable_value(int i, const Tet& t) const {
     const Shape s = batch_.shape(i);
-    if (!floor_.below(s) || (goal_ == Goal::kMean && s.score < kMeanRisesGuard)) return kUnusable;
+    if (!floor_.below(s) || (goal_ != Goal::kWorst && s.score < kMeanRisesGuard)) return kUnusable;
     if (s.beta < kCertainBeta &&
         orient3d(mesh_.point(t[0]), mesh_.point(t[1]), mesh_.point(t[2]), mesh_.point(t[3])) <= 0)
       return kUnusable;
@@ -83,7 +86,7 @@ class Reconnector {
 
   void try_edge(TetIndex t, int i, int j) {
     const VertexIndex a = mesh_.tet(t)[i], b = mesh_.tet(t)[j];
-    if (!block_.edge_ring_where_worst(t, i, j, kLongestRing, ring_)) return;
+    if (!block_.edge_ring_where_worst(t, i, j, longest_, ring_)) return;
     remove_edge(a, b);
   }
 
@@ -140,8 +143,8 @@ class Reconnector {
     const VertexIndex c = ring_.ring.front(), d = ring_.ring.back();
     if (guide_->is_frozen(c) || guide_->is_frozen(d)) return std::nullopt;
     EditBlock::BoundaryTurn turn{{boundary_behind(ring_.tets.front(), ring_.ring[1]),
-                                 boundary_behind(ring_.tets.back(), ring_.ring[ring_.ring.size() - 2])},
-                                {Triangle{c, d, a}, Triangle{d, c, b}}};
+                                  boundary_behind(ring_.tets.back(), ring_.ring[ring_.ring.size() - 2])},
+                                 {Triangle{c, d, a}, Triangle{d, c, b}}};
     if (mesh_.boundary_patch(turn.faces[0]) != mesh_.boundary_patch(turn.faces[1])) return std::nullopt;
     if (is_edge_beyond_ring(c, d)) return std::nullopt;
     const Vec3 pa = mesh_.point(a), pb = mesh_.point(b), pc = mesh_.point(c), pd = mesh_.point(d);
@@ -255,6 +258,7 @@ class Reconnector {
   EditMesh& mesh_;
   Floor floor_;
   Goal goal_;
+  std::size_t longest_ = goal_ == Goal::kMeanQuick ? kQuickRing : kLongestRing;
   const BoundaryGuide* guide_;
   EdgeRing ring_;
   std::vector<HalfFace> star_;

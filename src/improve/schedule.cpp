@@ -70,8 +70,8 @@ class Schedule {
   void slide_mean() {
     pass("moves and slides for the mean", [&] { return improve::smooth_mean(mesh_, 1, context_, guide_); });
   }
-  void mean_flips(float threshold) {
-    pass("reconnections for the mean", [&] { return reconnect(mesh_, threshold, Goal::kMean, context_); });
+  void mean_flips(float threshold, Goal goal = Goal::kMean) {
+    pass("reconnections for the mean", [&] { return reconnect(mesh_, threshold, goal, context_); });
   }
   void flips(float threshold) {
     pass("reconnections", [&] { return reconnect(mesh_, threshold, Goal::kWorst, context_, guide_); });
@@ -193,7 +193,7 @@ void run_default(Schedule& run, const ImproveOptions& options) {
   run.laplacian(2, options.relaxation, MoveRule::kMeanRises);
   run.flips(kWanted);
   run.collapse(kWanted);
-  run.mean_flips(kGood);
+  run.mean_flips(kGood, Goal::kMeanQuick);
   run.slide_mean();
   const double before = run.mean_beta();
   run.flips(kWanted);

@@ -26,6 +26,9 @@ inline constexpr double kReferenceBeta = 0.45;
 inline constexpr double kSmallWeight = kReferenceBeta * kReferenceBeta / (1 - 0.92050485345244037);  // cos 23 deg
 inline constexpr double kLargeWeight = kReferenceBeta * kReferenceBeta / (1 - 0.77714596145697090);  // -cos 141 deg
 
+/// Of a slot without an element: better than any, so that sweeps over all shapes need not ask.
+inline constexpr Shape kNoShape{2, 2, 2, 2};
+
 /// At this computed beta or above an element is certainly positive: V >= 4/3 pi r^3 with r >= beta R / 3 makes the
 /// determinant at least 7e-10 R^3, and its rounding error is below 4e-14 R^3 (see orient3d). Below it, exact signs
 /// decide.
