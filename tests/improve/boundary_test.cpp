@@ -102,7 +102,7 @@ TEST(Boundary, StaysWhenTold) {
 
 TEST(Boundary, IsTheSameOnAnyNumberOfThreads) {
   const Cube cube;
-  const TetMesh start = shaken_cube(6, 0.25, 4);
+  const TetMesh start = shaken_cube(20, 0.25, 4);  // several blocks
   const Features of_mesh = detect_features(boundary_of(start), 40);
   const TriangleTree tree(cube.surface);
   const BoundaryInput input{cube.surface, tree, cube.features, of_mesh};

@@ -2,6 +2,7 @@
 
 #include "geometry/measures.h"
 #include "geometry/predicates.h"
+#include "improve/edit_blocks.h"
 #include "improve/explain.h"
 #include "improve/start_meshes.h"
 #include "improve/vertex_blocks.h"
@@ -55,17 +56,18 @@ TEST(EditMesh, RefusesFacesThatDoNotMatch) {
 }
 
 TEST(EditMesh, FindsStarsAndRings) {
-  const EditMesh mesh(kuhn_cube(2));
+  EditMesh mesh(kuhn_cube(2));
+  EditBlock whole(mesh);
   std::vector<HalfFace> star;
   for (VertexIndex v = 0; v < mesh.vertices(); ++v)
     if (!mesh.on_boundary(v)) {
-      mesh.star(v, star);
+      ASSERT_TRUE(whole.star(v, star));
       EXPECT_EQ(star.size(), 24u);
     }
   EdgeRing ring;
   for (TetIndex t = 0; t < mesh.slots(); ++t)
     for (const auto& [i, j] : kTetEdges) {
-      mesh.edge_ring(t, i, j, ring);
+      ASSERT_TRUE(whole.edge_ring(t, i, j, ring));
       ASSERT_EQ(ring.ring.size(), ring.tets.size() + (ring.closed ? 0 : 1));
       const VertexIndex a = mesh.tet(t)[i], b = mesh.tet(t)[j];
       for (std::size_t k = 0; k < ring.tets.size(); ++k)
@@ -94,6 +96,68 @@ TEST(VertexBlocks, OfOneStageShareNoVertexAndHoldEachInnerOneOnce) {
       }
   }
   for (VertexIndex v = 0; v < mesh.vertices(); ++v) EXPECT_EQ(moved[v], mesh.on_boundary(v) ? 0 : 1);
+}
+
+TEST(EditBlocks, OfOneStageShareNoTetAndLoseNone) {
+  EditMesh mesh(kuhn_cube(24));
+  std::vector<TetIndex> all = tets_below(mesh, 2.0f);
+  ASSERT_EQ(all.size(), mesh.live_tets());
+  for (int stage = 0; stage < EditBlocks::kStages; ++stage) {
+    EditBlocks blocks(mesh, all, stage, true);
+    EXPECT_EQ(blocks.shares().size() > 2, stage + 1 < EditBlocks::kStages);
+    std::vector<std::size_t> owner(mesh.vertices(), kNone);
+    std::size_t taken = 0;
+    for (std::size_t b = 0; b < blocks.shares().size(); ++b)
+      for (const TetIndex t : blocks.shares()[b].tets) {
+        ++taken;
+        ASSERT_TRUE(blocks.shares()[b].block.owns(t));
+        for (const VertexIndex v : mesh.tet(t)) {
+          ASSERT_TRUE(owner[v] == kNone || owner[v] == b);
+          owner[v] = b;
+        }
+      }
+    all = blocks.finish();
+    EXPECT_EQ(taken + all.size(), mesh.live_tets());
+    EXPECT_LT(all.size(), taken);
+    all = tets_below(mesh, 2.0f);
+  }
+}
+
+TEST(EditBlocks, SearchesStopAtTheRimAndSaySo) {
+  EditMesh mesh(kuhn_cube(24));
+  const std::vector<TetIndex> all = tets_below(mesh, 1.0f);
+  EditBlocks blocks(mesh, all, 0, false);
+  EditBlock& block = blocks.shares()[0].block;
+  EditMesh again(kuhn_cube(24));
+  EditBlock whole(again);
+  std::vector<HalfFace> star, full;
+  std::size_t inside = 0, cut = 0;
+  for (const TetIndex t : blocks.shares()[0].tets)
+    for (const VertexIndex v : mesh.tet(t)) {
+      const bool found = block.star(v, star);
+      ASSERT_EQ(block.take_cut(), !found);
+      whole.star(v, full);
+      const bool owned = std::all_of(full.begin(), full.end(), [&](HalfFace h) { return block.owns(h / 4); });
+      ASSERT_EQ(found, owned);
+      if (found) {
+        ASSERT_EQ(star, full);
+      }
+      ++(found ? inside : cut);
+    }
+  EXPECT_GT(inside, 0u);
+  EXPECT_GT(cut, 0u);
+}
+
+TEST(EditBlocks, MendWhatLiesAcrossTheirRims) {
+  // Each pass by itself, on a mesh of several blocks: nothing that it can do stays undone, wherever it lies.
+  const TetMesh start = perturbed(kuhn_cube(24), 0.45, 9);
+  EditMesh edit{TetMesh{start}};
+  while (reconnect(edit, 0.5f, Goal::kWorst, {}).done != 0) {
+  }
+  EXPECT_EQ(reconnect(edit, 0.5f, Goal::kWorst, {}).done, 0u);
+  EXPECT_GT(optimize_vertices(edit, 0.5f, {}).done, 0u);
+  insert_vertices(edit, 0.5f, {});
+  expect_laws(start, edit.release());
 }
 
 TEST(Shape, AgreesWithTheMeasuresOfTheLibrary) {
@@ -162,22 +226,27 @@ TEST(Insert, PutsAVertexWhereNoReconnectionHelps) {
   expect_laws(before, after);
 }
 
+Shortfall shortfall_of(TetMesh mesh) {
+  EditMesh edit(std::move(mesh));
+  return explain_shortfall(edit, 0.4f);
+}
+
 TEST(Explain, NamesWhatTheBoundaryForces) {
   TetMesh wedge;  // two faces at five degrees
   wedge.points = {{0, 0, 0}, {1, 0, 0}, {0.5, 1, 0}, {0.5, 1, 0.0875}};
   wedge.tets = {{0, 1, 2, 3}};
-  const Shortfall angle = explain_shortfall(EditMesh(with_boundary(wedge)), 0.4f);
+  const Shortfall angle = shortfall_of(with_boundary(wedge));
   EXPECT_EQ(angle.elements, 1u);
   EXPECT_EQ(angle.forced_by_angle, 1u);
 
   TetMesh needle;  // upright on a needle of a triangle
   needle.points = {{0, 0, 0}, {1, 0, 0}, {0.5, 0.02, 0}, {0.5, 0.01, 0.8}};
   needle.tets = {{0, 1, 2, 3}};
-  const Shortfall triangle = explain_shortfall(EditMesh(with_boundary(needle)), 0.4f);
+  const Shortfall triangle = shortfall_of(with_boundary(needle));
   EXPECT_EQ(triangle.elements, 1u);
   EXPECT_EQ(triangle.not_forced, 0u);
 
-  EXPECT_EQ(explain_shortfall(EditMesh(kuhn_cube(2)), 0.4f).elements, 0u);
+  EXPECT_EQ(shortfall_of(kuhn_cube(2)).elements, 0u);
 }
 
 double deficit(const EditMesh& mesh) {
