@@ -34,7 +34,8 @@ struct SurfaceResult {
 };
 SurfaceResult generate_surface(const SurfaceMesh& surface, const Options& options = {}, const RunContext& context = {});
 
-/// The run up to the size field; report.expected_tets is its prediction.
+/// The sizes, as they are after the surface front has made them smaller where lines run side by side or the surface
+/// would stray too far; report.expected_tets predicts the number of tetrahedra from them.
 struct SizeResult {
   SizeField sizes;
   Report report;

@@ -34,7 +34,7 @@ struct Report {
   std::uint32_t bodies = 0;
   double volume = 0;           ///< of the mesh, input unit cubed
   double input_volume = 0;     ///< enclosed by the repaired input
-  double expected_tets = 0;    ///< predicted by the size field before meshing
+  double expected_tets = 0;    ///< predicted by the sizes before the volume is meshed
   QualitySummary quality;
   SizeSummary surface_edges, volume_edges;
   double wall_seconds = 0, cpu_seconds = 0;

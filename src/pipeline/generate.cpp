@@ -140,6 +140,8 @@ Remeshed surface_stage(const Prepared& p, const SizeField& sizes, const Options&
     Remeshed remeshed = remesh_surface(p.repaired.surface, p.features, sizes, surface, context, stage);
     stage.count("triangles", static_cast<double>(remeshed.surface.triangles.size()));
     note_volume_loss(enclosed_volume(remeshed.surface), report.input_volume, stage);
+    // Strips between lines and the bounds on deviation have made sizes smaller since the first prediction.
+    report.expected_tets = expected_tets(remeshed.sizes, remeshed.surface);
     return remeshed;
   });
 }
@@ -396,6 +398,8 @@ SizeResult generate_sizes(const SurfaceMesh& surface, const Options& options, co
   Report report;
   const Prepared prepared = prepare(surface, options, context, report);
   SizeField sizes = size_stage(prepared, options, context, report);
+  const bool has_front = options.method == Method::kOctreeAft || options.method == Method::kAft;
+  if (has_front && !options.surface.keep) sizes = surface_stage(prepared, sizes, options, context, report).sizes;
   close_report(report);
   return {std::move(sizes), std::move(report)};
 }
