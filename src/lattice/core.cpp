@@ -1,15 +1,15 @@
 #include "lattice/core.h"
 
 #include "geometry/triangle_tree.h"
+#include "lattice/clear_sites.h"
 #include "lattice/graded_bcc.h"
 #include "lattice/lattice_octree.h"
-#include "lattice/near_leaves.h"
 #include "lattice/site_table.h"
 #include "mesh/index_range.h"
 
 #include <algorithm>
 #include <atomic>
-#include <numeric>
+#include <limits>
 #include <utility>
 
 #include <oneapi/tbb/parallel_for.h>
@@ -19,103 +19,9 @@ namespace octafront {
 
 namespace {
 
-/// Distance of the core from the surface over the size there: room for one good layer of the front, and no more.
-constexpr double kCoreClearance = 0.8;
-
 using Sites = std::array<LatticeSite, 4>;
 
-/// A site by number. Leaf i has 2 i for its centre and 2 i + 1 for its lower corner; the few other sites (they hang on
-/// the side of a larger leaf, or lie on an upper side of the root) are numbered as `kHanging` and up by each chunk.
-using SiteNumber = std::uint32_t;
-constexpr SiteNumber kHanging = 0x80000000u;
 constexpr std::size_t kLeavesPerChunk = 4096;
-
-bool is_hanging(SiteNumber s) {
-  return s >= kHanging;
-}
-bool is_center(SiteNumber s) {
-  return !is_hanging(s) && s % 2 == 0;
-}
-
-std::uint32_t find_root(std::vector<std::uint32_t>& parent, std::uint32_t i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
-
-/// What of a lattice is clear of the surface, and inside it.
-class ClearSites {
- public:
-  ClearSites(const LatticeOctree& lattice, const SurfaceMesh& surface, const TriangleTree& triangles,
-             const SizeField& sizes, const RunContext& context)
-      : lattice_(lattice),
-        triangles_(triangles),
-        sizes_(sizes),
-        near_(near_leaves(lattice, surface, sizes, kCoreClearance)),
-        clear_(2 * lattice.tree.size()) {
-    const std::size_t leaves = lattice.tree.size();
-    tbb::parallel_for(std::size_t{0}, leaves, [&](std::size_t i) {
-      if (i % kLeavesPerChunk == 0) context.check();
-      for (const SiteNumber s : {SiteNumber(2 * i), SiteNumber(2 * i + 1)})
-        clear_[s] = !near_[i] || keeps_clearance(position_of(s));
-    });
-    find_inside();
-  }
-
-  const LatticeOctree& lattice() const { return lattice_; }
-  /// REQUIRES a site that is not hanging.
-  bool is_clear(SiteNumber s) const { return clear_[s] != 0; }
-  bool keeps_clearance(Vec3 p) const {
-    const double clearance = kCoreClearance * sizes_.at(p);
-    return triangles_.nearest(p, clearance * clearance).triangle == kNone;
-  }
-  bool is_near(std::size_t leaf) const { return near_[leaf] != 0; }
-  /// REQUIRES that the centre of the leaf is clear.
-  bool center_is_inside(std::size_t leaf) const { return inside_[leaf] != 0; }
-  bool contains(Vec3 p) const { return triangles_.contains(p); }
-  /// No site of the leaf can be part of the core.
-  bool is_far_outside(std::size_t leaf) const { return !near_[leaf] && !inside_[leaf]; }
-  Vec3 position_of(SiteNumber s) const {
-    const OctreeKey leaf = lattice_.tree.leaf(s / 2);
-    return s % 2 == 0 ? lattice_.root.center_of(leaf) : lattice_.root.corner_of(leaf);
-  }
-
- private:
-  /// An edge between two clear sites does not cross the surface, so what such edges connect lies on one side of it: one
-  /// inside test a component is enough. The centres of leaves of one size that share a face are connected.
-  void find_inside() {
-    const Octree& tree = lattice_.tree;
-    std::vector<std::array<std::uint32_t, 3>> upper(tree.size());
-    tbb::parallel_for(std::size_t{0}, tree.size(), [&](std::size_t i) {
-      for (int axis = 0; axis < 3; ++axis) {
-        upper[i][axis] = kNone;
-        if (!clear_[2 * i]) continue;
-        const OctreeKey beyond = tree.leaf(i).neighbour(axis == 0, axis == 1, axis == 2);
-        if (!beyond.is_valid()) continue;
-        const std::size_t j = tree.find(beyond);
-        if (tree.leaf(j) == beyond && clear_[2 * j]) upper[i][axis] = static_cast<std::uint32_t>(j);
-      }
-    });
-    std::vector<std::uint32_t> parent(tree.size());
-    std::iota(parent.begin(), parent.end(), 0u);
-    for (std::uint32_t i = 0; i < tree.size(); ++i)
-      for (const std::uint32_t j : upper[i])
-        if (j != kNone) {
-          const std::uint32_t a = find_root(parent, i), b = find_root(parent, j);
-          parent[std::max(a, b)] = std::min(a, b);
-        }
-    inside_.resize(tree.size());
-    for (std::uint32_t i = 0; i < tree.size(); ++i) {
-      const std::uint32_t root = find_root(parent, i);
-      inside_[i] = root == i ? clear_[2 * i] && contains(position_of(2 * i)) : inside_[root];
-    }
-  }
-
-  const LatticeOctree& lattice_;
-  const TriangleTree& triangles_;
-  const SizeField& sizes_;
-  std::vector<std::uint8_t> near_, clear_;
-  std::vector<std::uint8_t> inside_;  ///< per leaf, of its centre
-};
 
 /// The tetrahedra of a stretch of leaves that belong to the core, and the faces between them and the rest.
 class CoreChunk {
@@ -127,7 +33,7 @@ class CoreChunk {
   }
 
   std::vector<Tet> tets;             ///< of site numbers
-  std::vector<Triangle> candidates;  ///< for the skin: faces of a tetrahedron that lacks its fourth corner
+  std::vector<Triangle> candidates;  ///< for the skin: clear faces of tetrahedra that do not belong to the core
   std::vector<LatticeSite> hanging;  ///< per kHanging + i
 
  private:
@@ -164,43 +70,63 @@ class CoreChunk {
         if (corner == at) return static_cast<SiteNumber>(2 * i);
       }
       const std::uint32_t i = table_[site];
-      if (i == hanging_is_clear_.size())
-        hanging_is_clear_.push_back(sites_.keeps_clearance(position(sites_.lattice().root, site)));
+      if (i == hanging_distance_.size()) hanging_distance_.push_back(sites_.distance_of(site));
       return kHanging + i;
     }
 
-    bool is_clear(SiteNumber s) const { return is_hanging(s) ? hanging_is_clear_[s - kHanging] : sites_.is_clear(s); }
+    float distance(SiteNumber s) const { return is_hanging(s) ? hanging_distance_[s - kHanging] : sites_.distance(s); }
 
-    /// Of the clear sites of a tetrahedron, which lie on one side of the surface.
-    bool is_inside(const std::array<SiteNumber, 4>& corners, const Sites& tet, int shallow) const {
-      for (const SiteNumber s : corners)
-        if (is_center(s) && is_clear(s)) return sites_.center_is_inside(s / 2);
-      return sites_.contains(position(sites_.lattice().root, tet[shallow == 0 ? 1 : 0]));
+    bool is_outside(SiteNumber s) const {
+      return is_center(s) && sites_.distance(s) > 0 && !sites_.center_is_inside(s / 2);
+    }
+    template <class Corners>
+    bool has_corner_outside(const Corners& corners) const {
+      return std::any_of(corners.begin(), corners.end(), [&](SiteNumber s) { return is_outside(s); });
+    }
+
+    /// A tetrahedron lies in the leaves whose centres are corners of it.
+    bool is_far(const std::array<SiteNumber, 4>& corners) const {
+      return std::all_of(corners.begin(), corners.end(),
+                         [&](SiteNumber s) { return !is_center(s) || sites_.is_far(s / 2); });
+    }
+
+    /// Of a tetrahedron with four clear corners: if it does not touch the surface, one corner speaks for all of it.
+    /// Between leaves of different sizes the front makes better elements than the lattice has.
+    bool is_core(const std::array<SiteNumber, 4>& corners, const Sites& tet, float least_distance) const {
+      if (!is_regular(tet) || has_corner_outside(corners)) return false;
+      if (is_far(corners)) return true;
+      std::array<Vec3, 4> at;
+      for (int k = 0; k < 4; ++k) at[k] = position(sites_.lattice().root, tet[k]);
+      return sites_.is_clear(at, least_distance);
     }
 
     void add(const Sites& tet) {
       std::array<SiteNumber, 4> corners{};
       int clear = 0, shallow = -1;
+      float least = std::numeric_limits<float>::max();
       for (int k = 0; k < 4; ++k) {
         corners[k] = number(tet[k]);
-        if (is_clear(corners[k]))
-          ++clear;
-        else
+        const float d = distance(corners[k]);
+        if (d == 0) {
           shallow = k;
+        } else {
+          ++clear;
+          least = std::min(least, d);
+        }
       }
-      if (clear < 3 || !is_inside(corners, tet, shallow)) return;
-      if (clear == 4) {
-        chunk_.tets.push_back(corners);
-      } else {
-        const auto& [i, j, k] = kTetFaces[shallow];
-        chunk_.candidates.push_back({corners[i], corners[j], corners[k]});
+      if (clear < 3) return;
+      if (clear == 4 && is_core(corners, tet, least)) return chunk_.tets.push_back(corners);
+      for (int face = 0; face < 4; ++face) {
+        const auto& [i, j, k] = kTetFaces[face];
+        const Triangle sites{corners[i], corners[j], corners[k]};
+        if ((clear == 4 || face == shallow) && !has_corner_outside(sites)) chunk_.candidates.push_back(sites);
       }
     }
 
     CoreChunk& chunk_;
     const ClearSites& sites_;
     SiteTable table_;  ///< of the hanging sites
-    std::vector<char> hanging_is_clear_;
+    std::vector<float> hanging_distance_;
     std::array<std::pair<LatticeSite, SiteNumber>, 512> recent_;
   };
 };
@@ -271,7 +197,7 @@ class CoreBuilder {
     });
   }
 
-  /// A face of three clear corners whose tets both lack the fourth is found twice and bounds nothing.
+  /// A clear face between two tetrahedra that do not belong to the core is found twice and bounds nothing.
   void take_skin() {
     std::vector<Triangle> faces;
     for (const CoreChunk& chunk : chunks_)

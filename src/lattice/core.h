@@ -21,8 +21,9 @@ struct LatticeCore {
   std::vector<Triangle> skin;
 };
 
-/// The lattice inside `surface`, by cells of the wanted size, no point of it nearer to the surface than the size there
-/// times kCoreClearance. Empty where the surface is too narrow for one. REQUIRES a clean surface.
+/// The lattice inside `surface`, by cells of the wanted size: its regular tetrahedra that do not touch the surface, no
+/// corner nearer to it than kCoreClearance times the side of a cell. There are none between cells of different sizes,
+/// and none where the surface is too narrow. REQUIRES a clean surface.
 LatticeCore build_lattice_core(const SurfaceMesh& surface, const SizeField& sizes, const RunContext& context);
 
 }  // namespace octafront

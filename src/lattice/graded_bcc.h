@@ -36,6 +36,21 @@ constexpr std::array<std::uint32_t, 3> unpack_site(LatticeSite s) {
           static_cast<std::uint32_t>(s >> 42 & 0x1fffff)};
 }
 
+/// How far apart two sites are if they differ along one axis only, in units of the octree; else 0.
+constexpr std::uint64_t axis_distance(LatticeSite a, LatticeSite b) {
+  const LatticeSite d = a < b ? b - a : a - b;
+  for (const int shift : {0, 21, 42})
+    if (d >> shift << shift == d && d >> shift < 1u << 21) return d >> shift;
+  return 0;
+}
+
+/// A tetrahedron of the lattice, as it is visited below, belongs to two leaves of one size whose common edge is not
+/// divided: it has the shape of the uniform lattice, with beta .949. All others have .62 to .80.
+constexpr bool is_regular(const std::array<LatticeSite, 4>& tet) {
+  const std::uint64_t edge = axis_distance(tet[0], tet[1]);
+  return edge != 0 && edge == axis_distance(tet[2], tet[3]);
+}
+
 /// The leaves of a lattice may not be finer than this, so that their centres fall on whole units.
 inline constexpr int kFinestLatticeLevel = OctreeKey::kMaxLevel - 1;
 

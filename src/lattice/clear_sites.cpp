@@ -1,0 +1,134 @@
+#include "lattice/clear_sites.h"
+
+#include "geometry/predicates.h"
+#include "lattice/near_leaves.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include <oneapi/tbb/parallel_for.h>
+
+namespace octafront {
+
+namespace {
+
+/// Distances are measured up to this multiple of a cell's side: the sum of two such covers any edge between cells.
+constexpr double kFarthest = 0.75;
+/// In units of the size, the distance that near_leaves() must see: cells have sides of up to 1.65 sizes.
+constexpr double kReach = 0.8;
+/// Distances are rounded to float, and down by more than the rounding of what they are computed from.
+constexpr double kRoundingDown = 1 - 1e-6;
+/// Balls about the corners of a simplex cover it if their radius is this share of its longest edge or more: no set is
+/// farther from the centre of its smallest ball (H. W. E. Jung, 1901: sqrt(3 / 8) in space).
+constexpr double kCoveringShare = 0.6124;
+constexpr std::size_t kLeavesBetweenChecks = 4096;
+
+std::uint32_t find_root(std::vector<std::uint32_t>& parent, std::uint32_t i) {
+  while (parent[i] != i) i = parent[i] = parent[parent[i]];
+  return i;
+}
+
+/// All of `points` lie strictly on one side of the plane through a, b and c.
+template <std::size_t n>
+bool on_one_side(Vec3 a, Vec3 b, Vec3 c, const std::array<Vec3, n>& points, int side = 0) {
+  for (const Vec3 p : points) {
+    const int sign = orient3d(a, b, c, p);
+    if (sign == 0 || sign == -side) return false;
+    side = sign;
+  }
+  return true;
+}
+
+/// The plane of the triangle or one of the tetrahedron has them strictly apart.
+bool plane_separates(const std::array<Vec3, 4>& tet, const TriangleCorners& triangle) {
+  const auto& [a, b, c] = triangle;
+  if (on_one_side(a, b, c, tet)) return true;
+  return std::any_of(kTetFaces.begin(), kTetFaces.end(), [&](const auto& face) {
+    const auto& [i, j, k] = face;
+    const int inner = orient3d(tet[i], tet[j], tet[k], tet[6 - i - j - k]);
+    return on_one_side(tet[i], tet[j], tet[k], triangle, -inner);
+  });
+}
+
+}  // namespace
+
+ClearSites::ClearSites(const LatticeOctree& lattice, const SurfaceMesh& surface, const TriangleTree& triangles,
+                       const SizeField& sizes, const RunContext& context)
+    : lattice_(lattice), triangles_(triangles), near_(near_leaves(lattice, surface, sizes, kReach)) {
+  measure_distances(context);
+  find_inside();
+}
+
+void ClearSites::measure_distances(const RunContext& context) {
+  const std::size_t leaves = lattice_.tree.size();
+  distance_.resize(2 * leaves);
+  tbb::parallel_for(std::size_t{0}, leaves, [&](std::size_t i) {
+    if (i % kLeavesBetweenChecks == 0) context.check();
+    const double side = lattice_.root.side_of(lattice_.tree.leaf(i));
+    for (const SiteNumber s : {SiteNumber(2 * i), SiteNumber(2 * i + 1)})
+      distance_[s] = near_[i] ? measured(position_of(s), side) : static_cast<float>(kFarthest * side);
+  });
+}
+
+float ClearSites::measured(Vec3 p, double side) const {
+  const double farthest = kFarthest * side;
+  const auto nearest = triangles_.nearest(p, farthest * farthest);
+  const double distance = nearest.triangle == kNone ? farthest : std::sqrt(nearest.squared_distance);
+  return distance < kCoreClearance * side ? 0 : static_cast<float>(kRoundingDown * distance);
+}
+
+float ClearSites::distance_of(LatticeSite site) const {
+  const auto [x, y, z] = unpack_site(site);
+  // The side of the smallest leaves of which the site can be a corner: whoever asks, the answer is the same.
+  const std::uint32_t units = 1u << std::countr_zero(x | y | z | OctreeKey::kSide);
+  return measured(position(lattice_.root, site), lattice_.root.side / OctreeKey::kSide * units);
+}
+
+/// Where the balls about two sites cover the edge between them, the sites lie on one side of the surface: one inside
+/// test a component is enough. The centres of leaves of one size that share a face are connected.
+void ClearSites::find_inside() {
+  const Octree& tree = lattice_.tree;
+  std::vector<std::array<std::uint32_t, 3>> upper(tree.size());
+  tbb::parallel_for(std::size_t{0}, tree.size(), [&](std::size_t i) {
+    const double side = lattice_.root.side_of(tree.leaf(i));
+    for (int axis = 0; axis < 3; ++axis) {
+      upper[i][axis] = kNone;
+      if (distance_[2 * i] == 0) continue;
+      const OctreeKey beyond = tree.leaf(i).neighbour(axis == 0, axis == 1, axis == 2);
+      if (!beyond.is_valid()) continue;
+      const std::size_t j = tree.find(beyond);
+      if (tree.leaf(j) == beyond && distance_[2 * j] != 0 && distance_[2 * i] + distance_[2 * j] > side)
+        upper[i][axis] = static_cast<std::uint32_t>(j);
+    }
+  });
+  std::vector<std::uint32_t> parent(tree.size());
+  std::iota(parent.begin(), parent.end(), 0u);
+  for (std::uint32_t i = 0; i < tree.size(); ++i)
+    for (const std::uint32_t j : upper[i])
+      if (j != kNone) {
+        const std::uint32_t a = find_root(parent, i), b = find_root(parent, j);
+        parent[std::max(a, b)] = std::min(a, b);
+      }
+  inside_.resize(tree.size());
+  for (std::uint32_t i = 0; i < tree.size(); ++i) {
+    const std::uint32_t root = find_root(parent, i);
+    inside_[i] = root == i ? distance_[2 * i] != 0 && contains(position_of(2 * i)) : inside_[root];
+  }
+}
+
+bool ClearSites::is_clear(const std::array<Vec3, 4>& corners, float least_distance) const {
+  double longest = 0;
+  for (const auto& [i, j] : kTetEdges) longest = std::max(longest, squared_length(corners[j] - corners[i]));
+  if (least_distance > kCoveringShare * std::sqrt(longest)) return true;
+  Box3 box;
+  for (const Vec3 p : corners) box.add(p);
+  bool clear = true;
+  triangles_.for_each_overlapping(
+      box, [&](std::uint32_t t) { clear = clear && plane_separates(corners, triangles_.corners(t)); });
+  return clear;
+}
+
+}  // namespace octafront
