@@ -8,6 +8,7 @@
 #include "geometry/hausdorff.h"
 #include "geometry/measures.h"
 #include "pipeline/pipeline.h"
+#include "sizing/make_size_field.h"
 #include "surface/features.h"
 #include "surface/surface_check.h"
 
@@ -35,7 +36,7 @@ constexpr double kBad = 0.4, kForcing = 13;
 /// side by side nearer than this part of the size that was asked for (wider strips get smaller triangles).
 constexpr double kDetail = 0.35, kStrip = 0.08;
 constexpr double kStraight = 1e-9, kOnLine = 1e-9;
-/// Straight lines shorter than this many sizes may be noise to the remesher.
+/// Straight lines shorter than this many of the sizes asked for may be noise to the remesher.
 constexpr double kLongLine = 4;
 /// A bend at the end of a straight line, where the curve goes on, may be cut by this many sizes.
 constexpr double kCutBend = 1.5;
@@ -186,7 +187,7 @@ Json judge(const Judged& made, const SurfaceMesh& input, double feature_angle) {
   const auto defect = first_surface_defect(made.surface, input);
   const SizeSummary edges = summarize_surface_edges(made.surface.points, made.surface.triangles, made.sizes);
   const Features wanted = detect_features(input, feature_angle), found = detect_features(made.surface, 20);
-  std::vector<Line> lines = straight_lines(input, wanted, made.sizes);
+  std::vector<Line> lines = straight_lines(input, wanted, made.asked);
   Json j{{"triangles", made.surface.triangles.size()},
          {"defect", defect ? Json(*defect) : Json(nullptr)},
          {"hausdorff_percent", 100 * h.upper / diagonal},
@@ -205,7 +206,10 @@ Judged make(const SurfaceMesh& input, const Arguments& a) {
   // Equilateral triangles: area = sqrt(3) / 4 h^2.
   if (a.triangles) options.size.size = std::sqrt(area(input) * 4 / std::sqrt(3.0) / *a.triangles);
   SurfaceResult result = generate_surface(input, options);
-  return {std::move(result.surface), result.sizes, generate_sizes(input, options).sizes, std::move(result.report)};
+  StageReport ignored;
+  const Features features = detect_features(input, options.surface.feature_angle);
+  SizeField asked = make_size_field(input, features, options.size, RunContext{}, ignored);
+  return {std::move(result.surface), result.sizes, std::move(asked), std::move(result.report)};
 }
 
 Arguments parse(int argc, char** argv) {

@@ -24,6 +24,8 @@ constexpr double kEquilateral = 0.8660254037844386;
 /// Edges between points of curves shorter than this, in wanted sizes, may vanish, with a corner, where they spoil
 /// triangles.
 constexpr double kTiny = 0.2;
+/// Segments that turn by less than this (sine) are one line.
+constexpr double kStraight = 1e-9;
 constexpr TurnLimits kLimits{0.2, -0.3};
 /// A split point lies near the middle of its edge, or the walk to it went astray.
 constexpr double kAstray = 0.35;
@@ -184,6 +186,23 @@ class LengthAdjuster {
     return worst;
   }
 
+  /// Whether a straight line of two segments or more ends at the corner: it would bend if the corner moved.
+  bool ends_straight_line(VertexIndex corner) const {
+    if (mesh_.kind[corner] != VertexKind::kCorner) return false;
+    bool found = false;
+    mesh_.for_each_outgoing(corner, [&](HalfedgeIndex h) {
+      const VertexIndex x = mesh_.end(h);
+      if (!mesh_.is_feature[h] || mesh_.kind[x] != VertexKind::kCurve) return;
+      const Vec3 along = normalized(mesh_.points[x] - mesh_.points[corner]);
+      mesh_.for_each_outgoing(x, [&](HalfedgeIndex g) {
+        if (!mesh_.is_feature[g] || mesh_.end(g) == corner) return;
+        const Vec3 further = normalized(mesh_.points[mesh_.end(g)] - mesh_.points[x]);
+        found |= dot(along, further) > 0 && length(cross(along, further)) < kStraight;
+      });
+    });
+    return found;
+  }
+
   /// Moves the start of a tiny edge between curves to its end: details far below the element size make only slivers.
   bool merge_if_better(HalfedgeIndex h) {
     const VertexIndex u = mesh_.start[h], w = mesh_.end(h);
@@ -191,7 +210,7 @@ class LengthAdjuster {
     const auto i = std::find(star_.ring().begin(), star_.ring().end(), h) - star_.ring().begin();
     const double least = kGain * star_.quality_now();
     if (!(star_.quality_after(static_cast<std::size_t>(i), kLimits, least) > least)) return false;
-    if (!mesh_.may_collapse(h, true)) return false;
+    if (!mesh_.may_collapse(h, true) || ends_straight_line(u)) return false;
     if (mesh_.kind[u] == VertexKind::kCorner) mesh_.kind[w] = VertexKind::kCorner;
     mesh_.collapse(h);
     ++counts_.collapses;
