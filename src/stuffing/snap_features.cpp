@@ -1,12 +1,17 @@
 #include "stuffing/snap_features.h"
 
+#include <octafront/error.h>
+
 #include "geometry/measures.h"
 #include "geometry/predicates.h"
+#include "geometry/self_intersection.h"
 #include "mesh/surface_topology.h"
 
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+
+#include <fmt/format.h>
 
 namespace octafront {
 
@@ -26,12 +31,17 @@ class Snapper {
  public:
   Snapper(TetMesh& mesh, const SurfaceMesh& surface, const Features& features, const TriangleTree& triangles,
           const SizeField& sizes)
-      : mesh_(mesh), surface_(surface), features_(features), triangles_(triangles), sizes_(sizes) {
+      : mesh_(mesh),
+        surface_(surface),
+        features_(features),
+        triangles_(triangles),
+        sizes_(sizes),
+        before_(mesh.points) {
     fixed_.assign(mesh.points.size(), 0);
     list_stars();
   }
 
-  std::size_t corners = 0, on_curves = 0, refused = 0;
+  std::size_t corners = 0, on_curves = 0, refused = 0, undone = 0;
 
   void snap_corners() {
     const TriangleTree boundary(mesh_.points, mesh_.boundary);
@@ -100,6 +110,25 @@ class Snapper {
     }
   }
 
+  /// No tetrahedra outside hold two parts of the boundary apart: where moves made it meet itself, they are undone.
+  void undo_meetings(const RunContext& context) {
+    for (;;) {
+      context.check();
+      const auto meeting = self_intersections(mesh_.points, mesh_.boundary);
+      if (meeting.empty()) return;
+      const std::size_t before = undone;
+      for (const auto& pair : meeting)
+        for (const std::uint32_t face : pair)
+          for (const VertexIndex v : mesh_.boundary[face]) undo(v);
+      if (undone > before) continue;
+      const Vec3 p = mesh_.points[mesh_.boundary[meeting.front()[0]][0]];
+      throw MeshingError(
+          fmt::format("the boundary cut from the lattice meets itself at {} places, the first near "
+                      "({:.9g}, {:.9g}, {:.9g}); choose a smaller element size there",
+                      meeting.size(), p.x, p.y, p.z));
+    }
+  }
+
  private:
   std::vector<VertexIndex> boundary_vertices() const {
     std::vector<VertexIndex> vertices;
@@ -138,12 +167,31 @@ class Snapper {
     return true;
   }
 
+  /// With it go the moves that would leave a tetrahedron around it turned over.
+  void undo(VertexIndex vertex) {
+    std::vector<VertexIndex> open{vertex};
+    while (!open.empty()) {
+      const VertexIndex v = open.back();
+      open.pop_back();
+      if (!fixed_[v]) continue;
+      fixed_[v] = 0;
+      mesh_.points[v] = before_[v];
+      ++undone;
+      for (std::uint32_t i = first_[v]; i < first_[v + 1]; ++i) {
+        const Tet& t = mesh_.tets[star_[i]];
+        if (orient3d(mesh_.points[t[0]], mesh_.points[t[1]], mesh_.points[t[2]], mesh_.points[t[3]]) <= 0)
+          open.insert(open.end(), t.begin(), t.end());
+      }
+    }
+  }
+
   TetMesh& mesh_;
   const SurfaceMesh& surface_;
   const Features& features_;
   const TriangleTree& triangles_;
   const SizeField& sizes_;
-  std::vector<char> fixed_;
+  const std::vector<Vec3> before_;
+  std::vector<char> fixed_;  ///< moved
   std::vector<std::uint32_t> first_, star_;
 };
 
@@ -151,12 +199,13 @@ class Snapper {
 
 void snap_features(TetMesh& mesh, const SurfaceMesh& surface, const Features& features, const TriangleTree& triangles,
                    const SizeField& sizes, const RunContext& context, StageReport& report) {
-  if (features.edges.empty() && features.corners.empty()) return;
   Snapper snapper(mesh, surface, features, triangles, sizes);
   snapper.snap_corners();
   if (!features.edges.empty()) snapper.snap_curves(context);
+  snapper.undo_meetings(context);
   report.count("vertices snapped to corners", static_cast<double>(snapper.corners));
   report.count("vertices snapped to curves", static_cast<double>(snapper.on_curves));
+  report.count("snaps undone where the boundary met itself", static_cast<double>(snapper.undone));
   report.count("crossings left blunt", static_cast<double>(snapper.refused));
 }
 

@@ -12,7 +12,8 @@
 namespace octafront {
 
 /// Moves boundary vertices of a stuffed mesh onto the corners and feature curves of `surface` near them, wherever every
-/// tetrahedron around the vertex stays positive (exactly) and of fair shape. `triangles` is the tree over `surface`.
+/// tetrahedron around the vertex stays positive (exactly) and of fair shape, and the boundary does not meet itself
+/// (exactly). `triangles` is the tree over `surface`.
 void snap_features(TetMesh& mesh, const SurfaceMesh& surface, const Features& features, const TriangleTree& triangles,
                    const SizeField& sizes, const RunContext& context, StageReport& report);
 

@@ -5,6 +5,7 @@
 #include <octafront/validity.h>
 
 #include "geometry/measures.h"
+#include "geometry/self_intersection.h"
 #include "mesh/adjacency.h"
 #include "mesh/surface_topology.h"
 #include "stuffing/manifold.h"
@@ -66,6 +67,25 @@ TEST(Stuffing, SnapsToCornersAndCurves) {
   }
   EXPECT_NEAR(volume_of(mesh), 1, 2e-3);  // bluntness costs a cube of this size .011
   EXPECT_GT(summarize_quality(mesh).beta_min, 0.1);
+}
+
+/// Corners of one body pull vertices of the other across a gap far below the element size.
+TEST(Stuffing, SnapsNoPartOfTheBoundaryThroughAnother) {
+  double undone = 0;
+  for (const double gap : {0.003, 0.01, 0.03}) {
+    const SurfaceMesh turned = testing::transformed(testing::cube(4), 0.7, {1 + gap, 0.11, 0.13});
+    const SurfaceMesh two = testing::joined(testing::cube(4), turned);
+    for (const double size : {0.13, 0.2, 0.29}) {
+      StageReport report;
+      const TetMesh mesh =
+          stuff_surface(two, detect_features(two, 40), Defects::kClean, SizeField::uniform(size), {}, report);
+      EXPECT_EQ(first_defect(mesh), std::nullopt);
+      EXPECT_TRUE(self_intersections(mesh.points, mesh.boundary).empty()) << gap << " " << size;
+      for (const auto& [name, value] : report.counters)
+        if (name == "snaps undone where the boundary met itself") undone += value;
+    }
+  }
+  EXPECT_GT(undone, 0) << "the case does not test what it should";
 }
 
 TEST(Stuffing, NamesPatchSourceAndRegion) {
