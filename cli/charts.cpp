@@ -78,8 +78,8 @@ void bars_of_group(Canvas& canvas, const Frame& f, const BarChart& chart, std::s
   for (const Series& s : chart.series) {
     const double height = (f.y0 - f.y1) * s.values[g] / most;
     canvas.rectangle(x, base - height, bar * 0.94, height, s.colour);
-    if (!chart.value_format.empty())
-      canvas.text(x + 0.47 * bar, base - height - 3, fmt::format(fmt::runtime(chart.value_format), s.values[g]), 8.5,
+    if (chart.write_values)  // in as few characters as say something: small values stand close together
+      canvas.text(x + 0.47 * bar, base - height - 3, fmt::format("{:.{}g}", s.values[g], s.values[g] < 1 ? 2 : 3), 8.5,
                   Align::kMiddle);
     if (chart.stacked)
       base -= height;

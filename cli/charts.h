@@ -27,8 +27,8 @@ struct BarChart {
   std::string title, y_label;
   std::vector<std::string> groups;
   std::vector<Series> series;
-  bool stacked = false;      ///< bars of a group on each other, not beside
-  std::string value_format;  ///< e.g. "{:.1f}": written above the bars; empty: nothing
+  bool stacked = false;  ///< bars of a group on each other, not beside
+  bool write_values;     ///< above the bars
 };
 void draw_bars(const std::filesystem::path& stem, const BarChart& chart);
 

@@ -120,7 +120,7 @@ void draw_beta(const std::filesystem::path& folder, const std::vector<Comparison
                  .groups = {kClasses.begin(), kClasses.end()},
                  .series = {},
                  .stacked = false,
-                 .value_format = "{:.3g}"};
+                 .write_values = true};
   for (const std::string& method : methods_in(all)) {
     const Total t = total_of(all, method);
     Series& s = chart.series.emplace_back(Series{method, kColours.at(method), {}, {}});
@@ -145,7 +145,7 @@ void draw_stages(const std::filesystem::path& folder, const std::vector<Comparis
                  .groups = methods,
                  .series = {},
                  .stacked = true,
-                 .value_format = ""};
+                 .write_values = false};
   std::vector<std::string> stages;
   for (const Comparison& c : all)
     for (const StageReport& s : c.report.stages)
