@@ -102,7 +102,7 @@ TEST(Boundary, StaysWhenTold) {
 
 TEST(Boundary, IsTheSameOnAnyNumberOfThreads) {
   const Cube cube;
-  const TetMesh start = shaken_cube(20, 0.25, 4);  // several blocks
+  const TetMesh start = perturbed(kuhn_cube(20), 0.4, 4);  // several blocks
   const Features of_mesh = detect_features(boundary_of(start), 40);
   const TriangleTree tree(cube.surface);
   const BoundaryInput input{cube.surface, tree, cube.features, of_mesh};
@@ -115,6 +115,7 @@ TEST(Boundary, IsTheSameOnAnyNumberOfThreads) {
     improve_mesh(mesh, &input, {}, context, report);
     if (threads == 1) once = mesh;
     EXPECT_EQ(mesh, once) << threads;
+    EXPECT_NE(mesh.boundary, start.boundary);
   }
 }
 
