@@ -115,7 +115,8 @@ TEST(Boundary, IsTheSameOnAnyNumberOfThreads) {
     improve_mesh(mesh, &input, {}, context, report);
     if (threads == 1) once = mesh;
     EXPECT_EQ(mesh, once) << threads;
-    EXPECT_NE(mesh.boundary, start.boundary);
+    EXPECT_TRUE(std::any_of(start.boundary.begin(), start.boundary.end(),
+                            [&](const Triangle& t) { return mesh.points[t[0]] != start.points[t[0]]; }));
   }
 }
 
