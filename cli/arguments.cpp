@@ -153,6 +153,16 @@ void declare_improvement(CLI::App& command, Arguments& a) {
                      {"default", Level::kDefault},
                      {"best", Level::kBest}},
                     "How the finished mesh is improved");
+  using Objective = ImproveOptions::Objective;
+  add_choice<Objective>(*group, "--objective", o.objective,
+                        {{"balanced", Objective::kBalanced},
+                         {"beta", Objective::kBeta},
+                         {"min-dihedral", Objective::kMinDihedral},
+                         {"max-dihedral", Objective::kMaxDihedral},
+                         {"mean-ratio", Objective::kMeanRatio},
+                         {"solver", Objective::kSolver}},
+                        "What is improved at the worst elements: beta and dihedral angles, one of them alone, the mean "
+                        "ratio, or what the checks of structural solvers look at");
   group->add_option("--relaxation", o.relaxation, "phi of the paper's weighted Laplacian")
       ->type_name("PHI")
       ->capture_default_str();

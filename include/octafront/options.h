@@ -33,7 +33,7 @@ struct SizeOptions {
   std::optional<double> curvature;       ///< elements per full turn of a curved surface, >= 3
   std::optional<double> gap;             ///< elements across thin walls and narrow gaps, > 0
   std::optional<double>
-      feature_elements;            ///< elements along each feature curve at least (closed curves: twice that), > 0
+      feature_elements;  ///< elements along each feature curve at least (closed curves: twice that), > 0
   /// Sizes by which triangles stay within this distance of a curved surface; input units, > 0. generate() sets it from
   /// SurfaceOptions::max_deviation, so that the prediction of elements knows of it.
   std::optional<double> chord_error;
@@ -91,6 +91,17 @@ struct VolumeOptions {
 struct ImproveOptions {
   enum class Level { kOff, kPaper, kFast, kDefault, kBest };
   Level level = Level::kDefault;
+  /// What an element is worth, to the passes that mend the worst ones. Whatever it is, no pass lowers the worst beta or
+  /// smallest, or raises the largest dihedral angle of the mesh; and passes for the mean serve beta.
+  enum class Objective {
+    kBalanced,     ///< beta and both dihedral angles
+    kBeta,         ///< 3 r / R
+    kMinDihedral,  ///< the smallest dihedral angle
+    kMaxDihedral,  ///< the largest dihedral angle
+    kMeanRatio,    ///< 12 (3 V)^(2/3) / (sum of squared edges)
+    kSolver,       ///< what the element checks of Abaqus, Ansys and CalculiX look at: docs/improve.md
+  };
+  Objective objective = Objective::kBalanced;
   double relaxation = 0.7;  ///< phi of the paper's weighted Laplacian, (0, 1]
   int sweeps = 4;           ///< sweeps of the Laplacian, >= 0
   /// Vertices of the boundary may slide along the input surface, and edges inside its patches turn. Off wherever the

@@ -57,7 +57,7 @@ class FaceMatcher {
 
 }  // namespace
 
-EditMesh::EditMesh(TetMesh&& mesh) {
+EditMesh::EditMesh(TetMesh&& mesh, ImproveOptions::Objective objective) : objective_(objective) {
   if (mesh.tets.size() >= kBoundaryBit / 4) throw MeshingError("improvement holds at most 2^29 tetrahedra");
   take(mesh);
   rest_ = std::move(mesh);
@@ -128,7 +128,7 @@ void EditMesh::part(HalfFace h, HalfFace other) {
 
 void EditMesh::compute_shapes() {
   shapes_.resize(tets_.size());
-  ShapeBatch batch;
+  ShapeBatch batch(objective_);
   TetIndex first = 0;
   const auto flush = [&] {
     batch.evaluate();

@@ -38,12 +38,14 @@ struct EdgeRing {
 class EditMesh {
  public:
   /// Requires a valid mesh. Throws MeshingError if faces do not match (with their corners).
-  explicit EditMesh(TetMesh&& mesh);
+  explicit EditMesh(TetMesh&& mesh, ImproveOptions::Objective objective = ImproveOptions::Objective::kBalanced);
 
   /// The mesh back, compacted: vertices in the order they came in, without unused ones, new ones behind; tets in order
   /// of space.
   TetMesh release();
 
+  /// What the scores of the shapes say.
+  ImproveOptions::Objective objective() const { return objective_; }
   std::size_t slots() const { return tets_.size(); }
   std::size_t vertices() const { return points_.size(); }
   std::size_t live_tets() const { return tets_.size() - free_.size(); }
@@ -96,6 +98,7 @@ class EditMesh {
   void connect();
   void compute_shapes();
 
+  ImproveOptions::Objective objective_;
   std::vector<Vec3> points_;
   std::vector<Tet> tets_;
   std::vector<HalfFace> across_;

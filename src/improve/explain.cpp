@@ -12,7 +12,8 @@ namespace {
 
 class Explainer {
  public:
-  Explainer(EditMesh& mesh, float threshold) : block_(mesh), mesh_(mesh), threshold_(threshold) {}
+  Explainer(EditMesh& mesh, float threshold)
+      : block_(mesh), mesh_(mesh), threshold_(threshold), batch_(mesh.objective()) {}
 
   /// Some boundary edge of t encloses an angle that alone keeps every element there below the threshold.
   bool forced_by_angle(TetIndex t) {
@@ -25,10 +26,16 @@ class Explainer {
     return false;
   }
 
-  /// Some boundary face of t carries no tetrahedron that reaches the threshold, wherever its apex.
+  /// Some boundary face of t, or at one of its edges, carries no tetrahedron that reaches the threshold, wherever its
+  /// apex: the short edge of a needle spoils all elements around it.
   bool forced_by_triangle(TetIndex t) {
-    for (int i = 0; i < 4; ++i)
-      if (is_boundary(mesh_.across(4 * t + i)) && best_on_face(t, i) < threshold_) return true;
+    for (const auto& [i, j] : kTetEdges) {
+      block_.edge_ring(t, i, j, ring_);
+      if (ring_.closed) continue;
+      const std::size_t n = ring_.tets.size();
+      if (poor_behind(ring_.tets.front(), ring_.ring[1]) || poor_behind(ring_.tets.back(), ring_.ring[n - 1]))
+        return true;
+    }
     return false;
   }
 
@@ -43,6 +50,9 @@ class Explainer {
     }
     return sum;
   }
+
+  /// True if the boundary face of t opposite a corner carries no tetrahedron that reaches the threshold.
+  bool poor_behind(TetIndex t, VertexIndex corner) { return best_on_face(t, mesh_.corner_of(t, corner)) < threshold_; }
 
   double best_on_face(TetIndex t, int i) {
     constexpr int kSteps = 60;

@@ -20,7 +20,8 @@ constexpr int kPatience = 10;        ///< growth steps without a better star bef
 
 class Inserter {
  public:
-  Inserter(EditBlock& block, const Floor& floor) : block_(block), mesh_(block.mesh()), floor_(floor) {}
+  Inserter(EditBlock& block, const Floor& floor)
+      : block_(block), mesh_(block.mesh()), floor_(floor), star_(mesh_.objective()) {}
 
   /// True if tet t was replaced by something better.
   bool improve(TetIndex t) {

@@ -44,7 +44,7 @@ constexpr float kWorthOfNothing = 0.6f;
 class Reconnector {
  public:
   Reconnector(EditBlock& block, const Floor& floor, Goal goal, const BoundaryGuide* guide)
-      : block_(block), mesh_(block.mesh()), floor_(floor), goal_(goal), guide_(guide) {}
+      : block_(block), mesh_(block.mesh()), floor_(floor), goal_(goal), guide_(guide), batch_(mesh_.objective()) {}
 
   /// Makes the best change there is at tet t, of those where t is the worst element concerned; the tets made are in
   /// created(). False if none is better.

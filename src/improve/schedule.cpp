@@ -246,7 +246,7 @@ constexpr int kMostRetries = 3;
 /// One run of the schedule; vertices in `frozen`, and those around them, stay on the boundary where they are.
 TetMesh improved(const TetMesh& mesh, const BoundaryInput* boundary, const std::vector<VertexIndex>& frozen,
                  const ImproveOptions& options, const RunContext& context, StageReport& report) {
-  EditMesh edit(TetMesh{mesh});
+  EditMesh edit(TetMesh{mesh}, options.objective);
   std::optional<BoundaryGuide> guide;
   if (boundary) guide.emplace(edit, *boundary, frozen);
   Schedule run(edit, guide ? &*guide : nullptr, options, context, report);

@@ -8,6 +8,8 @@
 namespace octafront::improve {
 namespace {
 
+using Objective = ImproveOptions::Objective;
+
 #if defined(__GNUC__)
 #define OCTAFRONT_INLINE inline __attribute__((always_inline))
 #else
@@ -38,19 +40,71 @@ OCTAFRONT_INLINE Faces faces_of_edges(Vec3 u, Vec3 v, Vec3 w) {
   return f;
 }
 
-OCTAFRONT_INLINE double beta_of(const Faces& f, Vec3 u, Vec3 v, Vec3 w) {
-  const double det = dot(f.nd, w);
+/// Six times the volume; the circumradius times twice that.
+struct Volume {
+  double det;
+  double center;
+};
+
+OCTAFRONT_INLINE Volume volume_of(const Faces& f, Vec3 u, Vec3 v, Vec3 w) {
   const Vec3 center = squared_length(u) * f.nb + squared_length(v) * f.nc + squared_length(w) * f.nd;
-  const double beta =
-      6 * det * std::abs(det) / ((f.la + f.lb + f.lc + f.ld) * std::sqrt(squared_length(center) + kTiny));
+  return {dot(f.nd, w), std::sqrt(squared_length(center) + kTiny)};
+}
+
+OCTAFRONT_INLINE double beta_of(const Faces& f, const Volume& v) {
+  const double beta = 6 * v.det * std::abs(v.det) / ((f.la + f.lb + f.lc + f.ld) * v.center);
   // Where the centre of a flat element cancels to nothing, rounding alone decides the quotient.
   return greater(lesser(1, beta), -1);
 }
 
+/// The mean ratio to the power 3/2: no root of third order, and a sliver is worth about what its beta is.
+OCTAFRONT_INLINE double mean_ratio_score(const Volume& volume, Vec3 u, Vec3 v, Vec3 w) {
+  constexpr double kRegular = 20.784609690826528;  // 12^(3/2) / 2
+  const double edges = squared_length(u) + squared_length(v) + squared_length(w) + squared_length(v - u) +
+                       squared_length(w - v) + squared_length(u - w) + kTiny;
+  return kRegular * volume.det / (edges * std::sqrt(edges));
+}
+
+/// Worst cosines of the angles of a triangle, from its squared edges.
+struct Cosines {
+  double most = -1, least = 1;
+
+  OCTAFRONT_INLINE void add(double a, double b, double c) {
+    const double ia = 1 / std::sqrt(a + kTiny), ib = 1 / std::sqrt(b + kTiny), ic = 1 / std::sqrt(c + kTiny);
+    const double at_a = 0.5 * (b + c - a) * ib * ic, at_b = 0.5 * (a + c - b) * ia * ic,
+                 at_c = 0.5 * (a + b - c) * ia * ib;
+    most = greater(most, greater(at_a, greater(at_b, at_c)));
+    least = lesser(least, lesser(at_a, lesser(at_b, at_c)));
+  }
+};
+
+/// What the element checks of structural solvers look at; see shape.h.
+OCTAFRONT_INLINE double solver_score(const Volume& volume, Vec3 u, Vec3 v, Vec3 w) {
+  constexpr double kRegular = 2.5980762113533160;  // 3^(3/2) / 2
+  const double uu = squared_length(u), vv = squared_length(v), ww = squared_length(w), uv = squared_length(v - u),
+               vw = squared_length(w - v), wu = squared_length(u - w);
+  Cosines face;
+  face.add(uu, vv, uv);
+  face.add(vv, ww, vw);
+  face.add(ww, uu, wu);
+  face.add(uv, vw, wu);
+  const double longest = greater(greater(greater(uu, vv), greater(ww, uv)), greater(vw, wu)),
+               shortest = lesser(lesser(lesser(uu, vv), lesser(ww, uv)), lesser(vw, wu));
+  const double det = volume.det,
+               in_sphere = kRegular * det * det * det * std::abs(det) / (volume.center * volume.center * volume.center);
+  // sin^2(x / 2) = (1 - cos x) / 2, over sin^2 30 degrees; cos^2(x / 2) = (1 + cos x) / 2, over cos^2 30 degrees.
+  const double small = std::sqrt(greater(2 * (1 - face.most), 0)),
+               large = std::sqrt(greater((1 + face.least) * (2.0 / 3), 0)),
+               edges = std::sqrt(std::sqrt(shortest / (longest + kTiny)));
+  return lesser(lesser(in_sphere, small), lesser(large, edges));
+}
+
+template <Objective kObjective>
 OCTAFRONT_INLINE void shape_of_edges(Vec3 u, Vec3 v, Vec3 w, double& beta, double& small, double& large,
                                      double& quality) {
   const Faces f = faces_of_edges(u, v, w);
-  beta = beta_of(f, u, v, w);
+  const Volume volume = volume_of(f, u, v, w);
+  beta = beta_of(f, volume);
   const double ia = 1 / f.la, ib = 1 / f.lb, ic = 1 / f.lc, id = 1 / f.ld;
   const double ab = dot(f.na, f.nb) * (ia * ib), ac = dot(f.na, f.nc) * (ia * ic), ad = dot(f.na, f.nd) * (ia * id),
                bc = dot(f.nb, f.nc) * (ib * ic), bd = dot(f.nb, f.nd) * (ib * id), cd = dot(f.nc, f.nd) * (ic * id);
@@ -58,17 +112,25 @@ OCTAFRONT_INLINE void shape_of_edges(Vec3 u, Vec3 v, Vec3 w, double& beta, doubl
   // Rounding may take them below zero, and a NaN from their root would pass every comparison.
   small = greater(1 + lesser(lesser(lesser(ab, ac), lesser(ad, bc)), lesser(bd, cd)), 0);
   large = greater(1 - greater(greater(greater(ab, ac), greater(ad, bc)), greater(bd, cd)), 0);
-  const double positive = std::sqrt(lesser(beta * beta, lesser(kSmallWeight * small, kLargeWeight * large)));
+  double positive = 0;
+  if constexpr (kObjective == Objective::kBalanced)
+    positive = std::sqrt(lesser(beta * beta, lesser(kSmallWeight * small, kLargeWeight * large)));
+  if constexpr (kObjective == Objective::kBeta) positive = beta;
+  if constexpr (kObjective == Objective::kMinDihedral) positive = std::sqrt(lesser(1, kSmallWeight * small));
+  if constexpr (kObjective == Objective::kMaxDihedral) positive = std::sqrt(lesser(1, kLargeWeight * large));
+  if constexpr (kObjective == Objective::kMeanRatio) positive = lesser(1, mean_ratio_score(volume, u, v, w));
+  if constexpr (kObjective == Objective::kSolver) positive = lesser(1, solver_score(volume, u, v, w));
   quality = beta > 0 ? positive : lesser(beta, 0);
 }
 
+template <Objective kObjective>
 OCTAFRONT_INLINE void star_kernel(ShapeBatch& s, Vec3 apex) {
   const int n = s.size;
   for (int i = 0; i < n; ++i) {
     const Vec3 b{s.corner[1][0][i], s.corner[1][1][i], s.corner[1][2][i]};
     const Vec3 c{s.corner[2][0][i], s.corner[2][1][i], s.corner[2][2][i]};
     const Vec3 d{s.corner[3][0][i], s.corner[3][1][i], s.corner[3][2][i]};
-    shape_of_edges(b - apex, c - apex, d - apex, s.beta[i], s.small[i], s.large[i], s.quality[i]);
+    shape_of_edges<kObjective>(b - apex, c - apex, d - apex, s.beta[i], s.small[i], s.large[i], s.quality[i]);
   }
 }
 
@@ -79,10 +141,12 @@ OCTAFRONT_INLINE void star_beta_kernel(ShapeBatch& s, Vec3 apex) {
     const Vec3 c{s.corner[2][0][i], s.corner[2][1][i], s.corner[2][2][i]};
     const Vec3 d{s.corner[3][0][i], s.corner[3][1][i], s.corner[3][2][i]};
     const Vec3 u = b - apex, v = c - apex, w = d - apex;
-    s.beta[i] = beta_of(faces_of_edges(u, v, w), u, v, w);
+    const Faces f = faces_of_edges(u, v, w);
+    s.beta[i] = beta_of(f, volume_of(f, u, v, w));
   }
 }
 
+template <Objective kObjective>
 OCTAFRONT_INLINE void element_kernel(ShapeBatch& s) {
   const int n = s.size;
   for (int i = 0; i < n; ++i) {
@@ -90,7 +154,7 @@ OCTAFRONT_INLINE void element_kernel(ShapeBatch& s) {
     const Vec3 b{s.corner[1][0][i], s.corner[1][1][i], s.corner[1][2][i]};
     const Vec3 c{s.corner[2][0][i], s.corner[2][1][i], s.corner[2][2][i]};
     const Vec3 d{s.corner[3][0][i], s.corner[3][1][i], s.corner[3][2][i]};
-    shape_of_edges(b - a, c - a, d - a, s.beta[i], s.small[i], s.large[i], s.quality[i]);
+    shape_of_edges<kObjective>(b - a, c - a, d - a, s.beta[i], s.small[i], s.large[i], s.quality[i]);
   }
 }
 
@@ -100,48 +164,61 @@ struct Kernels {
   void (*elements)(ShapeBatch&);
 };
 
+template <Objective kObjective>
 void star_plain(ShapeBatch& s, Vec3 apex) {
-  star_kernel(s, apex);
+  star_kernel<kObjective>(s, apex);
 }
 void star_beta_plain(ShapeBatch& s, Vec3 apex) {
   star_beta_kernel(s, apex);
 }
+template <Objective kObjective>
 void elements_plain(ShapeBatch& s) {
-  element_kernel(s);
+  element_kernel<kObjective>(s);
 }
 
 #if defined(__x86_64__) && defined(__GNUC__)
+template <Objective kObjective>
 __attribute__((target("avx2"))) void star_avx2(ShapeBatch& s, Vec3 apex) {
-  star_kernel(s, apex);
+  star_kernel<kObjective>(s, apex);
 }
 __attribute__((target("avx2"))) void star_beta_avx2(ShapeBatch& s, Vec3 apex) {
   star_beta_kernel(s, apex);
 }
+template <Objective kObjective>
 __attribute__((target("avx2"))) void elements_avx2(ShapeBatch& s) {
-  element_kernel(s);
+  element_kernel<kObjective>(s);
 }
 
+template <Objective kObjective>
 Kernels best_kernels() {
   __builtin_cpu_init();
-  if (__builtin_cpu_supports("avx2")) return {star_avx2, star_beta_avx2, elements_avx2};
-  return {star_plain, star_beta_plain, elements_plain};
+  if (__builtin_cpu_supports("avx2")) return {star_avx2<kObjective>, star_beta_avx2, elements_avx2<kObjective>};
+  return {star_plain<kObjective>, star_beta_plain, elements_plain<kObjective>};
 }
 #else
+template <Objective kObjective>
 Kernels best_kernels() {
-  return {star_plain, star_beta_plain, elements_plain};
+  return {star_plain<kObjective>, star_beta_plain, elements_plain<kObjective>};
 }
 #endif
 
-const Kernels kKernels = best_kernels();
+/// In the order of the enumeration.
+const Kernels kKernels[] = {best_kernels<Objective::kBalanced>(),    best_kernels<Objective::kBeta>(),
+                            best_kernels<Objective::kMinDihedral>(), best_kernels<Objective::kMaxDihedral>(),
+                            best_kernels<Objective::kMeanRatio>(),   best_kernels<Objective::kSolver>()};
+
+const Kernels& kernels(Objective objective) {
+  return kKernels[static_cast<int>(objective)];
+}
 
 }  // namespace
 
 void ShapeBatch::evaluate_star(Vec3 apex) {
-  kKernels.star(*this, apex);
+  kernels(objective).star(*this, apex);
 }
 
 void ShapeBatch::evaluate() {
-  kKernels.elements(*this);
+  kernels(objective).elements(*this);
 }
 
 double ShapeBatch::worst() const {
@@ -173,7 +250,7 @@ double ShapeBatch::deficit() const {
 }
 
 double ShapeBatch::deficit_at(Vec3 apex) {
-  kKernels.star_beta(*this, apex);
+  kernels(objective).star_beta(*this, apex);
   return deficit();
 }
 
@@ -183,10 +260,11 @@ double ShapeBatch::mean_edge(Vec3 apex) const {
   return sum / size;
 }
 
-Shape shape_of(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
-  double beta, small, large, quality;
-  shape_of_edges(b - a, c - a, d - a, beta, small, large, quality);
-  return {static_cast<float>(beta), static_cast<float>(small), static_cast<float>(large), static_cast<float>(quality)};
+Shape shape_of(Vec3 a, Vec3 b, Vec3 c, Vec3 d, Objective objective) {
+  ShapeBatch batch(objective);
+  batch.add(a, b, c, d);
+  batch.evaluate();
+  return batch.shape(0);
 }
 
 }  // namespace octafront::improve

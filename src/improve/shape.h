@@ -2,6 +2,7 @@
 
 // How good a tetrahedron is, for the improvement passes: three measures at once, many elements at a time.
 
+#include <octafront/options.h>
 #include <octafront/vec.h>
 
 #include <algorithm>
@@ -16,12 +17,20 @@ struct Shape {
   float beta;   ///< 3 r / R, as radius_ratio() of quality.h; <= 0 if flat or inverted
   float small;  ///< 1 - cos(smallest dihedral angle), in [0, 2/3]
   float large;  ///< 1 + cos(largest dihedral angle), in [0, 4/3]
-  float score;  ///< all three in one number: beta, or what the angles are worth, whichever is less; see below
+  float score;  ///< what the objective says, in (0, 1] for positive elements, not positive for others; see below
 };
 
 /// Angles that are worth as much as beta = kReferenceBeta are 23 degrees for the smallest and 141 degrees for the
-/// largest: the typical angles of an element of that beta. score = min(beta, a sin(smallest / 2), b cos(largest / 2)),
-/// in (0, 1] for positive elements, not positive for others; kSmallWeight and kLargeWeight are a^2 / 2 and b^2 / 2.
+/// largest: the typical angles of an element of that beta. kSmallWeight and kLargeWeight are a^2 / 2 and b^2 / 2 below.
+/// Scores by objective:
+///   kBalanced     min(beta, a sin(smallest / 2), b cos(largest / 2))
+///   kBeta         beta
+///   kMinDihedral  a sin(smallest / 2), at most 1
+///   kMaxDihedral  b cos(largest / 2), at most 1
+///   kMeanRatio    the mean ratio 12 (3 V)^(2/3) / (sum of squared edges) to the power 3/2
+///   kSolver       the least of: volume over that of the regular tetrahedron in the same sphere; the smallest face
+///   angle,
+///                 sin(angle / 2) / sin 30; the largest one, cos(angle / 2) / cos 30; sqrt(shortest / longest edge)
 inline constexpr double kReferenceBeta = 0.45;
 inline constexpr double kSmallWeight = kReferenceBeta * kReferenceBeta / (1 - 0.92050485345244037);  // cos 23 deg
 inline constexpr double kLargeWeight = kReferenceBeta * kReferenceBeta / (1 - 0.77714596145697090);  // -cos 141 deg
@@ -52,7 +61,11 @@ struct Floor {
 /// Corner 0 of all elements may be one point (a star about it) or its own for each.
 struct ShapeBatch {
   static constexpr int kBatch = 256;
+  using Objective = ImproveOptions::Objective;
 
+  explicit ShapeBatch(Objective o = Objective::kBalanced) : objective(o) {}
+
+  Objective objective;
   int size = 0;
   alignas(64) double corner[4][3][kBatch];  ///< [corner][axis][element]
   alignas(64) double beta[kBatch], small[kBatch], large[kBatch];
@@ -98,6 +111,7 @@ struct ShapeBatch {
 };
 
 /// One element by itself; the same values as a batch gives, bit for bit.
-Shape shape_of(Vec3 a, Vec3 b, Vec3 c, Vec3 d);
+Shape shape_of(Vec3 a, Vec3 b, Vec3 c, Vec3 d,
+               ImproveOptions::Objective objective = ImproveOptions::Objective::kBalanced);
 
 }  // namespace octafront::improve

@@ -11,7 +11,7 @@ namespace octafront::improve {
 /// Loads a vertex's star once, evaluates it for any place of the vertex, and commits the last place evaluated.
 class StarEdit {
  public:
-  explicit StarEdit(EditMesh& mesh) : mesh_(mesh) {}
+  explicit StarEdit(EditMesh& mesh) : mesh_(mesh), batch_(mesh.objective()) {}
 
   /// `faces`: the star, which must outlive its use. False if it is too large to be worth it (over ShapeBatch::kBatch
   /// elements).
