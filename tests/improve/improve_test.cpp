@@ -3,6 +3,7 @@
 #include <octafront/error.h>
 #include <octafront/quality.h>
 
+#include "improve/shape.h"
 #include "improve/start_meshes.h"
 
 #include <gtest/gtest.h>
@@ -41,6 +42,35 @@ TEST(Improve, EveryLevelMakesBetterElementsOnTheSameBoundary) {
       EXPECT_GE(after.dihedral_min, before.dihedral_min);
       EXPECT_LE(after.dihedral_max, before.dihedral_max);
     }
+  }
+}
+
+double worst_score(const TetMesh& mesh, ImproveOptions::Objective objective) {
+  double worst = 1;
+  for (const Tet& t : mesh.tets) {
+    const auto shape =
+        improve::shape_of(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]], objective);
+    worst = std::min(worst, double{shape.score});
+  }
+  return worst;
+}
+
+TEST(Improve, RaisesTheWorstByEveryObjective) {
+  using Objective = ImproveOptions::Objective;
+  const TetMesh start = perturbed(kuhn_cube(8), 0.7, 6);
+  const QualitySummary before = summarize_quality(start);
+  for (const Objective objective : {Objective::kBalanced, Objective::kBeta, Objective::kMinDihedral,
+                                    Objective::kMaxDihedral, Objective::kMeanRatio, Objective::kSolver}) {
+    ImproveOptions options;
+    options.objective = objective;
+    StageReport report;
+    TetMesh mesh = start;
+    improve_mesh(mesh, nullptr, options, {}, report);
+    EXPECT_GT(worst_score(mesh, objective), worst_score(start, objective) + 0.1) << static_cast<int>(objective);
+    const QualitySummary after = summarize_quality(mesh);
+    EXPECT_GT(after.beta_min, before.beta_min) << static_cast<int>(objective);
+    EXPECT_GE(after.dihedral_min, before.dihedral_min) << static_cast<int>(objective);
+    EXPECT_LE(after.dihedral_max, before.dihedral_max) << static_cast<int>(objective);
   }
 }
 

@@ -3,6 +3,8 @@
 #include "geometry/predicates.h"
 #include "support/random.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -25,6 +27,76 @@ TEST(Shape, OfFlatElementsIsANumber) {
     EXPECT_GE(s.large, 0);
     ASSERT_EQ(s.score, s.score) << "sign " << orient3d(a, b, c, d);
   }
+}
+
+using Objective = ImproveOptions::Objective;
+
+constexpr Objective kObjectives[] = {Objective::kBalanced,    Objective::kBeta,      Objective::kMinDihedral,
+                                     Objective::kMaxDihedral, Objective::kMeanRatio, Objective::kSolver};
+
+TEST(Shape, OfTheRegularTetrahedronIsWorthOneForEveryObjective) {
+  for (const Objective objective : kObjectives) {
+    const Shape s = shape_of({1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}, objective);
+    const Shape inverted = shape_of({1, 1, 1}, {-1, 1, -1}, {1, -1, -1}, {-1, -1, 1}, objective);
+    const float positive = std::max(s.score, inverted.score), negative = std::min(s.score, inverted.score);
+    EXPECT_NEAR(positive, 1, 1e-6) << static_cast<int>(objective);
+    EXPECT_LE(negative, 0) << static_cast<int>(objective);
+  }
+}
+
+/// The solver score, from the definition: circumradius, face angles and edges one by one.
+double solver_score(const std::array<Vec3, 4>& p) {
+  const Vec3 u = p[1] - p[0], v = p[2] - p[0], w = p[3] - p[0];
+  const double six_volumes = dot(cross(u, v), w);
+  const Vec3 center =
+      (squared_length(u) * cross(v, w) + squared_length(v) * cross(w, u) + squared_length(w) * cross(u, v)) /
+      (2 * six_volumes);
+  const double radius = length(center), regular = 8 * std::sqrt(3.0) / 27 * radius * radius * radius;
+  double worst = six_volumes / 6 / regular, shortest = 1e300, longest = 0;
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j) {
+      if (i == j) continue;
+      shortest = std::min(shortest, distance(p[i], p[j]));
+      longest = std::max(longest, distance(p[i], p[j]));
+      for (int k = 0; k < 4; ++k) {
+        if (k == i || k == j) continue;
+        const Vec3 a = normalized(p[j] - p[i]), b = normalized(p[k] - p[i]);
+        const double angle = std::acos(std::clamp(dot(a, b), -1.0, 1.0)), right = std::acos(0.0);
+        worst = std::min({worst, 2 * std::sin(angle / 2), std::cos(angle / 2) / std::cos(right / 3)});
+      }
+    }
+  return std::min(worst, std::sqrt(shortest / longest));
+}
+
+TEST(Shape, ScoresAreWhatTheObjectivesSay) {
+  testing::Random random(2);
+  const auto point = [&] {
+    const double x = random.unit(), y = random.unit();
+    return Vec3{x, y, random.unit()};
+  };
+  int seen = 0;
+  for (int i = 0; i < 3000; ++i) {
+    std::array<Vec3, 4> p{point(), point(), point(), point()};
+    if (orient3d(p[0], p[1], p[2], p[3]) < 0) std::swap(p[0], p[1]);
+    const auto score = [&](Objective o) { return double{shape_of(p[0], p[1], p[2], p[3], o).score}; };
+    const Shape s = shape_of(p[0], p[1], p[2], p[3]);
+    if (s.beta < 0.01f) continue;
+    ++seen;
+    double edges = 0;
+    for (int a = 0; a < 4; ++a)
+      for (int b = a + 1; b < 4; ++b) edges += squared_length(p[a] - p[b]);
+    const double volume = dot(cross(p[1] - p[0], p[2] - p[0]), p[3] - p[0]) / 6;
+    const double ratio = 12 * std::pow(3 * volume, 2.0 / 3) / edges;
+    EXPECT_NEAR(score(Objective::kMeanRatio), std::pow(ratio, 1.5), 1e-5);
+    EXPECT_NEAR(score(Objective::kSolver), solver_score(p), 1e-4);
+    EXPECT_NEAR(score(Objective::kBeta), s.beta, 1e-6);
+    EXPECT_NEAR(score(Objective::kMinDihedral), std::min(1.0, std::sqrt(kSmallWeight * s.small)), 1e-5);
+    EXPECT_NEAR(score(Objective::kMaxDihedral), std::min(1.0, std::sqrt(kLargeWeight * s.large)), 1e-5);
+    EXPECT_NEAR(s.score,
+                std::min({score(Objective::kBeta), score(Objective::kMinDihedral), score(Objective::kMaxDihedral)}),
+                1e-6);
+  }
+  EXPECT_GT(seen, 1000);
 }
 
 }  // namespace
