@@ -60,6 +60,7 @@ class Inserter {
       mesh_.face[v] = mesh_.outgoing[v] == kNone ? kNone : mesh_.outgoing[v] / 3;
     }
     vertex_of_point_.assign(front.points.size(), kNone);
+    mesh_.reserve(vertices + front.points.size(), faces + 2 * front.points.size());
   }
 
   WorkingMesh run(const std::vector<Curve>& curves, const RunContext& context) {

@@ -30,8 +30,10 @@ bool faces_outward(const WorkingMesh& mesh, Vec3 area_vector, const VertexIndex 
 
 bool is_delaunay(const WorkingMesh& mesh, HalfedgeIndex h) {
   const Vec3 a = mesh.points[mesh.start[h]], b = mesh.points[mesh.end(h)];
-  const double c = cotangent_at(mesh.points[mesh.apex(h)], a, b);
-  const double d = cotangent_at(mesh.points[mesh.apex(mesh.twin[h])], a, b);
+  const Vec3 at_c = mesh.points[mesh.apex(h)], at_d = mesh.points[mesh.apex(mesh.twin[h])];
+  // Nearly always neither angle is obtuse: no need of roots.
+  if (dot(a - at_c, b - at_c) >= 0 && dot(a - at_d, b - at_d) >= 0) return true;
+  const double c = cotangent_at(at_c, a, b), d = cotangent_at(at_d, a, b);
   return c + d >= -kDelaunaySlack * (1 + std::abs(c) + std::abs(d));
 }
 

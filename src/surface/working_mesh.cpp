@@ -2,6 +2,22 @@
 
 namespace octafront::remeshing {
 
+void WorkingMesh::reserve(std::size_t vertices, std::size_t triangles) {
+  points.reserve(vertices);
+  kind.reserve(vertices);
+  normal.reserve(vertices);
+  size.reserve(vertices);
+  face.reserve(vertices);
+  place.reserve(vertices);
+  changed.reserve(vertices);
+  outgoing.reserve(vertices);
+  start.reserve(3 * triangles);
+  twin.reserve(3 * triangles);
+  is_feature.reserve(3 * triangles);
+  patch.reserve(triangles);
+  origin.reserve(triangles);
+}
+
 VertexIndex WorkingMesh::add_vertex(Vec3 p, VertexKind k, Vec3 n, double h, std::uint32_t in_face) {
   points.push_back(p);
   kind.push_back(k);

@@ -48,6 +48,8 @@ struct WorkingMesh : HalfedgeMesh {
     return n;
   }
 
+  /// Room for so many vertices and triangles in all.
+  void reserve(std::size_t vertices, std::size_t triangles);
   VertexIndex add_vertex(Vec3 p, VertexKind k, Vec3 n, double h, std::uint32_t in_face);
   /// Puts x into the triangle: three triangles in its place; the first keeps the number.
   void split_triangle(std::uint32_t t, VertexIndex x);
