@@ -21,6 +21,9 @@ using Json = nlohmann::ordered_json;
 // Sampling density of the Hausdorff distance, as a part of the diagonal: small against the 0.5 % that is asked for.
 constexpr double kHausdorffTolerance = 1e-4;
 
+// Elements below this must be forced by the kept triangles.
+constexpr double kPoor = 0.1;
+
 SurfaceMesh boundary_of(const TetMesh& mesh) {
   SurfaceMesh boundary;
   boundary.points = mesh.points;
@@ -60,6 +63,12 @@ Json evaluate(const std::string& mesh_file, const std::string& surface_file, boo
     j["boundary_points"] = input.points.size();
     j["surface_beta"] = bound.beta;
     j["surface_dihedral"] = bound.dihedral;
+    const PoorElements poor = poor_elements(mesh, kPoor);
+    j["poor"] = {{"below", kPoor},
+                 {"all", poor.all},
+                 {"forced", poor.forced},
+                 {"beside", poor.beside},
+                 {"worst_other", poor.worst_other}};
   }
   return j;
 }

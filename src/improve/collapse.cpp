@@ -2,6 +2,7 @@
 // Mends what stands too close: meshes of other tools have more of it than ours.
 
 #include "improve/edit_blocks.h"
+#include "improve/fewest_poor.h"
 #include "improve/passes.h"
 #include "improve/star_edit.h"
 
@@ -15,20 +16,24 @@ constexpr double kLongest = 2;
 /// What the mean of (1 - beta)^2 must fall to, as a part of what it was; or by how much the worst score must rise.
 constexpr double kFall = 0.9;
 constexpr float kRise = 0.05f;
+/// What the sum that elements lack must fall by.
+constexpr double kLeastFall = 0.1;
+constexpr double kNever = 1e9;
 
 class Collapser {
  public:
-  Collapser(EditBlock& block, const Floor& floor)
-      : block_(block), mesh_(block.mesh()), floor_(floor), star_(block.mesh()) {}
+  Collapser(EditBlock& block, const Floor& floor, Goal goal)
+      : block_(block), mesh_(block.mesh()), floor_(floor), goal_(goal), star_(block.mesh()) {}
 
   /// True if vertex v is gone; its star must lie in the block.
   bool improve(VertexIndex v, std::span<const HalfFace> faces) {
     if (!star_.load(v, faces)) return false;
     old_worst_ = star_.current_worst();
-    old_lack_ = star_.current_deficit() / static_cast<double>(star_.faces().size());
+    old_lack_ = goal_ == Goal::kFewestPoor ? sum_of_lack()
+                                           : star_.current_deficit() / static_cast<double>(star_.faces().size());
     find_neighbours(v);
     VertexIndex best = kNone;
-    double least = kFall * old_lack_;
+    double least = goal_ == Goal::kFewestPoor ? old_lack_ - kLeastFall : kFall * old_lack_;
     for (const VertexIndex u : neighbours_) {
       const double lack = lack_at(u);
       if (lack < least) least = lack, best = u;
@@ -41,6 +46,12 @@ class Collapser {
   bool has(HalfFace h, VertexIndex u) const {
     const Tet& t = mesh_.tet(h / 4);
     return t[0] == u || t[1] == u || t[2] == u || t[3] == u;
+  }
+
+  double sum_of_lack() const {
+    double sum = 0;
+    for (const HalfFace h : star_.faces()) sum += lack_of(mesh_.shape(h / 4).score);
+    return sum;
   }
 
   void find_neighbours(VertexIndex v) {
@@ -56,25 +67,28 @@ class Collapser {
     squared_limit_ = kLongest * kLongest * mean * mean;
   }
 
-  /// Mean of (1 - beta)^2 with the vertex at its neighbour u; 1 if that is not allowed.
+  /// What is to fall, with the vertex at its neighbour u: mean of (1 - beta)^2, or for kFewestPoor the sum of what the
+  /// elements lack; kNever if that is not allowed.
   double lack_at(VertexIndex u) {
     const Vec3 p = mesh_.point(u);
     for (const VertexIndex w : neighbours_)
-      if (squared_length(mesh_.point(w) - p) > squared_limit_) return 1;
+      if (squared_length(mesh_.point(w) - p) > squared_limit_) return kNever;
     star_.evaluate(p);
     const ShapeBatch& batch = star_.batch();
-    double sum = 0;
+    double sum = 0, poor = 0;
     float worst = 1;
     int count = 0;
     for (int k = 0; k < batch.size; ++k) {
       if (has(star_.faces()[k], u)) continue;
       const Shape s = batch.shape(k);
-      if (s.beta < kCertainBeta || !floor_.below(s)) return 1;
+      if (s.beta < kCertainBeta || !floor_.below(s)) return kNever;
       worst = std::min(worst, s.score);
       sum += (1 - double{s.beta}) * (1 - double{s.beta});
+      poor += lack_of(s.score);
       ++count;
     }
-    if (worst <= old_worst_ && worst <= kMeanRisesGuard) return 1;
+    if (goal_ == Goal::kFewestPoor) return poor;
+    if (worst <= old_worst_ && worst <= kMeanRisesGuard) return kNever;
     const double lack = sum / std::max(count, 1);
     return worst > old_worst_ + kRise ? std::min(lack, lack * kFall) : lack;
   }
@@ -97,6 +111,7 @@ class Collapser {
   EditBlock& block_;
   EditMesh& mesh_;
   Floor floor_;
+  Goal goal_;
   StarEdit star_;
   float old_worst_ = 0;
   double old_lack_ = 0, squared_limit_ = 0;
@@ -108,9 +123,9 @@ class Collapser {
 
 /// Each vertex of these elements once; `seen` is shared by all blocks, none of which looks at another's vertices.
 PassResult collapse_block(EditBlock& block, const Floor& floor, const std::vector<TetIndex>& tets, float threshold,
-                          std::vector<std::uint8_t>& seen, std::vector<TetIndex>& left) {
+                          Goal goal, std::vector<std::uint8_t>& seen, std::vector<TetIndex>& left) {
   PassResult result;
-  Collapser collapser(block, floor);
+  Collapser collapser(block, floor, goal);
   const EditMesh& mesh = block.mesh();
   std::vector<HalfFace> star;
   for (const TetIndex t : tets) {
@@ -130,12 +145,12 @@ PassResult collapse_block(EditBlock& block, const Floor& floor, const std::vecto
 
 }  // namespace
 
-PassResult collapse_vertices(EditMesh& mesh, float threshold, const RunContext& context) {
+PassResult collapse_vertices(EditMesh& mesh, float threshold, Goal goal, const RunContext& context) {
   std::vector<std::uint8_t> seen(mesh.vertices(), 0);
   const Floor floor = mesh.floor();
   return for_each_block(mesh, tets_below(mesh, threshold), context,
                         [&](EditBlock& block, const std::vector<TetIndex>& tets, std::vector<TetIndex>& left) {
-                          return collapse_block(block, floor, tets, threshold, seen, left);
+                          return collapse_block(block, floor, tets, threshold, goal, seen, left);
                         });
 }
 

@@ -4,6 +4,7 @@
 // improvement", 2007.) Vertices that end up inside the cavity go: the same step removes vertices that are in the way.
 
 #include "improve/edit_blocks.h"
+#include "improve/fewest_poor.h"
 #include "improve/maximize_worst.h"
 #include "improve/passes.h"
 
@@ -12,16 +13,17 @@
 namespace octafront::improve {
 namespace {
 
-constexpr int kLargestCavity = 48;   ///< tets
-constexpr int kClimbSteps = 4;       ///< per growth step
-constexpr int kLastSteps = 12;       ///< for the best cavity
-constexpr float kLeastGain = 0.02f;  ///< more elements must be worth it
-constexpr int kPatience = 10;        ///< growth steps without a better star before giving up
+constexpr int kLargestCavity = 48;    ///< tets
+constexpr int kClimbSteps = 4;        ///< per growth step
+constexpr int kLastSteps = 12;        ///< for the best cavity
+constexpr float kLeastGain = 0.02f;   ///< more elements must be worth it
+constexpr float kLeastRelief = 0.3f;  ///< the same for what they lack
+constexpr int kPatience = 10;         ///< growth steps without a better star before giving up
 
 class Inserter {
  public:
-  Inserter(EditBlock& block, const Floor& floor)
-      : block_(block), mesh_(block.mesh()), floor_(floor), star_(mesh_.objective()) {}
+  Inserter(EditBlock& block, const Floor& floor, Goal goal)
+      : block_(block), mesh_(block.mesh()), floor_(floor), goal_(goal), star_(mesh_.objective()) {}
 
   /// True if tet t was replaced by something better.
   bool improve(TetIndex t) {
@@ -29,10 +31,8 @@ class Inserter {
     if (best_size_ == 0) return false;
     tets_.resize(best_size_);
     load_star();
-    maximizer_.climb(star_, best_place_, kLastSteps, [](Vec3) { return true; });
-    const Vec3 p = maximizer_.place();
-    star_.evaluate_star(p);
-    if (static_cast<float>(star_.worst()) <= worst_of_cavity() + kLeastGain || !star_.star_acceptable(p, floor_))
+    const Vec3 p = climb(best_place_, kLastSteps);
+    if (gain() <= (goal_ == Goal::kWorst ? kLeastGain : kLeastRelief) || !star_.star_acceptable(p, floor_))
       return false;
     return commit(p);
   }
@@ -40,10 +40,30 @@ class Inserter {
  private:
   bool in_cavity(TetIndex t) const { return std::find(tets_.begin(), tets_.end(), t) != tets_.end(); }
 
-  float worst_of_cavity() const {
+  /// The best place near `start` for the apex of the star; the star is left as evaluated there.
+  Vec3 climb(Vec3 start, int steps) {
+    const auto anywhere = [](Vec3) { return true; };
+    if (goal_ == Goal::kWorst) {
+      maximizer_.climb(star_, start, steps, anywhere);
+      start = maximizer_.place();
+    } else {
+      descent_.descend(star_, start, steps, anywhere);
+      start = descent_.place();
+    }
+    star_.evaluate_star(start);
+    return start;
+  }
+
+  /// What the star as evaluated is better by than the cavity that it fills.
+  float gain() const {
     float worst = 1;
-    for (const TetIndex t : tets_) worst = std::min(worst, mesh_.shape(t).score);
-    return worst;
+    double lack = 0;
+    for (const TetIndex t : tets_) {
+      worst = std::min(worst, mesh_.shape(t).score);
+      lack += lack_of(mesh_.shape(t).score);
+    }
+    return goal_ == Goal::kWorst ? static_cast<float>(star_.worst()) - worst
+                                 : static_cast<float>(lack - lack_of(star_));
   }
 
   /// Grows the cavity and notes how far it was when its star was best compared with what it replaces.
@@ -52,16 +72,13 @@ class Inserter {
     best_size_ = 0;
     const Tet& c = mesh_.tet(t);
     Vec3 p = (mesh_.point(c[0]) + mesh_.point(c[1]) + mesh_.point(c[2]) + mesh_.point(c[3])) * 0.25;
-    double best_gain = 0;
+    float best_gain = 0;
     for (int since_best = 0; since_best < kPatience && tets_.size() <= kLargestCavity; ++since_best) {
       load_star();
       if (faces_.size() > ShapeBatch::kBatch) return;
-      maximizer_.climb(star_, p, kClimbSteps, [](Vec3) { return true; });
-      p = maximizer_.place();
-      star_.evaluate_star(p);
-      const double gain = star_.worst() - worst_of_cavity();
-      if (gain > best_gain) {
-        best_gain = gain;
+      p = climb(p, kClimbSteps);
+      if (const float gained = gain(); gained > best_gain) {
+        best_gain = gained;
         best_size_ = tets_.size();
         best_place_ = p;
         since_best = 0;
@@ -112,12 +129,14 @@ class Inserter {
   EditBlock& block_;
   EditMesh& mesh_;
   Floor floor_;
+  Goal goal_;
   std::vector<TetIndex> tets_;   ///< the cavity, in order of growth
   std::vector<HalfFace> faces_;  ///< its outer faces, as seen from the tets inside
   std::size_t best_size_ = 0;
   Vec3 best_place_;
   ShapeBatch star_;
   WorstMaximizer maximizer_;
+  LackDescent descent_;
   std::vector<Tet> new_tets_;
   std::vector<Shape> shapes_;
   std::vector<TetIndex> created_;
@@ -125,14 +144,14 @@ class Inserter {
 
 /// Worst first.
 PassResult insert_block(EditBlock& block, const Floor& floor, const std::vector<TetIndex>& tets, float threshold,
-                        std::vector<TetIndex>& left) {
+                        Goal goal, std::vector<TetIndex>& left) {
   PassResult result;
   const EditMesh& mesh = block.mesh();
   std::vector<std::pair<float, TetIndex>> bad;
   for (const TetIndex t : tets)
     if (mesh.alive(t)) bad.push_back({mesh.shape(t).score, t});
   std::sort(bad.begin(), bad.end());
-  Inserter inserter(block, floor);
+  Inserter inserter(block, floor, goal);
   for (const auto& [score, t] : bad) {
     if (!mesh.alive(t) || mesh.shape(t).score >= threshold) continue;
     ++result.tried;
@@ -146,12 +165,12 @@ PassResult insert_block(EditBlock& block, const Floor& floor, const std::vector<
 
 }  // namespace
 
-PassResult insert_vertices(EditMesh& mesh, float threshold, const RunContext& context) {
+PassResult insert_vertices(EditMesh& mesh, float threshold, Goal goal, const RunContext& context) {
   const Floor floor = mesh.floor();
   return for_each_block(
       mesh, tets_below(mesh, threshold), context,
       [&](EditBlock& block, const std::vector<TetIndex>& tets, std::vector<TetIndex>& left) {
-        return insert_block(block, floor, tets, threshold, left);
+        return insert_block(block, floor, tets, threshold, goal, left);
       },
       true);
 }

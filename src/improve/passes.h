@@ -47,6 +47,7 @@ enum class Goal {
   /// The same, looking at edges with rings of up to four only: 2,350 of the 2,360 changes that kMean makes on a mesh of
   /// 190,000 elements, for a third of its time.
   kMeanQuick,
+  kFewestPoor,  ///< the sum of what elements lack (fewest_poor.h)
 };
 
 /// Removes edges (up to a ring of kLongestRing tetrahedra, by dynamic programming) and faces (2-3 flips) of the
@@ -64,10 +65,14 @@ PassResult optimize_vertices(EditMesh& mesh, float threshold, const RunContext& 
 /// Removes inner vertices of elements with a score below `threshold` by collapse onto a neighbour, where that makes the
 /// mean of (1 - beta)^2 around them a good deal less, no new edge is too long, and the worst score of the place rises
 /// or stays above kMeanRisesGuard.
-PassResult collapse_vertices(EditMesh& mesh, float threshold, const RunContext& context);
+PassResult collapse_vertices(EditMesh& mesh, float threshold, Goal goal, const RunContext& context);
+
+/// Moves the inner vertices of the elements with a score below `threshold` to where the elements around them lack least
+/// in sum (fewest_poor.h).
+PassResult relieve_vertices(EditMesh& mesh, float threshold, const RunContext& context);
 
 /// Replaces elements with a score below `threshold`, worst first, and some around them, by the star of a new vertex
-/// where that raises the worst score of the place.
-PassResult insert_vertices(EditMesh& mesh, float threshold, const RunContext& context);
+/// where that serves the goal: kWorst or kFewestPoor.
+PassResult insert_vertices(EditMesh& mesh, float threshold, Goal goal, const RunContext& context);
 
 }  // namespace octafront::improve

@@ -6,6 +6,7 @@
 #include "geometry/measures.h"
 #include "geometry/predicates.h"
 #include "improve/edit_blocks.h"
+#include "improve/fewest_poor.h"
 #include "improve/passes.h"
 
 #include <algorithm>
@@ -69,15 +70,19 @@ class Reconnector {
     batch_.add(mesh_.point(t[0]), mesh_.point(t[1]), mesh_.point(t[2]), mesh_.point(t[3]));
   }
 
-  /// What an element adds to the value of a place, larger being better: its score, or less its squared deficit.
-  float value_of(const Shape& s) const { return goal_ == Goal::kWorst ? s.score : -(1 - s.beta) * (1 - s.beta); }
+  /// What an element adds to the value of a place, larger being better: its score, or less what it lacks.
+  float value_of(const Shape& s) const {
+    if (goal_ == Goal::kWorst) return s.score;
+    return goal_ == Goal::kFewestPoor ? -static_cast<float>(lack_of(s.score)) : -(1 - s.beta) * (1 - s.beta);
+  }
   float combined(float a, float b) const { return goal_ == Goal::kWorst ? std::min(a, b) : a + b; }
   float neutral() const { return goal_ == Goal::kWorst ? 2.0f : 0.0f; }
 
   /// The value of candidate i of the batch, kUnusable if it may not be used.
   float usable_value(int i, const Tet& t) const {
     const Shape s = batch_.shape(i);
-    if (!floor_.below(s) || (goal_ != Goal::kWorst && s.score < kMeanRisesGuard)) return kUnusable;
+    const bool for_mean = goal_ == Goal::kMean || goal_ == Goal::kMeanQuick;
+    if (!floor_.below(s) || (for_mean && s.score < kMeanRisesGuard)) return kUnusable;
     if (s.beta < kCertainBeta &&
         orient3d(mesh_.point(t[0]), mesh_.point(t[1]), mesh_.point(t[2]), mesh_.point(t[3])) <= 0)
       return kUnusable;

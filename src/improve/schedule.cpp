@@ -5,6 +5,7 @@
 #include "geometry/predicates.h"
 #include "geometry/self_intersection.h"
 #include "improve/explain.h"
+#include "improve/fewest_poor.h"
 #include "improve/improve.h"
 #include "improve/passes.h"
 
@@ -77,10 +78,10 @@ class Schedule {
     pass("reconnections", [&] { return reconnect(mesh_, threshold, Goal::kWorst, context_, guide_); });
   }
   void collapse(float threshold) {
-    pass("collapsed vertices", [&] { return collapse_vertices(mesh_, threshold, context_); });
+    pass("collapsed vertices", [&] { return collapse_vertices(mesh_, threshold, Goal::kMean, context_); });
   }
   void insert(float threshold) {
-    pass("inserted vertices", [&] { return insert_vertices(mesh_, threshold, context_); });
+    pass("inserted vertices", [&] { return insert_vertices(mesh_, threshold, Goal::kWorst, context_); });
   }
   void optimize(float threshold) {
     pass("optimised vertices", [&] { return optimize_vertices(mesh_, threshold, context_, guide_); });
@@ -95,6 +96,29 @@ class Schedule {
       flips(threshold);
       if (changes_ == before && round >= insert_from) return;
     }
+  }
+
+  /// Against elements that worse ones around them hide from the passes for the worst.
+  void relieve(float threshold) {
+    pass("moves against poor elements", [&] { return relieve_vertices(mesh_, threshold, context_); });
+    pass("reconnections against poor elements",
+         [&] { return reconnect(mesh_, threshold, Goal::kFewestPoor, context_); });
+    pass("collapses against poor elements",
+         [&] { return collapse_vertices(mesh_, threshold, Goal::kFewestPoor, context_); });
+  }
+
+  void insert_against_poor(float threshold) {
+    pass("insertions against poor elements",
+         [&] { return insert_vertices(mesh_, threshold, Goal::kFewestPoor, context_); });
+  }
+
+  /// What the elements lack, in sum.
+  double lack() const {
+    double sum = 0;
+    for (TetIndex t = 0; t < mesh_.slots(); ++t) {
+      if (mesh_.alive(t)) sum += lack_of(mesh_.shape(t).score);
+    }
+    return sum;
   }
 
   double mean_beta() const { return mesh_.beta_sum() / static_cast<double>(mesh_.live_tets()); }
@@ -216,6 +240,22 @@ void run_best(Schedule& run, const ImproveOptions& options) {
   run.rounds_for_worst(8, kWantedBest, 2, kWanted);
 }
 
+/// Rounds against poor elements end when one takes away less than this part of what the elements lack.
+constexpr double kWorthRelief = 0.04;
+/// Insertions find next to nothing later, and cost the most.
+constexpr int kRoundsWithInsertions = 2;
+
+void relieve(Schedule& run) {
+  double before = run.lack();
+  for (int round = 0; round < kMostRounds && before > 0; ++round) {
+    run.relieve(kComfort);
+    if (round < kRoundsWithInsertions) run.insert_against_poor(kComfort);
+    const double now = run.lack();
+    if (now > (1 - kWorthRelief) * before) return;
+    before = now;
+  }
+}
+
 void run_schedule(Schedule& run, const ImproveOptions& options) {
   switch (options.level) {
     case ImproveOptions::Level::kOff:
@@ -225,9 +265,11 @@ void run_schedule(Schedule& run, const ImproveOptions& options) {
     case ImproveOptions::Level::kFast:
       return run_fast(run, options);
     case ImproveOptions::Level::kDefault:
-      return run_default(run, options);
+      run_default(run, options);
+      return relieve(run);
     case ImproveOptions::Level::kBest:
-      return run_best(run, options);
+      run_best(run, options);
+      return relieve(run);
   }
 }
 

@@ -10,6 +10,8 @@
 #include <cmath>
 #include <limits>
 
+#include <fmt/format.h>
+
 namespace octafront {
 
 namespace {
@@ -20,6 +22,10 @@ constexpr double kEdgeOfUnitArea = 1.5196713713031851;
 /// Where triangles of very different sizes meet, gradation pulls sizes below most of the triangles. Then all are raised
 /// by the mean shortfall, within limits, so that sizes lie about the triangles as often above as below.
 constexpr double kRaisedFrom = 1.03, kMostRaised = 1.5;
+/// Where the mean shortfall is above this, the triangles ask for steeper changes of size than gradation allows:
+/// following it would make two to three times the elements, and more of them poor. Then sizes may change this much
+/// faster. Meshes of scans, up to 1.26, keep their gradation, which serves their elements.
+constexpr double kSteeperFrom = 1.3, kSteeper = 2;
 
 /// The edge length that a triangle stands for: between that of the equilateral triangle of its area, which a needle
 /// makes too small, and the mean length of its edges, which it makes too large; nearer to the latter. The even mean of
@@ -85,7 +91,17 @@ SizeField size_field_of_surface(const SurfaceMesh& surface, const SizeOptions& o
   rules.resolve_surface = !rules.interior_below_surface;
   rules.ceiling = std::min({root.side, options.max_size.value_or(HUGE_VAL), options.size.value_or(HUGE_VAL)});
   auto grid = make_background_grid(root, samples_of(face), rules, context);
-  const double shortfall = std::min(kMostRaised, mean_shortfall(surface, face, *grid));
+  double shortfall = mean_shortfall(surface, face, *grid);
+  if (shortfall > kSteeperFrom) {
+    rules.gradation *= kSteeper;
+    grid = make_background_grid(root, samples_of(face), rules, context);
+    shortfall = mean_shortfall(surface, face, *grid);
+    report.notes.push_back(fmt::format(
+        "the kept triangles change in size faster than gradation allows: sizes change by up to {:.3g} per unit of "
+        "length",
+        rules.gradation));
+  }
+  shortfall = std::min(kMostRaised, shortfall);
   if (shortfall > kRaisedFrom) {
     std::vector<double> raised = face;
     for (double& h : raised) h *= shortfall;

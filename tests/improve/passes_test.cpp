@@ -4,6 +4,7 @@
 #include "geometry/predicates.h"
 #include "improve/edit_blocks.h"
 #include "improve/explain.h"
+#include "improve/fewest_poor.h"
 #include "improve/start_meshes.h"
 #include "improve/vertex_blocks.h"
 
@@ -156,7 +157,7 @@ TEST(EditBlocks, MendWhatLiesAcrossTheirRims) {
   }
   EXPECT_EQ(reconnect(edit, 0.5f, Goal::kWorst, {}).done, 0u);
   EXPECT_GT(optimize_vertices(edit, 0.5f, {}).done, 0u);
-  insert_vertices(edit, 0.5f, {});
+  insert_vertices(edit, 0.5f, Goal::kWorst, {});
   expect_laws(start, edit.release());
 }
 
@@ -219,11 +220,84 @@ TEST(Insert, PutsAVertexWhereNoReconnectionHelps) {
   const TetMesh before = edge_ring_mesh(kLongestRing + 3, 0.95);
   EditMesh edit{TetMesh{before}};
   const float worst = edit.floor().score;
-  EXPECT_GT(insert_vertices(edit, 1.0f, {}).done, 0u);
+  EXPECT_GT(insert_vertices(edit, 1.0f, Goal::kWorst, {}).done, 0u);
   EXPECT_GT(edit.floor().score, worst);
   const TetMesh after = edit.release();
   EXPECT_GT(after.points.size(), before.points.size());
   expect_laws(before, after);
+}
+
+double lack(const EditMesh& mesh) {
+  double sum = 0;
+  for (TetIndex t = 0; t < mesh.slots(); ++t)
+    if (mesh.alive(t)) sum += lack_of(mesh.shape(t).score);
+  return sum;
+}
+
+TEST(FewestPoor, LackIsNothingForGoodElementsAndRisesAsTheyGetWorse) {
+  EXPECT_EQ(lack_of(kComfort), 0);
+  EXPECT_EQ(lack_of(1), 0);
+  double before = 0;
+  for (double score = 0.39; score > -0.5; score -= 0.01) {
+    EXPECT_GT(lack_of(score), before);
+    before = lack_of(score);
+  }
+}
+
+TEST(FewestPoor, DescentLeadsOutOfInvertedElements) {
+  // The star of a regular octahedron's middle, begun outside of it.
+  const Vec3 corners[6]{{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+  ShapeBatch star;
+  star.size = 0;
+  for (int i = 0; i < 4; ++i) {
+    star.add(corners[(i + 1) % 4], corners[i], corners[4]);
+    star.add(corners[i], corners[(i + 1) % 4], corners[5]);
+  }
+  star.evaluate_star({0, 0, 0});
+  if (star.worst() <= 0)
+    for (int i = 0; i < star.size; ++i)
+      for (int axis = 0; axis < 3; ++axis) std::swap(star.corner[1][axis][i], star.corner[2][axis][i]);
+  star.evaluate_star({0, 0, 0});
+  ASSERT_GT(star.worst(), 0.4);
+  LackDescent descent;
+  descent.descend(star, {1.1, 0.3, 0.2}, 30, [](Vec3) { return true; });
+  EXPECT_TRUE(descent.moved());
+  star.evaluate_star(descent.place());
+  EXPECT_GT(star.worst(), 0.2);
+}
+
+TEST(FewestPoor, EveryPassLowersTheSumThatElementsLack) {
+  const TetMesh start = perturbed(kuhn_cube(6), 0.49, 11);
+  EditMesh edit{TetMesh{start}};
+  double before = lack(edit);
+  const auto expect_less = [&](const PassResult& result) {
+    const double now = lack(edit);
+    EXPECT_EQ(result.done > 0, now < before);
+    EXPECT_LE(now, before);
+    before = now;
+    return result.done;
+  };
+  std::uint64_t moved = 0, turned = 0;
+  for (int round = 0; round < 2; ++round) {
+    turned += expect_less(reconnect(edit, 0.4f, Goal::kFewestPoor, {}));
+    expect_less(collapse_vertices(edit, 0.4f, Goal::kFewestPoor, {}));
+    expect_less(insert_vertices(edit, 0.4f, Goal::kFewestPoor, {}));
+    moved += expect_less(relieve_vertices(edit, 0.4f, {}));
+  }
+  EXPECT_GT(moved, 0u);
+  EXPECT_GT(turned, 0u);
+  expect_laws(start, edit.release());
+}
+
+TEST(FewestPoor, MovesAreTheSameForAnyNumberOfThreads) {
+  const TetMesh start = perturbed(kuhn_cube(4), 0.3, 3);
+  EditMesh one{TetMesh{start}}, many{TetMesh{start}};
+  for (int threads : {1, 4}) {
+    RunContext context;
+    context.threads = threads;
+    relieve_vertices(threads == 1 ? one : many, 0.4f, context);
+  }
+  EXPECT_EQ(one.release().points, many.release().points);
 }
 
 Shortfall shortfall_of(TetMesh mesh) {
@@ -289,9 +363,9 @@ TEST(Passes, LeaveAValidMeshWhoseWorstIsNoWorse) {
       run([&] { reconnect(edit, 0.6f, Goal::kWorst, {}); });
       run([&] { smooth_mean(edit, 1, {}); });
       run([&] { reconnect(edit, 0.9f, Goal::kMean, {}); });
-      run([&] { collapse_vertices(edit, 0.7f, {}); });
+      run([&] { collapse_vertices(edit, 0.7f, Goal::kMean, {}); });
       run([&] { optimize_vertices(edit, 0.6f, {}); });
-      run([&] { insert_vertices(edit, 0.4f, {}); });
+      run([&] { insert_vertices(edit, 0.4f, Goal::kWorst, {}); });
     }
     const TetMesh after = edit.release();
     expect_laws(start, after);
@@ -314,7 +388,7 @@ TEST(Collapse, RemovesAVertexThatStandsTooClose) {
     start.tets.push_back(t);
   }
   EditMesh edit{TetMesh{start}};
-  EXPECT_EQ(collapse_vertices(edit, 0.4f, {}).done, 1u);
+  EXPECT_EQ(collapse_vertices(edit, 0.4f, Goal::kMean, {}).done, 1u);
   const TetMesh after = edit.release();
   expect_laws(start, after);
   EXPECT_EQ(after.points.size(), start.points.size() - 1);
