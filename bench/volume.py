@@ -40,6 +40,7 @@ def fill_ours(build, surface, folder, timeout, core, threads):
     if not outcome.error:
         stage = next(s for s in json.loads(report.read_text())["stages"] if s["name"] == "volume front")
         outcome.stage_seconds, outcome.stage_wall_seconds = stage["cpu_seconds"], stage["wall_seconds"]
+        outcome.counters = stage["counters"]
     return finish(outcome, mesh)
 
 
@@ -146,6 +147,21 @@ def exponents(rows, models):
     return lines
 
 
+def ladder_costs(rows):
+    """What closing the cavities costs that the front leaves."""
+    lines = ["| surface | ours | faces left | cavities | closing CPU s | % of filling |", "|---|---|" + "--:|" * 4]
+    for (model, count), group in rows.items():
+        for row in group:
+            counters = getattr(row["outcome"], "counters", None)
+            if row["error"] or counters is None:
+                continue
+            seconds = counters.get("closing CPU seconds", 0)
+            lines.append(f"| {model}, {count:,} | {row['mesher'][11:]} | {counters['faces left']:.0f} | "
+                         f"{counters.get('cavities', 0):.0f} | {seconds:.3f} | "
+                         f"{100 * seconds / row['outcome'].stage_seconds:.1f} |")
+    return lines
+
+
 def speed_up(build, surface, core, threads, pairs, timeout):
     """Wall seconds of filling with one thread and with `threads`, in turns; the best of each."""
     best = {1: float("inf"), threads: float("inf")}
@@ -191,6 +207,7 @@ def main():
                         print(threads[-1], flush=True)
     sections = {"Ratios of filling rates, of whole processes in brackets": ratios(rows),
                 "Exponents of CPU time over elements": exponents(rows, args.models), "Threads": threads,
+                "The closing ladder: what the cavities cost that the front leaves": ladder_costs(rows),
                 "All runs": table}
     minutes = (time.time() - start) / 60
     text = ("# The volume front against others\n\n" + __doc__.split("\n\n")[2] +

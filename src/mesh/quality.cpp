@@ -2,6 +2,8 @@
 
 #include "geometry/measures.h"
 
+#include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <vector>
 
@@ -21,33 +23,72 @@ std::array<Vec3, 4> normalized_corners(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
   return q;
 }
 
-// Angles from one determinant and the products of face normals: atan2 keeps the digits of needles and slivers.
-std::array<double, 6> angles_of(const std::array<Vec3, 4>& q) {
+// An angle in [0, 180] degrees as a direction of any length: its order needs neither a root nor an arc tangent.
+struct Direction {
+  double x, y;  // y >= 0, not both 0
+  double degrees() const { return std::atan2(y, x) * (180 / std::numbers::pi); }
+  bool is_below(const Direction& other) const {
+    const double turn = x * other.y - y * other.x;
+    return turn > 0 || (turn == 0 && x > 0 && other.x < 0);
+  }
+};
+
+// Angles from one determinant and the products of face normals: y over x keeps the digits of needles and slivers.
+std::array<Direction, 6> angles_of(const std::array<Vec3, 4>& q) {
   const Vec3 u = q[1] - q[0], v = q[2] - q[0], w = q[3] - q[0];
   const Vec3 nb = cross(v, w), nc = cross(w, u), nd = cross(u, v), na = -(nb + nc + nd);
   const double det = std::abs(dot(u, nb));
   const auto angle = [&](Vec3 edge, Vec3 m, Vec3 n) {
-    return std::atan2(length(edge) * det, -dot(m, n)) * (180 / std::numbers::pi);
+    const Direction d{-dot(m, n), length(edge) * det};
+    return d.x == 0 && d.y == 0 ? Direction{1, 0} : d;
   };
   return {angle(u, nc, nd),     angle(v, nb, nd),     angle(w, nb, nc),
           angle(v - u, na, nd), angle(w - u, na, nc), angle(w - v, na, nb)};
 }
 
-void add_tet(QualitySummary& s, TetIndex tet, const std::array<Vec3, 4>& q) {
-  const double beta = std::min(1.0, tet_radius_ratio(q[0], q[1], q[2], q[3]));
-  ++s.elements;
-  s.beta_mean += beta;
-  ++s.beta_classes[static_cast<std::size_t>(std::clamp(static_cast<int>(beta * 5), 0, 4))];
-  if (s.beta_min_tet == kNone || beta < s.beta_min) {
-    s.beta_min = beta;
-    s.beta_min_tet = tet;
+// The lower borders of the classes of 10 degrees but the first.
+std::array<Direction, 17> class_borders() {
+  std::array<Direction, 17> borders{};
+  for (int i = 0; i < 17; ++i) {
+    const double angle = (i + 1) * std::numbers::pi / 18;
+    borders[i] = {std::cos(angle), std::sin(angle)};
   }
-  for (const double angle : angles_of(q)) {
-    s.dihedral_min = std::min(s.dihedral_min, angle);
-    s.dihedral_max = std::max(s.dihedral_max, angle);
-    ++s.dihedral_histogram[static_cast<std::size_t>(std::clamp(static_cast<int>(angle / 10), 0, 17))];
-  }
+  return borders;
 }
+
+std::size_t class_of(const Direction& angle) {
+  static const std::array<Direction, 17> borders = class_borders();
+  const auto above = std::partition_point(borders.begin(), borders.end(),
+                                          [&](const Direction& border) { return !angle.is_below(border); });
+  return static_cast<std::size_t>(above - borders.begin());
+}
+
+// The summary of a stretch of elements; beta_mean holds the sum, and the extreme angles wait to be converted.
+struct Part {
+  QualitySummary summary;
+  Direction least{-1, 0}, most{1, 0};
+
+  void add_tet(TetIndex tet, const std::array<Vec3, 4>& q) {
+    QualitySummary& s = summary;
+    const double beta = std::min(1.0, tet_radius_ratio(q[0], q[1], q[2], q[3]));
+    ++s.elements;
+    s.beta_mean += beta;
+    ++s.beta_classes[static_cast<std::size_t>(std::clamp(static_cast<int>(beta * 5), 0, 4))];
+    if (s.beta_min_tet == kNone || beta < s.beta_min) {
+      s.beta_min = beta;
+      s.beta_min_tet = tet;
+    }
+    for (const Direction& angle : angles_of(q)) {
+      if (angle.is_below(least)) least = angle;
+      if (most.is_below(angle)) most = angle;
+      ++s.dihedral_histogram[class_of(angle)];
+    }
+  }
+  void convert_angles() {
+    summary.dihedral_min = least.degrees();
+    summary.dihedral_max = most.degrees();
+  }
+};
 
 // beta_mean holds the sum until the end; `part` follows `whole` in the order of elements.
 void add_summary(QualitySummary& whole, const QualitySummary& part) {
@@ -64,12 +105,6 @@ void add_summary(QualitySummary& whole, const QualitySummary& part) {
   whole.dihedral_max = std::max(whole.dihedral_max, part.dihedral_max);
 }
 
-QualitySummary empty_summary() {
-  QualitySummary s;
-  s.dihedral_min = 180;
-  return s;
-}
-
 }  // namespace
 
 double radius_ratio(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
@@ -83,7 +118,10 @@ double radius_ratio(Vec3 a, Vec3 b, Vec3 c) {
 }
 
 std::array<double, 6> dihedral_angles(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
-  return angles_of(normalized_corners(a, b, c, d));
+  std::array<double, 6> degrees{};
+  const auto angles = angles_of(normalized_corners(a, b, c, d));
+  std::transform(angles.begin(), angles.end(), degrees.begin(), [](const Direction& angle) { return angle.degrees(); });
+  return degrees;
 }
 
 QualitySummary summarize_quality(const TetMesh& mesh) {
@@ -91,16 +129,18 @@ QualitySummary summarize_quality(const TetMesh& mesh) {
   constexpr std::size_t kBlock = 8192;
   const std::size_t n = mesh.tets.size();
   if (n == 0) return {};
-  std::vector<QualitySummary> parts((n + kBlock - 1) / kBlock, empty_summary());
+  std::vector<Part> parts((n + kBlock - 1) / kBlock);
   tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t block) {
     for (std::size_t t = block * kBlock; t < std::min(n, (block + 1) * kBlock); ++t) {
       const auto& [a, b, c, d] = mesh.tets[t];
       const auto& p = mesh.points;
-      add_tet(parts[block], static_cast<TetIndex>(t), normalized_corners(p[a], p[b], p[c], p[d]));
+      parts[block].add_tet(static_cast<TetIndex>(t), normalized_corners(p[a], p[b], p[c], p[d]));
     }
+    parts[block].convert_angles();
   });
-  QualitySummary whole = empty_summary();
-  for (const QualitySummary& part : parts) add_summary(whole, part);
+  QualitySummary whole;
+  whole.dihedral_min = 180;
+  for (const Part& part : parts) add_summary(whole, part.summary);
   whole.beta_mean /= static_cast<double>(n);
   return whole;
 }

@@ -73,5 +73,39 @@ TEST(SummarizeQuality, CountsEveryElementOnce) {
   EXPECT_GT(s.dihedral_max, 170);
 }
 
+TEST(SummarizeQuality, FindsTheAnglesOfEachElement) {
+  std::uint64_t state = 1;
+  const auto random = [&state] {
+    state = state * 6364136223846793005u + 1442695040888963407u;
+    return static_cast<double>(state >> 40) / (1 << 24);
+  };
+  TetMesh mesh;
+  std::array<std::uint64_t, 18> histogram{};
+  double least = 180, most = 0;
+  for (std::uint32_t t = 0; t < 2000; ++t) {
+    for (int i = 0; i < 4; ++i) mesh.points.push_back({random(), random(), random() * (t % 3 == 0 ? 1e-9 : 1)});
+    mesh.tets.push_back({4 * t, 4 * t + 1, 4 * t + 2, 4 * t + 3});
+    const Vec3* const p = &mesh.points[4 * t];
+    for (const double angle : dihedral_angles(p[0], p[1], p[2], p[3])) {
+      least = std::min(least, angle);
+      most = std::max(most, angle);
+      ++histogram[static_cast<std::size_t>(std::clamp(static_cast<int>(angle / 10), 0, 17))];
+    }
+  }
+  const QualitySummary s = summarize_quality(mesh);
+  EXPECT_EQ(s.dihedral_histogram, histogram);
+  EXPECT_DOUBLE_EQ(s.dihedral_min, least);
+  EXPECT_DOUBLE_EQ(s.dihedral_max, most);
+}
+
+TEST(SummarizeQuality, OfAFlatElementSpansAllAngles) {
+  TetMesh mesh;
+  mesh.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+  mesh.tets = {{0, 1, 2, 3}};
+  const QualitySummary s = summarize_quality(mesh);
+  EXPECT_EQ(s.dihedral_min, 0);
+  EXPECT_EQ(s.dihedral_max, 180);
+}
+
 }  // namespace
 }  // namespace octafront
