@@ -2,6 +2,7 @@
 
 #include <octafront/octafront.h>
 
+#include "open_cavity.h"
 #include "terminal.h"
 
 #include <cstdio>
@@ -59,17 +60,6 @@ int check_tet_mesh(const Arguments& a) {
   return 0;
 }
 
-// The place that stayed open, as a small file that can be sent to us instead of the whole model.
-[[noreturn]] void fail_with_cavity(const Arguments& a, const OpenCavityError& error) {
-  std::filesystem::path file = a.output;
-  file.replace_extension(".cavity.off");
-  write_surface(file, error.cavity);
-  throw MeshingError(
-      fmt::format("{}\nThe open cavity is in {}. This is a bug of ours: please report it with that file "
-                  "(or the input) and the command line; meanwhile another --size may succeed.",
-                  error.what(), file.string()));
-}
-
 // Runs one of the library's generators on the input; its refusals name the file.
 template <class Generator>
 auto run_on_input(const Arguments& a, const RunContext& context, const Generator& generator) {
@@ -77,7 +67,7 @@ auto run_on_input(const Arguments& a, const RunContext& context, const Generator
   try {
     return generator(file.surface, options_for(a, file), context);
   } catch (const OpenCavityError& error) {
-    fail_with_cavity(a, error);
+    throw with_cavity_written(error, a.output);
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: {}", a.input.string(), error.what()));
   }

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include <fmt/format.h>
 
@@ -54,10 +55,6 @@ std::vector<double> face_sizes(const SurfaceMesh& surface) {
   return smooth;
 }
 
-}  // namespace
-
-namespace {
-
 /// Gradation only ever makes sizes smaller. By how much, on average over the triangles, in logarithms.
 double mean_shortfall(const SurfaceMesh& surface, const std::vector<double>& face, const OctreeField& grid) {
   double sum = 0;
@@ -68,12 +65,29 @@ double mean_shortfall(const SurfaceMesh& surface, const std::vector<double>& fac
   return std::exp(sum / static_cast<double>(face.size()));
 }
 
+/// The triangles that are kept stand for the size on the surface; these sources would ask for other triangles.
+void note_unused_sources(const SizeOptions& options, StageReport& report) {
+  std::string names;
+  const auto add = [&](bool given, const char* name) {
+    if (given) names += (names.empty() ? "" : ", ") + std::string(name);
+  };
+  add(options.curvature.has_value(), "--curvature");
+  add(options.gap.has_value(), "--gap");
+  add(options.feature_elements.has_value(), "--feature-elements");
+  add(options.facets, "--facets");
+  if (names.empty()) return;
+  report.notes.push_back(names +
+                         ": not used, for the kept triangles decide the sizes on the surface, and with them those "
+                         "inside; use --regions, --size or --max-size for smaller elements inside");
+}
+
 }  // namespace
 
 SizeField size_field_of_surface(const SurfaceMesh& surface, const SizeOptions& options, const RunContext& context,
                                 StageReport& report) {
   check_size_options(options);
   if (options.field) return *options.field;
+  note_unused_sources(options, report);
   const RootCube root = RootCube::around(bounding_box(surface.points), 0.02);
   const double floor = options.min_size.value_or(model_extent(surface) * 1e-5);
   std::vector<double> face = face_sizes(surface);

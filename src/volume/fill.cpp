@@ -161,8 +161,12 @@ TetMesh fill_without_front(const SurfaceMesh& surface, const SizeField& sizes, c
                            const RunContext& context, StageReport& report) {
   try {
     StageReport recovery;
+    const double start = process_cpu_seconds();
     TetMesh mesh = recover_volume(surface, context, recovery);
+    const double recovered = process_cpu_seconds();
     refine_interior(mesh, sizes, context, report);
+    report.count("whole surface recovery CPU seconds", recovered - start);
+    report.count("points inside CPU seconds", process_cpu_seconds() - recovered);
     return mesh;
   } catch (const MeshingError&) {
     std::rethrow_exception(front_error);

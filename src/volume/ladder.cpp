@@ -35,7 +35,17 @@ constexpr std::uint64_t kFaceTestsPerTet = 3;
 
 struct RungCounts {
   int cavities = 0, by_front = 0, by_star = 0, growth_steps = 0, by_recovery = 0;
+  double front_seconds = 0, star_seconds = 0, recovery_seconds = 0;  ///< CPU, closed or not
 };
+
+/// Adds the CPU time that run() takes to `seconds`; the rungs are tried one after the other.
+template <class Run>
+auto timed(double& seconds, Run&& run) {
+  const double start = process_cpu_seconds();
+  auto result = run();
+  seconds += process_cpu_seconds() - start;
+  return result;
+}
 
 /// Where the cavities are, with room for some rings of tetrahedra; nothing if they are too many to tell apart quickly.
 std::vector<Box3> surroundings(const std::vector<Vec3>& points, const Cavities& cavities) {
@@ -78,17 +88,21 @@ void close_cavities(TetMesh& mesh, const std::vector<Wall>& walls, const SizeFie
     context.check();
     ++counts.cavities;
     const auto by_front = [&](const BacktrackVariant& variant) {
-      const bool closed = close_by_front(work, cavities, c, variant, sizes, options, context, face_tests);
+      const bool closed = timed(counts.front_seconds, [&] {
+        return close_by_front(work, cavities, c, variant, sizes, options, context, face_tests);
+      });
       counts.by_front += closed;
       return closed;
     };
     if (std::any_of(kBeforeStar.begin(), kBeforeStar.end(), by_front)) continue;
-    const StarResult star = close_by_star(work, cavities, c);
+    const StarResult star = timed(counts.star_seconds, [&] { return close_by_star(work, cavities, c); });
     counts.growth_steps += star.growth_steps;
     counts.by_star += star.closed;
     if (star.closed || std::any_of(kAfterStar.begin(), kAfterStar.end(), by_front)) continue;
     if (cavities.walls(c).size() > mesh.boundary.size()) give_up(work, cavities.walls(c));
-    const auto by_recovery = [&](int rings) { return close_by_recovery(work, cavities, c, rings, context); };
+    const auto by_recovery = [&](int rings) {
+      return timed(counts.recovery_seconds, [&] { return close_by_recovery(work, cavities, c, rings, context); });
+    };
     if (std::any_of(kRecoveryRings.begin(), kRecoveryRings.end(), by_recovery)) {
       ++counts.by_recovery;
       continue;
@@ -102,6 +116,9 @@ void close_cavities(TetMesh& mesh, const std::vector<Wall>& walls, const SizeFie
   report.count("closed by kernel points", counts.by_star);
   report.count("closed by recovery", counts.by_recovery);
   report.count("growth steps", counts.growth_steps);
+  report.count("backtracking CPU seconds", counts.front_seconds);
+  report.count("kernel points CPU seconds", counts.star_seconds);
+  report.count("recovery CPU seconds", counts.recovery_seconds);
   report.count("closing CPU seconds", process_cpu_seconds() - start);
 }
 
