@@ -1,10 +1,15 @@
 #include "sizing/curvature.h"
 
 #include "geometry/measures.h"
+#include "sizing/octree.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
 
 namespace octafront {
 
@@ -14,6 +19,9 @@ namespace {
 constexpr double kBallRadius = 3;
 /// A ball answers for the triangles within this part of its radius.
 constexpr double kAnsweredPart = 0.7;
+/// Balls are laid in blocks of this many triangles, next to each other along the octree's curve: in the same order
+/// however the triangles are numbered, and by as many threads as there are.
+constexpr std::size_t kFacesPerBlock = 2048;
 /// Edge of an equilateral triangle of area 1.
 constexpr double kEdgeOfUnitArea = 1.5196713713031851;
 
@@ -66,15 +74,37 @@ class CurvatureFinder {
     SurfaceCurvature result;
     result.largest.assign(faces, -1);
     result.sum.assign(faces, 0);
-    visited_by_.assign(faces, kNone);
-    for (std::uint32_t f = 0; f < faces; ++f) {
-      if (f % 1024 == 0) context.check();
-      if (result.largest[f] < 0) answer_around(f, result);
-    }
+    const std::vector<std::uint32_t> order = along_the_curve();
+    block_.resize(faces);
+    for (std::size_t i = 0; i < faces; ++i) block_[order[i]] = static_cast<std::uint32_t>(i / kFacesPerBlock);
+    tbb::enumerable_thread_specific<Ball> balls([&] { return Ball{std::vector<std::uint32_t>(faces, kNone), {}}; });
+    const std::size_t blocks = (faces + kFacesPerBlock - 1) / kFacesPerBlock;
+    tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t b) {
+      context.check();
+      Ball& ball = balls.local();
+      for (std::size_t i = b * kFacesPerBlock; i < std::min(faces, (b + 1) * kFacesPerBlock); ++i) {
+        if (result.largest[order[i]] < 0) answer_around(order[i], ball, result);
+      }
+    });
     return result;
   }
 
  private:
+  /// The faces in a ball, and for each face the last seed in whose ball it was.
+  struct Ball {
+    std::vector<std::uint32_t> visited_by, faces;
+  };
+
+  std::vector<std::uint32_t> along_the_curve() const {
+    const RootCube root = RootCube::around(bounding_box(surface_.points), 0);
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> keys;
+    for (std::uint32_t f = 0; f < center_.size(); ++f) keys.push_back({root.cell(center_[f]).id(), f});
+    std::sort(keys.begin(), keys.end());
+    std::vector<std::uint32_t> order;
+    for (const auto& [key, f] : keys) order.push_back(f);
+    return order;
+  }
+
   std::array<Vec3, 3> corners(std::size_t f) const {
     const Triangle& t = surface_.triangles[f];
     return {surface_.points[t[0]], surface_.points[t[1]], surface_.points[t[2]]};
@@ -104,23 +134,25 @@ class CurvatureFinder {
     return kBallRadius * kEdgeOfUnitArea * std::sqrt(sum / n);
   }
 
-  void answer_around(std::uint32_t seed, SurfaceCurvature& result) {
+  /// Writes to the seed's own block only.
+  void answer_around(std::uint32_t seed, Ball& around, SurfaceCurvature& result) const {
+    auto& [visited_by, ball] = around;
     const double radius = ball_radius(seed), r2 = radius * radius;
-    ball_.assign(1, seed);
-    visited_by_[seed] = seed;
+    ball.assign(1, seed);
+    visited_by[seed] = seed;
     TensorSum sum;
-    for (std::size_t i = 0; i < ball_.size(); ++i) {
-      sum.add(own_[ball_[i]]);
-      for (const std::uint32_t g : across_[ball_[i]]) {
-        if (g == kNone || visited_by_[g] == seed || squared_distance(center_[g], center_[seed]) > r2) continue;
-        visited_by_[g] = seed;
-        ball_.push_back(g);
+    for (std::size_t i = 0; i < ball.size(); ++i) {
+      sum.add(own_[ball[i]]);
+      for (const std::uint32_t g : across_[ball[i]]) {
+        if (g == kNone || visited_by[g] == seed || squared_distance(center_[g], center_[seed]) > r2) continue;
+        visited_by[g] = seed;
+        ball.push_back(g);
       }
     }
     const double largest = sum.area > 0 ? spectral_radius(sum) / sum.area : 0;
     const double trace = sum.area > 0 ? sum.trace() / sum.area : 0;
-    for (const std::uint32_t f : ball_) {
-      if (result.largest[f] >= 0) continue;
+    for (const std::uint32_t f : ball) {
+      if (block_[f] != block_[seed] || result.largest[f] >= 0) continue;
       if (f != seed && squared_distance(center_[f], center_[seed]) > kAnsweredPart * kAnsweredPart * r2) continue;
       result.largest[f] = largest;
       result.sum[f] = trace;
@@ -131,7 +163,7 @@ class CurvatureFinder {
   const FaceNeighbours& across_;
   std::vector<Vec3> normal_, center_;
   std::vector<TensorSum> own_;
-  std::vector<std::uint32_t> visited_by_, ball_;
+  std::vector<std::uint32_t> block_;
 };
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "sizing/size_sources.h"
 #include "support/named_surfaces.h"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -122,6 +123,17 @@ TEST(SizeField, CurvatureOfASphereGivesElementsPerTurn) {
   const SurfaceMesh sphere = icosphere(5);
   const SizeField h = make(sphere, o);
   for (const Vec3 p : sphere.points) ASSERT_NEAR(h.at(p), 2 * M_PI / 24, 0.05 * 2 * M_PI / 24);
+}
+
+TEST(SizeField, CurvatureAsksForTheSameHoweverTheTrianglesAreNumbered) {
+  SizeOptions o;
+  o.curvature = 24;
+  o.max_size = 10;
+  SurfaceMesh surface = torus(60, 25, 1, 0.3);
+  const SizeField h = make(surface, o);
+  std::shuffle(surface.triangles.begin(), surface.triangles.end(), std::mt19937(7));
+  const SizeField other = make(surface, o);
+  for (const Vec3 p : surface.points) ASSERT_NEAR(h.at(p), other.at(p), 1e-9);
 }
 
 /// The box [0, a] x [0, b] x [0, c].
