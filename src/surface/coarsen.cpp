@@ -46,9 +46,7 @@ class Coarsener {
   void flip_all(const TurnLimits& limits) {
     edges_.clear();
     for (HalfedgeIndex h = 0; h < mesh_.start.size(); ++h) {
-      const HalfedgeIndex g = mesh_.twin[h];
-      // Inside a face of the input the edges are Delaunay since the insertion.
-      if (h < g && mesh_.origin[h / 3] != mesh_.origin[g / 3]) edges_.push_back(h);
+      if (h < mesh_.twin[h]) edges_.push_back(h);
     }
     counts_.flips += make_delaunay(mesh_, edges_, limits);
   }
