@@ -4,6 +4,7 @@
 #include "geometry/predicates.h"
 #include "support/named_surfaces.h"
 
+#include <cmath>
 #include <numbers>
 #include <random>
 
@@ -50,6 +51,42 @@ TEST(SelfIntersections, DoNotDependOnThreads) {
     return self_intersections(two.points, two.triangles, limit);
   };
   for (const std::size_t limit : {5, 1000000}) EXPECT_EQ(found(limit, 1), found(limit, 4));
+}
+
+/// Two discs of needles about their middles, tilted, and a wall between their rims.
+SurfaceMesh needle_drum(int needles) {
+  SurfaceMesh s;
+  s.points = {{0, 0, 0}, {0, 0, 0.3}};
+  const auto rim = [&](int i, int level) { return static_cast<VertexIndex>(2 + 2 * (i % needles) + level); };
+  for (int i = 0; i < needles; ++i) {
+    const double angle = 2 * std::numbers::pi * i / needles;
+    for (const double z : {0.0, 0.3}) s.points.push_back({std::cos(angle), std::sin(angle), z});
+    s.triangles.push_back({0, rim(i + 1, 0), rim(i, 0)});
+    s.triangles.push_back({1, rim(i, 1), rim(i + 1, 1)});
+    s.triangles.push_back({rim(i, 0), rim(i + 1, 0), rim(i + 1, 1)});
+    s.triangles.push_back({rim(i, 0), rim(i + 1, 1), rim(i, 1)});
+  }
+  return s;
+}
+
+TEST(SelfIntersections, OfFansAreThoseOfAllPairs) {
+  SurfaceMesh drum = needle_drum(300);
+  EXPECT_TRUE(self_intersections(drum.points, drum.triangles).empty());
+  drum.points[2 + 2 * 40].y += 0.1;        // over the next needles of its disc
+  drum.points[2 + 2 * 120 + 1].z -= 0.35;  // through the other disc
+  drum.points[2 + 2 * 200] = drum.points[2 + 2 * 203];
+  const Pairs expected = all_pairs(drum);
+  ASSERT_GT(expected.size(), 20u);
+  EXPECT_EQ(self_intersections(drum.points, drum.triangles), expected);
+}
+
+TEST(SelfIntersections, OfLargeFansTakeLittleTime) {
+  // All pairs of a disc's needles have boxes that overlap: hours of work if each is looked at.
+  SurfaceMesh drum = needle_drum(100'000);
+  EXPECT_TRUE(self_intersections(drum.points, drum.triangles).empty());
+  drum.points[2].x += 0.5;
+  drum.points[2].y += 0.001;
+  EXPECT_FALSE(self_intersections(drum.points, drum.triangles).empty());
 }
 
 RC_GTEST_PROP(SelfIntersections, AreThoseOfAllPairs, ()) {
