@@ -133,10 +133,11 @@ class Schedule {
     report_.count("not forced", static_cast<double>(s.not_forced));
     if (s.elements == 0) return;
     std::string note = fmt::format(
-        "{} below {:.1f} (beta, or angles of that worth): {} where boundary faces meet at a small angle, {} on "
-        "boundary "
-        "triangles of poor shape, {} between boundary vertices only, {} for no such reason",
-        s.elements == 1 ? "1 element stays" : fmt::format("{} elements stay", s.elements), kReported, s.forced_by_angle,
+        "{} below {:.1f} ({}): {} where boundary faces meet at a small angle, {} on or beside boundary triangles of poor "
+        "shape, {} between boundary vertices only, {} for no such reason",
+        s.elements == 1 ? "1 element stays" : fmt::format("{} elements stay", s.elements), kReported,
+        options_.objective == ImproveOptions::Objective::kBalanced ? "beta, or angles of that worth" : "by the objective",
+        s.forced_by_angle,
         s.forced_by_triangle, s.in_thin_places, s.not_forced);
     if (s.worst_not_forced != kNone) {
       const Vec3 p = mesh_.point(mesh_.tet(s.worst_not_forced)[0]);
@@ -214,7 +215,7 @@ void rounds_for_mean(Schedule& run, float threshold) {
 }
 
 void run_default(Schedule& run, const ImproveOptions& options) {
-  run.laplacian(2, options.relaxation, MoveRule::kMeanRises);
+  run.laplacian(1, options.relaxation, MoveRule::kMeanRises);
   run.flips(kWanted);
   run.collapse(kWanted);
   run.mean_flips(kGood, Goal::kMeanQuick);
