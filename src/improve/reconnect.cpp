@@ -82,7 +82,7 @@ class Reconnector {
   float usable_value(int i, const Tet& t) const {
     const Shape s = batch_.shape(i);
     const bool for_mean = goal_ == Goal::kMean || goal_ == Goal::kMeanQuick;
-    if (!floor_.below(s) || (for_mean && s.score < kMeanRisesGuard)) return kUnusable;
+    if (!floor_.below(s) || (for_mean && s.score < guard_)) return kUnusable;
     if (s.beta < kCertainBeta &&
         orient3d(mesh_.point(t[0]), mesh_.point(t[1]), mesh_.point(t[2]), mesh_.point(t[3])) <= 0)
       return kUnusable;
@@ -99,7 +99,11 @@ class Reconnector {
   bool remove_edge(VertexIndex a, VertexIndex b) {
     const int n = static_cast<int>(ring_.ring.size());
     float before = neutral();
-    for (const TetIndex r : ring_.tets) before = combined(before, value_of(mesh_.shape(r)));
+    guard_ = kMeanRisesGuard;
+    for (const TetIndex r : ring_.tets) {
+      before = combined(before, value_of(mesh_.shape(r)));
+      guard_ = std::min(guard_, mesh_.shape(r).score);
+    }
     const float bar = before + best_.gain;
     // Each edge of the ring is in one triangle of the new triangulation: if none on the first edge will do, none will.
     batch_.size = 0;
@@ -249,6 +253,7 @@ class Reconnector {
     for (const Tet& m : made) add_candidate(m);
     batch_.evaluate();
     const float before = combined(value_of(mesh_.shape(t)), value_of(mesh_.shape(behind)));
+    guard_ = std::min({kMeanRisesGuard, mesh_.shape(t).score, mesh_.shape(behind).score});
     float after = neutral();
     for (int k = 0; k < 3; ++k) after = combined(after, usable_value(k, made[k]));
     if (after <= before + best_.gain) return;
@@ -263,6 +268,7 @@ class Reconnector {
   EditMesh& mesh_;
   Floor floor_;
   Goal goal_;
+  float guard_ = kMeanRisesGuard;  ///< for the mean, no new element may score less: this, or the worst of the old ones
   std::size_t longest_ = goal_ == Goal::kMeanQuick ? kQuickRing : kLongestRing;
   const BoundaryGuide* guide_;
   EdgeRing ring_;

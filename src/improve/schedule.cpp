@@ -133,12 +133,13 @@ class Schedule {
     report_.count("not forced", static_cast<double>(s.not_forced));
     if (s.elements == 0) return;
     std::string note = fmt::format(
-        "{} below {:.1f} ({}): {} where boundary faces meet at a small angle, {} on or beside boundary triangles of poor "
+        "{} below {:.1f} ({}): {} where boundary faces meet at a small angle, {} on or beside boundary triangles of "
+        "poor "
         "shape, {} between boundary vertices only, {} for no such reason",
         s.elements == 1 ? "1 element stays" : fmt::format("{} elements stay", s.elements), kReported,
-        options_.objective == ImproveOptions::Objective::kBalanced ? "beta, or angles of that worth" : "by the objective",
-        s.forced_by_angle,
-        s.forced_by_triangle, s.in_thin_places, s.not_forced);
+        options_.objective == ImproveOptions::Objective::kBalanced ? "beta, or angles of that worth"
+                                                                   : "by the objective",
+        s.forced_by_angle, s.forced_by_triangle, s.in_thin_places, s.not_forced);
     if (s.worst_not_forced != kNone) {
       const Vec3 p = mesh_.point(mesh_.tet(s.worst_not_forced)[0]);
       note += fmt::format("; the worst of these, {:.3f}, near ({}, {}, {})", mesh_.shape(s.worst_not_forced).score, p.x,
@@ -199,7 +200,7 @@ void run_fast(Schedule& run, const ImproveOptions& options) {
 }
 
 /// More rounds for the mean as long as one raises it by this: none on meshes that the front made, several on poor ones.
-constexpr double kWorthARound = 0.004;
+constexpr double kWorthARound = 0.002;
 constexpr int kMostRounds = 12;
 
 void rounds_for_mean(Schedule& run, float threshold) {
