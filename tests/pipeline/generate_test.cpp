@@ -159,6 +159,16 @@ TEST(Generate, SurfaceAndSizesAreWhatTheWholeRunUses) {
               0.25);
 }
 
+TEST(Generate, PredictsWhatTheBoundOnDeviationAdds) {
+  const SurfaceMesh s = testing::torus(96, 48);
+  Options options = sized(0.5);
+  options.surface.max_deviation = 0.01;
+  const double expected = generate_sizes(s, options).report.expected_tets;
+  const double made = static_cast<double>(generate(s, options).mesh.tets.size());
+  EXPECT_GT(made, 2 * static_cast<double>(generate(s, sized(0.5)).mesh.tets.size()));
+  EXPECT_NEAR(expected / made, 1, 0.15);
+}
+
 TEST(Generate, EveryMethodMakesAValidMesh) {
   for (const Sample& s : closed_samples())
     for (const Method method : {Method::kOctreeAft, Method::kAft, Method::kOctree, Method::kRecover}) {

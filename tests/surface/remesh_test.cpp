@@ -4,6 +4,7 @@
 #include <octafront/quality.h>
 
 #include "geometry/hausdorff.h"
+#include "geometry/measures.h"
 #include "support/named_surfaces.h"
 #include "surface/feature_patches.h"
 #include "surface/halfedge_mesh.h"
@@ -268,6 +269,21 @@ TEST(Remesh, DividesTheLinesOfNarrowStripsFiner) {
   EXPECT_GT(least, 0.4);
   EXPECT_NEAR(r.sizes.at({0, 0.5, 0.01}), 0.03, 0.005);
   EXPECT_NEAR(r.sizes.at({0.5, 0.5, 0.01}), 0.1, 0.01) << "far from the rim nothing changes";
+}
+
+TEST(Remesh, PointsOfLinesSideBySideFaceEachOther) {
+  // A bar one element thick. Where every line keeps the division that it got by itself the mean is .853.
+  const SurfaceMesh bar = box(3.05, 0.09, 0.13);
+  double sum = 0;
+  std::size_t count = 0;
+  for (double h = 0.08; h < 0.2; h += 0.01) {
+    const Remeshed r = remesh(bar, h);
+    for (const auto& [a, b, c] : r.surface.triangles) {
+      sum += triangle_radius_ratio(r.surface.points[a], r.surface.points[b], r.surface.points[c]);
+      ++count;
+    }
+  }
+  EXPECT_GT(sum / static_cast<double>(count), 0.95);
 }
 
 TEST(FeaturePatches, EachFaceOfACubeIsOne) {
