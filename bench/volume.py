@@ -4,8 +4,8 @@ Usage: bench/run.sh volume [--counts 100000,1000000] [--models bunny00.off,...] 
 
 Each model is triangulated anew at uniform sizes, for about the given numbers of tetrahedra; then every mesher fills that
 surface and keeps its triangles. Ours runs without improvement on one thread, with the lattice core and without it.
-Times are CPU seconds (user and system) of the whole process, files included, and of filling alone as each one reports
-it. octafront_evaluate reads every mesh back and judges it.
+Times are CPU seconds (user and system) of the whole process, files included (ours and HXT's are MSH 4.1), and of filling
+alone as each one reports it. octafront_evaluate reads every mesh back and judges it.
 """
 import argparse
 import json
@@ -34,7 +34,7 @@ def surface_of_size(build, model, size, out):
 
 def fill_ours(build, surface, folder, timeout, core, threads):
     folder = pathlib.Path(folder).resolve()
-    mesh, report = folder / "ours.vtu", folder / "report.json"
+    mesh, report = folder / "ours.msh", folder / "report.json"
     outcome = run_measured([build / "cli/octafront", "mesh", surface, "--keep-surface", "--improve", "none", "--core", core,
                             "--threads", str(threads), "-o", mesh, "--json", report, "-q"], ".", timeout)
     if not outcome.error:
