@@ -14,7 +14,7 @@ using TetIndex = std::uint32_t;
 
 /// The anatomy of a tetrahedron, drawn once; everything else refers to it.
 ///
-///            d                 Positive: seen from d, the corners a, b, c turn clockwise; that is
+///            d                 Positive: seen from d, a, b, c turn counter-clockwise; that is
 ///           /|\                  orient3d(a, b, c, d) = ((b - a) x (c - a)) . (d - a) > 0.
 ///          / | \                 The unit tetrahedron (0,0,0) (1,0,0) (0,1,0) (0,0,1) is positive.
 ///         /  |  \              Face i is opposite corner i; its corners, as kTetFaces lists them, run

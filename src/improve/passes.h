@@ -58,6 +58,10 @@ PassResult reconnect(EditMesh& mesh, float threshold, Goal goal, const RunContex
                      const BoundaryGuide* guide = nullptr);
 inline constexpr int kLongestRing = 7;
 
+/// Takes some tetrahedra around each element with a score below `threshold` away and fills their space anew from the
+/// same vertices, where a search (polyhedron_search.h) finds elements all of which score higher than that one.
+PassResult reconnect_small_polyhedra(EditMesh& mesh, float threshold, const RunContext& context);
+
 /// Moves the vertices of the elements with a score below `threshold` to where the worst score around them is
 /// best, as near as a few steps come, unless that costs the mean too much.
 PassResult optimize_vertices(EditMesh& mesh, float threshold, const RunContext& context,

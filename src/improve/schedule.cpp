@@ -83,6 +83,9 @@ class Schedule {
   void insert(float threshold) {
     pass("inserted vertices", [&] { return insert_vertices(mesh_, threshold, Goal::kWorst, context_); });
   }
+  void small_polyhedra(float threshold) {
+    pass("small polyhedra", [&] { return reconnect_small_polyhedra(mesh_, threshold, context_); });
+  }
   void optimize(float threshold) {
     pass("optimised vertices", [&] { return optimize_vertices(mesh_, threshold, context_, guide_); });
   }
@@ -231,6 +234,7 @@ void run_default(Schedule& run, const ImproveOptions& options) {
 void run_best(Schedule& run, const ImproveOptions& options) {
   run.laplacian(2, options.relaxation, MoveRule::kMeanRises);
   run.flips(kWantedBest);
+  run.small_polyhedra(kWantedBest);
   rounds_for_mean(run, kGood);
   for (int round = 0; round < 4; ++round) {
     run.collapse(kGood);
@@ -239,6 +243,7 @@ void run_best(Schedule& run, const ImproveOptions& options) {
     run.smooth_mean(1);
   }
   run.flips(kWantedBest);
+  run.small_polyhedra(kWantedBest);
   run.rounds_for_worst(8, kWantedBest, 2, kWanted);
 }
 

@@ -8,6 +8,8 @@
 #include "improve/start_meshes.h"
 #include "improve/vertex_blocks.h"
 
+#include <cmath>
+#include <numbers>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -403,6 +405,37 @@ TEST(Optimize, RaisesTheWorstAroundABadVertex) {
   EXPECT_EQ(optimize_vertices(edit, 1.0f, {}).done, 1u);
   EXPECT_GT(edit.floor().score, before + 0.2f);
   expect_laws(start, edit.release());
+}
+
+/// Three faces between the tips of two pyramids over a pentagon: only all at once do they give way to the edge between
+/// the tips.
+TEST(SmallPolyhedra, RemoveSeveralFacesAtOnce) {
+  std::vector<Vec3> p{{0, 0, -0.6}, {0, 0, 0.6}};
+  for (int k = 0; k < 5; ++k)
+    p.push_back({std::cos(2 * std::numbers::pi * k / 5), std::sin(2 * std::numbers::pi * k / 5), 0});
+  TetMesh mesh{.points = p,
+               .tets = {{2, 3, 4, 1}, {2, 4, 5, 1}, {2, 5, 6, 1}, {2, 4, 3, 0}, {2, 5, 4, 0}, {2, 6, 5, 0}}};
+  mesh = with_boundary(std::move(mesh));
+  EditMesh edit(TetMesh{mesh});
+  const PassResult result = reconnect_small_polyhedra(edit, 0.6f, {});
+  EXPECT_EQ(result.done, 1u);
+  const TetMesh after = edit.release();
+  expect_laws(mesh, after);
+  ASSERT_EQ(after.tets.size(), 5u);
+  for (const Tet& t : after.tets) EXPECT_TRUE(std::count(t.begin(), t.end(), 0u) && std::count(t.begin(), t.end(), 1u));
+}
+
+TEST(SmallPolyhedra, KeepTheLawsAndRaiseTheWorst) {
+  std::uint64_t done = 0;
+  for (const std::uint32_t seed : {1u, 2u, 3u}) {
+    const TetMesh mesh = perturbed(kuhn_cube(6), 0.45, seed);
+    EditMesh edit(TetMesh{mesh});
+    done += reconnect_small_polyhedra(edit, 0.5f, {}).done;
+    const TetMesh after = edit.release();
+    expect_laws(mesh, after);
+    EXPECT_GE(worst_beta(after), worst_beta(mesh));
+  }
+  EXPECT_GT(done, 10u);
 }
 
 }  // namespace
