@@ -1,11 +1,13 @@
 """The volume front against TetGen, Gmsh's HXT and Netgen on the same kept surfaces: writes docs/volume-bench.md.
 
 Usage: bench/run.sh volume [--counts 100000,1000000] [--models bunny00.off,...] [--threads N] [--timeout SECONDS]
+                           [--only-threads]
 
 Each model is triangulated anew at uniform sizes, for about the given numbers of tetrahedra; then every mesher fills that
 surface and keeps its triangles. Ours runs without improvement on one thread, with the lattice core and without it.
 Times are CPU seconds (user and system) of the whole process, files included (ours and HXT's are MSH 4.1), and of filling
-alone as each one reports it. octafront_evaluate reads every mesh back and judges it.
+alone as each one reports it. octafront_evaluate reads every mesh back and judges it. --only-threads measures the section "Threads" again,
+for which nothing else may run, and replaces it on the page.
 """
 import argparse
 import json
@@ -174,6 +176,36 @@ def speed_up(build, surface, core, threads, pairs, timeout):
     return best
 
 
+def thread_rows(build, model, count, surface, threads, timeout):
+    rows = []
+    for core in ("lattice", "none"):
+        best = speed_up(build, surface, core, threads, 2, timeout)
+        rows.append(f"| {model}, {count:,} | core {core} | {best[1]:.2f} | {best[threads]:.2f} | "
+                    f"{best[1] / best[threads]:.2f} |")
+        print(rows[-1], flush=True)
+    return rows
+
+
+def thread_head(threads):
+    return [f"| surface | ours | 1 thread, wall s | {threads} threads, wall s | times |", "|---|---|--:|--:|--:|"]
+
+
+def replace_threads(args):
+    """The section of the page measured again."""
+    lines = thread_head(args.threads)
+    for model in args.models:
+        with tempfile.TemporaryDirectory() as folder:
+            for count, size in zip(args.counts, calibrated_sizes(args.build, model, args.counts, folder)):
+                if 1_000_000 <= count <= 5_000_000:
+                    surface = pathlib.Path(folder, f"{count}.off")
+                    surface_of_size(args.build, model, size, surface)
+                    lines += thread_rows(args.build, model, count, surface, args.threads, args.timeout)
+    text = args.page.read_text()
+    start = text.index("## Threads\n")
+    end = text.index("\n## ", start)
+    args.page.write_text(text[:start] + "## Threads\n\n" + "\n".join(lines) + "\n" + text[end:])
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("build", type=pathlib.Path)
@@ -181,11 +213,13 @@ def main():
     parser.add_argument("--models", type=lambda s: s.split(","), default=MODELS)
     parser.add_argument("--threads", type=int, default=2, help="compared with one")
     parser.add_argument("--timeout", type=float, default=120)
+    parser.add_argument("--only-threads", action="store_true")
     parser.add_argument("--page", type=pathlib.Path, default=PAGE)
     args = parser.parse_args()
     args.build = args.build.resolve()
-    start, rows, threads = time.time(), {}, ["| surface | ours | 1 thread, wall s | "
-                                             f"{args.threads} threads, wall s | times |", "|---|---|--:|--:|--:|"]
+    if args.only_threads:
+        return replace_threads(args)
+    start, rows, threads = time.time(), {}, thread_head(args.threads)
     table = [HEAD]
     for model in args.models:
         with tempfile.TemporaryDirectory() as folder:
@@ -200,11 +234,7 @@ def main():
                     table.append(table_row(model, group[-1]))
                     print(table[-1], flush=True)
                 if 1_000_000 <= count <= 5_000_000:
-                    for core in ("lattice", "none"):
-                        best = speed_up(args.build, surface, core, args.threads, 2, args.timeout)
-                        threads.append(f"| {model}, {count:,} | core {core} | {best[1]:.2f} | {best[args.threads]:.2f} | "
-                                       f"{best[1] / best[args.threads]:.2f} |")
-                        print(threads[-1], flush=True)
+                    threads += thread_rows(args.build, model, count, surface, args.threads, args.timeout)
     sections = {"Ratios of filling rates, of whole processes in brackets": ratios(rows),
                 "Exponents of CPU time over elements": exponents(rows, args.models), "Threads": threads,
                 "The closing ladder: what the cavities cost that the front leaves": ladder_costs(rows),
