@@ -1,5 +1,6 @@
 #pragma once
 
+#include <octafront/error.h>
 #include <octafront/run_context.h>
 
 #include "recovery/delaunay.h"
@@ -11,6 +12,11 @@
 #include <vector>
 
 namespace octafront::recovery {
+
+/// More points than were allowed are needed with the choices made: other ones may need fewer.
+struct TooManyPoints : MeshingError {
+  TooManyPoints() : MeshingError("recovery of the surface needs more points than it may make") {}
+};
 
 /// Counters of the recovery of edges and facets.
 struct RecoveryCounts {
@@ -29,17 +35,18 @@ struct RecoveryCounts {
 class BoundaryRecovery {
  public:
   BoundaryRecovery(ExactPoints& points, TetComplex& mesh, SubdividedSurface& surface, VertexIndex frame,
-                   std::uint32_t seed, const RunContext& context)
+                   std::uint32_t seed, std::size_t most_points, const RunContext& context)
       : points_(points),
         mesh_(mesh),
         surface_(surface),
         flipper_(points, mesh, surface.edges()),
         frame_(frame),
         context_(context),
+        most_points_(most_points),
         random_(2463534242u + seed),
         longest_first_(seed % 2 == 1) {}
 
-  /// Throws MeshingError, with the place, if the surface turns out to intersect itself.
+  /// Throws MeshingError, with the place, if the surface turns out to intersect itself, and TooManyPoints.
   void run();
   const RecoveryCounts& counts() const { return counts_; }
 
@@ -99,6 +106,7 @@ class BoundaryRecovery {
   Flipper flipper_;
   VertexIndex frame_;
   const RunContext& context_;
+  std::size_t most_points_;
   RecoveryCounts counts_;
   SegmentWalk walk_;
   std::vector<Carrier> carrier_;  ///< of vertex frame_ + kFrameVertices + i

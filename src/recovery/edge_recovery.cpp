@@ -17,9 +17,6 @@ namespace {
 constexpr std::size_t kMaxCrossings = 400;
 constexpr std::size_t kFlippedCrossings = 64;
 constexpr int kRandomPasses = 6;
-// The worst surfaces that were recovered needed 1.2 points per triangle. Coordinates get longer with each point that
-// lies on others: what needs far more would end, but not soon.
-constexpr std::size_t kMostPointsPerTriangle = 4, kMostPoints = 200;
 
 double squared_distance(Vec3 a, Vec3 b) {
   return squared_length(a - b);
@@ -68,8 +65,7 @@ void BoundaryRecovery::recover_edges(const std::vector<Edge>& wanted) {
       ++counts_.edges_by_flips;
       continue;
     }
-    if (carrier_.size() > kMostPointsPerTriangle * surface_.triangles().size() + kMostPoints)
-      throw MeshingError("recovery of the surface needs more points than it may make");
+    if (carrier_.size() > most_points_) throw TooManyPoints();
     const VertexIndex s = divide_edge(a, b);
     surface_.split_edge(a, b, s);
     queue.push_front({s, b});

@@ -138,6 +138,11 @@ void count(StageReport& report, const RecoveryCounts& c, const LiftCounts& l) {
 // Steiner points that have no place inside may not be needed after other choices. The last attempt throws.
 constexpr std::uint32_t kAttempts = 6;
 
+// Points that the first attempt may make. The worst surfaces that were recovered needed 1.2 per triangle. Coordinates
+// get longer with each point that lies on others: what needs far more would end, but not soon. Other choices mostly
+// need fewer; where they do not, each attempt may make more than the one before by this factor.
+constexpr std::size_t kMostPointsPerTriangle = 4, kMostPoints = 200, kMorePoints = 4;
+
 std::optional<TetMesh> recover(const SurfaceMesh& surface, std::uint32_t attempt, const RunContext& context,
                                StageReport& report) {
   auto [points, used] = read_input(surface);
@@ -146,7 +151,9 @@ std::optional<TetMesh> recover(const SurfaceMesh& surface, std::uint32_t attempt
   const VertexIndex frame = delaunay(points, used, mesh, same_as, context);
   const std::vector<Triangle> triangles = merged(surface.triangles, same_as);
   SubdividedSurface subdivided(triangles);
-  BoundaryRecovery recovery(points, mesh, subdivided, frame, attempt, context);
+  std::size_t most_points = kMostPointsPerTriangle * triangles.size() + kMostPoints;
+  for (std::uint32_t k = 0; k < attempt; ++k) most_points *= kMorePoints;
+  BoundaryRecovery recovery(points, mesh, subdivided, frame, attempt, most_points, context);
   recovery.run();
   carve(points, subdivided, mesh);
   SteinerLift lift(points, mesh, triangles, frame + kFrameVertices, frame, attempt, context);
@@ -164,13 +171,18 @@ std::optional<TetMesh> recover(const SurfaceMesh& surface, std::uint32_t attempt
 
 }  // namespace
 
-TetMesh recover_volume(const SurfaceMesh& surface, const RunContext& context, StageReport& report) {
+TetMesh recover_volume(const SurfaceMesh& surface, const RunContext& context, StageReport& report,
+                       RecoveryPatience patience) {
   const StageTimer timer(report);
   report.name = "recover";
   if (surface.triangles.empty()) return {};
   try {
     for (std::uint32_t attempt = 0;; ++attempt) {
-      if (std::optional<TetMesh> mesh = recover(surface, attempt, context, report)) return std::move(*mesh);
+      try {
+        if (std::optional<TetMesh> mesh = recover(surface, attempt, context, report)) return std::move(*mesh);
+      } catch (const TooManyPoints&) {
+        if (patience == RecoveryPatience::kCavity || attempt + 1 == kAttempts) throw;
+      }
     }
   } catch (const std::logic_error& e) {
     // On a valid surface a bug of ours; else the surface was not what it must be.

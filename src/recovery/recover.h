@@ -11,6 +11,9 @@
 
 namespace octafront {
 
+/// A cavity whose recovery needs very many points is rather made larger; a whole surface is tried again, with more.
+enum class RecoveryPatience { kCavity, kSurface };
+
 /// A conforming tetrahedralisation of the inside of a closed, outward, non-self-intersecting surface, with its
 /// triangles as the boundary, exactly, and no size: the last rung, which always ends. The surface may have several
 /// components, cavities, and pinched edges or vertices (as cavities of a front have). Points that had to be added lie
@@ -20,6 +23,7 @@ namespace octafront {
 /// lifted. Throws MeshingError, with the place, if no doubles exist for a point that is needed, or if the surface is
 /// open, inside out, or has a vertex on another edge or facet. Cost: 4 us per triangle where little is missing, 50-150
 /// on needles.
-TetMesh recover_volume(const SurfaceMesh& surface, const RunContext& context, StageReport& report);
+TetMesh recover_volume(const SurfaceMesh& surface, const RunContext& context, StageReport& report,
+                       RecoveryPatience patience = RecoveryPatience::kSurface);
 
 }  // namespace octafront
