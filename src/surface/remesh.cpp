@@ -24,8 +24,8 @@ namespace {
 
 using namespace remeshing;
 
-/// Rounds of capping the sizes around what crosses.
-constexpr int kMostRounds = 8;
+/// Rounds of capping the sizes around what crosses. CT isosurfaces of half a million triangles need up to 16.
+constexpr int kMostRounds = 24;
 /// Sizes around crossing triangles become this part of what they were.
 constexpr double kCap = 0.6;
 /// The same where the new surface strays too far from the input, and for how many rounds.
