@@ -6,7 +6,7 @@
 COMMAND is run with {} replaced by a file; it fails in the same way if its exit status is that of the first run, on
 BAD.off itself. Example, for a cavity that could not be filled (exit status 4):
 
-  scripts/minimise.py bad.off small.off -- build/release/cli/octafront mesh {} -o /tmp/mesh.vtu -q --keep-surface
+  scripts/minimise.py bad.off small.off -- build/release/cli/octafront mesh {} -o mesh.vtu -q --keep-surface
 
 What is tried: leaving out connected parts, collapsing many edges, then fewer, then each, and rounding coordinates.
 Collapses keep the surface closed and manifold; where they make it meet itself, the command refuses it with another

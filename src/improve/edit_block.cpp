@@ -78,7 +78,8 @@ bool EditBlock::star(VertexIndex v, std::vector<HalfFace>& faces) {
   return true;
 }
 
-bool EditBlock::edge_ring(TetIndex t, int i, int j, EdgeRing& out) {
+template <typename Accept>
+EditBlock::Turn EditBlock::turn_around(TetIndex t, int i, int j, EdgeRing& out, const Accept& accept) const {
   out.tets.clear();
   out.ring.clear();
   out.closed = true;
@@ -90,20 +91,25 @@ bool EditBlock::edge_ring(TetIndex t, int i, int j, EdgeRing& out) {
   for (;;) {
     out.tets.push_back(at);
     out.ring.push_back(from);
-    if (to == start) return true;
+    if (to == start) return Turn::kClosed;
     const HalfFace o = mesh_.across_[4 * at + mesh_.corner_of(at, from)];
     if (is_boundary(o)) break;
-    if (!allowed(o / 4)) return false;
+    if (!accept(o / 4)) return Turn::kGivenUp;
     at = o / 4;
     from = to;
     to = mesh_.tets_[at][o % 4];
   }
-  // An open fan: what lies on the other side of t goes before it.
   out.ring.push_back(to);
   out.closed = false;
-  at = t;
-  from = start;
-  to = mesh_.tets_[t][q];
+  return Turn::kOpen;
+}
+
+bool EditBlock::edge_ring(TetIndex t, int i, int j, EdgeRing& out) {
+  const Turn turn = turn_around(t, i, j, out, [&](TetIndex next) { return allowed(next); });
+  if (turn != Turn::kOpen) return turn == Turn::kClosed;
+  // An open fan: what lies on the other side of t goes before it.
+  TetIndex at = t;
+  VertexIndex from = out.ring[0], to = out.ring[1];
   for (;;) {
     const HalfFace o = mesh_.across_[4 * at + mesh_.corner_of(at, to)];
     if (is_boundary(o)) return true;
@@ -117,24 +123,9 @@ bool EditBlock::edge_ring(TetIndex t, int i, int j, EdgeRing& out) {
 }
 
 bool EditBlock::edge_ring_where_worst(TetIndex t, int i, int j, std::size_t longest, EdgeRing& out) {
-  out.tets.clear();
-  out.ring.clear();
-  out.closed = true;
-  const auto [p, q] = other_corners(i, j);
-  TetIndex at = t;
-  VertexIndex from = mesh_.tets_[t][p], to = mesh_.tets_[t][q];
-  const VertexIndex start = from;
-  for (;;) {
-    out.tets.push_back(at);
-    out.ring.push_back(from);
-    if (to == start) return true;
-    if (out.tets.size() == longest) return false;
-    const HalfFace o = mesh_.across_[4 * at + mesh_.corner_of(at, from)];
-    if (is_boundary(o) || !allowed(o / 4) || mesh_.worse(o / 4, t)) return false;
-    at = o / 4;
-    from = to;
-    to = mesh_.tets_[at][o % 4];
-  }
+  return turn_around(t, i, j, out, [&](TetIndex next) {
+           return out.tets.size() < longest && allowed(next) && !mesh_.worse(next, t);
+         }) == Turn::kClosed;
 }
 
 TetIndex EditBlock::slot() {

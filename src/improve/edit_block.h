@@ -73,6 +73,11 @@ class EditBlock {
   friend class EditBlocks;
   class SmallFaceTable;
 
+  enum class Turn { kClosed, kOpen, kGivenUp };
+  /// Walks around the edge from t on, one way, as long as accept(next tet) says so; given up where it does not.
+  template <typename Accept>
+  Turn turn_around(TetIndex t, int i, int j, EdgeRing& out, const Accept& accept) const;
+
   bool allowed(TetIndex t) {
     if (owns(t)) return true;
     cut_ = true;

@@ -64,6 +64,29 @@ PassResult for_each_block(EditMesh& mesh, std::vector<TetIndex> tets, const RunC
   return sum;
 }
 
+/// Lets `editor` improve(t) each of the tets with a score below the threshold, and those in its created(); those for
+/// which the block was too small go to `left`.
+template <typename Editor>
+PassResult improve_each(Editor& editor, EditBlock& block, std::vector<TetIndex> queue, float threshold,
+                        std::vector<TetIndex>& left) {
+  PassResult result;
+  const EditMesh& mesh = block.mesh();
+  for (std::size_t k = 0; k < queue.size(); ++k) {
+    const TetIndex t = queue[k];
+    if (!mesh.alive(t) || mesh.shape(t).score >= threshold) continue;
+    ++result.tried;
+    block.take_cut();
+    if (!editor.improve(t)) {
+      if (block.take_cut()) left.push_back(t);
+      continue;
+    }
+    ++result.done;
+    for (const TetIndex made : editor.created())
+      if (mesh.shape(made).score < threshold) queue.push_back(made);
+  }
+  return result;
+}
+
 /// The tets with a score below the threshold, ascending.
 std::vector<TetIndex> tets_below(const EditMesh& mesh, float threshold);
 

@@ -281,26 +281,6 @@ class Reconnector {
   int apex_[kLongestRing][kLongestRing];
 };
 
-PassResult reconnect_block(Reconnector& reconnector, EditBlock& block, std::vector<TetIndex> queue, float threshold,
-                           std::vector<TetIndex>& left) {
-  PassResult result;
-  const EditMesh& mesh = block.mesh();
-  for (std::size_t k = 0; k < queue.size(); ++k) {
-    const TetIndex t = queue[k];
-    if (!mesh.alive(t) || mesh.shape(t).score >= threshold) continue;
-    ++result.tried;
-    block.take_cut();
-    if (!reconnector.improve(t)) {
-      if (block.take_cut()) left.push_back(t);
-      continue;
-    }
-    ++result.done;
-    for (const TetIndex made : reconnector.created())
-      if (mesh.shape(made).score < threshold) queue.push_back(made);
-  }
-  return result;
-}
-
 }  // namespace
 
 PassResult reconnect(EditMesh& mesh, float threshold, Goal goal, const RunContext& context,
@@ -309,7 +289,7 @@ PassResult reconnect(EditMesh& mesh, float threshold, Goal goal, const RunContex
   return for_each_block(mesh, tets_below(mesh, threshold), context,
                         [&](EditBlock& block, const std::vector<TetIndex>& tets, std::vector<TetIndex>& left) {
                           Reconnector reconnector(block, floor, goal, guide);
-                          return reconnect_block(reconnector, block, tets, threshold, left);
+                          return improve_each(reconnector, block, tets, threshold, left);
                         });
 }
 

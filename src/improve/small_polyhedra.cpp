@@ -110,34 +110,14 @@ class PolyhedronReconnector {
   std::vector<Shape> shapes_;
 };
 
-PassResult reconnect_block(EditBlock& block, const Floor& floor, std::vector<TetIndex> queue, float threshold,
-                           std::vector<TetIndex>& left) {
-  PassResult result;
-  const EditMesh& mesh = block.mesh();
-  PolyhedronReconnector reconnector(block, floor);
-  for (std::size_t k = 0; k < queue.size(); ++k) {
-    const TetIndex t = queue[k];
-    if (!mesh.alive(t) || mesh.shape(t).score >= threshold) continue;
-    ++result.tried;
-    block.take_cut();
-    if (!reconnector.improve(t)) {
-      if (block.take_cut()) left.push_back(t);
-      continue;
-    }
-    ++result.done;
-    for (const TetIndex made : reconnector.created())
-      if (mesh.shape(made).score < threshold) queue.push_back(made);
-  }
-  return result;
-}
-
 }  // namespace
 
 PassResult reconnect_small_polyhedra(EditMesh& mesh, float threshold, const RunContext& context) {
   const Floor floor = mesh.floor();
   return for_each_block(mesh, tets_below(mesh, threshold), context,
                         [&](EditBlock& block, const std::vector<TetIndex>& tets, std::vector<TetIndex>& left) {
-                          return reconnect_block(block, floor, tets, threshold, left);
+                          PolyhedronReconnector reconnector(block, floor);
+                          return improve_each(reconnector, block, tets, threshold, left);
                         });
 }
 
