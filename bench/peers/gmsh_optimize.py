@@ -5,20 +5,13 @@ The .geo command OptimizeMesh leaves meshes alone that have no geometry; the lib
 import ctypes
 import sys
 
+from .process import load_library
+
 LIBRARIES = ["libgmsh.so.4.8", "libgmsh.so.4.11", "libgmsh.so"]
 
 
-def load():
-    for name in LIBRARIES:
-        try:
-            return ctypes.CDLL(name)
-        except OSError:
-            continue
-    raise OSError("libgmsh not found (Debian: gmsh)")
-
-
 def main():
-    library, error = load(), ctypes.c_int(0)
+    library, error = load_library(LIBRARIES, "gmsh"), ctypes.c_int(0)
     status = ctypes.byref(error)
     library.gmshInitialize(0, None, 0, status)
     library.gmshOpen(sys.argv[1].encode(), status)

@@ -9,7 +9,7 @@ import resource
 import sys
 
 from . import surfaces
-from .process import finish, run_measured
+from .process import finish, load_library, run_measured
 
 LIBRARIES = ["/usr/lib/x86_64-linux-gnu/netgen/libnglib.so.6.2", "libnglib.so"]
 
@@ -47,12 +47,7 @@ class Parameters(ctypes.Structure):
 
 
 def load():
-    for name in LIBRARIES:
-        try:
-            return ctypes.CDLL(name)
-        except OSError:
-            continue
-    raise OSError("libnglib not found (Debian: netgen)")
+    return load_library(LIBRARIES, "netgen")
 
 
 def function(library, mangled, result, *arguments):
@@ -93,9 +88,10 @@ def fill_mesh(library, mesh, parameters, start=None):
         sys.exit(f"error: netgen returned {status}")
 
 
-def remesh_in_process(surface, out, size):
+def mesh_stl_surface(library, surface, size):
+    """Netgen's STL mesher on the surface: (mesh, parameters, resources used when it began)."""
     points, triangles = surfaces.read_off(surface)
-    library, pointer = load(), ctypes.c_void_p
+    pointer = ctypes.c_void_p
     function(library, "7Ng_InitEv", None)()
     geometry = function(library, "18Ng_STL_NewGeometryEv", pointer)()
     add = function(library, "18Ng_STL_AddTriangleEPPvPdS2_S2_S2_", None, pointer, pointer, pointer, pointer, pointer)
@@ -114,12 +110,24 @@ def remesh_in_process(surface, out, size):
         status = function(library, name, ctypes.c_int, *[pointer] * len(arguments))(*arguments)
         if status not in (0, 1):  # InitSTLGeometry returns 1 for success
             sys.exit(f"error: netgen's {name[2:].split('EPP')[0]} returned {status}")
-    fill_mesh(library, mesh, parameters, start)
+    return mesh, parameters, start
+
+
+def surface_triangles(library, mesh):
+    pointer = ctypes.c_void_p
     get = function(library, "20Ng_GetSurfaceElementEPPviPi", ctypes.c_int, pointer, ctypes.c_int, pointer)
     corners, made = (ctypes.c_int * 8)(), []
     for i in range(1, function(library, "9Ng_GetNSEEPPv", ctypes.c_int, pointer)(mesh) + 1):
         get(mesh, i, corners)
         made.append(tuple(c - 1 for c in corners[:3]))
+    return made
+
+
+def remesh_in_process(surface, out, size):
+    library = load()
+    mesh, parameters, start = mesh_stl_surface(library, surface, size)
+    fill_mesh(library, mesh, parameters, start)
+    made = surface_triangles(library, mesh)
     save(library, mesh, made, out)
 
 

@@ -1,4 +1,5 @@
 """Runs one mesher as a whole process with a time limit; measures CPU time, wall time and peak memory."""
+import ctypes
 import dataclasses
 import os
 import pathlib
@@ -7,6 +8,16 @@ import subprocess
 import tempfile
 import threading
 import time
+
+
+def load_library(names, package):
+    """The first of the shared libraries that is there; OSError names the Debian package if none is."""
+    for name in names:
+        try:
+            return ctypes.CDLL(name)
+        except OSError:
+            continue
+    raise OSError(f"{names[-1]} not found (Debian: {package})")
 
 
 @dataclasses.dataclass
