@@ -8,9 +8,9 @@
 
 #include "geometry/hausdorff.h"
 #include "geometry/measures.h"
+#include "mesh/features.h"
 #include "pipeline/pipeline.h"
 #include "sizing/make_size_field.h"
-#include "surface/features.h"
 #include "surface/surface_check.h"
 
 #include <algorithm>

@@ -5,7 +5,7 @@
 #include <octafront/surface_mesh.h>
 
 #include "geometry/triangle_tree.h"
-#include "surface/features.h"
+#include "mesh/features.h"
 
 #include <array>
 #include <optional>

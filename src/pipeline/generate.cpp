@@ -5,6 +5,7 @@
 #include "classic/fill_classic.h"
 #include "core/thread_limit.h"
 #include "improve/improve.h"
+#include "mesh/features.h"
 #include "pipeline/follow_boundary.h"
 #include "pipeline/pipeline.h"
 #include "pipeline/run_stage.h"
@@ -12,8 +13,7 @@
 #include "sizing/make_size_field.h"
 #include "stuffing/stuff.h"
 #include "surface/feature_patches.h"
-#include "surface/features.h"
-#include "surface/remesh.h"
+#include "surface/remeshing/remesh.h"
 #include "volume/fill.h"
 #include "volume/regions.h"
 

@@ -7,10 +7,10 @@
 #include "core/thread_limit.h"
 #include "geometry/triangle_tree.h"
 #include "improve/improve.h"
+#include "mesh/features.h"
 #include "pipeline/follow_boundary.h"
 #include "pipeline/pipeline.h"
 #include "pipeline/run_stage.h"
-#include "surface/features.h"
 #include "surface/surface_check.h"
 
 #include <fmt/format.h>

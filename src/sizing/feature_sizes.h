@@ -2,8 +2,8 @@
 
 #include <octafront/surface_mesh.h>
 
+#include "mesh/features.h"
 #include "sizing/background_grid.h"
-#include "surface/features.h"
 
 #include <vector>
 

@@ -15,7 +15,7 @@
 #include <octafront/size_field.h>
 #include <octafront/surface_mesh.h>
 
-#include "surface/features.h"
+#include "mesh/features.h"
 
 namespace octafront {
 

@@ -5,9 +5,9 @@
 #include <octafront/run_context.h>
 #include <octafront/surface_mesh.h>
 
+#include "mesh/features.h"
 #include "sizing/background_grid.h"
 #include "sizing/surface_samples.h"
-#include "surface/features.h"
 
 #include <cstdint>
 #include <vector>

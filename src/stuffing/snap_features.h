@@ -7,7 +7,7 @@
 #include <octafront/tet_mesh.h>
 
 #include "geometry/triangle_tree.h"
-#include "surface/features.h"
+#include "mesh/features.h"
 
 namespace octafront {
 

@@ -13,16 +13,16 @@
 #include <octafront/surface_mesh.h>
 #include <octafront/tet_mesh.h>
 
+#include "mesh/features.h"
 #include "stuffing/implicit_domain.h"
-#include "surface/features.h"
 
 namespace octafront {
 
 /// Fills `surface` by isosurface stuffing. Boundary faces get the patch of the input triangle nearest to them, and that
-/// triangle as their source; the boundary's vertices come first; regions are numbered by connected parts of the mesh, in
-/// order of their first tetrahedron. The mesh is valid (see first_defect), its boundary a closed 2-manifold that does not
-/// meet itself; parts of the body thinner than an element may be lost. Throws MeshingError if nothing of the body is as
-/// large as an element.
+/// triangle as their source; the boundary's vertices come first; regions are numbered by connected parts of the mesh,
+/// in order of their first tetrahedron. The mesh is valid (see first_defect), its boundary a closed 2-manifold that
+/// does not meet itself; parts of the body thinner than an element may be lost. Throws MeshingError if nothing of the
+/// body is as large as an element.
 TetMesh stuff_surface(const SurfaceMesh& surface, const Features& features, SurfaceDomain::Defects defects,
                       const SizeField& sizes, const RunContext& context, StageReport& report);
 

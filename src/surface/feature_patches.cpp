@@ -1,6 +1,6 @@
 #include "surface/feature_patches.h"
 
-#include "surface/edge_table.h"
+#include "mesh/edge_table.h"
 
 #include <algorithm>
 

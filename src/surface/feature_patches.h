@@ -2,7 +2,7 @@
 
 #include <octafront/surface_mesh.h>
 
-#include "surface/features.h"
+#include "mesh/features.h"
 
 namespace octafront {
 

@@ -7,6 +7,6 @@
 
 #include <octafront/repair.h>
 
-#include "surface/features.h"
-#include "surface/remesh.h"
+#include "mesh/features.h"
+#include "surface/remeshing/remesh.h"
 #include "surface/surface_check.h"

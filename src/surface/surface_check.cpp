@@ -2,9 +2,9 @@
 
 #include <octafront/repair.h>
 
-#include "surface/defects_steps.h"
-#include "surface/edge_table.h"
-#include "surface/repair_steps.h"
+#include "mesh/edge_table.h"
+#include "surface/defects/steps.h"
+#include "surface/repair/steps.h"
 #include "surface/wording.h"
 
 #include <algorithm>

@@ -6,7 +6,7 @@
 #include "improve/improve.h"
 #include "improve/passes.h"
 #include "improve/start_meshes.h"
-#include "surface/features.h"
+#include "mesh/features.h"
 
 #include <cmath>
 #include <random>

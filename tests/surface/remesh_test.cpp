@@ -1,14 +1,14 @@
-#include "surface/remesh.h"
+#include "surface/remeshing/remesh.h"
 
 #include <octafront/error.h>
 #include <octafront/quality.h>
 
 #include "geometry/hausdorff.h"
 #include "geometry/measures.h"
+#include "mesh/halfedge_mesh.h"
 #include "support/named_surfaces.h"
 #include "surface/feature_patches.h"
-#include "surface/halfedge_mesh.h"
-#include "surface/surface_crossings.h"
+#include "surface/remeshing/crossings.h"
 
 #include <map>
 #include <numbers>

@@ -1,0 +1,40 @@
+#pragma once
+
+// The searches of find_defects.
+
+#include <octafront/repair.h>
+
+#include "mesh/edge_table.h"
+
+#include <vector>
+
+namespace octafront::defects {
+
+/// Open, non-manifold and misoriented edges.
+void find_bad_edges(const RepairedSurface& repaired, const EdgeTable& table, SurfaceDefects& defects);
+
+/// Holes, and vertices with more than one fan.
+void find_bad_vertices(const RepairedSurface& repaired, const EdgeTable& table, SurfaceDefects& defects);
+
+/// Faces without area.
+void find_degenerate_faces(const RepairedSurface& repaired, SurfaceDefects& defects);
+
+/// All of the above.
+SurfaceDefects find_defects_but_crossings(const RepairedSurface& repaired, const EdgeTable& table);
+
+/// Pairs of faces that meet elsewhere than in what they share; counting stops at kMostPairs.
+void find_self_intersections(const RepairedSurface& repaired, const EdgeTable& table, SurfaceDefects& defects);
+inline constexpr std::uint64_t kMostPairs = 1'000'000;
+
+/// Keeps the first places of a kind, in order of their faces.
+class FirstPlaces {
+ public:
+  explicit FirstPlaces(SurfaceDefects::Kind& kind) : kind_(kind) {}
+  /// `faces` are input faces; they are sorted, and each kept once.
+  void add(std::vector<std::uint32_t> faces, Vec3 at);
+
+ private:
+  SurfaceDefects::Kind& kind_;
+};
+
+}  // namespace octafront::defects

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <octafront/run_context.h>
+
+#include "surface/remeshing/working_mesh.h"
+
+namespace octafront::remeshing {
+
+struct CoarsenCounts {
+  std::uint64_t collapses = 0, flips = 0;
+  std::uint64_t input_vertices_left = 0;
+};
+
+/// Collapses the input's own vertices into the points of the front, with Delaunay flips between passes, until none is
+/// left that connections, features and normals let go. Those left become free (or stay on their curve).
+void remove_input_vertices(WorkingMesh& mesh, const RunContext& context, CoarsenCounts& counts);
+
+}  // namespace octafront::remeshing

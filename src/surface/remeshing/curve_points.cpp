@@ -1,0 +1,261 @@
+#include "surface/remeshing/curve_points.h"
+
+#include "geometry/measures.h"
+#include "surface/remeshing/local_guards.h"
+
+#include <algorithm>
+
+namespace octafront::remeshing {
+
+namespace {
+
+/// Steps below this part of the size are not worth it, and none goes farther than this part of the way to a neighbour.
+constexpr double kLeastStep = 2e-2, kMostStep = 0.35;
+/// Segments of the curve stay within these lengths, in wanted sizes.
+constexpr double kShortest = 0.7, kLongest = 1.4;
+/// Bends of the curve may always be cut by this part of the size.
+constexpr double kFreeSagitta = 0.01;
+/// The worst triangle may only get worse above this squared quality.
+constexpr double kFairQuality = 0.3;
+/// For the worst triangle a point may go this far, in parts of the way to its neighbours, within these lengths.
+constexpr double kReliefSteps[] = {-0.6, -0.45, -0.3, -0.2, -0.1, 0.1, 0.2, 0.3, 0.45, 0.6};
+constexpr double kShortestRelief = 0.3, kLongestRelief = 1.6;
+/// Triangles that stay worse than this 2r/R are left alone: in wedges of a few degrees nothing helps, and the
+/// neighbours would suffer.
+constexpr double kWorthIt = 0.42;
+/// Edges are divided no nearer to an end than this part of them; a point farther off its place than this went astray.
+constexpr double kLeastPart = 0.2, kAstray = 0.2;
+constexpr TurnLimits kLimits{0.5, 0.2};
+
+double wrapped(const Curve& curve, double along) {
+  const double whole = curve.reach.back();
+  return along < 0 ? along + whole : along > whole ? along - whole : along;
+}
+
+}  // namespace
+
+CurvePoints::CurvePoints(WorkingMesh& mesh, const InputSurface& input, const std::vector<Curve>& curves,
+                         const SizeField& sizes)
+    : mesh_(mesh), input_(input), curves_(curves), sizes_(sizes) {
+  for (std::uint32_t i = 0; i < curves.size(); ++i) {
+    if (curves[i].samples.size() != 2) continue;
+    const VertexIndex a = input.mesh.start[curves[i].halfedges.front()], b = input.mesh.end(curves[i].halfedges.back());
+    undivided_[{std::min(a, b), std::max(a, b)}] = i;
+  }
+}
+
+bool CurvePoints::gather(VertexIndex v) {
+  features_.clear();
+  ring_.clear();
+  mesh_.for_each_outgoing(v, [&](HalfedgeIndex h) {
+    if (mesh_.is_feature[h]) features_.push_back(h);
+  });
+  if (features_.size() != 2) return false;
+  for (const HalfedgeIndex first : features_) {
+    const std::size_t begin = ring_.size();
+    Vec3 star;
+    HalfedgeIndex h = first;
+    do {
+      ring_.push_back({mesh_.end(h), mesh_.apex(h), {}});
+      star += mesh_.area_vector(h / 3);
+      h = mesh_.rotated(h);
+    } while (!mesh_.is_feature[h]);
+    for (std::size_t i = begin; i < ring_.size(); ++i) ring_[i].star = star;
+  }
+  return true;
+}
+
+/// The curve's points on both sides. Corners, and points of other curves, stand at its ends.
+bool CurvePoints::find_neighbours(VertexIndex v) {
+  const CurvePlace place = mesh_.place[v];
+  const Curve& curve = curves_[place.curve];
+  const double whole = curve.reach.back();
+  const Vec3 p = mesh_.points[v];
+  const HalfedgeIndex on = point_along(input_, curve, place.along).halfedge;
+  const Vec3 forward = input_.mesh.points[input_.mesh.end(on)] - input_.mesh.points[input_.mesh.start[on]];
+  VertexIndex a = mesh_.end(features_[0]), b = mesh_.end(features_[1]);
+  if (dot(mesh_.points[a] - p, forward) > dot(mesh_.points[b] - p, forward)) std::swap(a, b);
+  const auto place_of = [&](VertexIndex w, double otherwise) {
+    const bool known = mesh_.kind[w] == VertexKind::kCurve && mesh_.place[w].curve == place.curve;
+    return known ? mesh_.place[w].along : otherwise;
+  };
+  neighbours_ = {a, b, place_of(a, 0), place_of(b, whole)};
+  if (curve.closed && neighbours_.from > place.along) neighbours_.from -= whole;
+  if (curve.closed && neighbours_.to < place.along) neighbours_.to += whole;
+  return neighbours_.from < place.along && place.along < neighbours_.to;
+}
+
+/// How far along the curve the triangles around would have the point: the mean of their centroids, by area over size.
+double CurvePoints::step_wanted(VertexIndex v) const {
+  const Vec3 p = mesh_.points[v];
+  Vec3 sum;
+  double weights = 0;
+  for (const Corner& c : ring_) {
+    const Vec3 a = mesh_.points[c.a] - p, b = mesh_.points[c.b] - p;
+    const double size = mesh_.size[v] + mesh_.size[c.a] + mesh_.size[c.b];
+    const double weight = length(cross(a, b)) / (size * size);
+    sum += (a + b) * (weight / 3);
+    weights += weight;
+  }
+  if (!(weights > 0)) return 0;
+  const Vec3 before = mesh_.points[neighbours_.before], after = mesh_.points[neighbours_.after];
+  const double most = kMostStep * std::min(distance(p, before), distance(p, after));
+  return std::clamp(dot(sum / weights, normalized(after - before)), -most, most);
+}
+
+bool CurvePoints::judge(VertexIndex v, Vec3 p, Quality& quality) const {
+  quality = {};
+  for (const Corner& c : ring_) {
+    const Vec3 a = mesh_.points[c.a], b = mesh_.points[c.b], area_vector = cross(a - p, b - p);
+    if (!turns_little(area_vector, c.star, kLimits.star)) return false;
+    if (!faces_outward(mesh_, area_vector, {v, c.a, c.b}, kLimits.surface)) return false;
+    const double q = squared_quality(p, a, b);
+    quality.sum += q;
+    quality.worst = std::min(quality.worst, q);
+  }
+  return true;
+}
+
+/// How far the curve's own vertices between two places lie from the segment between the points there.
+double CurvePoints::sagitta(const Curve& curve, double from, double to, Vec3 a, Vec3 b) const {
+  const double whole = curve.reach.back();
+  double most = 0;
+  for (const double turn : {-whole, 0.0, whole}) {
+    if (turn != 0 && !curve.closed) continue;
+    auto it = std::upper_bound(curve.reach.begin(), curve.reach.end(), from - turn);
+    for (; it != curve.reach.end() && *it + turn < to; ++it) {
+      const HalfedgeIndex h = curve.halfedges[static_cast<std::size_t>(it - curve.reach.begin())];
+      const Vec3 x = input_.mesh.points[input_.mesh.end(h)];
+      most = std::max(most, distance(x, closest_point_on_segment(x, a, b)));
+    }
+  }
+  return most;
+}
+
+double CurvePoints::deviation(const Curve& curve, double along, Vec3 p) const {
+  return std::max(sagitta(curve, neighbours_.from, along, mesh_.points[neighbours_.before], p),
+                  sagitta(curve, along, neighbours_.to, p, mesh_.points[neighbours_.after]));
+}
+
+/// Whether both segments at p have lengths within these bounds.
+bool CurvePoints::lengths_within(Vec3 p, double least, double most) const {
+  const double l = distance(p, mesh_.points[neighbours_.before]), m = distance(p, mesh_.points[neighbours_.after]);
+  return std::min(l, m) > least && std::max(l, m) < most;
+}
+
+void CurvePoints::move(VertexIndex v, const CurvePoint& x) {
+  mesh_.points[v] = x.p;
+  mesh_.face[v] = x.halfedge / 3;
+  mesh_.place[v].along = x.along;
+  mesh_.size[v] = sizes_.at(x.p);
+  mesh_.mark_star_changed(v);
+}
+
+bool CurvePoints::slide(VertexIndex v) {
+  if (mesh_.place[v].curve == kNone || !gather(v) || !find_neighbours(v)) return false;
+  const Curve& curve = curves_[mesh_.place[v].curve];
+  const double now = mesh_.place[v].along, h = mesh_.size[v], step = step_wanted(v);
+  if (std::abs(step) < kLeastStep * h) return false;
+  Quality before;
+  if (!judge(v, mesh_.points[v], before)) return false;
+  const double allowed = std::max(kFreeSagitta * h, deviation(curve, now, mesh_.points[v]));
+  for (const double part : {1.0, 0.4}) {
+    const double along = now + part * step;
+    if (!(along > neighbours_.from && along < neighbours_.to)) continue;
+    const CurvePoint x = point_along(input_, curve, wrapped(curve, along));
+    Quality after;
+    if (!lengths_within(x.p, kShortest * h, kLongest * h) || !judge(v, x.p, after)) continue;
+    if (!(after.sum > before.sum && after.worst >= std::min(before.worst, kFairQuality))) continue;
+    if (deviation(curve, along, x.p) > allowed) continue;
+    move(v, x);
+    return true;
+  }
+  return false;
+}
+
+/// Least 2r/R of the triangles of the star with v at p; 0 if one turns too far.
+double CurvePoints::worst_shape(VertexIndex v, Vec3 p) const {
+  Quality quality;
+  if (!judge(v, p, quality)) return 0;
+  double worst = 1;
+  for (const Corner& c : ring_) worst = std::min(worst, triangle_radius_ratio(p, mesh_.points[c.a], mesh_.points[c.b]));
+  return worst;
+}
+
+bool CurvePoints::relieve(VertexIndex v, double gain) {
+  if (mesh_.place[v].curve == kNone || !gather(v) || !find_neighbours(v)) return false;
+  const Curve& curve = curves_[mesh_.place[v].curve];
+  const double now = mesh_.place[v].along, h = mesh_.size[v];
+  double best = std::max(kWorthIt, gain * worst_shape(v, mesh_.points[v]));
+  std::optional<CurvePoint> chosen;
+  for (const double part : kReliefSteps) {
+    const double along = now + part * (part > 0 ? neighbours_.to - now : now - neighbours_.from);
+    const CurvePoint x = point_along(input_, curve, wrapped(curve, along));
+    if (!lengths_within(x.p, kShortestRelief * h, kLongestRelief * h)) continue;
+    const double worst = worst_shape(v, x.p);
+    if (!(worst > best)) continue;
+    best = worst;
+    chosen = x;
+  }
+  if (chosen) move(v, *chosen);
+  return chosen.has_value();
+}
+
+/// The place of the point that divides a feature edge in the proportion `part`, if its curve is known.
+std::optional<CurvePlace> CurvePoints::place_between(HalfedgeIndex h, double part) const {
+  VertexIndex u = mesh_.start[h], w = mesh_.end(h);
+  const auto is_inside = [&](VertexIndex v) {
+    return mesh_.kind[v] == VertexKind::kCurve && mesh_.place[v].curve != kNone;
+  };
+  if (!is_inside(u)) std::swap(u, w), part = 1 - part;
+  if (!is_inside(u)) {
+    const auto it = undivided_.find({std::min(u, w), std::max(u, w)});
+    if (it == undivided_.end()) return std::nullopt;
+    const Curve& curve = curves_[it->second];
+    if (input_.mesh.start[curve.halfedges.front()] != u) part = 1 - part;
+    return CurvePlace{it->second, part * curve.reach.back()};
+  }
+  const CurvePlace from = mesh_.place[u];
+  const Curve& curve = curves_[from.curve];
+  const double whole = curve.reach.back();
+  double to = mesh_.place[w].along;
+  if (!is_inside(w)) {
+    const double l = distance(mesh_.points[u], mesh_.points[w]);
+    to = std::abs(from.along - l) < std::abs(whole - from.along - l) ? 0 : whole;
+  } else if (mesh_.place[w].curve != from.curve) {
+    return std::nullopt;
+  } else if (curve.closed && std::abs(to - from.along) > 0.5 * whole) {
+    to += to < from.along ? whole : -whole;
+  }
+  return CurvePlace{from.curve, wrapped(curve, from.along + part * (to - from.along))};
+}
+
+bool CurvePoints::split_is_better(HalfedgeIndex h, Vec3 x, double gain) const {
+  double before = 1, after = 1;
+  for (const HalfedgeIndex side : {h, mesh_.twin[h]}) {
+    const VertexIndex a = mesh_.start[side], b = mesh_.end(side), c = mesh_.apex(side);
+    const Vec3 pa = mesh_.points[a], pb = mesh_.points[b], pc = mesh_.points[c], star = mesh_.area_vector(side / 3);
+    before = std::min(before, triangle_radius_ratio(pa, pb, pc));
+    after = std::min({after, triangle_radius_ratio(pa, x, pc), triangle_radius_ratio(x, pb, pc)});
+    if (!turns_little(cross(x - pa, pc - pa), star, kLimits.star)) return false;
+    if (!turns_little(cross(pb - x, pc - x), star, kLimits.star)) return false;
+  }
+  return after > std::max(kWorthIt, gain * before);
+}
+
+bool CurvePoints::split(HalfedgeIndex h, double gain) {
+  const Vec3 a = mesh_.points[mesh_.start[h]], b = mesh_.points[mesh_.end(h)], c = mesh_.points[mesh_.apex(h)];
+  const double part = dot(c - a, b - a) / squared_length(b - a);
+  const double shorter = std::min(part, 1 - part);
+  if (!(shorter > kLeastPart && shorter * distance(a, b) > kShortestRelief * mesh_.size[mesh_.start[h]])) return false;
+  const std::optional<CurvePlace> place = place_between(h, part);
+  if (!place) return false;
+  const CurvePoint x = point_along(input_, curves_[place->curve], place->along);
+  if (distance(x.p, a + (b - a) * part) > kAstray * distance(a, b) || !split_is_better(h, x.p, gain)) return false;
+  const VertexIndex v = mesh_.add_vertex(x.p, VertexKind::kCurve, {}, sizes_.at(x.p), x.halfedge / 3);
+  mesh_.place[v] = *place;
+  mesh_.split_edge(h, v);
+  return true;
+}
+
+}  // namespace octafront::remeshing

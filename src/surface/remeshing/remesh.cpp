@@ -1,0 +1,274 @@
+#include "surface/remeshing/remesh.h"
+
+#include "sizing/make_size_field.h"
+#include "surface/remeshing/coarsen.h"
+#include "surface/remeshing/crossings.h"
+#include "surface/remeshing/deviation.h"
+#include "surface/remeshing/improve.h"
+#include "surface/remeshing/insertion.h"
+#include "surface/remeshing/narrow_strips.h"
+#include "surface/remeshing/point_grid.h"
+#include "surface/remeshing/source_triangles.h"
+#include "surface/remeshing/turning.h"
+#include "surface/surface_check.h"
+
+#include <algorithm>
+#include <numeric>
+#include <optional>
+
+#include <fmt/format.h>
+
+namespace octafront {
+
+namespace {
+
+using namespace remeshing;
+
+/// Rounds of capping the sizes around what crosses. CT isosurfaces of half a million triangles need up to 16.
+constexpr int kMostRounds = 24;
+/// Sizes around crossing triangles become this part of what they were.
+constexpr double kCap = 0.6;
+/// The same where the new surface strays too far from the input, and for how many rounds.
+constexpr double kDeviationCap = 0.7;
+constexpr int kMostDeviationRounds = 5;
+/// Capped sizes grow from there at this rate.
+constexpr double kCapGradation = 0.2;
+
+struct Counts {
+  std::uint64_t placed = 0, tried = 0;
+  InsertionCounts insertion;
+  CoarsenCounts coarsen;
+  ImproveCounts improve;
+  std::uint64_t crossings = 0;
+  int rounds = 0, deviation_rounds = 0;
+};
+
+/// The parts of the working mesh that are alive, numbered anew in their order.
+struct Compacted {
+  Remeshed result;
+  std::vector<std::uint32_t> vertex_face;  ///< per vertex: an input face that it lies in
+  std::vector<std::uint8_t> is_inner;      ///< per vertex: not on a feature
+};
+
+Compacted compacted(const WorkingMesh& mesh, const SurfaceMesh& input, const SizeField& sizes) {
+  Compacted c{{{}, {}, {}, sizes}, {}, {}};
+  SurfaceMesh& s = c.result.surface;
+  std::vector<VertexIndex> old_to_new(mesh.points.size(), kNone);
+  for (VertexIndex v = 0; v < mesh.points.size(); ++v) {
+    if (mesh.outgoing[v] == kNone) continue;
+    old_to_new[v] = static_cast<VertexIndex>(s.points.size());
+    s.points.push_back(mesh.points[v]);
+    c.vertex_face.push_back(mesh.face[v]);
+    c.is_inner.push_back(mesh.is_free(v));
+    if (mesh.kind[v] == VertexKind::kCorner) c.result.features.corners.push_back(old_to_new[v]);
+  }
+  s.patch_names = input.patch_names;
+  for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t) {
+    if (mesh.is_removed(t)) continue;
+    Triangle triangle;
+    for (std::uint32_t i = 0; i < 3; ++i) {
+      const HalfedgeIndex h = 3 * t + i;
+      triangle[i] = old_to_new[mesh.start[h]];
+      if (mesh.is_feature[h] && h < mesh.twin[h]) {
+        const VertexIndex a = triangle[i], b = old_to_new[mesh.end(h)];
+        c.result.features.edges.push_back({std::min(a, b), std::max(a, b)});
+      }
+    }
+    s.triangles.push_back(triangle);
+    if (!input.patch.empty()) s.patch.push_back(mesh.patch[t]);
+  }
+  std::sort(c.result.features.edges.begin(), c.result.features.edges.end());
+  return c;
+}
+
+/// How much of the input's triangulation an attempt may change.
+enum class Effort { kFull, kInsertOnly };
+
+Compacted attempt(Effort effort, const SurfaceMesh& surface, InputSurface& input, const Features& features,
+                  const SizeField& asked, const RunContext& context, Counts& counts) {
+  set_features(input, {});
+  set_features(input, features_at_scale(input, features, asked));
+  const SizeField sizes = fitted_to_strips(input, asked);
+  std::vector<Curve> curves = chain_curves(input, features.corners, sizes);
+  divide_curves(input, sizes, curves);
+  const FrontPoints front = place_points(input, curves, sizes, context);
+  counts.placed = front.points.size();
+  counts.tried = front.candidates;
+  counts.insertion = {};
+  counts.coarsen = {};
+  counts.improve = {};
+  WorkingMesh mesh = insert_points(input, curves, front, context, counts.insertion);
+  if (effort == Effort::kFull) {
+    remove_input_vertices(mesh, context, counts.coarsen);
+    improve_surface(mesh, input, curves, sizes, context, counts.improve);
+  } else {
+    counts.coarsen.input_vertices_left = surface.points.size();
+  }
+  return compacted(mesh, surface, sizes);
+}
+
+std::vector<Vec3> centers_of(const SurfaceMesh& surface, const std::vector<std::array<std::uint32_t, 2>>& pairs) {
+  std::vector<std::uint32_t> triangles;
+  for (const auto& [s, t] : pairs) triangles.insert(triangles.end(), {s, t});
+  std::sort(triangles.begin(), triangles.end());
+  triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
+  std::vector<Vec3> centers;
+  for (const std::uint32_t t : triangles) {
+    const auto [a, b, c] = surface.triangles[t];
+    centers.push_back((surface.points[a] + surface.points[b] + surface.points[c]) / 3);
+  }
+  return centers;
+}
+
+/// The sizes made smaller around the places; of those within half a size of each other one is enough.
+SizeField capped_around(const SizeField& sizes, const std::vector<Vec3>& places, double factor) {
+  std::vector<Vec3> kept;
+  PointGrid grid(places.front());
+  for (const Vec3 p : places) {
+    const double h = sizes.at(p);
+    bool is_new = true;
+    grid.for_each_near(p, h, 0.5, [&](std::uint32_t, Vec3) { is_new = false; });
+    if (!is_new) continue;
+    kept.push_back(p);
+    grid.add(p, h);
+  }
+  return capped_near(sizes, kept, factor, kCapGradation);
+}
+
+/// The last resort on a clean surface: its own triangles.
+Remeshed input_as_it_is(const SurfaceMesh& surface, const Features& features, const SizeField& sizes) {
+  Remeshed kept{surface, features, {}, sizes};
+  kept.source.resize(surface.triangles.size());
+  std::iota(kept.source.begin(), kept.source.end(), 0u);
+  return kept;
+}
+
+void report_counts(const Counts& counts, StageReport& report) {
+  report.count("points placed", static_cast<double>(counts.placed));
+  report.count("places tried", static_cast<double>(counts.tried));
+  report.count("points inserted", static_cast<double>(counts.insertion.inserted));
+  report.count("points skipped", static_cast<double>(counts.insertion.skipped));
+  report.count("collapses", static_cast<double>(counts.coarsen.collapses));
+  report.count("flips", static_cast<double>(counts.coarsen.flips + counts.improve.flips));
+  report.count("smoothing moves", static_cast<double>(counts.improve.moves));
+  report.count("input vertices left", static_cast<double>(counts.coarsen.input_vertices_left));
+  report.count("crossing pairs mended", static_cast<double>(counts.crossings));
+  report.count("rounds", counts.rounds);
+  report.count("rounds for deviation", counts.deviation_rounds);
+}
+
+/// Attempts with ever smaller sizes where the last one was not good enough.
+class Remesher {
+ public:
+  Remesher(const SurfaceMesh& surface, const Features& features, const SizeField& sizes, const SurfaceOptions& options,
+           const RunContext& context, StageReport& report)
+      : surface_(surface),
+        features_(features),
+        sizes_(sizes),
+        options_(options),
+        context_(context),
+        report_(report),
+        input_(make_input_surface(surface, {})),
+        kind_(surface) {
+    if (options.max_deviation) tree_.emplace(surface);
+  }
+
+  Remeshed run() {
+    for (counts_.rounds = 1; counts_.rounds <= kMostRounds; ++counts_.rounds) {
+      Compacted c = attempt(Effort::kFull, surface_, input_, features_, sizes_, context_, counts_);
+      if (is_sound(c) && is_true(c)) return finished(c);
+    }
+    Compacted c = attempt(Effort::kInsertOnly, surface_, input_, features_, sizes_, context_, counts_);
+    if (is_sound(c)) {
+      report_.notes.push_back("the surface's own vertices were kept: coarser triangles would cross");
+      c.result.source = sources_of(c);
+      return finished(c);
+    }
+    report_counts(counts_, report_);
+    report_.notes.push_back("the surface was kept as it is: every other triangulation tried crosses itself");
+    return input_as_it_is(surface_, features_, sizes_);
+  }
+
+ private:
+  std::vector<std::uint32_t> sources_of(const Compacted& c) const {
+    return source_triangles(input_, surface_, c.result.surface, c.vertex_face, c.is_inner);
+  }
+
+  /// Whether the surface is clean and of the input's kind; otherwise the sizes are made smaller.
+  bool is_sound(const Compacted& c) {
+    const auto crossings = find_crossings(c.result.surface);
+    counts_.crossings += crossings.size();
+    if (!crossings.empty()) {
+      sizes_ = capped_around(sizes_, centers_of(c.result.surface, crossings), kCap);
+      return false;
+    }
+    if (const auto defect = kind_.first_defect_but_crossings(c.result.surface)) {
+      report_.notes.push_back("an attempt was dropped: " + *defect);
+      sizes_ = scaled(sizes_, kCap);
+      return false;
+    }
+    return true;
+  }
+
+  /// Whether the surface is as near to the input as was asked, or could be made so in the rounds allowed; otherwise the
+  /// sizes are made smaller. Leaves the sources.
+  bool is_true(Compacted& c) {
+    const bool is_last = counts_.rounds == kMostRounds || counts_.deviation_rounds == kMostDeviationRounds;
+    std::vector<Vec3> far;
+    if (tree_) far = places_beyond(*options_.max_deviation, c.result.surface, surface_, *tree_);
+    c.result.source = sources_of(c);
+    std::vector<PointSize> turned;
+    if (options_.normal_deviation) {
+      turned = turned_places(*options_.normal_deviation, c.result.surface, input_, sizes_, c.vertex_face, c.is_inner,
+                             c.result.source);
+    }
+    if ((far.empty() && turned.empty()) || is_last) {
+      if (tree_) report_.count("places beyond the deviation", static_cast<double>(far.size()));
+      if (options_.normal_deviation) report_.count("triangles turned too far", static_cast<double>(turned.size()));
+      note_what_is_left(far.size(), turned.size());
+      return true;
+    }
+    ++counts_.deviation_rounds;
+    if (!far.empty()) sizes_ = capped_around(sizes_, far, kDeviationCap);
+    sizes_ = capped_at(sizes_, turned, kCapGradation);
+    return false;
+  }
+
+  /// What the user asked for and does not get.
+  void note_what_is_left(std::size_t far, std::size_t turned) {
+    if (far > 0)
+      report_.notes.push_back(
+          fmt::format("{} places lie farther than {:.4g} from the input still: a smaller size helps", far,
+                      *options_.max_deviation));
+    if (turned > 0)
+      report_.notes.push_back(
+          fmt::format("{} triangles turn by more than {:.4g} degrees against the input still: it is "
+                      "rough there, or turns sharply without a feature edge",
+                      turned, *options_.normal_deviation));
+  }
+
+  Remeshed finished(Compacted& c) {
+    report_counts(counts_, report_);
+    return std::move(c.result);
+  }
+
+  const SurfaceMesh& surface_;
+  const Features& features_;
+  SizeField sizes_;
+  const SurfaceOptions& options_;
+  const RunContext& context_;
+  StageReport& report_;
+  InputSurface input_;
+  SurfaceKind kind_;
+  std::optional<TriangleTree> tree_;
+  Counts counts_;
+};
+
+}  // namespace
+
+Remeshed remesh_surface(const SurfaceMesh& surface, const Features& features, const SizeField& sizes,
+                        const SurfaceOptions& options, const RunContext& context, StageReport& report) {
+  return Remesher(surface, features, sizes, options, context, report).run();
+}
+
+}  // namespace octafront

@@ -1,0 +1,37 @@
+#pragma once
+
+// surface, second half: a clean surface triangulated anew to the size field. Takes the repaired surface, its features
+// and the sizes; leaves a surface whose vertices lie on the input, with the input's topology, features and patches. The
+// steps, one file each: curves (chained, cleared of noise, divided), surface_front (places points), insertion (puts
+// them into the input triangulation), coarsen (collapses the input's own vertices away), surface_improve,
+// surface_lengths and curve_points (flips, smoothing, mending, points that slide along curves), surface_crossings and
+// surface_deviation (what makes remesh.cpp run another round with smaller sizes). A closed manifold exists at every
+// moment, so no decision of the front can break the topology.
+
+#include <octafront/options.h>
+#include <octafront/report.h>
+#include <octafront/run_context.h>
+#include <octafront/size_field.h>
+#include <octafront/surface_mesh.h>
+
+#include "mesh/features.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace octafront {
+
+/// A surface triangulated to the size field, and how it relates to the one it was made from.
+struct Remeshed {
+  SurfaceMesh surface;                ///< clean, same topology; vertices lie on the input surface; patches kept
+  Features features;                  ///< of `surface`
+  std::vector<std::uint32_t> source;  ///< per triangle: the input triangle that lies nearest to its centroid
+  SizeField sizes;                    ///< what was asked, capped where self-intersections forced smaller elements
+};
+
+/// The surface front. Requires a clean surface (see surface_mesh.h). The result is checked: closed, manifold, same
+/// components and genus, no self-intersection, features present; throws MeshingError if no attempt passes.
+Remeshed remesh_surface(const SurfaceMesh& surface, const Features& features, const SizeField& sizes,
+                        const SurfaceOptions& options, const RunContext& context, StageReport& report);
+
+}  // namespace octafront

@@ -1,0 +1,44 @@
+#pragma once
+
+#include "mesh/halfedge_mesh.h"
+
+namespace octafront::remeshing {
+
+/// The input surface, as something to walk on.
+struct InputSurface {
+  HalfedgeMesh mesh;
+  std::vector<Vec3> face_normal;         ///< unit; zero where degenerate
+  std::vector<Vec3> vertex_normal;       ///< unit, weighted by area
+  std::vector<std::uint8_t> on_feature;  ///< per vertex: some feature edge ends there
+  std::vector<std::uint32_t> patch;      ///< per triangle
+
+  /// Smooth normal at a point of a face: interpolated between vertex normals, where the corner lies on a feature
+  /// the face's own.
+  Vec3 normal_at(std::uint32_t face, Vec3 p) const;
+};
+
+/// Normals and the feature marks of `edges` on top of the adjacency.
+InputSurface make_input_surface(const SurfaceMesh& surface, const std::vector<Edge>& edges);
+/// Replaces the feature edges.
+void set_features(InputSurface& input, const std::vector<Edge>& edges);
+
+/// A point of the input surface and a face that it lies in.
+struct SurfacePoint {
+  Vec3 p;
+  std::uint32_t face = kNone;
+};
+
+enum class WalkEnd { kArrived, kFeature, kLost };
+
+/// Where a walk ends that leaves `from` in the direction `direction` (unit), along the section of the surface with the
+/// plane through direction and `normal`, when it first is at `distance` from its start. It never crosses a feature
+/// edge: kFeature then, and `result` is the crossing point, in the face before it.
+WalkEnd walk(const InputSurface& input, SurfacePoint from, Vec3 direction, Vec3 normal, double distance,
+             SurfacePoint& result);
+
+/// The same from the vertex that half-edge `corner` leaves, into its triangle; `direction` lies in the triangle's
+/// plane.
+WalkEnd walk_from_vertex(const InputSurface& input, HalfedgeIndex corner, Vec3 direction, double distance,
+                         SurfacePoint& result);
+
+}  // namespace octafront::remeshing

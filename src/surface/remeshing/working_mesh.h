@@ -1,0 +1,69 @@
+#pragma once
+
+#include "mesh/halfedge_mesh.h"
+
+namespace octafront::remeshing {
+
+/// What a vertex of the working mesh is, and so what may happen to it.
+enum class VertexKind : std::uint8_t {
+  kRemovable,       ///< of the input, inside a patch: to be collapsed away
+  kRemovableCurve,  ///< of the input, on a curve: to be collapsed away along it
+  kFree,            ///< placed by the front: may move on the surface
+  kCurve,           ///< division point of a curve
+  kCorner,
+};
+
+/// A place on a divided curve.
+struct CurvePlace {
+  std::uint32_t curve = kNone;
+  double along = 0;  ///< length of the curve up to there
+};
+
+/// The surface on its way from the input triangulation to the new one: a closed manifold of the same topology after
+/// every operation. Removed triangles and vertices leave holes in the numbering until compacted() is taken.
+struct WorkingMesh : HalfedgeMesh {
+  std::vector<VertexKind> kind;       ///< per vertex
+  std::vector<Vec3> normal;           ///< per vertex: of the input surface there; zero on curves
+  std::vector<double> size;           ///< per vertex: wanted there
+  std::vector<std::uint32_t> face;    ///< per vertex: an input face that it lies in
+  std::vector<std::uint32_t> patch;   ///< per triangle
+  std::vector<std::uint32_t> origin;  ///< per triangle: while inserting, the input face it is a part of
+  std::vector<CurvePlace> place;      ///< per vertex: where on a curve it lies, if it may slide there
+  std::vector<std::uint8_t> changed;  ///< per vertex: kForSmoothing and kForFlips, set by whatever changes around it
+
+  /// Marks for passes that skip what did not change since they last saw it.
+  static constexpr std::uint8_t kForSmoothing = 1, kForFlips = 2;
+  void mark_changed(VertexIndex v) { changed[v] = kForSmoothing | kForFlips; }
+  void mark_star_changed(VertexIndex v) {
+    mark_changed(v);
+    for_each_outgoing(v, [&](HalfedgeIndex h) { mark_changed(end(h)); });
+  }
+
+  bool is_removed(std::size_t triangle) const { return start[3 * triangle] == kNone; }
+  bool is_free(VertexIndex v) const { return kind[v] == VertexKind::kFree || kind[v] == VertexKind::kRemovable; }
+  bool on_curve(VertexIndex v) const { return !is_free(v); }
+  int valence(VertexIndex v) const {
+    int n = 0;
+    for_each_outgoing(v, [&](HalfedgeIndex) { ++n; });
+    return n;
+  }
+
+  /// Room for so many vertices and triangles in all.
+  void reserve(std::size_t vertices, std::size_t triangles);
+  VertexIndex add_vertex(Vec3 p, VertexKind k, Vec3 n, double h, std::uint32_t in_face);
+  /// Puts x into the triangle: three triangles in its place; the first keeps the number.
+  void split_triangle(std::uint32_t t, VertexIndex x);
+  /// Puts x on the edge of h. Afterwards h runs from its start to x.
+  void split_edge(HalfedgeIndex h, VertexIndex x);
+  /// Whether the edge may turn as far as connections and features go.
+  bool may_flip(HalfedgeIndex h) const;
+  /// Turns the edge of h; returns a half-edge of the new edge.
+  HalfedgeIndex flip(HalfedgeIndex h);
+  /// Whether the start of h may move to its end and vanish, as far as connections and features go (link condition;
+  /// feature vertices only along their curve; no two curves merge; a corner only if `corners_too`, for it is lost).
+  bool may_collapse(HalfedgeIndex h, bool corners_too = false) const;
+  /// Moves the start of h to its end, where it vanishes with the two triangles beside h.
+  void collapse(HalfedgeIndex h);
+};
+
+}  // namespace octafront::remeshing
