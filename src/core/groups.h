@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace octafront {
+
+/// The items of each owner, side by side in one array: the triangles at each vertex, the leaves at each corner. Made by
+/// a counting sort, in two passes over the items and no other memory than the result's. An `Offset` counts all items.
+template <class Item = std::uint32_t, class Offset = std::uint32_t>
+class Groups {
+ public:
+  Groups() : first_(1, 0) {}
+
+  /// visit(add) calls add(owner, item) for every item, owner < owners. It is called twice and must visit the same both
+  /// times; in each group the items stand in the order of the visits.
+  template <class Visit>
+  Groups(std::size_t owners, const Visit& visit) : first_(owners + 2, 0) {
+    // Counts stand two places ahead: after the sums place owner + 1 is the cursor of the owner, at the end its end.
+    visit([this](std::size_t owner, const Item&) { ++first_[owner + 2]; });
+    for (std::size_t i = 2; i < first_.size(); ++i) first_[i] += first_[i - 1];
+    items_.resize(first_.back());
+    visit([this](std::size_t owner, const Item& item) { items_[first_[owner + 1]++] = item; });
+    first_.pop_back();
+  }
+
+  std::size_t size() const { return first_.size() - 1; }
+  /// The items of one owner.
+  std::span<const Item> operator[](std::size_t owner) const {
+    return {items_.data() + first_[owner], items_.data() + first_[owner + 1]};
+  }
+  std::span<Item> operator[](std::size_t owner) {
+    return {items_.data() + first_[owner], items_.data() + first_[owner + 1]};
+  }
+  /// All items, owner by owner; those of an owner begin at first(owner), those of the last one end at first(size()).
+  const std::vector<Item>& items() const { return items_; }
+  Offset first(std::size_t owner) const { return first_[owner]; }
+
+ private:
+  std::vector<Offset> first_;
+  std::vector<Item> items_;
+};
+
+/// The numbers 0 ... items - 1 by owner_of(number), ascending in each group.
+template <class OwnerOf>
+Groups<> group_by_owner(std::size_t owners, std::uint32_t items, const OwnerOf& owner_of) {
+  return {owners, [&](const auto& add) {
+            for (std::uint32_t i = 0; i < items; ++i) add(owner_of(i), i);
+          }};
+}
+
+/// The rows (triangles, tets, edges) at each of the vertices that they name, ascending for each vertex.
+template <class Rows>
+Groups<> rows_at_vertices(std::size_t vertices, const Rows& rows) {
+  return {vertices, [&](const auto& add) {
+            for (std::uint32_t i = 0; i < rows.size(); ++i)
+              for (const std::uint32_t v : rows[i]) add(v, i);
+          }};
+}
+
+}  // namespace octafront
