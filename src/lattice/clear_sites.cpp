@@ -1,5 +1,6 @@
 #include "lattice/clear_sites.h"
 
+#include "core/disjoint_sets.h"
 #include "geometry/predicates.h"
 #include "lattice/near_leaves.h"
 
@@ -7,7 +8,6 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include <oneapi/tbb/parallel_for.h>
 
@@ -25,11 +25,6 @@ constexpr double kRoundingDown = 1 - 1e-6;
 /// farther from the centre of its smallest ball (H. W. E. Jung, 1901: sqrt(3 / 8) in space).
 constexpr double kCoveringShare = 0.6124;
 constexpr std::size_t kLeavesBetweenChecks = 4096;
-
-std::uint32_t find_root(std::vector<std::uint32_t>& parent, std::uint32_t i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
 
 /// All of `points` lie strictly on one side of the plane through a, b and c.
 template <std::size_t n>
@@ -104,17 +99,13 @@ void ClearSites::find_inside() {
         upper[i][axis] = static_cast<std::uint32_t>(j);
     }
   });
-  std::vector<std::uint32_t> parent(tree.size());
-  std::iota(parent.begin(), parent.end(), 0u);
+  DisjointSets components(tree.size());
   for (std::uint32_t i = 0; i < tree.size(); ++i)
     for (const std::uint32_t j : upper[i])
-      if (j != kNone) {
-        const std::uint32_t a = find_root(parent, i), b = find_root(parent, j);
-        parent[std::max(a, b)] = std::min(a, b);
-      }
+      if (j != kNone) components.join(i, j);
   inside_.resize(tree.size());
   for (std::uint32_t i = 0; i < tree.size(); ++i) {
-    const std::uint32_t root = find_root(parent, i);
+    const std::uint32_t root = components.find(i);
     inside_[i] = root == i ? distance_[2 * i] != 0 && contains(position_of(2 * i)) : inside_[root];
   }
 }

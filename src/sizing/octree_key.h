@@ -1,5 +1,7 @@
 #pragma once
 
+#include "core/morton.h"
+
 #include <array>
 #include <bit>
 #include <cassert>
@@ -37,7 +39,7 @@ class OctreeKey {
   static constexpr OctreeKey from_id(std::uint64_t id) { return OctreeKey(id); }
   /// The cell of `level` that contains the unit (x, y, z). REQUIRES: x, y, z < kSide, 0 <= level <= kMaxLevel.
   static constexpr OctreeKey containing(std::uint32_t x, std::uint32_t y, std::uint32_t z, int level = kMaxLevel) {
-    const std::uint64_t position = (interleave(x) | interleave(y) << 1 | interleave(z) << 2) << 1 | 1;
+    const std::uint64_t position = morton_code(x, y, z) << 1 | 1;
     const std::uint64_t marker = marker_of(level);
     return OctreeKey((position & (0 - marker)) | marker);
   }
@@ -53,7 +55,7 @@ class OctreeKey {
   /// Lower corner in units.
   constexpr std::array<std::uint32_t, 3> corner() const {
     const std::uint64_t digits = (id_ - marker()) >> 1;
-    return {compact(digits), compact(digits >> 1), compact(digits >> 2)};
+    return {gather_bits(digits), gather_bits(digits >> 1), gather_bits(digits >> 2)};
   }
 
   /// The cell one level up. REQUIRES: level() > 0.
@@ -97,25 +99,6 @@ class OctreeKey {
   constexpr explicit OctreeKey(std::uint64_t id) : id_(id) {}
   constexpr std::uint64_t marker() const { return id_ & (0 - id_); }
   static constexpr std::uint64_t marker_of(int level) { return std::uint64_t{1} << (3 * (kMaxLevel - level)); }
-
-  /// Spreads the low 21 bits to every third bit.
-  static constexpr std::uint64_t interleave(std::uint64_t v) {
-    v &= 0x1fffff;
-    v = (v | v << 32) & 0x1f00000000ffff;
-    v = (v | v << 16) & 0x1f0000ff0000ff;
-    v = (v | v << 8) & 0x100f00f00f00f00f;
-    v = (v | v << 4) & 0x10c30c30c30c30c3;
-    return (v | v << 2) & 0x1249249249249249;
-  }
-  /// The inverse: gathers every third bit.
-  static constexpr std::uint32_t compact(std::uint64_t v) {
-    v &= 0x1249249249249249;
-    v = (v ^ v >> 2) & 0x10c30c30c30c30c3;
-    v = (v ^ v >> 4) & 0x100f00f00f00f00f;
-    v = (v ^ v >> 8) & 0x1f0000ff0000ff;
-    v = (v ^ v >> 16) & 0x1f00000000ffff;
-    return static_cast<std::uint32_t>((v ^ v >> 32) & 0x1fffff);
-  }
 
   std::uint64_t id_ = 0;
 };

@@ -1,5 +1,6 @@
 #include "stuffing/cut_lattice.h"
 
+#include "core/groups.h"
 #include "geometry/measures.h"
 #include "geometry/predicates.h"
 #include "mesh/adjacency.h"
@@ -21,21 +22,6 @@ constexpr double kLeastPart = 0.05;
 /// are tried until one does as well, and warping is refused where all fall below the lesser bound.
 constexpr double kFairShape = 0.1, kLeastShape = 0.03;
 
-/// Lists of what belongs to each site, flat.
-struct SiteLists {
-  std::vector<std::uint32_t> first, items;
-
-  /// visit(add) calls add(site, item) for all, twice.
-  template <class Visit>
-  SiteLists(std::size_t sites, const Visit& visit) : first(sites + 1, 0) {
-    visit([&](std::uint32_t site, std::uint32_t) { ++first[site + 1]; });
-    for (std::size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
-    items.resize(first.back());
-    std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
-    visit([&](std::uint32_t site, std::uint32_t item) { items[next[site]++] = item; });
-  }
-};
-
 /// Moves lattice points onto the boundary where it comes too near to them.
 class Warp {
  public:
@@ -51,14 +37,14 @@ class Warp {
         tets_of_(graph.sites.size(), [&](const auto& add) {
           for (std::uint32_t t = 0; t < graph.tets.size(); ++t)
             for (const std::uint32_t site : graph.tets[t])
-              if (cuts_of_.first[site] < cuts_of_.first[site + 1]) add(site, t);
+              if (!cuts_of_[site].empty()) add(site, t);
         }) {}
 
   std::size_t warped = 0, refused = 0;
 
   void run() {
     for (std::uint32_t site = 0; site < graph_.sites.size(); ++site)
-      if (cuts_of_.first[site] < cuts_of_.first[site + 1]) visit(site);
+      if (!cuts_of_[site].empty()) visit(site);
   }
 
  private:
@@ -72,8 +58,7 @@ class Warp {
 
   void visit(std::uint32_t site) {
     std::vector<std::pair<double, std::uint32_t>> too_near;
-    for (std::uint32_t i = cuts_of_.first[site]; i < cuts_of_.first[site + 1]; ++i) {
-      const std::uint32_t c = cuts_of_.items[i];
+    for (const std::uint32_t c : cuts_of_[site]) {
       const auto& cut = graph_.cuts[c];
       // An edge with a warped end is no longer cut.
       if (graph_.side[cut.inside] == 0 || graph_.side[cut.outside] == 0) continue;
@@ -105,8 +90,8 @@ class Warp {
   /// Least beta of the tetrahedra around a site; 0 if one of them is not positive, by exact sign.
   double worst_shape_around(std::uint32_t site) const {
     double least = 1;
-    for (std::uint32_t i = tets_of_.first[site]; i < tets_of_.first[site + 1]; ++i) {
-      const auto& t = graph_.tets[tets_of_.items[i]];
+    for (const std::uint32_t i : tets_of_[site]) {
+      const auto& t = graph_.tets[i];
       const Vec3 a = graph_.at[t[0]], b = graph_.at[t[1]], c = graph_.at[t[2]], d = graph_.at[t[3]];
       if (orient3d(a, b, c, d) <= 0) return 0;
       least = std::min(least, tet_radius_ratio(a, b, c, d));
@@ -115,7 +100,7 @@ class Warp {
   }
 
   LatticeGraph& graph_;
-  SiteLists cuts_of_, tets_of_;
+  Groups<> cuts_of_, tets_of_;
 };
 
 /// Cuts the tetrahedra and numbers what is used.

@@ -1,8 +1,9 @@
 #include "stuffing/lattice_graph.h"
 
+#include "core/disjoint_sets.h"
+
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include <oneapi/tbb/parallel_for.h>
@@ -22,11 +23,6 @@ void for_each_index(std::size_t n, const RunContext& context, const Visit& visit
     for (std::size_t i = block * kBlock; i < std::min(n, (block + 1) * kBlock); ++i) visit(i);
   });
   context.check();
-}
-
-std::uint32_t find_root(std::vector<std::uint32_t>& parent, std::uint32_t i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
 }
 
 class Builder {
@@ -72,20 +68,17 @@ class Builder {
     std::vector<char> clear(n);
     // A little more than the longest edge: the length is rounded.
     for_each_index(n, context_, [&](std::size_t i) { clear[i] = domain_.is_clear(graph_.at[i], 1.001 * reach[i]); });
-    std::vector<std::uint32_t> parent(n);
-    std::iota(parent.begin(), parent.end(), 0u);
+    DisjointSets sets(n);
     for (const auto& t : graph_.tets)
       for (const auto& [i, j] : kTetEdges)
-        if (clear[t[i]] && clear[t[j]]) {
-          const std::uint32_t a = find_root(parent, t[i]), b = find_root(parent, t[j]);
-          parent[std::max(a, b)] = std::min(a, b);
-        }
-    for (std::uint32_t i = 0; i < n; ++i) parent[i] = find_root(parent, i);
+        if (clear[t[i]] && clear[t[j]]) sets.join(t[i], t[j]);
+    std::vector<std::uint32_t> speaker(n);
+    for (std::uint32_t i = 0; i < n; ++i) speaker[i] = sets.find(i);
     graph_.side.assign(n, 0);
     for_each_index(n, context_, [&](std::size_t i) {
-      if (parent[i] == i) graph_.side[i] = static_cast<std::int8_t>(domain_.side(graph_.at[i]));
+      if (speaker[i] == i) graph_.side[i] = static_cast<std::int8_t>(domain_.side(graph_.at[i]));
     });
-    for (std::size_t i = 0; i < n; ++i) graph_.side[i] = graph_.side[parent[i]];
+    for (std::size_t i = 0; i < n; ++i) graph_.side[i] = graph_.side[speaker[i]];
   }
 
   void find_cuts() {

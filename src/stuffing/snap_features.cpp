@@ -2,6 +2,7 @@
 
 #include <octafront/error.h>
 
+#include "core/groups.h"
 #include "geometry/measures.h"
 #include "geometry/predicates.h"
 #include "geometry/self_intersection.h"
@@ -36,10 +37,9 @@ class Snapper {
         features_(features),
         triangles_(triangles),
         sizes_(sizes),
-        before_(mesh.points) {
-    fixed_.assign(mesh.points.size(), 0);
-    list_stars();
-  }
+        before_(mesh.points),
+        fixed_(mesh.points.size(), 0),
+        star_(boundary_stars()) {}
 
   std::size_t corners = 0, on_curves = 0, refused = 0, undone = 0;
 
@@ -138,26 +138,22 @@ class Snapper {
     return vertices;
   }
 
-  void list_stars() {
-    first_.assign(mesh_.points.size() + 1, 0);
+  Groups<TetIndex> boundary_stars() const {
     std::vector<char> on_boundary(mesh_.points.size(), 0);
     for (const Triangle& t : mesh_.boundary)
       for (const VertexIndex v : t) on_boundary[v] = 1;
-    for (const Tet& t : mesh_.tets)
-      for (const VertexIndex v : t) first_[v + 1] += on_boundary[v];
-    for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
-    star_.resize(first_.back());
-    std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
-    for (TetIndex t = 0; t < mesh_.tets.size(); ++t)
-      for (const VertexIndex v : mesh_.tets[t])
-        if (on_boundary[v]) star_[next[v]++] = t;
+    return {mesh_.points.size(), [&](const auto& add) {
+              for (TetIndex t = 0; t < mesh_.tets.size(); ++t)
+                for (const VertexIndex v : mesh_.tets[t])
+                  if (on_boundary[v]) add(v, t);
+            }};
   }
 
   bool move(VertexIndex v, Vec3 to) {
     const Vec3 old = mesh_.points[v];
     mesh_.points[v] = to;
-    for (std::uint32_t i = first_[v]; i < first_[v + 1]; ++i) {
-      const Tet& t = mesh_.tets[star_[i]];
+    for (const TetIndex i : star_[v]) {
+      const Tet& t = mesh_.tets[i];
       const Vec3 a = mesh_.points[t[0]], b = mesh_.points[t[1]], c = mesh_.points[t[2]], d = mesh_.points[t[3]];
       if (orient3d(a, b, c, d) > 0 && tet_radius_ratio(a, b, c, d) >= kLeastBeta) continue;
       mesh_.points[v] = old;
@@ -177,8 +173,8 @@ class Snapper {
       fixed_[v] = 0;
       mesh_.points[v] = before_[v];
       ++undone;
-      for (std::uint32_t i = first_[v]; i < first_[v + 1]; ++i) {
-        const Tet& t = mesh_.tets[star_[i]];
+      for (const TetIndex i : star_[v]) {
+        const Tet& t = mesh_.tets[i];
         if (orient3d(mesh_.points[t[0]], mesh_.points[t[1]], mesh_.points[t[2]], mesh_.points[t[3]]) <= 0)
           open.insert(open.end(), t.begin(), t.end());
       }
@@ -192,7 +188,7 @@ class Snapper {
   const SizeField& sizes_;
   const std::vector<Vec3> before_;
   std::vector<char> fixed_;  ///< moved
-  std::vector<std::uint32_t> first_, star_;
+  Groups<TetIndex> star_;    ///< the tetrahedra at each vertex of the boundary
 };
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <octafront/error.h>
 
+#include "core/disjoint_sets.h"
 #include "geometry/measures.h"
 #include "stuffing/cut_lattice.h"
 #include "stuffing/manifold.h"
@@ -9,7 +10,6 @@
 #include "stuffing/stuffing_octree.h"
 
 #include <algorithm>
-#include <numeric>
 
 namespace octafront {
 
@@ -17,22 +17,14 @@ namespace {
 
 /// Connected parts of the mesh, numbered in order of their first tetrahedron; empty if there is only one.
 std::vector<std::uint32_t> connected_parts(const TetMesh& mesh) {
-  std::vector<VertexIndex> parent(mesh.points.size());
-  std::iota(parent.begin(), parent.end(), 0u);
-  const auto root = [&](VertexIndex v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
+  DisjointSets sets(mesh.points.size());
   for (const Tet& t : mesh.tets)
-    for (int k = 1; k < 4; ++k) {
-      const VertexIndex a = root(t[0]), b = root(t[k]);
-      parent[std::max(a, b)] = std::min(a, b);
-    }
+    for (int k = 1; k < 4; ++k) sets.join(t[0], t[k]);
   std::vector<std::uint32_t> number(mesh.points.size(), kNone), region;
   std::uint32_t parts = 0;
   region.reserve(mesh.tets.size());
   for (const Tet& t : mesh.tets) {
-    std::uint32_t& n = number[root(t[0])];
+    std::uint32_t& n = number[sets.find(t[0])];
     if (n == kNone) n = parts++;
     region.push_back(n);
   }
