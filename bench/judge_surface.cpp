@@ -210,7 +210,7 @@ Judged make(const SurfaceMesh& input, const Arguments& a) {
   SurfaceResult result = generate_surface(input, options);
   StageReport ignored;
   const Features features = detect_features(input, options.surface.feature_angle);
-  SizeField asked = make_size_field(input, features, options.size, RunContext{}, ignored);
+  SizeField asked = make_size_field(input, features, options.size, {{}, ignored});
   return {std::move(result.surface), result.sizes, std::move(asked), std::move(result.report)};
 }
 

@@ -40,7 +40,7 @@ void measure(const std::string& name, const SurfaceMesh& surface, const VolumeOp
     RunContext context;
     context.threads = 1;
     const double start = process_cpu_seconds();
-    mesh = fill_volume(surface, SizeField::uniform(mean_edge(surface)), options, context, report);
+    mesh = fill_volume(surface, SizeField::uniform(mean_edge(surface)), options, {context, report});
     seconds = std::min(seconds, process_cpu_seconds() - start);
   }
   const QualitySummary q = summarize_quality(mesh);

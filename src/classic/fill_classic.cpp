@@ -83,24 +83,23 @@ class Advance {
   std::uint64_t steps_ = 0;
 };
 
-void report_front(StageReport& report, const ClassicCounters& c, std::size_t tets, std::size_t left) {
-  report.count("front tetrahedra", static_cast<double>(tets));
-  report.count("attempts", static_cast<double>(c.attempts));
-  report.count("faces found", static_cast<double>(c.found_faces));
-  report.count("candidates tried", static_cast<double>(c.candidates));
-  report.count("refused: volume", static_cast<double>(c.too_flat));
-  report.count("refused: distance", static_cast<double>(c.too_near));
-  report.count("refused: angle", static_cast<double>(c.too_sharp));
-  report.count("refused: inclusion", static_cast<double>(c.including));
-  report.count("refused: intersection", static_cast<double>(c.intersecting));
-  report.count("ideal points", static_cast<double>(c.ideal_points));
-  report.count("faces left", static_cast<double>(left));
+void report_front(const Stage& stage, const ClassicCounters& c, std::size_t tets, std::size_t left) {
+  stage.count("front tetrahedra", static_cast<double>(tets));
+  stage.count("attempts", static_cast<double>(c.attempts));
+  stage.count("faces found", static_cast<double>(c.found_faces));
+  stage.count("candidates tried", static_cast<double>(c.candidates));
+  stage.count("refused: volume", static_cast<double>(c.too_flat));
+  stage.count("refused: distance", static_cast<double>(c.too_near));
+  stage.count("refused: angle", static_cast<double>(c.too_sharp));
+  stage.count("refused: inclusion", static_cast<double>(c.including));
+  stage.count("refused: intersection", static_cast<double>(c.intersecting));
+  stage.count("ideal points", static_cast<double>(c.ideal_points));
+  stage.count("faces left", static_cast<double>(left));
 }
 
 }  // namespace
 
-TetMesh fill_volume_classic(const SurfaceMesh& surface, const VolumeOptions& options, const RunContext& context,
-                            StageReport& report) {
+TetMesh fill_volume_classic(const SurfaceMesh& surface, const VolumeOptions& options, const Stage& stage) {
   if (surface.triangles.empty()) throw InputError("the surface has no triangles: nothing to fill");
   const SizeField sizes = sizes_from_surface(surface);
   TetMesh mesh;
@@ -111,15 +110,16 @@ TetMesh fill_volume_classic(const SurfaceMesh& surface, const VolumeOptions& opt
     for (const auto& [a, b, c] : surface.triangles) front.add_face({a, c, b});
     ClassicCounters counters;
     const double start = process_cpu_seconds();
-    const std::vector<Face> left = Advance(front, sizes, options, enclosed_volume(surface), context, counters).run();
-    report.count("advance CPU seconds", process_cpu_seconds() - start);
-    report_front(report, counters, front.tets().size(), left.size());
+    const std::vector<Face> left =
+        Advance(front, sizes, options, enclosed_volume(surface), stage.context(), counters).run();
+    stage.count("advance CPU seconds", process_cpu_seconds() - start);
+    report_front(stage, counters, front.tets().size(), left.size());
     for (const Face f : left) walls.push_back(front.corners(f));
     mesh.points = front.points();
     mesh.tets = front.tets();
   }
   if (!walls.empty()) {
-    close_cavities(mesh, walls, sizes, options, context, report);
+    close_cavities(mesh, walls, sizes, options, stage);
     drop_unused_points(mesh, surface.points.size());
   }
   mesh.region = regions_of(mesh, surface);

@@ -8,16 +8,15 @@
 //   surface_sizes, classic_front (alternating_tree) -> classic_attempt, smallest face first -> volume/ladder
 
 #include <octafront/options.h>
-#include <octafront/report.h>
-#include <octafront/run_context.h>
 #include <octafront/surface_mesh.h>
 #include <octafront/tet_mesh.h>
+
+#include "core/stage.h"
 
 namespace octafront {
 
 /// Fills a clean surface as fill_volume does (see there for what the result keeps). Of `options` only the distance of
 /// the ideal point is used, and what the closing of cavities uses. Throws MeshingError if a cavity stays open.
-TetMesh fill_volume_classic(const SurfaceMesh& surface, const VolumeOptions& options, const RunContext& context,
-                            StageReport& report);
+TetMesh fill_volume_classic(const SurfaceMesh& surface, const VolumeOptions& options, const Stage& stage);
 
 }  // namespace octafront

@@ -6,11 +6,10 @@
 // edit_mesh.h.
 
 #include <octafront/options.h>
-#include <octafront/report.h>
-#include <octafront/run_context.h>
 #include <octafront/size_field.h>
 #include <octafront/tet_mesh.h>
 
+#include "core/stage.h"
 #include "improve/boundary_guide.h"
 
 namespace octafront {
@@ -24,6 +23,6 @@ namespace octafront {
 /// the faces of the mesh do not match. The report gets, for each pass, the places looked at, those changed, and CPU
 /// time per element. Returns true if the boundary changed.
 bool improve_mesh(TetMesh& mesh, const improve::BoundaryInput* boundary, const ImproveOptions& options,
-                  const RunContext& context, StageReport& report);
+                  const Stage& stage);
 
 }  // namespace octafront

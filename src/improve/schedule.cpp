@@ -50,44 +50,38 @@ ImproveOptions::Worst worst_of(const EditMesh& mesh) {
 /// Runs passes and notes what each one did.
 class Schedule {
  public:
-  Schedule(EditMesh& mesh, const BoundaryGuide* guide, const ImproveOptions& options, const RunContext& context,
-           StageReport& report)
-      : mesh_(mesh),
-        guide_(guide),
-        options_(options),
-        context_(context),
-        report_(report),
-        started_(process_cpu_seconds()) {
+  Schedule(EditMesh& mesh, const BoundaryGuide* guide, const ImproveOptions& options, const Stage& stage)
+      : mesh_(mesh), guide_(guide), options_(options), stage_(stage), started_(process_cpu_seconds()) {
     if (options_.after_pass) options_.after_pass("start", worst_of(mesh_));
   }
 
   void laplacian(int sweeps, double relaxation, MoveRule rule) {
-    pass("laplacian moves", [&] { return laplacian_sweeps(mesh_, sweeps, relaxation, rule, context_); });
+    pass("laplacian moves", [&] { return laplacian_sweeps(mesh_, sweeps, relaxation, rule, stage_.context()); });
   }
   void smooth_mean(int sweeps) {
-    pass("moves for the mean", [&] { return improve::smooth_mean(mesh_, sweeps, context_); });
+    pass("moves for the mean", [&] { return improve::smooth_mean(mesh_, sweeps, stage_.context()); });
   }
   /// The boundary too.
   void slide_mean() {
-    pass("moves and slides for the mean", [&] { return improve::smooth_mean(mesh_, 1, context_, guide_); });
+    pass("moves and slides for the mean", [&] { return improve::smooth_mean(mesh_, 1, stage_.context(), guide_); });
   }
   void mean_flips(float threshold, Goal goal = Goal::kMean) {
-    pass("reconnections for the mean", [&] { return reconnect(mesh_, threshold, goal, context_); });
+    pass("reconnections for the mean", [&] { return reconnect(mesh_, threshold, goal, stage_.context()); });
   }
   void flips(float threshold) {
-    pass("reconnections", [&] { return reconnect(mesh_, threshold, Goal::kWorst, context_, guide_); });
+    pass("reconnections", [&] { return reconnect(mesh_, threshold, Goal::kWorst, stage_.context(), guide_); });
   }
   void collapse(float threshold) {
-    pass("collapsed vertices", [&] { return collapse_vertices(mesh_, threshold, Goal::kMean, context_); });
+    pass("collapsed vertices", [&] { return collapse_vertices(mesh_, threshold, Goal::kMean, stage_.context()); });
   }
   void insert(float threshold) {
-    pass("inserted vertices", [&] { return insert_vertices(mesh_, threshold, Goal::kWorst, context_); });
+    pass("inserted vertices", [&] { return insert_vertices(mesh_, threshold, Goal::kWorst, stage_.context()); });
   }
   void small_polyhedra(float threshold) {
-    pass("small polyhedra", [&] { return reconnect_small_polyhedra(mesh_, threshold, context_); });
+    pass("small polyhedra", [&] { return reconnect_small_polyhedra(mesh_, threshold, stage_.context()); });
   }
   void optimize(float threshold) {
-    pass("optimised vertices", [&] { return optimize_vertices(mesh_, threshold, context_, guide_); });
+    pass("optimised vertices", [&] { return optimize_vertices(mesh_, threshold, stage_.context(), guide_); });
   }
 
   /// Rounds for the worst, until one changes nothing; insertion from round `insert_from` on, below `poor`.
@@ -103,16 +97,16 @@ class Schedule {
 
   /// Against elements that worse ones around them hide from the passes for the worst.
   void relieve(float threshold) {
-    pass("moves against poor elements", [&] { return relieve_vertices(mesh_, threshold, context_); });
+    pass("moves against poor elements", [&] { return relieve_vertices(mesh_, threshold, stage_.context()); });
     pass("reconnections against poor elements",
-         [&] { return reconnect(mesh_, threshold, Goal::kFewestPoor, context_); });
+         [&] { return reconnect(mesh_, threshold, Goal::kFewestPoor, stage_.context()); });
     pass("collapses against poor elements",
-         [&] { return collapse_vertices(mesh_, threshold, Goal::kFewestPoor, context_); });
+         [&] { return collapse_vertices(mesh_, threshold, Goal::kFewestPoor, stage_.context()); });
   }
 
   void insert_against_poor(float threshold) {
     pass("insertions against poor elements",
-         [&] { return insert_vertices(mesh_, threshold, Goal::kFewestPoor, context_); });
+         [&] { return insert_vertices(mesh_, threshold, Goal::kFewestPoor, stage_.context()); });
   }
 
   /// What the elements lack, in sum.
@@ -129,11 +123,11 @@ class Schedule {
   /// Says what stays poor and why.
   void explain() {
     const Shortfall s = explain_shortfall(mesh_, kReported);
-    report_.count(fmt::format("elements below {:.1f}", kReported), static_cast<double>(s.elements));
-    report_.count("forced by the angle between boundary faces", static_cast<double>(s.forced_by_angle));
-    report_.count("forced by a boundary triangle", static_cast<double>(s.forced_by_triangle));
-    report_.count("between boundary vertices only", static_cast<double>(s.in_thin_places));
-    report_.count("not forced", static_cast<double>(s.not_forced));
+    stage_.count(fmt::format("elements below {:.1f}", kReported), static_cast<double>(s.elements));
+    stage_.count("forced by the angle between boundary faces", static_cast<double>(s.forced_by_angle));
+    stage_.count("forced by a boundary triangle", static_cast<double>(s.forced_by_triangle));
+    stage_.count("between boundary vertices only", static_cast<double>(s.in_thin_places));
+    stage_.count("not forced", static_cast<double>(s.not_forced));
     if (s.elements == 0) return;
     std::string note = fmt::format(
         "{} below {:.1f} ({}): {} where boundary faces meet at a small angle, {} on or beside boundary triangles of "
@@ -148,7 +142,7 @@ class Schedule {
       note += fmt::format("; the worst of these, {:.3f}, near ({}, {}, {})", mesh_.shape(s.worst_not_forced).score, p.x,
                           p.y, p.z);
     }
-    report_.notes.push_back(std::move(note));
+    stage_.note(std::move(note));
   }
 
  private:
@@ -160,27 +154,25 @@ class Schedule {
     note(what, run());
     if (!options_.seconds || !(clock_.seconds() > *options_.seconds)) return;
     late_ = true;
-    report_.notes.push_back(
-        fmt::format("the {} s for improvement were over after pass {}", *options_.seconds, passes_));
+    stage_.note(fmt::format("the {} s for improvement were over after pass {}", *options_.seconds, passes_));
   }
 
   void note(const char* what, const PassResult& result) {
     const double now = process_cpu_seconds();
-    report_.count(fmt::format("pass {}: {}", ++passes_, what), static_cast<double>(result.done));
+    stage_.count(fmt::format("pass {}: {}", ++passes_, what), static_cast<double>(result.done));
     changes_ += result.done;
-    report_.count(fmt::format("pass {}: tried", passes_), static_cast<double>(result.tried));
-    report_.count(fmt::format("pass {}: us per element", passes_),
-                  1e6 * (now - started_) / static_cast<double>(mesh_.live_tets()));
+    stage_.count(fmt::format("pass {}: tried", passes_), static_cast<double>(result.tried));
+    stage_.count(fmt::format("pass {}: us per element", passes_),
+                 1e6 * (now - started_) / static_cast<double>(mesh_.live_tets()));
     started_ = process_cpu_seconds();
-    context_.report("improve", -1);
+    stage_.progress(-1);
     if (options_.after_pass) options_.after_pass(what, worst_of(mesh_));
   }
 
   EditMesh& mesh_;
   const BoundaryGuide* guide_;
   const ImproveOptions& options_;
-  const RunContext& context_;
-  StageReport& report_;
+  const Stage& stage_;
   double started_;
   Stopwatch clock_;
   bool late_ = false;
@@ -294,11 +286,11 @@ constexpr int kMostRetries = 3;
 
 /// One run of the schedule; vertices in `frozen`, and those around them, stay on the boundary where they are.
 TetMesh improved(const TetMesh& mesh, const BoundaryInput* boundary, const std::vector<VertexIndex>& frozen,
-                 const ImproveOptions& options, const RunContext& context, StageReport& report) {
+                 const ImproveOptions& options, const Stage& stage) {
   EditMesh edit(TetMesh{mesh}, options.objective);
   std::optional<BoundaryGuide> guide;
   if (boundary) guide.emplace(edit, *boundary, frozen);
-  Schedule run(edit, guide ? &*guide : nullptr, options, context, report);
+  Schedule run(edit, guide ? &*guide : nullptr, options, stage);
   run_schedule(run, options);
   run.explain();
   return edit.release();
@@ -325,20 +317,20 @@ std::vector<VertexIndex> where_boundary_crosses(const TetMesh& mesh) {
 
 }  // namespace
 
-bool improve_mesh(TetMesh& mesh, const BoundaryInput* boundary, const ImproveOptions& options,
-                  const RunContext& context, StageReport& report) {
+bool improve_mesh(TetMesh& mesh, const BoundaryInput* boundary, const ImproveOptions& options, const Stage& stage) {
   check_options(options);
   if (options.level == ImproveOptions::Level::kOff || mesh.tets.empty()) return false;
   if (!options.move_boundary || options.level == ImproveOptions::Level::kPaper) boundary = nullptr;
   std::vector<VertexIndex> frozen;
   for (int retry = 0;; ++retry) {
-    StageReport attempt = report;
-    TetMesh better = improved(mesh, retry < kMostRetries ? boundary : nullptr, frozen, options, context, attempt);
+    StageReport attempt = stage.report();
+    TetMesh better =
+        improved(mesh, retry < kMostRetries ? boundary : nullptr, frozen, options, {stage.context(), attempt});
     const bool moved = !same_boundary(mesh, better);
     const std::vector<VertexIndex> crossing = moved ? where_boundary_crosses(better) : std::vector<VertexIndex>{};
     if (crossing.empty()) {
       attempt.count("runs with places of the boundary frozen", retry);
-      report = std::move(attempt);
+      stage.report() = std::move(attempt);
       mesh = std::move(better);
       return moved;
     }

@@ -1,6 +1,7 @@
 #include <octafront/error.h>
 #include <octafront/generate.h>
 
+#include "pipeline/methods.h"
 #include "sizing/size_sources.h"
 
 #include <cmath>
@@ -23,14 +24,14 @@ void check_options(const Options& options) {
           "max-deviation is a distance in the units of the input, above 0");
   require(!surface.normal_deviation || (*surface.normal_deviation > 0 && *surface.normal_deviation <= 90),
           "normal-deviation is in degrees, above 0 and at most 90");
-  require(!(surface.keep && (surface.max_deviation || surface.normal_deviation)),
+  require(!(keeps_surface(options) && (surface.max_deviation || surface.normal_deviation)),
           "a surface that is kept does not deviate: max-deviation and normal-deviation cannot be given with it");
   require(options.volume.ideal_distance >= 0.3 && options.volume.ideal_distance <= 1.5,
           "ideal-distance is a multiple of the element size, between 0.3 and 1.5");
   require(options.improve.relaxation > 0 && options.improve.relaxation <= 1,
           "relaxation must be above 0 and at most 1");
   require(options.improve.sweeps >= 0, "sweeps must not be negative");
-  require(options.method != Method::kOctree || !surface.keep,
+  require(!(surface.keep && traits_of(options.method).makes_own_boundary()),
           "the octree method makes a boundary of its own: it cannot keep the input's triangles");
 }
 

@@ -1,30 +1,19 @@
 #include <octafront/error.h>
-#include <octafront/generate.h>
 #include <octafront/improve_existing.h>
 #include <octafront/repair.h>
 #include <octafront/validity.h>
 
-#include "core/thread_limit.h"
 #include "geometry/triangle_tree.h"
 #include "improve/improve.h"
 #include "mesh/features.h"
 #include "pipeline/follow_boundary.h"
-#include "pipeline/pipeline.h"
-#include "pipeline/run_stage.h"
+#include "pipeline/stages.h"
 #include "surface/surface_check.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace octafront {
 namespace {
-
-SurfaceMesh boundary_of(const TetMesh& mesh) {
-  SurfaceMesh boundary;
-  boundary.points = mesh.points;
-  boundary.triangles = mesh.boundary;
-  boundary.patch = mesh.patch;
-  return boundary;
-}
 
 SurfaceMesh without_inner_points(const SurfaceMesh& surface) {
   SurfaceMesh out;
@@ -89,36 +78,24 @@ void require_valid(const TetMesh& mesh) {
 
 Improved improve_existing(const TetMesh& mesh, const Options& options, const SurfaceMesh* surface,
                           const RunContext& context) {
-  const ThreadLimit limit(context.threads);
-  check_options(options);
+  Run run(options, context);
   Improved result;
-  Report& report = result.report;
-  run_stage(report, context, "check of the input", [&](StageReport&) { require_valid(mesh); });
+  run.stage("check of the input", [&](const Stage&) { require_valid(mesh); });
   result.mesh = mesh;
   result.before = summarize_quality(mesh);
-  report.input_volume = enclosed_volume(boundary_of(mesh));
+  run.report.input_volume = enclosed_volume(boundary_of(mesh));
   Ground ground;
   if (surface)
-    run_stage(report, context, "surface",
-              [&](StageReport&) { ground = prepare_ground(mesh, *surface, options.surface.feature_angle); });
-  run_stage(report, context, "improve", [&](StageReport& stage) {
+    run.stage("surface", [&](const Stage&) { ground = prepare_ground(mesh, *surface, options.surface.feature_angle); });
+  run.stage("improve", [&](const Stage& stage) {
     const TriangleTree tree(ground.repaired.surface);
     const improve::BoundaryInput on{ground.repaired.surface, tree, ground.features, ground.of_mesh};
-    if (improve_mesh(result.mesh, surface ? &on : nullptr, options.improve, context, stage))
+    if (improve_mesh(result.mesh, surface ? &on : nullptr, options.improve, stage))
       renew_sources(result.mesh, boundary_of(mesh), tree, ground.repaired.face_of_triangle);
   });
-  run_stage(report, context, "check", [&](StageReport&) {
-    if (const auto defect = first_defect(result.mesh))
-      throw MeshingError("the mesh made is not valid, which is a bug of ours; please report it with the input. " +
-                         *defect);
-  });
-  report.points = result.mesh.points.size();
-  report.tets = result.mesh.tets.size();
-  report.boundary_faces = result.mesh.boundary.size();
-  report.volume = enclosed_volume(boundary_of(result.mesh));
-  report.quality = summarize_quality(result.mesh);
-  report.hash = mesh_hash(result.mesh);
-  close_report(report);
+  check_result(result.mesh, nullptr, run);
+  describe(result.mesh, run.report);
+  result.report = run.close();
   return result;
 }
 

@@ -70,6 +70,11 @@ SizeSummary summarize_volume_edges(const TetMesh& mesh, const SizeField& sizes) 
   return summarize(keys, mesh.points, sizes);
 }
 
+void describe_sizes(const TetMesh& mesh, const SizeField& sizes, Report& report) {
+  report.surface_edges = summarize_surface_edges(mesh.points, mesh.boundary, sizes);
+  report.volume_edges = summarize_volume_edges(mesh, sizes);
+}
+
 std::uint64_t mesh_hash(const TetMesh& mesh) {
   Fnv hash;
   for (const Vec3& p : mesh.points)

@@ -113,18 +113,18 @@ TetMesh extract(const SurfaceMesh& surface, const ExactPoints& points, const Tet
   return result;
 }
 
-void count(StageReport& report, const RecoveryCounts& c, const LiftCounts& l) {
-  report.count("edges missing", static_cast<double>(c.missing_edges));
-  report.count("edges recovered by flips", static_cast<double>(c.edges_by_flips));
-  report.count("facets missing", static_cast<double>(c.missing_facets));
-  report.count("facets recovered by flips", static_cast<double>(c.facets_by_flips));
-  report.count("points on edges", static_cast<double>(c.edge_points));
-  report.count("points at crossings", static_cast<double>(c.crossing_points));
-  report.count("points on facets", static_cast<double>(c.facet_points));
-  report.count("points merged", static_cast<double>(l.collapsed));
-  report.count("points lifted", static_cast<double>(l.lifted));
-  report.count("points removed", static_cast<double>(l.removed));
-  report.count("points deferred", static_cast<double>(l.deferred));
+void count(const Stage& stage, const RecoveryCounts& c, const LiftCounts& l) {
+  stage.count("edges missing", static_cast<double>(c.missing_edges));
+  stage.count("edges recovered by flips", static_cast<double>(c.edges_by_flips));
+  stage.count("facets missing", static_cast<double>(c.missing_facets));
+  stage.count("facets recovered by flips", static_cast<double>(c.facets_by_flips));
+  stage.count("points on edges", static_cast<double>(c.edge_points));
+  stage.count("points at crossings", static_cast<double>(c.crossing_points));
+  stage.count("points on facets", static_cast<double>(c.facet_points));
+  stage.count("points merged", static_cast<double>(l.collapsed));
+  stage.count("points lifted", static_cast<double>(l.lifted));
+  stage.count("points removed", static_cast<double>(l.removed));
+  stage.count("points deferred", static_cast<double>(l.deferred));
 }
 
 [[noreturn]] void throw_no_place(const ExactPoints& points, const std::vector<VertexIndex>& open) {
@@ -143,26 +143,25 @@ constexpr std::uint32_t kAttempts = 6;
 // need fewer; where they do not, each attempt may make more than the one before by this factor.
 constexpr std::size_t kMostPointsPerTriangle = 4, kMostPoints = 200, kMorePoints = 4;
 
-std::optional<TetMesh> recover(const SurfaceMesh& surface, std::uint32_t attempt, const RunContext& context,
-                               StageReport& report) {
+std::optional<TetMesh> recover(const SurfaceMesh& surface, std::uint32_t attempt, const Stage& stage) {
   auto [points, used] = read_input(surface);
   TetComplex mesh;
   std::vector<VertexIndex> same_as;
-  const VertexIndex frame = delaunay(points, used, mesh, same_as, context);
+  const VertexIndex frame = delaunay(points, used, mesh, same_as, stage.context());
   const std::vector<Triangle> triangles = merged(surface.triangles, same_as);
   SubdividedSurface subdivided(triangles);
   std::size_t most_points = kMostPointsPerTriangle * triangles.size() + kMostPoints;
   for (std::uint32_t k = 0; k < attempt; ++k) most_points *= kMorePoints;
-  BoundaryRecovery recovery(points, mesh, subdivided, frame, attempt, most_points, context);
+  BoundaryRecovery recovery(points, mesh, subdivided, frame, attempt, most_points, stage.context());
   recovery.run();
   carve(points, subdivided, mesh);
-  SteinerLift lift(points, mesh, triangles, frame + kFrameVertices, frame, attempt, context);
+  SteinerLift lift(points, mesh, triangles, frame + kFrameVertices, frame, attempt, stage.context());
   if (const std::vector<VertexIndex> open = lift.run(); !open.empty()) {
     if (attempt + 1 == kAttempts) throw_no_place(points, open);
     return std::nullopt;
   }
-  count(report, recovery.counts(), lift.counts());
-  report.count("attempts", attempt + 1);
+  count(stage, recovery.counts(), lift.counts());
+  stage.count("attempts", attempt + 1);
   if (!std::ranges::equal(same_as, std::views::iota(VertexIndex{0}, static_cast<VertexIndex>(same_as.size())))) {
     restore_coinciding(surface, same_as, mesh);
   }
@@ -171,15 +170,14 @@ std::optional<TetMesh> recover(const SurfaceMesh& surface, std::uint32_t attempt
 
 }  // namespace
 
-TetMesh recover_volume(const SurfaceMesh& surface, const RunContext& context, StageReport& report,
-                       RecoveryPatience patience) {
-  const StageTimer timer(report);
-  report.name = "recover";
+TetMesh recover_volume(const SurfaceMesh& surface, const Stage& stage, RecoveryPatience patience) {
+  const StageTimer timer(stage.report());
+  stage.report().name = "recover";
   if (surface.triangles.empty()) return {};
   try {
     for (std::uint32_t attempt = 0;; ++attempt) {
       try {
-        if (std::optional<TetMesh> mesh = recover(surface, attempt, context, report)) return std::move(*mesh);
+        if (std::optional<TetMesh> mesh = recover(surface, attempt, stage)) return std::move(*mesh);
       } catch (const TooManyPoints&) {
         if (patience == RecoveryPatience::kCavity || attempt + 1 == kAttempts) throw;
       }

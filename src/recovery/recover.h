@@ -4,10 +4,10 @@
 // whatever its triangles look like, and leaves tetrahedra whose boundary it is, triangle for triangle. See
 // docs/recovery.md.
 
-#include <octafront/report.h>
-#include <octafront/run_context.h>
 #include <octafront/surface_mesh.h>
 #include <octafront/tet_mesh.h>
+
+#include "core/stage.h"
 
 namespace octafront {
 
@@ -23,7 +23,7 @@ enum class RecoveryPatience { kCavity, kSurface };
 /// lifted. Throws MeshingError, with the place, if no doubles exist for a point that is needed, or if the surface is
 /// open, inside out, or has a vertex on another edge or facet. Cost: 4 us per triangle where little is missing, 50-150
 /// on needles.
-TetMesh recover_volume(const SurfaceMesh& surface, const RunContext& context, StageReport& report,
+TetMesh recover_volume(const SurfaceMesh& surface, const Stage& stage,
                        RecoveryPatience patience = RecoveryPatience::kSurface);
 
 }  // namespace octafront

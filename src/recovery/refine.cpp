@@ -240,11 +240,11 @@ class Refiner {
 
 }  // namespace
 
-void refine_interior(TetMesh& mesh, const SizeField& sizes, const RunContext& context, StageReport& report) {
-  Refiner refiner(mesh, sizes, context);
+void refine_interior(TetMesh& mesh, const SizeField& sizes, const Stage& stage) {
+  Refiner refiner(mesh, sizes, stage.context());
   refiner.run();
-  report.count("points added", static_cast<double>(refiner.added()));
-  report.count("elements left too large", static_cast<double>(refiner.left()));
+  stage.count("points added", static_cast<double>(refiner.added()));
+  stage.count("elements left too large", static_cast<double>(refiner.left()));
 }
 
 }  // namespace octafront

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <octafront/report.h>
-#include <octafront/run_context.h>
 #include <octafront/size_field.h>
 #include <octafront/tet_mesh.h>
+
+#include "core/stage.h"
 
 namespace octafront {
 
@@ -17,6 +17,6 @@ namespace octafront {
 /// It ends: no point comes nearer to another than a part of the size there, so there is room for finitely many. Points
 /// are appended to mesh.points, `region` is dropped. Counters of `report`: points added, elements left too large. About
 /// 10 us per element made.
-void refine_interior(TetMesh& mesh, const SizeField& sizes, const RunContext& context, StageReport& report);
+void refine_interior(TetMesh& mesh, const SizeField& sizes, const Stage& stage);
 
 }  // namespace octafront

@@ -66,7 +66,7 @@ double mean_shortfall(const SurfaceMesh& surface, const std::vector<double>& fac
 }
 
 /// The triangles that are kept stand for the size on the surface; these sources would ask for other triangles.
-void note_unused_sources(const SizeOptions& options, StageReport& report) {
+void note_unused_sources(const SizeOptions& options, const Stage& stage) {
   std::string names;
   const auto add = [&](bool given, const char* name) {
     if (given) names += (names.empty() ? "" : ", ") + std::string(name);
@@ -76,18 +76,17 @@ void note_unused_sources(const SizeOptions& options, StageReport& report) {
   add(options.feature_elements.has_value(), "--feature-elements");
   add(options.facets, "--facets");
   if (names.empty()) return;
-  report.notes.push_back(names +
-                         ": not used, for the kept triangles decide the sizes on the surface, and with them those "
-                         "inside; use --regions, --size or --max-size for smaller elements inside");
+  stage.note(names +
+             ": not used, for the kept triangles decide the sizes on the surface, and with them those "
+             "inside; use --regions, --size or --max-size for smaller elements inside");
 }
 
 }  // namespace
 
-SizeField size_field_of_surface(const SurfaceMesh& surface, const SizeOptions& options, const RunContext& context,
-                                StageReport& report) {
+SizeField size_field_of_surface(const SurfaceMesh& surface, const SizeOptions& options, const Stage& stage) {
   check_size_options(options);
   if (options.field) return *options.field;
-  note_unused_sources(options, report);
+  note_unused_sources(options, stage);
   const RootCube root = RootCube::around(bounding_box(surface.points), 0.02);
   const double floor = options.min_size.value_or(model_extent(surface) * 1e-5);
   std::vector<double> face = face_sizes(surface);
@@ -95,7 +94,7 @@ SizeField size_field_of_surface(const SurfaceMesh& surface, const SizeOptions& o
   const SizeAtPlace at_place = given_sizes(surface, options);
   const std::vector<SizeSample> points = samples_of_points(options, floor);
   const auto samples_of = [&](const std::vector<double>& sizes) {
-    std::vector<SizeSample> samples = sample_surface(surface, sizes, at_place, context);
+    std::vector<SizeSample> samples = sample_surface(surface, sizes, at_place, stage.context());
     samples.insert(samples.end(), points.begin(), points.end());
     return samples;
   };
@@ -104,13 +103,13 @@ SizeField size_field_of_surface(const SurfaceMesh& surface, const SizeOptions& o
   rules.interior_below_surface = options.interior == SizeOptions::Interior::kUniform;
   rules.resolve_surface = !rules.interior_below_surface;
   rules.ceiling = std::min({root.side, options.max_size.value_or(HUGE_VAL), options.size.value_or(HUGE_VAL)});
-  auto grid = make_background_grid(root, samples_of(face), rules, context);
+  auto grid = make_background_grid(root, samples_of(face), rules, stage.context());
   double shortfall = mean_shortfall(surface, face, *grid);
   if (shortfall > kSteeperFrom) {
     rules.gradation *= kSteeper;
-    grid = make_background_grid(root, samples_of(face), rules, context);
+    grid = make_background_grid(root, samples_of(face), rules, stage.context());
     shortfall = mean_shortfall(surface, face, *grid);
-    report.notes.push_back(fmt::format(
+    stage.note(fmt::format(
         "the kept triangles change in size faster than gradation allows: sizes change by up to {:.3g} per unit of "
         "length",
         rules.gradation));
@@ -119,11 +118,11 @@ SizeField size_field_of_surface(const SurfaceMesh& surface, const SizeOptions& o
   if (shortfall > kRaisedFrom) {
     std::vector<double> raised = face;
     for (double& h : raised) h *= shortfall;
-    grid = make_background_grid(root, samples_of(raised), rules, context);
+    grid = make_background_grid(root, samples_of(raised), rules, stage.context());
   }
-  report.count("leaves", static_cast<double>(grid->tree.size()));
-  report.count("levels", grid->tree.depth());
-  return SizeField(with_regions(std::move(grid), options, context));
+  stage.count("leaves", static_cast<double>(grid->tree.size()));
+  stage.count("levels", grid->tree.depth());
+  return SizeField(with_regions(std::move(grid), options, stage.context()));
 }
 
 }  // namespace octafront

@@ -75,11 +75,11 @@ SizeField grid_field(const SurfaceMesh& surface, const WantedSizes& wanted, cons
 }
 
 SizeField scaled_to_count(const SurfaceMesh& surface, const WantedSizes& wanted, const SizeOptions& options,
-                          const RunContext& context, StageReport& report) {
+                          const Stage& stage) {
   const double target = std::log(static_cast<double>(*options.elements));
   // Secant steps in logarithms; the count falls with about the third power of the sizes.
   double x = 0, slope = -3, last_x = 0, last_y = 0;
-  SizeField best = grid_field(surface, wanted, options, context);
+  SizeField best = grid_field(surface, wanted, options, stage.context());
   double y = std::log(expected_tets(best, surface));
   double best_miss = std::abs(y - target);
   int steps = 0;
@@ -87,7 +87,7 @@ SizeField scaled_to_count(const SurfaceMesh& surface, const WantedSizes& wanted,
     last_x = x;
     last_y = y;
     x += (target - y) / slope;
-    SizeField field = grid_field(surface, scaled(wanted, std::exp(x), options), options, context);
+    SizeField field = grid_field(surface, scaled(wanted, std::exp(x), options), options, stage.context());
     y = std::log(expected_tets(field, surface));
     if (std::abs(y - target) < best_miss) {
       best_miss = std::abs(y - target);
@@ -95,10 +95,10 @@ SizeField scaled_to_count(const SurfaceMesh& surface, const WantedSizes& wanted,
     }
     if (x != last_x) slope = std::clamp((y - last_y) / (x - last_x), -4.0, -1.0);
   }
-  report.count("scalings", steps);
+  stage.count("scalings", steps);
   if (best_miss > 0.05) {
-    report.notes.push_back(fmt::format("{} elements were asked for, but the limits on the size give {:.3g}",
-                                       *options.elements, expected_tets(best, surface)));
+    stage.note(fmt::format("{} elements were asked for, but the limits on the size give {:.3g}", *options.elements,
+                           expected_tets(best, surface)));
   }
   return best;
 }
@@ -116,20 +116,20 @@ WantedSizes raised(const WantedSizes& wanted, double floor) {
 /// Sizes of our own choice must not make a large mesh that nobody asked for, as the noise of a scan does, or a thousand
 /// small holes: then the smallest sizes are raised until the number of elements is within the budget.
 SizeField within_budget(const SurfaceMesh& surface, const WantedSizes& wanted, const SizeOptions& options,
-                        const RunContext& context, SizeField field, StageReport& report) {
+                        SizeField field, const Stage& stage) {
   const double first = expected_tets(field, surface);
   if (first <= kAutomaticBudget) return field;
   double low = field.min_size(), high = std::min(wanted.ceiling, kMostRaised * low);
   for (int step = 0; step < kBudgetSteps; ++step) {
     const double floor = step == 0 ? high : std::sqrt(low * high);
-    SizeField coarser = grid_field(surface, raised(wanted, floor), options, context);
+    SizeField coarser = grid_field(surface, raised(wanted, floor), options, stage.context());
     const double count = expected_tets(coarser, surface);
     const bool is_within = count <= kAutomaticBudget;
     (is_within ? high : low) = floor;
     if (is_within || step == 0) field = std::move(coarser);
     if ((step == 0 && !is_within) || std::abs(count / kAutomaticBudget - 1) < kNearBudget) break;
   }
-  report.notes.push_back(fmt::format(
+  stage.note(fmt::format(
       "the details of this surface ask for {:.2g} million elements; the automatic size stops at {:.4g}, for about "
       "{:.2g} "
       "million. For more of the details ask for them, e.g. with --elements, --curvature, --gap or --min-size",
@@ -149,21 +149,20 @@ void refuse_huge_counts(const SurfaceMesh& surface, const WantedSizes& wanted) {
 }  // namespace
 
 SizeField make_size_field(const SurfaceMesh& surface, const Features& features, const SizeOptions& options,
-                          const RunContext& context, StageReport& report) {
+                          const Stage& stage) {
   check_size_options(options);
   if (surface.triangles.empty()) throw InputError("the surface has no triangles: there is nothing to choose sizes for");
   if (options.field) return *options.field;
-  const WantedSizes wanted = wanted_sizes(surface, features, options, context, report);
+  const WantedSizes wanted = wanted_sizes(surface, features, options, stage);
   if (!options.elements) refuse_huge_counts(surface, wanted);
-  SizeField field = options.elements ? scaled_to_count(surface, wanted, options, context, report)
-                                     : grid_field(surface, wanted, options, context);
-  if (wanted.automatic && !options.elements)
-    field = within_budget(surface, wanted, options, context, std::move(field), report);
+  SizeField field = options.elements ? scaled_to_count(surface, wanted, options, stage)
+                                     : grid_field(surface, wanted, options, stage.context());
+  if (wanted.automatic && !options.elements) field = within_budget(surface, wanted, options, std::move(field), stage);
   const OctreeField& grid = *as_octree_field(field);
-  report.count("leaves", static_cast<double>(grid.tree.size()));
-  report.count("levels", grid.tree.depth());
-  report.count("smallest size", field.min_size());
-  report.count("largest size", field.max_size());
+  stage.count("leaves", static_cast<double>(grid.tree.size()));
+  stage.count("levels", grid.tree.depth());
+  stage.count("smallest size", field.min_size());
+  stage.count("largest size", field.max_size());
   return field;
 }
 

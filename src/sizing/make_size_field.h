@@ -10,11 +10,10 @@
 
 #include <octafront/io.h>
 #include <octafront/options.h>
-#include <octafront/report.h>
-#include <octafront/run_context.h>
 #include <octafront/size_field.h>
 #include <octafront/surface_mesh.h>
 
+#include "core/stage.h"
 #include "mesh/features.h"
 
 namespace octafront {
@@ -23,12 +22,11 @@ namespace octafront {
 /// corners, graded, continuous inside leaves. Throws OptionError for contradictions and values out of range.
 /// With options.elements the sizes are scaled until expected_tets() meets it.
 SizeField make_size_field(const SurfaceMesh& surface, const Features& features, const SizeOptions& options,
-                          const RunContext& context, StageReport& report);
+                          const Stage& stage);
 
 /// For a surface that is kept: sizes from its own triangles (robust against needles and jumps), graded, combined with
 /// the sources of `options` inside.
-SizeField size_field_of_surface(const SurfaceMesh& surface, const SizeOptions& options, const RunContext& context,
-                                StageReport& report);
+SizeField size_field_of_surface(const SurfaceMesh& surface, const SizeOptions& options, const Stage& stage);
 
 /// How many tetrahedra a mesh of the inside of `surface` by these sizes will have; integral of c / h^3, c measured.
 double expected_tets(const SizeField& sizes, const SurfaceMesh& surface);

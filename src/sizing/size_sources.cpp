@@ -186,7 +186,7 @@ double model_extent(const SurfaceMesh& surface) {
 }
 
 WantedSizes wanted_sizes(const SurfaceMesh& surface, const Features& features, const SizeOptions& options,
-                         const RunContext& context, StageReport& report) {
+                         const Stage& stage) {
   const Choice choice = choose(surface, options);
   WantedSizes wanted;
   wanted.face.assign(surface.triangles.size(), choice.base);
@@ -195,7 +195,7 @@ WantedSizes wanted_sizes(const SurfaceMesh& surface, const Features& features, c
     const FaceNeighbours across = smooth_face_neighbours(surface, features.edges);
     if (options.facets) apply_facets(surface, across, choice.floor, wanted.face);
     if (choice.curvature > 0 || options.chord_error) {
-      const SurfaceCurvature curvature = surface_curvature(surface, across, context);
+      const SurfaceCurvature curvature = surface_curvature(surface, across, stage.context());
       if (options.chord_error) apply_chord_error(curvature, *options.chord_error, choice.floor, wanted.face);
       if (choice.curvature > 0) apply_curvature(curvature, choice.curvature, choice.floor, wanted.face);
       if (choice.automatic) scale = automatic_scale(surface, curvature, wanted.face);
@@ -214,8 +214,8 @@ WantedSizes wanted_sizes(const SurfaceMesh& surface, const Features& features, c
   const auto [least, most] = std::minmax_element(wanted.face.begin(), wanted.face.end());
   wanted.automatic = choice.automatic && !options.min_size && !options.max_size;
   wanted.even = !wanted.at_place && wanted.points.empty() && *least == *most;
-  report.count("base size", choice.base * scale);
-  report.count("extent", model_extent(surface));
+  stage.count("base size", choice.base * scale);
+  stage.count("extent", model_extent(surface));
   return wanted;
 }
 

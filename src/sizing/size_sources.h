@@ -1,10 +1,9 @@
 #pragma once
 
 #include <octafront/options.h>
-#include <octafront/report.h>
-#include <octafront/run_context.h>
 #include <octafront/surface_mesh.h>
 
+#include "core/stage.h"
 #include "mesh/features.h"
 #include "sizing/background_grid.h"
 #include "sizing/surface_samples.h"
@@ -38,7 +37,7 @@ double model_extent(const SurfaceMesh& surface);
 
 /// Asks every source that `options` names; the automatic choice if it names none. Throws OptionError.
 WantedSizes wanted_sizes(const SurfaceMesh& surface, const Features& features, const SizeOptions& options,
-                         const RunContext& context, StageReport& report);
+                         const Stage& stage);
 
 /// The sources that are asked place by place and that hold for every kind of surface: options.point_sizes and the
 /// callback, whose answers are checked. Empty if there are none. Refers to `surface`, which must outlive it.

@@ -175,16 +175,15 @@ class Cutter {
 
 }  // namespace
 
-TetMesh cut_lattice(const RootCube& root, const Octree& tree, const ImplicitDomain& domain, const RunContext& context,
-                    StageReport& report) {
-  LatticeGraph graph = build_lattice_graph(root, tree, domain, context);
+TetMesh cut_lattice(const RootCube& root, const Octree& tree, const ImplicitDomain& domain, const Stage& stage) {
+  LatticeGraph graph = build_lattice_graph(root, tree, domain, stage.context());
   Warp warp(graph);
   warp.run();
-  report.count("lattice points", static_cast<double>(graph.sites.size()));
-  report.count("cut edges", static_cast<double>(graph.cuts.size()));
-  report.count("warped points", static_cast<double>(warp.warped));
-  report.count("warps refused", static_cast<double>(warp.refused));
-  return Cutter(graph).run(context);
+  stage.count("lattice points", static_cast<double>(graph.sites.size()));
+  stage.count("cut edges", static_cast<double>(graph.cuts.size()));
+  stage.count("warped points", static_cast<double>(warp.warped));
+  stage.count("warps refused", static_cast<double>(warp.refused));
+  return Cutter(graph).run(stage.context());
 }
 
 }  // namespace octafront

@@ -1,9 +1,8 @@
 #pragma once
 
-#include <octafront/report.h>
-#include <octafront/run_context.h>
 #include <octafront/tet_mesh.h>
 
+#include "core/stage.h"
 #include "sizing/octree.h"
 #include "stuffing/implicit_domain.h"
 
@@ -17,7 +16,6 @@ inline constexpr double kWarpLong = 0.24999, kWarpShort = 0.41189;
 /// onto it, tetrahedra that still cross it cut. All are positive. `boundary` is filled, the rest of the mesh's fields
 /// are left empty. Counts in `report` what was warped and cut.
 /// REQUIRES: the tree is balanced, and the domain keeps at least two leaves away from the wall of the root.
-TetMesh cut_lattice(const RootCube& root, const Octree& tree, const ImplicitDomain& domain, const RunContext& context,
-                    StageReport& report);
+TetMesh cut_lattice(const RootCube& root, const Octree& tree, const ImplicitDomain& domain, const Stage& stage);
 
 }  // namespace octafront

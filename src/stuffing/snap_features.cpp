@@ -194,15 +194,15 @@ class Snapper {
 }  // namespace
 
 void snap_features(TetMesh& mesh, const SurfaceMesh& surface, const Features& features, const TriangleTree& triangles,
-                   const SizeField& sizes, const RunContext& context, StageReport& report) {
+                   const SizeField& sizes, const Stage& stage) {
   Snapper snapper(mesh, surface, features, triangles, sizes);
   snapper.snap_corners();
-  if (!features.edges.empty()) snapper.snap_curves(context);
-  snapper.undo_meetings(context);
-  report.count("vertices snapped to corners", static_cast<double>(snapper.corners));
-  report.count("vertices snapped to curves", static_cast<double>(snapper.on_curves));
-  report.count("snaps undone where the boundary met itself", static_cast<double>(snapper.undone));
-  report.count("crossings left blunt", static_cast<double>(snapper.refused));
+  if (!features.edges.empty()) snapper.snap_curves(stage.context());
+  snapper.undo_meetings(stage.context());
+  stage.count("vertices snapped to corners", static_cast<double>(snapper.corners));
+  stage.count("vertices snapped to curves", static_cast<double>(snapper.on_curves));
+  stage.count("snaps undone where the boundary met itself", static_cast<double>(snapper.undone));
+  stage.count("crossings left blunt", static_cast<double>(snapper.refused));
 }
 
 }  // namespace octafront

@@ -1,11 +1,10 @@
 #pragma once
 
-#include <octafront/report.h>
-#include <octafront/run_context.h>
 #include <octafront/size_field.h>
 #include <octafront/surface_mesh.h>
 #include <octafront/tet_mesh.h>
 
+#include "core/stage.h"
 #include "geometry/triangle_tree.h"
 #include "mesh/features.h"
 
@@ -15,6 +14,6 @@ namespace octafront {
 /// tetrahedron around the vertex stays positive (exactly) and of fair shape, and the boundary does not meet itself
 /// (exactly). `triangles` is the tree over `surface`.
 void snap_features(TetMesh& mesh, const SurfaceMesh& surface, const Features& features, const TriangleTree& triangles,
-                   const SizeField& sizes, const RunContext& context, StageReport& report);
+                   const SizeField& sizes, const Stage& stage);
 
 }  // namespace octafront

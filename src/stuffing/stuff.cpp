@@ -63,20 +63,21 @@ void name_boundary(TetMesh& mesh, const SurfaceMesh& surface, const TriangleTree
 }  // namespace
 
 TetMesh stuff_surface(const SurfaceMesh& surface, const Features& features, SurfaceDomain::Defects defects,
-                      const SizeField& sizes, const RunContext& context, StageReport& report) {
+                      const SizeField& sizes, const Stage& stage) {
   const SurfaceDomain domain(surface, defects);
-  const StuffingOctree octree = build_stuffing_octree(surface, domain, sizes, context);
-  report.count("leaves", static_cast<double>(octree.tree.size()));
-  TetMesh mesh = cut_lattice(octree.root, octree.tree, domain, context, report);
-  report.count("tetrahedra dropped where parts touched", static_cast<double>(make_boundary_manifold(mesh, context)));
+  const StuffingOctree octree = build_stuffing_octree(surface, domain, sizes, stage.context());
+  stage.count("leaves", static_cast<double>(octree.tree.size()));
+  TetMesh mesh = cut_lattice(octree.root, octree.tree, domain, stage);
+  stage.count("tetrahedra dropped where parts touched",
+              static_cast<double>(make_boundary_manifold(mesh, stage.context())));
   if (mesh.tets.empty())
     throw MeshingError("nothing inside the surface is as large as an element: choose a smaller element size");
   put_boundary_first(mesh);
-  snap_features(mesh, surface, features, domain.triangles(), sizes, context, report);
+  snap_features(mesh, surface, features, domain.triangles(), sizes, stage);
   name_boundary(mesh, surface, domain.triangles());
   mesh.region = connected_parts(mesh);
   mesh.patch_names = surface.patch_names;
-  report.count("parts", mesh.region.empty() ? 1 : 1 + *std::max_element(mesh.region.begin(), mesh.region.end()));
+  stage.count("parts", mesh.region.empty() ? 1 : 1 + *std::max_element(mesh.region.begin(), mesh.region.end()));
   return mesh;
 }
 

@@ -7,12 +7,11 @@
 //   stuffing_octree -> lattice_graph (sides, cut edges; implicit_domain says what is inside) -> cut_lattice (warp, cut)
 //     -> manifold (no parts that touch in an edge or a point) -> snap_features (corners and curves) -> patches, regions
 
-#include <octafront/report.h>
-#include <octafront/run_context.h>
 #include <octafront/size_field.h>
 #include <octafront/surface_mesh.h>
 #include <octafront/tet_mesh.h>
 
+#include "core/stage.h"
 #include "mesh/features.h"
 #include "stuffing/implicit_domain.h"
 
@@ -24,6 +23,6 @@ namespace octafront {
 /// does not meet itself; parts of the body thinner than an element may be lost. Throws MeshingError if nothing of the
 /// body is as large as an element.
 TetMesh stuff_surface(const SurfaceMesh& surface, const Features& features, SurfaceDomain::Defects defects,
-                      const SizeField& sizes, const RunContext& context, StageReport& report);
+                      const SizeField& sizes, const Stage& stage);
 
 }  // namespace octafront

@@ -105,22 +105,22 @@ std::size_t tet_budget(const SurfaceMesh& surface, const SizeField& sizes) {
   return static_cast<std::size_t>(std::min(4e9, 1e5 + 1000.0 * static_cast<double>(surface.triangles.size()) + finest));
 }
 
-void report_front(StageReport& report, const FrontCounters& counters, std::size_t tets, std::size_t left) {
-  report.count("front tetrahedra", static_cast<double>(tets));
-  report.count("layers", static_cast<double>(counters.layers));
-  report.count("attempts", static_cast<double>(counters.attempts));
-  report.count("faces gathered", static_cast<double>(counters.faces_found));
-  report.count("candidates tried", static_cast<double>(counters.candidates));
-  report.count("face tests", static_cast<double>(counters.face_tests));
-  report.count("exact tests", static_cast<double>(counters.exact_tests));
-  report.count("ideal points", static_cast<double>(counters.ideal_points));
-  report.count("faces deferred", static_cast<double>(counters.deferred));
-  report.count("retries", static_cast<double>(counters.retries));
-  report.count("faces left", static_cast<double>(left));
+void report_front(const Stage& stage, const FrontCounters& counters, std::size_t tets, std::size_t left) {
+  stage.count("front tetrahedra", static_cast<double>(tets));
+  stage.count("layers", static_cast<double>(counters.layers));
+  stage.count("attempts", static_cast<double>(counters.attempts));
+  stage.count("faces gathered", static_cast<double>(counters.faces_found));
+  stage.count("candidates tried", static_cast<double>(counters.candidates));
+  stage.count("face tests", static_cast<double>(counters.face_tests));
+  stage.count("exact tests", static_cast<double>(counters.exact_tests));
+  stage.count("ideal points", static_cast<double>(counters.ideal_points));
+  stage.count("faces deferred", static_cast<double>(counters.deferred));
+  stage.count("retries", static_cast<double>(counters.retries));
+  stage.count("faces left", static_cast<double>(left));
 }
 
 TetMesh fill_by_front(const SurfaceMesh& surface, const SizeField& sizes, const VolumeOptions& options,
-                      const RunContext& context, StageReport& report) {
+                      const Stage& stage) {
   TetMesh mesh;
   mesh.boundary = surface.triangles;
   std::vector<Wall> walls;
@@ -128,19 +128,19 @@ TetMesh fill_by_front(const SurfaceMesh& surface, const SizeField& sizes, const 
     FrontState front = start_front(surface, sizes);
     if (options.core == VolumeOptions::Core::kLattice) {
       const double start = process_cpu_seconds();
-      LatticeCore core = build_lattice_core(surface, sizes, context);
-      report.count("core tetrahedra", static_cast<double>(core.tets.size()));
+      LatticeCore core = build_lattice_core(surface, sizes, stage.context());
+      stage.count("core tetrahedra", static_cast<double>(core.tets.size()));
       add_core(front, std::move(core));
-      report.count("core CPU seconds", process_cpu_seconds() - start);
+      stage.count("core CPU seconds", process_cpu_seconds() - start);
     }
     set_sizes(front, sizes);
     const AdvanceBudget budget{.tets = front.tets + tet_budget(surface, sizes),
                                .volume = kVolumeSlack * enclosed_volume(surface)};
     FrontCounters counters;
     const double start = process_cpu_seconds();
-    const bool within_budget = advance_front(front, sizes, options, budget, context, counters);
-    report.count("advance CPU seconds", process_cpu_seconds() - start);
-    report_front(report, counters, front.tets, front.held.size());
+    const bool within_budget = advance_front(front, sizes, options, budget, stage.context(), counters);
+    stage.count("advance CPU seconds", process_cpu_seconds() - start);
+    report_front(stage, counters, front.tets, front.held.size());
     if (!within_budget)
       throw MeshingError("the front made " + std::to_string(front.tets) +
                          " tetrahedra without closing; check the surface for self-intersections, or choose a larger "
@@ -150,7 +150,7 @@ TetMesh fill_by_front(const SurfaceMesh& surface, const SizeField& sizes, const 
     mesh.tets = joined(front.filled);
   }
   if (!walls.empty()) {
-    close_cavities(mesh, walls, sizes, options, context, report);
+    close_cavities(mesh, walls, sizes, options, stage);
     drop_unused_points(mesh, surface.points.size());
   }
   return mesh;
@@ -158,34 +158,33 @@ TetMesh fill_by_front(const SurfaceMesh& surface, const SizeField& sizes, const 
 
 /// The last rung: no front at all. Throws what stopped the front if recovery fails too.
 TetMesh fill_without_front(const SurfaceMesh& surface, const SizeField& sizes, const std::exception_ptr& front_error,
-                           const RunContext& context, StageReport& report) {
+                           const Stage& stage) {
   try {
     StageReport recovery;
     const double start = process_cpu_seconds();
-    TetMesh mesh = recover_volume(surface, context, recovery);
+    TetMesh mesh = recover_volume(surface, {stage.context(), recovery});
     const double recovered = process_cpu_seconds();
-    refine_interior(mesh, sizes, context, report);
-    report.count("whole surface recovery CPU seconds", recovered - start);
-    report.count("points inside CPU seconds", process_cpu_seconds() - recovered);
+    refine_interior(mesh, sizes, stage);
+    stage.count("whole surface recovery CPU seconds", recovered - start);
+    stage.count("points inside CPU seconds", process_cpu_seconds() - recovered);
     return mesh;
   } catch (const MeshingError&) {
     std::rethrow_exception(front_error);
   }
 }
 
-TetMesh fill(const SurfaceMesh& surface, const SizeField& sizes, const VolumeOptions& options,
-             const RunContext& context, StageReport& report) {
+TetMesh fill(const SurfaceMesh& surface, const SizeField& sizes, const VolumeOptions& options, const Stage& stage) {
   TetMesh mesh;
   std::exception_ptr front_error;
   try {
-    mesh = fill_by_front(surface, sizes, options, context, report);
+    mesh = fill_by_front(surface, sizes, options, stage);
   } catch (const MeshingError& error) {
     front_error = std::current_exception();
-    report.notes.push_back(std::string("the whole volume was filled by recovery, for ") + error.what());
+    stage.note(std::string("the whole volume was filled by recovery, for ") + error.what());
   }
-  report.count("filled by recovery of the whole surface", front_error != nullptr);
-  if (front_error) mesh = fill_without_front(surface, sizes, front_error, context, report);
-  report.count("tetrahedra", static_cast<double>(mesh.tets.size()));
+  stage.count("filled by recovery of the whole surface", front_error != nullptr);
+  if (front_error) mesh = fill_without_front(surface, sizes, front_error, stage);
+  stage.count("tetrahedra", static_cast<double>(mesh.tets.size()));
   mesh.region = regions_of(mesh, surface);
   mesh.boundary = surface.triangles;
   mesh.patch = surface.patch;
@@ -196,10 +195,10 @@ TetMesh fill(const SurfaceMesh& surface, const SizeField& sizes, const VolumeOpt
 }  // namespace
 
 TetMesh fill_volume(const SurfaceMesh& surface, const SizeField& sizes, const VolumeOptions& options,
-                    const RunContext& context, StageReport& report) {
+                    const Stage& stage) {
   if (surface.triangles.empty()) throw InputError("the surface has no triangles: nothing to fill");
-  tbb::task_arena arena(context.threads > 0 ? context.threads : tbb::task_arena::automatic);
-  return arena.execute([&] { return fill(surface, sizes, options, context, report); });
+  tbb::task_arena arena(stage.context().threads > 0 ? stage.context().threads : tbb::task_arena::automatic);
+  return arena.execute([&] { return fill(surface, sizes, options, stage); });
 }
 
 }  // namespace octafront

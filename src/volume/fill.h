@@ -1,11 +1,11 @@
 #pragma once
 
 #include <octafront/options.h>
-#include <octafront/report.h>
-#include <octafront/run_context.h>
 #include <octafront/size_field.h>
 #include <octafront/surface_mesh.h>
 #include <octafront/tet_mesh.h>
+
+#include "core/stage.h"
 
 namespace octafront {
 
@@ -16,6 +16,6 @@ namespace octafront {
 /// Where the front leaks or a cavity stays open, recovery of the whole surface takes its place (a note in `report` says
 /// so), with points added inside by the sizes. Throws MeshingError if that fails too.
 TetMesh fill_volume(const SurfaceMesh& surface, const SizeField& sizes, const VolumeOptions& options,
-                    const RunContext& context, StageReport& report);
+                    const Stage& stage);
 
 }  // namespace octafront

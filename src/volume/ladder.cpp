@@ -75,7 +75,7 @@ std::vector<Box3> surroundings(const std::vector<Vec3>& points, const Cavities& 
 }  // namespace
 
 void close_cavities(TetMesh& mesh, const std::vector<Wall>& walls, const SizeField& sizes, const VolumeOptions& options,
-                    const RunContext& context, StageReport& report) {
+                    const Stage& stage) {
   const double start = process_cpu_seconds();
   const std::uint64_t mesh_tets = mesh.tets.size();
   Cavities cavities(walls);
@@ -85,11 +85,11 @@ void close_cavities(TetMesh& mesh, const std::vector<Wall>& walls, const SizeFie
   std::uint64_t face_tests = kBacktrackingFaceTests + kFaceTestsPerTet * mesh_tets;
   for (std::uint32_t c = 0; c < cavities.size(); ++c) {
     if (cavities.walls(c).empty()) continue;
-    context.check();
+    stage.check();
     ++counts.cavities;
     const auto by_front = [&](const BacktrackVariant& variant) {
       const bool closed = timed(counts.front_seconds, [&] {
-        return close_by_front(work, cavities, c, variant, sizes, options, context, face_tests);
+        return close_by_front(work, cavities, c, variant, sizes, options, stage.context(), face_tests);
       });
       counts.by_front += closed;
       return closed;
@@ -101,7 +101,8 @@ void close_cavities(TetMesh& mesh, const std::vector<Wall>& walls, const SizeFie
     if (star.closed || std::any_of(kAfterStar.begin(), kAfterStar.end(), by_front)) continue;
     if (cavities.walls(c).size() > mesh.boundary.size()) give_up(work, cavities.walls(c));
     const auto by_recovery = [&](int rings) {
-      return timed(counts.recovery_seconds, [&] { return close_by_recovery(work, cavities, c, rings, context); });
+      return timed(counts.recovery_seconds,
+                   [&] { return close_by_recovery(work, cavities, c, rings, stage.context()); });
     };
     if (std::any_of(kRecoveryRings.begin(), kRecoveryRings.end(), by_recovery)) {
       ++counts.by_recovery;
@@ -111,15 +112,15 @@ void close_cavities(TetMesh& mesh, const std::vector<Wall>& walls, const SizeFie
   }
   mesh.points = work.take_points();
   mesh.tets = work.take_tets();
-  report.count("cavities", counts.cavities);
-  report.count("closed by backtracking", counts.by_front);
-  report.count("closed by kernel points", counts.by_star);
-  report.count("closed by recovery", counts.by_recovery);
-  report.count("growth steps", counts.growth_steps);
-  report.count("backtracking CPU seconds", counts.front_seconds);
-  report.count("kernel points CPU seconds", counts.star_seconds);
-  report.count("recovery CPU seconds", counts.recovery_seconds);
-  report.count("closing CPU seconds", process_cpu_seconds() - start);
+  stage.count("cavities", counts.cavities);
+  stage.count("closed by backtracking", counts.by_front);
+  stage.count("closed by kernel points", counts.by_star);
+  stage.count("closed by recovery", counts.by_recovery);
+  stage.count("growth steps", counts.growth_steps);
+  stage.count("backtracking CPU seconds", counts.front_seconds);
+  stage.count("kernel points CPU seconds", counts.star_seconds);
+  stage.count("recovery CPU seconds", counts.recovery_seconds);
+  stage.count("closing CPU seconds", process_cpu_seconds() - start);
 }
 
 void drop_unused_points(TetMesh& mesh, std::size_t surface_points) {

@@ -1,12 +1,11 @@
 #pragma once
 
 #include <octafront/options.h>
-#include <octafront/report.h>
-#include <octafront/run_context.h>
 #include <octafront/size_field.h>
 #include <octafront/tet_mesh.h>
 
 #include "cavity/work_mesh.h"
+#include "core/stage.h"
 
 #include <vector>
 
@@ -17,7 +16,7 @@ namespace octafront {
 /// Counts in `report` which rung closed how many. Throws OpenCavityError with the first cavity that stays open, or has
 /// more walls than mesh.boundary has triangles: then recovery of the whole surface is less work.
 void close_cavities(TetMesh& mesh, const std::vector<Wall>& walls, const SizeField& sizes, const VolumeOptions& options,
-                    const RunContext& context, StageReport& report);
+                    const Stage& stage);
 
 /// Points that the closing of cavities has left without a tetrahedron go; the first `surface_points` keep their
 /// numbers.

@@ -33,7 +33,7 @@ bool close_by_recovery(WorkMesh& mesh, Cavities& cavities, std::uint32_t cavity,
   TetMesh filling;
   try {
     StageReport unused;
-    filling = recover_volume(surface, context, unused, RecoveryPatience::kCavity);
+    filling = recover_volume(surface, {context, unused}, RecoveryPatience::kCavity);
   } catch (const MeshingError&) {
     return false;  // the next rung, a larger cavity, gives other walls
   }

@@ -48,7 +48,7 @@ TEST(FillClassic, FillsExactlyTheSurface) {
        {testing::cube(4), testing::icosphere(2), testing::torus(24, 12), testing::hollow_sphere(2),
         testing::joined(testing::cube(3), testing::transformed(testing::icosphere(2), 0.4, {2, 0, 0}))}) {
     StageReport report;
-    const TetMesh mesh = fill_volume_classic(s, {}, {}, report);
+    const TetMesh mesh = fill_volume_classic(s, {}, {{}, report});
     EXPECT_EQ(first_defect(mesh, s), std::nullopt);
     const QualitySummary q = summarize_quality(mesh);
     EXPECT_GT(q.beta_mean, 0.7);
@@ -59,19 +59,19 @@ TEST(FillClassic, FillsExactlyTheSurface) {
 TEST(FillClassic, IsTheSameEachTime) {
   StageReport one, two;
   const SurfaceMesh s = testing::torus(24, 12);
-  EXPECT_EQ(fill_volume_classic(s, {}, {}, one), fill_volume_classic(s, {}, {}, two));
+  EXPECT_EQ(fill_volume_classic(s, {}, {{}, one}), fill_volume_classic(s, {}, {{}, two}));
 }
 
 TEST(FillClassic, RefusesASelfIntersectingSurface) {
   const SurfaceMesh s =
       testing::joined(testing::icosphere(2), testing::transformed(testing::icosphere(2), 1, {0.5, 0, 0}));
   StageReport report;
-  EXPECT_THROW(fill_volume_classic(s, {}, {}, report), MeshingError);
+  EXPECT_THROW(fill_volume_classic(s, {}, {{}, report}), MeshingError);
 }
 
 TEST(FillClassic, RefusesNothing) {
   StageReport report;
-  EXPECT_THROW(fill_volume_classic({}, {}, {}, report), InputError);
+  EXPECT_THROW(fill_volume_classic({}, {}, {{}, report}), InputError);
 }
 
 }  // namespace

@@ -59,8 +59,8 @@ TEST(Boundary, SlidesOnTheSidesAndEdgesOfACube) {
   ImproveOptions options;
   StageReport report;
   TetMesh slid = start, fixed = start;
-  EXPECT_TRUE(improve_mesh(slid, &input, options, {}, report));
-  EXPECT_FALSE(improve_mesh(fixed, nullptr, options, {}, report));
+  EXPECT_TRUE(improve_mesh(slid, &input, options, {{}, report}));
+  EXPECT_FALSE(improve_mesh(fixed, nullptr, options, {{}, report}));
   EXPECT_EQ(first_defect(slid), std::nullopt);
   EXPECT_GT(summarize_quality(slid).beta_mean, summarize_quality(fixed).beta_mean);
   EXPECT_GE(summarize_quality(slid).dihedral_min, summarize_quality(start).dihedral_min);
@@ -100,7 +100,7 @@ TEST(Boundary, StaysWhenTold) {
   options.move_boundary = false;
   StageReport report;
   TetMesh mesh = start;
-  EXPECT_FALSE(improve_mesh(mesh, &input, options, {}, report));
+  EXPECT_FALSE(improve_mesh(mesh, &input, options, {{}, report}));
   for (const Triangle& t : start.boundary)
     for (const VertexIndex v : t) EXPECT_EQ(mesh.points[v], start.points[v]);
 }
@@ -117,7 +117,7 @@ TEST(Boundary, IsTheSameOnAnyNumberOfThreads) {
     context.threads = threads;
     TetMesh mesh = start;
     StageReport report;
-    improve_mesh(mesh, &input, {}, context, report);
+    improve_mesh(mesh, &input, {}, {context, report});
     if (threads == 1) once = mesh;
     EXPECT_EQ(mesh, once) << threads;
     EXPECT_TRUE(std::any_of(start.boundary.begin(), start.boundary.end(),
@@ -178,7 +178,7 @@ TEST(Boundary, FacesBetweenRegionsAreKept) {
   options.level = ImproveOptions::Level::kBest;
   StageReport report;
   TetMesh mesh = start;
-  improve_mesh(mesh, nullptr, options, {}, report);
+  improve_mesh(mesh, nullptr, options, {{}, report});
   EXPECT_EQ(first_defect(mesh), std::nullopt);
   add(mesh, after);
   for (int r = 0; r < 2; ++r) EXPECT_NEAR(after[r], before[r], 1e-12);

@@ -20,7 +20,7 @@ TetMesh improved(TetMesh mesh, Level level, int threads = 0) {
   StageReport report;
   RunContext context;
   context.threads = threads;
-  improve_mesh(mesh, nullptr, options, context, report);
+  improve_mesh(mesh, nullptr, options, {context, report});
   return mesh;
 }
 
@@ -65,7 +65,7 @@ TEST(Improve, RaisesTheWorstByEveryObjective) {
     options.objective = objective;
     StageReport report;
     TetMesh mesh = start;
-    improve_mesh(mesh, nullptr, options, {}, report);
+    improve_mesh(mesh, nullptr, options, {{}, report});
     EXPECT_GT(worst_score(mesh, objective), worst_score(start, objective) + 0.1) << static_cast<int>(objective);
     const QualitySummary after = summarize_quality(mesh);
     EXPECT_GT(after.beta_min, before.beta_min) << static_cast<int>(objective);
@@ -95,11 +95,11 @@ TEST(Improve, EndsAfterThePassInWhichItsTimeIsOver) {
     ++passes;
   };
   StageReport report;
-  improve_mesh(mesh, nullptr, options, {}, report);
+  improve_mesh(mesh, nullptr, options, {{}, report});
   EXPECT_EQ(passes, 1);
   EXPECT_FALSE(report.notes.empty());
   options.seconds = -1;
-  EXPECT_THROW(improve_mesh(mesh, nullptr, options, {}, report), OptionError);
+  EXPECT_THROW(improve_mesh(mesh, nullptr, options, {{}, report}), OptionError);
 }
 
 TEST(Improve, DoesNotDependOnUnits) {
@@ -133,7 +133,7 @@ TEST(Improve, RefusesOptionsOutOfRange) {
   options.relaxation = 1.5;
   TetMesh mesh = kuhn_cube(2);
   StageReport report;
-  EXPECT_THROW(improve_mesh(mesh, nullptr, options, {}, report), OptionError);
+  EXPECT_THROW(improve_mesh(mesh, nullptr, options, {{}, report}), OptionError);
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ using Mesher = std::function<TetMesh(const SurfaceMesh&, const RunContext&)>;
 
 TetMesh by_recovery(const SurfaceMesh& surface, const RunContext& context) {
   StageReport report;
-  return recover_volume(surface, context, report);
+  return recover_volume(surface, {context, report});
 }
 
 TetMesh by_generate(const SurfaceMesh& surface, const RunContext& context) {

@@ -18,7 +18,7 @@ namespace {
 
 TetMesh recovered(const SurfaceMesh& surface) {
   StageReport report;
-  return recover_volume(surface, {}, report);
+  return recover_volume(surface, {{}, report});
 }
 
 void expect_kept(const SurfaceMesh& surface) {
@@ -180,7 +180,7 @@ TEST(RecoverVolume, EndsWhenCancelled) {
   RunContext context;
   context.cancel = &cancel;
   StageReport report;
-  EXPECT_THROW(recover_volume(testing::cube(8), context, report), Cancelled);
+  EXPECT_THROW(recover_volume(testing::cube(8), {context, report}), Cancelled);
 }
 
 TEST(RecoverVolume, RefusesAVertexOnAnEdge) {

@@ -20,12 +20,12 @@ namespace {
 
 TetMesh recovered(const SurfaceMesh& surface) {
   StageReport report;
-  return recover_volume(surface, {}, report);
+  return recover_volume(surface, {{}, report});
 }
 
 TetMesh refined(TetMesh mesh, const SizeField& sizes) {
   StageReport report;
-  refine_interior(mesh, sizes, {}, report);
+  refine_interior(mesh, sizes, {{}, report});
   return mesh;
 }
 
@@ -87,7 +87,7 @@ TEST(RefineInterior, EndsWhenCancelled) {
   RunContext context;
   context.cancel = &cancel;
   StageReport report;
-  EXPECT_THROW(refine_interior(mesh, SizeField::uniform(0.01), context, report), Cancelled);
+  EXPECT_THROW(refine_interior(mesh, SizeField::uniform(0.01), {context, report}), Cancelled);
 }
 
 }  // namespace

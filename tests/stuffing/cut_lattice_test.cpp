@@ -43,7 +43,7 @@ Octree uniform_tree(int level) {
 
 TetMesh cut(int level, const ImplicitDomain& domain) {
   StageReport report;
-  return cut_lattice({{-1, -1, -1}, 2}, uniform_tree(level), domain, {}, report);
+  return cut_lattice({{-1, -1, -1}, 2}, uniform_tree(level), domain, {{}, report});
 }
 
 double inside_box(Vec3 p) {

@@ -23,7 +23,7 @@ using Defects = SurfaceDomain::Defects;
 
 TetMesh stuffed(const SurfaceMesh& surface, double size, Defects defects = Defects::kClean) {
   StageReport report;
-  return stuff_surface(surface, detect_features(surface, 40), defects, SizeField::uniform(size), {}, report);
+  return stuff_surface(surface, detect_features(surface, 40), defects, SizeField::uniform(size), {{}, report});
 }
 
 double volume_of(const TetMesh& mesh) {
@@ -59,7 +59,7 @@ TEST(Stuffing, SnapsToCornersAndCurves) {
   const SurfaceMesh cube = testing::cube(4);
   StageReport report;
   const TetMesh mesh =
-      stuff_surface(cube, detect_features(cube, 40), Defects::kClean, SizeField::uniform(0.09), {}, report);
+      stuff_surface(cube, detect_features(cube, 40), Defects::kClean, SizeField::uniform(0.09), {{}, report});
   EXPECT_EQ(first_defect(mesh), std::nullopt);
   for (int c = 0; c < 8; ++c) {
     const Vec3 corner{double(c & 1), double(c >> 1 & 1), double(c >> 2)};
@@ -78,7 +78,7 @@ TEST(Stuffing, SnapsNoPartOfTheBoundaryThroughAnother) {
     for (const double size : {0.13, 0.2, 0.29}) {
       StageReport report;
       const TetMesh mesh =
-          stuff_surface(two, detect_features(two, 40), Defects::kClean, SizeField::uniform(size), {}, report);
+          stuff_surface(two, detect_features(two, 40), Defects::kClean, SizeField::uniform(size), {{}, report});
       EXPECT_EQ(first_defect(mesh), std::nullopt);
       EXPECT_TRUE(self_intersections(mesh.points, mesh.boundary).empty()) << gap << " " << size;
       for (const auto& [name, value] : report.counters)
@@ -128,7 +128,7 @@ TEST(Stuffing, IsValidWhereSizesChangeAlongTheSurface) {
       0.04, 0.4);
   const SurfaceMesh sphere = testing::icosphere(5);
   StageReport report;
-  const TetMesh mesh = stuff_surface(sphere, {}, Defects::kClean, sizes, {}, report);
+  const TetMesh mesh = stuff_surface(sphere, {}, Defects::kClean, sizes, {{}, report});
   EXPECT_EQ(first_defect(mesh), std::nullopt);
   EXPECT_NEAR(volume_of(mesh) / enclosed_volume(sphere), 1, 0.02);
 }

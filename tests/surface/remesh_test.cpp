@@ -55,7 +55,7 @@ SurfaceMesh box(double x, double y, double z) {
 
 Remeshed remesh(const SurfaceMesh& surface, double h) {
   StageReport report;
-  return remesh_surface(surface, detect_features(surface, 40), SizeField::uniform(h), {}, {}, report);
+  return remesh_surface(surface, detect_features(surface, 40), SizeField::uniform(h), {}, {{}, report});
 }
 
 /// Two spheres, one inside the other, closer than the elements are long.
@@ -213,7 +213,7 @@ TEST(Remesh, FollowsAGradedField) {
   const auto h = [](Vec3 p) { return 0.05 + 0.1 * (p.z + 1); };
   StageReport report;
   const SizeField sizes = SizeField::from_function(h, 0.05, 0.25);
-  const SurfaceMesh s = remesh_surface(input, {}, sizes, {}, {}, report).surface;
+  const SurfaceMesh s = remesh_surface(input, {}, sizes, {}, {{}, report}).surface;
   double sum = 0;
   for (const auto& [a, b, c] : s.triangles) {
     sum += distance(s.points[a], s.points[b]) / h((s.points[a] + s.points[b]) * 0.5);
@@ -227,8 +227,8 @@ TEST(Remesh, StaysWithinTheAskedDeviation) {
   options.max_deviation = 0.01;
   StageReport loose, tight;
   const auto h = SizeField::uniform(0.4);
-  const SurfaceMesh coarse = remesh_surface(input, {}, h, {}, {}, loose).surface;
-  const Remeshed fine = remesh_surface(input, {}, h, options, {}, tight);
+  const SurfaceMesh coarse = remesh_surface(input, {}, h, {}, {{}, loose}).surface;
+  const Remeshed fine = remesh_surface(input, {}, h, options, {{}, tight});
   EXPECT_GT(hausdorff_distance(coarse, input, 1e-3).lower, 0.02);
   EXPECT_LT(hausdorff_distance(fine.surface, input, 1e-3).upper, 0.015);
   EXPECT_LT(fine.sizes.min_size(), 0.4);
@@ -250,9 +250,9 @@ TEST(Remesh, StaysWithinTheAskedNormalDeviation) {
   SurfaceOptions options;
   StageReport loose, tight;
   const auto h = SizeField::uniform(0.5);
-  EXPECT_GT(most_turned(remesh_surface(input, {}, h, options, {}, loose).surface), 14);
+  EXPECT_GT(most_turned(remesh_surface(input, {}, h, options, {{}, loose}).surface), 14);
   options.normal_deviation = 8;
-  const Remeshed fine = remesh_surface(input, {}, h, options, {}, tight);
+  const Remeshed fine = remesh_surface(input, {}, h, options, {{}, tight});
   EXPECT_LT(most_turned(fine.surface), 8.5);
   EXPECT_LT(fine.sizes.min_size(), 0.4);
 }
@@ -323,7 +323,7 @@ TEST(Remesh, StopsWhenAsked) {
   RunContext context;
   context.cancel = &stop;
   StageReport report;
-  EXPECT_THROW(remesh_surface(icosphere(3), {}, SizeField::uniform(0.1), {}, context, report), Cancelled);
+  EXPECT_THROW(remesh_surface(icosphere(3), {}, SizeField::uniform(0.1), {}, {context, report}), Cancelled);
 }
 
 }  // namespace

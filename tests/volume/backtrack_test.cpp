@@ -22,7 +22,7 @@ struct Punctured {
     StageReport report;
     VolumeOptions options;
     options.core = VolumeOptions::Core::kOff;
-    mesh = fill_volume(surface, sizes, options, RunContext{}, report);
+    mesh = fill_volume(surface, sizes, options, {RunContext{}, report});
     const auto center = static_cast<VertexIndex>(surface.points.size());
     std::vector<Tet> kept;
     for (const Tet& t : mesh.tets) {

@@ -106,7 +106,7 @@ TetMesh filled_by(int threads, const SurfaceMesh& surface, double size, VolumeOp
   VolumeOptions options;
   options.core = core;
   StageReport report;
-  return fill_volume(surface, SizeField::uniform(size), options, context, report);
+  return fill_volume(surface, SizeField::uniform(size), options, {context, report});
 }
 
 TEST(Blocks, ThreadsChangeNotOneBit) {

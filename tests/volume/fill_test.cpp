@@ -32,7 +32,7 @@ double mean_edge(const SurfaceMesh& s) {
 
 TetMesh filled(const SurfaceMesh& s, const SizeField& sizes, VolumeOptions options = {}) {
   StageReport report;
-  return fill_volume(s, sizes, options, RunContext{}, report);
+  return fill_volume(s, sizes, options, {RunContext{}, report});
 }
 
 TetMesh filled(const SurfaceMesh& s, VolumeOptions options = {}) {
@@ -220,7 +220,7 @@ TEST(FillVolume, StopsWhenAsked) {
   RunContext context;
   context.cancel = &cancel;
   StageReport report;
-  EXPECT_THROW(fill_volume(s, SizeField::uniform(mean_edge(s)), front_alone(), context, report), Cancelled);
+  EXPECT_THROW(fill_volume(s, SizeField::uniform(mean_edge(s)), front_alone(), {context, report}), Cancelled);
 }
 
 TEST(FillVolume, RefusesAnEmptySurface) {

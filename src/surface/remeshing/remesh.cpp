@@ -135,39 +135,30 @@ SizeField capped_around(const SizeField& sizes, const std::vector<Vec3>& places,
   return capped_near(sizes, kept, factor, kCapGradation);
 }
 
-/// The last resort on a clean surface: its own triangles.
-Remeshed input_as_it_is(const SurfaceMesh& surface, const Features& features, const SizeField& sizes) {
-  Remeshed kept{surface, features, {}, sizes};
-  kept.source.resize(surface.triangles.size());
-  std::iota(kept.source.begin(), kept.source.end(), 0u);
-  return kept;
-}
-
-void report_counts(const Counts& counts, StageReport& report) {
-  report.count("points placed", static_cast<double>(counts.placed));
-  report.count("places tried", static_cast<double>(counts.tried));
-  report.count("points inserted", static_cast<double>(counts.insertion.inserted));
-  report.count("points skipped", static_cast<double>(counts.insertion.skipped));
-  report.count("collapses", static_cast<double>(counts.coarsen.collapses));
-  report.count("flips", static_cast<double>(counts.coarsen.flips + counts.improve.flips));
-  report.count("smoothing moves", static_cast<double>(counts.improve.moves));
-  report.count("input vertices left", static_cast<double>(counts.coarsen.input_vertices_left));
-  report.count("crossing pairs mended", static_cast<double>(counts.crossings));
-  report.count("rounds", counts.rounds);
-  report.count("rounds for deviation", counts.deviation_rounds);
+void report_counts(const Counts& counts, const Stage& stage) {
+  stage.count("points placed", static_cast<double>(counts.placed));
+  stage.count("places tried", static_cast<double>(counts.tried));
+  stage.count("points inserted", static_cast<double>(counts.insertion.inserted));
+  stage.count("points skipped", static_cast<double>(counts.insertion.skipped));
+  stage.count("collapses", static_cast<double>(counts.coarsen.collapses));
+  stage.count("flips", static_cast<double>(counts.coarsen.flips + counts.improve.flips));
+  stage.count("smoothing moves", static_cast<double>(counts.improve.moves));
+  stage.count("input vertices left", static_cast<double>(counts.coarsen.input_vertices_left));
+  stage.count("crossing pairs mended", static_cast<double>(counts.crossings));
+  stage.count("rounds", counts.rounds);
+  stage.count("rounds for deviation", counts.deviation_rounds);
 }
 
 /// Attempts with ever smaller sizes where the last one was not good enough.
 class Remesher {
  public:
   Remesher(const SurfaceMesh& surface, const Features& features, const SizeField& sizes, const SurfaceOptions& options,
-           const RunContext& context, StageReport& report)
+           const Stage& stage)
       : surface_(surface),
         features_(features),
         sizes_(sizes),
         options_(options),
-        context_(context),
-        report_(report),
+        stage_(stage),
         input_(make_input_surface(surface, {})),
         kind_(surface) {
     if (options.max_deviation) tree_.emplace(surface);
@@ -175,17 +166,17 @@ class Remesher {
 
   Remeshed run() {
     for (counts_.rounds = 1; counts_.rounds <= kMostRounds; ++counts_.rounds) {
-      Compacted c = attempt(Effort::kFull, surface_, input_, features_, sizes_, context_, counts_);
+      Compacted c = attempt(Effort::kFull, surface_, input_, features_, sizes_, stage_.context(), counts_);
       if (is_sound(c) && is_true(c)) return finished(c);
     }
-    Compacted c = attempt(Effort::kInsertOnly, surface_, input_, features_, sizes_, context_, counts_);
+    Compacted c = attempt(Effort::kInsertOnly, surface_, input_, features_, sizes_, stage_.context(), counts_);
     if (is_sound(c)) {
-      report_.notes.push_back("the surface's own vertices were kept: coarser triangles would cross");
+      stage_.note("the surface's own vertices were kept: coarser triangles would cross");
       c.result.source = sources_of(c);
       return finished(c);
     }
-    report_counts(counts_, report_);
-    report_.notes.push_back("the surface was kept as it is: every other triangulation tried crosses itself");
+    report_counts(counts_, stage_);
+    stage_.note("the surface was kept as it is: every other triangulation tried crosses itself");
     return input_as_it_is(surface_, features_, sizes_);
   }
 
@@ -203,7 +194,7 @@ class Remesher {
       return false;
     }
     if (const auto defect = kind_.first_defect_but_crossings(c.result.surface)) {
-      report_.notes.push_back("an attempt was dropped: " + *defect);
+      stage_.note("an attempt was dropped: " + *defect);
       sizes_ = scaled(sizes_, kCap);
       return false;
     }
@@ -223,8 +214,8 @@ class Remesher {
                              c.result.source);
     }
     if ((far.empty() && turned.empty()) || is_last) {
-      if (tree_) report_.count("places beyond the deviation", static_cast<double>(far.size()));
-      if (options_.normal_deviation) report_.count("triangles turned too far", static_cast<double>(turned.size()));
+      if (tree_) stage_.count("places beyond the deviation", static_cast<double>(far.size()));
+      if (options_.normal_deviation) stage_.count("triangles turned too far", static_cast<double>(turned.size()));
       note_what_is_left(far.size(), turned.size());
       return true;
     }
@@ -237,18 +228,17 @@ class Remesher {
   /// What the user asked for and does not get.
   void note_what_is_left(std::size_t far, std::size_t turned) {
     if (far > 0)
-      report_.notes.push_back(
-          fmt::format("{} places lie farther than {:.4g} from the input still: a smaller size helps", far,
-                      *options_.max_deviation));
+      stage_.note(fmt::format("{} places lie farther than {:.4g} from the input still: a smaller size helps", far,
+                              *options_.max_deviation));
     if (turned > 0)
-      report_.notes.push_back(
+      stage_.note(
           fmt::format("{} triangles turn by more than {:.4g} degrees against the input still: it is "
                       "rough there, or turns sharply without a feature edge",
                       turned, *options_.normal_deviation));
   }
 
   Remeshed finished(Compacted& c) {
-    report_counts(counts_, report_);
+    report_counts(counts_, stage_);
     return std::move(c.result);
   }
 
@@ -256,8 +246,7 @@ class Remesher {
   const Features& features_;
   SizeField sizes_;
   const SurfaceOptions& options_;
-  const RunContext& context_;
-  StageReport& report_;
+  const Stage& stage_;
   InputSurface input_;
   SurfaceKind kind_;
   std::optional<TriangleTree> tree_;
@@ -266,9 +255,16 @@ class Remesher {
 
 }  // namespace
 
+Remeshed input_as_it_is(const SurfaceMesh& surface, const Features& features, const SizeField& sizes) {
+  Remeshed kept{surface, features, {}, sizes};
+  kept.source.resize(surface.triangles.size());
+  std::iota(kept.source.begin(), kept.source.end(), 0u);
+  return kept;
+}
+
 Remeshed remesh_surface(const SurfaceMesh& surface, const Features& features, const SizeField& sizes,
-                        const SurfaceOptions& options, const RunContext& context, StageReport& report) {
-  return Remesher(surface, features, sizes, options, context, report).run();
+                        const SurfaceOptions& options, const Stage& stage) {
+  return Remesher(surface, features, sizes, options, stage).run();
 }
 
 }  // namespace octafront

@@ -9,11 +9,10 @@
 // moment, so no decision of the front can break the topology.
 
 #include <octafront/options.h>
-#include <octafront/report.h>
-#include <octafront/run_context.h>
 #include <octafront/size_field.h>
 #include <octafront/surface_mesh.h>
 
+#include "core/stage.h"
 #include "mesh/features.h"
 
 #include <cstdint>
@@ -32,6 +31,9 @@ struct Remeshed {
 /// The surface front. Requires a clean surface (see surface_mesh.h). The result is checked: closed, manifold, same
 /// components and genus, no self-intersection, features present; throws MeshingError if no attempt passes.
 Remeshed remesh_surface(const SurfaceMesh& surface, const Features& features, const SizeField& sizes,
-                        const SurfaceOptions& options, const RunContext& context, StageReport& report);
+                        const SurfaceOptions& options, const Stage& stage);
+
+/// The input's own triangles in the place of new ones.
+Remeshed input_as_it_is(const SurfaceMesh& surface, const Features& features, const SizeField& sizes);
 
 }  // namespace octafront

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <octafront/options.h>
+
+#include "core/stage.h"
+#include "surface/remeshing/remesh.h"
+
+namespace octafront {
+
+/// What sets one method of filling the volume apart from the others.
+struct MethodTraits {
+  const char* stage;          ///< name of its stage in the report
+  bool needs_clean = true;    ///< surfaces with defects are refused
+  bool has_front = true;      ///< the surface is triangulated anew to the sizes, unless it is kept
+  bool always_keeps = false;  ///< the input's triangles become the boundary, asked for or not
+  /// The sizes to begin with where a number of elements is wanted, as a multiple of those that promise it.
+  double size_factor = 1;
+  /// Fills the surface and keeps its triangles; null for the method that makes a boundary of its own.
+  TetMesh (*fill)(const Remeshed& boundary, const VolumeOptions& options, const Stage& stage) = nullptr;
+
+  bool makes_own_boundary() const { return fill == nullptr; }
+};
+
+/// Throws OptionError if there is no such method.
+const MethodTraits& traits_of(Method method);
+
+/// Whether the input's triangles become the boundary.
+bool keeps_surface(const Options& options);
+
+}  // namespace octafront

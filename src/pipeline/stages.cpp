@@ -1,0 +1,224 @@
+#include "pipeline/stages.h"
+
+#include <octafront/error.h>
+#include <octafront/validity.h>
+
+#include "improve/improve.h"
+#include "pipeline/follow_boundary.h"
+#include "pipeline/methods.h"
+#include "pipeline/pipeline.h"
+#include "sizing/make_size_field.h"
+#include "stuffing/stuff.h"
+#include "surface/feature_patches.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/core.h>
+
+namespace octafront {
+
+namespace {
+
+// Doubles that lie too few steps apart leave no room for vertices between them.
+constexpr double kLeastExtent = 1e-12;  // diagonal over the largest coordinate
+
+void refuse_lost_precision(const SurfaceMesh& surface) {
+  const Box3 box = bounding_box(surface.points);
+  const Vec3 far = max(box.hi, -box.lo);
+  const double largest = std::max({far.x, far.y, far.z});
+  if (box.diagonal() < kLeastExtent * largest)
+    throw InputError(fmt::format(
+        "the model is {:.3g} across but lies {:.3g} away from the origin: double precision has too few points "
+        "there to mesh it. Move the model to the origin.",
+        box.diagonal(), largest));
+}
+
+// Over area times diagonal; a sheet of a thousandth of its width has a hundred times as much.
+constexpr double kLeastVolume = 1e-6;
+
+// Defects are refused, but by the octree method, which lives with them: then they are notes.
+SurfaceDomain::Defects judge_defects(const SurfaceDefects& found, Method method, const Stage& stage) {
+  if (found.clean()) return SurfaceDomain::Defects::kClean;
+  if (traits_of(method).needs_clean || found.no_faces) throw InputError(found.describe());
+  stage.note("the surface has defects; inside is where its winding number says so. " + found.describe());
+  const bool closed =
+      found.open_edges.count == 0 && found.non_manifold_edges.count == 0 && found.misoriented_edges.count == 0;
+  return closed ? SurfaceDomain::Defects::kClosed : SurfaceDomain::Defects::kOpen;
+}
+
+// An open surface has no outside that repair could find: what it nearly encloses says which way it faces.
+void face_outward(SurfaceMesh& surface) {
+  const double volume = enclosed_volume(surface), scale = area(surface) * bounding_box(surface.points).diagonal();
+  if (std::abs(volume) < kLeastVolume * scale)
+    throw InputError("the surface is flat, or as much inside out as not: it encloses no volume that could be filled");
+  if (volume > 0) return;
+  for (Triangle& t : surface.triangles) std::swap(t[1], t[2]);
+}
+
+// With sizes of our own choosing the surface stays true by default; sizes that the user gave are left as they are.
+constexpr double kAutomaticDeviation = 0.004;  // of the diagonal; sampled, so that 0.005 is kept in all
+
+SurfaceOptions true_to_input(const Prepared& p, const Options& options) {
+  SurfaceOptions surface = options.surface;
+  const SizeOptions& size = options.size;
+  if (!surface.max_deviation && !size.size && !size.elements && !size.callback && !size.field &&
+      size.point_sizes.empty())
+    surface.max_deviation = kAutomaticDeviation * bounding_box(p.repaired.surface.points).diagonal();
+  return surface;
+}
+
+// A body that loses more than this has lost details that somebody may want.
+constexpr double kLargeLoss = 0.02;
+
+void note_volume_loss(double made, double input, const Stage& stage) {
+  const double change = made / input - 1;
+  if (std::abs(change) < kLargeLoss) return;
+  stage.note(
+      fmt::format("elements of this size change the volume by {:+.1f} %: --max-deviation makes them "
+                  "smaller where they stray from the input",
+                  100 * change));
+}
+
+// A part of the volume of a clean surface that the octree method may miss without a word: its boundary is blunt.
+constexpr double kVolumeTolerance = 0.03;
+
+void note_lost_volume(const TetMesh& mesh, const Prepared& p, const Stage& stage) {
+  if (p.defects != SurfaceDomain::Defects::kClean) return;
+  const double share =
+      enclosed_volume(SurfaceMesh{mesh.points, mesh.boundary, {}, {}}) / enclosed_volume(p.repaired.surface);
+  if (std::abs(share - 1) > kVolumeTolerance)
+    stage.note(
+        fmt::format("the mesh has {:.1f} % of the volume inside the surface: parts thinner than an "
+                    "element are lost. Ask for smaller elements, or for --gap 2 or more.",
+                    100 * share));
+}
+
+// The boundary of a stuffed mesh in the place of a triangulated surface.
+Remeshed boundary_of_stuffed(const TetMesh& mesh, const SizeField& sizes, double feature_angle) {
+  SurfaceMesh surface{{}, mesh.boundary, mesh.patch, mesh.patch_names};
+  VertexIndex vertices = 0;
+  for (const Triangle& t : surface.triangles) vertices = std::max(vertices, 1 + std::max({t[0], t[1], t[2]}));
+  surface.points.assign(mesh.points.begin(), mesh.points.begin() + vertices);
+  Features features = detect_features(surface, feature_angle);
+  return {std::move(surface), std::move(features), {}, sizes};
+}
+
+/// The octree method makes its boundary itself.
+Filled stuff(const Prepared& input, const SizeField& sizes, Run& run) {
+  TetMesh mesh = run.stage(traits_of(run.options.method).stage, [&](const Stage& stage) {
+    TetMesh stuffed = stuff_surface(input.repaired.surface, input.features, input.defects, sizes, stage);
+    stage.count("tets", static_cast<double>(stuffed.tets.size()));
+    note_lost_volume(stuffed, input, stage);
+    return stuffed;
+  });
+  for (std::uint32_t& triangle : mesh.source) triangle = input.repaired.face_of_triangle[triangle];
+  Remeshed boundary = boundary_of_stuffed(mesh, sizes, run.options.surface.feature_angle);
+  return {std::move(mesh), std::move(boundary)};
+}
+
+}  // namespace
+
+Prepared prepare(const SurfaceMesh& soup, Run& run) {
+  Prepared p;
+  p.repaired = run.stage("repair", [&](const Stage& stage) {
+    RepairedSurface repaired = repair_surface(soup, run.options.face_of_triangle);
+    for (const std::string& note : repaired.notes) stage.note(note);
+    p.defects = judge_defects(find_defects(repaired), run.options.method, stage);
+    if (p.defects == SurfaceDomain::Defects::kOpen) face_outward(repaired.surface);
+    refuse_lost_precision(repaired.surface);
+    stage.count("triangles", static_cast<double>(repaired.surface.triangles.size()));
+    stage.count("bodies", repaired.bodies);
+    stage.count("cavities", repaired.cavities);
+    return repaired;
+  });
+  p.features = run.stage("features", [&](const Stage& stage) {
+    Features features = detect_features(p.repaired.surface, run.options.surface.feature_angle);
+    stage.count("feature edges", static_cast<double>(features.edges.size()));
+    stage.count("corners", static_cast<double>(features.corners.size()));
+    if (run.options.surface.patches_by_features)
+      stage.count("patches", divide_into_patches(p.repaired.surface, features));
+    return features;
+  });
+  run.report.bodies = p.repaired.bodies;
+  run.report.input_volume = enclosed_volume(p.repaired.surface);
+  return p;
+}
+
+SizeField choose_sizes(const Prepared& input, Run& run) {
+  const SurfaceMesh& surface = input.repaired.surface;
+  SizeField sizes = run.stage("size field", [&](const Stage& stage) {
+    SizeOptions size = run.options.size;
+    if (!size.field) size.chord_error = run.options.surface.max_deviation;
+    return keeps_surface(run.options) ? size_field_of_surface(surface, size, stage)
+                                      : make_size_field(surface, input.features, size, stage);
+  });
+  run.report.expected_tets = expected_tets(sizes, surface);
+  return sizes;
+}
+
+Remeshed triangulate(const Prepared& input, const SizeField& sizes, Run& run) {
+  if (keeps_surface(run.options)) return input_as_it_is(input.repaired.surface, input.features, sizes);
+  return run.stage("surface front", [&](const Stage& stage) {
+    Remeshed remeshed =
+        remesh_surface(input.repaired.surface, input.features, sizes, true_to_input(input, run.options), stage);
+    stage.count("triangles", static_cast<double>(remeshed.surface.triangles.size()));
+    note_volume_loss(enclosed_volume(remeshed.surface), run.report.input_volume, stage);
+    // Strips between lines and the bounds on deviation have made sizes smaller since the first prediction.
+    run.report.expected_tets = expected_tets(remeshed.sizes, remeshed.surface);
+    return remeshed;
+  });
+}
+
+Filled fill(const Prepared& input, const SizeField& sizes, Run& run) {
+  const MethodTraits& method = traits_of(run.options.method);
+  if (method.makes_own_boundary()) return stuff(input, sizes, run);
+  Remeshed boundary = triangulate(input, sizes, run);
+  TetMesh mesh = run.stage(method.stage, [&](const Stage& stage) {
+    TetMesh filled = method.fill(boundary, run.options.volume, stage);
+    stage.count("tets", static_cast<double>(filled.tets.size()));
+    return filled;
+  });
+  mesh.source.reserve(boundary.source.size());
+  for (const std::uint32_t triangle : boundary.source) mesh.source.push_back(input.repaired.face_of_triangle[triangle]);
+  mesh.patch_names = boundary.surface.patch_names;
+  return {std::move(mesh), std::move(boundary)};
+}
+
+void improve_elements(const Prepared& input, Filled& filled, Run& run) {
+  run.stage("improve", [&](const Stage& stage) {
+    auto& [mesh, boundary] = filled;
+    const bool moves = run.options.improve.move_boundary && !keeps_surface(run.options) &&
+                       input.defects == SurfaceDomain::Defects::kClean;
+    const TriangleTree tree = moves ? TriangleTree(input.repaired.surface) : TriangleTree({}, {});
+    const improve::BoundaryInput on{input.repaired.surface, tree, input.features, boundary.features};
+    if (!improve_mesh(mesh, moves ? &on : nullptr, run.options.improve, stage)) return;
+    renew_sources(mesh, boundary.surface, tree, input.repaired.face_of_triangle);
+    SurfaceMesh& surface = boundary.surface;  // what was filled follows what became of it; its vertices come first
+    std::copy_n(mesh.points.begin(), surface.points.size(), surface.points.begin());
+    surface.triangles = mesh.boundary;
+  });
+}
+
+void check_result(const TetMesh& mesh, const SurfaceMesh* surface, Run& run) {
+  run.stage("check", [&](const Stage&) {
+    if (const auto defect = surface ? first_defect(mesh, *surface) : first_defect(mesh))
+      throw MeshingError("the mesh made is not valid, which is a bug of ours; please report it with the input. " +
+                         *defect);
+  });
+}
+
+SurfaceMesh boundary_of(const TetMesh& mesh) {
+  return {mesh.points, mesh.boundary, mesh.patch, {}};
+}
+
+void describe(const TetMesh& mesh, Report& report) {
+  report.points = mesh.points.size();
+  report.tets = mesh.tets.size();
+  report.boundary_faces = mesh.boundary.size();
+  report.volume = enclosed_volume(boundary_of(mesh));
+  report.quality = summarize_quality(mesh);
+  report.hash = mesh_hash(mesh);
+}
+
+}  // namespace octafront

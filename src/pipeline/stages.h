@@ -1,0 +1,58 @@
+#pragma once
+
+// The stages of a run, one function each, in the order of the pipeline. What a stage takes is const and what it makes
+// is new, but for improvement, which changes the mesh in place; any of them can be called alone with a Run of its own.
+
+#include <octafront/repair.h>
+#include <octafront/size_field.h>
+#include <octafront/surface_mesh.h>
+#include <octafront/tet_mesh.h>
+
+#include "mesh/features.h"
+#include "pipeline/run.h"
+#include "stuffing/implicit_domain.h"
+#include "surface/remeshing/remesh.h"
+
+namespace octafront {
+
+/// The input as every later stage needs it.
+struct Prepared {
+  RepairedSurface repaired;
+  Features features;
+  SurfaceDomain::Defects defects = SurfaceDomain::Defects::kClean;  ///< other than clean where the method allows it
+};
+
+/// A mesh and the surface that it fills, triangle for triangle.
+struct Filled {
+  TetMesh mesh;
+  Remeshed boundary;
+};
+
+/// Repairs the input, refuses what the method cannot mesh (InputError), finds the features.
+Prepared prepare(const SurfaceMesh& input, Run& run);
+
+/// The sizes that the options ask for; report.expected_tets says how many elements they promise.
+SizeField choose_sizes(const Prepared& input, Run& run);
+
+/// The surface triangulated anew to the sizes, or the input's triangles where the run keeps them.
+Remeshed triangulate(const Prepared& input, const SizeField& sizes, Run& run);
+
+/// Surface and volume by the run's method.
+Filled fill(const Prepared& input, const SizeField& sizes, Run& run);
+
+/// fill(), again with scaled sizes until the number of elements that was asked for is met or cannot be.
+Filled fill_to_target(const Prepared& input, SizeField sizes, Run& run);
+
+/// Better elements; `filled.boundary` follows what became of the boundary.
+void improve_elements(const Prepared& input, Filled& filled, Run& run);
+
+/// Throws MeshingError if the mesh breaks a law of first_defect(), or its boundary is not `surface` where one is given.
+void check_result(const TetMesh& mesh, const SurfaceMesh* surface, Run& run);
+
+/// The boundary with the mesh's points and patches.
+SurfaceMesh boundary_of(const TetMesh& mesh);
+
+/// Fills in what the report says of every mesh: counts, volume, quality, hash.
+void describe(const TetMesh& mesh, Report& report);
+
+}  // namespace octafront
