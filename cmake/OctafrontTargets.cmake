@@ -3,7 +3,8 @@
 add_library(octafront_flags INTERFACE)
 target_compile_features(octafront_flags INTERFACE cxx_std_20)
 # Contraction to fused multiply-add breaks the floating-point filters of the exact predicates.
-target_compile_options(octafront_flags INTERFACE -ffp-contract=off -Wall -Wextra -Wshadow -Wpedantic)
+target_compile_options(octafront_flags INTERFACE -ffp-contract=off -Wall -Wextra -Wshadow -Wpedantic
+                                                 $<$<BOOL:${OCTAFRONT_WERROR}>:-Werror>)
 if(OCTAFRONT_VALIDATE)
   target_compile_definitions(octafront_flags INTERFACE OCTAFRONT_VALIDATION)
 endif()

@@ -7,6 +7,6 @@ source scripts/lib/apt.sh
 
 preset=${1:-release}
 need_packages "${build_packages[@]}" "${test_packages[@]}"
-cmake --preset "$preset" -DOCTAFRONT_BUILD_BENCH=OFF >/dev/null
+cmake --preset "$preset" -DOCTAFRONT_BUILD_BENCH=OFF -DOCTAFRONT_WERROR=ON >/dev/null
 cmake --build --preset "$preset"
 ctest --preset "$preset" -j "$(nproc)"

@@ -2,6 +2,11 @@
 //   cgal_mesh SURFACE.off MESH.mesh SIZE
 // Features from 40 degrees on are kept; sizes are bounds of CGAL's criteria that come out near edges of length SIZE.
 
+#include <cstdlib>
+#include <ctime>
+#include <fstream>
+#include <iostream>
+
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/IO/Polyhedron_iostream.h>
 #include <CGAL/Mesh_complex_3_in_triangulation_3.h>
@@ -9,11 +14,6 @@
 #include <CGAL/Mesh_triangulation_3.h>
 #include <CGAL/Polyhedral_mesh_domain_with_features_3.h>
 #include <CGAL/make_mesh_3.h>
-
-#include <cstdlib>
-#include <ctime>
-#include <fstream>
-#include <iostream>
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Polyhedron = CGAL::Mesh_polyhedron_3<Kernel>::type;

@@ -13,8 +13,8 @@ namespace {
 
 /// New edges are at most this many times as long as the mean edge of the star that they replace: sizes stay honest.
 constexpr double kLongest = 2;
-/// What the sum of (1 - beta)^2 must fall to, as a part of what it was; or by how much the worst score must rise. The sum
-/// and not the mean: elements go as well, and meshes of others often have too many (Netgen's start meshes a third).
+/// What the sum of (1 - beta)^2 must fall to, as a part of what it was; or by how much the worst score must rise. The
+/// sum and not the mean: elements go as well, and meshes of others often have too many (Netgen's start meshes a third).
 constexpr double kFall = 0.9;
 constexpr float kRise = 0.05f;
 /// What the sum that elements lack must fall by.

@@ -12,7 +12,8 @@ namespace {
 // 1234567 -> "1 234 567"
 std::string grouped(std::uint64_t n) {
   std::string digits = std::to_string(n);
-  for (int at = static_cast<int>(digits.size()) - 3; at > 0; at -= 3) digits.insert(static_cast<std::size_t>(at), " ");
+  for (int at = static_cast<int>(digits.size()) - 3; at > 0; at -= 3)
+    digits.insert(static_cast<std::size_t>(at), 1, ' ');
   return digits;
 }
 
@@ -70,10 +71,10 @@ std::string to_table(const Report& report) {
   if (report.boundary_faces > 0)
     out += fmt::format("volume {:.6g} (input {:.6g}, {:+.3f} %)\n", report.volume, report.input_volume,
                        100 * (report.volume / report.input_volume - 1));
-  if (report.tets > 0) out += "\n" + quality_lines(report.quality);
+  if (report.tets > 0) out.append("\n").append(quality_lines(report.quality));
   if (report.surface_edges.edges > 0) out += "edge lengths\n" + size_line("surface", report.surface_edges);
   if (report.volume_edges.edges > 0) out += size_line("volume", report.volume_edges);
-  out += "\n" + stage_lines(report);
+  out.append("\n").append(stage_lines(report));
   out += fmt::format("peak memory {:.0f} MB\n", static_cast<double>(report.peak_memory_bytes) / 1e6);
   out += note_lines(report);
   return out;

@@ -57,7 +57,9 @@ TEST(KernelPoint, NoRandomPointLiesDeeper) {
       for (int i = 0; i < 20; ++i) {
         const double x = unit(random), y = unit(random);
         const Vec3 p = k.at + Vec3{x, y, unit(random)} * radius;
-        if (kBox.contains(p)) EXPECT_LE(depth(p), k.depth + 1e-9);
+        if (kBox.contains(p)) {
+          EXPECT_LE(depth(p), k.depth + 1e-9);
+        }
       }
   }
 }

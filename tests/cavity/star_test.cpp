@@ -73,8 +73,10 @@ TEST(Star, GrowsUntilThereIsAKernel) {
   WorkMesh mesh(points, tets);
   Cavities cavities(walls);
   ASSERT_EQ(cavities.size(), 2u);
-  for (std::uint32_t c = 0; c < 2; ++c)
-    if (!cavities.walls(c).empty()) EXPECT_TRUE(close_by_star(mesh, cavities, c).closed);
+  for (std::uint32_t c = 0; c < 2; ++c) {
+    if (cavities.walls(c).empty()) continue;
+    EXPECT_TRUE(close_by_star(mesh, cavities, c).closed);
+  }
   TetMesh result;
   result.points = mesh.take_points();
   result.tets = mesh.take_tets();

@@ -413,8 +413,9 @@ TEST(SmallPolyhedra, RemoveSeveralFacesAtOnce) {
   std::vector<Vec3> p{{0, 0, -0.6}, {0, 0, 0.6}};
   for (int k = 0; k < 5; ++k)
     p.push_back({std::cos(2 * std::numbers::pi * k / 5), std::sin(2 * std::numbers::pi * k / 5), 0});
-  TetMesh mesh{.points = p,
-               .tets = {{2, 3, 4, 1}, {2, 4, 5, 1}, {2, 5, 6, 1}, {2, 4, 3, 0}, {2, 5, 4, 0}, {2, 6, 5, 0}}};
+  TetMesh mesh;
+  mesh.points = p;
+  mesh.tets = {{2, 3, 4, 1}, {2, 4, 5, 1}, {2, 5, 6, 1}, {2, 4, 3, 0}, {2, 5, 4, 0}, {2, 6, 5, 0}};
   mesh = with_boundary(std::move(mesh));
   EditMesh edit(TetMesh{mesh});
   const PassResult result = reconnect_small_polyhedra(edit, 0.6f, {});

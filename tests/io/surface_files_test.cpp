@@ -142,7 +142,7 @@ TEST(KnownFormats, CanDoWhatTheySay) {
   const TemporaryFolder folder;
   for (const FormatInfo& info : known_formats()) {
     SCOPED_TRACE(info.name);
-    const auto file = folder / ("a" + std::string(info.ending));
+    const auto file = folder / std::string("a").append(info.ending);
     if (info.writes_surface) {
       EXPECT_NO_THROW(check_surface_target(file));
       write_surface(file, testing::cube());

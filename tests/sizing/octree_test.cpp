@@ -74,7 +74,9 @@ TEST(OctreeKey, NeighbourhoodIsMutual) {
     for (int d = 0; d < 27; ++d) {
       const int x = d % 3 - 1, y = d / 3 % 3 - 1, z = d / 9 - 1;
       const OctreeKey other = key.neighbour(x, y, z);
-      if (other.is_valid()) ASSERT_EQ(other.neighbour(-x, -y, -z), key);
+      if (other.is_valid()) {
+        ASSERT_EQ(other.neighbour(-x, -y, -z), key);
+      }
     }
   }
   EXPECT_FALSE(OctreeKey::root().neighbour(1, 0, 0).is_valid());
@@ -85,7 +87,9 @@ TEST(Octree, LeavesCoverTheCubeOnce) {
   double volume = 0;
   for (std::size_t i = 0; i < tree.size(); ++i) {
     volume += std::pow(0.125, tree.leaf(i).level());
-    if (i > 0) ASSERT_LT(tree.leaf(i - 1).range_max(), tree.leaf(i).range_min());
+    if (i > 0) {
+      ASSERT_LT(tree.leaf(i - 1).range_max(), tree.leaf(i).range_min());
+    }
   }
   EXPECT_DOUBLE_EQ(volume, 1);
 }
@@ -168,8 +172,12 @@ TEST(InsideFraction, KnowsInsideFromOutside) {
   const auto fraction = inside_fractions(root, tree, surface_pieces(root, tree, surface));
   for (std::size_t l = 0; l < tree.size(); ++l) {
     const double r = length(root.center_of(tree.leaf(l))), reach = root.side_of(tree.leaf(l));
-    if (r > 0.5 + reach && r < 0.98 - reach) EXPECT_EQ(fraction[l], 1) << r;
-    if (r > 1 + reach || r < 0.48 - reach) EXPECT_EQ(fraction[l], 0) << r;
+    if (r > 0.5 + reach && r < 0.98 - reach) {
+      EXPECT_EQ(fraction[l], 1) << r;
+    }
+    if (r > 1 + reach || r < 0.48 - reach) {
+      EXPECT_EQ(fraction[l], 0) << r;
+    }
   }
 }
 
