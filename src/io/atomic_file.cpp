@@ -28,12 +28,19 @@ fs::path temporary_name(const fs::path& target) {
   return folder_of(target) / fmt::format(".octafront-{}-{}.tmp", ::getpid(), counter++);
 }
 
-/// Replacing a link would cut it; what it points to is replaced instead.
+/// Replacing a link would cut it; what it points to is replaced instead, or made where it points to nothing yet.
 fs::path links_followed(const fs::path& file) {
+  constexpr int kMostLinks = 40;  // as many as Linux follows
+  fs::path at = file;
   std::error_code error;
-  if (!fs::is_symlink(file, error)) return file;
-  const fs::path real = fs::weakly_canonical(file, error);
-  return error ? file : real;
+  for (int links = 0; fs::is_symlink(at, error); ++links) {
+    const fs::path to = fs::read_symlink(at, error);
+    if (error) throw OutputError(fmt::format("{}: cannot be written: {}", file.string(), error.message()));
+    if (links == kMostLinks)
+      throw OutputError(fmt::format("{}: cannot be written: its symbolic links lead in a circle", file.string()));
+    at = folder_of(at) / to;
+  }
+  return at;
 }
 
 }  // namespace

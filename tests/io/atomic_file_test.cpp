@@ -68,6 +68,18 @@ TEST(AtomicFile, KeepsModeAndFollowsLinks) {
   EXPECT_EQ(static_cast<unsigned>(fs::status(folder / "real").permissions()), 0640U);
 }
 
+TEST(AtomicFile, GoesThroughLinksToWhatIsNotThereYet) {
+  const TemporaryFolder folder;
+  fs::create_directory(folder / "sub");
+  fs::create_symlink("sub/next", folder / "link");
+  fs::create_symlink("real", folder / "sub/next");
+  AtomicFile file(folder / "link");
+  file.write("new");
+  file.commit();
+  EXPECT_TRUE(fs::is_symlink(folder / "link") && fs::is_symlink(folder / "sub/next"));
+  EXPECT_EQ(file_bytes(folder / "sub/real"), "new");
+}
+
 std::string error_of(const std::function<void()>& write) {
   try {
     write();
@@ -82,6 +94,10 @@ TEST(AtomicFile, SaysWhyItCannotWrite) {
   const TemporaryFolder folder;
   EXPECT_NE(error_of([&] { AtomicFile(folder / "none/a"); }).find("no folder"), std::string::npos);
   EXPECT_NE(error_of([&] { AtomicFile{folder.path()}; }).find("it is a folder"), std::string::npos);
+  fs::create_symlink("none/a", folder / "lost");
+  EXPECT_NE(error_of([&] { AtomicFile(folder / "lost"); }).find("no folder"), std::string::npos);
+  fs::create_symlink("ring", folder / "ring");
+  EXPECT_NE(error_of([&] { AtomicFile(folder / "ring"); }).find("in a circle"), std::string::npos);
   EXPECT_NE(error_of([&] { AtomicFile("/dev/null"); }).find("not a plain file"), std::string::npos);
   EXPECT_NE(error_of([&] { check_mesh_target(folder / "a.docx"); }).find(".vtu, .msh, .mesh"), std::string::npos);
   EXPECT_NE(error_of([&] { check_surface_target(folder / "a"); }).find(".stl, .obj, .off, .ply"), std::string::npos);
