@@ -3,7 +3,7 @@
 
 #include "io/polygon.h"
 
-#include "geometry/predicates.h"
+#include "io/plane_points.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,15 +12,6 @@
 
 namespace octafront::io {
 namespace {
-
-struct Point2 {
-  double x, y;
-  friend bool operator==(const Point2&, const Point2&) = default;
-};
-
-int turn(Point2 a, Point2 b, Point2 c) {
-  return orient2d(a.x, a.y, b.x, b.y, c.x, c.y);
-}
 
 /// Twice the vector area (Newell's sum), measured from the first corner so that distant models lose no digits.
 Vec3 vector_area(std::span<const Vec3> corners) {
@@ -56,18 +47,13 @@ bool fan_is_strict(const std::vector<Point2>& p) {
 
 class EarClipper {
  public:
-  explicit EarClipper(const std::vector<Point2>& points) : p_(points), next_(points.size()), prev_(points.size()) {
-    const auto n = static_cast<std::uint32_t>(points.size());
-    for (std::uint32_t i = 0; i < n; ++i) {
-      next_[i] = (i + 1) % n;
-      prev_[i] = (i + n - 1) % n;
-    }
-    find_doubled();
-    // A corner that turns left stays one until it is clipped, and cannot lie in an ear: only the others are looked at.
-    for (std::uint32_t i = 0; i < n; ++i)
-      if (turn_at(i) <= 0 || doubled_[i]) blockers_.push_back(i);
-    alive_.assign(n, true);
-  }
+  explicit EarClipper(const std::vector<Point2>& points)
+      : p_(points),
+        next_(neighbours(points.size(), 1)),
+        prev_(neighbours(points.size(), points.size() - 1)),
+        alive_(points.size(), true),
+        doubled_(doubled_corners()),
+        blockers_(points, first_blockers()) {}
 
   bool run(std::vector<std::array<std::uint32_t, 3>>& out) {
     auto left = static_cast<std::uint32_t>(p_.size());
@@ -102,25 +88,41 @@ class EarClipper {
  private:
   int turn_at(std::uint32_t i) const { return turn(p_[prev_[i]], p_[i], p_[next_[i]]); }
 
+  static std::vector<std::uint32_t> neighbours(std::size_t corners, std::size_t step) {
+    std::vector<std::uint32_t> all(corners);
+    for (std::size_t i = 0; i < corners; ++i) all[i] = static_cast<std::uint32_t>((i + step) % corners);
+    return all;
+  }
+
   /// Corners at one place, which only polygons with holes cut open have.
-  void find_doubled() {
+  std::vector<bool> doubled_corners() const {
     std::vector<std::uint32_t> order(p_.size());
     for (std::uint32_t i = 0; i < order.size(); ++i) order[i] = i;
     std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
       return p_[a].x != p_[b].x ? p_[a].x < p_[b].x : p_[a].y < p_[b].y;
     });
-    doubled_.assign(p_.size(), false);
+    std::vector<bool> doubled(p_.size(), false);
     for (std::size_t k = 1; k < order.size(); ++k)
-      if (p_[order[k - 1]] == p_[order[k]]) doubled_[order[k - 1]] = doubled_[order[k]] = true;
+      if (p_[order[k - 1]] == p_[order[k]]) doubled[order[k - 1]] = doubled[order[k]] = true;
+    return doubled;
+  }
+
+  /// A corner that turns left stays one until it is clipped, and cannot lie in an ear: only the others are looked at.
+  bool is_blocker(std::uint32_t k) const { return doubled_[k] || turn_at(k) <= 0; }
+
+  std::vector<std::uint32_t> first_blockers() const {
+    std::vector<std::uint32_t> blockers;
+    for (std::uint32_t i = 0; i < p_.size(); ++i)
+      if (is_blocker(i)) blockers.push_back(i);
+    return blockers;
   }
 
   bool is_ear(std::uint32_t i) const {
     const std::uint32_t a = prev_[i], c = next_[i];
     const Point2 pa = p_[a], pb = p_[i], pc = p_[c];
     if (turn(pa, pb, pc) <= 0) return false;
-    for (const std::uint32_t k : blockers_)
-      if (alive_[k] && k != a && k != i && k != c && blocks(k, pa, pb, pc)) return false;
-    return !enters(a, pa, pb, pc) && !enters(c, pc, pa, pb);
+    const auto is_in_the_way = [&](std::uint32_t k) { return k != a && k != i && k != c && blocks(k, pa, pb, pc); };
+    return !blockers_.any_in({pa, pb, pc}, is_in_the_way) && !enters(a, pa, pb, pc) && !enters(c, pc, pa, pb);
   }
 
   /// Whether corner k lies in the closed triangle, or, if it lies at one of its corners, leads into it.
@@ -146,9 +148,11 @@ class EarClipper {
     alive_[i] = false;
     next_[prev_[i]] = next_[i];
     prev_[next_[i]] = prev_[i];
-    waiting_.push_back(prev_[i]);
-    waiting_.push_back(next_[i]);
-    if (++clipped_ % 64 == 0) std::erase_if(blockers_, [&](std::uint32_t k) { return !is_blocker(k); });
+    blockers_.remove(i);
+    for (const std::uint32_t k : {prev_[i], next_[i]}) {
+      waiting_.push_back(k);
+      if (!is_blocker(k)) blockers_.remove(k);
+    }
   }
 
   std::deque<std::uint32_t> remaining(std::uint32_t from) const {
@@ -157,13 +161,11 @@ class EarClipper {
     return all;
   }
 
-  bool is_blocker(std::uint32_t k) const { return alive_[k] && (doubled_[k] || turn_at(k) <= 0); }
-
   const std::vector<Point2>& p_;
-  std::vector<std::uint32_t> next_, prev_, blockers_;
-  std::deque<std::uint32_t> waiting_;  ///< corners to look at, in this order: clipping spreads over the polygon
+  std::vector<std::uint32_t> next_, prev_;
   std::vector<bool> alive_, doubled_;
-  std::uint32_t clipped_ = 0;
+  PlanePoints blockers_;
+  std::deque<std::uint32_t> waiting_;  ///< corners to look at, in this order: clipping spreads over the polygon
 };
 
 }  // namespace

@@ -2,7 +2,9 @@
 
 #include "geometry/predicates.h"
 
+#include <algorithm>
 #include <cmath>
+#include <deque>
 #include <numbers>
 #include <random>
 
@@ -110,10 +112,59 @@ TEST(Polygon, EqualNeighboursAreLeftOut) {
   EXPECT_TRUE(pieces.empty());
 }
 
+/// The triangles that ear clipping makes where every corner left is looked at for every ear.
+Pieces clipped_slowly(const std::vector<Vec3>& p) {
+  std::deque<std::uint32_t> waiting;
+  std::vector<std::uint32_t> left;
+  for (std::uint32_t i = 0; i < p.size(); ++i) {
+    waiting.push_back(i);
+    left.push_back(i);
+  }
+  Pieces pieces;
+  const auto turn = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    return orient2d(p[a].x, p[a].y, p[b].x, p[b].y, p[c].x, p[c].y);
+  };
+  while (left.size() > 3) {
+    const std::uint32_t i = waiting.front();
+    waiting.pop_front();
+    const auto at = std::find(left.begin(), left.end(), i);
+    if (at == left.end()) continue;
+    const std::uint32_t a = at == left.begin() ? left.back() : at[-1], c = at + 1 == left.end() ? left.front() : at[1];
+    const auto blocks = [&](std::uint32_t k) {
+      return k != a && k != i && k != c && turn(a, i, k) >= 0 && turn(i, c, k) >= 0 && turn(c, a, k) >= 0;
+    };
+    if (turn(a, i, c) <= 0 || std::any_of(left.begin(), left.end(), blocks)) continue;
+    pieces.push_back({a, i, c});
+    left.erase(at);
+    waiting.push_back(a);
+    waiting.push_back(c);
+  }
+  // The last ear's neighbour behind comes first.
+  const auto next = std::find(left.begin(), left.end(), pieces.back()[2]) - left.begin();
+  pieces.push_back({left[(next + 2) % 3], left[next], left[(next + 1) % 3]});
+  return pieces;
+}
+
+TEST(Polygon, TheTreeOfBlockersChangesNothing) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> radius(0.3, 1);
+  for (const int n : {40, 300, 1000}) {
+    std::vector<Vec3> star;
+    for (int i = 0; i < n; ++i) {
+      const double angle = 2 * std::numbers::pi * i / n, r = radius(random);
+      star.push_back({r * std::cos(angle), r * std::sin(angle), 0});
+    }
+    Pieces pieces;
+    ASSERT_TRUE(triangulate_polygon(star, pieces));
+    EXPECT_EQ(pieces, clipped_slowly(star)) << n;
+  }
+}
+
 TEST(Polygon, LargeOnesEndSoon) {
   std::vector<Vec3> gear;
-  for (int i = 0; i < 20000; ++i) {
-    const double angle = 2 * std::numbers::pi * i / 20000, r = i % 2 == 0 ? 1 : .9;
+  constexpr int kCorners = 200000;
+  for (int i = 0; i < kCorners; ++i) {
+    const double angle = 2 * std::numbers::pi * i / kCorners, r = i % 2 == 0 ? 1 : .9;
     gear.push_back({r * std::cos(angle), r * std::sin(angle), 0});
   }
   expect_divided(gear);
