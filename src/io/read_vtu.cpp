@@ -4,6 +4,7 @@
 #include "io/readers.h"
 #include "io/vtk_xml.h"
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <utility>
@@ -14,6 +15,7 @@ namespace octafront::io {
 namespace {
 
 constexpr std::int64_t kVtkTriangle = 5, kVtkTetra = 10;
+constexpr std::uint64_t kMostCells = std::uint64_t{1} << 40;
 
 class Vtu {
  public:
@@ -30,26 +32,26 @@ class Vtu {
   const VtkArray& require(std::string_view section, std::string_view name) const {
     const VtkArray* array = xml_.find(section, name);
     if (array == nullptr)
-      input_.fail(fmt::format("has no array \"{}\" in <{}>; the file is damaged: export it again", name, section));
+      input_.fail(fmt::format("has no array {} in <{}>; the file is damaged: export it again",
+                              name.empty() ? "of values" : in_quotes(name), section));
     return *array;
   }
 
   void check_length(const VtkArray& array, std::uint64_t length, std::uint64_t wanted) const {
     if (length != wanted)
-      input_.fail_at_line(array.at, fmt::format("array {} has {} values, not {}; the file is damaged: export it again",
-                                                in_quotes(array.name), length, wanted));
+      input_.fail_at_line(array.at, fmt::format("{} has {} values, not {}; the file is damaged: export it again",
+                                                array.label(), length, wanted));
   }
 
   void read_points() {
     const VtkArray& array = require("Points", "");
-    const std::vector<double> xyz = vtk_reals(xml_, array, input_);
+    if (xml_.points >= kNone) input_.fail(fmt::format("holds more than {} points", kNone - 1));
+    const std::vector<double> xyz = vtk_reals(xml_, array, input_, 3 * xml_.points);
     // Compared by division: the product may overflow.
     if (xyz.size() % 3 != 0 || xyz.size() / 3 != xml_.points)
-      input_.fail_at_line(array.at,
-                          fmt::format("array {} has {} values, not 3 for each of {} points; the file is damaged: "
-                                      "export it again",
-                                      in_quotes(array.name), xyz.size(), xml_.points));
-    if (xml_.points >= kNone) input_.fail(fmt::format("holds more than {} points", kNone - 1));
+      input_.fail_at_line(array.at, fmt::format("{} has {} values, not 3 for each of {} points; the file is damaged: "
+                                                "export it again",
+                                                array.label(), xyz.size(), xml_.points));
     raw_.points.reserve(xml_.points);
     for (std::size_t i = 0; i < xyz.size(); i += 3) {
       const Vec3 p{xyz[i], xyz[i + 1], xyz[i + 2]};
@@ -63,7 +65,7 @@ class Vtu {
   std::optional<std::vector<std::int64_t>> cell_integers(std::string_view name, std::int64_t shift) const {
     const VtkArray* array = xml_.find("CellData", name);
     if (array == nullptr || array->components != 1 || array->type.starts_with("Float")) return std::nullopt;
-    std::vector<std::int64_t> values = vtk_integers(xml_, *array, input_);
+    std::vector<std::int64_t> values = vtk_integers(xml_, *array, input_, xml_.cells);
     check_length(*array, values.size(), xml_.cells);
     constexpr std::int64_t kMost = std::int64_t{1} << 62;
     for (std::int64_t& v : values) v = v < kMost ? v + shift : kMost;
@@ -94,14 +96,17 @@ class Vtu {
     return all;
   }
 
+  /// Of all cells together: more than any mesh has, polyhedra, lines through all points and high orders included.
+  std::uint64_t most_corners() const { return 64 * std::min(xml_.cells, kMostCells) + 4 * xml_.points; }
+
   void read_cells() {
     const VtkArray &connectivity_array = require("Cells", "connectivity"), &offsets_array = require("Cells", "offsets"),
                    &types_array = require("Cells", "types");
-    const std::vector<std::int64_t> types = vtk_integers(xml_, types_array, input_);
+    const std::vector<std::int64_t> types = vtk_integers(xml_, types_array, input_, xml_.cells);
     check_length(types_array, types.size(), xml_.cells);
-    const std::vector<std::int64_t> offsets = vtk_integers(xml_, offsets_array, input_);
+    const std::vector<std::int64_t> offsets = vtk_integers(xml_, offsets_array, input_, xml_.cells);
     check_length(offsets_array, offsets.size(), xml_.cells);
-    const std::vector<std::int64_t> connectivity = vtk_integers(xml_, connectivity_array, input_);
+    const std::vector<std::int64_t> connectivity = vtk_integers(xml_, connectivity_array, input_, most_corners());
     const std::vector<std::int64_t> regions = references("region"), patches = references("patch");
     const auto sources = cell_integers("source", 0);
     std::int64_t begin = 0;
@@ -132,9 +137,10 @@ class Vtu {
 
   void read_names() {
     constexpr std::string_view kPrefix = "patch ";
+    constexpr std::uint64_t kMostFieldValues = 1024;  // ours have one
     for (const VtkArray& array : xml_.arrays) {
       if (array.section != "FieldData" || !array.name.starts_with(kPrefix)) continue;
-      const std::vector<std::int64_t> number = vtk_integers(xml_, array, input_);
+      const std::vector<std::int64_t> number = vtk_integers(xml_, array, input_, kMostFieldValues);
       if (number.size() == 1 && number[0] < kNone)
         raw_.surface_names[number[0] + 1] = array.name.substr(kPrefix.size());
     }

@@ -64,9 +64,14 @@ class ByteSource {
   bool is_base64_;
 };
 
+/// No array of a mesh has more; the bytes of so many can still be counted.
+constexpr std::uint64_t kMostValues = std::uint64_t{1} << 60;
+
 class ArrayReader {
  public:
-  ArrayReader(const VtkXml& xml, const VtkArray& array, const Input& input) : xml_(xml), array_(array), input_(input) {}
+  /// `most_bytes`: what the counts of the file allow the values to take.
+  ArrayReader(const VtkXml& xml, const VtkArray& array, const Input& input, std::uint64_t most_bytes)
+      : xml_(xml), array_(array), input_(input), most_bytes_(most_bytes) {}
 
   std::vector<char> bytes() {
     ByteSource source = open();
@@ -74,9 +79,8 @@ class ArrayReader {
   }
 
   [[noreturn]] void fail(std::string_view message) const {
-    input_.fail_at_line(array_.at,
-                        fmt::format("array {}: {}; the file is damaged or truncated: copy or export it again",
-                                    in_quotes(array_.name), message));
+    input_.fail_at_line(array_.at, fmt::format("{}: {}; the file is damaged or truncated: copy or export it again",
+                                               array_.label(), message));
   }
 
  private:
@@ -121,22 +125,37 @@ class ArrayReader {
     const std::uint64_t blocks = header_value(header, 0);
     if (blocks > source.most_bytes_left() / header_bytes() || !source.take((3 + blocks) * header_bytes(), header))
       fail(fmt::format("claims {} blocks, more than the file has", blocks));
-    const std::uint64_t block_size = header_value(header, 1), last_size = header_value(header, 2);
+    check_block_sizes(header, blocks, source.most_bytes_left());
     std::uint64_t packed_size = 0;
-    for (std::uint64_t b = 0; b < blocks; ++b) {
-      const std::uint64_t size = header_value(header, 3 + b);
-      if (size > source.most_bytes_left() || (packed_size += size) > source.most_bytes_left())
-        fail(fmt::format("claims {} bytes for block {}, more than the file has", size, b));
-    }
+    for (std::uint64_t b = 0; b < blocks; ++b) packed_size += header_value(header, 3 + b);
     std::vector<char> packed, bytes;
     if (!source.take(packed_size, packed)) fail("its blocks are missing");
     std::uint64_t at = 0;
     for (std::uint64_t b = 0; b < blocks; ++b) {
       const std::uint64_t size = header_value(header, 3 + b);
-      append_block({packed.data() + at, size}, b + 1 == blocks && last_size != 0 ? last_size : block_size, b, bytes);
+      append_block({packed.data() + at, size}, block_size(header, b), b, bytes);
       at += size;
     }
     return bytes;
+  }
+
+  /// Of block b, unpacked.
+  std::uint64_t block_size(const std::vector<char>& header, std::uint64_t b) const {
+    const std::uint64_t blocks = header_value(header, 0), last = header_value(header, 2);
+    return b + 1 == blocks && last != 0 ? last : header_value(header, 1);
+  }
+
+  /// A few kilobytes can unpack to gigabytes: nothing is unpacked that could not belong to the mesh.
+  void check_block_sizes(const std::vector<char>& header, std::uint64_t blocks, std::uint64_t packed_left) const {
+    std::uint64_t left = most_bytes_;
+    for (std::uint64_t b = 0; b < blocks; ++b) {
+      const std::uint64_t packed = header_value(header, 3 + b), unpacked = block_size(header, b);
+      if (packed > packed_left) fail(fmt::format("claims {} bytes for block {}, more than the file has", packed, b));
+      if (unpacked > left)
+        fail(fmt::format("its blocks hold more than the {} bytes that its values take at most", most_bytes_));
+      packed_left -= packed;
+      left -= unpacked;
+    }
   }
 
   void append_block(std::string_view packed, std::uint64_t size, std::uint64_t block, std::vector<char>& bytes) {
@@ -154,6 +173,7 @@ class ArrayReader {
   const VtkXml& xml_;
   const VtkArray& array_;
   const Input& input_;
+  std::uint64_t most_bytes_;
 };
 
 template <class T, class Value>
@@ -189,25 +209,51 @@ std::vector<Value> text_values(const VtkArray& array, const Input& input) {
 
 }  // namespace
 
-std::vector<double> vtk_reals(const VtkXml& xml, const VtkArray& array, const Input& input) {
-  if (array.format == "ascii") return text_values<double>(array, input);
-  ArrayReader reader(xml, array, input);
-  if (array.type == "Float64") return converted<double, double>(reader.bytes());
-  if (array.type == "Float32") return converted<float, double>(reader.bytes());
-  reader.fail(fmt::format("has the type {}; expected Float64 or Float32", in_quotes(array.type)));
+namespace {
+
+template <class Value>
+using Conversion = std::vector<Value> (*)(const std::vector<char>&);
+
+/// Bytes of one value as it is stored, and how bytes become values.
+template <class Value>
+struct StoredType {
+  std::string_view name;
+  std::uint64_t bytes;
+  Conversion<Value> convert;
+};
+
+template <class T, class Value>
+constexpr StoredType<Value> stored(std::string_view name) {
+  return {name, sizeof(T), converted<T, Value>};
 }
 
-std::vector<std::int64_t> vtk_integers(const VtkXml& xml, const VtkArray& array, const Input& input) {
-  if (array.format == "ascii") return text_values<std::int64_t>(array, input);
-  ArrayReader reader(xml, array, input);
-  if (array.type == "Int8") return converted<std::int8_t, std::int64_t>(reader.bytes());
-  if (array.type == "UInt8") return converted<std::uint8_t, std::int64_t>(reader.bytes());
-  if (array.type == "Int16") return converted<std::int16_t, std::int64_t>(reader.bytes());
-  if (array.type == "UInt16") return converted<std::uint16_t, std::int64_t>(reader.bytes());
-  if (array.type == "Int32") return converted<std::int32_t, std::int64_t>(reader.bytes());
-  if (array.type == "UInt32") return converted<std::uint32_t, std::int64_t>(reader.bytes());
-  if (array.type == "Int64" || array.type == "UInt64") return converted<std::int64_t, std::int64_t>(reader.bytes());
-  reader.fail(fmt::format("has the type {}; expected integers", in_quotes(array.type)));
+constexpr std::array kRealTypes{stored<double, double>("Float64"), stored<float, double>("Float32")};
+using Whole = std::int64_t;
+constexpr std::array kWholeTypes{stored<std::int8_t, Whole>("Int8"),   stored<std::uint8_t, Whole>("UInt8"),
+                                 stored<std::int16_t, Whole>("Int16"), stored<std::uint16_t, Whole>("UInt16"),
+                                 stored<std::int32_t, Whole>("Int32"), stored<std::uint32_t, Whole>("UInt32"),
+                                 stored<std::int64_t, Whole>("Int64"), stored<std::int64_t, Whole>("UInt64")};
+
+template <class Value, std::size_t N>
+std::vector<Value> values(const VtkXml& xml, const VtkArray& array, const Input& input, std::uint64_t most_values,
+                          const std::array<StoredType<Value>, N>& types, std::string_view expected) {
+  if (array.format == "ascii") return text_values<Value>(array, input);
+  for (const StoredType<Value>& type : types)
+    if (array.type == type.name)
+      return type.convert(ArrayReader(xml, array, input, type.bytes * std::min(most_values, kMostValues)).bytes());
+  input.fail_at_line(array.at,
+                     fmt::format("{} has the type {}; expected {}", array.label(), in_quotes(array.type), expected));
+}
+
+}  // namespace
+
+std::vector<double> vtk_reals(const VtkXml& xml, const VtkArray& array, const Input& input, std::uint64_t most_values) {
+  return values(xml, array, input, most_values, kRealTypes, "Float64 or Float32");
+}
+
+std::vector<std::int64_t> vtk_integers(const VtkXml& xml, const VtkArray& array, const Input& input,
+                                       std::uint64_t most_values) {
+  return values(xml, array, input, most_values, kWholeTypes, "integers");
 }
 
 }  // namespace octafront::io

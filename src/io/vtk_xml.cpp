@@ -125,6 +125,10 @@ std::string_view XmlTag::attribute(std::string_view key, std::string_view otherw
   return otherwise;
 }
 
+std::string VtkArray::label() const {
+  return name.empty() ? fmt::format("the array of <{}>", section) : fmt::format("array {}", in_quotes(name));
+}
+
 bool XmlTags::skip_markup(std::string_view opening, std::string_view closing) {
   if (!input_.bytes.substr(at_).starts_with(opening)) return false;
   const std::size_t end = input_.bytes.find(closing, at_ + opening.size());

@@ -50,6 +50,9 @@ struct VtkArray {
   std::uint64_t offset = 0;  ///< of appended data
   std::string_view text;     ///< what stands in the tag
   const char* at = nullptr;
+
+  /// For messages: array "size", or the array of <Points>, which has no name.
+  std::string label() const;
 };
 
 /// A VTK XML file of one piece.
@@ -70,8 +73,10 @@ enum class VtkKind { kUnstructuredGrid, kAnyMesh };
 /// Throws InputError if it is not of that kind, of one piece, in little-endian order, compressed by zlib or not at all.
 VtkXml read_vtk_xml(const Input& input, VtkKind kind = VtkKind::kUnstructuredGrid);
 
-/// The values of an array. Throws InputError; memory grows only with what is really there.
-std::vector<double> vtk_reals(const VtkXml& xml, const VtkArray& array, const Input& input);
-std::vector<std::int64_t> vtk_integers(const VtkXml& xml, const VtkArray& array, const Input& input);
+/// The values of an array. Throws InputError, also for blocks that would unpack to more than `most_values`: memory
+/// grows only with what is really there, and with what the counts of the file allow.
+std::vector<double> vtk_reals(const VtkXml& xml, const VtkArray& array, const Input& input, std::uint64_t most_values);
+std::vector<std::int64_t> vtk_integers(const VtkXml& xml, const VtkArray& array, const Input& input,
+                                       std::uint64_t most_values);
 
 }  // namespace octafront::io

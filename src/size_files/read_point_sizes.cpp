@@ -53,10 +53,11 @@ const io::VtkArray& size_array(const io::VtkXml& xml, const io::Input& input) {
 
 std::vector<PointSize> from_vtk(const io::Input& input) {
   const io::VtkXml xml = io::read_vtk_xml(input, io::VtkKind::kAnyMesh);
+  if (xml.points >= kNone) input.fail(fmt::format("holds more than {} points", kNone - 1));
   const io::VtkArray* places = xml.find("Points", "");
   if (places == nullptr) input.fail("has no <Points>");
-  const std::vector<double> xyz = io::vtk_reals(xml, *places, input);
-  const std::vector<double> size = io::vtk_reals(xml, size_array(xml, input), input);
+  const std::vector<double> xyz = io::vtk_reals(xml, *places, input, 3 * xml.points);
+  const std::vector<double> size = io::vtk_reals(xml, size_array(xml, input), input, xml.points);
   if (xyz.size() != 3 * size.size()) input.fail("has not as many sizes as points");
   std::vector<PointSize> points;
   points.reserve(size.size());

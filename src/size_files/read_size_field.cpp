@@ -29,16 +29,19 @@ struct GridFile {
 
 const io::VtkArray& require(const io::VtkXml& xml, const io::Input& input, const char* section, const char* name) {
   const io::VtkArray* array = xml.find(section, name);
-  if (array == nullptr) input.fail(fmt::format("has no array \"{}\" in <{}>: it is no background grid", name, section));
+  if (array == nullptr)
+    input.fail(fmt::format("has no array {} in <{}>: it is no background grid", io::in_quotes(name), section));
   return *array;
 }
 
 GridFile read_grid_file(const io::Input& input) {
   const io::VtkXml xml = io::read_vtk_xml(input);
-  const std::vector<double> xyz = io::vtk_reals(xml, require(xml, input, "Points", ""), input);
+  if (std::max(xml.points, xml.cells) >= kNone)
+    input.fail(fmt::format("holds more than {} points or cells", kNone - 1));
+  const std::vector<double> xyz = io::vtk_reals(xml, require(xml, input, "Points", ""), input, 3 * xml.points);
   GridFile grid;
-  grid.size = io::vtk_reals(xml, require(xml, input, "PointData", "size"), input);
-  grid.corners = io::vtk_integers(xml, require(xml, input, "Cells", "connectivity"), input);
+  grid.size = io::vtk_reals(xml, require(xml, input, "PointData", "size"), input, xml.points);
+  grid.corners = io::vtk_integers(xml, require(xml, input, "Cells", "connectivity"), input, 8 * xml.cells);
   if (xyz.size() != 3 * grid.size.size()) input.fail("has not as many sizes as points");
   for (std::size_t i = 0; i < xyz.size(); i += 3) grid.points.push_back({xyz[i], xyz[i + 1], xyz[i + 2]});
   if (grid.corners.empty() || grid.corners.size() % 8 != 0) input.fail("has cells that are no hexahedra");

@@ -7,6 +7,8 @@
 #include <random>
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <zlib.h>
 
 namespace octafront {
 namespace {
@@ -153,6 +155,65 @@ TEST(BadMeshFiles, ErrorsSayWhereAndWhat) {
     SCOPED_TRACE(f.what);
     const std::string message = input_error([&] { mesh_of(f.bytes, f.name); });
     for (const std::string& part : f.fragments) EXPECT_TRUE(contains(message, part)) << message;
+  }
+}
+
+template <class T>
+std::string bytes_of(const std::vector<T>& values) {
+  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
+}
+
+/// The blocks of a compressed array: `blocks` times the same `bytes`.
+std::string packed_array(const std::string& bytes, std::size_t blocks) {
+  std::string packed(compressBound(bytes.size()), '\0');
+  uLongf size = packed.size();
+  compress(reinterpret_cast<Bytef*>(packed.data()), &size, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
+  packed.resize(size);
+  std::vector<std::uint64_t> header(3 + blocks, size);
+  header[0] = blocks;
+  header[1] = bytes.size();
+  header[2] = 0;
+  std::string all = bytes_of(header);
+  for (std::size_t b = 0; b < blocks; ++b) all += packed;
+  return all;
+}
+
+/// One tetrahedron whose array number `bomb` unpacks to half a gigabyte of zeros.
+std::string vtu_with_bomb(std::size_t bomb) {
+  const std::vector<std::string> tags{
+      "<Points><DataArray type=\"Float64\" NumberOfComponents=\"3\"",
+      "</Points><Cells><DataArray type=\"Int64\" Name=\"connectivity\"",
+      "<DataArray type=\"Int64\" Name=\"offsets\"",
+      "<DataArray type=\"UInt8\" Name=\"types\"",
+      "</Cells><CellData><DataArray type=\"Int32\" Name=\"region\"",
+  };
+  std::vector<std::string> arrays{packed_array(bytes_of(std::vector<double>{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}), 1),
+                                  packed_array(bytes_of(std::vector<std::int64_t>{0, 1, 2, 3}), 1),
+                                  packed_array(bytes_of(std::vector<std::int64_t>{4}), 1), packed_array("\x0a", 1),
+                                  packed_array(bytes_of(std::vector<std::int32_t>{0}), 1)};
+  if (bomb < arrays.size()) arrays[bomb] = packed_array(std::string(std::size_t{1} << 24, '\0'), 32);
+  std::string head =
+      "<VTKFile type=\"UnstructuredGrid\" byte_order=\"LittleEndian\" header_type=\"UInt64\" "
+      "compressor=\"vtkZLibDataCompressor\"><UnstructuredGrid><Piece NumberOfPoints=\"4\" NumberOfCells=\"1\">";
+  std::string data;
+  for (std::size_t i = 0; i < tags.size(); ++i) {
+    head += tags[i] + " format=\"appended\" offset=\"" + std::to_string(data.size()) + "\"/>";
+    data += arrays[i];
+  }
+  return head + "</CellData></Piece></UnstructuredGrid><AppendedData encoding=\"raw\">_" + data +
+         "</AppendedData></VTKFile>";
+}
+
+TEST(BadMeshFiles, NothingIsUnpackedThatCannotBelongToTheMesh) {
+  EXPECT_EQ(mesh_of(vtu_with_bomb(99), "a.vtu").tets.size(), 1U);
+  for (std::size_t bomb = 0; bomb < 5; ++bomb) {
+    rusage before{}, after{};
+    const std::string bytes = vtu_with_bomb(bomb);
+    getrusage(RUSAGE_SELF, &before);
+    const std::string message = input_error([&] { mesh_of(bytes, "a.vtu"); });
+    getrusage(RUSAGE_SELF, &after);
+    EXPECT_TRUE(contains(message, "its values take at most")) << message;
+    EXPECT_LT(after.ru_maxrss - before.ru_maxrss, 100'000) << "kB";
   }
 }
 
