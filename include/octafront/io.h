@@ -48,8 +48,9 @@ SizeField read_size_field(const std::filesystem::path& file, double gradation = 
 /// Reads regions of refinement from a JSON file,
 ///   [{"box": [[0, 0, 0], [1, 2, 1]], "size": 0.1}, {"sphere": [5, 0, 0], "radius": 2, "size": 0.2},
 ///    {"point": [1, 1, 1], "size": 0.05}]
-/// each optionally with "radius", or from a table of points, a line "x, y, z, size" each, separated by commas,
-/// semicolons or blanks, with or without a line of titles. For SizeOptions::regions. Throws InputError.
+/// boxes by their least and largest corner, boxes and points with a "radius" if wanted; or from a table of points, a line
+/// "x, y, z, size" each, separated by commas, semicolons or blanks, with or without a line of titles before. For
+/// SizeOptions::regions. Throws InputError with the line or entry for whatever is not exactly that.
 std::vector<SizeRegion> read_size_regions(const std::filesystem::path& file);
 
 /// Reads sizes at points from such a table, or from the points of a VTU or VTP file with the sizes in its PointData

@@ -8,8 +8,8 @@
 
 namespace octafront {
 
-/// Lines "x, y, z, size", separated by commas, semicolons or blanks, with or without a line of titles. Sizes are not
-/// checked. Throws InputError with the line.
+/// Lines "x, y, z, size", separated by commas, semicolons or blanks, with or without a line of titles: words, not one
+/// of them a number. Throws InputError with the line, also for sizes that are not above 0, or if there is no point.
 std::vector<PointSize> read_point_table(const io::Input& input);
 
 }  // namespace octafront

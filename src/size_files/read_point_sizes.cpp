@@ -3,13 +3,13 @@
 #include <octafront/io.h>
 
 #include "io/input.h"
+#include "io/scanner.h"
 #include "io/vtk_xml.h"
 #include "size_files/point_table.h"
 
+#include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
-#include <optional>
 
 #include <fmt/format.h>
 
@@ -17,23 +17,37 @@ namespace octafront {
 
 namespace {
 
-bool is_separator(char c) {
-  return c == ' ' || c == '\t' || c == ',' || c == ';' || c == '\r';
+constexpr std::string_view kSeparators = " \t,;\r";
+
+/// The words of a line, by commas, semicolons or blanks.
+std::vector<std::string_view> words_of(std::string_view line) {
+  std::vector<std::string_view> words;
+  for (std::size_t at = line.find_first_not_of(kSeparators); at != std::string_view::npos;) {
+    const std::size_t end = std::min(line.size(), line.find_first_of(kSeparators, at));
+    words.push_back(line.substr(at, end - at));
+    at = line.find_first_not_of(kSeparators, end);
+  }
+  return words;
 }
 
-/// The four numbers of a line; nothing if it has other content.
-std::optional<std::array<double, 4>> four_numbers(std::string_view line) {
+/// Four finite numbers, the last one above 0; throws InputError with the line.
+PointSize row(const io::Input& input, std::string_view line, const std::vector<std::string_view>& words) {
+  if (words.size() != 4)
+    input.fail_at_line(line.data(), fmt::format("{} values, not the four x, y, z, size", words.size()));
   std::array<double, 4> v{};
-  const char *at = line.data(), *end = at + line.size();
-  for (double& x : v) {
-    while (at != end && is_separator(*at)) ++at;
-    const auto [next, error] = std::from_chars(at, end, x);
-    if (error != std::errc()) return std::nullopt;
-    at = next;
-  }
-  while (at != end && is_separator(*at)) ++at;
-  if (at != end) return std::nullopt;
-  return v;
+  for (std::size_t k = 0; k < 4; ++k)
+    if (!io::parse_number(words[k], v[k]) || !std::isfinite(v[k]))
+      input.fail_at_line(line.data(), fmt::format("{} is no finite number", io::in_quotes(words[k])));
+  if (v[3] <= 0) input.fail_at_line(line.data(), fmt::format("size {}: sizes must be above 0", v[3]));
+  return {{v[0], v[1], v[2]}, v[3]};
+}
+
+/// A row with a slip of the finger still has numbers; titles have none.
+bool are_titles(const std::vector<std::string_view>& words) {
+  return std::none_of(words.begin(), words.end(), [](std::string_view word) {
+    double value = 0;
+    return io::parse_number(word, value);
+  });
 }
 
 /// The array "size" of the points, or the only one there is.
@@ -62,8 +76,13 @@ std::vector<PointSize> from_vtk(const io::Input& input) {
   std::vector<PointSize> points;
   points.reserve(size.size());
   for (std::size_t i = 0; i < size.size(); ++i) {
-    points.push_back({{xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]}, size[i]});
+    const Vec3 p{xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]};
+    if (!is_finite(p)) input.fail(fmt::format("point {} lies at no finite place", i));
+    if (!std::isfinite(size[i]) || size[i] <= 0)
+      input.fail(fmt::format("point {} has size {}: sizes must be above 0", i, size[i]));
+    points.push_back({p, size[i]});
   }
+  if (points.empty()) input.fail("has no points with sizes");
   return points;
 }
 
@@ -72,16 +91,15 @@ std::vector<PointSize> from_vtk(const io::Input& input) {
 std::vector<PointSize> read_point_table(const io::Input& input) {
   std::vector<PointSize> points;
   std::string_view rest = input.bytes;
-  for (bool is_first = true; !rest.empty(); is_first = false) {
+  for (bool is_first = true; !rest.empty();) {
     const std::string_view line = rest.substr(0, rest.find('\n'));
     rest.remove_prefix(std::min(rest.size(), line.size() + 1));
-    if (line.find_first_not_of(" \t\r") == std::string_view::npos) continue;
-    if (const auto v = four_numbers(line)) {
-      points.push_back({{(*v)[0], (*v)[1], (*v)[2]}, (*v)[3]});
-    } else if (!is_first) {
-      input.fail_at_line(line.data(), "is no line of four numbers x, y, z, size");
-    }
+    const std::vector<std::string_view> words = words_of(line);
+    if (words.empty()) continue;
+    if (!is_first || !are_titles(words)) points.push_back(row(input, line, words));
+    is_first = false;
   }
+  if (points.empty()) input.fail("has no line of four numbers x, y, z, size");
   return points;
 }
 
@@ -90,15 +108,7 @@ std::vector<PointSize> read_point_sizes(const std::filesystem::path& file) {
   const io::Input& input = loaded.input();
   const std::size_t start = input.bytes.find_first_not_of(" \t\r\n");
   const bool is_xml = start != std::string_view::npos && input.bytes[start] == '<';
-  std::vector<PointSize> points = is_xml ? from_vtk(input) : read_point_table(input);
-  if (points.empty()) input.fail("has no points with sizes");
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const PointSize& s = points[i];
-    if (!is_finite(s.p)) input.fail(fmt::format("point {} lies at no finite place", i));
-    if (!std::isfinite(s.size) || s.size <= 0)
-      input.fail(fmt::format("point {} has size {}: sizes must be above 0", i, s.size));
-  }
-  return points;
+  return is_xml ? from_vtk(input) : read_point_table(input);
 }
 
 }  // namespace octafront

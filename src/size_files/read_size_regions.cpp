@@ -3,7 +3,7 @@
 #include "io/input.h"
 #include "size_files/point_table.h"
 
-#include <cmath>
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include <fmt/format.h>
@@ -29,10 +29,27 @@ Vec3 point(const io::Input& input, std::size_t entry, const Json& value, const c
           number(input, entry, value[2], name)};
 }
 
+void read_box(const io::Input& input, std::size_t entry, const Json& value, SizeRegion& r) {
+  if (!value.is_array() || value.size() != 2) fail_at(input, entry, "needs [[x, y, z], [x, y, z]] in \"box\"");
+  r.lo = point(input, entry, value[0], "box");
+  r.hi = point(input, entry, value[1], "box");
+  if (r.lo != min(r.lo, r.hi))
+    fail_at(input, entry, "has a \"box\" with corners swapped: first its least x, y and z, then its largest");
+}
+
+void check(const io::Input& input, std::size_t entry, const Json& json, const SizeRegion& r) {
+  if (json.contains("box") + json.contains("sphere") + json.contains("point") != 1)
+    fail_at(input, entry, "needs exactly one of \"box\", \"sphere\" and \"point\"");
+  if (!json.contains("size")) fail_at(input, entry, "has no \"size\"");
+  if (r.size <= 0) fail_at(input, entry, fmt::format("has size {}: sizes must be above 0", r.size));
+  if (r.radius < 0) fail_at(input, entry, fmt::format("has radius {}", r.radius));
+  if (json.contains("sphere") && r.radius == 0)
+    fail_at(input, entry, "is a sphere and needs a \"radius\" above 0; a place without extent is a \"point\"");
+}
+
 SizeRegion region(const io::Input& input, std::size_t entry, const Json& json) {
   if (!json.is_object()) fail_at(input, entry, "is no object such as {\"point\": [0, 0, 0], \"size\": 1}");
   SizeRegion r;
-  int shapes = 0;
   for (const auto& [key, value] : json.items()) {
     if (key == "size") {
       r.size = number(input, entry, value, "size");
@@ -40,23 +57,28 @@ SizeRegion region(const io::Input& input, std::size_t entry, const Json& json) {
       r.radius = number(input, entry, value, "radius");
     } else if (key == "sphere" || key == "point") {
       r.lo = r.hi = point(input, entry, value, key.c_str());
-      ++shapes;
     } else if (key == "box") {
-      if (!value.is_array() || value.size() != 2) fail_at(input, entry, "needs [[x, y, z], [x, y, z]] in \"box\"");
-      const Vec3 a = point(input, entry, value[0], "box"), b = point(input, entry, value[1], "box");
-      r.lo = min(a, b);
-      r.hi = max(a, b);
-      ++shapes;
+      read_box(input, entry, value, r);
     } else {
       fail_at(input, entry, fmt::format("has the unknown key {}", io::in_quotes(key)));
     }
   }
-  if (shapes != 1) fail_at(input, entry, "needs exactly one of \"box\", \"sphere\" and \"point\"");
+  check(input, entry, json, r);
   return r;
 }
 
+Json parsed(const io::Input& input) {
+  try {
+    return Json::parse(input.bytes);
+  } catch (const Json::parse_error& error) {
+    input.fail_at_line(input.bytes.data() + std::min(error.byte, input.bytes.size()), "is no JSON from here on");
+  } catch (const Json::out_of_range& error) {
+    input.fail("holds a number that no computer number is: write it shorter");
+  }
+}
+
 std::vector<SizeRegion> from_json(const io::Input& input) {
-  const Json json = Json::parse(input.bytes, nullptr, false);
+  const Json json = parsed(input);
   if (!json.is_array()) input.fail("is no JSON array of regions; it has to begin with [ and end with ]");
   std::vector<SizeRegion> regions;
   for (const Json& entry : json) regions.push_back(region(input, regions.size(), entry));
@@ -76,15 +98,7 @@ std::vector<SizeRegion> read_size_regions(const std::filesystem::path& file) {
   const io::Input& input = loaded.input();
   const std::size_t start = input.bytes.find_first_not_of(" \t\r\n");
   const bool is_json = start != std::string_view::npos && (input.bytes[start] == '[' || input.bytes[start] == '{');
-  const std::vector<SizeRegion> regions = is_json ? from_json(input) : from_table(input);
-  for (std::size_t i = 0; i < regions.size(); ++i) {
-    const SizeRegion& r = regions[i];
-    if (!is_finite(r.lo) || !is_finite(r.hi)) fail_at(input, i, "lies at no finite place");
-    if (!std::isfinite(r.size) || r.size <= 0)
-      fail_at(input, i, fmt::format("has size {}: sizes must be above 0", r.size));
-    if (!std::isfinite(r.radius) || r.radius < 0) fail_at(input, i, fmt::format("has radius {}", r.radius));
-  }
-  return regions;
+  return is_json ? from_json(input) : from_table(input);
 }
 
 }  // namespace octafront

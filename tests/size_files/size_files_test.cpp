@@ -162,7 +162,7 @@ TEST(SizeFieldFile, DamagedFilesAreRefused) {
 
 TEST(SizeRegions, ComeFromJson) {
   const TemporaryFile file("octafront_regions.json",
-                           R"([{"box": [[1, 0, 0], [0, 2, 1]], "size": 0.1},
+                           R"([{"box": [[0, 0, 0], [1, 2, 1]], "size": 0.1},
                                {"sphere": [5, 0, 0], "radius": 2, "size": 0.2}, {"point": [1, 1, 1], "size": 0.05}])");
   const auto regions = read_size_regions(file.path());
   ASSERT_EQ(regions.size(), 3u);
@@ -180,13 +180,62 @@ TEST(SizeRegions, ComeFromTables) {
   EXPECT_EQ(regions[1].size, 0.25);
 }
 
-TEST(SizeRegions, BadFilesAreRefused) {
-  for (const char* text : {"", "[{\"box\": [[0,0,0],[1,1,1]]}]", "[{\"point\": [0,0], \"size\": 1}]", "[{]", "{}",
-                           "[{\"point\": [0,0,0], \"size\": -1}]", "[{\"blob\": [0,0,0], \"size\": 1}]",
-                           "0 0 0 1\n0 0 1\n", "0 0 0 nan\n"}) {
-    const TemporaryFile file("octafront_bad.json", text);
-    EXPECT_THROW(read_size_regions(file.path()), InputError) << text;
+/// A text that is no table or list of sizes, and what the refusal says.
+struct BadText {
+  const char *text, *fragment;
+};
+
+template <class Read>
+void expect_refused(const std::vector<BadText>& texts, const Read& read) {
+  for (const BadText& bad : texts) {
+    SCOPED_TRACE(bad.text);
+    const TemporaryFile file("octafront_bad_sizes", bad.text);
+    try {
+      read(file.path());
+      ADD_FAILURE() << "was read";
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(bad.fragment), std::string::npos) << error.what();
+    }
   }
+}
+
+TEST(SizeTables, SlipsAreRefusedWithTheLine) {
+  const std::vector<BadText> texts{{"1 2 3\n", "line 1: 3 values"},
+                                   {"hello world\n", "no line of four numbers"},
+                                   {"0 0 0 0.l\n1 0 0 0.1\n", "line 1: \"0.l\""},
+                                   {"x,y,z,size\n0,0,0\n", "line 2: 3 values"},
+                                   {"0 0 0 1 2\n", "line 1: 5 values"},
+                                   {"0 0 0 1\n\n0 O 1 1\n", "line 3: \"O\""},
+                                   {"x y z h\nx y z h\n", "line 2"},
+                                   {"0 0 0 nan\n", "\"nan\""},
+                                   {"0 0 inf 1\n", "\"inf\""},
+                                   {"0 0 0 -1\n", "line 1: size -1"}};
+  expect_refused(texts, [](const auto& file) { read_size_regions(file); });
+  expect_refused(texts, [](const auto& file) { read_point_sizes(file); });
+}
+
+TEST(SizeTables, TitlesMayBeWords) {
+  const TemporaryFile file("octafront_titles", "# \"Points:0\", Points:1, Points:2, wanted size\n+1 2e0 3 .5");
+  const std::vector<PointSize> sizes = read_point_sizes(file.path());
+  ASSERT_EQ(sizes.size(), 1u);
+  EXPECT_EQ(sizes[0].p, (Vec3{1, 2, 3}));
+}
+
+TEST(SizeRegions, BadFilesAreRefused) {
+  expect_refused({{"", "empty"},
+                  {"[{\"box\": [[0,0,0],[1,1,1]]}]", "entry 0 has no \"size\""},
+                  {"[{\"point\": [0,0], \"size\": 1}]", "[x, y, z]"},
+                  {"[\n{]", "line 2: is no JSON"},
+                  {"[{\"point\": [0,0,1e999], \"size\": 1}]", "number"},
+                  {"{}", "no JSON array"},
+                  {"[{\"point\": [0,0,0], \"size\": -1}]", "above 0"},
+                  {"[{\"blob\": [0,0,0], \"size\": 1}]", "\"blob\""},
+                  {"[{\"sphere\": [0,0,0], \"size\": 1}]", "needs a \"radius\""},
+                  {"[{\"sphere\": [0,0,0], \"radius\": 0, \"size\": 1}]", "needs a \"radius\" above 0"},
+                  {"[{\"point\": [0,0,0], \"radius\": -1, \"size\": 1}]", "radius -1"},
+                  {"[{\"box\": [[0,2,0],[1,1,1]], \"size\": 1}]", "corners swapped"},
+                  {"[{\"size\": 1}]", "exactly one of"}},
+                 [](const auto& file) { read_size_regions(file); });
 }
 
 TEST(SizeRegions, HoldInsideAndGrowAround) {
