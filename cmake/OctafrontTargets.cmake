@@ -15,7 +15,8 @@ if(OCTAFRONT_SANITIZE)
 endif()
 
 # octafront_room(NAME SOURCES ... [ROOMS ...] [LIBS ...])
-# One static library per folder of src/: it can be built and tested alone. ROOMS are the rooms it may include from.
+# One static library per folder of src/: it can be built and tested alone. ROOMS are those that
+# its row in ARCHITECTURE.md names (tests/house compares).
 function(octafront_room name)
   cmake_parse_arguments(ROOM "" "" "SOURCES;ROOMS;LIBS" ${ARGN})
   add_library(octafront_${name} STATIC ${ROOM_SOURCES})

@@ -1,8 +1,5 @@
 #pragma once
 
-// lattice: the graded body-centred cubic lattice, and the part of it that lies deep inside a surface. Takes a surface
-// and sizes, leaves the core of the mesh and its skin, from which the volume front fills the shell out to the surface.
-
 #include <octafront/run_context.h>
 #include <octafront/size_field.h>
 #include <octafront/surface_mesh.h>

@@ -2,10 +2,10 @@
 
 #include <octafront/repair.h>
 
+#include "core/wording.h"
 #include "mesh/edge_table.h"
 #include "surface/defects/steps.h"
 #include "surface/repair/steps.h"
-#include "surface/wording.h"
 
 #include <algorithm>
 #include <numeric>

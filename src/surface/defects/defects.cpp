@@ -1,7 +1,7 @@
 #include <octafront/repair.h>
 
+#include "core/wording.h"
 #include "surface/defects/steps.h"
-#include "surface/wording.h"
 
 #include <algorithm>
 #include <set>

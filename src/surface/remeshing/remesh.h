@@ -1,13 +1,5 @@
 #pragma once
 
-// surface, second half: a clean surface triangulated anew to the size field. Takes the repaired surface, its features
-// and the sizes; leaves a surface whose vertices lie on the input, with the input's topology, features and patches. The
-// steps, one file each: curves (chained, cleared of noise, divided), surface_front (places points), insertion (puts
-// them into the input triangulation), coarsen (collapses the input's own vertices away), surface_improve,
-// surface_lengths and curve_points (flips, smoothing, mending, points that slide along curves), surface_crossings and
-// surface_deviation (what makes remesh.cpp run another round with smaller sizes). A closed manifold exists at every
-// moment, so no decision of the front can break the topology.
-
 #include <octafront/options.h>
 #include <octafront/size_field.h>
 #include <octafront/surface_mesh.h>

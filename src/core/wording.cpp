@@ -1,4 +1,4 @@
-#include "surface/wording.h"
+#include "core/wording.h"
 
 #include <algorithm>
 
