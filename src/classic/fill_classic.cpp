@@ -6,6 +6,7 @@
 #include "classic/classic_front.h"
 #include "classic/surface_sizes.h"
 #include "core/stage_timer.h"
+#include "mesh/renumber.h"
 #include "volume/ladder.h"
 #include "volume/regions.h"
 

@@ -2,6 +2,7 @@
 
 #include "geometry/predicates.h"
 #include "io/boundary.h"
+#include "mesh/renumber.h"
 
 #include <algorithm>
 #include <utility>
@@ -50,15 +51,8 @@ void drop_unused_points(RawMesh& raw) {
   for (const Tet& t : raw.tets)
     for (const VertexIndex v : t) new_of_old[v] = 0;
   if (std::find(new_of_old.begin(), new_of_old.end(), kNone) == new_of_old.end()) return;
-  VertexIndex next = 0;
-  for (std::size_t v = 0; v < raw.points.size(); ++v) {
-    if (new_of_old[v] == kNone) continue;
-    raw.points[next] = raw.points[v];
-    new_of_old[v] = next++;
-  }
-  raw.points.resize(next);
-  for (Tet& t : raw.tets)
-    for (VertexIndex& v : t) v = new_of_old[v];
+  keep_numbered(raw.points, new_of_old);
+  renumber(raw.tets, new_of_old);
   // Triangles at dropped points bound no tetrahedron; they go with what does not match the boundary.
   std::size_t kept = 0;
   for (std::size_t i = 0; i < raw.triangles.size(); ++i) {

@@ -3,13 +3,29 @@
 #include <octafront/surface_mesh.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
 namespace octafront {
 
+/// Edge i of triangle t, from its corner i to the next one, as h = 3 * t + i.
+using HalfEdge = std::uint32_t;
+
+constexpr HalfEdge next_in_triangle(HalfEdge h) {
+  return h % 3 == 2 ? h - 2 : h + 1;
+}
+constexpr HalfEdge previous_in_triangle(HalfEdge h) {
+  return h % 3 == 0 ? h + 2 : h - 1;
+}
+inline VertexIndex start_of(std::span<const Triangle> triangles, HalfEdge h) {
+  return triangles[h / 3][h % 3];
+}
+inline VertexIndex end_of(std::span<const Triangle> triangles, HalfEdge h) {
+  return start_of(triangles, next_in_triangle(h));
+}
+
 /// The undirected edges of a list of triangles, each with the half-edges that run along it.
-/// Half-edge h = 3 t + i runs from corner i of triangle t to its corner (i + 1) % 3.
 struct EdgeTable {
   std::vector<Edge> edges;                ///< smaller vertex first, sorted, each once
   std::vector<std::uint32_t> first;       ///< one per edge and one more: where its half-edges begin in `half_edges`
@@ -24,14 +40,6 @@ struct EdgeTable {
 };
 
 /// Requires that every index is below `vertices`. Triangles with a repeated vertex give edges with equal ends.
-EdgeTable make_edge_table(std::size_t vertices, const std::vector<Triangle>& triangles);
-
-/// Where half-edge h starts and ends.
-inline VertexIndex start_of(const std::vector<Triangle>& triangles, std::uint32_t h) {
-  return triangles[h / 3][h % 3];
-}
-inline VertexIndex end_of(const std::vector<Triangle>& triangles, std::uint32_t h) {
-  return triangles[h / 3][(h % 3 + 1) % 3];
-}
+EdgeTable make_edge_table(std::size_t vertices, std::span<const Triangle> triangles);
 
 }  // namespace octafront

@@ -2,12 +2,12 @@
 
 #include "geometry/measures.h"
 #include "geometry/predicates.h"
-#include "mesh/adjacency.h"
+#include "mesh/face_table.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <tuple>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -71,82 +71,61 @@ std::optional<std::string> sign_defect(const TetMesh& mesh) {
   return std::nullopt;
 }
 
-// A face with its corners sorted; `even` tells which way round it was.
-struct SortedFace {
-  Triangle corners;
-  std::uint32_t owner;  // a tet, or if listed, a face of the boundary list
-  bool even, listed;
+// What a face is of, packed into a number of the face table: faces of tets sort before those of the boundary list.
+struct FaceOwner {
+  std::uint32_t number;
+  explicit FaceOwner(std::uint32_t face) : number(face) {}
+  FaceOwner(std::uint32_t of, bool listed, const Triangle& corners)
+      : number(static_cast<std::uint32_t>(listed) << 31 | of << 1 | static_cast<std::uint32_t>(is_even(corners))) {}
 
-  SortedFace() = default;
-  SortedFace(const Triangle& t, std::uint32_t of, bool in_list) : owner(of), listed(in_list) {
-    const FaceKey key(t);
-    corners = {key.low, key.middle, key.high};
-    even = key.even;
-  }
+  bool listed() const { return number >> 31 != 0; }
+  bool even() const { return (number & 1) != 0; }
+  std::uint32_t of() const { return number >> 1 & (kMostOwners - 1); }  // a tet, or if listed, a face of the list
+
+  static constexpr std::uint32_t kMostOwners = 1u << 30;
 };
 
-// All faces of tets and of the boundary list, grouped by their least corner.
-struct FacesByCorner {
-  std::vector<std::uint64_t> first;  // per vertex, and one past the end
-  std::vector<SortedFace> faces;
-};
-
-FacesByCorner group_faces(const TetMesh& mesh) {
-  FacesByCorner g;
-  g.first.assign(mesh.points.size() + 1, 0);
-  const auto for_each_face = [&](const auto& visit) {
-    for (std::uint32_t t = 0; t < mesh.tets.size(); ++t)
-      for (const auto& [i, j, k] : kTetFaces)
-        visit(Triangle{mesh.tets[t][i], mesh.tets[t][j], mesh.tets[t][k]}, t, false);
-    for (std::uint32_t f = 0; f < mesh.boundary.size(); ++f) visit(mesh.boundary[f], f, true);
-  };
-  for_each_face([&](const Triangle& t, std::uint32_t, bool) { ++g.first[std::min({t[0], t[1], t[2]}) + 1]; });
-  for (std::size_t v = 0; v + 1 < g.first.size(); ++v) g.first[v + 1] += g.first[v];
-  g.faces.resize(g.first.back());
-  std::vector<std::uint64_t> next(g.first.begin(), g.first.end() - 1);
-  for_each_face([&](const Triangle& t, std::uint32_t owner, bool listed) {
-    const SortedFace f(t, owner, listed);
-    g.faces[next[f.corners[0]]++] = f;
-  });
-  return g;
+FaceTable table_of_faces(const TetMesh& mesh) {
+  return {mesh.points.size(), [&](const auto& add) {
+            for (std::uint32_t t = 0; t < mesh.tets.size(); ++t)
+              for (int i = 0; i < 4; ++i) {
+                const Triangle corners = face_of(mesh.tets[t], i);
+                add(corners, FaceOwner(t, false, corners).number);
+              }
+            for (std::uint32_t f = 0; f < mesh.boundary.size(); ++f)
+              add(mesh.boundary[f], FaceOwner(f, true, mesh.boundary[f]).number);
+          }};
 }
 
-std::string name(const SortedFace& f) {
-  return fmt::format("{} {}", f.listed ? "boundary face" : "tetrahedron", f.owner);
+std::string name(FaceOwner f) {
+  return fmt::format("{} {}", f.listed() ? "boundary face" : "tetrahedron", f.of());
 }
 
-// The faces [begin, end) have the same corners: one or two tets, or one tet and one face of the boundary list.
-std::optional<std::string> face_group_defect(const TetMesh& mesh, const SortedFace* begin, const SortedFace* end) {
-  const std::string where = "face " + described(mesh.points, begin->corners);
-  const auto count = end - begin;
-  if (begin->listed) return fmt::format("{} is {} but belongs to no tetrahedron", where, name(*begin));
-  if (count == 1) return fmt::format("{} of tetrahedron {} is open but not listed as boundary", where, begin->owner);
-  const SortedFace &a = begin[0], &b = begin[1];
-  if (count > 2) return fmt::format("{} belongs to {}, {} and {}", where, name(a), name(b), name(begin[2]));
-  if (!b.listed && a.even == b.even) return fmt::format("{}: {} and {} lie on the same side", where, name(a), name(b));
-  if (b.listed && a.even != b.even) return fmt::format("{}: {} faces inward", where, name(b));
+// Faces with the same corners: one or two tets, or one tet and one face of the boundary list.
+std::optional<std::string> face_group_defect(const TetMesh& mesh, const Triangle& corners,
+                                             std::span<const FaceTable::Entry> group) {
+  const std::string where = "face " + described(mesh.points, corners);
+  const FaceOwner a(group[0].face);
+  if (a.listed()) return fmt::format("{} is {} but belongs to no tetrahedron", where, name(a));
+  if (group.size() == 1) return fmt::format("{} of tetrahedron {} is open but not listed as boundary", where, a.of());
+  const FaceOwner b(group[1].face);
+  if (group.size() > 2)
+    return fmt::format("{} belongs to {}, {} and {}", where, name(a), name(b), name(FaceOwner(group[2].face)));
+  if (!b.listed() && a.even() == b.even())
+    return fmt::format("{}: {} and {} lie on the same side", where, name(a), name(b));
+  if (b.listed() && a.even() != b.even()) return fmt::format("{}: {} faces inward", where, name(b));
   return std::nullopt;
 }
 
 std::optional<std::string> face_defect(const TetMesh& mesh) {
-  FacesByCorner g = group_faces(mesh);
-  for (std::size_t v = 0; v + 1 < g.first.size(); ++v) {
-    SortedFace* const end = g.faces.data() + g.first[v + 1];
-    SortedFace* group = g.faces.data() + g.first[v];
-    std::sort(group, end, [](const SortedFace& a, const SortedFace& b) {
-      return std::tie(a.corners, a.listed, a.owner) < std::tie(b.corners, b.listed, b.owner);
-    });
-    while (group != end) {
-      SortedFace* const next =
-          std::find_if(group, end, [&](const SortedFace& f) { return f.corners != group->corners; });
-      // The common cases: two tets from opposite sides, a tet and its listed face.
-      const bool good = next - group == 2 && !group[0].listed && (group[0].even == group[1].even) == group[1].listed;
-      if (!good)
-        if (auto defect = face_group_defect(mesh, group, next)) return defect;
-      group = next;
-    }
-  }
-  return std::nullopt;
+  std::optional<std::string> defect;
+  table_of_faces(mesh).for_each_group([&](const Triangle& key, std::span<const FaceTable::Entry> group) {
+    const FaceOwner a(group.front().face), b(group.back().face);
+    // The common cases: two tets from opposite sides, a tet and its listed face.
+    const bool good = group.size() == 2 && !a.listed() && (a.even() == b.even()) == b.listed();
+    if (!good && !defect) defect = face_group_defect(mesh, key, group);
+  });
+  return defect;
 }
 
 // The sum of six volumes of the tetrahedra (a, b, c, o), with what rounding may do to it: little of the sum where they
@@ -211,7 +190,8 @@ std::optional<std::string> boundary_difference(const TetMesh& mesh, const Surfac
 }  // namespace
 
 std::optional<std::string> first_defect(const TetMesh& mesh) {
-  if (mesh.tets.size() >= (std::size_t{1} << 30)) return "a mesh of 2^30 tetrahedra or more cannot be checked";
+  if (std::max(mesh.tets.size(), mesh.boundary.size()) >= FaceOwner::kMostOwners)
+    return "a mesh of 2^30 tetrahedra or more cannot be checked";
   for (const auto check : {point_defect, array_defect, sign_defect, face_defect, volume_defect})
     if (auto defect = check(mesh)) return defect;
   return std::nullopt;

@@ -1,6 +1,7 @@
 #include "stuffing/manifold.h"
 
 #include "mesh/adjacency.h"
+#include "mesh/renumber.h"
 #include "mesh/surface_topology.h"
 
 #include <algorithm>
@@ -91,23 +92,6 @@ std::vector<char> tets_to_drop(const TetMesh& mesh, const std::vector<HalfFace>&
     for (const TetIndex t : smaller_parts(mesh.tets, star, across, p)) drop[t] = 1;
   }
   return drop;
-}
-
-void drop_unused_points(TetMesh& mesh) {
-  std::vector<VertexIndex> number(mesh.points.size(), kNone);
-  for (const Tet& t : mesh.tets)
-    for (const VertexIndex v : t) number[v] = 0;
-  VertexIndex used = 0;
-  for (std::size_t v = 0; v < number.size(); ++v) {
-    if (number[v] == kNone) continue;
-    mesh.points[used] = mesh.points[v];
-    number[v] = used++;
-  }
-  mesh.points.resize(used);
-  for (Tet& t : mesh.tets)
-    for (VertexIndex& v : t) v = number[v];
-  for (Triangle& t : mesh.boundary)
-    for (VertexIndex& v : t) v = number[v];
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include "geometry/measures.h"
 #include "geometry/predicates.h"
 #include "geometry/self_intersection.h"
-#include "mesh/surface_topology.h"
+#include "mesh/edge_table.h"
 
 #include <algorithm>
 #include <cmath>
@@ -91,7 +91,7 @@ class Snapper {
       VertexIndex near, far;
     };
     std::vector<Crossing> crossings;
-    for (const auto& [a, b] : edges_of(mesh_.boundary)) {
+    for (const auto& [a, b] : make_edge_table(mesh_.points.size(), mesh_.boundary).edges) {
       if (normal[a] == Vec3{} || normal[b] == Vec3{} || dot(normal[a], normal[b]) > kCosOfSides) continue;
       const bool a_nearer = goal[a].squared_distance <= goal[b].squared_distance;
       const VertexIndex near = a_nearer ? a : b, far = a_nearer ? b : a;

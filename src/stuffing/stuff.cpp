@@ -4,6 +4,7 @@
 
 #include "core/disjoint_sets.h"
 #include "geometry/measures.h"
+#include "mesh/renumber.h"
 #include "stuffing/cut_lattice.h"
 #include "stuffing/manifold.h"
 #include "stuffing/snap_features.h"
@@ -46,10 +47,8 @@ void put_boundary_first(TetMesh& mesh) {
         points.push_back(mesh.points[v]);
       }
   mesh.points = std::move(points);
-  for (Tet& t : mesh.tets)
-    for (VertexIndex& v : t) v = number[v];
-  for (Triangle& t : mesh.boundary)
-    for (VertexIndex& v : t) v = number[v];
+  renumber(mesh.tets, number);
+  renumber(mesh.boundary, number);
 }
 
 void name_boundary(TetMesh& mesh, const SurfaceMesh& surface, const TriangleTree& triangles) {

@@ -7,6 +7,7 @@
 #include "recovery/recover.h"
 #include "recovery/refine.h"
 #include "volume/advance.h"
+#include "mesh/renumber.h"
 #include "volume/ladder.h"
 #include "volume/regions.h"
 

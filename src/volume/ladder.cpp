@@ -123,20 +123,4 @@ void close_cavities(TetMesh& mesh, const std::vector<Wall>& walls, const SizeFie
   stage.count("closing CPU seconds", process_cpu_seconds() - start);
 }
 
-void drop_unused_points(TetMesh& mesh, std::size_t surface_points) {
-  std::vector<VertexIndex> new_index(mesh.points.size(), kNone);
-  for (std::size_t v = 0; v < surface_points; ++v) new_index[v] = 0;
-  for (const Tet& t : mesh.tets)
-    for (const VertexIndex v : t) new_index[v] = 0;
-  VertexIndex used = 0;
-  for (std::size_t v = 0; v < mesh.points.size(); ++v) {
-    if (new_index[v] == kNone) continue;
-    mesh.points[used] = mesh.points[v];
-    new_index[v] = used++;
-  }
-  mesh.points.resize(used);
-  for (Tet& t : mesh.tets)
-    for (VertexIndex& v : t) v = new_index[v];
-}
-
 }  // namespace octafront

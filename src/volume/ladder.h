@@ -18,8 +18,4 @@ namespace octafront {
 void close_cavities(TetMesh& mesh, const std::vector<Wall>& walls, const SizeField& sizes, const VolumeOptions& options,
                     const Stage& stage);
 
-/// Points that the closing of cavities has left without a tetrahedron go; the first `surface_points` keep their
-/// numbers.
-void drop_unused_points(TetMesh& mesh, std::size_t surface_points);
-
 }  // namespace octafront

@@ -2,17 +2,31 @@
 
 #include "support/named_surfaces.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 namespace octafront {
 namespace {
 
-Shells shells_of(const SurfaceMesh& s) {
-  return find_shells(s.triangles, half_edge_twins(s.triangles, s.points.size()), s.points.size());
-}
-
 bool closed_manifold(const SurfaceMesh& s) {
   return is_closed_manifold(s.triangles, s.points.size());
+}
+
+TEST(EdgeTable, HoldsEachEdgeOnceWithItsHalfEdges) {
+  const SurfaceMesh both = testing::joined(testing::torus(8, 6), testing::icosphere(1));
+  const EdgeTable table = make_edge_table(both.points.size(), both.triangles);
+  ASSERT_EQ(table.size(), 144u + 120u);
+  EXPECT_TRUE(std::is_sorted(table.edges.begin(), table.edges.end()));
+  std::size_t half_edges = 0;
+  for (std::size_t e = 0; e < table.size(); ++e) {
+    half_edges += table.uses(e).size();
+    for (const HalfEdge h : table.uses(e)) {
+      const auto [a, b] = std::minmax({start_of(both.triangles, h), end_of(both.triangles, h)});
+      EXPECT_EQ(table.edges[e], (Edge{a, b}));
+    }
+  }
+  EXPECT_EQ(half_edges, 3 * both.triangles.size());
 }
 
 TEST(HalfEdgeTwins, RunTheOtherWay) {
@@ -52,23 +66,6 @@ TEST(IsClosedManifold, RefusesTwoFansAtAVertex) {
   EXPECT_FALSE(closed_manifold(s));
   const auto twin = half_edge_twins(s.triangles, s.points.size());
   EXPECT_EQ(pinched_vertices(s.triangles, twin, s.points.size()), std::vector<VertexIndex>{0});
-  // Both shells count the common vertex.
-  const Shells shells = shells_of(s);
-  ASSERT_EQ(shells.shells.size(), 2u);
-  for (const auto& shell : shells.shells) EXPECT_EQ(shell.genus(), 0);
-}
-
-TEST(FindShells, CountsHandlesAndComponents) {
-  EXPECT_EQ(shells_of(testing::cube(4)).shells.at(0).genus(), 0);
-  EXPECT_EQ(shells_of(testing::torus(8, 6)).shells.at(0).genus(), 1);
-  const SurfaceMesh both = testing::joined(testing::torus(8, 6), testing::icosphere(1));
-  const Shells shells = shells_of(both);
-  ASSERT_EQ(shells.shells.size(), 2u);
-  EXPECT_EQ(shells.shells[0], (Shells::Shell{48, 144, 96}));
-  EXPECT_EQ(shells.shells[1], (Shells::Shell{42, 120, 80}));
-  EXPECT_EQ(shells.of_triangle.front(), 0u);
-  EXPECT_EQ(shells.of_triangle.back(), 1u);
-  EXPECT_EQ(edges_of(both.triangles).size(), 264u);
 }
 
 }  // namespace

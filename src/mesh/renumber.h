@@ -1,0 +1,23 @@
+#pragma once
+
+#include <octafront/tet_mesh.h>
+
+#include <cstddef>
+#include <vector>
+
+namespace octafront {
+
+/// Keeps the points v with number[v] != kNone, in their order. On return number[v] is where point v went.
+void keep_numbered(std::vector<Vec3>& points, std::vector<VertexIndex>& number);
+
+/// Replaces each vertex of the rows (triangles, tets, edges) by its new number.
+template <class Rows>
+void renumber(Rows& rows, const std::vector<VertexIndex>& number) {
+  for (auto& row : rows)
+    for (VertexIndex& v : row) v = number[v];
+}
+
+/// Points that no tetrahedron uses go; the first `kept` stay where they are, used or not.
+void drop_unused_points(TetMesh& mesh, std::size_t kept = 0);
+
+}  // namespace octafront
