@@ -1,4 +1,3 @@
-#include <octafront/error.h>
 #include <octafront/quality.h>
 
 #include "core/stage_timer.h"
@@ -272,15 +271,6 @@ void run_schedule(Schedule& run, const ImproveOptions& options) {
   }
 }
 
-void check_options(const ImproveOptions& options) {
-  if (!(options.relaxation > 0 && options.relaxation <= 1))
-    throw OptionError(fmt::format("the relaxation factor must lie in (0, 1], not {}", options.relaxation));
-  if (options.sweeps < 0)
-    throw OptionError(fmt::format("the number of sweeps must not be negative: {}", options.sweeps));
-  if (options.seconds && !(*options.seconds >= 0))
-    throw OptionError(fmt::format("the time for improvement must not be negative: {}", *options.seconds));
-}
-
 /// How often a boundary that came to cross itself is tried again with the places frozen, before all of it is.
 constexpr int kMostRetries = 3;
 
@@ -318,7 +308,7 @@ std::vector<VertexIndex> where_boundary_crosses(const TetMesh& mesh) {
 }  // namespace
 
 bool improve_mesh(TetMesh& mesh, const BoundaryInput* boundary, const ImproveOptions& options, const Stage& stage) {
-  check_options(options);
+  check_improve_options(options);
   if (options.level == ImproveOptions::Level::kOff || mesh.tets.empty()) return false;
   if (!options.move_boundary || options.level == ImproveOptions::Level::kPaper) boundary = nullptr;
   std::vector<VertexIndex> frozen;

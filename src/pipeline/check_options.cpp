@@ -1,6 +1,7 @@
 #include <octafront/error.h>
 #include <octafront/generate.h>
 
+#include "improve/improve.h"
 #include "pipeline/methods.h"
 #include "sizing/size_sources.h"
 
@@ -28,9 +29,7 @@ void check_options(const Options& options) {
           "a surface that is kept does not deviate: max-deviation and normal-deviation cannot be given with it");
   require(options.volume.ideal_distance >= 0.3 && options.volume.ideal_distance <= 1.5,
           "ideal-distance is a multiple of the element size, between 0.3 and 1.5");
-  require(options.improve.relaxation > 0 && options.improve.relaxation <= 1,
-          "relaxation must be above 0 and at most 1");
-  require(options.improve.sweeps >= 0, "sweeps must not be negative");
+  check_improve_options(options.improve);
   require(!(surface.keep && traits_of(options.method).makes_own_boundary()),
           "the octree method makes a boundary of its own: it cannot keep the input's triangles");
 }

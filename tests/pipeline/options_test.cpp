@@ -48,5 +48,20 @@ TEST(Options, RefusesValuesOutOfRange) {
   expect_refused(o, "elements must be at least 1");
 }
 
+// Before any work: not when improvement begins, after the volume was filled.
+TEST(Options, RefusesImprovementOutOfRange) {
+  Options o;
+  o.improve.relaxation = 1.5;
+  expect_refused(o, "relaxation is 1.5");
+  o = {};
+  o.improve.sweeps = -1;
+  expect_refused(o, "sweeps is -1");
+  for (const double seconds : {-1.0, std::nan("")}) {
+    o = {};
+    o.improve.seconds = seconds;
+    expect_refused(o, "time for improvement");
+  }
+}
+
 }  // namespace
 }  // namespace octafront
