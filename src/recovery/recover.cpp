@@ -2,7 +2,6 @@
 
 #include <octafront/error.h>
 
-#include "core/stage_timer.h"
 #include "recovery/boundary_recovery.h"
 #include "recovery/carve.h"
 #include "recovery/delaunay.h"
@@ -171,8 +170,6 @@ std::optional<TetMesh> recover(const SurfaceMesh& surface, std::uint32_t attempt
 }  // namespace
 
 TetMesh recover_volume(const SurfaceMesh& surface, const Stage& stage, RecoveryPatience patience) {
-  const StageTimer timer(stage.report());
-  stage.report().name = "recover";
   if (surface.triangles.empty()) return {};
   try {
     for (std::uint32_t attempt = 0;; ++attempt) {

@@ -1,8 +1,6 @@
 #pragma once
 
-// recovery: the last rung of the closing ladder, and the fast way to a coarse exact mesh. Takes a closed surface,
-// whatever its triangles look like, and leaves tetrahedra whose boundary it is, triangle for triangle. See
-// docs/recovery.md.
+// The last rung of the closing ladder, and the fast way to a coarse exact mesh. See docs/recovery.md.
 
 #include <octafront/surface_mesh.h>
 #include <octafront/tet_mesh.h>

@@ -2,6 +2,7 @@
 #include <octafront/generate.h>
 #include <octafront/validity.h>
 
+#include "core/stage_timer.h"
 #include "support/named_surfaces.h"
 
 #include <algorithm>
@@ -91,6 +92,19 @@ TEST(Generate, RecoversKeptSurfacesWithTheirPatchesAndRegions) {
   EXPECT_EQ(r.mesh.boundary.size(), two.triangles.size());
   EXPECT_EQ(r.mesh.patch, two.patch);
   EXPECT_EQ(std::set<std::uint32_t>(r.mesh.region.begin(), r.mesh.region.end()), (std::set<std::uint32_t>{0, 1}));
+}
+
+TEST(Generate, CountsTimeOnce) {
+  for (const Method method : {Method::kOctreeAft, Method::kRecover}) {
+    Options o;
+    o.method = method;
+    const double before = process_cpu_seconds();
+    const Report report = generate(testing::torus(40, 20), o).report;
+    EXPECT_LE(report.cpu_seconds, process_cpu_seconds() - before);
+    double sum = 0;
+    for (const StageReport& stage : report.stages) sum += stage.cpu_seconds;
+    EXPECT_NEAR(sum, report.cpu_seconds, 1e-9);
+  }
 }
 
 TEST(Generate, MeetsTheNumberOfElements) {
