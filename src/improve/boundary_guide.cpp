@@ -59,7 +59,7 @@ BoundaryGuide::BoundaryGuide(const EditMesh& mesh, const BoundaryInput& input, c
 
 void BoundaryGuide::freeze_where_regions_meet(const EditMesh& mesh) {
   for (HalfFace h = 0; h < 4 * mesh.slots(); ++h)
-    if (mesh.across(h) == (kBoundaryBit | kBetweenRegions))
+    if (mesh.across(h) == kBetweenRegions)
       for (const int corner : kTetFaces[h % 4]) frozen_[mesh.tet(h / 4)[corner]] = 1;
 }
 

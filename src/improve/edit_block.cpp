@@ -173,10 +173,10 @@ bool EditBlock::replace(std::span<const TetIndex> old_tets, std::span<const Tet>
 }
 
 void EditBlock::turn_boundary(const BoundaryTurn& turn, SmallFaceTable& outside) {
-  for (const HalfFace b : turn.faces) outside.exchange(sorted_face(mesh_.rest_.boundary[b & ~kBoundaryBit]), kNone);
+  for (const HalfFace b : turn.faces) outside.exchange(sorted_face(mesh_.rest_.boundary[b - kFirstBoundary]), kNone);
   for (int k = 0; k < 2; ++k) {
     const Triangle& corners = turn.triangles[k];
-    mesh_.rest_.boundary[turn.faces[k] & ~kBoundaryBit] = corners;
+    mesh_.rest_.boundary[turn.faces[k] - kFirstBoundary] = corners;
     // Where a tet goes without another in its place, the triangle lies on its neighbour.
     const HalfFace behind = outside.exchange(sorted_face(corners), turn.faces[k]);
     if (behind == kNone) continue;

@@ -4,6 +4,7 @@
 
 #include "improve/sorted_face.h"
 #include "improve/spatial_order.h"
+#include "mesh/index_range.h"
 
 #include <algorithm>
 #include <array>
@@ -58,7 +59,7 @@ class FaceMatcher {
 }  // namespace
 
 EditMesh::EditMesh(TetMesh&& mesh, ImproveOptions::Objective objective) : objective_(objective) {
-  if (mesh.tets.size() >= kBoundaryBit / 4) throw MeshingError("improvement holds at most 2^29 tetrahedra");
+  require_in_range(mesh.tets.size(), kMostTetsToImprove, "tetrahedra to improve");
   take(mesh);
   rest_ = std::move(mesh);
   connect();
@@ -99,7 +100,7 @@ void EditMesh::connect() {
   tet_of_.assign(points_.size(), kNone);
   on_boundary_.assign(points_.size(), 0);
   for (std::uint32_t b = 0; b < rest_.boundary.size(); ++b) {
-    matcher.match(sorted_face(rest_.boundary[b]), kBoundaryBit | b);
+    matcher.match(sorted_face(rest_.boundary[b]), kFirstBoundary + b);
     for (const VertexIndex v : rest_.boundary[b]) on_boundary_[v] = 1;
   }
   for (TetIndex t = 0; t < tets_.size(); ++t) {
@@ -122,7 +123,7 @@ void EditMesh::connect() {
 }
 
 void EditMesh::part(HalfFace h, HalfFace other) {
-  for (const HalfFace side : {h, other}) across_[side] = kBoundaryBit | kBetweenRegions;
+  for (const HalfFace side : {h, other}) across_[side] = kBetweenRegions;
   for (const VertexIndex v : sorted_face(tets_[h / 4], static_cast<int>(h % 4))) on_boundary_[v] = 1;
 }
 
@@ -184,7 +185,6 @@ std::vector<VertexIndex> EditMesh::numbers_here() const {
 
 void EditMesh::reserve_tets(std::size_t more) {
   const std::size_t first = tets_.size(), last = first + more;
-  if (last > kBoundaryBit / 4) throw MeshingError("improvement holds at most 2^29 tetrahedra");
   tets_.resize(last, {kNone, kNone, kNone, kNone});
   across_.resize(4 * last);
   shapes_.resize(last, kNoShape);

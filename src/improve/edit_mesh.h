@@ -17,14 +17,15 @@ namespace octafront::improve {
 /// Face i of tet t (opposite corner i) as one number, 4 t + i.
 using HalfFace = std::uint32_t;
 
-/// Across a boundary face lies kBoundaryBit | number of the boundary triangle. Limits a mesh to 2^29 tetrahedra.
-inline constexpr std::uint32_t kBoundaryBit = 0x80000000u;
+/// Across a boundary face lies kFirstBoundary + number of the boundary triangle. Below it there is room for the
+/// half-faces of 7 * 2^27 tetrahedra: kMostTetsToImprove (mesh/index_range.h), and as many new ones as passes reserve.
+inline constexpr HalfFace kFirstBoundary = 0xE0000000u;
 inline constexpr bool is_boundary(HalfFace across) {
-  return (across & kBoundaryBit) != 0;
+  return across >= kFirstBoundary;
 }
 
 /// What lies across a face between two regions: such faces are kept like those of the boundary.
-inline constexpr std::uint32_t kBetweenRegions = 0x7ffffffeu;
+inline constexpr HalfFace kBetweenRegions = kNone - 1;
 
 /// The tetrahedra around an edge, in order, with the other two corners of each.
 struct EdgeRing {
@@ -37,7 +38,8 @@ struct EdgeRing {
 
 class EditMesh {
  public:
-  /// Requires a valid mesh. Throws MeshingError if faces do not match (with their corners).
+  /// Requires a valid mesh. Throws MeshingError if there are more than kMostTetsToImprove, or if faces do not match
+  /// (with their corners).
   explicit EditMesh(TetMesh&& mesh, ImproveOptions::Objective objective = ImproveOptions::Objective::kBalanced);
 
   /// The mesh back, compacted: vertices in the order they came in, without unused ones, new ones behind; tets in order
@@ -60,8 +62,8 @@ class EditMesh {
 
   /// Patch of the boundary triangle that lies across (see across()).
   std::uint32_t boundary_patch(HalfFace across) const {
-    const std::uint32_t b = across & ~kBoundaryBit;
-    return b == kBetweenRegions ? kNone : rest_.patch.empty() ? 0 : rest_.patch[b];
+    if (across == kBetweenRegions) return kNone;
+    return rest_.patch.empty() ? 0 : rest_.patch[across - kFirstBoundary];
   }
   /// For each vertex of the mesh that was taken, its number here.
   std::vector<VertexIndex> numbers_here() const;
@@ -90,7 +92,7 @@ class EditMesh {
   friend class EditBlock;
   friend class EditBlocks;
 
-  /// More slots, on top of the free lists, the first ones uppermost. Throws MeshingError beyond 2^29 tetrahedra.
+  /// More slots, on top of the free lists, the first ones uppermost.
   void reserve_tets(std::size_t more);
   void reserve_points(std::size_t more);
   void take(TetMesh& mesh);

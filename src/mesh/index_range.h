@@ -12,6 +12,9 @@ namespace octafront {
 inline constexpr std::uint64_t kMostVertices = kNone;
 inline constexpr std::uint64_t kMostTets = kNone;
 inline constexpr std::uint64_t kMostTetsWithHalfFaces = std::uint64_t{kNone} / 4;
+/// What improvement takes: it tells boundary triangles from half-faces by the topmost numbers, and wants room for new
+/// elements.
+inline constexpr std::uint64_t kMostTetsToImprove = std::uint64_t{1} << 29;
 
 /// Throws MeshingError if there are more than fit. `what` is in the plural.
 inline void require_in_range(std::uint64_t count, std::uint64_t most, const char* what) {
