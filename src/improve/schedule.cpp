@@ -117,6 +117,7 @@ class Schedule {
     return sum;
   }
 
+  Floor floor() const { return mesh_.floor(); }
   double mean_beta() const { return mesh_.beta_sum() / static_cast<double>(mesh_.live_tets()); }
 
   /// Says what stays poor and why.
@@ -222,22 +223,6 @@ void run_default(Schedule& run, const ImproveOptions& options) {
   run.rounds_for_worst(4, kWanted, 2, kPoor);
 }
 
-void run_best(Schedule& run, const ImproveOptions& options) {
-  run.laplacian(2, options.relaxation, MoveRule::kMeanRises);
-  run.flips(kWantedBest);
-  run.small_polyhedra(kWantedBest);
-  rounds_for_mean(run, kGood);
-  for (int round = 0; round < 4; ++round) {
-    run.collapse(kGood);
-    run.mean_flips(kGoodBest);
-    run.slide_mean();
-    run.smooth_mean(1);
-  }
-  run.flips(kWantedBest);
-  run.small_polyhedra(kWantedBest);
-  run.rounds_for_worst(8, kWantedBest, 2, kWanted);
-}
-
 /// Rounds against poor elements end when one takes away less than this part of what the elements lack.
 constexpr double kWorthRelief = 0.04;
 /// Insertions find next to nothing later, and cost the most.
@@ -254,6 +239,40 @@ void relieve(Schedule& run) {
   }
 }
 
+void best_for_mean(Schedule& run) {
+  run.collapse(kGood);
+  run.mean_flips(kGoodBest);
+  run.slide_mean();
+  run.smooth_mean(1);
+}
+
+void best_for_worst(Schedule& run) {
+  run.flips(kWantedBest);
+  run.small_polyhedra(kWantedBest);
+  run.rounds_for_worst(8, kWantedBest, 2, kWanted);
+  relieve(run);
+}
+
+/// Moves for the mean take vertices out of the corners into which those for the worst have climbed: both again, as long
+/// as that raises the worst element by this.
+constexpr float kWorthBoth = 0.005f;
+
+void run_best(Schedule& run, const ImproveOptions& options) {
+  run.laplacian(2, options.relaxation, MoveRule::kMeanRises);
+  run.flips(kWantedBest);
+  run.small_polyhedra(kWantedBest);
+  rounds_for_mean(run, kGood);
+  for (int round = 0; round < 4; ++round) best_for_mean(run);
+  best_for_worst(run);
+  for (int round = 0; round < kMostRounds; ++round) {
+    const Floor before = run.floor();
+    best_for_mean(run);
+    best_for_worst(run);
+    const Floor now = run.floor();
+    if (now.beta < before.beta + kWorthBoth && now.score < before.score + kWorthBoth) return;
+  }
+}
+
 void run_schedule(Schedule& run, const ImproveOptions& options) {
   switch (options.level) {
     case ImproveOptions::Level::kOff:
@@ -266,8 +285,7 @@ void run_schedule(Schedule& run, const ImproveOptions& options) {
       run_default(run, options);
       return relieve(run);
     case ImproveOptions::Level::kBest:
-      run_best(run, options);
-      return relieve(run);
+      return run_best(run, options);
   }
 }
 

@@ -46,6 +46,18 @@ TEST(ImproveExisting, SlidesOnASurfaceAndStaysTrueToIt) {
   }
 }
 
+TEST(ImproveExisting, GainsNextToNothingOnTheResultOfBest) {
+  const SurfaceMesh surface = testing::icosphere(4);
+  Options options;
+  options.size.size = 0.25;
+  options.improve.level = ImproveOptions::Level::kBest;
+  const TetMesh best = generate(surface, options).mesh;
+  for (const SurfaceMesh* ground : {&surface, static_cast<const SurfaceMesh*>(nullptr)}) {
+    const Improved again = improve_existing(best, options, ground);
+    EXPECT_LT(again.report.quality.beta_min, again.before.beta_min + 0.01);
+  }
+}
+
 TEST(ImproveExisting, RefusesWhatIsNotValid) {
   TetMesh mesh = unimproved(testing::cube(1), 0.5);
   const SurfaceMesh other = testing::icosphere(2);
