@@ -16,13 +16,13 @@ class AlternatingTree {
   using Key = std::array<double, D>;
 
   /// Points outside [lo, hi] are found as well, only slower.
-  AlternatingTree(const Key& lo, const Key& hi) : lo_(lo), hi_(hi) {}
+  AlternatingTree(const Key& lo, const Key& hi) : domain_{lo, hi} {}
 
   /// REQUIRES: `item` is not in the tree. Items are small integers: memory is as large as the largest.
   void insert(std::uint32_t item, const Key& key) {
     if (item >= node_of_item_.size()) node_of_item_.resize(item + 1, kNoNode);
     if (nodes_.empty()) nodes_.emplace_back();
-    Key lo = lo_, hi = hi_;
+    Key lo = domain_.lo, hi = domain_.hi;
     std::uint32_t at = 0;
     for (int axis = 0;; axis = (axis + 1) % D) {
       ++nodes_[at].live;
@@ -50,12 +50,21 @@ class AlternatingTree {
     for (; at != kNoNode; at = nodes_[at].parent) --nodes_[at].live;
   }
 
-  /// Calls visit(item) for each point with from <= key <= to in every coordinate, in an order that depends on the
-  /// history of the tree alone.
+  /// A box of keys, borders included.
+  struct Range {
+    Key lo, hi;
+    bool contains(const Key& key) const {
+      for (int k = 0; k < D; ++k)
+        if (key[k] < lo[k] || key[k] > hi[k]) return false;
+      return true;
+    }
+  };
+
+  /// Calls visit(item) for each point in the range, in an order that depends on the history of the tree alone.
   template <class Visit>
-  void find(const Key& from, const Key& to, const Visit& visit) const {
-    Key lo = lo_, hi = hi_;
-    if (!nodes_.empty()) descend(0, 0, lo, hi, from, to, visit);
+  void find(const Range& range, const Visit& visit) const {
+    Range box = domain_;
+    if (!nodes_.empty()) descend(0, 0, box, range, visit);
   }
 
  private:
@@ -66,32 +75,28 @@ class AlternatingTree {
     std::array<std::uint32_t, 2> child{kNoNode, kNoNode};
   };
 
+  /// `box` is that of node `at`, which is halved along `axis`.
   template <class Visit>
-  void descend(std::uint32_t at, int axis, Key& lo, Key& hi, const Key& from, const Key& to, const Visit& visit) const {
+  void descend(std::uint32_t at, int axis, Range& box, const Range& range, const Visit& visit) const {
     const Node& node = nodes_[at];
     if (node.live == 0) return;
-    if (node.item != kNoItem && in_range(node.key, from, to)) visit(node.item);
-    const double low = lo[axis], high = hi[axis], middle = 0.5 * (low + high);
+    if (node.item != kNoItem && range.contains(node.key)) visit(node.item);
+    const double low = box.lo[axis], high = box.hi[axis], middle = 0.5 * (low + high);
     const int next = (axis + 1) % D;
     // The outermost boxes are open: points outside the domain lie in them.
-    if (node.child[0] != kNoNode && from[axis] < middle && (to[axis] >= low || low == lo_[axis])) {
-      hi[axis] = middle;
-      descend(node.child[0], next, lo, hi, from, to, visit);
-      hi[axis] = high;
+    if (node.child[0] != kNoNode && range.lo[axis] < middle && (range.hi[axis] >= low || low == domain_.lo[axis])) {
+      box.hi[axis] = middle;
+      descend(node.child[0], next, box, range, visit);
+      box.hi[axis] = high;
     }
-    if (node.child[1] != kNoNode && to[axis] >= middle && (from[axis] <= high || high == hi_[axis])) {
-      lo[axis] = middle;
-      descend(node.child[1], next, lo, hi, from, to, visit);
-      lo[axis] = low;
+    if (node.child[1] != kNoNode && range.hi[axis] >= middle && (range.lo[axis] <= high || high == domain_.hi[axis])) {
+      box.lo[axis] = middle;
+      descend(node.child[1], next, box, range, visit);
+      box.lo[axis] = low;
     }
-  }
-  static bool in_range(const Key& key, const Key& from, const Key& to) {
-    for (int k = 0; k < D; ++k)
-      if (key[k] < from[k] || key[k] > to[k]) return false;
-    return true;
   }
 
-  Key lo_, hi_;
+  Range domain_;
   std::vector<Node> nodes_;
   std::vector<std::uint32_t> node_of_item_;
 };

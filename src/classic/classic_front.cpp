@@ -67,7 +67,7 @@ void ClassicFront::faces_near(const Box3& box, std::vector<Face>& out) const {
     // A little more than half of the largest extent in the tree, for the middle is rounded.
     const double reach = 1.0001 * std::ldexp(1.0, t.power);
     const Vec3 more{reach, reach, reach};
-    t.tree.find(key_of(box.lo - more), key_of(box.hi + more), [&](Face f) {
+    t.tree.find({key_of(box.lo - more), key_of(box.hi + more)}, [&](Face f) {
       Box3 b;
       for (const VertexIndex v : faces_[f]) b.add(points_[v]);
       if (b.overlaps(box)) out.push_back(f);
@@ -76,7 +76,7 @@ void ClassicFront::faces_near(const Box3& box, std::vector<Face>& out) const {
 }
 
 void ClassicFront::vertices_near(const Box3& box, std::vector<VertexIndex>& out) const {
-  vertex_tree_.find(key_of(box.lo), key_of(box.hi), [&](VertexIndex v) { out.push_back(v); });
+  vertex_tree_.find({key_of(box.lo), key_of(box.hi)}, [&](VertexIndex v) { out.push_back(v); });
 }
 
 }  // namespace octafront

@@ -31,7 +31,7 @@ TEST(AlternatingTree, FindsWhatALinearSearchFinds) {
     for (int k = 0; k < 3; ++k)
       if (from[k] > to[k]) std::swap(from[k], to[k]);
     std::vector<std::uint32_t> found, expected;
-    tree.find(from, to, [&](std::uint32_t i) { found.push_back(i); });
+    tree.find({from, to}, [&](std::uint32_t i) { found.push_back(i); });
     for (const auto& [i, key] : listed) {
       bool in = true;
       for (int k = 0; k < 3; ++k) in = in && from[k] <= key[k] && key[k] <= to[k];
