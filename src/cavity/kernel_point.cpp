@@ -11,6 +11,10 @@ namespace {
 /// Constraints violated by less than this (coordinates are scaled to the unit box) are taken to hold: the incremental
 /// algorithm would otherwise chase rounding errors of points that lie on them by construction.
 constexpr double kSlack = 1e-12;
+/// A programme is given up only if the last of its variables misses by more than this: what rounding may leave after
+/// three eliminations, each of which divides by a coefficient. Wrong by less, an answer is still looked at by exact
+/// predicates; a kernel that is not found is lost.
+constexpr double kMiss = 1e-9;
 
 template <int D>
 using Vector = std::array<double, D>;
@@ -41,10 +45,10 @@ bool maximise<1>(const std::vector<Constraint<1>>& constraints, const Vector<1>&
       hi = std::min(hi, k.b / k.a[0]);
     else if (k.a[0] < -kSlack)
       lo = std::max(lo, k.b / k.a[0]);
-    else if (k.b < -1e-9)
+    else if (k.b < -kMiss)
       return false;
   }
-  if (lo > hi + 1e-9) return false;
+  if (lo > hi + kMiss) return false;
   x[0] = c[0] >= 0 ? hi : lo;
   return true;
 }

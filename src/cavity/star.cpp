@@ -11,6 +11,9 @@ namespace octafront {
 
 namespace {
 
+/// Walls whose distances from the point differ by less, as a share of the cavity's extent, are violated alike: at the
+/// optimum several are, and equal only up to the rounding of kernel_point.cpp.
+constexpr double kAlike = 1e-9;
 constexpr int kMostSteps = 60;
 /// A star with all elements above this is taken at once; others look for a better one for some more steps.
 constexpr double kGoodStar = 0.12;
@@ -38,7 +41,7 @@ View view_from_kernel(const WorkMesh& mesh, const std::vector<Wall>& walls) {
   view.at = deepest_point(planes, box).at;
   view.worst = 1;
   std::vector<std::pair<double, std::size_t>> violated;
-  const double tight = 1e-9 * box.diagonal();
+  const double tight = kAlike * box.diagonal();
   double least = 0;
   view.sees_all = true;
   for (std::size_t i = 0; i < walls.size(); ++i) {
