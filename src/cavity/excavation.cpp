@@ -4,9 +4,9 @@
 
 namespace octafront {
 
-Excavation::Excavation(WorkMesh& mesh, Cavities& cavities, std::uint32_t cavity)
-    : mesh_(mesh), cavities_(cavities), merged_{cavity} {
-  for (const Wall& w : cavities.walls(cavity)) walls_.emplace(key_of(w), w);
+Excavation::Excavation(const OpenCavity& cavity)
+    : mesh_(cavity.mesh), cavities_(cavity.cavities), merged_{cavity.number} {
+  for (const Wall& w : cavity.walls()) walls_.emplace(key_of(w), w);
 }
 
 Excavation::~Excavation() {

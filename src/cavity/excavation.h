@@ -11,11 +11,12 @@ namespace octafront {
 /// excavation that ends without it puts everything back.
 class Excavation {
  public:
-  Excavation(WorkMesh& mesh, Cavities& cavities, std::uint32_t cavity);
+  explicit Excavation(const OpenCavity& cavity);
   ~Excavation();
   Excavation(const Excavation&) = delete;
   Excavation& operator=(const Excavation&) = delete;
 
+  const WorkMesh& mesh() const { return mesh_; }
   /// The walls in a fixed order.
   std::vector<Wall> walls() const;
   std::size_t size() const { return walls_.size(); }

@@ -52,7 +52,7 @@ View view_from_kernel(const WorkMesh& mesh, const std::vector<Wall>& walls) {
     view.sees_all = view.sees_all && orient3d(a, b, c, view.at) > 0;
     view.worst = std::min(view.worst, radius_ratio(a, b, c, view.at));
   }
-  // At the optimum several walls are violated alike; among equals the order of the walls decides, not rounding.
+  // Among walls violated alike their order decides, not rounding.
   for (auto& [s, i] : violated)
     if (s < least + tight) s = least;
   std::sort(violated.begin(), violated.end());
@@ -62,12 +62,12 @@ View view_from_kernel(const WorkMesh& mesh, const std::vector<Wall>& walls) {
 
 /// Grows until the walls have a kernel and its star is good, or for `steps` steps at most; returns the number of the
 /// step with the best star, -1 if there was none.
-int best_step(Excavation& cavity, const WorkMesh& mesh, int steps) {
+int best_step(Excavation& cavity, int steps) {
   int best = -1, last = steps;
   double best_quality = 0;
   for (int step = 0; step <= last && cavity.size() <= kMostWalls && !cavity.empty(); ++step) {
     const std::vector<Wall> walls = cavity.walls();
-    const View view = view_from_kernel(mesh, walls);
+    const View view = view_from_kernel(cavity.mesh(), walls);
     if (view.sees_all && view.worst > best_quality) {
       if (best < 0) last = std::min(last, step + kStepsForBetter);
       best = step;
@@ -81,25 +81,26 @@ int best_step(Excavation& cavity, const WorkMesh& mesh, int steps) {
   return best;
 }
 
-void grow(Excavation& cavity, const WorkMesh& mesh, int steps) {
+void grow(Excavation& cavity, int steps) {
   for (int step = 0; step < steps; ++step) {
     const std::vector<Wall> walls = cavity.walls();
-    for (const std::size_t i : view_from_kernel(mesh, walls).blocked)
+    for (const std::size_t i : view_from_kernel(cavity.mesh(), walls).blocked)
       if (cavity.grow_through(walls[i])) break;
   }
 }
 
 }  // namespace
 
-StarResult close_by_star(WorkMesh& mesh, Cavities& cavities, std::uint32_t cavity) {
+StarResult close_by_star(const OpenCavity& cavity) {
   int steps = -1;
   {
-    Excavation trial(mesh, cavities, cavity);
-    steps = best_step(trial, mesh, kMostSteps);
+    Excavation trial(cavity);
+    steps = best_step(trial, kMostSteps);
   }
   if (steps < 0) return {};
-  Excavation excavation(mesh, cavities, cavity);
-  grow(excavation, mesh, steps);
+  Excavation excavation(cavity);
+  grow(excavation, steps);
+  WorkMesh& mesh = cavity.mesh;
   const std::vector<Wall> walls = excavation.walls();
   const VertexIndex center = mesh.add_point(view_from_kernel(mesh, walls).at);
   for (const Wall& w : walls) mesh.add({w[0], w[1], w[2], center});

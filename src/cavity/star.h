@@ -13,6 +13,6 @@ struct StarResult {
 /// Closes a cavity by one point that sees all its walls, found by linear programming. While the kernel is empty, the
 /// cavity grows through the wall that the best point violates most, as long as that is not part of the surface. A
 /// kernel that gives poor elements grows on for some steps; the best is kept. Without success nothing changes.
-StarResult close_by_star(WorkMesh& mesh, Cavities& cavities, std::uint32_t cavity);
+StarResult close_by_star(const OpenCavity& cavity);
 
 }  // namespace octafront

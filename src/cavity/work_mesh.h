@@ -70,4 +70,13 @@ class Cavities {
   std::map<TriangleKey, std::uint32_t> owner_;
 };
 
+/// One of the cavities of a mesh.
+struct OpenCavity {
+  WorkMesh& mesh;
+  Cavities& cavities;
+  std::uint32_t number = 0;
+
+  const std::vector<Wall>& walls() const { return cavities.walls(number); }
+};
+
 }  // namespace octafront

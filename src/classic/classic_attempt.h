@@ -1,9 +1,7 @@
 #pragma once
 
-#include <octafront/options.h>
-#include <octafront/size_field.h>
-
 #include "classic/classic_front.h"
+#include "volume/front_task.h"
 
 #include <array>
 #include <cstdint>
@@ -44,8 +42,8 @@ struct ClassicCounters {
 /// signs.
 class ClassicAttempt {
  public:
-  ClassicAttempt(ClassicFront& front, const SizeField& sizes, const VolumeOptions& options, ClassicCounters& counters)
-      : front_(front), sizes_(sizes), options_(options), counters_(counters) {}
+  ClassicAttempt(ClassicFront& front, const FrontTask& task, ClassicCounters& counters)
+      : front_(front), sizes_(task.sizes), options_(task.options), counters_(counters) {}
 
   /// Builds the first acceptable tetrahedron on `face` and updates the front; the faces that it adds go to `created`.
   bool advance(ClassicFront::Face face, const ClassicLimits& limits, std::vector<ClassicFront::Face>& created);

@@ -27,9 +27,8 @@ constexpr int kMostRounds = 8;
 /// The smallest face advances first; among equal ones the oldest.
 class Advance {
  public:
-  Advance(ClassicFront& front, const SizeField& sizes, const VolumeOptions& options, double volume,
-          const RunContext& context, ClassicCounters& counters)
-      : front_(front), volume_(volume), context_(context), attempt_(front, sizes, options, counters) {}
+  Advance(ClassicFront& front, const FrontTask& task, double volume, ClassicCounters& counters)
+      : front_(front), volume_(volume), stage_(task.stage), attempt_(front, task, counters) {}
 
   /// The faces that found no tetrahedron at any level.
   std::vector<Face> run() {
@@ -66,8 +65,8 @@ class Advance {
   }
 
   void check() {
-    context_.check();
-    if (steps_ % 8192 == 0) context_.report("volume", front_.filled_volume() / volume_);
+    stage_.check();
+    if (steps_ % 8192 == 0) stage_.progress(front_.filled_volume() / volume_);
     if (front_.filled_volume() > kVolumeSlack * volume_)
       throw MeshingError(
           "the front has filled more than the surface encloses; check the surface for self-intersections, "
@@ -77,7 +76,7 @@ class Advance {
   using Entry = std::pair<double, Face>;
   ClassicFront& front_;
   double volume_;
-  const RunContext& context_;
+  const Stage& stage_;
   ClassicAttempt attempt_;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue_;
   std::vector<Face> held_;
@@ -103,6 +102,7 @@ void report_front(const Stage& stage, const ClassicCounters& c, std::size_t tets
 TetMesh fill_volume_classic(const SurfaceMesh& surface, const VolumeOptions& options, const Stage& stage) {
   if (surface.triangles.empty()) throw InputError("the surface has no triangles: nothing to fill");
   const SizeField sizes = sizes_from_surface(surface);
+  const FrontTask task{sizes, options, stage};
   TetMesh mesh;
   std::vector<Wall> walls;
   {
@@ -111,8 +111,7 @@ TetMesh fill_volume_classic(const SurfaceMesh& surface, const VolumeOptions& opt
     for (const auto& [a, b, c] : surface.triangles) front.add_face({a, c, b});
     ClassicCounters counters;
     const double start = process_cpu_seconds();
-    const std::vector<Face> left =
-        Advance(front, sizes, options, enclosed_volume(surface), stage.context(), counters).run();
+    const std::vector<Face> left = Advance(front, task, enclosed_volume(surface), counters).run();
     stage.count("advance CPU seconds", process_cpu_seconds() - start);
     report_front(stage, counters, front.tets().size(), left.size());
     for (const Face f : left) walls.push_back(front.corners(f));
@@ -120,7 +119,7 @@ TetMesh fill_volume_classic(const SurfaceMesh& surface, const VolumeOptions& opt
     mesh.tets = front.tets();
   }
   if (!walls.empty()) {
-    close_cavities(mesh, walls, sizes, options, stage);
+    close_cavities(mesh, walls, task);
     drop_unused_points(mesh, surface.points.size());
   }
   mesh.region = regions_of(mesh, surface);

@@ -1,6 +1,8 @@
 #include "volume/advance.h"
 
 #include "mesh/index_range.h"
+#include "volume/block_run.h"
+#include "volume/limits.h"
 
 #include <array>
 #include <cmath>
@@ -28,21 +30,10 @@ constexpr std::array<double, 4> kQuantiles{0.5, 0.36, 0.64, 0.43};
 /// A phase that settles less than this share of its queue is followed by one without blocks.
 constexpr double kLeastSettled = 0.2;
 
-void add(FrontCounters& sum, const FrontCounters& c) {
-  sum.attempts += c.attempts;
-  sum.candidates += c.candidates;
-  sum.face_tests += c.face_tests;
-  sum.exact_tests += c.exact_tests;
-  sum.ideal_points += c.ideal_points;
-  sum.deferred += c.deferred;
-  sum.faces_found += c.faces_found;
-}
-
 class Phases {
  public:
-  Phases(FrontState& front, const SizeField& sizes, const VolumeOptions& options, const AdvanceBudget& budget,
-         const RunContext& context, FrontCounters& counters)
-      : front_(front), sizes_(sizes), options_(options), budget_(budget), context_(context), counters_(counters) {}
+  Phases(FrontState& front, const FrontTask& task, const AdvanceBudget& budget, FrontCounters& counters)
+      : front_(front), task_(task), budget_(budget), counters_(counters) {}
 
   bool run() {
     work_off_queue();
@@ -51,13 +42,13 @@ class Phases {
     // Each round lets the faces that are held try all levels; a success may have made room for others, so there are
     // several.
     for (int round = 0; round < kMostRounds && !over_budget(); ++round) {
-      const std::size_t before = front_.tets;
+      const std::size_t before = front_.work.tets;
       for (std::size_t level = 1; level < kLimits.size() && !over_budget(); ++level) {
         counters_.retries += front_.held.size();
         queue_up(front_.held, static_cast<std::uint8_t>(level));
         work_off_queue();
       }
-      if (front_.tets == before) break;
+      if (front_.work.tets == before) break;
     }
     return !over_budget();
   }
@@ -71,57 +62,58 @@ class Phases {
   void work_off_queue() {
     bool stuck = false;
     while (!front_.queue.empty() && !over_budget()) {
-      context_.check();
-      if (std::isfinite(budget_.volume)) context_.report("volume", front_.volume / budget_.volume);
-      const bool small = front_.queue.size() <= kSmallQueue;
+      task_.stage.check();
+      if (std::isfinite(budget_.volume)) task_.stage.progress(front_.work.volume / budget_.volume);
       const std::size_t queued = front_.queue.size();
-      const std::uint64_t deferred_before = counters_.deferred;
-      phase(small || stuck, small ? kAllLayers : kLayersPerPhase);
-      const auto deferred = static_cast<double>(counters_.deferred - deferred_before);
-      stuck = deferred > (1 - kLeastSettled) * static_cast<double>(queued);
+      const bool small = queued <= kSmallQueue;
+      const std::size_t deferred = phase(small || stuck, small ? kAllLayers : kLayersPerPhase);
+      counters_.deferred += deferred;
+      stuck = static_cast<double>(deferred) > (1 - kLeastSettled) * static_cast<double>(queued);
     }
   }
 
-  void phase(bool undivided, int layers) {
+  /// Returns how many turns of faces were deferred.
+  std::size_t phase(bool undivided, int layers) {
     std::vector<FrontBlock> blocks;
     if (undivided)
       blocks.push_back(FrontBlock::whole(front_));
     else
-      blocks = partition_front(front_, {kFacesPerBlock, kQuantiles[counters_.layers % kQuantiles.size()]});
-    ++counters_.layers;
-    const AdvanceBudget left{budget_.tets - front_.tets, budget_.volume - front_.volume,
-                             budget_.face_tests - counters_.face_tests};
+      blocks = partition_front(front_, {kFacesPerBlock, kQuantiles[front_.phases % kQuantiles.size()]});
+    const FrontPhase phase{front_, task_, budget_.after(front_.work), layers};
     std::vector<BlockResult> results(blocks.size());
     tbb::parallel_for(
         std::size_t{0}, blocks.size(),
         [&](std::size_t b) {
-          results[b] = advance_block(front_, blocks[b], layers, sizes_, options_, left, context_, scratch_.local());
+          results[b] = advance_block(phase, blocks[b], scratch_.local());
           blocks[b] = {};
         },
         tbb::simple_partitioner{});
-    join(results);
+    ++front_.phases;
+    return join(results);
   }
 
-  /// Numbers what the blocks made in their order, and makes their results the front.
-  void join(std::vector<BlockResult>& results) {
+  /// Numbers what the blocks made in their order, and makes their results the front. Returns how
+  /// many turns they deferred.
+  std::size_t join(std::vector<BlockResult>& results) {
     struct Offsets {
       std::size_t point, queue, held, passive;
     };
     std::vector<Offsets> first;
     first.reserve(results.size());
     Offsets end{front_.points.size(), 0, 0, 0};
+    std::size_t deferred = 0;
     for (const BlockResult& r : results) {
       first.push_back(end);
       end.point += r.points.size();
       end.queue += r.queue.size();
       end.held += r.held.size();
       end.passive += r.passive.size();
-      front_.tets += r.tets.size();
-      front_.volume += r.volume;
-      add(counters_, r.counters);
+      deferred += r.deferred;
+      front_.work += r.work;
+      counters_ += r.counters;
     }
     require_in_range(end.point, kMostVertices, "vertices");
-    require_in_range(front_.tets, kMostTets, "tetrahedra");
+    require_in_range(front_.work.tets, kMostTets, "tetrahedra");
     front_.points.resize(end.point);
     front_.sizes.resize(end.point);
     front_.queue.resize(end.queue);
@@ -151,26 +143,22 @@ class Phases {
       r.tets.shrink_to_fit();
       front_.filled[pieces + b] = std::move(r.tets);
     });
+    return deferred;
   }
 
-  bool over_budget() const {
-    return front_.tets > budget_.tets || front_.volume > budget_.volume || counters_.face_tests > budget_.face_tests;
-  }
+  bool over_budget() const { return budget_.exceeded_by(front_.work); }
 
   FrontState& front_;
-  const SizeField& sizes_;
-  const VolumeOptions& options_;
-  AdvanceBudget budget_;
-  const RunContext& context_;
+  const FrontTask& task_;
+  const AdvanceBudget budget_;
   FrontCounters& counters_;
   tbb::enumerable_thread_specific<BlockScratch> scratch_;
 };
 
 }  // namespace
 
-bool advance_front(FrontState& front, const SizeField& sizes, const VolumeOptions& options, const AdvanceBudget& budget,
-                   const RunContext& context, FrontCounters& counters) {
-  return Phases(front, sizes, options, budget, context, counters).run();
+bool advance_front(FrontState& front, const FrontTask& task, const AdvanceBudget& budget, FrontCounters& counters) {
+  return Phases(front, task, budget, counters).run();
 }
 
 }  // namespace octafront

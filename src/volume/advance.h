@@ -1,8 +1,7 @@
 #pragma once
 
-#include <octafront/run_context.h>
-
-#include "volume/block_run.h"
+#include "volume/front_state.h"
+#include "volume/front_task.h"
 
 namespace octafront {
 
@@ -17,8 +16,7 @@ namespace octafront {
 /// A phase is a layer (the paper's Qc; what it leaves is Qn). Faces without an acceptable tetrahedron are held (Qh) and
 /// try again at the next level of `kLimits`. Passive faces are only met by the others; what is left of them advances
 /// when the layers are done. What is `held` at the end are the walls of what remains open. False if it was stopped by
-/// the budget.
-bool advance_front(FrontState& front, const SizeField& sizes, const VolumeOptions& options, const AdvanceBudget& budget,
-                   const RunContext& context, FrontCounters& counters);
+/// the budget. Adds to `counters`.
+bool advance_front(FrontState& front, const FrontTask& task, const AdvanceBudget& budget, FrontCounters& counters);
 
 }  // namespace octafront

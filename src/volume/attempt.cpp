@@ -4,6 +4,7 @@
 
 #include "geometry/measures.h"
 #include "geometry/predicates.h"
+#include "volume/meeting.h"
 
 #include <algorithm>
 #include <cmath>
@@ -67,14 +68,13 @@ double solid_angle_rank(const std::array<Vec3, 3>& triangle, Vec3 p) {
 
 }  // namespace
 
-Attempt::Attempt(Front& front, const SizeField& sizes, const VolumeOptions& options, const Box3& territory,
-                 FrontCounters& counters)
+Attempt::Attempt(Front& front, const FrontTask& task, const Box3& territory, FrontCounters& counters)
     : front_(front),
-      sizes_(sizes),
-      options_(options),
+      sizes_(task.sizes),
+      options_(task.options),
       territory_(territory),
       counters_(counters),
-      sizes_vary_(sizes.min_size() < sizes.max_size()) {}
+      sizes_vary_(sizes_.min_size() < sizes_.max_size()) {}
 
 /// Every tetrahedron that may be made lies in the hull of the base face and the sphere of candidates.
 SearchRegion Attempt::region_to_search(double radius) const {
@@ -116,8 +116,7 @@ bool Attempt::place(FaceIndex face, const Limits& limits) {
   const double r = limits.search_radius * size;
   const SearchRegion region = region_to_search(r);
   if (!strictly_inside(region.box, territory_, kTerritoryMargin * size)) return false;
-  near_.gather(front_, face, region, size);
-  for (int i = 0; i < 3; ++i) local_[i] = near_.to_local(at_[i]);
+  counters_.faces_found += near_.gather(front_, face, region, size);
   ideal_ = normal_ * ideal_distance_;
   return true;
 }
@@ -126,15 +125,16 @@ void Attempt::collect_candidates(const Limits& limits) {
   candidates_.clear();
   const double r2 = limits.search_radius * limits.search_radius;
   const double least = kNearestCandidate * ideal_distance_;
+  const std::array<Vec3, 3>& base = near_.base();
   for (Index i = 3; i < near_.size(); ++i) {
     const Vec3 p = near_.local(i);
     if (squared_length(p - ideal_) > r2 || dot(p, normal_) <= 0 || squared_length(p) < least * least) continue;
-    const double quality = radius_ratio(local_[0], local_[1], local_[2], p);
+    const double quality = radius_ratio(base[0], base[1], base[2], p);
     if (quality < limits.least_quality) continue;
     candidates_.push_back({i, quality, quality});
   }
   if (options_.ranking == VolumeOptions::Ranking::kSolidAngle)
-    for (Candidate& c : candidates_) c.rank = solid_angle_rank(local_, near_.local(c.index));
+    for (Candidate& c : candidates_) c.rank = solid_angle_rank(base, near_.local(c.index));
   const auto better = [&](const Candidate& a, const Candidate& b) {
     return a.rank != b.rank ? a.rank > b.rank : near_.vertex(a.index) < near_.vertex(b.index);
   };
@@ -162,7 +162,7 @@ Attempt::Contact Attempt::contact_of(Index apex) const {
 
 bool Attempt::edges_short_enough(Vec3 apex, const Contact& contact, double longest) const {
   for (int i = 0; i < 3; ++i)
-    if (!contact.edge[i] && squared_length(apex - local_[i]) > longest * longest) return false;
+    if (!contact.edge[i] && squared_length(apex - near_.base()[i]) > longest * longest) return false;
   return true;
 }
 
@@ -201,6 +201,7 @@ bool Attempt::blocks(const Neighborhood::LocalFace& f, Index apex, Vec3 apex_at,
 bool Attempt::keeps_clear(Index apex, Vec3 apex_local, const Contact& contact, const Limits& limits) const {
   if (contact.edge[0] && contact.edge[1] && contact.edge[2]) return true;
   const double least = limits.edge_clearance * limits.edge_clearance;
+  const std::array<Vec3, 3>& base = near_.base();
   for (const auto& f : near_.faces()) {
     const auto& c = f.corner;
     if (near_.code(c[0]) & near_.code(c[1]) & near_.code(c[2]) & Neighborhood::kClear) continue;
@@ -212,7 +213,7 @@ bool Attempt::keeps_clear(Index apex, Vec3 apex_local, const Contact& contact, c
       const Vec3 a = near_.local(p), ab = near_.local(q) - a;
       for (Index i = 0; i < 3; ++i) {
         if (contact.edge[i] || p == i || q == i) continue;
-        if (segments_nearer_than(least, local_[i], apex_local - local_[i], a, ab)) return false;
+        if (segments_nearer_than(least, base[i], apex_local - base[i], a, ab)) return false;
       }
     }
   }
@@ -234,61 +235,44 @@ bool Attempt::clear_of_faces(Vec3 apex, float least) const {
   return true;
 }
 
-bool Attempt::try_candidate(const Candidate& candidate, const Limits& limits) {
+std::optional<Attempt::Contact> Attempt::try_candidate(const Candidate& candidate, const Limits& limits) {
   ++counters_.candidates;
-  counters_.face_tests += near_.faces().size();
+  face_tests_ += near_.faces().size();
   const Index apex = candidate.index;
   const Vec3 p = near_.local(apex);
-  contact_ = contact_of(apex);
-  const bool closes_all = contact_.closed == 3;
-  if (!closes_all && !edges_short_enough(p, contact_, limits.longest_edge)) return false;
+  const Contact contact = contact_of(apex);
+  const bool closes_all = contact.closed == 3;
+  if (!closes_all && !edges_short_enough(p, contact, limits.longest_edge)) return {};
   const VertexIndex id = near_.vertex(apex);
   const Vec3 apex_at = front_.at(id);
-  if (orient3d(at_[0], at_[1], at_[2], apex_at) <= 0) return false;
-  const Vec3 exact_p = near_.to_local(apex_at);
-  near_.classify({plane_through(local_[1], local_[2], exact_p), plane_through(local_[2], local_[0], exact_p),
-                  plane_through(local_[0], local_[1], exact_p)},
-                 static_cast<float>(limits.edge_clearance));
-  // Corners of the tetrahedron count as outside on the planes that contain them.
-  constexpr Neighborhood::Code kBase = 8;
-  near_.code(0) = kBase | 2 | 4;
-  near_.code(1) = kBase | 1 | 4;
-  near_.code(2) = kBase | 1 | 2;
-  near_.code(apex) = 1 | 2 | 4;
-  if (!is_valid(apex, apex_at, id)) return false;
-  return closes_all || keeps_clear(apex, p, contact_, limits);
+  if (orient3d(at_[0], at_[1], at_[2], apex_at) <= 0) return {};
+  near_.classify(apex, near_.to_local(apex_at), static_cast<float>(limits.edge_clearance));
+  if (!is_valid(apex, apex_at, id)) return {};
+  if (!closes_all && !keeps_clear(apex, p, contact, limits)) return {};
+  return contact;
 }
 
 bool Attempt::try_ideal_point(const Limits& limits) {
   if (!front_.domain().contains(ideal_at_) || orient3d(at_[0], at_[1], at_[2], ideal_at_) <= 0) return false;
-  contact_ = Contact{};
-  near_.classify({plane_through(local_[1], local_[2], ideal_), plane_through(local_[2], local_[0], ideal_),
-                  plane_through(local_[0], local_[1], ideal_)},
-                 static_cast<float>(limits.edge_clearance));
-  constexpr Neighborhood::Code kBase = 8;
-  near_.code(0) = kBase | 2 | 4;
-  near_.code(1) = kBase | 1 | 4;
-  near_.code(2) = kBase | 1 | 2;
-  return is_valid(kNewVertex, ideal_at_, kNone) && keeps_clear(kNewVertex, ideal_, contact_, limits) &&
+  near_.classify(kNewVertex, ideal_, static_cast<float>(limits.edge_clearance));
+  return is_valid(kNewVertex, ideal_at_, kNone) && keeps_clear(kNewVertex, ideal_, {}, limits) &&
          clear_of_faces(ideal_, static_cast<float>(limits.face_clearance));
 }
 
 Attempt::Outcome Attempt::advance(FaceIndex face, const Limits& limits, std::vector<QueuedFace>& created) {
-  if (!place(face, limits)) {
-    ++counters_.deferred;
-    return Outcome::kBeyond;
-  }
+  if (!place(face, limits)) return Outcome::kBeyond;
   ++counters_.attempts;
   blocker_ = near_.faces().size();
   collect_candidates(limits);
   for (const Candidate& c : candidates_) {
-    if (!try_candidate(c, limits)) continue;
-    commit(face, near_.vertex(c.index), contact_, created);
+    const std::optional<Contact> contact = try_candidate(c, limits);
+    if (!contact) continue;
+    commit(face, near_.vertex(c.index), *contact, created);
     return Outcome::kAdvanced;
   }
   if (!limits.new_points || !try_ideal_point(limits)) return Outcome::kStuck;
   ++counters_.ideal_points;
-  commit(face, front_.add_vertex(ideal_at_, sizes_.at(ideal_at_)), contact_, created);
+  commit(face, front_.add_vertex(ideal_at_, sizes_.at(ideal_at_)), {}, created);
   return Outcome::kAdvanced;
 }
 

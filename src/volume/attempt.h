@@ -1,21 +1,13 @@
 #pragma once
 
-#include <octafront/options.h>
-#include <octafront/size_field.h>
-
+#include "volume/front_task.h"
 #include "volume/limits.h"
-#include "volume/meeting.h"
 #include "volume/neighborhood.h"
 
+#include <optional>
 #include <vector>
 
 namespace octafront {
-
-/// Counters of the front; they depend on input and options alone.
-struct FrontCounters {
-  std::uint64_t attempts = 0, candidates = 0, face_tests = 0, exact_tests = 0, ideal_points = 0, retries = 0,
-                layers = 0, faces_found = 0, deferred = 0;
-};
 
 /// Tries to advance one face: ideal point, candidates in order, validity, levers. Keeps its scratch between calls.
 class Attempt {
@@ -27,13 +19,13 @@ class Attempt {
   };
 
   /// No tetrahedron will touch the border of `territory` or what lies beyond it.
-  Attempt(Front& front, const SizeField& sizes, const VolumeOptions& options, const Box3& territory,
-          FrontCounters& counters);
+  Attempt(Front& front, const FrontTask& task, const Box3& territory, FrontCounters& counters);
 
   /// Builds the first acceptable tetrahedron on `face` and updates the front; the faces that it adds go to `created`.
   Outcome advance(FaceIndex face, const Limits& limits, std::vector<QueuedFace>& created);
 
-  std::uint64_t faces_found() const { return near_.faces_found; }
+  /// Candidates times the faces around them, over all calls: what an advance costs.
+  std::uint64_t face_tests() const { return face_tests_; }
 
  private:
   using Index = Neighborhood::Index;
@@ -53,7 +45,8 @@ class Attempt {
   /// False if the face may reach beyond the territory.
   bool place(FaceIndex face, const Limits& limits);
   void collect_candidates(const Limits& limits);
-  bool try_candidate(const Candidate& candidate, const Limits& limits);
+  /// What it touches, if it makes an acceptable tetrahedron.
+  std::optional<Contact> try_candidate(const Candidate& candidate, const Limits& limits);
   bool try_ideal_point(const Limits& limits);
   Contact contact_of(Index apex) const;
   bool edges_short_enough(Vec3 apex, const Contact& contact, double longest) const;
@@ -70,16 +63,16 @@ class Attempt {
   FrontCounters& counters_;
   const bool sizes_vary_;
   Neighborhood near_;
+  std::uint64_t face_tests_ = 0;
   std::vector<Candidate> candidates_;
 
   // The base face of the current attempt.
   Triangle base_{};
-  std::array<Vec3, 3> at_{}, local_{};
+  std::array<Vec3, 3> at_{};
   Vec3 normal_;  // unit, local
   Vec3 ideal_;   // local
   Vec3 ideal_at_;
   double ideal_distance_ = 0;  // local
-  Contact contact_;            // of the candidate tried last
   std::size_t blocker_ = 0;    // face that the last candidate met
 };
 

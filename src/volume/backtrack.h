@@ -1,10 +1,7 @@
 #pragma once
 
-#include <octafront/options.h>
-#include <octafront/run_context.h>
-#include <octafront/size_field.h>
-
 #include "cavity/excavation.h"
+#include "volume/front_task.h"
 
 namespace octafront {
 
@@ -18,8 +15,7 @@ struct BacktrackVariant {
 /// Backtracking: takes rings of tetrahedra out around a cavity and lets a front of its own fill it with other choices.
 /// True if that closed it; otherwise nothing has changed. `face_tests` is the work that may be spent; what was spent is
 /// taken off it.
-bool close_by_front(WorkMesh& mesh, Cavities& cavities, std::uint32_t cavity, const BacktrackVariant& variant,
-                    const SizeField& sizes, const VolumeOptions& options, const RunContext& context,
+bool close_by_front(const OpenCavity& cavity, const BacktrackVariant& variant, const FrontTask& task,
                     std::uint64_t& face_tests);
 
 }  // namespace octafront

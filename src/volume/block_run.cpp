@@ -1,5 +1,6 @@
 #include "volume/block_run.h"
 
+#include "volume/attempt.h"
 #include "volume/front.h"
 
 #include <algorithm>
@@ -13,21 +14,17 @@ constexpr std::size_t kFacesBetweenChecks = 512;
 
 class BlockRun {
  public:
-  BlockRun(const FrontState& state, const FrontBlock& block, const SizeField& sizes, const VolumeOptions& options,
-           const AdvanceBudget& budget, const RunContext& context, BlockScratch& scratch)
-      : state_(state),
+  BlockRun(const FrontPhase& phase, const FrontBlock& block, BlockScratch& scratch)
+      : phase_(phase),
+        state_(phase.front),
         block_(block),
-        budget_(budget),
-        context_(context),
-        order_(options.order),
-        front_(state.domain, state.finest_size),
-        attempt_(front_, sizes, options, block.territory, result_.counters) {
+        front_(state_.domain, state_.finest_size),
+        attempt_(front_, phase.task, block.territory, result_.counters) {
     fill_front(scratch.local_number);
   }
 
-  BlockResult run(int layers) {
-    work_off(layers);
-    result_.counters.faces_found += attempt_.faces_found();
+  BlockResult run() {
+    work_off();
     collect();
     return std::move(result_);
   }
@@ -66,12 +63,12 @@ class BlockRun {
     return layer;
   }
 
-  void work_off(int layers) {
+  void work_off() {
+    const VolumeOptions::Order order = phase_.task.options.order;
     std::vector<Turn> layer = first_layer();
-    if (order_ == VolumeOptions::Order::kNewest) return work_off_newest(std::move(layer));
-    for (; !layer.empty() && layers > 0 && !over_budget(); --layers) {
-      ++result_.counters.layers;
-      if (order_ == VolumeOptions::Order::kSmallest) sort_by_area(layer);
+    if (order == VolumeOptions::Order::kNewest) return work_off_newest(std::move(layer));
+    for (int layers = phase_.layers; !layer.empty() && layers > 0 && !over_budget(); --layers) {
+      if (order == VolumeOptions::Order::kSmallest) sort_by_area(layer);
       created_.clear();
       for (const Turn& turn : layer) take(turn);
       layer.clear();
@@ -109,7 +106,7 @@ class BlockRun {
   }
 
   void take(const Turn& turn) {
-    if (++turns_ % kFacesBetweenChecks == 0) context_.check();
+    if (++turns_ % kFacesBetweenChecks == 0) phase_.task.stage.check();
     if (over_budget() || !front_.alive(turn.face)) return;
     switch (attempt_.advance(turn.face.face, kLimits[turn.level], created_)) {
       case Attempt::Outcome::kAdvanced:
@@ -123,10 +120,8 @@ class BlockRun {
     }
   }
 
-  bool over_budget() const {
-    return front_.tets().size() > budget_.tets || front_.filled_volume() > budget_.volume ||
-           result_.counters.face_tests > budget_.face_tests;
-  }
+  FrontWork work() const { return {front_.tets().size(), front_.filled_volume(), attempt_.face_tests()}; }
+  bool over_budget() const { return phase_.budget.exceeded_by(work()); }
 
   void collect() {
     for (const Turn& t : deferred_)
@@ -145,15 +140,14 @@ class BlockRun {
       result_.points.push_back(front_.vertices()[v].at);
       result_.sizes.push_back(front_.vertices()[v].size);
     }
+    result_.deferred = deferred_.size();
+    result_.work = work();
     result_.tets = std::move(front_.tets());
-    result_.volume = front_.filled_volume();
   }
 
+  const FrontPhase& phase_;
   const FrontState& state_;
   const FrontBlock& block_;
-  AdvanceBudget budget_;
-  const RunContext& context_;
-  const VolumeOptions::Order order_;
   BlockResult result_;
   Front front_;
   Attempt attempt_;
@@ -164,10 +158,8 @@ class BlockRun {
 
 }  // namespace
 
-BlockResult advance_block(const FrontState& front, const FrontBlock& block, int layers, const SizeField& sizes,
-                          const VolumeOptions& options, const AdvanceBudget& budget, const RunContext& context,
-                          BlockScratch& scratch) {
-  return BlockRun(front, block, sizes, options, budget, context, scratch).run(layers);
+BlockResult advance_block(const FrontPhase& phase, const FrontBlock& block, BlockScratch& scratch) {
+  return BlockRun(phase, block, scratch).run();
 }
 
 }  // namespace octafront

@@ -1,22 +1,20 @@
 #pragma once
 
-#include <octafront/run_context.h>
-
-#include "volume/attempt.h"
 #include "volume/front_state.h"
+#include "volume/front_task.h"
 #include "volume/partition.h"
 
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 namespace octafront {
 
-/// Where a run stops, whatever remains: counted in work, not in time, so that the result never depends on the machine.
-struct AdvanceBudget {
-  std::size_t tets = 0;                                     ///< in all
-  double volume = std::numeric_limits<double>::infinity();  ///< of what the front fills: more means that it leaks
-  std::uint64_t face_tests = std::numeric_limits<std::uint64_t>::max();
+/// What the blocks of a phase have in common. They read it, and change nothing of it.
+struct FrontPhase {
+  const FrontState& front;
+  const FrontTask& task;
+  AdvanceBudget budget;  ///< of each block
+  int layers = 1;        ///< that a block works off
 };
 
 /// What a run of one block made. Vertices are numbered by the block: first those that it found, then its own.
@@ -27,7 +25,8 @@ struct BlockResult {
   std::vector<Tet> tets;
   std::vector<WaitingFace> queue;
   std::vector<Triangle> held, passive;
-  double volume = 0;
+  std::size_t deferred = 0;  ///< turns that reached beyond the block
+  FrontWork work;
   FrontCounters counters;
 };
 
@@ -36,11 +35,9 @@ struct BlockScratch {
   std::vector<std::uint32_t> local_number;  ///< per vertex of the front: a hint, true if `found` agrees
 };
 
-/// Works off the owned faces of the queue that do not reach beyond the block, in order, and for `layers` > 1 also the
-/// layers that they leave. Takes the faces that it owns out of the front; gives back what remains of them, and new
-/// ones.
-BlockResult advance_block(const FrontState& front, const FrontBlock& block, int layers, const SizeField& sizes,
-                          const VolumeOptions& options, const AdvanceBudget& budget, const RunContext& context,
-                          BlockScratch& scratch);
+/// Works off the owned faces of the queue that do not reach beyond the block, in order, and for more than one layer
+/// also the layers that they leave. Takes the faces that it owns out of the front; gives back what remains of them, and
+/// new ones.
+BlockResult advance_block(const FrontPhase& phase, const FrontBlock& block, BlockScratch& scratch);
 
 }  // namespace octafront

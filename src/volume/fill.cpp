@@ -72,7 +72,7 @@ void add_core(FrontState& front, LatticeCore core) {
     for (VertexIndex& v : t) v += first;
   front.passive.reserve(core.skin.size());
   for (const auto& [a, b, c] : core.skin) front.passive.push_back({a + first, c + first, b + first});
-  front.tets = core.tets.size();
+  front.work.tets = core.tets.size();
   front.filled.push_back(std::move(core.tets));
 }
 
@@ -106,22 +106,23 @@ std::size_t tet_budget(const SurfaceMesh& surface, const SizeField& sizes) {
   return static_cast<std::size_t>(std::min(4e9, 1e5 + 1000.0 * static_cast<double>(surface.triangles.size()) + finest));
 }
 
-void report_front(const Stage& stage, const FrontCounters& counters, std::size_t tets, std::size_t left) {
-  stage.count("front tetrahedra", static_cast<double>(tets));
-  stage.count("layers", static_cast<double>(counters.layers));
+void report_front(const Stage& stage, const FrontState& front, const FrontCounters& counters) {
+  stage.count("front tetrahedra", static_cast<double>(front.work.tets));
+  stage.count("phases", static_cast<double>(front.phases));
   stage.count("attempts", static_cast<double>(counters.attempts));
   stage.count("faces gathered", static_cast<double>(counters.faces_found));
   stage.count("candidates tried", static_cast<double>(counters.candidates));
-  stage.count("face tests", static_cast<double>(counters.face_tests));
+  stage.count("face tests", static_cast<double>(front.work.face_tests));
   stage.count("exact tests", static_cast<double>(counters.exact_tests));
   stage.count("ideal points", static_cast<double>(counters.ideal_points));
   stage.count("faces deferred", static_cast<double>(counters.deferred));
   stage.count("retries", static_cast<double>(counters.retries));
-  stage.count("faces left", static_cast<double>(left));
+  stage.count("faces left", static_cast<double>(front.held.size()));
 }
 
 TetMesh fill_by_front(const SurfaceMesh& surface, const SizeField& sizes, const VolumeOptions& options,
                       const Stage& stage) {
+  const FrontTask task{sizes, options, stage};
   TetMesh mesh;
   mesh.boundary = surface.triangles;
   std::vector<Wall> walls;
@@ -135,15 +136,15 @@ TetMesh fill_by_front(const SurfaceMesh& surface, const SizeField& sizes, const 
       stage.count("core CPU seconds", process_cpu_seconds() - start);
     }
     set_sizes(front, sizes);
-    const AdvanceBudget budget{.tets = front.tets + tet_budget(surface, sizes),
+    const AdvanceBudget budget{.tets = front.work.tets + tet_budget(surface, sizes),
                                .volume = kVolumeSlack * enclosed_volume(surface)};
     FrontCounters counters;
     const double start = process_cpu_seconds();
-    const bool within_budget = advance_front(front, sizes, options, budget, stage.context(), counters);
+    const bool within_budget = advance_front(front, task, budget, counters);
     stage.count("advance CPU seconds", process_cpu_seconds() - start);
-    report_front(stage, counters, front.tets, front.held.size());
+    report_front(stage, front, counters);
     if (!within_budget)
-      throw MeshingError("the front made " + std::to_string(front.tets) +
+      throw MeshingError("the front made " + std::to_string(front.work.tets) +
                          " tetrahedra without closing; check the surface for self-intersections, or choose a larger "
                          "element size");
     walls = std::move(front.held);
@@ -151,7 +152,7 @@ TetMesh fill_by_front(const SurfaceMesh& surface, const SizeField& sizes, const 
     mesh.tets = joined(front.filled);
   }
   if (!walls.empty()) {
-    close_cavities(mesh, walls, sizes, options, stage);
+    close_cavities(mesh, walls, task);
     drop_unused_points(mesh, surface.points.size());
   }
   return mesh;

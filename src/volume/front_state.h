@@ -4,6 +4,8 @@
 #include <octafront/tet_mesh.h>
 #include <octafront/vec.h>
 
+#include "volume/front_task.h"
+
 #include <cstdint>
 #include <vector>
 
@@ -17,7 +19,7 @@ struct WaitingFace {
 };
 
 /// The whole front between two phases, and what has been made so far: plain lists, in an order that is part of the
-/// result. While a phase runs, each block has a Front of its own.
+/// result. What the next phase does depends on nothing else. While a phase runs, each block has a Front of its own.
 struct FrontState {
   Box3 domain;             ///< all faces lie in it
   double finest_size = 1;  ///< > 0
@@ -27,8 +29,8 @@ struct FrontState {
   std::vector<Triangle> held;            ///< found no tetrahedron at the level of the last try (Qh)
   std::vector<Triangle> passive;         ///< only met by others so far
   std::vector<std::vector<Tet>> filled;  ///< tetrahedra in order, in pieces
-  std::size_t tets = 0;                  ///< in all pieces together
-  double volume = 0;                     ///< of what the front has filled
+  FrontWork work;                        ///< of all pieces together
+  std::size_t phases = 0;                ///< that it has gone through
 
   std::size_t faces() const { return queue.size() + held.size() + passive.size(); }
   /// Face i of all: those of the queue come first, then the held ones, then the passive ones.

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <string>
 
 namespace octafront {
@@ -32,11 +33,6 @@ constexpr std::array<int, 4> kRecoveryRings{0, 1, 2, 4};
 /// On surfaces of needles most trials fail, and the lower rungs are quick.
 constexpr std::uint64_t kBacktrackingFaceTests = 5'000'000;
 constexpr std::uint64_t kFaceTestsPerTet = 3;
-
-struct RungCounts {
-  int cavities = 0, by_front = 0, by_star = 0, growth_steps = 0, by_recovery = 0;
-  double front_seconds = 0, star_seconds = 0, recovery_seconds = 0;  ///< CPU, closed or not
-};
 
 /// Adds the CPU time that run() takes to `seconds`; the rungs are tried one after the other.
 template <class Run>
@@ -72,55 +68,76 @@ std::vector<Box3> surroundings(const std::vector<Vec3>& points, const Cavities& 
                         std::move(surface));
 }
 
+/// Tries one rung after the other on a cavity, and counts.
+class Ladder {
+ public:
+  /// `face_tests`: work that backtracking may spend in all. Cavities with more walls than `most_walls` are given up.
+  Ladder(const FrontTask& task, std::uint64_t face_tests, std::size_t most_walls)
+      : task_(task), face_tests_(face_tests), most_walls_(most_walls) {}
+
+  void close(const OpenCavity& cavity) {
+    task_.stage.check();
+    ++cavities_;
+    if (by_front(cavity, kBeforeStar) || by_star(cavity) || by_front(cavity, kAfterStar)) return;
+    if (cavity.walls().size() > most_walls_ || !by_recovery(cavity)) give_up(cavity.mesh, cavity.walls());
+  }
+
+  void report_to(const Stage& stage) const {
+    stage.count("cavities", cavities_);
+    stage.count("closed by backtracking", by_front_);
+    stage.count("closed by kernel points", by_star_);
+    stage.count("closed by recovery", by_recovery_);
+    stage.count("growth steps", growth_steps_);
+    stage.count("backtracking CPU seconds", front_seconds_);
+    stage.count("kernel points CPU seconds", star_seconds_);
+    stage.count("recovery CPU seconds", recovery_seconds_);
+  }
+
+ private:
+  bool by_front(const OpenCavity& cavity, std::span<const BacktrackVariant> variants) {
+    const bool closed = std::any_of(variants.begin(), variants.end(), [&](const BacktrackVariant& variant) {
+      return timed(front_seconds_, [&] { return close_by_front(cavity, variant, task_, face_tests_); });
+    });
+    by_front_ += closed;
+    return closed;
+  }
+
+  bool by_star(const OpenCavity& cavity) {
+    const StarResult star = timed(star_seconds_, [&] { return close_by_star(cavity); });
+    growth_steps_ += star.growth_steps;
+    by_star_ += star.closed;
+    return star.closed;
+  }
+
+  bool by_recovery(const OpenCavity& cavity) {
+    const bool closed = std::any_of(kRecoveryRings.begin(), kRecoveryRings.end(), [&](int rings) {
+      return timed(recovery_seconds_, [&] { return close_by_recovery(cavity, rings, task_.stage.context()); });
+    });
+    by_recovery_ += closed;
+    return closed;
+  }
+
+  const FrontTask& task_;
+  std::uint64_t face_tests_;
+  const std::size_t most_walls_;
+  int cavities_ = 0, by_front_ = 0, by_star_ = 0, growth_steps_ = 0, by_recovery_ = 0;
+  double front_seconds_ = 0, star_seconds_ = 0, recovery_seconds_ = 0;  // CPU, closed or not
+};
+
 }  // namespace
 
-void close_cavities(TetMesh& mesh, const std::vector<Wall>& walls, const SizeField& sizes, const VolumeOptions& options,
-                    const Stage& stage) {
+void close_cavities(TetMesh& mesh, const std::vector<Wall>& walls, const FrontTask& task) {
   const double start = process_cpu_seconds();
-  const std::uint64_t mesh_tets = mesh.tets.size();
+  Ladder ladder(task, kBacktrackingFaceTests + kFaceTestsPerTet * mesh.tets.size(), mesh.boundary.size());
   Cavities cavities(walls);
   const std::vector<Box3> focus = surroundings(mesh.points, cavities);
   WorkMesh work(std::move(mesh.points), std::move(mesh.tets), focus);
-  RungCounts counts;
-  std::uint64_t face_tests = kBacktrackingFaceTests + kFaceTestsPerTet * mesh_tets;
-  for (std::uint32_t c = 0; c < cavities.size(); ++c) {
-    if (cavities.walls(c).empty()) continue;
-    stage.check();
-    ++counts.cavities;
-    const auto by_front = [&](const BacktrackVariant& variant) {
-      const bool closed = timed(counts.front_seconds, [&] {
-        return close_by_front(work, cavities, c, variant, sizes, options, stage.context(), face_tests);
-      });
-      counts.by_front += closed;
-      return closed;
-    };
-    if (std::any_of(kBeforeStar.begin(), kBeforeStar.end(), by_front)) continue;
-    const StarResult star = timed(counts.star_seconds, [&] { return close_by_star(work, cavities, c); });
-    counts.growth_steps += star.growth_steps;
-    counts.by_star += star.closed;
-    if (star.closed || std::any_of(kAfterStar.begin(), kAfterStar.end(), by_front)) continue;
-    if (cavities.walls(c).size() > mesh.boundary.size()) give_up(work, cavities.walls(c));
-    const auto by_recovery = [&](int rings) {
-      return timed(counts.recovery_seconds,
-                   [&] { return close_by_recovery(work, cavities, c, rings, stage.context()); });
-    };
-    if (std::any_of(kRecoveryRings.begin(), kRecoveryRings.end(), by_recovery)) {
-      ++counts.by_recovery;
-      continue;
-    }
-    give_up(work, cavities.walls(c));
-  }
+  for (std::uint32_t c = 0; c < cavities.size(); ++c)
+    if (!cavities.walls(c).empty()) ladder.close({work, cavities, c});
   mesh.points = work.take_points();
   mesh.tets = work.take_tets();
-  stage.count("cavities", counts.cavities);
-  stage.count("closed by backtracking", counts.by_front);
-  stage.count("closed by kernel points", counts.by_star);
-  stage.count("closed by recovery", counts.by_recovery);
-  stage.count("growth steps", counts.growth_steps);
-  stage.count("backtracking CPU seconds", counts.front_seconds);
-  stage.count("kernel points CPU seconds", counts.star_seconds);
-  stage.count("recovery CPU seconds", counts.recovery_seconds);
-  stage.count("closing CPU seconds", process_cpu_seconds() - start);
+  ladder.report_to(task.stage);
+  task.stage.count("closing CPU seconds", process_cpu_seconds() - start);
 }
 
 }  // namespace octafront

@@ -1,11 +1,9 @@
 #pragma once
 
-#include <octafront/options.h>
-#include <octafront/size_field.h>
 #include <octafront/tet_mesh.h>
 
 #include "cavity/work_mesh.h"
-#include "core/stage.h"
+#include "volume/front_task.h"
 
 #include <vector>
 
@@ -13,9 +11,8 @@ namespace octafront {
 
 /// Closes what the front has left open, rung by rung: backtracking with other choices and growing rings, a kernel point
 /// with growth, and at last recovery of the cavity's walls in a Delaunay mesh. `walls` face the open side.
-/// Counts in `report` which rung closed how many. Throws OpenCavityError with the first cavity that stays open, or has
+/// Reports which rung closed how many. Throws OpenCavityError with the first cavity that stays open, or has
 /// more walls than mesh.boundary has triangles: then recovery of the whole surface is less work.
-void close_cavities(TetMesh& mesh, const std::vector<Wall>& walls, const SizeField& sizes, const VolumeOptions& options,
-                    const Stage& stage);
+void close_cavities(TetMesh& mesh, const std::vector<Wall>& walls, const FrontTask& task);
 
 }  // namespace octafront

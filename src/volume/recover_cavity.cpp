@@ -24,8 +24,9 @@ SurfaceMesh surface_of(const WorkMesh& mesh, const std::vector<Wall>& walls, std
   return surface;
 }
 
-bool close_by_recovery(WorkMesh& mesh, Cavities& cavities, std::uint32_t cavity, int rings, const RunContext& context) {
-  Excavation excavation(mesh, cavities, cavity);
+bool close_by_recovery(const OpenCavity& cavity, int rings, const RunContext& context) {
+  WorkMesh& mesh = cavity.mesh;
+  Excavation excavation(cavity);
   for (int ring = 0; ring < rings; ++ring)
     if (!excavation.grow_ring()) return false;
   std::vector<VertexIndex> global;

@@ -12,6 +12,6 @@ SurfaceMesh surface_of(const WorkMesh& mesh, const std::vector<Wall>& walls, std
 
 /// The last rung: takes `rings` of tetrahedra out around a cavity and fills it by a Delaunay mesh with its walls
 /// recovered exactly. True if that closed it; otherwise nothing has changed.
-bool close_by_recovery(WorkMesh& mesh, Cavities& cavities, std::uint32_t cavity, int rings, const RunContext& context);
+bool close_by_recovery(const OpenCavity& cavity, int rings, const RunContext& context);
 
 }  // namespace octafront

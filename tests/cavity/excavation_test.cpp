@@ -32,7 +32,7 @@ TEST(Excavation, RollsBackWithoutCommit) {
   WorkMesh mesh(c.points, c.tets);
   Cavities cavities(walls_around(missing));
   {
-    Excavation e(mesh, cavities, 0);
+    Excavation e({mesh, cavities, 0});
     EXPECT_TRUE(e.grow_ring());
     EXPECT_EQ(e.size(), 12u);  // the whole cube is open: its surface is what remains
     EXPECT_FALSE(e.grow_ring());
@@ -47,7 +47,7 @@ TEST(Excavation, StopsAtTheSurface) {
   c.tets.pop_back();
   WorkMesh mesh(c.points, c.tets);
   Cavities cavities(walls_around(missing));
-  Excavation e(mesh, cavities, 0);
+  Excavation e({mesh, cavities, 0});
   int grown = 0;
   for (const Wall& w : e.walls()) grown += e.grow_through(w);
   EXPECT_EQ(grown, 2);  // of four walls two belong to the cube's surface
@@ -65,7 +65,7 @@ TEST(Excavation, RunsIntoOtherCavitiesAndTakesThemAlong) {
   Cavities cavities(walls);
   // They share the long diagonal, so they are one pinched cavity from the start.
   ASSERT_EQ(cavities.size(), 1u);
-  Excavation e(mesh, cavities, 0);
+  Excavation e({mesh, cavities, 0});
   EXPECT_TRUE(e.grow_ring());
   EXPECT_EQ(e.size(), 12u);
   e.commit();

@@ -21,7 +21,7 @@ TEST(Star, ClosesStarShapedSurfaces) {
     WorkMesh mesh(s.points, {});
     Cavities cavities(walls_of(s));
     ASSERT_EQ(cavities.size(), 1u);
-    const StarResult r = close_by_star(mesh, cavities, 0);
+    const StarResult r = close_by_star({mesh, cavities, 0});
     EXPECT_TRUE(r.closed);
     EXPECT_EQ(r.growth_steps, 0);
     EXPECT_TRUE(cavities.walls(0).empty());
@@ -37,7 +37,7 @@ TEST(Star, LeavesWhatHasNoKernelAsItWas) {
   const SurfaceMesh s = testing::torus(12, 6);
   WorkMesh mesh(s.points, {});
   Cavities cavities(walls_of(s));
-  EXPECT_FALSE(close_by_star(mesh, cavities, 0).closed);
+  EXPECT_FALSE(close_by_star({mesh, cavities, 0}).closed);
   EXPECT_EQ(cavities.walls(0).size(), s.triangles.size());
   EXPECT_TRUE(mesh.take_tets().empty());
 }
@@ -75,7 +75,7 @@ TEST(Star, GrowsUntilThereIsAKernel) {
   ASSERT_EQ(cavities.size(), 2u);
   for (std::uint32_t c = 0; c < 2; ++c) {
     if (cavities.walls(c).empty()) continue;
-    EXPECT_TRUE(close_by_star(mesh, cavities, c).closed);
+    EXPECT_TRUE(close_by_star({mesh, cavities, c}).closed);
   }
   TetMesh result;
   result.points = mesh.take_points();

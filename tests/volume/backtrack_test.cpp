@@ -15,14 +15,17 @@ namespace {
 struct Punctured {
   SurfaceMesh surface = testing::icosphere(2);
   SizeField sizes = SizeField::uniform(0.3);
+  VolumeOptions options;
+  RunContext context;
+  StageReport report;
+  Stage stage{context, report};
+  FrontTask task{sizes, options, stage};
   TetMesh mesh;
   std::vector<Wall> walls;
 
   Punctured() {
-    StageReport report;
-    VolumeOptions options;
     options.core = VolumeOptions::Core::kOff;
-    mesh = fill_volume(surface, sizes, options, {RunContext{}, report});
+    mesh = fill_volume(surface, sizes, options, stage);
     const auto center = static_cast<VertexIndex>(surface.points.size());
     std::vector<Tet> kept;
     for (const Tet& t : mesh.tets) {
@@ -66,8 +69,8 @@ TEST(Backtracking, FillsAHoleWithRingsAroundIt) {
     WorkMesh work(p.mesh.points, p.mesh.tets);
     Cavities cavities(p.walls);
     std::uint64_t face_tests = 1'000'000;
-    ASSERT_TRUE(close_by_front(work, cavities, 0, {rings, 1.0, VolumeOptions::Ranking::kQuality}, p.sizes, {},
-                               RunContext{}, face_tests));
+    ASSERT_TRUE(
+        close_by_front({work, cavities, 0}, {rings, 1.0, VolumeOptions::Ranking::kQuality}, p.task, face_tests));
     EXPECT_LT(face_tests, 1'000'000u);
     p.expect_whole(work);
   }
@@ -78,7 +81,7 @@ TEST(Backtracking, PutsEverythingBackWithoutSuccess) {
   WorkMesh work(p.mesh.points, p.mesh.tets);
   Cavities cavities(p.walls);
   std::uint64_t nothing = 0;
-  EXPECT_FALSE(close_by_front(work, cavities, 0, {}, p.sizes, {}, RunContext{}, nothing));
+  EXPECT_FALSE(close_by_front({work, cavities, 0}, {}, p.task, nothing));
   EXPECT_EQ(cavities.walls(0), p.walls);
   EXPECT_EQ(work.take_tets(), p.mesh.tets);
 }
@@ -89,7 +92,7 @@ TEST(Recovery, FillsAHoleWithRingsAroundIt) {
     Punctured p;
     WorkMesh work(p.mesh.points, p.mesh.tets);
     Cavities cavities(p.walls);
-    ASSERT_TRUE(close_by_recovery(work, cavities, 0, rings, RunContext{}));
+    ASSERT_TRUE(close_by_recovery({work, cavities, 0}, rings, RunContext{}));
     p.expect_whole(work);
   }
 }

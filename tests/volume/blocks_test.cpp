@@ -3,6 +3,7 @@
 #include "core/thread_limit.h"
 #include "support/named_surfaces.h"
 #include "volume/advance.h"
+#include "volume/block_run.h"
 #include "volume/fill.h"
 
 #include <cmath>
@@ -80,13 +81,19 @@ TEST(Partition, DoesNotMakeBlocksThatAreTooNarrow) {
 TEST(BlockRun, StaysStrictlyInsideItsTerritory) {
   const double size = kEdgeOfIcosphere / 32;
   const FrontState front = front_on(icosphere(5), size);
+  const SizeField sizes = SizeField::uniform(size);
+  const VolumeOptions options;
+  const RunContext context;
+  StageReport report;
+  const Stage stage{context, report};
+  const FrontTask task{sizes, options, stage};
+  const FrontPhase phase{front, task, {.tets = 100'000}, 3};
   BlockScratch scratch;
   std::size_t tets = 0;
   for (const FrontBlock& block : partition_front(front, {1500, 0.5})) {
-    const BlockResult result =
-        advance_block(front, block, 3, SizeField::uniform(size), {}, {.tets = 100'000}, RunContext{}, scratch);
+    const BlockResult result = advance_block(phase, block, scratch);
     tets += result.tets.size();
-    EXPECT_GT(result.counters.deferred, 0u);
+    EXPECT_GT(result.deferred, 0u);
     for (const Tet& t : result.tets)
       for (const VertexIndex v : t) {
         const Vec3 p = v < result.found.size() ? front.points[result.found[v]] : result.points[v - result.found.size()];
@@ -97,6 +104,26 @@ TEST(BlockRun, StaysStrictlyInsideItsTerritory) {
       }
   }
   EXPECT_GT(tets, 5000u);
+}
+
+TEST(Advance, StatisticsDecideNothing) {
+  const double size = kEdgeOfIcosphere / 16;
+  const SizeField sizes = SizeField::uniform(size);
+  const VolumeOptions options;
+  const RunContext context;
+  StageReport report;
+  const Stage stage{context, report};
+  const FrontTask task{sizes, options, stage};
+  const AdvanceBudget budget{.tets = 60'000, .face_tests = 5'000'000};
+  FrontState first = front_on(icosphere(4), size), second = first;
+  FrontCounters counters;
+  const bool ended = advance_front(first, task, budget, counters);
+  ASSERT_GT(first.phases, 2u);
+  ASSERT_GT(counters.deferred, 0u);
+  // What an earlier run has counted is still in them.
+  EXPECT_EQ(advance_front(second, task, budget, counters), ended);
+  EXPECT_TRUE(first.filled == second.filled && first.points == second.points);
+  EXPECT_EQ(first.work.face_tests, second.work.face_tests);
 }
 
 TetMesh filled_by(int threads, const SurfaceMesh& surface, double size, VolumeOptions::Core core) {
