@@ -27,12 +27,12 @@ SurfaceFile read_input(const Arguments& a, const RunContext& context) {
 }
 
 // Messages then name faces as the file numbers them.
-Options options_for(const Arguments& a, const SurfaceFile& file) {
+Options options_for(const Arguments& a, const SurfaceFile& file, const RunContext& context) {
   Options options = a.options;
   options.face_of_triangle = file.face_of_triangle;
   if (!a.regions.empty()) options.size.regions = read_size_regions(a.regions);
   if (!a.size_field.empty()) options.size.point_sizes = read_point_sizes(a.size_field);
-  if (!a.size_grid.empty()) options.size.field = read_size_field(a.size_grid, options.size.gradation);
+  if (!a.size_grid.empty()) options.size.field = read_size_field(a.size_grid, options.size.gradation, context);
   return options;
 }
 
@@ -65,7 +65,7 @@ template <class Generator>
 auto run_on_input(const Arguments& a, const RunContext& context, const Generator& generator) {
   const SurfaceFile file = read_input(a, context);
   try {
-    return generator(file.surface, options_for(a, file), context);
+    return generator(file.surface, options_for(a, file, context), context);
   } catch (const OpenCavityError& error) {
     throw with_cavity_written(error, a.output);
   } catch (const InputError& error) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <octafront/options.h>
+#include <octafront/run_context.h>
 #include <octafront/size_field.h>
 #include <octafront/surface_mesh.h>
 #include <octafront/tet_mesh.h>
@@ -43,7 +44,7 @@ void write_size_field(const std::filesystem::path& file, const SizeField& sizes)
 
 /// Reads such a file, edited or not: sizes are cut where they break the gradation. For SizeOptions::field. Throws
 /// InputError, and OptionError for a gradation out of range.
-SizeField read_size_field(const std::filesystem::path& file, double gradation = 0.2);
+SizeField read_size_field(const std::filesystem::path& file, double gradation = 0.2, const RunContext& context = {});
 
 /// Reads regions of refinement from a JSON file,
 ///   [{"box": [[0, 0, 0], [1, 2, 1]], "size": 0.1}, {"sphere": [5, 0, 0], "radius": 2, "size": 0.2},

@@ -66,7 +66,7 @@ Filled fill_to_target(const Prepared& input, SizeField sizes, Run& run) {
   const SizeOptions& wanted = run.options.size;
   const bool can_scale = wanted.elements && !keeps_surface(run.options);
   const double first_factor = traits_of(run.options.method).size_factor;
-  if (can_scale && first_factor != 1) sizes = scaled(sizes, first_factor);
+  if (can_scale && first_factor != 1) sizes = scaled(sizes, first_factor, run.context());
   const std::size_t first_stage = run.report.stages.size();
   CountSearch search(wanted.elements.value_or(1));
   Filled best = fill(input, sizes, run);
@@ -74,7 +74,7 @@ Filled fill_to_target(const Prepared& input, SizeField sizes, Run& run) {
   for (int attempt = 1; can_scale && attempt < kElementsAttempts && !meets_target(wanted, made); ++attempt) {
     const double factor = search.next_factor(made);
     rename_earlier(run.report, first_stage);
-    Filled next = fill(input, scaled(sizes, factor), run);
+    Filled next = fill(input, scaled(sizes, factor, run.context()), run);
     run.report.stages.back().notes.push_back(
         fmt::format("the mesh before had {} elements where {} were wanted: all sizes scaled by {:.4g}", made,
                     *wanted.elements, factor));

@@ -112,7 +112,7 @@ std::vector<double> corner_sizes(const GridFile& grid, const RootCube& root, con
 
 }  // namespace
 
-SizeField read_size_field(const std::filesystem::path& file, double gradation) {
+SizeField read_size_field(const std::filesystem::path& file, double gradation, const RunContext& context) {
   if (!(gradation >= 0.01 && gradation <= 1)) {
     throw OptionError(fmt::format("grading is {}: it must lie between 0.01 (slow growth) and 1 (fast)", gradation));
   }
@@ -125,7 +125,7 @@ SizeField read_size_field(const std::filesystem::path& file, double gradation) {
   const OctreeCorners corners = octree_corners(field->tree);
   const std::vector<double> caps = corner_sizes(grid, field->root, corners);
   const double ceiling = *std::max_element(grid.size.begin(), grid.size.end()) / field->root.side;
-  const std::vector<double> value = graded_corner_values(field->tree, corners, caps, gradation, ceiling, RunContext{});
+  const std::vector<double> value = graded_corner_values(field->tree, corners, caps, gradation, ceiling, context);
   field->h.resize(field->tree.size());
   for (std::size_t l = 0; l < field->tree.size(); ++l) {
     for (int k = 0; k < 8; ++k) field->h[l][k] = value[corners.of_leaf[l][k]];

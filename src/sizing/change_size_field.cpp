@@ -17,7 +17,7 @@ namespace {
 constexpr double kCapReach = 1.5;
 
 struct Scaled final : SizeField::Impl {
-  Scaled(SizeField old, double factor) : sizes(std::move(old)), by(factor) {}
+  Scaled(SizeField old, double factor) : sizes(std::move(old)), by(factor) { gradation = sizes.impl().gradation; }
   double at(Vec3 p) const override { return sizes.at(p) * by; }
   double min_size() const override { return sizes.min_size() * by; }
   double max_size() const override { return sizes.max_size() * by; }
@@ -27,8 +27,8 @@ struct Scaled final : SizeField::Impl {
 
 /// A field that is no background grid, with caps on top. The caps are few there.
 struct Capped final : SizeField::Impl {
-  Capped(SizeField old, std::vector<SizeCap> by, double g) : sizes(std::move(old)), caps(std::move(by)), gradation(g) {
-    low = sizes.min_size();
+  Capped(SizeField old, std::vector<SizeCap> by) : sizes(std::move(old)), caps(std::move(by)), low(sizes.min_size()) {
+    gradation = sizes.impl().gradation;
     for (const SizeCap& c : caps) low = std::min(low, c.h);
   }
   double at(Vec3 p) const override {
@@ -40,17 +40,17 @@ struct Capped final : SizeField::Impl {
   double max_size() const override { return sizes.max_size(); }
   SizeField sizes;
   std::vector<SizeCap> caps;
-  double gradation, low;
+  double low;
 };
 
-SizeField capped(const SizeField& sizes, std::vector<SizeCap> caps, double gradation) {
-  if (const OctreeField* grid = as_octree_field(sizes))
-    return SizeField(capped_grid(*grid, caps, gradation, RunContext{}));
-  return SizeField(std::make_shared<Capped>(sizes, std::move(caps), gradation));
+SizeField capped(const SizeField& sizes, std::vector<SizeCap> caps, const RunContext& context) {
+  context.check();
+  if (const OctreeField* grid = as_octree_field(sizes)) return SizeField(capped_grid(*grid, caps, context));
+  return SizeField(std::make_shared<Capped>(sizes, std::move(caps)));
 }
 
 /// Cuts sizes that rise faster than the field's gradation.
-void grade_again(OctreeField& field) {
+void grade_again(OctreeField& field, const RunContext& context) {
   const OctreeCorners corners = octree_corners(field.tree);
   std::vector<double> caps(corners.size(), HUGE_VAL);
   double highest = 0;
@@ -60,8 +60,7 @@ void grade_again(OctreeField& field) {
       highest = std::max(highest, field.h[l][k]);
     }
   }
-  const std::vector<double> value =
-      graded_corner_values(field.tree, corners, caps, field.gradation, highest, RunContext{});
+  const std::vector<double> value = graded_corner_values(field.tree, corners, caps, field.gradation, highest, context);
   for (std::size_t l = 0; l < field.tree.size(); ++l) {
     for (int k = 0; k < 8; ++k) field.h[l][k] = value[corners.of_leaf[l][k]];
   }
@@ -69,7 +68,8 @@ void grade_again(OctreeField& field) {
 
 }  // namespace
 
-SizeField capped_near(const SizeField& sizes, const std::vector<Vec3>& points, double factor, double gradation) {
+SizeField capped_near(const SizeField& sizes, const std::vector<Vec3>& points, double factor,
+                      const RunContext& context) {
   if (points.empty()) return sizes;
   std::vector<SizeCap> caps;
   caps.reserve(points.size());
@@ -77,25 +77,26 @@ SizeField capped_near(const SizeField& sizes, const std::vector<Vec3>& points, d
     const double h = sizes.at(p);
     caps.push_back({p, p, factor * h, kCapReach * h});
   }
-  return capped(sizes, std::move(caps), gradation);
+  return capped(sizes, std::move(caps), context);
 }
 
-SizeField capped_at(const SizeField& sizes, const std::vector<PointSize>& places, double gradation) {
+SizeField capped_at(const SizeField& sizes, const std::vector<PointSize>& places, const RunContext& context) {
   if (places.empty()) return sizes;
   std::vector<SizeCap> caps;
   caps.reserve(places.size());
   for (const PointSize& s : places) caps.push_back({s.p, s.p, s.size, kCapReach * s.size});
-  return capped(sizes, std::move(caps), gradation);
+  return capped(sizes, std::move(caps), context);
 }
 
-SizeField scaled(const SizeField& sizes, double factor) {
+SizeField scaled(const SizeField& sizes, double factor, const RunContext& context) {
+  context.check();
   const OctreeField* grid = as_octree_field(sizes);
   if (grid == nullptr) return SizeField(std::make_shared<Scaled>(sizes, factor));
   auto copy = std::make_shared<OctreeField>(*grid);
   for (auto& leaf : copy->h) {
     for (double& v : leaf) v *= factor;
   }
-  if (factor > 1) grade_again(*copy);
+  if (factor > 1) grade_again(*copy, context);
   copy->find_range();
   return SizeField(std::move(copy));
 }

@@ -29,13 +29,15 @@ double expected_tets(const SizeField& sizes, const SurfaceMesh& surface);
 double lattice_cell_size(const SizeField& sizes, const SurfaceMesh& surface);
 inline constexpr double kLatticeTooLong = 1.5;
 
-/// The size field capped to `factor` of its own value within 1.5 of these values around each point, graded again.
-SizeField capped_near(const SizeField& sizes, const std::vector<Vec3>& points, double factor, double gradation);
+/// The size field capped to `factor` of its own value within 1.5 of these values around each point. Sizes grow from
+/// there at the field's own gradation; so below.
+SizeField capped_near(const SizeField& sizes, const std::vector<Vec3>& points, double factor,
+                      const RunContext& context);
 
-/// The size field capped to the sizes at the places, within 1.5 of them, graded again from there.
-SizeField capped_at(const SizeField& sizes, const std::vector<PointSize>& places, double gradation);
+/// The size field capped to the sizes at the places, within 1.5 of them.
+SizeField capped_at(const SizeField& sizes, const std::vector<PointSize>& places, const RunContext& context);
 
 /// All sizes multiplied by `factor`; where they then rise faster than the gradation they are cut.
-SizeField scaled(const SizeField& sizes, double factor);
+SizeField scaled(const SizeField& sizes, double factor, const RunContext& context);
 
 }  // namespace octafront

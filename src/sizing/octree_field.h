@@ -14,7 +14,6 @@ struct OctreeField final : SizeField::Impl {
   Octree tree;
   std::vector<std::array<double, 8>> h;  ///< per leaf, corner i with the halves of child i; in units of root.side
   double low = 0, high = 0;              ///< least and greatest of h
-  double gradation = 0;
 
   double at(Vec3 p) const override;
   double min_size() const override { return low * root.side; }

@@ -53,6 +53,15 @@ TEST(SizeFieldFile, ReadsBackAsItWas) {
   }
 }
 
+TEST(SizeFieldFile, ReadingStopsWhenAsked) {
+  const TemporaryFile file("octafront_grid.vtu");
+  write_size_field(file.path(), make(testing::torus(50, 20), {}));
+  const std::atomic<bool> stop{true};
+  RunContext context;
+  context.cancel = &stop;
+  EXPECT_THROW(read_size_field(file.path(), 0.2, context), Cancelled);
+}
+
 TEST(PointSizesFile, ReadsTablesAndBothKindsOfVtkFiles) {
   const std::vector<PointSize> wanted{{{0, 0, 0}, 0.5}, {{1, 0, 0.25}, 2}};
   const std::string points =

@@ -243,7 +243,7 @@ TEST(ExpectedTets, MeetsTheTarget) {
 TEST(CappedNear, LowersTheSizeThereAndStaysGraded) {
   for (const SizeField& h : {SizeField::uniform(0.2), make(icosphere(3), {})}) {
     const Vec3 at{1, 0, 0};
-    const SizeField capped = capped_near(h, {at, {0, 1, 0}}, 0.5, 0.2);
+    const SizeField capped = capped_near(h, {at, {0, 1, 0}}, 0.5, RunContext{});
     EXPECT_NEAR(capped.at(at), 0.5 * h.at(at), 0.05 * h.at(at));
     EXPECT_NEAR(capped.at({-1, 0, 0}), h.at({-1, 0, 0}), 0.02 * h.at({-1, 0, 0}));
     std::mt19937 random(5);
@@ -259,9 +259,21 @@ TEST(CappedNear, LowersTheSizeThereAndStaysGraded) {
 }
 
 TEST(Scaled, MultipliesAllSizes) {
-  const SizeField h = make(torus(60, 24), {}), twice = scaled(h, 2);
+  const SizeField h = make(torus(60, 24), {}), twice = scaled(h, 2, RunContext{});
   EXPECT_DOUBLE_EQ(twice.at({1, 0.2, 0.1}), 2 * h.at({1, 0.2, 0.1}));
-  EXPECT_DOUBLE_EQ(scaled(SizeField::uniform(3), 2).at({}), 6);
+  EXPECT_DOUBLE_EQ(scaled(SizeField::uniform(3), 2, RunContext{}).at({}), 6);
+}
+
+TEST(ChangedSizes, StopWhenAsked) {
+  const std::atomic<bool> stop{true};
+  RunContext context;
+  context.cancel = &stop;
+  const Vec3 p{1, 0, 0};
+  for (const SizeField& h : {SizeField::uniform(0.2), make(icosphere(3), {})}) {
+    EXPECT_THROW(capped_near(h, {p}, 0.5, context), Cancelled);
+    EXPECT_THROW(capped_at(h, {{p, 0.1}}, context), Cancelled);
+    EXPECT_THROW(scaled(h, 2, context), Cancelled);
+  }
 }
 
 TEST(KeptSurface, SizesAreThoseOfItsTriangles) {

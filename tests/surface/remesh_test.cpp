@@ -6,7 +6,9 @@
 #include "geometry/hausdorff.h"
 #include "geometry/measures.h"
 #include "mesh/halfedge_mesh.h"
+#include "sizing/make_size_field.h"
 #include "support/named_surfaces.h"
+#include "support/random.h"
 #include "surface/feature_patches.h"
 #include "surface/remeshing/crossings.h"
 
@@ -219,6 +221,43 @@ TEST(Remesh, FollowsAGradedField) {
     sum += distance(s.points[a], s.points[b]) / h((s.points[a] + s.points[b]) * 0.5);
   }
   EXPECT_NEAR(sum / static_cast<double>(s.triangles.size()), 1, 0.06);
+}
+
+/// The steepest slope of the sizes between points of the box, near each other and far.
+double steepest(const SizeField& sizes, const Box3& box) {
+  Random random(7);
+  const auto anywhere = [&] {
+    return Vec3{random.between(box.lo.x, box.hi.x), random.between(box.lo.y, box.hi.y),
+                random.between(box.lo.z, box.hi.z)};
+  };
+  double slope = 0;
+  for (int n = 0; n < 20000; ++n) {
+    const Vec3 p = anywhere(), q = p + (anywhere() - p) * (n % 2 == 0 ? 1 : 0.05);
+    slope = std::max(slope, std::abs(sizes.at(p) - sizes.at(q)) / distance(p, q));
+  }
+  return slope;
+}
+
+TEST(Remesh, CappedSizesKeepTheGradationAskedFor) {
+  // Strips and the deviation asked for cap the sizes; the region makes them rise.
+  const SurfaceMesh input = joined(box(1, 0.5, 0.04), transformed(icosphere(3), 0.2, {0.5, 0.2, 0.5}));
+  const Features features = detect_features(input, 40);
+  SurfaceOptions options;
+  options.max_deviation = 0.002;
+  for (const double gradation : {0.05, 0.2, 0.8}) {
+    SCOPED_TRACE(gradation);
+    SizeOptions size;
+    size.size = 0.2;
+    size.gradation = gradation;
+    size.regions.push_back({{}, {}, 0, 0.04});
+    StageReport report;
+    const SizeField asked = make_size_field(input, features, size, {{}, report});
+    const SizeField made = remesh_surface(input, features, asked, options, {{}, report}).sizes;
+    ASSERT_LT(made.at({0.5, 0.2, 0.7}), 0.9 * asked.at({0.5, 0.2, 0.7})) << "nothing was capped";
+    const double slope = steepest(made, bounding_box(input.points));
+    EXPECT_LE(slope, gradation * (1 + 1e-9));
+    EXPECT_GT(slope, 0.5 * gradation) << "rises more slowly than it may";
+  }
 }
 
 TEST(Remesh, StaysWithinTheAskedDeviation) {

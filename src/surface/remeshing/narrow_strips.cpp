@@ -22,8 +22,6 @@ constexpr double kWorthwhile = 0.85;
 constexpr double kParallel = 0.978;
 /// Places to look from, in sizes, along a line.
 constexpr double kStep = 0.5;
-/// Sizes grow from strips at this rate.
-constexpr double kGradation = 0.2;
 /// A place this near to one already kept, in the sizes wanted there, adds nothing.
 constexpr double kSamePlace = 0.75;
 
@@ -59,12 +57,13 @@ double width_at(const InputSurface& input, HalfedgeIndex h, Vec3 p, double reach
 
 }  // namespace
 
-SizeField fitted_to_strips(const InputSurface& input, const SizeField& sizes) {
+SizeField fitted_to_strips(const InputSurface& input, const SizeField& sizes, const RunContext& context) {
   const HalfedgeMesh& mesh = input.mesh;
   std::vector<PointSize> places;
   PointGrid kept(mesh.points.empty() ? Vec3{} : mesh.points.front());
   for (HalfedgeIndex h = 0; h < mesh.start.size(); ++h) {
     if (!mesh.is_feature[h]) continue;
+    context.check();
     const Vec3 a = mesh.points[mesh.start[h]], b = mesh.points[mesh.end(h)];
     const double step = kStep * sizes.at((a + b) * 0.5);
     const int parts = std::max(1, static_cast<int>(std::min(1e6, std::ceil(distance(a, b) / step))));
@@ -81,7 +80,7 @@ SizeField fitted_to_strips(const InputSurface& input, const SizeField& sizes) {
       kept.add(p, size);
     }
   }
-  return places.empty() ? sizes : capped_at(sizes, places, kGradation);
+  return places.empty() ? sizes : capped_at(sizes, places, context);
 }
 
 }  // namespace octafront::remeshing

@@ -31,8 +31,6 @@ constexpr double kCap = 0.6;
 /// The same where the new surface strays too far from the input, and for how many rounds.
 constexpr double kDeviationCap = 0.7;
 constexpr int kMostDeviationRounds = 5;
-/// Capped sizes grow from there at this rate.
-constexpr double kCapGradation = 0.2;
 
 struct Counts {
   std::uint64_t placed = 0, tried = 0;
@@ -88,7 +86,7 @@ Compacted attempt(Effort effort, const SurfaceMesh& surface, InputSurface& input
                   const SizeField& asked, const RunContext& context, Counts& counts) {
   set_features(input, {});
   set_features(input, features_at_scale(input, features, asked));
-  const SizeField sizes = fitted_to_strips(input, asked);
+  const SizeField sizes = fitted_to_strips(input, asked, context);
   std::vector<Curve> curves = chain_curves(input, features.corners, sizes);
   divide_curves(input, sizes, curves);
   const FrontPoints front = place_points(input, curves, sizes, context);
@@ -121,7 +119,8 @@ std::vector<Vec3> centers_of(const SurfaceMesh& surface, const std::vector<std::
 }
 
 /// The sizes made smaller around the places; of those within half a size of each other one is enough.
-SizeField capped_around(const SizeField& sizes, const std::vector<Vec3>& places, double factor) {
+SizeField capped_around(const SizeField& sizes, const std::vector<Vec3>& places, double factor,
+                        const RunContext& context) {
   std::vector<Vec3> kept;
   PointGrid grid(places.front());
   for (const Vec3 p : places) {
@@ -132,7 +131,7 @@ SizeField capped_around(const SizeField& sizes, const std::vector<Vec3>& places,
     kept.push_back(p);
     grid.add(p, h);
   }
-  return capped_near(sizes, kept, factor, kCapGradation);
+  return capped_near(sizes, kept, factor, context);
 }
 
 void report_counts(const Counts& counts, const Stage& stage) {
@@ -190,12 +189,12 @@ class Remesher {
     const auto crossings = find_crossings(c.result.surface);
     counts_.crossings += crossings.size();
     if (!crossings.empty()) {
-      sizes_ = capped_around(sizes_, centers_of(c.result.surface, crossings), kCap);
+      sizes_ = capped_around(sizes_, centers_of(c.result.surface, crossings), kCap, stage_.context());
       return false;
     }
     if (const auto defect = kind_.first_defect_but_crossings(c.result.surface)) {
       stage_.note("an attempt was dropped: " + *defect);
-      sizes_ = scaled(sizes_, kCap);
+      sizes_ = scaled(sizes_, kCap, stage_.context());
       return false;
     }
     return true;
@@ -220,8 +219,8 @@ class Remesher {
       return true;
     }
     ++counts_.deviation_rounds;
-    if (!far.empty()) sizes_ = capped_around(sizes_, far, kDeviationCap);
-    sizes_ = capped_at(sizes_, turned, kCapGradation);
+    if (!far.empty()) sizes_ = capped_around(sizes_, far, kDeviationCap, stage_.context());
+    sizes_ = capped_at(sizes_, turned, stage_.context());
     return false;
   }
 
