@@ -1,5 +1,6 @@
 #pragma once
 
+#include <octafront/run_context.h>
 #include <octafront/surface_mesh.h>
 
 #include <cstdint>
@@ -30,8 +31,10 @@ struct RepairedSurface {
 ///   - Open shells, shells that cannot be oriented and vertices where shells are pinched stay for find_defects.
 ///
 /// `face_of_triangle` may be empty (then triangle i is face i). Throws InputError if indices are out of range, or
-/// coordinates not finite or above 1e50. Cost: O(n log n), about a second per million triangles.
-RepairedSurface repair_surface(const SurfaceMesh& soup, const std::vector<std::uint32_t>& face_of_triangle = {});
+/// coordinates not finite or above 1e50, Cancelled if `context` asks for it. Cost: O(n log n), about a second per
+/// million triangles.
+RepairedSurface repair_surface(const SurfaceMesh& soup, const std::vector<std::uint32_t>& face_of_triangle = {},
+                               const RunContext& context = {});
 
 /// What keeps a surface from being meshed, found exactly.
 struct SurfaceDefects {
@@ -57,7 +60,7 @@ struct SurfaceDefects {
   std::string describe() const;
 };
 
-/// Cost: O(n log n), about a second per million triangles.
-SurfaceDefects find_defects(const RepairedSurface& repaired);
+/// Throws Cancelled if `context` asks for it. Cost: O(n log n), about a second per million triangles.
+SurfaceDefects find_defects(const RepairedSurface& repaired, const RunContext& context = {});
 
 }  // namespace octafront

@@ -20,8 +20,9 @@ class SelfIntersectionSearch {
     std::uint32_t number(std::uint32_t i) const { return numbers.empty() ? i : numbers[i]; }
   };
 
-  SelfIntersectionSearch(Part a, Part b, std::span<const Triangle> triangles, std::size_t limit)
-      : a_(a), b_(b), same_(&a.tree == &b.tree), triangles_(triangles), limit_(limit) {}
+  SelfIntersectionSearch(Part a, Part b, std::span<const Triangle> triangles, std::size_t limit,
+                         const RunContext& context)
+      : a_(a), b_(b), same_(&a.tree == &b.tree), triangles_(triangles), limit_(limit), context_(context) {}
 
   void run(Pairs& all) const {
     if (a_.tree.empty() || b_.tree.empty()) return;
@@ -80,6 +81,7 @@ class SelfIntersectionSearch {
   void work_off(Task first, Pairs& found) const {
     std::vector<Task> stack{first};
     while (!stack.empty() && found.size() < limit_) {
+      context_.check();
       const Task t = stack.back();
       stack.pop_back();
       if (is_leaf_task(t))
@@ -110,6 +112,7 @@ class SelfIntersectionSearch {
   const bool same_;
   std::span<const Triangle> triangles_;
   std::size_t limit_;
+  const RunContext& context_;
 };
 
 namespace {
@@ -209,7 +212,7 @@ Pairs sorted_up_to(Pairs pairs, std::size_t limit) {
 
 // Each fan by the directions from its centre; everything else by trees, one for each fan and one for the rest.
 Pairs search_with_fans(const Fans& fans, std::span<const Vec3> points, std::span<const Triangle> triangles,
-                       std::size_t limit) {
+                       std::size_t limit, const RunContext& context) {
   std::vector<TriangleTree> trees;
   for (const auto& part : fans.parts) {
     std::vector<Triangle> own;
@@ -218,9 +221,11 @@ Pairs search_with_fans(const Fans& fans, std::span<const Vec3> points, std::span
   }
   Pairs found;
   for (std::size_t a = 0; a < trees.size(); ++a) {
+    context.check();
     if (a > 0) search_fan(fans.centers[a], fans.parts[a], points, triangles, limit, found);
     for (std::size_t b = a == 0 ? 0 : a + 1; b < trees.size(); ++b)
-      SelfIntersectionSearch({trees[a], fans.parts[a]}, {trees[b], fans.parts[b]}, triangles, limit).run(found);
+      SelfIntersectionSearch({trees[a], fans.parts[a]}, {trees[b], fans.parts[b]}, triangles, limit, context)
+          .run(found);
   }
   return sorted_up_to(std::move(found), limit);
 }
@@ -228,16 +233,18 @@ Pairs search_with_fans(const Fans& fans, std::span<const Vec3> points, std::span
 }  // namespace
 
 std::vector<std::array<std::uint32_t, 2>> self_intersections(std::span<const Vec3> points,
-                                                             std::span<const Triangle> triangles, std::size_t limit) {
+                                                             std::span<const Triangle> triangles, std::size_t limit,
+                                                             const RunContext& context) {
   const Fans fans = find_fans(points.size(), triangles);
-  if (fans.parts.size() > 1) return search_with_fans(fans, points, triangles, limit);
-  return self_intersections(TriangleTree(points, triangles), triangles, limit);
+  if (fans.parts.size() > 1) return search_with_fans(fans, points, triangles, limit, context);
+  return self_intersections(TriangleTree(points, triangles), triangles, limit, context);
 }
 
 std::vector<std::array<std::uint32_t, 2>> self_intersections(const TriangleTree& tree,
-                                                             std::span<const Triangle> triangles, std::size_t limit) {
+                                                             std::span<const Triangle> triangles, std::size_t limit,
+                                                             const RunContext& context) {
   Pairs found;
-  SelfIntersectionSearch({tree, {}}, {tree, {}}, triangles, limit).run(found);
+  SelfIntersectionSearch({tree, {}}, {tree, {}}, triangles, limit, context).run(found);
   return sorted_up_to(std::move(found), limit);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <octafront/run_context.h>
 #include <octafront/surface_mesh.h>
 
 #include "geometry/triangle_tree.h"
@@ -17,11 +18,11 @@ namespace octafront {
 /// are more, those returned are the same in every run and on any number of threads.
 std::vector<std::array<std::uint32_t, 2>> self_intersections(
     std::span<const Vec3> points, std::span<const Triangle> triangles,
-    std::size_t limit = std::numeric_limits<std::size_t>::max());
+    std::size_t limit = std::numeric_limits<std::size_t>::max(), const RunContext& context = {});
 
 /// The same with a tree over the same triangles at hand.
 std::vector<std::array<std::uint32_t, 2>> self_intersections(
     const TriangleTree& tree, std::span<const Triangle> triangles,
-    std::size_t limit = std::numeric_limits<std::size_t>::max());
+    std::size_t limit = std::numeric_limits<std::size_t>::max(), const RunContext& context = {});
 
 }  // namespace octafront

@@ -14,7 +14,7 @@ std::vector<std::uint32_t> EdgeTable::edge_of_half_edge() const {
   return edge_of;
 }
 
-EdgeTable make_edge_table(std::size_t vertices, std::span<const Triangle> triangles) {
+EdgeTable make_edge_table(std::size_t vertices, std::span<const Triangle> triangles, const RunContext& context) {
   // Half-edges are dealt to groups by their smaller vertex; what is left to sort is a handful per group.
   using Use = std::pair<VertexIndex, HalfEdge>;  // larger vertex, half-edge
   Groups<Use> uses(vertices, [&](const auto& add) {
@@ -29,6 +29,7 @@ EdgeTable make_edge_table(std::size_t vertices, std::span<const Triangle> triang
   table.first.reserve(uses.items().size() / 2 + 1);
   table.half_edges.reserve(uses.items().size());
   for (VertexIndex v = 0; v < vertices; ++v) {
+    if (v % 4096 == 0) context.check();
     const std::span<Use> at_vertex = uses[v];
     std::sort(at_vertex.begin(), at_vertex.end());
     for (std::size_t k = 0; k < at_vertex.size(); ++k) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <octafront/run_context.h>
 #include <octafront/surface_mesh.h>
 
 #include <cstddef>
@@ -40,6 +41,6 @@ struct EdgeTable {
 };
 
 /// Requires that every index is below `vertices`. Triangles with a repeated vertex give edges with equal ends.
-EdgeTable make_edge_table(std::size_t vertices, std::span<const Triangle> triangles);
+EdgeTable make_edge_table(std::size_t vertices, std::span<const Triangle> triangles, const RunContext& context = {});
 
 }  // namespace octafront

@@ -54,10 +54,11 @@ void require_on_surface(const TetMesh& mesh, const SurfaceMesh& boundary, const 
     }
 }
 
-Ground prepare_ground(const TetMesh& mesh, const SurfaceMesh& surface, double feature_angle) {
+Ground prepare_ground(const TetMesh& mesh, const SurfaceMesh& surface, double feature_angle,
+                      const RunContext& context) {
   Ground g;
-  g.repaired = repair_surface(surface);
-  const SurfaceDefects defects = find_defects(g.repaired);
+  g.repaired = repair_surface(surface, {}, context);
+  const SurfaceDefects defects = find_defects(g.repaired, context);
   if (!defects.clean()) throw InputError(defects.describe());
   const SurfaceMesh boundary = boundary_of(mesh);
   require_on_surface(mesh, boundary, g.repaired.surface);
@@ -86,7 +87,9 @@ Improved improve_existing(const TetMesh& mesh, const Options& options, const Sur
   run.report.input_volume = enclosed_volume(boundary_of(mesh));
   Ground ground;
   if (surface)
-    run.stage("surface", [&](const Stage&) { ground = prepare_ground(mesh, *surface, options.surface.feature_angle); });
+    run.stage("surface", [&](const Stage& stage) {
+      ground = prepare_ground(mesh, *surface, options.surface.feature_angle, stage.context());
+    });
   run.stage("improve", [&](const Stage& stage) {
     const TriangleTree tree(ground.repaired.surface);
     const improve::BoundaryInput on{ground.repaired.surface, tree, ground.features, ground.of_mesh};

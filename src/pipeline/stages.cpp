@@ -122,9 +122,9 @@ Filled stuff(const Prepared& input, const SizeField& sizes, Run& run) {
 Prepared prepare(const SurfaceMesh& soup, Run& run) {
   Prepared p;
   p.repaired = run.stage("repair", [&](const Stage& stage) {
-    RepairedSurface repaired = repair_surface(soup, run.options.face_of_triangle);
+    RepairedSurface repaired = repair_surface(soup, run.options.face_of_triangle, stage.context());
     for (const std::string& note : repaired.notes) stage.note(note);
-    p.defects = judge_defects(find_defects(repaired), run.options.method, stage);
+    p.defects = judge_defects(find_defects(repaired, stage.context()), run.options.method, stage);
     if (p.defects == SurfaceDomain::Defects::kOpen) face_outward(repaired.surface);
     refuse_lost_precision(repaired.surface);
     stage.count("triangles", static_cast<double>(repaired.surface.triangles.size()));

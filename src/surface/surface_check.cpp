@@ -50,9 +50,10 @@ std::optional<std::string> first_line(const SurfaceDefects& defects) {
 
 /// Requires a surface that is closed and manifold.
 std::vector<SurfaceKind::Shell> SurfaceKind::shells_of(const SurfaceMesh& surface) {
-  repair::Draft draft{surface, std::vector<std::uint32_t>(surface.triangles.size())};
+  const RunContext context;
+  repair::Draft draft{surface, std::vector<std::uint32_t>(surface.triangles.size()), context};
   const repair::Pieces pieces = repair::orient_pieces(draft);
-  const repair::Nesting nesting = repair::find_nesting(surface, pieces, std::vector<char>(pieces.count(), 1));
+  const repair::Nesting nesting = repair::find_nesting(surface, pieces, std::vector<char>(pieces.count(), 1), context);
   const std::vector<int> sign = repair::volume_signs(surface, pieces);
   std::vector<Shell> kinds(pieces.count());
   std::vector<std::int64_t> vertices(pieces.count(), 0), faces(pieces.count(), 0);
@@ -87,7 +88,7 @@ std::optional<std::string> SurfaceKind::first_defect_but_crossings(const Surface
   if (auto defect = first_bad_vertex(result)) return defect;
   const RepairedSurface as_is = as_it_is(result);
   const EdgeTable table = make_edge_table(result.points.size(), result.triangles);
-  if (auto defect = first_line(defects::find_defects_but_crossings(as_is, table))) return defect;
+  if (auto defect = first_line(defects::find_defects_but_crossings(as_is, table, RunContext{}))) return defect;
   const std::vector<Shell> made = shells_of(result);
   for (const Shell& shell : made)
     if (shell.sign != (shell.depth % 2 == 0 ? 1 : -1)) return words(shell) + " is inside out";

@@ -1,3 +1,4 @@
+#include <octafront/error.h>
 #include <octafront/repair.h>
 
 #include "support/named_surfaces.h"
@@ -163,6 +164,16 @@ TEST(Defects, ShellsThatTouchInAPointOfAFace) {
   SurfaceMesh apart = tip;
   apart.points[3].z = -1e-40;
   EXPECT_TRUE(defects_of(testing::joined(testing::unit_tetrahedron(), apart)).clean());
+}
+
+TEST(Defects, RepairAndSearchStopWhenAsked) {
+  const SurfaceMesh soup = testing::icosphere(3);
+  const RepairedSurface repaired = repair_surface(soup);
+  const std::atomic<bool> stop{true};
+  RunContext context;
+  context.cancel = &stop;
+  EXPECT_THROW(repair_surface(soup, {}, context), Cancelled);
+  EXPECT_THROW(find_defects(repaired, context), Cancelled);
 }
 
 TEST(Defects, MessageSaysHowManyWhereAndWhatToDo) {

@@ -82,20 +82,24 @@ std::string SurfaceDefects::describe() const {
   return text;
 }
 
-SurfaceDefects defects::find_defects_but_crossings(const RepairedSurface& repaired, const EdgeTable& table) {
+SurfaceDefects defects::find_defects_but_crossings(const RepairedSurface& repaired, const EdgeTable& table,
+                                                   const RunContext& context) {
   SurfaceDefects found;
   found.no_faces = repaired.surface.triangles.empty();
   find_bad_edges(repaired, table, found);
+  context.check();
   find_bad_vertices(repaired, table, found);
+  context.check();
   find_degenerate_faces(repaired, found);
   return found;
 }
 
-SurfaceDefects find_defects(const RepairedSurface& repaired) {
+SurfaceDefects find_defects(const RepairedSurface& repaired, const RunContext& context) {
+  context.check();
   const SurfaceMesh& mesh = repaired.surface;
-  const EdgeTable table = make_edge_table(mesh.points.size(), mesh.triangles);
-  SurfaceDefects found = defects::find_defects_but_crossings(repaired, table);
-  defects::find_self_intersections(repaired, table, found);
+  const EdgeTable table = make_edge_table(mesh.points.size(), mesh.triangles, context);
+  SurfaceDefects found = defects::find_defects_but_crossings(repaired, table, context);
+  defects::find_self_intersections(repaired, table, context, found);
   return found;
 }
 

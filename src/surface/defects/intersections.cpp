@@ -51,7 +51,8 @@ Vec3 meeting_point(const SurfaceMesh& mesh, std::uint32_t s, std::uint32_t t) {
 
 }  // namespace
 
-void find_self_intersections(const RepairedSurface& repaired, const EdgeTable& table, SurfaceDefects& defects) {
+void find_self_intersections(const RepairedSurface& repaired, const EdgeTable& table, const RunContext& context,
+                             SurfaceDefects& defects) {
   const SurfaceMesh& mesh = repaired.surface;
   std::vector<char> left_out(mesh.triangles.size(), 0);
   for (std::size_t e = 0; e < table.size(); ++e)
@@ -65,7 +66,7 @@ void find_self_intersections(const RepairedSurface& repaired, const EdgeTable& t
     proper.push_back(t);
     triangles.push_back(mesh.triangles[t]);
   }
-  auto pairs = self_intersections(mesh.points, triangles, kMostPairs);
+  auto pairs = self_intersections(mesh.points, triangles, kMostPairs, context);
   for (auto& [s, t] : pairs) {
     s = proper[s];
     t = proper[t];

@@ -3,6 +3,7 @@
 // The searches of find_defects.
 
 #include <octafront/repair.h>
+#include <octafront/run_context.h>
 
 #include "mesh/edge_table.h"
 
@@ -20,10 +21,12 @@ void find_bad_vertices(const RepairedSurface& repaired, const EdgeTable& table, 
 void find_degenerate_faces(const RepairedSurface& repaired, SurfaceDefects& defects);
 
 /// All of the above.
-SurfaceDefects find_defects_but_crossings(const RepairedSurface& repaired, const EdgeTable& table);
+SurfaceDefects find_defects_but_crossings(const RepairedSurface& repaired, const EdgeTable& table,
+                                          const RunContext& context);
 
 /// Pairs of faces that meet elsewhere than in what they share; counting stops at kMostPairs.
-void find_self_intersections(const RepairedSurface& repaired, const EdgeTable& table, SurfaceDefects& defects);
+void find_self_intersections(const RepairedSurface& repaired, const EdgeTable& table, const RunContext& context,
+                             SurfaceDefects& defects);
 inline constexpr std::uint64_t kMostPairs = 1'000'000;
 
 /// Keeps the first places of a kind, in order of their faces.

@@ -31,6 +31,7 @@ class FlatFaces {
     std::vector<std::uint32_t> flat;
     near_.resize(mesh_.points.size(), 0);
     for (std::uint32_t f = 0; f < mesh_.triangles.size(); ++f) {
+      if (f % 4096 == 0) draft_.context.check();
       if (!on_a_line(mesh_, mesh_.triangles[f])) continue;
       flat.push_back(f);
       for (const VertexIndex v : mesh_.triangles[f]) near_[v] = 1;
@@ -42,7 +43,9 @@ class FlatFaces {
   }
 
   void close_up(Degenerate& done) {
+    if (queue_.empty()) return;
     for (; !queue_.empty() && budget_ > 0; --budget_) {
+      draft_.context.check();
       const auto [size, order, f, triangle] = queue_.top();
       queue_.pop();
       if (dropped_[f] || mesh_.triangles[f] != triangle) continue;

@@ -177,7 +177,7 @@ class Sheets {
 
 Duplicates drop_duplicates(Draft& draft) {
   const std::vector<Triangle>& triangles = draft.mesh.triangles;
-  const EdgeTable table = make_edge_table(draft.mesh.points.size(), triangles);
+  const EdgeTable& table = draft.edges();
   const std::vector<Group> groups = find_groups(triangles, table);
   Duplicates done;
   if (groups.empty()) return done;

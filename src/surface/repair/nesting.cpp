@@ -139,7 +139,8 @@ std::vector<Extremes> find_extremes(const SurfaceMesh& mesh, const Pieces& piece
 
 }  // namespace
 
-Nesting find_nesting(const SurfaceMesh& mesh, const Pieces& pieces, const std::vector<char>& closed) {
+Nesting find_nesting(const SurfaceMesh& mesh, const Pieces& pieces, const std::vector<char>& closed,
+                     const RunContext& context) {
   Nesting nesting;
   nesting.depth.assign(pieces.count(), 0);
   nesting.parent.assign(pieces.count(), kNone);
@@ -149,6 +150,7 @@ Nesting find_nesting(const SurfaceMesh& mesh, const Pieces& pieces, const std::v
   NestingSearch search(mesh, pieces, closed);
   std::vector<std::vector<std::uint32_t>> around(pieces.count());
   for (std::uint32_t inner = 0; inner < pieces.count(); ++inner) {
+    context.check();
     if (!closed[inner]) continue;
     around[inner] = search.pieces_around(inner, extremes[inner]);
     nesting.depth[inner] = static_cast<std::uint32_t>(around[inner].size());

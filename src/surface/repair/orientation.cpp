@@ -9,8 +9,12 @@ namespace {
 /// Walks over one piece from its first triangle and decides for each triangle whether it must turn to agree with that.
 class PieceWalk {
  public:
-  PieceWalk(const std::vector<Triangle>& triangles, const EdgeTable& table)
-      : triangles_(triangles), table_(table), edge_of_(table.edge_of_half_edge()), turn_(triangles.size(), 0) {}
+  explicit PieceWalk(Draft& draft)
+      : triangles_(draft.mesh.triangles),
+        table_(draft.edges()),
+        context_(draft.context),
+        edge_of_(table_.edge_of_half_edge()),
+        turn_(triangles_.size(), 0) {}
 
   const std::vector<std::uint32_t>& members() const { return members_; }
   bool turns(std::uint32_t t) const { return turn_[t]; }
@@ -21,6 +25,7 @@ class PieceWalk {
     piece_of[seed] = piece;
     bool agree = true;
     for (std::size_t k = 0; k < members_.size(); ++k) {
+      if (k % 4096 == 0) context_.check();
       const std::uint32_t t = members_[k];
       for (std::uint32_t i = 0; i < 3; ++i) {
         const auto uses = table_.uses(edge_of_[3 * t + i]);
@@ -43,6 +48,7 @@ class PieceWalk {
  private:
   const std::vector<Triangle>& triangles_;
   const EdgeTable& table_;
+  const RunContext& context_;
   const std::vector<std::uint32_t> edge_of_;
   std::vector<char> turn_;
   std::vector<std::uint32_t> members_;
@@ -52,8 +58,7 @@ class PieceWalk {
 
 Pieces orient_pieces(Draft& draft) {
   std::vector<Triangle>& triangles = draft.mesh.triangles;
-  const EdgeTable table = make_edge_table(draft.mesh.points.size(), triangles);
-  PieceWalk walk(triangles, table);
+  PieceWalk walk(draft);
   Pieces pieces;
   pieces.piece_of_triangle.assign(triangles.size(), kNone);
   std::vector<std::uint32_t> to_turn;
@@ -72,6 +77,7 @@ Pieces orient_pieces(Draft& draft) {
     pieces.turned_faces.push_back(draft.face[t]);
   }
   pieces.turned = to_turn.size();
+  if (pieces.turned > 0) draft.known_edges.reset();
   sort_unique(pieces.turned_faces);
   return pieces;
 }

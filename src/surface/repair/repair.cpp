@@ -16,8 +16,9 @@ std::string was(std::uint64_t n) {
   return n == 1 ? "was" : "were";
 }
 
-Draft make_draft(const SurfaceMesh& soup, const std::vector<std::uint32_t>& face_of_triangle) {
-  Draft draft{soup, face_of_triangle};
+Draft make_draft(const SurfaceMesh& soup, const std::vector<std::uint32_t>& face_of_triangle,
+                 const RunContext& context) {
+  Draft draft{soup, face_of_triangle, context};
   if (draft.face.empty()) {
     draft.face.resize(soup.triangles.size());
     std::iota(draft.face.begin(), draft.face.end(), 0u);
@@ -105,10 +106,12 @@ void nest(Draft& draft, const Pieces& pieces, RepairedSurface& result) {
 
 }  // namespace
 
-RepairedSurface repair_surface(const SurfaceMesh& soup, const std::vector<std::uint32_t>& face_of_triangle) {
+RepairedSurface repair_surface(const SurfaceMesh& soup, const std::vector<std::uint32_t>& face_of_triangle,
+                               const RunContext& context) {
+  context.check();
   check_input(soup, face_of_triangle);
   RepairedSurface result;
-  Draft draft = make_draft(soup, face_of_triangle);
+  Draft draft = make_draft(soup, face_of_triangle, context);
   clean_faces(draft, result);
   const Pieces pieces = orient(draft, result);
   nest(draft, pieces, result);

@@ -117,10 +117,9 @@ std::vector<int> volume_signs(const SurfaceMesh& mesh, const Pieces& pieces) {
 
 Shells orient_shells(Draft& draft, const Pieces& pieces) {
   SurfaceMesh& mesh = draft.mesh;
-  const EdgeTable table = make_edge_table(mesh.points.size(), mesh.triangles);
-  const std::vector<char> closed = closed_pieces(mesh.triangles, table, pieces);
+  const std::vector<char> closed = closed_pieces(mesh.triangles, draft.edges(), pieces);
   const std::vector<int> sign = volume_signs(mesh, pieces);
-  const Nesting nesting = find_nesting(mesh, pieces, closed);
+  const Nesting nesting = find_nesting(mesh, pieces, closed, draft.context);
 
   Shells shells;
   std::vector<char> turn(pieces.count(), 0);
@@ -133,6 +132,7 @@ Shells orient_shells(Draft& draft, const Pieces& pieces) {
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const std::uint32_t p = pieces.piece_of_triangle[t];
     if (!turn[p]) continue;
+    draft.known_edges.reset();
     std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
     if (!seen[p])
       (nesting.depth[p] % 2 == 0 ? shells.inside_out_faces : shells.turned_cavity_faces).push_back(draft.face[t]);

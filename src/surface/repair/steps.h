@@ -4,10 +4,12 @@
 // never move a vertex.
 
 #include <octafront/repair.h>
+#include <octafront/run_context.h>
 
 #include "mesh/edge_table.h"
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace octafront::repair {
@@ -16,6 +18,14 @@ namespace octafront::repair {
 struct Draft {
   SurfaceMesh mesh;
   std::vector<std::uint32_t> face;  ///< per triangle: the input face
+  const RunContext& context;
+  std::optional<EdgeTable> known_edges = std::nullopt;  ///< to be reset by whatever changes triangles
+
+  /// The edges of the mesh: most steps change nothing, and find them as the step before did.
+  const EdgeTable& edges() {
+    if (!known_edges) known_edges = make_edge_table(mesh.points.size(), mesh.triangles, context);
+    return *known_edges;
+  }
 };
 
 /// Input faces that a step touched, each once, ascending.
@@ -74,7 +84,8 @@ Shells orient_shells(Draft& draft, const Pieces& pieces);
 struct Nesting {
   std::vector<std::uint32_t> depth, parent;
 };
-Nesting find_nesting(const SurfaceMesh& mesh, const Pieces& pieces, const std::vector<char>& closed);
+Nesting find_nesting(const SurfaceMesh& mesh, const Pieces& pieces, const std::vector<char>& closed,
+                     const RunContext& context);
 
 /// Exact sign of six times the volume that each piece encloses with the origin.
 std::vector<int> volume_signs(const SurfaceMesh& mesh, const Pieces& pieces);

@@ -32,11 +32,13 @@ std::uint64_t hash(Vec3 p) {
 }
 
 /// Per point: the first of `used` points that equals it.
-std::vector<VertexIndex> first_equal(const std::vector<Vec3>& points, const std::vector<char>& used) {
+std::vector<VertexIndex> first_equal(const std::vector<Vec3>& points, const std::vector<char>& used,
+                                     const RunContext& context) {
   std::size_t slots = 16;
   while (slots < 2 * points.size()) slots *= 2;
   std::vector<VertexIndex> table(slots, kNone), first(points.size(), kNone);
   for (VertexIndex v = 0; v < points.size(); ++v) {
+    if (v % 4096 == 0) context.check();
     if (!used[v]) continue;
     std::size_t slot = hash(points[v]) & (slots - 1);
     while (table[slot] != kNone && points[table[slot]] != points[v]) slot = (slot + 1) & (slots - 1);
@@ -54,7 +56,9 @@ std::vector<char> used_vertices(const SurfaceMesh& mesh) {
 }
 
 /// Keeps the points v with keep[v] == v; other entries say which point stands for v, or kNone.
-void renumber(SurfaceMesh& mesh, const std::vector<VertexIndex>& keep) {
+void renumber(Draft& draft, const std::vector<VertexIndex>& keep) {
+  SurfaceMesh& mesh = draft.mesh;
+  draft.known_edges.reset();
   std::vector<VertexIndex> old_to_new(keep.size(), kNone);
   VertexIndex count = 0;
   for (VertexIndex v = 0; v < keep.size(); ++v) {
@@ -107,13 +111,13 @@ void check_input(const SurfaceMesh& soup, const std::vector<std::uint32_t>& face
 
 Merged merge_vertices(Draft& draft) {
   const std::vector<char> used = used_vertices(draft.mesh);
-  const std::vector<VertexIndex> first = first_equal(draft.mesh.points, used);
+  const std::vector<VertexIndex> first = first_equal(draft.mesh.points, used, draft.context);
   Merged merged;
   for (VertexIndex v = 0; v < first.size(); ++v) {
     merged.unused += first[v] == kNone;
     merged.merged += first[v] != kNone && first[v] != v;
   }
-  if (merged.merged + merged.unused > 0) renumber(draft.mesh, first);
+  if (merged.merged + merged.unused > 0) renumber(draft, first);
   return merged;
 }
 
@@ -125,11 +129,12 @@ std::uint64_t drop_unused_vertices(Draft& draft) {
     if (used[v]) keep[v] = v;
     unused += !used[v];
   }
-  if (unused > 0) renumber(draft.mesh, keep);
+  if (unused > 0) renumber(draft, keep);
   return unused;
 }
 
 void drop_marked(Draft& draft, const std::vector<char>& marked) {
+  draft.known_edges.reset();
   SurfaceMesh& mesh = draft.mesh;
   std::size_t kept = 0;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
