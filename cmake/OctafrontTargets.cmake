@@ -14,6 +14,25 @@ if(OCTAFRONT_SANITIZE)
   target_link_options(octafront_flags INTERFACE -fsanitize=${OCTAFRONT_SANITIZE})
 endif()
 
+# octafront_precompile(TARGET OWNER): TARGET shares the precompiled headers of OWNER, which may be itself (and may name
+# more). They are the standard library's, never ours or those of other libraries: good whatever we edit and link.
+function(octafront_precompile target owner)
+  if(OCTAFRONT_PCH AND target STREQUAL owner)
+    target_precompile_headers(${target} PRIVATE <algorithm> <array> <cmath> <cstdint> <functional> <limits> <memory>
+                              <numeric> <optional> <span> <string> <string_view> <tuple> <utility> <vector> ${ARGN})
+  elseif(OCTAFRONT_PCH)
+    target_precompile_headers(${target} REUSE_FROM ${owner})
+  endif()
+endfunction()
+
+if(OCTAFRONT_PCH)
+  file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/octafront_pch.cpp CONTENT "")
+  add_library(octafront_pch OBJECT ${PROJECT_BINARY_DIR}/octafront_pch.cpp)
+  set_target_properties(octafront_pch PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  target_link_libraries(octafront_pch PRIVATE octafront_flags)
+  octafront_precompile(octafront_pch octafront_pch)
+endif()
+
 # octafront_room(NAME SOURCES ... [ROOMS ...] [LIBS ...])
 # One static library per folder of src/: it can be built and tested alone. ROOMS are those that
 # its row in ARCHITECTURE.md names (tests/house compares).
@@ -27,6 +46,7 @@ function(octafront_room name)
     target_link_libraries(octafront_${name} PUBLIC octafront_${room})
   endforeach()
   target_link_libraries(octafront_${name} PUBLIC ${ROOM_LIBS})
+  octafront_precompile(octafront_${name} octafront_pch)
 endfunction()
 
 # octafront_test(NAME SOURCES ... [ROOMS ...]): a GoogleTest binary tests/NAME, linked with just those rooms.
@@ -37,5 +57,6 @@ function(octafront_test name)
   foreach(room IN LISTS T_ROOMS)
     target_link_libraries(test_${name} PRIVATE octafront_${room})
   endforeach()
-  gtest_discover_tests(test_${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600)
+  octafront_precompile(test_${name} octafront_test_support)
+  gtest_discover_tests(test_${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600 LABELS ${name} COST ${test_cost})
 endfunction()
