@@ -1,12 +1,28 @@
 #!/usr/bin/env bash
-# Builds everything and runs the tests. Installs what is missing (Debian 12).
-#   scripts/test.sh [PRESET]      a configure preset, by default release; also: dev, asan-ubsan, tsan
+# Builds everything and runs the tests, the lowest rooms first. Installs what is missing (Debian 12).
+#   scripts/test.sh [--all] [PRESET] [CTEST OPTION ...]
+#     --all     with the long tests: large models, a campaign of nasty surfaces
+#     PRESET    a configure preset, by default release; also: dev (validators), asan-ubsan, tsan
+#     CTEST OPTION   e.g. -L volume (the tests of one room), --stop-on-failure
+# What failed is listed at the end, the lowest room first, with the command that repeats it.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/lib/apt.sh
 
-preset=${1:-release}
+which=(-LE long)
+if [ "${1:-}" = --all ]; then which=() && shift; fi
+preset=release
+if [ $# -gt 0 ] && [[ $1 != -* ]]; then preset=$1 && shift; fi
+
 need_packages "${build_packages[@]}" "${test_packages[@]}"
 cmake --preset "$preset" -DOCTAFRONT_BUILD_BENCH=OFF -DOCTAFRONT_WERROR=ON >/dev/null
 cmake --build --preset "$preset"
-ctest --preset "$preset" -j "$(nproc)"
+failed=build/$preset/Testing/Temporary/LastTestsFailed.log
+rm -f "$failed"
+ctest --preset "$preset" -j "$(nproc)" "${which[@]}" "$@" && exit
+
+echo
+echo "failed, the lowest room first:"
+sort -n "$failed" | sed 's/^[0-9]*:/  /'
+echo "once more, only these: ctest --preset $preset --rerun-failed"
+exit 1

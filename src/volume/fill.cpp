@@ -4,10 +4,10 @@
 
 #include "core/stage_timer.h"
 #include "lattice/core.h"
+#include "mesh/renumber.h"
 #include "recovery/recover.h"
 #include "recovery/refine.h"
 #include "volume/advance.h"
-#include "mesh/renumber.h"
 #include "volume/ladder.h"
 #include "volume/regions.h"
 
