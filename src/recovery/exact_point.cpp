@@ -1,6 +1,6 @@
 #include "recovery/exact_point.h"
 
-#include "geometry/expansion.h"
+#include "geometry/double_double.h"
 
 #include <algorithm>
 #include <cmath>
@@ -43,39 +43,22 @@ int filtered_orient(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
   return det > bound ? 1 : det < -bound ? -1 : 0;
 }
 
-// The unevaluated sum of two doubles; each operation has a relative error below 2^-100.
-struct Pair {
-  double hi = 0, lo = 0;
+using exact::DoubleDouble;
+using DoublePoint = std::array<DoubleDouble, 3>;
 
-  friend Pair operator-(Pair a, Pair b) {
-    const exact::TwoDoubles s = exact::two_sum(a.hi, -b.hi), t = exact::two_sum(a.lo, -b.lo);
-    const exact::TwoDoubles u = exact::two_sum(s.hi, s.lo + t.hi);
-    const exact::TwoDoubles r = exact::two_sum(u.hi, u.lo + t.lo);
-    return {r.hi, r.lo};
-  }
-  friend Pair operator+(Pair a, Pair b) { return a - Pair{-b.hi, -b.lo}; }
-  friend Pair operator*(Pair a, Pair b) {
-    const exact::TwoDoubles p = exact::two_product(a.hi, b.hi);
-    const exact::TwoDoubles r = exact::two_sum(p.hi, p.lo + (a.hi * b.lo + a.lo * b.hi));
-    return {r.hi, r.lo};
-  }
-};
-
-using PairPoint = std::array<Pair, 3>;
-
-double largest(const PairPoint& p) {
+double largest(const DoublePoint& p) {
   return std::max({std::abs(p[0].hi), std::abs(p[1].hi), std::abs(p[2].hi)});
 }
 
 // orient3d of points whose coordinates have a relative error of 2^-99; 0 if that does not decide. The bounds are those
-// of filtered_orient with 2^-95 for 2^-50: room for the errors of Pair.
-int filtered_orient(const std::array<PairPoint, 4>& p) {
-  std::array<PairPoint, 3> d;
+// of filtered_orient with 2^-95 for 2^-50: room for the errors of DoubleDouble.
+int filtered_orient(const std::array<DoublePoint, 4>& p) {
+  std::array<DoublePoint, 3> d;
   for (int i = 0; i < 3; ++i) {
     for (int k = 0; k < 3; ++k) d[i][k] = p[i + 1][k] - p[0][k];
   }
   const auto minor = [&](int i, int j) { return d[1][i] * d[2][j] - d[1][j] * d[2][i]; };
-  const Pair det = d[0][0] * minor(1, 2) + d[0][1] * minor(2, 0) + d[0][2] * minor(0, 1);
+  const DoubleDouble det = d[0][0] * minor(1, 2) + d[0][1] * minor(2, 0) + d[0][2] * minor(0, 1);
   const double error = 0x1p-94 * std::max({largest(p[0]), largest(p[1]), largest(p[2]), largest(p[3])});
   const double u = largest(d[0]) + error, v = largest(d[1]) + error, w = largest(d[2]) + error;
   const double bound = 6.1 * error * (u * v + v * w + w * u) + 0x1p-90 * u * v * w;
@@ -115,19 +98,11 @@ VertexIndex ExactPoints::add_copy(VertexIndex v) {
 
 void ExactPoints::set_planes(const std::vector<Triangle>& triangles, const std::vector<std::uint32_t>& plane) {
   plane_of_triangle_ = plane;
-  first_plane_.assign(point_.size() + 1, 0);
-  for (const Triangle& t : triangles) {
-    for (const VertexIndex v : t) ++first_plane_[v + 1];
-  }
-  for (std::size_t v = 1; v < first_plane_.size(); ++v) first_plane_[v] += first_plane_[v - 1];
-  plane_at_.resize(3 * triangles.size());
-  std::vector<std::uint32_t> next(first_plane_.begin(), first_plane_.end() - 1);
-  for (std::size_t f = 0; f < triangles.size(); ++f) {
-    for (const VertexIndex v : triangles[f]) plane_at_[next[v]++] = plane[f];
-  }
-  for (std::size_t v = 0; v + 1 < first_plane_.size(); ++v) {
-    std::sort(plane_at_.begin() + first_plane_[v], plane_at_.begin() + first_plane_[v + 1]);
-  }
+  planes_at_ = {point_.size(), [&](const auto& add) {
+                  for (std::size_t f = 0; f < triangles.size(); ++f)
+                    for (const VertexIndex v : triangles[f]) add(v, plane[f]);
+                }};
+  for (std::size_t v = 0; v < planes_at_.size(); ++v) std::ranges::sort(planes_at_[v]);
 }
 
 void ExactPoints::add_plane(VertexIndex v, std::uint32_t plane) {
@@ -137,8 +112,7 @@ void ExactPoints::add_plane(VertexIndex v, std::uint32_t plane) {
 
 ExactPoints::Planes ExactPoints::planes_of(VertexIndex v) const {
   if (v >= first_steiner_) return steiner_[v - first_steiner_].planes;
-  if (v + 1 >= first_plane_.size()) return {};
-  return Planes(plane_at_).subspan(first_plane_[v], first_plane_[v + 1] - first_plane_[v]);
+  return v < planes_at_.size() ? planes_at_[v] : Planes{};
 }
 
 std::vector<std::uint32_t> ExactPoints::shared_planes(VertexIndex a, VertexIndex b) const {
@@ -247,10 +221,10 @@ int ExactPoints::orient_steiner(VertexIndex a, VertexIndex b, VertexIndex c, Ver
 }
 
 int ExactPoints::orient_second_filter(const std::array<VertexIndex, 4>& v) const {
-  std::array<PairPoint, 4> p;
+  std::array<DoublePoint, 4> p;
   for (int i = 0; i < 4; ++i) {
     const Vec3 rest = v[i] < first_steiner_ ? Vec3{} : steiner_[v[i] - first_steiner_].rest;
-    for (int k = 0; k < 3; ++k) p[i][k] = {point_[v[i]][k], rest[k]};
+    for (int k = 0; k < 3; ++k) p[i][k] = exact::TwoDoubles{point_[v[i]][k], rest[k]};
   }
   return filtered_orient(p);
 }

@@ -2,6 +2,7 @@
 
 #include <octafront/surface_mesh.h>
 
+#include "core/groups.h"
 #include "geometry/predicates.h"
 #include "recovery/big_float.h"
 
@@ -76,8 +77,9 @@ class ExactPoints {
 
   std::vector<Vec3> point_;
   VertexIndex first_steiner_ = kNone;
-  std::vector<Steiner> steiner_;                                           ///< from first_steiner_ on
-  std::vector<std::uint32_t> plane_of_triangle_, first_plane_, plane_at_;  ///< planes per vertex, compressed, sorted
+  std::vector<Steiner> steiner_;  ///< from first_steiner_ on
+  std::vector<std::uint32_t> plane_of_triangle_;
+  Groups<> planes_at_;  ///< per vertex, sorted
 };
 
 }  // namespace octafront::recovery

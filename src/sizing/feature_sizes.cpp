@@ -1,40 +1,24 @@
 #include "sizing/feature_sizes.h"
 
+#include "core/groups.h"
+
 #include <algorithm>
 
 namespace octafront {
 
 namespace {
 
-/// The feature edges at each vertex, as a compressed list.
-struct Incidence {
-  std::vector<std::uint32_t> first, edges;
-};
-
-Incidence edges_at_vertices(std::size_t vertices, const std::vector<Edge>& edges) {
-  Incidence in;
-  in.first.assign(vertices + 1, 0);
-  for (const Edge& e : edges) ++in.first[e[0] + 1], ++in.first[e[1] + 1];
-  for (std::size_t v = 0; v < vertices; ++v) in.first[v + 1] += in.first[v];
-  in.edges.resize(in.first.back());
-  std::vector<std::uint32_t> next(in.first.begin(), in.first.end() - 1);
-  for (std::uint32_t e = 0; e < edges.size(); ++e) {
-    for (const VertexIndex v : edges[e]) in.edges[next[v]++] = e;
-  }
-  return in;
-}
-
 class CurveWalker {
  public:
   CurveWalker(const SurfaceMesh& surface, const Features& features)
       : surface_(surface),
         edges_(features.edges),
-        at_(edges_at_vertices(surface.points.size(), features.edges)),
+        at_(rows_at_vertices(surface.points.size(), features.edges)),
         used_(features.edges.size(), 0),
         is_end_(surface.points.size(), 0) {
     for (const VertexIndex v : features.corners) is_end_[v] = 1;
     for (VertexIndex v = 0; v < surface.points.size(); ++v) {
-      const std::uint32_t n = at_.first[v + 1] - at_.first[v];
+      const std::size_t n = at_[v].size();
       if (n != 0 && n != 2) is_end_[v] = 1;
     }
   }
@@ -43,8 +27,8 @@ class CurveWalker {
     std::vector<FeatureCurve> curves;
     for (VertexIndex v = 0; v < surface_.points.size(); ++v) {
       if (!is_end_[v]) continue;
-      for (std::uint32_t i = at_.first[v]; i < at_.first[v + 1]; ++i) {
-        if (!used_[at_.edges[i]]) curves.push_back(walk(v, at_.edges[i]));
+      for (const std::uint32_t e : at_[v]) {
+        if (!used_[e]) curves.push_back(walk(v, e));
       }
     }
     for (std::uint32_t e = 0; e < edges_.size(); ++e) {
@@ -63,15 +47,14 @@ class CurveWalker {
       curve.length += distance(surface_.points[v], surface_.points[next]);
       curve.vertices.push_back(next);
       if (next == start || is_end_[next]) return curve;
-      const std::uint32_t i = at_.first[next];
-      edge = at_.edges[i] == edge ? at_.edges[i + 1] : at_.edges[i];
+      edge = at_[next][0] == edge ? at_[next][1] : at_[next][0];
       v = next;
     }
   }
 
   const SurfaceMesh& surface_;
   const std::vector<Edge>& edges_;
-  Incidence at_;
+  Groups<> at_;  ///< the feature edges at each vertex
   std::vector<std::uint8_t> used_, is_end_;
 };
 

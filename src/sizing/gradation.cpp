@@ -18,6 +18,8 @@
 
 #include "sizing/gradation.h"
 
+#include "core/groups.h"
+
 #include <algorithm>
 #include <cmath>
 #include <queue>
@@ -76,23 +78,17 @@ class Grader {
   };
 
   void collect_leaves() {
-    first_leaf_.assign(corners_.size() + 1, 0);
-    for (const auto& leaf : corners_.of_leaf) {
-      for (const std::uint32_t c : leaf) ++first_leaf_[c + 1];
-    }
-    for (std::size_t c = 0; c < corners_.size(); ++c) first_leaf_[c + 1] += first_leaf_[c];
-    leaves_.resize(first_leaf_.back());
-    std::vector<std::uint32_t> next(first_leaf_.begin(), first_leaf_.end() - 1);
-    for (std::uint32_t l = 0; l < tree_.size(); ++l) {
-      for (std::uint32_t k = 0; k < 8; ++k) leaves_[next[corners_.of_leaf[l][k]]++] = 8 * l + k;
-    }
+    leaves_ = {corners_.size(), [&](const auto& add) {
+                 for (std::uint32_t l = 0; l < tree_.size(); ++l)
+                   for (std::uint32_t k = 0; k < 8; ++k) add(corners_.of_leaf[l][k], 8 * l + k);
+               }};
   }
 
   /// Calls visit(corner, value) for each corner that an edge of a leaf joins to `from` and that its value limits.
   template <class Visit>
   void for_each_limited(std::uint32_t from, Visit&& visit) const {
-    for (std::uint32_t i = first_leaf_[from]; i < first_leaf_[from + 1]; ++i) {
-      const std::uint32_t leaf = leaves_[i] / 8, k = leaves_[i] % 8;
+    for (const std::uint32_t i : leaves_[from]) {
+      const std::uint32_t leaf = i / 8, k = i % 8;
       const double rise = slope_ / (1u << tree_.leaf(leaf).level());
       for (std::uint32_t d = 1; d < 8; d *= 2) {
         const std::uint32_t to = corners_.of_leaf[leaf][k ^ d];
@@ -145,27 +141,21 @@ class Grader {
 
   double bound_of(std::uint32_t leaf) const { return slope_ / (1u << tree_.leaf(leaf).level()); }
 
-  /// dependents_[first_dependent_[c] ... first_dependent_[c + 1]): the hanging corners that the free corner c is part
-  /// of.
   void collect_dependents() {
-    first_dependent_.assign(corners_.size() + 1, 0);
-    for (const OctreeCorners::Share& s : corners_.shares) ++first_dependent_[s.corner + 1];
-    for (std::size_t c = 0; c < corners_.size(); ++c) first_dependent_[c + 1] += first_dependent_[c];
-    dependents_.resize(corners_.shares.size());
-    std::vector<std::uint32_t> next(first_dependent_.begin(), first_dependent_.end() - 1);
-    for (std::uint32_t c = 0; c < corners_.size(); ++c) {
-      for (const OctreeCorners::Share& s : corners_.shares_of(c)) dependents_[next[s.corner]++] = c;
-    }
+    dependents_ = {corners_.size(), [&](const auto& add) {
+                     for (std::uint32_t c = 0; c < corners_.size(); ++c)
+                       for (const OctreeCorners::Share& s : corners_.shares_of(c)) add(s.corner, c);
+                   }};
   }
 
   /// Lowers a free corner; the leaves that see it have to be looked at (again).
   void lower(std::uint32_t corner, double value) {
     value_[corner] = value;
     const auto mark = [&](std::uint32_t c) {
-      for (std::uint32_t i = first_leaf_[c]; i < first_leaf_[c + 1]; ++i) dirty_[leaves_[i] / 8] = 1;
+      for (const std::uint32_t i : leaves_[c]) dirty_[i / 8] = 1;
     };
     mark(corner);
-    for (std::uint32_t i = first_dependent_[corner]; i < first_dependent_[corner + 1]; ++i) mark(dependents_[i]);
+    for (const std::uint32_t c : dependents_[corner]) mark(c);
   }
 
   static double squared_slope(const std::array<double, 8>& h, int c) {
@@ -260,7 +250,9 @@ class Grader {
   double slope_;
   std::vector<double> value_;
   std::vector<std::uint8_t> plain_, dirty_;  ///< per leaf
-  std::vector<std::uint32_t> first_leaf_, leaves_, order_, first_dependent_, dependents_;
+  std::vector<std::uint32_t> order_;
+  Groups<> leaves_;      ///< per corner, as 8 * leaf + which of its corners
+  Groups<> dependents_;  ///< per free corner: the hanging corners that it is part of
 };
 
 }  // namespace

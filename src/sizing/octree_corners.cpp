@@ -1,7 +1,8 @@
 #include "sizing/octree_corners.h"
 
+#include "core/flat_map.h"
+
 #include <algorithm>
-#include <bit>
 
 namespace octafront {
 
@@ -9,46 +10,23 @@ namespace {
 
 using Units = std::array<std::uint32_t, 3>;
 
-/// Numbers positions in the order in which they are first asked for: a hash table with linear probing.
+/// Numbers positions in the order in which they are first asked for.
 class Numbering {
  public:
-  explicit Numbering(std::size_t expected) : slots_(std::bit_ceil(2 * expected + 16), Slot{kEmpty, 0}) {}
+  explicit Numbering(std::size_t expected) : number_(expected) {}
 
   std::uint32_t number_of(Units p, std::vector<Units>& positions) {
-    if (2 * (positions.size() + 1) > slots_.size()) grow();
-    const std::uint64_t key = code(p);
-    Slot& slot = slots_[place(key)];
-    if (slot.key == kEmpty) {
-      slot = {key, static_cast<std::uint32_t>(positions.size())};
-      positions.push_back(p);
-    }
-    return slot.number;
+    const std::uint32_t number = number_.find_or_add(code(p), static_cast<std::uint32_t>(positions.size()));
+    if (number == positions.size()) positions.push_back(p);
+    return number;
   }
   /// REQUIRES: p has a number.
-  std::uint32_t find(Units p) const { return slots_[place(code(p))].number; }
+  std::uint32_t find(Units p) const { return *number_.find(code(p)); }
 
  private:
-  struct Slot {
-    std::uint64_t key;
-    std::uint32_t number;
-  };
-  static constexpr std::uint64_t kEmpty = ~std::uint64_t{0};
-
   static std::uint64_t code(Units p) { return (std::uint64_t{p[0]} << 21 | p[1]) << 21 | p[2]; }
-  std::size_t place(std::uint64_t key) const {
-    std::size_t i = static_cast<std::size_t>((key * 0x9e3779b97f4a7c15u) >> 20) & (slots_.size() - 1);
-    while (slots_[i].key != kEmpty && slots_[i].key != key) i = (i + 1) & (slots_.size() - 1);
-    return i;
-  }
-  void grow() {
-    std::vector<Slot> old(2 * slots_.size(), Slot{kEmpty, 0});
-    old.swap(slots_);
-    for (const Slot& s : old) {
-      if (s.key != kEmpty) slots_[place(s.key)] = s;
-    }
-  }
 
-  std::vector<Slot> slots_;
+  FlatMap<std::uint64_t, std::uint32_t> number_;
 };
 
 /// In how many of the eight directions a corner at p has space of the root cube.
