@@ -5,6 +5,7 @@
 #include "lattice/graded_bcc.h"
 #include "lattice/lattice_octree.h"
 #include "lattice/site_table.h"
+#include "mesh/face_table.h"
 #include "mesh/index_range.h"
 
 #include <algorithm>
@@ -13,7 +14,6 @@
 #include <utility>
 
 #include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/parallel_sort.h>
 
 namespace octafront {
 
@@ -52,7 +52,7 @@ class CoreChunk {
 
    private:
     SiteNumber number(LatticeSite site) {
-      auto& [known, n] = recent_[site * 0x9e3779b97f4a7c15ull >> 55];
+      auto& [known, n] = recent_[FlatKeys<LatticeSite>::hash(site) >> 55];
       if (known != site) known = site, n = look_up(site);
       return n;
     }
@@ -205,15 +205,11 @@ class CoreBuilder {
         const Triangle face{vertex(chunk, t[0]), vertex(chunk, t[1]), vertex(chunk, t[2])};
         if (face[0] != kNone && face[1] != kNone && face[2] != kNone) faces.push_back(face);
       }
-    std::vector<std::pair<Triangle, std::uint32_t>> order(faces.size());
-    for (std::uint32_t i = 0; i < faces.size(); ++i) {
-      order[i] = {faces[i], i};
-      std::sort(order[i].first.begin(), order[i].first.end());
-    }
-    tbb::parallel_sort(order.begin(), order.end());
-    std::vector<char> single(faces.size(), 1);
-    for (std::size_t i = 1; i < order.size(); ++i)
-      if (order[i].first == order[i - 1].first) single[order[i].second] = single[order[i - 1].second] = 0;
+    std::vector<char> single(faces.size(), 0);
+    face_table(core_.points.size(), faces)
+        .for_each_group([&](const Triangle&, std::span<const FaceTable::Entry> on_face) {
+          if (on_face.size() == 1) single[on_face[0].face] = 1;
+        });
     for (std::size_t i = 0; i < faces.size(); ++i)
       if (single[i]) core_.skin.push_back(faces[i]);
   }
