@@ -64,7 +64,7 @@ void name_boundary(TetMesh& mesh, const SurfaceMesh& surface, const TriangleTree
 TetMesh stuff_surface(const SurfaceMesh& surface, const Features& features, SurfaceDomain::Defects defects,
                       const SizeField& sizes, const Stage& stage) {
   const SurfaceDomain domain(surface, defects);
-  const StuffingOctree octree = build_stuffing_octree(surface, domain, sizes, stage.context());
+  const LatticeOctree octree = build_stuffing_octree(surface, domain, sizes, stage.context());
   stage.count("leaves", static_cast<double>(octree.tree.size()));
   TetMesh mesh = cut_lattice(octree.root, octree.tree, domain, stage);
   stage.count("tetrahedra dropped where parts touched",

@@ -4,21 +4,15 @@
 #include <octafront/size_field.h>
 #include <octafront/surface_mesh.h>
 
-#include "sizing/octree.h"
+#include "lattice/lattice_octree.h"
 #include "stuffing/implicit_domain.h"
 
 namespace octafront {
 
-/// The octree below a stuffed lattice.
-struct StuffingOctree {
-  RootCube root;
-  Octree tree;
-};
-
-/// Leaves of the wanted size inside the body, and at least one leaf of that size beyond it all around, so that where
-/// sizes are uniform the boundary runs through leaves of one size only, and nowhere near the wall of the root. Farther
-/// outside leaves stay coarse.
-StuffingOctree build_stuffing_octree(const SurfaceMesh& surface, const SurfaceDomain& domain, const SizeField& sizes,
-                                     const RunContext& context);
+/// The octree below a stuffed lattice: leaves of the wanted size inside the body, and at least one leaf of that size
+/// beyond it all around, so that where sizes are uniform the boundary runs through leaves of one size only, and nowhere
+/// near the wall of the root. Farther outside leaves stay coarse.
+LatticeOctree build_stuffing_octree(const SurfaceMesh& surface, const SurfaceDomain& domain, const SizeField& sizes,
+                                    const RunContext& context);
 
 }  // namespace octafront
