@@ -16,6 +16,10 @@ inline constexpr std::uint64_t kMostTetsWithHalfFaces = std::uint64_t{kNone} / 4
 /// elements.
 inline constexpr std::uint64_t kMostTetsToImprove = std::uint64_t{1} << 29;
 
+/// What a run may make at most: improvement holds a half-face and one bit more in 32 bits. Asked before work begins, by
+/// everything that knows how many elements it will take.
+inline constexpr std::int64_t kMostElements = std::int64_t{1} << 29;
+
 /// Throws MeshingError if there are more than fit. `what` is in the plural.
 inline void require_in_range(std::uint64_t count, std::uint64_t most, const char* what) {
   if (count > most)

@@ -17,8 +17,6 @@ namespace octafront {
 /// twenty models: 9.24 with a spread of 3 %. (Space filled by regular tetrahedra would have 6 sqrt(2) = 8.49, the
 /// body-centred cubic lattice of that mean edge length has 9.45.)
 inline constexpr double kTetsPerCube = 9.24;
-/// Indices of elements are 32 bits wide, those of half-faces are four times as large.
-inline constexpr std::int64_t kMostElements = std::int64_t{1} << 30;
 
 /// What all sources together want on a surface, before any of it is put into a grid. Input units.
 struct WantedSizes {
