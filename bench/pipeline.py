@@ -1,7 +1,8 @@
 """Elements per second of every stage on three models at two sizes: writes its table into docs/benchmarks.md.
 
-Usage: bench/run.sh pipeline [--runs N]
+Usage: bench/run.sh pipeline [--runs N] [--beside PROGRAM]
 CPU seconds, one thread, the least of N runs; a size is given so that the count comes out near the one wanted.
+--beside: another build of octafront, run in turn with this one; a second table shows this one's figures over its.
 """
 import argparse
 import json
@@ -14,18 +15,27 @@ COUNTS = [100_000, 1_000_000]
 MARKS = ("<!-- pipeline: begin -->", "<!-- pipeline: end -->")
 
 
-def measure(build, model, count, runs):
-    best = None
+BESIDE_MARKS = ("<!-- pipeline beside: begin -->", "<!-- pipeline beside: end -->")
+
+
+def run_once(program, model, count):
+    with tempfile.TemporaryDirectory() as folder:
+        report = pathlib.Path(folder, "report.json")
+        subprocess.run([program, "mesh", f"models/clean/{model}", "-o", pathlib.Path(folder, "m.vtu"),
+                        "--elements", str(count), "--threads", "1", "--json", report, "-q"], check=True)
+        r = json.loads(report.read_text())
+    # Earlier tries for the element count are not what is measured here.
+    return r, {s["name"]: s["cpu_seconds"] for s in r["stages"] if "earlier" not in s["name"]}
+
+
+def measure(programs, model, count, runs):
+    """The best run of each program; they take turns, so that a busy moment hits all of them."""
+    best = [None] * len(programs)
     for _ in range(runs):
-        with tempfile.TemporaryDirectory() as folder:
-            report = pathlib.Path(folder, "report.json")
-            subprocess.run([build / "cli/octafront", "mesh", f"models/clean/{model}", "-o", pathlib.Path(folder, "m.vtu"),
-                            "--elements", str(count), "--threads", "1", "--json", report, "-q"], check=True)
-            r = json.loads(report.read_text())
-        # Earlier tries for the element count are not what is measured here.
-        stages = {s["name"]: s["cpu_seconds"] for s in r["stages"] if "earlier" not in s["name"]}
-        if best is None or sum(stages.values()) < sum(best[1].values()):
-            best = (r, stages)
+        for i, program in enumerate(programs):
+            made = run_once(program, model, count)
+            if best[i] is None or sum(made[1].values()) < sum(best[i][1].values()):
+                best[i] = made
     return best
 
 
@@ -41,22 +51,49 @@ def row(model, report, stages):
         f"{report['peak_memory_bytes'] / tets:.0f}"]) + " |"
 
 
+def ratio_row(model, count, ours, other):
+    stages = ["size field", "surface front", "volume front", "improve"]
+    ratios = [ours[1][stage] / other[1][stage] for stage in stages]
+    ratios.append(sum(ours[1].values()) / sum(other[1].values()))
+    ratios.append(ours[0]["peak_memory_bytes"] / other[0]["peak_memory_bytes"])
+    same = "yes" if ours[0]["hash"] == other[0]["hash"] else "no"
+    return "| " + " | ".join([model, f"{count:,}"] + [f"{r:.2f}" for r in ratios] + [same]) + " |"
+
+
+def table(head):
+    return ["| " + " | ".join(head) + " |", "|" + " --- |" * len(head)]
+
+
+def replace(marks, lines):
+    page = pathlib.Path("docs/benchmarks.md")
+    text = page.read_text()
+    before, after = text.split(marks[0])[0], text.split(marks[1])[1]
+    page.write_text(before + marks[0] + "\n" + "\n".join(lines) + "\n" + marks[1] + after)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("build", type=pathlib.Path)
     parser.add_argument("--runs", type=int, default=3)
+    parser.add_argument("--beside", type=pathlib.Path)
     args = parser.parse_args()
-    head = ["model", "tets", "boundary triangles", "size field s", "surface front s", "triangles/s", "volume front s",
-            "tets/s", "improve s", "tets/s", "all stages tets/s", "mean β", "min β", "peak bytes/tet"]
-    lines = ["| " + " | ".join(head) + " |", "|" + " --- |" * len(head)]
+    programs = [args.build / "cli/octafront"] + ([args.beside] if args.beside else [])
+    lines = table(["model", "tets", "boundary triangles", "size field s", "surface front s", "triangles/s",
+                   "volume front s", "tets/s", "improve s", "tets/s", "all stages tets/s", "mean β", "min β",
+                   "peak bytes/tet"])
+    ratios = table(["model", "elements", "size field", "surface front", "volume front", "improve", "all stages",
+                    "peak memory", "same mesh"])
     for model in MODELS:
         for count in COUNTS:
-            lines.append(row(model, *measure(args.build, model, count, args.runs)))
+            made = measure(programs, model, count, args.runs)
+            lines.append(row(model, *made[0]))
             print(lines[-1], flush=True)
-    page = pathlib.Path("docs/benchmarks.md")
-    text = page.read_text()
-    before, after = text.split(MARKS[0])[0], text.split(MARKS[1])[1]
-    page.write_text(before + MARKS[0] + "\n" + "\n".join(lines) + "\n" + MARKS[1] + after)
+            if args.beside:
+                ratios.append(ratio_row(model, count, *made))
+                print(ratios[-1], flush=True)
+    replace(MARKS, lines)
+    if args.beside:
+        replace(BESIDE_MARKS, ratios)
 
 
 main()

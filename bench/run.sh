@@ -2,6 +2,7 @@
 # The benchmarks, by name. Builds what they need.
 #   bench/run.sh status      every model of bench/models.csv: valid? how true is the boundary?   -> docs/status.md
 #   bench/run.sh pipeline    three models at 100 k and 1 M elements, elements per second and stage -> docs/benchmarks.md
+#                            --beside PROGRAM: against another build of octafront, side by side
 #   bench/run.sh surface     surfaces of all clean models and beside other remeshers  -> docs/surface-status.md, benchmarks.md
 #   bench/run.sh elements    --elements N met? prediction, sizes in the volume          -> docs/benchmarks.md
 #   bench/run.sh volume      kept surfaces up to 10 M elements, against TetGen, HXT and Netgen -> docs/volume-bench.md
@@ -13,7 +14,7 @@ source scripts/lib/apt.sh
 
 case ${1:-} in
   status | pipeline | surface | elements | volume | peers | improve) ;;
-  *) sed -n '2,10s/^# \{0,1\}//p' "$0"; exit 2 ;;
+  *) sed -n '2,11s/^# \{0,1\}//p' "$0"; exit 2 ;;
 esac
 need_packages "${build_packages[@]}" python3
 [ "$1" != surface ] || need_packages gmsh netgen libcgal-dev libgmp-dev libmpfr-dev
