@@ -26,10 +26,9 @@ SurfaceFile read_input(const Arguments& a, const RunContext& context) {
   return file;
 }
 
-// Messages then name faces as the file numbers them.
-Options options_for(const Arguments& a, const SurfaceFile& file, const RunContext& context) {
+// With what the files of sizes say.
+Options options_for(const Arguments& a, const RunContext& context) {
   Options options = a.options;
-  options.face_of_triangle = file.face_of_triangle;
   if (!a.regions.empty()) options.size.regions = read_size_regions(a.regions);
   if (!a.size_field.empty()) options.size.point_sizes = read_point_sizes(a.size_field);
   if (!a.size_grid.empty()) options.size.field = read_size_field(a.size_grid, options.size.gradation, context);
@@ -65,7 +64,7 @@ template <class Generator>
 auto run_on_input(const Arguments& a, const RunContext& context, const Generator& generator) {
   const SurfaceFile file = read_input(a, context);
   try {
-    return generator(file.surface, options_for(a, file, context), context);
+    return generator(file.surface, options_for(a, context), context);
   } catch (const OpenCavityError& error) {
     throw with_cavity_written(error, a.output);
   } catch (const InputError& error) {
@@ -145,7 +144,7 @@ int run_check(const Arguments& a) {
   if (is_tet_mesh_file(a.input)) return check_tet_mesh(a);
   const RunContext context = terminal_context(a.threads, a.quiet);
   const SurfaceFile file = read_input(a, context);
-  const RepairedSurface repaired = repair_surface(file.surface, file.face_of_triangle);
+  const RepairedSurface repaired = repair_surface(file.surface);
   for (const std::string& note : repaired.notes) say(a, "would repair: " + note + "\n");
   const SurfaceDefects defects = find_defects(repaired);
   if (!defects.clean()) throw InputError(fmt::format("{}:\n{}", a.input.string(), defects.describe()));

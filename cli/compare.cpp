@@ -33,7 +33,6 @@ Comparison run_one(const std::filesystem::path& input, const SurfaceFile& file, 
   c.elements_wanted = given.size.elements.value_or(0);
   Options options = given;
   options.method = method;
-  options.face_of_triangle = file.face_of_triangle;
   try {
     c.report = generate(file.surface, options, context).report;
   } catch (const Cancelled&) {

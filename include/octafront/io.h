@@ -13,11 +13,10 @@
 
 namespace octafront {
 
-/// A surface as a file has it: nothing merged, nothing repaired. Polygons are divided into triangles;
-/// `face_of_triangle` says from which face of the file (counted from 0) each one came.
+/// A surface as a file has it: nothing merged, nothing repaired. Polygons are divided into triangles; surface.source
+/// says from which face of the file (counted from 0) each one came.
 struct SurfaceFile {
   SurfaceMesh surface;
-  std::vector<std::uint32_t> face_of_triangle;
   std::string format;              ///< e.g. "binary STL"
   std::vector<std::string> notes;  ///< what a user should know, e.g. "12 polygons divided into triangles"
 };
@@ -49,8 +48,8 @@ SizeField read_size_field(const std::filesystem::path& file, double gradation = 
 /// Reads regions of refinement from a JSON file,
 ///   [{"box": [[0, 0, 0], [1, 2, 1]], "size": 0.1}, {"sphere": [5, 0, 0], "radius": 2, "size": 0.2},
 ///    {"point": [1, 1, 1], "size": 0.05}]
-/// boxes by their least and largest corner, boxes and points with a "radius" if wanted; or from a table of points, a line
-/// "x, y, z, size" each, separated by commas, semicolons or blanks, with or without a line of titles before. For
+/// boxes by their least and largest corner, boxes and points with a "radius" if wanted; or from a table of points, a
+/// line "x, y, z, size" each, separated by commas, semicolons or blanks, with or without a line of titles before. For
 /// SizeOptions::regions. Throws InputError with the line or entry for whatever is not exactly that.
 std::vector<SizeRegion> read_size_regions(const std::filesystem::path& file);
 

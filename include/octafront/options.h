@@ -1,5 +1,11 @@
 #pragma once
 
+// What steers a run. Every struct is usable as it is: the defaults mesh any clean surface at an automatic size.
+//
+// "The paper", here and elsewhere, is "3D Mesh Generation Based on Improved Advancing Front Method", from which the
+// octree background grid (its section III.A), the surface front (III.B), the volume front with its queues Qc, Qn and Qh
+// (IV) and the weighted Laplacian (V) come.
+
 #include <octafront/size_field.h>
 #include <octafront/vec.h>
 
@@ -37,7 +43,7 @@ struct SizeOptions {
   /// Sizes by which triangles stay within this distance of a curved surface; input units, > 0. generate() sets it from
   /// SurfaceOptions::max_deviation, so that the prediction of elements knows of it.
   std::optional<double> chord_error;
-  bool facets = false;             ///< the paper's rule: grid leaves follow the areas of the input's facets
+  bool facets = false;             ///< the paper's rule (III.A): grid leaves follow the areas of the input's facets
   std::optional<double> min_size;  ///< no size falls below this, input units
   std::optional<double> max_size;  ///< no size rises above this, input units
   double gradation = 0.2;          ///< |h(x) - h(y)| <= gradation |x - y|; in [0.01, 1]
@@ -136,9 +142,6 @@ struct Options {
   SurfaceOptions surface;
   VolumeOptions volume;
   ImproveOptions improve;
-  /// Per triangle of the input: the face of the file that it came from (SurfaceFile::face_of_triangle), so that
-  /// messages name faces as the user knows them. Empty: triangle i is face i.
-  std::vector<std::uint32_t> face_of_triangle;
 };
 
 }  // namespace octafront

@@ -24,9 +24,8 @@ struct QualitySummary {
   std::array<std::uint64_t, 5> beta_classes{};
   double beta_mean = 0, beta_min = 0;
   TetIndex beta_min_tet = kNone;
-  double dihedral_min = 0, dihedral_max = 0;  ///< degrees, over all elements
+  double dihedral_min = 0, dihedral_max = 0;           ///< degrees, over all elements
   std::array<std::uint64_t, 18> dihedral_histogram{};  ///< all six angles of all elements, classes of 10 degrees
-  double edge_ratio_mean = 0;  ///< reserved for edge length over wanted length; 0 where no size field was given
 };
 
 QualitySummary summarize_quality(const TetMesh& mesh);

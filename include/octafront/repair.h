@@ -11,8 +11,7 @@ namespace octafront {
 
 /// A surface after repair, and what was done to it.
 struct RepairedSurface {
-  SurfaceMesh surface;
-  std::vector<std::uint32_t> face_of_triangle;  ///< per triangle: the input face that it came from
+  SurfaceMesh surface;  ///< its `source` refers to the input's faces
   std::uint64_t merged_vertices = 0, unused_vertices = 0, duplicate_faces = 0, degenerate_faces = 0;
   std::uint64_t divided_faces = 0;  ///< neighbours of degenerate faces, so that no gap opened
   std::uint64_t turned_faces = 0;   ///< to make neighbours agree
@@ -30,11 +29,9 @@ struct RepairedSurface {
 ///     edge are divided at the corner in the middle of that edge. The surface as a set of points stays the same.
 ///   - Open shells, shells that cannot be oriented and vertices where shells are pinched stay for find_defects.
 ///
-/// `face_of_triangle` may be empty (then triangle i is face i). Throws InputError if indices are out of range, or
-/// coordinates not finite or above 1e50, Cancelled if `context` asks for it. Cost: O(n log n), about a second per
-/// million triangles.
-RepairedSurface repair_surface(const SurfaceMesh& soup, const std::vector<std::uint32_t>& face_of_triangle = {},
-                               const RunContext& context = {});
+/// Throws InputError if indices are out of range, or coordinates not finite or above 1e50, Cancelled if `context` asks
+/// for it. Cost: O(n log n), about a second per million triangles.
+RepairedSurface repair_surface(const SurfaceMesh& soup, const RunContext& context = {});
 
 /// What keeps a surface from being meshed, found exactly.
 struct SurfaceDefects {

@@ -2,12 +2,11 @@
 
 #include <octafront/vec.h>
 
-#include <cstddef>
 #include <functional>
-#include <memory>
-#include <vector>
 
 namespace octafront {
+
+class SizeFunction;  // what stands behind a SizeField: the library's own
 
 /// The edge length wanted at each point, in input units: continuous, positive, and graded,
 ///   |h(x) - h(y)| <= gradation * |x - y|.
@@ -26,12 +25,15 @@ class SizeField {
   double min_size() const;
   double max_size() const;
 
-  struct Impl;
-  explicit SizeField(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}
-  const Impl& impl() const { return *impl_; }
+  SizeField(const SizeField& other) noexcept;
+  SizeField& operator=(SizeField other) noexcept;
+  ~SizeField();
 
  private:
-  std::shared_ptr<const Impl> impl_;
+  friend class SizeFunction;
+  explicit SizeField(const SizeFunction& function) noexcept;
+
+  const SizeFunction* function_;  // counted; see sizing/size_function.h
 };
 
 }  // namespace octafront

@@ -25,12 +25,18 @@ using Edge = std::array<VertexIndex, 2>;
 /// each edge has exactly two triangles that run through it in opposite directions, and the triangles around each vertex
 /// form one fan. A shell inside another one, facing the other way, bounds a cavity.
 struct SurfaceMesh {
-  std::vector<Vec3> points;         ///< input units
-  std::vector<Triangle> triangles;  ///< indices into points
+  std::vector<Vec3> points;          ///< input units
+  std::vector<Triangle> triangles;   ///< indices into points
   std::vector<std::uint32_t> patch;  ///< one per triangle: which named part of the surface it belongs to; empty: all 0
   std::vector<std::string> patch_names;  ///< patch p is patch_names[p]; may be shorter than the number of patches
+  /// One per triangle: the face of the input that it came from, by which messages and TetMesh::source name it; empty:
+  /// triangle t is face t.
+  std::vector<std::uint32_t> source;
 
   std::uint32_t patch_of(std::size_t triangle) const { return patch.empty() ? 0 : patch[triangle]; }
+  std::uint32_t source_of(std::size_t triangle) const {
+    return source.empty() ? static_cast<std::uint32_t>(triangle) : source[triangle];
+  }
   friend bool operator==(const SurfaceMesh&, const SurfaceMesh&) = default;
 };
 

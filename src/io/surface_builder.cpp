@@ -131,7 +131,7 @@ SurfaceFile SurfaceBuilder::finish(const Input& input, std::string format, bool 
   file.surface.triangles = std::move(triangles_);
   file.surface.patch = std::move(patch_);
   file.surface.patch_names = std::move(patch_names);
-  file.face_of_triangle = std::move(face_of_triangle_);
+  if (!polygons_.empty() || small_faces_ > 0) file.surface.source = std::move(face_of_triangle_);
   file.format = std::move(format);
   file.notes = std::move(notes);
   return file;

@@ -8,8 +8,7 @@ constexpr double kFirstLook = 0.1;
 
 }  // namespace
 
-void renew_sources(TetMesh& mesh, const SurfaceMesh& before, const TriangleTree& tree,
-                   const std::vector<std::uint32_t>& face_of_triangle) {
+void renew_sources(TetMesh& mesh, const SurfaceMesh& before, const SurfaceMesh& input, const TriangleTree& tree) {
   if (mesh.source.empty()) return;
   for (std::size_t t = 0; t < mesh.boundary.size(); ++t) {
     const auto& [a, b, c] = mesh.boundary[t];
@@ -19,7 +18,7 @@ void renew_sources(TetMesh& mesh, const SurfaceMesh& before, const TriangleTree&
     const Vec3 middle = (mesh.points[a] + mesh.points[b] + mesh.points[c]) / 3;
     auto below = tree.nearest(middle, kFirstLook * kFirstLook * squared_length(mesh.points[b] - mesh.points[a]));
     if (below.triangle == kNone) below = tree.nearest(middle);
-    mesh.source[t] = face_of_triangle[below.triangle];
+    mesh.source[t] = input.source_of(below.triangle);
   }
 }
 

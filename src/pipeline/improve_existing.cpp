@@ -57,7 +57,7 @@ void require_on_surface(const TetMesh& mesh, const SurfaceMesh& boundary, const 
 Ground prepare_ground(const TetMesh& mesh, const SurfaceMesh& surface, double feature_angle,
                       const RunContext& context) {
   Ground g;
-  g.repaired = repair_surface(surface, {}, context);
+  g.repaired = repair_surface(surface, context);
   const SurfaceDefects defects = find_defects(g.repaired, context);
   if (!defects.clean()) throw InputError(defects.describe());
   const SurfaceMesh boundary = boundary_of(mesh);
@@ -94,7 +94,7 @@ Improved improve_existing(const TetMesh& mesh, const Options& options, const Sur
     const TriangleTree tree(ground.repaired.surface);
     const improve::BoundaryInput on{ground.repaired.surface, tree, ground.features, ground.of_mesh};
     if (improve_mesh(result.mesh, surface ? &on : nullptr, options.improve, stage))
-      renew_sources(result.mesh, boundary_of(mesh), tree, ground.repaired.face_of_triangle);
+      renew_sources(result.mesh, boundary_of(mesh), ground.repaired.surface, tree);
   });
   check_result(result.mesh, nullptr, run);
   describe(result.mesh, run.report);

@@ -85,8 +85,7 @@ constexpr double kVolumeTolerance = 0.03;
 
 void note_lost_volume(const TetMesh& mesh, const Prepared& p, const Stage& stage) {
   if (p.defects != SurfaceDomain::Defects::kClean) return;
-  const double share =
-      enclosed_volume(SurfaceMesh{mesh.points, mesh.boundary, {}, {}}) / enclosed_volume(p.repaired.surface);
+  const double share = enclosed_volume(boundary_of(mesh)) / enclosed_volume(p.repaired.surface);
   if (std::abs(share - 1) > kVolumeTolerance)
     stage.note(
         fmt::format("the mesh has {:.1f} % of the volume inside the surface: parts thinner than an "
@@ -96,7 +95,7 @@ void note_lost_volume(const TetMesh& mesh, const Prepared& p, const Stage& stage
 
 // The boundary of a stuffed mesh in the place of a triangulated surface.
 Remeshed boundary_of_stuffed(const TetMesh& mesh, const SizeField& sizes, double feature_angle) {
-  SurfaceMesh surface{{}, mesh.boundary, mesh.patch, mesh.patch_names};
+  SurfaceMesh surface{{}, mesh.boundary, mesh.patch, mesh.patch_names, {}};
   VertexIndex vertices = 0;
   for (const Triangle& t : surface.triangles) vertices = std::max(vertices, 1 + std::max({t[0], t[1], t[2]}));
   surface.points.assign(mesh.points.begin(), mesh.points.begin() + vertices);
@@ -112,7 +111,7 @@ Filled stuff(const Prepared& input, const SizeField& sizes, Run& run) {
     note_lost_volume(stuffed, input, stage);
     return stuffed;
   });
-  for (std::uint32_t& triangle : mesh.source) triangle = input.repaired.face_of_triangle[triangle];
+  for (std::uint32_t& triangle : mesh.source) triangle = input.repaired.surface.source_of(triangle);
   Remeshed boundary = boundary_of_stuffed(mesh, sizes, run.options.surface.feature_angle);
   return {std::move(mesh), std::move(boundary)};
 }
@@ -122,7 +121,7 @@ Filled stuff(const Prepared& input, const SizeField& sizes, Run& run) {
 Prepared prepare(const SurfaceMesh& soup, Run& run) {
   Prepared p;
   p.repaired = run.stage("repair", [&](const Stage& stage) {
-    RepairedSurface repaired = repair_surface(soup, run.options.face_of_triangle, stage.context());
+    RepairedSurface repaired = repair_surface(soup, stage.context());
     for (const std::string& note : repaired.notes) stage.note(note);
     p.defects = judge_defects(find_defects(repaired, stage.context()), run.options.method, stage);
     if (p.defects == SurfaceDomain::Defects::kOpen) face_outward(repaired.surface);
@@ -180,7 +179,8 @@ Filled fill(const Prepared& input, const SizeField& sizes, Run& run) {
     return filled;
   });
   mesh.source.reserve(boundary.source.size());
-  for (const std::uint32_t triangle : boundary.source) mesh.source.push_back(input.repaired.face_of_triangle[triangle]);
+  for (const std::uint32_t triangle : boundary.source)
+    mesh.source.push_back(input.repaired.surface.source_of(triangle));
   mesh.patch_names = boundary.surface.patch_names;
   return {std::move(mesh), std::move(boundary)};
 }
@@ -193,7 +193,7 @@ void improve_elements(const Prepared& input, Filled& filled, Run& run) {
     const TriangleTree tree = moves ? TriangleTree(input.repaired.surface) : TriangleTree({}, {});
     const improve::BoundaryInput on{input.repaired.surface, tree, input.features, boundary.features};
     if (!improve_mesh(mesh, moves ? &on : nullptr, run.options.improve, stage)) return;
-    renew_sources(mesh, boundary.surface, tree, input.repaired.face_of_triangle);
+    renew_sources(mesh, boundary.surface, input.repaired.surface, tree);
     SurfaceMesh& surface = boundary.surface;  // what was filled follows what became of it; its vertices come first
     std::copy_n(mesh.points.begin(), surface.points.size(), surface.points.begin());
     surface.triangles = mesh.boundary;
@@ -209,7 +209,7 @@ void check_result(const TetMesh& mesh, const SurfaceMesh* surface, Run& run) {
 }
 
 SurfaceMesh boundary_of(const TetMesh& mesh) {
-  return {mesh.points, mesh.boundary, mesh.patch, {}};
+  return {mesh.points, mesh.boundary, mesh.patch, {}, {}};
 }
 
 void describe(const TetMesh& mesh, Report& report) {

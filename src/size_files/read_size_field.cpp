@@ -131,7 +131,7 @@ SizeField read_size_field(const std::filesystem::path& file, double gradation, c
     for (int k = 0; k < 8; ++k) field->h[l][k] = value[corners.of_leaf[l][k]];
   }
   field->find_range();
-  return SizeField(std::move(field));
+  return SizeFunction::field(std::move(field));
 }
 
 }  // namespace octafront

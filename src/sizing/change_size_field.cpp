@@ -16,8 +16,8 @@ namespace {
 /// A cap holds unchanged within this many of the old sizes around its point, and rises at the gradation from there.
 constexpr double kCapReach = 1.5;
 
-struct Scaled final : SizeField::Impl {
-  Scaled(SizeField old, double factor) : sizes(std::move(old)), by(factor) { gradation = sizes.impl().gradation; }
+struct Scaled final : SizeFunction {
+  Scaled(SizeField old, double factor) : sizes(std::move(old)), by(factor) { gradation = SizeFunction::behind(sizes).gradation; }
   double at(Vec3 p) const override { return sizes.at(p) * by; }
   double min_size() const override { return sizes.min_size() * by; }
   double max_size() const override { return sizes.max_size() * by; }
@@ -26,9 +26,9 @@ struct Scaled final : SizeField::Impl {
 };
 
 /// A field that is no background grid, with caps on top. The caps are few there.
-struct Capped final : SizeField::Impl {
+struct Capped final : SizeFunction {
   Capped(SizeField old, std::vector<SizeCap> by) : sizes(std::move(old)), caps(std::move(by)), low(sizes.min_size()) {
-    gradation = sizes.impl().gradation;
+    gradation = SizeFunction::behind(sizes).gradation;
     for (const SizeCap& c : caps) low = std::min(low, c.h);
   }
   double at(Vec3 p) const override {
@@ -45,8 +45,8 @@ struct Capped final : SizeField::Impl {
 
 SizeField capped(const SizeField& sizes, std::vector<SizeCap> caps, const RunContext& context) {
   context.check();
-  if (const OctreeField* grid = as_octree_field(sizes)) return SizeField(capped_grid(*grid, caps, context));
-  return SizeField(std::make_shared<Capped>(sizes, std::move(caps)));
+  if (const OctreeField* grid = as_octree_field(sizes)) return SizeFunction::field(capped_grid(*grid, caps, context));
+  return SizeFunction::field(std::make_shared<Capped>(sizes, std::move(caps)));
 }
 
 /// Cuts sizes that rise faster than the field's gradation.
@@ -91,14 +91,14 @@ SizeField capped_at(const SizeField& sizes, const std::vector<PointSize>& places
 SizeField scaled(const SizeField& sizes, double factor, const RunContext& context) {
   context.check();
   const OctreeField* grid = as_octree_field(sizes);
-  if (grid == nullptr) return SizeField(std::make_shared<Scaled>(sizes, factor));
+  if (grid == nullptr) return SizeFunction::field(std::make_shared<Scaled>(sizes, factor));
   auto copy = std::make_shared<OctreeField>(*grid);
   for (auto& leaf : copy->h) {
     for (double& v : leaf) v *= factor;
   }
   if (factor > 1) grade_again(*copy, context);
   copy->find_range();
-  return SizeField(std::move(copy));
+  return SizeFunction::field(std::move(copy));
 }
 
 }  // namespace octafront

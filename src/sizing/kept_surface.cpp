@@ -122,7 +122,7 @@ SizeField size_field_of_surface(const SurfaceMesh& surface, const SizeOptions& o
   }
   stage.count("leaves", static_cast<double>(grid->tree.size()));
   stage.count("levels", grid->tree.depth());
-  return SizeField(with_regions(std::move(grid), options, stage.context()));
+  return SizeFunction::field(with_regions(std::move(grid), options, stage.context()));
 }
 
 }  // namespace octafront

@@ -72,7 +72,7 @@ SizeField grid_field(const SurfaceMesh& surface, const WantedSizes& wanted, cons
                                         : sample_surface(surface, wanted.face, wanted.at_place, context);
   samples.insert(samples.end(), wanted.points.begin(), wanted.points.end());
   auto grid = make_background_grid(root, samples, rules, context);
-  return SizeField(with_regions(std::move(grid), options, context));
+  return SizeFunction::field(with_regions(std::move(grid), options, context));
 }
 
 SizeField scaled_to_count(const SurfaceMesh& surface, const WantedSizes& wanted, const SizeOptions& options,

@@ -26,7 +26,7 @@ void OctreeField::find_range() {
 }
 
 const OctreeField* as_octree_field(const SizeField& sizes) {
-  return dynamic_cast<const OctreeField*>(&sizes.impl());
+  return dynamic_cast<const OctreeField*>(&SizeFunction::behind(sizes));
 }
 
 }  // namespace octafront

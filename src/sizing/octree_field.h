@@ -1,7 +1,7 @@
 #pragma once
 
 #include "sizing/octree.h"
-#include "sizing/size_field_impl.h"
+#include "sizing/size_function.h"
 
 #include <array>
 #include <vector>
@@ -9,7 +9,7 @@
 namespace octafront {
 
 /// The background grid as a size field: sizes at leaf corners, trilinear between them.
-struct OctreeField final : SizeField::Impl {
+struct OctreeField final : SizeFunction {
   RootCube root;
   Octree tree;
   std::vector<std::array<double, 8>> h;  ///< per leaf, corner i with the halves of child i; in units of root.side

@@ -1,6 +1,6 @@
 #include <octafront/size_field.h>
 
-#include "sizing/size_field_impl.h"
+#include "sizing/size_function.h"
 
 #include <algorithm>
 
@@ -8,7 +8,7 @@ namespace octafront {
 
 namespace {
 
-struct Uniform final : SizeField::Impl {
+struct Uniform final : SizeFunction {
   explicit Uniform(double size) : h(size) {}
   double at(Vec3) const override { return h; }
   double min_size() const override { return h; }
@@ -16,7 +16,7 @@ struct Uniform final : SizeField::Impl {
   double h;
 };
 
-struct FromFunction final : SizeField::Impl {
+struct FromFunction final : SizeFunction {
   FromFunction(std::function<double(Vec3)> function, double low, double high)
       : f(std::move(function)), lo(low), hi(high) {}
   double at(Vec3 p) const override { return std::clamp(f(p), lo, hi); }
@@ -29,21 +29,37 @@ struct FromFunction final : SizeField::Impl {
 }  // namespace
 
 SizeField SizeField::uniform(double h) {
-  return SizeField(std::make_shared<Uniform>(h));
+  return SizeFunction::field(std::make_shared<Uniform>(h));
 }
 
 SizeField SizeField::from_function(std::function<double(Vec3)> h, double lo, double hi) {
-  return SizeField(std::make_shared<FromFunction>(std::move(h), lo, hi));
+  return SizeFunction::field(std::make_shared<FromFunction>(std::move(h), lo, hi));
+}
+
+SizeField::SizeField(const SizeFunction& function) noexcept : function_(&function) {
+  function_->fields_.fetch_add(1, std::memory_order_relaxed);
+}
+
+SizeField::SizeField(const SizeField& other) noexcept : SizeField(*other.function_) {}
+
+SizeField& SizeField::operator=(SizeField other) noexcept {
+  std::swap(function_, other.function_);
+  return *this;
+}
+
+SizeField::~SizeField() {
+  // Out of the function before it goes: its own destruction must not find it there.
+  if (function_->fields_.fetch_sub(1, std::memory_order_acq_rel) == 1) const auto last = std::move(function_->self_);
 }
 
 double SizeField::at(Vec3 p) const {
-  return impl_->at(p);
+  return function_->at(p);
 }
 double SizeField::min_size() const {
-  return impl_->min_size();
+  return function_->min_size();
 }
 double SizeField::max_size() const {
-  return impl_->max_size();
+  return function_->max_size();
 }
 
 }  // namespace octafront

@@ -35,8 +35,7 @@ std::optional<std::string> first_bad_vertex(const SurfaceMesh& surface) {
 RepairedSurface as_it_is(const SurfaceMesh& surface) {
   RepairedSurface as_is;
   as_is.surface = surface;
-  as_is.face_of_triangle.resize(surface.triangles.size());
-  std::iota(as_is.face_of_triangle.begin(), as_is.face_of_triangle.end(), 0u);
+  as_is.surface.source.clear();
   return as_is;
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 TEST(OpenCavity, IsWrittenBesideTheOutputWithASentenceHowToReportIt) {
   const SurfaceMesh cavity{
-      {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0.1}}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}, {}, {}};
+      {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0.1}}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}, {}, {}, {}};
   const OpenCavityError error("a cavity of 4 faces near (0, 0, 0) could not be filled", cavity);
   const auto folder = std::filesystem::temp_directory_path();
   const MeshingError told = with_cavity_written(error, folder / "octafront_open_cavity_test.vtu");

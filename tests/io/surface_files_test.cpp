@@ -41,7 +41,7 @@ TEST(ReadSurface, KnowsEveryVariantByContent) {
     for (std::size_t t = 0; t < 4; ++t)
       for (std::size_t k = 0; k < 3; ++k)
         EXPECT_EQ(file.surface.points[file.surface.triangles[t][k]], tet.points[tet.triangles[t][k]]);
-    EXPECT_EQ(file.face_of_triangle, (std::vector<std::uint32_t>{0, 1, 2, 3}));
+    EXPECT_TRUE(file.surface.source.empty()) << "triangle t is face t";
   }
 }
 
@@ -83,7 +83,7 @@ TEST(ReadSurface, DividesPolygonsAndSaysSo) {
   const SurfaceFile file =
       surface_of("OFF\n6 3 0\n0 0 0\n2 1 0\n0 2 0\n1 1 0\n5 5 5\n6 6 6\n3 0 1 2\n4 0 1 2 3\n2 4 5\n");
   ASSERT_EQ(file.surface.triangles.size(), 3U);
-  EXPECT_EQ(file.face_of_triangle, (std::vector<std::uint32_t>{0, 1, 1}));
+  EXPECT_EQ(file.surface.source, (std::vector<std::uint32_t>{0, 1, 1}));
   // The reflex corner 3 is in both halves: the diagonal runs from 1 to 3.
   for (const std::size_t t : {1U, 2U}) {
     const Triangle& corners = file.surface.triangles[t];

@@ -23,7 +23,7 @@ TEST(ImproveExisting, KeepsTheBoundaryUnlessThereIsASurface) {
   const Improved better = improve_existing(start);
   EXPECT_GT(better.report.quality.beta_mean, better.before.beta_mean);
   EXPECT_GE(better.report.quality.beta_min, better.before.beta_min);
-  EXPECT_EQ(first_defect(better.mesh, {start.points, start.boundary, {}, {}}), std::nullopt);
+  EXPECT_EQ(first_defect(better.mesh, {start.points, start.boundary, {}, {}, {}}), std::nullopt);
 }
 
 TEST(ImproveExisting, SlidesOnASurfaceAndStaysTrueToIt) {
@@ -32,8 +32,9 @@ TEST(ImproveExisting, SlidesOnASurfaceAndStaysTrueToIt) {
   const Improved fixed = improve_existing(start), slid = improve_existing(start, {}, &surface);
   EXPECT_GT(slid.report.quality.beta_mean, fixed.report.quality.beta_mean);
   EXPECT_EQ(first_defect(slid.mesh), std::nullopt);
-  EXPECT_NE(first_defect(slid.mesh, {start.points, start.boundary, {}, {}}), std::nullopt);
-  const SurfaceMesh before{start.points, start.boundary, {}, {}}, after{slid.mesh.points, slid.mesh.boundary, {}, {}};
+  EXPECT_NE(first_defect(slid.mesh, {start.points, start.boundary, {}, {}, {}}), std::nullopt);
+  const SurfaceMesh before{start.points, start.boundary, {}, {}, {}},
+      after{slid.mesh.points, slid.mesh.boundary, {}, {}, {}};
   const double tolerance = 1e-3;
   EXPECT_LE(hausdorff_distance(after, surface, tolerance).lower,
             1.1 * hausdorff_distance(before, surface, tolerance).upper);

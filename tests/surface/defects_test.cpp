@@ -107,10 +107,9 @@ TEST(Defects, MoebiusStripCannotBeOriented) {
 TEST(Defects, PlacesNameInputFacesInOrder) {
   SurfaceMesh s = testing::cube(6);
   s.triangles.erase(s.triangles.begin() + 50, s.triangles.begin() + 90);
-  std::vector<std::uint32_t> face(s.triangles.size());
-  for (std::uint32_t t = 0; t < face.size(); ++t) face[t] = 1000 + 7 * t;
+  for (std::uint32_t t = 0; t < s.triangles.size(); ++t) s.source.push_back(1000 + 7 * t);
   s.patch.clear();
-  const SurfaceDefects defects = find_defects(repair_surface(s, face));
+  const SurfaceDefects defects = find_defects(repair_surface(s));
   ASSERT_EQ(defects.open_edges.first.size(), 10u);
   EXPECT_GT(defects.open_edges.count, 10u);
   for (std::size_t i = 0; i < 10; ++i) {
@@ -172,7 +171,7 @@ TEST(Defects, RepairAndSearchStopWhenAsked) {
   const std::atomic<bool> stop{true};
   RunContext context;
   context.cancel = &stop;
-  EXPECT_THROW(repair_surface(soup, {}, context), Cancelled);
+  EXPECT_THROW(repair_surface(soup, context), Cancelled);
   EXPECT_THROW(find_defects(repaired, context), Cancelled);
 }
 

@@ -69,7 +69,7 @@ TEST(Repair, LeavesCleanSurfacesAlone) {
     const RepairedSurface repaired = repair_surface(s);
     EXPECT_EQ(repaired.surface, s);
     EXPECT_TRUE(repaired.notes.empty()) << repaired.notes.front();
-    for (std::uint32_t t = 0; t < s.triangles.size(); ++t) EXPECT_EQ(repaired.face_of_triangle[t], t);
+    for (std::uint32_t t = 0; t < s.triangles.size(); ++t) EXPECT_EQ(repaired.surface.source_of(t), t);
   }
 }
 
@@ -272,7 +272,7 @@ TEST(Repair, PatchesAndFacesFollow) {
   const RepairedSurface repaired = repair_surface(input);
   EXPECT_EQ(repaired.surface.patch_names, s.patch_names);
   for (std::size_t t = 0; t < repaired.surface.triangles.size(); ++t) {
-    const std::uint32_t face = repaired.face_of_triangle[t];
+    const std::uint32_t face = repaired.surface.source_of(t);
     EXPECT_EQ(repaired.surface.triangles[t], input.triangles[face]);
     EXPECT_EQ(repaired.surface.patch[t], input.patch[face]);
   }

@@ -70,10 +70,10 @@ void find_self_intersections(const RepairedSurface& repaired, const EdgeTable& t
   for (auto& [s, t] : pairs) {
     s = proper[s];
     t = proper[t];
-    if (repaired.face_of_triangle[s] > repaired.face_of_triangle[t]) std::swap(s, t);
+    if (repaired.surface.source_of(s) > repaired.surface.source_of(t)) std::swap(s, t);
   }
   const auto faces_of = [&](const std::array<std::uint32_t, 2>& pair) {
-    return std::pair{repaired.face_of_triangle[pair[0]], repaired.face_of_triangle[pair[1]]};
+    return std::pair{repaired.surface.source_of(pair[0]), repaired.surface.source_of(pair[1])};
   };
   const std::size_t shown = std::min(kShown, pairs.size());
   std::partial_sort(pairs.begin(), pairs.begin() + static_cast<std::ptrdiff_t>(shown), pairs.end(),
@@ -83,7 +83,7 @@ void find_self_intersections(const RepairedSurface& repaired, const EdgeTable& t
   FirstPlaces places(defects.self_intersections);
   for (std::size_t k = 0; k < shown; ++k) {
     const auto [s, t] = pairs[k];
-    places.add({repaired.face_of_triangle[s], repaired.face_of_triangle[t]}, meeting_point(mesh, s, t));
+    places.add({repaired.surface.source_of(s), repaired.surface.source_of(t)}, meeting_point(mesh, s, t));
   }
   defects.self_intersections.count = pairs.size();
 }

@@ -141,9 +141,9 @@ void find_pinched_vertices(const RepairedSurface& repaired, const EdgeTable& tab
   FirstPlaces places(defects.non_manifold_vertices);
   for (std::size_t i = 0; i < further.size();) {
     const VertexIndex v = further[i].first;
-    std::vector<std::uint32_t> faces{repaired.face_of_triangle[first_fan[v] / 3]};
+    std::vector<std::uint32_t> faces{repaired.surface.source_of(first_fan[v] / 3)};
     for (; i < further.size() && further[i].first == v; ++i)
-      faces.push_back(repaired.face_of_triangle[further[i].second / 3]);
+      faces.push_back(repaired.surface.source_of(further[i].second / 3));
     places.add(std::move(faces), mesh.points[v]);
   }
 }
@@ -173,7 +173,7 @@ void find_bad_edges(const RepairedSurface& repaired, const EdgeTable& table, Sur
     const bool agree = uses.size() == 2 && start_of(mesh.triangles, uses[0]) != start_of(mesh.triangles, uses[1]);
     if (agree) continue;
     std::vector<std::uint32_t> faces;
-    for (const std::uint32_t h : uses) faces.push_back(repaired.face_of_triangle[h / 3]);
+    for (const std::uint32_t h : uses) faces.push_back(repaired.surface.source_of(h / 3));
     const auto [a, b] = table.edges[e];
     FirstPlaces& kind = uses.size() == 1 ? open : uses.size() == 2 ? misoriented : non_manifold;
     kind.add(std::move(faces), (mesh.points[a] + mesh.points[b]) * 0.5);
@@ -192,7 +192,7 @@ void find_degenerate_faces(const RepairedSurface& repaired, SurfaceDefects& defe
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto [i, j, k] = mesh.triangles[t];
     const Vec3 a = mesh.points[i], b = mesh.points[j], c = mesh.points[k];
-    if (collinear(a, b, c)) places.add({repaired.face_of_triangle[t]}, (a + b + c) / 3);
+    if (collinear(a, b, c)) places.add({repaired.surface.source_of(t)}, (a + b + c) / 3);
   }
 }
 

@@ -16,14 +16,21 @@ std::string was(std::uint64_t n) {
   return n == 1 ? "was" : "were";
 }
 
-Draft make_draft(const SurfaceMesh& soup, const std::vector<std::uint32_t>& face_of_triangle,
-                 const RunContext& context) {
-  Draft draft{soup, face_of_triangle, context};
-  if (draft.face.empty()) {
-    draft.face.resize(soup.triangles.size());
-    std::iota(draft.face.begin(), draft.face.end(), 0u);
-  }
+Draft make_draft(const SurfaceMesh& soup, const RunContext& context) {
+  Draft draft{soup, std::vector<std::uint32_t>(soup.triangles.size()), context};
+  for (std::size_t t = 0; t < draft.face.size(); ++t) draft.face[t] = soup.source_of(t);
   return draft;
+}
+
+/// The surface that the steps leave; where every triangle is the input face of its number, that need not be said.
+SurfaceMesh finished(Draft draft) {
+  draft.mesh.source.clear();
+  for (std::size_t t = 0; t < draft.face.size(); ++t) {
+    if (draft.face[t] == t) continue;
+    draft.mesh.source = std::move(draft.face);
+    break;
+  }
+  return std::move(draft.mesh);
 }
 
 void drop_duplicates(Draft& draft, RepairedSurface& result) {
@@ -106,17 +113,15 @@ void nest(Draft& draft, const Pieces& pieces, RepairedSurface& result) {
 
 }  // namespace
 
-RepairedSurface repair_surface(const SurfaceMesh& soup, const std::vector<std::uint32_t>& face_of_triangle,
-                               const RunContext& context) {
+RepairedSurface repair_surface(const SurfaceMesh& soup, const RunContext& context) {
   context.check();
-  check_input(soup, face_of_triangle);
+  check_input(soup);
   RepairedSurface result;
-  Draft draft = make_draft(soup, face_of_triangle, context);
+  Draft draft = make_draft(soup, context);
   clean_faces(draft, result);
   const Pieces pieces = orient(draft, result);
   nest(draft, pieces, result);
-  result.surface = std::move(draft.mesh);
-  result.face_of_triangle = std::move(draft.face);
+  result.surface = finished(std::move(draft));
   return result;
 }
 

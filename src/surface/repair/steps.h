@@ -32,7 +32,7 @@ struct Draft {
 using InputFaces = std::vector<std::uint32_t>;
 
 /// Throws InputError if an index or a coordinate of the input is out of range, or arrays do not match.
-void check_input(const SurfaceMesh& soup, const std::vector<std::uint32_t>& face_of_triangle);
+void check_input(const SurfaceMesh& soup);
 
 struct Merged {
   std::uint64_t merged = 0, unused = 0;

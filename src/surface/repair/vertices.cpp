@@ -88,10 +88,10 @@ void check_face(const SurfaceMesh& soup, const Triangle& t, std::uint32_t face) 
 
 }  // namespace
 
-void check_input(const SurfaceMesh& soup, const std::vector<std::uint32_t>& face_of_triangle) {
+void check_input(const SurfaceMesh& soup) {
   const std::size_t faces = soup.triangles.size();
-  if (!face_of_triangle.empty() && face_of_triangle.size() != faces)
-    throw InputError(fmt::format("{} input faces are given for {} triangles", face_of_triangle.size(), faces));
+  if (!soup.source.empty() && soup.source.size() != faces)
+    throw InputError(fmt::format("{} input faces are given for {} triangles", soup.source.size(), faces));
   if (!soup.patch.empty() && soup.patch.size() != faces)
     throw InputError(fmt::format("{} patches are given for {} triangles", soup.patch.size(), faces));
   // Half-edges are numbered with 32 bits.
@@ -99,7 +99,7 @@ void check_input(const SurfaceMesh& soup, const std::vector<std::uint32_t>& face
     throw InputError(fmt::format("{} triangles are too many (at most {})", faces, kNone / 3 - 1));
   Box3 box;
   for (std::uint32_t t = 0; t < faces; ++t) {
-    check_face(soup, soup.triangles[t], face_of_triangle.empty() ? t : face_of_triangle[t]);
+    check_face(soup, soup.triangles[t], soup.source_of(t));
     for (const VertexIndex v : soup.triangles[t]) box.add(soup.points[v]);
   }
   if (box.empty()) return;
