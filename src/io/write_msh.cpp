@@ -2,6 +2,7 @@
 // volume, with tags that count from 1. A node belongs to the surface of the smallest patch at it, inner nodes to the
 // volume of their region. Node and element tags are indices plus 1, elements counting the triangles first.
 
+#include "core/groups.h"
 #include "io/boundary.h"
 #include "io/text_writer.h"
 #include "io/writers.h"
@@ -15,11 +16,10 @@
 namespace octafront::io {
 namespace {
 
-/// Things sorted into groups: those of group g are items[begin[g]] ... items[begin[g + 1] - 1], in increasing order.
-struct Groups {
+/// Elements by patch or by region, ascending.
+struct ByEntity {
   std::vector<std::uint32_t> ids;  ///< sorted: patches or regions that occur
-  std::vector<std::uint64_t> begin;
-  std::vector<std::uint32_t> items;
+  Groups<> elements;               ///< of each
 
   std::size_t size() const { return ids.size(); }
   std::uint32_t slot(std::uint32_t id) const {
@@ -27,21 +27,8 @@ struct Groups {
   }
 };
 
-/// `slot_of(i)` is below `slots`, or kNone for what belongs to no group.
-template <class SlotOf>
-void distribute(Groups& groups, std::size_t slots, std::size_t count, const SlotOf& slot_of) {
-  groups.begin.assign(slots + 1, 0);
-  for (std::uint32_t i = 0; i < count; ++i)
-    if (slot_of(i) != kNone) ++groups.begin[slot_of(i) + 1];
-  for (std::size_t s = 0; s < slots; ++s) groups.begin[s + 1] += groups.begin[s];
-  groups.items.resize(groups.begin[slots]);
-  std::vector<std::uint64_t> next(groups.begin.begin(), groups.begin.end() - 1);
-  for (std::uint32_t i = 0; i < count; ++i)
-    if (slot_of(i) != kNone) groups.items[next[slot_of(i)]++] = i;
-}
-
-Groups grouped(const std::vector<std::uint32_t>& id_of, std::size_t count) {
-  Groups groups;
+ByEntity grouped(const std::vector<std::uint32_t>& id_of, std::uint32_t count) {
+  ByEntity groups;
   const auto id = [&](std::size_t i) { return id_of.empty() ? 0 : id_of[i]; };
   for (std::size_t i = 0; i < count; ++i)
     if (groups.ids.empty() || id(i) != groups.ids.back()) groups.ids.push_back(id(i));
@@ -49,7 +36,7 @@ Groups grouped(const std::vector<std::uint32_t>& id_of, std::size_t count) {
   groups.ids.erase(std::unique(groups.ids.begin(), groups.ids.end()), groups.ids.end());
   std::vector<std::uint32_t> slot(count);
   for (std::size_t i = 0; i < count; ++i) slot[i] = i > 0 && id(i) == id(i - 1) ? slot[i - 1] : groups.slot(id(i));
-  distribute(groups, groups.ids.size(), count, [&](std::uint32_t i) { return slot[i]; });
+  groups.elements = group_by_owner(groups.ids.size(), count, [&](std::uint32_t i) { return slot[i]; });
   return groups;
 }
 
@@ -66,8 +53,8 @@ class MshWriter {
       : file_(file),
         text_(file),
         mesh_(mesh),
-        patches_(grouped(mesh.patch, mesh.boundary.size())),
-        regions_(grouped(mesh.region, mesh.tets.size())) {
+        patches_(grouped(mesh.patch, static_cast<std::uint32_t>(mesh.boundary.size()))),
+        regions_(grouped(mesh.region, static_cast<std::uint32_t>(mesh.tets.size()))) {
     assign_nodes();
   }
 
@@ -98,21 +85,24 @@ class MshWriter {
   void assign_nodes() {
     std::vector<Slot> slot(mesh_.points.size(), kNone);
     for (Slot p = 0; p < patches_.size(); ++p)
-      for (std::uint64_t k = patches_.begin[p]; k < patches_.begin[p + 1]; ++k)
-        for (const VertexIndex v : mesh_.boundary[patches_.items[k]]) slot[v] = std::min(slot[v], p);
+      for (const std::uint32_t f : patches_.elements[p])
+        for (const VertexIndex v : mesh_.boundary[f]) slot[v] = std::min(slot[v], p);
     boxes_.resize(entities());
     for (Slot r = 0; r < regions_.size(); ++r) {
       const auto s = static_cast<Slot>(patches_.size() + r);
-      for (std::uint64_t k = regions_.begin[r]; k < regions_.begin[r + 1]; ++k)
-        for (const VertexIndex v : mesh_.tets[regions_.items[k]]) {
+      for (const TetIndex t : regions_.elements[r])
+        for (const VertexIndex v : mesh_.tets[t]) {
           slot[v] = std::min(slot[v], s);
           boxes_[s].add(mesh_.points[v]);
         }
     }
     for (Slot p = 0; p < patches_.size(); ++p)
-      for (std::uint64_t k = patches_.begin[p]; k < patches_.begin[p + 1]; ++k)
-        for (const VertexIndex v : mesh_.boundary[patches_.items[k]]) boxes_[p].add(mesh_.points[v]);
-    distribute(nodes_, entities(), slot.size(), [&](std::uint32_t v) { return slot[v]; });
+      for (const std::uint32_t f : patches_.elements[p])
+        for (const VertexIndex v : mesh_.boundary[f]) boxes_[p].add(mesh_.points[v]);
+    nodes_ = {entities(), [&](const auto& add) {
+                for (VertexIndex v = 0; v < slot.size(); ++v)
+                  if (slot[v] != kNone) add(slot[v], v);
+              }};
   }
 
   void write_names() {
@@ -135,8 +125,8 @@ class MshWriter {
     const std::vector<TetIndex> tet_of = tets_of_faces(mesh_.tets, mesh_.boundary, mesh_.points.size());
     std::vector<std::vector<Slot>> bounding(regions_.size());
     for (Slot p = 0; p < patches_.size(); ++p) {
-      for (std::uint64_t k = patches_.begin[p]; k < patches_.begin[p + 1]; ++k) {
-        const TetIndex t = tet_of[patches_.items[k]];
+      for (const std::uint32_t f : patches_.elements[p]) {
+        const TetIndex t = tet_of[f];
         if (t == kNone) continue;
         std::vector<Slot>& list = bounding[regions_.slot(mesh_.region.empty() ? 0 : mesh_.region[t])];
         if (list.empty() || list.back() != p) list.push_back(p);
@@ -166,35 +156,33 @@ class MshWriter {
   void write_nodes() {
     text_ << "$Nodes\n";
     std::uint64_t blocks = 0;
-    for (Slot s = 0; s < entities(); ++s) blocks += nodes_.begin[s] != nodes_.begin[s + 1];
-    const std::uint64_t count = nodes_.items.size();
+    for (Slot s = 0; s < entities(); ++s) blocks += !nodes_[s].empty();
+    const std::uint64_t count = nodes_.items().size();
     for (const std::uint64_t n : {blocks, count, std::uint64_t{1}, std::uint64_t{mesh_.points.size()}}) put(n);
     for (Slot s = 0; s < entities(); ++s) {
-      const std::uint64_t begin = nodes_.begin[s], end = nodes_.begin[s + 1];
-      if (begin == end) continue;
+      if (nodes_[s].empty()) continue;
       put<std::int32_t>(dimension(s));
       put(tag(s));
       put<std::int32_t>(0);  // no parameters on the surface
-      put(end - begin);
-      for (std::uint64_t k = begin; k < end; ++k) put(std::uint64_t{nodes_.items[k]} + 1);
-      for (std::uint64_t k = begin; k < end; ++k)
-        for (int axis = 0; axis < 3; ++axis) put(mesh_.points[nodes_.items[k]][axis]);
+      put(std::uint64_t{nodes_[s].size()});
+      for (const VertexIndex v : nodes_[s]) put(std::uint64_t{v} + 1);
+      for (const VertexIndex v : nodes_[s])
+        for (int axis = 0; axis < 3; ++axis) put(mesh_.points[v][axis]);
     }
     text_ << "\n$EndNodes\n";
   }
 
   template <std::size_t N>
-  void write_group(const Groups& groups, Slot s, std::int32_t type,
+  void write_group(const ByEntity& groups, Slot s, std::int32_t type,
                    const std::vector<std::array<VertexIndex, N>>& corners, std::uint64_t first_tag) {
-    const std::uint64_t begin = groups.begin[s], end = groups.begin[s + 1];
     put<std::int32_t>(N == 3 ? 2 : 3);
     put(static_cast<std::int32_t>(groups.ids[s]) + 1);
     put(type);
-    put(end - begin);
-    for (std::uint64_t k = begin; k < end; ++k) {
+    put(std::uint64_t{groups.elements[s].size()});
+    for (const std::uint32_t e : groups.elements[s]) {
       std::array<std::uint64_t, N + 1> record;
-      record[0] = first_tag + groups.items[k];
-      for (std::size_t i = 0; i < N; ++i) record[i + 1] = std::uint64_t{corners[groups.items[k]][i]} + 1;
+      record[0] = first_tag + e;
+      for (std::size_t i = 0; i < N; ++i) record[i + 1] = std::uint64_t{corners[e][i]} + 1;
       put(record);
     }
   }
@@ -212,7 +200,8 @@ class MshWriter {
   AtomicFile& file_;
   TextWriter text_;
   const TetMesh& mesh_;
-  Groups patches_, regions_, nodes_;
+  ByEntity patches_, regions_;
+  Groups<> nodes_;  ///< of each entity
   std::vector<Box3> boxes_;
 };
 

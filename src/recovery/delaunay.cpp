@@ -8,6 +8,7 @@
 
 #include "recovery/delaunay.h"
 
+#include "core/random.h"
 #include "geometry/predicates.h"
 
 #include <algorithm>
@@ -17,13 +18,6 @@
 namespace octafront::recovery {
 
 namespace {
-
-std::uint64_t scrambled(std::uint64_t x) {
-  x += 0x9E3779B97F4A7C15u;
-  x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9u;
-  x = (x ^ (x >> 27)) * 0x94D049BB133111EBu;
-  return x ^ (x >> 31);
-}
 
 // Position along a Hilbert curve of 2^16 cells a side; coordinates in [0, 2^16).
 std::uint64_t hilbert_key(std::array<std::uint32_t, 3> x) {
@@ -72,7 +66,7 @@ std::vector<VertexIndex> insertion_order(const ExactPoints& points, const std::v
     const Vec3 p = (points.at(v) - box.lo) / side * 65535.0;
     const auto cell = [](double c) { return static_cast<std::uint32_t>(std::clamp(c, 0.0, 65535.0)); };
     // The last round has half of the vertices, the one before a quarter, and so on.
-    const int back = std::countr_zero(scrambled(v) | 1ull << 40);
+    const int back = std::countr_zero(mixed_bits(v) | 1ull << 40);
     entries.push_back({std::max(0, rounds - 1 - back), hilbert_key({cell(p.x), cell(p.y), cell(p.z)}), v});
   }
   std::ranges::sort(entries, [](const Entry& a, const Entry& b) {

@@ -3,50 +3,9 @@
 #include "recovery/segment_walk.h"
 
 #include <algorithm>
-#include <bit>
 #include <limits>
 
 namespace octafront::recovery {
-
-std::size_t EdgeSet::slot(std::uint64_t k) const {
-  const std::size_t mask = table_.size() - 1;
-  std::size_t i = (k * 0x9E3779B97F4A7C15u) >> 20 & mask;
-  while (table_[i] != kEmpty && table_[i] != k) i = (i + 1) & mask;
-  return i;
-}
-
-void EdgeSet::rehash(std::size_t size) {
-  std::vector<std::uint64_t> old(size, kEmpty);
-  old.swap(table_);
-  for (const std::uint64_t k : old) {
-    if (k != kEmpty) table_[slot(k)] = k;
-  }
-}
-
-void EdgeSet::reserve(std::size_t edges) {
-  if (table_.size() < 2 * edges) rehash(std::bit_ceil(2 * edges));
-}
-
-void EdgeSet::insert(VertexIndex a, VertexIndex b) {
-  reserve(count_ + 1);
-  std::uint64_t& place = table_[slot(key(a, b))];
-  count_ += place == kEmpty;
-  place = key(a, b);
-}
-
-void EdgeSet::erase(VertexIndex a, VertexIndex b) {
-  std::size_t hole = slot(key(a, b));
-  if (table_[hole] == kEmpty) return;
-  --count_;
-  table_[hole] = kEmpty;
-  // Later entries of the same run move up.
-  const std::size_t mask = table_.size() - 1;
-  for (std::size_t i = (hole + 1) & mask; table_[i] != kEmpty; i = (i + 1) & mask) {
-    const std::uint64_t k = table_[i];
-    table_[i] = kEmpty;
-    table_[slot(k)] = k;
-  }
-}
 
 double SegmentHindrance::of_face(VertexIndex x, VertexIndex y, VertexIndex z) const {
   for (const VertexIndex v : {x, y, z}) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/flat_map.h"
 #include "recovery/exact_point.h"
 #include "recovery/tet_complex.h"
 
@@ -10,21 +11,15 @@ namespace octafront::recovery {
 /// A set of undirected edges.
 class EdgeSet {
  public:
-  void reserve(std::size_t edges);
-  void insert(VertexIndex a, VertexIndex b);
-  void erase(VertexIndex a, VertexIndex b);
-  bool contains(VertexIndex a, VertexIndex b) const { return table_[slot(key(a, b))] != kEmpty; }
+  void reserve(std::size_t edges) { set_.reserve(edges); }
+  void insert(VertexIndex a, VertexIndex b) { set_.insert(key(a, b)); }
+  void erase(VertexIndex a, VertexIndex b) { set_.erase(key(a, b)); }
+  bool contains(VertexIndex a, VertexIndex b) const { return set_.contains(key(a, b)); }
 
  private:
-  static constexpr std::uint64_t kEmpty = ~std::uint64_t{0};
-  static std::uint64_t key(VertexIndex a, VertexIndex b) {
-    return a < b ? std::uint64_t{a} << 32 | b : std::uint64_t{b} << 32 | a;
-  }
-  std::size_t slot(std::uint64_t k) const;
-  void rehash(std::size_t size);
+  static Edge key(VertexIndex a, VertexIndex b) { return a < b ? Edge{a, b} : Edge{b, a}; }
 
-  std::vector<std::uint64_t> table_ = std::vector<std::uint64_t>(16, kEmpty);  ///< open addressing, power of two
-  std::size_t count_ = 0;
+  FlatSet<Edge> set_;
 };
 
 /// How much a face or an edge of the mesh hinders what is to be recovered; flips lower the sum.

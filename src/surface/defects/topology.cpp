@@ -1,8 +1,8 @@
+#include "core/disjoint_sets.h"
 #include "geometry/predicates.h"
 #include "surface/defects/steps.h"
 
 #include <algorithm>
-#include <numeric>
 #include <span>
 #include <tuple>
 #include <utility>
@@ -10,32 +10,14 @@
 namespace octafront::defects {
 namespace {
 
-/// Sets that grow together pair by pair; the least member stands for its set.
-class Partition {
- public:
-  explicit Partition(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0u); }
-  std::uint32_t find(std::uint32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::uint32_t i, std::uint32_t j) {
-    i = find(i);
-    j = find(j);
-    parent_[std::max(i, j)] = std::min(i, j);
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
-
 std::uint32_t corner_at(const std::vector<Triangle>& triangles, std::uint32_t face, VertexIndex v) {
   const Triangle& t = triangles[face];
   return 3 * face + (t[0] == v ? 0 : t[1] == v ? 1 : 2);
 }
 
 /// Corners of faces that hang together around their vertex over edges of two faces.
-Partition find_fans(const std::vector<Triangle>& triangles, const EdgeTable& table) {
-  Partition fans(3 * triangles.size());
+DisjointSets find_fans(const std::vector<Triangle>& triangles, const EdgeTable& table) {
+  DisjointSets fans(3 * triangles.size());
   for (std::size_t e = 0; e < table.size(); ++e) {
     const auto uses = table.uses(e);
     if (uses.size() != 2) continue;
@@ -56,7 +38,7 @@ struct OpenEnd {
   auto key() const { return std::tuple{vertex, fan, starts, edge}; }
 };
 
-std::vector<OpenEnd> open_ends(const SurfaceMesh& mesh, const std::vector<std::uint32_t>& open, Partition& fans) {
+std::vector<OpenEnd> open_ends(const SurfaceMesh& mesh, const std::vector<std::uint32_t>& open, DisjointSets& fans) {
   std::vector<OpenEnd> ends;
   for (std::uint32_t k = 0; k < open.size(); ++k) {
     const VertexIndex a = start_of(mesh.triangles, open[k]), b = end_of(mesh.triangles, open[k]);
@@ -71,7 +53,7 @@ std::vector<OpenEnd> open_ends(const SurfaceMesh& mesh, const std::vector<std::u
 /// Joins the edges at one vertex that follow each other along the rim of a hole: the one that arrives is the border of
 /// one fan, the one that leaves that of the next fan; of several the one at the smallest angle. Edges of which a rim
 /// cannot be made, beside non-manifold ones, are joined as they come.
-void join_rims(std::span<const OpenEnd> ends, Partition& rims) {
+void join_rims(std::span<const OpenEnd> ends, DisjointSets& rims) {
   std::vector<std::tuple<double, std::uint32_t, std::uint32_t>> pairs;
   for (std::uint32_t in = 0; in < ends.size(); ++in)
     for (std::uint32_t out = 0; out < ends.size(); ++out)
@@ -97,12 +79,12 @@ void join_rims(std::span<const OpenEnd> ends, Partition& rims) {
   }
 }
 
-std::uint64_t count_holes(const SurfaceMesh& mesh, const EdgeTable& table, Partition& fans) {
+std::uint64_t count_holes(const SurfaceMesh& mesh, const EdgeTable& table, DisjointSets& fans) {
   std::vector<std::uint32_t> open;
   for (std::size_t e = 0; e < table.size(); ++e)
     if (table.uses(e).size() == 1) open.push_back(table.uses(e)[0]);
   const std::vector<OpenEnd> ends = open_ends(mesh, open, fans);
-  Partition rims(open.size());
+  DisjointSets rims(open.size());
   for (std::size_t i = 0; i < ends.size();) {
     std::size_t end = i;
     while (end < ends.size() && ends[end].vertex == ends[i].vertex) ++end;
@@ -117,7 +99,7 @@ std::uint64_t count_holes(const SurfaceMesh& mesh, const EdgeTable& table, Parti
   return holes;
 }
 
-void find_pinched_vertices(const RepairedSurface& repaired, const EdgeTable& table, Partition& fans,
+void find_pinched_vertices(const RepairedSurface& repaired, const EdgeTable& table, DisjointSets& fans,
                            SurfaceDefects& defects) {
   const SurfaceMesh& mesh = repaired.surface;
   const std::size_t vertices = mesh.points.size();
@@ -181,7 +163,7 @@ void find_bad_edges(const RepairedSurface& repaired, const EdgeTable& table, Sur
 }
 
 void find_bad_vertices(const RepairedSurface& repaired, const EdgeTable& table, SurfaceDefects& defects) {
-  Partition fans = find_fans(repaired.surface.triangles, table);
+  DisjointSets fans = find_fans(repaired.surface.triangles, table);
   defects.open_loops = count_holes(repaired.surface, table, fans);
   find_pinched_vertices(repaired, table, fans, defects);
 }

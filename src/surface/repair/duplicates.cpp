@@ -1,8 +1,8 @@
+#include "core/disjoint_sets.h"
 #include "surface/repair/steps.h"
 
 #include <algorithm>
 #include <array>
-#include <numeric>
 #include <utility>
 
 namespace octafront::repair {
@@ -58,15 +58,14 @@ std::vector<Group> find_groups(const std::vector<Triangle>& triangles, const Edg
 class Sheets {
  public:
   Sheets(const std::vector<Triangle>& triangles, const EdgeTable& table, const std::vector<Group>& groups)
-      : triangles_(triangles), groups_(groups), parent_(groups.size()), sheets_(groups.size()) {
-    std::iota(parent_.begin(), parent_.end(), 0u);
+      : triangles_(triangles), groups_(groups), sheet_of_(groups.size()), sheets_(groups.size()) {
     read_edges(table);
-    for (std::uint32_t g = 0; g < groups.size(); ++g) sheets_[find(g)].balanced &= balance(g) == 0;
+    for (std::uint32_t g = 0; g < groups.size(); ++g) sheets_[sheet_of_.find(g)].balanced &= balance(g) == 0;
     link_borders();
     choose();
   }
 
-  bool stays(std::uint32_t g) { return sheets_[find(g)].stays; }
+  bool stays(std::uint32_t g) { return sheets_[sheet_of_.find(g)].stays; }
 
   /// The triangle of the group that stays if one does: the first of those that most agree with.
   std::uint32_t keeper(std::uint32_t g) const {
@@ -102,7 +101,7 @@ class Sheets {
       std::sort(here.begin(), here.end());
       here.erase(std::unique(here.begin(), here.end()), here.end());
       if (here.size() == 2 && singles == 0)
-        parent_[find(here[1])] = find(here[0]);
+        sheet_of_.join(here[0], here[1]);
       else
         edges_.push_back({singles, here, singles % 2 == 1});
     }
@@ -111,7 +110,7 @@ class Sheets {
   void link_borders() {
     for (std::uint32_t e = 0; e < edges_.size(); ++e) {
       for (const std::uint32_t g : edges_[e].groups) {
-        std::vector<std::uint32_t>& border = sheets_[find(g)].border;
+        std::vector<std::uint32_t>& border = sheets_[sheet_of_.find(g)].border;
         if (!border.empty() && border.back() == e)
           border.pop_back();
         else
@@ -123,7 +122,7 @@ class Sheets {
   void choose() {
     for (std::uint32_t g = 0; g < groups_.size(); ++g) {
       Sheet& sheet = sheets_[g];
-      if (find(g) != g) continue;
+      if (sheet_of_.find(g) != g) continue;
       // Where the input has no open edges, an odd number of layers is one too many to cancel out.
       if (groups_[g].triangles.size() % 2 == 1 || sheet.border.empty()) change(sheet);
     }
@@ -161,14 +160,9 @@ class Sheets {
     return sum;
   }
 
-  std::uint32_t find(std::uint32_t g) {
-    while (parent_[g] != g) g = parent_[g] = parent_[parent_[g]];
-    return g;
-  }
-
   const std::vector<Triangle>& triangles_;
   const std::vector<Group>& groups_;
-  std::vector<std::uint32_t> parent_;
+  DisjointSets sheet_of_;      // groups by the first of their sheet
   std::vector<Sheet> sheets_;  // at the index of the group that stands for it
   std::vector<BorderEdge> edges_;
 };
