@@ -1,5 +1,7 @@
 #include "sizing/octree.h"
 
+#include "core/validate.h"
+
 #include <algorithm>
 
 namespace octafront {
@@ -37,6 +39,7 @@ Octree::Octree(std::vector<OctreeKey> leaves) : leaves_(std::move(leaves)) {
     while (next <= last) first_[next++] = static_cast<std::uint32_t>(i);
   }
   first_[cells] = static_cast<std::uint32_t>(leaves_.size() - 1);
+  validate(*this);
 }
 
 std::size_t Octree::find(OctreeKey cell) const {
@@ -61,6 +64,20 @@ bool Octree::is_balanced() const {
     }
   }
   return true;
+}
+
+std::optional<std::string> Octree::first_inconsistency() const {
+  constexpr std::uint64_t kNextCell = 2;  // cells of the finest level have odd ids
+  std::uint64_t begin = OctreeKey::root().range_min();
+  for (std::size_t i = 0; i < leaves_.size(); ++i) {
+    if (!leaves_[i].is_valid()) return "leaf " + std::to_string(i) + " of the octree is no cell";
+    if (leaves_[i].range_min() != begin)
+      return "leaf " + std::to_string(i) + " of the octree does not begin where the one before it ends";
+    if (find(leaves_[i]) != i) return "leaf " + std::to_string(i) + " of the octree is not found";
+    begin = leaves_[i].range_max() + kNextCell;
+  }
+  if (begin != OctreeKey::root().range_max() + kNextCell) return "the leaves of the octree end before the root does";
+  return std::nullopt;
 }
 
 }  // namespace octafront

@@ -1,5 +1,6 @@
 #include "sizing/octree.h"
 
+#include "core/validate.h"
 #include "sizing/inside_fraction.h"
 #include "sizing/octree_corners.h"
 #include "support/named_surfaces.h"
@@ -103,6 +104,22 @@ TEST(Octree, FindsTheLeafAroundAnyCell) {
       ASSERT_TRUE(tree.leaf(tree.find(key)).contains(key));
     }
     for (std::size_t i = 0; i < tree.size(); ++i) ASSERT_EQ(tree.find(tree.leaf(i)), i);
+  }
+}
+
+TEST(Octree, SaysWhereItsLeavesDoNotTileTheRoot) {
+  const Octree good = example_tree(4);
+  EXPECT_FALSE(good.first_inconsistency());
+  std::vector<OctreeKey> hole = good.leaves(), overlap = hole, cut = hole;
+  hole.erase(hole.begin() + 5);
+  overlap[5] = overlap[5].parent();
+  cut.pop_back();
+  for (const auto& leaves : {hole, overlap, cut}) {
+    if (kValidate) {
+      EXPECT_THROW(Octree{leaves}, std::logic_error);
+    } else {
+      EXPECT_TRUE(Octree(leaves).first_inconsistency());
+    }
   }
 }
 
