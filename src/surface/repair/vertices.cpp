@@ -1,6 +1,7 @@
 #include <octafront/error.h>
 
 #include "geometry/predicates.h"
+#include "mesh/renumber.h"
 #include "surface/repair/steps.h"
 
 #include <algorithm>
@@ -59,16 +60,11 @@ std::vector<char> used_vertices(const SurfaceMesh& mesh) {
 void renumber(Draft& draft, const std::vector<VertexIndex>& keep) {
   SurfaceMesh& mesh = draft.mesh;
   draft.known_edges.reset();
-  std::vector<VertexIndex> old_to_new(keep.size(), kNone);
-  VertexIndex count = 0;
-  for (VertexIndex v = 0; v < keep.size(); ++v) {
-    if (keep[v] != v) continue;
-    mesh.points[count] = mesh.points[v];
-    old_to_new[v] = count++;
-  }
-  mesh.points.resize(count);
+  std::vector<VertexIndex> number(keep.size());
+  for (VertexIndex v = 0; v < keep.size(); ++v) number[v] = keep[v] == v ? v : kNone;
+  keep_numbered(mesh.points, number);
   for (Triangle& t : mesh.triangles)
-    for (VertexIndex& v : t) v = old_to_new[keep[v]];
+    for (VertexIndex& v : t) v = number[keep[v]];
 }
 
 void check_face(const SurfaceMesh& soup, const Triangle& t, std::uint32_t face) {
