@@ -6,7 +6,6 @@
 #include "classic/classic_front.h"
 #include "classic/surface_sizes.h"
 #include "core/stage_timer.h"
-#include "mesh/renumber.h"
 #include "volume/ladder.h"
 #include "volume/regions.h"
 
@@ -118,14 +117,8 @@ TetMesh fill_volume_classic(const SurfaceMesh& surface, const VolumeOptions& opt
     mesh.points = front.points();
     mesh.tets = front.tets();
   }
-  if (!walls.empty()) {
-    close_cavities(mesh, walls, task);
-    drop_unused_points(mesh, surface.points.size());
-  }
-  mesh.region = regions_of(mesh, surface);
-  mesh.boundary = surface.triangles;
-  mesh.patch = surface.patch;
-  mesh.patch_names = surface.patch_names;
+  close_cavities(mesh, walls, surface, task);
+  bind_to_surface(mesh, surface);
   return mesh;
 }
 

@@ -124,7 +124,6 @@ TetMesh fill_by_front(const SurfaceMesh& surface, const SizeField& sizes, const 
                       const Stage& stage) {
   const FrontTask task{sizes, options, stage};
   TetMesh mesh;
-  mesh.boundary = surface.triangles;
   std::vector<Wall> walls;
   {
     FrontState front = start_front(surface, sizes);
@@ -151,10 +150,7 @@ TetMesh fill_by_front(const SurfaceMesh& surface, const SizeField& sizes, const 
     mesh.points = std::move(front.points);
     mesh.tets = joined(front.filled);
   }
-  if (!walls.empty()) {
-    close_cavities(mesh, walls, task);
-    drop_unused_points(mesh, surface.points.size());
-  }
+  close_cavities(mesh, walls, surface, task);
   return mesh;
 }
 
@@ -187,10 +183,7 @@ TetMesh fill(const SurfaceMesh& surface, const SizeField& sizes, const VolumeOpt
   stage.count("filled by recovery of the whole surface", front_error != nullptr);
   if (front_error) mesh = fill_without_front(surface, sizes, front_error, stage);
   stage.count("tetrahedra", static_cast<double>(mesh.tets.size()));
-  mesh.region = regions_of(mesh, surface);
-  mesh.boundary = surface.triangles;
-  mesh.patch = surface.patch;
-  mesh.patch_names = surface.patch_names;
+  bind_to_surface(mesh, surface);
   return mesh;
 }
 

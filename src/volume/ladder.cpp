@@ -4,6 +4,7 @@
 
 #include "cavity/cavity.h"
 #include "core/stage_timer.h"
+#include "mesh/renumber.h"
 #include "volume/backtrack.h"
 #include "volume/recover_cavity.h"
 
@@ -126,9 +127,10 @@ class Ladder {
 
 }  // namespace
 
-void close_cavities(TetMesh& mesh, const std::vector<Wall>& walls, const FrontTask& task) {
+void close_cavities(TetMesh& mesh, const std::vector<Wall>& walls, const SurfaceMesh& surface, const FrontTask& task) {
+  if (walls.empty()) return;
   const double start = process_cpu_seconds();
-  Ladder ladder(task, kBacktrackingFaceTests + kFaceTestsPerTet * mesh.tets.size(), mesh.boundary.size());
+  Ladder ladder(task, kBacktrackingFaceTests + kFaceTestsPerTet * mesh.tets.size(), surface.triangles.size());
   Cavities cavities(walls);
   const std::vector<Box3> focus = surroundings(mesh.points, cavities);
   WorkMesh work(std::move(mesh.points), std::move(mesh.tets), focus);
@@ -136,6 +138,7 @@ void close_cavities(TetMesh& mesh, const std::vector<Wall>& walls, const FrontTa
     if (!cavities.walls(c).empty()) ladder.close({work, cavities, c});
   mesh.points = work.take_points();
   mesh.tets = work.take_tets();
+  drop_unused_points(mesh, surface.points.size());
   ladder.report_to(task.stage);
   task.stage.count("closing CPU seconds", process_cpu_seconds() - start);
 }

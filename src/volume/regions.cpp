@@ -50,4 +50,11 @@ std::vector<std::uint32_t> regions_of(const TetMesh& mesh, const SurfaceMesh& su
   return region;
 }
 
+void bind_to_surface(TetMesh& mesh, const SurfaceMesh& surface) {
+  mesh.region = regions_of(mesh, surface);
+  mesh.boundary = surface.triangles;
+  mesh.patch = surface.patch;
+  mesh.patch_names = surface.patch_names;
+}
+
 }  // namespace octafront

@@ -7,8 +7,11 @@
 #include "classic/classic_front.h"
 #include "classic/surface_sizes.h"
 #include "support/named_surfaces.h"
+#include "support/nasty_surfaces.h"
 
 #include <algorithm>
+#include <string>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -53,6 +56,14 @@ TEST(FillClassic, FillsExactlyTheSurface) {
     const QualitySummary q = summarize_quality(mesh);
     EXPECT_GT(q.beta_mean, 0.7);
     EXPECT_LT(static_cast<double>(q.beta_classes[0]) / static_cast<double>(q.elements), 0.02);
+  }
+}
+
+TEST(FillClassic, ClosesByRecoveryWhatNoOtherRungDoes) {
+  for (const SurfaceMesh& s : {testing::twisted_prism(3, 50, 1, 4), testing::chazelle_polyhedron(3, 0.05)}) {
+    StageReport report;
+    EXPECT_EQ(first_defect(fill_volume_classic(s, {}, {{}, report}), s), std::nullopt);
+    EXPECT_TRUE(std::ranges::count(report.counters, std::pair<std::string, double>("closed by recovery", 1)));
   }
 }
 
