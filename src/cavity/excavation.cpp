@@ -1,12 +1,14 @@
 #include "cavity/excavation.h"
 
+#include "mesh/face_table.h"
+
 #include <algorithm>
 
 namespace octafront {
 
 Excavation::Excavation(const OpenCavity& cavity)
     : mesh_(cavity.mesh), cavities_(cavity.cavities), merged_{cavity.number} {
-  for (const Wall& w : cavity.walls()) walls_.emplace(key_of(w), w);
+  for (const Wall& w : cavity.walls()) walls_.emplace(face_key(w), w);
 }
 
 Excavation::~Excavation() {
@@ -22,7 +24,7 @@ std::vector<Wall> Excavation::walls() const {
 }
 
 void Excavation::toggle(const Wall& wall) {
-  const auto [it, is_new] = walls_.try_emplace(key_of(wall), wall);
+  const auto [it, is_new] = walls_.try_emplace(face_key(wall), wall);
   if (!is_new) walls_.erase(it);
 }
 
@@ -30,10 +32,11 @@ void Excavation::take_out(TetIndex t) {
   mesh_.remove(t);
   removed_.push_back(t);
   const Tet tet = mesh_.tet(t);
-  for (const auto& f : kTetFaces) {
-    const Wall inward{tet[f[0]], tet[f[2]], tet[f[1]]};
+  for (int i = 0; i < 4; ++i) {
+    const auto [a, b, c] = face_of(tet, i);
+    const Wall inward{a, c, b};
     // Behind this face may lie another cavity: then the two become one.
-    const std::uint32_t other = cavities_.owner(key_of(inward));
+    const std::uint32_t other = cavities_.owner(inward);
     if (other != kNone && merged_.insert(other).second)
       for (const Wall& w : cavities_.walls(other)) toggle(w);
     toggle(inward);

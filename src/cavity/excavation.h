@@ -2,6 +2,7 @@
 
 #include "cavity/work_mesh.h"
 
+#include <map>
 #include <set>
 #include <vector>
 
@@ -34,7 +35,7 @@ class Excavation {
 
   WorkMesh& mesh_;
   Cavities& cavities_;
-  std::map<TriangleKey, Wall> walls_;
+  std::map<Triangle, Wall> walls_;  ///< by face_key
   std::vector<TetIndex> removed_;
   std::set<std::uint32_t> merged_;
   bool committed_ = false;

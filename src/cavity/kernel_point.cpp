@@ -1,8 +1,9 @@
 #include "cavity/kernel_point.h"
 
+#include "core/random.h"
+
 #include <algorithm>
 #include <array>
-#include <cstdint>
 
 namespace octafront {
 
@@ -115,11 +116,9 @@ KernelPoint deepest_point(const std::vector<HalfSpace>& planes, const Box3& box)
   }
   for (const HalfSpace& p : planes)
     constraints.push_back({{-p.n.x, -p.n.y, -p.n.z, 1}, (dot(p.n, middle) - p.d) / half});
-  std::uint64_t state = 0x2545f4914f6cdd1dull;
-  for (std::size_t i = constraints.size(); i > 9; --i) {
-    state = state * 6364136223846793005ull + 1442695040888963407ull;
-    std::swap(constraints[i - 1], constraints[8 + (state >> 33) % (i - 8)]);
-  }
+  Random random(0x2545f4914f6cdd1d);
+  for (std::size_t i = constraints.size(); i > 9; --i)
+    std::swap(constraints[i - 1], constraints[8 + random.below(i - 8)]);
   Vector<4> x{};
   if (!maximise<4>(constraints, {0, 0, 0, 1}, x)) return {middle, -half};
   KernelPoint result{middle + Vec3{x[0], x[1], x[2]} * half, std::numeric_limits<double>::infinity()};

@@ -1,7 +1,9 @@
 #include "cavity/work_mesh.h"
 
+#include "core/disjoint_sets.h"
+#include "mesh/face_table.h"
+
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
 #include <oneapi/tbb/parallel_for.h>
@@ -11,12 +13,6 @@ namespace octafront {
 namespace {
 constexpr std::size_t kTetsPerTask = 1 << 16;
 }  // namespace
-
-TriangleKey key_of(const Triangle& t) {
-  TriangleKey key = t;
-  std::sort(key.begin(), key.end());
-  return key;
-}
 
 WorkMesh::WorkMesh(std::vector<Vec3> points, std::vector<Tet> tets, const std::vector<Box3>& focus)
     : points_(std::move(points)),
@@ -39,16 +35,10 @@ void WorkMesh::index_tets() const {
       for (const VertexIndex v : tets_[t])
         if (indexed_[v]) found[task].emplace_back(v, static_cast<TetIndex>(t));
   });
-  first_.assign(indexed_.size() + 1, 0);
-  for (const auto& part : found)
-    for (const auto& [v, t] : part) ++first_[v + 1];
-  std::partial_sum(first_.begin(), first_.end(), first_.begin());
-  incident_.resize(first_.back());
-  std::vector<std::uint64_t> next(first_.begin(), first_.end() - 1);
-  for (auto& part : found) {
-    for (const auto& [v, t] : part) incident_[next[v]++] = t;
-    part = {};
-  }
+  incident_ = {indexed_.size(), [&](const auto& add) {
+                 for (const auto& part : found)
+                   for (const auto& [v, t] : part) add(v, t);
+               }};
 }
 
 VertexIndex WorkMesh::add_point(Vec3 p) {
@@ -71,8 +61,8 @@ std::vector<TetIndex> WorkMesh::around(VertexIndex v) const {
       std::fill(indexed_.begin(), indexed_.end(), std::uint8_t{1});
       index_tets();
     }
-    for (std::uint64_t i = first_[v]; i < first_[v + 1]; ++i)
-      if (alive_[incident_[i]]) found.push_back(incident_[i]);
+    for (const TetIndex t : incident_[v])
+      if (alive_[t]) found.push_back(t);
   }
   if (const auto it = added_.find(v); it != added_.end())
     for (const TetIndex t : it->second)
@@ -102,40 +92,32 @@ std::vector<Tet> WorkMesh::take_tets() {
 }
 
 Cavities::Cavities(const std::vector<Wall>& walls) {
-  std::vector<std::uint32_t> parent(walls.size());
-  std::iota(parent.begin(), parent.end(), 0u);
-  const auto root = [&](std::uint32_t w) {
-    while (parent[w] != w) w = parent[w] = parent[parent[w]];
-    return w;
-  };
-  std::map<Edge, std::uint32_t> wall_at_edge;
+  DisjointSets sets(walls.size());
+  FlatMap<Edge, std::uint32_t> wall_at_edge(2 * walls.size());
   for (std::uint32_t w = 0; w < walls.size(); ++w)
     for (int i = 0; i < 3; ++i) {
       const VertexIndex a = walls[w][i], b = walls[w][(i + 1) % 3];
-      const auto [it, is_new] = wall_at_edge.try_emplace({std::min(a, b), std::max(a, b)}, w);
-      if (is_new) continue;
-      const std::uint32_t p = root(w), q = root(it->second);
-      parent[std::max(p, q)] = std::min(p, q);
+      sets.join(w, wall_at_edge.find_or_add({std::min(a, b), std::max(a, b)}, w));
     }
   std::vector<std::uint32_t> number(walls.size(), kNone);
   for (std::uint32_t w = 0; w < walls.size(); ++w) {
-    std::uint32_t& n = number[root(w)];
+    std::uint32_t& n = number[sets.find(w)];
     if (n == kNone) {
       n = static_cast<std::uint32_t>(walls_.size());
       walls_.emplace_back();
     }
     walls_[n].push_back(walls[w]);
-    owner_[key_of(walls[w])] = n;
+    owner_.find_or_add(face_key(walls[w])) = n;
   }
 }
 
-std::uint32_t Cavities::owner(const TriangleKey& key) const {
-  const auto it = owner_.find(key);
-  return it == owner_.end() ? kNone : it->second;
+std::uint32_t Cavities::owner(const Triangle& wall) const {
+  const std::uint32_t* cavity = owner_.find(face_key(wall));
+  return cavity == nullptr ? kNone : *cavity;
 }
 
 void Cavities::close(std::size_t cavity) {
-  for (const Wall& w : walls_[cavity]) owner_.erase(key_of(w));
+  for (const Wall& w : walls_[cavity]) owner_.erase(face_key(w));
   walls_[cavity].clear();
 }
 

@@ -3,9 +3,10 @@
 #include <octafront/surface_mesh.h>
 #include <octafront/tet_mesh.h>
 
-#include <array>
+#include "core/flat_map.h"
+#include "core/groups.h"
+
 #include <cstdint>
-#include <map>
 #include <unordered_map>
 #include <vector>
 
@@ -13,9 +14,6 @@ namespace octafront {
 
 /// A wall of a cavity: (a, b, c) such that (a, b, c, p) is positive for a point p of the cavity next to it.
 using Wall = Triangle;
-/// The corners of a triangle in ascending order.
-using TriangleKey = std::array<VertexIndex, 3>;
-TriangleKey key_of(const Triangle& t);
 
 /// A tetrahedral mesh under repair: tetrahedra come and go, and know their vertices' other tetrahedra.
 class WorkMesh {
@@ -48,9 +46,8 @@ class WorkMesh {
   std::vector<Tet> tets_;
   std::size_t original_tets_;
   std::vector<bool> alive_;
-  mutable std::vector<std::uint8_t> indexed_;  ///< per original vertex
-  mutable std::vector<std::uint64_t> first_;   ///< per original vertex: start of its tetrahedra in `incident_`
-  mutable std::vector<TetIndex> incident_;
+  mutable std::vector<std::uint8_t> indexed_;                     ///< per original vertex
+  mutable Groups<TetIndex, std::uint64_t> incident_;              ///< tetrahedra of each original vertex
   std::unordered_map<VertexIndex, std::vector<TetIndex>> added_;  ///< looked up, never iterated
 };
 
@@ -61,13 +58,13 @@ class Cavities {
 
   std::size_t size() const { return walls_.size(); }
   const std::vector<Wall>& walls(std::size_t cavity) const { return walls_[cavity]; }
-  /// The cavity that a wall with these corners belongs to, or kNone.
-  std::uint32_t owner(const TriangleKey& key) const;
+  /// The cavity that a wall on these corners, turned either way, belongs to, or kNone.
+  std::uint32_t owner(const Triangle& wall) const;
   void close(std::size_t cavity);
 
  private:
-  std::vector<std::vector<Wall>> walls_;  ///< empty: closed
-  std::map<TriangleKey, std::uint32_t> owner_;
+  std::vector<std::vector<Wall>> walls_;    ///< empty: closed
+  FlatMap<Triangle, std::uint32_t> owner_;  ///< by face_key
 };
 
 /// One of the cavities of a mesh.

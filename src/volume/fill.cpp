@@ -2,6 +2,7 @@
 
 #include <octafront/error.h>
 
+#include "core/morton.h"
 #include "core/stage_timer.h"
 #include "lattice/core.h"
 #include "mesh/renumber.h"
@@ -28,21 +29,14 @@ namespace {
 std::vector<std::uint32_t> spatial_order(const SurfaceMesh& surface, const Box3& box) {
   const Vec3 e = box.extent();
   const double scale = 1048575.0 / std::max({e.x, e.y, e.z, 1e-300});
-  const auto spread = [](std::uint64_t x) {
-    x = (x | x << 32) & 0x1f00000000ffff;
-    x = (x | x << 16) & 0x1f0000ff0000ff;
-    x = (x | x << 8) & 0x100f00f00f00f00f;
-    x = (x | x << 4) & 0x10c30c30c30c30c3;
-    return (x | x << 2) & 0x1249249249249249;
-  };
   std::vector<std::pair<std::uint64_t, std::uint32_t>> keyed;
   keyed.reserve(surface.triangles.size());
   for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
     const auto& [a, b, c] = surface.triangles[t];
     const Vec3 m = ((surface.points[a] + surface.points[b] + surface.points[c]) / 3 - box.lo) * scale;
-    keyed.emplace_back(spread(static_cast<std::uint64_t>(m.x)) | spread(static_cast<std::uint64_t>(m.y)) << 1 |
-                           spread(static_cast<std::uint64_t>(m.z)) << 2,
-                       t);
+    keyed.emplace_back(
+        morton_code(static_cast<std::uint64_t>(m.x), static_cast<std::uint64_t>(m.y), static_cast<std::uint64_t>(m.z)),
+        t);
   }
   std::sort(keyed.begin(), keyed.end());
   std::vector<std::uint32_t> order;

@@ -15,10 +15,8 @@ constexpr int kBrickSide = 1 << kBrickBits;
 constexpr int kCellBits = 20;  // cells along an axis at level 0
 
 std::uint64_t key_of(int level, const std::array<int, 3>& brick) {
-  // One is added so that no key is 0.
-  return ((static_cast<std::uint64_t>(level) << 54) | (static_cast<std::uint64_t>(brick[0]) << 36) |
-          (static_cast<std::uint64_t>(brick[1]) << 18) | static_cast<std::uint64_t>(brick[2])) +
-         1;
+  return (static_cast<std::uint64_t>(level) << 54) | (static_cast<std::uint64_t>(brick[0]) << 36) |
+         (static_cast<std::uint64_t>(brick[1]) << 18) | static_cast<std::uint64_t>(brick[2]);
 }
 
 /// Number of a cell in its brick.
@@ -36,11 +34,6 @@ std::uint64_t range_y(int l, int h) {
 }
 std::uint64_t range_z(int l, int h) {
   return (~std::uint64_t{0} >> 16 * (kBrickSide - 1 - h)) & ~((std::uint64_t{1} << 16 * l) - 1);
-}
-
-std::uint64_t scrambled(std::uint64_t key) {
-  key *= 0x9e3779b97f4a7c15ull;
-  return key ^ (key >> 29);
 }
 
 /// A search region in single precision, relative to a brick.
@@ -66,7 +59,7 @@ CullingRegion local_region(const SearchRegion& region, Vec3 origin) {
 
 }  // namespace
 
-FrontIndex::FrontIndex(const Box3& domain, double finest_cell) : free_block_(kNone) {
+FrontIndex::FrontIndex(const Box3& domain, double finest_cell) {
   const Vec3 e = domain.extent();
   const double widest = std::max({e.x, e.y, e.z});
   finest_cell = std::max(finest_cell, widest / ((1 << kCellBits) - 16));
@@ -76,35 +69,14 @@ FrontIndex::FrontIndex(const Box3& domain, double finest_cell) : free_block_(kNo
     cell_[l] = std::ldexp(finest_cell, l);
     per_cell_[l] = 1 / cell_[l];
   }
-  keys_.assign(1024, 0);
-  brick_of_key_.assign(1024, kNone);
 }
 
 std::uint32_t FrontIndex::brick_at(int level, const Cell& brick) const {
-  const std::uint64_t key = key_of(level, brick), mask = keys_.size() - 1;
-  for (std::uint64_t i = scrambled(key) & mask;; i = (i + 1) & mask) {
-    if (keys_[i] == key) return brick_of_key_[i];
-    if (keys_[i] == 0) return kNone;
-  }
-}
-
-void FrontIndex::grow_table() {
-  std::vector<std::uint64_t> keys(2 * keys_.size(), 0);
-  std::vector<std::uint32_t> bricks(keys.size(), kNone);
-  const std::uint64_t mask = keys.size() - 1;
-  for (std::size_t k = 0; k < keys_.size(); ++k) {
-    if (keys_[k] == 0) continue;
-    std::uint64_t i = scrambled(keys_[k]) & mask;
-    while (keys[i] != 0) i = (i + 1) & mask;
-    keys[i] = keys_[k];
-    bricks[i] = brick_of_key_[k];
-  }
-  keys_ = std::move(keys);
-  brick_of_key_ = std::move(bricks);
+  const std::uint32_t* id = brick_of_key_.find(key_of(level, brick));
+  return id == nullptr ? kNone : *id;
 }
 
 std::uint32_t FrontIndex::make_brick(int level, const Cell& brick) {
-  if (2 * (bricks_.size() + 1) > keys_.size()) grow_table();
   const auto id = static_cast<std::uint32_t>(bricks_.size());
   Brick& b = bricks_.emplace_back();
   b.level = level;
@@ -112,11 +84,7 @@ std::uint32_t FrontIndex::make_brick(int level, const Cell& brick) {
   b.head.fill(kNone);
   const double side = cell_[level] * kBrickSide;
   b.origin = origin_ + Vec3{brick[0] * side, brick[1] * side, brick[2] * side};
-  const std::uint64_t key = key_of(level, brick), mask = keys_.size() - 1;
-  std::uint64_t i = scrambled(key) & mask;
-  while (keys_[i] != 0) i = (i + 1) & mask;
-  keys_[i] = key;
-  brick_of_key_[i] = id;
+  brick_of_key_.find_or_add(key_of(level, brick)) = id;
   return id;
 }
 

@@ -3,6 +3,7 @@
 #include <octafront/surface_mesh.h>
 #include <octafront/vec.h>
 
+#include "core/flat_map.h"
 #include "volume/box_culling.h"
 
 #include <array>
@@ -52,6 +53,7 @@ class FrontIndex {
  private:
   static constexpr int kWidth = BoxBlock::kWidth;  // faces in a block
   static constexpr int kLevels = 22;
+  static constexpr std::size_t kExpectedBricks = 512;
   using Cell = std::array<int, 3>;
   struct Block {
     BoxBlock boxes;
@@ -70,7 +72,6 @@ class FrontIndex {
   std::uint32_t brick_at(int level, const Cell& brick) const;
   std::uint32_t make_brick(int level, const Cell& brick);
   std::uint32_t new_block(std::uint32_t cell, std::uint32_t next);
-  void grow_table();
   /// Tells the bricks above that this one is no longer empty, or is empty again.
   void mark_above(std::uint32_t brick, bool empty);
   /// The cells of a level that a face may have its middle in if it reaches into `box`.
@@ -86,10 +87,9 @@ class FrontIndex {
   std::array<std::uint32_t, kLevels> faces_at_level_{};
   std::uint32_t levels_ = 0;  ///< bits of the levels with faces
   std::vector<Block> blocks_;
-  std::uint32_t free_block_;
+  std::uint32_t free_block_ = kNone;
   std::vector<Brick> bricks_;
-  std::vector<std::uint64_t> keys_;  // open addressing; 0 = empty
-  std::vector<std::uint32_t> brick_of_key_;
+  FlatMap<std::uint64_t, std::uint32_t> brick_of_key_{kExpectedBricks};
   std::vector<std::uint32_t> place_;  // per face: block * 16 + slot
 };
 

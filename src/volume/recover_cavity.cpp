@@ -8,16 +8,16 @@ namespace octafront {
 
 SurfaceMesh surface_of(const WorkMesh& mesh, const std::vector<Wall>& walls, std::vector<VertexIndex>& global) {
   SurfaceMesh surface;
-  std::map<VertexIndex, VertexIndex> local;
+  FlatMap<VertexIndex, VertexIndex> local(walls.size());
   for (const Wall& w : walls) {
     Triangle outward{w[0], w[2], w[1]};
     for (VertexIndex& v : outward) {
-      const auto [it, is_new] = local.try_emplace(v, static_cast<VertexIndex>(global.size()));
-      if (is_new) {
+      const VertexIndex number = local.find_or_add(v, static_cast<VertexIndex>(global.size()));
+      if (number == global.size()) {
         surface.points.push_back(mesh.at(v));
         global.push_back(v);
       }
-      v = it->second;
+      v = number;
     }
     surface.triangles.push_back(outward);
   }

@@ -2,6 +2,7 @@
 
 #include <octafront/validity.h>
 
+#include "mesh/face_table.h"
 #include "support/named_surfaces.h"
 
 #include <gtest/gtest.h>
@@ -59,12 +60,12 @@ TEST(Star, GrowsUntilThereIsAKernel) {
     walls.push_back({a, c, b});
   }
   // The sides of the cones: faces of kept tetrahedra that have lost their neighbour.
-  std::map<TriangleKey, std::pair<Wall, int>> sides;
+  std::map<Triangle, std::pair<Wall, int>> sides;
   for (const Tet& t : tets)
     for (const auto& f : kTetFaces) {
       const Triangle outward{t[f[0]], t[f[1]], t[f[2]]};
       if (std::find(outward.begin(), outward.end(), center) == outward.end()) continue;
-      auto& [wall, count] = sides[key_of(outward)];
+      auto& [wall, count] = sides[face_key(outward)];
       wall = outward;
       ++count;
     }
