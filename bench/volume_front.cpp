@@ -4,6 +4,7 @@
 #include <octafront/quality.h>
 
 #include "core/stage_timer.h"
+#include "core/thread_limit.h"
 #include "support/named_surfaces.h"
 #include "volume/fill.h"
 
@@ -37,10 +38,9 @@ void measure(const std::string& name, const SurfaceMesh& surface, const VolumeOp
   // The least of three: what the machine does beside only ever adds.
   for (int run = 0; run < 3; ++run) {
     report = {};
-    RunContext context;
-    context.threads = 1;
+    const ThreadLimit one(1);
     const double start = process_cpu_seconds();
-    mesh = fill_volume(surface, SizeField::uniform(mean_edge(surface)), options, {context, report});
+    mesh = fill_volume(surface, SizeField::uniform(mean_edge(surface)), options, {RunContext{}, report});
     seconds = std::min(seconds, process_cpu_seconds() - start);
   }
   const QualitySummary q = summarize_quality(mesh);

@@ -18,7 +18,6 @@
 #include <exception>
 
 #include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/task_arena.h>
 
 namespace octafront {
 
@@ -165,7 +164,11 @@ TetMesh fill_without_front(const SurfaceMesh& surface, const SizeField& sizes, c
   }
 }
 
-TetMesh fill(const SurfaceMesh& surface, const SizeField& sizes, const VolumeOptions& options, const Stage& stage) {
+}  // namespace
+
+TetMesh fill_volume(const SurfaceMesh& surface, const SizeField& sizes, const VolumeOptions& options,
+                    const Stage& stage) {
+  if (surface.triangles.empty()) throw InputError("the surface has no triangles: nothing to fill");
   TetMesh mesh;
   std::exception_ptr front_error;
   try {
@@ -179,15 +182,6 @@ TetMesh fill(const SurfaceMesh& surface, const SizeField& sizes, const VolumeOpt
   stage.count("tetrahedra", static_cast<double>(mesh.tets.size()));
   bind_to_surface(mesh, surface);
   return mesh;
-}
-
-}  // namespace
-
-TetMesh fill_volume(const SurfaceMesh& surface, const SizeField& sizes, const VolumeOptions& options,
-                    const Stage& stage) {
-  if (surface.triangles.empty()) throw InputError("the surface has no triangles: nothing to fill");
-  tbb::task_arena arena(stage.context().threads > 0 ? stage.context().threads : tbb::task_arena::automatic);
-  return arena.execute([&] { return fill(surface, sizes, options, stage); });
 }
 
 }  // namespace octafront

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <oneapi/tbb/task_arena.h>
 
 namespace octafront {
 namespace {
@@ -127,13 +128,14 @@ TEST(Advance, StatisticsDecideNothing) {
 }
 
 TetMesh filled_by(int threads, const SurfaceMesh& surface, double size, VolumeOptions::Core core) {
+  // More threads than the machine has want an arena that lets them in.
   const ThreadLimit limit(threads);
-  RunContext context;
-  context.threads = threads;
   VolumeOptions options;
   options.core = core;
   StageReport report;
-  return fill_volume(surface, SizeField::uniform(size), options, {context, report});
+  return tbb::task_arena(threads).execute([&] {
+    return fill_volume(surface, SizeField::uniform(size), options, {RunContext{}, report});
+  });
 }
 
 TEST(Blocks, ThreadsChangeNotOneBit) {
