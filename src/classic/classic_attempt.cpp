@@ -2,6 +2,7 @@
 
 #include "geometry/measures.h"
 #include "geometry/predicates.h"
+#include "geometry/segment_distance.h"
 #include "volume/meeting.h"
 
 #include <algorithm>
@@ -19,18 +20,6 @@ constexpr std::size_t kMostCandidates = 40;
 /// The size used for a face stays within these multiples of its own edges (see the octree's front,
 /// docs/volume-front.md).
 constexpr double kLeastSizePerEdge = 0.45, kMostSizePerEdge = 2.0;
-
-double squared_segment_distance(Vec3 p, Vec3 u, Vec3 q, Vec3 v) {
-  const Vec3 w = p - q;
-  const double a = dot(u, u), b = dot(u, v), c = dot(v, v), d = dot(u, w), e = dot(v, w), det = a * c - b * b;
-  double s = det > 1e-12 * a * c ? std::clamp((b * e - c * d) / det, 0.0, 1.0) : 0.0;
-  double t = (b * s + e) / c;
-  if (t < 0 || t > 1) {
-    t = std::clamp(t, 0.0, 1.0);
-    s = std::clamp((b * t - d) / a, 0.0, 1.0);
-  }
-  return squared_length(w + u * s - v * t);
-}
 
 /// Degrees of the unfilled wedge at the edge from p to q between two faces that see it, one of them with p before q:
 /// the first's third corner is a, the second's b.

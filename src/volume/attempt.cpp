@@ -4,6 +4,7 @@
 
 #include "geometry/measures.h"
 #include "geometry/predicates.h"
+#include "geometry/segment_distance.h"
 #include "volume/meeting.h"
 
 #include <algorithm>
@@ -41,19 +42,11 @@ bool strictly_inside(const Box3& box, const Box3& territory, double margin) {
 
 /// The segments (p, p + u) and (q, q + v) come nearer to each other than the root of `squared`.
 bool segments_nearer_than(double squared, Vec3 p, Vec3 u, Vec3 q, Vec3 v) {
-  const Vec3 w = p - q, n = cross(u, v);
   // The distance of the lines is a bound that needs no division and settles most.
-  const double volume = dot(w, n);
+  const Vec3 n = cross(u, v);
+  const double volume = dot(p - q, n);
   if (volume * volume > squared * squared_length(n)) return false;
-  const double a = dot(u, u), b = dot(u, v), c = dot(v, v), d = dot(u, w), e = dot(v, w);
-  const double det = a * c - b * b;
-  double s = det > 1e-12 * a * c ? std::clamp((b * e - c * d) / det, 0.0, 1.0) : 0.0;
-  double t = (b * s + e) / c;
-  if (t < 0 || t > 1) {
-    t = std::clamp(t, 0.0, 1.0);
-    s = std::clamp((b * t - d) / a, 0.0, 1.0);
-  }
-  return squared_length(w + u * s - v * t) < squared;
+  return squared_segment_distance(p, u, q, v) < squared;
 }
 
 /// Rises with the solid angle at p of a triangle: tan(angle / 2) = volume / sum, mapped to [0, 2] without trigonometry.

@@ -1,5 +1,6 @@
 #include "geometry/measures.h"
 
+#include "geometry/segment_distance.h"
 #include "support/lattice_points.h"
 
 #include <numbers>
@@ -100,6 +101,20 @@ RC_GTEST_PROP(ClosestPoint, OfATriangleBeatsAGridOfItsPoints, ()) {
       RC_ASSERT(nearest <= distance(p, (a * i + b * j + c * (kSteps - i - j)) / kSteps) + 1e-12);
   // The answer lies on the triangle: nothing of it is nearer to q than q itself.
   RC_ASSERT(distance(q, closest_point_on_triangle(q, a, b, c)) < 1e-12);
+}
+
+RC_GTEST_PROP(SegmentDistance, IsTheLeastOverManyPoints, ()) {
+  const Vec3 p = any_point(), q = any_point(), a = any_point(), b = any_point();
+  RC_PRE(p != q && a != b);
+  constexpr int kSteps = 200;
+  double least = distance(p, a);
+  for (int i = 0; i <= kSteps; ++i) {
+    const Vec3 x = p + (q - p) * (double(i) / kSteps);
+    least = std::min(least, distance(x, closest_point_on_segment(x, a, b)));
+  }
+  const double d = std::sqrt(squared_segment_distance(p, q - p, a, b - a));
+  RC_ASSERT(d <= least + 1e-7);
+  RC_ASSERT(least <= d + distance(p, q) / kSteps + 1e-7);
 }
 
 }  // namespace
