@@ -1,5 +1,7 @@
 #include "cavity/excavation.h"
 
+#include "cavity/open_edge.h"
+#include "core/validate.h"
 #include "mesh/face_table.h"
 
 #include <algorithm>
@@ -47,6 +49,7 @@ bool Excavation::grow_through(const Wall& wall) {
   const TetIndex t = mesh_.tet_behind(wall);
   if (t == kNone) return false;
   take_out(t);
+  validate(*this);
   return true;
 }
 
@@ -61,7 +64,16 @@ bool Excavation::grow_ring() {
   std::sort(ring.begin(), ring.end());
   ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
   for (const TetIndex t : ring) take_out(t);
+  validate(*this);
   return !ring.empty();
+}
+
+std::optional<std::string> Excavation::first_inconsistency() const {
+  for (const auto& [key, wall] : walls_)
+    if (key != face_key(wall)) return "a wall stands under another's corners";
+  for (const TetIndex t : removed_)
+    if (mesh_.alive(t)) return "tetrahedron " + std::to_string(t) + " was taken out and lives";
+  return why_not_closed(walls(), "the walls of an excavation");
 }
 
 void Excavation::commit() {

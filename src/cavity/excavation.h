@@ -3,7 +3,9 @@
 #include "cavity/work_mesh.h"
 
 #include <map>
+#include <optional>
 #include <set>
+#include <string>
 #include <vector>
 
 namespace octafront {
@@ -26,6 +28,8 @@ class Excavation {
   bool grow_through(const Wall& wall);
   /// Removes all tetrahedra that touch a vertex of the walls; false if there are none.
   bool grow_ring();
+  /// The walls are closed, and what was taken out is gone.
+  std::optional<std::string> first_inconsistency() const;
   /// The cavity, and those that it has run into, have been filled.
   void commit();
 

@@ -1,6 +1,9 @@
 #include "cavity/work_mesh.h"
 
+#include "cavity/open_edge.h"
 #include "core/disjoint_sets.h"
+#include "core/validate.h"
+#include "geometry/predicates.h"
 #include "mesh/face_table.h"
 
 #include <algorithm>
@@ -51,6 +54,7 @@ TetIndex WorkMesh::add(const Tet& tet) {
   tets_.push_back(tet);
   alive_.push_back(true);
   for (const VertexIndex v : tet) added_[v].push_back(id);
+  validate(*this, id);
   return id;
 }
 
@@ -78,6 +82,28 @@ TetIndex WorkMesh::tet_behind(const Triangle& outward) const {
         if (tet[f[k]] == outward[0] && tet[f[(k + 1) % 3]] == outward[1] && tet[f[(k + 2) % 3]] == outward[2]) return t;
   }
   return kNone;
+}
+
+std::optional<std::string> WorkMesh::first_inconsistency(TetIndex t) const {
+  if (!alive_[t]) return std::nullopt;
+  const std::string name = "tetrahedron " + std::to_string(t);
+  const auto& [a, b, c, d] = tets_[t];
+  for (const VertexIndex v : tets_[t]) {
+    if (v >= points_.size()) return name + " has a corner that is no vertex";
+    const std::vector<TetIndex> here = around(v);
+    if (std::find(here.begin(), here.end(), t) == here.end()) return name + " is not listed at its corners";
+  }
+  if (orient3d(at(a), at(b), at(c), at(d)) <= 0) return name + " is not positive";
+  for (int i = 0; i < 4; ++i)
+    if (tet_behind(face_of(tets_[t], i)) != t) return name + " shares a side of a face with another";
+  return std::nullopt;
+}
+
+std::optional<std::string> WorkMesh::first_inconsistency() const {
+  if (alive_.size() != tets_.size()) return "the work mesh does not know which tetrahedra live";
+  for (TetIndex t = 0; t < tets_.size(); ++t)
+    if (auto wrong = first_inconsistency(t)) return wrong;
+  return std::nullopt;
 }
 
 std::vector<Tet> WorkMesh::take_tets() {
@@ -109,6 +135,7 @@ Cavities::Cavities(const std::vector<Wall>& walls) {
     walls_[n].push_back(walls[w]);
     owner_.find_or_add(face_key(walls[w])) = n;
   }
+  validate(*this);
 }
 
 std::uint32_t Cavities::owner(const Triangle& wall) const {
@@ -119,6 +146,15 @@ std::uint32_t Cavities::owner(const Triangle& wall) const {
 void Cavities::close(std::size_t cavity) {
   for (const Wall& w : walls_[cavity]) owner_.erase(face_key(w));
   walls_[cavity].clear();
+}
+
+std::optional<std::string> Cavities::first_inconsistency() const {
+  for (std::uint32_t c = 0; c < walls_.size(); ++c) {
+    if (auto wrong = why_not_closed(walls_[c], "the walls of cavity " + std::to_string(c))) return wrong;
+    for (const Wall& w : walls_[c])
+      if (owner(w) != c) return "cavity " + std::to_string(c) + " does not own its walls";
+  }
+  return std::nullopt;
 }
 
 }  // namespace octafront

@@ -7,6 +7,8 @@
 #include "core/groups.h"
 
 #include <cstdint>
+#include <optional>
+#include <string>
 #include <unordered_map>
 #include <vector>
 
@@ -35,6 +37,10 @@ class WorkMesh {
   /// The living tetrahedron that has `outward` as a face, seen counter-clockwise from outside; kNone if none has.
   TetIndex tet_behind(const Triangle& outward) const;
 
+  /// What is wrong with a tetrahedron and its neighbourhood, or with all of them.
+  std::optional<std::string> first_inconsistency(TetIndex t) const;
+  std::optional<std::string> first_inconsistency() const;
+
   /// The living tetrahedra; leaves the object empty.
   std::vector<Tet> take_tets();
   std::vector<Vec3> take_points() { return std::move(points_); }
@@ -61,6 +67,9 @@ class Cavities {
   /// The cavity that a wall on these corners, turned either way, belongs to, or kNone.
   std::uint32_t owner(const Triangle& wall) const;
   void close(std::size_t cavity);
+
+  /// Each cavity is closed and owns its walls.
+  std::optional<std::string> first_inconsistency() const;
 
  private:
   std::vector<std::vector<Wall>> walls_;    ///< empty: closed

@@ -1,5 +1,6 @@
 #include "volume/advance.h"
 
+#include "core/validate.h"
 #include "mesh/index_range.h"
 #include "volume/block_run.h"
 #include "volume/limits.h"
@@ -36,6 +37,7 @@ class Phases {
       : front_(front), task_(task), budget_(budget), counters_(counters) {}
 
   bool run() {
+    validate(front_);
     work_off_queue();
     queue_up(front_.passive, 0);
     work_off_queue();
@@ -89,7 +91,9 @@ class Phases {
         },
         tbb::simple_partitioner{});
     ++front_.phases;
-    return join(results);
+    const std::size_t deferred = join(results);
+    if (!over_budget()) validate(front_);  // a run that was stopped has dropped faces
+    return deferred;
   }
 
   /// Numbers what the blocks made in their order, and makes their results the front. Returns how

@@ -1,5 +1,6 @@
 #include "volume/block_run.h"
 
+#include "core/validate.h"
 #include "volume/attempt.h"
 #include "volume/front.h"
 
@@ -25,6 +26,7 @@ class BlockRun {
 
   BlockResult run() {
     work_off();
+    validate(front_);
     collect();
     return std::move(result_);
   }

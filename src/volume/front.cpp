@@ -2,7 +2,8 @@
 
 #include "geometry/measures.h"
 
-#include <utility>
+#include <algorithm>
+#include <string>
 
 namespace octafront {
 
@@ -31,7 +32,6 @@ FaceIndex Front::add_face(const Triangle& corners) {
   Box3 box;
   for (const VertexIndex v : corners) box.add(vertices_[v].at);
   index_.insert(face, corners, box);
-  ++active_;
   return face;
 }
 
@@ -39,12 +39,23 @@ void Front::remove_face(FaceIndex face) {
   index_.remove(face);
   ++faces_[face].generation;
   free_.push_back(face);
-  --active_;
 }
 
 void Front::add_tet(const Triangle& face, VertexIndex apex) {
   tets_.push_back({face[0], face[1], face[2], apex});
   six_volumes_ += six_volumes(at(face[0]), at(face[1]), at(face[2]), at(apex));
+}
+
+std::optional<std::string> Front::first_inconsistency() const {
+  if (index_.size() + free_.size() != faces_.size()) return "faces of the front are neither in its index nor free";
+  for (const FaceIndex face : free_)
+    if (index_.contains(face)) return "face " + std::to_string(face) + " is free and in the index";
+  for (FaceIndex face = 0; face < faces_.size(); ++face) {
+    const auto& [a, b, c] = faces_[face].corners;
+    if (std::max({a, b, c}) >= vertices_.size()) return "face " + std::to_string(face) + " has no such corner";
+    if (a == b || b == c || c == a) return "face " + std::to_string(face) + " has a corner twice";
+  }
+  return index_.first_inconsistency();
 }
 
 }  // namespace octafront

@@ -7,6 +7,8 @@
 #include "volume/front_index.h"
 
 #include <cstdint>
+#include <optional>
+#include <string>
 #include <vector>
 
 namespace octafront {
@@ -42,13 +44,15 @@ class Front {
   const Triangle& corners(FaceIndex face) const { return faces_[face].corners; }
   QueuedFace queued(FaceIndex face) const { return {face, faces_[face].generation}; }
   bool alive(QueuedFace q) const { return faces_[q.face].generation == q.generation; }
-  std::size_t active_faces() const { return active_; }
   const FrontIndex& index() const { return index_; }
   std::vector<Tet>& tets() { return tets_; }
   const std::vector<Tet>& tets() const { return tets_; }
   /// Sum of the volumes of what add_tet() was given.
   double filled_volume() const { return six_volumes_ / 6; }
   const Box3& domain() const { return domain_; }
+
+  /// Every face has three corners, and is either in the index or free.
+  std::optional<std::string> first_inconsistency() const;
 
  private:
   struct Face {
@@ -61,7 +65,6 @@ class Front {
   std::vector<FrontVertex> vertices_;
   std::vector<Face> faces_;
   std::vector<FaceIndex> free_;
-  std::size_t active_ = 0;
   std::vector<Tet> tets_;
   double six_volumes_ = 0;
 };

@@ -1,7 +1,10 @@
 #include "volume/front_index.h"
 
+#include "core/validate.h"
+
 #include <bit>
 #include <cmath>
+#include <numeric>
 
 namespace octafront {
 
@@ -140,6 +143,7 @@ void FrontIndex::insert(FaceIndex face, const Triangle& corners, const Box3& box
   if (face >= place_.size()) place_.resize(std::max<std::size_t>(face + 1, 2 * place_.size()), kNone);
   place_[face] = head * kWidth + slot;
   if (faces_at_level_[level]++ == 0) levels_ |= 1u << level;
+  validate(*this, face);
 }
 
 void FrontIndex::remove(FaceIndex face) {
@@ -171,6 +175,7 @@ void FrontIndex::remove(FaceIndex face) {
     }
   }
   if (--faces_at_level_[brick.level] == 0) levels_ &= ~(1u << brick.level);
+  validate(*this, hole.face[slot]);
 }
 
 void FrontIndex::mark_above(std::uint32_t brick, bool empty) {
@@ -262,6 +267,54 @@ void FrontIndex::find_in_cells(const Brick& brick, std::uint64_t cells, const Se
       }
     }
   }
+}
+
+std::size_t FrontIndex::size() const {
+  return std::accumulate(faces_at_level_.begin(), faces_at_level_.end(), std::size_t{0});
+}
+
+std::optional<std::string> FrontIndex::check_cell(std::uint32_t brick, std::uint32_t cell, std::size_t& faces) const {
+  const std::uint32_t head = bricks_[brick].head[cell];
+  if ((head != kNone) != ((bricks_[brick].occupied >> cell & 1) != 0)) return "a cell of the index hides its faces";
+  for (std::uint32_t id = head; id != kNone; id = blocks_[id].next) {
+    const Block& block = blocks_[id];
+    if (block.cell != brick * 64 + cell) return "a block of the index hangs in a cell that is not its own";
+    if (block.count == 0 || (id != head && block.count < kWidth)) return "a block of the index has room behind others";
+    for (std::uint32_t s = 0; s < block.count; ++s)
+      if (place_[block.face[s]] != id * kWidth + s)
+        return "face " + std::to_string(block.face[s]) + " is not where the index looks for it";
+    faces += block.count;
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> FrontIndex::first_inconsistency(FaceIndex face) const {
+  if (!contains(face)) return std::nullopt;
+  const Block& block = blocks_[place_[face] / kWidth];
+  if (place_[face] % kWidth >= block.count || block.face[place_[face] % kWidth] != face)
+    return "face " + std::to_string(face) + " is not where the index looks for it";
+  std::size_t unused = 0;
+  return check_cell(block.cell / 64, block.cell % 64, unused);
+}
+
+std::optional<std::string> FrontIndex::first_inconsistency() const {
+  std::array<std::size_t, kLevels> faces{};
+  for (std::uint32_t b = 0; b < bricks_.size(); ++b) {
+    const Brick& brick = bricks_[b];
+    if (brick_at(brick.level, brick.at) != b) return "a brick of the index cannot be found";
+    for (std::uint32_t c = 0; c < 64; ++c) {
+      if (auto wrong = check_cell(b, c, faces[brick.level])) return wrong;
+      if (brick.level < 2) continue;
+      const auto in_cell = [&](int axis) { return brick.at[axis] * kBrickSide + static_cast<int>(c >> 2 * axis & 3); };
+      const std::uint32_t below = brick_at(brick.level - 2, {in_cell(0), in_cell(1), in_cell(2)});
+      const bool filled = below != kNone && (bricks_[below].occupied | bricks_[below].below) != 0;
+      if (filled != ((brick.below >> c & 1) != 0)) return "a brick of the index hides those below it";
+    }
+  }
+  for (int level = 0; level < kLevels; ++level)
+    if (faces[level] != faces_at_level_[level] || (faces[level] != 0) != ((levels_ >> level & 1) != 0))
+      return "the index has not as many faces at level " + std::to_string(level) + " as it says";
+  return std::nullopt;
 }
 
 }  // namespace octafront

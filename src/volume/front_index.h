@@ -8,6 +8,8 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
+#include <string>
 #include <vector>
 
 namespace octafront {
@@ -49,6 +51,12 @@ class FrontIndex {
   void remove(FaceIndex face);
   /// Appends the faces that reach into the region to `out`; some that just miss it may be among them.
   void find(const SearchRegion& region, std::vector<Found>& out) const;
+  bool contains(FaceIndex face) const { return face < place_.size() && place_[face] != kNone; }
+  std::size_t size() const;
+
+  /// What is wrong around a face, or anywhere.
+  std::optional<std::string> first_inconsistency(FaceIndex face) const;
+  std::optional<std::string> first_inconsistency() const;
 
  private:
   static constexpr int kWidth = BoxBlock::kWidth;  // faces in a block
@@ -79,6 +87,8 @@ class FrontIndex {
   void find_in_level(int level, bool descend, const SearchRegion& region, std::vector<Found>& out) const;
   void find_in_brick(std::uint32_t brick, const std::array<Cell, 2>& range, bool descend, const SearchRegion& region,
                      std::vector<Found>& out) const;
+  /// Counts the faces in a cell whose blocks are in order; says what is wrong with them otherwise.
+  std::optional<std::string> check_cell(std::uint32_t brick, std::uint32_t cell, std::size_t& faces) const;
   void find_in_cells(const Brick& brick, std::uint64_t cells, const SearchRegion& region,
                      std::vector<Found>& out) const;
 

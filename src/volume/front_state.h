@@ -7,6 +7,8 @@
 #include "volume/front_task.h"
 
 #include <cstdint>
+#include <optional>
+#include <string>
 #include <vector>
 
 namespace octafront {
@@ -39,6 +41,9 @@ struct FrontState {
     i -= queue.size();
     return i < held.size() ? held[i] : passive[i - held.size()];
   }
+
+  /// All faces together are closed and oriented alike, and the lists agree.
+  std::optional<std::string> first_inconsistency() const;
 };
 
 }  // namespace octafront

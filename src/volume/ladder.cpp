@@ -4,6 +4,7 @@
 
 #include "cavity/cavity.h"
 #include "core/stage_timer.h"
+#include "core/validate.h"
 #include "mesh/renumber.h"
 #include "volume/backtrack.h"
 #include "volume/recover_cavity.h"
@@ -136,6 +137,7 @@ void close_cavities(TetMesh& mesh, const std::vector<Wall>& walls, const Surface
   WorkMesh work(std::move(mesh.points), std::move(mesh.tets), focus);
   for (std::uint32_t c = 0; c < cavities.size(); ++c)
     if (!cavities.walls(c).empty()) ladder.close({work, cavities, c});
+  validate(work);
   mesh.points = work.take_points();
   mesh.tets = work.take_tets();
   drop_unused_points(mesh, surface.points.size());

@@ -1,6 +1,10 @@
 #include "cavity/excavation.h"
 
+#include "cavity/open_edge.h"
 #include "support/named_surfaces.h"
+
+#include <stdexcept>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -90,6 +94,48 @@ TEST(WorkMesh, FocusChangesNoAnswer) {
   SixInACube c;
   const WorkMesh all(c.points, c.tets), some(c.points, c.tets, {{{-0.1, -0.1, -0.1}, {0.1, 0.1, 0.1}}});
   for (VertexIndex v = 0; v < c.points.size(); ++v) EXPECT_EQ(some.around(v), all.around(v)) << v;
+}
+
+/// What a working structure complains of, said or thrown (where structures check themselves).
+template <class Break>
+std::string complaint(const Break& broken) {
+  try {
+    return broken().value_or("");
+  } catch (const std::logic_error& error) {
+    return error.what();
+  }
+}
+
+TEST(WorkMesh, FindsWhatIsWrongWithIt) {
+  const SixInACube c;
+  EXPECT_EQ(WorkMesh(c.points, c.tets).first_inconsistency(), std::nullopt);
+  const auto with = [&](const Tet& tet) {
+    return complaint([&] {
+      WorkMesh mesh(c.points, c.tets);
+      return mesh.first_inconsistency(mesh.add(tet));
+    });
+  };
+  EXPECT_EQ(with({0, 1, 3, 3}), "tetrahedron 6 is not positive");
+  EXPECT_EQ(with({1, 0, 3, 7}), "tetrahedron 6 is not positive");
+  EXPECT_EQ(with(c.tets[2]), "tetrahedron 6 shares a side of a face with another");
+}
+
+TEST(Cavities, FindWhatIsWrongWithThem) {
+  const SixInACube c;
+  std::vector<Wall> walls = walls_around(c.tets[0]);
+  EXPECT_EQ(Cavities(walls).first_inconsistency(), std::nullopt);
+  walls.pop_back();
+  EXPECT_NE(complaint([&] { return Cavities(walls).first_inconsistency(); }).find("open at the edge"),
+            std::string::npos);
+}
+
+TEST(OpenEdge, IsFoundWhereFacesEndOrTurn) {
+  std::vector<Triangle> faces = testing::icosphere(1).triangles;
+  EXPECT_EQ(first_open_edge(faces), std::nullopt);
+  std::swap(faces[7][0], faces[7][1]);
+  EXPECT_NE(first_open_edge(faces), std::nullopt);
+  faces.erase(faces.begin() + 7);
+  EXPECT_NE(first_open_edge(faces), std::nullopt);
 }
 
 }  // namespace

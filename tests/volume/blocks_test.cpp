@@ -74,6 +74,17 @@ TEST(Partition, GivesEveryFaceOneOwnerAndListsAllThatReachIn) {
   }
 }
 
+TEST(FrontState, FindsWhatIsWrongWithIt) {
+  const FrontState whole = front_on(icosphere(2), kEdgeOfIcosphere / 4);
+  EXPECT_EQ(whole.first_inconsistency(), std::nullopt);
+  FrontState open = whole, turned = whole, more = whole, sizeless = whole;
+  open.held.pop_back();
+  std::swap(turned.passive[3][0], turned.passive[3][1]);
+  more.filled.push_back({{0, 1, 2, 3}});
+  sizeless.sizes.pop_back();
+  for (const FrontState& broken : {open, turned, more, sizeless}) EXPECT_NE(broken.first_inconsistency(), std::nullopt);
+}
+
 TEST(Partition, DoesNotMakeBlocksThatAreTooNarrow) {
   const FrontState front = front_on(icosphere(2), kEdgeOfIcosphere / 4);
   EXPECT_EQ(partition_front(front, {1, 0.5}).size(), 1u);

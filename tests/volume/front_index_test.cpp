@@ -1,8 +1,12 @@
 #include "volume/front_index.h"
 
+#include "volume/front.h"
+
 #include <cmath>
 #include <map>
 #include <random>
+#include <stdexcept>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -57,6 +61,9 @@ TEST(FrontIndex, FindsEveryFaceThatReachesIn) {
         EXPECT_EQ(seen[face], (Triangle{face, face + 1, face + 2}));
         ++hits;
       }
+    if (step % 500 == 0) {
+      EXPECT_EQ(index.first_inconsistency(), std::nullopt);
+    }
     for (const auto& [face, corners] : seen) EXPECT_TRUE(present.contains(face)) << "face " << face << " was removed";
   }
   EXPECT_GT(hits, 1000u);
@@ -78,6 +85,37 @@ TEST(FrontIndex, LeavesOutWhatLiesBehindThePlaneOrBeyondTheSphere) {
   index.find(region, found);
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0].face, 2u);
+}
+
+/// Both break the contract: a face is in the index once, and has three corners.
+TEST(Front, FindsWhatIsWrongWithIt) {
+  const auto complaint = [](const auto& broken) -> std::string {
+    try {
+      return broken().value_or("");
+    } catch (const std::logic_error& error) {
+      return error.what();
+    }
+  };
+  const Box3 domain{{0, 0, 0}, {1, 1, 1}};
+  EXPECT_EQ(complaint([&] {
+              FrontIndex index(domain, 0.1);
+              index.insert(3, {0, 1, 2}, {{0.1, 0.1, 0.1}, {0.2, 0.2, 0.2}});
+              index.insert(3, {0, 1, 2}, {{0.1, 0.1, 0.1}, {0.2, 0.2, 0.2}});
+              return index.first_inconsistency();
+            }),
+            "face 3 is not where the index looks for it");
+  const auto front_with = [&](const Triangle& face) {
+    return complaint([&] {
+      Front front(domain, 0.1);
+      for (const Vec3 p : {Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 1, 0}}) front.add_vertex(p, 0.1);
+      front.add_face({0, 1, 2});
+      front.add_face(face);
+      front.remove_face(0);
+      return front.first_inconsistency();
+    });
+  };
+  EXPECT_EQ(front_with({0, 2, 1}), "");
+  EXPECT_EQ(front_with({0, 2, 2}), "face 1 has a corner twice");
 }
 
 TEST(BoxCulling, IsTheSameOnEveryProcessor) {
