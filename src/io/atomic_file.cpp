@@ -28,7 +28,9 @@ fs::path temporary_name(const fs::path& target) {
   return folder_of(target) / fmt::format(".octafront-{}-{}.tmp", ::getpid(), counter++);
 }
 
-/// Replacing a link would cut it; what it points to is replaced instead, or made where it points to nothing yet.
+}  // namespace
+
+// Replacing a link would cut it; what it points to is replaced instead, or made where it points to nothing yet.
 fs::path links_followed(const fs::path& file) {
   constexpr int kMostLinks = 40;  // as many as Linux follows
   fs::path at = file;
@@ -42,8 +44,6 @@ fs::path links_followed(const fs::path& file) {
   }
   return at;
 }
-
-}  // namespace
 
 void check_writable(const fs::path& target) {
   const std::string name = target.string();
@@ -63,7 +63,8 @@ void check_writable(const fs::path& target) {
                                   std::generic_category().message(errno)));
 }
 
-AtomicFile::AtomicFile(const fs::path& target) : name_(target.string()), target_(links_followed(target)) {
+AtomicFile::AtomicFile(const fs::path& target, const RunContext& context)
+    : context_(context), name_(target.string()), target_(links_followed(target)) {
   check_writable(target);
   struct stat status {};
   if (::stat(target_.c_str(), &status) == 0) mode_ = status.st_mode & 07777;
@@ -108,6 +109,7 @@ void AtomicFile::write_out(const char* bytes, std::size_t size) {
 }
 
 void AtomicFile::flush() {
+  context_.check();
   const std::size_t size = filled_;
   filled_ = 0;
   write_out(buffer_.get(), size);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <octafront/run_context.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -12,10 +14,10 @@ namespace octafront::io {
 /// A file that appears under its name only when it is complete. It is written without a name where the file system can
 /// do that (so that even a killed process leaves nothing), else under a temporary name beside the target; commit()
 /// flushes it to the disk and renames it into place. Whatever goes wrong before, an older file stays as it was, and the
-/// temporary one is removed. All members throw OutputError with the reason of the operating system.
+/// temporary one is removed. All members throw OutputError with the reason of the operating system, or Cancelled.
 class AtomicFile {
  public:
-  explicit AtomicFile(const std::filesystem::path& target);
+  explicit AtomicFile(const std::filesystem::path& target, const RunContext& context = {});
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
@@ -41,6 +43,7 @@ class AtomicFile {
 
   static constexpr std::size_t kBuffer = std::size_t{1} << 18;
 
+  RunContext context_;
   std::string name_;
   std::filesystem::path target_;     ///< links followed
   std::filesystem::path temporary_;  ///< empty while the file has no name
@@ -50,6 +53,10 @@ class AtomicFile {
   unsigned mode_ = 0666;
   int fd_ = -1;
 };
+
+/// Where writing to `file` ends up: links are followed, also to what does not exist yet. Throws OutputError for links
+/// in a circle.
+std::filesystem::path links_followed(const std::filesystem::path& file);
 
 /// Throws OutputError if `target` cannot be a new file or replace an old one: folder missing or not writable, or the
 /// name taken by something that is no file.

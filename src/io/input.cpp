@@ -11,6 +11,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -35,15 +36,25 @@ std::string reason(int error) {
   return std::generic_category().message(error);
 }
 
+/// Until there is something to read, or the writer of a pipe has gone.
+void wait_for_bytes(int fd, const RunContext& context) {
+  constexpr int kMilliseconds = 20;
+  pollfd waiting{fd, POLLIN, 0};
+  do {
+    context.check();
+  } while (::poll(&waiting, 1, kMilliseconds) <= 0);
+}
+
 /// Bytes read, at most `size`; fewer only at the end of the file.
-std::size_t read_fully(int fd, char* to, std::size_t size, const std::string& name) {
+std::size_t read_fully(int fd, char* to, std::size_t size, const std::string& name, const RunContext& context) {
   std::size_t done = 0;
   while (done < size) {
-    constexpr std::size_t kMostAtOnce = std::size_t{1} << 30;
+    constexpr std::size_t kMostAtOnce = std::size_t{1} << 24;
+    wait_for_bytes(fd, context);
     const ssize_t got = ::read(fd, to + done, std::min(size - done, kMostAtOnce));
     if (got == 0) break;
     if (got < 0) {
-      if (errno == EINTR) continue;
+      if (errno == EINTR || errno == EAGAIN) continue;
       throw InputError(fmt::format("{}, byte {}: cannot be read: {}", name, done, reason(errno)));
     }
     done += static_cast<std::size_t>(got);
@@ -60,10 +71,10 @@ std::unique_ptr<char[]> allocate(std::size_t size, const std::string& name) {
 }
 
 /// A pipe has no size beforehand.
-std::pair<std::unique_ptr<char[]>, std::size_t> read_pipe(int fd, const std::string& name) {
+std::pair<std::unique_ptr<char[]>, std::size_t> read_pipe(int fd, const std::string& name, const RunContext& context) {
   std::size_t capacity = std::size_t{1} << 16, size = 0;
   auto bytes = allocate(capacity, name);
-  while ((size += read_fully(fd, bytes.get() + size, capacity - size, name)) == capacity) {
+  while ((size += read_fully(fd, bytes.get() + size, capacity - size, name, context)) == capacity) {
     auto larger = allocate(2 * capacity, name);
     std::memcpy(larger.get(), bytes.get(), size);
     bytes = std::move(larger);
@@ -94,9 +105,18 @@ void Input::fail_at_byte(const char* at, std::string_view message) const {
   throw InputError(fmt::format("{}, byte {}: {}", name, at - bytes.data(), message));
 }
 
-LoadedFile::LoadedFile(const std::filesystem::path& file) {
+void ReadingProgress::tell(const char* at) {
+  input_->context.check();
+  const double size = static_cast<double>(input_->bytes.size());
+  input_->context.report("reading", static_cast<double>(at - input_->bytes.data()) / size);
+  set_next(at);
+}
+
+LoadedFile::LoadedFile(const std::filesystem::path& file, const RunContext& context) {
   input_.name = file.string();
-  const Descriptor fd(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
+  input_.context = context;
+  // A pipe that nobody writes to would block the opening, where nothing could cancel it.
+  const Descriptor fd(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (fd.get() < 0) {
     if (errno == ENOENT) input_.fail("there is no such file");
     input_.fail(fmt::format("cannot be opened: {}", reason(errno)));
@@ -108,9 +128,9 @@ LoadedFile::LoadedFile(const std::filesystem::path& file) {
   if (S_ISREG(status.st_mode)) {
     size = static_cast<std::size_t>(status.st_size);
     bytes_ = allocate(size, input_.name);
-    size = read_fully(fd.get(), bytes_.get(), size, input_.name);
+    size = read_fully(fd.get(), bytes_.get(), size, input_.name, context);
   } else if (S_ISFIFO(status.st_mode)) {
-    std::tie(bytes_, size) = read_pipe(fd.get(), input_.name);
+    std::tie(bytes_, size) = read_pipe(fd.get(), input_.name, context);
   } else {
     input_.fail("is a device or socket, not a file");
   }

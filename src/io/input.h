@@ -1,5 +1,8 @@
 #pragma once
 
+#include <octafront/run_context.h>
+
+#include <algorithm>
 #include <cstddef>
 #include <filesystem>
 #include <memory>
@@ -12,6 +15,7 @@ namespace octafront::io {
 struct Input {
   std::string name;
   std::string_view bytes;
+  RunContext context = {};
 
   /// Throws InputError "NAME: message".
   [[noreturn]] void fail(std::string_view message) const;
@@ -21,11 +25,34 @@ struct Input {
   [[noreturn]] void fail_at_byte(const char* at, std::string_view message) const;
 };
 
+/// Asks every few milliseconds of reading whether to go on, and tells how far it is.
+class ReadingProgress {
+ public:
+  explicit ReadingProgress(const Input& input) : input_(&input) { set_next(input.bytes.data()); }
+  /// To be told of every place that is reached.
+  void reach(const char* at) {
+    if (at >= next_) [[unlikely]]
+      tell(at);
+  }
+
+ private:
+  void set_next(const char* at) {
+    constexpr std::ptrdiff_t kStride = std::ptrdiff_t{1} << 18;
+    next_ = at + std::min(kStride, input_->bytes.data() + input_->bytes.size() - at);
+  }
+  /// Throws Cancelled.
+  void tell(const char* at);
+
+  const Input* input_;
+  const char* next_;
+};
+
 /// A file read whole. Reading is preferred to mapping: a file that shrinks while it is mapped kills the process.
 class LoadedFile {
  public:
-  /// Throws InputError for a missing file, a directory, a device, an empty file, or one too large for the memory.
-  explicit LoadedFile(const std::filesystem::path& file);
+  /// Throws InputError for a missing file, a directory, a device, an empty file, or one too large for the memory;
+  /// Cancelled, also while a pipe has nothing to read.
+  explicit LoadedFile(const std::filesystem::path& file, const RunContext& context = {});
   const Input& input() const { return input_; }
 
  private:

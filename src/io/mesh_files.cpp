@@ -36,8 +36,8 @@ const io::Format& mesh_format(const std::filesystem::path& file) {
 
 }  // namespace
 
-TetMesh read_mesh(const std::filesystem::path& file) {
-  return io::read_mesh_bytes(io::LoadedFile(file).input());
+TetMesh read_mesh(const std::filesystem::path& file, const RunContext& context) {
+  return io::read_mesh_bytes(io::LoadedFile(file, context).input());
 }
 
 void check_mesh_target(const std::filesystem::path& file) {
@@ -45,9 +45,9 @@ void check_mesh_target(const std::filesystem::path& file) {
   io::check_writable(file);
 }
 
-void write_mesh(const std::filesystem::path& file, const TetMesh& mesh) {
+void write_mesh(const std::filesystem::path& file, const TetMesh& mesh, const RunContext& context) {
   const io::Format& format = mesh_format(file);
-  io::AtomicFile out(file);
+  io::AtomicFile out(file, context);
   format.write_mesh(out, mesh);
   out.commit();
 }

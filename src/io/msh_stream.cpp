@@ -43,6 +43,7 @@ template <class T>
 T MshStream::get(std::string_view what) {
   if (scan_.bytes_left() < sizeof(T))
     fail(fmt::format("expected {}, but the file ends here; it is truncated: copy or export it again", what));
+  progress_.reach(scan_.position());
   T value;
   std::memcpy(&value, scan_.position(), sizeof(T));
   scan_.set_position(scan_.position() + sizeof(T));

@@ -11,7 +11,7 @@ namespace octafront::io {
 /// The values of a Gmsh file, in text or little-endian binary, and its sections "$Name ... $EndName".
 class MshStream {
  public:
-  explicit MshStream(const Input& input) : input_(input), scan_(input) {}
+  explicit MshStream(const Input& input) : input_(input), progress_(input), scan_(input) {}
 
   /// Names of sections and numbers in headers are text in either case.
   Scanner& text() { return scan_; }
@@ -47,6 +47,7 @@ class MshStream {
   void skip(std::uint64_t count, std::uint64_t binary_bytes);
 
   const Input& input_;
+  ReadingProgress progress_;
   Scanner scan_;
   bool binary_ = false;
 };

@@ -55,12 +55,13 @@ class EarClipper {
         doubled_(doubled_corners()),
         blockers_(points, first_blockers()) {}
 
-  bool run(std::vector<std::array<std::uint32_t, 3>>& out) {
+  bool run(std::vector<std::array<std::uint32_t, 3>>& out, const RunContext& context) {
     auto left = static_cast<std::uint32_t>(p_.size());
     std::uint32_t at = 0;
     bool saw_all = false;
     for (std::uint32_t i = 0; i < left; ++i) waiting_.push_back(i);
-    while (left > 3) {
+    for (std::uint64_t looks = 0; left > 3; ++looks) {
+      if (looks % kLooksPerCheck == 0) context.check();
       if (waiting_.empty()) {
         // In a simple polygon only the neighbours of a clipped ear can become ears. This second look is a safeguard.
         if (saw_all) break;
@@ -86,6 +87,8 @@ class EarClipper {
   }
 
  private:
+  static constexpr std::uint64_t kLooksPerCheck = 256;
+
   int turn_at(std::uint32_t i) const { return turn(p_[prev_[i]], p_[i], p_[next_[i]]); }
 
   static std::vector<std::uint32_t> neighbours(std::size_t corners, std::size_t step) {
@@ -174,7 +177,8 @@ bool fans_out(std::span<const Vec3> corners) {
   return fan_is_strict(flattened(corners));
 }
 
-bool triangulate_polygon(std::span<const Vec3> corners, std::vector<std::array<std::uint32_t, 3>>& out) {
+bool triangulate_polygon(std::span<const Vec3> corners, std::vector<std::array<std::uint32_t, 3>>& out,
+                         const RunContext& context) {
   std::vector<std::uint32_t> kept;
   std::vector<Vec3> points;
   for (std::uint32_t i = 0; i < corners.size(); ++i) {
@@ -189,7 +193,7 @@ bool triangulate_polygon(std::span<const Vec3> corners, std::vector<std::array<s
   if (kept.size() == 3 || fan_is_strict(flat)) {
     for (std::uint32_t i = 1; i + 1 < kept.size(); ++i) out.push_back({0, i, i + 1});
   } else {
-    simple = EarClipper(flat).run(out);
+    simple = EarClipper(flat).run(out, context);
   }
   for (std::size_t t = first; t < out.size(); ++t)
     for (std::uint32_t& corner : out[t]) corner = kept[corner];

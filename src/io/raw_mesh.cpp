@@ -110,7 +110,9 @@ TetMesh ordered_mesh(RawMesh raw, const Input& input) {
                    ? fmt::format("holds no linear tetrahedra, only {} triangles and {} elements of other kinds",
                                  raw.triangles.size(), raw.other_elements)
                    : "holds no elements");
+  input.context.check();
   drop_unused_points(raw);
+  input.context.check();
   TetMesh mesh;
   mesh.points = std::move(raw.points);
   mesh.tets = std::move(raw.tets);
@@ -118,6 +120,7 @@ TetMesh ordered_mesh(RawMesh raw, const Input& input) {
     if (orient3d(mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]) < 0) std::swap(c, d);
   mesh.region = Numbering(raw.tet_ref).numbers(raw.tet_ref);
   const Numbering patches(raw.triangle_ref);
+  input.context.check();
   order_boundary(raw, patches, mesh);
   for (const auto& [ref, name] : raw.surface_names) {
     if (!patches.has(ref)) continue;

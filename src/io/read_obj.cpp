@@ -17,7 +17,7 @@ namespace {
 class Obj {
  public:
   explicit Obj(const Input& input)
-      : input_(input), at_(input.bytes.data()), end_(at_ + input.bytes.size()), line_start_(at_) {
+      : input_(input), progress_(input), at_(input.bytes.data()), end_(at_ + input.bytes.size()), line_start_(at_) {
     if (input.bytes.starts_with("\xef\xbb\xbf")) at_ += 3;
     builder_.points.reserve(input.bytes.size() / 80);
     builder_.reserve_faces(input.bytes.size() / 80);
@@ -26,6 +26,7 @@ class Obj {
   SurfaceFile read() {
     while (at_ != end_) {
       line_start_ = at_;
+      progress_.reach(at_);
       read_line();
       skip_to_next_line();
     }
@@ -159,6 +160,7 @@ class Obj {
   }
 
   const Input& input_;
+  ReadingProgress progress_;
   const char* at_;
   const char* end_;
   const char* line_start_;

@@ -46,7 +46,7 @@ class BinaryValues {
  public:
   static constexpr bool kIsText = false;
   BinaryValues(const Input& input, const char* begin, bool swap)
-      : input_(input), at_(begin), end_(input.bytes.data() + input.bytes.size()), swap_(swap) {}
+      : input_(input), progress_(input), at_(begin), end_(input.bytes.data() + input.bytes.size()), swap_(swap) {}
 
   const char* position() const { return at_; }
   std::size_t bytes_left() const { return static_cast<std::size_t>(end_ - at_); }
@@ -99,6 +99,7 @@ class BinaryValues {
   template <class T>
   T get(std::string_view what) {
     if (bytes_left() < sizeof(T)) fail_truncated(what);
+    progress_.reach(at_);
     char bytes[sizeof(T)];
     std::memcpy(bytes, at_, sizeof(T));
     if (swap_) std::reverse(bytes, bytes + sizeof(T));
@@ -114,6 +115,7 @@ class BinaryValues {
   }
 
   const Input& input_;
+  ReadingProgress progress_;
   const char* at_;
   const char* end_;
   bool swap_;

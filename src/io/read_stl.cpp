@@ -141,9 +141,11 @@ SurfaceFile read_binary_stl(const Input& input) {
   SurfaceBuilder builder;
   builder.points.reserve(std::size_t{3} * count);
   builder.reserve_faces(count);
+  ReadingProgress progress(input);
   for (std::uint32_t t = 0; t < count; ++t) {
     const char* const record = bytes.data() + kHeader + kRecord * std::size_t{t};
     const std::uint32_t first = 3 * t;
+    progress.reach(record);
     for (int corner = 0; corner < 3; ++corner) {
       const char* const p = record + 12 + 12 * corner;
       const Vec3 v{little_endian_float(p), little_endian_float(p + 4), little_endian_float(p + 8)};

@@ -23,6 +23,7 @@ class Vtu {
 
   TetMesh read() {
     read_points();
+    input_.context.check();
     read_cells();
     read_names();
     return ordered_mesh(std::move(raw_), input_);

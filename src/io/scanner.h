@@ -32,7 +32,7 @@ class Scanner {
  public:
   /// With `comment` set, what follows that character at the start of a word counts as blank, up to the end of the line.
   explicit Scanner(const Input& input, char comment = '\0')
-      : input_(&input), at_(input.bytes.data()), end_(at_ + input.bytes.size()), comment_(comment) {}
+      : input_(&input), progress_(input), at_(input.bytes.data()), end_(at_ + input.bytes.size()), comment_(comment) {}
 
   const char* position() const { return at_; }
   void set_position(const char* at) { at_ = at; }
@@ -97,6 +97,7 @@ class Scanner {
 
  private:
   void skip_blanks() {
+    progress_.reach(at_);
     for (;;) {
       while (at_ != end_ && is_blank(*at_)) ++at_;
       if (comment_ == '\0' || at_ == end_ || *at_ != comment_) return;
@@ -107,6 +108,7 @@ class Scanner {
   std::int64_t unusual_integer(std::string_view what);
 
   const Input* input_;
+  ReadingProgress progress_;
   const char* at_;
   const char* end_;
   char comment_;

@@ -84,7 +84,7 @@ bool SurfaceBuilder::divide(const Polygon& polygon, SurfaceBuilder& divided, con
                         "program that made it",
                         polygon.face, corners.size()));
   std::vector<std::array<std::uint32_t, 3>> pieces;
-  const bool simple = triangulate_polygon(places, pieces);
+  const bool simple = triangulate_polygon(places, pieces, input.context);
   for (const auto& [a, b, c] : pieces)
     divided.add_triangle({corners[a], corners[b], corners[c]}, polygon.face, polygon.patch);
   return simple;
@@ -102,6 +102,7 @@ void SurfaceBuilder::divide_polygons(const Input& input, bool is_text) {
       divided.add_triangle(triangles_[copied], face_of_triangle_[copied], patch_.empty() ? 0 : patch_[copied]);
   };
   for (const Polygon& polygon : polygons_) {
+    if ((&polygon - polygons_.data()) % 4096 == 0) input.context.check();
     copy_up_to(polygon.triangles_before);
     if (!divide(polygon, divided, input, is_text) && crossing++ == 0) first_crossing = polygon.face;
   }

@@ -40,8 +40,8 @@ const io::Format& surface_format(const std::filesystem::path& file) {
 
 }  // namespace
 
-SurfaceFile read_surface(const std::filesystem::path& file) {
-  return io::read_surface_bytes(io::LoadedFile(file).input());
+SurfaceFile read_surface(const std::filesystem::path& file, const RunContext& context) {
+  return io::read_surface_bytes(io::LoadedFile(file, context).input());
 }
 
 void check_surface_target(const std::filesystem::path& file) {
@@ -49,9 +49,9 @@ void check_surface_target(const std::filesystem::path& file) {
   io::check_writable(file);
 }
 
-void write_surface(const std::filesystem::path& file, const SurfaceMesh& surface) {
+void write_surface(const std::filesystem::path& file, const SurfaceMesh& surface, const RunContext& context) {
   const io::Format& format = surface_format(file);
-  io::AtomicFile out(file);
+  io::AtomicFile out(file, context);
   format.write_surface(out, surface);
   out.commit();
 }

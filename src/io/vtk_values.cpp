@@ -132,6 +132,7 @@ class ArrayReader {
     if (!source.take(packed_size, packed)) fail("its blocks are missing");
     std::uint64_t at = 0;
     for (std::uint64_t b = 0; b < blocks; ++b) {
+      input_.context.check();
       const std::uint64_t size = header_value(header, 3 + b);
       append_block({packed.data() + at, size}, block_size(header, b), b, bytes);
       at += size;

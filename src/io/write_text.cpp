@@ -10,6 +10,15 @@ void write_text(const std::filesystem::path& file, const std::string& text) {
   out.commit();
 }
 
+bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
+  std::error_code error;
+  if (std::filesystem::equivalent(a, b, error)) return true;
+  const auto place = [&](const std::filesystem::path& file) {
+    return std::filesystem::weakly_canonical(io::links_followed(file), error);
+  };
+  return place(a) == place(b);
+}
+
 void check_text_target(const std::filesystem::path& file) {
   io::check_writable(file);
 }

@@ -91,8 +91,10 @@ std::vector<PointSize> from_vtk(const io::Input& input) {
 std::vector<PointSize> read_point_table(const io::Input& input) {
   std::vector<PointSize> points;
   std::string_view rest = input.bytes;
+  io::ReadingProgress progress(input);
   for (bool is_first = true; !rest.empty();) {
     const std::string_view line = rest.substr(0, rest.find('\n'));
+    progress.reach(line.data());
     rest.remove_prefix(std::min(rest.size(), line.size() + 1));
     const std::vector<std::string_view> words = words_of(line);
     if (words.empty()) continue;
@@ -103,8 +105,8 @@ std::vector<PointSize> read_point_table(const io::Input& input) {
   return points;
 }
 
-std::vector<PointSize> read_point_sizes(const std::filesystem::path& file) {
-  const io::LoadedFile loaded(file);
+std::vector<PointSize> read_point_sizes(const std::filesystem::path& file, const RunContext& context) {
+  const io::LoadedFile loaded(file, context);
   const io::Input& input = loaded.input();
   const std::size_t start = input.bytes.find_first_not_of(" \t\r\n");
   const bool is_xml = start != std::string_view::npos && input.bytes[start] == '<';

@@ -30,7 +30,9 @@ struct GridFile {
 const io::VtkArray& require(const io::VtkXml& xml, const io::Input& input, const char* section, const char* name) {
   const io::VtkArray* array = xml.find(section, name);
   if (array == nullptr)
-    input.fail(fmt::format("has no array {} in <{}>: it is no background grid", io::in_quotes(name), section));
+    input.fail(
+        fmt::format("has no array {} in <{}>: it is no background grid; sizes at points are given by `point_sizes`",
+                    io::in_quotes(name), section));
   return *array;
 }
 
@@ -114,9 +116,9 @@ std::vector<double> corner_sizes(const GridFile& grid, const RootCube& root, con
 
 SizeField read_size_field(const std::filesystem::path& file, double gradation, const RunContext& context) {
   if (!(gradation >= 0.01 && gradation <= 1)) {
-    throw OptionError(fmt::format("grading is {}: it must lie between 0.01 (slow growth) and 1 (fast)", gradation));
+    throw OptionError(fmt::format("`gradation` is {}: it must lie between 0.01 (slow growth) and 1 (fast)", gradation));
   }
-  const io::LoadedFile loaded(file);
+  const io::LoadedFile loaded(file, context);
   const GridFile grid = read_grid_file(loaded.input());
   auto field = std::make_shared<OctreeField>();
   field->root = root_of(loaded.input(), grid);

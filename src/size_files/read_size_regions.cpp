@@ -93,8 +93,8 @@ std::vector<SizeRegion> from_table(const io::Input& input) {
 
 }  // namespace
 
-std::vector<SizeRegion> read_size_regions(const std::filesystem::path& file) {
-  const io::LoadedFile loaded(file);
+std::vector<SizeRegion> read_size_regions(const std::filesystem::path& file, const RunContext& context) {
+  const io::LoadedFile loaded(file, context);
   const io::Input& input = loaded.input();
   const std::size_t start = input.bytes.find_first_not_of(" \t\r\n");
   const bool is_json = start != std::string_view::npos && (input.bytes[start] == '[' || input.bytes[start] == '{');

@@ -67,11 +67,11 @@ void check_size_field_target(const std::filesystem::path& file) {
   io::check_writable(file);
 }
 
-void write_size_field(const std::filesystem::path& file, const SizeField& sizes) {
+void write_size_field(const std::filesystem::path& file, const SizeField& sizes, const RunContext& context) {
   const OctreeField* grid = as_octree_field(sizes);
   if (grid == nullptr)
     throw OutputError("these sizes have no background grid that could be written to " + file.string());
-  io::AtomicFile out(file);
+  io::AtomicFile out(file, context);
   write_grid(out, *grid);
   out.commit();
 }

@@ -80,6 +80,21 @@ TEST(AtomicFile, GoesThroughLinksToWhatIsNotThereYet) {
   EXPECT_EQ(file_bytes(folder / "sub/real"), "new");
 }
 
+TEST(SameFile, IsToldThroughLinksAndBeforeItIsThere) {
+  const TemporaryFolder folder;
+  testing::write_bytes(folder / "a", "a");
+  testing::write_bytes(folder / "b", "a");
+  fs::create_hard_link(folder / "a", folder / "hard");
+  fs::create_symlink("a", folder / "soft");
+  fs::create_symlink("later", folder / "lost");
+  EXPECT_TRUE(same_file(folder / "a", folder / "hard"));
+  EXPECT_TRUE(same_file(folder / "a", folder / "soft"));
+  EXPECT_TRUE(same_file(folder / "a", folder / "./a"));
+  EXPECT_TRUE(same_file(folder / "lost", folder / "later"));
+  EXPECT_FALSE(same_file(folder / "a", folder / "b"));
+  EXPECT_FALSE(same_file(folder / "a", folder / "later"));
+}
+
 std::string error_of(const std::function<void()>& write) {
   try {
     write();

@@ -3,6 +3,8 @@
 
 #include "small_files.h"
 
+#include <algorithm>
+#include <atomic>
 #include <cstring>
 #include <random>
 
@@ -214,6 +216,67 @@ TEST(BadMeshFiles, NothingIsUnpackedThatCannotBelongToTheMesh) {
     getrusage(RUSAGE_SELF, &after);
     EXPECT_TRUE(contains(message, "its values take at most")) << message;
     EXPECT_LT(after.ru_maxrss - before.ru_maxrss, 100'000) << "kB";
+  }
+}
+
+/// A long file with many faces, all the same, and one polygon of many corners.
+std::string long_off() {
+  constexpr int kPoints = 60000;
+  std::string text = "OFF\n" + std::to_string(kPoints) + " " + std::to_string(kPoints + 1) + " 0\n";
+  for (int i = 0; i < kPoints; ++i) text += std::to_string(i) + ' ' + std::to_string(i % 2) + " 0\n";
+  for (int i = 0; i < kPoints; ++i) text += "3 0 1 2\n";
+  text += std::to_string(kPoints);
+  for (int i = 0; i < kPoints; ++i) text += ' ' + std::to_string(i);
+  return text + '\n';
+}
+
+TEST(Reading, TellsHowFarItIsAndCanBeCancelled) {
+  const std::string text = long_off();
+  std::vector<double> told;
+  RunContext context;
+  context.progress = [&](std::string_view stage, double fraction) {
+    EXPECT_EQ(stage, "reading");
+    told.push_back(fraction);
+  };
+  io::read_surface_bytes({"a.off", text, context});
+  ASSERT_GE(told.size(), 3U);
+  EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+  EXPECT_GT(told.front(), 0);
+  EXPECT_LE(told.back(), 1);
+  // Between any two of these places no more than some milliseconds pass.
+  for (std::size_t at = 0; at < told.size(); ++at) {
+    std::atomic<bool> cancel{false};
+    std::size_t calls = 0;
+    context.cancel = &cancel;
+    context.progress = [&](std::string_view, double) { cancel = calls++ == at; };
+    EXPECT_THROW(io::read_surface_bytes({"a.off", text, context}), Cancelled) << at;
+  }
+}
+
+TEST(Reading, FilesOfEveryFormatCanBeCancelled) {
+  const testing::TemporaryFolder folder;
+  const std::atomic<bool> cancel{true};
+  RunContext context;
+  context.cancel = &cancel;
+  for (const testing::SmallFile& file : testing::small_surface_files()) {
+    testing::write_bytes(folder / file.name, file.bytes);
+    EXPECT_THROW(read_surface(folder / file.name, context), Cancelled) << file.name;
+  }
+  for (const testing::SmallFile& file : testing::small_mesh_files()) {
+    testing::write_bytes(folder / file.name, file.bytes);
+    EXPECT_THROW(read_mesh(folder / file.name, context), Cancelled) << file.name;
+  }
+}
+
+TEST(Writing, ThatIsCancelledLeavesTheOldFile) {
+  const testing::TemporaryFolder folder;
+  const std::atomic<bool> cancel{true};
+  RunContext context;
+  context.cancel = &cancel;
+  for (const std::string name : {"a.vtu", "a.msh", "a.mesh"}) {
+    testing::write_bytes(folder / name, "old");
+    EXPECT_THROW(write_mesh(folder / name, testing::two_tets(), context), Cancelled);
+    EXPECT_EQ(testing::file_bytes(folder / name), "old");
   }
 }
 

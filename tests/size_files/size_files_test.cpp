@@ -142,7 +142,7 @@ TEST(KeptSurface, SaysWhichSourcesItDoesNotUse) {
   options.curvature = 24;
   size_field_of_surface(testing::cube(4), options, {RunContext{}, report});
   ASSERT_EQ(report.notes.size(), 1u);
-  EXPECT_NE(report.notes[0].find("--curvature, --gap: not used"), std::string::npos) << report.notes[0];
+  EXPECT_NE(report.notes[0].find("`curvature`, `gap`: not used"), std::string::npos) << report.notes[0];
 }
 
 TEST(KeptSurface, SizesChangeFasterWhereItsTrianglesDo) {
