@@ -189,16 +189,18 @@ std::optional<std::string> boundary_difference(const TetMesh& mesh, const Surfac
 
 }  // namespace
 
-std::optional<std::string> first_defect(const TetMesh& mesh) {
+std::optional<std::string> first_defect(const TetMesh& mesh, const RunContext& context) {
   if (std::max(mesh.tets.size(), mesh.boundary.size()) >= FaceOwner::kMostOwners)
     return "a mesh of 2^30 tetrahedra or more cannot be checked";
-  for (const auto check : {point_defect, array_defect, sign_defect, face_defect, volume_defect})
+  for (const auto check : {point_defect, array_defect, sign_defect, face_defect, volume_defect}) {
+    context.check();
     if (auto defect = check(mesh)) return defect;
+  }
   return std::nullopt;
 }
 
-std::optional<std::string> first_defect(const TetMesh& mesh, const SurfaceMesh& surface) {
-  if (auto defect = first_defect(mesh)) return defect;
+std::optional<std::string> first_defect(const TetMesh& mesh, const SurfaceMesh& surface, const RunContext& context) {
+  if (auto defect = first_defect(mesh, context)) return defect;
   for (const Triangle& t : surface.triangles)
     for (const VertexIndex v : t)
       if (v >= surface.points.size()) return fmt::format("the surface has no vertex {} for one of its triangles", v);

@@ -71,8 +71,8 @@ Ground prepare_ground(const TetMesh& mesh, const SurfaceMesh& surface, double fe
   return g;
 }
 
-void require_valid(const TetMesh& mesh) {
-  if (const auto defect = first_defect(mesh)) throw InputError("not a valid mesh: " + *defect);
+void require_valid(const TetMesh& mesh, const RunContext& context) {
+  if (const auto defect = first_defect(mesh, context)) throw InputError("not a valid mesh: " + *defect);
 }
 
 }  // namespace
@@ -81,7 +81,7 @@ Improved improve_existing(const TetMesh& mesh, const Options& options, const Sur
                           const RunContext& context) {
   Run run(options, context);
   Improved result;
-  run.stage("check of the input", [&](const Stage&) { require_valid(mesh); });
+  run.stage("check of the input", [&](const Stage& stage) { require_valid(mesh, stage.context()); });
   result.mesh = mesh;
   result.before = summarize_quality(mesh);
   run.report.input_volume = enclosed_volume(boundary_of(mesh));

@@ -75,7 +75,7 @@ void note_volume_loss(double made, double input, const Stage& stage) {
   const double change = made / input - 1;
   if (std::abs(change) < kLargeLoss) return;
   stage.note(
-      fmt::format("elements of this size change the volume by {:+.1f} %: --max-deviation makes them "
+      fmt::format("elements of this size change the volume by {:+.1f} %: `max_deviation` makes them "
                   "smaller where they stray from the input",
                   100 * change));
 }
@@ -89,7 +89,7 @@ void note_lost_volume(const TetMesh& mesh, const Prepared& p, const Stage& stage
   if (std::abs(share - 1) > kVolumeTolerance)
     stage.note(
         fmt::format("the mesh has {:.1f} % of the volume inside the surface: parts thinner than an "
-                    "element are lost. Ask for smaller elements, or for --gap 2 or more.",
+                    "element are lost. Ask for smaller elements, or for a `gap` of 2 or more.",
                     100 * share));
 }
 
@@ -201,8 +201,9 @@ void improve_elements(const Prepared& input, Filled& filled, Run& run) {
 }
 
 void check_result(const TetMesh& mesh, const SurfaceMesh* surface, Run& run) {
-  run.stage("check", [&](const Stage&) {
-    if (const auto defect = surface ? first_defect(mesh, *surface) : first_defect(mesh))
+  run.stage("check", [&](const Stage& stage) {
+    const auto defect = surface ? first_defect(mesh, *surface, stage.context()) : first_defect(mesh, stage.context());
+    if (defect)
       throw MeshingError("the mesh made is not valid, which is a bug of ours; please report it with the input. " +
                          *defect);
   });
