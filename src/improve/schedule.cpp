@@ -130,11 +130,10 @@ class Schedule {
     stage_.count("not forced", static_cast<double>(s.not_forced));
     if (s.elements == 0) return;
     std::string note = fmt::format(
-        "{} below {:.1f} ({}): {} where boundary faces meet at a small angle, {} on or beside boundary triangles of "
-        "poor "
-        "shape, {} between boundary vertices only, {} for no such reason",
+        "{} below {:.1f} {}: {} where boundary faces meet at a small angle, {} on or beside boundary triangles of poor "
+        "shape, {} between boundary vertices only, {} for no cause in the boundary",
         s.elements == 1 ? "1 element stays" : fmt::format("{} elements stay", s.elements), kReported,
-        options_.objective == ImproveOptions::Objective::kBalanced ? "beta, or angles of that worth"
+        options_.objective == ImproveOptions::Objective::kBalanced ? "by beta or by its dihedral angles"
                                                                    : "by the objective",
         s.forced_by_angle, s.forced_by_triangle, s.in_thin_places, s.not_forced);
     if (s.worst_not_forced != kNone) {
@@ -165,9 +164,12 @@ class Schedule {
     stage_.count(fmt::format("pass {}: us per element", passes_),
                  1e6 * (now - started_) / static_cast<double>(mesh_.live_tets()));
     started_ = process_cpu_seconds();
-    stage_.progress(-1);
+    // Rounds go on while they gain something: how many there will be, nobody knows before.
+    stage_.progress(passes_ / (passes_ + kUsualPasses));
     if (options_.after_pass) options_.after_pass(what, worst_of(mesh_));
   }
+
+  static constexpr double kUsualPasses = 10;
 
   EditMesh& mesh_;
   const BoundaryGuide* guide_;
