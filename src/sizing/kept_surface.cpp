@@ -71,14 +71,14 @@ void note_unused_sources(const SizeOptions& options, const Stage& stage) {
   const auto add = [&](bool given, const char* name) {
     if (given) names += (names.empty() ? "" : ", ") + std::string(name);
   };
-  add(options.curvature.has_value(), "--curvature");
-  add(options.gap.has_value(), "--gap");
-  add(options.feature_elements.has_value(), "--feature-elements");
-  add(options.facets, "--facets");
+  add(options.curvature.has_value(), "`curvature`");
+  add(options.gap.has_value(), "`gap`");
+  add(options.feature_elements.has_value(), "`feature_elements`");
+  add(options.facets, "`facets`");
   if (names.empty()) return;
   stage.note(names +
              ": not used, for the kept triangles decide the sizes on the surface, and with them those "
-             "inside; use --regions, --size or --max-size for smaller elements inside");
+             "inside; use `regions`, `size` or `max_size` for smaller elements inside");
 }
 
 }  // namespace

@@ -133,7 +133,7 @@ SizeField within_budget(const SurfaceMesh& surface, const WantedSizes& wanted, c
   stage.note(fmt::format(
       "the details of this surface ask for {:.2g} million elements; the automatic size stops at {:.4g}, for about "
       "{:.2g} "
-      "million. For more of the details ask for them, e.g. with --elements, --curvature, --gap or --min-size",
+      "million. For more of the details ask for them, e.g. with `elements`, `curvature`, `gap` or `min_size`",
       first / 1e6, field.min_size(), expected_tets(field, surface) / 1e6));
   return field;
 }
