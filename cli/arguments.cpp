@@ -1,5 +1,6 @@
 #include "arguments.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -8,28 +9,24 @@ namespace octafront::cli {
 
 namespace {
 
-// An option whose value is one of a few names; the help lists them in the order of `names`.
 template <class Value>
 void add_choice(CLI::App& group, const std::string& option, Value& value,
                 const std::vector<std::pair<std::string, Value>>& names, const std::string& help) {
-  std::string listed, preset;
-  for (const auto& [name, meaning] : names) {
-    listed += (listed.empty() ? "" : "|") + name;
-    if (meaning == value) preset = name;
-  }
-  group.add_option(option, value, help + " [" + preset + "]")
-      ->transform(CLI::CheckedTransformer(names, CLI::ignore_case).description(""))
-      ->type_name(listed);
+  const Choice<Value> choice{names};
+  group
+      .add_option_function<std::string>(
+          option, [&value, choice, option](const std::string& typed) { value = choice.value_of(option, typed); },
+          help + " [" + choice.name_of(value) + "]")
+      ->type_name(choice.listed("|"));
 }
 
-/// "1e5" is a number of elements too.
+}  // namespace
+
 std::int64_t whole_number(double n) {
   if (!(std::abs(n) < 9e18) || n != std::floor(n))
     throw CLI::ValidationError("--elements", "needs a whole number, such as 100000 or 1e5");
   return static_cast<std::int64_t>(n);
 }
-
-}  // namespace
 
 void declare_input(CLI::App& command, Arguments& a) {
   command.add_option("input", a.input, "Closed surface: STL, OBJ, OFF or PLY, recognised by content")
@@ -49,13 +46,18 @@ void declare_output(CLI::App& command, Arguments& a, const std::string& what, bo
 }
 
 void declare_report(CLI::App& command, Arguments& a) {
-  command.add_option("--json", a.json, "Write the report as JSON")->type_name("FILE");
+  command
+      .add_option("--json", a.json, "Write the report as JSON, also of a run that fails; -: to standard output, alone")
+      ->type_name("FILE");
 }
 
 void declare_run(CLI::App& command, Arguments& a) {
   auto* group = command.add_option_group("Run");
-  group->add_option("--threads", a.threads, "Threads at most; 0: all of the machine. The result is the same")
-      ->check(CLI::Range(0, 1024));
+  group
+      ->add_option("--threads", a.threads,
+                   "Threads at most, never more than the machine has; 0: all. The result is the same")
+      ->check(CLI::Range(0, 1024).description(""))
+      ->type_name("N");
   group->add_flag("-q,--quiet", a.quiet, "Print nothing but errors");
 }
 
@@ -76,21 +78,22 @@ void declare_sizes(CLI::App& command, Arguments& a) {
       ->add_option("--regions", a.regions, "Boxes, spheres and points with a size each: JSON, or a table x, y, z, size")
       ->type_name("FILE");
   group
-      ->add_option("--size-field", a.size_field,
+      ->add_option("--point-sizes", a.point_sizes,
                    "Sizes at the vertices of the surface: VTU, VTP (array \"size\"), or a table x, y, z, size")
       ->type_name("FILE");
-  group->add_option("--size-grid", a.size_grid, "All sizes, as `octafront size -o` writes them, edited or not; alone")
+  group->add_option("--size-field", a.size_field, "All sizes, as `octafront size -o` writes them, edited or not; alone")
       ->type_name("FILE");
   group->add_flag("--facets", o.facets, "Sizes follow the areas of the input's facets (the paper's rule)");
   group->add_option("--min-size", o.min_size, "No size falls below this")->type_name("H");
   group->add_option("--max-size", o.max_size, "No size rises above this")->type_name("H");
-  group->add_option("--grading", o.gradation, "How fast sizes may change: |h(x) - h(y)| <= G |x - y|")
+  group->add_option("--gradation,--grading", o.gradation, "How fast sizes may change: |h(x) - h(y)| <= G |x - y|")
       ->type_name("G")
       ->capture_default_str();
   add_choice<SizeOptions::Interior>(
       *group, "--interior", o.interior,
       {{"uniform", SizeOptions::Interior::kUniform}, {"graded", SizeOptions::Interior::kGraded}},
       "Inside no larger than on the surface, or growing inward");
+  a.names.add("field", "--size-field");
 }
 
 void declare_surface(CLI::App& command, Arguments& a) {
@@ -111,6 +114,8 @@ void declare_surface(CLI::App& command, Arguments& a) {
       ->type_name("DEG");
   group->add_flag("--patches", o.patches_by_features,
                   "Each part of the surface that feature edges enclose becomes a patch");
+  a.names.add("keep", "--keep-surface");
+  a.names.add("patches_by_features", "--patches");
 }
 
 void declare_volume(CLI::App& command, Arguments& a) {
@@ -168,7 +173,12 @@ void declare_improvement(CLI::App& command, Arguments& a) {
       ->capture_default_str();
   group->add_option("--improve-time", o.seconds, "Seconds after which no further pass begins (then not repeatable)")
       ->type_name("S");
-  group->add_flag("!--fix-boundary", o.move_boundary, "No vertex of the boundary slides on the surface, no edge turns");
+  group->add_flag_function(
+      "--fix-boundary", [&o](std::int64_t) { o.move_boundary = false; },
+      "No vertex of the boundary slides on the surface, no edge turns");
+  a.names.add("level", "--improve");
+  a.names.add("seconds", "--improve-time");
+  a.names.add("move_boundary", "--fix-boundary");
 }
 
 void declare_ground(CLI::App& command, Arguments& a) {
@@ -178,6 +188,28 @@ void declare_ground(CLI::App& command, Arguments& a) {
   group->add_option("--feature-angle", a.options.surface.feature_angle, "Edges that bend by more degrees are kept")
       ->type_name("DEG")
       ->capture_default_str();
+}
+
+std::vector<const CLI::Option*> options_of(const CLI::App& command) {
+  std::vector<const CLI::Option*> options = command.get_options();
+  for (const CLI::App* group : command.get_subcommands([](const CLI::App*) { return true; })) {
+    if (!group->get_name().empty()) continue;
+    for (const CLI::Option* option : options_of(*group)) options.push_back(option);
+  }
+  return options;
+}
+
+void note_command(const CLI::App& command, Arguments& a) {
+  a.command = command.get_name();
+  for (const CLI::Option* option : options_of(command)) {
+    if (option->get_lnames().empty()) continue;
+    const std::string name = option->get_lnames().front();
+    std::string field = name;
+    std::replace(field.begin(), field.end(), '-', '_');
+    a.names.add(field, "--" + name);
+    const bool is_flag = option->get_items_expected_max() == 0;
+    if (option->count() > 0) a.given.emplace_back(name, is_flag ? "true" : CLI::detail::join(option->results(), ","));
+  }
 }
 
 }  // namespace octafront::cli

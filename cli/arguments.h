@@ -2,22 +2,30 @@
 
 #include <octafront/options.h>
 
+#include "option_names.h"
+
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace octafront::cli {
 
 /// What the user typed, as the commands need it.
 struct Arguments {
+  std::string command;
   std::filesystem::path input, output, json, surface;
-  std::filesystem::path regions, size_field, size_grid;  ///< files with sizes; empty: none
+  std::filesystem::path regions, point_sizes, size_field;  ///< files with sizes; empty: none
   Options options;
   int threads = 0;
   bool quiet = false;
+  OptionNames names;
+  std::vector<std::pair<std::string, std::string>> given;  ///< options and values as typed; flags are "true"
 };
 
-/// Declares what each command understands; names and defaults are those of Options.
+/// Declares what each command understands; defaults are those of Options. A field of Options has the name of its
+/// option, with underscores, unless said otherwise in `names`.
 void declare_input(CLI::App& command, Arguments& arguments);
 void declare_mesh_input(CLI::App& command, Arguments& arguments);
 void declare_output(CLI::App& command, Arguments& arguments, const std::string& what, bool required);
@@ -28,5 +36,37 @@ void declare_surface(CLI::App& command, Arguments& arguments);
 void declare_volume(CLI::App& command, Arguments& arguments);
 void declare_improvement(CLI::App& command, Arguments& arguments);
 void declare_ground(CLI::App& command, Arguments& arguments);
+
+/// Every option of a command, those of its groups too.
+std::vector<const CLI::Option*> options_of(const CLI::App& command);
+
+/// Enters the command that was chosen into `arguments`: its name, its options as typed, the names of fields.
+void note_command(const CLI::App& command, Arguments& arguments);
+
+/// An option whose value is one of a few names, in either case; the help lists them in the order of `names`.
+template <class Value>
+struct Choice {
+  std::vector<std::pair<std::string, Value>> names;
+
+  std::string listed(const std::string& between) const {
+    std::string all;
+    for (const auto& [name, value] : names) all += (all.empty() ? "" : between) + name;
+    return all;
+  }
+  std::string name_of(Value wanted) const {
+    for (const auto& [name, value] : names)
+      if (value == wanted) return name;
+    return {};
+  }
+  /// Throws CLI::ValidationError.
+  Value value_of(const std::string& option, const std::string& typed) const {
+    for (const auto& [name, value] : names)
+      if (CLI::detail::to_lower(typed) == name) return value;
+    throw CLI::ValidationError(option, "is one of " + listed(", ") + "; \"" + typed + "\" is none of them");
+  }
+};
+
+/// "1e5" is a number of elements too. Throws CLI::ValidationError.
+std::int64_t whole_number(double n);
 
 }  // namespace octafront::cli

@@ -1,9 +1,11 @@
 #include "canvas.h"
 
 #include <octafront/error.h>
+#include <octafront/io.h>
 
 #ifdef OCTAFRONT_WITH_CAIRO
 #include <numbers>
+#include <string>
 
 #include <cairo-svg.h>
 #include <cairo.h>
@@ -25,9 +27,17 @@ void paint(cairo_surface_t* surface, double scale, const std::function<void(Canv
   cairo_destroy(context);
 }
 
-void finish(cairo_surface_t* surface, cairo_status_t status, const std::filesystem::path& file) {
+/// Of cairo: adds bytes to the std::string behind `text`.
+cairo_status_t append(void* text, const unsigned char* bytes, unsigned count) {
+  static_cast<std::string*>(text)->append(reinterpret_cast<const char*>(bytes), count);
+  return CAIRO_STATUS_SUCCESS;
+}
+
+void finish(cairo_surface_t* surface, cairo_status_t status, const std::string& bytes,
+            const std::filesystem::path& file) {
   cairo_surface_destroy(surface);
   if (status != CAIRO_STATUS_SUCCESS) throw OutputError(file.string() + ": " + cairo_status_to_string(status));
+  write_text(file, bytes);
 }
 
 }  // namespace
@@ -84,15 +94,16 @@ bool can_draw() {
 
 void draw(const std::filesystem::path& stem, double width, double height, const std::function<void(Canvas&)>& chart) {
   const std::string svg = stem.string() + ".svg", png = stem.string() + ".png";
-  cairo_surface_t* vector = cairo_svg_surface_create(svg.c_str(), width, height);
+  std::string svg_bytes, png_bytes;
+  cairo_surface_t* vector = cairo_svg_surface_create_for_stream(append, &svg_bytes, width, height);
   paint(vector, 1, chart);
   cairo_surface_finish(vector);
-  finish(vector, cairo_surface_status(vector), svg);
+  finish(vector, cairo_surface_status(vector), svg_bytes, svg);
   cairo_surface_t* pixels = cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(kPixelsPerPoint * width),
                                                        static_cast<int>(kPixelsPerPoint * height));
   paint(pixels, kPixelsPerPoint, chart);
-  const cairo_status_t written = cairo_surface_write_to_png(pixels, png.c_str());
-  finish(pixels, written, png);
+  const cairo_status_t packed = cairo_surface_write_to_png_stream(pixels, append, &png_bytes);
+  finish(pixels, packed, png_bytes, png);
 }
 
 }  // namespace octafront::cli

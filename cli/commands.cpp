@@ -3,9 +3,7 @@
 #include <octafront/octafront.h>
 
 #include "open_cavity.h"
-#include "terminal.h"
-
-#include <cstdio>
+#include "text.h"
 
 #include <fmt/format.h>
 
@@ -13,31 +11,25 @@ namespace octafront::cli {
 
 namespace {
 
-void say(const Arguments& a, const std::string& text) {
-  clear_progress();
-  if (!a.quiet) std::fputs(text.c_str(), stdout);
-}
-
-SurfaceFile read_input(const Arguments& a, const RunContext& context) {
-  context.report("reading", -1);
-  SurfaceFile file = read_surface(a.input);
-  say(a, fmt::format("{}: {}, {} triangles\n", a.input.string(), file.format, file.surface.triangles.size()));
-  for (const std::string& note : file.notes) say(a, "note (reading): " + note + "\n");
+SurfaceFile read_input(const Session& session) {
+  const Arguments& a = session.arguments();
+  SurfaceFile file = read_surface(a.input, session.context());
+  session.say(
+      fmt::format("{}: {}, {}\n", a.input.string(), file.format, counted(file.surface.triangles.size(), "triangle")));
+  session.say_notes("reading", file.notes);
   return file;
 }
 
-// With what the files of sizes say.
-Options options_for(const Arguments& a, const RunContext& context) {
+// Files with sizes are small: they are read, and all options checked, before the input.
+Options checked_options(const Session& session) {
+  const Arguments& a = session.arguments();
   Options options = a.options;
-  if (!a.regions.empty()) options.size.regions = read_size_regions(a.regions);
-  if (!a.size_field.empty()) options.size.point_sizes = read_point_sizes(a.size_field);
-  if (!a.size_grid.empty()) options.size.field = read_size_field(a.size_grid, options.size.gradation, context);
+  if (!a.regions.empty()) options.size.regions = read_size_regions(a.regions, session.context());
+  if (!a.point_sizes.empty()) options.size.point_sizes = read_point_sizes(a.point_sizes, session.context());
+  if (!a.size_field.empty())
+    options.size.field = read_size_field(a.size_field, options.size.gradation, session.context());
+  check_options(options);
   return options;
-}
-
-void write_report(const Arguments& a, const Report& report) {
-  say(a, to_table(report));
-  if (!a.json.empty()) write_text(a.json, to_json(report));
 }
 
 // Tetrahedral meshes are told from surfaces by the ending: no surface format shares one with them.
@@ -46,25 +38,91 @@ bool is_tet_mesh_file(const std::filesystem::path& file) {
   return ending == ".vtu" || ending == ".msh" || ending == ".mesh";
 }
 
-std::string quality_in_words(const QualitySummary& q) {
-  return fmt::format("{} tetrahedra; least beta {:.4f}, mean {:.4f}, dihedral angles {:.1f} to {:.1f} degrees",
-                     q.elements, q.beta_min, q.beta_mean, q.dihedral_min, q.dihedral_max);
+Json place(Vec3 p) {
+  return {p.x, p.y, p.z};
 }
 
-int check_tet_mesh(const Arguments& a) {
-  const TetMesh mesh = read_mesh(a.input);
-  const auto defect = first_defect(mesh);
-  if (defect) throw InputError(fmt::format("{}: not a valid mesh: {}", a.input.string(), *defect));
-  say(a, fmt::format("{}: a valid mesh of {}\n", a.input.string(), quality_in_words(summarize_quality(mesh))));
-  return 0;
+Vec3 middle(const TetMesh& mesh, TetIndex tet) {
+  const auto& [a, b, c, d] = mesh.tets[tet];
+  return (mesh.points[a] + mesh.points[b] + mesh.points[c] + mesh.points[d]) / 4;
+}
+
+// A number alone is hard to find in a viewer.
+void tell_worst(Session& session, const TetMesh& mesh, const QualitySummary& quality) {
+  const Vec3 p = middle(mesh, quality.beta_min_tet);
+  session.say(fmt::format("worst element: number {} at ({:.6g}, {:.6g}, {:.6g}), beta {:.4f}\n", quality.beta_min_tet,
+                          p.x, p.y, p.z, quality.beta_min));
+  session.found({{"worst_element", {{"number", quality.beta_min_tet}, {"at", place(p)}, {"beta", quality.beta_min}}}});
+}
+
+std::string quality_in_words(const QualitySummary& q) {
+  return fmt::format("{}; least beta {:.4f}, mean {:.4f}, dihedral angles {:.1f} to {:.1f} degrees",
+                     q.elements == 1 ? "1 tetrahedron" : fmt::format("{} tetrahedra", q.elements), q.beta_min,
+                     q.beta_mean, q.dihedral_min, q.dihedral_max);
+}
+
+void check_tet_mesh(Session& session) {
+  const std::string name = session.arguments().input.string();
+  const TetMesh mesh = read_mesh(session.arguments().input, session.context());
+  const auto defect = first_defect(mesh, session.context());
+  session.found({{"kind", "mesh"}, {"valid", !defect}});
+  if (defect) throw InputError(fmt::format("{}: not a valid mesh: {}", name, *defect));
+  Report report;
+  report.points = mesh.points.size();
+  report.tets = mesh.tets.size();
+  report.boundary_faces = mesh.boundary.size();
+  report.quality = summarize_quality(mesh);
+  session.found({{"points", report.points}, {"tets", report.tets}, {"boundary_faces", report.boundary_faces}});
+  session.found({{"quality", Json::parse(to_json(report))["quality"]}});
+  session.say(fmt::format("{}: a valid mesh of {}\n", name, quality_in_words(report.quality)));
+  tell_worst(session, mesh, report.quality);
+}
+
+Json json_of(const SurfaceDefects::Kind& kind) {
+  Json first = Json::array();
+  for (const SurfaceDefects::Place& p : kind.first) first.push_back({{"at", place(p.at)}, {"faces", p.faces}});
+  return {{"count", kind.count}, {"first", first}};
+}
+
+Json json_of(const SurfaceDefects& d) {
+  return {{"open_edges", json_of(d.open_edges)},
+          {"open_loops", d.open_loops},
+          {"non_manifold_edges", json_of(d.non_manifold_edges)},
+          {"misoriented_edges", json_of(d.misoriented_edges)},
+          {"non_manifold_vertices", json_of(d.non_manifold_vertices)},
+          {"self_intersections", json_of(d.self_intersections)},
+          {"degenerate_faces", json_of(d.degenerate_faces)}};
+}
+
+void check_surface(Session& session) {
+  const std::string name = session.arguments().input.string();
+  const SurfaceFile file = read_input(session);
+  session.context().report("checking", -1);
+  const RepairedSurface repaired = repair_surface(file.surface, session.context());
+  for (const std::string& note : repaired.notes) session.say("would repair: " + note + "\n");
+  const SurfaceDefects defects = find_defects(repaired, session.context());
+  session.found({{"kind", "surface"},
+                 {"format", file.format},
+                 {"triangles", file.surface.triangles.size()},
+                 {"clean", defects.clean()},
+                 {"repairs", repaired.notes},
+                 {"defects", json_of(defects)}});
+  if (!defects.clean()) throw InputError(fmt::format("{}:\n{}", name, defects.describe()));
+  const double volume = enclosed_volume(repaired.surface);
+  session.found({{"bodies", repaired.bodies}, {"cavities", repaired.cavities}, {"volume", volume}});
+  session.say(fmt::format("{}: clean: {} {}, {} {}, volume {:.6g}\n", name, repaired.bodies,
+                          repaired.bodies == 1 ? "body" : "bodies", repaired.cavities,
+                          repaired.cavities == 1 ? "cavity" : "cavities", volume));
 }
 
 // Runs one of the library's generators on the input; its refusals name the file.
 template <class Generator>
-auto run_on_input(const Arguments& a, const RunContext& context, const Generator& generator) {
-  const SurfaceFile file = read_input(a, context);
+auto run_on_input(const Session& session, const Generator& generator) {
+  const Arguments& a = session.arguments();
+  const Options options = checked_options(session);
+  const SurfaceFile file = read_input(session);
   try {
-    return generator(file.surface, options_for(a, context), context);
+    return generator(file.surface, options, session.context());
   } catch (const OpenCavityError& error) {
     throw with_cavity_written(error, a.output);
   } catch (const InputError& error) {
@@ -72,86 +130,75 @@ auto run_on_input(const Arguments& a, const RunContext& context, const Generator
   }
 }
 
-// Everything that can be known to fail before the long work.
-void check_report_target(const Arguments& a) {
-  if (a.json.empty()) return;
-  if (a.json == a.output) throw OptionError("--json and --output name the same file");
-  check_text_target(a.json);
+void say_written(const Session& session) {
+  session.say(fmt::format("written: {}\n", session.arguments().output.string()));
+}
+
+// Which of the two files that improvement reads is at fault: the surface if it is not clean by itself.
+std::filesystem::path file_at_fault(const Arguments& a, const SurfaceMesh& surface) {
+  const bool is_surface = !a.surface.empty() && !find_defects(repair_surface(surface)).clean();
+  return is_surface ? a.surface : a.input;
 }
 
 }  // namespace
 
-int run_mesh(const Arguments& a) {
+void run_mesh(Session& session) {
+  const Arguments& a = session.arguments();
   check_mesh_target(a.output);
-  check_report_target(a);
-  const RunContext context = terminal_context(a.threads, a.quiet);
-  const Result result = run_on_input(a, context, generate);
-  context.report("writing", -1);
-  write_mesh(a.output, result.mesh);
-  write_report(a, result.report);
-  say(a, fmt::format("written: {}\n", a.output.string()));
-  return 0;
+  const Result result = run_on_input(session, generate);
+  session.context().report("writing", -1);
+  write_mesh(a.output, result.mesh, session.context());
+  session.tell(result.report);
+  tell_worst(session, result.mesh, result.report.quality);
+  say_written(session);
 }
 
-int run_surface(const Arguments& a) {
+void run_surface(Session& session) {
+  const Arguments& a = session.arguments();
   check_surface_target(a.output);
-  check_report_target(a);
-  const RunContext context = terminal_context(a.threads, a.quiet);
-  const SurfaceResult result = run_on_input(a, context, generate_surface);
-  write_surface(a.output, result.surface);
-  write_report(a, result.report);
-  say(a, fmt::format("written: {}\n", a.output.string()));
-  return 0;
+  const SurfaceResult result = run_on_input(session, generate_surface);
+  session.context().report("writing", -1);
+  write_surface(a.output, result.surface, session.context());
+  session.tell(result.report);
+  say_written(session);
 }
 
-int run_size(const Arguments& a) {
+void run_size(Session& session) {
+  const Arguments& a = session.arguments();
   if (!a.output.empty()) check_size_field_target(a.output);
-  check_report_target(a);
-  const RunContext context = terminal_context(a.threads, a.quiet);
-  const SizeResult result = run_on_input(a, context, generate_sizes);
-  if (!a.output.empty()) write_size_field(a.output, result.sizes);
-  write_report(a, result.report);
-  if (!a.output.empty()) say(a, fmt::format("written: {}\n", a.output.string()));
-  return 0;
+  const SizeResult result = run_on_input(session, generate_sizes);
+  if (!a.output.empty()) write_size_field(a.output, result.sizes, session.context());
+  session.tell(result.report);
+  if (!a.output.empty()) say_written(session);
 }
 
-int run_improve(const Arguments& a) {
+void run_improve(Session& session) {
+  const Arguments& a = session.arguments();
   check_mesh_target(a.output);
-  check_report_target(a);
-  const RunContext context = terminal_context(a.threads, a.quiet);
-  context.report("reading", -1);
-  const TetMesh mesh = read_mesh(a.input);
+  check_options(a.options);
+  const TetMesh mesh = read_mesh(a.input, session.context());
   SurfaceMesh surface;
-  if (!a.surface.empty()) surface = read_surface(a.surface).surface;
-  const auto run = [&] {
+  if (!a.surface.empty()) surface = read_surface(a.surface, session.context()).surface;
+  const auto improved = [&] {
     try {
-      return improve_existing(mesh, a.options, a.surface.empty() ? nullptr : &surface, context);
+      return improve_existing(mesh, a.options, a.surface.empty() ? nullptr : &surface, session.context());
     } catch (const InputError& error) {
-      throw InputError(fmt::format("{}: {}", a.input.string(), error.what()));
+      throw InputError(fmt::format("{}: {}", file_at_fault(a, surface).string(), error.what()));
     }
   };
-  const Improved result = run();
-  context.report("writing", -1);
-  write_mesh(a.output, result.mesh);
-  say(a, fmt::format("{}: {}\nimproved: ", a.input.string(), quality_in_words(result.before)));
-  say(a, quality_in_words(result.report.quality) + "\n");
-  write_report(a, result.report);
-  say(a, fmt::format("written: {}\n", a.output.string()));
-  return 0;
+  const Improved result = improved();
+  session.context().report("writing", -1);
+  write_mesh(a.output, result.mesh, session.context());
+  session.say(fmt::format("{}: {}\n", a.input.string(), quality_in_words(result.before)));
+  session.say(fmt::format("improved: {}\n", quality_in_words(result.report.quality)));
+  session.tell(result.report);
+  tell_worst(session, result.mesh, result.report.quality);
+  say_written(session);
 }
 
-int run_check(const Arguments& a) {
-  if (is_tet_mesh_file(a.input)) return check_tet_mesh(a);
-  const RunContext context = terminal_context(a.threads, a.quiet);
-  const SurfaceFile file = read_input(a, context);
-  const RepairedSurface repaired = repair_surface(file.surface);
-  for (const std::string& note : repaired.notes) say(a, "would repair: " + note + "\n");
-  const SurfaceDefects defects = find_defects(repaired);
-  if (!defects.clean()) throw InputError(fmt::format("{}:\n{}", a.input.string(), defects.describe()));
-  say(a, fmt::format("{}: clean: {} {}, {} {}, volume {:.6g}\n", a.input.string(), repaired.bodies,
-                     repaired.bodies == 1 ? "body" : "bodies", repaired.cavities,
-                     repaired.cavities == 1 ? "cavity" : "cavities", enclosed_volume(repaired.surface)));
-  return 0;
+void run_check(Session& session) {
+  if (is_tet_mesh_file(session.arguments().input)) return check_tet_mesh(session);
+  check_surface(session);
 }
 
 }  // namespace octafront::cli

@@ -1,14 +1,14 @@
 #pragma once
 
-#include "arguments.h"
+#include "session.h"
 
 namespace octafront::cli {
 
-/// The commands. Each returns the exit status; what goes wrong is thrown as an octafront::Error.
-int run_mesh(const Arguments& arguments);
-int run_surface(const Arguments& arguments);
-int run_size(const Arguments& arguments);
-int run_improve(const Arguments& arguments);
-int run_check(const Arguments& arguments);
+/// The commands. What goes wrong is thrown as an octafront::Error.
+void run_mesh(Session& session);
+void run_surface(Session& session);
+void run_size(Session& session);
+void run_improve(Session& session);
+void run_check(Session& session);
 
 }  // namespace octafront::cli

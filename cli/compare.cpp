@@ -3,11 +3,8 @@
 #include <octafront/octafront.h>
 
 #include "comparison.h"
-#include "terminal.h"
 
 #include <algorithm>
-#include <cstdio>
-#include <map>
 
 #include <fmt/format.h>
 
@@ -15,20 +12,13 @@ namespace octafront::cli {
 
 namespace {
 
-const std::map<std::string, Method> kMethods{
-    {"octree-aft", Method::kOctreeAft}, {"aft", Method::kAft}, {"octree", Method::kOctree}};
-
-std::string name_of(Method method) {
-  for (const auto& [name, m] : kMethods)
-    if (m == method) return name;
-  return "recover";
-}
+const Choice<Method> kMethods{{{"octree-aft", Method::kOctreeAft}, {"aft", Method::kAft}, {"octree", Method::kOctree}}};
 
 Comparison run_one(const std::filesystem::path& input, const SurfaceFile& file, Method method, const Options& given,
                    const RunContext& context) {
   Comparison c;
   c.model = input.stem().string();
-  c.method = name_of(method);
+  c.method = kMethods.name_of(method);
   c.faces = file.surface.triangles.size();
   c.elements_wanted = given.size.elements.value_or(0);
   Options options = given;
@@ -43,6 +33,25 @@ Comparison run_one(const std::filesystem::path& input, const SurfaceFile& file, 
   return c;
 }
 
+/// One for each number of elements asked for, all checked before the first run.
+std::vector<Options> checked_options(const CompareArguments& a) {
+  std::vector<Options> all;
+  for (const std::int64_t count : a.elements) all.emplace_back(a.common.options).size.elements = count;
+  if (all.empty()) all.push_back(a.common.options);
+  for (const Options& options : all) check_options(options);
+  return all;
+}
+
+/// No file that is compared may be one of those that the comparison writes.
+void check_outputs(const CompareArguments& a) {
+  for (const std::filesystem::path& output : comparison_files(a.common.output))
+    for (const std::filesystem::path& input : a.inputs)
+      if (same_file(input, output))
+        throw OptionError(
+            fmt::format("{}: an input that the comparison would overwrite; give another folder", input.string()));
+  check_text_target(comparison_files(a.common.output).front());
+}
+
 }  // namespace
 
 void declare_compare(CLI::App& command, CompareArguments& a) {
@@ -50,11 +59,21 @@ void declare_compare(CLI::App& command, CompareArguments& a) {
   command.add_option("-o,--output", a.common.output, "Folder for the tables and charts; made if it is not there")
       ->required()
       ->type_name("DIR");
-  command.add_option("--methods", a.methods, "octree-aft, aft, octree, by commas [all three]")
+  const auto read_methods = [&a](const std::vector<std::string>& typed) {
+    a.methods.clear();
+    for (const std::string& name : typed) a.methods.push_back(kMethods.value_of("--methods", name));
+  };
+  command
+      .add_option_function<std::vector<std::string>>("--methods", read_methods,
+                                                     kMethods.listed(", ") + ", by commas [all three]")
       ->delimiter(',')
-      ->transform(CLI::CheckedTransformer(kMethods, CLI::ignore_case))
       ->type_name("LIST");
-  auto* elements = command.add_option("--elements", a.elements, "Numbers of tetrahedra, by commas: one run for each")
+  const auto read_elements = [&a](const std::vector<double>& typed) {
+    for (const double n : typed) a.elements.push_back(whole_number(n));
+  };
+  auto* elements = command
+                       .add_option_function<std::vector<double>>("--elements", read_elements,
+                                                                 "Numbers of tetrahedra, by commas: one run for each")
                        ->delimiter(',')
                        ->type_name("LIST");
   command.add_option("--size", a.common.options.size.size, "Edge length, in units of the input")
@@ -64,34 +83,31 @@ void declare_compare(CLI::App& command, CompareArguments& a) {
   declare_run(command, a.common);
 }
 
-int run_compare(const CompareArguments& a) {
+void run_compare(const CompareArguments& a, Session& session) {
+  const std::vector<Options> runs = checked_options(a);
   std::error_code error;
   std::filesystem::create_directories(a.common.output, error);
   if (error) throw OutputError(fmt::format("{}: {}", a.common.output.string(), error.message()));
-  check_text_target(a.common.output / "compare.csv");
-  const RunContext context = terminal_context(a.common.threads, a.common.quiet);
-  std::vector<std::int64_t> counts = a.elements;
-  if (counts.empty()) counts.push_back(0);
+  check_outputs(a);
   std::vector<Comparison> all;
   for (const std::filesystem::path& input : a.inputs) {
-    const SurfaceFile file = read_surface(input);
-    for (const std::int64_t count : counts) {
-      Options options = a.common.options;
-      if (count != 0) options.size.elements = count;
+    const SurfaceFile file = read_surface(input, session.context());
+    for (const Options& options : runs) {
       for (const Method method : a.methods) {
-        all.push_back(run_one(input, file, method, options, context));
-        clear_progress();
-        if (!a.common.quiet) std::fputs((all.size() == 1 ? table_head() : "").c_str(), stdout);
-        if (!a.common.quiet) std::fputs(table_row(all.back()).c_str(), stdout);
-        std::fflush(stdout);
+        all.push_back(run_one(input, file, method, options, session.context()));
+        if (all.size() == 1) session.say(table_head());
+        session.say(table_row(all.back()));
       }
     }
   }
   write_comparison(a.common.output, all);
-  if (!a.common.quiet) std::fputs(summary_of(all, a.common.output).c_str(), stdout);
-  const bool any = std::any_of(all.begin(), all.end(), [](const Comparison& c) { return c.failure.empty(); });
-  if (!any) throw MeshingError("no method made a mesh; the first said: " + all.front().failure);
-  return 0;
+  session.say(summary_of(all, a.common.output));
+  const auto failed = [](const Comparison& c) { return !c.failure.empty(); };
+  const auto first = std::find_if(all.begin(), all.end(), failed);
+  if (first == all.end()) return;
+  throw MeshingError(fmt::format("{} of {} runs made no mesh; the first, {} by {}, said: {}",
+                                 std::count_if(all.begin(), all.end(), failed), all.size(), first->model, first->method,
+                                 first->failure));
 }
 
 }  // namespace octafront::cli

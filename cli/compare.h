@@ -1,6 +1,6 @@
 #pragma once
 
-#include "arguments.h"
+#include "session.h"
 
 #include <cstdint>
 #include <string>
@@ -19,8 +19,8 @@ struct CompareArguments {
 void declare_compare(CLI::App& command, CompareArguments& arguments);
 
 /// Meshes every input with every method at every number of elements asked for; writes compare.csv, compare.json and
-/// the charts into the folder; prints the table. A method that fails on an input is a line with its message; the status
-/// is 0 if any mesh was made.
-int run_compare(const CompareArguments& arguments);
+/// the charts into the folder; prints the table. A method that fails on an input is a line with its message, and makes
+/// the whole a MeshingError in the end, when all is written.
+void run_compare(const CompareArguments& arguments, Session& session);
 
 }  // namespace octafront::cli

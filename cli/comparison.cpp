@@ -3,6 +3,7 @@
 #include <octafront/io.h>
 
 #include "charts.h"
+#include "text.h"
 
 #include <algorithm>
 #include <array>
@@ -99,17 +100,15 @@ std::string csv_of(const std::vector<Comparison>& all) {
       "beta_below_0.2,beta_0.2_0.4,beta_0.4_0.6,beta_0.6_0.8,beta_from_0.8,dihedral_min_degrees,dihedral_max_degrees,"
       "volume_over_input,failure\n";
   for (const Comparison& c : all) {
-    std::string failure = first_line(c.failure);
-    std::replace(failure.begin(), failure.end(), '"', '\'');
     const Report& r = c.report;
     const auto& q = r.quality;
-    csv += fmt::format("{},{},{},{},", c.model, c.faces, c.method, c.elements_wanted);
+    csv += fmt::format("{},{},{},{},", csv_field(c.model), c.faces, c.method, c.elements_wanted);
     if (c.failure.empty())
       csv += fmt::format("{},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{},{:.6g},{:.6g},{:.8g},\n", r.tets, r.points,
                          r.boundary_faces, c.filling_seconds(), c.total_seconds(), q.beta_mean, q.beta_min,
                          fmt::join(q.beta_classes, ","), q.dihedral_min, q.dihedral_max, r.volume / r.input_volume);
     else
-      csv += fmt::format(",,,,,,,,,,,,,,,\"{}\"\n", failure);
+      csv += fmt::format(",,,,,,,,,,,,,,,{}\n", csv_field(first_line(c.failure)));
   }
   return csv;
 }
@@ -213,9 +212,17 @@ std::string summary_of(const std::vector<Comparison>& all, const std::filesystem
   return text;
 }
 
+std::vector<std::filesystem::path> comparison_files(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files{folder / "compare.csv", folder / "compare.json"};
+  for (const char* chart : {"beta_classes", "time_elements", "stages"})
+    for (const char* ending : {".svg", ".png"})
+      if (can_draw()) files.push_back(folder / (std::string(chart) + ending));
+  return files;
+}
+
 void write_comparison(const std::filesystem::path& folder, const std::vector<Comparison>& all) {
   write_text(folder / "compare.csv", csv_of(all));
-  write_text(folder / "compare.json", json_of(all).dump(2) + "\n");
+  write_text(folder / "compare.json", json_of(all).dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
   if (!can_draw()) return;
   draw_beta(folder, all);
   draw_times(folder, all);

@@ -29,8 +29,11 @@ std::string table_row(const Comparison& c);
 /// and where the files are.
 std::string summary_of(const std::vector<Comparison>& all, const std::filesystem::path& folder);
 
-/// compare.csv, compare.json, and the charts: beta_classes, time_elements, stages, each as SVG and PNG (none if the
-/// program was built without cairo). Throws OutputError.
+/// What write_comparison() writes into a folder: compare.csv, compare.json, and the charts beta_classes, time_elements,
+/// stages, each as SVG and PNG (none if the program was built without cairo).
+std::vector<std::filesystem::path> comparison_files(const std::filesystem::path& folder);
+
+/// Throws OutputError.
 void write_comparison(const std::filesystem::path& folder, const std::vector<Comparison>& all);
 
 }  // namespace octafront::cli

@@ -6,9 +6,11 @@
 
 namespace octafront::cli {
 
-/// Writes the cavity that stayed open beside `output`, as NAME.cavity.off: a small file that can be sent in the place
-/// of the whole model. Returns the error to end with (exit status 4), which names the file and says how to report it.
-/// Throws OutputError.
-MeshingError with_cavity_written(const OpenCavityError& error, std::filesystem::path output);
+/// Where the cavity of a run that writes `output` goes: NAME.cavity.off beside it.
+std::filesystem::path cavity_file(std::filesystem::path output);
+
+/// Writes the cavity that stayed open there: a small file that can be sent in the place of the whole model. Returns the
+/// error to end with (exit status 4), which names the file and says how to report it. Throws OutputError.
+MeshingError with_cavity_written(const OpenCavityError& error, const std::filesystem::path& output);
 
 }  // namespace octafront::cli

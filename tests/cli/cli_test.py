@@ -2,6 +2,9 @@
 import csv
 import json
 import pathlib
+import os
+import pty
+import resource
 import signal
 import struct
 import subprocess
@@ -35,9 +38,10 @@ class CommandLine(unittest.TestCase):
     def tearDown(self):
         self.scratch.cleanup()
 
-    def run_cli(self, *arguments, status=0):
-        done = subprocess.run([OCTAFRONT, *map(str, arguments)], capture_output=True, text=True, timeout=120)
-        self.assertEqual(done.returncode, status, done.stdout + done.stderr)
+    def run_cli(self, *arguments, status=0, **options):
+        options = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, **options}
+        done = subprocess.run([OCTAFRONT, *map(str, arguments)], text=True, timeout=120, errors="replace", **options)
+        self.assertEqual(done.returncode, status, f"{done.stdout}{done.stderr}")
         return done
 
     def files(self):
@@ -95,10 +99,10 @@ class CommandLine(unittest.TestCase):
         grid, out = self.dir / "grid.vtu", self.dir / "o.vtu"
         self.run_cli("size", self.part, "-o", grid, "--size", 0.2)
         self.run_cli("mesh", self.part, "-o", self.dir / "direct.vtu", "--size", 0.2)
-        self.run_cli("mesh", self.part, "-o", out, "--size-grid", grid)
+        self.run_cli("mesh", self.part, "-o", out, "--size-field", grid)
         count = lambda file: self.run_cli("check", file).stdout.split("mesh of ")[1]
         self.assertEqual(count(out), count(self.dir / "direct.vtu"))
-        self.assertIn("no other", self.run_cli("mesh", self.part, "-o", out, "--size-grid", grid, "--size", 1,
+        self.assertIn("no other", self.run_cli("mesh", self.part, "-o", out, "--size-field", grid, "--size", 1,
                                                status=2).stderr)
         self.run_cli("size", self.part, "-o", self.dir / "grid.txt", status=2)
 
@@ -107,7 +111,7 @@ class CommandLine(unittest.TestCase):
         sizes.write_text("x,y,z,h\n0,0,0,0.05\n1,0,0,0.3\n0,1,0,0.3\n0,0,1,0.3\n")
         regions.write_text('[{"sphere": [0.2, 0.2, 0.2], "radius": 0.1, "size": 0.03}]')
         tets = []
-        for option in ([], ["--size-field", sizes], ["--regions", regions]):
+        for option in ([], ["--point-sizes", sizes], ["--regions", regions]):
             self.run_cli("mesh", self.part, "-o", self.dir / "o.vtu", "--size", 0.3, "--json", report, *option)
             tets.append(json.loads(report.read_text())["tets"])
         self.assertGreater(tets[1], 1.2 * tets[0])
@@ -218,16 +222,198 @@ class CommandLine(unittest.TestCase):
                 self.assertTrue((self.dir / "out" / f"{name}.png").read_bytes().startswith(b"\x89PNG"))
                 self.assertIn("<svg", (self.dir / "out" / f"{name}.svg").read_text())
 
-    def test_compare_shows_failures_and_fails_if_there_is_nothing_else(self):
+    def test_compare_shows_failures_and_fails(self):
         bad = self.dir / "open.off"
         bad.write_text(TETRAHEDRON.replace("4 4 0", "4 3 0").replace("3 0 2 1\n", ""))
-        done = self.run_cli("compare", bad, "-o", self.dir / "out", "--elements", "500", "--methods", "aft,octree")
+        done = self.run_cli("compare", bad, "-o", self.dir / "out", "--elements", "500", "--methods", "aft,octree",
+                            status=4)
         self.assertIn("failed", done.stdout)
+        self.assertIn("1 of 2 runs made no mesh", done.stderr)
         rows = list(csv.DictReader((self.dir / "out" / "compare.csv").open()))
         self.assertIn("open", rows[0]["failure"])
         self.assertEqual(rows[1]["failure"], "", "the octree method meshes an open surface")
-        self.run_cli("compare", bad, "-o", self.dir / "out", "--methods", "aft", status=4)
         self.run_cli("compare", self.part, "-o", self.part / "x", status=5)
+
+    def test_compare_refuses_what_it_cannot_do_before_the_work(self):
+        out = self.dir / "out"
+        for bad in ("100,-5", "0", "1.5"):
+            self.run_cli("compare", self.part, "-o", out, "--elements", bad, status=2)
+        self.assertIn("octree-aft, aft, octree",
+                      self.run_cli("compare", self.part, "-o", out, "--methods", "aft,magic", status=2).stderr)
+        out.mkdir()
+        os.link(self.part, out / "compare.csv")
+        self.assertIn("overwrite", self.run_cli("compare", self.part, "-o", out, status=2).stderr)
+        self.assertEqual(self.part.read_text(), TETRAHEDRON)
+
+    def test_compare_quotes_names(self):
+        name = 'a, "b"\nc'
+        (self.dir / (name + ".off")).write_text(TETRAHEDRON)
+        self.run_cli("compare", self.dir / (name + ".off"), "-o", self.dir / "out", "--methods", "octree")
+        with (self.dir / "out" / "compare.csv").open(newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual([r["model"] for r in rows], [name])
+
+    def test_no_output_overwrites_an_input_or_another_output(self):
+        link, hard, out = self.dir / "link.off", self.dir / "hard.off", self.dir / "o.vtu"
+        link.symlink_to(self.part)
+        os.link(self.part, hard)
+        for target in (self.part, link, hard):
+            done = self.run_cli("mesh", self.part, "-o", out, "--json", target, status=2)
+            self.assertIn("overwritten", done.stderr)
+            self.run_cli("surface", self.part, "-o", target, status=2)
+        sizes = self.dir / "sizes.csv"
+        sizes.write_text("0 0 0 1\n")
+        self.run_cli("mesh", self.part, "-o", out, "--point-sizes", sizes, "--json", sizes, status=2)
+        lost = self.dir / "lost"
+        lost.symlink_to(out)
+        self.run_cli("mesh", self.part, "-o", out, "--json", lost, status=2)
+        cavity = self.dir / "o.cavity.off"
+        cavity.write_text(TETRAHEDRON)
+        self.run_cli("mesh", cavity, "-o", out, status=2)
+        self.assertEqual(self.part.read_text(), TETRAHEDRON)
+        self.assertFalse(out.exists())
+
+    def test_json_tells_the_whole_run_also_of_failures(self):
+        report = self.dir / "r.json"
+        self.run_cli("mesh", self.part, "-o", self.dir / "o.vtu", "--size", 0.3, "--keep-surface", "--json", report)
+        r = json.loads(report.read_text())
+        self.assertEqual((r["command"], r["input"]), ("mesh", str(self.part)))
+        self.assertRegex(r["version"], r"\d+\.\d+")
+        self.assertEqual((r["options"]["size"], r["options"]["keep-surface"]), ("0.3", "true"))
+        self.assertEqual(len(r["worst_element"]["at"]), 3)
+        bad = self.dir / "bad.off"
+        bad.write_text(TETRAHEDRON[:-8])
+        self.run_cli("mesh", bad, "-o", self.dir / "o.vtu", "--json", report, status=3)
+        r = json.loads(report.read_text())
+        self.assertEqual(r["error"]["kind"], "input")
+        self.assertIn("bad.off", r["error"]["message"])
+        self.run_cli("mesh", self.part, "-o", self.dir / "o.vtu", "--size", -1, "--json", report, status=2)
+        self.assertEqual(json.loads(report.read_text())["error"]["kind"], "usage")
+
+    def test_json_can_go_to_standard_output_alone(self):
+        done = self.run_cli("mesh", self.part, "-o", self.dir / "o.vtu", "--size", 0.3, "--json", "-")
+        self.assertGreater(json.loads(done.stdout)["tets"], 0)
+        self.run_cli("mesh", self.part, "-o", "-", status=2)
+        self.assertEqual(self.files(), ["o.vtu", "part.off"])
+
+    def test_check_writes_json(self):
+        surface = json.loads(self.run_cli("check", self.part, "--json", "-").stdout)
+        self.assertEqual((surface["kind"], surface["clean"], surface["bodies"]), ("surface", True, 1))
+        self.part.write_text(TETRAHEDRON.replace("4 4 0", "4 3 0").replace("3 0 2 1\n", ""))
+        surface = json.loads(self.run_cli("check", self.part, "--json", "-", status=3).stdout)
+        self.assertEqual((surface["clean"], surface["defects"]["open_edges"]["count"]), (False, 3))
+        self.assertEqual(surface["error"]["kind"], "input")
+
+    def test_names_that_no_text_has_do_no_harm(self):
+        evil = os.fsencode(self.dir) + b"/\x1b[31m\xff\xc2\x9b.off"
+        with open(evil, "w") as file:
+            file.write(TETRAHEDRON)
+        done = self.run_cli("check", os.fsdecode(evil), "--json", self.dir / "r.json")
+        self.assertIn("\\x1b[31m\\xff\\xc2\\x9b.off", done.stdout)
+        self.assertTrue(json.loads((self.dir / "r.json").read_text())["clean"])
+        self.assertNotIn("\x1b", self.run_cli("check", "\x1b[31m.stl", status=3).stderr)
+
+    def progress(self, terminal):
+        """What a run writes to a terminal of that kind."""
+        ours, theirs = pty.openpty()
+        self.run_cli("mesh", self.part, "-o", self.dir / "o.vtu", "--size", 0.2, stderr=theirs,
+                     env={**os.environ, "TERM": terminal})
+        os.close(theirs)
+        text = b""
+        try:
+            while chunk := os.read(ours, 65536):
+                text += chunk
+        except OSError:
+            pass  # the end of a terminal
+        os.close(ours)
+        return text
+
+    def test_progress_is_for_terminals_that_can_wipe_a_line(self):
+        self.assertIn(b"%", self.progress("xterm"))
+        self.assertEqual(self.progress("dumb"), b"")
+
+    def test_usage_errors_help(self):
+        out = self.dir / "o.vtu"
+        for arguments, words in (
+            (["--max-siz", 1], "did you mean --max-size?"),
+            (["--size-grid", "x"], "--size-grid is called --size-field now"),
+            (["--interior", "dense"], 'uniform, graded; "dense" is none of them'),
+            (["--size", ""], "empty value behind --size"),
+            (["--size="], "empty value behind --size="),
+        ):
+            done = self.run_cli("mesh", self.part, "-o", out, *arguments, status=2)
+            self.assertIn(words, done.stderr)
+        self.assertIn("did you mean mesh?", self.run_cli("mehs", self.part, status=2).stderr)
+        self.assertIn("--output?", self.run_cli("mesh", self.part, "--ouput", out, status=2).stderr)
+        for text in (self.run_cli("mesh", "--help").stdout, done.stderr):
+            self.assertNotIn("{", text)
+
+    def test_options_are_checked_before_anything_is_read(self):
+        for bad in (["--size", -1], ["--gradation", 7], ["--grading", 7], ["--feature-angle", 999]):
+            done = self.run_cli("mesh", self.dir / "absent.stl", "-o", self.dir / "o.vtu", *bad, status=2)
+            self.assertNotIn("absent", done.stderr)
+
+    def test_errors_name_the_file_at_fault(self):
+        out, absent = self.dir / "o.vtu", self.dir / "absent"
+        for option in ("--size-field", "--point-sizes", "--regions"):
+            done = self.run_cli("mesh", self.part, "-o", out, option, absent, status=3)
+            self.assertTrue(done.stderr.startswith(f"octafront: {absent}: "), done.stderr)
+        self.run_cli("mesh", self.part, "-o", out, "--size", 0.3)
+        bad = self.dir / "open.off"
+        bad.write_text(TETRAHEDRON.replace("4 4 0", "4 3 0").replace("3 0 2 1\n", ""))
+        for surface in (bad, absent):
+            done = self.run_cli("improve", out, "-o", self.dir / "p.vtu", "--surface", surface, status=3)
+            self.assertTrue(done.stderr.startswith(f"octafront: {surface}: "), done.stderr)
+
+    def test_notes_name_options(self):
+        done = self.run_cli("mesh", self.part, "-o", self.dir / "o.vtu", "--keep-surface", "--gap", 2)
+        self.assertIn("--gap", done.stdout)
+        self.assertNotIn("`", done.stdout)
+
+    def test_full_disks_pipes_and_memories_are_told(self):
+        out = self.dir / "o.vtu"
+        with open("/dev/full", "w") as full:
+            self.run_cli("check", self.part, status=5, stdout=full)
+        limit = lambda what, size: lambda: resource.setrlimit(what, (size, size))
+        self.run_cli("mesh", self.part, "-o", out, "--size", 0.1, status=5,
+                     preexec_fn=limit(resource.RLIMIT_FSIZE, 1000))
+        done = self.run_cli("mesh", self.part, "-o", out, "--elements", "20000000", "--threads", 1, status=6,
+                            preexec_fn=limit(resource.RLIMIT_AS, 150_000_000))
+        self.assertIn("out of memory", done.stderr)
+        self.assertEqual(self.files(), ["part.off"])
+        # A closed stream must not let an output take its number.
+        self.run_cli("mesh", self.part, "-o", out, "--size", 0.3, preexec_fn=lambda: os.close(1))
+        self.assertIn("a valid mesh", self.run_cli("check", out).stdout)
+
+    def interrupted(self, *arguments, after=0.3):
+        run = subprocess.Popen([OCTAFRONT, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                               text=True)
+        time.sleep(after)
+        run.send_signal(signal.SIGINT)
+        start = time.monotonic()
+        _, error = run.communicate(timeout=30)
+        self.assertEqual(run.returncode, 130, error)
+        return time.monotonic() - start
+
+    def test_interrupts_end_the_wait_for_a_pipe(self):
+        fifo = self.dir / "fifo"
+        os.mkfifo(fifo)
+        self.interrupted("check", fifo)
+        writer = os.open(fifo, os.O_RDWR)
+        os.write(writer, b"OFF\n4 4 0\n")
+        self.interrupted("check", fifo)
+        os.close(writer)
+
+    def test_a_pipe_is_read_to_its_end(self):
+        fifo = self.dir / "fifo"
+        os.mkfifo(fifo)
+        run = subprocess.Popen([OCTAFRONT, "check", fifo], stdout=subprocess.PIPE, text=True)
+        with open(fifo, "w") as writer:
+            writer.write(TETRAHEDRON)
+            writer.flush()
+            time.sleep(0.1)
+            writer.write("# the end\n")
+        self.assertIn("clean", run.communicate(timeout=30)[0])
 
     def test_method_octree_meshes_what_the_others_refuse(self):
         bad, out = self.dir / "open.off", self.dir / "open.vtu"

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <octafront/report.h>
+#include <octafront/run_context.h>
+
+#include "arguments.h"
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace octafront::cli {
+
+using Json = nlohmann::ordered_json;
+
+/// One run of a command: what was asked for, whom to tell, and what will stand in the JSON file.
+class Session {
+ public:
+  explicit Session(const Arguments& arguments);
+
+  const Arguments& arguments() const { return arguments_; }
+  const RunContext& context() const { return context_; }
+
+  /// To stdout, with fields of Options as the command line names them; nothing if the user wants none, or JSON there.
+  void say(const std::string& text) const;
+  void say_notes(const std::string& stage, const std::vector<std::string>& notes) const;
+  /// The table of a run; the same goes into the JSON file.
+  void tell(const Report& report);
+  /// Further keys of the JSON file.
+  void found(const Json& keys) { findings_.update(keys); }
+
+  /// Writes the JSON file if one is wanted; `error` is null for a run that did what it was asked. Throws OutputError.
+  void write_json(const Json& error) const;
+
+ private:
+  const Arguments& arguments_;
+  RunContext context_;
+  Json findings_ = Json::object();
+};
+
+/// Refuses outputs that would overwrite an input or each other, before any work. Throws OptionError, OutputError.
+void check_files(const Arguments& arguments);
+
+}  // namespace octafront::cli

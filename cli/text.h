@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace octafront::cli {
+
+/// `text` as it may go to a terminal: control characters, which names of files may hold, as \xNN; line ends stay.
+std::string printable(std::string_view text);
+
+/// `text` as a field of CSV: in quotes where it holds commas, quotes or line ends.
+std::string csv_field(const std::string& text);
+
+/// The word among `words` that `typed` is a slip of the finger away from, or empty.
+std::string nearest_word(std::string_view typed, const std::vector<std::string>& words);
+
+/// "1 triangle", "2 triangles".
+std::string counted(std::size_t n, const std::string& one);
+
+}  // namespace octafront::cli
