@@ -115,7 +115,7 @@ bool SlidingVertex::load(VertexIndex v, std::span<const HalfFace> star) {
     const int corner = static_cast<int>(h % 4);
     for (int i = 0; i < 4; ++i) {
       const HalfFace across = mesh_.across(4 * t + i);
-      if (i == corner || !is_boundary(across)) continue;
+      if (i == corner || !is_outside(across)) continue;
       const auto& f = kTetFaces[i];
       const int at = f[0] == corner ? 0 : f[1] == corner ? 1 : 2;
       const Tet& c = mesh_.tet(t);

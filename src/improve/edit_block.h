@@ -16,7 +16,7 @@ namespace octafront::improve {
 class EditBlock {
  public:
   /// All of the mesh.
-  explicit EditBlock(EditMesh& mesh) : mesh_(mesh), whole_(true) {}
+  explicit EditBlock(EditMesh& mesh) : mesh_(mesh), complex_(mesh.complex_), whole_(true) {}
   /// The vertices with keys first, ..., first + count - 1, and slots that may be used.
   EditBlock(EditMesh& mesh, VertexIndex first, VertexIndex count, std::vector<TetIndex> free_tets,
             std::vector<VertexIndex> free_points);
@@ -26,7 +26,7 @@ class EditBlock {
   /// True if the tet, which must be alive, may be changed.
   bool owns(TetIndex t) const {
     if (whole_) return true;
-    for (const VertexIndex v : mesh_.tets_[t])
+    for (const VertexIndex v : complex_.tets[t])
       if (!in_range(mesh_.key_[v], first_, count_)) return false;
     return true;
   }
@@ -37,8 +37,8 @@ class EditBlock {
 
   /// The tet behind a half-face of a tet of the block; kNone if there is none, or another's.
   TetIndex behind(HalfFace h) {
-    const HalfFace o = mesh_.across_[h];
-    return is_boundary(o) || !allowed(o / 4) ? kNone : o / 4;
+    const HalfFace o = complex_.across[h];
+    return is_outside(o) || !allowed(o / 4) ? kNone : o / 4;
   }
 
   /// The half-faces opposite v of the tets around it; boundary faces at v are not among them. False if one of the tets
@@ -71,25 +71,21 @@ class EditBlock {
 
  private:
   friend class EditBlocks;
-  class SmallFaceTable;
-
-  enum class Turn { kClosed, kOpen, kGivenUp };
-  /// Walks around the edge from t on, one way, as long as accept(next tet) says so; given up where it does not.
-  template <typename Accept>
-  Turn turn_around(TetIndex t, int i, int j, EdgeRing& out, const Accept& accept) const;
 
   bool allowed(TetIndex t) {
     if (owns(t)) return true;
     cut_ = true;
     return false;
   }
-  std::uint32_t next_mark() { return whole_ ? ++mesh_.mark_ : ++mark_; }
-  std::vector<TetIndex>& free_tets() { return whole_ ? mesh_.free_ : free_tets_; }
+  std::uint32_t next_mark() { return whole_ ? complex_.new_mark() : ++mark_; }
+  std::vector<TetIndex>& free_tets() { return whole_ ? complex_.free : free_tets_; }
   bool has_room(std::size_t tets) { return whole_ || free_tets_.size() >= tets; }
   TetIndex slot();
-  void turn_boundary(const BoundaryTurn& turn, SmallFaceTable& outside);
+  void turn_boundary(const BoundaryTurn& turn);
 
   EditMesh& mesh_;
+  TetComplex& complex_;
+  TetRim rim_;
   bool whole_ = false, cut_ = false;
   VertexIndex first_ = 0, count_ = 0;
   std::uint32_t mark_ = 0;

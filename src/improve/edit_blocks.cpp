@@ -46,12 +46,12 @@ void EditBlocks::divide(const std::vector<TetIndex>& tets, VertexIndex size, Ver
     vertices += whole && adds_vertices;
   }
   for (const auto& o : own) room += o.empty() ? 0 : kRoom + o.size() / kRoomPart;
-  if (mesh_.free_.size() < room) mesh_.reserve_tets(room - mesh_.free_.size());
+  if (mesh_.complex_.free.size() < room) mesh_.reserve_tets(room - mesh_.complex_.free.size());
   if (mesh_.free_points_.size() < vertices) mesh_.reserve_points(vertices - mesh_.free_points_.size());
   for (VertexIndex b = 0; b < own.size(); ++b) {
     if (own[b].empty()) continue;
     const VertexIndex first = b * size < shift ? 0 : b * size - shift, last = (b + 1) * size - shift;
-    EditBlock block(mesh_, first, last - first, take_last(mesh_.free_, kRoom + own[b].size() / kRoomPart),
+    EditBlock block(mesh_, first, last - first, take_last(mesh_.complex_.free, kRoom + own[b].size() / kRoomPart),
                     take_last(mesh_.free_points_, adds_vertices ? own[b].size() : 0));
     shares_.push_back({std::move(block), std::move(own[b]), {}, {}});
   }
@@ -62,8 +62,8 @@ std::vector<TetIndex> EditBlocks::finish() {
     EditBlock& block = shares_[k].block;
     left_.insert(left_.end(), shares_[k].left.begin(), shares_[k].left.end());
     if (block.whole_) continue;
-    mesh_.mark_ = std::max(mesh_.mark_, block.mark_);
-    mesh_.free_.insert(mesh_.free_.end(), block.free_tets_.begin(), block.free_tets_.end());
+    mesh_.complex_.last_mark = std::max(mesh_.complex_.last_mark, block.mark_);
+    mesh_.complex_.free.insert(mesh_.complex_.free.end(), block.free_tets_.begin(), block.free_tets_.end());
     mesh_.free_points_.insert(mesh_.free_points_.end(), block.free_points_.begin(), block.free_points_.end());
   }
   std::sort(left_.begin(), left_.end());

@@ -2,7 +2,8 @@
 
 #include <octafront/error.h>
 
-#include "improve/sorted_face.h"
+#include "core/validate.h"
+#include "geometry/predicates.h"
 #include "improve/spatial_order.h"
 #include "mesh/index_range.h"
 
@@ -12,59 +13,12 @@
 #include <fmt/format.h>
 
 namespace octafront::improve {
-namespace {
-
-/// Faces in buckets by their least corner: whoever comes second to a pair of other corners finds the first.
-class FaceMatcher {
- public:
-  explicit FaceMatcher(std::vector<std::uint32_t>&& faces_of_least_corner) : next_(std::move(faces_of_least_corner)) {
-    std::uint32_t at = 0;
-    for (std::uint32_t& n : next_) {
-      const std::uint32_t count = n;
-      n = at;
-      at += count;
-    }
-    begin_ = next_;
-    entries_.resize(at);
-  }
-
-  /// The waiting partner of the face, taken out, or kNone after putting this one in.
-  std::uint32_t match(const std::array<VertexIndex, 3>& face, std::uint32_t id) {
-    Entry* first = entries_.data() + begin_[face[0]];
-    Entry* last = entries_.data() + next_[face[0]];
-    const std::uint64_t others = std::uint64_t{face[1]} << 32 | face[2];
-    for (Entry* e = first; e != last; ++e)
-      if (e->others == others) {
-        const std::uint32_t found = e->id;
-        *e = *(last - 1);
-        --next_[face[0]];
-        return found;
-      }
-    *last = {others, id};
-    ++next_[face[0]];
-    return kNone;
-  }
-
-  bool all_matched() const { return next_ == begin_; }
-
- private:
-  struct Entry {
-    std::uint64_t others;
-    std::uint32_t id;
-  };
-  std::vector<std::uint32_t> begin_, next_;
-  std::vector<Entry> entries_;
-};
-
-}  // namespace
-
 EditMesh::EditMesh(TetMesh&& mesh, ImproveOptions::Objective objective) : objective_(objective) {
   require_in_range(mesh.tets.size(), kMostTetsToImprove, "tetrahedra to improve");
   take(mesh);
   rest_ = std::move(mesh);
   connect();
   compute_shapes();
-  tet_mark_.assign(tets_.size(), 0);
 }
 
 void EditMesh::take(TetMesh& mesh) {
@@ -82,53 +36,40 @@ void EditMesh::take(TetMesh& mesh) {
   for (Triangle& t : mesh.boundary)
     for (VertexIndex& v : t) v = new_of_old[v];
   had_regions_ = !mesh.region.empty();
-  tets_.reserve(mesh.tets.size());
+  complex_.tets.reserve(mesh.tets.size());
   region_.reserve(mesh.tets.size());
-  for (const TetIndex t : order_by_least_corner(mesh.tets, points_.size())) {
-    tets_.push_back(mesh.tets[t]);
+  const Groups<> by_corner = group_by_least_corner(mesh.tets, points_.size());
+  for (const TetIndex t : by_corner.items()) {
+    complex_.tets.push_back(mesh.tets[t]);
     region_.push_back(had_regions_ ? mesh.region[t] : 0);
   }
 }
 
 void EditMesh::connect() {
-  std::vector<std::uint32_t> count(points_.size(), 0);
-  for (const Tet& t : tets_)
-    for (int i = 0; i < 4; ++i) ++count[sorted_face(t, i)[0]];
-  for (const Triangle& t : rest_.boundary) ++count[sorted_face(t)[0]];
-  FaceMatcher matcher(std::move(count));
-  across_.assign(4 * tets_.size(), kNone);
-  tet_of_.assign(points_.size(), kNone);
+  complex_.connect(points_.size(), rest_.boundary);
   on_boundary_.assign(points_.size(), 0);
-  for (std::uint32_t b = 0; b < rest_.boundary.size(); ++b) {
-    matcher.match(sorted_face(rest_.boundary[b]), kFirstBoundary + b);
-    for (const VertexIndex v : rest_.boundary[b]) on_boundary_[v] = 1;
+  for (const Triangle& t : rest_.boundary)
+    for (const VertexIndex v : t) on_boundary_[v] = 1;
+  for (HalfFace h = 0; h < complex_.across.size(); ++h) {
+    const HalfFace o = complex_.across[h];
+    if (o == kNone) throw_unmatched(h);
+    if (!is_outside(o) && region_[h / 4] != region_[o / 4]) part(h, o);
   }
-  for (TetIndex t = 0; t < tets_.size(); ++t) {
-    for (const VertexIndex v : tets_[t]) tet_of_[v] = t;
-    for (int i = 0; i < 4; ++i) {
-      const HalfFace h = 4 * t + i, other = matcher.match(sorted_face(tets_[t], i), h);
-      if (other == kNone) continue;
-      across_[h] = other;
-      if (is_boundary(other)) continue;
-      across_[other] = h;
-      if (region_[t] != region_[other / 4]) part(h, other);
-    }
-  }
-  for (HalfFace h = 0; h < across_.size(); ++h)
-    if (across_[h] == kNone) {
-      const auto f = sorted_face(tets_[h / 4], static_cast<int>(h % 4));
-      throw MeshingError(fmt::format("face ({}, {}, {}) of tetrahedron {} is neither shared nor on the boundary", f[0],
-                                     f[1], f[2], h / 4));
-    }
+}
+
+void EditMesh::throw_unmatched(HalfFace h) const {
+  const Triangle f = face_key(complex_.face(h));
+  throw MeshingError(fmt::format("face ({}, {}, {}) of tetrahedron {} is neither shared nor on the boundary", f[0],
+                                 f[1], f[2], h / 4));
 }
 
 void EditMesh::part(HalfFace h, HalfFace other) {
-  for (const HalfFace side : {h, other}) across_[side] = kBetweenRegions;
-  for (const VertexIndex v : sorted_face(tets_[h / 4], static_cast<int>(h % 4))) on_boundary_[v] = 1;
+  for (const HalfFace side : {h, other}) complex_.across[side] = kBetweenRegions;
+  for (const VertexIndex v : complex_.face(h)) on_boundary_[v] = 1;
 }
 
 void EditMesh::compute_shapes() {
-  shapes_.resize(tets_.size());
+  shapes_.resize(complex_.tets.size());
   ShapeBatch batch(objective_);
   TetIndex first = 0;
   const auto flush = [&] {
@@ -137,7 +78,7 @@ void EditMesh::compute_shapes() {
     first += batch.size;
     batch.size = 0;
   };
-  for (const Tet& t : tets_) {
+  for (const Tet& t : complex_.tets) {
     batch.add(points_[t[0]], points_[t[1]], points_[t[2]], points_[t[3]]);
     if (batch.full()) flush();
   }
@@ -152,22 +93,22 @@ TetMesh EditMesh::release() {
   std::vector<VertexIndex> new_of_old(points_.size(), kNone);
   mesh.points.clear();
   for (const VertexIndex v : here)
-    if (tet_of_[v] != kNone) {
+    if (complex_.tet_at[v] != kNone) {
       new_of_old[v] = static_cast<VertexIndex>(mesh.points.size());
       mesh.points.push_back(points_[v]);
     }
   std::size_t kept = 0;
-  for (TetIndex t = 0; t < tets_.size(); ++t) {
+  for (TetIndex t = 0; t < complex_.tets.size(); ++t) {
     if (!alive(t)) continue;
     region_[kept] = region_[t];
-    for (int i = 0; i < 4; ++i) tets_[kept][i] = new_of_old[tets_[t][i]];
+    for (int i = 0; i < 4; ++i) complex_.tets[kept][i] = new_of_old[complex_.tets[t][i]];
     ++kept;
   }
-  tets_.resize(kept);
+  complex_.tets.resize(kept);
   region_.resize(kept);
   for (Triangle& t : mesh.boundary)
     for (VertexIndex& v : t) v = new_of_old[v];
-  mesh.tets = std::move(tets_);
+  mesh.tets = std::move(complex_.tets);
   if (had_regions_) mesh.region = std::move(region_);
   return mesh;
 }
@@ -175,6 +116,7 @@ TetMesh EditMesh::release() {
 void EditMesh::move(VertexIndex v, Vec3 to, std::span<const HalfFace> star_faces, const ShapeBatch& shapes) {
   points_[v] = to;
   for (std::size_t k = 0; k < star_faces.size(); ++k) shapes_[star_faces[k] / 4] = shapes.shape(static_cast<int>(k));
+  for (std::size_t k = 0; kValidate && k < star_faces.size(); ++k) validate(*this, std::array{star_faces[k] / 4});
 }
 
 std::vector<VertexIndex> EditMesh::numbers_here() const {
@@ -184,22 +126,53 @@ std::vector<VertexIndex> EditMesh::numbers_here() const {
 }
 
 void EditMesh::reserve_tets(std::size_t more) {
-  const std::size_t first = tets_.size(), last = first + more;
-  tets_.resize(last, {kNone, kNone, kNone, kNone});
-  across_.resize(4 * last);
+  const std::size_t first = complex_.tets.size(), last = first + more;
+  complex_.tets.resize(last, {kNone, kNone, kNone, kNone});
+  complex_.across.resize(4 * last);
   shapes_.resize(last, kNoShape);
   region_.resize(last);
-  tet_mark_.resize(last, 0);
-  for (std::size_t t = last; t-- > first;) free_.push_back(static_cast<TetIndex>(t));
+  complex_.marks.resize(last, 0);
+  for (std::size_t t = last; t-- > first;) complex_.free.push_back(static_cast<TetIndex>(t));
 }
 
 void EditMesh::reserve_points(std::size_t more) {
   const std::size_t first = points_.size(), last = first + more;
   points_.resize(last);
-  tet_of_.resize(last, kNone);
+  complex_.tet_at.resize(last, kNone);
   on_boundary_.resize(last, 0);
   key_.resize(last, 0);
   for (std::size_t v = last; v-- > first;) free_points_.push_back(static_cast<VertexIndex>(v));
+}
+
+std::optional<std::string> EditMesh::wrong_at_tet(TetIndex t) const {
+  if (!alive(t)) return shapes_[t] == kNoShape ? std::nullopt : std::optional{fmt::format("slot {} has a shape", t)};
+  for (HalfFace h = 4 * t; h < 4 * t + 4; ++h) {
+    const HalfFace o = across(h);
+    if (!is_outside(o) || o == kBetweenRegions) continue;
+    const std::uint32_t b = o - kFirstOutside;
+    if (b >= rest_.boundary.size() || face_key(rest_.boundary[b]) != face_key(complex_.face(h)))
+      return fmt::format("across face {} of tetrahedron {} lies no boundary triangle on its corners", h % 4, t);
+  }
+  const Tet& c = tet(t);
+  const Vec3 p = point(c[0]), q = point(c[1]), r = point(c[2]), s = point(c[3]);
+  if (orient3d(p, q, r, s) <= 0) return fmt::format("tetrahedron {} is not positive", t);
+  if (shapes_[t] != shape_of(p, q, r, s, objective_))
+    return fmt::format("the shape of tetrahedron {} is not its own", t);
+  return std::nullopt;
+}
+
+std::optional<std::string> EditMesh::first_inconsistency() const {
+  if (auto wrong = complex_.first_inconsistency()) return wrong;
+  for (TetIndex t = 0; t < slots(); ++t)
+    if (auto wrong = wrong_at_tet(t)) return wrong;
+  return std::nullopt;
+}
+
+std::optional<std::string> EditMesh::first_inconsistency(std::span<const TetIndex> touched) const {
+  if (auto wrong = complex_.first_inconsistency(touched)) return wrong;
+  for (const TetIndex t : touched)
+    if (auto wrong = wrong_at_tet(t)) return wrong;
+  return std::nullopt;
 }
 
 Floor EditMesh::floor() const {
@@ -210,7 +183,7 @@ Floor EditMesh::floor() const {
 
 double EditMesh::beta_sum() const {
   double sum = 0;
-  for (TetIndex t = 0; t < tets_.size(); ++t)
+  for (TetIndex t = 0; t < complex_.tets.size(); ++t)
     if (alive(t)) sum += shapes_[t].beta;
   return sum;
 }

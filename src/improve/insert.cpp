@@ -94,7 +94,7 @@ class Inserter {
     for (const TetIndex t : tets_)
       for (int i = 0; i < 4; ++i) {
         const HalfFace o = mesh_.across(4 * t + i);
-        if (!is_boundary(o) && in_cavity(o / 4)) continue;
+        if (!is_outside(o) && in_cavity(o / 4)) continue;
         faces_.push_back(4 * t + i);
         if (faces_.size() > ShapeBatch::kBatch) return;
         const Tet& c = mesh_.tet(t);
@@ -106,7 +106,7 @@ class Inserter {
   bool absorb_behind_worst_face() {
     int worst = -1;
     for (int i = 0; i < star_.size; ++i)
-      if (!is_boundary(mesh_.across(faces_[i])) && (worst < 0 || star_.quality[i] < star_.quality[worst])) worst = i;
+      if (!is_outside(mesh_.across(faces_[i])) && (worst < 0 || star_.quality[i] < star_.quality[worst])) worst = i;
     const TetIndex behind = worst < 0 ? kNone : block_.behind(faces_[worst]);
     if (behind != kNone) tets_.push_back(behind);
     return behind != kNone;

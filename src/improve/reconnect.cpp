@@ -187,7 +187,7 @@ class Reconnector {
       if (std::find(corners.begin(), corners.end(), d) == corners.end()) continue;
       if (ring_.tets.size() > 1) return true;
       for (int i = 0; i < 4; ++i)
-        if (corners[i] != c && corners[i] != d && is_boundary(mesh_.across(4 * t + i))) return true;
+        if (corners[i] != c && corners[i] != d && is_outside(mesh_.across(4 * t + i))) return true;
     }
     return false;
   }

@@ -1,6 +1,7 @@
 #include <octafront/quality.h>
 
 #include "core/stage_timer.h"
+#include "core/validate.h"
 #include "geometry/predicates.h"
 #include "geometry/self_intersection.h"
 #include "improve/explain.h"
@@ -151,6 +152,7 @@ class Schedule {
   void pass(const char* what, Run&& run) {
     if (late_) return;
     note(what, run());
+    validate(mesh_);
     if (!options_.seconds || !(clock_.seconds() > *options_.seconds)) return;
     late_ = true;
     stage_.note(fmt::format("the {} s for improvement were over after pass {}", *options_.seconds, passes_));

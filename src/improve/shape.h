@@ -18,6 +18,8 @@ struct Shape {
   float small;  ///< 1 - cos(smallest dihedral angle), in [0, 2/3]
   float large;  ///< 1 + cos(largest dihedral angle), in [0, 4/3]
   float score;  ///< what the objective says, in (0, 1] for positive elements, not positive for others; see below
+
+  friend bool operator==(const Shape&, const Shape&) = default;
 };
 
 /// Angles that are worth as much as beta = kReferenceBeta are 23 degrees for the smallest and 141 degrees for the

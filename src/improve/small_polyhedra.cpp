@@ -50,7 +50,7 @@ class PolyhedronReconnector {
       for (const TetIndex t : tets_)
         for (int i = 0; i < 4; ++i) {
           const HalfFace across = mesh_.across(4 * t + i);
-          if (is_boundary(across) || holds(across / 4)) continue;
+          if (is_outside(across) || holds(across / 4)) continue;
           const bool free = is_corner(mesh_.tet(across / 4)[across % 4]);
           if (!free && (next_is_free || corners_.size() >= most_corners)) continue;
           const TetIndex behind = block_.behind(4 * t + i);
@@ -74,7 +74,7 @@ class PolyhedronReconnector {
     for (const TetIndex t : tets_)
       for (int i = 0; i < 4; ++i) {
         const HalfFace across = mesh_.across(4 * t + i);
-        if (!is_boundary(across) && holds(across / 4)) continue;
+        if (!is_outside(across) && holds(across / 4)) continue;
         if (faces_.size() == PolyhedronSearch::kMostFaces) return false;
         const Tet& c = mesh_.tet(t);
         const auto& f = kTetFaces[i];

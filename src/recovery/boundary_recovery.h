@@ -4,6 +4,7 @@
 #include <octafront/run_context.h>
 
 #include "recovery/delaunay.h"
+#include "recovery/flips.h"
 #include "recovery/segment_walk.h"
 #include "recovery/subdivided_surface.h"
 
@@ -34,7 +35,7 @@ struct RecoveryCounts {
 /// docs/recovery.md.
 class BoundaryRecovery {
  public:
-  BoundaryRecovery(ExactPoints& points, TetComplex& mesh, SubdividedSurface& surface, VertexIndex frame,
+  BoundaryRecovery(ExactPoints& points, LabelledComplex& mesh, SubdividedSurface& surface, VertexIndex frame,
                    std::uint32_t seed, std::size_t most_points, const RunContext& context)
       : points_(points),
         mesh_(mesh),
@@ -101,7 +102,7 @@ class BoundaryRecovery {
   };
 
   ExactPoints& points_;
-  TetComplex& mesh_;
+  LabelledComplex& mesh_;
   SubdividedSurface& surface_;
   Flipper flipper_;
   VertexIndex frame_;
@@ -110,8 +111,7 @@ class BoundaryRecovery {
   RecoveryCounts counts_;
   SegmentWalk walk_;
   std::vector<Carrier> carrier_;  ///< of vertex frame_ + kFrameVertices + i
-  std::vector<TetIndex> tets_;
-  std::vector<VertexIndex> link_;
+  EdgeRing ring_;
   std::uint32_t random_;
   bool longest_first_;
   bool planes_known_ = false;

@@ -18,13 +18,13 @@ bool same_turn(const Triangle& a, const Triangle& b) {
 
 }  // namespace
 
-void carve(const ExactPoints& points, const SubdividedSurface& surface, TetComplex& mesh) {
+void carve(const ExactPoints& points, const SubdividedSurface& surface, LabelledComplex& mesh) {
   std::vector<Side> side(mesh.slots(), Side::kUnknown);
   std::vector<TetIndex> work;
   const auto claim = [&](TetIndex t, Side s) {
     if (side[t] == s) return;
     if (side[t] != Side::kUnknown) {
-      const Vec3 p = points.at(mesh.corner[t][0]);
+      const Vec3 p = points.at(mesh.tets[t][0]);
       throw MeshingError(
           fmt::format("the surface does not separate inside from outside near ({}, {}, {}): it is open, "
                       "or not oriented outward",
@@ -35,8 +35,8 @@ void carve(const ExactPoints& points, const SubdividedSurface& surface, TetCompl
   };
   for (TetIndex t = 0; t < mesh.slots(); ++t) {
     for (HalfFace h = 4 * t; mesh.alive(t) && h < 4 * t + 4; ++h) {
-      const std::uint32_t f = mesh.label[t][h % 4];
-      if (mesh.opposite(h) == kNone) claim(t, Side::kOutside);
+      const std::uint32_t f = mesh.label(h);
+      if (is_outside(mesh.across[h])) claim(t, Side::kOutside);
       if (f == kNone) continue;
       // Seen from inside, outward is away: the tet inside sees the facet as its own outward face.
       claim(t, same_turn(mesh.face(h), surface.facets()[f].corners) ? Side::kInside : Side::kOutside);
@@ -45,9 +45,9 @@ void carve(const ExactPoints& points, const SubdividedSurface& surface, TetCompl
   while (!work.empty()) {
     const TetIndex t = work.back();
     work.pop_back();
-    for (int i = 0; i < 4; ++i) {
-      const HalfFace o = mesh.across[t][i];
-      if (o != kNone && mesh.label[t][i] == kNone) claim(o / 4, side[t]);
+    for (HalfFace h = 4 * t; h < 4 * t + 4; ++h) {
+      const HalfFace o = mesh.across[h];
+      if (!is_outside(o) && mesh.label(h) == kNone) claim(o / 4, side[t]);
     }
   }
   for (TetIndex t = 0; t < mesh.slots(); ++t) {
@@ -56,12 +56,10 @@ void carve(const ExactPoints& points, const SubdividedSurface& surface, TetCompl
   std::ranges::fill(mesh.tet_at, kNone);
   for (TetIndex t = 0; t < mesh.slots(); ++t) {
     if (!mesh.alive(t)) continue;
-    for (int i = 0; i < 4; ++i) {
-      mesh.tet_at[mesh.corner[t][i]] = t;
-      std::uint32_t& f = mesh.label[t][i];
-      if (f == kNone) continue;
-      f = surface.facets()[f].parent;
-      mesh.across[t][i] = kNone;
+    for (HalfFace h = 4 * t; h < 4 * t + 4; ++h) {
+      mesh.tet_at[mesh.apex(h)] = t;
+      if (const std::uint32_t f = mesh.label(h); f != kNone)
+        mesh.across[h] = kFirstOutside + surface.facets()[f].parent;
     }
   }
 }

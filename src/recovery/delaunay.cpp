@@ -94,6 +94,7 @@ class Builder {
     for (const Vec3& k : kCorners) points_.add(c + r * k);
     mesh_.tet_at.assign(points_.size(), kNone);
     last_ = mesh_.create({first, first + 1, first + 2, first + 3});
+    std::ranges::fill(mesh_.across, kFirstOutside);
     return first;
   }
 
@@ -101,7 +102,7 @@ class Builder {
   VertexIndex insert(VertexIndex v) {
     p_ = points_.at(v);
     const TetIndex t = locate(last_);
-    for (const VertexIndex c : mesh_.corner[t]) {
+    for (const VertexIndex c : mesh_.tets[t]) {
       if (points_.at(c) == p_) return c;
     }
     collect_conflicts(t);
@@ -121,7 +122,7 @@ class Builder {
         if (h == from) continue;
         const Triangle f = mesh_.face(h);
         if (orient3d(points_.at(f[0]), points_.at(f[1]), points_.at(f[2]), p_) <= 0) continue;
-        from = mesh_.opposite(h);
+        from = mesh_.across[h];
         t = from / 4;
         moved = true;
       }
@@ -130,7 +131,7 @@ class Builder {
   }
 
   bool conflicts(TetIndex t) const {
-    const Tet& c = mesh_.corner[t];
+    const Tet& c = mesh_.tets[t];
     return insphere(points_.at(c[0]), points_.at(c[1]), points_.at(c[2]), points_.at(c[3]), p_) > 0;
   }
 
@@ -138,21 +139,21 @@ class Builder {
     const std::uint32_t in = mesh_.new_mark(), out = mesh_.new_mark();
     conflict_.assign(1, start);
     rim_.clear();
-    mesh_.mark(start) = in;
+    mesh_.marks[start] = in;
     for (std::size_t k = 0; k < conflict_.size(); ++k) {
       const TetIndex t = conflict_[k];
       for (int i = 0; i < 4; ++i) {
-        const HalfFace o = mesh_.across[t][i];
-        if (o != kNone && mesh_.mark(o / 4) == in) continue;
-        if (o != kNone && mesh_.mark(o / 4) != out) {
+        const HalfFace o = mesh_.across[4 * t + i];
+        if (!is_outside(o) && mesh_.marks[o / 4] == in) continue;
+        if (!is_outside(o) && mesh_.marks[o / 4] != out) {
           if (conflicts(o / 4)) {
-            mesh_.mark(o / 4) = in;
+            mesh_.marks[o / 4] = in;
             conflict_.push_back(o / 4);
             continue;
           }
-          mesh_.mark(o / 4) = out;
+          mesh_.marks[o / 4] = out;
         }
-        rim_.push_back({mesh_.corner[t], i, o});
+        rim_.push_back({mesh_.tets[t], i, o});
       }
     }
   }
@@ -165,7 +166,7 @@ class Builder {
     for (Rim& r : rim_) {
       r.corners[r.face] = v;
       const TetIndex t = mesh_.create(r.corners);
-      if (r.outer != kNone) mesh_.glue(4 * t + r.face, r.outer);
+      mesh_.join(4 * t + r.face, r.outer);
       for (int i = 0; i < 4; ++i) {
         if (i != r.face) join(4 * t + i, r, i);
       }
@@ -202,7 +203,7 @@ class Builder {
         return;
       }
       if (side.key == key) {
-        mesh_.glue(h, side.half);
+        mesh_.join(h, side.half);
         return;
       }
     }

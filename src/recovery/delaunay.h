@@ -2,8 +2,8 @@
 
 #include <octafront/run_context.h>
 
+#include "mesh/tet_complex.h"
 #include "recovery/exact_point.h"
-#include "recovery/tet_complex.h"
 
 #include <vector>
 

@@ -43,7 +43,7 @@ std::vector<Edge> BoundaryRecovery::missing_edges() {
       from = e[0];
       if (from % 256 == 0) context_.check();
       for (const TetIndex t : mesh_.star(from)) {
-        for (const VertexIndex v : mesh_.corner[t]) seen_from[v] = from;
+        for (const VertexIndex v : mesh_.tets[t]) seen_from[v] = from;
       }
     }
     if (seen_from[e[1]] != from) missing.push_back(e);
@@ -156,8 +156,7 @@ void BoundaryRecovery::refuse_intersection(Vec3 at) const {
 VertexIndex BoundaryRecovery::divide_edge(VertexIndex a, VertexIndex b) {
   for (const Crossing& c : walk_.crossings) {
     if (c.is_edge && surface_.edges().contains(c.x, c.y)) refuse_intersection(points_.at(c.x));
-    if (!c.is_edge && mesh_.label[c.face / 4][c.face % 4] != kNone)
-      refuse_intersection(points_.at(mesh_.face(c.face)[0]));
+    if (!c.is_edge && mesh_.label(c.face) != kNone) refuse_intersection(points_.at(mesh_.face(c.face)[0]));
   }
   learn_planes();
   const std::vector<Crossing>& crossings = walk_.crossings;
@@ -227,17 +226,19 @@ VertexIndex BoundaryRecovery::place_at_crossing(VertexIndex a, VertexIndex b, co
   const double ta = parameter(line, a), tb = parameter(line, b);
   VertexIndex s = kNone;
   Edge crossed{kNone, kNone};
+  std::vector<TetIndex> tets;
   if (c.is_edge) {
     crossed = crossed_line(c.x, c.y);
     s = points_.add_crossing(line[0], line[1], crossed[0], crossed[1]);
-    mesh_.ring(c.x, c.y, c.tet, kNone, tets_, link_);
+    mesh_.closed_ring(c.tet, c.x, c.y, ring_);
+    tets = ring_.tets;
   } else {
     const Triangle f = mesh_.face(c.face);
     s = points_.add_crossing(line[0], line[1], f[0], f[1], f[2]);
-    tets_ = {c.face / 4, mesh_.opposite(c.face) / 4};
+    tets = {c.face / 4, mesh_.across[c.face] / 4};
   }
   carrier_.push_back({line[0], line[1], ta + (tb - ta) * at, crossed});
-  insert(s, tets_);
+  insert(s, tets);
   ++counts_.crossing_points;
   return s;
 }
@@ -245,11 +246,11 @@ VertexIndex BoundaryRecovery::place_at_crossing(VertexIndex a, VertexIndex b, co
 void BoundaryRecovery::insert(VertexIndex s, std::span<const TetIndex> tets) {
   mesh_.tet_at.resize(points_.size(), kNone);
   const std::uint32_t inside = mesh_.new_mark();
-  for (const TetIndex t : tets) mesh_.mark(t) = inside;
+  for (const TetIndex t : tets) mesh_.marks[t] = inside;
   std::vector<Tet> fresh;
   for (const TetIndex t : tets) {
     for (HalfFace h = 4 * t; h < 4 * t + 4; ++h) {
-      if (const HalfFace o = mesh_.opposite(h); o != kNone && mesh_.mark(o / 4) == inside) continue;
+      if (const HalfFace o = mesh_.across[h]; !is_outside(o) && mesh_.marks[o / 4] == inside) continue;
       const Triangle f = mesh_.face(h);
       fresh.push_back({f[0], f[2], f[1], s});
     }

@@ -23,11 +23,11 @@ Edge ordered(VertexIndex a, VertexIndex b) {
 
 HalfFace BoundaryRecovery::find_face(const Triangle& f) {
   const TetIndex start = tet_with_edge(points_, mesh_, f[0], f[1]);
-  if (start == kNone || !mesh_.ring(f[0], f[1], start, kNone, tets_, link_)) return kNone;
-  for (std::size_t i = 0; i < tets_.size(); ++i) {
-    if (link_[i] != f[2]) continue;
-    const VertexIndex other = link_[(i + 1) % link_.size()];
-    return 4 * tets_[i] + static_cast<HalfFace>(mesh_.corner_of(tets_[i], other));
+  if (start == kNone || !mesh_.closed_ring(start, f[0], f[1], ring_)) return kNone;
+  for (std::size_t i = 0; i < ring_.tets.size(); ++i) {
+    if (ring_.ring[i] != f[2]) continue;
+    const VertexIndex other = ring_.ring[(i + 1) % ring_.ring.size()];
+    return mesh_.opposite(ring_.tets[i], other);
   }
   return kNone;
 }
@@ -41,10 +41,10 @@ void BoundaryRecovery::crossing_edges(const Polygon& polygon, std::vector<Edge>&
   const FacetHindrance hindrance(points_, surface_.triangles()[polygon.parent]);
   std::set<Edge> known(edges.begin(), edges.end());
   for (std::size_t k = 0; k < edges.size(); ++k) {
-    if (!mesh_.ring(edges[k][0], edges[k][1], tets[k], kNone, tets_, link_)) continue;
-    for (const TetIndex t : tets_) {
+    if (!mesh_.closed_ring(tets[k], edges[k][0], edges[k][1], ring_)) continue;
+    for (const TetIndex t : ring_.tets) {
       for (const auto& [i, j] : kTetEdges) {
-        const Edge e = ordered(mesh_.corner[t][i], mesh_.corner[t][j]);
+        const Edge e = ordered(mesh_.tets[t][i], mesh_.tets[t][j]);
         if (known.contains(e) || hindrance.of_edge(e[0], e[1]) == 0) continue;
         known.insert(e);
         edges.push_back(e);
@@ -64,15 +64,15 @@ void BoundaryRecovery::crossing_edge_at_side(const Polygon& polygon, std::size_t
   const VertexIndex w = c[(side + k) % n];
   const TetIndex start = tet_with_edge(points_, mesh_, u, v);
   if (start == kNone || k == n) throw std::logic_error("a facet is searched before its edges are there");
-  mesh_.ring(u, v, start, kNone, tets_, link_);
-  for (std::size_t i = 0; i < tets_.size(); ++i) {
-    const VertexIndex p = link_[i], q = link_[(i + 1) % link_.size()];
+  mesh_.closed_ring(start, u, v, ring_);
+  for (std::size_t i = 0; i < ring_.tets.size(); ++i) {
+    const VertexIndex p = ring_.ring[i], q = ring_.ring[(i + 1) % ring_.ring.size()];
     if (p == w || q == w) continue;
     const int before = points_.orient(u, v, p, w), after = points_.orient(u, v, w, q);
     if (after <= 0 || before < 0) continue;
     if (before > 0) {
       edges.push_back(ordered(p, q));
-      tets.push_back(tets_[i]);
+      tets.push_back(ring_.tets[i]);
       return;
     }
     if (std::ranges::count(c, p) > 0) continue;  // a face of the mesh lies in the polygon here
@@ -131,8 +131,8 @@ VertexIndex BoundaryRecovery::point_on_facet(const Polygon& polygon) {
   points_.add_plane(s, points_.plane_of(polygon.parent));
   carrier_.push_back({});
   ++counts_.facet_points;
-  mesh_.ring(p, q, tets[best], kNone, tets_, link_);
-  insert(s, tets_);
+  mesh_.closed_ring(tets[best], p, q, ring_);
+  insert(s, ring_.tets);
   return s;
 }
 
@@ -159,11 +159,11 @@ bool BoundaryRecovery::adopt_face(const Polygon& polygon, std::vector<Polygon>& 
   for (std::size_t i = 0; i < n; ++i) {
     const VertexIndex u = c[i], v = c[(i + 1) % n];
     const TetIndex start = tet_with_edge(points_, mesh_, u, v);
-    if (start == kNone || !mesh_.ring(u, v, start, kNone, tets_, link_)) continue;
+    if (start == kNone || !mesh_.closed_ring(start, u, v, ring_)) continue;
     for (std::size_t k = 2; k < n; ++k) {
       const std::size_t at = (i + k) % n;
       const VertexIndex w = c[at];
-      if (std::ranges::count(link_, w) == 0 || turn(polygon.parent, u, v, w) <= 0) continue;
+      if (std::ranges::count(ring_.ring, w) == 0 || turn(polygon.parent, u, v, w) <= 0) continue;
       if (!label_face({u, v, w}, polygon.parent)) continue;
       if (n == 3) return true;
       surface_.add_edge(v, w);

@@ -37,8 +37,8 @@ double FacetHindrance::of_edge(VertexIndex x, VertexIndex y) const {
 }
 
 bool Flipper::flip_face(HalfFace h, const Hindrance& hindrance, double limit) {
-  const HalfFace o = mesh_.opposite(h);
-  if (o == kNone || mesh_.label[h / 4][h % 4] != kNone) return false;
+  const HalfFace o = mesh_.across[h];
+  if (is_outside(o) || mesh_.label(h) != kNone) return false;
   const Triangle f = mesh_.face(h);
   const VertexIndex d = mesh_.apex(h), e = mesh_.apex(o);
   for (int i = 0; i < 3; ++i) {
@@ -57,18 +57,18 @@ void Flipper::collect_triangles(std::size_t i, std::size_t j, std::vector<Tet>& 
                                 VertexIndex q) const {
   if (j - i < 2) return;
   const std::size_t k = middle_[i][j];
-  fresh.push_back({link_[i], link_[k], link_[j], q});
-  fresh.push_back({link_[i], link_[j], link_[k], p});
+  fresh.push_back({ring_.ring[i], ring_.ring[k], ring_.ring[j], q});
+  fresh.push_back({ring_.ring[i], ring_.ring[j], ring_.ring[k], p});
   collect_triangles(i, k, fresh, p, q);
   collect_triangles(k, j, fresh, p, q);
 }
 
 bool Flipper::remove_edge(TetIndex t, VertexIndex p, VertexIndex q, const Hindrance& hindrance, double limit,
                           VertexIndex ear) {
-  if (kept_.contains(p, q) || !mesh_.ring(p, q, t, kMaxRing, tets_, link_)) return false;
-  const std::size_t n = link_.size();
+  if (kept_.contains(p, q) || !mesh_.closed_ring(t, p, q, ring_, kMaxRing)) return false;
+  const std::size_t n = ring_.ring.size();
   double before = hindrance.of_edge(p, q);
-  for (const VertexIndex r : link_) before += hindrance.of_face(p, q, r);
+  for (const VertexIndex r : ring_.ring) before += hindrance.of_face(p, q, r);
   constexpr double kImpossible = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i + 1 < n; ++i) best_[i][i + 1] = 0;
   for (std::size_t span = 2; span < n; ++span) {
@@ -77,16 +77,17 @@ bool Flipper::remove_edge(TetIndex t, VertexIndex p, VertexIndex q, const Hindra
       best_[i][j] = kImpossible;
       double diagonal = 0;
       if (span + 1 < n) {
-        if (link_[i] == ear || link_[j] == ear) continue;
-        diagonal = hindrance.of_edge(link_[i], link_[j]) + hindrance.of_face(link_[i], link_[j], p) +
-                   hindrance.of_face(link_[i], link_[j], q);
+        if (ring_.ring[i] == ear || ring_.ring[j] == ear) continue;
+        diagonal = hindrance.of_edge(ring_.ring[i], ring_.ring[j]) +
+                   hindrance.of_face(ring_.ring[i], ring_.ring[j], p) +
+                   hindrance.of_face(ring_.ring[i], ring_.ring[j], q);
       }
       for (std::size_t k = i + 1; k < j; ++k) {
         const double parts = best_[i][k] + best_[k][j] + diagonal;
         if (parts >= best_[i][j] || parts - before > limit) continue;
-        if (points_.orient(link_[i], link_[k], link_[j], q) <= 0) continue;
-        if (points_.orient(link_[i], link_[k], link_[j], p) >= 0) continue;
-        const double sum = parts + hindrance.of_face(link_[i], link_[k], link_[j]);
+        if (points_.orient(ring_.ring[i], ring_.ring[k], ring_.ring[j], q) <= 0) continue;
+        if (points_.orient(ring_.ring[i], ring_.ring[k], ring_.ring[j], p) >= 0) continue;
+        const double sum = parts + hindrance.of_face(ring_.ring[i], ring_.ring[k], ring_.ring[j]);
         if (sum >= best_[i][j]) continue;
         best_[i][j] = sum;
         middle_[i][j] = k;
@@ -96,7 +97,7 @@ bool Flipper::remove_edge(TetIndex t, VertexIndex p, VertexIndex q, const Hindra
   if (best_[0][n - 1] - before > limit || best_[0][n - 1] == kImpossible) return false;
   fresh_.clear();
   collect_triangles(0, n - 1, fresh_, p, q);
-  mesh_.replace(tets_, fresh_);
+  mesh_.replace(ring_.tets, fresh_);
   return true;
 }
 
@@ -109,14 +110,15 @@ TetIndex Flipper::find_tet(TetIndex guess, VertexIndex p, VertexIndex q) {
 bool Flipper::shrink_ring(TetIndex t, VertexIndex p, VertexIndex q, const Hindrance& hindrance, VertexIndex ear,
                           int depth) {
   constexpr std::size_t kMaxTried = 40;
-  std::vector<TetIndex> tets;
-  std::vector<VertexIndex> link;
-  if (!mesh_.ring(p, q, t, kMaxTried, tets, link)) return false;
+  EdgeRing ring;
+  if (!mesh_.closed_ring(t, p, q, ring, kMaxTried)) return false;
+  const std::vector<TetIndex>& tets = ring.tets;
+  const std::vector<VertexIndex>& link = ring.ring;
   const std::size_t n = link.size();
   for (std::size_t i = 0; i < n && n > 3; ++i) {
     if (link[i] == ear) continue;
     const VertexIndex next = link[(i + 1) % n];
-    if (flip_face(4 * tets[i] + static_cast<HalfFace>(mesh_.corner_of(tets[i], next)), hindrance, 0)) return true;
+    if (flip_face(mesh_.opposite(tets[i], next), hindrance, 0)) return true;
   }
   for (std::size_t i = 0; i < n && n > 3 && depth > 0; ++i) {
     if (link[i] == ear) continue;

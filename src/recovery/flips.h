@@ -2,7 +2,7 @@
 
 #include "core/flat_map.h"
 #include "recovery/exact_point.h"
-#include "recovery/tet_complex.h"
+#include "recovery/labelled_complex.h"
 
 #include <vector>
 
@@ -59,7 +59,7 @@ class FacetHindrance final : public Hindrance {
 /// Local changes that keep all tets positive, all edges of `kept` and all labelled faces.
 class Flipper {
  public:
-  Flipper(const ExactPoints& points, TetComplex& mesh, const EdgeSet& kept)
+  Flipper(const ExactPoints& points, LabelledComplex& mesh, const EdgeSet& kept)
       : points_(points), mesh_(mesh), kept_(kept) {}
 
   /// The 2-3 flip: an edge takes the place of face h, if the hindrance then changes by at most `limit`.
@@ -87,10 +87,9 @@ class Flipper {
   bool shrink_ring(TetIndex t, VertexIndex p, VertexIndex q, const Hindrance& hindrance, VertexIndex ear, int depth);
 
   const ExactPoints& points_;
-  TetComplex& mesh_;
+  LabelledComplex& mesh_;
   const EdgeSet& kept_;
-  std::vector<TetIndex> tets_;
-  std::vector<VertexIndex> link_;
+  EdgeRing ring_;
   int budget_ = 0;  ///< attempts left to the deep removal that is under way
   std::vector<Tet> fresh_;
   double best_[kMaxRing][kMaxRing];

@@ -2,6 +2,7 @@
 
 #include <octafront/error.h>
 
+#include "core/validate.h"
 #include "recovery/boundary_recovery.h"
 #include "recovery/carve.h"
 #include "recovery/delaunay.h"
@@ -51,8 +52,8 @@ VertexIndex surface_vertex(const SurfaceMesh& surface, const std::vector<VertexI
   VertexIndex name = kNone;
   for (const TetIndex t : star) {
     for (HalfFace h = 4 * t; h < 4 * t + 4; ++h) {
-      if (mesh.opposite(h) != kNone || mesh.apex(h) == v) continue;
-      for (const VertexIndex w : surface.triangles[mesh.label[t][h % 4]]) {
+      if (!is_outside(mesh.across[h]) || mesh.apex(h) == v) continue;
+      for (const VertexIndex w : surface.triangles[mesh.across[h] - kFirstOutside]) {
         if (same_as[w] != v || w == name) continue;
         if (name != kNone) {
           const Vec3 p = surface.points[v];
@@ -78,12 +79,12 @@ void restore_coinciding(const SurfaceMesh& surface, const std::vector<VertexInde
   for (TetIndex t = 0; t < mesh.slots(); ++t) {
     if (!mesh.alive(t)) continue;
     for (int i = 0; i < 4; ++i) {
-      const VertexIndex v = mesh.corner[t][i];
+      const VertexIndex v = mesh.tets[t][i];
       if (v >= shared.size() || !shared[v]) continue;
       const std::vector<TetIndex> star = mesh.star_from(v, t);
       const VertexIndex name = surface_vertex(surface, same_as, mesh, v, star);
       if (name == v || name == kNone) continue;
-      for (const TetIndex u : star) std::ranges::replace(mesh.corner[u], v, name);
+      for (const TetIndex u : star) std::ranges::replace(mesh.tets[u], v, name);
     }
   }
 }
@@ -96,7 +97,7 @@ TetMesh extract(const SurfaceMesh& surface, const ExactPoints& points, const Tet
   for (VertexIndex v = 0; v < surface.points.size(); ++v) number[v] = v;
   for (TetIndex t = 0; t < mesh.slots(); ++t) {
     if (!mesh.alive(t)) continue;
-    Tet c = mesh.corner[t];
+    Tet c = mesh.tets[t];
     for (VertexIndex& v : c) {
       if (number[v] == kNone) {
         number[v] = static_cast<VertexIndex>(result.points.size());
@@ -144,21 +145,25 @@ constexpr std::size_t kMostPointsPerTriangle = 4, kMostPoints = 200, kMorePoints
 
 std::optional<TetMesh> recover(const SurfaceMesh& surface, std::uint32_t attempt, const Stage& stage) {
   auto [points, used] = read_input(surface);
-  TetComplex mesh;
+  TetComplex complex;
   std::vector<VertexIndex> same_as;
-  const VertexIndex frame = delaunay(points, used, mesh, same_as, stage.context());
+  const VertexIndex frame = delaunay(points, used, complex, same_as, stage.context());
+  LabelledComplex mesh(std::move(complex));
+  validate(mesh);
   const std::vector<Triangle> triangles = merged(surface.triangles, same_as);
   SubdividedSurface subdivided(triangles);
   std::size_t most_points = kMostPointsPerTriangle * triangles.size() + kMostPoints;
   for (std::uint32_t k = 0; k < attempt; ++k) most_points *= kMorePoints;
   BoundaryRecovery recovery(points, mesh, subdivided, frame, attempt, most_points, stage.context());
   recovery.run();
+  validate(mesh);
   carve(points, subdivided, mesh);
   SteinerLift lift(points, mesh, triangles, frame + kFrameVertices, frame, attempt, stage.context());
   if (const std::vector<VertexIndex> open = lift.run(); !open.empty()) {
     if (attempt + 1 == kAttempts) throw_no_place(points, open);
     return std::nullopt;
   }
+  validate<TetComplex>(mesh);
   count(stage, recovery.counts(), lift.counts());
   stage.count("attempts", attempt + 1);
   if (!std::ranges::equal(same_as, std::views::iota(VertexIndex{0}, static_cast<VertexIndex>(same_as.size())))) {

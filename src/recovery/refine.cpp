@@ -1,8 +1,9 @@
 #include "recovery/refine.h"
 
+#include "core/validate.h"
 #include "geometry/measures.h"
 #include "geometry/predicates.h"
-#include "recovery/tet_complex.h"
+#include "mesh/tet_complex.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,8 +13,6 @@
 namespace octafront {
 
 namespace {
-
-using namespace recovery;
 
 // All times the size: the largest sphere that stays (a regular element has .61), the nearest that a new point may come
 // to a vertex, and to a boundary face. A closer spacing makes more elements and no better ones.
@@ -36,44 +35,26 @@ Sphere circumscribed(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
   return {a + offset, squared_length(offset)};
 }
 
-// Tells neighbours by their common faces.
-void glue_faces(TetComplex& complex) {
-  struct KeyedFace {
-    Triangle corners;
-    HalfFace half;
-  };
-  std::vector<KeyedFace> faces;
-  for (HalfFace h = 0; h < 4 * complex.slots(); ++h) {
-    Triangle f = complex.face(h);
-    std::ranges::sort(f);
-    faces.push_back({f, h});
-  }
-  std::ranges::sort(faces, [](const KeyedFace& a, const KeyedFace& b) { return a.corners < b.corners; });
-  for (std::size_t i = 0; i + 1 < faces.size(); ++i) {
-    if (faces[i].corners == faces[i + 1].corners) complex.glue(faces[i].half, faces[i + 1].half);
-  }
-}
-
 class Refiner {
  public:
   Refiner(TetMesh& mesh, const SizeField& sizes, const RunContext& context)
       : mesh_(mesh), sizes_(sizes), context_(context) {
-    complex_.tet_at.assign(mesh.points.size(), kNone);
-    for (const Tet& c : mesh.tets) complex_.create(c);
-    glue_faces(complex_);
+    complex_.tets = mesh.tets;
+    complex_.connect(mesh.points.size(), mesh.boundary);
   }
 
   void run() {
-    for (TetIndex t = 0; t < complex_.slots(); ++t) queue_.push_back({t, complex_.corner[t]});
+    for (TetIndex t = 0; t < complex_.slots(); ++t) queue_.push_back({t, complex_.tets[t]});
     for (std::uint64_t worked = 0; !queue_.empty(); ++worked) {
       if (worked % 256 == 0) context_.check();
       const auto [t, corners] = queue_.front();
       queue_.pop_front();
-      if (complex_.corner[t] == corners) left_ += !is_small_or_divided(t);
+      if (complex_.tets[t] == corners) left_ += !is_small_or_divided(t);
     }
+    validate(complex_);
     mesh_.tets.clear();
     for (TetIndex t = 0; t < complex_.slots(); ++t) {
-      if (complex_.alive(t)) mesh_.tets.push_back(complex_.corner[t]);
+      if (complex_.alive(t)) mesh_.tets.push_back(complex_.tets[t]);
     }
     mesh_.region.clear();
   }
@@ -88,7 +69,7 @@ class Refiner {
   };
 
   Vec3 at(VertexIndex v) const { return mesh_.points[v]; }
-  bool inside(HalfFace h) const { return h != kNone && marked_ == complex_.mark_of(h / 4); }
+  bool inside(HalfFace h) const { return !is_outside(h) && marked_ == complex_.marks[h / 4]; }
   /// +1 if p lies behind the face, outside its tet.
   int side(HalfFace h, Vec3 p) const {
     const Triangle f = complex_.face(h);
@@ -96,7 +77,7 @@ class Refiner {
   }
 
   bool is_small_or_divided(TetIndex t) {
-    const Tet& c = complex_.corner[t];
+    const Tet& c = complex_.tets[t];
     const Vec3 middle = (at(c[0]) + at(c[1]) + at(c[2]) + at(c[3])) / 4;
     const Sphere sphere = circumscribed(at(c[0]), at(c[1]), at(c[2]), at(c[3]));
     const double largest = kLargestSphere * sizes_.at(middle);
@@ -116,8 +97,8 @@ class Refiner {
       HalfFace out = 4 * t;
       while (out < 4 * t + 4 && side(out, p) <= 0) ++out;
       if (out == 4 * t + 4) return t;
-      const HalfFace o = complex_.opposite(out);
-      if (o == kNone) return kNone;
+      const HalfFace o = complex_.across[out];
+      if (is_outside(o)) return kNone;
       t = o / 4;
     }
     return kNone;
@@ -129,11 +110,11 @@ class Refiner {
     corners_.clear();
     rim_.clear();
     for (const TetIndex t : cavity_) {
-      corners_.insert(corners_.end(), complex_.corner[t].begin(), complex_.corner[t].end());
+      corners_.insert(corners_.end(), complex_.tets[t].begin(), complex_.tets[t].end());
       for (HalfFace g = 4 * t; g < 4 * t + 4; ++g) {
-        const HalfFace o = complex_.opposite(g);
+        const HalfFace o = complex_.across[g];
         if (inside(o)) continue;
-        if (o == kNone && height(g, p) < kClearance * h) return false;
+        if (is_outside(o) && height(g, p) < kClearance * h) return false;
         const Triangle f = complex_.face(g);
         rim_.insert(rim_.end(), f.begin(), f.end());
       }
@@ -148,13 +129,13 @@ class Refiner {
   bool find_cavity(TetIndex holder, Vec3 p) {
     cavity_.assign(1, holder);
     marked_ = complex_.new_mark();
-    complex_.mark(holder) = marked_;
+    complex_.marks[holder] = marked_;
     for (std::size_t k = 0; k < cavity_.size(); ++k) {
       for (HalfFace h = 4 * cavity_[k]; h < 4 * cavity_[k] + 4; ++h) {
-        const HalfFace o = complex_.opposite(h);
-        if (o == kNone || inside(o) || !in_sphere(o / 4, p)) continue;
+        const HalfFace o = complex_.across[h];
+        if (is_outside(o) || inside(o) || !in_sphere(o / 4, p)) continue;
         if (cavity_.size() >= kMaxCavity) return false;
-        complex_.mark(o / 4) = marked_;
+        complex_.marks[o / 4] = marked_;
         cavity_.push_back(o / 4);
       }
     }
@@ -162,7 +143,7 @@ class Refiner {
       before = cavity_.size();
       std::erase_if(cavity_, [&](TetIndex t) {
         const bool hidden = hides_outer_face(t, p);
-        if (hidden) complex_.mark(t) = 0;
+        if (hidden) complex_.marks[t] = 0;
         return hidden;
       });
       if (!inside(4 * holder)) return false;
@@ -172,13 +153,13 @@ class Refiner {
   }
 
   bool in_sphere(TetIndex t, Vec3 p) const {
-    const Tet& c = complex_.corner[t];
+    const Tet& c = complex_.tets[t];
     return insphere(at(c[0]), at(c[1]), at(c[2]), at(c[3]), p) > 0;
   }
 
   bool hides_outer_face(TetIndex t, Vec3 p) const {
     for (HalfFace h = 4 * t; h < 4 * t + 4; ++h) {
-      if (!inside(complex_.opposite(h)) && side(h, p) >= 0) return true;
+      if (!inside(complex_.across[h]) && side(h, p) >= 0) return true;
     }
     return false;
   }
@@ -187,13 +168,13 @@ class Refiner {
   void keep_part_of(TetIndex holder) {
     const std::uint32_t whole = marked_;
     marked_ = complex_.new_mark();
-    complex_.mark(holder) = marked_;
+    complex_.marks[holder] = marked_;
     cavity_.assign(1, holder);
     for (std::size_t k = 0; k < cavity_.size(); ++k) {
       for (HalfFace h = 4 * cavity_[k]; h < 4 * cavity_[k] + 4; ++h) {
-        const HalfFace o = complex_.opposite(h);
-        if (o == kNone || complex_.mark_of(o / 4) != whole) continue;
-        complex_.mark(o / 4) = marked_;
+        const HalfFace o = complex_.across[h];
+        if (is_outside(o) || complex_.marks[o / 4] != whole) continue;
+        complex_.marks[o / 4] = marked_;
         cavity_.push_back(o / 4);
       }
     }
@@ -222,7 +203,7 @@ class Refiner {
     fresh_.clear();
     for (std::size_t i = 0; i < rim_.size(); i += 3) fresh_.push_back({rim_[i], rim_[i + 2], rim_[i + 1], v});
     complex_.replace(cavity_, fresh_);
-    for (const TetIndex t : complex_.created()) queue_.push_back({t, complex_.corner[t]});
+    for (const TetIndex t : complex_.created()) queue_.push_back({t, complex_.tets[t]});
     ++added_;
   }
 

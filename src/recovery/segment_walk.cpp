@@ -39,12 +39,12 @@ class Walker {
   void set_face(Crossing& c, TetIndex t, VertexIndex opposite) const {
     c.is_edge = false;
     c.tet = t;
-    c.face = 4 * t + static_cast<HalfFace>(mesh_.corner_of(t, opposite));
+    c.face = mesh_.opposite(t, opposite);
   }
 
   bool from_face(const Crossing& c, Crossing& next) {
     const Triangle f = mesh_.face(c.face);
-    const HalfFace o = mesh_.opposite(c.face);
+    const HalfFace o = mesh_.across[c.face];
     const TetIndex t = o / 4;
     const VertexIndex d = mesh_.apex(o);
     next.piece_tet = t;
@@ -68,14 +68,14 @@ class Walker {
 
   bool from_edge(const Crossing& c, Crossing& next) {
     const VertexIndex x = c.x, y = c.y;
-    if (!mesh_.ring(x, y, c.tet, kNone, tets_, link_)) throw_vertex_on_segment(points_, a_, b_, x);
-    const std::size_t n = tets_.size();
+    if (!mesh_.closed_ring(c.tet, x, y, ring_)) throw_vertex_on_segment(points_, a_, b_, x);
+    const std::size_t n = ring_.tets.size();
     for (std::size_t i = 0; i < n; ++i) {
-      const VertexIndex p = link_[i], q = link_[(i + 1) % n];
+      const VertexIndex p = ring_.ring[i], q = ring_.ring[(i + 1) % n];
       const int before = points_.orient(x, y, p, b_);
       const int after = p == b_ ? 1 : points_.orient(x, y, b_, q);
-      if (p == b_ || (before == 0 && after > 0)) return inside_face(x, y, p, q, tets_[i], next);
-      if (before > 0 && after > 0) return inside_tet(x, y, p, q, tets_[i], next);
+      if (p == b_ || (before == 0 && after > 0)) return inside_face(x, y, p, q, ring_.tets[i], next);
+      if (before > 0 && after > 0) return inside_tet(x, y, p, q, ring_.tets[i], next);
     }
     throw_vertex_on_segment(points_, a_, b_, x);
   }
@@ -83,7 +83,7 @@ class Walker {
   // The segment runs from edge (x, y) inside the face (x, y, p); q is off its plane.
   bool inside_face(VertexIndex x, VertexIndex y, VertexIndex p, VertexIndex q, TetIndex t, Crossing& next) {
     next.piece_tet = t;
-    next.piece_face = 4 * t + static_cast<HalfFace>(mesh_.corner_of(t, q));
+    next.piece_face = mesh_.opposite(t, q);
     if (p == b_) return false;
     const int sp = side(q, p), sx = side(q, x);
     if (sp == 0) throw_vertex_on_segment(points_, a_, b_, p);
@@ -106,8 +106,7 @@ class Walker {
   const ExactPoints& points_;
   TetComplex& mesh_;
   VertexIndex a_, b_;
-  std::vector<TetIndex> tets_;
-  std::vector<VertexIndex> link_;
+  EdgeRing ring_;
 };
 
 // The part of the star that the ray enters, if tet t holds it: all three signs nonnegative.
@@ -128,7 +127,7 @@ bool hit_in_tet(const TetComplex& mesh, TetIndex t, int at, const std::array<int
       hit.crossing.is_edge = true;
       hit.crossing.x = f[i];
       hit.crossing.y = f[j];
-      hit.crossing.piece_face = 4 * t + static_cast<HalfFace>(mesh.corner_of(t, f[k]));
+      hit.crossing.piece_face = mesh.opposite(t, f[k]);
       return true;
     }
     if (zeros == 2 && s[i] > 0) {
@@ -150,7 +149,7 @@ FirstHit first_hit(const ExactPoints& points, TetComplex& mesh, VertexIndex a, V
     for (unsigned m = 0; m < 3; ++m) {
       const unsigned i = (m + shift) % 3;
       s[i] = points.orient(a, b, f[i], f[(i + 1) % 3]);
-      const auto h = 4 * t + static_cast<HalfFace>(mesh.corner_of(t, f[(i + 2) % 3]));
+      const auto h = mesh.opposite(t, f[(i + 2) % 3]);
       if (s[i] < 0 && h != from) return h;
     }
     return kNone;
@@ -160,7 +159,7 @@ FirstHit first_hit(const ExactPoints& points, TetComplex& mesh, VertexIndex a, V
   std::uint32_t random = a * 2654435761u + b;
   constexpr int kMaxSteps = 400;
   for (int step = 0; step < kMaxSteps; ++step) {
-    if (const int to = mesh.corner_of(t, b); to < 4) {
+    if (mesh.has(t, b)) {
       hit.vertex = b;
       hit.tet = t;
       return hit;
@@ -172,8 +171,8 @@ FirstHit first_hit(const ExactPoints& points, TetComplex& mesh, VertexIndex a, V
       if (s[0] >= 0 && s[1] >= 0 && s[2] >= 0 && hit_in_tet(mesh, t, at, s, hit)) return hit;
       break;
     }
-    const HalfFace o = mesh.opposite(out);
-    if (o == kNone) break;
+    const HalfFace o = mesh.across[out];
+    if (is_outside(o)) break;
     from = o;
     t = o / 4;
   }

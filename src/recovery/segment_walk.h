@@ -1,7 +1,7 @@
 #pragma once
 
+#include "mesh/tet_complex.h"
 #include "recovery/exact_point.h"
-#include "recovery/tet_complex.h"
 
 #include <optional>
 #include <vector>

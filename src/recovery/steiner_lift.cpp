@@ -30,7 +30,7 @@ void SteinerLift::split_umbrellas() {
   std::vector<std::vector<TetIndex>> tets_of(end - first_steiner_);
   for (TetIndex t = 0; t < mesh_.slots(); ++t) {
     if (!mesh_.alive(t)) continue;
-    for (const VertexIndex v : mesh_.corner[t]) {
+    for (const VertexIndex v : mesh_.tets[t]) {
       if (v >= first_steiner_) tets_of[v - first_steiner_].push_back(t);
     }
   }
@@ -45,7 +45,7 @@ void SteinerLift::split_umbrellas() {
         name = points_.add_copy(s);
         mesh_.tet_at.push_back(kNone);
       }
-      for (const TetIndex t : component) std::ranges::replace(mesh_.corner[t], s, name);
+      for (const TetIndex t : component) std::ranges::replace(mesh_.tets[t], s, name);
       mesh_.tet_at[name] = component.front();
     }
   }
@@ -67,10 +67,10 @@ std::vector<SteinerLift::Fan> SteinerLift::fans_around(VertexIndex s) {
   star_ = mesh_.star(s);
   for (const TetIndex t : star_) {
     for (HalfFace h = 4 * t; h < 4 * t + 4; ++h) {
-      if (mesh_.opposite(h) != kNone || mesh_.apex(h) == s) continue;
+      if (!is_outside(mesh_.across[h]) || mesh_.apex(h) == s) continue;
       Triangle f = mesh_.face(h);
       while (f[0] != s) std::ranges::rotate(f, f.begin() + 1);
-      spokes.push_back({f[1], f[2], mesh_.label[t][h % 4]});
+      spokes.push_back({f[1], f[2], mesh_.across[h] - kFirstOutside});
     }
   }
   // In turn, starting where the parent changes.
@@ -107,7 +107,7 @@ bool SteinerLift::is_ear(const std::vector<VertexIndex>& polygon, std::size_t i,
 }
 
 // The polygon that the fan covers, divided without its centre.
-bool SteinerLift::triangulate(const Fan& fan, std::vector<LabelledFace>& faces) const {
+bool SteinerLift::triangulate(const Fan& fan, std::vector<TetComplex::BoundaryFace>& faces) const {
   const Triangle& plane = triangles_[fan.parent];
   const VertexIndex o = off_plane(fan.parent);
   const int up = points_.orient(plane[0], plane[1], plane[2], o);
@@ -126,7 +126,8 @@ bool SteinerLift::triangulate(const Fan& fan, std::vector<LabelledFace>& faces) 
       }
     }
     if (best == n) return false;
-    faces.push_back({{polygon[(best + n - 1) % n], polygon[best], polygon[(best + 1) % n]}, fan.parent});
+    faces.push_back(
+        {{polygon[(best + n - 1) % n], polygon[best], polygon[(best + 1) % n]}, kFirstOutside + fan.parent});
     polygon.erase(polygon.begin() + static_cast<std::ptrdiff_t>(best));
   }
   return true;
@@ -137,7 +138,7 @@ double SteinerLift::collapse_quality(VertexIndex s, VertexIndex target, double a
   double worst = 1;
   for (const TetIndex t : star_) {
     if (mesh_.has(t, target)) continue;
-    Tet c = mesh_.corner[t];
+    Tet c = mesh_.tets[t];
     std::ranges::replace(c, s, target);
     worst = std::min(worst, radius_ratio(points_.at(c[0]), points_.at(c[1]), points_.at(c[2]), points_.at(c[3])));
     if (worst <= at_least && at_least > 0) return -1;
@@ -148,17 +149,17 @@ double SteinerLift::collapse_quality(VertexIndex s, VertexIndex target, double a
 
 void SteinerLift::collapse_onto(VertexIndex s, VertexIndex target) {
   std::vector<Tet> fresh;
-  std::vector<LabelledFace> boundary;
+  std::vector<TetComplex::BoundaryFace> boundary;
   for (const TetIndex t : star_) {
     if (!mesh_.has(t, target)) {
-      fresh.push_back(mesh_.corner[t]);
+      fresh.push_back(mesh_.tets[t]);
       std::ranges::replace(fresh.back(), s, target);
     }
     for (HalfFace h = 4 * t; h < 4 * t + 4; ++h) {
       Triangle f = mesh_.face(h);
-      if (mesh_.opposite(h) != kNone || mesh_.apex(h) == s || std::ranges::count(f, target) > 0) continue;
+      if (!is_outside(mesh_.across[h]) || mesh_.apex(h) == s || std::ranges::count(f, target) > 0) continue;
       std::ranges::replace(f, s, target);
-      boundary.push_back({f, mesh_.label[t][h % 4]});
+      boundary.push_back({f, mesh_.across[h]});
     }
   }
   mesh_.replace(star_, fresh, s, boundary);
@@ -189,7 +190,7 @@ bool SteinerLift::merge_inside(VertexIndex v) {
   double worst = 1;
   std::vector<VertexIndex> neighbours;
   for (const TetIndex t : star_) {
-    const Tet& c = mesh_.corner[t];
+    const Tet& c = mesh_.tets[t];
     worst = std::min(worst, radius_ratio(points_.at(c[0]), points_.at(c[1]), points_.at(c[2]), points_.at(c[3])));
     for (const VertexIndex u : c) {
       if (u != v && std::ranges::find(neighbours, u) == neighbours.end()) neighbours.push_back(u);
@@ -211,44 +212,44 @@ bool SteinerLift::merge_inside(VertexIndex v) {
 bool SteinerLift::grow_cavity(VertexIndex s, Vec3 x, std::size_t limit) {
   cavity_ = star_;
   const std::uint32_t inside = mesh_.new_mark();
-  for (const TetIndex t : cavity_) mesh_.mark(t) = inside;
+  for (const TetIndex t : cavity_) mesh_.marks[t] = inside;
   for (std::size_t k = 0; k < cavity_.size(); ++k) {
     const TetIndex t = cavity_[k];
     for (HalfFace h = 4 * t; h < 4 * t + 4; ++h) {
-      const HalfFace o = mesh_.opposite(h);
-      if (o != kNone && mesh_.mark(o / 4) == inside) continue;
+      const HalfFace o = mesh_.across[h];
+      if (!is_outside(o) && mesh_.marks[o / 4] == inside) continue;
       const Triangle f = mesh_.face(h);
-      if (o == kNone && (f[0] == s || f[1] == s || f[2] == s)) continue;
+      if (is_outside(o) && (f[0] == s || f[1] == s || f[2] == s)) continue;
       if (points_.orient(f[0], f[1], f[2], x) < 0) continue;
-      if (o == kNone || cavity_.size() >= limit) return false;
-      mesh_.mark(o / 4) = inside;
+      if (is_outside(o) || cavity_.size() >= limit) return false;
+      mesh_.marks[o / 4] = inside;
       cavity_.push_back(o / 4);
     }
   }
   rim_.clear();
   for (const TetIndex t : cavity_) {
     for (HalfFace h = 4 * t; h < 4 * t + 4; ++h) {
-      const HalfFace o = mesh_.opposite(h);
-      if (o != kNone && mesh_.mark(o / 4) == inside) continue;
+      const HalfFace o = mesh_.across[h];
+      if (!is_outside(o) && mesh_.marks[o / 4] == inside) continue;
       const Triangle f = mesh_.face(h);
-      if (o != kNone || (f[0] != s && f[1] != s && f[2] != s)) rim_.push_back(f);
+      if (!is_outside(o) || (f[0] != s && f[1] != s && f[2] != s)) rim_.push_back(f);
     }
   }
   return true;
 }
 
-double SteinerLift::cavity_quality(Vec3 x, const std::vector<LabelledFace>& boundary) const {
+double SteinerLift::cavity_quality(Vec3 x, const std::vector<TetComplex::BoundaryFace>& boundary) const {
   double worst = 1;
   const auto look = [&](const Triangle& f) {
     worst = std::min(worst, radius_ratio(points_.at(f[0]), points_.at(f[2]), points_.at(f[1]), x));
   };
   for (const Triangle& f : rim_) look(f);
-  for (const LabelledFace& f : boundary) look(f.corners);
+  for (const TetComplex::BoundaryFace& f : boundary) look(f.corners);
   return worst;
 }
 
 bool SteinerLift::place(VertexIndex s, Vec3 x, const std::vector<Fan>& fans,
-                        const std::vector<LabelledFace>& boundary) {
+                        const std::vector<TetComplex::BoundaryFace>& boundary) {
   for (const Fan& fan : fans) {
     const Triangle& t = triangles_[fan.parent];
     if (points_.orient(t[0], t[1], t[2], x) >= 0) return false;
@@ -257,7 +258,7 @@ bool SteinerLift::place(VertexIndex s, Vec3 x, const std::vector<Fan>& fans,
   std::vector<Tet> fresh;
   const auto cone = [&](const Triangle& f) { fresh.push_back({f[0], f[2], f[1], s}); };
   for (const Triangle& f : rim_) cone(f);
-  for (const LabelledFace& f : boundary) cone(f.corners);
+  for (const TetComplex::BoundaryFace& f : boundary) cone(f.corners);
   mesh_.replace(cavity_, fresh, s, boundary);
   points_.move(s, x);
   return true;
@@ -265,7 +266,7 @@ bool SteinerLift::place(VertexIndex s, Vec3 x, const std::vector<Fan>& fans,
 
 bool SteinerLift::lift(VertexIndex s, int round) {
   const std::vector<Fan> fans = fans_around(s);
-  std::vector<LabelledFace> boundary;
+  std::vector<TetComplex::BoundaryFace> boundary;
   for (const Fan& fan : fans) {
     if (!triangulate(fan, boundary)) return false;
   }
@@ -280,7 +281,7 @@ bool SteinerLift::lift(VertexIndex s, int round) {
   double size = 0;
   std::size_t n = 0;
   for (const TetIndex t : star_) {
-    for (const VertexIndex v : mesh_.corner[t]) {
+    for (const VertexIndex v : mesh_.tets[t]) {
       if (v == s) continue;
       middle += points_.at(v) - at;
       size = std::max(size, distance(points_.at(v), at));

@@ -2,8 +2,8 @@
 
 #include <octafront/run_context.h>
 
+#include "mesh/tet_complex.h"
 #include "recovery/exact_point.h"
-#include "recovery/tet_complex.h"
 
 #include <cstdint>
 #include <vector>
@@ -47,7 +47,7 @@ class SteinerLift {
 
   void split_umbrellas();
   std::vector<Fan> fans_around(VertexIndex s);
-  bool triangulate(const Fan& fan, std::vector<LabelledFace>& faces) const;
+  bool triangulate(const Fan& fan, std::vector<TetComplex::BoundaryFace>& faces) const;
   bool is_ear(const std::vector<VertexIndex>& polygon, std::size_t i, VertexIndex off_plane, int up) const;
   VertexIndex off_plane(std::uint32_t parent) const;
 
@@ -59,8 +59,9 @@ class SteinerLift {
 
   bool lift(VertexIndex s, int round);
   bool grow_cavity(VertexIndex s, Vec3 x, std::size_t limit);
-  double cavity_quality(Vec3 x, const std::vector<LabelledFace>& boundary) const;
-  bool place(VertexIndex s, Vec3 x, const std::vector<Fan>& fans, const std::vector<LabelledFace>& boundary);
+  double cavity_quality(Vec3 x, const std::vector<TetComplex::BoundaryFace>& boundary) const;
+  bool place(VertexIndex s, Vec3 x, const std::vector<Fan>& fans,
+             const std::vector<TetComplex::BoundaryFace>& boundary);
   double random_unit();
 
   ExactPoints& points_;

@@ -58,6 +58,13 @@ TEST(EditMesh, RefusesFacesThatDoNotMatch) {
   EXPECT_ANY_THROW(EditMesh(std::move(mesh)));
 }
 
+TEST(EditMesh, FindsShapesThatAreNotTrue) {
+  EditMesh mesh(perturbed(kuhn_cube(3), 0.2, 1));
+  EXPECT_EQ(mesh.first_inconsistency(), std::nullopt);
+  mesh.move(0, mesh.point(0) + Vec3{1e-3, 1e-3, 1e-3}, {}, ShapeBatch());  // and no shape set
+  EXPECT_NE(mesh.first_inconsistency(), std::nullopt);
+}
+
 TEST(EditMesh, FindsStarsAndRings) {
   EditMesh mesh(kuhn_cube(2));
   EditBlock whole(mesh);

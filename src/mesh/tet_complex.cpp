@@ -1,0 +1,170 @@
+#include "mesh/tet_complex.h"
+
+#include "core/validate.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+namespace octafront {
+namespace {
+
+/// Faces in buckets by their least corner: whoever comes second to a pair of other corners finds the first. Half the
+/// time of a FaceTable, which would sort them.
+class FaceMatcher {
+ public:
+  explicit FaceMatcher(std::vector<std::uint32_t>&& faces_of_least_corner) : next_(std::move(faces_of_least_corner)) {
+    std::uint32_t at = 0;
+    for (std::uint32_t& n : next_) at += std::exchange(n, at);
+    begin_ = next_;
+    entries_.resize(at);
+  }
+
+  /// The waiting partner of the face, taken out, or kNone after putting this one in.
+  std::uint32_t match(const Triangle& key, std::uint32_t id) {
+    Entry* first = entries_.data() + begin_[key[0]];
+    Entry* last = entries_.data() + next_[key[0]];
+    const std::uint64_t others = std::uint64_t{key[1]} << 32 | key[2];
+    for (Entry* e = first; e != last; ++e)
+      if (e->others == others) {
+        const std::uint32_t found = e->id;
+        *e = *(last - 1);
+        --next_[key[0]];
+        return found;
+      }
+    *last = {others, id};
+    ++next_[key[0]];
+    return kNone;
+  }
+
+ private:
+  struct Entry {
+    std::uint64_t others;
+    std::uint32_t id;
+  };
+  std::vector<std::uint32_t> begin_, next_;
+  std::vector<Entry> entries_;
+};
+
+std::string name_of(HalfFace h) {
+  return "face " + std::to_string(h % 4) + " of tetrahedron " + std::to_string(h / 4);
+}
+
+std::optional<std::string> wrong_at_face(const TetComplex& c, HalfFace h) {
+  const HalfFace o = c.across[h];
+  if (is_outside(o)) return std::nullopt;
+  if (o / 4 >= c.slots() || !c.alive(o / 4)) return "across " + name_of(h) + " lies a tetrahedron that is gone";
+  if (c.across[o] != h) return name_of(o) + " does not know its neighbour across, " + name_of(h);
+  if (face_key(c.face(o)) != face_key(c.face(h)) || is_even(c.face(o)) == is_even(c.face(h)))
+    return name_of(h) + " and " + name_of(o) + " are neighbours, but not one face seen from both sides";
+  return std::nullopt;
+}
+
+std::optional<std::string> wrong_at_vertex(const TetComplex& c, VertexIndex v) {
+  const TetIndex t = c.tet_at[v];
+  if (t < c.slots() && c.alive(t) && c.has(t, v)) return std::nullopt;
+  return "vertex " + std::to_string(v) + " is not in the tetrahedron that is given as one of its own";
+}
+
+std::optional<std::string> wrong_at_tet(const TetComplex& c, TetIndex t) {
+  if (!c.alive(t)) return std::nullopt;
+  for (HalfFace h = 4 * t; h < 4 * t + 4; ++h)
+    if (auto wrong = wrong_at_face(c, h)) return wrong;
+  for (const VertexIndex v : c.tets[t])
+    if (auto wrong = wrong_at_vertex(c, v)) return wrong;
+  return std::nullopt;
+}
+
+}  // namespace
+
+void TetComplex::connect(std::size_t vertices, std::span<const Triangle> boundary) {
+  across.assign(4 * tets.size(), kNone);
+  std::vector<std::uint32_t> count(vertices, 0);
+  for (HalfFace h = 0; h < across.size(); ++h) ++count[face_key(face(h))[0]];
+  for (const Triangle& t : boundary) ++count[face_key(t)[0]];
+  FaceMatcher matcher(std::move(count));
+  for (std::uint32_t b = 0; b < boundary.size(); ++b) matcher.match(face_key(boundary[b]), kFirstOutside + b);
+  for (HalfFace h = 0; h < across.size(); ++h)
+    if (const HalfFace other = matcher.match(face_key(face(h)), h); other != kNone) join(h, other);
+  tet_at.assign(vertices, kNone);
+  for (TetIndex t = 0; t < slots(); ++t)
+    for (const VertexIndex v : tets[t]) tet_at[v] = t;
+  marks.assign(tets.size(), 0);
+  last_mark = 0;
+}
+
+TetIndex TetComplex::create(const Tet& corners) {
+  TetIndex t = slots();
+  if (free.empty()) {
+    tets.push_back(corners);
+    across.resize(4 * tets.size());
+    marks.push_back(0);
+  } else {
+    t = free.back();
+    free.pop_back();
+    tets[t] = corners;
+  }
+  std::fill_n(across.begin() + 4 * static_cast<std::ptrdiff_t>(t), 4, kNone);
+  for (const VertexIndex v : corners) tet_at[v] = t;
+  return t;
+}
+
+void TetComplex::replace(std::span<const TetIndex> old, std::span<const Tet> fresh, VertexIndex gone,
+                         std::span<const BoundaryFace> boundary) {
+  rim_.reset(4 * (old.size() + fresh.size()) + boundary.size());
+  for (const TetIndex t : old)
+    for (HalfFace h = 4 * t; h < 4 * t + 4; ++h) {
+      const Triangle f = face(h);
+      const bool goes = is_outside(across[h]) && (f[0] == gone || f[1] == gone || f[2] == gone);
+      if (!goes) rim_.toggle(f, across[h]);
+    }
+  for (const BoundaryFace& f : boundary) rim_.toggle(f.corners, f.across);
+  for (const TetIndex t : old) destroy(t);
+  created_.clear();
+  for (const Tet& c : fresh) {
+    created_.push_back(create(c));
+    rim_.tie(*this, created_.back());
+  }
+  if (!rim_.closed()) throw std::logic_error("tetrahedra that replace others do not fill the same space");
+  validate(*this, created_);
+}
+
+const std::vector<TetIndex>& TetComplex::star_from(VertexIndex v, TetIndex start) {
+  const std::uint32_t seen = new_mark();
+  star_.assign(1, start);
+  marks[start] = seen;
+  for (std::size_t k = 0; k < star_.size(); ++k) {
+    const TetIndex t = star_[k];
+    for (HalfFace h = 4 * t; h < 4 * t + 4; ++h) {
+      const HalfFace o = across[h];
+      if (apex(h) == v || is_outside(o) || marks[o / 4] == seen) continue;
+      marks[o / 4] = seen;
+      star_.push_back(o / 4);
+    }
+  }
+  return star_;
+}
+
+std::uint32_t TetComplex::new_mark() {
+  if (++last_mark == 0) {
+    std::ranges::fill(marks, 0);
+    last_mark = 1;
+  }
+  return last_mark;
+}
+
+std::optional<std::string> TetComplex::first_inconsistency() const {
+  for (TetIndex t = 0; t < slots(); ++t)
+    if (auto wrong = wrong_at_tet(*this, t)) return wrong;
+  for (const TetIndex t : free)
+    if (alive(t)) return "tetrahedron " + std::to_string(t) + " is alive, and its slot free";
+  return std::nullopt;
+}
+
+std::optional<std::string> TetComplex::first_inconsistency(std::span<const TetIndex> touched) const {
+  for (const TetIndex t : touched)
+    if (auto wrong = wrong_at_tet(*this, t)) return wrong;
+  return std::nullopt;
+}
+
+}  // namespace octafront
