@@ -2,14 +2,13 @@
 
 #include "cavity/open_edge.h"
 #include "core/disjoint_sets.h"
+#include "core/parallel.h"
 #include "core/validate.h"
 #include "geometry/predicates.h"
 #include "mesh/face_table.h"
 
 #include <algorithm>
 #include <utility>
-
-#include <oneapi/tbb/parallel_for.h>
 
 namespace octafront {
 
@@ -24,7 +23,7 @@ WorkMesh::WorkMesh(std::vector<Vec3> points, std::vector<Tet> tets, const std::v
       alive_(tets_.size(), true),
       indexed_(points_.size(), 1) {
   if (!focus.empty())
-    tbb::parallel_for(std::size_t{0}, points_.size(), [&](std::size_t v) {
+    parallel_for(points_.size(), [&](std::size_t v) {
       indexed_[v] = std::any_of(focus.begin(), focus.end(), [&](const Box3& box) { return box.contains(points_[v]); });
     });
   index_tets();
@@ -32,7 +31,7 @@ WorkMesh::WorkMesh(std::vector<Vec3> points, std::vector<Tet> tets, const std::v
 
 void WorkMesh::index_tets() const {
   std::vector<std::vector<std::pair<VertexIndex, TetIndex>>> found((original_tets_ + kTetsPerTask - 1) / kTetsPerTask);
-  tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t task) {
+  parallel_for(found.size(), [&](std::size_t task) {
     const std::size_t end = std::min((task + 1) * kTetsPerTask, original_tets_);
     for (std::size_t t = task * kTetsPerTask; t < end; ++t)
       for (const VertexIndex v : tets_[t])

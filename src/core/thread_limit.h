@@ -1,9 +1,5 @@
 #pragma once
 
-#include <optional>
-
-#include <tbb/global_control.h>
-
 namespace octafront {
 
 /// While it lives, no more than `threads` threads work at a time, callers included; 0: as many as the machine has. This
@@ -11,12 +7,14 @@ namespace octafront {
 /// with the limit that its caller holds, or with all threads that TBB gives it.
 class ThreadLimit {
  public:
-  explicit ThreadLimit(int threads) {
-    if (threads > 0) control_.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
-  }
+  explicit ThreadLimit(int threads);
+  ~ThreadLimit();
+  ThreadLimit(const ThreadLimit&) = delete;
+  ThreadLimit& operator=(const ThreadLimit&) = delete;
 
  private:
-  std::optional<tbb::global_control> control_;
+  struct Control;
+  Control* control_ = nullptr;
 };
 
 }  // namespace octafront

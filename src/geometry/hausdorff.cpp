@@ -1,11 +1,10 @@
 #include "geometry/hausdorff.h"
 
+#include "core/parallel.h"
 #include "geometry/measures.h"
 
 #include <algorithm>
 #include <vector>
-
-#include <oneapi/tbb/parallel_for.h>
 
 namespace octafront {
 
@@ -112,8 +111,8 @@ constexpr std::size_t kBlock = 512;
 
 template <class Work>
 void for_each_block(std::size_t n, Work&& work) {
-  tbb::parallel_for(std::size_t{0}, (n + kBlock - 1) / kBlock,
-                    [&](std::size_t block) { work(block, block * kBlock, std::min(n, (block + 1) * kBlock)); });
+  parallel_for((n + kBlock - 1) / kBlock,
+               [&](std::size_t block) { work(block, block * kBlock, std::min(n, (block + 1) * kBlock)); });
 }
 
 }  // namespace

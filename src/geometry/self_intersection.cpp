@@ -1,9 +1,9 @@
 #include "geometry/self_intersection.h"
 
+#include "core/parallel.h"
+
 #include <algorithm>
 #include <utility>
-
-#include <oneapi/tbb/parallel_for.h>
 
 namespace octafront {
 
@@ -29,7 +29,7 @@ class SelfIntersectionSearch {
     if (!same_ && !a_.tree.box().overlaps(b_.tree.box())) return;
     const std::vector<Task> tasks = split_tasks();
     std::vector<Pairs> found(tasks.size());
-    tbb::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t i) { work_off(tasks[i], found[i]); });
+    parallel_for(tasks.size(), [&](std::size_t i) { work_off(tasks[i], found[i]); });
     for (const Pairs& pairs : found) all.insert(all.end(), pairs.begin(), pairs.end());
   }
 

@@ -1,11 +1,10 @@
 #include "geometry/triangle_tree.h"
 
+#include "core/parallel.h"
 #include "geometry/measures.h"
 #include "geometry/predicates.h"
 
 #include <algorithm>
-
-#include <oneapi/tbb/parallel_invoke.h>
 
 namespace octafront {
 
@@ -86,7 +85,7 @@ struct TriangleTree::Builder {
     const auto left = [&] { split(child, below_left, begin, middle); };
     const auto right = [&] { split(child + 1, below_right, middle, end); };
     if (end - begin > kTask) {
-      tbb::parallel_invoke(left, right);
+      parallel_invoke(left, right);
     } else {
       left();
       right();

@@ -4,13 +4,11 @@
 
 #include <octafront/run_context.h>
 
+#include "core/parallel.h"
 #include "improve/edit_block.h"
 #include "improve/passes.h"
 
 #include <vector>
-
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/task_arena.h>
 
 namespace octafront::improve {
 
@@ -48,12 +46,11 @@ template <typename Work>
 PassResult for_each_block(EditMesh& mesh, std::vector<TetIndex> tets, const RunContext& context, Work&& work,
                           bool adds_vertices = false) {
   PassResult sum;
-  tbb::task_arena arena(context.threads > 0 ? context.threads : tbb::task_arena::automatic);
   for (int stage = 0; stage < EditBlocks::kStages && !tets.empty(); ++stage) {
     EditBlocks blocks(mesh, tets, stage, adds_vertices);
     auto& shares = blocks.shares();
-    arena.execute([&] {
-      tbb::parallel_for(std::size_t{0}, shares.size(), [&](std::size_t b) {
+    on_threads(context.threads, [&] {
+      parallel_for(shares.size(), [&](std::size_t b) {
         context.check();
         shares[b].result = work(shares[b].block, shares[b].tets, shares[b].left);
       });

@@ -2,13 +2,11 @@
 
 #include <octafront/run_context.h>
 
+#include "core/parallel.h"
 #include "improve/passes.h"
 #include "improve/star_table.h"
 
 #include <vector>
-
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/task_arena.h>
 
 namespace octafront::improve {
 
@@ -25,17 +23,16 @@ class VertexBlocks {
   template <typename Work>
   PassResult run(const RunContext& context, Work&& work) const {
     PassResult sum;
-    tbb::task_arena arena(context.threads > 0 ? context.threads : tbb::task_arena::automatic);
-    for (const auto& stage : stages_) {
-      std::vector<PassResult> results(stage.size());
-      arena.execute([&] {
-        tbb::parallel_for(std::size_t{0}, stage.size(), [&](std::size_t b) {
+    on_threads(context.threads, [&] {
+      for (const auto& stage : stages_) {
+        std::vector<PassResult> results(stage.size());
+        parallel_for(stage.size(), [&](std::size_t b) {
           context.check();
           results[b] = work(stage[b]);
         });
-      });
-      for (const PassResult& r : results) sum += r;
-    }
+        for (const PassResult& r : results) sum += r;
+      }
+    });
     return sum;
   }
 

@@ -2,11 +2,12 @@
 
 #include <octafront/error.h>
 
+#include "core/parallel.h"
+
 #include <algorithm>
 #include <string>
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 #include <zlib.h>
 
 namespace octafront::io {
@@ -51,7 +52,7 @@ void VtuArrays::write_array(const Array& array) {
   std::vector<Block> batch(std::min(kBatch, blocks));
   for (std::uint64_t first = 0; first < blocks; first += kBatch) {
     const std::uint64_t count = std::min(kBatch, blocks - first);
-    tbb::parallel_for(std::uint64_t{0}, count, [&](std::uint64_t k) {
+    parallel_for(count, [&](std::uint64_t k) {
       const std::uint64_t begin = (first + k) * values_per_block;
       const std::uint64_t values = std::min(values_per_block, array.values - begin);
       const std::uint64_t bytes = values * array.bytes_per_value;

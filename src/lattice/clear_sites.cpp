@@ -1,6 +1,7 @@
 #include "lattice/clear_sites.h"
 
 #include "core/disjoint_sets.h"
+#include "core/parallel.h"
 #include "geometry/predicates.h"
 #include "lattice/near_leaves.h"
 
@@ -8,8 +9,6 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-
-#include <oneapi/tbb/parallel_for.h>
 
 namespace octafront {
 
@@ -60,7 +59,7 @@ ClearSites::ClearSites(const LatticeOctree& lattice, const SurfaceMesh& surface,
 void ClearSites::measure_distances(const RunContext& context) {
   const std::size_t leaves = lattice_.tree.size();
   distance_.resize(2 * leaves);
-  tbb::parallel_for(std::size_t{0}, leaves, [&](std::size_t i) {
+  parallel_for(leaves, [&](std::size_t i) {
     if (i % kLeavesBetweenChecks == 0) context.check();
     const double side = lattice_.root.side_of(lattice_.tree.leaf(i));
     for (const SiteNumber s : {SiteNumber(2 * i), SiteNumber(2 * i + 1)})
@@ -87,7 +86,7 @@ float ClearSites::distance_of(LatticeSite site) const {
 void ClearSites::find_inside() {
   const Octree& tree = lattice_.tree;
   std::vector<std::array<std::uint32_t, 3>> upper(tree.size());
-  tbb::parallel_for(std::size_t{0}, tree.size(), [&](std::size_t i) {
+  parallel_for(tree.size(), [&](std::size_t i) {
     const double side = lattice_.root.side_of(tree.leaf(i));
     for (int axis = 0; axis < 3; ++axis) {
       upper[i][axis] = kNone;

@@ -1,5 +1,6 @@
 #include "lattice/core.h"
 
+#include "core/parallel.h"
 #include "geometry/triangle_tree.h"
 #include "lattice/clear_sites.h"
 #include "lattice/graded_bcc.h"
@@ -12,8 +13,6 @@
 #include <atomic>
 #include <limits>
 #include <utility>
-
-#include <oneapi/tbb/parallel_for.h>
 
 namespace octafront {
 
@@ -148,7 +147,7 @@ class CoreBuilder {
   /// Sites of the core's tetrahedra; the skin has no others.
   void number_vertices() {
     std::vector<std::vector<char>> hanging_is_used(chunks_.size());
-    tbb::parallel_for(std::size_t{0}, chunks_.size(), [&](std::size_t c) {
+    parallel_for(chunks_.size(), [&](std::size_t c) {
       hanging_is_used[c].resize(chunks_[c].hanging.size());
       for (const Tet& t : chunks_[c].tets)
         for (const SiteNumber s : t)
@@ -167,7 +166,7 @@ class CoreBuilder {
     std::sort(hanging_.begin(), hanging_.end());
     hanging_.erase(std::unique(hanging_.begin(), hanging_.end()), hanging_.end());
     core_.points.resize(first_hanging_ + hanging_.size());
-    tbb::parallel_for(std::size_t{0}, vertex_.size(), [&](std::size_t s) {
+    parallel_for(vertex_.size(), [&](std::size_t s) {
       if (vertex_[s] != kNone) core_.points[vertex_[s]] = sites_.position_of(static_cast<SiteNumber>(s));
     });
     for (std::size_t i = 0; i < hanging_.size(); ++i)
@@ -188,7 +187,7 @@ class CoreBuilder {
     for (std::size_t c = 0; c < chunks_.size(); ++c) first[c + 1] = first[c] + chunks_[c].tets.size();
     require_in_range(first.back(), kMostTets, "tetrahedra");
     core_.tets.resize(first.back());
-    tbb::parallel_for(std::size_t{0}, chunks_.size(), [&](std::size_t c) {
+    parallel_for(chunks_.size(), [&](std::size_t c) {
       Tet* out = core_.tets.data() + first[c];
       for (const Tet& t : chunks_[c].tets)
         *out++ = {vertex(chunks_[c], t[0]), vertex(chunks_[c], t[1]), vertex(chunks_[c], t[2]),
@@ -231,7 +230,7 @@ LatticeCore build_lattice_core(const SurfaceMesh& surface, const SizeField& size
   const ClearSites sites(lattice, surface, triangles, sizes, context);
   const std::size_t leaves = lattice.tree.size();
   std::vector<CoreChunk> chunks((leaves + kLeavesPerChunk - 1) / kLeavesPerChunk);
-  tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t c) {
+  parallel_for(chunks.size(), [&](std::size_t c) {
     context.check();
     chunks[c].collect(sites, c * kLeavesPerChunk, std::min((c + 1) * kLeavesPerChunk, leaves));
   });

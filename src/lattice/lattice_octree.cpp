@@ -1,13 +1,11 @@
 #include "lattice/lattice_octree.h"
 
+#include "core/parallel.h"
 #include "lattice/graded_bcc.h"
 #include "sizing/make_size_field.h"
 
 #include <algorithm>
 #include <numeric>
-
-#include <oneapi/tbb/enumerable_thread_specific.h>
-#include <oneapi/tbb/parallel_for.h>
 
 namespace octafront {
 
@@ -34,8 +32,9 @@ class Divider {
     visit_near(OctreeKey::root(), all);
     // Which thread found a cell is chance; a set of cells has no order.
     DividedCells divided;
-    for (const std::vector<OctreeKey>& cells : divided_)
+    divided_.for_each([&](const std::vector<OctreeKey>& cells) {
       for (const OctreeKey cell : cells) divided.divide(cell);
+    });
     divided.close();
     return divided.tree();
   }
@@ -86,7 +85,7 @@ class Divider {
   template <class Visit>
   static void for_each_child(bool as_tasks, const Visit& visit) {
     if (as_tasks)
-      tbb::parallel_for(0, 8, visit);
+      parallel_for(8, [&](std::size_t i) { visit(static_cast<int>(i)); });
     else
       for (int i = 0; i < 8; ++i) visit(i);
   }
@@ -96,7 +95,7 @@ class Divider {
   const std::vector<Box3>& reach_;
   const std::function<CellSide(OctreeKey)>& side_of_;
   const RunContext& context_;
-  tbb::enumerable_thread_specific<std::vector<OctreeKey>> divided_;
+  PerThread<std::vector<OctreeKey>> divided_;
 };
 
 }  // namespace

@@ -1,11 +1,10 @@
 #include "lattice/near_leaves.h"
 
+#include "core/parallel.h"
 #include "lattice/graded_bcc.h"
 
 #include <algorithm>
 #include <atomic>
-
-#include <oneapi/tbb/parallel_for.h>
 
 namespace octafront {
 
@@ -53,11 +52,10 @@ class Marker {
 std::vector<std::uint8_t> near_leaves(const LatticeOctree& lattice, const SurfaceMesh& surface, const SizeField& sizes,
                                       double clearance) {
   std::vector<float> size(surface.points.size());
-  tbb::parallel_for(std::size_t{0}, size.size(),
-                    [&](std::size_t v) { size[v] = static_cast<float>(sizes.at(surface.points[v])); });
+  parallel_for(size.size(), [&](std::size_t v) { size[v] = static_cast<float>(sizes.at(surface.points[v])); });
   std::vector<std::uint8_t> near(lattice.tree.size(), 0);
   const Marker marker(lattice, near);
-  tbb::parallel_for(std::size_t{0}, surface.triangles.size(), [&](std::size_t t) {
+  parallel_for(surface.triangles.size(), [&](std::size_t t) {
     Box3 box;
     double reach = 0;
     for (const VertexIndex v : surface.triangles[t]) {

@@ -1,13 +1,12 @@
 #include <octafront/quality.h>
 
+#include "core/parallel.h"
 #include "geometry/measures.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
-
-#include <oneapi/tbb/parallel_for.h>
 
 namespace octafront {
 
@@ -130,7 +129,7 @@ QualitySummary summarize_quality(const TetMesh& mesh) {
   const std::size_t n = mesh.tets.size();
   if (n == 0) return {};
   std::vector<Part> parts((n + kBlock - 1) / kBlock);
-  tbb::parallel_for(std::size_t{0}, parts.size(), [&](std::size_t block) {
+  parallel_for(parts.size(), [&](std::size_t block) {
     for (std::size_t t = block * kBlock; t < std::min(n, (block + 1) * kBlock); ++t) {
       const auto& [a, b, c, d] = mesh.tets[t];
       const auto& p = mesh.points;

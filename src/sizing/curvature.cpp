@@ -1,5 +1,6 @@
 #include "sizing/curvature.h"
 
+#include "core/parallel.h"
 #include "geometry/measures.h"
 #include "sizing/octree.h"
 
@@ -7,9 +8,6 @@
 #include <cmath>
 #include <numbers>
 #include <utility>
-
-#include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 
 namespace octafront {
 
@@ -77,11 +75,11 @@ class CurvatureFinder {
     const std::vector<std::uint32_t> order = along_the_curve();
     block_.resize(faces);
     for (std::size_t i = 0; i < faces; ++i) block_[order[i]] = static_cast<std::uint32_t>(i / kFacesPerBlock);
-    tbb::enumerable_thread_specific<Ball> balls([&] { return Ball{std::vector<std::uint32_t>(faces, kNone), {}}; });
+    PerThread<Ball> balls;
     const std::size_t blocks = (faces + kFacesPerBlock - 1) / kFacesPerBlock;
-    tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t b) {
+    parallel_for(blocks, [&](std::size_t b) {
       context.check();
-      Ball& ball = balls.local();
+      Ball& ball = balls.local([&] { return Ball{std::vector<std::uint32_t>(faces, kNone), {}}; });
       for (std::size_t i = b * kFacesPerBlock; i < std::min(faces, (b + 1) * kFacesPerBlock); ++i) {
         if (result.largest[order[i]] < 0) answer_around(order[i], ball, result);
       }

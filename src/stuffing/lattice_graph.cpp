@@ -1,12 +1,11 @@
 #include "stuffing/lattice_graph.h"
 
 #include "core/disjoint_sets.h"
+#include "core/parallel.h"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
-
-#include <oneapi/tbb/parallel_for.h>
 
 namespace octafront {
 
@@ -18,7 +17,7 @@ using Pair = std::pair<std::uint32_t, std::uint32_t>;
 template <class Visit>
 void for_each_index(std::size_t n, const RunContext& context, const Visit& visit) {
   constexpr std::size_t kBlock = 1024;
-  tbb::parallel_for(std::size_t{0}, (n + kBlock - 1) / kBlock, [&](std::size_t block) {
+  parallel_for((n + kBlock - 1) / kBlock, [&](std::size_t block) {
     if (context.cancelled()) return;
     for (std::size_t i = block * kBlock; i < std::min(n, (block + 1) * kBlock); ++i) visit(i);
   });

@@ -1,5 +1,6 @@
 #include "volume/advance.h"
 
+#include "core/parallel.h"
 #include "core/validate.h"
 #include "mesh/index_range.h"
 #include "volume/block_run.h"
@@ -8,9 +9,6 @@
 #include <array>
 #include <cmath>
 #include <utility>
-
-#include <oneapi/tbb/enumerable_thread_specific.h>
-#include <oneapi/tbb/parallel_for.h>
 
 namespace octafront {
 
@@ -83,13 +81,13 @@ class Phases {
       blocks = partition_front(front_, {kFacesPerBlock, kQuantiles[front_.phases % kQuantiles.size()]});
     const FrontPhase phase{front_, task_, budget_.after(front_.work), layers};
     std::vector<BlockResult> results(blocks.size());
-    tbb::parallel_for(
-        std::size_t{0}, blocks.size(),
+    parallel_for(
+        blocks.size(),
         [&](std::size_t b) {
           results[b] = advance_block(phase, blocks[b], scratch_.local());
           blocks[b] = {};
         },
-        tbb::simple_partitioner{});
+        Split::kSingly);
     ++front_.phases;
     const std::size_t deferred = join(results);
     if (!over_budget()) validate(front_);  // a run that was stopped has dropped faces
@@ -125,7 +123,7 @@ class Phases {
     front_.passive.resize(end.passive);
     const std::size_t pieces = front_.filled.size();
     front_.filled.resize(pieces + results.size());
-    tbb::parallel_for(std::size_t{0}, results.size(), [&](std::size_t b) {
+    parallel_for(results.size(), [&](std::size_t b) {
       BlockResult r = std::move(results[b]);
       const auto own = static_cast<VertexIndex>(r.found.size());
       const auto first_own = static_cast<VertexIndex>(first[b].point);
@@ -156,7 +154,7 @@ class Phases {
   const FrontTask& task_;
   const AdvanceBudget budget_;
   FrontCounters& counters_;
-  tbb::enumerable_thread_specific<BlockScratch> scratch_;
+  PerThread<BlockScratch> scratch_;
 };
 
 }  // namespace

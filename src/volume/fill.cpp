@@ -3,6 +3,7 @@
 #include <octafront/error.h>
 
 #include "core/morton.h"
+#include "core/parallel.h"
 #include "core/stage_timer.h"
 #include "lattice/core.h"
 #include "mesh/renumber.h"
@@ -16,8 +17,6 @@
 #include <array>
 #include <cmath>
 #include <exception>
-
-#include <oneapi/tbb/parallel_for.h>
 
 namespace octafront {
 
@@ -71,8 +70,8 @@ void add_core(FrontState& front, LatticeCore core) {
 
 void set_sizes(FrontState& front, const SizeField& sizes) {
   front.sizes.resize(front.points.size());
-  tbb::parallel_for(std::size_t{0}, front.points.size(),
-                    [&](std::size_t v) { front.sizes[v] = static_cast<float>(sizes.at(front.points[v])); });
+  parallel_for(front.points.size(),
+               [&](std::size_t v) { front.sizes[v] = static_cast<float>(sizes.at(front.points[v])); });
 }
 
 /// The pieces one after the other, in one array.
@@ -81,7 +80,7 @@ std::vector<Tet> joined(std::vector<std::vector<Tet>>& pieces) {
   std::vector<std::size_t> first(pieces.size() + 1, 0);
   for (std::size_t i = 0; i < pieces.size(); ++i) first[i + 1] = first[i] + pieces[i].size();
   std::vector<Tet> tets(first.back());
-  tbb::parallel_for(std::size_t{0}, pieces.size(), [&](std::size_t i) {
+  parallel_for(pieces.size(), [&](std::size_t i) {
     const std::vector<Tet> piece = std::move(pieces[i]);
     std::copy(piece.begin(), piece.end(), tets.begin() + static_cast<std::ptrdiff_t>(first[i]));
   });

@@ -1,12 +1,11 @@
 #include "volume/partition.h"
 
+#include "core/parallel.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/parallel_invoke.h>
 
 namespace octafront {
 
@@ -24,7 +23,7 @@ class Divider {
  public:
   Divider(const FrontState& front, const PartitionRule& rule) : rule_(rule), boxes_(front.faces()) {
     queued_ = front.queue.size();
-    tbb::parallel_for(std::size_t{0}, boxes_.size(), [&](std::size_t f) {
+    parallel_for(boxes_.size(), [&](std::size_t f) {
       for (const VertexIndex v : front.face(f)) boxes_[f].add(front.points[v]);
     });
   }
@@ -40,7 +39,7 @@ class Divider {
     const auto lower = [&] { blocks[0] = divide(std::move(half[0])); };
     const auto upper = [&] { blocks[1] = divide(std::move(half[1])); };
     if (large)
-      tbb::parallel_invoke(lower, upper);
+      parallel_invoke(lower, upper);
     else
       lower(), upper();
     std::move(blocks[1].begin(), blocks[1].end(), std::back_inserter(blocks[0]));
