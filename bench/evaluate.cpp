@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace {
 

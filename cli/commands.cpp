@@ -5,7 +5,7 @@
 #include "open_cavity.h"
 #include "text.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace octafront::cli {
 

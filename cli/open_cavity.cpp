@@ -2,7 +2,7 @@
 
 #include <octafront/octafront.h>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace octafront::cli {
 

@@ -7,11 +7,12 @@
 #include "terminal.h"
 #include "text.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace octafront::cli {
 

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <octafront/options.h>
-#include <octafront/report.h>
 #include <octafront/repair.h>
+#include <octafront/report.h>
 #include <octafront/run_context.h>
 #include <octafront/size_field.h>
 #include <octafront/surface_mesh.h>

@@ -13,7 +13,7 @@ namespace octafront {
 struct StageReport {
   std::string name;
   double wall_seconds = 0;
-  double cpu_seconds = 0;  ///< user and system time of the whole process during the stage
+  double cpu_seconds = 0;                                ///< user and system time of the whole process during the stage
   std::vector<std::pair<std::string, double>> counters;  ///< e.g. {"candidates tried", 1.2e6}, in a fixed order
   std::vector<std::string> notes;  ///< sentences for the user; fields of Options in backquotes: "lower `max_size`"
 
@@ -32,9 +32,9 @@ struct Report {
   std::vector<StageReport> stages;  ///< in the order in which they ran
   std::uint64_t points = 0, tets = 0, boundary_faces = 0;
   std::uint32_t bodies = 0;
-  double volume = 0;           ///< of the mesh, input unit cubed
-  double input_volume = 0;     ///< enclosed by the repaired input
-  double expected_tets = 0;    ///< predicted by the sizes before the volume is meshed
+  double volume = 0;         ///< of the mesh, input unit cubed
+  double input_volume = 0;   ///< enclosed by the repaired input
+  double expected_tets = 0;  ///< predicted by the sizes before the volume is meshed
   QualitySummary quality;
   SizeSummary surface_edges, volume_edges;
   double wall_seconds = 0, cpu_seconds = 0;

@@ -34,12 +34,12 @@ inline constexpr std::array<std::array<int, 2>, 6> kTetEdges{{{0, 1}, {0, 2}, {0
 /// What leaves the library is *valid* (see first_defect): every tet is positive by exact sign, every face belongs to
 /// one or two tets, the faces that belong to one are exactly `boundary`, and no vertex is unused.
 struct TetMesh {
-  std::vector<Vec3> points;            ///< input units
-  std::vector<Tet> tets;               ///< positive, indices into points
-  std::vector<std::uint32_t> region;   ///< one per tet: number of the body it lies in; empty: all 0
-  std::vector<Triangle> boundary;      ///< the boundary faces, counter-clockwise seen from outside
-  std::vector<std::uint32_t> patch;    ///< one per boundary face: its patch; empty: all 0
-  std::vector<std::uint32_t> source;   ///< one per boundary face: the input face nearest to it, itself if kept; may be empty
+  std::vector<Vec3> points;              ///< input units
+  std::vector<Tet> tets;                 ///< positive, indices into points
+  std::vector<std::uint32_t> region;     ///< one per tet: number of the body it lies in; empty: all 0
+  std::vector<Triangle> boundary;        ///< the boundary faces, counter-clockwise seen from outside
+  std::vector<std::uint32_t> patch;      ///< one per boundary face: its patch; empty: all 0
+  std::vector<std::uint32_t> source;     ///< one per boundary face: the input face nearest to it, or it; may be empty
   std::vector<std::string> patch_names;  ///< as in SurfaceMesh
 
   friend bool operator==(const TetMesh&, const TetMesh&) = default;

@@ -9,7 +9,7 @@
 
 namespace octafront {
 
-/// The first way in which a mesh breaks the laws below, as a sentence with ids and coordinates; nullopt if it keeps all.
+/// The first way in which a mesh breaks the laws below, as a sentence with ids and coordinates; else nullopt.
 ///   - indices in range, coordinates finite, no vertex unused, every tet positive by exact sign
 ///   - every face in one or two tets; in two only from opposite sides
 ///   - the faces in one tet are exactly `boundary`, oriented outward, each once

@@ -7,6 +7,7 @@
 
 #include <octafront/vec.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>

@@ -1,5 +1,6 @@
 #include "geometry/triangle_box.h"
 
+#include <algorithm>
 #include <initializer_list>
 
 namespace octafront {

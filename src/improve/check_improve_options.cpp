@@ -2,7 +2,7 @@
 
 #include "improve/improve.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace octafront {
 

@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <array>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace octafront::improve {
 EditMesh::EditMesh(TetMesh&& mesh, ImproveOptions::Objective objective) : objective_(objective) {

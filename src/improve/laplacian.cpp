@@ -3,6 +3,7 @@
 #include "improve/star_table.h"
 #include "improve/vertex_blocks.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace octafront::improve {

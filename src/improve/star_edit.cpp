@@ -1,5 +1,7 @@
 #include "improve/star_edit.h"
 
+#include <algorithm>
+
 namespace octafront::improve {
 
 bool StarEdit::load(VertexIndex v, std::span<const HalfFace> faces) {

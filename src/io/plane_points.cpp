@@ -1,5 +1,6 @@
 #include "io/plane_points.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace octafront::io {

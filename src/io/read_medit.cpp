@@ -7,7 +7,7 @@
 
 #include <array>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace octafront::io {
 namespace {

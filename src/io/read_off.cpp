@@ -7,7 +7,7 @@
 #include "io/scanner.h"
 #include "io/surface_builder.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace octafront::io {
 namespace {

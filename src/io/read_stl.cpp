@@ -9,7 +9,7 @@
 #include <array>
 #include <cstring>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace octafront::io {
 namespace {

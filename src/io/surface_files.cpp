@@ -5,7 +5,7 @@
 #include "io/readers.h"
 #include "io/recognize.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace octafront {
 

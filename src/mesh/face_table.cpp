@@ -1,5 +1,6 @@
 #include "mesh/face_table.h"
 
+#include <algorithm>
 #include <tuple>
 
 namespace octafront {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <deque>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace octafront::recovery {
 

@@ -13,7 +13,7 @@
 #include <ranges>
 #include <stdexcept>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace octafront {
 

@@ -2,7 +2,7 @@
 
 #include <octafront/error.h>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace octafront::recovery {
 

@@ -9,7 +9,7 @@
 #include "sizing/octree_corners.h"
 #include "sizing/octree_field.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace octafront {
 

@@ -4,6 +4,7 @@
 
 #include "sizing/octree_field.h"
 
+#include <algorithm>
 #include <memory>
 #include <vector>
 

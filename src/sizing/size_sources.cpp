@@ -14,7 +14,7 @@
 #include <memory>
 #include <numbers>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace octafront {
 

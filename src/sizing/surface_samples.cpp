@@ -4,7 +4,9 @@
 
 #include "geometry/measures.h"
 
-#include <fmt/format.h>
+#include <algorithm>
+
+#include <fmt/core.h>
 
 namespace octafront {
 

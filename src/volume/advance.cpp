@@ -6,6 +6,7 @@
 #include "volume/block_run.h"
 #include "volume/limits.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>

@@ -2,6 +2,7 @@
 
 #include "core/validate.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <numeric>

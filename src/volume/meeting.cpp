@@ -9,6 +9,8 @@
 
 #include "geometry/predicates.h"
 
+#include <algorithm>
+
 namespace octafront {
 
 namespace {

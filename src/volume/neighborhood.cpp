@@ -1,5 +1,6 @@
 #include "volume/neighborhood.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 

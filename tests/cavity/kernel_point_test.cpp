@@ -1,5 +1,6 @@
 #include "cavity/kernel_point.h"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 

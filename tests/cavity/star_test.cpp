@@ -5,6 +5,8 @@
 #include "mesh/face_table.h"
 #include "support/named_surfaces.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 namespace octafront {

@@ -2,6 +2,8 @@
 
 #include "support/random.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 namespace octafront {

@@ -3,6 +3,7 @@
 #include "geometry/segment_distance.h"
 #include "support/lattice_points.h"
 
+#include <algorithm>
 #include <numbers>
 
 #include <gtest/gtest.h>

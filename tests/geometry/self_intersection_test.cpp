@@ -4,6 +4,7 @@
 #include "geometry/predicates.h"
 #include "support/named_surfaces.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>

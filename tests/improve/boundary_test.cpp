@@ -8,6 +8,7 @@
 #include "improve/start_meshes.h"
 #include "mesh/features.h"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <set>

@@ -6,6 +6,8 @@
 #include "improve/shape.h"
 #include "improve/start_meshes.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 namespace octafront {

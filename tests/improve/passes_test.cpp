@@ -8,6 +8,7 @@
 #include "improve/start_meshes.h"
 #include "improve/vertex_blocks.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <set>

@@ -4,6 +4,7 @@
 #include "small_files.h"
 #include "support/named_surfaces.h"
 
+#include <algorithm>
 #include <clocale>
 #include <cmath>
 #include <limits>

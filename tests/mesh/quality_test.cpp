@@ -2,6 +2,7 @@
 
 #include "support/lattice_points.h"
 
+#include <algorithm>
 #include <numeric>
 
 #include <gtest/gtest.h>

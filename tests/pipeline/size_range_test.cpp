@@ -3,6 +3,8 @@
 
 #include "support/named_surfaces.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 namespace octafront {

@@ -3,6 +3,7 @@
 #include <octafront/quality.h>
 #include <octafront/validity.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <random>

@@ -1,5 +1,6 @@
 #include "support/named_surfaces.h"
 
+#include <algorithm>
 #include <map>
 #include <numbers>
 #include <utility>

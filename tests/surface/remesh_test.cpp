@@ -12,6 +12,7 @@
 #include "surface/feature_patches.h"
 #include "surface/remeshing/crossings.h"
 
+#include <algorithm>
 #include <map>
 #include <numbers>
 #include <set>

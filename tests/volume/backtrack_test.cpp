@@ -6,6 +6,8 @@
 #include "volume/fill.h"
 #include "volume/recover_cavity.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 namespace octafront {

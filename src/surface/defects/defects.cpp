@@ -7,7 +7,7 @@
 #include <set>
 #include <vector>
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 namespace octafront {
 namespace {

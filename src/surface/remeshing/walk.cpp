@@ -1,5 +1,7 @@
 #include "surface/remeshing/walk.h"
 
+#include <algorithm>
+
 namespace octafront::remeshing {
 
 namespace {
