@@ -17,7 +17,9 @@ namespace {
 constexpr double kCapReach = 1.5;
 
 struct Scaled final : SizeFunction {
-  Scaled(SizeField old, double factor) : sizes(std::move(old)), by(factor) { gradation = SizeFunction::behind(sizes).gradation; }
+  Scaled(SizeField old, double factor) : sizes(std::move(old)), by(factor) {
+    gradation = SizeFunction::behind(sizes).gradation;
+  }
   double at(Vec3 p) const override { return sizes.at(p) * by; }
   double min_size() const override { return sizes.min_size() * by; }
   double max_size() const override { return sizes.max_size() * by; }
