@@ -2,6 +2,7 @@
 
 #include "canvas.h"
 
+#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>

@@ -3,6 +3,7 @@
 #include "session.h"
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 

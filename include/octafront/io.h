@@ -6,15 +6,15 @@
 #include <octafront/surface_mesh.h>
 #include <octafront/tet_mesh.h>
 
-#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace octafront {
 
-// All readers and writers can be cancelled by their context (then they throw Cancelled, and nothing is written);
-// readers tell it how far they are, as the stage "reading".
+// Files are named by strings; a std::filesystem::path turns into one by itself. All readers and writers can be
+// cancelled by their context (then they throw Cancelled, and nothing is written); readers tell it how far they are, as
+// the stage "reading".
 
 /// A surface as a file has it: nothing merged, nothing repaired. Polygons are divided into triangles; surface.source
 /// says from which face of the file (counted from 0) each one came.
@@ -28,25 +28,25 @@ struct SurfaceFile {
 /// breaks ties. Coordinates keep double precision. OBJ groups and materials, and ASCII STL solids, become patches.
 /// Throws InputError with file, line or byte offset, and the reason. Memory is bounded by a small multiple of the size
 /// of the file, whatever its header claims.
-SurfaceFile read_surface(const std::filesystem::path& file, const RunContext& context = {});
+SurfaceFile read_surface(const std::string& file, const RunContext& context = {});
 
 /// Writes by the ending of the name: .stl (binary), .obj, .off, .ply (binary). The file is written beside and renamed
 /// into place: on failure an older file stays whole. Throws OutputError, and OptionError for unknown endings before any
 /// work.
-void write_surface(const std::filesystem::path& file, const SurfaceMesh& surface, const RunContext& context = {});
+void write_surface(const std::string& file, const SurfaceMesh& surface, const RunContext& context = {});
 
 /// Writes by the ending of the name: .vtu (compressed binary, with region, patch and beta per element), .msh
 /// (Gmsh 4.1), .mesh (MEDIT). Written beside and renamed into place. Throws OutputError, and OptionError for unknown
 /// endings before any work.
-void write_mesh(const std::filesystem::path& file, const TetMesh& mesh, const RunContext& context = {});
+void write_mesh(const std::string& file, const TetMesh& mesh, const RunContext& context = {});
 
 /// Writes the background grid of a size field as .vtu: hexahedra with the size at their corners and their level.
 /// A field without a grid (uniform, from a function) has nothing to show: OutputError.
-void write_size_field(const std::filesystem::path& file, const SizeField& sizes, const RunContext& context = {});
+void write_size_field(const std::string& file, const SizeField& sizes, const RunContext& context = {});
 
 /// Reads such a file, edited or not: sizes are cut where they break the gradation. For SizeOptions::field. Throws
 /// InputError, and OptionError for a gradation out of range.
-SizeField read_size_field(const std::filesystem::path& file, double gradation = 0.2, const RunContext& context = {});
+SizeField read_size_field(const std::string& file, double gradation = 0.2, const RunContext& context = {});
 
 /// Reads regions of refinement from a JSON file,
 ///   [{"box": [[0, 0, 0], [1, 2, 1]], "size": 0.1}, {"sphere": [5, 0, 0], "radius": 2, "size": 0.2},
@@ -54,30 +54,30 @@ SizeField read_size_field(const std::filesystem::path& file, double gradation = 
 /// boxes by their least and largest corner, boxes and points with a "radius" if wanted; or from a table of points, a
 /// line "x, y, z, size" each, separated by commas, semicolons or blanks, with or without a line of titles before. For
 /// SizeOptions::regions. Throws InputError with the line or entry for whatever is not exactly that.
-std::vector<SizeRegion> read_size_regions(const std::filesystem::path& file, const RunContext& context = {});
+std::vector<SizeRegion> read_size_regions(const std::string& file, const RunContext& context = {});
 
 /// Reads sizes at points from such a table, or from the points of a VTU or VTP file with the sizes in its PointData
 /// ("size", or the only array there is). For SizeOptions::point_sizes. Throws InputError.
-std::vector<PointSize> read_point_sizes(const std::filesystem::path& file, const RunContext& context = {});
+std::vector<PointSize> read_point_sizes(const std::string& file, const RunContext& context = {});
 
 /// Writes text (a report) beside and renames it into place. Throws OutputError.
-void write_text(const std::filesystem::path& file, const std::string& text);
+void write_text(const std::string& file, const std::string& text);
 
 /// Whether writing to one would change the other: the same name, or links to one file, which need not exist yet.
-bool same_file(const std::filesystem::path& a, const std::filesystem::path& b);
+bool same_file(const std::string& a, const std::string& b);
 
 /// Throws OptionError if the ending of `file` is none that write_mesh (or write_surface) knows, OutputError if its
 /// folder does not exist or cannot be written: to be called before long work.
-void check_mesh_target(const std::filesystem::path& file);
-void check_surface_target(const std::filesystem::path& file);
-void check_size_field_target(const std::filesystem::path& file);
+void check_mesh_target(const std::string& file);
+void check_surface_target(const std::string& file);
+void check_size_field_target(const std::string& file);
 /// The same for files of any ending.
-void check_text_target(const std::filesystem::path& file);
+void check_text_target(const std::string& file);
 
 /// Reads a tetrahedral mesh: .vtu (not only as written here), Gmsh .msh 4.1 and 2.2 (ASCII and binary), MEDIT .mesh.
 /// Inverted tetrahedra are turned, other kinds of elements and unused vertices are left out, and a boundary face that
 /// the file lacks is added. Throws InputError.
-TetMesh read_mesh(const std::filesystem::path& file, const RunContext& context = {});
+TetMesh read_mesh(const std::string& file, const RunContext& context = {});
 
 /// What is known of a file format, for help texts.
 struct FormatInfo {

@@ -36,16 +36,16 @@ const io::Format& mesh_format(const std::filesystem::path& file) {
 
 }  // namespace
 
-TetMesh read_mesh(const std::filesystem::path& file, const RunContext& context) {
+TetMesh read_mesh(const std::string& file, const RunContext& context) {
   return io::read_mesh_bytes(io::LoadedFile(file, context).input());
 }
 
-void check_mesh_target(const std::filesystem::path& file) {
+void check_mesh_target(const std::string& file) {
   mesh_format(file);
   io::check_writable(file);
 }
 
-void write_mesh(const std::filesystem::path& file, const TetMesh& mesh, const RunContext& context) {
+void write_mesh(const std::string& file, const TetMesh& mesh, const RunContext& context) {
   const io::Format& format = mesh_format(file);
   io::AtomicFile out(file, context);
   format.write_mesh(out, mesh);

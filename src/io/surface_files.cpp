@@ -40,16 +40,16 @@ const io::Format& surface_format(const std::filesystem::path& file) {
 
 }  // namespace
 
-SurfaceFile read_surface(const std::filesystem::path& file, const RunContext& context) {
+SurfaceFile read_surface(const std::string& file, const RunContext& context) {
   return io::read_surface_bytes(io::LoadedFile(file, context).input());
 }
 
-void check_surface_target(const std::filesystem::path& file) {
+void check_surface_target(const std::string& file) {
   surface_format(file);
   io::check_writable(file);
 }
 
-void write_surface(const std::filesystem::path& file, const SurfaceMesh& surface, const RunContext& context) {
+void write_surface(const std::string& file, const SurfaceMesh& surface, const RunContext& context) {
   const io::Format& format = surface_format(file);
   io::AtomicFile out(file, context);
   format.write_surface(out, surface);

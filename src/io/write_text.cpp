@@ -4,13 +4,13 @@
 
 namespace octafront {
 
-void write_text(const std::filesystem::path& file, const std::string& text) {
+void write_text(const std::string& file, const std::string& text) {
   io::AtomicFile out(file);
   out.write(text);
   out.commit();
 }
 
-bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
+bool same_file(const std::string& a, const std::string& b) {
   std::error_code error;
   if (std::filesystem::equivalent(a, b, error)) return true;
   const auto place = [&](const std::filesystem::path& file) {
@@ -19,7 +19,7 @@ bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
   return place(a) == place(b);
 }
 
-void check_text_target(const std::filesystem::path& file) {
+void check_text_target(const std::string& file) {
   io::check_writable(file);
 }
 

@@ -105,7 +105,7 @@ std::vector<PointSize> read_point_table(const io::Input& input) {
   return points;
 }
 
-std::vector<PointSize> read_point_sizes(const std::filesystem::path& file, const RunContext& context) {
+std::vector<PointSize> read_point_sizes(const std::string& file, const RunContext& context) {
   const io::LoadedFile loaded(file, context);
   const io::Input& input = loaded.input();
   const std::size_t start = input.bytes.find_first_not_of(" \t\r\n");

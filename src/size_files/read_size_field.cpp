@@ -114,7 +114,7 @@ std::vector<double> corner_sizes(const GridFile& grid, const RootCube& root, con
 
 }  // namespace
 
-SizeField read_size_field(const std::filesystem::path& file, double gradation, const RunContext& context) {
+SizeField read_size_field(const std::string& file, double gradation, const RunContext& context) {
   if (!(gradation >= 0.01 && gradation <= 1)) {
     throw OptionError(fmt::format("`gradation` is {}: it must lie between 0.01 (slow growth) and 1 (fast)", gradation));
   }

@@ -93,7 +93,7 @@ std::vector<SizeRegion> from_table(const io::Input& input) {
 
 }  // namespace
 
-std::vector<SizeRegion> read_size_regions(const std::filesystem::path& file, const RunContext& context) {
+std::vector<SizeRegion> read_size_regions(const std::string& file, const RunContext& context) {
   const io::LoadedFile loaded(file, context);
   const io::Input& input = loaded.input();
   const std::size_t start = input.bytes.find_first_not_of(" \t\r\n");

@@ -60,17 +60,16 @@ void write_grid(io::AtomicFile& file, const OctreeField& field) {
 
 }  // namespace
 
-void check_size_field_target(const std::filesystem::path& file) {
-  if (file.extension() != ".vtu")
-    throw OptionError(fmt::format("{}: the background grid is written as .vtu, not as \"{}\"", file.string(),
-                                  file.extension().string()));
+void check_size_field_target(const std::string& file) {
+  const std::string ending = std::filesystem::path(file).extension().string();
+  if (ending != ".vtu")
+    throw OptionError(fmt::format("{}: the background grid is written as .vtu, not as \"{}\"", file, ending));
   io::check_writable(file);
 }
 
-void write_size_field(const std::filesystem::path& file, const SizeField& sizes, const RunContext& context) {
+void write_size_field(const std::string& file, const SizeField& sizes, const RunContext& context) {
   const OctreeField* grid = as_octree_field(sizes);
-  if (grid == nullptr)
-    throw OutputError("these sizes have no background grid that could be written to " + file.string());
+  if (grid == nullptr) throw OutputError("these sizes have no background grid that could be written to " + file);
   io::AtomicFile out(file, context);
   write_grid(out, *grid);
   out.commit();

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <octafront/io.h>
 #include <octafront/options.h>
 #include <octafront/size_field.h>
 #include <octafront/surface_mesh.h>

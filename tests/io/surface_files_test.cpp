@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <clocale>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <random>
 
