@@ -19,6 +19,9 @@ constexpr int kLastSteps = 12;        ///< for the best cavity
 constexpr float kLeastGain = 0.02f;   ///< more elements must be worth it
 constexpr float kLeastRelief = 0.3f;  ///< the same for what they lack
 constexpr int kPatience = 10;         ///< growth steps without a better star before giving up
+/// After so many elements in a row that could not be bettered the rest of a block is left: in walls thinner than their
+/// elements all are poor, and none has room for a vertex. Elsewhere some tens in a row are the most.
+constexpr int kHopeless = 256;
 
 class Inserter {
  public:
@@ -152,12 +155,15 @@ PassResult insert_block(EditBlock& block, const Floor& floor, const std::vector<
     if (mesh.alive(t)) bad.push_back({mesh.shape(t).score, t});
   std::sort(bad.begin(), bad.end());
   Inserter inserter(block, floor, goal);
+  int in_vain = 0;
   for (const auto& [score, t] : bad) {
+    if (in_vain == kHopeless) break;
     if (!mesh.alive(t) || mesh.shape(t).score >= threshold) continue;
     ++result.tried;
     block.take_cut();
     const bool done = inserter.improve(t);
     result.done += done;
+    in_vain = done ? 0 : in_vain + 1;
     if (!done && block.take_cut()) left.push_back(t);
   }
   return result;
