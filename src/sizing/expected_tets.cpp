@@ -10,6 +10,7 @@
 #include "sizing/inside_fraction.h"
 #include "sizing/make_size_field.h"
 #include "sizing/size_sources.h"
+#include "sizing/thin_walls.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,6 +30,9 @@ constexpr double kMissPerOctave = 0.15;
 /// What a lattice that misses the number by e-fold is worth in parts of the volume that are not in cells of the
 /// commonest size. Sizes that differ little then get cells of one size, without the poorer elements in between.
 constexpr double kMissPerMixed = 0.2;
+
+/// A thin wall or two that change the number by less than this part are lost in the spread of kTetsPerCube.
+constexpr double kWorthCounting = 0.05;
 
 /// What the sizes ask for, in parts: lengths in units of the root's side, elements in units of kTetsPerCube.
 struct Demand {
@@ -125,8 +129,7 @@ void for_each_gauss_point(const std::array<double, 8>& h, Visit&& visit) {
   for (int i = 0; i < 8; ++i) visit(trilinear(h, kAt[i & 1], kAt[i >> 1 & 1], kAt[i >> 2]));
 }
 
-Demand demand_of(const OctreeField& field, const SurfaceMesh& surface) {
-  const std::vector<SurfacePiece> pieces = surface_pieces(field.root, field.tree, surface);
+Demand demand_of(const OctreeField& field, const std::vector<SurfacePiece>& pieces) {
   const std::vector<double> fraction = inside_fractions(field.root, field.tree, pieces);
   Demand demand;
   demand.surface_size = median_on_surface(field, pieces);
@@ -173,21 +176,41 @@ std::shared_ptr<const OctreeField> grid_of(const SizeField& sizes, const Surface
   return sampled_grid(sizes, surface);
 }
 
-}  // namespace
-
-double expected_tets(const SizeField& sizes, const SurfaceMesh& surface) {
+double elements_by_volume(const SizeField& sizes, const OctreeField& grid, const SurfaceMesh& surface,
+                          const std::vector<SurfacePiece>& pieces) {
   if (sizes.min_size() == sizes.max_size()) {
     const double h = sizes.min_size();
     return kTetsPerCube * std::abs(enclosed_volume(surface)) / (h * h * h);
   }
-  const Demand demand = demand_of(*grid_of(sizes, surface), surface);
+  const Demand demand = demand_of(grid, pieces);
   return kTetsPerCube * (demand.shell + elements_inside(demand, choose_cell(demand)));
+}
+
+}  // namespace
+
+TetPrediction::TetPrediction(const SurfaceMesh& surface) : surface_(surface), walls_(new ThinWalls(surface)) {}
+TetPrediction::~TetPrediction() = default;
+
+double TetPrediction::operator()(const SizeField& sizes, std::optional<std::size_t> triangles) const {
+  const auto grid = grid_of(sizes, surface_);
+  const std::vector<SurfacePiece> pieces = surface_pieces(grid->root, grid->tree, surface_);
+  const double by_volume = elements_by_volume(sizes, *grid, surface_, pieces);
+  const double excess = walls_->excess_tets(*grid, pieces, triangles);
+  return std::max(1.0, std::abs(excess) < kWorthCounting * by_volume ? by_volume : by_volume + excess);
+}
+
+double expected_tets(const SizeField& sizes, const SurfaceMesh& surface) {
+  return TetPrediction(surface)(sizes, {});
+}
+
+double expected_tets_within(const SizeField& sizes, const SurfaceMesh& made) {
+  return TetPrediction(made)(sizes, made.triangles.size());
 }
 
 double lattice_cell_size(const SizeField& sizes, const SurfaceMesh& surface) {
   if (sizes.min_size() == sizes.max_size()) return sizes.min_size();
   const auto grid = grid_of(sizes, surface);
-  return choose_cell(demand_of(*grid, surface)) * grid->root.side;
+  return choose_cell(demand_of(*grid, surface_pieces(grid->root, grid->tree, surface))) * grid->root.side;
 }
 
 }  // namespace octafront

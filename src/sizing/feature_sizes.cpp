@@ -64,10 +64,10 @@ std::vector<FeatureCurve> feature_curves(const SurfaceMesh& surface, const Featu
   return CurveWalker(surface, features).run();
 }
 
-std::vector<SizeSample> feature_samples(const SurfaceMesh& surface, const Features& features, double elements,
-                                        double floor, double ceiling) {
+std::vector<SizeSample> feature_samples(const SurfaceMesh& surface, const std::vector<FeatureCurve>& curves,
+                                        double elements, double floor, double ceiling) {
   std::vector<SizeSample> samples;
-  for (const FeatureCurve& curve : feature_curves(surface, features)) {
+  for (const FeatureCurve& curve : curves) {
     const bool closed = curve.vertices.front() == curve.vertices.back();
     const double h = std::max(floor, curve.length / (closed ? std::max(3.0, 2 * elements) : elements));
     if (h >= ceiling) continue;

@@ -18,7 +18,7 @@ std::vector<FeatureCurve> feature_curves(const SurfaceMesh& surface, const Featu
 
 /// Samples that give each feature curve at least `elements` elements (closed ones at least twice that, and three), but
 /// no size below `floor`.
-std::vector<SizeSample> feature_samples(const SurfaceMesh& surface, const Features& features, double elements,
-                                        double floor, double ceiling);
+std::vector<SizeSample> feature_samples(const SurfaceMesh& surface, const std::vector<FeatureCurve>& curves,
+                                        double elements, double floor, double ceiling);
 
 }  // namespace octafront

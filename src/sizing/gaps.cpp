@@ -9,8 +9,6 @@ namespace octafront {
 
 namespace {
 
-/// Cosine of the angle between normals from which sheets face each other.
-constexpr double kFacing = -0.7;
 /// Answers are shared within cells of this part of the reach.
 constexpr double kSharedPart = 0.25;
 
@@ -51,7 +49,7 @@ double GapFinder::distance_along(const PlaceOnSurface& place, Vec3 direction) co
   // The first part of the way is left out: the place's own triangle and its neighbours lie there.
   const double skipped = 0.1 * nearest_;
   const TriangleTree::RayHit hit = tree_.first_hit(place.p + skipped * direction, direction, reach_ - skipped);
-  if (hit.triangle == kNone || !(dot(normal_[hit.triangle], place.n) < kFacing)) return kOpen;
+  if (hit.triangle == kNone || !faces(normal_[hit.triangle], place.n)) return kOpen;
   return skipped + hit.t;
 }
 

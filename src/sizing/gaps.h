@@ -12,6 +12,11 @@
 
 namespace octafront {
 
+/// Whether sheets with these unit normals face each other, or turn their backs: within about 45 degrees.
+constexpr bool faces(Vec3 n, Vec3 m) {
+  return dot(n, m) < -0.7;
+}
+
 /// Walls and gaps: how far it is from a place of the surface to the sheet that faces it, along the inward and the
 /// outward normal. Places that lie close together on one side share an answer, so that dense scans cost no more than
 /// coarse ones.
@@ -25,9 +30,10 @@ class GapFinder {
   /// Distance to the facing sheet; kOpen if there is none within reach. Sheets that meet at more than about 45 degrees
   /// do not face each other: an edge is no gap. The answer depends on which place of a neighbourhood was asked first.
   double width(const PlaceOnSurface& place);
+  /// The same of this place and no other: the answer is not shared.
+  double measure(const PlaceOnSurface& place) const;
 
  private:
-  double measure(const PlaceOnSurface& place) const;
   double distance_along(const PlaceOnSurface& place, Vec3 direction) const;
 
   TriangleTree tree_;

@@ -80,8 +80,9 @@ SizeField scaled_to_count(const SurfaceMesh& surface, const WantedSizes& wanted,
   const double target = std::log(static_cast<double>(*options.elements));
   // Secant steps in logarithms; the count falls with about the third power of the sizes.
   double x = 0, slope = -3, last_x = 0, last_y = 0;
+  const TetPrediction expected(surface);
   SizeField best = grid_field(surface, wanted, options, stage.context());
-  double y = std::log(expected_tets(best, surface));
+  double y = std::log(expected(best));
   double best_miss = std::abs(y - target);
   int steps = 0;
   for (; best_miss > kCountTolerance && steps < kMostScalings; ++steps) {
@@ -89,7 +90,7 @@ SizeField scaled_to_count(const SurfaceMesh& surface, const WantedSizes& wanted,
     last_y = y;
     x += (target - y) / slope;
     SizeField field = grid_field(surface, scaled(wanted, std::exp(x), options), options, stage.context());
-    y = std::log(expected_tets(field, surface));
+    y = std::log(expected(field));
     if (std::abs(y - target) < best_miss) {
       best_miss = std::abs(y - target);
       best = std::move(field);
@@ -99,7 +100,7 @@ SizeField scaled_to_count(const SurfaceMesh& surface, const WantedSizes& wanted,
   stage.count("scalings", steps);
   if (best_miss > 0.05) {
     stage.note(fmt::format("{} elements were asked for, but the limits on the size give {:.3g}", *options.elements,
-                           expected_tets(best, surface)));
+                           expected(best)));
   }
   return best;
 }
@@ -118,13 +119,14 @@ WantedSizes raised(const WantedSizes& wanted, double floor) {
 /// small holes: then the smallest sizes are raised until the number of elements is within the budget.
 SizeField within_budget(const SurfaceMesh& surface, const WantedSizes& wanted, const SizeOptions& options,
                         SizeField field, const Stage& stage) {
-  const double first = expected_tets(field, surface);
+  const TetPrediction expected(surface);
+  const double first = expected(field);
   if (first <= kAutomaticBudget) return field;
   double low = field.min_size(), high = std::min(wanted.ceiling, kMostRaised * low);
   for (int step = 0; step < kBudgetSteps; ++step) {
     const double floor = step == 0 ? high : std::sqrt(low * high);
     SizeField coarser = grid_field(surface, raised(wanted, floor), options, stage.context());
-    const double count = expected_tets(coarser, surface);
+    const double count = expected(coarser);
     const bool is_within = count <= kAutomaticBudget;
     (is_within ? high : low) = floor;
     if (is_within || step == 0) field = std::move(coarser);
@@ -134,13 +136,14 @@ SizeField within_budget(const SurfaceMesh& surface, const WantedSizes& wanted, c
       "the details of this surface ask for {:.2g} million elements; the automatic size stops at {:.4g}, for about "
       "{:.2g} "
       "million. For more of the details ask for them, e.g. with `elements`, `curvature`, `gap` or `min_size`",
-      first / 1e6, field.min_size(), expected_tets(field, surface) / 1e6));
+      first / 1e6, field.min_size(), expected(field) / 1e6));
   return field;
 }
 
 void refuse_huge_counts(const SurfaceMesh& surface, const WantedSizes& wanted) {
   const double largest = *std::max_element(wanted.face.begin(), wanted.face.end());
-  const double count = kTetsPerCube * std::abs(enclosed_volume(surface)) / (largest * largest * largest);
+  const double by_volume = kTetsPerCube * std::abs(enclosed_volume(surface)) / (largest * largest * largest);
+  const double count = std::max(by_volume, kTetsPerSquare * area(surface) / (largest * largest));
   if (count <= static_cast<double>(kMostElements)) return;
   throw OptionError(fmt::format(
       "a size of {:.4g} would give about {:.3g} elements, more than the {} that a mesh can hold: ask for a larger size",

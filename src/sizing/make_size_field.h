@@ -7,6 +7,10 @@
 #include "core/stage.h"
 #include "mesh/features.h"
 
+#include <memory>
+#include <optional>
+#include <vector>
+
 namespace octafront {
 
 /// Builds the octree background grid from the sources of `options` on a clean surface: 2:1 balanced, sizes at leaf
@@ -15,12 +19,36 @@ namespace octafront {
 SizeField make_size_field(const SurfaceMesh& surface, const Features& features, const SizeOptions& options,
                           const Stage& stage);
 
+/// Throws OptionError if triangles that turn by no more than so many degrees against the surface would give more
+/// elements than a mesh can hold.
+void refuse_huge_turning(const SurfaceMesh& surface, const Features& features, const SizeOptions& options,
+                         double degrees, const RunContext& context);
+
 /// For a surface that is kept: sizes from its own triangles (robust against needles and jumps), graded, combined with
 /// the sources of `options` inside.
 SizeField size_field_of_surface(const SurfaceMesh& surface, const SizeOptions& options, const Stage& stage);
 
-/// How many tetrahedra a mesh of the inside of `surface` by these sizes will have; integral of c / h^3, c measured.
+class ThinWalls;
+
+/// How many tetrahedra a mesh of the inside of a surface by given sizes will have: the integral of c / h^3, c measured;
+/// in walls of few layers as many as the triangles of their surface ask for. Refers to `surface`, which must outlive
+/// it.
+class TetPrediction {
+ public:
+  explicit TetPrediction(const SurfaceMesh& surface);
+  ~TetPrediction();
+  /// `triangles`: how many the surface has, if it is made by these sizes already.
+  double operator()(const SizeField& sizes, std::optional<std::size_t> triangles = {}) const;
+
+ private:
+  const SurfaceMesh& surface_;
+  std::unique_ptr<const ThinWalls> walls_;
+};
+
+/// The same for one size field.
 double expected_tets(const SizeField& sizes, const SurfaceMesh& surface);
+/// The same within a surface that was made by these sizes, or is kept: its triangles are known.
+double expected_tets_within(const SizeField& sizes, const SurfaceMesh& made);
 
 /// The mean edge length of one level of a lattice whose cells come in powers of two of it, each divided while its edges
 /// are longer than kLatticeTooLong times the wanted ones: chosen so that the lattice inside `surface` has as many

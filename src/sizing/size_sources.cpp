@@ -3,9 +3,11 @@
 #include <octafront/error.h>
 
 #include "geometry/measures.h"
+#include "sizing/affordable.h"
 #include "sizing/curvature.h"
 #include "sizing/feature_sizes.h"
 #include "sizing/gaps.h"
+#include "sizing/make_size_field.h"
 #include "sizing/point_sizes.h"
 
 #include <algorithm>
@@ -91,11 +93,10 @@ void apply_curvature(const SurfaceCurvature& curvature, double elements, double 
   }
 }
 
-/// The centroid of an equilateral triangle with its corners on a sphere of curvature k lies k h^2 / 6 below it.
 void apply_chord_error(const SurfaceCurvature& curvature, double error, double floor, std::vector<double>& face) {
   for (std::size_t f = 0; f < face.size(); ++f) {
     const double k = curvature.largest[f];
-    if (k * face[f] * face[f] > 6 * error) face[f] = std::max(floor, std::sqrt(6 * error / k));
+    if (k * face[f] * face[f] > 6 * error) face[f] = std::max(floor, size_of_chord_error(error, k));
   }
 }
 
@@ -133,13 +134,18 @@ SizeAtPlace least_of(const SizeAtPlace& a, const SizeAtPlace& b) {
   return [a, b](const PlaceOnSurface& s) { return std::min(a(s), b(s)); };
 }
 
-/// The sources that are asked place by place, in one function; empty if there are none.
-SizeAtPlace sizes_at_places(const SurfaceMesh& surface, const Choice& choice, const SizeOptions& options) {
+/// The sources that are asked place by place, in one function; empty if there are none. A wall below a floor of our own
+/// choosing cannot be resolved: the thinner it is, the less small elements do for it, and the larger they may be.
+SizeAtPlace sizes_at_places(const SurfaceMesh& surface, const Choice& choice, const SizeOptions& options,
+                            const Affordable& affordable) {
   SizeAtPlace gap;
   if (choice.gap > 0) {
     const auto gaps = std::make_shared<GapFinder>(surface, choice.gap_floor, choice.base * choice.gap);
-    gap = [gaps, elements = choice.gap, floor = choice.gap_floor](const PlaceOnSurface& place) {
-      return std::max(floor, gaps->width(place) / elements);
+    if (options.gap) affordable.gap(choice.gap, *gaps);
+    gap = [gaps, choice, is_ours = !options.min_size](const PlaceOnSurface& place) {
+      const double h = gaps->width(place) / choice.gap, floor = choice.gap_floor;
+      if (h >= floor) return h;
+      return is_ours ? floor * (floor / h) : floor;
     };
   }
   const SizeAtPlace given = given_sizes(surface, options);
@@ -149,6 +155,13 @@ SizeAtPlace sizes_at_places(const SurfaceMesh& surface, const Choice& choice, co
 }
 
 }  // namespace
+
+void refuse_huge_turning(const SurfaceMesh& surface, const Features& features, const SizeOptions& options,
+                         double degrees, const RunContext& context) {
+  const SurfaceCurvature curvature =
+      surface_curvature(surface, smooth_face_neighbours(surface, features.edges), context);
+  Affordable(surface, options).normal_deviation(degrees, curvature);
+}
 
 SizeAtPlace given_sizes(const SurfaceMesh& surface, const SizeOptions& options) {
   SizeAtPlace points, callback;
@@ -191,23 +204,28 @@ WantedSizes wanted_sizes(const SurfaceMesh& surface, const Features& features, c
   WantedSizes wanted;
   wanted.face.assign(surface.triangles.size(), choice.base);
   double scale = 1;
+  const Affordable affordable(surface, options);
   if (choice.curvature > 0 || options.facets || options.chord_error) {
     const FaceNeighbours across = smooth_face_neighbours(surface, features.edges);
     if (options.facets) apply_facets(surface, across, choice.floor, wanted.face);
     if (choice.curvature > 0 || options.chord_error) {
       const SurfaceCurvature curvature = surface_curvature(surface, across, stage.context());
+      if (options.curvature) affordable.curvature(*options.curvature, curvature);
+      if (options.chord_error) affordable.max_deviation(*options.chord_error, curvature);
       if (options.chord_error) apply_chord_error(curvature, *options.chord_error, choice.floor, wanted.face);
       if (choice.curvature > 0) apply_curvature(curvature, choice.curvature, choice.floor, wanted.face);
       if (choice.automatic) scale = automatic_scale(surface, curvature, wanted.face);
     }
   }
   if (choice.feature_elements > 0) {
-    wanted.points = feature_samples(surface, features, choice.feature_elements, choice.floor, choice.base);
+    const std::vector<FeatureCurve> curves = feature_curves(surface, features);
+    if (options.feature_elements) affordable.feature_elements(choice.feature_elements, curves);
+    wanted.points = feature_samples(surface, curves, choice.feature_elements, choice.floor, choice.base);
   }
   const std::vector<SizeSample> given = samples_of_points(options, options.min_size.value_or(0));
   wanted.points.insert(wanted.points.end(), given.begin(), given.end());
   for (double& h : wanted.face) h = std::max(h * scale, options.min_size.value_or(0));
-  wanted.at_place = sizes_at_places(surface, choice, options);
+  wanted.at_place = sizes_at_places(surface, choice, options, affordable);
   const bool graded = options.interior == SizeOptions::Interior::kGraded;
   wanted.ceiling = graded ? options.max_size.value_or(std::numeric_limits<double>::infinity()) : choice.base * scale;
   wanted.ceiling = std::max(wanted.ceiling, options.min_size.value_or(0));

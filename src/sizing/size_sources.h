@@ -5,9 +5,11 @@
 
 #include "core/stage.h"
 #include "mesh/features.h"
+#include "mesh/index_range.h"
 #include "sizing/background_grid.h"
 #include "sizing/surface_samples.h"
 
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -17,6 +19,8 @@ namespace octafront {
 /// twenty models: 9.24 with a spread of 3 %. (Space filled by regular tetrahedra would have 6 sqrt(2) = 8.49, the
 /// body-centred cubic lattice of that mean edge length has 9.45.)
 inline constexpr double kTetsPerCube = 9.24;
+/// The same per square of the surface where a wall has one layer of them: 1.47 for each triangle.
+inline constexpr double kTetsPerSquare = 3.4;
 
 /// What all sources together want on a surface, before any of it is put into a grid. Input units.
 struct WantedSizes {
@@ -43,6 +47,11 @@ SizeAtPlace given_sizes(const SurfaceMesh& surface, const SizeOptions& options);
 /// The points of options.point_sizes themselves, no smaller than `floor`: a small size at one corner of a large
 /// triangle must not be missed.
 std::vector<SizeSample> samples_of_points(const SizeOptions& options, double floor);
+
+/// The centroid of an equilateral triangle with its corners on a sphere of curvature k lies k h^2 / 6 below it.
+inline double size_of_chord_error(double error, double k) {
+  return std::sqrt(6 * error / k);
+}
 
 /// Throws OptionError for values out of range and for contradictions.
 void check_size_options(const SizeOptions& options);

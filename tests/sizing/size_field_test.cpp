@@ -15,6 +15,7 @@
 namespace octafront {
 namespace {
 
+using testing::box;
 using testing::cube;
 using testing::icosphere;
 using testing::torus;
@@ -136,13 +137,6 @@ TEST(SizeField, CurvatureAsksForTheSameHoweverTheTrianglesAreNumbered) {
   for (const Vec3 p : surface.points) ASSERT_NEAR(h.at(p), other.at(p), 1e-9);
 }
 
-/// The box [0, a] x [0, b] x [0, c].
-SurfaceMesh box(double a, double b, double c, int n) {
-  SurfaceMesh s = cube(n);
-  for (Vec3& p : s.points) p = {a * p.x, b * p.y, c * p.z};
-  return s;
-}
-
 TEST(SizeField, ThinWallsAndNarrowGapsGetElementsAcross) {
   SizeOptions o;
   o.gap = 2;
@@ -155,6 +149,22 @@ TEST(SizeField, ThinWallsAndNarrowGapsGetElementsAcross) {
   EXPECT_NEAR(gap.at({1, 1, 1}), 0.1, 0.01);
   EXPECT_NEAR(gap.at({0.5, 1.2, 1.2}), 0.1, 0.01);
   EXPECT_GT(gap.at({1, 1, 0}), 0.18);
+}
+
+/// Thinner than what the automatic size resolves, a plate gets wider elements and not more of them.
+TEST(SizeField, AutomaticSizesFollowThePlateSmoothly) {
+  constexpr double kStep = 0.65;  // of the thickness; the count of a plate with one layer falls with its square
+  double before = 0;
+  for (double thickness = 0.1; thickness > 1e-4; thickness *= kStep) {
+    const SurfaceMesh plate = box(1, 1, thickness, 1);
+    const double n = expected_tets(make(plate, {}, detect_features(plate, 40)), plate);
+    EXPECT_LT(n, 450'000) << thickness;
+    if (before > 0) {
+      EXPECT_LT(std::abs(std::log(n / before)), 2.6 * std::log(1 / kStep)) << thickness;
+    }
+    before = n;
+  }
+  EXPECT_LT(before, 10'000);
 }
 
 TEST(SizeField, EdgesAreNoGaps) {
@@ -231,6 +241,17 @@ TEST(ExpectedTets, OfACube) {
   EXPECT_NEAR(expected_tets(make(cube(4), o), cube(4)), n, 0.01 * n);
 }
 
+/// One layer of prisms, three elements for the two triangles of each, however thin.
+TEST(ExpectedTets, OfAPlateThinnerThanItsElements) {
+  SizeOptions o;
+  o.size = 0.02;
+  const double one_layer = 1.5 * 2 * 4 / std::sqrt(3) / (0.02 * 0.02);
+  for (const double thickness : {1e-2, 1e-3, 1e-5}) {
+    const SurfaceMesh plate = box(1, 1, thickness, 1);
+    EXPECT_NEAR(expected_tets(make(plate, o), plate), one_layer, 0.05 * one_layer) << thickness;
+  }
+}
+
 TEST(ExpectedTets, MeetsTheTarget) {
   for (const std::int64_t elements : {3000, 100000, 2000000}) {
     SizeOptions o;
@@ -302,6 +323,32 @@ TEST(SizeOptions, ContradictionsAreRefused) {
   refused([](SizeOptions& o) { o.curvature = 2; });
   refused([](SizeOptions& o) { o.size = 1e-5; });
   refused([](SizeOptions& o) { o.callback = [](Vec3) { return -1.0; }; });
+}
+
+/// With the number, and before anything is divided: the stage has no leaves to count yet.
+TEST(SizeOptions, WhatNoMeshCanHoldIsRefusedBeforeWorkBegins) {
+  const auto refused = [](const char* name, auto&& change) {
+    SizeOptions o;
+    change(o);
+    StageReport report;
+    const SurfaceMesh surface = box(2, 2, 0.1, 1), ball = icosphere(3);
+    const Features features = detect_features(surface, 40);
+    const bool is_curved = o.curvature || o.chord_error;
+    try {
+      make_size_field(is_curved ? ball : surface, is_curved ? Features{} : features, o, {RunContext{}, report});
+      ADD_FAILURE() << name;
+    } catch (const OptionError& e) {
+      EXPECT_NE(std::string(e.what()).find(name), std::string::npos) << e.what();
+      EXPECT_NE(std::string(e.what()).find("elements, more than the"), std::string::npos) << e.what();
+    }
+    for (const auto& [what, count] : report.counters) EXPECT_NE(what, "leaves") << name;
+  };
+  refused("size", [](SizeOptions& o) { o.size = 1e-5; });
+  refused("curvature", [](SizeOptions& o) { o.curvature = 1e6; });
+  refused("gap", [](SizeOptions& o) { o.gap = 1e4; });
+  refused("feature_elements", [](SizeOptions& o) { o.feature_elements = 1e9; });
+  refused("max_deviation", [](SizeOptions& o) { o.chord_error = 1e-9; });
+  EXPECT_THROW(refuse_huge_turning(icosphere(3), {}, {}, 1e-3, RunContext{}), OptionError);
 }
 
 }  // namespace

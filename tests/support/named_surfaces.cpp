@@ -40,6 +40,12 @@ SurfaceMesh cube(int n) {
   return s;
 }
 
+SurfaceMesh box(double a, double b, double c, int n) {
+  SurfaceMesh s = cube(n);
+  for (Vec3& p : s.points) p = {a * p.x, b * p.y, c * p.z};
+  return s;
+}
+
 SurfaceMesh unit_tetrahedron() {
   SurfaceMesh s;
   s.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};

@@ -9,6 +9,9 @@ namespace octafront::testing {
 /// [0, 1]^3, each side divided into n x n squares of two triangles; patch = side 0..5.
 SurfaceMesh cube(int n = 1);
 
+/// [0, a] x [0, b] x [0, c], divided and with patches as the cube.
+SurfaceMesh box(double a, double b, double c, int n = 1);
+
 /// The regular tetrahedron-like corner (0,0,0) (1,0,0) (0,1,0) (0,0,1).
 SurfaceMesh unit_tetrahedron();
 

@@ -1,0 +1,76 @@
+#include "sizing/thin_walls.h"
+
+#include "geometry/measures.h"
+#include "sizing/gaps.h"
+#include "sizing/size_sources.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numbers>
+
+namespace octafront {
+
+namespace {
+
+/// Triangles of edge length h on an area of h^2.
+constexpr double kTrianglesPerSquare = 4 / std::numbers::sqrt3;
+
+/// Elements for each triangle of the surface of a wall, by its thickness in sizes: as measured on plates. The steps are
+/// where a second and a third layer begin; behind the last row the volume decides.
+struct Row {
+  double thickness, tets;
+};
+constexpr Row kTetsPerTriangle[] = {{0, 1.47},   {1.05, 1.5},  {1.09, 2.6},
+                                    {1.3, 2.93}, {1.72, 2.93}, {1.78, 4.2},
+                                    {1.95, 4.7}, {2.45, 4.7},  {3, 3 * kTetsPerCube / (2 * kTrianglesPerSquare)}};
+constexpr double kThickest = std::end(kTetsPerTriangle)[-1].thickness;
+
+double tets_per_triangle(double thickness) {
+  const Row* above = std::find_if(std::begin(kTetsPerTriangle) + 1, std::end(kTetsPerTriangle) - 1,
+                                  [&](const Row& r) { return thickness < r.thickness; });
+  const Row &b = *above, &a = above[-1];
+  return a.tets + (b.tets - a.tets) * (thickness - a.thickness) / (b.thickness - a.thickness);
+}
+
+/// Places looked at, spread evenly over the triangles that the surface will have: shares to a percent, in milliseconds.
+constexpr int kPlaces = 4096;
+/// Rays begin this part of the model inside the surface, so as not to meet it where they start.
+constexpr double kSkipped = 1e-7;
+
+}  // namespace
+
+double ThinWalls::excess_tets(const OctreeField& field, const std::vector<SurfacePiece>& pieces,
+                              std::optional<std::size_t> triangles) const {
+  const auto squares = [&](const SurfacePiece& piece) {
+    const double h = field.at(piece.p);
+    return length(piece.n) / (h * h);
+  };
+  double all = 0;
+  for (const SurfacePiece& piece : pieces) all += squares(piece);
+  const double triangles_per_square = triangles ? static_cast<double>(*triangles) / all : kTrianglesPerSquare;
+  const double step = all / kPlaces;
+  double passed = 0, next = 0.5 * step, excess = 0;
+  for (const SurfacePiece& piece : pieces) {
+    passed += squares(piece);
+    const auto places = std::ceil((passed - next) / step);
+    if (!(places > 0)) continue;
+    next += places * step;
+    const double h = field.at(piece.p), walls = thickness(piece.p, normalized(piece.n), kThickest * h) / h;
+    // The elements of one side of the wall, less those that its half of the volume stands for.
+    if (walls < kThickest)
+      excess += places * step * (triangles_per_square * tets_per_triangle(walls) - kTetsPerCube * walls / 2);
+  }
+  return excess;
+}
+
+/// Way to the sheet that faces p from behind; GapFinder::kOpen if there is none within reach.
+double ThinWalls::thickness(Vec3 p, Vec3 normal, double reach) const {
+  const double skipped = kSkipped * tree_.box().diagonal();
+  const TriangleTree::RayHit hit = tree_.first_hit(p - skipped * normal, -normal, reach);
+  if (hit.triangle == kNone) return GapFinder::kOpen;
+  const auto& [a, b, c] = tree_.corners(hit.triangle);
+  return faces(unit_normal(a, b, c), normal) ? skipped + hit.t : GapFinder::kOpen;
+}
+
+}  // namespace octafront

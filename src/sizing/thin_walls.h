@@ -1,0 +1,32 @@
+#pragma once
+
+#include <octafront/surface_mesh.h>
+
+#include "geometry/triangle_tree.h"
+#include "sizing/inside_fraction.h"
+#include "sizing/octree_field.h"
+
+#include <optional>
+#include <vector>
+
+namespace octafront {
+
+/// Walls of one to three layers of elements, whose number follows the surface and not the volume: a plate much thinner
+/// than its elements are wide has three of them for two triangles, however thin it is.
+class ThinWalls {
+ public:
+  explicit ThinWalls(const SurfaceMesh& surface) : tree_(surface) {}
+
+  /// How many elements more than the integral of kTetsPerCube / h^3 over the volume these walls will have; below 0:
+  /// fewer. `pieces`: the surface, as surface_pieces() leaves it; `triangles`: how many it has, if it is made by these
+  /// sizes already. Looks at some thousand places.
+  double excess_tets(const OctreeField& field, const std::vector<SurfacePiece>& pieces,
+                     std::optional<std::size_t> triangles) const;
+
+ private:
+  double thickness(Vec3 p, Vec3 normal, double reach) const;
+
+  TriangleTree tree_;
+};
+
+}  // namespace octafront
