@@ -13,17 +13,17 @@ namespace octafront {
 
 namespace {
 
-// The prediction misses when a model is mostly surface; then what came out says by how much to scale.
+// Sizes that miss the number are scaled, by what came out, and tried again.
 constexpr double kElementsTolerance = 0.12;  // tighter than the 15 % promised: improvement still changes the count
 constexpr int kElementsAttempts = 5;
-// By how much to scale the first sizes next, by the counts of the last two meshes. The count falls with the third power
-// of the sizes where the volume decides, more slowly where gradation or details of the surface do.
+// By how much to scale the first sizes next, by the last two counts. The count falls with the third power of the sizes
+// where the volume decides, more slowly where gradation or details of the surface do.
 class CountSearch {
  public:
-  explicit CountSearch(std::int64_t wanted) : wanted_(std::log(static_cast<double>(wanted))) {}
+  explicit CountSearch(double wanted) : wanted_(std::log(wanted)) {}
 
-  double next_factor(std::size_t made) {
-    const double count = std::log(static_cast<double>(made));
+  double next_factor(double made) {
+    const double count = std::log(made);
     if (last_count_ && scale_ != last_scale_)
       slope_ = std::clamp((count - *last_count_) / (scale_ - last_scale_), -4.0, -1.5);
     last_count_ = count;
@@ -37,20 +37,8 @@ class CountSearch {
   std::optional<double> last_count_;
 };
 
-double miss(const SizeOptions& options, std::size_t tets) {
-  return std::abs(std::log(static_cast<double>(tets) / static_cast<double>(options.elements.value_or(1))));
-}
-
-bool meets_target(const SizeOptions& options, std::size_t tets) {
-  if (!options.elements) return true;
-  const double ratio = static_cast<double>(tets) / static_cast<double>(*options.elements);
-  return std::abs(ratio - 1) <= kElementsTolerance;
-}
-
-void note_missed_target(const SizeOptions& options, std::size_t made, const char* what_decides, StageReport& stage) {
-  if (meets_target(options, made)) return;
-  stage.notes.push_back(
-      fmt::format("{} elements were wanted; the {} do not allow it: {} made", *options.elements, what_decides, made));
+bool meets(double wanted, double count) {
+  return std::abs(count / wanted - 1) <= kElementsTolerance;
 }
 
 /// The stages from here on made what was not kept.
@@ -60,31 +48,91 @@ void rename_earlier(Report& report, std::size_t first_stage) {
   }
 }
 
+/// What sizes came to.
+template <class Made>
+struct Try {
+  SizeField sizes;
+  Made made;
+  double expected;  ///< elements, by the prediction
+  double count;     ///< elements, by the search
+};
+
+/// make(sizes), again with scaled sizes until the elements meet the number wanted or cannot; the best try counts. The
+/// tries began at `first_stage` of the report; `counted` is the word for what count(made) leaves.
+template <class Make, class Count>
+auto meet_target(const SizeField& sizes, Run& run, std::size_t first_stage, const char* counted, Make&& make,
+                 Count&& count) {
+  const auto attempt = [&](const SizeField& by) {
+    auto made = make(by);
+    const double elements = count(made);
+    return Try<decltype(made)>{by, std::move(made), run.report.expected_tets, elements};
+  };
+  auto best = attempt(sizes);
+  if (!run.options.size.elements || keeps_surface(run.options)) return best;
+  const auto wanted = static_cast<double>(*run.options.size.elements);
+  const auto miss = [&](double elements) { return std::abs(std::log(elements / wanted)); };
+  CountSearch search(wanted);
+  double last = best.count;
+  for (int tries = 1; tries < kElementsAttempts && !meets(wanted, last); ++tries) {
+    const double factor = search.next_factor(last);
+    rename_earlier(run.report, first_stage);
+    auto next = attempt(scaled(sizes, factor, run.context()));
+    run.report.stages.back().notes.push_back(
+        fmt::format("the sizes before had {:.0f} elements {} where {} were wanted: all sizes scaled by {:.4g}", last,
+                    counted, *run.options.size.elements, factor));
+    last = next.count;
+    // The lattice doubles its cells: counts may jump over the target, and an earlier try may be the better one.
+    if (miss(last) < miss(best.count)) best = std::move(next);
+  }
+  run.report.expected_tets = best.expected;
+  return best;
+}
+
+void note_missed_target(double count, const char* counted, Run& run) {
+  const auto& wanted = run.options.size.elements;
+  if (!wanted || meets(static_cast<double>(*wanted), count)) return;
+  run.report.stages.back().notes.push_back(
+      fmt::format("{} elements were wanted; the {} do not allow it: {:.0f} {}", *wanted,
+                  keeps_surface(run.options) ? "kept triangles" : "features and size limits", count, counted));
+}
+
+Try<Remeshed> surface_to_target(const Prepared& input, SizeField sizes, Run& run) {
+  if (run.options.size.elements && !keeps_surface(run.options)) {
+    const double factor = std::cbrt(traits_of(run.options.method).tets_per_expected);
+    if (factor != 1) sizes = scaled(sizes, factor, run.context());
+  }
+  return meet_target(
+      sizes, run, run.report.stages.size(), "expected",
+      [&](const SizeField& by) { return triangulate(input, by, run); },
+      [&](const Remeshed&) { return run.report.expected_tets; });
+}
+
 }  // namespace
 
-Filled fill_to_target(const Prepared& input, SizeField sizes, Run& run) {
-  const SizeOptions& wanted = run.options.size;
-  const bool can_scale = wanted.elements && !keeps_surface(run.options);
-  const double first_factor = traits_of(run.options.method).size_factor;
-  if (can_scale && first_factor != 1) sizes = scaled(sizes, first_factor, run.context());
+Remeshed triangulate_to_target(const Prepared& input, const SizeField& sizes, Run& run) {
+  Try<Remeshed> best = surface_to_target(input, sizes, run);
+  note_missed_target(best.expected, "expected", run);
+  return std::move(best.made);
+}
+
+// The prediction knows of strips and bounds on deviation once there is a surface, which takes a part of the time that
+// the volume takes: it is made to meet the number first, and the mesh then seldom misses it.
+Filled fill_to_target(const Prepared& input, const SizeField& sizes, Run& run) {
   const std::size_t first_stage = run.report.stages.size();
-  CountSearch search(wanted.elements.value_or(1));
-  Filled best = fill(input, sizes, run);
-  std::size_t made = best.mesh.tets.size();
-  for (int attempt = 1; can_scale && attempt < kElementsAttempts && !meets_target(wanted, made); ++attempt) {
-    const double factor = search.next_factor(made);
-    rename_earlier(run.report, first_stage);
-    Filled next = fill(input, scaled(sizes, factor, run.context()), run);
-    run.report.stages.back().notes.push_back(
-        fmt::format("the mesh before had {} elements where {} were wanted: all sizes scaled by {:.4g}", made,
-                    *wanted.elements, factor));
-    made = next.mesh.tets.size();
-    // The lattice doubles its cells: counts may jump over the target, and an earlier mesh may be the better one.
-    if (miss(wanted, made) < miss(wanted, best.mesh.tets.size())) best = std::move(next);
-  }
-  note_missed_target(wanted, best.mesh.tets.size(), can_scale ? "features and size limits" : "kept triangles",
-                     run.report.stages.back());
-  return best;
+  std::optional<Try<Remeshed>> surface;
+  if (!traits_of(run.options.method).makes_own_boundary()) surface = surface_to_target(input, sizes, run);
+  std::optional<Remeshed> first;
+  if (surface) first = std::move(surface->made);
+  const auto make = [&](const SizeField& by) {
+    if (!first) return fill(input, by, run);
+    Remeshed boundary = std::move(*first);
+    first.reset();
+    return fill_surface(input, std::move(boundary), run);
+  };
+  auto best = meet_target(surface ? surface->sizes : sizes, run, first_stage, "in the mesh", make,
+                          [](const Filled& made) { return static_cast<double>(made.mesh.tets.size()); });
+  note_missed_target(best.count, "made", run);
+  return std::move(best.made);
 }
 
 }  // namespace octafront

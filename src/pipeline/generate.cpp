@@ -22,7 +22,7 @@ SurfaceResult generate_surface(const SurfaceMesh& surface, const Options& option
   Run run(options, context);
   const Prepared input = prepare(surface, run);
   const SizeField sizes = choose_sizes(input, run);
-  Remeshed made = triangulate(input, sizes, run);
+  Remeshed made = triangulate_to_target(input, sizes, run);
   run.report.points = made.surface.points.size();
   run.report.boundary_faces = made.surface.triangles.size();
   run.report.volume = enclosed_volume(made.surface);
@@ -34,7 +34,7 @@ SizeResult generate_sizes(const SurfaceMesh& surface, const Options& options, co
   Run run(options, context);
   const Prepared input = prepare(surface, run);
   SizeField sizes = choose_sizes(input, run);
-  if (traits_of(options.method).has_front) sizes = triangulate(input, sizes, run).sizes;
+  if (traits_of(options.method).has_front) sizes = triangulate_to_target(input, sizes, run).sizes;
   return {std::move(sizes), run.close()};
 }
 

@@ -26,11 +26,11 @@ TetMesh fill_by_recovery(const Remeshed& boundary, const VolumeOptions&, const S
   return mesh;
 }
 
-/// The classical front makes 1.1 to 1.4 times the elements that the sizes promise: it begins with larger ones.
-constexpr double kClassicSizeFactor = 1.07;
+/// The classical front makes 1.1 to 1.4 times the elements that the sizes promise.
+constexpr double kClassicTets = 1.225;
 
 constexpr MethodTraits kOctreeAft{.stage = "volume front", .fill = fill_by_front};
-constexpr MethodTraits kAft{.stage = "volume front", .size_factor = kClassicSizeFactor, .fill = fill_by_classic_front};
+constexpr MethodTraits kAft{.stage = "volume front", .tets_per_expected = kClassicTets, .fill = fill_by_classic_front};
 constexpr MethodTraits kOctree{.stage = "stuffing", .needs_clean = false, .has_front = false};
 constexpr MethodTraits kRecover{
     .stage = "recovery", .has_front = false, .always_keeps = true, .fill = fill_by_recovery};

@@ -13,8 +13,7 @@ struct MethodTraits {
   bool needs_clean = true;    ///< surfaces with defects are refused
   bool has_front = true;      ///< the surface is triangulated anew to the sizes, unless it is kept
   bool always_keeps = false;  ///< the input's triangles become the boundary, asked for or not
-  /// The sizes to begin with where a number of elements is wanted, as a multiple of those that promise it.
-  double size_factor = 1;
+  double tets_per_expected = 1;  ///< makes so many times the elements that the sizes promise
   /// Fills the surface and keeps its triangles; null for the method that makes a boundary of its own.
   TetMesh (*fill)(const Remeshed& boundary, const VolumeOptions& options, const Stage& stage) = nullptr;
 

@@ -149,10 +149,14 @@ SizeField choose_sizes(const Prepared& input, Run& run) {
   SizeField sizes = run.stage("size field", [&](const Stage& stage) {
     SizeOptions size = run.options.size;
     if (!size.field) size.chord_error = run.options.surface.max_deviation;
+    if (const auto degrees = run.options.surface.normal_deviation)
+      refuse_huge_turning(surface, input.features, size, *degrees, run.context());
     return keeps_surface(run.options) ? size_field_of_surface(surface, size, stage)
                                       : make_size_field(surface, input.features, size, stage);
   });
-  run.report.expected_tets = expected_tets(sizes, surface);
+  run.report.expected_tets =
+      traits_of(run.options.method).tets_per_expected *
+      (keeps_surface(run.options) ? expected_tets_within(sizes, surface) : expected_tets(sizes, surface));
   return sizes;
 }
 
@@ -164,15 +168,19 @@ Remeshed triangulate(const Prepared& input, const SizeField& sizes, Run& run) {
     stage.count("triangles", static_cast<double>(remeshed.surface.triangles.size()));
     note_volume_loss(enclosed_volume(remeshed.surface), run.report.input_volume, stage);
     // Strips between lines and the bounds on deviation have made sizes smaller since the first prediction.
-    run.report.expected_tets = expected_tets(remeshed.sizes, remeshed.surface);
+    run.report.expected_tets =
+        traits_of(run.options.method).tets_per_expected * expected_tets_within(remeshed.sizes, remeshed.surface);
     return remeshed;
   });
 }
 
 Filled fill(const Prepared& input, const SizeField& sizes, Run& run) {
+  if (traits_of(run.options.method).makes_own_boundary()) return stuff(input, sizes, run);
+  return fill_surface(input, triangulate(input, sizes, run), run);
+}
+
+Filled fill_surface(const Prepared& input, Remeshed boundary, Run& run) {
   const MethodTraits& method = traits_of(run.options.method);
-  if (method.makes_own_boundary()) return stuff(input, sizes, run);
-  Remeshed boundary = triangulate(input, sizes, run);
   TetMesh mesh = run.stage(method.stage, [&](const Stage& stage) {
     TetMesh filled = method.fill(boundary, run.options.volume, stage);
     stage.count("tets", static_cast<double>(filled.tets.size()));

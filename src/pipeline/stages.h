@@ -37,11 +37,16 @@ SizeField choose_sizes(const Prepared& input, Run& run);
 /// The surface triangulated anew to the sizes, or the input's triangles where the run keeps them.
 Remeshed triangulate(const Prepared& input, const SizeField& sizes, Run& run);
 
+/// triangulate(), again with scaled sizes until the elements expected meet the number that was asked for or cannot.
+Remeshed triangulate_to_target(const Prepared& input, const SizeField& sizes, Run& run);
+
 /// Surface and volume by the run's method.
 Filled fill(const Prepared& input, const SizeField& sizes, Run& run);
+/// The volume of a surface that triangulate() left.
+Filled fill_surface(const Prepared& input, Remeshed boundary, Run& run);
 
-/// fill(), again with scaled sizes until the number of elements that was asked for is met or cannot be.
-Filled fill_to_target(const Prepared& input, SizeField sizes, Run& run);
+/// The surface as by triangulate_to_target(), filled; again if the elements made do not meet the number.
+Filled fill_to_target(const Prepared& input, const SizeField& sizes, Run& run);
 
 /// Better elements; `filled.boundary` follows what became of the boundary.
 void improve_elements(const Prepared& input, Filled& filled, Run& run);
