@@ -22,7 +22,7 @@ TEST(Stages, OneAfterTheOtherMakeWhatGenerateMakes) {
   const SurfaceMesh torus = testing::torus(24, 12);
   const Options options = coarse();
   const RunContext context;
-  Run run(options, context);
+  octafront::Run run(options, context);
   const Prepared input = prepare(torus, run);
   const SizeField sizes = choose_sizes(input, run);
   Filled filled = fill_to_target(input, sizes, run);
@@ -68,7 +68,7 @@ TEST(Stages, AWrongBoundaryIsABugOfOurs) {
   const Options options = coarse();
   const RunContext context;
   const Result made = generate(testing::cube(4), options);
-  Run run(options, context);
+  octafront::Run run(options, context);
   const SurfaceMesh other = testing::cube(3);
   EXPECT_THROW(check_result(made.mesh, &other, run), MeshingError);
 }
