@@ -209,8 +209,8 @@ Judged make(const SurfaceMesh& input, const Arguments& a) {
   if (a.triangles) options.size.size = std::sqrt(area(input) * 4 / std::sqrt(3.0) / *a.triangles);
   SurfaceResult result = generate_surface(input, options);
   StageReport ignored;
-  const Features features = detect_features(input, options.surface.feature_angle);
-  SizeField asked = make_size_field(input, features, options.size, {{}, ignored});
+  const KnownSurface known(input, options.surface.feature_angle);
+  SizeField asked = make_size_field(known, options.size, {{}, ignored});
   return {std::move(result.surface), result.sizes, std::move(asked), std::move(result.report)};
 }
 

@@ -13,17 +13,17 @@ namespace octafront {
 /// Edge i of triangle t, from its corner i to the next one, as h = 3 * t + i.
 using HalfEdge = std::uint32_t;
 
-constexpr HalfEdge next_in_triangle(HalfEdge h) {
+constexpr HalfEdge next_of(HalfEdge h) {
   return h % 3 == 2 ? h - 2 : h + 1;
 }
-constexpr HalfEdge previous_in_triangle(HalfEdge h) {
+constexpr HalfEdge previous_of(HalfEdge h) {
   return h % 3 == 0 ? h + 2 : h - 1;
 }
 inline VertexIndex start_of(std::span<const Triangle> triangles, HalfEdge h) {
   return triangles[h / 3][h % 3];
 }
 inline VertexIndex end_of(std::span<const Triangle> triangles, HalfEdge h) {
-  return start_of(triangles, next_in_triangle(h));
+  return start_of(triangles, next_of(h));
 }
 
 /// The undirected edges of a list of triangles, each with the half-edges that run along it.

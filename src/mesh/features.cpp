@@ -1,7 +1,5 @@
 #include "mesh/features.h"
 
-#include "mesh/edge_table.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -104,8 +102,11 @@ std::vector<VertexIndex> find_corners(const SurfaceMesh& surface, const std::vec
 }  // namespace
 
 Features detect_features(const SurfaceMesh& surface, double angle_degrees) {
+  return detect_features(surface, make_edge_table(surface.points.size(), surface.triangles), angle_degrees);
+}
+
+Features detect_features(const SurfaceMesh& surface, const EdgeTable& table, double angle_degrees) {
   const double cos_angle = std::cos(angle_degrees * std::numbers::pi / 180);
-  const EdgeTable table = make_edge_table(surface.points.size(), surface.triangles);
   const std::vector<Vec3> direction = face_directions(surface, table);
   Features features;
   for (std::size_t e = 0; e < table.size(); ++e)

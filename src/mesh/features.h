@@ -2,6 +2,8 @@
 
 #include <octafront/surface_mesh.h>
 
+#include "mesh/edge_table.h"
+
 #include <vector>
 
 namespace octafront {
@@ -17,5 +19,7 @@ struct Features {
 /// curve may be without corners. Slivers as low as the rounding noise of files (1e-5 of the model's diagonal) turn with
 /// a neighbour, so a sharp edge beside one is found once. Cost: O(n log n), about 0.1 s per million triangles.
 Features detect_features(const SurfaceMesh& surface, double angle_degrees);
+/// The same with the edges at hand.
+Features detect_features(const SurfaceMesh& surface, const EdgeTable& edges, double angle_degrees);
 
 }  // namespace octafront

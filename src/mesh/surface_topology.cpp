@@ -16,15 +16,18 @@ void walk_fan(std::span<const HalfEdge> twin, HalfEdge h, Visit&& visit) {
   HalfEdge at = h;
   do {
     visit(at);
-    at = twin[previous_in_triangle(at)];
+    at = twin[previous_of(at)];
   } while (at != h && at != kNone);
 }
 
 }  // namespace
 
 std::vector<HalfEdge> half_edge_twins(std::span<const Triangle> triangles, std::size_t vertex_count) {
+  return half_edge_twins(triangles, make_edge_table(vertex_count, triangles));
+}
+
+std::vector<HalfEdge> half_edge_twins(std::span<const Triangle> triangles, const EdgeTable& table) {
   std::vector<HalfEdge> twin(3 * triangles.size(), kNone);
-  const EdgeTable table = make_edge_table(vertex_count, triangles);
   for (std::size_t e = 0; e < table.size(); ++e) {
     if (table.uses(e).size() != 2) continue;
     const HalfEdge a = table.uses(e)[0], b = table.uses(e)[1];

@@ -3,12 +3,14 @@
 #include <octafront/repair.h>
 #include <octafront/validity.h>
 
-#include "geometry/triangle_tree.h"
 #include "improve/improve.h"
-#include "mesh/features.h"
 #include "pipeline/follow_boundary.h"
 #include "pipeline/stages.h"
+#include "surface/examine.h"
 #include "surface/surface_check.h"
+
+#include <optional>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -33,20 +35,19 @@ SurfaceMesh without_inner_points(const SurfaceMesh& surface) {
 
 /// A surface for the boundary to move on, and what of either must be kept.
 struct Ground {
-  RepairedSurface repaired;
-  Features features, of_mesh;
+  KnownSurface surface;
+  Features of_mesh;
 };
 
 /// Vertices this near to the surface, in parts of the diagonal, lie on it: files round to seven digits.
 constexpr double kOnSurface = 1e-5;
 
-void require_on_surface(const TetMesh& mesh, const SurfaceMesh& boundary, const SurfaceMesh& surface) {
-  const TriangleTree tree(surface);
-  const double limit = kOnSurface * bounding_box(surface.points).diagonal();
+void require_on_surface(const TetMesh& mesh, const SurfaceMesh& boundary, const KnownSurface& surface) {
+  const double limit = kOnSurface * bounding_box(surface.mesh().points).diagonal();
   for (const Triangle& t : boundary.triangles)
     for (const VertexIndex v : t) {
       const Vec3 p = mesh.points[v];
-      if (tree.nearest(p, limit * limit).triangle != kNone) continue;
+      if (surface.tree().nearest(p, limit * limit).triangle != kNone) continue;
       throw InputError(fmt::format(
           "the boundary of the mesh does not lie on the surface given: vertex {} at ({}, {}, {}) is farther from it "
           "than {:.3g}. Give the surface that was meshed, or none: then the boundary stays as it is.",
@@ -56,19 +57,18 @@ void require_on_surface(const TetMesh& mesh, const SurfaceMesh& boundary, const 
 
 Ground prepare_ground(const TetMesh& mesh, const SurfaceMesh& surface, double feature_angle,
                       const RunContext& context) {
-  Ground g;
-  g.repaired = repair_surface(surface, context);
-  const SurfaceDefects defects = find_defects(g.repaired, context);
-  if (!defects.clean()) throw InputError(defects.describe());
-  const SurfaceMesh boundary = boundary_of(mesh);
-  require_on_surface(mesh, boundary, g.repaired.surface);
-  if (const auto defect = first_surface_defect(without_inner_points(boundary), g.repaired.surface))
-    throw InputError("the boundary of the mesh cannot be moved on the surface given: " + *defect);
+  Examined found = examine_surface(surface, context);
+  if (!found.defects.clean()) throw InputError(found.defects.describe());
+  SurfaceMesh& repaired = found.repaired.surface;
   // The patches of mesh and surface may be numbered differently; those of the mesh are kept as feature curves.
-  g.repaired.surface.patch.clear();
-  g.features = detect_features(g.repaired.surface, feature_angle);
-  g.of_mesh = detect_features(boundary, feature_angle);
-  return g;
+  repaired.patch.clear();
+  Features features = detect_features(repaired, found.edges, feature_angle);
+  KnownSurface known(std::move(repaired), std::move(found.edges), std::move(features));
+  const SurfaceMesh boundary = boundary_of(mesh);
+  require_on_surface(mesh, boundary, known);
+  if (const auto defect = first_surface_defect(without_inner_points(boundary), known.mesh()))
+    throw InputError("the boundary of the mesh cannot be moved on the surface given: " + *defect);
+  return {std::move(known), detect_features(boundary, feature_angle)};
 }
 
 void require_valid(const TetMesh& mesh, const RunContext& context) {
@@ -85,16 +85,18 @@ Improved improve_existing(const TetMesh& mesh, const Options& options, const Sur
   result.mesh = mesh;
   result.before = summarize_quality(mesh);
   run.report.input_volume = enclosed_volume(boundary_of(mesh));
-  Ground ground;
+  std::optional<Ground> ground;
   if (surface)
     run.stage("surface", [&](const Stage& stage) {
-      ground = prepare_ground(mesh, *surface, options.surface.feature_angle, stage.context());
+      ground.emplace(prepare_ground(mesh, *surface, options.surface.feature_angle, stage.context()));
     });
   run.stage("improve", [&](const Stage& stage) {
-    const TriangleTree tree(ground.repaired.surface);
-    const improve::BoundaryInput on{ground.repaired.surface, tree, ground.features, ground.of_mesh};
-    if (improve_mesh(result.mesh, surface ? &on : nullptr, options.improve, stage))
-      renew_sources(result.mesh, boundary_of(mesh), ground.repaired.surface, tree);
+    std::optional<improve::BoundaryInput> on;
+    if (ground)
+      on.emplace(improve::BoundaryInput{ground->surface.mesh(), ground->surface.tree(), ground->surface.features(),
+                                        ground->of_mesh});
+    if (improve_mesh(result.mesh, on ? &*on : nullptr, options.improve, stage) && on)
+      renew_sources(result.mesh, boundary_of(mesh), on->surface, on->tree);
   });
   check_result(result.mesh, nullptr, run);
   describe(result.mesh, run.report);

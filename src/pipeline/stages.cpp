@@ -9,10 +9,12 @@
 #include "pipeline/pipeline.h"
 #include "sizing/make_size_field.h"
 #include "stuffing/stuff.h"
+#include "surface/examine.h"
 #include "surface/feature_patches.h"
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <fmt/core.h>
 
@@ -48,12 +50,14 @@ SurfaceDomain::Defects judge_defects(const SurfaceDefects& found, Method method,
 }
 
 // An open surface has no outside that repair could find: what it nearly encloses says which way it faces.
-void face_outward(SurfaceMesh& surface) {
+void face_outward(Examined& found) {
+  SurfaceMesh& surface = found.repaired.surface;
   const double volume = enclosed_volume(surface), scale = area(surface) * bounding_box(surface.points).diagonal();
   if (std::abs(volume) < kLeastVolume * scale)
     throw InputError("the surface is flat, or as much inside out as not: it encloses no volume that could be filled");
   if (volume > 0) return;
   for (Triangle& t : surface.triangles) std::swap(t[1], t[2]);
+  found.edges = make_edge_table(surface.points.size(), surface.triangles);
 }
 
 // With sizes of our own choosing the surface stays true by default; sizes that the user gave are left as they are.
@@ -64,7 +68,7 @@ SurfaceOptions true_to_input(const Prepared& p, const Options& options) {
   const SizeOptions& size = options.size;
   if (!surface.max_deviation && !size.size && !size.elements && !size.callback && !size.field &&
       size.point_sizes.empty())
-    surface.max_deviation = kAutomaticDeviation * bounding_box(p.repaired.surface.points).diagonal();
+    surface.max_deviation = kAutomaticDeviation * bounding_box(p.surface.mesh().points).diagonal();
   return surface;
 }
 
@@ -85,7 +89,7 @@ constexpr double kVolumeTolerance = 0.03;
 
 void note_lost_volume(const TetMesh& mesh, const Prepared& p, const Stage& stage) {
   if (p.defects != SurfaceDomain::Defects::kClean) return;
-  const double share = enclosed_volume(boundary_of(mesh)) / enclosed_volume(p.repaired.surface);
+  const double share = enclosed_volume(boundary_of(mesh)) / enclosed_volume(p.surface.mesh());
   if (std::abs(share - 1) > kVolumeTolerance)
     stage.note(
         fmt::format("the mesh has {:.1f} % of the volume inside the surface: parts thinner than an "
@@ -106,12 +110,12 @@ Remeshed boundary_of_stuffed(const TetMesh& mesh, const SizeField& sizes, double
 /// The octree method makes its boundary itself.
 Filled stuff(const Prepared& input, const SizeField& sizes, Run& run) {
   TetMesh mesh = run.stage(traits_of(run.options.method).stage, [&](const Stage& stage) {
-    TetMesh stuffed = stuff_surface(input.repaired.surface, input.features, input.defects, sizes, stage);
+    TetMesh stuffed = stuff_surface(input.surface.mesh(), input.surface.features(), input.defects, sizes, stage);
     stage.count("tets", static_cast<double>(stuffed.tets.size()));
     note_lost_volume(stuffed, input, stage);
     return stuffed;
   });
-  for (std::uint32_t& triangle : mesh.source) triangle = input.repaired.surface.source_of(triangle);
+  for (std::uint32_t& triangle : mesh.source) triangle = input.surface.mesh().source_of(triangle);
   Remeshed boundary = boundary_of_stuffed(mesh, sizes, run.options.surface.feature_angle);
   return {std::move(mesh), std::move(boundary)};
 }
@@ -119,41 +123,43 @@ Filled stuff(const Prepared& input, const SizeField& sizes, Run& run) {
 }  // namespace
 
 Prepared prepare(const SurfaceMesh& soup, Run& run) {
-  Prepared p;
-  p.repaired = run.stage("repair", [&](const Stage& stage) {
-    RepairedSurface repaired = repair_surface(soup, stage.context());
+  SurfaceDomain::Defects defects{};
+  Examined found = run.stage("repair", [&](const Stage& stage) {
+    Examined examined = examine_surface(soup, stage.context());
+    const RepairedSurface& repaired = examined.repaired;
     for (const std::string& note : repaired.notes) stage.note(note);
-    p.defects = judge_defects(find_defects(repaired, stage.context()), run.options.method, stage);
-    if (p.defects == SurfaceDomain::Defects::kOpen) face_outward(repaired.surface);
+    defects = judge_defects(examined.defects, run.options.method, stage);
+    if (defects == SurfaceDomain::Defects::kOpen) face_outward(examined);
     refuse_lost_precision(repaired.surface);
     stage.count("triangles", static_cast<double>(repaired.surface.triangles.size()));
     stage.count("bodies", repaired.bodies);
     stage.count("cavities", repaired.cavities);
-    return repaired;
+    return examined;
   });
-  p.features = run.stage("features", [&](const Stage& stage) {
-    Features features = detect_features(p.repaired.surface, run.options.surface.feature_angle);
-    stage.count("feature edges", static_cast<double>(features.edges.size()));
-    stage.count("corners", static_cast<double>(features.corners.size()));
+  SurfaceMesh& surface = found.repaired.surface;
+  Features features = run.stage("features", [&](const Stage& stage) {
+    Features of_surface = detect_features(surface, found.edges, run.options.surface.feature_angle);
+    stage.count("feature edges", static_cast<double>(of_surface.edges.size()));
+    stage.count("corners", static_cast<double>(of_surface.corners.size()));
     if (run.options.surface.patches_by_features)
-      stage.count("patches", divide_into_patches(p.repaired.surface, features));
-    return features;
+      stage.count("patches", divide_into_patches(surface, found.edges, of_surface));
+    return of_surface;
   });
-  run.report.bodies = p.repaired.bodies;
-  run.report.input_volume = enclosed_volume(p.repaired.surface);
-  return p;
+  run.report.bodies = found.repaired.bodies;
+  run.report.input_volume = enclosed_volume(surface);
+  return {KnownSurface(std::move(surface), std::move(found.edges), std::move(features)), defects};
 }
 
 SizeField choose_sizes(const Prepared& input, Run& run) {
-  const SurfaceMesh& surface = input.repaired.surface;
   SizeField sizes = run.stage("size field", [&](const Stage& stage) {
     SizeOptions size = run.options.size;
     if (!size.field) size.chord_error = run.options.surface.max_deviation;
     if (const auto degrees = run.options.surface.normal_deviation)
-      refuse_huge_turning(surface, input.features, size, *degrees, run.context());
-    return keeps_surface(run.options) ? size_field_of_surface(surface, size, stage)
-                                      : make_size_field(surface, input.features, size, stage);
+      refuse_huge_turning(input.surface, size, *degrees, run.context());
+    return keeps_surface(run.options) ? size_field_of_surface(input.surface, size, stage)
+                                      : make_size_field(input.surface, size, stage);
   });
+  const SurfaceMesh& surface = input.surface.mesh();
   run.report.expected_tets =
       traits_of(run.options.method).tets_per_expected *
       (keeps_surface(run.options) ? expected_tets_within(sizes, surface) : expected_tets(sizes, surface));
@@ -161,10 +167,9 @@ SizeField choose_sizes(const Prepared& input, Run& run) {
 }
 
 Remeshed triangulate(const Prepared& input, const SizeField& sizes, Run& run) {
-  if (keeps_surface(run.options)) return input_as_it_is(input.repaired.surface, input.features, sizes);
+  if (keeps_surface(run.options)) return input_as_it_is(input.surface, sizes);
   return run.stage("surface front", [&](const Stage& stage) {
-    Remeshed remeshed =
-        remesh_surface(input.repaired.surface, input.features, sizes, true_to_input(input, run.options), stage);
+    Remeshed remeshed = remesh_surface(input.surface, sizes, true_to_input(input, run.options), stage);
     stage.count("triangles", static_cast<double>(remeshed.surface.triangles.size()));
     note_volume_loss(enclosed_volume(remeshed.surface), run.report.input_volume, stage);
     // Strips between lines and the bounds on deviation have made sizes smaller since the first prediction.
@@ -187,8 +192,7 @@ Filled fill_surface(const Prepared& input, Remeshed boundary, Run& run) {
     return filled;
   });
   mesh.source.reserve(boundary.source.size());
-  for (const std::uint32_t triangle : boundary.source)
-    mesh.source.push_back(input.repaired.surface.source_of(triangle));
+  for (const std::uint32_t triangle : boundary.source) mesh.source.push_back(input.surface.mesh().source_of(triangle));
   mesh.patch_names = boundary.surface.patch_names;
   return {std::move(mesh), std::move(boundary)};
 }
@@ -198,10 +202,12 @@ void improve_elements(const Prepared& input, Filled& filled, Run& run) {
     auto& [mesh, boundary] = filled;
     const bool moves = run.options.improve.move_boundary && !keeps_surface(run.options) &&
                        input.defects == SurfaceDomain::Defects::kClean;
-    const TriangleTree tree = moves ? TriangleTree(input.repaired.surface) : TriangleTree({}, {});
-    const improve::BoundaryInput on{input.repaired.surface, tree, input.features, boundary.features};
-    if (!improve_mesh(mesh, moves ? &on : nullptr, run.options.improve, stage)) return;
-    renew_sources(mesh, boundary.surface, input.repaired.surface, tree);
+    std::optional<improve::BoundaryInput> on;
+    if (moves)
+      on.emplace(improve::BoundaryInput{input.surface.mesh(), input.surface.tree(), input.surface.features(),
+                                        boundary.features});
+    if (!improve_mesh(mesh, on ? &*on : nullptr, run.options.improve, stage)) return;
+    if (on) renew_sources(mesh, boundary.surface, on->surface, on->tree);
     SurfaceMesh& surface = boundary.surface;  // what was filled follows what became of it; its vertices come first
     std::copy_n(mesh.points.begin(), surface.points.size(), surface.points.begin());
     surface.triangles = mesh.boundary;

@@ -8,7 +8,7 @@
 #include <octafront/surface_mesh.h>
 #include <octafront/tet_mesh.h>
 
-#include "mesh/features.h"
+#include "mesh/known_surface.h"
 #include "pipeline/run.h"
 #include "stuffing/implicit_domain.h"
 #include "surface/remeshing/remesh.h"
@@ -17,8 +17,7 @@ namespace octafront {
 
 /// The input as every later stage needs it.
 struct Prepared {
-  RepairedSurface repaired;
-  Features features;
+  KnownSurface surface;                                             ///< repaired
   SurfaceDomain::Defects defects = SurfaceDomain::Defects::kClean;  ///< other than clean where the method allows it
 };
 

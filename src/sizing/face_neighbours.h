@@ -2,7 +2,7 @@
 
 #include <octafront/surface_mesh.h>
 
-#include "mesh/features.h"
+#include "mesh/edge_table.h"
 
 #include <array>
 #include <cstdint>
@@ -15,6 +15,6 @@ namespace octafront {
 using FaceNeighbours = std::vector<std::array<std::uint32_t, 3>>;
 
 /// Edges of `features` count as boundaries: nothing lies across them.
-FaceNeighbours smooth_face_neighbours(const SurfaceMesh& surface, const std::vector<Edge>& features);
+FaceNeighbours smooth_face_neighbours(const EdgeTable& table, const std::vector<Edge>& features);
 
 }  // namespace octafront

@@ -23,8 +23,12 @@ std::uint64_t side_of_cube(Vec3 n) {
 
 }  // namespace
 
-GapFinder::GapFinder(const SurfaceMesh& surface, double nearest, double reach)
-    : tree_(surface), root_(RootCube::around(bounding_box(surface.points), 0)), nearest_(nearest), reach_(reach) {
+GapFinder::GapFinder(const KnownSurface& known, double nearest, double reach)
+    : tree_(known.tree()),
+      root_(RootCube::around(bounding_box(known.mesh().points), 0)),
+      nearest_(nearest),
+      reach_(reach) {
+  const SurfaceMesh& surface = known.mesh();
   normal_.reserve(surface.triangles.size());
   for (const Triangle& t : surface.triangles) {
     normal_.push_back(unit_normal(surface.points[t[0]], surface.points[t[1]], surface.points[t[2]]));

@@ -2,7 +2,7 @@
 
 #include <octafront/surface_mesh.h>
 
-#include "geometry/triangle_tree.h"
+#include "mesh/known_surface.h"
 #include "sizing/octree.h"
 #include "sizing/surface_samples.h"
 
@@ -25,7 +25,7 @@ class GapFinder {
   static constexpr double kOpen = std::numeric_limits<double>::infinity();
 
   /// Looks as far as `reach`; nothing nearer than `nearest` is told apart from it.
-  GapFinder(const SurfaceMesh& surface, double nearest, double reach);
+  GapFinder(const KnownSurface& surface, double nearest, double reach);
 
   /// Distance to the facing sheet; kOpen if there is none within reach. Sheets that meet at more than about 45 degrees
   /// do not face each other: an edge is no gap. The answer depends on which place of a neighbourhood was asked first.
@@ -36,7 +36,7 @@ class GapFinder {
  private:
   double distance_along(const PlaceOnSurface& place, Vec3 direction) const;
 
-  TriangleTree tree_;
+  const TriangleTree& tree_;
   std::vector<Vec3> normal_;
   RootCube root_;
   double nearest_, reach_;

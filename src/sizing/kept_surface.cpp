@@ -37,13 +37,14 @@ double size_of(Vec3 a, Vec3 b, Vec3 c) {
 }
 
 /// Per triangle: the mean over it and its neighbours in logarithms, so that single needles and jumps do not decide.
-std::vector<double> face_sizes(const SurfaceMesh& surface) {
+std::vector<double> face_sizes(const KnownSurface& known) {
+  const SurfaceMesh& surface = known.mesh();
   std::vector<double> own(surface.triangles.size());
   for (std::size_t f = 0; f < own.size(); ++f) {
     const Triangle& t = surface.triangles[f];
     own[f] = size_of(surface.points[t[0]], surface.points[t[1]], surface.points[t[2]]);
   }
-  const FaceNeighbours across = smooth_face_neighbours(surface, {});
+  const FaceNeighbours across = smooth_face_neighbours(known.edges(), {});
   std::vector<double> smooth(own.size());
   for (std::size_t f = 0; f < own.size(); ++f) {
     double sum = std::log(std::max(own[f], std::numeric_limits<double>::min())), n = 1;
@@ -83,13 +84,14 @@ void note_unused_sources(const SizeOptions& options, const Stage& stage) {
 
 }  // namespace
 
-SizeField size_field_of_surface(const SurfaceMesh& surface, const SizeOptions& options, const Stage& stage) {
+SizeField size_field_of_surface(const KnownSurface& known, const SizeOptions& options, const Stage& stage) {
+  const SurfaceMesh& surface = known.mesh();
   check_size_options(options);
   if (options.field) return *options.field;
   note_unused_sources(options, stage);
   const RootCube root = RootCube::around(bounding_box(surface.points), 0.02);
   const double floor = options.min_size.value_or(model_extent(surface) * 1e-5);
-  std::vector<double> face = face_sizes(surface);
+  std::vector<double> face = face_sizes(known);
   for (double& h : face) h = std::max(h, floor);
   const SizeAtPlace at_place = given_sizes(surface, options);
   const std::vector<SizeSample> points = samples_of_points(options, floor);

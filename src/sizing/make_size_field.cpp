@@ -152,12 +152,12 @@ void refuse_huge_counts(const SurfaceMesh& surface, const WantedSizes& wanted) {
 
 }  // namespace
 
-SizeField make_size_field(const SurfaceMesh& surface, const Features& features, const SizeOptions& options,
-                          const Stage& stage) {
+SizeField make_size_field(const KnownSurface& known, const SizeOptions& options, const Stage& stage) {
+  const SurfaceMesh& surface = known.mesh();
   check_size_options(options);
   if (surface.triangles.empty()) throw InputError("the surface has no triangles: there is nothing to choose sizes for");
   if (options.field) return *options.field;
-  const WantedSizes wanted = wanted_sizes(surface, features, options, stage);
+  const WantedSizes wanted = wanted_sizes(known, options, stage);
   if (!options.elements) refuse_huge_counts(surface, wanted);
   SizeField field = options.elements ? scaled_to_count(surface, wanted, options, stage)
                                      : grid_field(surface, wanted, options, stage.context());

@@ -5,7 +5,7 @@
 #include <octafront/surface_mesh.h>
 
 #include "core/stage.h"
-#include "mesh/features.h"
+#include "mesh/known_surface.h"
 
 #include <memory>
 #include <optional>
@@ -16,17 +16,16 @@ namespace octafront {
 /// Builds the octree background grid from the sources of `options` on a clean surface: 2:1 balanced, sizes at leaf
 /// corners, graded, continuous inside leaves. Throws OptionError for contradictions and values out of range.
 /// With options.elements the sizes are scaled until expected_tets() meets it.
-SizeField make_size_field(const SurfaceMesh& surface, const Features& features, const SizeOptions& options,
-                          const Stage& stage);
+SizeField make_size_field(const KnownSurface& surface, const SizeOptions& options, const Stage& stage);
 
 /// Throws OptionError if triangles that turn by no more than so many degrees against the surface would give more
 /// elements than a mesh can hold.
-void refuse_huge_turning(const SurfaceMesh& surface, const Features& features, const SizeOptions& options,
-                         double degrees, const RunContext& context);
+void refuse_huge_turning(const KnownSurface& surface, const SizeOptions& options, double degrees,
+                         const RunContext& context);
 
 /// For a surface that is kept: sizes from its own triangles (robust against needles and jumps), graded, combined with
 /// the sources of `options` inside.
-SizeField size_field_of_surface(const SurfaceMesh& surface, const SizeOptions& options, const Stage& stage);
+SizeField size_field_of_surface(const KnownSurface& surface, const SizeOptions& options, const Stage& stage);
 
 class ThinWalls;
 

@@ -136,7 +136,7 @@ SizeAtPlace least_of(const SizeAtPlace& a, const SizeAtPlace& b) {
 
 /// The sources that are asked place by place, in one function; empty if there are none. A wall below a floor of our own
 /// choosing cannot be resolved: the thinner it is, the less small elements do for it, and the larger they may be.
-SizeAtPlace sizes_at_places(const SurfaceMesh& surface, const Choice& choice, const SizeOptions& options,
+SizeAtPlace sizes_at_places(const KnownSurface& surface, const Choice& choice, const SizeOptions& options,
                             const Affordable& affordable) {
   SizeAtPlace gap;
   if (choice.gap > 0) {
@@ -148,7 +148,7 @@ SizeAtPlace sizes_at_places(const SurfaceMesh& surface, const Choice& choice, co
       return is_ours ? floor * (floor / h) : floor;
     };
   }
-  const SizeAtPlace given = given_sizes(surface, options);
+  const SizeAtPlace given = given_sizes(surface.mesh(), options);
   if (!given || !options.min_size) return least_of(gap, given);
   return least_of(gap,
                   [given, floor = *options.min_size](const PlaceOnSurface& s) { return std::max(floor, given(s)); });
@@ -156,11 +156,11 @@ SizeAtPlace sizes_at_places(const SurfaceMesh& surface, const Choice& choice, co
 
 }  // namespace
 
-void refuse_huge_turning(const SurfaceMesh& surface, const Features& features, const SizeOptions& options,
-                         double degrees, const RunContext& context) {
+void refuse_huge_turning(const KnownSurface& surface, const SizeOptions& options, double degrees,
+                         const RunContext& context) {
   const SurfaceCurvature curvature =
-      surface_curvature(surface, smooth_face_neighbours(surface, features.edges), context);
-  Affordable(surface, options).normal_deviation(degrees, curvature);
+      surface_curvature(surface.mesh(), smooth_face_neighbours(surface.edges(), surface.features().edges), context);
+  Affordable(surface.mesh(), options).normal_deviation(degrees, curvature);
 }
 
 SizeAtPlace given_sizes(const SurfaceMesh& surface, const SizeOptions& options) {
@@ -198,15 +198,15 @@ double model_extent(const SurfaceMesh& surface) {
   return 2 * std::sqrt(3 * std::max(0.0, square / mass - squared_length(moment / mass)));
 }
 
-WantedSizes wanted_sizes(const SurfaceMesh& surface, const Features& features, const SizeOptions& options,
-                         const Stage& stage) {
+WantedSizes wanted_sizes(const KnownSurface& known, const SizeOptions& options, const Stage& stage) {
+  const SurfaceMesh& surface = known.mesh();
   const Choice choice = choose(surface, options);
   WantedSizes wanted;
   wanted.face.assign(surface.triangles.size(), choice.base);
   double scale = 1;
   const Affordable affordable(surface, options);
   if (choice.curvature > 0 || options.facets || options.chord_error) {
-    const FaceNeighbours across = smooth_face_neighbours(surface, features.edges);
+    const FaceNeighbours across = smooth_face_neighbours(known.edges(), known.features().edges);
     if (options.facets) apply_facets(surface, across, choice.floor, wanted.face);
     if (choice.curvature > 0 || options.chord_error) {
       const SurfaceCurvature curvature = surface_curvature(surface, across, stage.context());
@@ -218,14 +218,14 @@ WantedSizes wanted_sizes(const SurfaceMesh& surface, const Features& features, c
     }
   }
   if (choice.feature_elements > 0) {
-    const std::vector<FeatureCurve> curves = feature_curves(surface, features);
+    const std::vector<FeatureCurve> curves = feature_curves(surface, known.features());
     if (options.feature_elements) affordable.feature_elements(choice.feature_elements, curves);
     wanted.points = feature_samples(surface, curves, choice.feature_elements, choice.floor, choice.base);
   }
   const std::vector<SizeSample> given = samples_of_points(options, options.min_size.value_or(0));
   wanted.points.insert(wanted.points.end(), given.begin(), given.end());
   for (double& h : wanted.face) h = std::max(h * scale, options.min_size.value_or(0));
-  wanted.at_place = sizes_at_places(surface, choice, options, affordable);
+  wanted.at_place = sizes_at_places(known, choice, options, affordable);
   const bool graded = options.interior == SizeOptions::Interior::kGraded;
   wanted.ceiling = graded ? options.max_size.value_or(std::numeric_limits<double>::infinity()) : choice.base * scale;
   wanted.ceiling = std::max(wanted.ceiling, options.min_size.value_or(0));

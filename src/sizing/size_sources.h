@@ -4,8 +4,8 @@
 #include <octafront/surface_mesh.h>
 
 #include "core/stage.h"
-#include "mesh/features.h"
 #include "mesh/index_range.h"
+#include "mesh/known_surface.h"
 #include "sizing/background_grid.h"
 #include "sizing/surface_samples.h"
 
@@ -37,9 +37,9 @@ struct WantedSizes {
 /// length.
 double model_extent(const SurfaceMesh& surface);
 
-/// Asks every source that `options` names; the automatic choice if it names none. Throws OptionError.
-WantedSizes wanted_sizes(const SurfaceMesh& surface, const Features& features, const SizeOptions& options,
-                         const Stage& stage);
+/// Asks every source that `options` names; the automatic choice if it names none. Throws OptionError. Refers to the
+/// surface, which must outlive it.
+WantedSizes wanted_sizes(const KnownSurface& known, const SizeOptions& options, const Stage& stage);
 
 /// The sources that are asked place by place and that hold for every kind of surface: options.point_sizes and the
 /// callback, whose answers are checked. Empty if there are none. Refers to `surface`, which must outlive it.

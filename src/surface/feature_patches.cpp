@@ -1,7 +1,5 @@
 #include "surface/feature_patches.h"
 
-#include "mesh/edge_table.h"
-
 #include <algorithm>
 
 #include <fmt/core.h>
@@ -11,8 +9,8 @@ namespace octafront {
 namespace {
 
 /// Per triangle the part it lies in.
-std::vector<std::uint32_t> parts_of(const SurfaceMesh& surface, const Features& features, std::uint32_t& parts) {
-  const EdgeTable table = make_edge_table(surface.points.size(), surface.triangles);
+std::vector<std::uint32_t> parts_of(const SurfaceMesh& surface, const EdgeTable& table, const Features& features,
+                                    std::uint32_t& parts) {
   const std::vector<std::uint32_t> edge_of = table.edge_of_half_edge();
   std::vector<std::uint32_t> part(surface.triangles.size(), kNone), stack;
   parts = 0;
@@ -57,10 +55,10 @@ std::vector<std::string> names_of(const SurfaceMesh& surface, const std::vector<
 
 }  // namespace
 
-std::uint32_t divide_into_patches(SurfaceMesh& surface, const Features& features) {
+std::uint32_t divide_into_patches(SurfaceMesh& surface, const EdgeTable& edges, const Features& features) {
   if (surface.triangles.empty()) return 0;
   std::uint32_t parts = 0;
-  const std::vector<std::uint32_t> part = parts_of(surface, features, parts);
+  const std::vector<std::uint32_t> part = parts_of(surface, edges, features, parts);
   if (!surface.patch_names.empty()) surface.patch_names = names_of(surface, part, parts);
   surface.patch = part;
   return parts;

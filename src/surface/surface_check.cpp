@@ -48,9 +48,9 @@ std::optional<std::string> first_line(const SurfaceDefects& defects) {
 }  // namespace
 
 /// Requires a surface that is closed and manifold.
-std::vector<SurfaceKind::Shell> SurfaceKind::shells_of(const SurfaceMesh& surface) {
+std::vector<SurfaceKind::Shell> SurfaceKind::shells_of(const SurfaceMesh& surface, const EdgeTable& edges) {
   const RunContext context;
-  repair::Draft draft{surface, std::vector<std::uint32_t>(surface.triangles.size()), context};
+  repair::Draft draft{surface, std::vector<std::uint32_t>(surface.triangles.size()), context, edges};
   const repair::Pieces pieces = repair::orient_pieces(draft);
   const repair::Nesting nesting = repair::find_nesting(surface, pieces, std::vector<char>(pieces.count(), 1), context);
   const std::vector<int> sign = repair::volume_signs(surface, pieces);
@@ -81,14 +81,14 @@ std::string SurfaceKind::words(const Shell& shell) {
                      at_point(shell.at));
 }
 
-SurfaceKind::SurfaceKind(const SurfaceMesh& input) : wanted_(shells_of(input)) {}
+SurfaceKind::SurfaceKind(const SurfaceMesh& input, const EdgeTable& edges) : wanted_(shells_of(input, edges)) {}
 
 std::optional<std::string> SurfaceKind::first_defect_but_crossings(const SurfaceMesh& result) const {
   if (auto defect = first_bad_vertex(result)) return defect;
   const RepairedSurface as_is = as_it_is(result);
   const EdgeTable table = make_edge_table(result.points.size(), result.triangles);
   if (auto defect = first_line(defects::find_defects_but_crossings(as_is, table, RunContext{}))) return defect;
-  const std::vector<Shell> made = shells_of(result);
+  const std::vector<Shell> made = shells_of(result, table);
   for (const Shell& shell : made)
     if (shell.sign != (shell.depth % 2 == 0 ? 1 : -1)) return words(shell) + " is inside out";
   if (made.size() != wanted_.size())
@@ -101,7 +101,7 @@ std::optional<std::string> SurfaceKind::first_defect_but_crossings(const Surface
 std::optional<std::string> first_surface_defect(const SurfaceMesh& result, const SurfaceMesh& input) {
   if (auto defect = first_bad_vertex(result)) return defect;
   if (auto defect = first_line(find_defects(as_it_is(result)))) return defect;
-  return SurfaceKind(input).first_defect_but_crossings(result);
+  return SurfaceKind(input, make_edge_table(input.points.size(), input.triangles)).first_defect_but_crossings(result);
 }
 
 }  // namespace octafront

@@ -2,6 +2,8 @@
 
 #include <octafront/surface_mesh.h>
 
+#include "mesh/edge_table.h"
+
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -22,7 +24,7 @@ std::optional<std::string> first_surface_defect(const SurfaceMesh& result, const
 /// The same in parts, for callers that check several surfaces made from one input, and know their self-intersections.
 class SurfaceKind {
  public:
-  explicit SurfaceKind(const SurfaceMesh& input);
+  SurfaceKind(const SurfaceMesh& input, const EdgeTable& edges);
   /// The first defect of `result` but for self-intersections. About 0.5 s per million triangles.
   std::optional<std::string> first_defect_but_crossings(const SurfaceMesh& result) const;
 
@@ -35,7 +37,7 @@ class SurfaceKind {
 
     auto key() const { return std::tuple{depth, genus, sign}; }
   };
-  static std::vector<Shell> shells_of(const SurfaceMesh& surface);
+  static std::vector<Shell> shells_of(const SurfaceMesh& surface, const EdgeTable& edges);
   static std::string words(const Shell& shell);
 
   std::vector<Shell> wanted_;

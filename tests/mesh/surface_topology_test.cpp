@@ -37,7 +37,7 @@ TEST(HalfEdgeTwins, RunTheOtherWay) {
     EXPECT_EQ(twin[twin[h]], h);
     EXPECT_EQ(start_of(s.triangles, h), end_of(s.triangles, twin[h]));
     EXPECT_EQ(end_of(s.triangles, h), start_of(s.triangles, twin[h]));
-    EXPECT_EQ(next_in_triangle(previous_in_triangle(h)), h);
+    EXPECT_EQ(next_of(previous_of(h)), h);
   }
 }
 

@@ -29,7 +29,7 @@ class TemporaryFile {
 
 SizeField make(const SurfaceMesh& surface, const SizeOptions& options) {
   StageReport report;
-  return make_size_field(surface, {}, options, {RunContext{}, report});
+  return make_size_field(KnownSurface(surface, Features{}), options, {RunContext{}, report});
 }
 
 std::string text_of(const std::filesystem::path& file) {
@@ -129,18 +129,19 @@ TEST(KeptSurface, RegionsRefineTheInside) {
   SizeOptions options;
   options.regions = {{{0.5, 0.5, 0.5}, {0.5, 0.5, 0.5}, 0.1, 0.02}};
   StageReport report;
-  const SizeField h = size_field_of_surface(testing::cube(4), options, {RunContext{}, report});
+  const SizeField h =
+      size_field_of_surface(KnownSurface(testing::cube(4), Features{}), options, {RunContext{}, report});
   EXPECT_LT(h.at({0.5, 0.5, 0.5}), 0.03);
 }
 
 TEST(KeptSurface, SaysWhichSourcesItDoesNotUse) {
   SizeOptions options;
   StageReport quiet, report;
-  size_field_of_surface(testing::cube(4), options, {{}, quiet});
+  size_field_of_surface(KnownSurface(testing::cube(4), Features{}), options, {{}, quiet});
   EXPECT_TRUE(quiet.notes.empty());
   options.gap = 2;
   options.curvature = 24;
-  size_field_of_surface(testing::cube(4), options, {RunContext{}, report});
+  size_field_of_surface(KnownSurface(testing::cube(4), Features{}), options, {RunContext{}, report});
   ASSERT_EQ(report.notes.size(), 1u);
   EXPECT_NE(report.notes[0].find("`curvature`, `gap`: not used"), std::string::npos) << report.notes[0];
 }
@@ -150,9 +151,11 @@ TEST(KeptSurface, SizesChangeFasterWhereItsTrianglesDo) {
   for (Vec3& p : fine.points)  // squeezed towards one corner: sizes from 1/40^3 on
     p = {p.x * p.x * p.x, p.y * p.y * p.y, p.z * p.z * p.z};
   StageReport steep, even;
-  EXPECT_EQ(as_octree_field(size_field_of_surface(fine, {}, {{}, steep}))->gradation, 0.4);
+  EXPECT_EQ(as_octree_field(size_field_of_surface(KnownSurface(fine, Features{}), {}, {{}, steep}))->gradation, 0.4);
   EXPECT_EQ(steep.notes.size(), 1u);
-  EXPECT_EQ(as_octree_field(size_field_of_surface(testing::cube(8), {}, {{}, even}))->gradation, 0.2);
+  EXPECT_EQ(
+      as_octree_field(size_field_of_surface(KnownSurface(testing::cube(8), Features{}), {}, {{}, even}))->gradation,
+      0.2);
 }
 
 TEST(SizeFieldFile, DamagedFilesAreRefused) {

@@ -23,7 +23,7 @@ using testing::transformed;
 
 SizeField make(const SurfaceMesh& surface, const SizeOptions& options, const Features& features = {}) {
   StageReport report;
-  return make_size_field(surface, features, options, {RunContext{}, report});
+  return make_size_field(KnownSurface(surface, features), options, {RunContext{}, report});
 }
 
 /// Fields of many kinds on one surface each.
@@ -300,7 +300,7 @@ TEST(ChangedSizes, StopWhenAsked) {
 TEST(KeptSurface, SizesAreThoseOfItsTriangles) {
   const SurfaceMesh sphere = icosphere(4);
   StageReport report;
-  const SizeField h = size_field_of_surface(sphere, {}, {RunContext{}, report});
+  const SizeField h = size_field_of_surface(KnownSurface(sphere, Features{}), {}, {RunContext{}, report});
   const Triangle t = sphere.triangles[7];
   EXPECT_NEAR(h.at(sphere.points[t[0]]), distance(sphere.points[t[0]], sphere.points[t[1]]), 0.15 * h.min_size());
 }

@@ -5,7 +5,7 @@
 
 #include "geometry/hausdorff.h"
 #include "geometry/measures.h"
-#include "mesh/halfedge_mesh.h"
+#include "mesh/half_edge_mesh.h"
 #include "sizing/make_size_field.h"
 #include "support/named_surfaces.h"
 #include "support/random.h"
@@ -58,7 +58,7 @@ SurfaceMesh box(double x, double y, double z) {
 
 Remeshed remesh(const SurfaceMesh& surface, double h) {
   StageReport report;
-  return remesh_surface(surface, detect_features(surface, 40), SizeField::uniform(h), {}, {{}, report});
+  return remesh_surface(KnownSurface(surface, 40), SizeField::uniform(h), {}, {{}, report});
 }
 
 /// Two spheres, one inside the other, closer than the elements are long.
@@ -84,15 +84,15 @@ std::vector<NamedSurface> samples() {
 
 /// V - E + F, after checking that every edge has two sides and every vertex one fan.
 long euler_characteristic(const SurfaceMesh& s) {
-  std::map<Edge, int> halfedges;
+  std::map<Edge, int> half_edges;
   for (const Triangle& t : s.triangles) {
-    for (int i = 0; i < 3; ++i) ++halfedges[{t[i], t[(i + 1) % 3]}];
+    for (int i = 0; i < 3; ++i) ++half_edges[{t[i], t[(i + 1) % 3]}];
   }
-  for (const auto& [e, n] : halfedges) {
+  for (const auto& [e, n] : half_edges) {
     EXPECT_EQ(n, 1) << "edge " << e[0] << " " << e[1];
-    EXPECT_TRUE(halfedges.contains({e[1], e[0]})) << "edge " << e[0] << " " << e[1];
+    EXPECT_TRUE(half_edges.contains({e[1], e[0]})) << "edge " << e[0] << " " << e[1];
   }
-  const remeshing::HalfedgeMesh mesh = remeshing::make_halfedge_mesh(s);
+  const HalfEdgeMesh mesh = make_half_edge_mesh(s);
   std::vector<int> triangles_at(s.points.size(), 0);
   for (const Triangle& t : s.triangles) {
     for (const VertexIndex v : t) ++triangles_at[v];
@@ -102,13 +102,13 @@ long euler_characteristic(const SurfaceMesh& s) {
     mesh.for_each_outgoing(v, [&](std::uint32_t) { ++fan; });
     EXPECT_EQ(fan, triangles_at[v]) << "vertex " << v;
   }
-  return static_cast<long>(s.points.size()) - static_cast<long>(halfedges.size() / 2) +
+  return static_cast<long>(s.points.size()) - static_cast<long>(half_edges.size() / 2) +
          static_cast<long>(s.triangles.size());
 }
 
 std::uint32_t component_count(const SurfaceMesh& s) {
   std::uint32_t n = 0;
-  remeshing::component_of_triangle(remeshing::make_halfedge_mesh(s), n);
+  component_of_triangle(make_half_edge_mesh(s), n);
   return n;
 }
 
@@ -216,7 +216,7 @@ TEST(Remesh, FollowsAGradedField) {
   const auto h = [](Vec3 p) { return 0.05 + 0.1 * (p.z + 1); };
   StageReport report;
   const SizeField sizes = SizeField::from_function(h, 0.05, 0.25);
-  const SurfaceMesh s = remesh_surface(input, {}, sizes, {}, {{}, report}).surface;
+  const SurfaceMesh s = remesh_surface(KnownSurface(input, Features{}), sizes, {}, {{}, report}).surface;
   double sum = 0;
   for (const auto& [a, b, c] : s.triangles) {
     sum += distance(s.points[a], s.points[b]) / h((s.points[a] + s.points[b]) * 0.5);
@@ -241,8 +241,7 @@ double steepest(const SizeField& sizes, const Box3& box) {
 
 TEST(Remesh, CappedSizesKeepTheGradationAskedFor) {
   // Strips and the deviation asked for cap the sizes; the region makes them rise.
-  const SurfaceMesh input = joined(box(1, 0.5, 0.04), transformed(icosphere(3), 0.2, {0.5, 0.2, 0.5}));
-  const Features features = detect_features(input, 40);
+  const KnownSurface input(joined(box(1, 0.5, 0.04), transformed(icosphere(3), 0.2, {0.5, 0.2, 0.5})), 40);
   SurfaceOptions options;
   options.max_deviation = 0.002;
   for (const double gradation : {0.05, 0.2, 0.8}) {
@@ -252,10 +251,10 @@ TEST(Remesh, CappedSizesKeepTheGradationAskedFor) {
     size.gradation = gradation;
     size.regions.push_back({{}, {}, 0, 0.04});
     StageReport report;
-    const SizeField asked = make_size_field(input, features, size, {{}, report});
-    const SizeField made = remesh_surface(input, features, asked, options, {{}, report}).sizes;
+    const SizeField asked = make_size_field(input, size, {{}, report});
+    const SizeField made = remesh_surface(input, asked, options, {{}, report}).sizes;
     ASSERT_LT(made.at({0.5, 0.2, 0.7}), 0.9 * asked.at({0.5, 0.2, 0.7})) << "nothing was capped";
-    const double slope = steepest(made, bounding_box(input.points));
+    const double slope = steepest(made, bounding_box(input.mesh().points));
     EXPECT_LE(slope, gradation * (1 + 1e-9));
     EXPECT_GT(slope, 0.5 * gradation) << "rises more slowly than it may";
   }
@@ -267,8 +266,8 @@ TEST(Remesh, StaysWithinTheAskedDeviation) {
   options.max_deviation = 0.01;
   StageReport loose, tight;
   const auto h = SizeField::uniform(0.4);
-  const SurfaceMesh coarse = remesh_surface(input, {}, h, {}, {{}, loose}).surface;
-  const Remeshed fine = remesh_surface(input, {}, h, options, {{}, tight});
+  const SurfaceMesh coarse = remesh_surface(KnownSurface(input, Features{}), h, {}, {{}, loose}).surface;
+  const Remeshed fine = remesh_surface(KnownSurface(input, Features{}), h, options, {{}, tight});
   EXPECT_GT(hausdorff_distance(coarse, input, 1e-3).lower, 0.02);
   EXPECT_LT(hausdorff_distance(fine.surface, input, 1e-3).upper, 0.015);
   EXPECT_LT(fine.sizes.min_size(), 0.4);
@@ -290,9 +289,9 @@ TEST(Remesh, StaysWithinTheAskedNormalDeviation) {
   SurfaceOptions options;
   StageReport loose, tight;
   const auto h = SizeField::uniform(0.5);
-  EXPECT_GT(most_turned(remesh_surface(input, {}, h, options, {{}, loose}).surface), 14);
+  EXPECT_GT(most_turned(remesh_surface(KnownSurface(input, Features{}), h, options, {{}, loose}).surface), 14);
   options.normal_deviation = 8;
-  const Remeshed fine = remesh_surface(input, {}, h, options, {{}, tight});
+  const Remeshed fine = remesh_surface(KnownSurface(input, Features{}), h, options, {{}, tight});
   EXPECT_LT(most_turned(fine.surface), 8.5);
   EXPECT_LT(fine.sizes.min_size(), 0.4);
 }
@@ -328,7 +327,7 @@ TEST(Remesh, PointsOfLinesSideBySideFaceEachOther) {
 
 TEST(FeaturePatches, EachFaceOfACubeIsOne) {
   SurfaceMesh s = cube(4);
-  EXPECT_EQ(divide_into_patches(s, detect_features(s, 40)), 6u);
+  EXPECT_EQ(divide_into_patches(s, make_edge_table(s.points.size(), s.triangles), detect_features(s, 40)), 6u);
   const Remeshed r = remesh(s, 0.2);
   std::map<std::uint32_t, Vec3> sum;
   for (std::size_t t = 0; t < r.surface.triangles.size(); ++t) {
@@ -353,7 +352,7 @@ TEST(FeaturePatches, PartsOfANamedPatchKeepItsName) {
     s.patch[t] = s.points[a].z == 1 && s.points[b].z == 1 && s.points[c].z == 1;
   }
   s.patch_names = {"wall", "lid"};
-  EXPECT_EQ(divide_into_patches(s, detect_features(s, 40)), 6u);
+  EXPECT_EQ(divide_into_patches(s, make_edge_table(s.points.size(), s.triangles), detect_features(s, 40)), 6u);
   std::multiset<std::string> names(s.patch_names.begin(), s.patch_names.end());
   EXPECT_EQ(names, (std::multiset<std::string>{"wall.1", "wall.2", "wall.3", "wall.4", "wall.5", "lid"}));
 }
@@ -363,7 +362,8 @@ TEST(Remesh, StopsWhenAsked) {
   RunContext context;
   context.cancel = &stop;
   StageReport report;
-  EXPECT_THROW(remesh_surface(icosphere(3), {}, SizeField::uniform(0.1), {}, {context, report}), Cancelled);
+  EXPECT_THROW(remesh_surface(KnownSurface(icosphere(3), Features{}), SizeField::uniform(0.1), {}, {context, report}),
+               Cancelled);
 }
 
 }  // namespace

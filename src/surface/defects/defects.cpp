@@ -94,13 +94,17 @@ SurfaceDefects defects::find_defects_but_crossings(const RepairedSurface& repair
   return found;
 }
 
+SurfaceDefects defects::find_defects(const RepairedSurface& repaired, const EdgeTable& table,
+                                     const RunContext& context) {
+  SurfaceDefects found = find_defects_but_crossings(repaired, table, context);
+  find_self_intersections(repaired, table, context, found);
+  return found;
+}
+
 SurfaceDefects find_defects(const RepairedSurface& repaired, const RunContext& context) {
   context.check();
   const SurfaceMesh& mesh = repaired.surface;
-  const EdgeTable table = make_edge_table(mesh.points.size(), mesh.triangles, context);
-  SurfaceDefects found = defects::find_defects_but_crossings(repaired, table, context);
-  defects::find_self_intersections(repaired, table, context, found);
-  return found;
+  return defects::find_defects(repaired, make_edge_table(mesh.points.size(), mesh.triangles, context), context);
 }
 
 }  // namespace octafront

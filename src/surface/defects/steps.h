@@ -24,6 +24,9 @@ void find_degenerate_faces(const RepairedSurface& repaired, SurfaceDefects& defe
 SurfaceDefects find_defects_but_crossings(const RepairedSurface& repaired, const EdgeTable& table,
                                           const RunContext& context);
 
+/// find_defects() with the edges at hand.
+SurfaceDefects find_defects(const RepairedSurface& repaired, const EdgeTable& table, const RunContext& context);
+
 /// Pairs of faces that meet elsewhere than in what they share; counting stops at kMostPairs.
 void find_self_intersections(const RepairedSurface& repaired, const EdgeTable& table, const RunContext& context,
                              SurfaceDefects& defects);

@@ -45,7 +45,7 @@ class Coarsener {
  private:
   void flip_all(const TurnLimits& limits) {
     edges_.clear();
-    for (HalfedgeIndex h = 0; h < mesh_.start.size(); ++h) {
+    for (HalfEdge h = 0; h < mesh_.start.size(); ++h) {
       if (h < mesh_.twin[h]) edges_.push_back(h);
     }
     counts_.flips += make_delaunay(mesh_, edges_, limits);
@@ -59,17 +59,17 @@ class Coarsener {
       if (!remove(left_[i], limits)) left_[kept++] = left_[i];
     }
     left_.resize(kept);
-    std::erase_if(edges_, [&](HalfedgeIndex h) { return mesh_.start[h] == kNone; });
+    std::erase_if(edges_, [&](HalfEdge h) { return mesh_.start[h] == kNone; });
     counts_.flips += make_delaunay(mesh_, edges_, limits.turn);
   }
 
   bool remove(VertexIndex v, const PassLimits& limits) {
     star_.gather(v);
-    const std::vector<HalfedgeIndex>& ring = star_.ring();
+    const std::vector<HalfEdge>& ring = star_.ring();
     double best = 0;
-    HalfedgeIndex chosen = kNone;
+    HalfEdge chosen = kNone;
     for (std::size_t i = 0; i < ring.size(); ++i) {
-      const HalfedgeIndex h = ring[i];
+      const HalfEdge h = ring[i];
       if (mesh_.kind[v] == VertexKind::kRemovableCurve && !mesh_.is_feature[h]) continue;
       const double quality = star_.quality_after(i, limits.turn, best);
       if (quality > best && fits(h, limits.valence) && mesh_.may_collapse(h)) {
@@ -81,14 +81,14 @@ class Coarsener {
     const VertexIndex target = mesh_.end(chosen);
     mesh_.collapse(chosen);
     ++counts_.collapses;
-    mesh_.for_each_outgoing(target, [&](HalfedgeIndex h) {
+    mesh_.for_each_outgoing(target, [&](HalfEdge h) {
       edges_.push_back(h);
       edges_.push_back(next_of(h));
     });
     return true;
   }
 
-  bool fits(HalfedgeIndex h, int most) const {
+  bool fits(HalfEdge h, int most) const {
     return static_cast<int>(star_.ring().size()) + mesh_.valence(mesh_.end(h)) - 4 <= most;
   }
 
@@ -96,7 +96,7 @@ class Coarsener {
   const RunContext& context_;
   CoarsenCounts& counts_;
   std::vector<VertexIndex> left_;
-  std::vector<HalfedgeIndex> edges_;
+  std::vector<HalfEdge> edges_;
   StarCollapse star_;
 };
 

@@ -33,8 +33,8 @@ constexpr double kShortDouble = 1;
 /// Removing chains joins others; that settles within a few rounds.
 constexpr int kRounds = 6;
 
-Vec3 normal_aside(const InputSurface& input, HalfedgeIndex h, double size) {
-  const HalfedgeMesh& mesh = input.mesh;
+Vec3 normal_aside(const InputSurface& input, HalfEdge h, double size) {
+  const HalfEdgeMesh& mesh = input.mesh;
   const std::uint32_t face = h / 3;
   const Vec3 a = mesh.points[mesh.start[h]], b = mesh.points[mesh.end(h)], n = input.face_normal[face];
   const Vec3 inward = normalized(cross(n, b - a));
@@ -47,7 +47,7 @@ Vec3 normal_aside(const InputSurface& input, HalfedgeIndex h, double size) {
   return normalized(sum);
 }
 
-bool holds_at_scale(const InputSurface& input, HalfedgeIndex h, double size) {
+bool holds_at_scale(const InputSurface& input, HalfEdge h, double size) {
   return dot(normal_aside(input, h, size), normal_aside(input, input.mesh.twin[h], size)) < kScaleCosine;
 }
 
@@ -80,7 +80,7 @@ bool is_noise(const ChainFacts& f) {
 class NoiseFilter {
  public:
   NoiseFilter(const InputSurface& input, const SizeField& sizes) : marked_(input), sizes_(sizes) {
-    const HalfedgeMesh& mesh = input.mesh;
+    const HalfEdgeMesh& mesh = input.mesh;
     sharp_.assign(mesh.start.size(), kUnknown);
     size_.assign(mesh.start.size(), 0);
   }
@@ -102,9 +102,9 @@ class NoiseFilter {
 
   /// Needs the surface without marks: the walks must cross features.
   void judge_edges(const std::vector<Edge>& edges) {
-    const HalfedgeMesh& mesh = marked_.mesh;
+    const HalfEdgeMesh& mesh = marked_.mesh;
     for (const Edge& e : edges) {
-      const HalfedgeIndex h = mesh.find(e[0], e[1]);
+      const HalfEdge h = mesh.find(e[0], e[1]);
       const double size = sizes_.at((mesh.points[e[0]] + mesh.points[e[1]]) * 0.5);
       const std::uint8_t sharp = holds_at_scale(marked_, h, size);
       sharp_[h] = sharp_[mesh.twin[h]] = sharp;
@@ -112,13 +112,13 @@ class NoiseFilter {
     }
   }
 
-  double cosine(HalfedgeIndex h) const {
+  double cosine(HalfEdge h) const {
     return dot(marked_.face_normal[h / 3], marked_.face_normal[marked_.mesh.twin[h] / 3]);
   }
 
   void count_beside(VertexIndex v, double& rough, double& all) const {
-    const HalfedgeMesh& mesh = marked_.mesh;
-    mesh.for_each_outgoing(v, [&](HalfedgeIndex h) {
+    const HalfEdgeMesh& mesh = marked_.mesh;
+    mesh.for_each_outgoing(v, [&](HalfEdge h) {
       if (mesh.is_feature[h]) return;
       ++all;
       rough += cosine(h) < kRoughCosine;
@@ -126,16 +126,16 @@ class NoiseFilter {
   }
 
   ChainFacts facts_of(const Curve& c, const std::vector<std::uint32_t>& degree) const {
-    const HalfedgeMesh& mesh = marked_.mesh;
+    const HalfEdgeMesh& mesh = marked_.mesh;
     ChainFacts f;
-    const VertexIndex first = mesh.start[c.halfedges.front()], last = mesh.end(c.halfedges.back());
+    const VertexIndex first = mesh.start[c.half_edges.front()], last = mesh.end(c.half_edges.back());
     double rough = 0, all = 0;
     count_beside(first, rough, all);
-    for (const HalfedgeIndex h : c.halfedges) {
+    for (const HalfEdge h : c.half_edges) {
       const double l = distance(mesh.points[mesh.start[h]], mesh.points[mesh.end(h)]) / size_[h];
       f.length += l;
       f.sharp += sharp_[h] ? l : 0;
-      f.cosine += cosine(h) / static_cast<double>(c.halfedges.size());
+      f.cosine += cosine(h) / static_cast<double>(c.half_edges.size());
       f.border |= marked_.patch[h / 3] != marked_.patch[mesh.twin[h] / 3];
       count_beside(mesh.end(h), rough, all);
     }
@@ -148,13 +148,13 @@ class NoiseFilter {
   }
 
   void drop(const Curve& c) {
-    for (const HalfedgeIndex h : c.halfedges) marked_.mesh.set_feature(h, false);
+    for (const HalfEdge h : c.half_edges) marked_.mesh.set_feature(h, false);
   }
 
   void drop_noise() {
-    HalfedgeMesh& mesh = marked_.mesh;
+    HalfEdgeMesh& mesh = marked_.mesh;
     std::vector<std::uint32_t> degree(mesh.points.size(), 0);
-    for (HalfedgeIndex h = 0; h < mesh.start.size(); ++h) degree[mesh.start[h]] += mesh.is_feature[h];
+    for (HalfEdge h = 0; h < mesh.start.size(); ++h) degree[mesh.start[h]] += mesh.is_feature[h];
     const std::vector<Curve> curves = chain_curves(marked_, {}, sizes_);
     std::vector<ChainFacts> facts;
     for (const Curve& c : curves) facts.push_back(facts_of(c, degree));
@@ -181,9 +181,9 @@ class NoiseFilter {
 }  // namespace
 
 std::vector<Edge> features_at_scale(const InputSurface& input, const Features& features, const SizeField& sizes) {
-  const HalfedgeMesh& mesh = input.mesh;
+  const HalfEdgeMesh& mesh = input.mesh;
   std::vector<Edge> edges = features.edges;
-  for (HalfedgeIndex h = 0; h < mesh.start.size(); ++h) {
+  for (HalfEdge h = 0; h < mesh.start.size(); ++h) {
     if (h < mesh.twin[h] && input.patch[h / 3] != input.patch[mesh.twin[h] / 3]) {
       edges.push_back({std::min(mesh.start[h], mesh.end(h)), std::max(mesh.start[h], mesh.end(h))});
     }

@@ -39,7 +39,8 @@ CurvePoints::CurvePoints(WorkingMesh& mesh, const InputSurface& input, const std
     : mesh_(mesh), input_(input), curves_(curves), sizes_(sizes) {
   for (std::uint32_t i = 0; i < curves.size(); ++i) {
     if (curves[i].samples.size() != 2) continue;
-    const VertexIndex a = input.mesh.start[curves[i].halfedges.front()], b = input.mesh.end(curves[i].halfedges.back());
+    const VertexIndex a = input.mesh.start[curves[i].half_edges.front()],
+                      b = input.mesh.end(curves[i].half_edges.back());
     undivided_[{std::min(a, b), std::max(a, b)}] = i;
   }
 }
@@ -47,14 +48,14 @@ CurvePoints::CurvePoints(WorkingMesh& mesh, const InputSurface& input, const std
 bool CurvePoints::gather(VertexIndex v) {
   features_.clear();
   ring_.clear();
-  mesh_.for_each_outgoing(v, [&](HalfedgeIndex h) {
+  mesh_.for_each_outgoing(v, [&](HalfEdge h) {
     if (mesh_.is_feature[h]) features_.push_back(h);
   });
   if (features_.size() != 2) return false;
-  for (const HalfedgeIndex first : features_) {
+  for (const HalfEdge first : features_) {
     const std::size_t begin = ring_.size();
     Vec3 star;
-    HalfedgeIndex h = first;
+    HalfEdge h = first;
     do {
       ring_.push_back({mesh_.end(h), mesh_.apex(h), {}});
       star += mesh_.area_vector(h / 3);
@@ -71,7 +72,7 @@ bool CurvePoints::find_neighbours(VertexIndex v) {
   const Curve& curve = curves_[place.curve];
   const double whole = curve.reach.back();
   const Vec3 p = mesh_.points[v];
-  const HalfedgeIndex on = point_along(input_, curve, place.along).halfedge;
+  const HalfEdge on = point_along(input_, curve, place.along).half_edge;
   const Vec3 forward = input_.mesh.points[input_.mesh.end(on)] - input_.mesh.points[input_.mesh.start[on]];
   VertexIndex a = mesh_.end(features_[0]), b = mesh_.end(features_[1]);
   if (dot(mesh_.points[a] - p, forward) > dot(mesh_.points[b] - p, forward)) std::swap(a, b);
@@ -124,7 +125,7 @@ double CurvePoints::sagitta(const Curve& curve, double from, double to, Vec3 a, 
     if (turn != 0 && !curve.closed) continue;
     auto it = std::upper_bound(curve.reach.begin(), curve.reach.end(), from - turn);
     for (; it != curve.reach.end() && *it + turn < to; ++it) {
-      const HalfedgeIndex h = curve.halfedges[static_cast<std::size_t>(it - curve.reach.begin())];
+      const HalfEdge h = curve.half_edges[static_cast<std::size_t>(it - curve.reach.begin())];
       const Vec3 x = input_.mesh.points[input_.mesh.end(h)];
       most = std::max(most, distance(x, closest_point_on_segment(x, a, b)));
     }
@@ -145,7 +146,7 @@ bool CurvePoints::lengths_within(Vec3 p, double least, double most) const {
 
 void CurvePoints::move(VertexIndex v, const CurvePoint& x) {
   mesh_.points[v] = x.p;
-  mesh_.face[v] = x.halfedge / 3;
+  mesh_.face[v] = x.half_edge / 3;
   mesh_.place[v].along = x.along;
   mesh_.size[v] = sizes_.at(x.p);
   mesh_.mark_star_changed(v);
@@ -202,7 +203,7 @@ bool CurvePoints::relieve(VertexIndex v, double gain) {
 }
 
 /// The place of the point that divides a feature edge in the proportion `part`, if its curve is known.
-std::optional<CurvePlace> CurvePoints::place_between(HalfedgeIndex h, double part) const {
+std::optional<CurvePlace> CurvePoints::place_between(HalfEdge h, double part) const {
   VertexIndex u = mesh_.start[h], w = mesh_.end(h);
   const auto is_inside = [&](VertexIndex v) {
     return mesh_.kind[v] == VertexKind::kCurve && mesh_.place[v].curve != kNone;
@@ -212,7 +213,7 @@ std::optional<CurvePlace> CurvePoints::place_between(HalfedgeIndex h, double par
     const auto it = undivided_.find({std::min(u, w), std::max(u, w)});
     if (it == undivided_.end()) return std::nullopt;
     const Curve& curve = curves_[it->second];
-    if (input_.mesh.start[curve.halfedges.front()] != u) part = 1 - part;
+    if (input_.mesh.start[curve.half_edges.front()] != u) part = 1 - part;
     return CurvePlace{it->second, part * curve.reach.back()};
   }
   const CurvePlace from = mesh_.place[u];
@@ -230,9 +231,9 @@ std::optional<CurvePlace> CurvePoints::place_between(HalfedgeIndex h, double par
   return CurvePlace{from.curve, wrapped(curve, from.along + part * (to - from.along))};
 }
 
-bool CurvePoints::split_is_better(HalfedgeIndex h, Vec3 x, double gain) const {
+bool CurvePoints::split_is_better(HalfEdge h, Vec3 x, double gain) const {
   double before = 1, after = 1;
-  for (const HalfedgeIndex side : {h, mesh_.twin[h]}) {
+  for (const HalfEdge side : {h, mesh_.twin[h]}) {
     const VertexIndex a = mesh_.start[side], b = mesh_.end(side), c = mesh_.apex(side);
     const Vec3 pa = mesh_.points[a], pb = mesh_.points[b], pc = mesh_.points[c], star = mesh_.area_vector(side / 3);
     before = std::min(before, triangle_radius_ratio(pa, pb, pc));
@@ -243,7 +244,7 @@ bool CurvePoints::split_is_better(HalfedgeIndex h, Vec3 x, double gain) const {
   return after > std::max(kWorthIt, gain * before);
 }
 
-bool CurvePoints::split(HalfedgeIndex h, double gain) {
+bool CurvePoints::split(HalfEdge h, double gain) {
   const Vec3 a = mesh_.points[mesh_.start[h]], b = mesh_.points[mesh_.end(h)], c = mesh_.points[mesh_.apex(h)];
   const double part = dot(c - a, b - a) / squared_length(b - a);
   const double shorter = std::min(part, 1 - part);
@@ -252,7 +253,7 @@ bool CurvePoints::split(HalfedgeIndex h, double gain) {
   if (!place) return false;
   const CurvePoint x = point_along(input_, curves_[place->curve], place->along);
   if (distance(x.p, a + (b - a) * part) > kAstray * distance(a, b) || !split_is_better(h, x.p, gain)) return false;
-  const VertexIndex v = mesh_.add_vertex(x.p, VertexKind::kCurve, {}, sizes_.at(x.p), x.halfedge / 3);
+  const VertexIndex v = mesh_.add_vertex(x.p, VertexKind::kCurve, {}, sizes_.at(x.p), x.half_edge / 3);
   mesh_.place[v] = *place;
   mesh_.split_edge(h, v);
   return true;

@@ -21,7 +21,7 @@ class CurvePoints {
   bool relieve(VertexIndex v, double gain);
   /// Divides the feature edge of h where it lies nearest to its apex, if that lifts the worst of the triangles on both
   /// sides by `gain`.
-  bool split(HalfedgeIndex h, double gain);
+  bool split(HalfEdge h, double gain);
 
  private:
   struct Corner {
@@ -45,14 +45,14 @@ class CurvePoints {
   double deviation(const Curve& curve, double along, Vec3 p) const;
   bool lengths_within(Vec3 p, double least, double most) const;
   void move(VertexIndex v, const CurvePoint& x);
-  std::optional<CurvePlace> place_between(HalfedgeIndex h, double part) const;
-  bool split_is_better(HalfedgeIndex h, Vec3 x, double gain) const;
+  std::optional<CurvePlace> place_between(HalfEdge h, double part) const;
+  bool split_is_better(HalfEdge h, Vec3 x, double gain) const;
 
   WorkingMesh& mesh_;
   const InputSurface& input_;
   const std::vector<Curve>& curves_;
   const SizeField& sizes_;
-  std::vector<HalfedgeIndex> features_;
+  std::vector<HalfEdge> features_;
   std::vector<Corner> ring_;
   Neighbours neighbours_;
   std::map<Edge, std::uint32_t> undivided_;  ///< curves of one segment, by their ends

@@ -21,29 +21,29 @@ struct FeatureGraph {
   std::vector<std::uint8_t> corner;
 };
 
-double edge_length(const HalfedgeMesh& mesh, HalfedgeIndex h) {
+double edge_length(const HalfEdgeMesh& mesh, HalfEdge h) {
   return distance(mesh.points[mesh.start[h]], mesh.points[mesh.end(h)]);
 }
 
 /// The feature half-edge that continues h beyond its end, where exactly one other feature edge meets it.
-HalfedgeIndex continued(const HalfedgeMesh& mesh, HalfedgeIndex h) {
-  HalfedgeIndex result = kNone;
-  mesh.for_each_outgoing(mesh.end(h), [&](HalfedgeIndex o) {
+HalfEdge continued(const HalfEdgeMesh& mesh, HalfEdge h) {
+  HalfEdge result = kNone;
+  mesh.for_each_outgoing(mesh.end(h), [&](HalfEdge o) {
     if (mesh.is_feature[o] && o != mesh.twin[h]) result = o;
   });
   return result;
 }
 
 /// The point about `reach` along the curve from the start of h, or where it ends.
-Vec3 point_along(const HalfedgeMesh& mesh, const FeatureGraph& graph, HalfedgeIndex h, double reach) {
-  const HalfedgeIndex first = h;
+Vec3 point_along(const HalfEdgeMesh& mesh, const FeatureGraph& graph, HalfEdge h, double reach) {
+  const HalfEdge first = h;
   for (;;) {
     const double l = edge_length(mesh, h);
     const Vec3 a = mesh.points[mesh.start[h]], b = mesh.points[mesh.end(h)];
     if (l >= reach) return a + (b - a) * (reach / l);
     reach -= l;
     if (graph.degree[mesh.end(h)] != 2) return b;
-    const HalfedgeIndex further = continued(mesh, h);
+    const HalfEdge further = continued(mesh, h);
     if (further == kNone || further == first) return b;
     h = further;
   }
@@ -54,22 +54,22 @@ struct Bend {
   VertexIndex vertex;
 };
 
-Bend bend_at(const HalfedgeMesh& mesh, const FeatureGraph& graph, VertexIndex v, double reach) {
+Bend bend_at(const HalfEdgeMesh& mesh, const FeatureGraph& graph, VertexIndex v, double reach) {
   std::vector<Vec3> directions;
-  mesh.for_each_outgoing(v, [&](HalfedgeIndex h) {
+  mesh.for_each_outgoing(v, [&](HalfEdge h) {
     if (mesh.is_feature[h]) directions.push_back(normalized(point_along(mesh, graph, h, reach) - mesh.points[v]));
   });
   return {-dot(directions[0], directions[1]), v};
 }
 
 /// Whether there is a corner within `reach` along either side of the curve.
-bool has_corner_near(const HalfedgeMesh& mesh, const FeatureGraph& graph, VertexIndex v, double reach) {
+bool has_corner_near(const HalfEdgeMesh& mesh, const FeatureGraph& graph, VertexIndex v, double reach) {
   bool found = false;
-  mesh.for_each_outgoing(v, [&](HalfedgeIndex h) {
+  mesh.for_each_outgoing(v, [&](HalfEdge h) {
     if (!mesh.is_feature[h]) return;
     double path = 0;
-    const HalfedgeIndex first = h;
-    for (HalfedgeIndex at = h; at != kNone; at = continued(mesh, at)) {
+    const HalfEdge first = h;
+    for (HalfEdge at = h; at != kNone; at = continued(mesh, at)) {
       path += edge_length(mesh, at);
       if (path > reach) break;
       if (graph.corner[mesh.end(at)]) found = true;
@@ -80,7 +80,7 @@ bool has_corner_near(const HalfedgeMesh& mesh, const FeatureGraph& graph, Vertex
 }
 
 /// Vertices inside chains where they bend, the sharpest first.
-void mark_bends(const HalfedgeMesh& mesh, const std::vector<VertexIndex>& corners, const SizeField& sizes,
+void mark_bends(const HalfEdgeMesh& mesh, const std::vector<VertexIndex>& corners, const SizeField& sizes,
                 FeatureGraph& graph) {
   std::vector<Bend> bends;
   for (const VertexIndex v : corners) {
@@ -99,22 +99,21 @@ void mark_bends(const HalfedgeMesh& mesh, const std::vector<VertexIndex>& corner
 }
 
 FeatureGraph make_graph(const InputSurface& input, const std::vector<VertexIndex>& corners, const SizeField& sizes) {
-  const HalfedgeMesh& mesh = input.mesh;
+  const HalfEdgeMesh& mesh = input.mesh;
   FeatureGraph graph;
   graph.degree.assign(mesh.points.size(), 0);
-  for (HalfedgeIndex h = 0; h < mesh.start.size(); ++h) graph.degree[mesh.start[h]] += mesh.is_feature[h];
+  for (HalfEdge h = 0; h < mesh.start.size(); ++h) graph.degree[mesh.start[h]] += mesh.is_feature[h];
   graph.corner.assign(mesh.points.size(), 0);
   for (VertexIndex v = 0; v < mesh.points.size(); ++v) graph.corner[v] = graph.degree[v] != 0 && graph.degree[v] != 2;
   mark_bends(mesh, corners, sizes, graph);
   return graph;
 }
 
-Curve follow(const HalfedgeMesh& mesh, const FeatureGraph& graph, HalfedgeIndex first,
-             std::vector<std::uint8_t>& visited) {
+Curve follow(const HalfEdgeMesh& mesh, const FeatureGraph& graph, HalfEdge first, std::vector<std::uint8_t>& visited) {
   Curve curve;
-  for (HalfedgeIndex h = first; h != kNone && !visited[h];) {
+  for (HalfEdge h = first; h != kNone && !visited[h];) {
     visited[h] = visited[mesh.twin[h]] = 1;
-    curve.halfedges.push_back(h);
+    curve.half_edges.push_back(h);
     curve.reach.push_back(edge_length(mesh, h) + (curve.reach.empty() ? 0 : curve.reach.back()));
     if (graph.corner[mesh.end(h)]) break;
     h = continued(mesh, h);
@@ -126,7 +125,7 @@ Curve follow(const HalfedgeMesh& mesh, const FeatureGraph& graph, HalfedgeIndex 
 /// The integral of ds / h along a curve, tabulated.
 struct Measure {
   struct Piece {
-    std::uint32_t edge;  ///< index into curve.halfedges
+    std::uint32_t edge;  ///< index into curve.half_edges
     double t0, t1;       ///< part of that edge
     double sum;          ///< the integral up to its end
   };
@@ -138,10 +137,10 @@ struct Measure {
 constexpr double kMostPieces = 100000;
 
 Measure measure(const InputSurface& input, const SizeField& sizes, const Curve& curve) {
-  const HalfedgeMesh& mesh = input.mesh;
+  const HalfEdgeMesh& mesh = input.mesh;
   Measure m;
-  for (std::uint32_t e = 0; e < curve.halfedges.size(); ++e) {
-    const HalfedgeIndex h = curve.halfedges[e];
+  for (std::uint32_t e = 0; e < curve.half_edges.size(); ++e) {
+    const HalfEdge h = curve.half_edges[e];
     const Vec3 a = mesh.points[mesh.start[h]], b = mesh.points[mesh.end(h)];
     const double l = distance(a, b);
     for (double t = 0; t < 1;) {
@@ -166,32 +165,32 @@ CurvePoint point_at(const InputSurface& input, const Curve& curve, const Measure
   const double before = piece > 0 ? m.pieces[piece - 1].sum : 0;
   const double s = q.sum > before ? std::clamp((at - before) / (q.sum - before), 0.0, 1.0) : 0.5;
   CurvePoint c;
-  c.halfedge = curve.halfedges[q.edge];
+  c.half_edge = curve.half_edges[q.edge];
   c.t = q.t0 + s * (q.t1 - q.t0);
-  const Vec3 a = input.mesh.points[input.mesh.start[c.halfedge]], b = input.mesh.points[input.mesh.end(c.halfedge)];
+  const Vec3 a = input.mesh.points[input.mesh.start[c.half_edge]], b = input.mesh.points[input.mesh.end(c.half_edge)];
   c.p = a + (b - a) * c.t;
   c.along = along_of(curve, q.edge, c.t);
   return c;
 }
 
-void snap_to_vertex(const HalfedgeMesh& mesh, double segment, CurvePoint& c) {
-  const double l = edge_length(mesh, c.halfedge), tolerance = kSnapToVertex * segment;
+void snap_to_vertex(const HalfEdgeMesh& mesh, double segment, CurvePoint& c) {
+  const double l = edge_length(mesh, c.half_edge), tolerance = kSnapToVertex * segment;
   if (c.t * l < tolerance) {
-    c.vertex = mesh.start[c.halfedge];
+    c.vertex = mesh.start[c.half_edge];
   } else if ((1 - c.t) * l < tolerance) {
-    c.vertex = mesh.end(c.halfedge);
+    c.vertex = mesh.end(c.half_edge);
   }
   if (c.vertex != kNone) c.p = mesh.points[c.vertex];
 }
 
 void divide(const InputSurface& input, const SizeField& sizes, const Measure& m, int segments, Curve& curve) {
-  const HalfedgeMesh& mesh = input.mesh;
+  const HalfEdgeMesh& mesh = input.mesh;
   std::size_t piece = 0, middle_piece = 0;
   for (int i = 0; i <= segments; ++i) {
     CurvePoint c = point_at(input, curve, m, piece, m.total * i / segments);
     c.h = sizes.at(c.p);
-    if (i == 0) c.vertex = mesh.start[curve.halfedges.front()];
-    if (i == segments) c.vertex = mesh.end(curve.halfedges.back());
+    if (i == 0) c.vertex = mesh.start[curve.half_edges.front()];
+    if (i == segments) c.vertex = mesh.end(curve.half_edges.back());
     if (c.vertex != kNone) {
       c.p = mesh.points[c.vertex];
     } else {
@@ -209,12 +208,12 @@ void divide(const InputSurface& input, const SizeField& sizes, const Measure& m,
 
 std::vector<Curve> chain_curves(const InputSurface& input, const std::vector<VertexIndex>& corners,
                                 const SizeField& sizes) {
-  const HalfedgeMesh& mesh = input.mesh;
+  const HalfEdgeMesh& mesh = input.mesh;
   const FeatureGraph graph = make_graph(input, corners, sizes);
   std::vector<std::uint8_t> visited(mesh.start.size(), 0);
   std::vector<Curve> curves;
   const auto chain_from = [&](VertexIndex v) {
-    mesh.for_each_outgoing(v, [&](HalfedgeIndex h) {
+    mesh.for_each_outgoing(v, [&](HalfEdge h) {
       if (mesh.is_feature[h] && !visited[h]) curves.push_back(follow(mesh, graph, h, visited));
     });
   };
@@ -231,21 +230,21 @@ CurvePoint point_along(const InputSurface& input, const Curve& curve, double alo
   const auto at = std::upper_bound(curve.reach.begin(), curve.reach.end() - 1, along) - curve.reach.begin();
   const double before = at > 0 ? curve.reach[at - 1] : 0, l = curve.reach[at] - before;
   CurvePoint c;
-  c.halfedge = curve.halfedges[at];
+  c.half_edge = curve.half_edges[at];
   c.t = l > 0 ? std::clamp((along - before) / l, 0.0, 1.0) : 0;
   c.along = along;
-  const Vec3 a = input.mesh.points[input.mesh.start[c.halfedge]], b = input.mesh.points[input.mesh.end(c.halfedge)];
+  const Vec3 a = input.mesh.points[input.mesh.start[c.half_edge]], b = input.mesh.points[input.mesh.end(c.half_edge)];
   c.p = a + (b - a) * c.t;
   return c;
 }
 
 void divide_curves(const InputSurface& input, const SizeField& sizes, std::vector<Curve>& curves) {
-  const HalfedgeMesh& mesh = input.mesh;
+  const HalfEdgeMesh& mesh = input.mesh;
   std::vector<Measure> measures;
   std::vector<int> segments;
   std::map<Edge, int> single;
   const auto ends = [&](const Curve& c) {
-    const VertexIndex a = mesh.start[c.halfedges.front()], b = mesh.end(c.halfedges.back());
+    const VertexIndex a = mesh.start[c.half_edges.front()], b = mesh.end(c.half_edges.back());
     return Edge{std::min(a, b), std::max(a, b)};
   };
   for (const Curve& c : curves) {

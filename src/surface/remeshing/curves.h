@@ -11,7 +11,7 @@ namespace octafront::remeshing {
 /// A point of a feature curve: on an input half-edge at a + t (b - a), or exactly at an input vertex.
 struct CurvePoint {
   Vec3 p;
-  HalfedgeIndex halfedge = kNone;  ///< runs along the curve
+  HalfEdge half_edge = kNone;  ///< runs along the curve
   double t = 0;
   double along = 0;            ///< length of the curve up to the point
   VertexIndex vertex = kNone;  ///< the input vertex that the point is; kNone inside the half-edge
@@ -20,11 +20,11 @@ struct CurvePoint {
 
 /// A chain of feature edges between two corners, or closed, and its division.
 struct Curve {
-  std::vector<HalfedgeIndex> halfedges;  ///< of the input, head to tail
-  bool closed = false;                   ///< no corner on it
-  std::vector<double> reach;             ///< length of the curve up to the end of each half-edge
-  std::vector<CurvePoint> samples;       ///< in order; the first and the last are the ends (closed: the same point)
-  std::vector<CurvePoint> middles;       ///< one for each segment between samples
+  std::vector<HalfEdge> half_edges;  ///< of the input, head to tail
+  bool closed = false;               ///< no corner on it
+  std::vector<double> reach;         ///< length of the curve up to the end of each half-edge
+  std::vector<CurvePoint> samples;   ///< in order; the first and the last are the ends (closed: the same point)
+  std::vector<CurvePoint> middles;   ///< one for each segment between samples
 };
 
 /// The feature lines to keep at the element's scale: `features` and all patch borders, without what is noise below the

@@ -77,22 +77,22 @@ class Front {
       } else {
         ids.push_back(static_cast<std::uint32_t>(result_.points.size()));
       }
-      add({c.p, input_.face_normal[c.halfedge / 3], c.h, c.halfedge / 3, c.vertex, c.halfedge, kNone, true});
+      add({c.p, input_.face_normal[c.half_edge / 3], c.h, c.half_edge / 3, c.vertex, c.half_edge, kNone, true});
     }
     result_.curve_points.push_back(std::move(ids));
   }
 
   void place_apexes(const Curve& curve, std::size_t index) {
-    const HalfedgeMesh& mesh = input_.mesh;
+    const HalfEdgeMesh& mesh = input_.mesh;
     for (std::size_t i = 0; i < curve.middles.size(); ++i) {
       const CurvePoint& middle = curve.middles[i];
       const Vec3 chord = curve.samples[i + 1].p - curve.samples[i].p;
       const double half = 0.5 * length(chord), h = middle.h;
       const double height = std::sqrt(std::max(0.25 * h * h, h * h - half * half));
-      for (const HalfedgeIndex side : {middle.halfedge, mesh.twin[middle.halfedge]}) {
+      for (const HalfEdge side : {middle.half_edge, mesh.twin[middle.half_edge]}) {
         const Vec3 n = input_.face_normal[side / 3];
         Vec3 inward = cross(n, chord);
-        if (side != middle.halfedge) inward = -inward;
+        if (side != middle.half_edge) inward = -inward;
         const std::uint32_t parent = result_.curve_points[index][i];
         SurfacePoint x;
         if (walk(input_, {middle.p, side / 3}, normalized(inward), n, height, x) == WalkEnd::kArrived) {
@@ -196,8 +196,8 @@ class Front {
       fill_vertex_sectors(id, point);
       return;
     }
-    const HalfedgeMesh& mesh = input_.mesh;
-    for (const HalfedgeIndex side : {point.halfedge, mesh.twin[point.halfedge]}) {
+    const HalfEdgeMesh& mesh = input_.mesh;
+    for (const HalfEdge side : {point.half_edge, mesh.twin[point.half_edge]}) {
       const Vec3 n = input_.face_normal[side / 3];
       const Vec3 u = normalized(mesh.points[mesh.end(side)] - mesh.points[mesh.start[side]]), v = cross(n, u);
       for (int k = 1; k < 3; ++k) {
@@ -208,20 +208,20 @@ class Front {
     }
   }
 
-  double angle_at(HalfedgeIndex corner) const {
-    const HalfedgeMesh& mesh = input_.mesh;
+  double angle_at(HalfEdge corner) const {
+    const HalfEdgeMesh& mesh = input_.mesh;
     const Vec3 a = mesh.points[mesh.start[corner]];
     const Vec3 u = mesh.points[mesh.end(corner)] - a, v = mesh.points[mesh.apex(corner)] - a;
     return std::atan2(length(cross(u, v)), dot(u, v));
   }
 
   void fill_vertex_sectors(std::uint32_t id, const FrontPoint& point) {
-    const HalfedgeMesh& mesh = input_.mesh;
-    mesh.for_each_outgoing(point.vertex, [&](HalfedgeIndex first) {
+    const HalfEdgeMesh& mesh = input_.mesh;
+    mesh.for_each_outgoing(point.vertex, [&](HalfEdge first) {
       if (!mesh.is_feature[first]) return;
       fan_.clear();
       double total = 0;
-      HalfedgeIndex h = first;
+      HalfEdge h = first;
       do {
         fan_.push_back(h);
         total += angle_at(h);
@@ -234,8 +234,8 @@ class Front {
 
   /// At `angle` from the start of the flattened fan.
   void leave_vertex(std::uint32_t id, const FrontPoint& point, double angle) {
-    const HalfedgeMesh& mesh = input_.mesh;
-    for (const HalfedgeIndex corner : fan_) {
+    const HalfEdgeMesh& mesh = input_.mesh;
+    for (const HalfEdge corner : fan_) {
       const double here = angle_at(corner);
       if (angle > here && corner != fan_.back()) {
         angle -= here;
@@ -256,7 +256,7 @@ class Front {
   FrontPoints result_;
   std::map<VertexIndex, std::uint32_t> of_vertex_;
   std::vector<Neighbour> neighbours_;
-  std::vector<HalfedgeIndex> fan_;
+  std::vector<HalfEdge> fan_;
   std::uint32_t next_ = 0;
 };
 

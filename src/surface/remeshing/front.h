@@ -12,11 +12,11 @@ namespace octafront::remeshing {
 /// A point that the front placed on the input surface.
 struct FrontPoint {
   Vec3 p, normal;
-  double h = 0;                    ///< wanted size there
-  std::uint32_t face = kNone;      ///< of the input; it lies in it
-  VertexIndex vertex = kNone;      ///< the input vertex that it is, if any
-  HalfedgeIndex halfedge = kNone;  ///< the feature half-edge that it lies on, if any
-  std::uint32_t parent = kNone;    ///< the point it was placed from
+  double h = 0;                  ///< wanted size there
+  std::uint32_t face = kNone;    ///< of the input; it lies in it
+  VertexIndex vertex = kNone;    ///< the input vertex that it is, if any
+  HalfEdge half_edge = kNone;    ///< the feature half-edge that it lies on, if any
+  std::uint32_t parent = kNone;  ///< the point it was placed from
   bool on_feature = false;
 };
 

@@ -64,7 +64,7 @@ class SurfaceImprover {
   void delaunay() {
     edges_.clear();
     const auto may_have_turned = [&](VertexIndex v) { return (mesh_.changed[v] & WorkingMesh::kForFlips) != 0; };
-    for (HalfedgeIndex h = 0; h < mesh_.start.size(); ++h) {
+    for (HalfEdge h = 0; h < mesh_.start.size(); ++h) {
       if (mesh_.start[h] == kNone || h > mesh_.twin[h]) continue;
       if (may_have_turned(mesh_.start[h]) && may_have_turned(mesh_.end(h))) edges_.push_back(h);
     }
@@ -75,7 +75,7 @@ class SurfaceImprover {
   /// Valence minus the one wanted: six inside a patch, on features one triangle for each 60 degrees of a sector.
   void count_valences() {
     excess_.assign(mesh_.points.size(), -6);
-    for (HalfedgeIndex h = 0; h < mesh_.start.size(); ++h) {
+    for (HalfEdge h = 0; h < mesh_.start.size(); ++h) {
       if (mesh_.start[h] != kNone) ++excess_[mesh_.start[h]];
     }
     for (VertexIndex v = 0; v < mesh_.points.size(); ++v) {
@@ -90,11 +90,11 @@ class SurfaceImprover {
       if (angle > 0) wanted += std::max(1, static_cast<int>(std::lround(angle * 3 / std::numbers::pi)));
       angle = 0;
     };
-    HalfedgeIndex first = mesh_.outgoing[v];
-    mesh_.for_each_outgoing(v, [&](HalfedgeIndex h) {
+    HalfEdge first = mesh_.outgoing[v];
+    mesh_.for_each_outgoing(v, [&](HalfEdge h) {
       if (mesh_.is_feature[h]) first = h;
     });
-    HalfedgeIndex h = first;
+    HalfEdge h = first;
     do {
       if (mesh_.is_feature[h]) close_sector();
       const Vec3 p = mesh_.points[v], a = mesh_.points[mesh_.end(h)] - p, b = mesh_.points[mesh_.apex(h)] - p;
@@ -106,7 +106,7 @@ class SurfaceImprover {
   }
 
   void equalize_valences() {
-    for (HalfedgeIndex h = 0; h < mesh_.start.size(); ++h) {
+    for (HalfEdge h = 0; h < mesh_.start.size(); ++h) {
       if (mesh_.start[h] == kNone || mesh_.is_feature[h] || h > mesh_.twin[h]) continue;
       const VertexIndex a = mesh_.start[h], b = mesh_.end(h), c = mesh_.apex(h), d = mesh_.apex(mesh_.twin[h]);
       // (e - 1)^2 - e^2 = 1 - 2 e and (e + 1)^2 - e^2 = 1 + 2 e.
@@ -118,7 +118,7 @@ class SurfaceImprover {
     }
   }
 
-  bool valence_flip_is_good(HalfedgeIndex h) const {
+  bool valence_flip_is_good(HalfEdge h) const {
     const Vec3 a = mesh_.points[mesh_.start[h]], b = mesh_.points[mesh_.end(h)];
     const Vec3 c = mesh_.points[mesh_.apex(h)], d = mesh_.points[mesh_.apex(mesh_.twin[h])];
     if (squared_quality(a, d, c) < kValenceFlipQuality || squared_quality(b, c, d) < kValenceFlipQuality) return false;
@@ -161,7 +161,7 @@ class SurfaceImprover {
     ring_.clear();
     Vec3 sum, star_vector;
     double weights = 0;
-    mesh_.for_each_outgoing(v, [&](HalfedgeIndex o) {
+    mesh_.for_each_outgoing(v, [&](HalfEdge o) {
       const VertexIndex ia = mesh_.end(o), ib = mesh_.apex(o);
       const Vec3 a = mesh_.points[ia], b = mesh_.points[ib], area_vector = cross(a - p, b - p);
       ring_.push_back({a, b});
@@ -208,7 +208,7 @@ class SurfaceImprover {
   ImproveCounts& counts_;
   CurvePoints curve_points_;
   bool is_uniform_;
-  std::vector<HalfedgeIndex> edges_;
+  std::vector<HalfEdge> edges_;
   std::vector<int> excess_;
   std::vector<std::pair<Vec3, Vec3>> ring_;
 };

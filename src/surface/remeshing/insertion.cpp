@@ -41,26 +41,13 @@ struct Plane2d {
 class Inserter {
  public:
   Inserter(const InputSurface& input, const FrontPoints& front, InsertionCounts& counts)
-      : input_(input), front_(front), counts_(counts) {
-    static_cast<HalfedgeMesh&>(mesh_) = input.mesh;
-    const std::size_t vertices = mesh_.points.size(), faces = mesh_.triangle_count();
-    mesh_.kind.resize(vertices);
-    mesh_.normal.resize(vertices);
-    mesh_.face.resize(vertices);
-    mesh_.size.assign(vertices, 0);
-    mesh_.place.resize(vertices);
-    mesh_.changed.assign(vertices, WorkingMesh::kForSmoothing | WorkingMesh::kForFlips);
-    mesh_.patch = input.patch;
-    mesh_.origin.resize(faces);
-    last_.resize(faces);
-    for (std::uint32_t t = 0; t < faces; ++t) mesh_.origin[t] = last_[t] = t;
-    for (VertexIndex v = 0; v < vertices; ++v) {
-      mesh_.kind[v] = input.on_feature[v] ? VertexKind::kRemovableCurve : VertexKind::kRemovable;
-      mesh_.normal[v] = input.on_feature[v] ? Vec3{} : input.vertex_normal[v];
-      mesh_.face[v] = mesh_.outgoing[v] == kNone ? kNone : mesh_.outgoing[v] / 3;
-    }
-    vertex_of_point_.assign(front.points.size(), kNone);
-    mesh_.reserve(vertices + front.points.size(), faces + 2 * front.points.size());
+      : input_(input),
+        front_(front),
+        counts_(counts),
+        mesh_(input),
+        last_(mesh_.origin),
+        vertex_of_point_(front.points.size(), kNone) {
+    mesh_.reserve(mesh_.points.size() + front.points.size(), mesh_.triangle_count() + 2 * front.points.size());
   }
 
   WorkingMesh run(const std::vector<Curve>& curves, const RunContext& context) {
@@ -77,7 +64,7 @@ class Inserter {
   void insert_curve(std::uint32_t number, const Curve& curve) {
     const std::vector<std::uint32_t>& ids = front_.curve_points[number];
     VertexIndex previous = kNone;
-    HalfedgeIndex on = kNone;
+    HalfEdge on = kNone;
     for (std::size_t i = 0; i < ids.size(); ++i) {
       const FrontPoint& point = front_.points[ids[i]];
       const bool is_end = (i == 0 || i + 1 == ids.size()) && !curve.closed;
@@ -87,9 +74,9 @@ class Inserter {
         continue;
       }
       if (vertex_of_point_[ids[i]] != kNone) continue;
-      const HalfedgeIndex along = curve.samples[i].halfedge;
+      const HalfEdge along = curve.samples[i].half_edge;
       const VertexIndex from = along == on ? previous : input_.mesh.start[along];
-      const HalfedgeIndex h = mesh_.find(from, input_.mesh.end(along));
+      const HalfEdge h = mesh_.find(from, input_.mesh.end(along));
       const VertexIndex x = mesh_.add_vertex(point.p, VertexKind::kCurve, {}, point.h, point.face);
       mesh_.split_edge(h, x);
       mesh_.place[x] = {number, curve.samples[i].along};
@@ -114,7 +101,7 @@ class Inserter {
     if (snap_to_vertex(id, t)) return;
     int on_edge = -1;
     for (int i = 0; i < 3; ++i) {
-      const HalfedgeIndex h = 3 * t + i;
+      const HalfEdge h = 3 * t + i;
       const Vec3 a = mesh_.points[mesh_.start[h]], b = mesh_.points[mesh_.end(h)];
       const bool is_border = mesh_.origin[mesh_.twin[h] / 3] != point.face;
       if (plane.height(a, b, point.p) < kSnapToEdge * point.h && is_border) on_edge = i;
@@ -129,7 +116,7 @@ class Inserter {
     put_on_edge(id, 3 * t + on_edge);
   }
 
-  void put_on_edge(std::uint32_t id, HalfedgeIndex h) {
+  void put_on_edge(std::uint32_t id, HalfEdge h) {
     const FrontPoint& point = front_.points[id];
     const Vec3 a = mesh_.points[mesh_.start[h]], b = mesh_.points[mesh_.end(h)];
     const double s = dot(point.p - a, b - a) / squared_length(b - a);
@@ -169,7 +156,7 @@ class Inserter {
     std::uint32_t t = last_[point.face];
     const VertexIndex parent = point.parent == kNone ? kNone : vertex_of_point_[point.parent];
     if (parent == kNone) return t;
-    mesh_.for_each_outgoing(parent, [&](HalfedgeIndex h) {
+    mesh_.for_each_outgoing(parent, [&](HalfEdge h) {
       if (mesh_.origin[h / 3] == point.face) t = h / 3;
     });
     return t;
@@ -182,7 +169,7 @@ class Inserter {
     for (std::size_t step = 0; step < kMostSteps; ++step) {
       bool moved = false;
       for (int i = 0; i < 3 && !moved; ++i) {
-        const HalfedgeIndex h = 3 * t + (i + step) % 3;
+        const HalfEdge h = 3 * t + (i + step) % 3;
         const std::uint32_t across = mesh_.twin[h] / 3;
         if (mesh_.origin[across] != point.face) continue;
         if (plane.side(mesh_.points[mesh_.start[h]], mesh_.points[mesh_.end(h)], point.p) >= 0) continue;
@@ -197,9 +184,9 @@ class Inserter {
   /// Lawson flips around x among the parts of one input face: in its plane, decided exactly.
   void legalize(VertexIndex x) {
     stack_.clear();
-    mesh_.for_each_outgoing(x, [&](HalfedgeIndex h) { stack_.push_back(next_of(h)); });
+    mesh_.for_each_outgoing(x, [&](HalfEdge h) { stack_.push_back(next_of(h)); });
     for (int flips = 0; !stack_.empty() && flips < kMostFlips;) {
-      const HalfedgeIndex h = stack_.back(), g = mesh_.twin[h];
+      const HalfEdge h = stack_.back(), g = mesh_.twin[h];
       stack_.pop_back();
       const std::uint32_t face = mesh_.origin[h / 3];
       if (mesh_.origin[g / 3] != face || mesh_.is_feature[h] || is_delaunay(mesh_, h)) continue;
@@ -208,7 +195,7 @@ class Inserter {
       const Plane2d plane(input_.face_normal[face]);
       if (plane.side(a, d, c) <= 0 || plane.side(b, c, d) <= 0 || !mesh_.may_flip(h)) continue;
       ++flips;
-      const HalfedgeIndex turned = mesh_.flip(h), other = mesh_.twin[turned];
+      const HalfEdge turned = mesh_.flip(h), other = mesh_.twin[turned];
       stack_.insert(stack_.end(), {next_of(turned), previous_of(turned), next_of(other), previous_of(other)});
     }
   }
@@ -219,7 +206,7 @@ class Inserter {
   WorkingMesh mesh_;
   std::vector<std::uint32_t> last_;           ///< per input face: a part of it
   std::vector<VertexIndex> vertex_of_point_;  ///< per point of the front
-  std::vector<HalfedgeIndex> stack_;
+  std::vector<HalfEdge> stack_;
 };
 
 }  // namespace

@@ -40,8 +40,8 @@ class LengthAdjuster {
     for (VertexIndex v = 0; v < mesh_.points.size(); ++v) {
       if (mesh_.kind[v] == VertexKind::kFree && mesh_.outgoing[v] != kNone) collapse_if_short(v);
     }
-    const std::size_t halfedges = mesh_.start.size();
-    for (HalfedgeIndex h = 0; h < halfedges; ++h) {
+    const std::size_t half_edges = mesh_.start.size();
+    for (HalfEdge h = 0; h < half_edges; ++h) {
       if (mesh_.start[h] != kNone && h < mesh_.twin[h] && !mesh_.is_feature[h]) split_if_long(h);
     }
     mend_all();
@@ -59,22 +59,22 @@ class LengthAdjuster {
 
  private:
   /// Squared quality of the triangle of h.
-  double quality(HalfedgeIndex h) const {
+  double quality(HalfEdge h) const {
     return squared_quality(mesh_.points[mesh_.start[h]], mesh_.points[mesh_.end(h)], mesh_.points[mesh_.apex(h)]);
   }
-  double relative_length(HalfedgeIndex h) const {
+  double relative_length(HalfEdge h) const {
     const VertexIndex a = mesh_.start[h], b = mesh_.end(h);
     return 2 * distance(mesh_.points[a], mesh_.points[b]) / (mesh_.size[a] + mesh_.size[b]);
   }
 
   void collapse_if_short(VertexIndex v) {
     bool is_short = false;
-    mesh_.for_each_outgoing(v, [&](HalfedgeIndex h) { is_short = is_short || relative_length(h) < kShort; });
+    mesh_.for_each_outgoing(v, [&](HalfEdge h) { is_short = is_short || relative_length(h) < kShort; });
     if (!is_short) return;
     star_.gather(v);
     const double now = star_.quality_now();
     for (std::size_t i = 0; i < star_.ring().size(); ++i) {
-      const HalfedgeIndex h = star_.ring()[i];
+      const HalfEdge h = star_.ring()[i];
       if (relative_length(h) >= kShort || star_.longest_after(i) > kLong) continue;
       if (!(star_.quality_after(i, kLimits, std::min(0.5 * now, kBad)) > 0) || !mesh_.may_collapse(h)) continue;
       mesh_.collapse(h);
@@ -83,9 +83,9 @@ class LengthAdjuster {
     }
   }
 
-  void split_if_long(HalfedgeIndex h) {
+  void split_if_long(HalfEdge h) {
     if (relative_length(h) <= kLong) return;
-    HalfedgeIndex from = h;
+    HalfEdge from = h;
     if (mesh_.kind[mesh_.start[from]] != VertexKind::kFree) from = mesh_.twin[h];
     const VertexIndex u = mesh_.start[from];
     if (mesh_.kind[u] != VertexKind::kFree) return;
@@ -101,10 +101,10 @@ class LengthAdjuster {
     ++counts_.splits;
   }
 
-  bool split_is_sound(HalfedgeIndex h, Vec3 x) const {
-    const HalfedgeIndex g = mesh_.twin[h];
+  bool split_is_sound(HalfEdge h, Vec3 x) const {
+    const HalfEdge g = mesh_.twin[h];
     const Vec3 star = mesh_.area_vector(h / 3) + mesh_.area_vector(g / 3);
-    for (const HalfedgeIndex side : {next_of(h), previous_of(h), next_of(g), previous_of(g)}) {
+    for (const HalfEdge side : {next_of(h), previous_of(h), next_of(g), previous_of(g)}) {
       const Vec3 a = mesh_.points[mesh_.start[side]] - x, b = mesh_.points[mesh_.end(side)] - x;
       if (!turns_little(cross(a, b), star, kLimits.star)) return false;
     }
@@ -113,27 +113,27 @@ class LengthAdjuster {
 
   /// True if something was done about the triangle.
   bool mend(std::uint32_t t) {
-    for (HalfedgeIndex h = 3 * t; h < 3 * t + 3; ++h) {
+    for (HalfEdge h = 3 * t; h < 3 * t + 3; ++h) {
       if (flip_if_better(h)) return true;
     }
-    for (HalfedgeIndex h = 3 * t; h < 3 * t + 3; ++h) {
+    for (HalfEdge h = 3 * t; h < 3 * t + 3; ++h) {
       if (mesh_.kind[mesh_.start[h]] == VertexKind::kFree && move_if_better(mesh_.start[h])) return true;
     }
-    for (HalfedgeIndex h = 3 * t; h < 3 * t + 3; ++h) {
+    for (HalfEdge h = 3 * t; h < 3 * t + 3; ++h) {
       if (mesh_.kind[mesh_.start[h]] == VertexKind::kFree && remove_if_better(mesh_.start[h])) return true;
     }
-    for (HalfedgeIndex h = 3 * t; h < 3 * t + 3; ++h) {
+    for (HalfEdge h = 3 * t; h < 3 * t + 3; ++h) {
       if (mesh_.kind[mesh_.start[h]] != VertexKind::kCurve || !curve_points_.relieve(mesh_.start[h], kCurveGain))
         continue;
       ++counts_.moves;
       return true;
     }
-    for (HalfedgeIndex h = 3 * t; h < 3 * t + 3; ++h) {
+    for (HalfEdge h = 3 * t; h < 3 * t + 3; ++h) {
       if (!mesh_.is_feature[h] || !curve_points_.split(h, kCurveGain)) continue;
       ++counts_.splits;
       return true;
     }
-    for (HalfedgeIndex h = 3 * t; h < 3 * t + 3; ++h) {
+    for (HalfEdge h = 3 * t; h < 3 * t + 3; ++h) {
       if (relative_length(h) > kTiny || !(mesh_.on_curve(mesh_.start[h]) && mesh_.on_curve(mesh_.end(h)))) continue;
       if (merge_if_better(h) || merge_if_better(mesh_.twin[h])) return true;
     }
@@ -146,7 +146,7 @@ class LengthAdjuster {
     const Vec3 p = mesh_.points[v], n = mesh_.normal[v];
     ring_.clear();
     Vec3 star;
-    mesh_.for_each_outgoing(v, [&](HalfedgeIndex h) {
+    mesh_.for_each_outgoing(v, [&](HalfEdge h) {
       ring_.push_back({mesh_.points[mesh_.end(h)], mesh_.points[mesh_.apex(h)]});
       star += mesh_.area_vector(h / 3);
     });
@@ -190,11 +190,11 @@ class LengthAdjuster {
   bool ends_straight_line(VertexIndex corner) const {
     if (mesh_.kind[corner] != VertexKind::kCorner) return false;
     bool found = false;
-    mesh_.for_each_outgoing(corner, [&](HalfedgeIndex h) {
+    mesh_.for_each_outgoing(corner, [&](HalfEdge h) {
       const VertexIndex x = mesh_.end(h);
       if (!mesh_.is_feature[h] || mesh_.kind[x] != VertexKind::kCurve) return;
       const Vec3 along = normalized(mesh_.points[x] - mesh_.points[corner]);
-      mesh_.for_each_outgoing(x, [&](HalfedgeIndex g) {
+      mesh_.for_each_outgoing(x, [&](HalfEdge g) {
         if (!mesh_.is_feature[g] || mesh_.end(g) == corner) return;
         const Vec3 further = normalized(mesh_.points[mesh_.end(g)] - mesh_.points[x]);
         found |= dot(along, further) > 0 && length(cross(along, further)) < kStraight;
@@ -204,7 +204,7 @@ class LengthAdjuster {
   }
 
   /// Moves the start of a tiny edge between curves to its end: details far below the element size make only slivers.
-  bool merge_if_better(HalfedgeIndex h) {
+  bool merge_if_better(HalfEdge h) {
     const VertexIndex u = mesh_.start[h], w = mesh_.end(h);
     star_.gather(u);
     const auto i = std::find(star_.ring().begin(), star_.ring().end(), h) - star_.ring().begin();
@@ -217,9 +217,9 @@ class LengthAdjuster {
     return true;
   }
 
-  bool flip_if_better(HalfedgeIndex h) {
+  bool flip_if_better(HalfEdge h) {
     if (mesh_.is_feature[h]) return false;
-    const HalfedgeIndex g = mesh_.twin[h];
+    const HalfEdge g = mesh_.twin[h];
     const Vec3 a = mesh_.points[mesh_.start[h]], b = mesh_.points[mesh_.end(h)];
     const Vec3 c = mesh_.points[mesh_.apex(h)], d = mesh_.points[mesh_.apex(g)];
     const double before = std::min(quality(h), quality(g));
@@ -233,9 +233,9 @@ class LengthAdjuster {
   bool remove_if_better(VertexIndex v) {
     star_.gather(v);
     double best = kGain * star_.quality_now();
-    HalfedgeIndex chosen = kNone;
+    HalfEdge chosen = kNone;
     for (std::size_t i = 0; i < star_.ring().size(); ++i) {
-      const HalfedgeIndex h = star_.ring()[i];
+      const HalfEdge h = star_.ring()[i];
       const double quality = star_.quality_after(i, kLimits, best);
       if (!(quality > best) || star_.longest_after(i) > kLong || !mesh_.may_collapse(h)) continue;
       best = quality;

@@ -28,7 +28,7 @@ bool faces_outward(const WorkingMesh& mesh, Vec3 area_vector, const VertexIndex 
   return true;
 }
 
-bool is_delaunay(const WorkingMesh& mesh, HalfedgeIndex h) {
+bool is_delaunay(const WorkingMesh& mesh, HalfEdge h) {
   const Vec3 a = mesh.points[mesh.start[h]], b = mesh.points[mesh.end(h)];
   const Vec3 at_c = mesh.points[mesh.apex(h)], at_d = mesh.points[mesh.apex(mesh.twin[h])];
   // Nearly always neither angle is obtuse: no need of roots.
@@ -37,8 +37,8 @@ bool is_delaunay(const WorkingMesh& mesh, HalfedgeIndex h) {
   return c + d >= -kDelaunaySlack * (1 + std::abs(c) + std::abs(d));
 }
 
-bool flip_is_sound(const WorkingMesh& mesh, HalfedgeIndex h, const TurnLimits& limits) {
-  const HalfedgeIndex g = mesh.twin[h];
+bool flip_is_sound(const WorkingMesh& mesh, HalfEdge h, const TurnLimits& limits) {
+  const HalfEdge g = mesh.twin[h];
   const VertexIndex a = mesh.start[h], b = mesh.start[g], c = mesh.apex(h), d = mesh.apex(g);
   const Vec3 pa = mesh.points[a], pb = mesh.points[b], pc = mesh.points[c], pd = mesh.points[d];
   const Vec3 adc = cross(pd - pa, pc - pa), bcd = cross(pc - pb, pd - pb), star = adc + bcd;
@@ -46,15 +46,15 @@ bool flip_is_sound(const WorkingMesh& mesh, HalfedgeIndex h, const TurnLimits& l
          faces_outward(mesh, adc, {a, d, c}, limits.surface) && faces_outward(mesh, bcd, {b, c, d}, limits.surface);
 }
 
-std::uint64_t make_delaunay(WorkingMesh& mesh, std::vector<HalfedgeIndex>& edges, const TurnLimits& limits) {
+std::uint64_t make_delaunay(WorkingMesh& mesh, std::vector<HalfEdge>& edges, const TurnLimits& limits) {
   std::uint64_t flips = 0;
   const std::uint64_t budget = kFlipsPerEdge * (edges.size() + 10);
   while (!edges.empty() && flips < budget) {
-    const HalfedgeIndex h = edges.back();
+    const HalfEdge h = edges.back();
     edges.pop_back();
     if (mesh.start[h] == kNone || mesh.is_feature[h] || is_delaunay(mesh, h)) continue;
     if (!flip_is_sound(mesh, h, limits) || !mesh.may_flip(h)) continue;
-    const HalfedgeIndex turned = mesh.flip(h), other = mesh.twin[turned];
+    const HalfEdge turned = mesh.flip(h), other = mesh.twin[turned];
     ++flips;
     edges.insert(edges.end(), {next_of(turned), previous_of(turned), next_of(other), previous_of(other)});
   }

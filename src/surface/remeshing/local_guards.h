@@ -27,13 +27,13 @@ inline bool turns_little(Vec3 area_vector, Vec3 star, double cosine) {
 bool faces_outward(const WorkingMesh& mesh, Vec3 area_vector, const VertexIndex (&vertices)[3], double cosine);
 
 /// Whether the angles opposite the edge of h sum to 180 degrees at most.
-bool is_delaunay(const WorkingMesh& mesh, HalfedgeIndex h);
+bool is_delaunay(const WorkingMesh& mesh, HalfEdge h);
 
 /// Whether both triangles that a flip of h would make face as the surface does.
-bool flip_is_sound(const WorkingMesh& mesh, HalfedgeIndex h, const TurnLimits& limits);
+bool flip_is_sound(const WorkingMesh& mesh, HalfEdge h, const TurnLimits& limits);
 
 /// Turns every edge that is not Delaunay, may turn and soundly so, until none is left (bounded). `edges` is where to
 /// begin; it is consumed. Returns the number of flips.
-std::uint64_t make_delaunay(WorkingMesh& mesh, std::vector<HalfedgeIndex>& edges, const TurnLimits& limits);
+std::uint64_t make_delaunay(WorkingMesh& mesh, std::vector<HalfEdge>& edges, const TurnLimits& limits);
 
 }  // namespace octafront::remeshing

@@ -26,10 +26,10 @@ constexpr double kStep = 0.5;
 constexpr double kSamePlace = 0.75;
 
 /// The feature edge of a face that p, a point of its border, lies on.
-HalfedgeIndex feature_at(const HalfedgeMesh& mesh, std::uint32_t face, Vec3 p) {
-  HalfedgeIndex nearest = kNone;
+HalfEdge feature_at(const HalfEdgeMesh& mesh, std::uint32_t face, Vec3 p) {
+  HalfEdge nearest = kNone;
   double least = HUGE_VAL;
-  for (HalfedgeIndex h = 3 * face; h < 3 * face + 3; ++h) {
+  for (HalfEdge h = 3 * face; h < 3 * face + 3; ++h) {
     if (!mesh.is_feature[h]) continue;
     const Vec3 a = mesh.points[mesh.start[h]], along = normalized(mesh.points[mesh.end(h)] - a);
     const double off = length(cross(p - a, along));
@@ -41,16 +41,16 @@ HalfedgeIndex feature_at(const HalfedgeMesh& mesh, std::uint32_t face, Vec3 p) {
   return nearest;
 }
 
-Vec3 direction_of(const HalfedgeMesh& mesh, HalfedgeIndex h) {
+Vec3 direction_of(const HalfEdgeMesh& mesh, HalfEdge h) {
   return normalized(mesh.points[mesh.end(h)] - mesh.points[mesh.start[h]]);
 }
 
 /// Width of the strip beside half-edge h at p; HUGE_VAL if there is none within reach.
-double width_at(const InputSurface& input, HalfedgeIndex h, Vec3 p, double reach) {
+double width_at(const InputSurface& input, HalfEdge h, Vec3 p, double reach) {
   const Vec3 n = input.face_normal[h / 3], along = direction_of(input.mesh, h);
   SurfacePoint x;
   if (walk(input, {p, h / 3}, cross(n, along), n, reach, x) != WalkEnd::kFeature) return HUGE_VAL;
-  const HalfedgeIndex other = feature_at(input.mesh, x.face, x.p);
+  const HalfEdge other = feature_at(input.mesh, x.face, x.p);
   if (other == kNone || other == h || dot(direction_of(input.mesh, other), along) > -kParallel) return HUGE_VAL;
   return distance(p, x.p);
 }
@@ -58,10 +58,10 @@ double width_at(const InputSurface& input, HalfedgeIndex h, Vec3 p, double reach
 }  // namespace
 
 SizeField fitted_to_strips(const InputSurface& input, const SizeField& sizes, const RunContext& context) {
-  const HalfedgeMesh& mesh = input.mesh;
+  const HalfEdgeMesh& mesh = input.mesh;
   std::vector<PointSize> places;
   PointGrid kept(mesh.points.empty() ? Vec3{} : mesh.points.front());
-  for (HalfedgeIndex h = 0; h < mesh.start.size(); ++h) {
+  for (HalfEdge h = 0; h < mesh.start.size(); ++h) {
     if (!mesh.is_feature[h]) continue;
     context.check();
     const Vec3 a = mesh.points[mesh.start[h]], b = mesh.points[mesh.end(h)];

@@ -13,8 +13,8 @@
 #include "surface/surface_check.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
-#include <optional>
 
 #include <fmt/core.h>
 
@@ -65,7 +65,7 @@ Compacted compacted(const WorkingMesh& mesh, const SurfaceMesh& input, const Siz
     if (mesh.is_removed(t)) continue;
     Triangle triangle;
     for (std::uint32_t i = 0; i < 3; ++i) {
-      const HalfedgeIndex h = 3 * t + i;
+      const HalfEdge h = 3 * t + i;
       triangle[i] = old_to_new[mesh.start[h]];
       if (mesh.is_feature[h] && h < mesh.twin[h]) {
         const VertexIndex a = triangle[i], b = old_to_new[mesh.end(h)];
@@ -81,29 +81,6 @@ Compacted compacted(const WorkingMesh& mesh, const SurfaceMesh& input, const Siz
 
 /// How much of the input's triangulation an attempt may change.
 enum class Effort { kFull, kInsertOnly };
-
-Compacted attempt(Effort effort, const SurfaceMesh& surface, InputSurface& input, const Features& features,
-                  const SizeField& asked, const RunContext& context, Counts& counts) {
-  set_features(input, {});
-  set_features(input, features_at_scale(input, features, asked));
-  const SizeField sizes = fitted_to_strips(input, asked, context);
-  std::vector<Curve> curves = chain_curves(input, features.corners, sizes);
-  divide_curves(input, sizes, curves);
-  const FrontPoints front = place_points(input, curves, sizes, context);
-  counts.placed = front.points.size();
-  counts.tried = front.candidates;
-  counts.insertion = {};
-  counts.coarsen = {};
-  counts.improve = {};
-  WorkingMesh mesh = insert_points(input, curves, front, context, counts.insertion);
-  if (effort == Effort::kFull) {
-    remove_input_vertices(mesh, context, counts.coarsen);
-    improve_surface(mesh, input, curves, sizes, context, counts.improve);
-  } else {
-    counts.coarsen.input_vertices_left = surface.points.size();
-  }
-  return compacted(mesh, surface, sizes);
-}
 
 std::vector<Vec3> centers_of(const SurfaceMesh& surface, const std::vector<std::array<std::uint32_t, 2>>& pairs) {
   std::vector<std::uint32_t> triangles;
@@ -151,24 +128,21 @@ void report_counts(const Counts& counts, const Stage& stage) {
 /// Attempts with ever smaller sizes where the last one was not good enough.
 class Remesher {
  public:
-  Remesher(const SurfaceMesh& surface, const Features& features, const SizeField& sizes, const SurfaceOptions& options,
-           const Stage& stage)
-      : surface_(surface),
-        features_(features),
+  Remesher(const KnownSurface& surface, const SizeField& sizes, const SurfaceOptions& options, const Stage& stage)
+      : known_(surface),
+        surface_(surface.mesh()),
         sizes_(sizes),
         options_(options),
         stage_(stage),
-        input_(make_input_surface(surface, {})),
-        kind_(surface) {
-    if (options.max_deviation) tree_.emplace(surface);
-  }
+        input_(make_input_surface(surface)),
+        kind_(surface_, surface.edges()) {}
 
   Remeshed run() {
     for (counts_.rounds = 1; counts_.rounds <= kMostRounds; ++counts_.rounds) {
-      Compacted c = attempt(Effort::kFull, surface_, input_, features_, sizes_, stage_.context(), counts_);
+      Compacted c = attempt(Effort::kFull);
       if (is_sound(c) && is_true(c)) return finished(c);
     }
-    Compacted c = attempt(Effort::kInsertOnly, surface_, input_, features_, sizes_, stage_.context(), counts_);
+    Compacted c = attempt(Effort::kInsertOnly);
     if (is_sound(c)) {
       stage_.note("the surface's own vertices were kept: coarser triangles would cross");
       c.result.source = sources_of(c);
@@ -176,10 +150,45 @@ class Remesher {
     }
     report_counts(counts_, stage_);
     stage_.note("the surface was kept as it is: every other triangulation tried crosses itself");
-    return input_as_it_is(surface_, features_, sizes_);
+    return input_as_it_is(known_, sizes_);
   }
 
  private:
+  /// One triangulation by the sizes as they are now.
+  Compacted attempt(Effort effort) {
+    const RunContext& context = stage_.context();
+    progress(0);
+    set_features(input_, {});
+    set_features(input_, features_at_scale(input_, known_.features(), sizes_));
+    const SizeField sizes = fitted_to_strips(input_, sizes_, context);
+    std::vector<Curve> curves = chain_curves(input_, known_.features().corners, sizes);
+    divide_curves(input_, sizes, curves);
+    progress(0.05);
+    const FrontPoints front = place_points(input_, curves, sizes, context);
+    counts_.placed = front.points.size();
+    counts_.tried = front.candidates;
+    counts_.insertion = {};
+    counts_.coarsen = {};
+    counts_.improve = {};
+    progress(0.4);
+    WorkingMesh mesh = insert_points(input_, curves, front, context, counts_.insertion);
+    progress(0.5);
+    if (effort == Effort::kFull) {
+      remove_input_vertices(mesh, context, counts_.coarsen);
+      progress(0.6);
+      improve_surface(mesh, input_, curves, sizes, context, counts_.improve);
+    } else {
+      counts_.coarsen.input_vertices_left = surface_.points.size();
+    }
+    progress(0.9);
+    return compacted(mesh, surface_, sizes);
+  }
+
+  /// Nobody knows how many rounds there will be: each takes half of what is left.
+  void progress(double part_of_round) const {
+    stage_.progress(1 - std::ldexp(1 - part_of_round / 2, 1 - counts_.rounds));
+  }
+
   std::vector<std::uint32_t> sources_of(const Compacted& c) const {
     return source_triangles(input_, surface_, c.result.surface, c.vertex_face, c.is_inner);
   }
@@ -205,7 +214,7 @@ class Remesher {
   bool is_true(Compacted& c) {
     const bool is_last = counts_.rounds == kMostRounds || counts_.deviation_rounds == kMostDeviationRounds;
     std::vector<Vec3> far;
-    if (tree_) far = places_beyond(*options_.max_deviation, c.result.surface, surface_, *tree_);
+    if (options_.max_deviation) far = places_beyond(*options_.max_deviation, c.result.surface, surface_, known_.tree());
     c.result.source = sources_of(c);
     std::vector<PointSize> turned;
     if (options_.normal_deviation) {
@@ -213,7 +222,7 @@ class Remesher {
                              c.result.source);
     }
     if ((far.empty() && turned.empty()) || is_last) {
-      if (tree_) stage_.count("places beyond the deviation", static_cast<double>(far.size()));
+      if (options_.max_deviation) stage_.count("places beyond the deviation", static_cast<double>(far.size()));
       if (options_.normal_deviation) stage_.count("triangles turned too far", static_cast<double>(turned.size()));
       note_what_is_left(far.size(), turned.size());
       return true;
@@ -241,29 +250,28 @@ class Remesher {
     return std::move(c.result);
   }
 
-  const SurfaceMesh& surface_;
-  const Features& features_;
+  const KnownSurface& known_;
+  const SurfaceMesh& surface_;  ///< of known_
   SizeField sizes_;
   const SurfaceOptions& options_;
   const Stage& stage_;
   InputSurface input_;
   SurfaceKind kind_;
-  std::optional<TriangleTree> tree_;
   Counts counts_;
 };
 
 }  // namespace
 
-Remeshed input_as_it_is(const SurfaceMesh& surface, const Features& features, const SizeField& sizes) {
-  Remeshed kept{surface, features, {}, sizes};
-  kept.source.resize(surface.triangles.size());
+Remeshed input_as_it_is(const KnownSurface& surface, const SizeField& sizes) {
+  Remeshed kept{surface.mesh(), surface.features(), {}, sizes};
+  kept.source.resize(kept.surface.triangles.size());
   std::iota(kept.source.begin(), kept.source.end(), 0u);
   return kept;
 }
 
-Remeshed remesh_surface(const SurfaceMesh& surface, const Features& features, const SizeField& sizes,
-                        const SurfaceOptions& options, const Stage& stage) {
-  return Remesher(surface, features, sizes, options, stage).run();
+Remeshed remesh_surface(const KnownSurface& surface, const SizeField& sizes, const SurfaceOptions& options,
+                        const Stage& stage) {
+  return Remesher(surface, sizes, options, stage).run();
 }
 
 }  // namespace octafront

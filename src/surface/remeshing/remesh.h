@@ -5,7 +5,7 @@
 #include <octafront/surface_mesh.h>
 
 #include "core/stage.h"
-#include "mesh/features.h"
+#include "mesh/known_surface.h"
 
 #include <cstdint>
 #include <vector>
@@ -22,10 +22,10 @@ struct Remeshed {
 
 /// The surface front. Requires a clean surface (see surface_mesh.h). The result is checked: closed, manifold, same
 /// components and genus, no self-intersection, features present; throws MeshingError if no attempt passes.
-Remeshed remesh_surface(const SurfaceMesh& surface, const Features& features, const SizeField& sizes,
-                        const SurfaceOptions& options, const Stage& stage);
+Remeshed remesh_surface(const KnownSurface& surface, const SizeField& sizes, const SurfaceOptions& options,
+                        const Stage& stage);
 
 /// The input's own triangles in the place of new ones.
-Remeshed input_as_it_is(const SurfaceMesh& surface, const Features& features, const SizeField& sizes);
+Remeshed input_as_it_is(const KnownSurface& surface, const SizeField& sizes);
 
 }  // namespace octafront

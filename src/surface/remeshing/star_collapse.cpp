@@ -6,9 +6,9 @@ namespace octafront::remeshing {
 
 void StarCollapse::gather(VertexIndex v) {
   ring_.clear();
-  mesh_.for_each_outgoing(v, [&](HalfedgeIndex h) { ring_.push_back(h); });
+  mesh_.for_each_outgoing(v, [&](HalfEdge h) { ring_.push_back(h); });
   if (mesh_.on_curve(v)) {
-    const auto first = std::find_if(ring_.begin(), ring_.end(), [&](HalfedgeIndex h) { return mesh_.is_feature[h]; });
+    const auto first = std::find_if(ring_.begin(), ring_.end(), [&](HalfEdge h) { return mesh_.is_feature[h]; });
     if (first != ring_.end()) std::rotate(ring_.begin(), first, ring_.end());
   }
   stars_.resize(ring_.size());
@@ -24,7 +24,7 @@ void StarCollapse::gather(VertexIndex v) {
 
 double StarCollapse::quality_now() const {
   double worst = 1;
-  for (const HalfedgeIndex h : ring_) {
+  for (const HalfEdge h : ring_) {
     worst = std::min(
         worst, squared_quality(mesh_.points[mesh_.start[h]], mesh_.points[mesh_.end(h)], mesh_.points[mesh_.apex(h)]));
   }
@@ -51,7 +51,7 @@ double StarCollapse::quality_after(std::size_t towards, const TurnLimits& limits
 double StarCollapse::longest_after(std::size_t towards) const {
   const VertexIndex w = mesh_.end(ring_[towards]);
   double longest = 0;
-  for (const HalfedgeIndex h : ring_) {
+  for (const HalfEdge h : ring_) {
     const VertexIndex p = mesh_.end(h);
     if (p == w) continue;
     const double size = 0.5 * (mesh_.size[w] + mesh_.size[p]);

@@ -12,7 +12,7 @@ class StarCollapse {
   /// Looks at the star of v. On a curve the triangles on either side of it count as a star each.
   void gather(VertexIndex v);
   /// The half-edges that leave v, counter-clockwise.
-  const std::vector<HalfedgeIndex>& ring() const { return ring_; }
+  const std::vector<HalfEdge>& ring() const { return ring_; }
   /// Least squared quality of the star's triangles as they are.
   double quality_now() const;
   /// Least squared quality of the triangles after a move along ring()[towards]; 0 if one would turn too far, or if it
@@ -23,7 +23,7 @@ class StarCollapse {
 
  private:
   const WorkingMesh& mesh_;
-  std::vector<HalfedgeIndex> ring_;
+  std::vector<HalfEdge> ring_;
   std::vector<Vec3> stars_;
 };
 

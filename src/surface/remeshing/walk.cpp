@@ -12,12 +12,12 @@ constexpr int kMaxSteps = 20000;
 /// The section of the surface with a plane through `origin`; sides are decided by sign alone, zero counting as
 /// positive, so that every triangle that is entered through one edge is left through exactly one other.
 struct Section {
-  const HalfedgeMesh& mesh;
+  const HalfEdgeMesh& mesh;
   Vec3 origin, direction, plane;
   double distance;
 
   double side(VertexIndex v) const { return dot(mesh.points[v] - origin, plane); }
-  Vec3 crossing(HalfedgeIndex h, double start_side, double end_side) const {
+  Vec3 crossing(HalfEdge h, double start_side, double end_side) const {
     const Vec3 a = mesh.points[mesh.start[h]], b = mesh.points[mesh.end(h)];
     const double s = start_side / (start_side - end_side);
     return a + (b - a) * s;
@@ -34,9 +34,9 @@ Vec3 at_distance(Vec3 a, Vec3 b, Vec3 origin, double distance) {
 }
 
 /// Goes on from `at`, inside the triangle of `exit`, through `exit` and further.
-WalkEnd march(const Section& section, Vec3 at, HalfedgeIndex exit, double start_side, double end_side,
+WalkEnd march(const Section& section, Vec3 at, HalfEdge exit, double start_side, double end_side,
               SurfacePoint& result) {
-  const HalfedgeMesh& mesh = section.mesh;
+  const HalfEdgeMesh& mesh = section.mesh;
   double path = 0;
   for (int step = 0; step < kMaxSteps; ++step) {
     const Vec3 x = section.crossing(exit, start_side, end_side);
@@ -50,7 +50,7 @@ WalkEnd march(const Section& section, Vec3 at, HalfedgeIndex exit, double start_
     path += distance(at, x);
     if (path > 4 * section.distance) return WalkEnd::kLost;
     at = x;
-    const HalfedgeIndex entry = mesh.twin[exit];
+    const HalfEdge entry = mesh.twin[exit];
     const double apex_side = section.side(mesh.apex(entry));
     // entry runs from the vertex with end_side to that with start_side.
     if ((apex_side >= 0) == (start_side >= 0)) {
@@ -81,20 +81,21 @@ Vec3 InputSurface::normal_at(std::uint32_t face, Vec3 p) const {
 }
 
 void set_features(InputSurface& input, const std::vector<Edge>& edges) {
-  HalfedgeMesh& mesh = input.mesh;
+  HalfEdgeMesh& mesh = input.mesh;
   std::fill(mesh.is_feature.begin(), mesh.is_feature.end(), std::uint8_t{0});
   input.on_feature.assign(mesh.points.size(), 0);
   for (const Edge& e : edges) {
-    const HalfedgeIndex h = mesh.find(e[0], e[1]);
+    const HalfEdge h = mesh.find(e[0], e[1]);
     if (h == kNone) continue;
     mesh.set_feature(h, true);
     input.on_feature[e[0]] = input.on_feature[e[1]] = 1;
   }
 }
 
-InputSurface make_input_surface(const SurfaceMesh& surface, const std::vector<Edge>& edges) {
+InputSurface make_input_surface(const KnownSurface& known) {
+  const SurfaceMesh& surface = known.mesh();
   InputSurface input;
-  input.mesh = make_halfedge_mesh(surface);
+  input.mesh = make_half_edge_mesh(surface, known.edges());
   const std::size_t faces = input.mesh.triangle_count();
   input.face_normal.resize(faces);
   input.vertex_normal.assign(surface.points.size(), Vec3{});
@@ -106,13 +107,13 @@ InputSurface make_input_surface(const SurfaceMesh& surface, const std::vector<Ed
     for (int i = 0; i < 3; ++i) input.vertex_normal[input.mesh.start[3 * t + i]] += n;
   }
   for (Vec3& n : input.vertex_normal) n = normalized(n);
-  set_features(input, edges);
+  set_features(input, {});
   return input;
 }
 
 WalkEnd walk(const InputSurface& input, SurfacePoint from, Vec3 direction, Vec3 normal, double distance,
              SurfacePoint& result) {
-  const HalfedgeMesh& mesh = input.mesh;
+  const HalfEdgeMesh& mesh = input.mesh;
   const Section section{mesh, from.p, direction, normalized(cross(normal, direction)), distance};
   double side[3];
   for (int i = 0; i < 3; ++i) side[i] = section.side(mesh.start[3 * from.face + i]);
@@ -131,13 +132,13 @@ WalkEnd walk(const InputSurface& input, SurfacePoint from, Vec3 direction, Vec3 
   return march(section, from.p, 3 * from.face + best, side[best], side[(best + 1) % 3], result);
 }
 
-WalkEnd walk_from_vertex(const InputSurface& input, HalfedgeIndex corner, Vec3 direction, double distance,
+WalkEnd walk_from_vertex(const InputSurface& input, HalfEdge corner, Vec3 direction, double distance,
                          SurfacePoint& result) {
-  const HalfedgeMesh& mesh = input.mesh;
+  const HalfEdgeMesh& mesh = input.mesh;
   const Vec3 normal = input.face_normal[corner / 3];
   const Section section{mesh, mesh.points[mesh.start[corner]], direction, normalized(cross(normal, direction)),
                         distance};
-  const HalfedgeIndex opposite = next_of(corner);
+  const HalfEdge opposite = next_of(corner);
   const double a = section.side(mesh.start[opposite]), b = section.side(mesh.end(opposite));
   if ((a >= 0) == (b >= 0)) return WalkEnd::kLost;
   return march(section, section.origin, opposite, a, b, result);

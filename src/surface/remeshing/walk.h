@@ -1,12 +1,13 @@
 #pragma once
 
-#include "mesh/halfedge_mesh.h"
+#include "mesh/half_edge_mesh.h"
+#include "mesh/known_surface.h"
 
 namespace octafront::remeshing {
 
 /// The input surface, as something to walk on.
 struct InputSurface {
-  HalfedgeMesh mesh;
+  HalfEdgeMesh mesh;
   std::vector<Vec3> face_normal;         ///< unit; zero where degenerate
   std::vector<Vec3> vertex_normal;       ///< unit, weighted by area
   std::vector<std::uint8_t> on_feature;  ///< per vertex: some feature edge ends there
@@ -17,8 +18,8 @@ struct InputSurface {
   Vec3 normal_at(std::uint32_t face, Vec3 p) const;
 };
 
-/// Normals and the feature marks of `edges` on top of the adjacency.
-InputSurface make_input_surface(const SurfaceMesh& surface, const std::vector<Edge>& edges);
+/// Adjacency and normals; no feature edge is marked yet.
+InputSurface make_input_surface(const KnownSurface& surface);
 /// Replaces the feature edges.
 void set_features(InputSurface& input, const std::vector<Edge>& edges);
 
@@ -38,7 +39,7 @@ WalkEnd walk(const InputSurface& input, SurfacePoint from, Vec3 direction, Vec3 
 
 /// The same from the vertex that half-edge `corner` leaves, into its triangle; `direction` lies in the triangle's
 /// plane.
-WalkEnd walk_from_vertex(const InputSurface& input, HalfedgeIndex corner, Vec3 direction, double distance,
+WalkEnd walk_from_vertex(const InputSurface& input, HalfEdge corner, Vec3 direction, double distance,
                          SurfacePoint& result);
 
 }  // namespace octafront::remeshing

@@ -1,6 +1,26 @@
 #include "surface/remeshing/working_mesh.h"
 
+#include <numeric>
+
 namespace octafront::remeshing {
+
+WorkingMesh::WorkingMesh(const InputSurface& input)
+    : HalfEdgeMesh(input.mesh),
+      kind(points.size()),
+      normal(points.size()),
+      size(points.size(), 0),
+      face(points.size()),
+      patch(input.patch),
+      origin(triangle_count()),
+      place(points.size()),
+      changed(points.size(), kForSmoothing | kForFlips) {
+  std::iota(origin.begin(), origin.end(), 0u);
+  for (VertexIndex v = 0; v < points.size(); ++v) {
+    kind[v] = input.on_feature[v] ? VertexKind::kRemovableCurve : VertexKind::kRemovable;
+    normal[v] = input.on_feature[v] ? Vec3{} : input.vertex_normal[v];
+    face[v] = outgoing[v] == kNone ? kNone : outgoing[v] / 3;
+  }
+}
 
 void WorkingMesh::reserve(std::size_t vertices, std::size_t triangles) {
   points.reserve(vertices);
@@ -33,8 +53,8 @@ VertexIndex WorkingMesh::add_vertex(Vec3 p, VertexKind k, Vec3 n, double h, std:
 namespace {
 
 /// Room for one more triangle like `like`; returns its first half-edge.
-HalfedgeIndex add_triangle(WorkingMesh& m, std::uint32_t like, VertexIndex a, VertexIndex b, VertexIndex c) {
-  const auto first = static_cast<HalfedgeIndex>(m.start.size());
+HalfEdge add_triangle(WorkingMesh& m, std::uint32_t like, VertexIndex a, VertexIndex b, VertexIndex c) {
+  const auto first = static_cast<HalfEdge>(m.start.size());
   m.start.insert(m.start.end(), {a, b, c});
   m.twin.insert(m.twin.end(), 3, kNone);
   m.is_feature.insert(m.is_feature.end(), 3, 0);
@@ -43,7 +63,7 @@ HalfedgeIndex add_triangle(WorkingMesh& m, std::uint32_t like, VertexIndex a, Ve
   return first;
 }
 
-void link(WorkingMesh& m, HalfedgeIndex a, HalfedgeIndex b, std::uint8_t feature) {
+void link(WorkingMesh& m, HalfEdge a, HalfEdge b, std::uint8_t feature) {
   m.twin[a] = b;
   m.twin[b] = a;
   m.is_feature[a] = m.is_feature[b] = feature;
@@ -56,11 +76,11 @@ void link(WorkingMesh& m, HalfedgeIndex a, HalfedgeIndex b, std::uint8_t feature
 //       / x \.
 //      a-----b
 void WorkingMesh::split_triangle(std::uint32_t t, VertexIndex x) {
-  const HalfedgeIndex ab = 3 * t, bc = ab + 1, ca = ab + 2;
+  const HalfEdge ab = 3 * t, bc = ab + 1, ca = ab + 2;
   const VertexIndex a = start[ab], b = start[bc], c = start[ca];
-  const HalfedgeIndex beyond_bc = twin[bc], beyond_ca = twin[ca];
+  const HalfEdge beyond_bc = twin[bc], beyond_ca = twin[ca];
   const std::uint8_t feature_bc = is_feature[bc], feature_ca = is_feature[ca];
-  const HalfedgeIndex k = add_triangle(*this, t, b, c, x), l = add_triangle(*this, t, c, a, x);
+  const HalfEdge k = add_triangle(*this, t, b, c, x), l = add_triangle(*this, t, c, a, x);
   start[ca] = x;
   link(*this, k, beyond_bc, feature_bc);
   link(*this, l, beyond_ca, feature_ca);
@@ -76,12 +96,12 @@ void WorkingMesh::split_triangle(std::uint32_t t, VertexIndex x) {
 //      a-x-b
 //       \|/
 //        d
-void WorkingMesh::split_edge(HalfedgeIndex h, VertexIndex x) {
-  const HalfedgeIndex g = twin[h], bc = next_of(h), ad = next_of(g);
+void WorkingMesh::split_edge(HalfEdge h, VertexIndex x) {
+  const HalfEdge g = twin[h], bc = next_of(h), ad = next_of(g);
   const VertexIndex a = start[h], b = start[g], c = apex(h), d = apex(g);
   const std::uint8_t feature = is_feature[h], feature_bc = is_feature[bc], feature_ad = is_feature[ad];
-  const HalfedgeIndex beyond_bc = twin[bc], beyond_ad = twin[ad];
-  const HalfedgeIndex k = add_triangle(*this, h / 3, x, b, c), l = add_triangle(*this, g / 3, x, a, d);
+  const HalfEdge beyond_bc = twin[bc], beyond_ad = twin[ad];
+  const HalfEdge k = add_triangle(*this, h / 3, x, b, c), l = add_triangle(*this, g / 3, x, a, d);
   start[bc] = x;
   start[ad] = x;
   link(*this, h, l, feature);
@@ -96,7 +116,7 @@ void WorkingMesh::split_edge(HalfedgeIndex h, VertexIndex x) {
   for (const VertexIndex v : {a, b, c, d}) mark_changed(v);
 }
 
-bool WorkingMesh::may_flip(HalfedgeIndex h) const {
+bool WorkingMesh::may_flip(HalfEdge h) const {
   if (is_feature[h]) return false;
   const VertexIndex c = apex(h), d = apex(twin[h]);
   if (c == d || find(c, d) != kNone) return false;
@@ -108,10 +128,10 @@ bool WorkingMesh::may_flip(HalfedgeIndex h) const {
 //      a-h-b    ->     a | b          twin (b, c, d).
 //       \ /             \|/
 //        d               d
-HalfedgeIndex WorkingMesh::flip(HalfedgeIndex h) {
-  const HalfedgeIndex g = twin[h], bc = next_of(h), ad = next_of(g);
+HalfEdge WorkingMesh::flip(HalfEdge h) {
+  const HalfEdge g = twin[h], bc = next_of(h), ad = next_of(g);
   const VertexIndex a = start[h], b = start[g], c = apex(h), d = apex(g);
-  const HalfedgeIndex beyond_bc = twin[bc], beyond_ad = twin[ad];
+  const HalfEdge beyond_bc = twin[bc], beyond_ad = twin[ad];
   const std::uint8_t feature_bc = is_feature[bc], feature_ad = is_feature[ad];
   start[bc] = d;
   start[ad] = c;
@@ -124,8 +144,8 @@ HalfedgeIndex WorkingMesh::flip(HalfedgeIndex h) {
   return bc;
 }
 
-bool WorkingMesh::may_collapse(HalfedgeIndex h, bool corners_too) const {
-  const HalfedgeIndex g = twin[h];
+bool WorkingMesh::may_collapse(HalfEdge h, bool corners_too) const {
+  const HalfEdge g = twin[h];
   const VertexIndex u = start[h], w = start[g], a = apex(h), b = apex(g);
   if (kind[u] == VertexKind::kCorner && !corners_too) return false;
   const bool may_leave_curve = kind[u] == VertexKind::kCorner && on_curve(w);
@@ -136,27 +156,27 @@ bool WorkingMesh::may_collapse(HalfedgeIndex h, bool corners_too) const {
   if (valence(a) <= 3 || valence(b) <= 3) return false;
   // Link condition: u and w have just a and b as common neighbours.
   int common = 0;
-  for_each_outgoing(u, [&](HalfedgeIndex o) {
+  for_each_outgoing(u, [&](HalfEdge o) {
     const VertexIndex p = end(o);
     if (p != w && p != a && p != b && common == 0 && find(p, w) != kNone) ++common;
   });
   return common == 0;
 }
 
-void WorkingMesh::collapse(HalfedgeIndex h) {
-  const HalfedgeIndex g = twin[h];
+void WorkingMesh::collapse(HalfEdge h) {
+  const HalfEdge g = twin[h];
   const VertexIndex u = start[h], w = start[g], a = apex(h), b = apex(g);
-  const HalfedgeIndex aw = twin[next_of(h)], ua = twin[previous_of(h)];
-  const HalfedgeIndex bu = twin[next_of(g)], wb = twin[previous_of(g)];
+  const HalfEdge aw = twin[next_of(h)], ua = twin[previous_of(h)];
+  const HalfEdge bu = twin[next_of(g)], wb = twin[previous_of(g)];
   const std::uint8_t feature_a = is_feature[aw] | is_feature[ua], feature_b = is_feature[bu] | is_feature[wb];
-  for (HalfedgeIndex o = h;;) {
-    const HalfedgeIndex following = rotated(o);
+  for (HalfEdge o = h;;) {
+    const HalfEdge following = rotated(o);
     start[o] = w;
     if (following == h) break;
     o = following;
   }
-  for (const HalfedgeIndex removed : {h, g}) {
-    for (HalfedgeIndex i = removed - removed % 3, k = 0; k < 3; ++k) start[i + k] = kNone;
+  for (const HalfEdge removed : {h, g}) {
+    for (HalfEdge i = removed - removed % 3, k = 0; k < 3; ++k) start[i + k] = kNone;
   }
   link(*this, aw, ua, feature_a);
   link(*this, bu, wb, feature_b);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "mesh/halfedge_mesh.h"
+#include "surface/remeshing/walk.h"
 
 namespace octafront::remeshing {
 
@@ -21,7 +21,10 @@ struct CurvePlace {
 
 /// The surface on its way from the input triangulation to the new one: a closed manifold of the same topology after
 /// every operation. Removed triangles and vertices leave holes in the numbering until compacted() is taken.
-struct WorkingMesh : HalfedgeMesh {
+struct WorkingMesh : HalfEdgeMesh {
+  /// The input triangulation: every vertex is the input's own, every triangle a whole input face.
+  explicit WorkingMesh(const InputSurface& input);
+
   std::vector<VertexKind> kind;       ///< per vertex
   std::vector<Vec3> normal;           ///< per vertex: of the input surface there; zero on curves
   std::vector<double> size;           ///< per vertex: wanted there
@@ -36,7 +39,7 @@ struct WorkingMesh : HalfedgeMesh {
   void mark_changed(VertexIndex v) { changed[v] = kForSmoothing | kForFlips; }
   void mark_star_changed(VertexIndex v) {
     mark_changed(v);
-    for_each_outgoing(v, [&](HalfedgeIndex h) { mark_changed(end(h)); });
+    for_each_outgoing(v, [&](HalfEdge h) { mark_changed(end(h)); });
   }
 
   bool is_removed(std::size_t triangle) const { return start[3 * triangle] == kNone; }
@@ -44,7 +47,7 @@ struct WorkingMesh : HalfedgeMesh {
   bool on_curve(VertexIndex v) const { return !is_free(v); }
   int valence(VertexIndex v) const {
     int n = 0;
-    for_each_outgoing(v, [&](HalfedgeIndex) { ++n; });
+    for_each_outgoing(v, [&](HalfEdge) { ++n; });
     return n;
   }
 
@@ -54,16 +57,16 @@ struct WorkingMesh : HalfedgeMesh {
   /// Puts x into the triangle: three triangles in its place; the first keeps the number.
   void split_triangle(std::uint32_t t, VertexIndex x);
   /// Puts x on the edge of h. Afterwards h runs from its start to x.
-  void split_edge(HalfedgeIndex h, VertexIndex x);
+  void split_edge(HalfEdge h, VertexIndex x);
   /// Whether the edge may turn as far as connections and features go.
-  bool may_flip(HalfedgeIndex h) const;
+  bool may_flip(HalfEdge h) const;
   /// Turns the edge of h; returns a half-edge of the new edge.
-  HalfedgeIndex flip(HalfedgeIndex h);
+  HalfEdge flip(HalfEdge h);
   /// Whether the start of h may move to its end and vanish, as far as connections and features go (link condition;
   /// feature vertices only along their curve; no two curves merge; a corner only if `corners_too`, for it is lost).
-  bool may_collapse(HalfedgeIndex h, bool corners_too = false) const;
+  bool may_collapse(HalfEdge h, bool corners_too = false) const;
   /// Moves the start of h to its end, where it vanishes with the two triangles beside h.
-  void collapse(HalfedgeIndex h);
+  void collapse(HalfEdge h);
 };
 
 }  // namespace octafront::remeshing

@@ -16,14 +16,8 @@ std::string was(std::uint64_t n) {
   return n == 1 ? "was" : "were";
 }
 
-Draft make_draft(const SurfaceMesh& soup, const RunContext& context) {
-  Draft draft{soup, std::vector<std::uint32_t>(soup.triangles.size()), context};
-  for (std::size_t t = 0; t < draft.face.size(); ++t) draft.face[t] = soup.source_of(t);
-  return draft;
-}
-
 /// The surface that the steps leave; where every triangle is the input face of its number, that need not be said.
-SurfaceMesh finished(Draft draft) {
+SurfaceMesh finished(Draft& draft) {
   draft.mesh.source.clear();
   for (std::size_t t = 0; t < draft.face.size(); ++t) {
     if (draft.face[t] == t) continue;
@@ -113,16 +107,26 @@ void nest(Draft& draft, const Pieces& pieces, RepairedSurface& result) {
 
 }  // namespace
 
-RepairedSurface repair_surface(const SurfaceMesh& soup, const RunContext& context) {
+Draft repair::make_draft(const SurfaceMesh& soup, const RunContext& context) {
   context.check();
   check_input(soup);
+  Draft draft{soup, std::vector<std::uint32_t>(soup.triangles.size()), context};
+  for (std::size_t t = 0; t < draft.face.size(); ++t) draft.face[t] = soup.source_of(t);
+  return draft;
+}
+
+RepairedSurface repair::mend(Draft& draft) {
   RepairedSurface result;
-  Draft draft = make_draft(soup, context);
   clean_faces(draft, result);
   const Pieces pieces = orient(draft, result);
   nest(draft, pieces, result);
-  result.surface = finished(std::move(draft));
+  result.surface = finished(draft);
   return result;
+}
+
+RepairedSurface repair_surface(const SurfaceMesh& soup, const RunContext& context) {
+  Draft draft = make_draft(soup, context);
+  return mend(draft);
 }
 
 }  // namespace octafront

@@ -28,6 +28,11 @@ struct Draft {
   }
 };
 
+/// The input, checked.
+Draft make_draft(const SurfaceMesh& soup, const RunContext& context);
+/// All steps. Takes the mesh out of the draft; `known_edges`, if there are any, are those of the result.
+RepairedSurface mend(Draft& draft);
+
 /// Input faces that a step touched, each once, ascending.
 using InputFaces = std::vector<std::uint32_t>;
 
