@@ -35,22 +35,22 @@ TEST(Stages, EachCanBeCalledAlone) {
   const SurfaceMesh cube = testing::cube(4);
   const Options options = coarse();
   const RunContext context;
-  Run first(options, context);
+  octafront::Run first(options, context);
   const Prepared input = prepare(cube, first);
   ASSERT_EQ(first.report.stages.size(), 2U);
 
-  Run surface(options, context);
+  octafront::Run surface(options, context);
   const Remeshed remeshed = triangulate(input, SizeField::uniform(0.2), surface);
   ASSERT_EQ(surface.report.stages.size(), 1U);
   EXPECT_EQ(surface.report.stages[0].name, "surface front");
   EXPECT_NEAR(enclosed_volume(remeshed.surface), 1, 1e-12);
 
-  Run volume(options, context);
+  octafront::Run volume(options, context);
   Filled filled = fill(input, SizeField::uniform(0.2), volume);
   EXPECT_EQ(filled.boundary.surface, remeshed.surface);
   EXPECT_EQ(first_defect(filled.mesh, remeshed.surface), std::nullopt);
 
-  Run better(options, context);
+  octafront::Run better(options, context);
   const double before = summarize_quality(filled.mesh).beta_mean;
   improve_elements(input, filled, better);
   EXPECT_GT(summarize_quality(filled.mesh).beta_mean, before);

@@ -349,7 +349,9 @@ TEST(Repair, DamagedInputIsRefused) {
   EXPECT_THROW(repair_surface(s), InputError);
   s.points[2].y = 1e200;
   EXPECT_THROW(repair_surface(s), InputError);
-  EXPECT_THROW(repair_surface(testing::cube(), {1, 2}), InputError);
+  s = testing::cube();
+  s.source = {1, 2};
+  EXPECT_THROW(repair_surface(s), InputError);
 }
 
 }  // namespace
