@@ -9,10 +9,10 @@ namespace octafront {
 
 /// What sets one method of filling the volume apart from the others.
 struct MethodTraits {
-  const char* stage;          ///< name of its stage in the report
-  bool needs_clean = true;    ///< surfaces with defects are refused
-  bool has_front = true;      ///< the surface is triangulated anew to the sizes, unless it is kept
-  bool always_keeps = false;  ///< the input's triangles become the boundary, asked for or not
+  const char* stage;             ///< name of its stage in the report
+  bool needs_clean = true;       ///< surfaces with defects are refused
+  bool has_front = true;         ///< the surface is triangulated anew to the sizes, unless it is kept
+  bool always_keeps = false;     ///< the input's triangles become the boundary, asked for or not
   double tets_per_expected = 1;  ///< makes so many times the elements that the sizes promise
   /// Fills the surface and keeps its triangles; null for the method that makes a boundary of its own.
   TetMesh (*fill)(const Remeshed& boundary, const VolumeOptions& options, const Stage& stage) = nullptr;
