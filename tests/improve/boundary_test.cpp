@@ -21,7 +21,7 @@ namespace {
 using namespace octafront::testing;
 
 SurfaceMesh boundary_of(const TetMesh& mesh) {
-  return {mesh.points, mesh.boundary, mesh.patch, {}};
+  return {mesh.points, mesh.boundary, mesh.patch, {}, {}};
 }
 
 int sides_at(Vec3 p) {

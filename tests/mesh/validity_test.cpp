@@ -16,7 +16,7 @@ namespace {
 using ::testing::HasSubstr;
 
 SurfaceMesh surface_of(const TetMesh& mesh) {
-  return {mesh.points, mesh.boundary, {}, {}};
+  return {mesh.points, mesh.boundary, {}, {}, {}};
 }
 
 std::string defect(const TetMesh& mesh) {

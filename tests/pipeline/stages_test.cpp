@@ -61,7 +61,7 @@ TEST(Stages, ARunIsRefusedBeforeItBegins) {
   Options options = coarse();
   options.surface.feature_angle = 200;
   const RunContext context;
-  EXPECT_THROW(Run(options, context), OptionError);
+  EXPECT_THROW(octafront::Run(options, context), OptionError);
 }
 
 TEST(Stages, AWrongBoundaryIsABugOfOurs) {

@@ -1,4 +1,5 @@
 #include <octafront/error.h>
+#include <octafront/io.h>
 
 #include "sizing/make_size_field.h"
 #include "sizing/octree_field.h"

@@ -331,11 +331,10 @@ TEST(SizeOptions, WhatNoMeshCanHoldIsRefusedBeforeWorkBegins) {
     SizeOptions o;
     change(o);
     StageReport report;
-    const SurfaceMesh surface = box(2, 2, 0.1, 1), ball = icosphere(3);
-    const Features features = detect_features(surface, 40);
     const bool is_curved = o.curvature || o.chord_error;
+    const KnownSurface surface(is_curved ? icosphere(3) : box(2, 2, 0.1, 1), 40);
     try {
-      make_size_field(is_curved ? ball : surface, is_curved ? Features{} : features, o, {RunContext{}, report});
+      make_size_field(surface, o, {RunContext{}, report});
       ADD_FAILURE() << name;
     } catch (const OptionError& e) {
       EXPECT_NE(std::string(e.what()).find(name), std::string::npos) << e.what();
@@ -348,7 +347,7 @@ TEST(SizeOptions, WhatNoMeshCanHoldIsRefusedBeforeWorkBegins) {
   refused("gap", [](SizeOptions& o) { o.gap = 1e4; });
   refused("feature_elements", [](SizeOptions& o) { o.feature_elements = 1e9; });
   refused("max_deviation", [](SizeOptions& o) { o.chord_error = 1e-9; });
-  EXPECT_THROW(refuse_huge_turning(icosphere(3), {}, {}, 1e-3, RunContext{}), OptionError);
+  EXPECT_THROW(refuse_huge_turning(KnownSurface(icosphere(3), 40), {}, 1e-3, RunContext{}), OptionError);
 }
 
 }  // namespace
