@@ -4,7 +4,6 @@
 #include <octafront/run_context.h>
 
 #include <string>
-#include <utility>
 
 namespace octafront {
 
@@ -18,9 +17,9 @@ class Stage {
   void check() const { context_.check(); }
   /// `fraction` of this stage in [0, 1], or negative where it is unknown.
   void progress(double fraction) const { context_.report(report_.name, fraction); }
-  void count(std::string key, double value) const { report_.count(std::move(key), value); }
+  void count(std::string key, double value) const;
   /// A sentence for the user.
-  void note(std::string sentence) const { report_.notes.push_back(std::move(sentence)); }
+  void note(std::string sentence) const;
 
   const RunContext& context() const { return context_; }
   StageReport& report() const { return report_; }
