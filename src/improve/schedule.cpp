@@ -341,8 +341,8 @@ bool improve_mesh(TetMesh& mesh, const BoundaryInput* boundary, const ImproveOpt
     const bool moved = !same_boundary(mesh, better);
     const std::vector<VertexIndex> crossing = moved ? where_boundary_crosses(better) : std::vector<VertexIndex>{};
     if (crossing.empty()) {
-      attempt.count("runs with places of the boundary frozen", retry);
       stage.report() = std::move(attempt);
+      stage.count("runs with places of the boundary frozen", retry);
       mesh = std::move(better);
       return moved;
     }
