@@ -73,18 +73,13 @@ def convert(data, path, target, scratch):
         target.write_bytes(data)
 
 
-def skull_surface(volume, spacing, level, shrink):
-    """Bone isosurface of the CT volume, closed by a border of air, largest shell only, y mirrored to a right-handed frame."""
-    v = volume.astype(np.float32)
-    if shrink > 1:
-        ny, nx = (n // shrink * shrink for n in v.shape[1:])
-        v = v[:, :ny, :nx].reshape(v.shape[0], ny // shrink, shrink, nx // shrink, shrink).mean(axis=(2, 4))
-    v = np.pad(v, 1, constant_values=-1024)
+def isosurface(values, spacing, level, outside):
+    """Largest shell of the isosurface of values (z, y, x), closed by a border of the value `outside`."""
+    v = np.pad(values, 1, constant_values=outside)
     image = vtk.vtkImageData()
     image.SetDimensions(*v.shape[::-1])
-    step = (spacing[0] * shrink, spacing[1] * shrink, spacing[2])
-    image.SetSpacing(*step)
-    image.SetOrigin(*(-s for s in step))
+    image.SetSpacing(*spacing)
+    image.SetOrigin(*(-s for s in spacing))
     image.GetPointData().SetScalars(numpy_to_vtk(v.ravel(), deep=True))
     contour = vtk.vtkFlyingEdges3D()
     contour.SetInputData(image)
@@ -99,19 +94,34 @@ def skull_surface(volume, spacing, level, shrink):
     clean.Update()
     points, faces = arrays_of_polydata(clean.GetOutput())
     used, inverse = np.unique(faces, return_inverse=True)
-    return points[used] * (1, -1, 1), inverse.reshape(-1, 3)
+    return points[used], inverse.reshape(-1, 3)
 
 
-def extract_ct(root, target):
+def ct_volume(root):
+    """Values (z, y, x) and spacing of the CT of a skull."""
     archive = tarfile.open(root / "usr/share/doc/invesalius-examples/examples/Cranium.inv3")
     folder = archive.getnames()[0].split("/")[0]
     info = plistlib.load(archive.extractfile(folder + "/main.plist"))
-    shape = info["matrix"]["shape"]
-    volume = np.frombuffer(archive.extractfile(folder + "/matrix.dat").read(), "<i2").reshape(shape)
+    data = archive.extractfile(folder + "/matrix.dat").read()
+    return np.frombuffer(data, "<i2").reshape(info["matrix"]["shape"]), info["spacing"]
+
+
+def skull_surface(volume, spacing, level, shrink):
+    """Bone isosurface of the CT volume, slices averaged, y mirrored to a right-handed frame."""
+    v = volume.astype(np.float32)
+    if shrink > 1:
+        ny, nx = (n // shrink * shrink for n in v.shape[1:])
+        v = v[:, :ny, :nx].reshape(v.shape[0], ny // shrink, shrink, nx // shrink, shrink).mean(axis=(2, 4))
+    points, faces = isosurface(v, (spacing[0] * shrink, spacing[1] * shrink, spacing[2]), level, -1024)
+    return points * (1, -1, 1), faces
+
+
+def extract_ct(root, target):
+    volume, spacing = ct_volume(root)
     target.mkdir(parents=True, exist_ok=True)
     # Levels that no voxel has: the surface never runs exactly through a grid point.
     for name, level, shrink in (("skull_534k", 225.5, 1), ("skull_204k", 225.53, 2), ("skull_119k", 225.53, 3)):
-        points, faces = skull_surface(volume, info["spacing"], level, shrink)
+        points, faces = skull_surface(volume, spacing, level, shrink)
         write_off(target / (name + ".off"), points, faces)
         print(f"{target / name}.off: {len(faces)} triangles")
 
@@ -128,4 +138,5 @@ def main(root, table, target, *flags):
         extract_ct(root, target / "ct")
 
 
-main(*sys.argv[1:])
+if __name__ == "__main__":
+    main(*sys.argv[1:])
