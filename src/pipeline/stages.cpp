@@ -11,6 +11,7 @@
 #include "stuffing/stuff.h"
 #include "surface/examine.h"
 #include "surface/feature_patches.h"
+#include "surface/remeshing/unfold.h"
 
 #include <algorithm>
 #include <cmath>
@@ -72,6 +73,17 @@ SurfaceOptions true_to_input(const Prepared& p, const Options& options) {
   return surface;
 }
 
+// Where sizes are given, detail is what is smaller than this part of them.
+constexpr double kDetail = 0.1;
+
+/// Up to here detail of the input may be smoothed over; 0: it is all kept.
+double detail_tolerance(const SurfaceMesh& surface, const Options& options) {
+  if (keeps_surface(options) || traits_of(options.method).makes_own_boundary()) return 0;
+  const double automatic = kAutomaticDeviation * bounding_box(surface.points).diagonal();
+  if (options.surface.max_deviation) return std::min(automatic, *options.surface.max_deviation);
+  return options.size.size ? std::min(automatic, kDetail * *options.size.size) : automatic;
+}
+
 // A body that loses more than this has lost details that somebody may want.
 constexpr double kLargeLoss = 0.02;
 
@@ -122,6 +134,28 @@ Filled stuff(const Prepared& input, const SizeField& sizes, Run& run) {
 
 }  // namespace
 
+/// Folds, flaps and spikes below the tolerance are taken away: no element could fill them.
+void smooth_detail(Examined& found, Run& run) {
+  const double tolerance = detail_tolerance(found.repaired.surface, run.options);
+  if (tolerance == 0) return;
+  run.stage("detail", [&](const Stage& stage) {
+    const KnownSurface known(std::move(found.repaired.surface), std::move(found.edges), {});
+    auto unfolded = remeshing::unfold(known, tolerance, stage.context());
+    stage.count("folds mended", unfolded ? static_cast<double>(unfolded->mended.operations) : 0);
+    if (!unfolded) {
+      found.repaired.surface = known.mesh();
+      found.edges = known.edges();
+      return;
+    }
+    stage.count("folds left", static_cast<double>(unfolded->mended.folds_left));
+    stage.count("largest move", unfolded->mended.largest_move);
+    stage.note(fmt::format("the surface was unfolded in {} places by {:.3g} at most: `max_deviation` 0 keeps all folds",
+                           unfolded->mended.operations, unfolded->mended.largest_move));
+    found.repaired.surface = std::move(unfolded->surface);
+    found.edges = make_edge_table(found.repaired.surface.points.size(), found.repaired.surface.triangles);
+  });
+}
+
 Prepared prepare(const SurfaceMesh& soup, Run& run) {
   SurfaceDomain::Defects defects{};
   Examined found = run.stage("repair", [&](const Stage& stage) {
@@ -136,6 +170,8 @@ Prepared prepare(const SurfaceMesh& soup, Run& run) {
     stage.count("cavities", repaired.cavities);
     return examined;
   });
+  run.report.input_volume = enclosed_volume(found.repaired.surface);
+  if (defects == SurfaceDomain::Defects::kClean) smooth_detail(found, run);
   SurfaceMesh& surface = found.repaired.surface;
   Features features = run.stage("features", [&](const Stage& stage) {
     Features of_surface = detect_features(surface, found.edges, run.options.surface.feature_angle);
@@ -146,7 +182,6 @@ Prepared prepare(const SurfaceMesh& soup, Run& run) {
     return of_surface;
   });
   run.report.bodies = found.repaired.bodies;
-  run.report.input_volume = enclosed_volume(surface);
   return {KnownSurface(std::move(surface), std::move(found.edges), std::move(features)), defects};
 }
 

@@ -22,8 +22,8 @@ constexpr int kMostRepeats = 60;
 
 class Coarsener {
  public:
-  Coarsener(WorkingMesh& mesh, const RunContext& context, CoarsenCounts& counts)
-      : mesh_(mesh), context_(context), counts_(counts), star_(mesh) {
+  Coarsener(WorkingMesh& mesh, const SizeField& sizes, const RunContext& context, CoarsenCounts& counts)
+      : mesh_(mesh), sizes_(sizes), context_(context), counts_(counts), star_(mesh) {
     for (VertexIndex v = 0; v < mesh.points.size(); ++v) {
       const bool is_input = mesh.kind[v] == VertexKind::kRemovable || mesh.kind[v] == VertexKind::kRemovableCurve;
       if (is_input && mesh.outgoing[v] != kNone) left_.push_back(v);
@@ -40,9 +40,21 @@ class Coarsener {
       }
     }
     counts_.input_vertices_left += left_.size();
+    adopt_left();
   }
 
  private:
+  /// What could not be collapsed away is a vertex like others from here on.
+  void adopt_left() {
+    for (const VertexIndex v : left_) {
+      const bool on_curve = mesh_.kind[v] == VertexKind::kRemovableCurve;
+      mesh_.kind[v] = on_curve ? VertexKind::kCurve : VertexKind::kFree;
+    }
+    for (VertexIndex v = 0; v < mesh_.points.size(); ++v) {
+      if (mesh_.outgoing[v] != kNone && !(mesh_.size[v] > 0)) mesh_.size[v] = sizes_.at(mesh_.points[v]);
+    }
+  }
+
   void flip_all(const TurnLimits& limits) {
     edges_.clear();
     for (HalfEdge h = 0; h < mesh_.start.size(); ++h) {
@@ -93,6 +105,7 @@ class Coarsener {
   }
 
   WorkingMesh& mesh_;
+  const SizeField& sizes_;
   const RunContext& context_;
   CoarsenCounts& counts_;
   std::vector<VertexIndex> left_;
@@ -102,8 +115,9 @@ class Coarsener {
 
 }  // namespace
 
-void remove_input_vertices(WorkingMesh& mesh, const RunContext& context, CoarsenCounts& counts) {
-  Coarsener(mesh, context, counts).run();
+void remove_input_vertices(WorkingMesh& mesh, const SizeField& sizes, const RunContext& context,
+                           CoarsenCounts& counts) {
+  Coarsener(mesh, sizes, context, counts).run();
 }
 
 }  // namespace octafront::remeshing

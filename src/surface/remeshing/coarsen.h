@@ -1,6 +1,7 @@
 #pragma once
 
 #include <octafront/run_context.h>
+#include <octafront/size_field.h>
 
 #include "surface/remeshing/working_mesh.h"
 
@@ -13,6 +14,6 @@ struct CoarsenCounts {
 
 /// Collapses the input's own vertices into the points of the front, with Delaunay flips between passes, until none is
 /// left that connections, features and normals let go. Those left become free (or stay on their curve).
-void remove_input_vertices(WorkingMesh& mesh, const RunContext& context, CoarsenCounts& counts);
+void remove_input_vertices(WorkingMesh& mesh, const SizeField& sizes, const RunContext& context, CoarsenCounts& counts);
 
 }  // namespace octafront::remeshing

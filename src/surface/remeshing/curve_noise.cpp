@@ -155,7 +155,7 @@ class NoiseFilter {
     HalfEdgeMesh& mesh = marked_.mesh;
     std::vector<std::uint32_t> degree(mesh.points.size(), 0);
     for (HalfEdge h = 0; h < mesh.start.size(); ++h) degree[mesh.start[h]] += mesh.is_feature[h];
-    const std::vector<Curve> curves = chain_curves(marked_, {}, sizes_);
+    const std::vector<Curve> curves = chain_curves(marked_, {}, {}, sizes_);
     std::vector<ChainFacts> facts;
     for (const Curve& c : curves) facts.push_back(facts_of(c, degree));
     std::map<Edge, std::size_t> sharpest;

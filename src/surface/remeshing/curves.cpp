@@ -98,13 +98,17 @@ void mark_bends(const HalfEdgeMesh& mesh, const std::vector<VertexIndex>& corner
   }
 }
 
-FeatureGraph make_graph(const InputSurface& input, const std::vector<VertexIndex>& corners, const SizeField& sizes) {
+FeatureGraph make_graph(const InputSurface& input, const std::vector<VertexIndex>& corners,
+                        const std::vector<std::uint8_t>& is_fixed, const SizeField& sizes) {
   const HalfEdgeMesh& mesh = input.mesh;
   FeatureGraph graph;
   graph.degree.assign(mesh.points.size(), 0);
   for (HalfEdge h = 0; h < mesh.start.size(); ++h) graph.degree[mesh.start[h]] += mesh.is_feature[h];
   graph.corner.assign(mesh.points.size(), 0);
-  for (VertexIndex v = 0; v < mesh.points.size(); ++v) graph.corner[v] = graph.degree[v] != 0 && graph.degree[v] != 2;
+  for (VertexIndex v = 0; v < mesh.points.size(); ++v) {
+    const bool must_stay = !is_fixed.empty() && is_fixed[v];
+    graph.corner[v] = graph.degree[v] != 0 && (graph.degree[v] != 2 || must_stay);
+  }
   mark_bends(mesh, corners, sizes, graph);
   return graph;
 }
@@ -207,9 +211,9 @@ void divide(const InputSurface& input, const SizeField& sizes, const Measure& m,
 }  // namespace
 
 std::vector<Curve> chain_curves(const InputSurface& input, const std::vector<VertexIndex>& corners,
-                                const SizeField& sizes) {
+                                const std::vector<std::uint8_t>& is_fixed, const SizeField& sizes) {
   const HalfEdgeMesh& mesh = input.mesh;
-  const FeatureGraph graph = make_graph(input, corners, sizes);
+  const FeatureGraph graph = make_graph(input, corners, is_fixed, sizes);
   std::vector<std::uint8_t> visited(mesh.start.size(), 0);
   std::vector<Curve> curves;
   const auto chain_from = [&](VertexIndex v) {

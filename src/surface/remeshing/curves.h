@@ -32,9 +32,10 @@ struct Curve {
 std::vector<Edge> features_at_scale(const InputSurface& input, const Features& features, const SizeField& sizes);
 
 /// Chains the marked feature edges of `input` into curves that end at corners: vertices where other than two of them
-/// meet, and those of `corners` where the curve bends at the element's scale.
+/// meet, those of `corners` where the curve bends at the element's scale, and those marked in `is_fixed` (one per
+/// vertex, or empty).
 std::vector<Curve> chain_curves(const InputSurface& input, const std::vector<VertexIndex>& corners,
-                                const SizeField& sizes);
+                                const std::vector<std::uint8_t>& is_fixed, const SizeField& sizes);
 
 /// Divides the curves: integral of ds / h rounded to a whole number of segments, spread evenly. Closed curves, and
 /// loops at one corner, get at least three segments, two curves between the same corners never one each.

@@ -35,7 +35,6 @@ class SurfaceImprover {
         is_uniform_(sizes.min_size() == sizes.max_size()) {}
 
   void run() {
-    adopt_leftovers();
     const int rounds = mesh_.points.size() < kMany ? kRounds : kRoundsOfMany;
     for (int round = 0; round < rounds; ++round) {
       if (round > 0) adjust_lengths(mesh_, input_, curve_points_, sizes_, counts_);
@@ -51,16 +50,6 @@ class SurfaceImprover {
   }
 
  private:
-  /// Input vertices that could not be collapsed away are vertices like others from here on.
-  void adopt_leftovers() {
-    for (VertexIndex v = 0; v < mesh_.points.size(); ++v) {
-      if (mesh_.outgoing[v] == kNone) continue;
-      if (mesh_.kind[v] == VertexKind::kRemovable) mesh_.kind[v] = VertexKind::kFree;
-      if (mesh_.kind[v] == VertexKind::kRemovableCurve) mesh_.kind[v] = VertexKind::kCurve;
-      if (!(mesh_.size[v] > 0)) mesh_.size[v] = sizes_.at(mesh_.points[v]);
-    }
-  }
-
   void delaunay() {
     edges_.clear();
     const auto may_have_turned = [&](VertexIndex v) { return (mesh_.changed[v] & WorkingMesh::kForFlips) != 0; };

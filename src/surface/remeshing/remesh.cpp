@@ -6,8 +6,11 @@
 #include "surface/remeshing/deviation.h"
 #include "surface/remeshing/improve.h"
 #include "surface/remeshing/insertion.h"
+#include "surface/remeshing/mend_folds.h"
+#include "surface/remeshing/merge_lines.h"
 #include "surface/remeshing/narrow_strips.h"
 #include "surface/remeshing/point_grid.h"
+#include "surface/remeshing/restored.h"
 #include "surface/remeshing/source_triangles.h"
 #include "surface/remeshing/turning.h"
 #include "surface/surface_check.h"
@@ -26,17 +29,24 @@ using namespace remeshing;
 
 /// Rounds of capping the sizes around what crosses. CT isosurfaces of half a million triangles need up to 16.
 constexpr int kMostRounds = 24;
-/// Sizes around crossing triangles become this part of what they were.
+/// Sizes around crossing triangles become this part of what they were ...
 constexpr double kCap = 0.6;
+/// ... but where they have fallen below this part of the first ones, size is not the reason: the input's own triangles
+/// return within this many first sizes, and within so many times that where it still crosses.
+constexpr double kVain = 0.3, kRestored = 2, kMoreRestored = 1.6;
 /// The same where the new surface strays too far from the input, and for how many rounds.
 constexpr double kDeviationCap = 0.7;
 constexpr int kMostDeviationRounds = 5;
+
+/// Triangles below this 2r/R are mended at the end, by moving the surface no farther than this part of the size.
+constexpr double kBadShape = 0.25, kMovedPart = 0.25;
 
 struct Counts {
   std::uint64_t placed = 0, tried = 0;
   InsertionCounts insertion;
   CoarsenCounts coarsen;
   ImproveCounts improve;
+  std::uint64_t merged_lines = 0, folds_mended = 0, restored = 0;
   std::uint64_t crossings = 0;
   int rounds = 0, deviation_rounds = 0;
 };
@@ -95,9 +105,8 @@ std::vector<Vec3> centers_of(const SurfaceMesh& surface, const std::vector<std::
   return centers;
 }
 
-/// The sizes made smaller around the places; of those within half a size of each other one is enough.
-SizeField capped_around(const SizeField& sizes, const std::vector<Vec3>& places, double factor,
-                        const RunContext& context) {
+/// Of places within half a size of each other one is enough.
+std::vector<Vec3> thinned(const SizeField& sizes, const std::vector<Vec3>& places) {
   std::vector<Vec3> kept;
   PointGrid grid(places.front());
   for (const Vec3 p : places) {
@@ -108,8 +117,14 @@ SizeField capped_around(const SizeField& sizes, const std::vector<Vec3>& places,
     kept.push_back(p);
     grid.add(p, h);
   }
-  return capped_near(sizes, kept, factor, context);
+  return kept;
 }
+
+/// Sizes made smaller around places.
+struct Caps {
+  std::vector<Vec3> places;
+  double factor;
+};
 
 void report_counts(const Counts& counts, const Stage& stage) {
   stage.count("points placed", static_cast<double>(counts.placed));
@@ -119,8 +134,11 @@ void report_counts(const Counts& counts, const Stage& stage) {
   stage.count("collapses", static_cast<double>(counts.coarsen.collapses));
   stage.count("flips", static_cast<double>(counts.coarsen.flips + counts.improve.flips));
   stage.count("smoothing moves", static_cast<double>(counts.improve.moves));
+  stage.count("lines merged", static_cast<double>(counts.merged_lines));
+  stage.count("places mended", static_cast<double>(counts.folds_mended));
   stage.count("input vertices left", static_cast<double>(counts.coarsen.input_vertices_left));
   stage.count("crossing pairs mended", static_cast<double>(counts.crossings));
+  stage.count("places left as in the input", static_cast<double>(counts.restored));
   stage.count("rounds", counts.rounds);
   stage.count("rounds for deviation", counts.deviation_rounds);
 }
@@ -131,8 +149,10 @@ class Remesher {
   Remesher(const KnownSurface& surface, const SizeField& sizes, const SurfaceOptions& options, const Stage& stage)
       : known_(surface),
         surface_(surface.mesh()),
+        first_(sizes),
         sizes_(sizes),
         options_(options),
+        tolerance_(options.max_deviation.value_or(HUGE_VAL)),
         stage_(stage),
         input_(make_input_surface(surface)),
         kind_(surface_, surface.edges()) {}
@@ -160,8 +180,9 @@ class Remesher {
     progress(0);
     set_features(input_, {});
     set_features(input_, features_at_scale(input_, known_.features(), sizes_));
+    const std::vector<std::uint8_t> is_fixed = mark_restored(input_, restored_);
     const SizeField sizes = fitted_to_strips(input_, sizes_, context);
-    std::vector<Curve> curves = chain_curves(input_, known_.features().corners, sizes);
+    std::vector<Curve> curves = chain_curves(input_, known_.features().corners, is_fixed, sizes);
     divide_curves(input_, sizes, curves);
     progress(0.05);
     const FrontPoints front = place_points(input_, curves, sizes, context);
@@ -174,14 +195,28 @@ class Remesher {
     WorkingMesh mesh = insert_points(input_, curves, front, context, counts_.insertion);
     progress(0.5);
     if (effort == Effort::kFull) {
-      remove_input_vertices(mesh, context, counts_.coarsen);
+      remove_input_vertices(mesh, sizes, context, counts_.coarsen);
       progress(0.6);
+      counts_.merged_lines = merge_lines(mesh, is_fixed, tolerance_);
       improve_surface(mesh, input_, curves, sizes, context, counts_.improve);
+      counts_.merged_lines += merge_lines(mesh, is_fixed, tolerance_);
+      counts_.folds_mended = mend_places(mesh, is_fixed);
     } else {
       counts_.coarsen.input_vertices_left = surface_.points.size();
     }
     progress(0.9);
     return compacted(mesh, surface_, sizes);
+  }
+
+  /// What is left of bad triangles and of edges too sharp for any element.
+  std::uint64_t mend_places(WorkingMesh& mesh, const std::vector<std::uint8_t>& is_fixed) {
+    const FoldLimits limits{.tolerance = tolerance_,
+                            .size_part = kMovedPart,
+                            .least_shape = kBadShape,
+                            .keep_lines = true,
+                            .onto = &known_.tree(),
+                            .is_fixed = is_fixed};
+    return mend_folds(mesh, limits, stage_.context()).operations;
   }
 
   /// Nobody knows how many rounds there will be: each takes half of what is left.
@@ -198,7 +233,7 @@ class Remesher {
     const auto crossings = find_crossings(c.result.surface);
     counts_.crossings += crossings.size();
     if (!crossings.empty()) {
-      sizes_ = capped_around(sizes_, centers_of(c.result.surface, crossings), kCap, stage_.context());
+      cap_or_restore(centers_of(c.result.surface, crossings));
       return false;
     }
     if (const auto defect = kind_.first_defect_but_crossings(c.result.surface)) {
@@ -207,6 +242,44 @@ class Remesher {
       return false;
     }
     return true;
+  }
+
+  void cap(const std::vector<Vec3>& places, double factor) {
+    caps_.push_back({thinned(sizes_, places), factor});
+    sizes_ = capped_near(sizes_, caps_.back().places, factor, stage_.context());
+  }
+
+  /// Smaller sizes around what crosses; where that was in vain, the input's own triangles, and the first sizes again.
+  void cap_or_restore(const std::vector<Vec3>& places) {
+    std::vector<Vec3> to_cap;
+    const std::size_t before = restored_.size();
+    bool has_grown = false;
+    for (const Vec3 p : places) {
+      const auto around = std::find_if(restored_.begin(), restored_.end(),
+                                       [&](const Ball& b) { return distance(b.center, p) < kMoreRestored * b.radius; });
+      if (around != restored_.end()) {
+        if (static_cast<std::size_t>(around - restored_.begin()) < before) around->radius *= kMoreRestored;
+        has_grown = true;
+      } else if (sizes_.at(p) < kVain * first_.at(p)) {
+        restored_.push_back({p, kRestored * first_.at(p)});
+      } else {
+        to_cap.push_back(p);
+      }
+    }
+    if (has_grown || restored_.size() > before) forget_caps();
+    if (!to_cap.empty()) cap(to_cap, kCap);
+  }
+
+  /// The sizes again without what was asked of them where the input's triangles have returned.
+  void forget_caps() {
+    sizes_ = first_;
+    for (Caps& caps : caps_) {
+      std::erase_if(caps.places, [&](Vec3 p) {
+        return std::any_of(restored_.begin(), restored_.end(),
+                           [&](const Ball& b) { return distance(b.center, p) < b.radius; });
+      });
+      sizes_ = capped_near(sizes_, caps.places, caps.factor, stage_.context());
+    }
   }
 
   /// Whether the surface is as near to the input as was asked, or could be made so in the rounds allowed; otherwise the
@@ -228,7 +301,7 @@ class Remesher {
       return true;
     }
     ++counts_.deviation_rounds;
-    if (!far.empty()) sizes_ = capped_around(sizes_, far, kDeviationCap, stage_.context());
+    if (!far.empty()) cap(far, kDeviationCap);
     sizes_ = capped_at(sizes_, turned, stage_.context());
     return false;
   }
@@ -246,14 +319,24 @@ class Remesher {
   }
 
   Remeshed finished(Compacted& c) {
+    counts_.restored = restored_.size();
+    if (!restored_.empty())
+      stage_.note(
+          fmt::format("the input's own triangles stay in {} places, the first around ({:.6g}, {:.6g}, {:.6g}): "
+                      "others cross there at every size",
+                      restored_.size(), restored_[0].center.x, restored_[0].center.y, restored_[0].center.z));
     report_counts(counts_, stage_);
     return std::move(c.result);
   }
 
   const KnownSurface& known_;
   const SurfaceMesh& surface_;  ///< of known_
-  SizeField sizes_;
+  const SizeField first_;       ///< the sizes as they were asked
+  SizeField sizes_;             ///< and as they are now
+  std::vector<Caps> caps_;
+  std::vector<Ball> restored_;  ///< where the input's own triangles stay
   const SurfaceOptions& options_;
+  double tolerance_;  ///< for details of the input: none moves farther
   const Stage& stage_;
   InputSurface input_;
   SurfaceKind kind_;

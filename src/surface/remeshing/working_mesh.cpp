@@ -116,8 +116,7 @@ void WorkingMesh::split_edge(HalfEdge h, VertexIndex x) {
   for (const VertexIndex v : {a, b, c, d}) mark_changed(v);
 }
 
-bool WorkingMesh::may_flip(HalfEdge h) const {
-  if (is_feature[h]) return false;
+bool WorkingMesh::can_turn(HalfEdge h) const {
   const VertexIndex c = apex(h), d = apex(twin[h]);
   if (c == d || find(c, d) != kNone) return false;
   return valence(start[h]) > 3 && valence(end(h)) > 3;
@@ -144,23 +143,28 @@ HalfEdge WorkingMesh::flip(HalfEdge h) {
   return bc;
 }
 
-bool WorkingMesh::may_collapse(HalfEdge h, bool corners_too) const {
-  const HalfEdge g = twin[h];
-  const VertexIndex u = start[h], w = start[g], a = apex(h), b = apex(g);
-  if (kind[u] == VertexKind::kCorner && !corners_too) return false;
-  const bool may_leave_curve = kind[u] == VertexKind::kCorner && on_curve(w);
-  if (on_curve(u) && !is_feature[h] && !may_leave_curve) return false;
-  // The edges to a and to b merge in pairs: two features may not.
-  if (is_feature[next_of(h)] && is_feature[previous_of(h)]) return false;
-  if (is_feature[next_of(g)] && is_feature[previous_of(g)]) return false;
+bool WorkingMesh::keeps_manifold(HalfEdge h) const {
+  const VertexIndex u = start[h], w = end(h), a = apex(h), b = apex(twin[h]);
   if (valence(a) <= 3 || valence(b) <= 3) return false;
-  // Link condition: u and w have just a and b as common neighbours.
+  // u and w have just a and b as common neighbours.
   int common = 0;
   for_each_outgoing(u, [&](HalfEdge o) {
     const VertexIndex p = end(o);
     if (p != w && p != a && p != b && common == 0 && find(p, w) != kNone) ++common;
   });
   return common == 0;
+}
+
+bool WorkingMesh::may_collapse(HalfEdge h, bool corners_too) const {
+  const HalfEdge g = twin[h];
+  const VertexIndex u = start[h], w = start[g];
+  if (kind[u] == VertexKind::kCorner && !corners_too) return false;
+  const bool may_leave_curve = kind[u] == VertexKind::kCorner && on_curve(w);
+  if (on_curve(u) && !is_feature[h] && !may_leave_curve) return false;
+  // The edges to a and to b merge in pairs: two features may not.
+  if (is_feature[next_of(h)] && is_feature[previous_of(h)]) return false;
+  if (is_feature[next_of(g)] && is_feature[previous_of(g)]) return false;
+  return keeps_manifold(h);
 }
 
 void WorkingMesh::collapse(HalfEdge h) {

@@ -59,12 +59,16 @@ struct WorkingMesh : HalfEdgeMesh {
   /// Puts x on the edge of h. Afterwards h runs from its start to x.
   void split_edge(HalfEdge h, VertexIndex x);
   /// Whether the edge may turn as far as connections and features go.
-  bool may_flip(HalfEdge h) const;
+  bool may_flip(HalfEdge h) const { return !is_feature[h] && can_turn(h); }
+  /// The same, features aside.
+  bool can_turn(HalfEdge h) const;
   /// Turns the edge of h; returns a half-edge of the new edge.
   HalfEdge flip(HalfEdge h);
   /// Whether the start of h may move to its end and vanish, as far as connections and features go (link condition;
   /// feature vertices only along their curve; no two curves merge; a corner only if `corners_too`, for it is lost).
   bool may_collapse(HalfEdge h, bool corners_too = false) const;
+  /// Whether the surface stays a manifold if the start of h vanishes at its end (link condition), features aside.
+  bool keeps_manifold(HalfEdge h) const;
   /// Moves the start of h to its end, where it vanishes with the two triangles beside h.
   void collapse(HalfEdge h);
 };

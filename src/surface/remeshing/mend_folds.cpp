@@ -1,0 +1,372 @@
+#include "surface/remeshing/mend_folds.h"
+
+#include "geometry/measures.h"
+#include "geometry/predicates.h"
+#include "geometry/triangle_box.h"
+#include "surface/remeshing/line_edits.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <queue>
+
+namespace octafront::remeshing {
+
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+/// Edges sharper than this, on either side, are folds.
+constexpr double kFold = 25 * kDegree;
+/// How sharp an edge must be for the surface to move by so much of the tolerance. Machine parts have true wedges of 19
+/// to 25 degrees, which large moves would open.
+struct Tier {
+  double angle, move;
+};
+constexpr Tier kTiers[] = {{kFold, 0.25}, {15 * kDegree, 1}};
+/// What an operation must take away around a place to be worth it: radians of folding, or 2r/R of bad triangles.
+constexpr double kGain = 0.01;
+/// No new triangle is worse than this 2r/R, unless one was, where no limit is given.
+constexpr double kLeastShape = 0.02;
+/// Parts of the way to the mean of its neighbours that a vertex is tried at.
+constexpr double kSteps[] = {1, 0.5, 0.25};
+/// Operations per place at most, on average: others may spring up beside one that is mended.
+constexpr std::size_t kOperationsPerPlace = 8;
+/// An edge longer than this many times the move allowed cannot collapse within it.
+constexpr double kLongest = 20;
+
+/// A triangle that is to come, with its corners.
+struct NewTriangle {
+  Triangle ids;
+  TriangleCorners corners;
+  std::array<std::uint8_t, 3> is_line{};  ///< per edge, from corner i to the next
+};
+
+/// What may be done.
+struct Change {
+  enum class Kind { kNone, kFlip, kCollapse, kMove };
+  Kind kind = Kind::kNone;
+  HalfEdge half_edge = kNone;
+  Vec3 place{};                ///< of kMove: where the start of half_edge goes
+  std::uint32_t face = kNone;  ///< of kMove: the triangle of `onto` that it lies in
+  double badness = 0;          ///< how much more there is of it afterwards
+  double move = 0;
+};
+
+double distance_to(Vec3 p, const std::vector<TriangleCorners>& triangles) {
+  double least = HUGE_VAL;
+  for (const auto& [a, b, c] : triangles)
+    least = std::min(least, squared_distance(p, closest_point_on_triangle(p, a, b, c)));
+  return std::sqrt(least);
+}
+
+/// How far the first triangles lie from the others, at their corners, middles of edges and centroids.
+double farthest(const std::vector<TriangleCorners>& from, const std::vector<TriangleCorners>& to) {
+  double most = 0;
+  for (const auto& [a, b, c] : from) {
+    for (const Vec3 p : {a, b, c, (a + b) * 0.5, (b + c) * 0.5, (c + a) * 0.5, centroid(a, b, c)})
+      most = std::max(most, distance_to(p, to));
+  }
+  return most;
+}
+
+/// Between two triangles at their common edge, from 0 (folded) to pi (flat), whichever way it bends.
+double opening(Vec3 n, Vec3 m) {
+  return std::numbers::pi - std::atan2(length(cross(n, m)), dot(n, m));
+}
+
+double folding(Vec3 n, Vec3 m) {
+  return std::max(0.0, kFold - opening(n, m));
+}
+
+class FoldMender {
+ public:
+  FoldMender(WorkingMesh& mesh, const FoldLimits& limits)
+      : mesh_(mesh), limits_(limits), edits_(mesh, limits.is_fixed), is_changed_(mesh.triangle_count(), 0) {}
+
+  MendedFolds run(const RunContext& context) {
+    for (std::uint32_t t = 0; t < mesh_.triangle_count(); ++t) push(t);
+    const std::size_t most = kOperationsPerPlace * queue_.size() + 100;
+    while (!queue_.empty() && result_.operations < most) {
+      context.check();
+      const auto [badness, t] = queue_.top();
+      queue_.pop();
+      if (!mesh_.is_removed(t) && badness_of(t) == badness) mend(t);
+    }
+    for (HalfEdge h = 0; h < mesh_.start.size(); ++h) {
+      if (mesh_.start[h] != kNone && h < mesh_.twin[h]) result_.folds_left += folding_at(h) > 0;
+    }
+    return result_;
+  }
+
+ private:
+  bool is_kept_line(HalfEdge h) const { return limits_.keep_lines && mesh_.is_feature[h]; }
+  double folding_at(HalfEdge h) const {
+    return is_kept_line(h) ? 0 : folding(mesh_.area_vector(h / 3), mesh_.area_vector(mesh_.twin[h] / 3));
+  }
+  TriangleCorners corners(std::uint32_t t) const {
+    return {mesh_.corner(t, 0), mesh_.corner(t, 1), mesh_.corner(t, 2)};
+  }
+  double shape_lack(const TriangleCorners& t) const {
+    if (limits_.least_shape == 0) return 0;
+    return std::max(0.0, limits_.least_shape - triangle_radius_ratio(t[0], t[1], t[2]));
+  }
+  double badness_of(std::uint32_t t) const {
+    return shape_lack(corners(t)) + folding_at(3 * t) + folding_at(3 * t + 1) + folding_at(3 * t + 2);
+  }
+
+  void push(std::uint32_t t) {
+    if (mesh_.is_removed(t)) return;
+    const double badness = badness_of(t);
+    if (badness > 0) queue_.push({badness, t});
+  }
+
+  double allowed_at(std::uint32_t t) const {
+    if (limits_.size_part == 0) return limits_.tolerance;
+    return std::min(limits_.tolerance, limits_.size_part * mesh_.size[mesh_.start[3 * t]]);
+  }
+
+  /// Does what leaves the least badness around the triangle.
+  void mend(std::uint32_t t) {
+    double most_folded = 0;
+    for (HalfEdge h = 3 * t; h < 3 * t + 3; ++h) most_folded = std::max(most_folded, folding_at(h));
+    for (const Tier& tier : kTiers) {
+      if (most_folded <= kFold - tier.angle && shape_lack(corners(t)) == 0) return;
+      best_ = {};
+      limit_ = tier.move * allowed_at(t);
+      for (HalfEdge h = 3 * t; h < 3 * t + 3; ++h) {
+        const HalfEdge g = mesh_.twin[h];
+        for (const HalfEdge e : {h, next_of(g), previous_of(g)}) {
+          for (const HalfEdge side : {e, mesh_.twin[e]}) {
+            consider_flip(side);
+            consider_collapse(side);
+          }
+        }
+        consider_moves(h);
+        consider_moves(previous_of(g));
+      }
+      if (best_.kind == Change::Kind::kNone) continue;
+      apply();
+      return;
+    }
+  }
+
+  void consider_flip(HalfEdge h) {
+    if (!mesh_.is_feature[h] && h > mesh_.twin[h]) return;  // the same either way
+    if (!edits_.may_flip(h)) return;
+    const HalfEdge g = mesh_.twin[h];
+    old_.assign({h / 3, g / 3});
+    const VertexIndex a = mesh_.start[h], b = mesh_.start[g], c = mesh_.apex(h), d = mesh_.apex(g);
+    new_.clear();
+    for (const Triangle& t : {Triangle{a, d, c}, Triangle{b, c, d}})
+      new_.push_back({t, {mesh_.points[t[0]], mesh_.points[t[1]], mesh_.points[t[2]]}, {}});
+    new_[0].is_line[2] = new_[1].is_line[0] = is_kept_line(h);
+    judge({Change::Kind::kFlip, h}, kNone);
+  }
+
+  void consider_collapse(HalfEdge h) {
+    const VertexIndex u = mesh_.start[h], w = mesh_.end(h);
+    if (distance(mesh_.points[u], mesh_.points[w]) > kLongest * limit_ || !edits_.may_collapse(h)) return;
+    gather_star(u, mesh_.points[w], w);
+    judge({Change::Kind::kCollapse, h}, w);
+  }
+
+  void consider_moves(HalfEdge at) {
+    const VertexIndex v = mesh_.start[at];
+    if (mesh_.on_curve(v) || edits_.must_stay(v)) return;
+    Vec3 sum;
+    mesh_.for_each_outgoing(v, [&](HalfEdge h) { sum += mesh_.points[mesh_.end(h)]; });
+    const Vec3 p = mesh_.points[v], middle = sum / mesh_.valence(v);
+    for (const double step : kSteps) {
+      Change change{Change::Kind::kMove, at, p + (middle - p) * step};
+      if (limits_.onto) {
+        const TriangleTree::Nearest nearest = limits_.onto->nearest(change.place);
+        change.place = nearest.point;
+        change.face = nearest.triangle;
+      }
+      gather_star(v, change.place, kNone);
+      judge(change, kNone);
+    }
+  }
+
+  /// The triangles around v, and what they are with v at p; as the vertex w if that is one.
+  void gather_star(VertexIndex v, Vec3 p, VertexIndex w) {
+    old_.clear();
+    new_.clear();
+    mesh_.for_each_outgoing(v, [&](HalfEdge o) {
+      old_.push_back(o / 3);
+      const VertexIndex a = mesh_.end(o), b = mesh_.apex(o);
+      if (a == w || b == w) return;
+      new_.push_back({{w == kNone ? v : w, a, b},
+                      {p, mesh_.points[a], mesh_.points[b]},
+                      {is_kept_line(o), false, is_kept_line(previous_of(o))}});
+    });
+  }
+
+  /// Remembers the change if it is better than any so far, moves the surface little, and crosses nothing.
+  void judge(Change change, VertexIndex merged) {
+    const auto after = badness_after(merged, mesh_.start[change.half_edge]);
+    if (!after) return;
+    change.badness = *after - badness_before();
+    if (!(change.badness < (best_.kind == Change::Kind::kNone ? -kGain : best_.badness))) return;
+    old_corners_.clear();
+    new_corners_.clear();
+    for (const std::uint32_t t : old_) old_corners_.push_back(corners(t));
+    for (const NewTriangle& t : new_) new_corners_.push_back(t.corners);
+    if (!shapes_are_fair()) return;
+    change.move = std::max(farthest(old_corners_, new_corners_), farthest(new_corners_, old_corners_));
+    if (change.move > limit_ || crosses()) return;
+    best_ = change;
+  }
+
+  bool is_old(std::uint32_t t) const { return std::find(old_.begin(), old_.end(), t) != old_.end(); }
+
+  double badness_before() const {
+    double sum = 0;
+    for (const std::uint32_t t : old_) {
+      sum += shape_lack(corners(t));
+      for (HalfEdge h = 3 * t; h < 3 * t + 3; ++h) sum += folding_at(h) * (is_old(mesh_.twin[h] / 3) ? 0.5 : 1);
+    }
+    return sum;
+  }
+
+  /// nullopt if a triangle has no area then.
+  std::optional<double> badness_after(VertexIndex merged, VertexIndex gone) {
+    double sum = 0;
+    gather_sides(merged, gone);
+    for (const NewTriangle& t : new_) {
+      const auto& [a, b, c] = t.corners;
+      if (collinear(a, b, c)) return std::nullopt;
+      sum += shape_lack(t.corners);
+      for (int i = 0; i < 3; ++i)
+        sides_.push_back({t.ids[i], t.ids[(i + 1) % 3], double_area_normal(a, b, c), false, t.is_line[i] != 0});
+    }
+    for (std::size_t i = 0; i < sides_.size(); ++i) {
+      for (std::size_t j = i + 1; j < sides_.size(); ++j) {
+        const bool is_pair = sides_[i].from == sides_[j].to && sides_[i].to == sides_[j].from;
+        if (is_pair && !(sides_[i].is_outside && sides_[j].is_outside) && !sides_[i].is_line && !sides_[j].is_line)
+          sum += folding(sides_[i].normal, sides_[j].normal);
+      }
+    }
+    return sum;
+  }
+
+  /// The triangles around the old ones, by the edges that they have in common.
+  void gather_sides(VertexIndex merged, VertexIndex gone) {
+    const auto renamed = [&](VertexIndex v) { return merged != kNone && v == gone ? merged : v; };
+    sides_.clear();
+    for (const std::uint32_t t : old_) {
+      for (HalfEdge h = 3 * t; h < 3 * t + 3; ++h) {
+        const HalfEdge g = mesh_.twin[h];
+        if (is_old(g / 3)) continue;
+        sides_.push_back(
+            {renamed(mesh_.start[g]), renamed(mesh_.end(g)), mesh_.area_vector(g / 3), true, is_kept_line(g)});
+      }
+    }
+  }
+
+  bool shapes_are_fair() const {
+    const auto worst = [](const std::vector<TriangleCorners>& triangles) {
+      double least = 1;
+      for (const auto& [a, b, c] : triangles) least = std::min(least, triangle_radius_ratio(a, b, c));
+      return least;
+    };
+    const double limit = limits_.least_shape > 0 ? limits_.least_shape : kLeastShape;
+    return worst(new_corners_) >= std::min(limit, worst(old_corners_));
+  }
+
+  /// Whether a new triangle meets another one where it should not: exactly.
+  bool crosses() {
+    for (std::size_t i = 0; i < new_.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        if (triangles_conflict(new_[i].corners, new_[i].ids, new_[j].corners, new_[j].ids)) return true;
+      }
+      if (crosses_others(new_[i])) return true;
+    }
+    return false;
+  }
+
+  bool crosses_others(const NewTriangle& made) {
+    if (!tree_) plant_tree();
+    const Box3 box = box_of(made.corners);
+    const auto is_apart = [&](std::uint32_t t) {
+      if (is_old(t) || mesh_.is_removed(t)) return true;
+      const TriangleCorners there = corners(t);
+      if (!box_of(there).overlaps(box)) return true;
+      return !triangles_conflict(made.corners, made.ids, there,
+                                 {mesh_.start[3 * t], mesh_.start[3 * t + 1], mesh_.start[3 * t + 2]});
+    };
+    const bool clear_of_rest = tree_->for_each_box_near(box, [&](std::uint32_t item, const TriangleCorners&) {
+      return is_changed_[in_tree_[item]] || is_apart(in_tree_[item]);
+    });
+    return !clear_of_rest || !std::all_of(changed_.begin(), changed_.end(), is_apart);
+  }
+
+  void plant_tree() {
+    std::vector<Triangle> triangles;
+    for (std::uint32_t t = 0; t < mesh_.triangle_count(); ++t) {
+      if (mesh_.is_removed(t)) continue;
+      triangles.push_back({mesh_.start[3 * t], mesh_.start[3 * t + 1], mesh_.start[3 * t + 2]});
+      in_tree_.push_back(t);
+    }
+    tree_.emplace(mesh_.points, triangles);
+  }
+
+  void apply() {
+    const HalfEdge h = best_.half_edge;
+    const VertexIndex v = mesh_.start[h];
+    std::vector<std::uint32_t> touched{h / 3, mesh_.twin[h] / 3};
+    if (best_.kind != Change::Kind::kFlip) mesh_.for_each_outgoing(v, [&](HalfEdge o) { touched.push_back(o / 3); });
+    if (best_.kind == Change::Kind::kFlip) edits_.flip(h);
+    if (best_.kind == Change::Kind::kCollapse) edits_.collapse(h);
+    if (best_.kind == Change::Kind::kMove) {
+      mesh_.points[v] = best_.place;
+      if (best_.face != kNone) mesh_.face[v] = best_.face;
+      mesh_.mark_star_changed(v);
+    }
+    note_changed(touched);
+    ++result_.operations;
+    result_.largest_move = std::max(result_.largest_move, best_.move);
+  }
+
+  void note_changed(const std::vector<std::uint32_t>& touched) {
+    for (const std::uint32_t t : touched) {
+      if (!is_changed_[t]) changed_.push_back(t);
+      is_changed_[t] = 1;
+      if (mesh_.is_removed(t)) continue;
+      push(t);
+      for (HalfEdge h = 3 * t; h < 3 * t + 3; ++h) push(mesh_.twin[h] / 3);
+    }
+    std::erase_if(changed_, [&](std::uint32_t t) { return mesh_.is_removed(t); });
+  }
+
+  struct Side {
+    VertexIndex from, to;
+    Vec3 normal;
+    bool is_outside, is_line;
+  };
+
+  WorkingMesh& mesh_;
+  const FoldLimits& limits_;
+  LineEdits edits_;
+  std::optional<TriangleTree> tree_;      ///< of the mesh as it was
+  std::vector<std::uint32_t> in_tree_;    ///< its triangles
+  std::vector<std::uint8_t> is_changed_;  ///< per triangle: no longer the one in the tree
+  std::vector<std::uint32_t> changed_;
+  std::priority_queue<std::pair<double, std::uint32_t>> queue_;
+  MendedFolds result_;
+  double limit_ = 0;
+  Change best_;
+  std::vector<std::uint32_t> old_;
+  std::vector<NewTriangle> new_;
+  std::vector<TriangleCorners> old_corners_, new_corners_;
+  std::vector<Side> sides_;
+};
+
+}  // namespace
+
+MendedFolds mend_folds(WorkingMesh& mesh, const FoldLimits& limits, const RunContext& context) {
+  return FoldMender(mesh, limits).run(context);
+}
+
+}  // namespace octafront::remeshing

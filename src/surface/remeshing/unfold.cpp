@@ -1,0 +1,51 @@
+#include "surface/remeshing/unfold.h"
+
+namespace octafront::remeshing {
+
+namespace {
+
+/// The input with its patch borders as the only lines.
+WorkingMesh bordered(const InputSurface& input) {
+  WorkingMesh mesh(input);
+  std::vector<int> borders(mesh.points.size(), 0);
+  for (HalfEdge h = 0; h < mesh.start.size(); ++h) {
+    if (mesh.patch[h / 3] == mesh.patch[mesh.twin[h] / 3]) continue;
+    mesh.is_feature[h] = 1;
+    ++borders[mesh.start[h]];
+  }
+  for (VertexIndex v = 0; v < mesh.points.size(); ++v) {
+    mesh.kind[v] = borders[v] == 0 ? VertexKind::kFree : borders[v] == 2 ? VertexKind::kCurve : VertexKind::kCorner;
+  }
+  return mesh;
+}
+
+SurfaceMesh compacted(const WorkingMesh& mesh, const SurfaceMesh& input) {
+  SurfaceMesh surface;
+  std::vector<VertexIndex> renumbered(mesh.points.size(), kNone);
+  for (VertexIndex v = 0; v < mesh.points.size(); ++v) {
+    if (mesh.outgoing[v] == kNone) continue;
+    renumbered[v] = static_cast<VertexIndex>(surface.points.size());
+    surface.points.push_back(mesh.points[v]);
+  }
+  surface.patch_names = input.patch_names;
+  for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t) {
+    if (mesh.is_removed(t)) continue;
+    const auto corner = [&](int i) { return renumbered[mesh.start[3 * t + i]]; };
+    surface.triangles.push_back({corner(0), corner(1), corner(2)});
+    if (!input.patch.empty()) surface.patch.push_back(mesh.patch[t]);
+    surface.source.push_back(input.source_of(t));
+  }
+  return surface;
+}
+
+}  // namespace
+
+std::optional<Unfolded> unfold(const KnownSurface& surface, double tolerance, const RunContext& context) {
+  WorkingMesh mesh = bordered(make_input_surface(surface));
+  const std::vector<std::uint8_t> none_fixed;
+  const MendedFolds mended = mend_folds(mesh, {.tolerance = tolerance, .is_fixed = none_fixed}, context);
+  if (mended.operations == 0) return std::nullopt;
+  return Unfolded{compacted(mesh, surface.mesh()), mended};
+}
+
+}  // namespace octafront::remeshing

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <octafront/run_context.h>
+
+#include "mesh/known_surface.h"
+#include "surface/remeshing/mend_folds.h"
+
+#include <optional>
+
+namespace octafront::remeshing {
+
+/// A surface without its folds, and what that took.
+struct Unfolded {
+  SurfaceMesh surface;  ///< clean, of the same topology; patches and sources kept
+  MendedFolds mended;
+};
+
+/// The input without folds, flaps and spikes that can be taken away within the tolerance (input units); see
+/// mend_folds(). Patch borders stay. nullopt if nothing was done. Requires a clean surface.
+std::optional<Unfolded> unfold(const KnownSurface& surface, double tolerance, const RunContext& context);
+
+}  // namespace octafront::remeshing
