@@ -1,6 +1,7 @@
 #include "geometry/triangle_tree.h"
 
 #include "core/parallel.h"
+#include "core/validate.h"
 #include "geometry/measures.h"
 #include "geometry/predicates.h"
 
@@ -106,6 +107,39 @@ TriangleTree::TriangleTree(std::span<const Vec3> points, std::span<const Triangl
   items_.resize(count);
   item_of_triangle_.resize(count);
   builder.split(0, 1, 0, count);
+  validate(*this);
+}
+
+std::optional<std::string> TriangleTree::first_inconsistency() const {
+  const auto name_of = [](std::uint32_t node) { return "node " + std::to_string(node) + " of the tree of triangles"; };
+  std::vector<std::uint8_t> reached(nodes_.size(), 0);
+  if (!empty()) reached[0] = 1;
+  std::vector<std::uint8_t> in_leaf(items_.size(), 0);
+  // Children come behind their parents, so each node is judged before those below it.
+  for (std::uint32_t n = 0; n < nodes_.size(); ++n) {
+    const auto& [box, first, count] = nodes_[n];
+    if (reached[n] != 1) return name_of(n) + " is reached " + std::to_string(reached[n]) + " times";
+    if (count == 0 && (first <= n || first + 1 >= nodes_.size())) return name_of(n) + " has no children behind it";
+    if (count != 0 && first + count > items_.size()) return name_of(n) + " has triangles that there are not";
+    Box3 inside;
+    for (std::uint32_t child = first; count == 0 && child < first + 2; ++child) {
+      inside.add(nodes_[child].box);
+      ++reached[child];
+    }
+    for (std::uint32_t i = first; i < first + count; ++i) {
+      for (const Vec3 p : items_[i].corners)
+        if (!box.contains(p)) return "triangle " + std::to_string(items_[i].triangle) + " leaves the box of its leaf";
+      inside.add(box_of(items_[i].corners));
+      ++in_leaf[i];
+    }
+    if (inside.lo != box.lo || inside.hi != box.hi) return name_of(n) + " has not the box of what is below it";
+  }
+  for (std::uint32_t i = 0; i < items_.size(); ++i) {
+    const std::uint32_t triangle = items_[i].triangle;
+    if (in_leaf[i] != 1 || triangle >= items_.size() || item_of_triangle_[triangle] != i)
+      return "triangle " + std::to_string(triangle) + " is not where the tree looks for it";
+  }
+  return std::nullopt;
 }
 
 // Goes down from the root by keys of boxes (0 at the nearest), always into the nearer child first; calls visit(leaf),

@@ -9,7 +9,9 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace octafront {
@@ -20,6 +22,7 @@ class TriangleTree {
  public:
   static constexpr double kFar = std::numeric_limits<double>::infinity();
 
+  /// REQUIRES finite coordinates.
   TriangleTree(std::span<const Vec3> points, std::span<const Triangle> triangles);
   explicit TriangleTree(const SurfaceMesh& surface) : TriangleTree(surface.points, surface.triangles) {}
 
@@ -84,6 +87,9 @@ class TriangleTree {
   bool contains(Vec3 p) const { return locate(p) == Location::kInside; }
   /// How often a closed surface winds around p, which must not lie on it, exactly: 1 inside an outward surface.
   int winding_number(Vec3 p) const;
+
+  /// Where a search would pass by a triangle, or a box is not that of what lies below it (core/validate.h).
+  std::optional<std::string> first_inconsistency() const;
 
  private:
   friend class SelfIntersectionSearch;

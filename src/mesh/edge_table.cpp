@@ -1,6 +1,7 @@
 #include "mesh/edge_table.h"
 
 #include "core/groups.h"
+#include "core/validate.h"
 
 #include <algorithm>
 #include <utility>
@@ -12,6 +13,26 @@ std::vector<std::uint32_t> EdgeTable::edge_of_half_edge() const {
   for (std::size_t e = 0; e < size(); ++e)
     for (const std::uint32_t h : uses(e)) edge_of[h] = static_cast<std::uint32_t>(e);
   return edge_of;
+}
+
+std::optional<std::string> EdgeTable::first_inconsistency(std::span<const Triangle> triangles) const {
+  if (first.size() != size() + 1 || first[0] != 0 || first.back() != half_edges.size())
+    return "the edges of the table do not share out its half-edges";
+  if (half_edges.size() != 3 * triangles.size()) return "the table of edges has not three half-edges for each triangle";
+  for (std::size_t e = 0; e < size(); ++e) {
+    const auto edge = [e](const char* is_wrong) { return "edge " + std::to_string(e) + " of the table " + is_wrong; };
+    if (edges[e][0] > edges[e][1]) return edge("has its larger vertex first");
+    if (e > 0 && !(edges[e - 1] < edges[e])) return edge("is not behind the one before it");
+    if (first[e] >= first[e + 1] || first[e + 1] > half_edges.size()) return edge("has no half-edge");
+    for (std::uint32_t k = first[e]; k < first[e + 1]; ++k) {
+      const HalfEdge h = half_edges[k];
+      if (k > first[e] && half_edges[k - 1] >= h) return edge("has half-edges that do not ascend");
+      if (h >= half_edges.size()) return edge("has a half-edge that is none");
+      const VertexIndex a = start_of(triangles, h), b = end_of(triangles, h);
+      if (edges[e] != Edge{std::min(a, b), std::max(a, b)}) return edge("has a half-edge that runs along another one");
+    }
+  }
+  return std::nullopt;
 }
 
 EdgeTable make_edge_table(std::size_t vertices, std::span<const Triangle> triangles, const RunContext& context) {
@@ -41,6 +62,7 @@ EdgeTable make_edge_table(std::size_t vertices, std::span<const Triangle> triang
     }
   }
   table.first.push_back(static_cast<std::uint32_t>(table.half_edges.size()));
+  validate(table, triangles);
   return table;
 }
 

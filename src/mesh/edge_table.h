@@ -5,7 +5,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace octafront {
@@ -38,6 +40,8 @@ struct EdgeTable {
   }
   /// The edge that each half-edge runs along.
   std::vector<std::uint32_t> edge_of_half_edge() const;
+  /// Where this is not the table of the edges of these triangles (core/validate.h).
+  std::optional<std::string> first_inconsistency(std::span<const Triangle> triangles) const;
 };
 
 /// Requires that every index is below `vertices`. Triangles with a repeated vertex give edges with equal ends.

@@ -5,6 +5,8 @@
 #include "mesh/edge_table.h"
 
 #include <cstdint>
+#include <optional>
+#include <string>
 #include <vector>
 
 namespace octafront {
@@ -45,6 +47,11 @@ struct HalfEdgeMesh {
   HalfEdge find(VertexIndex a, VertexIndex b) const;
   /// Marks the edge of h, on both sides.
   void set_feature(HalfEdge h, bool feature) { is_feature[h] = is_feature[twin[h]] = feature; }
+
+  /// Where the adjacency contradicts itself (core/validate.h); a triangle that starts at kNone three times is gone.
+  std::optional<std::string> first_inconsistency() const;
+  /// The same in the star of v.
+  std::optional<std::string> first_inconsistency(VertexIndex v) const;
 };
 
 /// Adjacency of a closed, consistently oriented manifold surface. No edge is marked as feature.

@@ -1,5 +1,6 @@
 #include "geometry/triangle_tree.h"
 
+#include "core/validate.h"
 #include "geometry/measures.h"
 #include "geometry/predicates.h"
 #include "support/lattice_points.h"
@@ -39,6 +40,21 @@ TEST(TriangleTree, OfNothingAnswersNothing) {
   EXPECT_EQ(tree.first_hit({0, 0, 0}, {1, 0, 0}).triangle, kNone);
   EXPECT_EQ(tree.locate({0, 0, 0}), Location::kOutside);
   tree.for_each_overlapping({{0, 0, 0}, {1, 1, 1}}, [](std::uint32_t) { FAIL(); });
+}
+
+RC_GTEST_PROP(TriangleTree, HoldsEachTriangleInBoxesThatFit, ()) {
+  RC_ASSERT(!TriangleTree(any_soup(*rc::gen::inRange(0, 300), 8)).first_inconsistency());
+}
+
+TEST(TriangleTree, SaysWhereATriangleLeavesItsBox) {
+  SurfaceMesh s = testing::unit_tetrahedron();
+  s.points[3].x = std::numeric_limits<double>::quiet_NaN();
+  if (kValidate) {
+    EXPECT_THROW(TriangleTree{s}, std::logic_error);
+  } else {
+    const std::string wrong = TriangleTree(s).first_inconsistency().value_or("");
+    EXPECT_NE(wrong.find("leaves the box of its leaf"), std::string::npos) << wrong;
+  }
 }
 
 RC_GTEST_PROP(TriangleTree, NearestIsTheNearestOfAll, ()) {

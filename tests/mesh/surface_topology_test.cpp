@@ -1,8 +1,11 @@
 #include "mesh/surface_topology.h"
 
+#include "mesh/half_edge_mesh.h"
 #include "support/named_surfaces.h"
 
 #include <algorithm>
+#include <functional>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -27,6 +30,71 @@ TEST(EdgeTable, HoldsEachEdgeOnceWithItsHalfEdges) {
     }
   }
   EXPECT_EQ(half_edges, 3 * both.triangles.size());
+}
+
+TEST(EdgeTable, FindsWhatIsBroken) {
+  const SurfaceMesh s = testing::torus(8, 6);
+  const auto complaint = [&](const std::function<void(EdgeTable&)>& breaks) {
+    EdgeTable table = make_edge_table(s.points.size(), s.triangles);
+    breaks(table);
+    return table.first_inconsistency(s.triangles).value_or("");
+  };
+  EXPECT_EQ(complaint([](EdgeTable&) {}), "");
+  EXPECT_EQ(complaint([](EdgeTable& t) { t.first.pop_back(); }),
+            "the edges of the table do not share out its half-edges");
+  EXPECT_EQ(complaint([](EdgeTable& t) { t.first[6] = t.first[5]; }), "edge 5 of the table has no half-edge");
+  EXPECT_EQ(complaint([](EdgeTable& t) { std::swap(t.edges[3][0], t.edges[3][1]); }),
+            "edge 3 of the table has its larger vertex first");
+  EXPECT_EQ(complaint([](EdgeTable& t) { t.edges[8] = t.edges[7]; }),
+            "edge 8 of the table is not behind the one before it");
+  EXPECT_EQ(complaint([](EdgeTable& t) { std::swap(t.half_edges[4], t.half_edges[5]); }),
+            "edge 2 of the table has half-edges that do not ascend");
+  EXPECT_EQ(complaint([](EdgeTable& t) { std::swap(t.half_edges[4], t.half_edges[6]); }),
+            "edge 2 of the table has a half-edge that runs along another one");
+  EdgeTable shorter = make_edge_table(s.points.size(), s.triangles);
+  EXPECT_NE(shorter.first_inconsistency(std::span(s.triangles).first(90)), std::nullopt);
+}
+
+TEST(HalfEdgeMesh, FindsWhatIsBroken) {
+  const HalfEdgeMesh good = make_half_edge_mesh(testing::torus(8, 6));
+  const HalfEdge h = 10, g = good.twin[h];
+  const VertexIndex v = good.start[h];
+  const auto complaint = [&](const std::function<void(HalfEdgeMesh&)>& breaks) {
+    HalfEdgeMesh mesh = good;
+    breaks(mesh);
+    return mesh.first_inconsistency().value_or("");
+  };
+  const auto expect_found = [&](const std::function<void(HalfEdgeMesh&)>& breaks, const std::string& fragment) {
+    const std::string wrong = complaint(breaks);
+    EXPECT_NE(wrong.find(fragment), std::string::npos) << wrong;
+  };
+  EXPECT_EQ(complaint([](HalfEdgeMesh&) {}), "");
+  expect_found([&](HalfEdgeMesh& m) { m.twin[h] = kNone; }, "twin");
+  expect_found([&](HalfEdgeMesh& m) { m.twin[h] = m.twin[next_of(h)]; }, "does not know its twin");
+  expect_found([&](HalfEdgeMesh& m) { m.is_feature[g] = 1; }, "not both features");
+  expect_found([&](HalfEdgeMesh& m) { m.outgoing[v] = next_of(h); }, "leaving vertex " + std::to_string(v));
+  expect_found([&](HalfEdgeMesh& m) { m.outgoing[v] = kNone; }, "the star of vertex " + std::to_string(v));
+  expect_found([&](HalfEdgeMesh& m) { m.points.push_back({}); }, "differ in length");
+  // Both of two edges, each tied to the other's other side.
+  expect_found(
+      [&](HalfEdgeMesh& m) {
+        const HalfEdge o = next_of(h), p = m.twin[o];
+        m.twin[h] = p, m.twin[p] = h, m.twin[o] = g, m.twin[g] = o;
+      },
+      "do not run along one edge in opposite directions");
+  EXPECT_NE(
+      [&] {
+        HalfEdgeMesh mesh = good;
+        mesh.is_feature[g] = 1;
+        return mesh.first_inconsistency(v);
+      }(),
+      std::nullopt);
+  // Two fans at one vertex: each edge is in order, and half of the triangles are not reached.
+  const SurfaceMesh two = testing::joined(testing::icosphere(0), testing::icosphere(0));
+  HalfEdgeMesh pinched = make_half_edge_mesh(two);
+  std::ranges::replace(pinched.start, 12u, 0u);
+  pinched.outgoing[12] = kNone;
+  EXPECT_EQ(pinched.first_inconsistency(), "the star of vertex 0 lacks triangles that have it");
 }
 
 TEST(HalfEdgeTwins, RunTheOtherWay) {
