@@ -1,5 +1,6 @@
 #include "surface/remeshing/remesh.h"
 
+#include "core/validate.h"
 #include "sizing/make_size_field.h"
 #include "surface/remeshing/coarsen.h"
 #include "surface/remeshing/crossings.h"
@@ -205,6 +206,7 @@ class Remesher {
       counts_.coarsen.input_vertices_left = surface_.points.size();
     }
     progress(0.9);
+    validate(mesh);
     return compacted(mesh, surface_, sizes);
   }
 

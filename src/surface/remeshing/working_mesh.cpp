@@ -1,5 +1,8 @@
 #include "surface/remeshing/working_mesh.h"
 
+#include "core/validate.h"
+
+#include <array>
 #include <numeric>
 
 namespace octafront::remeshing {
@@ -89,6 +92,7 @@ void WorkingMesh::split_triangle(std::uint32_t t, VertexIndex x) {
   link(*this, l + 1, ca, 0);     // a-x
   outgoing[c] = l;
   outgoing[x] = ca;
+  validate(*this, std::array{a, b, c, x});
 }
 
 //        c
@@ -114,6 +118,7 @@ void WorkingMesh::split_edge(HalfEdge h, VertexIndex x) {
   outgoing[b] = k + 1;
   outgoing[x] = bc;
   for (const VertexIndex v : {a, b, c, d}) mark_changed(v);
+  validate(*this, std::array{a, b, c, d, x});
 }
 
 bool WorkingMesh::can_turn(HalfEdge h) const {
@@ -140,6 +145,7 @@ HalfEdge WorkingMesh::flip(HalfEdge h) {
   outgoing[a] = h;
   outgoing[b] = g;
   for (const VertexIndex v : {a, b, c, d}) mark_changed(v);
+  validate(*this, std::array{a, b, c, d});
   return bc;
 }
 
@@ -189,6 +195,34 @@ void WorkingMesh::collapse(HalfEdge h) {
   outgoing[a] = aw;
   outgoing[b] = bu;
   mark_star_changed(w);
+  validate(*this, std::array{w, a, b});
+}
+
+std::optional<std::string> WorkingMesh::first_inconsistency() const {
+  for (const std::size_t per_vertex :
+       {kind.size(), normal.size(), size.size(), face.size(), place.size(), changed.size()})
+    if (per_vertex != points.size()) return "the arrays of vertices differ in length";
+  if (patch.size() != triangle_count() || origin.size() != triangle_count())
+    return "the arrays of triangles differ in length";
+  if (auto wrong = HalfEdgeMesh::first_inconsistency()) return wrong;
+  std::vector<VertexIndex> all(points.size());
+  std::iota(all.begin(), all.end(), 0u);
+  return first_inconsistency(all);
+}
+
+std::optional<std::string> WorkingMesh::first_inconsistency(std::span<const VertexIndex> touched) const {
+  for (const VertexIndex v : touched) {
+    if (auto wrong = HalfEdgeMesh::first_inconsistency(v)) return wrong;
+    if (outgoing[v] == kNone) continue;
+    bool has_feature = false, has_seam = false;
+    for_each_outgoing(v, [&](HalfEdge h) {
+      has_feature = has_feature || is_feature[h];
+      has_seam = has_seam || (!is_feature[h] && patch[h / 3] != patch[twin[h] / 3]);
+    });
+    if (has_feature && !on_curve(v)) return "vertex " + std::to_string(v) + " ends a feature, and is on no curve";
+    if (has_seam) return "patches meet at vertex " + std::to_string(v) + " without a feature between them";
+  }
+  return std::nullopt;
 }
 
 }  // namespace octafront::remeshing

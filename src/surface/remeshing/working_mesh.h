@@ -71,6 +71,12 @@ struct WorkingMesh : HalfEdgeMesh {
   bool keeps_manifold(HalfEdge h) const;
   /// Moves the start of h to its end, where it vanishes with the two triangles beside h.
   void collapse(HalfEdge h);
+
+  /// Where the surface is no closed manifold, a feature ends off the curves, or patches meet without a feature between
+  /// them (core/validate.h).
+  std::optional<std::string> first_inconsistency() const;
+  /// The same in the stars of these vertices.
+  std::optional<std::string> first_inconsistency(std::span<const VertexIndex> touched) const;
 };
 
 }  // namespace octafront::remeshing
