@@ -1,7 +1,11 @@
 #pragma once
 
+#include "core/validate.h"
+
 #include <array>
 #include <cstdint>
+#include <optional>
+#include <string>
 #include <vector>
 
 namespace octafront {
@@ -41,9 +45,12 @@ class AlternatingTree {
     nodes_[at].item = item;
     nodes_[at].key = key;
     node_of_item_[item] = at;
+    validate(*this, item);
   }
 
+  /// REQUIRES: `item` is in the tree.
   void remove(std::uint32_t item) {
+    validate(*this, item);
     std::uint32_t at = node_of_item_[item];
     nodes_[at].item = kNoItem;
     node_of_item_[item] = kNoNode;
@@ -67,6 +74,14 @@ class AlternatingTree {
     if (!nodes_.empty()) descend(0, 0, box, range, visit);
   }
 
+  bool contains(std::uint32_t item) const { return item < node_of_item_.size() && node_of_item_[item] != kNoNode; }
+  std::uint32_t size() const { return nodes_.empty() ? 0 : nodes_[0].live; }
+
+  /// Where a search would pass by an item, or look for one where none is left (core/validate.h).
+  std::optional<std::string> first_inconsistency() const;
+  /// Why a search would pass by this item, which should be there.
+  std::optional<std::string> first_inconsistency(std::uint32_t item) const;
+
  private:
   static constexpr std::uint32_t kNoNode = 0xffffffffu, kNoItem = 0xffffffffu;
   struct Node {
@@ -74,6 +89,9 @@ class AlternatingTree {
     std::uint32_t item = kNoItem, live = 0, parent = kNoNode;  ///< live: items in the subtree
     std::array<std::uint32_t, 2> child{kNoNode, kNoNode};
   };
+
+  /// Whether a point goes through the node on its way down.
+  bool leads_to(const Key& key, std::uint32_t node) const;
 
   /// `box` is that of node `at`, which is halved along `axis`.
   template <class Visit>

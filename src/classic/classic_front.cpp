@@ -1,5 +1,6 @@
 #include "classic/classic_front.h"
 
+#include "core/validate.h"
 #include "geometry/measures.h"
 
 #include <algorithm>
@@ -42,6 +43,7 @@ ClassicFront::Face ClassicFront::add_face(const Triangle& corners) {
   FaceTree& tree = tree_for(std::max({e.x, e.y, e.z}));
   tree_of_face_.push_back(static_cast<std::uint8_t>(&tree - face_trees_.data()));
   tree.tree.insert(face, key_of(box.center()));
+  validate(*this, face);
   return face;
 }
 
@@ -50,6 +52,7 @@ void ClassicFront::remove_face(Face face) {
   face_trees_[tree_of_face_[face]].tree.remove(face);
   for (const VertexIndex v : faces_[face])
     if (--faces_at_[v] == 0) vertex_tree_.remove(v);
+  validate(*this, face);
 }
 
 void ClassicFront::add_tet(const Triangle& face, VertexIndex apex) {
@@ -77,6 +80,37 @@ void ClassicFront::faces_near(const Box3& box, std::vector<Face>& out) const {
 
 void ClassicFront::vertices_near(const Box3& box, std::vector<VertexIndex>& out) const {
   vertex_tree_.find({key_of(box.lo), key_of(box.hi)}, [&](VertexIndex v) { out.push_back(v); });
+}
+
+std::optional<std::string> ClassicFront::first_inconsistency(Face face) const {
+  const auto& [a, b, c] = faces_[face];
+  const std::string name = "face " + std::to_string(face);
+  if (std::max({a, b, c}) >= points_.size()) return name + " has no such corner";
+  if (a == b || b == c || c == a) return name + " has a corner twice";
+  if (face_trees_[tree_of_face_[face]].tree.contains(face) != alive(face))
+    return name + (alive(face) ? " is on the front, and not in its tree" : " is in its tree, and not on the front");
+  for (const VertexIndex v : faces_[face])
+    if (vertex_tree_.contains(v) != (faces_at_[v] > 0))
+      return "vertex " + std::to_string(v) + " is in the tree of vertices, and on no face, or the other way round";
+  return std::nullopt;
+}
+
+std::optional<std::string> ClassicFront::first_inconsistency() const {
+  std::vector<std::uint32_t> faces_at(points_.size(), 0);
+  std::size_t left = 0;
+  for (Face f = 0; f < faces_.size(); ++f) {
+    if (auto wrong = first_inconsistency(f)) return wrong;
+    left += alive(f);
+    for (const VertexIndex v : faces_[f]) faces_at[v] += alive(f);
+  }
+  if (faces_at != faces_at_) return "the vertices have not as many faces as they say";
+  for (const FaceTree& t : face_trees_) {
+    if (auto wrong = t.tree.first_inconsistency()) return "the tree of faces: " + *wrong;
+    left -= t.tree.size();
+  }
+  if (left != 0) return "the trees of faces have not as many as the front";
+  if (auto wrong = vertex_tree_.first_inconsistency()) return "the tree of vertices: " + *wrong;
+  return std::nullopt;
 }
 
 }  // namespace octafront

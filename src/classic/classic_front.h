@@ -7,6 +7,8 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
+#include <string>
 #include <vector>
 
 namespace octafront {
@@ -40,6 +42,11 @@ class ClassicFront {
   void faces_near(const Box3& box, std::vector<Face>& out) const;
   /// The vertices with faces on the front, in `box`.
   void vertices_near(const Box3& box, std::vector<VertexIndex>& out) const;
+
+  /// Where the faces and the trees contradict each other (core/validate.h).
+  std::optional<std::string> first_inconsistency() const;
+  /// The same at one face and its corners.
+  std::optional<std::string> first_inconsistency(Face face) const;
 
  private:
   Box3 domain_;

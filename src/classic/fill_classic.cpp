@@ -6,6 +6,7 @@
 #include "classic/classic_front.h"
 #include "classic/surface_sizes.h"
 #include "core/stage_timer.h"
+#include "core/validate.h"
 #include "volume/ladder.h"
 #include "volume/regions.h"
 
@@ -31,6 +32,7 @@ class Advance {
 
   /// The faces that found no tetrahedron at any level.
   std::vector<Face> run() {
+    validate(front_);
     for (Face f = 0; f < front_.face_count(); ++f) queue_.emplace(front_.size_of(f), f);
     work_off(0);
     // Each round lets the faces that wait try all levels; a success may have made room for others.
@@ -61,6 +63,7 @@ class Advance {
       if (!attempt_.advance(face, kClassicLimits[face < first_new ? level : 0], created)) held_.push_back(face);
       for (const Face f : created) queue_.emplace(front_.size_of(f), f);
     }
+    validate(front_);
   }
 
   void check() {

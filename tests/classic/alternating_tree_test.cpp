@@ -39,7 +39,22 @@ TEST(AlternatingTree, FindsWhatALinearSearchFinds) {
     }
     std::sort(found.begin(), found.end());
     ASSERT_EQ(found, expected) << "step " << step;
+    if (step % 500 == 0) {
+      EXPECT_EQ(tree.first_inconsistency(), std::nullopt);
+    }
   }
+  EXPECT_EQ(tree.size(), listed.size());
+}
+
+/// Breaks the contract: an item is in the tree once.
+TEST(AlternatingTree, SaysWhichItemItWouldNotFind) {
+  AlternatingTree<3> tree({0, 0, 0}, {1, 1, 1});
+  tree.insert(4, {0.2, 0.2, 0.2});
+  tree.insert(7, {0.7, 0.2, 0.2});
+  EXPECT_EQ(tree.first_inconsistency(), std::nullopt);
+  EXPECT_EQ(tree.first_inconsistency(5), "item 5 is not in the tree");
+  tree.insert(7, {0.1, 0.9, 0.2});
+  EXPECT_EQ(tree.first_inconsistency(), "item 7 is not where the tree looks for it");
 }
 
 }  // namespace

@@ -46,6 +46,23 @@ TEST(ClassicFront, FindsFacesByTheirBoxes) {
   EXPECT_EQ(found, expected);
 }
 
+/// Both break the contract: a face has three corners, which are vertices.
+TEST(ClassicFront, SaysWhichFaceIsWrong) {
+  const auto complaint = [](const std::vector<Triangle>& faces) -> std::string {
+    ClassicFront front({{0, 0, 0}, {1, 1, 1}});
+    for (const Vec3 p : {Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 1, 0}}) front.add_vertex(p);
+    try {
+      for (const Triangle& t : faces) front.add_face(t);
+      front.remove_face(0);
+      return front.first_inconsistency().value_or("");
+    } catch (const std::logic_error& error) {
+      return error.what();
+    }
+  };
+  EXPECT_EQ(complaint({{0, 1, 2}, {0, 2, 1}}), "");
+  EXPECT_EQ(complaint({{0, 1, 2}, {0, 2, 2}}), "face 1 has a corner twice");
+}
+
 TEST(FillClassic, FillsExactlyTheSurface) {
   for (const SurfaceMesh& s :
        {testing::cube(4), testing::icosphere(2), testing::torus(24, 12), testing::hollow_sphere(2),
