@@ -1,5 +1,7 @@
 #include "cavity/excavation.h"
 
+#include <octafront/error.h>
+
 #include "cavity/open_edge.h"
 #include "core/validate.h"
 #include "mesh/face_table.h"
@@ -27,7 +29,13 @@ std::vector<Wall> Excavation::walls() const {
 
 void Excavation::toggle(const Wall& wall) {
   const auto [it, is_new] = walls_.try_emplace(face_key(wall), wall);
-  if (!is_new) walls_.erase(it);
+  if (is_new) return;
+  if (is_even(it->second) == is_even(wall)) {
+    const auto& [a, b, c] = wall;
+    throw MeshingError("tetrahedra overlap at the face (" + std::to_string(a) + ", " + std::to_string(b) + ", " +
+                       std::to_string(c) + "); check the surface for self-intersections");
+  }
+  walls_.erase(it);
 }
 
 void Excavation::take_out(TetIndex t) {

@@ -1,5 +1,7 @@
 #include "cavity/excavation.h"
 
+#include <octafront/error.h>
+
 #include "cavity/open_edge.h"
 #include "support/named_surfaces.h"
 
@@ -75,6 +77,16 @@ TEST(Excavation, RunsIntoOtherCavitiesAndTakesThemAlong) {
   e.commit();
   EXPECT_TRUE(cavities.walls(0).empty());
   EXPECT_TRUE(mesh.take_tets().empty());
+}
+
+TEST(Excavation, SaysWhereTetrahedraOverlap) {
+  SixInACube c;
+  const Tet missing = c.tets.back();
+  c.tets.back() = c.tets[2];  // twice the same space, as fronts fill a surface that crosses itself
+  WorkMesh mesh(c.points, c.tets);
+  Cavities cavities(walls_around(missing));
+  EXPECT_THROW(Excavation({mesh, cavities, 0}).grow_ring(), MeshingError);
+  EXPECT_EQ(mesh.take_tets(), c.tets);
 }
 
 TEST(WorkMesh, FindsTheTetrahedronBehindAFace) {
