@@ -6,7 +6,6 @@
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/parallel_invoke.h>
-#include <oneapi/tbb/task_arena.h>
 
 namespace octafront {
 
@@ -21,11 +20,6 @@ void parallel_ranges(std::size_t n, Split split, FunctionRef<void(std::size_t be
 
 void parallel_invoke(FunctionRef<void()> a, FunctionRef<void()> b) {
   tbb::parallel_invoke(a, b);
-}
-
-void on_threads(int threads, FunctionRef<void()> body) {
-  tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
-  arena.execute([&body] { body(); });
 }
 
 struct ThreadSlots::Impl {

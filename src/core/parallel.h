@@ -29,9 +29,6 @@ void parallel_for(std::size_t n, const Body& body, Split split = Split::kAdaptiv
 /// Both, at the same time where there is a thread for it.
 void parallel_invoke(FunctionRef<void()> a, FunctionRef<void()> b);
 
-/// Calls body, whose parallel work then keeps to so many threads; 0: as many as the machine has.
-void on_threads(int threads, FunctionRef<void()> body);
-
 /// A pointer for each thread that asks.
 class ThreadSlots {
  public:

@@ -49,11 +49,9 @@ PassResult for_each_block(EditMesh& mesh, std::vector<TetIndex> tets, const RunC
   for (int stage = 0; stage < EditBlocks::kStages && !tets.empty(); ++stage) {
     EditBlocks blocks(mesh, tets, stage, adds_vertices);
     auto& shares = blocks.shares();
-    on_threads(context.threads, [&] {
-      parallel_for(shares.size(), [&](std::size_t b) {
-        context.check();
-        shares[b].result = work(shares[b].block, shares[b].tets, shares[b].left);
-      });
+    parallel_for(shares.size(), [&](std::size_t b) {
+      context.check();
+      shares[b].result = work(shares[b].block, shares[b].tets, shares[b].left);
     });
     for (const EditBlocks::Share& s : shares) sum += s.result;
     tets = blocks.finish();

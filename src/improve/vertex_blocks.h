@@ -23,16 +23,14 @@ class VertexBlocks {
   template <typename Work>
   PassResult run(const RunContext& context, Work&& work) const {
     PassResult sum;
-    on_threads(context.threads, [&] {
-      for (const auto& stage : stages_) {
-        std::vector<PassResult> results(stage.size());
-        parallel_for(stage.size(), [&](std::size_t b) {
-          context.check();
-          results[b] = work(stage[b]);
-        });
-        for (const PassResult& r : results) sum += r;
-      }
-    });
+    for (const auto& stage : stages_) {
+      std::vector<PassResult> results(stage.size());
+      parallel_for(stage.size(), [&](std::size_t b) {
+        context.check();
+        results[b] = work(stage[b]);
+      });
+      for (const PassResult& r : results) sum += r;
+    }
     return sum;
   }
 

@@ -1,5 +1,7 @@
 #include "core/parallel.h"
 
+#include "core/thread_limit.h"
+
 #include <algorithm>
 #include <atomic>
 #include <numeric>
@@ -27,7 +29,6 @@ TEST(Parallel, WhatABodyThrowsComesOut) {
     if (i == 17) throw std::runtime_error("seventeen");
   };
   EXPECT_THROW(parallel_for(1000, fail), std::runtime_error);
-  EXPECT_THROW(on_threads(2, [&] { parallel_for(1000, fail); }), std::runtime_error);
   EXPECT_THROW(parallel_invoke([&] { fail(17); }, [] {}), std::runtime_error);
 }
 
@@ -41,7 +42,8 @@ TEST(Parallel, InvokesBoth) {
 TEST(Parallel, KeepsToItsThreads) {
   const auto caller = std::this_thread::get_id();
   std::atomic<int> elsewhere = 0;
-  on_threads(1, [&] { parallel_for(1000, [&](std::size_t) { elsewhere += std::this_thread::get_id() != caller; }); });
+  const ThreadLimit one(1);
+  parallel_for(1000, [&](std::size_t) { elsewhere += std::this_thread::get_id() != caller; });
   EXPECT_EQ(elsewhere, 0);
 }
 

@@ -3,6 +3,7 @@
 #include <octafront/quality.h>
 #include <octafront/validity.h>
 
+#include "core/thread_limit.h"
 #include "improve/improve.h"
 #include "improve/passes.h"
 #include "improve/start_meshes.h"
@@ -114,11 +115,10 @@ TEST(Boundary, IsTheSameOnAnyNumberOfThreads) {
   const BoundaryInput input{cube.surface, tree, cube.features, of_mesh};
   TetMesh once;
   for (const int threads : {1, 2, 3, 8}) {
-    RunContext context;
-    context.threads = threads;
+    const ThreadLimit limit(threads);
     TetMesh mesh = start;
     StageReport report;
-    improve_mesh(mesh, &input, {}, {context, report});
+    improve_mesh(mesh, &input, {}, {{}, report});
     if (threads == 1) once = mesh;
     EXPECT_EQ(mesh, once) << threads;
     EXPECT_TRUE(std::any_of(start.boundary.begin(), start.boundary.end(),

@@ -3,6 +3,7 @@
 #include <octafront/error.h>
 #include <octafront/quality.h>
 
+#include "core/thread_limit.h"
 #include "improve/shape.h"
 #include "improve/start_meshes.h"
 
@@ -20,9 +21,8 @@ TetMesh improved(TetMesh mesh, Level level, int threads = 0) {
   ImproveOptions options;
   options.level = level;
   StageReport report;
-  RunContext context;
-  context.threads = threads;
-  improve_mesh(mesh, nullptr, options, {context, report});
+  const ThreadLimit limit(threads);
+  improve_mesh(mesh, nullptr, options, {{}, report});
   return mesh;
 }
 

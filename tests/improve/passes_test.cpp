@@ -1,5 +1,6 @@
 #include "improve/passes.h"
 
+#include "core/thread_limit.h"
 #include "geometry/measures.h"
 #include "geometry/predicates.h"
 #include "improve/edit_blocks.h"
@@ -303,9 +304,8 @@ TEST(FewestPoor, MovesAreTheSameForAnyNumberOfThreads) {
   const TetMesh start = perturbed(kuhn_cube(4), 0.3, 3);
   EditMesh one{TetMesh{start}}, many{TetMesh{start}};
   for (int threads : {1, 4}) {
-    RunContext context;
-    context.threads = threads;
-    relieve_vertices(threads == 1 ? one : many, 0.4f, context);
+    const ThreadLimit limit(threads);
+    relieve_vertices(threads == 1 ? one : many, 0.4f, {});
   }
   EXPECT_EQ(one.release().points, many.release().points);
 }
