@@ -11,8 +11,12 @@ constexpr std::size_t kMostFaces = 5;  // more are no help in a sentence
 
 }  // namespace
 
+std::string noun(std::uint64_t n, const std::string& one, const std::string& many) {
+  return n == 1 ? one : many.empty() ? one + "s" : many;
+}
+
 std::string counted(std::uint64_t n, const std::string& one, const std::string& many) {
-  return fmt::format("{} {}", n, n == 1 ? one : many.empty() ? one + "s" : many);
+  return fmt::format("{} {}", n, noun(n, one, many));
 }
 
 std::string in_faces(std::span<const std::uint32_t> faces) {

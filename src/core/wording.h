@@ -8,6 +8,9 @@
 
 namespace octafront {
 
+/// "hole", "holes"; `many` where it is not `one` with an s.
+std::string noun(std::uint64_t n, const std::string& one, const std::string& many = "");
+
 /// "1 hole", "3 holes"; `many` where it is not `one` with an s.
 std::string counted(std::uint64_t n, const std::string& one, const std::string& many = "");
 

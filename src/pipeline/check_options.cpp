@@ -20,15 +20,15 @@ void require(bool holds, const char* sentence) {
 void check_options(const Options& options) {
   check_size_options(options.size);
   const SurfaceOptions& surface = options.surface;
-  require(surface.feature_angle > 0 && surface.feature_angle < 180, "feature-angle is in degrees, between 0 and 180");
+  require(surface.feature_angle > 0 && surface.feature_angle < 180, "`feature_angle` is in degrees, between 0 and 180");
   require(!surface.max_deviation || (std::isfinite(*surface.max_deviation) && *surface.max_deviation > 0),
-          "max-deviation is a distance in the units of the input, above 0");
+          "`max_deviation` is a distance in the units of the input, above 0");
   require(!surface.normal_deviation || (*surface.normal_deviation > 0 && *surface.normal_deviation <= 90),
-          "normal-deviation is in degrees, above 0 and at most 90");
+          "`normal_deviation` is in degrees, above 0 and at most 90");
   require(!(keeps_surface(options) && (surface.max_deviation || surface.normal_deviation)),
-          "a surface that is kept does not deviate: max-deviation and normal-deviation cannot be given with it");
+          "a surface that is kept does not deviate: `max_deviation` and `normal_deviation` cannot be given with it");
   require(options.volume.ideal_distance >= 0.3 && options.volume.ideal_distance <= 1.5,
-          "ideal-distance is a multiple of the element size, between 0.3 and 1.5");
+          "`ideal_distance` is a multiple of the element size, between 0.3 and 1.5");
   check_improve_options(options.improve);
   require(!(surface.keep && traits_of(options.method).makes_own_boundary()),
           "the octree method makes a boundary of its own: it cannot keep the input's triangles");

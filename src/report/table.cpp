@@ -1,5 +1,7 @@
 #include <octafront/report.h>
 
+#include "core/wording.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -20,6 +22,23 @@ std::string grouped(std::uint64_t n) {
 std::string bar(double share) {
   constexpr int kWidth = 40;
   return std::string(static_cast<std::size_t>(std::lround(share * kWidth)), '#');
+}
+
+std::string counted_in_groups(std::uint64_t n, const std::string& one, const std::string& many = "") {
+  return grouped(n) + " " + noun(n, one, many);
+}
+
+std::string count_line(const Report& report) {
+  const std::string vertices = counted_in_groups(report.points, "vertex", "vertices");
+  if (report.tets == 0) {
+    if (report.boundary_faces == 0) return "";
+    return counted_in_groups(report.boundary_faces, "triangle") + ", " + vertices + "\n";
+  }
+  std::string line = counted_in_groups(report.tets, "tetrahedron", "tetrahedra") + ", " + vertices + ", " +
+                     counted_in_groups(report.boundary_faces, "boundary triangle");
+  // Nobody counts the bodies of a mesh that was there before, and an open surface has none.
+  if (report.bodies > 0) line += ", " + counted(report.bodies, "body", "bodies");
+  return line + "\n";
 }
 
 std::string stage_lines(const Report& report) {
@@ -59,15 +78,10 @@ std::string size_line(const char* what, const SizeSummary& s) {
 
 std::string to_table(const Report& report) {
   std::string out;
-  if (report.tets > 0)
-    out += fmt::format("{} tetrahedra, {} vertices, {} boundary triangles, {} {}\n", grouped(report.tets),
-                       grouped(report.points), grouped(report.boundary_faces), report.bodies,
-                       report.bodies == 1 ? "body" : "bodies");
-  else if (report.boundary_faces > 0)
-    out += fmt::format("{} triangles, {} vertices\n", grouped(report.boundary_faces), grouped(report.points));
+  out += count_line(report);
   if (report.expected_tets > 0)
-    out += fmt::format("{} tetrahedra expected from the sizes\n",
-                       grouped(static_cast<std::uint64_t>(report.expected_tets)));
+    out += counted_in_groups(static_cast<std::uint64_t>(report.expected_tets), "tetrahedron", "tetrahedra") +
+           " expected from the sizes\n";
   if (report.boundary_faces > 0)
     out += fmt::format("volume {:.6g} (input {:.6g}, {:+.3f} %)\n", report.volume, report.input_volume,
                        100 * (report.volume / report.input_volume - 1));

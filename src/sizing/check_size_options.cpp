@@ -17,7 +17,7 @@ void require(bool holds, const std::string& sentence) {
 
 void require_positive(const char* name, const std::optional<double>& value) {
   require(!value || (std::isfinite(*value) && *value > 0),
-          fmt::format("{} must be a number above 0, but is {}", name, value.value_or(0)));
+          fmt::format("`{}` must be a number above 0, but is {}", name, value.value_or(0)));
 }
 
 }  // namespace
@@ -25,24 +25,24 @@ void require_positive(const char* name, const std::optional<double>& value) {
 void check_size_options(const SizeOptions& o) {
   require_positive("size", o.size);
   require_positive("gap", o.gap);
-  require_positive("max-deviation", o.chord_error);
-  require_positive("feature-elements", o.feature_elements);
-  require_positive("min-size", o.min_size);
-  require_positive("max-size", o.max_size);
+  require_positive("max_deviation", o.chord_error);
+  require_positive("feature_elements", o.feature_elements);
+  require_positive("min_size", o.min_size);
+  require_positive("max_size", o.max_size);
   require(!o.elements || *o.elements >= 1,
-          fmt::format("elements must be at least 1, but is {}", o.elements.value_or(0)));
+          fmt::format("`elements` must be at least 1, but is {}", o.elements.value_or(0)));
   require(!o.elements || *o.elements <= kMostElements,
-          fmt::format("elements is {}, but a mesh can hold {} at most", o.elements.value_or(0), kMostElements));
-  require(!(o.size && o.elements), "size and elements contradict each other: give one of them");
+          fmt::format("`elements` is {}, but a mesh can hold {} at most", o.elements.value_or(0), kMostElements));
+  require(!(o.size && o.elements), "`size` and `elements` contradict each other: give one of them");
   require(!o.curvature || (std::isfinite(*o.curvature) && *o.curvature >= 3),
-          fmt::format("curvature counts elements per full turn and must be at least 3, but is {}",
+          fmt::format("`curvature` counts elements per full turn and must be at least 3, but is {}",
                       o.curvature.value_or(0)));
   require(!(o.min_size && o.max_size) || *o.min_size <= *o.max_size,
-          fmt::format("min-size {} is larger than max-size {}", o.min_size.value_or(0), o.max_size.value_or(0)));
+          fmt::format("`min_size` {} is larger than `max_size` {}", o.min_size.value_or(0), o.max_size.value_or(0)));
   require(!(o.size && o.min_size) || *o.size >= *o.min_size,
-          fmt::format("size {} is smaller than min-size {}", o.size.value_or(0), o.min_size.value_or(0)));
+          fmt::format("`size` {} is smaller than `min_size` {}", o.size.value_or(0), o.min_size.value_or(0)));
   require(!(o.size && o.max_size) || *o.size <= *o.max_size,
-          fmt::format("size {} is larger than max-size {}", o.size.value_or(0), o.max_size.value_or(0)));
+          fmt::format("`size` {} is larger than `max_size` {}", o.size.value_or(0), o.max_size.value_or(0)));
   const bool has_source = o.size || o.elements || o.curvature || o.gap || o.feature_elements || o.facets ||
                           o.min_size || o.max_size || !o.regions.empty() || !o.point_sizes.empty() || o.callback;
   require(!(o.field && has_source),
@@ -63,7 +63,7 @@ void check_size_options(const SizeOptions& o) {
                     r.lo.x, r.lo.y, r.lo.z, r.size, r.radius));
   }
   require(o.gradation >= 0.01 && o.gradation <= 1,
-          fmt::format("grading is {}: it must lie between 0.01 (slow growth) and 1 (fast)", o.gradation));
+          fmt::format("`gradation` is {}: it must lie between 0.01 (slow growth) and 1 (fast)", o.gradation));
 }
 
 }  // namespace octafront

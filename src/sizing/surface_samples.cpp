@@ -29,11 +29,10 @@ class Sampler {
     const double longest = std::max({ab, bc, ca});
     if (longest <= h * h) {
       if (samples_.size() == kMostSamples) {
-        throw OptionError(
-            fmt::format("sizes as small as {:.4g} near ({:.6g}, {:.6g}, {:.6g}) are too small for this surface: its "
-                        "background grid "
-                        "alone would need more than {} samples; ask for larger sizes or give a min-size",
-                        h, p.x, p.y, p.z, kMostSamples));
+        throw OptionError(fmt::format(
+            "sizes as small as {:.4g} near ({:.6g}, {:.6g}, {:.6g}) are too small for this surface: its "
+            "background grid alone would need more than {} samples; ask for larger sizes or give a `min_size`",
+            h, p.x, p.y, p.z, kMostSamples));
       }
       samples_.push_back({p, n, h, kReachOfEdge * std::sqrt(longest), triangle_area(a, b, c)});
     } else if (longest == ab) {

@@ -71,6 +71,7 @@ class CommandLine(unittest.TestCase):
             self.run_cli("mesh", self.part, "-o", start, "--size", 0.2, "--improve", "none")
             done = self.run_cli("improve", start, "-o", out, "--surface", self.part, "--json", report)
             self.assertIn("improved:", done.stdout)
+            self.assertNotIn("0 bodies", done.stdout)
             self.assertGreater(json.loads(report.read_text())["quality"]["beta_mean"], 0.7)
             self.assertIn("a valid mesh", self.run_cli("check", out).stdout)
 
@@ -140,7 +141,7 @@ class CommandLine(unittest.TestCase):
         self.run_cli("mesh", self.part, "-o", self.dir / "o.unknown", status=2)
         self.run_cli("mesh", self.part, "-o", self.dir / "o.vtu", "--interior", "dense", status=2)
         done = self.run_cli("mesh", self.part, "-o", self.dir / "o.vtu", "--size", 1, "--elements", 10, status=2)
-        self.assertIn("contradict", done.stderr)
+        self.assertIn("--size and --elements contradict", done.stderr)
         self.assertNotIn("o.vtu", self.files())
 
     def test_help_and_version(self):
@@ -352,6 +353,7 @@ class CommandLine(unittest.TestCase):
         for bad in (["--size", -1], ["--gradation", 7], ["--grading", 7], ["--feature-angle", 999]):
             done = self.run_cli("mesh", self.dir / "absent.stl", "-o", self.dir / "o.vtu", *bad, status=2)
             self.assertNotIn("absent", done.stderr)
+            self.assertIn(bad[0].replace("grading", "gradation") + " ", done.stderr)
 
     def test_errors_name_the_file_at_fault(self):
         out, absent = self.dir / "o.vtu", self.dir / "absent"

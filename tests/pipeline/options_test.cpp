@@ -25,41 +25,41 @@ TEST(Options, RefusesWhatContradictsItself) {
   o = {};
   o.size.min_size = 2;
   o.size.max_size = 1;
-  expect_refused(o, "larger than max-size");
+  expect_refused(o, "larger than `max_size`");
 }
 
 TEST(Options, RefusesValuesOutOfRange) {
   for (const double h : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
     Options o;
     o.size.size = h;
-    expect_refused(o, "size must be a number above 0");
+    expect_refused(o, "`size` must be a number above 0");
   }
   Options o;
   o.size.curvature = 2;
   expect_refused(o, "at least 3");
   o = {};
   o.size.gradation = 0;
-  expect_refused(o, "grading");
+  expect_refused(o, "`gradation` is 0");
   o = {};
   o.surface.feature_angle = 180;
-  expect_refused(o, "feature-angle");
+  expect_refused(o, "`feature_angle`");
   o = {};
   o.size.elements = 0;
-  expect_refused(o, "elements must be at least 1");
+  expect_refused(o, "`elements` must be at least 1");
 }
 
 // Before any work: not when improvement begins, after the volume was filled.
 TEST(Options, RefusesImprovementOutOfRange) {
   Options o;
   o.improve.relaxation = 1.5;
-  expect_refused(o, "relaxation is 1.5");
+  expect_refused(o, "`relaxation` is 1.5");
   o = {};
   o.improve.sweeps = -1;
-  expect_refused(o, "sweeps is -1");
+  expect_refused(o, "`sweeps` is -1");
   for (const double seconds : {-1.0, std::nan("")}) {
     o = {};
     o.improve.seconds = seconds;
-    expect_refused(o, "time for improvement");
+    expect_refused(o, "`seconds` is ");
   }
 }
 
