@@ -1,6 +1,6 @@
 #pragma once
 
-#include <octafront/run_context.h>
+#include <octafront/no_context.h>
 #include <octafront/surface_mesh.h>
 
 #include <cstdint>
@@ -31,7 +31,7 @@ struct RepairedSurface {
 ///
 /// Throws InputError if indices are out of range, or coordinates not finite or above 1e50, Cancelled if `context` asks
 /// for it. Cost: O(n log n), about a second per million triangles.
-RepairedSurface repair_surface(const SurfaceMesh& soup, const RunContext& context = {});
+RepairedSurface repair_surface(const SurfaceMesh& soup, const RunContext& context = no_context());
 
 /// What keeps a surface from being meshed, found exactly.
 struct SurfaceDefects {
@@ -58,6 +58,6 @@ struct SurfaceDefects {
 };
 
 /// Throws Cancelled if `context` asks for it. Cost: O(n log n), about a second per million triangles.
-SurfaceDefects find_defects(const RepairedSurface& repaired, const RunContext& context = {});
+SurfaceDefects find_defects(const RepairedSurface& repaired, const RunContext& context = no_context());
 
 }  // namespace octafront

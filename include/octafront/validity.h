@@ -1,6 +1,6 @@
 #pragma once
 
-#include <octafront/run_context.h>
+#include <octafront/no_context.h>
 #include <octafront/surface_mesh.h>
 #include <octafront/tet_mesh.h>
 
@@ -15,11 +15,11 @@ namespace octafront {
 ///   - the faces in one tet are exactly `boundary`, oriented outward, each once
 ///   - sum of the tet volumes equal to the volume that the boundary encloses, to rounding
 /// Throws Cancelled if `context` asks for it. Cost: O(tets), about 0.3 s per million.
-std::optional<std::string> first_defect(const TetMesh& mesh, const RunContext& context = {});
+std::optional<std::string> first_defect(const TetMesh& mesh, const RunContext& context = no_context());
 
 /// As above, and the boundary must be `surface`, triangle for triangle (same coordinates, same orientation; numbering
 /// and order are free).
 std::optional<std::string> first_defect(const TetMesh& mesh, const SurfaceMesh& surface,
-                                        const RunContext& context = {});
+                                        const RunContext& context = no_context());
 
 }  // namespace octafront

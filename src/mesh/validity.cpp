@@ -1,3 +1,4 @@
+#include <octafront/run_context.h>
 #include <octafront/validity.h>
 
 #include "geometry/measures.h"
