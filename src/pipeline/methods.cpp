@@ -21,8 +21,7 @@ TetMesh fill_by_classic_front(const Remeshed& boundary, const VolumeOptions& opt
 
 TetMesh fill_by_recovery(const Remeshed& boundary, const VolumeOptions&, const Stage& stage) {
   TetMesh mesh = recover_volume(boundary.surface, stage);
-  mesh.region = regions_of(mesh, boundary.surface);
-  mesh.patch = boundary.surface.patch;
+  bind_to_surface(mesh, boundary.surface);
   return mesh;
 }
 

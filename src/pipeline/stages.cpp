@@ -228,7 +228,6 @@ Filled fill_surface(const Prepared& input, Remeshed boundary, Run& run) {
   });
   mesh.source.reserve(boundary.source.size());
   for (const std::uint32_t triangle : boundary.source) mesh.source.push_back(input.surface.mesh().source_of(triangle));
-  mesh.patch_names = boundary.surface.patch_names;
   return {std::move(mesh), std::move(boundary)};
 }
 

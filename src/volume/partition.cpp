@@ -1,6 +1,7 @@
 #include "volume/partition.h"
 
 #include "core/parallel.h"
+#include "mesh/index_range.h"
 
 #include <algorithm>
 #include <array>
@@ -107,6 +108,7 @@ class Divider {
 }  // namespace
 
 FrontBlock FrontBlock::whole(const FrontState& front) {
+  require_in_range(front.faces(), kMostFaces, "faces of the front");
   FrontBlock block;
   block.territory = {{-kInfinity, -kInfinity, -kInfinity}, {kInfinity, kInfinity, kInfinity}};
   block.members.resize(front.faces());

@@ -13,11 +13,12 @@ struct FrontBlock {
     std::uint32_t face : 31;  ///< number in the FrontState
     std::uint32_t owned : 1;  ///< its centroid lies in this block, and in no other
   };
-  Box3 territory;               ///< open; infinite where no other block lies
+  static constexpr std::uint64_t kMostFaces = std::uint64_t{1} << 31;  ///< that Member::face tells apart
+  Box3 territory;                                                      ///< open; infinite where no other block lies
   std::vector<Member> members;  ///< every face that reaches into the territory, in ascending order
   std::size_t queued = 0;       ///< owned faces of the queue
 
-  /// Everything in one block.
+  /// Everything in one block. Throws MeshingError if the front has more than kMostFaces.
   static FrontBlock whole(const FrontState& front);
 };
 

@@ -3,6 +3,8 @@
 #include "core/disjoint_sets.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <vector>
 
 namespace octafront {
 
@@ -16,8 +18,7 @@ bool has_one_shell(const SurfaceMesh& surface) {
                      [&](const Triangle& t) { return sets.find(t[0]) == first; });
 }
 
-}  // namespace
-
+/// Of the bodies, per tetrahedron; empty if there is only one.
 std::vector<std::uint32_t> regions_of(const TetMesh& mesh, const SurfaceMesh& surface) {
   if (has_one_shell(surface)) return {};
   // What tetrahedra connect: a body's outer shell and its cavities.
@@ -34,6 +35,8 @@ std::vector<std::uint32_t> regions_of(const TetMesh& mesh, const SurfaceMesh& su
   for (const Tet& t : mesh.tets) region.push_back(number[sets.find(t[0])]);
   return region;
 }
+
+}  // namespace
 
 void bind_to_surface(TetMesh& mesh, const SurfaceMesh& surface) {
   mesh.region = regions_of(mesh, surface);
