@@ -58,10 +58,11 @@ class BoundaryRecovery {
   // Edges.
   std::vector<Edge> missing_edges();
   void recover_edges(const std::vector<Edge>& wanted);
-  bool edge_by_flips(VertexIndex a, VertexIndex b);
-  bool improve_once(const SegmentHindrance& hindrance, bool random);
+  /// `walk`: where the segment passes now; present if it is an edge.
+  bool edge_by_flips(VertexIndex a, VertexIndex b, SegmentWalk& walk);
+  bool improve_once(const SegmentWalk& walk, const SegmentHindrance& hindrance, bool random);
   bool improve_at(const Crossing& c, const SegmentHindrance& hindrance, bool random);
-  VertexIndex divide_edge(VertexIndex a, VertexIndex b);
+  VertexIndex divide_edge(VertexIndex a, VertexIndex b, const std::vector<Crossing>& crossings);
   VertexIndex place_inside(VertexIndex a, VertexIndex b, TetIndex tet, double enter, double leave);
   VertexIndex place_at_crossing(VertexIndex a, VertexIndex b, const Crossing& c, double at);
   void insert(VertexIndex s, std::span<const TetIndex> tets);
@@ -109,7 +110,6 @@ class BoundaryRecovery {
   const RunContext& context_;
   std::size_t most_points_;
   RecoveryCounts counts_;
-  SegmentWalk walk_;
   std::vector<Carrier> carrier_;  ///< of vertex frame_ + kFrameVertices + i
   EdgeRing ring_;
   std::uint32_t random_;

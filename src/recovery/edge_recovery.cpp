@@ -57,42 +57,43 @@ std::vector<Edge> BoundaryRecovery::missing_edges() {
 
 void BoundaryRecovery::recover_edges(const std::vector<Edge>& wanted) {
   std::deque<Edge> queue(wanted.begin(), wanted.end());
+  SegmentWalk walk;
   while (!queue.empty()) {
     context_.check();
     const auto [a, b] = queue.front();
     queue.pop_front();
-    if (edge_by_flips(a, b)) {
+    if (edge_by_flips(a, b, walk)) {
       ++counts_.edges_by_flips;
       continue;
     }
     if (carrier_.size() > most_points_) throw TooManyPoints();
-    const VertexIndex s = divide_edge(a, b);
+    const VertexIndex s = divide_edge(a, b, walk.crossings);
     surface_.split_edge(a, b, s);
     queue.push_front({s, b});
     queue.push_front({a, s});
   }
 }
 
-bool BoundaryRecovery::edge_by_flips(VertexIndex a, VertexIndex b) {
+bool BoundaryRecovery::edge_by_flips(VertexIndex a, VertexIndex b, SegmentWalk& walk) {
   const SegmentHindrance hindrance(points_, a, b, frame_);
   bool random_pass = false;
   for (int idle = 0; idle < (strict_ ? 1 : kRandomPasses);) {
-    walk_segment(points_, mesh_, a, b, kMaxCrossings, walk_);
-    if (walk_.present) return true;
-    if (walk_.crossings.size() > kFlippedCrossings) return false;
-    if (strict_ && (walk_.crossings.size() > 1 || walk_.crossings[0].is_edge)) return false;
-    const bool improved = improve_once(hindrance, random_pass);
+    walk_segment(points_, mesh_, a, b, kMaxCrossings, walk);
+    if (walk.present) return true;
+    if (walk.crossings.size() > kFlippedCrossings) return false;
+    if (strict_ && (walk.crossings.size() > 1 || walk.crossings[0].is_edge)) return false;
+    const bool improved = improve_once(walk, hindrance, random_pass);
     idle += random_pass;
     random_pass = !improved;
   }
-  walk_segment(points_, mesh_, a, b, kMaxCrossings, walk_);
-  return walk_.present;
+  walk_segment(points_, mesh_, a, b, kMaxCrossings, walk);
+  return walk.present;
 }
 
-bool BoundaryRecovery::improve_once(const SegmentHindrance& hindrance, bool random_pass) {
-  const std::size_t n = walk_.crossings.size(), first = random_pass ? random() % n : 0;
+bool BoundaryRecovery::improve_once(const SegmentWalk& walk, const SegmentHindrance& hindrance, bool random_pass) {
+  const std::size_t n = walk.crossings.size(), first = random_pass ? random() % n : 0;
   for (std::size_t k = 0; k < n; ++k) {
-    if (improve_at(walk_.crossings[(first + k) % n], hindrance, random_pass)) return true;
+    if (improve_at(walk.crossings[(first + k) % n], hindrance, random_pass)) return true;
     if (random_pass) break;  // the mesh may have changed
   }
   return false;
@@ -153,13 +154,12 @@ void BoundaryRecovery::refuse_intersection(Vec3 at) const {
   throw MeshingError(fmt::format("the surface intersects itself near ({}, {}, {}); repair it there", at.x, at.y, at.z));
 }
 
-VertexIndex BoundaryRecovery::divide_edge(VertexIndex a, VertexIndex b) {
-  for (const Crossing& c : walk_.crossings) {
+VertexIndex BoundaryRecovery::divide_edge(VertexIndex a, VertexIndex b, const std::vector<Crossing>& crossings) {
+  for (const Crossing& c : crossings) {
     if (c.is_edge && surface_.edges().contains(c.x, c.y)) refuse_intersection(points_.at(c.x));
     if (!c.is_edge && mesh_.label(c.face) != kNone) refuse_intersection(points_.at(mesh_.face(c.face)[0]));
   }
   learn_planes();
-  const std::vector<Crossing>& crossings = walk_.crossings;
   // Where along the segment the crossings lie, about.
   const Vec3 pa = points_.at(a), direction = points_.at(b) - pa;
   std::vector<double> at;

@@ -12,6 +12,17 @@ namespace {
 constexpr int kRounds = 4;
 // Candidates that are compared before the best is taken.
 constexpr int kEnoughCandidates = 12;
+// Places are tried ever nearer to the surface, each height so many times the last, from as many times the star's size.
+constexpr double kNextHeight = 0.7;
+// The places in sight of the whole star get fewer as a point is nearer to it, their elements flatter: once one was
+// found, this many heights more are looked at.
+constexpr int kHeightsAfterFirst = 8;
+// Nearer than this, in parts of the coordinates and the star, rounding leaves the point where it is.
+constexpr double kLowest = 1e-17;
+// Directions at each height: to the middle of the star, inward, and between the two by chance, in every round more.
+constexpr int kDirections = 4, kMoreEachRound = 2;
+// How far chance leads away from there, by turns: wide for stars that are hardly open, narrow for the good ones.
+constexpr double kWide = 1.5, kNarrow = 0.5;
 // Cavities larger than this bring distant elements in for nothing.
 constexpr std::size_t kMaxCavity = 400;
 
@@ -248,12 +259,7 @@ double SteinerLift::cavity_quality(Vec3 x, const std::vector<TetComplex::Boundar
   return worst;
 }
 
-bool SteinerLift::place(VertexIndex s, Vec3 x, const std::vector<Fan>& fans,
-                        const std::vector<TetComplex::BoundaryFace>& boundary) {
-  for (const Fan& fan : fans) {
-    const Triangle& t = triangles_[fan.parent];
-    if (points_.orient(t[0], t[1], t[2], x) >= 0) return false;
-  }
+bool SteinerLift::place(VertexIndex s, Vec3 x, const std::vector<TetComplex::BoundaryFace>& boundary) {
   if (!grow_cavity(s, x, kMaxCavity)) return false;
   std::vector<Tet> fresh;
   const auto cone = [&](const Triangle& f) { fresh.push_back({f[0], f[2], f[1], s}); };
@@ -264,48 +270,58 @@ bool SteinerLift::place(VertexIndex s, Vec3 x, const std::vector<Fan>& fans,
   return true;
 }
 
-bool SteinerLift::lift(VertexIndex s, int round) {
-  const std::vector<Fan> fans = fans_around(s);
-  std::vector<TetComplex::BoundaryFace> boundary;
-  for (const Fan& fan : fans) {
-    if (!triangulate(fan, boundary)) return false;
-  }
-  const Vec3 at = points_.at(s);
-  Vec3 inward, middle;
+// The plane of no fan hides x.
+bool SteinerLift::sees_fans(Vec3 x, const std::vector<Fan>& fans) const {
+  return std::ranges::all_of(fans, [&](const Fan& fan) {
+    const Triangle& t = triangles_[fan.parent];
+    return points_.orient(t[0], t[1], t[2], x) < 0;
+  });
+}
+
+SteinerLift::Outlook SteinerLift::outlook(VertexIndex s, const std::vector<Fan>& fans) const {
+  Outlook out;
   for (const Fan& fan : fans) {
     const Triangle& t = triangles_[fan.parent];
     const Vec3 a = points_.at(t[0]);
-    inward -= normalized(cross(points_.at(t[1]) - a, points_.at(t[2]) - a));
+    out.inward -= normalized(cross(points_.at(t[1]) - a, points_.at(t[2]) - a));
   }
-  inward = normalized(inward);
-  double size = 0;
+  out.inward = normalized(out.inward);
+  const Vec3 at = points_.at(s);
   std::size_t n = 0;
   for (const TetIndex t : star_) {
     for (const VertexIndex v : mesh_.tets[t]) {
       if (v == s) continue;
-      middle += points_.at(v) - at;
-      size = std::max(size, distance(points_.at(v), at));
+      out.middle += points_.at(v) - at;
+      out.size = std::max(out.size, distance(points_.at(v), at));
       ++n;
     }
   }
-  middle = middle / static_cast<double>(n);
-  const double smallest = 1e-17 * (length(at) + size);
+  out.middle = out.middle / static_cast<double>(n);
+  return out;
+}
+
+Vec3 SteinerLift::direction(const Outlook& outlook, int k) {
+  const auto& [inward, middle, size] = outlook;
+  if (k == 0) return normalized(middle * (1 / size));
+  if (k == 1) return normalized(inward);
+  const Vec3 chance{random_unit() - 0.5, random_unit() - 0.5, random_unit() - 0.5};
+  return normalized(inward + middle * (2 / size) + chance * (k % 2 ? kWide : kNarrow));
+}
+
+std::optional<Vec3> SteinerLift::best_place(VertexIndex s, const std::vector<Fan>& fans,
+                                            const std::vector<TetComplex::BoundaryFace>& boundary, int round) {
+  const Vec3 at = points_.at(s);
+  const Outlook around = outlook(s, fans);
+  const double lowest = kLowest * (length(at) + around.size);
+  std::optional<Vec3> best;
   double best_quality = -1;
-  Vec3 best = at;
   int found = 0;
-  int tries_after_first = 0;
-  for (double h = 0.7; h * size > smallest && found < kEnoughCandidates; h *= 0.7) {
-    if (found > 0 && ++tries_after_first > 8) break;
-    for (int k = 0; k < 4 + 2 * round; ++k) {
-      Vec3 direction = k == 0 ? middle * (1 / size) : k == 1 ? inward : inward + middle * (2 / size);
-      if (k > 1) direction += Vec3{random_unit() - 0.5, random_unit() - 0.5, random_unit() - 0.5} * (k % 2 ? 1.5 : 0.5);
-      const Vec3 x = at + normalized(direction) * (h * size);
-      bool seen = true;
-      for (const Fan& fan : fans) {
-        const Triangle& t = triangles_[fan.parent];
-        seen = seen && points_.orient(t[0], t[1], t[2], x) < 0;
-      }
-      if (!seen || !grow_cavity(s, x, kMaxCavity)) continue;
+  int heights_after_first = 0;
+  for (double h = kNextHeight; h * around.size > lowest && found < kEnoughCandidates; h *= kNextHeight) {
+    if (found > 0 && ++heights_after_first > kHeightsAfterFirst) break;
+    for (int k = 0; k < kDirections + kMoreEachRound * round; ++k) {
+      const Vec3 x = at + direction(around, k) * (h * around.size);
+      if (!sees_fans(x, fans) || !grow_cavity(s, x, kMaxCavity)) continue;
       ++found;
       const double q = cavity_quality(x, boundary);
       if (q <= best_quality) continue;
@@ -313,7 +329,17 @@ bool SteinerLift::lift(VertexIndex s, int round) {
       best = x;
     }
   }
-  return found > 0 && place(s, best, fans, boundary);
+  return best;
+}
+
+bool SteinerLift::lift(VertexIndex s, int round) {
+  const std::vector<Fan> fans = fans_around(s);
+  std::vector<TetComplex::BoundaryFace> boundary;
+  for (const Fan& fan : fans) {
+    if (!triangulate(fan, boundary)) return false;
+  }
+  const std::optional<Vec3> x = best_place(s, fans, boundary, round);
+  return x && place(s, *x, boundary);
 }
 
 std::vector<VertexIndex> SteinerLift::run() {

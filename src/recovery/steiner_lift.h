@@ -6,6 +6,7 @@
 #include "recovery/exact_point.h"
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace octafront::recovery {
@@ -60,8 +61,20 @@ class SteinerLift {
   bool lift(VertexIndex s, int round);
   bool grow_cavity(VertexIndex s, Vec3 x, std::size_t limit);
   double cavity_quality(Vec3 x, const std::vector<TetComplex::BoundaryFace>& boundary) const;
-  bool place(VertexIndex s, Vec3 x, const std::vector<Fan>& fans,
-             const std::vector<TetComplex::BoundaryFace>& boundary);
+  /// What lies around a point on the surface.
+  struct Outlook {
+    Vec3 inward, middle;  ///< inward: a unit vector; middle: from the point to the mean of its star's vertices
+    double size = 0;      ///< distance of the farthest of them
+  };
+  Outlook outlook(VertexIndex s, const std::vector<Fan>& fans) const;
+  /// The k-th direction in which a place is sought.
+  Vec3 direction(const Outlook& outlook, int k);
+  bool sees_fans(Vec3 x, const std::vector<Fan>& fans) const;
+  /// Inside, where the worst element of the cavity around it is best; `boundary`: the faces without s.
+  std::optional<Vec3> best_place(VertexIndex s, const std::vector<Fan>& fans,
+                                 const std::vector<TetComplex::BoundaryFace>& boundary, int round);
+  /// Moves s there. False if its cavity cannot be grown.
+  bool place(VertexIndex s, Vec3 x, const std::vector<TetComplex::BoundaryFace>& boundary);
   double random_unit();
 
   ExactPoints& points_;
