@@ -52,13 +52,13 @@ void Canvas::rectangle(double x, double y, double width, double height, Colour f
   cairo_fill(context_);
 }
 
-void Canvas::line(double x0, double y0, double x1, double y1, Colour colour, double width, bool dashed) {
-  set(colour);
+void Canvas::line(Point from, Point to, const Stroke& stroke) {
+  set(stroke.colour);
   const double dashes[] = {4, 3};
-  cairo_set_dash(context_, dashes, dashed ? 2 : 0, 0);
-  cairo_set_line_width(context_, width);
-  cairo_move_to(context_, x0, y0);
-  cairo_line_to(context_, x1, y1);
+  cairo_set_dash(context_, dashes, stroke.dashed ? 2 : 0, 0);
+  cairo_set_line_width(context_, stroke.width);
+  cairo_move_to(context_, from.x, from.y);
+  cairo_line_to(context_, to.x, to.y);
   cairo_stroke(context_);
 }
 
@@ -76,12 +76,13 @@ double Canvas::width_of(const std::string& text, double size) {
   return extents.x_advance;
 }
 
-void Canvas::text(double x, double y, const std::string& text, double size, Align align, Colour colour, bool upward) {
+void Canvas::text(Point at, const std::string& text, const TextStyle& style) {
+  const auto& [size, align, colour, upward] = style;
   const double shift = align == Align::kLeft ? 0 : width_of(text, size) * (align == Align::kMiddle ? 0.5 : 1);
   set(colour);
   cairo_set_font_size(context_, size);
   cairo_save(context_);
-  cairo_translate(context_, x, y);
+  cairo_translate(context_, at.x, at.y);
   if (upward) cairo_rotate(context_, -std::numbers::pi / 2);
   cairo_move_to(context_, -shift, 0);
   cairo_show_text(context_, text.c_str());
@@ -114,9 +115,9 @@ namespace octafront::cli {
 
 void Canvas::set(Colour) {}
 void Canvas::rectangle(double, double, double, double, Colour) {}
-void Canvas::line(double, double, double, double, Colour, double, bool) {}
+void Canvas::line(Point, Point, const Stroke&) {}
 void Canvas::dot(double, double, double, Colour) {}
-void Canvas::text(double, double, const std::string&, double, Align, Colour, bool) {}
+void Canvas::text(Point, const std::string&, const TextStyle&) {}
 double Canvas::width_of(const std::string&, double) {
   return 0;
 }

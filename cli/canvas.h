@@ -14,16 +14,29 @@ using Colour = unsigned;
 /// A sheet to draw charts on, in points from the upper left corner. Requires the program to be built with cairo.
 class Canvas {
  public:
+  struct Point {
+    double x, y;
+  };
+  struct Stroke {
+    Colour colour;
+    double width = 1;
+    bool dashed = false;
+  };
   enum class Align { kLeft, kMiddle, kRight };
+  struct TextStyle {
+    double size;
+    Align align = Align::kLeft;
+    Colour colour = 0x222222;
+    bool upward = false;  ///< turned by a quarter to the left
+  };
 
   explicit Canvas(_cairo* context) : context_(context) {}
 
   void rectangle(double x, double y, double width, double height, Colour fill);
-  void line(double x0, double y0, double x1, double y1, Colour colour, double width = 1, bool dashed = false);
+  void line(Point from, Point to, const Stroke& stroke);
   void dot(double x, double y, double radius, Colour fill);
-  /// The base line of the text runs through y; `upward` turns it by a quarter to the left.
-  void text(double x, double y, const std::string& text, double size, Align align = Align::kLeft,
-            Colour colour = 0x222222, bool upward = false);
+  /// The base line of the text runs through `at`.
+  void text(Point at, const std::string& text, const TextStyle& style);
   double width_of(const std::string& text, double size);
 
  private:

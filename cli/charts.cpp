@@ -21,13 +21,13 @@ struct Frame {
 };
 
 void title_and_legend(Canvas& canvas, const std::string& title, const std::vector<Series>& series) {
-  canvas.text(kLeft, 22, title, 14, Align::kLeft, kInk);
+  canvas.text({kLeft, 22}, title, {14});
   double x = kLeft, y = 44;
   for (const Series& s : series) {
     const double width = 32 + canvas.width_of(s.name, 11);
     if (x + width > kWidth) x = kLeft, y += 18;
     canvas.rectangle(x, y - 9, 10, 10, s.colour);
-    canvas.text(x + 14, y, s.name, 11);
+    canvas.text({x + 14, y}, s.name, {11});
     x += width;
   }
 }
@@ -56,10 +56,10 @@ void y_axis(Canvas& canvas, const Frame& f, double most, const std::string& labe
   const double step = round_step(most);
   for (int i = 0; i * step <= most * 1.0001; ++i) {
     const double y = f.y0 - (f.y0 - f.y1) * i * step / most;
-    canvas.line(f.x0, y, f.x1, y, kGrid);
-    canvas.text(f.x0 - 6, y + 4, fmt::format("{:g}", i * step), 10, Align::kRight);
+    canvas.line({f.x0, y}, {f.x1, y}, {kGrid});
+    canvas.text({f.x0 - 6, y + 4}, fmt::format("{:g}", i * step), {10, Align::kRight});
   }
-  canvas.text(16, 0.5 * (f.y0 + f.y1), label, 11, Align::kMiddle, kInk, true);
+  canvas.text({16, 0.5 * (f.y0 + f.y1)}, label, {11, Align::kMiddle, kInk, true});
 }
 
 /// Names that do not fit side by side are written in two rows, by turns.
@@ -68,7 +68,7 @@ void group_label(Canvas& canvas, const Frame& f, std::size_t g, const BarChart& 
   double widest = 0;
   for (const std::string& name : chart.groups) widest = std::max(widest, canvas.width_of(name, 10));
   const double down = widest > width - 4 && g % 2 == 1 ? 13 : 0;
-  canvas.text(f.x0 + width * (static_cast<double>(g) + 0.5), f.y0 + 15 + down, chart.groups[g], 10, Align::kMiddle);
+  canvas.text({f.x0 + width * (static_cast<double>(g) + 0.5), f.y0 + 15 + down}, chart.groups[g], {10, Align::kMiddle});
 }
 
 void bars_of_group(Canvas& canvas, const Frame& f, const BarChart& chart, std::size_t g, double most) {
@@ -79,8 +79,8 @@ void bars_of_group(Canvas& canvas, const Frame& f, const BarChart& chart, std::s
     const double height = (f.y0 - f.y1) * s.values[g] / most;
     canvas.rectangle(x, base - height, bar * 0.94, height, s.colour);
     if (chart.write_values)  // in as few characters as say something: small values stand close together
-      canvas.text(x + 0.47 * bar, base - height - 3, fmt::format("{:.{}g}", s.values[g], s.values[g] < 1 ? 2 : 3), 8.5,
-                  Align::kMiddle);
+      canvas.text({x + 0.47 * bar, base - height - 3}, fmt::format("{:.{}g}", s.values[g], s.values[g] < 1 ? 2 : 3),
+                  {8.5, Align::kMiddle});
     if (chart.stacked)
       base -= height;
     else
@@ -107,16 +107,16 @@ std::string power_label(double power) {
 void log_grid(Canvas& canvas, const Frame& f, const LogAxis& x, const LogAxis& y, const ScatterChart& chart) {
   for (double p = x.lo; p <= x.hi; ++p) {
     const double at = f.x0 + (f.x1 - f.x0) * (p - x.lo) / (x.hi - x.lo);
-    canvas.line(at, f.y0, at, f.y1, kGrid);
-    canvas.text(at, f.y0 + 15, power_label(p), 10, Align::kMiddle);
+    canvas.line({at, f.y0}, {at, f.y1}, {kGrid});
+    canvas.text({at, f.y0 + 15}, power_label(p), {10, Align::kMiddle});
   }
   for (double p = y.lo; p <= y.hi; ++p) {
     const double at = f.y0 - (f.y0 - f.y1) * (p - y.lo) / (y.hi - y.lo);
-    canvas.line(f.x0, at, f.x1, at, kGrid);
-    canvas.text(f.x0 - 6, at + 4, power_label(p), 10, Align::kRight);
+    canvas.line({f.x0, at}, {f.x1, at}, {kGrid});
+    canvas.text({f.x0 - 6, at + 4}, power_label(p), {10, Align::kRight});
   }
-  canvas.text(0.5 * (f.x0 + f.x1), kHeight - 14, chart.x_label, 11, Align::kMiddle);
-  canvas.text(16, 0.5 * (f.y0 + f.y1), chart.y_label, 11, Align::kMiddle, kInk, true);
+  canvas.text({0.5 * (f.x0 + f.x1), kHeight - 14}, chart.x_label, {11, Align::kMiddle});
+  canvas.text({16, 0.5 * (f.y0 + f.y1)}, chart.y_label, {11, Align::kMiddle, kInk, true});
 }
 
 void scatter_series(Canvas& canvas, const Frame& f, const LogAxis& x, const LogAxis& y, const Series& s) {
@@ -126,8 +126,8 @@ void scatter_series(Canvas& canvas, const Frame& f, const LogAxis& x, const LogA
   if (law.exponent != 0) {
     const auto [least, most] = std::minmax_element(s.points.begin(), s.points.end());
     const auto value = [&](double v) { return law.factor * std::pow(v, law.exponent); };
-    canvas.line(px(least->first), py(value(least->first)), px(most->first), py(value(most->first)), s.colour, 1.2,
-                true);
+    canvas.line({px(least->first), py(value(least->first))}, {px(most->first), py(value(most->first))},
+                {s.colour, 1.2, true});
   }
   for (const auto& [u, v] : s.points) canvas.dot(px(u), py(v), 3.2, s.colour);
 }
@@ -161,7 +161,7 @@ void draw_bars(const std::filesystem::path& stem, const BarChart& chart) {
       bars_of_group(canvas, f, chart, g, most);
       group_label(canvas, f, g, chart);
     }
-    canvas.line(f.x0, f.y0, f.x1, f.y0, kInk);
+    canvas.line({f.x0, f.y0}, {f.x1, f.y0}, {kInk});
   });
 }
 

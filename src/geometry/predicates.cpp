@@ -79,19 +79,16 @@ double determinant_permanent(const std::array<DoubleDouble, 9>& d) {
   return m(0) * (m(4) * m(8) + m(5) * m(7)) + m(1) * (m(5) * m(6) + m(3) * m(8)) + m(2) * (m(3) * m(7) + m(4) * m(6));
 }
 
-// x * a + y * b + z * c.
-WideInteger<4> wide_sum(Int128 x, Int128 a, Int128 y, Int128 b, Int128 z, Int128 c) {
+WideInteger<4> wide_dot(const std::array<Int128, 3>& a, const std::array<Int128, 3>& b) {
   WideInteger<4> sum;
-  sum.add_product(WideInteger<2>(x), WideInteger<2>(a));
-  sum.add_product(WideInteger<2>(y), WideInteger<2>(b));
-  sum.add_product(WideInteger<2>(z), WideInteger<2>(c));
+  for (int i = 0; i < 3; ++i) sum.add_product(WideInteger<2>(a[i]), WideInteger<2>(b[i]));
   return sum;
 }
 
 int orient3d_wide(const std::array<std::int64_t, 9>& m) {
   const auto product = [&](int i, int j) { return static_cast<Int128>(m[i]) * m[j]; };
-  return wide_sum(m[0], product(4, 8) - product(5, 7), m[1], product(5, 6) - product(3, 8), m[2],
-                  product(3, 7) - product(4, 6))
+  return wide_dot({m[0], m[1], m[2]},
+                  {product(4, 8) - product(5, 7), product(5, 6) - product(3, 8), product(3, 7) - product(4, 6)})
       .sign();
 }
 
@@ -102,27 +99,31 @@ int orient3d_expansion(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
   return (minor(vy, vz, wy, wz) * ux + minor(vz, vx, wz, wx) * uy + minor(vx, vy, wx, wy) * uz).sign();
 }
 
-// The insphere determinant of four rows of differences to e, by its column of lifts; `combine` adds the four products
-// of a 3 x 3 determinant and a lift, with signs so that inside is positive for a positive tetrahedron.
-template <class Product, class T, class Combine>
-auto insphere_determinant(const std::array<T, 12>& m, Combine&& combine) {
+// The insphere determinant of four rows of differences to e, by its column of lifts: each with its 3 x 3 determinant.
+// Inside is positive for a positive tetrahedron if their products are added with the signs +, -, +, -.
+template <class Product>
+struct InsphereTerms {
+  std::array<Product, 4> minor, lift;
+};
+
+template <class Product, class T>
+InsphereTerms<Product> insphere_terms(const std::array<T, 12>& m) {
   const auto x = [&](int row) { return Product(m[3 * row]); };
   const auto y = [&](int row) { return Product(m[3 * row + 1]); };
   const auto z = [&](int row) { return Product(m[3 * row + 2]); };
   const auto flat = [&](int i, int j) { return x(i) * y(j) - x(j) * y(i); };
   const Product ab = flat(0, 1), bc = flat(1, 2), cd = flat(2, 3), da = flat(3, 0), ac = flat(0, 2), bd = flat(1, 3);
   const auto lift = [&](int i) { return x(i) * x(i) + y(i) * y(i) + z(i) * z(i); };
-  return combine(z(1) * cd - z(2) * bd + z(3) * bc, lift(0), z(2) * da + z(3) * ac + z(0) * cd, lift(1),
-                 z(3) * ab + z(0) * bd + z(1) * da, lift(2), z(0) * bc - z(1) * ac + z(2) * ab, lift(3));
+  return {{z(1) * cd - z(2) * bd + z(3) * bc, z(2) * da + z(3) * ac + z(0) * cd, z(3) * ab + z(0) * bd + z(1) * da,
+           z(0) * bc - z(1) * ac + z(2) * ab},
+          {lift(0), lift(1), lift(2), lift(3)}};
 }
 
 int insphere_lattice(const std::array<std::int64_t, 12>& m) {
-  return insphere_determinant<Int128>(
-      m, [](Int128 bcd, Int128 a, Int128 cda, Int128 b, Int128 dab, Int128 c, Int128 abc, Int128 d) {
-        WideInteger<4> sum = wide_sum(bcd, a, -cda, b, dab, c);
-        sum.add_product(WideInteger<2>(-abc), WideInteger<2>(d));
-        return sum.sign();
-      });
+  const auto [n, l] = insphere_terms<Int128>(m);
+  WideInteger<4> sum = wide_dot({n[0], -n[1], n[2]}, {l[0], l[1], l[2]});
+  sum.add_product(WideInteger<2>(-n[3]), WideInteger<2>(l[3]));
+  return sum.sign();
 }
 
 int insphere_wide(const std::array<std::int64_t, 12>& m) {
@@ -134,17 +135,16 @@ int insphere_wide(const std::array<std::int64_t, 12>& m) {
   };
   const Int128 ab = flat(0, 1), bc = flat(1, 2), cd = flat(2, 3), da = flat(3, 0), ac = flat(0, 2), bd = flat(1, 3);
   WideInteger<6> sum;
-  sum.add_product(wide_sum(z(1), cd, -z(2), bd, z(3), bc), lift(0));
-  sum.add_product(wide_sum(-z(2), da, -z(3), ac, -z(0), cd), lift(1));
-  sum.add_product(wide_sum(z(3), ab, z(0), bd, z(1), da), lift(2));
-  sum.add_product(wide_sum(-z(0), bc, z(1), ac, -z(2), ab), lift(3));
+  sum.add_product(wide_dot({z(1), -z(2), z(3)}, {cd, bd, bc}), lift(0));
+  sum.add_product(wide_dot({-z(2), -z(3), -z(0)}, {da, ac, cd}), lift(1));
+  sum.add_product(wide_dot({z(3), z(0), z(1)}, {ab, bd, da}), lift(2));
+  sum.add_product(wide_dot({-z(0), z(1), -z(2)}, {bc, ac, ab}), lift(3));
   return sum.sign();
 }
 
 DoubleDouble insphere_double_double(const std::array<DoubleDouble, 12>& m) {
-  using D = DoubleDouble;
-  return insphere_determinant<D>(
-      m, [](D bcd, D a, D cda, D b, D dab, D c, D abc, D d) { return (bcd * a - cda * b) + (dab * c - abc * d); });
+  const auto [n, l] = insphere_terms<DoubleDouble>(m);
+  return (n[0] * l[0] - n[1] * l[1]) + (n[2] * l[2] - n[3] * l[3]);
 }
 
 double insphere_permanent(const std::array<DoubleDouble, 12>& m) {
@@ -156,10 +156,8 @@ double insphere_permanent(const std::array<DoubleDouble, 12>& m) {
     Magnitude operator+(Magnitude o) const { return Magnitude(value + o.value); }
     Magnitude operator-(Magnitude o) const { return Magnitude(value + o.value); }
   };
-  using M = Magnitude;
-  return insphere_determinant<M>(
-             m, [](M bcd, M a, M cda, M b, M dab, M c, M abc, M d) { return bcd * a + cda * b + dab * c + abc * d; })
-      .value;
+  const auto [n, l] = insphere_terms<Magnitude>(m);
+  return (n[0] * l[0] + n[1] * l[1] + n[2] * l[2] + n[3] * l[3]).value;
 }
 
 int insphere_expansion(Vec3 a, Vec3 b, Vec3 c, Vec3 d, Vec3 e) {

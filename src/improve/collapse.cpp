@@ -26,6 +26,28 @@ class Collapser {
   Collapser(EditBlock& block, const Floor& floor, Goal goal)
       : block_(block), mesh_(block.mesh()), floor_(floor), goal_(goal), star_(block.mesh()) {}
 
+  /// Each vertex of these elements once; `seen` is shared by all blocks, none of which looks at another's vertices.
+  /// Elements for which the block was too small go to `left`.
+  PassResult work_on(const std::vector<TetIndex>& tets, float threshold, std::vector<std::uint8_t>& seen,
+                     std::vector<TetIndex>& left) {
+    PassResult result;
+    std::vector<HalfFace> star;
+    for (const TetIndex t : tets) {
+      block_.take_cut();
+      for (int i = 0; i < 4; ++i) {
+        if (!mesh_.alive(t) || mesh_.shape(t).score >= threshold) break;
+        const VertexIndex v = mesh_.tet(t)[i];
+        if (mesh_.on_boundary(v) || seen[v] || !block_.star(v, star)) continue;
+        seen[v] = 1;
+        ++result.tried;
+        result.done += improve(v, star);
+      }
+      if (block_.take_cut()) left.push_back(t);
+    }
+    return result;
+  }
+
+ private:
   /// True if vertex v is gone; its star must lie in the block.
   bool improve(VertexIndex v, std::span<const HalfFace> faces) {
     if (!star_.load(v, faces)) return false;
@@ -42,7 +64,6 @@ class Collapser {
     return collapse_to(best);
   }
 
- private:
   bool has(HalfFace h, VertexIndex u) const {
     const Tet& t = mesh_.tet(h / 4);
     return t[0] == u || t[1] == u || t[2] == u || t[3] == u;
@@ -118,28 +139,6 @@ class Collapser {
   std::vector<Shape> shapes_;
 };
 
-/// Each vertex of these elements once; `seen` is shared by all blocks, none of which looks at another's vertices.
-PassResult collapse_block(EditBlock& block, const Floor& floor, const std::vector<TetIndex>& tets, float threshold,
-                          Goal goal, std::vector<std::uint8_t>& seen, std::vector<TetIndex>& left) {
-  PassResult result;
-  Collapser collapser(block, floor, goal);
-  const EditMesh& mesh = block.mesh();
-  std::vector<HalfFace> star;
-  for (const TetIndex t : tets) {
-    block.take_cut();
-    for (int i = 0; i < 4; ++i) {
-      if (!mesh.alive(t) || mesh.shape(t).score >= threshold) break;
-      const VertexIndex v = mesh.tet(t)[i];
-      if (mesh.on_boundary(v) || seen[v] || !block.star(v, star)) continue;
-      seen[v] = 1;
-      ++result.tried;
-      result.done += collapser.improve(v, star);
-    }
-    if (block.take_cut()) left.push_back(t);
-  }
-  return result;
-}
-
 }  // namespace
 
 PassResult collapse_vertices(EditMesh& mesh, float threshold, Goal goal, const RunContext& context) {
@@ -147,7 +146,7 @@ PassResult collapse_vertices(EditMesh& mesh, float threshold, Goal goal, const R
   const Floor floor = mesh.floor();
   return for_each_block(mesh, tets_below(mesh, threshold), context,
                         [&](EditBlock& block, const std::vector<TetIndex>& tets, std::vector<TetIndex>& left) {
-                          return collapse_block(block, floor, tets, threshold, goal, seen, left);
+                          return Collapser(block, floor, goal).work_on(tets, threshold, seen, left);
                         });
 }
 

@@ -28,6 +28,28 @@ class Inserter {
   Inserter(EditBlock& block, const Floor& floor, Goal goal)
       : block_(block), mesh_(block.mesh()), floor_(floor), goal_(goal), star_(mesh_.objective()) {}
 
+  /// Worst first; elements for which the block was too small go to `left`.
+  PassResult work_on(const std::vector<TetIndex>& tets, float threshold, std::vector<TetIndex>& left) {
+    PassResult result;
+    std::vector<std::pair<float, TetIndex>> bad;
+    for (const TetIndex t : tets)
+      if (mesh_.alive(t)) bad.push_back({mesh_.shape(t).score, t});
+    std::sort(bad.begin(), bad.end());
+    int in_vain = 0;
+    for (const auto& [score, t] : bad) {
+      if (in_vain == kHopeless) break;
+      if (!mesh_.alive(t) || mesh_.shape(t).score >= threshold) continue;
+      ++result.tried;
+      block_.take_cut();
+      const bool done = improve(t);
+      result.done += done;
+      in_vain = done ? 0 : in_vain + 1;
+      if (!done && block_.take_cut()) left.push_back(t);
+    }
+    return result;
+  }
+
+ private:
   /// True if tet t was replaced by something better.
   bool improve(TetIndex t) {
     find_best_cavity(t);
@@ -40,7 +62,6 @@ class Inserter {
     return commit(p);
   }
 
- private:
   bool in_cavity(TetIndex t) const { return std::find(tets_.begin(), tets_.end(), t) != tets_.end(); }
 
   /// The best place near `start` for the apex of the star; the star is left as evaluated there.
@@ -145,30 +166,6 @@ class Inserter {
   std::vector<TetIndex> created_;
 };
 
-/// Worst first.
-PassResult insert_block(EditBlock& block, const Floor& floor, const std::vector<TetIndex>& tets, float threshold,
-                        Goal goal, std::vector<TetIndex>& left) {
-  PassResult result;
-  const EditMesh& mesh = block.mesh();
-  std::vector<std::pair<float, TetIndex>> bad;
-  for (const TetIndex t : tets)
-    if (mesh.alive(t)) bad.push_back({mesh.shape(t).score, t});
-  std::sort(bad.begin(), bad.end());
-  Inserter inserter(block, floor, goal);
-  int in_vain = 0;
-  for (const auto& [score, t] : bad) {
-    if (in_vain == kHopeless) break;
-    if (!mesh.alive(t) || mesh.shape(t).score >= threshold) continue;
-    ++result.tried;
-    block.take_cut();
-    const bool done = inserter.improve(t);
-    result.done += done;
-    in_vain = done ? 0 : in_vain + 1;
-    if (!done && block.take_cut()) left.push_back(t);
-  }
-  return result;
-}
-
 }  // namespace
 
 PassResult insert_vertices(EditMesh& mesh, float threshold, Goal goal, const RunContext& context) {
@@ -176,7 +173,7 @@ PassResult insert_vertices(EditMesh& mesh, float threshold, Goal goal, const Run
   return for_each_block(
       mesh, tets_below(mesh, threshold), context,
       [&](EditBlock& block, const std::vector<TetIndex>& tets, std::vector<TetIndex>& left) {
-        return insert_block(block, floor, tets, threshold, goal, left);
+        return Inserter(block, floor, goal).work_on(tets, threshold, left);
       },
       true);
 }

@@ -93,7 +93,7 @@ void MshStream::skip_real(std::uint64_t count) {
 void MshStream::check_count(std::uint64_t count, std::uint64_t reals, std::uint64_t sizes, std::uint64_t ints,
                             std::string_view what) const {
   const std::uint64_t bytes = binary_ ? 8 * reals + 8 * sizes + 4 * ints : 2 * (reals + sizes + ints);
-  check_claim(input_, scan_.position(), count, bytes, scan_.bytes_left(), what);
+  check_claim(input_, scan_.position(), {count, bytes, what}, scan_.bytes_left());
 }
 
 void MshStream::fail(std::string_view message) const {

@@ -56,7 +56,7 @@ class Medit {
     const char* const at = scan_.position();
     const std::int64_t n = scan_.integer(fmt::format("the number of {}", keyword));
     if (n < 0) input_.fail_at_line(at, fmt::format("{} {}; the file is damaged: export it again", n, keyword));
-    check_claim(input_, at, static_cast<std::uint64_t>(n), bytes_each, scan_.bytes_left(), keyword);
+    check_claim(input_, at, {static_cast<std::uint64_t>(n), bytes_each, keyword}, scan_.bytes_left());
     return static_cast<std::uint64_t>(n);
   }
 

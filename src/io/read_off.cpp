@@ -65,7 +65,7 @@ class Off {
   }
 
   void read_vertices() {
-    check_claim(input_, counts_at_, vertices_, 6, scan_.bytes_left(), "vertices");
+    check_claim(input_, counts_at_, {vertices_, 6, "vertices"}, scan_.bytes_left());
     builder_.points.reserve(vertices_);
     for (std::uint64_t i = 0; i < vertices_; ++i) {
       const double x = scan_.number("a coordinate"), y = scan_.number("a coordinate"), z = scan_.number("a coordinate");
@@ -75,13 +75,13 @@ class Off {
   }
 
   void read_faces() {
-    check_claim(input_, counts_at_, faces_, 2, scan_.bytes_left(), "faces");
+    check_claim(input_, counts_at_, {faces_, 2, "faces"}, scan_.bytes_left());
     builder_.reserve_faces(faces_);
     for (std::uint64_t i = 0; i < faces_; ++i) {
       scan_.at_end();
       const char* const at = scan_.position();
       const std::uint64_t corners = count("the number of corners of a face");
-      check_claim(input_, at, corners, 2, scan_.bytes_left(), "corners of a face");
+      check_claim(input_, at, {corners, 2, "corners of a face"}, scan_.bytes_left());
       corners_.clear();
       for (std::uint64_t k = 0; k < corners; ++k) corners_.push_back(corner());
       builder_.add_face(corners_, at);

@@ -148,16 +148,16 @@ class PlyBody {
     for (const PlyProperty& p : element.properties) bytes += Values::least_bytes(p.is_list ? p.count_type : p.type);
     // Elements without properties take no room in the file; they are passed over at no cost.
     if (bytes > 0)
-      check_claim(input_, element.declared_at, element.count, bytes, values_.bytes_left(),
-                  fmt::format("elements \"{}\"", element.name));
+      check_claim(input_, element.declared_at, {element.count, bytes, fmt::format("elements \"{}\"", element.name)},
+                  values_.bytes_left());
   }
 
   std::uint64_t list_length(const PlyProperty& p) {
     const char* const at = values_.position();
     const std::int64_t n = values_.integer(p.count_type, "the length of a list");
     if (n < 0) input_.fail_at_byte(at, fmt::format("a list of length {}; the file is damaged: export it again", n));
-    check_claim(input_, at, static_cast<std::uint64_t>(n), Values::least_bytes(p.type), values_.bytes_left(),
-                "values of a list");
+    check_claim(input_, at, {static_cast<std::uint64_t>(n), Values::least_bytes(p.type), "values of a list"},
+                values_.bytes_left());
     return static_cast<std::uint64_t>(n);
   }
 

@@ -21,8 +21,8 @@ std::string plural(std::uint64_t n, std::string_view one) {
 
 }  // namespace
 
-void check_claim(const Input& input, const char* at, std::uint64_t count, std::uint64_t bytes_each,
-                 std::uint64_t bytes_left, std::string_view what) {
+void check_claim(const Input& input, const char* at, const Claim& claim, std::uint64_t bytes_left) {
+  const auto& [count, bytes_each, what] = claim;
   // One more byte, since the last record of a text may lack the blank behind it.
   const std::uint64_t room = bytes_each == 0 ? kNone : (bytes_left + 1) / bytes_each;
   if (count <= room && count < kNone) return;

@@ -53,9 +53,14 @@ class SurfaceBuilder {
   const char* largest_corner_at_ = nullptr;
 };
 
-/// Throws InputError unless `count` records of at least `bytes_each` bytes fit into the `bytes_left` behind `at`: what
-/// a header claims is believed only as far as the file can hold it. Also if `count` exceeds 32-bit indices.
-void check_claim(const Input& input, const char* at, std::uint64_t count, std::uint64_t bytes_each,
-                 std::uint64_t bytes_left, std::string_view what);
+/// What a header says will come: `count` records of at least `bytes_each` bytes; `what` they are, in the plural.
+struct Claim {
+  std::uint64_t count, bytes_each;
+  std::string_view what;
+};
+
+/// Throws InputError unless what is claimed fits into the `bytes_left` behind `at`: a header is believed only as far as
+/// the file can hold it. Also if the count exceeds 32-bit indices.
+void check_claim(const Input& input, const char* at, const Claim& claim, std::uint64_t bytes_left);
 
 }  // namespace octafront::io

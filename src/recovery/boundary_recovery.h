@@ -1,10 +1,10 @@
 #pragma once
 
 #include <octafront/error.h>
-#include <octafront/run_context.h>
 
 #include "recovery/delaunay.h"
 #include "recovery/flips.h"
+#include "recovery/recovery_task.h"
 #include "recovery/segment_walk.h"
 #include "recovery/subdivided_surface.h"
 
@@ -35,17 +35,16 @@ struct RecoveryCounts {
 /// docs/recovery.md.
 class BoundaryRecovery {
  public:
-  BoundaryRecovery(ExactPoints& points, LabelledComplex& mesh, SubdividedSurface& surface, VertexIndex frame,
-                   std::uint32_t seed, std::size_t most_points, const RunContext& context)
-      : points_(points),
-        mesh_(mesh),
+  BoundaryRecovery(const RecoveryTask& task, SubdividedSurface& surface, std::size_t most_points)
+      : points_(task.points),
+        mesh_(task.mesh),
         surface_(surface),
-        flipper_(points, mesh, surface.edges()),
-        frame_(frame),
-        context_(context),
+        flipper_(task.points, task.mesh, surface.edges()),
+        frame_(task.frame),
+        context_(task.context),
         most_points_(most_points),
-        random_(2463534242u + seed),
-        longest_first_(seed % 2 == 1) {}
+        random_(2463534242u + task.seed),
+        longest_first_(task.seed % 2 == 1) {}
 
   /// Throws MeshingError, with the place, if the surface turns out to intersect itself, and TooManyPoints.
   void run();

@@ -14,7 +14,6 @@ namespace octafront::recovery {
 namespace {
 
 // A segment that crosses more than this is not worked on by flips, it is divided first.
-constexpr std::size_t kMaxCrossings = 400;
 constexpr std::size_t kFlippedCrossings = 64;
 constexpr int kRandomPasses = 6;
 
@@ -78,7 +77,7 @@ bool BoundaryRecovery::edge_by_flips(VertexIndex a, VertexIndex b, SegmentWalk& 
   const SegmentHindrance hindrance(points_, a, b, frame_);
   bool random_pass = false;
   for (int idle = 0; idle < (strict_ ? 1 : kRandomPasses);) {
-    walk_segment(points_, mesh_, a, b, kMaxCrossings, walk);
+    walk_segment(points_, mesh_, a, b, walk);
     if (walk.present) return true;
     if (walk.crossings.size() > kFlippedCrossings) return false;
     if (strict_ && (walk.crossings.size() > 1 || walk.crossings[0].is_edge)) return false;
@@ -86,7 +85,7 @@ bool BoundaryRecovery::edge_by_flips(VertexIndex a, VertexIndex b, SegmentWalk& 
     idle += random_pass;
     random_pass = !improved;
   }
-  walk_segment(points_, mesh_, a, b, kMaxCrossings, walk);
+  walk_segment(points_, mesh_, a, b, walk);
   return walk.present;
 }
 
@@ -107,7 +106,7 @@ bool BoundaryRecovery::improve_at(const Crossing& c, const SegmentHindrance& hin
   if (!mesh_.alive(c.is_edge ? c.tet : c.face / 4)) return false;
   if (c.is_edge) {
     return mesh_.has(c.tet, c.x) && mesh_.has(c.tet, c.y) &&
-           flipper_.remove_edge_deep(c.tet, c.x, c.y, hindrance, limit, depth);
+           flipper_.remove_edge_deep({c.tet, c.x, c.y}, hindrance, limit, depth);
   }
   if (flipper_.flip_face(c.face, hindrance, limit)) return true;
   const Triangle f = mesh_.face(c.face);
@@ -115,7 +114,7 @@ bool BoundaryRecovery::improve_at(const Crossing& c, const SegmentHindrance& hin
   for (unsigned i = 0; i < 3; ++i) {
     const VertexIndex p = f[(i + shift) % 3], q = f[(i + shift + 1) % 3];
     if (!mesh_.alive(c.tet) || !mesh_.has(c.tet, p) || !mesh_.has(c.tet, q)) return false;
-    if (flipper_.remove_edge_deep(c.tet, p, q, hindrance, limit, depth)) return true;
+    if (flipper_.remove_edge_deep({c.tet, p, q}, hindrance, limit, depth)) return true;
   }
   return false;
 }

@@ -98,7 +98,7 @@ bool BoundaryRecovery::facet_by_flips(const Polygon& polygon) {
       const TetIndex t = flipper_.find_tet(tets[(first + k) % n], p, q);
       if (t == kNone) continue;
       const bool deep = random_pass && !strict_;
-      better = flipper_.remove_edge_deep(t, p, q, hindrance, -0.5, deep ? 2 : 0);
+      better = flipper_.remove_edge_deep({t, p, q}, hindrance, -0.5, deep ? 2 : 0);
     }
     if (!better) ++idle;
   }

@@ -63,8 +63,8 @@ void Flipper::collect_triangles(std::size_t i, std::size_t j, std::vector<Tet>& 
   collect_triangles(k, j, fresh, p, q);
 }
 
-bool Flipper::remove_edge(TetIndex t, VertexIndex p, VertexIndex q, const Hindrance& hindrance, double limit,
-                          VertexIndex ear) {
+bool Flipper::remove_edge(const EdgeOfTet& edge, const Hindrance& hindrance, double limit, VertexIndex ear) {
+  const auto [t, p, q] = edge;
   if (kept_.contains(p, q) || !mesh_.closed_ring(t, p, q, ring_, kMaxRing)) return false;
   const std::size_t n = ring_.ring.size();
   double before = hindrance.of_edge(p, q);
@@ -107,8 +107,8 @@ TetIndex Flipper::find_tet(TetIndex guess, VertexIndex p, VertexIndex q) {
 }
 
 // Takes one vertex out of the ring around (p, q).
-bool Flipper::shrink_ring(TetIndex t, VertexIndex p, VertexIndex q, const Hindrance& hindrance, VertexIndex ear,
-                          int depth) {
+bool Flipper::shrink_ring(const EdgeOfTet& edge, const Hindrance& hindrance, VertexIndex ear, int depth) {
+  const auto [t, p, q] = edge;
   constexpr std::size_t kMaxTried = 40;
   EdgeRing ring;
   if (!mesh_.closed_ring(t, p, q, ring, kMaxTried)) return false;
@@ -125,7 +125,7 @@ bool Flipper::shrink_ring(TetIndex t, VertexIndex p, VertexIndex q, const Hindra
     for (const auto& [end, other] : {Edge{p, q}, Edge{q, p}}) {
       const TetIndex u = find_tet(tets[i], end, link[i]);
       if (u == kNone) return false;
-      if (remove_with_budget(u, end, link[i], hindrance, 0, other, depth - 1)) return true;
+      if (remove_with_budget({u, end, link[i]}, hindrance, 0, other, depth - 1)) return true;
       // A failed attempt may have changed the ring: then it is searched anew.
       if (!mesh_.alive(tets[i]) || !mesh_.has(tets[i], p) || !mesh_.has(tets[i], q)) return true;
     }
@@ -133,22 +133,20 @@ bool Flipper::shrink_ring(TetIndex t, VertexIndex p, VertexIndex q, const Hindra
   return false;
 }
 
-bool Flipper::remove_with_budget(TetIndex t, VertexIndex p, VertexIndex q, const Hindrance& hindrance, double limit,
-                                 VertexIndex ear, int depth) {
-  while (!kept_.contains(p, q) && budget_-- > 0) {
-    if (remove_edge(t, p, q, hindrance, limit, ear)) return true;
-    if (!shrink_ring(t, p, q, hindrance, ear, depth)) return false;
-    t = find_tet(t, p, q);
-    if (t == kNone) return true;
+bool Flipper::remove_with_budget(EdgeOfTet edge, const Hindrance& hindrance, double limit, VertexIndex ear, int depth) {
+  while (!kept_.contains(edge.p, edge.q) && budget_-- > 0) {
+    if (remove_edge(edge, hindrance, limit, ear)) return true;
+    if (!shrink_ring(edge, hindrance, ear, depth)) return false;
+    edge.tet = find_tet(edge.tet, edge.p, edge.q);
+    if (edge.tet == kNone) return true;
   }
   return false;
 }
 
-bool Flipper::remove_edge_deep(TetIndex t, VertexIndex p, VertexIndex q, const Hindrance& hindrance, double limit,
-                               int depth) {
+bool Flipper::remove_edge_deep(const EdgeOfTet& edge, const Hindrance& hindrance, double limit, int depth) {
   constexpr int kAttempts = 40;
   budget_ = kAttempts;
-  return remove_with_budget(t, p, q, hindrance, limit, kNone, depth);
+  return remove_with_budget(edge, hindrance, limit, kNone, depth);
 }
 
 }  // namespace octafront::recovery

@@ -56,6 +56,12 @@ class FacetHindrance final : public Hindrance {
   Triangle f_;
 };
 
+/// The edge (p, q), and a tet that has it.
+struct EdgeOfTet {
+  TetIndex tet;
+  VertexIndex p, q;
+};
+
 /// Local changes that keep all tets positive, all edges of `kept` and all labelled faces.
 class Flipper {
  public:
@@ -64,15 +70,14 @@ class Flipper {
 
   /// The 2-3 flip: an edge takes the place of face h, if the hindrance then changes by at most `limit`.
   bool flip_face(HalfFace h, const Hindrance& hindrance, double limit);
-  /// Removes edge (p, q), which tet t has, and triangulates the ring around it in the best way (dynamic programming),
-  /// if the hindrance then changes by at most `limit`. Rings of more than kMaxRing tets are not tried. Vertex `ear` of
-  /// the ring gets no new edge.
-  bool remove_edge(TetIndex t, VertexIndex p, VertexIndex q, const Hindrance& hindrance, double limit,
-                   VertexIndex ear = kNone);
-  /// The same, and where it fails it first makes the ring smaller, by flips of the faces around (p, q) and by removing
+  /// Removes the edge, and triangulates the ring around it in the best way (dynamic programming), if the hindrance then
+  /// changes by at most `limit`. Rings of more than kMaxRing tets are not tried. Vertex `ear` of the ring gets no new
+  /// edge.
+  bool remove_edge(const EdgeOfTet& edge, const Hindrance& hindrance, double limit, VertexIndex ear = kNone);
+  /// The same, and where it fails it first makes the ring smaller, by flips of the faces around it and by removing
   /// the edges of those faces, which again may need smaller rings, `depth` times. The mesh may change even if it fails
   /// in the end; the hindrance does not rise.
-  bool remove_edge_deep(TetIndex t, VertexIndex p, VertexIndex q, const Hindrance& hindrance, double limit, int depth);
+  bool remove_edge_deep(const EdgeOfTet& edge, const Hindrance& hindrance, double limit, int depth);
 
   /// A tet with the edge (p, q), `guess` if it has it; kNone if the mesh has no such edge.
   TetIndex find_tet(TetIndex guess, VertexIndex p, VertexIndex q);
@@ -82,9 +87,8 @@ class Flipper {
  private:
   void collect_triangles(std::size_t i, std::size_t j, std::vector<Tet>& fresh, VertexIndex p, VertexIndex q) const;
 
-  bool remove_with_budget(TetIndex t, VertexIndex p, VertexIndex q, const Hindrance& hindrance, double limit,
-                          VertexIndex ear, int depth);
-  bool shrink_ring(TetIndex t, VertexIndex p, VertexIndex q, const Hindrance& hindrance, VertexIndex ear, int depth);
+  bool remove_with_budget(EdgeOfTet edge, const Hindrance& hindrance, double limit, VertexIndex ear, int depth);
+  bool shrink_ring(const EdgeOfTet& edge, const Hindrance& hindrance, VertexIndex ear, int depth);
 
   const ExactPoints& points_;
   LabelledComplex& mesh_;

@@ -154,11 +154,12 @@ std::optional<TetMesh> recover(const SurfaceMesh& surface, std::uint32_t attempt
   SubdividedSurface subdivided(triangles);
   std::size_t most_points = kMostPointsPerTriangle * triangles.size() + kMostPoints;
   for (std::uint32_t k = 0; k < attempt; ++k) most_points *= kMorePoints;
-  BoundaryRecovery recovery(points, mesh, subdivided, frame, attempt, most_points, stage.context());
+  const RecoveryTask task{points, mesh, frame, attempt, stage.context()};
+  BoundaryRecovery recovery(task, subdivided, most_points);
   recovery.run();
   validate(mesh);
   carve(points, subdivided, mesh);
-  SteinerLift lift(points, mesh, triangles, frame + kFrameVertices, frame, attempt, stage.context());
+  SteinerLift lift(task, triangles);
   if (const std::vector<VertexIndex> open = lift.run(); !open.empty()) {
     if (attempt + 1 == kAttempts) throw_no_place(points, open);
     return std::nullopt;

@@ -74,31 +74,30 @@ class Walker {
       const VertexIndex p = ring_.ring[i], q = ring_.ring[(i + 1) % n];
       const int before = points_.orient(x, y, p, b_);
       const int after = p == b_ ? 1 : points_.orient(x, y, b_, q);
-      if (p == b_ || (before == 0 && after > 0)) return inside_face(x, y, p, q, ring_.tets[i], next);
-      if (before > 0 && after > 0) return inside_tet(x, y, p, q, ring_.tets[i], next);
+      next.piece_tet = ring_.tets[i];
+      if (p == b_ || (before == 0 && after > 0)) return inside_face(x, y, p, q, next);
+      if (before > 0 && after > 0) return inside_tet(x, y, p, q, next);
     }
     throw_vertex_on_segment(points_, a_, b_, x);
   }
 
-  // The segment runs from edge (x, y) inside the face (x, y, p); q is off its plane.
-  bool inside_face(VertexIndex x, VertexIndex y, VertexIndex p, VertexIndex q, TetIndex t, Crossing& next) {
-    next.piece_tet = t;
-    next.piece_face = mesh_.opposite(t, q);
+  // The segment runs from edge (x, y) through next.piece_tet, inside the face (x, y, p); q is off its plane.
+  bool inside_face(VertexIndex x, VertexIndex y, VertexIndex p, VertexIndex q, Crossing& next) {
+    next.piece_face = mesh_.opposite(next.piece_tet, q);
     if (p == b_) return false;
     const int sp = side(q, p), sx = side(q, x);
     if (sp == 0) throw_vertex_on_segment(points_, a_, b_, p);
-    set_edge(next, t, sp == sx ? y : x, p);
+    set_edge(next, next.piece_tet, sp == sx ? y : x, p);
     return true;
   }
 
-  bool inside_tet(VertexIndex x, VertexIndex y, VertexIndex p, VertexIndex q, TetIndex t, Crossing& next) {
-    next.piece_tet = t;
+  bool inside_tet(VertexIndex x, VertexIndex y, VertexIndex p, VertexIndex q, Crossing& next) {
     next.piece_face = kNone;
     const int pq = side(p, q);
     if (pq == 0) {
-      set_edge(next, t, p, q);
+      set_edge(next, next.piece_tet, p, q);
     } else {
-      set_face(next, t, pq == side(x, p) ? y : x);
+      set_face(next, next.piece_tet, pq == side(x, p) ? y : x);
     }
     return true;
   }
@@ -191,8 +190,7 @@ FirstHit first_hit(const ExactPoints& points, TetComplex& mesh, VertexIndex a, V
   throw std::logic_error("a segment leaves a vertex through no tetrahedron");
 }
 
-void walk_segment(const ExactPoints& points, TetComplex& mesh, VertexIndex a, VertexIndex b, std::size_t limit,
-                  SegmentWalk& walk) {
+void walk_segment(const ExactPoints& points, TetComplex& mesh, VertexIndex a, VertexIndex b, SegmentWalk& walk) {
   walk.crossings.clear();
   walk.present = false;
   const FirstHit hit = first_hit(points, mesh, a, b);
@@ -203,7 +201,7 @@ void walk_segment(const ExactPoints& points, TetComplex& mesh, VertexIndex a, Ve
   if (hit.vertex != kNone) throw_vertex_on_segment(points, a, b, hit.vertex);
   Walker walker(points, mesh, a, b);
   Crossing current = hit.crossing;
-  while (walk.crossings.size() < limit) {
+  while (walk.crossings.size() < SegmentWalk::kMostCrossings) {
     walk.crossings.push_back(current);
     Crossing next;
     if (!walker.advance(current, next)) {

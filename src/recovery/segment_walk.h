@@ -31,16 +31,17 @@ struct FirstHit {
 FirstHit first_hit(const ExactPoints& points, TetComplex& mesh, VertexIndex a, VertexIndex b);
 
 /// All crossings of the segment (a, b) in order, into `crossings`; empty if the edge is in the mesh. Stops after
-/// `limit`. Throws MeshingError if the segment passes through a vertex: then the surface touches itself there. A piece
-/// after the last crossing: `last_piece_face`, `last_piece_tet` as in Crossing.
+/// kMostCrossings: one of them divides the segment. Throws MeshingError if the segment passes through a vertex: then
+/// the surface touches itself there. A piece after the last crossing: `last_piece_face`, `last_piece_tet` as in
+/// Crossing.
 struct SegmentWalk {
+  static constexpr std::size_t kMostCrossings = 400;
   std::vector<Crossing> crossings;
   bool present = false;
   HalfFace last_piece_face = kNone;
   TetIndex last_piece_tet = kNone;
 };
-void walk_segment(const ExactPoints& points, TetComplex& mesh, VertexIndex a, VertexIndex b, std::size_t limit,
-                  SegmentWalk& walk);
+void walk_segment(const ExactPoints& points, TetComplex& mesh, VertexIndex a, VertexIndex b, SegmentWalk& walk);
 
 /// A tet that has the edge (a, b), or kNone.
 TetIndex tet_with_edge(const ExactPoints& points, TetComplex& mesh, VertexIndex a, VertexIndex b);

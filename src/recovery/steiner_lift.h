@@ -1,9 +1,8 @@
 #pragma once
 
-#include <octafront/run_context.h>
-
 #include "mesh/tet_complex.h"
-#include "recovery/exact_point.h"
+#include "recovery/delaunay.h"
+#include "recovery/recovery_task.h"
 
 #include <cstdint>
 #include <optional>
@@ -20,18 +19,16 @@ struct LiftCounts {
 /// inside.
 class SteinerLift {
  public:
-  /// `triangles`: the input's, to which the labels of boundary faces refer. Vertices from first_steiner on are Steiner
-  /// points. `frame`: the first of four vertices away from the surface that are not coplanar. Random choices follow
-  /// `seed`.
-  SteinerLift(ExactPoints& points, TetComplex& mesh, const std::vector<Triangle>& triangles, VertexIndex first_steiner,
-              VertexIndex frame, std::uint32_t seed, const RunContext& context)
-      : points_(points),
-        mesh_(mesh),
+  /// `triangles`: the input's, to which the labels of boundary faces refer. Vertices behind the frame are Steiner
+  /// points.
+  SteinerLift(const RecoveryTask& task, const std::vector<Triangle>& triangles)
+      : points_(task.points),
+        mesh_(task.mesh),
         triangles_(triangles),
-        first_steiner_(first_steiner),
-        frame_(frame),
-        context_(context),
-        random_(88172645463325252u + seed) {}
+        first_steiner_(task.frame + kFrameVertices),
+        frame_(task.frame),
+        context_(task.context),
+        random_(88172645463325252u + task.seed) {}
 
   /// The points for which no place of doubles was found; the mesh is done if there are none.
   std::vector<VertexIndex> run();
