@@ -1,5 +1,6 @@
 #include "io/surface_builder.h"
 
+#include "core/wording.h"
 #include "io/polygon.h"
 
 #include <algorithm>
@@ -13,10 +14,6 @@ namespace {
 [[noreturn]] void fail_at(const Input& input, bool is_text, const char* at, std::string_view message) {
   if (is_text) input.fail_at_line(at, message);
   input.fail_at_byte(at, message);
-}
-
-std::string plural(std::uint64_t n, std::string_view one) {
-  return fmt::format("{} {}{}", n, one, n == 1 ? "" : "s");
 }
 
 }  // namespace
@@ -107,10 +104,10 @@ void SurfaceBuilder::divide_polygons(const Input& input, bool is_text) {
     if (!divide(polygon, divided, input, is_text) && crossing++ == 0) first_crossing = polygon.face;
   }
   copy_up_to(triangles_.size());
-  notes.push_back(plural(polygons_.size(), "polygon") + " divided into triangles");
+  notes.push_back(counted(polygons_.size(), "polygon") + " divided into triangles");
   if (crossing > 0)
     notes.push_back(fmt::format("{} with crossing sides (the first is face {}); the triangles there overlap",
-                                plural(crossing, "polygon"), first_crossing));
+                                counted(crossing, "polygon"), first_crossing));
   triangles_ = std::move(divided.triangles_);
   face_of_triangle_ = std::move(divided.face_of_triangle_);
   patch_ = std::move(divided.patch_);
@@ -121,7 +118,7 @@ SurfaceFile SurfaceBuilder::finish(const Input& input, std::string format, bool 
     input.fail(fmt::format("holds more than {} vertices or faces", kNone - 1));
   check_corners(input, is_text, first_index);
   divide_polygons(input, is_text);
-  if (small_faces_ > 0) notes.push_back(plural(small_faces_, "face") + " with fewer than three corners left out");
+  if (small_faces_ > 0) notes.push_back(counted(small_faces_, "face") + " with fewer than three corners left out");
   if (triangles_.empty())
     input.fail(
         fmt::format("holds no triangles ({}, {} vertices): there is no surface to mesh; export the surface, not "

@@ -1,5 +1,6 @@
 #include <octafront/error.h>
 
+#include "geometry/measures.h"
 #include "recovery/boundary_recovery.h"
 #include "recovery/facet_planes.h"
 
@@ -16,10 +17,6 @@ namespace {
 // A segment that crosses more than this is not worked on by flips, it is divided first.
 constexpr std::size_t kFlippedCrossings = 64;
 constexpr int kRandomPasses = 6;
-
-double squared_distance(Vec3 a, Vec3 b) {
-  return squared_length(a - b);
-}
 
 // The dyadic number of the fewest bits in [lo, hi], a part of (0, 1); NaN if it needs more than 50.
 double short_dyadic(double lo, double hi) {

@@ -5,9 +5,6 @@
 
 #include "support/named_surfaces.h"
 
-#include <algorithm>
-#include <random>
-
 #include <gtest/gtest.h>
 
 namespace octafront {
@@ -17,22 +14,6 @@ Options sized(double h) {
   Options o;
   o.size.size = h;
   return o;
-}
-
-SurfaceMesh permuted(const SurfaceMesh& s, unsigned seed) {
-  std::mt19937 random(seed);
-  std::vector<VertexIndex> new_to_old(s.points.size());
-  for (VertexIndex v = 0; v < new_to_old.size(); ++v) new_to_old[v] = v;
-  std::shuffle(new_to_old.begin(), new_to_old.end(), random);
-  std::vector<VertexIndex> old_to_new(new_to_old.size());
-  SurfaceMesh out;
-  for (VertexIndex v = 0; v < new_to_old.size(); ++v) {
-    old_to_new[new_to_old[v]] = v;
-    out.points.push_back(s.points[new_to_old[v]]);
-  }
-  for (const auto& [a, b, c] : s.triangles) out.triangles.push_back({old_to_new[b], old_to_new[c], old_to_new[a]});
-  std::shuffle(out.triangles.begin(), out.triangles.end(), random);
-  return out;
 }
 
 TEST(Laws, SameInputSameMesh) {
@@ -70,7 +51,7 @@ TEST(Laws, OrderOfTheInputChangesNothingEssential) {
   const Result plain = generate(s, sized(0.2));
   for (unsigned seed = 1; seed <= 3; ++seed) {
     SCOPED_TRACE(seed);
-    const Result r = generate(permuted(s, seed), sized(0.2));
+    const Result r = generate(testing::permuted(s, seed), sized(0.2));
     EXPECT_EQ(first_defect(r.mesh), std::nullopt);
     EXPECT_NEAR(static_cast<double>(r.mesh.tets.size()) / static_cast<double>(plain.mesh.tets.size()), 1, 0.05);
     EXPECT_NEAR(r.report.quality.beta_mean, plain.report.quality.beta_mean, 0.02);

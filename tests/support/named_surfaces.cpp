@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <map>
 #include <numbers>
+#include <random>
 #include <utility>
+#include <vector>
 
 namespace octafront::testing {
 
@@ -122,6 +124,23 @@ SurfaceMesh reversed(SurfaceMesh surface) {
 SurfaceMesh transformed(SurfaceMesh surface, double scale, Vec3 shift) {
   for (Vec3& p : surface.points) p = p * scale + shift;
   return surface;
+}
+
+SurfaceMesh permuted(const SurfaceMesh& surface, unsigned seed) {
+  std::mt19937 random(seed);
+  std::vector<VertexIndex> new_to_old(surface.points.size());
+  for (VertexIndex v = 0; v < new_to_old.size(); ++v) new_to_old[v] = v;
+  std::shuffle(new_to_old.begin(), new_to_old.end(), random);
+  std::vector<VertexIndex> old_to_new(new_to_old.size());
+  SurfaceMesh out;
+  for (VertexIndex v = 0; v < new_to_old.size(); ++v) {
+    old_to_new[new_to_old[v]] = v;
+    out.points.push_back(surface.points[new_to_old[v]]);
+  }
+  for (const auto& [a, b, c] : surface.triangles)
+    out.triangles.push_back({old_to_new[b], old_to_new[c], old_to_new[a]});
+  std::shuffle(out.triangles.begin(), out.triangles.end(), random);
+  return out;
 }
 
 }  // namespace octafront::testing

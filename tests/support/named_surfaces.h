@@ -33,4 +33,7 @@ SurfaceMesh reversed(SurfaceMesh surface);
 /// Each vertex p becomes scale * p + shift.
 SurfaceMesh transformed(SurfaceMesh surface, double scale, Vec3 shift);
 
+/// The same surface with its vertices and triangles in another order, by chance, each triangle from another corner on.
+SurfaceMesh permuted(const SurfaceMesh& surface, unsigned seed);
+
 }  // namespace octafront::testing

@@ -5,10 +5,9 @@
 #include <octafront/validity.h>
 
 #include "support/named_surfaces.h"
+#include "support/nasty_surfaces.h"
 
 #include <algorithm>
-#include <numbers>
-#include <random>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -43,24 +42,6 @@ VolumeOptions front_alone() {
   VolumeOptions options;
   options.core = VolumeOptions::Core::kOff;
   return options;
-}
-
-/// A prism over a triangle whose top is turned against its bottom: the three sides fold inward along the diagonals that
-/// no tetrahedron on the six vertices can have (Schoenhardt 1928).
-SurfaceMesh schoenhardt(double turn) {
-  SurfaceMesh s;
-  for (int level = 0; level < 2; ++level)
-    for (int k = 0; k < 3; ++k) {
-      const double angle = 2 * std::numbers::pi * k / 3 + level * turn;
-      s.points.push_back({std::cos(angle), std::sin(angle), static_cast<double>(level)});
-    }
-  s.triangles = {{0, 2, 1}, {3, 4, 5}};
-  for (VertexIndex k = 0; k < 3; ++k) {
-    const VertexIndex a = k, b = (k + 1) % 3, c = 3 + k, d = 3 + (k + 1) % 3;
-    s.triangles.push_back({a, b, c});
-    s.triangles.push_back({b, d, c});
-  }
-  return s;
 }
 
 /// A long row of needles: a box whose sides are fans from their corners.
@@ -106,8 +87,8 @@ std::vector<Sample> samples() {
           {"hollow sphere", hollow_sphere(3)},
           {"thin shell", hollow_sphere(3, 1, 0.9)},
           {"coarse thin shell", hollow_sphere(1, 1, 0.75)},
-          {"Schoenhardt", schoenhardt(0.5)},
-          {"sharp Schoenhardt", schoenhardt(1.0)},
+          {"Schoenhardt", testing::twisted_prism(3, 30)},
+          {"sharp Schoenhardt", testing::twisted_prism(3, 57)},
           {"needles", needle_box(40)}};
 }
 
@@ -159,15 +140,7 @@ TEST(FillVolume, ScaleAndPlaceChangeNothingEssential) {
 TEST(FillVolume, NumberingOfTheInputChangesNothingEssential) {
   const SurfaceMesh s = torus(48, 16);
   const QualitySummary q = summarize_quality(filled(s, front_alone()));
-  std::mt19937 random(3);
-  SurfaceMesh other = s;
-  std::vector<VertexIndex> place(s.points.size());
-  for (VertexIndex v = 0; v < place.size(); ++v) place[v] = v;
-  std::shuffle(place.begin(), place.end(), random);
-  for (VertexIndex v = 0; v < place.size(); ++v) other.points[place[v]] = s.points[v];
-  for (Triangle& t : other.triangles)
-    for (VertexIndex& v : t) v = place[v];
-  std::shuffle(other.triangles.begin(), other.triangles.end(), random);
+  const SurfaceMesh other = testing::permuted(s, 3);
   const TetMesh mesh = filled(other, front_alone());
   expect_laws(mesh, other);
   const QualitySummary p = summarize_quality(mesh);
