@@ -5,7 +5,7 @@
 #include "io/input.h"
 #include "io/scanner.h"
 #include "io/vtk_xml.h"
-#include "size_files/point_table.h"
+#include "size_files/readers.h"
 
 #include <algorithm>
 #include <array>
@@ -105,12 +105,14 @@ std::vector<PointSize> read_point_table(const io::Input& input) {
   return points;
 }
 
-std::vector<PointSize> read_point_sizes(const std::string& file, const RunContext& context) {
-  const io::LoadedFile loaded(file, context);
-  const io::Input& input = loaded.input();
+std::vector<PointSize> read_point_sizes_bytes(const io::Input& input) {
   const std::size_t start = input.bytes.find_first_not_of(" \t\r\n");
   const bool is_xml = start != std::string_view::npos && input.bytes[start] == '<';
   return is_xml ? from_vtk(input) : read_point_table(input);
+}
+
+std::vector<PointSize> read_point_sizes(const std::string& file, const RunContext& context) {
+  return read_point_sizes_bytes(io::LoadedFile(file, context).input());
 }
 
 }  // namespace octafront

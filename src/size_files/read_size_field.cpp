@@ -3,6 +3,7 @@
 #include <octafront/error.h>
 
 #include "io/vtk_xml.h"
+#include "size_files/readers.h"
 #include "sizing/gradation.h"
 #include "sizing/make_size_field.h"
 #include "sizing/octree_corners.h"
@@ -45,7 +46,10 @@ GridFile read_grid_file(const io::Input& input) {
   grid.size = io::vtk_reals(xml, require(xml, input, "PointData", "size"), input, xml.points);
   grid.corners = io::vtk_integers(xml, require(xml, input, "Cells", "connectivity"), input, 8 * xml.cells);
   if (xyz.size() != 3 * grid.size.size()) input.fail("has not as many sizes as points");
-  for (std::size_t i = 0; i < xyz.size(); i += 3) grid.points.push_back({xyz[i], xyz[i + 1], xyz[i + 2]});
+  for (std::size_t i = 0; i < xyz.size(); i += 3) {
+    grid.points.push_back({xyz[i], xyz[i + 1], xyz[i + 2]});
+    if (!is_finite(grid.points.back())) input.fail(fmt::format("point {} lies at no finite place", i / 3));
+  }
   if (grid.corners.empty() || grid.corners.size() % 8 != 0) input.fail("has cells that are no hexahedra");
   for (const std::int64_t c : grid.corners) {
     if (c < 0 || static_cast<std::size_t>(c) >= grid.points.size()) input.fail("names a point that it does not have");
@@ -114,26 +118,29 @@ std::vector<double> corner_sizes(const GridFile& grid, const RootCube& root, con
 
 }  // namespace
 
-SizeField read_size_field(const std::string& file, double gradation, const RunContext& context) {
-  if (!(gradation >= 0.01 && gradation <= 1)) {
-    throw OptionError(fmt::format("`gradation` is {}: it must lie between 0.01 (slow growth) and 1 (fast)", gradation));
-  }
-  const io::LoadedFile loaded(file, context);
-  const GridFile grid = read_grid_file(loaded.input());
+SizeField read_size_field_bytes(const io::Input& input, double gradation) {
+  const GridFile grid = read_grid_file(input);
   auto field = std::make_shared<OctreeField>();
-  field->root = root_of(loaded.input(), grid);
+  field->root = root_of(input, grid);
   field->gradation = gradation;
-  field->tree = tree_of(loaded.input(), grid, field->root);
+  field->tree = tree_of(input, grid, field->root);
   const OctreeCorners corners = octree_corners(field->tree);
   const std::vector<double> caps = corner_sizes(grid, field->root, corners);
   const double ceiling = *std::max_element(grid.size.begin(), grid.size.end()) / field->root.side;
-  const std::vector<double> value = graded_corner_values(field->tree, corners, caps, gradation, ceiling, context);
+  const std::vector<double> value = graded_corner_values(field->tree, corners, caps, gradation, ceiling, input.context);
   field->h.resize(field->tree.size());
   for (std::size_t l = 0; l < field->tree.size(); ++l) {
     for (int k = 0; k < 8; ++k) field->h[l][k] = value[corners.of_leaf[l][k]];
   }
   field->find_range();
   return SizeFunction::field(std::move(field));
+}
+
+SizeField read_size_field(const std::string& file, double gradation, const RunContext& context) {
+  if (!(gradation >= 0.01 && gradation <= 1)) {
+    throw OptionError(fmt::format("`gradation` is {}: it must lie between 0.01 (slow growth) and 1 (fast)", gradation));
+  }
+  return read_size_field_bytes(io::LoadedFile(file, context).input(), gradation);
 }
 
 }  // namespace octafront

@@ -1,7 +1,7 @@
 #include <octafront/io.h>
 
 #include "io/input.h"
-#include "size_files/point_table.h"
+#include "size_files/readers.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -93,12 +93,14 @@ std::vector<SizeRegion> from_table(const io::Input& input) {
 
 }  // namespace
 
-std::vector<SizeRegion> read_size_regions(const std::string& file, const RunContext& context) {
-  const io::LoadedFile loaded(file, context);
-  const io::Input& input = loaded.input();
+std::vector<SizeRegion> read_size_regions_bytes(const io::Input& input) {
   const std::size_t start = input.bytes.find_first_not_of(" \t\r\n");
   const bool is_json = start != std::string_view::npos && (input.bytes[start] == '[' || input.bytes[start] == '{');
   return is_json ? from_json(input) : from_table(input);
+}
+
+std::vector<SizeRegion> read_size_regions(const std::string& file, const RunContext& context) {
+  return read_size_regions_bytes(io::LoadedFile(file, context).input());
 }
 
 }  // namespace octafront

@@ -267,5 +267,25 @@ TEST(SizeRegions, HoldInsideAndGrowAround) {
   }
 }
 
+/// The seeds of the fuzzer, and what it found: each file is sizes of one kind or another, or refused with an InputError.
+TEST(Corpus, SizesAreReadOrRefused) {
+  int read = 0;
+  const auto count = [&](const auto& reader) {
+    try {
+      reader();
+      ++read;
+    } catch (const InputError&) {
+    }
+  };
+  for (const auto& file : std::filesystem::directory_iterator(OCTAFRONT_CORPUS "/sizes")) {
+    SCOPED_TRACE(file.path().filename());
+    const std::string name = file.path().string();
+    count([&] { read_point_sizes(name); });
+    count([&] { read_size_regions(name); });
+    count([&] { read_size_field(name); });
+  }
+  EXPECT_GE(read, 9);  // a table is both points and regions, a grid both points and a field
+}
+
 }  // namespace
 }  // namespace octafront
