@@ -267,7 +267,8 @@ TEST(SizeRegions, HoldInsideAndGrowAround) {
   }
 }
 
-/// The seeds of the fuzzer, and what it found: each file is sizes of one kind or another, or refused with an InputError.
+/// The seeds of the fuzzer, and what it found: each file is sizes of one kind or another, or refused with an
+/// InputError.
 TEST(Corpus, SizesAreReadOrRefused) {
   int read = 0;
   const auto count = [&](const auto& reader) {

@@ -1,5 +1,6 @@
 #include <octafront/error.h>
 #include <octafront/repair.h>
+#include <octafront/run_context.h>
 
 #include "support/named_surfaces.h"
 
