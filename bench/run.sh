@@ -1,6 +1,8 @@
 #!/usr/bin/env bash
 # The benchmarks, by name. Builds what they need.
 #   bench/run.sh status      every model of bench/models.csv: valid? how true is the boundary?   -> docs/status.md
+#   bench/run.sh derived     the clean models and what is derived from them: any element that nothing forces? any cliff?
+#                                                                                    -> docs/derived-status.md
 #   bench/run.sh pipeline    three models at 100 k and 1 M elements, elements per second and stage -> docs/benchmarks.md
 #                            --beside PROGRAM: against another build of octafront, side by side
 #   bench/run.sh surface     surfaces of all clean models and beside other remeshers  -> docs/surface-status.md, benchmarks.md
@@ -13,8 +15,8 @@ cd "$(dirname "$0")/.."
 source scripts/lib/apt.sh
 
 case ${1:-} in
-  status | pipeline | surface | elements | volume | peers | improve) ;;
-  *) sed -n '2,11s/^# \{0,1\}//p' "$0"; exit 2 ;;
+  status | derived | pipeline | surface | elements | volume | peers | improve) ;;
+  *) sed -n '2,13s/^# \{0,1\}//p' "$0"; exit 2 ;;
 esac
 need_packages "${build_packages[@]}" python3
 [ "$1" != surface ] || need_packages gmsh netgen libcgal-dev libgmp-dev libmpfr-dev
@@ -24,6 +26,7 @@ need_packages "${build_packages[@]}" python3
 [ -d models/clean ] || scripts/get-models.sh --ct
 cmake --preset release -DOCTAFRONT_BUILD_TESTS=OFF >/dev/null
 cmake --build --preset release --target octafront_cli octafront_evaluate octafront_judge_surface
+[ "$1" != derived ] || [ -d models/derived ] || scripts/derive-models.sh build/release/cli/octafront
 [ "$1" != improve ] || cmake --build --preset release --target octafront_never_worse
 [ "$1" != peers ] || cmake --build --preset release --target peer_cgal_mesh || echo "without CGAL's mesher" >&2
 exec python3 "bench/$1.py" build/release "${@:2}"

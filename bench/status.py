@@ -194,4 +194,5 @@ def main():
     pathlib.Path("docs/status.md").write_text("\n".join(text))
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -104,9 +104,10 @@ void declare_surface(CLI::App& command, Arguments& a) {
       ->type_name("DEG")
       ->capture_default_str();
   group
-      ->add_option("--max-deviation", o.max_deviation,
-                   "Smaller elements where the surface would stray farther from the input [0.4 % of the diagonal with "
-                   "automatic sizes, else none]")
+      ->add_option(
+          "--max-deviation", o.max_deviation,
+          "Smaller elements where the surface would stray farther from the input, and how far folds and needles "
+          "of it give way; 0: not at all [0.4 % of the diagonal with automatic sizes, else none]")
       ->type_name("D");
   group
       ->add_option("--normal-deviation", o.normal_deviation,

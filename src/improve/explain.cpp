@@ -2,19 +2,33 @@
 
 #include "geometry/measures.h"
 #include "improve/edit_block.h"
+#include "improve/input_force.h"
 #include "improve/maximize_worst.h"
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <optional>
 
 namespace octafront::improve {
 namespace {
+
+bool spans_boundary(const EditMesh& mesh, TetIndex t) {
+  return std::all_of(mesh.tet(t).begin(), mesh.tet(t).end(), [&](VertexIndex v) { return mesh.on_boundary(v); });
+}
 
 class Explainer {
  public:
   Explainer(EditMesh& mesh, float threshold)
       : block_(mesh), mesh_(mesh), threshold_(threshold), batch_(mesh.objective()) {}
 
+  Shortfall::Cause cause_by_boundary(TetIndex t) {
+    if (forced_by_angle(t)) return Shortfall::kWedge;
+    if (forced_by_triangle(t)) return Shortfall::kKeptTriangle;
+    return spans_boundary(mesh_, t) ? Shortfall::kThin : Shortfall::kNotForced;
+  }
+
+ private:
   /// Some boundary edge of t encloses an angle that alone keeps every element there below the threshold.
   bool forced_by_angle(TetIndex t) {
     for (const auto& [i, j] : kTetEdges) {
@@ -39,7 +53,6 @@ class Explainer {
     return false;
   }
 
- private:
   double enclosed_angle(Vec3 a, Vec3 b) const {
     double sum = 0;
     const Vec3 axis = normalized(b - a);
@@ -75,29 +88,50 @@ class Explainer {
   WorstMaximizer maximizer_;
 };
 
-bool spans_boundary(const EditMesh& mesh, TetIndex t) {
-  return std::all_of(mesh.tet(t).begin(), mesh.tet(t).end(), [&](VertexIndex v) { return mesh.on_boundary(v); });
+/// Elements that solvers stumble over.
+constexpr double kPoorBeta = 0.2, kPoorAngle = 10 * std::numbers::pi / 180;
+
+bool is_poor(const EditMesh& mesh, TetIndex t) {
+  const auto [a, b, c, d] = mesh.tet(t);
+  const Vec3 p = mesh.point(a), q = mesh.point(b), r = mesh.point(c), s = mesh.point(d);
+  const auto cosines = dihedral_cosines(p, q, r, s);
+  return tet_radius_ratio(p, q, r, s) < kPoorBeta ||
+         *std::max_element(cosines.begin(), cosines.end()) > std::cos(kPoorAngle);
+}
+
+Shortfall::Cause cause_by_input(const EditMesh& mesh, TetIndex t, const InputForce& force) {
+  const auto [a, b, c, d] = mesh.tet(t);
+  const Vec3 p = mesh.point(a), q = mesh.point(b), r = mesh.point(c), s = mesh.point(d);
+  switch (force.cause_at(centroid(p, q, r, s), std::sqrt(longest_squared_edge(p, q, r, s)))) {
+    case InputForce::Cause::kWedge:
+      return Shortfall::kWedge;
+    case InputForce::Cause::kCorner:
+      return Shortfall::kCorner;
+    case InputForce::Cause::kThin:
+      return Shortfall::kThin;
+    case InputForce::Cause::kNone:
+      break;
+  }
+  return Shortfall::kNotForced;
 }
 
 }  // namespace
 
-Shortfall explain_shortfall(EditMesh& mesh, float threshold) {
+Shortfall explain_shortfall(EditMesh& mesh, float threshold, const BoundaryInput* input) {
   Shortfall s;
   Explainer explainer(mesh, threshold);
+  std::optional<InputForce> force;
+  if (input) force.emplace(*input);
   for (TetIndex t = 0; t < mesh.slots(); ++t) {
     if (!mesh.alive(t) || mesh.shape(t).score >= threshold) continue;
+    const Shortfall::Cause cause = force ? cause_by_input(mesh, t, *force) : explainer.cause_by_boundary(t);
     ++s.elements;
-    if (explainer.forced_by_angle(t)) {
-      ++s.forced_by_angle;
-    } else if (explainer.forced_by_triangle(t)) {
-      ++s.forced_by_triangle;
-    } else if (spans_boundary(mesh, t)) {
-      ++s.in_thin_places;
-    } else {
-      ++s.not_forced;
-      if (s.worst_not_forced == kNone || mesh.shape(t).score < mesh.shape(s.worst_not_forced).score)
-        s.worst_not_forced = t;
-    }
+    Shortfall::Class& c = s.by_cause[cause];
+    ++c.elements;
+    if (c.worst == kNone || mesh.shape(t).score < mesh.shape(c.worst).score) c.worst = t;
+    if (!is_poor(mesh, t)) continue;
+    ++s.poor;
+    s.poor_not_forced += cause == Shortfall::kNotForced;
   }
   return s;
 }

@@ -1,21 +1,27 @@
 #pragma once
 
+#include "improve/boundary_guide.h"
 #include "improve/edit_mesh.h"
 
+#include <array>
 #include <cstdint>
 
 namespace octafront::improve {
 
-/// Why elements stay below a score: what the boundary, which does not change, forces, and what it does not.
+/// Why elements stay poor. Where the boundary is the user's own, its triangles force them; where it is ours, only the
+/// input does, see InputForce: our own triangles are ours to mend.
 struct Shortfall {
-  std::uint64_t elements = 0;            ///< with a score below the threshold
-  std::uint64_t forced_by_angle = 0;     ///< at an edge where the boundary faces enclose too small an angle
-  std::uint64_t forced_by_triangle = 0;  ///< on a boundary triangle that no better tetrahedron fits
-  std::uint64_t in_thin_places = 0;  ///< with all four corners on the boundary: no room for another vertex was found
-  std::uint64_t not_forced = 0;
-  TetIndex worst_not_forced = kNone;  ///< slot in the mesh
+  enum Cause { kWedge, kCorner, kThin, kKeptTriangle, kNotForced, kCauses };
+  struct Class {
+    std::uint64_t elements = 0;
+    TetIndex worst = kNone;  ///< slot in the mesh
+  };
+  std::uint64_t elements = 0;                   ///< with a score below the threshold
+  std::array<Class, kCauses> by_cause{};        ///< of these
+  std::uint64_t poor = 0, poor_not_forced = 0;  ///< beta below .2, or a dihedral angle below 10 degrees
 };
 
-Shortfall explain_shortfall(EditMesh& mesh, float threshold);
+/// `input`: what the boundary was made from; null if the boundary is as the user gave it.
+Shortfall explain_shortfall(EditMesh& mesh, float threshold, const BoundaryInput* input);
 
 }  // namespace octafront::improve

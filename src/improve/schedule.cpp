@@ -121,32 +121,43 @@ class Schedule {
   Floor floor() const { return mesh_.floor(); }
   double mean_beta() const { return mesh_.beta_sum() / static_cast<double>(mesh_.live_tets()); }
 
-  /// Says what stays poor and why.
-  void explain() {
-    const Shortfall s = explain_shortfall(mesh_, kReported);
+  /// Says what stays poor and why, and where the worst of each kind are.
+  void explain(const BoundaryInput* input) {
+    const Shortfall s = explain_shortfall(mesh_, kReported, input);
     stage_.count(fmt::format("elements below {:.1f}", kReported), static_cast<double>(s.elements));
-    stage_.count("forced by the angle between boundary faces", static_cast<double>(s.forced_by_angle));
-    stage_.count("forced by a boundary triangle", static_cast<double>(s.forced_by_triangle));
-    stage_.count("between boundary vertices only", static_cast<double>(s.in_thin_places));
-    stage_.count("not forced", static_cast<double>(s.not_forced));
+    for (int cause = 0; cause < Shortfall::kCauses; ++cause)
+      stage_.count(kCauseNames[cause].counter, static_cast<double>(s.by_cause[cause].elements));
+    stage_.count("elements below 0.2 or 10 degrees", static_cast<double>(s.poor));
+    stage_.count("elements below 0.2 or 10 degrees, not forced", static_cast<double>(s.poor_not_forced));
     if (s.elements == 0) return;
     std::string note = fmt::format(
-        "{} below {:.1f} {}: {} where boundary faces meet at a small angle, {} on or beside boundary triangles of poor "
-        "shape, {} between boundary vertices only, {} for no cause in the boundary",
-        s.elements == 1 ? "1 element stays" : fmt::format("{} elements stay", s.elements), kReported,
+        "{} below {:.1f} {}:", s.elements == 1 ? "1 element stays" : fmt::format("{} elements stay", s.elements),
+        kReported,
         options_.objective == ImproveOptions::Objective::kBalanced ? "by beta or by its dihedral angles"
-                                                                   : "by the objective",
-        s.forced_by_angle, s.forced_by_triangle, s.in_thin_places, s.not_forced);
-    if (s.worst_not_forced != kNone) {
-      const Vec3 p = mesh_.point(mesh_.tet(s.worst_not_forced)[0]);
-      note += fmt::format("; the worst of these, {:.3f}, near ({}, {}, {})", mesh_.shape(s.worst_not_forced).score, p.x,
-                          p.y, p.z);
+                                                                   : "by the objective");
+    const char* separator = " ";
+    for (int cause = 0; cause < Shortfall::kCauses; ++cause) {
+      const Shortfall::Class& c = s.by_cause[cause];
+      if (c.elements == 0) continue;
+      const Vec3 p = mesh_.point(mesh_.tet(c.worst)[0]);
+      note += fmt::format("{}{} {} (the worst, {:.3f}, near ({:.6g}, {:.6g}, {:.6g}))", separator, c.elements,
+                          kCauseNames[cause].words, mesh_.shape(c.worst).score, p.x, p.y, p.z);
+      separator = ", ";
     }
     stage_.note(std::move(note));
   }
 
  private:
   static constexpr float kReported = 0.4f;
+  struct CauseName {
+    const char *counter, *words;
+  };
+  static constexpr CauseName kCauseNames[Shortfall::kCauses] = {
+      {"forced by a wedge", "in wedges of less than 20 degrees"},
+      {"forced by a corner", "at corners between curves less than 20 degrees apart"},
+      {"forced by thin walls", "between sheets nearer than a tenth of their size"},
+      {"forced by kept triangles", "on or beside triangles that were kept"},
+      {"not forced", "not forced by the input"}};
 
   template <typename Run>
   void pass(const char* what, Run&& run) {
@@ -297,14 +308,14 @@ void run_schedule(Schedule& run, const ImproveOptions& options) {
 constexpr int kMostRetries = 3;
 
 /// One run of the schedule; vertices in `frozen`, and those around them, stay on the boundary where they are.
-TetMesh improved(const TetMesh& mesh, const BoundaryInput* boundary, const std::vector<VertexIndex>& frozen,
-                 const ImproveOptions& options, const Stage& stage) {
+TetMesh improved(const TetMesh& mesh, const BoundaryInput* boundary, const BoundaryInput* input,
+                 const std::vector<VertexIndex>& frozen, const ImproveOptions& options, const Stage& stage) {
   EditMesh edit(TetMesh{mesh}, options.objective);
   std::optional<BoundaryGuide> guide;
   if (boundary) guide.emplace(edit, *boundary, frozen);
   Schedule run(edit, guide ? &*guide : nullptr, options, stage);
   run_schedule(run, options);
-  run.explain();
+  run.explain(input);
   return edit.release();
 }
 
@@ -329,15 +340,16 @@ std::vector<VertexIndex> where_boundary_crosses(const TetMesh& mesh) {
 
 }  // namespace
 
-bool improve_mesh(TetMesh& mesh, const BoundaryInput* boundary, const ImproveOptions& options, const Stage& stage) {
+bool improve_mesh(TetMesh& mesh, const BoundaryInput* input, const ImproveOptions& options, const Stage& stage) {
   check_improve_options(options);
   if (options.level == ImproveOptions::Level::kOff || mesh.tets.empty()) return false;
-  if (!options.move_boundary || options.level == ImproveOptions::Level::kPaper) boundary = nullptr;
+  const bool moves = options.move_boundary && options.level != ImproveOptions::Level::kPaper;
+  const BoundaryInput* boundary = moves ? input : nullptr;
   std::vector<VertexIndex> frozen;
   for (int retry = 0;; ++retry) {
     StageReport attempt = stage.report();
     TetMesh better =
-        improved(mesh, retry < kMostRetries ? boundary : nullptr, frozen, options, {stage.context(), attempt});
+        improved(mesh, retry < kMostRetries ? boundary : nullptr, input, frozen, options, {stage.context(), attempt});
     const bool moved = !same_boundary(mesh, better);
     const std::vector<VertexIndex> crossing = moved ? where_boundary_crosses(better) : std::vector<VertexIndex>{};
     if (crossing.empty()) {

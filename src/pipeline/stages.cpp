@@ -188,7 +188,7 @@ Prepared prepare(const SurfaceMesh& soup, Run& run) {
 SizeField choose_sizes(const Prepared& input, Run& run) {
   SizeField sizes = run.stage("size field", [&](const Stage& stage) {
     SizeOptions size = run.options.size;
-    if (!size.field) size.chord_error = run.options.surface.max_deviation;
+    if (!size.field && run.options.surface.max_deviation != 0.0) size.chord_error = run.options.surface.max_deviation;
     if (const auto degrees = run.options.surface.normal_deviation)
       refuse_huge_turning(input.surface, size, *degrees, run.context());
     return keeps_surface(run.options) ? size_field_of_surface(input.surface, size, stage)
@@ -234,10 +234,9 @@ Filled fill_surface(const Prepared& input, Remeshed boundary, Run& run) {
 void improve_elements(const Prepared& input, Filled& filled, Run& run) {
   run.stage("improve", [&](const Stage& stage) {
     auto& [mesh, boundary] = filled;
-    const bool moves = run.options.improve.move_boundary && !keeps_surface(run.options) &&
-                       input.defects == SurfaceDomain::Defects::kClean;
+    const bool is_ours = !keeps_surface(run.options) && input.defects == SurfaceDomain::Defects::kClean;
     std::optional<improve::BoundaryInput> on;
-    if (moves)
+    if (is_ours)
       on.emplace(improve::BoundaryInput{input.surface.mesh(), input.surface.tree(), input.surface.features(),
                                         boundary.features});
     if (!improve_mesh(mesh, on ? &*on : nullptr, run.options.improve, stage)) return;

@@ -312,7 +312,7 @@ TEST(FewestPoor, MovesAreTheSameForAnyNumberOfThreads) {
 
 Shortfall shortfall_of(TetMesh mesh) {
   EditMesh edit(std::move(mesh));
-  return explain_shortfall(edit, 0.4f);
+  return explain_shortfall(edit, 0.4f, nullptr);
 }
 
 TEST(Explain, NamesWhatTheBoundaryForces) {
@@ -321,14 +321,14 @@ TEST(Explain, NamesWhatTheBoundaryForces) {
   wedge.tets = {{0, 1, 2, 3}};
   const Shortfall angle = shortfall_of(with_boundary(wedge));
   EXPECT_EQ(angle.elements, 1u);
-  EXPECT_EQ(angle.forced_by_angle, 1u);
+  EXPECT_EQ(angle.by_cause[Shortfall::kWedge].elements, 1u);
 
   TetMesh needle;  // upright on a needle of a triangle
   needle.points = {{0, 0, 0}, {1, 0, 0}, {0.5, 0.02, 0}, {0.5, 0.01, 0.8}};
   needle.tets = {{0, 1, 2, 3}};
   const Shortfall triangle = shortfall_of(with_boundary(needle));
   EXPECT_EQ(triangle.elements, 1u);
-  EXPECT_EQ(triangle.not_forced, 0u);
+  EXPECT_EQ(triangle.by_cause[Shortfall::kNotForced].elements, 0u);
 
   EXPECT_EQ(shortfall_of(kuhn_cube(2)).elements, 0u);
 }

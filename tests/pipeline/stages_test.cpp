@@ -37,7 +37,7 @@ TEST(Stages, EachCanBeCalledAlone) {
   const RunContext context;
   octafront::Run first(options, context);
   const Prepared input = prepare(cube, first);
-  ASSERT_EQ(first.report.stages.size(), 2U);
+  ASSERT_EQ(first.report.stages.size(), 3U);
 
   octafront::Run surface(options, context);
   const Remeshed remeshed = triangulate(input, SizeField::uniform(0.2), surface);

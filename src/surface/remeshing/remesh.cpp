@@ -289,7 +289,7 @@ class Remesher {
   bool is_true(Compacted& c) {
     const bool is_last = counts_.rounds == kMostRounds || counts_.deviation_rounds == kMostDeviationRounds;
     std::vector<Vec3> far;
-    if (options_.max_deviation) far = places_beyond(*options_.max_deviation, c.result.surface, surface_, known_.tree());
+    if (limits_deviation()) far = places_beyond(*options_.max_deviation, c.result.surface, surface_, known_.tree());
     c.result.source = sources_of(c);
     std::vector<PointSize> turned;
     if (options_.normal_deviation) {
@@ -297,7 +297,7 @@ class Remesher {
                              c.result.source);
     }
     if ((far.empty() && turned.empty()) || is_last) {
-      if (options_.max_deviation) stage_.count("places beyond the deviation", static_cast<double>(far.size()));
+      if (limits_deviation()) stage_.count("places beyond the deviation", static_cast<double>(far.size()));
       if (options_.normal_deviation) stage_.count("triangles turned too far", static_cast<double>(turned.size()));
       note_what_is_left(far.size(), turned.size());
       return true;
@@ -307,6 +307,8 @@ class Remesher {
     sizes_ = capped_at(sizes_, turned, stage_.context());
     return false;
   }
+
+  bool limits_deviation() const { return options_.max_deviation.value_or(0) > 0; }
 
   /// What the user asked for and does not get.
   void note_what_is_left(std::size_t far, std::size_t turned) {

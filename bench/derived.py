@@ -1,0 +1,88 @@
+"""Meshes the clean models and all surfaces derived from them, and writes docs/derived-status.md: is every element as good
+as the input lets it be, is every run as fast as its size says?
+
+Usage: bench/run.sh derived [--only SUBSTRING] [--jobs N] [--timeout SECONDS] [--every N]
+Each model at automatic size and with --elements 100000. The Hausdorff distance is measured by octafront_evaluate, which
+reads the file back; forced elements are those that the report counts as forced by the input.
+"""
+import argparse
+import concurrent.futures
+import pathlib
+import statistics
+
+from status import mesh_and_judge
+
+RUNS = {"automatic": [], "100 k": ["--elements", "100000"]}
+POOR, POOR_FREE, LOW_FREE = ("elements below 0.2 or 10 degrees", "elements below 0.2 or 10 degrees, not forced",
+                             "not forced")
+
+
+def counter(row, stage, key):
+    return sum(s["counters"].get(key, 0) for s in row["report"]["stages"] if s["name"] == stage)
+
+
+def figures(model, row):
+    report = row["report"]
+    work = counter(row, "repair", "triangles") + report["tets"]
+    return {
+        "model": model.name, "tets": report["tets"], "beta": row["beta_min"], "angle": row["dihedral_min"],
+        "poor": counter(row, "improve", POOR), "poor_free": counter(row, "improve", POOR_FREE),
+        "low_free": counter(row, "improve", LOW_FREE), "hausdorff": row["hausdorff_percent"],
+        "cpu": report["cpu_seconds"], "us": 1e6 * report["cpu_seconds"] / work,
+        "left": counter(row, "surface front", "places left as in the input"), "defect": row["defect"]}
+
+
+def summary(name, made, failed):
+    median = statistics.median(r["us"] for r in made)
+    slowest = max(made, key=lambda r: r["us"])
+    tets, low = sum(r["tets"] for r in made), sum(r["low_free"] for r in made)
+    free = [r for r in made if r["poor_free"]]
+    beyond = sum(r["hausdorff"] > 0.5 for r in made)
+    return "\n".join([
+        f"**{name}**: {len(made) - sum(bool(r['defect']) for r in made)} of {len(made) + len(failed)} valid.",
+        f"Elements below β .2 or 10°: {sum(r['poor'] for r in made):.0f} on {sum(r['poor'] > 0 for r in made)} models, of these "
+        f"not forced by the input: **{sum(r['poor_free'] for r in free):.0f} on {len(free)}**.",
+        f"Below .4 and not forced: {low:.0f} of {tets:,} elements, {1e5 * low / tets:.2f} in 100,000.",
+        f"Hausdorff distance above .5 % of the diagonal: {beyond} models.",
+        f"CPU time per input triangle and element: median {median:.1f} µs, the slowest {slowest['us'] / median:.1f} times that "
+        f"({slowest['model']}, {slowest['cpu']:.1f} s).",
+        f"Places where the input's own triangles stay: {sum(r['left'] for r in made):.0f} on {sum(r['left'] > 0 for r in made)} models.",
+        *(f"Failed: {model}: {why}" for model, why in failed), ""])
+
+
+def worst_table(made):
+    worst = sorted(made, key=lambda r: (-r["poor_free"], -r["low_free"] / r["tets"], r["beta"]))[:10]
+    rows = ["| model | elements | least β | least angle ° | below .2 or 10° | not forced | below .4, not forced | Hausdorff % | CPU s |",
+            "| --- | --- | --- | --- | --- | --- | --- | --- | --- |"]
+    rows += [f"| {r['model']} | {r['tets']:,} | {r['beta']:.3f} | {r['angle']:.1f} | {r['poor']:.0f} | {r['poor_free']:.0f} | "
+             f"{r['low_free']:.0f} | {r['hausdorff']:.3f} | {r['cpu']:.1f} |" for r in worst]
+    return "\n".join(rows) + "\n"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("build", type=pathlib.Path)
+    parser.add_argument("--only", default="")
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--timeout", type=float, default=600)
+    parser.add_argument("--every", type=int, default=1, help="every Nth model, by size")
+    a = parser.parse_args()
+    models = sorted([*pathlib.Path("models/clean").iterdir(), *pathlib.Path("models/derived").iterdir()],
+                    key=lambda p: (p.stat().st_size, p.name))
+    models = [m for m in models if a.only in m.name][::a.every]
+    text = ["# The clean models and what is derived from them", "",
+            f"Written by `bench/run.sh derived{f' --every {a.every}' if a.every > 1 else ''}` over {len(models)} surfaces "
+            "(`scripts/get-models.sh`, `scripts/derive-models.sh`), two at a time on two cores. What forced means: "
+            "`docs/sizes-and-surface.md`.", ""]
+    with concurrent.futures.ThreadPoolExecutor(a.jobs) as pool:
+        for name, options in RUNS.items():
+            rows = list(pool.map(lambda m: mesh_and_judge(a.build, m, [*options, "--threads", "1"], a.timeout), models))
+            made = [figures(m, r) for m, r in zip(models, rows) if r["status"] == 0]
+            failed = [(m.name, r["message"][:200]) for m, r in zip(models, rows) if r["status"] != 0]
+            text += [f"## Sizes: {name}", "", summary(name, made, failed).replace("\n", "\n\n"), "The worst ten:", "", worst_table(made)]
+            print(summary(name, made, failed), flush=True)
+    if not a.only:
+        pathlib.Path("docs/derived-status.md").write_text("\n".join(text))
+
+
+main()
