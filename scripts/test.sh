@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Builds everything and runs the tests, the lowest rooms first. Installs what is missing (Debian 12).
-#   scripts/test.sh [--all] [PRESET] [CTEST OPTION ...]
+#   scripts/test.sh [--all | --low] [PRESET] [CTEST OPTION ...]
 #     --all     with the long tests: large models, a campaign of nasty surfaces
+#     --low     only the rooms that all others stand on: core, geometry, mesh, surface
 #     PRESET    a configure preset, by default release; also: dev (validators), asan-ubsan, tsan
 #     CTEST OPTION   e.g. -L volume (the tests of one room), --stop-on-failure
 # What failed is listed at the end, the lowest room first, with the command that repeats it.
@@ -9,14 +10,17 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/lib/apt.sh
 
-which=(-LE long)
-if [ "${1:-}" = --all ]; then which=() && shift; fi
+which=(-LE long) targets=()
+case ${1:-} in
+  --all) which=() && shift ;;
+  --low) which=(-L '^(core|geometry|mesh|surface)$') targets=(--target test_core test_geometry test_mesh test_surface) && shift ;;
+esac
 preset=release
 if [ $# -gt 0 ] && [[ $1 != -* ]]; then preset=$1 && shift; fi
 
 need_packages "${build_packages[@]}" "${test_packages[@]}"
 cmake --preset "$preset" -DOCTAFRONT_BUILD_BENCH=OFF -DOCTAFRONT_WERROR=ON >/dev/null
-cmake --build --preset "$preset"
+cmake --build --preset "$preset" "${targets[@]}"
 failed=build/$preset/Testing/Temporary/LastTestsFailed.log
 rm -f "$failed"
 ctest --preset "$preset" -j "$(nproc)" "${which[@]}" "$@" && exit

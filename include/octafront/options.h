@@ -66,10 +66,10 @@ struct SurfaceOptions {
   bool keep = false;          ///< the input triangles become the boundary, exactly
   double feature_angle = 40;  ///< degrees between face normals from which an edge is kept as a feature; (0, 180)
   /// Where the new surface strays farther from the input than this (input units, >= 0), the sizes are made smaller, for
-  /// a few rounds. Folds, spikes and lines too near to each other for an element are smoothed over within this distance.
-  /// 0: no such detail is touched, and the sizes alone decide. Without a value: .4 % of the diagonal where the sizes are
-  /// automatic; else the sizes decide, and details give way by a tenth of the size (folds; at most .4 % of the
-  /// diagonal) to a quarter of it (lines).
+  /// a few rounds. Folds, spikes and lines too near to each other for an element are smoothed over within this
+  /// distance. 0: no such detail is touched, and the sizes alone decide. Without a value: .4 % of the diagonal where
+  /// the sizes are automatic; else the sizes decide, and details give way by a tenth of the size (folds; at most .4 %
+  /// of the diagonal) to a quarter of it (lines).
   std::optional<double> max_deviation;
   /// The same where the new triangles turn by more than this many degrees against the input's surface at their corners
   /// and centroid; (0, 90].

@@ -1,3 +1,4 @@
+#include "core/parallel.h"
 #include "surface/remeshing/curves.h"
 
 #include <algorithm>
@@ -103,13 +104,14 @@ class NoiseFilter {
   /// Needs the surface without marks: the walks must cross features.
   void judge_edges(const std::vector<Edge>& edges) {
     const HalfEdgeMesh& mesh = marked_.mesh;
-    for (const Edge& e : edges) {
+    parallel_for(edges.size(), [&](std::size_t i) {
+      const Edge& e = edges[i];
       const HalfEdge h = mesh.find(e[0], e[1]);
       const double size = sizes_.at((mesh.points[e[0]] + mesh.points[e[1]]) * 0.5);
       const std::uint8_t sharp = holds_at_scale(marked_, h, size);
       sharp_[h] = sharp_[mesh.twin[h]] = sharp;
       size_[h] = size_[mesh.twin[h]] = size;
-    }
+    });
   }
 
   double cosine(HalfEdge h) const {

@@ -1,10 +1,12 @@
 #include "surface/remeshing/front.h"
 
+#include "core/parallel.h"
 #include "surface/remeshing/point_grid.h"
 
 #include <algorithm>
 #include <map>
 #include <numbers>
+#include <numeric>
 
 namespace octafront::remeshing {
 
@@ -279,11 +281,11 @@ double demand_of(Vec3 a, Vec3 b, Vec3 c, const SizeField& sizes) {
 
 /// The number of points that the sizes ask for: equilateral triangles, two for each point.
 double points_wanted(const InputSurface& input, const SizeField& sizes) {
-  double demand = 0;
-  for (std::uint32_t t = 0; t < input.mesh.triangle_count(); ++t) {
-    demand += demand_of(input.mesh.corner(t, 0), input.mesh.corner(t, 1), input.mesh.corner(t, 2), sizes);
-  }
-  return demand * 2 / std::numbers::sqrt3;
+  std::vector<double> demand(input.mesh.triangle_count());
+  parallel_for(demand.size(), [&](std::size_t t) {
+    demand[t] = demand_of(input.mesh.corner(t, 0), input.mesh.corner(t, 1), input.mesh.corner(t, 2), sizes);
+  });
+  return std::accumulate(demand.begin(), demand.end(), 0.0) * 2 / std::numbers::sqrt3;
 }
 
 }  // namespace

@@ -26,6 +26,9 @@ struct Tier {
 constexpr Tier kTiers[] = {{kFold, 0.25}, {15 * kDegree, 1}};
 /// What an operation must take away around a place to be worth it: radians of folding, or 2r/R of bad triangles.
 constexpr double kGain = 0.01;
+/// What a pair of triangles that cross counts, and how many are many.
+constexpr double kCrossing = 1;
+constexpr int kMany = 100;
 /// No new triangle is worse than this 2r/R, unless one was, where no limit is given.
 constexpr double kLeastShape = 0.02;
 /// Parts of the way to the mean of its neighbours that a vertex is tried at.
@@ -44,11 +47,11 @@ struct NewTriangle {
 
 /// What may be done.
 struct Change {
-  enum class Kind { kNone, kFlip, kCollapse, kMove };
+  enum class Kind { kNone, kFlip, kCollapse, kMove, kSplit };
   Kind kind = Kind::kNone;
   HalfEdge half_edge = kNone;
-  Vec3 place{};                ///< of kMove: where the start of half_edge goes
-  std::uint32_t face = kNone;  ///< of kMove: the triangle of `onto` that it lies in
+  Vec3 place{};                ///< of kMove: where the start of half_edge goes; of kSplit: the new vertex
+  std::uint32_t face = kNone;  ///< the triangle of `onto` that the place lies in
   double badness = 0;          ///< how much more there is of it afterwards
   double move = 0;
 };
@@ -76,13 +79,22 @@ double opening(Vec3 n, Vec3 m) {
 }
 
 double folding(Vec3 n, Vec3 m) {
+  if (dot(n, m) >= 0) return 0;  // a right angle at least, as nearly all are
   return std::max(0.0, kFold - opening(n, m));
+}
+
+/// Without area: such a triangle meets all and none.
+bool is_degenerate(const TriangleCorners& t) {
+  return collinear(t[0], t[1], t[2]);
 }
 
 class FoldMender {
  public:
   FoldMender(WorkingMesh& mesh, const FoldLimits& limits)
-      : mesh_(mesh), limits_(limits), edits_(mesh, limits.is_fixed), is_changed_(mesh.triangle_count(), 0) {}
+      : mesh_(mesh), limits_(limits), edits_(mesh, limits.is_fixed), is_changed_(mesh.triangle_count(), 0) {
+    if (limits.crossing) crosses_ = *limits.crossing;
+    crosses_.resize(mesh.triangle_count(), 0);
+  }
 
   MendedFolds run(const RunContext& context) {
     for (std::uint32_t t = 0; t < mesh_.triangle_count(); ++t) push(t);
@@ -91,7 +103,13 @@ class FoldMender {
       context.check();
       const auto [badness, t] = queue_.top();
       queue_.pop();
-      if (!mesh_.is_removed(t) && badness_of(t) == badness) mend(t);
+      if (mesh_.is_removed(t) || badness_of(t) != badness) continue;
+      if (crosses_[t] && !still_crosses(t)) {
+        crosses_[t] = 0;
+        push(t);
+        continue;
+      }
+      mend(t);
     }
     for (HalfEdge h = 0; h < mesh_.start.size(); ++h) {
       if (mesh_.start[h] != kNone && h < mesh_.twin[h]) result_.folds_left += folding_at(h) > 0;
@@ -104,6 +122,7 @@ class FoldMender {
   double folding_at(HalfEdge h) const {
     return is_kept_line(h) ? 0 : folding(mesh_.area_vector(h / 3), mesh_.area_vector(mesh_.twin[h] / 3));
   }
+  Triangle ids(std::uint32_t t) const { return {mesh_.start[3 * t], mesh_.start[3 * t + 1], mesh_.start[3 * t + 2]}; }
   TriangleCorners corners(std::uint32_t t) const {
     return {mesh_.corner(t, 0), mesh_.corner(t, 1), mesh_.corner(t, 2)};
   }
@@ -112,7 +131,8 @@ class FoldMender {
     return std::max(0.0, limits_.least_shape - triangle_radius_ratio(t[0], t[1], t[2]));
   }
   double badness_of(std::uint32_t t) const {
-    return shape_lack(corners(t)) + folding_at(3 * t) + folding_at(3 * t + 1) + folding_at(3 * t + 2);
+    return crosses_[t] * kCrossing + shape_lack(corners(t)) + folding_at(3 * t) + folding_at(3 * t + 1) +
+           folding_at(3 * t + 2);
   }
 
   void push(std::uint32_t t) {
@@ -131,7 +151,7 @@ class FoldMender {
     double most_folded = 0;
     for (HalfEdge h = 3 * t; h < 3 * t + 3; ++h) most_folded = std::max(most_folded, folding_at(h));
     for (const Tier& tier : kTiers) {
-      if (most_folded <= kFold - tier.angle && shape_lack(corners(t)) == 0) return;
+      if (most_folded <= kFold - tier.angle && shape_lack(corners(t)) == 0 && !crosses_[t]) return;
       best_ = {};
       limit_ = tier.move * allowed_at(t);
       for (HalfEdge h = 3 * t; h < 3 * t + 3; ++h) {
@@ -144,6 +164,7 @@ class FoldMender {
         }
         consider_moves(h);
         consider_moves(previous_of(g));
+        if (crosses_[t]) consider_split(h);
       }
       if (best_.kind == Change::Kind::kNone) continue;
       apply();
@@ -189,6 +210,20 @@ class FoldMender {
     }
   }
 
+  /// A vertex on the middle of an edge, put on the surface that is stood for: chords of a sheet come nearer to it.
+  void consider_split(HalfEdge h) {
+    if (mesh_.is_feature[h] || !limits_.onto) return;
+    const HalfEdge g = mesh_.twin[h];
+    const VertexIndex a = mesh_.start[h], b = mesh_.start[g], c = mesh_.apex(h), d = mesh_.apex(g);
+    const TriangleTree::Nearest middle = limits_.onto->nearest((mesh_.points[a] + mesh_.points[b]) * 0.5);
+    const auto x = static_cast<VertexIndex>(mesh_.points.size());
+    old_.assign({h / 3, g / 3});
+    new_.clear();
+    for (const auto& [p, q] : {Edge{c, a}, Edge{b, c}, Edge{a, d}, Edge{d, b}})
+      new_.push_back({{p, q, x}, {mesh_.points[p], mesh_.points[q], middle.point}, {}});
+    judge({Change::Kind::kSplit, h, middle.point, middle.triangle}, kNone);
+  }
+
   /// The triangles around v, and what they are with v at p; as the vertex w if that is one.
   void gather_star(VertexIndex v, Vec3 p, VertexIndex w) {
     old_.clear();
@@ -203,20 +238,27 @@ class FoldMender {
     });
   }
 
-  /// Remembers the change if it is better than any so far, moves the surface little, and crosses nothing.
+  /// Remembers the change if it is better than any so far, moves the surface little, and makes crossings fewer, or none
+  /// where there are none.
   void judge(Change change, VertexIndex merged) {
     const auto after = badness_after(merged, mesh_.start[change.half_edge]);
     if (!after) return;
-    change.badness = *after - badness_before();
-    if (!(change.badness < (best_.kind == Change::Kind::kNone ? -kGain : best_.badness))) return;
+    const double to_beat = best_.kind == Change::Kind::kNone ? -kGain : best_.badness;
+    const bool any_crossing = std::any_of(old_.begin(), old_.end(), [&](std::uint32_t t) { return crosses_[t] != 0; });
+    const int crossings = any_crossing ? crossings_of_old() : 0;
+    change.badness = *after - badness_before() - kCrossing * crossings;
+    if (!(change.badness < to_beat)) return;
     old_corners_.clear();
     new_corners_.clear();
     for (const std::uint32_t t : old_) old_corners_.push_back(corners(t));
     for (const NewTriangle& t : new_) new_corners_.push_back(t.corners);
     if (!shapes_are_fair()) return;
     change.move = std::max(farthest(old_corners_, new_corners_), farthest(new_corners_, old_corners_));
-    if (change.move > limit_ || crosses()) return;
-    best_ = change;
+    if (change.move > limit_) return;
+    const int left = crossings_of_new(std::max(1, crossings));
+    change.badness += kCrossing * left;
+    if (left > 0 && left >= crossings) return;
+    if (change.badness < to_beat) best_ = change;
   }
 
   bool is_old(std::uint32_t t) const { return std::find(old_.begin(), old_.end(), t) != old_.end(); }
@@ -275,38 +317,60 @@ class FoldMender {
     return worst(new_corners_) >= std::min(limit, worst(old_corners_));
   }
 
-  /// Whether a new triangle meets another one where it should not: exactly.
-  bool crosses() {
-    for (std::size_t i = 0; i < new_.size(); ++i) {
-      for (std::size_t j = 0; j < i; ++j) {
-        if (triangles_conflict(new_[i].corners, new_[i].ids, new_[j].corners, new_[j].ids)) return true;
-      }
-      if (crosses_others(new_[i])) return true;
+  /// How many pairs of the new triangles, and of these with others, meet where they should not: exactly. Counts no
+  /// further than to `enough`.
+  int crossings_of_new(int enough) {
+    int count = 0;
+    for (std::size_t i = 0; i < new_.size() && count < enough; ++i) {
+      for (std::size_t j = 0; j < i; ++j)
+        count += triangles_conflict(new_[i].corners, new_[i].ids, new_[j].corners, new_[j].ids);
+      count += crossings_with_others(new_[i], enough - count);
     }
-    return false;
+    return count;
   }
 
-  bool crosses_others(const NewTriangle& made) {
+  int crossings_of_old() {
+    int count = 0;
+    for (std::size_t i = 0; i < old_.size(); ++i) {
+      if (is_degenerate(corners(old_[i]))) continue;
+      for (std::size_t j = 0; j < i; ++j)
+        count += !is_degenerate(corners(old_[j])) &&
+                 triangles_conflict(corners(old_[i]), ids(old_[i]), corners(old_[j]), ids(old_[j]));
+      count += crossings_with_others({ids(old_[i]), corners(old_[i]), {}}, kMany);
+    }
+    return count;
+  }
+
+  bool still_crosses(std::uint32_t t) {
+    old_.assign({t});
+    if (is_degenerate(corners(t))) return true;
+    return crossings_with_others({ids(t), corners(t), {}}, 1) > 0;
+  }
+
+  /// With triangles that are not old; no further than to `enough`.
+  int crossings_with_others(const NewTriangle& made, int enough) {
     if (!tree_) plant_tree();
     const Box3 box = box_of(made.corners);
-    const auto is_apart = [&](std::uint32_t t) {
+    int count = 0;
+    const auto look = [&](std::uint32_t t) {
       if (is_old(t) || mesh_.is_removed(t)) return true;
       const TriangleCorners there = corners(t);
-      if (!box_of(there).overlaps(box)) return true;
-      return !triangles_conflict(made.corners, made.ids, there,
-                                 {mesh_.start[3 * t], mesh_.start[3 * t + 1], mesh_.start[3 * t + 2]});
+      if (box_of(there).overlaps(box) && !is_degenerate(there))
+        count += triangles_conflict(made.corners, made.ids, there, ids(t));
+      return count < enough;
     };
-    const bool clear_of_rest = tree_->for_each_box_near(box, [&](std::uint32_t item, const TriangleCorners&) {
-      return is_changed_[in_tree_[item]] || is_apart(in_tree_[item]);
+    const bool on = tree_->for_each_box_near(box, [&](std::uint32_t item, const TriangleCorners&) {
+      return is_changed_[in_tree_[item]] || look(in_tree_[item]);
     });
-    return !clear_of_rest || !std::all_of(changed_.begin(), changed_.end(), is_apart);
+    if (on) std::all_of(changed_.begin(), changed_.end(), look);
+    return count;
   }
 
   void plant_tree() {
     std::vector<Triangle> triangles;
     for (std::uint32_t t = 0; t < mesh_.triangle_count(); ++t) {
       if (mesh_.is_removed(t)) continue;
-      triangles.push_back({mesh_.start[3 * t], mesh_.start[3 * t + 1], mesh_.start[3 * t + 2]});
+      triangles.push_back(ids(t));
       in_tree_.push_back(t);
     }
     tree_.emplace(mesh_.points, triangles);
@@ -316,9 +380,18 @@ class FoldMender {
     const HalfEdge h = best_.half_edge;
     const VertexIndex v = mesh_.start[h];
     std::vector<std::uint32_t> touched{h / 3, mesh_.twin[h] / 3};
-    if (best_.kind != Change::Kind::kFlip) mesh_.for_each_outgoing(v, [&](HalfEdge o) { touched.push_back(o / 3); });
+    if (best_.kind == Change::Kind::kCollapse || best_.kind == Change::Kind::kMove)
+      mesh_.for_each_outgoing(v, [&](HalfEdge o) { touched.push_back(o / 3); });
     if (best_.kind == Change::Kind::kFlip) edits_.flip(h);
     if (best_.kind == Change::Kind::kCollapse) edits_.collapse(h);
+    if (best_.kind == Change::Kind::kSplit) {
+      const double size = 0.5 * (mesh_.size[v] + mesh_.size[mesh_.end(h)]);
+      const VertexIndex x = mesh_.add_vertex(best_.place, VertexKind::kFree, {}, size, best_.face);
+      mesh_.split_edge(h, x);
+      mesh_.for_each_outgoing(x, [&](HalfEdge o) { touched.push_back(o / 3); });
+      is_changed_.resize(mesh_.triangle_count(), 0);
+      crosses_.resize(mesh_.triangle_count(), 0);
+    }
     if (best_.kind == Change::Kind::kMove) {
       mesh_.points[v] = best_.place;
       if (best_.face != kNone) mesh_.face[v] = best_.face;
@@ -330,14 +403,21 @@ class FoldMender {
   }
 
   void note_changed(const std::vector<std::uint32_t>& touched) {
+    bool had_crossing = false;
     for (const std::uint32_t t : touched) {
+      had_crossing |= crosses_[t] != 0;
       if (!is_changed_[t]) changed_.push_back(t);
       is_changed_[t] = 1;
-      if (mesh_.is_removed(t)) continue;
-      push(t);
-      for (HalfEdge h = 3 * t; h < 3 * t + 3; ++h) push(mesh_.twin[h] / 3);
     }
     std::erase_if(changed_, [&](std::uint32_t t) { return mesh_.is_removed(t); });
+    for (const std::uint32_t t : touched) {
+      crosses_[t] = had_crossing && !mesh_.is_removed(t) && still_crosses(t);
+    }
+    for (const std::uint32_t t : touched) {
+      push(t);
+      if (mesh_.is_removed(t)) continue;
+      for (HalfEdge h = 3 * t; h < 3 * t + 3; ++h) push(mesh_.twin[h] / 3);
+    }
   }
 
   struct Side {
@@ -353,6 +433,7 @@ class FoldMender {
   std::vector<std::uint32_t> in_tree_;    ///< its triangles
   std::vector<std::uint8_t> is_changed_;  ///< per triangle: no longer the one in the tree
   std::vector<std::uint32_t> changed_;
+  std::vector<std::uint8_t> crosses_;  ///< per triangle
   std::priority_queue<std::pair<double, std::uint32_t>> queue_;
   MendedFolds result_;
   double limit_ = 0;

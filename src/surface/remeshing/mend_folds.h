@@ -12,11 +12,13 @@ namespace octafront::remeshing {
 
 /// What counts as a fold or as a bad triangle, and how far the surface may move to be rid of it.
 struct FoldLimits {
-  double tolerance = 0;                ///< input units
-  double size_part = 0;                ///< of the size at the place, no farther than that either; 0: whatever the size
-  double least_shape = 0;              ///< triangles below this 2r/R are bad too
-  bool keep_lines = false;             ///< feature lines are no folds, however sharp
-  const TriangleTree* onto = nullptr;  ///< vertices that move are put on this surface; null: wherever they go
+  double tolerance = 0;     ///< input units
+  double size_part = 0;     ///< of the size at the place, no farther than that either; 0: whatever the size
+  double least_shape = 0;   ///< triangles below this 2r/R are bad too
+  bool keep_lines = false;  ///< feature lines are no folds, however sharp
+  /// Triangles that cross others, one flag each, are bad too: edges of theirs are also divided; null: none.
+  const std::vector<std::uint8_t>* crossing = nullptr;
+  const TriangleTree* onto = nullptr;         ///< vertices that move are put on this surface; null: wherever they go
   const std::vector<std::uint8_t>& is_fixed;  ///< by vertex: stays; those beyond its end need not
 };
 

@@ -5,6 +5,7 @@
 #include "surface/remeshing/star_collapse.h"
 
 #include <algorithm>
+#include <numeric>
 #include <vector>
 
 namespace octafront::remeshing {
@@ -27,13 +28,17 @@ class LineMerger {
       : mesh_(mesh), edits_(mesh, is_fixed), tolerance_(tolerance), star_(mesh) {}
 
   std::uint64_t run() {
+    std::vector<std::uint32_t> here(mesh_.triangle_count());
+    std::iota(here.begin(), here.end(), 0u);
     std::uint64_t operations = 0;
-    for (int round = 0; round < kRounds; ++round) {
-      const std::uint64_t before = operations;
-      for (std::uint32_t t = 0; t < mesh_.triangle_count(); ++t) {
+    for (int round = 0; round < kRounds && !here.empty(); ++round) {
+      for (const std::uint32_t t : here) {
         if (!mesh_.is_removed(t) && quality(3 * t) < kBad) operations += close(t) || pass_line_on(t);
       }
-      if (operations == before) break;
+      std::sort(changed_.begin(), changed_.end());
+      changed_.erase(std::unique(changed_.begin(), changed_.end()), changed_.end());
+      here.swap(changed_);
+      changed_.clear();
     }
     return operations;
   }
@@ -67,7 +72,9 @@ class LineMerger {
     const double least = kGain * star_.quality_now();
     if (!(star_.quality_after(static_cast<std::size_t>(i), kLimits, least) > least)) return false;
     if (!edits_.may_collapse(h)) return false;
+    const VertexIndex w = mesh_.end(h);
     edits_.collapse(h);
+    note_changed_around(w);
     return true;
   }
 
@@ -86,13 +93,19 @@ class LineMerger {
     const double after = std::min(squared_quality(at(a), at(d), at(c)), squared_quality(at(b), at(c), at(d)));
     if (!(after > kGain * before) || !flip_is_sound(mesh_, h, kLimits) || !edits_.may_flip(h)) return false;
     edits_.flip(h);
+    for (const VertexIndex v : {a, b, c, d}) note_changed_around(v);
     return true;
+  }
+
+  void note_changed_around(VertexIndex v) {
+    mesh_.for_each_outgoing(v, [&](HalfEdge h) { changed_.push_back(h / 3); });
   }
 
   WorkingMesh& mesh_;
   LineEdits edits_;
   double tolerance_;
   StarCollapse star_;
+  std::vector<std::uint32_t> changed_;  ///< triangles to look at in the next round
 };
 
 }  // namespace

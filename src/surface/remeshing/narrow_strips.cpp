@@ -1,5 +1,6 @@
 #include "surface/remeshing/narrow_strips.h"
 
+#include "core/parallel.h"
 #include "sizing/make_size_field.h"
 #include "surface/remeshing/point_grid.h"
 
@@ -55,26 +56,49 @@ double width_at(const InputSurface& input, HalfEdge h, Vec3 p, double reach) {
   return distance(p, x.p);
 }
 
+/// A place beside a line where the strip asks for a smaller size.
+struct Narrow {
+  Vec3 p;
+  double size;
+};
+
+/// Those along one side of a feature half-edge.
+std::vector<Narrow> narrow_places(const InputSurface& input, const SizeField& sizes, HalfEdge h) {
+  const HalfEdgeMesh& mesh = input.mesh;
+  const Vec3 a = mesh.points[mesh.start[h]], b = mesh.points[mesh.end(h)];
+  const double step = kStep * sizes.at((a + b) * 0.5);
+  const int parts = std::max(1, static_cast<int>(std::min(1e6, std::ceil(distance(a, b) / step))));
+  std::vector<Narrow> places;
+  for (int i = 0; i < parts; ++i) {
+    const Vec3 p = a + (b - a) * ((i + 0.5) / parts);
+    const double old = sizes.at(p);
+    const double width = width_at(input, h, p, kWorthwhile / kSizePerWidth * old);
+    if (!(kSizePerWidth * width < kWorthwhile * old) || width < kHopeless * old) continue;
+    places.push_back({p, std::max(kFloor * old, kSizePerWidth * width)});
+  }
+  return places;
+}
+
 }  // namespace
 
 SizeField fitted_to_strips(const InputSurface& input, const SizeField& sizes, const RunContext& context) {
   const HalfEdgeMesh& mesh = input.mesh;
+  std::vector<HalfEdge> sides;
+  for (HalfEdge h = 0; h < mesh.start.size(); ++h) {
+    if (mesh.is_feature[h]) sides.push_back(h);
+  }
+  std::vector<std::vector<Narrow>> found(sides.size());
+  parallel_for(sides.size(), [&](std::size_t i) {
+    context.check();
+    found[i] = narrow_places(input, sizes, sides[i]);
+  });
   std::vector<PointSize> places;
   PointGrid kept(mesh.points.empty() ? Vec3{} : mesh.points.front());
-  for (HalfEdge h = 0; h < mesh.start.size(); ++h) {
-    if (!mesh.is_feature[h]) continue;
-    context.check();
-    const Vec3 a = mesh.points[mesh.start[h]], b = mesh.points[mesh.end(h)];
-    const double step = kStep * sizes.at((a + b) * 0.5);
-    const int parts = std::max(1, static_cast<int>(std::min(1e6, std::ceil(distance(a, b) / step))));
-    for (int i = 0; i < parts; ++i) {
-      const Vec3 p = a + (b - a) * ((i + 0.5) / parts);
-      const double old = sizes.at(p);
-      const double width = width_at(input, h, p, kWorthwhile / kSizePerWidth * old);
-      if (!(kSizePerWidth * width < kWorthwhile * old) || width < kHopeless * old) continue;
-      const double size = std::max(kFloor * old, kSizePerWidth * width);
+  for (const std::vector<Narrow>& along : found) {
+    for (const auto& [p, size] : along) {
       bool is_new = true;
-      kept.for_each_near(p, size, kSamePlace, [&](std::uint32_t id, Vec3) { is_new &= places[id].size > 1.1 * size; });
+      kept.for_each_near(p, size, kSamePlace,
+                         [&, s = size](std::uint32_t id, Vec3) { is_new &= places[id].size > 1.1 * s; });
       if (!is_new) continue;
       places.push_back({p, size});
       kept.add(p, size);

@@ -41,13 +41,15 @@ constexpr int kMostDeviationRounds = 5;
 
 /// Triangles below this 2r/R are mended at the end, by moving the surface no farther than this part of the size.
 constexpr double kBadShape = 0.25, kMovedPart = 0.25;
+/// Mending one crossing may uncover another. Where more triangles than this cross the sizes are too large.
+constexpr int kMendingRounds = 4, kFewCrossing = 300;
 
 struct Counts {
   std::uint64_t placed = 0, tried = 0;
   InsertionCounts insertion;
   CoarsenCounts coarsen;
   ImproveCounts improve;
-  std::uint64_t merged_lines = 0, folds_mended = 0, restored = 0;
+  std::uint64_t merged_lines = 0, places_mended = 0, restored = 0;
   std::uint64_t crossings = 0;
   int rounds = 0, deviation_rounds = 0;
 };
@@ -57,10 +59,12 @@ struct Compacted {
   Remeshed result;
   std::vector<std::uint32_t> vertex_face;  ///< per vertex: an input face that it lies in
   std::vector<std::uint8_t> is_inner;      ///< per vertex: not on a feature
+  bool is_clear = false;                   ///< it is known that nothing crosses
 };
+using Crossings = std::vector<std::array<std::uint32_t, 2>>;
 
 Compacted compacted(const WorkingMesh& mesh, const SurfaceMesh& input, const SizeField& sizes) {
-  Compacted c{{{}, {}, {}, sizes}, {}, {}};
+  Compacted c{{{}, {}, {}, sizes}, {}, {}, false};
   SurfaceMesh& s = c.result.surface;
   std::vector<VertexIndex> old_to_new(mesh.points.size(), kNone);
   for (VertexIndex v = 0; v < mesh.points.size(); ++v) {
@@ -88,6 +92,21 @@ Compacted compacted(const WorkingMesh& mesh, const SurfaceMesh& input, const Siz
   }
   std::sort(c.result.features.edges.begin(), c.result.features.edges.end());
   return c;
+}
+
+/// Per triangle of the working mesh whether it crosses another, or has no area.
+std::vector<std::uint8_t> crossing_triangles(const WorkingMesh& mesh) {
+  SurfaceMesh alive;
+  std::vector<std::uint32_t> number;
+  for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t) {
+    if (mesh.is_removed(t)) continue;
+    alive.triangles.push_back({mesh.start[3 * t], mesh.start[3 * t + 1], mesh.start[3 * t + 2]});
+    number.push_back(t);
+  }
+  alive.points = mesh.points;
+  std::vector<std::uint8_t> crossing(mesh.triangle_count(), 0);
+  for (const auto& [s, t] : find_crossings(alive)) crossing[number[s]] = crossing[number[t]] = 1;
+  return crossing;
 }
 
 /// How much of the input's triangulation an attempt may change.
@@ -136,7 +155,7 @@ void report_counts(const Counts& counts, const Stage& stage) {
   stage.count("flips", static_cast<double>(counts.coarsen.flips + counts.improve.flips));
   stage.count("smoothing moves", static_cast<double>(counts.improve.moves));
   stage.count("lines merged", static_cast<double>(counts.merged_lines));
-  stage.count("places mended", static_cast<double>(counts.folds_mended));
+  stage.count("places mended", static_cast<double>(counts.places_mended));
   stage.count("input vertices left", static_cast<double>(counts.coarsen.input_vertices_left));
   stage.count("crossing pairs mended", static_cast<double>(counts.crossings));
   stage.count("places left as in the input", static_cast<double>(counts.restored));
@@ -192,33 +211,48 @@ class Remesher {
     counts_.insertion = {};
     counts_.coarsen = {};
     counts_.improve = {};
+    counts_.places_mended = 0;
     progress(0.4);
     WorkingMesh mesh = insert_points(input_, curves, front, context, counts_.insertion);
     progress(0.5);
+    bool clear = false;
     if (effort == Effort::kFull) {
       remove_input_vertices(mesh, sizes, context, counts_.coarsen);
       progress(0.6);
       counts_.merged_lines = merge_lines(mesh, is_fixed, tolerance_);
       improve_surface(mesh, input_, curves, sizes, context, counts_.improve);
       counts_.merged_lines += merge_lines(mesh, is_fixed, tolerance_);
-      counts_.folds_mended = mend_places(mesh, is_fixed);
+      clear = mend_places(mesh, is_fixed);
     } else {
       counts_.coarsen.input_vertices_left = surface_.points.size();
     }
     progress(0.9);
     validate(mesh);
-    return compacted(mesh, surface_, sizes);
+    Compacted c = compacted(mesh, surface_, sizes);
+    c.is_clear = clear;
+    return c;
   }
 
-  /// What is left of bad triangles and of edges too sharp for any element.
-  std::uint64_t mend_places(WorkingMesh& mesh, const std::vector<std::uint8_t>& is_fixed) {
-    const FoldLimits limits{.tolerance = tolerance_,
-                            .size_part = kMovedPart,
-                            .least_shape = kBadShape,
-                            .keep_lines = true,
-                            .onto = &known_.tree(),
-                            .is_fixed = is_fixed};
-    return mend_folds(mesh, limits, stage_.context()).operations;
+  /// What is left of bad triangles, of edges too sharp for any element, and of crossings where these are few. True if
+  /// it is known that nothing crosses then.
+  bool mend_places(WorkingMesh& mesh, const std::vector<std::uint8_t>& is_fixed) {
+    FoldLimits limits{.tolerance = tolerance_,
+                      .size_part = kMovedPart,
+                      .least_shape = kBadShape,
+                      .keep_lines = true,
+                      .onto = &known_.tree(),
+                      .is_fixed = is_fixed};
+    for (int round = 0; round < kMendingRounds; ++round) {
+      const std::vector<std::uint8_t> crossing = crossing_triangles(mesh);
+      const auto count = std::count(crossing.begin(), crossing.end(), 1);
+      if (round > 0 && count == 0) return true;
+      limits.crossing = count <= kFewCrossing ? &crossing : nullptr;
+      const std::uint64_t done = mend_folds(mesh, limits, stage_.context()).operations;
+      counts_.places_mended += done;
+      if (count == 0) return true;  // mending makes no crossings
+      if (done == 0 || count > kFewCrossing) return false;
+    }
+    return false;
   }
 
   /// Nobody knows how many rounds there will be: each takes half of what is left.
@@ -227,12 +261,12 @@ class Remesher {
   }
 
   std::vector<std::uint32_t> sources_of(const Compacted& c) const {
-    return source_triangles(input_, surface_, c.result.surface, c.vertex_face, c.is_inner);
+    return source_triangles(input_, known_, c.result.surface, c.vertex_face, c.is_inner);
   }
 
   /// Whether the surface is clean and of the input's kind; otherwise the sizes are made smaller.
   bool is_sound(const Compacted& c) {
-    const auto crossings = find_crossings(c.result.surface);
+    const auto crossings = c.is_clear ? Crossings{} : find_crossings(c.result.surface);
     counts_.crossings += crossings.size();
     if (!crossings.empty()) {
       cap_or_restore(centers_of(c.result.surface, crossings));

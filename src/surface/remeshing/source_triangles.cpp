@@ -1,8 +1,6 @@
 #include "surface/remeshing/source_triangles.h"
 
-#include "geometry/triangle_tree.h"
-
-#include <optional>
+#include "core/parallel.h"
 
 namespace octafront::remeshing {
 
@@ -29,20 +27,16 @@ std::uint32_t source_by_walk(const InputSurface& input, const SurfaceMesh& surfa
 
 }  // namespace
 
-std::vector<std::uint32_t> source_triangles(const InputSurface& input, const SurfaceMesh& original,
+std::vector<std::uint32_t> source_triangles(const InputSurface& input, const KnownSurface& original,
                                             const SurfaceMesh& surface, const std::vector<std::uint32_t>& face,
                                             const std::vector<std::uint8_t>& is_inner) {
-  std::vector<std::uint32_t> source;
-  source.reserve(surface.triangles.size());
-  std::optional<TriangleTree> tree;
-  for (const Triangle& t : surface.triangles) {
-    std::uint32_t s = source_by_walk(input, surface, t, face, is_inner);
-    if (s == kNone) {
-      if (!tree) tree.emplace(original);
-      s = tree->nearest((surface.points[t[0]] + surface.points[t[1]] + surface.points[t[2]]) / 3).triangle;
-    }
-    source.push_back(s);
-  }
+  std::vector<std::uint32_t> source(surface.triangles.size());
+  parallel_for(source.size(), [&](std::size_t t) {
+    const auto [a, b, c] = surface.triangles[t];
+    source[t] = source_by_walk(input, surface, surface.triangles[t], face, is_inner);
+    if (source[t] == kNone)
+      source[t] = original.tree().nearest((surface.points[a] + surface.points[b] + surface.points[c]) / 3).triangle;
+  });
   return source;
 }
 
