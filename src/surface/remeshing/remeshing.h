@@ -6,7 +6,7 @@
 // the input triangulation), coarsen (collapses the input's own vertices away), improve, lengths and curve_points
 // (flips, smoothing, mending, points that slide along curves), merge_lines and mend_folds (what is too narrow for an
 // element, folded, or crosses), crossings and deviation (what makes remesh.cpp run another round with smaller sizes),
-// restored (where the input's own triangles stay instead). Before all of it unfold takes folds off the input. A closed manifold exists at every moment, so no decision of the front can break
-// the topology.
+// restored (where the input's own triangles stay instead). Before all of it unfold takes folds off the input. A closed
+// manifold exists at every moment, so no decision of the front can break the topology.
 
 #include "surface/remeshing/remesh.h"
