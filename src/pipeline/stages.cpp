@@ -132,29 +132,25 @@ Filled stuff(const Prepared& input, const SizeField& sizes, Run& run) {
   return {std::move(mesh), std::move(boundary)};
 }
 
-}  // namespace
-
-/// Folds, flaps and spikes below the tolerance are taken away: no element could fill them.
+// Folds, flaps and blades below the tolerance are taken away: no element could fill them.
 void smooth_detail(Examined& found, Run& run) {
-  const double tolerance = detail_tolerance(found.repaired.surface, run.options);
+  SurfaceMesh& surface = found.repaired.surface;
+  const double tolerance = detail_tolerance(surface, run.options);
   if (tolerance == 0) return;
   run.stage("detail", [&](const Stage& stage) {
-    const KnownSurface known(std::move(found.repaired.surface), std::move(found.edges), {});
-    auto unfolded = remeshing::unfold(known, tolerance, stage.context());
+    auto unfolded = remeshing::unfold(surface, found.edges, tolerance, stage.context());
     stage.count("folds mended", unfolded ? static_cast<double>(unfolded->mended.operations) : 0);
-    if (!unfolded) {
-      found.repaired.surface = known.mesh();
-      found.edges = known.edges();
-      return;
-    }
+    if (!unfolded) return;
     stage.count("folds left", static_cast<double>(unfolded->mended.folds_left));
     stage.count("largest move", unfolded->mended.largest_move);
     stage.note(fmt::format("the surface was unfolded in {} places by {:.3g} at most: `max_deviation` 0 keeps all folds",
                            unfolded->mended.operations, unfolded->mended.largest_move));
-    found.repaired.surface = std::move(unfolded->surface);
-    found.edges = make_edge_table(found.repaired.surface.points.size(), found.repaired.surface.triangles);
+    surface = std::move(unfolded->surface);
+    found.edges = make_edge_table(surface.points.size(), surface.triangles);
   });
 }
+
+}  // namespace
 
 Prepared prepare(const SurfaceMesh& soup, Run& run) {
   SurfaceDomain::Defects defects{};

@@ -17,7 +17,7 @@ namespace octafront {
 
 /// The input as every later stage needs it.
 struct Prepared {
-  KnownSurface surface;                                             ///< repaired
+  KnownSurface surface;                                             ///< repaired, unfolded
   SurfaceDomain::Defects defects = SurfaceDomain::Defects::kClean;  ///< other than clean where the method allows it
 };
 
@@ -27,7 +27,8 @@ struct Filled {
   Remeshed boundary;
 };
 
-/// Repairs the input, refuses what the method cannot mesh (InputError), finds the features.
+/// Repairs the input, refuses what the method cannot mesh (InputError), takes off folds that the tolerance lets go
+/// where the surface is made anew, finds the features.
 Prepared prepare(const SurfaceMesh& input, Run& run);
 
 /// The sizes that the options ask for; report.expected_tets says how many elements they promise.

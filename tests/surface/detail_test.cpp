@@ -19,7 +19,14 @@ namespace octafront {
 namespace {
 
 using namespace octafront::testing;
-using remeshing::unfold;
+
+remeshing::InputSurface input_surface(const SurfaceMesh& surface) {
+  return remeshing::make_input_surface(surface, make_edge_table(surface.points.size(), surface.triangles));
+}
+
+std::optional<remeshing::Unfolded> unfold(const SurfaceMesh& surface, double tolerance) {
+  return remeshing::unfold(surface, make_edge_table(surface.points.size(), surface.triangles), tolerance, {});
+}
 
 constexpr double kDegree = std::numbers::pi / 180;
 
@@ -71,10 +78,9 @@ double counter(const StageReport& report, const std::string& key) {
 
 TEST(Unfold, TakesAwayAFoldWithinTheTolerance) {
   const SurfaceMesh folded = folded_sphere();
-  const KnownSurface known(folded, 40);
   ASSERT_TRUE(remeshing::find_crossings(folded).empty());
   ASSERT_LT(sharpest(folded), 25 * kDegree);
-  const auto unfolded = unfold(known, 0.3, {});
+  const auto unfolded = unfold(folded, 0.3);
   ASSERT_TRUE(unfolded.has_value());
   EXPECT_GT(sharpest(unfolded->surface), 25 * kDegree);
   EXPECT_EQ(unfolded->mended.folds_left, 0u);
@@ -84,14 +90,14 @@ TEST(Unfold, TakesAwayAFoldWithinTheTolerance) {
 }
 
 TEST(Unfold, NothingMovesBeyondTheTolerance) {
-  EXPECT_FALSE(unfold(KnownSurface(folded_sphere(), 40), 1e-6, {}).has_value());
-  EXPECT_FALSE(unfold(KnownSurface(cube(4), 40), 1, {}).has_value()) << "a cube has no folds";
+  EXPECT_FALSE(unfold(folded_sphere(), 1e-6).has_value());
+  EXPECT_FALSE(unfold(cube(4), 1).has_value()) << "a cube has no folds";
 }
 
 TEST(Unfold, KeepsPatchBorders) {
   SurfaceMesh folded = folded_sphere();
   for (std::size_t t = 0; t < folded.triangles.size(); ++t) folded.patch.push_back(t < 5 ? 1 : 0);
-  const auto unfolded = unfold(KnownSurface(folded, 40), 0.3, {});
+  const auto unfolded = unfold(folded, 0.3);
   ASSERT_TRUE(unfolded.has_value());
   EXPECT_EQ(std::count(unfolded->surface.patch.begin(), unfolded->surface.patch.end(), 1u) > 0, true);
   EXPECT_EQ(unfolded->surface.patch.size(), unfolded->surface.triangles.size());
@@ -135,7 +141,7 @@ TEST(MergeLines, AStripWithAPatchOfItsOwnIsNotLost) {
 }
 
 TEST(Restored, TrianglesThatReachIntoABallStayWhole) {
-  remeshing::InputSurface input = remeshing::make_input_surface(KnownSurface(icosphere(2), 40));
+  remeshing::InputSurface input = input_surface(icosphere(2));
   const Vec3 center = input.mesh.points[0];
   const auto fixed = remeshing::mark_restored(input, {{center, 0.01}});
   std::size_t lines = 0;

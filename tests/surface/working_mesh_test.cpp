@@ -16,7 +16,7 @@ constexpr double kFeatureAngle = 40;
 /// A cube, its sides patches, between features.
 WorkingMesh working_cube() {
   const KnownSurface cube(testing::cube(4), kFeatureAngle);
-  InputSurface input = make_input_surface(cube);
+  InputSurface input = make_input_surface(cube.mesh(), cube.edges());
   set_features(input, cube.features().edges);
   return WorkingMesh(input);
 }

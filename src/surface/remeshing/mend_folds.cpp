@@ -122,7 +122,6 @@ class FoldMender {
   double folding_at(HalfEdge h) const {
     return is_kept_line(h) ? 0 : folding(mesh_.area_vector(h / 3), mesh_.area_vector(mesh_.twin[h] / 3));
   }
-  Triangle ids(std::uint32_t t) const { return {mesh_.start[3 * t], mesh_.start[3 * t + 1], mesh_.start[3 * t + 2]}; }
   TriangleCorners corners(std::uint32_t t) const {
     return {mesh_.corner(t, 0), mesh_.corner(t, 1), mesh_.corner(t, 2)};
   }
@@ -334,9 +333,9 @@ class FoldMender {
     for (std::size_t i = 0; i < old_.size(); ++i) {
       if (is_degenerate(corners(old_[i]))) continue;
       for (std::size_t j = 0; j < i; ++j)
-        count += !is_degenerate(corners(old_[j])) &&
-                 triangles_conflict(corners(old_[i]), ids(old_[i]), corners(old_[j]), ids(old_[j]));
-      count += crossings_with_others({ids(old_[i]), corners(old_[i]), {}}, kMany);
+        count += !is_degenerate(corners(old_[j])) && triangles_conflict(corners(old_[i]), mesh_.triangle(old_[i]),
+                                                                        corners(old_[j]), mesh_.triangle(old_[j]));
+      count += crossings_with_others({mesh_.triangle(old_[i]), corners(old_[i]), {}}, kMany);
     }
     return count;
   }
@@ -344,7 +343,7 @@ class FoldMender {
   bool still_crosses(std::uint32_t t) {
     old_.assign({t});
     if (is_degenerate(corners(t))) return true;
-    return crossings_with_others({ids(t), corners(t), {}}, 1) > 0;
+    return crossings_with_others({mesh_.triangle(t), corners(t), {}}, 1) > 0;
   }
 
   /// With triangles that are not old; no further than to `enough`.
@@ -356,7 +355,7 @@ class FoldMender {
       if (is_old(t) || mesh_.is_removed(t)) return true;
       const TriangleCorners there = corners(t);
       if (box_of(there).overlaps(box) && !is_degenerate(there))
-        count += triangles_conflict(made.corners, made.ids, there, ids(t));
+        count += triangles_conflict(made.corners, made.ids, there, mesh_.triangle(t));
       return count < enough;
     };
     const bool on = tree_->for_each_box_near(box, [&](std::uint32_t item, const TriangleCorners&) {
@@ -367,12 +366,9 @@ class FoldMender {
   }
 
   void plant_tree() {
+    in_tree_ = mesh_.alive_triangles();
     std::vector<Triangle> triangles;
-    for (std::uint32_t t = 0; t < mesh_.triangle_count(); ++t) {
-      if (mesh_.is_removed(t)) continue;
-      triangles.push_back(ids(t));
-      in_tree_.push_back(t);
-    }
+    for (const std::uint32_t t : in_tree_) triangles.push_back(mesh_.triangle(t));
     tree_.emplace(mesh_.points, triangles);
   }
 

@@ -96,14 +96,10 @@ Compacted compacted(const WorkingMesh& mesh, const SurfaceMesh& input, const Siz
 
 /// Per triangle of the working mesh whether it crosses another, or has no area.
 std::vector<std::uint8_t> crossing_triangles(const WorkingMesh& mesh) {
+  const std::vector<std::uint32_t> number = mesh.alive_triangles();
   SurfaceMesh alive;
-  std::vector<std::uint32_t> number;
-  for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t) {
-    if (mesh.is_removed(t)) continue;
-    alive.triangles.push_back({mesh.start[3 * t], mesh.start[3 * t + 1], mesh.start[3 * t + 2]});
-    number.push_back(t);
-  }
   alive.points = mesh.points;
+  for (const std::uint32_t t : number) alive.triangles.push_back(mesh.triangle(t));
   std::vector<std::uint8_t> crossing(mesh.triangle_count(), 0);
   for (const auto& [s, t] : find_crossings(alive)) crossing[number[s]] = crossing[number[t]] = 1;
   return crossing;
@@ -174,7 +170,7 @@ class Remesher {
         options_(options),
         tolerance_(options.max_deviation.value_or(HUGE_VAL)),
         stage_(stage),
-        input_(make_input_surface(surface)),
+        input_(make_input_surface(surface.mesh(), surface.edges())),
         kind_(surface_, surface.edges()) {}
 
   Remeshed run() {

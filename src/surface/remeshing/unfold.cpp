@@ -28,10 +28,9 @@ SurfaceMesh compacted(const WorkingMesh& mesh, const SurfaceMesh& input) {
     surface.points.push_back(mesh.points[v]);
   }
   surface.patch_names = input.patch_names;
-  for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t) {
-    if (mesh.is_removed(t)) continue;
-    const auto corner = [&](int i) { return renumbered[mesh.start[3 * t + i]]; };
-    surface.triangles.push_back({corner(0), corner(1), corner(2)});
+  for (const std::uint32_t t : mesh.alive_triangles()) {
+    const auto [a, b, c] = mesh.triangle(t);
+    surface.triangles.push_back({renumbered[a], renumbered[b], renumbered[c]});
     if (!input.patch.empty()) surface.patch.push_back(mesh.patch[t]);
     surface.source.push_back(input.source_of(t));
   }
@@ -40,12 +39,13 @@ SurfaceMesh compacted(const WorkingMesh& mesh, const SurfaceMesh& input) {
 
 }  // namespace
 
-std::optional<Unfolded> unfold(const KnownSurface& surface, double tolerance, const RunContext& context) {
-  WorkingMesh mesh = bordered(make_input_surface(surface));
+std::optional<Unfolded> unfold(const SurfaceMesh& surface, const EdgeTable& edges, double tolerance,
+                               const RunContext& context) {
+  WorkingMesh mesh = bordered(make_input_surface(surface, edges));
   const std::vector<std::uint8_t> none_fixed;
   const MendedFolds mended = mend_folds(mesh, {.tolerance = tolerance, .is_fixed = none_fixed}, context);
   if (mended.operations == 0) return std::nullopt;
-  return Unfolded{compacted(mesh, surface.mesh()), mended};
+  return Unfolded{compacted(mesh, surface), mended};
 }
 
 }  // namespace octafront::remeshing

@@ -2,7 +2,7 @@
 
 #include <octafront/run_context.h>
 
-#include "mesh/known_surface.h"
+#include "mesh/edge_table.h"
 #include "surface/remeshing/mend_folds.h"
 
 #include <optional>
@@ -16,7 +16,9 @@ struct Unfolded {
 };
 
 /// The input without folds, flaps and spikes that can be taken away within the tolerance (input units); see
-/// mend_folds(). Patch borders stay. nullopt if nothing was done. Requires a clean surface.
-std::optional<Unfolded> unfold(const KnownSurface& surface, double tolerance, const RunContext& context);
+/// mend_folds(). Patch borders stay. `edges` as make_edge_table() makes them. nullopt if nothing was done. Requires a
+/// clean surface.
+std::optional<Unfolded> unfold(const SurfaceMesh& surface, const EdgeTable& edges, double tolerance,
+                               const RunContext& context);
 
 }  // namespace octafront::remeshing

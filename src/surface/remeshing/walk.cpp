@@ -92,10 +92,9 @@ void set_features(InputSurface& input, const std::vector<Edge>& edges) {
   }
 }
 
-InputSurface make_input_surface(const KnownSurface& known) {
-  const SurfaceMesh& surface = known.mesh();
+InputSurface make_input_surface(const SurfaceMesh& surface, const EdgeTable& edges) {
   InputSurface input;
-  input.mesh = make_half_edge_mesh(surface, known.edges());
+  input.mesh = make_half_edge_mesh(surface, edges);
   const std::size_t faces = input.mesh.triangle_count();
   input.face_normal.resize(faces);
   input.vertex_normal.assign(surface.points.size(), Vec3{});

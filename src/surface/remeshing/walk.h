@@ -19,7 +19,7 @@ struct InputSurface {
 };
 
 /// Adjacency and normals; no feature edge is marked yet.
-InputSurface make_input_surface(const KnownSurface& surface);
+InputSurface make_input_surface(const SurfaceMesh& surface, const EdgeTable& edges);
 /// Replaces the feature edges.
 void set_features(InputSurface& input, const std::vector<Edge>& edges);
 

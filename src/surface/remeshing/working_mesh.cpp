@@ -25,6 +25,14 @@ WorkingMesh::WorkingMesh(const InputSurface& input)
   }
 }
 
+std::vector<std::uint32_t> WorkingMesh::alive_triangles() const {
+  std::vector<std::uint32_t> alive;
+  for (std::uint32_t t = 0; t < triangle_count(); ++t) {
+    if (!is_removed(t)) alive.push_back(t);
+  }
+  return alive;
+}
+
 void WorkingMesh::reserve(std::size_t vertices, std::size_t triangles) {
   points.reserve(vertices);
   kind.reserve(vertices);

@@ -43,6 +43,9 @@ struct WorkingMesh : HalfEdgeMesh {
   }
 
   bool is_removed(std::size_t triangle) const { return start[3 * triangle] == kNone; }
+  Triangle triangle(std::uint32_t t) const { return {start[3 * t], start[3 * t + 1], start[3 * t + 2]}; }
+  /// The triangles that are not removed, in their order.
+  std::vector<std::uint32_t> alive_triangles() const;
   bool is_free(VertexIndex v) const { return kind[v] == VertexKind::kFree || kind[v] == VertexKind::kRemovable; }
   bool on_curve(VertexIndex v) const { return !is_free(v); }
   int valence(VertexIndex v) const {
