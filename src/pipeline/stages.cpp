@@ -143,7 +143,7 @@ void smooth_detail(Examined& found, Run& run) {
     if (!unfolded) return;
     stage.count("folds left", static_cast<double>(unfolded->mended.folds_left));
     stage.count("largest move", unfolded->mended.largest_move);
-    stage.note(fmt::format("the surface was unfolded in {} places by {:.3g} at most: `max_deviation` 0 keeps all folds",
+    stage.note(fmt::format("the surface was unfolded in {} steps of {:.3g} at most: `max_deviation` 0 keeps all folds",
                            unfolded->mended.operations, unfolded->mended.largest_move));
     surface = std::move(unfolded->surface);
     found.edges = make_edge_table(surface.points.size(), surface.triangles);

@@ -25,7 +25,7 @@ struct FoldLimits {
 struct MendedFolds {
   std::uint64_t operations = 0;  ///< flips, collapses and moves
   std::uint64_t folds_left = 0;  ///< edges that are as sharp still
-  double largest_move = 0;       ///< how far the surface moved anywhere at most
+  double largest_move = 0;       ///< of a single operation; several at one place may add up
 };
 
 /// Takes away folds, flaps and spikes: edges at which the surface turns back on itself, by less than 25 degrees inside
