@@ -191,6 +191,20 @@ TriangleTree::Nearest TriangleTree::nearest(Vec3 p, double limit_squared) const 
   return best;
 }
 
+bool TriangleTree::is_within(Vec3 p, double distance) const {
+  const double squared = distance * distance;
+  double limit = distance > 0 ? squared : 0;
+  descend(
+      limit, [p](const Box3& box) { return squared_distance(p, box); },
+      [&](const Node& leaf) {
+        for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i) {
+          const auto& [a, b, c] = items_[i].corners;
+          if (squared_distance(p, closest_point_on_triangle(p, a, b, c)) < squared) limit = 0;
+        }
+      });
+  return distance > 0 && limit == 0;
+}
+
 namespace {
 
 // Volumes of the ray with the edges have one sign where it passes through. Each edge gives its two triangles the same

@@ -40,6 +40,8 @@ class TriangleTree {
   /// The nearest point of the triangles to p; among equally near triangles any, but always the same one.
   /// Only looks for points with squared distance below `limit_squared`: a good limit makes the search short.
   Nearest nearest(Vec3 p, double limit_squared = kFar) const;
+  /// Whether some triangle has a point nearer to p than the distance: ends at the first one found.
+  bool is_within(Vec3 p, double distance) const;
 
   /// Calls visit(triangle) for each triangle that meets the closed box, in an order that depends on the tree only.
   /// Never misses one; see triangle_overlaps_box.

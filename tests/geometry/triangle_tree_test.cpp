@@ -77,6 +77,15 @@ RC_GTEST_PROP(TriangleTree, NearestIsTheNearestOfAll, ()) {
   }
 }
 
+RC_GTEST_PROP(TriangleTree, WithinADistanceIsWhatTheNearestSays, ()) {
+  const TriangleTree tree(any_soup(*rc::gen::inRange(1, 100), 24));
+  const Vec3 p = any_point();
+  const double nearest = std::sqrt(tree.nearest(p).squared_distance);
+  RC_ASSERT(tree.is_within(p, nearest * 1.01 + 1e-9));
+  RC_ASSERT(!tree.is_within(p, nearest * 0.99));
+  RC_ASSERT(!tree.is_within(p, -1));
+}
+
 RC_GTEST_PROP(TriangleTree, BoxQueryFindsEveryTriangleWithAPointInside, ()) {
   const SurfaceMesh s = any_soup(40, 8);
   const TriangleTree tree(s);

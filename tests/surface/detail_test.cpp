@@ -5,6 +5,7 @@
 #include "geometry/measures.h"
 #include "support/named_surfaces.h"
 #include "surface/remeshing/crossings.h"
+#include "surface/remeshing/deviation.h"
 #include "surface/remeshing/remesh.h"
 #include "surface/remeshing/restored.h"
 #include "surface/remeshing/unfold.h"
@@ -204,6 +205,35 @@ TEST(Fallback, IsLocal) {
     coarse += distance(made.surface.points[a], made.surface.points[b]) > 0.15;
   }
   EXPECT_GT(coarse, 0.9 * static_cast<double>(all));
+}
+
+/// A sphere with a bump narrower than the triangles that are to come: vertices pass it by.
+SurfaceMesh bumpy_sphere() {
+  SurfaceMesh s = icosphere(5);
+  const Vec3 top = normalized(Vec3{0.3, 0.5, 0.8});
+  for (Vec3& p : s.points) p *= 1 + 0.4 * std::max(0.0, 0.1 - distance(p, top));
+  return s;
+}
+
+TEST(Approach, MendsAPlaceThatStraysWithoutAnotherRound) {
+  const SurfaceMesh input = bumpy_sphere();
+  StageReport report;
+  const Remeshed made = remesh(input, 0.25, report, 0.02);
+  EXPECT_EQ(counter(report, "rounds"), 1);
+  EXPECT_GT(counter(report, "points against deviation"), 0);
+  EXPECT_TRUE(remeshing::find_crossings(made.surface).empty());
+  EXPECT_TRUE(remeshing::places_beyond(0.02, made.surface, input, TriangleTree(input)).empty());
+}
+
+TEST(PlacesBeyond, AreFoundFromBothSides) {
+  const SurfaceMesh smooth = icosphere(4), spiked = spiked_sphere(0.1);
+  EXPECT_TRUE(remeshing::places_beyond(0.11, smooth, spiked, TriangleTree(spiked)).empty());
+  for (const auto& [made, input] : {std::pair{&smooth, &spiked}, std::pair{&spiked, &smooth}}) {
+    const auto places = remeshing::places_beyond(0.05, *made, *input, TriangleTree(*input));
+    ASSERT_FALSE(places.empty());
+    for (const remeshing::FarPlace& place : places)
+      EXPECT_LT(distance(place.at, spiked.points[spiked.triangles[7][1]]), 0.1);
+  }
 }
 
 }  // namespace

@@ -1,41 +1,125 @@
 #include "surface/remeshing/deviation.h"
 
 #include "core/parallel.h"
+#include "geometry/measures.h"
+
+#include <algorithm>
+#include <cmath>
 
 namespace octafront::remeshing {
 
 namespace {
 
-/// Appends the points among `points` that are farther from the surface than `limit`, in their order.
-void look(const std::vector<Vec3>& points, const TriangleTree& to, double limit, std::vector<Vec3>& places) {
-  std::vector<std::uint8_t> is_far(points.size());
-  parallel_for(points.size(),
-               [&](std::size_t i) { is_far[i] = to.nearest(points[i], limit * limit).triangle == kNone; });
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (is_far[i]) places.push_back(points[i]);
+/// A point of a triangle.
+struct Sample {
+  Vec3 p;
+  std::uint32_t triangle;
+};
+
+/// The samples of `all` that are farther than `limit` from the surface, in their order.
+std::vector<Sample> beyond(double limit, const std::vector<Sample>& all, const TriangleTree& surface) {
+  std::vector<std::uint8_t> is_far(all.size());
+  parallel_for(all.size(), [&](std::size_t i) { is_far[i] = !surface.is_within(all[i].p, limit); });
+  std::vector<Sample> far;
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (is_far[i]) far.push_back(all[i]);
+  return far;
+}
+
+/// Each vertex with one of its triangles; vertices of none have kNone.
+std::vector<Sample> vertices_of(const SurfaceMesh& surface) {
+  std::vector<Sample> vertices(surface.points.size(), {{}, kNone});
+  for (std::uint32_t t = static_cast<std::uint32_t>(surface.triangles.size()); t-- > 0;)
+    for (const VertexIndex v : surface.triangles[t]) vertices[v] = {surface.points[v], t};
+  return vertices;
+}
+
+/// Middles of the edges that `is_asked(v, w)`.
+template <typename Asked>
+void add_edge_middles(const SurfaceMesh& surface, Asked&& is_asked, std::vector<Sample>& samples) {
+  for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
+    for (int i = 0; i < 3; ++i) {
+      const VertexIndex v = surface.triangles[t][i], w = surface.triangles[t][(i + 1) % 3];
+      if (v < w && is_asked(v, w)) samples.push_back({(surface.points[v] + surface.points[w]) * 0.5, t});
+    }
   }
 }
 
-/// Vertices, middles of edges and perhaps centroids.
-std::vector<Vec3> samples_of(const SurfaceMesh& surface, bool at_centroids) {
-  std::vector<Vec3> samples = surface.points;
-  for (const auto& [a, b, c] : surface.triangles) {
-    const Vec3 pa = surface.points[a], pb = surface.points[b], pc = surface.points[c];
-    if (at_centroids) samples.push_back((pa + pb + pc) / 3);
-    if (a < b) samples.push_back((pa + pb) * 0.5);
-    if (b < c) samples.push_back((pb + pc) * 0.5);
-    if (c < a) samples.push_back((pc + pa) * 0.5);
+/// Per vertex half of its longest edge: so far are the middles of its edges at most.
+std::vector<double> half_longest_edges(const SurfaceMesh& surface) {
+  std::vector<double> half(surface.points.size(), 0);
+  for (const Triangle& t : surface.triangles) {
+    for (int i = 0; i < 3; ++i) {
+      const double l = 0.5 * distance(surface.points[t[i]], surface.points[t[(i + 1) % 3]]);
+      for (const VertexIndex v : {t[i], t[(i + 1) % 3]}) half[v] = std::max(half[v], l);
+    }
   }
+  return half;
+}
+
+/// Samples of the input that may be far: middles of edges only beside vertices that are not well within the limit.
+std::vector<Sample> suspects(double limit, const SurfaceMesh& input, const TriangleTree& made) {
+  const std::vector<Sample> vertices = vertices_of(input);
+  const std::vector<double> margin = half_longest_edges(input);
+  std::vector<std::uint8_t> is_safe(vertices.size());
+  parallel_for(vertices.size(), [&](std::size_t v) {
+    is_safe[v] = vertices[v].triangle == kNone || made.is_within(vertices[v].p, limit - margin[v]);
+  });
+  std::vector<Sample> samples;
+  for (std::size_t v = 0; v < vertices.size(); ++v)
+    if (!is_safe[v]) samples.push_back(vertices[v]);
+  add_edge_middles(
+      input, [&](VertexIndex v, VertexIndex w) { return !is_safe[v] && !is_safe[w]; }, samples);
   return samples;
+}
+
+std::vector<Sample> samples_of(const SurfaceMesh& made) {
+  std::vector<Sample> samples = vertices_of(made);
+  std::erase_if(samples, [](const Sample& s) { return s.triangle == kNone; });
+  for (std::uint32_t t = 0; t < made.triangles.size(); ++t) {
+    const auto [a, b, c] = made.triangles[t];
+    samples.push_back({centroid(made.points[a], made.points[b], made.points[c]), t});
+  }
+  add_edge_middles(
+      made, [](VertexIndex, VertexIndex) { return true; }, samples);
+  return samples;
+}
+
+Vec3 normal_of(const SurfaceMesh& surface, std::uint32_t t) {
+  const auto [a, b, c] = surface.triangles[t];
+  return double_area_normal(surface.points[a], surface.points[b], surface.points[c]);
+}
+
+/// The nearest point to p of the triangles that face along `normal`, if it is within kOtherSide times the distance of
+/// the nearest point of all: of a thin wall the right side. Otherwise that one.
+TriangleTree::Nearest nearest_facing(const TriangleTree& tree, Vec3 p, Vec3 normal) {
+  constexpr double kOtherSide = 3;
+  const TriangleTree::Nearest any = tree.nearest(p);
+  const double reach = kOtherSide * std::sqrt(any.squared_distance);
+  TriangleTree::Nearest best{any.point, any.triangle, reach * reach};
+  tree.for_each_box_near({p - Vec3{reach, reach, reach}, p + Vec3{reach, reach, reach}},
+                         [&](std::uint32_t triangle, const TriangleCorners& t) {
+                           if (!(dot(double_area_normal(t[0], t[1], t[2]), normal) > 0)) return true;
+                           const Vec3 q = closest_point_on_triangle(p, t[0], t[1], t[2]);
+                           const double d = squared_distance(p, q);
+                           if (d < best.squared_distance) best = {q, triangle, d};
+                           return true;
+                         });
+  return best;
 }
 
 }  // namespace
 
-std::vector<Vec3> places_beyond(double limit, const SurfaceMesh& made, const SurfaceMesh& input,
-                                const TriangleTree& input_tree) {
-  std::vector<Vec3> places;
-  look(samples_of(made, true), input_tree, limit, places);
-  look(samples_of(input, false), TriangleTree(made), limit, places);
+std::vector<FarPlace> places_beyond(double limit, const SurfaceMesh& made, const SurfaceMesh& input,
+                                    const TriangleTree& input_tree) {
+  std::vector<FarPlace> places;
+  for (const auto& [p, t] : beyond(limit, samples_of(made), input_tree)) {
+    const TriangleTree::Nearest nearest = nearest_facing(input_tree, p, normal_of(made, t));
+    places.push_back({p, {nearest.point, nearest.triangle}, t});
+  }
+  const TriangleTree made_tree(made);
+  for (const auto& [p, t] : beyond(limit, suspects(limit, input, made_tree), made_tree))
+    places.push_back({p, {p, t}, nearest_facing(made_tree, p, normal_of(input, t)).triangle});
   return places;
 }
 

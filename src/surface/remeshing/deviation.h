@@ -3,14 +3,22 @@
 #include <octafront/surface_mesh.h>
 
 #include "geometry/triangle_tree.h"
+#include "surface/remeshing/walk.h"
 
 #include <vector>
 
 namespace octafront::remeshing {
 
-/// Points where two surfaces are farther apart than `limit`, looked for at the centroids, edge midpoints and vertices
+/// Where two surfaces lie too far apart.
+struct FarPlace {
+  Vec3 at;                         ///< on either of them
+  SurfacePoint on_input;           ///< the place itself, or the nearest point to it
+  std::uint32_t triangle = kNone;  ///< of the made surface, there or nearest
+};
+
+/// Places where two surfaces are farther apart than `limit`, looked for at the centroids, edge midpoints and vertices
 /// of `made`, and at the vertices and edge midpoints of `input`. `input_tree` is over the triangles of `input`.
-std::vector<Vec3> places_beyond(double limit, const SurfaceMesh& made, const SurfaceMesh& input,
-                                const TriangleTree& input_tree);
+std::vector<FarPlace> places_beyond(double limit, const SurfaceMesh& made, const SurfaceMesh& input,
+                                    const TriangleTree& input_tree);
 
 }  // namespace octafront::remeshing

@@ -2,8 +2,8 @@
 
 #include "geometry/measures.h"
 #include "geometry/predicates.h"
-#include "geometry/triangle_box.h"
 #include "surface/remeshing/line_edits.h"
+#include "surface/remeshing/live_triangles.h"
 
 #include <algorithm>
 #include <cmath>
@@ -26,9 +26,8 @@ struct Tier {
 constexpr Tier kTiers[] = {{kFold, 0.25}, {15 * kDegree, 1}};
 /// What an operation must take away around a place to be worth it: radians of folding, or 2r/R of bad triangles.
 constexpr double kGain = 0.01;
-/// What a pair of triangles that cross counts, and how many are many.
+/// What a pair of triangles that cross counts.
 constexpr double kCrossing = 1;
-constexpr int kMany = 100;
 /// No new triangle is worse than this 2r/R, unless one was, where no limit is given.
 constexpr double kLeastShape = 0.02;
 /// Parts of the way to the mean of its neighbours that a vertex is tried at.
@@ -37,13 +36,6 @@ constexpr double kSteps[] = {1, 0.5, 0.25};
 constexpr std::size_t kOperationsPerPlace = 8;
 /// An edge longer than this many times the move allowed cannot collapse within it.
 constexpr double kLongest = 20;
-
-/// A triangle that is to come, with its corners.
-struct NewTriangle {
-  Triangle ids;
-  TriangleCorners corners;
-  std::array<std::uint8_t, 3> is_line{};  ///< per edge, from corner i to the next
-};
 
 /// What may be done.
 struct Change {
@@ -83,15 +75,10 @@ double folding(Vec3 n, Vec3 m) {
   return std::max(0.0, kFold - opening(n, m));
 }
 
-/// Without area: such a triangle meets all and none.
-bool is_degenerate(const TriangleCorners& t) {
-  return collinear(t[0], t[1], t[2]);
-}
-
 class FoldMender {
  public:
   FoldMender(WorkingMesh& mesh, const FoldLimits& limits)
-      : mesh_(mesh), limits_(limits), edits_(mesh, limits.is_fixed), is_changed_(mesh.triangle_count(), 0) {
+      : mesh_(mesh), limits_(limits), edits_(mesh, limits.is_fixed), live_(mesh) {
     if (limits.crossing) crosses_ = *limits.crossing;
     crosses_.resize(mesh.triangle_count(), 0);
   }
@@ -122,9 +109,7 @@ class FoldMender {
   double folding_at(HalfEdge h) const {
     return is_kept_line(h) ? 0 : folding(mesh_.area_vector(h / 3), mesh_.area_vector(mesh_.twin[h] / 3));
   }
-  TriangleCorners corners(std::uint32_t t) const {
-    return {mesh_.corner(t, 0), mesh_.corner(t, 1), mesh_.corner(t, 2)};
-  }
+  TriangleCorners corners(std::uint32_t t) const { return live_.corners(t); }
   double shape_lack(const TriangleCorners& t) const {
     if (limits_.least_shape == 0) return 0;
     return std::max(0.0, limits_.least_shape - triangle_radius_ratio(t[0], t[1], t[2]));
@@ -142,7 +127,7 @@ class FoldMender {
 
   double allowed_at(std::uint32_t t) const {
     if (limits_.size_part == 0) return limits_.tolerance;
-    return std::min(limits_.tolerance, limits_.size_part * mesh_.size[mesh_.start[3 * t]]);
+    return std::min(limits_.tolerance, (crosses_[t] ? 2 : 1) * limits_.size_part * mesh_.size[mesh_.start[3 * t]]);
   }
 
   /// Does what leaves the least badness around the triangle.
@@ -179,8 +164,9 @@ class FoldMender {
     const VertexIndex a = mesh_.start[h], b = mesh_.start[g], c = mesh_.apex(h), d = mesh_.apex(g);
     new_.clear();
     for (const Triangle& t : {Triangle{a, d, c}, Triangle{b, c, d}})
-      new_.push_back({t, {mesh_.points[t[0]], mesh_.points[t[1]], mesh_.points[t[2]]}, {}});
-    new_[0].is_line[2] = new_[1].is_line[0] = is_kept_line(h);
+      new_.push_back({t, {mesh_.points[t[0]], mesh_.points[t[1]], mesh_.points[t[2]]}});
+    is_line_.assign(2, {});
+    is_line_[0][2] = is_line_[1][0] = is_kept_line(h);
     judge({Change::Kind::kFlip, h}, kNone);
   }
 
@@ -219,7 +205,8 @@ class FoldMender {
     old_.assign({h / 3, g / 3});
     new_.clear();
     for (const auto& [p, q] : {Edge{c, a}, Edge{b, c}, Edge{a, d}, Edge{d, b}})
-      new_.push_back({{p, q, x}, {mesh_.points[p], mesh_.points[q], middle.point}, {}});
+      new_.push_back({{p, q, x}, {mesh_.points[p], mesh_.points[q], middle.point}});
+    is_line_.assign(new_.size(), {});
     judge({Change::Kind::kSplit, h, middle.point, middle.triangle}, kNone);
   }
 
@@ -227,13 +214,13 @@ class FoldMender {
   void gather_star(VertexIndex v, Vec3 p, VertexIndex w) {
     old_.clear();
     new_.clear();
+    is_line_.clear();
     mesh_.for_each_outgoing(v, [&](HalfEdge o) {
       old_.push_back(o / 3);
       const VertexIndex a = mesh_.end(o), b = mesh_.apex(o);
       if (a == w || b == w) return;
-      new_.push_back({{w == kNone ? v : w, a, b},
-                      {p, mesh_.points[a], mesh_.points[b]},
-                      {is_kept_line(o), false, is_kept_line(previous_of(o))}});
+      new_.push_back({{w == kNone ? v : w, a, b}, {p, mesh_.points[a], mesh_.points[b]}});
+      is_line_.push_back({is_kept_line(o), false, is_kept_line(previous_of(o))});
     });
   }
 
@@ -244,17 +231,17 @@ class FoldMender {
     if (!after) return;
     const double to_beat = best_.kind == Change::Kind::kNone ? -kGain : best_.badness;
     const bool any_crossing = std::any_of(old_.begin(), old_.end(), [&](std::uint32_t t) { return crosses_[t] != 0; });
-    const int crossings = any_crossing ? crossings_of_old() : 0;
+    const int crossings = any_crossing ? live_.crossings_among(old_) : 0;
     change.badness = *after - badness_before() - kCrossing * crossings;
     if (!(change.badness < to_beat)) return;
     old_corners_.clear();
     new_corners_.clear();
     for (const std::uint32_t t : old_) old_corners_.push_back(corners(t));
-    for (const NewTriangle& t : new_) new_corners_.push_back(t.corners);
+    for (const IdTriangle& t : new_) new_corners_.push_back(t.corners);
     if (!shapes_are_fair()) return;
     change.move = std::max(farthest(old_corners_, new_corners_), farthest(new_corners_, old_corners_));
     if (change.move > limit_) return;
-    const int left = crossings_of_new(std::max(1, crossings));
+    const int left = live_.crossings_among(new_, old_, std::max(1, crossings));
     change.badness += kCrossing * left;
     if (left > 0 && left >= crossings) return;
     if (change.badness < to_beat) best_ = change;
@@ -275,12 +262,13 @@ class FoldMender {
   std::optional<double> badness_after(VertexIndex merged, VertexIndex gone) {
     double sum = 0;
     gather_sides(merged, gone);
-    for (const NewTriangle& t : new_) {
+    for (std::size_t k = 0; k < new_.size(); ++k) {
+      const IdTriangle& t = new_[k];
       const auto& [a, b, c] = t.corners;
       if (collinear(a, b, c)) return std::nullopt;
       sum += shape_lack(t.corners);
       for (int i = 0; i < 3; ++i)
-        sides_.push_back({t.ids[i], t.ids[(i + 1) % 3], double_area_normal(a, b, c), false, t.is_line[i] != 0});
+        sides_.push_back({t.ids[i], t.ids[(i + 1) % 3], double_area_normal(a, b, c), false, is_line_[k][i] != 0});
     }
     for (std::size_t i = 0; i < sides_.size(); ++i) {
       for (std::size_t j = i + 1; j < sides_.size(); ++j) {
@@ -316,60 +304,10 @@ class FoldMender {
     return worst(new_corners_) >= std::min(limit, worst(old_corners_));
   }
 
-  /// How many pairs of the new triangles, and of these with others, meet where they should not: exactly. Counts no
-  /// further than to `enough`.
-  int crossings_of_new(int enough) {
-    int count = 0;
-    for (std::size_t i = 0; i < new_.size() && count < enough; ++i) {
-      for (std::size_t j = 0; j < i; ++j)
-        count += triangles_conflict(new_[i].corners, new_[i].ids, new_[j].corners, new_[j].ids);
-      count += crossings_with_others(new_[i], enough - count);
-    }
-    return count;
-  }
-
-  int crossings_of_old() {
-    int count = 0;
-    for (std::size_t i = 0; i < old_.size(); ++i) {
-      if (is_degenerate(corners(old_[i]))) continue;
-      for (std::size_t j = 0; j < i; ++j)
-        count += !is_degenerate(corners(old_[j])) && triangles_conflict(corners(old_[i]), mesh_.triangle(old_[i]),
-                                                                        corners(old_[j]), mesh_.triangle(old_[j]));
-      count += crossings_with_others({mesh_.triangle(old_[i]), corners(old_[i]), {}}, kMany);
-    }
-    return count;
-  }
-
   bool still_crosses(std::uint32_t t) {
     old_.assign({t});
-    if (is_degenerate(corners(t))) return true;
-    return crossings_with_others({mesh_.triangle(t), corners(t), {}}, 1) > 0;
-  }
-
-  /// With triangles that are not old; no further than to `enough`.
-  int crossings_with_others(const NewTriangle& made, int enough) {
-    if (!tree_) plant_tree();
-    const Box3 box = box_of(made.corners);
-    int count = 0;
-    const auto look = [&](std::uint32_t t) {
-      if (is_old(t) || mesh_.is_removed(t)) return true;
-      const TriangleCorners there = corners(t);
-      if (box_of(there).overlaps(box) && !is_degenerate(there))
-        count += triangles_conflict(made.corners, made.ids, there, mesh_.triangle(t));
-      return count < enough;
-    };
-    const bool on = tree_->for_each_box_near(box, [&](std::uint32_t item, const TriangleCorners&) {
-      return is_changed_[in_tree_[item]] || look(in_tree_[item]);
-    });
-    if (on) std::all_of(changed_.begin(), changed_.end(), look);
-    return count;
-  }
-
-  void plant_tree() {
-    in_tree_ = mesh_.alive_triangles();
-    std::vector<Triangle> triangles;
-    for (const std::uint32_t t : in_tree_) triangles.push_back(mesh_.triangle(t));
-    tree_.emplace(mesh_.points, triangles);
+    if (LiveTriangles::is_degenerate(corners(t))) return true;
+    return live_.crossings({mesh_.triangle(t), corners(t)}, old_, 1) > 0;
   }
 
   void apply() {
@@ -385,7 +323,6 @@ class FoldMender {
       const VertexIndex x = mesh_.add_vertex(best_.place, VertexKind::kFree, {}, size, best_.face);
       mesh_.split_edge(h, x);
       mesh_.for_each_outgoing(x, [&](HalfEdge o) { touched.push_back(o / 3); });
-      is_changed_.resize(mesh_.triangle_count(), 0);
       crosses_.resize(mesh_.triangle_count(), 0);
     }
     if (best_.kind == Change::Kind::kMove) {
@@ -399,13 +336,9 @@ class FoldMender {
   }
 
   void note_changed(const std::vector<std::uint32_t>& touched) {
-    bool had_crossing = false;
-    for (const std::uint32_t t : touched) {
-      had_crossing |= crosses_[t] != 0;
-      if (!is_changed_[t]) changed_.push_back(t);
-      is_changed_[t] = 1;
-    }
-    std::erase_if(changed_, [&](std::uint32_t t) { return mesh_.is_removed(t); });
+    live_.note_changed(touched);
+    const bool had_crossing =
+        std::any_of(touched.begin(), touched.end(), [&](std::uint32_t t) { return crosses_[t] != 0; });
     for (const std::uint32_t t : touched) {
       crosses_[t] = had_crossing && !mesh_.is_removed(t) && still_crosses(t);
     }
@@ -425,17 +358,15 @@ class FoldMender {
   WorkingMesh& mesh_;
   const FoldLimits& limits_;
   LineEdits edits_;
-  std::optional<TriangleTree> tree_;      ///< of the mesh as it was
-  std::vector<std::uint32_t> in_tree_;    ///< its triangles
-  std::vector<std::uint8_t> is_changed_;  ///< per triangle: no longer the one in the tree
-  std::vector<std::uint32_t> changed_;
+  LiveTriangles live_;
   std::vector<std::uint8_t> crosses_;  ///< per triangle
   std::priority_queue<std::pair<double, std::uint32_t>> queue_;
   MendedFolds result_;
   double limit_ = 0;
   Change best_;
   std::vector<std::uint32_t> old_;
-  std::vector<NewTriangle> new_;
+  std::vector<IdTriangle> new_;
+  std::vector<std::array<std::uint8_t, 3>> is_line_;  ///< per new triangle and edge, from corner i to the next
   std::vector<TriangleCorners> old_corners_, new_corners_;
   std::vector<Side> sides_;
 };

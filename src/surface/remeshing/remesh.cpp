@@ -2,6 +2,7 @@
 
 #include "core/validate.h"
 #include "sizing/make_size_field.h"
+#include "surface/remeshing/approach.h"
 #include "surface/remeshing/coarsen.h"
 #include "surface/remeshing/crossings.h"
 #include "surface/remeshing/deviation.h"
@@ -38,6 +39,10 @@ constexpr double kVain = 0.3, kRestored = 2, kMoreRestored = 1.6;
 /// The same where the new surface strays too far from the input, and for how many rounds.
 constexpr double kDeviationCap = 0.7;
 constexpr int kMostDeviationRounds = 5;
+/// How often points of the input are put in where the new surface strays, if it does so at few places: at this part of
+/// its triangles. At more of them it is made anew with smaller sizes.
+constexpr int kApproaches = 3;
+constexpr double kFewFar = 0.02;
 
 /// Triangles below this 2r/R are mended at the end, by moving the surface no farther than this part of the size.
 constexpr double kBadShape = 0.25, kMovedPart = 0.25;
@@ -49,9 +54,15 @@ struct Counts {
   InsertionCounts insertion;
   CoarsenCounts coarsen;
   ImproveCounts improve;
-  std::uint64_t merged_lines = 0, places_mended = 0, restored = 0;
+  std::uint64_t merged_lines = 0, places_mended = 0, approached = 0, restored = 0;
   std::uint64_t crossings = 0;
   int rounds = 0, deviation_rounds = 0;
+};
+
+/// How near the new surface lies to the input.
+struct Nearness {
+  std::vector<Vec3> approached;  ///< where points of the input were put in
+  std::vector<Vec3> far;         ///< where it strays still
 };
 
 /// The parts of the working mesh that are alive, numbered anew in their order.
@@ -60,11 +71,12 @@ struct Compacted {
   std::vector<std::uint32_t> vertex_face;  ///< per vertex: an input face that it lies in
   std::vector<std::uint8_t> is_inner;      ///< per vertex: not on a feature
   bool is_clear = false;                   ///< it is known that nothing crosses
+  Nearness nearness;
 };
 using Crossings = std::vector<std::array<std::uint32_t, 2>>;
 
 Compacted compacted(const WorkingMesh& mesh, const SurfaceMesh& input, const SizeField& sizes) {
-  Compacted c{{{}, {}, {}, sizes}, {}, {}, false};
+  Compacted c{{{}, {}, {}, sizes}, {}, {}, false, {}};
   SurfaceMesh& s = c.result.surface;
   std::vector<VertexIndex> old_to_new(mesh.points.size(), kNone);
   for (VertexIndex v = 0; v < mesh.points.size(); ++v) {
@@ -94,12 +106,17 @@ Compacted compacted(const WorkingMesh& mesh, const SurfaceMesh& input, const Siz
   return c;
 }
 
-/// Per triangle of the working mesh whether it crosses another, or has no area.
-std::vector<std::uint8_t> crossing_triangles(const WorkingMesh& mesh) {
-  const std::vector<std::uint32_t> number = mesh.alive_triangles();
+SurfaceMesh triangles_of(const WorkingMesh& mesh, const std::vector<std::uint32_t>& number) {
   SurfaceMesh alive;
   alive.points = mesh.points;
   for (const std::uint32_t t : number) alive.triangles.push_back(mesh.triangle(t));
+  return alive;
+}
+
+/// Per triangle of the working mesh whether it crosses another, or has no area.
+std::vector<std::uint8_t> crossing_triangles(const WorkingMesh& mesh) {
+  const std::vector<std::uint32_t> number = mesh.alive_triangles();
+  const SurfaceMesh alive = triangles_of(mesh, number);
   std::vector<std::uint8_t> crossing(mesh.triangle_count(), 0);
   for (const auto& [s, t] : find_crossings(alive)) crossing[number[s]] = crossing[number[t]] = 1;
   return crossing;
@@ -107,6 +124,12 @@ std::vector<std::uint8_t> crossing_triangles(const WorkingMesh& mesh) {
 
 /// How much of the input's triangulation an attempt may change.
 enum class Effort { kFull, kInsertOnly };
+
+std::vector<Vec3> positions_of(const std::vector<FarPlace>& places) {
+  std::vector<Vec3> positions;
+  for (const FarPlace& place : places) positions.push_back(place.at);
+  return positions;
+}
 
 std::vector<Vec3> centers_of(const SurfaceMesh& surface, const std::vector<std::array<std::uint32_t, 2>>& pairs) {
   std::vector<std::uint32_t> triangles;
@@ -152,6 +175,7 @@ void report_counts(const Counts& counts, const Stage& stage) {
   stage.count("smoothing moves", static_cast<double>(counts.improve.moves));
   stage.count("lines merged", static_cast<double>(counts.merged_lines));
   stage.count("places mended", static_cast<double>(counts.places_mended));
+  stage.count("points against deviation", static_cast<double>(counts.approached));
   stage.count("input vertices left", static_cast<double>(counts.coarsen.input_vertices_left));
   stage.count("crossing pairs mended", static_cast<double>(counts.crossings));
   stage.count("places left as in the input", static_cast<double>(counts.restored));
@@ -177,6 +201,7 @@ class Remesher {
     for (counts_.rounds = 1; counts_.rounds <= kMostRounds; ++counts_.rounds) {
       Compacted c = attempt(Effort::kFull);
       if (is_sound(c) && is_true(c)) return finished(c);
+      cap_far(c);
     }
     Compacted c = attempt(Effort::kInsertOnly);
     if (is_sound(c)) {
@@ -208,10 +233,12 @@ class Remesher {
     counts_.coarsen = {};
     counts_.improve = {};
     counts_.places_mended = 0;
+    counts_.approached = 0;
     progress(0.4);
     WorkingMesh mesh = insert_points(input_, curves, front, context, counts_.insertion);
     progress(0.5);
     bool clear = false;
+    Nearness nearness;
     if (effort == Effort::kFull) {
       remove_input_vertices(mesh, sizes, context, counts_.coarsen);
       progress(0.6);
@@ -219,6 +246,7 @@ class Remesher {
       improve_surface(mesh, input_, curves, sizes, context, counts_.improve);
       counts_.merged_lines += merge_lines(mesh, is_fixed, tolerance_);
       clear = mend_places(mesh, is_fixed);
+      nearness = come_near(mesh, is_fixed, clear);
     } else {
       counts_.coarsen.input_vertices_left = surface_.points.size();
     }
@@ -226,7 +254,41 @@ class Remesher {
     validate(mesh);
     Compacted c = compacted(mesh, surface_, sizes);
     c.is_clear = clear;
+    c.nearness = std::move(nearness);
     return c;
+  }
+
+  /// Puts in points of the input where the mesh strays at few places and nothing crosses. `clear`: whether that is
+  /// known, before and after.
+  Nearness come_near(WorkingMesh& mesh, const std::vector<std::uint8_t>& is_fixed, bool& clear) {
+    Nearness n;
+    for (int k = 0;; ++k) {
+      const std::vector<FarPlace> places = far_places(mesh);
+      n.far = positions_of(places);
+      const bool few = static_cast<double>(places.size()) < kFewFar * static_cast<double>(mesh.triangle_count());
+      const std::uint64_t put_in = clear && few && k < kApproaches ? approach(mesh, input_, is_fixed, places) : 0;
+      if (put_in == 0) return n;
+      counts_.approached += put_in;
+      n.approached.insert(n.approached.end(), n.far.begin(), n.far.end());
+      clear = mend_places(mesh, is_fixed);
+    }
+  }
+
+  /// Smaller sizes where the surface strayed.
+  void cap_far(const Compacted& c) {
+    std::vector<Vec3> places = c.nearness.far;
+    places.insert(places.end(), c.nearness.approached.begin(), c.nearness.approached.end());
+    if (!places.empty()) cap(places, kDeviationCap);
+  }
+
+  /// Where the mesh is too far from the input, by the numbers of its triangles.
+  std::vector<FarPlace> far_places(const WorkingMesh& mesh) const {
+    if (!limits_deviation()) return {};
+    const std::vector<std::uint32_t> number = mesh.alive_triangles();
+    std::vector<FarPlace> places =
+        places_beyond(*options_.max_deviation, triangles_of(mesh, number), surface_, known_.tree());
+    for (FarPlace& place : places) place.triangle = number[place.triangle];
+    return places;
   }
 
   /// What is left of bad triangles, of edges too sharp for any element, and of crossings where these are few. True if
@@ -318,22 +380,19 @@ class Remesher {
   /// sizes are made smaller. Leaves the sources.
   bool is_true(Compacted& c) {
     const bool is_last = counts_.rounds == kMostRounds || counts_.deviation_rounds == kMostDeviationRounds;
-    std::vector<Vec3> far;
-    if (limits_deviation()) far = places_beyond(*options_.max_deviation, c.result.surface, surface_, known_.tree());
     c.result.source = sources_of(c);
     std::vector<PointSize> turned;
     if (options_.normal_deviation) {
       turned = turned_places(*options_.normal_deviation, c.result.surface, input_, sizes_, c.vertex_face, c.is_inner,
                              c.result.source);
     }
-    if ((far.empty() && turned.empty()) || is_last) {
-      if (limits_deviation()) stage_.count("places beyond the deviation", static_cast<double>(far.size()));
+    if ((c.nearness.far.empty() && turned.empty()) || is_last) {
+      if (limits_deviation()) stage_.count("places beyond the deviation", static_cast<double>(c.nearness.far.size()));
       if (options_.normal_deviation) stage_.count("triangles turned too far", static_cast<double>(turned.size()));
-      note_what_is_left(far.size(), turned.size());
+      note_what_is_left(c.nearness.far.size(), turned.size());
       return true;
     }
     ++counts_.deviation_rounds;
-    if (!far.empty()) cap(far, kDeviationCap);
     sizes_ = capped_at(sizes_, turned, stage_.context());
     return false;
   }
@@ -353,6 +412,9 @@ class Remesher {
   }
 
   Remeshed finished(Compacted& c) {
+    const std::vector<Vec3>& near = c.nearness.approached;
+    if (!near.empty())
+      c.result.sizes = capped_near(c.result.sizes, thinned(c.result.sizes, near), kDeviationCap, stage_.context());
     counts_.restored = restored_.size();
     if (!restored_.empty())
       stage_.note(

@@ -1,0 +1,166 @@
+#include "surface/remeshing/approach.h"
+
+#include "geometry/measures.h"
+#include "surface/remeshing/live_triangles.h"
+
+#include <algorithm>
+#include <array>
+
+namespace octafront::remeshing {
+
+namespace {
+
+/// A point nearer to an edge than this part of the height over it goes onto the edge.
+constexpr double kOnEdge = 0.2;
+/// Where a corner weighs more than this it goes there itself.
+constexpr double kAtCorner = 0.8;
+/// No new triangle is worse than this 2r/R, unless one was: the others are mended later.
+constexpr double kLeastShape = 0.1;
+
+/// Weights of the corners that make up the point nearest to p in the plane of a triangle.
+std::array<double, 3> weights_at(const TriangleCorners& t, Vec3 p) {
+  const Vec3 n = double_area_normal(t[0], t[1], t[2]);
+  std::array<double, 3> w;
+  for (int i = 0; i < 3; ++i) w[i] = dot(double_area_normal(p, t[(i + 1) % 3], t[(i + 2) % 3]), n) / squared_length(n);
+  return w;
+}
+
+class Approacher {
+ public:
+  Approacher(WorkingMesh& mesh, const InputSurface& input, const std::vector<std::uint8_t>& is_fixed)
+      : mesh_(mesh), input_(input), is_fixed_(is_fixed), live_(mesh) {}
+
+  std::uint64_t run(std::span<const FarPlace> places) {
+    std::vector<std::uint8_t> is_touched(mesh_.triangle_count(), 0);
+    std::uint64_t count = 0;
+    for (const FarPlace* place : by_distance(places)) {
+      if (is_touched[place->triangle] || !put_in(*place)) continue;
+      ++count;
+      is_touched.resize(mesh_.triangle_count(), 1);
+      for (const std::uint32_t t : old_) is_touched[t] = 1;
+    }
+    return count;
+  }
+
+ private:
+  std::vector<const FarPlace*> by_distance(std::span<const FarPlace> places) const {
+    std::vector<std::pair<double, const FarPlace*>> order;
+    for (const FarPlace& place : places) {
+      const TriangleCorners t = live_.corners(place.triangle);
+      const Vec3 p = place.on_input.p;
+      order.push_back({-squared_distance(p, closest_point_on_triangle(p, t[0], t[1], t[2])), &place});
+    }
+    std::sort(order.begin(), order.end());
+    std::vector<const FarPlace*> sorted;
+    for (const auto& [key, place] : order) sorted.push_back(place);
+    return sorted;
+  }
+
+  /// The first way that is sound: the nearest corner goes there, the nearest edge is divided, the triangle, an edge.
+  bool put_in(const FarPlace& place) {
+    const std::uint32_t t = place.triangle;
+    const Vec3 p = place.on_input.p, normal = input_.normal_at(place.on_input.face, p);
+    if (!(dot(mesh_.area_vector(t), normal) > 0)) return false;
+    const std::array<double, 3> weight = weights_at(live_.corners(t), p);
+    std::array<std::uint32_t, 3> order{0, 1, 2};
+    std::sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) { return weight[i] < weight[j]; });
+    const VertexIndex corner = mesh_.start[3 * t + order[2]];
+    if (weight[order[2]] > kAtCorner && may_move(corner) && move(corner, place.on_input, normal)) return true;
+    const auto edge = [&](int i) { return next_of(3 * t + order[i]); };
+    if (weight[order[0]] < kOnEdge && divide(place, edge(0), normal)) return true;
+    return divide(place, kNone, normal) || divide(place, edge(0), normal) || divide(place, edge(1), normal) ||
+           divide(place, edge(2), normal);
+  }
+
+  /// The edge, or for kNone the triangle.
+  bool divide(const FarPlace& place, HalfEdge edge, Vec3 normal) {
+    if (edge != kNone && mesh_.is_feature[edge]) return false;
+    plan_split(place.triangle, edge, place.on_input.p);
+    if (!is_sound()) return false;
+    const Triangle t = mesh_.triangle(place.triangle);
+    const double size = (mesh_.size[t[0]] + mesh_.size[t[1]] + mesh_.size[t[2]]) / 3;
+    const VertexIndex x = mesh_.add_vertex(place.on_input.p, VertexKind::kFree, normal, size, place.on_input.face);
+    if (edge == kNone) {
+      mesh_.split_triangle(place.triangle, x);
+    } else {
+      mesh_.split_edge(edge, x);
+    }
+    note_changed(x);
+    return true;
+  }
+
+  bool may_move(VertexIndex v) const { return mesh_.is_free(v) && !(v < is_fixed_.size() && is_fixed_[v]); }
+
+  bool move(VertexIndex v, SurfacePoint to, Vec3 normal) {
+    plan_move(v, to.p);
+    if (!is_sound()) return false;
+    mesh_.points[v] = to.p;
+    mesh_.face[v] = to.face;
+    mesh_.normal[v] = normal;
+    note_changed(v);
+    return true;
+  }
+
+  void note_changed(VertexIndex v) {
+    mesh_.mark_star_changed(v);
+    std::vector<std::uint32_t> touched = old_;
+    mesh_.for_each_outgoing(v, [&](HalfEdge h) { touched.push_back(h / 3); });
+    live_.note_changed(touched);
+  }
+
+  void plan_move(VertexIndex v, Vec3 p) {
+    old_.clear();
+    new_.clear();
+    mesh_.for_each_outgoing(v, [&](HalfEdge h) {
+      const VertexIndex a = mesh_.end(h), b = mesh_.apex(h);
+      old_.push_back(h / 3);
+      new_.push_back({{v, a, b}, {p, mesh_.points[a], mesh_.points[b]}});
+    });
+  }
+
+  /// What would go, and what would come.
+  void plan_split(std::uint32_t triangle, HalfEdge edge, Vec3 p) {
+    old_.assign(1, triangle);
+    if (edge != kNone) old_.push_back(mesh_.twin[edge] / 3);
+    new_.clear();
+    const auto x = static_cast<VertexIndex>(mesh_.points.size());
+    for (const std::uint32_t t : old_) {
+      for (HalfEdge h = 3 * t; h < 3 * t + 3; ++h) {
+        if (edge != kNone && (h == edge || h == mesh_.twin[edge])) continue;
+        const VertexIndex a = mesh_.start[h], b = mesh_.end(h);
+        new_.push_back({{a, b, x}, {mesh_.points[a], mesh_.points[b], p}});
+      }
+    }
+  }
+
+  bool is_sound() {
+    double before = 1;
+    for (const std::uint32_t t : old_) {
+      const auto [a, b, c] = live_.corners(t);
+      before = std::min(before, triangle_radius_ratio(a, b, c));
+    }
+    for (const IdTriangle& made : new_) {
+      const auto& [a, b, c] = made.corners;
+      if (LiveTriangles::is_degenerate(made.corners)) return false;
+      if (triangle_radius_ratio(a, b, c) < std::min(kLeastShape, before)) return false;
+    }
+    const int allowed = live_.crossings_among(old_);
+    return live_.crossings_among(new_, old_, allowed + 1) <= allowed;
+  }
+
+  WorkingMesh& mesh_;
+  const InputSurface& input_;
+  const std::vector<std::uint8_t>& is_fixed_;
+  LiveTriangles live_;
+  std::vector<std::uint32_t> old_;
+  std::vector<IdTriangle> new_;
+};
+
+}  // namespace
+
+std::uint64_t approach(WorkingMesh& mesh, const InputSurface& input, const std::vector<std::uint8_t>& is_fixed,
+                       std::span<const FarPlace> places) {
+  return Approacher(mesh, input, is_fixed).run(places);
+}
+
+}  // namespace octafront::remeshing
