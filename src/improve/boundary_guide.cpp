@@ -55,6 +55,16 @@ BoundaryGuide::BoundaryGuide(const EditMesh& mesh, const BoundaryInput& input, c
   freeze_where_regions_meet(mesh);
   for (VertexIndex v = 0; v < kind_.size(); ++v)
     if (frozen_[v]) kind_[v] = Kind::kFixed;
+  for (VertexIndex v = 0; v < kind_.size(); ++v)
+    if (kind_[v] == Kind::kFixed) fixed_.push_back({v, mesh.point(v)});
+}
+
+bool BoundaryGuide::is_near_home(VertexIndex v, Vec3 place, double limit) const {
+  if (kind(v) == Kind::kSurface) return tree().is_within(place, limit);
+  if (kind(v) == Kind::kCurve) return curves_.nearest(place, limit).has_value();
+  const auto home = std::lower_bound(fixed_.begin(), fixed_.end(), v,
+                                     [](const auto& entry, VertexIndex key) { return entry.first < key; });
+  return home != fixed_.end() && home->first == v && distance(home->second, place) <= limit;
 }
 
 void BoundaryGuide::freeze_where_regions_meet(const EditMesh& mesh) {
@@ -64,8 +74,21 @@ void BoundaryGuide::freeze_where_regions_meet(const EditMesh& mesh) {
 }
 
 bool BoundaryGuide::may_turn(VertexIndex a, VertexIndex b) const {
-  if (is_frozen(a) || is_frozen(b)) return false;
-  return !std::binary_search(feature_edges_.begin(), feature_edges_.end(), sorted_edge(a, b));
+  return !is_frozen(a) && !is_frozen(b) && !is_feature_edge(a, b);
+}
+
+bool BoundaryGuide::is_feature_edge(VertexIndex a, VertexIndex b) const {
+  return std::binary_search(feature_edges_.begin(), feature_edges_.end(), sorted_edge(a, b));
+}
+
+void BoundaryGuide::merge_curve(VertexIndex gone, VertexIndex onto) {
+  for (auto& [a, b] : feature_edges_) {
+    if (a != gone && b != gone) continue;
+    const Edge e = sorted_edge(a == gone ? onto : a, b == gone ? onto : b);
+    a = e[0], b = e[1];
+  }
+  std::erase_if(feature_edges_, [](const Edge& e) { return e[0] == e[1]; });
+  std::sort(feature_edges_.begin(), feature_edges_.end());
 }
 
 BoundaryGuide::Truth BoundaryGuide::truth_of(std::span<const TriangleCorners> triangles,

@@ -10,6 +10,7 @@
 
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace octafront::improve {
@@ -20,6 +21,7 @@ struct BoundaryInput {
   const TriangleTree& tree;    ///< over its triangles
   const Features& features;    ///< of it
   const Features& of_mesh;     ///< of the boundary of the mesh, in the mesh's numbering
+  double tolerance = 0;        ///< the boundary may stray so far where that rids it of what keeps elements poor
 };
 
 class BoundaryGuide {
@@ -35,6 +37,14 @@ class BoundaryGuide {
   bool is_frozen(VertexIndex v) const { return v < frozen_.size() && frozen_[v] != 0; }
   /// True if the boundary edge may turn as far as features and patches go.
   bool may_turn(VertexIndex a, VertexIndex b) const;
+  bool is_feature_edge(VertexIndex a, VertexIndex b) const;
+  /// A vertex of a curve has gone to another of that curve.
+  void merge_curve(VertexIndex gone, VertexIndex onto);
+  double tolerance() const { return input_.tolerance; }
+  /// Whether a place for a vertex of the boundary lies within `limit` of the surface or curve that the vertex is on; of
+  /// a corner, of where it was.
+  bool is_near_home(VertexIndex v, Vec3 place, double limit) const;
+  const BoundaryInput& input() const { return input_; }
 
   const SurfaceMesh& surface() const { return input_.surface; }
   const TriangleTree& tree() const { return input_.tree; }
@@ -58,7 +68,8 @@ class BoundaryGuide {
   void freeze_where_regions_meet(const EditMesh& mesh);
   std::vector<Kind> kind_;
   std::vector<std::uint8_t> frozen_;
-  std::vector<Edge> feature_edges_;  ///< in the numbering of the EditMesh, sorted
+  std::vector<std::pair<VertexIndex, Vec3>> fixed_;  ///< vertices that do not slide, and where they were; sorted
+  std::vector<Edge> feature_edges_;                  ///< in the numbering of the EditMesh, sorted
   BoundaryInput input_;
   FeatureCurves curves_;
 };

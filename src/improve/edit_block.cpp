@@ -68,14 +68,14 @@ TetIndex EditBlock::slot() {
 }
 
 bool EditBlock::replace(std::span<const TetIndex> old_tets, std::span<const Tet> new_tets,
-                        std::span<const Shape> shapes, std::vector<TetIndex>& created, const BoundaryTurn* turn) {
+                        std::span<const Shape> shapes, std::vector<TetIndex>& created, const BoundaryChange* change) {
   if (new_tets.size() > old_tets.size() && !has_room(new_tets.size() - old_tets.size())) return false;
   rim_.reset(4 * (old_tets.size() + new_tets.size()));
   for (const TetIndex t : old_tets) rim_.open(complex_, t);
   const std::uint32_t region = mesh_.region_[old_tets[0]];
   for (const TetIndex t : old_tets)
     for (const VertexIndex v : complex_.tets[t]) complex_.tet_at[v] = kNone;
-  if (turn) turn_boundary(*turn);
+  if (change) change_boundary(*change);
   created.clear();
   for (std::size_t k = 0; k < new_tets.size(); ++k) {
     const TetIndex t = k < old_tets.size() ? old_tets[k] : slot();
@@ -97,16 +97,18 @@ bool EditBlock::replace(std::span<const TetIndex> old_tets, std::span<const Tet>
   return true;
 }
 
-void EditBlock::turn_boundary(const BoundaryTurn& turn) {
+void EditBlock::change_boundary(const BoundaryChange& change) {
   std::vector<Triangle>& boundary = mesh_.rest_.boundary;
-  for (const HalfFace b : turn.faces) rim_.toggle(boundary[b - kFirstOutside], kNone);
-  for (int k = 0; k < 2; ++k) {
-    const Triangle& corners = turn.triangles[k];
-    boundary[turn.faces[k] - kFirstOutside] = corners;
+  for (const HalfFace b : change.gone) {
+    rim_.toggle(boundary[b - kFirstOutside], kNone);
+    boundary[b - kFirstOutside] = {kNone, kNone, kNone};
+  }
+  for (const auto& [number, corners] : change.made) {
+    boundary[number - kFirstOutside] = corners;
     // Where a tet goes without another in its place, the triangle lies on its neighbour.
-    const HalfFace behind = rim_.toggle(corners, turn.faces[k]);
+    const HalfFace behind = rim_.toggle(corners, number);
     if (behind == kNone) continue;
-    complex_.across[behind] = turn.faces[k];
+    complex_.across[behind] = number;
     for (const VertexIndex v : corners) complex_.tet_at[v] = behind / 4;
   }
 }

@@ -52,18 +52,22 @@ class EditBlock {
   /// tet with a lower score than t (of equals, the one with the lower number counts as lower).
   bool edge_ring_where_worst(TetIndex t, int i, int j, std::size_t longest, EdgeRing& out);
 
-  /// Two boundary triangles that take the place of two others: numbers of those (as across() gives them) and new
-  /// corners, counter-clockwise seen from outside. The other diagonal of the same four corners.
-  struct BoundaryTurn {
-    std::array<HalfFace, 2> faces;
-    std::array<Triangle, 2> triangles;
+  /// Boundary triangles that take the place of others: numbers as across() gives them, corners counter-clockwise seen
+  /// from outside. Those that are made carry numbers of some that go, and their patches.
+  struct BoundaryChange {
+    struct Made {
+      HalfFace number;
+      Triangle corners;
+    };
+    std::vector<HalfFace> gone;
+    std::vector<Made> made;
   };
 
   /// Puts new tets in place of old ones of the block that fill the same space. Returns where they are: `created` in
   /// order. False, and nothing done, if there are too few slots left. Requires: same outer faces, or those that differ
-  /// named in `turn`; shapes as of the new ones; one region.
+  /// named in `change`; shapes as of the new ones; one region.
   bool replace(std::span<const TetIndex> old_tets, std::span<const Tet> new_tets, std::span<const Shape> shapes,
-               std::vector<TetIndex>& created, const BoundaryTurn* turn = nullptr);
+               std::vector<TetIndex>& created, const BoundaryChange* change = nullptr);
 
   /// A new vertex inside, near `beside`, to be used by the next replace(); kNone if there is no slot left, for it or
   /// for `tets` more.
@@ -81,7 +85,7 @@ class EditBlock {
   std::vector<TetIndex>& free_tets() { return whole_ ? complex_.free : free_tets_; }
   bool has_room(std::size_t tets) { return whole_ || free_tets_.size() >= tets; }
   TetIndex slot();
-  void turn_boundary(const BoundaryTurn& turn);
+  void change_boundary(const BoundaryChange& change);
 
   EditMesh& mesh_;
   TetComplex& complex_;

@@ -85,11 +85,19 @@ void EditMesh::compute_shapes() {
   flush();
 }
 
+std::vector<VertexIndex> EditMesh::numbers_taken() const {
+  const std::vector<VertexIndex> here = numbers_here();
+  std::vector<VertexIndex> taken;
+  for (VertexIndex v = 0; v < points_.size(); ++v)
+    if (complex_.tet_at[v < here.size() ? here[v] : v] != kNone) taken.push_back(v < here.size() ? v : kNone);
+  return taken;
+}
+
 TetMesh EditMesh::release() {
   TetMesh mesh = std::move(rest_);
   // Vertices go back to where they were; those that improvement added follow.
-  std::vector<VertexIndex> here(points_.size());
-  for (VertexIndex v = 0; v < points_.size(); ++v) here[v < original_.size() ? original_[v] : v] = v;
+  std::vector<VertexIndex> here = numbers_here();
+  for (auto v = static_cast<VertexIndex>(here.size()); v < points_.size(); ++v) here.push_back(v);
   std::vector<VertexIndex> new_of_old(points_.size(), kNone);
   mesh.points.clear();
   for (const VertexIndex v : here)
@@ -106,11 +114,26 @@ TetMesh EditMesh::release() {
   }
   complex_.tets.resize(kept);
   region_.resize(kept);
+  drop_removed_triangles(mesh);
   for (Triangle& t : mesh.boundary)
     for (VertexIndex& v : t) v = new_of_old[v];
   mesh.tets = std::move(complex_.tets);
   if (had_regions_) mesh.region = std::move(region_);
   return mesh;
+}
+
+void EditMesh::drop_removed_triangles(TetMesh& mesh) {
+  const auto last_into = [](auto& list, std::size_t t) {
+    if (list.empty()) return;
+    list[t] = list.back();
+    list.pop_back();
+  };
+  for (std::size_t t = mesh.boundary.size(); t-- > 0;) {
+    if (mesh.boundary[t][0] != kNone) continue;
+    last_into(mesh.boundary, t);
+    last_into(mesh.patch, t);
+    last_into(mesh.source, t);
+  }
 }
 
 void EditMesh::move(VertexIndex v, Vec3 to, std::span<const HalfFace> star_faces, const ShapeBatch& shapes) {

@@ -2,8 +2,8 @@
 
 // A tetrahedral mesh that can be changed in place: a TetComplex, with the places of the vertices and what its elements
 // are worth. Taken from a TetMesh and given back to it; boundary triangles keep their number, patch and source
-// throughout. Inside, vertices and tets are numbered along a space-filling curve, for the cache. Vertices move here;
-// connections are walked and changed by way of an EditBlock (edit_block.h).
+// throughout, as long as they are there. Inside, vertices and tets are numbered along a space-filling curve, for the
+// cache. Vertices move here; connections are walked and changed by way of an EditBlock (edit_block.h).
 
 #include <octafront/tet_mesh.h>
 
@@ -28,8 +28,10 @@ class EditMesh {
   explicit EditMesh(TetMesh&& mesh, ImproveOptions::Objective objective = ImproveOptions::Objective::kBalanced);
 
   /// The mesh back, compacted: vertices in the order they came in, without unused ones, new ones behind; tets in order
-  /// of space.
+  /// of space; boundary triangles by their numbers, the last ones in the place of those that went.
   TetMesh release();
+  /// For each vertex of the mesh that release() is to give, its number in the mesh that was taken, or kNone if new.
+  std::vector<VertexIndex> numbers_taken() const;
 
   /// What the scores of the shapes say.
   ImproveOptions::Objective objective() const { return objective_; }
@@ -50,6 +52,11 @@ class EditMesh {
     if (across == kBetweenRegions) return kNone;
     return rest_.patch.empty() ? 0 : rest_.patch[across - kFirstOutside];
   }
+  /// The triangles of the boundary, by number from 0: the surface that LiveTriangles looks at.
+  std::size_t triangle_count() const { return rest_.boundary.size(); }
+  bool is_removed(std::size_t triangle) const { return rest_.boundary[triangle][0] == kNone; }
+  Triangle triangle(std::size_t t) const { return rest_.boundary[t]; }
+  Vec3 corner(std::size_t t, int i) const { return points_[rest_.boundary[t][i]]; }
   /// For each vertex of the mesh that was taken, its number here.
   std::vector<VertexIndex> numbers_here() const;
 
@@ -88,6 +95,7 @@ class EditMesh {
   [[noreturn]] void throw_unmatched(HalfFace h) const;
   void part(HalfFace h, HalfFace other);
   void connect();
+  static void drop_removed_triangles(TetMesh& mesh);
   void compute_shapes();
 
   ImproveOptions::Objective objective_;

@@ -76,6 +76,16 @@ PassResult collapse_vertices(EditMesh& mesh, float threshold, Goal goal, const R
 /// in sum (fewest_poor.h).
 PassResult relieve_vertices(EditMesh& mesh, float threshold, const RunContext& context);
 
+struct BoundaryEdits {
+  PassResult result;
+  double largest_move = 0;  ///< of a vertex, in one step; input units
+};
+/// Collapses edges of the boundary and moves its vertices at the elements with a score below `threshold` that the input
+/// does not force (input_force.h), worst first, where the elements around lack less in sum then: inside patches and
+/// along curves, curves and corners giving way below 0.2 only. The boundary stays as near to the input as the guide's
+/// tolerance and a quarter of its edges, or as it was, exactly without crossings. Its triangles become fewer.
+BoundaryEdits edit_boundary(EditMesh& mesh, float threshold, BoundaryGuide& guide, const RunContext& context);
+
 /// Replaces elements with a score below `threshold`, worst first, and some around them, by the star of a new vertex
 /// where that serves the goal: kWorst or kFewestPoor.
 PassResult insert_vertices(EditMesh& mesh, float threshold, Goal goal, const RunContext& context);

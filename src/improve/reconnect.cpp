@@ -22,7 +22,7 @@ struct Refill {
   std::vector<Tet> new_tets;
   std::vector<Shape> shapes;
   float gain = 0;
-  std::optional<EditBlock::BoundaryTurn> turn;  ///< where the removed edge lies on the boundary
+  std::optional<EditBlock::BoundaryChange> turn;  ///< where the removed edge lies on the boundary
 
   void clear() {
     old_tets.clear();
@@ -148,13 +148,12 @@ class Reconnector {
   }
 
   /// The boundary after the removal of its edge ab; nullopt if the mesh would not stay valid, or the boundary true.
-  std::optional<EditBlock::BoundaryTurn> turn_of(VertexIndex a, VertexIndex b) {
+  std::optional<EditBlock::BoundaryChange> turn_of(VertexIndex a, VertexIndex b) {
     const VertexIndex c = ring_.ring.front(), d = ring_.ring.back();
     if (guide_->is_frozen(c) || guide_->is_frozen(d)) return std::nullopt;
-    EditBlock::BoundaryTurn turn{{boundary_behind(ring_.tets.front(), ring_.ring[1]),
-                                  boundary_behind(ring_.tets.back(), ring_.ring[ring_.ring.size() - 2])},
-                                 {Triangle{c, d, a}, Triangle{d, c, b}}};
-    if (mesh_.boundary_patch(turn.faces[0]) != mesh_.boundary_patch(turn.faces[1])) return std::nullopt;
+    const HalfFace first = boundary_behind(ring_.tets.front(), ring_.ring[1]);
+    const HalfFace second = boundary_behind(ring_.tets.back(), ring_.ring[ring_.ring.size() - 2]);
+    if (mesh_.boundary_patch(first) != mesh_.boundary_patch(second)) return std::nullopt;
     if (is_edge_beyond_ring(c, d)) return std::nullopt;
     const Vec3 pa = mesh_.point(a), pb = mesh_.point(b), pc = mesh_.point(c), pd = mesh_.point(d);
     const std::array<TriangleCorners, 2> before{{{pa, pb, pd}, {pb, pa, pc}}}, after{{{pc, pd, pa}, {pd, pc, pb}}};
@@ -162,7 +161,7 @@ class Reconnector {
       for (const TriangleCorners& y : after)
         if (!faces_alike(x, y)) return std::nullopt;
     if (!guide_->keeps_truth(before, after)) return std::nullopt;
-    return turn;
+    return EditBlock::BoundaryChange{{first, second}, {{first, {c, d, a}}, {second, {d, c, b}}}};
   }
 
   HalfFace boundary_behind(TetIndex t, VertexIndex opposite) const {

@@ -50,7 +50,7 @@ ImproveOptions::Worst worst_of(const EditMesh& mesh) {
 /// Runs passes and notes what each one did.
 class Schedule {
  public:
-  Schedule(EditMesh& mesh, const BoundaryGuide* guide, const ImproveOptions& options, const Stage& stage)
+  Schedule(EditMesh& mesh, BoundaryGuide* guide, const ImproveOptions& options, const Stage& stage)
       : mesh_(mesh), guide_(guide), options_(options), stage_(stage), started_(process_cpu_seconds()) {
     if (options_.after_pass) options_.after_pass("start", worst_of(mesh_));
   }
@@ -104,6 +104,16 @@ class Schedule {
          [&] { return collapse_vertices(mesh_, threshold, Goal::kFewestPoor, stage_.context()); });
   }
 
+  void edit_boundary(float threshold) {
+    if (!guide_ || guide_->tolerance() == 0) return;
+    pass("edits of the boundary", [&] {
+      const BoundaryEdits edits = improve::edit_boundary(mesh_, threshold, *guide_, stage_.context());
+      boundary_edits_ += edits.result.done;
+      largest_move_ = std::max(largest_move_, edits.largest_move);
+      return edits.result;
+    });
+  }
+
   void insert_against_poor(float threshold) {
     pass("insertions against poor elements",
          [&] { return insert_vertices(mesh_, threshold, Goal::kFewestPoor, stage_.context()); });
@@ -127,6 +137,8 @@ class Schedule {
     stage_.count(fmt::format("elements below {:.1f}", kReported), static_cast<double>(s.elements));
     for (int cause = 0; cause < Shortfall::kCauses; ++cause)
       stage_.count(kCauseNames[cause].counter, static_cast<double>(s.by_cause[cause].elements));
+    stage_.count("edits of the boundary", static_cast<double>(boundary_edits_));
+    stage_.count("largest move of the boundary", largest_move_);
     stage_.count("elements below 0.2 or 10 degrees", static_cast<double>(s.poor));
     stage_.count("elements below 0.2 or 10 degrees, not forced", static_cast<double>(s.poor_not_forced));
     if (s.elements == 0) return;
@@ -185,14 +197,15 @@ class Schedule {
   static constexpr double kUsualPasses = 10;
 
   EditMesh& mesh_;
-  const BoundaryGuide* guide_;
+  BoundaryGuide* guide_;
   const ImproveOptions& options_;
   const Stage& stage_;
   double started_;
   Stopwatch clock_;
   bool late_ = false;
   int passes_ = 0;
-  std::uint64_t changes_ = 0;
+  std::uint64_t changes_ = 0, boundary_edits_ = 0;
+  double largest_move_ = 0;
 };
 
 /// Scores below which elements are worked on. The reference elements of shape.h have .45; .6 is about 30 degrees.
@@ -246,6 +259,7 @@ constexpr int kRoundsWithInsertions = 2;
 void relieve(Schedule& run) {
   double before = run.lack();
   for (int round = 0; round < kMostRounds && before > 0; ++round) {
+    run.edit_boundary(kComfort);
     run.relieve(kComfort);
     if (round < kRoundsWithInsertions) run.insert_against_poor(kComfort);
     const double now = run.lack();
@@ -307,16 +321,23 @@ void run_schedule(Schedule& run, const ImproveOptions& options) {
 /// How often a boundary that came to cross itself is tried again with the places frozen, before all of it is.
 constexpr int kMostRetries = 3;
 
+/// A mesh that came out of the schedule, and what its vertices were (EditMesh::numbers_taken).
+struct Better {
+  TetMesh mesh;
+  std::vector<VertexIndex> taken;
+};
+
 /// One run of the schedule; vertices in `frozen`, and those around them, stay on the boundary where they are.
-TetMesh improved(const TetMesh& mesh, const BoundaryInput* boundary, const BoundaryInput* input,
-                 const std::vector<VertexIndex>& frozen, const ImproveOptions& options, const Stage& stage) {
+Better improved(const TetMesh& mesh, const BoundaryInput* boundary, const BoundaryInput* input,
+                const std::vector<VertexIndex>& frozen, const ImproveOptions& options, const Stage& stage) {
   EditMesh edit(TetMesh{mesh}, options.objective);
   std::optional<BoundaryGuide> guide;
   if (boundary) guide.emplace(edit, *boundary, frozen);
   Schedule run(edit, guide ? &*guide : nullptr, options, stage);
   run_schedule(run, options);
   run.explain(input);
-  return edit.release();
+  std::vector<VertexIndex> taken = edit.numbers_taken();
+  return {edit.release(), std::move(taken)};
 }
 
 bool same_boundary(const TetMesh& a, const TetMesh& b) {
@@ -348,7 +369,7 @@ bool improve_mesh(TetMesh& mesh, const BoundaryInput* input, const ImproveOption
   std::vector<VertexIndex> frozen;
   for (int retry = 0;; ++retry) {
     StageReport attempt = stage.report();
-    TetMesh better =
+    auto [better, taken] =
         improved(mesh, retry < kMostRetries ? boundary : nullptr, input, frozen, options, {stage.context(), attempt});
     const bool moved = !same_boundary(mesh, better);
     const std::vector<VertexIndex> crossing = moved ? where_boundary_crosses(better) : std::vector<VertexIndex>{};
@@ -358,7 +379,7 @@ bool improve_mesh(TetMesh& mesh, const BoundaryInput* input, const ImproveOption
       mesh = std::move(better);
       return moved;
     }
-    frozen.insert(frozen.end(), crossing.begin(), crossing.end());
+    for (const VertexIndex v : crossing) frozen.push_back(taken[v]);
   }
 }
 

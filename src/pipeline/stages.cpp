@@ -234,12 +234,10 @@ void improve_elements(const Prepared& input, Filled& filled, Run& run) {
     std::optional<improve::BoundaryInput> on;
     if (is_ours)
       on.emplace(improve::BoundaryInput{input.surface.mesh(), input.surface.tree(), input.surface.features(),
-                                        boundary.features});
+                                        boundary.features, detail_tolerance(input.surface.mesh(), run.options)});
     if (!improve_mesh(mesh, on ? &*on : nullptr, run.options.improve, stage)) return;
     if (on) renew_sources(mesh, boundary.surface, on->surface, on->tree);
-    SurfaceMesh& surface = boundary.surface;  // what was filled follows what became of it; its vertices come first
-    std::copy_n(mesh.points.begin(), surface.points.size(), surface.points.begin());
-    surface.triangles = mesh.boundary;
+    boundary.surface = without_inner_points(boundary_of(mesh));  // what was filled follows what became of it
   });
 }
 

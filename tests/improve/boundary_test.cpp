@@ -4,6 +4,7 @@
 #include <octafront/validity.h>
 
 #include "core/thread_limit.h"
+#include "improve/fewest_poor.h"
 #include "improve/improve.h"
 #include "improve/passes.h"
 #include "improve/start_meshes.h"
@@ -206,6 +207,69 @@ TEST(FeatureCurves, AreWalkedAroundBends) {
   const auto start = curves.nearest({0.5, 0, 0}, 0.1);
   ASSERT_TRUE(start);
   EXPECT_EQ(curves.walk(*start, 0.75)->at, (Vec3{1, 0.25, 0}));
+}
+
+double lack_of(const TetMesh& mesh) {
+  double sum = 0;
+  for (const auto& [a, b, c, d] : mesh.tets)
+    sum += improve::lack_of(shape_of(mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]).score);
+  return sum;
+}
+
+/// A mesh of a cube in which a vertex inside a side has come next to another one: slivers that no inner vertex mends.
+TetMesh cube_with_a_needle(double length) {
+  TetMesh mesh = kuhn_cube(4);
+  const auto at = [&](Vec3 p) { return std::find(mesh.points.begin(), mesh.points.end(), p); };
+  *at({0.5, 0.5, 0}) = Vec3{0.25 + length, 0.5, 0};
+  return mesh;
+}
+
+struct Edited {
+  TetMesh mesh;
+  BoundaryEdits edits;
+};
+
+Edited edited(const TetMesh& start, double tolerance) {
+  const Cube cube;
+  const Features of_mesh = detect_features(boundary_of(start), 40);
+  const TriangleTree tree(cube.surface);
+  const BoundaryInput input{cube.surface, tree, cube.features, of_mesh, tolerance};
+  EditMesh edit(TetMesh{start});
+  BoundaryGuide guide(edit, input, {});
+  const BoundaryEdits edits = edit_boundary(edit, kComfort, guide, {});
+  EXPECT_EQ(edit.first_inconsistency(), std::nullopt);
+  return {edit.release(), edits};
+}
+
+TEST(BoundaryEdits, CollapseAShortEdgeOfASide) {
+  const TetMesh start = cube_with_a_needle(0.01);
+  ASSERT_EQ(first_defect(start), std::nullopt);
+  const auto [made, edits] = edited(start, 0.01);
+  EXPECT_GT(edits.result.done, 0u);
+  EXPECT_EQ(first_defect(made), std::nullopt);
+  EXPECT_LT(made.boundary.size(), start.boundary.size());
+  EXPECT_LT(lack_of(made), 0.5 * lack_of(start));
+  EXPECT_EQ(made.patch.size(), made.boundary.size());
+  EXPECT_NEAR(enclosed_volume(boundary_of(made)), 1, 1e-3);
+}
+
+TEST(BoundaryEdits, StrayNoFartherThanTheTolerance) {
+  constexpr double kTolerance = 0.02;
+  const Cube cube;
+  const TriangleTree tree(cube.surface);
+  std::uint64_t done = 0;
+  for (std::uint32_t seed = 1; seed <= 5; ++seed) {
+    const TetMesh start = shaken_cube(4, 0.48, seed);
+    const auto [made, edits] = edited(start, kTolerance);
+    done += edits.result.done;
+    EXPECT_EQ(first_defect(made), std::nullopt);
+    EXPECT_LE(lack_of(made), lack_of(start));
+    for (const Triangle& t : made.boundary)
+      for (const VertexIndex v : t) EXPECT_TRUE(tree.is_within(made.points[v], 2 * kTolerance));
+    const TriangleTree boundary(boundary_of(made));
+    for (const Vec3 corner : cube.surface.points) EXPECT_TRUE(boundary.is_within(corner, 2 * kTolerance));
+  }
+  EXPECT_GT(done, 0u);
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 #include "surface/remeshing/approach.h"
 
+#include "geometry/live_triangles.h"
 #include "geometry/measures.h"
-#include "surface/remeshing/live_triangles.h"
 
 #include <algorithm>
 #include <array>
@@ -141,7 +141,7 @@ class Approacher {
     }
     for (const IdTriangle& made : new_) {
       const auto& [a, b, c] = made.corners;
-      if (LiveTriangles::is_degenerate(made.corners)) return false;
+      if (LiveTriangles<WorkingMesh>::is_degenerate(made.corners)) return false;
       if (triangle_radius_ratio(a, b, c) < std::min(kLeastShape, before)) return false;
     }
     const int allowed = live_.crossings_among(old_);
@@ -151,7 +151,7 @@ class Approacher {
   WorkingMesh& mesh_;
   const InputSurface& input_;
   const std::vector<std::uint8_t>& is_fixed_;
-  LiveTriangles live_;
+  LiveTriangles<WorkingMesh> live_;
   std::vector<std::uint32_t> old_;
   std::vector<IdTriangle> new_;
 };

@@ -1,9 +1,9 @@
 #include "surface/remeshing/mend_folds.h"
 
+#include "geometry/live_triangles.h"
 #include "geometry/measures.h"
 #include "geometry/predicates.h"
 #include "surface/remeshing/line_edits.h"
-#include "surface/remeshing/live_triangles.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,12 +18,12 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180;
 /// Edges sharper than this, on either side, are folds.
 constexpr double kFold = 25 * kDegree;
-/// How sharp an edge must be for the surface to move by so much of the tolerance. Machine parts have true wedges of 19
-/// to 25 degrees, which large moves would open.
+/// How sharp an edge must be for the surface to move by so much of what is allowed. Machine parts have true wedges of
+/// 19 to 25 degrees, which large moves would open.
 struct Tier {
   double angle, move;
 };
-constexpr Tier kTiers[] = {{kFold, 0.25}, {15 * kDegree, 1}};
+constexpr Tier kTiers[] = {{kFold, 0.25}, {15 * kDegree, 1}, {14 * kDegree, 2}};
 /// What an operation must take away around a place to be worth it: radians of folding, or 2r/R of bad triangles.
 constexpr double kGain = 0.01;
 /// What a pair of triangles that cross counts.
@@ -306,7 +306,7 @@ class FoldMender {
 
   bool still_crosses(std::uint32_t t) {
     old_.assign({t});
-    if (LiveTriangles::is_degenerate(corners(t))) return true;
+    if (LiveTriangles<WorkingMesh>::is_degenerate(corners(t))) return true;
     return live_.crossings({mesh_.triangle(t), corners(t)}, old_, 1) > 0;
   }
 
@@ -358,7 +358,7 @@ class FoldMender {
   WorkingMesh& mesh_;
   const FoldLimits& limits_;
   LineEdits edits_;
-  LiveTriangles live_;
+  LiveTriangles<WorkingMesh> live_;
   std::vector<std::uint8_t> crosses_;  ///< per triangle
   std::priority_queue<std::pair<double, std::uint32_t>> queue_;
   MendedFolds result_;
