@@ -81,6 +81,12 @@ bool BoundaryGuide::is_feature_edge(VertexIndex a, VertexIndex b) const {
   return std::binary_search(feature_edges_.begin(), feature_edges_.end(), sorted_edge(a, b));
 }
 
+std::vector<Edge> BoundaryGuide::feature_edges_taken(const EditMesh& mesh) const {
+  std::vector<Edge> edges;
+  for (const auto& [a, b] : feature_edges_) edges.push_back({mesh.number_taken(a), mesh.number_taken(b)});
+  return edges;
+}
+
 void BoundaryGuide::merge_curve(VertexIndex gone, VertexIndex onto) {
   for (auto& [a, b] : feature_edges_) {
     if (a != gone && b != gone) continue;

@@ -38,6 +38,8 @@ class BoundaryGuide {
   /// True if the boundary edge may turn as far as features and patches go.
   bool may_turn(VertexIndex a, VertexIndex b) const;
   bool is_feature_edge(VertexIndex a, VertexIndex b) const;
+  /// All of them, in the numbering of the mesh that `mesh` was made from.
+  std::vector<Edge> feature_edges_taken(const EditMesh& mesh) const;
   /// A vertex of a curve has gone to another of that curve.
   void merge_curve(VertexIndex gone, VertexIndex onto);
   double tolerance() const { return input_.tolerance; }

@@ -57,6 +57,8 @@ class EditMesh {
   bool is_removed(std::size_t triangle) const { return rest_.boundary[triangle][0] == kNone; }
   Triangle triangle(std::size_t t) const { return rest_.boundary[t]; }
   Vec3 corner(std::size_t t, int i) const { return points_[rest_.boundary[t][i]]; }
+  /// The number that a vertex had in the mesh that was taken. Requires that it was there.
+  VertexIndex number_taken(VertexIndex v) const { return original_[v]; }
   /// For each vertex of the mesh that was taken, its number here.
   std::vector<VertexIndex> numbers_here() const;
 

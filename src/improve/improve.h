@@ -21,11 +21,13 @@ void check_improve_options(const ImproveOptions& options);
 /// not change, and is the user's own. With it, and unless options.move_boundary is off, vertices of the boundary slide
 /// along the surface or curve that they lie on, corners stay, and edges inside patches may turn; the boundary stays as
 /// near to the input as it was (see BoundaryGuide::keeps_truth), free of self-intersections (exactly), with the same
-/// number of triangles, each of the same patch. Regions stay with what they belong to. No pass makes the worst element
-/// worse, and none inverts one (exact signs). On an exception the mesh is as it was. Throws OptionError, Cancelled, and
-/// MeshingError if the faces of the mesh do not match. The report gets, for each pass, the places looked at, those
-/// changed, and CPU time per element. Returns true if the boundary changed.
-bool improve_mesh(TetMesh& mesh, const improve::BoundaryInput* input, const ImproveOptions& options,
-                  const Stage& stage);
+/// number of triangles, each of the same patch, unless the input has a tolerance: see edit_boundary(). Regions stay
+/// with what they belong to. No pass makes the worst element worse, and none inverts one (exact signs). On an exception
+/// the mesh is as it was. Throws OptionError, Cancelled, and MeshingError if the faces of the mesh do not match. The
+/// report gets, for each pass, the places looked at, those changed, and CPU time per element. Returns true if the
+/// boundary changed; `features`, where given, then become those of the new boundary, in its numbering (they may be
+/// input->of_mesh).
+bool improve_mesh(TetMesh& mesh, const improve::BoundaryInput* input, const ImproveOptions& options, const Stage& stage,
+                  Features* features = nullptr);
 
 }  // namespace octafront

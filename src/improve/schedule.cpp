@@ -321,11 +321,30 @@ void run_schedule(Schedule& run, const ImproveOptions& options) {
 /// How often a boundary that came to cross itself is tried again with the places frozen, before all of it is.
 constexpr int kMostRetries = 3;
 
-/// A mesh that came out of the schedule, and what its vertices were (EditMesh::numbers_taken).
+/// A mesh that came out of the schedule, what its vertices were (EditMesh::numbers_taken), and its features.
 struct Better {
   TetMesh mesh;
   std::vector<VertexIndex> taken;
+  Features features;
 };
+
+/// The features in the numbering of the result; `edges` and `corners` are in that of the mesh that was taken.
+Features renumbered(std::vector<Edge> edges, std::vector<VertexIndex> corners, const std::vector<VertexIndex>& taken) {
+  std::vector<VertexIndex> result;
+  for (VertexIndex v = 0; v < taken.size(); ++v) {
+    if (taken[v] == kNone) continue;
+    result.resize(std::max<std::size_t>(result.size(), taken[v] + 1), kNone);
+    result[taken[v]] = v;
+  }
+  for (auto& [a, b] : edges) {
+    const Edge e{result[a], result[b]};
+    a = std::min(e[0], e[1]), b = std::max(e[0], e[1]);
+  }
+  for (VertexIndex& v : corners) v = result[v];
+  std::sort(edges.begin(), edges.end());
+  std::sort(corners.begin(), corners.end());
+  return {std::move(edges), std::move(corners)};
+}
 
 /// One run of the schedule; vertices in `frozen`, and those around them, stay on the boundary where they are.
 Better improved(const TetMesh& mesh, const BoundaryInput* boundary, const BoundaryInput* input,
@@ -337,7 +356,9 @@ Better improved(const TetMesh& mesh, const BoundaryInput* boundary, const Bounda
   run_schedule(run, options);
   run.explain(input);
   std::vector<VertexIndex> taken = edit.numbers_taken();
-  return {edit.release(), std::move(taken)};
+  Features features;
+  if (guide) features = renumbered(guide->feature_edges_taken(edit), boundary->of_mesh.corners, taken);
+  return {edit.release(), std::move(taken), std::move(features)};
 }
 
 bool same_boundary(const TetMesh& a, const TetMesh& b) {
@@ -361,7 +382,8 @@ std::vector<VertexIndex> where_boundary_crosses(const TetMesh& mesh) {
 
 }  // namespace
 
-bool improve_mesh(TetMesh& mesh, const BoundaryInput* input, const ImproveOptions& options, const Stage& stage) {
+bool improve_mesh(TetMesh& mesh, const BoundaryInput* input, const ImproveOptions& options, const Stage& stage,
+                  Features* features) {
   check_improve_options(options);
   if (options.level == ImproveOptions::Level::kOff || mesh.tets.empty()) return false;
   const bool moves = options.move_boundary && options.level != ImproveOptions::Level::kPaper;
@@ -369,7 +391,7 @@ bool improve_mesh(TetMesh& mesh, const BoundaryInput* input, const ImproveOption
   std::vector<VertexIndex> frozen;
   for (int retry = 0;; ++retry) {
     StageReport attempt = stage.report();
-    auto [better, taken] =
+    auto [better, taken, of_better] =
         improved(mesh, retry < kMostRetries ? boundary : nullptr, input, frozen, options, {stage.context(), attempt});
     const bool moved = !same_boundary(mesh, better);
     const std::vector<VertexIndex> crossing = moved ? where_boundary_crosses(better) : std::vector<VertexIndex>{};
@@ -377,6 +399,7 @@ bool improve_mesh(TetMesh& mesh, const BoundaryInput* input, const ImproveOption
       stage.report() = std::move(attempt);
       stage.count("runs with places of the boundary frozen", retry);
       mesh = std::move(better);
+      if (moved && features) *features = std::move(of_better);
       return moved;
     }
     for (const VertexIndex v : crossing) frozen.push_back(taken[v]);

@@ -12,7 +12,4 @@ namespace octafront {
 /// boundary as it was, in the same order.
 void renew_sources(TetMesh& mesh, const SurfaceMesh& before, const SurfaceMesh& input, const TriangleTree& tree);
 
-/// The surface with the points that its triangles use, numbered anew.
-SurfaceMesh without_inner_points(const SurfaceMesh& surface);
-
 }  // namespace octafront

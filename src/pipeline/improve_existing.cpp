@@ -17,6 +17,22 @@
 namespace octafront {
 namespace {
 
+SurfaceMesh without_inner_points(const SurfaceMesh& surface) {
+  SurfaceMesh out;
+  std::vector<VertexIndex> here(surface.points.size(), kNone);
+  for (Triangle t : surface.triangles) {
+    for (VertexIndex& v : t) {
+      if (here[v] == kNone) {
+        here[v] = static_cast<VertexIndex>(out.points.size());
+        out.points.push_back(surface.points[v]);
+      }
+      v = here[v];
+    }
+    out.triangles.push_back(t);
+  }
+  return out;
+}
+
 /// A surface for the boundary to move on, and what of either must be kept.
 struct Ground {
   KnownSurface surface;

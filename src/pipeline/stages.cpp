@@ -235,9 +235,14 @@ void improve_elements(const Prepared& input, Filled& filled, Run& run) {
     if (is_ours)
       on.emplace(improve::BoundaryInput{input.surface.mesh(), input.surface.tree(), input.surface.features(),
                                         boundary.features, detail_tolerance(input.surface.mesh(), run.options)});
-    if (!improve_mesh(mesh, on ? &*on : nullptr, run.options.improve, stage)) return;
+    if (!improve_mesh(mesh, on ? &*on : nullptr, run.options.improve, stage, &boundary.features)) return;
     if (on) renew_sources(mesh, boundary.surface, on->surface, on->tree);
-    boundary.surface = without_inner_points(boundary_of(mesh));  // what was filled follows what became of it
+    SurfaceMesh& surface = boundary.surface;  // what was filled follows what became of it; its vertices come first
+    VertexIndex last = 0;
+    for (const Triangle& t : mesh.boundary) last = std::max({last, t[0], t[1], t[2]});
+    surface.points.assign(mesh.points.begin(), mesh.points.begin() + last + 1);
+    surface.triangles = mesh.boundary;
+    surface.patch = mesh.patch;
   });
 }
 
