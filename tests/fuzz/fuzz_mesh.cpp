@@ -11,7 +11,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace octafront;
   try {
-    const TetMesh m = io::read_mesh_bytes({"a.mesh", {reinterpret_cast<const char*>(data), size}});
+    const TetMesh m = io::read_mesh_bytes({"a.mesh", {reinterpret_cast<const char*>(data), size}}).mesh;
     if (m.tets.empty() || (!m.region.empty() && m.region.size() != m.tets.size())) std::abort();
     if (!m.patch.empty() && m.patch.size() != m.boundary.size()) std::abort();
     if (!m.source.empty() && m.source.size() != m.boundary.size()) std::abort();

@@ -114,7 +114,7 @@ TEST(AtomicFile, SaysWhyItCannotWrite) {
   fs::create_symlink("ring", folder / "ring");
   EXPECT_NE(error_of([&] { AtomicFile(folder / "ring"); }).find("in a circle"), std::string::npos);
   EXPECT_NE(error_of([&] { AtomicFile("/dev/null"); }).find("not a plain file"), std::string::npos);
-  EXPECT_NE(error_of([&] { check_mesh_target(folder / "a.docx"); }).find(".vtu, .msh, .mesh"), std::string::npos);
+  EXPECT_NE(error_of([&] { check_mesh_target(folder / "a.docx"); }).find(".vtu, .msh, .inp"), std::string::npos);
   EXPECT_NE(error_of([&] { check_surface_target(folder / "a"); }).find(".stl, .obj, .off, .ply"), std::string::npos);
 }
 

@@ -48,7 +48,7 @@ inline SurfaceFile surface_of(const std::string& bytes, const std::string& name 
   return io::read_surface_bytes({name, bytes});
 }
 inline TetMesh mesh_of(const std::string& bytes, const std::string& name = "x") {
-  return io::read_mesh_bytes({name, bytes});
+  return io::read_mesh_bytes({name, bytes}).mesh;
 }
 
 /// The message of the InputError that `read` throws; fails the test if it throws none or another one.
