@@ -143,7 +143,7 @@ void declare_volume(CLI::App& command, Arguments& a) {
   add_choice<Ranking>(*group, "--ranking", o.ranking,
                       {{"solid-angle", Ranking::kSolidAngle}, {"quality", Ranking::kQuality}}, "Order of candidates");
   add_choice<Order>(
-      *group, "--order", o.order,
+      *group, "--queue", o.order,
       {{"layers", Order::kLayers}, {"smallest", Order::kSmallest}, {"newest", Order::kNewest}},
       "Order of the front's faces: layer by layer, the smallest of each layer first, or the newest first");
 }
@@ -189,6 +189,13 @@ void declare_ground(CLI::App& command, Arguments& a) {
   group->add_option("--feature-angle", a.options.surface.feature_angle, "Edges that bend by more degrees are kept")
       ->type_name("DEG")
       ->capture_default_str();
+}
+
+void declare_order(CLI::App& command, Arguments& a) {
+  add_choice<int>(
+      command, "--order", a.options.order, {{"1", 1}, {"2", 2}},
+      "2: elements of second order, with mid-side nodes; those of the boundary on the smooth surface that the "
+      "input stands for, every element proven valid");
 }
 
 std::vector<const CLI::Option*> options_of(const CLI::App& command) {

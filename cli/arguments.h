@@ -36,6 +36,7 @@ void declare_surface(CLI::App& command, Arguments& arguments);
 void declare_volume(CLI::App& command, Arguments& arguments);
 void declare_improvement(CLI::App& command, Arguments& arguments);
 void declare_ground(CLI::App& command, Arguments& arguments);
+void declare_order(CLI::App& command, Arguments& arguments);
 
 /// Every option of a command, those of its groups too.
 std::vector<const CLI::Option*> options_of(const CLI::App& command);

@@ -131,6 +131,7 @@ int main(int argc, char** argv) {
   declare_surface(*mesh, a);
   declare_volume(*mesh, a);
   declare_improvement(*mesh, a);
+  declare_order(*mesh, a);
   declare_report(*mesh, a);
   declare_run(*mesh, a);
   mesh->callback([&] { chosen = run_mesh; });
@@ -159,6 +160,7 @@ int main(int argc, char** argv) {
   declare_output(*better, a, "Mesh: .vtu, .msh (Gmsh 4.1) or .mesh (MEDIT)", true);
   declare_ground(*better, a);
   declare_improvement(*better, a);
+  declare_order(*better, a);
   declare_report(*better, a);
   declare_run(*better, a);
   better->callback([&] { chosen = run_improve; });

@@ -10,6 +10,7 @@
 #include <octafront/quality.h>
 #include <octafront/repair.h>
 #include <octafront/report.h>
+#include <octafront/second_order.h>
 #include <octafront/run_context.h>
 #include <octafront/size_field.h>
 #include <octafront/surface_mesh.h>

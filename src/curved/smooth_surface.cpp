@@ -1,0 +1,245 @@
+#include "curved/smooth_surface.h"
+
+#include "core/disjoint_sets.h"
+#include "core/parallel.h"
+#include "geometry/measures.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace octafront::curved {
+
+namespace {
+
+// Triangles that are turned farther from the normal than this are not seen from above well enough to be fitted.
+constexpr double kSteepest = 0.5;  // cosine
+// A foot must not be on the other side of a thin wall, or around a sharp edge.
+constexpr double kSameSide = 0.5;  // cosine
+// Two rings of a triangulation have eighteen vertices; where features leave fewer than this, a third one is taken.
+constexpr std::size_t kEnough = 14;
+constexpr int kRings = 2, kMostRings = 3;
+// A vertex in which a hundred triangles meet would cost too much.
+constexpr std::size_t kMostTriangles = 200;
+// Vertices of a curve to either side.
+constexpr int kAlong = 3, kAlongOneSided = 5;
+// Farther from a triangle than this, in its longest edges, a polynomial is not a surface between points any more.
+constexpr double kFarthest = 0.25;
+
+std::vector<Triangle> as_triangles(const std::vector<Edge>& edges) {
+  std::vector<Triangle> triangles;
+  triangles.reserve(edges.size());
+  for (const auto& [a, b] : edges) triangles.push_back({a, b, b});
+  return triangles;
+}
+
+/// Per vertex that lies inside a curve: the two feature edges there.
+std::vector<std::array<std::uint32_t, 2>> edges_inside_curves(std::size_t vertices, const Features& sharp) {
+  std::vector<std::array<std::uint32_t, 2>> at(vertices, {kNone, kNone});
+  for (std::uint32_t e = 0; e < sharp.edges.size(); ++e)
+    for (const VertexIndex v : sharp.edges[e]) at[v][at[v][0] != kNone] = e;
+  for (const VertexIndex v : sharp.corners) at[v] = {kNone, kNone};
+  return at;
+}
+
+std::array<double, 3> barycentric(Vec3 p, Vec3 a, Vec3 b, Vec3 c) {
+  const Vec3 n = cross(b - a, c - a);
+  const double area = squared_length(n);
+  if (area == 0) return {1, 0, 0};
+  const double in_b = dot(cross(p - a, c - a), n) / area, in_c = dot(cross(b - a, p - a), n) / area;
+  return {1 - in_b - in_c, in_b, in_c};
+}
+
+/// `smooth` where it is near enough to p.
+Vec3 within(Vec3 smooth, Vec3 p, double edge) {
+  return squared_distance(smooth, p) <= kFarthest * kFarthest * edge * edge ? smooth : p;
+}
+
+}  // namespace
+
+SmoothSurface::SmoothSurface(const SurfaceMesh& surface, const EdgeTable& edges, const TriangleTree& tree,
+                             Features sharp)
+    : surface_(surface),
+      tree_(tree),
+      sharp_(std::move(sharp)),
+      curves_(surface.points, as_triangles(sharp_.edges)),
+      curve_at_(edges_inside_curves(surface.points.size(), sharp_)),
+      curve_fit_of_(2 * sharp_.edges.size(), kNone) {
+  find_wedges(edges);
+}
+
+void SmoothSurface::find_wedges(const EdgeTable& edges) {
+  DisjointSets sets(3 * surface_.triangles.size());
+  auto sharp = sharp_.edges.begin();
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    while (sharp != sharp_.edges.end() && *sharp < edges.edges[e]) ++sharp;
+    if (sharp != sharp_.edges.end() && *sharp == edges.edges[e]) continue;
+    const auto uses = edges.uses(e);
+    if (uses.size() != 2) continue;
+    // The half-edges run in opposite directions.
+    sets.join(uses[0], next_of(uses[1]));
+    sets.join(next_of(uses[0]), uses[1]);
+  }
+  const auto corners = static_cast<std::uint32_t>(3 * surface_.triangles.size());
+  wedge_of_.resize(corners);
+  for (std::uint32_t c = 0; c < corners; ++c) wedge_of_[c] = sets.find(c);
+  corners_of_ = group_by_owner(corners, corners, [this](std::uint32_t c) { return wedge_of_[c]; });
+  fit_of_wedge_.assign(corners, kNone);
+}
+
+std::optional<Foot> SmoothSurface::surface_foot(Vec3 p, Vec3 normal, double reach) const {
+  const auto faces = [&](std::uint32_t t) {
+    const auto& [a, b, c] = tree_.corners(t);
+    const Vec3 n = double_area_normal(a, b, c);
+    return dot(n, normal) >= kSameSide * length(n);
+  };
+  const auto nearest = tree_.nearest(p, reach * reach);
+  if (nearest.triangle == kNone) return std::nullopt;
+  if (faces(nearest.triangle)) return Foot{nearest.point, nearest.triangle};
+  Foot best;
+  double best_distance = reach * reach;
+  const Vec3 r{reach, reach, reach};
+  tree_.for_each_box_near({p - r, p + r}, [&](std::uint32_t t, const TriangleCorners& corners) {
+    if (!faces(t)) return true;
+    const Vec3 q = closest_point_on_triangle(p, corners[0], corners[1], corners[2]);
+    const double d = squared_distance(p, q);
+    if (d < best_distance || (d == best_distance && t < best.on)) {
+      best = {q, t};
+      best_distance = d;
+    }
+    return true;
+  });
+  if (best.on == kNone) return std::nullopt;
+  return best;
+}
+
+std::optional<Foot> SmoothSurface::curve_foot(Vec3 p, double reach) const {
+  const auto nearest = curves_.nearest(p, reach * reach);
+  if (nearest.triangle == kNone) return std::nullopt;
+  return Foot{nearest.point, nearest.triangle};
+}
+
+bool SmoothSurface::is_corner(const Foot& on_curve, double tolerance) const {
+  for (const VertexIndex v : sharp_.edges[on_curve.on])
+    if (curve_at_[v][0] == kNone && distance(surface_.points[v], on_curve.at) <= tolerance) return true;
+  return false;
+}
+
+std::uint32_t SmoothSurface::fit_of_end(std::uint32_t end) const {
+  const VertexIndex v = end_vertex(end);
+  if (curve_at_[v][0] == kNone) return end;
+  const std::uint32_t first = curve_at_[v][0];
+  return 2 * first + (sharp_.edges[first][1] == v);
+}
+
+void SmoothSurface::prepare(std::span<const Foot> on_surface, std::span<const Foot> on_curves) {
+  std::vector<Wedge> wedges;
+  for (const Foot& foot : on_surface)
+    for (std::uint32_t c = 3 * foot.on; c < 3 * foot.on + 3; ++c) {
+      std::uint32_t& place = fit_of_wedge_[wedge_of_[c]];
+      if (place != kNone) continue;
+      place = static_cast<std::uint32_t>(fits_.size() + wedges.size());
+      wedges.push_back(wedge_of_[c]);
+    }
+  std::vector<std::uint32_t> ends;
+  for (const Foot& foot : on_curves)
+    for (std::uint32_t end = 2 * foot.on; end < 2 * foot.on + 2; ++end) {
+      std::uint32_t& place = curve_fit_of_[fit_of_end(end)];
+      if (place != kNone) continue;
+      place = static_cast<std::uint32_t>(curve_fits_.size() + ends.size());
+      ends.push_back(fit_of_end(end));
+    }
+  const std::size_t first = fits_.size(), first_curve = curve_fits_.size();
+  fits_.resize(first + wedges.size());
+  parallel_for(wedges.size(), [&](std::size_t i) { fits_[first + i] = make_fit(wedges[i]); });
+  curve_fits_.resize(first_curve + ends.size());
+  parallel_for(ends.size(), [&](std::size_t i) { curve_fits_[first_curve + i] = make_curve_fit(ends[i]); });
+}
+
+SurfaceFit SmoothSurface::make_fit(Wedge wedge) const {
+  const auto normal_of = [&](std::uint32_t t) {
+    const auto& [a, b, c] = surface_.triangles[t];
+    return double_area_normal(surface_.points[a], surface_.points[b], surface_.points[c]);
+  };
+  Vec3 normal;
+  for (const std::uint32_t c : corners_of_[wedge]) normal += normal_of(c / 3);
+  normal = normalized(normal);
+  const auto is_seen = [&](std::uint32_t t) {
+    const Vec3 n = normal_of(t);
+    return dot(n, normal) >= kSteepest * length(n);
+  };
+
+  std::vector<std::uint32_t> triangles;
+  std::vector<Wedge> reached{wedge};
+  std::vector<VertexIndex> vertices;
+  std::size_t from = 0;  // of `reached`: where the newest ring begins
+  for (int ring = 0; ring < kMostRings && (ring < kRings || vertices.size() < kEnough); ++ring) {
+    const std::size_t to = reached.size();
+    for (; from < to; ++from)
+      for (const std::uint32_t corner : corners_of_[reached[from]]) {
+        const std::uint32_t t = corner / 3;
+        if (triangles.size() >= kMostTriangles || !is_seen(t)) continue;
+        if (std::find(triangles.begin(), triangles.end(), t) != triangles.end()) continue;
+        triangles.push_back(t);
+        for (std::uint32_t c = 3 * t; c < 3 * t + 3; ++c) {
+          if (std::find(reached.begin(), reached.end(), wedge_of_[c]) != reached.end()) continue;
+          reached.push_back(wedge_of_[c]);
+          const VertexIndex v = corner_vertex(c);
+          if (std::find(vertices.begin(), vertices.end(), v) == vertices.end()) vertices.push_back(v);
+        }
+      }
+  }
+  const VertexIndex center = corner_vertex(wedge);
+  std::erase(vertices, center);
+  std::vector<Vec3> around;
+  around.reserve(vertices.size());
+  for (const VertexIndex v : vertices) around.push_back(surface_.points[v]);
+  return fit_surface(surface_.points[center], normal, around);
+}
+
+std::vector<Vec3> SmoothSurface::points_along(VertexIndex from, std::uint32_t edge) const {
+  const int most = curve_at_[from][0] == kNone ? kAlongOneSided : kAlong;
+  std::vector<Vec3> points;
+  for (VertexIndex v = from; static_cast<int>(points.size()) < most;) {
+    const auto& [a, b] = sharp_.edges[edge];
+    v = a == v ? b : a;
+    if (v == from) break;
+    points.push_back(surface_.points[v]);
+    if (curve_at_[v][0] == kNone) break;
+    edge = curve_at_[v][curve_at_[v][0] == edge];
+  }
+  return points;
+}
+
+CurveFit SmoothSurface::make_curve_fit(std::uint32_t end) const {
+  const VertexIndex v = end_vertex(end);
+  const Vec3 p = surface_.points[v];
+  if (curve_at_[v][0] == kNone) {
+    const std::vector<Vec3> ahead = points_along(v, end / 2);
+    return fit_curve(p, normalized(ahead.front() - p), ahead);
+  }
+  std::vector<Vec3> around = points_along(v, curve_at_[v][0]);
+  const std::vector<Vec3> ahead = points_along(v, curve_at_[v][1]);
+  const Vec3 tangent = normalized(ahead.front() - around.front());
+  around.insert(around.end(), ahead.begin(), ahead.end());
+  return fit_curve(p, tangent, around);
+}
+
+Vec3 SmoothSurface::surface_point(const Foot& foot) const {
+  const auto& [a, b, c] = tree_.corners(foot.on);
+  const auto weight = barycentric(foot.at, a, b, c);
+  Vec3 smooth;
+  for (std::uint32_t i = 0; i < 3; ++i)
+    smooth += weight[i] * fits_[fit_of_wedge_[wedge_of_[3 * foot.on + i]]].at(foot.at);
+  return within(smooth, foot.at, std::sqrt(longest_squared_edge(a, b, c)));
+}
+
+Vec3 SmoothSurface::curve_point(const Foot& foot) const {
+  const auto& [a, b] = sharp_.edges[foot.on];
+  const Vec3 p = surface_.points[a], q = surface_.points[b];
+  const double edge = distance(p, q), in_b = edge > 0 ? distance(p, foot.at) / edge : 0;
+  const auto& at_a = curve_fits_[curve_fit_of_[fit_of_end(2 * foot.on)]];
+  const auto& at_b = curve_fits_[curve_fit_of_[fit_of_end(2 * foot.on + 1)]];
+  return within((1 - in_b) * at_a.at(foot.at) + in_b * at_b.at(foot.at), foot.at, edge);
+}
+
+}  // namespace octafront::curved
