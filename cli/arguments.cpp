@@ -198,6 +198,18 @@ void declare_order(CLI::App& command, Arguments& a) {
       "input stands for, every element proven valid");
 }
 
+void declare_solver(CLI::App& command, Arguments& a) {
+  const Choice<Solver> choice{{{"abaqus", Solver::kAbaqus},
+                               {"ansys", Solver::kAnsys},
+                               {"nastran", Solver::kNastran},
+                               {"calculix", Solver::kCalculix}}};
+  command
+      .add_option_function<std::string>(
+          "--solver", [&a, choice](const std::string& typed) { a.solver = choice.value_of("--solver", typed); },
+          "List the elements of a mesh that this solver would warn of or refuse, by its documented limits")
+      ->type_name(choice.listed("|"));
+}
+
 std::vector<const CLI::Option*> options_of(const CLI::App& command) {
   std::vector<const CLI::Option*> options = command.get_options();
   for (const CLI::App* group : command.get_subcommands([](const CLI::App*) { return true; })) {

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <octafront/options.h>
+#include <octafront/solver_checks.h>
 
 #include "option_names.h"
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,6 +20,7 @@ struct Arguments {
   std::filesystem::path input, output, json, surface;
   std::filesystem::path regions, point_sizes, size_field;  ///< files with sizes; empty: none
   Options options;
+  std::optional<Solver> solver;  ///< whose limits a mesh is checked by
   int threads = 0;
   bool quiet = false;
   OptionNames names;
@@ -37,6 +40,7 @@ void declare_volume(CLI::App& command, Arguments& arguments);
 void declare_improvement(CLI::App& command, Arguments& arguments);
 void declare_ground(CLI::App& command, Arguments& arguments);
 void declare_order(CLI::App& command, Arguments& arguments);
+void declare_solver(CLI::App& command, Arguments& arguments);
 
 /// Every option of a command, those of its groups too.
 std::vector<const CLI::Option*> options_of(const CLI::App& command);

@@ -61,9 +61,74 @@ std::string quality_in_words(const QualitySummary& q) {
                      q.beta_mean, q.dihedral_min, q.dihedral_max);
 }
 
+Json json_of(const JacobianSummary& found) {
+  Json first = Json::array();
+  for (const InvalidElement& e : found.first)
+    first.push_back({{"number", e.tet}, {"at", place(e.at)}, {"scaled_jacobian", e.scaled_jacobian}});
+  return {{"least_scaled_jacobian", found.least_scaled_jacobian},
+          {"least_tet", found.least_tet},
+          {"invalid", found.invalid},
+          {"first", first}};
+}
+
+// Invalid elements of second order are named, for solvers stop at them.
+void prove_jacobians(Session& session, const TetMesh& mesh) {
+  if (!mesh.is_second_order()) return;
+  const JacobianSummary found = check_jacobians(mesh, session.context());
+  session.found({{"second_order", json_of(found)}});
+  if (found.invalid == 0) {
+    session.say(fmt::format("second order: every Jacobian proven positive; the least scaled one is {:.4f} (tet {})\n",
+                            found.least_scaled_jacobian, found.least_tet));
+    return;
+  }
+  session.found({{"kind", "mesh"}, {"valid", false}});
+  std::string list;
+  for (const InvalidElement& e : found.first)
+    list += fmt::format("\n  element {} at ({:.6g}, {:.6g}, {:.6g}): least scaled Jacobian {:.4g}", e.tet, e.at.x,
+                        e.at.y, e.at.z, e.scaled_jacobian);
+  throw InputError(
+      fmt::format("{}: the Jacobian of {} is not positive everywhere, by the exact signs of its "
+                  "coefficients; move mid-side nodes towards the middle of their edges, or mesh anew:{}{}",
+                  session.arguments().input.string(), counted(found.invalid, "element"), list,
+                  found.invalid > found.first.size() ? "\n  ..." : ""));
+}
+
+Json json_of(const SolverFinding& f) {
+  Json worst = Json::array();
+  for (const SolverFinding::Element& e : f.worst)
+    worst.push_back({{"number", e.tet}, {"at", place(e.at)}, {"value", e.value}});
+  return {{"measure", f.measure},
+          {"refused", f.refused},
+          {f.above ? "above" : "below", f.limit},
+          {"count", f.count},
+          {"worst", worst}};
+}
+
+// What the solver would say, limit by limit; elements that it would refuse are an error.
+void check_by_solver(Session& session, const TetMesh& mesh) {
+  const Arguments& a = session.arguments();
+  if (!a.solver) return;
+  Json all = Json::array();
+  std::uint64_t refused = 0;
+  for (const SolverFinding& f : check_for_solver(mesh, *a.solver, session.context())) {
+    all.push_back(json_of(f));
+    refused += f.refused ? f.count : 0;
+    session.say(fmt::format("  {:<8} {:<46} {} {:<8g} {}\n", f.refused ? "refused" : "warned", f.measure,
+                            f.above ? "above" : "below", f.limit, counted(f.count, "element")));
+    for (const SolverFinding::Element& e : f.worst)
+      session.say(fmt::format("           element {} at ({:.6g}, {:.6g}, {:.6g}): {:.6g}\n", e.tet, e.at.x, e.at.y,
+                              e.at.z, e.value));
+  }
+  session.found({{"solver", all}});
+  if (refused > 0)
+    throw InputError(fmt::format("{}: the solver would refuse this mesh ({} beyond its limits)", a.input.string(),
+                                 counted(refused, "element")));
+}
+
 void check_tet_mesh(Session& session) {
   const std::string name = session.arguments().input.string();
   const TetMesh mesh = read_mesh(session.arguments().input, session.context());
+  prove_jacobians(session, mesh);
   const auto defect = first_defect(mesh, session.context());
   session.found({{"kind", "mesh"}, {"valid", !defect}});
   if (defect) throw InputError(fmt::format("{}: not a valid mesh: {}", name, *defect));
@@ -76,6 +141,7 @@ void check_tet_mesh(Session& session) {
   session.found({{"quality", Json::parse(to_json(report))["quality"]}});
   session.say(fmt::format("{}: a valid mesh of {}\n", name, quality_in_words(report.quality)));
   tell_worst(session, mesh, report.quality);
+  check_by_solver(session, mesh);
 }
 
 Json json_of(const SurfaceDefects::Kind& kind) {
@@ -198,6 +264,7 @@ void run_improve(Session& session) {
 
 void run_check(Session& session) {
   if (is_tet_mesh_file(session.arguments().input)) return check_tet_mesh(session);
+  if (session.arguments().solver) throw OptionError("--solver looks at tetrahedral meshes; this is a surface");
   check_surface(session);
 }
 

@@ -167,6 +167,7 @@ int main(int argc, char** argv) {
 
   auto* check = app.add_subcommand("check", "Say what is wrong with a surface, or with a mesh (.vtu, .msh, .mesh)");
   declare_input(*check, a);
+  declare_solver(*check, a);
   declare_report(*check, a);
   declare_run(*check, a);
   check->callback([&] { chosen = run_check; });

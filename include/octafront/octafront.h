@@ -10,9 +10,10 @@
 #include <octafront/quality.h>
 #include <octafront/repair.h>
 #include <octafront/report.h>
-#include <octafront/second_order.h>
 #include <octafront/run_context.h>
+#include <octafront/second_order.h>
 #include <octafront/size_field.h>
+#include <octafront/solver_checks.h>
 #include <octafront/surface_mesh.h>
 #include <octafront/tet_mesh.h>
 #include <octafront/validity.h>

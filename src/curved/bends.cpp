@@ -17,9 +17,10 @@ namespace {
 constexpr double kOnCurve = 1e-7;
 // An edge that wants to bend by more than this part of its length is not resolved by the mesh: half of a quarter turn.
 constexpr double kMostBend = 0.2;
-// Corners lie on the input's triangles, and go as far as those are from the smooth surface; the boundary of a stuffed
-// lattice, which does not, stays.
-constexpr double kMostMove = 0.1;
+// Corners lie on the input's triangles, and go as far as those are from the smooth surface: where they are large, that
+// is a good part of an edge of the mesh. The boundary of a stuffed lattice lies beside them, and follows as far as
+// this.
+constexpr double kMostMove = 0.5;
 // Less is rounding.
 constexpr double kStraight = 1e-7;
 
@@ -135,10 +136,11 @@ class Search {
     for (std::size_t e = 0; e < table_.size(); ++e) {
       const auto& [a, b] = table_.edges[e];
       if (!moved[a] || !moved[b]) continue;
-      const auto by = displacement(targets_[vertices_.size() + e], middle(e), kMostBend * edge_length(e));
+      const auto by = displacement(targets_[vertices_.size() + e], middle(e), kMostMove * edge_length(e));
       if (!by) continue;
       const Vec3 bend = *by - 0.5 * (*moved[a] + *moved[b]);
-      if (length(bend) > kStraight * edge_length(e)) bends.edges.push_back({table_.edges[e], bend});
+      const double part = length(bend) / edge_length(e);
+      if (part > kStraight && part <= kMostBend) bends.edges.push_back({table_.edges[e], bend});
     }
     return bends;
   }

@@ -17,6 +17,9 @@ namespace octafront {
 SecondOrderSummary curve_to_surface(TetMesh& mesh, const std::vector<Edge>& sharp, const KnownSurface& surface,
                                     double feature_angle, const RunContext& context);
 
+/// Volume of a second-order mesh, curved as it is. Unit: input unit cubed.
+double curved_volume(const TetMesh& mesh);
+
 /// With straight edges.
 SecondOrderSummary add_straight_edges(TetMesh& mesh, const RunContext& context);
 

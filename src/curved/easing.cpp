@@ -3,6 +3,7 @@
 #include "core/parallel.h"
 #include "geometry/measures.h"
 #include "geometry/predicates.h"
+#include "mesh/quadratic_nodes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -142,7 +143,7 @@ void bend_edges(TetMesh& mesh, const TetEdges& edges, std::span<const EdgeBend> 
   Easing<6> easing(mesh, mesh.mid_nodes, std::move(ways));
   easing.settle(
       [&](TetIndex t) {
-        const QuadraticTet nodes = nodes_of(mesh, t);
+        const QuadraticTet nodes = quadratic_nodes(mesh, t);
         const auto coefficients = jacobian_coefficients(nodes);
         const double least = *std::min_element(coefficients.begin(), coefficients.end());
         return least >= kLeastScaled * six_volumes_of(mesh, t) && has_positive_jacobian(nodes);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <initializer_list>
+#include <limits>
 
 namespace octafront::curved {
 
@@ -14,8 +15,9 @@ namespace {
 constexpr double kTrust = 0.1;
 // Points of flat surfaces scatter by rounding: this part of their distance.
 constexpr double kFlat = 1e-9;
-// Far points say less. In parts of the mean squared distance.
-constexpr double kNear = 0.1;
+// Near points say more, for what the polynomial cannot follow grows with the fifth power of the distance. Where two
+// points are nearer than this, in parts of the (squared) distance of near ones, they say as much.
+constexpr double kNear = 0.2;
 // Directions that the points say nothing of (all on two lines, as on the side of a cylinder from CAD) stay straight.
 constexpr double kRegularization = 1e-10;
 // So many points per unknown, or a lower degree.
@@ -77,11 +79,12 @@ class LeastSquares {
 };
 
 /// The terms of the polynomial at a place.
-std::array<double, 9> terms(double u, double v) {
-  return {u, v, u * u, u * v, v * v, u * u * u, u * u * v, u * v * v, v * v * v};
+std::array<double, 14> terms(double u, double v) {
+  const double uu = u * u, uv = u * v, vv = v * v;
+  return {u, v, uu, uv, vv, uu * u, uu * v, u * vv, vv * v, uu * uu, uu * uv, uv * uv, uv * vv, vv * vv};
 }
-std::array<double, 3> terms(double u) {
-  return {u, u * u, u * u * u};
+std::array<double, 4> terms(double u) {
+  return {u, u * u, u * u * u, u * u * u * u};
 }
 
 template <std::size_t N>
@@ -98,10 +101,11 @@ std::size_t affordable(std::size_t points, std::initializer_list<std::size_t> un
   return 0;
 }
 
-double mean_squared_distance(Vec3 vertex, std::span<const Vec3> points) {
+/// How near is near: the harmonic mean of the squared distances, which a few far points do not change.
+double near_distance(Vec3 vertex, std::span<const Vec3> points) {
   double sum = 0;
-  for (const Vec3 p : points) sum += squared_length(p - vertex);
-  return sum / static_cast<double>(std::max<std::size_t>(1, points.size()));
+  for (const Vec3 p : points) sum += 1 / std::max(squared_length(p - vertex), std::numeric_limits<double>::min());
+  return static_cast<double>(points.size()) / sum;
 }
 
 /// What is left over, against the part of the heights that is not linear; both weighted sums of squares.
@@ -127,20 +131,20 @@ Vec3 SurfaceFit::at(Vec3 p) const {
 
 SurfaceFit fit_surface(Vec3 vertex, Vec3 normal, std::span<const Vec3> around) {
   SurfaceFit fit{frame_at(vertex, normal), {}, false};
-  const std::size_t unknowns = affordable(around.size(), {9, 5});
+  const std::size_t unknowns = affordable(around.size(), {14, 9, 5});
   if (unknowns == 0) return fit;
-  const double mean = mean_squared_distance(vertex, around);
-  const auto weight = [&](Vec3 p) { return 1 / (squared_length(p - vertex) + kNear * mean); };
-  LeastSquares<9, 1> system(unknowns);
+  const double near = near_distance(vertex, around);
+  const auto nearness = [&](Vec3 p) { return 1 / (squared_length(p - vertex) + kNear * near); };
+  LeastSquares<14, 1> system(unknowns);
   for (const Vec3 p : around) {
     const Vec3 l = fit.frame.local(p);
-    system.add(terms(l.x, l.y), {l.z}, weight(p));
+    system.add(terms(l.x, l.y), {l.z}, nearness(p) * nearness(p));
   }
   fit.coefficient = system.solve()[0];
   Misfit misfit;
   for (const Vec3 p : around) {
     const Vec3 l = fit.frame.local(p);
-    const double w = weight(p), left = l.z - value(fit.coefficient, terms(l.x, l.y)),
+    const double w = nearness(p), left = l.z - value(fit.coefficient, terms(l.x, l.y)),
                  curved = l.z - fit.coefficient[0] * l.x - fit.coefficient[1] * l.y;
     misfit.left += w * left * left;
     misfit.curved += w * curved * curved;
@@ -160,14 +164,14 @@ Vec3 CurveFit::at(Vec3 p) const {
 CurveFit fit_curve(Vec3 vertex, Vec3 tangent, std::span<const Vec3> around) {
   const Frame across = frame_at(vertex, tangent);
   CurveFit fit{{vertex, tangent, across.u, across.v}, {}, {}, false};
-  const std::size_t unknowns = affordable(around.size(), {3, 2});
+  const std::size_t unknowns = affordable(around.size(), {4, 3, 2});
   if (unknowns == 0) return fit;
-  const double mean = mean_squared_distance(vertex, around);
-  const auto weight = [&](Vec3 p) { return 1 / (squared_length(p - vertex) + kNear * mean); };
-  LeastSquares<3, 2> system(unknowns);
+  const double near = near_distance(vertex, around);
+  const auto nearness = [&](Vec3 p) { return 1 / (squared_length(p - vertex) + kNear * near); };
+  LeastSquares<4, 2> system(unknowns);
   for (const Vec3 p : around) {
     const Vec3 l = fit.frame.local(p);
-    system.add(terms(l.x), {l.y, l.z}, weight(p));
+    system.add(terms(l.x), {l.y, l.z}, nearness(p) * nearness(p));
   }
   const auto solution = system.solve();
   fit.in_v = solution[0];
@@ -176,7 +180,7 @@ CurveFit fit_curve(Vec3 vertex, Vec3 tangent, std::span<const Vec3> around) {
   for (const Vec3 p : around) {
     const Vec3 l = fit.frame.local(p);
     const auto t = terms(l.x);
-    const double w = weight(p), left_v = l.y - value(fit.in_v, t), left_n = l.z - value(fit.in_n, t);
+    const double w = nearness(p), left_v = l.y - value(fit.in_v, t), left_n = l.z - value(fit.in_n, t);
     const double curved_v = l.y - fit.in_v[0] * l.x, curved_n = l.z - fit.in_n[0] * l.x;
     misfit.left += w * (left_v * left_v + left_n * left_n);
     misfit.curved += w * (curved_v * curved_v + curved_n * curved_n);

@@ -64,11 +64,4 @@ TetEdges add_straight_mid_nodes(TetMesh& mesh) {
   return edges;
 }
 
-QuadraticTet nodes_of(const TetMesh& mesh, TetIndex t) {
-  QuadraticTet nodes;
-  for (std::size_t i = 0; i < 4; ++i) nodes[i] = mesh.points[mesh.tets[t][i]];
-  for (std::size_t e = 0; e < 6; ++e) nodes[4 + e] = mesh.points[mesh.mid_nodes[t][e]];
-  return nodes;
-}
-
 }  // namespace octafront::curved

@@ -2,8 +2,6 @@
 
 #include <octafront/tet_mesh.h>
 
-#include "geometry/quadratic_tet.h"
-
 #include <cstdint>
 #include <vector>
 
@@ -22,8 +20,5 @@ struct TetEdges {
 
 /// Gives a linear mesh straight mid-side nodes: the one of edge e is points[corners + e].
 TetEdges add_straight_mid_nodes(TetMesh& mesh);
-
-/// The element as the predicates want it.
-QuadraticTet nodes_of(const TetMesh& mesh, TetIndex t);
 
 }  // namespace octafront::curved

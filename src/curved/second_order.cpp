@@ -11,9 +11,12 @@
 #include "curved/smooth_surface.h"
 #include "geometry/measures.h"
 #include "mesh/features.h"
+#include "mesh/quadratic_nodes.h"
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <vector>
 
 #include <fmt/core.h>
 
@@ -28,7 +31,7 @@ struct Judged {
 };
 
 Judged judge(const TetMesh& mesh, TetIndex t) {
-  const QuadraticTet nodes = curved::nodes_of(mesh, t);
+  const QuadraticTet nodes = quadratic_nodes(mesh, t);
   const auto coefficients = jacobian_coefficients(nodes);
   const double least = *std::min_element(coefficients.begin(), coefficients.end());
   const double straight = six_volumes(nodes[0], nodes[1], nodes[2], nodes[3]);
@@ -78,6 +81,16 @@ SecondOrderSummary curve_to_surface(TetMesh& mesh, const std::vector<Edge>& shar
   curved::bend_edges(mesh, edges, bends.edges, summary, context);
   prove(mesh, summary, context);
   return summary;
+}
+
+double curved_volume(const TetMesh& mesh) {
+  std::vector<double> volumes(mesh.tets.size());
+  parallel_for(volumes.size(), [&](std::size_t t) {
+    const auto coefficients = jacobian_coefficients(quadratic_nodes(mesh, static_cast<TetIndex>(t)));
+    // The integral of a polynomial over the unit tetrahedron is the mean of its coefficients over six.
+    volumes[t] = std::accumulate(coefficients.begin(), coefficients.end(), 0.0) / (6.0 * coefficients.size());
+  });
+  return std::accumulate(volumes.begin(), volumes.end(), 0.0);
 }
 
 SecondOrderSummary add_straight_edges(TetMesh& mesh, const RunContext& context) {

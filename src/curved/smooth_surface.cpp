@@ -15,9 +15,9 @@ namespace {
 constexpr double kSteepest = 0.5;  // cosine
 // A foot must not be on the other side of a thin wall, or around a sharp edge.
 constexpr double kSameSide = 0.5;  // cosine
-// Two rings of a triangulation have eighteen vertices; where features leave fewer than this, a third one is taken.
-constexpr std::size_t kEnough = 14;
-constexpr int kRings = 2, kMostRings = 3;
+// Three rings of a triangulation have 36 vertices, enough for a polynomial of degree four; where those do not look
+// smooth, two of them have 18 and may.
+constexpr int kRings = 3;
 // A vertex in which a hundred triangles meet would cost too much.
 constexpr std::size_t kMostTriangles = 200;
 // Vertices of a curve to either side.
@@ -47,6 +47,10 @@ std::array<double, 3> barycentric(Vec3 p, Vec3 a, Vec3 b, Vec3 c) {
   if (area == 0) return {1, 0, 0};
   const double in_b = dot(cross(p - a, c - a), n) / area, in_c = dot(cross(b - a, p - a), n) / area;
   return {1 - in_b - in_c, in_b, in_c};
+}
+
+bool contains(const std::vector<std::uint32_t>& list, std::uint32_t item) {
+  return std::find(list.begin(), list.end(), item) != list.end();
 }
 
 /// `smooth` where it is near enough to p.
@@ -170,30 +174,30 @@ SurfaceFit SmoothSurface::make_fit(Wedge wedge) const {
 
   std::vector<std::uint32_t> triangles;
   std::vector<Wedge> reached{wedge};
-  std::vector<VertexIndex> vertices;
-  std::size_t from = 0;  // of `reached`: where the newest ring begins
-  for (int ring = 0; ring < kMostRings && (ring < kRings || vertices.size() < kEnough); ++ring) {
+  const VertexIndex center = corner_vertex(wedge);
+  std::vector<VertexIndex> vertices{center};
+  std::size_t from = 0, nearer = 1;  // where the newest ring begins in `reached`, in `vertices`
+  for (int ring = 0; ring < kRings; ++ring) {
     const std::size_t to = reached.size();
+    nearer = vertices.size();
     for (; from < to; ++from)
       for (const std::uint32_t corner : corners_of_[reached[from]]) {
         const std::uint32_t t = corner / 3;
-        if (triangles.size() >= kMostTriangles || !is_seen(t)) continue;
-        if (std::find(triangles.begin(), triangles.end(), t) != triangles.end()) continue;
+        if (triangles.size() >= kMostTriangles || contains(triangles, t) || !is_seen(t)) continue;
         triangles.push_back(t);
         for (std::uint32_t c = 3 * t; c < 3 * t + 3; ++c) {
-          if (std::find(reached.begin(), reached.end(), wedge_of_[c]) != reached.end()) continue;
+          if (contains(reached, wedge_of_[c])) continue;
           reached.push_back(wedge_of_[c]);
-          const VertexIndex v = corner_vertex(c);
-          if (std::find(vertices.begin(), vertices.end(), v) == vertices.end()) vertices.push_back(v);
+          if (!contains(vertices, corner_vertex(c))) vertices.push_back(corner_vertex(c));
         }
       }
   }
-  const VertexIndex center = corner_vertex(wedge);
-  std::erase(vertices, center);
-  std::vector<Vec3> around;
-  around.reserve(vertices.size());
-  for (const VertexIndex v : vertices) around.push_back(surface_.points[v]);
-  return fit_surface(surface_.points[center], normal, around);
+  std::vector<Vec3> points;
+  points.reserve(vertices.size());
+  for (const VertexIndex v : vertices) points.push_back(surface_.points[v]);
+  const std::span<const Vec3> around(points.begin() + 1, points.end());
+  const SurfaceFit fit = fit_surface(points.front(), normal, around);
+  return fit.trusted ? fit : fit_surface(points.front(), normal, around.first(nearer - 1));
 }
 
 std::vector<Vec3> SmoothSurface::points_along(VertexIndex from, std::uint32_t edge) const {

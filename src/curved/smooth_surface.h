@@ -2,12 +2,13 @@
 
 // The smooth surface and the smooth feature curves that an input of triangles stands for.
 //
-// At each vertex, and on each side of a feature edge for itself, a cubic height over the tangent plane is fitted to the
-// two rings of vertices around; a point of a triangle lies where the fits of its three corners say, averaged by its
-// barycentric coordinates (weighted averaging of local fittings: X. Jiao, D. Wang, "Reconstructing high-order surfaces
-// for meshing", 2012). The surface passes through the vertices of the input; distances to a smooth surface fall with
-// the fourth power of the input's edge length, where flat triangles have the second. Feature curves are done likewise
-// with the vertices along them. Where the vertices do not look like those of a smooth surface it is the input's own.
+// At each vertex, and on each side of a feature edge for itself, a height over the tangent plane, a polynomial of
+// degree four, is fitted to the three rings of vertices around; a point of a triangle lies where the fits of its three
+// corners say, averaged by its barycentric coordinates (weighted averaging of local fittings: X. Jiao, D. Wang,
+// "Reconstructing high-order surfaces for meshing", 2012). The surface passes through the vertices of the input;
+// distances to a smooth surface fall with the fifth power of the input's edge length, where flat triangles have the
+// second. Feature curves are done likewise with the vertices along them. Where the vertices do not look like those of a
+// smooth surface it is the input's own.
 
 #include <octafront/surface_mesh.h>
 

@@ -126,6 +126,14 @@ std::array<double, 20> jacobian_coefficients(const QuadraticTet& nodes) {
   return coefficients;
 }
 
+double jacobian_determinant(const QuadraticTet& q, const std::array<double, 4>& place) {
+  Vec3 column[3];
+  for (int c = 1; c < 4; ++c)
+    for (int i = 0; i < 4; ++i)
+      column[c - 1] += place[static_cast<std::size_t>(i)] * (4 * (q[kNode[i][c]] - q[kNode[i][0]]) - (q[c] - q[0]));
+  return dot(column[0], cross(column[1], column[2]));
+}
+
 bool has_positive_jacobian(const QuadraticTet& nodes) {
   const Terms terms = values(nodes), bounds = magnitudes(nodes);
   bool positive = true;

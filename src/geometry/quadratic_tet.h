@@ -18,6 +18,9 @@ using QuadraticTet = std::array<Vec3, 10>;
 /// In the order of indices i <= j <= k, the last one running fastest. About .2 microseconds.
 std::array<double, 20> jacobian_coefficients(const QuadraticTet& nodes);
 
+/// The determinant at a place, by its barycentric coordinates, rounded.
+double jacobian_determinant(const QuadraticTet& nodes, const std::array<double, 4>& place);
+
 /// True if all twenty coefficients are positive, by exact sign: the element is valid, as its coordinates stand. Range
 /// of coordinates as in predicates.h. Rounding is asked first; about .3 microseconds where it is sure, milliseconds
 /// where it is not.

@@ -1,9 +1,11 @@
 #include <octafront/run_context.h>
 #include <octafront/validity.h>
 
+#include "core/parallel.h"
 #include "geometry/measures.h"
 #include "geometry/predicates.h"
 #include "mesh/face_table.h"
+#include "mesh/quadratic_nodes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -164,6 +166,22 @@ std::optional<std::string> sign_defect(const TetMesh& mesh) {
   return std::nullopt;
 }
 
+std::optional<std::string> jacobian_defect(const TetMesh& mesh) {
+  if (!mesh.is_second_order()) return std::nullopt;
+  std::vector<char> good(mesh.tets.size());
+  parallel_for(good.size(), [&](std::size_t t) {
+    good[t] = has_positive_jacobian(quadratic_nodes(mesh, static_cast<TetIndex>(t)));
+  });
+  const auto bad = std::find(good.begin(), good.end(), 0);
+  if (bad == good.end()) return std::nullopt;
+  const auto t = static_cast<TetIndex>(bad - good.begin());
+  const auto nodes = quadratic_nodes(mesh, t);
+  const auto coefficients = jacobian_coefficients(nodes);
+  return fmt::format("the Jacobian of tetrahedron {} at {} is not proven positive: its least coefficient is {:.3g}", t,
+                     place(centroid(nodes[0], nodes[1], nodes[2], nodes[3])),
+                     *std::min_element(coefficients.begin(), coefficients.end()));
+}
+
 // What a face is of, packed into a number of the face table: faces of tets sort before those of the boundary list.
 struct FaceOwner {
   std::uint32_t number;
@@ -301,7 +319,7 @@ std::optional<std::string> first_defect(const TetMesh& mesh, const RunContext& c
   if (std::max(mesh.tets.size(), mesh.boundary.size() + mesh.interfaces.size()) >= FaceOwner::kMostOwners)
     return "a mesh of 2^30 tetrahedra or more cannot be checked";
   for (const auto check : {point_defect, array_defect, set_defect, sign_defect, face_defect, curve_defect,
-                           mid_node_defect, volume_defect}) {
+                           mid_node_defect, jacobian_defect, volume_defect}) {
     context.check();
     if (auto defect = check(mesh)) return defect;
   }

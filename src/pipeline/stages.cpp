@@ -280,7 +280,7 @@ void describe(const TetMesh& mesh, Report& report) {
   report.points = mesh.points.size();
   report.tets = mesh.tets.size();
   report.boundary_faces = mesh.boundary.size();
-  report.volume = enclosed_volume(boundary_of(mesh));
+  report.volume = mesh.is_second_order() ? curved_volume(mesh) : enclosed_volume(boundary_of(mesh));
   report.quality = summarize_quality(mesh);
   report.hash = mesh_hash(mesh);
 }
