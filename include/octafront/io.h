@@ -93,6 +93,15 @@ MeshFile read_mesh_file(const std::string& file, const RunContext& context = {})
 /// The mesh alone.
 TetMesh read_mesh(const std::string& file, const RunContext& context = {});
 
+/// A region, patch, curve or set of a mesh, for lists.
+struct GroupInfo {
+  std::string origin;  ///< "region", "patch", "curve", "nodes", "edges", "faces", "elements"
+  std::string name;    ///< made from the number where it has none
+  std::uint64_t size = 0;
+};
+/// All that have members.
+std::vector<GroupInfo> groups_of(const TetMesh& mesh);
+
 /// What becomes of a numbered kind of part, which may have names, in a format.
 enum class Keeps { kNothing, kNumbers, kNames, kNodeSets };
 

@@ -60,11 +60,12 @@ AtomicFile& MeshOutput::file() {
   return *files_.emplace_back(std::make_unique<AtomicFile>(target_, context_));
 }
 
-AtomicFile& MeshOutput::sibling(const std::string& ending, std::string* name) {
-  fs::path file = target_;
-  file.replace_extension(ending);
-  if (name) *name = file.filename().string();
-  return *files_.emplace_back(std::make_unique<AtomicFile>(file, context_));
+AtomicFile& MeshOutput::sibling(const std::string& ending) {
+  return beside(fs::path(target_).replace_extension(ending).filename().string());
+}
+
+AtomicFile& MeshOutput::beside(const std::string& name) {
+  return *files_.emplace_back(std::make_unique<AtomicFile>(target_.parent_path() / name, context_));
 }
 
 fs::path MeshOutput::path_for_library(const std::string& ending) {

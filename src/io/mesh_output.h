@@ -24,8 +24,10 @@ class MeshOutput {
   const RunContext& context() const { return context_; }
   /// The file that was asked for.
   AtomicFile& file();
-  /// Another one beside it, with this ending instead; what the file is called, without folder.
-  AtomicFile& sibling(const std::string& ending, std::string* name = nullptr);
+  /// Another one beside it, with this ending instead.
+  AtomicFile& sibling(const std::string& ending);
+  /// Another one beside it, of that name.
+  AtomicFile& beside(const std::string& name);
   /// A place for a library that writes a file by itself: of the target's name in the end, or of its sibling's.
   std::filesystem::path path_for_library(const std::string& ending = {});
   /// A new folder that takes the target's place in the end.

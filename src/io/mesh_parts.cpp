@@ -1,5 +1,7 @@
 #include "io/mesh_parts.h"
 
+#include <octafront/io.h>
+
 #include "io/boundary.h"
 #include "mesh/face_table.h"
 
@@ -187,3 +189,20 @@ std::vector<VertexIndex> MeshParts::nodes_of(const Part& part) const {
 }
 
 }  // namespace octafront::io
+
+namespace octafront {
+
+std::vector<GroupInfo> groups_of(const TetMesh& mesh) {
+  constexpr std::array kOrigins{"region", "patch", "curve"};
+  constexpr std::array kKinds{"nodes", "edges", "faces", "elements"};
+  std::vector<GroupInfo> all;
+  for (const io::Part& part : io::MeshParts(mesh, true).parts()) {
+    const bool is_set = part.origin == io::Part::Origin::kSet;
+    all.push_back(
+        {is_set ? kKinds[static_cast<std::size_t>(part.kind)] : kOrigins[static_cast<std::size_t>(part.origin)],
+         part.name, part.members.size()});
+  }
+  return all;
+}
+
+}  // namespace octafront
