@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <utility>
 
 namespace octafront::io {
@@ -143,8 +144,10 @@ Combinations combinations(const MeshParts& mesh, NamedSet::Kind kind) {
     }
   }
   Combinations out;
-  std::vector<std::uint32_t> number(parts.size(), kNone);
-  for (std::size_t c = 0; c < parts.size(); ++c) {
+  std::vector<std::uint32_t> order(parts.size()), number(parts.size(), kNone);
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return parts[a] < parts[b]; });
+  for (const std::uint32_t c : order) {
     if (members[c] == 0 || (c == 0 && kind == NamedSet::Kind::kNodes)) continue;
     number[c] = static_cast<std::uint32_t>(out.parts.size());
     out.parts.push_back(std::move(parts[c]));

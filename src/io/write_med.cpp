@@ -35,7 +35,7 @@ constexpr std::array kCells{CellType{Kind::kElements, {"TE4", "T10"}, {304, 310}
 class MedWriter {
  public:
   MedWriter(MeshOutput& out, const MeshParts& mesh)
-      : file_(out.path_for_library(), out.target().string(), out.context()), mesh_(mesh) {}
+      : file_(out.path_for_library(), out.target().string(), out.context(), true), mesh_(mesh) {}
 
   void write() {
     file_.group("/INFOS_GENERALES");

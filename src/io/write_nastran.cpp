@@ -99,7 +99,7 @@ class NastranWriter {
     text_.field(8, id).field(8, property);
     constexpr std::size_t kInFirstLine = 6, kInLine = 8;
     for (std::size_t k = 0; k < nodes.size(); ++k) {
-      if (k == kInFirstLine || (k > kInFirstLine && (k - kInFirstLine) % kInLine == 0)) text_ << "\n+       ";
+      if (k == kInFirstLine || (k > kInFirstLine && (k - kInFirstLine) % kInLine == 0)) text_ << "+\n+       ";
       text_.field(8, std::uint64_t{nodes[k]} + 1);
     }
     text_ << '\n';

@@ -21,9 +21,14 @@ constexpr std::array<std::uint8_t, 10> kTet10{0, 4, 1, 5, 2, 6, 7, 8, 9, 3};
 constexpr std::array<std::uint8_t, 6> kTriangle6{0, 3, 1, 4, 2, 5};
 constexpr std::array<std::uint8_t, 3> kBeam3{0, 2, 1};
 
+/// Others end a name at the first blank.
+constexpr NameRules kNames{
+    .longest = 40, .also = "_-.:+<>&\"'()[]{}/*=#%$!?@~^|,;", .letter_first = false, .ignores_case = false};
+
 class UnvWriter {
  public:
-  UnvWriter(MeshOutput& out, const MeshParts& mesh) : text_(out.file()), mesh_(mesh) {}
+  UnvWriter(MeshOutput& out, const MeshParts& mesh)
+      : text_(out.file()), mesh_(mesh), names_(legal_names(out, mesh, kNames)) {}
 
   void write() {
     open(2411);
@@ -91,7 +96,7 @@ class UnvWriter {
     const std::uint64_t first = part.kind == Kind::kFaces ? first_face() : part.kind == Kind::kEdges ? first_edge() : 1;
     text_.field(10, number) << "         0         0         0         0         0         0";
     text_.field(10, std::uint64_t{part.members.size()}) << '\n';
-    text_ << one_line(part.name) << '\n';
+    text_ << names_[number - 1] << '\n';
     for (std::size_t i = 0; i < part.members.size(); ++i) {
       text_.field(10, type).field(10, first + part.members[i]) << "         0         0";
       if (i % 2 == 1 || i + 1 == part.members.size()) text_ << '\n';
@@ -100,6 +105,7 @@ class UnvWriter {
 
   TextWriter text_;
   const MeshParts& mesh_;
+  std::vector<std::string> names_;
   std::array<VertexIndex, 10> tet_;
   std::array<VertexIndex, 6> face_;
   std::array<VertexIndex, 3> edge_;

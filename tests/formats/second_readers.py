@@ -227,3 +227,163 @@ def openfoam(folder):
             labels = [int(w) for w in re.search(r"Labels List<label> \d+\s*\(([^)]*)\)", block).group(1).split()]
             parts[kind, name] = [faces[f] for f in labels] if kind == "faces" else labels
     return {"points": points, "tets": tets, "parts": parts}
+
+
+# ---- MED by libmed (python3-med): its own order of nodes, positive where ours is
+
+MED_TET10 = [0, 2, 1, 3, 6, 5, 4, 7, 9, 8]
+
+
+def med(file):
+    from med.medenum import (MED_ACC_RDONLY, MED_CELL, MED_CONNECTIVITY, MED_COORDINATE, MED_FULL_INTERLACE, MED_NO_DT,
+                             MED_NO_IT, MED_NODAL, MED_NODE, MED_NONE, MED_SEG2, MED_SEG3, MED_TETRA4, MED_TETRA10, MED_TRIA3,
+                             MED_TRIA6)
+    from med.medfamily import MEDCHAR, MEDfamilyInfo, MEDnFamily, MEDnFamilyGroup
+    from med.medfile import MEDfileClose, MEDfileOpen
+    from med.medmesh import (MEDFLOAT, MEDINT, MEDmeshElementConnectivityRd, MEDmeshEntityFamilyNumberRd, MEDmeshInfo,
+                             MEDmeshNodeCoordinateRd, MEDmeshnEntity)
+    f = MEDfileOpen(str(file), MED_ACC_RDONLY)
+    info = MEDmeshInfo(f, 1)
+    name = info[0] if isinstance(info, (list, tuple)) and isinstance(info[0], str) else "mesh"
+
+    def count(entity, kind, what=MED_CONNECTIVITY):
+        r = MEDmeshnEntity(f, name, MED_NO_DT, MED_NO_IT, entity, kind, what, MED_NODAL)
+        return r[0] if isinstance(r, (list, tuple)) else r
+
+    n = count(MED_NODE, MED_NONE, MED_COORDINATE)
+    xyz = MEDFLOAT(3 * n)
+    MEDmeshNodeCoordinateRd(f, name, MED_NO_DT, MED_NO_IT, MED_FULL_INTERLACE, xyz)
+    points = np.array(xyz).reshape(-1, 3)
+    groups = {}
+    for i in range(1, MEDnFamily(f, name) + 1):
+        k = MEDnFamilyGroup(f, name, i)
+        if k == 0:
+            continue
+        chars = MEDCHAR(80 * k + 1)
+        number = MEDfamilyInfo(f, name, i, chars)[1]
+        text = "".join(chars)
+        groups[number] = [text[80 * j:80 * (j + 1)].split("\0")[0].rstrip() for j in range(k)]
+    parts = {}
+
+    def families(entity, kind, size, rows, label):
+        numbers = MEDINT(size)
+        try:
+            MEDmeshEntityFamilyNumberRd(f, name, MED_NO_DT, MED_NO_IT, entity, kind, numbers)
+        except Exception:
+            return
+        for i, number in enumerate(numbers):
+            for group in groups.get(number, []):
+                parts.setdefault((label, group), []).append(rows[i])
+
+    tets = []
+    for kind, each, label in ((MED_TETRA4, 4, "elements"), (MED_TETRA10, 10, "elements"), (MED_TRIA3, 3, "faces"),
+                              (MED_TRIA6, 6, "faces"), (MED_SEG2, 2, "edges"), (MED_SEG3, 3, "edges")):
+        size = count(MED_CELL, kind)
+        if size <= 0:
+            continue
+        flat = MEDINT(each * size)
+        MEDmeshElementConnectivityRd(f, name, MED_NO_DT, MED_NO_IT, MED_CELL, kind, MED_NODAL, MED_FULL_INTERLACE, flat)
+        rows = (np.array(flat) - 1).reshape(size, each)
+        if label == "elements":
+            # MED draws the tetrahedron with its second and third corner exchanged.
+            tets = rows[:, MED_TET10[:each]]
+            rows = range(size)
+        families(MED_CELL, kind, size, list(rows), label)
+    families(MED_NODE, MED_NONE, n, range(n), "nodes")
+    MEDfileClose(f)
+    return {"points": points, "tets": tets, "parts": parts}
+
+
+# ---- XDMF: three light files, one of values
+
+def xdmf(file):
+    import h5py
+    points, tets, parts = None, None, {}
+    for further in ("", "_patches", "_curves"):
+        root = xml.parse(file.with_name(file.stem + further + ".xdmf")).getroot()
+        for grid in root.iter("Grid"):
+            def values(item):
+                name, path = item.text.strip().split(":")
+                found = h5py.File(file.with_name(name))[path][()]
+                assert list(found.shape) == [int(n) for n in item.get("Dimensions").split()]
+                return found
+            topology = grid.find("Topology")
+            rows = values(topology.find("DataItem"))
+            kind, prefix = {"Tetrahedron": ("elements", "region"), "Tetrahedron_10": ("elements", "region"),
+                            "Triangle": ("faces", "patch"), "Triangle_6": ("faces", "patch"),
+                            "Polyline": ("edges", "curve"), "Edge_3": ("edges", "curve")}[topology.get("TopologyType")]
+            if kind == "elements":
+                points, tets = values(grid.find("Geometry").find("DataItem")), rows
+            take = lambda at: [rows[i] for i in at] if kind == "faces" else list(at)
+            names = {i.get("Name"): i.get("Value") for i in grid.findall("Information")}
+            for attribute in grid.findall("Attribute"):
+                name, found = attribute.get("Name"), values(attribute.find("DataItem")).ravel()
+                if name == prefix:
+                    for number in np.unique(found):
+                        label = names.get(f"{prefix} {number}", f"{prefix} {number}")
+                        parts[kind, label] = take(np.flatnonzero(found == number))
+                else:
+                    of, label = name.split(" ", 1)
+                    parts[of, label] = list(np.flatnonzero(found)) if of == "nodes" else take(np.flatnonzero(found))
+    return {"points": points, "tets": tets, "parts": parts}
+
+
+# ---- CGNS: sections by the SIDS; one zone
+
+def cgns_name(name):
+    return "".join(c if c.isalnum() or c in " _-.+#()[]{}<>=&%$!?*'\"" else "_" for c in name)[:32]
+
+
+def cgns(file):
+    import h5py
+    zone = h5py.File(file)["Base/Zone"]
+    value = lambda node: node[" data"][()]
+    points = np.column_stack([value(zone["GridCoordinates/Coordinate" + a]) for a in "XYZ"])
+    nodes = {10: 4, 11: 10, 5: 3, 6: 6, 3: 2, 4: 3}
+    elements, tets, parts = {}, [], {}
+    for name, node in zone.items():
+        if not isinstance(node, h5py.Group) or node.attrs.get("label", b"").decode().strip("\0") != "Elements_t":
+            continue
+        kind = int(value(node)[0])
+        first, last = value(node["ElementRange"])
+        rows = value(node["ElementConnectivity"]).reshape(-1, nodes[kind]) - 1
+        assert len(rows) == last - first + 1
+        if kind >= 10:
+            parts["elements", name] = list(range(first - 1, last))
+            elements.update(zip(range(first, last + 1), rows))
+        else:
+            elements.update(zip(range(first, last + 1), rows))
+    tets = [row for number, row in sorted(elements.items()) if len(row) in (4, 10)]
+    for name, condition in zone["ZoneBC"].items():
+        if isinstance(condition, h5py.Group):
+            first, last = value(condition["PointRange"]).ravel()
+            parts["faces", name] = [elements[i] for i in range(first, last + 1)]
+    return {"points": points, "tets": tets, "parts": parts}
+
+
+# ---- binary MEDIT, version 3: keyword, place of the next one, count, values
+
+def medit_binary(file, expected):
+    data = file.read_bytes()
+    integer = lambda at: int(np.frombuffer(data, "<i4", 1, at)[0])
+    assert integer(0) == 1 and integer(4) == 3
+    at, sections = 8, {}
+    while True:
+        code, following = integer(at), int(np.frombuffer(data, "<i8", 1, at + 4)[0])
+        if code == 54:
+            break
+        sections[code] = (at + 16, integer(at + 12))
+        at = following
+    def rows(code, width):
+        start, count = sections[code]
+        return np.frombuffer(data, "<i4", count * width, start).reshape(count, width)
+    start, count = sections[4]
+    vertices = np.frombuffer(data, [("x", "<f8", 3), ("ref", "<i4")], count, start)
+    parts = {}
+    for code, width, kind, origin in ((30, 11, "elements", "region"), (24, 7, "faces", "patch"), (25, 4, "edges", "curve")):
+        found = rows(code, width)
+        for part in expected["parts"]:
+            if part["origin"] == origin:
+                at = np.flatnonzero(found[:, -1] == part["number"] + 1)
+                parts[kind, part["name"]] = list(found[at, :-1] - 1) if kind == "faces" else list(at)
+    return {"points": vertices["x"], "tets": rows(30, 11)[:, :-1] - 1, "parts": parts}
