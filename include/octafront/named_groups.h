@@ -26,6 +26,10 @@ struct GroupRule {
 /// such patch, nothing found (then no set is added); else an empty string.
 std::string add_group(TetMesh& mesh, const GroupRule& rule);
 
+/// Adds the lines along which patches of the boundary meet as curves: one for each set of patches that meet, called
+/// "A|B" where all of them have names. Does nothing to a mesh that has curves already.
+void add_patch_curves(TetMesh& mesh);
+
 /// Gives `mesh` the interfaces, curves and sets of `before`, an earlier state of it, as far as their faces, edges and
 /// nodes are still there: nodes at the same coordinates. What is lost is said, in sentences. Sets of elements are kept
 /// if no element changed.

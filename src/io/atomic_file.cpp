@@ -184,12 +184,16 @@ void AtomicFile::copy_to_named() {
   if (::fsync(fd_) != 0) fail("cannot be written to the disk", errno);
 }
 
-void AtomicFile::commit() {
+void AtomicFile::flush_to_disk() {
   flush();
+  if (::fsync(fd_) != 0 && errno != EINVAL && errno != EROFS) fail("cannot be written to the disk", errno);
+}
+
+void AtomicFile::commit() {
+  flush_to_disk();
   // A new file has the mode that the user's mask leaves; an old one keeps its own, which the mask must not touch.
   struct stat status {};
   if (::stat(target_.c_str(), &status) == 0) ::fchmod(fd_, status.st_mode & 07777);
-  if (::fsync(fd_) != 0 && errno != EINVAL && errno != EROFS) fail("cannot be written to the disk", errno);
   if (temporary_.empty()) give_name();
   const int closing = fd_;
   fd_ = -1;

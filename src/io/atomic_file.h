@@ -30,6 +30,8 @@ class AtomicFile {
   void restart(std::uint64_t position);
   /// Replaces bytes written before.
   void overwrite(std::uint64_t position, const void* bytes, std::size_t size);
+  /// Writes all to the disk; what can fail for lack of room has failed then.
+  void flush_to_disk();
   void commit();
 
   /// As given, for messages.

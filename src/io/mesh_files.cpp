@@ -109,6 +109,7 @@ void check_mesh_target(const std::string& file, const std::string& name) {
 
 std::vector<std::string> write_mesh(const std::string& file, const TetMesh& mesh, const RunContext& context,
                                     const std::string& name) {
+  check_mesh_target(file, name);
   const io::Format& format = mesh_format(file, name);
   const io::MeshParts parts(mesh, !format.info.holds.second_order);
   io::MeshOutput out(file, context);

@@ -89,6 +89,8 @@ fs::path MeshOutput::folder() {
 
 void MeshOutput::commit() {
   context_.check();
+  // All that may fail for lack of room comes before the first name changes.
+  for (const auto& file : files_) file->flush_to_disk();
   for (Pending& p : pending_) {
     put_in_place(p.temporary, p.final);
     p.temporary.clear();

@@ -199,7 +199,8 @@ std::vector<GroupInfo> groups_of(const TetMesh& mesh) {
   constexpr std::array kOrigins{"region", "patch", "curve"};
   constexpr std::array kKinds{"nodes", "edges", "faces", "elements"};
   std::vector<GroupInfo> all;
-  for (const io::Part& part : io::MeshParts(mesh, true).parts()) {
+  const io::MeshParts parts(mesh, true);
+  for (const io::Part& part : parts.parts()) {
     const bool is_set = part.origin == io::Part::Origin::kSet;
     all.push_back(
         {is_set ? kKinds[static_cast<std::size_t>(part.kind)] : kOrigins[static_cast<std::size_t>(part.origin)],

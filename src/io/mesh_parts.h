@@ -105,8 +105,8 @@ class MeshParts {
   mutable std::vector<Side> sides_;
 };
 
-/// Elements of one kind by the parts that they are in: every combination that occurs once, in order. Formats whose elements have
-/// one place each (entities, families) name those places by several parts.
+/// Elements of one kind by the parts that they are in: every combination that occurs once, in order. Formats whose
+/// elements have one place each (entities, families) name those places by several parts.
 struct Combinations {
   std::vector<std::vector<std::uint32_t>> parts;  ///< of each combination: indices into MeshParts::parts(), ascending
   Groups<> members;                               ///< its elements; nodes in no set are in none

@@ -1,10 +1,12 @@
 #include <octafront/named_groups.h>
 
+#include "mesh/edge_table.h"
 #include "mesh/face_table.h"
 
 #include <algorithm>
 #include <charconv>
 #include <cstring>
+#include <map>
 #include <span>
 #include <unordered_map>
 
@@ -246,6 +248,30 @@ std::string add_group(TetMesh& mesh, const GroupRule& rule) {
     return fmt::format("group \"{}\": the mesh has no patch {}{}", rule.name, unknown,
                        is_empty ? "; it is left out" : "");
   return is_empty ? fmt::format("group \"{}\": nothing lies there; it is left out", rule.name) : std::string();
+}
+
+void add_patch_curves(TetMesh& mesh) {
+  if (mesh.patch.empty() || !mesh.curve_edges.empty()) return;
+  const EdgeTable table = make_edge_table(mesh.points.size(), mesh.boundary);
+  std::map<std::vector<std::uint32_t>, std::uint32_t> curve_of;
+  for (std::size_t e = 0; e < table.size(); ++e) {
+    std::vector<std::uint32_t> patches;
+    for (const HalfEdge h : table.uses(e)) patches.push_back(mesh.patch[h / 3]);
+    std::sort(patches.begin(), patches.end());
+    patches.erase(std::unique(patches.begin(), patches.end()), patches.end());
+    if (patches.size() < 2) continue;
+    mesh.curve_edges.push_back(table.edges[e]);
+    mesh.curve.push_back(curve_of.try_emplace(patches, static_cast<std::uint32_t>(curve_of.size())).first->second);
+  }
+  const auto name_of = [&](std::uint32_t patch) {
+    return patch < mesh.patch_names.size() ? mesh.patch_names[patch] : std::string();
+  };
+  mesh.curve_names.assign(curve_of.size(), {});
+  for (const auto& [patches, curve] : curve_of) {
+    if (std::any_of(patches.begin(), patches.end(), [&](std::uint32_t p) { return name_of(p).empty(); })) continue;
+    for (const std::uint32_t p : patches)
+      mesh.curve_names[curve] += (mesh.curve_names[curve].empty() ? "" : "|") + name_of(p);
+  }
 }
 
 std::vector<std::string> carry_groups(const TetMesh& before, TetMesh& mesh) {

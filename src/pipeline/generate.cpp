@@ -1,4 +1,5 @@
 #include <octafront/generate.h>
+#include <octafront/named_groups.h>
 
 #include "pipeline/methods.h"
 #include "pipeline/pipeline.h"
@@ -13,6 +14,7 @@ Result generate(const SurfaceMesh& surface, const Options& options, const RunCon
   Filled filled = fill_to_target(input, sizes, run);
   improve_elements(input, filled, run);
   raise_order(input, filled, run);
+  add_patch_curves(filled.mesh);
   check_result(filled.mesh, &filled.boundary.surface, run);
   describe(filled.mesh, run.report);
   describe_sizes(filled.mesh, filled.boundary.sizes, run.report);

@@ -48,7 +48,7 @@ class CommandLine(unittest.TestCase):
         return sorted(p.name for p in self.dir.iterdir())
 
     def test_meshes_to_every_format_and_reports(self):
-        for ending in ("vtu", "msh", "mesh"):
+        for ending in ("vtu", "msh", "mesh", "meshb", "vtk", "inp", "bdf", "unv", "vol", "ele"):
             out, report = self.dir / f"part.{ending}", self.dir / "report.json"
             done = self.run_cli("mesh", self.part, "-o", out, "--size", 0.2, "--json", report)
             self.assertIn("tetrahedra", done.stdout)
@@ -66,7 +66,7 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(a.read_bytes(), b.read_bytes())
 
     def test_improves_meshes_of_every_format(self):
-        for ending in ("vtu", "msh", "mesh"):
+        for ending in ("vtu", "msh", "mesh", "meshb", "vtk", "inp", "bdf", "unv", "vol", "ele"):
             start, out, report = self.dir / f"start.{ending}", self.dir / "better.vtu", self.dir / "report.json"
             self.run_cli("mesh", self.part, "-o", start, "--size", 0.2, "--improve", "none")
             done = self.run_cli("improve", start, "-o", out, "--surface", self.part, "--json", report)
@@ -127,7 +127,7 @@ class CommandLine(unittest.TestCase):
     def test_patches_follow_to_the_mesh(self):
         self.run_cli("mesh", self.part, "-o", self.dir / "o.msh", "--size", 0.3, "--patches")
         text = (self.dir / "o.msh").read_bytes()
-        counts = struct.pack("<4q", 0, 0, 4, 1)  # points, curves, surfaces, volumes
+        counts = struct.pack("<4q", 0, 6, 4, 1)  # points, curves, surfaces, volumes
         self.assertTrue(b"$Entities\n" + counts in text)
 
     def test_quiet_prints_nothing(self):
@@ -405,6 +405,45 @@ class CommandLine(unittest.TestCase):
         os.write(writer, b"OFF\n4 4 0\n")
         self.interrupted("check", fifo)
         os.close(writer)
+
+    def test_convert_keeps_names_and_says_what_it_cannot(self):
+        bracket, mesh, report = SAMPLES / "bracket.stl", self.dir / "a.msh", self.dir / "report.json"
+        done = self.run_cli("mesh", bracket, "-o", mesh, "--size", 8, "--patches", "--group",
+                            "held=box:-100,-100,-1,100,100,1", "--group", "two=patches:1,2", "--group",
+                            "far=sphere:1e6,0,0,1", "--json", report)
+        self.assertIn('group "far": nothing lies there', done.stdout)
+        self.assertIn("far", str(json.loads(report.read_text())["output"]["notes"]))
+        check = lambda file: [(g["origin"], g["name"], g["size"]) for g in json.loads(
+            self.run_cli("check", file, "--json", "-").stdout)["groups"]]
+        groups = check(mesh)
+        self.assertEqual(sorted(g[:2] for g in groups if g[0] in ("nodes", "faces")), [("faces", "two"), ("nodes", "held")])
+        # Through formats that hold the same: the same groups at the end.
+        file = mesh
+        for ending in ("vtu", "vtk", "unv", "msh"):
+            file, before = self.dir / f"b.{ending}", file
+            self.assertNotIn("left out", self.run_cli("convert", before, "-o", file).stdout)
+        self.assertEqual(sorted(check(file)), sorted(groups))
+        done = self.run_cli("convert", mesh, "-o", self.dir / "c.mesh", "--order", 2)
+        self.assertIn("MEDIT holds no further sets of nodes: left out are held", done.stdout)
+        self.assertIn("of second order", self.run_cli("check", self.dir / "c.mesh").stdout)
+        self.run_cli("convert", mesh, "-o", self.dir / "case", "--format", "openfoam")
+        self.assertTrue((self.dir / "case/owner").exists())
+        self.run_cli("convert", mesh, "-o", self.dir / "old.msh", "--format", "MSH22")
+        self.assertIn(b"2.2 1 8", (self.dir / "old.msh").read_bytes()[:40])
+        self.assertIn("abaqus", self.run_cli("convert", mesh, "-o", self.dir / "x.msh", "--format", "abacus", status=2).stderr)
+        self.run_cli("convert", mesh, "-o", self.dir, "--format", "openfoam", status=5)
+        for bad in ("held", "=box:1,2,3,4,5,6", "a=box:1,2,3", "a=cone:1,2", "a=sphere:0,0,0,-1", "a=box:1,2,3,4,5,x"):
+            self.run_cli("convert", mesh, "-o", self.dir / "d.msh", "--group", bad, status=2)
+
+    def test_groups_outlive_improvement(self):
+        mesh, better = self.dir / "a.vtu", self.dir / "b.vtu"
+        self.run_cli("mesh", SAMPLES / "bracket.stl", "-o", mesh, "--size", 8, "--patches", "--improve", "none", "--group",
+                     "two=patches:1,2")
+        self.run_cli("improve", mesh, "-o", better)
+        groups = [[g for g in json.loads(self.run_cli("check", m, "--json", "-").stdout)["groups"] if g["origin"] != "region"]
+                  for m in (mesh, better)]
+        self.assertEqual(groups[0], groups[1])
+        self.assertIn("curve", {g["origin"] for g in groups[0]})
 
     def test_a_pipe_is_read_to_its_end(self):
         fifo = self.dir / "fifo"

@@ -103,8 +103,7 @@ std::string expected(const TetMesh& mesh) {
     double measure = 0;
     for (const std::uint32_t m : part.members) {
       if (part.kind == NamedSet::Kind::kElements) measure += volume(parts.tet_nodes(m, tet), mesh.points);
-      if (part.kind == NamedSet::Kind::kFaces)
-        measure += length(vector_area(parts.face_nodes(m, face), mesh.points));
+      if (part.kind == NamedSet::Kind::kFaces) measure += length(vector_area(parts.face_nodes(m, face), mesh.points));
     }
     out += fmt::format(
         "  {{\"origin\": \"{}\", \"kind\": \"{}\", \"name\": {}, \"named\": {}, \"number\": {}, \"size\": {}, "
