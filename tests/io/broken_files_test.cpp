@@ -331,8 +331,15 @@ TEST(FlippedBytes, NeverCrash) {
   };
   for (const testing::SmallFile& file : testing::small_surface_files())
     for (int i = 0; i < 2000; ++i) is_refused([&, broken = flip(file.bytes)] { surface_of(broken, file.name); });
-  for (const testing::SmallFile& file : testing::small_mesh_files())
-    for (int i = 0; i < 2000; ++i) is_refused([&, broken = flip(file.bytes)] { mesh_of(broken, file.name); });
+  for (const auto& files : {testing::small_mesh_files(), testing::more_mesh_files()})
+    for (const testing::SmallFile& file : files)
+      for (int i = 0; i < 2000; ++i) is_refused([&, broken = flip(file.bytes)] { mesh_of(broken, file.name); });
+}
+
+TEST(TruncatedFiles, OfLinesEndInAMeshOrAnError) {
+  for (const testing::SmallFile& file : testing::more_mesh_files())
+    for (std::size_t length = 0; length < file.bytes.size(); ++length)
+      is_refused([&] { mesh_of(file.bytes.substr(0, length), file.name); });
 }
 
 }  // namespace
