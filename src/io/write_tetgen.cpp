@@ -41,7 +41,7 @@ void write_tetgen(MeshOutput& output, const MeshParts& mesh) {
           << '\n';
     }
   }
-  if (mesh.edges() == 0) return;
+  // Without edges too: an older file of this name would be taken for ours.
   TextWriter out(output.sibling(".edge"));
   out.line("{} 1", mesh.edges());
   for (std::size_t e = 0; e < mesh.edges(); ++e)

@@ -44,8 +44,9 @@ class XdmfWriter {
     values_.group("/Mesh");
     write_grid(kMesh, out_.file());
     const std::string stem = out_.target().stem().string();
-    if (mesh_.faces() > 0) write_grid(kPatches, out_.beside(stem + "_patches.xdmf"));
-    if (mesh_.edges() > 0) write_grid(kCurves, out_.beside(stem + "_curves.xdmf"));
+    // Empty ones too: older files of these names would be taken for ours.
+    write_grid(kPatches, out_.beside(stem + "_patches.xdmf"));
+    write_grid(kCurves, out_.beside(stem + "_curves.xdmf"));
     values_.close();
   }
 

@@ -9,6 +9,7 @@
 #include "support/rich_mesh.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -162,6 +163,72 @@ TEST_P(EveryFormat, KeepsWhatItHolds) {
       if (set.kind == Kind::kNodes || set.kind == Kind::kElements)
         EXPECT_NE(std::find(back.sets.begin(), back.sets.end(), set), back.sets.end()) << set.name;
   }
+}
+
+/// Names that every format takes as they are.
+TetMesh with_plain_names(TetMesh mesh) {
+  const auto plain = [](std::string& name) {
+    for (char& c : name)
+      if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
+  };
+  for (auto* names : {&mesh.region_names, &mesh.patch_names, &mesh.curve_names})
+    for (std::string& name : *names) plain(name);
+  for (NamedSet& set : mesh.sets) plain(set.name);
+  return mesh;
+}
+
+/// Whether a format holds all that another one does.
+bool holds_as_much(const FormatHolds& a, const FormatHolds& b) {
+  const auto as_much = [](Keeps x, Keeps y) { return x == y || x == Keeps::kNames; };
+  return as_much(a.regions, b.regions) && as_much(a.patches, b.patches) &&
+         (as_much(a.curves, b.curves) || b.curves == Keeps::kNodeSets) && a.node_sets >= b.node_sets &&
+         a.edge_sets >= b.edge_sets && a.face_sets >= b.face_sets && a.element_sets >= b.element_sets;
+}
+
+TEST(EveryPairOfFormats, ConvertsThereAndBack) {
+  std::vector<FormatInfo> both;
+  for (const FormatInfo& info : known_formats())
+    if (info.reads_mesh && info.writes_mesh) both.push_back(info);
+  const TemporaryFolder folder;
+  const auto through = [&](const TetMesh& mesh, const FormatInfo& info) {
+    write_mesh(folder / file_name(info), mesh, {}, std::string(info.name));
+    return read_mesh(folder / file_name(info));
+  };
+  const auto order_free = [](TetMesh mesh) {
+    // Faces of elements may begin with another corner.
+    for (auto* faces : {&mesh.boundary, &mesh.interfaces})
+      for (Triangle& t : *faces) std::sort(t.begin(), t.end());
+    return with_sorted_sets(std::move(mesh));
+  };
+  int pairs = 0;
+  for (const bool second : {false, true}) {
+    TetMesh mesh = with_plain_names(testing::rich_mesh(2));
+    if (second) mesh = testing::with_mid_nodes(std::move(mesh));
+    for (const FormatInfo& a : both) {
+      const TetMesh in_a = through(mesh, a);
+      for (const FormatInfo& b : both) {
+        if (!holds_as_much(b.holds, a.holds)) continue;
+        SCOPED_TRACE(std::string(a.name) + " to " + std::string(b.name));
+        const TetMesh there = order_free(through(in_a, b)), back = order_free(through(through(in_a, b), a));
+        const TetMesh wanted = order_free(in_a);
+        EXPECT_EQ(there.points, wanted.points);
+        EXPECT_EQ(there.tets, wanted.tets);
+        EXPECT_EQ(there.mid_nodes, wanted.mid_nodes);
+        EXPECT_EQ(placed_faces(there), placed_faces(wanted));
+        EXPECT_EQ(there.region, wanted.region);
+        EXPECT_EQ(there.region_names, wanted.region_names);
+        EXPECT_EQ(there.patch_names, wanted.patch_names);
+        EXPECT_EQ(there.curve_names, wanted.curve_names);
+        EXPECT_EQ(described(there), described(wanted));
+        EXPECT_EQ(described(back), described(wanted));
+        EXPECT_EQ(back.tets, wanted.tets);
+        EXPECT_EQ(back.mid_nodes, wanted.mid_nodes);
+        EXPECT_EQ(placed_faces(back), placed_faces(wanted));
+        ++pairs;
+      }
+    }
+  }
+  EXPECT_GT(pairs, 80);
 }
 
 std::vector<std::string> names_of_formats() {
