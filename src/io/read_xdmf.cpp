@@ -41,7 +41,7 @@ struct Grid {
   std::uint64_t nodes_per_element = 0;
   std::optional<Item> cells, points;
   std::vector<Attribute> attributes;
-  std::vector<std::pair<std::string, std::string>> information;
+  std::vector<std::pair<std::string, std::string>> names;  ///< "patch 3" and its name
 };
 
 /// XDMF's types: name in lower case, number in mixed lists, VTK's type, nodes.
@@ -109,8 +109,11 @@ class XdmfFile {
     } else if (tag.name == "Attribute") {
       within_ = tag.name;
       grid.attributes.push_back({unescaped(tag.attribute("Name")), tag.attribute("Center") == "Node", {}});
-    } else if (tag.name == "Information") {
-      grid.information.emplace_back(unescaped(tag.attribute("Name")), unescaped(tag.attribute("Value")));
+      constexpr std::string_view kName = "name_";
+      for (const auto& [key, value] : tag.attributes)
+        if (key.starts_with(kName))
+          grid.names.emplace_back(grid.attributes.back().name + " " + std::string(key.substr(kName.size())),
+                                  unescaped(value));
     } else if (tag.name == "DataItem" && !tag.empty) {
       take_item(tag, grid);
     }
@@ -209,7 +212,7 @@ class Xdmf {
       taker.take(c, vtk, nodes);
     });
     taker.finish();
-    for (const auto& [name, value] : grid.information) take_name(name, value);
+    for (const auto& [name, value] : grid.names) take_name(name, value);
   }
 
   template <class Visit>

@@ -1,7 +1,7 @@
 // XDMF 3 as FEniCSx, ParaView and meshio read it: NAME.xdmf with one grid of tetrahedra, NAME_patches.xdmf and
 // NAME_curves.xdmf with those of faces and edges, all values in NAME.h5. Regions, patches and curves are attributes of
-// cells, counted from 1; sets are attributes that are 1 for members ("elements NAME", "nodes NAME" ...). Names are
-// <Information> of the grid: Name="patch 1", Value="inlet".
+// cells, counted from 1; sets are attributes that are 1 for members ("elements NAME", "nodes NAME" ...). Names stand
+// in the tags of these attributes: name_1="inlet".
 
 #include "io/hdf5_file.h"
 #include "io/text_writer.h"
@@ -73,9 +73,6 @@ class XdmfWriter {
     const std::uint64_t n = count(grid), each = nodes(grid);
     out << "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n";
     out.line("    <Grid Name=\"{}\" GridType=\"Uniform\">", grid.name);
-    for (const Part& part : mesh_.parts(grid.origin))
-      if (part.is_named)
-        out.line("      <Information Name=\"{} {}\" Value=\"{}\"/>", grid.number, part.number + 1, escaped(part.name));
     out.line("      <Topology TopologyType=\"{}\" NumberOfElements=\"{}\" NodesPerElement=\"{}\">",
              grid.topology[mesh_.second_order()], n, each);
     item(out, "        ", fmt::format("{} {}", n, each), "Int", 8, group + "/topology");
@@ -84,7 +81,12 @@ class XdmfWriter {
     item(out, "        ", fmt::format("{} 3", mesh_.points()), "Float", 8, "/Mesh/mesh/geometry");
     if (grid.kind == Kind::kElements) write_points(group + "/geometry");
     out << "      </Geometry>\n";
-    write_attribute(out, grid.number, "Cell", group + "/numbers", n, [&](std::uint64_t i) { return number(grid, i); });
+    // Names are attributes of XML, which all readers pass over; <Information> stops some.
+    std::string names;
+    for (const Part& part : mesh_.parts(grid.origin))
+      if (part.is_named) names += fmt::format(" name_{}=\"{}\"", part.number + 1, escaped(part.name));
+    write_attribute(out, fmt::format("{}\"{}", grid.number, names), "Cell", group + "/numbers", n,
+                    [&](std::uint64_t i) { return number(grid, i); });
     std::size_t sets = 0;
     for (const Part& part : mesh_.parts(Origin::kSet)) {
       const bool of_nodes = part.kind == Kind::kNodes && grid.kind == Kind::kElements;
@@ -121,10 +123,11 @@ class XdmfWriter {
                     }));
   }
 
+  /// `name` with the quote behind it, and more attributes of XML if there are any.
   template <class ValueAt>
   void write_attribute(TextWriter& out, const std::string& name, std::string_view center, const std::string& path,
                        std::uint64_t n, const ValueAt& value_at) {
-    out.line("      <Attribute Name=\"{}\" AttributeType=\"Scalar\" Center=\"{}\">", escaped(name), center);
+    out.line("      <Attribute AttributeType=\"Scalar\" Center=\"{}\" Name=\"{}>", center, name);
     item(out, "        ", fmt::format("{} 1", n), "Int", 4, path);
     out << "      </Attribute>\n";
     values_.dataset(path, {n, 1}, Hdf5Writer::Fill<std::int32_t>([&](std::uint64_t first, std::span<std::int32_t> to) {
@@ -135,7 +138,7 @@ class XdmfWriter {
   void write_set(TextWriter& out, const std::string& name, const Part& part, std::uint64_t n, const std::string& path) {
     std::vector<bool> is_in(n, false);
     for (const std::uint32_t m : part.members) is_in[m] = true;
-    write_attribute(out, name, part.kind == Kind::kNodes ? "Node" : "Cell", path, n,
+    write_attribute(out, escaped(name) + '"', part.kind == Kind::kNodes ? "Node" : "Cell", path, n,
                     [&](std::uint64_t i) { return std::int32_t{is_in[i]}; });
   }
 

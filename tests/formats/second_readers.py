@@ -315,12 +315,11 @@ def xdmf(file):
             if kind == "elements":
                 points, tets = values(grid.find("Geometry").find("DataItem")), rows
             take = lambda at: [rows[i] for i in at] if kind == "faces" else list(at)
-            names = {i.get("Name"): i.get("Value") for i in grid.findall("Information")}
             for attribute in grid.findall("Attribute"):
                 name, found = attribute.get("Name"), values(attribute.find("DataItem")).ravel()
                 if name == prefix:
                     for number in np.unique(found):
-                        label = names.get(f"{prefix} {number}", f"{prefix} {number}")
+                        label = attribute.get(f"name_{number}", f"{prefix} {number}")
                         parts[kind, label] = take(np.flatnonzero(found == number))
                 else:
                     of, label = name.split(" ", 1)

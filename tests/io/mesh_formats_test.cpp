@@ -160,8 +160,9 @@ TEST_P(EveryFormat, KeepsWhatItHolds) {
     EXPECT_EQ(placed_faces(back), placed_faces(wanted));
     EXPECT_EQ(placed_set(back, "wet"), placed_set(wanted, "wet"));
     for (const NamedSet& set : wanted.sets)
-      if (set.kind == Kind::kNodes || set.kind == Kind::kElements)
+      if (set.kind == Kind::kNodes || set.kind == Kind::kElements) {
         EXPECT_NE(std::find(back.sets.begin(), back.sets.end(), set), back.sets.end()) << set.name;
+      }
   }
 }
 
