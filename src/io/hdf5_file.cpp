@@ -3,7 +3,9 @@
 #include <octafront/error.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <limits>
+#include <system_error>
 #include <type_traits>
 #include <utility>
 
@@ -41,8 +43,11 @@ hid_t native_type() {
   if constexpr (std::is_same_v<T, std::int8_t>) return H5T_NATIVE_INT8;
 }
 
-/// Our own messages say what is wrong.
-void silence() {
+/// Our own messages say what is wrong. And the library must not clean up when the program ends: it would try once more
+/// to flush a file that did not fit on the disk, and crash. Whoever closes his files, as we do, needs no such help.
+void prepare_library() {
+  static const bool kOnce = [] { return H5dont_atexit() >= 0; }();
+  static_cast<void>(kOnce);
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 }
 
@@ -56,6 +61,10 @@ std::string reason() {
         return 0;
       },
       &text);
+  // What the system said stands in the middle of it.
+  constexpr std::string_view kErrno = "errno = ";
+  if (const std::size_t at = text.find(kErrno); at != std::string::npos)
+    return std::generic_category().message(std::atoi(text.c_str() + at + kErrno.size()));
   return text.empty() ? "HDF5 does not say why" : text;
 }
 
@@ -63,7 +72,7 @@ std::string reason() {
 
 Hdf5Writer::Hdf5Writer(const std::filesystem::path& file, std::string target, RunContext context, bool ordered)
     : target_(std::move(target)), context_(std::move(context)), ordered_(ordered) {
-  silence();
+  prepare_library();
   const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   if (ordered) H5Pset_link_creation_order(creation.get(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
   file_ = check(H5Fcreate(file.c_str(), H5F_ACC_EXCL, creation.get(), H5P_DEFAULT), "cannot be created");
@@ -189,7 +198,7 @@ void Hdf5Writer::close() {
 
 Hdf5Reader::Hdf5Reader(const std::filesystem::path& file, std::string name, RunContext context)
     : name_(std::move(name)), context_(std::move(context)) {
-  silence();
+  prepare_library();
   std::error_code error;
   file_bytes_ = std::filesystem::file_size(file, error);
   if (error) fail(fmt::format("{} cannot be opened: {}", file.string(), error.message()));

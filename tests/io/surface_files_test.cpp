@@ -162,8 +162,12 @@ TEST(KnownFormats, CanDoWhatTheySay) {
     }
     EXPECT_NO_THROW(check_mesh_target(file, name));
     write_mesh(file, testing::two_tets(), {}, name);
-    if (info.reads_mesh) EXPECT_EQ(read_mesh(file).tets.size(), 2U);
-    if (info.writes_surface) EXPECT_EQ(read_surface(file).surface.triangles.size(), 6U);
+    if (info.reads_mesh) {
+      EXPECT_EQ(read_mesh(file).tets.size(), 2U);
+    }
+    if (info.writes_surface) {
+      EXPECT_EQ(read_surface(file).surface.triangles.size(), 6U);
+    }
   }
 }
 
