@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Builds everything and runs the tests, the lowest rooms first. Installs what is missing (Debian 12).
 #   scripts/test.sh [--all | --low] [PRESET] [CTEST OPTION ...]
-#     --all     with the long tests: large models, a campaign of nasty surfaces
+#     --all     with the long tests: large models, a campaign of nasty surfaces, solved examples
 #     --low     only the rooms that all others stand on: core, geometry, mesh, surface
 #     PRESET    a configure preset, by default release; also: dev (validators), asan-ubsan, tsan
 #     CTEST OPTION   e.g. -L volume (the tests of one room), --stop-on-failure

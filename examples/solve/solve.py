@@ -16,6 +16,7 @@ import sys
 import bodies
 import ccx
 
+SKIPPED = 77
 HERE = pathlib.Path(__file__).resolve().parent
 
 
@@ -33,8 +34,7 @@ class Case:
         stem = name or self.name
         surface, mesh = self.work / f"{stem}.obj", self.work / f"{stem}-mesh.inp"
         body.write(surface)
-        for target in (mesh, self.work / f"{stem}-mesh.vtu"):
-            subprocess.run([self.octafront, "mesh", surface, "-o", target, "--order", "2", "-q", *options], check=True)
+        subprocess.run([self.octafront, "mesh", surface, "-o", mesh, "--order", "2", "-q", *options], check=True)
         return ccx.Mesh(mesh)
 
     def solve(self):
@@ -111,7 +111,7 @@ def patch(case):
 
 def merge(case, parts):
     """Two meshes that share triangles exactly become one, node by node."""
-    ids, lines, sets = {}, [], {}
+    ids, lines, sets, sides = {}, [], {}, {}
     nodes, elements = {}, {}
     for name, mesh in parts:
         here = {}
@@ -122,8 +122,11 @@ def merge(case, parts):
         for k, corners in enumerate(mesh.elements.values()):
             elements[first + k + 1] = [here[n] for n in corners]
         lines.append((name, range(first + 1, len(elements) + 1)))
+        numbers = {e: first + k + 1 for k, e in enumerate(mesh.elements)}
         for patch, members in mesh.node_sets.items():
             sets.setdefault(patch, set()).update(here[n] for n in members)
+        for patch, members in mesh.sides.items():
+            sides.setdefault(patch, []).extend((numbers[e], side) for e, side in members)
     with open(case.file("-mesh.inp"), "w") as out:
         out.write("*NODE\n")
         for node, p in sorted(nodes.items()):
@@ -134,6 +137,8 @@ def merge(case, parts):
                 out.write(f"{e}, " + ", ".join(map(str, elements[e])) + "\n")
         for patch, members in sets.items():
             out.write(f"*NSET, NSET={patch}\n" + "".join(f"{n},\n" for n in sorted(members)))
+        for patch, members in sides.items():
+            out.write(f"*SURFACE, NAME={patch}, TYPE=ELEMENT\n" + "".join(f"{e}, {side}\n" for e, side in members))
     return ccx.Mesh(case.file("-mesh.inp"))
 
 
@@ -198,6 +203,9 @@ def main():
     unknown = set(args.cases) - set(CASES)
     if unknown:
         parser.error(f"no such case: {', '.join(sorted(unknown))}")
+    if not shutil.which("ccx"):
+        print("skipped: there is no ccx; install the Debian package calculix-ccx")
+        sys.exit(SKIPPED)
     args.work.mkdir(parents=True, exist_ok=True)
     results = []
     for name in args.cases or CASES:
