@@ -3,16 +3,19 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <initializer_list>
 #include <limits>
+#include <vector>
 
 namespace octafront::curved {
 
 namespace {
 
-// A vertex of a smooth surface lies off the polynomial by a small part of the height of the surface's own curvature;
-// one of a scan, or beside the end of a fillet, by as much as that. A ball of forty triangles still passes.
+// A vertex of a smooth surface lies off the polynomial by a small part of its height over the best plane; one of a
+// scan, or beside the end of a fillet, by as much as that. A ball of eighty triangles still passes.
 constexpr double kTrust = 0.1;
+// What has a higher degree bends the shape, and must not make it: between points that are far from each other such a
+// polynomial can be anywhere. So that of degree two must say most of it.
+constexpr double kMostByHigher = 0.35;
 // Points of flat surfaces scatter by rounding: this part of their distance.
 constexpr double kFlat = 1e-9;
 // Near points say more, for what the polynomial cannot follow grows with the fifth power of the distance. Where two
@@ -94,13 +97,6 @@ double value(const std::array<double, N>& coefficients, const std::array<double,
   return sum;
 }
 
-/// Unknowns of the highest degree that so many points can carry, of those given from high to low; 0: not even a plane.
-std::size_t affordable(std::size_t points, std::initializer_list<std::size_t> unknowns) {
-  for (const std::size_t n : unknowns)
-    if (static_cast<double>(points) >= kPointsPerUnknown * static_cast<double>(n)) return n;
-  return 0;
-}
-
 /// How near is near: the harmonic mean of the squared distances, which a few far points do not change.
 double near_distance(Vec3 vertex, std::span<const Vec3> points) {
   double sum = 0;
@@ -108,11 +104,56 @@ double near_distance(Vec3 vertex, std::span<const Vec3> points) {
   return static_cast<double>(points.size()) / sum;
 }
 
-/// What is left over, against the part of the heights that is not linear; both weighted sums of squares.
-struct Misfit {
-  double left = 0, curved = 0, reach = 0;
-  bool is_small() const { return left <= std::max(kTrust * kTrust * curved, kFlat * kFlat * reach); }
+/// What a point says: the terms of the polynomial there, and its heights.
+template <std::size_t kTerms, std::size_t kSides>
+struct Sample {
+  std::array<double, kTerms> terms;
+  std::array<double, kSides> heights;
+  double nearness, squared_distance;
 };
+
+template <std::size_t kTerms, std::size_t kSides>
+using Solution = std::array<std::array<double, kTerms>, kSides>;
+
+/// The first `unknowns` terms.
+template <std::size_t kTerms, std::size_t kSides>
+Solution<kTerms, kSides> solved(std::span<const Sample<kTerms, kSides>> samples, std::size_t unknowns) {
+  LeastSquares<kTerms, kSides> system(unknowns);
+  for (const auto& s : samples) system.add(s.terms, s.heights, s.nearness * s.nearness);
+  return system.solve();
+}
+
+/// Weighted sum of squares of what is left over.
+template <std::size_t kTerms, std::size_t kSides>
+double misfit(std::span<const Sample<kTerms, kSides>> samples, const Solution<kTerms, kSides>& solution) {
+  double sum = 0;
+  for (const auto& s : samples)
+    for (std::size_t side = 0; side < kSides; ++side) {
+      const double left = s.heights[side] - value(solution[side], s.terms);
+      sum += s.nearness * left * left;
+    }
+  return sum;
+}
+
+/// The polynomial of the highest degree that the points can carry, if it is to be trusted. `unknowns`: of degrees one,
+/// two, and so on.
+template <std::size_t kTerms, std::size_t kSides, std::size_t kDegrees>
+bool fit(std::span<const Sample<kTerms, kSides>> samples, const std::array<std::size_t, kDegrees>& unknowns,
+         Solution<kTerms, kSides>& solution) {
+  const auto carry = [&](std::size_t n) {
+    return static_cast<double>(samples.size()) >= kPointsPerUnknown * static_cast<double>(n);
+  };
+  if (!carry(unknowns[1])) return false;
+  std::size_t degree = kDegrees - 1;
+  while (!carry(unknowns[degree])) --degree;
+  double rounding = 0;
+  for (const auto& s : samples) rounding += s.nearness * s.squared_distance;
+  rounding *= kFlat * kFlat;
+  const double height = misfit(samples, solved(samples, unknowns[0]));
+  if (misfit(samples, solved(samples, unknowns[1])) > kMostByHigher * kMostByHigher * height + rounding) return false;
+  solution = solved(samples, unknowns[degree]);
+  return misfit(samples, solution) <= kTrust * kTrust * height + rounding;
+}
 
 }  // namespace
 
@@ -130,28 +171,18 @@ Vec3 SurfaceFit::at(Vec3 p) const {
 }
 
 SurfaceFit fit_surface(Vec3 vertex, Vec3 normal, std::span<const Vec3> around) {
-  SurfaceFit fit{frame_at(vertex, normal), {}, false};
-  const std::size_t unknowns = affordable(around.size(), {14, 9, 5});
-  if (unknowns == 0) return fit;
-  const double near = near_distance(vertex, around);
-  const auto nearness = [&](Vec3 p) { return 1 / (squared_length(p - vertex) + kNear * near); };
-  LeastSquares<14, 1> system(unknowns);
+  SurfaceFit made{frame_at(vertex, normal), {}, false};
+  const double near = kNear * near_distance(vertex, around);
+  std::vector<Sample<14, 1>> samples;
+  samples.reserve(around.size());
   for (const Vec3 p : around) {
-    const Vec3 l = fit.frame.local(p);
-    system.add(terms(l.x, l.y), {l.z}, nearness(p) * nearness(p));
+    const Vec3 l = made.frame.local(p);
+    samples.push_back({terms(l.x, l.y), {l.z}, 1 / (squared_length(l) + near), squared_length(l)});
   }
-  fit.coefficient = system.solve()[0];
-  Misfit misfit;
-  for (const Vec3 p : around) {
-    const Vec3 l = fit.frame.local(p);
-    const double w = nearness(p), left = l.z - value(fit.coefficient, terms(l.x, l.y)),
-                 curved = l.z - fit.coefficient[0] * l.x - fit.coefficient[1] * l.y;
-    misfit.left += w * left * left;
-    misfit.curved += w * curved * curved;
-    misfit.reach += w * squared_length(l);
-  }
-  fit.trusted = misfit.is_small();
-  return fit;
+  Solution<14, 1> solution{};
+  made.trusted = fit<14, 1, 4>(samples, {2, 5, 9, 14}, solution);
+  made.coefficient = solution[0];
+  return made;
 }
 
 Vec3 CurveFit::at(Vec3 p) const {
@@ -163,31 +194,18 @@ Vec3 CurveFit::at(Vec3 p) const {
 
 CurveFit fit_curve(Vec3 vertex, Vec3 tangent, std::span<const Vec3> around) {
   const Frame across = frame_at(vertex, tangent);
-  CurveFit fit{{vertex, tangent, across.u, across.v}, {}, {}, false};
-  const std::size_t unknowns = affordable(around.size(), {4, 3, 2});
-  if (unknowns == 0) return fit;
-  const double near = near_distance(vertex, around);
-  const auto nearness = [&](Vec3 p) { return 1 / (squared_length(p - vertex) + kNear * near); };
-  LeastSquares<4, 2> system(unknowns);
+  CurveFit made{{vertex, tangent, across.u, across.v}, {}, {}, false};
+  const double near = kNear * near_distance(vertex, around);
+  std::vector<Sample<4, 2>> samples;
   for (const Vec3 p : around) {
-    const Vec3 l = fit.frame.local(p);
-    system.add(terms(l.x), {l.y, l.z}, nearness(p) * nearness(p));
+    const Vec3 l = made.frame.local(p);
+    samples.push_back({terms(l.x), {l.y, l.z}, 1 / (squared_length(l) + near), squared_length(l)});
   }
-  const auto solution = system.solve();
-  fit.in_v = solution[0];
-  fit.in_n = solution[1];
-  Misfit misfit;
-  for (const Vec3 p : around) {
-    const Vec3 l = fit.frame.local(p);
-    const auto t = terms(l.x);
-    const double w = nearness(p), left_v = l.y - value(fit.in_v, t), left_n = l.z - value(fit.in_n, t);
-    const double curved_v = l.y - fit.in_v[0] * l.x, curved_n = l.z - fit.in_n[0] * l.x;
-    misfit.left += w * (left_v * left_v + left_n * left_n);
-    misfit.curved += w * (curved_v * curved_v + curved_n * curved_n);
-    misfit.reach += w * squared_length(l);
-  }
-  fit.trusted = misfit.is_small();
-  return fit;
+  Solution<4, 2> solution{};
+  made.trusted = fit<4, 2, 4>(samples, {1, 2, 3, 4}, solution);
+  made.in_v = solution[0];
+  made.in_n = solution[1];
+  return made;
 }
 
 }  // namespace octafront::curved

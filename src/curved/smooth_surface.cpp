@@ -22,6 +22,15 @@ constexpr int kRings = 3;
 constexpr std::size_t kMostTriangles = 200;
 // Vertices of a curve to either side.
 constexpr int kAlong = 3, kAlongOneSided = 5;
+// A smooth surface that turns by an angle over a triangle's height leaves it by a sixth of their product, and twice
+// that where triangles are irregular. What leaves a triangle farther than this is not what its neighbours say, and flat
+// triangles among flat ones stay flat.
+constexpr double kMostSag = 0.6;
+constexpr double kRounding = 1e-9;  // in parts of the longest edge
+// Beside a flat face that is so many times as wide as the facets of the fillet that it ends in, the facets say how far.
+constexpr double kMostUneven = 2.5;
+// A curve that turns by an angle between two segments leaves them by an eighth of angle times length.
+constexpr double kMostCurveSag = 0.4;
 // Farther from a triangle than this, in its longest edges, a polynomial is not a surface between points any more.
 constexpr double kFarthest = 0.25;
 
@@ -73,6 +82,7 @@ SmoothSurface::SmoothSurface(const SurfaceMesh& surface, const EdgeTable& edges,
 
 void SmoothSurface::find_wedges(const EdgeTable& edges) {
   DisjointSets sets(3 * surface_.triangles.size());
+  neighbour_.assign(3 * surface_.triangles.size(), kNone);
   auto sharp = sharp_.edges.begin();
   for (std::size_t e = 0; e < edges.size(); ++e) {
     while (sharp != sharp_.edges.end() && *sharp < edges.edges[e]) ++sharp;
@@ -80,6 +90,8 @@ void SmoothSurface::find_wedges(const EdgeTable& edges) {
     const auto uses = edges.uses(e);
     if (uses.size() != 2) continue;
     // The half-edges run in opposite directions.
+    neighbour_[uses[0]] = uses[1] / 3;
+    neighbour_[uses[1]] = uses[0] / 3;
     sets.join(uses[0], next_of(uses[1]));
     sets.join(next_of(uses[0]), uses[1]);
   }
@@ -196,8 +208,37 @@ SurfaceFit SmoothSurface::make_fit(Wedge wedge) const {
   points.reserve(vertices.size());
   for (const VertexIndex v : vertices) points.push_back(surface_.points[v]);
   const std::span<const Vec3> around(points.begin() + 1, points.end());
-  const SurfaceFit fit = fit_surface(points.front(), normal, around);
-  return fit.trusted ? fit : fit_surface(points.front(), normal, around.first(nearer - 1));
+  SurfaceFit fit = fit_surface(points.front(), normal, around);
+  if (fit.trusted && stays_near(fit, wedge)) return fit;
+  fit = fit_surface(points.front(), normal, around.first(nearer - 1));
+  fit.trusted = fit.trusted && stays_near(fit, wedge);
+  return fit;
+}
+
+double SmoothSurface::sag(std::uint32_t t) const {
+  const auto& [a, b, c] = tree_.corners(t);
+  const Vec3 normal = double_area_normal(a, b, c);
+  double most = 0;
+  for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
+    if (neighbour_[h] == kNone) continue;
+    const auto& [d, e, f] = tree_.corners(neighbour_[h]);
+    const Vec3 other = double_area_normal(d, e, f);
+    const double turn = std::atan2(length(cross(normal, other)), dot(normal, other));
+    const double edge =
+        distance(surface_.points[start_of(surface_.triangles, h)], surface_.points[end_of(surface_.triangles, h)]);
+    if (edge > 0) most = std::max(most, turn * std::min(length(normal), kMostUneven * length(other)) / edge);
+  }
+  return most;
+}
+
+bool SmoothSurface::stays_near(const SurfaceFit& fit, Wedge wedge) const {
+  for (const std::uint32_t corner : corners_of_[wedge]) {
+    const auto& [a, b, c] = tree_.corners(corner / 3);
+    const double limit = kMostSag * sag(corner / 3) + kRounding * std::sqrt(longest_squared_edge(a, b, c));
+    for (const Vec3 p : {centroid(a, b, c), 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)})
+      if (distance(fit.at(p), p) > limit) return false;
+  }
+  return true;
 }
 
 std::vector<Vec3> SmoothSurface::points_along(VertexIndex from, std::uint32_t edge) const {
@@ -217,15 +258,37 @@ std::vector<Vec3> SmoothSurface::points_along(VertexIndex from, std::uint32_t ed
 CurveFit SmoothSurface::make_curve_fit(std::uint32_t end) const {
   const VertexIndex v = end_vertex(end);
   const Vec3 p = surface_.points[v];
-  if (curve_at_[v][0] == kNone) {
-    const std::vector<Vec3> ahead = points_along(v, end / 2);
-    return fit_curve(p, normalized(ahead.front() - p), ahead);
+  const bool inside = curve_at_[v][0] != kNone;
+  const std::uint32_t first = inside ? curve_at_[v][0] : end / 2;
+  std::vector<Vec3> around = points_along(v, first);
+  Vec3 tangent = normalized(around.front() - p);
+  if (inside) {
+    const std::vector<Vec3> ahead = points_along(v, curve_at_[v][1]);
+    tangent = normalized(ahead.front() - around.front());
+    around.insert(around.end(), ahead.begin(), ahead.end());
   }
-  std::vector<Vec3> around = points_along(v, curve_at_[v][0]);
-  const std::vector<Vec3> ahead = points_along(v, curve_at_[v][1]);
-  const Vec3 tangent = normalized(ahead.front() - around.front());
-  around.insert(around.end(), ahead.begin(), ahead.end());
-  return fit_curve(p, tangent, around);
+  CurveFit fit = fit_curve(p, tangent, around);
+  fit.trusted = fit.trusted && stays_near(fit, first) && (!inside || stays_near(fit, curve_at_[v][1]));
+  return fit;
+}
+
+double SmoothSurface::sag_at(VertexIndex v, std::uint32_t edge) const {
+  const auto& [e, f] = curve_at_[v];
+  if (e == kNone || f == kNone) return TriangleTree::kFar;
+  const auto along = [&](std::uint32_t i) {
+    return surface_.points[sharp_.edges[i][sharp_.edges[i][0] == v]] - surface_.points[v];
+  };
+  const Vec3 here = along(edge), next = along(e == edge ? f : e);
+  const double turn = std::atan2(length(cross(here, next)), -dot(here, next));
+  return turn * std::min(length(here), kMostUneven * length(next));
+}
+
+bool SmoothSurface::stays_near(const CurveFit& fit, std::uint32_t edge) const {
+  const auto& [a, b] = sharp_.edges[edge];
+  const Vec3 p = surface_.points[a], q = surface_.points[b], middle = 0.5 * (p + q);
+  const double sag = std::min(sag_at(a, edge), sag_at(b, edge));
+  if (sag == TriangleTree::kFar) return false;  // from corner to corner: nothing is known of its shape
+  return distance(fit.at(middle), middle) <= kMostCurveSag * sag + kRounding * distance(p, q);
 }
 
 Vec3 SmoothSurface::surface_point(const Foot& foot) const {

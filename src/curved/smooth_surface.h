@@ -56,7 +56,16 @@ class SmoothSurface {
 
   void find_wedges(const EdgeTable& edges);
   SurfaceFit make_fit(Wedge wedge) const;
+  /// Height of the triangle times the angle by which the surface turns there, over the edge where that is most; not
+  /// over sharp ones.
+  double sag(std::uint32_t triangle) const;
+  /// Whether a fit leaves the triangles at its vertex no farther than their neighbours let them expect.
+  bool stays_near(const SurfaceFit& fit, Wedge wedge) const;
   CurveFit make_curve_fit(std::uint32_t end) const;
+  /// Length of a feature edge times the angle by which its curve turns at this end; infinite if the curve ends there.
+  double sag_at(VertexIndex v, std::uint32_t edge) const;
+  /// The same for a curve and one of its edges: the end that turns less says how much.
+  bool stays_near(const CurveFit& fit, std::uint32_t edge) const;
   std::vector<Vec3> points_along(VertexIndex from, std::uint32_t edge) const;
   VertexIndex corner_vertex(std::uint32_t corner) const { return surface_.triangles[corner / 3][corner % 3]; }
   VertexIndex end_vertex(std::uint32_t end) const { return sharp_.edges[end / 2][end % 2]; }
@@ -68,6 +77,7 @@ class SmoothSurface {
   Features sharp_;
   TriangleTree curves_;
   std::vector<std::array<std::uint32_t, 2>> curve_at_;  ///< per vertex inside a curve: its two feature edges
+  std::vector<std::uint32_t> neighbour_;                ///< per half-edge: the triangle across, kNone over sharp edges
   std::vector<Wedge> wedge_of_;                         ///< per corner of a triangle: the least corner of its wedge
   Groups<> corners_of_;                                 ///< per wedge: its corners
   std::vector<std::uint32_t> fit_of_wedge_;             ///< place in fits_, or kNone
