@@ -71,6 +71,7 @@ class Easing {
   }
 
   const Way& way(std::uint32_t i) const { return ways_[i].second; }
+  const Way& way_of(VertexIndex v) const { return way(way_of_[v]); }
 
  private:
   std::vector<std::uint32_t> ways_left(TetIndex t) const {
@@ -105,6 +106,34 @@ class Easing {
   std::vector<TetIndex> tets_;
 };
 
+// Inner corners next to the boundary go along for this part of what the boundary there does on average, lest the
+// elements between be squeezed.
+constexpr double kFollow = 0.5;
+
+/// The ways of the boundary's corners, and of their inner neighbours.
+std::vector<std::pair<VertexIndex, Way>> ways_with_followers(const TetMesh& mesh, std::span<const CornerMove> moves) {
+  std::vector<char> outside(mesh.points.size(), 0);
+  for (const auto* faces : {&mesh.boundary, &mesh.interfaces})
+    for (const Triangle& t : *faces)
+      for (const VertexIndex v : t) outside[v] = 1;
+  std::vector<Vec3> by(mesh.points.size());
+  std::vector<std::uint32_t> seen(mesh.points.size(), 0);
+  for (const auto& [v, move] : moves) by[v] = move;
+  for (const Tet& tet : mesh.tets)
+    for (const VertexIndex v : tet)
+      for (const VertexIndex u : tet)
+        if (!outside[v] && outside[u]) {
+          by[v] += by[u];
+          ++seen[v];
+        }
+  std::vector<std::pair<VertexIndex, Way>> ways;
+  for (VertexIndex v = 0; v < mesh.points.size(); ++v) {
+    if (seen[v] > 0) by[v] *= kFollow / seen[v];
+    if (by[v] != Vec3{}) ways.push_back({v, {mesh.points[v], by[v]}});
+  }
+  return ways;
+}
+
 double six_volumes_of(const TetMesh& mesh, TetIndex t) {
   const auto& [a, b, c, d] = mesh.tets[t];
   return six_volumes(mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]);
@@ -119,9 +148,8 @@ bool is_positive(const TetMesh& mesh, TetIndex t) {
 
 void move_corners(TetMesh& mesh, std::span<const CornerMove> moves, SecondOrderSummary& summary,
                   const RunContext& context) {
-  std::vector<std::pair<VertexIndex, Way>> ways;
-  for (const auto& [v, by] : moves) ways.push_back({v, {mesh.points[v], by}});
-  Easing<4> easing(mesh, mesh.tets, std::move(ways));
+  if (moves.empty()) return;
+  Easing<4> easing(mesh, mesh.tets, ways_with_followers(mesh, moves));
   std::vector<double> before(mesh.tets.size());
   for (const TetIndex t : easing.tets()) before[t] = six_volumes_of(mesh, t);
   easing.settle([&](TetIndex t) { return six_volumes_of(mesh, t) >= kLeastVolume * before[t] && is_positive(mesh, t); },
@@ -129,7 +157,7 @@ void move_corners(TetMesh& mesh, std::span<const CornerMove> moves, SecondOrderS
                   back.insert(back.end(), left.begin(), left.end());
                 },
                 context);
-  for (const auto& [v, way] : easing.ways()) ++(way.halvings == 0 ? summary.moved : summary.held);
+  for (const auto& [v, by] : moves) ++(easing.way_of(v).halvings == 0 ? summary.moved : summary.held);
 }
 
 void bend_edges(TetMesh& mesh, const TetEdges& edges, std::span<const EdgeBend> bends, SecondOrderSummary& summary,

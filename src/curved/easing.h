@@ -14,7 +14,8 @@
 namespace octafront::curved {
 
 /// Moves corners of a linear mesh as far as every tetrahedron stays positive and keeps half of its volume: the corners
-/// of one that does not go halfway back, and after eight times altogether. Counts them.
+/// of one that does not go halfway back, and after eight times altogether. Inner corners beside them go half of the way
+/// with them. Counts those that were asked for.
 void move_corners(TetMesh& mesh, std::span<const CornerMove> moves, SecondOrderSummary& summary,
                   const RunContext& context);
 
