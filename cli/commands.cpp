@@ -140,10 +140,10 @@ Json json_of(const SolverFinding& f) {
           {"worst", worst}};
 }
 
-// What the solver would say, limit by limit; elements that it would refuse are an error.
-void check_by_solver(Session& session, const TetMesh& mesh) {
+// What the solver would say, limit by limit. Returns the number of elements that it would refuse.
+std::uint64_t ask_solver(Session& session, const TetMesh& mesh) {
   const Arguments& a = session.arguments();
-  if (!a.solver) return;
+  if (!a.solver) return 0;
   Json all = Json::array();
   std::uint64_t refused = 0;
   for (const SolverFinding& f : check_for_solver(mesh, *a.solver, session.context())) {
@@ -156,14 +156,13 @@ void check_by_solver(Session& session, const TetMesh& mesh) {
                               e.at.z, e.value));
   }
   session.found({{"solver", all}});
-  if (refused > 0)
-    throw InputError(fmt::format("{}: the solver would refuse this mesh ({} beyond its limits)", a.input.string(),
-                                 counted(refused, "element")));
+  return refused;
 }
 
 void check_tet_mesh(Session& session) {
   const std::string name = session.arguments().input.string();
   const TetMesh mesh = read_mesh_input(session);
+  const std::uint64_t refused = ask_solver(session, mesh);
   prove_jacobians(session, mesh);
   const auto defect = first_defect(mesh, session.context());
   session.found({{"kind", "mesh"}, {"valid", !defect}});
@@ -178,7 +177,7 @@ void check_tet_mesh(Session& session) {
   session.say(fmt::format("{}: a valid mesh of {}\n", name, quality_in_words(report.quality)));
   tell_worst(session, mesh, report.quality);
   tell_groups(session, mesh);
-  check_by_solver(session, mesh);
+  if (refused > 0) throw InputError(fmt::format("{}: the solver would refuse {}", name, counted(refused, "element")));
 }
 
 Json json_of(const SurfaceDefects::Kind& kind) {

@@ -47,6 +47,49 @@ class CommandLine(unittest.TestCase):
     def files(self):
         return sorted(p.name for p in self.dir.iterdir())
 
+    def test_second_order_is_curved_reported_and_proven_from_the_file(self):
+        for ending in ("msh", "inp", "bdf", "vtu", "unv"):
+            out, report = self.dir / f"torus.{ending}", self.dir / "report.json"
+            done = self.run_cli("mesh", SAMPLES / "torus_knot.ply", "-o", out, "--order", 2, "--json", report,
+                                "--improve", "fast")
+            self.assertIn("second order, every element proven valid", done.stdout)
+            r = json.loads(report.read_text())["second_order"]
+            self.assertGreater(r["curved_edges"], 1000)
+            self.assertEqual(r["edges"], r["curved_edges"] + r["eased_edges"] + r["straight_edges"])
+            self.assertGreater(r["least_scaled_jacobian"], 0)
+            self.run_cli("check", out, "--json", report)
+            found = json.loads(report.read_text())
+            self.assertEqual(found["second_order"]["invalid"], 0)
+            # Formats with fewer digits than a double change it a little.
+            self.assertAlmostEqual(found["second_order"]["least_scaled_jacobian"], r["least_scaled_jacobian"], 6)
+
+    def test_a_mid_side_node_out_of_place_is_named(self):
+        out = self.dir / "part.msh"
+        self.run_cli("mesh", self.part, "-o", out, "--order", 2, "--size", 0.3)
+        text = self.dir / "part.inp"
+        self.run_cli("convert", out, "-o", text)
+        lines = text.read_text().splitlines()
+        first = lines[lines.index(next(line for line in lines if line.startswith("*ELEMENT"))) + 1].split(",")
+        nodes = lines.index("*NODE")
+        corner, middle = int(first[1]), int(first[5])
+        lines[nodes + middle] = ",".join([str(middle), *lines[nodes + corner].split(",")[1:]])
+        text.write_text("\n".join(lines) + "\n")
+        report = self.dir / "report.json"
+        done = self.run_cli("check", text, "--solver", "nastran", "--json", report, status=3)
+        self.assertIn("element 0 at", done.stderr)
+        found = json.loads(report.read_text())
+        self.assertGreater(found["second_order"]["invalid"], 0)
+        corners = next(f for f in found["solver"] if "TET_DETG" in f["measure"])
+        self.assertIn(0, [e["number"] for e in corners["worst"]])
+
+    def test_solvers_are_asked_about_meshes_only(self):
+        out = self.dir / "part.msh"
+        self.run_cli("mesh", self.part, "-o", out, "--size", 0.3)
+        for solver in ("abaqus", "ansys", "nastran", "calculix"):
+            self.assertIn(" 0 elements", self.run_cli("check", out, "--solver", solver).stdout)
+        self.run_cli("check", self.part, "--solver", "ansys", status=2)
+        self.run_cli("check", out, "--solver", "abacus", status=2)
+
     def test_meshes_to_every_format_and_reports(self):
         for ending in ("vtu", "msh", "mesh", "meshb", "vtk", "inp", "bdf", "unv", "vol", "ele"):
             out, report = self.dir / f"part.{ending}", self.dir / "report.json"
