@@ -193,16 +193,24 @@ void measure_shapes() {
     }
 }
 
+constexpr double kShort = 1;
+
 void measure_model(const std::string& file, double size) {
   const SurfaceMesh input = read_surface(file).surface;
   const Result linear = run(input, size, 1), r = run(input, size, 2);
+  double linear_seconds = linear.report.cpu_seconds, seconds = r.report.cpu_seconds;
+  // Short runs jitter: the best of five.
+  for (int again = 0; again < 4 && linear_seconds < kShort; ++again) {
+    linear_seconds = std::min(linear_seconds, run(input, size, 1).report.cpu_seconds);
+    seconds = std::min(seconds, run(input, size, 2).report.cpu_seconds);
+  }
   Json j = json_of(r);
   j.update({{"crossings", crossings(r.mesh)},
             {"input_volume", r.report.input_volume},
             {"linear_volume", linear.report.volume},
             {"curved_volume", r.report.volume},
-            {"linear_cpu_seconds", linear.report.cpu_seconds},
-            {"cpu_seconds", r.report.cpu_seconds}});
+            {"linear_cpu_seconds", linear_seconds},
+            {"cpu_seconds", seconds}});
   fmt::print("{}\n", j.dump());
 }
 

@@ -30,8 +30,12 @@ struct Judged {
   bool valid = true;
 };
 
+// Edges that bend by so little are straight but for rounding.
+constexpr double kStraight = 1 - 1e-9;  // as a bound of the scaled Jacobian
+
 Judged judge(const TetMesh& mesh, TetIndex t) {
   const QuadraticTet nodes = quadratic_nodes(mesh, t);
+  if (least_scaled_jacobian_bound(nodes) > kStraight) return {};
   const auto coefficients = jacobian_coefficients(nodes);
   const double least = *std::min_element(coefficients.begin(), coefficients.end());
   const double straight = six_volumes(nodes[0], nodes[1], nodes[2], nodes[3]);
@@ -86,7 +90,10 @@ SecondOrderSummary curve_to_surface(TetMesh& mesh, const std::vector<Edge>& shar
 double curved_volume(const TetMesh& mesh) {
   std::vector<double> volumes(mesh.tets.size());
   parallel_for(volumes.size(), [&](std::size_t t) {
-    const auto coefficients = jacobian_coefficients(quadratic_nodes(mesh, static_cast<TetIndex>(t)));
+    const QuadraticTet nodes = quadratic_nodes(mesh, static_cast<TetIndex>(t));
+    volumes[t] = signed_volume(nodes[0], nodes[1], nodes[2], nodes[3]);
+    if (least_scaled_jacobian_bound(nodes) > kStraight) return;
+    const auto coefficients = jacobian_coefficients(nodes);
     // The integral of a polynomial over the unit tetrahedron is the mean of its coefficients over six.
     volumes[t] = std::accumulate(coefficients.begin(), coefficients.end(), 0.0) / (6.0 * coefficients.size());
   });

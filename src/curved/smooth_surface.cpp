@@ -58,9 +58,30 @@ std::array<double, 3> barycentric(Vec3 p, Vec3 a, Vec3 b, Vec3 c) {
   return {1 - in_b - in_c, in_b, in_c};
 }
 
-bool contains(const std::vector<std::uint32_t>& list, std::uint32_t item) {
-  return std::find(list.begin(), list.end(), item) != list.end();
-}
+/// A list of a few numbers, each once, in the order in which they came.
+class FewNumbers {
+ public:
+  FewNumbers() { slots_.fill(kNone); }
+  const std::vector<std::uint32_t>& list() const { return list_; }
+  std::size_t size() const { return list_.size(); }
+
+  /// False if it is there already, or there is no room.
+  bool add(std::uint32_t number) {
+    if (list_.size() >= kMost) return false;
+    std::size_t at = (number * 2654435761u) >> (32 - kBits);
+    for (; slots_[at] != kNone; at = (at + 1) % slots_.size())
+      if (slots_[at] == number) return false;
+    slots_[at] = number;
+    list_.push_back(number);
+    return true;
+  }
+
+ private:
+  static constexpr int kBits = 9;
+  static constexpr std::size_t kMost = 300;  // three fifths of the slots
+  std::array<std::uint32_t, 1u << kBits> slots_;
+  std::vector<std::uint32_t> list_;
+};
 
 /// `smooth` where it is near enough to p.
 Vec3 within(Vec3 smooth, Vec3 p, double edge) {
@@ -184,29 +205,24 @@ SurfaceFit SmoothSurface::make_fit(Wedge wedge) const {
     return dot(n, normal) >= kSteepest * length(n);
   };
 
-  std::vector<std::uint32_t> triangles;
-  std::vector<Wedge> reached{wedge};
-  const VertexIndex center = corner_vertex(wedge);
-  std::vector<VertexIndex> vertices{center};
+  FewNumbers triangles, reached, vertices;
+  reached.add(wedge);
+  vertices.add(corner_vertex(wedge));
   std::size_t from = 0, nearer = 1;  // where the newest ring begins in `reached`, in `vertices`
   for (int ring = 0; ring < kRings; ++ring) {
     const std::size_t to = reached.size();
     nearer = vertices.size();
     for (; from < to; ++from)
-      for (const std::uint32_t corner : corners_of_[reached[from]]) {
+      for (const std::uint32_t corner : corners_of_[reached.list()[from]]) {
         const std::uint32_t t = corner / 3;
-        if (triangles.size() >= kMostTriangles || contains(triangles, t) || !is_seen(t)) continue;
-        triangles.push_back(t);
-        for (std::uint32_t c = 3 * t; c < 3 * t + 3; ++c) {
-          if (contains(reached, wedge_of_[c])) continue;
-          reached.push_back(wedge_of_[c]);
-          if (!contains(vertices, corner_vertex(c))) vertices.push_back(corner_vertex(c));
-        }
+        if (triangles.size() >= kMostTriangles || !triangles.add(t) || !is_seen(t)) continue;
+        for (std::uint32_t c = 3 * t; c < 3 * t + 3; ++c)
+          if (reached.add(wedge_of_[c])) vertices.add(corner_vertex(c));
       }
   }
   std::vector<Vec3> points;
   points.reserve(vertices.size());
-  for (const VertexIndex v : vertices) points.push_back(surface_.points[v]);
+  for (const VertexIndex v : vertices.list()) points.push_back(surface_.points[v]);
   const std::span<const Vec3> around(points.begin() + 1, points.end());
   SurfaceFit fit = fit_surface(points.front(), normal, around);
   if (fit.trusted && stays_near(fit, wedge)) return fit;

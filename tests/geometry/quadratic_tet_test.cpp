@@ -167,6 +167,29 @@ TEST(QuadraticTet, SignsAgreeWithIntegersWhereRoundingIsNotSure) {
   EXPECT_GT(negative, 20);
 }
 
+TEST(QuadraticTet, TheBoundIsBelowTheLeastCoefficient) {
+  Random random(4);
+  int sure = 0;
+  for (int round = 0; round < 300; ++round) {
+    const double bend = random.magnitude(1e-6, 0.1);
+    QuadraticTet q = straight({0, 0, 0}, {1, random.between(-0.4, 0.4), 0}, {random.between(-0.4, 0.4), 1, 0},
+                              {0.2, 0.3, random.between(0.05, 1)});
+    for (std::size_t mid = 4; mid < 10; ++mid)
+      q[mid] += {random.between(-bend, bend), random.between(-bend, bend), random.between(-bend, bend)};
+    const auto coefficients = jacobian_coefficients(q);
+    const double least =
+        *std::min_element(coefficients.begin(), coefficients.end()) / six_volumes(q[0], q[1], q[2], q[3]);
+    const double bound = least_scaled_jacobian_bound(q);
+    ASSERT_LE(bound, least);
+    if (bound <= 0) continue;
+    ++sure;
+    ASSERT_TRUE(oracle_positive(q));
+  }
+  EXPECT_GT(sure, 100);
+  EXPECT_GT(least_scaled_jacobian_bound(unit()), 1 - 1e-13);
+  EXPECT_LT(least_scaled_jacobian_bound(straight({0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {0, 0, 1})), 0);
+}
+
 TEST(QuadraticTet, SignsDoNotDependOnScale) {
   Random random(3);
   for (int round = 0; round < 50; ++round) {
