@@ -10,23 +10,27 @@
 #   bench/run.sh volume      kept surfaces up to 10 M elements, against TetGen, HXT and Netgen -> docs/volume-bench.md
 #   bench/run.sh peers       surfaces kept and made anew, against TetGen, Gmsh, Netgen and CGAL -> build/release/experiments/peers.json
 #   bench/run.sh improve     improvement against its targets, never worse, start meshes of others -> docs/improve-bench.md
+#   bench/run.sh formats     how fast meshes are written, every format beside a plain write -> docs/formats-bench.md
+#   bench/run.sh second_order   all clean models, balls, tori, cylinders: proven? how true? at what cost? -> docs/second-order.md
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/lib/apt.sh
 
 case ${1:-} in
-  status | derived | pipeline | surface | elements | volume | peers | improve) ;;
-  *) sed -n '2,13s/^# \{0,1\}//p' "$0"; exit 2 ;;
+  status | derived | pipeline | surface | elements | volume | peers | improve | formats | second_order) ;;
+  *) sed -n '2,15s/^# \{0,1\}//p' "$0"; exit 2 ;;
 esac
 need_packages "${build_packages[@]}" python3
 [ "$1" != surface ] || need_packages gmsh netgen libcgal-dev libgmp-dev libmpfr-dev
 [ "$1" != volume ] || need_packages "${peer_packages[@]}"
 [ "$1" != improve ] || need_packages "${peer_packages[@]}"
 [ "$1" != peers ] || need_packages "${peer_packages[@]}" libcgal-dev libgmp-dev libmpfr-dev libboost-dev
-[ -d models/clean ] || scripts/get-models.sh --ct
+[ "$1" = formats ] || [ -d models/clean ] || scripts/get-models.sh --ct
 cmake --preset release -DOCTAFRONT_BUILD_TESTS=OFF >/dev/null
 cmake --build --preset release --target octafront_cli octafront_evaluate octafront_judge_surface
 [ "$1" != derived ] || [ -d models/derived ] || scripts/derive-models.sh build/release/cli/octafront
 [ "$1" != improve ] || cmake --build --preset release --target octafront_never_worse
+[ "$1" != formats ] || { cmake --build --preset release --target octafront_write_formats; exec python3 bench/formats.py build/release "${@:2}"; }
+[ "$1" != second_order ] || cmake --build --preset release --target octafront_second_order
 [ "$1" != peers ] || cmake --build --preset release --target peer_cgal_mesh || echo "without CGAL's mesher" >&2
 exec python3 "bench/$1.py" build/release "${@:2}"

@@ -1,5 +1,7 @@
 #include "arguments.h"
 
+#include <octafront/io.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -20,7 +22,71 @@ void add_choice(CLI::App& group, const std::string& option, Value& value,
       ->type_name(choice.listed("|"));
 }
 
+/// ".vtu, .msh (Gmsh MSH 4.1), ..."
+std::string formats_that(bool FormatInfo::*can) {
+  std::string all;
+  for (const FormatInfo& info : known_formats())
+    if (info.*can && !info.endings.empty() && !info.writes_surface)
+      all += (all.empty() ? "" : ", ") + std::string(info.endings.substr(0, info.endings.find(' ')));
+  return all;
+}
+
+std::string names_of_formats() {
+  std::string all;
+  for (const FormatInfo& info : known_formats())
+    if (info.writes_mesh) all += (all.empty() ? "" : ", ") + std::string(info.name);
+  return all;
+}
+
+[[noreturn]] void refuse_group(const std::string& typed, const std::string& why) {
+  throw CLI::ValidationError("--group", "\"" + typed + "\" " + why +
+                                            "; write NAME=box:X0,Y0,Z0,X1,Y1,Z1, NAME=sphere:X,Y,Z,R or "
+                                            "NAME=patches:A,B");
+}
+
+std::vector<double> numbers_of(const std::string& typed, const std::string& list, std::size_t count) {
+  std::vector<double> numbers;
+  for (const std::string& word : CLI::detail::split(list, ',')) {
+    double value = 0;
+    if (!CLI::detail::lexical_cast(word, value) || !std::isfinite(value))
+      refuse_group(typed, "has \"" + word + "\" where a number should be");
+    numbers.push_back(value);
+  }
+  if (numbers.size() != count)
+    refuse_group(typed, "has " + std::to_string(numbers.size()) + " numbers, not " + std::to_string(count));
+  return numbers;
+}
+
 }  // namespace
+
+GroupRule group_rule(const std::string& typed) {
+  const std::size_t equals = typed.find('=');
+  if (equals == 0 || equals == std::string::npos) refuse_group(typed, "has no name");
+  GroupRule rule{typed.substr(0, equals), NamedSet::Kind::kNodes, {}};
+  std::vector<std::string> words = CLI::detail::split(typed.substr(equals + 1), ':');
+  const std::vector<std::pair<std::string, NamedSet::Kind>> kinds{
+      {"nodes", NamedSet::Kind::kNodes}, {"faces", NamedSet::Kind::kFaces}, {"elements", NamedSet::Kind::kElements}};
+  for (const auto& [word, kind] : kinds)
+    if (words.size() == 3 && words[0] == word) {
+      rule.kind = kind;
+      words.erase(words.begin());
+    }
+  if (words.size() != 2) refuse_group(typed, "does not say where it is");
+  if (words[0] == "box") {
+    const std::vector<double> n = numbers_of(typed, words[1], 6);
+    rule.where = Box3{{std::min(n[0], n[3]), std::min(n[1], n[4]), std::min(n[2], n[5])},
+                      {std::max(n[0], n[3]), std::max(n[1], n[4]), std::max(n[2], n[5])}};
+  } else if (words[0] == "sphere") {
+    const std::vector<double> n = numbers_of(typed, words[1], 4);
+    if (!(n[3] > 0)) refuse_group(typed, "has a radius that is not above 0");
+    rule.where = GroupRule::Sphere{{n[0], n[1], n[2]}, n[3]};
+  } else if (words[0] == "patches") {
+    rule.where = CLI::detail::split(words[1], ',');
+  } else {
+    refuse_group(typed, "has \"" + words[0] + "\" where box, sphere or patches should be");
+  }
+  return rule;
+}
 
 std::int64_t whole_number(double n) {
   if (!(std::abs(n) < 9e18) || n != std::floor(n))
@@ -35,7 +101,7 @@ void declare_input(CLI::App& command, Arguments& a) {
 }
 
 void declare_mesh_input(CLI::App& command, Arguments& a) {
-  command.add_option("input", a.input, "Tetrahedral mesh: VTU, Gmsh .msh or MEDIT .mesh")
+  command.add_option("input", a.input, "Tetrahedral mesh: " + formats_that(&FormatInfo::reads_mesh))
       ->required()
       ->type_name("MESH");
 }
@@ -43,6 +109,22 @@ void declare_mesh_input(CLI::App& command, Arguments& a) {
 void declare_output(CLI::App& command, Arguments& a, const std::string& what, bool required) {
   auto* option = command.add_option("-o,--output", a.output, what)->type_name("FILE");
   if (required) option->required();
+}
+
+void declare_mesh_output(CLI::App& command, Arguments& a) {
+  declare_output(command, a, "Mesh, its format by the ending: " + formats_that(&FormatInfo::writes_mesh), true);
+  command.add_option("--format", a.format, "Format by name, whatever the ending: " + names_of_formats())
+      ->type_name("NAME");
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--group",
+          [&a](const std::vector<std::string>& all) {
+            for (const std::string& typed : all) a.groups.push_back(group_rule(typed));
+          },
+          "Add a set: NAME=box:X0,Y0,Z0,X1,Y1,Z1, NAME=sphere:X,Y,Z,R or NAME=patches:A,B; of nodes, or "
+          "NAME=elements:box:..., NAME=faces:box:...")
+      ->type_name("NAME=WHERE")
+      ->allow_extra_args(false);
 }
 
 void declare_report(CLI::App& command, Arguments& a) {
@@ -143,7 +225,7 @@ void declare_volume(CLI::App& command, Arguments& a) {
   add_choice<Ranking>(*group, "--ranking", o.ranking,
                       {{"solid-angle", Ranking::kSolidAngle}, {"quality", Ranking::kQuality}}, "Order of candidates");
   add_choice<Order>(
-      *group, "--order", o.order,
+      *group, "--queue", o.order,
       {{"layers", Order::kLayers}, {"smallest", Order::kSmallest}, {"newest", Order::kNewest}},
       "Order of the front's faces: layer by layer, the smallest of each layer first, or the newest first");
 }
@@ -189,6 +271,31 @@ void declare_ground(CLI::App& command, Arguments& a) {
   group->add_option("--feature-angle", a.options.surface.feature_angle, "Edges that bend by more degrees are kept")
       ->type_name("DEG")
       ->capture_default_str();
+}
+
+void declare_order(CLI::App& command, Arguments& a) {
+  add_choice<int>(
+      command, "--order", a.options.order, {{"1", 1}, {"2", 2}},
+      "2: elements of second order, with mid-side nodes; those of the boundary on the smooth surface that the "
+      "input stands for, every element proven valid");
+}
+
+void declare_conversion(CLI::App& command, Arguments& a) {
+  add_choice<int>(
+      command, "--order", a.new_order, {{"keep", 0}, {"1", 1}, {"2", 2}},
+      "1: mid-side nodes are dropped; 2: they are added where there are none, in the middle of straight edges");
+}
+
+void declare_solver(CLI::App& command, Arguments& a) {
+  const Choice<Solver> choice{{{"abaqus", Solver::kAbaqus},
+                               {"ansys", Solver::kAnsys},
+                               {"nastran", Solver::kNastran},
+                               {"calculix", Solver::kCalculix}}};
+  command
+      .add_option_function<std::string>(
+          "--solver", [&a, choice](const std::string& typed) { a.solver = choice.value_of("--solver", typed); },
+          "List the elements of a mesh that this solver would warn of or refuse, by its documented limits")
+      ->type_name(choice.listed("|"));
 }
 
 std::vector<const CLI::Option*> options_of(const CLI::App& command) {

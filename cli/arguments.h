@@ -1,11 +1,14 @@
 #pragma once
 
+#include <octafront/named_groups.h>
 #include <octafront/options.h>
+#include <octafront/solver_checks.h>
 
 #include "option_names.h"
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,6 +21,10 @@ struct Arguments {
   std::filesystem::path input, output, json, surface;
   std::filesystem::path regions, point_sizes, size_field;  ///< files with sizes; empty: none
   Options options;
+  std::optional<Solver> solver;   ///< whose limits a mesh is checked by
+  std::string format;             ///< of the mesh that is written; empty: by the ending
+  std::vector<GroupRule> groups;  ///< that are added to it
+  int new_order = 0;              ///< of a converted mesh; 0: as it is
   int threads = 0;
   bool quiet = false;
   OptionNames names;
@@ -29,6 +36,8 @@ struct Arguments {
 void declare_input(CLI::App& command, Arguments& arguments);
 void declare_mesh_input(CLI::App& command, Arguments& arguments);
 void declare_output(CLI::App& command, Arguments& arguments, const std::string& what, bool required);
+/// -o, --format and --group of commands that write a mesh.
+void declare_mesh_output(CLI::App& command, Arguments& arguments);
 void declare_report(CLI::App& command, Arguments& arguments);
 void declare_run(CLI::App& command, Arguments& arguments);
 void declare_sizes(CLI::App& command, Arguments& arguments);
@@ -36,6 +45,9 @@ void declare_surface(CLI::App& command, Arguments& arguments);
 void declare_volume(CLI::App& command, Arguments& arguments);
 void declare_improvement(CLI::App& command, Arguments& arguments);
 void declare_ground(CLI::App& command, Arguments& arguments);
+void declare_order(CLI::App& command, Arguments& arguments);
+void declare_conversion(CLI::App& command, Arguments& arguments);
+void declare_solver(CLI::App& command, Arguments& arguments);
 
 /// Every option of a command, those of its groups too.
 std::vector<const CLI::Option*> options_of(const CLI::App& command);
@@ -65,6 +77,10 @@ struct Choice {
     throw CLI::ValidationError(option, "is one of " + listed(", ") + "; \"" + typed + "\" is none of them");
   }
 };
+
+/// NAME=box:x0,y0,z0,x1,y1,z1, NAME=sphere:x,y,z,r, NAME=patches:a,b,c, or with what is to be in the group before:
+/// NAME=elements:box:... Throws CLI::ValidationError.
+GroupRule group_rule(const std::string& typed);
 
 /// "1e5" is a number of elements too. Throws CLI::ValidationError.
 std::int64_t whole_number(double n);

@@ -34,8 +34,44 @@ Options checked_options(const Session& session) {
 
 // Tetrahedral meshes are told from surfaces by the ending: no surface format shares one with them.
 bool is_tet_mesh_file(const std::filesystem::path& file) {
-  const std::string ending = file.extension().string();
-  return ending == ".vtu" || ending == ".msh" || ending == ".mesh";
+  const std::string ending = CLI::detail::to_lower(file.extension().string());
+  for (const FormatInfo& info : known_formats())
+    for (const std::string& known : CLI::detail::split(std::string(info.endings), ' '))
+      if (info.reads_mesh && !ending.empty() && ending == known) return true;
+  return false;
+}
+
+TetMesh read_mesh_input(const Session& session) {
+  const Arguments& a = session.arguments();
+  MeshFile file = read_mesh_file(a.input, session.context());
+  session.say(fmt::format("{}: {}, {} tetrahedra{}\n", a.input.string(), file.format, file.mesh.tets.size(),
+                          file.mesh.is_second_order() ? " of second order" : ""));
+  session.say_notes("reading", file.notes);
+  return std::move(file.mesh);
+}
+
+/// Adds the groups that were asked for, writes the mesh, and says what was lost on the way.
+void write_mesh_output(Session& session, TetMesh mesh) {
+  const Arguments& a = session.arguments();
+  std::vector<std::string> notes;
+  for (const GroupRule& rule : a.groups)
+    if (std::string note = add_group(mesh, rule); !note.empty()) notes.push_back(std::move(note));
+  session.context().report("writing", -1);
+  for (std::string& note : write_mesh(a.output, mesh, session.context(), a.format)) notes.push_back(std::move(note));
+  session.say_notes("writing", notes);
+  session.found({{"output", {{"file", a.output.string()}, {"notes", notes}}}});
+}
+
+/// The groups of a mesh and their sizes, in words and for programs.
+void tell_groups(Session& session, const TetMesh& mesh) {
+  Json all = Json::array();
+  std::string words;
+  for (const GroupInfo& group : groups_of(mesh)) {
+    all.push_back({{"origin", group.origin}, {"name", group.name}, {"size", group.size}});
+    words += fmt::format("  {} \"{}\": {}\n", group.origin, group.name, group.size);
+  }
+  session.found({{"groups", all}});
+  if (!words.empty()) session.say("groups:\n" + words);
 }
 
 Json place(Vec3 p) {
@@ -61,9 +97,73 @@ std::string quality_in_words(const QualitySummary& q) {
                      q.beta_mean, q.dihedral_min, q.dihedral_max);
 }
 
+Json json_of(const JacobianSummary& found) {
+  Json first = Json::array();
+  for (const InvalidElement& e : found.first)
+    first.push_back({{"number", e.tet}, {"at", place(e.at)}, {"scaled_jacobian", e.scaled_jacobian}});
+  return {{"least_scaled_jacobian", found.least_scaled_jacobian},
+          {"least_tet", found.least_tet},
+          {"invalid", found.invalid},
+          {"first", first}};
+}
+
+// Invalid elements of second order are named, for solvers stop at them.
+void prove_jacobians(Session& session, const TetMesh& mesh) {
+  if (!mesh.is_second_order()) return;
+  const JacobianSummary found = check_jacobians(mesh, session.context());
+  session.found({{"second_order", json_of(found)}});
+  if (found.invalid == 0) {
+    session.say(fmt::format("second order: every Jacobian proven positive; the least scaled one is {:.4f} (tet {})\n",
+                            found.least_scaled_jacobian, found.least_tet));
+    return;
+  }
+  session.found({{"kind", "mesh"}, {"valid", false}});
+  std::string list;
+  for (const InvalidElement& e : found.first)
+    list += fmt::format("\n  element {} at ({:.6g}, {:.6g}, {:.6g}): least scaled Jacobian {:.4g}", e.tet, e.at.x,
+                        e.at.y, e.at.z, e.scaled_jacobian);
+  throw InputError(
+      fmt::format("{}: the Jacobian of {} is not positive everywhere, by the exact signs of its "
+                  "coefficients; move mid-side nodes towards the middle of their edges, or mesh anew:{}{}",
+                  session.arguments().input.string(), counted(found.invalid, "element"), list,
+                  found.invalid > found.first.size() ? "\n  ..." : ""));
+}
+
+Json json_of(const SolverFinding& f) {
+  Json worst = Json::array();
+  for (const SolverFinding::Element& e : f.worst)
+    worst.push_back({{"number", e.tet}, {"at", place(e.at)}, {"value", e.value}});
+  return {{"measure", f.measure},
+          {"refused", f.refused},
+          {f.above ? "above" : "below", f.limit},
+          {"count", f.count},
+          {"worst", worst}};
+}
+
+// What the solver would say, limit by limit. Returns the number of elements that it would refuse.
+std::uint64_t ask_solver(Session& session, const TetMesh& mesh) {
+  const Arguments& a = session.arguments();
+  if (!a.solver) return 0;
+  Json all = Json::array();
+  std::uint64_t refused = 0;
+  for (const SolverFinding& f : check_for_solver(mesh, *a.solver, session.context())) {
+    all.push_back(json_of(f));
+    refused += f.refused ? f.count : 0;
+    session.say(fmt::format("  {:<8} {:<46} {} {:<8g} {}\n", f.refused ? "refused" : "warned", f.measure,
+                            f.above ? "above" : "below", f.limit, counted(f.count, "element")));
+    for (const SolverFinding::Element& e : f.worst)
+      session.say(fmt::format("           element {} at ({:.6g}, {:.6g}, {:.6g}): {:.6g}\n", e.tet, e.at.x, e.at.y,
+                              e.at.z, e.value));
+  }
+  session.found({{"solver", all}});
+  return refused;
+}
+
 void check_tet_mesh(Session& session) {
   const std::string name = session.arguments().input.string();
-  const TetMesh mesh = read_mesh(session.arguments().input, session.context());
+  const TetMesh mesh = read_mesh_input(session);
+  const std::uint64_t refused = ask_solver(session, mesh);
+  prove_jacobians(session, mesh);
   const auto defect = first_defect(mesh, session.context());
   session.found({{"kind", "mesh"}, {"valid", !defect}});
   if (defect) throw InputError(fmt::format("{}: not a valid mesh: {}", name, *defect));
@@ -76,6 +176,8 @@ void check_tet_mesh(Session& session) {
   session.found({{"quality", Json::parse(to_json(report))["quality"]}});
   session.say(fmt::format("{}: a valid mesh of {}\n", name, quality_in_words(report.quality)));
   tell_worst(session, mesh, report.quality);
+  tell_groups(session, mesh);
+  if (refused > 0) throw InputError(fmt::format("{}: the solver would refuse {}", name, counted(refused, "element")));
 }
 
 Json json_of(const SurfaceDefects::Kind& kind) {
@@ -144,10 +246,9 @@ std::filesystem::path file_at_fault(const Arguments& a, const SurfaceMesh& surfa
 
 void run_mesh(Session& session) {
   const Arguments& a = session.arguments();
-  check_mesh_target(a.output);
+  check_mesh_target(a.output, a.format);
   const Result result = run_on_input(session, generate);
-  session.context().report("writing", -1);
-  write_mesh(a.output, result.mesh, session.context());
+  write_mesh_output(session, result.mesh);
   session.tell(result.report);
   tell_worst(session, result.mesh, result.report.quality);
   say_written(session);
@@ -174,9 +275,9 @@ void run_size(Session& session) {
 
 void run_improve(Session& session) {
   const Arguments& a = session.arguments();
-  check_mesh_target(a.output);
+  check_mesh_target(a.output, a.format);
   check_options(a.options);
-  const TetMesh mesh = read_mesh(a.input, session.context());
+  const TetMesh mesh = read_mesh_input(session);
   SurfaceMesh surface;
   if (!a.surface.empty()) surface = read_surface(a.surface, session.context()).surface;
   const auto improved = [&] {
@@ -187,8 +288,7 @@ void run_improve(Session& session) {
     }
   };
   const Improved result = improved();
-  session.context().report("writing", -1);
-  write_mesh(a.output, result.mesh, session.context());
+  write_mesh_output(session, result.mesh);
   session.say(fmt::format("{}: {}\n", a.input.string(), quality_in_words(result.before)));
   session.say(fmt::format("improved: {}\n", quality_in_words(result.report.quality)));
   session.tell(result.report);
@@ -196,8 +296,22 @@ void run_improve(Session& session) {
   say_written(session);
 }
 
+void run_convert(Session& session) {
+  const Arguments& a = session.arguments();
+  check_mesh_target(a.output, a.format);
+  TetMesh mesh = read_mesh_input(session);
+  if (a.new_order == 1) make_linear(mesh);
+  if (a.new_order == 2 && !mesh.is_second_order()) make_second_order(mesh, nullptr, 40, session.context());
+  // Whoever converts wants the mesh as it is; but nobody should find out in the solver.
+  if (const auto defect = first_defect(mesh, session.context()))
+    session.say_notes("checking", {"the mesh is not valid: " + *defect});
+  write_mesh_output(session, std::move(mesh));
+  say_written(session);
+}
+
 void run_check(Session& session) {
   if (is_tet_mesh_file(session.arguments().input)) return check_tet_mesh(session);
+  if (session.arguments().solver) throw OptionError("--solver looks at tetrahedral meshes; this is a surface");
   check_surface(session);
 }
 

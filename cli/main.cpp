@@ -126,11 +126,12 @@ int main(int argc, char** argv) {
 
   auto* mesh = app.add_subcommand("mesh", "Mesh a surface: octafront mesh part.stl -o part.vtu");
   declare_input(*mesh, a);
-  declare_output(*mesh, a, "Mesh: .vtu, .msh (Gmsh 4.1) or .mesh (MEDIT)", true);
+  declare_mesh_output(*mesh, a);
   declare_sizes(*mesh, a);
   declare_surface(*mesh, a);
   declare_volume(*mesh, a);
   declare_improvement(*mesh, a);
+  declare_order(*mesh, a);
   declare_report(*mesh, a);
   declare_run(*mesh, a);
   mesh->callback([&] { chosen = run_mesh; });
@@ -156,15 +157,26 @@ int main(int argc, char** argv) {
   auto* better =
       app.add_subcommand("improve", "Make the elements of a mesh better: octafront improve in.msh -o out.vtu");
   declare_mesh_input(*better, a);
-  declare_output(*better, a, "Mesh: .vtu, .msh (Gmsh 4.1) or .mesh (MEDIT)", true);
+  declare_mesh_output(*better, a);
   declare_ground(*better, a);
   declare_improvement(*better, a);
+  declare_order(*better, a);
   declare_report(*better, a);
   declare_run(*better, a);
   better->callback([&] { chosen = run_improve; });
 
-  auto* check = app.add_subcommand("check", "Say what is wrong with a surface, or with a mesh (.vtu, .msh, .mesh)");
+  auto* convert =
+      app.add_subcommand("convert", "Another format, with all names and sets that it holds: in.msh -o out.inp");
+  declare_mesh_input(*convert, a);
+  declare_mesh_output(*convert, a);
+  declare_conversion(*convert, a);
+  declare_report(*convert, a);
+  declare_run(*convert, a);
+  convert->callback([&] { chosen = run_convert; });
+
+  auto* check = app.add_subcommand("check", "Say what is wrong with a surface or a mesh, and what groups it has");
   declare_input(*check, a);
+  declare_solver(*check, a);
   declare_report(*check, a);
   declare_run(*check, a);
   check->callback([&] { chosen = run_check; });

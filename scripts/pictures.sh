@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Makes the pictures of the README anew: three meshes, cut open, elements coloured by quality.
+# Makes the pictures of the README anew: three meshes, cut open, elements coloured by quality; and those of
+# docs/second-order.md.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/lib/apt.sh
@@ -16,3 +17,5 @@ picture() { # name, input, mesh options, render options
 picture bracket samples/bracket.stl "" "--cut 0,1,0 --up 0,0,1 --keep 0.5 --view 0.5,1,0.6"
 picture bunny models/clean/bunny00.off "--elements 60000" "--cut 0,0,1 --keep 0.5"
 picture fandisk models/clean/fandisk_large.off "--elements 60000" "--cut 0,1,0 --up 0,0,1 --keep 0.6 --view 0.45,1,0.5"
+picture first-order samples/torus_knot.ply "--size 4 --order 1" "--keep 1.1 --no-edges --size 700 560 --view 0.3,0.4,1"
+picture second-order samples/torus_knot.ply "--size 4 --order 2" "--keep 1.1 --no-edges --size 700 560 --view 0.3,0.4,1"

@@ -26,7 +26,7 @@ def cells_behind(grid, normal, fraction):
     """The tetrahedra whose centroid lies behind the plane that leaves `fraction` of the extent."""
     points = vtk_to_numpy(grid.GetPoints().GetData())
     types = vtk_to_numpy(grid.GetCellTypesArray())
-    tets = np.flatnonzero(types == vtk.VTK_TETRA)
+    tets = np.flatnonzero(np.isin(types, (vtk.VTK_TETRA, vtk.VTK_QUADRATIC_TETRA)))
     corners = vtk_to_numpy(grid.GetCells().GetConnectivityArray())
     offsets = vtk_to_numpy(grid.GetCells().GetOffsetsArray())[:-1]
     height = points[corners[offsets[tets][:, None] + np.arange(4)]].mean(axis=1) @ normal
@@ -53,6 +53,7 @@ def colours():
 def scene(cells, edges):
     skin = vtk.vtkGeometryFilter()
     skin.SetInputData(cells)
+    skin.SetNonlinearSubdivisionLevel(3)  # curved elements are drawn curved
     mapper = vtk.vtkPolyDataMapper()
     mapper.SetInputConnection(skin.GetOutputPort())
     mapper.SetScalarModeToUseCellFieldData()

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Builds everything and runs the tests, the lowest rooms first. Installs what is missing (Debian 12).
 #   scripts/test.sh [--all | --low] [PRESET] [CTEST OPTION ...]
-#     --all     with the long tests: large models, a campaign of nasty surfaces
+#     --all     with the long tests: large models, a campaign of nasty surfaces, solved examples
 #     --low     only the rooms that all others stand on: core, geometry, mesh, surface
 #     PRESET    a configure preset, by default release; also: dev (validators), asan-ubsan, tsan
 #     CTEST OPTION   e.g. -L volume (the tests of one room), --stop-on-failure
@@ -19,6 +19,7 @@ preset=release
 if [ $# -gt 0 ] && [[ $1 != -* ]]; then preset=$1 && shift; fi
 
 need_packages "${build_packages[@]}" "${test_packages[@]}"
+[ ${#which[@]} -gt 0 ] || need_packages "${format_packages[@]}"
 cmake --preset "$preset" -DOCTAFRONT_BUILD_BENCH=OFF -DOCTAFRONT_WERROR=ON >/dev/null
 cmake --build --preset "$preset" "${targets[@]}"
 failed=build/$preset/Testing/Temporary/LastTestsFailed.log

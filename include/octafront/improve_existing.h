@@ -18,7 +18,8 @@ struct Improved {
 /// Makes the elements of any valid mesh better, by options.improve: reconnection, smoothing, new vertices. Regions,
 /// patches and names stay. The boundary stays too, triangle for triangle, unless `surface` is given: a clean surface
 /// on which the vertices of the boundary lie, and may then slide; feature curves and corners, found by
-/// options.surface.feature_angle, stay what they are.
+/// options.surface.feature_angle, stay what they are. With options.order 2 the result is of second order, curved to the
+/// `surface`, straight without one; a mesh that is of second order already is taken as a linear one.
 ///
 /// Example: improve_existing(read_mesh("part.msh")).mesh.
 ///

@@ -35,10 +35,13 @@ SurfaceFile read_surface(const std::string& file, const RunContext& context = {}
 /// work.
 void write_surface(const std::string& file, const SurfaceMesh& surface, const RunContext& context = {});
 
-/// Writes by the ending of the name: .vtu (compressed binary, with region, patch and beta per element), .msh
-/// (Gmsh 4.1), .mesh (MEDIT). Written beside and renamed into place. Throws OutputError, and OptionError for unknown
-/// endings before any work.
-void write_mesh(const std::string& file, const TetMesh& mesh, const RunContext& context = {});
+/// Writes a mesh in the format that the ending of the name tells, or that is asked for by its name in known_formats()
+/// ("abaqus", "msh22"; needed where endings clash). Regions, patches, curves and sets become the format's own; formats
+/// of surfaces get the boundary. Returns what a user should know: what the format cannot hold, and names that had to
+/// change. Streamed; written beside and renamed into place, formats of several files and folders too. Throws
+/// OutputError, and OptionError for an unknown format or ending before any work.
+std::vector<std::string> write_mesh(const std::string& file, const TetMesh& mesh, const RunContext& context = {},
+                                    const std::string& format = {});
 
 /// Writes the background grid of a size field as .vtu: hexahedra with the size at their corners and their level.
 /// A field without a grid (uniform, from a function) has nothing to show: OutputError.
@@ -68,22 +71,55 @@ bool same_file(const std::string& a, const std::string& b);
 
 /// Throws OptionError if the ending of `file` is none that write_mesh (or write_surface) knows, OutputError if its
 /// folder does not exist or cannot be written: to be called before long work.
-void check_mesh_target(const std::string& file);
+void check_mesh_target(const std::string& file, const std::string& format = {});
 void check_surface_target(const std::string& file);
 void check_size_field_target(const std::string& file);
 /// The same for files of any ending.
 void check_text_target(const std::string& file);
 
-/// Reads a tetrahedral mesh: .vtu (not only as written here), Gmsh .msh 4.1 and 2.2 (ASCII and binary), MEDIT .mesh.
-/// Inverted tetrahedra are turned, other kinds of elements and unused vertices are left out, and a boundary face that
-/// the file lacks is added. Throws InputError.
+/// A tetrahedral mesh that was read.
+struct MeshFile {
+  TetMesh mesh;
+  std::string format;              ///< e.g. "Gmsh MSH 4.1"
+  std::vector<std::string> notes;  ///< what a user should know, e.g. "3 hexahedra were left out"
+};
+
+/// Reads a tetrahedral mesh, linear or of second order, with its groups, in any format of known_formats() that
+/// reads_mesh; recognised by content, the name breaks ties. Inverted tetrahedra are turned, other kinds of elements and
+/// unused vertices are left out, a boundary face that the file lacks is added, and faces inside that the file has
+/// become interfaces. Groups of elements that overlap no earlier one become regions (of faces: patches, of edges:
+/// curves), others sets. Throws InputError; memory is bounded by a small multiple of the size of the file.
+MeshFile read_mesh_file(const std::string& file, const RunContext& context = {});
+/// The mesh alone.
 TetMesh read_mesh(const std::string& file, const RunContext& context = {});
 
-/// What is known of a file format, for help texts.
+/// A region, patch, curve or set of a mesh, for lists.
+struct GroupInfo {
+  std::string origin;  ///< "region", "patch", "curve", "nodes", "edges", "faces", "elements"
+  std::string name;    ///< made from the number where it has none
+  std::uint64_t size = 0;
+};
+/// All that have members.
+std::vector<GroupInfo> groups_of(const TetMesh& mesh);
+
+/// What becomes of a numbered kind of part, which may have names, in a format.
+enum class Keeps { kNothing, kNumbers, kNames, kNodeSets };
+
+/// What a format for tetrahedral meshes can hold.
+struct FormatHolds {
+  Keeps regions = Keeps::kNothing, patches = Keeps::kNothing, curves = Keeps::kNothing;
+  bool interfaces = false;                                                             ///< patches inside
+  bool node_sets = false, edge_sets = false, face_sets = false, element_sets = false;  ///< further sets, overlapping
+  bool second_order = false, doubles = true, binary = false;
+};
+
+/// What is known of a file format, for help texts and --format.
 struct FormatInfo {
-  std::string_view name;    ///< e.g. "STL"
-  std::string_view ending;  ///< e.g. ".stl"
-  bool reads_surface, writes_surface, reads_mesh, writes_mesh;
+  std::string_view name;     ///< for --format, e.g. "abaqus"
+  std::string_view title;    ///< e.g. "Abaqus, CalculiX"
+  std::string_view endings;  ///< e.g. ".bdf .nas", the first one preferred; may be empty
+  bool reads_surface = false, writes_surface = false, reads_mesh = false, writes_mesh = false;
+  FormatHolds holds;         ///< of meshes
   std::string_view carries;  ///< what survives in it, e.g. "double precision, no patches"
 };
 

@@ -6,12 +6,15 @@
 #include <octafront/generate.h>
 #include <octafront/improve_existing.h>
 #include <octafront/io.h>
+#include <octafront/named_groups.h>
 #include <octafront/options.h>
 #include <octafront/quality.h>
 #include <octafront/repair.h>
 #include <octafront/report.h>
 #include <octafront/run_context.h>
+#include <octafront/second_order.h>
 #include <octafront/size_field.h>
+#include <octafront/solver_checks.h>
 #include <octafront/surface_mesh.h>
 #include <octafront/tet_mesh.h>
 #include <octafront/validity.h>

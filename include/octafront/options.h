@@ -145,6 +145,9 @@ struct Options {
   SurfaceOptions surface;
   VolumeOptions volume;
   ImproveOptions improve;
+  /// 1: linear elements. 2: elements of second order, curved to the surface that the input stands for; see
+  /// make_second_order(). Straight where the input's triangles are kept.
+  int order = 1;
 };
 
 }  // namespace octafront

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <octafront/quality.h>
+#include <octafront/second_order.h>
 
 #include <cstdint>
 #include <string>
@@ -29,13 +30,14 @@ struct SizeSummary {
 
 /// What a whole run did and made.
 struct Report {
-  std::vector<StageReport> stages;  ///< in the order in which they ran
-  std::uint64_t points = 0, tets = 0, boundary_faces = 0;
+  std::vector<StageReport> stages;                         ///< in the order in which they ran
+  std::uint64_t points = 0, tets = 0, boundary_faces = 0;  ///< points: mid-side nodes too
   std::uint32_t bodies = 0;
-  double volume = 0;         ///< of the mesh, input unit cubed
-  double input_volume = 0;   ///< enclosed by the repaired input
-  double expected_tets = 0;  ///< predicted by the sizes before the volume is meshed
-  QualitySummary quality;
+  double volume = 0;                ///< of the mesh, input unit cubed
+  double input_volume = 0;          ///< enclosed by the repaired input
+  double expected_tets = 0;         ///< predicted by the sizes before the volume is meshed
+  QualitySummary quality;           ///< of the elements with straight edges
+  SecondOrderSummary second_order;  ///< edges == 0: the mesh is linear
   SizeSummary surface_edges, volume_edges;
   double wall_seconds = 0, cpu_seconds = 0;
   std::uint64_t peak_memory_bytes = 0;  ///< of the process

@@ -29,19 +29,45 @@ inline constexpr std::array<std::array<int, 3>, 4> kTetFaces{{{1, 2, 3}, {0, 3, 
 /// Corners of the six edges.
 inline constexpr std::array<std::array<int, 2>, 6> kTetEdges{{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
 
-/// A tetrahedral mesh as flat arrays.
+/// A named set of parts of a mesh, overlapping others or not.
+struct NamedSet {
+  enum class Kind { kNodes, kEdges, kFaces, kElements };
+  std::string name;
+  Kind kind = Kind::kNodes;
+  /// Ascending, each once. Nodes: indices into points (mid-side nodes too); elements: into tets; edges: into
+  /// curve_edges; faces: into boundary, and, counting on behind it, into interfaces.
+  std::vector<std::uint32_t> members;
+
+  friend bool operator==(const NamedSet&, const NamedSet&) = default;
+};
+
+/// A tetrahedral mesh as flat arrays: linear, or of second order.
 ///
 /// What leaves the library is *valid* (see first_defect): every tet is positive by exact sign, every face belongs to
 /// one or two tets, the faces that belong to one are exactly `boundary`, and no vertex is unused.
+///
+/// Triangles and edges have no mid-side nodes of their own: theirs are those of the tetrahedra at them.
 struct TetMesh {
-  std::vector<Vec3> points;              ///< input units
-  std::vector<Tet> tets;                 ///< positive, indices into points
-  std::vector<std::uint32_t> region;     ///< one per tet: number of the body it lies in; empty: all 0
-  std::vector<Triangle> boundary;        ///< the boundary faces, counter-clockwise seen from outside
-  std::vector<std::uint32_t> patch;      ///< one per boundary face: its patch; empty: all 0
-  std::vector<std::uint32_t> source;     ///< one per boundary face: the input face nearest to it, or it; may be empty
-  std::vector<std::string> patch_names;  ///< as in SurfaceMesh
+  std::vector<Vec3> points;               ///< input units
+  std::vector<Tet> tets;                  ///< positive, indices into points
+  std::vector<std::uint32_t> region;      ///< one per tet: number of the body it lies in; empty: all 0
+  std::vector<std::string> region_names;  ///< region r is region_names[r]; may be shorter than the number of regions
+  std::vector<Triangle> boundary;         ///< the boundary faces, counter-clockwise seen from outside
+  std::vector<std::uint32_t> patch;       ///< one per boundary face: its patch; empty: all 0
+  std::vector<std::uint32_t> source;      ///< one per boundary face: the input face nearest to it, or it; may be empty
+  std::vector<std::string> patch_names;   ///< as in SurfaceMesh; also of the patches of interfaces
+  std::vector<Triangle> interfaces;       ///< faces inside that belong to a patch: between regions, or sheets; either
+                                          ///< side may be in front
+  std::vector<std::uint32_t> interface_patch;  ///< one per interface: its patch; empty: all 0
+  std::vector<Edge> curve_edges;               ///< edges of tets that lie on curves; either end may come first
+  std::vector<std::uint32_t> curve;            ///< one per curve edge: its curve; empty: all 0
+  std::vector<std::string> curve_names;        ///< curve c is curve_names[c]; may be shorter than the number of curves
+  /// Second order: the mid-side nodes of each tet in the order of kTetEdges, shared by the tets at an edge. They are
+  /// points like others, behind all corners. Empty: the mesh is linear.
+  std::vector<std::array<VertexIndex, 6>> mid_nodes;
+  std::vector<NamedSet> sets;  ///< further named parts: what a user asked for, or a file had
 
+  bool is_second_order() const { return !mid_nodes.empty(); }
   friend bool operator==(const TetMesh&, const TetMesh&) = default;
 };
 

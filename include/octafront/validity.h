@@ -12,7 +12,11 @@ namespace octafront {
 /// The first way in which a mesh breaks the laws below, as a sentence with ids and coordinates; else nullopt.
 ///   - indices in range, coordinates finite, no vertex unused, every tet positive by exact sign
 ///   - every face in one or two tets; in two only from opposite sides
-///   - the faces in one tet are exactly `boundary`, oriented outward, each once
+///   - the faces in one tet are exactly `boundary`, oriented outward, each once; interfaces lie between two tets, each
+///     listed once
+///   - curve edges are edges of tets; sets have members in range, ascending
+///   - second order: each edge has one mid-side node, of its own, and all of them come behind the corners
+///   - second order: every element has a positive Jacobian, by the exact sign of its twenty Bernstein coefficients
 ///   - sum of the tet volumes equal to the volume that the boundary encloses, to rounding
 /// Throws Cancelled if `context` asks for it. Cost: O(tets), about 0.3 s per million.
 std::optional<std::string> first_defect(const TetMesh& mesh, const RunContext& context = no_context());

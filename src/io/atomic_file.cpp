@@ -22,13 +22,12 @@ fs::path folder_of(const fs::path& file) {
   return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
 
-/// A name beside the target that no other writer uses.
-fs::path temporary_name(const fs::path& target) {
+}  // namespace
+
+fs::path temporary_beside(const fs::path& target) {
   static std::atomic<unsigned> counter{0};
   return folder_of(target) / fmt::format(".octafront-{}-{}.tmp", ::getpid(), counter++);
 }
-
-}  // namespace
 
 // Replacing a link would cut it; what it points to is replaced instead, or made where it points to nothing yet.
 fs::path links_followed(const fs::path& file) {
@@ -63,6 +62,15 @@ void check_writable(const fs::path& target) {
                                   std::generic_category().message(errno)));
 }
 
+void check_folder_writable(const fs::path& target) {
+  const std::string name = target.string();
+  std::error_code error;
+  if (!fs::exists(target, error)) return check_writable(target);
+  if (!fs::is_directory(target, error)) throw OutputError(name + ": cannot be written: it is no folder");
+  if (!fs::is_empty(target, error) && !fs::exists(target / "faces", error))
+    throw OutputError(name + ": cannot be written: the folder has other files, which would be lost; give another name");
+}
+
 AtomicFile::AtomicFile(const fs::path& target, const RunContext& context)
     : context_(context), name_(target.string()), target_(links_followed(target)) {
   check_writable(target);
@@ -77,7 +85,7 @@ AtomicFile::AtomicFile(const fs::path& target, const RunContext& context)
 }
 
 void AtomicFile::open_named() {
-  temporary_ = temporary_name(target_);
+  temporary_ = temporary_beside(target_);
   fd_ = ::open(temporary_.c_str(), O_CREAT | O_EXCL | O_RDWR | O_CLOEXEC, mode_);
   if (fd_ >= 0) return;
   const int error = errno;
@@ -122,6 +130,13 @@ void AtomicFile::write(const void* bytes, std::size_t size) {
   filled_ += size;
 }
 
+void AtomicFile::restart(std::uint64_t position) {
+  flush();
+  if (::ftruncate(fd_, static_cast<off_t>(position)) != 0 || ::lseek(fd_, static_cast<off_t>(position), SEEK_SET) < 0)
+    fail("cannot be written again", errno);
+  flushed_ = position;
+}
+
 void AtomicFile::overwrite(std::uint64_t position, const void* bytes, std::size_t size) {
   flush();
   const char* from = static_cast<const char*>(bytes);
@@ -138,7 +153,7 @@ void AtomicFile::overwrite(std::uint64_t position, const void* bytes, std::size_
 }
 
 void AtomicFile::give_name() {
-  const fs::path name = temporary_name(target_);
+  const fs::path name = temporary_beside(target_);
   const std::string self = fmt::format("/proc/self/fd/{}", fd_);
   if (::linkat(AT_FDCWD, self.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0) {
     temporary_ = name;
@@ -169,12 +184,16 @@ void AtomicFile::copy_to_named() {
   if (::fsync(fd_) != 0) fail("cannot be written to the disk", errno);
 }
 
-void AtomicFile::commit() {
+void AtomicFile::flush_to_disk() {
   flush();
+  if (::fsync(fd_) != 0 && errno != EINVAL && errno != EROFS) fail("cannot be written to the disk", errno);
+}
+
+void AtomicFile::commit() {
+  flush_to_disk();
   // A new file has the mode that the user's mask leaves; an old one keeps its own, which the mask must not touch.
   struct stat status {};
   if (::stat(target_.c_str(), &status) == 0) ::fchmod(fd_, status.st_mode & 07777);
-  if (::fsync(fd_) != 0 && errno != EINVAL && errno != EROFS) fail("cannot be written to the disk", errno);
   if (temporary_.empty()) give_name();
   const int closing = fd_;
   fd_ = -1;

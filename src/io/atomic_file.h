@@ -26,8 +26,12 @@ class AtomicFile {
   void write(std::string_view text) { write(text.data(), text.size()); }
   /// Bytes written so far.
   std::uint64_t position() const { return flushed_ + filled_; }
+  /// Forgets what was written from there on.
+  void restart(std::uint64_t position);
   /// Replaces bytes written before.
   void overwrite(std::uint64_t position, const void* bytes, std::size_t size);
+  /// Writes all to the disk; what can fail for lack of room has failed then.
+  void flush_to_disk();
   void commit();
 
   /// As given, for messages.
@@ -58,8 +62,13 @@ class AtomicFile {
 /// in a circle.
 std::filesystem::path links_followed(const std::filesystem::path& file);
 
+/// A name in the folder of `target` that no other writer uses.
+std::filesystem::path temporary_beside(const std::filesystem::path& target);
+
 /// Throws OutputError if `target` cannot be a new file or replace an old one: folder missing or not writable, or the
 /// name taken by something that is no file.
 void check_writable(const std::filesystem::path& target);
+/// The same for a folder that is written anew as a whole: what is there must be empty, or one of OpenFOAM's polyMesh.
+void check_folder_writable(const std::filesystem::path& target);
 
 }  // namespace octafront::io

@@ -1,11 +1,15 @@
-// MEDIT .mesh (libMeshb), text: keywords, each with a count and as many lines. What is not needed is passed over.
+// MEDIT (libMeshb): .mesh is text, keywords, each with a count and as many lines; .meshb is binary of versions 1 to 4,
+// little-endian, each section with the place of the next one. What is not needed is passed over.
 
 #include "io/raw_mesh.h"
 #include "io/readers.h"
 #include "io/scanner.h"
 #include "io/surface_builder.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstring>
 
 #include <fmt/core.h>
 
@@ -16,92 +20,205 @@ bool is_keyword(std::string_view word) {
   return !word.empty() && ((word[0] >= 'A' && word[0] <= 'Z') || (word[0] >= 'a' && word[0] <= 'z'));
 }
 
-class Medit {
- public:
-  explicit Medit(const Input& input) : input_(input), scan_(input, '#') {}
+struct Section {
+  std::string_view name;
+  int code;
+  int dimension;      ///< 0 vertices, 1 edges, 2 triangles, 3 tetrahedra, -1: others
+  std::size_t nodes;  ///< of an element
+};
+constexpr std::array kSections{Section{"Vertices", 4, 0, 0},
+                               Section{"Edges", 5, 1, 2},
+                               Section{"EdgesP2", 25, 1, 3},
+                               Section{"Triangles", 6, 2, 3},
+                               Section{"TrianglesP2", 24, 2, 6},
+                               Section{"Tetrahedra", 8, 3, 4},
+                               Section{"TetrahedraP2", 30, 3, 10},
+                               Section{"Quadrilaterals", 7, -1, 4},
+                               Section{"Prisms", 9, -1, 6},
+                               Section{"Hexahedra", 10, -1, 8},
+                               Section{"QuadrilateralsQ2", 27, -1, 9},
+                               Section{"HexahedraQ2", 33, -1, 27},
+                               Section{"Pyramids", 49, -1, 5}};
 
-  TetMesh read() {
+/// What both kinds of file share; `Source` yields numbers and knows how to complain.
+template <class Source>
+class SectionReader {
+ public:
+  SectionReader(Source& source, RawMesh& raw) : source_(source), raw_(raw) {}
+
+  void read(const Section& section, std::uint64_t count) {
+    if (section.dimension < 0) {
+      raw_.other_elements += count;
+    } else if (section.dimension == 0) {
+      read_vertices(count);
+    } else {
+      read_elements(section, count);
+    }
+  }
+
+ private:
+  void read_vertices(std::uint64_t count) {
+    if (!raw_.points.empty()) source_.fail("a second section Vertices; the file is damaged");
+    raw_.points.reserve(count);
+    for (std::uint64_t i = 0; i < count; ++i) {
+      const double x = source_.real(), y = source_.real(), z = source_.real();
+      raw_.points.push_back({x, y, z});
+      source_.vertex_reference();
+    }
+  }
+
+  void read_elements(const Section& section, std::uint64_t count) {
+    std::array<VertexIndex, 10> nodes;
+    for (std::uint64_t i = 0; i < count; ++i) {
+      for (std::size_t k = 0; k < section.nodes; ++k) nodes[k] = vertex();
+      const std::int64_t ref = source_.integer("a reference");
+      if (section.dimension == 3) {
+        raw_.add_tet(std::span(nodes).first(section.nodes), ref);
+      } else if (section.dimension == 2) {
+        raw_.triangles.push_back({nodes[0], nodes[1], nodes[2]});
+        raw_.triangle_ref.push_back(ref);
+      } else {
+        raw_.edges.push_back({nodes[0], nodes[1]});
+        raw_.edge_ref.push_back(ref);
+      }
+    }
+  }
+
+  VertexIndex vertex() {
+    const std::int64_t v = source_.integer("the number of a vertex");
+    if (v < 1 || static_cast<std::uint64_t>(v) > raw_.points.size())
+      source_.fail(
+          fmt::format("the corner {} of an element is no vertex (1 to {} are); the file is damaged: export it again", v,
+                      raw_.points.size()));
+    return static_cast<VertexIndex>(v - 1);
+  }
+
+  Source& source_;
+  RawMesh& raw_;
+};
+
+class MeditText {
+ public:
+  explicit MeditText(const Input& input) : input_(input), scan_(input, '#') {}
+
+  RawMesh read() {
+    RawMesh raw;
+    raw.format = "MEDIT";
+    SectionReader<MeditText> sections(*this, raw);
     // "MeshVersionFormatted2" is seen as well as "MeshVersionFormatted 2".
     scan_.word();
     bool ended = false;
     while (!ended && !scan_.at_end()) {
       const std::string_view word = scan_.word();
       ended = word == "End";
-      if (is_keyword(word)) read_section(word);
+      if (word == "Dimension") check_dimension(word.data());
+      const auto section =
+          std::find_if(kSections.begin(), kSections.end(), [&](const Section& s) { return s.name == word; });
+      if (is_keyword(word) && section != kSections.end()) sections.read(*section, count(*section));
     }
     if (!ended) scan_.fail_expected("\"End\"");
-    return ordered_mesh(std::move(raw_), input_);
+    return raw;
   }
+
+  double real() { return scan_.number("a coordinate"); }
+  void vertex_reference() { scan_.number("the reference of a vertex"); }
+  std::int64_t integer(std::string_view what) { return scan_.integer(what); }
+  [[noreturn]] void fail(std::string_view message) const { scan_.fail(message); }
 
  private:
-  void read_section(std::string_view keyword) {
-    if (keyword == "Dimension") {
-      const char* const at = keyword.data();
-      const std::int64_t dimension = scan_.integer("the dimension");
-      if (dimension != 3) input_.fail_at_line(at, fmt::format("the mesh is of dimension {}, not 3", dimension));
-    } else if (keyword == "Vertices") {
-      read_vertices();
-    } else if (keyword == "Triangles") {
-      read_elements(raw_.triangles, raw_.triangle_ref);
-    } else if (keyword == "Tetrahedra") {
-      read_elements(raw_.tets, raw_.tet_ref);
-    } else if (keyword == "Hexahedra" || keyword == "Prisms" || keyword == "Pyramids" || keyword == "Quadrilaterals" ||
-               keyword == "TetrahedraP2" || keyword == "HexahedraQ2") {
-      raw_.other_elements += count(keyword, 2);
-    }
+  void check_dimension(const char* at) {
+    const std::int64_t dimension = scan_.integer("the dimension");
+    if (dimension != 3) input_.fail_at_line(at, fmt::format("the mesh is of dimension {}, not 3", dimension));
   }
 
-  std::uint64_t count(std::string_view keyword, std::uint64_t bytes_each) {
+  std::uint64_t count(const Section& section) {
     scan_.at_end();
     const char* const at = scan_.position();
-    const std::int64_t n = scan_.integer(fmt::format("the number of {}", keyword));
-    if (n < 0) input_.fail_at_line(at, fmt::format("{} {}; the file is damaged: export it again", n, keyword));
-    check_claim(input_, at, {static_cast<std::uint64_t>(n), bytes_each, keyword}, scan_.bytes_left());
+    const std::int64_t n = scan_.integer(fmt::format("the number of {}", section.name));
+    if (n < 0) input_.fail_at_line(at, fmt::format("{} {}; the file is damaged: export it again", n, section.name));
+    check_claim(input_, at, {static_cast<std::uint64_t>(n), 2 * (section.nodes + 1), section.name}, scan_.bytes_left());
     return static_cast<std::uint64_t>(n);
-  }
-
-  void read_vertices() {
-    if (!raw_.points.empty()) scan_.fail("a second section Vertices; the file is damaged");
-    const std::uint64_t n = count("Vertices", 8);
-    raw_.points.reserve(n);
-    for (std::uint64_t i = 0; i < n; ++i) {
-      const double x = scan_.number("a coordinate"), y = scan_.number("a coordinate"), z = scan_.number("a coordinate");
-      raw_.points.push_back({x, y, z});
-      scan_.number("the reference of a vertex");
-    }
-  }
-
-  template <std::size_t N>
-  void read_elements(std::vector<std::array<VertexIndex, N>>& elements, std::vector<std::int64_t>& refs) {
-    const std::uint64_t n = count(N == 3 ? "Triangles" : "Tetrahedra", 2 * (N + 1));
-    elements.reserve(elements.size() + n);
-    refs.reserve(refs.size() + n);
-    for (std::uint64_t i = 0; i < n; ++i) {
-      std::array<VertexIndex, N> corners;
-      for (VertexIndex& v : corners) v = vertex();
-      elements.push_back(corners);
-      refs.push_back(scan_.integer("a reference"));
-    }
-  }
-
-  VertexIndex vertex() {
-    const std::int64_t v = scan_.integer("the number of a vertex");
-    if (v < 1 || static_cast<std::uint64_t>(v) > raw_.points.size())
-      scan_.fail(
-          fmt::format("the corner {} of an element is no vertex (1 to {} are); the file is damaged: export it again", v,
-                      raw_.points.size()));
-    return static_cast<VertexIndex>(v - 1);
   }
 
   const Input& input_;
   Scanner scan_;
-  RawMesh raw_;
+};
+
+class MeditBinary {
+ public:
+  explicit MeditBinary(const Input& input) : input_(input), progress_(input), at_(input.bytes.data()) {}
+
+  RawMesh read() {
+    RawMesh raw;
+    raw.format = "MEDIT binary";
+    SectionReader<MeditBinary> sections(*this, raw);
+    if (get<std::int32_t>() != 1) fail("big-endian files are not read here; save it on a little-endian machine");
+    version_ = get<std::int32_t>();
+    if (version_ < 1 || version_ > 4)
+      fail(fmt::format("version {} of binary MEDIT is not read here (1 to 4 are)", version_));
+    constexpr int kDimension = 3, kEnd = 54;
+    for (int code = get<std::int32_t>(); code != kEnd; code = get<std::int32_t>()) {
+      const std::uint64_t next = version_ < 3 ? static_cast<std::uint32_t>(get<std::int32_t>()) : get<std::uint64_t>();
+      const char* const begin = at_;
+      const auto section =
+          std::find_if(kSections.begin(), kSections.end(), [&](const Section& s) { return s.code == code; });
+      if (code == kDimension && get<std::int32_t>() != 3) fail("the mesh is of another dimension than 3");
+      if (section != kSections.end()) sections.read(*section, count(*section));
+      // Sections only follow each other, so that reading ends.
+      if (next <= static_cast<std::uint64_t>(begin - input_.bytes.data()) || next > input_.bytes.size())
+        fail(fmt::format("the next section is said to begin at byte {}; the file is truncated or damaged", next));
+      at_ = input_.bytes.data() + next;
+    }
+    return raw;
+  }
+
+  double real() {
+    const double value = version_ == 1 ? get<float>() : get<double>();
+    if (!std::isfinite(value))
+      fail(fmt::format("expected a coordinate, found {}, which is not a finite number", value));
+    return value;
+  }
+  std::int64_t integer(std::string_view) { return version_ < 4 ? get<std::int32_t>() : get<std::int64_t>(); }
+  void vertex_reference() { integer({}); }
+  [[noreturn]] void fail(std::string_view message) const { input_.fail_at_byte(at_, message); }
+
+ private:
+  template <class T>
+  T get() {
+    progress_.reach(at_);
+    if (static_cast<std::size_t>(input_.bytes.data() + input_.bytes.size() - at_) < sizeof(T))
+      fail("the file ends here; it is truncated: copy or export it again");
+    T value;
+    std::memcpy(&value, at_, sizeof(T));
+    at_ += sizeof(T);
+    return value;
+  }
+
+  std::uint64_t count(const Section& section) {
+    const char* const at = at_;
+    const std::int64_t n = integer({});
+    const std::uint64_t word = version_ < 4 ? 4 : 8;
+    const std::uint64_t each = section.dimension == 0 ? 3 * (version_ == 1 ? 4 : 8) + word : (section.nodes + 1) * word;
+    if (n < 0) fail(fmt::format("{} {}; the file is damaged: export it again", n, section.name));
+    check_claim(input_, at, {static_cast<std::uint64_t>(n), each, section.name},
+                static_cast<std::size_t>(input_.bytes.data() + input_.bytes.size() - at_));
+    return static_cast<std::uint64_t>(n);
+  }
+
+  const Input& input_;
+  ReadingProgress progress_;
+  const char* at_;
+  int version_ = 0;
 };
 
 }  // namespace
 
-TetMesh read_medit(const Input& input) {
-  return Medit(input).read();
+RawMesh read_medit(const Input& input) {
+  return MeditText(input).read();
+}
+
+RawMesh read_medit_binary(const Input& input) {
+  return MeditBinary(input).read();
 }
 
 }  // namespace octafront::io

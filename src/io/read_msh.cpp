@@ -1,13 +1,18 @@
-// Gmsh MSH 4.1 and 2.2, text and binary. Linear tetrahedra and triangles are kept; their references are the first
-// physical group of their entity, or the entity's own tag where it has none.
+// Gmsh MSH 4.1 and 2.2, text and binary. Points, edges, triangles and tetrahedra are kept, linear or quadratic; their
+// references are the first physical group of their entity, or the entity's own tag where it has none; further groups
+// are sets, groups of points sets of nodes. All in the order of their tags.
 
 #include "io/msh_stream.h"
 #include "io/raw_mesh.h"
 #include "io/readers.h"
+#include "mesh/renumber.h"
 
 #include <algorithm>
 #include <array>
 #include <map>
+#include <numeric>
+#include <span>
+#include <string>
 #include <utility>
 
 #include <fmt/core.h>
@@ -25,7 +30,27 @@ std::uint64_t nodes_of_type(std::int64_t type) {
   return 0;
 }
 
-constexpr std::int64_t kTriangleType = 2, kTetType = 4;
+/// What a TetMesh has of them: 0 for points to 3 for tetrahedra, linear or quadratic; -1 for others.
+int kept_dimension(std::int64_t type) {
+  switch (type) {
+    case 15:
+      return 0;
+    case 1:
+    case 8:
+      return 1;
+    case 2:
+    case 9:
+      return 2;
+    case 4:
+    case 11:
+      return 3;
+    default:
+      return -1;
+  }
+}
+
+constexpr std::array<NamedSet::Kind, 4> kKindOfDimension{NamedSet::Kind::kNodes, NamedSet::Kind::kEdges,
+                                                         NamedSet::Kind::kFaces, NamedSet::Kind::kElements};
 
 /// From the tags of nodes, which may have gaps and any order, to indices.
 class NodeTags {
@@ -52,6 +77,7 @@ class NodeTags {
     return at != sorted_.end() && at->first == tag ? at->second : kNone;
   }
   bool empty() const { return tags_.empty(); }
+  const std::vector<std::uint64_t>& tags() const { return tags_; }
 
  private:
   std::vector<std::uint64_t> tags_;
@@ -63,7 +89,7 @@ class Msh {
  public:
   explicit Msh(const Input& input) : input_(input), in_(input) {}
 
-  TetMesh read() {
+  RawMesh read() {
     for (std::string_view name = in_.next_section(); !name.empty(); name = in_.next_section()) {
       if (name == "MeshFormat") {
         read_format();
@@ -88,7 +114,10 @@ class Msh {
     }
     if (!has_elements_)
       input_.fail("has no section $Elements; it is truncated or holds no mesh: copy or export it again");
-    return ordered_mesh(std::move(raw_), input_);
+    finish_groups();
+    sort_by_tags();
+    raw_.format = version_ == 4 ? "Gmsh MSH 4.1" : "Gmsh MSH 2.2";
+    return std::move(raw_);
   }
 
  private:
@@ -122,7 +151,7 @@ class Msh {
       std::string_view name = text.rest_of_line();
       if (name.size() < 2 || name.front() != '"' || name.back() != '"') text.fail_expected("a name in quotes");
       name = name.substr(1, name.size() - 2);
-      if (dimension == 2) raw_.surface_names[tag] = name;
+      if (dimension >= 0 && dimension < 4) names_[{static_cast<int>(dimension), tag}] = name;
     }
   }
 
@@ -137,9 +166,10 @@ class Msh {
         in_.skip_real(reals);
         const std::uint64_t groups = in_.size("the number of physical groups");
         if (groups > 0) {
+          in_.check_count(groups, 0, 0, 1, "physical groups");
+          std::vector<std::int64_t>& of_entity = physical_[{dimension, tag}];
           // The sign tells the orientation of the entity in its group.
-          physical_[{dimension, tag}] = std::abs(in_.int32("a physical group"));
-          in_.skip_int32(groups - 1);
+          for (std::uint64_t g = 0; g < groups; ++g) of_entity.push_back(std::abs(in_.int32("a physical group")));
         }
         if (dimension > 0) in_.skip_int32(in_.size("the number of bounding entities"));
       }
@@ -193,30 +223,105 @@ class Msh {
     in_.text().set_position(in_.position() + std::min<std::size_t>(1, in_.text().bytes_left()));
   }
 
-  template <std::size_t N, class Tag>
-  std::array<VertexIndex, N> corners(const Tag& next_tag) {
-    std::array<VertexIndex, N> all;
-    for (VertexIndex& v : all) {
-      const std::uint64_t tag = next_tag();
-      v = tags_.index_of(tag);
-      if (v == kNone)
-        in_.fail(tags_.empty() ? "the elements come before the nodes, which is not read here; export it again"
-                               : fmt::format("an element has the node {}, which the file lacks; the file is damaged: "
-                                             "export it again",
-                                             tag));
-    }
-    return all;
+  VertexIndex node(std::uint64_t tag) const {
+    const VertexIndex v = tags_.index_of(tag);
+    if (v == kNone)
+      in_.fail(tags_.empty() ? "the elements come before the nodes, which is not read here; export it again"
+                             : fmt::format("an element has the node {}, which the file lacks; the file is damaged: "
+                                           "export it again",
+                                           tag));
+    return v;
   }
 
+  /// An element of a kept type; `groups` beyond the first one are sets, and all of those of points.
   template <class Tag>
-  void add_element(std::int64_t type, std::int64_t ref, const Tag& next_tag) {
-    if (type == kTetType) {
-      raw_.tets.push_back(corners<4>(next_tag));
-      raw_.tet_ref.push_back(ref);
-    } else {
-      raw_.triangles.push_back(corners<3>(next_tag));
+  void add_element(std::int64_t type, std::uint64_t tag, std::int64_t ref, std::span<const std::int64_t> groups,
+                   const Tag& next_tag) {
+    std::array<VertexIndex, 10> nodes;
+    const std::size_t count = nodes_of_type(type);
+    for (std::size_t i = 0; i < count; ++i) nodes[i] = node(next_tag());
+    const int dimension = kept_dimension(type);
+    const auto d = static_cast<std::size_t>(dimension);
+    std::uint32_t index = nodes[0];
+    if (dimension == 3) {
+      index = static_cast<std::uint32_t>(raw_.tets.size());
+      raw_.add_tet(std::span(nodes).first(count), ref, kGmshMids);
+    } else if (dimension == 2) {
+      index = static_cast<std::uint32_t>(raw_.triangles.size());
+      raw_.triangles.push_back({nodes[0], nodes[1], nodes[2]});
       raw_.triangle_ref.push_back(ref);
+    } else if (dimension == 1) {
+      index = static_cast<std::uint32_t>(raw_.edges.size());
+      raw_.edges.push_back({nodes[0], nodes[1]});
+      raw_.edge_ref.push_back(ref);
     }
+    if (dimension > 0) element_tags_[d].push_back(tag);
+    for (const std::int64_t group : groups.subspan(std::min<std::size_t>(dimension > 0, groups.size())))
+      members_[{dimension, group}].push_back(index);
+  }
+
+  std::string name_of(int dimension, std::int64_t group) const {
+    const auto name = names_.find({dimension, group});
+    return name != names_.end() ? name->second : fmt::format("physical_{}", group);
+  }
+
+  void finish_groups() {
+    for (const auto& [key, name] : names_) {
+      if (key.first == 1) raw_.curve_names[key.second] = name;
+      if (key.first == 2) raw_.surface_names[key.second] = name;
+      if (key.first == 3) raw_.region_names[key.second] = name;
+    }
+    for (auto& [key, members] : members_)
+      raw_.groups.push_back(
+          {name_of(key.first, key.second), kKindOfDimension[static_cast<std::size_t>(key.first)], std::move(members)});
+  }
+
+  /// From places to places in the order of the tags; empty if they are in order.
+  static std::vector<std::uint32_t> places_by_tag(const std::vector<std::uint64_t>& tags) {
+    if (std::is_sorted(tags.begin(), tags.end())) return {};
+    std::vector<std::uint32_t> order(tags.size()), place(tags.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return tags[a] < tags[b]; });
+    for (std::uint32_t i = 0; i < order.size(); ++i) place[order[i]] = i;
+    return place;
+  }
+  template <class T>
+  static void permute(std::vector<T>& items, const std::vector<std::uint32_t>& place) {
+    if (items.empty() || place.empty()) return;
+    std::vector<T> ordered(items.size());
+    for (std::size_t i = 0; i < items.size(); ++i) ordered[place[i]] = items[i];
+    items = std::move(ordered);
+  }
+
+  /// Files list by entity; tags tell the order in which things were made.
+  void sort_by_tags() {
+    std::array<std::vector<std::uint32_t>, 4> place{places_by_tag(tags_.tags())};
+    for (std::size_t d = 1; d < 4; ++d) place[d] = places_by_tag(element_tags_[d]);
+    permute(raw_.points, place[0]);
+    if (!place[0].empty()) {
+      renumber(raw_.tets, place[0]);
+      renumber(raw_.triangles, place[0]);
+      renumber(raw_.edges, place[0]);
+      for (auto& mids : raw_.mid_nodes)
+        for (VertexIndex& v : mids)
+          if (v != kNone) v = place[0][v];
+    }
+    permute(raw_.edges, place[1]);
+    permute(raw_.edge_ref, place[1]);
+    permute(raw_.triangles, place[2]);
+    permute(raw_.triangle_ref, place[2]);
+    permute(raw_.tets, place[3]);
+    permute(raw_.mid_nodes, place[3]);
+    permute(raw_.tet_ref, place[3]);
+    for (RawMesh::Group& group : raw_.groups) {
+      const auto& to = place[static_cast<std::size_t>(dimension_of(group.kind))];
+      if (!to.empty())
+        for (std::uint32_t& m : group.members) m = to[m];
+    }
+  }
+  static int dimension_of(NamedSet::Kind kind) {
+    return static_cast<int>(std::find(kKindOfDimension.begin(), kKindOfDimension.end(), kind) -
+                            kKindOfDimension.begin());
   }
 
   std::uint64_t known_nodes_of_type(std::int64_t type) {
@@ -236,32 +341,35 @@ class Msh {
       const std::uint64_t count = in_.size("the number of elements");
       in_.check_count(count, 0, nodes + 1, 0, "elements");
       const auto physical = physical_.find({static_cast<int>(dimension), entity});
-      const std::int64_t ref = physical == physical_.end() ? entity : physical->second;
-      if (type != kTetType && type != kTriangleType) {
+      const std::span<const std::int64_t> groups =
+          physical == physical_.end() ? std::span<const std::int64_t>() : physical->second;
+      const std::int64_t ref = groups.empty() ? entity : groups[0];
+      if (kept_dimension(type) < 0) {
         raw_.other_elements += count;
         in_.skip_size(count * (nodes + 1));
         continue;
       }
       for (std::uint64_t i = 0; i < count; ++i) {
-        in_.skip_size(1);
-        add_element(type, ref, [this] { return in_.size("a node of an element"); });
+        const std::uint64_t tag = in_.size("the tag of an element");
+        add_element(type, tag, ref, groups, [this] { return in_.size("a node of an element"); });
       }
     }
   }
 
   /// One element of version 2 behind its type: tags, the first two of which are the physical group and the entity.
-  void read_element_2(std::int64_t type, std::int64_t tag_count) {
+  void read_element_2(std::int64_t type, std::uint64_t number, std::int64_t tag_count) {
     std::array<std::int64_t, 2> tags{};
     for (std::int64_t k = 0; k < tag_count; ++k) {
       const std::int64_t tag = in_.int32("a tag of an element");
       if (k < 2) tags[static_cast<std::size_t>(k)] = tag;
     }
-    if (type != kTetType && type != kTriangleType) {
+    if (kept_dimension(type) < 0) {
       ++raw_.other_elements;
       in_.skip_int32(known_nodes_of_type(type));
       return;
     }
-    add_element(type, tags[0] != 0 ? tags[0] : tags[1],
+    const std::span<const std::int64_t> groups(tags.data(), tags[0] != 0);
+    add_element(type, number, tags[0] != 0 ? tags[0] : tags[1], groups,
                 [this] { return static_cast<std::uint64_t>(in_.int32("a node of an element")); });
   }
 
@@ -270,7 +378,7 @@ class Msh {
     skip_line_end();
     in_.check_count(static_cast<std::uint64_t>(count), 0, 0, 2, "elements");
     for (std::int64_t i = 0; i < count;) {
-      if (!in_.is_binary()) in_.skip_int32(1);
+      std::uint64_t number = in_.is_binary() ? 0 : static_cast<std::uint64_t>(in_.int32("the number of an element"));
       const std::int64_t type = in_.int32("the type of an element");
       const std::int64_t together = in_.is_binary() ? in_.int32("the number of elements") : 1;
       const std::int64_t tag_count = in_.int32("the number of tags of an element");
@@ -278,8 +386,8 @@ class Msh {
         in_.fail(
             fmt::format("{} elements with {} tags each; the file is damaged: export it again", together, tag_count));
       for (std::int64_t k = 0; k < together; ++k) {
-        if (in_.is_binary()) in_.skip_int32(1);
-        read_element_2(type, tag_count);
+        if (in_.is_binary()) number = static_cast<std::uint64_t>(in_.int32("the number of an element"));
+        read_element_2(type, number, tag_count);
       }
       i += together;
     }
@@ -290,13 +398,17 @@ class Msh {
   int version_ = 0;
   bool has_elements_ = false;
   NodeTags tags_;
-  std::map<std::pair<int, std::int64_t>, std::int64_t> physical_;
+  // By dimension and tag.
+  std::map<std::pair<int, std::int64_t>, std::vector<std::int64_t>> physical_;  ///< of entities
+  std::map<std::pair<int, std::int64_t>, std::string> names_;
+  std::map<std::pair<int, std::int64_t>, std::vector<std::uint32_t>> members_;  ///< of groups that are sets
+  std::array<std::vector<std::uint64_t>, 4> element_tags_;
   RawMesh raw_;
 };
 
 }  // namespace
 
-TetMesh read_msh(const Input& input) {
+RawMesh read_msh(const Input& input) {
   return Msh(input).read();
 }
 

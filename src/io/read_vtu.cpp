@@ -1,12 +1,14 @@
-// VTK unstructured grids: ours (see write_vtu.cpp), and those of other programs as far as they hold linear tetrahedra.
+// VTK unstructured grids: ours (see vtk_cells.h), and those of other programs as far as they hold tetrahedra.
 
 #include "io/raw_mesh.h"
 #include "io/readers.h"
+#include "io/vtk_reading.h"
 #include "io/vtk_xml.h"
 
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include <fmt/core.h>
@@ -14,19 +16,19 @@
 namespace octafront::io {
 namespace {
 
-constexpr std::int64_t kVtkTriangle = 5, kVtkTetra = 10;
 constexpr std::uint64_t kMostCells = std::uint64_t{1} << 40;
 
 class Vtu {
  public:
   explicit Vtu(const Input& input) : input_(input), xml_(read_vtk_xml(input)) {}
 
-  TetMesh read() {
+  RawMesh read() {
     read_points();
     input_.context.check();
     read_cells();
     read_names();
-    return ordered_mesh(std::move(raw_), input_);
+    raw_.format = "VTU";
+    return std::move(raw_);
   }
 
  private:
@@ -81,22 +83,6 @@ class Vtu {
     return {};
   }
 
-  template <std::size_t N>
-  std::array<VertexIndex, N> corners(const std::vector<std::int64_t>& connectivity, std::uint64_t first,
-                                     std::uint64_t cell) const {
-    std::array<VertexIndex, N> all;
-    for (std::size_t k = 0; k < N; ++k) {
-      const std::int64_t v = connectivity[first + k];
-      if (v < 0 || static_cast<std::uint64_t>(v) >= raw_.points.size())
-        input_.fail(
-            fmt::format("cell {} has the corner {}, but the file has only {} points; the file is damaged: export "
-                        "it again",
-                        cell, v, raw_.points.size()));
-      all[k] = static_cast<VertexIndex>(v);
-    }
-    return all;
-  }
-
   /// Of all cells together: more than any mesh has, polyhedra, lines through all points and high orders included.
   std::uint64_t most_corners() const { return 64 * std::min(xml_.cells, kMostCells) + 4 * xml_.points; }
 
@@ -108,42 +94,44 @@ class Vtu {
     const std::vector<std::int64_t> offsets = vtk_integers(xml_, offsets_array, input_, xml_.cells);
     check_length(offsets_array, offsets.size(), xml_.cells);
     const std::vector<std::int64_t> connectivity = vtk_integers(xml_, connectivity_array, input_, most_corners());
-    const std::vector<std::int64_t> regions = references("region"), patches = references("patch");
-    const auto sources = cell_integers("source", 0);
+    VtkCellData data{references("region"), references("patch"), references("curve"), {}, {}};
+    if (auto sources = cell_integers("source", 0)) data.source = *std::move(sources);
+    for (const VtkArray& array : xml_.arrays)
+      if (array.section == "CellData" && is_set_name(array.name))
+        if (auto values = cell_integers(array.name, 0)) data.sets.emplace_back(array.name, *std::move(values));
+    VtkCellTaker taker(input_, raw_, data);
     std::int64_t begin = 0;
     for (std::uint64_t c = 0; c < xml_.cells; ++c) {
-      const std::int64_t end = offsets[c], size = end - begin;
+      const std::int64_t end = offsets[c];
       if (end < begin || static_cast<std::uint64_t>(end) > connectivity.size())
         input_.fail_at_line(offsets_array.at, fmt::format("cell {} has corners {} to {} of {}; the file is damaged: "
                                                           "export it again",
                                                           c, begin, end, connectivity.size()));
-      const auto first = static_cast<std::uint64_t>(begin);
-      if (types[c] == kVtkTetra && size == 4) {
-        raw_.tets.push_back(corners<4>(connectivity, first, c));
-        raw_.tet_ref.push_back(regions.empty() ? 1 : regions[c]);
-      } else if (types[c] == kVtkTriangle && size == 3) {
-        raw_.triangles.push_back(corners<3>(connectivity, first, c));
-        raw_.triangle_ref.push_back(patches.empty() ? 1 : patches[c]);
-        if (sources) raw_.triangle_source.push_back(source_face((*sources)[c]));
-      } else {
-        ++raw_.other_elements;
-      }
+      taker.take(
+          c, types[c],
+          std::span(connectivity).subspan(static_cast<std::size_t>(begin), static_cast<std::size_t>(end - begin)));
       begin = end;
+    }
+    taker.finish();
+    read_point_sets();
+  }
+
+  void read_point_sets() {
+    for (const VtkArray& array : xml_.arrays) {
+      if (array.section != "PointData" || !is_set_name(array.name) || array.components != 1) continue;
+      if (array.type.starts_with("Float")) continue;
+      const std::vector<std::int64_t> values = vtk_integers(xml_, array, input_, xml_.points);
+      check_length(array, values.size(), xml_.points);
+      add_node_set(raw_, array.name, values);
     }
   }
 
-  static std::uint32_t source_face(std::int64_t face) {
-    return face >= 0 && face < std::int64_t{kNone} ? static_cast<std::uint32_t>(face) : kNone;
-  }
-
   void read_names() {
-    constexpr std::string_view kPrefix = "patch ";
     constexpr std::uint64_t kMostFieldValues = 1024;  // ours have one
     for (const VtkArray& array : xml_.arrays) {
-      if (array.section != "FieldData" || !array.name.starts_with(kPrefix)) continue;
+      if (array.section != "FieldData" || array.type.starts_with("Float")) continue;
       const std::vector<std::int64_t> number = vtk_integers(xml_, array, input_, kMostFieldValues);
-      if (number.size() == 1 && number[0] < kNone)
-        raw_.surface_names[number[0] + 1] = array.name.substr(kPrefix.size());
+      if (number.size() == 1) add_vtk_name(raw_, array.name, number[0]);
     }
   }
 
@@ -154,7 +142,7 @@ class Vtu {
 
 }  // namespace
 
-TetMesh read_vtu(const Input& input) {
+RawMesh read_vtu(const Input& input) {
   return Vtu(input).read();
 }
 

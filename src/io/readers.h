@@ -1,10 +1,11 @@
 #pragma once
 
-// The readers, one per format: from bytes in memory to a SurfaceFile or a TetMesh. All throw InputError.
+// The readers, one per format: from bytes in memory to a SurfaceFile or a RawMesh. All throw InputError.
 
 #include <octafront/io.h>
 
 #include "io/input.h"
+#include "io/raw_mesh.h"
 
 namespace octafront::io {
 
@@ -14,12 +15,24 @@ SurfaceFile read_obj(const Input& input);
 SurfaceFile read_off(const Input& input);
 SurfaceFile read_ply(const Input& input);
 
-TetMesh read_vtu(const Input& input);
-TetMesh read_msh(const Input& input);
-TetMesh read_medit(const Input& input);
+RawMesh read_vtu(const Input& input);
+RawMesh read_vtk(const Input& input);
+RawMesh read_msh(const Input& input);
+RawMesh read_medit(const Input& input);
+RawMesh read_medit_binary(const Input& input);
+RawMesh read_abaqus(const Input& input);
+RawMesh read_nastran(const Input& input);
+RawMesh read_unv(const Input& input);
+RawMesh read_netgen(const Input& input);
+/// `input` is the .ele or .node file; the others are read beside it.
+RawMesh read_tetgen(const Input& input);
+/// The file with the values is read beside it.
+RawMesh read_xdmf(const Input& input);
+/// By the name of the input: HDF5 reads files itself.
+RawMesh read_med(const Input& input);
 
 /// Recognise and read.
 SurfaceFile read_surface_bytes(const Input& input);
-TetMesh read_mesh_bytes(const Input& input);
+MeshFile read_mesh_bytes(const Input& input);
 
 }  // namespace octafront::io

@@ -7,6 +7,9 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <filesystem>
+#include <initializer_list>
+#include <optional>
 
 #include <fmt/core.h>
 
@@ -54,6 +57,10 @@ constexpr std::array kMagics{
     Magic{0, "version https://git-lfs"sv, "a Git LFS pointer, not the file itself: fetch it with `git lfs pull`"},
     Magic{0, "$MeshFormat"sv, "a Gmsh mesh"},
     Magic{0, "MeshVersionFormatted"sv, "a MEDIT mesh"},
+    Magic{0, "mesh3d"sv, "a Netgen mesh"},
+    Magic{0, "*KEYWORD"sv, "an LS-DYNA file"},
+    Magic{0, "CDF\x02"sv, "a NetCDF file"},
+    Magic{0, "CDF\x05"sv, "a NetCDF file"},
     Magic{128, "DICM"sv, "a DICOM image"},
     Magic{344, "n+1\0"sv, "a NIfTI image"},
     Magic{0, "NRRD"sv, "an NRRD image"},
@@ -77,6 +84,8 @@ std::string_view xml_kind(std::string_view head) {
   }
   for (const std::string_view tag : {"<!DOCTYPE html", "<!doctype html", "<html", "<HTML", "<head", "<body"})
     if (head.find(tag) != std::string_view::npos) return "a web page (was the download an error page?)";
+  if (head.find("<Xdmf") != std::string_view::npos) return "an XDMF mesh";
+  if (head.find("<febio_spec") != std::string_view::npos) return "an FEBio file";
   if (head.find("<COLLADA") != std::string_view::npos) return "a COLLADA scene: export it as STL, OBJ, OFF or PLY";
   if (head.find("<amf") != std::string_view::npos) return "an AMF model: export it as STL, OBJ, OFF or PLY";
   if (head.find("<X3D") != std::string_view::npos) return "an X3D scene: export it as STL, OBJ, OFF or PLY";
@@ -136,11 +145,42 @@ bool is_plain_number(std::string_view word) {
 
 bool claims_to_be_stl(const Input& input) {
   const Format* format = format_of(input.name);
-  return format != nullptr && format->info.name == "STL";
+  return format != nullptr && format->info.name == "stl";
 }
 
 constexpr std::string_view kSurfaces = "a surface as STL, OBJ, OFF or PLY";
-constexpr std::string_view kMeshes = "a mesh as VTU, Gmsh .msh or MEDIT .mesh";
+constexpr std::string_view kMeshes =
+    "a mesh as VTU, VTK, Gmsh .msh, Abaqus .inp, Nastran .bdf, I-deas .unv, MED, XDMF, MEDIT .mesh or .meshb, Netgen "
+    ".vol "
+    "or TetGen .ele";
+
+/// A line of the first ones that begins with a word.
+bool has_line(std::string_view bytes, std::string_view word) {
+  constexpr std::size_t kHead = std::size_t{1} << 16;
+  const std::string_view head = bytes.substr(0, kHead);
+  for (std::size_t at = head.find(word); at != std::string_view::npos; at = head.find(word, at + 1))
+    if (at == 0 || is_line_end(head[at - 1])) return true;
+  return false;
+}
+
+bool has_ending(const Input& input, std::initializer_list<std::string_view> endings) {
+  const std::string ending = std::filesystem::path(input.name).extension().string();
+  return std::any_of(endings.begin(), endings.end(),
+                     [&](std::string_view e) { return equal_ignoring_case(ending, e); });
+}
+
+/// Formats that are told by their text; none of them has a magic word.
+std::optional<MeshKind> text_kind(const Input& input, std::string_view first, std::string_view second) {
+  if (first == "mesh3d") return MeshKind::kNetgen;
+  if (first == "-1" && is_plain_number(second) && second.size() <= 5) return MeshKind::kUnv;
+  if (input.bytes.starts_with("*KEYWORD")) return std::nullopt;
+  if (has_ending(input, {".ele", ".node"})) return MeshKind::kTetgen;
+  if (has_ending(input, {".bdf", ".nas"}) || has_line(input.bytes, "BEGIN BULK") || has_line(input.bytes, "GRID") ||
+      has_line(input.bytes, "CTETRA"))
+    return MeshKind::kNastran;
+  if (first.starts_with('*') && first.size() > 1) return MeshKind::kAbaqus;
+  return std::nullopt;
+}
 
 }  // namespace
 
@@ -177,7 +217,7 @@ SurfaceKind recognize_surface(const Input& input) {
   if (binary && (claims_to_be_stl(input) || equal_ignoring_case(first, "solid"))) return SurfaceKind::kBinaryStl;
   // The keyword OFF may be missing.
   const Format* format = format_of(input.name);
-  if (!binary && format != nullptr && format->info.name == "OFF" && is_plain_number(first)) return SurfaceKind::kOff;
+  if (!binary && format != nullptr && format->info.name == "off" && is_plain_number(first)) return SurfaceKind::kOff;
   if (first.empty()) input.fail("holds nothing but blanks and comments; export it again");
   fail_unknown(input, kSurfaces);
 }
@@ -189,10 +229,14 @@ MeshKind recognize_mesh(const Input& input) {
   if (first.starts_with("MeshVersionFormatted")) return MeshKind::kMedit;
   const std::string_view kind = well_known_kind(input.bytes);
   if (kind.find("unstructured grid") != std::string_view::npos) return MeshKind::kVtu;
-  if (!kind.empty()) fail_other_kind(input, kind, kMeshes);
+  if (kind.find("legacy VTK") != std::string_view::npos) return MeshKind::kVtk;
+  if (kind == "an XDMF mesh") return MeshKind::kXdmf;
+  if (kind == "an HDF5 file") return MeshKind::kHdf5;
   constexpr std::string_view kMeshb("\x01\0\0\0"sv);
-  if (input.bytes.starts_with(kMeshb) && input.name.ends_with(".meshb"))
-    input.fail("is a binary MEDIT mesh (.meshb), which is not read here; convert it to .mesh");
+  if (input.bytes.starts_with(kMeshb) && input.bytes.size() > 8 && input.bytes[4] >= 1 && input.bytes[4] <= 4)
+    return MeshKind::kMeditBinary;
+  if (const auto text = text_kind(input, first, scan.word())) return *text;
+  if (!kind.empty()) fail_other_kind(input, kind, kMeshes);
   if (scan.at_end() && first.empty()) input.fail("holds nothing but blanks and comments; export it again");
   // Comments of Gmsh are sections like any other and may come first.
   if (first.starts_with('$') && input.bytes.find("$MeshFormat") != std::string_view::npos) return MeshKind::kMsh;

@@ -7,7 +7,7 @@
 namespace octafront::io {
 
 enum class SurfaceKind { kBinaryStl, kAsciiStl, kObj, kOff, kPly };
-enum class MeshKind { kVtu, kMsh, kMedit };
+enum class MeshKind { kVtu, kVtk, kMsh, kMedit, kMeditBinary, kAbaqus, kNastran, kUnv, kNetgen, kTetgen, kXdmf, kHdf5 };
 
 /// What the bytes are, whatever the name; the name decides only where the bytes leave a choice. Throws InputError with
 /// what the file looks like instead.

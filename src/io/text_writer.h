@@ -4,7 +4,11 @@
 
 #include <charconv>
 #include <cstdint>
+#include <iterator>
 #include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
 
 namespace octafront::io {
 
@@ -24,6 +28,22 @@ class TextWriter {
   TextWriter& operator<<(double value) { return number(value); }
   TextWriter& operator<<(std::uint64_t value) { return number(value); }
   TextWriter& operator<<(std::uint32_t value) { return number(value); }
+  TextWriter& operator<<(std::int32_t value) { return number(value); }
+  TextWriter& operator<<(std::int64_t value) { return number(value); }
+  /// The most digits of a number that fit into so many characters; at least 13 for 20, 9 for 16. With a point or an
+  /// exponent, as Fortran wants reals.
+  TextWriter& within(std::size_t width, double value);
+  /// The same, or a whole number, at the right of a field of that width.
+  TextWriter& field(std::size_t width, double value);
+  TextWriter& field(std::size_t width, std::uint64_t value);
+  /// Any other text that fmt can make.
+  template <class... Args>
+  void line(fmt::format_string<Args...> format, Args&&... args) {
+    text_.clear();
+    fmt::format_to(std::back_inserter(text_), format, std::forward<Args>(args)...);
+    text_.push_back('\n');
+    file_.write(text_.data(), text_.size());
+  }
 
  private:
   template <class T>
@@ -36,6 +56,7 @@ class TextWriter {
   }
 
   AtomicFile& file_;
+  fmt::memory_buffer text_;
 };
 
 }  // namespace octafront::io

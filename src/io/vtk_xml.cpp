@@ -203,6 +203,29 @@ std::string unescaped(std::string_view text) {
   return out;
 }
 
+std::string escaped(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      default:
+        out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+    }
+  }
+  return out;
+}
+
 const VtkArray* VtkXml::find(std::string_view section, std::string_view name) const {
   for (const VtkArray& array : arrays)
     if (array.section == section && (name.empty() || array.name == name)) return &array;

@@ -40,6 +40,8 @@ class XmlTags {
 
 /// &amp; and its like replaced.
 std::string unescaped(std::string_view text);
+/// The other way round, for the values of attributes; control characters become blanks.
+std::string escaped(std::string_view text);
 
 /// A DataArray of a VTK XML file: where its values are, not yet read.
 struct VtkArray {

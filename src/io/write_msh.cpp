@@ -1,60 +1,102 @@
-// Gmsh MSH 4.1, binary. A patch is a surface entity and a physical surface, a region a volume entity and a physical
-// volume, with tags that count from 1. A node belongs to the surface of the smallest patch at it, inner nodes to the
-// volume of their region. Node and element tags are indices plus 1, elements counting the triangles first.
+// Gmsh MSH 4.1 and 2.2, binary. Regions, patches, curves and sets are physical groups of dimension 3, 2, 1 (of nodes:
+// 0); the first three have their number, counted from 1, as tag. Each combination of groups that elements are in is an
+// entity. A node belongs to the entity of the least dimension at it. Node and element tags are indices plus 1, elements
+// counting the points first, then edges, triangles, tetrahedra.
 
-#include "core/groups.h"
+#include <octafront/error.h>
+
 #include "io/boundary.h"
+#include "io/formats.h"
 #include "io/text_writer.h"
 #include "io/writers.h"
 
 #include <algorithm>
 #include <array>
-#include <cstring>
+#include <limits>
 #include <string>
 #include <utility>
 
 namespace octafront::io {
 namespace {
 
-/// Elements by patch or by region, ascending.
-struct ByEntity {
-  std::vector<std::uint32_t> ids;  ///< sorted: patches or regions that occur
-  Groups<> elements;               ///< of each
+using Kind = NamedSet::Kind;
 
-  std::size_t size() const { return ids.size(); }
-  std::uint32_t slot(std::uint32_t id) const {
-    return static_cast<std::uint32_t>(std::lower_bound(ids.begin(), ids.end(), id) - ids.begin());
-  }
-};
+constexpr std::array<Kind, 4> kKindOfDimension{Kind::kNodes, Kind::kEdges, Kind::kFaces, Kind::kElements};
 
-ByEntity grouped(const std::vector<std::uint32_t>& id_of, std::uint32_t count) {
-  ByEntity groups;
-  const auto id = [&](std::size_t i) { return id_of.empty() ? 0 : id_of[i]; };
-  for (std::size_t i = 0; i < count; ++i)
-    if (groups.ids.empty() || id(i) != groups.ids.back()) groups.ids.push_back(id(i));
-  std::sort(groups.ids.begin(), groups.ids.end());
-  groups.ids.erase(std::unique(groups.ids.begin(), groups.ids.end()), groups.ids.end());
-  std::vector<std::uint32_t> slot(count);
-  for (std::size_t i = 0; i < count; ++i) slot[i] = i > 0 && id(i) == id(i - 1) ? slot[i - 1] : groups.slot(id(i));
-  groups.elements = group_by_owner(groups.ids.size(), count, [&](std::uint32_t i) { return slot[i]; });
-  return groups;
+/// Gmsh's type of an element of that dimension.
+std::int32_t type_of(int dimension, bool second_order) {
+  constexpr std::array<std::array<std::int32_t, 4>, 2> kTypes{{{15, 1, 2, 4}, {15, 8, 9, 11}}};
+  return kTypes[second_order][static_cast<std::size_t>(dimension)];
 }
 
 /// Names stand in quotes, which Gmsh does not escape.
-std::string unquoted(std::string name) {
-  std::replace_if(
-      name.begin(), name.end(), [](char c) { return c == '"' || static_cast<unsigned char>(c) < 0x20; }, '_');
-  return name;
+std::string unquoted(std::string_view name) {
+  std::string out = one_line(name);
+  std::replace(out.begin(), out.end(), '"', '_');
+  return out;
 }
 
-class MshWriter {
+/// Nodes of an element, tags counting from 1, in Gmsh's order.
+class ElementNodes {
  public:
-  MshWriter(AtomicFile& file, const TetMesh& mesh)
-      : file_(file),
-        text_(file),
-        mesh_(mesh),
-        patches_(grouped(mesh.patch, static_cast<std::uint32_t>(mesh.boundary.size()))),
-        regions_(grouped(mesh.region, static_cast<std::uint32_t>(mesh.tets.size()))) {
+  explicit ElementNodes(const MeshParts& mesh) : mesh_(mesh) {}
+
+  template <class Tag, class Put>
+  void put(int dimension, std::uint32_t element, const Put& put_tag) {
+    const auto all = [&](std::span<const VertexIndex> nodes) {
+      for (const VertexIndex v : nodes) put_tag(static_cast<Tag>(v + Tag{1}));
+    };
+    if (dimension == 0) return put_tag(static_cast<Tag>(element + Tag{1}));
+    if (dimension == 1) return all(mesh_.edge_nodes(element, edge_));
+    if (dimension == 2) return all(mesh_.face_nodes(element, face_));
+    const auto nodes = mesh_.tet_nodes(element, tet_);
+    if (mesh_.second_order()) std::swap(tet_[8], tet_[9]);  // 34 before 24
+    all(nodes);
+  }
+
+ private:
+  const MeshParts& mesh_;
+  std::array<VertexIndex, 10> tet_;
+  std::array<VertexIndex, 6> face_;
+  std::array<VertexIndex, 3> edge_;
+};
+
+/// Tags of physical groups: regions, patches and curves keep their numbers, sets follow.
+std::vector<std::int32_t> physical_tags(const MeshParts& mesh) {
+  std::vector<std::int32_t> tags;
+  std::array<std::int32_t, 4> last{};
+  for (const Part& part : mesh.parts()) {
+    std::int32_t& of_kind = last[static_cast<std::size_t>(part.kind)];
+    const std::int32_t tag =
+        part.origin == Part::Origin::kSet ? of_kind + 1 : static_cast<std::int32_t>(part.number) + 1;
+    of_kind = std::max(of_kind, tag);
+    tags.push_back(tag);
+  }
+  return tags;
+}
+
+int dimension_of(Kind kind) {
+  return static_cast<int>(std::find(kKindOfDimension.begin(), kKindOfDimension.end(), kind) - kKindOfDimension.begin());
+}
+
+void write_names(TextWriter& out, const MeshParts& mesh, const std::vector<std::int32_t>& tags, bool with_sets) {
+  std::vector<std::size_t> named;
+  for (std::size_t p = 0; p < mesh.parts().size(); ++p) {
+    const Part& part = mesh.parts()[p];
+    if (part.is_named && (with_sets || part.origin != Part::Origin::kSet)) named.push_back(p);
+  }
+  out.line("$PhysicalNames\n{}", named.size());
+  for (const std::size_t p : named)
+    out.line("{} {} \"{}\"", dimension_of(mesh.parts()[p].kind), tags[p], unquoted(mesh.parts()[p].name));
+  out << "$EndPhysicalNames\n";
+}
+
+class Msh4Writer {
+ public:
+  Msh4Writer(AtomicFile& file, const MeshParts& mesh)
+      : file_(file), text_(file), mesh_(mesh), nodes_of_(mesh), physical_(physical_tags(mesh)) {
+    for (std::size_t d = 0; d < 4; ++d) by_[d] = combinations(mesh, kKindOfDimension[d]);
+    make_entities();
     assign_nodes();
   }
 
@@ -62,93 +104,94 @@ class MshWriter {
     text_ << "$MeshFormat\n4.1 1 8\n";
     put<std::int32_t>(1);
     text_ << "\n$EndMeshFormat\n";
-    write_names();
+    write_names(text_, mesh_, physical_, true);
     write_entities();
     write_nodes();
     write_elements();
   }
 
  private:
-  using Slot = std::uint32_t;  ///< of an entity: the patches, then the regions
+  struct Entity {
+    int dimension;
+    std::uint32_t slot;  ///< its combination
+    std::int32_t tag;
+    Box3 box = {};
+  };
 
   template <class T>
   void put(T value) {
     file_.write(&value, sizeof value);
   }
 
-  std::size_t entities() const { return patches_.size() + regions_.size(); }
-  int dimension(Slot s) const { return s < patches_.size() ? 2 : 3; }
-  std::int32_t tag(Slot s) const {
-    return static_cast<std::int32_t>(s < patches_.size() ? patches_.ids[s] : regions_.ids[s - patches_.size()]) + 1;
+  const std::vector<std::uint32_t>& groups_of(const Entity& e) const {
+    return by_[static_cast<std::size_t>(e.dimension)].parts[e.slot];
+  }
+  std::span<const std::uint32_t> members_of(const Entity& e) const {
+    return by_[static_cast<std::size_t>(e.dimension)].members[e.slot];
+  }
+
+  /// An entity in one group has its tag, others follow behind all.
+  void make_entities() {
+    for (int d = 0; d < 4; ++d) {
+      const auto& parts = by_[static_cast<std::size_t>(d)].parts;
+      first_[static_cast<std::size_t>(d)] = entities_.size();
+      std::int32_t next = 1;
+      for (const auto& groups : parts)
+        if (groups.size() == 1) next = std::max(next, physical_[groups[0]] + 1);
+      for (std::uint32_t c = 0; c < parts.size(); ++c)
+        entities_.push_back({d, c, parts[c].size() == 1 ? physical_[parts[c][0]] : next++});
+    }
+    first_[4] = entities_.size();
   }
 
   void assign_nodes() {
-    std::vector<Slot> slot(mesh_.points.size(), kNone);
-    for (Slot p = 0; p < patches_.size(); ++p)
-      for (const std::uint32_t f : patches_.elements[p])
-        for (const VertexIndex v : mesh_.boundary[f]) slot[v] = std::min(slot[v], p);
-    boxes_.resize(entities());
-    for (Slot r = 0; r < regions_.size(); ++r) {
-      const auto s = static_cast<Slot>(patches_.size() + r);
-      for (const TetIndex t : regions_.elements[r])
-        for (const VertexIndex v : mesh_.tets[t]) {
-          slot[v] = std::min(slot[v], s);
-          boxes_[s].add(mesh_.points[v]);
-        }
-    }
-    for (Slot p = 0; p < patches_.size(); ++p)
-      for (const std::uint32_t f : patches_.elements[p])
-        for (const VertexIndex v : mesh_.boundary[f]) boxes_[p].add(mesh_.points[v]);
-    nodes_ = {entities(), [&](const auto& add) {
-                for (VertexIndex v = 0; v < slot.size(); ++v)
-                  if (slot[v] != kNone) add(slot[v], v);
+    std::vector<std::uint32_t> entity(mesh_.points(), kNone);
+    for (std::uint32_t e = 0; e < entities_.size(); ++e)
+      for (const std::uint32_t m : members_of(entities_[e]))
+        nodes_of_.put<std::uint64_t>(entities_[e].dimension, m, [&](std::uint64_t tag) {
+          entity[tag - 1] = std::min(entity[tag - 1], e);
+          entities_[e].box.add(mesh_.mesh().points[tag - 1]);
+        });
+    nodes_ = {entities_.size(), [&](const auto& add) {
+                for (VertexIndex v = 0; v < entity.size(); ++v)
+                  if (entity[v] != kNone) add(entity[v], v);
               }};
   }
 
-  void write_names() {
-    std::vector<Slot> named;
-    const auto name = [this](Slot s) -> std::string {
-      if (s >= patches_.size()) return regions_.size() == 1 ? "body" : "body_" + std::to_string(tag(s));
-      return patches_.ids[s] < mesh_.patch_names.size() ? mesh_.patch_names[patches_.ids[s]] : std::string();
-    };
-    for (Slot s = 0; s < entities(); ++s)
-      if (!name(s).empty()) named.push_back(s);
-    text_ << "$PhysicalNames\n" << std::uint64_t{named.size()} << '\n';
-    for (const Slot s : named)
-      text_ << static_cast<std::uint32_t>(dimension(s)) << ' ' << static_cast<std::uint32_t>(tag(s)) << " \""
-            << unquoted(name(s)) << "\"\n";
-    text_ << "$EndPhysicalNames\n";
-  }
-
-  /// Per region the slots of the patches that bound it, sorted.
-  std::vector<std::vector<Slot>> patches_of_regions() const {
-    const std::vector<TetIndex> tet_of = tets_of_faces(mesh_.tets, mesh_.boundary, mesh_.points.size());
-    std::vector<std::vector<Slot>> bounding(regions_.size());
-    for (Slot p = 0; p < patches_.size(); ++p) {
-      for (const std::uint32_t f : patches_.elements[p]) {
-        const TetIndex t = tet_of[f];
-        if (t == kNone) continue;
-        std::vector<Slot>& list = bounding[regions_.slot(mesh_.region.empty() ? 0 : mesh_.region[t])];
-        if (list.empty() || list.back() != p) list.push_back(p);
-      }
+  /// The tags of the entities of faces that bound each of tetrahedra.
+  std::vector<std::vector<std::int32_t>> bounding() const {
+    std::vector<std::vector<std::int32_t>> of(by_[3].parts.size());
+    if (mesh_.faces() == 0) return of;
+    for (std::size_t f = 0; f < mesh_.faces(); ++f) {
+      const TetIndex t = mesh_.sides()[f].tet;
+      if (t == kNone) continue;
+      const std::int32_t tag = entities_[first_[2] + by_[2].of[f]].tag;
+      auto& list = of[by_[3].of[t]];
+      if (list.empty() || list.back() != tag) list.push_back(tag);
     }
-    return bounding;
+    for (auto& list : of) {
+      std::sort(list.begin(), list.end());
+      list.erase(std::unique(list.begin(), list.end()), list.end());
+    }
+    return of;
   }
 
   void write_entities() {
     text_ << "$Entities\n";
-    for (const std::uint64_t count : {std::size_t{0}, std::size_t{0}, patches_.size(), regions_.size()}) put(count);
-    const std::vector<std::vector<Slot>> bounding = patches_of_regions();
-    for (Slot s = 0; s < entities(); ++s) {
-      put(tag(s));
-      for (const Vec3& corner : {boxes_[s].lo, boxes_[s].hi})
+    for (std::size_t d = 0; d < 4; ++d) put(std::uint64_t{first_[d + 1] - first_[d]});
+    const auto surfaces = bounding();
+    for (const Entity& e : entities_) {
+      put(e.tag);
+      for (const Vec3& corner : {e.box.lo, e.box.hi}) {
         for (int axis = 0; axis < 3; ++axis) put(corner[axis]);
-      put<std::uint64_t>(1);  // physical groups
-      put(tag(s));
-      const bool is_patch = s < patches_.size();
-      put<std::uint64_t>(is_patch ? 0 : bounding[s - patches_.size()].size());
-      if (is_patch) continue;
-      for (const Slot p : bounding[s - patches_.size()]) put(tag(p));
+        if (e.dimension == 0) break;
+      }
+      put(std::uint64_t{groups_of(e).size()});
+      for (const std::uint32_t p : groups_of(e)) put(physical_[p]);
+      if (e.dimension == 0) continue;
+      const bool is_volume = e.dimension == 3;
+      put(std::uint64_t{is_volume ? surfaces[e.slot].size() : 0});
+      for (std::size_t i = 0; is_volume && i < surfaces[e.slot].size(); ++i) put(surfaces[e.slot][i]);
     }
     text_ << "\n$EndEntities\n";
   }
@@ -156,59 +199,112 @@ class MshWriter {
   void write_nodes() {
     text_ << "$Nodes\n";
     std::uint64_t blocks = 0;
-    for (Slot s = 0; s < entities(); ++s) blocks += !nodes_[s].empty();
-    const std::uint64_t count = nodes_.items().size();
-    for (const std::uint64_t n : {blocks, count, std::uint64_t{1}, std::uint64_t{mesh_.points.size()}}) put(n);
-    for (Slot s = 0; s < entities(); ++s) {
-      if (nodes_[s].empty()) continue;
-      put<std::int32_t>(dimension(s));
-      put(tag(s));
+    for (std::size_t e = 0; e < entities_.size(); ++e) blocks += !nodes_[e].empty();
+    for (const std::uint64_t n :
+         {blocks, std::uint64_t{nodes_.items().size()}, std::uint64_t{1}, std::uint64_t{mesh_.points()}})
+      put(n);
+    for (std::size_t e = 0; e < entities_.size(); ++e) {
+      if (nodes_[e].empty()) continue;
+      put<std::int32_t>(entities_[e].dimension);
+      put(entities_[e].tag);
       put<std::int32_t>(0);  // no parameters on the surface
-      put(std::uint64_t{nodes_[s].size()});
-      for (const VertexIndex v : nodes_[s]) put(std::uint64_t{v} + 1);
-      for (const VertexIndex v : nodes_[s])
-        for (int axis = 0; axis < 3; ++axis) put(mesh_.points[v][axis]);
+      put(std::uint64_t{nodes_[e].size()});
+      for (const VertexIndex v : nodes_[e]) put(std::uint64_t{v} + 1);
+      for (const VertexIndex v : nodes_[e])
+        for (int axis = 0; axis < 3; ++axis) put(mesh_.mesh().points[v][axis]);
     }
     text_ << "\n$EndNodes\n";
   }
 
-  template <std::size_t N>
-  void write_group(const ByEntity& groups, Slot s, std::int32_t type,
-                   const std::vector<std::array<VertexIndex, N>>& corners, std::uint64_t first_tag) {
-    put<std::int32_t>(N == 3 ? 2 : 3);
-    put(static_cast<std::int32_t>(groups.ids[s]) + 1);
-    put(type);
-    put(std::uint64_t{groups.elements[s].size()});
-    for (const std::uint32_t e : groups.elements[s]) {
-      std::array<std::uint64_t, N + 1> record;
-      record[0] = first_tag + e;
-      for (std::size_t i = 0; i < N; ++i) record[i + 1] = std::uint64_t{corners[e][i]} + 1;
-      put(record);
-    }
-  }
-
   void write_elements() {
-    constexpr std::int32_t kTriangleType = 2, kTetType = 4;
-    const std::uint64_t triangles = mesh_.boundary.size(), count = triangles + mesh_.tets.size();
+    // The points are those in sets of nodes.
+    std::array<std::uint64_t, 5> first{0, by_[0].members.items().size()};
+    const std::array<std::uint64_t, 4> counts{first[1], mesh_.edges(), mesh_.faces(), mesh_.tets()};
+    for (std::size_t d = 1; d < 4; ++d) first[d + 1] = first[d] + counts[d];
     text_ << "$Elements\n";
-    for (const std::uint64_t n : {std::uint64_t{entities()}, count, std::uint64_t{1}, count}) put(n);
-    for (Slot p = 0; p < patches_.size(); ++p) write_group(patches_, p, kTriangleType, mesh_.boundary, 1);
-    for (Slot r = 0; r < regions_.size(); ++r) write_group(regions_, r, kTetType, mesh_.tets, triangles + 1);
+    for (const std::uint64_t n : {std::uint64_t{entities_.size()}, first[4], std::uint64_t{1}, first[4]}) put(n);
+    for (const Entity& e : entities_) {
+      put<std::int32_t>(e.dimension);
+      put(e.tag);
+      put(type_of(e.dimension, mesh_.second_order()));
+      put(std::uint64_t{members_of(e).size()});
+      std::uint64_t point = by_[0].members.first(e.dimension == 0 ? e.slot : 0);
+      for (const std::uint32_t m : members_of(e)) {
+        put(e.dimension == 0 ? ++point : first[static_cast<std::size_t>(e.dimension)] + m + 1);
+        nodes_of_.put<std::uint64_t>(e.dimension, m, [&](std::uint64_t tag) { put(tag); });
+      }
+    }
     text_ << "\n$EndElements\n";
   }
 
   AtomicFile& file_;
   TextWriter text_;
-  const TetMesh& mesh_;
-  ByEntity patches_, regions_;
+  const MeshParts& mesh_;
+  ElementNodes nodes_of_;
+  std::vector<std::int32_t> physical_;  ///< of each part
+  std::array<Combinations, 4> by_;      ///< by dimension
+  std::vector<Entity> entities_;        ///< by dimension
+  std::array<std::size_t, 5> first_{};
   Groups<> nodes_;  ///< of each entity
-  std::vector<Box3> boxes_;
+};
+
+/// Elements with two tags each: their physical group, and the same as their entity.
+class Msh2Writer {
+ public:
+  Msh2Writer(AtomicFile& file, const MeshParts& mesh) : file_(file), text_(file), mesh_(mesh), nodes_of_(mesh) {}
+
+  void write() {
+    text_ << "$MeshFormat\n2.2 1 8\n";
+    put(1);
+    text_ << "\n$EndMeshFormat\n";
+    write_names(text_, mesh_, physical_tags(mesh_), false);
+    text_.line("$Nodes\n{}", mesh_.points());
+    for (std::size_t v = 0; v < mesh_.points(); ++v) {
+      put(static_cast<std::int32_t>(v) + 1);
+      const Vec3 p = mesh_.mesh().points[v];
+      const std::array<double, 3> xyz{p.x, p.y, p.z};
+      file_.write(xyz.data(), sizeof xyz);
+    }
+    const std::array<std::size_t, 4> counts{0, mesh_.edges(), mesh_.faces(), mesh_.tets()};
+    text_.line("\n$EndNodes\n$Elements\n{}", counts[1] + counts[2] + counts[3]);
+    for (int d = 1; d < 4; ++d) write_elements(d, counts[static_cast<std::size_t>(d)]);
+    text_ << "\n$EndElements\n";
+  }
+
+ private:
+  void put(std::int32_t value) { file_.write(&value, sizeof value); }
+
+  void write_elements(int dimension, std::size_t count) {
+    if (count == 0) return;
+    for (const std::int32_t n : {type_of(dimension, mesh_.second_order()), static_cast<std::int32_t>(count), 2}) put(n);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      put(++tag_);
+      const std::uint32_t part = dimension == 1   ? mesh_.curve_of(i)
+                                 : dimension == 2 ? mesh_.patch_of(i)
+                                                  : mesh_.region_of(i);
+      for (int k = 0; k < 2; ++k) put(static_cast<std::int32_t>(part) + 1);
+      nodes_of_.put<std::int32_t>(dimension, i, [&](std::int32_t tag) { put(tag); });
+    }
+  }
+
+  AtomicFile& file_;
+  TextWriter text_;
+  const MeshParts& mesh_;
+  ElementNodes nodes_of_;
+  std::int32_t tag_ = 0;
 };
 
 }  // namespace
 
-void write_msh(AtomicFile& file, const TetMesh& mesh) {
-  MshWriter(file, mesh).write();
+void write_msh(MeshOutput& out, const MeshParts& mesh) {
+  Msh4Writer(out.file(), mesh).write();
+}
+
+void write_msh2(MeshOutput& out, const MeshParts& mesh) {
+  constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
+  if (mesh.points() > kMost || mesh.edges() + mesh.faces() + mesh.tets() > kMost)
+    throw OutputError(out.target().string() + ": MSH 2.2 counts with 32 bits, too few for this mesh; write MSH 4.1");
+  Msh2Writer(out.file(), mesh).write();
 }
 
 }  // namespace octafront::io

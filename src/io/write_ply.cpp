@@ -1,23 +1,11 @@
+#include "io/legal_names.h"
 #include "io/text_writer.h"
 #include "io/writers.h"
 
-#include <algorithm>
 #include <array>
 #include <cstring>
-#include <string>
 
 namespace octafront::io {
-namespace {
-
-/// Names end with the line.
-std::string one_line(std::string name) {
-  std::replace_if(
-      name.begin(), name.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
-  return name;
-}
-
-}  // namespace
-
 void write_ply(AtomicFile& file, const SurfaceMesh& surface) {
   TextWriter out(file);
   out << "ply\nformat binary_little_endian 1.0\n";

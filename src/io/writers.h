@@ -6,6 +6,8 @@
 #include <octafront/tet_mesh.h>
 
 #include "io/atomic_file.h"
+#include "io/mesh_output.h"
+#include "io/mesh_parts.h"
 
 namespace octafront::io {
 
@@ -14,8 +16,27 @@ void write_obj(AtomicFile& file, const SurfaceMesh& surface);
 void write_off(AtomicFile& file, const SurfaceMesh& surface);
 void write_ply(AtomicFile& file, const SurfaceMesh& surface);
 
-void write_vtu(AtomicFile& file, const TetMesh& mesh);
-void write_msh(AtomicFile& file, const TetMesh& mesh);
-void write_medit(AtomicFile& file, const TetMesh& mesh);
+void write_vtu(MeshOutput& out, const MeshParts& mesh);
+void write_vtk(MeshOutput& out, const MeshParts& mesh);
+void write_msh(MeshOutput& out, const MeshParts& mesh);
+void write_msh2(MeshOutput& out, const MeshParts& mesh);
+void write_medit(MeshOutput& out, const MeshParts& mesh);
+void write_medit_binary(MeshOutput& out, const MeshParts& mesh);
+void write_abaqus(MeshOutput& out, const MeshParts& mesh);
+void write_nastran(MeshOutput& out, const MeshParts& mesh);
+void write_unv(MeshOutput& out, const MeshParts& mesh);
+void write_ansys(MeshOutput& out, const MeshParts& mesh);
+void write_lsdyna(MeshOutput& out, const MeshParts& mesh);
+void write_febio(MeshOutput& out, const MeshParts& mesh);
+void write_su2(MeshOutput& out, const MeshParts& mesh);
+void write_netgen(MeshOutput& out, const MeshParts& mesh);
+void write_tetgen(MeshOutput& out, const MeshParts& mesh);
+void write_openfoam(MeshOutput& out, const MeshParts& mesh);
+void write_exodus(MeshOutput& out, const MeshParts& mesh);
+
+// With HDF5 only.
+void write_med(MeshOutput& out, const MeshParts& mesh);
+void write_xdmf(MeshOutput& out, const MeshParts& mesh);
+void write_cgns(MeshOutput& out, const MeshParts& mesh);
 
 }  // namespace octafront::io

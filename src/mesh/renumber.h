@@ -17,6 +17,9 @@ void renumber(Rows& rows, const std::vector<VertexIndex>& number) {
     for (VertexIndex& v : row) v = number[v];
 }
 
+/// Replaces each vertex in all arrays of a mesh but `points`; vertices whose number is kNone leave the sets of nodes.
+void renumber_vertices(TetMesh& mesh, const std::vector<VertexIndex>& number);
+
 /// Points that no tetrahedron uses go; the first `kept` stay where they are, used or not.
 void drop_unused_points(TetMesh& mesh, std::size_t kept = 0);
 

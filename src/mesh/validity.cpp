@@ -1,12 +1,15 @@
 #include <octafront/run_context.h>
 #include <octafront/validity.h>
 
+#include "core/parallel.h"
 #include "geometry/measures.h"
 #include "geometry/predicates.h"
 #include "mesh/face_table.h"
+#include "mesh/quadratic_nodes.h"
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <span>
 
@@ -26,20 +29,30 @@ std::string described(const std::vector<Vec3>& points, const Triangle& t) {
                      place(points[t[2]]));
 }
 
+/// A row of vertices that are not all there.
+template <class Rows>
+std::optional<std::string> range_defect(const Rows& rows, std::size_t n, const char* what) {
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    for (const VertexIndex v : rows[i])
+      if (v >= n) return fmt::format("{} {} refers to vertex {}, but there are only {}", what, i, v, n);
+  return std::nullopt;
+}
+
 std::optional<std::string> point_defect(const TetMesh& mesh) {
   if (mesh.tets.empty()) return "the mesh has no tetrahedra";
   const std::size_t n = mesh.points.size();
   for (std::size_t v = 0; v < n; ++v)
     if (!is_finite(mesh.points[v])) return fmt::format("vertex {} {} is not finite", v, place(mesh.points[v]));
+  if (auto d = range_defect(mesh.tets, n, "tetrahedron")) return d;
+  if (auto d = range_defect(mesh.mid_nodes, n, "tetrahedron")) return d;
+  if (auto d = range_defect(mesh.boundary, n, "boundary face")) return d;
+  if (auto d = range_defect(mesh.interfaces, n, "interface")) return d;
+  if (auto d = range_defect(mesh.curve_edges, n, "curve edge")) return d;
   std::vector<bool> used(n, false);
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
-    for (const VertexIndex v : mesh.tets[t]) {
-      if (v >= n) return fmt::format("tetrahedron {} refers to vertex {}, but there are only {}", t, v, n);
-      used[v] = true;
-    }
-  for (std::size_t f = 0; f < mesh.boundary.size(); ++f)
-    for (const VertexIndex v : mesh.boundary[f])
-      if (v >= n) return fmt::format("boundary face {} refers to vertex {}, but there are only {}", f, v, n);
+  for (const Tet& t : mesh.tets)
+    for (const VertexIndex v : t) used[v] = true;
+  for (const auto& mids : mesh.mid_nodes)
+    for (const VertexIndex v : mids) used[v] = true;
   const auto unused = std::find(used.begin(), used.end(), false);
   if (unused != used.end()) {
     const auto v = static_cast<std::size_t>(unused - used.begin());
@@ -56,7 +69,88 @@ std::optional<std::string> array_defect(const TetMesh& mesh) {
   };
   if (auto d = misfit("region", mesh.region.size(), mesh.tets.size(), "tetrahedra")) return d;
   if (auto d = misfit("patch", mesh.patch.size(), mesh.boundary.size(), "boundary faces")) return d;
-  return misfit("source", mesh.source.size(), mesh.boundary.size(), "boundary faces");
+  if (auto d = misfit("source", mesh.source.size(), mesh.boundary.size(), "boundary faces")) return d;
+  if (auto d = misfit("interface_patch", mesh.interface_patch.size(), mesh.interfaces.size(), "interfaces")) return d;
+  if (auto d = misfit("curve", mesh.curve.size(), mesh.curve_edges.size(), "curve edges")) return d;
+  return misfit("mid_nodes", mesh.mid_nodes.size(), mesh.tets.size(), "tetrahedra");
+}
+
+std::size_t members_at_most(const TetMesh& mesh, NamedSet::Kind kind) {
+  switch (kind) {
+    case NamedSet::Kind::kNodes:
+      return mesh.points.size();
+    case NamedSet::Kind::kEdges:
+      return mesh.curve_edges.size();
+    case NamedSet::Kind::kFaces:
+      return mesh.boundary.size() + mesh.interfaces.size();
+    default:
+      return mesh.tets.size();
+  }
+}
+
+std::optional<std::string> set_defect(const TetMesh& mesh) {
+  for (const NamedSet& set : mesh.sets) {
+    const auto& m = set.members;
+    if (std::adjacent_find(m.begin(), m.end(), std::greater_equal<>()) != m.end())
+      return fmt::format("the members of set {} are not ascending", set.name);
+    const std::size_t most = members_at_most(mesh, set.kind);
+    if (!m.empty() && m.back() >= most)
+      return fmt::format("set {} has the member {}, but there are only {}", set.name, m.back(), most);
+  }
+  return std::nullopt;
+}
+
+Edge edge_of(const Tet& t, std::size_t e) {
+  const VertexIndex a = t[static_cast<std::size_t>(kTetEdges[e][0])], b = t[static_cast<std::size_t>(kTetEdges[e][1])];
+  return {std::min(a, b), std::max(a, b)};
+}
+
+std::optional<std::string> curve_defect(const TetMesh& mesh) {
+  if (mesh.curve_edges.empty()) return std::nullopt;
+  std::vector<Edge> wanted = mesh.curve_edges;
+  std::vector<bool> at_curve(mesh.points.size(), false);
+  for (auto& [a, b] : wanted) {
+    if (a > b) std::swap(a, b);
+    at_curve[a] = at_curve[b] = true;
+  }
+  std::sort(wanted.begin(), wanted.end());
+  std::vector<bool> found(wanted.size(), false);
+  for (const Tet& t : mesh.tets)
+    for (std::size_t e = 0; e < 6; ++e) {
+      const Edge edge = edge_of(t, e);
+      if (!at_curve[edge[0]] || !at_curve[edge[1]]) continue;
+      for (auto at = std::lower_bound(wanted.begin(), wanted.end(), edge); at != wanted.end() && *at == edge; ++at)
+        found[static_cast<std::size_t>(at - wanted.begin())] = true;
+    }
+  const auto lost = std::find(found.begin(), found.end(), false);
+  if (lost == found.end()) return std::nullopt;
+  const auto [a, b] = wanted[static_cast<std::size_t>(lost - found.begin())];
+  return fmt::format("the curve edge {} {} at {} {} is no edge of a tetrahedron", a, b, place(mesh.points[a]),
+                     place(mesh.points[b]));
+}
+
+/// Each edge has one mid-side node, which no other edge has, and which is no corner.
+std::optional<std::string> mid_node_defect(const TetMesh& mesh) {
+  if (!mesh.is_second_order()) return std::nullopt;
+  VertexIndex corners = 0;
+  for (const Tet& t : mesh.tets) corners = std::max(corners, 1 + *std::max_element(t.begin(), t.end()));
+  std::vector<Edge> edge_at(mesh.points.size(), Edge{kNone, kNone});
+  std::size_t nodes = 0;
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+    for (std::size_t e = 0; e < 6; ++e) {
+      const VertexIndex mid = mesh.mid_nodes[t][e];
+      const Edge edge = edge_of(mesh.tets[t], e);
+      if (mid < corners) return fmt::format("the mid-side node {} of tetrahedron {} is not behind all corners", mid, t);
+      nodes += edge_at[mid][0] == kNone;
+      if (edge_at[mid][0] == kNone) edge_at[mid] = edge;
+      if (edge_at[mid] != edge)
+        return fmt::format("the mid-side node {} {} is on two edges: {} {} and {} {}", mid, place(mesh.points[mid]),
+                           edge_at[mid][0], edge_at[mid][1], edge[0], edge[1]);
+    }
+  std::sort(edge_at.begin(), edge_at.end());
+  const auto twice = std::adjacent_find(edge_at.begin(), edge_at.begin() + static_cast<std::ptrdiff_t>(nodes));
+  if (twice == edge_at.begin() + static_cast<std::ptrdiff_t>(nodes)) return std::nullopt;
+  return fmt::format("the edge {} {} has several mid-side nodes", (*twice)[0], (*twice)[1]);
 }
 
 std::optional<std::string> sign_defect(const TetMesh& mesh) {
@@ -70,6 +164,22 @@ std::optional<std::string> sign_defect(const TetMesh& mesh) {
                        place(p[b]), place(p[c]), place(p[d]));
   }
   return std::nullopt;
+}
+
+std::optional<std::string> jacobian_defect(const TetMesh& mesh) {
+  if (!mesh.is_second_order()) return std::nullopt;
+  std::vector<char> good(mesh.tets.size());
+  parallel_for(good.size(), [&](std::size_t t) {
+    good[t] = has_positive_jacobian(quadratic_nodes(mesh, static_cast<TetIndex>(t)));
+  });
+  const auto bad = std::find(good.begin(), good.end(), 0);
+  if (bad == good.end()) return std::nullopt;
+  const auto t = static_cast<TetIndex>(bad - good.begin());
+  const auto nodes = quadratic_nodes(mesh, t);
+  const auto coefficients = jacobian_coefficients(nodes);
+  return fmt::format("the Jacobian of tetrahedron {} at {} is not proven positive: its least coefficient is {:.3g}", t,
+                     place(centroid(nodes[0], nodes[1], nodes[2], nodes[3])),
+                     *std::min_element(coefficients.begin(), coefficients.end()));
 }
 
 // What a face is of, packed into a number of the face table: faces of tets sort before those of the boundary list.
@@ -95,36 +205,51 @@ FaceTable table_of_faces(const TetMesh& mesh) {
               }
             for (std::uint32_t f = 0; f < mesh.boundary.size(); ++f)
               add(mesh.boundary[f], FaceOwner(f, true, mesh.boundary[f]).number);
+            // Interfaces count on behind the boundary.
+            const auto first = static_cast<std::uint32_t>(mesh.boundary.size());
+            for (std::uint32_t f = 0; f < mesh.interfaces.size(); ++f)
+              add(mesh.interfaces[f], FaceOwner(first + f, true, mesh.interfaces[f]).number);
           }};
 }
 
-std::string name(FaceOwner f) {
+bool is_interface(const TetMesh& mesh, FaceOwner f) {
+  return f.listed() && f.of() >= mesh.boundary.size();
+}
+
+std::string name(const TetMesh& mesh, FaceOwner f) {
+  if (is_interface(mesh, f)) return fmt::format("interface {}", f.of() - mesh.boundary.size());
   return fmt::format("{} {}", f.listed() ? "boundary face" : "tetrahedron", f.of());
+}
+
+// The common cases: two tets from opposite sides, with an interface or without; a tet and its listed face.
+bool is_good(const TetMesh& mesh, std::span<const FaceTable::Entry> group) {
+  if (group.size() < 2 || group.size() > 3) return false;
+  const FaceOwner a(group[0].face), b(group[1].face), last(group.back().face);
+  if (a.listed() || (a.even() == b.even()) != b.listed()) return false;
+  return group.size() == 2 ? !is_interface(mesh, b) : !b.listed() && is_interface(mesh, last);
 }
 
 // Faces with the same corners: one or two tets, or one tet and one face of the boundary list.
 std::optional<std::string> face_group_defect(const TetMesh& mesh, const Triangle& corners,
                                              std::span<const FaceTable::Entry> group) {
+  const auto name_of = [&](FaceOwner f) { return name(mesh, f); };
   const std::string where = "face " + described(mesh.points, corners);
   const FaceOwner a(group[0].face);
-  if (a.listed()) return fmt::format("{} is {} but belongs to no tetrahedron", where, name(a));
+  if (a.listed()) return fmt::format("{} is {} but belongs to no tetrahedron", where, name_of(a));
   if (group.size() == 1) return fmt::format("{} of tetrahedron {} is open but not listed as boundary", where, a.of());
   const FaceOwner b(group[1].face);
   if (group.size() > 2)
-    return fmt::format("{} belongs to {}, {} and {}", where, name(a), name(b), name(FaceOwner(group[2].face)));
-  if (!b.listed() && a.even() == b.even())
-    return fmt::format("{}: {} and {} lie on the same side", where, name(a), name(b));
-  if (b.listed() && a.even() != b.even()) return fmt::format("{}: {} faces inward", where, name(b));
-  return std::nullopt;
+    return fmt::format("{} belongs to {}, {} and {}", where, name_of(a), name_of(b),
+                       name_of(FaceOwner(group.back().face)));
+  if (!b.listed()) return fmt::format("{}: {} and {} lie on the same side", where, name_of(a), name_of(b));
+  if (is_interface(mesh, b)) return fmt::format("{}: {} has no tetrahedron behind it", where, name_of(b));
+  return fmt::format("{}: {} faces inward", where, name_of(b));
 }
 
 std::optional<std::string> face_defect(const TetMesh& mesh) {
   std::optional<std::string> defect;
   table_of_faces(mesh).for_each_group([&](const Triangle& key, std::span<const FaceTable::Entry> group) {
-    const FaceOwner a(group.front().face), b(group.back().face);
-    // The common cases: two tets from opposite sides, a tet and its listed face.
-    const bool good = group.size() == 2 && !a.listed() && (a.even() == b.even()) == b.listed();
-    if (!good && !defect) defect = face_group_defect(mesh, key, group);
+    if (!defect && !is_good(mesh, group)) defect = face_group_defect(mesh, key, group);
   });
   return defect;
 }
@@ -191,9 +316,10 @@ std::optional<std::string> boundary_difference(const TetMesh& mesh, const Surfac
 }  // namespace
 
 std::optional<std::string> first_defect(const TetMesh& mesh, const RunContext& context) {
-  if (std::max(mesh.tets.size(), mesh.boundary.size()) >= FaceOwner::kMostOwners)
+  if (std::max(mesh.tets.size(), mesh.boundary.size() + mesh.interfaces.size()) >= FaceOwner::kMostOwners)
     return "a mesh of 2^30 tetrahedra or more cannot be checked";
-  for (const auto check : {point_defect, array_defect, sign_defect, face_defect, volume_defect}) {
+  for (const auto check : {point_defect, array_defect, set_defect, sign_defect, face_defect, curve_defect,
+                           mid_node_defect, jacobian_defect, volume_defect}) {
     context.check();
     if (auto defect = check(mesh)) return defect;
   }

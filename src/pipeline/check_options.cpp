@@ -30,6 +30,7 @@ void check_options(const Options& options) {
   require(options.volume.ideal_distance >= 0.3 && options.volume.ideal_distance <= 1.5,
           "`ideal_distance` is a multiple of the element size, between 0.3 and 1.5");
   check_improve_options(options.improve);
+  require(options.order == 1 || options.order == 2, "`order` is 1 for linear elements or 2 for those of second order");
   require(!(surface.keep && traits_of(options.method).makes_own_boundary()),
           "the octree method makes a boundary of its own: it cannot keep the input's triangles");
 }

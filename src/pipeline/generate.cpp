@@ -1,4 +1,5 @@
 #include <octafront/generate.h>
+#include <octafront/named_groups.h>
 
 #include "pipeline/methods.h"
 #include "pipeline/pipeline.h"
@@ -12,6 +13,8 @@ Result generate(const SurfaceMesh& surface, const Options& options, const RunCon
   const SizeField sizes = choose_sizes(input, run);
   Filled filled = fill_to_target(input, sizes, run);
   improve_elements(input, filled, run);
+  raise_order(input, filled, run);
+  add_patch_curves(filled.mesh);
   check_result(filled.mesh, &filled.boundary.surface, run);
   describe(filled.mesh, run.report);
   describe_sizes(filled.mesh, filled.boundary.sizes, run.report);

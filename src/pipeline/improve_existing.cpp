@@ -1,8 +1,10 @@
 #include <octafront/error.h>
 #include <octafront/improve_existing.h>
+#include <octafront/named_groups.h>
 #include <octafront/repair.h>
 #include <octafront/validity.h>
 
+#include "curved/curved.h"
 #include "improve/improve.h"
 #include "pipeline/follow_boundary.h"
 #include "pipeline/stages.h"
@@ -75,6 +77,27 @@ void require_valid(const TetMesh& mesh, const RunContext& context) {
   if (const auto defect = first_defect(mesh, context)) throw InputError("not a valid mesh: " + *defect);
 }
 
+/// The mesh as it is; what improvement does not know of leaves `mesh`.
+TetMesh put_groups_aside(TetMesh& mesh) {
+  TetMesh before = mesh;
+  mesh.interfaces.clear();
+  mesh.interface_patch.clear();
+  mesh.curve_edges.clear();
+  mesh.curve.clear();
+  mesh.sets.clear();
+  return before;
+}
+
+void raise_order(TetMesh& mesh, const Ground* ground, Run& run) {
+  if (run.options.order < 2) return;
+  run.stage("second order", [&](const Stage& stage) {
+    run.report.second_order = ground ? curve_to_surface(mesh, ground->of_mesh.edges, ground->surface,
+                                                        run.options.surface.feature_angle, stage.context())
+                                     : add_straight_edges(mesh, stage.context());
+    count_edges(run.report.second_order, stage);
+  });
+}
+
 }  // namespace
 
 Improved improve_existing(const TetMesh& mesh, const Options& options, const SurfaceMesh* surface,
@@ -83,6 +106,9 @@ Improved improve_existing(const TetMesh& mesh, const Options& options, const Sur
   Improved result;
   run.stage("check of the input", [&](const Stage& stage) { require_valid(mesh, stage.context()); });
   result.mesh = mesh;
+  make_linear(result.mesh);
+  // What improvement does not know of goes, and comes back as far as it is still there.
+  const TetMesh before = put_groups_aside(result.mesh);
   result.before = summarize_quality(mesh);
   run.report.input_volume = enclosed_volume(boundary_of(mesh));
   std::optional<Ground> ground;
@@ -98,6 +124,10 @@ Improved improve_existing(const TetMesh& mesh, const Options& options, const Sur
     if (improve_mesh(result.mesh, on ? &*on : nullptr, options.improve, stage) && on)
       renew_sources(result.mesh, boundary_of(mesh), on->surface, on->tree);
   });
+  run.stage("groups", [&](const Stage& stage) {
+    for (const std::string& note : carry_groups(before, result.mesh)) stage.note(note);
+  });
+  raise_order(result.mesh, ground ? &*ground : nullptr, run);
   check_result(result.mesh, nullptr, run);
   describe(result.mesh, run.report);
   result.report = run.close();

@@ -85,6 +85,8 @@ std::uint64_t mesh_hash(const TetMesh& mesh) {
     for (const VertexIndex v : face) hash.add(v);
   for (const std::uint32_t region : mesh.region) hash.add(region);
   for (const std::uint32_t patch : mesh.patch) hash.add(patch);
+  for (const auto& mids : mesh.mid_nodes)
+    for (const VertexIndex v : mids) hash.add(v);
   return hash.value();
 }
 

@@ -3,6 +3,7 @@
 #include <octafront/error.h>
 #include <octafront/validity.h>
 
+#include "curved/curved.h"
 #include "improve/improve.h"
 #include "pipeline/follow_boundary.h"
 #include "pipeline/methods.h"
@@ -246,6 +247,25 @@ void improve_elements(const Prepared& input, Filled& filled, Run& run) {
   });
 }
 
+void raise_order(const Prepared& input, Filled& filled, Run& run) {
+  if (run.options.order < 2) return;
+  run.stage("second order", [&](const Stage& stage) {
+    auto& [mesh, boundary] = filled;
+    run.report.second_order = keeps_surface(run.options)
+                                  ? add_straight_edges(mesh, stage.context())
+                                  : curve_to_surface(mesh, boundary.features.edges, input.surface,
+                                                     run.options.surface.feature_angle, stage.context());
+    std::copy_n(mesh.points.begin(), boundary.surface.points.size(), boundary.surface.points.begin());
+    count_edges(run.report.second_order, stage);
+  });
+}
+
+void count_edges(const SecondOrderSummary& made, const Stage& stage) {
+  stage.count("curved edges", static_cast<double>(made.curved));
+  stage.count("eased edges", static_cast<double>(made.eased));
+  stage.count("straight edges", static_cast<double>(made.straight));
+}
+
 void check_result(const TetMesh& mesh, const SurfaceMesh* surface, Run& run) {
   run.stage("check", [&](const Stage& stage) {
     const auto defect = surface ? first_defect(mesh, *surface, stage.context()) : first_defect(mesh, stage.context());
@@ -263,7 +283,7 @@ void describe(const TetMesh& mesh, Report& report) {
   report.points = mesh.points.size();
   report.tets = mesh.tets.size();
   report.boundary_faces = mesh.boundary.size();
-  report.volume = enclosed_volume(boundary_of(mesh));
+  report.volume = mesh.is_second_order() ? curved_volume(mesh) : enclosed_volume(boundary_of(mesh));
   report.quality = summarize_quality(mesh);
   report.hash = mesh_hash(mesh);
 }

@@ -4,6 +4,7 @@
 // is new, but for improvement, which changes the mesh in place; any of them can be called alone with a Run of its own.
 
 #include <octafront/repair.h>
+#include <octafront/second_order.h>
 #include <octafront/size_field.h>
 #include <octafront/surface_mesh.h>
 #include <octafront/tet_mesh.h>
@@ -50,6 +51,13 @@ Filled fill_to_target(const Prepared& input, const SizeField& sizes, Run& run);
 
 /// Better elements; `filled.boundary` follows what became of the boundary.
 void improve_elements(const Prepared& input, Filled& filled, Run& run);
+
+/// Mid-side nodes where the run asks for second order, on the smooth surface of the input unless its triangles are
+/// kept; `filled.boundary` follows.
+void raise_order(const Prepared& input, Filled& filled, Run& run);
+
+/// Enters what became of the edges into the stage's report.
+void count_edges(const SecondOrderSummary& made, const Stage& stage);
 
 /// Throws MeshingError if the mesh breaks a law of first_defect(), or its boundary is not `surface` where one is given.
 void check_result(const TetMesh& mesh, const SurfaceMesh* surface, Run& run);

@@ -35,6 +35,18 @@ Json json_of(const SizeSummary& s) {
   return {{"edges", s.edges}, {"mean_ratio", s.mean_ratio}, {"share_within_0.7_1.4", s.share_within}};
 }
 
+Json json_of(const SecondOrderSummary& s) {
+  return {{"edges", s.edges},
+          {"curved_edges", s.curved},
+          {"eased_edges", s.eased},
+          {"straight_edges", s.straight},
+          {"corners_moved", s.moved},
+          {"corners_held", s.held},
+          {"largest_bend", s.largest_bend},
+          {"least_scaled_jacobian", s.least_scaled_jacobian},
+          {"least_tet", s.least_tet}};
+}
+
 }  // namespace
 
 std::string to_json(const Report& report) {
@@ -49,6 +61,7 @@ std::string to_json(const Report& report) {
          {"expected_tets", report.expected_tets}};
   if (report.tets > 0) {
     j["quality"] = json_of(report.quality);
+    if (report.second_order.edges > 0) j["second_order"] = json_of(report.second_order);
     j["volume_edges"] = json_of(report.volume_edges);
     j["hash"] = fmt::format("{:016x}", report.hash);
   }

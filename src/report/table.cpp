@@ -69,6 +69,16 @@ std::string quality_lines(const QualitySummary& q) {
   return out;
 }
 
+std::string second_order_lines(const SecondOrderSummary& s) {
+  std::string out =
+      fmt::format("second order, every element proven valid\n  edges {}: {} curved, {} eased, {} straight\n",
+                  grouped(s.edges), grouped(s.curved), grouped(s.eased), grouped(s.straight));
+  if (s.moved + s.held > 0)
+    out += fmt::format("  corners moved to the smooth surface: {}; held back: {}\n", grouped(s.moved), grouped(s.held));
+  return out + fmt::format("  least scaled Jacobian {:.4f} (tet {}), largest bend {:.3f} of an edge\n",
+                           s.least_scaled_jacobian, s.least_tet, s.largest_bend);
+}
+
 std::string size_line(const char* what, const SizeSummary& s) {
   return fmt::format("  {:<16}mean {:.3f} of the length wanted, {:.1f} % within 0.7 - 1.4\n", what, s.mean_ratio,
                      100 * s.share_within);
@@ -86,6 +96,7 @@ std::string to_table(const Report& report) {
     out += fmt::format("volume {:.6g} (input {:.6g}, {:+.3f} %)\n", report.volume, report.input_volume,
                        100 * (report.volume / report.input_volume - 1));
   if (report.tets > 0) out.append("\n").append(quality_lines(report.quality));
+  if (report.second_order.edges > 0) out += second_order_lines(report.second_order);
   if (report.surface_edges.edges > 0) out += "edge lengths\n" + size_line("surface", report.surface_edges);
   if (report.volume_edges.edges > 0) out += size_line("volume", report.volume_edges);
   out.append("\n").append(stage_lines(report));

@@ -47,8 +47,51 @@ class CommandLine(unittest.TestCase):
     def files(self):
         return sorted(p.name for p in self.dir.iterdir())
 
+    def test_second_order_is_curved_reported_and_proven_from_the_file(self):
+        for ending in ("msh", "inp", "bdf", "vtu", "unv"):
+            out, report = self.dir / f"torus.{ending}", self.dir / "report.json"
+            done = self.run_cli("mesh", SAMPLES / "torus_knot.ply", "-o", out, "--order", 2, "--json", report,
+                                "--improve", "fast")
+            self.assertIn("second order, every element proven valid", done.stdout)
+            r = json.loads(report.read_text())["second_order"]
+            self.assertGreater(r["curved_edges"], 1000)
+            self.assertEqual(r["edges"], r["curved_edges"] + r["eased_edges"] + r["straight_edges"])
+            self.assertGreater(r["least_scaled_jacobian"], 0)
+            self.run_cli("check", out, "--json", report)
+            found = json.loads(report.read_text())
+            self.assertEqual(found["second_order"]["invalid"], 0)
+            # Formats with fewer digits than a double change it a little.
+            self.assertAlmostEqual(found["second_order"]["least_scaled_jacobian"], r["least_scaled_jacobian"], 6)
+
+    def test_a_mid_side_node_out_of_place_is_named(self):
+        out = self.dir / "part.msh"
+        self.run_cli("mesh", self.part, "-o", out, "--order", 2, "--size", 0.3)
+        text = self.dir / "part.inp"
+        self.run_cli("convert", out, "-o", text)
+        lines = text.read_text().splitlines()
+        first = lines[lines.index(next(line for line in lines if line.startswith("*ELEMENT"))) + 1].split(",")
+        nodes = lines.index("*NODE")
+        corner, middle = int(first[1]), int(first[5])
+        lines[nodes + middle] = ",".join([str(middle), *lines[nodes + corner].split(",")[1:]])
+        text.write_text("\n".join(lines) + "\n")
+        report = self.dir / "report.json"
+        done = self.run_cli("check", text, "--solver", "nastran", "--json", report, status=3)
+        self.assertIn("element 0 at", done.stderr)
+        found = json.loads(report.read_text())
+        self.assertGreater(found["second_order"]["invalid"], 0)
+        corners = next(f for f in found["solver"] if "TET_DETG" in f["measure"])
+        self.assertIn(0, [e["number"] for e in corners["worst"]])
+
+    def test_solvers_are_asked_about_meshes_only(self):
+        out = self.dir / "part.msh"
+        self.run_cli("mesh", self.part, "-o", out, "--size", 0.3)
+        for solver in ("abaqus", "ansys", "nastran", "calculix"):
+            self.assertIn(" 0 elements", self.run_cli("check", out, "--solver", solver).stdout)
+        self.run_cli("check", self.part, "--solver", "ansys", status=2)
+        self.run_cli("check", out, "--solver", "abacus", status=2)
+
     def test_meshes_to_every_format_and_reports(self):
-        for ending in ("vtu", "msh", "mesh"):
+        for ending in ("vtu", "msh", "mesh", "meshb", "vtk", "inp", "bdf", "unv", "vol", "ele"):
             out, report = self.dir / f"part.{ending}", self.dir / "report.json"
             done = self.run_cli("mesh", self.part, "-o", out, "--size", 0.2, "--json", report)
             self.assertIn("tetrahedra", done.stdout)
@@ -66,7 +109,7 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(a.read_bytes(), b.read_bytes())
 
     def test_improves_meshes_of_every_format(self):
-        for ending in ("vtu", "msh", "mesh"):
+        for ending in ("vtu", "msh", "mesh", "meshb", "vtk", "inp", "bdf", "unv", "vol", "ele"):
             start, out, report = self.dir / f"start.{ending}", self.dir / "better.vtu", self.dir / "report.json"
             self.run_cli("mesh", self.part, "-o", start, "--size", 0.2, "--improve", "none")
             done = self.run_cli("improve", start, "-o", out, "--surface", self.part, "--json", report)
@@ -127,7 +170,7 @@ class CommandLine(unittest.TestCase):
     def test_patches_follow_to_the_mesh(self):
         self.run_cli("mesh", self.part, "-o", self.dir / "o.msh", "--size", 0.3, "--patches")
         text = (self.dir / "o.msh").read_bytes()
-        counts = struct.pack("<4q", 0, 0, 4, 1)  # points, curves, surfaces, volumes
+        counts = struct.pack("<4q", 0, 6, 4, 1)  # points, curves, surfaces, volumes
         self.assertTrue(b"$Entities\n" + counts in text)
 
     def test_quiet_prints_nothing(self):
@@ -405,6 +448,45 @@ class CommandLine(unittest.TestCase):
         os.write(writer, b"OFF\n4 4 0\n")
         self.interrupted("check", fifo)
         os.close(writer)
+
+    def test_convert_keeps_names_and_says_what_it_cannot(self):
+        bracket, mesh, report = SAMPLES / "bracket.stl", self.dir / "a.msh", self.dir / "report.json"
+        done = self.run_cli("mesh", bracket, "-o", mesh, "--size", 8, "--patches", "--group",
+                            "held=box:-100,-100,-1,100,100,1", "--group", "two=patches:1,2", "--group",
+                            "far=sphere:1e6,0,0,1", "--json", report)
+        self.assertIn('group "far": nothing lies there', done.stdout)
+        self.assertIn("far", str(json.loads(report.read_text())["output"]["notes"]))
+        check = lambda file: [(g["origin"], g["name"], g["size"]) for g in json.loads(
+            self.run_cli("check", file, "--json", "-").stdout)["groups"]]
+        groups = check(mesh)
+        self.assertEqual(sorted(g[:2] for g in groups if g[0] in ("nodes", "faces")), [("faces", "two"), ("nodes", "held")])
+        # Through formats that hold the same: the same groups at the end.
+        file = mesh
+        for ending in ("vtu", "vtk", "unv", "msh"):
+            file, before = self.dir / f"b.{ending}", file
+            self.assertNotIn("left out", self.run_cli("convert", before, "-o", file).stdout)
+        self.assertEqual(sorted(check(file)), sorted(groups))
+        done = self.run_cli("convert", mesh, "-o", self.dir / "c.mesh", "--order", 2)
+        self.assertIn("MEDIT holds no further sets of nodes: left out are held", done.stdout)
+        self.assertIn("of second order", self.run_cli("check", self.dir / "c.mesh").stdout)
+        self.run_cli("convert", mesh, "-o", self.dir / "case", "--format", "openfoam")
+        self.assertTrue((self.dir / "case/owner").exists())
+        self.run_cli("convert", mesh, "-o", self.dir / "old.msh", "--format", "MSH22")
+        self.assertIn(b"2.2 1 8", (self.dir / "old.msh").read_bytes()[:40])
+        self.assertIn("abaqus", self.run_cli("convert", mesh, "-o", self.dir / "x.msh", "--format", "abacus", status=2).stderr)
+        self.run_cli("convert", mesh, "-o", self.dir, "--format", "openfoam", status=5)
+        for bad in ("held", "=box:1,2,3,4,5,6", "a=box:1,2,3", "a=cone:1,2", "a=sphere:0,0,0,-1", "a=box:1,2,3,4,5,x"):
+            self.run_cli("convert", mesh, "-o", self.dir / "d.msh", "--group", bad, status=2)
+
+    def test_groups_outlive_improvement(self):
+        mesh, better = self.dir / "a.vtu", self.dir / "b.vtu"
+        self.run_cli("mesh", SAMPLES / "bracket.stl", "-o", mesh, "--size", 8, "--patches", "--improve", "none", "--group",
+                     "two=patches:1,2")
+        self.run_cli("improve", mesh, "-o", better)
+        groups = [[g for g in json.loads(self.run_cli("check", m, "--json", "-").stdout)["groups"] if g["origin"] != "region"]
+                  for m in (mesh, better)]
+        self.assertEqual(groups[0], groups[1])
+        self.assertIn("curve", {g["origin"] for g in groups[0]})
 
     def test_a_pipe_is_read_to_its_end(self):
         fifo = self.dir / "fifo"

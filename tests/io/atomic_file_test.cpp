@@ -4,9 +4,12 @@
 #include <octafront/io.h>
 
 #include "small_files.h"
+#include "support/rich_mesh.h"
 
+#include <atomic>
 #include <csignal>
 #include <filesystem>
+#include <map>
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -114,25 +117,72 @@ TEST(AtomicFile, SaysWhyItCannotWrite) {
   fs::create_symlink("ring", folder / "ring");
   EXPECT_NE(error_of([&] { AtomicFile(folder / "ring"); }).find("in a circle"), std::string::npos);
   EXPECT_NE(error_of([&] { AtomicFile("/dev/null"); }).find("not a plain file"), std::string::npos);
-  EXPECT_NE(error_of([&] { check_mesh_target(folder / "a.docx"); }).find(".vtu, .msh, .mesh"), std::string::npos);
+  EXPECT_NE(error_of([&] { check_mesh_target(folder / "a.docx"); }).find(".vtu, .msh, .inp"), std::string::npos);
   EXPECT_NE(error_of([&] { check_surface_target(folder / "a"); }).find(".stl, .obj, .off, .ply"), std::string::npos);
 }
 
-TEST(AtomicFile, AFullDiskLeavesTheOldFile) {
-  const TemporaryFolder folder;
-  const auto target = folder / "a.mesh";
-  testing::write_bytes(target, "old");
-  // A limit on the size of files fails like a full disk.
-  rlimit before{};
-  getrlimit(RLIMIT_FSIZE, &before);
+/// Every file below a folder and what is in it.
+std::map<std::string, std::string> contents(const fs::path& folder) {
+  std::map<std::string, std::string> all;
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    if (entry.is_regular_file()) all[fs::relative(entry.path(), folder)] = file_bytes(entry.path());
+  return all;
+}
+
+fs::path target_in(const TemporaryFolder& folder, const FormatInfo& info) {
+  const std::string ending(info.endings.substr(0, info.endings.find(' ')));
+  return folder / ("a" + (ending.empty() ? "." + std::string(info.name) : ending));
+}
+
+TEST(AllFormats, AFullDiskLeavesTheOldFiles) {
+  const TetMesh mesh = testing::rich_mesh(4);
   std::signal(SIGXFSZ, SIG_IGN);
-  rlimit small = before;
-  small.rlim_cur = 100;
-  setrlimit(RLIMIT_FSIZE, &small);
-  const std::string message = error_of([&] { write_mesh(target, testing::two_tets()); });
-  setrlimit(RLIMIT_FSIZE, &before);
-  EXPECT_NE(message.find("File too large"), std::string::npos) << message;
-  EXPECT_EQ(file_bytes(target), "old");
+  for (const FormatInfo& info : known_formats()) {
+    if (!info.writes_mesh) continue;
+    SCOPED_TRACE(info.name);
+    const TemporaryFolder folder;
+    const std::string name(info.name);
+    write_mesh(target_in(folder, info), testing::two_tets(), {}, name);
+    const auto before = contents(folder.path());
+    // A limit on the size of files fails like a full disk.
+    rlimit limit{};
+    getrlimit(RLIMIT_FSIZE, &limit);
+    rlimit small = limit;
+    small.rlim_cur = 1000;
+    setrlimit(RLIMIT_FSIZE, &small);
+    const std::string message = error_of([&] { write_mesh(target_in(folder, info), mesh, {}, name); });
+    setrlimit(RLIMIT_FSIZE, &limit);
+    EXPECT_NE(message.find("unchanged"), std::string::npos) << message;
+    EXPECT_EQ(contents(folder.path()), before);
+  }
+}
+
+TEST(AllFormats, AnInterruptLeavesTheOldFiles) {
+  const TetMesh mesh = testing::rich_mesh(2);
+  const std::atomic<bool> cancel{true};
+  RunContext context;
+  context.cancel = &cancel;
+  for (const FormatInfo& info : known_formats()) {
+    if (!info.writes_mesh) continue;
+    SCOPED_TRACE(info.name);
+    const TemporaryFolder folder;
+    const std::string name(info.name);
+    write_mesh(target_in(folder, info), testing::two_tets(), {}, name);
+    const auto before = contents(folder.path());
+    EXPECT_THROW(write_mesh(target_in(folder, info), mesh, context, name), Cancelled);
+    EXPECT_EQ(contents(folder.path()), before);
+  }
+}
+
+TEST(PolyMesh, ReplacesItsOwnFolderAndNoOther) {
+  const TemporaryFolder folder;
+  fs::create_directory(folder / "polyMesh");
+  testing::write_bytes(folder / "polyMesh/letters", "mine");
+  EXPECT_NE(error_of([&] { write_mesh(folder / "polyMesh", testing::two_tets()); }).find("would be lost"),
+            std::string::npos);
+  EXPECT_EQ(file_bytes(folder / "polyMesh/letters"), "mine");
+  fs::remove(folder / "polyMesh/letters");
+  for (int i = 0; i < 2; ++i) write_mesh(folder / "polyMesh", testing::rich_mesh(2));
   EXPECT_EQ(files_in(folder.path()), 1U);
 }
 

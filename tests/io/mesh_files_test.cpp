@@ -142,6 +142,30 @@ TEST(ReadMesh, EveryVariantYieldsTheSame) {
   }
 }
 
+TEST(ReadMesh, OtherFormatsYieldTheSame) {
+  const TetMesh wanted = two_tets();
+  for (const auto& [name, bytes] : testing::more_mesh_files()) {
+    SCOPED_TRACE(name);
+    const TetMesh m = mesh_of(bytes, name);
+    EXPECT_EQ(m.points, wanted.points);
+    EXPECT_EQ(m.tets, wanted.tets);
+    EXPECT_EQ(m.region, wanted.region);
+    EXPECT_EQ(m.patch, wanted.patch);
+    EXPECT_EQ(first_defect(m), std::nullopt);
+  }
+}
+
+TEST(ReadMesh, AbaqusSetsAreFollowed) {
+  const auto files = testing::more_mesh_files();
+  const auto other = std::find_if(files.begin(), files.end(), [](const auto& f) { return f.name == "other.inp"; });
+  const MeshFile file = io::read_mesh_bytes({"a.inp", other->bytes});
+  EXPECT_EQ(file.mesh.region_names, (std::vector<std::string>{"left", "Right part"}));
+  EXPECT_EQ(file.mesh.patch_names, (std::vector<std::string>{"in", "out"}));
+  std::vector<std::string> sets;
+  for (const NamedSet& set : file.mesh.sets) sets.push_back(set.name + " " + std::to_string(set.members.size()));
+  EXPECT_EQ(sets, (std::vector<std::string>{"S_1 1", "outer 1", "ALL 5", "some 3"}));
+}
+
 TEST(ReadMesh, MissingBoundaryIsAdded) {
   const std::string head = "MeshVersionFormatted 2\nDimension 3\nVertices 4\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\n";
   const std::string tail = "Tetrahedra 1\n1 2 3 4 -7\nEnd\n";

@@ -226,6 +226,106 @@ constexpr const char* kVtuText = R"(<?xml version="1.0"?>
 </Piece></UnstructuredGrid></VTKFile>
 )";
 
+/// Sets with GENERATE, sets of sets, a surface of sets of elements, lines that go on.
+constexpr const char* kAbaqus = R"(*Heading
+** a comment
+*Node, nset=ALL
+ 10, 0., 0., 0.
+ 20, 1., 0.,
+ 30, 0., 1., 0.
+ 40, 0, 0, 1.0E+00
+ 50, 1, 1, 1
+*Element, type=C3D4, elset=left
+ 7, 10, 20, 30,
+ 40
+*ELEMENT,TYPE=C3D4,ELSET="Right part"
+ 9, 20, 30, 40, 50
+*Nset, nset=some, generate
+ 10, 30, 10
+*Elset, elset=S_1
+ 7,
+*Elset, elset=outer
+ S_1
+*Surface, type=ELEMENT, name=in
+ outer, S1
+*Surface, type=ELEMENT, name=out
+ 7, S2
+ 7, S4
+ 9, S2
+ 9, S3
+ 9, S4
+*Material, name=steel
+*Elastic
+ 210000., .3
+)";
+
+/// Small, large and free fields; Nastran's own reals.
+constexpr const char* kNastran = R"(SOL 101
+CEND
+BEGIN BULK
+$ a comment
+GRID    1               0.0     0.0     0.0
+GRID,2,,1.,0.,0.
+GRID*                  3                              0.            1.+0
+*                     0.
+GRID    4               0.0     0.0     10.-1
+GRID*                  5                             1.0             1.0+
+*                  1.0D0
+CTETRA  1       1       1       2       3       4
+CTETRA,2,2,2,3,4,5
+CTRIA3  11      3       1       3       2
+CTRIA3  12      4       1       2       4
+CTRIA3  13      4       1       4       3
+CTRIA3  14      4       2       3       5
+CTRIA3  15      4       2       5       4
+CTRIA3  16      4       3       4       5
+ENDDATA
+)";
+
+constexpr const char* kVtk5 = R"(# vtk DataFile Version 5.1
+by another program
+ASCII
+DATASET UNSTRUCTURED_GRID
+POINTS 5 float
+0 0 0 1 0 0 0 1 0
+0 0 1 1 1 1
+METADATA
+INFORMATION 0
+
+CELLS 9 26
+OFFSETS vtktypeint64
+0 4 8 11 14 17 20 23 26
+CONNECTIVITY vtktypeint64
+0 1 2 3 1 2 3 4
+0 2 1 0 1 3 0 3 2 1 2 4 1 4 3 2 3 4
+
+CELL_TYPES 8
+10 10 5 5 5 5 5 5
+CELL_DATA 8
+SCALARS region int 1
+LOOKUP_TABLE default
+0 1 0 0 0 0 0 0
+FIELD FieldData 1
+patch 1 8 int
+-1 -1 0 1 1 1 1 1
+)";
+
+constexpr const char* kXdmf = R"(<?xml version="1.0"?>
+<Xdmf Version="3.0"><Domain><Grid Name="Grid">
+<Geometry GeometryType="XYZ"><DataItem DataType="Float" Dimensions="5 3" Format="XML">0 0 0 1 0 0 0 1 0 0 0 1 1 1 1</DataItem></Geometry>
+<Topology TopologyType="Mixed" NumberOfElements="8"><DataItem Dimensions="34" Format="XML">
+6 0 1 2 3 6 1 2 3 4 4 0 2 1 4 0 1 3 4 0 3 2 4 1 2 4 4 1 4 3 4 2 3 4</DataItem></Topology>
+<Attribute Name="region" Center="Cell"><DataItem Format="XML" Dimensions="8">1 2 0 0 0 0 0 0</DataItem></Attribute>
+<Attribute Name="patch" Center="Cell"><DataItem Format="XML" Dimensions="8">0 0 1 2 2 2 2 2</DataItem></Attribute>
+</Grid></Domain></Xdmf>
+)";
+
+std::string written_as(const std::string& format, const std::string& ending) {
+  const TemporaryFolder folder;
+  write_mesh(folder / ("mesh" + ending), two_tets(), {}, format);
+  return file_bytes(folder / ("mesh" + ending));
+}
+
 }  // namespace
 
 std::vector<SmallFile> small_surface_files() {
@@ -275,6 +375,24 @@ std::vector<SmallFile> small_mesh_files() {
           {"text22.msh", kMsh22},
           {"other.mesh", kMedit},
           {"text.vtu", kVtuText}};
+}
+
+std::vector<SmallFile> more_mesh_files() {
+  const auto all = known_formats();
+  const bool has_hdf5 =
+      std::any_of(all.begin(), all.end(), [](const auto& i) { return i.name == "xdmf" && i.writes_mesh; });
+  std::vector<SmallFile> files{{"ours22.msh", written_as("msh22", ".msh")},
+                               {"ours.inp", written_as("abaqus", ".inp")},
+                               {"ours.bdf", written_as("nastran", ".bdf")},
+                               {"ours.unv", written_as("unv", ".unv")},
+                               {"ours.vol", written_as("netgen", ".vol")},
+                               {"ours.vtk", written_as("vtk", ".vtk")},
+                               {"ours.meshb", written_as("meditb", ".meshb")},
+                               {"other.inp", kAbaqus},
+                               {"other.bdf", kNastran},
+                               {"text.vtk", kVtk5}};
+  if (has_hdf5) files.push_back({"text.xdmf", kXdmf});
+  return files;
 }
 
 TemporaryFolder::TemporaryFolder() {

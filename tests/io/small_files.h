@@ -25,6 +25,9 @@ std::vector<SmallFile> small_surface_files();
 /// Two tetrahedra with a common face, in two regions, in every mesh format and variant.
 std::vector<SmallFile> small_mesh_files();
 
+/// The same in formats whose files are whole wherever a line ends, and as others write them.
+std::vector<SmallFile> more_mesh_files();
+
 TetMesh two_tets();
 
 /// A folder of its own, removed with all that is in it.
@@ -48,7 +51,7 @@ inline SurfaceFile surface_of(const std::string& bytes, const std::string& name 
   return io::read_surface_bytes({name, bytes});
 }
 inline TetMesh mesh_of(const std::string& bytes, const std::string& name = "x") {
-  return io::read_mesh_bytes({name, bytes});
+  return io::read_mesh_bytes({name, bytes}).mesh;
 }
 
 /// The message of the InputError that `read` throws; fails the test if it throws none or another one.

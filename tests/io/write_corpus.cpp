@@ -12,6 +12,6 @@ int main(int argc, char** argv) {
   fs::create_directories(folder / "mesh");
   for (const auto& file : octafront::testing::small_surface_files())
     octafront::testing::write_bytes(folder / "surface" / file.name, file.bytes);
-  for (const auto& file : octafront::testing::small_mesh_files())
-    octafront::testing::write_bytes(folder / "mesh" / file.name, file.bytes);
+  for (const auto& files : {octafront::testing::small_mesh_files(), octafront::testing::more_mesh_files()})
+    for (const auto& file : files) octafront::testing::write_bytes(folder / "mesh" / file.name, file.bytes);
 }

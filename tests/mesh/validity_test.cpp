@@ -1,7 +1,10 @@
 #include <octafront/validity.h>
 
+#include "mesh/edge_nodes.h"
+#include "mesh/renumber.h"
 #include "mesh/tet_meshes.h"
 #include "support/lattice_points.h"
+#include "support/rich_mesh.h"
 
 #include <algorithm>
 #include <limits>
@@ -85,6 +88,81 @@ TEST(FirstDefect, NamesFacesOfTooManyTetsAndFoldedOnes) {
   mesh.tets.pop_back();
   mesh.points.pop_back();
   EXPECT_THAT(defect(mesh), HasSubstr("tetrahedron 0 and tetrahedron 1 lie on the same side"));
+}
+
+TEST(FirstDefect, KnowsInterfacesCurvesAndSets) {
+  const TetMesh good = testing::rich_mesh(4);
+  EXPECT_EQ(good.interfaces.size(), 32U);
+  EXPECT_EQ(good.curve_edges.size(), 48U);
+  EXPECT_EQ(defect(good), "none");
+  TetMesh mesh = good;
+  std::swap(mesh.interfaces[3][0], mesh.interfaces[3][1]);
+  EXPECT_EQ(defect(mesh), "none");
+  mesh.interfaces[4] = mesh.interfaces[3];
+  EXPECT_THAT(defect(mesh), HasSubstr("and interface 4"));
+  mesh = good;
+  mesh.interfaces[2] = mesh.boundary[5];
+  EXPECT_THAT(defect(mesh), HasSubstr("interface 2"));
+  mesh = good;
+  mesh.interfaces[2] = {0, 1, 2};
+  EXPECT_THAT(defect(mesh), HasSubstr("interface 2 but belongs to no tetrahedron"));
+  mesh = good;
+  mesh.boundary.push_back(mesh.interfaces[0]);
+  mesh.patch.push_back(0);
+  EXPECT_NE(defect(mesh), "none");
+  mesh = good;
+  mesh.curve_edges[7] = {0, 2};
+  EXPECT_THAT(defect(mesh), HasSubstr("curve edge 0 2"));
+  mesh = good;
+  mesh.sets[3].members = {2, 1};
+  EXPECT_THAT(defect(mesh), HasSubstr("set core are not ascending"));
+  mesh.sets[3].members = {4000};
+  EXPECT_THAT(defect(mesh), HasSubstr("member 4000"));
+}
+
+TEST(FirstDefect, KnowsMidNodes) {
+  const TetMesh good = testing::with_mid_nodes(testing::rich_mesh(2));
+  EXPECT_EQ(defect(good), "none");
+  TetMesh mesh = good;
+  mesh.mid_nodes.pop_back();
+  EXPECT_THAT(defect(mesh), HasSubstr("mid_nodes has 47 entries for 48"));
+  mesh = good;
+  mesh.mid_nodes[5][2] = 3;
+  EXPECT_THAT(defect(mesh), HasSubstr("is not behind all corners"));
+  mesh = good;
+  std::swap(mesh.mid_nodes[5][2], mesh.mid_nodes[5][3]);
+  EXPECT_THAT(defect(mesh), HasSubstr("is on two edges"));
+  mesh = good;
+  mesh.points.push_back({0.5, 0.5, 0.5});
+  EXPECT_THAT(defect(mesh), HasSubstr("belongs to no tetrahedron"));
+  mesh.mid_nodes[7][0] = static_cast<VertexIndex>(mesh.points.size() - 1);
+  EXPECT_THAT(defect(mesh), HasSubstr("several mid-side nodes"));
+}
+
+TEST(EdgeNodes, AreThoseOfTheTets) {
+  const TetMesh mesh = testing::with_mid_nodes(testing::rich_mesh(2));
+  const EdgeNodes nodes(mesh);
+  const auto middle = [&](VertexIndex a, VertexIndex b) { return (mesh.points[a] + mesh.points[b]) / 2; };
+  for (const Triangle& t : mesh.boundary) {
+    const Triangle mids = nodes.of(t);
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(mesh.points[mids[i]], middle(t[i], t[(i + 1) % 3]));
+  }
+  for (const auto& [a, b] : mesh.curve_edges) EXPECT_EQ(mesh.points[nodes(b, a)], middle(a, b));
+  EXPECT_EQ(nodes(0, 2), kNone);
+  EXPECT_EQ(EdgeNodes(testing::rich_mesh(2))(0, 1), kNone);
+}
+
+TEST(Renumber, KeepsAllOfARichMesh) {
+  TetMesh mesh = testing::with_mid_nodes(testing::rich_mesh(2));
+  const TetMesh good = mesh;
+  // A point that nothing uses, before all others.
+  std::vector<VertexIndex> up(mesh.points.size());
+  for (VertexIndex v = 0; v < up.size(); ++v) up[v] = v + 1;
+  mesh.points.insert(mesh.points.begin(), Vec3{7, 7, 7});
+  renumber_vertices(mesh, up);
+  mesh.sets[0].members.insert(mesh.sets[0].members.begin(), 0);
+  drop_unused_points(mesh);
+  EXPECT_EQ(mesh, good);
 }
 
 TEST(FirstDefect, ComparesTheBoundaryWithTheSurface) {

@@ -1,0 +1,26 @@
+"""Speed of the writers of meshes: bench/run.sh formats [MILLIONS]. Linear meshes in every format, binary ones of second order
+too. The tables go to docs/formats-bench.md."""
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+build, millions = pathlib.Path(sys.argv[1]), sys.argv[2] if len(sys.argv) > 2 else "10"
+with tempfile.TemporaryDirectory(dir=build) as folder:
+    tables = [subprocess.run([build / "bench/octafront_write_formats", size, folder, order, *formats], check=True, text=True,
+                             stdout=subprocess.PIPE).stdout
+              for size, order, formats in ((millions, "1", []), (str(float(millions) / 4), "2",
+                                                                 ["vtu", "vtk", "msh", "med", "xdmf", "exodus", "abaqus"]))]
+page = pathlib.Path("docs/formats-bench.md")
+page.write_text(f"""# How fast meshes are written
+
+`bench/run.sh formats {millions}`: a bent box of two regions and six patches; each format beside a plain write of as many bytes to
+the same disk ("of a plain write": its share of that speed), flushed to the disk both. Memory is the highest of the process so far,
+the mesh included. VTU is compressed: its megabytes are a fifth of what the others write.
+
+## Linear
+
+{tables[0]}
+## Second order
+
+{tables[1]}""")

@@ -1,0 +1,25 @@
+#!/usr/bin/env bash
+# Meshes and solves the examples of examples/solve, and compares them with theory (docs/solved.md). Installs what it needs.
+#   scripts/solve.sh [CASE ...]      with CalculiX: cantilever, pipe, patch, heat, plate; by default all
+#   scripts/solve.sh --fenicsx       the pipe with FEniCSx (a gigabyte of packages)
+#   scripts/solve.sh --picture       all, and docs/images/solved.png anew
+set -euo pipefail
+cd "$(dirname "$0")/.."
+source scripts/lib/apt.sh
+
+need_packages "${build_packages[@]}" python3 calculix-ccx
+cmake --preset release >/dev/null
+cmake --build --preset release --target octafront_cli
+octafront=build/release/cli/octafront work=out/solve
+case ${1:-} in
+  --fenicsx)
+    need_packages python3-dolfinx python3-gmsh
+    exec /usr/bin/python3 examples/solve/fenicsx.py "$octafront" "$work"
+    ;;
+  --picture)
+    need_packages python3-vtk9 xvfb xauth
+    python3 examples/solve/solve.py "$octafront" "$work"
+    exec xvfb-run -a /usr/bin/python3 examples/solve/picture.py "$work" docs/images/solved.png
+    ;;
+  *) exec python3 examples/solve/solve.py "$octafront" "$work" "$@" ;;
+esac

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <octafront/tet_mesh.h>
+
+#include <cstdint>
+#include <vector>
+
+namespace octafront::curved {
+
+/// The edges of the tetrahedra, each once, sorted: edge e runs from low(e) to high[e].
+struct TetEdges {
+  std::vector<std::uint32_t> first;  ///< per vertex and one more: where the edges of which it is the lower end begin
+  std::vector<VertexIndex> high;     ///< per edge, ascending for each lower end
+  std::vector<VertexIndex> low;      ///< per edge
+
+  std::size_t size() const { return high.size(); }
+  /// The number of an edge; kNone if there is none between the two.
+  std::uint32_t find(VertexIndex a, VertexIndex b) const;
+};
+
+/// Gives a linear mesh straight mid-side nodes: the one of edge e is points[corners + e].
+TetEdges add_straight_mid_nodes(TetMesh& mesh);
+
+}  // namespace octafront::curved

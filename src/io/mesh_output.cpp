@@ -1,0 +1,102 @@
+#include "io/mesh_output.h"
+
+#include <octafront/error.h>
+
+#include <cerrno>
+#include <system_error>
+
+#include <fcntl.h>
+#include <fmt/core.h>
+#include <unistd.h>
+
+namespace octafront::io {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void fail(const fs::path& file, std::string_view what, const std::error_code& error) {
+  throw OutputError(
+      fmt::format("{}: {}: {}; an older one of this name is unchanged", file.string(), what, error.message()));
+}
+
+void flush_to_disk(const fs::path& file) {
+  const int fd = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  const int done = fd < 0 ? -1 : ::fsync(fd);
+  const std::error_code error(errno, std::generic_category());
+  if (fd >= 0) ::close(fd);
+  if (done != 0) fail(file, "cannot be written to the disk", error);
+}
+
+/// Renames over files; a folder takes the place of an older one, which goes only then.
+void put_in_place(const fs::path& temporary, const fs::path& final) {
+  std::error_code error;
+  if (!fs::is_directory(temporary)) {
+    flush_to_disk(temporary);
+    fs::rename(temporary, final, error);
+    if (error) fail(final, "cannot be renamed into place", error);
+    return;
+  }
+  const fs::path old = temporary.string() + ".old";
+  if (fs::exists(final)) fs::rename(final, old, error);
+  if (error) fail(final, "cannot be replaced", error);
+  fs::rename(temporary, final, error);
+  if (error) {
+    std::error_code ignored;
+    fs::rename(old, final, ignored);
+    fail(final, "cannot be renamed into place", error);
+  }
+  fs::remove_all(old, error);
+}
+
+}  // namespace
+
+MeshOutput::~MeshOutput() {
+  std::error_code ignored;
+  for (const Pending& p : pending_)
+    if (!p.temporary.empty()) fs::remove_all(p.temporary, ignored);
+}
+
+AtomicFile& MeshOutput::file() {
+  return *files_.emplace_back(std::make_unique<AtomicFile>(target_, context_));
+}
+
+AtomicFile& MeshOutput::sibling(const std::string& ending) {
+  return beside(fs::path(target_).replace_extension(ending).filename().string());
+}
+
+AtomicFile& MeshOutput::beside(const std::string& name) {
+  return *files_.emplace_back(std::make_unique<AtomicFile>(target_.parent_path() / name, context_));
+}
+
+fs::path MeshOutput::path_for_library(const std::string& ending) {
+  fs::path final = target_;
+  if (!ending.empty()) final.replace_extension(ending);
+  check_writable(final);
+  final = links_followed(final);
+  fs::path temporary = temporary_beside(final);
+  pending_.push_back({temporary, final});
+  return temporary;
+}
+
+fs::path MeshOutput::folder() {
+  const fs::path temporary = temporary_beside(target_);
+  std::error_code error;
+  fs::create_directory(temporary, error);
+  if (error) fail(target_, "cannot be created", error);
+  pending_.push_back({temporary, target_});
+  return temporary;
+}
+
+void MeshOutput::commit() {
+  context_.check();
+  // All that may fail for lack of room comes before the first name changes.
+  for (const auto& file : files_) file->flush_to_disk();
+  for (Pending& p : pending_) {
+    put_in_place(p.temporary, p.final);
+    p.temporary.clear();
+  }
+  // The file that was asked for comes last: where it is, all are.
+  for (std::size_t i = files_.size(); i-- > 0;) files_[i]->commit();
+}
+
+}  // namespace octafront::io

@@ -1,0 +1,140 @@
+// Writes a mesh that has everything, bent, in every format that this build has, linear and of second order:
+//   write_samples FOLDER
+// leaves FOLDER/linear/..., FOLDER/second/..., and beside them expected.json: what a judge must find.
+
+#include <octafront/io.h>
+
+#include "io/mesh_parts.h"
+#include "support/rich_mesh.h"
+
+#include <cmath>
+#include <filesystem>
+#include <string>
+
+#include <fmt/core.h>
+
+namespace {
+
+using namespace octafront;
+namespace fs = std::filesystem;
+
+/// Bends the mesh, mid-side nodes like all others, so that their order shows in volumes.
+TetMesh bent(TetMesh mesh) {
+  for (Vec3& p : mesh.points)
+    p = p + Vec3{0.08 * std::sin(1.1 * p.y + 0.3), 0.07 * std::cos(1.3 * p.z), 0.09 * std::sin(0.9 * p.x + p.y)};
+  return mesh;
+}
+
+/// Shape functions of a simplex of `corners` corners at barycentric coordinates, and their derivatives after the
+/// coordinates 1 ... : corners, then mid-side nodes in VTK's order.
+struct Shape {
+  std::vector<std::array<double, 3>> gradient;
+};
+Shape shape(const std::array<double, 4>& l, std::size_t corners, bool second) {
+  constexpr std::array<std::array<int, 2>, 6> kMids{{{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}}};
+  const auto slope = [](std::size_t i, std::size_t axis) { return i == 0 ? -1.0 : i == axis + 1 ? 1.0 : 0.0; };
+  Shape s;
+  for (std::size_t i = 0; i < corners; ++i) {
+    auto& g = s.gradient.emplace_back();
+    for (std::size_t a = 0; a < 3; ++a) g[a] = slope(i, a) * (second ? 4 * l[i] - 1 : 1);
+  }
+  for (std::size_t m = 0; second && m < (corners == 4 ? 6 : 3); ++m) {
+    const auto i = static_cast<std::size_t>(kMids[m][0]), j = static_cast<std::size_t>(kMids[m][1]);
+    auto& g = s.gradient.emplace_back();
+    for (std::size_t a = 0; a < 3; ++a) g[a] = 4 * (l[i] * slope(j, a) + l[j] * slope(i, a));
+  }
+  return s;
+}
+
+constexpr std::array<std::array<double, 2>, 4> kGauss{{{0.0694318442029737, 0.1739274225687269},
+                                                       {0.3300094782075719, 0.3260725774312731},
+                                                       {0.6699905217924281, 0.3260725774312731},
+                                                       {0.9305681557970263, 0.1739274225687269}}};
+
+std::array<Vec3, 3> jacobian(const Shape& s, std::span<const VertexIndex> nodes, const std::vector<Vec3>& points) {
+  std::array<Vec3, 3> j{};
+  for (std::size_t k = 0; k < nodes.size(); ++k)
+    for (std::size_t a = 0; a < 3; ++a) j[a] = j[a] + points[nodes[k]] * s.gradient[k][a];
+  return j;
+}
+
+double volume(std::span<const VertexIndex> nodes, const std::vector<Vec3>& points) {
+  double sum = 0;
+  for (const auto& [u, wu] : kGauss)
+    for (const auto& [v, wv] : kGauss)
+      for (const auto& [w, ww] : kGauss) {
+        // The cube collapsed to the tetrahedron.
+        const double y = v * (1 - u), z = w * (1 - u) * (1 - v);
+        const auto j = jacobian(shape({1 - u - y - z, u, y, z}, 4, nodes.size() > 4), nodes, points);
+        sum += wu * wv * ww * (1 - u) * (1 - u) * (1 - v) * dot(cross(j[0], j[1]), j[2]);
+      }
+  return sum;
+}
+
+Vec3 vector_area(std::span<const VertexIndex> nodes, const std::vector<Vec3>& points) {
+  Vec3 sum{};
+  for (const auto& [u, wu] : kGauss)
+    for (const auto& [v, wv] : kGauss) {
+      const double y = v * (1 - u);
+      const auto j = jacobian(shape({1 - u - y, u, y, 0}, 3, nodes.size() > 3), nodes, points);
+      sum = sum + cross(j[0], j[1]) * (wu * wv * (1 - u));
+    }
+  return sum;
+}
+
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' || c == '\\' ? std::string("\\") + c : std::string(1, c);
+  return out + '"';
+}
+
+/// Size and measure of each part: volume, or length of the vector area, unsigned face by face.
+std::string expected(const TetMesh& mesh) {
+  const io::MeshParts parts(mesh);
+  std::array<VertexIndex, 10> tet;
+  std::array<VertexIndex, 6> face;
+  double all = 0;
+  for (std::size_t t = 0; t < parts.tets(); ++t) all += volume(parts.tet_nodes(t, tet), mesh.points);
+  std::string out = fmt::format("{{\"nodes\": {}, \"tets\": {}, \"boundary\": {}, \"volume\": {:.17g}, \"parts\": [\n",
+                                mesh.points.size(), mesh.tets.size(), mesh.boundary.size(), all);
+  constexpr std::array kOrigins{"region", "patch", "curve", "set"};
+  constexpr std::array kKinds{"nodes", "edges", "faces", "elements"};
+  for (const io::Part& part : parts.parts()) {
+    double measure = 0;
+    for (const std::uint32_t m : part.members) {
+      if (part.kind == NamedSet::Kind::kElements) measure += volume(parts.tet_nodes(m, tet), mesh.points);
+      if (part.kind == NamedSet::Kind::kFaces) measure += length(vector_area(parts.face_nodes(m, face), mesh.points));
+    }
+    out += fmt::format(
+        "  {{\"origin\": \"{}\", \"kind\": \"{}\", \"name\": {}, \"named\": {}, \"number\": {}, \"size\": {}, "
+        "\"nodes\": {}, \"measure\": {:.17g}}}{}\n",
+        kOrigins[static_cast<std::size_t>(part.origin)], kKinds[static_cast<std::size_t>(part.kind)], quoted(part.name),
+        part.is_named, part.number, part.members.size(), parts.nodes_of(part).size(), measure,
+        &part == &parts.parts().back() ? "" : ",");
+  }
+  return out + "]}\n";
+}
+
+void write_all(const fs::path& folder, const TetMesh& mesh) {
+  fs::create_directories(folder);
+  write_text(folder / "expected.json", expected(mesh));
+  for (const FormatInfo& info : known_formats()) {
+    if (!info.writes_mesh) continue;
+    const std::string ending(info.endings.substr(0, info.endings.find(' ')));
+    const fs::path file = info.name == "openfoam"
+                              ? folder / "case" / "constant" / "polyMesh"
+                              : folder / (std::string(info.name) + (ending.empty() ? ".msh" : ending));
+    fs::create_directories(file.parent_path());
+    write_mesh(file, mesh, {}, std::string(info.name));
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 2) return 2;
+  const fs::path folder = argv[1];
+  const TetMesh linear = octafront::testing::rich_mesh(4);
+  write_all(folder / "linear", bent(linear));
+  write_all(folder / "second", bent(octafront::testing::with_mid_nodes(linear)));
+}

@@ -1,0 +1,85 @@
+#include <octafront/named_groups.h>
+#include <octafront/validity.h>
+
+#include "support/rich_mesh.h"
+
+#include <algorithm>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace octafront {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using Kind = NamedSet::Kind;
+
+TEST(AddGroup, TakesWhatLiesInABoxOrBall) {
+  TetMesh mesh = testing::with_mid_nodes(testing::rich_mesh(4));
+  mesh.sets.clear();
+  const Box3 half{{0, 0, 0}, {2, 4, 4}};
+  EXPECT_EQ(add_group(mesh, {"n", Kind::kNodes, half}), "");
+  EXPECT_EQ(mesh.sets[0].members.size(), 5U * 9 * 9);  // corners and mid-side nodes at x = 0, .5 ... 2
+  add_group(mesh, {"e", Kind::kElements, half});
+  EXPECT_EQ(mesh.sets[1].members.size(), mesh.tets.size() / 2);
+  add_group(mesh, {"f", Kind::kFaces, half});
+  EXPECT_EQ(mesh.sets[2].members.size(), 32U + 4 * 16 + 32);  // an end, half of four sides, the interface
+  add_group(mesh, {"b", Kind::kNodes, GroupRule::Sphere{{4, 4, 4}, 0.5}});
+  EXPECT_EQ(mesh.sets[3].members.size(), 4U);
+  EXPECT_EQ(first_defect(mesh), std::nullopt);
+}
+
+TEST(AddGroup, TakesPatchesByNameOrNumber) {
+  TetMesh mesh = testing::rich_mesh(2);
+  mesh.sets.clear();
+  EXPECT_EQ(add_group(mesh, {"g", Kind::kFaces, std::vector<std::string>{"load-1", "1", "glue"}}), "");
+  EXPECT_EQ(mesh.sets[0].members.size(), 8U * 3);
+}
+
+TEST(AddGroup, SaysWhatIsNotThere) {
+  TetMesh mesh = testing::rich_mesh(2);
+  mesh.sets.clear();
+  EXPECT_THAT(add_group(mesh, {"g", Kind::kFaces, std::vector<std::string>{"lid", "99"}}),
+              HasSubstr("\"lid\", \"99\""));
+  EXPECT_THAT(add_group(mesh, {"far", Kind::kNodes, Box3{{9, 9, 9}, {10, 10, 10}}}), HasSubstr("nothing lies there"));
+  EXPECT_TRUE(mesh.sets.empty());
+}
+
+TEST(PatchCurves, AreWherePatchesMeet) {
+  TetMesh mesh = testing::rich_mesh(4);
+  const TetMesh wanted = mesh;
+  mesh.curve_edges.clear();
+  mesh.curve.clear();
+  mesh.curve_names.clear();
+  add_patch_curves(mesh);
+  EXPECT_EQ(mesh.curve_edges.size(), wanted.curve_edges.size());
+  EXPECT_EQ(1 + *std::max_element(mesh.curve.begin(), mesh.curve.end()), 12U);
+  EXPECT_EQ(std::count(mesh.curve_names.begin(), mesh.curve_names.end(), "fixed end|y_max"), 1);
+  EXPECT_EQ(std::count(mesh.curve_names.begin(), mesh.curve_names.end(), ""), 4);  // of the patch without a name
+}
+
+TEST(CarryGroups, KeepsWhatIsStillThere) {
+  const TetMesh before = testing::rich_mesh(4);
+  TetMesh mesh = before;
+  mesh.interfaces.clear();
+  mesh.interface_patch.clear();
+  mesh.curve_edges.clear();
+  mesh.sets.clear();
+  EXPECT_THAT(carry_groups(before, mesh), IsEmpty());
+  EXPECT_EQ(mesh, before);
+  // Elements in another order: sets of them are lost, and said to be.
+  std::swap(mesh.tets[0], mesh.tets[1]);
+  EXPECT_THAT(carry_groups(before, mesh), ElementsAre(HasSubstr("set \"core\"")));
+  EXPECT_EQ(mesh.interfaces, before.interfaces);
+  // A node that moved takes with it what was at it.
+  mesh = before;
+  mesh.points[0] = mesh.points[0] - Vec3{0.1, 0.1, 0.1};
+  EXPECT_THAT(carry_groups(before, mesh), ElementsAre("3 edges of curves are no longer in the mesh, and left out",
+                                                      HasSubstr("near origin"), HasSubstr("rails")));
+  EXPECT_EQ(first_defect(mesh), std::nullopt);
+}
+
+}  // namespace
+}  // namespace octafront
