@@ -43,10 +43,9 @@ class AnsysWriter {
  private:
   /// Three digits of exponent, as the format line says.
   static std::string real(double value) {
-    std::string text = fmt::format("{:.16E}", value);
-    const std::size_t sign = text.find('E') + 1;
-    while (text.size() - sign - 1 < 3) text.insert(sign + 1, "0");
-    return fmt::format("{:>25}", text);
+    const std::string text = fmt::format("{:.16E}", value);
+    const std::size_t digits = text.find('E') + 2;  // behind the sign of the exponent
+    return fmt::format("{:>25}", fmt::format("{}{:0>3}", text.substr(0, digits), text.substr(digits)));
   }
 
   void write_element(std::size_t t) {
