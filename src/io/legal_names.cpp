@@ -55,11 +55,15 @@ std::string LegalNames::note() const {
   return changed_.size() > kMost ? all + fmt::format(" and {} more", changed_.size() - kMost) : all;
 }
 
-std::vector<std::string> legal_names(MeshOutput& out, const MeshParts& mesh, const NameRules& rules) {
+std::vector<std::string> legal_names(MeshOutput& out, const MeshParts& mesh, const NameRules& rules,
+                                     std::span<const Part::Origin> of) {
   LegalNames of_elements(rules), of_others(rules);
   std::vector<std::string> names;
-  for (const Part& part : mesh.parts())
-    names.push_back((part.kind == NamedSet::Kind::kElements ? of_elements : of_others).legal(part.name));
+  for (const Part& part : mesh.parts()) {
+    const bool is_wanted = std::find(of.begin(), of.end(), part.origin) != of.end();
+    LegalNames& legal = part.kind == NamedSet::Kind::kElements ? of_elements : of_others;
+    names.push_back(is_wanted ? legal.legal(part.name) : std::string());
+  }
   out.note(of_elements.note());
   out.note(of_others.note());
   return names;

@@ -1,7 +1,11 @@
 #pragma once
 
+#include "io/mesh_parts.h"
+
+#include <array>
 #include <cstddef>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -36,11 +40,14 @@ class LegalNames {
 };
 
 class MeshOutput;
-class MeshParts;
 
-/// A legal name for each part of the mesh; sets of elements, and all others, each have a space of names of their own.
-/// What had to change is noted.
-std::vector<std::string> legal_names(MeshOutput& out, const MeshParts& mesh, const NameRules& rules);
+inline constexpr std::array kAllOrigins{Part::Origin::kRegion, Part::Origin::kPatch, Part::Origin::kCurve,
+                                        Part::Origin::kSet};
+
+/// A legal name for each part of the mesh that is of these origins (others have none); sets of elements, and all
+/// others, each have a space of names of their own. What had to change is noted.
+std::vector<std::string> legal_names(MeshOutput& out, const MeshParts& mesh, const NameRules& rules,
+                                     std::span<const Part::Origin> of = kAllOrigins);
 
 /// Line ends and other control characters become blanks: for comments, and formats that quote names.
 std::string one_line(std::string_view name);

@@ -25,7 +25,7 @@ class Losses {
     numbered("patch", mesh_.parts(Origin::kPatch), holds.patches);
     numbered("curve", mesh_.parts(Origin::kCurve), holds.curves);
     if (!holds.interfaces && !mesh_.mesh().interfaces.empty())
-      lose(fmt::format("holds no faces inside: {} of interfaces are left out", mesh_.mesh().interfaces.size()));
+      lose(fmt::format("holds no faces inside: {} are left out", mesh_.mesh().interfaces.size()));
     sets("nodes", NamedSet::Kind::kNodes, holds.node_sets);
     sets("edges", NamedSet::Kind::kEdges, holds.edge_sets);
     sets("faces", NamedSet::Kind::kFaces, holds.face_sets);

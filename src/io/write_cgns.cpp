@@ -28,7 +28,8 @@ class CgnsWriter {
   CgnsWriter(MeshOutput& out, const MeshParts& mesh)
       : file_(out.path_for_library(), out.target().string(), out.context(), true),
         mesh_(mesh),
-        names_(legal_names(out, mesh, {.longest = 32, .also = " _-.+#()[]{}<>=&%$!?*'\"", .letter_first = false})) {}
+        names_(legal_names(out, mesh, {.longest = 32, .also = " _-.+#()[]{}<>=&%$!?*'\"", .letter_first = false},
+                           std::array{Origin::kRegion, Origin::kPatch, Origin::kCurve})) {}
 
   void write() {
     write_root();

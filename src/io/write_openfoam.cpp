@@ -9,6 +9,7 @@
 #include "mesh/adjacency.h"
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -24,7 +25,7 @@ class OpenFoamWriter {
         context_(out.context()),
         mesh_(mesh),
         across_(half_face_neighbors(mesh.mesh().tets, mesh.mesh().points.size())),
-        names_(legal_names(out, mesh, {.also = "_-."})) {
+        names_(legal_names(out, mesh, {.also = "_-."}, std::array{Part::Origin::kRegion, Part::Origin::kPatch})) {
     for (std::size_t f = 0; f < mesh.faces(); ++f)
       if (f >= mesh.mesh().boundary.size()) interface_at_[half_face(f)] = f;
   }

@@ -4,12 +4,13 @@
 #include "io/writers.h"
 
 #include <algorithm>
+#include <array>
 
 namespace octafront::io {
 
 void write_su2(MeshOutput& output, const MeshParts& mesh) {
   TextWriter out(output.file());
-  const std::vector<std::string> names = legal_names(output, mesh, {});
+  const std::vector<std::string> names = legal_names(output, mesh, {}, std::array{Part::Origin::kPatch});
   out.line("% Mesh by octafront\nNDIME= 3\nNELEM= {}", mesh.tets());
   for (std::size_t t = 0; t < mesh.tets(); ++t) {
     out << "10";
