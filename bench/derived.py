@@ -81,8 +81,8 @@ def main():
             failed = [(m.name, r["message"][:200]) for m, r in zip(models, rows) if r["status"] != 0]
             text += [f"## Sizes: {name}", "", summary(name, made, failed).replace("\n", "\n\n"), "The worst ten:", "", worst_table(made)]
             print(summary(name, made, failed), flush=True)
-    if not a.only:
-        pathlib.Path("docs/derived-status.md").write_text("\n".join(text))
+            if not a.only:
+                pathlib.Path("docs/derived-status.md").write_text("\n".join(text))
 
 
 main()

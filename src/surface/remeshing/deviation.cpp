@@ -91,11 +91,12 @@ Vec3 normal_of(const SurfaceMesh& surface, std::uint32_t t) {
 }
 
 /// The nearest point to p of the triangles that face along `normal`, if it is within kOtherSide times the distance of
-/// the nearest point of all: of a thin wall the right side. Otherwise that one.
-TriangleTree::Nearest nearest_facing(const TriangleTree& tree, Vec3 p, Vec3 normal) {
+/// the nearest point of all: of a thin wall the right side. Otherwise that one, which is at `distance`.
+TriangleTree::Nearest nearest_facing(const TriangleTree& tree, Vec3 p, Vec3 normal, double& distance) {
   constexpr double kOtherSide = 3;
   const TriangleTree::Nearest any = tree.nearest(p);
-  const double reach = kOtherSide * std::sqrt(any.squared_distance);
+  distance = std::sqrt(any.squared_distance);
+  const double reach = kOtherSide * distance;
   TriangleTree::Nearest best{any.point, any.triangle, reach * reach};
   tree.for_each_box_near({p - Vec3{reach, reach, reach}, p + Vec3{reach, reach, reach}},
                          [&](std::uint32_t triangle, const TriangleCorners& t) {
@@ -113,13 +114,16 @@ TriangleTree::Nearest nearest_facing(const TriangleTree& tree, Vec3 p, Vec3 norm
 std::vector<FarPlace> places_beyond(double limit, const SurfaceMesh& made, const SurfaceMesh& input,
                                     const TriangleTree& input_tree) {
   std::vector<FarPlace> places;
+  double distance = 0;
   for (const auto& [p, t] : beyond(limit, samples_of(made), input_tree)) {
-    const TriangleTree::Nearest nearest = nearest_facing(input_tree, p, normal_of(made, t));
-    places.push_back({p, {nearest.point, nearest.triangle}, t});
+    const TriangleTree::Nearest nearest = nearest_facing(input_tree, p, normal_of(made, t), distance);
+    places.push_back({p, {nearest.point, nearest.triangle}, distance, t});
   }
   const TriangleTree made_tree(made);
-  for (const auto& [p, t] : beyond(limit, suspects(limit, input, made_tree), made_tree))
-    places.push_back({p, {p, t}, nearest_facing(made_tree, p, normal_of(input, t)).triangle});
+  for (const auto& [p, t] : beyond(limit, suspects(limit, input, made_tree), made_tree)) {
+    const std::uint32_t triangle = nearest_facing(made_tree, p, normal_of(input, t), distance).triangle;
+    places.push_back({p, {p, t}, distance, triangle});
+  }
   return places;
 }
 

@@ -12,7 +12,8 @@ namespace octafront::remeshing {
 /// Where two surfaces lie too far apart.
 struct FarPlace {
   Vec3 at;                         ///< on either of them
-  SurfacePoint on_input;           ///< the place itself, or the nearest point to it
+  SurfacePoint on_input;           ///< the place itself, or the nearest point to it that faces alike
+  double distance = 0;             ///< to the other surface
   std::uint32_t triangle = kNone;  ///< of the made surface, there or nearest
 };
 

@@ -42,6 +42,8 @@ constexpr int kMostDeviationRounds = 5;
 /// How often points of the input are put in where the new surface strays, if it does so at few places: at this part of
 /// its triangles. At more of them it is made anew with smaller sizes.
 constexpr int kApproaches = 3;
+/// Points are put in from this part of the bound on: between samples the surface strays a little farther.
+constexpr double kComeNear = 0.9;
 constexpr double kFewFar = 0.02;
 
 /// Triangles below this 2r/R are mended at the end, by moving the surface no farther than this part of the size.
@@ -125,9 +127,11 @@ std::vector<std::uint8_t> crossing_triangles(const WorkingMesh& mesh) {
 /// How much of the input's triangulation an attempt may change.
 enum class Effort { kFull, kInsertOnly };
 
-std::vector<Vec3> positions_of(const std::vector<FarPlace>& places) {
+/// Where the places are that lie farther than the limit.
+std::vector<Vec3> positions_beyond(double limit, const std::vector<FarPlace>& places) {
   std::vector<Vec3> positions;
-  for (const FarPlace& place : places) positions.push_back(place.at);
+  for (const FarPlace& place : places)
+    if (place.distance >= limit) positions.push_back(place.at);
   return positions;
 }
 
@@ -264,12 +268,13 @@ class Remesher {
     Nearness n;
     for (int k = 0;; ++k) {
       const std::vector<FarPlace> places = far_places(mesh);
-      n.far = positions_of(places);
+      n.far = positions_beyond(tolerance_, places);
       const bool few = static_cast<double>(places.size()) < kFewFar * static_cast<double>(mesh.triangle_count());
       const std::uint64_t put_in = clear && few && k < kApproaches ? approach(mesh, input_, is_fixed, places) : 0;
       if (put_in == 0) return n;
       counts_.approached += put_in;
-      n.approached.insert(n.approached.end(), n.far.begin(), n.far.end());
+      const std::vector<Vec3> all = positions_beyond(0, places);
+      n.approached.insert(n.approached.end(), all.begin(), all.end());
       clear = mend_places(mesh, is_fixed);
     }
   }
@@ -281,12 +286,12 @@ class Remesher {
     if (!places.empty()) cap(places, kDeviationCap);
   }
 
-  /// Where the mesh is too far from the input, by the numbers of its triangles.
+  /// Where the mesh is too far from the input, or nearly so, by the numbers of its triangles.
   std::vector<FarPlace> far_places(const WorkingMesh& mesh) const {
     if (!limits_deviation()) return {};
     const std::vector<std::uint32_t> number = mesh.alive_triangles();
     std::vector<FarPlace> places =
-        places_beyond(*options_.max_deviation, triangles_of(mesh, number), surface_, known_.tree());
+        places_beyond(kComeNear * *options_.max_deviation, triangles_of(mesh, number), surface_, known_.tree());
     for (FarPlace& place : places) place.triangle = number[place.triangle];
     return places;
   }
