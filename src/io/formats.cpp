@@ -94,7 +94,7 @@ constexpr std::array kFormats{
          "PSOLID, PSHELL, SET; numbers of at most 16 characters (9 to 15 digits)", write_nastran),
     mesh("unv", "I-deas universal", ".unv", kYes, kAll, "groups (dataset 2477); 17 digits", write_unv),
     mesh("med", "MED 4", ".med", kYes, binary(kAll), "families and groups; needs HDF5", kWriteMed),
-    mesh("xdmf", "XDMF", ".xdmf", kYes, binary(kAll), "with values in a file .h5 beside; needs HDF5", kWriteXdmf),
+    mesh("xdmf", "XDMF", ".xdmf", kYes, binary(kAll), "with values in files .h5 beside; needs HDF5", kWriteXdmf),
     mesh("exodus", "Exodus II", ".exo .e .ex2", kNo, binary(kSolver), "blocks, node, side and element sets",
          write_exodus),
     mesh("ansys", "Ansys archive", ".cdb", kNo, kAnsys, "components; 17 digits", write_ansys),

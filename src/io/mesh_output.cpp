@@ -68,9 +68,9 @@ AtomicFile& MeshOutput::beside(const std::string& name) {
   return *files_.emplace_back(std::make_unique<AtomicFile>(target_.parent_path() / name, context_));
 }
 
-fs::path MeshOutput::path_for_library(const std::string& ending) {
+fs::path MeshOutput::path_for_library(const std::string& name) {
   fs::path final = target_;
-  if (!ending.empty()) final.replace_extension(ending);
+  if (!name.empty()) final.replace_filename(name);
   check_writable(final);
   final = links_followed(final);
   fs::path temporary = temporary_beside(final);

@@ -28,8 +28,8 @@ class MeshOutput {
   AtomicFile& sibling(const std::string& ending);
   /// Another one beside it, of that name.
   AtomicFile& beside(const std::string& name);
-  /// A place for a library that writes a file by itself: of the target's name in the end, or of its sibling's.
-  std::filesystem::path path_for_library(const std::string& ending = {});
+  /// A place for a library that writes a file by itself: of the target's name in the end, or of this name beside it.
+  std::filesystem::path path_for_library(const std::string& name = {});
   /// A new folder that takes the target's place in the end.
   std::filesystem::path folder();
   void note(std::string text) {

@@ -1,5 +1,6 @@
 // XDMF 3 as FEniCSx, ParaView and meshio read it: NAME.xdmf with one grid of tetrahedra, NAME_patches.xdmf and
-// NAME_curves.xdmf with those of faces and edges, all values in NAME.h5. Regions, patches and curves are attributes of
+// NAME_curves.xdmf with those of faces and edges, each with its values in a file .h5 of the same stem, where FEniCSx
+// looks for them. Regions, patches and curves are attributes of
 // cells, counted from 1; sets are attributes that are 1 for members ("elements NAME", "nodes NAME" ...). Names stand
 // in the tags of these attributes: name_1="inlet".
 
@@ -9,6 +10,7 @@
 #include "io/writers.h"
 
 #include <array>
+#include <optional>
 #include <string>
 
 #include <fmt/core.h>
@@ -35,19 +37,15 @@ constexpr Grid kMesh{"mesh",   Kind::kElements, Origin::kRegion,
 
 class XdmfWriter {
  public:
-  XdmfWriter(MeshOutput& out, const MeshParts& mesh)
-      : out_(out), mesh_(mesh), values_(out.path_for_library(".h5"), out.target().string(), out.context()) {
-    h5_ = std::filesystem::path(out.target()).replace_extension(".h5").filename().string();
-  }
+  XdmfWriter(MeshOutput& out, const MeshParts& mesh) : out_(out), mesh_(mesh), stem_(out.target().stem().string()) {}
 
   void write() {
-    values_.group("/Mesh");
-    write_grid(kMesh, out_.file());
-    const std::string stem = out_.target().stem().string();
+    write_file(kMesh, stem_, out_.file());
     // Empty ones too: older files of these names would be taken for ours.
-    write_grid(kPatches, out_.beside(stem + "_patches.xdmf"));
-    write_grid(kCurves, out_.beside(stem + "_curves.xdmf"));
-    values_.close();
+    for (const Grid& grid : {kPatches, kCurves}) {
+      const std::string stem = stem_ + "_" + grid.name;
+      write_file(grid, stem, out_.beside(stem + ".xdmf"));
+    }
   }
 
  private:
@@ -60,25 +58,33 @@ class XdmfWriter {
                                         : mesh_.nodes_per_edge();
   }
 
-  void item(TextWriter& out, std::string_view indent, const std::string& shape, std::string_view type,
-            std::size_t precision, const std::string& path) {
-    out.line("{}<DataItem Dimensions=\"{}\" NumberType=\"{}\" Precision=\"{}\" Format=\"HDF\">{}:{}</DataItem>", indent,
-             shape, type, precision, escaped(h5_), path);
+  void item(TextWriter& out, const std::string& shape, std::string_view type, std::size_t precision,
+            const std::string& file, const std::string& path) {
+    out.line("        <DataItem Dimensions=\"{}\" NumberType=\"{}\" Precision=\"{}\" Format=\"HDF\">{}:{}</DataItem>",
+             shape, type, precision, escaped(file), path);
+  }
+
+  void write_file(const Grid& grid, const std::string& stem, AtomicFile& file) {
+    h5_ = stem + ".h5";
+    values_.emplace(out_.path_for_library(h5_), out_.target().string(), out_.context());
+    values_->group("/Mesh");
+    write_grid(grid, file);
+    values_->close();
   }
 
   void write_grid(const Grid& grid, AtomicFile& file) {
     TextWriter out(file);
     const std::string group = std::string("/Mesh/") + grid.name;
-    values_.group(group);
+    values_->group(group);
     const std::uint64_t n = count(grid), each = nodes(grid);
     out << "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n";
     out.line("    <Grid Name=\"{}\" GridType=\"Uniform\">", grid.name);
     out.line("      <Topology TopologyType=\"{}\" NumberOfElements=\"{}\" NodesPerElement=\"{}\">",
              grid.topology[mesh_.second_order()], n, each);
-    item(out, "        ", fmt::format("{} {}", n, each), "Int", 8, group + "/topology");
+    item(out, fmt::format("{} {}", n, each), "Int", 8, h5_, group + "/topology");
     write_topology(grid, group + "/topology");
     out << "      </Topology>\n      <Geometry GeometryType=\"XYZ\">\n";
-    item(out, "        ", fmt::format("{} 3", mesh_.points()), "Float", 8, "/Mesh/mesh/geometry");
+    item(out, fmt::format("{} 3", mesh_.points()), "Float", 8, stem_ + ".h5", "/Mesh/mesh/geometry");
     if (grid.kind == Kind::kElements) write_points(group + "/geometry");
     out << "      </Geometry>\n";
     // Names are attributes of XML, which all readers pass over; <Information> stops some.
@@ -105,22 +111,23 @@ class XdmfWriter {
 
   void write_topology(const Grid& grid, const std::string& path) {
     const std::uint64_t each = nodes(grid);
-    values_.dataset(path, {count(grid), each},
-                    Hdf5Writer::Fill<std::int64_t>([&](std::uint64_t first, std::span<std::int64_t> to) {
-                      for (std::uint64_t k = 0; k < to.size(); ++k) {
-                        const std::uint64_t i = (first + k) / each, at = (first + k) % each;
-                        to[k] = grid.kind == Kind::kElements ? mesh_.tet_node(i, at)
-                                : grid.kind == Kind::kFaces  ? mesh_.face_node(i, at)
-                                                             : mesh_.edge_node(i, at);
-                      }
-                    }));
+    values_->dataset(path, {count(grid), each},
+                     Hdf5Writer::Fill<std::int64_t>([&](std::uint64_t first, std::span<std::int64_t> to) {
+                       for (std::uint64_t k = 0; k < to.size(); ++k) {
+                         const std::uint64_t i = (first + k) / each, at = (first + k) % each;
+                         to[k] = grid.kind == Kind::kElements ? mesh_.tet_node(i, at)
+                                 : grid.kind == Kind::kFaces  ? mesh_.face_node(i, at)
+                                                              : mesh_.edge_node(i, at);
+                       }
+                     }));
   }
 
   void write_points(const std::string& path) {
-    values_.dataset(path, {mesh_.points(), 3}, Hdf5Writer::Fill<double>([&](std::uint64_t first, std::span<double> to) {
-                      for (std::uint64_t k = 0; k < to.size(); ++k)
-                        to[k] = mesh_.mesh().points[(first + k) / 3][static_cast<int>((first + k) % 3)];
-                    }));
+    values_->dataset(path, {mesh_.points(), 3},
+                     Hdf5Writer::Fill<double>([&](std::uint64_t first, std::span<double> to) {
+                       for (std::uint64_t k = 0; k < to.size(); ++k)
+                         to[k] = mesh_.mesh().points[(first + k) / 3][static_cast<int>((first + k) % 3)];
+                     }));
   }
 
   /// `name` with the quote behind it, and more attributes of XML if there are any.
@@ -128,11 +135,11 @@ class XdmfWriter {
   void write_attribute(TextWriter& out, const std::string& name, std::string_view center, const std::string& path,
                        std::uint64_t n, const ValueAt& value_at) {
     out.line("      <Attribute AttributeType=\"Scalar\" Center=\"{}\" Name=\"{}>", center, name);
-    item(out, "        ", fmt::format("{} 1", n), "Int", 4, path);
+    item(out, fmt::format("{} 1", n), "Int", 4, h5_, path);
     out << "      </Attribute>\n";
-    values_.dataset(path, {n, 1}, Hdf5Writer::Fill<std::int32_t>([&](std::uint64_t first, std::span<std::int32_t> to) {
-                      for (std::uint64_t k = 0; k < to.size(); ++k) to[k] = value_at(first + k);
-                    }));
+    values_->dataset(path, {n, 1}, Hdf5Writer::Fill<std::int32_t>([&](std::uint64_t first, std::span<std::int32_t> to) {
+                       for (std::uint64_t k = 0; k < to.size(); ++k) to[k] = value_at(first + k);
+                     }));
   }
 
   void write_set(TextWriter& out, const std::string& name, const Part& part, std::uint64_t n, const std::string& path) {
@@ -144,8 +151,8 @@ class XdmfWriter {
 
   MeshOutput& out_;
   const MeshParts& mesh_;
-  Hdf5Writer values_;
-  std::string h5_;
+  std::string stem_, h5_;             ///< of the target; and the file of values_
+  std::optional<Hdf5Writer> values_;  ///< of the grid that is being written
 };
 
 }  // namespace
