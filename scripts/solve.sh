@@ -13,7 +13,7 @@ cmake --build --preset release --target octafront_cli
 octafront=build/release/cli/octafront work=out/solve
 case ${1:-} in
   --fenicsx)
-    need_packages python3-dolfinx python3-gmsh
+    need_packages python3-dolfinx
     exec /usr/bin/python3 examples/solve/fenicsx.py "$octafront" "$work"
     ;;
   --picture)

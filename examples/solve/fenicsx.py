@@ -1,19 +1,19 @@
 #!/usr/bin/python3
-"""The pipe of solve.py with FEniCSx: fenicsx.py OCTAFRONT WORK. Run by /usr/bin/python3; Debian packages python3-dolfinx,
-python3-gmsh (a gigabyte, so not among the everyday tests).
+"""The pipe of solve.py with FEniCSx: fenicsx.py OCTAFRONT WORK. Run by /usr/bin/python3; Debian package python3-dolfinx
+(a gigabyte, so not among the everyday tests).
 
-octafront writes a Gmsh file; dolfinx reads it with its curved cells of second order, and the names of the input's groups
-are its tags. The mean hoop stress on the inner wall, integrated over the curved facets, is compared with Lame's.
+octafront writes XDMF; dolfinx reads it with its curved cells of second order, and the names of the input's groups are
+its tags. The mean hoop stress on the inner wall, integrated over the curved facets, is compared with Lame's.
 """
 import math
 import pathlib
 import subprocess
 import sys
+from xml.etree import ElementTree
 
-import gmsh
 import ufl
 from dolfinx import fem
-from dolfinx.io import gmshio
+from dolfinx.io import XDMFFile
 from mpi4py import MPI
 from petsc4py.PETSc import ScalarType
 
@@ -24,12 +24,14 @@ INNER, OUTER, PRESSURE, YOUNG, POISSON = 10.0, 20.0, 100.0, 210000.0, 0.3
 
 def read(path):
     """Mesh, facet tags, and the tag of each name."""
-    gmsh.initialize()
-    gmsh.option.setNumber("General.Terminal", 0)
-    gmsh.open(str(path))
-    names = {gmsh.model.getPhysicalName(d, tag): tag for d, tag in gmsh.model.getPhysicalGroups(2)}
-    mesh, _, facets = gmshio.model_to_mesh(gmsh.model, MPI.COMM_WORLD, 0, gdim=3)
-    gmsh.finalize()
+    with XDMFFile(MPI.COMM_WORLD, str(path), "r") as file:
+        mesh = file.read_mesh(name="mesh")
+    mesh.topology.create_connectivity(2, 3)
+    patches = path.with_name(path.stem + "_patches.xdmf")
+    with XDMFFile(MPI.COMM_WORLD, str(patches), "r") as file:
+        facets = file.read_meshtags(mesh, name="patches")
+    numbers = next(tag for tag in ElementTree.parse(patches).iter("Attribute") if tag.get("Name") == "patch")
+    names = {name: int(key.removeprefix("name_")) for key, name in numbers.items() if key.startswith("name_")}
     return mesh, facets, names
 
 
@@ -69,9 +71,9 @@ def main():
     work.mkdir(parents=True, exist_ok=True)
     height = 5.0
     bodies.quarter_pipe(INNER, OUTER, height, 64).write(work / "fenicsx.obj")
-    subprocess.run([octafront, "mesh", work / "fenicsx.obj", "-o", work / "fenicsx.msh", "--size", "1.2", "--order", "2", "-q"],
+    subprocess.run([octafront, "mesh", work / "fenicsx.obj", "-o", work / "fenicsx.xdmf", "--size", "1.2", "--order", "2", "-q"],
                    check=True)
-    found = solve(*read(work / "fenicsx.msh"))
+    found = solve(*read(work / "fenicsx.xdmf"))
     expected = {"hoop": PRESSURE * (OUTER**2 + INNER**2) / (OUTER**2 - INNER**2), "area": math.pi / 2 * INNER * height,
                 "volume": math.pi / 4 * (OUTER**2 - INNER**2) * height}
     good = True
