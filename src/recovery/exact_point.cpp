@@ -46,6 +46,12 @@ int filtered_orient(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
 using exact::DoubleDouble;
 using DoublePoint = std::array<DoubleDouble, 3>;
 
+DoublePoint two_doubles(Vec3 p, Vec3 rest) {
+  DoublePoint sum;
+  for (int k = 0; k < 3; ++k) sum[k] = exact::TwoDoubles{p[k], rest[k]};
+  return sum;
+}
+
 double largest(const DoublePoint& p) {
   return std::max({std::abs(p[0].hi), std::abs(p[1].hi), std::abs(p[2].hi)});
 }
@@ -216,17 +222,10 @@ int ExactPoints::orient_steiner(VertexIndex a, VertexIndex b, VertexIndex c, Ver
   }
   if (const int s = filtered_orient(point_[a], point_[b], point_[c], point_[d])) return s;
   if (share_line(v) || share_plane(v)) return 0;
-  if (const int s = orient_second_filter(v)) return s;
+  if (const int s = filtered_orient({two_doubles(point_[a], rest_of(a)), two_doubles(point_[b], rest_of(b)),
+                                     two_doubles(point_[c], rest_of(c)), two_doubles(point_[d], rest_of(d))}))
+    return s;
   return orient_exact(v);
-}
-
-int ExactPoints::orient_second_filter(const std::array<VertexIndex, 4>& v) const {
-  std::array<DoublePoint, 4> p;
-  for (int i = 0; i < 4; ++i) {
-    const Vec3 rest = v[i] < first_steiner_ ? Vec3{} : steiner_[v[i] - first_steiner_].rest;
-    for (int k = 0; k < 3; ++k) p[i][k] = exact::TwoDoubles{point_[v[i]][k], rest[k]};
-  }
-  return filtered_orient(p);
 }
 
 int ExactPoints::orient_exact(const std::array<VertexIndex, 4>& v) const {
@@ -236,6 +235,9 @@ int ExactPoints::orient_exact(const std::array<VertexIndex, 4>& v) const {
 int ExactPoints::orient(VertexIndex a, VertexIndex b, VertexIndex c, Vec3 p) const {
   if (is_double(a) && is_double(b) && is_double(c)) return orient3d(point_[a], point_[b], point_[c], p);
   if (const int s = filtered_orient(point_[a], point_[b], point_[c], p)) return s;
+  if (const int s = filtered_orient({two_doubles(point_[a], rest_of(a)), two_doubles(point_[b], rest_of(b)),
+                                     two_doubles(point_[c], rest_of(c)), two_doubles(p, {})}))
+    return s;
   const Homogeneous last{BigFloat(p.x), BigFloat(p.y), BigFloat(p.z), BigFloat(1.0)};
   return value(plane_through(homogeneous(a), homogeneous(b), homogeneous(c)), last).sign();
 }

@@ -66,7 +66,8 @@ class ExactPoints {
   using Planes = std::span<const std::uint32_t>;
 
   int orient_steiner(VertexIndex a, VertexIndex b, VertexIndex c, VertexIndex d) const;
-  int orient_second_filter(const std::array<VertexIndex, 4>& v) const;
+  /// What the rounded point lacks of the exact one.
+  Vec3 rest_of(VertexIndex v) const { return v < first_steiner_ ? Vec3{} : steiner_[v - first_steiner_].rest; }
   int orient_exact(const std::array<VertexIndex, 4>& v) const;
   Homogeneous homogeneous(VertexIndex v) const;
   VertexIndex add(Homogeneous h, std::vector<std::uint32_t> planes);
