@@ -73,7 +73,8 @@ def main():
     text = ["# The clean models and what is derived from them", "",
             f"Written by `bench/run.sh derived{f' --every {a.every}' if a.every > 1 else ''}` over {len(models)} surfaces "
             "(`scripts/get-models.sh`, `scripts/derive-models.sh`), two at a time on two cores. What forced means: "
-            "`docs/sizes-and-surface.md`.", ""]
+            "`docs/sizes-and-surface.md`. The worst ten at automatic sizes, each around its worst element, forced or not "
+            "(`scripts/pictures.sh`):", "", "![](images/derived-worst.png)", ""]
     with concurrent.futures.ThreadPoolExecutor(a.jobs) as pool:
         for name, options in RUNS.items():
             rows = list(pool.map(lambda m: mesh_and_judge(a.build, m, [*options, "--threads", "1"], a.timeout), models))

@@ -121,4 +121,5 @@ def main():
     writer.Write()
 
 
-main()
+if __name__ == "__main__":
+    main()
