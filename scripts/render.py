@@ -22,6 +22,17 @@ def read_tets(path):
     return reader.GetOutput()
 
 
+def extracted(grid, cells):
+    ids = vtk.vtkIdList()
+    for cell in cells:
+        ids.InsertNextId(int(cell))
+    extract = vtk.vtkExtractCells()
+    extract.SetInputData(grid)
+    extract.SetCellList(ids)
+    extract.Update()
+    return extract.GetOutput()
+
+
 def cells_behind(grid, normal, fraction):
     """The tetrahedra whose centroid lies behind the plane that leaves `fraction` of the extent."""
     points = vtk_to_numpy(grid.GetPoints().GetData())
@@ -32,14 +43,7 @@ def cells_behind(grid, normal, fraction):
     height = points[corners[offsets[tets][:, None] + np.arange(4)]].mean(axis=1) @ normal
     level = points @ normal
     keep = tets[height <= level.min() + fraction * (level.max() - level.min())]
-    ids = vtk.vtkIdList()
-    for cell in keep:
-        ids.InsertNextId(int(cell))
-    extract = vtk.vtkExtractCells()
-    extract.SetInputData(grid)
-    extract.SetCellList(ids)
-    extract.Update()
-    return extract.GetOutput()
+    return extracted(grid, keep)
 
 
 def colours():
@@ -50,7 +54,8 @@ def colours():
     return table
 
 
-def scene(cells, edges):
+def skin_of(cells, edges):
+    """The skin of the elements, coloured by quality."""
     skin = vtk.vtkGeometryFilter()
     skin.SetInputData(cells)
     skin.SetNonlinearSubdivisionLevel(3)  # curved elements are drawn curved
@@ -66,8 +71,13 @@ def scene(cells, edges):
     actor.GetProperty().SetEdgeColor(0.15, 0.15, 0.15)
     actor.GetProperty().SetLineWidth(0.6)
     actor.GetProperty().SetAmbient(0.25)
+    return actor
+
+
+def scene(cells, edges):
+    actor = skin_of(cells, edges)
     bar = vtk.vtkScalarBarActor()
-    bar.SetLookupTable(mapper.GetLookupTable())
+    bar.SetLookupTable(actor.GetMapper().GetLookupTable())
     bar.SetTitle("beta")
     bar.SetNumberOfLabels(6)
     bar.SetVerticalTitleSeparation(10)

@@ -11,7 +11,7 @@ import numpy as np
 import vtk
 from vtk.util.numpy_support import vtk_to_numpy
 
-from render import colours, read_tets
+from render import extracted, read_tets, skin_of
 
 PANEL, COLUMNS = 300, 5
 AROUND = 5  # longest edges of the worst element
@@ -34,30 +34,11 @@ def around_worst(grid):
     view /= np.linalg.norm(view) or 1
     size = np.linalg.norm(p - middle[worst], axis=1).max()
     keep = tets[near & ((middle - middle[worst]) @ view < 0.3 * size)]
-    ids = vtk.vtkIdList()
-    for cell in (*keep, tets[worst]):
-        ids.InsertNextId(int(cell))
-    extract = vtk.vtkExtractCells()
-    extract.SetInputData(grid)
-    extract.SetCellList(ids)
-    extract.Update()
-    return extract.GetOutput(), middle[worst], reach, view, float(beta[tets[worst]])
+    return extracted(grid, [*keep, tets[worst]]), middle[worst], reach, view, float(beta[tets[worst]])
 
 
 def panel(path):
     cells, at, reach, view, beta = around_worst(read_tets(path))
-    skin = vtk.vtkGeometryFilter()
-    skin.SetInputData(cells)
-    mapper = vtk.vtkPolyDataMapper()
-    mapper.SetInputConnection(skin.GetOutputPort())
-    mapper.SetScalarModeToUseCellFieldData()
-    mapper.SelectColorArray("beta")
-    mapper.SetLookupTable(colours())
-    mapper.UseLookupTableScalarRangeOn()
-    actor = vtk.vtkActor()
-    actor.SetMapper(mapper)
-    actor.GetProperty().SetEdgeVisibility(True)
-    actor.GetProperty().SetEdgeColor(0.15, 0.15, 0.15)
     title = vtk.vtkTextActor()
     title.SetInput(f"{pathlib.Path(path).stem}  {beta:.3f}")
     title.SetPosition(8, 8)
@@ -65,7 +46,7 @@ def panel(path):
     title.GetTextProperty().SetFontSize(15)
     renderer = vtk.vtkRenderer()
     renderer.SetBackground(1, 1, 1)
-    renderer.AddActor(actor)
+    renderer.AddActor(skin_of(cells, True))
     renderer.AddActor2D(title)
     camera = renderer.GetActiveCamera()
     camera.SetFocalPoint(*at)

@@ -127,7 +127,7 @@ class FoldMender {
 
   double allowed_at(std::uint32_t t) const {
     if (limits_.size_part == 0) return limits_.tolerance;
-    return std::min(limits_.tolerance, (crosses_[t] ? 2 : 1) * limits_.size_part * mesh_.size[mesh_.start[3 * t]]);
+    return std::min(limits_.tolerance, limits_.size_part * mesh_.size[mesh_.start[3 * t]]);
   }
 
   /// Does what leaves the least badness around the triangle.
@@ -137,7 +137,7 @@ class FoldMender {
     for (const Tier& tier : kTiers) {
       if (most_folded <= kFold - tier.angle && shape_lack(corners(t)) == 0 && !crosses_[t]) return;
       best_ = {};
-      limit_ = tier.move * allowed_at(t);
+      limit_ = std::min(limits_.tolerance, tier.move * allowed_at(t));
       for (HalfEdge h = 3 * t; h < 3 * t + 3; ++h) {
         const HalfEdge g = mesh_.twin[h];
         for (const HalfEdge e : {h, next_of(g), previous_of(g)}) {

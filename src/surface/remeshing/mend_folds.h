@@ -13,7 +13,7 @@ namespace octafront::remeshing {
 /// What counts as a fold or as a bad triangle, and how far the surface may move to be rid of it.
 struct FoldLimits {
   double tolerance = 0;     ///< input units
-  double size_part = 0;     ///< of the size at the place, no farther than that either; 0: whatever the size
+  double size_part = 0;     ///< of the size at the place: what counts where that is less; 0: whatever the size
   double least_shape = 0;   ///< triangles below this 2r/R are bad too
   bool keep_lines = false;  ///< feature lines are no folds, however sharp
   /// Triangles that cross others, one flag each, are bad too: edges of theirs are also divided; null: none.
@@ -29,8 +29,9 @@ struct MendedFolds {
 };
 
 /// Takes away folds, flaps and spikes: edges at which the surface turns back on itself, by less than 25 degrees inside
-/// or outside where that moves it by a quarter of the tolerance at most, by less than 15 degrees within the whole; and
-/// bad triangles. Edges turn and collapse and vertices move where that leaves less of both, exactly without new
+/// or outside where that moves it by a quarter of what is allowed at most, by less than 15 degrees within the whole;
+/// and bad triangles. What folds by less than 14 degrees, or crosses, may move by twice the part of the size, within
+/// the tolerance. Edges turn and collapse and vertices move where that leaves less of both, exactly without new
 /// crossings. Cost: O(n), and about a millisecond for each place.
 MendedFolds mend_folds(WorkingMesh& mesh, const FoldLimits& limits, const RunContext& context);
 
