@@ -135,9 +135,7 @@ class BoundaryEditor {
       return guide_.is_near_home(v, to, limit_at(from)) && is_true(from);
     });
     if (!descent_.moved()) return false;
-    double before = 0;
-    for (const HalfFace h : star_) before += lack_of(mesh_.shape(h / 4).score);
-    if (before - descent_.lack() < kLeastFall) return false;
+    if (star_edit_.current_lack() - descent_.lack() < kLeastFall) return false;
     plan_move(v, descent_.place());
     if (!crosses_nothing()) return false;
     star_edit_.evaluate(descent_.place());
@@ -151,17 +149,24 @@ class BoundaryEditor {
 
   /// The boundary triangles at v, and with v elsewhere.
   void plan_move(VertexIndex v, Vec3 to) {
+    take_old();
+    for (const std::uint32_t n : numbers_) {
+      const Triangle t = mesh_.triangle(n);
+      new_.push_back({t, corners_of(t)});
+      for (int k = 0; k < 3; ++k)
+        if (t[k] == v) new_.back().corners[k] = to;
+    }
+  }
+
+  /// The boundary triangles at the vertex whose star is loaded.
+  void take_old() {
     old_.clear(), new_.clear(), numbers_.clear();
     for (const HalfFace h : star_) {
       for (int i = 0; i < 4; ++i) {
         const HalfFace across = mesh_.across(4 * (h / 4) + i);
         if (i == static_cast<int>(h % 4) || !is_outside(across)) continue;
-        const Triangle t = mesh_.triangle(across - kFirstOutside);
         numbers_.push_back(across - kFirstOutside);
-        old_.push_back(corners_of(t));
-        new_.push_back({t, corners_of(t)});
-        for (int k = 0; k < 3; ++k)
-          if (t[k] == v) new_.back().corners[k] = to;
+        old_.push_back(corners_of(mesh_.triangle(numbers_.back())));
       }
     }
   }
@@ -176,11 +181,6 @@ class BoundaryEditor {
     if (is_true(mesh_.point(u)) && crosses_nothing()) best_ = std::move(c);
   }
 
-  bool has(TetIndex t, VertexIndex v) const {
-    const Tet& c = mesh_.tet(t);
-    return std::find(c.begin(), c.end(), v) != c.end();
-  }
-
   /// The tets with u at w, and what is gained; false if one would not be usable.
   bool plan_tets(Collapse& c) {
     batch_.size = 0;
@@ -191,7 +191,7 @@ class BoundaryEditor {
     for (const HalfFace h : star_) {
       c.old_tets.push_back(h / 4);
       c.gain += lack_of(mesh_.shape(h / 4).score);
-      if (has(h / 4, c.onto)) continue;
+      if (mesh_.has(h / 4, c.onto)) continue;
       Tet made = mesh_.tet(h / 4);
       made[h % 4] = c.onto;
       for (const VertexIndex v : made)
@@ -217,7 +217,7 @@ class BoundaryEditor {
   bool keeps_manifold(VertexIndex u, VertexIndex w) {
     Link of_edge;
     for (const HalfFace h : star_) {
-      if (!has(h / 4, w)) continue;
+      if (!mesh_.has(h / 4, w)) continue;
       std::vector<VertexIndex> others;
       for (const VertexIndex v : mesh_.tet(h / 4))
         if (v != u && v != w) others.push_back(v);
@@ -260,23 +260,18 @@ class BoundaryEditor {
   /// The boundary triangles at u, and those with w in its place; false if a patch would vanish or two curves merge.
   bool plan_boundary(Collapse& c) {
     std::vector<std::uint32_t> left, vanishing;
-    old_.clear(), new_.clear(), numbers_.clear();
-    for (const HalfFace h : star_) {
-      for (int i = 0; i < 4; ++i) {
-        const HalfFace across = mesh_.across(4 * (h / 4) + i);
-        if (i == static_cast<int>(h % 4) || !is_outside(across)) continue;
-        numbers_.push_back(across - kFirstOutside);
-        Triangle t = mesh_.triangle(across - kFirstOutside);
-        c.change.gone.push_back(across);
-        old_.push_back(corners_of(t));
-        const bool vanishes = std::find(t.begin(), t.end(), c.onto) != t.end();
-        (vanishes ? vanishing : left).push_back(mesh_.boundary_patch(across));
-        if (vanishes && merges_curves(t, c)) return false;
-        if (vanishes) continue;
-        std::replace(t.begin(), t.end(), c.gone, c.onto);
-        c.change.made.push_back({across, t});
-        new_.push_back({t, corners_of(t)});
-      }
+    take_old();
+    for (const std::uint32_t n : numbers_) {
+      const HalfFace across = kFirstOutside + n;
+      Triangle t = mesh_.triangle(n);
+      c.change.gone.push_back(across);
+      const bool vanishes = std::find(t.begin(), t.end(), c.onto) != t.end();
+      (vanishes ? vanishing : left).push_back(mesh_.boundary_patch(across));
+      if (vanishes && merges_curves(t, c)) return false;
+      if (vanishes) continue;
+      std::replace(t.begin(), t.end(), c.gone, c.onto);
+      c.change.made.push_back({across, t});
+      new_.push_back({t, corners_of(t)});
     }
     return std::all_of(vanishing.begin(), vanishing.end(),
                        [&](std::uint32_t p) { return std::find(left.begin(), left.end(), p) != left.end(); });

@@ -52,7 +52,7 @@ class Collapser {
   bool improve(VertexIndex v, std::span<const HalfFace> faces) {
     if (!star_.load(v, faces)) return false;
     old_worst_ = star_.current_worst();
-    old_lack_ = goal_ == Goal::kFewestPoor ? sum_of_lack() : star_.current_deficit();
+    old_lack_ = goal_ == Goal::kFewestPoor ? star_.current_lack() : star_.current_deficit();
     find_neighbours(v);
     VertexIndex best = kNone;
     double least = goal_ == Goal::kFewestPoor ? old_lack_ - kLeastFall : kFall * old_lack_;
@@ -62,17 +62,6 @@ class Collapser {
     }
     if (best == kNone) return false;
     return collapse_to(best);
-  }
-
-  bool has(HalfFace h, VertexIndex u) const {
-    const Tet& t = mesh_.tet(h / 4);
-    return t[0] == u || t[1] == u || t[2] == u || t[3] == u;
-  }
-
-  double sum_of_lack() const {
-    double sum = 0;
-    for (const HalfFace h : star_.faces()) sum += lack_of(mesh_.shape(h / 4).score);
-    return sum;
   }
 
   void find_neighbours(VertexIndex v) {
@@ -99,7 +88,7 @@ class Collapser {
     double sum = 0, poor = 0;
     float worst = 1;
     for (int k = 0; k < batch.size; ++k) {
-      if (has(star_.faces()[k], u)) continue;
+      if (mesh_.has(star_.faces()[k] / 4, u)) continue;
       const Shape s = batch.shape(k);
       if (s.beta < kCertainBeta || !floor_.below(s)) return kNever;
       worst = std::min(worst, s.score);
@@ -117,7 +106,7 @@ class Collapser {
     for (std::size_t k = 0; k < star_.faces().size(); ++k) {
       const HalfFace h = star_.faces()[k];
       old_tets_.push_back(h / 4);
-      if (has(h, u)) continue;
+      if (mesh_.has(h / 4, u)) continue;
       Tet t = mesh_.tet(h / 4);
       t[h % 4] = u;
       new_tets_.push_back(t);

@@ -62,6 +62,7 @@ class EditMesh {
   /// For each vertex of the mesh that was taken, its number here.
   std::vector<VertexIndex> numbers_here() const;
 
+  bool has(TetIndex t, VertexIndex v) const { return complex_.has(t, v); }
   /// Corner of t at which v lies. Requires that it does.
   int corner_of(TetIndex t, VertexIndex v) const { return complex_.corner_of(t, v); }
 

@@ -1,5 +1,7 @@
 #include "improve/star_edit.h"
 
+#include "improve/fewest_poor.h"
+
 #include <algorithm>
 
 namespace octafront::improve {
@@ -29,6 +31,12 @@ double StarEdit::current_deficit() const {
     const double lack = 1 - double{mesh_.shape(h / 4).beta};
     sum += lack * lack;
   }
+  return sum;
+}
+
+double StarEdit::current_lack() const {
+  double sum = 0;
+  for (const HalfFace h : faces_) sum += lack_of(mesh_.shape(h / 4).score);
   return sum;
 }
 

@@ -21,6 +21,8 @@ class StarEdit {
   float current_worst() const;
   /// Sum of (1 - beta)^2 of the star as it stands in the mesh.
   double current_deficit() const;
+  /// Sum of what its elements lack (fewest_poor.h) as it stands in the mesh.
+  double current_lack() const;
 
   void evaluate(Vec3 at) {
     at_ = at;
