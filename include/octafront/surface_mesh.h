@@ -19,11 +19,17 @@ using Triangle = std::array<VertexIndex, 3>;
 /// Two vertex indices; as a key of an undirected edge the smaller one comes first.
 using Edge = std::array<VertexIndex, 2>;
 
-/// A triangle surface as flat arrays.
+/// The regions on the two sides of a triangle: in front, where its normal points, and behind; kNone: outside.
+using Sides = std::array<std::uint32_t, 2>;
+
+/// A triangle surface as flat arrays: the boundary of one body, or a *complex* of several regions.
 ///
 /// What the library calls a *clean* surface is closed, oriented outward, 2-manifold, and free of self-intersections:
 /// each edge has exactly two triangles that run through it in opposite directions, and the triangles around each vertex
 /// form one fan. A shell inside another one, facing the other way, bounds a cavity.
+///
+/// A *complex* says for each triangle what lies on its two sides. Its triangles meet in shared vertices and edges only;
+/// the same region on both sides makes a *sheet* (a crack, a membrane).
 struct SurfaceMesh {
   std::vector<Vec3> points;          ///< input units
   std::vector<Triangle> triangles;   ///< indices into points
@@ -32,11 +38,15 @@ struct SurfaceMesh {
   /// One per triangle: the face of the input that it came from, by which messages and TetMesh::source name it; empty:
   /// triangle t is face t.
   std::vector<std::uint32_t> source;
+  /// One per triangle; empty: one region, 0, lies behind every triangle, and nothing in front.
+  std::vector<Sides> sides = {};
+  std::vector<std::string> region_names = {};  ///< region r is region_names[r]; may be shorter than their number
 
   std::uint32_t patch_of(std::size_t triangle) const { return patch.empty() ? 0 : patch[triangle]; }
   std::uint32_t source_of(std::size_t triangle) const {
     return source.empty() ? static_cast<std::uint32_t>(triangle) : source[triangle];
   }
+  Sides sides_of(std::size_t triangle) const { return sides.empty() ? Sides{kNone, 0} : sides[triangle]; }
   friend bool operator==(const SurfaceMesh&, const SurfaceMesh&) = default;
 };
 
