@@ -16,7 +16,7 @@ void FaceTable::sort() {
 
 std::span<const FaceTable::Entry> FaceTable::group_of(const Triangle& corners) const {
   const Triangle key = face_key(corners);
-  const std::span<const Entry> at_vertex = entries_[key[0]];
+  const std::span<const Entry> at_vertex = entries_[key[0] - first_];
   const auto [first, last] = std::equal_range(
       at_vertex.begin(), at_vertex.end(), Entry{key[1], key[2], 0},
       [](const Entry& a, const Entry& b) { return std::tie(a.middle, a.high) < std::tie(b.middle, b.high); });

@@ -39,11 +39,14 @@ class FaceTable {
   /// visit(add) calls add(corners, number) for each face; it is called twice and must visit the same both times.
   /// REQUIRES vertex indices in range. Some 10 ns a face.
   template <class Visit>
-  FaceTable(std::size_t vertices, const Visit& visit)
-      : entries_(vertices, [&](const auto& add) {
+  FaceTable(std::size_t vertices, const Visit& visit) : FaceTable(0, vertices, visit) {}
+  /// Of faces whose lowest vertices are the `vertices` ones from `first` on.
+  template <class Visit>
+  FaceTable(VertexIndex first, std::size_t vertices, const Visit& visit)
+      : first_(first), entries_(vertices, [&](const auto& add) {
           visit([&](const Triangle& corners, std::uint32_t face) {
             const Triangle key = face_key(corners);
-            add(key[0], Entry{key[1], key[2], face});
+            add(key[0] - first, Entry{key[1], key[2], face});
           });
         }) {
     sort();
@@ -57,7 +60,7 @@ class FaceTable {
         while (j < at_vertex.size() && at_vertex[j].middle == at_vertex[i].middle &&
                at_vertex[j].high == at_vertex[i].high)
           ++j;
-        visit(Triangle{static_cast<VertexIndex>(v), at_vertex[i].middle, at_vertex[i].high},
+        visit(Triangle{first_ + static_cast<VertexIndex>(v), at_vertex[i].middle, at_vertex[i].high},
               at_vertex.subspan(i, j - i));
       }
     }
@@ -68,6 +71,7 @@ class FaceTable {
  private:
   void sort();
 
+  VertexIndex first_;
   Groups<Entry, std::uint64_t> entries_;  ///< by lowest vertex, sorted by middle, high, face
 };
 

@@ -1,6 +1,7 @@
 #include <octafront/run_context.h>
 #include <octafront/validity.h>
 
+#include "core/buckets.h"
 #include "core/parallel.h"
 #include "geometry/measures.h"
 #include "geometry/predicates.h"
@@ -8,6 +9,7 @@
 #include "mesh/quadratic_nodes.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -32,28 +34,33 @@ std::string described(const std::vector<Vec3>& points, const Triangle& t) {
 /// A row of vertices that are not all there.
 template <class Rows>
 std::optional<std::string> range_defect(const Rows& rows, std::size_t n, const char* what) {
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    for (const VertexIndex v : rows[i])
-      if (v >= n) return fmt::format("{} {} refers to vertex {}, but there are only {}", what, i, v, n);
-  return std::nullopt;
+  const auto too_large = [n](VertexIndex v) { return v >= n; };
+  const std::size_t i = parallel_find(
+      rows.size(), [&](std::size_t row) { return std::any_of(rows[row].begin(), rows[row].end(), too_large); });
+  if (i == rows.size()) return std::nullopt;
+  const VertexIndex v = *std::find_if(rows[i].begin(), rows[i].end(), too_large);
+  return fmt::format("{} {} refers to vertex {}, but there are only {}", what, i, v, n);
 }
 
 std::optional<std::string> point_defect(const TetMesh& mesh) {
   if (mesh.tets.empty()) return "the mesh has no tetrahedra";
   const std::size_t n = mesh.points.size();
-  for (std::size_t v = 0; v < n; ++v)
-    if (!is_finite(mesh.points[v])) return fmt::format("vertex {} {} is not finite", v, place(mesh.points[v]));
+  if (const std::size_t v = parallel_find(n, [&](std::size_t i) { return !is_finite(mesh.points[i]); }); v < n)
+    return fmt::format("vertex {} {} is not finite", v, place(mesh.points[v]));
   if (auto d = range_defect(mesh.tets, n, "tetrahedron")) return d;
   if (auto d = range_defect(mesh.mid_nodes, n, "tetrahedron")) return d;
   if (auto d = range_defect(mesh.boundary, n, "boundary face")) return d;
   if (auto d = range_defect(mesh.interfaces, n, "interface")) return d;
   if (auto d = range_defect(mesh.curve_edges, n, "curve edge")) return d;
-  std::vector<bool> used(n, false);
-  for (const Tet& t : mesh.tets)
-    for (const VertexIndex v : t) used[v] = true;
-  for (const auto& mids : mesh.mid_nodes)
-    for (const VertexIndex v : mids) used[v] = true;
-  const auto unused = std::find(used.begin(), used.end(), false);
+  std::vector<char> used(n, 0);
+  const auto use = [&](const auto& rows) {
+    parallel_for(rows.size(), [&](std::size_t i) {
+      for (const VertexIndex v : rows[i]) std::atomic_ref(used[v]).store(1, std::memory_order_relaxed);
+    });
+  };
+  use(mesh.tets);
+  use(mesh.mid_nodes);
+  const auto unused = std::find(used.begin(), used.end(), 0);
   if (unused != used.end()) {
     const auto v = static_cast<std::size_t>(unused - used.begin());
     return fmt::format("vertex {} {} belongs to no tetrahedron", v, place(mesh.points[v]));
@@ -155,26 +162,24 @@ std::optional<std::string> mid_node_defect(const TetMesh& mesh) {
 
 std::optional<std::string> sign_defect(const TetMesh& mesh) {
   const auto& p = mesh.points;
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+  const auto sign_of = [&](std::size_t t) {
     const auto& [a, b, c, d] = mesh.tets[t];
-    const int sign = orient3d(p[a], p[b], p[c], p[d]);
-    if (sign == 1) continue;
-    return fmt::format("tetrahedron {} is {}, volume {:.3g}: vertices {} {} {} {} at {} {} {} {}", t,
-                       sign == 0 ? "flat" : "inverted", signed_volume(p[a], p[b], p[c], p[d]), a, b, c, d, place(p[a]),
-                       place(p[b]), place(p[c]), place(p[d]));
-  }
-  return std::nullopt;
+    return orient3d(p[a], p[b], p[c], p[d]);
+  };
+  const std::size_t t = parallel_find(mesh.tets.size(), [&](std::size_t i) { return sign_of(i) != 1; });
+  if (t == mesh.tets.size()) return std::nullopt;
+  const auto& [a, b, c, d] = mesh.tets[t];
+  return fmt::format("tetrahedron {} is {}, volume {:.3g}: vertices {} {} {} {} at {} {} {} {}", t,
+                     sign_of(t) == 0 ? "flat" : "inverted", signed_volume(p[a], p[b], p[c], p[d]), a, b, c, d,
+                     place(p[a]), place(p[b]), place(p[c]), place(p[d]));
 }
 
 std::optional<std::string> jacobian_defect(const TetMesh& mesh) {
   if (!mesh.is_second_order()) return std::nullopt;
-  std::vector<char> good(mesh.tets.size());
-  parallel_for(good.size(), [&](std::size_t t) {
-    good[t] = has_positive_jacobian(quadratic_nodes(mesh, static_cast<TetIndex>(t)));
-  });
-  const auto bad = std::find(good.begin(), good.end(), 0);
-  if (bad == good.end()) return std::nullopt;
-  const auto t = static_cast<TetIndex>(bad - good.begin());
+  const auto t = static_cast<TetIndex>(parallel_find(mesh.tets.size(), [&](std::size_t i) {
+    return !has_positive_jacobian(quadratic_nodes(mesh, static_cast<TetIndex>(i)));
+  }));
+  if (t == mesh.tets.size()) return std::nullopt;
   const auto nodes = quadratic_nodes(mesh, t);
   const auto coefficients = jacobian_coefficients(nodes);
   return fmt::format("the Jacobian of tetrahedron {} at {} is not proven positive: its least coefficient is {:.3g}", t,
@@ -196,21 +201,44 @@ struct FaceOwner {
   static constexpr std::uint32_t kMostOwners = 1u << 30;
 };
 
-FaceTable table_of_faces(const TetMesh& mesh) {
-  return {mesh.points.size(), [&](const auto& add) {
-            for (std::uint32_t t = 0; t < mesh.tets.size(); ++t)
-              for (int i = 0; i < 4; ++i) {
-                const Triangle corners = face_of(mesh.tets[t], i);
-                add(corners, FaceOwner(t, false, corners).number);
+/// The faces of the tets and the listed ones, by ranges of their least vertices: a range at a time is looked at.
+class FacesInRanges {
+ public:
+  explicit FacesInRanges(const TetMesh& mesh)
+      : mesh_(mesh),
+        ranges_(mesh.points.size()),
+        half_faces_(mesh.tets.size(), ranges_.count(),
+                    [&](std::size_t t, const auto& add) {
+                      for (int i = 0; i < 4; ++i)
+                        add(range_of(face_of(mesh.tets[t], i)), static_cast<std::uint32_t>(4 * t) + i);
+                    }),
+        listed_(mesh.boundary.size() + mesh.interfaces.size(), ranges_.count(),
+                [&](std::size_t f, const auto& add) { add(range_of(listed(f)), static_cast<std::uint32_t>(f)); }) {}
+
+  std::size_t ranges() const { return ranges_.count(); }
+  /// The faces of one range, numbered by their owners.
+  FaceTable table(std::size_t range) const {
+    const auto first = static_cast<VertexIndex>(ranges_.begin(range));
+    return {first, ranges_.end(range) - first, [&](const auto& add) {
+              for (const std::uint32_t h : half_faces_[range]) {
+                const Triangle corners = face_of(mesh_.tets[h / 4], static_cast<int>(h % 4));
+                add(corners, FaceOwner(h / 4, false, corners).number);
               }
-            for (std::uint32_t f = 0; f < mesh.boundary.size(); ++f)
-              add(mesh.boundary[f], FaceOwner(f, true, mesh.boundary[f]).number);
-            // Interfaces count on behind the boundary.
-            const auto first = static_cast<std::uint32_t>(mesh.boundary.size());
-            for (std::uint32_t f = 0; f < mesh.interfaces.size(); ++f)
-              add(mesh.interfaces[f], FaceOwner(first + f, true, mesh.interfaces[f]).number);
-          }};
-}
+              for (const std::uint32_t f : listed_[range]) add(listed(f), FaceOwner(f, true, listed(f)).number);
+            }};
+  }
+
+ private:
+  std::size_t range_of(const Triangle& t) const { return ranges_.of(face_key(t)[0]); }
+  /// Interfaces count on behind the boundary.
+  const Triangle& listed(std::size_t f) const {
+    return f < mesh_.boundary.size() ? mesh_.boundary[f] : mesh_.interfaces[f - mesh_.boundary.size()];
+  }
+
+  const TetMesh& mesh_;
+  RangeBuckets ranges_;
+  Buckets<> half_faces_, listed_;
+};
 
 bool is_interface(const TetMesh& mesh, FaceOwner f) {
   return f.listed() && f.of() >= mesh.boundary.size();
@@ -247,11 +275,16 @@ std::optional<std::string> face_group_defect(const TetMesh& mesh, const Triangle
 }
 
 std::optional<std::string> face_defect(const TetMesh& mesh) {
-  std::optional<std::string> defect;
-  table_of_faces(mesh).for_each_group([&](const Triangle& key, std::span<const FaceTable::Entry> group) {
-    if (!defect && !is_good(mesh, group)) defect = face_group_defect(mesh, key, group);
-  });
-  return defect;
+  const FacesInRanges faces(mesh);
+  const auto defect_in = [&](std::size_t range) {
+    std::optional<std::string> defect;
+    faces.table(range).for_each_group([&](const Triangle& key, std::span<const FaceTable::Entry> group) {
+      if (!defect && !is_good(mesh, group)) defect = face_group_defect(mesh, key, group);
+    });
+    return defect;
+  };
+  const std::size_t range = parallel_find(faces.ranges(), [&](std::size_t r) { return defect_in(r).has_value(); });
+  return range < faces.ranges() ? defect_in(range) : std::nullopt;
 }
 
 // The sum of six volumes of the tetrahedra (a, b, c, o), with what rounding may do to it: little of the sum where they
@@ -264,14 +297,27 @@ struct RoundedSum {
     magnitude += std::abs(term);
     products += std::sqrt(squared_length(a) * squared_length(b) * squared_length(c));
   }
+  RoundedSum& operator+=(const RoundedSum& other) {
+    six_volumes += other.six_volumes;
+    magnitude += other.magnitude;
+    products += other.products;
+    return *this;
+  }
 };
 
 // Follows from the other laws, so it guards the checks themselves: equal but for rounding.
 std::optional<std::string> volume_defect(const TetMesh& mesh) {
   const auto& p = mesh.points;
   const Vec3 o = bounding_box(p).center();
-  RoundedSum tets, enclosed;
-  for (const auto& [a, b, c, d] : mesh.tets) tets.add(p[b] - p[a], p[c] - p[a], p[d] - p[a]);
+  const auto tets = parallel_sum(mesh.tets.size(), [&](std::size_t begin, std::size_t end) {
+    RoundedSum sum;
+    for (std::size_t t = begin; t < end; ++t) {
+      const auto& [a, b, c, d] = mesh.tets[t];
+      sum.add(p[b] - p[a], p[c] - p[a], p[d] - p[a]);
+    }
+    return sum;
+  });
+  RoundedSum enclosed;
   for (const auto& [a, b, c] : mesh.boundary) enclosed.add(p[a] - o, p[b] - o, p[c] - o);
   constexpr double kRoundingsPerTerm = 16, epsilon = std::numeric_limits<double>::epsilon();
   const auto terms = static_cast<double>(mesh.tets.size() + mesh.boundary.size());
@@ -304,8 +350,9 @@ std::string place(const PlacedTriangle& t) {
 }
 
 std::optional<std::string> boundary_difference(const TetMesh& mesh, const SurfaceMesh& surface) {
-  const auto made = placed_triangles(mesh.points, mesh.boundary);
-  const auto wanted = placed_triangles(surface.points, surface.triangles);
+  std::vector<PlacedTriangle> made, wanted;
+  parallel_invoke([&] { made = placed_triangles(mesh.points, mesh.boundary); },
+                  [&] { wanted = placed_triangles(surface.points, surface.triangles); });
   const auto [m, w] = std::mismatch(made.begin(), made.end(), wanted.begin(), wanted.end());
   if (w != wanted.end() && (m == made.end() || *w < *m))
     return "the boundary lacks the surface's triangle " + place(*w);

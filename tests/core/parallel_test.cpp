@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstdint>
 #include <numeric>
 #include <stdexcept>
 #include <thread>
@@ -37,6 +38,44 @@ TEST(Parallel, InvokesBoth) {
   parallel_invoke([&] { a = 1; }, [&] { b = 2; });
   EXPECT_EQ(a, 1);
   EXPECT_EQ(b, 2);
+}
+
+TEST(Parallel, FindsTheFirst) {
+  for (const std::size_t n : {0, 1, 100'000}) {
+    EXPECT_EQ(parallel_find(n, [](std::size_t) { return false; }), n);
+    EXPECT_EQ(parallel_find(n, [n](std::size_t i) { return i % 777 == 776 || i + 1 == n; }),
+              std::min<std::size_t>(n - (n > 0), 776));
+  }
+}
+
+TEST(Parallel, SumsAreTheSameOnAnyNumberOfThreads) {
+  const auto part = [](std::size_t begin, std::size_t end) {
+    double sum = 0;
+    for (std::size_t i = begin; i < end; ++i) sum += 1 / (1.0 + static_cast<double>(i));
+    return sum;
+  };
+  const double expected = parallel_sum(1'000'000, part);
+  EXPECT_NEAR(expected, 14.392726722865, 1e-9);
+  for (const int threads : {1, 2, 7}) {
+    const ThreadLimit limit(threads);
+    EXPECT_EQ(parallel_sum(1'000'000, part), expected);
+  }
+  EXPECT_EQ(parallel_sum(0, part), 0);
+}
+
+TEST(Parallel, SortsAsOneThreadDoes) {
+  for (const std::size_t n : {0, 1, 20'000, 300'007}) {
+    std::vector<std::uint64_t> items(n);
+    for (std::size_t i = 0; i < n; ++i) items[i] = i * 0x9e3779b97f4a7c15u;
+    std::vector<std::uint64_t> expected = items;
+    std::sort(expected.begin(), expected.end());
+    for (const int threads : {1, 2, 3, 16}) {
+      const ThreadLimit limit(threads);
+      std::vector<std::uint64_t> sorted = items;
+      parallel_sort(sorted);
+      EXPECT_EQ(sorted, expected);
+    }
+  }
 }
 
 TEST(Parallel, KeepsToItsThreads) {
