@@ -46,6 +46,8 @@ class Buckets {
   std::span<const Item> operator[](std::size_t bucket) const {
     return {items_.data() + first_[bucket], items_.data() + first_[bucket + 1]};
   }
+  std::size_t first(std::size_t bucket) const { return first_[bucket]; }
+  std::size_t items() const { return items_.size(); }
 
  private:
   std::vector<std::size_t> first_;

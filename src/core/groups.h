@@ -1,8 +1,12 @@
 #pragma once
 
+#include "core/buckets.h"
+
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace octafront {
@@ -26,6 +30,9 @@ class Groups {
     first_.pop_back();
   }
 
+  /// Those of an owner begin at first[owner]; first[owners] is the end.
+  Groups(std::vector<Offset> first, std::vector<Item> items) : first_(std::move(first)), items_(std::move(items)) {}
+
   std::size_t size() const { return first_.size() - 1; }
   /// The items of one owner.
   std::span<const Item> operator[](std::size_t owner) const {
@@ -43,12 +50,36 @@ class Groups {
   std::vector<Item> items_;
 };
 
-/// The numbers 0 ... items - 1 by owner_of(number), ascending in each group.
+/// An item that is in no group.
+inline constexpr std::uint32_t kNoOwner = 0xffffffffu;
+
+/// The numbers 0 ... items - 1 by owner_of(number), ascending in each group, without those of kNoOwner. By several
+/// threads: first into ranges of owners, then range by range; one thread is faster without.
 template <class OwnerOf>
 Groups<> group_by_owner(std::size_t owners, std::uint32_t items, const OwnerOf& owner_of) {
-  return {owners, [&](const auto& add) {
-            for (std::uint32_t i = 0; i < items; ++i) add(owner_of(i), i);
-          }};
+  if (thread_count() == 1)
+    return {owners, [&](const auto& add) {
+              for (std::uint32_t i = 0; i < items; ++i)
+                if (const std::uint32_t owner = owner_of(i); owner != kNoOwner) add(owner, i);
+            }};
+  const RangeBuckets ranges(owners);
+  const Buckets<> by_range(items, ranges.count(), [&](std::size_t i, const auto& add) {
+    const std::uint32_t owner = owner_of(static_cast<std::uint32_t>(i));
+    if (owner != kNoOwner) add(ranges.of(owner), static_cast<std::uint32_t>(i));
+  });
+  std::vector<std::uint32_t> first(owners + 1), grouped(by_range.items());
+  first[owners] = static_cast<std::uint32_t>(grouped.size());
+  parallel_for(ranges.count(), [&](std::size_t r) {
+    const std::size_t begin = ranges.begin(r);
+    const Groups<> in_range(ranges.end(r) - begin, [&](const auto& add) {
+      for (const std::uint32_t i : by_range[r]) add(owner_of(i) - begin, i);
+    });
+    const std::size_t before = by_range.first(r);
+    for (std::size_t k = 0; k < in_range.size(); ++k)
+      first[begin + k] = static_cast<std::uint32_t>(before + in_range.first(k));
+    std::copy(in_range.items().begin(), in_range.items().end(), grouped.begin() + static_cast<std::ptrdiff_t>(before));
+  });
+  return {std::move(first), std::move(grouped)};
 }
 
 /// The rows (triangles, tets, edges) at each of the vertices that they name, ascending for each vertex.

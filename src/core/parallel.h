@@ -64,6 +64,23 @@ auto parallel_sum(std::size_t n, const Part& part) {
   return sum;
 }
 
+/// What collect(begin, end, out) appends to a vector for ranges that together are [0, n), in their order.
+template <class Item, class Collect>
+std::vector<Item> parallel_collect(std::size_t n, std::size_t range, const Collect& collect) {
+  std::vector<std::vector<Item>> parts((n + range - 1) / range);
+  parallel_for(
+      parts.size(), [&](std::size_t i) { collect(i * range, std::min(n, (i + 1) * range), parts[i]); }, Split::kSingly);
+  std::size_t size = 0;
+  for (const auto& part : parts) size += part.size();
+  std::vector<Item> all;
+  all.reserve(size);
+  for (auto& part : parts) {
+    all.insert(all.end(), part.begin(), part.end());
+    std::vector<Item>().swap(part);
+  }
+  return all;
+}
+
 /// std::sort by several threads. REQUIRES a total order: nothing else makes the result the same on any number of them.
 template <class Item, class Less = std::less<Item>>
 void parallel_sort(std::vector<Item>& items, const Less& less = {}) {

@@ -1,5 +1,7 @@
 #include "improve/edit_blocks.h"
 
+#include "core/parallel.h"
+
 #include <algorithm>
 
 namespace octafront::improve {
@@ -71,10 +73,12 @@ std::vector<TetIndex> EditBlocks::finish() {
 }
 
 std::vector<TetIndex> tets_below(const EditMesh& mesh, float threshold) {
-  std::vector<TetIndex> found;
-  for (TetIndex t = 0; t < mesh.slots(); ++t)
-    if (mesh.shape(t).score < threshold) found.push_back(t);
-  return found;
+  constexpr std::size_t kRange = 16384;
+  return parallel_collect<TetIndex>(mesh.slots(), kRange,
+                                    [&](std::size_t begin, std::size_t end, std::vector<TetIndex>& found) {
+                                      for (auto t = static_cast<TetIndex>(begin); t < end; ++t)
+                                        if (mesh.shape(t).score < threshold) found.push_back(t);
+                                    });
 }
 
 }  // namespace octafront::improve

@@ -2,6 +2,7 @@
 
 #include <octafront/error.h>
 
+#include "core/parallel.h"
 #include "core/validate.h"
 #include "geometry/predicates.h"
 #include "improve/spatial_order.h"
@@ -31,8 +32,9 @@ void EditMesh::take(TetMesh& mesh) {
     points_.push_back(mesh.points[original_[v]]);
     key_.push_back(v);
   }
-  for (Tet& t : mesh.tets)
-    for (VertexIndex& v : t) v = new_of_old[v];
+  parallel_for(mesh.tets.size(), [&](std::size_t t) {
+    for (VertexIndex& v : mesh.tets[t]) v = new_of_old[v];
+  });
   for (Triangle& t : mesh.boundary)
     for (VertexIndex& v : t) v = new_of_old[v];
   had_regions_ = !mesh.region.empty();
@@ -50,11 +52,13 @@ void EditMesh::connect() {
   on_boundary_.assign(points_.size(), 0);
   for (const Triangle& t : rest_.boundary)
     for (const VertexIndex v : t) on_boundary_[v] = 1;
-  for (HalfFace h = 0; h < complex_.across.size(); ++h) {
-    const HalfFace o = complex_.across[h];
-    if (o == kNone) throw_unmatched(h);
-    if (!is_outside(o) && region_[h / 4] != region_[o / 4]) part(h, o);
-  }
+  const auto& across = complex_.across;
+  if (const std::size_t h = parallel_find(across.size(), [&](std::size_t i) { return across[i] == kNone; });
+      h < across.size())
+    throw_unmatched(static_cast<HalfFace>(h));
+  if (!had_regions_) return;
+  for (HalfFace h = 0; h < across.size(); ++h)
+    if (const HalfFace o = across[h]; !is_outside(o) && region_[h / 4] != region_[o / 4]) part(h, o);
 }
 
 void EditMesh::throw_unmatched(HalfFace h) const {
@@ -70,19 +74,18 @@ void EditMesh::part(HalfFace h, HalfFace other) {
 
 void EditMesh::compute_shapes() {
   shapes_.resize(complex_.tets.size());
-  ShapeBatch batch(objective_);
-  TetIndex first = 0;
-  const auto flush = [&] {
-    batch.evaluate();
-    for (int i = 0; i < batch.size; ++i) shapes_[first + i] = batch.shape(i);
-    first += batch.size;
-    batch.size = 0;
-  };
-  for (const Tet& t : complex_.tets) {
-    batch.add(points_[t[0]], points_[t[1]], points_[t[2]], points_[t[3]]);
-    if (batch.full()) flush();
-  }
-  flush();
+  parallel_ranges(shapes_.size(), Split::kAdaptive, [this](std::size_t begin, std::size_t end) {
+    ShapeBatch batch(objective_);
+    for (std::size_t first = begin; first < end; first += ShapeBatch::kBatch) {
+      batch.size = 0;
+      for (std::size_t t = first; t < std::min<std::size_t>(end, first + ShapeBatch::kBatch); ++t) {
+        const Tet& c = complex_.tets[t];
+        batch.add(points_[c[0]], points_[c[1]], points_[c[2]], points_[c[3]]);
+      }
+      batch.evaluate();
+      for (int i = 0; i < batch.size; ++i) shapes_[first + static_cast<std::size_t>(i)] = batch.shape(i);
+    }
+  });
 }
 
 std::vector<VertexIndex> EditMesh::numbers_taken() const {
@@ -199,16 +202,20 @@ std::optional<std::string> EditMesh::first_inconsistency(std::span<const TetInde
 }
 
 Floor EditMesh::floor() const {
-  Floor f;
-  for (const Shape& s : shapes_) f.add(s);
-  return f;
+  return parallel_sum(shapes_.size(), [this](std::size_t begin, std::size_t end) {
+    Floor f;
+    for (std::size_t t = begin; t < end; ++t) f.add(shapes_[t]);
+    return f;
+  });
 }
 
 double EditMesh::beta_sum() const {
-  double sum = 0;
-  for (TetIndex t = 0; t < complex_.tets.size(); ++t)
-    if (alive(t)) sum += shapes_[t].beta;
-  return sum;
+  return parallel_sum(shapes_.size(), [this](std::size_t begin, std::size_t end) {
+    double sum = 0;
+    for (std::size_t t = begin; t < end; ++t)
+      if (complex_.alive(static_cast<TetIndex>(t))) sum += shapes_[t].beta;
+    return sum;
+  });
 }
 
 }  // namespace octafront::improve

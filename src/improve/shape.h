@@ -55,6 +55,14 @@ struct Floor {
     large = std::min(large, s.large);
     score = std::min(score, s.score);
   }
+  /// The worst of both.
+  Floor& operator+=(const Floor& other) {
+    beta = std::min(beta, other.beta);
+    small = std::min(small, other.small);
+    large = std::min(large, other.large);
+    score = std::min(score, other.score);
+    return *this;
+  }
   /// Strictly above in the three measures: rounding to float is monotone, so the exact values are above too.
   bool below(const Shape& s) const { return s.beta > beta && s.small > small && s.large > large; }
 };

@@ -1,6 +1,7 @@
 #include "improve/spatial_order.h"
 
 #include "core/morton.h"
+#include "core/parallel.h"
 
 #include <algorithm>
 
@@ -18,12 +19,12 @@ std::vector<VertexIndex> spatial_order(const std::vector<Vec3>& points) {
     bool operator<(const Key& o) const { return code != o.code ? code < o.code : vertex < o.vertex; }
   };
   std::vector<Key> keys(points.size());
-  for (VertexIndex v = 0; v < points.size(); ++v) {
+  parallel_for(points.size(), [&](std::size_t v) {
     const Vec3 p = (points[v] - box.lo) * scale;
     const auto cell = [](double c) { return static_cast<std::uint64_t>(c); };
-    keys[v] = {morton_code(cell(p.z), cell(p.y), cell(p.x)), v};
-  }
-  std::sort(keys.begin(), keys.end());
+    keys[v] = {morton_code(cell(p.z), cell(p.y), cell(p.x)), static_cast<VertexIndex>(v)};
+  });
+  parallel_sort(keys);
   std::vector<VertexIndex> order(points.size());
   for (std::size_t k = 0; k < order.size(); ++k) order[k] = keys[k].vertex;
   return order;

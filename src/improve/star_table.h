@@ -11,11 +11,8 @@ namespace octafront::improve {
 class StarTable {
  public:
   explicit StarTable(const EditMesh& mesh)
-      : stars_(mesh.vertices(), [&](const auto& add) {
-          for (TetIndex t = 0; t < mesh.slots(); ++t)
-            if (mesh.alive(t))
-              for (int i = 0; i < 4; ++i) add(mesh.tet(t)[i], 4 * t + static_cast<HalfFace>(i));
-        }) {}
+      : stars_(group_by_owner(mesh.vertices(), 4 * mesh.slots(),
+                              [&](HalfFace h) { return mesh.alive(h / 4) ? mesh.tet(h / 4)[h % 4] : kNoOwner; })) {}
 
   /// The half-faces opposite v of the tets around it, in order of the tets.
   std::span<const HalfFace> of(VertexIndex v) const { return stars_[v]; }

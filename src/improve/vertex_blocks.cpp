@@ -25,12 +25,15 @@ VertexBlocks::VertexBlocks(const EditMesh& mesh, const StarTable& stars, const B
     if (mesh.tet_of(v) != kNone && (!mesh.on_boundary(v) || (guide && guide->may_slide(v)))) waiting.push_back(v);
   for (const VertexIndex shift : {VertexIndex{0}, size / 2}) {
     std::vector<std::vector<VertexIndex>> blocks((n + shift) / size + 1);
-    std::vector<VertexIndex> left;
-    for (const VertexIndex v : waiting) {
-      const VertexIndex block = (v + shift) / size;
+    std::vector<char> is_whole(waiting.size());
+    parallel_for(waiting.size(), [&](std::size_t i) {
+      const VertexIndex block = (waiting[i] + shift) / size;
       const VertexIndex first = block * size < shift ? 0 : block * size - shift, last = (block + 1) * size - shift;
-      (neighbours_within(mesh, stars.of(v), first, last) ? blocks[block] : left).push_back(v);
-    }
+      is_whole[i] = neighbours_within(mesh, stars.of(waiting[i]), first, last);
+    });
+    std::vector<VertexIndex> left;
+    for (std::size_t i = 0; i < waiting.size(); ++i)
+      (is_whole[i] ? blocks[(waiting[i] + shift) / size] : left).push_back(waiting[i]);
     stages_.push_back(std::move(blocks));
     waiting = std::move(left);
   }

@@ -1,5 +1,6 @@
 #include "mesh/tet_complex.h"
 
+#include "core/buckets.h"
 #include "core/validate.h"
 
 #include <algorithm>
@@ -9,11 +10,13 @@
 namespace octafront {
 namespace {
 
-/// Faces in buckets by their least corner: whoever comes second to a pair of other corners finds the first. Half the
-/// time of a FaceTable, which would sort them.
+/// Faces by their least corner, which is one of a range: whoever comes second to a pair of other corners finds the
+/// first. Half the time of a FaceTable, which would sort them.
 class FaceMatcher {
  public:
-  explicit FaceMatcher(std::vector<std::uint32_t>&& faces_of_least_corner) : next_(std::move(faces_of_least_corner)) {
+  /// Room for as many faces of vertex first + k as faces_of_least_corner[k] says.
+  FaceMatcher(VertexIndex first, std::vector<std::uint32_t>&& faces_of_least_corner)
+      : first_(first), next_(std::move(faces_of_least_corner)) {
     std::uint32_t at = 0;
     for (std::uint32_t& n : next_) at += std::exchange(n, at);
     begin_ = next_;
@@ -22,18 +25,19 @@ class FaceMatcher {
 
   /// The waiting partner of the face, taken out, or kNone after putting this one in.
   std::uint32_t match(const Triangle& key, std::uint32_t id) {
-    Entry* first = entries_.data() + begin_[key[0]];
-    Entry* last = entries_.data() + next_[key[0]];
+    const VertexIndex v = key[0] - first_;
+    Entry* first = entries_.data() + begin_[v];
+    Entry* last = entries_.data() + next_[v];
     const std::uint64_t others = std::uint64_t{key[1]} << 32 | key[2];
     for (Entry* e = first; e != last; ++e)
       if (e->others == others) {
         const std::uint32_t found = e->id;
         *e = *(last - 1);
-        --next_[key[0]];
+        --next_[v];
         return found;
       }
     *last = {others, id};
-    ++next_[key[0]];
+    ++next_[v];
     return kNone;
   }
 
@@ -42,6 +46,7 @@ class FaceMatcher {
     std::uint64_t others;
     std::uint32_t id;
   };
+  VertexIndex first_;
   std::vector<std::uint32_t> begin_, next_;
   std::vector<Entry> entries_;
 };
@@ -79,13 +84,25 @@ std::optional<std::string> wrong_at_tet(const TetComplex& c, TetIndex t) {
 
 void TetComplex::connect(std::size_t vertices, std::span<const Triangle> boundary) {
   across.assign(4 * tets.size(), kNone);
-  std::vector<std::uint32_t> count(vertices, 0);
-  for (HalfFace h = 0; h < across.size(); ++h) ++count[face_key(face(h))[0]];
-  for (const Triangle& t : boundary) ++count[face_key(t)[0]];
-  FaceMatcher matcher(std::move(count));
-  for (std::uint32_t b = 0; b < boundary.size(); ++b) matcher.match(face_key(boundary[b]), kFirstOutside + b);
-  for (HalfFace h = 0; h < across.size(); ++h)
-    if (const HalfFace other = matcher.match(face_key(face(h)), h); other != kNone) join(h, other);
+  const RangeBuckets ranges(vertices);
+  const auto range_of = [&](const Triangle& t) { return ranges.of(face_key(t)[0]); };
+  const Buckets<> half_faces(tets.size(), ranges.count(), [&](std::size_t t, const auto& add) {
+    for (HalfFace h = static_cast<HalfFace>(4 * t), end = h + 4; h < end; ++h) add(range_of(face(h)), h);
+  });
+  const Buckets<> outside(boundary.size(), ranges.count(), [&](std::size_t b, const auto& add) {
+    add(range_of(boundary[b]), static_cast<std::uint32_t>(b));
+  });
+  // Both sides of a face are in one range: what a thread writes is its own.
+  parallel_for(ranges.count(), [&](std::size_t r) {
+    const auto first = static_cast<VertexIndex>(ranges.begin(r));
+    std::vector<std::uint32_t> count(ranges.end(r) - first, 0);
+    for (const HalfFace h : half_faces[r]) ++count[face_key(face(h))[0] - first];
+    for (const std::uint32_t b : outside[r]) ++count[face_key(boundary[b])[0] - first];
+    FaceMatcher matcher(first, std::move(count));
+    for (const std::uint32_t b : outside[r]) matcher.match(face_key(boundary[b]), kFirstOutside + b);
+    for (const HalfFace h : half_faces[r])
+      if (const HalfFace other = matcher.match(face_key(face(h)), h); other != kNone) join(h, other);
+  });
   tet_at.assign(vertices, kNone);
   for (TetIndex t = 0; t < slots(); ++t)
     for (const VertexIndex v : tets[t]) tet_at[v] = t;

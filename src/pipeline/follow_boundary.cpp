@@ -1,5 +1,7 @@
 #include "pipeline/follow_boundary.h"
 
+#include "core/parallel.h"
+
 namespace octafront {
 namespace {
 
@@ -10,16 +12,16 @@ constexpr double kFirstLook = 0.1;
 
 void renew_sources(TetMesh& mesh, const SurfaceMesh& before, const SurfaceMesh& input, const TriangleTree& tree) {
   if (mesh.source.empty()) return;
-  for (std::size_t t = 0; t < mesh.boundary.size(); ++t) {
+  parallel_for(mesh.boundary.size(), [&](std::size_t t) {
     const auto& [a, b, c] = mesh.boundary[t];
     const auto& [x, y, z] = before.triangles[t];
     if (mesh.points[a] == before.points[x] && mesh.points[b] == before.points[y] && mesh.points[c] == before.points[z])
-      continue;
+      return;
     const Vec3 middle = (mesh.points[a] + mesh.points[b] + mesh.points[c]) / 3;
     auto below = tree.nearest(middle, kFirstLook * kFirstLook * squared_length(mesh.points[b] - mesh.points[a]));
     if (below.triangle == kNone) below = tree.nearest(middle);
     mesh.source[t] = input.source_of(below.triangle);
-  }
+  });
 }
 
 }  // namespace octafront

@@ -1,5 +1,6 @@
 #include "core/groups.h"
 
+#include "core/thread_limit.h"
 #include "support/random.h"
 
 #include <array>
@@ -51,6 +52,20 @@ TEST(Groups, ByOwnerAreAscending) {
   const Groups<> groups = group_by_owner(3, 10, [](std::uint32_t i) { return i % 3; });
   EXPECT_EQ(listed(groups[0]), (std::vector<std::uint32_t>{0, 3, 6, 9}));
   EXPECT_EQ(listed(groups[2]), (std::vector<std::uint32_t>{2, 5, 8}));
+}
+
+TEST(Groups, ByOwnerAreTheSameOnAnyNumberOfThreads) {
+  const auto owner_of = [](std::uint32_t i) { return i % 5 == 3 ? kNoOwner : i * 2654435761u % 70'001; };
+  const auto make = [&](int threads) {
+    const ThreadLimit limit(threads);
+    return group_by_owner(70'001, 200'000, owner_of);
+  };
+  const Groups<> one = make(1), three = make(3);
+  EXPECT_EQ(one.items().size(), 160'000u);
+  EXPECT_EQ(one.items(), three.items());
+  for (std::uint32_t owner = 0; owner <= 70'001; ++owner) ASSERT_EQ(one.first(owner), three.first(owner));
+  for (std::uint32_t owner = 0; owner < 70'001; ++owner)
+    for (const std::uint32_t i : one[owner]) ASSERT_EQ(owner_of(i), owner);
 }
 
 TEST(Groups, OfRowsAtVerticesNameEachRowAtEachOfItsVertices) {
