@@ -1,9 +1,11 @@
 #include "sizing/background_grid.h"
 
+#include "core/parallel.h"
 #include "sizing/gradation.h"
 #include "sizing/inside_fraction.h"
 
 #include <algorithm>
+#include <atomic>
 #include <limits>
 #include <span>
 #include <utility>
@@ -25,14 +27,16 @@ struct Sample {
 
 std::vector<Sample> sorted_samples(const RootCube& root, const std::vector<SizeSample>& samples) {
   std::vector<std::pair<OctreeKey, std::uint32_t>> order(samples.size());
-  for (std::uint32_t i = 0; i < samples.size(); ++i) order[i] = {root.cell(samples[i].p), i};
-  std::sort(order.begin(), order.end());
+  parallel_for(samples.size(), [&](std::size_t i) {
+    order[i] = {root.cell(samples[i].p), static_cast<std::uint32_t>(i)};
+  });
+  parallel_sort(order);
   std::vector<Sample> sorted(samples.size());
-  for (std::size_t k = 0; k < order.size(); ++k) {
+  parallel_for(order.size(), [&](std::size_t k) {
     const SizeSample& s = samples[order[k].second];
     sorted[k] = {order[k].first,  (s.p - root.lo) / root.side, s.n,
                  s.h / root.side, s.reach / root.side,         s.area / (root.side * root.side)};
-  }
+  });
   return sorted;
 }
 
@@ -95,24 +99,44 @@ class GridMaker {
       const Vec3 d = Vec3{double(u[0]), double(u[1]), double(u[2])} / OctreeKey::kSide - s.p;
       const double along = dot(d, s.n);
       const double offset = std::sqrt(std::max(0.0, squared_length(d) - along * along));
-      caps[corner] = std::min(caps[corner], s.h + rules_.gradation * std::max(0.0, offset - s.reach));
+      lower_to(caps[corner], s.h + rules_.gradation * std::max(0.0, offset - s.reach));
     };
-    std::size_t next = 0;
-    for (std::size_t l = 0; l < tree_.size() && next < samples_.size(); ++l) {
-      const std::uint64_t last = tree_.leaf(l).range_max();
-      for (; next < samples_.size() && samples_[next].cell.id() <= last; ++next) {
+    parallel_for(tree_.size(), [&](std::size_t l) {
+      for (const Sample& s : samples_in(l))
         for (const std::uint32_t corner : corners_.of_leaf[l]) {
-          if (!corners_.hangs(corner)) lay_on(corner, samples_[next]);
-          for (const auto& share : corners_.shares_of(corner)) lay_on(share.corner, samples_[next]);
+          if (!corners_.hangs(corner)) lay_on(corner, s);
+          for (const auto& share : corners_.shares_of(corner)) lay_on(share.corner, s);
         }
-      }
-    }
+    });
     return caps;
+  }
+
+  /// Several threads may lower the same value.
+  static void lower_to(double& value, double to) {
+    const std::atomic_ref shared(value);
+    double known = shared.load(std::memory_order_relaxed);
+    while (to < known && !shared.compare_exchange_weak(known, to, std::memory_order_relaxed)) {
+    }
+  }
+
+  std::span<const Sample> samples_in(std::size_t leaf) const {
+    return std::span(samples_).subspan(first_sample_[leaf], first_sample_[leaf + 1] - first_sample_[leaf]);
+  }
+
+  /// Samples and leaves are in the same order.
+  void find_samples_of_leaves() {
+    first_sample_.assign(tree_.size() + 1, 0);
+    std::size_t next = 0;
+    for (std::size_t l = 0; l < tree_.size(); ++l) {
+      for (; next < samples_.size() && samples_[next].cell.id() <= tree_.leaf(l).range_max();) ++next;
+      first_sample_[l + 1] = next;
+    }
   }
 
   void make_field() {
     cells_.close();
     tree_ = cells_.tree();
+    find_samples_of_leaves();
     corners_ = octree_corners(tree_);
     context_.check();
     value_ = graded_corner_values(tree_, corners_, corner_caps(), rules_.gradation, ceiling_, context_);
@@ -121,37 +145,35 @@ class GridMaker {
 
   /// Values above the ceiling are cut off at the free corners; hanging ones follow.
   void fill_field() {
-    for (std::uint32_t c = 0; c < corners_.size(); ++c) value_[c] = std::min(value_[c], ceiling_);
-    for (std::uint32_t c = 0; c < corners_.size(); ++c) {
-      if (!corners_.hangs(c)) continue;
+    parallel_for(corners_.size(), [this](std::size_t c) { value_[c] = std::min(value_[c], ceiling_); });
+    parallel_for(corners_.size(), [this](std::size_t i) {
+      const auto c = static_cast<std::uint32_t>(i);
+      if (!corners_.hangs(c)) return;
       value_[c] = 0;
       for (const OctreeCorners::Share& s : corners_.shares_of(c)) value_[c] += s.weight * value_[s.corner];
-    }
+    });
     field_ = std::make_shared<OctreeField>();
     field_->root = root_;
     field_->gradation = rules_.gradation;
     field_->h.resize(tree_.size());
-    for (std::size_t l = 0; l < tree_.size(); ++l) {
+    parallel_for(tree_.size(), [this](std::size_t l) {
       for (int k = 0; k < 8; ++k) field_->h[l][k] = value_[corners_.of_leaf[l][k]];
-    }
+    });
     field_->tree = tree_;
   }
 
   /// The largest size that is wanted on the surface and that gradation allows there.
   double largest_at_samples() const {
     double largest = 0;
-    std::size_t next = 0;
-    for (std::size_t l = 0; l < tree_.size() && next < samples_.size(); ++l) {
-      const std::uint64_t last = tree_.leaf(l).range_max();
+    for (std::size_t l = 0; l < tree_.size(); ++l) {
       const double scale = 1u << tree_.leaf(l).level();
       const auto corner = tree_.leaf(l).corner();
       const auto local = [&](double x, int axis) {
         return std::clamp((x - double(corner[axis]) / OctreeKey::kSide) * scale, 0.0, 1.0);
       };
-      for (; next < samples_.size() && samples_[next].cell.id() <= last; ++next) {
-        const Vec3 p = samples_[next].p;
-        const double h = trilinear(field_->h[l], local(p.x, 0), local(p.y, 1), local(p.z, 2));
-        largest = std::max(largest, std::min(h, samples_[next].h));
+      for (const Sample& s : samples_in(l)) {
+        const double h = trilinear(field_->h[l], local(s.p.x, 0), local(s.p.y, 1), local(s.p.z, 2));
+        largest = std::max(largest, std::min(h, s.h));
       }
     }
     return largest;
@@ -161,14 +183,10 @@ class GridMaker {
   bool divide_by_field() {
     const std::vector<double> inside = inside_fractions_of_samples();
     bool any = false;
-    std::size_t next = 0;
     for (std::size_t l = 0; l < tree_.size(); ++l) {
-      if (inside[l] == 0 && !(next < samples_.size() && samples_[next].cell.id() <= tree_.leaf(l).range_max()))
-        continue;
-      const std::uint64_t last = tree_.leaf(l).range_max();
-      const std::size_t first = next;
-      while (next < samples_.size() && samples_[next].cell.id() <= last) ++next;
-      const double factor = rules_.leaf_per_size * (next > first ? 1 : 2);
+      const bool has_samples = !samples_in(l).empty();
+      if (inside[l] == 0 && !has_samples) continue;
+      const double factor = rules_.leaf_per_size * (has_samples ? 1 : 2);
       any = divide_leaf(tree_.leaf(l), field_->h[l], factor) || any;
     }
     return any;
@@ -176,9 +194,9 @@ class GridMaker {
 
   std::vector<double> inside_fractions_of_samples() const {
     std::vector<SurfacePiece> pieces;
-    for (const Sample& s : samples_) {
-      if (s.area > 0) pieces.push_back({s.p, s.n * s.area});
-    }
+    for (std::uint32_t l = 0; l < tree_.size(); ++l)
+      for (const Sample& s : samples_in(l))
+        if (s.area > 0) pieces.push_back({s.p, s.n * s.area, l});
     if (pieces.empty()) return std::vector<double>(tree_.size(), 1.0);
     return inside_fractions(RootCube{}, tree_, pieces);
   }
@@ -210,6 +228,7 @@ class GridMaker {
   double ceiling_;
   DividedCells cells_;
   Octree tree_;
+  std::vector<std::size_t> first_sample_;  ///< per leaf, and one more
   OctreeCorners corners_;
   std::vector<double> value_;
   std::shared_ptr<OctreeField> field_;

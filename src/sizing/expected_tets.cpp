@@ -6,6 +6,7 @@
 // up to 2.4 times as many elements as were asked for, or .3 times. Over an octave of choices the mean of the numbers
 // made is the number asked for; there is always a choice that makes it (nearly).
 
+#include "core/parallel.h"
 #include "sizing/background_grid.h"
 #include "sizing/inside_fraction.h"
 #include "sizing/make_size_field.h"
@@ -15,6 +16,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 namespace octafront {
 
@@ -93,16 +95,28 @@ double choose_cell(const Demand& demand) {
   return best;
 }
 
-double median_on_surface(const OctreeField& field, const std::vector<SurfacePiece>& pieces) {
+/// The surface in pieces, and the size at each of them, input units.
+struct SizedPieces {
+  std::vector<SurfacePiece> pieces;
+  std::vector<double> sizes;
+
+  SizedPieces(const OctreeField& field, const SurfaceMesh& surface)
+      : pieces(surface_pieces(field.root, field.tree, surface)), sizes(pieces.size()) {
+    parallel_for(pieces.size(), [&](std::size_t i) { sizes[i] = field.at(pieces[i].p, pieces[i].leaf); });
+  }
+};
+
+/// In units of the root's side.
+double median_on_surface(const OctreeField& field, const SizedPieces& surface) {
   std::vector<std::pair<double, double>> sizes;
-  sizes.reserve(pieces.size());
+  sizes.reserve(surface.pieces.size());
   double all = 0;
-  for (const SurfacePiece& piece : pieces) {
-    const double h = field.at(piece.p) / field.root.side, count = length(piece.n) / (h * h);
+  for (std::size_t i = 0; i < surface.pieces.size(); ++i) {
+    const double h = surface.sizes[i] / field.root.side, count = length(surface.pieces[i].n) / (h * h);
     sizes.push_back({h, count});
     all += count;
   }
-  std::sort(sizes.begin(), sizes.end());
+  parallel_sort(sizes);
   double below = 0;
   for (const auto& [h, count] : sizes) {
     below += count;
@@ -129,22 +143,32 @@ void for_each_gauss_point(const std::array<double, 8>& h, Visit&& visit) {
   for (int i = 0; i < 8; ++i) visit(trilinear(h, kAt[i & 1], kAt[i >> 1 & 1], kAt[i >> 2]));
 }
 
-Demand demand_of(const OctreeField& field, const std::vector<SurfacePiece>& pieces) {
-  const std::vector<double> fraction = inside_fractions(field.root, field.tree, pieces);
+/// What the sizes around a Gauss point of a leaf ask for.
+struct Ask {
+  std::optional<int> step;  ///< of the size, inside
+  double amount;            ///< of volume inside, else of elements of the shell
+};
+
+Demand demand_of(const OctreeField& field, const SizedPieces& surface) {
+  const std::vector<double> fraction = inside_fractions(field.root, field.tree, surface.pieces);
+  constexpr std::size_t kRange = 1024;
+  const auto asked =
+      parallel_collect<Ask>(field.tree.size(), kRange, [&](std::size_t begin, std::size_t end, std::vector<Ask>& out) {
+        for (std::size_t l = begin; l < end; ++l) {
+          if (fraction[l] == 0) continue;
+          const double side = 1.0 / (1u << field.tree.leaf(l).level()), part = side * side * side / 8;
+          const double steps = 1 + kTetsPerSlope * slope_in(field.h[l], side);
+          for_each_gauss_point(field.h[l], [&](double h) {
+            if (fraction[l] == 1)
+              out.push_back({step_of_size(h), steps * part});
+            else
+              out.push_back({std::nullopt, fraction[l] * part / (h * h * h)});
+          });
+        }
+      });
   Demand demand;
-  demand.surface_size = median_on_surface(field, pieces);
-  for (std::size_t l = 0; l < field.tree.size(); ++l) {
-    if (fraction[l] == 0) continue;
-    const double side = 1.0 / (1u << field.tree.leaf(l).level()), part = side * side * side / 8;
-    const double steps = 1 + kTetsPerSlope * slope_in(field.h[l], side);
-    for_each_gauss_point(field.h[l], [&](double h) {
-      if (fraction[l] == 1) {
-        demand.volume[step_of_size(h)] += steps * part;
-      } else {
-        demand.shell += fraction[l] * part / (h * h * h);
-      }
-    });
-  }
+  demand.surface_size = median_on_surface(field, surface);
+  for (const Ask& ask : asked) (ask.step ? demand.volume[*ask.step] : demand.shell) += ask.amount;
   return demand;
 }
 
@@ -177,7 +201,7 @@ std::shared_ptr<const OctreeField> grid_of(const SizeField& sizes, const Surface
 }
 
 double elements_by_volume(const SizeField& sizes, const OctreeField& grid, const SurfaceMesh& surface,
-                          const std::vector<SurfacePiece>& pieces) {
+                          const SizedPieces& pieces) {
   if (sizes.min_size() == sizes.max_size()) {
     const double h = sizes.min_size();
     return kTetsPerCube * std::abs(enclosed_volume(surface)) / (h * h * h);
@@ -193,9 +217,9 @@ TetPrediction::~TetPrediction() = default;
 
 double TetPrediction::operator()(const SizeField& sizes, std::optional<std::size_t> triangles) const {
   const auto grid = grid_of(sizes, surface_);
-  const std::vector<SurfacePiece> pieces = surface_pieces(grid->root, grid->tree, surface_);
+  const SizedPieces pieces(*grid, surface_);
   const double by_volume = elements_by_volume(sizes, *grid, surface_, pieces);
-  const double excess = walls_->excess_tets(*grid, pieces, triangles);
+  const double excess = walls_->excess_tets(pieces.pieces, pieces.sizes, triangles);
   return std::max(1.0, std::abs(excess) < kWorthCounting * by_volume ? by_volume : by_volume + excess);
 }
 
@@ -210,7 +234,7 @@ double expected_tets_within(const SizeField& sizes, const SurfaceMesh& made) {
 double lattice_cell_size(const SizeField& sizes, const SurfaceMesh& surface) {
   if (sizes.min_size() == sizes.max_size()) return sizes.min_size();
   const auto grid = grid_of(sizes, surface);
-  return choose_cell(demand_of(*grid, surface_pieces(grid->root, grid->tree, surface))) * grid->root.side;
+  return choose_cell(demand_of(*grid, SizedPieces(*grid, surface))) * grid->root.side;
 }
 
 }  // namespace octafront

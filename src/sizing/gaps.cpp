@@ -40,9 +40,10 @@ GapFinder::GapFinder(const KnownSurface& known, double nearest, double reach)
 double GapFinder::width(const PlaceOnSurface& place) {
   // The marker bit ends a key of this level, with at least three zeros behind it: room for the side.
   const std::uint64_t key = root_.cell(place.p).ancestor(level_).id() | side_of_cube(place.n);
-  const auto [it, is_new] = known_.try_emplace(key, 0);
-  if (is_new) it->second = measure(place);
-  return it->second;
+  constexpr double kUnknown = -1;
+  double& width = known_.find_or_add(key, kUnknown);
+  if (width == kUnknown) width = measure(place);
+  return width;
 }
 
 double GapFinder::measure(const PlaceOnSurface& place) const {

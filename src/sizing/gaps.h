@@ -2,12 +2,12 @@
 
 #include <octafront/surface_mesh.h>
 
+#include "core/flat_map.h"
 #include "mesh/known_surface.h"
 #include "sizing/octree.h"
 #include "sizing/surface_samples.h"
 
 #include <limits>
-#include <unordered_map>
 #include <vector>
 
 namespace octafront {
@@ -41,7 +41,7 @@ class GapFinder {
   RootCube root_;
   double nearest_, reach_;
   int level_;  ///< of the cells whose places share an answer
-  std::unordered_map<std::uint64_t, double> known_;
+  FlatMap<std::uint64_t, double> known_;
 };
 
 }  // namespace octafront

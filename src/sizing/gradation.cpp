@@ -19,6 +19,7 @@
 #include "sizing/gradation.h"
 
 #include "core/groups.h"
+#include "core/parallel.h"
 
 #include <algorithm>
 #include <cmath>
@@ -57,8 +58,9 @@ class Grader {
       if (!cut_steep_leaves(round)) break;
     }
     shrink();
-    for (std::uint32_t c = 0; c < value_.size(); ++c) value_[c] = at(c);
-    return std::move(value_);
+    std::vector<double> result(value_.size());
+    parallel_for(value_.size(), [&](std::size_t c) { result[c] = at(static_cast<std::uint32_t>(c)); });
+    return result;
   }
 
  private:
@@ -78,10 +80,8 @@ class Grader {
   };
 
   void collect_leaves() {
-    leaves_ = {corners_.size(), [&](const auto& add) {
-                 for (std::uint32_t l = 0; l < tree_.size(); ++l)
-                   for (std::uint32_t k = 0; k < 8; ++k) add(corners_.of_leaf[l][k], 8 * l + k);
-               }};
+    leaves_ = group_by_owner(corners_.size(), static_cast<std::uint32_t>(8 * tree_.size()),
+                             [&](std::uint32_t i) { return corners_.of_leaf[i / 8][i % 8]; });
   }
 
   /// Calls visit(corner, value) for each corner that an edge of a leaf joins to `from` and that its value limits.
@@ -100,12 +100,15 @@ class Grader {
 
   void sweep_shortest_paths(const RunContext& context) {
     collect_leaves();
-    std::vector<Label> start;
-    for (std::uint32_t c = 0; c < value_.size(); ++c) {
-      bool limits = false;
-      for_each_limited(c, [&](std::uint32_t, double) { limits = true; });
-      if (limits) start.push_back({value_[c], c});
-    }
+    constexpr std::size_t kRange = 4096;
+    auto start = parallel_collect<Label>(value_.size(), kRange,
+                                         [&](std::size_t begin, std::size_t end, std::vector<Label>& out) {
+                                           for (auto c = static_cast<std::uint32_t>(begin); c < end; ++c) {
+                                             bool limits = false;
+                                             for_each_limited(c, [&](std::uint32_t, double) { limits = true; });
+                                             if (limits) out.push_back({value_[c], c});
+                                           }
+                                         });
     std::priority_queue<Label> heap(std::less<Label>(), std::move(start));
     for (std::size_t steps = 0; !heap.empty(); ++steps) {
       if (steps % 4096 == 0) context.check();
@@ -124,19 +127,17 @@ class Grader {
   /// Leaves in the order of their smallest corner.
   void order_leaves() {
     std::vector<std::pair<double, std::uint32_t>> order(tree_.size());
-    for (std::uint32_t l = 0; l < tree_.size(); ++l) {
-      double least = value_[corners_.of_leaf[l][0]];
-      for (const std::uint32_t c : corners_.of_leaf[l]) least = std::min(least, value_[c]);
-      order[l] = {least, l};
-    }
-    std::sort(order.begin(), order.end());
+    plain_.resize(tree_.size());
+    parallel_for(tree_.size(), [&](std::size_t l) {
+      const auto& corners = corners_.of_leaf[l];
+      double least = value_[corners[0]];
+      for (const std::uint32_t c : corners) least = std::min(least, value_[c]);
+      order[l] = {least, static_cast<std::uint32_t>(l)};
+      plain_[l] = std::none_of(corners.begin(), corners.end(), [&](std::uint32_t c) { return corners_.hangs(c); });
+    });
+    parallel_sort(order);
     order_.resize(order.size());
     for (std::size_t i = 0; i < order.size(); ++i) order_[i] = order[i].second;
-    plain_.resize(tree_.size());
-    for (std::size_t l = 0; l < tree_.size(); ++l) {
-      const auto& c = corners_.of_leaf[l];
-      plain_[l] = std::none_of(c.begin(), c.end(), [&](std::uint32_t k) { return corners_.hangs(k); });
-    }
   }
 
   double bound_of(std::uint32_t leaf) const { return slope_ / (1u << tree_.leaf(leaf).level()); }
@@ -170,18 +171,37 @@ class Grader {
     return h;
   }
 
+  double tolerated(std::uint32_t leaf) const {
+    const double bound = bound_of(leaf);
+    return bound * bound * (1 + kTolerance) * (1 + kTolerance);
+  }
+
+  bool is_steep(std::uint32_t leaf) const {
+    const std::array<double, 8> h = values_of(leaf);
+    for (int c = 0; c < 8; ++c)
+      if (squared_slope(h, c) > tolerated(leaf)) return true;
+    return false;
+  }
+
+  /// Leaves that are not steep as the round begins need a look only if a cut touches them, which marks them.
+  void forget_gentle_leaves() {
+    parallel_for(tree_.size(), [this](std::size_t l) {
+      if (dirty_[l] && !is_steep(static_cast<std::uint32_t>(l))) dirty_[l] = 0;
+    });
+  }
+
   /// True if anything was cut.
   bool cut_steep_leaves(int round) {
+    forget_gentle_leaves();
     bool any = false;
     for (const std::uint32_t leaf : order_) {
       if (!dirty_[leaf]) continue;
       dirty_[leaf] = 0;
-      const double bound = bound_of(leaf), tolerated = bound * bound * (1 + kTolerance) * (1 + kTolerance);
       std::array<double, 8> h = values_of(leaf);
       for (int c = 0; c < 8; ++c) {
-        if (squared_slope(h, c) <= tolerated) continue;
+        if (squared_slope(h, c) <= tolerated(leaf)) continue;
         any = true;
-        cut(leaf, c, level_of_cut(h, c, bound), round, h);
+        cut(leaf, c, level_of_cut(h, c, bound_of(leaf)), round, h);
         h = values_of(leaf);
       }
     }
@@ -234,12 +254,14 @@ class Grader {
 
   /// Takes out of all differences what still exceeds the slope.
   void shrink() {
-    double steepest = 1;
-    for (std::uint32_t leaf = 0; leaf < tree_.size(); ++leaf) {
+    std::vector<double> steepness(tree_.size());
+    parallel_for(tree_.size(), [&](std::size_t l) {
+      const auto leaf = static_cast<std::uint32_t>(l);
       const std::array<double, 8> h = values_of(leaf);
       const double bound = bound_of(leaf);
-      for (int c = 0; c < 8; ++c) steepest = std::max(steepest, squared_slope(h, c) / (bound * bound));
-    }
+      for (int c = 0; c < 8; ++c) steepness[l] = std::max(steepness[l], squared_slope(h, c) / (bound * bound));
+    });
+    const double steepest = std::max(1.0, *std::max_element(steepness.begin(), steepness.end()));
     if (steepest == 1) return;
     const double least = *std::min_element(value_.begin(), value_.end()), by = 1 / std::sqrt(steepest);
     for (double& v : value_) v = least + (v - least) * by;

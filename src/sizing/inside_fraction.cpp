@@ -1,5 +1,7 @@
 #include "sizing/inside_fraction.h"
 
+#include "core/parallel.h"
+
 #include <algorithm>
 #include <array>
 
@@ -129,11 +131,12 @@ class Haar {
 
 void split(const RootCube& root, const Octree& tree, Vec3 a, Vec3 b, Vec3 c, std::vector<SurfacePiece>& pieces) {
   const Vec3 p = (a + b + c) / 3;
-  const double limit = root.side_of(tree.leaf(tree.find(root.cell(p))));
+  const std::size_t leaf = tree.find(root.cell(p));
+  const double limit = root.side_of(tree.leaf(leaf));
   const double ab = squared_length(b - a), bc = squared_length(c - b), ca = squared_length(a - c);
   const double longest = std::max({ab, bc, ca});
   if (longest <= limit * limit) {
-    pieces.push_back({p, 0.5 * cross(b - a, c - a)});
+    pieces.push_back({p, 0.5 * cross(b - a, c - a), static_cast<std::uint32_t>(leaf)});
   } else if (longest == ab) {
     split(root, tree, a, 0.5 * (a + b), c, pieces);
     split(root, tree, 0.5 * (a + b), b, c, pieces);
@@ -149,21 +152,22 @@ void split(const RootCube& root, const Octree& tree, Vec3 a, Vec3 b, Vec3 c, std
 }  // namespace
 
 std::vector<SurfacePiece> surface_pieces(const RootCube& root, const Octree& tree, const SurfaceMesh& surface) {
-  std::vector<SurfacePiece> pieces;
-  pieces.reserve(surface.triangles.size());
-  for (const Triangle& t : surface.triangles) {
-    split(root, tree, surface.points[t[0]], surface.points[t[1]], surface.points[t[2]], pieces);
-  }
-  return pieces;
+  constexpr std::size_t kRange = 1024;
+  return parallel_collect<SurfacePiece>(
+      surface.triangles.size(), kRange, [&](std::size_t begin, std::size_t end, std::vector<SurfacePiece>& pieces) {
+        for (std::size_t f = begin; f < end; ++f) {
+          const Triangle& t = surface.triangles[f];
+          split(root, tree, surface.points[t[0]], surface.points[t[1]], surface.points[t[2]], pieces);
+        }
+      });
 }
 
 std::vector<double> inside_fractions(const RootCube& root, const Octree& tree,
                                      const std::vector<SurfacePiece>& pieces) {
   std::vector<Moments> of_leaf(tree.size());
-  for (const SurfacePiece& piece : pieces) {
-    const std::size_t l = tree.find(root.cell(piece.p));
-    of_leaf[l].add(piece.n / (root.side * root.side), (piece.p - root.corner_of(tree.leaf(l))) / root.side);
-  }
+  for (const SurfacePiece& piece : pieces)
+    of_leaf[piece.leaf].add(piece.n / (root.side * root.side),
+                            (piece.p - root.corner_of(tree.leaf(piece.leaf))) / root.side);
   return Haar(tree, of_leaf).run();
 }
 

@@ -4,14 +4,16 @@
 
 #include "sizing/octree.h"
 
+#include <cstdint>
 #include <vector>
 
 namespace octafront {
 
 /// A small flat part of the surface.
 struct SurfacePiece {
-  Vec3 p;  ///< its centroid, input units
-  Vec3 n;  ///< its area times its outward unit normal
+  Vec3 p;                  ///< its centroid, input units
+  Vec3 n;                  ///< its area times its outward unit normal
+  std::uint32_t leaf = 0;  ///< in which its centroid lies
 };
 
 /// The surface in pieces that are no longer than the leaf that their centroid lies in.

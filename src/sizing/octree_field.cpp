@@ -4,8 +4,7 @@
 
 namespace octafront {
 
-double OctreeField::at(Vec3 p) const {
-  const std::size_t l = tree.find(root.cell(p));
+double OctreeField::at(Vec3 p, std::size_t l) const {
   const OctreeKey key = tree.leaf(l);
   const auto corner = key.corner();
   const double scale = (1u << key.level()) / root.side, unit = 1.0 / key.side();

@@ -15,7 +15,9 @@ struct OctreeField final : SizeFunction {
   std::vector<std::array<double, 8>> h;  ///< per leaf, corner i with the halves of child i; in units of root.side
   double low = 0, high = 0;              ///< least and greatest of h
 
-  double at(Vec3 p) const override;
+  double at(Vec3 p) const override { return at(p, tree.find(root.cell(p))); }
+  /// The same, of a point in leaf l.
+  double at(Vec3 p, std::size_t l) const;
   double min_size() const override { return low * root.side; }
   double max_size() const override { return high * root.side; }
   /// Fills in low and high.

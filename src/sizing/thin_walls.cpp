@@ -1,5 +1,6 @@
 #include "sizing/thin_walls.h"
 
+#include "core/parallel.h"
 #include "geometry/measures.h"
 #include "sizing/gaps.h"
 #include "sizing/size_sources.h"
@@ -40,27 +41,35 @@ constexpr double kSkipped = 1e-7;
 
 }  // namespace
 
-double ThinWalls::excess_tets(const OctreeField& field, const std::vector<SurfacePiece>& pieces,
+double ThinWalls::excess_tets(const std::vector<SurfacePiece>& pieces, const std::vector<double>& sizes,
                               std::optional<std::size_t> triangles) const {
-  const auto squares = [&](const SurfacePiece& piece) {
-    const double h = field.at(piece.p);
-    return length(piece.n) / (h * h);
-  };
+  const auto squares = [&](std::size_t piece) { return length(pieces[piece].n) / (sizes[piece] * sizes[piece]); };
   double all = 0;
-  for (const SurfacePiece& piece : pieces) all += squares(piece);
+  for (std::size_t i = 0; i < pieces.size(); ++i) all += squares(i);
   const double triangles_per_square = triangles ? static_cast<double>(*triangles) / all : kTrianglesPerSquare;
   const double step = all / kPlaces;
-  double passed = 0, next = 0.5 * step, excess = 0;
-  for (const SurfacePiece& piece : pieces) {
-    passed += squares(piece);
+  struct Place {
+    std::size_t piece;
+    double places, walls = 0;  ///< thickness, in sizes
+  };
+  std::vector<Place> looked_at;
+  double passed = 0, next = 0.5 * step;
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    passed += squares(i);
     const auto places = std::ceil((passed - next) / step);
     if (!(places > 0)) continue;
     next += places * step;
-    const double h = field.at(piece.p), walls = thickness(piece.p, normalized(piece.n), kThickest * h) / h;
-    // The elements of one side of the wall, less those that its half of the volume stands for.
-    if (walls < kThickest)
-      excess += places * step * (triangles_per_square * tets_per_triangle(walls) - kTetsPerCube * walls / 2);
+    looked_at.push_back({i, places});
   }
+  parallel_for(looked_at.size(), [&](std::size_t i) {
+    const std::size_t k = looked_at[i].piece;
+    looked_at[i].walls = thickness(pieces[k].p, normalized(pieces[k].n), kThickest * sizes[k]) / sizes[k];
+  });
+  double excess = 0;
+  for (const Place& p : looked_at)
+    // The elements of one side of the wall, less those that its half of the volume stands for.
+    if (p.walls < kThickest)
+      excess += p.places * step * (triangles_per_square * tets_per_triangle(p.walls) - kTetsPerCube * p.walls / 2);
   return excess;
 }
 

@@ -4,7 +4,6 @@
 
 #include "geometry/triangle_tree.h"
 #include "sizing/inside_fraction.h"
-#include "sizing/octree_field.h"
 
 #include <optional>
 #include <vector>
@@ -18,9 +17,9 @@ class ThinWalls {
   explicit ThinWalls(const SurfaceMesh& surface) : tree_(surface) {}
 
   /// How many elements more than the integral of kTetsPerCube / h^3 over the volume these walls will have; below 0:
-  /// fewer. `pieces`: the surface, as surface_pieces() leaves it; `triangles`: how many it has, if it is made by these
-  /// sizes already. Looks at some thousand places.
-  double excess_tets(const OctreeField& field, const std::vector<SurfacePiece>& pieces,
+  /// fewer. `pieces`: the surface, as surface_pieces() leaves it; `sizes`: the size at each of them; `triangles`: how
+  /// many the surface has, if it is made by these sizes already. Looks at some thousand places.
+  double excess_tets(const std::vector<SurfacePiece>& pieces, const std::vector<double>& sizes,
                      std::optional<std::size_t> triangles) const;
 
  private:
