@@ -110,9 +110,13 @@ const std::vector<Side>& MeshParts::sides() const {
   all.insert(all.end(), mesh_.interfaces.begin(), mesh_.interfaces.end());
   sides_.assign(all.size(), {kNone, -1});
   const FaceTable table = face_table(mesh_.points.size(), all);
+  std::vector<char> is_listed(mesh_.points.size(), 0);  // most tets touch no face of the list
+  for (const Triangle& t : all)
+    for (const VertexIndex v : t) is_listed[v] = 1;
   for (TetIndex t = 0; t < mesh_.tets.size(); ++t)
     for (int i = 0; i < 4; ++i) {
       const Triangle of_tet = face_of(mesh_.tets[t], i);
+      if (!is_listed[of_tet[0]] || !is_listed[of_tet[1]] || !is_listed[of_tet[2]]) continue;
       for (const FaceTable::Entry& listed : table.group_of(of_tet))
         if (sides_[listed.face].tet == kNone || is_even(of_tet) == is_even(all[listed.face]))
           sides_[listed.face] = {t, i};

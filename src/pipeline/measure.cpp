@@ -1,5 +1,6 @@
 #include <octafront/tet_mesh.h>
 
+#include "core/parallel.h"
 #include "pipeline/pipeline.h"
 
 #include <algorithm>
@@ -18,16 +19,19 @@ std::uint64_t edge_key(VertexIndex a, VertexIndex b) {
 
 SizeSummary summarize(std::vector<std::uint64_t>& keys, const std::vector<Vec3>& points, const SizeField& sizes) {
   constexpr double kShortest = 0.7, kLongest = 1.4;  // the band in which users call a length "as asked"
-  std::sort(keys.begin(), keys.end());
+  parallel_sort(keys);
   keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
   SizeSummary summary;
   summary.edges = keys.size();
   if (keys.empty()) return summary;
+  std::vector<double> ratios(keys.size());
+  parallel_for(keys.size(), [&](std::size_t i) {
+    const Vec3 a = points[keys[i] >> 32], b = points[keys[i] & 0xffffffffu];
+    ratios[i] = distance(a, b) / sizes.at((a + b) * 0.5);
+  });
   std::uint64_t within = 0;
   double sum = 0;
-  for (const std::uint64_t key : keys) {
-    const Vec3 a = points[key >> 32], b = points[key & 0xffffffffu];
-    const double ratio = distance(a, b) / sizes.at((a + b) * 0.5);
+  for (const double ratio : ratios) {
     sum += ratio;
     within += ratio >= kShortest && ratio <= kLongest;
   }

@@ -3,6 +3,7 @@
 #include <octafront/error.h>
 #include <octafront/validity.h>
 
+#include "core/parallel.h"
 #include "curved/curved.h"
 #include "improve/improve.h"
 #include "pipeline/follow_boundary.h"
@@ -284,8 +285,7 @@ void describe(const TetMesh& mesh, Report& report) {
   report.tets = mesh.tets.size();
   report.boundary_faces = mesh.boundary.size();
   report.volume = mesh.is_second_order() ? curved_volume(mesh) : enclosed_volume(boundary_of(mesh));
-  report.quality = summarize_quality(mesh);
-  report.hash = mesh_hash(mesh);
+  parallel_invoke([&] { report.quality = summarize_quality(mesh); }, [&] { report.hash = mesh_hash(mesh); });
 }
 
 }  // namespace octafront
