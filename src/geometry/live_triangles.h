@@ -1,5 +1,6 @@
 #pragma once
 
+#include "geometry/measures.h"
 #include "geometry/predicates.h"
 #include "geometry/triangle_box.h"
 #include "geometry/triangle_tree.h"
@@ -32,6 +33,20 @@ class LiveTriangles {
   }
   /// Without area: such a triangle meets all and none.
   static bool is_degenerate(const TriangleCorners& t) { return collinear(t[0], t[1], t[2]); }
+
+  /// Whether p lies nearer than the distance to a triangle of the surface that is not one of `old`.
+  bool is_within(Vec3 p, double distance, std::span<const std::uint32_t> old) {
+    if (!tree_) plant_tree();
+    const auto look = [&](std::uint32_t t) {  // false: found
+      if (surface_.is_removed(t) || std::find(old.begin(), old.end(), t) != old.end()) return true;
+      const TriangleCorners c = corners(t);
+      return !(squared_distance(p, closest_point_on_triangle(p, c[0], c[1], c[2])) < distance * distance);
+    };
+    const Vec3 reach{distance, distance, distance};
+    return !tree_->for_each_box_near({p - reach, p + reach}, [&](std::uint32_t item, const TriangleCorners&) {
+      return is_changed_[in_tree_[item]] || look(in_tree_[item]);
+    }) || !std::all_of(changed_.begin(), changed_.end(), look);
+  }
 
   /// How many triangles of the surface, but those of `old`, meet this one where they should not, exactly; counts no
   /// further than to `enough`.

@@ -2,6 +2,7 @@
 // see, the elements show. Edges of the boundary collapse and its vertices move, off the input if need be, where the
 // elements around lack less in sum then, and the boundary strays little.
 
+#include "geometry/doubtful_parts.h"
 #include "geometry/live_triangles.h"
 #include "geometry/measures.h"
 #include "geometry/predicates.h"
@@ -137,7 +138,7 @@ class BoundaryEditor {
     if (!descent_.moved()) return false;
     if (star_edit_.current_lack() - descent_.lack() < kLeastFall) return false;
     plan_move(v, descent_.place());
-    if (!crosses_nothing()) return false;
+    if (!crosses_nothing() || !stays_near()) return false;
     star_edit_.evaluate(descent_.place());
     star_edit_.commit();
     edits_.largest_move = std::max(edits_.largest_move, distance(from, descent_.place()));
@@ -178,7 +179,7 @@ class BoundaryEditor {
     if (!std::binary_search(link_.boundary_vertices.begin(), link_.boundary_vertices.end(), w)) return;
     Collapse c{u, w, 0, {}, {}, {}, {}};
     if (!plan_tets(c) || !(c.gain > best_.gain) || !keeps_manifold(u, w) || !plan_boundary(c)) return;
-    if (is_true(mesh_.point(u)) && crosses_nothing()) best_ = std::move(c);
+    if (is_true(mesh_.point(u)) && crosses_nothing() && stays_near()) best_ = std::move(c);
   }
 
   /// The tets with u at w, and what is gained; false if one would not be usable.
@@ -309,6 +310,34 @@ class BoundaryEditor {
     const BoundaryGuide::Truth had = guide_.truth_of(old_), has = guide_.truth_of(after);
     return has.squared_distance <= std::max(limit * limit, had.squared_distance) &&
            has.cosine >= std::min(kFacing, had.cosine);
+  }
+
+  /// Whether input and new triangles lie within the tolerance of each other, by all their parts.
+  bool stays_near() {
+    const double limit = guide_.tolerance();
+    const auto is_lost = [](Vec3) { return false; };
+    const auto finest = [&](Vec3) { return kFinePart * limit; };
+    const auto near_input = [&](Vec3 p, double d) { return guide_.tree().is_within(p, d); };
+    const auto near_boundary = [&](Vec3 p, double d) {
+      return std::any_of(new_.begin(), new_.end(),
+                         [&](const IdTriangle& t) {
+                           const auto& [a, b, c] = t.corners;
+                           return squared_distance(p, closest_point_on_triangle(p, a, b, c)) < d * d;
+                         }) ||
+             live_.is_within(p, d, numbers_);
+    };
+    Box3 box;
+    for (const TriangleCorners& t : old_)
+      for (const Vec3 p : t) box.add(p);
+    const Vec3 around{limit, limit, limit};
+    return std::all_of(new_.begin(), new_.end(),
+                       [&](const IdTriangle& t) {
+                         return for_each_doubtful_part(t.corners, limit, near_input, finest, is_lost);
+                       }) &&
+           guide_.tree().for_each_box_near({box.lo - around, box.hi + around},
+                                           [&](std::uint32_t, const TriangleCorners& t) {
+                                             return for_each_doubtful_part(t, limit, near_boundary, finest, is_lost);
+                                           });
   }
 
   bool crosses_nothing() {

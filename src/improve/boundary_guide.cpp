@@ -36,6 +36,7 @@ Edge sorted_edge(VertexIndex a, VertexIndex b) {
 BoundaryGuide::BoundaryGuide(const EditMesh& mesh, const BoundaryInput& input, const std::vector<VertexIndex>& frozen)
     : kind_(mesh.vertices(), Kind::kInner),
       frozen_(mesh.vertices(), 0),
+      pinned_(mesh.vertices(), 0),
       input_(input),
       curves_(input.surface, input.features) {
   const std::vector<VertexIndex> here = mesh.numbers_here();
@@ -52,6 +53,7 @@ BoundaryGuide::BoundaryGuide(const EditMesh& mesh, const BoundaryInput& input, c
     if (valence[v] != 0) kind_[v] = valence[v] == 2 ? Kind::kCurve : Kind::kFixed;
   for (const VertexIndex v : input.of_mesh.corners) kind_[here[v]] = Kind::kFixed;
   for (const VertexIndex v : frozen) frozen_[here[v]] = 1;
+  for (const VertexIndex v : input.pinned) pinned_[here[v]] = 1;
   freeze_where_regions_meet(mesh);
   for (VertexIndex v = 0; v < kind_.size(); ++v)
     if (frozen_[v]) kind_[v] = Kind::kFixed;
@@ -74,7 +76,7 @@ void BoundaryGuide::freeze_where_regions_meet(const EditMesh& mesh) {
 }
 
 bool BoundaryGuide::may_turn(VertexIndex a, VertexIndex b) const {
-  return !is_frozen(a) && !is_frozen(b) && !is_feature_edge(a, b);
+  return !is_frozen(a) && !is_frozen(b) && !is_pinned(a) && !is_pinned(b) && !is_feature_edge(a, b);
 }
 
 bool BoundaryGuide::is_feature_edge(VertexIndex a, VertexIndex b) const {
@@ -131,6 +133,7 @@ bool BoundaryGuide::keeps_truth(std::span<const TriangleCorners> before, std::sp
 }
 
 bool SlidingVertex::load(VertexIndex v, std::span<const HalfFace> star) {
+  if (guide_.is_pinned(v)) return false;
   kind_ = guide_.kind(v);
   at_ = mesh_.point(v);
   triangles_.clear();

@@ -22,6 +22,8 @@ struct BoundaryInput {
   const Features& features;    ///< of it
   const Features& of_mesh;     ///< of the boundary of the mesh, in the mesh's numbering
   double tolerance = 0;        ///< the boundary may stray so far where that rids it of what keeps elements poor
+  /// Vertices of the mesh whose triangles stray nearly as far as they may: they do not slide, nor do their edges turn.
+  std::vector<VertexIndex> pinned = {};
 };
 
 class BoundaryGuide {
@@ -35,6 +37,7 @@ class BoundaryGuide {
   bool may_slide(VertexIndex v) const { return kind(v) == Kind::kSurface || kind(v) == Kind::kCurve; }
   /// True if neither the vertex nor an edge around it may change.
   bool is_frozen(VertexIndex v) const { return v < frozen_.size() && frozen_[v] != 0; }
+  bool is_pinned(VertexIndex v) const { return v < pinned_.size() && pinned_[v] != 0; }
   /// True if the boundary edge may turn as far as features and patches go.
   bool may_turn(VertexIndex a, VertexIndex b) const;
   bool is_feature_edge(VertexIndex a, VertexIndex b) const;
@@ -69,7 +72,7 @@ class BoundaryGuide {
  private:
   void freeze_where_regions_meet(const EditMesh& mesh);
   std::vector<Kind> kind_;
-  std::vector<std::uint8_t> frozen_;
+  std::vector<std::uint8_t> frozen_, pinned_;
   std::vector<std::pair<VertexIndex, Vec3>> fixed_;  ///< vertices that do not slide, and where they were; sorted
   std::vector<Edge> feature_edges_;                  ///< in the numbering of the EditMesh, sorted
   BoundaryInput input_;

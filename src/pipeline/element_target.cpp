@@ -17,7 +17,9 @@ namespace {
 constexpr double kElementsTolerance = 0.12;  // tighter than the 15 % promised: improvement still changes the count
 constexpr int kElementsAttempts = 5;
 // By how much to scale the first sizes next, by the last two counts. The count falls with the third power of the sizes
-// where the volume decides, more slowly where gradation or details of the surface do.
+// where the volume decides, more slowly where gradation or details of the surface do: down to the least slope, from
+// which on a step would go nowhere.
+constexpr double kSteepest = -4, kFlattest = -0.5;
 class CountSearch {
  public:
   explicit CountSearch(double wanted) : wanted_(std::log(wanted)) {}
@@ -25,7 +27,7 @@ class CountSearch {
   double next_factor(double made) {
     const double count = std::log(made);
     if (last_count_ && scale_ != last_scale_)
-      slope_ = std::clamp((count - *last_count_) / (scale_ - last_scale_), -4.0, -1.5);
+      slope_ = std::clamp((count - *last_count_) / (scale_ - last_scale_), kSteepest, kFlattest);
     last_count_ = count;
     last_scale_ = scale_;
     scale_ += (wanted_ - count) / slope_;

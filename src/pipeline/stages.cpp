@@ -236,7 +236,8 @@ void improve_elements(const Prepared& input, Filled& filled, Run& run) {
     std::optional<improve::BoundaryInput> on;
     if (is_ours)
       on.emplace(improve::BoundaryInput{input.surface.mesh(), input.surface.tree(), input.surface.features(),
-                                        boundary.features, detail_tolerance(input.surface.mesh(), run.options)});
+                                        boundary.features, detail_tolerance(input.surface.mesh(), run.options),
+                                        boundary.near_limit});
     if (!improve_mesh(mesh, on ? &*on : nullptr, run.options.improve, stage, &boundary.features)) return;
     if (on) renew_sources(mesh, boundary.surface, on->surface, on->tree);
     SurfaceMesh& surface = boundary.surface;  // what was filled follows what became of it; its vertices come first

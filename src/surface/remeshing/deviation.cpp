@@ -1,6 +1,7 @@
 #include "surface/remeshing/deviation.h"
 
 #include "core/parallel.h"
+#include "geometry/doubtful_parts.h"
 #include "geometry/measures.h"
 
 #include <algorithm>
@@ -14,6 +15,7 @@ namespace {
 struct Sample {
   Vec3 p;
   std::uint32_t triangle;
+  bool within = false;  ///< not at its corners or the middles of its edges
 };
 
 /// The samples of `all` that are farther than `limit` from the surface, in their order.
@@ -45,32 +47,63 @@ void add_edge_middles(const SurfaceMesh& surface, Asked&& is_asked, std::vector<
   }
 }
 
-/// Per vertex half of its longest edge: so far are the middles of its edges at most.
-std::vector<double> half_longest_edges(const SurfaceMesh& surface) {
-  std::vector<double> half(surface.points.size(), 0);
+/// Per vertex how far from the nearest corner a point of its triangles may lie: a part of the longest edge, the whole
+/// of that part in an equilateral triangle.
+std::vector<double> reach_of_vertices(const SurfaceMesh& surface) {
+  constexpr double kReach = 0.57736;  // 1 / sqrt(3), a little more
+  std::vector<double> reach(surface.points.size(), 0);
   for (const Triangle& t : surface.triangles) {
     for (int i = 0; i < 3; ++i) {
-      const double l = 0.5 * distance(surface.points[t[i]], surface.points[t[(i + 1) % 3]]);
-      for (const VertexIndex v : {t[i], t[(i + 1) % 3]}) half[v] = std::max(half[v], l);
+      const double l = kReach * distance(surface.points[t[i]], surface.points[t[(i + 1) % 3]]);
+      for (const VertexIndex v : t) reach[v] = std::max(reach[v], l);
     }
   }
-  return half;
+  return reach;
 }
 
-/// Samples of the input that may be far: middles of edges only beside vertices that are not well within the limit.
-std::vector<Sample> suspects(double limit, const SurfaceMesh& input, const TriangleTree& made) {
-  const std::vector<Sample> vertices = vertices_of(input);
-  const std::vector<double> margin = half_longest_edges(input);
-  std::vector<std::uint8_t> is_safe(vertices.size());
-  parallel_for(vertices.size(), [&](std::size_t v) {
-    is_safe[v] = vertices[v].triangle == kNone || made.is_within(vertices[v].p, limit - margin[v]);
+/// How far samples of the input lie apart, in edges of the triangle beside: over these the distance changes evenly.
+constexpr double kSpacing = 0.3;
+
+/// Samples of a triangle of the input that may be far.
+void add_suspects(double limit, const TriangleCorners& corners, std::uint32_t t, const TriangleTree& made,
+                  std::vector<Sample>& found) {
+  const std::size_t before = found.size();
+  const auto is_within = [&](Vec3 p, double distance) { return made.is_within(p, distance); };
+  const auto finest = [&](Vec3 p) {
+    const std::uint32_t beside = made.nearest(p, limit * limit).triangle;
+    if (beside == kNone) return kFinePart * limit;
+    const TriangleCorners b = made.corners(beside);
+    const double squared_edge =
+        std::max({squared_distance(b[0], b[1]), squared_distance(b[1], b[2]), squared_distance(b[2], b[0])});
+    return std::max(kFinePart * limit, kSpacing * std::sqrt(squared_edge));
+  };
+  for_each_doubtful_part(corners, limit, is_within, finest, [&](Vec3 p) {
+    found.push_back({p, t, true});
+    return true;
   });
-  std::vector<Sample> samples;
-  for (std::size_t v = 0; v < vertices.size(); ++v)
-    if (!is_safe[v]) samples.push_back(vertices[v]);
-  add_edge_middles(
-      input, [&](VertexIndex v, VertexIndex w) { return !is_safe[v] && !is_safe[w]; }, samples);
-  return samples;
+  if (found.size() == before) return;
+  for (int i = 0; i < 3; ++i) {
+    found.push_back({corners[i], t});
+    found.push_back({(corners[i] + corners[(i + 1) % 3]) * 0.5, t});
+  }
+}
+
+/// Samples of the input that may be far: of triangles whose corners are not all well within the limit.
+std::vector<Sample> suspects(double limit, const SurfaceMesh& input, const TriangleTree& made) {
+  const std::vector<double> reach = reach_of_vertices(input);
+  std::vector<std::uint8_t> is_safe(reach.size());
+  parallel_for(reach.size(), [&](std::size_t v) {
+    is_safe[v] = reach[v] < limit && made.is_within(input.points[v], limit - reach[v]);
+  });
+  constexpr std::size_t kRange = 256;
+  const auto collect = [&](std::size_t begin, std::size_t end, std::vector<Sample>& found) {
+    for (auto t = static_cast<std::uint32_t>(begin); t < end; ++t) {
+      const auto& [a, b, c] = input.triangles[t];
+      if (!is_safe[a] || !is_safe[b] || !is_safe[c])
+        add_suspects(limit, {input.points[a], input.points[b], input.points[c]}, t, made, found);
+    }
+  };
+  return parallel_collect<Sample>(input.triangles.size(), kRange, collect);
 }
 
 std::vector<Sample> samples_of(const SurfaceMesh& made) {
@@ -115,14 +148,14 @@ std::vector<FarPlace> places_beyond(double limit, const SurfaceMesh& made, const
                                     const TriangleTree& input_tree) {
   std::vector<FarPlace> places;
   double distance = 0;
-  for (const auto& [p, t] : beyond(limit, samples_of(made), input_tree)) {
+  for (const auto& [p, t, within] : beyond(limit, samples_of(made), input_tree)) {
     const TriangleTree::Nearest nearest = nearest_facing(input_tree, p, normal_of(made, t), distance);
-    places.push_back({p, {nearest.point, nearest.triangle}, distance, t});
+    places.push_back({p, {nearest.point, nearest.triangle}, distance, t, within});
   }
   const TriangleTree made_tree(made);
-  for (const auto& [p, t] : beyond(limit, suspects(limit, input, made_tree), made_tree)) {
+  for (const auto& [p, t, within] : beyond(limit, suspects(limit, input, made_tree), made_tree)) {
     const std::uint32_t triangle = nearest_facing(made_tree, p, normal_of(input, t), distance).triangle;
-    places.push_back({p, {p, t}, distance, triangle});
+    places.push_back({p, {p, t}, distance, triangle, within});
   }
   return places;
 }

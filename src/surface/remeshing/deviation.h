@@ -15,10 +15,12 @@ struct FarPlace {
   SurfacePoint on_input;           ///< the place itself, or the nearest point to it that faces alike
   double distance = 0;             ///< to the other surface
   std::uint32_t triangle = kNone;  ///< of the made surface, there or nearest
+  bool within = false;             ///< inside a triangle of the input, not at its corners or the middles of its edges
 };
 
 /// Places where two surfaces are farther apart than `limit`, looked for at the centroids, edge midpoints and vertices
-/// of `made`, and at the vertices and edge midpoints of `input`. `input_tree` is over the triangles of `input`.
+/// of `made`, and at the vertices and edge midpoints of `input` and wherever else it may lie beyond the limit, to a
+/// quarter of it. `input_tree` is over the triangles of `input`.
 std::vector<FarPlace> places_beyond(double limit, const SurfaceMesh& made, const SurfaceMesh& input,
                                     const TriangleTree& input_tree);
 

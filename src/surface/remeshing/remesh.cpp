@@ -42,7 +42,8 @@ constexpr int kMostDeviationRounds = 5;
 /// How often points of the input are put in where the new surface strays, if it does so at few places: at this part of
 /// its triangles. At more of them it is made anew with smaller sizes.
 constexpr int kApproaches = 3;
-/// Points are put in from this part of the bound on: between samples the surface strays a little farther.
+/// Points are put in from this part of the bound on, where the input has vertices or long edges: smaller sizes are the
+/// better answer elsewhere. Nor shall anybody move its triangles later.
 constexpr double kComeNear = 0.9;
 constexpr double kFewFar = 0.02;
 
@@ -63,8 +64,9 @@ struct Counts {
 
 /// How near the new surface lies to the input.
 struct Nearness {
-  std::vector<Vec3> approached;  ///< where points of the input were put in
-  std::vector<Vec3> far;         ///< where it strays still
+  std::vector<Vec3> approached;         ///< where points of the input were put in
+  std::vector<Vec3> far;                ///< where it strays still
+  std::vector<VertexIndex> near_limit;  ///< corners of triangles that nearly do, in the working mesh
 };
 
 /// The parts of the working mesh that are alive, numbered anew in their order.
@@ -77,8 +79,8 @@ struct Compacted {
 };
 using Crossings = std::vector<std::array<std::uint32_t, 2>>;
 
-Compacted compacted(const WorkingMesh& mesh, const SurfaceMesh& input, const SizeField& sizes) {
-  Compacted c{{{}, {}, {}, sizes}, {}, {}, false, {}};
+Compacted compacted(const WorkingMesh& mesh, const SurfaceMesh& input, const SizeField& sizes, Nearness nearness) {
+  Compacted c{{{}, {}, {}, sizes}, {}, {}, false, std::move(nearness)};
   SurfaceMesh& s = c.result.surface;
   std::vector<VertexIndex> old_to_new(mesh.points.size(), kNone);
   for (VertexIndex v = 0; v < mesh.points.size(); ++v) {
@@ -105,6 +107,7 @@ Compacted compacted(const WorkingMesh& mesh, const SurfaceMesh& input, const Siz
     if (!input.patch.empty()) s.patch.push_back(mesh.patch[t]);
   }
   std::sort(c.result.features.edges.begin(), c.result.features.edges.end());
+  for (const VertexIndex v : c.nearness.near_limit) c.result.near_limit.push_back(old_to_new[v]);
   return c;
 }
 
@@ -256,9 +259,8 @@ class Remesher {
     }
     progress(0.9);
     validate(mesh);
-    Compacted c = compacted(mesh, surface_, sizes);
+    Compacted c = compacted(mesh, surface_, sizes, std::move(nearness));
     c.is_clear = clear;
-    c.nearness = std::move(nearness);
     return c;
   }
 
@@ -267,9 +269,12 @@ class Remesher {
   Nearness come_near(WorkingMesh& mesh, const std::vector<std::uint8_t>& is_fixed, bool& clear) {
     Nearness n;
     for (int k = 0;; ++k) {
-      const std::vector<FarPlace> places = far_places(mesh);
+      std::vector<FarPlace> places = far_places(mesh);
       n.far = positions_beyond(tolerance_, places);
-      const bool few = static_cast<double>(places.size()) < kFewFar * static_cast<double>(mesh.triangle_count());
+      n.near_limit = corners_at(mesh, places);
+      std::erase_if(places, [](const FarPlace& p) { return p.within; });
+      const bool few =
+          static_cast<double>(count_triangles(places)) < kFewFar * static_cast<double>(mesh.triangle_count());
       const std::uint64_t put_in = clear && few && k < kApproaches ? approach(mesh, input_, is_fixed, places) : 0;
       if (put_in == 0) return n;
       counts_.approached += put_in;
@@ -284,6 +289,20 @@ class Remesher {
     std::vector<Vec3> places = c.nearness.far;
     places.insert(places.end(), c.nearness.approached.begin(), c.nearness.approached.end());
     if (!places.empty()) cap(places, kDeviationCap);
+  }
+
+  static std::size_t count_triangles(const std::vector<FarPlace>& places) {
+    std::vector<std::uint32_t> triangles;
+    for (const FarPlace& place : places) triangles.push_back(place.triangle);
+    std::sort(triangles.begin(), triangles.end());
+    return static_cast<std::size_t>(std::unique(triangles.begin(), triangles.end()) - triangles.begin());
+  }
+
+  static std::vector<VertexIndex> corners_at(const WorkingMesh& mesh, const std::vector<FarPlace>& places) {
+    std::vector<VertexIndex> corners;
+    for (const FarPlace& place : places)
+      for (const VertexIndex v : mesh.triangle(place.triangle)) corners.push_back(v);
+    return corners;
   }
 
   /// Where the mesh is too far from the input, or nearly so, by the numbers of its triangles.

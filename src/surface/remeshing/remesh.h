@@ -18,6 +18,8 @@ struct Remeshed {
   Features features;                  ///< of `surface`
   std::vector<std::uint32_t> source;  ///< per triangle: the input triangle that lies nearest to its centroid
   SizeField sizes;                    ///< what was asked, capped where self-intersections forced smaller elements
+  /// The corners of triangles that lie nearly as far from the input as they may.
+  std::vector<VertexIndex> near_limit = {};
 };
 
 /// The surface front. Requires a clean surface (see surface_mesh.h). The result is checked: closed, manifold, same

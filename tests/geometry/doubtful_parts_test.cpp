@@ -1,0 +1,67 @@
+#include "geometry/doubtful_parts.h"
+
+#include "support/random.h"
+
+#include <algorithm>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace octafront {
+namespace {
+
+constexpr double kLimit = 0.1;
+
+/// Within a distance of the unit ball.
+bool near_ball(Vec3 p, double d) {
+  return length(p) - 1 < d;
+}
+
+double finest(Vec3) {
+  return kFinePart * kLimit;
+}
+
+std::vector<Vec3> doubtful(const TriangleCorners& t) {
+  std::vector<Vec3> found;
+  for_each_doubtful_part(t, kLimit, near_ball, finest, [&](Vec3 p) {
+    found.push_back(p);
+    return true;
+  });
+  return found;
+}
+
+TEST(DoubtfulParts, AreWhereATriangleStrays) {
+  testing::Random random(7);
+  int strayed = 0;
+  for (int round = 0; round < 200; ++round) {
+    TriangleCorners t;
+    for (Vec3& p : t) p = {random.between(-1.3, 1.3), random.between(-1.3, 1.3), random.between(-1.3, 1.3)};
+    const std::vector<Vec3> found = doubtful(t);
+    for (int k = 0; k < 200; ++k) {
+      double u = random.unit(), v = random.unit();
+      if (u + v > 1) u = 1 - u, v = 1 - v;
+      const Vec3 p = t[0] + u * (t[1] - t[0]) + v * (t[2] - t[0]);
+      if (near_ball(p, kLimit)) continue;
+      ++strayed;
+      EXPECT_TRUE(
+          std::any_of(found.begin(), found.end(), [&](Vec3 q) { return distance(p, q) <= kFinePart * kLimit; }));
+    }
+    for (const Vec3 q : found) EXPECT_FALSE(near_ball(q, (1 - kFinePart) * kLimit));
+  }
+  EXPECT_GT(strayed, 1000);
+}
+
+TEST(DoubtfulParts, AreAskedForNoLongerOnceFalse) {
+  int asked = 0;
+  EXPECT_FALSE(
+      for_each_doubtful_part({Vec3{2, 0, 0}, Vec3{3, 0, 0}, Vec3{2, 1, 0}}, kLimit, near_ball, finest, [&](Vec3) {
+        ++asked;
+        return false;
+      }));
+  EXPECT_EQ(asked, 1);
+  EXPECT_TRUE(for_each_doubtful_part({Vec3{0.5, 0, 0}, Vec3{0, 0.5, 0}, Vec3{0, 0, 0.5}}, kLimit, near_ball, finest,
+                                     [](Vec3) { return false; }));
+}
+
+}  // namespace
+}  // namespace octafront
