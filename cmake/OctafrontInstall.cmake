@@ -18,6 +18,24 @@ if(TARGET octafront_cli)
   install(DIRECTORY licenses DESTINATION ${doc_dir}/octafront COMPONENT runtime)
 endif()
 
+# The manual page and what completes commands in shells, which the tool writes itself.
+if(TARGET octafront_cli AND EXISTS ${PROJECT_SOURCE_DIR}/cli/completion.cpp)
+  set(shell_dir ${PROJECT_BINARY_DIR}/shell)
+  add_custom_command(OUTPUT ${shell_dir}/octafront.1 ${shell_dir}/octafront.bash ${shell_dir}/_octafront ${shell_dir}/octafront.fish
+    COMMAND ${CMAKE_COMMAND} -E make_directory ${shell_dir}
+    COMMAND octafront_cli help --man > ${shell_dir}/octafront.1
+    COMMAND octafront_cli completion bash > ${shell_dir}/octafront.bash
+    COMMAND octafront_cli completion zsh > ${shell_dir}/_octafront
+    COMMAND octafront_cli completion fish > ${shell_dir}/octafront.fish
+    DEPENDS octafront_cli)
+  add_custom_target(octafront_shell_files ALL DEPENDS ${shell_dir}/octafront.1)
+  install(FILES ${shell_dir}/octafront.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT runtime)
+  install(FILES ${shell_dir}/octafront.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME octafront
+          COMPONENT runtime)
+  install(FILES ${shell_dir}/_octafront DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions COMPONENT runtime)
+  install(FILES ${shell_dir}/octafront.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d COMPONENT runtime)
+endif()
+
 configure_package_config_file(cmake/octafrontConfig.cmake.in octafrontConfig.cmake INSTALL_DESTINATION ${package_dir})
 write_basic_package_version_file(octafrontConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/octafrontConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/octafrontConfigVersion.cmake

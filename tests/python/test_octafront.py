@@ -4,6 +4,7 @@ import copy
 import gc
 import inspect
 import json
+import multiprocessing
 import os
 import pathlib
 import pickle
@@ -21,6 +22,10 @@ import octafront
 from shapes import cube, sphere
 
 SAMPLES = pathlib.Path(os.environ["OCTAFRONT_SAMPLES"])
+
+
+def meshed_hash(_):
+    return octafront.mesh(*sphere(), size=0.2).report["hash"]
 
 
 class Case(unittest.TestCase):
@@ -277,6 +282,11 @@ class Running(Case):
             thread.join()
         self.assertEqual(len(set(made)), 1)
         self.assertEqual(len(made), 3)
+
+    def test_processes_that_were_forked_mesh_too(self):
+        expected = meshed_hash(0)
+        with multiprocessing.get_context("fork").Pool(2) as pool:
+            self.assertEqual(set(pool.map_async(meshed_hash, range(3)).get(timeout=120)), {expected})
 
     def test_ctrl_c(self):
         code = ("import octafront, shapes, sys\n"
