@@ -1,16 +1,76 @@
-# `cmake --install` and what find_package(octafront) finds.
+# `cmake --install`, what find_package(octafront) and pkg-config find, and `cpack -G DEB`. Two components: what one runs,
+# and what programs of others are built with.
 include(CMakePackageConfigHelpers)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/octafront)
-install(TARGETS octafront EXPORT octafrontTargets)
-install(EXPORT octafrontTargets NAMESPACE octafront:: DESTINATION ${package_dir})
-install(DIRECTORY include/octafront DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/octafront)
+set(doc_dir ${CMAKE_INSTALL_DATADIR}/doc)
+set(texts LICENSE NOTICE licenses)
+install(TARGETS octafront EXPORT octafrontTargets
+        ARCHIVE COMPONENT development
+        LIBRARY COMPONENT runtime NAMELINK_COMPONENT development)
+install(EXPORT octafrontTargets NAMESPACE octafront:: DESTINATION ${package_dir} COMPONENT development)
+install(DIRECTORY include/octafront DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development)
+install(FILES LICENSE NOTICE DESTINATION ${doc_dir}/liboctafront-dev COMPONENT development)
+install(DIRECTORY licenses DESTINATION ${doc_dir}/liboctafront-dev COMPONENT development)
 if(TARGET octafront_cli)
-  install(TARGETS octafront_cli)
+  install(TARGETS octafront_cli RUNTIME COMPONENT runtime)
+  install(FILES LICENSE NOTICE README.md CHANGELOG.md DESTINATION ${doc_dir}/octafront COMPONENT runtime)
+  install(DIRECTORY licenses DESTINATION ${doc_dir}/octafront COMPONENT runtime)
+endif()
+
+# The manual page and what completes commands in shells, which the tool writes itself.
+if(TARGET octafront_cli AND EXISTS ${PROJECT_SOURCE_DIR}/cli/completion.cpp)
+  set(shell_dir ${PROJECT_BINARY_DIR}/shell)
+  add_custom_command(OUTPUT ${shell_dir}/octafront.1 ${shell_dir}/octafront.bash ${shell_dir}/_octafront ${shell_dir}/octafront.fish
+    COMMAND ${CMAKE_COMMAND} -E make_directory ${shell_dir}
+    COMMAND octafront_cli help --man > ${shell_dir}/octafront.1
+    COMMAND octafront_cli completion bash > ${shell_dir}/octafront.bash
+    COMMAND octafront_cli completion zsh > ${shell_dir}/_octafront
+    COMMAND octafront_cli completion fish > ${shell_dir}/octafront.fish
+    DEPENDS octafront_cli)
+  add_custom_target(octafront_shell_files ALL DEPENDS ${shell_dir}/octafront.1)
+  install(FILES ${shell_dir}/octafront.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT runtime)
+  install(FILES ${shell_dir}/octafront.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME octafront
+          COMPONENT runtime)
+  install(FILES ${shell_dir}/_octafront DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions COMPONENT runtime)
+  install(FILES ${shell_dir}/octafront.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d COMPONENT runtime)
 endif()
 
 configure_package_config_file(cmake/octafrontConfig.cmake.in octafrontConfig.cmake INSTALL_DESTINATION ${package_dir})
 write_basic_package_version_file(octafrontConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/octafrontConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/octafrontConfigVersion.cmake
-        DESTINATION ${package_dir})
+        DESTINATION ${package_dir} COMPONENT development)
+
+# pkg-config: from where the file lies, so that the whole prefix may be moved.
+set(pc_hdf5 "")
+if(OCTAFRONT_HDF5_LIBRARY)
+  set(pc_hdf5 ${OCTAFRONT_HDF5_LIBRARY})
+endif()
+file(RELATIVE_PATH pc_prefix ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
+configure_file(cmake/octafront.pc.in octafront.pc @ONLY)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/octafront.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig
+        COMPONENT development)
+
+# cpack -G DEB: octafront_*.deb with the tool, liboctafront-dev_*.deb with the library.
+set(CPACK_PACKAGE_NAME octafront)
+set(CPACK_PACKAGE_VENDOR "The Octafront authors")
+set(CPACK_PACKAGE_CONTACT "The Octafront authors <octafront@localhost>")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
+set(CPACK_COMPONENTS_ALL runtime development)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_NAME octafront)
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_SHLIBDEPS ON)
+set(CPACK_COMPONENT_RUNTIME_DESCRIPTION "Tetrahedral finite element meshes from closed surfaces: command line tool")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME liboctafront-dev)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
+set(dev_depends libtbb-dev libfmt-dev zlib1g-dev)
+if(OCTAFRONT_HDF5_LIBRARY)
+  list(APPEND dev_depends libhdf5-dev)
+endif()
+list(JOIN dev_depends ", " CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS)
+set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "Tetrahedral finite element meshes from closed surfaces: C++ and C library")
+include(CPack)

@@ -154,6 +154,10 @@ def main():
         x, y = (k % 2) / 2, 0.5 - math.floor(k / 2) / 2
         renderer.SetViewport(x, y, x + 0.5, y + 0.5)
         window.AddRenderer(renderer)
+    save(window, picture)
+
+
+def save(window, picture):
     window.Render()
     grab = vtk.vtkWindowToImageFilter()
     grab.SetInput(window)
@@ -164,4 +168,5 @@ def main():
     writer.Write()
 
 
-main()
+if __name__ == "__main__":
+    main()

@@ -7,6 +7,7 @@
 #include <octafront/improve_existing.h>
 #include <octafront/io.h>
 #include <octafront/named_groups.h>
+#include <octafront/option_table.h>
 #include <octafront/options.h>
 #include <octafront/quality.h>
 #include <octafront/repair.h>

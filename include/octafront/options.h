@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -58,7 +59,8 @@ struct SizeOptions {
   std::vector<PointSize> point_sizes;
   /// All sizes, as read_size_field() returns them: no other source may be given with it, nor limits.
   std::optional<SizeField> field;
-  std::function<double(Vec3)> callback;  ///< a further source on the surface; must return a size > 0; may be empty
+  /// A further source on the surface, asked at many points at once: fills in a size > 0 for each. May be empty.
+  std::function<void(std::span<const Vec3> points, std::span<double> sizes)> callback;
 };
 
 /// How the surface is triangulated anew.

@@ -46,7 +46,7 @@ WantedSizes scaled(const WantedSizes& wanted, double factor, const SizeOptions& 
   for (SizeSample& s : result.points) s.h = std::clamp(s.h * factor, low, high);
   result.ceiling = std::clamp(result.ceiling * factor, low, high);
   if (wanted.at_place) {
-    result.at_place = [f = wanted.at_place, factor, low, high](const PlaceOnSurface& p) {
+    result.at_place.at = [f = wanted.at_place.at, factor, low, high](const PlaceOnSurface& p) {
       return std::clamp(f(p) * factor, low, high);
     };
   }
@@ -110,7 +110,7 @@ WantedSizes raised(const WantedSizes& wanted, double floor) {
   for (double& h : result.face) h = std::max(h, floor);
   for (SizeSample& s : result.points) s.h = std::max(s.h, floor);
   if (wanted.at_place) {
-    result.at_place = [f = wanted.at_place, floor](const PlaceOnSurface& p) { return std::max(f(p), floor); };
+    result.at_place.at = [f = wanted.at_place.at, floor](const PlaceOnSurface& p) { return std::max(f(p), floor); };
   }
   return result;
 }

@@ -119,19 +119,10 @@ double automatic_scale(const SurfaceMesh& surface, const SurfaceCurvature& curva
   return loss > allowed ? std::max(kLeastAutomaticScale, std::sqrt(allowed / loss)) : 1;
 }
 
-/// The callback's answer, checked.
-double ask(const std::function<double(Vec3)>& callback, Vec3 p) {
-  const double h = callback(p);
-  if (!(h > 0)) {
-    throw OptionError(fmt::format("the size callback returned {} at ({:.6g}, {:.6g}, {:.6g}): sizes must be above 0", h,
-                                  p.x, p.y, p.z));
-  }
-  return h;
-}
-
 SizeAtPlace least_of(const SizeAtPlace& a, const SizeAtPlace& b) {
   if (!a || !b) return a ? a : b;
-  return [a, b](const PlaceOnSurface& s) { return std::min(a(s), b(s)); };
+  return {[a = a.at, b = b.at](const PlaceOnSurface& s) { return std::min(a(s), b(s)); },
+          a.batched ? a.batched : b.batched};
 }
 
 /// The sources that are asked place by place, in one function; empty if there are none. A wall below a floor of our own
@@ -142,16 +133,19 @@ SizeAtPlace sizes_at_places(const KnownSurface& surface, const Choice& choice, c
   if (choice.gap > 0) {
     const auto gaps = std::make_shared<GapFinder>(surface, choice.gap_floor, choice.base * choice.gap);
     if (options.gap) affordable.gap(choice.gap, *gaps);
-    gap = [gaps, choice, is_ours = !options.min_size](const PlaceOnSurface& place) {
+    gap.at = [gaps, choice, is_ours = !options.min_size](const PlaceOnSurface& place) {
       const double h = gaps->width(place) / choice.gap, floor = choice.gap_floor;
       if (h >= floor) return h;
       return is_ours ? floor * (floor / h) : floor;
     };
   }
-  const SizeAtPlace given = given_sizes(surface.mesh(), options);
-  if (!given || !options.min_size) return least_of(gap, given);
-  return least_of(gap,
-                  [given, floor = *options.min_size](const PlaceOnSurface& s) { return std::max(floor, given(s)); });
+  SizeAtPlace given = given_sizes(surface.mesh(), options);
+  if (given && options.min_size) {
+    given.at = [given = given.at, floor = *options.min_size](const PlaceOnSurface& s) {
+      return std::max(floor, given(s));
+    };
+  }
+  return least_of(gap, given);
 }
 
 }  // namespace
@@ -167,9 +161,12 @@ SizeAtPlace given_sizes(const SurfaceMesh& surface, const SizeOptions& options) 
   SizeAtPlace points, callback;
   if (!options.point_sizes.empty()) {
     const auto sizes = std::make_shared<PointSizes>(surface, options.point_sizes);
-    points = [sizes](const PlaceOnSurface& s) { return sizes->at(s); };
+    points.at = [sizes](const PlaceOnSurface& s) { return sizes->at(s); };
   }
-  if (options.callback) callback = [f = options.callback](const PlaceOnSurface& s) { return ask(f, s.p); };
+  if (options.callback) {
+    callback.batched = std::make_shared<BatchedSizes>(options.callback);
+    callback.at = [sizes = callback.batched](const PlaceOnSurface& s) { return sizes->at(s.p); };
+  }
   return least_of(points, callback);
 }
 

@@ -5,6 +5,8 @@
 #include "geometry/measures.h"
 
 #include <algorithm>
+#include <bit>
+#include <limits>
 
 #include <fmt/core.h>
 
@@ -15,6 +17,8 @@ namespace {
 constexpr std::size_t kMostSamples = 50'000'000;
 /// A triangle lies within this part of its longest edge about its centroid.
 constexpr double kReachOfEdge = 0.6;
+/// Triangles that are sampled together where sizes come in batches.
+constexpr std::uint32_t kFacesAtOnce = 4096;
 
 class Sampler {
  public:
@@ -63,16 +67,62 @@ class Sampler {
 
 }  // namespace
 
+std::size_t BatchedSizes::Hash::operator()(const Vec3& p) const {
+  std::size_t hash = 0;
+  for (int axis = 0; axis < 3; ++axis)
+    hash = (hash ^ std::bit_cast<std::uint64_t>(p[axis])) * 0x9e3779b97f4a7c15u, hash ^= hash >> 32;
+  return hash;
+}
+
+double BatchedSizes::at(Vec3 p) {
+  const Vec3 positive_zeros = p + Vec3{};
+  const auto [it, is_new] = known_.try_emplace(positive_zeros, std::numeric_limits<double>::infinity());
+  if (is_new) missing_.push_back(positive_zeros);
+  return it->second;
+}
+
+bool BatchedSizes::fetch() {
+  if (missing_.empty()) return false;
+  std::vector<double> sizes(missing_.size());
+  ask_(missing_, sizes);
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    const Vec3 p = missing_[i];
+    if (!(sizes[i] > 0)) {
+      throw OptionError(fmt::format("the size callback returned {} at ({:.6g}, {:.6g}, {:.6g}): sizes must be above 0",
+                                    sizes[i], p.x, p.y, p.z));
+    }
+    known_[p] = sizes[i];
+  }
+  missing_.clear();
+  return true;
+}
+
 std::vector<SizeSample> sample_surface(const SurfaceMesh& surface, const std::vector<double>& face_size,
                                        const SizeAtPlace& size_at, const RunContext& context) {
   std::vector<SizeSample> samples;
   samples.reserve(surface.triangles.size());
   Sampler sampler(face_size, size_at, samples);
-  for (std::uint32_t f = 0; f < surface.triangles.size(); ++f) {
-    if (f % 1024 == 0) context.check();
-    const Triangle& t = surface.triangles[f];
-    const Vec3 a = surface.points[t[0]], b = surface.points[t[1]], c = surface.points[t[2]];
-    sampler.sample(a, b, c, unit_normal(a, b, c), f);
+  const auto sample_faces = [&](std::uint32_t begin, std::uint32_t end) {
+    for (std::uint32_t f = begin; f < end; ++f) {
+      if (f % 1024 == 0) context.check();
+      const Triangle& t = surface.triangles[f];
+      const Vec3 a = surface.points[t[0]], b = surface.points[t[1]], c = surface.points[t[2]];
+      sampler.sample(a, b, c, unit_normal(a, b, c), f);
+    }
+  };
+  const auto faces = static_cast<std::uint32_t>(surface.triangles.size());
+  if (!size_at.batched) {
+    sample_faces(0, faces);
+    return samples;
+  }
+  // Each round knows the sizes of one more level of halves.
+  for (std::uint32_t begin = 0; begin < faces; begin += kFacesAtOnce) {
+    const std::size_t finished = samples.size();
+    do {
+      context.check();
+      samples.erase(samples.begin() + static_cast<std::ptrdiff_t>(finished), samples.end());
+      sample_faces(begin, std::min(faces, begin + kFacesAtOnce));
+    } while (size_at.batched->fetch());
   }
   return samples;
 }

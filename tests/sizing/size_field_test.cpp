@@ -26,6 +26,13 @@ SizeField make(const SurfaceMesh& surface, const SizeOptions& options, const Fea
   return make_size_field(KnownSurface(surface, features), options, {RunContext{}, report});
 }
 
+/// A callback that looks at one point after the other.
+auto each(double (*size_at)(Vec3)) {
+  return [size_at](std::span<const Vec3> points, std::span<double> sizes) {
+    std::transform(points.begin(), points.end(), sizes.begin(), size_at);
+  };
+}
+
 /// Fields of many kinds on one surface each.
 struct Case {
   std::string name;
@@ -48,7 +55,7 @@ std::vector<Case> cases() {
   o.gradation = 0.4;
   list.push_back({"curved torus", torus(60, 24, 1, 0.1), o});
   o = {};
-  o.callback = [](Vec3 p) { return 0.02 + 0.5 * length(p - Vec3{1, 0, 0}); };
+  o.callback = each([](Vec3 p) { return 0.02 + 0.5 * length(p - Vec3{1, 0, 0}); });
   o.gradation = 0.15;
   list.push_back({"callback", icosphere(3), o});
   o.interior = SizeOptions::Interior::kGraded;
@@ -60,6 +67,19 @@ Vec3 random_point(std::mt19937& random, const Box3& box) {
   std::uniform_real_distribution<double> u(-0.1, 1.1);
   const Vec3 e = box.extent();
   return {box.lo.x + u(random) * e.x, box.lo.y + u(random) * e.y, box.lo.z + u(random) * e.z};
+}
+
+TEST(SizeField, ACallbackIsAskedInBatches) {
+  std::size_t points = 0, batches = 0;
+  SizeOptions o;
+  o.callback = [&](std::span<const Vec3> at, std::span<double> sizes) {
+    points += at.size();
+    ++batches;
+    std::fill(sizes.begin(), sizes.end(), 0.05);
+  };
+  make(cube(1), o);
+  EXPECT_GT(points, 1000u);
+  EXPECT_LT(batches, points / 20);
 }
 
 TEST(SizeField, ObeysItsGradationBetweenAnyTwoPoints) {
@@ -202,7 +222,7 @@ TEST(SizeField, FeatureCurvesGetTheirElements) {
 
 TEST(SizeField, InteriorStaysBelowTheSurfaceUnlessGraded) {
   SizeOptions o;
-  o.callback = [](Vec3 p) { return 0.05 + 0.05 * std::abs(p.x); };
+  o.callback = each([](Vec3 p) { return 0.05 + 0.05 * std::abs(p.x); });
   o.max_size = 1;
   const SurfaceMesh sphere = icosphere(4);
   const SizeField uniform = make(sphere, o);
@@ -237,7 +257,7 @@ TEST(ExpectedTets, OfACube) {
   o.size = 0.05;
   const double n = expected_tets(make(cube(4), o), cube(4));
   EXPECT_NEAR(n, kTetsPerCube * 8000, 1);
-  o.callback = [](Vec3) { return 0.05; };
+  o.callback = each([](Vec3) { return 0.05; });
   EXPECT_NEAR(expected_tets(make(cube(4), o), cube(4)), n, 0.01 * n);
 }
 
@@ -322,7 +342,7 @@ TEST(SizeOptions, ContradictionsAreRefused) {
   refused([](SizeOptions& o) { o.gradation = 1.5; });
   refused([](SizeOptions& o) { o.curvature = 2; });
   refused([](SizeOptions& o) { o.size = 1e-5; });
-  refused([](SizeOptions& o) { o.callback = [](Vec3) { return -1.0; }; });
+  refused([](SizeOptions& o) { o.callback = each([](Vec3) { return -1.0; }); });
 }
 
 /// With the number, and before anything is divided: the stage has no leaves to count yet.

@@ -1,0 +1,4 @@
+import octafront
+from model import points, triangles
+
+octafront.mesh(points, triangles[3:], size=0.2)  # three triangles are missing

@@ -1,0 +1,200 @@
+#ifndef OCTAFRONT_C_H
+#define OCTAFRONT_C_H
+
+/** @file The library for other languages: opaque objects, arrays by name, and jobs. The package for Python stands on
+ * it.
+ *
+ * - Objects belong to the caller and are freed by him; what they point to is theirs. Null may be freed.
+ * - Work is a *job*: it runs on a thread of its own, and the caller waits for events. So no code of the caller is ever
+ *   called by ours: no callbacks, no foreign threads, and a wait can end at any time to look whether somebody pressed
+ *   Ctrl-C. Objects that a job was given must live, unchanged, until it is freed; freeing cancels it and waits.
+ * - Texts end with 0 and are UTF-8 as far as files and callers gave UTF-8; JSON is always UTF-8.
+ * - Functions that can fail return 0 for success, and octafront_last_error() says, per thread, what was wrong.
+ *
+ * Example: examples/mesh_from_c.c. */
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct octafront_surface octafront_surface; /**< a SurfaceMesh (octafront/surface_mesh.h) */
+typedef struct octafront_mesh octafront_mesh;       /**< a TetMesh (octafront/tet_mesh.h) */
+typedef struct octafront_sizes octafront_sizes;     /**< a SizeField (octafront/size_field.h) */
+typedef struct octafront_options octafront_options; /**< Options (octafront/options.h) */
+typedef struct octafront_job octafront_job;
+
+/** How a job ended; the exit statuses of the command line. */
+enum {
+  OCTAFRONT_DONE = 0,
+  OCTAFRONT_INTERNAL = 1, /**< a bug of ours */
+  OCTAFRONT_USAGE = 2,    /**< options or arguments */
+  OCTAFRONT_INPUT = 3,    /**< the input cannot be read or meshed */
+  OCTAFRONT_MESHING = 4,  /**< no valid mesh; octafront_job_take_surface() has a cavity that stayed open, if one did */
+  OCTAFRONT_OUTPUT = 5,   /**< not written */
+  OCTAFRONT_MEMORY = 6,   /**< out of memory */
+  OCTAFRONT_CANCELLED = 130
+};
+
+/** Of the library, e.g. "0.1.0". */
+const char* octafront_version(void);
+/** What is wrong, of the last call of this thread that failed. */
+const char* octafront_last_error(void);
+/** JSON, an array: name, field, group, tasks, kind, choices, default, help of each option (octafront/option_table.h).
+ */
+const char* octafront_option_table(void);
+/** JSON, an array: name, title, endings, what can be read and written, of each file format. */
+const char* octafront_formats(void);
+
+/* ---- arrays ---- */
+
+enum { OCTAFRONT_F64 = 1, OCTAFRONT_U32 = 2 };
+
+/** `rows` times `columns` values, row by row. Stays valid until its object is changed or freed. */
+typedef struct {
+  const void* data; /**< may be null if rows is 0 */
+  size_t rows;
+  uint32_t columns;
+  uint32_t type;
+} octafront_array;
+
+/** Arrays of a surface: points (F64 x 3), triangles (U32 x 3), patch, source (U32 x 1), sides (U32 x 2: region in
+ * front, behind; 0xffffffff: outside). Its lists of names: patch_names, region_names. */
+octafront_surface* octafront_surface_new(void);
+void octafront_surface_free(octafront_surface* surface);
+int octafront_surface_array(const octafront_surface* surface, const char* name, octafront_array* out);
+/** Copies `rows` rows. */
+int octafront_surface_set_array(octafront_surface* surface, const char* name, const void* data, size_t rows);
+int octafront_surface_add_name(octafront_surface* surface, const char* list, const char* name, size_t length);
+/** The i-th name of a list, null behind the last one. */
+const char* octafront_surface_name(const octafront_surface* surface, const char* list, size_t i, size_t* length);
+
+/** Arrays of a mesh: points (F64 x 3), tets (U32 x 4), region (U32 x 1), boundary (U32 x 3), patch, source (U32 x 1),
+ * interfaces (U32 x 3), interface_patch (U32 x 1), curve_edges (U32 x 2), curve (U32 x 1), mid_nodes (U32 x 6). Its
+ * lists of names: region_names, patch_names, curve_names. */
+octafront_mesh* octafront_mesh_new(void);
+void octafront_mesh_free(octafront_mesh* mesh);
+int octafront_mesh_array(const octafront_mesh* mesh, const char* name, octafront_array* out);
+int octafront_mesh_set_array(octafront_mesh* mesh, const char* name, const void* data, size_t rows);
+int octafront_mesh_add_name(octafront_mesh* mesh, const char* list, const char* name, size_t length);
+const char* octafront_mesh_name(const octafront_mesh* mesh, const char* list, size_t i, size_t* length);
+
+enum { OCTAFRONT_NODES = 0, OCTAFRONT_EDGES = 1, OCTAFRONT_FACES = 2, OCTAFRONT_ELEMENTS = 3 };
+
+/** The further sets of a mesh (NamedSet). */
+size_t octafront_mesh_sets(const octafront_mesh* mesh);
+int octafront_mesh_set(const octafront_mesh* mesh, size_t i, int* kind, const char** name, size_t* length,
+                       octafront_array* members);
+/** Members ascending, each once. */
+int octafront_mesh_add_set(octafront_mesh* mesh, int kind, const char* name, size_t length, const uint32_t* members,
+                           size_t count);
+/** The nodes, faces or elements in the box (2 x 3) or ball (centre, radius: 4), or the faces of patches, as add_group()
+ * of octafront/named_groups.h finds them; null where not meant. `note` gets a sentence, or "", valid until the next
+ * call of this thread. */
+int octafront_mesh_add_group(octafront_mesh* mesh, int kind, const char* name, size_t length, const double* box,
+                             const double* ball, const char* const* patches, size_t patch_count, const char** note);
+/** beta = 3 r / R of each tetrahedron, and its least and largest dihedral angle in degrees; null where not wanted. */
+int octafront_mesh_quality(const octafront_mesh* mesh, double* beta, double* least, double* largest);
+/** JSON: the same summary as in reports. Valid until the next call of this thread. */
+const char* octafront_mesh_summary(const octafront_mesh* mesh);
+
+/* ---- sizes and options ---- */
+
+void octafront_sizes_free(octafront_sizes* sizes);
+/** Edge lengths wanted at `n` points (n x 3). */
+int octafront_sizes_at(const octafront_sizes* sizes, const double* points, size_t n, double* out);
+void octafront_sizes_bounds(const octafront_sizes* sizes, double* least, double* largest);
+octafront_sizes* octafront_sizes_uniform(double h);
+
+octafront_options* octafront_options_new(void);
+void octafront_options_free(octafront_options* options);
+/** `json`: an object of names of octafront_option_table() and their values. */
+int octafront_options_set(octafront_options* options, const char* json);
+/** SizeOptions::regions: `n` rows of x0 y0 z0 x1 y1 z1 radius size. */
+int octafront_options_regions(octafront_options* options, const double* rows, size_t n);
+/** SizeOptions::point_sizes: `n` rows of x y z size. */
+int octafront_options_point_sizes(octafront_options* options, const double* rows, size_t n);
+/** The same two from files (read_size_regions, read_point_sizes of octafront/io.h). */
+int octafront_options_regions_file(octafront_options* options, const char* file);
+int octafront_options_point_sizes_file(octafront_options* options, const char* file);
+/** SizeOptions::field. */
+int octafront_options_field(octafront_options* options, const octafront_sizes* sizes);
+/** Jobs with these options ask for sizes, or tell of passes, by events. */
+void octafront_options_ask_sizes(octafront_options* options);
+void octafront_options_tell_passes(octafront_options* options);
+
+/* ---- jobs ---- */
+
+enum {
+  OCTAFRONT_EVENT_NONE = 0, /**< the time is over */
+  OCTAFRONT_EVENT_END,      /**< the job has ended */
+  OCTAFRONT_EVENT_PROGRESS, /**< text, value: the stage, its fraction in [0, 1], or below 0 where it is unknown */
+  OCTAFRONT_EVENT_SIZES,    /**< points, count, sizes: fill in the sizes, then octafront_job_answer() */
+  OCTAFRONT_EVENT_PASS      /**< text, values: a pass of improvement, then worst beta, least and largest dihedral angle,
+                               1 if all elements are positive */
+};
+
+/** What it points to is valid until the next wait. */
+typedef struct {
+  int kind;
+  const char* text;
+  double values[4];
+  const double* points; /**< count x 3 */
+  double* sizes;        /**< count, to be filled in */
+  size_t count;
+} octafront_event;
+
+/** `threads`: at most so many; 0: all. A job begins at once; these return null only if there is no memory or thread.
+ * Options may be null where they are the defaults. */
+octafront_job* octafront_read_surface(const char* file); /**< -> surface */
+octafront_job* octafront_write_surface(const octafront_surface* surface, const char* file);
+octafront_job* octafront_read_mesh(const char* file); /**< -> mesh */
+octafront_job* octafront_write_mesh(const octafront_mesh* mesh, const char* file, const char* format);
+octafront_job* octafront_read_sizes(const char* file, double gradation); /**< -> sizes */
+octafront_job* octafront_write_sizes(const octafront_sizes* sizes, const char* file);
+/** -> mesh, sizes: generate(). */
+octafront_job* octafront_generate(const octafront_surface* surface, const octafront_options* options, int threads);
+/** -> surface, sizes: generate_surface(). */
+octafront_job* octafront_generate_surface(const octafront_surface* surface, const octafront_options* options,
+                                          int threads);
+/** -> sizes: generate_sizes(). */
+octafront_job* octafront_generate_sizes(const octafront_surface* surface, const octafront_options* options,
+                                        int threads);
+/** -> mesh: improve_existing(); `ground`, which may be null: the surface that the boundary slides on. */
+octafront_job* octafront_improve(const octafront_mesh* mesh, const octafront_surface* ground,
+                                 const octafront_options* options, int threads);
+/** -> surface: repair_surface() and find_defects(), which the report lists. */
+octafront_job* octafront_repair(const octafront_surface* surface);
+/** first_defect(), check_jacobians(), and by name of the solver, which may be null, check_for_solver(), in the report.
+ */
+octafront_job* octafront_check(const octafront_mesh* mesh, const char* solver);
+/** -> mesh: in order, as readers do it: inverted tetrahedra turned, unused points dropped, missing boundary faces
+ * added, regions and patches counted through. */
+octafront_job* octafront_order_mesh(const octafront_mesh* mesh);
+
+/** Waits for the next event, `seconds` at most, below 0: as long as it takes. Returns its kind. */
+int octafront_job_wait(octafront_job* job, double seconds, octafront_event* event);
+/** The sizes of the last OCTAFRONT_EVENT_SIZES are filled in. */
+void octafront_job_answer(octafront_job* job);
+/** The job ends soon, with OCTAFRONT_CANCELLED, and writes nothing; still wait for its end. */
+void octafront_job_cancel(octafront_job* job);
+void octafront_job_free(octafront_job* job);
+
+/** Of a job that has ended. */
+int octafront_job_status(const octafront_job* job);
+/** What is wrong, or "". */
+const char* octafront_job_message(const octafront_job* job);
+/** JSON, an object: the report of what was done; of a job that failed its evidence: "defects" of a surface. */
+const char* octafront_job_report(octafront_job* job);
+/** Each gives its object away, once; null if there is none. */
+octafront_surface* octafront_job_take_surface(octafront_job* job);
+octafront_mesh* octafront_job_take_mesh(octafront_job* job);
+octafront_sizes* octafront_job_take_sizes(octafront_job* job);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,187 @@
+#!/usr/bin/env python3
+"""Writes octafront/__init__.pyi: what editors and type checkers see. The keywords come from the library's table of
+options; a test compares.
+
+    make_stubs.py [--check] FILE
+"""
+import pathlib
+import sys
+
+from octafront._library import option_table
+from octafront._options import keywords_of
+
+TEMPLATE = '''\
+# Made by python/backend/make_stubs.py: edit that.
+import os
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, Literal, TypedDict
+
+import numpy as np
+import numpy.typing as npt
+
+from . import errors as errors
+from .errors import (Cancelled as Cancelled, Error as Error, InputError as InputError, InternalError as InternalError,
+                     MeshingError as MeshingError, OpenCavityError as OpenCavityError, OptionError as OptionError,
+                     OutputError as OutputError)
+
+__version__: str
+OUTSIDE: int
+
+Path = str | bytes | os.PathLike[str]
+Floats = npt.NDArray[np.float64]
+Indices = npt.NDArray[np.uint32]
+SizeFunction = Callable[[Floats], npt.ArrayLike]
+Places = Sequence[Mapping[str, Any]] | npt.NDArray[Any] | Path
+Progress = Callable[[str, float | None], bool | None]
+Report = dict[str, Any]
+
+class Surface:
+    report: Report
+    def __init__(self, points: npt.ArrayLike, triangles: npt.ArrayLike, *, patches: npt.ArrayLike | None = None,
+                 patch_names: Sequence[str] = (), sides: npt.ArrayLike | None = None,
+                 region_names: Sequence[str] = ()) -> None: ...
+    @classmethod
+    def read(cls, path: Path) -> Surface: ...
+    @property
+    def points(self) -> Floats: ...
+    @property
+    def triangles(self) -> Indices: ...
+    @property
+    def patches(self) -> Indices: ...
+    @property
+    def sources(self) -> Indices: ...
+    @property
+    def sides(self) -> Indices: ...
+    @property
+    def patch_names(self) -> list[str]: ...
+    @property
+    def region_names(self) -> list[str]: ...
+    def save(self, path: Path) -> None: ...
+    def to_pyvista(self) -> Any: ...
+    def to_meshio(self) -> Any: ...
+    def plot(self, **keywords: Any) -> Any: ...
+
+class SizeField:
+    report: Report
+    def __init__(self, h: float) -> None: ...
+    @classmethod
+    def read(cls, path: Path, *, gradation: float = 0.2) -> SizeField: ...
+    def save(self, path: Path) -> None: ...
+    def __call__(self, points: npt.ArrayLike) -> Floats: ...
+    @property
+    def min(self) -> float: ...
+    @property
+    def max(self) -> float: ...
+    @property
+    def expected_tets(self) -> float | None: ...
+
+class Mesh:
+    report: Report
+    def __init__(self, points: npt.ArrayLike, tets: npt.ArrayLike, *, regions: npt.ArrayLike | None = None,
+                 region_names: Sequence[str] = (), faces: npt.ArrayLike | None = None,
+                 patches: npt.ArrayLike | None = None, patch_names: Sequence[str] = ()) -> None: ...
+    @classmethod
+    def read(cls, path: Path) -> Mesh: ...
+    @property
+    def points(self) -> Floats: ...
+    @property
+    def tets(self) -> Indices: ...
+    @property
+    def mid_nodes(self) -> Indices | None: ...
+    @property
+    def order(self) -> int: ...
+    @property
+    def regions(self) -> Indices: ...
+    @property
+    def faces(self) -> Indices: ...
+    @property
+    def patches(self) -> Indices: ...
+    @property
+    def sources(self) -> Indices | None: ...
+    @property
+    def interfaces(self) -> Indices: ...
+    @property
+    def interface_patches(self) -> Indices: ...
+    @property
+    def curve_edges(self) -> Indices: ...
+    @property
+    def curves(self) -> Indices: ...
+    @property
+    def names(self) -> dict[str, list[str]]: ...
+    @property
+    def sets(self) -> dict[str, tuple[str, Indices]]: ...
+    @property
+    def quality(self) -> dict[str, Any]: ...
+    def element_quality(self, measure: Literal["beta", "min_dihedral", "max_dihedral"] = "beta") -> Floats: ...
+    def add_set(self, name: str, members: npt.ArrayLike | None = None, *,
+                kind: Literal["nodes", "edges", "faces", "elements"] = "nodes", box: npt.ArrayLike | None = None,
+                sphere: tuple[Sequence[float], float] | None = None,
+                patches: Sequence[str | int] | None = None) -> Mesh: ...
+    def save(self, path: Path, *, format: str | None = None) -> list[str]: ...
+    def boundary(self) -> Surface: ...
+    def to_pyvista(self) -> Any: ...
+    def to_meshio(self) -> Any: ...
+    def plot(self, clip: Sequence[float] | None = (1, 0, 0), **keywords: Any) -> Any: ...
+    def __len__(self) -> int: ...
+
+class Checked:
+    text: str
+    def __bool__(self) -> bool: ...
+    def __getattr__(self, name: str) -> Any: ...
+
+def mesh(points: npt.ArrayLike | Surface, triangles: npt.ArrayLike | None = None, *,
+{mesh}) -> Mesh: ...
+def mesh_file(path: Path, *,
+{mesh}) -> Mesh: ...
+def surface(points: npt.ArrayLike | Surface, triangles: npt.ArrayLike | None = None, *,
+{surface}) -> Surface: ...
+def size_field(points: npt.ArrayLike | Surface, triangles: npt.ArrayLike | None = None, *,
+{size}) -> SizeField: ...
+def improve(mesh: Mesh | Path, *, surface: Surface | Path | None = None,
+{improve}) -> Mesh: ...
+def repair(points: npt.ArrayLike | Surface, triangles: npt.ArrayLike | None = None) -> Surface: ...
+def check(what: npt.ArrayLike | Surface | Mesh | Path, triangles: npt.ArrayLike | None = None, *,
+          solver: Literal["abaqus", "ansys", "nastran", "calculix"] | None = None) -> Checked: ...
+def read(path: Path) -> Mesh | Surface: ...
+def formats() -> list[dict[str, Any]]: ...
+'''
+
+FURTHER = {
+    "regions": "Places | None = None", "point_sizes": "npt.ArrayLike | Path | None = None",
+    "size_field": "SizeField | Path | None = None",
+    "after_pass": "Callable[[str, dict[str, Any]], object] | None = None", "progress": "Progress | None = None",
+    "threads": "int = 0",
+}
+KINDS = {"number": "float", "whole": "int", "flag": "bool"}
+
+
+def declared(row):
+    kind = f"Literal[{', '.join(map(repr, row['choices']))}]" if row["choices"] else KINDS[row["kind"]]
+    if row["name"] == "size":
+        kind += " | SizeFunction | SizeField"
+    return f"{kind} | None = None" if row["default"] is None else f"{kind} = {row['default']!r}"
+
+
+def keywords(task):
+    table = {row["name"]: declared(row) for row in option_table()}
+    lines = [f"    {name}: {table.get(name) or FURTHER[name]}" for name in keywords_of(task)]
+    return ",\n".join(lines)
+
+
+def stubs():
+    text = TEMPLATE
+    for task in ("mesh", "surface", "size", "improve"):
+        text = text.replace("{" + task + "}", keywords(task))
+    return text
+
+
+def main():
+    file = pathlib.Path(sys.argv[-1])
+    if "--check" in sys.argv:
+        return 0 if file.read_text() == stubs() else f"{file} is old: run python/backend/make_stubs.py {file}"
+    file.write_text(stubs())
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,249 @@
+# Made by python/backend/make_stubs.py: edit that.
+import os
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, Literal, TypedDict
+
+import numpy as np
+import numpy.typing as npt
+
+from . import errors as errors
+from .errors import (Cancelled as Cancelled, Error as Error, InputError as InputError, InternalError as InternalError,
+                     MeshingError as MeshingError, OpenCavityError as OpenCavityError, OptionError as OptionError,
+                     OutputError as OutputError)
+
+__version__: str
+OUTSIDE: int
+
+Path = str | bytes | os.PathLike[str]
+Floats = npt.NDArray[np.float64]
+Indices = npt.NDArray[np.uint32]
+SizeFunction = Callable[[Floats], npt.ArrayLike]
+Places = Sequence[Mapping[str, Any]] | npt.NDArray[Any] | Path
+Progress = Callable[[str, float | None], bool | None]
+Report = dict[str, Any]
+
+class Surface:
+    report: Report
+    def __init__(self, points: npt.ArrayLike, triangles: npt.ArrayLike, *, patches: npt.ArrayLike | None = None,
+                 patch_names: Sequence[str] = (), sides: npt.ArrayLike | None = None,
+                 region_names: Sequence[str] = ()) -> None: ...
+    @classmethod
+    def read(cls, path: Path) -> Surface: ...
+    @property
+    def points(self) -> Floats: ...
+    @property
+    def triangles(self) -> Indices: ...
+    @property
+    def patches(self) -> Indices: ...
+    @property
+    def sources(self) -> Indices: ...
+    @property
+    def sides(self) -> Indices: ...
+    @property
+    def patch_names(self) -> list[str]: ...
+    @property
+    def region_names(self) -> list[str]: ...
+    def save(self, path: Path) -> None: ...
+    def to_pyvista(self) -> Any: ...
+    def to_meshio(self) -> Any: ...
+    def plot(self, **keywords: Any) -> Any: ...
+
+class SizeField:
+    report: Report
+    def __init__(self, h: float) -> None: ...
+    @classmethod
+    def read(cls, path: Path, *, gradation: float = 0.2) -> SizeField: ...
+    def save(self, path: Path) -> None: ...
+    def __call__(self, points: npt.ArrayLike) -> Floats: ...
+    @property
+    def min(self) -> float: ...
+    @property
+    def max(self) -> float: ...
+    @property
+    def expected_tets(self) -> float | None: ...
+
+class Mesh:
+    report: Report
+    def __init__(self, points: npt.ArrayLike, tets: npt.ArrayLike, *, regions: npt.ArrayLike | None = None,
+                 region_names: Sequence[str] = (), faces: npt.ArrayLike | None = None,
+                 patches: npt.ArrayLike | None = None, patch_names: Sequence[str] = ()) -> None: ...
+    @classmethod
+    def read(cls, path: Path) -> Mesh: ...
+    @property
+    def points(self) -> Floats: ...
+    @property
+    def tets(self) -> Indices: ...
+    @property
+    def mid_nodes(self) -> Indices | None: ...
+    @property
+    def order(self) -> int: ...
+    @property
+    def regions(self) -> Indices: ...
+    @property
+    def faces(self) -> Indices: ...
+    @property
+    def patches(self) -> Indices: ...
+    @property
+    def sources(self) -> Indices | None: ...
+    @property
+    def interfaces(self) -> Indices: ...
+    @property
+    def interface_patches(self) -> Indices: ...
+    @property
+    def curve_edges(self) -> Indices: ...
+    @property
+    def curves(self) -> Indices: ...
+    @property
+    def names(self) -> dict[str, list[str]]: ...
+    @property
+    def sets(self) -> dict[str, tuple[str, Indices]]: ...
+    @property
+    def quality(self) -> dict[str, Any]: ...
+    def element_quality(self, measure: Literal["beta", "min_dihedral", "max_dihedral"] = "beta") -> Floats: ...
+    def add_set(self, name: str, members: npt.ArrayLike | None = None, *,
+                kind: Literal["nodes", "edges", "faces", "elements"] = "nodes", box: npt.ArrayLike | None = None,
+                sphere: tuple[Sequence[float], float] | None = None,
+                patches: Sequence[str | int] | None = None) -> Mesh: ...
+    def save(self, path: Path, *, format: str | None = None) -> list[str]: ...
+    def boundary(self) -> Surface: ...
+    def to_pyvista(self) -> Any: ...
+    def to_meshio(self) -> Any: ...
+    def plot(self, clip: Sequence[float] | None = (1, 0, 0), **keywords: Any) -> Any: ...
+    def __len__(self) -> int: ...
+
+class Checked:
+    text: str
+    def __bool__(self) -> bool: ...
+    def __getattr__(self, name: str) -> Any: ...
+
+def mesh(points: npt.ArrayLike | Surface, triangles: npt.ArrayLike | None = None, *,
+    size: float | SizeFunction | SizeField | None = None,
+    elements: int | None = None,
+    curvature: float | None = None,
+    gap: float | None = None,
+    feature_elements: float | None = None,
+    chord_error: float | None = None,
+    facets: bool = False,
+    min_size: float | None = None,
+    max_size: float | None = None,
+    gradation: float = 0.2,
+    interior: Literal['uniform', 'graded'] = 'uniform',
+    keep_surface: bool = False,
+    feature_angle: float = 40.0,
+    max_deviation: float | None = None,
+    normal_deviation: float | None = None,
+    patches: bool = False,
+    method: Literal['octree-aft', 'aft', 'octree', 'recover'] = 'octree-aft',
+    ideal_distance: float = 0.75,
+    core: Literal['lattice', 'none'] = 'lattice',
+    ranking: Literal['solid-angle', 'quality'] = 'solid-angle',
+    queue: Literal['layers', 'smallest', 'newest'] = 'layers',
+    improve: Literal['none', 'paper', 'fast', 'default', 'best'] = 'default',
+    objective: Literal['balanced', 'beta', 'min-dihedral', 'max-dihedral', 'mean-ratio', 'solver'] = 'balanced',
+    relaxation: float = 0.7,
+    sweeps: int = 4,
+    fix_boundary: bool = False,
+    improve_time: float | None = None,
+    order: int = 1,
+    regions: Places | None = None,
+    point_sizes: npt.ArrayLike | Path | None = None,
+    size_field: SizeField | Path | None = None,
+    after_pass: Callable[[str, dict[str, Any]], object] | None = None,
+    progress: Progress | None = None,
+    threads: int = 0) -> Mesh: ...
+def mesh_file(path: Path, *,
+    size: float | SizeFunction | SizeField | None = None,
+    elements: int | None = None,
+    curvature: float | None = None,
+    gap: float | None = None,
+    feature_elements: float | None = None,
+    chord_error: float | None = None,
+    facets: bool = False,
+    min_size: float | None = None,
+    max_size: float | None = None,
+    gradation: float = 0.2,
+    interior: Literal['uniform', 'graded'] = 'uniform',
+    keep_surface: bool = False,
+    feature_angle: float = 40.0,
+    max_deviation: float | None = None,
+    normal_deviation: float | None = None,
+    patches: bool = False,
+    method: Literal['octree-aft', 'aft', 'octree', 'recover'] = 'octree-aft',
+    ideal_distance: float = 0.75,
+    core: Literal['lattice', 'none'] = 'lattice',
+    ranking: Literal['solid-angle', 'quality'] = 'solid-angle',
+    queue: Literal['layers', 'smallest', 'newest'] = 'layers',
+    improve: Literal['none', 'paper', 'fast', 'default', 'best'] = 'default',
+    objective: Literal['balanced', 'beta', 'min-dihedral', 'max-dihedral', 'mean-ratio', 'solver'] = 'balanced',
+    relaxation: float = 0.7,
+    sweeps: int = 4,
+    fix_boundary: bool = False,
+    improve_time: float | None = None,
+    order: int = 1,
+    regions: Places | None = None,
+    point_sizes: npt.ArrayLike | Path | None = None,
+    size_field: SizeField | Path | None = None,
+    after_pass: Callable[[str, dict[str, Any]], object] | None = None,
+    progress: Progress | None = None,
+    threads: int = 0) -> Mesh: ...
+def surface(points: npt.ArrayLike | Surface, triangles: npt.ArrayLike | None = None, *,
+    size: float | SizeFunction | SizeField | None = None,
+    elements: int | None = None,
+    curvature: float | None = None,
+    gap: float | None = None,
+    feature_elements: float | None = None,
+    chord_error: float | None = None,
+    facets: bool = False,
+    min_size: float | None = None,
+    max_size: float | None = None,
+    gradation: float = 0.2,
+    interior: Literal['uniform', 'graded'] = 'uniform',
+    keep_surface: bool = False,
+    feature_angle: float = 40.0,
+    max_deviation: float | None = None,
+    normal_deviation: float | None = None,
+    patches: bool = False,
+    regions: Places | None = None,
+    point_sizes: npt.ArrayLike | Path | None = None,
+    size_field: SizeField | Path | None = None,
+    progress: Progress | None = None,
+    threads: int = 0) -> Surface: ...
+def size_field(points: npt.ArrayLike | Surface, triangles: npt.ArrayLike | None = None, *,
+    size: float | SizeFunction | SizeField | None = None,
+    elements: int | None = None,
+    curvature: float | None = None,
+    gap: float | None = None,
+    feature_elements: float | None = None,
+    chord_error: float | None = None,
+    facets: bool = False,
+    min_size: float | None = None,
+    max_size: float | None = None,
+    gradation: float = 0.2,
+    interior: Literal['uniform', 'graded'] = 'uniform',
+    keep_surface: bool = False,
+    feature_angle: float = 40.0,
+    max_deviation: float | None = None,
+    normal_deviation: float | None = None,
+    patches: bool = False,
+    regions: Places | None = None,
+    point_sizes: npt.ArrayLike | Path | None = None,
+    size_field: SizeField | Path | None = None,
+    progress: Progress | None = None,
+    threads: int = 0) -> SizeField: ...
+def improve(mesh: Mesh | Path, *, surface: Surface | Path | None = None,
+    feature_angle: float = 40.0,
+    improve: Literal['none', 'paper', 'fast', 'default', 'best'] = 'default',
+    objective: Literal['balanced', 'beta', 'min-dihedral', 'max-dihedral', 'mean-ratio', 'solver'] = 'balanced',
+    relaxation: float = 0.7,
+    sweeps: int = 4,
+    fix_boundary: bool = False,
+    improve_time: float | None = None,
+    order: int = 1,
+    after_pass: Callable[[str, dict[str, Any]], object] | None = None,
+    progress: Progress | None = None,
+    threads: int = 0) -> Mesh: ...
+def repair(points: npt.ArrayLike | Surface, triangles: npt.ArrayLike | None = None) -> Surface: ...
+def check(what: npt.ArrayLike | Surface | Mesh | Path, triangles: npt.ArrayLike | None = None, *,
+          solver: Literal["abaqus", "ansys", "nastran", "calculix"] | None = None) -> Checked: ...
+def read(path: Path) -> Mesh | Surface: ...
+def formats() -> list[dict[str, Any]]: ...

@@ -1,0 +1,105 @@
+"""Work of the library: a thread of its own does it, and the caller's waits here, in Python, where Ctrl-C reaches it and
+his own functions run."""
+
+import ctypes
+import json
+
+import numpy as np
+
+from . import errors
+from ._library import Event, call, spoken, text_of
+
+# Often enough for a hand on Ctrl-C, seldom enough to cost nothing.
+_LOOK_EVERY = 0.05
+_END, _PROGRESS, _SIZES, _PASS = 1, 2, 3, 4
+
+
+class Job:
+    """`start` is the name of a function that begins a job; what it takes must live until the job has ended.
+
+    progress(phase, fraction): fraction in [0, 1], or None where it is unknown; False ends the job.
+    size_at(points): sizes (n,) at points (n, 3).
+    after_pass(name, worst): told of each pass of improvement.
+    """
+
+    def __init__(self, start, *arguments, progress=None, size_at=None, after_pass=None):
+        self._keep = arguments
+        self._calls = {_PROGRESS: progress, _SIZES: size_at, _PASS: after_pass}
+        self.stopped = False
+        self._address = call(start, *arguments)
+        if not self._address:
+            raise MemoryError(text_of(call("last_error")))
+
+    def __del__(self, call=call):
+        self._free(call)
+
+    def _free(self, call=call):
+        if getattr(self, "_address", None):
+            address, self._address = self._address, None
+            call("job_free", ctypes.c_void_p(address))
+
+    def run(self):
+        """Waits for the end; returns the report. Raises what the library or a function of the caller raised."""
+        event = Event()
+        try:
+            while call("job_wait", self._address, _LOOK_EVERY, ctypes.byref(event)) != _END:
+                self._serve(event)
+        except BaseException:
+            # Also KeyboardInterrupt: the job ends first, in milliseconds.
+            self._free()
+            raise
+        report = json.loads(call("job_report", self._address), object_hook=_with_spoken_notes)
+        status = call("job_status", self._address)
+        if status != 0:
+            raise self._failure(status, spoken(text_of(call("job_message", self._address))), report)
+        return report
+
+    def take(self, kind):
+        """The address of the surface, mesh or sizes that the job made, or None."""
+        return call("job_take_" + kind, self._address)
+
+    def _serve(self, event):
+        if event.kind == _SIZES:
+            self._serve_sizes(event)
+        elif event.kind == _PROGRESS and self._calls[_PROGRESS]:
+            fraction = event.values[0] if event.values[0] >= 0 else None
+            if self._calls[_PROGRESS](text_of(event.text), fraction) is False:
+                self.stopped = True
+                call("job_cancel", self._address)
+        elif event.kind == _PASS:
+            beta, least, largest, positive = event.values
+            self._calls[_PASS](text_of(event.text), {"beta": beta, "dihedral_min": least, "dihedral_max": largest,
+                                                     "positive": positive != 0})
+
+    def _serve_sizes(self, event):
+        points = np.ctypeslib.as_array(event.points, (event.count, 3)).copy()
+        sizes = np.asarray(self._calls[_SIZES](points), dtype=np.float64)
+        if sizes.shape not in ((), (event.count,)):
+            raise errors.OptionError(f"the size function got points of shape {points.shape} and returned sizes of "
+                                     f"shape {sizes.shape}: it has to return ({event.count},), one for each point")
+        np.ctypeslib.as_array(event.sizes, (event.count,))[:] = sizes
+        call("job_answer", self._address)
+
+    def _failure(self, status, message, report):
+        if status == 6:
+            return MemoryError(message)
+        if status == 130:
+            return errors.Cancelled("the progress function returned False" if self.stopped else message)
+        if status == 3:
+            error = errors.InputError(message)
+            error.defects = report.get("defects")
+            return error
+        cavity = self.take("surface") if status == 4 else None
+        if cavity:
+            from ._surface import Surface
+            error = errors.OpenCavityError(message)
+            error.cavity = Surface._of(cavity)
+            return error
+        kinds = {2: errors.OptionError, 4: errors.MeshingError, 5: errors.OutputError}
+        return kinds.get(status, errors.InternalError)(message)
+
+
+def _with_spoken_notes(node):
+    if "notes" in node:
+        node["notes"] = [spoken(note) for note in node["notes"]]
+    return node

@@ -1,0 +1,193 @@
+"""The compiled library (include/octafront/octafront_c.h), by ctypes: which lets go of the GIL in every call."""
+
+import ctypes
+import functools
+import json
+import os
+import pathlib
+
+import numpy as np
+
+from . import errors
+
+FOLDER = pathlib.Path(os.environ.get("OCTAFRONT_BIN", pathlib.Path(__file__).parent / "_bin"))
+
+_TYPES = {1: np.float64, 2: np.uint32}
+_NONE = 0xFFFFFFFF
+
+
+class Array(ctypes.Structure):
+    _fields_ = [("data", ctypes.c_void_p), ("rows", ctypes.c_size_t), ("columns", ctypes.c_uint32),
+                ("type", ctypes.c_uint32)]
+
+
+class Event(ctypes.Structure):
+    _fields_ = [("kind", ctypes.c_int), ("text", ctypes.c_char_p), ("values", ctypes.c_double * 4),
+                ("points", ctypes.POINTER(ctypes.c_double)), ("sizes", ctypes.POINTER(ctypes.c_double)),
+                ("count", ctypes.c_size_t)]
+
+
+def _load():
+    file = FOLDER / "liboctafront.so"
+    try:
+        return ctypes.CDLL(str(file))
+    except OSError as error:
+        raise ImportError(f"the compiled part of octafront cannot be loaded: {error}; install the package with "
+                          f"'pip install .', or say by OCTAFRONT_BIN in which folder {file.name} lies") from None
+
+
+_lib = _load()
+_handle, _text, _size, _whole = ctypes.c_void_p, ctypes.c_char_p, ctypes.c_size_t, ctypes.c_int
+_number, _pointer = ctypes.c_double, ctypes.c_void_p
+_length = ctypes.POINTER(ctypes.c_size_t)
+
+_PROTOTYPES = {
+    "version": (_text,), "last_error": (_text,), "option_table": (_text,), "formats": (_text,),
+    "surface_new": (_handle,), "surface_free": (None, _handle),
+    "surface_array": (_whole, _handle, _text, ctypes.POINTER(Array)),
+    "surface_set_array": (_whole, _handle, _text, _pointer, _size),
+    "surface_add_name": (_whole, _handle, _text, _text, _size),
+    "surface_name": (_pointer, _handle, _text, _size, _length),
+    "mesh_new": (_handle,), "mesh_free": (None, _handle),
+    "mesh_array": (_whole, _handle, _text, ctypes.POINTER(Array)),
+    "mesh_set_array": (_whole, _handle, _text, _pointer, _size),
+    "mesh_add_name": (_whole, _handle, _text, _text, _size),
+    "mesh_name": (_pointer, _handle, _text, _size, _length),
+    "mesh_sets": (_size, _handle),
+    "mesh_set": (_whole, _handle, _size, ctypes.POINTER(_whole), ctypes.POINTER(_pointer), _length,
+                 ctypes.POINTER(Array)),
+    "mesh_add_set": (_whole, _handle, _whole, _text, _size, _pointer, _size),
+    "mesh_add_group": (_whole, _handle, _whole, _text, _size, _pointer, _pointer, ctypes.POINTER(_text), _size,
+                       ctypes.POINTER(_text)),
+    "mesh_quality": (_whole, _handle, _pointer, _pointer, _pointer),
+    "mesh_summary": (_text, _handle),
+    "sizes_free": (None, _handle), "sizes_at": (_whole, _handle, _pointer, _size, _pointer),
+    "sizes_bounds": (None, _handle, ctypes.POINTER(_number), ctypes.POINTER(_number)),
+    "sizes_uniform": (_handle, _number),
+    "options_new": (_handle,), "options_free": (None, _handle), "options_set": (_whole, _handle, _text),
+    "options_regions": (_whole, _handle, _pointer, _size), "options_point_sizes": (_whole, _handle, _pointer, _size),
+    "options_regions_file": (_whole, _handle, _text), "options_point_sizes_file": (_whole, _handle, _text),
+    "options_field": (_whole, _handle, _handle), "options_ask_sizes": (None, _handle),
+    "options_tell_passes": (None, _handle),
+    "read_surface": (_handle, _text), "write_surface": (_handle, _handle, _text),
+    "read_mesh": (_handle, _text), "write_mesh": (_handle, _handle, _text, _text),
+    "read_sizes": (_handle, _text, _number), "write_sizes": (_handle, _handle, _text),
+    "generate": (_handle, _handle, _handle, _whole), "generate_surface": (_handle, _handle, _handle, _whole),
+    "generate_sizes": (_handle, _handle, _handle, _whole), "improve": (_handle, _handle, _handle, _handle, _whole),
+    "repair": (_handle, _handle), "check": (_handle, _handle, _text), "order_mesh": (_handle, _handle),
+    "job_wait": (_whole, _handle, _number, ctypes.POINTER(Event)), "job_answer": (None, _handle),
+    "job_cancel": (None, _handle), "job_free": (None, _handle), "job_status": (_whole, _handle),
+    "job_message": (_text, _handle), "job_report": (_text, _handle), "job_take_surface": (_handle, _handle),
+    "job_take_mesh": (_handle, _handle), "job_take_sizes": (_handle, _handle),
+}
+for _name, (_result, *_arguments) in _PROTOTYPES.items():
+    _function = getattr(_lib, "octafront_" + _name)
+    _function.restype, _function.argtypes = _result, _arguments
+
+
+def call(name, *arguments):
+    """Calls octafront_`name`, whatever it returns."""
+    return getattr(_lib, "octafront_" + name)(*arguments)
+
+
+def demand(name, *arguments):
+    """The same of a function that returns 0 for success. Raises OptionError."""
+    if call(name, *arguments) != 0:
+        raise errors.OptionError(spoken(text_of(call("last_error"))))
+
+
+@functools.lru_cache(maxsize=None)
+def option_table():
+    """What include/octafront/option_table.h knows: a list of dicts."""
+    return json.loads(call("option_table"))
+
+
+@functools.lru_cache(maxsize=None)
+def _spoken_names():
+    names = {row["name"] for row in option_table()}
+    fields = {row["field"]: row["name"] for row in option_table() if row["field"] not in names}
+    return {**fields, "field": "size_field"}
+
+
+def spoken(text):
+    """A message in which options are called as here: the library names fields, in backquotes."""
+    for field, name in _spoken_names().items():
+        text = text.replace(f"`{field}`", f"`{name}`")
+    return text
+
+
+def text_of(raw):
+    """Names of files and groups may hold bytes that no text has: they come and go unharmed."""
+    return raw.decode("utf-8", "surrogateescape")
+
+
+def bytes_of(text):
+    return text.encode("utf-8", "surrogateescape")
+
+
+def file_of(path):
+    raw = os.fsencode(path)
+    if b"\0" in raw:
+        raise errors.OptionError(f"{path!r} is no name of a file: it holds a zero byte")
+    return raw
+
+
+def pointer(array):
+    return array.ctypes.data_as(ctypes.c_void_p)
+
+
+class Handle:
+    """An object of the library, freed with this one. `kind` is "surface", "mesh", "sizes" or "options"."""
+
+    def __init__(self, kind, address=None):
+        self.kind, self.address = kind, address if address is not None else call(kind + "_new")
+        if not self.address:
+            raise MemoryError(text_of(call("last_error")) or "out of memory")
+
+    def __del__(self, call=call):
+        if getattr(self, "address", None):
+            call(self.kind + "_free", self.address)
+
+    @property
+    def _as_parameter_(self):
+        return ctypes.c_void_p(self.address)
+
+    def view(self, name):
+        """An array of the object as NumPy sees it, without a copy: read-only, and it keeps the object alive."""
+        found = Array()
+        demand(self.kind + "_array", self, name.encode(), ctypes.byref(found))
+        return _View.array(self, found)
+
+    def set(self, name, array):
+        array = np.ascontiguousarray(array)
+        demand(self.kind + "_set_array", self, name.encode(), pointer(array), len(array))
+
+    def names(self, which):
+        length, names = ctypes.c_size_t(), []
+        while True:
+            at = call(self.kind + "_name", self, which.encode(), len(names), ctypes.byref(length))
+            if not at:
+                return names
+            names.append(text_of(ctypes.string_at(at, length.value)))
+
+    def set_names(self, which, names):
+        for name in names:
+            raw = bytes_of(str(name))
+            demand(self.kind + "_add_name", self, which.encode(), raw, len(raw))
+
+
+class _View:
+    """What NumPy asks for the memory of an array that the library owns."""
+
+    def __init__(self, owner, found, dtype):
+        self._owner = owner
+        shape = (found.rows,) if found.columns == 1 else (found.rows, found.columns)
+        self.__array_interface__ = {"version": 3, "shape": shape, "typestr": np.dtype(dtype).str,
+                                    "data": (found.data, True)}
+
+    @staticmethod
+    def array(owner, found):
+        dtype = _TYPES[found.type]
+        if found.rows == 0:
+            return np.empty((0,) if found.columns == 1 else (0, found.columns), dtype)
+        return np.asarray(_View(owner, found, dtype))

@@ -1,0 +1,295 @@
+"""Tetrahedral meshes."""
+
+import ctypes
+import json
+import types
+
+import numpy as np
+
+from . import _html, errors
+from ._jobs import Job
+from ._library import Array, Handle, _View, bytes_of, call, demand, file_of, pointer, spoken, text_of
+from ._surface import _or_zeros, column_of, points_of, rows_of
+
+_KINDS = ["nodes", "edges", "faces", "elements"]
+_ARRAYS = ["points", "tets", "region", "boundary", "patch", "source", "interfaces", "interface_patch", "curve_edges",
+           "curve", "mid_nodes"]
+_LISTS = ["region_names", "patch_names", "curve_names"]
+# Where the mid-side nodes of an element stand in VTK and meshio, as columns of `mid_nodes`.
+_VTK_MIDS = [0, 3, 1, 2, 4, 5]
+
+
+class Mesh:
+    """A mesh of tetrahedra, linear or of second order, with its named parts.
+
+    octafront.mesh(), improve() and read() make one. From arrays of another tool: Mesh(points, tets, ...), which turns
+    inverted tetrahedra, drops points that no tetrahedron has, and adds what `faces` lack of the boundary.
+
+    points: (n, 3) float64, any unit of length. tets: (m, 4) indices, or (m, 10) of second order in the order of VTK.
+    regions: (m,) number of the body that each tetrahedron lies in; region r is called region_names[r].
+    faces: (k, 3) triangles of the boundary, or between regions; patches: (k,) their patches; patch p is called
+        patch_names[p].
+
+    Arrays given are copied. Those of the object are read-only views of the library's memory, and keep it alive: nothing
+    is copied, and nobody changes a mesh behind its own back; np.array(mesh.points) is a copy to work with. Raises
+    OptionError for wrong shapes, InputError for indices out of range.
+    """
+
+    def __init__(self, points, tets, *, regions=None, region_names=(), faces=None, patches=None, patch_names=()):
+        raw = Handle("mesh")
+        raw.set("points", points_of(points))
+        second_order = np.ndim(tets) == 2 and np.shape(tets)[1] == 10
+        tets = rows_of(tets, 10 if second_order else 4, np.uint32, "tets")
+        raw.set("tets", tets[:, :4])
+        if second_order:
+            mids = np.empty((len(tets), 6), np.uint32)
+            mids[:, _VTK_MIDS] = tets[:, 4:]
+            raw.set("mid_nodes", mids)
+        for name, values in (("region", regions), ("patch", patches)):
+            if values is not None:
+                raw.set(name, column_of(values, np.uint32, name + "s"))
+        if faces is not None:
+            raw.set("boundary", rows_of(faces, 3, np.uint32, "faces"))
+        raw.set_names("region_names", region_names)
+        raw.set_names("patch_names", patch_names)
+        job = Job("order_mesh", raw)
+        report = job.run()
+        self._take(Handle("mesh", job.take("mesh")), report)
+
+    def _take(self, handle, report):
+        self._handle, self._quality = handle, report.get("quality")
+        self.report = report
+
+    @classmethod
+    def _of(cls, address, report):
+        mesh = cls.__new__(cls)
+        mesh._take(Handle("mesh", address), report)
+        return mesh
+
+    @classmethod
+    def read(cls, path):
+        """Reads a mesh of any format that octafront.formats() lists so, with its groups. Raises InputError."""
+        job = Job("read_mesh", file_of(path))
+        report = job.run()
+        return cls._of(job.take("mesh"), report)
+
+    @property
+    def points(self):
+        """(n, 3) float64, input units; of second order: corners first, then mid-side nodes."""
+        return self._handle.view("points")
+
+    @property
+    def tets(self):
+        """(m, 4) uint32, indices into points: seen from the last corner, the others turn counter-clockwise."""
+        return self._handle.view("tets")
+
+    @property
+    def mid_nodes(self):
+        """(m, 6) uint32, mid-side nodes on the edges 01 02 03 12 13 23 of each tet; None: the mesh is linear."""
+        found = self._handle.view("mid_nodes")
+        return found if len(found) else None
+
+    @property
+    def order(self):
+        """1: linear elements; 2: of second order."""
+        return 1 if self.mid_nodes is None else 2
+
+    @property
+    def regions(self):
+        """(m,) uint32, number of the body that each tet lies in."""
+        return _or_zeros(self._handle.view("region"), len(self.tets))
+
+    @property
+    def faces(self):
+        """(k, 3) uint32, the triangles of the boundary, counter-clockwise seen from outside."""
+        return self._handle.view("boundary")
+
+    @property
+    def patches(self):
+        """(k,) uint32, the patch of each face."""
+        return _or_zeros(self._handle.view("patch"), len(self.faces))
+
+    @property
+    def sources(self):
+        """(k,) uint32, the triangle of the input nearest to each face; None where there was no input."""
+        found = self._handle.view("source")
+        return found if len(found) else None
+
+    @property
+    def interfaces(self):
+        """(i, 3) uint32, faces inside that belong to a patch: between regions, or sheets."""
+        return self._handle.view("interfaces")
+
+    @property
+    def interface_patches(self):
+        """(i,) uint32, the patch of each interface."""
+        return _or_zeros(self._handle.view("interface_patch"), len(self.interfaces))
+
+    @property
+    def curve_edges(self):
+        """(e, 2) uint32, the edges that lie on curves."""
+        return self._handle.view("curve_edges")
+
+    @property
+    def curves(self):
+        """(e,) uint32, the curve of each curve edge."""
+        return _or_zeros(self._handle.view("curve"), len(self.curve_edges))
+
+    @property
+    def names(self):
+        """{"regions": [...], "patches": [...], "curves": [...]}: number r is called by the r-th name, if there is one."""
+        return {name.split("_")[0] + ("es" if name.startswith("patch") else "s"): self._handle.names(name)
+                for name in _LISTS}
+
+    @property
+    def sets(self):
+        """Further named parts, {name: (kind, members)}: kind "nodes", "edges" (of curve_edges), "faces" (interfaces
+        count on behind faces) or "elements"; members (s,) uint32, ascending."""
+        found = {}
+        for i in range(call("mesh_sets", self._handle)):
+            kind, name, length, members = ctypes.c_int(), ctypes.c_void_p(), ctypes.c_size_t(), Array()
+            demand("mesh_set", self._handle, i, ctypes.byref(kind), ctypes.byref(name), ctypes.byref(length),
+                   ctypes.byref(members))
+            text = text_of(ctypes.string_at(name.value, length.value))
+            found[text] = (_KINDS[kind.value], np.array(_View.array(self._handle, members)))
+        return found
+
+    @property
+    def quality(self):
+        """A summary, as a dict: beta_mean, beta_min, beta_classes, dihedral_min_degrees, dihedral_max_degrees, ...;
+        beta = 3 r / R is 1 for the regular tetrahedron. Element by element: element_quality()."""
+        if self._quality is None:
+            text = call("mesh_summary", self._handle)
+            if text is None:
+                raise errors.InputError(spoken(text_of(call("last_error"))))
+            self._quality = json.loads(text)
+        return self._quality
+
+    def element_quality(self, measure="beta"):
+        """(m,) float64: "beta" = 3 r / R, or the "min_dihedral" or "max_dihedral" angle in degrees, of each tet."""
+        measures = ["beta", "min_dihedral", "max_dihedral"]
+        if measure not in measures:
+            raise errors.OptionError(f"`measure` is one of {', '.join(measures)}; {measure!r} is none of them")
+        out = np.empty(len(self.tets))
+        demand("mesh_quality", self._handle, *(pointer(out) if m == measure else None for m in measures))
+        return out
+
+    def add_set(self, name, members=None, *, kind="nodes", box=None, sphere=None, patches=None):
+        """Adds a named set, for loads and supports: exactly one of
+        members: (s,) indices of nodes, faces or elements, by `kind`;
+        box: [[x, y, z], [x, y, z]], sphere: ([x, y, z], radius): the nodes in it, or the faces or elements whose corners
+        all are; patches: the faces of patches, by names or numbers from 0.
+        Returns the mesh. Raises InputError where nothing is found.
+        """
+        if sum(x is not None for x in (members, box, sphere, patches)) != 1:
+            raise TypeError("add_set() needs exactly one of members, box, sphere and patches")
+        if kind not in _KINDS:
+            raise errors.OptionError(f"`kind` is one of {', '.join(_KINDS)}; {kind!r} is none of them")
+        raw, number = bytes_of(name), _KINDS.index(kind)
+        if members is not None:
+            members = np.unique(column_of(members, np.uint32, "members"))
+            demand("mesh_add_set", self._handle, number, raw, len(raw), pointer(members), len(members))
+            return self
+        corners = None if box is None else np.sort(points_of(box, "box"), axis=0)
+        ball = None if sphere is None else np.array([*sphere[0], sphere[1]], dtype=np.float64)
+        # Numbers count from 0 here as everywhere in Python; the library's count from 1 as in files.
+        words = [bytes_of(p if isinstance(p, str) else str(int(p) + 1)) for p in (patches or ())]
+        note = ctypes.c_char_p()
+        demand("mesh_add_group", self._handle, number, raw, len(raw), None if box is None else pointer(corners),
+               None if sphere is None else pointer(ball), (ctypes.c_char_p * len(words))(*words) if words else None,
+               len(words), ctypes.byref(note))
+        if note.value:
+            raise errors.InputError(text_of(note.value))
+        return self
+
+    def save(self, path, *, format=None):
+        """Writes the mesh in the format that the ending tells, or by its name in octafront.formats(). Returns what a
+        user should know, as sentences: what the format cannot hold. An older file stays whole if that fails:
+        OutputError."""
+        job = Job("write_mesh", self._handle, file_of(path), bytes_of(format or ""))
+        return job.run()["notes"]
+
+    def boundary(self):
+        """The boundary as a Surface, with its patches."""
+        from ._surface import Surface
+        used, triangles = np.unique(self.faces, return_inverse=True)
+        return Surface(self.points[used], triangles.reshape(-1, 3), patches=self.patches,
+                       patch_names=self.names["patches"])
+
+    def to_pyvista(self):
+        """A pyvista.UnstructuredGrid with the cell data "region" and "beta"."""
+        import pyvista
+        cells, kind = self._vtk_cells()
+        rows = np.hstack([np.full((len(cells), 1), cells.shape[1]), cells]).astype(np.int64)
+        grid = pyvista.UnstructuredGrid(rows.ravel(), np.full(len(cells), kind, np.uint8), np.array(self.points))
+        grid.cell_data["region"] = np.array(self.regions)
+        grid.cell_data["beta"] = self.element_quality()
+        return grid
+
+    def to_meshio(self):
+        """A meshio.Mesh: tetrahedra with the cell data "region", triangles of the boundary with "patch", and sets."""
+        import meshio
+        cells, _ = self._vtk_cells()
+        blocks = [("tetra" if self.order == 1 else "tetra10", cells.astype(np.int64)),
+                  ("triangle", self.faces.astype(np.int64))]
+        nothing = [np.zeros(len(cells), np.int64), np.zeros(len(self.faces), np.int64)]
+        data = {"region": [self.regions.astype(np.int64), nothing[1]],
+                "patch": [nothing[0], self.patches.astype(np.int64)]}
+        sets = {name: members.astype(np.int64) for name, (kind, members) in self.sets.items() if kind == "nodes"}
+        return meshio.Mesh(np.array(self.points), blocks, cell_data=data, point_sets=sets)
+
+    def plot(self, clip=(1, 0, 0), **keywords):
+        """Shows the mesh by pyvista, coloured by beta and cut open by whole elements: those whose centres lie behind the
+        plane through the middle with the normal `clip`; None: not cut. Keywords are those of pyvista's plot()."""
+        grid = self.to_pyvista()
+        if clip is not None:
+            middle = self.points.min(axis=0) / 2 + self.points.max(axis=0) / 2
+            centres = self.points[self.tets].mean(axis=1)
+            grid = grid.extract_cells(np.flatnonzero((centres - middle) @ np.asarray(clip, float) <= 0))
+        return grid.plot(**{"scalars": "beta", "show_edges": True, **keywords})
+
+    def _vtk_cells(self):
+        """Connectivity and cell type in VTK's order."""
+        if self.order == 1:
+            return self.tets, 10
+        return np.hstack([self.tets, self.mid_nodes[:, _VTK_MIDS]]), 24
+
+    def __getstate__(self):
+        return {"arrays": {name: np.array(self._handle.view(name)) for name in _ARRAYS},
+                "names": {name: self._handle.names(name) for name in _LISTS}, "sets": self.sets, "report": self.report}
+
+    def __setstate__(self, state):
+        handle = Handle("mesh")
+        for name, array in state["arrays"].items():
+            handle.set(name, array)
+        for name, names in state["names"].items():
+            handle.set_names(name, names)
+        self._take(handle, state["report"])
+        for name, (kind, members) in state["sets"].items():
+            self.add_set(name, members, kind=kind)
+
+    def __len__(self):
+        return len(self.tets)
+
+    def __repr__(self):
+        q = self.quality
+        return (f"<octafront.Mesh: {len(self)} tetrahedra{' of second order' if self.order == 2 else ''}, "
+                f"{len(self.points)} points, beta {q['beta_mean']:.3f} (least {q['beta_min']:.3f})>")
+
+    def _repr_html_(self):
+        return _html.of_mesh(self)
+
+
+class Checked(types.SimpleNamespace):
+    """What octafront.check() found; true if all is well.
+
+    Of a surface: clean, defects (a dict of kinds with counts and places), notes (what repair would change), bodies,
+    cavities, volume. Of a mesh: valid, defect (a sentence, or None), second_order, groups, solver. `text`: the same in
+    words.
+    """
+
+    def __bool__(self):
+        return getattr(self, "clean", None) or getattr(self, "valid", False)
+
+    def __str__(self):
+        return self.text

@@ -1,0 +1,188 @@
+"""Keywords of the functions: the library's table of options (octafront/option_table.h), and what takes more than one
+value. Nothing is listed twice: a new row of the table is a new keyword here."""
+
+import difflib
+import functools
+import inspect
+import json
+import math
+import os
+import textwrap
+
+import numpy as np
+
+from . import errors
+from ._library import Handle, call, demand, file_of, option_table, pointer
+
+# Beside the table: name, which functions heed it, what it is.
+_FURTHER = [
+    ("regions", "mesh surface size",
+     "Places with a size of their own: a list of {\"box\": [[x, y, z], [x, y, z]], \"size\": h}, {\"sphere\": [x, y, "
+     "z], \"radius\": r, \"size\": h}, {\"point\": [x, y, z], \"size\": h}, or an array (n, 4) of points and sizes, or "
+     "a file with either"),
+    ("point_sizes", "mesh surface size",
+     "Sizes at the vertices of the surface: an array (n, 4) of points and sizes, or a file: VTU, VTP, a table"),
+    ("size_field", "mesh surface size", "All sizes: a SizeField, or a file that one wrote; alone"),
+    ("after_pass", "mesh improve", "after_pass(name, worst), told of every pass of improvement"),
+    ("progress", "mesh surface size improve",
+     "progress(phase, fraction), told how far the run is; fraction is None where it is unknown. What returns False ends "
+     "the run with Cancelled"),
+    ("threads", "mesh surface size improve", "Threads at most; 0: all. The result is the same"),
+]
+
+
+def _rows(task):
+    return [row for row in option_table() if task in row["tasks"].split()]
+
+
+def _further(task):
+    return [(name, text) for name, tasks, text in _FURTHER if task in tasks.split()]
+
+
+@functools.lru_cache(maxsize=None)
+def keywords_of(task):
+    """All keywords of a task: "mesh", "surface", "size" or "improve"."""
+    return [row["name"] for row in _rows(task)] + [name for name, _ in _further(task)]
+
+
+class Settings:
+    """The keywords of a call, taken apart: `options` for the library, and what Python serves."""
+
+    def __init__(self, function, task, keywords):
+        keywords = {name: value for name, value in keywords.items() if _is_known(function, task, name)}
+        given = {name: value for name, value in keywords.items() if value is not None}
+        self.progress, self.after_pass = given.pop("progress", None), given.pop("after_pass", None)
+        self.threads = _threads(given.pop("threads", 0))
+        self.options = Handle("options")
+        self.size_at = None
+        self._set_sizes(given)
+        values = {name: _plain(name, value) for name, value in given.items()}
+        demand("options_set", self.options, json.dumps(values).encode())
+        if self.after_pass:
+            call("options_tell_passes", self.options)
+
+    def functions(self):
+        return {"progress": self.progress, "after_pass": self.after_pass, "size_at": self.size_at}
+
+    def _set_sizes(self, given):
+        from ._sizes import SizeField
+        if callable(given.get("size")) and not isinstance(given["size"], SizeField):
+            self.size_at = given.pop("size")
+            call("options_ask_sizes", self.options)
+        elif isinstance(given.get("size"), SizeField):
+            given["size_field"] = given.pop("size")
+        if "size_field" in given:
+            field = given.pop("size_field")
+            if _is_file(field):
+                field = SizeField.read(field, gradation=given.get("gradation", 0.2))
+            demand("options_field", self.options, field._handle)
+        for name in ("regions", "point_sizes"):
+            if name in given:
+                self._set_places(name, given.pop(name))
+
+    def _set_places(self, name, value):
+        if _is_file(value):
+            demand(f"options_{name}_file", self.options, file_of(value))
+            return
+        rows = _region_rows(value) if name == "regions" else _numbers(value, 4, "point_sizes", "x, y, z, size")
+        demand(f"options_{name}", self.options, pointer(rows), len(rows))
+
+
+def _is_file(value):
+    return isinstance(value, (str, bytes, os.PathLike))
+
+
+def _is_known(function, task, name):
+    if name in keywords_of(task):
+        return True
+    others = [other for other in ("mesh", "surface", "size", "improve") if name in keywords_of(other)]
+    near = difflib.get_close_matches(name, keywords_of(task), n=1, cutoff=0.6)
+    hint = f"; did you mean '{near[0]}'?" if near else ""
+    if others:
+        functions = " and ".join(("size_field" if other == "size" else other) + "()" for other in others)
+        hint = f": it is an option of {functions}"
+    raise TypeError(f"{function}() got an unexpected keyword argument '{name}'{hint}")
+
+
+def _threads(value):
+    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or not 0 <= value <= 1024:
+        raise errors.OptionError(f"`threads` is {value!r}: it must be a whole number from 0 (all) to 1024")
+    # More than the machine has only get in each other's way.
+    return min(int(value), os.cpu_count() or 1)
+
+
+def _plain(name, value):
+    if isinstance(value, np.generic):
+        value = value.item()
+    if not isinstance(value, (bool, int, float, str)):
+        raise errors.OptionError(f"`{name}` needs a single value, not {type(value).__name__}")
+    if isinstance(value, float) and not math.isfinite(value):
+        raise errors.OptionError(f"`{name}` is {value}: it must be finite")
+    return value
+
+
+def _numbers(value, columns, name, what):
+    try:
+        rows = np.ascontiguousarray(value, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise errors.OptionError(f"`{name}` are rows of {what}: {error}") from None
+    if rows.ndim != 2 or rows.shape[1] != columns:
+        raise errors.OptionError(f"`{name}` are rows of {what}: an array of shape (n, {columns}), not {rows.shape}")
+    return rows
+
+
+def _region_rows(regions):
+    if isinstance(regions, np.ndarray):
+        rows = _numbers(regions, 4, "regions", "x, y, z, size")
+        return np.ascontiguousarray(np.hstack([rows[:, :3], rows[:, :3], np.zeros((len(rows), 1)), rows[:, 3:]]))
+    return np.array([_region_row(i, region) for i, region in enumerate(regions)], dtype=np.float64).reshape(-1, 8)
+
+
+def _region_row(i, region):
+    places = [key for key in ("box", "sphere", "point") if key in dict(region)]
+    if len(places) != 1 or "size" not in region or set(region) - {places[0], "radius", "size"}:
+        raise errors.OptionError(f"region {i} needs exactly one of \"box\", \"sphere\" and \"point\", a \"size\", and "
+                                 f"at most a \"radius\" beside; it has {sorted(region)}")
+    corners = np.asarray(region[places[0]], dtype=np.float64)
+    if corners.shape != ((2, 3) if places[0] == "box" else (3,)):
+        raise errors.OptionError(f"region {i} needs " + ("[[x, y, z], [x, y, z]]" if places[0] == "box" else "[x, y, z]")
+                                 + f" in \"{places[0]}\"")
+    lo, hi = corners if places[0] == "box" else (corners, corners)
+    return [*lo, *hi, region.get("radius", 0.0), region["size"]]
+
+
+def takes_options(task):
+    """For functions whose last parameter is **keywords: help() and editors see the keywords of the task."""
+
+    def dress(function):
+        signature = inspect.signature(function)
+        fixed = [p for p in signature.parameters.values() if p.kind != p.VAR_KEYWORD]
+        defaults = {row["name"]: row["default"] for row in _rows(task)}
+        more = [inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY,
+                                  default=0 if name == "threads" else defaults.get(name))
+                for name in keywords_of(task)]
+        function.__signature__ = signature.replace(parameters=[*fixed, *more])
+        function.__doc__ = inspect.cleandoc(function.__doc__) + "\n\n" + _described(task)
+        return function
+
+    return dress
+
+
+def _described(task):
+    lines, group = [], None
+    for row in _rows(task):
+        if row["group"] != group:
+            group = row["group"]
+            lines.append(f"{group}:")
+        default = "" if row["default"] is None or row["kind"] == "flag" else f" [{row['default']}]"
+        choices = f" One of {', '.join(row['choices'])}." if row["choices"] else ""
+        more = " Or a function: sizes (n,) at points (n, 3)." if row["name"] == "size" else ""
+        lines += _entry(row["name"], f"{row['help']}.{choices}{more}{default}")
+    lines.append("Further:")
+    for name, text in _further(task):
+        lines += _entry(name, text + ".")
+    return "\n".join(lines)
+
+
+def _entry(name, text):
+    return textwrap.wrap(f"{name}: {text}", 100, initial_indent="    ", subsequent_indent="        ")

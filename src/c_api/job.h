@@ -1,0 +1,76 @@
+#pragma once
+
+#include <octafront/octafront_c.h>
+#include <octafront/run_context.h>
+
+#include "c_api/c_api.h"
+
+#include <atomic>
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <thread>
+#include <vector>
+
+/// Work on a thread of its own, and what its caller waits for. The worker posts events, the caller takes them; only to
+/// a question about sizes does the worker wait for an answer.
+struct octafront_job {
+ public:
+  using Json = nlohmann::ordered_json;
+  using Work = std::function<void(octafront_job&)>;
+
+  octafront_job(const Work& work, int threads);
+  /// Cancels and waits.
+  ~octafront_job();
+  octafront_job(const octafront_job&) = delete;
+  octafront_job& operator=(const octafront_job&) = delete;
+
+  // For the worker.
+  const octafront::RunContext& context() const { return context_; }
+  /// The options with their callbacks, if they want events.
+  octafront::Options options_of(const octafront_options* options);
+  Json report = Json::object();
+  std::unique_ptr<octafront_surface> surface;
+  std::unique_ptr<octafront_mesh> mesh;
+  std::unique_ptr<octafront_sizes> sizes;
+
+  // For the caller.
+  int wait(double seconds, octafront_event& event);
+  void answer();
+  void cancel();
+  int status() const { return status_; }
+  const char* message() const { return message_.c_str(); }
+  const char* report_text();
+
+ private:
+  struct Event {
+    int kind;
+    std::string text;
+    std::array<double, 4> values{};
+  };
+
+  void run(const Work& work);
+  void close(int status, std::string message);
+  void post(Event event);
+  void post_progress(std::string_view stage, double fraction);
+  void ask(std::span<const octafront::Vec3> points, std::span<double> sizes);
+  bool take_event(octafront_event& event);
+
+  octafront::RunContext context_;
+  std::atomic<bool> cancelled_{false};
+  std::mutex mutex_;
+  std::condition_variable for_caller_, for_worker_;
+  std::deque<Event> events_;
+  Event current_{};  ///< what the caller looks at
+  std::span<const octafront::Vec3> asked_;
+  std::span<double> answers_;
+  bool is_asked_ = false, is_shown_ = false, ended_ = false;
+  int status_ = OCTAFRONT_INTERNAL;
+  std::string message_, report_text_;
+  std::thread worker_;  // last: it sees all of the above
+};

@@ -1,0 +1,319 @@
+// What jobs do: each task is one call of the library.
+
+#include <octafront/error.h>
+#include <octafront/generate.h>
+#include <octafront/improve_existing.h>
+#include <octafront/io.h>
+#include <octafront/repair.h>
+#include <octafront/second_order.h>
+#include <octafront/solver_checks.h>
+#include <octafront/validity.h>
+
+#include "c_api/job.h"
+#include "io/raw_mesh.h"
+
+#include <map>
+#include <utility>
+
+#include <fmt/core.h>
+
+namespace octafront::c_api {
+
+namespace {
+
+using Json = octafront_job::Json;
+
+thread_local std::string last_error, last_text;
+
+/// A job, or null where there is no memory or thread for one.
+octafront_job* started(const octafront_job::Work& work, int threads = 0) {
+  octafront_job* job = nullptr;
+  guarded([&] { job = new octafront_job(work, threads); });
+  return job;
+}
+
+void give(octafront_job& job, SurfaceMesh surface) {
+  job.surface = std::make_unique<octafront_surface>(octafront_surface{std::move(surface)});
+}
+
+void give(octafront_job& job, TetMesh mesh) {
+  job.mesh = std::make_unique<octafront_mesh>(octafront_mesh{std::move(mesh)});
+}
+
+void give(octafront_job& job, const SizeField& sizes) {
+  job.sizes = std::make_unique<octafront_sizes>(octafront_sizes{sizes});
+}
+
+Json place(Vec3 p) {
+  return {p.x, p.y, p.z};
+}
+
+Json json_of(const SurfaceDefects::Kind& kind) {
+  Json first = Json::array();
+  for (const SurfaceDefects::Place& p : kind.first) first.push_back({{"at", place(p.at)}, {"faces", p.faces}});
+  return {{"count", kind.count}, {"first", first}};
+}
+
+Json json_of(const SurfaceDefects& d) {
+  return {{"open_edges", json_of(d.open_edges)},
+          {"open_loops", d.open_loops},
+          {"non_manifold_edges", json_of(d.non_manifold_edges)},
+          {"misoriented_edges", json_of(d.misoriented_edges)},
+          {"non_manifold_vertices", json_of(d.non_manifold_vertices)},
+          {"self_intersections", json_of(d.self_intersections)},
+          {"degenerate_faces", json_of(d.degenerate_faces)}};
+}
+
+Json json_of(const RepairedSurface& r) {
+  return {{"merged_vertices", r.merged_vertices},
+          {"unused_vertices", r.unused_vertices},
+          {"duplicate_faces", r.duplicate_faces},
+          {"degenerate_faces", r.degenerate_faces},
+          {"divided_faces", r.divided_faces},
+          {"turned_faces", r.turned_faces},
+          {"turned_shells", r.turned_shells},
+          {"shells", r.shells},
+          {"cavities", r.cavities},
+          {"bodies", r.bodies},
+          {"notes", r.notes}};
+}
+
+/// Runs a generator; if it refuses the surface, the evidence goes along.
+template <class Generator>
+auto with_evidence(octafront_job& job, const SurfaceMesh& surface, const Generator& generator) {
+  require_indices(surface);
+  try {
+    return generator();
+  } catch (const InputError&) {
+    if (const SurfaceDefects d = find_defects(repair_surface(surface, job.context()), job.context()); !d.clean())
+      job.report["defects"] = json_of(d);
+    throw;
+  }
+}
+
+void repair(octafront_job& job, const SurfaceMesh& surface) {
+  require_indices(surface);
+  RepairedSurface repaired = repair_surface(surface, job.context());
+  const SurfaceDefects defects = find_defects(repaired, job.context());
+  job.report = json_of(repaired);
+  job.report["clean"] = defects.clean();
+  job.report["defects"] = json_of(defects);
+  job.report["described"] = defects.describe();
+  if (defects.clean()) job.report["volume"] = enclosed_volume(repaired.surface);
+  give(job, std::move(repaired.surface));
+}
+
+Json json_of(const JacobianSummary& found) {
+  Json first = Json::array();
+  for (const InvalidElement& e : found.first)
+    first.push_back({{"number", e.tet}, {"at", place(e.at)}, {"scaled_jacobian", e.scaled_jacobian}});
+  return {{"least_scaled_jacobian", found.least_scaled_jacobian}, {"invalid", found.invalid}, {"first", first}};
+}
+
+Json json_of(const SolverFinding& f) {
+  Json worst = Json::array();
+  for (const SolverFinding::Element& e : f.worst)
+    worst.push_back({{"number", e.tet}, {"at", place(e.at)}, {"value", e.value}});
+  return {{"measure", f.measure},
+          {"refused", f.refused},
+          {f.above ? "above" : "below", f.limit},
+          {"count", f.count},
+          {"worst", worst}};
+}
+
+Solver solver_named(const std::string& name) {
+  const std::map<std::string, Solver> solvers{{"abaqus", Solver::kAbaqus},
+                                              {"ansys", Solver::kAnsys},
+                                              {"nastran", Solver::kNastran},
+                                              {"calculix", Solver::kCalculix}};
+  const auto found = solvers.find(name);
+  if (found == solvers.end())
+    throw OptionError(fmt::format("`solver` is one of abaqus, ansys, nastran, calculix; \"{}\" is none of them", name));
+  return found->second;
+}
+
+void check(octafront_job& job, const TetMesh& mesh, const std::string& solver) {
+  require_indices(mesh);
+  const auto defect = first_defect(mesh, job.context());
+  job.report["valid"] = !defect;
+  job.report["defect"] = defect ? Json(*defect) : Json(nullptr);
+  if (mesh.is_second_order()) job.report["second_order"] = json_of(check_jacobians(mesh, job.context()));
+  Json groups = Json::array();
+  for (const GroupInfo& g : groups_of(mesh))
+    groups.push_back({{"origin", g.origin}, {"name", g.name}, {"size", g.size}});
+  job.report["groups"] = groups;
+  if (solver.empty()) return;
+  job.report["solver"] = Json::array();
+  for (const SolverFinding& finding : check_for_solver(mesh, solver_named(solver), job.context()))
+    job.report["solver"].push_back(json_of(finding));
+}
+
+std::vector<std::int64_t> references(const std::vector<std::uint32_t>& numbers, std::size_t count) {
+  std::vector<std::int64_t> refs(count, 1);
+  for (std::size_t i = 0; i < numbers.size(); ++i) refs[i] = std::int64_t{numbers[i]} + 1;
+  return refs;
+}
+
+std::map<std::int64_t, std::string> named(const std::vector<std::string>& names) {
+  std::map<std::int64_t, std::string> by_reference;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (!names[i].empty()) by_reference.emplace(i + 1, names[i]);
+  return by_reference;
+}
+
+void order_mesh(octafront_job& job, const TetMesh& mesh) {
+  require_indices(mesh);
+  io::RawMesh raw;
+  raw.format = "arrays";
+  raw.points = mesh.points;
+  raw.tets = mesh.tets;
+  raw.mid_nodes = mesh.mid_nodes;
+  raw.tet_ref = references(mesh.region, mesh.tets.size());
+  raw.triangles = mesh.boundary;
+  raw.triangle_ref = references(mesh.patch, mesh.boundary.size());
+  raw.region_names = named(mesh.region_names);
+  raw.surface_names = named(mesh.patch_names);
+  MeshFile ordered = io::ordered_mesh(std::move(raw), {"the arrays of the mesh", {}, job.context()});
+  job.report["notes"] = ordered.notes;
+  give(job, std::move(ordered.mesh));
+}
+
+}  // namespace
+
+void remember_error(std::string message) {
+  last_error = std::move(message);
+}
+
+const char* kept(std::string text) {
+  last_text = std::move(text);
+  return last_text.c_str();
+}
+
+}  // namespace octafront::c_api
+
+using namespace octafront;
+using namespace octafront::c_api;
+
+const char* octafront_version() {
+  return OCTAFRONT_VERSION;
+}
+
+const char* octafront_last_error() {
+  return last_error.c_str();
+}
+
+octafront_job* octafront_read_surface(const char* file) {
+  return started([file = std::string(file)](octafront_job& job) {
+    SurfaceFile read = read_surface(file, job.context());
+    job.report = {{"format", read.format}, {"notes", read.notes}};
+    give(job, std::move(read.surface));
+  });
+}
+
+octafront_job* octafront_write_surface(const octafront_surface* surface, const char* file) {
+  return started([surface, file = std::string(file)](octafront_job& job) {
+    require_indices(surface->mesh);
+    write_surface(file, surface->mesh, job.context());
+  });
+}
+
+octafront_job* octafront_read_mesh(const char* file) {
+  return started([file = std::string(file)](octafront_job& job) {
+    MeshFile read = read_mesh_file(file, job.context());
+    job.report = {{"format", read.format}, {"notes", read.notes}};
+    give(job, std::move(read.mesh));
+  });
+}
+
+octafront_job* octafront_write_mesh(const octafront_mesh* mesh, const char* file, const char* format) {
+  return started([mesh, file = std::string(file), format = std::string(format)](octafront_job& job) {
+    check_mesh_target(file, format);
+    require_indices(mesh->mesh);
+    job.report["notes"] = write_mesh(file, mesh->mesh, job.context(), format);
+  });
+}
+
+octafront_job* octafront_read_sizes(const char* file, double gradation) {
+  return started([file = std::string(file), gradation](octafront_job& job) {
+    give(job, read_size_field(file, gradation, job.context()));
+  });
+}
+
+octafront_job* octafront_write_sizes(const octafront_sizes* sizes, const char* file) {
+  return started([sizes, file = std::string(file)](octafront_job& job) {
+    check_size_field_target(file);
+    write_size_field(file, sizes->field, job.context());
+  });
+}
+
+octafront_job* octafront_generate(const octafront_surface* surface, const octafront_options* options, int threads) {
+  return started(
+      [surface, options](octafront_job& job) {
+        const Options with_events = job.options_of(options);
+        Result result =
+            with_evidence(job, surface->mesh, [&] { return generate(surface->mesh, with_events, job.context()); });
+        job.report = Json::parse(to_json(result.report));
+        give(job, std::move(result.mesh));
+        give(job, result.sizes);
+      },
+      threads);
+}
+
+octafront_job* octafront_generate_surface(const octafront_surface* surface, const octafront_options* options,
+                                          int threads) {
+  return started(
+      [surface, options](octafront_job& job) {
+        const Options with_events = job.options_of(options);
+        SurfaceResult result = with_evidence(
+            job, surface->mesh, [&] { return generate_surface(surface->mesh, with_events, job.context()); });
+        job.report = Json::parse(to_json(result.report));
+        give(job, std::move(result.surface));
+        give(job, result.sizes);
+      },
+      threads);
+}
+
+octafront_job* octafront_generate_sizes(const octafront_surface* surface, const octafront_options* options,
+                                        int threads) {
+  return started(
+      [surface, options](octafront_job& job) {
+        const Options with_events = job.options_of(options);
+        const SizeResult result = with_evidence(
+            job, surface->mesh, [&] { return generate_sizes(surface->mesh, with_events, job.context()); });
+        job.report = Json::parse(to_json(result.report));
+        give(job, result.sizes);
+      },
+      threads);
+}
+
+octafront_job* octafront_improve(const octafront_mesh* mesh, const octafront_surface* ground,
+                                 const octafront_options* options, int threads) {
+  return started(
+      [mesh, ground, options](octafront_job& job) {
+        require_indices(mesh->mesh);
+        if (ground != nullptr) require_indices(ground->mesh);
+        Improved improved = improve_existing(mesh->mesh, job.options_of(options),
+                                             ground != nullptr ? &ground->mesh : nullptr, job.context());
+        Report before;
+        before.tets = mesh->mesh.tets.size();
+        before.quality = improved.before;
+        job.report = Json::parse(to_json(improved.report));
+        job.report["before"] = Json::parse(to_json(before))["quality"];
+        give(job, std::move(improved.mesh));
+      },
+      threads);
+}
+
+octafront_job* octafront_repair(const octafront_surface* surface) {
+  return started([surface](octafront_job& job) { repair(job, surface->mesh); });
+}
+
+octafront_job* octafront_check(const octafront_mesh* mesh, const char* solver) {
+  return started([mesh, solver = std::string(solver != nullptr ? solver : "")](octafront_job& job) {
+    check(job, mesh->mesh, solver);
+  });
+}
+
+octafront_job* octafront_order_mesh(const octafront_mesh* mesh) {
+  return started([mesh](octafront_job& job) { order_mesh(job, mesh->mesh); });
+}

@@ -1,0 +1,16 @@
+#!/bin/sh
+# Builds and runs a program of a user's by what pkg-config says of an installed octafront, in C++ and in C.
+#   pkg_config.sh PREFIX EXAMPLES SCRATCH
+set -eu
+prefix=$1 examples=$2 scratch=$3
+mkdir -p "$scratch"
+PKG_CONFIG_PATH=$(dirname "$(find "$prefix" -name octafront.pc)")
+export PKG_CONFIG_PATH
+# Which way it is linked is the library's choice; a static one wants what it stands on.
+flags=$(pkg-config --cflags octafront) libraries=$(pkg-config --static --libs octafront)
+c++ $flags "$examples/mesh_a_sphere.cpp" -o "$scratch/sphere" $libraries
+cc -std=c99 -c $(pkg-config --cflags-only-I octafront) "$examples/mesh_from_c.c" -o "$scratch/cube.o"
+c++ "$scratch/cube.o" -o "$scratch/cube" $libraries
+LD_LIBRARY_PATH=$(dirname "$PKG_CONFIG_PATH") "$scratch/sphere" "$scratch/sphere.vtu"
+LD_LIBRARY_PATH=$(dirname "$PKG_CONFIG_PATH") "$scratch/cube" "$scratch/cube.vtu"
+test -s "$scratch/sphere.vtu" && test -s "$scratch/cube.vtu"

@@ -1,0 +1,87 @@
+#include <octafront/error.h>
+#include <octafront/option_table.h>
+
+#include <set>
+
+#include <gtest/gtest.h>
+
+namespace octafront {
+namespace {
+
+/// A value other than `value`, of the same kind.
+OptionValue another(const OptionInfo& info, const OptionValue& value) {
+  switch (info.kind) {
+    case OptionInfo::Kind::kFlag:
+      return !std::get<bool>(value);
+    case OptionInfo::Kind::kNumber:
+      return 0.375;
+    case OptionInfo::Kind::kWhole:
+      return std::int64_t{7};
+    case OptionInfo::Kind::kChoice:
+      for (const std::string_view choice : info.choices)
+        if (std::string(choice) != std::get<std::string>(value)) return std::string(choice);
+  }
+  return {};
+}
+
+TEST(OptionTable, WhatIsSetIsThereAndNothingElseChanges) {
+  for (const OptionInfo& info : option_table()) {
+    const Options defaults;
+    Options options;
+    const OptionValue value = another(info, option_value(defaults, info.name));
+    ASSERT_NE(value, option_value(defaults, info.name)) << info.name;
+    set_option(options, info.name, value);
+    for (const OptionInfo& other : option_table()) {
+      const OptionValue expected = other.name == info.name ? value : option_value(defaults, other.name);
+      EXPECT_EQ(option_value(options, other.name), expected) << info.name << " " << other.name;
+    }
+    set_option(options, info.name, option_value(defaults, info.name));
+    EXPECT_EQ(option_value(options, info.name), option_value(defaults, info.name)) << info.name;
+  }
+}
+
+TEST(OptionTable, NamesAreThereOnceAndSayWhatTheyAre) {
+  std::set<std::string_view> names;
+  for (const OptionInfo& info : option_table()) {
+    EXPECT_TRUE(names.insert(info.name).second) << info.name;
+    EXPECT_FALSE(info.help.empty() || info.group.empty() || info.tasks.empty()) << info.name;
+    EXPECT_EQ(info.kind == OptionInfo::Kind::kChoice, !info.choices.empty()) << info.name;
+  }
+  EXPECT_GT(names.size(), 20u);
+}
+
+void refused(std::string_view name, const OptionValue& value, const std::string& words) {
+  Options options;
+  try {
+    set_option(options, name, value);
+    ADD_FAILURE() << name << " was taken";
+  } catch (const OptionError& error) {
+    EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+  }
+}
+
+TEST(OptionTable, WrongNamesAndValuesAreRefused) {
+  refused("sise", 1.0, "there is no option \"sise\"");
+  refused("size", std::string("large"), "`size` needs a number");
+  refused("size", true, "`size` needs a number");
+  refused("gradation", {}, "`gradation` needs a number");
+  refused("elements", 1.5, "`elements` needs a whole number");
+  refused("elements", 1e300, "`elements` needs a whole number");
+  refused("order", std::int64_t{1} << 40, "`order` is out of range");
+  refused("facets", 1.0, "`facets` is true or false");
+  refused("interior", std::string("large"), "`interior` is one of uniform, graded; \"large\" is none of them");
+  refused("interior", 1.0, "`interior` is one of uniform, graded");
+}
+
+TEST(OptionTable, WholeNumbersAreNumbersToo) {
+  Options options;
+  set_option(options, "size", std::int64_t{3});
+  EXPECT_EQ(options.size.size, 3.0);
+  set_option(options, "elements", 1e5);
+  EXPECT_EQ(options.size.elements, 100000);
+  set_option(options, "size", {});
+  EXPECT_FALSE(options.size.size);
+}
+
+}  // namespace
+}  // namespace octafront

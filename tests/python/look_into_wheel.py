@@ -1,0 +1,79 @@
+#!/usr/bin/env python3
+"""Is a wheel what it says? Needs readelf.
+
+    look_into_wheel.py WHEEL SOURCE
+
+- Everything that its binaries need is inside, or a part of glibc or of GCC's run time.
+- No binary asks for a newer glibc than the name of the wheel says, nor for a newer libstdc++ than that system has.
+- The licence of each library inside is inside too, ours, and py.typed and stubs.
+- RECORD is right, and the version that of CMakeLists.txt.
+"""
+import base64
+import hashlib
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import zipfile
+
+EVERYWHERE = {"libc.so.6", "libm.so.6", "libstdc++.so.6", "libgcc_s.so.1", "ld-linux-x86-64.so.2",
+              "ld-linux-aarch64.so.1", "libpthread.so.0", "libdl.so.2", "librt.so.1"}
+
+
+def readelf(option, file):
+    return subprocess.run(["readelf", "--wide", option, file], check=True, capture_output=True, text=True).stdout
+
+
+def look(wheel, source):
+    names, wrong = wheel.namelist(), []
+
+    def require(holds, what):
+        if not holds:
+            wrong.append(what)
+
+    tag = re.search(r"-py3-none-manylinux_(\d+)_(\d+)_", wheel.filename)
+    require(tag, "the tag is not py3-none-manylinux")
+    binaries = {pathlib.Path(n).name: wheel.read(n) for n in names if "/_bin/" in n}
+    require({"liboctafront.so", "octafront"} <= set(binaries), "the library or the tool is missing")
+    with tempfile.TemporaryDirectory() as folder:
+        for name, data in binaries.items():
+            file = pathlib.Path(folder, name)
+            file.write_bytes(data)
+            dynamic = readelf("-d", file)
+            for needed in re.findall(r"\(NEEDED\).*\[(.+)\]", dynamic):
+                require(needed in EVERYWHERE or needed in binaries, f"{name} needs {needed}, which is not inside")
+            path = re.findall(r"\((?:RPATH|RUNPATH)\).*\[(.+)\]", dynamic)
+            require(path in ([], ["$ORIGIN"]), f"{name} looks for libraries in {path}")
+            if name in ("liboctafront.so", "octafront"):
+                require(path == ["$ORIGIN"], f"{name} does not look beside itself")
+            for a, b in re.findall(r"GLIBC_(\d+)\.(\d+)", readelf("-V", file)):
+                require((int(a), int(b)) <= (int(tag[1]), int(tag[2])), f"{name} needs glibc {a}.{b}")
+    for library in binaries:
+        stem = library.removeprefix("lib").split(".")[0]
+        require(stem == "octafront" or any(n.endswith(f"licenses/{stem}.txt") for n in names),
+                f"the licence of {library} is missing")
+    for name in ("LICENSE", "NOTICE", "py.typed", "__init__.pyi"):
+        require(any(n.endswith("/" + name) for n in names), f"{name} is missing")
+    require(not any("hdf5" in n or "cairo" in n for n in names), "HDF5 or cairo came along")
+
+    version = re.search(r"project\(octafront VERSION ([\d.]+)", (source / "CMakeLists.txt").read_text())[1]
+    metadata = wheel.read(f"octafront-{version}.dist-info/METADATA").decode()
+    require(f"Version: {version}\n" in metadata, "the version is not that of CMakeLists.txt")
+    recorded = dict(line.split(",")[:2] for line in wheel.read(f"octafront-{version}.dist-info/RECORD").decode().split())
+    require(set(recorded) == set(names), "RECORD lists other files")
+    for name, digest in recorded.items():
+        found = base64.urlsafe_b64encode(hashlib.sha256(wheel.read(name)).digest()).rstrip(b"=").decode()
+        require(not digest or digest == "sha256=" + found, f"the sum of {name} is wrong")
+    return wrong
+
+
+def main():
+    with zipfile.ZipFile(sys.argv[1]) as wheel:
+        wrong = look(wheel, pathlib.Path(sys.argv[2]))
+    print(*wrong, sep="\n")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

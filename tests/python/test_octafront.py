@@ -1,0 +1,483 @@
+"""The Python package as it is installed. Run with the Python of an environment that has it: python -m unittest"""
+
+import copy
+import gc
+import inspect
+import json
+import multiprocessing
+import os
+import pathlib
+import pickle
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+
+import numpy as np
+
+import octafront
+from shapes import cube, sphere
+
+SAMPLES = pathlib.Path(os.environ["OCTAFRONT_SAMPLES"])
+
+
+def meshed_hash(_):
+    return octafront.mesh(*sphere(), size=0.2).report["hash"]
+
+
+class Case(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+
+class Meshing(Case):
+    def test_arrays_in_and_out(self):
+        points, triangles = sphere()
+        mesh = octafront.mesh(points, triangles, size=0.3)
+        self.assertEqual(mesh.points.shape[1], 3)
+        self.assertEqual(mesh.points.dtype, np.float64)
+        self.assertEqual(mesh.tets.shape[1], 4)
+        a, b, c, d = (mesh.points[mesh.tets[:, i]] for i in range(4))
+        volumes = np.einsum("ij,ij->i", np.cross(b - a, c - a), d - a) / 6
+        self.assertTrue((volumes > 0).all())
+        self.assertAlmostEqual(volumes.sum(), mesh.report["volume"], places=9)
+        self.assertAlmostEqual(volumes.sum(), 4 / 3 * np.pi, delta=0.3)
+        self.assertEqual(len(mesh.regions), len(mesh.tets))
+        self.assertEqual(len(mesh.patches), len(mesh.faces))
+
+    def test_the_same_mesh_as_the_command_line_and_for_every_number_of_threads(self):
+        program = pathlib.Path(sys.executable).parent / "octafront"
+        file, made = SAMPLES / "bracket.stl", self.folder / "b.mesh"
+        report = self.folder / "b.json"
+        subprocess.run([program, "mesh", file, "-o", made, "--size", "4", "--json", report], check=True,
+                       stdout=subprocess.DEVNULL)
+        hashes = {octafront.mesh_file(file, size=4, threads=n).report["hash"] for n in (1, 2)}
+        hashes.add(json.loads(report.read_text())["hash"])
+        self.assertEqual(len(hashes), 1, hashes)
+
+    def test_arrays_are_views_that_outlive_their_mesh(self):
+        mesh = octafront.mesh(*cube(), size=0.3)
+        points, before = mesh.points, np.array(mesh.points)
+        self.assertFalse(points.flags.writeable)
+        self.assertFalse(points.flags.owndata)
+        del mesh
+        gc.collect()
+        octafront.mesh(*cube(), size=0.25)
+        np.testing.assert_array_equal(points, before)
+
+    def test_arrays_of_any_layout_and_type(self):
+        points, triangles = cube()
+        expected = octafront.mesh(points, triangles, size=0.4).report["hash"]
+        for p, t in [(np.asfortranarray(points), triangles.astype(np.uint8)), (points.astype(np.float32), triangles),
+                     (points.tolist(), triangles.tolist()), (np.repeat(points, 2, axis=0)[::2], triangles[:, :]),
+                     (points.astype(int), triangles.astype(np.uint32))]:
+            self.assertEqual(octafront.mesh(p, t, size=0.4).report["hash"], expected)
+
+    def test_patches_and_names(self):
+        points, triangles = cube()
+        patches = np.arange(12) // 2
+        names = ["bottom", "top", "front", "back", "left", "right \"><script>"]
+        surface = octafront.Surface(points, triangles, patches=patches, patch_names=names)
+        mesh = octafront.mesh(surface, size=0.3)
+        self.assertEqual(mesh.names["patches"], names)
+        top = mesh.faces[mesh.patches == 1]
+        self.assertTrue((mesh.points[top][..., 2] == 1).all())
+        self.assertTrue(any("|" in name for name in mesh.names["curves"]))
+
+    def test_sides_and_region_names_go_in_and_out(self):
+        points, triangles = cube()
+        sides = np.tile([-1, 0], (12, 1))
+        surface = octafront.Surface(points, triangles, sides=sides, region_names=["steel"])
+        self.assertEqual(surface.region_names, ["steel"])
+        np.testing.assert_array_equal(surface.sides, np.tile([octafront.OUTSIDE, 0], (12, 1)))
+        np.testing.assert_array_equal(octafront.Surface(points, triangles).sides, surface.sides)
+
+    def test_second_order(self):
+        mesh = octafront.mesh(*sphere(), size=0.4, order=2)
+        self.assertEqual((mesh.order, mesh.mid_nodes.shape), (2, (len(mesh.tets), 6)))
+        self.assertTrue(octafront.check(mesh))
+
+    def test_a_mesh_keeps_its_surface(self):
+        points, triangles = cube()
+        mesh = octafront.mesh(points, triangles, keep_surface=True)
+        self.assertEqual(len(mesh.faces), 12)
+
+
+class Sizes(Case):
+    def test_a_function_is_asked_in_batches(self):
+        batches = []
+
+        def size_at(points):
+            batches.append(points.shape)
+            return 0.1 + 0.3 * points[:, 0]
+
+        mesh = octafront.mesh(*cube(), size=size_at, gradation=0.5)
+        left = mesh.points[:, 0] < 0.2
+        self.assertGreater(left.sum(), (mesh.points[:, 0] > 0.8).sum())
+        self.assertGreater(max(n for n, _ in batches), 50)
+        self.assertLess(len(batches), 200)
+
+    def test_errors_of_a_function_come_through(self):
+        def fails(points):
+            raise KeyError("mine")
+
+        with self.assertRaisesRegex(KeyError, "mine"):
+            octafront.mesh(*cube(), size=fails)
+        with self.assertRaisesRegex(octafront.OptionError, r"it has to return \(\d+,\)"):
+            octafront.mesh(*cube(), size=lambda p: np.ones(3))
+        with self.assertRaisesRegex(octafront.OptionError, "sizes must be above 0"):
+            octafront.mesh(*cube(), size=lambda p: -np.ones(len(p)))
+
+    def test_a_field_predicts_and_is_used(self):
+        field = octafront.size_field(*sphere(), size=0.25)
+        self.assertAlmostEqual(field([[0, 0, 0]])[0], 0.25, places=3)
+        self.assertEqual(field(np.zeros((5, 3))).shape, (5,))
+        mesh = octafront.mesh(*sphere(), size_field=field)
+        self.assertAlmostEqual(len(mesh) / field.expected_tets, 1, delta=0.25)
+        self.assertEqual(octafront.mesh(*sphere(), size=field).report["hash"], mesh.report["hash"])
+        field.save(self.folder / "grid.vtu")
+        again = octafront.SizeField.read(self.folder / "grid.vtu")
+        self.assertAlmostEqual(again([[0.5, 0, 0]])[0], field([[0.5, 0, 0]])[0], places=6)
+
+    def test_regions_and_points(self):
+        plain = len(octafront.mesh(*cube(), size=0.4))
+        region = {"sphere": [0.5, 0.5, 0.5], "radius": 0.2, "size": 0.08}
+        self.assertGreater(len(octafront.mesh(*cube(), size=0.4, regions=[region])), 1.5 * plain)
+        self.assertGreater(len(octafront.mesh(*cube(), size=0.4, regions=np.array([[0, 0, 0, 0.05]]))), plain)
+        points = np.hstack([cube()[0], np.full((8, 1), 0.2)])
+        self.assertGreater(len(octafront.mesh(*cube(), point_sizes=points, gradation=0.9)), plain)
+        file = self.folder / "r.csv"
+        file.write_text("0, 0, 0, 0.05\n")
+        self.assertGreater(len(octafront.mesh(*cube(), size=0.4, regions=file)), plain)
+
+    def test_number_of_elements(self):
+        self.assertAlmostEqual(len(octafront.mesh(*sphere(), elements=20000)) / 20000, 1, delta=0.15)
+
+
+class Refusals(Case):
+    def refused(self, kind, words, function, *arguments, **keywords):
+        with self.assertRaisesRegex(kind, words) as context:
+            function(*arguments, **keywords)
+        return context.exception
+
+    def test_misspelt_keywords(self):
+        self.refused(TypeError, "did you mean 'size'", octafront.mesh, *cube(), sise=1)
+        self.refused(TypeError, "did you mean 'gradation'", octafront.mesh_file, "x", gradatoin=1)
+        self.refused(TypeError, r"option of mesh\(\)", octafront.surface, *cube(), core="none")
+        self.refused(TypeError, "unexpected keyword argument 'qqqqqq'$", octafront.mesh, *cube(), qqqqqq=1)
+        self.refused(TypeError, "positional", octafront.mesh, *cube(), 0.1)
+
+    def test_options(self):
+        self.refused(octafront.OptionError, "`size` must be a number above 0, but is -1", octafront.mesh, *cube(), size=-1)
+        self.refused(octafront.OptionError, "`size` and `elements` contradict", octafront.mesh, *cube(), size=1, elements=9)
+        self.refused(octafront.OptionError, "`size` needs a number", octafront.mesh, *cube(), size="large")
+        self.refused(octafront.OptionError, "`size` is nan: it must be finite", octafront.mesh, *cube(), size=float("nan"))
+        self.refused(octafront.OptionError, "`method` is one of octree-aft", octafront.mesh, *cube(), method="best")
+        self.refused(octafront.OptionError, "`elements` needs a whole number", octafront.mesh, *cube(), elements=10.5)
+        self.refused(octafront.OptionError, "`threads`", octafront.mesh, *cube(), threads=-1)
+        # Fields of the library are called as here.
+        self.refused(octafront.OptionError, "`size_field`|size grid", octafront.mesh, *cube(), size=1,
+                     size_field=octafront.SizeField(1))
+        self.refused(ValueError, "above 0", octafront.SizeField, 0)
+
+    def test_arrays(self):
+        points, triangles = cube()
+        self.refused(octafront.OptionError, r"\(n, 3\), not \(8, 2\)", octafront.mesh, points[:, :2], triangles)
+        self.refused(octafront.OptionError, "whole numbers, not float64", octafront.mesh, points, triangles * 1.0)
+        self.refused(octafront.OptionError, "holds -1", octafront.mesh, points, triangles - 1)
+        self.refused(octafront.OptionError, "numbers, not <U", octafront.mesh, points.astype(str), triangles)
+        error = self.refused(octafront.InputError, "names point 8, but there are 8", octafront.mesh, points, triangles + 1)
+        self.assertIsInstance(error, ValueError)
+        points[3, 1] = np.nan
+        self.refused(octafront.InputError, "point 3", octafront.mesh, points, triangles)
+        self.refused(octafront.InputError, "", octafront.mesh, np.zeros((0, 3)), np.zeros((0, 3), int))
+        self.refused(TypeError, r"give points \(n, 3\) and triangles", octafront.mesh, points)
+
+    def test_defects_are_evidence(self):
+        points, triangles = cube()
+        error = self.refused(octafront.InputError, "open edge", octafront.mesh, points, triangles[:-1])
+        self.assertEqual(error.defects["open_edges"]["count"], 3)
+        place = error.defects["open_edges"]["first"][0]
+        self.assertEqual(len(place["at"]), 3)
+        self.assertTrue(all(face < 11 for face in place["faces"]))
+
+    def test_files(self):
+        self.refused(octafront.InputError, "missing.stl", octafront.mesh_file, self.folder / "missing.stl")
+        bad = self.folder / "bad.off"
+        bad.write_text("OFF\n8 12 0\n1 2\n")
+        self.refused(octafront.InputError, "bad.off, byte 5", octafront.mesh_file, bad)
+        open_cube = self.folder / "open.off"
+        octafront.Surface(cube()[0], cube()[1][:-1]).save(open_cube)
+        self.refused(octafront.InputError, "^.*open.off: ", octafront.mesh_file, open_cube)
+        mesh = octafront.mesh(*cube(), size=0.5)
+        self.refused(octafront.OptionError, "ending", mesh.save, self.folder / "mesh.xyz")
+        self.refused(octafront.OutputError, "", mesh.save, self.folder / "nowhere" / "mesh.vtu")
+        self.refused(octafront.OptionError, "zero byte", mesh.save, "a\0b.vtu")
+        self.assertFalse((self.folder / "nowhere").exists())
+
+    def test_errors_mirror_those_of_the_library(self):
+        self.assertTrue(issubclass(octafront.OpenCavityError, octafront.MeshingError))
+        for kind in ("OptionError", "InputError", "MeshingError", "OutputError", "Cancelled"):
+            self.assertTrue(issubclass(getattr(octafront, kind), octafront.Error))
+
+    def test_an_open_cavity_comes_as_a_surface(self):
+        from octafront._jobs import Job
+        job = Job("repair", octafront.Surface(*cube())._handle)
+        job.run()
+        error = job._failure(4, "open", {})
+        self.assertIsInstance(error, octafront.OpenCavityError)
+        self.assertEqual(len(error.cavity.triangles), 12)
+
+
+class Running(Case):
+    def test_progress(self):
+        told = []
+        octafront.mesh(*sphere(), size=0.08, progress=lambda phase, fraction: told.append((phase, fraction)))
+        self.assertGreater(len({phase for phase, _ in told}), 2)
+        self.assertTrue(all(f is None or 0 <= f <= 1 for _, f in told))
+
+    def test_false_cancels(self):
+        with self.assertRaises(octafront.Cancelled):
+            octafront.mesh(*sphere(60, 120), size=0.012, progress=lambda phase, fraction: False)
+
+    def test_passes_are_told(self):
+        passes = []
+        octafront.mesh(*cube(), size=0.3, after_pass=lambda name, worst: passes.append((name, worst["beta"])))
+        self.assertGreater(len(passes), 2)
+
+    def test_errors_in_progress_come_through(self):
+        def fails(phase, fraction):
+            raise ZeroDivisionError(phase)
+
+        with self.assertRaises(ZeroDivisionError):
+            octafront.mesh(*sphere(), size=0.1, progress=fails)
+
+    def test_other_threads_of_python_work_meanwhile(self):
+        counted, done = [0], threading.Event()
+
+        def count():
+            while not done.is_set():
+                counted[0] += 1
+                time.sleep(0.001)
+
+        thread = threading.Thread(target=count)
+        thread.start()
+        octafront.mesh(*sphere(), size=0.06, threads=1)
+        done.set()
+        thread.join()
+        self.assertGreater(counted[0], 20)
+
+    def test_two_meshes_at_once(self):
+        made = []
+        threads = [threading.Thread(target=lambda: made.append(octafront.mesh(*sphere(), size=0.15).report["hash"]))
+                   for _ in range(3)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(len(set(made)), 1)
+        self.assertEqual(len(made), 3)
+
+    def test_processes_that_were_forked_mesh_too(self):
+        expected = meshed_hash(0)
+        with multiprocessing.get_context("fork").Pool(2) as pool:
+            self.assertEqual(set(pool.map_async(meshed_hash, range(3)).get(timeout=120)), {expected})
+
+    def test_ctrl_c(self):
+        code = ("import octafront, shapes, sys\n"
+                "print('begun', flush=True)\n"
+                "try:\n"
+                "    octafront.mesh(*shapes.sphere(60, 120), size=0.008)\n"
+                "except KeyboardInterrupt:\n"
+                "    print('interrupted')\n"
+                "    print(len(octafront.mesh(*shapes.cube(), size=.5).tets) > 0)\n")
+        program = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.assertEqual(program.stdout.readline(), "begun\n")
+        time.sleep(0.7)
+        program.send_signal(signal.SIGINT)
+        out, err = program.communicate(timeout=120)
+        self.assertEqual((out, err), ("interrupted\nTrue\n", ""))
+
+    def test_no_memory_is_lost(self):
+        def resident():
+            status = pathlib.Path("/proc/self/status").read_text()
+            return int(next(line for line in status.splitlines() if line.startswith("VmRSS")).split()[1])
+
+        def work():
+            mesh = octafront.mesh(*sphere(), size=0.12)
+            mesh.element_quality(), mesh.sets, mesh.names, octafront.check(mesh)
+            try:
+                octafront.mesh(sphere()[0], sphere()[1][:-1])
+            except octafront.InputError:
+                pass
+
+        for _ in range(3):
+            work()
+        before = resident()
+        for _ in range(10):
+            work()
+        self.assertLess(resident() - before, 20_000)
+
+
+class Meshes(Case):
+    def test_improve_and_check(self):
+        mesh = octafront.mesh(*sphere(), size=0.3, improve="none")
+        better = octafront.improve(mesh, surface=octafront.Surface(*sphere()))
+        self.assertGreater(better.quality["beta_mean"], mesh.quality["beta_mean"])
+        self.assertEqual(better.report["before"]["beta_min"], mesh.quality["beta_min"])
+        self.assertTrue(octafront.check(better))
+        found = octafront.check(better, solver="calculix")
+        self.assertTrue(found.solver)
+        with self.assertRaises(octafront.OptionError):
+            octafront.check(better, solver="mine")
+
+    def test_quality_of_elements(self):
+        mesh = octafront.mesh(*cube(), size=0.3)
+        beta = mesh.element_quality()
+        self.assertAlmostEqual(beta.mean(), mesh.quality["beta_mean"], places=12)
+        self.assertAlmostEqual(beta.min(), mesh.quality["beta_min"], places=12)
+        self.assertAlmostEqual(mesh.element_quality("min_dihedral").min(), mesh.quality["dihedral_min_degrees"], places=9)
+        self.assertAlmostEqual(mesh.element_quality("max_dihedral").max(), mesh.quality["dihedral_max_degrees"], places=9)
+
+    def test_from_arrays_of_another_tool(self):
+        made = octafront.mesh(*cube(), size=0.4)
+        tets = np.array(made.tets)
+        tets[::2] = tets[::2, [1, 0, 2, 3]]  # inverted
+        points = np.vstack([made.points, [[9, 9, 9]]])  # of no element
+        regions = (made.points[made.tets].mean(axis=1)[:, 0] > 0.5).astype(int)
+        mesh = octafront.Mesh(points, tets, regions=regions, region_names=["left", "right"])
+        self.assertTrue(octafront.check(mesh), octafront.check(mesh).text)
+        self.assertEqual(len(mesh.faces), len(made.faces))
+        self.assertEqual(mesh.names["regions"], ["left", "right"])
+        np.testing.assert_array_equal(np.bincount(mesh.regions), np.bincount(regions))
+        with self.assertRaises(octafront.InputError):
+            octafront.Mesh(points, tets + 1000)
+
+    def test_second_order_from_arrays(self):
+        made = octafront.mesh(*sphere(), size=0.5, order=2)
+        cells, kind = made._vtk_cells()
+        self.assertEqual(kind, 24)
+        mesh = octafront.Mesh(made.points, cells)
+        np.testing.assert_array_equal(mesh.mid_nodes, made.mid_nodes)
+        self.assertTrue(octafront.check(mesh))
+
+    def test_save_and_read(self):
+        points, triangles = cube()
+        surface = octafront.Surface(points, triangles, patches=np.arange(12) // 2, patch_names=list("abcdef"))
+        mesh = octafront.mesh(surface, size=0.3)
+        mesh.add_set("held", box=[[0, 0, 0], [1, 1, 0]]).add_set("ends", patches=["a", 1])
+        mesh.add_set("two", [3, 1, 3], kind="elements")
+        self.assertEqual(mesh.sets["two"][1].tolist(), [1, 3])
+        self.assertTrue((mesh.points[mesh.sets["held"][1], 2] == 0).all())
+        self.assertEqual(len(mesh.sets["ends"][1]), (mesh.patches <= 1).sum())
+        for ending in (".vtu", ".msh", ".inp", ".mesh"):
+            mesh.save(self.folder / ("m" + ending))
+            again = octafront.read(self.folder / ("m" + ending))
+            self.assertIsInstance(again, octafront.Mesh)
+            self.assertEqual(len(again), len(mesh))
+            self.assertTrue(octafront.check(again))
+        again = octafront.read(self.folder / "m.inp")
+        self.assertIn("held", [g["name"] for g in octafront.check(again).groups])
+        self.assertTrue(mesh.save(self.folder / "m.stl"), "a surface cannot hold a mesh, and nothing was said")
+        self.assertIsInstance(octafront.read(self.folder / "m.stl"), octafront.Surface)
+        with self.assertRaisesRegex(octafront.InputError, "nothing|no "):
+            mesh.add_set("empty", box=[[5, 5, 5], [6, 6, 6]])
+        with self.assertRaises(octafront.OptionError):
+            mesh.add_set("far", [len(mesh.points)])
+
+    def test_pickle_and_copy(self):
+        mesh = octafront.mesh(*cube(), size=0.4).add_set("s", [0, 1])
+        for again in (pickle.loads(pickle.dumps(mesh)), copy.deepcopy(mesh)):
+            np.testing.assert_array_equal(again.points, mesh.points)
+            np.testing.assert_array_equal(again.tets, mesh.tets)
+            self.assertEqual(again.sets.keys(), mesh.sets.keys())
+            self.assertEqual(again.report, mesh.report)
+        surface = pickle.loads(pickle.dumps(mesh.boundary()))
+        self.assertTrue(octafront.check(surface))
+
+    def test_names_of_any_bytes(self):
+        points, triangles = cube()
+        names = ["line\nend", "\udcff broken", "x" * 10000, "<script>alert(1)</script>"]
+        surface = octafront.Surface(points, triangles, patches=np.arange(12) // 3, patch_names=names)
+        mesh = octafront.mesh(surface, size=0.5)
+        self.assertEqual(mesh.names["patches"], names)
+        self.assertNotIn("<script>", mesh._repr_html_())
+        mesh._repr_html_().encode()
+
+    def test_repr(self):
+        mesh = octafront.mesh(*cube(), size=0.4)
+        self.assertIn(f"{len(mesh)} tetrahedra", repr(mesh))
+        self.assertIn("<svg", mesh._repr_html_())
+        self.assertIn("triangles", repr(octafront.Surface(*cube())))
+
+
+class Surfaces(Case):
+    def test_repair_and_check(self):
+        points, triangles = cube()
+        soup = octafront.Surface(points[triangles].reshape(-1, 3), np.arange(36).reshape(-1, 3)[:, ::-1])
+        repaired = octafront.repair(soup)
+        self.assertEqual((len(repaired.points), repaired.report["merged_vertices"]), (8, 28))
+        self.assertTrue(repaired.report["clean"])
+        found = octafront.check(soup)
+        self.assertTrue(found)
+        self.assertAlmostEqual(found.volume, 1)
+        broken = octafront.check(points, triangles[1:])
+        self.assertFalse(broken)
+        self.assertIn("open", str(broken))
+
+    def test_surface(self):
+        surface = octafront.surface(*sphere(), size=0.2)
+        edges = surface.points[surface.triangles] - surface.points[np.roll(surface.triangles, 1, axis=1)]
+        self.assertAlmostEqual(np.linalg.norm(edges, axis=2).mean(), 0.2, delta=0.02)
+        surface.save(self.folder / "s.ply")
+        self.assertEqual(len(octafront.read(self.folder / "s.ply").triangles), len(surface.triangles))
+
+
+class Package(Case):
+    def test_signatures_show_the_options(self):
+        for function, task in ((octafront.mesh, "mesh"), (octafront.size_field, "size"), (octafront.improve, "improve")):
+            parameters = inspect.signature(function).parameters
+            self.assertIn("threads", parameters)
+            self.assertNotIn("keywords", parameters)
+            self.assertTrue(all(p.kind == p.KEYWORD_ONLY for name, p in parameters.items()
+                                if name not in ("points", "triangles", "mesh", "path")))
+        self.assertIn("gradation: How fast sizes may change", octafront.mesh.__doc__)
+
+    def test_every_option_can_be_given(self):
+        from octafront._library import option_table
+        for row in option_table():
+            if row["default"] is not None:
+                octafront.mesh(*cube(), size=0.5, **{row["name"]: row["default"]})
+
+    def test_import_costs_less_than_that_of_numpy(self):
+        code = ("import time; a = time.process_time(); import numpy; b = time.process_time(); import octafront; "
+                "print((time.process_time() - b) / (b - a))")
+        ratios = [float(subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout)
+                  for _ in range(5)]
+        self.assertLess(min(ratios), 1)
+
+    def test_import_reads_no_library_for_pictures(self):
+        code = ("import sys, octafront; "
+                "print([m for m in ('pyvista', 'meshio', 'vtk', 'matplotlib') if m in sys.modules])")
+        done = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
+        self.assertEqual(done.stdout.strip(), "[]")
+
+    def test_the_command_line_tool_comes_along(self):
+        program = pathlib.Path(sys.executable).parent / "octafront"
+        for command in ([program], [sys.executable, "-m", "octafront"]):
+            done = subprocess.run([*command, "--version"], check=True, capture_output=True, text=True)
+            self.assertEqual(done.stdout.strip(), octafront.__version__)
+        done = subprocess.run([program, "mesh", "--sise", "1"], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 2)
+
+    def test_formats(self):
+        self.assertIn("abaqus", {f["name"] for f in octafront.formats()})
+
+
+if __name__ == "__main__":
+    unittest.main()
