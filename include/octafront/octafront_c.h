@@ -1,8 +1,8 @@
 #ifndef OCTAFRONT_C_H
 #define OCTAFRONT_C_H
 
-/** @file The library for other languages: opaque objects, arrays by name, and jobs. The package for Python stands on
- * it.
+/** @file
+ * The library for other languages: opaque objects, arrays by name, and jobs. The package for Python stands on it.
  *
  * - Objects belong to the caller and are freed by him; what they point to is theirs. Null may be freed.
  * - Work is a *job*: it runs on a thread of its own, and the caller waits for events. So no code of the caller is ever

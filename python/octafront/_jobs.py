@@ -4,10 +4,9 @@ his own functions run."""
 import ctypes
 import json
 
-import numpy as np
-
 from . import errors
 from ._library import Event, call, spoken, text_of
+from ._numpy import np
 
 # Often enough for a hand on Ctrl-C, seldom enough to cost nothing.
 _LOOK_EVERY = 0.05

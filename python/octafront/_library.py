@@ -6,13 +6,12 @@ import json
 import os
 import pathlib
 
-import numpy as np
-
 from . import errors
+from ._numpy import np
 
 FOLDER = pathlib.Path(os.environ.get("OCTAFRONT_BIN", pathlib.Path(__file__).parent / "_bin"))
 
-_TYPES = {1: np.float64, 2: np.uint32}
+_TYPES = {1: "float64", 2: "uint32"}
 _NONE = 0xFFFFFFFF
 
 

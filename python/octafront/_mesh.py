@@ -4,11 +4,10 @@ import ctypes
 import json
 import types
 
-import numpy as np
-
 from . import _html, errors
 from ._jobs import Job
 from ._library import Array, Handle, _View, bytes_of, call, demand, file_of, pointer, spoken, text_of
+from ._numpy import np
 from ._surface import _or_zeros, column_of, points_of, rows_of
 
 _KINDS = ["nodes", "edges", "faces", "elements"]

@@ -6,13 +6,13 @@ import functools
 import inspect
 import json
 import math
+import operator
 import os
 import textwrap
 
-import numpy as np
-
 from . import errors
 from ._library import Handle, call, demand, file_of, option_table, pointer
+from ._numpy import np
 
 # Beside the table: name, which functions heed it, what it is.
 _FURTHER = [
@@ -105,15 +105,19 @@ def _is_known(function, task, name):
 
 
 def _threads(value):
-    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or not 0 <= value <= 1024:
+    try:
+        whole = -1 if isinstance(value, bool) else operator.index(value)
+    except TypeError:
+        whole = -1
+    if not 0 <= whole <= 1024:
         raise errors.OptionError(f"`threads` is {value!r}: it must be a whole number from 0 (all) to 1024")
     # More than the machine has only get in each other's way.
-    return min(int(value), os.cpu_count() or 1)
+    return min(whole, os.cpu_count() or 1)
 
 
 def _plain(name, value):
-    if isinstance(value, np.generic):
-        value = value.item()
+    # Numbers of NumPy too.
+    value = value.item() if getattr(value, "shape", None) == () else value
     if not isinstance(value, (bool, int, float, str)):
         raise errors.OptionError(f"`{name}` needs a single value, not {type(value).__name__}")
     if isinstance(value, float) and not math.isfinite(value):

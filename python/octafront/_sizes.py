@@ -2,10 +2,9 @@
 
 import ctypes
 
-import numpy as np
-
 from ._jobs import Job
 from ._library import Handle, call, demand, file_of, pointer
+from ._numpy import np
 from ._surface import points_of
 
 

@@ -1,10 +1,9 @@
 """Triangle surfaces."""
 
-import numpy as np
-
 from . import errors
 from ._jobs import Job
 from ._library import Handle, file_of
+from ._numpy import np
 
 OUTSIDE = 0xFFFFFFFF
 

@@ -455,16 +455,16 @@ class Package(Case):
                 octafront.mesh(*cube(), size=0.5, **{row["name"]: row["default"]})
 
     def test_import_costs_less_than_that_of_numpy(self):
-        code = ("import time; a = time.process_time(); import numpy; b = time.process_time(); import octafront; "
-                "print((time.process_time() - b) / (b - a))")
+        code = ("import time; a = time.process_time(); import octafront; b = time.process_time(); import numpy; "
+                "print((b - a) / (time.process_time() - b))")
         ratios = [float(subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout)
                   for _ in range(5)]
         self.assertLess(min(ratios), 1)
 
-    def test_import_reads_no_library_for_pictures(self):
-        code = ("import sys, octafront; "
-                "print([m for m in ('pyvista', 'meshio', 'vtk', 'matplotlib') if m in sys.modules])")
-        done = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True)
+    def test_nothing_is_imported_before_it_is_asked_for(self):
+        code = (f"import sys, octafront; octafront.mesh_file({str(SAMPLES / 'bracket.stl')!r}, size=8).save('b.vtu'); "
+                "print([m for m in ('numpy', 'pyvista', 'meshio', 'vtk', 'matplotlib') if m in sys.modules])")
+        done = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True, cwd=self.folder)
         self.assertEqual(done.stdout.strip(), "[]")
 
     def test_the_command_line_tool_comes_along(self):
