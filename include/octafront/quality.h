@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 namespace octafront {
 
@@ -29,5 +30,8 @@ struct QualitySummary {
 };
 
 QualitySummary summarize_quality(const TetMesh& mesh);
+
+/// The same of each region, by number; of one without elements `elements` is 0.
+std::vector<QualitySummary> quality_of_regions(const TetMesh& mesh);
 
 }  // namespace octafront
