@@ -6,6 +6,7 @@
 #include "core/parallel.h"
 #include "curved/curved.h"
 #include "improve/improve.h"
+#include "improve/slide_interfaces.h"
 #include "mesh/complex.h"
 #include "pipeline/follow_boundary.h"
 #include "pipeline/methods.h"
@@ -143,6 +144,11 @@ Filled stuff(const Prepared& input, const SizeField& sizes, Run& run) {
   return {std::move(mesh), std::move(boundary)};
 }
 
+bool may_slide(const ImproveOptions& options) {
+  return options.move_boundary && options.level != ImproveOptions::Level::kOff &&
+         options.level != ImproveOptions::Level::kPaper;
+}
+
 // Folds, flaps and blades below the tolerance are taken away: no element could fill them.
 void smooth_detail(Examined& found, Run& run) {
   SurfaceMesh& surface = found.repaired.surface;
@@ -252,9 +258,15 @@ void improve_elements(const Prepared& input, Filled& filled, Run& run) {
       on.emplace(improve::BoundaryInput{input.surface.mesh(), input.surface.tree(), input.surface.features(),
                                         boundary.features, detail_tolerance(input.surface.mesh(), run.options),
                                         boundary.near_limit});
-    if (!improve_mesh(mesh, on ? &*on : nullptr, run.options.improve, stage, &boundary.features)) return;
-    if (on) renew_sources(mesh, hull_of(boundary.surface), on->surface, on->tree);
-    follow_boundary(mesh, boundary.surface);
+    if (improve_mesh(mesh, on ? &*on : nullptr, run.options.improve, stage, &boundary.features)) {
+      if (on) renew_sources(mesh, hull_of(boundary.surface), on->surface, on->tree);
+      follow_boundary(mesh, boundary.surface);
+    }
+    if (on && !on->surface.sides.empty() && may_slide(run.options.improve)) {
+      stage.count("interface vertices moved",
+                  static_cast<double>(slide_interfaces(mesh, boundary.surface, boundary.features, on->surface, stage)));
+      std::copy_n(mesh.points.begin(), boundary.surface.points.size(), boundary.surface.points.begin());
+    }
   });
 }
 
