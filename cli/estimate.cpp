@@ -66,7 +66,8 @@ Estimate estimate_run(const Report& sizes, const Options& options, int threads) 
   e.tets = sizes.expected_tets;
   e.boundary_faces = triangles_of(sizes);
   const double work = kFillSeconds.of(e) + improvement_share(options.improve.level) * kImproveSeconds.of(e);
-  if (options.method == Method::kOctreeAft) e.seconds = sizes.wall_seconds + work / std::pow(used, kThreadPower);
+  // Of the processor, not the clock: what else the machine does now is not this run's.
+  if (options.method == Method::kOctreeAft) e.seconds = (sizes.cpu_seconds + work) / std::pow(used, kThreadPower);
   e.memory_bytes = std::max(static_cast<double>(sizes.peak_memory_bytes), kBytesOfProgram + kBytes.of(e));
   e.file_bytes = kFileBytesPerTet * e.tets;
   return e;

@@ -11,7 +11,7 @@ namespace octafront::cli {
 /// What a run would take, from the sizes and the surface that a dry run made.
 struct Estimate {
   double tets = 0, boundary_faces = 0;
-  std::optional<double> seconds;  ///< wall time of the whole run; only the method octree-aft is known
+  std::optional<double> seconds;  ///< of the whole run on an idle machine; only the method octree-aft is known
   double memory_bytes = 0;        ///< at the peak
   double file_bytes = 0;          ///< of a .vtu
 };

@@ -112,11 +112,11 @@ void Program::declare_makers() {
   declare_report(*surface, a);
   declare_run(*surface, a);
 
-  CLI::App* size =
-      add("size", "Show the element sizes, and how many elements they would make",
-          "  octafront size part.stl --curvature 24\n"
-          "  octafront size part.stl -o sizes.vtu       the field: to look at, to edit, for --size-field\n",
-          run_size);
+  CLI::App* size = add(
+      "size", "Show the element sizes, and how many elements they would make",
+      "  octafront size part.stl --curvature 24\n"
+      "  octafront size part.stl -o sizes.vtu                      the field: to look at, to edit, for --size-field\n",
+      run_size);
   declare_input(*size, a);
   declare_output(*size, a, "Background grid: .vtu", false);
   declare_sizes(*size, a);
@@ -125,8 +125,8 @@ void Program::declare_makers() {
   declare_run(*size, a);
 
   CLI::App* better = add("improve", "Make the elements of a mesh better: octafront improve in.msh -o out.vtu",
-                         "  octafront improve in.msh -o out.vtu                      the boundary stays\n"
-                         "  octafront improve in.msh -o out.vtu --surface part.stl   it may slide on that surface\n",
+                         "  octafront improve in.msh -o out.vtu                       the boundary stays\n"
+                         "  octafront improve in.msh -o out.vtu --surface part.stl    it may slide on that surface\n",
                          run_improve);
   declare_mesh_input(*better, a);
   declare_mesh_output(*better, a);
