@@ -53,7 +53,10 @@ struct SizeOptions {
   bool facets = false;             ///< the paper's rule (III.A): grid leaves follow the areas of the input's facets
   std::optional<double> min_size;  ///< no size falls below this, input units
   std::optional<double> max_size;  ///< no size rises above this, input units
-  double gradation = 0.2;          ///< |h(x) - h(y)| <= gradation |x - y|; in [0.01, 1]
+  /// The automatic sizes times this: 0.5 makes about eight times as many elements. Has no say where another source
+  /// chooses the sizes. In [0.1, 10].
+  double automatic_factor = 1;
+  double gradation = 0.2;  ///< |h(x) - h(y)| <= gradation |x - y|; in [0.01, 1]
   enum class Interior { kUniform, kGraded };
   /// kUniform: sizes inside stay at most the largest size on the surface (the paper's Cmax).
   /// kGraded: sizes grow inward at the gradation, up to max_size.

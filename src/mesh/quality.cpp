@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 namespace octafront {
@@ -160,6 +161,29 @@ std::vector<QualitySummary> quality_of_regions(const TetMesh& mesh) {
   for (std::uint32_t r = 0; r < regions; ++r)
     found.push_back(summarize(mesh, tets[r].size(), [&](std::size_t i) { return tets[r][i]; }));
   return found;
+}
+
+std::vector<PoorElement> worst_elements(const TetMesh& mesh, std::size_t count) {
+  const auto corners = [&](std::size_t t) {
+    const auto& [a, b, c, d] = mesh.tets[t];
+    return std::array<Vec3, 4>{mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]};
+  };
+  std::vector<std::pair<double, TetIndex>> all(mesh.tets.size());
+  parallel_for(all.size(), [&](std::size_t t) {
+    const auto [a, b, c, d] = corners(t);
+    const double beta = radius_ratio(a, b, c, d);
+    all[t] = {std::isnan(beta) ? -1 : beta, static_cast<TetIndex>(t)};
+  });
+  const auto end = all.begin() + static_cast<std::ptrdiff_t>(std::min(count, all.size()));
+  std::partial_sort(all.begin(), end, all.end());
+  std::vector<PoorElement> worst;
+  for (auto e = all.begin(); e != end; ++e) {
+    const auto [a, b, c, d] = corners(e->second);
+    const auto angles = dihedral_angles(a, b, c, d);
+    const auto [least, most] = std::minmax_element(angles.begin(), angles.end());
+    worst.push_back({e->second, (a + b + c + d) / 4, e->first, *least, *most});
+  }
+  return worst;
 }
 
 }  // namespace octafront

@@ -43,6 +43,8 @@ void check_size_options(const SizeOptions& o) {
           fmt::format("`size` {} is smaller than `min_size` {}", o.size.value_or(0), o.min_size.value_or(0)));
   require(!(o.size && o.max_size) || *o.size <= *o.max_size,
           fmt::format("`size` {} is larger than `max_size` {}", o.size.value_or(0), o.max_size.value_or(0)));
+  require(o.automatic_factor >= 0.1 && o.automatic_factor <= 10,
+          fmt::format("`automatic_factor` must lie in [0.1, 10], but is {}", o.automatic_factor));
   const bool has_source = o.size || o.elements || o.curvature || o.gap || o.feature_elements || o.facets ||
                           o.min_size || o.max_size || !o.regions.empty() || !o.point_sizes.empty() ||
                           !o.named.empty() || o.callback;
