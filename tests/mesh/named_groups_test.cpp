@@ -54,10 +54,11 @@ TEST(PatchCurves, AreWherePatchesMeet) {
   mesh.curve.clear();
   mesh.curve_names.clear();
   add_patch_curves(mesh);
-  EXPECT_EQ(mesh.curve_edges.size(), wanted.curve_edges.size());
-  EXPECT_EQ(1 + *std::max_element(mesh.curve.begin(), mesh.curve.end()), 12U);
+  // The edges of the box, and those where the wall inside meets four of its sides.
+  EXPECT_EQ(mesh.curve_edges.size(), wanted.curve_edges.size() + 4 * 4);
+  EXPECT_EQ(1 + *std::max_element(mesh.curve.begin(), mesh.curve.end()), 12U + 4);
   EXPECT_EQ(std::count(mesh.curve_names.begin(), mesh.curve_names.end(), "fixed end|y_max"), 1);
-  EXPECT_EQ(std::count(mesh.curve_names.begin(), mesh.curve_names.end(), ""), 4);  // of the patch without a name
+  EXPECT_EQ(std::count(mesh.curve_names.begin(), mesh.curve_names.end(), ""), 4 + 1);  // of the patch without a name
 }
 
 TEST(CarryGroups, KeepsWhatIsStillThere) {
