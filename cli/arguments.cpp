@@ -186,6 +186,15 @@ void declare_run(CLI::App& command, Arguments& a) {
   group->add_flag("-q,--quiet", a.quiet, "Print nothing but errors");
 }
 
+/// NAME=H, where the name may have signs of equality of its own.
+NamedSize named_size(const std::string& text) {
+  const std::size_t at = text.rfind('=');
+  double size = 0;
+  if (at == std::string::npos || at == 0 || !CLI::detail::lexical_cast(text.substr(at + 1), size))
+    throw CLI::ValidationError("--size-of", "\"" + text + "\" is not NAME=H, the name of a part and a size");
+  return {text.substr(0, at), size};
+}
+
 void declare_sizes(CLI::App& command, Arguments& a) {
   SizeOptions& o = a.options.size;
   auto* group = command.add_option_group("Sizes", "None given: an automatic size. Several: the smallest wins");
@@ -199,6 +208,16 @@ void declare_sizes(CLI::App& command, Arguments& a) {
   group->add_option("--gap", o.gap, "Elements across thin walls and narrow gaps")->type_name("K");
   group->add_option("--feature-elements", o.feature_elements, "Elements along each feature curve at least")
       ->type_name("K");
+  group
+      ->add_option_function<std::vector<std::string>>(
+          "--size-of",
+          [&o](const std::vector<std::string>& all) {
+            for (const std::string& text : all) o.named.push_back(named_size(text));
+          },
+          "Edge length in and around a region, on a patch or along a curve, by its name; may be repeated")
+      ->type_name("NAME=H")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   group
       ->add_option("--regions", a.regions, "Boxes, spheres and points with a size each: JSON, or a table x, y, z, size")
       ->type_name("FILE");

@@ -116,7 +116,9 @@ Json json_of(const SurfaceDefects& d) {
           {"misoriented_edges", json_of(d.misoriented_edges)},
           {"non_manifold_vertices", json_of(d.non_manifold_vertices)},
           {"self_intersections", json_of(d.self_intersections)},
-          {"degenerate_faces", json_of(d.degenerate_faces)}};
+          {"degenerate_faces", json_of(d.degenerate_faces)},
+          {"region_conflicts", json_of(d.region_conflicts)},
+          {"misplaced_parts", json_of(d.misplaced_parts)}};
 }
 
 void check_surface(Session& session) {

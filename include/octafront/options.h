@@ -32,6 +32,12 @@ struct PointSize {
   double size = 0;  ///< > 0
 };
 
+/// A size for a region (its boundary and its inside), a patch or a curve, by its name.
+struct NamedSize {
+  std::string name;
+  double size = 0;  ///< > 0, input units
+};
+
 /// Where element sizes come from. Every source is optional; where several speak, the smallest size wins.
 /// With no source at all an automatic size is chosen from the model (see make_size_field).
 struct SizeOptions {
@@ -60,6 +66,7 @@ struct SizeOptions {
   /// Sizes given at the vertices of the surface, linear on its triangles. Where some vertex has no point of its own,
   /// the nearest point speaks for each place. A source like the others: the smallest wins, gradation holds.
   std::vector<PointSize> point_sizes;
+  std::vector<NamedSize> named;  ///< sizes of regions, patches and curves by their names
   /// All sizes, as read_size_field() returns them: no other source may be given with it, nor limits.
   std::optional<SizeField> field;
   /// A further source on the surface, asked at many points at once: fills in a size > 0 for each. May be empty.

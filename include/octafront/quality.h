@@ -43,4 +43,7 @@ struct PoorElement {
 /// The `count` elements of the least beta, or all if there are fewer, the worst first; of equal ones the first.
 std::vector<PoorElement> worst_elements(const TetMesh& mesh, std::size_t count);
 
+/// The same of each region, by number; of one without elements `elements` is 0.
+std::vector<QualitySummary> quality_of_regions(const TetMesh& mesh);
+
 }  // namespace octafront
