@@ -44,8 +44,10 @@ std::string described(const CLI::Option& option) {
 
 std::string options_in(const CLI::App& group) {
   std::string text;
+  const bool is_command = !group.get_name().empty();
   for (const CLI::Option* option : group.get_options())
-    text += ".TP\n" + term_of(*option) + "\n" + described(*option) + "\n";
+    if (is_command || option != group.get_help_ptr())
+      text += ".TP\n" + term_of(*option) + "\n" + described(*option) + "\n";
   for (const CLI::App* inner : group.get_subcommands([](const CLI::App*) { return true; })) {
     if (!inner->get_name().empty()) continue;
     text += fmt::format(".PP\n\\fI{}\\fR{}\n", plain(inner->get_group()),

@@ -32,9 +32,6 @@ struct QualitySummary {
 
 QualitySummary summarize_quality(const TetMesh& mesh);
 
-/// The same of each region, by number; of one without elements `elements` is 0.
-std::vector<QualitySummary> quality_of_regions(const TetMesh& mesh);
-
 /// A poor element, and where to look for it.
 struct PoorElement {
   TetIndex tet = kNone;
@@ -45,5 +42,8 @@ struct PoorElement {
 
 /// The `count` elements of the least beta, or all if there are fewer, the worst first; of equal ones the first.
 std::vector<PoorElement> worst_elements(const TetMesh& mesh, std::size_t count);
+
+/// The same of each region, by number; of one without elements `elements` is 0.
+std::vector<QualitySummary> quality_of_regions(const TetMesh& mesh);
 
 }  // namespace octafront

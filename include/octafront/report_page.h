@@ -15,7 +15,7 @@ namespace octafront {
 /// may be null, are those that the mesh was made to: then elements can be coloured by their size against them. Points
 /// are rounded to a two-thousandth of the shortest edge. Elements of second order are drawn by their corners.
 ///
-/// Names of files, regions and patches may hold anything: they are shown as text. Some 6 bytes an element.
+/// Names of files, regions and patches may hold anything: they are shown as text. Some 11 bytes an element.
 /// Requires indices in range. Throws OptionError if `report` is no JSON object, Cancelled.
 std::string report_page(const TetMesh& mesh, const SizeField* sizes, const std::string& report,
                         const RunContext& context = no_context());

@@ -70,7 +70,8 @@ class Help(unittest.TestCase):
         manual = self.run_cli("help", "--man").out
         plain = manual.replace("\\-", "-")
         for command in self.commands():
-            self.assertIn(f'.SS "octafront {command}"', manual)
+            section = manual.split(f'.SS "octafront {command}"')[1].split(".SS ")[0]
+            self.assertEqual(section.count("\\-\\-help"), 1)
             for option in self.options(command):
                 self.assertIn(f"\\fB{option}\\fR", plain)
         if shutil.which("groff"):
