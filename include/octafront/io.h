@@ -25,14 +25,16 @@ struct SurfaceFile {
 };
 
 /// Reads STL (binary, ASCII), OBJ, OFF or PLY (ASCII, both binary byte orders), recognised by content; the name only
-/// breaks ties. Coordinates keep double precision. OBJ groups and materials, and ASCII STL solids, become patches.
+/// breaks ties. Coordinates keep double precision. OBJ groups and materials, and ASCII STL solids, become patches. The
+/// properties "front" and "back" of the faces of a PLY file are SurfaceMesh::sides (-1: outside), its comments
+/// "region 0 steel" their names.
 /// Throws InputError with file, line or byte offset, and the reason. Memory is bounded by a small multiple of the size
 /// of the file, whatever its header claims.
 SurfaceFile read_surface(const std::string& file, const RunContext& context = {});
 
-/// Writes by the ending of the name: .stl (binary), .obj, .off, .ply (binary). The file is written beside and renamed
-/// into place: on failure an older file stays whole. Throws OutputError, and OptionError for unknown endings before any
-/// work.
+/// Writes by the ending of the name: .stl (binary), .obj, .off, .ply (binary; alone holds SurfaceMesh::sides). The file
+/// is written beside and renamed into place: on failure an older file stays whole. Throws OutputError, and OptionError
+/// for unknown endings before any work.
 void write_surface(const std::string& file, const SurfaceMesh& surface, const RunContext& context = {});
 
 /// Writes a mesh in the format that the ending of the name tells, or that is asked for by its name in known_formats()

@@ -115,13 +115,16 @@ class HeaderParser {
   }
 
   void read_comment() {
-    if (scan_.at_line_end() || scan_.word() != "patch" || scan_.at_line_end()) return;
+    if (scan_.at_line_end()) return;
+    const std::string_view what = scan_.word();
+    if ((what != "patch" && what != "region") || scan_.at_line_end()) return;
+    std::vector<std::string>& names = what == "patch" ? header_.patch_names : header_.region_names;
     const std::string_view number = scan_.word();
-    std::size_t patch = 0;
-    const auto [stop, error] = std::from_chars(number.data(), number.data() + number.size(), patch);
+    std::size_t index = 0;
+    const auto [stop, error] = std::from_chars(number.data(), number.data() + number.size(), index);
     // Comments may hold anything: only names that come in order count.
-    if (error != std::errc() || stop != number.data() + number.size() || patch != header_.patch_names.size()) return;
-    header_.patch_names.emplace_back(scan_.rest_of_line());
+    if (error != std::errc() || stop != number.data() + number.size() || index != names.size()) return;
+    names.emplace_back(scan_.rest_of_line());
   }
 
   std::string_view required_word(std::string_view what) {

@@ -32,8 +32,9 @@ struct PlyHeader {
   enum class Format { kText, kLittleEndian, kBigEndian };
   Format format = Format::kText;
   std::vector<PlyElement> elements;
-  std::vector<std::string> patch_names;  ///< from comments "patch 3 inlet", as write_ply makes them
-  const char* end = nullptr;             ///< where the values begin
+  std::vector<std::string> patch_names;   ///< from comments "patch 3 inlet", as write_ply makes them
+  std::vector<std::string> region_names;  ///< the same of comments "region 3 steel"
+  const char* end = nullptr;              ///< where the values begin
 
   std::string_view format_name() const;
 };

@@ -129,6 +129,7 @@ class PlyBody {
 
   SurfaceFile read() {
     builder_.patch_names = header_.patch_names;
+    builder_.region_names = header_.region_names;
     for (const PlyElement& element : header_.elements) {
       check_element(element);
       if (element.name == "vertex") {
@@ -204,32 +205,46 @@ class PlyBody {
     if (std::count_if(element.properties.begin(), element.properties.end(), is_corners) != 1)
       input_.fail_at_line(element.declared_at,
                           "the faces do not have one list \"vertex_indices\" each; export the file again");
+    const auto has = [&](std::string_view name) {
+      return std::any_of(element.properties.begin(), element.properties.end(),
+                         [&](const PlyProperty& p) { return p.name == name && !p.is_list; });
+    };
+    const bool has_sides = has("front") && has("back");
+    if (!has_sides) builder_.region_names.clear();
     builder_.reserve_faces(element.count);
     for (std::uint64_t i = 0; i < element.count; ++i) {
       const char* const at = values_.position();
       std::uint32_t patch = 0;
+      Sides sides{kNone, kNone};
       for (const PlyProperty& p : element.properties) {
         if (is_corners(p)) {
           read_corners(p);
         } else if (p.name == "patch" && !p.is_list) {
-          patch = patch_number(p);
+          patch = group_number(p, "patch", 0);
+        } else if (has_sides && !p.is_list && (p.name == "front" || p.name == "back")) {
+          sides[p.name == "back"] = group_number(p, "region", -1);
         } else {
           skip_property(p);
         }
       }
-      builder_.add_face(corners_, at, patch);
+      if (has_sides) {
+        builder_.add_face(corners_, at, patch, sides);
+      } else {
+        builder_.add_face(corners_, at, patch);
+      }
     }
   }
 
-  std::uint32_t patch_number(const PlyProperty& p) {
-    // Patches are numbered through; what follows may well keep a table of them.
-    constexpr std::int64_t kMostPatches = 1 << 20;
+  /// The number of a patch or region; -1, where it may be, is kNone.
+  std::uint32_t group_number(const PlyProperty& p, std::string_view what, std::int64_t least) {
+    // Groups are numbered through; what follows may well keep a table of them.
+    constexpr std::int64_t kMost = 1 << 20;
     const char* const at = values_.position();
-    const std::int64_t patch = values_.integer(p.type, "the number of a patch");
-    if (patch < 0 || patch >= kMostPatches)
-      input_.fail_at_byte(at, fmt::format("face {} has the patch {}; patches are numbered from 0 to {} at most",
-                                          builder_.faces(), patch, kMostPatches - 1));
-    return static_cast<std::uint32_t>(patch);
+    const std::int64_t number = values_.integer(p.type, fmt::format("the number of a {}", what));
+    if (number < least || number >= kMost)
+      input_.fail_at_byte(at, fmt::format("face {} has the {} {}; {}s are numbered from {} to {} at most",
+                                          builder_.faces(), what, number, what, least, kMost - 1));
+    return number < 0 ? kNone : static_cast<std::uint32_t>(number);
   }
 
   void read_corners(const PlyProperty& p) {

@@ -61,6 +61,12 @@ void SurfaceBuilder::add_face(std::span<const std::uint32_t> corners, const char
   }
 }
 
+void SurfaceBuilder::add_face(std::span<const std::uint32_t> corners, const char* at, std::uint32_t patch,
+                              Sides sides) {
+  sides_of_face_.push_back(sides);
+  add_face(corners, at, patch);
+}
+
 void SurfaceBuilder::check_corners(const Input& input, bool is_text, int first_index) const {
   if (largest_corner_at_ == nullptr || largest_corner_ < points.size()) return;
   fail_at(input, is_text, largest_corner_at_,
@@ -129,6 +135,9 @@ SurfaceFile SurfaceBuilder::finish(const Input& input, std::string format, bool 
   file.surface.triangles = std::move(triangles_);
   file.surface.patch = std::move(patch_);
   file.surface.patch_names = std::move(patch_names);
+  file.surface.region_names = std::move(region_names);
+  if (!sides_of_face_.empty())
+    for (const std::uint32_t face : face_of_triangle_) file.surface.sides.push_back(sides_of_face_[face]);
   if (!polygons_.empty() || small_faces_ > 0) file.surface.source = std::move(face_of_triangle_);
   file.format = std::move(format);
   file.notes = std::move(notes);

@@ -16,12 +16,14 @@ namespace octafront::io {
 class SurfaceBuilder {
  public:
   std::vector<Vec3> points;
-  std::vector<std::string> patch_names;
+  std::vector<std::string> patch_names, region_names;
   std::vector<std::string> notes;
 
   /// A face of the file with its corners counted from 0; `at` is where it stands in the file. Faces of fewer than three
   /// corners are counted and left out.
   void add_face(std::span<const std::uint32_t> corners, const char* at, std::uint32_t patch = 0);
+  /// The same of a format that knows the regions on both sides of every face.
+  void add_face(std::span<const std::uint32_t> corners, const char* at, std::uint32_t patch, Sides sides);
   void reserve_faces(std::size_t count);
   std::size_t faces() const { return faces_; }
 
@@ -47,6 +49,7 @@ class SurfaceBuilder {
   std::vector<std::uint32_t> patch_;  ///< empty while all are 0
   std::vector<Polygon> polygons_;
   std::vector<std::uint32_t> polygon_corners_;
+  std::vector<Sides> sides_of_face_;  ///< one per face, or empty
   std::uint64_t faces_ = 0, small_faces_ = 0;
   std::uint32_t largest_corner_ = 0;
   std::uint32_t largest_corner_face_ = 0;

@@ -2,6 +2,7 @@
 #include <octafront/io.h>
 
 #include "small_files.h"
+#include "support/complexes.h"
 #include "support/named_surfaces.h"
 
 #include <algorithm>
@@ -45,6 +46,28 @@ TEST(ReadSurface, KnowsEveryVariantByContent) {
         EXPECT_EQ(file.surface.points[file.surface.triangles[t][k]], tet.points[tet.triangles[t][k]]);
     EXPECT_TRUE(file.surface.source.empty()) << "triangle t is face t";
   }
+}
+
+TEST(ReadSurface, PlyHoldsComplexes) {
+  const TemporaryFolder folder;
+  for (const testing::KnownComplex& known : testing::known_complexes()) {
+    SCOPED_TRACE(known.name);
+    write_surface(folder / "a.ply", known.surface);
+    EXPECT_EQ(read_surface(folder / "a.ply").surface, known.surface);
+  }
+}
+
+TEST(ReadSurface, PlyWithOneSideOnlyIsNoComplex) {
+  const std::string head =
+      "ply\nformat ascii 1.0\ncomment region 0 iron\nelement vertex 3\nproperty float x\n"
+      "property float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\n";
+  const std::string points = "end_header\n0 0 0\n1 0 0\n0 1 0\n";
+  EXPECT_TRUE(surface_of(head + "property int back\n" + points + "3 0 1 2 7\n").surface.sides.empty());
+  const SurfaceMesh both =
+      surface_of(head + "property int back\nproperty int front\n" + points + "3 0 1 2 0 -1\n").surface;
+  EXPECT_EQ(both.sides, (std::vector<Sides>{{kNone, 0}}));
+  EXPECT_EQ(both.region_names, std::vector<std::string>{"iron"});
+  EXPECT_THROW(surface_of(head + "property int back\nproperty int front\n" + points + "3 0 1 2 -2 0\n"), InputError);
 }
 
 TEST(ReadSurface, BinaryStlMayBeginWithSolid) {
