@@ -2,6 +2,7 @@
 
 #include <octafront/octafront.h>
 
+#include "domain.h"
 #include "open_cavity.h"
 #include "text.h"
 
@@ -10,15 +11,6 @@
 namespace octafront::cli {
 
 namespace {
-
-SurfaceFile read_input(const Session& session) {
-  const Arguments& a = session.arguments();
-  SurfaceFile file = read_surface(a.input, session.context());
-  session.say(
-      fmt::format("{}: {}, {}\n", a.input.string(), file.format, counted(file.surface.triangles.size(), "triangle")));
-  session.say_notes("reading", file.notes);
-  return file;
-}
 
 // Files with sizes are small: they are read, and all options checked, before the input.
 Options checked_options(const Session& session) {
@@ -198,7 +190,7 @@ Json json_of(const SurfaceDefects& d) {
 
 void check_surface(Session& session) {
   const std::string name = session.arguments().input.string();
-  const SurfaceFile file = read_input(session);
+  const SurfaceFile file = read_domain(session);
   session.context().report("checking", -1);
   const RepairedSurface repaired = repair_surface(file.surface, session.context());
   for (const std::string& note : repaired.notes) session.say("would repair: " + note + "\n");
@@ -219,10 +211,10 @@ void check_surface(Session& session) {
 
 // Runs one of the library's generators on the input; its refusals name the file.
 template <class Generator>
-auto run_on_input(const Session& session, const Generator& generator) {
+auto run_on_input(Session& session, const Generator& generator) {
   const Arguments& a = session.arguments();
   const Options options = checked_options(session);
-  const SurfaceFile file = read_input(session);
+  const SurfaceFile file = read_domain(session);
   try {
     return generator(file.surface, options, session.context());
   } catch (const OpenCavityError& error) {
@@ -310,7 +302,8 @@ void run_convert(Session& session) {
 }
 
 void run_check(Session& session) {
-  if (is_tet_mesh_file(session.arguments().input)) return check_tet_mesh(session);
+  const Arguments& a = session.arguments();
+  if (a.bodies.size() == 1 && is_tet_mesh_file(a.input) && holds_tetrahedra(a.input)) return check_tet_mesh(session);
   if (session.arguments().solver) throw OptionError("--solver looks at tetrahedral meshes; this is a surface");
   check_surface(session);
 }

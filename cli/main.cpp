@@ -126,6 +126,7 @@ int main(int argc, char** argv) {
 
   auto* mesh = app.add_subcommand("mesh", "Mesh a surface: octafront mesh part.stl -o part.vtu");
   declare_input(*mesh, a);
+  declare_complex(*mesh, a);
   declare_mesh_output(*mesh, a);
   declare_sizes(*mesh, a);
   declare_surface(*mesh, a);
@@ -138,6 +139,7 @@ int main(int argc, char** argv) {
 
   auto* surface = app.add_subcommand("surface", "Triangulate the surface anew and stop there");
   declare_input(*surface, a);
+  declare_complex(*surface, a);
   declare_output(*surface, a, "Surface: .stl, .obj, .off or .ply", true);
   declare_sizes(*surface, a);
   declare_surface(*surface, a);
@@ -147,6 +149,7 @@ int main(int argc, char** argv) {
 
   auto* size = app.add_subcommand("size", "Show the element sizes, and how many elements they would make");
   declare_input(*size, a);
+  declare_complex(*size, a);
   declare_output(*size, a, "Background grid: .vtu", false);
   declare_sizes(*size, a);
   declare_surface(*size, a);
@@ -176,6 +179,7 @@ int main(int argc, char** argv) {
 
   auto* check = app.add_subcommand("check", "Say what is wrong with a surface or a mesh, and what groups it has");
   declare_input(*check, a);
+  declare_complex(*check, a);
   declare_solver(*check, a);
   declare_report(*check, a);
   declare_run(*check, a);

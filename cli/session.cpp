@@ -3,6 +3,7 @@
 #include <octafront/error.h>
 #include <octafront/io.h>
 
+#include "domain.h"
 #include "open_cavity.h"
 #include "terminal.h"
 #include "text.h"
@@ -33,17 +34,20 @@ std::vector<NamedFile> without_unused(std::vector<NamedFile> files) {
 }
 
 std::vector<NamedFile> inputs_of(const Arguments& a) {
-  return without_unused({{"the input", a.input},
-                         {"--surface", a.surface},
-                         {"--regions", a.regions},
-                         {"--point-sizes", a.point_sizes},
-                         {"--size-field", a.size_field}});
+  std::vector<NamedFile> files{{"the input", a.input},
+                               {"--surface", a.surface},
+                               {"--regions", a.regions},
+                               {"--point-sizes", a.point_sizes},
+                               {"--size-field", a.size_field}};
+  for (std::size_t i = 1; i < a.bodies.size(); ++i) files.push_back({"an input", a.bodies[i]});
+  return without_unused(std::move(files));
 }
 
 std::vector<NamedFile> outputs_of(const Arguments& a) {
   return without_unused({{"--output", a.output},
                          {"--json", a.json},
-                         {"the file for a cavity that stays open", a.output.empty() ? "" : cavity_file(a.output)}});
+                         {"the file for a cavity that stays open", a.output.empty() ? "" : cavity_file(a.output)},
+                         {"the file for a leak", a.output.empty() ? "" : leak_file(a.output)}});
 }
 
 }  // namespace
@@ -76,6 +80,8 @@ void Session::write_json(const Json& error) const {
            {"command", arguments_.command},
            {"input", arguments_.input.string()},
            {"options", options}};
+  if (arguments_.bodies.size() > 1)
+    for (const std::filesystem::path& body : arguments_.bodies) all["inputs"].push_back(body.string());
   if (!error.is_null()) all["error"] = error;
   all.update(findings_);
   // Names of files may hold bytes that no text has.

@@ -26,6 +26,8 @@ using arrangement::PointTable;
 /// How many times rounding may make new crossings, and from which pass on points are rounded to a grid that grows
 /// coarser: nearly all input ends in two or three passes.
 constexpr int kMostPasses = 24, kFirstGridPass = 4;
+/// What does not settle must not grow without end either.
+constexpr std::size_t kMostGrowth = 8;
 
 /// Triangles on their way, each with its origins in the input.
 struct Soup {
@@ -101,8 +103,10 @@ class Arranger {
       const auto pairs = self_intersections(soup_.points, soup_.triangles, kAll, context_);
       if (result_.passes == 0) result_.crossing_pairs = pairs.size();
       if (pairs.empty()) return finished();
-      if (result_.passes == kMostPasses) give_up(pairs);
+      const bool grows = first_pass_ > 0 && soup_.triangles.size() > kMostGrowth * first_pass_;
+      if (result_.passes == kMostPasses || grows) give_up(pairs);
       pass(pairs);
+      if (result_.passes == 0) first_pass_ = soup_.triangles.size();
     }
   }
 
@@ -204,6 +208,7 @@ class Arranger {
   const RunContext& context_;
   std::size_t inputs_;
   double diagonal_ = 0;
+  std::size_t first_pass_ = 0;  ///< triangles behind it
   Soup soup_;
   Arrangement result_;
 };

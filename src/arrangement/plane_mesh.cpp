@@ -14,6 +14,16 @@ constexpr int prev(int i) {
   return i == 0 ? 2 : i - 1;
 }
 
+/// A border that runs to and fro is none.
+void toggle(PlaneMesh::Border& border, std::uint32_t face) {
+  const auto at = std::lower_bound(border.begin(), border.end(), face);
+  if (at != border.end() && *at == face) {
+    border.erase(at);
+  } else {
+    border.insert(at, face);
+  }
+}
+
 /// Cotangent of the angle at `apex`.
 double cotangent(Vec3 apex, Vec3 p, Vec3 q) {
   const Vec3 u = p - apex, v = q - apex;
@@ -226,7 +236,7 @@ void PlaneMesh::mark(Side side, std::uint32_t cut, std::uint32_t face) {
   if (known != kNone && face == kNone) return;
   // The other parts of the segment that is known keep its mark as it is.
   Mark fresh = known != kNone ? marks_[known] : Mark{cut, {}};
-  if (face != kNone) fresh.border.insert(std::lower_bound(fresh.border.begin(), fresh.border.end(), face), face);
+  if (face != kNone) toggle(fresh.border, face);
   known = static_cast<std::uint32_t>(marks_.size());
   const std::uint32_t u = t.next[side.corner];
   triangles_[u].mark[corner_facing(u, side.triangle)] = known;
