@@ -26,9 +26,12 @@ SurfaceFile read_one(const Session& session, const std::filesystem::path& file) 
 void tell_regions(Session& session, const Complex& complex) {
   session.say_notes("regions", complex.notes);
   Json regions = Json::array();
+  const std::vector<std::string>& names = complex.surface.region_names;
   for (std::size_t r = 0; r < complex.volumes.size(); ++r) {
-    regions.push_back({{"name", complex.surface.region_names[r]}, {"volume", complex.volumes[r]}});
-    session.say(fmt::format("  region \"{}\": volume {:.6g}\n", complex.surface.region_names[r], complex.volumes[r]));
+    // One region alone needs no name.
+    const std::string name = r < names.size() ? names[r] : "body";
+    regions.push_back({{"name", name}, {"volume", complex.volumes[r]}});
+    session.say(fmt::format("  region \"{}\": volume {:.6g}\n", name, complex.volumes[r]));
   }
   if (!regions.empty()) session.found({{"input_regions", regions}});
 }

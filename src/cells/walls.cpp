@@ -17,6 +17,25 @@ namespace {
 
 using cells::Labelled;
 
+/// As repair checks its input.
+void check_input(const SurfaceMesh& surface) {
+  constexpr double kLargest = 1e50;
+  for (const Vec3 p : surface.points)
+    for (int i = 0; i < 3; ++i)
+      if (!(std::abs(p[i]) <= kLargest))
+        throw InputError(fmt::format("the vertex {} is not finite, or beyond {:g}; repair the model where it was made",
+                                     at_point(p), kLargest));
+  for (const Triangle& t : surface.triangles)
+    for (const VertexIndex v : t)
+      if (v >= surface.points.size())
+        throw InputError(
+            fmt::format("a triangle names the vertex {}, but there are only {}", v, surface.points.size()));
+  const std::size_t n = surface.triangles.size();
+  if ((!surface.patch.empty() && surface.patch.size() != n) || (!surface.sides.empty() && surface.sides.size() != n))
+    throw InputError(fmt::format("{} patches and {} sides are given for {} triangles", surface.patch.size(),
+                                 surface.sides.size(), n));
+}
+
 bool is_asked_for(const ComplexOptions& options) {
   return options.cells != ComplexOptions::Cells::kAuto || options.nested != ComplexOptions::Nested::kByDirection ||
          !options.regions.empty() || !options.voids.empty();
@@ -183,6 +202,7 @@ Complex relabelled(const SurfaceMesh& surface, const ComplexOptions& options, co
 
 std::optional<Complex> complex_of_walls(const SurfaceMesh& surface, const ComplexOptions& options,
                                         const RunContext& context) {
+  check_input(surface);
   if (!surface.sides.empty()) return relabelled(surface, options, context);
   const bool asked = is_asked_for(options);
   if (!asked && is_plain(surface, context)) return std::nullopt;
@@ -207,7 +227,8 @@ std::optional<Complex> complex_of_walls(const SurfaceMesh& surface, const Comple
   if (complex.surface.triangles.empty()) throw InputError("every enclosed cell is a void: there is nothing to mesh");
   complex.surface.patch_names = surface.patch_names;
   forget_zeros(complex.surface.patch);
-  forget_sides_of_one(complex.surface);
+  // A name that was given stays.
+  if (options.regions.empty()) forget_sides_of_one(complex.surface);
   notes.insert(notes.begin(), fmt::format("{} enclosed: {}", counted(cells.count() - 1, "cell"),
                                           counted(complex.volumes.size(), "region")));
   notes.insert(notes.end(), complex.notes.begin(), complex.notes.end());

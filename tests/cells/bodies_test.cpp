@@ -4,6 +4,7 @@
 #include "support/complexes.h"
 #include "support/named_surfaces.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -50,6 +51,52 @@ TEST(JoinBodies, ABoltSharesItsHoleWithThePlate) {
   const Complex complex = join_bodies(bodies_of(known));
   const double side = 2 * 0.5 * std::sin(std::acos(-1) / 32);
   EXPECT_NEAR(interface_area(complex.surface), 32 * side * 0.375, 1e-9);
+}
+
+TEST(JoinBodies, GapsBelowTheToleranceClose) {
+  // Boxes with a gap, with an overlap, and with single precision between them; their sides divided in different ways.
+  const SurfaceMesh low = testing::box(1, 1, 1, 2);
+  for (const double gap : {1e-4, -1e-4, 3e-8, 0.0}) {
+    SCOPED_TRACE(gap);
+    SurfaceMesh high = testing::box(1, 1, 1, 3);
+    for (Vec3& p : high.points) p = {p.x + gap, p.y - gap, p.z + 1 + gap};
+    ComplexOptions options;
+    options.tolerance = 1e-3;
+    const Complex complex = join_bodies({{"low", low}, {"high", high}}, options);
+    EXPECT_NEAR(interface_area(complex.surface), 1, 1e-3);
+    EXPECT_TRUE(self_intersections(complex.surface.points, complex.surface.triangles).empty());
+    ASSERT_EQ(complex.volumes.size(), 2U);
+    EXPECT_NEAR(complex.volumes[0], 1, 1e-9) << "earlier bodies stay where they are";
+    EXPECT_NEAR(complex.volumes[1], 1, 1e-3);
+    for (const Vec3 p : low.points)
+      EXPECT_NE(std::find(complex.surface.points.begin(), complex.surface.points.end(), p),
+                complex.surface.points.end());
+    options.tolerance = 0;
+    EXPECT_NEAR(interface_area(join_bodies({{"low", low}, {"high", high}}, options).surface), gap == 0 ? 1 : 0,
+                gap < 0 ? 1.1 : 1e-9);
+  }
+}
+
+TEST(JoinBodies, ATurnedBoxOnAnother) {
+  // Their faces touch at an angle that no lattice knows: vertices of one lie amid triangles of the other, edges cross.
+  const double c = std::cos(0.3), s = std::sin(0.3);
+  SurfaceMesh turned = testing::box(0.5, 0.5, 0.5, 2);
+  for (Vec3& p : turned.points) p = {0.4 + c * p.x - s * p.y, 0.2 + s * p.x + c * p.y, p.z + 1};
+  const SurfaceMesh ground = testing::box(1, 1, 1, 3);
+  // The same on a slope, where nothing is exact.
+  for (const double slope : {0.0, 0.7}) {
+    const auto tilted = [&](SurfaceMesh m) {
+      for (Vec3& p : m.points)
+        p = {p.x, std::cos(slope) * p.y - std::sin(slope) * p.z, std::sin(slope) * p.y + std::cos(slope) * p.z};
+      return m;
+    };
+    const Complex complex = join_bodies({{"ground", tilted(ground)}, {"turned", tilted(turned)}});
+    ASSERT_EQ(complex.volumes.size(), 2U);
+    EXPECT_NEAR(complex.volumes[0], 1, 1e-9);
+    EXPECT_NEAR(complex.volumes[1], 0.125, 1e-9);
+    EXPECT_NEAR(interface_area(complex.surface), 0.25, 1e-9);
+    EXPECT_TRUE(self_intersections(complex.surface.points, complex.surface.triangles).empty());
+  }
 }
 
 TEST(JoinBodies, TheLaterOneHasItsWay) {
