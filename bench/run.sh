@@ -12,13 +12,14 @@
 #   bench/run.sh improve     improvement against its targets, never worse, start meshes of others -> docs/improve-bench.md
 #   bench/run.sh formats     how fast meshes are written, every format beside a plain write -> docs/formats-bench.md
 #   bench/run.sh second_order   all clean models, balls, tori, cylinders: proven? how true? at what cost? -> docs/second-order.md
+#   bench/run.sh dry_run     mesh --dry-run: elements, time and memory said and taken -> docs/command-line.md
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/lib/apt.sh
 
 case ${1:-} in
-  status | derived | pipeline | surface | elements | volume | peers | improve | formats | second_order) ;;
-  *) sed -n '2,15s/^# \{0,1\}//p' "$0"; exit 2 ;;
+  status | derived | pipeline | surface | elements | volume | peers | improve | formats | second_order | dry_run) ;;
+  *) sed -n '2,16s/^# \{0,1\}//p' "$0"; exit 2 ;;
 esac
 need_packages "${build_packages[@]}" python3
 [ "$1" != surface ] || need_packages gmsh netgen libcgal-dev libgmp-dev libmpfr-dev

@@ -2,6 +2,8 @@
 
 #include <octafront/io.h>
 
+#include "units.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -36,6 +38,17 @@ std::string names_of_formats() {
   for (const FormatInfo& info : known_formats())
     if (info.writes_mesh) all += (all.empty() ? "" : ", ") + std::string(info.name);
   return all;
+}
+
+/// A length in units of the input, or with a unit of its own: "2", "2mm".
+CLI::Option* add_length(CLI::App& group, Arguments& a, const std::string& option, std::optional<double>& value,
+                        const std::string& help) {
+  const auto read = [&a, &value, option](const std::string& typed) {
+    const auto [number, unit] = length_of(option, typed);
+    value = number;
+    if (!unit.empty()) a.lengths.push_back({option, unit, &value});
+  };
+  return group.add_option_function<std::string>(option, read, help);
 }
 
 [[noreturn]] void refuse_group(const std::string& typed, const std::string& why) {
@@ -113,7 +126,10 @@ std::int64_t whole_number(double n) {
   return static_cast<std::int64_t>(n);
 }
 
-void declare_input(CLI::App& command, Arguments& a) {
+void declare_input(CLI::App& command, Arguments& a, const std::string& what) {
+  const std::string surface =
+      "Closed surface, with inner walls or without: STL, OBJ, OFF, PLY, TetGen .poly, triangles of Gmsh .msh or MEDIT "
+      ".mesh; -: from standard input; or several files, a body each";
   command
       .add_option_function<std::vector<std::string>>(
           "input",
@@ -121,8 +137,7 @@ void declare_input(CLI::App& command, Arguments& a) {
             a.bodies.assign(all.begin(), all.end());
             a.input = a.bodies.front();
           },
-          "Closed surface, with inner walls or without: STL, OBJ, OFF, PLY, TetGen .poly, triangles of Gmsh .msh or "
-          "MEDIT .mesh; or several files, a body each")
+          what.empty() ? surface : what)
       ->required()
       ->type_name("FILE");
 }
@@ -177,9 +192,17 @@ void declare_output(CLI::App& command, Arguments& a, const std::string& what, bo
 }
 
 void declare_mesh_output(CLI::App& command, Arguments& a) {
-  declare_output(command, a, "Mesh, its format by the ending: " + formats_that(&FormatInfo::writes_mesh), true);
-  command.add_option("--format", a.format, "Format by name, whatever the ending: " + names_of_formats())
-      ->type_name("NAME");
+  command
+      .add_option("-o,--output", a.meshes,
+                  "Mesh, its format by the ending: " + formats_that(&FormatInfo::writes_mesh) +
+                      "; several: each is written; -: to standard output, alone, with --format")
+      ->type_name("FILE")
+      ->allow_extra_args(false);
+  command
+      .add_option("--format", a.formats,
+                  "Format by name, whatever the ending; for several outputs once for each: " + names_of_formats())
+      ->type_name("NAME")
+      ->allow_extra_args(false);
   command
       .add_option_function<std::vector<std::string>>(
           "--group",
@@ -190,6 +213,29 @@ void declare_mesh_output(CLI::App& command, Arguments& a) {
           "NAME=elements:box:..., NAME=faces:box:...")
       ->type_name("NAME=WHERE")
       ->allow_extra_args(false);
+}
+
+void declare_page(CLI::App& command, Arguments& a) {
+  command
+      .add_option("--report", a.page,
+                  "Write a web page with the mesh in 3D and all numbers, in one file that needs no network")
+      ->type_name("FILE.html");
+}
+
+void declare_preset(CLI::App& command, Arguments& a) {
+  const Choice<Preset> choice{{{"draft", Preset::kDraft}, {"standard", Preset::kStandard}, {"fine", Preset::kFine}}};
+  command
+      .add_option_function<std::string>(
+          "--preset", [&a, choice](const std::string& typed) { a.preset = choice.value_of("--preset", typed); },
+          "draft: automatic sizes with about a quarter of the elements, improved fast; fine: with four times as many, "
+          "improved "
+          "best; options that are given go before [standard]")
+      ->type_name(choice.listed("|"));
+}
+
+void declare_dry_run(CLI::App& command, Arguments& a) {
+  command.add_flag("--dry-run", a.dry_run,
+                   "Say how many elements, how much memory and time it would take; make nothing");
 }
 
 void declare_report(CLI::App& command, Arguments& a) {
@@ -208,10 +254,19 @@ void declare_run(CLI::App& command, Arguments& a) {
   group->add_flag("-q,--quiet", a.quiet, "Print nothing but errors");
 }
 
+/// NAME=H, where the name may have signs of equality of its own.
+NamedSize named_size(const std::string& text) {
+  const std::size_t at = text.rfind('=');
+  double size = 0;
+  if (at == std::string::npos || at == 0 || !CLI::detail::lexical_cast(text.substr(at + 1), size))
+    throw CLI::ValidationError("--size-of", "\"" + text + "\" is not NAME=H, the name of a part and a size");
+  return {text.substr(0, at), size};
+}
+
 void declare_sizes(CLI::App& command, Arguments& a) {
   SizeOptions& o = a.options.size;
   auto* group = command.add_option_group("Sizes", "None given: an automatic size. Several: the smallest wins");
-  group->add_option("--size", o.size, "Edge length, in units of the input")->type_name("H");
+  add_length(*group, a, "--size", o.size, "Edge length, in units of the input, or with one: 2mm")->type_name("H");
   group
       ->add_option_function<double>(
           "--elements", [&o](double n) { o.elements = whole_number(n); },
@@ -222,6 +277,16 @@ void declare_sizes(CLI::App& command, Arguments& a) {
   group->add_option("--feature-elements", o.feature_elements, "Elements along each feature curve at least")
       ->type_name("K");
   group
+      ->add_option_function<std::vector<std::string>>(
+          "--size-of",
+          [&o](const std::vector<std::string>& all) {
+            for (const std::string& text : all) o.named.push_back(named_size(text));
+          },
+          "Edge length in and around a region, on a patch or along a curve, by its name; may be repeated")
+      ->type_name("NAME=H")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  group
       ->add_option("--regions", a.regions, "Boxes, spheres and points with a size each: JSON, or a table x, y, z, size")
       ->type_name("FILE");
   group
@@ -230,9 +295,18 @@ void declare_sizes(CLI::App& command, Arguments& a) {
       ->type_name("FILE");
   group->add_option("--size-field", a.size_field, "All sizes, as `octafront size -o` writes them, edited or not; alone")
       ->type_name("FILE");
+  group
+      ->add_option("--unit", a.unit,
+                   "What the input's coordinates count, for lengths with a unit; OBJ files may say it")
+      ->type_name(names_of_units("|"));
   group->add_flag("--facets", o.facets, "Sizes follow the areas of the input's facets (the paper's rule)");
-  group->add_option("--min-size", o.min_size, "No size falls below this")->type_name("H");
-  group->add_option("--max-size", o.max_size, "No size rises above this")->type_name("H");
+  add_length(*group, a, "--min-size", o.min_size, "No size falls below this")->type_name("H");
+  add_length(*group, a, "--max-size", o.max_size, "No size rises above this")->type_name("H");
+  group
+      ->add_option("--automatic-factor", o.automatic_factor,
+                   "Automatic sizes times this: .5 makes eight times as many elements")
+      ->type_name("F")
+      ->capture_default_str();
   group->add_option("--gradation,--grading", o.gradation, "How fast sizes may change: |h(x) - h(y)| <= G |x - y|")
       ->type_name("G")
       ->capture_default_str();
@@ -250,11 +324,9 @@ void declare_surface(CLI::App& command, Arguments& a) {
   group->add_option("--feature-angle", o.feature_angle, "Edges that bend by more degrees than this are kept")
       ->type_name("DEG")
       ->capture_default_str();
-  group
-      ->add_option(
-          "--max-deviation", o.max_deviation,
-          "Smaller elements where the surface would stray farther from the input, and how far folds and needles "
-          "of it give way; 0: not at all [0.4 % of the diagonal with automatic sizes, else none]")
+  add_length(*group, a, "--max-deviation", o.max_deviation,
+             "Smaller elements where the surface would stray farther from the input, and how far folds and needles "
+             "of it give way; 0: not at all [0.4 % of the diagonal with automatic sizes, else none]")
       ->type_name("D");
   group
       ->add_option("--normal-deviation", o.normal_deviation,
@@ -363,11 +435,16 @@ void declare_solver(CLI::App& command, Arguments& a) {
       ->type_name(choice.listed("|"));
 }
 
+std::vector<const CLI::App*> commands_of(const CLI::App& app) {
+  return app.get_subcommands([](const CLI::App* command) { return !command->get_name().empty(); });
+}
+
 std::vector<const CLI::Option*> options_of(const CLI::App& command) {
   std::vector<const CLI::Option*> options = command.get_options();
   for (const CLI::App* group : command.get_subcommands([](const CLI::App*) { return true; })) {
     if (!group->get_name().empty()) continue;
-    for (const CLI::Option* option : options_of(*group)) options.push_back(option);
+    for (const CLI::Option* option : options_of(*group))
+      if (option != group->get_help_ptr()) options.push_back(option);  // each group has one of its own
   }
   return options;
 }

@@ -16,16 +16,31 @@
 
 namespace octafront::cli {
 
+/// A length of Options that was typed with a unit.
+struct TypedLength {
+  std::string option, unit;
+  std::optional<double>* value;
+};
+
+/// What people choose who do not want to think: how fine automatic sizes are, and how long elements are improved.
+enum class Preset { kDraft, kStandard, kFine };
+
 /// What the user typed, as the commands need it.
 struct Arguments {
   std::string command;
-  std::filesystem::path input, output, json, surface;
+  std::string command_line;  ///< quoted for a shell
+  std::filesystem::path input, output, json, surface, page;
   std::vector<std::filesystem::path> bodies;  ///< all inputs, the first one too, of commands that take several
   ComplexOptions complex;
+  std::vector<std::filesystem::path> meshes;               ///< that are written; "-": to standard output
+  std::vector<std::string> formats;                        ///< of the meshes in turn; empty: by their endings
   std::filesystem::path regions, point_sizes, size_field;  ///< files with sizes; empty: none
   Options options;
-  std::optional<Solver> solver;   ///< whose limits a mesh is checked by
-  std::string format;             ///< of the mesh that is written; empty: by the ending
+  std::optional<Solver> solver;      ///< whose limits a mesh is checked by
+  std::string unit;                  ///< of the input's coordinates; empty: what the file says
+  std::vector<TypedLength> lengths;  ///< that wait for it
+  std::optional<Preset> preset;
+  bool dry_run = false;
   std::vector<GroupRule> groups;  ///< that are added to it
   int new_order = 0;              ///< of a converted mesh; 0: as it is
   int threads = 0;
@@ -36,13 +51,17 @@ struct Arguments {
 
 /// Declares what each command understands; defaults are those of Options. A field of Options has the name of its
 /// option, with underscores, unless said otherwise in `names`.
-void declare_input(CLI::App& command, Arguments& arguments);
+void declare_input(CLI::App& command, Arguments& arguments, const std::string& what = {});
 void declare_mesh_input(CLI::App& command, Arguments& arguments);
 void declare_output(CLI::App& command, Arguments& arguments, const std::string& what, bool required);
 /// Several materials: how walls and bodies become regions.
 void declare_complex(CLI::App& command, Arguments& arguments);
 /// -o, --format and --group of commands that write a mesh.
 void declare_mesh_output(CLI::App& command, Arguments& arguments);
+/// --report: the web page.
+void declare_page(CLI::App& command, Arguments& arguments);
+void declare_preset(CLI::App& command, Arguments& arguments);
+void declare_dry_run(CLI::App& command, Arguments& arguments);
 void declare_report(CLI::App& command, Arguments& arguments);
 void declare_run(CLI::App& command, Arguments& arguments);
 void declare_sizes(CLI::App& command, Arguments& arguments);
@@ -53,6 +72,9 @@ void declare_ground(CLI::App& command, Arguments& arguments);
 void declare_order(CLI::App& command, Arguments& arguments);
 void declare_conversion(CLI::App& command, Arguments& arguments);
 void declare_solver(CLI::App& command, Arguments& arguments);
+
+/// The commands of the program.
+std::vector<const CLI::App*> commands_of(const CLI::App& app);
 
 /// Every option of a command, those of its groups too.
 std::vector<const CLI::Option*> options_of(const CLI::App& command);

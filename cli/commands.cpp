@@ -3,7 +3,13 @@
 #include <octafront/octafront.h>
 
 #include "domain.h"
+#include "estimate.h"
+#include "inputs.h"
 #include "open_cavity.h"
+#include "page.h"
+#include "presets.h"
+#include "targets.h"
+#include "tell.h"
 #include "text.h"
 
 #include <fmt/core.h>
@@ -15,78 +21,13 @@ namespace {
 // Files with sizes are small: they are read, and all options checked, before the input.
 Options checked_options(const Session& session) {
   const Arguments& a = session.arguments();
-  Options options = a.options;
+  Options options = with_preset(a);
   if (!a.regions.empty()) options.size.regions = read_size_regions(a.regions, session.context());
   if (!a.point_sizes.empty()) options.size.point_sizes = read_point_sizes(a.point_sizes, session.context());
   if (!a.size_field.empty())
     options.size.field = read_size_field(a.size_field, options.size.gradation, session.context());
   check_options(options);
   return options;
-}
-
-// Tetrahedral meshes are told from surfaces by the ending: no surface format shares one with them.
-bool is_tet_mesh_file(const std::filesystem::path& file) {
-  const std::string ending = CLI::detail::to_lower(file.extension().string());
-  for (const FormatInfo& info : known_formats())
-    for (const std::string& known : CLI::detail::split(std::string(info.endings), ' '))
-      if (info.reads_mesh && !ending.empty() && ending == known) return true;
-  return false;
-}
-
-TetMesh read_mesh_input(const Session& session) {
-  const Arguments& a = session.arguments();
-  MeshFile file = read_mesh_file(a.input, session.context());
-  session.say(fmt::format("{}: {}, {} tetrahedra{}\n", a.input.string(), file.format, file.mesh.tets.size(),
-                          file.mesh.is_second_order() ? " of second order" : ""));
-  session.say_notes("reading", file.notes);
-  return std::move(file.mesh);
-}
-
-/// Adds the groups that were asked for, writes the mesh, and says what was lost on the way.
-void write_mesh_output(Session& session, TetMesh mesh) {
-  const Arguments& a = session.arguments();
-  std::vector<std::string> notes;
-  for (const GroupRule& rule : a.groups)
-    if (std::string note = add_group(mesh, rule); !note.empty()) notes.push_back(std::move(note));
-  session.context().report("writing", -1);
-  for (std::string& note : write_mesh(a.output, mesh, session.context(), a.format)) notes.push_back(std::move(note));
-  session.say_notes("writing", notes);
-  session.found({{"output", {{"file", a.output.string()}, {"notes", notes}}}});
-}
-
-/// The groups of a mesh and their sizes, in words and for programs.
-void tell_groups(Session& session, const TetMesh& mesh) {
-  Json all = Json::array();
-  std::string words;
-  for (const GroupInfo& group : groups_of(mesh)) {
-    all.push_back({{"origin", group.origin}, {"name", group.name}, {"size", group.size}});
-    words += fmt::format("  {} \"{}\": {}\n", group.origin, group.name, group.size);
-  }
-  session.found({{"groups", all}});
-  if (!words.empty()) session.say("groups:\n" + words);
-}
-
-Json place(Vec3 p) {
-  return {p.x, p.y, p.z};
-}
-
-Vec3 middle(const TetMesh& mesh, TetIndex tet) {
-  const auto& [a, b, c, d] = mesh.tets[tet];
-  return (mesh.points[a] + mesh.points[b] + mesh.points[c] + mesh.points[d]) / 4;
-}
-
-// A number alone is hard to find in a viewer.
-void tell_worst(Session& session, const TetMesh& mesh, const QualitySummary& quality) {
-  const Vec3 p = middle(mesh, quality.beta_min_tet);
-  session.say(fmt::format("worst element: number {} at ({:.6g}, {:.6g}, {:.6g}), beta {:.4f}\n", quality.beta_min_tet,
-                          p.x, p.y, p.z, quality.beta_min));
-  session.found({{"worst_element", {{"number", quality.beta_min_tet}, {"at", place(p)}, {"beta", quality.beta_min}}}});
-}
-
-std::string quality_in_words(const QualitySummary& q) {
-  return fmt::format("{}; least beta {:.4f}, mean {:.4f}, dihedral angles {:.1f} to {:.1f} degrees",
-                     q.elements == 1 ? "1 tetrahedron" : fmt::format("{} tetrahedra", q.elements), q.beta_min,
-                     q.beta_mean, q.dihedral_min, q.dihedral_max);
 }
 
 Json json_of(const JacobianSummary& found) {
@@ -159,16 +100,7 @@ void check_tet_mesh(Session& session) {
   const auto defect = first_defect(mesh, session.context());
   session.found({{"kind", "mesh"}, {"valid", !defect}});
   if (defect) throw InputError(fmt::format("{}: not a valid mesh: {}", name, *defect));
-  Report report;
-  report.points = mesh.points.size();
-  report.tets = mesh.tets.size();
-  report.boundary_faces = mesh.boundary.size();
-  report.quality = summarize_quality(mesh);
-  session.found({{"points", report.points}, {"tets", report.tets}, {"boundary_faces", report.boundary_faces}});
-  session.found({{"quality", Json::parse(to_json(report))["quality"]}});
-  session.say(fmt::format("{}: a valid mesh of {}\n", name, quality_in_words(report.quality)));
-  tell_worst(session, mesh, report.quality);
-  tell_groups(session, mesh);
+  tell_mesh(session, mesh, "a valid mesh");
   if (refused > 0) throw InputError(fmt::format("{}: the solver would refuse {}", name, counted(refused, "element")));
 }
 
@@ -185,7 +117,9 @@ Json json_of(const SurfaceDefects& d) {
           {"misoriented_edges", json_of(d.misoriented_edges)},
           {"non_manifold_vertices", json_of(d.non_manifold_vertices)},
           {"self_intersections", json_of(d.self_intersections)},
-          {"degenerate_faces", json_of(d.degenerate_faces)}};
+          {"degenerate_faces", json_of(d.degenerate_faces)},
+          {"region_conflicts", json_of(d.region_conflicts)},
+          {"misplaced_parts", json_of(d.misplaced_parts)}};
 }
 
 void check_surface(Session& session) {
@@ -216,16 +150,28 @@ auto run_on_input(Session& session, const Generator& generator) {
   const Options options = checked_options(session);
   const SurfaceFile file = read_domain(session);
   try {
+    if (!a.page.empty()) find_repairs(session, file.surface);
     return generator(file.surface, options, session.context());
   } catch (const OpenCavityError& error) {
-    throw with_cavity_written(error, a.output);
+    const std::filesystem::path beside = cavity_neighbour(a);
+    throw with_cavity_written(error, beside.empty() ? "octafront" : beside);
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: {}", a.input.string(), error.what()));
   }
 }
 
 void say_written(const Session& session) {
-  session.say(fmt::format("written: {}\n", session.arguments().output.string()));
+  const Arguments& a = session.arguments();
+  std::vector<std::filesystem::path> all = a.meshes;
+  all.insert(all.end(), {a.output, a.page});
+  for (const std::filesystem::path& file : all)
+    if (!file.empty()) session.say(fmt::format("written: {}\n", file.string()));
+}
+
+/// The last step of a run that made a mesh: its page, if one is wanted.
+void finish(Session& session, const TetMesh& mesh, const SizeField* sizes) {
+  if (!session.arguments().page.empty()) write_page(session.arguments().page, session, mesh, sizes);
+  say_written(session);
 }
 
 // Which of the two files that improvement reads is at fault: the surface if it is not clean by itself.
@@ -238,12 +184,14 @@ std::filesystem::path file_at_fault(const Arguments& a, const SurfaceMesh& surfa
 
 void run_mesh(Session& session) {
   const Arguments& a = session.arguments();
-  check_mesh_target(a.output, a.format);
+  if (a.dry_run) return tell_estimate(session, run_on_input(session, generate_sizes));
+  check_mesh_targets(a);
+  check_page_target(a.page);
   const Result result = run_on_input(session, generate);
-  write_mesh_output(session, result.mesh);
+  write_mesh_targets(session, result.mesh);
   session.tell(result.report);
   tell_worst(session, result.mesh, result.report.quality);
-  say_written(session);
+  finish(session, result.mesh, &result.sizes);
 }
 
 void run_surface(Session& session) {
@@ -267,7 +215,8 @@ void run_size(Session& session) {
 
 void run_improve(Session& session) {
   const Arguments& a = session.arguments();
-  check_mesh_target(a.output, a.format);
+  check_mesh_targets(a);
+  check_page_target(a.page);
   check_options(a.options);
   const TetMesh mesh = read_mesh_input(session);
   SurfaceMesh surface;
@@ -280,24 +229,24 @@ void run_improve(Session& session) {
     }
   };
   const Improved result = improved();
-  write_mesh_output(session, result.mesh);
+  write_mesh_targets(session, result.mesh);
   session.say(fmt::format("{}: {}\n", a.input.string(), quality_in_words(result.before)));
   session.say(fmt::format("improved: {}\n", quality_in_words(result.report.quality)));
   session.tell(result.report);
   tell_worst(session, result.mesh, result.report.quality);
-  say_written(session);
+  finish(session, result.mesh, nullptr);
 }
 
 void run_convert(Session& session) {
   const Arguments& a = session.arguments();
-  check_mesh_target(a.output, a.format);
+  check_mesh_targets(a);
   TetMesh mesh = read_mesh_input(session);
   if (a.new_order == 1) make_linear(mesh);
   if (a.new_order == 2 && !mesh.is_second_order()) make_second_order(mesh, nullptr, 40, session.context());
   // Whoever converts wants the mesh as it is; but nobody should find out in the solver.
   if (const auto defect = first_defect(mesh, session.context()))
     session.say_notes("checking", {"the mesh is not valid: " + *defect});
-  write_mesh_output(session, std::move(mesh));
+  write_mesh_targets(session, std::move(mesh));
   say_written(session);
 }
 
@@ -306,6 +255,18 @@ void run_check(Session& session) {
   if (a.bodies.size() == 1 && is_tet_mesh_file(a.input) && holds_tetrahedra(a.input)) return check_tet_mesh(session);
   if (session.arguments().solver) throw OptionError("--solver looks at tetrahedral meshes; this is a surface");
   check_surface(session);
+}
+
+void run_report(Session& session) {
+  const Arguments& a = session.arguments();
+  check_page_target(a.output);
+  const TetMesh mesh = read_mesh_input(session);
+  const auto defect = first_defect(mesh, session.context());
+  session.found({{"kind", "mesh"}, {"valid", !defect}});
+  if (defect) session.say_notes("checking", {"the mesh is not valid: " + *defect});
+  tell_mesh(session, mesh, defect ? "a mesh that is not valid" : "a valid mesh");
+  write_page(a.output, session, mesh, nullptr);
+  say_written(session);
 }
 
 }  // namespace octafront::cli

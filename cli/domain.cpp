@@ -93,10 +93,10 @@ SurfaceFile read_walls(Session& session) {
   Json way = Json::array();
   for (const Vec3 p : leak.way) way.push_back({p.x, p.y, p.z});
   session.found({{"leak", way}});
-  const std::filesystem::path& output = session.arguments().output;
-  if (output.empty() || leak.way.size() < 2) throw leak;
-  write_surface(leak_file(output), tube_along(leak.way));
-  throw InputError(fmt::format("{}\nThe way through the hole is in {}", leak.what(), leak_file(output).string()));
+  const std::filesystem::path beside = cavity_neighbour(session.arguments());
+  if (beside.empty() || leak.way.size() < 2) throw leak;
+  write_surface(leak_file(beside), tube_along(leak.way));
+  throw InputError(fmt::format("{}\nThe way through the hole is in {}", leak.what(), leak_file(beside).string()));
 }
 
 }  // namespace

@@ -1,16 +1,10 @@
-#include <octafront/error.h>
-
-#include "arguments.h"
-#include "commands.h"
-#include "compare.h"
 #include "failure.h"
+#include "program.h"
 #include "session.h"
 #include "terminal.h"
 #include "text.h"
 
 #include <cstdio>
-#include <functional>
-#include <map>
 
 #include <fmt/core.h>
 
@@ -18,9 +12,6 @@ namespace {
 
 using namespace octafront;
 using namespace octafront::cli;
-
-/// Options of earlier versions, and what they are called now.
-const std::map<std::string, std::string> kRenamed{{"--size-grid", "--size-field"}};
 
 int fail(Status status, const std::string& message) {
   clear_progress();
@@ -45,54 +36,23 @@ int fail_with_json(const Session& session, const Failure& failure) {
   return status;
 }
 
-int run(const Arguments& arguments, const std::function<void(Session&)>& command) {
+int run(Program& program, int argc, char** argv) {
+  const Arguments* arguments = nullptr;
   try {
-    check_files(arguments);
+    arguments = &program.arguments(argc, argv);
+    check_files(*arguments);
   } catch (const std::exception&) {
     const Failure failure = current_failure();
     return fail(failure.status, failure.message);
   }
-  Session session(arguments);
+  Session session(*arguments);
   try {
-    command(session);
+    program.chosen()(session);
     session.write_json(nullptr);
     return finished(kDone);
   } catch (const std::exception&) {
     return fail_with_json(session, current_failure());
   }
-}
-
-std::vector<std::string> names_of_options(const CLI::App& command) {
-  std::vector<std::string> names;
-  for (const CLI::Option* option : options_of(command))
-    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-  return names;
-}
-
-std::vector<std::string> names_of_commands(const CLI::App& app) {
-  std::vector<std::string> names;
-  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
-    names.push_back(command->get_name());
-  return names;
-}
-
-std::string unknown(const std::string& what, const std::string& typed, const std::vector<std::string>& known) {
-  const auto renamed = kRenamed.find(typed);
-  if (renamed != kRenamed.end()) return fmt::format("{} is called {} now", typed, renamed->second);
-  const std::string nearest = nearest_word(typed, known);
-  return fmt::format("there is no {} {}{}", what, typed,
-                     nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest));
-}
-
-/// What is wrong with the command line, in words; a word that is not known goes before what is missing because of it.
-std::string usage_error(const CLI::App& app, const CLI::ParseError& error) {
-  const auto chosen = app.get_subcommands();
-  const CLI::App& command = chosen.empty() ? app : *chosen.front();
-  for (const std::string& extra : command.remaining()) {
-    if (extra.starts_with("--")) return unknown("option", extra.substr(0, extra.find('=')), names_of_options(command));
-    if (chosen.empty()) return unknown("command", extra, names_of_commands(app));
-  }
-  return error.what();
 }
 
 int refuse_usage(const CLI::App& app, const CLI::ParseError& error) {
@@ -115,81 +75,8 @@ bool has_empty_argument(int argc, char** argv, std::string& before) {
 
 int main(int argc, char** argv) {
   prepare_process();
-  CLI::App app{"Octafront: tetrahedral meshes from closed surfaces"};
-  app.set_version_flag("--version", OCTAFRONT_VERSION);
-  app.require_subcommand(1);
-  app.footer(
-      "Exit status: 0 done, 2 usage, 3 input refused, 4 no valid mesh, 5 output not written, 6 out of memory, "
-      "130 interrupted, 1 a bug of ours");
-  Arguments a;
-  std::function<void(Session&)> chosen;
-
-  auto* mesh = app.add_subcommand("mesh", "Mesh a surface: octafront mesh part.stl -o part.vtu");
-  declare_input(*mesh, a);
-  declare_complex(*mesh, a);
-  declare_mesh_output(*mesh, a);
-  declare_sizes(*mesh, a);
-  declare_surface(*mesh, a);
-  declare_volume(*mesh, a);
-  declare_improvement(*mesh, a);
-  declare_order(*mesh, a);
-  declare_report(*mesh, a);
-  declare_run(*mesh, a);
-  mesh->callback([&] { chosen = run_mesh; });
-
-  auto* surface = app.add_subcommand("surface", "Triangulate the surface anew and stop there");
-  declare_input(*surface, a);
-  declare_complex(*surface, a);
-  declare_output(*surface, a, "Surface: .stl, .obj, .off or .ply", true);
-  declare_sizes(*surface, a);
-  declare_surface(*surface, a);
-  declare_report(*surface, a);
-  declare_run(*surface, a);
-  surface->callback([&] { chosen = run_surface; });
-
-  auto* size = app.add_subcommand("size", "Show the element sizes, and how many elements they would make");
-  declare_input(*size, a);
-  declare_complex(*size, a);
-  declare_output(*size, a, "Background grid: .vtu", false);
-  declare_sizes(*size, a);
-  declare_surface(*size, a);
-  declare_report(*size, a);
-  declare_run(*size, a);
-  size->callback([&] { chosen = run_size; });
-
-  auto* better =
-      app.add_subcommand("improve", "Make the elements of a mesh better: octafront improve in.msh -o out.vtu");
-  declare_mesh_input(*better, a);
-  declare_mesh_output(*better, a);
-  declare_ground(*better, a);
-  declare_improvement(*better, a);
-  declare_order(*better, a);
-  declare_report(*better, a);
-  declare_run(*better, a);
-  better->callback([&] { chosen = run_improve; });
-
-  auto* convert =
-      app.add_subcommand("convert", "Another format, with all names and sets that it holds: in.msh -o out.inp");
-  declare_mesh_input(*convert, a);
-  declare_mesh_output(*convert, a);
-  declare_conversion(*convert, a);
-  declare_report(*convert, a);
-  declare_run(*convert, a);
-  convert->callback([&] { chosen = run_convert; });
-
-  auto* check = app.add_subcommand("check", "Say what is wrong with a surface or a mesh, and what groups it has");
-  declare_input(*check, a);
-  declare_complex(*check, a);
-  declare_solver(*check, a);
-  declare_report(*check, a);
-  declare_run(*check, a);
-  check->callback([&] { chosen = run_check; });
-
-  CompareArguments c;
-  auto* compare = app.add_subcommand("compare", "Mesh surfaces with several methods; tables and charts of how they do");
-  declare_compare(*compare, c);
-  compare->callback([&] { chosen = [&c](Session& session) { run_compare(c, session); }; });
-
+  Program program;
+  CLI::App& app = program.app();
   std::string before;
   if (has_empty_argument(argc, argv, before))
     return fail(kUsage, fmt::format("there is an empty value behind {}: give one, or leave it out", before));
@@ -198,7 +85,5 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& e) {
     return e.get_exit_code() == 0 ? finished(app.exit(e)) : refuse_usage(app, e);
   }
-  Arguments& common = app.got_subcommand(compare) ? c.common : a;
-  note_command(*app.get_subcommands().front(), common);
-  return run(common, chosen);
+  return run(program, argc, argv);
 }

@@ -20,8 +20,6 @@ namespace octafront::cli {
 
 namespace {
 
-constexpr const char* kStandardOutput = "-";
-
 /// A file and the option, or other words, by which the user named it.
 struct NamedFile {
   std::string name;
@@ -44,10 +42,19 @@ std::vector<NamedFile> inputs_of(const Arguments& a) {
 }
 
 std::vector<NamedFile> outputs_of(const Arguments& a) {
-  return without_unused({{"--output", a.output},
-                         {"--json", a.json},
-                         {"the file for a cavity that stays open", a.output.empty() ? "" : cavity_file(a.output)},
-                         {"the file for a leak", a.output.empty() ? "" : leak_file(a.output)}});
+  std::vector<NamedFile> all{{"--output", a.output}, {"--json", a.json}, {"--report", a.page}};
+  for (const std::filesystem::path& mesh : a.meshes) all.push_back({"--output", mesh});
+  if (const std::filesystem::path beside = cavity_neighbour(a); !beside.empty()) {
+    all.push_back({"the file for a cavity that stays open", cavity_file(beside)});
+    all.push_back({"the file for a leak", leak_file(beside)});
+  }
+  return without_unused(std::move(all));
+}
+
+/// What is written to standard output, but for the table.
+int uses_of_standard_output(const Arguments& a) {
+  return (a.json == kStandardOutput) + (a.output == kStandardOutput) + (a.page == kStandardOutput) +
+         static_cast<int>(std::count(a.meshes.begin(), a.meshes.end(), kStandardOutput));
 }
 
 }  // namespace
@@ -57,9 +64,13 @@ Session::Session(const Arguments& arguments)
 
 void Session::say(const std::string& text) const {
   clear_progress();
-  if (arguments_.quiet || arguments_.json == kStandardOutput) return;
+  if (arguments_.quiet || uses_of_standard_output(arguments_) > 0) return;
   std::fputs(printable(arguments_.names.translated(text)).c_str(), stdout);
   std::fflush(stdout);
+}
+
+void Session::say_exactly(const std::string& text) const {
+  std::fputs(text.c_str(), stdout);
 }
 
 void Session::say_notes(const std::string& stage, const std::vector<std::string>& notes) const {
@@ -71,21 +82,26 @@ void Session::tell(const Report& report) {
   found(Json::parse(arguments_.names.translated(to_json(report))));
 }
 
-void Session::write_json(const Json& error) const {
-  if (arguments_.json.empty()) return;
+Json Session::json(const Json& error) const {
   Json options = Json::object();
   for (const auto& [option, value] : arguments_.given) options[option] = value;
   Json all{{"program", "octafront"},
            {"version", OCTAFRONT_VERSION},
            {"command", arguments_.command},
+           {"command_line", arguments_.command_line},
            {"input", arguments_.input.string()},
            {"options", options}};
   if (arguments_.bodies.size() > 1)
     for (const std::filesystem::path& body : arguments_.bodies) all["inputs"].push_back(body.string());
   if (!error.is_null()) all["error"] = error;
   all.update(findings_);
+  return all;
+}
+
+void Session::write_json(const Json& error) const {
+  if (arguments_.json.empty()) return;
   // Names of files may hold bytes that no text has.
-  const std::string text = all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  const std::string text = json(error).dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
   if (arguments_.json == kStandardOutput) {
     clear_progress();
     std::fputs(text.c_str(), stdout);
@@ -94,9 +110,15 @@ void Session::write_json(const Json& error) const {
   }
 }
 
+std::filesystem::path cavity_neighbour(const Arguments& a) {
+  for (const std::filesystem::path& mesh : a.meshes)
+    if (mesh != kStandardOutput) return mesh;
+  return a.output;
+}
+
 void check_files(const Arguments& a) {
-  if (a.output == kStandardOutput)
-    throw OptionError("-o -: nothing but JSON can go to standard output; give a file, such as mesh.vtu");
+  if (uses_of_standard_output(a) > 1)
+    throw OptionError("only one of the outputs can go to standard output; give files for the others");
   const std::vector<NamedFile> inputs = inputs_of(a), outputs = outputs_of(a);
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     const auto refuse_same = [&](const NamedFile& other) {
@@ -107,7 +129,8 @@ void check_files(const Arguments& a) {
     for (const NamedFile& input : inputs) refuse_same(input);
     for (std::size_t k = 0; k < i; ++k) refuse_same(outputs[k]);
   }
-  if (!a.json.empty() && a.json != kStandardOutput) check_text_target(a.json);
+  for (const std::filesystem::path& text : {a.json, a.page})
+    if (!text.empty() && text != kStandardOutput) check_text_target(text);
 }
 
 }  // namespace octafront::cli

@@ -10,6 +10,9 @@
 
 namespace octafront::cli {
 
+/// As the name of a file.
+inline constexpr const char* kStandardOutput = "-";
+
 using Json = nlohmann::ordered_json;
 
 /// One run of a command: what was asked for, whom to tell, and what will stand in the JSON file.
@@ -22,12 +25,16 @@ class Session {
 
   /// To stdout, with fields of Options as the command line names them; nothing if the user wants none, or JSON there.
   void say(const std::string& text) const;
+  /// What was asked for itself, such as a manual: byte by byte.
+  void say_exactly(const std::string& text) const;
   void say_notes(const std::string& stage, const std::vector<std::string>& notes) const;
   /// The table of a run; the same goes into the JSON file.
   void tell(const Report& report);
   /// Further keys of the JSON file.
   void found(const Json& keys) { findings_.update(keys); }
 
+  /// All that is known of the run; `error` is null for one that did what it was asked.
+  Json json(const Json& error) const;
   /// Writes the JSON file if one is wanted; `error` is null for a run that did what it was asked. Throws OutputError.
   void write_json(const Json& error) const;
 
@@ -36,6 +43,9 @@ class Session {
   RunContext context_;
   Json findings_ = Json::object();
 };
+
+/// The output that a cavity which stays open is written beside; empty if there is none.
+std::filesystem::path cavity_neighbour(const Arguments& arguments);
 
 /// Refuses outputs that would overwrite an input or each other, before any work. Throws OptionError, OutputError.
 void check_files(const Arguments& arguments);

@@ -1,9 +1,12 @@
 #include "terminal.h"
 
 #include <algorithm>
+#include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <string>
 #include <string_view>
 #include <thread>
 
@@ -25,6 +28,34 @@ void on_signal(int) {
 bool can_wipe_lines() {
   const char* const terminal = std::getenv("TERM");
   return isatty(STDERR_FILENO) && terminal != nullptr && std::string_view(terminal) != "dumb";
+}
+
+/// How long the stage that runs will take, by how far it came in what time.
+class StageClock {
+ public:
+  /// Negative while nobody can tell.
+  double seconds_left(std::string_view stage, double fraction) {
+    constexpr double kWarmUp = 2, kLeastFraction = 0.02;  // seconds; a guess from less would jump about
+    const auto now = std::chrono::steady_clock::now();
+    if (stage != stage_) {
+      stage_ = stage;
+      start_ = now;
+    }
+    const double passed = std::chrono::duration<double>(now - start_).count();
+    return passed < kWarmUp || fraction < kLeastFraction ? -1 : passed * (1 - fraction) / fraction;
+  }
+
+ private:
+  std::string stage_;
+  std::chrono::steady_clock::time_point start_;
+};
+
+std::string time_left_in_words(double seconds) {
+  if (seconds < 0) return "";
+  const auto s = static_cast<long>(std::lround(seconds));
+  if (s < 60) return fmt::format(", {} s left", s);
+  if (s < 3600) return fmt::format(", {}:{:02} min left", s / 60, s % 60);
+  return fmt::format(", {}:{:02} h left", s / 3600, s / 60 % 60);
 }
 
 /// More threads than that only get in each other's way.
@@ -56,9 +87,9 @@ RunContext terminal_context(int threads, bool quiet) {
   context.cancel = &install_interrupt_handler();
   context.threads = threads_at_most(threads);
   if (quiet || !can_wipe_lines()) return context;
-  context.progress = [](std::string_view stage, double fraction) {
+  context.progress = [clock = StageClock()](std::string_view stage, double fraction) mutable {
     const std::string share = fraction >= 0 ? fmt::format(" {:3.0f} %", 100 * fraction) : " ...";
-    fmt::print(stderr, "\r\x1b[K{}{}", stage, share);
+    fmt::print(stderr, "\r\x1b[K{}{}{}", stage, share, time_left_in_words(clock.seconds_left(stage, fraction)));
     std::fflush(stderr);
     progress_shown = true;
   };

@@ -65,6 +65,14 @@ std::string csv_field(const std::string& text) {
   return quoted + '"';
 }
 
+std::string quoted_for_shell(const std::string& text) {
+  constexpr const char* kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_@%+=:,./-";
+  if (!text.empty() && text.find_first_not_of(kPlain) == std::string::npos) return text;
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
 std::string nearest_word(std::string_view typed, const std::vector<std::string>& words) {
   std::string nearest;
   std::size_t least = 2 + typed.size() / 4;

@@ -12,6 +12,9 @@ std::string printable(std::string_view text);
 /// `text` as a field of CSV: in quotes where it holds commas, quotes or line ends.
 std::string csv_field(const std::string& text);
 
+/// `text` as one word of a command line for a POSIX shell.
+std::string quoted_for_shell(const std::string& text);
+
 /// The word among `words` that `typed` is a slip of the finger away from, or empty.
 std::string nearest_word(std::string_view typed, const std::vector<std::string>& words);
 

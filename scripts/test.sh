@@ -19,7 +19,8 @@ preset=release
 if [ $# -gt 0 ] && [[ $1 != -* ]]; then preset=$1 && shift; fi
 
 need_packages "${build_packages[@]}" "${test_packages[@]}"
-[ ${#which[@]} -gt 0 ] || need_packages "${format_packages[@]}" "${doc_packages[@]}"
+[ ${#which[@]} -gt 0 ] ||
+  need_packages "${format_packages[@]}" "${doc_packages[@]}" "${browser_packages[@]}" "${shell_packages[@]}"
 cmake --preset "$preset" -DOCTAFRONT_BUILD_BENCH=OFF -DOCTAFRONT_WERROR=ON >/dev/null
 cmake --build --preset "$preset" "${targets[@]}"
 failed=build/$preset/Testing/Temporary/LastTestsFailed.log

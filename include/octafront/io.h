@@ -131,6 +131,7 @@ struct FormatInfo {
   bool reads_surface = false, writes_surface = false, reads_mesh = false, writes_mesh = false;
   FormatHolds holds;         ///< of meshes
   std::string_view carries;  ///< what survives in it, e.g. "double precision, no patches"
+  bool one_file = true;      ///< one file holds a mesh: it can go through a pipe
 };
 
 /// All formats, those of surfaces first.

@@ -26,8 +26,9 @@ struct GroupRule {
 /// such patch, nothing found (then no set is added); else an empty string.
 std::string add_group(TetMesh& mesh, const GroupRule& rule);
 
-/// Adds the lines along which patches of the boundary meet as curves: one for each set of patches that meet, called
-/// "A|B" where all of them have names. Does nothing to a mesh that has curves already.
+/// Adds the lines along which patches of the boundary and of interfaces meet, or a patch ends, as curves: one for each
+/// set of patches that meet, called "A|B" ("A + A|B + B" where names have bars) where all of them have names, "A end"
+/// at the end of one. Does nothing to a mesh that has curves already.
 void add_patch_curves(TetMesh& mesh);
 
 /// Gives `mesh` the interfaces, curves and sets of `before`, an earlier state of it, as far as their faces, edges and

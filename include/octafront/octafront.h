@@ -13,6 +13,7 @@
 #include <octafront/quality.h>
 #include <octafront/repair.h>
 #include <octafront/report.h>
+#include <octafront/report_page.h>
 #include <octafront/run_context.h>
 #include <octafront/second_order.h>
 #include <octafront/size_field.h>

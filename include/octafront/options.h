@@ -32,6 +32,12 @@ struct PointSize {
   double size = 0;  ///< > 0
 };
 
+/// A size for a region (its boundary and its inside), a patch or a curve, by its name.
+struct NamedSize {
+  std::string name;
+  double size = 0;  ///< > 0, input units
+};
+
 /// Where element sizes come from. Every source is optional; where several speak, the smallest size wins.
 /// With no source at all an automatic size is chosen from the model (see make_size_field).
 struct SizeOptions {
@@ -47,7 +53,10 @@ struct SizeOptions {
   bool facets = false;             ///< the paper's rule (III.A): grid leaves follow the areas of the input's facets
   std::optional<double> min_size;  ///< no size falls below this, input units
   std::optional<double> max_size;  ///< no size rises above this, input units
-  double gradation = 0.2;          ///< |h(x) - h(y)| <= gradation |x - y|; in [0.01, 1]
+  /// The automatic sizes times this: 0.5 makes about eight times as many elements. Has no say where another source
+  /// chooses the sizes. In [0.1, 10].
+  double automatic_factor = 1;
+  double gradation = 0.2;  ///< |h(x) - h(y)| <= gradation |x - y|; in [0.01, 1]
   enum class Interior { kUniform, kGraded };
   /// kUniform: sizes inside stay at most the largest size on the surface (the paper's Cmax).
   /// kGraded: sizes grow inward at the gradation, up to max_size.
@@ -57,6 +66,7 @@ struct SizeOptions {
   /// Sizes given at the vertices of the surface, linear on its triangles. Where some vertex has no point of its own,
   /// the nearest point speaks for each place. A source like the others: the smallest wins, gradation holds.
   std::vector<PointSize> point_sizes;
+  std::vector<NamedSize> named;  ///< sizes of regions, patches and curves by their names
   /// All sizes, as read_size_field() returns them: no other source may be given with it, nor limits.
   std::optional<SizeField> field;
   /// A further source on the surface, asked at many points at once: fills in a size > 0 for each. May be empty.

@@ -4,7 +4,9 @@
 #include <octafront/tet_mesh.h>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <vector>
 
 namespace octafront {
 
@@ -29,5 +31,19 @@ struct QualitySummary {
 };
 
 QualitySummary summarize_quality(const TetMesh& mesh);
+
+/// A poor element, and where to look for it.
+struct PoorElement {
+  TetIndex tet = kNone;
+  Vec3 at;                                    ///< the mean of its corners
+  double beta = 0;                            ///< negative if inverted
+  double dihedral_min = 0, dihedral_max = 0;  ///< degrees
+};
+
+/// The `count` elements of the least beta, or all if there are fewer, the worst first; of equal ones the first.
+std::vector<PoorElement> worst_elements(const TetMesh& mesh, std::size_t count);
+
+/// The same of each region, by number; of one without elements `elements` is 0.
+std::vector<QualitySummary> quality_of_regions(const TetMesh& mesh);
 
 }  // namespace octafront

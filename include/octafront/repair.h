@@ -28,6 +28,8 @@ struct RepairedSurface {
 ///     them (a wall inside a body, a sheet without thickness).
 ///   - A face whose corners lie on a line is dropped, and what it joined is joined without it: the faces at its longest
 ///     edge are divided at the corner in the middle of that edge. The surface as a set of points stays the same.
+///   - Of a complex (SurfaceMesh::sides) no shell is turned or nested: triangles of two bodies at one place are joined,
+///     and all are turned such that the outside, or else the higher region, lies in front.
 ///   - Open shells, shells that cannot be oriented and vertices where shells are pinched stay for find_defects.
 ///
 /// Throws InputError if indices are out of range, or coordinates not finite or above 1e50, Cancelled if `context` asks
@@ -50,6 +52,8 @@ struct SurfaceDefects {
   Kind non_manifold_vertices;    ///< vertices, not on such edges, whose faces form more than one fan
   Kind self_intersections;       ///< pairs of faces that meet elsewhere than in the corners and edges they share
   Kind degenerate_faces;         ///< faces without area that repair could not do without
+  Kind region_conflicts;         ///< of a complex: edges around which the sides of the faces do not agree
+  Kind misplaced_parts;          ///< of a complex: parts that lie in another region than their outer sides say
   bool no_faces = false;         ///< nothing is left to mesh
   std::uint64_t open_loops = 0;  ///< closed chains of open edges: the holes
 
@@ -58,6 +62,9 @@ struct SurfaceDefects {
   std::string describe() const;
 };
 
+/// A complex is clean if its triangles meet in shared vertices and edges only, and the regions on their sides agree:
+/// around each edge, and of each part with what it lies in. Its edges may have any number of triangles.
+///
 /// Throws Cancelled if `context` asks for it. Cost: O(n log n), about a second per million triangles.
 SurfaceDefects find_defects(const RepairedSurface& repaired, const RunContext& context = no_context());
 

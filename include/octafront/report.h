@@ -28,16 +28,24 @@ struct SizeSummary {
   double share_within = 0;  ///< part of the edges with a ratio within [0.7, 1.4]
 };
 
+/// One region of a mesh.
+struct RegionSummary {
+  std::string name;   ///< may be empty
+  double volume = 0;  ///< input unit cubed
+  QualitySummary quality;
+};
+
 /// What a whole run did and made.
 struct Report {
   std::vector<StageReport> stages;                         ///< in the order in which they ran
   std::uint64_t points = 0, tets = 0, boundary_faces = 0;  ///< points: mid-side nodes too
   std::uint32_t bodies = 0;
-  double volume = 0;                ///< of the mesh, input unit cubed
-  double input_volume = 0;          ///< enclosed by the repaired input
-  double expected_tets = 0;         ///< predicted by the sizes before the volume is meshed
-  QualitySummary quality;           ///< of the elements with straight edges
-  SecondOrderSummary second_order;  ///< edges == 0: the mesh is linear
+  double volume = 0;                   ///< of the mesh, input unit cubed
+  double input_volume = 0;             ///< enclosed by the repaired input
+  double expected_tets = 0;            ///< predicted by the sizes before the volume is meshed
+  QualitySummary quality;              ///< of the elements with straight edges
+  std::vector<RegionSummary> regions;  ///< by number; empty if the mesh has only one
+  SecondOrderSummary second_order;     ///< edges == 0: the mesh is linear
   SizeSummary surface_edges, volume_edges;
   double wall_seconds = 0, cpu_seconds = 0;
   std::uint64_t peak_memory_bytes = 0;  ///< of the process

@@ -22,7 +22,8 @@ namespace octafront {
 std::optional<std::string> first_defect(const TetMesh& mesh, const RunContext& context = no_context());
 
 /// As above, and the boundary must be `surface`, triangle for triangle (same coordinates, same orientation; numbering
-/// and order are free).
+/// and order are free). Of a complex (SurfaceMesh::sides) boundary and interfaces together must be the triangles, each
+/// with the regions of the tetrahedra on its sides, and no regions meet elsewhere.
 std::optional<std::string> first_defect(const TetMesh& mesh, const SurfaceMesh& surface,
                                         const RunContext& context = no_context());
 

@@ -62,7 +62,7 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
         for file, path in sorted(binaries.items()):
             wheel.add(f"octafront/_bin/{file}", path.read_bytes(), executable=True)
         wheel.add(f"octafront-{version()}.data/scripts/octafront", LAUNCHER.encode(), executable=True)
-        for path in licences(binaries):
+        for path in [*licences(binaries), build / "python" / "octafront" / "_bin" / "contents.txt"]:
             wheel.add(f"{wheel.info}/licenses/{path.name}", path.read_bytes())
         wheel.add(f"{wheel.info}/METADATA", metadata().encode())
         wheel.add(f"{wheel.info}/WHEEL", f"Wheel-Version: 1.0\nGenerator: octafront_build\nRoot-Is-Purelib: false\n"
@@ -147,7 +147,7 @@ def output(*command):
 
 
 def licences(binaries):
-    """Our licence, and those of all that is inside: licenses/README.md says what comes from where."""
+    """Our licence, and those of all that is inside; contents.txt lists them, with versions."""
     texts = sorted((ROOT / "licenses").iterdir())
     for library in binaries:
         stem = re.match(r"(?:lib)?([a-z0-9]+?)(?:\.so.*)?$", library)[1]

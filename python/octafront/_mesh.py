@@ -8,7 +8,7 @@ from . import _html, errors
 from ._jobs import Job
 from ._library import Array, Handle, _View, bytes_of, call, demand, file_of, pointer, spoken, text_of
 from ._numpy import np
-from ._surface import _or_zeros, column_of, points_of, rows_of
+from ._surface import _or_zeros, column_of, points_of, rows_of, wanted
 
 _KINDS = ["nodes", "edges", "faces", "elements"]
 _ARRAYS = ["points", "tets", "region", "boundary", "patch", "source", "interfaces", "interface_patch", "curve_edges",
@@ -217,7 +217,7 @@ class Mesh:
 
     def to_pyvista(self):
         """A pyvista.UnstructuredGrid with the cell data "region" and "beta"."""
-        import pyvista
+        pyvista = wanted("pyvista")
         cells, kind = self._vtk_cells()
         rows = np.hstack([np.full((len(cells), 1), cells.shape[1]), cells]).astype(np.int64)
         grid = pyvista.UnstructuredGrid(rows.ravel(), np.full(len(cells), kind, np.uint8), np.array(self.points))
@@ -227,7 +227,7 @@ class Mesh:
 
     def to_meshio(self):
         """A meshio.Mesh: tetrahedra with the cell data "region", triangles of the boundary with "patch", and sets."""
-        import meshio
+        meshio = wanted("meshio")
         cells, _ = self._vtk_cells()
         blocks = [("tetra" if self.order == 1 else "tetra10", cells.astype(np.int64)),
                   ("triangle", self.faces.astype(np.int64))]

@@ -1,5 +1,7 @@
 """Triangle surfaces."""
 
+import importlib
+
 from . import errors
 from ._jobs import Job
 from ._library import Handle, file_of
@@ -39,6 +41,14 @@ def _numbers(array, dtype, name):
         worst = array.min() if array.min() < 0 else array.max()
         raise errors.OptionError(f"{name} holds {worst}: indices count from 0 and have 32 bits")
     return array.astype(dtype)
+
+
+def wanted(library):
+    """A library that is imported only when it is asked for."""
+    try:
+        return importlib.import_module(library)
+    except ImportError:
+        raise ImportError(f"this needs {library}, which is not installed: pip install {library}") from None
 
 
 class Surface:
@@ -126,7 +136,7 @@ class Surface:
 
     def to_pyvista(self):
         """A pyvista.PolyData with the cell data "patch"."""
-        import pyvista
+        pyvista = wanted("pyvista")
         faces = np.hstack([np.full((len(self.triangles), 1), 3), self.triangles]).astype(np.int64)
         data = pyvista.PolyData(np.array(self.points), faces.ravel())
         data.cell_data["patch"] = np.array(self.patches)
@@ -134,7 +144,7 @@ class Surface:
 
     def to_meshio(self):
         """A meshio.Mesh of triangles with the cell data "patch"."""
-        import meshio
+        meshio = wanted("meshio")
         return meshio.Mesh(np.array(self.points), [("triangle", self.triangles.astype(np.int64))],
                            cell_data={"patch": [np.array(self.patches)]})
 

@@ -12,7 +12,7 @@ namespace octafront {
 
 Excavation::Excavation(const OpenCavity& cavity)
     : mesh_(cavity.mesh), cavities_(cavity.cavities), merged_{cavity.number} {
-  for (const Wall& w : cavity.walls()) walls_.emplace(face_key(w), w);
+  for (const Wall& w : cavity.walls()) walls_.emplace(wall_key(w), w);
 }
 
 Excavation::~Excavation() {
@@ -28,14 +28,17 @@ std::vector<Wall> Excavation::walls() const {
 }
 
 void Excavation::toggle(const Wall& wall) {
-  const auto [it, is_new] = walls_.try_emplace(face_key(wall), wall);
-  if (is_new) return;
-  if (is_even(it->second) == is_even(wall)) {
-    const auto& [a, b, c] = wall;
-    throw MeshingError("tetrahedra overlap at the face (" + std::to_string(a) + ", " + std::to_string(b) + ", " +
-                       std::to_string(c) + "); check the surface for self-intersections");
+  const WallKey key = wall_key(wall);
+  // The two sides of a triangle of the surface do not join.
+  const auto back = mesh_.is_two_sided(wall) ? walls_.end() : walls_.find(back_of(key));
+  if (back != walls_.end()) {
+    walls_.erase(back);
+    return;
   }
-  walls_.erase(it);
+  if (walls_.emplace(key, wall).second) return;
+  const auto& [a, b, c] = wall;
+  throw MeshingError("tetrahedra overlap at the face (" + std::to_string(a) + ", " + std::to_string(b) + ", " +
+                     std::to_string(c) + "); check the surface for self-intersections");
 }
 
 void Excavation::take_out(TetIndex t) {
@@ -46,7 +49,7 @@ void Excavation::take_out(TetIndex t) {
     const auto [a, b, c] = face_of(tet, i);
     const Wall inward{a, c, b};
     // Behind this face may lie another cavity: then the two become one.
-    const std::uint32_t other = cavities_.owner(inward);
+    const std::uint32_t other = mesh_.is_two_sided(inward) ? kNone : cavities_.owner(inward);
     if (other != kNone && merged_.insert(other).second)
       for (const Wall& w : cavities_.walls(other)) toggle(w);
     toggle(inward);
@@ -54,7 +57,7 @@ void Excavation::take_out(TetIndex t) {
 }
 
 bool Excavation::grow_through(const Wall& wall) {
-  const TetIndex t = mesh_.tet_behind(wall);
+  const TetIndex t = mesh_.is_two_sided(wall) ? kNone : mesh_.tet_behind(wall);
   if (t == kNone) return false;
   take_out(t);
   validate(*this);
@@ -63,7 +66,7 @@ bool Excavation::grow_through(const Wall& wall) {
 
 bool Excavation::grow_ring() {
   std::set<VertexIndex> corners;
-  for (const auto& [key, wall] : walls_) corners.insert(key.begin(), key.end());
+  for (const auto& [key, wall] : walls_) corners.insert(wall.begin(), wall.end());
   std::vector<TetIndex> ring;
   for (const VertexIndex v : corners) {
     const std::vector<TetIndex> around = mesh_.around(v);
@@ -78,7 +81,7 @@ bool Excavation::grow_ring() {
 
 std::optional<std::string> Excavation::first_inconsistency() const {
   for (const auto& [key, wall] : walls_)
-    if (key != face_key(wall)) return "a wall stands under another's corners";
+    if (key != wall_key(wall)) return "a wall stands under another's corners";
   for (const TetIndex t : removed_)
     if (mesh_.alive(t)) return "tetrahedron " + std::to_string(t) + " was taken out and lives";
   return why_not_closed(walls(), "the walls of an excavation");

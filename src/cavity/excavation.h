@@ -24,7 +24,7 @@ class Excavation {
   std::vector<Wall> walls() const;
   std::size_t size() const { return walls_.size(); }
   bool empty() const { return walls_.empty(); }
-  /// Removes the tetrahedron behind a wall; false if there is none: the wall is part of the surface.
+  /// Removes the tetrahedron behind a wall; false if there is none, or the wall is part of the surface.
   bool grow_through(const Wall& wall);
   /// Removes all tetrahedra that touch a vertex of the walls; false if there are none.
   bool grow_ring();
@@ -39,7 +39,7 @@ class Excavation {
 
   WorkMesh& mesh_;
   Cavities& cavities_;
-  std::map<Triangle, Wall> walls_;  ///< by face_key
+  std::map<WallKey, Wall> walls_;
   std::vector<TetIndex> removed_;
   std::set<std::uint32_t> merged_;
   bool committed_ = false;

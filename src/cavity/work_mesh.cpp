@@ -16,7 +16,8 @@ namespace {
 constexpr std::size_t kTetsPerTask = 1 << 16;
 }  // namespace
 
-WorkMesh::WorkMesh(std::vector<Vec3> points, std::vector<Tet> tets, const std::vector<Box3>& focus)
+WorkMesh::WorkMesh(std::vector<Vec3> points, std::vector<Tet> tets, const std::vector<Box3>& focus,
+                   const std::vector<Triangle>& two_sided)
     : points_(std::move(points)),
       tets_(std::move(tets)),
       original_tets_(tets_.size()),
@@ -26,6 +27,7 @@ WorkMesh::WorkMesh(std::vector<Vec3> points, std::vector<Tet> tets, const std::v
     parallel_for(points_.size(), [&](std::size_t v) {
       indexed_[v] = std::any_of(focus.begin(), focus.end(), [&](const Box3& box) { return box.contains(points_[v]); });
     });
+  for (const Triangle& t : two_sided) two_sided_.insert(face_key(t));
   index_tets();
 }
 
@@ -132,18 +134,19 @@ Cavities::Cavities(const std::vector<Wall>& walls) {
       walls_.emplace_back();
     }
     walls_[n].push_back(walls[w]);
-    owner_.find_or_add(face_key(walls[w])) = n;
+    owner_[is_even(walls[w])].find_or_add(face_key(walls[w])) = n;
   }
   validate(*this);
 }
 
 std::uint32_t Cavities::owner(const Triangle& wall) const {
-  const std::uint32_t* cavity = owner_.find(face_key(wall));
-  return cavity == nullptr ? kNone : *cavity;
+  for (const auto& owner : owner_)
+    if (const std::uint32_t* cavity = owner.find(face_key(wall))) return *cavity;
+  return kNone;
 }
 
 void Cavities::close(std::size_t cavity) {
-  for (const Wall& w : walls_[cavity]) owner_.erase(face_key(w));
+  for (const Wall& w : walls_[cavity]) owner_[is_even(w)].erase(face_key(w));
   walls_[cavity].clear();
 }
 
@@ -151,7 +154,8 @@ std::optional<std::string> Cavities::first_inconsistency() const {
   for (std::uint32_t c = 0; c < walls_.size(); ++c) {
     if (auto wrong = why_not_closed(walls_[c], "the walls of cavity " + std::to_string(c))) return wrong;
     for (const Wall& w : walls_[c])
-      if (owner(w) != c) return "cavity " + std::to_string(c) + " does not own its walls";
+      if (const std::uint32_t* own = owner_[is_even(w)].find(face_key(w)); own == nullptr || *own != c)
+        return "cavity " + std::to_string(c) + " does not own its walls";
   }
   return std::nullopt;
 }

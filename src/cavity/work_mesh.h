@@ -5,11 +5,14 @@
 
 #include "core/flat_map.h"
 #include "core/groups.h"
+#include "mesh/face_table.h"
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 namespace octafront {
@@ -22,7 +25,9 @@ class WorkMesh {
  public:
   /// Takes the mesh over; vertex numbers and tetrahedron numbers stay as they are. Repairs will mostly stay within the
   /// boxes of `focus`, if there are any: only what lies there is indexed beforehand.
-  WorkMesh(std::vector<Vec3> points, std::vector<Tet> tets, const std::vector<Box3>& focus = {});
+  /// `two_sided`: triangles with something to fill on both sides; no cavity grows through them.
+  WorkMesh(std::vector<Vec3> points, std::vector<Tet> tets, const std::vector<Box3>& focus = {},
+           const std::vector<Triangle>& two_sided = {});
 
   const std::vector<Vec3>& points() const { return points_; }
   Vec3 at(VertexIndex v) const { return points_[v]; }
@@ -34,6 +39,8 @@ class WorkMesh {
   const Tet& tet(TetIndex t) const { return tets_[t]; }
   /// The living tetrahedra around a vertex, in order of their number.
   std::vector<TetIndex> around(VertexIndex v) const;
+  /// Whether the face, turned either way, is a triangle with something to fill on both sides.
+  bool is_two_sided(const Triangle& face) const { return two_sided_.contains(face_key(face)); }
   /// The living tetrahedron that has `outward` as a face, seen counter-clockwise from outside; kNone if none has.
   TetIndex tet_behind(const Triangle& outward) const;
 
@@ -55,9 +62,21 @@ class WorkMesh {
   mutable std::vector<std::uint8_t> indexed_;                     ///< per original vertex
   mutable Groups<TetIndex, std::uint64_t> incident_;              ///< tetrahedra of each original vertex
   std::unordered_map<VertexIndex, std::vector<TetIndex>> added_;  ///< looked up, never iterated
+  FlatSet<Triangle> two_sided_;                                   ///< by face_key
 };
 
-/// The cavities of a mesh: sets of walls connected by edges. Each is closed and oriented; it may be pinched.
+/// A face as a wall: the same for all ways to write the corners in this turn, another one for its back. Sorts like
+/// face_key().
+using WallKey = std::pair<Triangle, bool>;
+inline WallKey wall_key(const Wall& wall) {
+  return {face_key(wall), is_even(wall)};
+}
+inline WallKey back_of(const WallKey& key) {
+  return {key.first, !key.second};
+}
+
+/// The cavities of a mesh: sets of walls connected by edges. Each is closed and oriented; it may be pinched. Two-sided
+/// triangles may be walls twice.
 class Cavities {
  public:
   explicit Cavities(const std::vector<Wall>& walls);
@@ -72,8 +91,8 @@ class Cavities {
   std::optional<std::string> first_inconsistency() const;
 
  private:
-  std::vector<std::vector<Wall>> walls_;    ///< empty: closed
-  FlatMap<Triangle, std::uint32_t> owner_;  ///< by face_key
+  std::vector<std::vector<Wall>> walls_;                   ///< empty: closed
+  std::array<FlatMap<Triangle, std::uint32_t>, 2> owner_;  ///< by the parts of wall_key
 };
 
 /// One of the cavities of a mesh.

@@ -23,7 +23,7 @@ bool for_each_doubtful_part(const TriangleCorners& t, double limit, const IsWith
   const double reach = std::sqrt(
       std::max({squared_distance(middle, t[0]), squared_distance(middle, t[1]), squared_distance(middle, t[2])}));
   if (reach < limit && is_within(middle, limit - reach)) return true;
-  if (reach <= finest(middle)) return visit(middle);
+  if (reach <= finest(middle) || !is_within(middle, limit)) return visit(middle);
   const auto opposite = [&](int i) { return squared_distance(t[(i + 1) % 3], t[(i + 2) % 3]); };
   int i = 0;
   for (int k = 1; k < 3; ++k)

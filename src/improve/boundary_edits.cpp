@@ -28,6 +28,8 @@ constexpr double kMovedPart = 0.25;
 constexpr double kFacing = 0.5;
 /// Below this, features may give way too: where curves of a scan's noise meet, nothing else is left to move.
 constexpr float kPoor = 0.2f;
+/// How finely triangles are looked at, in edges: over these the distance changes evenly.
+constexpr double kSpacing = 0.1;
 /// Steps per vertex that moves at most.
 constexpr int kSteps = 8;
 
@@ -312,11 +314,17 @@ class BoundaryEditor {
            has.cosine >= std::min(kFacing, had.cosine);
   }
 
+  double mean_edge() const {
+    double sum = 0;
+    for (const TriangleCorners& t : old_) sum += distance(t[0], t[1]);
+    return sum / static_cast<double>(old_.size());
+  }
+
   /// Whether input and new triangles lie within the tolerance of each other, by all their parts.
   bool stays_near() {
     const double limit = guide_.tolerance();
     const auto is_lost = [](Vec3) { return false; };
-    const auto finest = [&](Vec3) { return kFinePart * limit; };
+    const auto finest = [&, part = std::max(kFinePart * limit, kSpacing * mean_edge())](Vec3) { return part; };
     const auto near_input = [&](Vec3 p, double d) { return guide_.tree().is_within(p, d); };
     const auto near_boundary = [&](Vec3 p, double d) {
       return std::any_of(new_.begin(), new_.end(),

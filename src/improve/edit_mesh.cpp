@@ -14,6 +14,17 @@
 #include <fmt/core.h>
 
 namespace octafront::improve {
+
+namespace {
+
+void renumber_faces(TetMesh& mesh, const std::vector<VertexIndex>& new_of_old) {
+  for (std::vector<Triangle>* faces : {&mesh.boundary, &mesh.interfaces})
+    for (Triangle& t : *faces)
+      for (VertexIndex& v : t) v = new_of_old[v];
+}
+
+}  // namespace
+
 EditMesh::EditMesh(TetMesh&& mesh, ImproveOptions::Objective objective) : objective_(objective) {
   require_in_range(mesh.tets.size(), kMostTetsToImprove, "tetrahedra to improve");
   take(mesh);
@@ -35,8 +46,7 @@ void EditMesh::take(TetMesh& mesh) {
   parallel_for(mesh.tets.size(), [&](std::size_t t) {
     for (VertexIndex& v : mesh.tets[t]) v = new_of_old[v];
   });
-  for (Triangle& t : mesh.boundary)
-    for (VertexIndex& v : t) v = new_of_old[v];
+  renumber_faces(mesh, new_of_old);
   had_regions_ = !mesh.region.empty();
   complex_.tets.reserve(mesh.tets.size());
   region_.reserve(mesh.tets.size());
@@ -49,8 +59,11 @@ void EditMesh::take(TetMesh& mesh) {
 
 void EditMesh::connect() {
   complex_.connect(points_.size(), rest_.boundary);
+  complex_.part(points_.size(), rest_.interfaces, kBetweenRegions);
   on_boundary_.assign(points_.size(), 0);
   for (const Triangle& t : rest_.boundary)
+    for (const VertexIndex v : t) on_boundary_[v] = 1;
+  for (const Triangle& t : rest_.interfaces)
     for (const VertexIndex v : t) on_boundary_[v] = 1;
   const auto& across = complex_.across;
   if (const std::size_t h = parallel_find(across.size(), [&](std::size_t i) { return across[i] == kNone; });
@@ -118,8 +131,7 @@ TetMesh EditMesh::release() {
   complex_.tets.resize(kept);
   region_.resize(kept);
   drop_removed_triangles(mesh);
-  for (Triangle& t : mesh.boundary)
-    for (VertexIndex& v : t) v = new_of_old[v];
+  renumber_faces(mesh, new_of_old);
   mesh.tets = std::move(complex_.tets);
   if (had_regions_) mesh.region = std::move(region_);
   return mesh;

@@ -20,12 +20,12 @@ constexpr auto kWriteXdmf = kWriteMed, kWriteCgns = kWriteMed;
 /// A format of surfaces; of a mesh it takes the boundary.
 constexpr Format surface(std::string_view name, std::string_view title, std::string_view endings,
                          std::string_view carries, void (*write)(AtomicFile&, const SurfaceMesh&)) {
-  return {{name, title, endings, kYes, kYes, kNo, kYes, {}, carries}, write};
+  return {{name, title, endings, kYes, kYes, kNo, kYes, {}, carries, true}, write};
 }
 
 constexpr Format mesh(std::string_view name, std::string_view title, std::string_view endings, bool reads,
                       FormatHolds holds, std::string_view carries, void (*write)(MeshOutput&, const MeshParts&)) {
-  return {{name, title, endings, kNo, kNo, reads, write != nullptr, holds, carries}, nullptr, write};
+  return {{name, title, endings, kNo, kNo, reads, write != nullptr, holds, carries, true}, nullptr, write};
 }
 
 constexpr FormatHolds kAll{.regions = Keeps::kNames,
@@ -71,6 +71,10 @@ constexpr FormatHolds kAnsys = [] {
   holds.face_sets = false;
   return holds;
 }();
+constexpr Format of_several_files(Format format) {
+  format.info.one_file = false;
+  return format;
+}
 constexpr FormatHolds kSu2{.patches = Keeps::kNames};
 constexpr FormatHolds kOpenFoam{.regions = Keeps::kNames, .patches = Keeps::kNames, .interfaces = true};
 
@@ -106,7 +110,8 @@ constexpr std::array kFormats{
          "PSOLID, PSHELL, SET; numbers of at most 16 characters (9 to 15 digits)", write_nastran),
     mesh("unv", "I-deas universal", ".unv", kYes, kAll, "groups (dataset 2477); 17 digits", write_unv),
     mesh("med", "MED 4", ".med", kYes, binary(kAll), "families and groups; needs HDF5", kWriteMed),
-    mesh("xdmf", "XDMF", ".xdmf", kYes, binary(kAll), "with values in files .h5 beside; needs HDF5", kWriteXdmf),
+    of_several_files(
+        mesh("xdmf", "XDMF", ".xdmf", kYes, binary(kAll), "with values in files .h5 beside; needs HDF5", kWriteXdmf)),
     mesh("exodus", "Exodus II", ".exo .e .ex2", kNo, binary(kSolver), "blocks, node, side and element sets",
          write_exodus),
     mesh("ansys", "Ansys archive", ".cdb", kNo, kAnsys, "components; 17 digits", write_ansys),
@@ -115,8 +120,8 @@ constexpr std::array kFormats{
     mesh("febio", "FEBio 4", ".feb", kNo, kAll, "Elements, Surface, Edge, NodeSet, ElementSet", write_febio),
     mesh("su2", "SU2", ".su2", kNo, kSu2, "markers", write_su2),
     [] {
-      Format format = mesh("openfoam", "OpenFOAM polyMesh", "", kNo, kOpenFoam,
-                           "a folder, named polyMesh: patches, cellZones, faceZones", write_openfoam);
+      Format format = of_several_files(mesh("openfoam", "OpenFOAM polyMesh", "", kNo, kOpenFoam,
+                                            "a folder, named polyMesh: patches, cellZones, faceZones", write_openfoam));
       format.is_folder = true;
       return format;
     }(),
@@ -126,8 +131,8 @@ constexpr std::array kFormats{
     mesh("medit", "MEDIT", ".mesh", kYes, kNumbersOnly, "text: references", write_medit),
     mesh("meditb", "MEDIT binary", ".meshb", kYes, binary(kNumbersOnly), "references", write_medit_binary),
     mesh("netgen", "Netgen", ".vol", kYes, without_sets(kAll), "materials, bcnames, cd2names", write_netgen),
-    mesh("tetgen", "TetGen", ".ele .node", kYes, kNumbersOnly, "NAME.node, .ele, .face, .edge with markers",
-         write_tetgen),
+    of_several_files(mesh("tetgen", "TetGen", ".ele .node", kYes, kNumbersOnly,
+                          "NAME.node, .ele, .face, .edge with markers", write_tetgen)),
 };
 
 bool has_ending(std::string_view endings, std::string_view ending) {

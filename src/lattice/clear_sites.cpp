@@ -50,8 +50,8 @@ bool plane_separates(const std::array<Vec3, 4>& tet, const TriangleCorners& tria
 }  // namespace
 
 ClearSites::ClearSites(const LatticeOctree& lattice, const SurfaceMesh& surface, const TriangleTree& triangles,
-                       const SizeField& sizes, const RunContext& context)
-    : lattice_(lattice), triangles_(triangles), near_(near_leaves(lattice, surface, sizes, kReach)) {
+                       const TriangleTree& hull, const SizeField& sizes, const RunContext& context)
+    : lattice_(lattice), triangles_(triangles), hull_(hull), near_(near_leaves(lattice, surface, sizes, kReach)) {
   measure_distances(context);
   find_inside();
 }

@@ -35,9 +35,10 @@ constexpr bool is_center(SiteNumber s) {
 /// Which sites of a lattice keep their distance from the surface, and on which side of it they lie.
 class ClearSites {
  public:
-  /// Keeps references to all but `context`. REQUIRES a clean surface and the tree of its triangles.
+  /// Keeps references to all but `context`. REQUIRES a clean surface and the trees of its triangles, and of those
+  /// between its regions and the outside (the same but for a complex).
   ClearSites(const LatticeOctree& lattice, const SurfaceMesh& surface, const TriangleTree& triangles,
-             const SizeField& sizes, const RunContext& context);
+             const TriangleTree& hull, const SizeField& sizes, const RunContext& context);
 
   const LatticeOctree& lattice() const { return lattice_; }
   Vec3 position_of(SiteNumber s) const {
@@ -52,7 +53,7 @@ class ClearSites {
   float distance_of(LatticeSite site) const;
   /// REQUIRES that the centre of the leaf is clear.
   bool center_is_inside(std::size_t leaf) const { return inside_[leaf] != 0; }
-  bool contains(Vec3 p) const { return triangles_.contains(p); }
+  bool contains(Vec3 p) const { return hull_.contains(p); }
   /// No site of the leaf can be part of the core.
   bool is_far_outside(std::size_t leaf) const { return !near_[leaf] && !inside_[leaf]; }
   /// The leaf is so far from the surface that all in it is clear.
@@ -67,7 +68,7 @@ class ClearSites {
   void find_inside();
 
   const LatticeOctree& lattice_;
-  const TriangleTree& triangles_;
+  const TriangleTree &triangles_, &hull_;
   std::vector<std::uint8_t> near_;    ///< per leaf
   std::vector<float> distance_;       ///< per site that does not hang
   std::vector<std::uint8_t> inside_;  ///< per leaf, of its centre

@@ -6,12 +6,14 @@
 #include "lattice/graded_bcc.h"
 #include "lattice/lattice_octree.h"
 #include "lattice/site_table.h"
+#include "mesh/complex.h"
 #include "mesh/face_table.h"
 #include "mesh/index_range.h"
 
 #include <algorithm>
 #include <atomic>
 #include <limits>
+#include <optional>
 #include <utility>
 
 namespace octafront {
@@ -225,9 +227,12 @@ class CoreBuilder {
 
 LatticeCore build_lattice_core(const SurfaceMesh& surface, const SizeField& sizes, const RunContext& context) {
   const TriangleTree triangles(surface.points, surface.triangles);
-  const LatticeOctree lattice = build_lattice_octree(surface, triangles, sizes, context);
+  // A lattice that touches no triangle lies in one region; whether in any, what bounds them all tells.
+  std::optional<TriangleTree> hull;
+  if (!surface.sides.empty()) hull.emplace(hull_of(surface));
+  const LatticeOctree lattice = build_lattice_octree(surface, hull ? *hull : triangles, sizes, context);
   require_in_range(lattice.tree.size(), kHanging / 2, "leaves of the lattice");
-  const ClearSites sites(lattice, surface, triangles, sizes, context);
+  const ClearSites sites(lattice, surface, triangles, hull ? *hull : triangles, sizes, context);
   const std::size_t leaves = lattice.tree.size();
   std::vector<CoreChunk> chunks((leaves + kLeavesPerChunk - 1) / kLeavesPerChunk);
   parallel_for(chunks.size(), [&](std::size_t c) {

@@ -113,7 +113,7 @@ Octree divide_lattice(const RootCube& root, const SizeField& sizes, const std::v
   return Divider(root, sizes, reach, side_of, context).run();
 }
 
-LatticeOctree build_lattice_octree(const SurfaceMesh& surface, const TriangleTree& triangles, const SizeField& sizes,
+LatticeOctree build_lattice_octree(const SurfaceMesh& surface, const TriangleTree& hull, const SizeField& sizes,
                                    const RunContext& context) {
   const double leaf_side = kLatticeSidePerEdge * lattice_cell_size(sizes, surface);
   const RootCube root = lattice_root(bounding_box(surface.points), leaf_side);
@@ -124,7 +124,7 @@ LatticeOctree build_lattice_octree(const SurfaceMesh& surface, const TriangleTre
     for (const VertexIndex v : t) box.add(surface.points[v]);
   }
   const auto side_of = [&](OctreeKey cell) {
-    return triangles.contains(box_of(root, cell).center()) ? CellSide::kInside : CellSide::kOutside;
+    return hull.contains(box_of(root, cell).center()) ? CellSide::kInside : CellSide::kOutside;
   };
   return {root, divide_lattice(root, sizes, boxes, side_of, context)};
 }

@@ -34,7 +34,8 @@ enum class CellSide { kOutside, kInside, kMixed };
 Octree divide_lattice(const RootCube& root, const SizeField& sizes, const std::vector<Box3>& reach,
                       const std::function<CellSide(OctreeKey)>& side_of, const RunContext& context);
 
-LatticeOctree build_lattice_octree(const SurfaceMesh& surface, const TriangleTree& triangles, const SizeField& sizes,
+/// `hull`: of the triangles between the regions of the surface and the outside.
+LatticeOctree build_lattice_octree(const SurfaceMesh& surface, const TriangleTree& hull, const SizeField& sizes,
                                    const RunContext& context);
 
 }  // namespace octafront

@@ -1,5 +1,6 @@
 #include <octafront/named_groups.h>
 
+#include "mesh/curve_names.h"
 #include "mesh/edge_table.h"
 #include "mesh/face_table.h"
 
@@ -251,27 +252,27 @@ std::string add_group(TetMesh& mesh, const GroupRule& rule) {
 }
 
 void add_patch_curves(TetMesh& mesh) {
-  if (mesh.patch.empty() || !mesh.curve_edges.empty()) return;
-  const EdgeTable table = make_edge_table(mesh.points.size(), mesh.boundary);
+  if ((mesh.patch.empty() && mesh.interfaces.empty()) || !mesh.curve_edges.empty()) return;
+  std::vector<Triangle> faces = mesh.boundary;
+  faces.insert(faces.end(), mesh.interfaces.begin(), mesh.interfaces.end());
+  const auto patch_of = [&](std::uint32_t face) {
+    const bool is_inside = face >= mesh.boundary.size();
+    const auto& patch = is_inside ? mesh.interface_patch : mesh.patch;
+    return patch.empty() ? 0 : patch[is_inside ? face - mesh.boundary.size() : face];
+  };
+  const EdgeTable table = make_edge_table(mesh.points.size(), faces);
   std::map<std::vector<std::uint32_t>, std::uint32_t> curve_of;
   for (std::size_t e = 0; e < table.size(); ++e) {
     std::vector<std::uint32_t> patches;
-    for (const HalfEdge h : table.uses(e)) patches.push_back(mesh.patch[h / 3]);
+    for (const HalfEdge h : table.uses(e)) patches.push_back(patch_of(h / 3));
     std::sort(patches.begin(), patches.end());
     patches.erase(std::unique(patches.begin(), patches.end()), patches.end());
-    if (patches.size() < 2) continue;
+    if (patches.size() < 2 && table.uses(e).size() == 2) continue;
     mesh.curve_edges.push_back(table.edges[e]);
     mesh.curve.push_back(curve_of.try_emplace(patches, static_cast<std::uint32_t>(curve_of.size())).first->second);
   }
-  const auto name_of = [&](std::uint32_t patch) {
-    return patch < mesh.patch_names.size() ? mesh.patch_names[patch] : std::string();
-  };
   mesh.curve_names.assign(curve_of.size(), {});
-  for (const auto& [patches, curve] : curve_of) {
-    if (std::any_of(patches.begin(), patches.end(), [&](std::uint32_t p) { return name_of(p).empty(); })) continue;
-    for (const std::uint32_t p : patches)
-      mesh.curve_names[curve] += (mesh.curve_names[curve].empty() ? "" : "|") + name_of(p);
-  }
+  for (const auto& [patches, curve] : curve_of) mesh.curve_names[curve] = curve_name(patches, mesh.patch_names);
 }
 
 std::vector<std::string> carry_groups(const TetMesh& before, TetMesh& mesh) {

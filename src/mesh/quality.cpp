@@ -1,11 +1,13 @@
 #include <octafront/quality.h>
 
+#include "core/groups.h"
 #include "core/parallel.h"
 #include "geometry/measures.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 namespace octafront {
@@ -104,6 +106,29 @@ void add_summary(QualitySummary& whole, const QualitySummary& part) {
   whole.dihedral_max = std::max(whole.dihedral_max, part.dihedral_max);
 }
 
+/// Of n tets; tet_at(i) is the number of the i-th.
+template <class TetAt>
+QualitySummary summarize(const TetMesh& mesh, std::size_t n, const TetAt& tet_at) {
+  // Blocks of fixed size, added in order: the sums do not depend on the number of threads.
+  constexpr std::size_t kBlock = 8192;
+  if (n == 0) return {};
+  std::vector<Part> parts((n + kBlock - 1) / kBlock);
+  parallel_for(parts.size(), [&](std::size_t block) {
+    for (std::size_t i = block * kBlock; i < std::min(n, (block + 1) * kBlock); ++i) {
+      const TetIndex t = tet_at(i);
+      const auto& [a, b, c, d] = mesh.tets[t];
+      const auto& p = mesh.points;
+      parts[block].add_tet(t, normalized_corners(p[a], p[b], p[c], p[d]));
+    }
+    parts[block].convert_angles();
+  });
+  QualitySummary whole;
+  whole.dihedral_min = 180;
+  for (const Part& part : parts) add_summary(whole, part.summary);
+  whole.beta_mean /= static_cast<double>(n);
+  return whole;
+}
+
 }  // namespace
 
 double radius_ratio(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
@@ -124,24 +149,41 @@ std::array<double, 6> dihedral_angles(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
 }
 
 QualitySummary summarize_quality(const TetMesh& mesh) {
-  // Blocks of fixed size, added in order: the sums do not depend on the number of threads.
-  constexpr std::size_t kBlock = 8192;
-  const std::size_t n = mesh.tets.size();
-  if (n == 0) return {};
-  std::vector<Part> parts((n + kBlock - 1) / kBlock);
-  parallel_for(parts.size(), [&](std::size_t block) {
-    for (std::size_t t = block * kBlock; t < std::min(n, (block + 1) * kBlock); ++t) {
-      const auto& [a, b, c, d] = mesh.tets[t];
-      const auto& p = mesh.points;
-      parts[block].add_tet(static_cast<TetIndex>(t), normalized_corners(p[a], p[b], p[c], p[d]));
-    }
-    parts[block].convert_angles();
+  return summarize(mesh, mesh.tets.size(), [](std::size_t i) { return static_cast<TetIndex>(i); });
+}
+
+std::vector<QualitySummary> quality_of_regions(const TetMesh& mesh) {
+  if (mesh.region.empty()) return {summarize_quality(mesh)};
+  const std::uint32_t regions = mesh.tets.empty() ? 0 : 1 + *std::max_element(mesh.region.begin(), mesh.region.end());
+  const Groups<> tets = group_by_owner(regions, static_cast<std::uint32_t>(mesh.tets.size()),
+                                       [&](std::uint32_t t) { return mesh.region[t]; });
+  std::vector<QualitySummary> found;
+  for (std::uint32_t r = 0; r < regions; ++r)
+    found.push_back(summarize(mesh, tets[r].size(), [&](std::size_t i) { return tets[r][i]; }));
+  return found;
+}
+
+std::vector<PoorElement> worst_elements(const TetMesh& mesh, std::size_t count) {
+  const auto corners = [&](std::size_t t) {
+    const auto& [a, b, c, d] = mesh.tets[t];
+    return std::array<Vec3, 4>{mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]};
+  };
+  std::vector<std::pair<double, TetIndex>> all(mesh.tets.size());
+  parallel_for(all.size(), [&](std::size_t t) {
+    const auto [a, b, c, d] = corners(t);
+    const double beta = radius_ratio(a, b, c, d);
+    all[t] = {std::isnan(beta) ? -1 : beta, static_cast<TetIndex>(t)};
   });
-  QualitySummary whole;
-  whole.dihedral_min = 180;
-  for (const Part& part : parts) add_summary(whole, part.summary);
-  whole.beta_mean /= static_cast<double>(n);
-  return whole;
+  const auto end = all.begin() + static_cast<std::ptrdiff_t>(std::min(count, all.size()));
+  std::partial_sort(all.begin(), end, all.end());
+  std::vector<PoorElement> worst;
+  for (auto e = all.begin(); e != end; ++e) {
+    const auto [a, b, c, d] = corners(e->second);
+    const auto angles = dihedral_angles(a, b, c, d);
+    const auto [least, most] = std::minmax_element(angles.begin(), angles.end());
+    worst.push_back({e->second, (a + b + c + d) / 4, e->first, *least, *most});
+  }
+  return worst;
 }
 
 }  // namespace octafront

@@ -13,8 +13,13 @@ double enclosed_volume(const SurfaceMesh& surface) {
   // Measured from the middle, so that a model far from the origin loses no digits.
   const Vec3 o = bounding_box(surface.points).center();
   double six_volume = 0;
-  for (const Triangle& t : surface.triangles)
-    six_volume += dot(surface.points[t[0]] - o, cross(surface.points[t[1]] - o, surface.points[t[2]] - o));
+  for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
+    const auto [front, behind] = surface.sides_of(i);
+    if ((front == kNone) == (behind == kNone)) continue;  // between regions
+    const Triangle& t = surface.triangles[i];
+    const double term = dot(surface.points[t[0]] - o, cross(surface.points[t[1]] - o, surface.points[t[2]] - o));
+    six_volume += front == kNone ? term : -term;
+  }
   return six_volume / 6;
 }
 

@@ -110,6 +110,13 @@ void TetComplex::connect(std::size_t vertices, std::span<const Triangle> boundar
   last_mark = 0;
 }
 
+void TetComplex::part(std::size_t vertices, std::span<const Triangle> triangles, HalfFace outside) {
+  if (triangles.empty()) return;
+  const FaceTable table = face_table(vertices, triangles);
+  for (HalfFace h = 0; h < across.size(); ++h)
+    if (!is_outside(across[h]) && !table.group_of(face(h)).empty()) across[h] = outside;
+}
+
 TetIndex TetComplex::create(const Tet& corners) {
   TetIndex t = slots();
   if (free.empty()) {

@@ -77,6 +77,9 @@ class TetComplex {
   /// of the boundary lies. kNone stays across faces of which neither, or too much, is known.
   void connect(std::size_t vertices, std::span<const Triangle> boundary);
 
+  /// Parts the tets on the two sides of each of these triangles: what lies across for both becomes `outside`.
+  void part(std::size_t vertices, std::span<const Triangle> triangles, HalfFace outside);
+
   TetIndex slots() const { return static_cast<TetIndex>(tets.size()); }
   bool alive(TetIndex t) const { return tets[t][0] != kNone; }
   /// The corners of a half-face, counter-clockwise seen from outside its tet.

@@ -5,6 +5,8 @@
 #include "core/parallel.h"
 #include "geometry/measures.h"
 #include "geometry/predicates.h"
+#include "mesh/complex.h"
+#include "mesh/complex_defects.h"
 #include "mesh/face_table.h"
 #include "mesh/quadratic_nodes.h"
 
@@ -378,7 +380,7 @@ std::optional<std::string> first_defect(const TetMesh& mesh, const SurfaceMesh& 
   for (const Triangle& t : surface.triangles)
     for (const VertexIndex v : t)
       if (v >= surface.points.size()) return fmt::format("the surface has no vertex {} for one of its triangles", v);
-  return boundary_difference(mesh, surface);
+  return is_complex(surface) ? difference_to_complex(mesh, surface) : boundary_difference(mesh, surface);
 }
 
 }  // namespace octafront

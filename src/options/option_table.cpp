@@ -178,6 +178,9 @@ std::vector<Row> size_rows() {
           of("max_size", "No size rises above this, in units of the input"),
           [](auto& o) -> auto& { return o.size.max_size; }),
       row(
+          of("automatic_factor", "Automatic sizes times this: .5 makes about eight times as many elements; .1 to 10"),
+          [](auto& o) -> auto& { return o.size.automatic_factor; }),
+      row(
           of("gradation", "How fast sizes may change: |h(x) - h(y)| <= gradation |x - y|; .01 to 1"),
           [](auto& o) -> auto& { return o.size.gradation; }),
       choice<Interior>(of("interior", "Inside no larger than on the surface, or growing inward"),

@@ -2,6 +2,9 @@
 
 #include "core/parallel.h"
 
+#include <algorithm>
+#include <vector>
+
 namespace octafront {
 namespace {
 
@@ -22,6 +25,24 @@ void renew_sources(TetMesh& mesh, const SurfaceMesh& before, const SurfaceMesh& 
     if (below.triangle == kNone) below = tree.nearest(middle);
     mesh.source[t] = input.source_of(below.triangle);
   });
+}
+
+void follow_boundary(const TetMesh& mesh, SurfaceMesh& filled) {
+  std::vector<Sides> sides_of_patch;
+  for (std::size_t t = 0; t < filled.sides.size(); ++t) {
+    if (filled.patch[t] >= sides_of_patch.size()) sides_of_patch.resize(filled.patch[t] + 1);
+    sides_of_patch[filled.patch[t]] = filled.sides[t];
+  }
+  filled.triangles = mesh.boundary;
+  filled.triangles.insert(filled.triangles.end(), mesh.interfaces.begin(), mesh.interfaces.end());
+  filled.patch = mesh.patch;
+  filled.patch.insert(filled.patch.end(), mesh.interface_patch.begin(), mesh.interface_patch.end());
+  VertexIndex last = 0;
+  for (const Triangle& t : filled.triangles) last = std::max({last, t[0], t[1], t[2]});
+  filled.points.assign(mesh.points.begin(), mesh.points.begin() + last + 1);
+  if (filled.sides.empty()) return;
+  filled.sides.clear();
+  for (const std::uint32_t patch : filled.patch) filled.sides.push_back(sides_of_patch[patch]);
 }
 
 }  // namespace octafront

@@ -12,4 +12,8 @@ namespace octafront {
 /// boundary as it was, in the same order.
 void renew_sources(TetMesh& mesh, const SurfaceMesh& before, const SurfaceMesh& input, const TriangleTree& tree);
 
+/// What was filled follows what became of its boundary and interfaces, whose vertices come first in the mesh; of
+/// a complex whose patches have one pair of sides each.
+void follow_boundary(const TetMesh& mesh, SurfaceMesh& filled);
+
 }  // namespace octafront

@@ -79,6 +79,21 @@ void describe_sizes(const TetMesh& mesh, const SizeField& sizes, Report& report)
   report.volume_edges = summarize_volume_edges(mesh, sizes);
 }
 
+void describe_regions(const TetMesh& mesh, Report& report) {
+  if (mesh.region.empty()) return;
+  const std::vector<QualitySummary> quality = quality_of_regions(mesh);
+  report.regions.assign(quality.size(), {});
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    const auto& [a, b, c, d] = mesh.tets[t];
+    const Vec3 p = mesh.points[a];
+    report.regions[mesh.region[t]].volume += dot(cross(mesh.points[b] - p, mesh.points[c] - p), mesh.points[d] - p) / 6;
+  }
+  for (std::uint32_t r = 0; r < quality.size(); ++r) {
+    report.regions[r].name = r < mesh.region_names.size() ? mesh.region_names[r] : std::string();
+    report.regions[r].quality = quality[r];
+  }
+}
+
 std::uint64_t mesh_hash(const TetMesh& mesh) {
   Fnv hash;
   for (const Vec3& p : mesh.points)
@@ -91,6 +106,9 @@ std::uint64_t mesh_hash(const TetMesh& mesh) {
   for (const std::uint32_t patch : mesh.patch) hash.add(patch);
   for (const auto& mids : mesh.mid_nodes)
     for (const VertexIndex v : mids) hash.add(v);
+  for (const Triangle& face : mesh.interfaces)
+    for (const VertexIndex v : face) hash.add(v);
+  for (const std::uint32_t patch : mesh.interface_patch) hash.add(patch);
   return hash.value();
 }
 

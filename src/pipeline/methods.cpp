@@ -28,11 +28,11 @@ TetMesh fill_by_recovery(const Remeshed& boundary, const VolumeOptions&, const S
 /// The classical front makes 1.1 to 1.4 times the elements that the sizes promise.
 constexpr double kClassicTets = 1.225;
 
-constexpr MethodTraits kOctreeAft{.stage = "volume front", .fill = fill_by_front};
+constexpr MethodTraits kOctreeAft{.stage = "volume front", .fills_complexes = true, .fill = fill_by_front};
 constexpr MethodTraits kAft{.stage = "volume front", .tets_per_expected = kClassicTets, .fill = fill_by_classic_front};
 constexpr MethodTraits kOctree{.stage = "stuffing", .needs_clean = false, .has_front = false};
 constexpr MethodTraits kRecover{
-    .stage = "recovery", .has_front = false, .always_keeps = true, .fill = fill_by_recovery};
+    .stage = "recovery", .has_front = false, .fills_complexes = true, .always_keeps = true, .fill = fill_by_recovery};
 
 }  // namespace
 

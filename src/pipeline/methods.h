@@ -12,6 +12,7 @@ struct MethodTraits {
   const char* stage;             ///< name of its stage in the report
   bool needs_clean = true;       ///< surfaces with defects are refused
   bool has_front = true;         ///< the surface is triangulated anew to the sizes, unless it is kept
+  bool fills_complexes = false;  ///< several regions, sheets
   bool always_keeps = false;     ///< the input's triangles become the boundary, asked for or not
   double tets_per_expected = 1;  ///< makes so many times the elements that the sizes promise
   /// Fills the surface and keeps its triangles; null for the method that makes a boundary of its own.

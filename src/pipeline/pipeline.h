@@ -17,8 +17,11 @@ SizeSummary summarize_volume_edges(const TetMesh& mesh, const SizeField& sizes);
 /// Fills in what the report says of sizes: asked for against made.
 void describe_sizes(const TetMesh& mesh, const SizeField& sizes, Report& report);
 
-/// A fingerprint of coordinates (bits), tets, regions, boundary, patches and mid-side nodes: equal meshes, equal hash
-/// (FNV-1a, 64 bits).
+/// Fills in what the report says of each region.
+void describe_regions(const TetMesh& mesh, Report& report);
+
+/// A fingerprint of coordinates (bits), tets, regions, boundary, interfaces, patches and mid-side nodes: equal meshes,
+/// equal hash (FNV-1a, 64 bits).
 std::uint64_t mesh_hash(const TetMesh& mesh);
 
 /// Largest resident memory of this process so far.

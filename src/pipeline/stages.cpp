@@ -6,11 +6,14 @@
 #include "core/parallel.h"
 #include "curved/curved.h"
 #include "improve/improve.h"
+#include "improve/slide_interfaces.h"
+#include "mesh/complex.h"
 #include "pipeline/follow_boundary.h"
 #include "pipeline/methods.h"
 #include "pipeline/pipeline.h"
 #include "sizing/make_size_field.h"
 #include "stuffing/stuff.h"
+#include "surface/complex_patches.h"
 #include "surface/examine.h"
 #include "surface/feature_patches.h"
 #include "surface/remeshing/unfold.h"
@@ -41,6 +44,13 @@ void refuse_lost_precision(const SurfaceMesh& surface) {
 
 // Over area times diagonal; a sheet of a thousandth of its width has a hundred times as much.
 constexpr double kLeastVolume = 1e-6;
+
+void refuse_complex_for_method(const SurfaceMesh& surface, Method method) {
+  if (surface.sides.empty() || traits_of(method).fills_complexes) return;
+  throw OptionError(fmt::format(
+      "{} regions or sheets are given, and this method fills one region only: choose method octree-aft or recover",
+      region_count(surface)));
+}
 
 // Defects are refused, but by the octree method, which lives with them: then they are notes.
 SurfaceDomain::Defects judge_defects(const SurfaceDefects& found, Method method, const Stage& stage) {
@@ -80,7 +90,7 @@ constexpr double kDetail = 0.1;
 
 /// Up to here detail of the input may be smoothed over; 0: it is all kept.
 double detail_tolerance(const SurfaceMesh& surface, const Options& options) {
-  if (keeps_surface(options) || traits_of(options.method).makes_own_boundary()) return 0;
+  if (keeps_surface(options) || traits_of(options.method).makes_own_boundary() || !surface.sides.empty()) return 0;
   const double automatic = kAutomaticDeviation * bounding_box(surface.points).diagonal();
   if (options.surface.max_deviation) return std::min(automatic, *options.surface.max_deviation);
   return options.size.size ? std::min(automatic, kDetail * *options.size.size) : automatic;
@@ -134,6 +144,11 @@ Filled stuff(const Prepared& input, const SizeField& sizes, Run& run) {
   return {std::move(mesh), std::move(boundary)};
 }
 
+bool may_slide(const ImproveOptions& options) {
+  return options.move_boundary && options.level != ImproveOptions::Level::kOff &&
+         options.level != ImproveOptions::Level::kPaper;
+}
+
 // Folds, flaps and blades below the tolerance are taken away: no element could fill them.
 void smooth_detail(Examined& found, Run& run) {
   SurfaceMesh& surface = found.repaired.surface;
@@ -160,16 +175,19 @@ Prepared prepare(const SurfaceMesh& soup, Run& run) {
     Examined examined = examine_surface(soup, stage.context());
     const RepairedSurface& repaired = examined.repaired;
     for (const std::string& note : repaired.notes) stage.note(note);
+    refuse_complex_for_method(repaired.surface, run.options.method);
     defects = judge_defects(examined.defects, run.options.method, stage);
     if (defects == SurfaceDomain::Defects::kOpen) face_outward(examined);
     refuse_lost_precision(repaired.surface);
     stage.count("triangles", static_cast<double>(repaired.surface.triangles.size()));
     stage.count("bodies", repaired.bodies);
     stage.count("cavities", repaired.cavities);
+    if (!repaired.surface.sides.empty()) divide_by_sides(examined.repaired.surface);
     return examined;
   });
   run.report.input_volume = enclosed_volume(found.repaired.surface);
-  if (defects == SurfaceDomain::Defects::kClean) smooth_detail(found, run);
+  const bool is_plain = found.repaired.surface.sides.empty();
+  if (defects == SurfaceDomain::Defects::kClean && is_plain) smooth_detail(found, run);
   SurfaceMesh& surface = found.repaired.surface;
   Features features = run.stage("features", [&](const Stage& stage) {
     Features of_surface = detect_features(surface, found.edges, run.options.surface.feature_angle);
@@ -224,8 +242,10 @@ Filled fill_surface(const Prepared& input, Remeshed boundary, Run& run) {
     stage.count("tets", static_cast<double>(filled.tets.size()));
     return filled;
   });
-  mesh.source.reserve(boundary.source.size());
-  for (const std::uint32_t triangle : boundary.source) mesh.source.push_back(input.surface.mesh().source_of(triangle));
+  mesh.source.reserve(mesh.boundary.size());
+  for (std::size_t t = 0; t < boundary.source.size(); ++t)
+    if (boundary.surface.sides_of(t)[0] == kNone)
+      mesh.source.push_back(input.surface.mesh().source_of(boundary.source[t]));
   return {std::move(mesh), std::move(boundary)};
 }
 
@@ -238,14 +258,15 @@ void improve_elements(const Prepared& input, Filled& filled, Run& run) {
       on.emplace(improve::BoundaryInput{input.surface.mesh(), input.surface.tree(), input.surface.features(),
                                         boundary.features, detail_tolerance(input.surface.mesh(), run.options),
                                         boundary.near_limit});
-    if (!improve_mesh(mesh, on ? &*on : nullptr, run.options.improve, stage, &boundary.features)) return;
-    if (on) renew_sources(mesh, boundary.surface, on->surface, on->tree);
-    SurfaceMesh& surface = boundary.surface;  // what was filled follows what became of it; its vertices come first
-    VertexIndex last = 0;
-    for (const Triangle& t : mesh.boundary) last = std::max({last, t[0], t[1], t[2]});
-    surface.points.assign(mesh.points.begin(), mesh.points.begin() + last + 1);
-    surface.triangles = mesh.boundary;
-    surface.patch = mesh.patch;
+    if (improve_mesh(mesh, on ? &*on : nullptr, run.options.improve, stage, &boundary.features)) {
+      if (on) renew_sources(mesh, hull_of(boundary.surface), on->surface, on->tree);
+      follow_boundary(mesh, boundary.surface);
+    }
+    if (on && !on->surface.sides.empty() && may_slide(run.options.improve)) {
+      stage.count("interface vertices moved",
+                  static_cast<double>(slide_interfaces(mesh, boundary.surface, boundary.features, on->surface, stage)));
+      std::copy_n(mesh.points.begin(), boundary.surface.points.size(), boundary.surface.points.begin());
+    }
   });
 }
 
@@ -287,6 +308,7 @@ void describe(const TetMesh& mesh, Report& report) {
   report.boundary_faces = mesh.boundary.size();
   report.volume = mesh.is_second_order() ? curved_volume(mesh) : enclosed_volume(boundary_of(mesh));
   parallel_invoke([&] { report.quality = summarize_quality(mesh); }, [&] { report.hash = mesh_hash(mesh); });
+  describe_regions(mesh, report);
 }
 
 }  // namespace octafront

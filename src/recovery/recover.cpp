@@ -3,6 +3,7 @@
 #include <octafront/error.h>
 
 #include "core/validate.h"
+#include "mesh/complex.h"
 #include "recovery/boundary_recovery.h"
 #include "recovery/carve.h"
 #include "recovery/delaunay.h"
@@ -47,13 +48,14 @@ std::vector<Triangle> merged(std::vector<Triangle> triangles, const std::vector<
 }
 
 // The vertex at the place of v to which the surface's triangles on this part of its star refer.
-VertexIndex surface_vertex(const SurfaceMesh& surface, const std::vector<VertexIndex>& same_as, const TetComplex& mesh,
-                           VertexIndex v, const std::vector<TetIndex>& star) {
+VertexIndex surface_vertex(const SurfaceMesh& surface, const std::vector<Triangle>& seen,
+                           const std::vector<VertexIndex>& same_as, const TetComplex& mesh, VertexIndex v,
+                           const std::vector<TetIndex>& star) {
   VertexIndex name = kNone;
   for (const TetIndex t : star) {
     for (HalfFace h = 4 * t; h < 4 * t + 4; ++h) {
       if (!is_outside(mesh.across[h]) || mesh.apex(h) == v) continue;
-      for (const VertexIndex w : surface.triangles[mesh.across[h] - kFirstOutside]) {
+      for (const VertexIndex w : seen[mesh.across[h] - kFirstOutside]) {
         if (same_as[w] != v || w == name) continue;
         if (name != kNone) {
           const Vec3 p = surface.points[v];
@@ -72,6 +74,7 @@ VertexIndex surface_vertex(const SurfaceMesh& surface, const std::vector<VertexI
 // Where the surface has several vertices at one place, the mesh has one of them so far. Each part of its star that
 // hangs together through faces gets the vertex that the surface's triangles have there.
 void restore_coinciding(const SurfaceMesh& surface, const std::vector<VertexIndex>& same_as, TetComplex& mesh) {
+  const std::vector<Triangle> seen = with_backs(surface.triangles, surface);
   std::vector<bool> shared(same_as.size(), false);
   for (VertexIndex v = 0; v < same_as.size(); ++v) {
     if (same_as[v] != v) shared[same_as[v]] = true;
@@ -82,7 +85,7 @@ void restore_coinciding(const SurfaceMesh& surface, const std::vector<VertexInde
       const VertexIndex v = mesh.tets[t][i];
       if (v >= shared.size() || !shared[v]) continue;
       const std::vector<TetIndex> star = mesh.star_from(v, t);
-      const VertexIndex name = surface_vertex(surface, same_as, mesh, v, star);
+      const VertexIndex name = surface_vertex(surface, seen, same_as, mesh, v, star);
       if (name == v || name == kNone) continue;
       for (const TetIndex u : star) std::ranges::replace(mesh.tets[u], v, name);
     }
@@ -107,9 +110,7 @@ TetMesh extract(const SurfaceMesh& surface, const ExactPoints& points, const Tet
     }
     result.tets.push_back(c);
   }
-  result.boundary = surface.triangles;
-  result.patch = surface.patch;
-  result.patch_names = surface.patch_names;
+  list_faces(surface, result);
   return result;
 }
 
@@ -158,8 +159,9 @@ std::optional<TetMesh> recover(const SurfaceMesh& surface, std::uint32_t attempt
   BoundaryRecovery recovery(task, subdivided, most_points);
   recovery.run();
   validate(mesh);
-  carve(points, subdivided, mesh);
-  SteinerLift lift(task, triangles);
+  carve(points, subdivided, surface, mesh);
+  const std::vector<Triangle> seen = with_backs(triangles, surface);
+  SteinerLift lift(task, seen);
   if (const std::vector<VertexIndex> open = lift.run(); !open.empty()) {
     if (attempt + 1 == kAttempts) throw_no_place(points, open);
     return std::nullopt;

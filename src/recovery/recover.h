@@ -18,9 +18,10 @@ enum class RecoveryPatience { kCavity, kSurface };
 /// strictly inside and follow those of the surface in `points`. mesh.boundary is surface.triangles in their order.
 /// Vertices that no triangle uses stay in `points` and are used by no tet; equal vertices must be merged, except where
 /// the surface touches itself. Counters of `report`: edges and facets missing and recovered, points made, merged,
-/// lifted. Throws MeshingError, with the place, if no doubles exist for a point that is needed, or if the surface is
-/// open, inside out, or has a vertex on another edge or facet. Cost: 4 us per triangle where little is missing, 50-150
-/// on needles.
+/// lifted. Of a complex (`sides`) all regions are filled, and its triangles are mesh.boundary and mesh.interfaces, in
+/// their order; regions are not numbered. Throws MeshingError, with the place, if no doubles exist for a point that is
+/// needed, or if the surface is open, inside out, or has a vertex on another edge or facet. Cost: 4 us per triangle
+/// where little is missing, 50-150 on needles.
 TetMesh recover_volume(const SurfaceMesh& surface, const Stage& stage,
                        RecoveryPatience patience = RecoveryPatience::kSurface);
 

@@ -41,6 +41,7 @@ class Refiner {
       : mesh_(mesh), sizes_(sizes), context_(context) {
     complex_.tets = mesh.tets;
     complex_.connect(mesh.points.size(), mesh.boundary);
+    complex_.part(mesh.points.size(), mesh.interfaces, kFirstOutside);
   }
 
   void run() {

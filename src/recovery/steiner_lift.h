@@ -19,8 +19,8 @@ struct LiftCounts {
 /// inside.
 class SteinerLift {
  public:
-  /// `triangles`: the input's, to which the labels of boundary faces refer. Vertices behind the frame are Steiner
-  /// points.
+  /// `triangles`: those to which what lies across boundary faces refers, counter-clockwise seen from outside of the
+  /// region. Vertices behind the frame are Steiner points.
   SteinerLift(const RecoveryTask& task, const std::vector<Triangle>& triangles)
       : points_(task.points),
         mesh_(task.mesh),

@@ -31,6 +31,17 @@ Json json_of(const QualitySummary& q) {
           {"dihedral_class_degrees", 10}};
 }
 
+Json json_of(const std::vector<RegionSummary>& regions) {
+  Json all = Json::array();
+  for (std::size_t r = 0; r < regions.size(); ++r)
+    all.push_back({{"number", r + 1},
+                   {"name", regions[r].name},
+                   {"tets", regions[r].quality.elements},
+                   {"volume", regions[r].volume},
+                   {"quality", json_of(regions[r].quality)}});
+  return all;
+}
+
 Json json_of(const SizeSummary& s) {
   return {{"edges", s.edges}, {"mean_ratio", s.mean_ratio}, {"share_within_0.7_1.4", s.share_within}};
 }
@@ -61,6 +72,7 @@ std::string to_json(const Report& report) {
          {"expected_tets", report.expected_tets}};
   if (report.tets > 0) {
     j["quality"] = json_of(report.quality);
+    if (!report.regions.empty()) j["regions"] = json_of(report.regions);
     if (report.second_order.edges > 0) j["second_order"] = json_of(report.second_order);
     j["volume_edges"] = json_of(report.volume_edges);
     j["hash"] = fmt::format("{:016x}", report.hash);

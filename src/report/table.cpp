@@ -79,6 +79,23 @@ std::string second_order_lines(const SecondOrderSummary& s) {
                            s.least_scaled_jacobian, s.least_tet, s.largest_bend);
 }
 
+constexpr std::size_t kMostRegionLines = 24;
+
+std::string region_lines(const std::vector<RegionSummary>& regions) {
+  std::string out =
+      fmt::format("{:<32}{:>12}{:>14}{:>12}{:>12}\n", "region", "tetrahedra", "volume", "mean beta", "least beta");
+  for (std::size_t r = 0; r < std::min(regions.size(), kMostRegionLines); ++r) {
+    const RegionSummary& region = regions[r];
+    out +=
+        fmt::format("  {:<30.30}{:>12}{:>14.6g}{:>12.4f}{:>12.4f}\n",
+                    region.name.empty() ? fmt::format("region {}", r + 1) : region.name,
+                    grouped(region.quality.elements), region.volume, region.quality.beta_mean, region.quality.beta_min);
+  }
+  if (regions.size() > kMostRegionLines)
+    out += fmt::format("  ... and {} more: all of them are in the JSON report\n", regions.size() - kMostRegionLines);
+  return out;
+}
+
 std::string size_line(const char* what, const SizeSummary& s) {
   return fmt::format("  {:<16}mean {:.3f} of the length wanted, {:.1f} % within 0.7 - 1.4\n", what, s.mean_ratio,
                      100 * s.share_within);
@@ -96,6 +113,7 @@ std::string to_table(const Report& report) {
     out += fmt::format("volume {:.6g} (input {:.6g}, {:+.3f} %)\n", report.volume, report.input_volume,
                        100 * (report.volume / report.input_volume - 1));
   if (report.tets > 0) out.append("\n").append(quality_lines(report.quality));
+  if (report.regions.size() > 1) out += region_lines(report.regions);
   if (report.second_order.edges > 0) out += second_order_lines(report.second_order);
   if (report.surface_edges.edges > 0) out += "edge lengths\n" + size_line("surface", report.surface_edges);
   if (report.volume_edges.edges > 0) out += size_line("volume", report.volume_edges);

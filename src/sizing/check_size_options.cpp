@@ -43,10 +43,16 @@ void check_size_options(const SizeOptions& o) {
           fmt::format("`size` {} is smaller than `min_size` {}", o.size.value_or(0), o.min_size.value_or(0)));
   require(!(o.size && o.max_size) || *o.size <= *o.max_size,
           fmt::format("`size` {} is larger than `max_size` {}", o.size.value_or(0), o.max_size.value_or(0)));
+  require(o.automatic_factor >= 0.1 && o.automatic_factor <= 10,
+          fmt::format("`automatic_factor` must lie in [0.1, 10], but is {}", o.automatic_factor));
   const bool has_source = o.size || o.elements || o.curvature || o.gap || o.feature_elements || o.facets ||
-                          o.min_size || o.max_size || !o.regions.empty() || !o.point_sizes.empty() || o.callback;
+                          o.min_size || o.max_size || !o.regions.empty() || !o.point_sizes.empty() ||
+                          !o.named.empty() || o.callback;
   require(!(o.field && has_source),
           "a size grid is all there is to say about the sizes: no other source or limit of sizes can be given with it");
+  for (const NamedSize& n : o.named)
+    require(std::isfinite(n.size) && n.size > 0,
+            fmt::format("the size of \"{}\" must be a number above 0, but is {}", n.name, n.size));
   for (const PointSize& s : o.point_sizes) {
     require(is_finite(s.p) && std::isfinite(s.size) && s.size > 0,
             fmt::format("the size {} at the point ({}, {}, {}) must be above 0, at a finite place", s.size, s.p.x,

@@ -7,6 +7,7 @@
 // made is the number asked for; there is always a choice that makes it (nearly).
 
 #include "core/parallel.h"
+#include "mesh/complex.h"
 #include "sizing/background_grid.h"
 #include "sizing/inside_fraction.h"
 #include "sizing/make_size_field.h"
@@ -212,7 +213,11 @@ double elements_by_volume(const SizeField& sizes, const OctreeField& grid, const
 
 }  // namespace
 
-TetPrediction::TetPrediction(const SurfaceMesh& surface) : surface_(surface), walls_(new ThinWalls(surface)) {}
+// What lies between regions bounds nothing that is to be counted.
+TetPrediction::TetPrediction(const SurfaceMesh& surface)
+    : hull_(surface.sides.empty() ? SurfaceMesh{} : hull_of(surface)),
+      surface_(surface.sides.empty() ? surface : hull_),
+      walls_(new ThinWalls(surface_)) {}
 TetPrediction::~TetPrediction() = default;
 
 double TetPrediction::operator()(const SizeField& sizes, std::optional<std::size_t> triangles) const {
@@ -228,13 +233,15 @@ double expected_tets(const SizeField& sizes, const SurfaceMesh& surface) {
 }
 
 double expected_tets_within(const SizeField& sizes, const SurfaceMesh& made) {
-  return TetPrediction(made)(sizes, made.triangles.size());
+  const TetPrediction predicted(made);
+  return predicted(sizes, predicted.triangles());
 }
 
 double lattice_cell_size(const SizeField& sizes, const SurfaceMesh& surface) {
   if (sizes.min_size() == sizes.max_size()) return sizes.min_size();
   const auto grid = grid_of(sizes, surface);
-  return choose_cell(demand_of(*grid, SizedPieces(*grid, surface))) * grid->root.side;
+  const SurfaceMesh hull = surface.sides.empty() ? SurfaceMesh{} : hull_of(surface);
+  return choose_cell(demand_of(*grid, SizedPieces(*grid, surface.sides.empty() ? surface : hull))) * grid->root.side;
 }
 
 }  // namespace octafront

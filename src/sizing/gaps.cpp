@@ -29,6 +29,7 @@ GapFinder::GapFinder(const KnownSurface& known, double nearest, double reach)
       nearest_(nearest),
       reach_(reach) {
   const SurfaceMesh& surface = known.mesh();
+  either_way_ = !surface.sides.empty();
   normal_.reserve(surface.triangles.size());
   for (const Triangle& t : surface.triangles) {
     normal_.push_back(unit_normal(surface.points[t[0]], surface.points[t[1]], surface.points[t[2]]));
@@ -54,7 +55,9 @@ double GapFinder::distance_along(const PlaceOnSurface& place, Vec3 direction) co
   // The first part of the way is left out: the place's own triangle and its neighbours lie there.
   const double skipped = 0.1 * nearest_;
   const TriangleTree::RayHit hit = tree_.first_hit(place.p + skipped * direction, direction, reach_ - skipped);
-  if (hit.triangle == kNone || !faces(normal_[hit.triangle], place.n)) return kOpen;
+  if (hit.triangle == kNone) return kOpen;
+  const Vec3 n = normal_[hit.triangle];
+  if (!faces(n, place.n) && !(either_way_ && faces(-n, place.n))) return kOpen;
   return skipped + hit.t;
 }
 

@@ -40,7 +40,8 @@ class GapFinder {
   std::vector<Vec3> normal_;
   RootCube root_;
   double nearest_, reach_;
-  int level_;  ///< of the cells whose places share an answer
+  bool either_way_ = false;  ///< of a complex, whose triangles do not face outward
+  int level_;                ///< of the cells whose places share an answer
   FlatMap<std::uint64_t, double> known_;
 };
 

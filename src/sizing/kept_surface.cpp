@@ -3,6 +3,7 @@
 #include "geometry/measures.h"
 #include "sizing/face_neighbours.h"
 #include "sizing/make_size_field.h"
+#include "sizing/named_sizes.h"
 #include "sizing/region_caps.h"
 #include "sizing/size_sources.h"
 
@@ -94,7 +95,9 @@ SizeField size_field_of_surface(const KnownSurface& known, const SizeOptions& op
   std::vector<double> face = face_sizes(known);
   for (double& h : face) h = std::max(h, floor);
   const SizeAtPlace at_place = given_sizes(surface, options);
-  const std::vector<SizeSample> points = samples_of_points(options, floor);
+  std::vector<SizeSample> points = samples_of_points(options, floor);
+  const NamedSizes named = named_sizes(known, options);
+  points.insert(points.end(), named.points.begin(), named.points.end());
   const auto samples_of = [&](const std::vector<double>& sizes) {
     std::vector<SizeSample> samples = sample_surface(surface, sizes, at_place, stage.context());
     samples.insert(samples.end(), points.begin(), points.end());

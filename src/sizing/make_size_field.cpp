@@ -120,17 +120,17 @@ WantedSizes raised(const WantedSizes& wanted, double floor) {
 SizeField within_budget(const SurfaceMesh& surface, const WantedSizes& wanted, const SizeOptions& options,
                         SizeField field, const Stage& stage) {
   const TetPrediction expected(surface);
-  const double first = expected(field);
-  if (first <= kAutomaticBudget) return field;
+  const double first = expected(field), budget = kAutomaticBudget / std::pow(options.automatic_factor, 3);
+  if (first <= budget) return field;
   double low = field.min_size(), high = std::min(wanted.ceiling, kMostRaised * low);
   for (int step = 0; step < kBudgetSteps; ++step) {
     const double floor = step == 0 ? high : std::sqrt(low * high);
     SizeField coarser = grid_field(surface, raised(wanted, floor), options, stage.context());
     const double count = expected(coarser);
-    const bool is_within = count <= kAutomaticBudget;
+    const bool is_within = count <= budget;
     (is_within ? high : low) = floor;
     if (is_within || step == 0) field = std::move(coarser);
-    if ((step == 0 && !is_within) || std::abs(count / kAutomaticBudget - 1) < kNearBudget) break;
+    if ((step == 0 && !is_within) || std::abs(count / budget - 1) < kNearBudget) break;
   }
   stage.note(fmt::format(
       "the details of this surface ask for {:.2g} million elements; the automatic size stops at {:.4g}, for about "
@@ -157,7 +157,9 @@ SizeField make_size_field(const KnownSurface& known, const SizeOptions& options,
   check_size_options(options);
   if (surface.triangles.empty()) throw InputError("the surface has no triangles: there is nothing to choose sizes for");
   if (options.field) return *options.field;
-  const WantedSizes wanted = wanted_sizes(known, options, stage);
+  WantedSizes wanted = wanted_sizes(known, options, stage);
+  if (wanted.automatic && !options.elements && options.automatic_factor != 1)
+    wanted = scaled(wanted, options.automatic_factor, options);
   if (!options.elements) refuse_huge_counts(surface, wanted);
   SizeField field = options.elements ? scaled_to_count(surface, wanted, options, stage)
                                      : grid_field(surface, wanted, options, stage.context());

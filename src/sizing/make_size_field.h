@@ -39,7 +39,11 @@ class TetPrediction {
   /// `triangles`: how many the surface has, if it is made by these sizes already.
   double operator()(const SizeField& sizes, std::optional<std::size_t> triangles = {}) const;
 
+  /// Triangles between the inside and the outside.
+  std::size_t triangles() const { return surface_.triangles.size(); }
+
  private:
+  const SurfaceMesh hull_;  ///< of a complex
   const SurfaceMesh& surface_;
   std::unique_ptr<const ThinWalls> walls_;
 };

@@ -8,6 +8,7 @@
 #include "sizing/feature_sizes.h"
 #include "sizing/gaps.h"
 #include "sizing/make_size_field.h"
+#include "sizing/named_sizes.h"
 #include "sizing/point_sizes.h"
 
 #include <algorithm>
@@ -219,6 +220,9 @@ WantedSizes wanted_sizes(const KnownSurface& known, const SizeOptions& options, 
     if (options.feature_elements) affordable.feature_elements(choice.feature_elements, curves);
     wanted.points = feature_samples(surface, curves, choice.feature_elements, choice.floor, choice.base);
   }
+  const NamedSizes named = named_sizes(known, options);
+  for (std::size_t f = 0; f < named.face.size(); ++f) wanted.face[f] = std::min(wanted.face[f], named.face[f] / scale);
+  wanted.points.insert(wanted.points.end(), named.points.begin(), named.points.end());
   const std::vector<SizeSample> given = samples_of_points(options, options.min_size.value_or(0));
   wanted.points.insert(wanted.points.end(), given.begin(), given.end());
   for (double& h : wanted.face) h = std::max(h * scale, options.min_size.value_or(0));

@@ -104,4 +104,10 @@ std::optional<std::string> first_surface_defect(const SurfaceMesh& result, const
   return SurfaceKind(input, make_edge_table(input.points.size(), input.triangles)).first_defect_but_crossings(result);
 }
 
+std::optional<std::string> first_complex_defect_but_crossings(const SurfaceMesh& complex) {
+  if (auto bad = first_bad_vertex(complex)) return bad;
+  const EdgeTable edges = make_edge_table(complex.points.size(), complex.triangles);
+  return first_line(defects::find_region_defects(as_it_is(complex), edges, {}));
+}
+
 }  // namespace octafront

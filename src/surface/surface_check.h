@@ -21,6 +21,10 @@ namespace octafront {
 /// Requires that `input` is clean. Cost: O(n log n), about 1.5 s per million triangles of `result`.
 std::optional<std::string> first_surface_defect(const SurfaceMesh& result, const SurfaceMesh& input);
 
+/// The first way in which a complex that came out is not one, but for crossings, as a sentence: edges around which the
+/// regions do not agree, parts in another region than they say. About 2 s per million triangles.
+std::optional<std::string> first_complex_defect_but_crossings(const SurfaceMesh& complex);
+
 /// The same in parts, for callers that check several surfaces made from one input, and know their self-intersections.
 class SurfaceKind {
  public:

@@ -59,6 +59,14 @@ double solid_angle_rank(const std::array<Vec3, 3>& triangle, Vec3 p) {
   return sum >= 0 ? volume / (volume + sum) : 1 - sum / (volume - sum);
 }
 
+/// Whether a front face on a side of the tetrahedron over the base (0, 1, 2) has it on its unfilled side: then its
+/// corners turn like (j, i, apex).
+bool sees_tet(const std::array<Neighborhood::Index, 3>& corners, Neighborhood::Index apex) {
+  int k = 0;
+  while (corners[k] != apex) ++k;
+  return (corners[(k + 1) % 3] + 1) % 3 != corners[(k + 2) % 3];
+}
+
 }  // namespace
 
 Attempt::Attempt(Front& front, const FrontTask& task, const Box3& territory, FrontCounters& counters)
@@ -146,9 +154,9 @@ Attempt::Contact Attempt::contact_of(Index apex) const {
     for (int j = 0; j < 3; ++j)
       if (c[j] < 3) touched |= 1u << c[j];
     for (int i = 0; i < 3; ++i) contact.edge[i] = contact.edge[i] || (touched >> i & 1);
-    // Side i has the two corners other than i; the front face must run the other way, which validity ensures.
+    // Side i has the two corners other than i.
     for (int i = 0; i < 3; ++i)
-      if (touched == (7u & ~(1u << i))) contact.face[i] = f.face, ++contact.closed;
+      if (touched == (7u & ~(1u << i)) && sees_tet(c, apex)) contact.face[i] = f.face, ++contact.closed;
   }
   return contact;
 }
@@ -172,18 +180,22 @@ bool Attempt::is_valid(Index apex, Vec3 apex_at, VertexIndex apex_id) {
   return true;
 }
 
+/// A wall has two faces on the same corners, with their unfilled sides apart.
+bool Attempt::is_back_of_wall(const std::array<Index, 3>& corners, Index apex) const {
+  const auto has = [&](Index i) { return corners[0] == i || corners[1] == i || corners[2] == i; };
+  return std::any_of(near_.faces().begin(), near_.faces().end(), [&](const Neighborhood::LocalFace& f) {
+    return has(f.corner[0]) && has(f.corner[1]) && has(f.corner[2]) && sees_tet(f.corner, apex);
+  });
+}
+
 /// The tetrahedron meets a face in more than shared corners, edges and faces.
 bool Attempt::blocks(const Neighborhood::LocalFace& f, Index apex, Vec3 apex_at, VertexIndex apex_id) {
   const auto tet_corner = [&](Index i) { return i < 3 || i == apex; };
   const auto& c = f.corner;
   if (near_.code(c[0]) & near_.code(c[1]) & near_.code(c[2]) & Neighborhood::kOutside) return false;
   const int shared = tet_corner(c[0]) + tet_corner(c[1]) + tet_corner(c[2]);
-  if (shared == 3) {
-    // A side of the tetrahedron: it must be seen from its unfilled side, so have the orientation (j, i, apex).
-    int k = 0;
-    while (c[k] != apex) ++k;
-    return (c[(k + 1) % 3] + 1) % 3 == c[(k + 2) % 3];
-  }
+  // A side of the tetrahedron: it must be seen from its unfilled side, or be the back of a wall of which that is so.
+  if (shared == 3) return !sees_tet(c, apex) && !is_back_of_wall(c, apex);
   ++counters_.exact_tests;
   const std::array<NamedPoint, 4> tet{{{base_[0], at_[0]}, {base_[1], at_[1]}, {base_[2], at_[2]}, {apex_id, apex_at}}};
   std::array<NamedPoint, 3> face;

@@ -50,6 +50,7 @@ class Attempt {
   bool try_ideal_point(const Limits& limits);
   Contact contact_of(Index apex) const;
   bool edges_short_enough(Vec3 apex, const Contact& contact, double longest) const;
+  bool is_back_of_wall(const std::array<Index, 3>& corners, Index apex) const;
   bool is_valid(Index apex, Vec3 apex_at, VertexIndex apex_id);
   bool blocks(const Neighborhood::LocalFace& face, Index apex, Vec3 apex_at, VertexIndex apex_id);
   bool keeps_clear(Index apex, Vec3 apex_local, const Contact& contact, const Limits& limits) const;

@@ -51,7 +51,9 @@ FrontState start_front(const SurfaceMesh& surface, const SizeField& sizes) {
   front.queue.reserve(surface.triangles.size());
   for (const std::uint32_t t : spatial_order(surface, front.domain)) {
     const auto& [a, b, c] = surface.triangles[t];
-    front.queue.push_back({{a, c, b}});
+    const auto [ahead, behind] = surface.sides_of(t);
+    if (behind != kNone) front.queue.push_back({{a, c, b}});
+    if (ahead != kNone) front.queue.push_back({{a, b, c}});
   }
   return front;
 }

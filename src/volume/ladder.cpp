@@ -60,6 +60,13 @@ std::vector<Box3> surroundings(const std::vector<Vec3>& points, const Cavities& 
   return boxes;
 }
 
+std::vector<Triangle> two_sided_triangles(const SurfaceMesh& surface) {
+  std::vector<Triangle> found;
+  for (std::size_t t = 0; t < surface.sides.size(); ++t)
+    if (surface.sides[t][0] != kNone && surface.sides[t][1] != kNone) found.push_back(surface.triangles[t]);
+  return found;
+}
+
 [[noreturn]] void give_up(const WorkMesh& mesh, const std::vector<Wall>& walls) {
   std::vector<VertexIndex> global;
   SurfaceMesh surface = surface_of(mesh, walls, global);
@@ -134,7 +141,7 @@ void close_cavities(TetMesh& mesh, const std::vector<Wall>& walls, const Surface
   Ladder ladder(task, kBacktrackingFaceTests + kFaceTestsPerTet * mesh.tets.size(), surface.triangles.size());
   Cavities cavities(walls);
   const std::vector<Box3> focus = surroundings(mesh.points, cavities);
-  WorkMesh work(std::move(mesh.points), std::move(mesh.tets), focus);
+  WorkMesh work(std::move(mesh.points), std::move(mesh.tets), focus, two_sided_triangles(surface));
   for (std::uint32_t c = 0; c < cavities.size(); ++c)
     if (!cavities.walls(c).empty()) ladder.close({work, cavities, c});
   validate(work);

@@ -2,14 +2,22 @@
 
 #include <octafront/error.h>
 
+#include "mesh/complex.h"
 #include "recovery/recover.h"
+
+#include <set>
 
 namespace octafront {
 
 SurfaceMesh surface_of(const WorkMesh& mesh, const std::vector<Wall>& walls, std::vector<VertexIndex>& global) {
   SurfaceMesh surface;
   FlatMap<VertexIndex, VertexIndex> local(walls.size());
+  std::set<WallKey> keys;
+  for (const Wall& w : walls) keys.insert(wall_key(w));
   for (const Wall& w : walls) {
+    const bool two_sided = keys.contains(back_of(wall_key(w)));
+    if (two_sided && is_even(w)) continue;  // its back stands for both
+    surface.sides.push_back({two_sided ? 0 : kNone, 0});
     Triangle outward{w[0], w[2], w[1]};
     for (VertexIndex& v : outward) {
       const VertexIndex number = local.find_or_add(v, static_cast<VertexIndex>(global.size()));
@@ -21,6 +29,7 @@ SurfaceMesh surface_of(const WorkMesh& mesh, const std::vector<Wall>& walls, std
     }
     surface.triangles.push_back(outward);
   }
+  if (!is_complex(surface)) surface.sides.clear();
   return surface;
 }
 

@@ -1,6 +1,7 @@
 #include "volume/regions.h"
 
 #include "core/disjoint_sets.h"
+#include "mesh/complex.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -39,10 +40,9 @@ std::vector<std::uint32_t> regions_of(const TetMesh& mesh, const SurfaceMesh& su
 }  // namespace
 
 void bind_to_surface(TetMesh& mesh, const SurfaceMesh& surface) {
-  mesh.region = regions_of(mesh, surface);
-  mesh.boundary = surface.triangles;
-  mesh.patch = surface.patch;
-  mesh.patch_names = surface.patch_names;
+  mesh.region = surface.sides.empty() ? regions_of(mesh, surface) : regions_within(surface, mesh);
+  mesh.region_names = surface.region_names;
+  list_faces(surface, mesh);
 }
 
 }  // namespace octafront

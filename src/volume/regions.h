@@ -5,9 +5,9 @@
 
 namespace octafront {
 
-/// `mesh` fills `surface`, whose points come first: the surface's triangles and patches become its boundary, and its
-/// tetrahedra get their regions: bodies (outer shells with their cavities) numbered by their first triangle, none if
-/// there is only one.
+/// `mesh` fills `surface`, whose points come first: the surface's triangles and patches become its boundary (of a
+/// complex, its boundary and interfaces), and its tetrahedra get their regions: those of the complex, or bodies (outer
+/// shells with their cavities) numbered by their first triangle, none if there is only one.
 void bind_to_surface(TetMesh& mesh, const SurfaceMesh& surface);
 
 }  // namespace octafront

@@ -5,6 +5,7 @@
 #include "cavity/open_edge.h"
 #include "support/named_surfaces.h"
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 
@@ -45,6 +46,29 @@ TEST(Excavation, RollsBackWithoutCommit) {
   }
   EXPECT_EQ(cavities.walls(0).size(), 4u);
   EXPECT_EQ(mesh.take_tets(), c.tets);
+}
+
+TEST(Excavation, DoesNotGrowThroughATriangleWithSomethingOnBothSides) {
+  SixInACube c;
+  const Tet missing = c.tets.back();
+  c.tets.pop_back();
+  // One of the two walls inside the cube is a triangle between regions.
+  const Triangle between{missing[0], missing[1], missing[3]};
+  WorkMesh mesh(c.points, c.tets, {}, {between});
+  Cavities cavities(walls_around(missing));
+  {
+    Excavation e({mesh, cavities, 0});
+    int grown = 0;
+    for (const Wall& w : e.walls()) grown += e.grow_through(w);
+    EXPECT_EQ(grown, 1);
+  }
+  // What lies on both sides may still go with a ring: then the triangle is a wall twice.
+  Excavation e({mesh, cavities, 0});
+  EXPECT_TRUE(e.grow_ring());
+  EXPECT_EQ(e.size(), 14u);
+  const std::vector<Wall> walls = e.walls();
+  EXPECT_EQ(std::count_if(walls.begin(), walls.end(), [&](const Wall& w) { return face_key(w) == face_key(between); }),
+            2);
 }
 
 TEST(Excavation, StopsAtTheSurface) {

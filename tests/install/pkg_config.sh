@@ -14,3 +14,18 @@ c++ "$scratch/cube.o" -o "$scratch/cube" $libraries
 LD_LIBRARY_PATH=$(dirname "$PKG_CONFIG_PATH") "$scratch/sphere" "$scratch/sphere.vtu"
 LD_LIBRARY_PATH=$(dirname "$PKG_CONFIG_PATH") "$scratch/cube" "$scratch/cube.vtu"
 test -s "$scratch/sphere.vtu" && test -s "$scratch/cube.vtu"
+
+# The example of the README.
+code=$(awk '/^```cpp/ { on = 1; next } /^```/ { on = 0 } on' "$examples/../README.md")
+[ -n "$code" ] || { echo "no C++ in README.md"; exit 1; }
+{
+  echo "$code" | grep '^#include'
+  echo 'int main() {'
+  echo "$code" | grep -v '^#include'
+  echo '}'
+} >"$scratch/readme.cpp"
+c++ $flags "$scratch/readme.cpp" -o "$scratch/readme" $libraries
+cp "$examples/../samples/bracket.stl" "$scratch/part.stl"
+cd "$scratch"
+LD_LIBRARY_PATH=$(dirname "$PKG_CONFIG_PATH") ./readme
+test -s part.vtu

@@ -5,7 +5,7 @@
 
 - Everything that its binaries need is inside, or a part of glibc or of GCC's run time.
 - No binary asks for a newer glibc than the name of the wheel says, nor for a newer libstdc++ than that system has.
-- The licence of each library inside is inside too, ours, and py.typed and stubs.
+- The licence and version of each library inside is told, ours too, and py.typed and stubs are there.
 - RECORD is right, and the version that of CMakeLists.txt.
 """
 import base64
@@ -49,8 +49,10 @@ def look(wheel, source):
                 require(path == ["$ORIGIN"], f"{name} does not look beside itself")
             for a, b in re.findall(r"GLIBC_(\d+)\.(\d+)", readelf("-V", file)):
                 require((int(a), int(b)) <= (int(tag[1]), int(tag[2])), f"{name} needs glibc {a}.{b}")
+    contents = wheel.read(next(n for n in names if n.endswith("/licenses/contents.txt"))).decode()
     for library in binaries:
         stem = library.removeprefix("lib").split(".")[0]
+        require(re.search(rf"^{stem} \d+\.\d+[\d.]*, ", contents, re.M), f"the version of {library} is not told")
         require(stem == "octafront" or any(n.endswith(f"licenses/{stem}.txt") for n in names),
                 f"the licence of {library} is missing")
     for name in ("LICENSE", "NOTICE", "py.typed", "__init__.pyi"):

@@ -467,6 +467,14 @@ class Package(Case):
         done = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True, cwd=self.folder)
         self.assertEqual(done.stdout.strip(), "[]")
 
+    def test_libraries_for_pictures_are_asked_for_by_name(self):
+        mesh = octafront.mesh(*cube(), size=0.5)
+        for function in (mesh.plot, mesh.to_pyvista, mesh.boundary().to_pyvista):
+            with self.assertRaisesRegex(ImportError, "pip install pyvista"):
+                function()
+        with self.assertRaisesRegex(ImportError, "pip install meshio"):
+            mesh.to_meshio()
+
     def test_the_command_line_tool_comes_along(self):
         program = pathlib.Path(sys.executable).parent / "octafront"
         for command in ([program], [sys.executable, "-m", "octafront"]):

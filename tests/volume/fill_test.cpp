@@ -4,6 +4,8 @@
 #include <octafront/quality.h>
 #include <octafront/validity.h>
 
+#include "mesh/complex.h"
+#include "support/labelled_walls.h"
 #include "support/named_surfaces.h"
 #include "support/nasty_surfaces.h"
 
@@ -165,6 +167,29 @@ TEST(FillVolume, NumbersRegionsByBody) {
   EXPECT_NEAR(volume[0], enclosed_volume(hollow_sphere(2, 1, 0.6)), 1e-12);
   EXPECT_NEAR(volume[1], enclosed_volume(icosphere(2, 0.3)), 1e-12);
   EXPECT_NEAR(volume[2], 1, 1e-12);
+}
+
+/// Cells side by side, regions that touch in edges only, and a sheet that ends inside.
+std::vector<SurfaceMesh> complexes() {
+  const testing::GridPlanes planes{testing::even_planes(5), testing::even_planes(5), testing::even_planes(5)};
+  const auto octant = [](Vec3 c) {
+    return std::uint32_t(c.x > 0.5) + 2 * std::uint32_t(c.y > 0.5) + 4 * std::uint32_t(c.z > 0.5);
+  };
+  return {testing::box_walls(planes, octant),
+          testing::box_walls(planes, [](Vec3 c) { return (c.x > 0.5) == (c.y > 0.5) ? 0 : kNone; }),
+          testing::box_walls(
+              planes, [](Vec3) { return 0; }, [](Vec3 m) { return m.z == 0.5 && m.x > 0.25; })};
+}
+
+TEST(FillVolume, FillsAllRegionsOfAComplexAtOnce) {
+  for (SurfaceMesh complex : complexes())
+    for (const bool with_core : {true, false}) {
+      face_lower_regions_behind(complex);
+      const TetMesh mesh =
+          filled(complex, SizeField::uniform(with_core ? 0.1 : 0.25), with_core ? VolumeOptions{} : front_alone());
+      EXPECT_EQ(first_defect(mesh, complex), std::nullopt);
+      EXPECT_EQ(mesh.boundary.size() + mesh.interfaces.size(), complex.triangles.size());
+    }
 }
 
 TEST(FillVolume, FollowsASizeThatVaries) {

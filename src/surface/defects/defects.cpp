@@ -47,7 +47,7 @@ void describe(std::string& text, const SurfaceDefects::Kind& kind, const std::st
 
 bool SurfaceDefects::clean() const {
   for (const Kind* kind : {&open_edges, &non_manifold_edges, &misoriented_edges, &non_manifold_vertices,
-                           &self_intersections, &degenerate_faces})
+                           &self_intersections, &degenerate_faces, &region_conflicts, &misplaced_parts})
     if (kind->count > 0) return false;
   return !no_faces;
 }
@@ -56,7 +56,9 @@ std::string SurfaceDefects::describe() const {
   if (no_faces) return "No face is left: the input has none with an area.\n";
   std::string text;
   octafront::describe(text, open_edges,
-                      fmt::format("{} ({})", counted(open_loops, "hole"), counted(open_edges.count, "open edge")),
+                      open_loops == 0
+                          ? counted(open_edges.count, "open edge")
+                          : fmt::format("{} ({})", counted(open_loops, "hole"), counted(open_edges.count, "open edge")),
                       "edge at",
                       "Close the surface, e.g. in MeshLab with \"Close Holes\"; if faces only fail to touch, with "
                       "\"Merge Close Vertices\".");
@@ -79,6 +81,15 @@ std::string SurfaceDefects::describe() const {
                       "Unite overlapping parts, e.g. with a boolean union, or remove the faces and close the hole.");
   octafront::describe(text, degenerate_faces, counted(degenerate_faces.count, "face") + " without area", "at",
                       "Remove them and close the gaps.");
+  octafront::describe(
+      text, region_conflicts,
+      counted(region_conflicts.count, "edge") + " around which the regions of the faces do not agree", "edge at",
+      "Each face names the regions on its two sides: between neighbouring faces both must name the same "
+      "one. Add the walls that are missing there, or correct the sides.");
+  octafront::describe(
+      text, misplaced_parts,
+      counted(misplaced_parts.count, "part") + " in another region than the outer sides of its faces say", "at",
+      "Name the region that lies around the part as the one on its outer sides.");
   return text;
 }
 
@@ -96,6 +107,7 @@ SurfaceDefects defects::find_defects_but_crossings(const RepairedSurface& repair
 
 SurfaceDefects defects::find_defects(const RepairedSurface& repaired, const EdgeTable& table,
                                      const RunContext& context) {
+  if (!repaired.surface.sides.empty()) return find_complex_defects(repaired, table, context);
   SurfaceDefects found = find_defects_but_crossings(repaired, table, context);
   find_self_intersections(repaired, table, context, found);
   return found;

@@ -27,6 +27,12 @@ SurfaceDefects find_defects_but_crossings(const RepairedSurface& repaired, const
 /// find_defects() with the edges at hand.
 SurfaceDefects find_defects(const RepairedSurface& repaired, const EdgeTable& table, const RunContext& context);
 
+/// The defects of a complex: faces without area, crossings; where there are none of those, edges around which the
+/// regions do not agree; where there are none of those either, parts that lie in another region than they say.
+SurfaceDefects find_complex_defects(const RepairedSurface& repaired, const EdgeTable& table, const RunContext& context);
+/// What it finds of regions, where nothing crosses.
+SurfaceDefects find_region_defects(const RepairedSurface& repaired, const EdgeTable& table, const RunContext& context);
+
 /// Pairs of faces that meet elsewhere than in what they share; counting stops at kMostPairs.
 void find_self_intersections(const RepairedSurface& repaired, const EdgeTable& table, const RunContext& context,
                              SurfaceDefects& defects);

@@ -26,7 +26,7 @@ class Coarsener {
       : mesh_(mesh), sizes_(sizes), context_(context), counts_(counts), star_(mesh) {
     for (VertexIndex v = 0; v < mesh.points.size(); ++v) {
       const bool is_input = mesh.kind[v] == VertexKind::kRemovable || mesh.kind[v] == VertexKind::kRemovableCurve;
-      if (is_input && mesh.outgoing[v] != kNone) left_.push_back(v);
+      if (is_input && mesh.outgoing[v] != kNone && !mesh.is_sewn(v)) left_.push_back(v);
     }
   }
 

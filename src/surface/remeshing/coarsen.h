@@ -13,7 +13,8 @@ struct CoarsenCounts {
 };
 
 /// Collapses the input's own vertices into the points of the front, with Delaunay flips between passes, until none is
-/// left that connections, features and normals let go. Those left become free (or stay on their curve).
+/// left (but those on seams) that connections, features and normals let go. Those left become free (or stay on their
+/// curve).
 void remove_input_vertices(WorkingMesh& mesh, const SizeField& sizes, const RunContext& context, CoarsenCounts& counts);
 
 }  // namespace octafront::remeshing

@@ -78,6 +78,11 @@ bool is_noise(const ChainFacts& f) {
   return f.length < (f.loose_ends > 0 ? kShortDangling : kShort);
 }
 
+/// Regions of a complex keep their edges, but for those of scans.
+bool is_rough_noise(const ChainFacts& f) {
+  return !f.border && f.rough > kRoughPart && f.length < kShortRough;
+}
+
 class NoiseFilter {
  public:
   NoiseFilter(const InputSurface& input, const SizeField& sizes) : marked_(input), sizes_(sizes) {
@@ -161,10 +166,11 @@ class NoiseFilter {
     std::vector<ChainFacts> facts;
     for (const Curve& c : curves) facts.push_back(facts_of(c, degree));
     std::map<Edge, std::size_t> sharpest;
+    const bool is_complex = marked_.first_back != kNone;
     for (std::size_t i = 0; i < curves.size(); ++i) {
-      if (is_noise(facts[i])) {
+      if (is_complex ? is_rough_noise(facts[i]) : is_noise(facts[i])) {
         drop(curves[i]);
-      } else if (facts[i].length < kShortDouble && facts[i].ends[0] != facts[i].ends[1]) {
+      } else if (!is_complex && facts[i].length < kShortDouble && facts[i].ends[0] != facts[i].ends[1]) {
         const auto [it, is_first] = sharpest.try_emplace(facts[i].ends, i);
         if (is_first) continue;
         std::size_t blunter = i;

@@ -245,6 +245,7 @@ bool CurvePoints::split_is_better(HalfEdge h, Vec3 x, double gain) const {
 }
 
 bool CurvePoints::split(HalfEdge h, double gain) {
+  if (mesh_.is_seam(h)) return false;
   const Vec3 a = mesh_.points[mesh_.start[h]], b = mesh_.points[mesh_.end(h)], c = mesh_.points[mesh_.apex(h)];
   const double part = dot(c - a, b - a) / squared_length(b - a);
   const double shorter = std::min(part, 1 - part);

@@ -230,6 +230,11 @@ std::vector<Curve> chain_curves(const InputSurface& input, const std::vector<Ver
   return curves;
 }
 
+std::vector<std::uint8_t> corner_marks(const InputSurface& input, const std::vector<VertexIndex>& corners,
+                                       const std::vector<std::uint8_t>& is_fixed, const SizeField& sizes) {
+  return make_graph(input, corners, is_fixed, sizes).corner;
+}
+
 CurvePoint point_along(const InputSurface& input, const Curve& curve, double along) {
   const auto at = std::upper_bound(curve.reach.begin(), curve.reach.end() - 1, along) - curve.reach.begin();
   const double before = at > 0 ? curve.reach[at - 1] : 0, l = curve.reach[at] - before;
@@ -242,21 +247,24 @@ CurvePoint point_along(const InputSurface& input, const Curve& curve, double alo
   return c;
 }
 
-void divide_curves(const InputSurface& input, const SizeField& sizes, std::vector<Curve>& curves) {
+void divide_curves(const InputSurface& input, const SizeField& sizes, std::vector<Curve>& curves,
+                   const SharedCurves& shared) {
   const HalfEdgeMesh& mesh = input.mesh;
   std::vector<Measure> measures;
   std::vector<int> segments;
   std::map<Edge, int> single;
+  const auto place = [&](VertexIndex v) { return shared.place.empty() ? v : shared.place[v]; };
+  const auto is_first = [&](std::size_t i) { return shared.group.empty() || shared.group[i] == i; };
   const auto ends = [&](const Curve& c) {
-    const VertexIndex a = mesh.start[c.half_edges.front()], b = mesh.end(c.half_edges.back());
+    const VertexIndex a = place(mesh.start[c.half_edges.front()]), b = place(mesh.end(c.half_edges.back()));
     return Edge{std::min(a, b), std::max(a, b)};
   };
-  for (const Curve& c : curves) {
-    measures.push_back(measure(input, sizes, c));
-    const Edge e = ends(c);
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    measures.push_back(measure(input, sizes, curves[i]));
+    const Edge e = ends(curves[i]);
     const int least = e[0] == e[1] ? 3 : 1;
     segments.push_back(std::max(least, static_cast<int>(std::lround(std::min(measures.back().total, 1e9)))));
-    if (segments.back() == 1) ++single[e];
+    if (segments.back() == 1 && is_first(i)) ++single[e];
   }
   for (std::size_t i = 0; i < curves.size(); ++i) {
     if (segments[i] == 1 && single[ends(curves[i])] > 1) segments[i] = 2;

@@ -37,9 +37,21 @@ std::vector<Edge> features_at_scale(const InputSurface& input, const Features& f
 std::vector<Curve> chain_curves(const InputSurface& input, const std::vector<VertexIndex>& corners,
                                 const std::vector<std::uint8_t>& is_fixed, const SizeField& sizes);
 
+/// Per vertex whether chain_curves() ends curves there.
+std::vector<std::uint8_t> corner_marks(const InputSurface& input, const std::vector<VertexIndex>& corners,
+                                       const std::vector<std::uint8_t>& is_fixed, const SizeField& sizes);
+
+/// Curves that are copies of each other, and vertices that are.
+struct SharedCurves {
+  std::vector<std::uint32_t> group = {};  ///< per curve: the first of its copies; empty: none has others
+  std::vector<VertexIndex> place = {};    ///< per vertex: the same for copies; empty: there are none
+};
+
 /// Divides the curves: integral of ds / h rounded to a whole number of segments, spread evenly. Closed curves, and
-/// loops at one corner, get at least three segments, two curves between the same corners never one each.
-void divide_curves(const InputSurface& input, const SizeField& sizes, std::vector<Curve>& curves);
+/// loops at one corner, get at least three segments, two curves between the same corners never one each. Copies are
+/// divided alike.
+void divide_curves(const InputSurface& input, const SizeField& sizes, std::vector<Curve>& curves,
+                   const SharedCurves& shared = {});
 
 /// The point that lies at this length along the curve.
 CurvePoint point_along(const InputSurface& input, const Curve& curve, double along);

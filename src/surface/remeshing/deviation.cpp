@@ -70,9 +70,7 @@ void add_suspects(double limit, const TriangleCorners& corners, std::uint32_t t,
   const std::size_t before = found.size();
   const auto is_within = [&](Vec3 p, double distance) { return made.is_within(p, distance); };
   const auto finest = [&](Vec3 p) {
-    const std::uint32_t beside = made.nearest(p, limit * limit).triangle;
-    if (beside == kNone) return kFinePart * limit;
-    const TriangleCorners b = made.corners(beside);
+    const TriangleCorners b = made.corners(made.nearest(p).triangle);
     const double squared_edge =
         std::max({squared_distance(b[0], b[1]), squared_distance(b[1], b[2]), squared_distance(b[2], b[0])});
     return std::max(kFinePart * limit, kSpacing * std::sqrt(squared_edge));

@@ -206,6 +206,7 @@ class LengthAdjuster {
   /// Moves the start of a tiny edge between curves to its end: details far below the element size make only slivers.
   bool merge_if_better(HalfEdge h) {
     const VertexIndex u = mesh_.start[h], w = mesh_.end(h);
+    if (mesh_.first_back != kNone) return false;  // regions keep their corners
     star_.gather(u);
     const auto i = std::find(star_.ring().begin(), star_.ring().end(), h) - star_.ring().begin();
     const double least = kGain * star_.quality_now();

@@ -1,6 +1,7 @@
 #include "surface/remeshing/remesh.h"
 
 #include "core/validate.h"
+#include "mesh/complex.h"
 #include "sizing/make_size_field.h"
 #include "surface/remeshing/approach.h"
 #include "surface/remeshing/coarsen.h"
@@ -13,6 +14,7 @@
 #include "surface/remeshing/narrow_strips.h"
 #include "surface/remeshing/point_grid.h"
 #include "surface/remeshing/restored.h"
+#include "surface/remeshing/seams.h"
 #include "surface/remeshing/source_triangles.h"
 #include "surface/remeshing/turning.h"
 #include "surface/surface_check.h"
@@ -57,7 +59,7 @@ struct Counts {
   InsertionCounts insertion;
   CoarsenCounts coarsen;
   ImproveCounts improve;
-  std::uint64_t merged_lines = 0, places_mended = 0, approached = 0, restored = 0;
+  std::uint64_t divided_edges = 0, merged_lines = 0, places_mended = 0, approached = 0, restored = 0;
   std::uint64_t crossings = 0;
   int rounds = 0, deviation_rounds = 0;
 };
@@ -79,12 +81,33 @@ struct Compacted {
 };
 using Crossings = std::vector<std::array<std::uint32_t, 2>>;
 
+/// The regions on the sides of each patch of a complex.
+std::vector<Sides> sides_of_patches(const SurfaceMesh& complex) {
+  std::vector<Sides> sides;
+  for (std::size_t t = 0; t < complex.sides.size(); ++t) {
+    if (complex.patch[t] >= sides.size()) sides.resize(complex.patch[t] + 1);
+    sides[complex.patch[t]] = complex.sides[t];
+  }
+  return sides;
+}
+
+/// Which vertices of the working mesh its result has: all that live, but for those of backs and of copies.
+std::vector<std::uint8_t> vertices_to_keep(const WorkingMesh& mesh, const std::vector<VertexIndex>& sewn) {
+  std::vector<std::uint8_t> keep(mesh.points.size(), 0);
+  for (const std::uint32_t t : front_triangles(mesh))
+    for (const VertexIndex v : mesh.triangle(t)) keep[sewn[v]] = 1;
+  return keep;
+}
+
 Compacted compacted(const WorkingMesh& mesh, const SurfaceMesh& input, const SizeField& sizes, Nearness nearness) {
   Compacted c{{{}, {}, {}, sizes}, {}, {}, false, std::move(nearness)};
   SurfaceMesh& s = c.result.surface;
+  const std::vector<VertexIndex> sewn = sewn_vertices(mesh);
+  const std::vector<std::uint8_t> keep = vertices_to_keep(mesh, sewn);
+  const std::vector<Sides> sides = sides_of_patches(input);
   std::vector<VertexIndex> old_to_new(mesh.points.size(), kNone);
   for (VertexIndex v = 0; v < mesh.points.size(); ++v) {
-    if (mesh.outgoing[v] == kNone) continue;
+    if (!keep[v]) continue;
     old_to_new[v] = static_cast<VertexIndex>(s.points.size());
     s.points.push_back(mesh.points[v]);
     c.vertex_face.push_back(mesh.face[v]);
@@ -92,35 +115,43 @@ Compacted compacted(const WorkingMesh& mesh, const SurfaceMesh& input, const Siz
     if (mesh.kind[v] == VertexKind::kCorner) c.result.features.corners.push_back(old_to_new[v]);
   }
   s.patch_names = input.patch_names;
+  s.region_names = input.region_names;
   for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t) {
-    if (mesh.is_removed(t)) continue;
+    if (mesh.is_removed(t) || mesh.is_back(t)) continue;
     Triangle triangle;
     for (std::uint32_t i = 0; i < 3; ++i) {
       const HalfEdge h = 3 * t + i;
-      triangle[i] = old_to_new[mesh.start[h]];
-      if (mesh.is_feature[h] && h < mesh.twin[h]) {
-        const VertexIndex a = triangle[i], b = old_to_new[mesh.end(h)];
+      triangle[i] = old_to_new[sewn[mesh.start[h]]];
+      if (mesh.is_feature[h] && (h < mesh.twin[h] || mesh.is_seam(h))) {
+        const VertexIndex a = triangle[i], b = old_to_new[sewn[mesh.end(h)]];
         c.result.features.edges.push_back({std::min(a, b), std::max(a, b)});
       }
     }
     s.triangles.push_back(triangle);
     if (!input.patch.empty()) s.patch.push_back(mesh.patch[t]);
+    if (!sides.empty()) s.sides.push_back(sides[mesh.patch[t]]);
   }
-  std::sort(c.result.features.edges.begin(), c.result.features.edges.end());
-  for (const VertexIndex v : c.nearness.near_limit) c.result.near_limit.push_back(old_to_new[v]);
+  std::vector<Edge>& edges = c.result.features.edges;
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());  // a seam has one in each of its parts
+  for (const VertexIndex v : c.nearness.near_limit) c.result.near_limit.push_back(old_to_new[sewn[v]]);
   return c;
 }
 
 SurfaceMesh triangles_of(const WorkingMesh& mesh, const std::vector<std::uint32_t>& number) {
   SurfaceMesh alive;
   alive.points = mesh.points;
-  for (const std::uint32_t t : number) alive.triangles.push_back(mesh.triangle(t));
+  const std::vector<VertexIndex> sewn = sewn_vertices(mesh);
+  for (const std::uint32_t t : number) {
+    const auto [a, b, c] = mesh.triangle(t);
+    alive.triangles.push_back({sewn[a], sewn[b], sewn[c]});
+  }
   return alive;
 }
 
 /// Per triangle of the working mesh whether it crosses another, or has no area.
 std::vector<std::uint8_t> crossing_triangles(const WorkingMesh& mesh) {
-  const std::vector<std::uint32_t> number = mesh.alive_triangles();
+  const std::vector<std::uint32_t> number = front_triangles(mesh);
   const SurfaceMesh alive = triangles_of(mesh, number);
   std::vector<std::uint8_t> crossing(mesh.triangle_count(), 0);
   for (const auto& [s, t] : find_crossings(alive)) crossing[number[s]] = crossing[number[t]] = 1;
@@ -180,6 +211,7 @@ void report_counts(const Counts& counts, const Stage& stage) {
   stage.count("collapses", static_cast<double>(counts.coarsen.collapses));
   stage.count("flips", static_cast<double>(counts.coarsen.flips + counts.improve.flips));
   stage.count("smoothing moves", static_cast<double>(counts.improve.moves));
+  if (counts.divided_edges > 0) stage.count("edges divided between seams", static_cast<double>(counts.divided_edges));
   stage.count("lines merged", static_cast<double>(counts.merged_lines));
   stage.count("places mended", static_cast<double>(counts.places_mended));
   stage.count("points against deviation", static_cast<double>(counts.approached));
@@ -201,8 +233,11 @@ class Remesher {
         options_(options),
         tolerance_(options.max_deviation.value_or(HUGE_VAL)),
         stage_(stage),
-        input_(make_input_surface(surface.mesh(), surface.edges())),
-        kind_(surface_, surface.edges()) {}
+        seamed_(is_complex(surface_) ? std::optional(cut_along_seams(surface)) : std::nullopt),
+        input_(seamed_ ? std::move(seamed_->input) : make_input_surface(surface.mesh(), surface.edges())) {
+    if (!seamed_) kind_.emplace(surface_, surface.edges());
+    if (seamed_) seams_ = seam_edges(input_);
+  }
 
   Remeshed run() {
     for (counts_.rounds = 1; counts_.rounds <= kMostRounds; ++counts_.rounds) {
@@ -226,12 +261,11 @@ class Remesher {
   Compacted attempt(Effort effort) {
     const RunContext& context = stage_.context();
     progress(0);
-    set_features(input_, {});
-    set_features(input_, features_at_scale(input_, known_.features(), sizes_));
-    const std::vector<std::uint8_t> is_fixed = mark_restored(input_, restored_);
+    set_features(input_, seams_);  // no walk crosses them
+    set_features(input_, without_backs(input_, features_at_scale(input_, features(), sizes_)));
+    std::vector<std::uint8_t> is_fixed = mark_restored(input_, restored_);
     const SizeField sizes = fitted_to_strips(input_, sizes_, context);
-    std::vector<Curve> curves = chain_curves(input_, known_.features().corners, is_fixed, sizes);
-    divide_curves(input_, sizes, curves);
+    const std::vector<Curve> curves = curves_of(sizes, is_fixed);
     progress(0.05);
     const FrontPoints front = place_points(input_, curves, sizes, context);
     counts_.placed = front.points.size();
@@ -243,10 +277,17 @@ class Remesher {
     counts_.approached = 0;
     progress(0.4);
     WorkingMesh mesh = insert_points(input_, curves, front, context, counts_.insertion);
+    if (seamed_) pin_corners(mesh);
     progress(0.5);
     bool clear = false;
     Nearness nearness;
-    if (effort == Effort::kFull) {
+    if (effort == Effort::kFull && seamed_) {
+      change_between_seams(mesh, curves, sizes);
+      clear = std::ranges::count(crossing_triangles(mesh), 1) == 0;
+      const std::vector<FarPlace> places = far_places(mesh);
+      nearness.far = positions_beyond(tolerance_, places);
+      nearness.near_limit = corners_at(mesh, places);
+    } else if (effort == Effort::kFull) {
       remove_input_vertices(mesh, sizes, context, counts_.coarsen);
       progress(0.6);
       counts_.merged_lines = merge_lines(mesh, is_fixed, tolerance_);
@@ -262,6 +303,35 @@ class Remesher {
     Compacted c = compacted(mesh, surface_, sizes, std::move(nearness));
     c.is_clear = clear;
     return c;
+  }
+
+  const Features& features() const { return seamed_ ? seamed_->features : known_.features(); }
+
+  /// Divided; of a complex, `is_fixed` gets the corners that its parts share.
+  std::vector<Curve> curves_of(const SizeField& sizes, std::vector<std::uint8_t>& is_fixed) {
+    if (seamed_) return divided_curves(input_, *seamed_, sizes, is_fixed);
+    std::vector<Curve> curves = chain_curves(input_, known_.features().corners, is_fixed, sizes);
+    divide_curves(input_, sizes, curves);
+    return curves;
+  }
+
+  void pin_corners(WorkingMesh& mesh) const {
+    mesh.pinned = seamed_->pinned;
+    for (VertexIndex v = 0; v < mesh.pinned.size(); ++v)
+      if (mesh.pinned[v]) mesh.kind[v] = VertexKind::kCorner;
+  }
+
+  /// Of a complex, what remove_input_vertices() and improve_surface() do of a single surface: seams first, which are
+  /// the same for all that ends there, and once more when their surroundings are coarse.
+  void change_between_seams(WorkingMesh& mesh, const std::vector<Curve>& curves, const SizeField& sizes) {
+    const RunContext& context = stage_.context();
+    coarsen_seams(mesh, context, counts_.coarsen);
+    remove_input_vertices(mesh, sizes, context, counts_.coarsen);
+    coarsen_seams(mesh, context, counts_.coarsen);
+    settle_seams(mesh, sizes);
+    progress(0.6);
+    improve_surface(mesh, input_, curves, sizes, context, counts_.improve);
+    counts_.divided_edges = divide_repeated_edges(mesh, known_, sizes);
   }
 
   /// Puts in points of the input where the mesh strays at few places and nothing crosses. `clear`: whether that is
@@ -308,7 +378,7 @@ class Remesher {
   /// Where the mesh is too far from the input, or nearly so, by the numbers of its triangles.
   std::vector<FarPlace> far_places(const WorkingMesh& mesh) const {
     if (!limits_deviation()) return {};
-    const std::vector<std::uint32_t> number = mesh.alive_triangles();
+    const std::vector<std::uint32_t> number = front_triangles(mesh);
     std::vector<FarPlace> places =
         places_beyond(kComeNear * *options_.max_deviation, triangles_of(mesh, number), surface_, known_.tree());
     for (FarPlace& place : places) place.triangle = number[place.triangle];
@@ -354,7 +424,9 @@ class Remesher {
       cap_or_restore(centers_of(c.result.surface, crossings));
       return false;
     }
-    if (const auto defect = kind_.first_defect_but_crossings(c.result.surface)) {
+    const auto defect = kind_ ? kind_->first_defect_but_crossings(c.result.surface)
+                              : first_complex_defect_but_crossings(c.result.surface);
+    if (defect) {
       stage_.note("an attempt was dropped: " + *defect);
       sizes_ = scaled(sizes_, kCap, stage_.context());
       return false;
@@ -458,8 +530,10 @@ class Remesher {
   const SurfaceOptions& options_;
   double tolerance_;  ///< for details of the input: none moves farther
   const Stage& stage_;
+  std::optional<SeamedSurface> seamed_;  ///< of a complex
   InputSurface input_;
-  SurfaceKind kind_;
+  std::vector<Edge> seams_;          ///< edges of input_
+  std::optional<SurfaceKind> kind_;  ///< of a single surface
   Counts counts_;
 };
 

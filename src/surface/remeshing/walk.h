@@ -12,6 +12,16 @@ struct InputSurface {
   std::vector<Vec3> vertex_normal;       ///< unit, weighted by area
   std::vector<std::uint8_t> on_feature;  ///< per vertex: some feature edge ends there
   std::vector<std::uint32_t> patch;      ///< per triangle
+  /// Triangles of patches from here on are backs: see seams.h.
+  std::uint32_t first_back = kNone;
+
+  bool is_back(std::size_t triangle) const { return patch[triangle] >= first_back; }
+  bool is_seam(HalfEdge h) const { return is_back(h / 3) != is_back(mesh.twin[h] / 3); }
+  bool on_seam(VertexIndex v) const {
+    bool found = false;
+    if (first_back != kNone) mesh.for_each_outgoing(v, [&](HalfEdge h) { found = found || is_seam(h); });
+    return found;
+  }
 
   /// Smooth normal at a point of a face: interpolated between vertex normals, where the corner lies on a feature
   /// the face's own.

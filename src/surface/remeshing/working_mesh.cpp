@@ -16,7 +16,8 @@ WorkingMesh::WorkingMesh(const InputSurface& input)
       patch(input.patch),
       origin(triangle_count()),
       place(points.size()),
-      changed(points.size(), kForSmoothing | kForFlips) {
+      changed(points.size(), kForSmoothing | kForFlips),
+      first_back(input.first_back) {
   std::iota(origin.begin(), origin.end(), 0u);
   for (VertexIndex v = 0; v < points.size(); ++v) {
     kind[v] = input.on_feature[v] ? VertexKind::kRemovableCurve : VertexKind::kRemovable;

@@ -34,6 +34,20 @@ struct WorkingMesh : HalfEdgeMesh {
   std::vector<CurvePlace> place;      ///< per vertex: where on a curve it lies, if it may slide there
   std::vector<std::uint8_t> changed;  ///< per vertex: kForSmoothing and kForFlips, set by whatever changes around it
 
+  /// Triangles of patches from here on are backs: see seams.h. What lies on seams stays as it is.
+  std::uint32_t first_back = kNone;
+  std::vector<std::uint8_t> pinned;  ///< by vertex: may have copies, on a seam or not; those beyond its end do not
+
+  bool is_back(std::size_t t) const { return patch[t] >= first_back; }
+  bool is_seam(HalfEdge h) const { return is_back(h / 3) != is_back(twin[h] / 3); }
+  bool on_seam(VertexIndex v) const {
+    bool found = false;
+    if (first_back != kNone) for_each_outgoing(v, [&](HalfEdge h) { found = found || is_seam(h); });
+    return found;
+  }
+  /// Whether the vertex may have copies that are to be sewn to it.
+  bool is_sewn(VertexIndex v) const { return (v < pinned.size() && pinned[v] != 0) || on_seam(v); }
+
   /// Marks for passes that skip what did not change since they last saw it.
   static constexpr std::uint8_t kForSmoothing = 1, kForFlips = 2;
   void mark_changed(VertexIndex v) { changed[v] = kForSmoothing | kForFlips; }

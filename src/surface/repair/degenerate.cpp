@@ -121,6 +121,7 @@ class FlatFaces {
     mesh_.triangles.push_back(t);
     draft_.face.push_back(draft_.face[like]);
     if (!mesh_.patch.empty()) mesh_.patch.push_back(mesh_.patch[like]);
+    if (!mesh_.sides.empty()) mesh_.sides.push_back(mesh_.sides[like]);
     dropped_.push_back(0);
     return static_cast<std::uint32_t>(mesh_.triangles.size() - 1);
   }

@@ -1,6 +1,7 @@
 #include <octafront/repair.h>
 
 #include "core/wording.h"
+#include "mesh/complex.h"
 #include "surface/repair/steps.h"
 
 #include <numeric>
@@ -59,7 +60,10 @@ void clean_faces(Draft& draft, RepairedSurface& result) {
     result.notes.push_back(
         fmt::format("{} merged into others at the same place.", counted(merged.merged, "vertex", "vertices")));
   drop_degenerate(draft, result);
-  drop_duplicates(draft, result);
+  if (draft.mesh.sides.empty())
+    drop_duplicates(draft, result);
+  else
+    clean_walls(draft, result);
   result.unused_vertices += drop_unused_vertices(draft);
   if (result.unused_vertices > 0)
     result.notes.push_back(
@@ -118,7 +122,12 @@ Draft repair::make_draft(const SurfaceMesh& soup, const RunContext& context) {
 
 RepairedSurface repair::mend(Draft& draft) {
   RepairedSurface result;
+  if (!is_complex(draft.mesh)) draft.mesh.sides.clear();
   clean_faces(draft, result);
+  if (!draft.mesh.sides.empty()) {
+    result.surface = finished(draft);
+    return result;
+  }
   const Pieces pieces = orient(draft, result);
   nest(draft, pieces, result);
   result.surface = finished(draft);

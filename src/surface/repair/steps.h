@@ -64,6 +64,10 @@ struct Duplicates {
 /// without them, none.
 Duplicates drop_duplicates(Draft& draft);
 
+/// Of a complex: drops triangles with nothing on either side, joins those of two bodies at the same place, and turns
+/// all such that the outside or the higher region lies in front.
+void clean_walls(Draft& draft, RepairedSurface& result);
+
 /// The pieces of a surface that hang together over edges of two faces.
 struct Pieces {
   std::vector<std::uint32_t> piece_of_triangle;  ///< numbered by their first triangle

@@ -17,6 +17,9 @@ namespace {
 /// Range in which the exact predicates are exact (see geometry/predicates.h).
 constexpr double kSmallest = 1e-50, kLargest = 1e50;
 
+/// Reports and files have a line for each region.
+constexpr std::uint32_t kMostRegions = 1u << 24;
+
 std::uint64_t mix(std::uint64_t x) {
   x ^= x >> 32;
   x *= 0xd6e8feb86659fd93u;
@@ -90,6 +93,13 @@ void check_input(const SurfaceMesh& soup) {
     throw InputError(fmt::format("{} input faces are given for {} triangles", soup.source.size(), faces));
   if (!soup.patch.empty() && soup.patch.size() != faces)
     throw InputError(fmt::format("{} patches are given for {} triangles", soup.patch.size(), faces));
+  if (!soup.sides.empty() && soup.sides.size() != faces)
+    throw InputError(fmt::format("{} pairs of sides are given for {} triangles", soup.sides.size(), faces));
+  for (std::size_t t = 0; t < soup.sides.size(); ++t)
+    for (const std::uint32_t region : soup.sides[t])
+      if (region != kNone && region >= kMostRegions)
+        throw InputError(fmt::format("face {} names region {}: regions are numbered from 0, below {}",
+                                     soup.source_of(t), region, kMostRegions));
   // Half-edges are numbered with 32 bits.
   if (faces > kNone / 3 - 1)
     throw InputError(fmt::format("{} triangles are too many (at most {})", faces, kNone / 3 - 1));
@@ -138,11 +148,13 @@ void drop_marked(Draft& draft, const std::vector<char>& marked) {
     mesh.triangles[kept] = mesh.triangles[t];
     draft.face[kept] = draft.face[t];
     if (!mesh.patch.empty()) mesh.patch[kept] = mesh.patch[t];
+    if (!mesh.sides.empty()) mesh.sides[kept] = mesh.sides[t];
     ++kept;
   }
   mesh.triangles.resize(kept);
   draft.face.resize(kept);
   if (!mesh.patch.empty()) mesh.patch.resize(kept);
+  if (!mesh.sides.empty()) mesh.sides.resize(kept);
 }
 
 void sort_unique(InputFaces& faces) {

@@ -1,0 +1,95 @@
+#include <octafront/octafront.h>
+
+#include "commands.h"
+#include "inputs.h"
+#include "tell.h"
+#include "units.h"
+
+#include <fmt/core.h>
+
+namespace octafront::cli {
+
+namespace {
+
+Json json_of(const Box3& box) {
+  return {place(box.lo), place(box.hi)};
+}
+
+std::string box_in_words(const Box3& box) {
+  const Vec3 size = box.hi - box.lo;
+  return fmt::format(
+      "box ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g}): {:.6g} x {:.6g} x {:.6g}, diagonal {:.6g}", box.lo.x,
+      box.lo.y, box.lo.z, box.hi.x, box.hi.y, box.hi.z, size.x, size.y, size.z, length(size));
+}
+
+std::string listed(const std::vector<std::string>& names) {
+  std::string all;
+  for (const std::string& name : names) all += (all.empty() ? "\"" : ", \"") + name + "\"";
+  return all;
+}
+
+// What a surface is, whatever is wrong with it: `check` judges.
+void tell_surface_info(Session& session) {
+  const Arguments& a = session.arguments();
+  const SurfaceFile file = read_input(session);
+  const SurfaceMesh& s = file.surface;
+  const Box3 box = bounding_box(s.points);
+  const std::string unit = a.unit.empty() ? unit_of_file(a.input) : a.unit;
+  session.found({{"kind", "surface"},
+                 {"format", file.format},
+                 {"triangles", s.triangles.size()},
+                 {"vertices", s.points.size()},
+                 {"box", json_of(box)},
+                 {"area", area(s)},
+                 {"patches", s.patch_names},
+                 {"unit", unit},
+                 {"notes", file.notes}});
+  session.say(fmt::format("  vertices {}, as the file has them\n  {}\n  area {:.6g}\n  unit: {}\n", s.points.size(),
+                          box_in_words(box), area(s), unit.empty() ? "the file does not say" : unit));
+  if (!s.patch_names.empty()) session.say(fmt::format("  patches: {}\n", listed(s.patch_names)));
+  session.say("octafront check says whether it can be meshed, octafront mesh --dry-run what that would take\n");
+}
+
+void tell_mesh_info(Session& session, const TetMesh& mesh) {
+  const Box3 box = bounding_box(mesh.points);
+  double volume = 0;
+  for (const auto& [i, j, k, l] : mesh.tets) {
+    const Vec3 p = mesh.points[i];
+    volume += dot(cross(mesh.points[j] - p, mesh.points[k] - p), mesh.points[l] - p) / 6;
+  }
+  session.found(
+      {{"kind", "mesh"}, {"order", mesh.is_second_order() ? 2 : 1}, {"box", json_of(box)}, {"volume", volume}});
+  session.say(
+      fmt::format("  {}\n  volume {:.6g}, order {}\n", box_in_words(box), volume, mesh.is_second_order() ? 2 : 1));
+  tell_mesh(session, mesh, "a mesh");
+}
+
+/// Whether the input is a background grid.
+bool tell_size_field_info(Session& session) {
+  const std::string name = session.arguments().input.string();
+  try {
+    const SizeField field = read_size_field(name, 1, session.context());
+    session.found({{"kind", "size field"}, {"smallest_size", field.min_size()}, {"largest_size", field.max_size()}});
+    session.say(fmt::format("{}: a size field, for --size-field: sizes {:.6g} to {:.6g}\n", name, field.min_size(),
+                            field.max_size()));
+    return true;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+}  // namespace
+
+void run_info(Session& session) {
+  const std::filesystem::path& file = session.arguments().input;
+  if (session.arguments().bodies.size() > 1) throw OptionError("info tells of one file at a time");
+  if (!is_tet_mesh_file(file)) return tell_surface_info(session);
+  try {
+    tell_mesh_info(session, read_mesh_input(session));
+  } catch (const InputError& error) {
+    // A background grid is a VTU file too.
+    if (!tell_size_field_info(session)) throw;
+  }
+}
+
+}  // namespace octafront::cli

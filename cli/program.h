@@ -1,0 +1,45 @@
+#pragma once
+
+#include "arguments.h"
+#include "compare.h"
+#include "session.h"
+
+#include <functional>
+
+namespace octafront::cli {
+
+/// The commands and options of the program: the one table that parsing, help, man page and completions come from.
+class Program {
+ public:
+  Program();
+  Program(const Program&) = delete;
+  Program& operator=(const Program&) = delete;
+
+  CLI::App& app() { return app_; }
+  /// What a command line that was parsed asked for. Throws OptionError for lengths whose unit means nothing.
+  Arguments& arguments(int argc, char** argv);
+  const std::function<void(Session&)>& chosen() const { return chosen_; }
+
+ private:
+  CLI::App* add(const std::string& name, const std::string& help, const std::string& examples,
+                std::function<void(Session&)> run);
+  void declare_makers();
+  void declare_lookers();
+  void declare_helpers();
+  void help(Session& session) const;
+
+  CLI::App app_{"Octafront: tetrahedral meshes from closed surfaces", "octafront"};
+  Arguments arguments_;
+  CompareArguments compare_;
+  std::string topic_, shell_;
+  bool wants_manual_ = false;
+  std::function<void(Session&)> chosen_;
+};
+
+/// What is wrong with a command line, in words, with the word that may have been meant.
+std::string usage_error(const CLI::App& app, const CLI::ParseError& error);
+
+/// "there is no command mehs; did you mean mesh?"
+std::string unknown_command(const CLI::App& app, const std::string& typed);
+
+}  // namespace octafront::cli

@@ -1,0 +1,116 @@
+#include "targets.h"
+
+#include <octafront/error.h>
+#include <octafront/io.h>
+#include <octafront/named_groups.h>
+
+#include "terminal.h"
+
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+namespace octafront::cli {
+
+namespace {
+
+/// The format of the output of this number by name; empty: by its ending.
+std::string format_of(const Arguments& a, std::size_t i) {
+  return a.formats.empty() ? "" : a.formats[i];
+}
+
+void check_pipe(const std::string& format) {
+  if (format.empty()) throw OptionError("-o - has no ending: say which format goes to standard output, with --format");
+  for (const FormatInfo& info : known_formats())
+    if (info.writes_mesh && info.name == format && !info.one_file)
+      throw OptionError(fmt::format("{} is written to several files: it cannot go to standard output", info.title));
+  if (isatty(STDOUT_FILENO))
+    throw OptionError("-o -: standard output is a terminal; send it to a file or a pipe: octafront ... > FILE");
+}
+
+/// A folder of our own for as long as it lives.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "octafront-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr)
+      throw OutputError(fmt::format("{}: no temporary folder can be made; set TMPDIR to one that is writable", name));
+    folder_ = name;
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(folder_, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  std::filesystem::path file(const std::string& name) const { return folder_ / name; }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+void copy_to_standard_output(const std::filesystem::path& file, const RunContext& context) {
+  std::ifstream in(file, std::ios::binary);
+  std::array<char, 1 << 16> buffer{};
+  while (in.read(buffer.data(), buffer.size()) || in.gcount() > 0) {
+    context.check();
+    const auto size = static_cast<std::size_t>(in.gcount());
+    if (std::fwrite(buffer.data(), 1, size, stdout) != size) throw OutputError("standard output cannot be written");
+  }
+}
+
+/// Formats go back in their files, so that a pipe gets a file that is complete.
+std::vector<std::string> write_one(const std::filesystem::path& file, const TetMesh& mesh, const std::string& format,
+                                   const RunContext& context) {
+  if (file != kStandardOutput) return write_mesh(file, mesh, context, format);
+  const TemporaryFolder folder;
+  const std::filesystem::path whole = folder.file("mesh");
+  std::vector<std::string> notes = write_mesh(whole, mesh, context, format);
+  clear_progress();
+  copy_to_standard_output(whole, context);
+  return notes;
+}
+
+}  // namespace
+
+void check_mesh_targets(const Arguments& a) {
+  if (a.meshes.empty()) throw OptionError("--output is required: where the mesh goes, such as -o mesh.vtu");
+  if (!a.formats.empty() && a.formats.size() != a.meshes.size())
+    throw OptionError(fmt::format("--format is given {} and -o {} times: give each output its format, in turn",
+                                  a.formats.size(), a.meshes.size()));
+  for (std::size_t i = 0; i < a.meshes.size(); ++i)
+    a.meshes[i] == kStandardOutput ? check_pipe(format_of(a, i)) : check_mesh_target(a.meshes[i], format_of(a, i));
+}
+
+void write_mesh_targets(Session& session, TetMesh mesh) {
+  const Arguments& a = session.arguments();
+  std::vector<std::string> group_notes;
+  for (const GroupRule& rule : a.groups)
+    if (std::string note = add_group(mesh, rule); !note.empty()) group_notes.push_back(std::move(note));
+  Json all = Json::array();
+  for (std::size_t i = 0; i < a.meshes.size(); ++i) {
+    session.context().report("writing", -1);
+    std::vector<std::string> notes = group_notes;
+    for (std::string& note : write_one(a.meshes[i], mesh, format_of(a, i), session.context()))
+      notes.push_back(std::move(note));
+    session.say_notes("writing", notes);
+    all.push_back({{"file", a.meshes[i].string()}, {"notes", notes}});
+    group_notes.clear();
+  }
+  session.found({{"output", all[0]}});
+  if (all.size() > 1) session.found({{"outputs", all}});
+}
+
+void write_text_target(const std::filesystem::path& file, const std::string& text) {
+  if (file != kStandardOutput) return write_text(file, text);
+  clear_progress();
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size())
+    throw OutputError("standard output cannot be written");
+}
+
+}  // namespace octafront::cli

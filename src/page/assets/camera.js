@@ -1,0 +1,72 @@
+// --- camera.js: looks at a point from a distance. `axes` are right, up and back, as rows.
+
+const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+const unit = (a) => a.map((x) => x / (Math.hypot(...a) || 1));
+const along = (a, b, s) => a.map((x, i) => x + s * b[i]);
+
+const VIEW_ANGLE = Math.PI / 7;
+const START = { back: unit([1.1, -1.5, 0.9]), up: [0, 0, 1] };
+
+class Camera {
+  constructor() {
+    this.look(START.back, START.up);
+    this.target = [0, 0, 0];
+    this.distance = 0.98 / Math.sin(VIEW_ANGLE / 2);
+  }
+  /** Seen from the direction `back`, with `up` upward. */
+  look(back, up) {
+    const right = unit(cross(up, back));
+    this.axes = [right, cross(back, right), back];
+  }
+  get back() {
+    return this.axes[2];
+  }
+  /** By angles about its own upward and sideward axis. */
+  turn(sideward, upward) {
+    const about = (axis, angle, v) => {
+      const c = Math.cos(angle), s = Math.sin(angle), k = cross(axis, v), d = dot(axis, v) * (1 - c);
+      return v.map((x, i) => x * c + k[i] * s + axis[i] * d);
+    };
+    const [right, up] = this.axes;
+    let back = about(up, -sideward, this.back);
+    back = about(right, -upward, back);
+    this.look(unit(back), about(right, -upward, up));
+  }
+  /** By parts of the picture's height. */
+  shift(sideward, upward) {
+    const height = 2 * this.distance * Math.tan(VIEW_ANGLE / 2);
+    this.target = along(along(this.target, this.axes[0], -sideward * height), this.axes[1], upward * height);
+  }
+  zoom(factor) {
+    this.distance = Math.min(40, Math.max(1e-5, this.distance * factor));
+  }
+  /** Column by column, for a picture `aspect` times as wide as high. A narrow picture sees as much as a square one. */
+  matrices(aspect) {
+    const eye = along(this.target, this.back, this.distance);
+    const [r, u, b] = this.axes;
+    const view = [r[0], u[0], b[0], 0, r[1], u[1], b[1], 0, r[2], u[2], b[2], 0, -dot(r, eye), -dot(u, eye), -dot(b, eye), 1];
+    const reach = Math.hypot(...this.target) + 1.05;
+    const near = Math.max(this.distance * 0.01, this.distance - reach), far = this.distance + reach;
+    const f = (1 / Math.tan(VIEW_ANGLE / 2)) * Math.min(1, aspect);
+    const projection = [f / aspect, 0, 0, 0, 0, f, 0, 0, 0, 0, (far + near) / (near - far), -1, 0, 0, (2 * far * near) / (near - far), 0];
+    return { view, projection };
+  }
+  copy() {
+    return Object.assign(Object.create(Camera.prototype), {
+      axes: this.axes.map((a) => [...a]), target: [...this.target], distance: this.distance });
+  }
+}
+
+/** From the camera as it is to another target and distance, in half a second. */
+function fly(camera, target, distance, draw) {
+  const from = camera.copy(), start = performance.now(), length = 500;
+  const step = (now) => {
+    const t = Math.min(1, Math.max(0, (now - start) / length)), s = t * t * (3 - 2 * t);
+    camera.target = from.target.map((x, i) => x + s * (target[i] - x));
+    camera.distance = from.distance * (distance / from.distance) ** s;
+    draw();
+    if (t < 1) requestAnimationFrame(step);
+  };
+  step(start);
+}

@@ -1,0 +1,47 @@
+// --- colours.js: scales that eyes with colour blindness tell apart: orange against blue, through a light middle; the
+// palette of Okabe and Ito for what has no order.
+
+const POOR_TO_GOOD = ["#8c2d04", "#d9650f", "#f5b26b", "#f0e6d6", "#a9cce8", "#4f97d6"];
+const PALETTE = ["#56b4e9", "#e69f00", "#009e73", "#cc79a7", "#0072b2", "#d55e00", "#f0e442", "#9a9a9a"];
+
+const rgb = (hex) => [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16));
+
+/** 256 colours between stops, as bytes r, g, b. */
+function scaleOf(stops) {
+  const colours = stops.map(rgb);
+  const table = new Uint8Array(256 * 3);
+  for (let i = 0; i < 256; ++i) {
+    const at = (i / 255) * (colours.length - 1);
+    const k = Math.min(Math.floor(at), colours.length - 2);
+    for (let c = 0; c < 3; ++c) table[3 * i + c] = Math.round(colours[k][c] + (at - k) * (colours[k + 1][c] - colours[k][c]));
+  }
+  return table;
+}
+
+/** The eight colours, then the same lighter, then darker. */
+function paletteColour(number) {
+  const colour = rgb(PALETTE[number % PALETTE.length]);
+  const round = Math.floor(number / PALETTE.length) % 3;
+  return colour.map((c) => Math.round(round === 0 ? c : round === 1 ? c + (255 - c) * 0.5 : c * 0.55));
+}
+
+const css = (colour) => `rgb(${colour.join(" ")})`;
+
+/** What elements can be coloured by. `stops` go from the least value to the largest. */
+const QUANTITIES = {
+  beta: { title: "quality β", stops: POOR_TO_GOOD, text: (v) => v.toFixed(2) },
+  min_dihedral: { title: "smallest dihedral angle", stops: POOR_TO_GOOD, text: (v) => v.toFixed(0) + "°" },
+  max_dihedral: { title: "largest dihedral angle", stops: [...POOR_TO_GOOD].reverse(), worstIsHigh: true, text: (v) => v.toFixed(0) + "°" },
+  size_ratio: {
+    title: "size: made over asked",
+    stops: ["#1b4f8f", "#4f97d6", "#a9cce8", "#f2efe8", "#f5b26b", "#d9650f", "#8c2d04"],
+    worstIsHigh: true,
+    text: (v) => "× " + (2 ** v).toFixed(2),
+  },
+};
+
+/** byte of a value -> value */
+function valueOf(mesh, quantity, byte) {
+  const [low, high] = mesh.facts.scales[quantity];
+  return low + ((high - low) * byte) / 255;
+}

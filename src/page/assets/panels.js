@@ -1,0 +1,182 @@
+// --- panels.js: the numbers. What comes from files reaches the page as text only, never as markup.
+
+/** An element; strings among the children become text. */
+function make(tag, attributes = {}, ...children) {
+  const element = document.createElement(tag);
+  for (const [key, value] of Object.entries(attributes)) {
+    if (key.startsWith("on")) element.addEventListener(key.slice(2), value);
+    else if (key === "style") element.style.cssText = value;
+    else if (value !== false && value !== undefined) element.setAttribute(key, value === true ? "" : value);
+  }
+  element.append(...children.filter((c) => c !== null && c !== undefined));
+  return element;
+}
+
+/** Characters that would not be seen, or turn the text around, by their number. */
+function shown(text) {
+  return String(text).replace(/[\u0000-\u001f\u007f-\u009f\u2028-\u202e\u2066-\u2069\u200b-\u200f\ufeff]/g, (c) => {
+    const code = c.codePointAt(0).toString(16);
+    return code.length <= 2 ? "\\x" + code.padStart(2, "0") : "\\u{" + code + "}";
+  });
+}
+const brief = (text, most = 200) => (text.length > most ? text.slice(0, most) + "…" : text);
+const name = (text) => make("span", { class: "name", title: brief(shown(text)) }, shown(text));
+
+const grouped = (n) => Number(n).toLocaleString("en-US").replaceAll(",", "\u202f");
+const digits = (x, n = 4) => (Number.isFinite(x) ? String(Number(x.toPrecision(n))) : String(x));
+const percent = (x) => (100 * x).toFixed(x > 0 && x < 0.01 ? 3 : 1) + " %";
+const seconds = (s) => (s < 10 ? s.toFixed(2) : s < 100 ? s.toFixed(1) : s.toFixed(0));
+const bytesInWords = (b) => (b >= 1e9 ? (b / 1e9).toFixed(2) + " GB" : Math.round(b / 1e6) + " MB");
+
+/** A number with what it is exactly, for programs and for the curious. */
+const number = (value, text) => make("span", { class: "number", "data-value": String(value), title: String(value) }, text);
+
+const panel = (title, ...content) => make("details", { open: true, class: "panel" }, make("summary", {}, title), ...content);
+
+function table(rows, heads = null, kind = "") {
+  const line = (cells, tag) => make("tr", {}, ...cells.map((c) => make(tag, {}, c instanceof Node ? c : String(c))));
+  return make("table", { class: kind }, heads ? make("thead", {}, line(heads, "th")) : null,
+    make("tbody", {}, ...rows.map((r) => (r instanceof Node ? r : line(r, "td")))));
+}
+
+/** Bars side by side: [label, count, colour], with counts beneath the pointer and in the table for readers. */
+function histogram(id, bars, label) {
+  const most = Math.max(1, ...bars.map((b) => b[1])), total = bars.reduce((sum, b) => sum + b[1], 0) || 1;
+  return make("div", { class: "histogram", id, role: "img", "aria-label": label + ": " + bars.map(([l, n]) => `${l}: ${n}`).join(", ") },
+    ...bars.map(([l, n, colour]) =>
+      make("div", { class: "bar", title: `${l}: ${grouped(n)} (${percent(n / total)})`, "data-value": String(n) },
+        make("i", { style: `height:${n > 0 ? Math.max(1.5, (100 * n) / most) : 0}%;background:${colour}` }))));
+}
+const axis = (...labels) => make("div", { class: "axis" }, ...labels.map((l) => make("span", {}, l)));
+
+const middleColour = (quantity, share) => {
+  const t = scaleOf(QUANTITIES[quantity].stops), i = 3 * Math.round(255 * share);
+  return css([t[i], t[i + 1], t[i + 2]]);
+};
+
+/** Places in a sentence, as "(1.5, 2, -3e-4)", become buttons that lead there. */
+function withPlaces(sentence, goTo) {
+  const parts = make("span", { class: "note" });
+  const pattern = /\((-?[\d.]+(?:e[-+]?\d+)?), (-?[\d.]+(?:e[-+]?\d+)?), (-?[\d.]+(?:e[-+]?\d+)?)\)/gi;
+  let last = 0;
+  const text = shown(sentence);
+  for (const found of text.matchAll(pattern)) {
+    const at = found.slice(1, 4).map(Number);
+    if (!at.every(Number.isFinite)) continue;
+    parts.append(text.slice(last, found.index), place(at, goTo, found[0]));
+    last = found.index + found[0].length;
+  }
+  parts.append(text.slice(last));
+  return parts;
+}
+const place = (at, goTo, text = `(${at.map((x) => digits(x)).join(", ")})`) =>
+  make("button", { class: "place", type: "button", title: "show this place", onclick: () => goTo(at) }, text);
+
+function summaryPanel(report, facts) {
+  const rows = [["elements", number(facts.tets, grouped(facts.tets))]];
+  const add = (key, label, text) => key in report && report[key] !== 0 && rows.push([label, number(report[key], text(report[key]))]);
+  add("points", "points", grouped);
+  add("boundary_faces", "boundary faces", grouped);
+  add("bodies", "bodies", grouped);
+  add("volume", "volume", (v) => digits(v, 6) + (report.input_volume ? ` (input ${digits(report.input_volume, 6)})` : ""));
+  add("wall_seconds", "made in", (s) => seconds(s) + " s");
+  add("peak_memory_bytes", "peak memory", bytesInWords);
+  add("hash", "hash", String);
+  return panel("Mesh", table(rows, null, "pairs"));
+}
+
+function qualityPanel(quality) {
+  if (!quality) return null;
+  const classes = quality.beta_classes, total = classes.reduce((a, b) => a + b, 0) || 1, bounds = quality.beta_class_bounds;
+  const label = (i) => `${bounds[i].toFixed(1)} – ${bounds[i + 1].toFixed(1)}`;
+  const [low, high] = [0, 75];
+  const angles = quality.dihedral_histogram.map((n, i) => {
+    const degrees = 10 * i + 5;
+    const colour = degrees < 70 ? middleColour("min_dihedral", (degrees - low) / (high - low)) : middleColour("max_dihedral", (degrees - 60) / 120);
+    return [`${10 * i}° – ${10 * i + 10}°`, n, colour];
+  });
+  return panel("Quality",
+    make("h3", {}, "β = 3 r / R, radius inside over radius around; 1 is regular"),
+    table(classes.map((n, i) => [label(i), make("span", { class: "swatch", style: `background:${middleColour("beta", (i + 0.5) / 5)}` }),
+      number(n, grouped(n)), percent(n / total)]), null, "numbers classes"),
+    table([["mean β", number(quality.beta_mean, quality.beta_mean.toFixed(4))], ["least β", number(quality.beta_min, quality.beta_min.toFixed(4))],
+      ["dihedral angles", make("span", {}, number(quality.dihedral_min_degrees, quality.dihedral_min_degrees.toFixed(1) + "°"), " to ",
+        number(quality.dihedral_max_degrees, quality.dihedral_max_degrees.toFixed(1) + "°"))]], null, "pairs"),
+    make("h3", {}, "All dihedral angles, classes of 10°"),
+    histogram("dihedral-histogram", angles, "dihedral angles"), axis("0°", "45°", "90°", "135°", "180°"));
+}
+
+function sizeHistogram(mesh) {
+  const counts = new Array(24).fill(0), values = mesh.values.size_ratio;
+  for (let t = 0; t < values.length; ++t) ++counts[Math.min(23, Math.floor((values[t] / 256) * 24))];
+  return counts.map((n, i) => {
+    const from = 2 ** (-2 + i / 6), to = 2 ** (-2 + (i + 1) / 6);
+    return [`× ${from.toFixed(2)} – ${to.toFixed(2)}`, n, middleColour("size_ratio", (i + 0.5) / 24)];
+  });
+}
+
+function sizesPanel(report, mesh) {
+  const rows = [];
+  if (report.expected_tets) rows.push(["elements expected", number(report.expected_tets, grouped(Math.round(report.expected_tets)))], ["elements made", number(report.tets, grouped(report.tets))]);
+  const counters = (report.stages ?? []).map((s) => s.counters ?? {}).find((c) => "smallest size" in c);
+  if (counters) rows.push(["sizes asked", make("span", {}, number(counters["smallest size"], digits(counters["smallest size"])), " to ", number(counters["largest size"], digits(counters["largest size"])))]);
+  for (const [key, label] of [["surface_edges", "edges of the surface"], ["volume_edges", "all edges"]]) {
+    const s = report[key];
+    if (s) rows.push([label, make("span", {}, number(s.mean_ratio, s.mean_ratio.toFixed(3)), " of the length asked, ", number(s["share_within_0.7_1.4"], percent(s["share_within_0.7_1.4"])), " within 0.7 – 1.4")]);
+  }
+  if (rows.length === 0 && !mesh) return null;
+  return panel("Sizes: asked and made", table(rows, null, "pairs"),
+    ...(mesh?.facts.has_sizes ? [make("h3", {}, "Elements by size made over asked"), histogram("size-histogram", sizeHistogram(mesh), "size made over asked"), axis("× ¼", "× ½", "× 1", "× 2", "× 4")] : []));
+}
+
+function worstPanel(report, goToElement) {
+  const worst = report.worst_elements ?? [];
+  const row = (e) => make("tr", { class: "worst", tabindex: "0", role: "button", "data-element": String(e.number), onclick: () => goToElement(e.number),
+    onkeydown: (event) => (event.key === "Enter" || event.key === " ") && (event.preventDefault(), goToElement(e.number)) },
+    make("td", {}, String(e.number)), make("td", {}, number(e.beta, e.beta.toFixed(4))),
+    make("td", {}, number(e.dihedral_min_degrees, e.dihedral_min_degrees.toFixed(1) + "°")), make("td", {}, number(e.dihedral_max_degrees, e.dihedral_max_degrees.toFixed(1) + "°")));
+  return panel("Worst elements", make("p", { class: "hint" }, "A click flies there and cuts the mesh open at the element."),
+    make("div", { class: "scroll" }, table(worst.map(row), ["element", "β", "least angle", "largest"], "numbers list")));
+}
+
+function stagesPanel(report) {
+  const stages = report.stages ?? [];
+  if (stages.length === 0) return null;
+  const most = Math.max(...stages.map((s) => s.wall_seconds), 1e-9);
+  const counters = (s) => Object.entries(s.counters ?? {}).map(([k, v]) => `${k}: ${digits(v, 6)}`).join("\n");
+  const row = (s) => make("tr", { title: brief(counters(s), 2000) }, make("td", {}, shown(s.name)),
+    make("td", { class: "gauge" }, make("i", { style: `width:${(100 * s.wall_seconds) / most}%` })),
+    make("td", {}, number(s.wall_seconds, seconds(s.wall_seconds))), make("td", {}, number(s.cpu_seconds, seconds(s.cpu_seconds))));
+  const total = make("tr", { class: "total" }, make("td", {}, "total"), make("td"), make("td", {}, number(report.wall_seconds, seconds(report.wall_seconds))), make("td", {}, number(report.cpu_seconds, seconds(report.cpu_seconds))));
+  return panel("Stages", table([...stages.map(row), total], ["", "", "wall s", "CPU s"], "numbers stages"));
+}
+
+function repairPanel(report, goTo) {
+  if (!report.repairs) return null;
+  const item = (r) => make("li", {}, `${shown(r.what)}: `, number(r.count, grouped(r.count)), r.places?.length ? make("div", { class: "places" }, ...r.places.map((p) => place(p, goTo)), r.count > r.places.length ? " …" : null) : null);
+  return panel("What repair changed", report.repairs.length === 0 ? make("p", { class: "hint" }, "Nothing: the input was meshed as it is.") : make("ul", {}, ...report.repairs.map(item)));
+}
+
+function notesPanel(report, goTo) {
+  const notes = (report.stages ?? []).flatMap((s) => (s.notes ?? []).map((n) => [s.name, n]));
+  for (const [key, from] of [["output", "writing"], ["reading", "reading"]]) for (const n of report[key]?.notes ?? []) notes.push([from, n]);
+  if (notes.length === 0) return null;
+  return panel("Notes", make("ul", {}, ...notes.map(([stage, note]) => make("li", {}, make("b", {}, shown(stage) + ": "), withPlaces(note, goTo)))));
+}
+
+function repeatPanel(report) {
+  const rows = Object.entries(report.options ?? {}).map(([option, value]) => [name("--" + option), name(value)]);
+  const command = report.command_line && make("pre", { id: "command", tabindex: "0" }, shown(report.command_line));
+  const copy = make("button", { type: "button", onclick: async () => {
+    try {
+      await navigator.clipboard.writeText(report.command_line);
+      copy.textContent = "copied";
+    } catch {
+      getSelection().selectAllChildren(document.getElementById("command"));
+      copy.textContent = "selected: copy it";
+    }
+  } }, "copy");
+  if (!command && rows.length === 0 && !report.version) return null;
+  return panel("Repeat it", ...(command ? [command, copy] : []), rows.length ? table(rows, ["option", "value"], "pairs") : null,
+    make("p", { class: "hint" }, `${report.program ?? "octafront"} ${shown(report.version ?? "")}`));
+}

@@ -1,0 +1,579 @@
+#include "surface/remeshing/seams.h"
+
+#include "core/disjoint_sets.h"
+#include "surface/remeshing/star_collapse.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <unordered_map>
+#include <utility>
+
+namespace octafront::remeshing {
+
+namespace {
+
+/// Whether the surface is cut along an edge: where other than two triangles meet, or two that do not face alike.
+bool is_cut(const SurfaceMesh& complex, const EdgeTable& table, std::size_t e) {
+  const auto uses = table.uses(e);
+  return uses.size() != 2 || start_of(complex.triangles, uses[0]) == start_of(complex.triangles, uses[1]);
+}
+
+class Cutter {
+ public:
+  explicit Cutter(const KnownSurface& complex)
+      : known_(complex),
+        complex_(complex.mesh()),
+        table_(complex.edges()),
+        faces_(static_cast<std::uint32_t>(complex_.triangles.size())),
+        edge_of_(table_.edge_of_half_edge()),
+        fans_(3 * faces_),
+        parts_(faces_) {}
+
+  SeamedSurface run() {
+    find_parts();
+    number_fronts();
+    number_backs();
+    connect();
+    find_patches();
+    divide_doubles();
+    find_normals();
+    find_pinned();
+    carry_features();
+    return std::move(out_);
+  }
+
+ private:
+  HalfEdgeMesh& mesh() { return out_.input.mesh; }
+  std::uint32_t corner(HalfEdge h, VertexIndex v) const {
+    return complex_.triangles[h / 3][h % 3] == v ? h : next_of(h);
+  }
+  bool cut(HalfEdge h) const { return cut_[edge_of_[h]] != 0; }
+  HalfEdge partner(HalfEdge h) const {
+    const auto uses = table_.uses(edge_of_[h]);
+    return uses[0] == h ? uses[1] : uses[0];
+  }
+  /// The half-edge on the back of one of a front; the back is face `back` of the cut surface.
+  static HalfEdge on_back(HalfEdge h, std::uint32_t back) { return 3 * back + 2 - h % 3; }
+
+  void find_parts() {
+    cut_.resize(table_.size());
+    for (std::size_t e = 0; e < table_.size(); ++e) {
+      cut_[e] = is_cut(complex_, table_, e);
+      if (cut_[e]) continue;
+      const HalfEdge h = table_.uses(e)[0], g = table_.uses(e)[1];
+      parts_.join(h / 3, g / 3);
+      for (const VertexIndex v : table_.edges[e]) fans_.join(corner(h, v), corner(g, v));
+    }
+    part_is_cut_.assign(faces_, 0);
+    fan_is_open_.assign(3 * faces_, 0);
+    for (HalfEdge h = 0; h < 3 * faces_; ++h) {
+      if (!cut(h)) continue;
+      part_is_cut_[parts_.find(h / 3)] = 1;
+      fan_is_open_[fans_.find(h)] = fan_is_open_[fans_.find(next_of(h))] = 1;
+    }
+  }
+
+  VertexIndex add_vertex(VertexIndex v) {
+    mesh().points.push_back(complex_.points[v]);
+    out_.place.push_back(v);
+    return static_cast<VertexIndex>(mesh().points.size() - 1);
+  }
+
+  void number_fronts() {
+    copy_.assign(3 * faces_, kNone);
+    for (HalfEdge h = 0; h < 3 * faces_; ++h) {
+      VertexIndex& copy = copy_[fans_.find(h)];
+      if (copy == kNone) copy = add_vertex(complex_.triangles[h / 3][h % 3]);
+      mesh().start.push_back(copy);
+    }
+  }
+
+  void number_backs() {
+    back_of_.assign(faces_, kNone);
+    back_copy_.assign(3 * faces_, kNone);
+    std::uint32_t next = faces_;
+    for (std::uint32_t t = 0; t < faces_; ++t) {
+      if (!part_is_cut_[parts_.find(t)]) continue;
+      back_of_[t] = next++;
+      for (const HalfEdge h : {3 * t, 3 * t + 2, 3 * t + 1}) {
+        const std::uint32_t fan = fans_.find(h);
+        VertexIndex& copy = back_copy_[fan];
+        if (copy == kNone) copy = fan_is_open_[fan] ? copy_[fan] : add_vertex(complex_.triangles[t][h % 3]);
+        mesh().start.push_back(copy);
+      }
+    }
+  }
+
+  void connect() {
+    HalfEdgeMesh& m = mesh();
+    m.twin.assign(m.start.size(), kNone);
+    for (HalfEdge h = 0; h < 3 * faces_; ++h) {
+      const std::uint32_t back = back_of_[h / 3];
+      if (cut(h)) {
+        m.twin[h] = on_back(h, back);
+        m.twin[on_back(h, back)] = h;
+        continue;
+      }
+      const HalfEdge g = partner(h);
+      m.twin[h] = g;
+      if (back != kNone) m.twin[on_back(h, back)] = on_back(g, back_of_[g / 3]);
+    }
+  }
+
+  /// An edge inside a part that joins two vertices on seams is there on the front and on the back: two edges between
+  /// the same vertices, which would be taken for each other. So is a triangle with nothing but seams around it. The
+  /// back is divided there.
+  void divide_doubles() {
+    HalfEdgeMesh& m = mesh();
+    first_extra_ = static_cast<VertexIndex>(m.points.size());
+    // A division gives the edges around it other numbers: they come again.
+    for (HalfEdge h = 3 * faces_; h < m.start.size(); ++h) {
+      if (m.twin[h] < 3 * faces_ || !on_open_fan(m.start[h]) || !on_open_fan(m.end(h))) continue;
+      const VertexIndex a = m.start[h], b = m.end(h), x = add_extra((m.points[a] + m.points[b]) * 0.5);
+      middle_of_double_[{std::min(a, b), std::max(a, b)}] = x;
+      split_edge(h, x);
+    }
+    for (std::uint32_t t = faces_; t < m.triangle_count(); ++t)
+      if (m.twin[3 * t] < 3 * faces_ && m.twin[3 * t + 1] < 3 * faces_ && m.twin[3 * t + 2] < 3 * faces_)
+        split_triangle(t, add_extra((m.corner(t, 0) + m.corner(t, 1) + m.corner(t, 2)) / 3));
+  }
+
+  bool on_open_fan(VertexIndex v) const { return v < on_open_fan_.size() && on_open_fan_[v] != 0; }
+
+  VertexIndex add_extra(Vec3 p) {
+    mesh().points.push_back(p);
+    out_.place.push_back(static_cast<VertexIndex>(complex_.points.size()) + static_cast<VertexIndex>(extras_++));
+    return static_cast<VertexIndex>(mesh().points.size() - 1);
+  }
+
+  HalfEdge add_triangle(std::uint32_t like, VertexIndex a, VertexIndex b, VertexIndex c) {
+    HalfEdgeMesh& m = mesh();
+    const auto first = static_cast<HalfEdge>(m.start.size());
+    m.start.insert(m.start.end(), {a, b, c});
+    m.twin.insert(m.twin.end(), 3, kNone);
+    out_.input.patch.push_back(out_.input.patch[like]);
+    return first;
+  }
+
+  void link(HalfEdge a, HalfEdge b) {
+    mesh().twin[a] = b;
+    mesh().twin[b] = a;
+  }
+
+  /// As WorkingMesh::split_edge().
+  void split_edge(HalfEdge h, VertexIndex x) {
+    HalfEdgeMesh& m = mesh();
+    const HalfEdge g = m.twin[h], bc = next_of(h), ad = next_of(g);
+    const VertexIndex a = m.start[h], b = m.start[g], c = m.apex(h), d = m.apex(g);
+    const HalfEdge beyond_bc = m.twin[bc], beyond_ad = m.twin[ad];
+    const HalfEdge k = add_triangle(h / 3, x, b, c), l = add_triangle(g / 3, x, a, d);
+    m.start[bc] = m.start[ad] = x;
+    link(h, l), link(k, g), link(bc, k + 2), link(ad, l + 2), link(k + 1, beyond_bc), link(l + 1, beyond_ad);
+  }
+
+  /// As WorkingMesh::split_triangle().
+  void split_triangle(std::uint32_t t, VertexIndex x) {
+    HalfEdgeMesh& m = mesh();
+    const HalfEdge bc = 3 * t + 1, ca = 3 * t + 2;
+    const VertexIndex a = m.start[3 * t], b = m.start[bc], c = m.start[ca];
+    const HalfEdge beyond_bc = m.twin[bc], beyond_ca = m.twin[ca];
+    const HalfEdge k = add_triangle(t, b, c, x), l = add_triangle(t, c, a, x);
+    m.start[ca] = x;
+    link(k, beyond_bc), link(l, beyond_ca), link(bc, k + 2), link(k + 1, l + 2), link(l + 1, ca);
+  }
+
+  void find_patches() {
+    InputSurface& input = out_.input;
+    const std::size_t all = input.mesh.triangle_count();
+    on_open_fan_.assign(input.mesh.points.size(), 0);
+    for (HalfEdge h = 0; h < 3 * faces_; ++h)
+      if (fan_is_open_[fans_.find(h)]) on_open_fan_[input.mesh.start[h]] = 1;
+    input.first_back = 1;
+    for (std::uint32_t t = 0; t < faces_; ++t) input.first_back = std::max(input.first_back, complex_.patch_of(t) + 1);
+    input.patch.resize(all);
+    for (std::uint32_t t = 0; t < faces_; ++t) {
+      input.patch[t] = complex_.patch_of(t);
+      if (back_of_[t] != kNone) input.patch[back_of_[t]] = input.first_back + complex_.patch_of(t);
+    }
+  }
+
+  void find_normals() {
+    InputSurface& input = out_.input;
+    HalfEdgeMesh& m = input.mesh;
+    m.is_feature.assign(m.start.size(), 0);
+    m.outgoing.assign(m.points.size(), kNone);
+    for (HalfEdge h = 0; h < m.start.size(); ++h) m.outgoing[m.start[h]] = h;
+    const auto all = static_cast<std::uint32_t>(m.triangle_count());
+    input.face_normal.resize(all);
+    input.vertex_normal.assign(m.points.size(), Vec3{});
+    for (std::uint32_t t = 0; t < all; ++t) {
+      const Vec3 n = input.mesh.area_vector(t);
+      input.face_normal[t] = normalized(n);
+      for (int i = 0; i < 3; ++i) input.vertex_normal[input.mesh.start[3 * t + i]] += n;
+    }
+    for (Vec3& n : input.vertex_normal) n = normalized(n);
+    set_features(input, {});
+  }
+
+  /// A seam goes on at a vertex of two cut edges where all parts end; other vertices of several copies are corners.
+  void find_pinned() {
+    std::vector<std::uint32_t> seams(complex_.points.size(), 0), fans(seams), closed(seams);
+    for (std::size_t e = 0; e < table_.size(); ++e)
+      if (cut_[e])
+        for (const VertexIndex v : table_.edges[e]) ++seams[v];
+    // Of the cut edges where a fan ends: how many, and whether they are one and the same.
+    std::vector<std::uint32_t> ends(3 * faces_, 0), difference(3 * faces_, 0);
+    for (HalfEdge h = 0; h < 3 * faces_; ++h) {
+      if (!cut(h)) continue;
+      for (const std::uint32_t fan : {fans_.find(h), fans_.find(next_of(h))})
+        ++ends[fan], difference[fan] ^= edge_of_[h];
+    }
+    std::vector<std::uint8_t> is_odd(complex_.points.size(), 0);
+    for (HalfEdge h = 0; h < 3 * faces_; ++h) {
+      if (fans_.find(h) != h) continue;
+      const VertexIndex v = complex_.triangles[h / 3][h % 3];
+      ++fans[v];
+      closed[v] += !fan_is_open_[h];
+      if (fan_is_open_[h] && (ends[h] != 2 || difference[h] == 0)) is_odd[v] = 1;
+    }
+    out_.pinned.resize(out_.place.size());
+    for (VertexIndex c = 0; c < first_extra_; ++c) {
+      const VertexIndex v = out_.place[c];
+      const bool is_plain = seams[v] == 0 ? fans[v] == 1 : seams[v] == 2 && closed[v] == 0 && !is_odd[v];
+      out_.pinned[c] = !is_plain;
+    }
+  }
+
+  void add_feature(VertexIndex a, VertexIndex b) { out_.features.edges.push_back({std::min(a, b), std::max(a, b)}); }
+
+  /// The vertex of the back at which h starts.
+  VertexIndex on_back(HalfEdge h) {
+    const std::uint32_t fan = fans_.find(h);
+    return fan_is_open_[fan] ? copy_[fan] : back_copy_[fan];
+  }
+
+  /// That of h, on the front and on the back, which may have been divided there.
+  void add_features(HalfEdge h) {
+    add_feature(mesh().start[h], mesh().end(h));
+    if (back_of_[h / 3] == kNone) return;
+    const VertexIndex a = on_back(h), b = on_back(next_of(h));
+    const auto middle = middle_of_double_.find({std::min(a, b), std::max(a, b)});
+    if (middle == middle_of_double_.end()) return add_feature(a, b);
+    add_feature(a, middle->second);
+    add_feature(middle->second, b);
+  }
+
+  void carry_features() {
+    const Features& known = known_.features();
+    std::vector<std::uint8_t> is_corner(complex_.points.size(), 0);
+    for (const VertexIndex v : known.corners) is_corner[v] = 1;
+    for (const Edge& edge : known.edges) {
+      const auto at = std::lower_bound(table_.edges.begin(), table_.edges.end(), edge);
+      if (at == table_.edges.end() || *at != edge) continue;
+      const auto e = static_cast<std::size_t>(at - table_.edges.begin());
+      if (cut_[e]) continue;
+      add_features(table_.uses(e)[0]);
+    }
+    std::sort(out_.features.edges.begin(), out_.features.edges.end());
+    for (VertexIndex c = 0; c < first_extra_; ++c)
+      if (is_corner[out_.place[c]]) out_.features.corners.push_back(c);
+  }
+
+  const KnownSurface& known_;
+  const SurfaceMesh& complex_;
+  const EdgeTable& table_;
+  const std::uint32_t faces_;
+  const std::vector<std::uint32_t> edge_of_;
+  DisjointSets fans_;   ///< corners of triangles around a vertex, over edges that are not cut
+  DisjointSets parts_;  ///< triangles, over edges that are not cut
+  std::vector<std::uint8_t> cut_, part_is_cut_, fan_is_open_;
+  std::vector<std::uint8_t> on_open_fan_;  ///< per vertex before doubles were divided
+  VertexIndex first_extra_ = 0;            ///< vertices from here on divide doubles
+  std::size_t extras_ = 0;
+  std::map<Edge, VertexIndex> middle_of_double_;
+  std::vector<VertexIndex> copy_, back_copy_;  ///< per fan
+  std::vector<std::uint32_t> back_of_;         ///< per triangle: its back, or kNone
+  SeamedSurface out_;
+};
+
+/// The next half-edge of the seam on which h lies; kNone at a vertex where it does not go on.
+HalfEdge along_seam(const InputSurface& input, HalfEdge h) {
+  HalfEdge next = kNone;
+  input.mesh.for_each_outgoing(input.mesh.end(h), [&](HalfEdge o) {
+    if (input.is_seam(o) && o != input.mesh.twin[h]) next = o;
+  });
+  return next;
+}
+
+/// The curve from h on: to the next corner, or around, or `most` half-edges.
+Curve follow_seam(const InputSurface& input, const std::vector<std::uint8_t>& is_corner, HalfEdge first,
+                  std::size_t most) {
+  const HalfEdgeMesh& mesh = input.mesh;
+  Curve curve;
+  curve.closed = !is_corner[mesh.start[first]];
+  for (HalfEdge h = first; h != kNone && curve.half_edges.size() < most;) {
+    const double l = distance(mesh.points[mesh.start[h]], mesh.points[mesh.end(h)]);
+    curve.half_edges.push_back(h);
+    curve.reach.push_back(l + (curve.reach.empty() ? 0 : curve.reach.back()));
+    if (is_corner[mesh.end(h)]) break;
+    h = along_seam(input, h);
+    if (h == first) break;
+  }
+  return curve;
+}
+
+/// The seams as curves, each in all of its copies, which run the same way from the same vertex.
+class SeamCurves {
+ public:
+  SeamCurves(const InputSurface& input, const std::vector<VertexIndex>& place,
+             const std::vector<std::uint8_t>& is_corner)
+      : input_(input), mesh_(input.mesh), place_(place), is_corner_(is_corner), visited_(mesh_.start.size(), 0) {
+    for (HalfEdge h = 0; h < mesh_.start.size(); ++h)
+      if (input.is_seam(h)) copies_[places(h)].push_back(h);
+  }
+
+  void add_to(std::vector<Curve>& curves, std::vector<std::uint32_t>& group) {
+    for (const bool from_corners : {true, false})
+      for (HalfEdge h = 0; h < mesh_.start.size(); ++h)
+        if (input_.is_seam(h) && !visited_[h] && (is_corner_[mesh_.start[h]] != 0) == from_corners)
+          add_all(h, curves, group);
+  }
+
+ private:
+  Edge places(HalfEdge h) const { return {place_[mesh_.start[h]], place_[mesh_.end(h)]}; }
+
+  void add_all(HalfEdge first, std::vector<Curve>& curves, std::vector<std::uint32_t>& group) {
+    const auto number = static_cast<std::uint32_t>(curves.size());
+    std::size_t most = kNone;
+    for (const HalfEdge h : copies_[places(first)]) {
+      Curve curve = follow_seam(input_, is_corner_, h, most);
+      most = curve.half_edges.size();
+      for (const HalfEdge g : curve.half_edges) visited_[g] = visited_[mesh_.twin[g]] = 1;
+      curves.push_back(std::move(curve));
+      group.push_back(number);
+    }
+  }
+
+  const InputSurface& input_;
+  const HalfEdgeMesh& mesh_;
+  const std::vector<VertexIndex>& place_;
+  const std::vector<std::uint8_t>& is_corner_;
+  std::vector<std::uint8_t> visited_;
+  std::map<Edge, std::vector<HalfEdge>> copies_;  ///< half-edges along seams by the places of their ends
+};
+
+/// Coordinates as a key.
+using Place = std::array<double, 3>;
+
+Place place_of(Vec3 p) {
+  return {p.x, p.y, p.z};
+}
+
+/// Vertices on seams by their place: the copies of one vertex of the complex.
+std::map<Place, std::vector<VertexIndex>> copies_on_seams(const WorkingMesh& mesh) {
+  std::map<Place, std::vector<VertexIndex>> copies;
+  for (VertexIndex v = 0; v < mesh.points.size(); ++v)
+    if (mesh.outgoing[v] != kNone && mesh.is_sewn(v)) copies[place_of(mesh.points[v])].push_back(v);
+  return copies;
+}
+
+/// How far triangles may turn in the passes over the seams, and how many may meet at a vertex.
+struct SeamPass {
+  TurnLimits turn;
+  int valence;
+};
+constexpr SeamPass kSeamPasses[] = {{{0.8, 0.5}, 12}, {{0.5, 0.2}, 24}, {{0.2, 0.0}, 1000}, {{0.1, -0.6}, 1000}};
+constexpr int kMostSeamRepeats = 60;
+
+class SeamCoarsener {
+ public:
+  SeamCoarsener(WorkingMesh& mesh, const RunContext& context, CoarsenCounts& counts)
+      : mesh_(mesh), context_(context), counts_(counts) {
+    for (auto& [place, copies] : copies_on_seams(mesh)) {
+      const bool is_input = std::all_of(copies.begin(), copies.end(), [&](VertexIndex v) {
+        return mesh.kind[v] == VertexKind::kRemovableCurve && mesh.on_seam(v);
+      });
+      if (is_input) left_.push_back(std::move(copies));
+    }
+  }
+
+  void run() {
+    for (const SeamPass& limits : kSeamPasses) {
+      for (int i = 0; i < kMostSeamRepeats && !left_.empty(); ++i) {
+        context_.check();
+        edges_.clear();
+        const std::size_t before = left_.size();
+        std::erase_if(left_, [&](const std::vector<VertexIndex>& copies) { return remove(copies, limits); });
+        std::erase_if(edges_, [&](HalfEdge h) { return mesh_.start[h] == kNone; });
+        counts_.flips += make_delaunay(mesh_, edges_, limits.turn);
+        if (left_.size() == before) break;
+      }
+    }
+  }
+
+ private:
+  /// The seam's half-edge from v to the place, or kNone.
+  HalfEdge towards(VertexIndex v, const Place& place) const {
+    HalfEdge found = kNone;
+    mesh_.for_each_outgoing(v, [&](HalfEdge h) {
+      if (mesh_.is_seam(h) && place_of(mesh_.points[mesh_.end(h)]) == place) found = h;
+    });
+    return found;
+  }
+
+  /// Least quality around the copy once it is gone; 0 if it may not go.
+  double quality_after(HalfEdge h, const SeamPass& limits) {
+    StarCollapse star(mesh_);
+    star.gather(mesh_.start[h]);
+    const auto& ring = star.ring();
+    const auto i = std::find(ring.begin(), ring.end(), h) - ring.begin();
+    if (static_cast<int>(ring.size()) + mesh_.valence(mesh_.end(h)) - 4 > limits.valence) return 0;
+    return mesh_.may_collapse(h) ? star.quality_after(static_cast<std::size_t>(i), limits.turn, 0) : 0;
+  }
+
+  /// Where stars of copies touch, one collapse would change what another was judged by.
+  bool stars_are_apart(const std::vector<VertexIndex>& copies) const {
+    std::vector<VertexIndex> all;
+    for (const VertexIndex v : copies) {
+      all.push_back(v);
+      mesh_.for_each_outgoing(v, [&](HalfEdge h) { all.push_back(mesh_.end(h)); });
+    }
+    std::sort(all.begin(), all.end());
+    return std::adjacent_find(all.begin(), all.end()) == all.end();
+  }
+
+  bool remove(const std::vector<VertexIndex>& copies, const SeamPass& limits) {
+    std::vector<Place> targets;
+    mesh_.for_each_outgoing(copies[0], [&](HalfEdge h) {
+      if (mesh_.is_seam(h)) targets.push_back(place_of(mesh_.points[mesh_.end(h)]));
+    });
+    std::sort(targets.begin(), targets.end());
+    std::vector<HalfEdge> chosen, here;
+    double best = 0;
+    for (const Place& target : targets) {
+      double worst = 1;
+      here.clear();
+      for (const VertexIndex v : copies) {
+        const HalfEdge h = towards(v, target);
+        worst = h == kNone ? 0 : std::min(worst, quality_after(h, limits));
+        if (!(worst > best)) break;
+        here.push_back(h);
+      }
+      if (!(worst > best)) continue;
+      best = worst;
+      chosen = here;
+    }
+    if (chosen.empty() || !stars_are_apart(copies)) return false;
+    for (const HalfEdge h : chosen) {
+      const VertexIndex target = mesh_.end(h);
+      mesh_.collapse(h);
+      ++counts_.collapses;
+      mesh_.for_each_outgoing(target, [&](HalfEdge o) {
+        edges_.push_back(o);
+        edges_.push_back(next_of(o));
+      });
+    }
+    return true;
+  }
+
+  WorkingMesh& mesh_;
+  const RunContext& context_;
+  CoarsenCounts& counts_;
+  std::vector<std::vector<VertexIndex>> left_;
+  std::vector<HalfEdge> edges_;
+};
+
+}  // namespace
+
+SeamedSurface cut_along_seams(const KnownSurface& complex) {
+  return Cutter(complex).run();
+}
+
+std::vector<Edge> without_backs(const InputSurface& input, std::vector<Edge> edges) {
+  std::erase_if(edges, [&](const Edge& e) {
+    const HalfEdge h = input.mesh.find(e[0], e[1]);
+    return input.is_back(h / 3) && input.is_back(input.mesh.twin[h] / 3);
+  });
+  return edges;
+}
+
+std::vector<Edge> seam_edges(const InputSurface& input) {
+  std::vector<Edge> edges;
+  for (HalfEdge h = 0; h < input.mesh.start.size(); ++h)
+    if (h < input.mesh.twin[h] && input.is_seam(h)) edges.push_back({input.mesh.start[h], input.mesh.end(h)});
+  return edges;
+}
+
+std::vector<Curve> divided_curves(const InputSurface& input, const SeamedSurface& seamed, const SizeField& sizes,
+                                  std::vector<std::uint8_t>& is_fixed) {
+  const std::vector<std::uint8_t> is_corner = corner_marks(input, seamed.features.corners, is_fixed, sizes);
+  std::vector<std::uint8_t> place_is_corner(input.mesh.points.size(), 0);  // there are no more places than copies
+  for (VertexIndex c = 0; c < is_corner.size(); ++c)
+    if (is_corner[c] || is_fixed[c] || seamed.pinned[c]) place_is_corner[seamed.place[c]] = 1;
+  std::vector<std::uint8_t> copy_is_corner(is_fixed.size());
+  for (VertexIndex c = 0; c < is_fixed.size(); ++c) {
+    copy_is_corner[c] = place_is_corner[seamed.place[c]];
+    is_fixed[c] = is_fixed[c] || seamed.pinned[c] || (copy_is_corner[c] && input.on_seam(c));
+  }
+  std::vector<Curve> curves = chain_curves(input, seamed.features.corners, is_fixed, sizes);
+  std::erase_if(curves, [&](const Curve& c) { return input.is_seam(c.half_edges.front()); });
+  std::vector<std::uint32_t> group;
+  for (std::uint32_t c = 0; c < curves.size(); ++c) group.push_back(c);
+  SeamCurves(input, seamed.place, copy_is_corner).add_to(curves, group);
+  divide_curves(input, sizes, curves, {group, seamed.place});
+  return curves;
+}
+
+void coarsen_seams(WorkingMesh& mesh, const RunContext& context, CoarsenCounts& counts) {
+  SeamCoarsener(mesh, context, counts).run();
+}
+
+void settle_seams(WorkingMesh& mesh, const SizeField& sizes) {
+  for (VertexIndex v = 0; v < mesh.points.size(); ++v) {
+    if (mesh.outgoing[v] == kNone || !mesh.is_sewn(v)) continue;
+    mesh.kind[v] = VertexKind::kCorner;
+    if (!(mesh.size[v] > 0)) mesh.size[v] = sizes.at(mesh.points[v]);
+  }
+}
+
+std::uint64_t divide_repeated_edges(WorkingMesh& mesh, const KnownSurface& complex, const SizeField& sizes) {
+  const std::vector<VertexIndex> sewn = sewn_vertices(mesh);
+  std::map<Edge, HalfEdge> first;
+  std::vector<HalfEdge> repeated;
+  // Seams first: they stay.
+  for (const bool seams : {true, false})
+    for (HalfEdge h = 0; h < mesh.start.size(); ++h) {
+      if (mesh.start[h] == kNone || h > mesh.twin[h] || mesh.is_seam(h) != seams) continue;
+      if (!seams && mesh.is_back(h / 3)) continue;
+      const VertexIndex a = mesh.start[h], b = mesh.end(h);
+      if (!mesh.is_sewn(a) || !mesh.is_sewn(b)) continue;
+      const Edge key{std::min(sewn[a], sewn[b]), std::max(sewn[a], sewn[b])};
+      if (!first.try_emplace(key, h).second && !seams) repeated.push_back(h);
+    }
+  for (const HalfEdge h : repeated) {
+    const Vec3 middle = (mesh.points[mesh.start[h]] + mesh.points[mesh.end(h)]) * 0.5;
+    const auto nearest = complex.tree().nearest(middle);
+    const bool is_own = complex.mesh().patch_of(nearest.triangle) == mesh.patch[h / 3];
+    const Vec3 p = is_own ? nearest.point : middle;
+    const Vec3 n = normalized(mesh.area_vector(h / 3) + mesh.area_vector(mesh.twin[h] / 3));
+    mesh.split_edge(h, mesh.add_vertex(p, VertexKind::kFree, n, sizes.at(p), nearest.triangle));
+  }
+  return repeated.size();
+}
+
+std::vector<VertexIndex> sewn_vertices(const WorkingMesh& mesh) {
+  std::vector<VertexIndex> sewn(mesh.points.size());
+  for (VertexIndex v = 0; v < sewn.size(); ++v) sewn[v] = v;
+  for (const auto& [place, copies] : copies_on_seams(mesh))
+    for (const VertexIndex v : copies) sewn[v] = copies[0];
+  return sewn;
+}
+
+std::vector<std::uint32_t> front_triangles(const WorkingMesh& mesh) {
+  std::vector<std::uint32_t> alive = mesh.alive_triangles();
+  std::erase_if(alive, [&](std::uint32_t t) { return mesh.is_back(t); });
+  return alive;
+}
+
+}  // namespace octafront::remeshing

@@ -1,0 +1,59 @@
+#pragma once
+
+// How the surface front works on a complex. Along *seams* more than two patches meet, or one ends: there no surface is
+// a manifold. So the complex is cut open along them, and each part that was cut gets a back, the same triangles facing
+// the other way, joined to it along the cut: a closed manifold again, on which everything else works as on a single
+// surface. Vertices on a cut exist once in each part; what becomes of them is decided for all of them at once. In the
+// end the backs are dropped and the cuts are sewn.
+
+#include <octafront/run_context.h>
+
+#include "mesh/known_surface.h"
+#include "surface/remeshing/coarsen.h"
+#include "surface/remeshing/curves.h"
+#include "surface/remeshing/working_mesh.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace octafront::remeshing {
+
+/// A complex cut open. Triangle t of the complex is face t of `input`; backs follow.
+struct SeamedSurface {
+  InputSurface input;
+  std::vector<VertexIndex> place;    ///< per vertex of `input`: the vertex of the complex that it is a copy of
+  std::vector<std::uint8_t> pinned;  ///< per vertex of `input`: a corner of the complex, whatever its features say
+  Features features;  ///< those of the complex that are not seams, on the copies, backs too; and its corners
+};
+
+/// REQUIRES a clean complex. Its own patches are kept.
+SeamedSurface cut_along_seams(const KnownSurface& complex);
+
+/// Those of the edges that are not on backs. Features there served to judge those on the front.
+std::vector<Edge> without_backs(const InputSurface& input, std::vector<Edge> edges);
+
+/// The edges of the cut surface along which it was cut.
+std::vector<Edge> seam_edges(const InputSurface& input);
+
+/// The curves of the cut surface (`input`, with feature marks), divided; those along one seam alike. `is_fixed` as of
+/// chain_curves(); copies of vertices that are corners for one part become fixed for all.
+std::vector<Curve> divided_curves(const InputSurface& input, const SeamedSurface& seamed, const SizeField& sizes,
+                                  std::vector<std::uint8_t>& is_fixed);
+
+/// Collapses the complex's own vertices on seams, in all parts or in none, as remove_input_vertices() does with others.
+void coarsen_seams(WorkingMesh& mesh, const RunContext& context, CoarsenCounts& counts);
+
+/// The vertices on seams are corners from here on: seams change no more.
+void settle_seams(WorkingMesh& mesh, const SizeField& sizes);
+
+/// Divides edges between vertices on seams that there are in other parts, or on the seams, too: once sewn, they would
+/// be one. The new vertices lie on `complex`. Returns how many.
+std::uint64_t divide_repeated_edges(WorkingMesh& mesh, const KnownSurface& complex, const SizeField& sizes);
+
+/// For each vertex of the working mesh the first one at its place on a seam; others are themselves.
+std::vector<VertexIndex> sewn_vertices(const WorkingMesh& mesh);
+
+/// The living triangles that are no backs.
+std::vector<std::uint32_t> front_triangles(const WorkingMesh& mesh);
+
+}  // namespace octafront::remeshing
