@@ -70,6 +70,18 @@ std::vector<double> numbers_of(const std::string& typed, const std::string& list
   return numbers;
 }
 
+/// A point as "x,y,z".
+Vec3 point_of(const std::string& option, const std::string& typed, const std::string& list) {
+  std::vector<double> numbers;
+  for (const std::string& word : CLI::detail::split(list, ',')) {
+    double value = 0;
+    if (CLI::detail::lexical_cast(word, value) && std::isfinite(value)) numbers.push_back(value);
+  }
+  if (numbers.size() != 3 || std::count(list.begin(), list.end(), ',') != 2)
+    throw CLI::ValidationError(option, "\"" + typed + "\" does not end with a point; write its coordinates as X,Y,Z");
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
 }  // namespace
 
 GroupRule group_rule(const std::string& typed) {
@@ -101,6 +113,13 @@ GroupRule group_rule(const std::string& typed) {
   return rule;
 }
 
+RegionSeed region_seed(const std::string& typed) {
+  const std::size_t equals = typed.find('=');
+  if (equals == 0 || equals == std::string::npos)
+    throw CLI::ValidationError("--region", "\"" + typed + "\" has no name; write NAME=X,Y,Z");
+  return {typed.substr(0, equals), point_of("--region", typed, typed.substr(equals + 1))};
+}
+
 std::int64_t whole_number(double n) {
   if (!(std::abs(n) < 9e18) || n != std::floor(n))
     throw CLI::ValidationError("--elements", "needs a whole number, such as 100000 or 1e5");
@@ -108,8 +127,57 @@ std::int64_t whole_number(double n) {
 }
 
 void declare_input(CLI::App& command, Arguments& a, const std::string& what) {
-  const std::string surface = "Closed surface: STL, OBJ, OFF or PLY, recognised by content; -: from standard input";
-  command.add_option("input", a.input, what.empty() ? surface : what)->required()->type_name("FILE");
+  const std::string surface =
+      "Closed surface, with inner walls or without: STL, OBJ, OFF, PLY, TetGen .poly, triangles of Gmsh .msh or MEDIT "
+      ".mesh; -: from standard input; or several files, a body each";
+  command
+      .add_option_function<std::vector<std::string>>(
+          "input",
+          [&a](const std::vector<std::string>& all) {
+            a.bodies.assign(all.begin(), all.end());
+            a.input = a.bodies.front();
+          },
+          what.empty() ? surface : what)
+      ->required()
+      ->type_name("FILE");
+}
+
+void declare_complex(CLI::App& command, Arguments& a) {
+  ComplexOptions& o = a.complex;
+  auto* group = command.add_option_group("Several materials", "Cells between walls, or bodies of several files");
+  group
+      ->add_option_function<std::vector<std::string>>(
+          "--region",
+          [&o](const std::vector<std::string>& all) {
+            for (const std::string& typed : all) o.regions.push_back(region_seed(typed));
+          },
+          "The cell of this point is a region of this name; cells of one name are one region")
+      ->type_name("NAME=X,Y,Z")
+      ->allow_extra_args(false);
+  group
+      ->add_option_function<std::vector<std::string>>(
+          "--void",
+          [&o](const std::vector<std::string>& all) {
+            for (const std::string& typed : all) o.voids.push_back(point_of("--void", typed, typed));
+          },
+          "The cell of this point stays empty")
+      ->type_name("X,Y,Z")
+      ->allow_extra_args(false);
+  using Cells = ComplexOptions::Cells;
+  add_choice<Cells>(*group, "--cells", o.cells,
+                    {{"auto", Cells::kAuto}, {"regions", Cells::kRegions}, {"merge", Cells::kMerge}},
+                    "auto: cells between inner walls are regions, plain surfaces stay what they are; regions: every "
+                    "enclosed cell, also where walls lie double or cross; merge: one region without the walls");
+  using Nested = ComplexOptions::Nested;
+  add_choice<Nested>(
+      *group, "--nested", o.nested,
+      {{"direction", Nested::kByDirection}, {"cavity", Nested::kCavity}, {"region", Nested::kRegion}},
+      "Closed shells inside others: cavities where they face inward and regions where outward, or all the same");
+  group
+      ->add_option("--tolerance", o.tolerance,
+                   "Several files: what is nearer than this comes together; 0: exactly as they are [a millionth of "
+                   "the diagonal]")
+      ->type_name("T");
 }
 
 void declare_mesh_input(CLI::App& command, Arguments& a) {

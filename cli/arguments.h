@@ -1,5 +1,6 @@
 #pragma once
 
+#include <octafront/complex.h>
 #include <octafront/named_groups.h>
 #include <octafront/options.h>
 #include <octafront/solver_checks.h>
@@ -29,6 +30,8 @@ struct Arguments {
   std::string command;
   std::string command_line;  ///< quoted for a shell
   std::filesystem::path input, output, json, surface, page;
+  std::vector<std::filesystem::path> bodies;  ///< all inputs, the first one too, of commands that take several
+  ComplexOptions complex;
   std::vector<std::filesystem::path> meshes;               ///< that are written; "-": to standard output
   std::vector<std::string> formats;                        ///< of the meshes in turn; empty: by their endings
   std::filesystem::path regions, point_sizes, size_field;  ///< files with sizes; empty: none
@@ -51,6 +54,8 @@ struct Arguments {
 void declare_input(CLI::App& command, Arguments& arguments, const std::string& what = {});
 void declare_mesh_input(CLI::App& command, Arguments& arguments);
 void declare_output(CLI::App& command, Arguments& arguments, const std::string& what, bool required);
+/// Several materials: how walls and bodies become regions.
+void declare_complex(CLI::App& command, Arguments& arguments);
 /// -o, --format and --group of commands that write a mesh.
 void declare_mesh_output(CLI::App& command, Arguments& arguments);
 /// --report: the web page.
@@ -103,6 +108,9 @@ struct Choice {
 /// NAME=box:x0,y0,z0,x1,y1,z1, NAME=sphere:x,y,z,r, NAME=patches:a,b,c, or with what is to be in the group before:
 /// NAME=elements:box:... Throws CLI::ValidationError.
 GroupRule group_rule(const std::string& typed);
+
+/// NAME=x,y,z. Throws CLI::ValidationError.
+RegionSeed region_seed(const std::string& typed);
 
 /// "1e5" is a number of elements too. Throws CLI::ValidationError.
 std::int64_t whole_number(double n);

@@ -2,6 +2,7 @@
 
 #include <octafront/octafront.h>
 
+#include "domain.h"
 #include "estimate.h"
 #include "inputs.h"
 #include "open_cavity.h"
@@ -123,7 +124,7 @@ Json json_of(const SurfaceDefects& d) {
 
 void check_surface(Session& session) {
   const std::string name = session.arguments().input.string();
-  const SurfaceFile file = read_input(session);
+  const SurfaceFile file = read_domain(session);
   session.context().report("checking", -1);
   const RepairedSurface repaired = repair_surface(file.surface, session.context());
   for (const std::string& note : repaired.notes) session.say("would repair: " + note + "\n");
@@ -147,7 +148,7 @@ template <class Generator>
 auto run_on_input(Session& session, const Generator& generator) {
   const Arguments& a = session.arguments();
   const Options options = checked_options(session);
-  const SurfaceFile file = read_input(session);
+  const SurfaceFile file = read_domain(session);
   try {
     if (!a.page.empty()) find_repairs(session, file.surface);
     return generator(file.surface, options, session.context());
@@ -250,7 +251,8 @@ void run_convert(Session& session) {
 }
 
 void run_check(Session& session) {
-  if (is_tet_mesh_file(session.arguments().input)) return check_tet_mesh(session);
+  const Arguments& a = session.arguments();
+  if (a.bodies.size() == 1 && is_tet_mesh_file(a.input) && holds_tetrahedra(a.input)) return check_tet_mesh(session);
   if (session.arguments().solver) throw OptionError("--solver looks at tetrahedral meshes; this is a surface");
   check_surface(session);
 }

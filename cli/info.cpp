@@ -82,6 +82,7 @@ bool tell_size_field_info(Session& session) {
 
 void run_info(Session& session) {
   const std::filesystem::path& file = session.arguments().input;
+  if (session.arguments().bodies.size() > 1) throw OptionError("info tells of one file at a time");
   if (!is_tet_mesh_file(file)) return tell_surface_info(session);
   try {
     tell_mesh_info(session, read_mesh_input(session));

@@ -86,11 +86,13 @@ void Program::declare_makers() {
           "  octafront mesh part.stl -o part.vtu --preset fine         smaller elements, better ones\n"
           "  octafront mesh part.stl -o part.inp --size 2 --order 2    edges of length 2, curved elements\n"
           "  octafront mesh part.obj -o part.msh --unit mm --size 0.1in\n"
+          "  octafront mesh plate.stl bolt.stl -o bolted.msh           a region each, faces shared\n"
           "  octafront mesh part.stl -o part.msh -o part.vtu --elements 1e5 --report part.html\n"
           "  octafront mesh part.stl --dry-run --size 0.5              elements, memory, time; nothing made\n"
           "  octafront mesh part.stl -o - --format vtk | gzip > part.vtk.gz\n",
           run_mesh);
   declare_input(*mesh, a);
+  declare_complex(*mesh, a);
   declare_mesh_output(*mesh, a);
   declare_preset(*mesh, a);
   declare_dry_run(*mesh, a);
@@ -106,6 +108,7 @@ void Program::declare_makers() {
   CLI::App* surface = add("surface", "Triangulate the surface anew and stop there",
                           "  octafront surface scan.ply -o even.stl --size 0.5\n", run_surface);
   declare_input(*surface, a);
+  declare_complex(*surface, a);
   declare_output(*surface, a, "Surface: .stl, .obj, .off or .ply", true);
   declare_sizes(*surface, a);
   declare_surface(*surface, a);
@@ -118,6 +121,7 @@ void Program::declare_makers() {
       "  octafront size part.stl -o sizes.vtu                      the field: to look at, to edit, for --size-field\n",
       run_size);
   declare_input(*size, a);
+  declare_complex(*size, a);
   declare_output(*size, a, "Background grid: .vtu", false);
   declare_sizes(*size, a);
   declare_surface(*size, a);
@@ -163,7 +167,8 @@ void Program::declare_lookers() {
                         "  octafront check part.stl\n"
                         "  octafront check part.inp --solver calculix\n",
                         run_check);
-  declare_input(*check, a, "Surface or mesh");
+  declare_input(*check, a, "Surface or mesh; or several surfaces, a body each");
+  declare_complex(*check, a);
   declare_solver(*check, a);
   declare_report(*check, a);
   declare_run(*check, a);
@@ -214,6 +219,8 @@ Arguments& Program::arguments(int argc, char** argv) {
   a.command_line = "octafront";
   for (int i = 1; i < argc; ++i) a.command_line += " " + quoted_for_shell(argv[i]);
   if (a.input == kStandardOutput) a.input = "/dev/stdin";
+  for (std::filesystem::path& body : a.bodies)
+    if (body == kStandardOutput) body = "/dev/stdin";
   convert_lengths(a);
   return a;
 }

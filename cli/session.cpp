@@ -3,6 +3,7 @@
 #include <octafront/error.h>
 #include <octafront/io.h>
 
+#include "domain.h"
 #include "open_cavity.h"
 #include "terminal.h"
 #include "text.h"
@@ -31,18 +32,22 @@ std::vector<NamedFile> without_unused(std::vector<NamedFile> files) {
 }
 
 std::vector<NamedFile> inputs_of(const Arguments& a) {
-  return without_unused({{"the input", a.input},
-                         {"--surface", a.surface},
-                         {"--regions", a.regions},
-                         {"--point-sizes", a.point_sizes},
-                         {"--size-field", a.size_field}});
+  std::vector<NamedFile> files{{"the input", a.input},
+                               {"--surface", a.surface},
+                               {"--regions", a.regions},
+                               {"--point-sizes", a.point_sizes},
+                               {"--size-field", a.size_field}};
+  for (std::size_t i = 1; i < a.bodies.size(); ++i) files.push_back({"an input", a.bodies[i]});
+  return without_unused(std::move(files));
 }
 
 std::vector<NamedFile> outputs_of(const Arguments& a) {
   std::vector<NamedFile> all{{"--output", a.output}, {"--json", a.json}, {"--report", a.page}};
   for (const std::filesystem::path& mesh : a.meshes) all.push_back({"--output", mesh});
-  if (const std::filesystem::path beside = cavity_neighbour(a); !beside.empty())
+  if (const std::filesystem::path beside = cavity_neighbour(a); !beside.empty()) {
     all.push_back({"the file for a cavity that stays open", cavity_file(beside)});
+    all.push_back({"the file for a leak", leak_file(beside)});
+  }
   return without_unused(std::move(all));
 }
 
@@ -86,6 +91,8 @@ Json Session::json(const Json& error) const {
            {"command_line", arguments_.command_line},
            {"input", arguments_.input.string()},
            {"options", options}};
+  if (arguments_.bodies.size() > 1)
+    for (const std::filesystem::path& body : arguments_.bodies) all["inputs"].push_back(body.string());
   if (!error.is_null()) all["error"] = error;
   all.update(findings_);
   return all;

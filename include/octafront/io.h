@@ -1,5 +1,6 @@
 #pragma once
 
+#include <octafront/complex.h>
 #include <octafront/options.h>
 #include <octafront/run_context.h>
 #include <octafront/size_field.h>
@@ -20,17 +21,24 @@ namespace octafront {
 /// says from which face of the file (counted from 0) each one came.
 struct SurfaceFile {
   SurfaceMesh surface;
-  std::string format;              ///< e.g. "binary STL"
-  std::vector<std::string> notes;  ///< what a user should know, e.g. "12 polygons divided into triangles"
+  std::string format;                    ///< e.g. "binary STL"
+  std::vector<std::string> notes;        ///< what a user should know, e.g. "12 polygons divided into triangles"
+  std::vector<RegionSeed> regions = {};  ///< of TetGen's .poly and .smesh, for ComplexOptions
+  std::vector<Vec3> voids = {};          ///< the same: its holes
 };
 
-/// Reads STL (binary, ASCII), OBJ, OFF or PLY (ASCII, both binary byte orders), recognised by content; the name only
-/// breaks ties. Coordinates keep double precision. OBJ groups and materials, and ASCII STL solids, become patches. The
-/// properties "front" and "back" of the faces of a PLY file are SurfaceMesh::sides (-1: outside), its comments
-/// "region 0 steel" their names.
-/// Throws InputError with file, line or byte offset, and the reason. Memory is bounded by a small multiple of the size
-/// of the file, whatever its header claims.
+/// Reads STL (binary, ASCII), OBJ, OFF, PLY (ASCII, both binary byte orders), TetGen's .poly and .smesh, and triangles
+/// of Gmsh's MSH 2.2 and 4.1 and of MEDIT, recognised by content; the name only breaks ties. A mesh of tetrahedra in
+/// one of the latter gives its boundary and its interfaces with their sides. Coordinates keep double precision. OBJ
+/// groups and materials, and ASCII STL solids, become patches, so do facet markers, physical groups and references. The
+/// properties "front" and "back" of the faces of a PLY file are SurfaceMesh::sides (-1: outside), its comments "region
+/// 0 steel" their names. Throws InputError with file, line or byte offset, and the reason. Memory is bounded by a small
+/// multiple of the size of the file, whatever its header claims.
 SurfaceFile read_surface(const std::string& file, const RunContext& context = {});
+
+/// Whether a file of a format for meshes holds tetrahedra; false for what read_surface() alone reads. Throws
+/// InputError.
+bool holds_tetrahedra(const std::string& file, const RunContext& context = {});
 
 /// Writes by the ending of the name: .stl (binary), .obj, .off, .ply (binary; alone holds SurfaceMesh::sides). The file
 /// is written beside and renamed into place: on failure an older file stays whole. Throws OutputError, and OptionError

@@ -2,6 +2,7 @@
 
 // Everything that users of the library include.
 
+#include <octafront/complex.h>
 #include <octafront/error.h>
 #include <octafront/generate.h>
 #include <octafront/improve_existing.h>

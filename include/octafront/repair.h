@@ -13,9 +13,10 @@ namespace octafront {
 struct RepairedSurface {
   SurfaceMesh surface;  ///< its `source` refers to the input's faces
   std::uint64_t merged_vertices = 0, unused_vertices = 0, duplicate_faces = 0, degenerate_faces = 0;
-  std::uint64_t divided_faces = 0;  ///< neighbours of degenerate faces, so that no gap opened
-  std::uint64_t turned_faces = 0;   ///< to make neighbours agree
-  std::uint64_t turned_shells = 0;  ///< inside-out, or cavities that did not face inward
+  std::uint64_t divided_faces = 0;    ///< neighbours of degenerate faces, so that no gap opened
+  std::uint64_t turned_faces = 0;     ///< to make neighbours agree
+  std::uint64_t turned_shells = 0;    ///< inside-out, or cavities that did not face inward
+  std::uint64_t turned_cavities = 0;  ///< the latter alone
   std::uint32_t shells = 0, cavities = 0, bodies = 0;
   std::vector<std::uint32_t> body_of_triangle;  ///< per triangle; a cavity belongs to the body around it
   std::vector<std::string> notes;               ///< a sentence for each kind of change

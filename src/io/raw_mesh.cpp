@@ -408,4 +408,67 @@ MeshFile ordered_mesh(RawMesh raw, const Input& input) {
   return Ordering(std::move(raw), input).result();
 }
 
+namespace {
+
+/// Boundary and interfaces of a mesh, with the regions on both sides.
+SurfaceMesh walls_of(TetMesh mesh) {
+  SurfaceMesh surface;
+  surface.triangles = std::move(mesh.boundary);
+  surface.triangles.insert(surface.triangles.end(), mesh.interfaces.begin(), mesh.interfaces.end());
+  const std::size_t outside = surface.triangles.size() - mesh.interfaces.size();
+  if (!mesh.patch.empty() || !mesh.interface_patch.empty()) {
+    surface.patch = std::move(mesh.patch);
+    surface.patch.resize(outside, 0);
+    surface.patch.insert(surface.patch.end(), mesh.interface_patch.begin(), mesh.interface_patch.end());
+    surface.patch.resize(surface.triangles.size(), 0);
+  }
+  surface.sides.assign(surface.triangles.size(), {kNone, kNone});
+  const FaceTable table = face_table(mesh.points.size(), surface.triangles);
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+    for (int i = 0; i < 4; ++i)
+      for (const FaceTable::Entry& entry : table.group_of(face_of(mesh.tets[t], i))) {
+        const auto& [a, b, c] = surface.triangles[entry.face];
+        const auto& p = mesh.points;
+        const int side = orient3d(p[a], p[b], p[c], p[mesh.tets[t][static_cast<std::size_t>(i)]]) > 0 ? 0 : 1;
+        surface.sides[entry.face][static_cast<std::size_t>(side)] = mesh.region.empty() ? 0 : mesh.region[t];
+      }
+  surface.points = std::move(mesh.points);
+  surface.patch_names = std::move(mesh.patch_names);
+  surface.region_names = std::move(mesh.region_names);
+  const bool is_plain = std::all_of(surface.sides.begin(), surface.sides.end(), [](const Sides& s) {
+    return s == Sides{kNone, 0};
+  });
+  if (is_plain) surface.sides.clear();
+  return surface;
+}
+
+}  // namespace
+
+SurfaceFile surface_of(RawMesh raw, const Input& input) {
+  if (!raw.tets.empty()) {
+    MeshFile file = ordered_mesh(std::move(raw), input);
+    file.notes.push_back(fmt::format("boundary and interfaces of {} tetrahedra taken", file.mesh.tets.size()));
+    return {walls_of(std::move(file.mesh)), file.format, std::move(file.notes)};
+  }
+  if (raw.triangles.empty())
+    input.fail(fmt::format("holds no triangles ({} elements of other kinds): there is no surface to mesh",
+                           raw.other_elements));
+  SurfaceFile file;
+  Numbered patches = raw.triangle_ref.empty() ? by_groups(raw.groups, Kind::kFaces, raw.triangles.size())
+                                              : by_reference(raw.triangle_ref, raw.surface_names);
+  for (std::uint32_t& n : patches.numbers)
+    if (n == kNone) n = patches.next;
+  forget_zeros(patches.numbers);
+  file.surface.points = std::move(raw.points);
+  file.surface.triangles = std::move(raw.triangles);
+  file.surface.patch = std::move(patches.numbers);
+  file.surface.patch_names = std::move(patches.names);
+  forget_default_names(file.surface.patch_names, Part::Origin::kPatch, false);
+  file.format = std::move(raw.format);
+  file.notes = std::move(raw.notes);
+  if (raw.other_elements > 0)
+    file.notes.push_back(fmt::format("{} elements of other kinds were left out", raw.other_elements));
+  return file;
+}
+
 }  // namespace octafront::io

@@ -61,4 +61,8 @@ struct RawMesh {
 /// InputError if there are no tetrahedra, or if their mid-side nodes contradict each other.
 MeshFile ordered_mesh(RawMesh raw, const Input& input);
 
+/// The triangles as a surface, references or groups as patches; of a mesh with tetrahedra its boundary and interfaces,
+/// with the regions on both sides. Throws InputError if there are no triangles.
+SurfaceFile surface_of(RawMesh raw, const Input& input);
+
 }  // namespace octafront::io

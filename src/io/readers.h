@@ -14,6 +14,10 @@ SurfaceFile read_ascii_stl(const Input& input);
 SurfaceFile read_obj(const Input& input);
 SurfaceFile read_off(const Input& input);
 SurfaceFile read_ply(const Input& input);
+/// TetGen's .poly, or with `simple` its .smesh; nodes may stand in a file .node beside it, whose input `nodes` is then.
+SurfaceFile read_poly(const Input& input, bool simple, const Input* nodes);
+/// By the ending, with the nodes beside it.
+SurfaceFile read_poly(const Input& input);
 
 RawMesh read_vtu(const Input& input);
 RawMesh read_vtk(const Input& input);

@@ -148,7 +148,8 @@ bool claims_to_be_stl(const Input& input) {
   return format != nullptr && format->info.name == "stl";
 }
 
-constexpr std::string_view kSurfaces = "a surface as STL, OBJ, OFF or PLY";
+constexpr std::string_view kSurfaces =
+    "a surface as STL, OBJ, OFF, PLY, TetGen .poly or .smesh, or as triangles of Gmsh .msh or MEDIT .mesh";
 constexpr std::string_view kMeshes =
     "a mesh as VTU, VTK, Gmsh .msh, Abaqus .inp, Nastran .bdf, I-deas .unv, MED, XDMF, MEDIT .mesh or .meshb, Netgen "
     ".vol "
@@ -167,6 +168,11 @@ bool has_ending(const Input& input, std::initializer_list<std::string_view> endi
   const std::string ending = std::filesystem::path(input.name).extension().string();
   return std::any_of(endings.begin(), endings.end(),
                      [&](std::string_view e) { return equal_ignoring_case(ending, e); });
+}
+
+bool is_binary_medit(std::string_view bytes) {
+  constexpr std::string_view kOne("\x01\0\0\0"sv);
+  return bytes.starts_with(kOne) && bytes.size() > 8 && bytes[4] >= 1 && bytes[4] <= 4;
 }
 
 /// Formats that are told by their text; none of them has a magic word.
@@ -206,9 +212,13 @@ SurfaceKind recognize_surface(const Input& input) {
   // The size settles it: many binary STL files begin with "solid" all the same.
   if (bytes.size() >= 84 && bytes.size() == 84 + std::uint64_t{50} * stl_count(bytes)) return SurfaceKind::kBinaryStl;
   if (bytes.starts_with("ply") && (bytes.size() == 3 || is_blank(bytes[3]))) return SurfaceKind::kPly;
-  if (const std::string_view kind = well_known_kind(bytes); !kind.empty()) fail_other_kind(input, kind, kSurfaces);
   Scanner scan(input, '#');
   const std::string_view first = scan.word();
+  if (first == "$MeshFormat") return SurfaceKind::kMsh;
+  if (first.starts_with("MeshVersionFormatted")) return SurfaceKind::kMedit;
+  if (is_binary_medit(bytes)) return SurfaceKind::kMeditBinary;
+  if (const std::string_view kind = well_known_kind(bytes); !kind.empty()) fail_other_kind(input, kind, kSurfaces);
+  if (has_ending(input, {".poly", ".smesh"})) return SurfaceKind::kPoly;
   if (is_off_keyword(first)) return SurfaceKind::kOff;
   const bool binary = looks_binary(bytes);
   if (!binary && equal_ignoring_case(first, "solid")) return SurfaceKind::kAsciiStl;
@@ -232,9 +242,7 @@ MeshKind recognize_mesh(const Input& input) {
   if (kind.find("legacy VTK") != std::string_view::npos) return MeshKind::kVtk;
   if (kind == "an XDMF mesh") return MeshKind::kXdmf;
   if (kind == "an HDF5 file") return MeshKind::kHdf5;
-  constexpr std::string_view kMeshb("\x01\0\0\0"sv);
-  if (input.bytes.starts_with(kMeshb) && input.bytes.size() > 8 && input.bytes[4] >= 1 && input.bytes[4] <= 4)
-    return MeshKind::kMeditBinary;
+  if (is_binary_medit(input.bytes)) return MeshKind::kMeditBinary;
   if (const auto text = text_kind(input, first, scan.word())) return *text;
   if (!kind.empty()) fail_other_kind(input, kind, kMeshes);
   if (scan.at_end() && first.empty()) input.fail("holds nothing but blanks and comments; export it again");

@@ -6,7 +6,7 @@
 
 namespace octafront::io {
 
-enum class SurfaceKind { kBinaryStl, kAsciiStl, kObj, kOff, kPly };
+enum class SurfaceKind { kBinaryStl, kAsciiStl, kObj, kOff, kPly, kPoly, kMsh, kMedit, kMeditBinary };
 enum class MeshKind { kVtu, kVtk, kMsh, kMedit, kMeditBinary, kAbaqus, kNastran, kUnv, kNetgen, kTetgen, kXdmf, kHdf5 };
 
 /// What the bytes are, whatever the name; the name decides only where the bytes leave a choice. Throws InputError with

@@ -21,6 +21,14 @@ SurfaceFile read_surface_bytes(const Input& input) {
       return read_obj(input);
     case SurfaceKind::kOff:
       return read_off(input);
+    case SurfaceKind::kPoly:
+      return read_poly(input);
+    case SurfaceKind::kMsh:
+      return surface_of(read_msh(input), input);
+    case SurfaceKind::kMedit:
+      return surface_of(read_medit(input), input);
+    case SurfaceKind::kMeditBinary:
+      return surface_of(read_medit_binary(input), input);
     default:
       return read_ply(input);
   }
@@ -42,6 +50,22 @@ const io::Format& surface_format(const std::filesystem::path& file) {
 
 SurfaceFile read_surface(const std::string& file, const RunContext& context) {
   return io::read_surface_bytes(io::LoadedFile(file, context).input());
+}
+
+bool holds_tetrahedra(const std::string& file, const RunContext& context) {
+  const io::LoadedFile loaded(file, context);
+  const io::Input& input = loaded.input();
+  switch (io::recognize_mesh(input)) {
+    case io::MeshKind::kMsh:
+      return !io::read_msh(input).tets.empty();
+    case io::MeshKind::kMedit:
+      return !io::read_medit(input).tets.empty();
+    case io::MeshKind::kMeditBinary:
+      return !io::read_medit_binary(input).tets.empty();
+    default:
+      // Of the other formats only meshes are read.
+      return true;
+  }
 }
 
 void check_surface_target(const std::string& file) {

@@ -3,14 +3,16 @@
 #include <octafront/surface_mesh.h>
 
 #include "core/groups.h"
+#include "geometry/big_float.h"
 #include "geometry/predicates.h"
-#include "recovery/big_float.h"
 
 #include <array>
 #include <span>
 #include <vector>
 
 namespace octafront::recovery {
+
+using exact::BigFloat;
 
 /// Homogeneous coordinates (x, y, z, w) of the point (x, y, z) / w, w > 0.
 using Homogeneous = std::array<BigFloat, 4>;

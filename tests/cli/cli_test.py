@@ -47,6 +47,93 @@ class CommandLine(unittest.TestCase):
     def files(self):
         return sorted(p.name for p in self.dir.iterdir())
 
+    CUBE = [(0, 2, 3), (0, 3, 1), (4, 5, 7), (4, 7, 6), (0, 1, 5), (0, 5, 4), (2, 6, 7), (2, 7, 3), (0, 4, 6),
+            (0, 6, 2), (1, 3, 7), (1, 7, 5)]
+
+    def write_box(self, name, low, high, faces=None):
+        """A box as an OFF file; corner number x + 2 y + 4 z."""
+        corners = [[(low, high)[n >> axis & 1][axis] for axis in range(3)] for n in range(8)]
+        faces = self.CUBE if faces is None else faces
+        lines = ["OFF", f"8 {len(faces)} 0", *(" ".join(map(str, c)) for c in corners),
+                 *("3 {} {} {}".format(*f) for f in faces)]
+        (self.dir / name).write_text("\n".join(lines) + "\n")
+        return self.dir / name
+
+    def regions_of(self, *arguments):
+        """Names and volumes of the regions that the input makes."""
+        report = self.dir / "regions.json"
+        # Whether check finds fault with them is another matter.
+        subprocess.run([OCTAFRONT, "check", *map(str, arguments), "--json", report], capture_output=True, timeout=120)
+        return {r["name"]: r["volume"] for r in json.loads(report.read_text()).get("input_regions", [])}
+
+    def test_several_files_are_several_bodies(self):
+        plate = self.write_box("plate.off", (0, 0, 0), (2, 2, 1))
+        bolt = self.write_box("bolt.off", (0.5, 0.5, 0.5), (1, 1, 2))
+        regions = self.regions_of(plate, bolt)
+        self.assertEqual(list(regions), ["plate", "bolt"])
+        self.assertAlmostEqual(regions["plate"], 4 - 0.125, 12)
+        self.assertAlmostEqual(regions["bolt"], 0.375, 12)
+        # The other way round the plate has its way.
+        self.assertAlmostEqual(self.regions_of(bolt, plate)["bolt"], 0.25, 12)
+
+    def test_a_body_that_is_covered_is_refused_by_name(self):
+        inner = self.write_box("inner.off", (1, 1, 1), (2, 2, 2))
+        outer = self.write_box("outer.off", (0, 0, 0), (3, 3, 3))
+        done = self.run_cli("mesh", inner, outer, "-o", self.dir / "a.vtu", status=3)
+        self.assertIn("inner", done.stderr)
+        self.assertNotIn("a.vtu", self.files())
+
+    def test_points_name_and_empty_cells(self):
+        both = self.dir / "both.obj"
+        lines = []
+        for z in range(3):
+            lines += [f"v {x} {y} {z}" for y in (0, 1) for x in (0, 1)]
+        for k in range(2):
+            skip = 2 if k else 0  # the wall between both boxes is there once
+            lines += ["f {} {} {}".format(*(4 * k + c + 1 for c in f)) for f in self.CUBE[skip:]]
+        both.write_text("\n".join(lines) + "\n")
+        self.assertEqual(self.regions_of(both), {"region_1": 1, "region_2": 1})
+        seeds = ("--region", "low=.3,.4,.5", "--region", "high=.3,.4,1.5")
+        self.assertEqual(self.regions_of(both, *seeds), {"low": 1, "high": 1})
+        self.assertEqual(self.regions_of(both, "--void", ".3,.4,.5", "--region", "high=.3,.4,1.5"), {"high": 1})
+        self.assertEqual(self.regions_of(both, "--cells", "merge"), {"body": 2})
+        for bad in ("low", "low=1,2", "=1,2,3", "low=1,2,x"):
+            self.run_cli("check", both, "--region", bad, status=2)
+        # Without a triangle of the wall the names share a cell, and the way between is shown.
+        lines.pop(12 + 2)
+        both.write_text("\n".join(lines) + "\n")
+        done = self.run_cli("mesh", both, *seeds, "-o", self.dir / "out.vtu", status=3)
+        self.assertIn("low", done.stderr)
+        self.assertIn("out.leak.ply", self.files())
+
+    def test_shells_inside_others(self):
+        nested = self.dir / "nested.obj"
+        for inward, regions in ((False, 2), (True, 0)):
+            lines = []
+            for low, high in ((0, 3), (1, 2)):
+                lines += [f"v {x} {y} {z}" for z in (low, high) for y in (low, high) for x in (low, high)]
+            lines += ["f {} {} {}".format(*(c + 1 for c in f)) for f in self.CUBE]
+            lines += ["f {} {} {}".format(*(c + 9 for c in (reversed(f) if inward else f))) for f in self.CUBE]
+            nested.write_text("\n".join(lines) + "\n")
+            self.assertEqual(len(self.regions_of(nested)), regions)
+            self.assertEqual(len(self.regions_of(nested, "--nested", "region")), 2)
+            self.assertEqual(len(self.regions_of(nested, "--nested", "cavity")), 1)
+
+    def test_tetgen_plcs_have_regions_holes_and_markers(self):
+        plc = self.dir / "frame.poly"
+        nodes = [f"{4 * k + c + 1} {x} {y} {k}" for k in range(3) for c, (x, y) in
+                 enumerate(((0, 0), (1, 0), (1, 1), (0, 1)))]
+        facets = [f"1 0 {k + 1}\n4 {4 * k + 1} {4 * k + 2} {4 * k + 3} {4 * k + 4}" for k in range(3)]
+        for k in range(2):
+            for c in range(4):
+                d = (c + 1) % 4
+                facets.append(f"1 0 9\n4 {4 * k + c + 1} {4 * k + d + 1} {4 * k + d + 5} {4 * k + c + 5}")
+        plc.write_text("\n".join(["12 3 0 0", *nodes, f"{len(facets)} 1", *facets, "0",
+                                   "2", "1 .5 .4 .3 7 0.1", "2 .5 .4 1.3 8"]) + "\n")
+        self.assertEqual(self.regions_of(plc), {"region_7": 1, "region_8": 1})
+        plc.write_text(plc.read_text().replace("\n0\n2\n1 .5 .4 .3 7 0.1\n", "\n1\n1 .5 .4 .3\n1\n"))
+        self.assertEqual(self.regions_of(plc), {"region_8": 1})
+
     def test_second_order_is_curved_reported_and_proven_from_the_file(self):
         for ending in ("msh", "inp", "bdf", "vtu", "unv"):
             out, report = self.dir / f"torus.{ending}", self.dir / "report.json"

@@ -51,7 +51,6 @@ TEST(BadSurfaceFiles, AreNamedForWhatTheyAre) {
       {"vtk", "# vtk DataFile Version 3.0\n", {"legacy VTK"}},
       {"vtu", "<?xml version=\"1.0\"?><VTKFile type=\"UnstructuredGrid\">", {"VTK unstructured grid"}},
       {"step", "ISO-10303-21;\nHEADER;", {"STEP", "triangulate"}},
-      {"gmsh", "$MeshFormat\n4.1 0 8\n", {"Gmsh mesh"}},
       {"lfs", "version https://git-lfs.github.com/spec/v1\noid sha256:0", {"git lfs pull"}},
       {"iges", std::string(72, ' ') + "S      1\nrest", {"IGES"}},
       {"utf16", std::string("\xff\xfeO\0F\0F\0", 8), {"UTF-16"}},

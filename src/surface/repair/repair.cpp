@@ -96,6 +96,7 @@ void nest(Draft& draft, const Pieces& pieces, RepairedSurface& result) {
   result.cavities = shells.cavities;
   result.bodies = shells.bodies;
   result.turned_shells = shells.inside_out + shells.turned_cavities;
+  result.turned_cavities = shells.turned_cavities;
   result.body_of_triangle.reserve(draft.face.size());
   for (const std::uint32_t piece : pieces.piece_of_triangle)
     result.body_of_triangle.push_back(shells.body_of_piece[piece]);

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace octafront::recovery {
+namespace octafront::exact {
 
 /// Little-endian limbs of an integer; short ones live inside the object.
 class Limbs {
@@ -56,4 +56,4 @@ class BigFloat {
   bool negative_ = false;
 };
 
-}  // namespace octafront::recovery
+}  // namespace octafront::exact

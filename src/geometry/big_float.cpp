@@ -1,10 +1,10 @@
-#include "recovery/big_float.h"
+#include "geometry/big_float.h"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 
-namespace octafront::recovery {
+namespace octafront::exact {
 
 namespace {
 
@@ -165,4 +165,4 @@ double quotient(const BigFloat& numerator, const BigFloat& denominator) {
   return numerator.negative_ != denominator.negative_ ? -q : q;
 }
 
-}  // namespace octafront::recovery
+}  // namespace octafront::exact

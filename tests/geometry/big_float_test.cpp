@@ -1,10 +1,10 @@
-#include "recovery/big_float.h"
+#include "geometry/big_float.h"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-namespace octafront::recovery {
+namespace octafront::exact {
 namespace {
 
 TEST(BigFloat, AddsWithoutRounding) {
@@ -37,4 +37,4 @@ TEST(BigFloat, DividesToDoublePrecision) {
 }
 
 }  // namespace
-}  // namespace octafront::recovery
+}  // namespace octafront::exact

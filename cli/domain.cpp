@@ -1,0 +1,116 @@
+#include "domain.h"
+
+#include <octafront/complex.h>
+#include <octafront/error.h>
+
+#include "text.h"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include <fmt/core.h>
+
+namespace octafront::cli {
+
+namespace {
+
+SurfaceFile read_one(const Session& session, const std::filesystem::path& file) {
+  SurfaceFile read = read_surface(file, session.context());
+  session.say(
+      fmt::format("{}: {}, {}\n", file.string(), read.format, counted(read.surface.triangles.size(), "triangle")));
+  session.say_notes("reading", read.notes);
+  return read;
+}
+
+void tell_regions(Session& session, const Complex& complex) {
+  session.say_notes("regions", complex.notes);
+  Json regions = Json::array();
+  const std::vector<std::string>& names = complex.surface.region_names;
+  for (std::size_t r = 0; r < complex.volumes.size(); ++r) {
+    // One region alone needs no name.
+    const std::string name = r < names.size() ? names[r] : "body";
+    regions.push_back({{"name", name}, {"volume", complex.volumes[r]}});
+    session.say(fmt::format("  region \"{}\": volume {:.6g}\n", name, complex.volumes[r]));
+  }
+  if (!regions.empty()) session.found({{"input_regions", regions}});
+}
+
+/// The stems of the files, with numbers behind those that occurred before.
+std::vector<std::string> names_of(const std::vector<std::filesystem::path>& files) {
+  std::vector<std::string> names;
+  for (const std::filesystem::path& file : files) {
+    const std::string stem = file.stem().string();
+    std::string name = stem;
+    for (int n = 2; std::find(names.begin(), names.end(), name) != names.end(); ++n)
+      name = fmt::format("{}_{}", stem, n);
+    names.push_back(std::move(name));
+  }
+  return names;
+}
+
+SurfaceFile read_bodies(Session& session) {
+  const Arguments& a = session.arguments();
+  const std::vector<std::string> names = names_of(a.bodies);
+  std::vector<Body> bodies;
+  ComplexOptions options = a.complex;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    SurfaceFile file = read_one(session, a.bodies[i]);
+    if (!file.surface.sides.empty())
+      throw InputError(
+          fmt::format("{}: is a complex of several regions by itself; give it alone", a.bodies[i].string()));
+    options.regions.insert(options.regions.end(), file.regions.begin(), file.regions.end());
+    options.voids.insert(options.voids.end(), file.voids.begin(), file.voids.end());
+    bodies.push_back({names[i], std::move(file.surface)});
+  }
+  session.context().report("joining", -1);
+  Complex complex = join_bodies(bodies, options, session.context());
+  tell_regions(session, complex);
+  return {std::move(complex.surface), "several files", {}};
+}
+
+SurfaceFile read_walls(Session& session) {
+  const Arguments& a = session.arguments();
+  SurfaceFile file = read_one(session, a.input);
+  ComplexOptions options = a.complex;
+  options.regions.insert(options.regions.end(), file.regions.begin(), file.regions.end());
+  options.voids.insert(options.voids.end(), file.voids.begin(), file.voids.end());
+  try {
+    session.context().report("cells", -1);
+    if (auto complex = complex_of_walls(file.surface, options, session.context())) {
+      tell_regions(session, *complex);
+      file.surface = std::move(complex->surface);
+    }
+  } catch (const LeakError& leak) {
+    throw LeakError(fmt::format("{}: {}", a.input.string(), leak.what()), leak.way);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", a.input.string(), error.what()));
+  }
+  return file;
+}
+
+[[noreturn]] void fail_with_way(Session& session, const LeakError& leak) {
+  Json way = Json::array();
+  for (const Vec3 p : leak.way) way.push_back({p.x, p.y, p.z});
+  session.found({{"leak", way}});
+  const std::filesystem::path beside = cavity_neighbour(session.arguments());
+  if (beside.empty() || leak.way.size() < 2) throw leak;
+  write_surface(leak_file(beside), tube_along(leak.way));
+  throw InputError(fmt::format("{}\nThe way through the hole is in {}", leak.what(), leak_file(beside).string()));
+}
+
+}  // namespace
+
+std::filesystem::path leak_file(std::filesystem::path output) {
+  return output.replace_extension(".leak.ply");
+}
+
+SurfaceFile read_domain(Session& session) {
+  try {
+    return session.arguments().bodies.size() > 1 ? read_bodies(session) : read_walls(session);
+  } catch (const LeakError& leak) {
+    fail_with_way(session, leak);
+  }
+}
+
+}  // namespace octafront::cli

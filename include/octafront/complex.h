@@ -1,0 +1,76 @@
+#pragma once
+
+#include <octafront/error.h>
+#include <octafront/run_context.h>
+#include <octafront/surface_mesh.h>
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace octafront {
+
+// From triangles as files have them to a complex of several regions (SurfaceMesh::sides). The cells into which the
+// triangles divide space are found exactly; triangles that cross are divided where they do.
+
+/// A region by a point in it.
+struct RegionSeed {
+  std::string name;
+  Vec3 at;
+};
+
+/// How cells become regions.
+struct ComplexOptions {
+  std::vector<RegionSeed> regions;  ///< the cells of seeds with one name are one region
+  std::vector<Vec3> voids;          ///< the cells of these points stay empty
+  /// kAuto: every enclosed cell of a surface with inner walls is a region; what is a plain closed surface stays one.
+  /// kRegions: every enclosed cell, also where walls are doubled or cross. kMerge: all together are one region.
+  enum class Cells { kAuto, kRegions, kMerge };
+  Cells cells = Cells::kAuto;
+  /// Closed shells inside others. kByDirection: a shell that faces inward is a cavity, one that faces outward a region.
+  enum class Nested { kByDirection, kCavity, kRegion };
+  Nested nested = Nested::kByDirection;
+  /// Of several bodies: what is nearer than this comes together; input units, >= 0. Without a value a millionth of the
+  /// diagonal, which is what single precision leaves of equal coordinates. 0: exactly as they are.
+  std::optional<double> tolerance;
+};
+
+/// A complex and what was done to get it.
+struct Complex {
+  SurfaceMesh surface;          ///< with sides and names of regions; `source` counts the faces of all inputs through
+  std::vector<double> volumes;  ///< per region
+  std::vector<std::string> notes;
+};
+
+/// Regions that should be apart, or inside, are joined through a hole between the walls.
+class LeakError : public InputError {
+ public:
+  LeakError(const std::string& what, std::vector<Vec3> through) : InputError(what), way(std::move(through)) {}
+  std::vector<Vec3> way;  ///< a polygon from one to the other that goes through no wall
+};
+
+/// The complex of the walls of one surface; nullopt if it is a plain one, to be meshed as it is: closed without inner
+/// walls, with cavities or several bodies or without, or not closed or crossing, which repair then says. Faces with one
+/// region on both sides stay as sheets. A surface with sides is a complex already; options then only name and empty its
+/// regions. Throws InputError, LeakError, Cancelled.
+std::optional<Complex> complex_of_walls(const SurfaceMesh& surface, const ComplexOptions& options = {},
+                                        const RunContext& context = {});
+
+/// One of several bodies.
+struct Body {
+  std::string name;     ///< of its region
+  SurfaceMesh surface;  ///< closed, free of self-intersections, after repair; patches keep their names
+};
+
+/// The complex of several bodies: where they touch they share faces, where they overlap the later one has its way, and
+/// gaps below the tolerance close: vertices of later bodies move onto earlier ones. Seeds name and empty what no body
+/// fills. A body that later ones cover all over is refused. Throws InputError, with the name of the body at fault;
+/// Cancelled.
+Complex join_bodies(const std::vector<Body>& bodies, const ComplexOptions& options = {},
+                    const RunContext& context = {});
+
+/// A thin tube along a polygon, to look at; its radius is a fraction of the polygon's extent.
+SurfaceMesh tube_along(const std::vector<Vec3>& way);
+
+}  // namespace octafront

@@ -1,0 +1,223 @@
+#include "arrangement/arrange.h"
+
+#include <octafront/error.h>
+
+#include "arrangement/divide.h"
+#include "core/wording.h"
+#include "geometry/predicates.h"
+#include "geometry/self_intersection.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numeric>
+#include <unordered_map>
+
+#include <fmt/core.h>
+
+namespace octafront {
+namespace {
+
+using arrangement::Divided;
+using arrangement::PointTable;
+
+/// How many times rounding may make new crossings, and from which pass on points are rounded to a grid that grows
+/// coarser: nearly all input ends in two or three passes.
+constexpr int kMostPasses = 24, kFirstGridPass = 4;
+/// What does not settle must not grow without end either.
+constexpr std::size_t kMostGrowth = 8;
+
+/// Triangles on their way, each with its origins in the input.
+struct Soup {
+  std::vector<Vec3> points;
+  std::vector<Triangle> triangles;
+  std::vector<std::vector<Origin>> origins;
+};
+
+bool lexicographic(Vec3 a, Vec3 b) {
+  return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
+}
+
+/// The first of equal points (0 equals -0), for each point.
+std::vector<std::uint32_t> first_of_equal(const std::vector<Vec3>& points) {
+  std::vector<std::uint32_t> order(points.size()), first(points.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return lexicographic(points[a], points[b]) || (points[a] == points[b] && a < b);
+  });
+  for (std::size_t i = 0; i < order.size(); ++i)
+    first[order[i]] = i > 0 && points[order[i]] == points[order[i - 1]] ? first[order[i - 1]] : order[i];
+  return first;
+}
+
+/// Merges equal points, drops triangles without area; returns how many these were.
+std::uint64_t tidy(Soup& soup) {
+  const std::vector<std::uint32_t> first = first_of_equal(soup.points);
+  std::uint64_t flat = 0;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < soup.triangles.size(); ++i) {
+    Triangle t = soup.triangles[i];
+    for (VertexIndex& v : t) v = first[v];
+    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0] ||
+        collinear(soup.points[t[0]], soup.points[t[1]], soup.points[t[2]])) {
+      ++flat;
+      continue;
+    }
+    soup.triangles[kept] = t;
+    if (kept != i) soup.origins[kept] = std::move(soup.origins[i]);
+    ++kept;
+  }
+  soup.triangles.resize(kept);
+  soup.origins.resize(kept);
+  return flat;
+}
+
+/// Origins of a pass in terms of the input; several ways to one face add up to its own, or to none in all.
+std::vector<Origin> composed(const std::vector<Origin>& of_pass, const Soup& before) {
+  std::vector<Origin> all;
+  for (const Origin& o : of_pass)
+    for (const Origin& p : before.origins[o.triangle]) all.push_back({p.triangle, p.reversed != o.reversed});
+  std::sort(all.begin(), all.end(), [](const Origin& a, const Origin& b) {
+    return std::pair(a.triangle, a.reversed) < std::pair(b.triangle, b.reversed);
+  });
+  return all;
+}
+
+class Arranger {
+ public:
+  Arranger(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles, const RunContext& context)
+      : context_(context), inputs_(points.size()) {
+    soup_.points = points;
+    soup_.triangles = triangles;
+    for (std::uint32_t t = 0; t < triangles.size(); ++t) soup_.origins.push_back({{t, false}});
+    Box3 box;
+    for (const Vec3 p : points) box.add(p);
+    diagonal_ = box.diagonal();
+  }
+
+  Arrangement result() {
+    result_.degenerate = tidy(soup_);
+    for (;; ++result_.passes) {
+      const auto pairs = self_intersections(soup_.points, soup_.triangles, kAll, context_);
+      if (result_.passes == 0) result_.crossing_pairs = pairs.size();
+      if (pairs.empty()) return finished();
+      const bool grows = first_pass_ > 0 && soup_.triangles.size() > kMostGrowth * first_pass_;
+      if (result_.passes == kMostPasses || grows) give_up(pairs);
+      pass(pairs);
+      if (result_.passes == 0) first_pass_ = soup_.triangles.size();
+    }
+  }
+
+ private:
+  static constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
+
+  void pass(const std::vector<std::array<std::uint32_t, 2>>& pairs) {
+    PointTable table(soup_.points);
+    Divided divided = arrangement::divide(table, soup_.triangles, pairs, context_);
+    Soup next;
+    next.points = soup_.points;
+    std::unordered_map<std::uint32_t, VertexIndex> number;
+    for (Triangle& t : divided.triangles)
+      for (VertexIndex& v : t) {
+        if (v < table.inputs()) continue;
+        const auto [at, is_new] = number.try_emplace(v, static_cast<VertexIndex>(next.points.size()));
+        if (is_new) next.points.push_back(table.place(v).at);
+        v = at->second;
+      }
+    next.triangles = std::move(divided.triangles);
+    for (const std::vector<Origin>& of_pass : divided.origins) next.origins.push_back(composed(of_pass, soup_));
+    soup_ = std::move(next);
+    if (result_.passes >= kFirstGridPass) round_to_grid();
+    tidy(soup_);
+  }
+
+  /// Where rounding to doubles goes on making crossings, points that are not the input's go to a grid, or to an input
+  /// point nearby.
+  void round_to_grid() {
+    const double cell = std::ldexp(1.0, std::ilogb(diagonal_) - 50 + 2 * (result_.passes - kFirstGridPass));
+    const auto key = [&](Vec3 p) {
+      return std::array{std::round(p.x / cell), std::round(p.y / cell), std::round(p.z / cell)};
+    };
+    std::map<std::array<double, 3>, VertexIndex> taken;
+    for (VertexIndex v = 0; v < inputs_; ++v) taken.try_emplace(key(soup_.points[v]), v);
+    for (std::size_t v = inputs_; v < soup_.points.size(); ++v) {
+      const std::array<double, 3> k = key(soup_.points[v]);
+      const auto near = taken.find(k);
+      const Vec3 to = near != taken.end() ? soup_.points[near->second] : Vec3{k[0], k[1], k[2]} * cell;
+      result_.largest_move = std::max(result_.largest_move, distance(to, soup_.points[v]));
+      soup_.points[v] = to;
+    }
+  }
+
+  Arrangement finished() {
+    std::vector<std::uint32_t> order(soup_.triangles.size());
+    std::iota(order.begin(), order.end(), 0);
+    const auto first_origin = [&](std::uint32_t t) { return soup_.origins[t].front().triangle; };
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return first_origin(a) < first_origin(b); });
+    drop_unused_points();
+    for (const std::uint32_t t : order) {
+      Triangle triangle = soup_.triangles[t];
+      const bool turn = soup_.origins[t].front().reversed;
+      if (turn) std::swap(triangle[1], triangle[2]);
+      result_.triangles.push_back(triangle);
+      result_.first_origin.push_back(static_cast<std::uint32_t>(result_.origins.size()));
+      for (const Origin& o : soup_.origins[t]) result_.origins.push_back({o.triangle, o.reversed != turn});
+    }
+    result_.first_origin.push_back(static_cast<std::uint32_t>(result_.origins.size()));
+    result_.points = std::move(soup_.points);
+    result_.new_points = result_.points.size() - inputs_;
+    return std::move(result_);
+  }
+
+  /// Points of earlier passes that nothing uses any more; the input's stay.
+  void drop_unused_points() {
+    std::vector<VertexIndex> number(soup_.points.size(), kNone);
+    for (const Triangle& t : soup_.triangles)
+      for (const VertexIndex v : t) number[v] = 0;
+    std::size_t kept = inputs_;
+    for (std::size_t v = 0; v < soup_.points.size(); ++v) {
+      if (v < inputs_) {
+        number[v] = static_cast<VertexIndex>(v);
+      } else if (number[v] == 0) {
+        soup_.points[kept] = soup_.points[v];
+        number[v] = static_cast<VertexIndex>(kept++);
+      }
+    }
+    soup_.points.resize(kept);
+    for (Triangle& t : soup_.triangles)
+      for (VertexIndex& v : t) v = number[v];
+  }
+
+  [[noreturn]] void give_up(const std::vector<std::array<std::uint32_t, 2>>& pairs) const {
+    std::string places;
+    for (std::size_t i = 0; i < std::min<std::size_t>(pairs.size(), 3); ++i) {
+      const Vec3 p = soup_.points[soup_.triangles[pairs[i][0]][0]];
+      places +=
+          fmt::format("\n  faces {} and {} near ({:.9g}, {:.9g}, {:.9g})", soup_.origins[pairs[i][0]].front().triangle,
+                      soup_.origins[pairs[i][1]].front().triangle, p.x, p.y, p.z);
+    }
+    throw InputError(
+        fmt::format("{} of faces cross again and again when their crossings are rounded to doubles; give "
+                    "detail that fine away before:{}",
+                    counted(pairs.size(), "pair"), places));
+  }
+
+  const RunContext& context_;
+  std::size_t inputs_;
+  double diagonal_ = 0;
+  std::size_t first_pass_ = 0;  ///< triangles behind it
+  Soup soup_;
+  Arrangement result_;
+};
+
+}  // namespace
+
+Arrangement arrange(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
+                    const RunContext& context) {
+  return Arranger(points, triangles, context).result();
+}
+
+}  // namespace octafront

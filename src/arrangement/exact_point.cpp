@@ -1,0 +1,120 @@
+#include "arrangement/exact_point.h"
+
+#include "geometry/predicates.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace octafront::arrangement {
+namespace {
+
+/// Relative error of the rounded coordinates of an exact point, with room for the error of a subtraction.
+constexpr double kRounded = 1.8e-15;
+
+BigFloat det2(const BigFloat& a, const BigFloat& b, const BigFloat& c, const BigFloat& d) {
+  return a * d - b * c;
+}
+
+/// a x b . c of the rows without column `skip`.
+BigFloat minor_without(int skip, const Homogeneous& a, const Homogeneous& b, const Homogeneous& c) {
+  std::array<int, 3> k{};
+  for (int i = 0, n = 0; i < 4; ++i)
+    if (i != skip) k[n++] = i;
+  return a[k[0]] * det2(b[k[1]], b[k[2]], c[k[1]], c[k[2]]) - a[k[1]] * det2(b[k[0]], b[k[2]], c[k[0]], c[k[2]]) +
+         a[k[2]] * det2(b[k[0]], b[k[1]], c[k[0]], c[k[1]]);
+}
+
+ExactPoint rounded(Homogeneous h) {
+  if (h[3].sign() < 0)
+    for (BigFloat& x : h) x = -x;
+  const Vec3 at{quotient(h[0], h[3]), quotient(h[1], h[3]), quotient(h[2], h[3])};
+  return {std::move(h), at};
+}
+
+BigFloat difference(double a, double b) {
+  return BigFloat(a) - BigFloat(b);
+}
+
+/// The two coordinates of a place that are seen along an axis, and w.
+std::array<BigFloat, 3> seen_along(int axis, const Place& p) {
+  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+  if (p.exact) return {(*p.exact)[u], (*p.exact)[v], (*p.exact)[3]};
+  return {BigFloat(p.at[u]), BigFloat(p.at[v]), BigFloat(1.0)};
+}
+
+int orient_exact(int axis, const Place& a, const Place& b, const Place& c) {
+  const auto x = seen_along(axis, a), y = seen_along(axis, b), z = seen_along(axis, c);
+  const BigFloat det =
+      x[0] * det2(y[1], y[2], z[1], z[2]) - x[1] * det2(y[0], y[2], z[0], z[2]) + x[2] * det2(y[0], y[1], z[0], z[1]);
+  return det.sign();
+}
+
+}  // namespace
+
+Homogeneous homogeneous(const Place& p) {
+  if (p.exact) return *p.exact;
+  return {BigFloat(p.at.x), BigFloat(p.at.y), BigFloat(p.at.z), BigFloat(1.0)};
+}
+
+Homogeneous plane_through(Vec3 a, Vec3 b, Vec3 c) {
+  std::array<BigFloat, 3> u, v;
+  for (int i = 0; i < 3; ++i) {
+    u[i] = difference(b[i], a[i]);
+    v[i] = difference(c[i], a[i]);
+  }
+  Homogeneous plane{det2(u[1], u[2], v[1], v[2]), det2(u[2], u[0], v[2], v[0]), det2(u[0], u[1], v[0], v[1]), {}};
+  plane[3] = -(plane[0] * BigFloat(a.x) + plane[1] * BigFloat(a.y) + plane[2] * BigFloat(a.z));
+  return plane;
+}
+
+Homogeneous plane_along_axis(Vec3 a, Vec3 b, int axis) {
+  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+  Homogeneous plane;
+  plane[u] = -difference(b[v], a[v]);
+  plane[v] = difference(b[u], a[u]);
+  plane[3] = -(plane[u] * BigFloat(a[u]) + plane[v] * BigFloat(a[v]));
+  return plane;
+}
+
+ExactPoint line_meets_plane(Vec3 p, Vec3 q, const Homogeneous& plane) {
+  const auto value = [&](Vec3 r) {
+    return plane[0] * BigFloat(r.x) + plane[1] * BigFloat(r.y) + plane[2] * BigFloat(r.z) + plane[3];
+  };
+  const BigFloat at_p = value(p), at_q = value(q);
+  Homogeneous h;
+  for (int i = 0; i < 3; ++i) h[i] = at_p * BigFloat(q[i]) - at_q * BigFloat(p[i]);
+  h[3] = at_p - at_q;
+  return rounded(std::move(h));
+}
+
+ExactPoint planes_meet(const Homogeneous& a, const Homogeneous& b, const Homogeneous& c) {
+  return rounded(
+      {minor_without(0, a, b, c), -minor_without(1, a, b, c), minor_without(2, a, b, c), -minor_without(3, a, b, c)});
+}
+
+int compare(const Place& a, const Place& b) {
+  for (int i = 0; i < 3; ++i) {
+    const double gap = a.at[i] - b.at[i];
+    const double error = (a.exact || b.exact) ? kRounded * (std::abs(a.at[i]) + std::abs(b.at[i])) : 0;
+    if (std::abs(gap) > error) return gap > 0 ? 1 : -1;
+    if (!a.exact && !b.exact) continue;
+    const Homogeneous p = homogeneous(a), q = homogeneous(b);
+    if (const int sign = det2(p[i], p[3], q[i], q[3]).sign(); sign != 0) return sign;
+  }
+  return 0;
+}
+
+int orient_along(int axis, const Place& a, const Place& b, const Place& c) {
+  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+  if (!a.exact && !b.exact && !c.exact) return orient2d(a.at[u], a.at[v], b.at[u], b.at[v], c.at[u], c.at[v]);
+  const double bu = b.at[u] - a.at[u], bv = b.at[v] - a.at[v], cu = c.at[u] - a.at[u], cv = c.at[v] - a.at[v];
+  const double det = bu * cv - bv * cu;
+  const auto size = [&](const Place& p) { return std::max(std::abs(p.at[u]), std::abs(p.at[v])); };
+  const double error = 2 * kRounded * std::max({size(a), size(b), size(c)});
+  const double bound = error * (std::abs(bu) + std::abs(bv) + std::abs(cu) + std::abs(cv) + 2 * error) +
+                       1e-15 * (std::abs(bu * cv) + std::abs(bv * cu));
+  if (det > bound || det < -bound) return det > 0 ? 1 : -1;
+  return orient_exact(axis, a, b, c);
+}
+
+}  // namespace octafront::arrangement
