@@ -323,7 +323,6 @@ class BoundaryEditor {
   /// Whether input and new triangles lie within the tolerance of each other, by all their parts.
   bool stays_near() {
     const double limit = guide_.tolerance();
-    const auto is_lost = [](Vec3) { return false; };
     const auto finest = [&, part = std::max(kFinePart * limit, kSpacing * mean_edge())](Vec3) { return part; };
     const auto near_input = [&](Vec3 p, double d) { return guide_.tree().is_within(p, d); };
     const auto near_boundary = [&](Vec3 p, double d) {
@@ -340,12 +339,14 @@ class BoundaryEditor {
     const Vec3 around{limit, limit, limit};
     return std::all_of(new_.begin(), new_.end(),
                        [&](const IdTriangle& t) {
-                         return for_each_doubtful_part(t.corners, limit, near_input, finest, is_lost);
+                         return for_each_doubtful_part(t.corners, limit, near_input, finest,
+                                                       [&](Vec3 p) { return near_input(p, limit); });
                        }) &&
-           guide_.tree().for_each_box_near({box.lo - around, box.hi + around},
-                                           [&](std::uint32_t, const TriangleCorners& t) {
-                                             return for_each_doubtful_part(t, limit, near_boundary, finest, is_lost);
-                                           });
+           guide_.tree().for_each_box_near(
+               {box.lo - around, box.hi + around}, [&](std::uint32_t, const TriangleCorners& t) {
+                 return for_each_doubtful_part(t, limit, near_boundary, finest,
+                                               [&](Vec3 p) { return near_boundary(p, limit); });
+               });
   }
 
   bool crosses_nothing() {
