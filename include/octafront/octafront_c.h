@@ -173,6 +173,9 @@ octafront_job* octafront_check(const octafront_mesh* mesh, const char* solver);
 /** -> mesh: in order, as readers do it: inverted tetrahedra turned, unused points dropped, missing boundary faces
  * added, regions and patches counted through. */
 octafront_job* octafront_order_mesh(const octafront_mesh* mesh);
+/** report_page() into a file, .html; `sizes` may be null, `report` is JSON, an object. */
+octafront_job* octafront_write_page(const octafront_mesh* mesh, const octafront_sizes* sizes, const char* report,
+                                    const char* file);
 
 /** Waits for the next event, `seconds` at most, below 0: as long as it takes. Returns its kind. */
 int octafront_job_wait(octafront_job* job, double seconds, octafront_event* event);

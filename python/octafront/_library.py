@@ -74,6 +74,7 @@ _PROTOTYPES = {
     "generate": (_handle, _handle, _handle, _whole), "generate_surface": (_handle, _handle, _handle, _whole),
     "generate_sizes": (_handle, _handle, _handle, _whole), "improve": (_handle, _handle, _handle, _handle, _whole),
     "repair": (_handle, _handle), "check": (_handle, _handle, _text), "order_mesh": (_handle, _handle),
+    "write_page": (_handle, _handle, _handle, _text, _text),
     "job_wait": (_whole, _handle, _number, ctypes.POINTER(Event)), "job_answer": (None, _handle),
     "job_cancel": (None, _handle), "job_free": (None, _handle), "job_status": (_whole, _handle),
     "job_message": (_text, _handle), "job_report": (_text, _handle), "job_take_surface": (_handle, _handle),

@@ -409,6 +409,17 @@ class Meshes(Case):
         self.assertNotIn("<script>", mesh._repr_html_())
         mesh._repr_html_().encode()
 
+    def test_a_page_to_look_at(self):
+        points, triangles = cube()
+        surface = octafront.Surface(points, triangles, patches=np.arange(12) // 6, patch_names=["</script><b>", "\udcff"])
+        page = self.folder / "page.html"
+        octafront.mesh(surface, size=0.3).save_page(page)
+        self.assertNotIn("</script><b>", page.read_text())
+        octafront.Mesh(cube()[0], [[0, 1, 2, 4]]).save_page(page)
+        self.assertIn("<html", page.read_text().lower())
+        with self.assertRaises(octafront.OutputError):
+            octafront.mesh(*cube(), size=0.5).save_page(self.folder / "nowhere" / "page.html")
+
     def test_repr(self):
         mesh = octafront.mesh(*cube(), size=0.4)
         self.assertIn(f"{len(mesh)} tetrahedra", repr(mesh))
