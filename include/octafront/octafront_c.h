@@ -119,6 +119,8 @@ int octafront_options_point_sizes(octafront_options* options, const double* rows
 /** The same two from files (read_size_regions, read_point_sizes of octafront/io.h). */
 int octafront_options_regions_file(octafront_options* options, const char* file);
 int octafront_options_point_sizes_file(octafront_options* options, const char* file);
+/** SizeOptions::named: the size of the region, patch or curve of that name. */
+int octafront_options_size_of(octafront_options* options, const char* name, size_t length, double size);
 /** SizeOptions::field. */
 int octafront_options_field(octafront_options* options, const octafront_sizes* sizes);
 /** Jobs with these options ask for sizes, or tell of passes, by events. */

@@ -149,7 +149,7 @@ def formats() -> list[dict[str, Any]]: ...
 
 FURTHER = {
     "regions": "Places | None = None", "point_sizes": "npt.ArrayLike | Path | None = None",
-    "size_field": "SizeField | Path | None = None",
+    "size_of": "Mapping[str, float] | None = None", "size_field": "SizeField | Path | None = None",
     "after_pass": "Callable[[str, dict[str, Any]], object] | None = None", "progress": "Progress | None = None",
     "threads": "int = 0",
 }

@@ -66,6 +66,7 @@ _PROTOTYPES = {
     "options_new": (_handle,), "options_free": (None, _handle), "options_set": (_whole, _handle, _text),
     "options_regions": (_whole, _handle, _pointer, _size), "options_point_sizes": (_whole, _handle, _pointer, _size),
     "options_regions_file": (_whole, _handle, _text), "options_point_sizes_file": (_whole, _handle, _text),
+    "options_size_of": (_whole, _handle, _text, _size, _number),
     "options_field": (_whole, _handle, _handle), "options_ask_sizes": (None, _handle),
     "options_tell_passes": (None, _handle),
     "read_surface": (_handle, _text), "write_surface": (_handle, _handle, _text),

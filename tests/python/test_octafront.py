@@ -155,6 +155,14 @@ class Sizes(Case):
         file.write_text("0, 0, 0, 0.05\n")
         self.assertGreater(len(octafront.mesh(*cube(), size=0.4, regions=file)), plain)
 
+    def test_sizes_by_name(self):
+        points, triangles = cube()
+        surface = octafront.Surface(points, triangles, patches=np.arange(12) // 2, patch_names=list("abcdef"))
+        plain = len(octafront.mesh(surface, size=0.4))
+        self.assertGreater(len(octafront.mesh(surface, size=0.4, size_of={"b": 0.1})), 1.5 * plain)
+        with self.assertRaises(octafront.OptionError):
+            octafront.mesh(surface, size=0.4, size_of={"b": -1})
+
     def test_number_of_elements(self):
         self.assertAlmostEqual(len(octafront.mesh(*sphere(), elements=20000)) / 20000, 1, delta=0.15)
 
