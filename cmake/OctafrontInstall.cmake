@@ -19,7 +19,7 @@ if(TARGET octafront_cli)
 endif()
 
 # The manual page and what completes commands in shells, which the tool writes itself.
-if(TARGET octafront_cli AND EXISTS ${PROJECT_SOURCE_DIR}/cli/completion.cpp)
+if(TARGET octafront_cli)
   set(shell_dir ${PROJECT_BINARY_DIR}/shell)
   add_custom_command(OUTPUT ${shell_dir}/octafront.1 ${shell_dir}/octafront.bash ${shell_dir}/_octafront ${shell_dir}/octafront.fish
     COMMAND ${CMAKE_COMMAND} -E make_directory ${shell_dir}

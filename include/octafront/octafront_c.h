@@ -119,6 +119,8 @@ int octafront_options_point_sizes(octafront_options* options, const double* rows
 /** The same two from files (read_size_regions, read_point_sizes of octafront/io.h). */
 int octafront_options_regions_file(octafront_options* options, const char* file);
 int octafront_options_point_sizes_file(octafront_options* options, const char* file);
+/** SizeOptions::named: the size of the region, patch or curve of that name. */
+int octafront_options_size_of(octafront_options* options, const char* name, size_t length, double size);
 /** SizeOptions::field. */
 int octafront_options_field(octafront_options* options, const octafront_sizes* sizes);
 /** Jobs with these options ask for sizes, or tell of passes, by events. */
@@ -173,6 +175,9 @@ octafront_job* octafront_check(const octafront_mesh* mesh, const char* solver);
 /** -> mesh: in order, as readers do it: inverted tetrahedra turned, unused points dropped, missing boundary faces
  * added, regions and patches counted through. */
 octafront_job* octafront_order_mesh(const octafront_mesh* mesh);
+/** report_page() into a file, .html; `sizes` may be null, `report` is JSON, an object. */
+octafront_job* octafront_write_page(const octafront_mesh* mesh, const octafront_sizes* sizes, const char* report,
+                                    const char* file);
 
 /** Waits for the next event, `seconds` at most, below 0: as long as it takes. Returns its kind. */
 int octafront_job_wait(octafront_job* job, double seconds, octafront_event* event);

@@ -26,7 +26,7 @@ struct OptionInfo {
 using OptionValue = std::variant<std::monostate, bool, std::int64_t, double, std::string>;
 
 /// Every option that one value sets, in the order of Options. What takes more has no row: SizeOptions::regions,
-/// point_sizes, field and callback, ImproveOptions::after_pass.
+/// point_sizes, named, field and callback, ImproveOptions::after_pass.
 const std::vector<OptionInfo>& option_table();
 
 /// The value of an option. Throws OptionError if there is none of that name.

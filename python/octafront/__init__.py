@@ -58,7 +58,7 @@ def mesh_file(path, **keywords):
 def _meshed(surface, settings, path=None):
     job = _Job("generate", surface._handle, settings.options, settings.threads, **settings.functions())
     report = _run(job, path)
-    return Mesh._of(job.take("mesh"), report)
+    return Mesh._of(job.take("mesh"), report, job.take("sizes"))
 
 
 def _run(job, path=None):

@@ -55,14 +55,14 @@ class Mesh:
         report = job.run()
         self._take(Handle("mesh", job.take("mesh")), report)
 
-    def _take(self, handle, report):
-        self._handle, self._quality = handle, report.get("quality")
+    def _take(self, handle, report, sizes=None):
+        self._handle, self._quality, self._sizes = handle, report.get("quality"), sizes
         self.report = report
 
     @classmethod
-    def _of(cls, address, report):
+    def _of(cls, address, report, sizes=None):
         mesh = cls.__new__(cls)
-        mesh._take(Handle("mesh", address), report)
+        mesh._take(Handle("mesh", address), report, sizes and Handle("sizes", sizes))
         return mesh
 
     @classmethod
@@ -207,6 +207,12 @@ class Mesh:
         OutputError."""
         job = Job("write_mesh", self._handle, file_of(path), bytes_of(format or ""))
         return job.run()["notes"]
+
+    def save_page(self, path):
+        """Writes a web page that shows the mesh in 3D and its report: one file, which opens without a network. Elements can
+        be coloured by their size against the one wanted if mesh() made it. Raises OutputError."""
+        report = {"quality": self.quality, **self.report}
+        Job("write_page", self._handle, self._sizes, json.dumps(report).encode("utf-8", "replace"), file_of(path)).run()
 
     def boundary(self):
         """The boundary as a Surface, with its patches."""

@@ -11,7 +11,7 @@ import os
 import textwrap
 
 from . import errors
-from ._library import Handle, call, demand, file_of, option_table, pointer
+from ._library import Handle, bytes_of, call, demand, file_of, option_table, pointer
 from ._numpy import np
 
 # Beside the table: name, which functions heed it, what it is.
@@ -22,6 +22,8 @@ _FURTHER = [
      "a file with either"),
     ("point_sizes", "mesh surface size",
      "Sizes at the vertices of the surface: an array (n, 4) of points and sizes, or a file: VTU, VTP, a table"),
+    ("size_of", "mesh surface size",
+     "{name: edge length} of regions (their boundary and inside), patches and curves, by their names"),
     ("size_field", "mesh surface size", "All sizes: a SizeField, or a file that one wrote; alone"),
     ("after_pass", "mesh improve", "after_pass(name, worst), told of every pass of improvement"),
     ("progress", "mesh surface size improve",
@@ -76,6 +78,9 @@ class Settings:
             if _is_file(field):
                 field = SizeField.read(field, gradation=given.get("gradation", 0.2))
             demand("options_field", self.options, field._handle)
+        for name, size in dict(given.pop("size_of", {})).items():
+            raw = bytes_of(name)
+            demand("options_size_of", self.options, raw, len(raw), float(size))
         for name in ("regions", "point_sizes"):
             if name in given:
                 self._set_places(name, given.pop(name))

@@ -134,6 +134,10 @@ int octafront_options_point_sizes_file(octafront_options* options, const char* f
   return guarded([&] { options->options.size.point_sizes = read_point_sizes(file); });
 }
 
+int octafront_options_size_of(octafront_options* options, const char* name, size_t length, double size) {
+  return guarded([&] { options->options.size.named.push_back({std::string(name, length), size}); });
+}
+
 int octafront_options_field(octafront_options* options, const octafront_sizes* sizes) {
   return guarded([&] { options->options.size.field = sizes->field; });
 }

@@ -5,6 +5,7 @@
 #include <octafront/improve_existing.h>
 #include <octafront/io.h>
 #include <octafront/repair.h>
+#include <octafront/report_page.h>
 #include <octafront/second_order.h>
 #include <octafront/solver_checks.h>
 #include <octafront/validity.h>
@@ -311,6 +312,15 @@ octafront_job* octafront_repair(const octafront_surface* surface) {
 octafront_job* octafront_check(const octafront_mesh* mesh, const char* solver) {
   return started([mesh, solver = std::string(solver != nullptr ? solver : "")](octafront_job& job) {
     check(job, mesh->mesh, solver);
+  });
+}
+
+octafront_job* octafront_write_page(const octafront_mesh* mesh, const octafront_sizes* sizes, const char* report,
+                                    const char* file) {
+  return started([mesh, sizes, report = std::string(report), file = std::string(file)](octafront_job& job) {
+    check_text_target(file);
+    require_indices(mesh->mesh);
+    write_text(file, report_page(mesh->mesh, sizes != nullptr ? &sizes->field : nullptr, report, job.context()));
   });
 }
 

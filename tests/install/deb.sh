@@ -24,6 +24,9 @@ if apt-get --version >/dev/null 2>&1 && [ "$(id -u)" -eq 0 ]; then
   apt-get -s --no-install-recommends install "./$1" "./$2" >/dev/null
 fi
 root/usr/bin/octafront --version
+grep -q '^.TH OCTAFRONT' root/usr/share/man/man1/octafront.1
+bash -n root/usr/share/bash-completion/completions/octafront
+for file in zsh/vendor-completions/_octafront fish/vendor_completions.d/octafront.fish; do test -s "root/usr/share/$file"; done
 cmake -S "$consumer" -B consumer -DCMAKE_BUILD_TYPE="$config" -DCMAKE_PREFIX_PATH="$scratch/root/usr" >/dev/null
 cmake --build consumer >/dev/null
 consumer/consumer "$scratch/sphere.vtu"

@@ -155,6 +155,14 @@ class Sizes(Case):
         file.write_text("0, 0, 0, 0.05\n")
         self.assertGreater(len(octafront.mesh(*cube(), size=0.4, regions=file)), plain)
 
+    def test_sizes_by_name(self):
+        points, triangles = cube()
+        surface = octafront.Surface(points, triangles, patches=np.arange(12) // 2, patch_names=list("abcdef"))
+        plain = len(octafront.mesh(surface, size=0.4))
+        self.assertGreater(len(octafront.mesh(surface, size=0.4, size_of={"b": 0.1})), 1.5 * plain)
+        with self.assertRaises(octafront.OptionError):
+            octafront.mesh(surface, size=0.4, size_of={"b": -1})
+
     def test_number_of_elements(self):
         self.assertAlmostEqual(len(octafront.mesh(*sphere(), elements=20000)) / 20000, 1, delta=0.15)
 
@@ -408,6 +416,17 @@ class Meshes(Case):
         self.assertEqual(mesh.names["patches"], names)
         self.assertNotIn("<script>", mesh._repr_html_())
         mesh._repr_html_().encode()
+
+    def test_a_page_to_look_at(self):
+        points, triangles = cube()
+        surface = octafront.Surface(points, triangles, patches=np.arange(12) // 6, patch_names=["</script><b>", "\udcff"])
+        page = self.folder / "page.html"
+        octafront.mesh(surface, size=0.3).save_page(page)
+        self.assertNotIn("</script><b>", page.read_text())
+        octafront.Mesh(cube()[0], [[0, 1, 2, 4]]).save_page(page)
+        self.assertIn("<html", page.read_text().lower())
+        with self.assertRaises(octafront.OutputError):
+            octafront.mesh(*cube(), size=0.5).save_page(self.folder / "nowhere" / "page.html")
 
     def test_repr(self):
         mesh = octafront.mesh(*cube(), size=0.4)
