@@ -97,6 +97,21 @@ class Meshing(Case):
         np.testing.assert_array_equal(surface.sides, np.tile([octafront.OUTSIDE, 0], (12, 1)))
         np.testing.assert_array_equal(octafront.Surface(points, triangles).sides, surface.sides)
 
+    def test_two_regions(self):
+        points, triangles = cube()
+        upper = points + [0, 0, 1]
+        walls = np.vstack([triangles, triangles[[t for t in range(12) if t not in (0, 1)]] + 8])
+        # The top of the lower cube is the bottom of the upper one.
+        sides = np.array([[-1, 0]] * 12 + [[-1, 1]] * 10)
+        sides[[2, 3]] = [1, 0]
+        surface = octafront.Surface(np.vstack([points, upper]), walls, sides=sides, region_names=["low", "high"])
+        mesh = octafront.mesh(surface, size=0.3)
+        self.assertEqual(mesh.names["regions"], ["low", "high"])
+        heights = mesh.points[mesh.tets].mean(axis=1)[:, 2]
+        np.testing.assert_array_equal(mesh.regions, heights > 1)
+        self.assertTrue((mesh.points[mesh.interfaces][..., 2] == 1).all())
+        self.assertGreater(len(mesh.interfaces), 10)
+
     def test_second_order(self):
         mesh = octafront.mesh(*sphere(), size=0.4, order=2)
         self.assertEqual((mesh.order, mesh.mid_nodes.shape), (2, (len(mesh.tets), 6)))
