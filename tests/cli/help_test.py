@@ -51,8 +51,9 @@ class Help(unittest.TestCase):
         self.assertIn("did you mean mesh?", self.run_cli("help", "mehs", status=2).err)
 
     def test_examples_are_valid(self):
-        for part in ("part.stl", "scan.ply", "a.stl", "b.ply", "part.obj"):
+        for part in ("part.stl", "scan.ply", "a.stl", "b.ply", "part.obj", "plate.stl"):
             shutil.copy(BRACKET, self.dir / part)
+        self.run_cli("surface", SAMPLES / "gear.obj", "--keep-surface", "-o", self.dir / "bolt.stl")
         self.run_cli("mesh", BRACKET, "-o", self.dir / "in.msh", "--size", 6)
         for to in ("in.vtu", "part.msh", "part.inp", "in.med"):
             self.run_cli("convert", self.dir / "in.msh", "-o", self.dir / to)
