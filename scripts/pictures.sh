@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Makes the pictures of the README anew: three meshes, cut open, elements coloured by quality; and those of
-# docs/second-order.md; and the worst ten of docs/derived-status.md, each around its worst element.
+# docs/second-order.md and docs/complex.md; and the worst ten of docs/derived-status.md, each around its worst element.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/lib/apt.sh
@@ -19,6 +19,8 @@ picture bunny models/clean/bunny00.off "--elements 60000" "--cut 0,0,1 --keep 0.
 picture fandisk models/clean/fandisk_large.off "--elements 60000" "--cut 0,1,0 --up 0,0,1 --keep 0.6 --view 0.45,1,0.5"
 picture first-order samples/torus_knot.ply "--size 4 --order 1" "--keep 1.1 --no-edges --size 700 560 --view 0.3,0.4,1"
 picture second-order samples/torus_knot.ply "--size 4 --order 2" "--keep 1.1 --no-edges --size 700 560 --view 0.3,0.4,1"
+scripts/make-complexes.sh "$work/complexes"
+picture complex "$work/complexes/spheres.ply" "" "--regions --size 700 560 --keep 0.55"
 
 meshes=()
 for model in $(awk '/^## Sizes: 100 k/ { exit } /^\| [^ ]*\.[a-z]+ \|/ { print $2 }' docs/derived-status.md); do

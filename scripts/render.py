@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Draws a mesh with a cut, elements coloured by quality: render.py MESH.vtu PICTURE.png [--cut X,Y,Z] [--view X,Y,Z].
+"""Draws a mesh with a cut, elements coloured by quality, or with --regions by the region that they are in:
+render.py MESH.vtu PICTURE.png [--cut X,Y,Z] [--view X,Y,Z].
 
 Whole elements on one side of the cutting plane are shown, none is sliced. Needs the Debian packages python3-vtk9 and,
 where there is no display, xvfb (run under xvfb-run).
@@ -54,16 +55,28 @@ def colours():
     return table
 
 
-def skin_of(cells, edges):
-    """The skin of the elements, coloured by quality."""
+def colours_of_regions(count):
+    # Okabe and Ito's palette, which colour-blind eyes tell apart; the first region, often a matrix, is pale.
+    palette = [(0.85, 0.85, 0.82), (0.34, 0.71, 0.91), (0.9, 0.62, 0), (0, 0.62, 0.45), (0.8, 0.47, 0.65), (0, 0.45, 0.7), (0.84, 0.37, 0)]
+    table = vtk.vtkLookupTable()
+    table.SetNumberOfTableValues(count)
+    table.SetTableRange(0, max(1, count - 1))
+    for region in range(count):
+        table.SetTableValue(region, *palette[region and 1 + (region - 1) % (len(palette) - 1)], 1)
+    return table
+
+
+def skin_of(cells, edges, regions=False):
+    """The skin of the elements, coloured by quality or region."""
     skin = vtk.vtkGeometryFilter()
     skin.SetInputData(cells)
     skin.SetNonlinearSubdivisionLevel(3)  # curved elements are drawn curved
     mapper = vtk.vtkPolyDataMapper()
     mapper.SetInputConnection(skin.GetOutputPort())
     mapper.SetScalarModeToUseCellFieldData()
-    mapper.SelectColorArray("beta")
-    mapper.SetLookupTable(colours())
+    mapper.SelectColorArray("region" if regions else "beta")
+    count = 1 + int(cells.GetCellData().GetArray("region").GetRange()[1]) if regions else 0
+    mapper.SetLookupTable(colours_of_regions(count) if regions else colours())
     mapper.UseLookupTableScalarRangeOn()
     actor = vtk.vtkActor()
     actor.SetMapper(mapper)
@@ -74,8 +87,17 @@ def skin_of(cells, edges):
     return actor
 
 
-def scene(cells, edges):
-    actor = skin_of(cells, edges)
+def scene(cells, edges, regions):
+    actor = skin_of(cells, edges, regions)
+    renderer = vtk.vtkRenderer()
+    renderer.SetBackground(1, 1, 1)
+    renderer.AddActor(actor)
+    if not regions:
+        renderer.AddActor2D(scale_of(actor))
+    return renderer
+
+
+def scale_of(actor):
     bar = vtk.vtkScalarBarActor()
     bar.SetLookupTable(actor.GetMapper().GetLookupTable())
     bar.SetTitle("beta")
@@ -88,11 +110,7 @@ def scene(cells, edges):
     for text in (bar.GetTitleTextProperty(), bar.GetLabelTextProperty()):
         text.SetColor(0.1, 0.1, 0.1)
         text.ShadowOff()
-    renderer = vtk.vtkRenderer()
-    renderer.SetBackground(1, 1, 1)
-    renderer.AddActor(actor)
-    renderer.AddActor2D(bar)
-    return renderer
+    return bar
 
 
 def main():
@@ -105,11 +123,12 @@ def main():
     parser.add_argument("--up", type=vector, default=vector("0,1,0"))
     parser.add_argument("--size", type=int, nargs=2, default=(1000, 800))
     parser.add_argument("--no-edges", action="store_true")
+    parser.add_argument("--regions", action="store_true", help="colour by region")
     args = parser.parse_args()
     normal = args.cut / np.linalg.norm(args.cut)
     view = args.view if args.view is not None else normal + 0.35 * np.cross(args.up, normal) + 0.3 * args.up
 
-    renderer = scene(cells_behind(read_tets(args.mesh), normal, args.keep), not args.no_edges)
+    renderer = scene(cells_behind(read_tets(args.mesh), normal, args.keep), not args.no_edges, args.regions)
     window = vtk.vtkRenderWindow()
     window.SetOffScreenRendering(1)
     window.SetMultiSamples(8)
