@@ -37,13 +37,14 @@ def summary(name, made, failed):
     slowest = max(made, key=lambda r: r["us"])
     tets, low = sum(r["tets"] for r in made), sum(r["low_free"] for r in made)
     free = [r for r in made if r["poor_free"]]
-    beyond = sum(r["hausdorff"] > 0.5 for r in made)
+    beyond = sorted((r for r in made if r["hausdorff"] > 0.5), key=lambda r: -r["hausdorff"])
+    farthest = ", ".join(f"{r['model']} {r['hausdorff']:.2f}" for r in beyond[:10])
     return "\n".join([
         f"**{name}**: {len(made) - sum(bool(r['defect']) for r in made)} of {len(made) + len(failed)} valid.",
         f"Elements below β .2 or 10°: {sum(r['poor'] for r in made):.0f} on {sum(r['poor'] > 0 for r in made)} models, of these "
         f"not forced by the input: **{sum(r['poor_free'] for r in free):.0f} on {len(free)}**.",
         f"Below .4 and not forced: {low:.0f} of {tets:,} elements, {1e5 * low / tets:.2f} in 100,000.",
-        f"Hausdorff distance above .5 % of the diagonal: {beyond} models.",
+        f"Hausdorff distance above .5 % of the diagonal: {len(beyond)} models{': ' if beyond else ''}{farthest}.",
         f"CPU time per input triangle and element: median {median:.1f} µs, the slowest {slowest['us'] / median:.1f} times that "
         f"({slowest['model']}, {slowest['cpu']:.1f} s).",
         f"Places where the input's own triangles stay: {sum(r['left'] for r in made):.0f} on {sum(r['left'] > 0 for r in made)} models.",

@@ -320,33 +320,38 @@ class BoundaryEditor {
     return sum / static_cast<double>(old_.size());
   }
 
-  /// Whether input and new triangles lie within the tolerance of each other, by all their parts.
+  static bool is_near(Vec3 p, double d, const TriangleCorners& t) {
+    return squared_distance(p, closest_point_on_triangle(p, t[0], t[1], t[2])) < d * d;
+  }
+
+  /// Whether input and new triangles lie within the tolerance of each other, by all their parts, or what does not did
+  /// not before.
   bool stays_near() {
     const double limit = guide_.tolerance();
     const auto finest = [&, part = std::max(kFinePart * limit, kSpacing * mean_edge())](Vec3) { return part; };
     const auto near_input = [&](Vec3 p, double d) { return guide_.tree().is_within(p, d); };
-    const auto near_boundary = [&](Vec3 p, double d) {
-      return std::any_of(new_.begin(), new_.end(),
-                         [&](const IdTriangle& t) {
-                           const auto& [a, b, c] = t.corners;
-                           return squared_distance(p, closest_point_on_triangle(p, a, b, c)) < d * d;
-                         }) ||
+    const auto is_whole = [&](const TriangleCorners& t) {
+      return for_each_doubtful_part(t, limit, near_input, finest, [&](Vec3 p) { return near_input(p, limit); });
+    };
+    const auto near_new = [&](Vec3 p, double d) {
+      return std::any_of(new_.begin(), new_.end(), [&](const IdTriangle& t) { return is_near(p, d, t.corners); }) ||
              live_.is_within(p, d, numbers_);
+    };
+    const auto is_kept = [&](Vec3 p) {
+      return near_new(p, limit) ||
+             std::none_of(old_.begin(), old_.end(), [&](const TriangleCorners& t) { return is_near(p, limit, t); });
     };
     Box3 box;
     for (const TriangleCorners& t : old_)
       for (const Vec3 p : t) box.add(p);
     const Vec3 around{limit, limit, limit};
-    return std::all_of(new_.begin(), new_.end(),
-                       [&](const IdTriangle& t) {
-                         return for_each_doubtful_part(t.corners, limit, near_input, finest,
-                                                       [&](Vec3 p) { return near_input(p, limit); });
-                       }) &&
-           guide_.tree().for_each_box_near(
-               {box.lo - around, box.hi + around}, [&](std::uint32_t, const TriangleCorners& t) {
-                 return for_each_doubtful_part(t, limit, near_boundary, finest,
-                                               [&](Vec3 p) { return near_boundary(p, limit); });
-               });
+    if (!guide_.tree().for_each_box_near({box.lo - around, box.hi + around},
+                                         [&](std::uint32_t, const TriangleCorners& t) {
+                                           return for_each_doubtful_part(t, limit, near_new, finest, is_kept);
+                                         }))
+      return false;
+    return std::all_of(new_.begin(), new_.end(), [&](const IdTriangle& t) { return is_whole(t.corners); }) ||
+           !std::all_of(old_.begin(), old_.end(), is_whole);
   }
 
   bool crosses_nothing() {
