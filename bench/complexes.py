@@ -20,10 +20,10 @@ from peers import complexes, tetgen  # noqa: E402
 from peers.process import finish, run_measured  # noqa: E402
 
 MODELS = ["crack", "buried_crack", "edge", "point", "layers", "gears", "shells", "wire", "spheres", "foam_200_1", "planes_20_1"]
-CURVED = {"gears", "shells", "wire", "spheres"}  # whose walls a triangulation anew need not follow exactly
+CURVED = {"gears", "shells", "wire", "spheres"}  # a triangulation anew cuts across them, so volumes are shown, not judged
 DELAUNAY = 1
 OURS = "Octafront"
-EXACT = 1e-9
+EXACT = 1e-9  # of the volume of each region by itself
 
 
 def ours(build, complex_file, folder, timeout, size, keep):
@@ -79,7 +79,7 @@ def compare(build, folder, names, elements, timeout, save):
         subprocess.run([build / "cli/octafront", "surface", given, "-o", walls, "--size", f"{size:.9g}", "-q"], check=True)
         of_walls = complexes.volumes_of_sides(*complexes.read_ply(walls))
         for how, source, volumes in (("anew", given, expected), ("kept", walls, of_walls)):
-            tolerance = 0.02 if how == "anew" and name in CURVED else EXACT
+            tolerance = math.inf if how == "anew" and name in CURVED else EXACT
             for mesher, run in meshers(build).items():
                 row = {"model": name, "surface": how, "mesher": mesher, "size": size, "expected_regions": len(volumes)}
                 row |= judged(build, run, source, size, how == "kept", volumes, timeout)

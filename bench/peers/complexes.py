@@ -42,14 +42,14 @@ def write_poly(path, points, triangles):
 
 
 def volumes_of_sides(points, triangles, sides):
-    """{region: volume} by the divergence theorem."""
-    volumes = {}
+    """{region: volume} by the divergence theorem, each seen from a vertex of its own: far from it tiny regions would cancel."""
+    origins, volumes = {}, {}
     for t, (front, back) in zip(triangles, sides):
-        part = triple(*(points[v] for v in t)) / 6
-        if front != back:
-            volumes[back] = volumes.get(back, 0.0) + part
-            volumes[front] = volumes.get(front, 0.0) - part
-    volumes.pop(-1, None)
+        for region, sign in ((back, 1), (front, -1)):
+            if region >= 0 and front != back:
+                origin = origins.setdefault(region, points[t[0]])
+                part = triple(*(minus(points[v], origin) for v in t)) / 6
+                volumes[region] = volumes.get(region, 0.0) + sign * part
     return volumes
 
 
