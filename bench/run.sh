@@ -9,6 +9,7 @@
 #   bench/run.sh elements    --elements N met? prediction, sizes in the volume          -> docs/benchmarks.md
 #   bench/run.sh volume      kept surfaces up to 10 M elements, against TetGen, HXT and Netgen -> docs/volume-bench.md
 #   bench/run.sh peers       surfaces kept and made anew, against TetGen, Gmsh, Netgen and CGAL -> build/release/experiments/peers.json
+#   bench/run.sh complexes   several regions in one mesh, against TetGen and Gmsh       -> docs/complex.md
 #   bench/run.sh improve     improvement against its targets, never worse, start meshes of others -> docs/improve-bench.md
 #   bench/run.sh formats     how fast meshes are written, every format beside a plain write -> docs/formats-bench.md
 #   bench/run.sh second_order   all clean models, balls, tori, cylinders: proven? how true? at what cost? -> docs/second-order.md
@@ -18,20 +19,24 @@ cd "$(dirname "$0")/.."
 source scripts/lib/apt.sh
 
 case ${1:-} in
-  status | derived | pipeline | surface | elements | volume | peers | improve | formats | second_order | dry_run) ;;
-  *) sed -n '2,16s/^# \{0,1\}//p' "$0"; exit 2 ;;
+  status | derived | pipeline | surface | elements | volume | peers | complexes | improve | formats | second_order | dry_run) ;;
+  *) sed -n '2,17s/^# \{0,1\}//p' "$0"; exit 2 ;;
 esac
 need_packages "${build_packages[@]}" python3
 [ "$1" != surface ] || need_packages gmsh netgen libcgal-dev libgmp-dev libmpfr-dev
 [ "$1" != volume ] || need_packages "${peer_packages[@]}"
 [ "$1" != improve ] || need_packages "${peer_packages[@]}"
 [ "$1" != peers ] || need_packages "${peer_packages[@]}" libcgal-dev libgmp-dev libmpfr-dev libboost-dev
-[ "$1" = formats ] || [ -d models/clean ] || scripts/get-models.sh --ct
-cmake --preset release -DOCTAFRONT_BUILD_TESTS=OFF >/dev/null
+[ "$1" != complexes ] || need_packages "${test_packages[@]}" tetgen gmsh python3-gmsh
+[ "$1" = formats ] || [ "$1" = complexes ] || [ -d models/clean ] || scripts/get-models.sh --ct
+tests=OFF
+[ "$1" != complexes ] || tests=ON  # what makes complexes is theirs
+cmake --preset release -DOCTAFRONT_BUILD_TESTS=$tests >/dev/null
 cmake --build --preset release --target octafront_cli octafront_evaluate octafront_judge_surface
 [ "$1" != derived ] || [ -d models/derived ] || scripts/derive-models.sh build/release/cli/octafront
 [ "$1" != improve ] || cmake --build --preset release --target octafront_never_worse
 [ "$1" != formats ] || { cmake --build --preset release --target octafront_write_formats; exec python3 bench/formats.py build/release "${@:2}"; }
 [ "$1" != second_order ] || cmake --build --preset release --target octafront_second_order
+[ "$1" != complexes ] || cmake --build --preset release --target make_complexes
 [ "$1" != peers ] || cmake --build --preset release --target peer_cgal_mesh || echo "without CGAL's mesher" >&2
 exec python3 "bench/$1.py" build/release "${@:2}"

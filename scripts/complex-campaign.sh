@@ -6,7 +6,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/lib/apt.sh
-need_packages "${build_packages[@]}"
-cmake --preset release >/dev/null
+need_packages "${build_packages[@]}" "${test_packages[@]}"
+cmake --preset release -DOCTAFRONT_BUILD_TESTS=ON >/dev/null
 cmake --build --preset release --target complex_campaign
 exec build/release/tests/pipeline/complex_campaign "${1:-1}" "${2:-334}"

@@ -11,8 +11,8 @@ folder=$(realpath -m "$1")
 shift
 cd "$(dirname "$0")/.."
 if [ ! -x build/release/tests/support/make_complexes ]; then
-  need_packages "${build_packages[@]}"
-  cmake --preset release >/dev/null
+  need_packages "${build_packages[@]}" "${test_packages[@]}"
+  cmake --preset release -DOCTAFRONT_BUILD_TESTS=ON >/dev/null
 fi
 cmake --build build/release --target make_complexes >/dev/null
 build/release/tests/support/make_complexes "$folder" "$@"

@@ -3,7 +3,7 @@ import pathlib
 import re
 import shutil
 
-from . import surfaces
+from . import complexes, surfaces
 from .process import finish, run_measured
 
 # TetGen fills up to the bound it is given: with this multiple of the regular tetrahedron's volume the number of
@@ -27,8 +27,21 @@ def fill(surface, folder, timeout, quality=True):
     return finish(outcome, folder / "out.mesh")
 
 
+def fill_complex(complex_file, folder, timeout, size, keep):
+    """A complex (PLY) with its triangles kept or divided, every region a number of its own. The mesh is MEDIT."""
+    folder = pathlib.Path(folder)
+    points, triangles, _ = complexes.read_ply(complex_file)
+    complexes.write_poly(folder / "in.poly", points, triangles)
+    flags = f"-p{'Y' if keep else ''}qAa{VOLUME_FACTOR * size**3 / 72**0.5:.9g}"
+    outcome = run_measured(["tetgen", flags, "in.poly"], folder, timeout)
+    if not outcome.error:
+        to_medit(folder / "in.1", folder / "out.mesh")
+    return finish(outcome, folder / "out.mesh")
+
+
 def to_medit(stem, mesh):
-    """TetGen's own MEDIT files (1.5.0) announce more triangles than they hold; these come from .node, .face and .ele."""
+    """TetGen's own MEDIT files (1.5.0) announce more triangles than they hold; these come from .node, .face and .ele.
+    The reference of a tetrahedron is its region's number, where there is one."""
     first = None
     with open(mesh, "w") as out:
         out.write("MeshVersionFormatted 2\nDimension 3\n")
@@ -43,5 +56,6 @@ def to_medit(stem, mesh):
                     values = words[1:columns + 1]
                     if first == 0 and name != "Vertices":
                         values = [str(int(v) + 1) for v in values]
-                    out.write(" ".join(values) + " 1\n")
+                    region = words[columns + 1] if name == "Tetrahedra" and len(words) > columns + 1 else "1"
+                    out.write(" ".join(values) + f" {region}\n")
         out.write("End\n")

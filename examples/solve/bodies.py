@@ -74,3 +74,26 @@ def quarter_pipe(inner, outer, height, n):
     body.grid("plane_y", lambda r, z: at(r, angles[0], z), radii, heights)
     body.grid("plane_x", lambda z, r: at(r, angles[-1], z), heights, radii)
     return body
+
+
+def octant_shells(radii, names, n):
+    """An eighth of concentric spheres with the layers between them, walls included: names[k] is the sphere of radii[k], the planes of
+    symmetry are plane_x, plane_y and plane_z. n facets along the quarter circles."""
+
+    def at(r, i, j):
+        direction = (float(i), float(j), float(n - i - j))
+        length = math.hypot(*direction)
+        return tuple(r * x / length for x in direction)
+
+    body = Body()
+    for r, name in zip(radii, names):
+        for i in range(n):
+            for j in range(n - i):
+                body.polygon(name, at(r, i, j), at(r, i + 1, j), at(r, i, j + 1))
+                if i + j + 2 <= n:
+                    body.polygon(name, at(r, i + 1, j), at(r, i + 1, j + 1), at(r, i, j + 1))
+    quarters = {"plane_x": lambda r, k: at(r, 0, k), "plane_y": lambda r, k: at(r, n - k, 0),
+                "plane_z": lambda r, k: at(r, k, n - k)}
+    for name, place in quarters.items():
+        body.grid(name, place, radii, range(n + 1))
+    return body

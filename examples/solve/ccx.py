@@ -23,7 +23,7 @@ class Mesh:
     """The nodes and sets of a mesh that octafront wrote for CalculiX."""
 
     def __init__(self, path):
-        self.nodes, self.elements, self.node_sets, self.sides = {}, {}, {}, {}
+        self.nodes, self.elements, self.element_sets, self.node_sets, self.sides = {}, {}, {}, {}, {}
         keep = None
         for line in open(path):
             if line.startswith("**"):
@@ -36,16 +36,21 @@ class Mesh:
             elif keep:
                 keep([w.strip() for w in line.strip().rstrip(",").split(",")])
 
+    def nodes_of(self, element_set):
+        return {node for e in self.element_sets[element_set] for node in self.elements[e]}
+
     def _reader(self, keyword, options):
         def node(words):
             self.nodes[int(words[0])] = tuple(float(w.replace("D", "E")) for w in words[1:])
 
         def element(words):
             self.elements[int(words[0])] = [int(w) for w in words[1:]]
+            members.append(int(words[0]))
 
         if keyword == "NODE":
             return node
         if keyword == "ELEMENT":
+            members = self.element_sets.setdefault(options["ELSET"], [])
             return element
         if keyword == "NSET":
             members = self.node_sets.setdefault(options["NSET"], [])

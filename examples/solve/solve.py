@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The solved examples: solve.py OCTAFRONT WORK [CASE ...] [--json FILE].
 
-Each one writes a body as an OBJ file with named groups, has octafront mesh it with second-order elements, solves the deck
+Each one writes a body, or two that touch, as OBJ files with named groups, has octafront mesh it with second-order elements, solves the deck
 beside this script with CalculiX (Debian package calculix-ccx), and compares one number with theory. Exits with 1 if one
 of them is beyond its bound.
 """
@@ -32,9 +32,20 @@ class Case:
     def mesh(self, body, *options, name=None):
         """The body meshed; the sets have the names of its groups."""
         stem = name or self.name
-        surface, mesh = self.work / f"{stem}.obj", self.work / f"{stem}-mesh.inp"
+        surface = self.work / f"{stem}.obj"
         body.write(surface)
-        subprocess.run([self.octafront, "mesh", surface, "-o", mesh, "--order", "2", "-q", *options], check=True)
+        return self._run([surface], self.work / f"{stem}-mesh.inp", options)
+
+    def mesh_together(self, parts, *options):
+        """Bodies by name, a region each, in one mesh."""
+        folder = self.work / self.name
+        folder.mkdir(exist_ok=True)
+        for name, body in parts.items():
+            body.write(folder / f"{name}.obj")
+        return self._run([folder / f"{name}.obj" for name in parts], self.file("-mesh.inp"), options)
+
+    def _run(self, surfaces, mesh, options):
+        subprocess.run([self.octafront, "mesh", *surfaces, "-o", mesh, "--order", "2", "-q", *options], check=True)
         return ccx.Mesh(mesh)
 
     def solve(self):
@@ -190,7 +201,70 @@ def plate(case):
     return result(case, mesh, "first eigenfrequency, Hz (Kirchhoff, clamped)", found, expected, 0.02)
 
 
-CASES = {f.__name__: f for f in (cantilever, pipe, patch, heat, plate)}
+def must_share(mesh, one, other, joint):
+    """What two regions have in common must be the nodes of their joint, or nothing holds them together."""
+    shared = mesh.nodes_of(one) & mesh.nodes_of(other)
+    if not shared or shared != set(mesh.node_sets[joint]):
+        raise SystemExit(f"{one} and {other} share {len(shared)} nodes, their joint has {len(mesh.node_sets[joint])}")
+
+
+def bar(case):
+    steel, alloy, pull = (30.0, 200000.0), (20.0, 50000.0), 100.0  # lengths, Young's moduli
+    end, side = steel[0] + alloy[0], 10.0
+    sides = ["plane_y", "free", "plane_z", "free"]
+    mesh = case.mesh_together({
+        "steel": bodies.box((0, 0, 0), (steel[0], side, side), ["fixed", "joint", *sides], (6, 3, 3)),
+        "alloy": bodies.box((steel[0], 0, 0), (end, side, side), ["joint", "pulled", *sides], (4, 4, 4))}, "--size", "3")
+    must_share(mesh, "steel", "alloy", "steel_alloy_joint")
+    case.solve()
+    moved = case.fields()["DISP"]
+    strains = [pull / young for _, young in (steel, alloy)]
+    expected, worst = steel[0] * strains[0] + alloy[0] * strains[1], 0.0
+    for node, (x, _, _) in mesh.nodes.items():
+        exact = strains[0] * min(x, steel[0]) + strains[1] * max(x - steel[0], 0.0)
+        worst = max(worst, abs(moved[node][0] - exact) / expected)
+    tip = [moved[n][0] for n in mesh.node_sets["alloy_pulled"]]
+    return result(case, mesh, "elongation, mm, and the worst node's error over it", sum(tip) / len(tip), expected, 1e-5, worst)
+
+
+class Layer:
+    """A thick-walled sphere (Lame): pressures inside and outside, and what follows from them."""
+
+    def __init__(self, inner, outer, young, poisson):
+        self.inner, self.outer = inner, outer
+        self.bulk3, self.shear4 = young / (1 - 2 * poisson), 2 * young / (1 + poisson)
+
+    def displacement(self, r, inside, outside):
+        a3, b3 = self.inner**3, self.outer**3
+        swell = (inside * a3 - outside * b3) / (self.bulk3 * (b3 - a3))
+        return swell * r + (inside - outside) * a3 * b3 / (self.shear4 * (b3 - a3)) / r**2
+
+
+def sphere(case):
+    pressure, (a, b, c) = 100.0, (10.0, 15.0, 20.0)
+    steel, alloy = Layer(a, b, 210000.0, 0.3), Layer(b, c, 70000.0, 0.33)
+    point = {r: ",".join([repr(r / math.sqrt(3))] * 3) for r in ((a + b) / 2, (b + c) / 2)}
+    mesh = case.mesh(bodies.octant_shells((a, b, c), ("inner", "joint", "outer"), 32), "--size", "1.5",
+                     "--region", f"steel={point[(a + b) / 2]}", "--region", f"alloy={point[(b + c) / 2]}")
+    must_share(mesh, "steel", "alloy", "joint")
+    case.solve()
+    # The pressure between the layers for which they move alike; both sides are linear in it.
+    gap = [steel.displacement(b, pressure, q) - alloy.displacement(b, q, 0.0) for q in (0.0, 1.0)]
+    between = gap[0] / (gap[0] - gap[1])
+    expected = alloy.displacement(b, between, 0.0)
+    moved, worst = case.fields()["DISP"], 0.0
+    radial = lambda n: sum(x * u for x, u in zip(mesh.nodes[n], moved[n])) / math.hypot(*mesh.nodes[n])
+    for name in mesh.element_sets:
+        layer, pressures = (steel, (pressure, between)) if name == "steel" else (alloy, (between, 0.0))
+        for node in mesh.nodes_of(name):
+            exact = layer.displacement(math.hypot(*mesh.nodes[node]), *pressures)
+            worst = max(worst, abs(radial(node) / exact - 1))
+    at_joint = [radial(n) for n in mesh.node_sets["joint"]]
+    return result(case, mesh, "displacement where the layers meet, mm, and the worst node's error (Lame)",
+                  sum(at_joint) / len(at_joint), expected, 0.01, worst)
+
+
+CASES = {f.__name__: f for f in (cantilever, pipe, patch, heat, plate, bar, sphere)}
 
 
 def main():
