@@ -30,21 +30,11 @@ Options checked_options(const Session& session) {
   return options;
 }
 
-Json json_of(const JacobianSummary& found) {
-  Json first = Json::array();
-  for (const InvalidElement& e : found.first)
-    first.push_back({{"number", e.tet}, {"at", place(e.at)}, {"scaled_jacobian", e.scaled_jacobian}});
-  return {{"least_scaled_jacobian", found.least_scaled_jacobian},
-          {"least_tet", found.least_tet},
-          {"invalid", found.invalid},
-          {"first", first}};
-}
-
 // Invalid elements of second order are named, for solvers stop at them.
 void prove_jacobians(Session& session, const TetMesh& mesh) {
   if (!mesh.is_second_order()) return;
   const JacobianSummary found = check_jacobians(mesh, session.context());
-  session.found({{"second_order", json_of(found)}});
+  session.found({{"second_order", Json::parse(to_json(found))}});
   if (found.invalid == 0) {
     session.say(fmt::format("second order: every Jacobian proven positive; the least scaled one is {:.4f} (tet {})\n",
                             found.least_scaled_jacobian, found.least_tet));
@@ -62,25 +52,13 @@ void prove_jacobians(Session& session, const TetMesh& mesh) {
                   found.invalid > found.first.size() ? "\n  ..." : ""));
 }
 
-Json json_of(const SolverFinding& f) {
-  Json worst = Json::array();
-  for (const SolverFinding::Element& e : f.worst)
-    worst.push_back({{"number", e.tet}, {"at", place(e.at)}, {"value", e.value}});
-  return {{"measure", f.measure},
-          {"refused", f.refused},
-          {f.above ? "above" : "below", f.limit},
-          {"count", f.count},
-          {"worst", worst}};
-}
-
 // What the solver would say, limit by limit. Returns the number of elements that it would refuse.
 std::uint64_t ask_solver(Session& session, const TetMesh& mesh) {
   const Arguments& a = session.arguments();
   if (!a.solver) return 0;
-  Json all = Json::array();
+  const std::vector<SolverFinding> findings = check_for_solver(mesh, *a.solver, session.context());
   std::uint64_t refused = 0;
-  for (const SolverFinding& f : check_for_solver(mesh, *a.solver, session.context())) {
-    all.push_back(json_of(f));
+  for (const SolverFinding& f : findings) {
     refused += f.refused ? f.count : 0;
     session.say(fmt::format("  {:<8} {:<46} {} {:<8g} {}\n", f.refused ? "refused" : "warned", f.measure,
                             f.above ? "above" : "below", f.limit, counted(f.count, "element")));
@@ -88,7 +66,7 @@ std::uint64_t ask_solver(Session& session, const TetMesh& mesh) {
       session.say(fmt::format("           element {} at ({:.6g}, {:.6g}, {:.6g}): {:.6g}\n", e.tet, e.at.x, e.at.y,
                               e.at.z, e.value));
   }
-  session.found({{"solver", all}});
+  session.found({{"solver", Json::parse(to_json(findings))}});
   return refused;
 }
 
@@ -104,24 +82,6 @@ void check_tet_mesh(Session& session) {
   if (refused > 0) throw InputError(fmt::format("{}: the solver would refuse {}", name, counted(refused, "element")));
 }
 
-Json json_of(const SurfaceDefects::Kind& kind) {
-  Json first = Json::array();
-  for (const SurfaceDefects::Place& p : kind.first) first.push_back({{"at", place(p.at)}, {"faces", p.faces}});
-  return {{"count", kind.count}, {"first", first}};
-}
-
-Json json_of(const SurfaceDefects& d) {
-  return {{"open_edges", json_of(d.open_edges)},
-          {"open_loops", d.open_loops},
-          {"non_manifold_edges", json_of(d.non_manifold_edges)},
-          {"misoriented_edges", json_of(d.misoriented_edges)},
-          {"non_manifold_vertices", json_of(d.non_manifold_vertices)},
-          {"self_intersections", json_of(d.self_intersections)},
-          {"degenerate_faces", json_of(d.degenerate_faces)},
-          {"region_conflicts", json_of(d.region_conflicts)},
-          {"misplaced_parts", json_of(d.misplaced_parts)}};
-}
-
 void check_surface(Session& session) {
   const std::string name = session.arguments().input.string();
   const SurfaceFile file = read_domain(session);
@@ -134,7 +94,7 @@ void check_surface(Session& session) {
                  {"triangles", file.surface.triangles.size()},
                  {"clean", defects.clean()},
                  {"repairs", repaired.notes},
-                 {"defects", json_of(defects)}});
+                 {"defects", Json::parse(to_json(defects))}});
   if (!defects.clean()) throw InputError(fmt::format("{}:\n{}", name, defects.describe()));
   const double volume = enclosed_volume(repaired.surface);
   session.found({{"bodies", repaired.bodies}, {"cavities", repaired.cavities}, {"volume", volume}});

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <octafront/quality.h>
+#include <octafront/repair.h>
 #include <octafront/second_order.h>
+#include <octafront/solver_checks.h>
 
 #include <cstdint>
 #include <string>
@@ -54,6 +56,11 @@ struct Report {
 
 /// The report as indented JSON, one object; keys as the fields above, units in the names.
 std::string to_json(const Report& report);
+
+/// What checks found, as JSON with the places: an object, for findings of a solver's limits an array of them.
+std::string to_json(const SurfaceDefects& defects);
+std::string to_json(const JacobianSummary& found);
+std::string to_json(const std::vector<SolverFinding>& findings);
 
 /// The report as a table for a terminal, at most 100 columns wide.
 std::string to_table(const Report& report);

@@ -3,6 +3,7 @@
 #include <octafront/surface_mesh.h>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -68,6 +69,19 @@ struct TetMesh {
   std::vector<NamedSet> sets;  ///< further named parts: what a user asked for, or a file had
 
   bool is_second_order() const { return !mid_nodes.empty(); }
+  /// How many there are of what sets of this kind are made of.
+  std::size_t count(NamedSet::Kind kind) const {
+    switch (kind) {
+      case NamedSet::Kind::kNodes:
+        return points.size();
+      case NamedSet::Kind::kEdges:
+        return curve_edges.size();
+      case NamedSet::Kind::kFaces:
+        return boundary.size() + interfaces.size();
+      default:
+        return tets.size();
+    }
+  }
   friend bool operator==(const TetMesh&, const TetMesh&) = default;
 };
 

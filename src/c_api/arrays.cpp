@@ -173,20 +173,6 @@ NamedSet::Kind kind_of(int kind) {
   return static_cast<NamedSet::Kind>(kind);
 }
 
-std::size_t members_at_most(const TetMesh& mesh, NamedSet::Kind kind) {
-  switch (kind) {
-    case NamedSet::Kind::kNodes:
-      return mesh.points.size();
-    case NamedSet::Kind::kEdges:
-      return mesh.curve_edges.size();
-    case NamedSet::Kind::kFaces:
-      return mesh.boundary.size() + mesh.interfaces.size();
-    case NamedSet::Kind::kElements:
-      return mesh.tets.size();
-  }
-  return 0;
-}
-
 }  // namespace
 
 size_t octafront_mesh_sets(const octafront_mesh* mesh) {
@@ -209,7 +195,7 @@ int octafront_mesh_add_set(octafront_mesh* mesh, int kind, const char* name, siz
   return guarded([&] {
     NamedSet set{std::string(name, length), kind_of(kind), {}};
     assign(set.members, members, count);
-    const std::size_t most = members_at_most(mesh->mesh, set.kind);
+    const std::size_t most = mesh->mesh.count(set.kind);
     if (std::adjacent_find(set.members.begin(), set.members.end(), std::greater_equal<>()) != set.members.end())
       throw OptionError("the members of a set are ascending, each once");
     if (!set.members.empty() && set.members.back() >= most)

@@ -45,26 +45,6 @@ void give(octafront_job& job, const SizeField& sizes) {
   job.sizes = std::make_unique<octafront_sizes>(octafront_sizes{sizes});
 }
 
-Json place(Vec3 p) {
-  return {p.x, p.y, p.z};
-}
-
-Json json_of(const SurfaceDefects::Kind& kind) {
-  Json first = Json::array();
-  for (const SurfaceDefects::Place& p : kind.first) first.push_back({{"at", place(p.at)}, {"faces", p.faces}});
-  return {{"count", kind.count}, {"first", first}};
-}
-
-Json json_of(const SurfaceDefects& d) {
-  return {{"open_edges", json_of(d.open_edges)},
-          {"open_loops", d.open_loops},
-          {"non_manifold_edges", json_of(d.non_manifold_edges)},
-          {"misoriented_edges", json_of(d.misoriented_edges)},
-          {"non_manifold_vertices", json_of(d.non_manifold_vertices)},
-          {"self_intersections", json_of(d.self_intersections)},
-          {"degenerate_faces", json_of(d.degenerate_faces)}};
-}
-
 Json json_of(const RepairedSurface& r) {
   return {{"merged_vertices", r.merged_vertices},
           {"unused_vertices", r.unused_vertices},
@@ -87,7 +67,7 @@ auto with_evidence(octafront_job& job, const SurfaceMesh& surface, const Generat
     return generator();
   } catch (const InputError&) {
     if (const SurfaceDefects d = find_defects(repair_surface(surface, job.context()), job.context()); !d.clean())
-      job.report["defects"] = json_of(d);
+      job.report["defects"] = Json::parse(to_json(d));
     throw;
   }
 }
@@ -98,28 +78,10 @@ void repair(octafront_job& job, const SurfaceMesh& surface) {
   const SurfaceDefects defects = find_defects(repaired, job.context());
   job.report = json_of(repaired);
   job.report["clean"] = defects.clean();
-  job.report["defects"] = json_of(defects);
+  job.report["defects"] = Json::parse(to_json(defects));
   job.report["described"] = defects.describe();
   if (defects.clean()) job.report["volume"] = enclosed_volume(repaired.surface);
   give(job, std::move(repaired.surface));
-}
-
-Json json_of(const JacobianSummary& found) {
-  Json first = Json::array();
-  for (const InvalidElement& e : found.first)
-    first.push_back({{"number", e.tet}, {"at", place(e.at)}, {"scaled_jacobian", e.scaled_jacobian}});
-  return {{"least_scaled_jacobian", found.least_scaled_jacobian}, {"invalid", found.invalid}, {"first", first}};
-}
-
-Json json_of(const SolverFinding& f) {
-  Json worst = Json::array();
-  for (const SolverFinding::Element& e : f.worst)
-    worst.push_back({{"number", e.tet}, {"at", place(e.at)}, {"value", e.value}});
-  return {{"measure", f.measure},
-          {"refused", f.refused},
-          {f.above ? "above" : "below", f.limit},
-          {"count", f.count},
-          {"worst", worst}};
 }
 
 Solver solver_named(const std::string& name) {
@@ -138,15 +100,13 @@ void check(octafront_job& job, const TetMesh& mesh, const std::string& solver) {
   const auto defect = first_defect(mesh, job.context());
   job.report["valid"] = !defect;
   job.report["defect"] = defect ? Json(*defect) : Json(nullptr);
-  if (mesh.is_second_order()) job.report["second_order"] = json_of(check_jacobians(mesh, job.context()));
+  if (mesh.is_second_order()) job.report["second_order"] = Json::parse(to_json(check_jacobians(mesh, job.context())));
   Json groups = Json::array();
   for (const GroupInfo& g : groups_of(mesh))
     groups.push_back({{"origin", g.origin}, {"name", g.name}, {"size", g.size}});
   job.report["groups"] = groups;
   if (solver.empty()) return;
-  job.report["solver"] = Json::array();
-  for (const SolverFinding& finding : check_for_solver(mesh, solver_named(solver), job.context()))
-    job.report["solver"].push_back(json_of(finding));
+  job.report["solver"] = Json::parse(to_json(check_for_solver(mesh, solver_named(solver), job.context())));
 }
 
 std::vector<std::int64_t> references(const std::vector<std::uint32_t>& numbers, std::size_t count) {

@@ -84,25 +84,12 @@ std::optional<std::string> array_defect(const TetMesh& mesh) {
   return misfit("mid_nodes", mesh.mid_nodes.size(), mesh.tets.size(), "tetrahedra");
 }
 
-std::size_t members_at_most(const TetMesh& mesh, NamedSet::Kind kind) {
-  switch (kind) {
-    case NamedSet::Kind::kNodes:
-      return mesh.points.size();
-    case NamedSet::Kind::kEdges:
-      return mesh.curve_edges.size();
-    case NamedSet::Kind::kFaces:
-      return mesh.boundary.size() + mesh.interfaces.size();
-    default:
-      return mesh.tets.size();
-  }
-}
-
 std::optional<std::string> set_defect(const TetMesh& mesh) {
   for (const NamedSet& set : mesh.sets) {
     const auto& m = set.members;
     if (std::adjacent_find(m.begin(), m.end(), std::greater_equal<>()) != m.end())
       return fmt::format("the members of set {} are not ascending", set.name);
-    const std::size_t most = members_at_most(mesh, set.kind);
+    const std::size_t most = mesh.count(set.kind);
     if (!m.empty() && m.back() >= most)
       return fmt::format("set {} has the member {}, but there are only {}", set.name, m.back(), most);
   }

@@ -34,7 +34,7 @@ Json json_of(const QualitySummary& q) {
 Json json_of(const std::vector<RegionSummary>& regions) {
   Json all = Json::array();
   for (std::size_t r = 0; r < regions.size(); ++r)
-    all.push_back({{"number", r + 1},
+    all.push_back({{"number", r},
                    {"name", regions[r].name},
                    {"tets", regions[r].quality.elements},
                    {"volume", regions[r].volume},

@@ -10,7 +10,7 @@ cd "$scratch"
 set -- octafront_*.deb liboctafront-dev_*.deb
 [ $# -eq 2 ] && [ -s "$1" ] && [ -s "$2" ] || { echo "expected two packages, found: $*"; exit 1; }
 for package in "$@"; do
-  dpkg-deb -x "$package" root
+  dpkg-deb -x "$package" unpacked
   dpkg-deb -f "$package" Version Depends
   # Every path is one that Debian allows, owned by root, and the licence is inside.
   dpkg-deb -c "$package" | awk '{print $2, $6}' | grep -v '^root/root \./' && { echo "$package: not owned by root"; exit 1; }
@@ -23,11 +23,11 @@ dpkg-deb -f "$1" Depends | grep -q 'libc6' || { echo "$1: does not say what it n
 if apt-get --version >/dev/null 2>&1 && [ "$(id -u)" -eq 0 ]; then
   apt-get -s --no-install-recommends install "./$1" "./$2" >/dev/null
 fi
-root/usr/bin/octafront --version
-grep -q '^.TH OCTAFRONT' root/usr/share/man/man1/octafront.1
-bash -n root/usr/share/bash-completion/completions/octafront
-for file in zsh/vendor-completions/_octafront fish/vendor_completions.d/octafront.fish; do test -s "root/usr/share/$file"; done
-cmake -S "$consumer" -B consumer -DCMAKE_BUILD_TYPE="$config" -DCMAKE_PREFIX_PATH="$scratch/root/usr" >/dev/null
+unpacked/usr/bin/octafront --version
+grep -q '^.TH OCTAFRONT' unpacked/usr/share/man/man1/octafront.1
+bash -n unpacked/usr/share/bash-completion/completions/octafront
+for file in zsh/vendor-completions/_octafront fish/vendor_completions.d/octafront.fish; do test -s "unpacked/usr/share/$file"; done
+cmake -S "$consumer" -B consumer -DCMAKE_BUILD_TYPE="$config" -DCMAKE_PREFIX_PATH="$scratch/unpacked/usr" >/dev/null
 cmake --build consumer >/dev/null
 consumer/consumer "$scratch/sphere.vtu"
-"$(dirname "$0")/pkg_config.sh" "$scratch/root/usr" "$examples" "$scratch/pkg_config"
+"$(dirname "$0")/pkg_config.sh" "$scratch/unpacked/usr" "$examples" "$scratch/pkg_config"

@@ -225,6 +225,7 @@ class Refusals(Case):
         points, triangles = cube()
         error = self.refused(octafront.InputError, "open edge", octafront.mesh, points, triangles[:-1])
         self.assertEqual(error.defects["open_edges"]["count"], 3)
+        self.assertEqual(error.defects["region_conflicts"]["count"], 0)
         place = error.defects["open_edges"]["first"][0]
         self.assertEqual(len(place["at"]), 3)
         self.assertTrue(all(face < 11 for face in place["faces"]))

@@ -1,0 +1,62 @@
+#include <octafront/report.h>
+
+#include <nlohmann/json.hpp>
+
+namespace octafront {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json place(Vec3 p) {
+  return {p.x, p.y, p.z};
+}
+
+Json json_of(const SurfaceDefects::Kind& kind) {
+  Json first = Json::array();
+  for (const SurfaceDefects::Place& p : kind.first) first.push_back({{"at", place(p.at)}, {"faces", p.faces}});
+  return {{"count", kind.count}, {"first", first}};
+}
+
+}  // namespace
+
+std::string to_json(const SurfaceDefects& d) {
+  return Json{{"open_edges", json_of(d.open_edges)},
+              {"open_loops", d.open_loops},
+              {"non_manifold_edges", json_of(d.non_manifold_edges)},
+              {"misoriented_edges", json_of(d.misoriented_edges)},
+              {"non_manifold_vertices", json_of(d.non_manifold_vertices)},
+              {"self_intersections", json_of(d.self_intersections)},
+              {"degenerate_faces", json_of(d.degenerate_faces)},
+              {"region_conflicts", json_of(d.region_conflicts)},
+              {"misplaced_parts", json_of(d.misplaced_parts)}}
+      .dump(2);
+}
+
+std::string to_json(const JacobianSummary& found) {
+  Json first = Json::array();
+  for (const InvalidElement& e : found.first)
+    first.push_back({{"number", e.tet}, {"at", place(e.at)}, {"scaled_jacobian", e.scaled_jacobian}});
+  return Json{{"least_scaled_jacobian", found.least_scaled_jacobian},
+              {"least_tet", found.least_tet},
+              {"invalid", found.invalid},
+              {"first", first}}
+      .dump(2);
+}
+
+std::string to_json(const std::vector<SolverFinding>& findings) {
+  Json all = Json::array();
+  for (const SolverFinding& f : findings) {
+    Json worst = Json::array();
+    for (const SolverFinding::Element& e : f.worst)
+      worst.push_back({{"number", e.tet}, {"at", place(e.at)}, {"value", e.value}});
+    all.push_back({{"measure", f.measure},
+                   {"refused", f.refused},
+                   {f.above ? "above" : "below", f.limit},
+                   {"count", f.count},
+                   {"worst", worst}});
+  }
+  return all.dump(2);
+}
+
+}  // namespace octafront
