@@ -28,6 +28,8 @@ constexpr double kMovedPart = 0.25;
 constexpr double kFacing = 0.5;
 /// Below this, features may give way too: where curves of a scan's noise meet, nothing else is left to move.
 constexpr float kPoor = 0.2f;
+/// Triangles that lie beyond the tolerance already may be followed by such as lie so much farther: samples differ.
+constexpr double kNoWorse = 1.02;
 /// How finely triangles are looked at, in edges: over these the distance changes evenly.
 constexpr double kSpacing = 0.1;
 /// Steps per vertex that moves at most.
@@ -324,15 +326,26 @@ class BoundaryEditor {
     return squared_distance(p, closest_point_on_triangle(p, t[0], t[1], t[2])) < d * d;
   }
 
-  /// Whether input and new triangles lie within the tolerance of each other, by all their parts, or what does not did
-  /// not before.
+  /// How far triangles lie from the input at the worst of their doubtful parts; the tolerance if there are none.
+  template <class Finest>
+  double worst_distance(const std::vector<TriangleCorners>& triangles, const Finest& finest) const {
+    const double limit = guide_.tolerance();
+    double worst = limit;
+    for (const TriangleCorners& t : triangles)
+      for_each_doubtful_part(
+          t, limit, HUGE_VAL, [&](Vec3 p, double d) { return guide_.tree().is_within(p, d); }, finest,
+          [&](Vec3 p) {
+            worst = std::max(worst, std::sqrt(guide_.tree().nearest(p).squared_distance));
+            return true;
+          });
+    return worst;
+  }
+
+  /// Whether input and new triangles lie within the tolerance of each other, by all their parts, or where they do not,
+  /// did not before.
   bool stays_near() {
     const double limit = guide_.tolerance();
-    const auto finest = [&, part = std::max(kFinePart * limit, kSpacing * mean_edge())](Vec3) { return part; };
-    const auto near_input = [&](Vec3 p, double d) { return guide_.tree().is_within(p, d); };
-    const auto is_whole = [&](const TriangleCorners& t) {
-      return for_each_doubtful_part(t, limit, near_input, finest, [&](Vec3 p) { return near_input(p, limit); });
-    };
+    const auto finest = [part = std::max(limit, kSpacing * mean_edge())](Vec3) { return part; };
     const auto near_new = [&](Vec3 p, double d) {
       return std::any_of(new_.begin(), new_.end(), [&](const IdTriangle& t) { return is_near(p, d, t.corners); }) ||
              live_.is_within(p, d, numbers_);
@@ -347,11 +360,13 @@ class BoundaryEditor {
     const Vec3 around{limit, limit, limit};
     if (!guide_.tree().for_each_box_near({box.lo - around, box.hi + around},
                                          [&](std::uint32_t, const TriangleCorners& t) {
-                                           return for_each_doubtful_part(t, limit, near_new, finest, is_kept);
+                                           return for_each_doubtful_part(t, limit, limit, near_new, finest, is_kept);
                                          }))
       return false;
-    return std::all_of(new_.begin(), new_.end(), [&](const IdTriangle& t) { return is_whole(t.corners); }) ||
-           !std::all_of(old_.begin(), old_.end(), is_whole);
+    std::vector<TriangleCorners> made;
+    for (const IdTriangle& t : new_) made.push_back(t.corners);
+    const double had = worst_distance(old_, finest);
+    return worst_distance(made, finest) <= (had > limit ? kNoWorse * had : limit);
   }
 
   bool crosses_nothing() {

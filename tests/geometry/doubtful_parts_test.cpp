@@ -17,13 +17,15 @@ bool near_ball(Vec3 p, double d) {
   return length(p) - 1 < d;
 }
 
+constexpr double kFinePart = 0.25;
+
 double finest(Vec3) {
   return kFinePart * kLimit;
 }
 
 std::vector<Vec3> doubtful(const TriangleCorners& t) {
   std::vector<Vec3> found;
-  for_each_doubtful_part(t, kLimit, near_ball, finest, [&](Vec3 p) {
+  for_each_doubtful_part(t, kLimit, kLimit, near_ball, finest, [&](Vec3 p) {
     found.push_back(p);
     return true;
   });
@@ -61,7 +63,7 @@ TEST(DoubtfulParts, AreFoundWhereOnlyASmallPartStrays) {
 TEST(DoubtfulParts, AreNotDividedWhereAllIsFar) {
   int asked = 0;
   for_each_doubtful_part(
-      {Vec3{2, 0, 0}, Vec3{0, 2, 0}, Vec3{0, 0, 2}}, 1e-300, near_ball, [](Vec3) { return 1e-301; },
+      {Vec3{2, 0, 0}, Vec3{0, 2, 0}, Vec3{0, 0, 2}}, 1e-300, 1e-300, near_ball, [](Vec3) { return 1e-301; },
       [&](Vec3) {
         ++asked;
         return true;
@@ -71,14 +73,14 @@ TEST(DoubtfulParts, AreNotDividedWhereAllIsFar) {
 
 TEST(DoubtfulParts, AreAskedForNoLongerOnceFalse) {
   int asked = 0;
-  EXPECT_FALSE(
-      for_each_doubtful_part({Vec3{2, 0, 0}, Vec3{3, 0, 0}, Vec3{2, 1, 0}}, kLimit, near_ball, finest, [&](Vec3) {
-        ++asked;
-        return false;
-      }));
+  EXPECT_FALSE(for_each_doubtful_part({Vec3{2, 0, 0}, Vec3{3, 0, 0}, Vec3{2, 1, 0}}, kLimit, kLimit, near_ball, finest,
+                                      [&](Vec3) {
+                                        ++asked;
+                                        return false;
+                                      }));
   EXPECT_EQ(asked, 1);
-  EXPECT_TRUE(for_each_doubtful_part({Vec3{0.5, 0, 0}, Vec3{0, 0.5, 0}, Vec3{0, 0, 0.5}}, kLimit, near_ball, finest,
-                                     [](Vec3) { return false; }));
+  EXPECT_TRUE(for_each_doubtful_part({Vec3{0.5, 0, 0}, Vec3{0, 0.5, 0}, Vec3{0, 0, 0.5}}, kLimit, kLimit, near_ball,
+                                     finest, [](Vec3) { return false; }));
 }
 
 }  // namespace

@@ -222,14 +222,14 @@ TEST(Approach, MendsAPlaceThatStraysWithoutAnotherRound) {
   EXPECT_EQ(counter(report, "rounds"), 1);
   EXPECT_GT(counter(report, "points against deviation"), 0);
   EXPECT_TRUE(remeshing::find_crossings(made.surface).empty());
-  EXPECT_TRUE(remeshing::places_beyond(0.02, made.surface, input, TriangleTree(input)).empty());
+  EXPECT_TRUE(remeshing::places_beyond(0.02, 0.02, made.surface, input, TriangleTree(input)).empty());
 }
 
 TEST(PlacesBeyond, AreFoundFromBothSides) {
   const SurfaceMesh smooth = icosphere(4), spiked = spiked_sphere(0.1);
-  EXPECT_TRUE(remeshing::places_beyond(0.11, smooth, spiked, TriangleTree(spiked)).empty());
+  EXPECT_TRUE(remeshing::places_beyond(0.11, 0.11, smooth, spiked, TriangleTree(spiked)).empty());
   for (const auto& [made, input] : {std::pair{&smooth, &spiked}, std::pair{&spiked, &smooth}}) {
-    const auto places = remeshing::places_beyond(0.05, *made, *input, TriangleTree(*input));
+    const auto places = remeshing::places_beyond(0.05, 0.05, *made, *input, TriangleTree(*input));
     ASSERT_FALSE(places.empty());
     for (const remeshing::FarPlace& place : places)
       EXPECT_LT(distance(place.at, spiked.points[spiked.triangles[7][1]]), 0.1);

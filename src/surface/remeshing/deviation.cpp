@@ -61,11 +61,12 @@ std::vector<double> reach_of_vertices(const SurfaceMesh& surface) {
   return reach;
 }
 
-/// How far samples of the input lie apart, in edges of the triangle beside: over these the distance changes evenly.
-constexpr double kSpacing = 0.3;
+/// How far parts of the input reach that are divided no further: as far as the limit, but in edges of the triangle
+/// beside no farther than the one, over which the distance changes evenly, and no less far than the other.
+constexpr double kWidest = 0.3, kFinest = 0.1;
 
 /// Samples of a triangle of the input that may be far.
-void add_suspects(double limit, const TriangleCorners& corners, std::uint32_t t, const TriangleTree& made,
+void add_suspects(double limit, double far, const TriangleCorners& corners, std::uint32_t t, const TriangleTree& made,
                   std::vector<Sample>& found) {
   const std::size_t before = found.size();
   const auto is_within = [&](Vec3 p, double distance) { return made.is_within(p, distance); };
@@ -73,9 +74,10 @@ void add_suspects(double limit, const TriangleCorners& corners, std::uint32_t t,
     const TriangleCorners b = made.corners(made.nearest(p).triangle);
     const double squared_edge =
         std::max({squared_distance(b[0], b[1]), squared_distance(b[1], b[2]), squared_distance(b[2], b[0])});
-    return std::max(kFinePart * limit, kSpacing * std::sqrt(squared_edge));
+    const double edge = std::sqrt(squared_edge);
+    return std::clamp(limit, kFinest * edge, kWidest * edge);
   };
-  for_each_doubtful_part(corners, limit, is_within, finest, [&](Vec3 p) {
+  for_each_doubtful_part(corners, limit, far, is_within, finest, [&](Vec3 p) {
     found.push_back({p, t, true});
     return true;
   });
@@ -87,7 +89,7 @@ void add_suspects(double limit, const TriangleCorners& corners, std::uint32_t t,
 }
 
 /// Samples of the input that may be far: of triangles whose corners are not all well within the limit.
-std::vector<Sample> suspects(double limit, const SurfaceMesh& input, const TriangleTree& made) {
+std::vector<Sample> suspects(double limit, double far, const SurfaceMesh& input, const TriangleTree& made) {
   const std::vector<double> reach = reach_of_vertices(input);
   std::vector<std::uint8_t> is_safe(reach.size());
   parallel_for(reach.size(), [&](std::size_t v) {
@@ -98,7 +100,7 @@ std::vector<Sample> suspects(double limit, const SurfaceMesh& input, const Trian
     for (auto t = static_cast<std::uint32_t>(begin); t < end; ++t) {
       const auto& [a, b, c] = input.triangles[t];
       if (!is_safe[a] || !is_safe[b] || !is_safe[c])
-        add_suspects(limit, {input.points[a], input.points[b], input.points[c]}, t, made, found);
+        add_suspects(limit, far, {input.points[a], input.points[b], input.points[c]}, t, made, found);
     }
   };
   return parallel_collect<Sample>(input.triangles.size(), kRange, collect);
@@ -142,7 +144,7 @@ TriangleTree::Nearest nearest_facing(const TriangleTree& tree, Vec3 p, Vec3 norm
 
 }  // namespace
 
-std::vector<FarPlace> places_beyond(double limit, const SurfaceMesh& made, const SurfaceMesh& input,
+std::vector<FarPlace> places_beyond(double limit, double far, const SurfaceMesh& made, const SurfaceMesh& input,
                                     const TriangleTree& input_tree) {
   std::vector<FarPlace> places;
   double distance = 0;
@@ -151,7 +153,7 @@ std::vector<FarPlace> places_beyond(double limit, const SurfaceMesh& made, const
     places.push_back({p, {nearest.point, nearest.triangle}, distance, t, within});
   }
   const TriangleTree made_tree(made);
-  for (const auto& [p, t, within] : beyond(limit, suspects(limit, input, made_tree), made_tree)) {
+  for (const auto& [p, t, within] : beyond(limit, suspects(limit, far, input, made_tree), made_tree)) {
     const std::uint32_t triangle = nearest_facing(made_tree, p, normal_of(input, t), distance).triangle;
     places.push_back({p, {p, t}, distance, triangle, within});
   }

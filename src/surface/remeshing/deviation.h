@@ -19,9 +19,9 @@ struct FarPlace {
 };
 
 /// Places where two surfaces are farther apart than `limit`, looked for at the centroids, edge midpoints and vertices
-/// of `made`, and at the vertices and edge midpoints of `input` and wherever else it may lie beyond the limit, to a
-/// quarter of it. `input_tree` is over the triangles of `input`.
-std::vector<FarPlace> places_beyond(double limit, const SurfaceMesh& made, const SurfaceMesh& input,
+/// of `made`, and at the vertices and edge midpoints of `input` and wherever else it may lie beyond the limit; no
+/// deeper where it is known to lie beyond `far`. `input_tree` is over the triangles of `input`.
+std::vector<FarPlace> places_beyond(double limit, double far, const SurfaceMesh& made, const SurfaceMesh& input,
                                     const TriangleTree& input_tree);
 
 }  // namespace octafront::remeshing

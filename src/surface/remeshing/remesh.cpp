@@ -379,8 +379,8 @@ class Remesher {
   std::vector<FarPlace> far_places(const WorkingMesh& mesh) const {
     if (!limits_deviation()) return {};
     const std::vector<std::uint32_t> number = front_triangles(mesh);
-    std::vector<FarPlace> places =
-        places_beyond(kComeNear * *options_.max_deviation, triangles_of(mesh, number), surface_, known_.tree());
+    std::vector<FarPlace> places = places_beyond(kComeNear * *options_.max_deviation, *options_.max_deviation,
+                                                 triangles_of(mesh, number), surface_, known_.tree());
     for (FarPlace& place : places) place.triangle = number[place.triangle];
     return places;
   }
