@@ -119,8 +119,8 @@ class GridCapper {
 
 }  // namespace
 
-std::shared_ptr<OctreeField> capped_grid(const OctreeField& field, const std::vector<SizeCap>& caps,
-                                         double gradation, const RunContext& context) {
+std::shared_ptr<OctreeField> capped_grid(const OctreeField& field, const std::vector<SizeCap>& caps, double gradation,
+                                         const RunContext& context) {
   return GridCapper(field, caps, gradation, context).run();
 }
 

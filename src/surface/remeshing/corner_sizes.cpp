@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 
 namespace octafront::remeshing {
 
@@ -16,8 +17,8 @@ namespace {
 constexpr double kSteep = 0.7;
 /// No size falls below this part of what it was.
 constexpr double kFloor = 1e-3;
-/// Edges twice as long as the shortest one make fair triangles still (2r/R of .75): so much of the distance.
-constexpr double kSizePerRoom = 2;
+/// Edges three times as long as the shortest one make fair triangles still (2r/R of .56): so much of the distance.
+constexpr double kSizePerRoom = 3;
 /// Where sizes would stay above this part nothing is gained.
 constexpr double kWorthwhile = 0.85;
 /// Where curves part at less than 30 degrees they force poor elements; sizes do not follow them into their wedge, but
@@ -94,10 +95,11 @@ class CornerFitter {
     for (std::size_t i = 0; i < corner.curves.size(); ++i)
       if (corner.next[i] != number) room = std::min(room, curves_[corner.curves[i]].reach.back());
     const Vec3 reach{room, room, room};
-    tree_->for_each_box_near({corner.p - reach, corner.p + reach}, [&](std::uint32_t s, const TriangleCorners& segment) {
-      room = std::min(room, distance_to(curve_of_[s], segment, corner));
-      return true;
-    });
+    tree_->for_each_box_near({corner.p - reach, corner.p + reach},
+                             [&](std::uint32_t s, const TriangleCorners& segment) {
+                               room = std::min(room, distance_to(curve_of_[s], segment, corner));
+                               return true;
+                             });
     return room;
   }
 

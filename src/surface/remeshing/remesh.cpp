@@ -308,8 +308,8 @@ class Remesher {
 
   const Features& features() const { return seamed_ ? seamed_->features : known_.features(); }
 
-  /// The sizes as they are now, smaller where what stands still is nearer together: strips between lines, and corners of
-  /// seams.
+  /// The sizes as they are now, smaller where what stands still is nearer together: strips between lines, and corners
+  /// of seams.
   SizeField fitted_sizes(std::vector<std::uint8_t> is_fixed) const {
     const StripRules& rules = seamed_ ? kStripsOfWalls : kStrips;
     SizeField sizes = fitted_to_strips(input_, sizes_, rules, stage_.context());

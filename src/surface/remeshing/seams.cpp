@@ -200,7 +200,7 @@ class Cutter {
   const EdgeTable& table_;
   const std::uint32_t faces_;
   const std::vector<std::uint32_t> edge_of_;
-  DisjointSets fans_;   ///< corners of triangles around a vertex, over edges that are not cut
+  DisjointSets fans_;  ///< corners of triangles around a vertex, over edges that are not cut
   std::vector<std::uint8_t> cut_, fan_is_open_;
   SeamedSurface out_;
 };

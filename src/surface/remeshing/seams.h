@@ -1,10 +1,10 @@
 #pragma once
 
 // How the surface front works on a complex. Along *seams* more than two patches meet, or one ends: there no surface is
-// a manifold. So the complex is cut open along them, and each loop of a cut gets a back, a fan of triangles around a tip: a
-// closed manifold again, on which everything else works as on a single surface. Backs have no shape that matters:
-// nobody puts points there or turns their edges. Vertices on a cut exist once in each part; what becomes of them is decided for all of them at once. In the
-// end the backs are dropped and the cuts are sewn.
+// a manifold. So the complex is cut open along them, and each loop of a cut gets a back, a fan of triangles around a
+// tip: a closed manifold again, on which everything else works as on a single surface. Backs have no shape that
+// matters: nobody puts points there or turns their edges. Vertices on a cut exist once in each part; what becomes of
+// them is decided for all of them at once. In the end the backs are dropped and the cuts are sewn.
 
 #include <octafront/run_context.h>
 
@@ -24,7 +24,7 @@ struct SeamedSurface {
   std::vector<VertexIndex> place;    ///< per vertex of `input`: the vertex of the complex that it is a copy of
   VertexIndex first_tip = 0;         ///< vertices of `input` from here on are tips of backs, copies of nothing
   std::vector<std::uint8_t> pinned;  ///< per vertex of `input`: a corner of the complex, whatever its features say
-  Features features;  ///< those of the complex that are not seams, on the copies; and its corners
+  Features features;                 ///< those of the complex that are not seams, on the copies; and its corners
 };
 
 /// REQUIRES a clean complex. Its own patches are kept.
