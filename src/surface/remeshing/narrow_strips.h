@@ -15,7 +15,7 @@ struct StripRules {
 };
 /// Of single surfaces lines that are nearer may merge; of a complex nothing may move.
 inline constexpr StripRules kStrips{.floor = 0.3, .hopeless = 0.08};
-inline constexpr StripRules kStripsOfWalls{.floor = 0.05, .hopeless = 0.01, .gradation = 0.7};
+inline constexpr StripRules kStripsOfWalls{.floor = 0.1, .hopeless = 0.02, .gradation = 0.7};
 
 /// The sizes made smaller in narrow strips: where two feature lines run side by side, nearer to each other than about
 /// half an element, triangles between them can be well shaped only if the lines are divided finer. Needs `input` with
