@@ -194,7 +194,7 @@ class CoreBuilder {
       for (const Tet& t : chunks_[c].tets)
         *out++ = {vertex(chunks_[c], t[0]), vertex(chunks_[c], t[1]), vertex(chunks_[c], t[2]),
                   vertex(chunks_[c], t[3])};
-      chunks_[c].tets = {};
+      chunks_[c].tets = std::vector<Tet>();
     });
   }
 
