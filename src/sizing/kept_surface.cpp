@@ -26,7 +26,8 @@ constexpr double kEdgeOfUnitArea = 1.5196713713031851;
 constexpr double kRaisedFrom = 1.03, kMostRaised = 1.5;
 /// Where the mean shortfall is above this, the triangles ask for steeper changes of size than gradation allows:
 /// following it would make two to three times the elements, and more of them poor. Then sizes may change this much
-/// faster, and once more. Meshes of scans, up to 1.26 at a gradation of .2, keep about that, which serves their elements.
+/// faster, and once more. Meshes of scans, up to 1.26 at a gradation of .2, keep about that, which serves their
+/// elements.
 constexpr double kSteeperFrom = 1.3, kSteeper = 2;
 constexpr int kMostSteeper = 2;
 
