@@ -1,5 +1,7 @@
 #include "image/grids.h"
 
+#include "io/scanner.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -36,6 +38,24 @@ Image::Values read_voxels(ByteSource& source, const std::array<std::uint32_t, 3>
                     "export it again",
                     in_words(sizes), bytes, source.is_packed() ? "at most" : "only", source.most_bytes_left()));
   return values_of(source.require(bytes, "the voxels"), stored, notes);
+}
+
+Image::Values read_text_voxels(const io::Input& input, const char* at, const std::array<std::uint32_t, 3>& sizes,
+                               VoxelType type, std::vector<std::string>& notes) {
+  io::Scanner scan(input);
+  scan.set_position(at);
+  const std::uint64_t voxels = std::uint64_t{sizes[0]} * sizes[1] * sizes[2];
+  if (voxels > (scan.bytes_left() + 1) / 2)
+    input.fail_at_byte(at, fmt::format("{} voxels take {} characters at least, but only {} can follow; the file is "
+                                       "truncated or damaged: copy or export it again",
+                                       in_words(sizes), 2 * voxels - 1, scan.bytes_left()));
+  std::vector<double> numbers(voxels);
+  for (double& number : numbers) number = scan.number("the value of a voxel");
+  return values_of(numbers, type, notes);
+}
+
+void fail_flat(const io::Input& input) {
+  input.fail("is a flat image; a volume has three dimensions (its slices may be many files: give their folder)");
 }
 
 void check_grid(const io::Input& input, const ImageGrid& grid) {

@@ -24,9 +24,16 @@ std::array<std::uint32_t, 3> checked_sizes(const io::Input& input, const Sizes& 
 Image::Values read_voxels(ByteSource& source, const std::array<std::uint32_t, 3>& sizes, const StoredVoxels& stored,
                           std::vector<std::string>& notes);
 
+/// Numbers of voxels as a text has them, from `at` in `input` on.
+Image::Values read_text_voxels(const io::Input& input, const char* at, const std::array<std::uint32_t, 3>& sizes,
+                               VoxelType type, std::vector<std::string>& notes);
+
 /// Throws InputError unless indices map to the world and back: finite numbers, no axis without length, none that lies
 /// in the plane of the others.
 void check_grid(const io::Input& input, const ImageGrid& grid);
+
+/// Throws InputError: an image of fewer than three dimensions.
+[[noreturn]] void fail_flat(const io::Input& input);
 
 /// "2 x 3 x 4"
 std::string in_words(const std::array<std::uint32_t, 3>& sizes);

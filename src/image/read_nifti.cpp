@@ -256,6 +256,7 @@ class Nifti {
     header_ = *found;
     if (header_.dim[0] < 1 || header_.dim[0] > 7)
       input_.fail(fmt::format("claims {} dimensions; the file is damaged: export it again", header_.dim[0]));
+    if (header_.dim[0] < 3) fail_flat(input_);
   }
 
   std::int64_t dimension(std::size_t i) const {
@@ -264,7 +265,7 @@ class Nifti {
 
   void take(const Affine& a, const char* by) {
     image_.grid.axes = a.axes;
-    image_.grid.origin = a.origin + Vec3{0, 0, 0};  // no -0
+    image_.grid.origin = a.origin;
     image_.frame = "RAS";
     placed_by_ = by;
   }

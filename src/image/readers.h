@@ -29,17 +29,26 @@ struct Reading {
 };
 
 Image read_nifti(const Reading& reading);
+Image read_nrrd(const Reading& reading);
+Image read_meta(const Reading& reading);
 Image read_inr(const Reading& reading);
+Image read_invesalius(const Reading& reading);
+/// `input` is the JSON that says what the bytes of `data` mean; empty: the file that it names.
+Image read_raw(const Reading& reading, const std::string& data = {});
 
 /// Whether the bytes, unpacked where need be, begin as the format does; readers say what is wrong behind that.
 bool is_nifti(std::string_view head);
+bool is_nrrd(std::string_view head);
+bool is_meta(std::string_view head);
 bool is_inr(std::string_view head);
+bool is_invesalius(std::string_view head);
+bool is_raw_header(std::string_view head);
 
 /// By content, or else by the ending of the name.
 Image read_image_bytes(const Reading& reading);
 
-/// The series that was chosen of `count`, from 0. Throws InputError: one that does not exist, or, with `listed`, that
-/// none was chosen among several.
+/// The series that was chosen of `count` of `what`, from 0. Throws InputError for one that does not exist, or if none
+/// was chosen among several.
 std::uint32_t chosen_series(const Reading& reading, std::uint64_t count, const std::string& what);
 
 }  // namespace octafront::image
