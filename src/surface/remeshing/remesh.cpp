@@ -445,12 +445,11 @@ class Remesher {
     const std::size_t before = restored_.size();
     bool has_grown = false;
     for (const Vec3 p : places) {
-      const auto around = std::find_if(restored_.begin(), restored_.end(),
-                                       [&](const Ball& b) { return distance(b.center, p) < kMoreRestored * b.radius; });
+      const auto around = restored_around(p, 1);
       if (around != restored_.end()) {
         if (static_cast<std::size_t>(around - restored_.begin()) < before) around->radius *= kMoreRestored;
         has_grown = true;
-      } else if (sizes_.at(p) < kVain * first_.at(p)) {
+      } else if (sizes_.at(p) < kVain * first_.at(p) || restored_around(p, kMoreRestored) != restored_.end()) {
         restored_.push_back({p, kRestored * first_.at(p)});
       } else {
         to_cap.push_back(p);
@@ -458,6 +457,12 @@ class Remesher {
     }
     if (has_grown || restored_.size() > before) forget_caps();
     if (!to_cap.empty()) cap(to_cap, kCap);
+  }
+
+  /// The first place where the input's triangles return that has p within so many radii.
+  std::vector<Ball>::iterator restored_around(Vec3 p, double radii) {
+    return std::find_if(restored_.begin(), restored_.end(),
+                        [&](const Ball& b) { return distance(b.center, p) < radii * b.radius; });
   }
 
   /// The sizes again without what was asked of them where the input's triangles have returned.
