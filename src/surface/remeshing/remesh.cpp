@@ -5,6 +5,7 @@
 #include "sizing/make_size_field.h"
 #include "surface/remeshing/approach.h"
 #include "surface/remeshing/coarsen.h"
+#include "surface/remeshing/corner_sizes.h"
 #include "surface/remeshing/crossings.h"
 #include "surface/remeshing/deviation.h"
 #include "surface/remeshing/improve.h"
@@ -262,9 +263,9 @@ class Remesher {
     const RunContext& context = stage_.context();
     progress(0);
     set_features(input_, seams_);  // no walk crosses them
-    set_features(input_, without_backs(input_, features_at_scale(input_, features(), sizes_)));
+    set_features(input_, features_at_scale(input_, features(), sizes_));
     std::vector<std::uint8_t> is_fixed = mark_restored(input_, restored_);
-    const SizeField sizes = fitted_to_strips(input_, sizes_, context);
+    const SizeField sizes = fitted_sizes(is_fixed);
     const std::vector<Curve> curves = curves_of(sizes, is_fixed);
     progress(0.05);
     const FrontPoints front = place_points(input_, curves, sizes, context);
@@ -307,6 +308,14 @@ class Remesher {
 
   const Features& features() const { return seamed_ ? seamed_->features : known_.features(); }
 
+  /// The sizes as they are now, smaller where what stands still is nearer together: strips between lines, and corners
+  /// of seams.
+  SizeField fitted_sizes(std::vector<std::uint8_t> is_fixed) const {
+    const StripRules& rules = seamed_ ? kStripsOfWalls : kStrips;
+    SizeField sizes = fitted_to_strips(input_, sizes_, rules, stage_.context());
+    return seamed_ ? fitted_to_corners(input_, *seamed_, is_fixed, sizes, stage_.context()) : sizes;
+  }
+
   /// Divided; of a complex, `is_fixed` gets the corners that its parts share.
   std::vector<Curve> curves_of(const SizeField& sizes, std::vector<std::uint8_t>& is_fixed) {
     if (seamed_) return divided_curves(input_, *seamed_, sizes, is_fixed);
@@ -318,7 +327,7 @@ class Remesher {
   void pin_corners(WorkingMesh& mesh) const {
     mesh.pinned = seamed_->pinned;
     for (VertexIndex v = 0; v < mesh.pinned.size(); ++v)
-      if (mesh.pinned[v]) mesh.kind[v] = VertexKind::kCorner;
+      if (mesh.pinned[v] || v >= seamed_->first_tip) mesh.kind[v] = VertexKind::kCorner;
   }
 
   /// Of a complex, what remove_input_vertices() and improve_surface() do of a single surface: seams first, which are
