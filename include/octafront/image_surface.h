@@ -10,7 +10,7 @@
 namespace octafront {
 
 // From images to the complex that their labels or grey values bound: one net of surfaces for all regions, which share
-// their faces. See docs/image-surfaces.md.
+// their faces.
 
 /// How the surfaces of labels are made from the steps between voxels.
 struct LabelSurfaceOptions {
@@ -43,15 +43,16 @@ struct GreyBand {
   std::string name;
 };
 
-/// The surfaces between bands of grey values, as a clean complex: they lie between voxels, where the values that are
-/// linear between them pass from band to band. Bands must not overlap; values in none of them are outside. Where voxels
-/// side by side skip a band, the surface lies where the middle of the limits between them is passed.
+/// The surfaces between bands of grey values, as a clean complex: they lie between voxels, where values that are linear
+/// between the middles of voxels pass from band to band, and are flat on the image's box. Bands must not overlap;
+/// values in none of them are outside. Where voxels side by side skip a band, the surface lies where the middle one of
+/// the limits between them is passed. Nothing else moves the surfaces: volumes are what the values say.
 ///
 /// Throws InputError for bands that overlap or are empty, or if no value lies in one; Cancelled.
 Complex complex_of_bands(const Image& image, const std::vector<GreyBand>& bands,
                          const RunContext& context = no_context());
 
-/// The voxels of bands as labels, label b for bands[b]. Throws InputError as complex_of_bands.
+/// The voxels of bands as labels: label b for bands[b], whose `value` is b. Throws InputError as complex_of_bands.
 LabelImage labels_of_bands(const Image& image, const std::vector<GreyBand>& bands);
 
 }  // namespace octafront

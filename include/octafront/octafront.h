@@ -6,6 +6,7 @@
 #include <octafront/error.h>
 #include <octafront/generate.h>
 #include <octafront/image.h>
+#include <octafront/image_surface.h>
 #include <octafront/improve_existing.h>
 #include <octafront/io.h>
 #include <octafront/named_groups.h>

@@ -1,9 +1,12 @@
 #include "nets/assemble.h"
 
 #include "core/parallel.h"
+#include "core/wording.h"
 #include "nets/volumes.h"
 
 #include <utility>
+
+#include <fmt/core.h>
 
 namespace octafront::nets {
 
@@ -18,9 +21,18 @@ std::vector<std::uint32_t> numbered(const std::vector<std::uint8_t>& used) {
   return number;
 }
 
+void note_what_was_done(const Settled& settled, Complex& complex) {
+  if (settled.moved_back > 0)
+    complex.notes.push_back(fmt::format("{} moved back toward the corners of voxels, where surfaces would have crossed",
+                                        counted(settled.moved_back, "vertex", "vertices")));
+  if (settled.joined > 0)
+    complex.notes.push_back(fmt::format("regions touch themselves or each other in {} where surfaces found no room",
+                                        counted(settled.joined, "point")));
+}
+
 }  // namespace
 
-Complex assemble(const Net& net, const Lattice& lattice, std::vector<Vec3> world, std::span<const Vec3> straight,
+Complex assemble(const Net& net, const Lattice& lattice, Settled settled, std::span<const Vec3> straight,
                  const std::vector<std::string>& names) {
   std::vector<std::uint8_t> used_vertex(net.corner.size(), 0), used_label(names.size(), 0);
   for (const Quad& q : net.quads) {
@@ -38,8 +50,8 @@ Complex assemble(const Net& net, const Lattice& lattice, std::vector<Vec3> world
     surface.region_names.push_back(names[l]);
     complex.volumes.push_back(volumes[l] * lattice.volume_scale());
   }
-  for (std::size_t v = 0; v < world.size(); ++v)
-    if (used_vertex[v]) surface.points.push_back(world[v]);
+  for (std::size_t v = 0; v < settled.world.size(); ++v)
+    if (used_vertex[v]) surface.points.push_back(settled.world[v]);
   surface.triangles.resize(2 * net.quads.size());
   surface.sides.resize(2 * net.quads.size());
   const bool mirrored = lattice.is_mirrored();
@@ -58,6 +70,7 @@ Complex assemble(const Net& net, const Lattice& lattice, std::vector<Vec3> world
       surface.sides[2 * q + i] = sides;
     }
   });
+  note_what_was_done(settled, complex);
   return complex;
 }
 

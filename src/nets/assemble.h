@@ -2,7 +2,7 @@
 
 #include <octafront/complex.h>
 
-#include "nets/net.h"
+#include "nets/settle.h"
 
 #include <span>
 #include <string>
@@ -10,8 +10,9 @@
 
 namespace octafront::nets {
 
-/// The net as a complex of those of the labels that have quads, in their order; `names` of all labels.
-Complex assemble(const Net& net, const Lattice& lattice, std::vector<Vec3> world, std::span<const Vec3> straight,
+/// The net as a complex of those of the labels that have quads, in their order; `names` of all labels. Notes say what
+/// settling did.
+Complex assemble(const Net& net, const Lattice& lattice, Settled settled, std::span<const Vec3> straight,
                  const std::vector<std::string>& names);
 
 }  // namespace octafront::nets

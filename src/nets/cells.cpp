@@ -9,8 +9,9 @@ namespace octafront::nets {
 
 namespace {
 
-// Vertices that reach the wall of their cell would meet their neighbours there.
-constexpr float kMostRoom = 0.96f;
+// A slope passes up to half a voxel from the terraces that it becomes, and must have room for that; but vertices that
+// reach the wall of their cell could meet their neighbours there.
+constexpr float kMostRoom = 0.998f;
 
 struct RoomBySize {
   std::uint64_t voxels;
