@@ -116,6 +116,10 @@ struct LabelImage {
   std::vector<std::string> notes = {};  ///< what became of values, a sentence each
 };
 
+/// Which faces of the image's box each region reaches: bit 0 the first voxels along i, bit 1 the last ones, bits 2 and
+/// 3 along j, 4 and 5 along k. Per label.
+std::vector<std::uint8_t> faces_reached(const LabelImage& image);
+
 /// Values that become one region.
 struct LabelMerge {
   std::string name;

@@ -1,6 +1,7 @@
 #include <octafront/error.h>
 
 #include "image/byte_source.h"
+#include "image/dicom/dicom.h"
 #include "image/readers.h"
 #include "io/scanner.h"
 
@@ -28,9 +29,13 @@ Image read_raw_by_header(const Reading& reading) {
   return read_raw(reading);
 }
 
-constexpr std::array kKinds{Kind{is_inr, read_inr},     Kind{is_nrrd, read_nrrd},
-                            Kind{is_nifti, read_nifti}, Kind{is_invesalius, read_invesalius},
-                            Kind{is_meta, read_meta},   Kind{is_raw_header, read_raw_by_header}};
+constexpr std::array kKinds{Kind{is_inr, read_inr},
+                            Kind{is_nrrd, read_nrrd},
+                            Kind{is_dicom, read_dicom},
+                            Kind{is_nifti, read_nifti},
+                            Kind{is_invesalius, read_invesalius},
+                            Kind{is_meta, read_meta},
+                            Kind{is_raw_header, read_raw_by_header}};
 
 /// The first bytes of a file, unpacked if they are compressed; what is damaged is left to the readers.
 std::string head_of(const io::Input& input) {
@@ -75,7 +80,41 @@ bool is_raw(const fs::path& file) {
   return !header.empty() && kind_of(first_bytes(file)) == nullptr && is_raw_header(first_bytes(header));
 }
 
+SliceFiles slice_files(const std::vector<std::string>& files, const RunContext& context) {
+  const auto open = [&files, &context](std::size_t f) {
+    const auto loaded = std::make_shared<const io::LoadedFile>(files[f], context);
+    return KeptFile{loaded->input(), loaded};
+  };
+  return {files, open};
+}
+
 }  // namespace
+
+/// Of a list of files, all of which must be slices.
+Image read_slices(const std::vector<std::string>& files, const ImageChoice& choice, const RunContext& context) {
+  for (const std::string& file : files)
+    if (!is_dicom(first_bytes(file)))
+      throw InputError(
+          fmt::format("{}: is no DICOM file; several files make an image only if all are DICOM slices", file));
+  try {
+    return read_series(slice_files(files, context), choice, context);
+  } catch (const InputError& error) {
+    const std::string what = error.what();
+    throw InputError(what.starts_with("holds") ? fmt::format("the list of {} files {}", files.size(), what) : what);
+  }
+}
+
+Image read_folder(const std::string& folder, const ImageChoice& choice, const RunContext& context) {
+  const std::vector<std::string> names = dicom_files_in(folder, context);
+  SliceFiles files = slice_files(names, context);
+  files.skip_others = true;
+  try {
+    return read_series(files, choice, context);
+  } catch (const InputError& error) {
+    const std::string what = error.what();
+    throw InputError(what.starts_with("holds") ? fmt::format("{}: {}", folder, what) : what);
+  }
+}
 
 Image read_image_bytes(const Reading& reading) {
   const std::string head = head_of(reading.input);
@@ -111,8 +150,10 @@ Image tidied(Image image) {
 }  // namespace
 
 Image read_image(const std::vector<std::string>& files, const ImageChoice& choice, const RunContext& context) {
-  if (files.size() != 1) throw OptionError("several files make an image only if they are slices of DICOM");
+  if (files.empty()) throw OptionError("no file of an image is given");
   const std::filesystem::path file = files.front();
+  if (files.size() > 1) return tidied(image::read_slices(files, choice, context));
+  if (std::filesystem::is_directory(file)) return tidied(image::read_folder(files.front(), choice, context));
   const auto beside = [&](const std::string& name) { return image::opened_beside(file, name, context); };
   if (image::is_raw(file)) {
     const io::LoadedFile header(image::raw_header_of(file), context);

@@ -197,6 +197,31 @@ bool looks_like_labels(const Image& image) {
   return pairs.all > 0 && 2 * pairs.equal >= pairs.all;
 }
 
+std::vector<std::uint8_t> faces_reached(const LabelImage& image) {
+  std::vector<std::uint8_t> reached(image.labels.size());
+  const auto [ni, nj, nk] = image.grid.size;
+  const auto see = [&](std::size_t i, std::size_t j, std::size_t k, unsigned face) {
+    const std::uint16_t r = image.regions[i + ni * (j + std::size_t{nj} * k)];
+    if (r != LabelImage::kNoRegion) reached[r] = static_cast<std::uint8_t>(reached[r] | 1u << face);
+  };
+  for (std::size_t k = 0; k < nk; ++k)
+    for (std::size_t j = 0; j < nj; ++j) {
+      see(0, j, k, 0);
+      see(ni - 1, j, k, 1);
+    }
+  for (std::size_t k = 0; k < nk; ++k)
+    for (std::size_t i = 0; i < ni; ++i) {
+      see(i, 0, k, 2);
+      see(i, nj - 1, k, 3);
+    }
+  for (std::size_t j = 0; j < nj; ++j)
+    for (std::size_t i = 0; i < ni; ++i) {
+      see(i, j, 0, 4);
+      see(i, j, nk - 1, 5);
+    }
+  return reached;
+}
+
 LabelImage labels_of(const Image& image, const LabelOptions& options) {
   const std::optional<std::vector<ValueCount>> counts = count_values(image);
   if (!counts)

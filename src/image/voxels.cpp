@@ -175,6 +175,11 @@ Image::Values values_of(std::string_view bytes, const StoredVoxels& stored, std:
   }
 }
 
+Image::Values narrowed(const std::vector<std::int32_t>& values, std::vector<std::string>& notes) {
+  const auto at = [&](std::size_t i) { return values[i]; };
+  return as_integers(values.size(), at, notes);
+}
+
 Image::Values values_of(const std::vector<double>& numbers, VoxelType type, std::vector<std::string>& notes) {
   const auto at = [&](std::size_t i) { return numbers[i]; };
   const bool all_whole =

@@ -27,6 +27,9 @@ struct StoredVoxels {
 /// says if it changed any. What is not finite becomes the least or largest value, with a note.
 Image::Values values_of(std::string_view bytes, const StoredVoxels& stored, std::vector<std::string>& notes);
 
+/// The same values in the smallest type that is good for all of them.
+Image::Values narrowed(const std::vector<std::int32_t>& values, std::vector<std::string>& notes);
+
 /// The same of values that are numbers already, as texts have them.
 Image::Values values_of(const std::vector<double>& numbers, VoxelType type, std::vector<std::string>& notes);
 
