@@ -129,7 +129,9 @@ std::int64_t whole_number(double n) {
 void declare_input(CLI::App& command, Arguments& a, const std::string& what) {
   const std::string surface =
       "Closed surface, with inner walls or without: STL, OBJ, OFF, PLY, TetGen .poly, triangles of Gmsh .msh or MEDIT "
-      ".mesh; -: from standard input; or several files, a body each";
+      ".mesh; -: from standard input; or several files, a body each. Or an image of labels or grey values: NIfTI, "
+      "NRRD, "
+      "MetaImage, INR, raw with JSON, .inv3, DICOM (a folder or its files)";
   command
       .add_option_function<std::vector<std::string>>(
           "input",

@@ -5,6 +5,7 @@
 #include <octafront/options.h>
 #include <octafront/solver_checks.h>
 
+#include "image_arguments.h"
 #include "option_names.h"
 
 #include <CLI/CLI.hpp>
@@ -32,6 +33,7 @@ struct Arguments {
   std::filesystem::path input, output, json, surface, page;
   std::vector<std::filesystem::path> bodies;  ///< all inputs, the first one too, of commands that take several
   ComplexOptions complex;
+  ImageArguments image;
   std::vector<std::filesystem::path> meshes;               ///< that are written; "-": to standard output
   std::vector<std::string> formats;                        ///< of the meshes in turn; empty: by their endings
   std::filesystem::path regions, point_sizes, size_field;  ///< files with sizes; empty: none

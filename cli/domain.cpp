@@ -3,6 +3,7 @@
 #include <octafront/complex.h>
 #include <octafront/error.h>
 
+#include "images.h"
 #include "text.h"
 
 #include <algorithm>
@@ -21,19 +22,6 @@ SurfaceFile read_one(const Session& session, const std::filesystem::path& file) 
       fmt::format("{}: {}, {}\n", file.string(), read.format, counted(read.surface.triangles.size(), "triangle")));
   session.say_notes("reading", read.notes);
   return read;
-}
-
-void tell_regions(Session& session, const Complex& complex) {
-  session.say_notes("regions", complex.notes);
-  Json regions = Json::array();
-  const std::vector<std::string>& names = complex.surface.region_names;
-  for (std::size_t r = 0; r < complex.volumes.size(); ++r) {
-    // One region alone needs no name.
-    const std::string name = r < names.size() ? names[r] : "body";
-    regions.push_back({{"name", name}, {"volume", complex.volumes[r]}});
-    session.say(fmt::format("  region \"{}\": volume {:.6g}\n", name, complex.volumes[r]));
-  }
-  if (!regions.empty()) session.found({{"input_regions", regions}});
 }
 
 /// The stems of the files, with numbers behind those that occurred before.
@@ -101,11 +89,25 @@ SurfaceFile read_walls(Session& session) {
 
 }  // namespace
 
+void tell_regions(Session& session, const Complex& complex) {
+  session.say_notes("regions", complex.notes);
+  Json regions = Json::array();
+  const std::vector<std::string>& names = complex.surface.region_names;
+  for (std::size_t r = 0; r < complex.volumes.size(); ++r) {
+    // One region alone needs no name.
+    const std::string name = r < names.size() ? names[r] : "body";
+    regions.push_back({{"name", name}, {"volume", complex.volumes[r]}});
+    session.say(fmt::format("  region \"{}\": volume {:.6g}\n", name, complex.volumes[r]));
+  }
+  if (!regions.empty()) session.found({{"input_regions", regions}});
+}
+
 std::filesystem::path leak_file(std::filesystem::path output) {
   return output.replace_extension(".leak.ply");
 }
 
 SurfaceFile read_domain(Session& session) {
+  if (is_image_input(session.arguments())) return read_image_domain(session);
   try {
     return session.arguments().bodies.size() > 1 ? read_bodies(session) : read_walls(session);
   } catch (const LeakError& leak) {

@@ -236,7 +236,7 @@ class Remesher {
         options_(options),
         tolerance_(options.max_deviation.value_or(HUGE_VAL)),
         stage_(stage),
-        seamed_(is_complex(surface_) ? std::optional(cut_along_seams(surface)) : std::nullopt),
+        seamed_(!surface_.sides.empty() ? std::optional(cut_along_seams(surface)) : std::nullopt),
         input_(seamed_ ? std::move(seamed_->input) : make_input_surface(surface.mesh(), surface.edges())) {
     if (!seamed_) kind_.emplace(surface_, surface.edges());
     if (seamed_) seams_ = seam_edges(input_);
