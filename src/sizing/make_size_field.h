@@ -72,6 +72,10 @@ SizeField capped_near(const SizeField& sizes, const std::vector<Vec3>& points, d
 /// The size field capped to the sizes at the places, within 1.5 of them.
 SizeField capped_at(const SizeField& sizes, const std::vector<PointSize>& places, const RunContext& context);
 
+/// The same, and from the places sizes may rise faster than the field's gradation, as they may from then on.
+SizeField capped_steeply(const SizeField& sizes, const std::vector<PointSize>& places, double gradation,
+                         const RunContext& context);
+
 /// All sizes multiplied by `factor`; where they then rise faster than the gradation they are cut.
 SizeField scaled(const SizeField& sizes, double factor, const RunContext& context);
 
