@@ -11,8 +11,11 @@ namespace octafront::cli {
 /// Where a way through a leak is written to, beside the output.
 std::filesystem::path leak_file(std::filesystem::path output);
 
+/// What becomes of defects: mended as the options say, or left for whoever looks for them.
+enum class Defects { kMended, kLeft };
+
 /// Reads the input or inputs of a command, and makes a complex of them where their walls or the options say so. Says
 /// what was read and done. Throws InputError; for leaks with the way written to leak_file(), if there is an output.
-SurfaceFile read_domain(Session& session);
+SurfaceFile read_domain(Session& session, Defects defects = Defects::kMended);
 
 }  // namespace octafront::cli

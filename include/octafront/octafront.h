@@ -7,6 +7,7 @@
 #include <octafront/generate.h>
 #include <octafront/improve_existing.h>
 #include <octafront/io.h>
+#include <octafront/mend.h>
 #include <octafront/named_groups.h>
 #include <octafront/option_table.h>
 #include <octafront/options.h>
