@@ -15,8 +15,9 @@ namespace {
 
 using repair::Draft;
 
-/// A part with caps of more than this share of its own area is a sheet: of a hemisphere the disc is half.
-constexpr double kMostCapped = 0.7;
+/// A part with caps of more than this share of its own area is a sheet. Of a hemisphere it is half, of a tube as long as
+/// wide half too, of a terrain nearly all.
+constexpr double kMostCapped = 0.9;
 
 std::uint64_t key_of(VertexIndex a, VertexIndex b) {
   return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);

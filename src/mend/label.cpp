@@ -1,6 +1,7 @@
 #include "mend/label.h"
 
 #include "cells/sight_line.h"
+#include "core/disjoint_sets.h"
 #include "core/parallel.h"
 #include "geometry/measures.h"
 #include "geometry/winding_number.h"
@@ -197,6 +198,29 @@ void fill_thin_gaps(const Arrangement& arranged, const Cells& cells, double tole
   for (const std::uint32_t c : labels.filled) labels.inside[c] = 1;
 }
 
+/// Bodies that are thinner than the tolerance: nobody could fill them with elements.
+void empty_thin_bodies(const Arrangement& arranged, const Cells& cells, double tolerance, Labels& labels) {
+  DisjointSets bodies(cells.count());
+  for (std::size_t t = 0; t < arranged.triangles.size(); ++t) {
+    const auto [front, back] = cells.sides_of(t);
+    if (labels.inside[front] && labels.inside[back]) bodies.join(front, back);
+  }
+  std::vector<double> volume(cells.count(), 0), area(cells.count(), 0);
+  const std::vector<double> volumes = cells.volumes();
+  for (std::uint32_t c = 0; c < cells.count(); ++c)
+    if (labels.inside[c]) volume[bodies.find(c)] += volumes[c];
+  for (std::size_t t = 0; t < arranged.triangles.size(); ++t) {
+    const auto [front, back] = cells.sides_of(t);
+    if (labels.inside[front] != labels.inside[back])
+      area[bodies.find(labels.inside[front] ? front : back)] += area_of(arranged, t);
+  }
+  for (std::uint32_t c = 1; c < cells.count(); ++c) {
+    const std::uint32_t body = bodies.find(c);
+    if (labels.inside[c] && 2 * volume[body] < tolerance * area[body]) labels.emptied.push_back(c);
+  }
+  for (const std::uint32_t c : labels.emptied) labels.inside[c] = 0;
+}
+
 }  // namespace
 
 Labels label_cells(const Arrangement& arranged, const Cells& cells, const PieceOf& pieces, double tolerance,
@@ -207,6 +231,7 @@ Labels label_cells(const Arrangement& arranged, const Cells& cells, const PieceO
   labels.winding = windings_of(arranged, cells, walls_of(arranged, cells, pieces, labels.turned), context);
   cut_doubtful(arranged, cells, labels);
   fill_thin_gaps(arranged, cells, tolerance, labels);
+  empty_thin_bodies(arranged, cells, tolerance, labels);
   return labels;
 }
 

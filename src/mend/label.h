@@ -22,6 +22,7 @@ struct Labels {
   std::vector<double> winding;         ///< per cell, in the mean; not a number where a cell is too thin to look into
   std::uint64_t doubtful = 0;          ///< cells that the cut decided
   std::vector<std::uint32_t> filled;   ///< enclosed cells outside, thinner than the tolerance, that are inside now
+  std::vector<std::uint32_t> emptied;  ///< cells inside of bodies thinner than the tolerance, that are outside now
 };
 
 /// Which cells are inside: those that the walls wind around more than half. A piece that shows its back to the unbounded

@@ -171,6 +171,8 @@ void write_notes(MendReport& report) {
   if (report.separated_vertices > 0)
     notes.push_back(fmt::format("parts that touched drawn apart at {}.",
                                 counted(report.separated_vertices, "vertex", "vertices")));
+  if (const Sum rebuilt = sum_of(report, Kind::kRebuilt); rebuilt.changes > 0)
+    notes.push_back(fmt::format("the surface was made anew on a lattice: {}.", counted(rebuilt.faces, "face")));
   const auto change = [](double before, double after) { return before > 0 ? 100 * (after / before - 1) : 0.0; };
   notes.push_back(fmt::format("nothing moved by more than {:.3g} (tolerance {:.3g}); area {:+.2f} %, volume {:+.2f} %.",
                               report.largest_move, report.tolerance, change(report.area_before, report.area_after),

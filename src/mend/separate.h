@@ -14,8 +14,8 @@ struct Separated {
   bool done = true;          ///< false: some copies find no place of their own; the surface is as it was
 };
 
-/// Draws apart what touches itself in edges and vertices only: each part gets vertices of its own, which move into it,
-/// by no more than `most`. Requires triangles that meet in shared vertices and edges only, with the outside in front.
+/// Draws apart what touches itself in edges and vertices only: each part gets vertices of its own, whose tips move away
+/// from each other, by no more than `most`; tips that have no way to go are cut off. Requires triangles that meet in shared vertices and edges only, with the outside in front.
 Separated separate_contacts(SurfaceMesh& surface, double most, const RunContext& context);
 
 }  // namespace octafront::mend

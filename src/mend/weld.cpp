@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <tuple>
 
 namespace octafront::mend {
@@ -131,8 +132,8 @@ class Welder {
 
   Welded result() {
     for (int round = 0; round < kRounds; ++round) {
-      const bool joined = join_edges(), divided = divide_edges();
-      if (!joined && !divided) break;
+      const bool fitted = join_edges(), joined = join_vertices(), divided = divide_edges();
+      if (!fitted && !joined && !divided) break;
     }
     return std::move(welded_);
   }
@@ -194,12 +195,50 @@ class Welder {
     return any;
   }
 
-  /// The vertices of open edges that lie beside each open edge, away from its ends.
-  std::vector<std::vector<VertexIndex>> vertices_beside(const std::vector<OpenEdge>& open) const {
+  static std::vector<VertexIndex> vertices_of(const std::vector<OpenEdge>& open) {
     std::vector<VertexIndex> vertices;
     for (const OpenEdge& e : open) vertices.insert(vertices.end(), {e.from, e.to});
     std::sort(vertices.begin(), vertices.end());
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+    return vertices;
+  }
+
+  /// Ends of edges that do not fit, where they are nearer to each other than to all else: the nearest first.
+  bool join_vertices() {
+    const std::vector<OpenEdge> open = open_edges(draft_);
+    std::map<VertexIndex, double> room;  // the shortest open edge at each
+    for (const OpenEdge& e : open)
+      for (const VertexIndex v : {e.from, e.to}) {
+        const auto at = room.try_emplace(v, length_of(e)).first;
+        at->second = std::min(at->second, length_of(e));
+      }
+    const TriangleTree tree = tree_of(draft_, open);
+    std::vector<std::tuple<double, VertexIndex, VertexIndex>> pairs;
+    for (const auto& [v, of_v] : room) {
+      const double reach = std::min(tolerance_, kNearShared * of_v);
+      tree.for_each_box_near(box_around(at(v), reach), [&, v = v](std::uint32_t i, const TriangleCorners&) {
+        for (const VertexIndex w : {open[i].from, open[i].to})
+          if (v < w && distance(at(v), at(w)) <= std::min(reach, kNearShared * room[w]))
+            pairs.push_back({distance(at(v), at(w)), v, w});
+        return true;
+      });
+    }
+    if (pairs.empty()) return false;
+    std::sort(pairs.begin(), pairs.end());
+    Clusters clusters(draft_, tolerance_);
+    bool any = false;
+    for (const auto& [apart, v, w] : pairs) {
+      if (clusters.find(v) == clusters.find(w) || !clusters.may_join(v, w)) continue;
+      clusters.join(v, w);
+      any = true;
+    }
+    if (any) clusters.apply(draft_, welded_);
+    return any;
+  }
+
+  /// The vertices of open edges that lie beside each open edge, away from its ends.
+  std::vector<std::vector<VertexIndex>> vertices_beside(const std::vector<OpenEdge>& open) const {
+    const std::vector<VertexIndex> vertices = vertices_of(open);
     const TriangleTree tree = tree_of(draft_, open);
     std::vector<std::vector<VertexIndex>> beside(open.size());
     for (const VertexIndex v : vertices) {
