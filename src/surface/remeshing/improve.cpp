@@ -65,7 +65,7 @@ class SurfaceImprover {
   void count_valences() {
     excess_.assign(mesh_.points.size(), -6);
     for (HalfEdge h = 0; h < mesh_.start.size(); ++h) {
-      if (mesh_.start[h] != kNone) ++excess_[mesh_.start[h]];
+      if (mesh_.start[h] != kNone && !mesh_.is_back(h / 3)) ++excess_[mesh_.start[h]];
     }
     for (VertexIndex v = 0; v < mesh_.points.size(); ++v) {
       if (mesh_.outgoing[v] != kNone && mesh_.on_curve(v)) excess_[v] += 6 - wanted_valence(v);
@@ -86,6 +86,10 @@ class SurfaceImprover {
     HalfEdge h = first;
     do {
       if (mesh_.is_feature[h]) close_sector();
+      if (mesh_.is_back(h / 3)) {
+        h = mesh_.rotated(h);
+        continue;
+      }
       const Vec3 p = mesh_.points[v], a = mesh_.points[mesh_.end(h)] - p, b = mesh_.points[mesh_.apex(h)] - p;
       angle += std::atan2(length(cross(a, b)), dot(a, b));
       h = mesh_.rotated(h);
