@@ -4,6 +4,7 @@
 #include <octafront/error.h>
 
 #include "images.h"
+#include "mending.h"
 #include "text.h"
 
 #include <algorithm>
@@ -37,7 +38,7 @@ std::vector<std::string> names_of(const std::vector<std::filesystem::path>& file
   return names;
 }
 
-SurfaceFile read_bodies(Session& session) {
+SurfaceFile read_bodies(Session& session, Defects defects) {
   const Arguments& a = session.arguments();
   const std::vector<std::string> names = names_of(a.bodies);
   std::vector<Body> bodies;
@@ -49,6 +50,7 @@ SurfaceFile read_bodies(Session& session) {
           fmt::format("{}: is a complex of several regions by itself; give it alone", a.bodies[i].string()));
     options.regions.insert(options.regions.end(), file.regions.begin(), file.regions.end());
     options.voids.insert(options.voids.end(), file.voids.begin(), file.voids.end());
+    if (defects == Defects::kMended) mend(session, a.bodies[i], file.surface);
     bodies.push_back({names[i], std::move(file.surface)});
   }
   session.context().report("joining", -1);
@@ -57,7 +59,7 @@ SurfaceFile read_bodies(Session& session) {
   return {std::move(complex.surface), "several files", {}};
 }
 
-SurfaceFile read_walls(Session& session) {
+SurfaceFile read_walls(Session& session, Defects defects) {
   const Arguments& a = session.arguments();
   SurfaceFile file = read_one(session, a.input);
   ComplexOptions options = a.complex;
@@ -68,6 +70,8 @@ SurfaceFile read_walls(Session& session) {
     if (auto complex = complex_of_walls(file.surface, options, session.context())) {
       tell_regions(session, *complex);
       file.surface = std::move(complex->surface);
+    } else if (defects == Defects::kMended) {
+      mend(session, a.input, file.surface);
     }
   } catch (const LeakError& leak) {
     throw LeakError(fmt::format("{}: {}", a.input.string(), leak.what()), leak.way);
@@ -106,10 +110,10 @@ std::filesystem::path leak_file(std::filesystem::path output) {
   return output.replace_extension(".leak.ply");
 }
 
-SurfaceFile read_domain(Session& session) {
+SurfaceFile read_domain(Session& session, Defects defects) {
   if (is_image_input(session.arguments())) return read_image_domain(session);
   try {
-    return session.arguments().bodies.size() > 1 ? read_bodies(session) : read_walls(session);
+    return session.arguments().bodies.size() > 1 ? read_bodies(session, defects) : read_walls(session, defects);
   } catch (const LeakError& leak) {
     fail_with_way(session, leak);
   }

@@ -96,6 +96,7 @@ void Program::declare_makers() {
   declare_input(*mesh, a);
   declare_complex(*mesh, a);
   declare_image(*mesh, a.image);
+  declare_repair(*mesh, a);
   declare_mesh_output(*mesh, a);
   declare_preset(*mesh, a);
   declare_dry_run(*mesh, a);
@@ -113,11 +114,24 @@ void Program::declare_makers() {
   declare_input(*surface, a);
   declare_complex(*surface, a);
   declare_image(*surface, a.image);
+  declare_repair(*surface, a);
   declare_output(*surface, a, "Surface: .stl, .obj, .off or .ply", true);
   declare_sizes(*surface, a);
   declare_surface(*surface, a);
   declare_report(*surface, a);
   declare_run(*surface, a);
+
+  CLI::App* repair = add("repair", "Mend a surface with defects and stop there: octafront repair in.stl -o out.stl",
+                         "  octafront repair scan.ply -o closed.ply --json changes.json --defects places.ply\n"
+                         "  octafront repair part.stl -o part.off --tolerance 0.05\n"
+                         "  octafront repair soup.obj -o skin.stl --repair wrap       a closed skin around it\n",
+                         run_repair);
+  declare_input(*repair, a);
+  declare_complex(*repair, a);
+  declare_repair(*repair, a);
+  declare_output(*repair, a, "Surface: .stl, .obj, .off or .ply", true);
+  declare_report(*repair, a);
+  declare_run(*repair, a);
 
   CLI::App* size = add(
       "size", "Show the element sizes, and how many elements they would make",
@@ -127,6 +141,7 @@ void Program::declare_makers() {
   declare_input(*size, a);
   declare_complex(*size, a);
   declare_image(*size, a.image);
+  declare_repair(*size, a);
   declare_output(*size, a, "Background grid: .vtu", false);
   declare_sizes(*size, a);
   declare_surface(*size, a);

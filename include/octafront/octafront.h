@@ -9,6 +9,7 @@
 #include <octafront/image_surface.h>
 #include <octafront/improve_existing.h>
 #include <octafront/io.h>
+#include <octafront/mend.h>
 #include <octafront/named_groups.h>
 #include <octafront/option_table.h>
 #include <octafront/options.h>

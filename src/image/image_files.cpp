@@ -37,13 +37,17 @@ constexpr std::array kKinds{Kind{is_inr, read_inr},
                             Kind{is_meta, read_meta},
                             Kind{is_raw_header, read_raw_by_header}};
 
-/// The first bytes of a file, unpacked if they are compressed; what is damaged is left to the readers.
+/// The first bytes of a file, unpacked if they are compressed: as many as come before what is damaged, which readers
+/// will complain about.
 std::string head_of(const io::Input& input) {
-  try {
-    return std::string(ByteSource(input, 0, Packing::kDetect).take(kHead));
-  } catch (const InputError&) {
-    return {};
+  // The last is what the largest magic word needs: that of NIfTI.
+  for (const std::size_t count : {kHead, kHead / 8, std::size_t{348}}) {
+    try {
+      return std::string(ByteSource(input, 0, Packing::kDetect).take(count));
+    } catch (const InputError&) {
+    }
   }
+  return {};
 }
 
 const Kind* kind_of(std::string_view head) {

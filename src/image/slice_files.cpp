@@ -51,6 +51,7 @@ void read_share(const io::Input& input, std::size_t offset, const DataFiles& fil
                     "export it again",
                     voxels, bytes, source.is_packed() ? "at most" : "only", source.most_bytes_left()));
   append_picked(source.require(bytes, "the voxels"), before, size, picked, out);
+  source.check_end();
 }
 
 }  // namespace

@@ -207,7 +207,9 @@ TEST(Cleaning, GapsCloseUpToTwiceTheReach) {
       const std::size_t middle = 6 + 20 * (n / 2 + n * (n / 2));
       EXPECT_EQ(out.regions[middle] == 0, gap <= 2 * reach) << gap << " " << reach;
       for (std::size_t v = 0; v < regions.size(); ++v)
-        if (regions[v] == 0) ASSERT_EQ(out.regions[v], 0);
+        if (regions[v] == 0) {
+          ASSERT_EQ(out.regions[v], 0);
+        }
     }
 }
 
@@ -224,7 +226,9 @@ TEST(Cleaning, ClosingTakesNothingFromOthersAndIsTheSameOnAnyThreads) {
   many.threads = 4;
   const LabelImage closed = cleaned(image, options, one);
   for (std::size_t v = 0; v < regions.size(); ++v)
-    if (regions[v] != kOut) ASSERT_EQ(closed.regions[v], regions[v]);
+    if (regions[v] != kOut) {
+      ASSERT_EQ(closed.regions[v], regions[v]);
+    }
   options.islands = 8;
   options.holes = 8;
   EXPECT_EQ(cleaned(image, options, one).regions, cleaned(image, options, many).regions);

@@ -411,7 +411,8 @@ std::string DicomSlice::bytes() const {
 }
 
 DicomSlice dicom_slice(std::size_t k) {
-  const ImageGrid g = sheared_grid();
+  ImageGrid g = sheared_grid();
+  g.axes[0] = g.axes[0] * -1.0;
   DicomSlice s;
   s.instance = static_cast<int>(k) + 1;
   s.uid = fmt::format("1.2.3.4.{}", k);

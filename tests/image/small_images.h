@@ -65,7 +65,7 @@ struct DicomSlice {
   std::string bytes() const;
 };
 
-/// Slice k of the sample.
+/// Slice k of the sample, whose rows run the other way: slices are put in the order of their normal.
 DicomSlice dicom_slice(std::size_t k);
 
 std::string gzip(const std::string& bytes);
