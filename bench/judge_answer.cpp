@@ -4,10 +4,10 @@
 
 #include <octafront/octafront.h>
 
-#include "core/disjoint_sets.h"
 #include "core/random.h"
 #include "geometry/measures.h"
 #include "geometry/triangle_tree.h"
+#include "made_result.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +23,6 @@
 namespace {
 
 using namespace octafront;
-using Json = nlohmann::ordered_json;
 
 // All as parts of the diagonal of the undamaged model.
 constexpr double kSpacing = 4e-3;    ///< of the points at which distances are measured; corners are always among them
@@ -123,30 +122,6 @@ class Truth {
   Box3 box_;
 };
 
-/// Calls visit(p) for the corners of a triangle and points inside it, none farther from the next than `spacing`.
-template <class Visit>
-void sample(const TriangleCorners& t, double spacing, Visit&& visit) {
-  const double longest = std::sqrt(longest_squared_edge(t[0], t[1], t[2]));
-  const int n = std::max(1, static_cast<int>(std::ceil(longest / spacing)));
-  for (int i = 0; i <= n; ++i)
-    for (int j = 0; i + j <= n; ++j)
-      visit(t[0] + (t[1] - t[0]) * (static_cast<double>(i) / n) + (t[2] - t[0]) * (static_cast<double>(j) / n));
-  visit(centroid(t[0], t[1], t[2]));
-}
-
-struct Farthest {
-  double distance = 0;
-  Vec3 at;
-  void add(double d, Vec3 p) {
-    if (d > distance) *this = {d, p};
-  }
-  Json json(double diagonal) const { return {{"distance", distance / diagonal}, {"at", {at.x, at.y, at.z}}}; }
-};
-
-TriangleCorners corners_of(const SurfaceMesh& s, const Triangle& t) {
-  return {s.points[t[0]], s.points[t[1]], s.points[t[2]]};
-}
-
 Json distances(const Truth& truth, const SurfaceMesh& made, const TriangleTree& tree) {
   const double spacing = kSpacing * truth.diagonal();
   Farthest to_truth, from_truth;
@@ -221,113 +196,14 @@ Json sharp_edges(const Truth& truth, const TriangleTree& tree) {
   return j;
 }
 
-/// The faces of only one tetrahedron, found anew: what the file calls its boundary is not believed.
-std::vector<Triangle> single_faces(const TetMesh& mesh, std::uint32_t& components) {
-  std::vector<std::pair<Triangle, std::uint32_t>> faces;  // sorted corners, 4 * tet + face
-  for (std::uint32_t t = 0; t < mesh.tets.size(); ++t)
-    for (std::uint32_t f = 0; f < 4; ++f) {
-      Triangle key;
-      for (int k = 0; k < 3; ++k) key[k] = mesh.tets[t][kTetFaces[f][k]];
-      std::sort(key.begin(), key.end());
-      faces.push_back({key, 4 * t + f});
-    }
-  std::sort(faces.begin(), faces.end());
-  DisjointSets sets(mesh.tets.size());
-  std::vector<Triangle> single;
-  for (std::size_t i = 0; i < faces.size(); ++i) {
-    if (i + 1 < faces.size() && faces[i].first == faces[i + 1].first) {
-      sets.join(faces[i].second / 4, faces[i + 1].second / 4);
-      ++i;
-      continue;
-    }
-    const Tet& tet = mesh.tets[faces[i].second / 4];
-    const auto& f = kTetFaces[faces[i].second % 4];
-    single.push_back({tet[f[0]], tet[f[1]], tet[f[2]]});
-  }
-  components = 0;
-  for (std::uint32_t t = 0; t < mesh.tets.size(); ++t) components += sets.find(t) == t;
-  return single;
-}
-
-/// Counts of a surface: shells, genus, edges without just two triangles that agree, vertices with more than one fan.
-Json kind_of(const SurfaceMesh& s) {
-  std::map<Edge, std::array<int, 2>> edges;
-  DisjointSets shells(s.points.size()), fans(3 * s.triangles.size());
-  std::map<Edge, std::uint32_t> half;
-  for (std::uint32_t t = 0; t < s.triangles.size(); ++t)
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      const VertexIndex a = s.triangles[t][k], b = s.triangles[t][(k + 1) % 3];
-      ++edges[{std::min(a, b), std::max(a, b)}][a < b];
-      shells.join(a, b);
-      half[{a, b}] = 3 * t + k;
-    }
-  std::size_t bad_edges = 0, used = 0, roots = 0, fan_count = 0;
-  for (const auto& [e, n] : edges) bad_edges += n[0] != 1 || n[1] != 1;
-  // Corners at one vertex belong to one fan if their triangles share an edge there.
-  for (const auto& [e, h] : half) {
-    const auto other = half.find({e[1], e[0]});
-    if (other == half.end()) continue;
-    const auto next = [](std::uint32_t c) { return c / 3 * 3 + (c + 1) % 3; };
-    fans.join(h, next(other->second));
-    fans.join(next(h), other->second);
-  }
-  for (std::uint32_t c = 0; c < 3 * s.triangles.size(); ++c) fan_count += fans.find(c) == c;
-  std::vector<bool> is_used(s.points.size());
-  for (const Triangle& t : s.triangles)
-    for (const VertexIndex v : t) is_used[v] = true;
-  for (VertexIndex v = 0; v < s.points.size(); ++v) {
-    used += is_used[v];
-    roots += is_used[v] && shells.find(v) == v;
-  }
-  const auto euler =
-      static_cast<long>(fan_count) - static_cast<long>(edges.size()) + static_cast<long>(s.triangles.size());
-  return {{"triangles", s.triangles.size()},
-          {"shells", roots},
-          {"genus", static_cast<long>(roots) - euler / 2},
-          {"bad_edges", bad_edges},
-          {"bad_vertices", static_cast<long>(fan_count) - static_cast<long>(used)}};
-}
-
-/// Solids of a closed surface: shells that face outward.
-std::uint32_t outward_shells(const SurfaceMesh& s) {
-  DisjointSets sets(s.points.size());
-  for (const Triangle& t : s.triangles) sets.join(t[0], t[1]), sets.join(t[1], t[2]);
-  std::map<std::uint32_t, double> volumes;
-  for (const Triangle& t : s.triangles)
-    volumes[sets.find(t[0])] += six_volumes(s.points[0], s.points[t[0]], s.points[t[1]], s.points[t[2]]);
-  return static_cast<std::uint32_t>(
-      std::count_if(volumes.begin(), volumes.end(), [](const auto& v) { return v.second > 0; }));
-}
-
 Json judge(const Json& known, const std::string& file) {
   const Truth truth(known);
-  SurfaceMesh made;
-  Json j;
-  std::uint32_t components = 0;
-  if (file.ends_with(".off")) {
-    made = read_surface(file).surface;
-    components = outward_shells(made);
-  } else {
-    const TetMesh mesh = read_mesh(file);
-    const auto defect = first_defect(mesh);
-    const QualitySummary q = summarize_quality(mesh);
-    made.points = mesh.points;
-    made.triangles = single_faces(mesh, components);
-    std::uint32_t regions = 1;
-    for (const std::uint32_t r : mesh.region) regions = std::max(regions, r + 1);
-    j = {{"tets", mesh.tets.size()},
-         {"defect", defect ? Json(*defect) : Json(nullptr)},
-         {"regions", regions},
-         {"beta_mean", q.beta_mean},
-         {"dihedral_min", q.dihedral_min},
-         {"dihedral_max", q.dihedral_max}};
-  }
-  if (made.triangles.empty()) return {{"empty", true}};
-  const TriangleTree tree(made);
-  j["components"] = components;
-  j.update(kind_of(made));
-  j["volume_percent"] = 100 * (enclosed_volume(made) / truth.volume() - 1);
-  j.update(distances(truth, made, tree));
+  const MadeResult made = read_result(file);
+  if (made.boundary.triangles.empty()) return {{"empty", true}};
+  const TriangleTree tree(made.boundary);
+  Json j = made.about;
+  j["volume_percent"] = 100 * (enclosed_volume(made.boundary) / truth.volume() - 1);
+  j.update(distances(truth, made.boundary, tree));
   j["sides"] = sides(truth, tree);
   j["sharp_edges"] = sharp_edges(truth, tree);
   return j;
