@@ -1,7 +1,7 @@
 """Repairs and meshes damaged models whose answer is known, and judges what came out.
 
-Usage: bench/run.sh known_answers [--cases FIRST:END] [--seed N] [--kinds A,B] [--models ALL|generated] [--clean]
-                                  [--lines FILE] [--keep FOLDER] [--jobs N] [--timeout SECONDS] [--page]
+Usage: bench/run.sh known_answers [--cases FIRST:END] [--seed N] [--kinds A,B] [--generated] [--clean]
+                                  [--lines FILE] [--keep FOLDER] [--steps repair] [--jobs N] [--timeout SECONDS] [--page]
 Cases are those of scripts/damage-models.py. Each is repaired (`octafront repair`: the surface must be within the tolerance)
 and meshed with default options (`octafront mesh`: on top of the tolerance the mesher may stray as far as it says itself).
 octafront_judge_answer measures both against the undamaged model. One line for each failure; --lines appends a JSON object
@@ -13,9 +13,11 @@ import argparse
 import concurrent.futures
 import importlib.util
 import json
+import math
 import os
 import pathlib
 import shutil
+import signal
 import statistics
 import subprocess
 import sys
@@ -37,15 +39,17 @@ PAGE = ROOT / "docs/repair-known.md"
 
 
 def run(command, timeout):
-    """(exit status, None: no end; standard error; CPU seconds; MB at most)"""
+    """(exit status, None: no end; standard error; CPU seconds; MB at most). `timeout` counts processor time: other programs
+    may be at work."""
     with tempfile.TemporaryFile() as errors:
-        process = subprocess.Popen([str(c) for c in command], stdout=subprocess.DEVNULL, stderr=errors)
-        timer = threading.Timer(timeout, process.kill)
+        limited = ["prlimit", f"--cpu={math.ceil(timeout)}", *map(str, command)]
+        process = subprocess.Popen(limited, stdout=subprocess.DEVNULL, stderr=errors)
+        timer = threading.Timer(20 * timeout, process.kill)
         timer.start()
         _, status, used = os.wait4(process.pid, 0)
-        ended = timer.is_alive()
         timer.cancel()
         process.returncode = os.waitstatus_to_exitcode(status)
+        ended = process.returncode not in (-signal.SIGXCPU, -signal.SIGKILL)
         errors.seek(0)
         return (process.returncode if ended else None, errors.read().decode(errors="replace").strip(),
                 used.ru_utime + used.ru_stime, used.ru_maxrss / 1e3)
@@ -80,12 +84,13 @@ def wrong(known, made, distance, edges):
     return out
 
 
-def judge_case(build, folder, known, timeout):
+def judge_case(build, folder, known, timeout, wanted):
     """All about one case: what was made, measured, and is wrong."""
     row = {key: known[key] for key in ("case", "seed", "kind", "model", "what", "damaged_triangles")} | {"wrong": []}
     known_file = pathlib.Path(folder, f"{known['case']:04}.json")
     steps = {"repair": ("repaired.off", TOLERANCE, []), "mesh": ("mesh.vtu", MESH_DISTANCE, ["--threads", "1"])}
-    for step, (name, distance, options) in steps.items():
+    for step in wanted:
+        name, distance, options = steps[step]
         result = pathlib.Path(folder, f"{known['case']:04}-{name}")
         report = result.with_suffix(".json")
         status, message, seconds, megabytes = run(
@@ -103,7 +108,7 @@ def do_case(build, number, a):
     kind, name, made = damage.make(number, a.seed, a.kinds.split(","), a.generated)
     with tempfile.TemporaryDirectory() as folder:
         known = damage.write(folder, number, kind, name, made, a.seed)
-        row = judge_case(build, folder, known, a.timeout)
+        row = judge_case(build, folder, known, a.timeout, a.steps.split(","))
         if row["wrong"] and a.keep:
             kept = pathlib.Path(a.keep)
             kept.mkdir(parents=True, exist_ok=True)
@@ -174,7 +179,8 @@ def line(name, rows):
             f"{max((abs(m['volume_percent']) for m in surfaces), default=float('nan')):.3f}",
             sum(m["sides"]["wrong"] for m in meshes),
             f"{100 * max((m['sharp_edges']['distance'] for m in surfaces), default=float('nan')):.6f}",
-            f"{statistics.median(r['repair']['cpu_seconds'] for r in rows):.2f}, {statistics.median(r['mesh']['cpu_seconds'] for r in rows):.2f}"]
+            ", ".join(f"{statistics.median(r[step]['cpu_seconds'] for r in rows if step in r):.2f}" for step in ("repair", "mesh")
+                      if any(step in r for r in rows))]
 
 
 def page(rows, command):
@@ -242,8 +248,9 @@ def main():
     parser.add_argument("--clean", action="store_true")
     parser.add_argument("--lines", type=pathlib.Path)
     parser.add_argument("--keep", type=pathlib.Path)
+    parser.add_argument("--steps", default="repair,mesh", help="or one of them alone")
     parser.add_argument("--jobs", type=int, default=2)
-    parser.add_argument("--timeout", type=float, default=120)
+    parser.add_argument("--timeout", type=float, default=60, help="processor seconds for each run")
     parser.add_argument("--page", action="store_true")
     a = parser.parse_args()
     sys.exit(1 if (clean_models if a.clean else campaign)(a.build, a) else 0)

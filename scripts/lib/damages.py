@@ -381,23 +381,44 @@ def fins(solid, rng):
     return case(solid, soup, f"{len(added)} fins", touched=boxes(added, d))
 
 
+FOLDED = [(0, 1, 4), (0, 4, 3), (1, 2, 5), (1, 5, 4), (2, 0, 3), (2, 3, 5), (3, 4, 5)]
+
+
+def crosses(points):
+    """Whether triangles of FOLDED cross that share no vertex with the edge that pierces them."""
+    edges = {tuple(sorted((t[k], t[(k + 1) % 3]))) for t in FOLDED for k in range(3)}
+    return any(segments_hit(points[[e[0]]], points[[e[1]]], points[[t]]) for e in edges for t in FOLDED if not set(e) & set(t))
+
+
+def twisted(p, normal, height, rng):
+    """The corners p (3, 3) of a triangle, and an inner triangle turned about half way round and tilted, so that the strip
+    between the two crosses itself."""
+    m = p.mean(axis=0)
+    for _ in range(100):
+        angle = math.pi * rng.uniform(0.7, 1.3)
+        arm = 0.4 * (p - m)
+        turned_arm = math.cos(angle) * arm + math.sin(angle) * np.cross(normal, arm)
+        points = np.concatenate([p, m + turned_arm + rng.uniform(-height, height, 3)[:, None] * normal])
+        if crosses(points):
+            return points
+    raise Unsuitable("no fold crosses")
+
+
 def folds(solid, rng):
-    """Triangles divided inside, two of the new vertices drawn across each other: the skin lies there in three layers
-    that cross, not higher than FOLD."""
+    """Triangles divided inside, the inner triangle turned round: the skin lies there in three layers that cross, not
+    higher than FOLD."""
     d = solids.diagonal(solid)
-    large = np.flatnonzero(solids.areas(solid) > 1e-6 * d * d)
+    area, n = solids.areas(solid), solids.normals(solid)
+    edges = np.linalg.norm(solid.points[solid.triangles] - solid.points[np.roll(solid.triangles, 1, axis=1)], axis=2)
+    large = np.flatnonzero((area > 1e-6 * d * d) & (area > 0.2 * edges.max(axis=1) ** 2))
     if len(large) == 0:
-        raise Unsuitable("only tiny triangles")
+        raise Unsuitable("only tiny triangles and needles")
     chosen = rng.choice(large, min(len(large), int(rng.integers(1, 20))), replace=False)
-    n, points, more = solids.normals(solid), list(solid.points), []
+    points, more = list(solid.points), []
     for t in chosen:
-        a, b, c = corners = solid.triangles[t]
-        p = solid.points[corners]
-        m = p.mean(axis=0)
-        new = m + np.array([-0.4, -0.35, 0.5])[:, None] * (p - m) + n[t] * d * FOLD * np.array([1, -1, 0])[:, None]
-        i = len(points)
-        points += list(new)
-        more += [(a, b, i + 1), (a, i + 1, i), (b, c, i + 2), (b, i + 2, i + 1), (c, a, i), (c, i, i + 2), (i, i + 1, i + 2)]
+        names = [*solid.triangles[t].tolist(), *range(len(points), len(points) + 3)]
+        points += list(twisted(solid.points[solid.triangles[t]], n[t], FOLD * d, rng)[3:])
+        more += [[names[k] for k in corners] for corners in FOLDED]
     soup = Solid(np.array(points), np.concatenate([np.delete(solid.triangles, chosen, axis=0), np.array(more)]))
     return case(solid, soup, f"{len(chosen)} folds", touched=boxes(solid.points[solid.triangles[chosen]], d))
 
