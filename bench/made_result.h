@@ -7,8 +7,6 @@
 #include "geometry/measures.h"
 #include "geometry/triangle_tree.h"
 
-#include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -26,15 +24,25 @@ struct MadeResult {
 /// Reads a surface where the file's name ends in .off or .obj, else a mesh.
 MadeResult read_result(const std::string& file);
 
-/// Calls visit(p) for the corners of a triangle and points inside it, none farther from the next than `spacing`.
+/// Calls visit(p) for points of a triangle without its corners: halved across the longest edge until none is longer
+/// than `spacing`, so that needles need few.
 template <class Visit>
-void sample(const TriangleCorners& t, double spacing, Visit&& visit) {
-  const double longest = std::sqrt(longest_squared_edge(t[0], t[1], t[2]));
-  const int n = std::max(1, static_cast<int>(std::ceil(longest / spacing)));
-  for (int i = 0; i <= n; ++i)
-    for (int j = 0; i + j <= n; ++j)
-      visit(t[0] + (t[1] - t[0]) * (static_cast<double>(i) / n) + (t[2] - t[0]) * (static_cast<double>(j) / n));
-  visit(centroid(t[0], t[1], t[2]));
+void sample_inside(const TriangleCorners& t, double spacing, const Visit& visit) {
+  int k = 0;
+  for (const int i : {1, 2})
+    if (squared_distance(t[i], t[(i + 1) % 3]) > squared_distance(t[k], t[(k + 1) % 3])) k = i;
+  const Vec3 a = t[k], b = t[(k + 1) % 3], c = t[(k + 2) % 3], middle = (a + b) * 0.5;
+  if (distance(a, b) <= spacing) return visit(centroid(a, b, c));
+  visit(middle);
+  sample_inside({a, middle, c}, spacing, visit);
+  sample_inside({middle, b, c}, spacing, visit);
+}
+
+/// The same with the corners.
+template <class Visit>
+void sample(const TriangleCorners& t, double spacing, const Visit& visit) {
+  for (const Vec3 corner : t) visit(corner);
+  sample_inside(t, spacing, visit);
 }
 
 struct Farthest {

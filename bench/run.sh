@@ -7,6 +7,7 @@
 #                            --beside PROGRAM: against another build of octafront, side by side
 #   bench/run.sh surface     surfaces of all clean models and beside other remeshers  -> docs/surface-status.md, benchmarks.md
 #   bench/run.sh elements    --elements N met? prediction, sizes in the volume          -> docs/benchmarks.md
+#   bench/run.sh gradation   gradations from .05 to .5 side by side                       -> docs/gradation.md
 #   bench/run.sh volume      kept surfaces up to 10 M elements, against TetGen, HXT and Netgen -> docs/volume-bench.md
 #   bench/run.sh peers       surfaces kept and made anew, against TetGen, Gmsh, Netgen and CGAL -> build/release/experiments/peers.json
 #   bench/run.sh complexes   several regions in one mesh, against TetGen and Gmsh       -> docs/complex.md
@@ -21,8 +22,8 @@ cd "$(dirname "$0")/.."
 source scripts/lib/apt.sh
 
 case ${1:-} in
-  status | derived | pipeline | surface | elements | volume | peers | complexes | improve | formats | second_order | dry_run | repair | known_answers) ;;
-  *) sed -n '2,19s/^# \{0,1\}//p' "$0"; exit 2 ;;
+  status | derived | pipeline | surface | elements | gradation | volume | peers | complexes | improve | formats | second_order | dry_run | repair | known_answers) ;;
+  *) sed -n '2,20s/^# \{0,1\}//p' "$0"; exit 2 ;;
 esac
 need_packages "${build_packages[@]}" python3
 [ "$1" != surface ] || need_packages gmsh netgen libcgal-dev libgmp-dev libmpfr-dev

@@ -12,6 +12,7 @@
 
 #include <fcntl.h>
 #include <fmt/core.h>
+#include <malloc.h>
 #include <unistd.h>
 
 namespace octafront::cli {
@@ -67,6 +68,12 @@ int threads_at_most(int asked) {
 }  // namespace
 
 void prepare_process() {
+#ifdef __GLIBC__
+  // By default glibc keeps blocks of up to 32 MB once they were freed: a quarter of the peak, to save 2 % of the time.
+  constexpr int kLeastMapped = 1 << 20;
+  mallopt(M_MMAP_THRESHOLD, kLeastMapped);
+  mallopt(M_TRIM_THRESHOLD, 4 * kLeastMapped);
+#endif
   std::signal(SIGXFSZ, SIG_IGN);
   int fd = STDIN_FILENO;
   while (fd >= 0 && fd <= STDERR_FILENO) fd = fcntl(fd, F_GETFD) < 0 ? open("/dev/null", O_RDWR) : fd + 1;

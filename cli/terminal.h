@@ -5,7 +5,7 @@
 namespace octafront::cli {
 
 /// Makes limits on the size of files errors that can be told (not a signal that kills), and sees to it that no file of
-/// ours can take the place of a standard stream that is closed. To be called first of all.
+/// ours can take the place of a standard stream that is closed; memory goes back once it is free. To be called first.
 void prepare_process();
 
 /// Ctrl-C and SIGTERM set this flag; the run ends at the next check, with nothing half-written.

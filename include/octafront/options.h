@@ -56,7 +56,7 @@ struct SizeOptions {
   /// The automatic sizes times this: 0.5 makes about eight times as many elements. Has no say where another source
   /// chooses the sizes. In [0.1, 10].
   double automatic_factor = 1;
-  double gradation = 0.2;  ///< |h(x) - h(y)| <= gradation |x - y|; in [0.01, 1]
+  double gradation = 0.12;  ///< |h(x) - h(y)| <= gradation |x - y|; in [0.01, 1]
   enum class Interior { kUniform, kGraded };
   /// kUniform: sizes inside stay at most the largest size on the surface (the paper's Cmax).
   /// kGraded: sizes grow inward at the gradation, up to max_size.

@@ -52,7 +52,7 @@ class SizeField:
     report: Report
     def __init__(self, h: float) -> None: ...
     @classmethod
-    def read(cls, path: Path, *, gradation: float = 0.2) -> SizeField: ...
+    def read(cls, path: Path, *, gradation: float = 0.12) -> SizeField: ...
     def save(self, path: Path) -> None: ...
     def __call__(self, points: npt.ArrayLike) -> Floats: ...
     @property
@@ -128,7 +128,7 @@ def mesh(points: npt.ArrayLike | Surface, triangles: npt.ArrayLike | None = None
     min_size: float | None = None,
     max_size: float | None = None,
     automatic_factor: float = 1.0,
-    gradation: float = 0.2,
+    gradation: float = 0.12,
     interior: Literal['uniform', 'graded'] = 'uniform',
     keep_surface: bool = False,
     feature_angle: float = 40.0,
@@ -165,7 +165,7 @@ def mesh_file(path: Path, *,
     min_size: float | None = None,
     max_size: float | None = None,
     automatic_factor: float = 1.0,
-    gradation: float = 0.2,
+    gradation: float = 0.12,
     interior: Literal['uniform', 'graded'] = 'uniform',
     keep_surface: bool = False,
     feature_angle: float = 40.0,
@@ -202,7 +202,7 @@ def surface(points: npt.ArrayLike | Surface, triangles: npt.ArrayLike | None = N
     min_size: float | None = None,
     max_size: float | None = None,
     automatic_factor: float = 1.0,
-    gradation: float = 0.2,
+    gradation: float = 0.12,
     interior: Literal['uniform', 'graded'] = 'uniform',
     keep_surface: bool = False,
     feature_angle: float = 40.0,
@@ -226,7 +226,7 @@ def size_field(points: npt.ArrayLike | Surface, triangles: npt.ArrayLike | None 
     min_size: float | None = None,
     max_size: float | None = None,
     automatic_factor: float = 1.0,
-    gradation: float = 0.2,
+    gradation: float = 0.12,
     interior: Literal['uniform', 'graded'] = 'uniform',
     keep_surface: bool = False,
     feature_angle: float = 40.0,

@@ -76,7 +76,7 @@ class Settings:
         if "size_field" in given:
             field = given.pop("size_field")
             if _is_file(field):
-                field = SizeField.read(field, gradation=given.get("gradation", 0.2))
+                field = SizeField.read(field, gradation=given.get("gradation", 0.12))
             demand("options_field", self.options, field._handle)
         for name, size in dict(given.pop("size_of", {})).items():
             raw = bytes_of(name)

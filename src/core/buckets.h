@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace octafront {
@@ -46,8 +47,13 @@ class Buckets {
   std::span<const Item> operator[](std::size_t bucket) const {
     return {items_.data() + first_[bucket], items_.data() + first_[bucket + 1]};
   }
+  std::span<Item> operator[](std::size_t bucket) {
+    return {items_.data() + first_[bucket], items_.data() + first_[bucket + 1]};
+  }
   std::size_t first(std::size_t bucket) const { return first_[bucket]; }
   std::size_t items() const { return items_.size(); }
+  /// All items, bucket by bucket; none are left.
+  std::vector<Item> release() { return std::move(items_); }
 
  private:
   std::vector<std::size_t> first_;

@@ -63,12 +63,12 @@ Groups<> group_by_owner(std::size_t owners, std::uint32_t items, const OwnerOf& 
                 if (const std::uint32_t owner = owner_of(i); owner != kNoOwner) add(owner, i);
             }};
   const RangeBuckets ranges(owners);
-  const Buckets<> by_range(items, ranges.count(), [&](std::size_t i, const auto& add) {
+  Buckets<> by_range(items, ranges.count(), [&](std::size_t i, const auto& add) {
     const std::uint32_t owner = owner_of(static_cast<std::uint32_t>(i));
     if (owner != kNoOwner) add(ranges.of(owner), static_cast<std::uint32_t>(i));
   });
-  std::vector<std::uint32_t> first(owners + 1), grouped(by_range.items());
-  first[owners] = static_cast<std::uint32_t>(grouped.size());
+  std::vector<std::uint32_t> first(owners + 1);
+  first[owners] = static_cast<std::uint32_t>(by_range.items());
   parallel_for(ranges.count(), [&](std::size_t r) {
     const std::size_t begin = ranges.begin(r);
     const Groups<> in_range(ranges.end(r) - begin, [&](const auto& add) {
@@ -77,9 +77,9 @@ Groups<> group_by_owner(std::size_t owners, std::uint32_t items, const OwnerOf& 
     const std::size_t before = by_range.first(r);
     for (std::size_t k = 0; k < in_range.size(); ++k)
       first[begin + k] = static_cast<std::uint32_t>(before + in_range.first(k));
-    std::copy(in_range.items().begin(), in_range.items().end(), grouped.begin() + static_cast<std::ptrdiff_t>(before));
+    std::copy(in_range.items().begin(), in_range.items().end(), by_range[r].begin());
   });
-  return {std::move(first), std::move(grouped)};
+  return {std::move(first), by_range.release()};
 }
 
 /// The rows (triangles, tets, edges) at each of the vertices that they name, ascending for each vertex.

@@ -72,7 +72,8 @@ bool EditBlock::replace(std::span<const TetIndex> old_tets, std::span<const Tet>
   if (new_tets.size() > old_tets.size() && !has_room(new_tets.size() - old_tets.size())) return false;
   rim_.reset(4 * (old_tets.size() + new_tets.size()));
   for (const TetIndex t : old_tets) rim_.open(complex_, t);
-  const std::uint32_t region = mesh_.region_[old_tets[0]];
+  const bool has_regions = mesh_.had_regions_;
+  const std::uint32_t region = has_regions ? mesh_.region_[old_tets[0]] : 0;
   for (const TetIndex t : old_tets)
     for (const VertexIndex v : complex_.tets[t]) complex_.tet_at[v] = kNone;
   if (change) change_boundary(*change);
@@ -81,7 +82,7 @@ bool EditBlock::replace(std::span<const TetIndex> old_tets, std::span<const Tet>
     const TetIndex t = k < old_tets.size() ? old_tets[k] : slot();
     complex_.tets[t] = new_tets[k];
     mesh_.shapes_[t] = shapes[k];
-    mesh_.region_[t] = region;
+    if (has_regions) mesh_.region_[t] = region;
     created.push_back(t);
   }
   for (std::size_t k = new_tets.size(); k < old_tets.size(); ++k) {

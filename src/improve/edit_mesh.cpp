@@ -2,10 +2,11 @@
 
 #include <octafront/error.h>
 
+#include "core/groups.h"
 #include "core/parallel.h"
 #include "core/validate.h"
 #include "geometry/predicates.h"
-#include "improve/spatial_order.h"
+#include "geometry/spatial_order.h"
 #include "mesh/index_range.h"
 
 #include <algorithm>
@@ -21,6 +22,13 @@ void renumber_faces(TetMesh& mesh, const std::vector<VertexIndex>& new_of_old) {
   for (std::vector<Triangle>* faces : {&mesh.boundary, &mesh.interfaces})
     for (Triangle& t : *faces)
       for (VertexIndex& v : t) v = new_of_old[v];
+}
+
+/// The tets by their least corner.
+Groups<> group_by_least_corner(const std::vector<Tet>& tets, std::size_t vertices) {
+  return group_by_owner(vertices, static_cast<TetIndex>(tets.size()), [&](TetIndex t) {
+    return std::min({tets[t][0], tets[t][1], tets[t][2], tets[t][3]});
+  });
 }
 
 }  // namespace
@@ -49,12 +57,14 @@ void EditMesh::take(TetMesh& mesh) {
   renumber_faces(mesh, new_of_old);
   had_regions_ = !mesh.region.empty();
   complex_.tets.reserve(mesh.tets.size());
-  region_.reserve(mesh.tets.size());
+  if (had_regions_) region_.reserve(mesh.tets.size());
   const Groups<> by_corner = group_by_least_corner(mesh.tets, points_.size());
   for (const TetIndex t : by_corner.items()) {
     complex_.tets.push_back(mesh.tets[t]);
-    region_.push_back(had_regions_ ? mesh.region[t] : 0);
+    if (had_regions_) region_.push_back(mesh.region[t]);
   }
+  mesh.tets = std::vector<Tet>();
+  mesh.points = std::vector<Vec3>();
 }
 
 void EditMesh::connect() {
@@ -115,7 +125,6 @@ TetMesh EditMesh::release() {
   std::vector<VertexIndex> here = numbers_here();
   for (auto v = static_cast<VertexIndex>(here.size()); v < points_.size(); ++v) here.push_back(v);
   std::vector<VertexIndex> new_of_old(points_.size(), kNone);
-  mesh.points.clear();
   for (const VertexIndex v : here)
     if (complex_.tet_at[v] != kNone) {
       new_of_old[v] = static_cast<VertexIndex>(mesh.points.size());
@@ -124,12 +133,12 @@ TetMesh EditMesh::release() {
   std::size_t kept = 0;
   for (TetIndex t = 0; t < complex_.tets.size(); ++t) {
     if (!alive(t)) continue;
-    region_[kept] = region_[t];
+    if (had_regions_) region_[kept] = region_[t];
     for (int i = 0; i < 4; ++i) complex_.tets[kept][i] = new_of_old[complex_.tets[t][i]];
     ++kept;
   }
   complex_.tets.resize(kept);
-  region_.resize(kept);
+  if (had_regions_) region_.resize(kept);
   drop_removed_triangles(mesh);
   renumber_faces(mesh, new_of_old);
   mesh.tets = std::move(complex_.tets);
@@ -168,7 +177,7 @@ void EditMesh::reserve_tets(std::size_t more) {
   complex_.tets.resize(last, {kNone, kNone, kNone, kNone});
   complex_.across.resize(4 * last);
   shapes_.resize(last, kNoShape);
-  region_.resize(last);
+  if (had_regions_) region_.resize(last);
   complex_.marks.resize(last, 0);
   for (std::size_t t = last; t-- > first;) complex_.free.push_back(static_cast<TetIndex>(t));
 }

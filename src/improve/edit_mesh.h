@@ -105,12 +105,12 @@ class EditMesh {
   TetComplex complex_;
   std::vector<Vec3> points_;
   std::vector<Shape> shapes_;
-  std::vector<std::uint32_t> region_;
+  std::vector<std::uint32_t> region_;  ///< per slot; empty if there were none
   std::vector<std::uint8_t> on_boundary_;
   std::vector<VertexIndex> free_points_;  ///< numbers of no vertex, behind those that were taken
   std::vector<VertexIndex> key_;          ///< for each vertex: a number that grows along the space-filling curve
   std::vector<VertexIndex> original_;     ///< the number of each vertex in the mesh that was taken
-  TetMesh rest_;                          ///< boundary, patches, sources, names: carried through
+  TetMesh rest_;                          ///< boundary, patches, sources, names: carried through; no tets, no points
   bool had_regions_ = false;
 };
 

@@ -3,7 +3,6 @@
 #include "core/disjoint_sets.h"
 #include "core/parallel.h"
 #include "geometry/predicates.h"
-#include "lattice/near_leaves.h"
 
 #include <algorithm>
 #include <bit>
@@ -16,8 +15,8 @@ namespace {
 
 /// Distances are measured up to this multiple of a cell's side: the sum of two such covers any edge between cells.
 constexpr double kFarthest = 0.75;
-/// In units of the size, the distance that near_leaves() must see: cells have sides of up to 1.65 sizes.
-constexpr double kReach = 0.8;
+/// From the centre of a cell to its corners, in its sides; rounded up.
+constexpr double kHalfDiagonal = 0.8661;
 /// Distances are rounded to float, and down by more than the rounding of what they are computed from.
 constexpr double kRoundingDown = 1 - 1e-6;
 /// Balls about the corners of a simplex cover it if their radius is this share of its longest edge or more: no set is
@@ -49,9 +48,9 @@ bool plane_separates(const std::array<Vec3, 4>& tet, const TriangleCorners& tria
 
 }  // namespace
 
-ClearSites::ClearSites(const LatticeOctree& lattice, const SurfaceMesh& surface, const TriangleTree& triangles,
-                       const TriangleTree& hull, const SizeField& sizes, const RunContext& context)
-    : lattice_(lattice), triangles_(triangles), hull_(hull), near_(near_leaves(lattice, surface, sizes, kReach)) {
+ClearSites::ClearSites(const LatticeOctree& lattice, const TriangleTree& triangles, const TriangleTree& hull,
+                       const RunContext& context)
+    : lattice_(lattice), triangles_(triangles), hull_(hull), near_(lattice.tree.size()) {
   measure_distances(context);
   find_inside();
 }
@@ -61,17 +60,28 @@ void ClearSites::measure_distances(const RunContext& context) {
   distance_.resize(2 * leaves);
   parallel_for(leaves, [&](std::size_t i) {
     if (i % kLeavesBetweenChecks == 0) context.check();
-    const double side = lattice_.root.side_of(lattice_.tree.leaf(i));
-    for (const SiteNumber s : {SiteNumber(2 * i), SiteNumber(2 * i + 1)})
-      distance_[s] = near_[i] ? measured(position_of(s), side) : static_cast<float>(kFarthest * side);
+    const double side = lattice_.root.side_of(lattice_.tree.leaf(i)), all_far = (kFarthest + kHalfDiagonal) * side;
+    const auto center = static_cast<SiteNumber>(2 * i), corner = center + 1;
+    const double distance = distance_within(all_far, position_of(center));
+    near_[i] = distance < all_far;
+    distance_[center] = kept(distance, side);
+    distance_[corner] = near_[i] ? measured(position_of(corner), side) : distance_[center];
   });
 }
 
-float ClearSites::measured(Vec3 p, double side) const {
-  const double farthest = kFarthest * side;
+/// To the surface from p, if that is less.
+double ClearSites::distance_within(double farthest, Vec3 p) const {
   const auto nearest = triangles_.nearest(p, farthest * farthest);
-  const double distance = nearest.triangle == kNone ? farthest : std::sqrt(nearest.squared_distance);
-  return distance < kCoreClearance * side ? 0 : static_cast<float>(kRoundingDown * distance);
+  return nearest.triangle == kNone ? farthest : std::sqrt(nearest.squared_distance);
+}
+
+float ClearSites::kept(double distance, double side) {
+  if (distance < kCoreClearance * side) return 0;
+  return static_cast<float>(kRoundingDown * std::min(distance, kFarthest * side));
+}
+
+float ClearSites::measured(Vec3 p, double side) const {
+  return kept(distance_within(kFarthest * side, p), side);
 }
 
 float ClearSites::distance_of(LatticeSite site) const {

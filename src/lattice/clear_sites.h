@@ -37,8 +37,8 @@ class ClearSites {
  public:
   /// Keeps references to all but `context`. REQUIRES a clean surface and the trees of its triangles, and of those
   /// between its regions and the outside (the same but for a complex).
-  ClearSites(const LatticeOctree& lattice, const SurfaceMesh& surface, const TriangleTree& triangles,
-             const TriangleTree& hull, const SizeField& sizes, const RunContext& context);
+  ClearSites(const LatticeOctree& lattice, const TriangleTree& triangles, const TriangleTree& hull,
+             const RunContext& context);
 
   const LatticeOctree& lattice() const { return lattice_; }
   Vec3 position_of(SiteNumber s) const {
@@ -64,6 +64,8 @@ class ClearSites {
 
  private:
   void measure_distances(const RunContext& context);
+  double distance_within(double farthest, Vec3 p) const;
+  static float kept(double distance, double side);
   float measured(Vec3 p, double side) const;
   void find_inside();
 

@@ -194,7 +194,7 @@ class CoreBuilder {
       for (const Tet& t : chunks_[c].tets)
         *out++ = {vertex(chunks_[c], t[0]), vertex(chunks_[c], t[1]), vertex(chunks_[c], t[2]),
                   vertex(chunks_[c], t[3])};
-      chunks_[c].tets = {};
+      chunks_[c].tets = std::vector<Tet>();
     });
   }
 
@@ -232,7 +232,7 @@ LatticeCore build_lattice_core(const SurfaceMesh& surface, const SizeField& size
   if (!surface.sides.empty()) hull.emplace(hull_of(surface));
   const LatticeOctree lattice = build_lattice_octree(surface, hull ? *hull : triangles, sizes, context);
   require_in_range(lattice.tree.size(), kHanging / 2, "leaves of the lattice");
-  const ClearSites sites(lattice, surface, triangles, hull ? *hull : triangles, sizes, context);
+  const ClearSites sites(lattice, triangles, hull ? *hull : triangles, context);
   const std::size_t leaves = lattice.tree.size();
   std::vector<CoreChunk> chunks((leaves + kLeavesPerChunk - 1) / kLeavesPerChunk);
   parallel_for(chunks.size(), [&](std::size_t c) {

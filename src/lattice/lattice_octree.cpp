@@ -20,11 +20,74 @@ Box3 box_of(const RootCube& root, OctreeKey cell) {
   return {lo, lo + Vec3{side, side, side}};
 }
 
+/// What the sizes ask of cells.
+struct CellSizes {
+  const RootCube& root;
+  const SizeField& sizes;
+
+  bool too_large(OctreeKey cell) const {
+    if (cell.level() >= kFinestLatticeLevel) return false;
+    const double side = root.side_of(cell), limit = side / (kLatticeTooLong * kLatticeSidePerEdge);
+    if (limit > sizes.max_size()) return true;
+    if (limit <= sizes.min_size()) return false;
+    return sizes.at(root.center_of(cell)) < limit;
+  }
+};
+
+/// Leaves that stick out into leaves of another size become like these: between sizes the front fills belts, whose
+/// elements are the poorest, and there are the fewest where belts are plain.
+class Tidier {
+ public:
+  Tidier(Octree tree, const CellSizes& wanted) : tree_(std::move(tree)), wanted_(wanted) {}
+
+  Octree run() const {
+    std::vector<Change> change(tree_.size());
+    parallel_for(tree_.size(), [&](std::size_t i) { change[i] = change_at(i); });
+    DividedCells cells = divided_cells(tree_, [&](std::size_t first) { return change[first] != Change::kMerge; });
+    for (std::size_t i = 0; i < tree_.size(); ++i)
+      if (change[i] == Change::kDivide) cells.divide(tree_.leaf(i));
+    cells.close();
+    return cells.tree();
+  }
+
+ private:
+  static constexpr int kMostFaces = 4;
+  enum class Change : std::uint8_t { kNone, kDivide, kMerge };  ///< kMerge: the first of eight leaves
+
+  Change change_at(std::size_t i) const {
+    const OctreeKey leaf = tree_.leaf(i);
+    const auto is_finer = [&](OctreeKey across) { return across.level() > leaf.level(); };
+    if (leaf.level() < kFinestLatticeLevel && faces(leaf, is_finer) >= kMostFaces) return Change::kDivide;
+    const bool is_first = leaf.level() > 0 && leaf.child_number() == 0 && i + 7 < tree_.size();
+    if (!is_first || tree_.leaf(i + 7) != leaf.parent().child(7)) return Change::kNone;
+    // Outside the surface leaves stay coarse, and count for nothing.
+    const auto is_coarse = [&](OctreeKey across) {
+      return across.level() < leaf.level() && !wanted_.too_large(across);
+    };
+    return faces(leaf.parent(), is_coarse) >= kMostFaces ? Change::kMerge : Change::kNone;
+  }
+
+  /// Across how many of the cell's faces the (first) leaf passes the test.
+  template <class Test>
+  int faces(OctreeKey cell, const Test& test) const {
+    int n = 0;
+    for (const int by : {-1, 1})
+      for (int axis = 0; axis < 3; ++axis) {
+        const OctreeKey across = cell.neighbour(axis == 0 ? by : 0, axis == 1 ? by : 0, axis == 2 ? by : 0);
+        n += across.is_valid() && test(tree_.leaf(tree_.find(across)));
+      }
+    return n;
+  }
+
+  const Octree tree_;
+  const CellSizes wanted_;
+};
+
 class Divider {
  public:
   Divider(const RootCube& root, const SizeField& sizes, const std::vector<Box3>& reach,
           const std::function<CellSide(OctreeKey)>& side_of, const RunContext& context)
-      : root_(root), sizes_(sizes), reach_(reach), side_of_(side_of), context_(context) {}
+      : root_(root), wanted_{root, sizes}, reach_(reach), side_of_(side_of), context_(context) {}
 
   Octree run() {
     std::vector<std::uint32_t> all(reach_.size());
@@ -40,17 +103,9 @@ class Divider {
   }
 
  private:
-  bool too_large(OctreeKey cell) const {
-    if (cell.level() >= kFinestLatticeLevel) return false;
-    const double side = root_.side_of(cell), limit = side / (kLatticeTooLong * kLatticeSidePerEdge);
-    if (limit > sizes_.max_size()) return true;
-    if (limit <= sizes_.min_size()) return false;
-    return sizes_.at(root_.center_of(cell)) < limit;
-  }
-
   // A cell that triangles come near to.
   void visit_near(OctreeKey cell, const std::vector<std::uint32_t>& near) {
-    if (!too_large(cell)) return;
+    if (!wanted_.too_large(cell)) return;
     context_.check();
     divided_.local().push_back(cell);
     for_each_child(near.size() > kTrianglesForTasks, [&](int i) {
@@ -67,7 +122,7 @@ class Divider {
   }
 
   void visit_clear(OctreeKey cell) {
-    if (!too_large(cell)) return;
+    if (!wanted_.too_large(cell)) return;
     const CellSide side = side_of_(cell);
     if (side == CellSide::kOutside) return;
     if (side == CellSide::kInside) return visit_inside(cell);
@@ -77,7 +132,7 @@ class Divider {
   }
 
   void visit_inside(OctreeKey cell) {
-    if (!too_large(cell)) return;
+    if (!wanted_.too_large(cell)) return;
     divided_.local().push_back(cell);
     for (int i = 0; i < 8; ++i) visit_inside(cell.child(i));
   }
@@ -91,7 +146,7 @@ class Divider {
   }
 
   const RootCube& root_;
-  const SizeField& sizes_;
+  const CellSizes wanted_;
   const std::vector<Box3>& reach_;
   const std::function<CellSide(OctreeKey)>& side_of_;
   const RunContext& context_;
@@ -126,7 +181,7 @@ LatticeOctree build_lattice_octree(const SurfaceMesh& surface, const TriangleTre
   const auto side_of = [&](OctreeKey cell) {
     return hull.contains(box_of(root, cell).center()) ? CellSide::kInside : CellSide::kOutside;
   };
-  return {root, divide_lattice(root, sizes, boxes, side_of, context)};
+  return {root, Tidier(divide_lattice(root, sizes, boxes, side_of, context), {root, sizes}).run()};
 }
 
 }  // namespace octafront

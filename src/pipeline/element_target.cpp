@@ -15,8 +15,9 @@ namespace {
 
 // Sizes that miss the number are scaled, by what came out, and tried again.
 constexpr double kElementsTolerance = 0.12;  // tighter than the 15 % promised: improvement still changes the count
-constexpr int kElementsAttempts = 5;
-// By how much to scale the first sizes next, by the last two counts. The count falls with the third power of the sizes
+constexpr int kElementsAttempts = 5, kSurfaceAttempts = 7;
+// By how much to scale the first sizes next, by the last two counts; once one was above and one below, by the nearest
+// such two, or their middle where the last two were on one side. The count falls with the third power of the sizes
 // where the volume decides, more slowly where gradation or details of the surface do: down to the least slope, from
 // which on a step would go nowhere.
 constexpr double kSteepest = -4, kFlattest = -0.5;
@@ -25,18 +26,28 @@ class CountSearch {
   explicit CountSearch(double wanted) : wanted_(std::log(wanted)) {}
 
   double next_factor(double made) {
-    const double count = std::log(made);
-    if (last_count_ && scale_ != last_scale_)
-      slope_ = std::clamp((count - *last_count_) / (scale_ - last_scale_), kSteepest, kFlattest);
-    last_count_ = count;
-    last_scale_ = scale_;
-    scale_ += (wanted_ - count) / slope_;
+    const Point now{scale_, std::log(made)};
+    const bool is_above = now.count > wanted_;
+    const bool is_again = last_ && (last_->count > wanted_) == is_above;
+    if (last_ && now.scale != last_->scale)
+      slope_ = std::clamp((now.count - last_->count) / (now.scale - last_->scale), kSteepest, kFlattest);
+    (is_above ? above_ : below_) = last_ = now;
+    if (!above_ || !below_)
+      scale_ += (wanted_ - now.count) / slope_;
+    else if (is_again)
+      scale_ = 0.5 * (above_->scale + below_->scale);
+    else
+      scale_ =
+          above_->scale + (below_->scale - above_->scale) * (above_->count - wanted_) / (above_->count - below_->count);
     return std::exp(scale_);
   }
 
  private:
-  double wanted_, scale_ = 0, last_scale_ = 0, slope_ = -3;
-  std::optional<double> last_count_;
+  struct Point {
+    double scale, count;
+  };
+  double wanted_, scale_ = 0, slope_ = -3;
+  std::optional<Point> last_, above_, below_;
 };
 
 bool meets(double wanted, double count) {
@@ -60,10 +71,10 @@ struct Try {
 };
 
 /// make(sizes), again with scaled sizes until the elements meet the number wanted or cannot; the best try counts. The
-/// tries began at `first_stage` of the report; `counted` is the word for what count(made) leaves.
+/// tries, `attempts` at most, began at `first_stage` of the report; `counted` is the word for what count(made) leaves.
 template <class Make, class Count>
-auto meet_target(const SizeField& sizes, Run& run, std::size_t first_stage, const char* counted, Make&& make,
-                 Count&& count) {
+auto meet_target(const SizeField& sizes, Run& run, std::size_t first_stage, int attempts, const char* counted,
+                 Make&& make, Count&& count) {
   const auto attempt = [&](const SizeField& by) {
     auto made = make(by);
     const double elements = count(made);
@@ -75,7 +86,7 @@ auto meet_target(const SizeField& sizes, Run& run, std::size_t first_stage, cons
   const auto miss = [&](double elements) { return std::abs(std::log(elements / wanted)); };
   CountSearch search(wanted);
   double last = best.count;
-  for (int tries = 1; tries < kElementsAttempts && !meets(wanted, last); ++tries) {
+  for (int tries = 1; tries < attempts && !meets(wanted, last); ++tries) {
     const double factor = search.next_factor(last);
     rename_earlier(run.report, first_stage);
     auto next = attempt(scaled(sizes, factor, run.context()));
@@ -104,7 +115,7 @@ Try<Remeshed> surface_to_target(const Prepared& input, SizeField sizes, Run& run
     if (factor != 1) sizes = scaled(sizes, factor, run.context());
   }
   return meet_target(
-      sizes, run, run.report.stages.size(), "expected",
+      sizes, run, run.report.stages.size(), kSurfaceAttempts, "expected",
       [&](const SizeField& by) { return triangulate(input, by, run); },
       [&](const Remeshed&) { return run.report.expected_tets; });
 }
@@ -131,7 +142,7 @@ Filled fill_to_target(const Prepared& input, const SizeField& sizes, Run& run) {
     first.reset();
     return fill_surface(input, std::move(boundary), run);
   };
-  auto best = meet_target(surface ? surface->sizes : sizes, run, first_stage, "in the mesh", make,
+  auto best = meet_target(surface ? surface->sizes : sizes, run, first_stage, kElementsAttempts, "in the mesh", make,
                           [](const Filled& made) { return static_cast<double>(made.mesh.tets.size()); });
   note_missed_target(best.count, "made", run);
   return std::move(best.made);

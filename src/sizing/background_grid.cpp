@@ -94,12 +94,28 @@ class GridMaker {
   /// normal within the leaf, so that a surface of one size has that size, and rises at the gradation along the plane.
   std::vector<double> corner_caps() const {
     std::vector<double> caps(corners_.size(), kInfinity);
+    for_each_cap([&](std::uint32_t corner, double cap, const Sample&) { lower_to(caps[corner], cap); });
+    return caps;
+  }
+
+  /// The sizes of the samples that these caps come from.
+  std::vector<double> sizes_behind(const std::vector<double>& caps) const {
+    std::vector<double> sizes(corners_.size(), kInfinity);
+    for_each_cap([&](std::uint32_t corner, double cap, const Sample& s) {
+      if (cap == caps[corner]) lower_to(sizes[corner], s.h);
+    });
+    return sizes;
+  }
+
+  /// Calls visit(corner, cap, sample) for each free corner that a leaf's values hang on and each sample in it.
+  template <class Visit>
+  void for_each_cap(const Visit& visit) const {
     const auto lay_on = [&](std::uint32_t corner, const Sample& s) {
       const auto& u = corners_.position[corner];
       const Vec3 d = Vec3{double(u[0]), double(u[1]), double(u[2])} / OctreeKey::kSide - s.p;
       const double along = dot(d, s.n);
       const double offset = std::sqrt(std::max(0.0, squared_length(d) - along * along));
-      lower_to(caps[corner], s.h + rules_.gradation * std::max(0.0, offset - s.reach));
+      visit(corner, s.h + rules_.gradation * std::max(0.0, offset - s.reach), s);
     };
     parallel_for(tree_.size(), [&](std::size_t l) {
       for (const Sample& s : samples_in(l))
@@ -108,7 +124,6 @@ class GridMaker {
           for (const auto& share : corners_.shares_of(corner)) lay_on(share.corner, s);
         }
     });
-    return caps;
   }
 
   /// Several threads may lower the same value.
@@ -139,27 +154,41 @@ class GridMaker {
     find_samples_of_leaves();
     corners_ = octree_corners(tree_);
     context_.check();
-    value_ = graded_corner_values(tree_, corners_, corner_caps(), rules_.gradation, ceiling_, context_);
+    const std::vector<double> caps = corner_caps();
+    graded_ = graded_corners(tree_, corners_, {caps, rules_.keep_sources ? sizes_behind(caps) : caps}, rules_.gradation,
+                             ceiling_, context_);
     fill_field();
   }
 
   /// Values above the ceiling are cut off at the free corners; hanging ones follow.
   void fill_field() {
-    parallel_for(corners_.size(), [this](std::size_t c) { value_[c] = std::min(value_[c], ceiling_); });
-    parallel_for(corners_.size(), [this](std::size_t i) {
+    std::vector<double>&value = graded_.value, &source = graded_.source;
+    parallel_for(corners_.size(), [&](std::size_t c) {
+      if (value[c] > ceiling_) value[c] = source[c] = ceiling_;
+    });
+    parallel_for(corners_.size(), [&](std::size_t i) {
       const auto c = static_cast<std::uint32_t>(i);
       if (!corners_.hangs(c)) return;
-      value_[c] = 0;
-      for (const OctreeCorners::Share& s : corners_.shares_of(c)) value_[c] += s.weight * value_[s.corner];
+      value[c] = source[c] = 0;
+      for (const OctreeCorners::Share& s : corners_.shares_of(c)) {
+        value[c] += s.weight * value[s.corner];
+        source[c] += s.weight * source[s.corner];
+      }
     });
     field_ = std::make_shared<OctreeField>();
     field_->root = root_;
     field_->gradation = rules_.gradation;
-    field_->h.resize(tree_.size());
-    parallel_for(tree_.size(), [this](std::size_t l) {
-      for (int k = 0; k < 8; ++k) field_->h[l][k] = value_[corners_.of_leaf[l][k]];
-    });
+    field_->h = at_corners_of_leaves(value);
+    if (rules_.keep_sources) field_->source = at_corners_of_leaves(source);
     field_->tree = tree_;
+  }
+
+  std::vector<std::array<double, 8>> at_corners_of_leaves(const std::vector<double>& of_corner) const {
+    std::vector<std::array<double, 8>> of_leaf(tree_.size());
+    parallel_for(tree_.size(), [&](std::size_t l) {
+      for (int k = 0; k < 8; ++k) of_leaf[l][k] = of_corner[corners_.of_leaf[l][k]];
+    });
+    return of_leaf;
   }
 
   /// The largest size that is wanted on the surface and that gradation allows there.
@@ -230,7 +259,7 @@ class GridMaker {
   Octree tree_;
   std::vector<std::size_t> first_sample_;  ///< per leaf, and one more
   OctreeCorners corners_;
-  std::vector<double> value_;
+  GradedCorners graded_;
   std::shared_ptr<OctreeField> field_;
 };
 

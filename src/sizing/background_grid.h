@@ -29,6 +29,7 @@ struct GridRules {
   /// Where the wanted sizes in a leaf are equal, nothing is gained below this level.
   int plain_level = 5;
   bool resolve_surface = false;  ///< divide by leaf_per_size even where sizes are equal
+  bool keep_sources = false;     ///< leave OctreeField::source
 };
 
 /// Leaves on the surface follow the samples, those inside the graded field; 2:1 balanced. Samples are not kept. What is

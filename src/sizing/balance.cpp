@@ -64,14 +64,16 @@ Octree DividedCells::tree() const {
   return Octree(std::move(leaves));
 }
 
-DividedCells divided_cells(const Octree& tree) {
+DividedCells divided_cells(const Octree& tree, const std::function<bool(std::size_t)>& stays) {
   DividedCells cells;
-  for (const OctreeKey leaf : tree.leaves()) {
+  for (std::size_t i = 0; i < tree.size(); ++i) {
     // The first descendant of each divided cell names it once.
-    OctreeKey cell = leaf;
+    OctreeKey cell = tree.leaf(i);
+    bool is_whole = i + 7 < tree.size() && cell.level() > 0 && tree.leaf(i + 7) == cell.parent().child(7);
     while (cell.level() > 0 && cell.child_number() == 0) {
       cell = cell.parent();
-      cells.divide(cell);
+      if (!is_whole || !stays || stays(i)) cells.divide(cell);
+      is_whole = false;
     }
   }
   return cells;

@@ -29,8 +29,9 @@ struct Scaled final : SizeFunction {
 
 /// A field that is no background grid, with caps on top. The caps are few there.
 struct Capped final : SizeFunction {
-  Capped(SizeField old, std::vector<SizeCap> by) : sizes(std::move(old)), caps(std::move(by)), low(sizes.min_size()) {
-    gradation = SizeFunction::behind(sizes).gradation;
+  Capped(SizeField old, std::vector<SizeCap> by, double rise)
+      : sizes(std::move(old)), caps(std::move(by)), low(sizes.min_size()) {
+    gradation = rise;
     for (const SizeCap& c : caps) low = std::min(low, c.h);
   }
   double at(Vec3 p) const override {
@@ -45,10 +46,20 @@ struct Capped final : SizeFunction {
   double low;
 };
 
-SizeField capped(const SizeField& sizes, std::vector<SizeCap> caps, const RunContext& context) {
+/// `gradation`: at least so much, and the field's own where that is more.
+SizeField capped(const SizeField& sizes, std::vector<SizeCap> caps, const RunContext& context, double gradation = 0) {
   context.check();
-  if (const OctreeField* grid = as_octree_field(sizes)) return SizeFunction::field(capped_grid(*grid, caps, context));
-  return SizeFunction::field(std::make_shared<Capped>(sizes, std::move(caps)));
+  const double rise = std::max(gradation, SizeFunction::behind(sizes).gradation);
+  if (const OctreeField* grid = as_octree_field(sizes))
+    return SizeFunction::field(capped_grid(*grid, caps, rise, context));
+  return SizeFunction::field(std::make_shared<Capped>(sizes, std::move(caps), rise));
+}
+
+std::vector<SizeCap> caps_at(const std::vector<PointSize>& places) {
+  std::vector<SizeCap> caps;
+  caps.reserve(places.size());
+  for (const PointSize& s : places) caps.push_back({s.p, s.p, s.size, kCapReach * s.size});
+  return caps;
 }
 
 /// Cuts sizes that rise faster than the field's gradation.
@@ -83,11 +94,12 @@ SizeField capped_near(const SizeField& sizes, const std::vector<Vec3>& points, d
 }
 
 SizeField capped_at(const SizeField& sizes, const std::vector<PointSize>& places, const RunContext& context) {
-  if (places.empty()) return sizes;
-  std::vector<SizeCap> caps;
-  caps.reserve(places.size());
-  for (const PointSize& s : places) caps.push_back({s.p, s.p, s.size, kCapReach * s.size});
-  return capped(sizes, std::move(caps), context);
+  return places.empty() ? sizes : capped(sizes, caps_at(places), context);
+}
+
+SizeField capped_steeply(const SizeField& sizes, const std::vector<PointSize>& places, double gradation,
+                         const RunContext& context) {
+  return places.empty() ? sizes : capped(sizes, caps_at(places), context, gradation);
 }
 
 SizeField scaled(const SizeField& sizes, double factor, const RunContext& context) {

@@ -96,30 +96,35 @@ double choose_cell(const Demand& demand) {
   return best;
 }
 
-/// The surface in pieces, and the size at each of them, input units.
-struct SizedPieces {
+/// The surface in pieces by the leaves that they lie in, and the part of each leaf inside.
+struct DividedSurface {
   std::vector<SurfacePiece> pieces;
-  std::vector<double> sizes;
+  std::vector<double> fraction;
 
-  SizedPieces(const OctreeField& field, const SurfaceMesh& surface)
-      : pieces(surface_pieces(field.root, field.tree, surface)), sizes(pieces.size()) {
-    parallel_for(pieces.size(), [&](std::size_t i) { sizes[i] = field.at(pieces[i].p, pieces[i].leaf); });
-  }
+  DividedSurface(const OctreeField& field, const SurfaceMesh& surface)
+      : pieces(surface_pieces(field.root, field.tree, surface)),
+        fraction(inside_fractions(field.root, field.tree, pieces)) {}
 };
 
+/// The size at each piece, input units.
+std::vector<double> sizes_at(const std::vector<SurfacePiece>& pieces, const OctreeField& field) {
+  std::vector<double> sizes(pieces.size());
+  parallel_for(pieces.size(), [&](std::size_t i) { sizes[i] = field.at(pieces[i].p, pieces[i].leaf); });
+  return sizes;
+}
+
 /// In units of the root's side.
-double median_on_surface(const OctreeField& field, const SizedPieces& surface) {
-  std::vector<std::pair<double, double>> sizes;
-  sizes.reserve(surface.pieces.size());
-  double all = 0;
-  for (std::size_t i = 0; i < surface.pieces.size(); ++i) {
-    const double h = surface.sizes[i] / field.root.side, count = length(surface.pieces[i].n) / (h * h);
-    sizes.push_back({h, count});
-    all += count;
-  }
-  parallel_sort(sizes);
-  double below = 0;
-  for (const auto& [h, count] : sizes) {
+double median_on_surface(const OctreeField& field, const std::vector<SurfacePiece>& pieces,
+                         const std::vector<double>& sizes) {
+  std::vector<std::pair<double, double>> counts(pieces.size());
+  parallel_for(pieces.size(), [&](std::size_t i) {
+    const double h = sizes[i] / field.root.side;
+    counts[i] = {h, length(pieces[i].n) / (h * h)};
+  });
+  parallel_sort(counts);
+  double all = 0, below = 0;
+  for (const auto& [h, count] : counts) all += count;
+  for (const auto& [h, count] : counts) {
     below += count;
     if (below >= 0.5 * all) return h;
   }
@@ -150,8 +155,8 @@ struct Ask {
   double amount;            ///< of volume inside, else of elements of the shell
 };
 
-Demand demand_of(const OctreeField& field, const SizedPieces& surface) {
-  const std::vector<double> fraction = inside_fractions(field.root, field.tree, surface.pieces);
+Demand demand_of(const OctreeField& field, const DividedSurface& surface, const std::vector<double>& sizes) {
+  const std::vector<double>& fraction = surface.fraction;
   constexpr std::size_t kRange = 1024;
   const auto asked =
       parallel_collect<Ask>(field.tree.size(), kRange, [&](std::size_t begin, std::size_t end, std::vector<Ask>& out) {
@@ -168,7 +173,7 @@ Demand demand_of(const OctreeField& field, const SizedPieces& surface) {
         }
       });
   Demand demand;
-  demand.surface_size = median_on_surface(field, surface);
+  demand.surface_size = median_on_surface(field, surface.pieces, sizes);
   for (const Ask& ask : asked) (ask.step ? demand.volume[*ask.step] : demand.shell) += ask.amount;
   return demand;
 }
@@ -192,6 +197,7 @@ std::shared_ptr<const OctreeField> sampled_grid(const SizeField& sizes, const Su
       field->h[l][k] = sizes.at(lo + side * Vec3{double(k & 1), double(k >> 1 & 1), double(k >> 2)}) / field->root.side;
     }
   }
+  field->find_range();
   return field;
 }
 
@@ -201,14 +207,22 @@ std::shared_ptr<const OctreeField> grid_of(const SizeField& sizes, const Surface
   return sampled_grid(sizes, surface);
 }
 
-double elements_by_volume(const SizeField& sizes, const OctreeField& grid, const SurfaceMesh& surface,
-                          const SizedPieces& pieces) {
-  if (sizes.min_size() == sizes.max_size()) {
-    const double h = sizes.min_size();
+double elements_by_volume(const OctreeField& grid, const SurfaceMesh& surface, const DividedSurface& divided,
+                          const std::vector<double>& sizes) {
+  if (grid.low == grid.high) {
+    const double h = grid.min_size();
     return kTetsPerCube * std::abs(enclosed_volume(surface)) / (h * h * h);
   }
-  const Demand demand = demand_of(grid, pieces);
+  const Demand demand = demand_of(grid, divided, sizes);
   return kTetsPerCube * (demand.shell + elements_inside(demand, choose_cell(demand)));
+}
+
+double count_by(const OctreeField& grid, const SurfaceMesh& surface, const DividedSurface& divided,
+                const ThinWalls& walls, std::optional<std::size_t> triangles) {
+  const std::vector<double> sizes = sizes_at(divided.pieces, grid);
+  const double by_volume = elements_by_volume(grid, surface, divided, sizes);
+  const double excess = walls.excess_tets(divided.pieces, sizes, triangles);
+  return std::max(1.0, std::abs(excess) < kWorthCounting * by_volume ? by_volume : by_volume + excess);
 }
 
 }  // namespace
@@ -222,10 +236,13 @@ TetPrediction::~TetPrediction() = default;
 
 double TetPrediction::operator()(const SizeField& sizes, std::optional<std::size_t> triangles) const {
   const auto grid = grid_of(sizes, surface_);
-  const SizedPieces pieces(*grid, surface_);
-  const double by_volume = elements_by_volume(sizes, *grid, surface_, pieces);
-  const double excess = walls_->excess_tets(pieces.pieces, pieces.sizes, triangles);
-  return std::max(1.0, std::abs(excess) < kWorthCounting * by_volume ? by_volume : by_volume + excess);
+  return count_by(*grid, surface_, DividedSurface(*grid, surface_), *walls_, triangles);
+}
+
+std::function<double(const OctreeField&)> TetPrediction::on_leaves_of(const OctreeField& grid) const {
+  return [this, divided = DividedSurface(grid, surface_)](const OctreeField& other) {
+    return count_by(other, surface_, divided, *walls_, {});
+  };
 }
 
 double expected_tets(const SizeField& sizes, const SurfaceMesh& surface) {
@@ -241,7 +258,8 @@ double lattice_cell_size(const SizeField& sizes, const SurfaceMesh& surface) {
   if (sizes.min_size() == sizes.max_size()) return sizes.min_size();
   const auto grid = grid_of(sizes, surface);
   const SurfaceMesh hull = surface.sides.empty() ? SurfaceMesh{} : hull_of(surface);
-  return choose_cell(demand_of(*grid, SizedPieces(*grid, surface.sides.empty() ? surface : hull))) * grid->root.side;
+  const DividedSurface divided(*grid, surface.sides.empty() ? surface : hull);
+  return choose_cell(demand_of(*grid, divided, sizes_at(divided.pieces, *grid))) * grid->root.side;
 }
 
 }  // namespace octafront

@@ -42,13 +42,13 @@ constexpr int kGentleRounds = 6;
 
 class Grader {
  public:
-  Grader(const Octree& tree, const OctreeCorners& corners, const std::vector<double>& caps, double gradation,
-         double ceiling)
-      : tree_(tree), corners_(corners), slope_(gradation * kSafety), value_(corners.size()) {
-    for (std::size_t c = 0; c < value_.size(); ++c) value_[c] = std::min(caps[c], ceiling);
+  Grader(const Octree& tree, const OctreeCorners& corners, const GradedCorners& caps, double gradation, double ceiling)
+      : tree_(tree), corners_(corners), slope_(gradation * kSafety), value_(caps.value), source_(caps.source) {
+    for (std::size_t c = 0; c < value_.size(); ++c)
+      if (!(value_[c] < ceiling)) value_[c] = source_[c] = ceiling;
   }
 
-  std::vector<double> run(const RunContext& context) {
+  GradedCorners run(const RunContext& context) {
     sweep_shortest_paths(context);
     order_leaves();
     collect_dependents();
@@ -58,18 +58,23 @@ class Grader {
       if (!cut_steep_leaves(round)) break;
     }
     shrink();
-    std::vector<double> result(value_.size());
-    parallel_for(value_.size(), [&](std::size_t c) { result[c] = at(static_cast<std::uint32_t>(c)); });
+    GradedCorners result{std::vector<double>(value_.size()), std::vector<double>(value_.size())};
+    parallel_for(value_.size(), [&](std::size_t i) {
+      const auto c = static_cast<std::uint32_t>(i);
+      result.value[c] = at(value_, c);
+      result.source[c] = std::min(at(source_, c), result.value[c]);
+    });
     return result;
   }
 
  private:
-  double at(std::uint32_t corner) const {
-    if (!corners_.hangs(corner)) return value_[corner];
+  double at(const std::vector<double>& of_free, std::uint32_t corner) const {
+    if (!corners_.hangs(corner)) return of_free[corner];
     double sum = 0;
-    for (const OctreeCorners::Share& s : corners_.shares_of(corner)) sum += s.weight * value_[s.corner];
+    for (const OctreeCorners::Share& s : corners_.shares_of(corner)) sum += s.weight * of_free[s.corner];
     return sum;
   }
+  double at(std::uint32_t corner) const { return at(value_, corner); }
 
   // --- shortest paths: Dijkstra with sources everywhere; hanging corners take part like others here
 
@@ -117,6 +122,7 @@ class Grader {
       if (label.value > value_[label.corner]) continue;
       for_each_limited(label.corner, [&](std::uint32_t to, double v) {
         value_[to] = v;
+        source_[to] = source_[label.corner];
         heap.push({v, to});
       });
     }
@@ -150,8 +156,9 @@ class Grader {
   }
 
   /// Lowers a free corner; the leaves that see it have to be looked at (again).
-  void lower(std::uint32_t corner, double value) {
+  void lower(std::uint32_t corner, double value, double source) {
     value_[corner] = value;
+    source_[corner] = source;
     const auto mark = [&](std::uint32_t c) {
       for (const std::uint32_t i : leaves_[c]) dirty_[i / 8] = 1;
     };
@@ -234,11 +241,15 @@ class Grader {
   }
 
   void cut(std::uint32_t leaf, int c, double level, int round, const std::array<double, 8>& h) {
+    int lowest = c;
+    for (const int k : {c ^ 1, c ^ 2, c ^ 4})
+      if (h[k] < h[lowest]) lowest = k;
+    const double source = at(source_, corners_.of_leaf[leaf][lowest]);
     for (const int k : {c, c ^ 1, c ^ 2, c ^ 4}) {
       if (h[k] <= level) continue;
       const std::uint32_t corner = corners_.of_leaf[leaf][k];
       if (!corners_.hangs(corner)) {
-        lower(corner, level);
+        lower(corner, level, source);
         continue;
       }
       // The shares above the level give way in proportion to what they are above it.
@@ -247,7 +258,7 @@ class Grader {
       const double part = round > kGentleRounds ? 1.0 : std::min(1.0, (at(corner) - level) / above);
       for (const auto& s : corners_.shares_of(corner)) {
         if (value_[s.corner] <= level) continue;
-        lower(s.corner, value_[s.corner] - part * (value_[s.corner] - level));
+        lower(s.corner, value_[s.corner] - part * (value_[s.corner] - level), source);
       }
     }
   }
@@ -270,7 +281,8 @@ class Grader {
   const Octree& tree_;
   const OctreeCorners& corners_;
   double slope_;
-  std::vector<double> value_;
+  std::vector<double> value_;                ///< per corner; where free
+  std::vector<double> source_;               ///< likewise: what the source asked for that limits it
   std::vector<std::uint8_t> plain_, dirty_;  ///< per leaf
   std::vector<std::uint32_t> order_;
   Groups<> leaves_;      ///< per corner, as 8 * leaf + which of its corners
@@ -282,6 +294,11 @@ class Grader {
 std::vector<double> graded_corner_values(const Octree& tree, const OctreeCorners& corners,
                                          const std::vector<double>& caps, double gradation, double ceiling,
                                          const RunContext& context) {
+  return graded_corners(tree, corners, {caps, caps}, gradation, ceiling, context).value;
+}
+
+GradedCorners graded_corners(const Octree& tree, const OctreeCorners& corners, const GradedCorners& caps,
+                             double gradation, double ceiling, const RunContext& context) {
   return Grader(tree, corners, caps, gradation, ceiling).run(context);
 }
 

@@ -15,8 +15,8 @@ constexpr double kLeafPerSize = 2;
 /// A background grid divided further around the caps, and graded again.
 class GridCapper {
  public:
-  GridCapper(const OctreeField& old, const std::vector<SizeCap>& caps, const RunContext& context)
-      : old_(old), caps_(caps), context_(context), cells_(divided_cells(old.tree)) {}
+  GridCapper(const OctreeField& old, const std::vector<SizeCap>& caps, double gradation, const RunContext& context)
+      : old_(old), caps_(caps), gradation_(gradation), context_(context), cells_(divided_cells(old.tree)) {}
 
   std::shared_ptr<OctreeField> run() {
     std::vector<std::uint32_t> all(caps_.size());
@@ -25,12 +25,12 @@ class GridCapper {
     cells_.close();
     auto field = std::make_shared<OctreeField>();
     field->root = old_.root;
-    field->gradation = old_.gradation;
+    field->gradation = gradation_;
     field->tree = cells_.tree();
     corners_ = octree_corners(field->tree);
     const std::vector<double> limit = corner_limits(field->tree);
     const std::vector<double> value =
-        graded_corner_values(field->tree, corners_, limit, old_.gradation, old_.high, context_);
+        graded_corner_values(field->tree, corners_, limit, gradation_, old_.high, context_);
     field->h.resize(field->tree.size());
     for (std::size_t l = 0; l < field->tree.size(); ++l) {
       for (int k = 0; k < 8; ++k) field->h[l][k] = value[corners_.of_leaf[l][k]];
@@ -46,7 +46,7 @@ class GridCapper {
     const double side = old_.root.side_of(cell);
     const Vec3 hi = lo + Vec3{side, side, side};
     // Along each axis the nearest point of the cell to the box; the gap between the two boxes is theirs.
-    return cap.at(max(lo, min(max(cap.lo, min(lo, cap.hi)), hi)), old_.gradation);
+    return cap.at(max(lo, min(max(cap.lo, min(lo, cap.hi)), hi)), gradation_);
   }
 
   double old_size_in(OctreeKey cell) const {
@@ -100,7 +100,7 @@ class GridCapper {
       const auto lay_on = [&](std::uint32_t free) {
         const Vec3 p = old_.root.position(corners_.position[free]);
         for (const std::uint32_t i : here) {
-          limit[free] = std::min(limit[free], caps_[i].at(p, old_.gradation) / old_.root.side);
+          limit[free] = std::min(limit[free], caps_[i].at(p, gradation_) / old_.root.side);
         }
       };
       if (!corners_.hangs(corner)) lay_on(corner);
@@ -111,6 +111,7 @@ class GridCapper {
 
   const OctreeField& old_;
   const std::vector<SizeCap>& caps_;
+  const double gradation_;
   const RunContext& context_;
   DividedCells cells_;
   OctreeCorners corners_;
@@ -118,9 +119,9 @@ class GridCapper {
 
 }  // namespace
 
-std::shared_ptr<OctreeField> capped_grid(const OctreeField& field, const std::vector<SizeCap>& caps,
+std::shared_ptr<OctreeField> capped_grid(const OctreeField& field, const std::vector<SizeCap>& caps, double gradation,
                                          const RunContext& context) {
-  return GridCapper(field, caps, context).run();
+  return GridCapper(field, caps, gradation, context).run();
 }
 
 }  // namespace octafront

@@ -21,9 +21,9 @@ struct SizeCap {
   }
 };
 
-/// The field with the caps laid on: leaves are divided where these ask for smaller sizes, and all is graded again.
-/// Sizes only fall. O(leaves + caps log leaves) where few caps overlap.
-std::shared_ptr<OctreeField> capped_grid(const OctreeField& field, const std::vector<SizeCap>& caps,
+/// The field with the caps laid on: leaves are divided where these ask for smaller sizes, and all is graded again, by
+/// `gradation`. Sizes only fall. O(leaves + caps log leaves) where few caps overlap.
+std::shared_ptr<OctreeField> capped_grid(const OctreeField& field, const std::vector<SizeCap>& caps, double gradation,
                                          const RunContext& context);
 
 }  // namespace octafront

@@ -26,8 +26,10 @@ constexpr double kEdgeOfUnitArea = 1.5196713713031851;
 constexpr double kRaisedFrom = 1.03, kMostRaised = 1.5;
 /// Where the mean shortfall is above this, the triangles ask for steeper changes of size than gradation allows:
 /// following it would make two to three times the elements, and more of them poor. Then sizes may change this much
-/// faster. Meshes of scans, up to 1.26, keep their gradation, which serves their elements.
+/// faster, and once more. Meshes of scans, up to 1.26 at a gradation of .2, keep about that, which serves their
+/// elements.
 constexpr double kSteeperFrom = 1.3, kSteeper = 2;
+constexpr int kMostSteeper = 2;
 
 /// The edge length that a triangle stands for: between that of the equilateral triangle of its area, which a needle
 /// makes too small, and the mean length of its edges, which it makes too large; nearer to the latter. The even mean of
@@ -110,10 +112,12 @@ SizeField size_field_of_surface(const KnownSurface& known, const SizeOptions& op
   rules.ceiling = std::min({root.side, options.max_size.value_or(HUGE_VAL), options.size.value_or(HUGE_VAL)});
   auto grid = make_background_grid(root, samples_of(face), rules, stage.context());
   double shortfall = mean_shortfall(surface, face, *grid);
-  if (shortfall > kSteeperFrom) {
+  for (int i = 0; i < kMostSteeper && shortfall > kSteeperFrom; ++i) {
     rules.gradation *= kSteeper;
     grid = make_background_grid(root, samples_of(face), rules, stage.context());
     shortfall = mean_shortfall(surface, face, *grid);
+  }
+  if (rules.gradation > options.gradation) {
     stage.note(fmt::format(
         "the kept triangles change in size faster than gradation allows: sizes change by up to {:.3g} per unit of "
         "length",

@@ -2,6 +2,7 @@
 
 #include <octafront/error.h>
 
+#include "core/parallel.h"
 #include "mesh/index_range.h"
 #include "sizing/background_grid.h"
 #include "sizing/region_caps.h"
@@ -19,8 +20,12 @@ namespace {
 /// Room between the model and the faces of the root cube.
 constexpr double kRootMargin = 0.02;
 /// --elements: sizes are scaled until the expected number is this close.
-constexpr double kCountTolerance = 0.01;
+constexpr double kCountTolerance = 0.02;
 constexpr int kMostScalings = 10;
+/// The count falls with the third power of the sizes, less what gradation decides: so much on average over models.
+constexpr double kMeanSlope = -2.3, kSteepest = -4, kFlattest = -1;
+/// How often the scale is corrected on the grid that there is, before a new one is made.
+constexpr int kForesteps = 2;
 /// Elements that the automatic size makes at most, about: some seconds of work, and more than most models need.
 constexpr double kAutomaticBudget = 400'000;
 /// Small sizes are raised by this factor at most: real details, such as a thousand small holes, would be lost.
@@ -36,6 +41,7 @@ GridRules rules_for(const WantedSizes& wanted, const SizeOptions& options, const
   rules.interior_below_surface = options.interior == SizeOptions::Interior::kUniform;
   rules.resolve_surface = !rules.interior_below_surface;
   rules.ceiling = std::min(wanted.ceiling, root.side);
+  rules.keep_sources = options.elements.has_value();
   return rules;
 }
 
@@ -75,30 +81,55 @@ SizeField grid_field(const SurfaceMesh& surface, const WantedSizes& wanted, cons
   return SizeFunction::field(with_regions(std::move(grid), options, context));
 }
 
+/// The field that comes out, about, if all sources ask for `factor` times their size: on the same leaves, each size by
+/// the same source as before.
+OctreeField with_scaled_sources(const OctreeField& grid, double factor, const SizeOptions& options) {
+  const double low = options.min_size.value_or(0) / grid.root.side,
+               high = options.max_size.value_or(HUGE_VAL) / grid.root.side;
+  const bool is_flat = options.interior == SizeOptions::Interior::kUniform;
+  const double ceiling = is_flat ? std::clamp(grid.high * factor, low, high) : HUGE_VAL;
+  OctreeField result = grid;
+  parallel_for(grid.h.size(), [&](std::size_t l) {
+    for (int k = 0; k < 8; ++k) {
+      const double source = grid.source[l][k], growth = grid.h[l][k] - source;
+      result.h[l][k] = std::min(ceiling, std::clamp(source * factor, low, high) + growth);
+    }
+  });
+  result.find_range();
+  return result;
+}
+
+/// By how much to scale all sources so that the expected number of elements grows by `more`, all in logarithms.
+double step_to_count(const SizeField& sizes, double more, const TetPrediction& expected, const SizeOptions& options) {
+  const OctreeField& grid = *as_octree_field(sizes);
+  double step = more / kMeanSlope;
+  if (grid.source.empty()) return step;
+  const auto expected_here = expected.on_leaves_of(grid);
+  const double here = std::log(expected_here(grid));
+  for (int i = 0; i < kForesteps; ++i) {
+    const double there = std::log(expected_here(with_scaled_sources(grid, std::exp(step), options)));
+    step = more / std::clamp((there - here) / step, kSteepest, kFlattest);
+  }
+  return step;
+}
+
 SizeField scaled_to_count(const SurfaceMesh& surface, const WantedSizes& wanted, const SizeOptions& options,
                           const Stage& stage) {
   const double target = std::log(static_cast<double>(*options.elements));
-  // Secant steps in logarithms; the count falls with about the third power of the sizes.
-  double x = 0, slope = -3, last_x = 0, last_y = 0;
   const TetPrediction expected(surface);
-  SizeField best = grid_field(surface, wanted, options, stage.context());
-  double y = std::log(expected(best));
-  double best_miss = std::abs(y - target);
+  SizeField best = grid_field(surface, wanted, options, stage.context()), last = best;
+  double scale = 0, more = target - std::log(expected(best)), least_miss = std::abs(more);
   int steps = 0;
-  for (; best_miss > kCountTolerance && steps < kMostScalings; ++steps) {
-    last_x = x;
-    last_y = y;
-    x += (target - y) / slope;
-    SizeField field = grid_field(surface, scaled(wanted, std::exp(x), options), options, stage.context());
-    y = std::log(expected(field));
-    if (std::abs(y - target) < best_miss) {
-      best_miss = std::abs(y - target);
-      best = std::move(field);
-    }
-    if (x != last_x) slope = std::clamp((y - last_y) / (x - last_x), -4.0, -1.0);
+  for (; least_miss > kCountTolerance && steps < kMostScalings; ++steps) {
+    scale += step_to_count(last, more, expected, options);
+    last = grid_field(surface, scaled(wanted, std::exp(scale), options), options, stage.context());
+    more = target - std::log(expected(last));
+    if (std::abs(more) >= least_miss) continue;
+    least_miss = std::abs(more);
+    best = last;
   }
   stage.count("scalings", steps);
-  if (best_miss > 0.05) {
+  if (least_miss > 0.05) {
     stage.note(fmt::format("{} elements were asked for, but the limits on the size give {:.3g}", *options.elements,
                            expected(best)));
   }
@@ -127,10 +158,10 @@ SizeField within_budget(const SurfaceMesh& surface, const WantedSizes& wanted, c
     const double floor = step == 0 ? high : std::sqrt(low * high);
     SizeField coarser = grid_field(surface, raised(wanted, floor), options, stage.context());
     const double count = expected(coarser);
-    const bool is_within = count <= budget;
+    const bool is_within = count <= budget, is_near = std::abs(count / budget - 1) < kNearBudget;
     (is_within ? high : low) = floor;
-    if (is_within || step == 0) field = std::move(coarser);
-    if ((step == 0 && !is_within) || std::abs(count / budget - 1) < kNearBudget) break;
+    if (is_within || is_near || step == 0) field = std::move(coarser);
+    if (is_near || (step == 0 && !is_within)) break;
   }
   stage.note(fmt::format(
       "the details of this surface ask for {:.2g} million elements; the automatic size stops at {:.4g}, for about "

@@ -7,6 +7,7 @@
 #include "core/stage.h"
 #include "mesh/known_surface.h"
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -27,6 +28,7 @@ void refuse_huge_turning(const KnownSurface& surface, const SizeOptions& options
 /// the sources of `options` inside.
 SizeField size_field_of_surface(const KnownSurface& surface, const SizeOptions& options, const Stage& stage);
 
+struct OctreeField;
 class ThinWalls;
 
 /// How many tetrahedra a mesh of the inside of a surface by given sizes will have: the integral of c / h^3, c measured;
@@ -38,6 +40,9 @@ class TetPrediction {
   ~TetPrediction();
   /// `triangles`: how many the surface has, if it is made by these sizes already.
   double operator()(const SizeField& sizes, std::optional<std::size_t> triangles = {}) const;
+
+  /// The same for other sizes on the leaves of a grid, which must outlive it, as must this.
+  std::function<double(const OctreeField&)> on_leaves_of(const OctreeField& grid) const;
 
   /// Triangles between the inside and the outside.
   std::size_t triangles() const { return surface_.triangles.size(); }
@@ -66,6 +71,10 @@ SizeField capped_near(const SizeField& sizes, const std::vector<Vec3>& points, d
 
 /// The size field capped to the sizes at the places, within 1.5 of them.
 SizeField capped_at(const SizeField& sizes, const std::vector<PointSize>& places, const RunContext& context);
+
+/// The same, and from the places sizes may rise faster than the field's gradation, as they may from then on.
+SizeField capped_steeply(const SizeField& sizes, const std::vector<PointSize>& places, double gradation,
+                         const RunContext& context);
 
 /// All sizes multiplied by `factor`; where they then rise faster than the gradation they are cut.
 SizeField scaled(const SizeField& sizes, double factor, const RunContext& context);

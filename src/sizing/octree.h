@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -86,7 +87,8 @@ class DividedCells {
   std::array<std::vector<OctreeKey>, OctreeKey::kMaxLevel + 1> levels_;
 };
 
-/// The divided cells of a tree: all proper ancestors of its leaves.
-DividedCells divided_cells(const Octree& tree);
+/// The divided cells of a tree: all proper ancestors of its leaves; where leaf i is the first of eight in a cell, only
+/// if stays(i).
+DividedCells divided_cells(const Octree& tree, const std::function<bool(std::size_t)>& stays = {});
 
 }  // namespace octafront

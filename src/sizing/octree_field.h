@@ -13,7 +13,9 @@ struct OctreeField final : SizeFunction {
   RootCube root;
   Octree tree;
   std::vector<std::array<double, 8>> h;  ///< per leaf, corner i with the halves of child i; in units of root.side
-  double low = 0, high = 0;              ///< least and greatest of h
+  /// Of each of these the part that a source of size asked for; the rest is what it grew by on the way. May be empty.
+  std::vector<std::array<double, 8>> source;
+  double low = 0, high = 0;  ///< least and greatest of h
 
   double at(Vec3 p) const override { return at(p, tree.find(root.cell(p))); }
   /// The same, of a point in leaf l.

@@ -38,7 +38,7 @@ std::vector<SizeCap> caps_of_regions(const SizeOptions& options, const RootCube&
 std::shared_ptr<OctreeField> with_regions(std::shared_ptr<OctreeField> grid, const SizeOptions& options,
                                           const RunContext& context) {
   if (options.regions.empty()) return grid;
-  return capped_grid(*grid, caps_of_regions(options, grid->root), context);
+  return capped_grid(*grid, caps_of_regions(options, grid->root), grid->gradation, context);
 }
 
 }  // namespace octafront

@@ -126,7 +126,7 @@ class NoiseFilter {
   void count_beside(VertexIndex v, double& rough, double& all) const {
     const HalfEdgeMesh& mesh = marked_.mesh;
     mesh.for_each_outgoing(v, [&](HalfEdge h) {
-      if (mesh.is_feature[h]) return;
+      if (mesh.is_feature[h] || marked_.is_back(h / 3)) return;
       ++all;
       rough += cosine(h) < kRoughCosine;
     });

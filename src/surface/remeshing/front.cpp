@@ -92,6 +92,7 @@ class Front {
       const double half = 0.5 * length(chord), h = middle.h;
       const double height = std::sqrt(std::max(0.25 * h * h, h * h - half * half));
       for (const HalfEdge side : {middle.half_edge, mesh.twin[middle.half_edge]}) {
+        if (input_.is_back(side / 3)) continue;
         const Vec3 n = input_.face_normal[side / 3];
         Vec3 inward = cross(n, chord);
         if (side != middle.half_edge) inward = -inward;
@@ -200,6 +201,7 @@ class Front {
     }
     const HalfEdgeMesh& mesh = input_.mesh;
     for (const HalfEdge side : {point.half_edge, mesh.twin[point.half_edge]}) {
+      if (input_.is_back(side / 3)) continue;
       const Vec3 n = input_.face_normal[side / 3];
       const Vec3 u = normalized(mesh.points[mesh.end(side)] - mesh.points[mesh.start[side]]), v = cross(n, u);
       for (int k = 1; k < 3; ++k) {
@@ -220,7 +222,7 @@ class Front {
   void fill_vertex_sectors(std::uint32_t id, const FrontPoint& point) {
     const HalfEdgeMesh& mesh = input_.mesh;
     mesh.for_each_outgoing(point.vertex, [&](HalfEdge first) {
-      if (!mesh.is_feature[first]) return;
+      if (!mesh.is_feature[first] || input_.is_back(first / 3)) return;
       fan_.clear();
       double total = 0;
       HalfEdge h = first;
@@ -283,9 +285,20 @@ double demand_of(Vec3 a, Vec3 b, Vec3 c, const SizeField& sizes) {
 double points_wanted(const InputSurface& input, const SizeField& sizes) {
   std::vector<double> demand(input.mesh.triangle_count());
   parallel_for(demand.size(), [&](std::size_t t) {
+    if (input.is_back(t)) return;
     demand[t] = demand_of(input.mesh.corner(t, 0), input.mesh.corner(t, 1), input.mesh.corner(t, 2), sizes);
   });
   return std::accumulate(demand.begin(), demand.end(), 0.0) * 2 / std::numbers::sqrt3;
+}
+
+/// The same of what was made. Of a closed surface, that is; at an end of it points count half.
+double points_made(const InputSurface& input, const std::vector<FrontPoint>& points) {
+  const auto is_at_end = [&](const FrontPoint& p) {
+    if (!p.on_feature || input.first_back == kNone) return false;
+    return p.vertex != kNone ? input.on_seam(p.vertex) : input.is_seam(p.half_edge);
+  };
+  const auto at_end = static_cast<double>(std::count_if(points.begin(), points.end(), is_at_end));
+  return static_cast<double>(points.size()) - 0.5 * at_end;
 }
 
 }  // namespace
@@ -297,7 +310,7 @@ FrontPoints place_points(const InputSurface& input, const std::vector<Curve>& cu
   double factor = 1, least = HUGE_VAL;
   for (int attempt = 0; attempt < kMostPlacings; ++attempt) {
     FrontPoints made = Front(input, sizes, factor).run(curves, context);
-    const double surplus = static_cast<double>(made.points.size()) / wanted;
+    const double surplus = points_made(input, made.points) / wanted;
     if (std::abs(surplus - 1) < least) {
       least = std::abs(surplus - 1);
       best = std::move(made);

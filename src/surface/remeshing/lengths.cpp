@@ -51,7 +51,7 @@ class LengthAdjuster {
     for (int round = 0; round < kMendRounds; ++round) {
       bool any = false;
       for (std::uint32_t t = 0; t < mesh_.triangle_count(); ++t) {
-        if (!mesh_.is_removed(t) && quality(3 * t) < kBad) any |= mend(t);
+        if (!mesh_.is_removed(t) && !mesh_.is_back(t) && quality(3 * t) < kBad) any |= mend(t);
       }
       if (!any) break;
     }

@@ -13,10 +13,6 @@ namespace {
 /// Size wanted in a strip, in widths of it: triangles of that base between the lines have 2r/R of .94. (At 2 widths
 /// models full of strips lose .01 of their mean; at 1.2 they gain .005 and have a third more triangles.)
 constexpr double kSizePerWidth = 1.5;
-/// No size falls below this part of what it was.
-constexpr double kFloor = 0.3;
-/// Strips narrower than this part of the size stay bad even so.
-constexpr double kHopeless = 0.08;
 /// Strips in which the size would stay above this part are left alone.
 constexpr double kWorthwhile = 0.85;
 /// The lines of a strip differ in direction by less than 12 degrees: lines that part at a corner are no strip.
@@ -62,35 +58,52 @@ struct Narrow {
   double size;
 };
 
+/// The size that the strip beside h asks for at p; `old` if there is none.
+double size_beside(const InputSurface& input, HalfEdge h, Vec3 p, double old, const StripRules& rules) {
+  const double width = width_at(input, h, p, kWorthwhile / kSizePerWidth * old);
+  if (!(kSizePerWidth * width < kWorthwhile * old) || width < rules.hopeless * old) return old;
+  return std::max(rules.floor * old, kSizePerWidth * width);
+}
+
+/// Looks in the middle between two points of h and, where sizes rise so fast that it matters, nearer to them.
+void look_between(const InputSurface& input, const SizeField& sizes, HalfEdge h, Vec3 from, Vec3 to,
+                  const StripRules& rules, std::vector<Narrow>& places) {
+  const Vec3 p = (from + to) * 0.5;
+  const double old = sizes.at(p), size = size_beside(input, h, p, old, rules);
+  if (!(size < old)) return;
+  places.push_back({p, size});
+  if (rules.gradation == 0 || distance(from, to) < size) return;
+  look_between(input, sizes, h, from, p, rules, places);
+  look_between(input, sizes, h, p, to, rules, places);
+}
+
 /// Those along one side of a feature half-edge.
-std::vector<Narrow> narrow_places(const InputSurface& input, const SizeField& sizes, HalfEdge h) {
+std::vector<Narrow> narrow_places(const InputSurface& input, const SizeField& sizes, HalfEdge h,
+                                  const StripRules& rules) {
   const HalfEdgeMesh& mesh = input.mesh;
   const Vec3 a = mesh.points[mesh.start[h]], b = mesh.points[mesh.end(h)];
   const double step = kStep * sizes.at((a + b) * 0.5);
   const int parts = std::max(1, static_cast<int>(std::min(1e6, std::ceil(distance(a, b) / step))));
   std::vector<Narrow> places;
-  for (int i = 0; i < parts; ++i) {
-    const Vec3 p = a + (b - a) * ((i + 0.5) / parts);
-    const double old = sizes.at(p);
-    const double width = width_at(input, h, p, kWorthwhile / kSizePerWidth * old);
-    if (!(kSizePerWidth * width < kWorthwhile * old) || width < kHopeless * old) continue;
-    places.push_back({p, std::max(kFloor * old, kSizePerWidth * width)});
-  }
+  for (int i = 0; i < parts; ++i)
+    look_between(input, sizes, h, a + (b - a) * (static_cast<double>(i) / parts), a + (b - a) * ((i + 1.0) / parts),
+                 rules, places);
   return places;
 }
 
 }  // namespace
 
-SizeField fitted_to_strips(const InputSurface& input, const SizeField& sizes, const RunContext& context) {
+SizeField fitted_to_strips(const InputSurface& input, const SizeField& sizes, const StripRules& rules,
+                           const RunContext& context) {
   const HalfEdgeMesh& mesh = input.mesh;
   std::vector<HalfEdge> sides;
   for (HalfEdge h = 0; h < mesh.start.size(); ++h) {
-    if (mesh.is_feature[h]) sides.push_back(h);
+    if (mesh.is_feature[h] && !input.is_back(h / 3)) sides.push_back(h);
   }
   std::vector<std::vector<Narrow>> found(sides.size());
   parallel_for(sides.size(), [&](std::size_t i) {
     context.check();
-    found[i] = narrow_places(input, sizes, sides[i]);
+    found[i] = narrow_places(input, sizes, sides[i], rules);
   });
   std::vector<PointSize> places;
   PointGrid kept(mesh.points.empty() ? Vec3{} : mesh.points.front());
@@ -104,7 +117,7 @@ SizeField fitted_to_strips(const InputSurface& input, const SizeField& sizes, co
       kept.add(p, size);
     }
   }
-  return places.empty() ? sizes : capped_at(sizes, places, context);
+  return capped_steeply(sizes, places, rules.gradation, context);
 }
 
 }  // namespace octafront::remeshing

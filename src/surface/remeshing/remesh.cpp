@@ -5,6 +5,7 @@
 #include "sizing/make_size_field.h"
 #include "surface/remeshing/approach.h"
 #include "surface/remeshing/coarsen.h"
+#include "surface/remeshing/corner_sizes.h"
 #include "surface/remeshing/crossings.h"
 #include "surface/remeshing/deviation.h"
 #include "surface/remeshing/improve.h"
@@ -262,9 +263,9 @@ class Remesher {
     const RunContext& context = stage_.context();
     progress(0);
     set_features(input_, seams_);  // no walk crosses them
-    set_features(input_, without_backs(input_, features_at_scale(input_, features(), sizes_)));
+    set_features(input_, features_at_scale(input_, features(), sizes_));
     std::vector<std::uint8_t> is_fixed = mark_restored(input_, restored_);
-    const SizeField sizes = fitted_to_strips(input_, sizes_, context);
+    const SizeField sizes = fitted_sizes(is_fixed);
     const std::vector<Curve> curves = curves_of(sizes, is_fixed);
     progress(0.05);
     const FrontPoints front = place_points(input_, curves, sizes, context);
@@ -307,6 +308,14 @@ class Remesher {
 
   const Features& features() const { return seamed_ ? seamed_->features : known_.features(); }
 
+  /// The sizes as they are now, smaller where what stands still is nearer together: strips between lines, and corners
+  /// of seams.
+  SizeField fitted_sizes(std::vector<std::uint8_t> is_fixed) const {
+    const StripRules& rules = seamed_ ? kStripsOfWalls : kStrips;
+    SizeField sizes = fitted_to_strips(input_, sizes_, rules, stage_.context());
+    return seamed_ ? fitted_to_corners(input_, *seamed_, is_fixed, sizes, stage_.context()) : sizes;
+  }
+
   /// Divided; of a complex, `is_fixed` gets the corners that its parts share.
   std::vector<Curve> curves_of(const SizeField& sizes, std::vector<std::uint8_t>& is_fixed) {
     if (seamed_) return divided_curves(input_, *seamed_, sizes, is_fixed);
@@ -318,7 +327,7 @@ class Remesher {
   void pin_corners(WorkingMesh& mesh) const {
     mesh.pinned = seamed_->pinned;
     for (VertexIndex v = 0; v < mesh.pinned.size(); ++v)
-      if (mesh.pinned[v]) mesh.kind[v] = VertexKind::kCorner;
+      if (mesh.pinned[v] || v >= seamed_->first_tip) mesh.kind[v] = VertexKind::kCorner;
   }
 
   /// Of a complex, what remove_input_vertices() and improve_surface() do of a single surface: seams first, which are
@@ -445,12 +454,11 @@ class Remesher {
     const std::size_t before = restored_.size();
     bool has_grown = false;
     for (const Vec3 p : places) {
-      const auto around = std::find_if(restored_.begin(), restored_.end(),
-                                       [&](const Ball& b) { return distance(b.center, p) < kMoreRestored * b.radius; });
+      const auto around = restored_around(p, 1);
       if (around != restored_.end()) {
         if (static_cast<std::size_t>(around - restored_.begin()) < before) around->radius *= kMoreRestored;
         has_grown = true;
-      } else if (sizes_.at(p) < kVain * first_.at(p)) {
+      } else if (sizes_.at(p) < kVain * first_.at(p) || restored_around(p, kMoreRestored) != restored_.end()) {
         restored_.push_back({p, kRestored * first_.at(p)});
       } else {
         to_cap.push_back(p);
@@ -458,6 +466,12 @@ class Remesher {
     }
     if (has_grown || restored_.size() > before) forget_caps();
     if (!to_cap.empty()) cap(to_cap, kCap);
+  }
+
+  /// The first place where the input's triangles return that has p within so many radii.
+  std::vector<Ball>::iterator restored_around(Vec3 p, double radii) {
+    return std::find_if(restored_.begin(), restored_.end(),
+                        [&](const Ball& b) { return distance(b.center, p) < radii * b.radius; });
   }
 
   /// The sizes again without what was asked of them where the input's triangles have returned.

@@ -11,6 +11,7 @@ std::vector<std::uint8_t> mark_restored(InputSurface& input, const std::vector<B
   std::vector<std::uint8_t> is_fixed(mesh.points.size(), 0);
   if (balls.empty()) return is_fixed;
   for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t) {
+    if (input.is_back(t)) continue;
     const Vec3 a = mesh.corner(t, 0), b = mesh.corner(t, 1), c = mesh.corner(t, 2);
     const bool reaches_in = std::any_of(balls.begin(), balls.end(), [&](const Ball& ball) {
       return distance(closest_point_on_triangle(ball.center, a, b, c), ball.center) < ball.radius;

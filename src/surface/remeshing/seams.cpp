@@ -27,16 +27,13 @@ class Cutter {
         table_(complex.edges()),
         faces_(static_cast<std::uint32_t>(complex_.triangles.size())),
         edge_of_(table_.edge_of_half_edge()),
-        fans_(3 * faces_),
-        parts_(faces_) {}
+        fans_(3 * faces_) {}
 
   SeamedSurface run() {
-    find_parts();
+    find_fans();
     number_fronts();
-    number_backs();
-    connect();
-    find_patches();
-    divide_doubles();
+    connect_fronts();
+    add_backs();
     find_normals();
     find_pinned();
     carry_features();
@@ -53,149 +50,84 @@ class Cutter {
     const auto uses = table_.uses(edge_of_[h]);
     return uses[0] == h ? uses[1] : uses[0];
   }
-  /// The half-edge on the back of one of a front; the back is face `back` of the cut surface.
-  static HalfEdge on_back(HalfEdge h, std::uint32_t back) { return 3 * back + 2 - h % 3; }
-
-  void find_parts() {
+  void find_fans() {
     cut_.resize(table_.size());
     for (std::size_t e = 0; e < table_.size(); ++e) {
       cut_[e] = is_cut(complex_, table_, e);
       if (cut_[e]) continue;
       const HalfEdge h = table_.uses(e)[0], g = table_.uses(e)[1];
-      parts_.join(h / 3, g / 3);
       for (const VertexIndex v : table_.edges[e]) fans_.join(corner(h, v), corner(g, v));
     }
-    part_is_cut_.assign(faces_, 0);
     fan_is_open_.assign(3 * faces_, 0);
-    for (HalfEdge h = 0; h < 3 * faces_; ++h) {
-      if (!cut(h)) continue;
-      part_is_cut_[parts_.find(h / 3)] = 1;
-      fan_is_open_[fans_.find(h)] = fan_is_open_[fans_.find(next_of(h))] = 1;
-    }
+    for (HalfEdge h = 0; h < 3 * faces_; ++h)
+      if (cut(h)) fan_is_open_[fans_.find(h)] = fan_is_open_[fans_.find(next_of(h))] = 1;
   }
 
-  VertexIndex add_vertex(VertexIndex v) {
-    mesh().points.push_back(complex_.points[v]);
-    out_.place.push_back(v);
+  VertexIndex add_vertex(Vec3 p, std::size_t place) {
+    mesh().points.push_back(p);
+    out_.place.push_back(static_cast<VertexIndex>(place));
     return static_cast<VertexIndex>(mesh().points.size() - 1);
   }
 
   void number_fronts() {
-    copy_.assign(3 * faces_, kNone);
+    std::vector<VertexIndex> copy(3 * faces_, kNone);
     for (HalfEdge h = 0; h < 3 * faces_; ++h) {
-      VertexIndex& copy = copy_[fans_.find(h)];
-      if (copy == kNone) copy = add_vertex(complex_.triangles[h / 3][h % 3]);
-      mesh().start.push_back(copy);
+      const VertexIndex v = complex_.triangles[h / 3][h % 3];
+      VertexIndex& c = copy[fans_.find(h)];
+      if (c == kNone) c = add_vertex(complex_.points[v], v);
+      mesh().start.push_back(c);
     }
-  }
-
-  void number_backs() {
-    back_of_.assign(faces_, kNone);
-    back_copy_.assign(3 * faces_, kNone);
-    std::uint32_t next = faces_;
+    out_.first_tip = static_cast<VertexIndex>(mesh().points.size());
+    InputSurface& input = out_.input;
+    input.first_back = 1;
     for (std::uint32_t t = 0; t < faces_; ++t) {
-      if (!part_is_cut_[parts_.find(t)]) continue;
-      back_of_[t] = next++;
-      for (const HalfEdge h : {3 * t, 3 * t + 2, 3 * t + 1}) {
-        const std::uint32_t fan = fans_.find(h);
-        VertexIndex& copy = back_copy_[fan];
-        if (copy == kNone) copy = fan_is_open_[fan] ? copy_[fan] : add_vertex(complex_.triangles[t][h % 3]);
-        mesh().start.push_back(copy);
-      }
+      input.patch.push_back(complex_.patch_of(t));
+      input.first_back = std::max(input.first_back, complex_.patch_of(t) + 1);
     }
   }
 
-  void connect() {
-    HalfEdgeMesh& m = mesh();
-    m.twin.assign(m.start.size(), kNone);
-    for (HalfEdge h = 0; h < 3 * faces_; ++h) {
-      const std::uint32_t back = back_of_[h / 3];
-      if (cut(h)) {
-        m.twin[h] = on_back(h, back);
-        m.twin[on_back(h, back)] = h;
-        continue;
-      }
-      const HalfEdge g = partner(h);
-      m.twin[h] = g;
-      if (back != kNone) m.twin[on_back(h, back)] = on_back(g, back_of_[g / 3]);
+  void connect_fronts() {
+    mesh().twin.assign(3 * faces_, kNone);
+    for (HalfEdge h = 0; h < 3 * faces_; ++h)
+      if (!cut(h)) mesh().twin[h] = partner(h);
+  }
+
+  /// A fan of triangles around a tip behind each loop of cut edges.
+  void add_backs() {
+    std::vector<HalfEdge> cut_from(mesh().points.size(), kNone);  // by vertex; there is one at most
+    for (HalfEdge h = 0; h < 3 * faces_; ++h)
+      if (cut(h)) cut_from[mesh().start[h]] = h;
+    std::vector<HalfEdge> loop;
+    for (HalfEdge first = 0; first < 3 * faces_; ++first) {
+      if (mesh().twin[first] != kNone) continue;
+      loop.clear();
+      HalfEdge h = first;
+      do loop.push_back(h), h = cut_from[mesh().end(h)];
+      while (h != first);
+      close(loop);
     }
   }
 
-  /// An edge inside a part that joins two vertices on seams is there on the front and on the back: two edges between
-  /// the same vertices, which would be taken for each other. So is a triangle with nothing but seams around it. The
-  /// back is divided there.
-  void divide_doubles() {
-    HalfEdgeMesh& m = mesh();
-    first_extra_ = static_cast<VertexIndex>(m.points.size());
-    // A division gives the edges around it other numbers: they come again.
-    for (HalfEdge h = 3 * faces_; h < m.start.size(); ++h) {
-      if (m.twin[h] < 3 * faces_ || !on_open_fan(m.start[h]) || !on_open_fan(m.end(h))) continue;
-      const VertexIndex a = m.start[h], b = m.end(h), x = add_extra((m.points[a] + m.points[b]) * 0.5);
-      middle_of_double_[{std::min(a, b), std::max(a, b)}] = x;
-      split_edge(h, x);
+  void close(const std::vector<HalfEdge>& loop) {
+    Vec3 sum;
+    for (const HalfEdge h : loop) sum += mesh().points[mesh().start[h]];
+    const std::size_t tips = mesh().points.size() - out_.first_tip;
+    const VertexIndex tip = add_vertex(sum / static_cast<double>(loop.size()), complex_.points.size() + tips);
+    const auto first = static_cast<HalfEdge>(mesh().start.size());
+    for (const HalfEdge h : loop) {
+      const auto back = static_cast<HalfEdge>(mesh().start.size());
+      mesh().start.insert(mesh().start.end(), {mesh().end(h), mesh().start[h], tip});
+      mesh().twin.insert(mesh().twin.end(), 3, kNone);
+      out_.input.patch.push_back(out_.input.first_back);
+      link(back, h);
+      if (back != first) link(back + 1, back - 1);
     }
-    for (std::uint32_t t = faces_; t < m.triangle_count(); ++t)
-      if (m.twin[3 * t] < 3 * faces_ && m.twin[3 * t + 1] < 3 * faces_ && m.twin[3 * t + 2] < 3 * faces_)
-        split_triangle(t, add_extra((m.corner(t, 0) + m.corner(t, 1) + m.corner(t, 2)) / 3));
-  }
-
-  bool on_open_fan(VertexIndex v) const { return v < on_open_fan_.size() && on_open_fan_[v] != 0; }
-
-  VertexIndex add_extra(Vec3 p) {
-    mesh().points.push_back(p);
-    out_.place.push_back(static_cast<VertexIndex>(complex_.points.size()) + static_cast<VertexIndex>(extras_++));
-    return static_cast<VertexIndex>(mesh().points.size() - 1);
-  }
-
-  HalfEdge add_triangle(std::uint32_t like, VertexIndex a, VertexIndex b, VertexIndex c) {
-    HalfEdgeMesh& m = mesh();
-    const auto first = static_cast<HalfEdge>(m.start.size());
-    m.start.insert(m.start.end(), {a, b, c});
-    m.twin.insert(m.twin.end(), 3, kNone);
-    out_.input.patch.push_back(out_.input.patch[like]);
-    return first;
+    link(first + 1, static_cast<HalfEdge>(mesh().start.size()) - 1);
   }
 
   void link(HalfEdge a, HalfEdge b) {
     mesh().twin[a] = b;
     mesh().twin[b] = a;
-  }
-
-  /// As WorkingMesh::split_edge().
-  void split_edge(HalfEdge h, VertexIndex x) {
-    HalfEdgeMesh& m = mesh();
-    const HalfEdge g = m.twin[h], bc = next_of(h), ad = next_of(g);
-    const VertexIndex a = m.start[h], b = m.start[g], c = m.apex(h), d = m.apex(g);
-    const HalfEdge beyond_bc = m.twin[bc], beyond_ad = m.twin[ad];
-    const HalfEdge k = add_triangle(h / 3, x, b, c), l = add_triangle(g / 3, x, a, d);
-    m.start[bc] = m.start[ad] = x;
-    link(h, l), link(k, g), link(bc, k + 2), link(ad, l + 2), link(k + 1, beyond_bc), link(l + 1, beyond_ad);
-  }
-
-  /// As WorkingMesh::split_triangle().
-  void split_triangle(std::uint32_t t, VertexIndex x) {
-    HalfEdgeMesh& m = mesh();
-    const HalfEdge bc = 3 * t + 1, ca = 3 * t + 2;
-    const VertexIndex a = m.start[3 * t], b = m.start[bc], c = m.start[ca];
-    const HalfEdge beyond_bc = m.twin[bc], beyond_ca = m.twin[ca];
-    const HalfEdge k = add_triangle(t, b, c, x), l = add_triangle(t, c, a, x);
-    m.start[ca] = x;
-    link(k, beyond_bc), link(l, beyond_ca), link(bc, k + 2), link(k + 1, l + 2), link(l + 1, ca);
-  }
-
-  void find_patches() {
-    InputSurface& input = out_.input;
-    const std::size_t all = input.mesh.triangle_count();
-    on_open_fan_.assign(input.mesh.points.size(), 0);
-    for (HalfEdge h = 0; h < 3 * faces_; ++h)
-      if (fan_is_open_[fans_.find(h)]) on_open_fan_[input.mesh.start[h]] = 1;
-    input.first_back = 1;
-    for (std::uint32_t t = 0; t < faces_; ++t) input.first_back = std::max(input.first_back, complex_.patch_of(t) + 1);
-    input.patch.resize(all);
-    for (std::uint32_t t = 0; t < faces_; ++t) {
-      input.patch[t] = complex_.patch_of(t);
-      if (back_of_[t] != kNone) input.patch[back_of_[t]] = input.first_back + complex_.patch_of(t);
-    }
   }
 
   void find_normals() {
@@ -238,30 +170,11 @@ class Cutter {
       if (fan_is_open_[h] && (ends[h] != 2 || difference[h] == 0)) is_odd[v] = 1;
     }
     out_.pinned.resize(out_.place.size());
-    for (VertexIndex c = 0; c < first_extra_; ++c) {
+    for (VertexIndex c = 0; c < out_.first_tip; ++c) {
       const VertexIndex v = out_.place[c];
       const bool is_plain = seams[v] == 0 ? fans[v] == 1 : seams[v] == 2 && closed[v] == 0 && !is_odd[v];
       out_.pinned[c] = !is_plain;
     }
-  }
-
-  void add_feature(VertexIndex a, VertexIndex b) { out_.features.edges.push_back({std::min(a, b), std::max(a, b)}); }
-
-  /// The vertex of the back at which h starts.
-  VertexIndex on_back(HalfEdge h) {
-    const std::uint32_t fan = fans_.find(h);
-    return fan_is_open_[fan] ? copy_[fan] : back_copy_[fan];
-  }
-
-  /// That of h, on the front and on the back, which may have been divided there.
-  void add_features(HalfEdge h) {
-    add_feature(mesh().start[h], mesh().end(h));
-    if (back_of_[h / 3] == kNone) return;
-    const VertexIndex a = on_back(h), b = on_back(next_of(h));
-    const auto middle = middle_of_double_.find({std::min(a, b), std::max(a, b)});
-    if (middle == middle_of_double_.end()) return add_feature(a, b);
-    add_feature(a, middle->second);
-    add_feature(middle->second, b);
   }
 
   void carry_features() {
@@ -273,10 +186,12 @@ class Cutter {
       if (at == table_.edges.end() || *at != edge) continue;
       const auto e = static_cast<std::size_t>(at - table_.edges.begin());
       if (cut_[e]) continue;
-      add_features(table_.uses(e)[0]);
+      const HalfEdge h = table_.uses(e)[0];
+      const VertexIndex a = mesh().start[h], b = mesh().end(h);
+      out_.features.edges.push_back({std::min(a, b), std::max(a, b)});
     }
     std::sort(out_.features.edges.begin(), out_.features.edges.end());
-    for (VertexIndex c = 0; c < first_extra_; ++c)
+    for (VertexIndex c = 0; c < out_.first_tip; ++c)
       if (is_corner[out_.place[c]]) out_.features.corners.push_back(c);
   }
 
@@ -285,15 +200,8 @@ class Cutter {
   const EdgeTable& table_;
   const std::uint32_t faces_;
   const std::vector<std::uint32_t> edge_of_;
-  DisjointSets fans_;   ///< corners of triangles around a vertex, over edges that are not cut
-  DisjointSets parts_;  ///< triangles, over edges that are not cut
-  std::vector<std::uint8_t> cut_, part_is_cut_, fan_is_open_;
-  std::vector<std::uint8_t> on_open_fan_;  ///< per vertex before doubles were divided
-  VertexIndex first_extra_ = 0;            ///< vertices from here on divide doubles
-  std::size_t extras_ = 0;
-  std::map<Edge, VertexIndex> middle_of_double_;
-  std::vector<VertexIndex> copy_, back_copy_;  ///< per fan
-  std::vector<std::uint32_t> back_of_;         ///< per triangle: its back, or kNone
+  DisjointSets fans_;  ///< corners of triangles around a vertex, over edges that are not cut
+  std::vector<std::uint8_t> cut_, fan_is_open_;
   SeamedSurface out_;
 };
 
@@ -437,7 +345,9 @@ class SeamCoarsener {
     std::vector<VertexIndex> all;
     for (const VertexIndex v : copies) {
       all.push_back(v);
-      mesh_.for_each_outgoing(v, [&](HalfEdge h) { all.push_back(mesh_.end(h)); });
+      mesh_.for_each_outgoing(v, [&](HalfEdge h) {
+        if (!mesh_.is_behind(h)) all.push_back(mesh_.end(h));
+      });
     }
     std::sort(all.begin(), all.end());
     return std::adjacent_find(all.begin(), all.end()) == all.end();
@@ -490,14 +400,6 @@ SeamedSurface cut_along_seams(const KnownSurface& complex) {
   return Cutter(complex).run();
 }
 
-std::vector<Edge> without_backs(const InputSurface& input, std::vector<Edge> edges) {
-  std::erase_if(edges, [&](const Edge& e) {
-    const HalfEdge h = input.mesh.find(e[0], e[1]);
-    return input.is_back(h / 3) && input.is_back(input.mesh.twin[h] / 3);
-  });
-  return edges;
-}
-
 std::vector<Edge> seam_edges(const InputSurface& input) {
   std::vector<Edge> edges;
   for (HalfEdge h = 0; h < input.mesh.start.size(); ++h)
@@ -505,8 +407,8 @@ std::vector<Edge> seam_edges(const InputSurface& input) {
   return edges;
 }
 
-std::vector<Curve> divided_curves(const InputSurface& input, const SeamedSurface& seamed, const SizeField& sizes,
-                                  std::vector<std::uint8_t>& is_fixed) {
+SeamedCurves chained_curves(const InputSurface& input, const SeamedSurface& seamed, const SizeField& sizes,
+                            std::vector<std::uint8_t>& is_fixed) {
   const std::vector<std::uint8_t> is_corner = corner_marks(input, seamed.features.corners, is_fixed, sizes);
   std::vector<std::uint8_t> place_is_corner(input.mesh.points.size(), 0);  // there are no more places than copies
   for (VertexIndex c = 0; c < is_corner.size(); ++c)
@@ -521,8 +423,14 @@ std::vector<Curve> divided_curves(const InputSurface& input, const SeamedSurface
   std::vector<std::uint32_t> group;
   for (std::uint32_t c = 0; c < curves.size(); ++c) group.push_back(c);
   SeamCurves(input, seamed.place, copy_is_corner).add_to(curves, group);
-  divide_curves(input, sizes, curves, {group, seamed.place});
-  return curves;
+  return {std::move(curves), std::move(group)};
+}
+
+std::vector<Curve> divided_curves(const InputSurface& input, const SeamedSurface& seamed, const SizeField& sizes,
+                                  std::vector<std::uint8_t>& is_fixed) {
+  SeamedCurves chained = chained_curves(input, seamed, sizes, is_fixed);
+  divide_curves(input, sizes, chained.curves, {chained.group, seamed.place});
+  return std::move(chained.curves);
 }
 
 void coarsen_seams(WorkingMesh& mesh, const RunContext& context, CoarsenCounts& counts) {

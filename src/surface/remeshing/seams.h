@@ -1,10 +1,10 @@
 #pragma once
 
 // How the surface front works on a complex. Along *seams* more than two patches meet, or one ends: there no surface is
-// a manifold. So the complex is cut open along them, and each part that was cut gets a back, the same triangles facing
-// the other way, joined to it along the cut: a closed manifold again, on which everything else works as on a single
-// surface. Vertices on a cut exist once in each part; what becomes of them is decided for all of them at once. In the
-// end the backs are dropped and the cuts are sewn.
+// a manifold. So the complex is cut open along them, and each loop of a cut gets a back, a fan of triangles around a
+// tip: a closed manifold again, on which everything else works as on a single surface. Backs have no shape that
+// matters: nobody puts points there or turns their edges. Vertices on a cut exist once in each part; what becomes of
+// them is decided for all of them at once. In the end the backs are dropped and the cuts are sewn.
 
 #include <octafront/run_context.h>
 
@@ -22,21 +22,29 @@ namespace octafront::remeshing {
 struct SeamedSurface {
   InputSurface input;
   std::vector<VertexIndex> place;    ///< per vertex of `input`: the vertex of the complex that it is a copy of
+  VertexIndex first_tip = 0;         ///< vertices of `input` from here on are tips of backs, copies of nothing
   std::vector<std::uint8_t> pinned;  ///< per vertex of `input`: a corner of the complex, whatever its features say
-  Features features;  ///< those of the complex that are not seams, on the copies, backs too; and its corners
+  Features features;                 ///< those of the complex that are not seams, on the copies; and its corners
 };
 
 /// REQUIRES a clean complex. Its own patches are kept.
 SeamedSurface cut_along_seams(const KnownSurface& complex);
 
-/// Those of the edges that are not on backs. Features there served to judge those on the front.
-std::vector<Edge> without_backs(const InputSurface& input, std::vector<Edge> edges);
-
 /// The edges of the cut surface along which it was cut.
 std::vector<Edge> seam_edges(const InputSurface& input);
 
-/// The curves of the cut surface (`input`, with feature marks), divided; those along one seam alike. `is_fixed` as of
-/// chain_curves(); copies of vertices that are corners for one part become fixed for all.
+/// The curves of the cut surface, not divided.
+struct SeamedCurves {
+  std::vector<Curve> curves;
+  std::vector<std::uint32_t> group;  ///< per curve: the first of its copies
+};
+
+/// Chains the features and seams of the cut surface (`input`, with feature marks). `is_fixed` as of chain_curves();
+/// copies of vertices that are corners for one part become fixed for all.
+SeamedCurves chained_curves(const InputSurface& input, const SeamedSurface& seamed, const SizeField& sizes,
+                            std::vector<std::uint8_t>& is_fixed);
+
+/// The same, divided; those along one seam alike.
 std::vector<Curve> divided_curves(const InputSurface& input, const SeamedSurface& seamed, const SizeField& sizes,
                                   std::vector<std::uint8_t>& is_fixed);
 

@@ -25,6 +25,7 @@ void StarCollapse::gather(VertexIndex v) {
 double StarCollapse::quality_now() const {
   double worst = 1;
   for (const HalfEdge h : ring_) {
+    if (mesh_.is_back(h / 3)) continue;
     worst = std::min(
         worst, squared_quality(mesh_.points[mesh_.start[h]], mesh_.points[mesh_.end(h)], mesh_.points[mesh_.apex(h)]));
   }
@@ -37,7 +38,7 @@ double StarCollapse::quality_after(std::size_t towards, const TurnLimits& limits
   double worst = 1;
   for (std::size_t i = 0; i < ring_.size(); ++i) {
     const VertexIndex p = mesh_.end(ring_[i]), q = mesh_.apex(ring_[i]);
-    if (p == w || q == w) continue;
+    if (p == w || q == w || mesh_.is_back(ring_[i] / 3)) continue;
     const Vec3 pp = mesh_.points[p], pq = mesh_.points[q];
     const Vec3 area_vector = cross(pp - pw, pq - pw);
     worst = std::min(worst, squared_quality(pw, pp, pq));
@@ -53,7 +54,7 @@ double StarCollapse::longest_after(std::size_t towards) const {
   double longest = 0;
   for (const HalfEdge h : ring_) {
     const VertexIndex p = mesh_.end(h);
-    if (p == w) continue;
+    if (p == w || mesh_.is_behind(h)) continue;
     const double size = 0.5 * (mesh_.size[w] + mesh_.size[p]);
     longest = std::max(longest, distance(mesh_.points[w], mesh_.points[p]) / size);
   }

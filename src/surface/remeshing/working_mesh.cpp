@@ -158,9 +158,14 @@ HalfEdge WorkingMesh::flip(HalfEdge h) {
   return bc;
 }
 
+bool WorkingMesh::has_more_than_three(VertexIndex v) const {
+  const HalfEdge h = outgoing[v];
+  return rotated(rotated(rotated(h))) != h && rotated(rotated(h)) != h;
+}
+
 bool WorkingMesh::keeps_manifold(HalfEdge h) const {
   const VertexIndex u = start[h], w = end(h), a = apex(h), b = apex(twin[h]);
-  if (valence(a) <= 3 || valence(b) <= 3) return false;
+  if (!has_more_than_three(a) || !has_more_than_three(b)) return false;
   // u and w have just a and b as common neighbours.
   int common = 0;
   for_each_outgoing(u, [&](HalfEdge o) {

@@ -2,6 +2,8 @@
 
 #include "surface/remeshing/walk.h"
 
+#include <atomic>
+
 namespace octafront::remeshing {
 
 /// What a vertex of the working mesh is, and so what may happen to it.
@@ -40,6 +42,8 @@ struct WorkingMesh : HalfEdgeMesh {
 
   bool is_back(std::size_t t) const { return patch[t] >= first_back; }
   bool is_seam(HalfEdge h) const { return is_back(h / 3) != is_back(twin[h] / 3); }
+  /// Whether the edge has backs on both of its sides.
+  bool is_behind(HalfEdge h) const { return is_back(h / 3) && is_back(twin[h] / 3); }
   bool on_seam(VertexIndex v) const {
     bool found = false;
     if (first_back != kNone) for_each_outgoing(v, [&](HalfEdge h) { found = found || is_seam(h); });
@@ -50,7 +54,10 @@ struct WorkingMesh : HalfEdgeMesh {
 
   /// Marks for passes that skip what did not change since they last saw it.
   static constexpr std::uint8_t kForSmoothing = 1, kForFlips = 2;
-  void mark_changed(VertexIndex v) { changed[v] = kForSmoothing | kForFlips; }
+  /// Vertices beside what a block changes may be marked by several threads.
+  void mark_changed(VertexIndex v) {
+    std::atomic_ref(changed[v]).store(kForSmoothing | kForFlips, std::memory_order_relaxed);
+  }
   void mark_star_changed(VertexIndex v) {
     mark_changed(v);
     for_each_outgoing(v, [&](HalfEdge h) { mark_changed(end(h)); });
@@ -75,8 +82,8 @@ struct WorkingMesh : HalfEdgeMesh {
   void split_triangle(std::uint32_t t, VertexIndex x);
   /// Puts x on the edge of h. Afterwards h runs from its start to x.
   void split_edge(HalfEdge h, VertexIndex x);
-  /// Whether the edge may turn as far as connections and features go.
-  bool may_flip(HalfEdge h) const { return !is_feature[h] && can_turn(h); }
+  /// Whether the edge may turn as far as connections and features go; those of backs do not.
+  bool may_flip(HalfEdge h) const { return !is_feature[h] && !is_back(h / 3) && can_turn(h); }
   /// The same, features aside.
   bool can_turn(HalfEdge h) const;
   /// Turns the edge of h; returns a half-edge of the new edge.
@@ -86,6 +93,8 @@ struct WorkingMesh : HalfEdgeMesh {
   bool may_collapse(HalfEdge h, bool corners_too = false) const;
   /// Whether the surface stays a manifold if the start of h vanishes at its end (link condition), features aside.
   bool keeps_manifold(HalfEdge h) const;
+  /// Whether more than three edges meet at v: tips of backs have as many as a seam is long.
+  bool has_more_than_three(VertexIndex v) const;
   /// Moves the start of h to its end, where it vanishes with the two triangles beside h.
   void collapse(HalfEdge h);
 

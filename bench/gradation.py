@@ -1,0 +1,98 @@
+"""How fast should sizes change? Meshes made with gradations from .05 to .5: at one number of elements, at automatic sizes
+that grow into the volume, and around a point with a thousandth of the size. Writes docs/gradation.md.
+
+Usage: bench/run.sh gradation [--only SUBSTRING] [--timeout SECONDS]
+"""
+import argparse
+import pathlib
+import statistics
+import tempfile
+
+from status import mesh_and_judge
+
+MODELS = ["bunny00.off", "armadillo.off", "refined_elephant.off", "knot2.off", "fandisk_large.off", "couplingdown.off"]
+GRADATIONS = [0.05, 0.08, 0.12, 0.15, 0.2, 0.3, 0.5]
+CUBE = """OFF
+8 12 0
+0 0 0
+1 0 0
+1 1 0
+0 1 0
+0 0 1
+1 0 1
+1 1 1
+0 1 1
+3 0 2 1
+3 0 3 2
+3 4 5 6
+3 4 6 7
+3 0 1 5
+3 0 5 4
+3 1 2 6
+3 1 6 5
+3 2 3 7
+3 2 7 6
+3 3 0 4
+3 3 4 7
+"""
+HEAD = ["| gradation | mean β | above .8, % | least β | angles ° | elements | filled, k/CPU s | in all, k/CPU s | Hausdorff %, mean |",
+        "| --- | --- | --- | --- | --- | --- | --- | --- | --- |"]
+
+
+def figures(row):
+    report, classes = row["report"], row["beta_classes"]
+    fill = sum(s["cpu_seconds"] for s in report["stages"] if s["name"].startswith("volume front"))
+    return {"mean": row["beta_mean"], "above": 100 * classes[-1] / sum(classes), "least": row["beta_min"],
+            "low": row["dihedral_min"], "high": row["dihedral_max"], "tets": row["tets"],
+            "fill": row["tets"] / fill / 1000, "all": row["tets"] / report["cpu_seconds"] / 1000,
+            "hausdorff": row["hausdorff_percent"]}
+
+
+def line(gradation, made):
+    mean = lambda key: statistics.mean(m[key] for m in made)
+    return (f"| {gradation:g} | {mean('mean'):.4f} | {mean('above'):.1f} | {min(m['least'] for m in made):.2f} | "
+            f"{min(m['low'] for m in made):.0f}–{max(m['high'] for m in made):.0f} | {mean('tets'):,.0f} | {mean('fill'):.0f} | "
+            f"{mean('all'):.0f} | {mean('hausdorff'):.3f} |")
+
+
+def table(build, models, options, timeout):
+    rows = []
+    for gradation in GRADATIONS:
+        made = []
+        for model in models:
+            row = mesh_and_judge(build, model, [*options, "--gradation", str(gradation), "--threads", "1"], timeout)
+            if row["status"] != 0 or row["defect"]:
+                raise SystemExit(f"{model.name} at {gradation}: {row['message'] or row['defect']}")
+            made.append(figures(row))
+        rows.append(line(gradation, made))
+        print(rows[-1], flush=True)
+    return "\n".join(HEAD + rows) + "\n"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("build", type=pathlib.Path)
+    parser.add_argument("--only", default="")
+    parser.add_argument("--timeout", type=float, default=600)
+    a = parser.parse_args()
+    models = [pathlib.Path("models/clean", m) for m in MODELS if a.only in m]
+    with tempfile.TemporaryDirectory() as folder:
+        cube, point = pathlib.Path(folder, "cube.off"), pathlib.Path(folder, "point.csv")
+        cube.write_text(CUBE)
+        point.write_text("x,y,z,size\n0.37,0.41,0.45,0.0001\n")
+        parts = [
+            ("One number of elements", f"{', '.join(m.name for m in models)}: `--elements 1000000`, so sizes from curvature, "
+             "walls and features, all scaled until there are about a million.", models, ["--elements", "1000000"]),
+            ("Sizes that grow into the volume", "The same models at automatic size, `--interior graded`.", models,
+             ["--interior", "graded"]),
+            ("Sizes 1000 : 1", "A cube with elements of a tenth of its side, and of a thousandth of that at a point inside.", [cube],
+             ["--size", "0.1", "--regions", point]),
+        ]
+        text = ["# How fast sizes may change", "", "Written by `bench/run.sh gradation`, one thread. Means over the models, worst "
+                "of all.", ""]
+        for title, what, which, options in parts:
+            text += [f"## {title}", "", what, "", table(a.build, which, options, a.timeout)]
+    pathlib.Path("docs/gradation.md").write_text("\n".join(text))
+
+
+main()
