@@ -1,10 +1,12 @@
 #pragma once
 
 #include <octafront/complex.h>
+#include <octafront/mend.h>
 #include <octafront/named_groups.h>
 #include <octafront/options.h>
 #include <octafront/solver_checks.h>
 
+#include "image_arguments.h"
 #include "option_names.h"
 
 #include <CLI/CLI.hpp>
@@ -25,6 +27,9 @@ struct TypedLength {
 /// What people choose who do not want to think: how fine automatic sizes are, and how long elements are improved.
 enum class Preset { kDraft, kStandard, kFine };
 
+/// What becomes of surfaces that cannot be meshed as they are.
+enum class Repair { kNone, kAuto, kWrap };
+
 /// What the user typed, as the commands need it.
 struct Arguments {
   std::string command;
@@ -32,6 +37,10 @@ struct Arguments {
   std::filesystem::path input, output, json, surface, page;
   std::vector<std::filesystem::path> bodies;  ///< all inputs, the first one too, of commands that take several
   ComplexOptions complex;
+  ImageArguments image;
+  Repair repair = Repair::kAuto;
+  MendOptions mend;               ///< but for what `repair` says, and the tolerance, which is that of `complex`
+  std::filesystem::path defects;  ///< where the changes of repair are shown; empty: nowhere
   std::vector<std::filesystem::path> meshes;               ///< that are written; "-": to standard output
   std::vector<std::string> formats;                        ///< of the meshes in turn; empty: by their endings
   std::filesystem::path regions, point_sizes, size_field;  ///< files with sizes; empty: none
@@ -56,6 +65,8 @@ void declare_mesh_input(CLI::App& command, Arguments& arguments);
 void declare_output(CLI::App& command, Arguments& arguments, const std::string& what, bool required);
 /// Several materials: how walls and bodies become regions.
 void declare_complex(CLI::App& command, Arguments& arguments);
+/// What is done about surfaces with defects.
+void declare_repair(CLI::App& command, Arguments& arguments);
 /// -o, --format and --group of commands that write a mesh.
 void declare_mesh_output(CLI::App& command, Arguments& arguments);
 /// --report: the web page.

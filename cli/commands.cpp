@@ -84,7 +84,7 @@ void check_tet_mesh(Session& session) {
 
 void check_surface(Session& session) {
   const std::string name = session.arguments().input.string();
-  const SurfaceFile file = read_domain(session);
+  const SurfaceFile file = read_domain(session, Defects::kLeft);
   session.context().report("checking", -1);
   const RepairedSurface repaired = repair_surface(file.surface, session.context());
   for (const std::string& note : repaired.notes) session.say("would repair: " + note + "\n");
@@ -161,6 +161,15 @@ void run_surface(Session& session) {
   session.context().report("writing", -1);
   write_surface(a.output, result.surface, session.context());
   session.tell(result.report);
+  say_written(session);
+}
+
+void run_repair(Session& session) {
+  const Arguments& a = session.arguments();
+  check_surface_target(a.output);
+  const SurfaceFile file = read_domain(session);
+  session.context().report("writing", -1);
+  write_surface(a.output, file.surface, session.context());
   say_written(session);
 }
 

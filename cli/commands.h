@@ -7,6 +7,7 @@ namespace octafront::cli {
 /// The commands. What goes wrong is thrown as an octafront::Error.
 void run_mesh(Session& session);
 void run_surface(Session& session);
+void run_repair(Session& session);
 void run_size(Session& session);
 void run_improve(Session& session);
 void run_check(Session& session);

@@ -3,6 +3,8 @@
 #include <octafront/complex.h>
 #include <octafront/error.h>
 
+#include "images.h"
+#include "mending.h"
 #include "text.h"
 
 #include <algorithm>
@@ -23,19 +25,6 @@ SurfaceFile read_one(const Session& session, const std::filesystem::path& file) 
   return read;
 }
 
-void tell_regions(Session& session, const Complex& complex) {
-  session.say_notes("regions", complex.notes);
-  Json regions = Json::array();
-  const std::vector<std::string>& names = complex.surface.region_names;
-  for (std::size_t r = 0; r < complex.volumes.size(); ++r) {
-    // One region alone needs no name.
-    const std::string name = r < names.size() ? names[r] : "body";
-    regions.push_back({{"name", name}, {"volume", complex.volumes[r]}});
-    session.say(fmt::format("  region \"{}\": volume {:.6g}\n", name, complex.volumes[r]));
-  }
-  if (!regions.empty()) session.found({{"input_regions", regions}});
-}
-
 /// The stems of the files, with numbers behind those that occurred before.
 std::vector<std::string> names_of(const std::vector<std::filesystem::path>& files) {
   std::vector<std::string> names;
@@ -49,7 +38,7 @@ std::vector<std::string> names_of(const std::vector<std::filesystem::path>& file
   return names;
 }
 
-SurfaceFile read_bodies(Session& session) {
+SurfaceFile read_bodies(Session& session, Defects defects) {
   const Arguments& a = session.arguments();
   const std::vector<std::string> names = names_of(a.bodies);
   std::vector<Body> bodies;
@@ -61,6 +50,7 @@ SurfaceFile read_bodies(Session& session) {
           fmt::format("{}: is a complex of several regions by itself; give it alone", a.bodies[i].string()));
     options.regions.insert(options.regions.end(), file.regions.begin(), file.regions.end());
     options.voids.insert(options.voids.end(), file.voids.begin(), file.voids.end());
+    if (defects == Defects::kMended) mend(session, a.bodies[i], file.surface);
     bodies.push_back({names[i], std::move(file.surface)});
   }
   session.context().report("joining", -1);
@@ -69,7 +59,7 @@ SurfaceFile read_bodies(Session& session) {
   return {std::move(complex.surface), "several files", {}};
 }
 
-SurfaceFile read_walls(Session& session) {
+SurfaceFile read_walls(Session& session, Defects defects) {
   const Arguments& a = session.arguments();
   SurfaceFile file = read_one(session, a.input);
   ComplexOptions options = a.complex;
@@ -80,6 +70,8 @@ SurfaceFile read_walls(Session& session) {
     if (auto complex = complex_of_walls(file.surface, options, session.context())) {
       tell_regions(session, *complex);
       file.surface = std::move(complex->surface);
+    } else if (defects == Defects::kMended) {
+      mend(session, a.input, file.surface);
     }
   } catch (const LeakError& leak) {
     throw LeakError(fmt::format("{}: {}", a.input.string(), leak.what()), leak.way);
@@ -101,13 +93,27 @@ SurfaceFile read_walls(Session& session) {
 
 }  // namespace
 
+void tell_regions(Session& session, const Complex& complex) {
+  session.say_notes("regions", complex.notes);
+  Json regions = Json::array();
+  const std::vector<std::string>& names = complex.surface.region_names;
+  for (std::size_t r = 0; r < complex.volumes.size(); ++r) {
+    // One region alone needs no name.
+    const std::string name = r < names.size() ? names[r] : "body";
+    regions.push_back({{"name", name}, {"volume", complex.volumes[r]}});
+    session.say(fmt::format("  region \"{}\": volume {:.6g}\n", name, complex.volumes[r]));
+  }
+  if (!regions.empty()) session.found({{"input_regions", regions}});
+}
+
 std::filesystem::path leak_file(std::filesystem::path output) {
   return output.replace_extension(".leak.ply");
 }
 
-SurfaceFile read_domain(Session& session) {
+SurfaceFile read_domain(Session& session, Defects defects) {
+  if (is_image_input(session.arguments())) return read_image_domain(session);
   try {
-    return session.arguments().bodies.size() > 1 ? read_bodies(session) : read_walls(session);
+    return session.arguments().bodies.size() > 1 ? read_bodies(session, defects) : read_walls(session, defects);
   } catch (const LeakError& leak) {
     fail_with_way(session, leak);
   }

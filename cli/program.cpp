@@ -87,12 +87,16 @@ void Program::declare_makers() {
           "  octafront mesh part.stl -o part.inp --size 2 --order 2    edges of length 2, curved elements\n"
           "  octafront mesh part.obj -o part.msh --unit mm --size 0.1in\n"
           "  octafront mesh plate.stl bolt.stl -o bolted.msh           a region each, faces shared\n"
+          "  octafront mesh labels.nii.gz -o organs.msh --labels names.txt   a region per label\n"
+          "  octafront mesh head.nii.gz -o head.msh --band skin=-200:226 --band bone=226:\n"
           "  octafront mesh part.stl -o part.msh -o part.vtu --elements 1e5 --report part.html\n"
           "  octafront mesh part.stl --dry-run --size 0.5              elements, memory, time; nothing made\n"
           "  octafront mesh part.stl -o - --format vtk | gzip > part.vtk.gz\n",
           run_mesh);
   declare_input(*mesh, a);
   declare_complex(*mesh, a);
+  declare_image(*mesh, a.image);
+  declare_repair(*mesh, a);
   declare_mesh_output(*mesh, a);
   declare_preset(*mesh, a);
   declare_dry_run(*mesh, a);
@@ -109,11 +113,25 @@ void Program::declare_makers() {
                           "  octafront surface scan.ply -o even.stl --size 0.5\n", run_surface);
   declare_input(*surface, a);
   declare_complex(*surface, a);
+  declare_image(*surface, a.image);
+  declare_repair(*surface, a);
   declare_output(*surface, a, "Surface: .stl, .obj, .off or .ply", true);
   declare_sizes(*surface, a);
   declare_surface(*surface, a);
   declare_report(*surface, a);
   declare_run(*surface, a);
+
+  CLI::App* repair = add("repair", "Mend a surface with defects and stop there: octafront repair in.stl -o out.stl",
+                         "  octafront repair scan.ply -o closed.ply --json changes.json --defects places.ply\n"
+                         "  octafront repair part.stl -o part.off --tolerance 0.05\n"
+                         "  octafront repair soup.obj -o skin.stl --repair wrap       a closed skin around it\n",
+                         run_repair);
+  declare_input(*repair, a);
+  declare_complex(*repair, a);
+  declare_repair(*repair, a);
+  declare_output(*repair, a, "Surface: .stl, .obj, .off or .ply", true);
+  declare_report(*repair, a);
+  declare_run(*repair, a);
 
   CLI::App* size = add(
       "size", "Show the element sizes, and how many elements they would make",
@@ -122,6 +140,8 @@ void Program::declare_makers() {
       run_size);
   declare_input(*size, a);
   declare_complex(*size, a);
+  declare_image(*size, a.image);
+  declare_repair(*size, a);
   declare_output(*size, a, "Background grid: .vtu", false);
   declare_sizes(*size, a);
   declare_surface(*size, a);
@@ -155,11 +175,13 @@ void Program::declare_makers() {
 
 void Program::declare_lookers() {
   Arguments& a = arguments_;
-  CLI::App* info = add("info", "Say what is in a file: a surface, a mesh or a size field",
+  CLI::App* info = add("info", "Say what is in a file: a surface, a mesh, an image or a size field",
                        "  octafront info part.stl\n"
+                       "  octafront info head.nii.gz\n"
                        "  octafront info part.msh --json -\n",
                        run_info);
-  declare_input(*info, a, "Surface, mesh, or size field as `octafront size -o` writes it");
+  declare_input(*info, a, "Surface, mesh, image, or size field as `octafront size -o` writes it");
+  declare_image_choice(*info, a.image);
   declare_report(*info, a);
   declare_run(*info, a);
 
@@ -169,6 +191,7 @@ void Program::declare_lookers() {
                         run_check);
   declare_input(*check, a, "Surface or mesh; or several surfaces, a body each");
   declare_complex(*check, a);
+  declare_image(*check, a.image);
   declare_solver(*check, a);
   declare_report(*check, a);
   declare_run(*check, a);

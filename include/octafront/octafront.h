@@ -5,8 +5,11 @@
 #include <octafront/complex.h>
 #include <octafront/error.h>
 #include <octafront/generate.h>
+#include <octafront/image.h>
+#include <octafront/image_surface.h>
 #include <octafront/improve_existing.h>
 #include <octafront/io.h>
+#include <octafront/mend.h>
 #include <octafront/named_groups.h>
 #include <octafront/option_table.h>
 #include <octafront/options.h>

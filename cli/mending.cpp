@@ -1,0 +1,62 @@
+#include "mending.h"
+
+#include <octafront/error.h>
+#include <octafront/io.h>
+#include <octafront/mend.h>
+#include <octafront/report.h>
+
+#include <array>
+
+#include <fmt/core.h>
+
+namespace octafront::cli {
+
+namespace {
+
+MendOptions options_of(const Arguments& a) {
+  MendOptions options = a.mend;
+  options.tolerance = a.complex.tolerance;
+  options.way = a.repair == Repair::kWrap ? MendOptions::Way::kWrap : MendOptions::Way::kAuto;
+  return options;
+}
+
+/// An octahedron at each change, large enough to be seen beside the model; a patch for each kind.
+SurfaceMesh marks_of(const MendReport& report) {
+  constexpr double kRadius = 0.004;  // of the diagonal
+  const double r = kRadius * report.diagonal;
+  SurfaceMesh marks;
+  for (const MendChange& change : report.changes) {
+    const auto first = static_cast<VertexIndex>(marks.points.size());
+    for (const Vec3 off : {Vec3{r, 0, 0}, Vec3{-r, 0, 0}, Vec3{0, r, 0}, Vec3{0, -r, 0}, Vec3{0, 0, r}, Vec3{0, 0, -r}})
+      marks.points.push_back(change.at + off);
+    for (const VertexIndex x : {0u, 1u})
+      for (const VertexIndex y : {2u, 3u})
+        for (const VertexIndex z : {4u, 5u}) {
+          const bool even = (x + y + z) % 2 == 0;
+          marks.triangles.push_back({first + x, first + (even ? y : z), first + (even ? z : y)});
+          marks.patch.push_back(static_cast<std::uint32_t>(change.kind));
+        }
+  }
+  for (int k = 0; k <= static_cast<int>(MendChange::Kind::kRebuilt); ++k)
+    marks.patch_names.emplace_back(name_of(static_cast<MendChange::Kind>(k)));
+  return marks;
+}
+
+}  // namespace
+
+void mend(Session& session, const std::filesystem::path& file, SurfaceMesh& surface) {
+  const Arguments& a = session.arguments();
+  if (a.repair == Repair::kNone || !surface.sides.empty()) return;
+  Mended mended = mend_surface(surface, options_of(a), session.context());
+  const Json report = Json::parse(to_json(mended.report));
+  if (a.bodies.size() > 1)
+    session.found({{"repair " + file.string(), report}});
+  else
+    session.found({{"repair", report}});
+  if (!a.defects.empty()) write_surface(a.defects, marks_of(mended.report), session.context());
+  if (mended.report.clean) return;
+  session.say_notes("repair", mended.report.notes);
+  surface = std::move(mended.surface);
+}
+
+}  // namespace octafront::cli

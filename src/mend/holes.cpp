@@ -1,0 +1,116 @@
+#include "mend/holes.h"
+
+#include "core/disjoint_sets.h"
+#include "core/parallel.h"
+#include "geometry/measures.h"
+#include "mend/cap.h"
+#include "mend/loops.h"
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_set>
+
+namespace octafront::mend {
+namespace {
+
+using repair::Draft;
+
+/// A part with caps of more than this share of its own area is a sheet. Of a hemisphere it is half, of a tube as long as
+/// wide half too, of a terrain nearly all.
+constexpr double kMostCapped = 0.9;
+
+std::uint64_t key_of(VertexIndex a, VertexIndex b) {
+  return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
+}
+
+/// Edges between vertices of rims, which caps should not use again.
+std::unordered_set<std::uint64_t> edges_between(const EdgeTable& table, const std::vector<Loop>& loops,
+                                                std::size_t vertices) {
+  std::vector<char> on_rim(vertices, 0);
+  for (const Loop& loop : loops)
+    for (const VertexIndex v : loop.vertices) on_rim[v] = 1;
+  std::unordered_set<std::uint64_t> taken;
+  for (const auto& [a, b] : table.edges)
+    if (on_rim[a] && on_rim[b]) taken.insert(key_of(a, b));
+  return taken;
+}
+
+Hole closed(const Draft& draft, const Loop& loop, const std::unordered_set<std::uint64_t>& taken) {
+  std::vector<Vec3> polygon;
+  for (const VertexIndex v : loop.vertices) polygon.push_back(draft.mesh.points[v]);
+  Hole hole;
+  hole.rim_triangle = loop.triangle;
+  double around = 0;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    around += distance(polygon[i], polygon[(i + 1) % polygon.size()]);
+    hole.at += polygon[i] / static_cast<double>(polygon.size());
+  }
+  const auto is_taken = [&](std::uint32_t i, std::uint32_t j) {
+    return taken.contains(key_of(loop.vertices[i], loop.vertices[j]));
+  };
+  for (const auto& [i, j, k] : triangulate_polygon(polygon, is_taken)) {
+    hole.cap.push_back({loop.vertices[i], loop.vertices[j], loop.vertices[k]});
+    hole.area += triangle_area(polygon[i], polygon[j], polygon[k]);
+  }
+  hole.width = around > 0 ? 2 * hole.area / around : 0;
+  return hole;
+}
+
+/// Of a part that hangs together: its own area, that of its caps, and what both enclose.
+struct Part {
+  double area = 0, capped = 0, volume = 0;
+};
+
+class Parts {
+ public:
+  Parts(const Draft& draft, const EdgeTable& table) : draft_(draft), sets_(draft.mesh.triangles.size()) {
+    for (std::size_t e = 0; e < table.size(); ++e)
+      for (const HalfEdge h : table.uses(e)) sets_.join(table.uses(e)[0] / 3, h / 3);
+    part_.resize(draft.mesh.triangles.size());
+    for (std::uint32_t t = 0; t < draft.mesh.triangles.size(); ++t) add(t, draft.mesh.triangles[t], false);
+  }
+
+  void add_cap(const Hole& hole) {
+    for (const Triangle& t : hole.cap) add(hole.rim_triangle, t, true);
+  }
+
+  bool is_sheet(std::uint32_t triangle, double tolerance) {
+    const Part& part = part_[sets_.find(triangle)];
+    return part.capped > kMostCapped * part.area || 2 * std::abs(part.volume) < tolerance * part.area;
+  }
+
+ private:
+  void add(std::uint32_t of, const Triangle& t, bool is_cap) {
+    const std::uint32_t first = sets_.find(of);
+    Part& part = part_[first];
+    const auto at = [&](VertexIndex v) { return draft_.mesh.points[v]; };
+    (is_cap ? part.capped : part.area) += triangle_area(at(t[0]), at(t[1]), at(t[2]));
+    part.volume += signed_volume(at(draft_.mesh.triangles[first][0]), at(t[0]), at(t[1]), at(t[2]));
+  }
+
+  const Draft& draft_;
+  DisjointSets sets_;
+  std::vector<Part> part_;  ///< at the first triangle of each
+};
+
+}  // namespace
+
+std::vector<Hole> close_holes(Draft& draft, double tolerance) {
+  const EdgeTable& table = draft.edges();
+  const std::vector<Loop> loops = find_loops(draft.mesh.triangles, table);
+  const auto taken = edges_between(table, loops, draft.mesh.points.size());
+  std::vector<Hole> all(loops.size());
+  parallel_for(
+      loops.size(),
+      [&](std::size_t i) {
+        draft.context.check();
+        all[i] = closed(draft, loops[i], taken);
+      },
+      Split::kSingly);
+  Parts parts(draft, table);
+  for (const Hole& hole : all) parts.add_cap(hole);
+  std::erase_if(all, [&](const Hole& hole) { return parts.is_sheet(hole.rim_triangle, tolerance); });
+  return all;
+}
+
+}  // namespace octafront::mend

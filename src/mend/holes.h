@@ -1,0 +1,25 @@
+#pragma once
+
+#include <octafront/surface_mesh.h>
+
+#include "surface/repair/steps.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace octafront::mend {
+
+/// A hole and the triangles over it.
+struct Hole {
+  std::vector<Triangle> cap;
+  std::uint32_t rim_triangle = kNone;  ///< of the draft
+  double area = 0;                     ///< of the cap
+  double width = 0;                    ///< twice the area over the length of the rim: of a strip its width
+  Vec3 at;
+};
+
+/// Caps for the holes of all parts that nearly enclose something, and none for sheets: parts whose caps would be larger
+/// than themselves, or that would enclose a volume thinner than the tolerance.
+std::vector<Hole> close_holes(repair::Draft& draft, double tolerance);
+
+}  // namespace octafront::mend

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <octafront/surface_mesh.h>
+
+#include "mesh/edge_table.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace octafront::mend {
+
+/// The rim of a hole: its vertices in the order that triangles which close it run along it, none of them twice.
+struct Loop {
+  std::vector<VertexIndex> vertices;
+  std::uint32_t triangle;  ///< one at the rim
+};
+
+/// The closed chains of open edges, in the order of their first half-edges. Requires that neighbouring triangles agree;
+/// where they do not, and where open edges end at edges of more than two triangles, there is no loop.
+std::vector<Loop> find_loops(std::span<const Triangle> triangles, const EdgeTable& table);
+
+}  // namespace octafront::mend

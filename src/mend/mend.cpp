@@ -1,0 +1,362 @@
+#include "mend/mend.h"
+
+#include <octafront/error.h>
+#include <octafront/repair.h>
+
+#include "arrangement/arrange.h"
+#include "cells/find_cells.h"
+#include "core/disjoint_sets.h"
+#include "core/wording.h"
+#include "geometry/measures.h"
+#include "mend/holes.h"
+#include "mend/label.h"
+#include "mend/lattice_skin.h"
+#include "mend/report.h"
+#include "mend/separate.h"
+#include "mend/skin.h"
+#include "mend/weld.h"
+#include "surface/repair/steps.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/core.h>
+
+namespace octafront {
+namespace {
+
+using namespace mend;
+using repair::Draft;
+using Kind = MendChange::Kind;
+
+/// Of the diagonal.
+constexpr double kTolerance = 1e-3;
+
+double tolerance_of(const MendOptions& options, double diagonal) {
+  if (!options.tolerance) return kTolerance * diagonal;
+  if (!(*options.tolerance >= 0) || !std::isfinite(*options.tolerance))
+    throw OptionError(fmt::format("`tolerance` is {}: it is a length of 0 or more", *options.tolerance));
+  return *options.tolerance;
+}
+
+/// Whether the surface can be meshed as it is.
+bool is_clean(const SurfaceMesh& soup, const RunContext& context) {
+  return find_defects(repair_surface(soup, context), context).clean();
+}
+
+void clean_faces(Draft& draft) {
+  repair::merge_vertices(draft);
+  repair::drop_degenerate(draft);
+  repair::drop_duplicates(draft);
+  repair::drop_unused_vertices(draft);
+}
+
+/// The soup on its way to the result.
+class Mending {
+ public:
+  Mending(const SurfaceMesh& soup, const MendOptions& options, const RunContext& context, MendReport& report)
+      : soup_(soup),
+        options_(options),
+        context_(context),
+        report_(report),
+        draft_(repair::make_draft({soup.points, soup.triangles, {}, {}, {}}, context)) {}
+
+  SurfaceMesh result() {
+    context_.report("mending", -1);
+    weld();
+    orient();
+    close();
+    try {
+      SurfaceMesh surface = exact_result();
+      if (is_clean(surface, context_)) return surface;
+      report_.notes.push_back("what touches could not be drawn apart");
+    } catch (const InputError& error) {
+      // Rounding found no end, or a piece has no inside in doubles.
+      report_.notes.push_back(error.what());
+    } catch (const MeshingError& error) {
+      report_.notes.push_back(error.what());
+    }
+    return rebuilt_result();
+  }
+
+ private:
+  SurfaceMesh exact_result() {
+    const Arrangement arranged = arrange(draft_.mesh.points, all_triangles(), context_);
+    report_.crossing_pairs = arranged.crossing_pairs;
+    report_.largest_move = std::max(report_.largest_move, arranged.largest_move);
+    SurfaceMesh surface = surface_of(arranged, best_skin(arranged));
+    separate(surface);
+    return surface;
+  }
+
+  /// The last rung: by the winding number alone, on a lattice.
+  SurfaceMesh rebuilt_result() {
+    SurfaceMesh walls{draft_.mesh.points, all_triangles(), {}, {}, {}};
+    LatticeSkin skin;
+    try {
+      skin = skin_of_lattice(walls, kLatticeEdge * report_.diagonal, context_);
+    } catch (const MeshingError&) {
+      refuse_open();
+    }
+    double all = 0, far = 0;
+    for (std::size_t t = 0; t < skin.surface.triangles.size(); ++t) {
+      const auto [a, b, c] = skin.surface.triangles[t];
+      const double size = triangle_area(skin.surface.points[a], skin.surface.points[b], skin.surface.points[c]);
+      all += size;
+      if (skin.is_far[t]) far += size;
+    }
+    const bool is_flake = 2 * std::abs(enclosed_volume(skin.surface)) < 2 * kLatticeEdge * report_.diagonal * all;
+    if (far > kMostInvented * all || is_flake) refuse_open();
+    report_.changes.push_back({Kind::kRebuilt, skin.surface.points.front(), all, skin.surface.triangles.size()});
+    return named(std::move(skin));
+  }
+
+  [[noreturn]] static void refuse_open() {
+    throw InputError(
+        "the surface encloses nothing: it is a sheet, or more open than closed. Give it a thickness or close it; "
+        "`repair` wrap makes a closed skin around it");
+  }
+
+  /// Patches and faces of the input, by the nearest walls.
+  SurfaceMesh named(LatticeSkin skin) const {
+    const std::uint32_t patch_of_caps = first_free_patch();
+    const bool has_far = std::find(skin.is_far.begin(), skin.is_far.end(), 1) != skin.is_far.end();
+    for (std::size_t t = 0; t < skin.surface.triangles.size(); ++t) {
+      std::uint32_t& wall = skin.surface.source[t];
+      const std::uint32_t face = is_cap(wall) ? 0 : draft_.face[wall];
+      if (has_far || !soup_.patch.empty())
+        skin.surface.patch.push_back(skin.is_far[t] || is_cap(wall) ? patch_of_caps : soup_.patch_of(face));
+      wall = soup_.source_of(face);
+    }
+    skin.surface.patch_names = soup_.patch_names;
+    if (has_far) {
+      skin.surface.patch_names.resize(patch_of_caps);
+      skin.surface.patch_names.emplace_back(kClosedByRepair);
+    }
+    return std::move(skin.surface);
+  }
+
+  void weld() {
+    clean_faces(draft_);
+    const Welded welded = weld_open_edges(draft_, report_.tolerance);
+    report_.joined_vertices = welded.joined;
+    report_.divided_edges = welded.divided;
+    report_.largest_move = std::max(report_.largest_move, welded.largest_move);
+    for (const Vec3 p : welded.places) report_.changes.push_back({Kind::kJoined, p, welded.largest_move});
+    if (welded.joined + welded.divided > 0) clean_faces(draft_);
+  }
+
+  void orient() {
+    const repair::Pieces found = repair::orient_pieces(draft_);
+    pieces_ = {found.piece_of_triangle, found.count()};
+    turned_ = found.turned_faces;
+  }
+
+  void close() {
+    holes_ = close_holes(draft_, report_.tolerance);
+    for (const Hole& hole : holes_)
+      pieces_.piece.insert(pieces_.piece.end(), hole.cap.size(), pieces_.piece[hole.rim_triangle]);
+  }
+
+  std::vector<Triangle> all_triangles() const {
+    std::vector<Triangle> all = draft_.mesh.triangles;
+    for (const Hole& hole : holes_) all.insert(all.end(), hole.cap.begin(), hole.cap.end());
+    return all;
+  }
+
+  bool is_cap(std::uint32_t triangle) const { return triangle >= draft_.mesh.triangles.size(); }
+  /// By cells, or by tetrahedra where too much would be left out.
+  Skin best_skin(const Arrangement& arranged) {
+    const Cells cells(arranged.points, arranged.triangles, context_);
+    const Labels labels = label_cells(arranged, cells, pieces_, report_.tolerance, context_);
+    Skin skin = skin_of_cells(arranged, cells, labels);
+    if (leaves_out_little(skin)) {
+      note_turned(report_, draft_, pieces_.piece, labels.turned, turned_);
+      note_filled(report_, arranged, cells, labels.filled);
+      return skin;
+    }
+    if (arranged.triangles.size() > kMostForTets) throw MeshingError("too much is open for so many faces");
+    skin = skin_of_tets(arranged, context_);
+    if (!leaves_out_little(skin)) throw MeshingError("the walls leave gaps that no cells close");
+    return skin;
+  }
+
+  static bool leaves_out_little(const Skin& skin) {
+    return !skin.triangles.empty() && skin.idle_area <= kMostIdle * skin.wall_area;
+  }
+
+  SurfaceMesh surface_of(const Arrangement& arranged, Skin skin) {
+    note_cuts(report_, arranged, draft_.face);
+    SurfaceMesh surface{std::move(skin.points), std::move(skin.triangles), {}, {}, {}};
+    std::vector<char> used(draft_.mesh.triangles.size(), 0);
+    const Invented invented = invented_faces(arranged, surface, skin.wall);
+    const std::uint32_t patch_of_caps = first_free_patch();
+    bool has_patches = !soup_.patch.empty();
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+      const std::uint32_t h = invented.hole[t];
+      const bool is_far = h != kNone && !invented.holes[h].within_tolerance;
+      const std::uint32_t face = draft_.face[h == kNone ? given_origin(arranged, skin.wall[t]) : invented.rim[h]];
+      surface.source.push_back(soup_.source_of(face));
+      surface.patch.push_back(is_far ? patch_of_caps : soup_.patch_of(face));
+      has_patches = has_patches || is_far;
+      if (skin.wall[t] == kNone) continue;
+      for (const Origin& o : arranged.origins_of(skin.wall[t]))
+        if (!is_cap(o.triangle)) used[o.triangle] = 1;
+    }
+    surface.patch_names = soup_.patch_names;
+    if (has_patches) {
+      surface.patch_names.resize(patch_of_caps);
+      surface.patch_names.emplace_back(kClosedByRepair);
+    } else {
+      surface.patch.clear();
+    }
+    for (const MendChange& hole : invented.holes) report_.changes.push_back(hole);
+    note_dropped(report_, draft_, used);
+    return surface;
+  }
+
+  /// The triangle of the input that a wall is a part of; kNone: of a cap only.
+  std::uint32_t given_origin(const Arrangement& arranged, std::uint32_t wall) const {
+    if (wall == kNone) return kNone;
+    for (const Origin& o : arranged.origins_of(wall))
+      if (!is_cap(o.triangle)) return o.triangle;
+    return kNone;
+  }
+
+  /// What closes holes, by pieces that hang together.
+  struct Invented {
+    std::vector<std::uint32_t> hole;  ///< per triangle of the surface; kNone: it was there
+    std::vector<MendChange> holes;
+    std::vector<std::uint32_t> rim;  ///< of each hole, a triangle of the draft at its rim
+  };
+  Invented invented_faces(const Arrangement& arranged, const SurfaceMesh& surface,
+                          const std::vector<std::uint32_t>& wall) const {
+    const std::size_t n = surface.triangles.size();
+    const auto is_new = [&](std::uint32_t t) { return given_origin(arranged, wall[t]) == kNone; };
+    const EdgeTable table = make_edge_table(surface.points.size(), surface.triangles, context_);
+    DisjointSets pieces(n);
+    std::vector<std::uint32_t> beside(n, kNone);
+    std::vector<double> around(n, 0);
+    for (std::size_t e = 0; e < table.size(); ++e) {
+      const double length = distance(surface.points[table.edges[e][0]], surface.points[table.edges[e][1]]);
+      for (const HalfEdge g : table.uses(e))
+        for (const HalfEdge h : table.uses(e)) {
+          if (!is_new(g / 3) || g == h) continue;
+          if (is_new(h / 3)) {
+            pieces.join(g / 3, h / 3);
+          } else {
+            beside[g / 3] = std::min(beside[g / 3], given_origin(arranged, wall[h / 3]));
+            around[g / 3] += length;
+          }
+        }
+    }
+    Invented invented;
+    invented.hole.assign(n, kNone);
+    std::vector<double> rim_length;
+    std::vector<std::uint32_t> number(n, kNone);
+    for (std::uint32_t t = 0; t < n; ++t) {
+      if (!is_new(t)) continue;
+      std::uint32_t& h = number[pieces.find(t)];
+      const auto [a, b, c] = surface.triangles[t];
+      if (h == kNone) {
+        h = static_cast<std::uint32_t>(invented.holes.size());
+        invented.holes.push_back({Kind::kClosed, centroid(surface.points[a], surface.points[b], surface.points[c])});
+        invented.rim.push_back(kNone);
+        rim_length.push_back(0);
+      }
+      invented.hole[t] = h;
+      invented.holes[h].size += triangle_area(surface.points[a], surface.points[b], surface.points[c]);
+      ++invented.holes[h].faces;
+      invented.rim[h] = std::min(invented.rim[h], beside[t]);
+      rim_length[h] += around[t];
+    }
+    for (std::size_t h = 0; h < invented.holes.size(); ++h) {
+      MendChange& hole = invented.holes[h];
+      // Of a strip this is the width.
+      hole.within_tolerance = 2 * hole.size <= report_.tolerance * rim_length[h];
+      if (invented.rim[h] == kNone) invented.rim[h] = 0;
+      hole.first_face = soup_.source_of(draft_.face[invented.rim[h]]);
+    }
+    return invented;
+  }
+
+  std::uint32_t first_free_patch() const {
+    auto free = static_cast<std::uint32_t>(std::max<std::size_t>(soup_.patch_names.size(), 1));
+    for (const std::uint32_t p : soup_.patch) free = std::max(free, p + 1);
+    return free;
+  }
+
+  void separate(SurfaceMesh& surface) {
+    const Separated done = separate_contacts(surface, kMostDrawn * report_.tolerance, context_);
+    for (std::size_t i = 0; i < done.places.size(); ++i) {
+      report_.changes.push_back({Kind::kSeparated, done.places[i], done.moves[i]});
+      report_.largest_move = std::max(report_.largest_move, done.moves[i]);
+    }
+    report_.separated_vertices = done.places.size();
+  }
+
+  /// Of the tolerance, for what touches.
+  static constexpr double kMostDrawn = 0.25;
+  /// Of the area of the soup, what may bound nothing.
+  static constexpr double kMostIdle = 0.4;
+  /// Where a division into tetrahedra takes seconds.
+  static constexpr std::size_t kMostForTets = 5000;
+  /// Edges of the lattice of the last rung, of the diagonal, and how much of its boundary may be far from all walls: of
+  /// a terrain it is half.
+  static constexpr double kLatticeEdge = 0.007, kMostInvented = 0.45;
+
+  const SurfaceMesh& soup_;
+  const MendOptions& options_;
+  const RunContext& context_;
+  MendReport& report_;
+  Draft draft_;
+  PieceOf pieces_;  ///< of the draft's triangles and of the caps behind them
+  repair::InputFaces turned_;
+  std::vector<Hole> holes_;
+};
+
+/// Of the diagonal; nearer skins would have too many triangles.
+constexpr double kWrapDistance = 0.01, kLeastWrap = 0.0005;
+
+SurfaceMesh wrapped(const SurfaceMesh& soup, const MendOptions& options, const RunContext& context,
+                    MendReport& report) {
+  const double distance = options.distance.value_or(kWrapDistance * report.diagonal);
+  if (!(distance > kLeastWrap * report.diagonal) || !std::isfinite(distance))
+    throw OptionError(fmt::format("`distance` is {}: it is a length of a {:.0f}th of the diagonal or more", distance,
+                                  1 / kLeastWrap));
+  if (soup.triangles.empty()) throw InputError("there are no triangles to wrap");
+  LatticeSkin skin = wrap_of(soup, distance, context);
+  for (std::uint32_t& face : skin.surface.source) {
+    if (!soup.patch.empty()) skin.surface.patch.push_back(soup.patch_of(face));
+    face = soup.source_of(face);
+  }
+  skin.surface.patch_names = soup.patch_names;
+  report.largest_move = distance;
+  report.changes.push_back(
+      {Kind::kRebuilt, skin.surface.points.front(), area(skin.surface), skin.surface.triangles.size()});
+  return std::move(skin.surface);
+}
+
+}  // namespace
+
+Mended mend_surface(const SurfaceMesh& soup, const MendOptions& options, const RunContext& context) {
+  Mended mended;
+  MendReport& report = mended.report;
+  repair::check_input(soup);
+  report.diagonal = bounding_box(soup.points).diagonal();
+  report.tolerance = tolerance_of(options, report.diagonal);
+  report.area_before = area(soup);
+  report.volume_before = std::abs(enclosed_volume(soup));
+  if (options.way == MendOptions::Way::kWrap) {
+    mended.surface = wrapped(soup, options, context, report);
+  } else if (is_clean(soup, context)) {
+    report.clean = true;
+    mended.surface = soup;
+  } else {
+    mended.surface = Mending(soup, options, context, report).result();
+  }
+  finish_report(report, mended.surface);
+  return mended;
+}
+
+}  // namespace octafront
