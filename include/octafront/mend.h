@@ -53,7 +53,28 @@ struct MendChange {
 };
 
 /// "closed", "dropped", ...: the kind as a word.
-const char* name_of(MendChange::Kind kind);
+constexpr const char* name_of(MendChange::Kind kind) {
+  using Kind = MendChange::Kind;
+  switch (kind) {
+    case Kind::kJoined:
+      return "joined";
+    case Kind::kClosed:
+      return "closed";
+    case Kind::kCut:
+      return "cut";
+    case Kind::kTurned:
+      return "turned";
+    case Kind::kDropped:
+      return "dropped";
+    case Kind::kFilled:
+      return "filled";
+    case Kind::kSeparated:
+      return "separated";
+    case Kind::kRebuilt:
+      return "rebuilt";
+  }
+  return "";
+}
 
 /// What mend_surface() did.
 struct MendReport {
