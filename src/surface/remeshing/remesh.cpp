@@ -436,14 +436,17 @@ class Remesher {
       cap_or_restore(centers_of(c.result.surface, crossings));
       return false;
     }
+    std::vector<Vec3> places;
     const auto defect = kind_ ? kind_->first_defect_but_crossings(c.result.surface)
-                              : first_complex_defect_but_crossings(c.result.surface);
-    if (defect) {
+                              : first_complex_defect_but_crossings(c.result.surface, &places);
+    if (!defect) return true;
+    if (!places.empty()) {
+      cap_or_restore(places);
+    } else {
       stage_.note("an attempt was dropped: " + *defect);
       sizes_ = scaled(sizes_, kCap, stage_.context());
-      return false;
     }
-    return true;
+    return false;
   }
 
   void cap(const std::vector<Vec3>& places, double factor) {
