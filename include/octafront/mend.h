@@ -71,6 +71,9 @@ struct MendReport {
   std::uint64_t count(MendChange::Kind kind) const;
 };
 
+/// The report as one JSON object, each change with its place.
+std::string to_json(const MendReport& report);
+
 struct Mended {
   SurfaceMesh surface;  ///< clean; `source` refers to the input's faces
   MendReport report;

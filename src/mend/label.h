@@ -14,6 +14,7 @@ namespace octafront::mend {
 struct PieceOf {
   std::vector<std::uint32_t> piece;  ///< per triangle of the soup
   std::uint32_t count = 0;
+  std::vector<char> is_sheet = {};  ///< per piece: it winds around nothing, whatever it looks like from nearby
 };
 
 struct Labels {

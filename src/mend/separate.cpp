@@ -171,7 +171,7 @@ class TipCutter {
       rim.push_back(cut[w]);
       polygon.push_back(at(cut[w]));
     }
-    for (const auto& [i, j, k] : triangulate_polygon(polygon, [](std::uint32_t, std::uint32_t) { return false; }))
+    for (const auto& [i, j, k] : triangulate_polygon(polygon, std::vector<Vec3>(polygon.size()), [](std::uint32_t, std::uint32_t) { return false; }))
       made.push_back({rim[i], rim[j], rim[k]});
   }
 
