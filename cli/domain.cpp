@@ -3,6 +3,7 @@
 #include <octafront/complex.h>
 #include <octafront/error.h>
 
+#include "images.h"
 #include "mending.h"
 #include "text.h"
 
@@ -22,19 +23,6 @@ SurfaceFile read_one(const Session& session, const std::filesystem::path& file) 
       fmt::format("{}: {}, {}\n", file.string(), read.format, counted(read.surface.triangles.size(), "triangle")));
   session.say_notes("reading", read.notes);
   return read;
-}
-
-void tell_regions(Session& session, const Complex& complex) {
-  session.say_notes("regions", complex.notes);
-  Json regions = Json::array();
-  const std::vector<std::string>& names = complex.surface.region_names;
-  for (std::size_t r = 0; r < complex.volumes.size(); ++r) {
-    // One region alone needs no name.
-    const std::string name = r < names.size() ? names[r] : "body";
-    regions.push_back({{"name", name}, {"volume", complex.volumes[r]}});
-    session.say(fmt::format("  region \"{}\": volume {:.6g}\n", name, complex.volumes[r]));
-  }
-  if (!regions.empty()) session.found({{"input_regions", regions}});
 }
 
 /// The stems of the files, with numbers behind those that occurred before.
@@ -79,9 +67,12 @@ SurfaceFile read_walls(Session& session, Defects defects) {
   options.voids.insert(options.voids.end(), file.voids.begin(), file.voids.end());
   try {
     session.context().report("cells", -1);
-    if (auto complex = complex_of_walls(file.surface, options, session.context())) {
+    const bool wraps = defects == Defects::kMended && a.repair == Repair::kWrap;
+    auto complex = wraps ? std::nullopt : complex_of_walls(file.surface, options, session.context());
+    if (complex) {
       tell_regions(session, *complex);
       file.surface = std::move(complex->surface);
+      if (defects == Defects::kMended) drop_sheets(session, file.surface);
     } else if (defects == Defects::kMended) {
       mend(session, a.input, file.surface);
     }
@@ -105,11 +96,25 @@ SurfaceFile read_walls(Session& session, Defects defects) {
 
 }  // namespace
 
+void tell_regions(Session& session, const Complex& complex) {
+  session.say_notes("regions", complex.notes);
+  Json regions = Json::array();
+  const std::vector<std::string>& names = complex.surface.region_names;
+  for (std::size_t r = 0; r < complex.volumes.size(); ++r) {
+    // One region alone needs no name.
+    const std::string name = r < names.size() ? names[r] : "body";
+    regions.push_back({{"name", name}, {"volume", complex.volumes[r]}});
+    session.say(fmt::format("  region \"{}\": volume {:.6g}\n", name, complex.volumes[r]));
+  }
+  if (!regions.empty()) session.found({{"input_regions", regions}});
+}
+
 std::filesystem::path leak_file(std::filesystem::path output) {
   return output.replace_extension(".leak.ply");
 }
 
 SurfaceFile read_domain(Session& session, Defects defects) {
+  if (is_image_input(session.arguments())) return read_image_domain(session);
   try {
     return session.arguments().bodies.size() > 1 ? read_bodies(session, defects) : read_walls(session, defects);
   } catch (const LeakError& leak) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <octafront/complex.h>
 #include <octafront/io.h>
 
 #include "session.h"
@@ -11,6 +12,8 @@ namespace octafront::cli {
 /// Where a way through a leak is written to, beside the output.
 std::filesystem::path leak_file(std::filesystem::path output);
 
+/// Says what regions a complex has, and their volumes.
+void tell_regions(Session& session, const Complex& complex);
 /// What becomes of defects: mended as the options say, or left for whoever looks for them.
 enum class Defects { kMended, kLeft };
 

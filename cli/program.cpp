@@ -87,12 +87,15 @@ void Program::declare_makers() {
           "  octafront mesh part.stl -o part.inp --size 2 --order 2    edges of length 2, curved elements\n"
           "  octafront mesh part.obj -o part.msh --unit mm --size 0.1in\n"
           "  octafront mesh plate.stl bolt.stl -o bolted.msh           a region each, faces shared\n"
+          "  octafront mesh labels.nii.gz -o organs.msh --labels names.txt   a region per label\n"
+          "  octafront mesh head.nii.gz -o head.msh --band skin=-200:226 --band bone=226:\n"
           "  octafront mesh part.stl -o part.msh -o part.vtu --elements 1e5 --report part.html\n"
           "  octafront mesh part.stl --dry-run --size 0.5              elements, memory, time; nothing made\n"
           "  octafront mesh part.stl -o - --format vtk | gzip > part.vtk.gz\n",
           run_mesh);
   declare_input(*mesh, a);
   declare_complex(*mesh, a);
+  declare_image(*mesh, a.image);
   declare_repair(*mesh, a);
   declare_mesh_output(*mesh, a);
   declare_preset(*mesh, a);
@@ -110,6 +113,7 @@ void Program::declare_makers() {
                           "  octafront surface scan.ply -o even.stl --size 0.5\n", run_surface);
   declare_input(*surface, a);
   declare_complex(*surface, a);
+  declare_image(*surface, a.image);
   declare_repair(*surface, a);
   declare_output(*surface, a, "Surface: .stl, .obj, .off or .ply", true);
   declare_sizes(*surface, a);
@@ -136,6 +140,7 @@ void Program::declare_makers() {
       run_size);
   declare_input(*size, a);
   declare_complex(*size, a);
+  declare_image(*size, a.image);
   declare_repair(*size, a);
   declare_output(*size, a, "Background grid: .vtu", false);
   declare_sizes(*size, a);
@@ -170,11 +175,13 @@ void Program::declare_makers() {
 
 void Program::declare_lookers() {
   Arguments& a = arguments_;
-  CLI::App* info = add("info", "Say what is in a file: a surface, a mesh or a size field",
+  CLI::App* info = add("info", "Say what is in a file: a surface, a mesh, an image or a size field",
                        "  octafront info part.stl\n"
+                       "  octafront info head.nii.gz\n"
                        "  octafront info part.msh --json -\n",
                        run_info);
-  declare_input(*info, a, "Surface, mesh, or size field as `octafront size -o` writes it");
+  declare_input(*info, a, "Surface, mesh, image, or size field as `octafront size -o` writes it");
+  declare_image_choice(*info, a.image);
   declare_report(*info, a);
   declare_run(*info, a);
 
@@ -184,6 +191,7 @@ void Program::declare_lookers() {
                         run_check);
   declare_input(*check, a, "Surface or mesh; or several surfaces, a body each");
   declare_complex(*check, a);
+  declare_image(*check, a.image);
   declare_solver(*check, a);
   declare_report(*check, a);
   declare_run(*check, a);

@@ -5,6 +5,8 @@
 #include <octafront/complex.h>
 #include <octafront/error.h>
 #include <octafront/generate.h>
+#include <octafront/image.h>
+#include <octafront/image_surface.h>
 #include <octafront/improve_existing.h>
 #include <octafront/io.h>
 #include <octafront/mend.h>

@@ -2,10 +2,11 @@
 
 #include <octafront/error.h>
 
+#include "core/groups.h"
 #include "core/parallel.h"
 #include "core/validate.h"
 #include "geometry/predicates.h"
-#include "improve/spatial_order.h"
+#include "geometry/spatial_order.h"
 #include "mesh/index_range.h"
 
 #include <algorithm>
@@ -21,6 +22,13 @@ void renumber_faces(TetMesh& mesh, const std::vector<VertexIndex>& new_of_old) {
   for (std::vector<Triangle>* faces : {&mesh.boundary, &mesh.interfaces})
     for (Triangle& t : *faces)
       for (VertexIndex& v : t) v = new_of_old[v];
+}
+
+/// The tets by their least corner.
+Groups<> group_by_least_corner(const std::vector<Tet>& tets, std::size_t vertices) {
+  return group_by_owner(vertices, static_cast<TetIndex>(tets.size()), [&](TetIndex t) {
+    return std::min({tets[t][0], tets[t][1], tets[t][2], tets[t][3]});
+  });
 }
 
 }  // namespace

@@ -206,26 +206,4 @@ std::uint64_t MendReport::count(Kind kind) const {
       std::count_if(changes.begin(), changes.end(), [kind](const MendChange& c) { return c.kind == kind; }));
 }
 
-const char* name_of(Kind kind) {
-  switch (kind) {
-    case Kind::kJoined:
-      return "joined";
-    case Kind::kClosed:
-      return "closed";
-    case Kind::kCut:
-      return "cut";
-    case Kind::kTurned:
-      return "turned";
-    case Kind::kDropped:
-      return "dropped";
-    case Kind::kFilled:
-      return "filled";
-    case Kind::kSeparated:
-      return "separated";
-    case Kind::kRebuilt:
-      return "rebuilt";
-  }
-  return "";
-}
-
 }  // namespace octafront

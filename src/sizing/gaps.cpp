@@ -1,5 +1,6 @@
 #include "sizing/gaps.h"
 
+#include "core/parallel.h"
 #include "geometry/measures.h"
 
 #include <algorithm>
@@ -11,6 +12,7 @@ namespace {
 
 /// Answers are shared within cells of this part of the reach.
 constexpr double kSharedPart = 0.25;
+constexpr double kUnknown = -1;
 
 /// Which of the six sides of a cube the normal points to: sheets back to back share no answer.
 std::uint64_t side_of_cube(Vec3 n) {
@@ -30,19 +32,38 @@ GapFinder::GapFinder(const KnownSurface& known, double nearest, double reach)
       reach_(reach) {
   const SurfaceMesh& surface = known.mesh();
   either_way_ = !surface.sides.empty();
-  normal_.reserve(surface.triangles.size());
-  for (const Triangle& t : surface.triangles) {
-    normal_.push_back(unit_normal(surface.points[t[0]], surface.points[t[1]], surface.points[t[2]]));
-  }
+  normal_.resize(surface.triangles.size());
+  parallel_for(normal_.size(), [&](std::size_t f) {
+    const auto& [a, b, c] = surface.triangles[f];
+    normal_[f] = unit_normal(surface.points[a], surface.points[b], surface.points[c]);
+  });
   const double shared = std::max(nearest, kSharedPart * reach);
   level_ = std::clamp(static_cast<int>(std::ceil(std::log2(root_.side / shared))), 0, OctreeKey::kMaxLevel - 2);
+  measure_middles(surface);
+}
+
+std::uint64_t GapFinder::neighbourhood(const PlaceOnSurface& place) const {
+  // The marker bit ends a key of this level, with at least three zeros behind it: room for the side.
+  return root_.cell(place.p).ancestor(level_).id() | side_of_cube(place.n);
+}
+
+void GapFinder::measure_middles(const SurfaceMesh& surface) {
+  std::vector<PlaceOnSurface> first;
+  for (std::uint32_t f = 0; f < surface.triangles.size(); ++f) {
+    const auto& [a, b, c] = surface.triangles[f];
+    const PlaceOnSurface place{centroid(surface.points[a], surface.points[b], surface.points[c]), normal_[f], f};
+    double& width = known_.find_or_add(neighbourhood(place), kUnknown);
+    if (width != kUnknown) continue;
+    width = kOpen;
+    first.push_back(place);
+  }
+  std::vector<double> widths(first.size());
+  parallel_for(first.size(), [&](std::size_t i) { widths[i] = measure(first[i]); });
+  for (std::size_t i = 0; i < first.size(); ++i) *known_.find(neighbourhood(first[i])) = widths[i];
 }
 
 double GapFinder::width(const PlaceOnSurface& place) {
-  // The marker bit ends a key of this level, with at least three zeros behind it: room for the side.
-  const std::uint64_t key = root_.cell(place.p).ancestor(level_).id() | side_of_cube(place.n);
-  constexpr double kUnknown = -1;
-  double& width = known_.find_or_add(key, kUnknown);
+  double& width = known_.find_or_add(neighbourhood(place), kUnknown);
   if (width == kUnknown) width = measure(place);
   return width;
 }

@@ -28,12 +28,15 @@ class GapFinder {
   GapFinder(const KnownSurface& surface, double nearest, double reach);
 
   /// Distance to the facing sheet; kOpen if there is none within reach. Sheets that meet at more than about 45 degrees
-  /// do not face each other: an edge is no gap. The answer depends on which place of a neighbourhood was asked first.
+  /// do not face each other: an edge is no gap. The middle of the first triangle in a neighbourhood answers for it all;
+  /// where there is none, the place that is asked first.
   double width(const PlaceOnSurface& place);
   /// The same of this place and no other: the answer is not shared.
   double measure(const PlaceOnSurface& place) const;
 
  private:
+  std::uint64_t neighbourhood(const PlaceOnSurface& place) const;
+  void measure_middles(const SurfaceMesh& surface);
   double distance_along(const PlaceOnSurface& place, Vec3 direction) const;
 
   const TriangleTree& tree_;

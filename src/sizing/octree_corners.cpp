@@ -1,6 +1,8 @@
 #include "sizing/octree_corners.h"
 
+#include "core/buckets.h"
 #include "core/flat_map.h"
+#include "core/parallel.h"
 
 #include <algorithm>
 
@@ -10,23 +12,54 @@ namespace {
 
 using Units = std::array<std::uint32_t, 3>;
 
-/// Numbers positions in the order in which they are first asked for.
+/// The corners of the leaves, eight each, in slots: which of them are one, and their numbers in the order of the slots
+/// that have them first. By several threads: equal ones fall into the same of some tables.
 class Numbering {
  public:
-  explicit Numbering(std::size_t expected) : number_(expected) {}
-
-  std::uint32_t number_of(Units p, std::vector<Units>& positions) {
-    const std::uint32_t number = number_.find_or_add(code(p), static_cast<std::uint32_t>(positions.size()));
-    if (number == positions.size()) positions.push_back(p);
-    return number;
+  explicit Numbering(const Octree& tree) : tree_(tree), tables_(thread_count() == 1 ? 1 : kTables) {
+    const std::size_t slots = 8 * tree.size();
+    const Buckets<> by_table(slots, tables_.size(), [&](std::size_t i, const auto& add) {
+      add(table_of(code(position(i))), static_cast<std::uint32_t>(i));
+    });
+    std::vector<std::uint32_t> first(slots);
+    parallel_for(
+        tables_.size(),
+        [&](std::size_t t) {
+          tables_[t].reset(by_table[t].size() / 5);
+          for (const std::uint32_t i : by_table[t]) first[i] = tables_[t].find_or_add(code(position(i)), i);
+        },
+        Split::kSingly);
+    number_.resize(slots);
+    for (std::size_t i = 0; i < slots; ++i)
+      if (first[i] == i) number_[i] = corners_++;
+    parallel_for(slots, [&](std::size_t i) {
+      if (first[i] != i) number_[i] = number_[first[i]];
+    });
   }
-  /// REQUIRES: p has a number.
-  std::uint32_t find(Units p) const { return *number_.find(code(p)); }
+
+  std::uint32_t corners() const { return corners_; }
+  std::uint32_t of_slot(std::size_t slot) const { return number_[slot]; }
+  /// REQUIRES: p is a corner.
+  std::uint32_t find(Units p) const { return number_[*tables_[table_of(code(p))].find(code(p))]; }
+  /// Corner i of a leaf has the halves of child i.
+  Units position(std::size_t slot) const {
+    const OctreeKey leaf = tree_.leaf(slot / 8);
+    const Units lo = leaf.corner();
+    const auto i = static_cast<std::uint32_t>(slot % 8);
+    return {lo[0] + (i & 1) * leaf.side(), lo[1] + (i >> 1 & 1) * leaf.side(), lo[2] + (i >> 2) * leaf.side()};
+  }
 
  private:
-  static std::uint64_t code(Units p) { return (std::uint64_t{p[0]} << 21 | p[1]) << 21 | p[2]; }
+  static constexpr std::size_t kTables = 64;
 
-  FlatMap<std::uint64_t, std::uint32_t> number_;
+  static std::uint64_t code(Units p) { return (std::uint64_t{p[0]} << 21 | p[1]) << 21 | p[2]; }
+  /// The bits behind those by which the tables themselves tell codes apart.
+  std::size_t table_of(std::uint64_t code) const { return (FlatKeys<std::uint64_t>::hash(code) >> 8) % tables_.size(); }
+
+  const Octree& tree_;
+  std::vector<FlatMap<std::uint64_t, std::uint32_t>> tables_;  ///< from codes to the first slot
+  std::vector<std::uint32_t> number_;                          ///< per slot
+  std::uint32_t corners_ = 0;
 };
 
 /// In how many of the eight directions a corner at p has space of the root cube.
@@ -78,8 +111,12 @@ struct ShareLists {
 };
 
 /// The masters of a hanging corner: both ends along each axis on which it lies halfway.
-void find_shares(const OctreeCorners& corners, const Numbering& numbers, const HangingCorner& h,
-                 const std::vector<std::uint32_t>& slot, ShareLists& lists) {
+struct Masters {
+  int count = 0;
+  std::array<std::uint32_t, 4> corner{};
+};
+
+Masters masters_of(const OctreeCorners& corners, const Numbering& numbers, const HangingCorner& h) {
   const Units p = corners.position[h.corner], lo = h.on.corner();
   const std::uint32_t side = h.on.side();
   std::array<int, 2> half_axes{};
@@ -87,12 +124,21 @@ void find_shares(const OctreeCorners& corners, const Numbering& numbers, const H
   for (int a = 0; a < 3; ++a) {
     if (p[a] != lo[a] && p[a] != lo[a] + side) half_axes[n++] = a;
   }
-  const std::size_t first = lists.pool.size();
-  const double weight = n == 1 ? 0.5 : 0.25;
+  Masters masters;
   for (int m = 0; m < 1 << n; ++m) {
     Units q = p;
     for (int k = 0; k < n; ++k) q[half_axes[k]] = lo[half_axes[k]] + (m >> k & 1 ? side : 0);
-    const std::uint32_t master = numbers.find(q);
+    masters.corner[masters.count++] = numbers.find(q);
+  }
+  return masters;
+}
+
+void find_shares(const HangingCorner& h, const Masters& masters, const std::vector<std::uint32_t>& slot,
+                 ShareLists& lists) {
+  const std::size_t first = lists.pool.size();
+  const double weight = 1.0 / masters.count;
+  for (int m = 0; m < masters.count; ++m) {
+    const std::uint32_t master = masters.corner[m];
     if (slot[master] == 0) {
       add_share(lists.pool, first, master, weight);
       continue;
@@ -111,12 +157,13 @@ std::vector<HangingCorner> hanging_corners(const Octree& tree, const OctreeCorne
   for (const auto& leaf : corners.of_leaf) {
     for (const std::uint32_t c : leaf) ++incident[c];
   }
-  std::vector<HangingCorner> hanging;
-  for (std::uint32_t c = 0; c < corners.size(); ++c) {
-    if (incident[c] < octants_inside(corners.position[c])) {
-      hanging.push_back({c, larger_leaf_at(tree, corners.position[c])});
-    }
-  }
+  constexpr std::size_t kRange = 8192;
+  auto hanging = parallel_collect<HangingCorner>(
+      corners.size(), kRange, [&](std::size_t begin, std::size_t end, std::vector<HangingCorner>& found) {
+        for (auto c = static_cast<std::uint32_t>(begin); c < end; ++c)
+          if (incident[c] < octants_inside(corners.position[c]))
+            found.push_back({c, larger_leaf_at(tree, corners.position[c])});
+      });
   // The masters of a corner on a leaf of level l hang, if at all, on leaves of lower levels.
   std::stable_sort(hanging.begin(), hanging.end(),
                    [](const HangingCorner& a, const HangingCorner& b) { return a.on.level() < b.on.level(); });
@@ -126,23 +173,23 @@ std::vector<HangingCorner> hanging_corners(const Octree& tree, const OctreeCorne
 }  // namespace
 
 OctreeCorners octree_corners(const Octree& tree) {
+  const Numbering numbers(tree);
   OctreeCorners corners;
-  Numbering numbers(tree.size() + tree.size() / 2);
   corners.of_leaf.resize(tree.size());
-  for (std::size_t l = 0; l < tree.size(); ++l) {
-    const Units lo = tree.leaf(l).corner();
-    const std::uint32_t side = tree.leaf(l).side();
-    for (std::uint32_t i = 0; i < 8; ++i) {
-      const Units p{lo[0] + (i & 1) * side, lo[1] + (i >> 1 & 1) * side, lo[2] + (i >> 2) * side};
-      corners.of_leaf[l][i] = numbers.number_of(p, corners.position);
-    }
-  }
+  corners.position.resize(numbers.corners());
+  parallel_for(tree.size(), [&](std::size_t l) {
+    for (std::uint32_t i = 0; i < 8; ++i) corners.of_leaf[l][i] = numbers.of_slot(8 * l + i);
+  });
+  for (std::size_t i = 0, next = 0; i < 8 * tree.size(); ++i)
+    if (numbers.of_slot(i) == next) corners.position[next++] = numbers.position(i);
   const std::vector<HangingCorner> hanging = hanging_corners(tree, corners);
   std::vector<std::uint32_t> slot(corners.size(), 0);
   for (std::size_t i = 0; i < hanging.size(); ++i) slot[hanging[i].corner] = static_cast<std::uint32_t>(i + 1);
   ShareLists lists;
   lists.range.resize(hanging.size());
-  for (const HangingCorner& h : hanging) find_shares(corners, numbers, h, slot, lists);
+  std::vector<Masters> masters(hanging.size());
+  parallel_for(hanging.size(), [&](std::size_t i) { masters[i] = masters_of(corners, numbers, hanging[i]); });
+  for (std::size_t i = 0; i < hanging.size(); ++i) find_shares(hanging[i], masters[i], slot, lists);
   corners.first_share.reserve(corners.size() + 1);
   for (std::uint32_t c = 0; c < corners.size(); ++c) {
     corners.first_share.push_back(static_cast<std::uint32_t>(corners.shares.size()));

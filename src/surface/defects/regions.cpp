@@ -2,7 +2,7 @@
 
 #include "core/disjoint_sets.h"
 #include "core/wording.h"
-#include "geometry/predicates.h"
+#include "geometry/radial_order.h"
 #include "mesh/complex.h"
 #include "surface/defects/steps.h"
 #include "surface/repair/steps.h"
@@ -30,46 +30,16 @@ std::uint32_t region_of(const SurfaceMesh& mesh, std::uint32_t side) {
   return mesh.sides[side / 2][side % 2];
 }
 
-/// Sorts the spokes around the edge from a to b, counter-clockwise, exactly.
-class RadialOrder {
- public:
-  RadialOrder(const SurfaceMesh& mesh, const Edge& edge, VertexIndex first)
-      : a_(mesh.points[edge[0]]), b_(mesh.points[edge[1]]), first_(mesh.points[first]), points_(mesh.points) {
-    // Any point off the plane tells the two halves of the plane apart.
-    const double step = std::max({length(b_ - a_), length(first_ - a_), 1e-300});
-    for (const Vec3 way : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}) {
-      off_plane_ = a_ + way * step;
-      up_ = orient3d(a_, b_, first_, off_plane_);
-      if (up_ != 0) break;
-    }
-  }
-
-  bool operator()(const Spoke& s, const Spoke& t) const {
-    const Vec3 p = points_[s.apex], q = points_[t.apex];
-    const int half_s = half(p), half_t = half(q);
-    if (half_s != half_t) return half_s < half_t;
-    return orient3d(a_, b_, p, q) > 0;
-  }
-
- private:
-  /// 0: at the first one, 1: within half a turn of it, 2: opposite, 3: beyond.
-  int half(Vec3 p) const {
-    const int side = orient3d(a_, b_, first_, p);
-    if (side != 0) return side > 0 ? 1 : 3;
-    return orient3d(a_, b_, p, off_plane_) == up_ ? 0 : 2;
-  }
-
-  Vec3 a_, b_, first_, off_plane_;
-  int up_ = 0;
-  const std::vector<Vec3>& points_;
-};
-
 std::vector<Spoke> spokes_of(const SurfaceMesh& mesh, const EdgeTable& table, std::size_t e) {
   std::vector<Spoke> spokes;
   for (const HalfEdge h : table.uses(e))
     spokes.push_back(
         {start_of(mesh.triangles, previous_of(h)), h / 3, start_of(mesh.triangles, h) == table.edges[e][0]});
-  if (spokes.size() > 2) std::sort(spokes.begin(), spokes.end(), RadialOrder(mesh, table.edges[e], spokes[0].apex));
+  if (spokes.size() <= 2) return spokes;
+  const auto [a, b] = table.edges[e];
+  const RadialOrder order(mesh.points[a], mesh.points[b], mesh.points[spokes[0].apex]);
+  std::sort(spokes.begin(), spokes.end(),
+            [&](const Spoke& s, const Spoke& t) { return order(mesh.points[s.apex], mesh.points[t.apex]); });
   return spokes;
 }
 

@@ -1,8 +1,11 @@
 #include "surface/remeshing/coarsen.h"
 
+#include "surface/remeshing/blocks.h"
 #include "surface/remeshing/star_collapse.h"
 
 #include <algorithm>
+#include <span>
+#include <utility>
 
 namespace octafront::remeshing {
 
@@ -23,7 +26,12 @@ constexpr int kMostRepeats = 60;
 class Coarsener {
  public:
   Coarsener(WorkingMesh& mesh, const SizeField& sizes, const RunContext& context, CoarsenCounts& counts)
-      : mesh_(mesh), sizes_(sizes), context_(context), counts_(counts), star_(mesh) {
+      : mesh_(mesh),
+        sizes_(sizes),
+        context_(context),
+        counts_(counts),
+        merged_into_(mesh.points.size()),
+        blocks_(mesh) {
     for (VertexIndex v = 0; v < mesh.points.size(); ++v) {
       const bool is_input = mesh.kind[v] == VertexKind::kRemovable || mesh.kind[v] == VertexKind::kRemovableCurve;
       if (is_input && mesh.outgoing[v] != kNone && !mesh.is_sewn(v)) left_.push_back(v);
@@ -56,52 +64,64 @@ class Coarsener {
   }
 
   void flip_all(const TurnLimits& limits) {
-    edges_.clear();
+    std::vector<HalfEdge> edges;
     for (HalfEdge h = 0; h < mesh_.start.size(); ++h) {
-      if (h < mesh_.twin[h]) edges_.push_back(h);
+      if (h < mesh_.twin[h]) edges.push_back(h);
     }
-    counts_.flips += make_delaunay(mesh_, edges_, limits);
+    counts_.flips += make_delaunay(mesh_, blocks_, std::move(edges), limits);
   }
 
   void pass(const PassLimits& limits) {
-    edges_.clear();
-    std::size_t kept = 0;
-    for (std::size_t i = 0; i < left_.size(); ++i) {
-      if (i % 1024 == 0) context_.check();
-      if (!remove(left_[i], limits)) left_[kept++] = left_[i];
-    }
-    left_.resize(kept);
-    std::erase_if(edges_, [&](HalfEdge h) { return mesh_.start[h] == kNone; });
-    counts_.flips += make_delaunay(mesh_, edges_, limits.turn);
+    blocks_.run(
+        left_, [](VertexIndex v) { return v; },
+        [&](const SurfaceBlocks::Block& block, std::span<const VertexIndex> of_block, std::vector<VertexIndex>& later) {
+          context_.check();
+          StarCollapse& star = stars_.local([&] { return StarCollapse(mesh_); });
+          for (const VertexIndex v : of_block)
+            if (block.has_star(v))
+              remove(v, limits, star);
+            else
+              later.push_back(v);
+        });
+    counts_.flips += make_delaunay(mesh_, blocks_, edges_of_collapses(), limits.turn);
+    const auto removed = std::erase_if(left_, [&](VertexIndex v) { return mesh_.outgoing[v] == kNone; });
+    counts_.collapses += removed;
   }
 
-  bool remove(VertexIndex v, const PassLimits& limits) {
-    star_.gather(v);
-    const std::vector<HalfEdge>& ring = star_.ring();
+  /// The edges of the triangles around vertices that others have merged into.
+  std::vector<HalfEdge> edges_of_collapses() const {
+    std::vector<HalfEdge> edges;
+    for (const VertexIndex v : left_) {
+      if (mesh_.outgoing[v] != kNone || mesh_.outgoing[merged_into_[v]] == kNone) continue;
+      mesh_.for_each_outgoing(merged_into_[v], [&](HalfEdge h) {
+        edges.push_back(h);
+        edges.push_back(next_of(h));
+      });
+    }
+    return edges;
+  }
+
+  void remove(VertexIndex v, const PassLimits& limits, StarCollapse& star) {
+    star.gather(v);
+    const std::vector<HalfEdge>& ring = star.ring();
     double best = 0;
     HalfEdge chosen = kNone;
     for (std::size_t i = 0; i < ring.size(); ++i) {
       const HalfEdge h = ring[i];
       if (mesh_.kind[v] == VertexKind::kRemovableCurve && !mesh_.is_feature[h]) continue;
-      const double quality = star_.quality_after(i, limits.turn, best);
-      if (quality > best && fits(h, limits.valence) && mesh_.may_collapse(h)) {
+      const double quality = star.quality_after(i, limits.turn, best);
+      if (quality > best && fits(ring.size(), h, limits.valence) && mesh_.may_collapse(h)) {
         best = quality;
         chosen = h;
       }
     }
-    if (chosen == kNone) return false;
-    const VertexIndex target = mesh_.end(chosen);
+    if (chosen == kNone) return;
+    merged_into_[v] = mesh_.end(chosen);
     mesh_.collapse(chosen);
-    ++counts_.collapses;
-    mesh_.for_each_outgoing(target, [&](HalfEdge h) {
-      edges_.push_back(h);
-      edges_.push_back(next_of(h));
-    });
-    return true;
   }
 
-  bool fits(HalfEdge h, int most) const {
-    return static_cast<int>(star_.ring().size()) + mesh_.valence(mesh_.end(h)) - 4 <= most;
+  bool fits(std::size_t valence, HalfEdge h, int most) const {
+    return static_cast<int>(valence) + mesh_.valence(mesh_.end(h)) - 4 <= most;
   }
 
   WorkingMesh& mesh_;
@@ -109,8 +129,9 @@ class Coarsener {
   const RunContext& context_;
   CoarsenCounts& counts_;
   std::vector<VertexIndex> left_;
-  std::vector<HalfEdge> edges_;
-  StarCollapse star_;
+  std::vector<VertexIndex> merged_into_;  ///< per vertex that vanished
+  SurfaceBlocks blocks_;
+  PerThread<StarCollapse> stars_;
 };
 
 }  // namespace

@@ -1,5 +1,8 @@
 #include "surface/remeshing/local_guards.h"
 
+#include <atomic>
+#include <utility>
+
 namespace octafront::remeshing {
 
 namespace {
@@ -46,19 +49,46 @@ bool flip_is_sound(const WorkingMesh& mesh, HalfEdge h, const TurnLimits& limits
          faces_outward(mesh, adc, {a, d, c}, limits.surface) && faces_outward(mesh, bcd, {b, c, d}, limits.surface);
 }
 
-std::uint64_t make_delaunay(WorkingMesh& mesh, std::vector<HalfEdge>& edges, const TurnLimits& limits) {
+namespace {
+
+/// may_try(h): whether this edge and the two triangles beside it may be looked at.
+template <class MayTry>
+std::uint64_t flip_all(WorkingMesh& mesh, std::vector<HalfEdge>& edges, const TurnLimits& limits,
+                       const MayTry& may_try) {
   std::uint64_t flips = 0;
   const std::uint64_t budget = kFlipsPerEdge * (edges.size() + 10);
   while (!edges.empty() && flips < budget) {
     const HalfEdge h = edges.back();
     edges.pop_back();
-    if (mesh.start[h] == kNone || mesh.is_feature[h] || is_delaunay(mesh, h)) continue;
+    if (mesh.start[h] == kNone || !may_try(h) || mesh.is_feature[h] || is_delaunay(mesh, h)) continue;
     if (!flip_is_sound(mesh, h, limits) || !mesh.may_flip(h)) continue;
     const HalfEdge turned = mesh.flip(h), other = mesh.twin[turned];
     ++flips;
     edges.insert(edges.end(), {next_of(turned), previous_of(turned), next_of(other), previous_of(other)});
   }
   edges.clear();
+  return flips;
+}
+
+}  // namespace
+
+std::uint64_t make_delaunay(WorkingMesh& mesh, std::vector<HalfEdge>& edges, const TurnLimits& limits) {
+  return flip_all(mesh, edges, limits, [](HalfEdge) { return true; });
+}
+
+std::uint64_t make_delaunay(WorkingMesh& mesh, const SurfaceBlocks& blocks, std::vector<HalfEdge> edges,
+                            const TurnLimits& limits) {
+  std::atomic<std::uint64_t> flips = 0;
+  blocks.run(
+      std::move(edges), [&](HalfEdge h) { return mesh.start[h]; },
+      [&](const SurfaceBlocks::Block& block, std::span<const HalfEdge> of_block, std::vector<HalfEdge>& left) {
+        std::vector<HalfEdge> stack(of_block.begin(), of_block.end());
+        flips += flip_all(mesh, stack, limits, [&](HalfEdge h) {
+          if (block.has_both(h)) return true;
+          left.push_back(h);
+          return false;
+        });
+      });
   return flips;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "surface/remeshing/blocks.h"
 #include "surface/remeshing/working_mesh.h"
 
 namespace octafront::remeshing {
@@ -35,5 +36,8 @@ bool flip_is_sound(const WorkingMesh& mesh, HalfEdge h, const TurnLimits& limits
 /// Turns every edge that is not Delaunay, may turn and soundly so, until none is left (bounded). `edges` is where to
 /// begin; it is consumed. Returns the number of flips.
 std::uint64_t make_delaunay(WorkingMesh& mesh, std::vector<HalfEdge>& edges, const TurnLimits& limits);
+/// The same block by block. REQUIRES edges that are there.
+std::uint64_t make_delaunay(WorkingMesh& mesh, const SurfaceBlocks& blocks, std::vector<HalfEdge> edges,
+                            const TurnLimits& limits);
 
 }  // namespace octafront::remeshing

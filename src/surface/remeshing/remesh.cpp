@@ -46,8 +46,10 @@ constexpr int kMostDeviationRounds = 5;
 /// its triangles. At more of them it is made anew with smaller sizes.
 constexpr int kApproaches = 3;
 /// Points are put in from this part of the bound on, where the input has vertices or long edges: smaller sizes are the
-/// better answer elsewhere. Nor shall anybody move its triangles later.
+/// better answer elsewhere.
 constexpr double kComeNear = 0.9;
+/// From this part of it on nobody shall move the triangles later: sliding vertices stray by a fifth more.
+constexpr double kLeftAlone = 0.75;
 constexpr double kFewFar = 0.02;
 
 /// Triangles below this 2r/R are mended at the end, by moving the surface no farther than this part of the size.
@@ -234,7 +236,7 @@ class Remesher {
         options_(options),
         tolerance_(options.max_deviation.value_or(HUGE_VAL)),
         stage_(stage),
-        seamed_(is_complex(surface_) ? std::optional(cut_along_seams(surface)) : std::nullopt),
+        seamed_(!surface_.sides.empty() ? std::optional(cut_along_seams(surface)) : std::nullopt),
         input_(seamed_ ? std::move(seamed_->input) : make_input_surface(surface.mesh(), surface.edges())) {
     if (!seamed_) kind_.emplace(surface_, surface.edges());
     if (seamed_) seams_ = seam_edges(input_);
@@ -351,7 +353,8 @@ class Remesher {
       std::vector<FarPlace> places = far_places(mesh);
       n.far = positions_beyond(tolerance_, places);
       n.near_limit = corners_at(mesh, places);
-      std::erase_if(places, [](const FarPlace& p) { return p.within; });
+      std::erase_if(places,
+                    [&](const FarPlace& p) { return p.within || p.distance < kComeNear * *options_.max_deviation; });
       const bool few =
           static_cast<double>(count_triangles(places)) < kFewFar * static_cast<double>(mesh.triangle_count());
       const std::uint64_t put_in = clear && few && k < kApproaches ? approach(mesh, input_, is_fixed, places) : 0;
@@ -388,7 +391,7 @@ class Remesher {
   std::vector<FarPlace> far_places(const WorkingMesh& mesh) const {
     if (!limits_deviation()) return {};
     const std::vector<std::uint32_t> number = front_triangles(mesh);
-    std::vector<FarPlace> places = places_beyond(kComeNear * *options_.max_deviation, *options_.max_deviation,
+    std::vector<FarPlace> places = places_beyond(kLeftAlone * *options_.max_deviation, *options_.max_deviation,
                                                  triangles_of(mesh, number), surface_, known_.tree());
     for (FarPlace& place : places) place.triangle = number[place.triangle];
     return places;

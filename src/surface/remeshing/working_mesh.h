@@ -2,6 +2,8 @@
 
 #include "surface/remeshing/walk.h"
 
+#include <atomic>
+
 namespace octafront::remeshing {
 
 /// What a vertex of the working mesh is, and so what may happen to it.
@@ -52,7 +54,10 @@ struct WorkingMesh : HalfEdgeMesh {
 
   /// Marks for passes that skip what did not change since they last saw it.
   static constexpr std::uint8_t kForSmoothing = 1, kForFlips = 2;
-  void mark_changed(VertexIndex v) { changed[v] = kForSmoothing | kForFlips; }
+  /// Vertices beside what a block changes may be marked by several threads.
+  void mark_changed(VertexIndex v) {
+    std::atomic_ref(changed[v]).store(kForSmoothing | kForFlips, std::memory_order_relaxed);
+  }
   void mark_star_changed(VertexIndex v) {
     mark_changed(v);
     for_each_outgoing(v, [&](HalfEdge h) { mark_changed(end(h)); });

@@ -2,6 +2,7 @@
 
 #include "core/wording.h"
 #include "mesh/complex.h"
+#include "mesh/surface_topology.h"
 #include "surface/repair/steps.h"
 
 #include <numeric>
@@ -122,7 +123,9 @@ Draft repair::make_draft(const SurfaceMesh& soup, const RunContext& context) {
 
 RepairedSurface repair::mend(Draft& draft) {
   RepairedSurface result;
-  if (!is_complex(draft.mesh)) draft.mesh.sides.clear();
+  // One region may touch itself in edges and points: as a complex it can be meshed, as a plain surface it cannot.
+  if (!is_complex(draft.mesh) && is_closed_manifold(draft.mesh.triangles, draft.mesh.points.size()))
+    draft.mesh.sides.clear();
   clean_faces(draft, result);
   if (!draft.mesh.sides.empty()) {
     result.surface = finished(draft);

@@ -1,11 +1,11 @@
-#include "improve/spatial_order.h"
+#include "geometry/spatial_order.h"
 
 #include "core/morton.h"
 #include "core/parallel.h"
 
 #include <algorithm>
 
-namespace octafront::improve {
+namespace octafront {
 
 std::vector<VertexIndex> spatial_order(const std::vector<Vec3>& points) {
   Box3 box;
@@ -30,10 +30,4 @@ std::vector<VertexIndex> spatial_order(const std::vector<Vec3>& points) {
   return order;
 }
 
-Groups<> group_by_least_corner(const std::vector<Tet>& tets, std::size_t vertices) {
-  return group_by_owner(vertices, static_cast<TetIndex>(tets.size()), [&](TetIndex t) {
-    return std::min({tets[t][0], tets[t][1], tets[t][2], tets[t][3]});
-  });
-}
-
-}  // namespace octafront::improve
+}  // namespace octafront

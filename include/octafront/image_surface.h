@@ -1,0 +1,58 @@
+#pragma once
+
+#include <octafront/complex.h>
+#include <octafront/image.h>
+#include <octafront/no_context.h>
+
+#include <string>
+#include <vector>
+
+namespace octafront {
+
+// From images to the complex that their labels or grey values bound: one net of surfaces for all regions, which share
+// their faces.
+
+/// How the surfaces of labels are made from the steps between voxels.
+struct LabelSurfaceOptions {
+  /// Off: the faces of the voxels, as they are.
+  bool smooth = true;
+  /// Regions have the volume of their voxels after smoothing too, up to what their voxels' surroundings allow.
+  bool keep_volumes = true;
+};
+
+/// The surfaces between the labels of an image and around them, as a clean complex in world coordinates.
+///
+/// Each vertex stays within half a voxel of a corner of voxels, so nothing is farther from the voxels' faces than half
+/// their diagonal, and every label stays, one of a single voxel too. What touches the image's box is flat there.
+/// Voxels of one label that touch in an edge hang together there if they are the fewer around it; else, and where that
+/// would make surfaces cross, regions touch themselves or each other in edges and points.
+///
+/// The complex has the labels that occur, in the order of `image.labels`, with their names, and their volumes as made.
+/// Notes say what stayed unsmoothed. The same bits on any number of threads.
+///
+/// After S. F. Frisken Gibson, "Constrained Elastic Surface Nets" (1998): dual vertices held in their cells; the
+/// smoothing is another one.
+///
+/// Throws InputError if the image has no label, or sizes do not fit together; Cancelled.
+Complex complex_of_labels(const LabelImage& image, const LabelSurfaceOptions& options = {},
+                          const RunContext& context = no_context());
+
+/// A material by its grey values: lo <= value < hi; infinite ends are allowed.
+struct GreyBand {
+  double lo = 0, hi = 0;
+  std::string name;
+};
+
+/// The surfaces between bands of grey values, as a clean complex: they lie between voxels, where values that are linear
+/// between the middles of voxels pass from band to band, and are flat on the image's box. Bands must not overlap;
+/// values in none of them are outside. Where voxels side by side skip a band, the surface lies where the middle one of
+/// the limits between them is passed. Nothing else moves the surfaces: volumes are what the values say.
+///
+/// Throws InputError for bands that overlap or are empty, or if no value lies in one; Cancelled.
+Complex complex_of_bands(const Image& image, const std::vector<GreyBand>& bands,
+                         const RunContext& context = no_context());
+
+/// The voxels of bands as labels: label b for bands[b], whose `value` is b. Throws InputError as complex_of_bands.
+LabelImage labels_of_bands(const Image& image, const std::vector<GreyBand>& bands);
+
+}  // namespace octafront

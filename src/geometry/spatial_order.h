@@ -1,0 +1,12 @@
+#pragma once
+
+#include <octafront/surface_mesh.h>
+
+#include <vector>
+
+namespace octafront {
+
+/// The points along a Z-order curve: order[k] is the k-th point. Neighbours in space become neighbours in memory.
+std::vector<VertexIndex> spatial_order(const std::vector<Vec3>& points);
+
+}  // namespace octafront

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <octafront/image.h>
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace octafront::image {
+
+/// How files store a voxel.
+enum class VoxelType { kInt8, kUInt8, kInt16, kUInt16, kInt32, kUInt32, kInt64, kUInt64, kFloat32, kFloat64 };
+
+std::uint64_t bytes_of(VoxelType type);
+bool is_integer(VoxelType type);
+
+/// The bytes of voxels: value = slope * stored + intercept.
+struct StoredVoxels {
+  VoxelType type = VoxelType::kUInt8;
+  bool big_endian = false;
+  double slope = 1, intercept = 0;
+};
+
+/// Values of bytes; those behind the last whole voxel are passed over. Whole numbers stay whole, in the smallest type
+/// that is good for all of them; where there is none, and for other slopes, they become single precision, which a note
+/// says if it changed any. What is not finite becomes the least or largest value, with a note.
+Image::Values values_of(std::string_view bytes, const StoredVoxels& stored, std::vector<std::string>& notes);
+
+/// The same values in the smallest type that is good for all of them.
+Image::Values narrowed(const std::vector<std::int32_t>& values, std::vector<std::string>& notes);
+
+/// The same of values that are numbers already, as texts have them.
+Image::Values values_of(const std::vector<double>& numbers, VoxelType type, std::vector<std::string>& notes);
+
+}  // namespace octafront::image

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <octafront/image.h>
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace octafront::nets {
+
+/// Throws InputError if a grid with so many voxels makes no sense.
+void check_grid(const ImageGrid& grid, std::size_t voxels);
+
+/// Throws InputError for labels that are not there, or if there is none.
+void check_labels(const LabelImage& image);
+
+std::vector<std::string> names_of(const LabelImage& image);
+
+}  // namespace octafront::nets

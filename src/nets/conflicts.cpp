@@ -1,0 +1,194 @@
+#include "nets/conflicts.h"
+
+#include "core/parallel.h"
+#include "geometry/predicates.h"
+#include "geometry/radial_order.h"
+#include "geometry/self_intersection.h"
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+
+namespace octafront::nets {
+
+namespace {
+
+// A vertex stays within half a voxel of its corner. So triangles can only meet if the least corners of their quads are
+// at most this many layers apart.
+constexpr std::int32_t kReach = 2;
+
+/// A side of a quad, by its vertices, the lower one first.
+struct Side {
+  VertexIndex from, to;
+  std::uint32_t quad;
+  int index;  ///< v[index] to the next one
+  friend bool operator<(const Side& a, const Side& b) {
+    return std::tie(a.from, a.to, a.quad) < std::tie(b.from, b.to, b.quad);
+  }
+};
+
+/// A triangle at an edge, seen along the edge: the labels before and behind it in the turn.
+struct Spoke {
+  Vec3 apex;
+  Label before, behind;
+};
+
+Spoke spoke_of(const Net& net, std::span<const Vec3> world, bool is_mirrored, const Side& side) {
+  const Quad& q = net.quads[side.quad];
+  const VertexIndex a = q.v[side.index], b = q.v[(side.index + 1) % 4];
+  for (const Triangle& t : triangles_of(q))
+    for (int i = 0; i < 3; ++i)
+      if (t[i] == a && t[(i + 1) % 3] == b) {
+        const Vec3 apex = world[t[(i + 2) % 3]];
+        // Along the edge the upper side of a triangle comes behind it if its own edge runs that way.
+        if ((a == side.from) != is_mirrored) return {apex, q.lower, q.upper};
+        return {apex, q.upper, q.lower};
+      }
+  return {};
+}
+
+}  // namespace
+
+/// Some quads, and for which of their edges all quads are among them.
+struct ConflictSearch::Part {
+  std::vector<std::uint32_t> quads;
+  std::function<bool(VertexIndex)> is_whole_at;
+};
+
+ConflictSearch::ConflictSearch(const Net& net, std::span<const Vec3> world, bool is_mirrored,
+                               std::span<const std::uint8_t> many)
+    : net_(net), world_(world), is_mirrored_(is_mirrored), many_(many) {}
+
+void ConflictSearch::search(const Part& part, std::vector<std::uint32_t>& bad, const RunContext& context) const {
+  std::vector<Triangle> triangles;
+  std::vector<std::uint32_t> quad_of;
+  std::vector<Side> sides;
+  for (const std::uint32_t q : part.quads) {
+    const Quad& quad = net_.quads[q];
+    for (const Triangle& t : triangles_of(quad)) {
+      if (collinear(world_[t[0]], world_[t[1]], world_[t[2]])) {
+        bad.push_back(q);
+        continue;
+      }
+      triangles.push_back(t);
+      quad_of.push_back(q);
+    }
+    for (int i = 0; i < 4; ++i) {
+      const VertexIndex a = quad.v[i], b = quad.v[(i + 1) % 4];
+      if (many_[a] && many_[b] && part.is_whole_at(std::min(a, b)))
+        sides.push_back({std::min(a, b), std::max(a, b), q, i});
+    }
+  }
+  // The search is for triangles of one mesh: few of its points are used here.
+  std::vector<VertexIndex> used;
+  for (const Triangle& t : triangles) used.insert(used.end(), t.begin(), t.end());
+  std::sort(used.begin(), used.end());
+  used.erase(std::unique(used.begin(), used.end()), used.end());
+  std::vector<Vec3> points;
+  for (const VertexIndex v : used) points.push_back(world_[v]);
+  for (Triangle& t : triangles)
+    for (VertexIndex& v : t) v = static_cast<VertexIndex>(std::lower_bound(used.begin(), used.end(), v) - used.begin());
+  for (const auto& [s, t] : self_intersections(points, triangles, std::numeric_limits<std::size_t>::max(), context)) {
+    bad.push_back(quad_of[s]);
+    bad.push_back(quad_of[t]);
+  }
+  std::sort(sides.begin(), sides.end());
+  for (std::size_t i = 0; i < sides.size();) {
+    std::size_t end = i;
+    while (end < sides.size() && sides[end].from == sides[i].from && sides[end].to == sides[i].to) ++end;
+    if (end - i > 2) {
+      std::vector<Spoke> spokes;
+      for (std::size_t k = i; k < end; ++k) spokes.push_back(spoke_of(net_, world_, is_mirrored_, sides[k]));
+      const RadialOrder order(world_[sides[i].from], world_[sides[i].to], spokes[0].apex);
+      std::sort(spokes.begin(), spokes.end(), [&](const Spoke& a, const Spoke& b) { return order(a.apex, b.apex); });
+      bool agree = true;
+      for (std::size_t k = 0; k < spokes.size(); ++k)
+        agree = agree && spokes[k].behind == spokes[(k + 1) % spokes.size()].before;
+      if (!agree)
+        for (std::size_t k = i; k < end; ++k) bad.push_back(sides[k].quad);
+    }
+    i = end;
+  }
+}
+
+namespace {
+
+std::vector<std::uint32_t> sorted_once(std::vector<std::uint32_t> bad) {
+  std::sort(bad.begin(), bad.end());
+  bad.erase(std::unique(bad.begin(), bad.end()), bad.end());
+  return bad;
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> ConflictSearch::all(const RunContext& context) const {
+  constexpr std::size_t kLayerQuads = 100'000;  // more makes the reach beyond the layer matter less, and takes memory
+  const auto layer_of = [&](std::uint32_t q) { return net_.corner[net_.quads[q].v[0]][2]; };
+  // Quads are in order of their layers.
+  std::vector<std::uint32_t> first{0};
+  const auto n = static_cast<std::uint32_t>(net_.quads.size());
+  for (std::uint32_t q = 1; q < n; ++q)
+    if (q - first.back() >= kLayerQuads && layer_of(q) != layer_of(q - 1)) first.push_back(q);
+  std::vector<std::vector<std::uint32_t>> bad(first.size());
+  parallel_for(
+      first.size(),
+      [&](std::size_t i) {
+        const std::uint32_t begin = first[i], end = i + 1 < first.size() ? first[i + 1] : n;
+        const std::int32_t lo = layer_of(begin), hi = layer_of(end - 1);
+        std::uint32_t from = begin, to = end;
+        while (from > 0 && layer_of(from - 1) >= lo - kReach) --from;
+        while (to < n && layer_of(to) <= hi + kReach) ++to;
+        Part part;
+        for (std::uint32_t q = from; q < to; ++q) part.quads.push_back(q);
+        part.is_whole_at = [&](VertexIndex v) { return net_.corner[v][2] >= lo && net_.corner[v][2] <= hi; };
+        search(part, bad[i], context);
+      },
+      Split::kSingly);
+  std::vector<std::uint32_t> all;
+  for (const auto& of_layer : bad) all.insert(all.end(), of_layer.begin(), of_layer.end());
+  return sorted_once(std::move(all));
+}
+
+std::vector<std::uint32_t> ConflictSearch::near(const std::vector<VertexIndex>& moved,
+                                                const RunContext& context) const {
+  // Blocks of 4 x 4 x 4 corners that hold the least corners of quads that may meet those of moved vertices.
+  constexpr int kShift = 2;
+  Corner top{0, 0, 0};
+  for (const Corner& c : net_.corner)
+    for (int a = 0; a < 3; ++a) top[a] = std::max(top[a], c[a]);
+  const auto blocks = [&](int a) { return static_cast<std::size_t>(top[a] >> kShift) + 1; };
+  const auto block = [&](std::int32_t x, std::int32_t y, std::int32_t z) {
+    return static_cast<std::size_t>(x) +
+           blocks(0) * (static_cast<std::size_t>(y) + blocks(1) * static_cast<std::size_t>(z));
+  };
+  std::vector<std::uint8_t> marked(blocks(0) * blocks(1) * blocks(2), 0), is_moved(net_.corner.size(), 0);
+  for (const VertexIndex v : moved) {
+    is_moved[v] = 1;
+    Corner lo, hi;
+    for (int a = 0; a < 3; ++a) {
+      lo[a] = std::max(0, net_.corner[v][a] - 1 - kReach) >> kShift;
+      hi[a] = std::min(top[a], net_.corner[v][a] + kReach) >> kShift;
+    }
+    for (std::int32_t z = lo[2]; z <= hi[2]; ++z)
+      for (std::int32_t y = lo[1]; y <= hi[1]; ++y)
+        for (std::int32_t x = lo[0]; x <= hi[0]; ++x) marked[block(x, y, z)] = 1;
+  }
+  Part part;
+  for (std::uint32_t q = 0; q < net_.quads.size(); ++q) {
+    const Corner& c = net_.corner[net_.quads[q].v[0]];
+    if (marked[block(c[0] >> kShift, c[1] >> kShift, c[2] >> kShift)]) part.quads.push_back(q);
+  }
+  // Each edge at a moved vertex, or of a quad that has one, lies well within the marked blocks.
+  std::vector<std::uint8_t> whole(net_.corner.size(), 0);
+  for (const std::uint32_t q : part.quads) {
+    const auto& v = net_.quads[q].v;
+    if (std::any_of(v.begin(), v.end(), [&](VertexIndex i) { return is_moved[i] != 0; }))
+      for (const VertexIndex i : v) whole[i] = 1;
+  }
+  part.is_whole_at = [&](VertexIndex v) { return whole[v] != 0; };
+  std::vector<std::uint32_t> bad;
+  search(part, bad, context);
+  return sorted_once(std::move(bad));
+}
+
+}  // namespace octafront::nets

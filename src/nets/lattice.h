@@ -1,0 +1,64 @@
+#pragma once
+
+#include <octafront/image.h>
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace octafront::nets {
+
+/// A corner of voxels: (x, y, z) is the least corner of voxel (x, y, z); 0 ... size along each axis.
+using Corner = std::array<std::int32_t, 3>;
+
+/// A voxel's label; outside of the image there is none.
+using Label = std::uint16_t;
+
+/// The voxels of a grid and their walls. Lengths are of *straight* space: along each axis the true lengths, at right
+/// angles to each other whatever the image's axes are.
+class Lattice {
+ public:
+  Lattice(const ImageGrid& grid, std::span<const Label> labels);
+
+  const ImageGrid& grid() const { return grid_; }
+  std::int32_t size(int axis) const { return size_[axis]; }
+  Label label(std::int32_t i, std::int32_t j, std::int32_t k) const {
+    const bool inside = i >= 0 && j >= 0 && k >= 0 && i < size_[0] && j < size_[1] && k < size_[2];
+    return inside ? labels_[number(i, j, k)] : LabelImage::kNoRegion;
+  }
+  Label label(const Corner& voxel) const { return label(voxel[0], voxel[1], voxel[2]); }
+  /// A row of voxels along i; null outside.
+  const Label* row(std::int32_t j, std::int32_t k) const {
+    return j < 0 || k < 0 || j >= size_[1] || k >= size_[2] ? nullptr : labels_.data() + number(0, j, k);
+  }
+  std::size_t number(std::int32_t i, std::int32_t j, std::int32_t k) const {
+    return static_cast<std::size_t>(i) +
+           static_cast<std::size_t>(size_[0]) * (static_cast<std::size_t>(j) + static_cast<std::size_t>(size_[1]) * k);
+  }
+
+  /// Where a wall between voxels lies, and the middle of a voxel; beyond the image's ends too, by one voxel.
+  double wall(int axis, std::int32_t c) const { return wall_[axis][c]; }
+  double middle(int axis, std::int32_t voxel) const { return middle_[axis][voxel + 1]; }
+  Vec3 at(const Corner& c) const { return {wall(0, c[0]), wall(1, c[1]), wall(2, c[2])}; }
+  Vec3 middle_of(const Corner& voxel) const { return {middle(0, voxel[0]), middle(1, voxel[1]), middle(2, voxel[2])}; }
+  double volume(std::int32_t i, std::int32_t j, std::int32_t k) const {
+    return (wall(0, i + 1) - wall(0, i)) * (wall(1, j + 1) - wall(1, j)) * (wall(2, k + 1) - wall(2, k));
+  }
+  bool on_box(const Corner& c, int axis) const { return c[axis] == 0 || c[axis] == size_[axis]; }
+
+  Vec3 to_world(Vec3 straight) const;
+  /// Whether the way to the world turns right into left.
+  bool is_mirrored() const;
+  /// World volume of a unit of straight volume.
+  double volume_scale() const;
+
+ private:
+  const ImageGrid& grid_;
+  std::span<const Label> labels_;
+  std::array<std::int32_t, 3> size_;
+  Vec3 step_;  ///< lengths of the axes
+  std::array<std::vector<double>, 3> wall_, middle_;
+};
+
+}  // namespace octafront::nets
