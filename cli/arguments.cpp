@@ -188,14 +188,17 @@ void declare_repair(CLI::App& command, Arguments& a) {
                      {{"none", Repair::kNone}, {"auto", Repair::kAuto}, {"wrap", Repair::kWrap}},
                      "none: they are refused; auto: holes are closed, crossings resolved, what bounds nothing dropped, "
                      "the rest stays; wrap: a closed skin around everything");
-  add_choice<Sheets>(*group, "--sheets", a.sheets, {{"keep", Sheets::kKeep}, {"drop", Sheets::kDrop}},
-                     "Walls inside of a region of a clean complex that bound nothing: cracks to keep, or debris. What has "
-                     "to be mended loses them");
+  add_choice<Sheets>(
+      *group, "--sheets", a.sheets, {{"keep", Sheets::kKeep}, {"drop", Sheets::kDrop}},
+      "Walls inside of a region of a clean complex that bound nothing: cracks to keep, or debris. What has "
+      "to be mended loses them");
   group
       ->add_option("--wrap-distance", a.mend.distance,
                    "How far the skin lies from the surface [a hundredth of the diagonal]")
       ->type_name("D");
-  group->add_option("--defects", a.defects, "Show what was changed: a surface with a mark at each place, a patch each kind")
+  group
+      ->add_option("--defects", a.defects,
+                   "Show what was changed: a surface with a mark at each place, a patch each kind")
       ->type_name("FILE.ply");
 }
 

@@ -72,17 +72,17 @@ constexpr const char* name_of(MendChange::Kind kind) {
 
 /// What mend_surface() did.
 struct MendReport {
-  bool clean = false;      ///< the input needed nothing and came back as it was
-  double tolerance = 0;     ///< that was kept to, input units
-  double diagonal = 0;      ///< of the input's box
-  double largest_move = 0;  ///< of any vertex
+  bool clean = false;                                    ///< the input needed nothing and came back as it was
+  double tolerance = 0;                                  ///< that was kept to, input units
+  double diagonal = 0;                                   ///< of the input's box
+  double largest_move = 0;                               ///< of any vertex
   std::uint64_t joined_vertices = 0, divided_edges = 0;  ///< to bring open edges together
   std::uint64_t crossing_pairs = 0;                      ///< faces that met elsewhere than in what they share
   std::uint64_t separated_vertices = 0;
   double area_before = 0, area_after = 0, volume_before = 0, volume_after = 0;
-  std::uint32_t bodies = 0;          ///< of the result
-  std::vector<MendChange> changes;   ///< by kind, each in the order of the input's faces
-  std::vector<std::string> notes;    ///< a sentence for each kind of change
+  std::uint32_t bodies = 0;         ///< of the result
+  std::vector<MendChange> changes;  ///< by kind, each in the order of the input's faces
+  std::vector<std::string> notes;   ///< a sentence for each kind of change
   std::uint64_t count(MendChange::Kind kind) const;
 };
 

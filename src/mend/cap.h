@@ -19,8 +19,8 @@ using IsTaken = std::function<bool(std::uint32_t, std::uint32_t)>;
 /// A triangulation without inner vertices that bends little: of least sum of edge length times turn of the normal, over
 /// its inner edges and the rim, plus its area over the size of the polygon (after G. Barequet and M. Sharir, "Filling
 /// Gaps in the Boundary of a Polyhedron", 1995, and P. Liepa, "Filling Holes in Meshes", 2003). It uses no taken edge
-/// where it can do without. `beyond`: unit normals of what lies beyond edge i, from corner i to the next one; zero where
-/// nothing does. Long polygons are halved by short chords first. Cost: n^3 for n <= 256 corners, n^2 beyond.
+/// where it can do without. `beyond`: unit normals of what lies beyond edge i, from corner i to the next one; zero
+/// where nothing does. Long polygons are halved by short chords first. Cost: n^3 for n <= 256 corners, n^2 beyond.
 Cap triangulate_polygon(std::span<const Vec3> polygon, std::span<const Vec3> beyond, const IsTaken& is_taken);
 
 }  // namespace octafront::mend

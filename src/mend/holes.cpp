@@ -15,8 +15,8 @@ namespace {
 
 using repair::Draft;
 
-/// A part with caps of more than this share of its own area is a sheet. Of a hemisphere it is half, of a tube as long as
-/// wide half too, of a terrain nearly all.
+/// A part with caps of more than this share of its own area is a sheet. Of a hemisphere it is half, of a tube as long
+/// as wide half too, of a terrain nearly all.
 constexpr double kMostCapped = 0.9;
 /// The same for parts beside others that are closed, but for holes of this share.
 constexpr double kMostCappedBeside = 0.3, kNearlyClosed = 0.05;
@@ -86,9 +86,11 @@ class Parts {
   /// Requires that all caps are known.
   void judge(double tolerance) {
     bool any_closed = false;
-    for (const Part& part : part_) any_closed = any_closed || (!part.is_thin(tolerance) && part.capped <= kNearlyClosed * part.area);
+    for (const Part& part : part_)
+      any_closed = any_closed || (!part.is_thin(tolerance) && part.capped <= kNearlyClosed * part.area);
     for (Part& part : part_)
-      part.is_sheet = part.is_thin(tolerance) || part.capped > (any_closed ? kMostCappedBeside : kMostCapped) * part.area;
+      part.is_sheet =
+          part.is_thin(tolerance) || part.capped > (any_closed ? kMostCappedBeside : kMostCapped) * part.area;
   }
 
   bool is_sheet(std::uint32_t triangle) { return part_[sets_.find(triangle)].is_sheet; }

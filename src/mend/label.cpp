@@ -45,7 +45,8 @@ std::vector<char> turned_pieces(const Arrangement& arranged, const Cells& cells,
 int times(const Arrangement& arranged, std::size_t t, const PieceOf& pieces, const std::vector<char>& turned) {
   int net = 0;
   for (const Origin& o : arranged.origins_of(t))
-    if (!pieces.is_sheet[pieces.piece[o.triangle]]) net += (turned[pieces.piece[o.triangle]] != 0) == o.reversed ? 1 : -1;
+    if (!pieces.is_sheet[pieces.piece[o.triangle]])
+      net += (turned[pieces.piece[o.triangle]] != 0) == o.reversed ? 1 : -1;
   return net;
 }
 

@@ -1,18 +1,16 @@
+#include <octafront/error.h>
 #include <octafront/mend.h>
 #include <octafront/repair.h>
-
-#include <octafront/error.h>
 
 #include "core/thread_limit.h"
 #include "geometry/hausdorff.h"
 #include "support/named_surfaces.h"
 
-#include <nlohmann/json.hpp>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -195,7 +193,8 @@ TEST(MendSurface, SoupsOfAnyKindEnd) {
 }
 
 TEST(MendSurface, ThreadsChangeNothing) {
-  SurfaceMesh soup = testing::joined(testing::torus(30, 12), testing::transformed(testing::icosphere(3), 0.7, {1, 0, 0}));
+  SurfaceMesh soup =
+      testing::joined(testing::torus(30, 12), testing::transformed(testing::icosphere(3), 0.7, {1, 0, 0}));
   soup = without(soup, [](Vec3 p) { return p.x < -1.2 && p.y > 0; });
   std::vector<Mended> results;
   for (const int threads : {1, 4}) {

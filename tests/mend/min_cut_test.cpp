@@ -1,6 +1,5 @@
 #include "mend/min_cut.h"
 
-
 #include <algorithm>
 #include <cstdint>
 #include <vector>
