@@ -188,11 +188,10 @@ void declare_repair(CLI::App& command, Arguments& a) {
                      {{"none", Repair::kNone}, {"auto", Repair::kAuto}, {"wrap", Repair::kWrap}},
                      "none: they are refused; auto: holes are closed, crossings resolved, what bounds nothing dropped, "
                      "the rest stays; wrap: a closed skin around everything");
-  using Overlap = MendOptions::Overlap;
-  add_choice<Overlap>(
-      *group, "--overlap", a.mend.overlap, {{"union", Overlap::kUnion}, {"regions", Overlap::kRegions}},
-      "Closed parts that overlap: one, or regions of their own where the names of their patches differ");
-  group->add_flag("--keep-sheets", a.mend.keep_sheets, "Walls inside that bound nothing stay, as sheets");
+  add_choice<Sheets>(
+      *group, "--sheets", a.sheets, {{"keep", Sheets::kKeep}, {"drop", Sheets::kDrop}},
+      "Walls inside of a region of a clean complex that bound nothing: cracks to keep, or debris. What has "
+      "to be mended loses them");
   group
       ->add_option("--wrap-distance", a.mend.distance,
                    "How far the skin lies from the surface [a hundredth of the diagonal]")

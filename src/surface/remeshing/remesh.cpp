@@ -343,6 +343,7 @@ class Remesher {
     progress(0.6);
     improve_surface(mesh, input_, curves, sizes, context, counts_.improve);
     counts_.divided_edges = divide_repeated_edges(mesh, known_, sizes);
+    counts_.divided_edges += divide_repeated_triangles(mesh, known_, sizes);
   }
 
   /// Puts in points of the input where the mesh strays at few places and nothing crosses. `clear`: whether that is
