@@ -4,6 +4,7 @@
 
 #include "domain.h"
 #include "estimate.h"
+#include "images.h"
 #include "inputs.h"
 #include "open_cavity.h"
 #include "page.h"
@@ -26,6 +27,8 @@ Options checked_options(const Session& session) {
   if (!a.point_sizes.empty()) options.size.point_sizes = read_point_sizes(a.point_sizes, session.context());
   if (!a.size_field.empty())
     options.size.field = read_size_field(a.size_field, options.size.gradation, session.context());
+  // Layers of labels thinner than the size would lose their shape.
+  if (is_image_input(a) && !options.size.gap && (options.size.size || options.size.elements)) options.size.gap = 1;
   check_options(options);
   return options;
 }

@@ -31,7 +31,8 @@ class ByteSource {
   /// The next `count` bytes. Throws InputError if there are fewer, with `what` they are.
   std::string_view require(std::uint64_t count, std::string_view what);
   void skip(std::uint64_t count, std::string_view what);
-  /// Throws InputError if all of a packed stream was taken and it is not what was packed, by its checksum.
+  /// To be called when nothing more is wanted: throws InputError if a packed stream ends here and is not what was
+  /// packed, by its checksum.
   void check_end();
 
   /// No more can come: of a packed stream by what deflate can do.

@@ -37,9 +37,7 @@ Image::Values read_voxels(ByteSource& source, const std::array<std::uint32_t, 3>
         fmt::format("{} voxels take {} bytes, but {} {} can follow; the file is truncated or damaged: copy or "
                     "export it again",
                     in_words(sizes), bytes, source.is_packed() ? "at most" : "only", source.most_bytes_left()));
-  Image::Values values = values_of(source.require(bytes, "the voxels"), stored, notes);
-  source.check_end();
-  return values;
+  return values_of(source.require(bytes, "the voxels"), stored, notes);
 }
 
 Image::Values read_text_voxels(const io::Input& input, const char* at, const std::array<std::uint32_t, 3>& sizes,

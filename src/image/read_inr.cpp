@@ -36,6 +36,7 @@ class Inr {
     check_grid(input_, image_.grid);
     image_.format = std::string("INR") + (source_.is_packed() ? ", compressed" : "");
     image_.values = read_voxels(source_, image_.grid.size, stored(), image_.notes);
+    source_.check_end();
     return std::move(image_);
   }
 

@@ -348,6 +348,7 @@ class Nifti {
                                 header_.vox_offset));
       source_.skip(static_cast<std::uint64_t>(header_.vox_offset) - header_bytes_ + before, "the voxels");
       image_.values = read_voxels(source_, image_.grid.size, how, image_.notes);
+      source_.check_end();
       return;
     }
     const KeptFile data = reading_.beside(name_of_voxels());
@@ -355,6 +356,7 @@ class Nifti {
     const double offset = header_.vox_offset;
     voxels.skip((offset > 0 && offset < 1e15 ? static_cast<std::uint64_t>(offset) : 0) + before, "the voxels");
     image_.values = read_voxels(voxels, image_.grid.size, how, image_.notes);
+    voxels.check_end();
   }
 
   /// head.hdr: head.img; head.hdr.gz: head.img.gz.

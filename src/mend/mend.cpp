@@ -19,6 +19,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 
 #include <fmt/core.h>
 
@@ -39,9 +41,13 @@ double tolerance_of(const MendOptions& options, double diagonal) {
   return *options.tolerance;
 }
 
-/// Whether the surface can be meshed as it is.
-bool is_clean(const SurfaceMesh& soup, const RunContext& context) {
-  return find_defects(repair_surface(soup, context), context).clean();
+bool is_clean(const SurfaceMesh& surface, const RunContext& context) {
+  return find_defects(repair_surface(surface, context), context).clean();
+}
+
+/// Whether repair did more than to join corners at the same place, which many files have apart.
+bool has_changed(const RepairedSurface& r) {
+  return r.duplicate_faces + r.degenerate_faces + r.turned_faces + r.turned_shells > 0;
 }
 
 void clean_faces(Draft& draft) {
@@ -144,6 +150,13 @@ class Mending {
     report_.largest_move = std::max(report_.largest_move, welded.largest_move);
     for (const Vec3 p : welded.places) report_.changes.push_back({Kind::kJoined, p, welded.largest_move});
     if (welded.joined + welded.divided > 0) clean_faces(draft_);
+    if (const char* f = getenv("MEND_DEBUG")) {
+      FILE* o = fopen(f, "w");
+      fprintf(o, "OFF\n%zu %zu 0\n", draft_.mesh.points.size(), draft_.mesh.triangles.size());
+      for (const Vec3 p : draft_.mesh.points) fprintf(o, "%.17g %.17g %.17g\n", p.x, p.y, p.z);
+      for (const Triangle& t : draft_.mesh.triangles) fprintf(o, "3 %u %u %u\n", t[0], t[1], t[2]);
+      fclose(o);
+    }
   }
 
   void orient() {
@@ -153,7 +166,13 @@ class Mending {
   }
 
   void close() {
-    holes_ = close_holes(draft_, report_.tolerance);
+    ClosedHoles closed = close_holes(draft_, report_.tolerance);
+    holes_ = std::move(closed.holes);
+    // Where there is nothing but sheets, they together may enclose something.
+    const bool all = std::find(closed.is_sheet.begin(), closed.is_sheet.end(), 0) == closed.is_sheet.end();
+    pieces_.is_sheet.assign(pieces_.count, 0);
+    for (std::size_t t = 0; t < closed.is_sheet.size() && !all; ++t)
+      pieces_.is_sheet[pieces_.piece[t]] = closed.is_sheet[t];
     for (const Hole& hole : holes_)
       pieces_.piece.insert(pieces_.piece.end(), hole.cap.size(), pieces_.piece[hole.rim_triangle]);
   }
@@ -343,17 +362,24 @@ Mended mend_surface(const SurfaceMesh& soup, const MendOptions& options, const R
   Mended mended;
   MendReport& report = mended.report;
   repair::check_input(soup);
+  if (!soup.sides.empty()) throw OptionError("a complex of regions is mended by nobody: give the walls without sides");
   report.diagonal = bounding_box(soup.points).diagonal();
   report.tolerance = tolerance_of(options, report.diagonal);
   report.area_before = area(soup);
   report.volume_before = std::abs(enclosed_volume(soup));
   if (options.way == MendOptions::Way::kWrap) {
     mended.surface = wrapped(soup, options, context, report);
-  } else if (is_clean(soup, context)) {
-    report.clean = true;
-    mended.surface = soup;
   } else {
-    mended.surface = Mending(soup, options, context, report).result();
+    RepairedSurface repaired = repair_surface(soup, context);
+    const bool is_enough = find_defects(repaired, context).clean();
+    report.clean = is_enough && !has_changed(repaired);
+    if (!is_enough)
+      mended.surface = Mending(soup, options, context, report).result();
+    else if (report.clean)
+      mended.surface = soup;
+    else
+      mended.surface = std::move(repaired.surface);
+    if (is_enough) report.notes = repaired.notes;
   }
   finish_report(report, mended.surface);
   return mended;

@@ -61,6 +61,13 @@ void run(const KnownComplex& complex, const Options& options, bool is_planar, Ta
   tally.failures += wrong.has_value();
 }
 
+/// How large complexes are.
+struct Extent {
+  int planes, cells;  ///< besides the least: so many different numbers of them
+  double size;
+};
+constexpr Extent kUsual{6, 30, 0.15}, kSmall{2, 5, 0.25};
+
 /// Both ways; `size`: of elements where the surface is made anew.
 void run_both(const KnownComplex& complex, double size, bool is_planar, Tally& tally) {
   Options options;
@@ -86,11 +93,16 @@ int main(int argc, char** argv) {
   using namespace octafront;
   const std::uint64_t first = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 1;
   const std::uint64_t count = argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 5;
+  const bool is_small = argc > 3 && std::string(argv[3]) == "small";
+  const Extent e = is_small ? kSmall : kUsual;
+  const auto number = [](std::uint64_t seed, int least, int numbers) {
+    return least + static_cast<int>(seed % static_cast<unsigned>(numbers));
+  };
   Tally tally;
   for (std::uint64_t seed = first; seed < first + count; ++seed) {
-    run_both(testing::plane_cuts(3 + static_cast<int>(seed % 6), seed), 0.15, true, tally);
-    run_both(testing::foam(5 + static_cast<int>(seed % 30), seed), 0.15, true, tally);
-    run_both(rough_cells(seed), 0.15, false, tally);
+    run_both(testing::plane_cuts(number(seed, 3, e.planes), seed), e.size, true, tally);
+    run_both(testing::foam(number(seed, is_small ? 3 : 5, e.cells), seed), e.size, true, tally);
+    if (!is_small) run_both(rough_cells(seed), e.size, false, tally);
   }
   std::printf("%d runs, %d failures\n", tally.runs, tally.failures);
   return tally.failures == 0 ? 0 : 1;

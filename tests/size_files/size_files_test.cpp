@@ -259,7 +259,7 @@ TEST(SizeRegions, HoldInsideAndGrowAround) {
   const SizeField h = make(testing::cube(4), options);
   for (const Vec3 p : {Vec3{0.3, 0.3, 0.3}, Vec3{0.21, 0.39, 0.3}}) EXPECT_NEAR(h.at(p), 0.05, 0.003);
   EXPECT_NEAR(h.at({0.9, 0.9, 0.9}), 0.1, 0.005);
-  EXPECT_NEAR(h.at({0.9, 0.05, 0.1}), 0.12, 0.03);
+  EXPECT_NEAR(h.at({0.9, 0.05, 0.1}), 0.11, 0.03);
   std::mt19937 random(2);
   std::uniform_real_distribution<double> u(0, 1);
   for (int n = 0; n < 20000; ++n) {

@@ -10,13 +10,8 @@ namespace octafront::remeshing {
 
 namespace {
 
-/// Size wanted in a strip, in widths of it: triangles of that base between the lines have 2r/R of .94. (At 2 widths
-/// models full of strips lose .01 of their mean; at 1.2 they gain .005 and have a third more triangles.)
-constexpr double kSizePerWidth = 1.5;
 /// Strips in which the size would stay above this part are left alone.
 constexpr double kWorthwhile = 0.85;
-/// The lines of a strip differ in direction by less than 12 degrees: lines that part at a corner are no strip.
-constexpr double kParallel = 0.978;
 /// Places to look from, in sizes, along a line.
 constexpr double kStep = 0.5;
 /// A place this near to one already kept, in the sizes wanted there, adds nothing.
@@ -43,12 +38,12 @@ Vec3 direction_of(const HalfEdgeMesh& mesh, HalfEdge h) {
 }
 
 /// Width of the strip beside half-edge h at p; HUGE_VAL if there is none within reach.
-double width_at(const InputSurface& input, HalfEdge h, Vec3 p, double reach) {
+double width_at(const InputSurface& input, HalfEdge h, Vec3 p, double reach, double parallel) {
   const Vec3 n = input.face_normal[h / 3], along = direction_of(input.mesh, h);
   SurfacePoint x;
   if (walk(input, {p, h / 3}, cross(n, along), n, reach, x) != WalkEnd::kFeature) return HUGE_VAL;
   const HalfEdge other = feature_at(input.mesh, x.face, x.p);
-  if (other == kNone || other == h || dot(direction_of(input.mesh, other), along) > -kParallel) return HUGE_VAL;
+  if (other == kNone || other == h || dot(direction_of(input.mesh, other), along) > -parallel) return HUGE_VAL;
   return distance(p, x.p);
 }
 
@@ -60,9 +55,10 @@ struct Narrow {
 
 /// The size that the strip beside h asks for at p; `old` if there is none.
 double size_beside(const InputSurface& input, HalfEdge h, Vec3 p, double old, const StripRules& rules) {
-  const double width = width_at(input, h, p, kWorthwhile / kSizePerWidth * old);
-  if (!(kSizePerWidth * width < kWorthwhile * old) || width < rules.hopeless * old) return old;
-  return std::max(rules.floor * old, kSizePerWidth * width);
+  const double width = width_at(input, h, p, kWorthwhile / rules.size_per_width * old, rules.parallel);
+  const double wanted = rules.size_per_width * width;
+  if (!(wanted < kWorthwhile * old) || width < rules.hopeless * old) return old;
+  return std::max(rules.floor * old, wanted);
 }
 
 /// Looks in the middle between two points of h and, where sizes rise so fast that it matters, nearer to them.

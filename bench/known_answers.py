@@ -1,0 +1,260 @@
+"""Repairs and meshes damaged models whose answer is known, and judges what came out.
+
+Usage: bench/run.sh known_answers [--cases FIRST:END] [--seed N] [--kinds A,B] [--generated] [--clean]
+                                  [--lines FILE] [--keep FOLDER] [--steps repair] [--jobs N] [--timeout SECONDS] [--page]
+Cases are those of scripts/damage-models.py. Each is repaired (`octafront repair`: the surface must be within the tolerance)
+and meshed with default options (`octafront mesh`: on top of the tolerance the mesher may stray as far as it says itself).
+octafront_judge_answer measures both against the undamaged model. One line for each failure; --lines appends a JSON object
+for each case to FILE and leaves out those that are there, so that a campaign may stop and go on; --page writes
+docs/repair-known.md from it. Files of failed cases are kept in --keep. Ends with status 1 if a case failed.
+--clean instead repairs the undamaged models: they must come out bit for bit.
+"""
+import argparse
+import concurrent.futures
+import importlib.util
+import json
+import math
+import os
+import pathlib
+import shutil
+import signal
+import statistics
+import subprocess
+import sys
+import tempfile
+import threading
+
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+spec = importlib.util.spec_from_file_location("damage_models", ROOT / "scripts/damage-models.py")
+damage = importlib.util.module_from_spec(spec)
+spec.loader.exec_module(damage)
+import solids  # noqa: E402, from scripts/lib
+
+TOLERANCE = 1e-3          # of the diagonal: the default of --tolerance
+MESH_DISTANCE = 5e-3      # the tolerance, and what --max-deviation allows the surface front by default
+VOLUME = 0.5              # percent
+VOLUME_OF_LARGEST = 3.0   # with holes of a tenth of the area
+EDGES = 1e-6              # of the diagonal
+PAGE = ROOT / "docs/repair-known.md"
+
+
+def run(command, timeout):
+    """(exit status, None: no end; standard error; CPU seconds; MB at most). `timeout` counts processor time: other programs
+    may be at work."""
+    with tempfile.TemporaryFile() as errors:
+        limited = ["prlimit", f"--cpu={math.ceil(timeout)}", *map(str, command)]
+        process = subprocess.Popen(limited, stdout=subprocess.DEVNULL, stderr=errors)
+        timer = threading.Timer(20 * timeout, process.kill)
+        timer.start()
+        _, status, used = os.wait4(process.pid, 0)
+        timer.cancel()
+        process.returncode = os.waitstatus_to_exitcode(status)
+        ended = process.returncode not in (-signal.SIGXCPU, -signal.SIGKILL)
+        errors.seek(0)
+        return (process.returncode if ended else None, errors.read().decode(errors="replace").strip(),
+                used.ru_utime + used.ru_stime, used.ru_maxrss / 1e3)
+
+
+def measure(build, known_file, result):
+    done = subprocess.run([build / "tests/known_answers/octafront_judge_answer", known_file, result], capture_output=True, text=True)
+    return json.loads(done.stdout) if done.returncode == 0 else {"unreadable": done.stderr.strip()}
+
+
+def wrong(known, made, distance, edges):
+    """What is wrong with a result, in a few words each."""
+    if "unreadable" in made or "empty" in made:
+        return [f"no result: {made.get('unreadable', 'empty')}"]
+    largest = known["kind"] in ("hole-10", "holes-10")
+    out = [f"invalid: {made['defect']}"] if made.get("defect") else []
+    out += [f"{made[key]} {key.replace('_', ' ')}" for key in ("bad_edges", "bad_vertices") if made[key]]
+    if made.get("regions", made["components"]) != made["components"]:  # each body is one
+        out.append(f"{made['regions']} regions")
+    for key, value in known["expected"].items():
+        if value is not None and made[key] != value:
+            out.append(f"{key} {made[key]}, not {value}")
+    for key in ("to_truth", "from_truth"):
+        if made[key]["distance"] > distance:
+            out.append(f"{key.replace('_', ' ')} {100 * made[key]['distance']:.3f} %")
+    if abs(made["volume_percent"]) > (VOLUME_OF_LARGEST if largest else VOLUME):
+        out.append(f"volume {made['volume_percent']:+.2f} %")
+    if made["sides"]["wrong"]:
+        out.append(f"{made['sides']['wrong']} of {made['sides']['asked']} points on the wrong side")
+    if edges and made["sharp_edges"]["distance"] > EDGES:
+        out.append(f"sharp edges {100 * made['sharp_edges']['distance']:.5f} % off")
+    return out
+
+
+def judge_case(build, folder, known, timeout, wanted):
+    """All about one case: what was made, measured, and is wrong."""
+    row = {key: known[key] for key in ("case", "seed", "kind", "model", "what", "damaged_triangles")} | {"wrong": []}
+    known_file = pathlib.Path(folder, f"{known['case']:04}.json")
+    steps = {"repair": ("repaired.off", TOLERANCE, []), "mesh": ("mesh.vtu", MESH_DISTANCE, ["--threads", "1"])}
+    for step in wanted:
+        name, distance, options = steps[step]
+        result = pathlib.Path(folder, f"{known['case']:04}-{name}")
+        report = result.with_suffix(".json")
+        status, message, seconds, megabytes = run(
+            [build / "cli/octafront", step, known["file"], "-o", result, "--json", report, "-q", *options], timeout)
+        row[step] = {"status": status, "cpu_seconds": seconds, "megabytes": megabytes}
+        if status != 0:
+            row["wrong"].append(f"{step}: {'no end' if status is None else f'status {status}'}: {message[:200]}")
+            continue
+        row[step] |= measure(build, known_file, result)
+        row["wrong"] += [f"{step}: {w}" for w in wrong(known, row[step], distance, step == "repair")]
+    return row
+
+
+def do_case(build, number, a):
+    kind, name, made = damage.make(number, a.seed, a.kinds.split(","), a.generated)
+    with tempfile.TemporaryDirectory() as folder:
+        known = damage.write(folder, number, kind, name, made, a.seed)
+        row = judge_case(build, folder, known, a.timeout, a.steps.split(","))
+        if row["wrong"] and a.keep:
+            kept = pathlib.Path(a.keep)
+            kept.mkdir(parents=True, exist_ok=True)
+            for file in pathlib.Path(folder).iterdir():
+                text = file.suffix == ".json" and len(file.stem) == 4
+                if text:  # its paths, too, move
+                    (kept / file.name).write_text(file.read_text().replace(str(folder), str(kept.resolve())))
+                else:
+                    shutil.copy(file, kept)
+    return row
+
+
+def changed(before, after):
+    """What of a surface is not the same bit for bit: "" or "points", "triangles" or both, in words."""
+    same = [x.shape == y.shape and x.tobytes() == y.astype(x.dtype).tobytes() for x, y in zip(before, after)]
+    return "" if all(same) else " and ".join(w for w, s in zip(("points", "triangles"), same) if not s) + " changed"
+
+
+def do_clean(build, name, a):
+    """What is wrong with the repair of an undamaged model; None if it is not to be asked."""
+    solid = damage.load(name)
+    if solid is None:
+        return None
+    with tempfile.TemporaryDirectory() as folder:
+        before, after = pathlib.Path(folder, "in.off"), pathlib.Path(folder, "out.off")
+        solids.write_off(before, solid)
+        status, message, _, _ = run([build / "cli/octafront", "repair", before, "-o", after, "-q"], a.timeout)
+        if status != 0:
+            return f"status {status}: {message[:200]}"
+        return changed(solid, solids.read_off(after))
+
+
+# -------------------------------------------------------------------------------------------------------- table
+
+
+def table(rows):
+    """A line for each kind of damage, and one for all."""
+    head = ["damage", "cases", "meshed", "all right", "topology right", "surface: farthest, % of diagonal (median, greatest)",
+            "mesh: farthest, %", "volume off, % (greatest, surface)", "wrong sides, points", "sharp edges off, % (greatest)",
+            "CPU s repair, mesh (medians)"]
+    out = ["| " + " | ".join(head) + " |", "|" + " --- |" * len(head)]
+    kinds = [k for k in damage.damages.KINDS if any(r["kind"] == k for r in rows)]
+    for name, its in [(k, [r for r in rows if r["kind"] == k]) for k in kinds] + [("**all**", rows)]:
+        out.append("| " + " | ".join(str(c) for c in line(name, its)) + " |")
+    return "\n".join(out) + "\n"
+
+
+def measured(rows, step):
+    return [r[step] for r in rows if "volume_percent" in r.get(step, {})]
+
+
+def share(part, whole):
+    return f"{part} ({100 * part / max(1, whole):.1f} %)"
+
+
+def line(name, rows):
+    surfaces, meshes = measured(rows, "repair"), measured(rows, "mesh")
+
+    def far(made):
+        return [100 * max(m["to_truth"]["distance"], m["from_truth"]["distance"]) for m in made] or [float("nan")]
+
+    def topology_right(r):
+        words = ("components", "shells", "genus", "bad edges", "bad vertices", "regions", "invalid", "status", "no end", "no result")
+        return not any(w in text for text in r["wrong"] for w in words)
+    return [name, len(rows), share(len(meshes), len(rows)), share(sum(not r["wrong"] for r in rows), len(rows)),
+            share(sum(map(topology_right, rows)), len(rows)),
+            f"{statistics.median(far(surfaces)):.4f}, {max(far(surfaces)):.3f}", f"{max(far(meshes)):.3f}",
+            f"{max((abs(m['volume_percent']) for m in surfaces), default=float('nan')):.3f}",
+            sum(m["sides"]["wrong"] for m in meshes),
+            f"{100 * max((m['sharp_edges']['distance'] for m in surfaces), default=float('nan')):.6f}",
+            ", ".join(f"{statistics.median(r[step]['cpu_seconds'] for r in rows if step in r):.2f}" for step in ("repair", "mesh")
+                      if any(step in r for r in rows))]
+
+
+def page(rows, command):
+    failed = [r for r in rows if r["wrong"]]
+    lines = [f"| {r['case']} | {r['kind']} | {r['model']} | {r['what']} | {'; '.join(r['wrong']).replace('|', '/')} |" for r in failed]
+    return "\n".join([
+        "# Damaged models whose answer is known", "", f"Written by `{command}`.", "",
+        f"{len(rows)} clean models, fetched and generated, damaged in known ways (`scripts/damage-models.py` says how), repaired and",
+        "meshed with default options, and measured against the undamaged model (`bench/judge_answer.cpp`), which repair never sees:", "",
+        f"- **meshed**: `octafront mesh` gave a mesh. **All right**: the repaired surface and the mesh pass every test below.",
+        "- **topology**: valid, 2-manifold; components, shells and genus those of the undamaged model, where they are known (not the",
+        "  genus of united copies that are not convex).",
+        f"- **farthest**: two-sided distance to the undamaged model at most {100 * TOLERANCE:g} % of the diagonal for the repaired surface, the tolerance,",
+        f"  and {100 * MESH_DISTANCE:g} % for the mesh, as the surface front may stray by .4 %. Not in a hole's zone: the convex hull of what was",
+        f"  taken away, grown by a tenth of its diameter.",
+        f"- **volume** within {VOLUME:g} % ({VOLUME_OF_LARGEST:g} % with holes of a tenth of the area).",
+        "- **wrong sides**: of 10,000 points a model, half of them near the surface but not within .5 % of the diagonal nor in a",
+        "  hole's zone, those that lie inside the one and outside the other.",
+        f"- **sharp edges** (over 30°) that no defect touches: at most {EDGES:g} of the diagonal away.", "",
+        table(rows), f"## The {len(failed)} failed", "", "| case | damage | model | what | wrong |", "| --- | --- | --- | --- | --- |", *lines, ""])
+
+
+# --------------------------------------------------------------------------------------------------------- main
+
+
+def clean_models(build, a):
+    failed = asked = 0
+    for name in damage.model_names(a.generated):
+        what = do_clean(build, name, a)
+        asked += what is not None
+        if what:
+            failed += 1
+            print(f"{name}: {what}", flush=True)
+    print(f"{asked - failed} of {asked} clean models untouched")
+    return failed
+
+
+def campaign(build, a):
+    first, _, end = a.cases.partition(":")
+    numbers = range(int(first), int(end or int(first) + 1))
+    done = [json.loads(text) for text in a.lines.open()] if a.lines and a.lines.exists() else []
+    left = sorted(set(numbers) - {r["case"] for r in done})
+    with concurrent.futures.ThreadPoolExecutor(a.jobs) as pool:
+        for row in pool.map(lambda n: do_case(build, n, a), left):
+            done.append(row)
+            if a.lines:
+                with a.lines.open("a") as f:
+                    f.write(json.dumps(row) + "\n")
+            if row["wrong"]:
+                print(f"{row['case']:4} {row['kind']} {row['model']}, {row['what']}: {'; '.join(row['wrong'])}", flush=True)
+    rows = sorted((r for r in done if r["case"] in numbers), key=lambda r: r["case"])
+    print(table(rows))
+    if a.page:
+        PAGE.write_text(page(rows, f"bench/run.sh known_answers --cases {a.cases} --page"))
+    return sum(bool(r["wrong"]) for r in rows)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("build", type=pathlib.Path)
+    parser.add_argument("--cases", default=f"0:{damage.CASES}")
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--kinds", default=",".join(damage.damages.KINDS))
+    parser.add_argument("--generated", action="store_true", help="generated shapes only, whatever was fetched")
+    parser.add_argument("--clean", action="store_true")
+    parser.add_argument("--lines", type=pathlib.Path)
+    parser.add_argument("--keep", type=pathlib.Path)
+    parser.add_argument("--steps", default="repair,mesh", help="or one of them alone")
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--timeout", type=float, default=60, help="processor seconds for each run")
+    parser.add_argument("--page", action="store_true")
+    a = parser.parse_args()
+    sys.exit(1 if (clean_models if a.clean else campaign)(a.build, a) else 0)
+
+
+if __name__ == "__main__":
+    main()
