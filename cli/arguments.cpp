@@ -188,15 +188,17 @@ void declare_repair(CLI::App& command, Arguments& a) {
                      {{"none", Repair::kNone}, {"auto", Repair::kAuto}, {"wrap", Repair::kWrap}},
                      "none: they are refused; auto: holes are closed, crossings resolved, what bounds nothing dropped, "
                      "the rest stays; wrap: a closed skin around everything");
-  using Overlap = MendOptions::Overlap;
-  add_choice<Overlap>(*group, "--overlap", a.mend.overlap, {{"union", Overlap::kUnion}, {"regions", Overlap::kRegions}},
-                      "Closed parts that overlap: one, or regions of their own where the names of their patches differ");
-  group->add_flag("--keep-sheets", a.mend.keep_sheets, "Walls inside that bound nothing stay, as sheets");
+  add_choice<Sheets>(
+      *group, "--sheets", a.sheets, {{"keep", Sheets::kKeep}, {"drop", Sheets::kDrop}},
+      "Walls inside of a region of a clean complex that bound nothing: cracks to keep, or debris. What has "
+      "to be mended loses them");
   group
       ->add_option("--wrap-distance", a.mend.distance,
                    "How far the skin lies from the surface [a hundredth of the diagonal]")
       ->type_name("D");
-  group->add_option("--defects", a.defects, "Show what was changed: a surface with a mark at each place, a patch each kind")
+  group
+      ->add_option("--defects", a.defects,
+                   "Show what was changed: a surface with a mark at each place, a patch each kind")
       ->type_name("FILE.ply");
 }
 
@@ -293,7 +295,8 @@ void declare_sizes(CLI::App& command, Arguments& a) {
           "Number of tetrahedra wanted, met within 15 %")
       ->type_name("N");
   group->add_option("--curvature", o.curvature, "Elements per full turn of a curved surface")->type_name("K");
-  group->add_option("--gap", o.gap, "Elements across thin walls and narrow gaps")->type_name("K");
+  group->add_option("--gap", o.gap, "Elements across thin walls and narrow gaps [images with --size or --elements: 1]")
+      ->type_name("K");
   group->add_option("--feature-elements", o.feature_elements, "Elements along each feature curve at least")
       ->type_name("K");
   group
@@ -320,7 +323,9 @@ void declare_sizes(CLI::App& command, Arguments& a) {
                    "What the input's coordinates count, for lengths with a unit; OBJ files may say it")
       ->type_name(names_of_units("|"));
   group->add_flag("--facets", o.facets, "Sizes follow the areas of the input's facets (the paper's rule)");
-  add_length(*group, a, "--min-size", o.min_size, "No size falls below this")->type_name("H");
+  add_length(*group, a, "--min-size", o.min_size,
+             "No size falls below this [images with --size or --elements: a voxel]")
+      ->type_name("H");
   add_length(*group, a, "--max-size", o.max_size, "No size rises above this")->type_name("H");
   group
       ->add_option("--automatic-factor", o.automatic_factor,

@@ -29,6 +29,8 @@ enum class Preset { kDraft, kStandard, kFine };
 
 /// What becomes of surfaces that cannot be meshed as they are.
 enum class Repair { kNone, kAuto, kWrap };
+/// What becomes of walls with one region on both sides.
+enum class Sheets { kKeep, kDrop };
 
 /// What the user typed, as the commands need it.
 struct Arguments {
@@ -39,6 +41,7 @@ struct Arguments {
   ComplexOptions complex;
   ImageArguments image;
   Repair repair = Repair::kAuto;
+  Sheets sheets = Sheets::kKeep;
   MendOptions mend;               ///< but for what `repair` says, and the tolerance, which is that of `complex`
   std::filesystem::path defects;  ///< where the changes of repair are shown; empty: nowhere
   std::vector<std::filesystem::path> meshes;               ///< that are written; "-": to standard output

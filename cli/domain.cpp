@@ -67,9 +67,12 @@ SurfaceFile read_walls(Session& session, Defects defects) {
   options.voids.insert(options.voids.end(), file.voids.begin(), file.voids.end());
   try {
     session.context().report("cells", -1);
-    if (auto complex = complex_of_walls(file.surface, options, session.context())) {
+    const bool wraps = defects == Defects::kMended && a.repair == Repair::kWrap;
+    auto complex = wraps ? std::nullopt : complex_of_walls(file.surface, options, session.context());
+    if (complex) {
       tell_regions(session, *complex);
       file.surface = std::move(complex->surface);
+      if (defects == Defects::kMended) drop_sheets(session, file.surface);
     } else if (defects == Defects::kMended) {
       mend(session, a.input, file.surface);
     }

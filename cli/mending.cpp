@@ -3,9 +3,13 @@
 #include <octafront/error.h>
 #include <octafront/io.h>
 #include <octafront/mend.h>
-#include <octafront/report.h>
 
+#include "text.h"
+
+#include <algorithm>
 #include <array>
+#include <cstddef>
+#include <vector>
 
 #include <fmt/core.h>
 
@@ -42,7 +46,30 @@ SurfaceMesh marks_of(const MendReport& report) {
   return marks;
 }
 
+/// Keeps what keep[t] says of an array with a value for each triangle, or none.
+template <class T>
+void keep_marked(std::vector<T>& values, const std::vector<char>& keep) {
+  std::size_t kept = 0;
+  for (std::size_t t = 0; t < values.size(); ++t)
+    if (keep[t]) values[kept++] = values[t];
+  values.resize(kept);
+}
+
 }  // namespace
+
+void drop_sheets(Session& session, SurfaceMesh& complex) {
+  if (session.arguments().sheets == Sheets::kKeep || session.arguments().repair == Repair::kNone) return;
+  std::vector<char> keep;
+  for (const Sides& sides : complex.sides) keep.push_back(sides[0] != sides[1]);
+  const auto dropped = std::count(keep.begin(), keep.end(), 0);
+  if (dropped == 0) return;
+  keep_marked(complex.triangles, keep);
+  keep_marked(complex.patch, keep);
+  keep_marked(complex.source, keep);
+  keep_marked(complex.sides, keep);
+  session.say_notes("repair", {counted(static_cast<std::uint64_t>(dropped), "face") + " of sheets dropped."});
+  session.found({{"dropped_sheet_faces", dropped}});
+}
 
 void mend(Session& session, const std::filesystem::path& file, SurfaceMesh& surface) {
   const Arguments& a = session.arguments();
@@ -55,6 +82,8 @@ void mend(Session& session, const std::filesystem::path& file, SurfaceMesh& surf
     session.found({{"repair", report}});
   if (!a.defects.empty()) write_surface(a.defects, marks_of(mended.report), session.context());
   if (mended.report.clean) return;
+  // What moves and invents nothing is done, and told, by those who mesh.
+  if (mended.report.changes.empty() && a.command != "repair") return;
   session.say_notes("repair", mended.report.notes);
   surface = std::move(mended.surface);
 }

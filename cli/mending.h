@@ -12,4 +12,7 @@ namespace octafront::cli {
 /// A clean one stays as it is. Throws InputError, OptionError.
 void mend(Session& session, const std::filesystem::path& file, SurfaceMesh& surface);
 
+/// Drops the walls of a complex that have one region on both sides, if the options say so.
+void drop_sheets(Session& session, SurfaceMesh& complex);
+
 }  // namespace octafront::cli

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Fuzzes the readers, and the repair of surfaces, under address and undefined behaviour sanitizers, from the seeds in tests/corpus.
-#   scripts/fuzz.sh [MINUTES] [TARGET ...]      minutes per target, by default 10; targets surface, mesh, tetgen, sizes, repair, poly, complex and image
+#   scripts/fuzz.sh [MINUTES] [TARGET ...]      minutes per target, by default 10; targets surface, mesh, tetgen, sizes, repair, poly, complex, mend and image
 # Found inputs are left in build/fuzz/found; shrink one (fuzz_TARGET -minimize_crash=1 -runs=100000 FILE), fix, and add it
 # to tests/corpus. Installs what is missing (Debian 12).
 set -euo pipefail
@@ -11,7 +11,7 @@ minutes=${1:-10}
 [[ $minutes =~ ^[0-9]+$ ]] || { sed -n '2,5s/^# //p' "$0"; exit 2; }
 [ $# -gt 0 ] && shift
 targets=("$@")
-[ ${#targets[@]} -gt 0 ] || targets=(surface mesh tetgen sizes repair poly complex image)
+[ ${#targets[@]} -gt 0 ] || targets=(surface mesh tetgen sizes repair poly complex mend image)
 
 need_packages "${build_packages[@]}" clang libclang-rt-14-dev
 cmake --preset fuzz -DOCTAFRONT_BUILD_CLI=OFF -DOCTAFRONT_BUILD_BENCH=OFF >/dev/null

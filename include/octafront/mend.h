@@ -22,12 +22,6 @@ struct MendOptions {
   /// kAuto: what is not broken stays as it is. kWrap: a closed skin at a distance around everything, whatever it is.
   enum class Way { kAuto, kWrap };
   Way way = Way::kAuto;
-  /// Closed parts that overlap. kUnion: they become one. kRegions: parts with patches of different names become regions
-  /// of their own; where they overlap the later one has its way.
-  enum class Overlap { kUnion, kRegions };
-  Overlap overlap = Overlap::kUnion;
-  /// Walls that bound nothing, inside of the body, stay as sheets.
-  bool keep_sheets = false;
   /// kWrap: how far the skin lies from the input; input units, > 0. Without a value a hundredth of the diagonal.
   std::optional<double> distance;
 };
@@ -78,19 +72,22 @@ constexpr const char* name_of(MendChange::Kind kind) {
 
 /// What mend_surface() did.
 struct MendReport {
-  bool clean = false;      ///< the input needed nothing and came back as it was
-  double tolerance = 0;    ///< that was kept to, input units
-  double diagonal = 0;     ///< of the input's box
-  double largest_move = 0; ///< of any vertex
+  bool clean = false;                                    ///< the input needed nothing and came back as it was
+  double tolerance = 0;                                  ///< that was kept to, input units
+  double diagonal = 0;                                   ///< of the input's box
+  double largest_move = 0;                               ///< of any vertex
   std::uint64_t joined_vertices = 0, divided_edges = 0;  ///< to bring open edges together
   std::uint64_t crossing_pairs = 0;                      ///< faces that met elsewhere than in what they share
   std::uint64_t separated_vertices = 0;
   double area_before = 0, area_after = 0, volume_before = 0, volume_after = 0;
-  std::uint32_t bodies = 0;          ///< of the result
-  std::vector<MendChange> changes;   ///< by kind, each in the order of the input's faces
-  std::vector<std::string> notes;    ///< a sentence for each kind of change
+  std::uint32_t bodies = 0;         ///< of the result
+  std::vector<MendChange> changes;  ///< by kind, each in the order of the input's faces
+  std::vector<std::string> notes;   ///< a sentence for each kind of change
   std::uint64_t count(MendChange::Kind kind) const;
 };
+
+/// The report as one JSON object, each change with its place.
+std::string to_json(const MendReport& report);
 
 struct Mended {
   SurfaceMesh surface;  ///< clean; `source` refers to the input's faces
@@ -108,7 +105,8 @@ struct Mended {
 /// patch kClosedByRepair. The result is the same on any number of threads.
 ///
 /// Cost: some five times repair_surface() and find_defects(), plus 20 microseconds for each pair of crossing faces.
-/// Throws InputError where the soup encloses nothing, or an argument is out of range; Cancelled.
+/// Throws InputError where the soup encloses nothing; OptionError for an argument out of range, or a soup with sides;
+/// Cancelled.
 Mended mend_surface(const SurfaceMesh& soup, const MendOptions& options = {}, const RunContext& context = no_context());
 
 }  // namespace octafront

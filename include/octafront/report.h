@@ -1,6 +1,5 @@
 #pragma once
 
-#include <octafront/mend.h>
 #include <octafront/quality.h>
 #include <octafront/repair.h>
 #include <octafront/second_order.h>
@@ -60,7 +59,6 @@ std::string to_json(const Report& report);
 
 /// What checks found, as JSON with the places: an object, for findings of a solver's limits an array of them.
 std::string to_json(const SurfaceDefects& defects);
-std::string to_json(const MendReport& report);
 std::string to_json(const JacobianSummary& found);
 std::string to_json(const std::vector<SolverFinding>& findings);
 

@@ -19,10 +19,12 @@ using Numbers = std::vector<std::uint32_t>;
 
 class PolygonCap {
  public:
-  PolygonCap(std::span<const Vec3> points, const IsTaken& is_taken) : points_(points), is_taken_(is_taken) {
+  PolygonCap(std::span<const Vec3> points, std::span<const Vec3> beyond, const IsTaken& is_taken)
+      : points_(points), beyond_(beyond), is_taken_(is_taken) {
     double around = 0;
     for (std::size_t i = 0; i < points.size(); ++i) around += distance(points[i], points[(i + 1) % points.size()]);
-    penalty_ = around * around;
+    penalty_ = around * static_cast<double>(points.size());
+    per_area_ = around > 0 ? 1 / around : 0;
   }
 
   Cap result() {
@@ -69,26 +71,26 @@ class PolygonCap {
     return best;
   }
 
-  /// Best costs of all sub-polygons i..j, by their size.
+  /// What lies on the other side of the edge from corner i of the polygon to corner j > i, as seen from a triangle
+  /// beyond it; zero: unknown.
+  Vec3 normal_below(const Numbers& polygon, std::size_t i, std::size_t j) const {
+    if (j - i > 1) return normal_[i * polygon.size() + j];
+    return is_rim(polygon[i], polygon[j]) ? beyond_[polygon[i]] : Vec3{};
+  }
+  bool is_rim(std::uint32_t a, std::uint32_t b) const { return (a + 1) % points_.size() == b; }
+
+  double bend(const Numbers& polygon, std::size_t i, std::size_t j, Vec3 n, Vec3 other) const {
+    return other == Vec3{} ? 0 : distance(at(polygon[i]), at(polygon[j])) * distance(n, other);
+  }
+
+  /// Best costs of all sub-polygons i..j, by their size; what bends at their chord is added by the next larger one.
   void fill(const Numbers& polygon) {
     const std::size_t n = polygon.size();
     cost_.assign(n * n, 0);
     middle_.assign(n * n, kNoCorner);
+    normal_.assign(n * n, {});
     for (std::size_t size = 2; size < n; ++size)
-      for (std::size_t i = 0; i + size < n; ++i) {
-        const std::size_t j = i + size;
-        double least = std::numeric_limits<double>::infinity();
-        for (std::size_t k = i + 1; k < j; ++k) {
-          const double cost = cost_[i * n + k] + cost_[k * n + j] +
-                              triangle_area(at(polygon[i]), at(polygon[k]), at(polygon[j]));
-          if (cost < least) {
-            least = cost;
-            middle_[i * n + j] = static_cast<std::uint32_t>(k);
-          }
-        }
-        const bool is_chord = size < n - 1;
-        cost_[i * n + j] = least + (is_chord && is_taken_(polygon[i], polygon[j]) ? penalty_ : 0);
-      }
+      for (std::size_t i = 0; i + size < n; ++i) find_best(polygon, i, i + size);
     std::vector<std::array<std::size_t, 2>> open{{0, n - 1}};
     while (!open.empty()) {
       const auto [i, j] = open.back();
@@ -101,20 +103,43 @@ class PolygonCap {
     }
   }
 
+  void find_best(const Numbers& polygon, std::size_t i, std::size_t j) {
+    const std::size_t n = polygon.size();
+    const bool is_last = j - i == n - 1;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = i + 1; k < j; ++k) {
+      const Vec3 twice = double_area_normal(at(polygon[i]), at(polygon[k]), at(polygon[j]));
+      const double area = 0.5 * length(twice);
+      const Vec3 normal = normalized(twice);
+      double cost = cost_[i * n + k] + cost_[k * n + j] + per_area_ * area;
+      if (cost >= least) continue;
+      cost += bend(polygon, i, k, normal, normal_below(polygon, i, k)) +
+              bend(polygon, k, j, normal, normal_below(polygon, k, j));
+      if (is_last && is_rim(polygon[j], polygon[i])) cost += bend(polygon, i, j, normal, beyond_[polygon[j]]);
+      if (cost >= least) continue;
+      least = cost;
+      middle_[i * n + j] = static_cast<std::uint32_t>(k);
+      normal_[i * n + j] = normal;
+    }
+    cost_[i * n + j] = least + (!is_last && is_taken_(polygon[i], polygon[j]) ? penalty_ : 0);
+  }
+
   static constexpr std::uint32_t kNoCorner = 0xffffffffu;
 
   std::span<const Vec3> points_;
+  std::span<const Vec3> beyond_;
   const IsTaken& is_taken_;
-  double penalty_ = 0;
+  double penalty_ = 0, per_area_ = 0;
   std::vector<double> cost_;
   std::vector<std::uint32_t> middle_;
+  std::vector<Vec3> normal_;  ///< of the triangle at the chord
   Cap cap_;
 };
 
 }  // namespace
 
-Cap triangulate_polygon(std::span<const Vec3> polygon, const IsTaken& is_taken) {
-  return PolygonCap(polygon, is_taken).result();
+Cap triangulate_polygon(std::span<const Vec3> polygon, std::span<const Vec3> beyond, const IsTaken& is_taken) {
+  return PolygonCap(polygon, beyond, is_taken).result();
 }
 
 }  // namespace octafront::mend

@@ -15,9 +15,11 @@ namespace {
 
 using repair::Draft;
 
-/// A part with caps of more than this share of its own area is a sheet. Of a hemisphere it is half, of a tube as long as
-/// wide half too, of a terrain nearly all.
+/// A part with caps of more than this share of its own area is a sheet. Of a hemisphere it is half, of a tube as long
+/// as wide half too, of a terrain nearly all.
 constexpr double kMostCapped = 0.9;
+/// The same for parts beside others that are closed, but for holes of this share.
+constexpr double kMostCappedBeside = 0.3, kNearlyClosed = 0.05;
 
 std::uint64_t key_of(VertexIndex a, VertexIndex b) {
   return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
@@ -36,10 +38,14 @@ std::unordered_set<std::uint64_t> edges_between(const EdgeTable& table, const st
 }
 
 Hole closed(const Draft& draft, const Loop& loop, const std::unordered_set<std::uint64_t>& taken) {
-  std::vector<Vec3> polygon;
+  std::vector<Vec3> polygon, beyond;
   for (const VertexIndex v : loop.vertices) polygon.push_back(draft.mesh.points[v]);
+  for (const std::uint32_t t : loop.triangles) {
+    const auto [a, b, c] = draft.mesh.triangles[t];
+    beyond.push_back(unit_normal(draft.mesh.points[a], draft.mesh.points[b], draft.mesh.points[c]));
+  }
   Hole hole;
-  hole.rim_triangle = loop.triangle;
+  hole.rim_triangle = loop.triangles.front();
   double around = 0;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     around += distance(polygon[i], polygon[(i + 1) % polygon.size()]);
@@ -48,7 +54,7 @@ Hole closed(const Draft& draft, const Loop& loop, const std::unordered_set<std::
   const auto is_taken = [&](std::uint32_t i, std::uint32_t j) {
     return taken.contains(key_of(loop.vertices[i], loop.vertices[j]));
   };
-  for (const auto& [i, j, k] : triangulate_polygon(polygon, is_taken)) {
+  for (const auto& [i, j, k] : triangulate_polygon(polygon, beyond, is_taken)) {
     hole.cap.push_back({loop.vertices[i], loop.vertices[j], loop.vertices[k]});
     hole.area += triangle_area(polygon[i], polygon[j], polygon[k]);
   }
@@ -59,6 +65,9 @@ Hole closed(const Draft& draft, const Loop& loop, const std::unordered_set<std::
 /// Of a part that hangs together: its own area, that of its caps, and what both enclose.
 struct Part {
   double area = 0, capped = 0, volume = 0;
+  bool is_sheet = false;
+
+  bool is_thin(double tolerance) const { return 2 * std::abs(volume) <= tolerance * area; }
 };
 
 class Parts {
@@ -74,10 +83,23 @@ class Parts {
     for (const Triangle& t : hole.cap) add(hole.rim_triangle, t, true);
   }
 
-  bool is_sheet(std::uint32_t triangle, double tolerance) {
-    const Part& part = part_[sets_.find(triangle)];
-    return part.capped > kMostCapped * part.area || 2 * std::abs(part.volume) < tolerance * part.area;
+  /// Requires that all caps are known.
+  void judge(double tolerance) {
+    bool any_closed = false;
+    for (const Part& part : part_)
+      any_closed = any_closed || (!part.is_thin(tolerance) && part.capped <= kNearlyClosed * part.area);
+    for (Part& part : part_)
+      part.is_sheet =
+          part.is_thin(tolerance) || part.capped > (any_closed ? kMostCappedBeside : kMostCapped) * part.area;
   }
+
+  bool is_one_sheet() {
+    const Part& part = part_[0];
+    return part.capped > kMostCapped * part.area &&
+           std::all_of(part_.begin() + 1, part_.end(), [](const Part& other) { return other.area == 0; });
+  }
+
+  bool is_sheet(std::uint32_t triangle) { return part_[sets_.find(triangle)].is_sheet; }
 
  private:
   void add(std::uint32_t of, const Triangle& t, bool is_cap) {
@@ -95,11 +117,13 @@ class Parts {
 
 }  // namespace
 
-std::vector<Hole> close_holes(Draft& draft, double tolerance) {
+ClosedHoles close_holes(Draft& draft, double tolerance) {
   const EdgeTable& table = draft.edges();
   const std::vector<Loop> loops = find_loops(draft.mesh.triangles, table);
   const auto taken = edges_between(table, loops, draft.mesh.points.size());
-  std::vector<Hole> all(loops.size());
+  ClosedHoles result;
+  std::vector<Hole>& all = result.holes;
+  all.resize(loops.size());
   parallel_for(
       loops.size(),
       [&](std::size_t i) {
@@ -109,8 +133,11 @@ std::vector<Hole> close_holes(Draft& draft, double tolerance) {
       Split::kSingly);
   Parts parts(draft, table);
   for (const Hole& hole : all) parts.add_cap(hole);
-  std::erase_if(all, [&](const Hole& hole) { return parts.is_sheet(hole.rim_triangle, tolerance); });
-  return all;
+  parts.judge(tolerance);
+  std::erase_if(all, [&](const Hole& hole) { return parts.is_sheet(hole.rim_triangle); });
+  for (std::uint32_t t = 0; t < draft.mesh.triangles.size(); ++t) result.is_sheet.push_back(parts.is_sheet(t));
+  result.is_one_sheet = !draft.mesh.triangles.empty() && parts.is_one_sheet();
+  return result;
 }
 
 }  // namespace octafront::mend

@@ -18,8 +18,15 @@ struct Hole {
   Vec3 at;
 };
 
-/// Caps for the holes of all parts that nearly enclose something, and none for sheets: parts whose caps would be larger
-/// than themselves, or that would enclose a volume thinner than the tolerance.
-std::vector<Hole> close_holes(repair::Draft& draft, double tolerance);
+struct ClosedHoles {
+  std::vector<Hole> holes;
+  std::vector<char> is_sheet;  ///< per triangle of the draft
+  bool is_one_sheet = false;   ///< all hangs together, and caps would be nearly as large as the rest
+};
+
+/// Caps for the holes of all parts that nearly enclose something, and none for sheets: parts whose caps would be too
+/// large a share of themselves, or that would enclose a volume thinner than the tolerance. Where some parts are closed
+/// already, open ones must be nearly so too.
+ClosedHoles close_holes(repair::Draft& draft, double tolerance);
 
 }  // namespace octafront::mend

@@ -44,7 +44,9 @@ std::vector<char> turned_pieces(const Arrangement& arranged, const Cells& cells,
 /// How often more a triangle of the arrangement lies there forward than backward.
 int times(const Arrangement& arranged, std::size_t t, const PieceOf& pieces, const std::vector<char>& turned) {
   int net = 0;
-  for (const Origin& o : arranged.origins_of(t)) net += (turned[pieces.piece[o.triangle]] != 0) == o.reversed ? 1 : -1;
+  for (const Origin& o : arranged.origins_of(t))
+    if (!pieces.is_sheet[pieces.piece[o.triangle]])
+      net += (turned[pieces.piece[o.triangle]] != 0) == o.reversed ? 1 : -1;
   return net;
 }
 

@@ -14,6 +14,7 @@ namespace octafront::mend {
 struct PieceOf {
   std::vector<std::uint32_t> piece;  ///< per triangle of the soup
   std::uint32_t count = 0;
+  std::vector<char> is_sheet = {};  ///< per piece: it winds around nothing, whatever it looks like from nearby
 };
 
 struct Labels {
@@ -25,8 +26,9 @@ struct Labels {
   std::vector<std::uint32_t> emptied;  ///< cells inside of bodies thinner than the tolerance, that are outside now
 };
 
-/// Which cells are inside: those that the walls wind around more than half. A piece that shows its back to the unbounded
-/// cell is turned before. Cells in doubt go where the least area of walls comes to lie between inside and outside.
+/// Which cells are inside: those that the walls wind around more than half. A piece that shows its back to the
+/// unbounded cell is turned before. Cells in doubt go where the least area of walls comes to lie between inside and
+/// outside.
 Labels label_cells(const Arrangement& arranged, const Cells& cells, const PieceOf& pieces, double tolerance,
                    const RunContext& context);
 

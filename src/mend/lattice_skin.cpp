@@ -88,7 +88,8 @@ void keep_outer_parts(SurfaceMesh& surface) {
   std::vector<double> volume(surface.points.size(), 0);
   for (const Triangle& t : surface.triangles) {
     const std::uint32_t part = parts.find(t[0]);
-    volume[part] += signed_volume(surface.points[part], surface.points[t[0]], surface.points[t[1]], surface.points[t[2]]);
+    volume[part] +=
+        signed_volume(surface.points[part], surface.points[t[0]], surface.points[t[1]], surface.points[t[2]]);
   }
   std::erase_if(surface.triangles, [&](const Triangle& t) { return volume[parts.find(t[0])] < 0; });
 }

@@ -88,8 +88,11 @@ class Tracer {
 
   void add_loop(const std::vector<HalfEdge>& rim, std::vector<Loop>& found) const {
     if (rim.size() < 3) return;
-    Loop loop{{}, rim.front() / 3};
-    for (auto h = rim.rbegin(); h != rim.rend(); ++h) loop.vertices.push_back(end_of(triangles_, *h));
+    Loop loop;
+    for (auto h = rim.rbegin(); h != rim.rend(); ++h) {
+      loop.vertices.push_back(end_of(triangles_, *h));
+      loop.triangles.push_back(*h / 3);
+    }
     found.push_back(std::move(loop));
   }
 

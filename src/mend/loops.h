@@ -13,7 +13,7 @@ namespace octafront::mend {
 /// The rim of a hole: its vertices in the order that triangles which close it run along it, none of them twice.
 struct Loop {
   std::vector<VertexIndex> vertices;
-  std::uint32_t triangle;  ///< one at the rim
+  std::vector<std::uint32_t> triangles;  ///< at the rim, from each vertex to the next one
 };
 
 /// The closed chains of open edges, in the order of their first half-edges. Requires that neighbouring triangles agree;

@@ -39,9 +39,13 @@ double tolerance_of(const MendOptions& options, double diagonal) {
   return *options.tolerance;
 }
 
-/// Whether the surface can be meshed as it is.
-bool is_clean(const SurfaceMesh& soup, const RunContext& context) {
-  return find_defects(repair_surface(soup, context), context).clean();
+bool is_clean(const SurfaceMesh& surface, const RunContext& context) {
+  return find_defects(repair_surface(surface, context), context).clean();
+}
+
+/// Whether repair did more than to join corners at the same place, which many files have apart.
+bool has_changed(const RepairedSurface& r) {
+  return r.duplicate_faces + r.degenerate_faces + r.turned_faces + r.turned_shells > 0;
 }
 
 void clean_faces(Draft& draft) {
@@ -120,12 +124,14 @@ class Mending {
   /// Patches and faces of the input, by the nearest walls.
   SurfaceMesh named(LatticeSkin skin) const {
     const std::uint32_t patch_of_caps = first_free_patch();
+    for (std::size_t t = 0; t < skin.is_far.size(); ++t)
+      if (is_cap(skin.surface.source[t])) skin.is_far[t] = 1;
     const bool has_far = std::find(skin.is_far.begin(), skin.is_far.end(), 1) != skin.is_far.end();
     for (std::size_t t = 0; t < skin.surface.triangles.size(); ++t) {
       std::uint32_t& wall = skin.surface.source[t];
       const std::uint32_t face = is_cap(wall) ? 0 : draft_.face[wall];
       if (has_far || !soup_.patch.empty())
-        skin.surface.patch.push_back(skin.is_far[t] || is_cap(wall) ? patch_of_caps : soup_.patch_of(face));
+        skin.surface.patch.push_back(skin.is_far[t] ? patch_of_caps : soup_.patch_of(face));
       wall = soup_.source_of(face);
     }
     skin.surface.patch_names = soup_.patch_names;
@@ -153,7 +159,14 @@ class Mending {
   }
 
   void close() {
-    holes_ = close_holes(draft_, report_.tolerance);
+    ClosedHoles closed = close_holes(draft_, report_.tolerance);
+    if (closed.is_one_sheet) refuse_open();
+    holes_ = std::move(closed.holes);
+    // Where there is nothing but sheets, they together may enclose something.
+    const bool all = std::find(closed.is_sheet.begin(), closed.is_sheet.end(), 0) == closed.is_sheet.end();
+    pieces_.is_sheet.assign(pieces_.count, 0);
+    for (std::size_t t = 0; t < closed.is_sheet.size() && !all; ++t)
+      pieces_.is_sheet[pieces_.piece[t]] = closed.is_sheet[t];
     for (const Hole& hole : holes_)
       pieces_.piece.insert(pieces_.piece.end(), hole.cap.size(), pieces_.piece[hole.rim_triangle]);
   }
@@ -343,17 +356,24 @@ Mended mend_surface(const SurfaceMesh& soup, const MendOptions& options, const R
   Mended mended;
   MendReport& report = mended.report;
   repair::check_input(soup);
+  if (!soup.sides.empty()) throw OptionError("a complex of regions is mended by nobody: give the walls without sides");
   report.diagonal = bounding_box(soup.points).diagonal();
   report.tolerance = tolerance_of(options, report.diagonal);
   report.area_before = area(soup);
   report.volume_before = std::abs(enclosed_volume(soup));
   if (options.way == MendOptions::Way::kWrap) {
     mended.surface = wrapped(soup, options, context, report);
-  } else if (is_clean(soup, context)) {
-    report.clean = true;
-    mended.surface = soup;
   } else {
-    mended.surface = Mending(soup, options, context, report).result();
+    RepairedSurface repaired = repair_surface(soup, context);
+    const bool is_enough = find_defects(repaired, context).clean();
+    report.clean = is_enough && !has_changed(repaired);
+    if (!is_enough)
+      mended.surface = Mending(soup, options, context, report).result();
+    else if (report.clean)
+      mended.surface = soup;
+    else
+      mended.surface = std::move(repaired.surface);
+    if (is_enough) report.notes = repaired.notes;
   }
   finish_report(report, mended.surface);
   return mended;

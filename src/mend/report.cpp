@@ -140,14 +140,13 @@ Sum sum_of(const MendReport& report, Kind kind) {
 void note_closed(MendReport& report) {
   const Sum holes = sum_of(report, Kind::kClosed);
   if (holes.changes == 0) return;
-  const auto beyond = std::count_if(report.changes.begin(), report.changes.end(), [](const MendChange& c) {
-    return c.kind == Kind::kClosed && !c.within_tolerance;
-  });
-  report.notes.push_back(fmt::format(
-      "{} closed, of area {:.4g} in all, the largest {:.4g}{}.", counted(holes.changes, "hole"), holes.size,
-      holes.largest,
-      beyond == 0 ? ", all within the tolerance"
-                  : fmt::format("; {} beyond the tolerance: patch \"{}\"", beyond, kClosedByRepair)));
+  const auto beyond = std::count_if(report.changes.begin(), report.changes.end(),
+                                    [](const MendChange& c) { return c.kind == Kind::kClosed && !c.within_tolerance; });
+  report.notes.push_back(
+      fmt::format("{} closed, of area {:.4g} in all, the largest {:.4g}{}.", counted(holes.changes, "hole"), holes.size,
+                  holes.largest,
+                  beyond == 0 ? ", all within the tolerance"
+                              : fmt::format("; {} beyond the tolerance: patch \"{}\"", beyond, kClosedByRepair)));
 }
 
 void write_notes(MendReport& report) {
@@ -169,8 +168,8 @@ void write_notes(MendReport& report) {
     notes.push_back(fmt::format("{} dropped ({}, area {:.4g}): inside of others, or bounding nothing.",
                                 counted(dropped.changes, "part"), counted(dropped.faces, "face"), dropped.size));
   if (report.separated_vertices > 0)
-    notes.push_back(fmt::format("parts that touched drawn apart at {}.",
-                                counted(report.separated_vertices, "vertex", "vertices")));
+    notes.push_back(
+        fmt::format("parts that touched drawn apart at {}.", counted(report.separated_vertices, "vertex", "vertices")));
   if (const Sum rebuilt = sum_of(report, Kind::kRebuilt); rebuilt.changes > 0)
     notes.push_back(fmt::format("the surface was made anew on a lattice: {}.", counted(rebuilt.faces, "face")));
   const auto change = [](double before, double after) { return before > 0 ? 100 * (after / before - 1) : 0.0; };

@@ -2,17 +2,17 @@
 
 #include "cells/side_graph.h"
 #include "core/disjoint_sets.h"
+#include "core/random.h"
 #include "geometry/measures.h"
 #include "geometry/predicates.h"
 #include "geometry/self_intersection.h"
+#include "geometry/triangle_tree.h"
 #include "mend/cap.h"
 #include "mesh/surface_topology.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <limits>
 #include <map>
 
@@ -21,12 +21,12 @@ namespace {
 
 /// A copy moves by a part of the shortest edge beside it at most, and half as far again where it still touches.
 constexpr double kStep = 0.2;
-constexpr int kRounds = 10;
+constexpr int kRounds = 30;
 
 /// A vertex of one fan: where it was, which way it goes, how far.
 struct Copy {
   VertexIndex vertex;
-  Vec3 from, way;
+  Vec3 from, way, base;  ///< `base`: the way that it should go
   double step;
   std::uint32_t of;  ///< so many copies
 };
@@ -43,16 +43,16 @@ Way common_way(const std::vector<Vec3>& vectors) {
   constexpr int kTries = 40;
   constexpr double kEnough = 0.15, kTurn = 0.3;
   for (int i = 0;; ++i) {
-    const Vec3 worst =
-        *std::min_element(vectors.begin(), vectors.end(), [&](Vec3 a, Vec3 b) { return dot(a, way.to) < dot(b, way.to); });
+    const Vec3 worst = *std::min_element(vectors.begin(), vectors.end(),
+                                         [&](Vec3 a, Vec3 b) { return dot(a, way.to) < dot(b, way.to); });
     way.reach = dot(worst, way.to);
     if (way.reach > kEnough || i == kTries) return way;
     way.to = normalized(way.to + kTurn * worst);
   }
 }
 
-/// Where the tip of a fan goes: behind all of its triangles or in front of them, whichever leads away from the other fans
-/// and into its own; `away` points so. Zero where there is no such way.
+/// Where the tip of a fan goes: behind all of its triangles or in front of them, whichever leads away from the other
+/// fans and into its own; `away` points so. Zero where there is no such way.
 Vec3 way_of_tip(const std::vector<Vec3>& normals, Vec3 away) {
   std::vector<Vec3> backward;
   for (const Vec3 n : normals) backward.push_back(-n);
@@ -65,12 +65,14 @@ Vec3 way_of_tip(const std::vector<Vec3>& normals, Vec3 away) {
 /// The fans of triangles around vertices, apart where they hang together through the inside only in the vertex.
 class Fans {
  public:
-  Fans(const SurfaceMesh& surface, const RunContext& context) : triangles_(surface.triangles), fan_(3 * triangles_.size()) {
+  Fans(const SurfaceMesh& surface, const RunContext& context)
+      : triangles_(surface.triangles), fan_(3 * triangles_.size()) {
     const cells::SideGraph graph = cells::make_side_graph(surface.points, triangles_, context);
     for (std::uint32_t t = 0; t < triangles_.size(); ++t)
       for (int i = 0; i < 3; ++i) {
         const std::uint32_t other = cells::triangle_of(graph.next[cells::behind(t)][i]);
-        for (const VertexIndex v : {triangles_[t][i], triangles_[t][(i + 1) % 3]}) fan_.join(corner(t, v), corner(other, v));
+        for (const VertexIndex v : {triangles_[t][i], triangles_[t][(i + 1) % 3]})
+          fan_.join(corner(t, v), corner(other, v));
       }
   }
 
@@ -171,7 +173,8 @@ class TipCutter {
       rim.push_back(cut[w]);
       polygon.push_back(at(cut[w]));
     }
-    for (const auto& [i, j, k] : triangulate_polygon(polygon, [](std::uint32_t, std::uint32_t) { return false; }))
+    for (const auto& [i, j, k] : triangulate_polygon(polygon, std::vector<Vec3>(polygon.size()),
+                                                     [](std::uint32_t, std::uint32_t) { return false; }))
       made.push_back({rim[i], rim[j], rim[k]});
   }
 
@@ -271,9 +274,8 @@ class Separation {
     std::vector<char> cut_already(surface_.triangles.size(), 0);
     bool any = false;
     for (const auto& [v, fans] : Fans(surface_, context_).shared()) {
-      const auto movable = std::count_if(fans.begin(), fans.end(), [&](const Fan& fan) {
-        return way_of_tip(normals_of(fan), {}) != Vec3{};
-      });
+      const auto movable = std::count_if(fans.begin(), fans.end(),
+                                         [&](const Fan& fan) { return way_of_tip(normals_of(fan), {}) != Vec3{}; });
       if (movable + 1 >= static_cast<std::ptrdiff_t>(fans.size())) continue;
       bool waits = false;
       for (const Fan& fan : fans)
@@ -298,7 +300,7 @@ class Separation {
         surface_.points.push_back(Vec3(surface_.points[v]));
         for (const std::uint32_t c : fans[f]) surface_.triangles[c / 3][c % 3] = number;
       }
-      copies_.push_back({number, surface_.points[number], {}, most_, static_cast<std::uint32_t>(fans.size())});
+      copies_.push_back({number, surface_.points[number], {}, {}, most_, static_cast<std::uint32_t>(fans.size())});
       fans_.push_back(fans[f]);
     }
   }
@@ -310,7 +312,11 @@ class Separation {
       Vec3 all;
       for (std::size_t k = first; k < first + copies_[first].of; ++k) all += middle_of(fans_[k]);
       for (std::size_t k = first; k < first + copies_[first].of; ++k) {
-        copies_[k].way = way_of_tip(normals_of(fans_[k]), 2 * middle_of(fans_[k]) - all);
+        const Vec3 away = 2 * middle_of(fans_[k]) - all;
+        copies_[k].way = way_of_tip(normals_of(fans_[k]), away);
+        // A fan that bends both ways has none that suits all its triangles.
+        if (copies_[k].way == Vec3{} && length(away) > 0) copies_[k].way = normalized(away);
+        copies_[k].base = copies_[k].way;
         for (const std::uint32_t c : fans_[k])
           for (const VertexIndex w : surface_.triangles[c / 3])
             if (w != copies_[k].vertex)
@@ -319,20 +325,54 @@ class Separation {
     }
   }
 
+  /// The triangles that may meet what moves.
+  std::vector<Triangle> concerned() const {
+    const TriangleTree tree(surface_);
+    std::vector<char> marked(surface_.triangles.size(), 0);
+    for (const Triangle& t : surface_.triangles) {
+      if (std::none_of(t.begin(), t.end(), [&](VertexIndex v) { return copy_of_[v] != kNone; })) continue;
+      Box3 box;
+      for (const VertexIndex v : t) box.add(surface_.points[v]);
+      box.lo -= Vec3{most_, most_, most_};
+      box.hi += Vec3{most_, most_, most_};
+      tree.for_each_box_near(box, [&](std::uint32_t other, const TriangleCorners&) {
+        marked[other] = 1;
+        return true;
+      });
+    }
+    std::vector<Triangle> all;
+    for (std::size_t t = 0; t < marked.size(); ++t)
+      if (marked[t]) all.push_back(surface_.triangles[t]);
+    return all;
+  }
+
+  /// Whoever still meets something goes less far, and after a while other ways.
   bool move_apart() {
+    if (copies_.empty()) return true;
+    const std::vector<Triangle> near = concerned();
+    Random random(1);
     for (int round = 0; round < kRounds; ++round) {
       for (const Copy& c : copies_) surface_.points[c.vertex] = c.from + c.step * c.way;
-      const auto pairs = self_intersections(surface_.points, surface_.triangles, kMostPairs, context_);
+      const auto pairs = self_intersections(surface_.points, near, kMostPairs, context_);
       if (pairs.empty()) return true;
-      std::vector<char> shorter(copies_.size(), 0);
+      std::vector<char> meets(copies_.size(), 0);
       for (const auto& pair : pairs)
         for (const std::uint32_t t : pair)
-          for (const VertexIndex v : surface_.triangles[t])
-            if (copy_of_[v] != kNone) shorter[copy_of_[v]] = 1;
-      for (std::size_t k = 0; k < copies_.size(); ++k)
-        if (shorter[k]) copies_[k].step *= 0.5;
+          for (const VertexIndex v : near[t])
+            if (copy_of_[v] != kNone) meets[copy_of_[v]] = 1;
+      for (std::size_t k = 0; k < copies_.size(); ++k) {
+        if (!meets[k]) continue;
+        if (round % 3 == 0) copies_[k].step *= 0.5;
+        if (round >= 3) copies_[k].way = other_way(copies_[k].base, random);
+      }
     }
     return false;
+  }
+
+  static Vec3 other_way(Vec3 base, Random& random) {
+    const auto part = [&] { return 2 * random.unit() - 1; };
+    const Vec3 turned = base + Vec3{part(), part(), part()};
+    return length(turned) > 0 ? normalized(turned) : base;
   }
 
   static constexpr std::size_t kMostPairs = 1u << 20;
@@ -340,8 +380,8 @@ class Separation {
   SurfaceMesh& surface_;
   double most_;
   const RunContext& context_;
-  std::vector<Copy> copies_;  ///< those of one vertex side by side
-  std::vector<Fan> fans_;     ///< of the copies
+  std::vector<Copy> copies_;            ///< those of one vertex side by side
+  std::vector<Fan> fans_;               ///< of the copies
   std::vector<std::uint32_t> copy_of_;  ///< per vertex
 };
 

@@ -113,7 +113,8 @@ class TetCut {
       if (h >= 4 * tets) return;
       Face face{h / 4, kNone, kNone, face_of(mesh_.tets[h / 4], static_cast<int>(h % 4))};
       for (const FaceTable::Entry& entry : group.subspan(1))
-        (entry.face < 4 * tets ? face.other : face.wall) = entry.face < 4 * tets ? entry.face / 4 : entry.face - 4 * tets;
+        (entry.face < 4 * tets ? face.other : face.wall) =
+            entry.face < 4 * tets ? entry.face / 4 : entry.face - 4 * tets;
       visit(face);
     });
   }

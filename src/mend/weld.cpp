@@ -71,8 +71,7 @@ class Clusters {
     b = find(b);
     if (a == b) return true;
     Box3 box;
-    for (const VertexIndex c : {a, b})
-      for_each_member(c, [&](VertexIndex v) { box.add(draft_.mesh.points[v]); });
+    for (const VertexIndex c : {a, b}) for_each_member(c, [&](VertexIndex v) { box.add(draft_.mesh.points[v]); });
     if (box.diagonal() > 2 * tolerance_) return false;
     bool collapses = false;
     for_each_member(a, [&](VertexIndex v) {
@@ -284,7 +283,8 @@ class Welder {
     const VertexIndex apex = *std::find_if(t.begin(), t.end(), [&](VertexIndex v) { return v != e.from && v != e.to; });
     VertexIndex last = e.from;
     for (const VertexIndex v : between) {
-      welded_.largest_move = std::max(welded_.largest_move, distance(at(v), closest_point_on_segment(at(v), a, at(e.to))));
+      welded_.largest_move =
+          std::max(welded_.largest_move, distance(at(v), closest_point_on_segment(at(v), a, at(e.to))));
       welded_.places.push_back(at(v));
       ++welded_.divided;
       add(last, v, apex, e.triangle);

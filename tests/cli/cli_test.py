@@ -297,7 +297,38 @@ class CommandLine(unittest.TestCase):
         self.assertIn("absent.stl", missing.stderr)
 
     def test_an_open_surface_is_refused_with_the_place(self):
-        self.refuse(TETRAHEDRON.replace("4 4 0", "4 3 0").replace("3 0 2 1\n", ""), "open")
+        bad = self.dir / "bad.off"
+        bad.write_text(TETRAHEDRON.replace("4 4 0", "4 3 0").replace("3 0 2 1\n", ""))
+        for done in (self.run_cli("mesh", bad, "-o", self.dir / "bad.vtu", "--repair", "none", status=3),
+                     self.run_cli("check", bad, status=3)):
+            self.assertIn("open", done.stderr)
+        self.assertNotIn("bad.vtu", self.files())
+
+    def test_an_open_surface_is_mended_with_a_report(self):
+        bad, out, places = self.dir / "bad.off", self.dir / "closed.ply", self.dir / "places.ply"
+        bad.write_text(TETRAHEDRON.replace("4 4 0", "4 3 0").replace("3 0 2 1\n", ""))
+        done = self.run_cli("repair", bad, "-o", out, "--json", self.dir / "r.json", "--defects", places)
+        self.assertIn("1 hole closed", done.stdout)
+        self.assertIn("clean: 1 body", self.run_cli("check", out).stdout)
+        repair = json.loads((self.dir / "r.json").read_text())["repair"]
+        self.assertEqual([(c["kind"], c["within_tolerance"]) for c in repair["changes"]], [("closed", False)])
+        self.assertAlmostEqual(repair["volume_after"], 1 / 6)
+        self.assertIn(b"closed by repair", out.read_bytes())
+        self.assertIn("8 triangles", self.run_cli("info", places).stdout)
+        self.run_cli("mesh", bad, "-o", self.dir / "m.vtu", "--size", 0.3)
+        self.assertIn("a valid mesh", self.run_cli("check", self.dir / "m.vtu").stdout)
+        same = self.dir / "same.off"
+        self.run_cli("repair", self.part, "-o", same)
+        surfaces = [self.run_cli("check", f).stdout.partition("clean: ")[2] for f in (self.part, same)]
+        self.assertEqual(surfaces[0], surfaces[1])
+
+    def test_a_sheet_is_refused_and_can_be_wrapped(self):
+        sheet, out = self.dir / "sheet.off", self.dir / "skin.off"
+        sheet.write_text("OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n")
+        done = self.run_cli("repair", sheet, "-o", out, status=3)
+        self.assertIn("encloses nothing", done.stderr)
+        self.run_cli("repair", sheet, "-o", out, "--repair", "wrap", "--wrap-distance", 0.1)
+        self.assertIn("clean: 1 body", self.run_cli("check", out).stdout)
 
     def test_output_that_cannot_be_written_is_status_5(self):
         self.run_cli("mesh", self.part, "-o", self.dir / "absent" / "o.vtu", status=5)
@@ -589,8 +620,8 @@ class CommandLine(unittest.TestCase):
     def test_method_octree_meshes_what_the_others_refuse(self):
         bad, out = self.dir / "open.off", self.dir / "open.vtu"
         bad.write_text(TETRAHEDRON.replace("4 4 0", "4 3 0").replace("3 0 2 1\n", ""))
-        self.run_cli("mesh", bad, "-o", out, status=3)
-        done = self.run_cli("mesh", bad, "-o", out, "--method", "octree", "--size", 0.1)
+        self.run_cli("mesh", bad, "-o", out, "--repair", "none", status=3)
+        done = self.run_cli("mesh", bad, "-o", out, "--repair", "none", "--method", "octree", "--size", 0.1)
         self.assertIn("winding number", done.stdout)
         self.assertIn("a valid mesh", self.run_cli("check", out).stdout)
         self.run_cli("mesh", self.part, "-o", out, "--method", "octree", "--keep-surface", status=2)

@@ -1,0 +1,228 @@
+#include <octafront/error.h>
+#include <octafront/mend.h>
+#include <octafront/repair.h>
+
+#include "core/thread_limit.h"
+#include "geometry/hausdorff.h"
+#include "support/named_surfaces.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace octafront {
+namespace {
+
+using Kind = MendChange::Kind;
+
+void expect_clean(const SurfaceMesh& surface) {
+  const SurfaceDefects defects = find_defects(repair_surface(surface));
+  EXPECT_TRUE(defects.clean()) << defects.describe();
+}
+
+Mended mended(const SurfaceMesh& soup, const MendOptions& options = {}) {
+  Mended result = mend_surface(soup, options);
+  expect_clean(result.surface);
+  return result;
+}
+
+SurfaceMesh box_at(Vec3 corner, Vec3 size, int n = 1) {
+  return testing::transformed(testing::box(size.x, size.y, size.z, n), 1, corner);
+}
+
+SurfaceMesh without(SurfaceMesh surface, const std::function<bool(Vec3)>& gone) {
+  std::erase_if(surface.triangles, [&](const Triangle& t) {
+    return gone((surface.points[t[0]] + surface.points[t[1]] + surface.points[t[2]]) / 3);
+  });
+  return surface;
+}
+
+TEST(MendSurface, WhatIsCleanComesBackBitForBit) {
+  for (const SurfaceMesh& clean : {testing::cube(2), testing::torus(20, 10), testing::hollow_sphere(2)}) {
+    const Mended result = mend_surface(clean);
+    EXPECT_TRUE(result.report.clean);
+    EXPECT_EQ(result.surface, clean);
+    EXPECT_TRUE(result.report.changes.empty());
+  }
+}
+
+TEST(MendSurface, OverlappingPartsUnite) {
+  const Mended result = mended(testing::joined(box_at({0, 0, 0}, {2, 2, 2}), box_at({1, 1, 1}, {2, 2, 2})));
+  EXPECT_NEAR(enclosed_volume(result.surface), 15, 1e-12);
+  EXPECT_EQ(result.report.bodies, 1u);
+  EXPECT_GT(result.report.crossing_pairs, 0u);
+  EXPECT_GT(result.report.count(Kind::kCut), 0u);
+  EXPECT_EQ(result.report.largest_move, 0);
+}
+
+TEST(MendSurface, InnerWallsAndDebrisVanish) {
+  SurfaceMesh soup = testing::joined(box_at({0, 0, 0}, {2, 2, 2}), box_at({0.5, 0.5, 0.5}, {0.1, 0.2, 0.3}));
+  // A wall that pierces the skin, so that this is no clean complex.
+  const auto first = static_cast<VertexIndex>(soup.points.size());
+  for (const Vec3 p : {Vec3{1, -1, -1}, Vec3{1, 3, -1}, Vec3{1, 3, 3}, Vec3{1, -1, 3}}) soup.points.push_back(p);
+  soup.triangles.push_back({first, first + 1, first + 2});
+  soup.triangles.push_back({first, first + 2, first + 3});
+  const Mended result = mended(soup);
+  EXPECT_NEAR(enclosed_volume(result.surface), 8, 1e-12);
+  EXPECT_EQ(result.report.bodies, 1u);
+  EXPECT_GE(result.report.count(Kind::kDropped), 1u);
+}
+
+TEST(MendSurface, DoubledWallsBecomeOne) {
+  // Two boxes side by side, each with its own wall between, divided otherwise, and one of them a second time.
+  const SurfaceMesh pair = testing::joined(box_at({0, 0, 0}, {1, 1, 1}), box_at({1, 0, 0}, {1, 1, 1}, 2));
+  const Mended result = mended(testing::joined(pair, box_at({0, 0, 0}, {1, 1, 1}, 3)));
+  EXPECT_NEAR(enclosed_volume(result.surface), 2, 1e-12);
+  EXPECT_EQ(result.report.bodies, 1u);
+}
+
+TEST(MendSurface, PartsThatFaceInwardTurn) {
+  const SurfaceMesh crossing =
+      testing::joined(testing::reversed(box_at({0, 0, 0}, {2, 2, 2})), box_at({1, 1, 1}, {2, 2, 2}));
+  EXPECT_NEAR(enclosed_volume(mended(crossing).surface), 15, 1e-12);
+}
+
+TEST(MendSurface, CavitiesStay) {
+  // Open outside, so that it is not clean; a hollow inside.
+  const SurfaceMesh open = without(box_at({0, 0, 0}, {2, 2, 2}), [](Vec3 p) { return p.z == 2; });
+  const SurfaceMesh soup = testing::joined(open, testing::reversed(box_at({0.5, 0.5, 0.5}, {1, 1, 1})));
+  EXPECT_NEAR(enclosed_volume(mended(soup).surface), 7, 1e-12);
+}
+
+TEST(MendSurface, HolesCloseAndAreNamed) {
+  SurfaceMesh open = without(box_at({0, 0, 0}, {1, 2, 3}, 3), [](Vec3 p) { return p.z == 3; });
+  open.patch.assign(open.triangles.size(), 0);
+  open.patch_names = {"wall"};
+  const Mended result = mended(open);
+  EXPECT_NEAR(enclosed_volume(result.surface), 6, 1e-12);
+  ASSERT_EQ(result.report.count(Kind::kClosed), 1u);
+  const auto hole = std::find_if(result.report.changes.begin(), result.report.changes.end(),
+                                 [](const MendChange& c) { return c.kind == Kind::kClosed; });
+  EXPECT_NEAR(hole->size, 2, 1e-12);
+  EXPECT_FALSE(hole->within_tolerance);
+  ASSERT_EQ(result.surface.patch_names, (std::vector<std::string>{"wall", kClosedByRepair}));
+  double closed = 0;
+  for (std::size_t t = 0; t < result.surface.triangles.size(); ++t) {
+    const auto [a, b, c] = result.surface.triangles[t];
+    const auto& p = result.surface.points;
+    if (result.surface.patch[t] == 1) closed += length(cross(p[b] - p[a], p[c] - p[a])) / 2;
+  }
+  EXPECT_NEAR(closed, 2, 1e-12);
+}
+
+TEST(MendSurface, TrianglesAwayFromDefectsStay) {
+  const SurfaceMesh soup = testing::joined(box_at({0, 0, 0}, {2, 2, 2}, 6), box_at({1.7, 1.7, 1.7}, {2, 2, 2}, 6));
+  const Mended result = mended(soup);
+  const auto corners = [](const SurfaceMesh& s, std::size_t t) {
+    return std::array{s.points[s.triangles[t][0]], s.points[s.triangles[t][1]], s.points[s.triangles[t][2]]};
+  };
+  std::size_t same = 0;
+  for (std::size_t t = 0; t < result.surface.triangles.size(); ++t)
+    same += corners(result.surface, t) == corners(soup, result.surface.source[t]);
+  EXPECT_GT(same, soup.triangles.size() * 3 / 4);
+}
+
+TEST(MendSurface, WhatTouchesComesApart) {
+  // In an edge, and in a point.
+  for (const Vec3 at : {Vec3{1, 1, 0}, Vec3{1, 1, 1}}) {
+    const Mended result = mended(testing::joined(box_at({0, 0, 0}, {1, 1, 1}), box_at(at, {1, 1, 1})));
+    EXPECT_EQ(result.report.bodies, 2u);
+    EXPECT_GT(result.report.separated_vertices, 0u);
+    EXPECT_NEAR(enclosed_volume(result.surface), 2, 0.01);
+    EXPECT_LE(result.report.largest_move, result.report.tolerance);
+  }
+}
+
+TEST(MendSurface, ThinGapsFill) {
+  // A slit of half the tolerance inside of a box, which another one crosses.
+  const SurfaceMesh slit = testing::reversed(box_at({0.2, 0.2, 0.5}, {0.5, 0.5, 0.001}));
+  const SurfaceMesh boxes = testing::joined(box_at({0, 0, 0}, {1, 1, 1}), box_at({0.9, 0.9, 0.9}, {1, 1, 1}));
+  const Mended filled = mended(testing::joined(boxes, slit), {.tolerance = 0.002});
+  EXPECT_EQ(filled.report.count(Kind::kFilled), 1u);
+  EXPECT_NEAR(enclosed_volume(filled.surface), 1.999, 1e-12);
+  const Mended kept = mended(testing::joined(boxes, slit), {.tolerance = 0.0005});
+  EXPECT_EQ(kept.report.count(Kind::kFilled), 0u);
+  EXPECT_NEAR(enclosed_volume(kept.surface), 1.999 - 0.00025, 1e-12);
+}
+
+TEST(MendSurface, SheetsAreRefusedWithWords) {
+  SurfaceMesh terrain;
+  constexpr int n = 8;
+  for (int y = 0; y <= n; ++y)
+    for (int x = 0; x <= n; ++x) terrain.points.push_back({double(x), double(y), 0.3 * std::sin(x) * std::cos(y)});
+  for (VertexIndex y = 0; y < n; ++y)
+    for (VertexIndex x = 0; x < n; ++x) {
+      const VertexIndex a = y * (n + 1) + x, b = a + 1, c = a + n + 1, d = c + 1;
+      terrain.triangles.push_back({a, b, d});
+      terrain.triangles.push_back({a, d, c});
+    }
+  try {
+    mend_surface(terrain);
+    FAIL() << "a terrain encloses nothing";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("encloses nothing"), std::string::npos);
+  }
+  const Mended wrap = mended(terrain, {.way = MendOptions::Way::kWrap, .distance = 0.3});
+  EXPECT_EQ(wrap.report.bodies, 1u);
+  const TriangleTree tree(terrain);
+  for (const Vec3 p : wrap.surface.points) {
+    const double away = std::sqrt(tree.nearest(p).squared_distance);
+    EXPECT_NEAR(away, 0.3, 0.1);
+  }
+}
+
+TEST(MendSurface, SoupsOfAnyKindEnd) {
+  for (const int n : {1, 2, 5, 20, 60, 200}) {
+    SurfaceMesh soup;
+    std::uint64_t state = static_cast<std::uint64_t>(n);
+    const auto random = [&] {
+      state = state * 6364136223846793005u + 1442695040888963407u;
+      return static_cast<double>(state >> 40) / (1u << 24);
+    };
+    for (int t = 0; t < n; ++t) {
+      const auto first = static_cast<VertexIndex>(soup.points.size());
+      for (int i = 0; i < 3; ++i) soup.points.push_back({random(), random(), random()});
+      soup.triangles.push_back({first, first + 1, first + 2});
+    }
+    try {
+      mended(soup);
+    } catch (const InputError&) {
+    }
+  }
+}
+
+TEST(MendSurface, ThreadsChangeNothing) {
+  SurfaceMesh soup =
+      testing::joined(testing::torus(30, 12), testing::transformed(testing::icosphere(3), 0.7, {1, 0, 0}));
+  soup = without(soup, [](Vec3 p) { return p.x < -1.2 && p.y > 0; });
+  std::vector<Mended> results;
+  for (const int threads : {1, 4}) {
+    const ThreadLimit limit(threads);
+    results.push_back(mended(soup));
+  }
+  EXPECT_EQ(results[0].surface, results[1].surface);
+  EXPECT_EQ(to_json(results[0].report), to_json(results[1].report));
+}
+
+TEST(MendSurface, OptionsOutOfRangeAreRefused) {
+  EXPECT_THROW(mend_surface(testing::cube(1), {.tolerance = -1}), OptionError);
+  EXPECT_THROW(mend_surface(testing::cube(1), {.way = MendOptions::Way::kWrap, .distance = 0}), OptionError);
+}
+
+TEST(MendReportJson, HasEveryChangeWithItsPlace) {
+  const Mended result = mended(without(testing::cube(2), [](Vec3 p) { return p.z == 1; }));
+  const auto json = nlohmann::json::parse(to_json(result.report));
+  EXPECT_FALSE(json["clean"]);
+  ASSERT_EQ(json["changes"].size(), result.report.changes.size());
+  EXPECT_EQ(json["changes"][0]["kind"], "closed");
+  EXPECT_EQ(json["changes"][0]["at"].size(), 3u);
+}
+
+}  // namespace
+}  // namespace octafront
