@@ -1,7 +1,8 @@
 // How true a mesh is to the labels of an image: octafront_judge_image IMAGE MESH [all]
 // Prints JSON: elements, and for each label voxels, volume in and out, Dice at the voxels' middles, the two-sided
 // Hausdorff distance of its surface to its voxels' faces in voxels (sampled at corners and middles of faces), pieces
-// and Euler characteristic of both. With `all` 0 is a label too. Regions are told by the number that ends their name.
+// and Euler characteristic of both. With `all` 0 is a label too. Regions are told by their name, "label 3", or else are
+// the label that most voxels in them have.
 
 #include <octafront/octafront.h>
 
@@ -86,9 +87,12 @@ class Judge {
   void name_regions() {
     std::map<std::int64_t, std::uint16_t> by_value;
     for (std::uint16_t l = 0; l < image_.labels.size(); ++l) by_value[image_.labels[l].value] = l;
-    label_of_region_.assign(mesh_.region_names.size(), LabelImage::kNoRegion);
+    std::uint32_t regions = 1;
+    for (const std::uint32_t r : mesh_.region) regions = std::max(regions, r + 1);
+    label_of_region_.assign(std::max<std::size_t>(regions, mesh_.region_names.size()), LabelImage::kNoRegion);
     for (std::size_t r = 0; r < mesh_.region_names.size(); ++r) {
       const std::string& name = mesh_.region_names[r];
+      if (!name.starts_with("label ")) continue;
       const std::size_t digits = name.find_last_not_of("0123456789") + 1;
       std::int64_t value = 0;
       std::from_chars(name.data() + digits, name.data() + name.size(), value);
@@ -147,7 +151,7 @@ class Judge {
 
   /// The label of the tetrahedron at each voxel's middle.
   void sample_middles() {
-    std::vector<std::uint16_t> seen(image_.regions.size(), LabelImage::kNoRegion);
+    std::vector<std::uint32_t> seen(image_.regions.size(), kNone);
     const auto& n = image_.grid.size;
     for (std::size_t t = 0; t < mesh_.tets.size(); ++t) {
       std::array<Vec3, 4> p;
@@ -166,13 +170,33 @@ class Judge {
             const bool inside =
                 six_volumes(q, p[1], p[2], p[3]) * volume >= 0 && six_volumes(p[0], q, p[2], p[3]) * volume >= 0 &&
                 six_volumes(p[0], p[1], q, p[3]) * volume >= 0 && six_volumes(p[0], p[1], p[2], q) * volume >= 0;
-            if (inside) seen[static_cast<std::size_t>(i + n[0] * (j + std::int64_t{n[1]} * k))] = label_of(t);
+            if (inside)
+              seen[static_cast<std::size_t>(i + n[0] * (j + std::int64_t{n[1]} * k))] =
+                  mesh_.region.empty() ? 0 : mesh_.region[t];
           }
     }
+    name_by_most(seen);
     for (std::size_t v = 0; v < seen.size(); ++v) {
-      if (seen[v] == LabelImage::kNoRegion) continue;
-      ++found_[seen[v]].covered;
-      found_[seen[v]].hit += seen[v] == image_.regions[v];
+      const std::uint16_t label = seen[v] == kNone ? LabelImage::kNoRegion : label_of_region_[seen[v]];
+      if (label == LabelImage::kNoRegion) continue;
+      ++found_[label].covered;
+      found_[label].hit += label == image_.regions[v];
+    }
+  }
+
+  /// Regions without a name of ours.
+  void name_by_most(const std::vector<std::uint32_t>& seen) {
+    std::vector<std::map<std::uint16_t, std::uint64_t>> votes(label_of_region_.size());
+    for (std::size_t v = 0; v < seen.size(); ++v)
+      if (seen[v] != kNone && image_.regions[v] != LabelImage::kNoRegion) ++votes[seen[v]][image_.regions[v]];
+    for (std::size_t r = 0; r < votes.size(); ++r) {
+      if (label_of_region_[r] != LabelImage::kNoRegion) continue;
+      std::uint64_t most = 0;
+      for (const auto& [label, n] : votes[r])
+        if (n > most) {
+          most = n;
+          label_of_region_[r] = label;
+        }
     }
   }
 
