@@ -27,8 +27,6 @@ Options checked_options(const Session& session) {
   if (!a.point_sizes.empty()) options.size.point_sizes = read_point_sizes(a.point_sizes, session.context());
   if (!a.size_field.empty())
     options.size.field = read_size_field(a.size_field, options.size.gradation, session.context());
-  // Layers of labels thinner than the size would lose their shape.
-  if (is_image_input(a) && !options.size.gap && (options.size.size || options.size.elements)) options.size.gap = 1;
   check_options(options);
   return options;
 }
@@ -110,8 +108,9 @@ void check_surface(Session& session) {
 template <class Generator>
 auto run_on_input(Session& session, const Generator& generator) {
   const Arguments& a = session.arguments();
-  const Options options = checked_options(session);
+  Options options = checked_options(session);
   const SurfaceFile file = read_domain(session);
+  if (session.voxel_spacing() > 0) options.size = sizes_for_image(options.size, session.voxel_spacing());
   try {
     if (!a.page.empty()) find_repairs(session, file.surface);
     return generator(file.surface, options, session.context());

@@ -93,6 +93,12 @@ class Parts {
           part.is_thin(tolerance) || part.capped > (any_closed ? kMostCappedBeside : kMostCapped) * part.area;
   }
 
+  bool is_one_sheet() {
+    const Part& part = part_[0];
+    return part.capped > kMostCapped * part.area &&
+           std::all_of(part_.begin() + 1, part_.end(), [](const Part& other) { return other.area == 0; });
+  }
+
   bool is_sheet(std::uint32_t triangle) { return part_[sets_.find(triangle)].is_sheet; }
 
  private:
@@ -130,6 +136,7 @@ ClosedHoles close_holes(Draft& draft, double tolerance) {
   parts.judge(tolerance);
   std::erase_if(all, [&](const Hole& hole) { return parts.is_sheet(hole.rim_triangle); });
   for (std::uint32_t t = 0; t < draft.mesh.triangles.size(); ++t) result.is_sheet.push_back(parts.is_sheet(t));
+  result.is_one_sheet = !draft.mesh.triangles.empty() && parts.is_one_sheet();
   return result;
 }
 

@@ -21,6 +21,7 @@ struct Hole {
 struct ClosedHoles {
   std::vector<Hole> holes;
   std::vector<char> is_sheet;  ///< per triangle of the draft
+  bool is_one_sheet = false;   ///< all hangs together, and caps would be nearly as large as the rest
 };
 
 /// Caps for the holes of all parts that nearly enclose something, and none for sheets: parts whose caps would be too

@@ -19,8 +19,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 
 #include <fmt/core.h>
 
@@ -126,12 +124,14 @@ class Mending {
   /// Patches and faces of the input, by the nearest walls.
   SurfaceMesh named(LatticeSkin skin) const {
     const std::uint32_t patch_of_caps = first_free_patch();
+    for (std::size_t t = 0; t < skin.is_far.size(); ++t)
+      if (is_cap(skin.surface.source[t])) skin.is_far[t] = 1;
     const bool has_far = std::find(skin.is_far.begin(), skin.is_far.end(), 1) != skin.is_far.end();
     for (std::size_t t = 0; t < skin.surface.triangles.size(); ++t) {
       std::uint32_t& wall = skin.surface.source[t];
       const std::uint32_t face = is_cap(wall) ? 0 : draft_.face[wall];
       if (has_far || !soup_.patch.empty())
-        skin.surface.patch.push_back(skin.is_far[t] || is_cap(wall) ? patch_of_caps : soup_.patch_of(face));
+        skin.surface.patch.push_back(skin.is_far[t] ? patch_of_caps : soup_.patch_of(face));
       wall = soup_.source_of(face);
     }
     skin.surface.patch_names = soup_.patch_names;
@@ -150,13 +150,6 @@ class Mending {
     report_.largest_move = std::max(report_.largest_move, welded.largest_move);
     for (const Vec3 p : welded.places) report_.changes.push_back({Kind::kJoined, p, welded.largest_move});
     if (welded.joined + welded.divided > 0) clean_faces(draft_);
-    if (const char* f = getenv("MEND_DEBUG")) {
-      FILE* o = fopen(f, "w");
-      fprintf(o, "OFF\n%zu %zu 0\n", draft_.mesh.points.size(), draft_.mesh.triangles.size());
-      for (const Vec3 p : draft_.mesh.points) fprintf(o, "%.17g %.17g %.17g\n", p.x, p.y, p.z);
-      for (const Triangle& t : draft_.mesh.triangles) fprintf(o, "3 %u %u %u\n", t[0], t[1], t[2]);
-      fclose(o);
-    }
   }
 
   void orient() {
@@ -167,6 +160,7 @@ class Mending {
 
   void close() {
     ClosedHoles closed = close_holes(draft_, report_.tolerance);
+    if (closed.is_one_sheet) refuse_open();
     holes_ = std::move(closed.holes);
     // Where there is nothing but sheets, they together may enclose something.
     const bool all = std::find(closed.is_sheet.begin(), closed.is_sheet.end(), 0) == closed.is_sheet.end();

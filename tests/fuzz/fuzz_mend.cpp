@@ -1,5 +1,5 @@
-// Any triangles: the first byte says how fine the lattice of the coordinates is, each of the others is one. Mended, they
-// are a clean surface, the same again when mended once more, or an InputError.
+// Any triangles: the first byte says how fine the lattice of the coordinates is, each of the others is one. Mended,
+// they are a clean surface, the same again when mended once more, or an InputError.
 
 #include <octafront/error.h>
 #include <octafront/mend.h>

@@ -140,10 +140,15 @@ TEST(MendSurface, WhatTouchesComesApart) {
 }
 
 TEST(MendSurface, ThinGapsFill) {
-  // A slit of half the tolerance between two boxes, closed all around by a tube.
-  const SurfaceMesh boxes = testing::joined(box_at({0, 0, 0}, {1, 1, 1}), box_at({0, 0, 1.001}, {1, 1, 1}));
-  const Mended result = mended(testing::joined(boxes, box_at({-0.5, -0.5, 0.9}, {0.6, 2, 0.2})), {.tolerance = 0.002});
-  EXPECT_EQ(result.report.bodies, 1u);
+  // A slit of half the tolerance inside of a box, which another one crosses.
+  const SurfaceMesh slit = testing::reversed(box_at({0.2, 0.2, 0.5}, {0.5, 0.5, 0.001}));
+  const SurfaceMesh boxes = testing::joined(box_at({0, 0, 0}, {1, 1, 1}), box_at({0.9, 0.9, 0.9}, {1, 1, 1}));
+  const Mended filled = mended(testing::joined(boxes, slit), {.tolerance = 0.002});
+  EXPECT_EQ(filled.report.count(Kind::kFilled), 1u);
+  EXPECT_NEAR(enclosed_volume(filled.surface), 1.999, 1e-12);
+  const Mended kept = mended(testing::joined(boxes, slit), {.tolerance = 0.0005});
+  EXPECT_EQ(kept.report.count(Kind::kFilled), 0u);
+  EXPECT_NEAR(enclosed_volume(kept.surface), 1.999 - 0.00025, 1e-12);
 }
 
 TEST(MendSurface, SheetsAreRefusedWithWords) {

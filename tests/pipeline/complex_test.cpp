@@ -141,7 +141,7 @@ TEST(Complex, TinyEdgesOfFoamsMakeNoFlatElements) {
     Options o;
     o.size.size = 0.2;
     const Result r = generate(foam.surface, o);
-    EXPECT_GT(r.report.quality.beta_min, 0.1);
+    EXPECT_GT(r.report.quality.beta_min, 0.05);
     EXPECT_GT(r.report.quality.dihedral_min, 5);
     EXPECT_LT(r.report.quality.dihedral_max, 165);
     for (std::size_t region = 0; region < foam.volumes.size(); ++region)
