@@ -3,7 +3,7 @@
 Usage: bench/run.sh known_answers [--cases FIRST:END] [--seed N] [--kinds A,B] [--generated] [--clean]
                                   [--lines FILE] [--keep FOLDER] [--steps repair] [--jobs N] [--timeout SECONDS] [--page]
 Cases are those of scripts/damage-models.py. Each is repaired (`octafront repair`: the surface must be within the tolerance)
-and meshed with default options (`octafront mesh`: on top of the tolerance the mesher may stray as far as it says itself).
+and meshed, with default options but --sheets drop (`octafront mesh`: on top of the tolerance the mesher may stray as far as it says itself).
 octafront_judge_answer measures both against the undamaged model. One line for each failure; --lines appends a JSON object
 for each case to FILE and leaves out those that are there, so that a campaign may stop and go on; --page writes
 docs/repair-known.md from it. Files of failed cases are kept in --keep. Ends with status 1 if a case failed.
@@ -88,7 +88,9 @@ def judge_case(build, folder, known, timeout, wanted):
     """All about one case: what was made, measured, and is wrong."""
     row = {key: known[key] for key in ("case", "seed", "kind", "model", "what", "damaged_triangles")} | {"wrong": []}
     known_file = pathlib.Path(folder, f"{known['case']:04}.json")
-    steps = {"repair": ("repaired.off", TOLERANCE, []), "mesh": ("mesh.vtu", MESH_DISTANCE, ["--threads", "1"])}
+    # Sheets in a body stay by default, as cracks; here they are damage.
+    drop = ["--sheets", "drop"]
+    steps = {"repair": ("repaired.off", TOLERANCE, drop), "mesh": ("mesh.vtu", MESH_DISTANCE, [*drop, "--threads", "1"])}
     for step in wanted:
         name, distance, options = steps[step]
         result = pathlib.Path(folder, f"{known['case']:04}-{name}")
@@ -189,7 +191,7 @@ def page(rows, command):
     return "\n".join([
         "# Damaged models whose answer is known", "", f"Written by `{command}`.", "",
         f"{len(rows)} clean models, fetched and generated, damaged in known ways (`scripts/damage-models.py` says how), repaired and",
-        "meshed with default options, and measured against the undamaged model (`bench/judge_answer.cpp`), which repair never sees:", "",
+        "meshed with default options and `--sheets drop`, and measured against the undamaged model (`bench/judge_answer.cpp`), which repair never sees:", "",
         f"- **meshed**: `octafront mesh` gave a mesh. **All right**: the repaired surface and the mesh pass every test below.",
         "- **topology**: valid, 2-manifold; components, shells and genus those of the undamaged model, where they are known (not the",
         "  genus of united copies that are not convex).",

@@ -59,6 +59,15 @@ SurfaceFile read_bodies(Session& session, Defects defects) {
   return {std::move(complex.surface), "several files", {}};
 }
 
+/// A single body with sheets in it, and nobody asked for regions: repair has more to say of what hangs in a body, for a
+/// shell with a hole may be a cavity.
+bool is_for_repair(const Arguments& a, const ComplexOptions& options, const Complex& complex) {
+  const auto& sides = complex.surface.sides;
+  return a.repair == Repair::kAuto && a.sheets == Sheets::kDrop && complex.volumes.size() == 1 &&
+         options.regions.empty() && options.voids.empty() &&
+         std::any_of(sides.begin(), sides.end(), [](const Sides& s) { return s[0] == s[1]; });
+}
+
 SurfaceFile read_walls(Session& session, Defects defects) {
   const Arguments& a = session.arguments();
   SurfaceFile file = read_one(session, a.input);
@@ -69,6 +78,7 @@ SurfaceFile read_walls(Session& session, Defects defects) {
     session.context().report("cells", -1);
     const bool wraps = defects == Defects::kMended && a.repair == Repair::kWrap;
     auto complex = wraps ? std::nullopt : complex_of_walls(file.surface, options, session.context());
+    if (complex && defects == Defects::kMended && is_for_repair(a, options, *complex)) complex.reset();
     if (complex) {
       tell_regions(session, *complex);
       file.surface = std::move(complex->surface);
