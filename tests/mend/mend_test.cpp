@@ -50,6 +50,7 @@ SurfaceMesh box_at(Vec3 corner, Vec3 size, int n = 1) {
 }
 
 SurfaceMesh without(SurfaceMesh surface, const std::function<bool(Vec3)>& gone) {
+  surface.patch.clear();
   std::erase_if(surface.triangles, [&](const Triangle& t) {
     return gone((surface.points[t[0]] + surface.points[t[1]] + surface.points[t[2]]) / 3);
   });
