@@ -178,7 +178,7 @@ class Mending {
   }
 
   bool is_cap(std::uint32_t triangle) const { return triangle >= draft_.mesh.triangles.size(); }
-  /// By cells, or by tetrahedra where too much would be left out.
+  /// By cells. Throws MeshingError where too much would be left out.
   Skin best_skin(const Arrangement& arranged) {
     const Cells cells(arranged.points, arranged.triangles, context_);
     const Labels labels = label_cells(arranged, cells, pieces_, report_.tolerance, context_);
@@ -188,10 +188,7 @@ class Mending {
       note_filled(report_, arranged, cells, labels.filled);
       return skin;
     }
-    if (arranged.triangles.size() > kMostForTets) throw MeshingError("too much is open for so many faces");
-    skin = skin_of_tets(arranged, context_);
-    if (!leaves_out_little(skin)) throw MeshingError("the walls leave gaps that no cells close");
-    return skin;
+    throw MeshingError("faces with much of the area bound no cell");
   }
 
   static bool leaves_out_little(const Skin& skin) {
@@ -212,7 +209,6 @@ class Mending {
       surface.source.push_back(soup_.source_of(face));
       surface.patch.push_back(is_far ? patch_of_caps : soup_.patch_of(face));
       has_patches = has_patches || is_far;
-      if (skin.wall[t] == kNone) continue;
       for (const Origin& o : arranged.origins_of(skin.wall[t]))
         if (!is_cap(o.triangle)) used[o.triangle] = 1;
     }
@@ -230,7 +226,6 @@ class Mending {
 
   /// The triangle of the input that a wall is a part of; kNone: of a cap only.
   std::uint32_t given_origin(const Arrangement& arranged, std::uint32_t wall) const {
-    if (wall == kNone) return kNone;
     for (const Origin& o : arranged.origins_of(wall))
       if (!is_cap(o.triangle)) return o.triangle;
     return kNone;
@@ -312,11 +307,9 @@ class Mending {
   static constexpr double kMostDrawn = 0.25;
   /// Of the area of the soup, what may bound nothing.
   static constexpr double kMostIdle = 0.4;
-  /// Where a division into tetrahedra takes seconds.
-  static constexpr std::size_t kMostForTets = 5000;
   /// Edges of the lattice of the last rung, of the diagonal, and how much of its boundary may be far from all walls: of
   /// a terrain it is half.
-  static constexpr double kLatticeEdge = 0.007, kMostInvented = 0.45;
+  static constexpr double kLatticeEdge = 0.015, kMostInvented = 0.45;
 
   const SurfaceMesh& soup_;
   const MendOptions& options_;

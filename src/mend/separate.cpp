@@ -8,6 +8,7 @@
 #include "geometry/self_intersection.h"
 #include "geometry/triangle_tree.h"
 #include "mend/cap.h"
+#include "mesh/edge_table.h"
 #include "mesh/surface_topology.h"
 
 #include <algorithm>
@@ -15,6 +16,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 
 namespace octafront::mend {
 namespace {
@@ -223,6 +225,8 @@ class Separation {
   Separated result() {
     Separated done;
     const SurfaceMesh before = surface_;
+    while (halve_contact_edges()) {
+    }
     cut_tips(done);
     for (const auto& [v, fans] : Fans(surface_, context_).shared()) make_copies(v, fans);
     find_ways();
@@ -242,6 +246,42 @@ class Separation {
   }
 
  private:
+  /// An edge of four triangles may have one fan at either end: only a vertex in its middle can be drawn apart. One edge
+  /// of a triangle at a time.
+  bool halve_contact_edges() {
+    const EdgeTable table = make_edge_table(surface_.points.size(), surface_.triangles, context_);
+    std::vector<char> taken(surface_.triangles.size(), 0);
+    bool waits = false;
+    for (std::size_t e = 0; e < table.size(); ++e) {
+      const auto uses = table.uses(e);
+      if (uses.size() <= 2 || halved_.contains(table.edges[e])) continue;
+      if (std::any_of(uses.begin(), uses.end(), [&](HalfEdge h) { return taken[h / 3]; })) {
+        waits = true;
+        continue;
+      }
+      const auto [a, b] = table.edges[e];
+      const auto middle = static_cast<VertexIndex>(surface_.points.size());
+      surface_.points.push_back(0.5 * (surface_.points[a] + surface_.points[b]));
+      for (const HalfEdge h : uses) {
+        taken[h / 3] = 1;
+        halve(h, middle);
+      }
+      halved_.insert({a, middle});
+      halved_.insert({b, middle});
+    }
+    return waits;
+  }
+
+  void halve(HalfEdge h, VertexIndex middle) {
+    const std::uint32_t t = h / 3;
+    Triangle other = surface_.triangles[t];
+    other[h % 3] = middle;
+    surface_.triangles[t][next_of(h) % 3] = middle;
+    surface_.triangles.push_back(other);
+    if (!surface_.patch.empty()) surface_.patch.push_back(surface_.patch[t]);
+    if (!surface_.source.empty()) surface_.source.push_back(surface_.source[t]);
+  }
+
   std::vector<Vec3> normals_of(const Fan& fan) const {
     std::vector<Vec3> normals;
     for (const std::uint32_t c : fan) {
@@ -380,6 +420,7 @@ class Separation {
   SurfaceMesh& surface_;
   double most_;
   const RunContext& context_;
+  std::set<Edge> halved_;               ///< halves of edges of more than two triangles
   std::vector<Copy> copies_;            ///< those of one vertex side by side
   std::vector<Fan> fans_;               ///< of the copies
   std::vector<std::uint32_t> copy_of_;  ///< per vertex
