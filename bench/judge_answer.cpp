@@ -25,6 +25,7 @@ namespace {
 using namespace octafront;
 
 // All as parts of the diagonal of the undamaged model.
+constexpr double kSame = 1e-7;       ///< triangles nearer than this are not looked at closer: far below every limit
 constexpr double kSpacing = 4e-3;    ///< of the points at which distances are measured; corners are always among them
 constexpr double kAway = 5e-3;       ///< points are asked for inside or outside if the surface is not nearer than this
 constexpr double kShallow = 0.03;    ///< half of them are no farther than this
@@ -52,6 +53,7 @@ class Truth {
   const Box3& box() const { return box_; }
   double diagonal() const { return box_.diagonal(); }
   const std::vector<SurfaceMesh>& solids() const { return solids_; }
+  const std::vector<std::unique_ptr<TriangleTree>>& trees() const { return trees_; }
 
   bool in_zone(Vec3 p) const {
     return std::any_of(zones_.begin(), zones_.end(), [&](const auto& zone) {
@@ -125,15 +127,22 @@ class Truth {
 Json distances(const Truth& truth, const SurfaceMesh& made, const TriangleTree& tree) {
   const double spacing = kSpacing * truth.diagonal();
   Farthest to_truth, from_truth;
-  for (const Triangle& t : made.triangles)
-    sample(corners_of(made, t), spacing, [&](Vec3 p) {
+  const double same = kSame * truth.diagonal();
+  for (const Triangle& t : made.triangles) {
+    const TriangleCorners c = corners_of(made, t);
+    if (truth.trees().size() == 1 && farthest_from_one(c, *truth.trees()[0]) < same) continue;
+    sample(c, spacing, [&](Vec3 p) {
       if (!truth.in_zone(p)) to_truth.add(truth.distance_to(p), p);
     });
+  }
   for (std::size_t s = 0; s < truth.solids().size(); ++s)
-    for (const Triangle& t : truth.solids()[s].triangles)
-      sample(corners_of(truth.solids()[s], t), spacing, [&](Vec3 p) {
+    for (const Triangle& t : truth.solids()[s].triangles) {
+      const TriangleCorners c = corners_of(truth.solids()[s], t);
+      if (farthest_from_one(c, tree) < same) continue;
+      sample(c, spacing, [&](Vec3 p) {
         if (!truth.in_zone(p) && truth.is_bare(p, s, 0)) from_truth.add(std::sqrt(tree.nearest(p).squared_distance), p);
       });
+    }
   return {{"to_truth", to_truth.json(truth.diagonal())}, {"from_truth", from_truth.json(truth.diagonal())}};
 }
 

@@ -7,6 +7,7 @@
 #include "geometry/measures.h"
 #include "geometry/triangle_tree.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -43,6 +44,16 @@ template <class Visit>
 void sample(const TriangleCorners& t, double spacing, const Visit& visit) {
   for (const Vec3 corner : t) visit(corner);
   sample_inside(t, spacing, visit);
+}
+
+/// The distance that no point of the triangle is farther from the tree's triangle nearest to its middle: that of a
+/// corner, for the distance to one triangle is convex. Spares the points of triangles that are in both surfaces.
+inline double farthest_from_one(const TriangleCorners& t, const TriangleTree& tree) {
+  const TriangleCorners& one = tree.corners(tree.nearest(centroid(t[0], t[1], t[2])).triangle);
+  double farthest = 0;
+  for (const Vec3 p : t)
+    farthest = std::max(farthest, distance(p, closest_point_on_triangle(p, one[0], one[1], one[2])));
+  return farthest;
 }
 
 struct Farthest {

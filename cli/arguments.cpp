@@ -295,7 +295,8 @@ void declare_sizes(CLI::App& command, Arguments& a) {
           "Number of tetrahedra wanted, met within 15 %")
       ->type_name("N");
   group->add_option("--curvature", o.curvature, "Elements per full turn of a curved surface")->type_name("K");
-  group->add_option("--gap", o.gap, "Elements across thin walls and narrow gaps")->type_name("K");
+  group->add_option("--gap", o.gap, "Elements across thin walls and narrow gaps [images with --size or --elements: 1]")
+      ->type_name("K");
   group->add_option("--feature-elements", o.feature_elements, "Elements along each feature curve at least")
       ->type_name("K");
   group
@@ -322,7 +323,9 @@ void declare_sizes(CLI::App& command, Arguments& a) {
                    "What the input's coordinates count, for lengths with a unit; OBJ files may say it")
       ->type_name(names_of_units("|"));
   group->add_flag("--facets", o.facets, "Sizes follow the areas of the input's facets (the paper's rule)");
-  add_length(*group, a, "--min-size", o.min_size, "No size falls below this")->type_name("H");
+  add_length(*group, a, "--min-size", o.min_size,
+             "No size falls below this [images with --size or --elements: a voxel]")
+      ->type_name("H");
   add_length(*group, a, "--max-size", o.max_size, "No size rises above this")->type_name("H");
   group
       ->add_option("--automatic-factor", o.automatic_factor,

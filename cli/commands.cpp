@@ -4,6 +4,7 @@
 
 #include "domain.h"
 #include "estimate.h"
+#include "images.h"
 #include "inputs.h"
 #include "open_cavity.h"
 #include "page.h"
@@ -107,8 +108,9 @@ void check_surface(Session& session) {
 template <class Generator>
 auto run_on_input(Session& session, const Generator& generator) {
   const Arguments& a = session.arguments();
-  const Options options = checked_options(session);
+  Options options = checked_options(session);
   const SurfaceFile file = read_domain(session);
+  if (session.voxel_spacing() > 0) options.size = sizes_for_image(options.size, session.voxel_spacing());
   try {
     if (!a.page.empty()) find_repairs(session, file.surface);
     return generator(file.surface, options, session.context());

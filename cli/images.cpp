@@ -198,7 +198,15 @@ Image read_image_input(Session& session) {
     session.say_notes("resampling", image.notes);
   }
   if (a.image.crops || !a.image.spacing.empty()) session.say(fmt::format("  taken: {}\n", grid_in_words(image.grid)));
+  session.read_voxels(std::min({length(image.grid.axes[0]), length(image.grid.axes[1]), length(image.grid.axes[2])}));
   return image;
+}
+
+SizeOptions sizes_for_image(SizeOptions sizes, double voxel) {
+  if (!sizes.size && !sizes.elements) return sizes;
+  if (!sizes.gap) sizes.gap = 1;
+  if (!sizes.min_size) sizes.min_size = std::min(voxel, sizes.size.value_or(voxel));
+  return sizes;
 }
 
 SurfaceFile read_image_domain(Session& session) {

@@ -33,6 +33,10 @@ class Session {
   /// Further keys of the JSON file.
   void found(const Json& keys) { findings_.update(keys); }
 
+  /// The smallest distance of voxels of the image that was read; 0 until one was.
+  void read_voxels(double spacing) { voxel_spacing_ = spacing; }
+  double voxel_spacing() const { return voxel_spacing_; }
+
   /// All that is known of the run; `error` is null for one that did what it was asked.
   Json json(const Json& error) const;
   /// Writes the JSON file if one is wanted; `error` is null for a run that did what it was asked. Throws OutputError.
@@ -42,6 +46,7 @@ class Session {
   const Arguments& arguments_;
   RunContext context_;
   Json findings_ = Json::object();
+  double voxel_spacing_ = 0;
 };
 
 /// The output that a cavity which stays open is written beside; empty if there is none.

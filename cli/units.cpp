@@ -1,6 +1,7 @@
 #include "units.h"
 
 #include <octafront/error.h>
+#include <octafront/image.h>
 
 #include "arguments.h"
 
@@ -35,6 +36,12 @@ const Unit* unit_named(const std::string& name) {
   return nullptr;
 }
 
+/// Of several images in a file all have the unit of the first.
+std::string unit_of_image(const std::filesystem::path& file) {
+  const std::string unit = read_image(file, {1}).unit;
+  return unit_named(unit) == nullptr ? "" : unit;
+}
+
 }  // namespace
 
 std::string names_of_units(const std::string& between) {
@@ -62,6 +69,7 @@ std::pair<double, std::string> length_of(const std::string& option, const std::s
 
 std::string unit_of_file(const std::filesystem::path& file) {
   std::error_code error;
+  if (is_image(file)) return unit_of_image(file);
   if (!std::filesystem::is_regular_file(file, error)) return {};
   constexpr std::size_t kBeginning = 4096;
   constexpr std::string_view kWords = "file units =";

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Generates the sample models that stand beside this script. Needs nothing but Python.
+"""Generates the sample models and images that stand beside this script. Needs nothing but Python.
 
     samples/generate.py [FOLDER]
 
@@ -10,6 +10,7 @@ import math
 import os
 import sys
 
+import head
 from gyroid import GyroidBlock
 from surface import Surface, check, cross, dot, sub, unit, volume, write_obj, write_off, write_ply, write_stl
 
@@ -294,6 +295,11 @@ def main():
         path = os.path.join(folder, name)
         write(s, path)
         print(f"{name}: {len(s.triangles)} triangles, {volume(s):.0f} mm^3, {os.path.getsize(path) / 1000:.0f} kB")
+    for name, data in (("head_labels.nii.gz", head.labels()), ("head_ct.nii.gz", head.ct()),
+                       ("head_labels.txt", head.names().encode())):
+        with open(os.path.join(folder, name), "wb") as out:
+            out.write(data)
+        print(f"{name}: {len(data) / 1000:.1f} kB")
 
 
 if __name__ == "__main__":

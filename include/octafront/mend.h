@@ -18,12 +18,12 @@ inline constexpr const char* kClosedByRepair = "closed by repair";
 
 struct MendOptions {
   /// What moves stays within this distance, input units, >= 0. Without a value a thousandth of the diagonal.
-  std::optional<double> tolerance;
+  std::optional<double> tolerance = {};
   /// kAuto: what is not broken stays as it is. kWrap: a closed skin at a distance around everything, whatever it is.
   enum class Way { kAuto, kWrap };
   Way way = Way::kAuto;
   /// kWrap: how far the skin lies from the input; input units, > 0. Without a value a hundredth of the diagonal.
-  std::optional<double> distance;
+  std::optional<double> distance = {};
 };
 
 /// Something that was changed, with its place.

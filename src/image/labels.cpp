@@ -199,7 +199,7 @@ bool looks_like_labels(const Image& image) {
 
 std::vector<std::uint8_t> faces_reached(const LabelImage& image) {
   std::vector<std::uint8_t> reached(image.labels.size());
-  const auto [ni, nj, nk] = image.grid.size;
+  const std::uint32_t ni = image.grid.size[0], nj = image.grid.size[1], nk = image.grid.size[2];
   const auto see = [&](std::size_t i, std::size_t j, std::size_t k, unsigned face) {
     const std::uint16_t r = image.regions[i + ni * (j + std::size_t{nj} * k)];
     if (r != LabelImage::kNoRegion) reached[r] = static_cast<std::uint8_t>(reached[r] | 1u << face);

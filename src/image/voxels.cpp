@@ -77,7 +77,7 @@ template <class At>
 Image::Values as_floats(std::size_t n, const At& at, const Range& range, std::vector<std::string>& notes) {
   // Beyond single precision is as good as not finite.
   constexpr double kMost = std::numeric_limits<float>::max();
-  const double least = std::max(range.least, -kMost), largest = std::min(range.largest, kMost);
+  const double least = std::clamp(range.least, -kMost, kMost), largest = std::clamp(range.largest, -kMost, kMost);
   if (range.not_finite > 0)
     notes.push_back(
         fmt::format("{} no finite value; not-a-number counts as the least value of the image, infinity as "

@@ -404,6 +404,22 @@ void RawMesh::add_tet(std::span<const VertexIndex> nodes, std::int64_t ref, cons
   mid_nodes.push_back(mids);
 }
 
+void RawMesh::add_face(std::span<const VertexIndex> nodes, std::int64_t ref) {
+  const bool is_triangle = nodes.size() == 3 || nodes.size() == 6;
+  if (is_triangle) {
+    triangles.push_back({nodes[0], nodes[1], nodes[2]});
+  } else {
+    const double first = squared_length(points[nodes[2]] - points[nodes[0]]);
+    const double second = squared_length(points[nodes[3]] - points[nodes[1]]);
+    // Of equal ones that at the lowest node: whoever lists the face, and from wherever, divides it alike.
+    const bool at_lowest = std::min(nodes[0], nodes[2]) < std::min(nodes[1], nodes[3]);
+    const std::size_t k = first < second || (first == second && at_lowest) ? 0 : 1;
+    triangles.push_back({nodes[k], nodes[k + 1], nodes[k + 2]});
+    triangles.push_back({nodes[k], nodes[k + 2], nodes[(k + 3) % 4]});
+  }
+  triangle_ref.resize(triangles.size(), ref);
+}
+
 MeshFile ordered_mesh(RawMesh raw, const Input& input) {
   return Ordering(std::move(raw), input).result();
 }

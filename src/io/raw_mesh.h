@@ -52,6 +52,9 @@ struct RawMesh {
   /// Adds a tetrahedron whose nodes are corners, then mid-side nodes in that order, if it has them. A file must not mix
   /// both kinds; ordered_mesh() refuses it.
   void add_tet(std::span<const VertexIndex> nodes, std::int64_t ref, const MidOrder& order = kVtkMids);
+  /// Adds a triangle, of three nodes or six, or the two of a quadrilateral, of four, eight or nine, along its shorter
+  /// diagonal. The points must be known.
+  void add_face(std::span<const VertexIndex> nodes, std::int64_t ref);
 };
 
 /// Turns inverted tetrahedra, drops unused vertices and triangles that bound nothing, adds boundary faces that are

@@ -23,21 +23,15 @@ bool is_keyword(std::string_view word) {
 struct Section {
   std::string_view name;
   int code;
-  int dimension;      ///< 0 vertices, 1 edges, 2 triangles, 3 tetrahedra, -1: others
+  int dimension;      ///< 0 vertices, 1 edges, 2 triangles and quadrilaterals, 3 tetrahedra, -1: others
   std::size_t nodes;  ///< of an element
 };
-constexpr std::array kSections{Section{"Vertices", 4, 0, 0},
-                               Section{"Edges", 5, 1, 2},
-                               Section{"EdgesP2", 25, 1, 3},
-                               Section{"Triangles", 6, 2, 3},
-                               Section{"TrianglesP2", 24, 2, 6},
-                               Section{"Tetrahedra", 8, 3, 4},
-                               Section{"TetrahedraP2", 30, 3, 10},
-                               Section{"Quadrilaterals", 7, -1, 4},
-                               Section{"Prisms", 9, -1, 6},
-                               Section{"Hexahedra", 10, -1, 8},
-                               Section{"QuadrilateralsQ2", 27, -1, 9},
-                               Section{"HexahedraQ2", 33, -1, 27},
+constexpr std::array kSections{Section{"Vertices", 4, 0, 0},          Section{"Edges", 5, 1, 2},
+                               Section{"EdgesP2", 25, 1, 3},          Section{"Triangles", 6, 2, 3},
+                               Section{"TrianglesP2", 24, 2, 6},      Section{"Tetrahedra", 8, 3, 4},
+                               Section{"TetrahedraP2", 30, 3, 10},    Section{"Quadrilaterals", 7, 2, 4},
+                               Section{"Prisms", 9, -1, 6},           Section{"Hexahedra", 10, -1, 8},
+                               Section{"QuadrilateralsQ2", 27, 2, 9}, Section{"HexahedraQ2", 33, -1, 27},
                                Section{"Pyramids", 49, -1, 5}};
 
 /// What both kinds of file share; `Source` yields numbers and knows how to complain.
@@ -75,8 +69,7 @@ class SectionReader {
       if (section.dimension == 3) {
         raw_.add_tet(std::span(nodes).first(section.nodes), ref);
       } else if (section.dimension == 2) {
-        raw_.triangles.push_back({nodes[0], nodes[1], nodes[2]});
-        raw_.triangle_ref.push_back(ref);
+        raw_.add_face(std::span(nodes).first(section.nodes), ref);
       } else {
         raw_.edges.push_back({nodes[0], nodes[1]});
         raw_.edge_ref.push_back(ref);

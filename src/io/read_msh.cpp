@@ -1,6 +1,6 @@
-// Gmsh MSH 4.1 and 2.2, text and binary. Points, edges, triangles and tetrahedra are kept, linear or quadratic; their
-// references are the first physical group of their entity, or the entity's own tag where it has none; further groups
-// are sets, groups of points sets of nodes. All in the order of their tags.
+// Gmsh MSH 4.1 and 2.2, text and binary. Points, edges, triangles and tetrahedra are kept, linear or quadratic, and
+// quadrilaterals as two triangles; their references are the first physical group of their entity, or the entity's own
+// tag where it has none; further groups are sets, groups of points sets of nodes. All in the order of their tags.
 
 #include "io/msh_stream.h"
 #include "io/raw_mesh.h"
@@ -30,7 +30,8 @@ std::uint64_t nodes_of_type(std::int64_t type) {
   return 0;
 }
 
-/// What a TetMesh has of them: 0 for points to 3 for tetrahedra, linear or quadratic; -1 for others.
+/// What a TetMesh has of them: 0 for points to 3 for tetrahedra, linear or quadratic; -1 for others. Quadrilaterals
+/// become triangles.
 int kept_dimension(std::int64_t type) {
   switch (type) {
     case 15:
@@ -39,7 +40,10 @@ int kept_dimension(std::int64_t type) {
     case 8:
       return 1;
     case 2:
+    case 3:
     case 9:
+    case 10:
+    case 16:
       return 2;
     case 4:
     case 11:
@@ -242,22 +246,22 @@ class Msh {
     for (std::size_t i = 0; i < count; ++i) nodes[i] = node(next_tag());
     const int dimension = kept_dimension(type);
     const auto d = static_cast<std::size_t>(dimension);
-    std::uint32_t index = nodes[0];
+    std::uint32_t index = nodes[0], parts = 1;
     if (dimension == 3) {
       index = static_cast<std::uint32_t>(raw_.tets.size());
       raw_.add_tet(std::span(nodes).first(count), ref, kGmshMids);
     } else if (dimension == 2) {
       index = static_cast<std::uint32_t>(raw_.triangles.size());
-      raw_.triangles.push_back({nodes[0], nodes[1], nodes[2]});
-      raw_.triangle_ref.push_back(ref);
+      raw_.add_face(std::span(nodes).first(count), ref);
+      parts = static_cast<std::uint32_t>(raw_.triangles.size()) - index;
     } else if (dimension == 1) {
       index = static_cast<std::uint32_t>(raw_.edges.size());
       raw_.edges.push_back({nodes[0], nodes[1]});
       raw_.edge_ref.push_back(ref);
     }
-    if (dimension > 0) element_tags_[d].push_back(tag);
+    if (dimension > 0) element_tags_[d].insert(element_tags_[d].end(), parts, tag);
     for (const std::int64_t group : groups.subspan(std::min<std::size_t>(dimension > 0, groups.size())))
-      members_[{dimension, group}].push_back(index);
+      for (std::uint32_t k = 0; k < parts; ++k) members_[{dimension, group}].push_back(index + k);
   }
 
   std::string name_of(int dimension, std::int64_t group) const {

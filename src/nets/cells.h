@@ -2,24 +2,30 @@
 
 #include "nets/net.h"
 
+#include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
 namespace octafront::nets {
 
 /// How much room a vertex has: a box around its corner, up to the middles of the voxels there, flat on the image's box.
-/// Less at labels of few voxels, which smoothing would pull together to points.
+/// Less at labels of few voxels, which smoothing would pull together to points, and toward voxels that are a layer by
+/// themselves, whose two sides would come together.
 class VertexCells {
  public:
-  /// `voxels`: of each label.
+  /// `voxels`: of each label; empty: labels of few voxels have room like others.
   VertexCells(const Lattice& lattice, const Net& net, std::span<const std::uint64_t> voxels);
 
   Vec3 clamped(VertexIndex v, Vec3 p) const;
 
  private:
+  void keep_layers_apart(VertexIndex v);
+
   const Lattice& lattice_;
   const Net& net_;
-  std::vector<float> share_;  ///< of the room to the middles of voxels
+  /// Per vertex, axis and side, lower ones first: part of the way to the middles of the voxels there.
+  std::vector<std::array<std::array<float, 2>, 3>> share_;
 };
 
 }  // namespace octafront::nets

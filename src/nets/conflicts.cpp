@@ -6,8 +6,10 @@
 #include "geometry/self_intersection.h"
 
 #include <algorithm>
-#include <map>
+#include <functional>
+#include <limits>
 #include <tuple>
+#include <utility>
 
 namespace octafront::nets {
 
@@ -16,6 +18,12 @@ namespace {
 // A vertex stays within half a voxel of its corner. So triangles can only meet if the least corners of their quads are
 // at most this many layers apart.
 constexpr std::int32_t kReach = 2;
+
+std::vector<std::uint32_t> sorted_once(std::vector<std::uint32_t> numbers) {
+  std::sort(numbers.begin(), numbers.end());
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+  return numbers;
+}
 
 /// A side of a quad, by its vertices, the lower one first.
 struct Side {
@@ -47,6 +55,17 @@ Spoke spoke_of(const Net& net, std::span<const Vec3> world, bool is_mirrored, co
   return {};
 }
 
+/// Whether the triangles around an edge agree, one after the other, on the label between them.
+bool is_in_order(const Net& net, std::span<const Vec3> world, bool is_mirrored, std::span<const Side> around) {
+  std::vector<Spoke> spokes;
+  for (const Side& side : around) spokes.push_back(spoke_of(net, world, is_mirrored, side));
+  const RadialOrder order(world[around[0].from], world[around[0].to], spokes[0].apex);
+  std::sort(spokes.begin(), spokes.end(), [&](const Spoke& a, const Spoke& b) { return order(a.apex, b.apex); });
+  for (std::size_t k = 0; k < spokes.size(); ++k)
+    if (spokes[k].behind != spokes[(k + 1) % spokes.size()].before) return false;
+  return true;
+}
+
 }  // namespace
 
 /// Some quads, and for which of their edges all quads are among them.
@@ -60,12 +79,16 @@ ConflictSearch::ConflictSearch(const Net& net, std::span<const Vec3> world, bool
     : net_(net), world_(world), is_mirrored_(is_mirrored), many_(many) {}
 
 void ConflictSearch::search(const Part& part, std::vector<std::uint32_t>& bad, const RunContext& context) const {
+  find_crossings(part, bad, context);
+  find_disorder(part, bad);
+}
+
+void ConflictSearch::find_crossings(const Part& part, std::vector<std::uint32_t>& bad,
+                                    const RunContext& context) const {
   std::vector<Triangle> triangles;
   std::vector<std::uint32_t> quad_of;
-  std::vector<Side> sides;
-  for (const std::uint32_t q : part.quads) {
-    const Quad& quad = net_.quads[q];
-    for (const Triangle& t : triangles_of(quad)) {
+  for (const std::uint32_t q : part.quads)
+    for (const Triangle& t : triangles_of(net_.quads[q])) {
       if (collinear(world_[t[0]], world_[t[1]], world_[t[2]])) {
         bad.push_back(q);
         continue;
@@ -73,53 +96,37 @@ void ConflictSearch::search(const Part& part, std::vector<std::uint32_t>& bad, c
       triangles.push_back(t);
       quad_of.push_back(q);
     }
-    for (int i = 0; i < 4; ++i) {
-      const VertexIndex a = quad.v[i], b = quad.v[(i + 1) % 4];
-      if (many_[a] && many_[b] && part.is_whole_at(std::min(a, b)))
-        sides.push_back({std::min(a, b), std::max(a, b), q, i});
-    }
-  }
-  // The search is for triangles of one mesh: few of its points are used here.
+  // The search looks at all points it is given; few of the net's are used here.
   std::vector<VertexIndex> used;
   for (const Triangle& t : triangles) used.insert(used.end(), t.begin(), t.end());
-  std::sort(used.begin(), used.end());
-  used.erase(std::unique(used.begin(), used.end()), used.end());
+  used = sorted_once(std::move(used));
   std::vector<Vec3> points;
   for (const VertexIndex v : used) points.push_back(world_[v]);
   for (Triangle& t : triangles)
     for (VertexIndex& v : t) v = static_cast<VertexIndex>(std::lower_bound(used.begin(), used.end(), v) - used.begin());
-  for (const auto& [s, t] : self_intersections(points, triangles, std::numeric_limits<std::size_t>::max(), context)) {
+  constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
+  for (const auto& [s, t] : self_intersections(points, triangles, kAll, context)) {
     bad.push_back(quad_of[s]);
     bad.push_back(quad_of[t]);
   }
-  std::sort(sides.begin(), sides.end());
-  for (std::size_t i = 0; i < sides.size();) {
-    std::size_t end = i;
-    while (end < sides.size() && sides[end].from == sides[i].from && sides[end].to == sides[i].to) ++end;
-    if (end - i > 2) {
-      std::vector<Spoke> spokes;
-      for (std::size_t k = i; k < end; ++k) spokes.push_back(spoke_of(net_, world_, is_mirrored_, sides[k]));
-      const RadialOrder order(world_[sides[i].from], world_[sides[i].to], spokes[0].apex);
-      std::sort(spokes.begin(), spokes.end(), [&](const Spoke& a, const Spoke& b) { return order(a.apex, b.apex); });
-      bool agree = true;
-      for (std::size_t k = 0; k < spokes.size(); ++k)
-        agree = agree && spokes[k].behind == spokes[(k + 1) % spokes.size()].before;
-      if (!agree)
-        for (std::size_t k = i; k < end; ++k) bad.push_back(sides[k].quad);
+}
+
+void ConflictSearch::find_disorder(const Part& part, std::vector<std::uint32_t>& bad) const {
+  std::vector<Side> sides;
+  for (const std::uint32_t q : part.quads)
+    for (int i = 0; i < 4; ++i) {
+      const VertexIndex a = net_.quads[q].v[i], b = net_.quads[q].v[(i + 1) % 4];
+      if (many_[a] && many_[b] && part.is_whole_at(std::min(a, b)))
+        sides.push_back({std::min(a, b), std::max(a, b), q, i});
     }
-    i = end;
+  std::sort(sides.begin(), sides.end());
+  for (std::size_t i = 0, end = 0; i < sides.size(); i = end) {
+    while (end < sides.size() && sides[end].from == sides[i].from && sides[end].to == sides[i].to) ++end;
+    const std::span<const Side> around(sides.data() + i, end - i);
+    if (around.size() <= 2 || is_in_order(net_, world_, is_mirrored_, around)) continue;
+    for (const Side& side : around) bad.push_back(side.quad);
   }
 }
-
-namespace {
-
-std::vector<std::uint32_t> sorted_once(std::vector<std::uint32_t> bad) {
-  std::sort(bad.begin(), bad.end());
-  bad.erase(std::unique(bad.begin(), bad.end()), bad.end());
-  return bad;
-}
-
-}  // namespace
 
 std::vector<std::uint32_t> ConflictSearch::all(const RunContext& context) const {
   constexpr std::size_t kLayerQuads = 100'000;  // more makes the reach beyond the layer matter less, and takes memory

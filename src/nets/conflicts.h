@@ -27,6 +27,8 @@ class ConflictSearch {
  private:
   struct Part;
   void search(const Part& part, std::vector<std::uint32_t>& bad, const RunContext& context) const;
+  void find_crossings(const Part& part, std::vector<std::uint32_t>& bad, const RunContext& context) const;
+  void find_disorder(const Part& part, std::vector<std::uint32_t>& bad) const;
 
   const Net& net_;
   std::span<const Vec3> world_;

@@ -148,51 +148,84 @@ std::vector<double> volumes_of(const Net& net, std::span<const Vec3> x, std::siz
       });
 }
 
+namespace {
+
+/// One step of Newton's method after another.
+class VolumeKeeper {
+ public:
+  VolumeKeeper(Net& net, const Groups<>& quads_at, const VertexCells& cells, const Lattice& lattice,
+               const std::vector<double>& wanted, std::vector<Vec3>& x)
+      : net_(net), quads_at_(quads_at), cells_(cells), lattice_(lattice), wanted_(wanted), x_(x), next_(x.size()) {}
+
+  /// False if the volumes are right already.
+  bool step() {
+    constexpr double kEnough = 1e-5;  // of a label's volume
+    choose_diagonals(net_, lattice_, x_);
+    std::vector<double> missing = volumes_of(net_, x_, wanted_.size());
+    double worst = 0;
+    for (std::size_t l = 0; l < wanted_.size(); ++l) {
+      missing[l] = has_pressure(l) ? wanted_[l] - missing[l] : 0;
+      if (has_pressure(l)) worst = std::max(worst, std::abs(missing[l]) / wanted_[l]);
+    }
+    if (worst < kEnough) return false;
+    move_by(LabelMatrix(entries(), wanted_.size()).solve(std::move(missing)));
+    return true;
+  }
+
+ private:
+  bool has_pressure(std::size_t label) const { return wanted_[label] > 0; }
+  Gradients gradients(std::size_t v) const {
+    return gradients_at(net_, quads_at_, lattice_, x_, static_cast<VertexIndex>(v));
+  }
+
+  /// How each label's volume follows each label's pressure.
+  LabelMatrix::Entries entries() const {
+    using Entries = LabelMatrix::Entries;
+    const auto of_vertices = [&](std::size_t begin, std::size_t end) {
+      Entries entries;
+      for (std::size_t v = begin; v < end; ++v) {
+        const Gradients g = gradients(v);
+        for (int i = 0; i < g.count; ++i)
+          for (int j = 0; j < g.count; ++j)
+            if (g.of[i].label <= g.of[j].label && has_pressure(g.of[i].label) && has_pressure(g.of[j].label))
+              entries[LabelMatrix::key(g.of[i].label, g.of[j].label)] += dot(g.of[i].way, g.of[j].way);
+      }
+      return entries;
+    };
+    return chunked_sum<Entries>(x_.size(), of_vertices, [](Entries& all, const Entries& part) {
+      for (const auto& [key, value] : part) all[key] += value;
+    });
+  }
+
+  void move_by(const std::vector<double>& pressure) {
+    parallel_for(x_.size(), [&](std::size_t v) {
+      const Gradients g = gradients(v);
+      Vec3 move;
+      for (int i = 0; i < g.count; ++i)
+        if (has_pressure(g.of[i].label)) move += g.of[i].way * pressure[g.of[i].label];
+      next_[v] = cells_.clamped(static_cast<VertexIndex>(v), x_[v] + move);
+    });
+    x_.swap(next_);
+  }
+
+  Net& net_;
+  const Groups<>& quads_at_;
+  const VertexCells& cells_;
+  const Lattice& lattice_;
+  const std::vector<double>& wanted_;
+  std::vector<Vec3>& x_;
+  std::vector<Vec3> next_;
+};
+
+}  // namespace
+
 void keep_volumes(Net& net, const Groups<>& quads_at, const VertexCells& cells, const Lattice& lattice,
                   const std::vector<double>& wanted, std::vector<Vec3>& x, const RunContext& context) {
   constexpr int kSteps = 5;
-  constexpr double kEnough = 1e-5;  // of a label's volume
-  const std::size_t n = x.size();
-  const auto moves = [&](Label l) { return wanted[l] >= 0; };
-  std::vector<Vec3> next(n);
+  VolumeKeeper keeper(net, quads_at, cells, lattice, wanted, x);
   for (int step = 0; step < kSteps; ++step) {
     context.check();
-    choose_diagonals(net, lattice, x);
-    std::vector<double> missing = volumes_of(net, x, wanted.size());
-    double worst = 0;
-    for (std::size_t l = 0; l < wanted.size(); ++l) {
-      missing[l] = wanted[l] > 0 ? wanted[l] - missing[l] : 0;
-      if (wanted[l] > 0) worst = std::max(worst, std::abs(missing[l]) / wanted[l]);
-    }
-    if (worst < kEnough) return;
-    using Entries = LabelMatrix::Entries;
-    const LabelMatrix matrix(
-        chunked_sum<Entries>(
-            n,
-            [&](std::size_t begin, std::size_t end) {
-              Entries entries;
-              for (std::size_t v = begin; v < end; ++v) {
-                const Gradients g = gradients_at(net, quads_at, lattice, x, static_cast<VertexIndex>(v));
-                for (int i = 0; i < g.count; ++i)
-                  for (int j = 0; j < g.count; ++j)
-                    if (g.of[i].label <= g.of[j].label && moves(g.of[i].label) && moves(g.of[j].label))
-                      entries[LabelMatrix::key(g.of[i].label, g.of[j].label)] += dot(g.of[i].way, g.of[j].way);
-              }
-              return entries;
-            },
-            [](Entries& all, const Entries& part) {
-              for (const auto& [key, value] : part) all[key] += value;
-            }),
-        wanted.size());
-    const std::vector<double> pressure = matrix.solve(std::move(missing));
-    parallel_for(n, [&](std::size_t v) {
-      const Gradients g = gradients_at(net, quads_at, lattice, x, static_cast<VertexIndex>(v));
-      Vec3 move;
-      for (int i = 0; i < g.count; ++i)
-        if (moves(g.of[i].label)) move += g.of[i].way * pressure[g.of[i].label];
-      next[v] = cells.clamped(static_cast<VertexIndex>(v), x[v] + move);
-    });
-    x.swap(next);
+    if (!keeper.step()) return;
   }
 }
 

@@ -104,10 +104,14 @@ std::optional<std::string> first_surface_defect(const SurfaceMesh& result, const
   return SurfaceKind(input, make_edge_table(input.points.size(), input.triangles)).first_defect_but_crossings(result);
 }
 
-std::optional<std::string> first_complex_defect_but_crossings(const SurfaceMesh& complex) {
+std::optional<std::string> first_complex_defect_but_crossings(const SurfaceMesh& complex, std::vector<Vec3>* places) {
   if (auto bad = first_bad_vertex(complex)) return bad;
   const EdgeTable edges = make_edge_table(complex.points.size(), complex.triangles);
-  return first_line(defects::find_region_defects(as_it_is(complex), edges, {}));
+  const SurfaceDefects found = defects::find_region_defects(as_it_is(complex), edges, {});
+  if (places)
+    for (const SurfaceDefects::Kind* kind : {&found.open_edges, &found.region_conflicts, &found.degenerate_faces})
+      for (const SurfaceDefects::Place& place : kind->first) places->push_back(place.at);
+  return first_line(found);
 }
 
 }  // namespace octafront

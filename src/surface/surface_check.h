@@ -22,8 +22,10 @@ namespace octafront {
 std::optional<std::string> first_surface_defect(const SurfaceMesh& result, const SurfaceMesh& input);
 
 /// The first way in which a complex that came out is not one, but for crossings, as a sentence: edges around which the
-/// regions do not agree, parts in another region than they say. About 2 s per million triangles.
-std::optional<std::string> first_complex_defect_but_crossings(const SurfaceMesh& complex);
+/// regions do not agree, parts in another region than they say. About 2 s per million triangles. `places` gets the
+/// first ones of each kind, where they are known.
+std::optional<std::string> first_complex_defect_but_crossings(const SurfaceMesh& complex,
+                                                              std::vector<Vec3>* places = nullptr);
 
 /// The same in parts, for callers that check several surfaces made from one input, and know their self-intersections.
 class SurfaceKind {

@@ -170,6 +170,11 @@ TEST(Nifti, TypesSlopesAndWhatIsNotFinite) {
   n.datatype = 16;
   n.voxels = raw(std::vector<float>{std::numeric_limits<float>::infinity(), 2});
   expect_values(read_nifti(n), {2, 2});
+  // Beyond single precision.
+  n.datatype = 64;
+  n.voxels = raw(std::vector<double>{1e300, 2e300});
+  const double largest = std::numeric_limits<float>::max();
+  expect_values(read_nifti(n), {largest, largest});
   n.datatype = 128;
   EXPECT_TRUE(contains(input_error([&] { read_nifti(n); }), "colours"));
 }

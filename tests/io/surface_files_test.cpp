@@ -118,6 +118,32 @@ TEST(ReadSurface, DividesPolygonsAndSaysSo) {
   EXPECT_EQ(file.notes[0], "1 polygon divided into triangles");
 }
 
+/// Six quadrilaterals in three groups, as Gmsh's recombined surfaces are; corners 1 to 8 of the unit cube.
+TEST(ReadSurface, QuadrilateralsOfMeshesBecomeTwoTriangles) {
+  const std::string corners[] = {"0 0 0", "1 0 0", "1 1 0", "0 1 0", "0 0 1", "1 0 1", "1 1 1", "0 1 1"};
+  const std::string faces[] = {"1 4 3 2", "5 6 7 8", "1 2 6 5", "2 3 7 6", "3 4 8 7", "4 1 5 8"};
+  std::string gmsh = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n8\n";
+  std::string medit = "MeshVersionFormatted 2\nDimension 3\nVertices\n8\n";
+  for (int i = 0; i < 8; ++i) {
+    gmsh += std::to_string(i + 1) + " " + corners[i] + "\n";
+    medit += corners[i] + " 0\n";
+  }
+  gmsh += "$EndNodes\n$Elements\n6\n";
+  medit += "Quadrilaterals\n6\n";
+  for (int i = 0; i < 6; ++i) {
+    const std::string group = std::to_string(1 + i / 2);
+    gmsh += std::to_string(i + 1) + " 3 2 " + group + " 7 " + faces[i] + "\n";
+    medit += faces[i] + " " + group + "\n";
+  }
+  for (const std::string& bytes : {gmsh + "$EndElements\n", medit + "End\n"}) {
+    SCOPED_TRACE(bytes.substr(0, 20));
+    const SurfaceMesh cube = surface_of(bytes, "cube.bin").surface;
+    ASSERT_EQ(cube.triangles.size(), 12U);
+    EXPECT_DOUBLE_EQ(enclosed_volume(cube), 1);
+    for (std::size_t t = 0; t < 12; ++t) EXPECT_EQ(cube.patch_of(t), t / 4);
+  }
+}
+
 TEST(WriteSurface, KeepsEveryBitExceptInStl) {
   const TemporaryFolder folder;
   const SurfaceMesh s = awkward_surface();

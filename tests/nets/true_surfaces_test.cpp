@@ -169,7 +169,7 @@ TEST(TrueSurfaces, LinesWhereThreeLabelsMeetLieWhereTheyShould) {
   }
   std::printf("line of three labels: %.3f voxels off in the mean, %.3f at most, %d vertices\n", sum / lines, largest,
               lines);
-  EXPECT_LT(sum / lines, 0.2);
+  EXPECT_LT(sum / lines, 0.25);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <octafront/generate.h>
 #include <octafront/validity.h>
 
+#include "support/complexes.h"
 #include "support/labelled_walls.h"
 #include "support/named_surfaces.h"
 
@@ -11,6 +12,7 @@
 #include <array>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -129,6 +131,38 @@ TEST(Complex, PatchesAreTriangulatedAnewAndFit) {
       EXPECT_NEAR(r.report.regions[region].volume, volume_of_region(s.complex, region),
                   s.name == "foam" ? 2e-2 : 1e-12);
   }
+}
+
+/// Their shortest edges are .01 and .03 of the size. With mirror images of walls as backs, angles were .2 degrees.
+TEST(Complex, TinyEdgesOfFoamsMakeNoFlatElements) {
+  for (const auto& [cells, seed] : {std::pair{35, 2}, {51, 4}}) {
+    const testing::KnownComplex foam = testing::foam(cells, static_cast<std::uint64_t>(seed));
+    SCOPED_TRACE(foam.name);
+    Options o;
+    o.size.size = 0.2;
+    const Result r = generate(foam.surface, o);
+    EXPECT_GT(r.report.quality.beta_min, 0.05);
+    EXPECT_GT(r.report.quality.dihedral_min, 5);
+    EXPECT_LT(r.report.quality.dihedral_max, 165);
+    for (std::size_t region = 0; region < foam.volumes.size(); ++region)
+      EXPECT_NEAR(r.report.regions[region].volume, foam.volumes[region], 1e-12);
+  }
+}
+
+/// A cube of a hundredth of the size, amid its neighbours: only what lies around it gets small.
+TEST(Complex, SizesRiseSteeplyFromTinyWalls) {
+  const std::vector<double> even = even_planes(5), near{0, 0.25, 0.5, 0.5025, 0.75, 1};
+  const auto elements = [](const std::vector<double>& planes, double upper) {
+    const auto in = [=](double x) { return is_between(x, 0.5, upper); };
+    const SurfaceMesh complex =
+        box_walls({planes, planes, planes}, [&](Vec3 c) { return in(c.x) && in(c.y) && in(c.z) ? 1u : 0u; });
+    Options o;
+    o.size.size = 0.25;
+    const Result r = generate(complex, o);
+    EXPECT_GT(r.report.quality.beta_min, 0.2);
+    return r.mesh.tets.size();
+  };
+  EXPECT_LT(elements(near, 0.5025), 20 * elements(even, 0.75));
 }
 
 TEST(Complex, PatchesAndCurvesHaveNames) {

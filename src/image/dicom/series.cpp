@@ -285,7 +285,8 @@ Image::Values values_of(const Volume& volume, const SliceFiles& files, const Run
             constexpr double kMost = std::numeric_limits<std::int32_t>::max();
             numbers[k * each + i] = static_cast<std::int32_t>(std::clamp(v, -kMost, kMost));
           } else {
-            reals[k * each + i] = static_cast<float>(v);
+            constexpr double kMost = std::numeric_limits<float>::max();
+            reals[k * each + i] = static_cast<float>(std::clamp(v, -kMost, kMost));
           }
         }
       },

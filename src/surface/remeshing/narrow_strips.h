@@ -19,9 +19,9 @@ struct StripRules {
 /// mean; at 1.2 they gain .005 and have a third more triangles.) The lines differ by 12 degrees at most.
 inline constexpr StripRules kStrips{.size_per_width = 1.5, .parallel = 0.978, .floor = 0.3, .hopeless = 0.08};
 /// Of single surfaces lines that are nearer may merge; of a complex nothing may move, and walls as narrow as one likes
-/// are common: triangles of 2r/R .8 shall do, and 8 degrees.
+/// are common: triangles of 2r/R .83 shall do, and 8 degrees.
 inline constexpr StripRules kStripsOfWalls{
-    .size_per_width = 2.2, .parallel = 0.99, .floor = 0.1, .hopeless = 0.02, .gradation = 0.7};
+    .size_per_width = 2, .parallel = 0.99, .floor = 0.1, .hopeless = 0.02, .gradation = 0.7};
 
 /// The sizes made smaller in narrow strips: where two feature lines run side by side, nearer to each other than about
 /// half an element, triangles between them can be well shaped only if the lines are divided finer. Needs `input` with

@@ -343,6 +343,7 @@ class Remesher {
     progress(0.6);
     improve_surface(mesh, input_, curves, sizes, context, counts_.improve);
     counts_.divided_edges = divide_repeated_edges(mesh, known_, sizes);
+    counts_.divided_edges += divide_repeated_triangles(mesh, known_, sizes);
   }
 
   /// Puts in points of the input where the mesh strays at few places and nothing crosses. `clear`: whether that is
@@ -436,14 +437,17 @@ class Remesher {
       cap_or_restore(centers_of(c.result.surface, crossings));
       return false;
     }
+    std::vector<Vec3> places;
     const auto defect = kind_ ? kind_->first_defect_but_crossings(c.result.surface)
-                              : first_complex_defect_but_crossings(c.result.surface);
-    if (defect) {
+                              : first_complex_defect_but_crossings(c.result.surface, &places);
+    if (!defect) return true;
+    if (!places.empty()) {
+      cap_or_restore(places);
+    } else {
       stage_.note("an attempt was dropped: " + *defect);
       sizes_ = scaled(sizes_, kCap, stage_.context());
-      return false;
     }
-    return true;
+    return false;
   }
 
   void cap(const std::vector<Vec3>& places, double factor) {

@@ -1,6 +1,7 @@
 #include "surface/remeshing/seams.h"
 
 #include "core/disjoint_sets.h"
+#include "geometry/measures.h"
 #include "surface/remeshing/star_collapse.h"
 
 #include <algorithm>
@@ -286,6 +287,23 @@ std::map<Place, std::vector<VertexIndex>> copies_on_seams(const WorkingMesh& mes
   return copies;
 }
 
+Vec3 centroid_of(const WorkingMesh& mesh, std::uint32_t t) {
+  return (mesh.corner(t, 0) + mesh.corner(t, 1) + mesh.corner(t, 2)) / 3;
+}
+
+/// The point of the complex's own patch that is nearest to p. It looks at all of the patch: for few points.
+TriangleTree::Nearest nearest_of_patch(const KnownSurface& complex, std::uint32_t patch, Vec3 p) {
+  const SurfaceMesh& surface = complex.mesh();
+  TriangleTree::Nearest best;
+  for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
+    if (surface.patch_of(t) != patch) continue;
+    const auto& [a, b, c] = surface.triangles[t];
+    const Vec3 q = closest_point_on_triangle(p, surface.points[a], surface.points[b], surface.points[c]);
+    if (const double d = squared_distance(p, q); d < best.squared_distance) best = {q, t, d};
+  }
+  return best;
+}
+
 /// How far triangles may turn in the passes over the seams, and how many may meet at a vertex.
 struct SeamPass {
   TurnLimits turn;
@@ -468,6 +486,29 @@ std::uint64_t divide_repeated_edges(WorkingMesh& mesh, const KnownSurface& compl
     mesh.split_edge(h, mesh.add_vertex(p, VertexKind::kFree, n, sizes.at(p), nearest.triangle));
   }
   return repeated.size();
+}
+
+std::uint64_t divide_repeated_triangles(WorkingMesh& mesh, const KnownSurface& complex, const SizeField& sizes) {
+  const std::vector<VertexIndex> sewn = sewn_vertices(mesh);
+  std::map<Triangle, std::vector<std::uint32_t>> alike;
+  for (const std::uint32_t t : front_triangles(mesh)) {
+    Triangle key = mesh.triangle(t);
+    if (!std::all_of(key.begin(), key.end(), [&](VertexIndex v) { return mesh.is_sewn(v); })) continue;
+    for (VertexIndex& v : key) v = sewn[v];
+    std::sort(key.begin(), key.end());
+    alike[key].push_back(t);
+  }
+  std::uint64_t divided = 0;
+  for (const auto& [key, triangles] : alike) {
+    if (triangles.size() < 2) continue;
+    for (const std::uint32_t t : triangles) {
+      const TriangleTree::Nearest at = nearest_of_patch(complex, mesh.patch[t], centroid_of(mesh, t));
+      const Vec3 n = normalized(mesh.area_vector(t));
+      mesh.split_triangle(t, mesh.add_vertex(at.point, VertexKind::kFree, n, sizes.at(at.point), at.triangle));
+      ++divided;
+    }
+  }
+  return divided;
 }
 
 std::vector<VertexIndex> sewn_vertices(const WorkingMesh& mesh) {

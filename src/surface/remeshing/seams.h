@@ -58,6 +58,10 @@ void settle_seams(WorkingMesh& mesh, const SizeField& sizes);
 /// be one. The new vertices lie on `complex`. Returns how many.
 std::uint64_t divide_repeated_edges(WorkingMesh& mesh, const KnownSurface& complex, const SizeField& sizes);
 
+/// Divides triangles that other parts have on the same three vertices of seams, by a point of their own patch: once
+/// sewn they would lie upon each other, as the two sides of a tiny lens. Returns how many.
+std::uint64_t divide_repeated_triangles(WorkingMesh& mesh, const KnownSurface& complex, const SizeField& sizes);
+
 /// For each vertex of the working mesh the first one at its place on a seam; others are themselves.
 std::vector<VertexIndex> sewn_vertices(const WorkingMesh& mesh);
 

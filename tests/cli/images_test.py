@@ -1,0 +1,172 @@
+"""Images on the command line: images_test.py OCTAFRONT SAMPLES_DIR."""
+import gzip
+import json
+import pathlib
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+
+OCTAFRONT, SAMPLES = sys.argv[1], pathlib.Path(sys.argv[2])
+LABELS, CT, NAMES = SAMPLES / "head_labels.nii.gz", SAMPLES / "head_ct.nii.gz", SAMPLES / "head_labels.txt"
+
+
+def nifti(size, values, code=2, pack="B", spacing=(1, 1, 1)):
+    """NIfTI-1 with an sform, of values along i, then j, then k."""
+    header = bytearray(352)
+    struct.pack_into("<i", header, 0, 348)
+    struct.pack_into("<8h", header, 40, 3, *size, 1, 1, 1, 1)
+    struct.pack_into("<hh", header, 70, code, 0)
+    struct.pack_into("<8f", header, 76, 1, *spacing, 1, 1, 1, 1)
+    struct.pack_into("<f", header, 108, 352)
+    header[123] = 2
+    struct.pack_into("<h", header, 254, 1)
+    for row in range(3):
+        struct.pack_into("<4f", header, 280 + 16 * row, *(spacing[row] if a == row else 0 for a in range(3)), 0)
+    header[344:348] = b"n+1\0"
+    return bytes(header) + struct.pack(f"<{len(values)}{pack}", *values)
+
+
+def boxes(size, *filled):
+    """Values of boxes (label, lo, hi behind it), 0 elsewhere."""
+    def value(p):
+        inside = [label for label, lo, hi in filled if all(a <= x < b for x, a, b in zip(p, lo, hi))]
+        return inside[-1] if inside else 0
+    return [value((i, j, k)) for k in range(size[2]) for j in range(size[1]) for i in range(size[0])]
+
+
+class Images(unittest.TestCase):
+    def setUp(self):
+        self.scratch = tempfile.TemporaryDirectory()
+        self.dir = pathlib.Path(self.scratch.name)
+
+    def tearDown(self):
+        self.scratch.cleanup()
+
+    def run_cli(self, *arguments, status=0):
+        done = subprocess.run([OCTAFRONT, *map(str, arguments)], capture_output=True, text=True, timeout=300)
+        self.assertEqual(done.returncode, status, f"{done.stdout}{done.stderr}")
+        return done
+
+    def volumes(self, *arguments):
+        report = self.dir / "regions.json"
+        self.run_cli("check", *arguments, "--json", report)
+        return {r["name"]: r["volume"] for r in json.loads(report.read_text())["input_regions"]}
+
+    def info(self, *arguments):
+        return json.loads(self.run_cli("info", *arguments, "--json", "-").stdout)
+
+    def write(self, name, data):
+        (self.dir / name).write_bytes(data)
+        return self.dir / name
+
+    def two_boxes(self, name="boxes.nii.gz"):
+        size = (14, 12, 10)
+        return self.write(name, gzip.compress(nifti(size, boxes(size, (3, (2, 2, 2), (10, 10, 8)), (7, (6, 2, 2), (10, 10, 8))))))
+
+    def test_labels_become_regions_with_names_and_volumes(self):
+        named = self.volumes(LABELS, "--labels", NAMES)
+        self.assertEqual(list(named), ["skin", "skull", "csf", "brain", "lesion"])
+        voxels = {entry["value"]: entry["voxels"] for entry in self.info(LABELS)["labels"]}
+        for value, (name, volume) in enumerate(named.items(), 1):
+            self.assertAlmostEqual(volume / (64 * voxels[value]), 1, 2, name)
+        self.assertEqual(list(self.volumes(self.two_boxes())), ["label 3", "label 7"])
+
+    def test_a_mesh_of_labels_from_end_to_end(self):
+        out, report = self.dir / "out.msh", self.dir / "r.json"
+        self.run_cli("mesh", LABELS, "--labels", NAMES, "-o", out, "--json", report, "--improve", "fast")
+        found = json.loads(report.read_text())
+        self.assertGreater(found["quality"]["beta_min"], 0.1)
+        self.assertEqual(len(found["regions"]), 5)
+        self.run_cli("check", out)
+
+    def test_ignored_and_merged_labels(self):
+        image = self.two_boxes()
+        self.assertEqual(list(self.volumes(image, "--ignore", "0,7")), ["label 3"])
+        self.assertEqual(list(self.volumes(image, "--ignore", "none")), ["label 0", "label 3", "label 7"])
+        both = self.volumes(image, "--merge", "3,7=both")
+        self.assertAlmostEqual(both["both"] / (8 * 8 * 6), 1, 3)
+        for bad in ("3,4", "=x", "3,x=y"):
+            self.run_cli("check", image, "--merge", bad, status=2)
+        self.assertIn("merged and ignored", self.run_cli("check", image, "--merge", "3,7=b", "--ignore", "7", status=2)
+                      .stderr.replace("ignored and merged", "merged and ignored"))
+        self.assertIn("no region", self.run_cli("check", image, "--ignore", "0,3,7", status=3).stderr)
+
+    def test_grey_values_need_bands_and_bands_share_surfaces(self):
+        message = self.run_cli("check", CT, status=3).stderr
+        for part in ("grey", "--iso", "--band", "octafront info"):
+            self.assertIn(part, message)
+        alone, both = self.volumes(CT, "--iso", 400), self.volumes(CT, "--band", "soft=-300:400", "--band", "bone=400:")
+        self.assertEqual(list(both), ["soft", "bone"])
+        self.assertAlmostEqual(alone["body"] / both["bone"], 1, 9)
+        for bad in ("400", "x:y", "5:3", "=1:2", ":"):
+            self.run_cli("check", CT, "--band", bad, status=2)
+        self.assertEqual(self.run_cli("check", CT, "--band", "a=0:400", "--band", "b=300:", status=3).stdout.count("region"), 0)
+        self.run_cli("check", CT, "--iso", 400, "--merge", "1,2=x", status=2)
+        self.run_cli("check", LABELS, "--image", "labels", "--iso", 1, status=2)
+        self.assertEqual(list(self.volumes(LABELS, "--image", "grey", "--iso", "3.5")), ["body"])
+
+    def test_what_reaches_the_edge_is_said_or_refused(self):
+        self.assertIn('closed flat at the edge of the image: "label 1" (first k)', self.run_cli("check", LABELS).stdout)
+        message = self.run_cli("check", LABELS, "--closed-at-box=no", status=3).stderr
+        self.assertIn("label 1", message)
+        self.run_cli("check", self.two_boxes(), "--closed-at-box=no")
+        self.run_cli("check", LABELS, "--closed-at-box")
+
+    def test_cropping_and_resampling(self):
+        image = self.two_boxes()
+        cropped = self.volumes(image, "--crop", "0:5,:,:")
+        self.assertEqual(list(cropped), ["label 3"])
+        self.assertAlmostEqual(cropped["label 3"] / (4 * 8 * 6), 1, 3)
+        for bad in ("0:5", "0:5,:", "0:14,:,:", "5:3,:,:", "a:b,:,:"):
+            self.run_cli("check", image, "--crop", bad, status=2)
+        done = self.run_cli("info", image)
+        self.assertIn("14 x 12 x 10 voxels of 1 x 1 x 1", done.stdout)
+        self.assertIn("taken: 7 x 6 x 5 voxels of 2 x 2 x 2", self.run_cli("check", image, "--resample", 2).stdout)
+        self.assertIn("taken: 7 x 12 x 20", self.run_cli("check", image, "--resample", "2,1,.5").stdout)
+        for bad in ("0", "1,2", "x", "-1"):
+            self.run_cli("check", image, "--resample", bad, status=2)
+
+    def test_cleaning_is_said(self):
+        size = (14, 12, 10)
+        values = boxes(size, (1, (2, 2, 2), (12, 10, 8)), (0, (5, 5, 5), (6, 6, 6)), (1, (1, 1, 1), (2, 2, 2)))
+        image = self.write("spots.nii", nifti(size, values, spacing=(2, 1, 1)))
+        done = self.run_cli("check", image, "--islands", 3, "--holes", 3)
+        self.assertIn('islands below 3: "label 1" 1 (1 voxel)', done.stdout)
+        self.assertIn("holes below 3: 1 filled (1 voxel)", done.stdout)
+        self.assertAlmostEqual(self.volumes(image, "--islands", 3, "--holes", 3)["label 1"] / (2 * 10 * 8 * 6), 1, 3)
+        # Grey values follow: the surface of the cleaned image is nearly that of an image without the spots.
+        grey = self.write("grey.nii", nifti(size, [100 * v for v in values], 4, "h", (2, 1, 1)))
+        bands = ("--image", "grey", "--band", "a=50:")
+        clean = self.volumes(grey, *bands, "--islands", 3, "--holes", 3)["a"]
+        plain = self.write("plain.nii", nifti(size, [100 * v for v in boxes(size, (1, (2, 2, 2), (12, 10, 8)))], 4, "h", (2, 1, 1)))
+        self.assertAlmostEqual(clean / self.volumes(plain, *bands)["a"], 1, 4)
+
+    def test_content_tells_what_a_file_is(self):
+        data = self.two_boxes().read_bytes()
+        for name in ("boxes", "boxes.dat", "boxes.stl"):
+            self.assertEqual(self.info(self.write(name, data))["format"], "NIfTI-1, compressed, placed by its sform")
+        message = self.run_cli("check", self.write("cut.nii.gz", data[:-40]), status=3).stderr
+        self.assertIn("cut.nii.gz", message)
+        self.assertIn("--series is for images", self.run_cli("check", SAMPLES / "gear.obj", "--series", 1, status=2).stderr)
+        self.assertIn("without DICOM files", self.run_cli("info", self.dir, status=3).stderr)
+
+    def test_info_describes_the_grid(self):
+        found = self.info(LABELS)
+        self.assertEqual((found["size"], found["frame"], found["unit"]), ([44, 56, 46], "RAS", "mm"))
+        self.assertEqual(found["axes"], [[4, 0, 0], [0, 4, 0], [0, 0, 4]])
+        self.assertEqual(found["box"], [[-88, -112, -92], [88, 112, 92]])
+        grey = self.info(CT)
+        self.assertEqual(sum(grey["histogram"]), 44 * 56 * 46)
+        self.assertIn("to the right", self.run_cli("info", LABELS).stdout)
+
+    def test_lengths_with_units_know_the_image(self):
+        self.run_cli("mesh", LABELS, "--dry-run", "--size", "1.2cm")
+        header = b"#INRIMAGE-4#{\nXDIM=2\nYDIM=2\nZDIM=2\nTYPE=unsigned fixed\nPIXSIZE=8 bits\nCPU=pc\n"
+        unknown = self.write("a.inr", header.ljust(252, b"\n") + b"##}\n" + b"\1" * 8)
+        self.assertIn("--unit", self.run_cli("mesh", unknown, "--dry-run", "--size", "1cm", status=2).stderr)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[3:]])
