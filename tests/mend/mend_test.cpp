@@ -193,7 +193,7 @@ TEST(MendSurface, SheetsAreRefusedWithWords) {
 }
 
 TEST(MendSurface, SoupsOfAnyKindEnd) {
-  for (const int n : {1, 2, 5, 20, 60, 200}) {
+  for (const int n : {1, 5, 60}) {
     SurfaceMesh soup;
     std::uint64_t state = static_cast<std::uint64_t>(n);
     const auto random = [&] {
