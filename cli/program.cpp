@@ -87,7 +87,7 @@ void Program::declare_makers() {
           "  octafront mesh part.stl -o part.inp --size 2 --order 2    edges of length 2, curved elements\n"
           "  octafront mesh part.obj -o part.msh --unit mm --size 0.1in\n"
           "  octafront mesh plate.stl bolt.stl -o bolted.msh           a region each, faces shared\n"
-          "  octafront mesh labels.nii.gz -o organs.msh --labels names.txt   a region per label\n"
+          "  octafront mesh labels.nii.gz -o organs.msh --labels names.txt    a region per label\n"
           "  octafront mesh head.nii.gz -o head.msh --band skin=-200:226 --band bone=226:\n"
           "  octafront mesh part.stl -o part.msh -o part.vtu --elements 1e5 --report part.html\n"
           "  octafront mesh part.stl --dry-run --size 0.5              elements, memory, time; nothing made\n"

@@ -51,8 +51,11 @@ class Help(unittest.TestCase):
         self.assertIn("did you mean mesh?", self.run_cli("help", "mehs", status=2).err)
 
     def test_examples_are_valid(self):
-        for part in ("part.stl", "scan.ply", "a.stl", "b.ply", "part.obj", "plate.stl"):
+        for part in ("part.stl", "scan.ply", "a.stl", "b.ply", "part.obj", "plate.stl", "soup.obj"):
             shutil.copy(BRACKET, self.dir / part)
+        for sample, image in (("head_labels.nii.gz", "labels.nii.gz"), ("head_labels.txt", "names.txt"),
+                              ("head_ct.nii.gz", "head.nii.gz")):
+            shutil.copy(SAMPLES / sample, self.dir / image)
         self.run_cli("surface", SAMPLES / "gear.obj", "--keep-surface", "-o", self.dir / "bolt.stl")
         self.run_cli("mesh", BRACKET, "-o", self.dir / "in.msh", "--size", 6)
         for to in ("in.vtu", "part.msh", "part.inp", "in.med"):

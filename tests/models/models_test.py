@@ -1,7 +1,7 @@
 """Fetched models through the command line: models_test.py OCTAFRONT MODELS_DIR [--slow].
 
-Clean models must give a mesh (the tool checks it before it writes); dirty ones a mesh or a refusal with a reason.
-With --slow those that take 4 s or more, else all others.
+Clean models must give a mesh (the tool checks it before it writes); dirty ones a refusal with a reason, or a mesh, and as
+they are with `--repair none`. With --slow those that take 4 s or more, else all others.
 """
 import concurrent.futures
 import os
@@ -38,7 +38,7 @@ def main(octafront, models, *options):
     slow = "--slow" in options
     jobs = [(m,) for m in sorted(models.glob("clean/*")) if (m.stem in SLOW) == slow]
     # Where only robustness counts, a coarse mesh is enough.
-    jobs += [(m, "--elements", "20000") for m in sorted(models.glob("dirty/*")) if not slow]
+    jobs += [(m, "--elements", "20000", "--repair", "none") for m in sorted(models.glob("dirty/*")) if not slow]
     if not jobs:
         print(f"no models in {models}: run scripts/get-models.sh to fetch them")
         return SKIPPED
