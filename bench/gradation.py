@@ -10,8 +10,8 @@ import tempfile
 
 from status import mesh_and_judge
 
-MODELS = ["bunny00.off", "armadillo.off", "refined_elephant.off", "fandisk_large.off", "couplingdown.off"]
-GRADATIONS = [0.05, 0.08, 0.12, 0.15, 0.2, 0.3, 0.5]
+MODELS = ["bunny00.off", "armadillo.off", "couplingdown.off"]
+GRADATIONS = [0.05, 0.08, 0.12, 0.2, 0.3, 0.5]
 CUBE = """OFF
 8 12 0
 0 0 0

@@ -1,4 +1,4 @@
-"""Repairs and meshes the defective models of bench/models.csv and judges what came out; writes docs/repair.md.
+"""Repairs and meshes the defective models of bench/models.csv and judges what came out; writes docs/repair-status.md.
 
 Usage: bench/run.sh repair [--only SUBSTRING] [--jobs N] [--timeout SECONDS] [--lines FILE] [--second-reader]
 Each model: `octafront repair MODEL -o SURFACE.obj` and `octafront mesh MODEL -o MESH.vtu`, default options, one thread. Both

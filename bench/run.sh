@@ -14,7 +14,7 @@
 #   bench/run.sh improve     improvement against its targets, never worse, start meshes of others -> docs/improve-bench.md
 #   bench/run.sh formats     how fast meshes are written, every format beside a plain write -> docs/formats-bench.md
 #   bench/run.sh second_order   all clean models, balls, tori, cylinders: proven? how true? at what cost? -> docs/second-order.md
-#   bench/run.sh repair      the defective models, repaired and meshed                  -> docs/repair.md
+#   bench/run.sh repair      the defective models, repaired and meshed                  -> docs/repair-status.md
 #   bench/run.sh known_answers   2,000 clean models damaged in known ways, repaired and judged -> docs/repair-known.md
 #   bench/run.sh images      volumes of labels, each label judged; --peers: beside CGAL -> docs/images-status.md
 #   bench/run.sh dry_run     mesh --dry-run: elements, time and memory said and taken -> docs/command-line.md
