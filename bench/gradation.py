@@ -1,7 +1,7 @@
 """How fast should sizes change? Meshes made with gradations from .05 to .5: at one number of elements, at automatic sizes
 that grow into the volume, and around a point with a thousandth of the size. Writes docs/gradation.md.
 
-Usage: bench/run.sh gradation [--only SUBSTRING] [--timeout SECONDS]
+Usage: bench/run.sh gradation [--only SUBSTRING] [--timeout SECONDS] [--parts N]
 """
 import argparse
 import pathlib
@@ -74,6 +74,7 @@ def main():
     parser.add_argument("build", type=pathlib.Path)
     parser.add_argument("--only", default="")
     parser.add_argument("--timeout", type=float, default=600)
+    parser.add_argument("--parts", type=int, default=3, help="the first so many tables")
     a = parser.parse_args()
     models = [pathlib.Path("models/clean", m) for m in MODELS if a.only in m]
     with tempfile.TemporaryDirectory() as folder:
@@ -90,7 +91,7 @@ def main():
         ]
         text = ["# How fast sizes may change", "", "Written by `bench/run.sh gradation`, one thread. Means over the models, worst "
                 "of all.", ""]
-        for title, what, which, options in parts:
+        for title, what, which, options in parts[:a.parts]:
             text += [f"## {title}", "", what, "", table(a.build, which, options, a.timeout)]
     pathlib.Path("docs/gradation.md").write_text("\n".join(text))
 
