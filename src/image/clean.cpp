@@ -180,22 +180,17 @@ LabelImage cleaned(const LabelImage& image, const CleanOptions& options, const R
     out.notes.push_back(
         fmt::format("closing by {}: {} added", counted(options.closing, "voxel"), counted(voxels, "voxel")));
   }
-  context.check();
-  if (options.islands > 0) {
+  const auto give = [&](double below, auto choose, auto note) {
+    if (!(below > 0)) return;
+    context.check();
     Pieces pieces(out);
-    pieces.choose_islands(options.islands);
+    (pieces.*choose)(below);
     std::vector<std::uint16_t> regions = out.regions;
-    note_islands(pieces.give(regions), options.islands, out);
+    note(pieces.give(regions), below, out);
     out.regions = std::move(regions);
-  }
-  context.check();
-  if (options.holes > 0) {
-    Pieces pieces(out);
-    pieces.choose_holes(options.holes);
-    std::vector<std::uint16_t> regions = out.regions;
-    note_holes(pieces.give(regions), options.holes, out);
-    out.regions = std::move(regions);
-  }
+  };
+  give(options.islands, &Pieces::choose_islands, note_islands);
+  give(options.holes, &Pieces::choose_holes, note_holes);
   return out;
 }
 
