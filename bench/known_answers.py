@@ -13,22 +13,19 @@ import argparse
 import concurrent.futures
 import importlib.util
 import json
-import math
-import os
 import pathlib
 import shutil
-import signal
 import statistics
 import subprocess
 import sys
 import tempfile
-import threading
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 spec = importlib.util.spec_from_file_location("damage_models", ROOT / "scripts/damage-models.py")
 damage = importlib.util.module_from_spec(spec)
 spec.loader.exec_module(damage)
 import solids  # noqa: E402, from scripts/lib
+from bounded import run  # noqa: E402, from scripts/lib
 
 TOLERANCE = 1e-3          # of the diagonal: the default of --tolerance
 MESH_DISTANCE = 5e-3      # the tolerance, and what --max-deviation allows the surface front by default
@@ -36,23 +33,6 @@ VOLUME = 0.5              # percent
 VOLUME_OF_LARGEST = 3.0   # with holes of a tenth of the area
 EDGES = 1e-6              # of the diagonal
 PAGE = ROOT / "docs/repair-known.md"
-
-
-def run(command, timeout):
-    """(exit status, None: no end; standard error; CPU seconds; MB at most). `timeout` counts processor time: other programs
-    may be at work."""
-    with tempfile.TemporaryFile() as errors:
-        limited = ["prlimit", f"--cpu={math.ceil(timeout)}", *map(str, command)]
-        process = subprocess.Popen(limited, stdout=subprocess.DEVNULL, stderr=errors)
-        timer = threading.Timer(20 * timeout, process.kill)
-        timer.start()
-        _, status, used = os.wait4(process.pid, 0)
-        timer.cancel()
-        process.returncode = os.waitstatus_to_exitcode(status)
-        ended = process.returncode not in (-signal.SIGXCPU, -signal.SIGKILL)
-        errors.seek(0)
-        return (process.returncode if ended else None, errors.read().decode(errors="replace").strip(),
-                used.ru_utime + used.ru_stime, used.ru_maxrss / 1e3)
 
 
 def measure(build, known_file, result):

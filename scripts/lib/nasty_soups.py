@@ -3,19 +3,17 @@ See scripts/nasty-soups.sh. Needs NumPy.
 """
 import argparse
 import math
-import os
 import pathlib
-import signal
 import subprocess
 import sys
 import tempfile
-import threading
 
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import damages
 import solids
+from bounded import run
 from solids import Solid
 
 DONE, REFUSED = 0, 3
@@ -196,21 +194,6 @@ SOUPS = {  # name: what makes it, statuses of repair that are right, whether it 
 # -------------------------------------------------------------------------------------------------------- runs
 
 
-def run(command, seconds):
-    """(status, None: no end; last words; CPU seconds; MB). The limit counts processor time: other programs may be at work."""
-    with tempfile.TemporaryFile() as errors:
-        process = subprocess.Popen(["prlimit", f"--cpu={seconds}", *map(str, command)], stdout=subprocess.DEVNULL, stderr=errors)
-        timer = threading.Timer(20 * seconds, process.kill)
-        timer.start()
-        _, status, used = os.wait4(process.pid, 0)
-        timer.cancel()
-        process.returncode = os.waitstatus_to_exitcode(status)
-        ended = process.returncode not in (-signal.SIGXCPU, -signal.SIGKILL)
-        errors.seek(0)
-        words = errors.read().decode(errors="replace").strip().split("\n")
-        return process.returncode if ended else None, words[0][:160], used.ru_utime + used.ru_stime, used.ru_maxrss / 1e3
-
-
 def wrong(program, status, right, output, message):
     """What is wrong with a run, or ""."""
     if status is None:
@@ -249,6 +232,7 @@ def main():
                     continue
                 output = pathlib.Path(folder, out)
                 status, message, seconds, megabytes = run([a.program, step, file, "-o", output, "-q", *options], a.timeout)
+                message = message.split("\n")[0][:160]
                 bad = wrong(a.program, status, right, output, message)
                 failures += bool(bad)
                 print(f"| {name} | {len(made.triangles):,} | {step} | {'**' + bad + '**' if bad else status} | {seconds:.2f} | "
