@@ -418,13 +418,6 @@ SeamedSurface cut_along_seams(const KnownSurface& complex) {
   return Cutter(complex).run();
 }
 
-std::vector<Edge> seam_edges(const InputSurface& input) {
-  std::vector<Edge> edges;
-  for (HalfEdge h = 0; h < input.mesh.start.size(); ++h)
-    if (h < input.mesh.twin[h] && input.is_seam(h)) edges.push_back({input.mesh.start[h], input.mesh.end(h)});
-  return edges;
-}
-
 SeamedCurves chained_curves(const InputSurface& input, const SeamedSurface& seamed, const SizeField& sizes,
                             std::vector<std::uint8_t>& is_fixed) {
   const std::vector<std::uint8_t> is_corner = corner_marks(input, seamed.features.corners, is_fixed, sizes);

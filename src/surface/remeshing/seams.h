@@ -30,9 +30,6 @@ struct SeamedSurface {
 /// REQUIRES a clean complex. Its own patches are kept.
 SeamedSurface cut_along_seams(const KnownSurface& complex);
 
-/// The edges of the cut surface along which it was cut.
-std::vector<Edge> seam_edges(const InputSurface& input);
-
 /// The curves of the cut surface, not divided.
 struct SeamedCurves {
   std::vector<Curve> curves;
