@@ -45,7 +45,7 @@ std::vector<Spoke> spokes_of(const SurfaceMesh& mesh, const EdgeTable& table, st
 
 /// Sides of triangles that look into the same space next to an edge are joined.
 void find_conflicts(const RepairedSurface& repaired, const EdgeTable& table, DisjointSets& spaces,
-                    SurfaceDefects& found) {
+                    SurfaceDefects& found, std::vector<Vec3>* edges) {
   const SurfaceMesh& mesh = repaired.surface;
   FirstPlaces open(found.open_edges), conflicts(found.region_conflicts);
   for (std::size_t e = 0; e < table.size(); ++e) {
@@ -60,7 +60,9 @@ void find_conflicts(const RepairedSurface& repaired, const EdgeTable& table, Dis
     std::vector<std::uint32_t> faces;
     for (const Spoke& spoke : spokes) faces.push_back(mesh.source_of(spoke.triangle));
     const auto [a, b] = table.edges[e];
-    (spokes.size() == 1 ? open : conflicts).add(std::move(faces), (mesh.points[a] + mesh.points[b]) * 0.5);
+    const Vec3 middle = (mesh.points[a] + mesh.points[b]) * 0.5;
+    (spokes.size() == 1 ? open : conflicts).add(std::move(faces), middle);
+    if (edges != nullptr) edges->push_back(middle);
   }
 }
 
@@ -134,10 +136,11 @@ SurfaceDefects find_complex_defects(const RepairedSurface& repaired, const EdgeT
                        : found;  // around crossings nothing can be sorted
 }
 
-SurfaceDefects find_region_defects(const RepairedSurface& repaired, const EdgeTable& table, const RunContext& context) {
+SurfaceDefects find_region_defects(const RepairedSurface& repaired, const EdgeTable& table, const RunContext& context,
+                                   std::vector<Vec3>* edges) {
   SurfaceDefects found;
   DisjointSets spaces(2 * repaired.surface.triangles.size());
-  find_conflicts(repaired, table, spaces, found);
+  find_conflicts(repaired, table, spaces, found, edges);
   if (found.clean()) find_misplaced(repaired, table, spaces, context, found);
   return found;
 }

@@ -343,8 +343,9 @@ class Remesher {
     coarsen_seams(mesh, context, counts_.coarsen);
     settle_seams(mesh, sizes);
     progress(0.6);
-    improve_surface(mesh, input_, curves, sizes, context, counts_.improve);
     counts_.divided_edges = divide_repeated_edges(mesh, known_, sizes);
+    improve_surface(mesh, input_, curves, sizes, context, counts_.improve);
+    counts_.divided_edges += divide_repeated_edges(mesh, known_, sizes);
     counts_.divided_edges += divide_repeated_triangles(mesh, known_, sizes);
   }
 
@@ -435,14 +436,14 @@ class Remesher {
   bool is_sound(const Compacted& c) {
     const auto crossings = c.is_clear ? Crossings{} : find_crossings(c.result.surface);
     counts_.crossings += crossings.size();
-    if (!crossings.empty()) {
-      cap_or_restore(centers_of(c.result.surface, crossings));
-      return false;
-    }
-    std::vector<Vec3> places;
-    const auto defect = kind_ ? kind_->first_defect_but_crossings(c.result.surface)
-                              : first_complex_defect_but_crossings(c.result.surface, &places);
-    if (!defect) return true;
+    std::vector<Vec3> places = centers_of(c.result.surface, crossings);
+    std::optional<std::string> defect;
+    // In a complex what does not agree shows beside what crosses; both are left to the same round.
+    if (seamed_)
+      defect = first_complex_defect_but_crossings(c.result.surface, &places);
+    else if (crossings.empty())
+      defect = kind_->first_defect_but_crossings(c.result.surface);
+    if (!defect && crossings.empty()) return true;
     if (!places.empty()) {
       cap_or_restore(places);
     } else {

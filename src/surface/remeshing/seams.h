@@ -51,8 +51,8 @@ void coarsen_seams(WorkingMesh& mesh, const RunContext& context, CoarsenCounts& 
 /// The vertices on seams are corners from here on: seams change no more.
 void settle_seams(WorkingMesh& mesh, const SizeField& sizes);
 
-/// Divides edges between vertices on seams that there are in other parts, or on the seams, too: once sewn, they would
-/// be one. The new vertices lie on `complex`. Returns how many.
+/// Turns or divides edges between vertices on seams that there are in other parts, or on the seams, too: once sewn,
+/// they would be one. New vertices lie on their own patch of `complex`. Returns how many.
 std::uint64_t divide_repeated_edges(WorkingMesh& mesh, const KnownSurface& complex, const SizeField& sizes);
 
 /// Divides triangles that other parts have on the same three vertices of seams, by a point of their own patch: once
