@@ -134,6 +134,13 @@ def mesh(points: npt.ArrayLike | Surface, triangles: npt.ArrayLike | None = None
 {mesh}) -> Mesh: ...
 def mesh_file(path: Path, *,
 {mesh}) -> Mesh: ...
+def mesh_image(image: npt.ArrayLike | Path | Sequence[Path], affine: npt.ArrayLike | None = None, *,
+{of_images},
+{mesh}) -> Mesh: ...
+def image_surface(image: npt.ArrayLike | Path | Sequence[Path], affine: npt.ArrayLike | None = None, *,
+{of_images},
+    progress: Progress | None = None,
+    threads: int = 0) -> Surface: ...
 def surface(points: npt.ArrayLike | Surface, triangles: npt.ArrayLike | None = None, *,
 {surface}) -> Surface: ...
 def size_field(points: npt.ArrayLike | Surface, triangles: npt.ArrayLike | None = None, *,
@@ -153,6 +160,21 @@ FURTHER = {
     "after_pass": "Callable[[str, dict[str, Any]], object] | None = None", "progress": "Progress | None = None",
     "threads": "int = 0",
 }
+OF_IMAGES = """\
+    spacing: npt.ArrayLike | None = None,
+    series: int = 0,
+    kind: Literal["auto", "labels", "grey"] = "auto",
+    labels: Mapping[int, str] | Path | None = None,
+    ignore: Sequence[int] | int | None = None,
+    merge: Mapping[str, Sequence[int]] | None = None,
+    iso: float | None = None,
+    bands: Mapping[str, tuple[float | None, float | None]] | None = None,
+    islands: float | None = None,
+    holes: float | None = None,
+    close_voxels: int | None = None,
+    crop: Sequence[Sequence[int | None]] | None = None,
+    resample: float | Sequence[float] | None = None,
+    closed_at_box: bool = True"""
 KINDS = {"number": "float", "whole": "int", "flag": "bool"}
 
 
@@ -170,7 +192,7 @@ def keywords(task):
 
 
 def stubs():
-    text = TEMPLATE
+    text = TEMPLATE.replace("{of_images}", OF_IMAGES)
     for task in ("mesh", "surface", "size", "improve"):
         text = text.replace("{" + task + "}", keywords(task))
     return text

@@ -9,9 +9,11 @@ is raised as one of octafront.errors, with what is wrong, where, and what to do.
 work, tell how far they are by progress=, and end at Ctrl-C.
 """
 
+import inspect as _inspect
 import json as _json
 
 from . import errors
+from ._images import surface_of_image as _surface_of_image
 from ._jobs import Job as _Job
 from ._library import bytes_of as _bytes_of, call as _call
 from ._mesh import Checked, Mesh
@@ -23,7 +25,7 @@ from .errors import (Cancelled, Error, InputError, InternalError, MeshingError, 
 __version__ = _call("version").decode()
 __all__ = ["Cancelled", "Checked", "Error", "InputError", "InternalError", "Mesh", "MeshingError", "OUTSIDE",
            "OpenCavityError", "OptionError", "OutputError", "SizeField", "Surface", "check", "errors", "formats",
-           "improve", "mesh", "mesh_file", "read", "repair", "size_field", "surface"]
+           "image_surface", "improve", "mesh", "mesh_file", "mesh_image", "read", "repair", "size_field", "surface"]
 
 
 @_takes_options("mesh")
@@ -53,6 +55,60 @@ def mesh_file(path, **keywords):
     """
     settings = _Settings("mesh_file", "mesh", keywords)
     return _meshed(Surface.read(path), settings, path)
+
+
+def image_surface(image, affine=None, *, spacing=None, series=0, kind="auto", labels=None, ignore=None, merge=None,
+                  iso=None, bands=None, islands=None, holes=None, close_voxels=None, crop=None, resample=None,
+                  closed_at_box=True, progress=None, threads=0):
+    """The surfaces between the labels of an image, or between bands of its grey values: a Surface with a region for
+    each, named. Smooth, volumes of labels kept. report["regions"] has their names and volumes, report["notes"] what was
+    decided and changed.
+
+    image: an array (ni, nj, nk) of numbers, which is copied; or a file (NIfTI, NRRD, MetaImage, INR, raw voxels with
+        JSON, InVesalius), a folder of DICOM, or a list of its files.
+    affine: of an array, (4, 4) from (i, j, k, 1) to the world, as nibabel's image.affine; or spacing: of voxels, one
+        number or three. Without either voxels are cubes of 1. Voxel (0, 0, 0) has its middle at the origin of the map.
+    series: of a file with several images the one that is meant, counted from 1.
+    kind: "labels" or "grey"; "auto" goes by what else is given, or by the values.
+    labels: {3: "liver"}, or a file of names. ignore: values outside of all regions [0]; () for none.
+    merge: {"cortex": (3, 4)}: these values are one region.
+    iso: of a grey image; what has this value or more is the region "body".
+    bands: {"skin": (-200, 226), "bone": (226, None)}: values from the first up to below the second; None: no limit.
+    islands, holes: pieces of regions, and of the outside, below this volume go to what surrounds them.
+    close_voxels: gaps toward the outside close that are up to twice as many voxels wide.
+    crop: ((i0, i1), (j0, j1), (k0, k1)), counted from 0, the last ones too; None for an end that stays.
+    resample: spacing of the voxels to work with, one number or three.
+    closed_at_box: regions that reach the edge of the image end flat there; False: they are refused.
+
+    Raises OptionError, InputError, Cancelled.
+
+    >>> octafront.image_surface(labels, spacing=(1, 1, 2)).save("organs.ply")
+    """
+    regions = {"kind": kind, "labels": labels, "ignore": ignore, "merge": merge, "iso": iso, "bands": bands,
+               "islands": islands, "holes": holes, "close_voxels": close_voxels, "crop": crop, "resample": resample,
+               "closed_at_box": closed_at_box, "threads": threads}
+    return _surface_of_image(image, affine, spacing, series, regions, progress)
+
+
+_OF_IMAGES = [name for name in _inspect.signature(image_surface).parameters if name not in ("progress", "threads")]
+
+
+@_takes_options("mesh", _inspect.signature(image_surface))
+def mesh_image(image, affine=None, **keywords):
+    """A tetrahedral mesh of an image, one region per label or band: a Mesh. First image_surface(), whose keywords come
+    first, then mesh(): with size or elements there is at least one element across thin layers, and none smaller than a
+    voxel, unless gap and min_size say otherwise. report["image"] is the report of the first step.
+
+    >>> octafront.mesh_image("head.nii.gz", labels={1: "skin", 2: "skull"}, size=4).save("head.msh")
+    >>> octafront.mesh_image(nibabel_image.get_fdata(), nibabel_image.affine, elements=500_000)
+    """
+    of_image = {name: keywords.pop(name) for name in _OF_IMAGES if name in keywords}
+    settings = _Settings("mesh_image", "mesh", keywords)
+    made = image_surface(image, affine, progress=settings.progress, threads=settings.threads, **of_image)
+    settings.suit_voxels(made.report["voxel"])
+    mesh = _meshed(made, settings)
+    mesh.report["image"] = made.report
+    return mesh
 
 
 def _meshed(surface, settings, path=None):
