@@ -188,6 +188,16 @@ octafront_job* octafront_improve(const octafront_mesh* mesh, const octafront_sur
                                  const octafront_options* options, int threads);
 /** -> surface: repair_surface() and find_defects(), which the report lists. */
 octafront_job* octafront_repair(const octafront_surface* surface);
+/** -> surface: complex_of_walls() of octafront/complex.h, or a copy where the surface is a plain one; the report has
+ * regions, with names and volumes, and notes. `json` is an object, all of whose keys may be missing: regions
+ * ([["steel", [x, y, z]], ...]), voids ([[x, y, z], ...]), cells ("auto", "regions", "merge"), nested ("auto",
+ * "cavity", "region"). A report of a failure may have `leak`, the way through a hole. */
+octafront_job* octafront_complex_of_walls(const octafront_surface* surface, const char* json, int threads);
+/** -> surface: join_bodies() of octafront/complex.h; bodies are copied. The same keys, and tolerance. */
+octafront_job* octafront_join_bodies(const octafront_surface* const* bodies, const char* const* names, size_t count,
+                                     const char* json, int threads);
+/** -> surface: mend_surface() of octafront/mend.h, with its report. Keys: tolerance, way ("auto", "wrap"), distance. */
+octafront_job* octafront_mend(const octafront_surface* surface, const char* json, int threads);
 /** first_defect(), check_jacobians(), and by name of the solver, which may be null, check_for_solver(), in the report.
  */
 octafront_job* octafront_check(const octafront_mesh* mesh, const char* solver);

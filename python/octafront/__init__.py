@@ -12,7 +12,7 @@ work, tell how far they are by progress=, and end at Ctrl-C.
 import inspect as _inspect
 import json as _json
 
-from . import errors
+from . import _complexes, errors
 from ._images import surface_of_image as _surface_of_image
 from ._jobs import Job as _Job
 from ._library import bytes_of as _bytes_of, call as _call
@@ -24,8 +24,9 @@ from .errors import (Cancelled, Error, InputError, InternalError, MeshingError, 
 
 __version__ = _call("version").decode()
 __all__ = ["Cancelled", "Checked", "Error", "InputError", "InternalError", "Mesh", "MeshingError", "OUTSIDE",
-           "OpenCavityError", "OptionError", "OutputError", "SizeField", "Surface", "check", "errors", "formats",
-           "image_surface", "improve", "mesh", "mesh_file", "mesh_image", "read", "repair", "size_field", "surface"]
+           "OpenCavityError", "OptionError", "OutputError", "SizeField", "Surface", "check", "complex_of_walls",
+           "errors", "formats", "image_surface", "improve", "join_bodies", "mend", "mesh", "mesh_file", "mesh_image", "read",
+           "repair", "size_field", "surface"]
 
 
 @_takes_options("mesh")
@@ -181,6 +182,54 @@ def repair(points, triangles=None):
     job = _Job("repair", _surface_of(points, triangles)._handle)
     report = job.run()
     return Surface._of(job.take("surface"), report)
+
+
+def mend(points, triangles=None, *, tolerance=None, way="auto", distance=None, progress=None, threads=0):
+    """A clean surface from any soup of triangles: what is torn within `tolerance` (default: a thousandth of the diagonal)
+    is brought together, holes are closed, what crosses is divided, overlapping parts are united, and what bounds nothing
+    is gone. A Surface; its report says what was done, with places. A clean surface comes back as it was.
+
+    points, triangles: as for mesh(). way: "wrap" makes a closed skin at a `distance` around everything instead (default:
+    a hundredth of the diagonal).
+
+    Raises InputError where the soup encloses nothing, OptionError, Cancelled.
+
+    >>> octafront.mesh(octafront.mend(octafront.Surface.read("scan.ply")))
+    """
+    return _complexes.mended(_surface_of(points, triangles), tolerance, way, distance, threads, progress)
+
+
+def complex_of_walls(points, triangles=None, *, regions=None, voids=None, cells="auto", nested="auto", progress=None,
+                     threads=0):
+    """The regions that the walls of a surface enclose: a Surface with sides, for mesh(). A plain closed surface comes
+    back as it is. report["regions"] has names and volumes, report["notes"] what was decided.
+
+    points, triangles: as for mesh(); which way triangles face does not matter.
+    regions: {"steel": (x, y, z)}: the cell around the point, or the points, has this name.
+    voids: points whose cells stay empty.
+    cells: "regions": every enclosed cell is one, also where walls lie double or cross; "merge": all are one body.
+    nested: closed shells inside others: "cavity" or "region"; "auto" goes by the way they face.
+
+    Raises InputError, with `leak` where regions are joined through a hole; OptionError, Cancelled.
+
+    >>> foam = octafront.complex_of_walls(octafront.Surface.read("foam.ply"), regions={"core": (0.5, 0.5, 0.5)})
+    >>> octafront.mesh(foam, size=0.05)
+    """
+    return _complexes.of_walls(_surface_of(points, triangles), regions, voids, cells, nested, threads, progress)
+
+
+def join_bodies(bodies, *, regions=None, voids=None, cells="auto", tolerance=None, progress=None, threads=0):
+    """Several closed bodies as one complex, which mesh() fills with one mesh: where they touch they share faces, where
+    they overlap the later one has its way. A Surface with a region for each, report as of complex_of_walls().
+
+    bodies: {name: Surface, or its file}, in order. tolerance: what is nearer comes together (default: a millionth of the
+    diagonal). regions and voids name and empty what bodies enclose but none fills; cells="merge": one region of all.
+
+    Raises InputError, with the name of the body at fault; OptionError, Cancelled.
+
+    >>> octafront.mesh(octafront.join_bodies({"plate": "plate.stl", "bolt": "bolt.stl"})).save("bolted.msh")
+    """
+    return _complexes.of_bodies(bodies, regions, voids, cells, tolerance, threads, progress)
 
 
 def check(what, triangles=None, *, solver=None):

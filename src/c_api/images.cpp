@@ -5,6 +5,7 @@
 
 #include "c_api/c_api.h"
 #include "c_api/job.h"
+#include "c_api/json_keys.h"
 
 #include <cmath>
 #include <limits>
@@ -65,18 +66,6 @@ Image image_of(int type, const std::uint32_t* size, const void* values, const do
   image.values = values_of(type, values, image.grid.voxels());
   require_finite(image);
   return image;
-}
-
-/// What a key of an object says; nothing if it is missing or null.
-template <class Take>
-void with(const Json& object, const char* key, const Take& take) {
-  const auto found = object.find(key);
-  if (found == object.end() || found->is_null()) return;
-  try {
-    take(*found);
-  } catch (const Json::exception&) {
-    throw OptionError(fmt::format("`{}` is not understood: {}", key, found->dump()));
-  }
 }
 
 double at_least_zero(const Json& value, const char* key) {
@@ -176,9 +165,7 @@ void make_surface(octafront_job& job, const Image& image, const Json& json) {
   job.report = {{"format", used.format},
                 {"size", used.grid.size},
                 {"voxel", smallest_spacing(used.grid)},
-                {"regions", Json::array()}};
-  for (std::size_t r = 0; r < complex.volumes.size(); ++r)
-    job.report["regions"].push_back({{"name", complex.surface.region_names[r]}, {"volume", complex.volumes[r]}});
+                {"regions", json_of_regions(complex)}};
   Json notes = used.notes;
   for (std::string& note : complex.notes) notes.push_back(std::move(note));
   job.report["notes"] = std::move(notes);

@@ -52,8 +52,8 @@ FrontState start_front(const SurfaceMesh& surface, const SizeField& sizes) {
   for (const std::uint32_t t : spatial_order(surface, front.domain)) {
     const auto& [a, b, c] = surface.triangles[t];
     const auto [ahead, behind] = surface.sides_of(t);
-    if (behind != kNone) front.queue.push_back({{a, c, b}});
-    if (ahead != kNone) front.queue.push_back({{a, b, c}});
+    if (behind != kNone) front.queue.push_back({{{a, c, b}, behind}});
+    if (ahead != kNone) front.queue.push_back({{{a, b, c}, ahead}});
   }
   return front;
 }
@@ -65,7 +65,7 @@ void add_core(FrontState& front, LatticeCore core) {
   for (Tet& t : core.tets)
     for (VertexIndex& v : t) v += first;
   front.passive.reserve(core.skin.size());
-  for (const auto& [a, b, c] : core.skin) front.passive.push_back({a + first, c + first, b + first});
+  for (const auto& [a, b, c] : core.skin) front.passive.push_back({{a + first, c + first, b + first}});
   front.work.tets = core.tets.size();
   front.filled.push_back(std::move(core.tets));
 }
@@ -140,7 +140,7 @@ TetMesh fill_by_front(const SurfaceMesh& surface, const SizeField& sizes, const 
       throw MeshingError("the front made " + std::to_string(front.work.tets) +
                          " tetrahedra without closing; check the surface for self-intersections, or choose a larger "
                          "element size");
-    walls = std::move(front.held);
+    for (const FrontFace& f : front.held) walls.push_back(f.corners);
     mesh.points = std::move(front.points);
     mesh.tets = joined(front.filled);
   }

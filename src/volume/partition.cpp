@@ -25,7 +25,7 @@ class Divider {
   Divider(const FrontState& front, const PartitionRule& rule) : rule_(rule), boxes_(front.faces()) {
     queued_ = front.queue.size();
     parallel_for(boxes_.size(), [&](std::size_t f) {
-      for (const VertexIndex v : front.face(f)) boxes_[f].add(front.points[v]);
+      for (const VertexIndex v : front.face(f).corners) boxes_[f].add(front.points[v]);
     });
   }
 

@@ -219,6 +219,65 @@ def tet_volumes(mesh):
     return np.einsum("ij,ij->i", np.cross(b - a, c - a), d - a) / 6
 
 
+class Complexes(Case):
+    """Boxes, whose volumes are exact."""
+
+    @staticmethod
+    def block(lo, hi):
+        points, triangles = cube()
+        points = np.asarray(points, float)
+        least, extent = points.min(axis=0), np.ptp(points, axis=0)
+        return octafront.Surface((points - least) / extent * (np.subtract(hi, lo)) + lo, triangles)
+
+    def test_bodies_share_faces_and_the_later_one_has_its_way(self):
+        joined = octafront.join_bodies({"plate": self.block((0, 0, 0), (4, 4, 1)), "pin": self.block((1, 1, 0), (2, 2, 3))})
+        made = {r["name"]: r["volume"] for r in joined.report["regions"]}
+        self.assertAlmostEqual(made["plate"], 15, places=12)
+        self.assertAlmostEqual(made["pin"], 3, places=12)
+        mesh = octafront.mesh(joined, size=0.5)
+        self.assertTrue(octafront.check(mesh))
+        self.assertEqual(mesh.names["regions"], ["plate", "pin"])
+        self.assertGreater(len(mesh.interfaces), 0)
+        volumes = tet_volumes(mesh)
+        self.assertAlmostEqual(volumes[mesh.regions == 1].sum(), 3, places=9)
+
+    def test_regions_are_named_and_emptied_by_points(self):
+        with_wall = octafront.join_bodies({"a": self.block((0, 0, 0), (1, 1, 1)), "b": self.block((1, 0, 0), (3, 1, 1))})
+        walls = octafront.Surface(with_wall.points, with_wall.triangles)
+        cells = octafront.complex_of_walls(walls, regions={"left": (0.5, 0.5, 0.5)})
+        self.assertEqual({r["name"]: round(r["volume"], 12) for r in cells.report["regions"]}, {"left": 1, "region_1": 2})
+        one = octafront.complex_of_walls(walls, regions={"all": [(0.5, 0.5, 0.5), (2, 0.5, 0.5)]}, threads=1)
+        self.assertEqual([round(r["volume"], 12) for r in one.report["regions"]], [3])
+        half = octafront.complex_of_walls(walls, voids=np.array([[2, 0.5, 0.5]]))
+        self.assertEqual([round(r["volume"], 12) for r in half.report["regions"]], [1])
+        self.assertEqual(octafront.complex_of_walls(*cube()).report["regions"], [])
+
+    def test_a_leak_has_its_way_with_it(self):
+        points, triangles = self.block((0, 0, 0), (1, 1, 1)).points, self.block((0, 0, 0), (1, 1, 1)).triangles
+        open_box = octafront.Surface(points, triangles[1:])
+        with self.assertRaises(octafront.InputError) as raised:
+            octafront.complex_of_walls(open_box, regions={"in": (0.5, 0.5, 0.5)})
+        self.assertGreater(len(raised.exception.leak), 1)
+        with self.assertRaisesRegex(octafront.OptionError, "`cells` is one of auto, merge, regions"):
+            octafront.complex_of_walls(open_box, cells="all")
+        with self.assertRaisesRegex(octafront.OptionError, "three coordinates"):
+            octafront.complex_of_walls(open_box, regions={"in": (0.5, 0.5)})
+
+    def test_a_soup_is_mended(self):
+        box = self.block((0, 0, 0), (1, 1, 1))
+        clean = octafront.mend(box)
+        self.assertTrue(clean.report["clean"])
+        np.testing.assert_array_equal(clean.points, box.points)
+        closed = octafront.mend(box.points, box.triangles[1:])
+        self.assertFalse(closed.report["clean"])
+        self.assertAlmostEqual(closed.report["volume_after"], 1, places=9)
+        self.assertTrue(octafront.check(octafront.mesh(closed, size=0.3)))
+        wrapped = octafront.mend(box, way="wrap", distance=0.1)
+        self.assertLess(wrapped.points.min(), -0.05)
+        with self.assertRaises(octafront.InputError):
+            octafront.mend(box.points, box.triangles[:1])
+
+
 class Sizes(Case):
     def test_a_function_is_asked_in_batches(self):
         batches = []

@@ -29,18 +29,18 @@ FrontState front_on(const SurfaceMesh& surface, double size) {
     const auto& [a, b, c] = surface.triangles[t];
     // Some of each kind.
     if (t % 7 == 0)
-      front.held.push_back({a, c, b});
+      front.held.push_back({{a, c, b}});
     else if (t % 5 == 0)
-      front.passive.push_back({a, c, b});
+      front.passive.push_back({{a, c, b}});
     else
-      front.queue.push_back({{a, c, b}});
+      front.queue.push_back({{{a, c, b}}});
   }
   return front;
 }
 
 Box3 box_of(const FrontState& front, std::size_t face) {
   Box3 box;
-  for (const VertexIndex v : front.face(face)) box.add(front.points[v]);
+  for (const VertexIndex v : front.face(face).corners) box.add(front.points[v]);
   return box;
 }
 
@@ -79,7 +79,7 @@ TEST(FrontState, FindsWhatIsWrongWithIt) {
   EXPECT_EQ(whole.first_inconsistency(), std::nullopt);
   FrontState open = whole, turned = whole, more = whole, sizeless = whole;
   open.held.pop_back();
-  std::swap(turned.passive[3][0], turned.passive[3][1]);
+  std::swap(turned.passive[3].corners[0], turned.passive[3].corners[1]);
   more.filled.push_back({{0, 1, 2, 3}});
   sizeless.sizes.pop_back();
   for (const FrontState& broken : {open, turned, more, sizeless}) EXPECT_NE(broken.first_inconsistency(), std::nullopt);
