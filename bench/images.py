@@ -10,7 +10,6 @@ import argparse
 import gzip
 import json
 import pathlib
-import re
 import struct
 import subprocess
 import sys
@@ -37,9 +36,8 @@ VOLUMES = [("liver, 6 mm", "liver.inr.gz", ["--size", "6"], []),
            ("Cranium, 226 and more", "Cranium.inv3", ["--iso", "226"], ["iso=226"]),
            ("Cranium, its mask", "Cranium.inv3", ["--series", "2"], ["series=2"]),
            ("Cranium as DICOM", "Cranium.inv3", ["--iso", "226"], ["iso=226"])]
-PEERS = [("liver, 6 mm", "liver.inr.gz", 6, False), ("liver, 3 mm", "liver.inr.gz", 3, False),
-         ("KmeansTest, 4 mm", "KmeansTest_T1KmeansPrelimSegmentation.nii.gz", 4, True),
-         ("HarvardOxford, 3 mm", "HarvardOxford-cort-maxprob-thr0-1mm.nii.gz", 3, False)]
+# Volumes above that CGAL meshes too, at this size.
+PEERS = {"liver, 6 mm": 6, "liver, 3 mm": 3, "KmeansTest, 6 mm": 6, "HarvardOxford, 4 mm": 4}
 PAGE = BENCH.parent / "docs/images-status.md"
 LARGE = 1000  # voxels: what labels of so many must keep
 
@@ -144,7 +142,7 @@ class Results:
 
     def __init__(self, file):
         self.file = file
-        self.rows = json.loads(file.read_text()) if file.is_file() else {"alone": {}, "beside": {}}
+        self.rows = {"alone": {}, "CGAL": {}, **(json.loads(file.read_text()) if file.is_file() else {})}
 
     def add(self, kind, row):
         self.rows[kind][row["name"]] = row
@@ -169,23 +167,28 @@ def alone(build, volumes, names, timeout, results):
         results.add("alone", row_of(name, outcome, found))
 
 
-def names_of_peers():
-    return [f"{name}: {who}" for name, *_ in PEERS for who in ("Octafront", "CGAL 5.5")]
-
-
 def beside(build, volumes, names, timeout, results):
-    for name, file, size, all_labels in PEERS:
-        if names and name not in names:
+    for name, file, _, _ in VOLUMES:
+        if name not in PEERS or (names and name not in names):
             continue
         with tempfile.TemporaryDirectory() as folder:
-            image = volumes / file
-            if not re.search(r"\.inr(\.gz)?$", file):
-                image = as_inr(image, pathlib.Path(folder, "image.inr"))
-            ignore = ["--ignore", "none"] if all_labels else []
-            for who, outcome in (("Octafront", mesh_with_ours(build, image, folder, timeout, ["--size", str(size), *ignore])),
-                                 ("CGAL 5.5", mesh_with_cgal(build, image, folder, timeout, size))):
-                found = judge(build, image, outcome.mesh, ["all"] if all_labels else []) if outcome.mesh else None
-                results.add("beside", row_of(f"{name}: {who}", outcome, found))
+            image = pathlib.Path(folder, "image.inr")
+            if file.endswith(".inr.gz"):
+                image.write_bytes(gzip.decompress((volumes / file).read_bytes()))
+            else:
+                as_inr(volumes / file, image)
+            outcome = mesh_with_cgal(build, image, folder, timeout, PEERS[name])
+            # To CGAL 0 is outside, always.
+            found = judge(build, image, outcome.mesh, []) if outcome.mesh else None
+        results.add("CGAL", row_of(name, outcome, found))
+
+
+def side_by_side(results):
+    rows = []
+    for name in PEERS:
+        for kind, who in (("alone", "Octafront"), ("CGAL", "CGAL 5.5")):
+            rows += [{**row, "name": f"{name}: {who}"} for row in results.of(kind, [name])]
+    return rows
 
 
 def main():
@@ -212,7 +215,7 @@ def write_page(results):
     page = PAGE.read_text()
     rows = results.of("alone", [name for name, *_ in VOLUMES])
     for mark, lines in (("volumes", table(rows)), ("poor elements", poor_elements(rows)),
-                        ("beside CGAL", table(results.of("beside", names_of_peers())))):
+                        ("beside CGAL", table(side_by_side(results)))):
         before, rest = page.split(f"<!-- {mark} -->\n")
         page = before + f"<!-- {mark} -->\n" + "\n".join(lines) + "\n<!-- end -->" + rest.split("<!-- end -->", 1)[1]
     PAGE.write_text(page)

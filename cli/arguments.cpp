@@ -359,6 +359,8 @@ void declare_surface(CLI::App& command, Arguments& a) {
       ->type_name("DEG");
   group->add_flag("--patches", o.patches_by_features,
                   "Each part of the surface that feature edges enclose becomes a patch");
+  group->add_flag("--keep-volumes", o.keep_volumes,
+                  "Regions of a complex keep the volumes that they have in the input; images do so unasked");
   a.names.add("keep", "--keep-surface");
   a.names.add("patches_by_features", "--patches");
 }

@@ -20,7 +20,9 @@ if [ $# -gt 0 ] && [[ $1 != -* ]]; then preset=$1 && shift; fi
 
 need_packages "${build_packages[@]}" "${test_packages[@]}"
 [ ${#which[@]} -gt 0 ] ||
-  need_packages "${format_packages[@]}" "${doc_packages[@]}" "${browser_packages[@]}" "${shell_packages[@]}"
+  need_packages "${format_packages[@]}" "${doc_packages[@]}" "${browser_packages[@]}" "${shell_packages[@]}" "${image_packages[@]}"
+[ ${#which[@]} -gt 0 ] || [ -d volumes/nibabel ] || scripts/get-volumes.sh --readers ||
+  echo "the test volumes cannot be fetched here: tests that need them are skipped"
 cmake --preset "$preset" -DOCTAFRONT_BUILD_BENCH=OFF -DOCTAFRONT_WERROR=ON >/dev/null
 cmake --build --preset "$preset" "${targets[@]}"
 failed=build/$preset/Testing/Temporary/LastTestsFailed.log

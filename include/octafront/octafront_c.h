@@ -133,7 +133,7 @@ int octafront_options_point_sizes_file(octafront_options* options, const char* f
 int octafront_options_size_of(octafront_options* options, const char* name, size_t length, double size);
 /** SizeOptions::field. */
 int octafront_options_field(octafront_options* options, const octafront_sizes* sizes);
-/** sizes_for_voxels() of octafront/image_surface.h, after all other options. */
+/** options_for_voxels() of octafront/image_surface.h, after all other options. */
 void octafront_options_for_voxels(octafront_options* options, double spacing);
 /** Jobs with these options ask for sizes, or tell of passes, by events. */
 void octafront_options_ask_sizes(octafront_options* options);

@@ -89,6 +89,9 @@ struct SurfaceOptions {
   /// Each part of the surface that feature edges enclose becomes a patch of its own; parts of a named patch keep its
   /// name, with a number behind it where there are several.
   bool patches_by_features = false;
+  /// Regions of a complex get the volumes that they have in the input: vertices inside patches move off the surface by
+  /// what chords cut off, at most a fifth of an edge. For images of labels.
+  bool keep_volumes = false;
 };
 
 /// How the volume is filled.

@@ -31,5 +31,7 @@ doc_packages=(doxygen python3-sphinx mypy)
 browser_packages=(chromium chromium-driver python3-selenium fonts-dejavu-core)
 # What reads manual and completions (tests/cli): also of --all; without them these are read by fewer programs.
 shell_packages=(groff zsh fish)
+# What reads images beside us (tests/image): also of --all.
+image_packages=(python3-nibabel python3-pydicom)
 # Other meshers, which some benchmarks run beside ours.
 peer_packages=(tetgen gmsh netgen)

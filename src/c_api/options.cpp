@@ -145,7 +145,7 @@ int octafront_options_field(octafront_options* options, const octafront_sizes* s
 }
 
 void octafront_options_for_voxels(octafront_options* options, double spacing) {
-  options->options.size = sizes_for_voxels(std::move(options->options.size), spacing);
+  options->options = options_for_voxels(std::move(options->options), spacing);
 }
 
 void octafront_options_ask_sizes(octafront_options* options) {

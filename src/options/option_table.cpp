@@ -214,6 +214,10 @@ std::vector<Row> surface_rows() {
       row(
           of("patches", "Each part of the surface that feature edges enclose becomes a patch", "patches_by_features"),
           [](auto& o) -> auto& { return o.surface.patches_by_features; }),
+      row(
+          of("keep_volumes", "Regions of a complex keep the volumes that they have in the input; images do so unasked",
+             {}, "mesh surface"),
+          [](auto& o) -> auto& { return o.surface.keep_volumes; }),
   };
 }
 

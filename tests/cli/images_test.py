@@ -98,6 +98,20 @@ class Images(unittest.TestCase):
             self.assertAlmostEqual(region["volume"] / before["volume"], 1, delta=0.05)
         self.run_cli("check", out)
 
+    def test_regions_keep_their_volumes_at_any_size(self):
+        # A ball in a ball, elements of a third of the inner radius: chords alone would cut off several percent.
+        n, values = 28, []
+        for k in range(n):
+            for j in range(n):
+                for i in range(n):
+                    r = sum((x - 13.5) ** 2 for x in (i, j, k)) ** 0.5
+                    values.append(2 if r < 7 else 1 if r < 12 else 0)
+        image, report = self.write("balls.nii", nifti((n, n, n), values)), self.dir / "balls.json"
+        self.run_cli("mesh", image, "--size", "2.5", "--curvature", "3", "-o", self.dir / "balls.msh", "--json", report)
+        found = json.loads(report.read_text())
+        for label, region in zip((1, 2), found["regions"]):
+            self.assertAlmostEqual(region["volume"] / values.count(label), 1, delta=0.01, msg=region["name"])
+
     def test_ignored_and_merged_labels(self):
         image = self.two_boxes()
         self.assertEqual(list(self.volumes(image, "--ignore", "0,7")), ["label 3"])

@@ -10,6 +10,7 @@
 #include "surface/remeshing/deviation.h"
 #include "surface/remeshing/improve.h"
 #include "surface/remeshing/insertion.h"
+#include "surface/remeshing/keep_volumes.h"
 #include "surface/remeshing/mend_folds.h"
 #include "surface/remeshing/merge_lines.h"
 #include "surface/remeshing/narrow_strips.h"
@@ -545,6 +546,9 @@ class Remesher {
     const std::vector<Vec3>& near = c.nearness.approached;
     if (!near.empty())
       c.result.sizes = capped_near(c.result.sizes, thinned(c.result.sizes, near), kDeviationCap, stage_.context());
+    if (options_.keep_volumes && seamed_)
+      stage_.count("vertices moved for volumes",
+                   static_cast<double>(keep_volumes(c.result.surface, c.result.features, surface_, stage_.context())));
     counts_.restored = restored_.size();
     if (!restored_.empty())
       stage_.note(
