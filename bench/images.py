@@ -22,12 +22,15 @@ from peers.process import finish, run_measured  # noqa: E402
 
 # Name, file, options, what octafront_judge_image is told.
 ALL = ["--ignore", "none"]
+TURN = ["--curvature", "24"]
 VOLUMES = [("liver, 6 mm", "liver.inr.gz", ["--size", "6"], []),
+           ("liver, 6 mm, 24 a turn", "liver.inr.gz", ["--size", "6", *TURN], []),
            ("liver, 3 mm", "liver.inr.gz", ["--size", "3"], []),
            ("KmeansTest, 6 mm", "KmeansTest_T1KmeansPrelimSegmentation.nii.gz", [*ALL, "--size", "6"], ["all"]),
            ("skull strip, 6 mm", "KmeansTest_T1RawSkullStrip.nii.gz", [*ALL, "--size", "6"], ["all"]),
            ("JHU white matter 2 mm, automatic", "JHU-WhiteMatter-labels-2mm.nii.gz", [], []),
            ("JHU white matter 1 mm, 3 mm", "JHU-WhiteMatter-labels-1mm.nii.gz", ["--size", "3"], []),
+           ("JHU white matter 1 mm, 3 mm, 24 a turn", "JHU-WhiteMatter-labels-1mm.nii.gz", ["--size", "3", *TURN], []),
            ("natbrainlab, 4 mm", "natbrainlab.nii.gz", ["--size", "4"], []),
            ("HarvardOxford, 4 mm", "HarvardOxford-cort-maxprob-thr0-1mm.nii.gz", ["--size", "4"], []),
            ("jhu189, 4 mm", "jhu189.nii.gz", ["--size", "4"], []),

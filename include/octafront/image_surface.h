@@ -80,9 +80,8 @@ Complex complex_of_image(const Image& image, const ImageRegions& regions = {},
 double smallest_spacing(const ImageGrid& grid);
 
 /// Options for an image: sizes that were chosen, by length or number of elements, as they suit voxels so far apart:
-/// layers thinner than the size would lose their shape, so they get an element across; curved surfaces get 24
-/// elements a turn; and nothing is smaller than a voxel. What was given stays. Whatever the sizes, regions keep their
-/// volumes.
+/// layers thinner than the size would lose their shape, so they get an element across; and nothing is smaller than a
+/// voxel. What was given stays. Whatever the sizes, regions keep their volumes.
 Options options_for_voxels(Options options, double spacing);
 
 }  // namespace octafront

@@ -130,19 +130,11 @@ double smallest_spacing(const ImageGrid& grid) {
   return std::min({length(grid.axes[0]), length(grid.axes[1]), length(grid.axes[2])});
 }
 
-namespace {
-
-// What stands for a curved surface: with 24 elements around a tract of a brain Dice is .97, without any rule .95.
-constexpr double kAroundTurn = 24;
-
-}  // namespace
-
 Options options_for_voxels(Options options, double spacing) {
   options.surface.keep_volumes = true;
   SizeOptions& sizes = options.size;
   if (!sizes.size && !sizes.elements) return options;
   if (!sizes.gap) sizes.gap = 1;
-  if (!sizes.curvature) sizes.curvature = kAroundTurn;
   if (!sizes.min_size) sizes.min_size = std::min(spacing, sizes.size.value_or(spacing));
   return options;
 }
