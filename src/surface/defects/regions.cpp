@@ -46,7 +46,8 @@ std::vector<Spoke> spokes_of(const SurfaceMesh& mesh, const EdgeTable& table, st
 }
 
 /// Sides of triangles that look into the same space next to an edge must be of one region.
-void find_conflicts(const RepairedSurface& repaired, const EdgeTable& table, SurfaceDefects& found) {
+void find_conflicts(const RepairedSurface& repaired, const EdgeTable& table, SurfaceDefects& found,
+                    std::vector<Vec3>* edges) {
   const SurfaceMesh& mesh = repaired.surface;
   FirstPlaces open(found.open_edges), conflicts(found.region_conflicts);
   for (std::size_t e = 0; e < table.size(); ++e) {
@@ -60,7 +61,9 @@ void find_conflicts(const RepairedSurface& repaired, const EdgeTable& table, Sur
     std::vector<std::uint32_t> faces;
     for (const Spoke& spoke : spokes) faces.push_back(mesh.source_of(spoke.triangle));
     const auto [a, b] = table.edges[e];
-    (spokes.size() == 1 ? open : conflicts).add(std::move(faces), (mesh.points[a] + mesh.points[b]) * 0.5);
+    const Vec3 middle = (mesh.points[a] + mesh.points[b]) * 0.5;
+    (spokes.size() == 1 ? open : conflicts).add(std::move(faces), middle);
+    if (edges != nullptr) edges->push_back(middle);
   }
 }
 
@@ -117,9 +120,10 @@ SurfaceDefects find_complex_defects(const RepairedSurface& repaired, const EdgeT
                        : found;  // around crossings nothing can be sorted
 }
 
-SurfaceDefects find_region_defects(const RepairedSurface& repaired, const EdgeTable& table, const RunContext& context) {
+SurfaceDefects find_region_defects(const RepairedSurface& repaired, const EdgeTable& table, const RunContext& context,
+                                   std::vector<Vec3>* edges) {
   SurfaceDefects found;
-  find_conflicts(repaired, table, found);
+  find_conflicts(repaired, table, found, edges);
   if (found.clean()) find_misplaced(repaired, table, context, found);
   return found;
 }
