@@ -222,9 +222,8 @@ void run_fast(Schedule& run, const ImproveOptions& options) {
   run.flips(kWanted);
 }
 
-/// More rounds for the mean where the first one raised it by this, as on poor meshes of other tools, but on none that the
-/// front made: there they gain .003 at most, for a third of the time. They go on as long as one raises it by the other.
-constexpr double kWorthRounds = 0.01, kWorthARound = 0.002;
+/// More rounds for the mean as long as one raises it by this: none on meshes that the front made, several on poor ones.
+constexpr double kWorthARound = 0.002;
 constexpr int kMostRounds = 12;
 
 void rounds_for_mean(Schedule& run, float threshold) {
@@ -248,7 +247,7 @@ void run_default(Schedule& run, const ImproveOptions& options) {
   const double before = run.mean_beta();
   run.flips(kWanted);
   run.smooth_mean(1);
-  if (run.mean_beta() - before > kWorthRounds) rounds_for_mean(run, kGood);
+  if (run.mean_beta() - before > kWorthARound) rounds_for_mean(run, kGood);
   run.rounds_for_worst(4, kWanted, 2, kPoor);
 }
 

@@ -5,6 +5,7 @@
 #include "volume/front.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace octafront {
@@ -12,6 +13,7 @@ namespace octafront {
 namespace {
 
 constexpr std::size_t kFacesBetweenChecks = 512;
+constexpr int kAllLayers = std::numeric_limits<int>::max();
 
 class BlockRun {
  public:
@@ -69,7 +71,8 @@ class BlockRun {
     const VolumeOptions::Order order = phase_.task.options.order;
     std::vector<Turn> layer = first_layer();
     if (order == VolumeOptions::Order::kNewest) return work_off_newest(std::move(layer));
-    for (int layers = phase_.layers; !layer.empty() && layers > 0 && !over_budget(); --layers) {
+    for (int layers = block_.is_of_regions ? kAllLayers : phase_.layers; !layer.empty() && layers > 0 && !over_budget();
+         --layers) {
       if (order == VolumeOptions::Order::kSmallest) sort_by_area(layer);
       created_.clear();
       for (const Turn& turn : layer) take(turn);

@@ -24,8 +24,9 @@ struct WaitingFace {
 /// The whole front between two phases, and what has been made so far: plain lists, in an order that is part of the
 /// result. What the next phase does depends on nothing else. While a phase runs, each block has a Front of its own.
 struct FrontState {
-  Box3 domain;             ///< all faces lie in it
-  double finest_size = 1;  ///< > 0
+  Box3 domain;                ///< all faces lie in it
+  double finest_size = 1;     ///< > 0
+  std::uint32_t regions = 1;  ///< those of faces are below it, or kNone
   std::vector<Vec3> points;
   std::vector<float> sizes;              ///< wanted edge length, per point
   std::vector<WaitingFace> queue;        ///< will try next (the paper's Qc and Qn)

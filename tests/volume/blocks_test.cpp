@@ -7,6 +7,7 @@
 #include "volume/fill.h"
 
 #include <cmath>
+#include <set>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -72,6 +73,41 @@ TEST(Partition, GivesEveryFaceOneOwnerAndListsAllThatReachIn) {
         EXPECT_TRUE(apart) << i << " and " << j;
       }
   }
+}
+
+TEST(Partition, KeepsRegionsApart) {
+  FrontState front = front_on(icosphere(4), kEdgeOfIcosphere / 16);
+  // The first region has half of the faces, the others an eighth each.
+  const auto region_of = [&](const Triangle& t) {
+    const Vec3 p = front.points[t[0]];
+    return p.x < 0 ? 0u : 1u + (p.y > 0 ? 1u : 0u) + (p.z > 0 ? 2u : 0u);
+  };
+  front.regions = 5;
+  for (WaitingFace& w : front.queue) w.face.region = region_of(w.face.corners);
+  for (FrontFace& f : front.held) f.region = region_of(f.corners);
+  for (FrontFace& f : front.passive) f.region = region_of(f.corners);
+  const std::vector<FrontBlock> blocks = partition_front(front, {1000, 0.5});
+  std::vector<int> owners(front.faces(), 0);
+  std::set<std::uint32_t> alone;
+  for (const FrontBlock& block : blocks) {
+    EXPECT_LE(block.queued, 1000u);
+    std::set<std::uint32_t> regions;
+    for (std::size_t i = 0; i < block.members.size(); ++i) {
+      owners[block.members[i].face] += block.members[i].owned;
+      regions.insert(front.face(block.members[i].face).region);
+      if (i > 0) {
+        EXPECT_LT(block.members[i - 1].face, block.members[i].face);
+      }
+    }
+    if (block.is_of_regions)
+      alone.insert(regions.begin(), regions.end());
+    else
+      EXPECT_EQ(regions, (std::set<std::uint32_t>{0}));
+  }
+  EXPECT_EQ(alone, (std::set<std::uint32_t>{1, 2, 3, 4}));
+  for (std::size_t f = 0; f < owners.size(); ++f) EXPECT_EQ(owners[f], 1) << f;
+  front.passive[0].region = kNone;
+  for (const FrontBlock& block : partition_front(front, {1000, 0.5})) EXPECT_FALSE(block.is_of_regions);
 }
 
 TEST(FrontState, FindsWhatIsWrongWithIt) {
