@@ -125,7 +125,7 @@ class Rim {
   static constexpr std::size_t kMostInner = 4000;
   /// Radians: where the surface around is flatter than the least, a flat cap is as good; where a cap turns more than
   /// the most, the surface was cut off there.
-  static constexpr double kLeastTurn = 0.08, kMostTurn = 1, kMostOfRim = 0.75;
+  static constexpr double kLeastTurn = 0.08, kMostTurn = 1, kMostOfRim = 0.3;
 
   const Draft& draft_;
   const Loop& loop_;
