@@ -27,10 +27,12 @@ using arrangement::Soup;
 /// How many times rounding may make new crossings, and from which pass on what nearly meets is brought together, each
 /// time from farther away: nearly all input ends in two or three passes.
 constexpr int kMostPasses = 24, kFirstSnap = 1;
+/// What is brought together may come near to others: so often in a pass.
+constexpr int kMostSnaps = 4;
 /// The first reach, of the diagonal, and what it grows by: up to 1e-6 in the last pass.
-constexpr double kReach = 1e-14, kGrowth = 2.2;
+constexpr double kReach = 1e-13, kGrowth = 2;
 /// What does not settle must not grow without end either.
-constexpr std::size_t kMostGrowth = 8;
+constexpr std::size_t kMostGrowth = 8, kFewPairs = 100;
 
 bool lexicographic(Vec3 a, Vec3 b) {
   return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
@@ -135,13 +137,15 @@ class Arranger {
     result_.degenerate = tidy(soup_);
     for (;; ++result_.passes) {
       auto pairs = self_intersections(soup_.points, soup_.triangles, kAll, context_);
-      if (result_.passes >= kFirstSnap && !pairs.empty()) {
+      for (int k = 0; k < kMostSnaps && result_.passes >= kFirstSnap && !pairs.empty(); ++k) {
         bring_together(pairs);
         pairs = self_intersections(soup_.points, soup_.triangles, kAll, context_);
       }
       if (result_.passes == 0) result_.crossing_pairs = pairs.size();
       if (pairs.empty()) return finished();
-      const bool grows = first_pass_ > 0 && soup_.triangles.size() > kMostGrowth * first_pass_;
+      least_pairs_ = std::min(least_pairs_, pairs.size());
+      const bool grows = first_pass_ > 0 && (soup_.triangles.size() > kMostGrowth * first_pass_ ||
+                                             pairs.size() > kMostGrowth * (least_pairs_ + kFewPairs));
       if (result_.passes == kMostPasses || grows) give_up(pairs);
       pass(pairs);
       if (result_.passes == 0) first_pass_ = soup_.triangles.size();
@@ -234,7 +238,8 @@ class Arranger {
   const RunContext& context_;
   std::size_t inputs_;
   double diagonal_ = 0;
-  std::size_t first_pass_ = 0;  ///< triangles behind it
+  std::size_t first_pass_ = 0;      ///< triangles behind it
+  std::size_t least_pairs_ = kAll;  ///< so far
   Soup soup_;
   Arrangement result_;
 };

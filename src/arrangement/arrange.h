@@ -37,7 +37,7 @@ struct Arrangement {
 /// Divides triangles where they cross, touch or overlap; of what lies on each other one triangle stays, with the
 /// origins of all. Triangles that conflict with none come out with their corners. New points are exact intersections,
 /// rounded to doubles; where that makes new crossings these are resolved in turn until none is left. Where it goes on
-/// making some, what nearly meets there is brought together, from a reach of 1e-14 of the diagonal on: only then may
+/// making some, what nearly meets there is brought together, from a reach of 1e-13 of the diagonal on: only then may
 /// input points move, too (`largest_move`). The result depends on the input alone.
 ///
 /// Cost: O(n log n) for n triangles, plus what the pairs that conflict need, some 20 microseconds each. Throws

@@ -19,6 +19,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -58,20 +60,19 @@ void clean_faces(Draft& draft) {
 /// The soup on its way to the result.
 class Mending {
  public:
-  Mending(const SurfaceMesh& soup, const MendOptions& options, const RunContext& context, MendReport& report)
+  Mending(const SurfaceMesh& soup, const RunContext& context, MendReport& report)
       : soup_(soup),
-        options_(options),
         context_(context),
         report_(report),
         draft_(repair::make_draft({soup.points, soup.triangles, {}, {}, {}}, context)) {}
 
-  SurfaceMesh result() {
-    context_.report("mending", -1);
-    weld();
+  /// By steps that keep what is not broken; nullopt where they fail.
+  std::optional<SurfaceMesh> exact_result(double weld_reach) {
+    weld(weld_reach);
     orient();
     close();
     try {
-      SurfaceMesh surface = exact_result();
+      SurfaceMesh surface = arranged_result();
       if (is_clean(surface, context_)) return surface;
       report_.notes.push_back("what touches could not be drawn apart");
     } catch (const InputError& error) {
@@ -80,17 +81,7 @@ class Mending {
     } catch (const MeshingError& error) {
       report_.notes.push_back(error.what());
     }
-    return rebuilt_result();
-  }
-
- private:
-  SurfaceMesh exact_result() {
-    const Arrangement arranged = arrange(draft_.mesh.points, all_triangles(), context_);
-    report_.crossing_pairs = arranged.crossing_pairs;
-    report_.largest_move = std::max(report_.largest_move, arranged.largest_move);
-    SurfaceMesh surface = surface_of(arranged, best_skin(arranged));
-    separate(surface);
-    return surface;
+    return std::nullopt;
   }
 
   /// The last rung: by the winding number alone, on a lattice.
@@ -113,6 +104,16 @@ class Mending {
     if (far > kMostInvented * all || is_flake) refuse_open();
     report_.changes.push_back({Kind::kRebuilt, skin.surface.points.front(), all, skin.surface.triangles.size()});
     return named(std::move(skin));
+  }
+
+ private:
+  SurfaceMesh arranged_result() {
+    const Arrangement arranged = arrange(draft_.mesh.points, all_triangles(), context_);
+    report_.crossing_pairs = arranged.crossing_pairs;
+    report_.largest_move = std::max(report_.largest_move, arranged.largest_move);
+    SurfaceMesh surface = surface_of(arranged, best_skin(arranged));
+    separate(surface);
+    return surface;
   }
 
   [[noreturn]] static void refuse_open() {
@@ -142,9 +143,9 @@ class Mending {
     return std::move(skin.surface);
   }
 
-  void weld() {
+  void weld(double reach) {
     clean_faces(draft_);
-    const Welded welded = weld_open_edges(draft_, report_.tolerance);
+    const Welded welded = weld_open_edges(draft_, reach);
     report_.joined_vertices = welded.joined;
     report_.divided_edges = welded.divided;
     report_.largest_move = std::max(report_.largest_move, welded.largest_move);
@@ -312,7 +313,6 @@ class Mending {
   static constexpr double kLatticeEdge = 0.015, kMostInvented = 0.45;
 
   const SurfaceMesh& soup_;
-  const MendOptions& options_;
   const RunContext& context_;
   MendReport& report_;
   Draft draft_;
@@ -320,6 +320,20 @@ class Mending {
   repair::InputFaces turned_;
   std::vector<Hole> holes_;
 };
+
+SurfaceMesh mended_soup(const SurfaceMesh& soup, const RunContext& context, MendReport& report) {
+  context.report("mending", -1);
+  const MendReport before = report;
+  Mending welded(soup, context, report);
+  if (auto surface = welded.exact_result(report.tolerance)) return std::move(*surface);
+  if (report.joined_vertices + report.divided_edges > 0) {
+    // What was brought together may have been in the way.
+    const MendReport failed = std::exchange(report, before);
+    if (auto surface = Mending(soup, context, report).exact_result(0)) return std::move(*surface);
+    report = failed;
+  }
+  return welded.rebuilt_result();
+}
 
 /// Of the diagonal; nearer skins would have too many triangles.
 constexpr double kWrapDistance = 0.01, kLeastWrap = 0.0005;
@@ -361,7 +375,7 @@ Mended mend_surface(const SurfaceMesh& soup, const MendOptions& options, const R
     const bool is_enough = find_defects(repaired, context).clean();
     report.clean = is_enough && !has_changed(repaired);
     if (!is_enough)
-      mended.surface = Mending(soup, options, context, report).result();
+      mended.surface = mended_soup(soup, context, report);
     else if (report.clean)
       mended.surface = soup;
     else
