@@ -8,6 +8,7 @@
 #include "core/disjoint_sets.h"
 #include "core/wording.h"
 #include "geometry/measures.h"
+#include "geometry/triangle_tree.h"
 #include "mend/holes.h"
 #include "mend/label.h"
 #include "mend/lattice_skin.h"
@@ -86,6 +87,9 @@ class Mending {
 
   /// The last rung: by the winding number alone, on a lattice.
   SurfaceMesh rebuilt_result() {
+    weld(report_.tolerance);
+    orient();
+    close();
     SurfaceMesh walls{draft_.mesh.points, all_triangles(), {}, {}, {}};
     LatticeSkin skin;
     try {
@@ -101,7 +105,7 @@ class Mending {
       if (skin.is_far[t]) far += size;
     }
     const bool is_flake = 2 * std::abs(enclosed_volume(skin.surface)) < 2 * kLatticeEdge * report_.diagonal * all;
-    if (far > kMostInvented * all || is_flake) refuse_open();
+    if (far > kMostInvented * all || is_flake || part_left_out(walls, skin.surface) > kMostIdle) refuse_open();
     report_.changes.push_back({Kind::kRebuilt, skin.surface.points.front(), all, skin.surface.triangles.size()});
     return named(std::move(skin));
   }
@@ -114,6 +118,20 @@ class Mending {
     SurfaceMesh surface = surface_of(arranged, best_skin(arranged));
     separate(surface);
     return surface;
+  }
+
+  /// Of the area of the input, what lies outside of a surface and away from it: a terrain around a house.
+  double part_left_out(const SurfaceMesh& walls, const SurfaceMesh& skin) const {
+    const TriangleTree tree(skin);
+    double all = 0, left_out = 0;
+    for (std::size_t t = 0; t < draft_.mesh.triangles.size(); ++t) {
+      const auto [a, b, c] = walls.triangles[t];
+      const double size = triangle_area(walls.points[a], walls.points[b], walls.points[c]);
+      const Vec3 middle = centroid(walls.points[a], walls.points[b], walls.points[c]);
+      all += size;
+      if (!tree.is_within(middle, kLatticeEdge * report_.diagonal) && !tree.contains(middle)) left_out += size;
+    }
+    return all > 0 ? left_out / all : 0;
   }
 
   [[noreturn]] static void refuse_open() {
@@ -324,15 +342,16 @@ class Mending {
 SurfaceMesh mended_soup(const SurfaceMesh& soup, const RunContext& context, MendReport& report) {
   context.report("mending", -1);
   const MendReport before = report;
-  Mending welded(soup, context, report);
-  if (auto surface = welded.exact_result(report.tolerance)) return std::move(*surface);
-  if (report.joined_vertices + report.divided_edges > 0) {
-    // What was brought together may have been in the way.
-    const MendReport failed = std::exchange(report, before);
-    if (auto surface = Mending(soup, context, report).exact_result(0)) return std::move(*surface);
-    report = failed;
+  std::optional<MendReport> failed;
+  // What was brought together may have been in the way: next time less of it.
+  for (const double part : {1.0, 0.05, 1e-3, 0.0}) {
+    report = before;
+    if (auto surface = Mending(soup, context, report).exact_result(part * report.tolerance)) return std::move(*surface);
+    if (!failed) failed = report;
+    if (report.joined_vertices + report.divided_edges == 0) break;
   }
-  return welded.rebuilt_result();
+  report = *failed;
+  return Mending(soup, context, report).rebuilt_result();
 }
 
 /// Of the diagonal; nearer skins would have too many triangles.
