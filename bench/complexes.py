@@ -1,10 +1,13 @@
 """Octafront beside TetGen (-pqA) and Gmsh (Delaunay, optimised) on complexes of several regions, one thread each.
 
 Usage: bench/run.sh complexes [--models NAME...] [--elements N] [--timeout SECONDS]
+       bench/run.sh complexes --regions NAME:SIZE... [--timeout SECONDS]
 The complexes of scripts/make-complexes.sh. Anew: each mesher divides or triangulates the walls itself, to one size. Kept: the
 walls that Octafront triangulated to that size are the same for all. Every mesh is written as MEDIT and read back: octafront_evaluate
 judges elements, and volumes of the regions, one by one in the order of size, are compared with those of the walls given. Times are
 CPU seconds of the whole process, reading and writing included. Prints the tables of docs/complex.md; writes BUILD/complexes.json.
+--regions compares with nobody else: each complex is meshed to a size, and then each of its regions by itself, a surface of its own
+without neighbours. Times are of the stages, without reading and writing.
 """
 import argparse
 import json
@@ -133,12 +136,44 @@ def summary(rows):
             "|" + " --- |" * 6, *lines]
 
 
+def report_of(build, surface, folder, size, timeout, options=()):
+    file = pathlib.Path(folder, "report.json")
+    run_measured([build / "cli/octafront", "mesh", surface, "-o", "out.vtu", "--threads", "1", "-q", "--size", size, "--json", file,
+                  *options], folder, timeout)
+    report = json.loads(file.read_text())
+    file.unlink()
+    return report
+
+
+def by_regions(build, folder, name, size, timeout):
+    """A row of the table: the complex, and its regions one by one."""
+    given = folder / f"{name}.ply"
+    points, triangles, sides = complexes.read_ply(given)
+    together = [report_of(build, given, folder, size, timeout)]
+    alone = []
+    for region in sorted({r for pair in sides for r in pair if r >= 0}):
+        own = folder / "region.off"
+        complexes.write_off(own, points, complexes.boundary_of(triangles, sides, region))
+        alone.append(report_of(build, own, folder, size, timeout))
+    row = [name, f"{len(alone)}", size]
+    each = []
+    for reports in (together, alone):
+        tets = sum(r["tets"] for r in reports)
+        seconds = sum(stage["cpu_seconds"] for r in reports for stage in r["stages"])
+        beta = sum(r["tets"] * r["quality"]["beta_mean"] for r in reports) / tets
+        each.append(seconds / tets)
+        row += [f"{tets:,}", f"{1e6 * seconds / tets:.2f}", f"{beta:.3f}",
+                f"{min(r['quality']['dihedral_min_degrees'] for r in reports):.1f}"]
+    return "| " + " | ".join([*row, f"{each[0] / each[1]:.2f}"]) + " |"
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", type=pathlib.Path)
     parser.add_argument("--models", nargs="+", default=MODELS)
     parser.add_argument("--elements", type=int, default=20_000)
     parser.add_argument("--timeout", type=float, default=300)
+    parser.add_argument("--regions", nargs="+", metavar="NAME:SIZE")
     args = parser.parse_args()
     build = args.build.resolve()
     data = build / "complexes.json"
@@ -146,6 +181,12 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
         subprocess.run([build / "tests/support/make_complexes", folder], check=True, stdout=subprocess.DEVNULL)
+        if args.regions:
+            print("| complex | regions | size | elements | us each | mean β | least angle | alone: elements | us each | mean β | least angle | time, ratio |")
+            print("|" + " --- |" * 12, flush=True)
+            for name, size in (spec.split(":") for spec in args.regions):
+                print(by_regions(build, folder, name, size, args.timeout), flush=True)
+            return
         print("| " + " | ".join(HEAD) + " |\n|" + " --- |" * len(HEAD), flush=True)
         rows = compare(build, folder, args.models, args.elements, args.timeout, save)
     print("\n" + "\n".join(summary(rows)))

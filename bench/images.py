@@ -1,9 +1,10 @@
 """Images of labels meshed and judged, and beside CGAL's Mesh_3 on the same image.
 
-Usage: bench/run.sh images [--volumes NAME...] [--timeout SECONDS] [--peers] [--beside-only]
+Usage: bench/run.sh images [--volumes NAME...] [--timeout SECONDS] [--peers] [--beside-only] [--page]
 Volumes are those of scripts/get-volumes.sh. Each is meshed on one thread; octafront_judge_image compares every label of the mesh with
-its voxels. Prints the tables of docs/images-status.md; writes BUILD/images.json. With --peers also CGAL (libcgal-dev), on images turned
-into INR: labels kept, pieces, volumes, quality, elements per CPU second of the whole process, reading and writing included.
+its voxels. Keeps each result in BUILD/images.json as soon as it is there; --page writes the tables of docs/images-status.md from all that
+are in it. With --peers also CGAL (libcgal-dev), on images turned into INR: labels kept, pieces, volumes, quality, elements per CPU second
+of the whole process, reading and writing included.
 """
 import argparse
 import gzip
@@ -17,28 +18,34 @@ import tempfile
 
 BENCH = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(BENCH))
+from dicom_series import write_series  # noqa: E402
 from peers.process import finish, run_measured  # noqa: E402
 
-# Name, file, options, whether 0 is a label.
-VOLUMES = [("liver, 6 mm", "liver.inr.gz", ["--size", "6"], False),
-           ("liver", "liver.inr.gz", [], False),
-           ("Kmeans", "KmeansTest_T1KmeansPrelimSegmentation.nii.gz", ["--ignore", "none"], True),
-           ("skull strip", "KmeansTest_T1RawSkullStrip.nii.gz", ["--ignore", "none"], True),
-           ("JHU-WM 2 mm", "JHU-WhiteMatter-labels-2mm.nii.gz", [], False),
-           ("JHU-WM 1 mm", "JHU-WhiteMatter-labels-1mm.nii.gz", [], False),
-           ("natbrainlab", "natbrainlab.nii.gz", [], False),
-           ("HarvardOxford", "HarvardOxford-cort-maxprob-thr0-1mm.nii.gz", [], False),
-           ("jhu189", "jhu189.nii.gz", [], False),
-           ("aal", "aal.nii.gz", [], False),
-           ("inia19", "inia19-NeuroMaps.nii.gz", [], False)]
+# Name, file, options, what octafront_judge_image is told.
+ALL = ["--ignore", "none"]
+VOLUMES = [("liver, 6 mm", "liver.inr.gz", ["--size", "6"], []),
+           ("liver, 3 mm", "liver.inr.gz", ["--size", "3"], []),
+           ("KmeansTest, 6 mm", "KmeansTest_T1KmeansPrelimSegmentation.nii.gz", [*ALL, "--size", "6"], ["all"]),
+           ("skull strip, 6 mm", "KmeansTest_T1RawSkullStrip.nii.gz", [*ALL, "--size", "6"], ["all"]),
+           ("JHU white matter 2 mm, automatic", "JHU-WhiteMatter-labels-2mm.nii.gz", [], []),
+           ("JHU white matter 1 mm, 3 mm", "JHU-WhiteMatter-labels-1mm.nii.gz", ["--size", "3"], []),
+           ("natbrainlab, 4 mm", "natbrainlab.nii.gz", ["--size", "4"], []),
+           ("HarvardOxford, 4 mm", "HarvardOxford-cort-maxprob-thr0-1mm.nii.gz", ["--size", "4"], []),
+           ("jhu189, 4 mm", "jhu189.nii.gz", ["--size", "4"], []),
+           ("aal, 4 mm", "aal.nii.gz", ["--size", "4"], []),
+           ("inia19, 2 mm", "inia19-NeuroMaps.nii.gz", ["--size", "2"], []),
+           ("Cranium, 226 and more", "Cranium.inv3", ["--iso", "226"], ["iso=226"]),
+           ("Cranium, its mask", "Cranium.inv3", ["--series", "2"], ["series=2"]),
+           ("Cranium as DICOM", "Cranium.inv3", ["--iso", "226"], ["iso=226"])]
 PEERS = [("liver, 6 mm", "liver.inr.gz", 6, False), ("liver, 3 mm", "liver.inr.gz", 3, False),
-         ("Kmeans, 4 mm", "KmeansTest_T1KmeansPrelimSegmentation.nii.gz", 4, True),
+         ("KmeansTest, 4 mm", "KmeansTest_T1KmeansPrelimSegmentation.nii.gz", 4, True),
          ("HarvardOxford, 3 mm", "HarvardOxford-cort-maxprob-thr0-1mm.nii.gz", 3, False)]
+PAGE = BENCH.parent / "docs/images-status.md"
 LARGE = 1000  # voxels: what labels of so many must keep
 
 
-def judge(build, image, mesh, all_labels):
-    done = subprocess.run([build / "bench/octafront_judge_image", image, mesh, *(["all"] if all_labels else [])],
+def judge(build, image, mesh, words):
+    done = subprocess.run([build / "bench/octafront_judge_image", image, mesh, *words],
                           capture_output=True, text=True)
     if done.returncode != 0:
         raise SystemExit(f"{image}: {done.stderr}")
@@ -62,9 +69,21 @@ def as_inr(source, target):
 
 
 def mesh_with_ours(build, image, folder, timeout, options):
-    out = pathlib.Path(folder, "out.msh")
-    outcome = run_measured([build / "cli/octafront", "mesh", image, "-o", out, "--threads", "1", "-q", *options], folder, timeout)
-    return finish(outcome, out)
+    out, report = pathlib.Path(folder, "out.msh"), pathlib.Path(folder, "out.json")
+    outcome = run_measured([build / "cli/octafront", "mesh", image, "-o", out, "--threads", "1", "-q", "--json", report, *options],
+                           folder, timeout)
+    outcome = finish(outcome, out)
+    if outcome.mesh:
+        outcome.log = improvement(json.loads(report.read_text()))
+    return outcome
+
+
+def improvement(report):
+    """What the report says of the elements that stayed below .4."""
+    counters = next(s for s in report["stages"] if s["name"] == "improve")["counters"]
+    causes = {"a wedge": "wedges", "a corner": "corners of curves", "thin walls": "thin layers", "kept triangles": "kept triangles"}
+    named = [f"{int(counters.get('forced by ' + key, 0))} {words}" for key, words in causes.items() if counters.get("forced by " + key)]
+    return {"below_04": int(counters["elements below 0.4"]), "not_forced": int(counters["not forced"]), "forced": named}
 
 
 def mesh_with_cgal(build, image, folder, timeout, size):
@@ -74,6 +93,8 @@ def mesh_with_cgal(build, image, folder, timeout, size):
 
 def row_of(name, outcome, found):
     row = {"name": name, "error": outcome.error, "cpu_seconds": outcome.cpu_seconds, "peak_mb": outcome.peak_bytes / 1e6}
+    if isinstance(outcome.log, dict):
+        row.update(outcome.log)
     return {**row, **found} if found else row
 
 
@@ -82,44 +103,77 @@ def summary(row):
     labels = row["labels"]
     kept = [l for l in labels if l["tets"] > 0]
     large = [l for l in kept if l["voxels"] >= LARGE]
-    worst = max((abs(l["volume_out"] / l["volume_in"] - 1) for l in large), default=0)
-    return {"labels": f"{len(kept)} of {len(labels)}", "volume": f"{100 * worst:.2f} %",
-            "dice": f"{min((l['dice'] for l in large), default=1):.3f}",
-            "hausdorff": f"{max((l['hausdorff'] or 0 for l in kept), default=0):.2f}",
+    errors = sorted((abs(l["volume_out"] / l["volume_in"] - 1) for l in large), reverse=True) or [0]
+    dice = sorted(l["dice"] for l in large) or [1]
+    distances = sorted((l["hausdorff"] or 0 for l in kept), reverse=True) or [0]
+    return {"labels": f"{len(kept)} of {len(labels)}",
+            "volume": f"{100 * errors[0]:.2f} % ({sum(e > .01 for e in errors)} of {len(large)})",
+            "dice": f"{dice[0]:.3f} ({sum(d < .97 for d in dice)})",
+            "hausdorff": f"{distances[0]:.2f} ({sum(d > 1 for d in distances)})",
             "pieces": f"{sum(l['pieces'][0] for l in kept)} / {sum(l['pieces'][1] for l in kept)}",
-            "euler": f"{sum(l['euler'][0] == l['euler'][1] for l in kept)} of {len(kept)}",
+            "euler": f"{sum(l['euler'][0] == l['euler'][1] for l in kept)}",
             "beta": f"{row['beta_mean']:.3f}, {row['beta_min']:.3f}",
-            "angles": f"{row['dihedral_min']:.1f} - {row['dihedral_max']:.1f}"}
+            "angles": f"{row['dihedral_min']:.1f} - {row['dihedral_max']:.1f}",
+            "poor": f"{row['poor']}"}
 
 
-def print_rows(rows):
-    print("| volume | labels kept | elements | CPU s | elements/s | MB | volume error | Dice | Hausdorff, voxels | pieces in / out | "
-          "Euler number kept | β mean, least | dihedral angles |")
-    print("| --- " * 13 + "|")
+def table(rows):
+    lines = ["| volume | labels kept | elements | CPU s | elements/s | MB | volume error (above 1 %) | Dice (below .97) | Hausdorff, voxels (above 1) "
+             "| pieces in / out | Euler number kept | β mean, least | dihedral angles | below .1 or 8° |", "| --- " * 14 + "|"]
     for row in rows:
         if "labels" not in row:
-            print(f"| {row['name']} | {row['error']} |" + " |" * 11)
+            lines.append(f"| {row['name']} | {row['error']} |" + " |" * 12)
             continue
         s = summary(row)
         speed = row["elements"] / max(row["cpu_seconds"], 1e-9)
-        print(f"| {row['name']} | {s['labels']} | {row['elements']:,} | {row['cpu_seconds']:.1f} | {speed:,.0f} | {row['peak_mb']:.0f} | "
-              f"{s['volume']} | {s['dice']} | {s['hausdorff']} | {s['pieces']} | {s['euler']} | {s['beta']} | {s['angles']} |", flush=True)
+        lines.append(f"| {row['name']} | {s['labels']} | {row['elements']:,} | {row['cpu_seconds']:.1f} | {speed:,.0f} | {row['peak_mb']:.0f} | "
+                     f"{s['volume']} | {s['dice']} | {s['hausdorff']} | {s['pieces']} | {s['euler']} | {s['beta']} | {s['angles']} | {s['poor']} |")
+    return lines
 
 
-def alone(build, volumes, names, timeout):
-    rows = []
-    for name, file, options, all_labels in VOLUMES:
-        if names and not any(n in (name, file.split(".")[0]) for n in names):
+def poor_elements(rows):
+    lines = ["| volume | below .4 | forced by | not forced |", "| --- " * 4 + "|"]
+    for row in rows:
+        if "below_04" in row:
+            lines.append(f"| {row['name']} | {row['below_04']:,} | {', '.join(row['forced']) or '-'} | {row['not_forced']:,} |")
+    return lines
+
+
+class Results:
+    """Rows by name, kept in a file."""
+
+    def __init__(self, file):
+        self.file = file
+        self.rows = json.loads(file.read_text()) if file.is_file() else {"alone": {}, "beside": {}}
+
+    def add(self, kind, row):
+        self.rows[kind][row["name"]] = row
+        self.file.write_text(json.dumps(self.rows, indent=1))
+        print("\n".join(table([row])[2:]), flush=True)
+
+    def of(self, kind, names):
+        return [self.rows[kind][name] for name in names if name in self.rows[kind]]
+
+
+def alone(build, volumes, names, timeout, results):
+    for name, file, options, words in VOLUMES:
+        if names and name not in names:
             continue
         with tempfile.TemporaryDirectory() as folder:
-            outcome = mesh_with_ours(build, volumes / file, folder, timeout, options)
-            found = judge(build, volumes / file, outcome.mesh, all_labels) if outcome.mesh else None
-        rows.append(row_of(name, outcome, found))
-    return rows
+            image = volumes / file
+            if "DICOM" in name:
+                image = pathlib.Path(folder, "series")
+                write_series(volumes / file, image)
+            outcome = mesh_with_ours(build, image, folder, timeout, options)
+            found = judge(build, image, outcome.mesh, words) if outcome.mesh else None
+        results.add("alone", row_of(name, outcome, found))
 
 
-def beside(build, volumes, names, timeout):
-    rows = []
+def names_of_peers():
+    return [f"{name}: {who}" for name, *_ in PEERS for who in ("Octafront", "CGAL 5.5")]
+
+
+def beside(build, volumes, names, timeout, results):
     for name, file, size, all_labels in PEERS:
         if names and name not in names:
             continue
@@ -130,9 +184,8 @@ def beside(build, volumes, names, timeout):
             ignore = ["--ignore", "none"] if all_labels else []
             for who, outcome in (("Octafront", mesh_with_ours(build, image, folder, timeout, ["--size", str(size), *ignore])),
                                  ("CGAL 5.5", mesh_with_cgal(build, image, folder, timeout, size))):
-                found = judge(build, image, outcome.mesh, all_labels) if outcome.mesh else None
-                rows.append(row_of(f"{name}: {who}", outcome, found))
-    return rows
+                found = judge(build, image, outcome.mesh, ["all"] if all_labels else []) if outcome.mesh else None
+                results.add("beside", row_of(f"{name}: {who}", outcome, found))
 
 
 def main():
@@ -142,16 +195,27 @@ def main():
     parser.add_argument("--timeout", type=float, default=1800)
     parser.add_argument("--peers", action="store_true")
     parser.add_argument("--beside-only", action="store_true")
+    parser.add_argument("--page", action="store_true")
     arguments = parser.parse_args()
     build, volumes = arguments.build.resolve(), BENCH.parent / "volumes"
-    rows = [] if arguments.beside_only else alone(build, volumes, arguments.volumes, arguments.timeout)
-    print_rows(rows)
+    results = Results(build / "images.json")
+    if not arguments.beside_only and not (arguments.page and not arguments.volumes):
+        alone(build, volumes, arguments.volumes, arguments.timeout, results)
     if arguments.peers or arguments.beside_only:
-        side = beside(build, volumes, arguments.volumes, arguments.timeout)
-        print("\nBeside CGAL, each to the same size:\n")
-        print_rows(side)
-        rows += side
-    (build / "images.json").write_text(json.dumps(rows, indent=1))
+        beside(build, volumes, arguments.volumes, arguments.timeout, results)
+    if arguments.page:
+        write_page(results)
+
+
+def write_page(results):
+    """Each table stands between its marks; the text around them is written by hand."""
+    page = PAGE.read_text()
+    rows = results.of("alone", [name for name, *_ in VOLUMES])
+    for mark, lines in (("volumes", table(rows)), ("poor elements", poor_elements(rows)),
+                        ("beside CGAL", table(results.of("beside", names_of_peers())))):
+        before, rest = page.split(f"<!-- {mark} -->\n")
+        page = before + f"<!-- {mark} -->\n" + "\n".join(lines) + "\n<!-- end -->" + rest.split("<!-- end -->", 1)[1]
+    PAGE.write_text(page)
 
 
 if __name__ == "__main__":

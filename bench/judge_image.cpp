@@ -1,7 +1,8 @@
-// How true a mesh is to the labels of an image: octafront_judge_image IMAGE MESH [all]
+// How true a mesh is to the labels of an image: octafront_judge_image IMAGE MESH [all] [series=N] [iso=V]
 // Prints JSON: elements, and for each label voxels, volume in and out, Dice at the voxels' middles, the two-sided
 // Hausdorff distance of its surface to its voxels' faces in voxels (sampled at corners and middles of faces), pieces
-// and Euler characteristic of both. With `all` 0 is a label too. Regions are told by their name, "label 3", or else are
+// and Euler characteristic of both. With `all` 0 is a label too; with iso=V what has the
+// value V or more is one. Regions are told by their name, "label 3", or else are
 // the label that most voxels in them have.
 
 #include <octafront/octafront.h>
@@ -14,8 +15,13 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdio>
+#include <limits>
 #include <map>
+#include <optional>
 #include <set>
+#include <string>
+#include <tuple>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -200,12 +206,48 @@ class Judge {
     }
   }
 
+  /// The faces of all tetrahedra, in order: those that two share stand side by side.
+  struct Face {
+    Triangle corners;  ///< ascending
+    std::uint32_t tet;
+    bool operator<(const Face& other) const { return std::tie(corners, tet) < std::tie(other.corners, other.tet); }
+  };
+  void sort_faces() {
+    for (std::uint32_t t = 0; t < mesh_.tets.size(); ++t)
+      for (std::size_t a = 0; a < 4; ++a) {
+        const Tet& tet = mesh_.tets[t];
+        Face face{{tet[(a + 1) % 4], tet[(a + 2) % 4], tet[(a + 3) % 4]}, t};
+        std::sort(face.corners.begin(), face.corners.end());
+        faces_.push_back(face);
+      }
+    std::sort(faces_.begin(), faces_.end());
+  }
+  /// Calls visit(face, label, label of the other side) for each face and each of its sides that has a label.
+  template <class Visit>
+  void for_each_side(const Visit& visit) const {
+    for (std::size_t f = 0; f < faces_.size(); ++f) {
+      const bool after = f > 0 && faces_[f - 1].corners == faces_[f].corners;
+      const bool before = f + 1 < faces_.size() && faces_[f + 1].corners == faces_[f].corners;
+      const std::uint16_t label = label_of(faces_[f].tet);
+      const std::uint16_t other = after    ? label_of(faces_[f - 1].tet)
+                                  : before ? label_of(faces_[f + 1].tet)
+                                           : LabelImage::kNoRegion;
+      if (label != LabelImage::kNoRegion) visit(faces_[f], label, other, before);
+    }
+  }
+
+  /// How many different keys of each label there are.
+  std::vector<std::int64_t> count_of_labels(std::vector<std::array<std::uint32_t, 3>> keys) const {
+    std::sort(keys.begin(), keys.end());
+    keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+    std::vector<std::int64_t> counts(found_.size(), 0);
+    for (const auto& key : keys) ++counts[key[0]];
+    return counts;
+  }
+
   void measure_tets() {
-    std::vector<std::set<VertexIndex>> vertices(found_.size());
-    std::vector<std::set<Edge>> edges(found_.size());
-    std::map<Triangle, std::uint32_t> first_with;
-    std::vector<std::uint64_t> faces(found_.size(), 0);
-    DisjointSets pieces(mesh_.tets.size());
+    sort_faces();
+    std::vector<std::array<std::uint32_t, 3>> vertices, edges;
     for (std::uint32_t t = 0; t < mesh_.tets.size(); ++t) {
       const std::uint16_t label = label_of(t);
       if (label == LabelImage::kNoRegion) continue;
@@ -216,47 +258,38 @@ class Judge {
                                            mesh_.points[tet[3]])) /
                       6;
       for (std::size_t a = 0; a < 4; ++a) {
-        vertices[label].insert(tet[a]);
+        vertices.push_back({label, tet[a], 0});
         for (std::size_t b = a + 1; b < 4; ++b)
-          edges[label].insert({std::min(tet[a], tet[b]), std::max(tet[a], tet[b])});
-        Triangle face{tet[(a + 1) % 4], tet[(a + 2) % 4], tet[(a + 3) % 4]};
-        std::sort(face.begin(), face.end());
-        const auto [other, is_new] = first_with.emplace(face, t);
-        const bool joins = !is_new && label_of(other->second) == label;
-        if (joins) pieces.join(t, other->second);
-        faces[label] += !joins;
+          edges.push_back({label, std::min(tet[a], tet[b]), std::max(tet[a], tet[b])});
       }
     }
+    const std::vector<std::int64_t> v = count_of_labels(std::move(vertices)), e = count_of_labels(std::move(edges));
+    std::vector<std::int64_t> faces(found_.size(), 0);
+    DisjointSets pieces(mesh_.tets.size());
+    for (std::size_t f = 0; f + 1 < faces_.size(); ++f)
+      if (faces_[f].corners == faces_[f + 1].corners && label_of(faces_[f].tet) == label_of(faces_[f + 1].tet))
+        pieces.join(faces_[f].tet, faces_[f + 1].tet);
+    for_each_side([&](const Face&, std::uint16_t label, std::uint16_t other, bool before) {
+      faces[label] += other != label || before;  // those inside a label once
+    });
     std::vector<std::set<std::uint32_t>> roots(found_.size());
     for (std::uint32_t t = 0; t < mesh_.tets.size(); ++t)
       if (label_of(t) != LabelImage::kNoRegion) roots[label_of(t)].insert(pieces.find(t));
     for (std::size_t l = 0; l < found_.size(); ++l) {
       found_[l].pieces_out = static_cast<std::int64_t>(roots[l].size());
-      found_[l].euler_out = static_cast<std::int64_t>(vertices[l].size()) - static_cast<std::int64_t>(edges[l].size()) +
-                            static_cast<std::int64_t>(faces[l]) - static_cast<std::int64_t>(found_[l].tets);
+      found_[l].euler_out = v[l] - e[l] + faces[l] - static_cast<std::int64_t>(found_[l].tets);
     }
   }
 
   /// Faces between tetrahedra of a label and others.
   std::vector<Soup> surfaces_of_mesh() const {
-    std::map<Triangle, std::vector<std::uint16_t>> sides;
-    for (std::size_t t = 0; t < mesh_.tets.size(); ++t)
-      for (std::size_t a = 0; a < 4; ++a) {
-        const Tet& tet = mesh_.tets[t];
-        Triangle face{tet[(a + 1) % 4], tet[(a + 2) % 4], tet[(a + 3) % 4]};
-        std::sort(face.begin(), face.end());
-        sides[face].push_back(label_of(t));
-      }
     std::vector<Soup> soups(found_.size());
-    for (const auto& [face, labels] : sides) {
-      if (labels.size() == 2 && labels[0] == labels[1]) continue;
-      for (const std::uint16_t l : labels) {
-        if (l == LabelImage::kNoRegion) continue;
-        for (const VertexIndex v : face) soups[l].points.push_back(index_[v]);
-        const auto n = static_cast<VertexIndex>(soups[l].points.size());
-        soups[l].triangles.push_back({n - 3, n - 2, n - 1});
-      }
-    }
+    for_each_side([&](const Face& face, std::uint16_t label, std::uint16_t other, bool) {
+      if (label == other) return;
+      for (const VertexIndex v : face.corners) soups[label].points.push_back(index_[v]);
+      const auto n = static_cast<VertexIndex>(soups[label].points.size());
+      soups[label].triangles.push_back({n - 3, n - 2, n - 1});
+    });
     return soups;
   }
 
@@ -321,16 +354,23 @@ class Judge {
   const LabelImage& image_;
   const TetMesh& mesh_;
   std::vector<Vec3> index_;  ///< points of the mesh in voxels
+  std::vector<Face> faces_;
   std::vector<std::uint16_t> label_of_region_;
   std::vector<Found> found_;
 };
 
 void print(const LabelImage& image, const TetMesh& mesh, const std::vector<Found>& found) {
   const QualitySummary q = summarize_quality(mesh);
+  const auto poor = std::count_if(mesh.tets.begin(), mesh.tets.end(), [&](const Tet& t) {
+    constexpr double kPoorBeta = 0.1, kPoorAngle = 8;
+    const auto& [a, b, c, d] = std::array{mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]};
+    const auto angles = dihedral_angles(a, b, c, d);
+    return radius_ratio(a, b, c, d) < kPoorBeta || *std::min_element(angles.begin(), angles.end()) < kPoorAngle;
+  });
   fmt::print(
       "{{\"elements\": {}, \"beta_mean\": {:.6f}, \"beta_min\": {:.6g}, \"dihedral_min\": {:.4f}, \"dihedral_max\": "
-      "{:.4f},\n\"labels\": [",
-      mesh.tets.size(), q.beta_mean, q.beta_min, q.dihedral_min, q.dihedral_max);
+      "{:.4f}, \"poor\": {},\n\"labels\": [",
+      mesh.tets.size(), q.beta_mean, q.beta_min, q.dihedral_min, q.dihedral_max, poor);
   for (std::size_t l = 0; l < found.size(); ++l) {
     const Found& f = found[l];
     const double both = static_cast<double>(f.voxels + f.covered);
@@ -346,6 +386,20 @@ void print(const LabelImage& image, const TetMesh& mesh, const std::vector<Found
   fmt::print("]}}\n");
 }
 
+LabelImage image_of(const std::string& file, const std::vector<std::string>& words) {
+  ImageChoice choice;
+  LabelOptions options;
+  std::optional<double> iso;
+  for (const std::string& word : words) {
+    if (word == "all") options.ignore.emplace();
+    if (word.starts_with("series=")) choice.series = static_cast<std::uint32_t>(std::stoul(word.substr(7)));
+    if (word.starts_with("iso=")) iso = std::stod(word.substr(4));
+  }
+  const Image read = read_image(file, choice);
+  if (iso) return labels_of_bands(read, {{*iso, std::numeric_limits<double>::infinity(), "body"}});
+  return labels_of(read, options);
+}
+
 }  // namespace
 }  // namespace octafront
 
@@ -353,10 +407,7 @@ int main(int count, char** arguments) {
   using namespace octafront;
   if (count < 3) return 2;
   try {
-    LabelOptions options;
-    if (count > 3 && std::string(arguments[3]) == "all") options.ignore.emplace();
-    const Image read = read_image(arguments[1]);
-    const LabelImage image = labels_of(read, options);
+    const LabelImage image = image_of(arguments[1], std::vector<std::string>(arguments + 3, arguments + count));
     const TetMesh mesh = read_mesh(arguments[2]);
     Judge judge(image, mesh);
     judge.judge();

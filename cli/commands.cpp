@@ -110,7 +110,7 @@ auto run_on_input(Session& session, const Generator& generator) {
   const Arguments& a = session.arguments();
   Options options = checked_options(session);
   const SurfaceFile file = read_domain(session);
-  if (session.voxel_spacing() > 0) options.size = sizes_for_image(options.size, session.voxel_spacing());
+  if (session.voxel_spacing() > 0) options.size = sizes_for_voxels(options.size, session.voxel_spacing());
   try {
     if (!a.page.empty()) find_repairs(session, file.surface);
     return generator(file.surface, options, session.context());

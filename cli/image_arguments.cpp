@@ -53,29 +53,30 @@ void declare_values(CLI::App& group, ImageArguments& a) {
   add(group, a, "--image", "auto|labels|grey",
       "What the voxels hold; auto: labels if they are whole numbers that neighbours mostly share [auto]",
       [&a](const std::string& typed) {
-        using Kind = ImageArguments::Kind;
-        a.kind = typed == "labels" ? Kind::kLabels : typed == "grey" ? Kind::kGrey : Kind::kAuto;
+        using Kind = ImageRegions::Kind;
+        a.regions.kind = typed == "labels" ? Kind::kLabels : typed == "grey" ? Kind::kGrey : Kind::kAuto;
         if (typed != "labels" && typed != "grey" && typed != "auto")
           refuse("--image", typed, "is none of auto, labels, grey");
       });
   add(group, a, "--iso", "V", "Grey image: what has this value or more is one region; its surface lies between voxels",
       [&a](const std::string& typed) {
-        a.bands.push_back({finite("--iso", typed, typed), std::numeric_limits<double>::infinity(), {}});
+        a.regions.bands.push_back({finite("--iso", typed, typed), std::numeric_limits<double>::infinity(), {}});
       });
   add(group, a, "--band", "[NAME=]LO:HI",
       "Grey image: values from LO up to below HI are a region; several for several materials, which share their "
       "surfaces; one end may be missing",
-      [&a](const std::string& typed) { a.bands.push_back(grey_band(typed)); });
+      [&a](const std::string& typed) { a.regions.bands.push_back(grey_band(typed)); });
   add(group, a, "--labels", "FILE",
       "Names of labels: lines such as \"3 liver\", JSON, label files of ITK-SNAP, colour tables of 3D Slicer [those of "
       "the file, else \"label 3\"]",
       [&a](const std::string& typed) { a.names = typed; });
   add(group, a, "--ignore", "A,B,...", "Labels outside of all regions; none: no label is [0]",
       [&a](const std::string& typed) {
-        a.labels.ignore = typed == "none" ? std::vector<std::int64_t>{} : whole_numbers("--ignore", typed, typed);
+        a.regions.labels.ignore =
+            typed == "none" ? std::vector<std::int64_t>{} : whole_numbers("--ignore", typed, typed);
       });
   add(group, a, "--merge", "A,B=NAME", "These labels are one region",
-      [&a](const std::string& typed) { a.labels.merge.push_back(label_merge(typed)); });
+      [&a](const std::string& typed) { a.regions.labels.merge.push_back(label_merge(typed)); });
 }
 
 void declare_cleaning(CLI::App& group, ImageArguments& a) {
@@ -86,14 +87,14 @@ void declare_cleaning(CLI::App& group, ImageArguments& a) {
   };
   add(group, a, "--islands", "V",
       "Pieces of regions below this volume go to what surrounds them; each region keeps its largest",
-      [&a, volume](const std::string& typed) { a.clean.islands = volume("--islands", typed); });
+      [&a, volume](const std::string& typed) { a.regions.clean.islands = volume("--islands", typed); });
   add(group, a, "--holes", "V", "Pieces of the outside below this volume, not at the image's edge, are filled",
-      [&a, volume](const std::string& typed) { a.clean.holes = volume("--holes", typed); });
+      [&a, volume](const std::string& typed) { a.regions.clean.holes = volume("--holes", typed); });
   add(group, a, "--close-voxels", "N", "Gaps of regions toward the outside close that are up to 2 N voxels wide",
       [&a](const std::string& typed) {
         const std::int64_t n = whole("--close-voxels", typed, typed);
         if (n < 0 || n > 64) refuse("--close-voxels", typed, "is not from 0 to 64");
-        a.clean.closing = static_cast<std::uint32_t>(n);
+        a.regions.clean.closing = static_cast<std::uint32_t>(n);
       });
 }
 
@@ -119,7 +120,7 @@ void declare_grid(CLI::App& group, ImageArguments& a) {
           "--closed-at-box",
           [&a](std::int64_t n) {
             a.given.emplace_back("--closed-at-box");
-            a.closed_at_box = n > 0;
+            a.regions.closed_at_box = n > 0;
           },
           "What reaches the edge of the image ends flat there, which is said [yes]; --closed-at-box=no: it is refused")
       ->type_name("");

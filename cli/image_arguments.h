@@ -18,17 +18,12 @@ using VoxelRange = std::pair<std::optional<std::uint32_t>, std::optional<std::ui
 
 /// What the user typed about an image.
 struct ImageArguments {
-  enum class Kind { kAuto, kLabels, kGrey };
   ImageChoice choice;
-  Kind kind = Kind::kAuto;
-  std::vector<GreyBand> bands;  ///< of --iso and --band
+  ImageRegions regions;         ///< but for the names of labels
   std::filesystem::path names;  ///< --labels; empty: none
-  LabelOptions labels;
-  CleanOptions clean;
   std::array<VoxelRange, 3> crop;
   bool crops = false;
-  std::vector<double> spacing;  ///< --resample: one or three; empty: as it is
-  bool closed_at_box = true;
+  std::vector<double> spacing;     ///< --resample: one or three; empty: as it is
   std::vector<std::string> given;  ///< options that only images have, as they were typed
 };
 

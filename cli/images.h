@@ -2,7 +2,6 @@
 
 #include <octafront/image.h>
 #include <octafront/io.h>
-#include <octafront/options.h>
 
 #include "session.h"
 
@@ -13,11 +12,6 @@ bool is_image_input(const Arguments& arguments);
 
 /// Reads the input as an image, cropped and resampled as asked; what reading has to say is said. Throws InputError.
 Image read_image_input(Session& session);
-
-/// Sizes that were chosen, by length or number of elements, as they suit an image of such voxels: layers thinner than
-/// the size would lose their shape, so they get an element across; and nothing is smaller than a voxel. What was given
-/// stays.
-SizeOptions sizes_for_image(SizeOptions sizes, double voxel);
 
 /// Makes a complex of an image by its labels or bands, and says what regions it has. Throws InputError, naming the
 /// file; OptionError.

@@ -41,6 +41,21 @@ def write_poly(path, points, triangles):
         out.write("0\n0\n")
 
 
+def boundary_of(triangles, sides, region):
+    """The triangles around a region, facing away from it; sheets left out."""
+    out = [t for t, (front, back) in zip(triangles, sides) if back == region != front]
+    return out + [(a, c, b) for (a, b, c), (front, back) in zip(triangles, sides) if front == region != back]
+
+
+def write_off(path, points, triangles):
+    """Of the points only those that are used."""
+    used = {v: k for k, v in enumerate(sorted({v for t in triangles for v in t}))}
+    with open(path, "w") as out:
+        out.write(f"OFF\n{len(used)} {len(triangles)} 0\n")
+        out.writelines("{!r} {!r} {!r}\n".format(*points[v]) for v in used)
+        out.writelines("3 {} {} {}\n".format(*(used[v] for v in t)) for t in triangles)
+
+
 def volumes_of_sides(points, triangles, sides):
     """{region: volume} by the divergence theorem, each seen from a vertex of its own: far from it tiny regions would cancel."""
     origins, volumes = {}, {}

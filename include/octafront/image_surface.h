@@ -3,6 +3,7 @@
 #include <octafront/complex.h>
 #include <octafront/image.h>
 #include <octafront/no_context.h>
+#include <octafront/options.h>
 
 #include <string>
 #include <vector>
@@ -54,5 +55,33 @@ Complex complex_of_bands(const Image& image, const std::vector<GreyBand>& bands,
 
 /// The voxels of bands as labels: label b for bands[b], whose `value` is b. Throws InputError as complex_of_bands.
 LabelImage labels_of_bands(const Image& image, const std::vector<GreyBand>& bands);
+
+/// What of an image becomes regions.
+struct ImageRegions {
+  /// kAuto: grey if bands are given, labels if anything about labels is, else what looks_like_labels() says.
+  enum class Kind { kAuto, kLabels, kGrey };
+  Kind kind = Kind::kAuto;
+  LabelOptions labels;
+  std::vector<GreyBand> bands;  ///< one without a name is "body", several "band 1" and so on
+  CleanOptions clean;
+  bool closed_at_box = true;  ///< off: regions that reach the edge of the image are refused
+};
+
+/// kLabels or kGrey.
+ImageRegions::Kind kind_of(const Image& image, const ImageRegions& regions);
+
+/// From an image to its complex: complex_of_labels() or complex_of_bands(), after cleaning. Notes say what became of
+/// labels, what was cleaned, and which regions end at the edge of the image. Throws InputError, also for a grey image
+/// without bands; OptionError for options of the other kind; Cancelled.
+Complex complex_of_image(const Image& image, const ImageRegions& regions = {},
+                         const RunContext& context = no_context());
+
+/// The smallest distance of neighbouring voxels along i, j or k.
+double smallest_spacing(const ImageGrid& grid);
+
+/// Sizes that were chosen, by length or number of elements, as they suit an image with voxels so far apart: layers
+/// thinner than the size would lose their shape, so they get an element across; and nothing is smaller than a voxel.
+/// What was given stays.
+SizeOptions sizes_for_voxels(SizeOptions sizes, double spacing);
 
 }  // namespace octafront

@@ -23,6 +23,7 @@ extern "C" {
 typedef struct octafront_surface octafront_surface; /**< a SurfaceMesh (octafront/surface_mesh.h) */
 typedef struct octafront_mesh octafront_mesh;       /**< a TetMesh (octafront/tet_mesh.h) */
 typedef struct octafront_sizes octafront_sizes;     /**< a SizeField (octafront/size_field.h) */
+typedef struct octafront_image octafront_image;     /**< an Image (octafront/image.h) */
 typedef struct octafront_options octafront_options; /**< Options (octafront/options.h) */
 typedef struct octafront_job octafront_job;
 
@@ -100,6 +101,15 @@ int octafront_mesh_quality(const octafront_mesh* mesh, double* beta, double* lea
 /** JSON: the same summary as in reports. Valid until the next call of this thread. */
 const char* octafront_mesh_summary(const octafront_mesh* mesh);
 
+/* ---- images ---- */
+
+enum { OCTAFRONT_U8 = 3, OCTAFRONT_I16 = 4, OCTAFRONT_U16 = 5, OCTAFRONT_I32 = 6, OCTAFRONT_F32 = 7 };
+
+/** Voxels: size[0] x size[1] x size[2] values of a type above, copied, the first ones along i. `map`: the first three
+ * rows of the matrix from (i, j, k, 1) to the world, 3 x 4. Null if that makes no image. */
+octafront_image* octafront_image_new(int type, const uint32_t* size, const void* values, const double* map);
+void octafront_image_free(octafront_image* image);
+
 /* ---- sizes and options ---- */
 
 void octafront_sizes_free(octafront_sizes* sizes);
@@ -123,6 +133,8 @@ int octafront_options_point_sizes_file(octafront_options* options, const char* f
 int octafront_options_size_of(octafront_options* options, const char* name, size_t length, double size);
 /** SizeOptions::field. */
 int octafront_options_field(octafront_options* options, const octafront_sizes* sizes);
+/** sizes_for_voxels() of octafront/image_surface.h, after all other options. */
+void octafront_options_for_voxels(octafront_options* options, double spacing);
 /** Jobs with these options ask for sizes, or tell of passes, by events. */
 void octafront_options_ask_sizes(octafront_options* options);
 void octafront_options_tell_passes(octafront_options* options);
@@ -156,6 +168,13 @@ octafront_job* octafront_read_mesh(const char* file); /**< -> mesh */
 octafront_job* octafront_write_mesh(const octafront_mesh* mesh, const char* file, const char* format);
 octafront_job* octafront_read_sizes(const char* file, double gradation); /**< -> sizes */
 octafront_job* octafront_write_sizes(const octafront_sizes* sizes, const char* file);
+/** -> image: read_image() of octafront/image.h, a file, a folder or several files; `series` 0: the only one. */
+octafront_job* octafront_read_image(const char* const* files, size_t count, uint32_t series);
+/** -> surface: complex_of_image() of octafront/image_surface.h, with `voxel`, the smallest spacing, in the report.
+ * `json` is an object, all of whose keys may be missing: kind ("auto", "labels", "grey"), names ([[3, "liver"], ...]),
+ * names_file, ignore ([0, 7]), merge ([["cortex", [3, 4]], ...]), bands ([["bone", 226, null], ...]), islands, holes,
+ * close_voxels, closed_at_box, crop ([[first, last], ...], null for an end that stays), resample (one or three). */
+octafront_job* octafront_image_surface(const octafront_image* image, const char* json, int threads);
 /** -> mesh, sizes: generate(). */
 octafront_job* octafront_generate(const octafront_surface* surface, const octafront_options* options, int threads);
 /** -> surface, sizes: generate_surface(). */
@@ -169,6 +188,16 @@ octafront_job* octafront_improve(const octafront_mesh* mesh, const octafront_sur
                                  const octafront_options* options, int threads);
 /** -> surface: repair_surface() and find_defects(), which the report lists. */
 octafront_job* octafront_repair(const octafront_surface* surface);
+/** -> surface: complex_of_walls() of octafront/complex.h, or a copy where the surface is a plain one; the report has
+ * regions, with names and volumes, and notes. `json` is an object, all of whose keys may be missing: regions
+ * ([["steel", [x, y, z]], ...]), voids ([[x, y, z], ...]), cells ("auto", "regions", "merge"), nested ("auto",
+ * "cavity", "region"). A report of a failure may have `leak`, the way through a hole. */
+octafront_job* octafront_complex_of_walls(const octafront_surface* surface, const char* json, int threads);
+/** -> surface: join_bodies() of octafront/complex.h; bodies are copied. The same keys, and tolerance. */
+octafront_job* octafront_join_bodies(const octafront_surface* const* bodies, const char* const* names, size_t count,
+                                     const char* json, int threads);
+/** -> surface: mend_surface() of octafront/mend.h, with its report. Keys: tolerance, way ("auto", "wrap"), distance. */
+octafront_job* octafront_mend(const octafront_surface* surface, const char* json, int threads);
 /** first_defect(), check_jacobians(), and by name of the solver, which may be null, check_for_solver(), in the report.
  */
 octafront_job* octafront_check(const octafront_mesh* mesh, const char* solver);
@@ -197,6 +226,7 @@ const char* octafront_job_report(octafront_job* job);
 octafront_surface* octafront_job_take_surface(octafront_job* job);
 octafront_mesh* octafront_job_take_mesh(octafront_job* job);
 octafront_sizes* octafront_job_take_sizes(octafront_job* job);
+octafront_image* octafront_job_take_image(octafront_job* job);
 
 #ifdef __cplusplus
 }

@@ -134,6 +134,13 @@ def mesh(points: npt.ArrayLike | Surface, triangles: npt.ArrayLike | None = None
 {mesh}) -> Mesh: ...
 def mesh_file(path: Path, *,
 {mesh}) -> Mesh: ...
+def mesh_image(image: npt.ArrayLike | Path | Sequence[Path], affine: npt.ArrayLike | None = None, *,
+{of_images},
+{mesh}) -> Mesh: ...
+def image_surface(image: npt.ArrayLike | Path | Sequence[Path], affine: npt.ArrayLike | None = None, *,
+{of_images},
+    progress: Progress | None = None,
+    threads: int = 0) -> Surface: ...
 def surface(points: npt.ArrayLike | Surface, triangles: npt.ArrayLike | None = None, *,
 {surface}) -> Surface: ...
 def size_field(points: npt.ArrayLike | Surface, triangles: npt.ArrayLike | None = None, *,
@@ -141,6 +148,18 @@ def size_field(points: npt.ArrayLike | Surface, triangles: npt.ArrayLike | None 
 def improve(mesh: Mesh | Path, *, surface: Surface | Path | None = None,
 {improve}) -> Mesh: ...
 def repair(points: npt.ArrayLike | Surface, triangles: npt.ArrayLike | None = None) -> Surface: ...
+def mend(points: npt.ArrayLike | Surface, triangles: npt.ArrayLike | None = None, *,
+         tolerance: float | None = None, way: Literal["auto", "wrap"] = "auto", distance: float | None = None,
+         progress: Progress | None = None, threads: int = 0) -> Surface: ...
+def complex_of_walls(points: npt.ArrayLike | Surface, triangles: npt.ArrayLike | None = None, *,
+                     regions: Mapping[str, npt.ArrayLike] | None = None, voids: npt.ArrayLike | None = None,
+                     cells: Literal["auto", "regions", "merge"] = "auto",
+                     nested: Literal["auto", "cavity", "region"] = "auto",
+                     progress: Progress | None = None, threads: int = 0) -> Surface: ...
+def join_bodies(bodies: Mapping[str, Surface | Path], *,
+                regions: Mapping[str, npt.ArrayLike] | None = None, voids: npt.ArrayLike | None = None,
+                cells: Literal["auto", "regions", "merge"] = "auto", tolerance: float | None = None,
+                progress: Progress | None = None, threads: int = 0) -> Surface: ...
 def check(what: npt.ArrayLike | Surface | Mesh | Path, triangles: npt.ArrayLike | None = None, *,
           solver: Literal["abaqus", "ansys", "nastran", "calculix"] | None = None) -> Checked: ...
 def read(path: Path) -> Mesh | Surface: ...
@@ -153,6 +172,21 @@ FURTHER = {
     "after_pass": "Callable[[str, dict[str, Any]], object] | None = None", "progress": "Progress | None = None",
     "threads": "int = 0",
 }
+OF_IMAGES = """\
+    spacing: npt.ArrayLike | None = None,
+    series: int = 0,
+    kind: Literal["auto", "labels", "grey"] = "auto",
+    labels: Mapping[int, str] | Path | None = None,
+    ignore: Sequence[int] | int | None = None,
+    merge: Mapping[str, Sequence[int]] | None = None,
+    iso: float | None = None,
+    bands: Mapping[str, tuple[float | None, float | None]] | None = None,
+    islands: float | None = None,
+    holes: float | None = None,
+    close_voxels: int | None = None,
+    crop: Sequence[Sequence[int | None]] | None = None,
+    resample: float | Sequence[float] | None = None,
+    closed_at_box: bool = True"""
 KINDS = {"number": "float", "whole": "int", "flag": "bool"}
 
 
@@ -170,7 +204,7 @@ def keywords(task):
 
 
 def stubs():
-    text = TEMPLATE
+    text = TEMPLATE.replace("{of_images}", OF_IMAGES)
     for task in ("mesh", "surface", "size", "improve"):
         text = text.replace("{" + task + "}", keywords(task))
     return text

@@ -9,9 +9,11 @@ is raised as one of octafront.errors, with what is wrong, where, and what to do.
 work, tell how far they are by progress=, and end at Ctrl-C.
 """
 
+import inspect as _inspect
 import json as _json
 
-from . import errors
+from . import _complexes, errors
+from ._images import surface_of_image as _surface_of_image
 from ._jobs import Job as _Job
 from ._library import bytes_of as _bytes_of, call as _call
 from ._mesh import Checked, Mesh
@@ -22,8 +24,9 @@ from .errors import (Cancelled, Error, InputError, InternalError, MeshingError, 
 
 __version__ = _call("version").decode()
 __all__ = ["Cancelled", "Checked", "Error", "InputError", "InternalError", "Mesh", "MeshingError", "OUTSIDE",
-           "OpenCavityError", "OptionError", "OutputError", "SizeField", "Surface", "check", "errors", "formats",
-           "improve", "mesh", "mesh_file", "read", "repair", "size_field", "surface"]
+           "OpenCavityError", "OptionError", "OutputError", "SizeField", "Surface", "check", "complex_of_walls",
+           "errors", "formats", "image_surface", "improve", "join_bodies", "mend", "mesh", "mesh_file", "mesh_image", "read",
+           "repair", "size_field", "surface"]
 
 
 @_takes_options("mesh")
@@ -53,6 +56,60 @@ def mesh_file(path, **keywords):
     """
     settings = _Settings("mesh_file", "mesh", keywords)
     return _meshed(Surface.read(path), settings, path)
+
+
+def image_surface(image, affine=None, *, spacing=None, series=0, kind="auto", labels=None, ignore=None, merge=None,
+                  iso=None, bands=None, islands=None, holes=None, close_voxels=None, crop=None, resample=None,
+                  closed_at_box=True, progress=None, threads=0):
+    """The surfaces between the labels of an image, or between bands of its grey values: a Surface with a region for
+    each, named. Smooth, volumes of labels kept. report["regions"] has their names and volumes, report["notes"] what was
+    decided and changed.
+
+    image: an array (ni, nj, nk) of numbers, which is copied; or a file (NIfTI, NRRD, MetaImage, INR, raw voxels with
+        JSON, InVesalius), a folder of DICOM, or a list of its files.
+    affine: of an array, (4, 4) from (i, j, k, 1) to the world, as nibabel's image.affine; or spacing: of voxels, one
+        number or three. Without either voxels are cubes of 1. Voxel (0, 0, 0) has its middle at the origin of the map.
+    series: of a file with several images the one that is meant, counted from 1.
+    kind: "labels" or "grey"; "auto" goes by what else is given, or by the values.
+    labels: {3: "liver"}, or a file of names. ignore: values outside of all regions [0]; () for none.
+    merge: {"cortex": (3, 4)}: these values are one region.
+    iso: of a grey image; what has this value or more is the region "body".
+    bands: {"skin": (-200, 226), "bone": (226, None)}: values from the first up to below the second; None: no limit.
+    islands, holes: pieces of regions, and of the outside, below this volume go to what surrounds them.
+    close_voxels: gaps toward the outside close that are up to twice as many voxels wide.
+    crop: ((i0, i1), (j0, j1), (k0, k1)), counted from 0, the last ones too; None for an end that stays.
+    resample: spacing of the voxels to work with, one number or three.
+    closed_at_box: regions that reach the edge of the image end flat there; False: they are refused.
+
+    Raises OptionError, InputError, Cancelled.
+
+    >>> octafront.image_surface(labels, spacing=(1, 1, 2)).save("organs.ply")
+    """
+    regions = {"kind": kind, "labels": labels, "ignore": ignore, "merge": merge, "iso": iso, "bands": bands,
+               "islands": islands, "holes": holes, "close_voxels": close_voxels, "crop": crop, "resample": resample,
+               "closed_at_box": closed_at_box, "threads": threads}
+    return _surface_of_image(image, affine, spacing, series, regions, progress)
+
+
+_OF_IMAGES = [name for name in _inspect.signature(image_surface).parameters if name not in ("progress", "threads")]
+
+
+@_takes_options("mesh", _inspect.signature(image_surface))
+def mesh_image(image, affine=None, **keywords):
+    """A tetrahedral mesh of an image, one region per label or band: a Mesh. First image_surface(), whose keywords come
+    first, then mesh(): with size or elements there is at least one element across thin layers, and none smaller than a
+    voxel, unless gap and min_size say otherwise. report["image"] is the report of the first step.
+
+    >>> octafront.mesh_image("head.nii.gz", labels={1: "skin", 2: "skull"}, size=4).save("head.msh")
+    >>> octafront.mesh_image(nibabel_image.get_fdata(), nibabel_image.affine, elements=500_000)
+    """
+    of_image = {name: keywords.pop(name) for name in _OF_IMAGES if name in keywords}
+    settings = _Settings("mesh_image", "mesh", keywords)
+    made = image_surface(image, affine, progress=settings.progress, threads=settings.threads, **of_image)
+    settings.suit_voxels(made.report["voxel"])
+    mesh = _meshed(made, settings)
+    mesh.report["image"] = made.report
+    return mesh
 
 
 def _meshed(surface, settings, path=None):
@@ -125,6 +182,54 @@ def repair(points, triangles=None):
     job = _Job("repair", _surface_of(points, triangles)._handle)
     report = job.run()
     return Surface._of(job.take("surface"), report)
+
+
+def mend(points, triangles=None, *, tolerance=None, way="auto", distance=None, progress=None, threads=0):
+    """A clean surface from any soup of triangles: what is torn within `tolerance` (default: a thousandth of the diagonal)
+    is brought together, holes are closed, what crosses is divided, overlapping parts are united, and what bounds nothing
+    is gone. A Surface; its report says what was done, with places. A clean surface comes back as it was.
+
+    points, triangles: as for mesh(). way: "wrap" makes a closed skin at a `distance` around everything instead (default:
+    a hundredth of the diagonal).
+
+    Raises InputError where the soup encloses nothing, OptionError, Cancelled.
+
+    >>> octafront.mesh(octafront.mend(octafront.Surface.read("scan.ply")))
+    """
+    return _complexes.mended(_surface_of(points, triangles), tolerance, way, distance, threads, progress)
+
+
+def complex_of_walls(points, triangles=None, *, regions=None, voids=None, cells="auto", nested="auto", progress=None,
+                     threads=0):
+    """The regions that the walls of a surface enclose: a Surface with sides, for mesh(). A plain closed surface comes
+    back as it is. report["regions"] has names and volumes, report["notes"] what was decided.
+
+    points, triangles: as for mesh(); which way triangles face does not matter.
+    regions: {"steel": (x, y, z)}: the cell around the point, or the points, has this name.
+    voids: points whose cells stay empty.
+    cells: "regions": every enclosed cell is one, also where walls lie double or cross; "merge": all are one body.
+    nested: closed shells inside others: "cavity" or "region"; "auto" goes by the way they face.
+
+    Raises InputError, with `leak` where regions are joined through a hole; OptionError, Cancelled.
+
+    >>> foam = octafront.complex_of_walls(octafront.Surface.read("foam.ply"), regions={"core": (0.5, 0.5, 0.5)})
+    >>> octafront.mesh(foam, size=0.05)
+    """
+    return _complexes.of_walls(_surface_of(points, triangles), regions, voids, cells, nested, threads, progress)
+
+
+def join_bodies(bodies, *, regions=None, voids=None, cells="auto", tolerance=None, progress=None, threads=0):
+    """Several closed bodies as one complex, which mesh() fills with one mesh: where they touch they share faces, where
+    they overlap the later one has its way. A Surface with a region for each, report as of complex_of_walls().
+
+    bodies: {name: Surface, or its file}, in order. tolerance: what is nearer comes together (default: a millionth of the
+    diagonal). regions and voids name and empty what bodies enclose but none fills; cells="merge": one region of all.
+
+    Raises InputError, with the name of the body at fault; OptionError, Cancelled.
+
+    >>> octafront.mesh(octafront.join_bodies({"plate": "plate.stl", "bolt": "bolt.stl"})).save("bolted.msh")
+    """
+    return _complexes.of_bodies(bodies, regions, voids, cells, tolerance, threads, progress)
 
 
 def check(what, triangles=None, *, solver=None):

@@ -86,7 +86,7 @@ class Job:
             return errors.Cancelled("the progress function returned False" if self.stopped else message)
         if status == 3:
             error = errors.InputError(message)
-            error.defects = report.get("defects")
+            error.defects, error.leak = report.get("defects"), report.get("leak")
             return error
         cavity = self.take("surface") if status == 4 else None
         if cavity:

@@ -60,6 +60,7 @@ _PROTOTYPES = {
                        ctypes.POINTER(_text)),
     "mesh_quality": (_whole, _handle, _pointer, _pointer, _pointer),
     "mesh_summary": (_text, _handle),
+    "image_new": (_handle, _whole, ctypes.POINTER(ctypes.c_uint32), _pointer, _pointer), "image_free": (None, _handle),
     "sizes_free": (None, _handle), "sizes_at": (_whole, _handle, _pointer, _size, _pointer),
     "sizes_bounds": (None, _handle, ctypes.POINTER(_number), ctypes.POINTER(_number)),
     "sizes_uniform": (_handle, _number),
@@ -68,9 +69,15 @@ _PROTOTYPES = {
     "options_regions_file": (_whole, _handle, _text), "options_point_sizes_file": (_whole, _handle, _text),
     "options_size_of": (_whole, _handle, _text, _size, _number),
     "options_field": (_whole, _handle, _handle), "options_ask_sizes": (None, _handle),
+    "options_for_voxels": (None, _handle, _number),
     "options_tell_passes": (None, _handle),
     "read_surface": (_handle, _text), "write_surface": (_handle, _handle, _text),
     "read_mesh": (_handle, _text), "write_mesh": (_handle, _handle, _text, _text),
+    "read_image": (_handle, ctypes.POINTER(_text), _size, ctypes.c_uint32),
+    "image_surface": (_handle, _handle, _text, _whole),
+    "complex_of_walls": (_handle, _handle, _text, _whole),
+    "join_bodies": (_handle, ctypes.POINTER(_handle), ctypes.POINTER(_text), _size, _text, _whole),
+    "mend": (_handle, _handle, _text, _whole),
     "read_sizes": (_handle, _text, _number), "write_sizes": (_handle, _handle, _text),
     "generate": (_handle, _handle, _handle, _whole), "generate_surface": (_handle, _handle, _handle, _whole),
     "generate_sizes": (_handle, _handle, _handle, _whole), "improve": (_handle, _handle, _handle, _handle, _whole),
@@ -80,6 +87,7 @@ _PROTOTYPES = {
     "job_cancel": (None, _handle), "job_free": (None, _handle), "job_status": (_whole, _handle),
     "job_message": (_text, _handle), "job_report": (_text, _handle), "job_take_surface": (_handle, _handle),
     "job_take_mesh": (_handle, _handle), "job_take_sizes": (_handle, _handle),
+    "job_take_image": (_handle, _handle),
 }
 for _name, (_result, *_arguments) in _PROTOTYPES.items():
     _function = getattr(_lib, "octafront_" + _name)
@@ -107,7 +115,7 @@ def option_table():
 def _spoken_names():
     names = {row["name"] for row in option_table()}
     fields = {row["field"]: row["name"] for row in option_table() if row["field"] not in names}
-    return {**fields, "field": "size_field"}
+    return {**fields, "field": "size_field", "band": "bands"}
 
 
 def spoken(text):
@@ -138,7 +146,7 @@ def pointer(array):
 
 
 class Handle:
-    """An object of the library, freed with this one. `kind` is "surface", "mesh", "sizes" or "options"."""
+    """An object of the library, freed with this one. `kind` is "surface", "mesh", "image", "sizes" or "options"."""
 
     def __init__(self, kind, address=None):
         self.kind, self.address = kind, address if address is not None else call(kind + "_new")

@@ -63,6 +63,10 @@ class Settings:
         if self.after_pass:
             call("options_tell_passes", self.options)
 
+    def suit_voxels(self, spacing):
+        """Sizes as they suit an image, unless something else was said."""
+        call("options_for_voxels", self.options, spacing)
+
     def functions(self):
         return {"progress": self.progress, "after_pass": self.after_pass, "size_at": self.size_at}
 
@@ -160,12 +164,16 @@ def _region_row(i, region):
     return [*lo, *hi, region.get("radius", 0.0), region["size"]]
 
 
-def takes_options(task):
-    """For functions whose last parameter is **keywords: help() and editors see the keywords of the task."""
+def takes_options(task, further=None):
+    """For functions whose last parameter is **keywords: help() and editors see the keywords of the task; and those of
+    the signature `further`, which go first."""
 
     def dress(function):
         signature = inspect.signature(function)
         fixed = [p for p in signature.parameters.values() if p.kind != p.VAR_KEYWORD]
+        if further:
+            known = {p.name for p in fixed}.union(keywords_of(task))
+            fixed += [p for p in further.parameters.values() if p.name not in known]
         defaults = {row["name"]: row["default"] for row in _rows(task)}
         more = [inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY,
                                   default=0 if name == "threads" else defaults.get(name))

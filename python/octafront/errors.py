@@ -15,9 +15,10 @@ class InputError(Error, ValueError):
     defects: of a surface that cannot be meshed, else None. A dict of kinds, such as "open_edges" and
         "self_intersections", each with a "count" and the "first" ten places: {"at": [x, y, z], "faces": [...]}, faces
         counted from 0 in the order of the triangles that were given.
+    leak: where regions are joined through a hole, points of a way from one to the other, else None.
     """
 
-    defects = None
+    defects = leak = None
 
 
 class MeshingError(Error, RuntimeError):

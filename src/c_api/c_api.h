@@ -3,6 +3,7 @@
 // c_api: the library for other languages (octafront/octafront_c.h): opaque objects, arrays and names by name, work as
 // jobs that the caller waits for. Takes and leaves plain pointers and JSON; adds nothing of its own to the library.
 
+#include <octafront/image.h>
 #include <octafront/octafront_c.h>
 #include <octafront/options.h>
 #include <octafront/size_field.h>
@@ -22,6 +23,10 @@ struct octafront_mesh {
 
 struct octafront_sizes {
   octafront::SizeField field;
+};
+
+struct octafront_image {
+  octafront::Image image;
 };
 
 struct octafront_options {

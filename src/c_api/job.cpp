@@ -180,3 +180,7 @@ octafront_mesh* octafront_job_take_mesh(octafront_job* job) {
 octafront_sizes* octafront_job_take_sizes(octafront_job* job) {
   return job->sizes.release();
 }
+
+octafront_image* octafront_job_take_image(octafront_job* job) {
+  return job->image.release();
+}

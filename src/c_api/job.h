@@ -38,6 +38,7 @@ struct octafront_job {
   std::unique_ptr<octafront_surface> surface;
   std::unique_ptr<octafront_mesh> mesh;
   std::unique_ptr<octafront_sizes> sizes;
+  std::unique_ptr<octafront_image> image;
 
   // For the caller.
   int wait(double seconds, octafront_event& event);
@@ -74,3 +75,10 @@ struct octafront_job {
   std::string message_, report_text_;
   std::thread worker_;  // last: it sees all of the above
 };
+
+namespace octafront::c_api {
+
+/// A job, or null where there is no memory or thread for one.
+octafront_job* started(const octafront_job::Work& work, int threads = 0);
+
+}  // namespace octafront::c_api

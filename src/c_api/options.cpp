@@ -1,10 +1,12 @@
 #include <octafront/error.h>
+#include <octafront/image_surface.h>
 #include <octafront/io.h>
 #include <octafront/option_table.h>
 
 #include "c_api/c_api.h"
 
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -140,6 +142,10 @@ int octafront_options_size_of(octafront_options* options, const char* name, size
 
 int octafront_options_field(octafront_options* options, const octafront_sizes* sizes) {
   return guarded([&] { options->options.size.field = sizes->field; });
+}
+
+void octafront_options_for_voxels(octafront_options* options, double spacing) {
+  options->options.size = sizes_for_voxels(std::move(options->options.size), spacing);
 }
 
 void octafront_options_ask_sizes(octafront_options* options) {

@@ -26,13 +26,6 @@ using Json = octafront_job::Json;
 
 thread_local std::string last_error, last_text;
 
-/// A job, or null where there is no memory or thread for one.
-octafront_job* started(const octafront_job::Work& work, int threads = 0) {
-  octafront_job* job = nullptr;
-  guarded([&] { job = new octafront_job(work, threads); });
-  return job;
-}
-
 void give(octafront_job& job, SurfaceMesh surface) {
   job.surface = std::make_unique<octafront_surface>(octafront_surface{std::move(surface)});
 }
@@ -140,6 +133,12 @@ void order_mesh(octafront_job& job, const TetMesh& mesh) {
 }
 
 }  // namespace
+
+octafront_job* started(const octafront_job::Work& work, int threads) {
+  octafront_job* job = nullptr;
+  guarded([&] { job = new octafront_job(work, threads); });
+  return job;
+}
 
 void remember_error(std::string message) {
   last_error = std::move(message);

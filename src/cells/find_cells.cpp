@@ -13,9 +13,6 @@
 
 namespace octafront {
 
-using cells::Side;
-using cells::SightLines;
-
 namespace {
 
 /// For each piece of the surface, a line that crosses it.
@@ -123,7 +120,7 @@ std::vector<Vec3> Cells::way(Vec3 from, std::optional<Vec3> to) const {
   const Side start = seen_from(from), goal = to ? seen_from(*to) : infinity;
   if (start == infinity) return {};
   const auto middle = [&](Side s) {
-    const auto [a, b, c] = triangles_[cells::triangle_of(s)];
+    const auto [a, b, c] = triangles_[triangle_of(s)];
     return (points_[a] + points_[b] + points_[c]) / 3;
   };
   // The shortest way from middle to middle (E. W. Dijkstra, 1959).

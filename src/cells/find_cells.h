@@ -4,7 +4,7 @@
 #include <octafront/surface_mesh.h>
 
 #include "cells/side_graph.h"
-#include "cells/sight_line.h"
+#include "geometry/sight_line.h"
 
 #include <array>
 #include <cstdint>
@@ -42,14 +42,14 @@ class Cells {
   std::uint32_t pieces() const { return graph_.pieces; }
 
  private:
-  std::vector<std::vector<cells::Side>> links() const;
+  std::vector<std::vector<Side>> links() const;
 
   std::span<const Vec3> points_;
   std::span<const Triangle> triangles_;
   cells::SideGraph graph_;
-  cells::SightLines lines_;
-  std::vector<std::array<cells::Side, 2>> seen_;  ///< sides that face each other along a line; kNone: infinity
-  std::vector<std::uint32_t> cell_;               ///< per side
+  SightLines lines_;
+  std::vector<std::array<Side, 2>> seen_;  ///< sides that face each other along a line; kNone: infinity
+  std::vector<std::uint32_t> cell_;        ///< per side
   std::uint32_t count_ = 0;
 };
 

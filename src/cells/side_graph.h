@@ -3,25 +3,14 @@
 #include <octafront/run_context.h>
 #include <octafront/surface_mesh.h>
 
+#include "geometry/triangle_side.h"
+
 #include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 namespace octafront::cells {
-
-/// A side of a triangle: 2 t in front of triangle t, 2 t + 1 behind it.
-using Side = std::uint32_t;
-
-constexpr Side front_of(std::uint32_t triangle) {
-  return 2 * triangle;
-}
-constexpr Side behind(std::uint32_t triangle) {
-  return 2 * triangle + 1;
-}
-constexpr std::uint32_t triangle_of(Side side) {
-  return side / 2;
-}
 
 /// How the sides of triangles hang together around edges: who walks on one side of a triangle over one of its edges,
 /// without going through a wall, comes to which side of which triangle. Around an edge with one triangle that is its

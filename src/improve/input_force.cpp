@@ -1,6 +1,8 @@
 #include "improve/input_force.h"
 
+#include "core/disjoint_sets.h"
 #include "geometry/measures.h"
+#include "mesh/complex.h"
 
 #include <algorithm>
 #include <cmath>
@@ -36,9 +38,52 @@ constexpr Vec3 kDirections[] = {{1, 0, 0},
                                 {-kThird, -kThird, kThird},
                                 {-kThird, -kThird, -kThird}};
 
+/// The curve of each feature edge: edges on both sides of a vertex are of one curve, unless it is a corner.
+std::vector<std::uint32_t> curves_of(const Features& features, std::size_t points) {
+  std::vector<std::uint32_t> last(points, kNone), curve;
+  std::vector<std::uint8_t> is_corner(points, 0);
+  for (const VertexIndex v : features.corners) is_corner[v] = 1;
+  DisjointSets sets(features.edges.size());
+  for (std::uint32_t e = 0; e < features.edges.size(); ++e)
+    for (const VertexIndex v : features.edges[e]) {
+      if (last[v] != kNone && is_corner[v] == 0) sets.join(last[v], e);
+      last[v] = e;
+    }
+  for (std::uint32_t e = 0; e < features.edges.size(); ++e) curve.push_back(sets.find(e));
+  return curve;
+}
+
+/// The corners that each curve ends at.
+std::vector<std::array<VertexIndex, 2>> ends_of(const Features& features, const std::vector<std::uint32_t>& curve,
+                                                std::size_t points) {
+  std::vector<std::uint8_t> is_corner(points, 0);
+  for (const VertexIndex v : features.corners) is_corner[v] = 1;
+  std::vector<std::array<VertexIndex, 2>> ends(curve.size(), {kNone, kNone});
+  for (std::uint32_t e = 0; e < curve.size(); ++e)
+    for (const VertexIndex v : features.edges[e])
+      if (is_corner[v] != 0) ends[curve[e]][ends[curve[e]][0] != kNone] = v;
+  return ends;
+}
+
+TriangleTree tree_of_segments(const SurfaceMesh& surface, const std::vector<Edge>& edges) {
+  std::vector<Triangle> flat;
+  for (const auto& [a, b] : edges) flat.push_back({a, b, b});
+  return {surface.points, flat};
+}
+
+Vec3 nearest_on_segment(Vec3 p, Vec3 a, Vec3 b) {
+  const Vec3 ab = b - a;
+  return a + std::clamp(dot(p - a, ab) / squared_length(ab), 0.0, 1.0) * ab;
+}
+
 }  // namespace
 
-InputForce::InputForce(const BoundaryInput& input) : input_(input) {
+InputForce::InputForce(const BoundaryInput& input) : input_(input), is_complex_(is_complex(input.surface)) {
+  if (is_complex_) {
+    segments_ = tree_of_segments(input.surface, input.features.edges);
+    curve_ = curves_of(input.features, input.surface.points.size());
+    ends_ = ends_of(input.features, curve_, input.surface.points.size());
+  }
   for (const Edge& e : input.features.edges) {
     lines_.push_back(e);
     lines_.push_back({e[1], e[0]});
@@ -49,6 +94,8 @@ InputForce::InputForce(const BoundaryInput& input) : input_(input) {
 InputForce::Cause InputForce::cause_at(Vec3 center, double h) const {
   if (wall_at(center, center, h).thickness < kThin * h) return Cause::kThin;
   if (has_narrow_corner(center, h)) return Cause::kCorner;
+  if (is_complex_)
+    if (const Cause cause = between_near_curves(center, h); cause != Cause::kNone) return cause;
   int wedge = 0, thin = 0;
   for (const Vec3 d : kDirections) {
     const Wall wall = wall_at(center + d * h, center, h);
@@ -68,13 +115,54 @@ InputForce::Wall InputForce::wall_at(Vec3 p, Vec3 center, double h) const {
     const auto& [a, b, c] = input_.tree.corners(t);
     return unit_normal(a, b, c);
   };
-  const Vec3 inward = -normal_of(at.triangle);
+  // A wall of a complex has an element on either side: what counts is the one around the centre.
+  const Vec3 normal = normal_of(at.triangle);
+  const bool in_front = is_complex_ && dot(center - at.point, normal) > 0;
+  const Vec3 inward = in_front ? normal : -normal;
   Wall wall{HUGE_VAL, distance(at.point, center)};
   constexpr double kSkin = 1e-6;  // of h: the ray leaves the triangle that it starts from
   const TriangleTree::RayHit hit = input_.tree.first_hit(at.point + inward * (kSkin * h), inward, h);
-  if (hit.triangle != kNone && hit.triangle != at.triangle && dot(normal_of(hit.triangle), inward) > std::cos(kNarrow))
-    wall.thickness = hit.t;
+  if (hit.triangle == kNone || hit.triangle == at.triangle) return wall;
+  const double facing = dot(normal_of(hit.triangle), inward);
+  if ((is_complex_ ? std::abs(facing) : facing) > std::cos(kNarrow)) wall.thickness = hit.t;
   return wall;
+}
+
+/// Two curves run side by side here: at less than 20 degrees, and nearer than a tenth of the element, or than 20
+/// degrees let them part within it after the corner where both end.
+InputForce::Cause InputForce::between_near_curves(Vec3 center, double h) const {
+  struct Near {
+    std::uint32_t edge;
+    Vec3 at;
+  };
+  std::vector<Near> near;
+  segments_->for_each_box_near({center - Vec3{h, h, h}, center + Vec3{h, h, h}},
+                               [&](std::uint32_t edge, const TriangleCorners& c) {
+                                 const Vec3 at = nearest_on_segment(center, c[0], c[1]);
+                                 if (squared_length(at - center) < h * h) near.push_back({edge, at});
+                                 return true;
+                               });
+  for (const Near& one : near) {
+    for (const Near& other : near) {
+      if (curve_[one.edge] == curve_[other.edge]) continue;
+      const auto &p = segments_->corners(one.edge), &q = segments_->corners(other.edge);
+      const Vec3 along = normalized(p[1] - p[0]);
+      if (std::abs(dot(along, normalized(q[1] - q[0]))) < std::cos(kNarrow)) continue;
+      const Vec3 across = nearest_on_segment(one.at, q[0], q[1]) - one.at;
+      // One that goes on where the other ends is not beside it.
+      const double gap = length(across);
+      if (gap == 0 || std::abs(dot(across, along)) > std::sin(kNarrow) * gap) continue;
+      if (gap < kThin * h) return Cause::kThin;
+      if (gap < std::tan(kNarrow) * h && share_an_end(curve_[one.edge], curve_[other.edge])) return Cause::kCorner;
+    }
+  }
+  return Cause::kNone;
+}
+
+bool InputForce::share_an_end(std::uint32_t curve, std::uint32_t other) const {
+  const auto& ends = ends_[other];
+  return std::any_of(ends_[curve].begin(), ends_[curve].end(),
+                     [&](VertexIndex v) { return v != kNone && (v == ends[0] || v == ends[1]); });
 }
 
 bool InputForce::has_narrow_corner(Vec3 center, double h) const {

@@ -167,7 +167,7 @@ class Schedule {
   static constexpr CauseName kCauseNames[Shortfall::kCauses] = {
       {"forced by a wedge", "in wedges of less than 20 degrees"},
       {"forced by a corner", "at corners between curves less than 20 degrees apart"},
-      {"forced by thin walls", "between sheets nearer than a tenth of their size"},
+      {"forced by thin walls", "between sheets or curves nearer than a tenth of their size"},
       {"forced by kept triangles", "on or beside triangles that were kept"},
       {"not forced", "not forced by the input"}};
 

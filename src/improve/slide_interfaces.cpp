@@ -3,6 +3,7 @@
 #include <octafront/quality.h>
 
 #include "core/groups.h"
+#include "core/parallel.h"
 #include "geometry/measures.h"
 #include "geometry/predicates.h"
 #include "geometry/triangle_tree.h"
@@ -29,13 +30,6 @@ class InterfaceSlider {
   InterfaceSlider(TetMesh& mesh, const SurfaceMesh& filled, const Features& features, const SurfaceMesh& input)
       : mesh_(mesh), filled_(filled), input_(input) {
     find_vertices(features);
-    std::vector<std::uint8_t> wanted(mesh.points.size(), 0);
-    for (const VertexIndex v : sliding_) wanted[v] = 1;
-    tets_ = Groups<>(mesh.points.size(), [&](const auto& add) {
-      for (TetIndex t = 0; t < mesh.tets.size(); ++t)
-        for (const VertexIndex v : mesh.tets[t])
-          if (wanted[v]) add(v, t);
-    });
     triangles_ = rows_at_vertices(filled.points.size(), filled.triangles);
     std::uint32_t patches = 0;
     for (std::size_t t = 0; t < input.triangles.size(); ++t) patches = std::max(patches, input.patch_of(t) + 1);
@@ -48,7 +42,7 @@ class InterfaceSlider {
     for (int sweep = 0; sweep < kSweeps; ++sweep) {
       stage.check();
       const std::uint64_t before = moves;
-      for (const VertexIndex v : sliding_) moves += improve(v);
+      for (const VertexIndex v : find_needy()) moves += improve(v);
       if (moves == before) break;
     }
     return moves;
@@ -66,8 +60,33 @@ class InterfaceSlider {
       }
     for (const Edge& edge : features.edges)
       for (const VertexIndex v : edge) patch_[v] = kNever;
-    for (VertexIndex v = 0; v < patch_.size(); ++v)
-      if (patch_[v] < kNever) sliding_.push_back(v);
+    for (std::uint32_t& patch : patch_)
+      if (patch == kNever) patch = kNone;
+  }
+
+  bool slides(VertexIndex v) const { return v < patch_.size() && patch_[v] != kNone; }
+
+  /// Those that may slide and have an element that wants it; leaves the elements around them.
+  std::vector<VertexIndex> find_needy() {
+    std::vector<std::uint8_t> is_poor(mesh_.tets.size(), 0), needs(patch_.size(), 0);
+    parallel_for(mesh_.tets.size(), [&](std::size_t t) {
+      const auto& [a, b, c, d] = mesh_.tets[t];
+      if (!slides(a) && !slides(b) && !slides(c) && !slides(d)) return;
+      is_poor[t] = radius_ratio(mesh_.points[a], mesh_.points[b], mesh_.points[c], mesh_.points[d]) <= kGood;
+    });
+    for (TetIndex t = 0; t < mesh_.tets.size(); ++t)
+      if (is_poor[t] != 0)
+        for (const VertexIndex v : mesh_.tets[t])
+          if (slides(v)) needs[v] = 1;
+    tets_ = Groups<>(patch_.size(), [&](const auto& add) {
+      for (TetIndex t = 0; t < mesh_.tets.size(); ++t)
+        for (const VertexIndex v : mesh_.tets[t])
+          if (v < needs.size() && needs[v] != 0) add(v, t);
+    });
+    std::vector<VertexIndex> needy;
+    for (VertexIndex v = 0; v < needs.size(); ++v)
+      if (needs[v] != 0) needy.push_back(v);
+    return needy;
   }
 
   /// Over the input's triangles of the patch.
@@ -133,8 +152,7 @@ class InterfaceSlider {
 
   TetMesh& mesh_;
   const SurfaceMesh &filled_, &input_;
-  std::vector<std::uint32_t> patch_;  ///< per vertex of `filled`
-  std::vector<VertexIndex> sliding_;
+  std::vector<std::uint32_t> patch_;  ///< per vertex of `filled` that may slide; kNone for the others
   Groups<> tets_, triangles_, input_of_patch_;
   std::map<std::uint32_t, std::unique_ptr<TriangleTree>> trees_;
 };

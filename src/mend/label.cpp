@@ -1,9 +1,9 @@
 #include "mend/label.h"
 
-#include "cells/sight_line.h"
 #include "core/disjoint_sets.h"
 #include "core/parallel.h"
 #include "geometry/measures.h"
+#include "geometry/sight_line.h"
 #include "geometry/winding_number.h"
 #include "mend/min_cut.h"
 
@@ -100,8 +100,8 @@ class Sampler {
     if (!line) return;
     const auto crossings = lines_.crossings(line->p, line->axis);
     for (std::size_t i = 0; i + 1 < crossings.size(); ++i) {
-      const cells::Side side = crossings[i].above();
-      const std::uint32_t cell = cells_.sides_of(cells::triangle_of(side))[side % 2];
+      const Side side = crossings[i].above();
+      const std::uint32_t cell = cells_.sides_of(triangle_of(side))[side % 2];
       if (!wanted(cell)) continue;
       Vec3 at = line->p;
       const double from = height(crossings[i].triangle, *line), to = height(crossings[i + 1].triangle, *line);
@@ -113,7 +113,7 @@ class Sampler {
   }
 
   /// Where the line meets the plane of a triangle.
-  double height(std::uint32_t t, const cells::SightLines::Line& line) const {
+  double height(std::uint32_t t, const SightLines::Line& line) const {
     const auto [i, j, k] = arranged_.triangles[t];
     const Vec3 a = arranged_.points[i], b = arranged_.points[j], c = arranged_.points[k];
     const Vec3 n = double_area_normal(a, b, c);
@@ -126,7 +126,7 @@ class Sampler {
 
   const Arrangement& arranged_;
   const Cells& cells_;
-  cells::SightLines lines_;
+  SightLines lines_;
   std::vector<int> found_;
   std::vector<Sample> samples_;
 };

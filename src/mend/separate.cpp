@@ -72,7 +72,7 @@ class Fans {
     const cells::SideGraph graph = cells::make_side_graph(surface.points, triangles_, context);
     for (std::uint32_t t = 0; t < triangles_.size(); ++t)
       for (int i = 0; i < 3; ++i) {
-        const std::uint32_t other = cells::triangle_of(graph.next[cells::behind(t)][i]);
+        const std::uint32_t other = triangle_of(graph.next[behind(t)][i]);
         for (const VertexIndex v : {triangles_[t][i], triangles_[t][(i + 1) % 3]})
           fan_.join(corner(t, v), corner(other, v));
       }

@@ -20,13 +20,9 @@ Triangle turned(const Triangle& t) {
 // Numbers of the face table: tetrahedra, each with the way its face is turned, before triangles of the complex.
 constexpr std::uint32_t kIsWall = 1u << 31;
 
-FaceTable faces_and_walls(const SurfaceMesh& complex, const TetMesh& mesh) {
+FaceTable faces_and_walls(const SurfaceMesh& complex, const TetMesh& mesh, const std::vector<std::uint8_t>& on_wall) {
   return {mesh.points.size(), [&](const auto& add) {
-            for (std::uint32_t t = 0; t < mesh.tets.size(); ++t)
-              for (int i = 0; i < 4; ++i) {
-                const Triangle corners = face_of(mesh.tets[t], i);
-                add(corners, 2 * t + static_cast<std::uint32_t>(is_even(corners)));
-              }
+            for_each_face_between(mesh, on_wall, add);
             for (std::uint32_t f = 0; f < complex.triangles.size(); ++f) add(complex.triangles[f], kIsWall | f);
           }};
 }
@@ -57,6 +53,13 @@ void face_lower_regions_behind(SurfaceMesh& complex) {
     std::swap(front, behind);
     complex.triangles[t] = turned(complex.triangles[t]);
   }
+}
+
+std::vector<std::uint8_t> corners_of(std::size_t points, const std::vector<Triangle>& triangles) {
+  std::vector<std::uint8_t> is_corner(points, 0);
+  for (const Triangle& t : triangles)
+    for (const VertexIndex v : t) is_corner[v] = 1;
+  return is_corner;
 }
 
 std::uint32_t region_count(const SurfaceMesh& complex) {
@@ -115,20 +118,29 @@ void list_faces(const SurfaceMesh& complex, TetMesh& mesh) {
 }
 
 std::vector<std::uint32_t> regions_within(const SurfaceMesh& complex, const TetMesh& mesh) {
+  const std::vector<std::uint8_t> on_wall = corners_of(mesh.points.size(), complex.triangles);
   DisjointSets sets(mesh.tets.size());
-  std::vector<Claim> claims;
-  faces_and_walls(complex, mesh).for_each_group([&](const Triangle&, std::span<const FaceTable::Entry> on_face) {
-    const std::uint32_t last = on_face.back().face;
-    if ((last & kIsWall) == 0) {
-      if (on_face.size() == 2) sets.join(on_face[0].face / 2, on_face[1].face / 2);
-      return;
+  std::vector<TetIndex> first_at(mesh.points.size(), kNone);
+  for (TetIndex t = 0; t < mesh.tets.size(); ++t)
+    for (const VertexIndex v : mesh.tets[t]) {
+      if (on_wall[v] != 0) continue;
+      if (first_at[v] == kNone) first_at[v] = t;
+      sets.join(first_at[v], t);
     }
-    const std::uint32_t wall = last & ~kIsWall;
-    const bool is_wall_even = is_even(complex.triangles[wall]);
-    const auto [front, behind] = complex.sides_of(wall);
-    for (const FaceTable::Entry& entry : on_face.first(on_face.size() - 1))
-      claims.push_back({entry.face / 2, (entry.face % 2 != 0) == is_wall_even ? behind : front});
-  });
+  std::vector<Claim> claims;
+  faces_and_walls(complex, mesh, on_wall)
+      .for_each_group([&](const Triangle&, std::span<const FaceTable::Entry> on_face) {
+        const std::uint32_t last = on_face.back().face;
+        if ((last & kIsWall) == 0) {
+          if (on_face.size() == 2) sets.join(on_face[0].face / 2, on_face[1].face / 2);
+          return;
+        }
+        const std::uint32_t wall = last & ~kIsWall;
+        const bool is_wall_even = is_even(complex.triangles[wall]);
+        const auto [front, behind] = complex.sides_of(wall);
+        for (const FaceTable::Entry& entry : on_face.first(on_face.size() - 1))
+          claims.push_back({entry.face / 2, (entry.face % 2 != 0) == is_wall_even ? behind : front});
+      });
   std::vector<std::uint32_t> of_set(mesh.tets.size(), kNone), region(mesh.tets.size());
   for (const Claim& claim : claims) {
     std::uint32_t& known = of_set[sets.find(claim.tet)];

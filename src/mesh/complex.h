@@ -6,6 +6,8 @@
 #include <octafront/surface_mesh.h>
 #include <octafront/tet_mesh.h>
 
+#include "mesh/face_table.h"
+
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -34,6 +36,25 @@ SurfaceMesh boundary_of_region(const SurfaceMesh& complex, std::uint32_t region)
 /// Makes the triangles of the complex the boundary and the interfaces of a mesh, in their order, with their patches.
 /// REQUIRES that the complex's points are the mesh's first ones, and that its higher regions lie in front.
 void list_faces(const SurfaceMesh& complex, TetMesh& mesh);
+
+/// Per vertex, whether a triangle has it.
+std::vector<std::uint8_t> corners_of(std::size_t points, const std::vector<Triangle>& triangles);
+
+/// Walls lie between vertices of walls: a vertex that is on none has one region all around it. So only faces between
+/// vertices of walls need a table. Calls add(corners, number) for these, the number being twice that of the
+/// tetrahedron, and one more where its face is even (is_even).
+template <class Add>
+void for_each_face_between(const TetMesh& mesh, const std::vector<std::uint8_t>& on_wall, const Add& add) {
+  for (TetIndex t = 0; t < mesh.tets.size(); ++t) {
+    const Tet& tet = mesh.tets[t];
+    if (on_wall[tet[0]] + on_wall[tet[1]] + on_wall[tet[2]] + on_wall[tet[3]] < 3) continue;
+    for (int i = 0; i < 4; ++i) {
+      const Triangle corners = face_of(tet, i);
+      if (on_wall[corners[0]] != 0 && on_wall[corners[1]] != 0 && on_wall[corners[2]] != 0)
+        add(corners, 2 * t + static_cast<std::uint32_t>(is_even(corners)));
+    }
+  }
+}
 
 /// The region of each tetrahedron of a mesh whose faces include the triangles of the complex, vertex for vertex.
 /// Throws MeshingError if two regions, or a region and the outside, meet without a triangle between them.

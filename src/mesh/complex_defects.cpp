@@ -53,20 +53,36 @@ struct Walls {
   std::optional<std::string> defect;
 };
 
+/// A vertex away from boundary and interfaces at which regions meet.
+std::optional<std::string> changing_vertex(const TetMesh& mesh, const std::vector<std::uint8_t>& on_wall) {
+  if (mesh.region.empty()) return std::nullopt;
+  std::vector<std::uint32_t> region_at(mesh.points.size(), kNone);
+  for (TetIndex t = 0; t < mesh.tets.size(); ++t)
+    for (const VertexIndex v : mesh.tets[t]) {
+      if (on_wall[v] != 0) continue;
+      if (region_at[v] == kNone) region_at[v] = mesh.region[t];
+      if (region_at[v] == mesh.region[t]) continue;
+      const Vec3 p = mesh.points[v];
+      return fmt::format("regions {} and {} meet at vertex {} ({:.6g}, {:.6g}, {:.6g}), which is on no interface",
+                         region_at[v], mesh.region[t], v, p.x, p.y, p.z);
+    }
+  return std::nullopt;
+}
+
 Walls walls_of(const TetMesh& mesh) {
   constexpr std::uint32_t kListed = 1u << 31;
   const auto boundary = static_cast<std::uint32_t>(mesh.boundary.size());
   const auto listed = [&](std::uint32_t f) { return f < boundary ? mesh.boundary[f] : mesh.interfaces[f - boundary]; };
+  std::vector<std::uint8_t> on_wall = corners_of(mesh.points.size(), mesh.boundary);
+  for (const Triangle& t : mesh.interfaces)
+    for (const VertexIndex v : t) on_wall[v] = 1;
   const FaceTable table(mesh.points.size(), [&](const auto& add) {
-    for (std::uint32_t t = 0; t < mesh.tets.size(); ++t)
-      for (int i = 0; i < 4; ++i) {
-        const Triangle face = face_of(mesh.tets[t], i);
-        add(face, 2 * t + static_cast<std::uint32_t>(is_even(face)));
-      }
+    for_each_face_between(mesh, on_wall, add);
     for (std::uint32_t f = 0; f < boundary + mesh.interfaces.size(); ++f) add(listed(f), kListed | f);
   });
   const auto region = [&](std::uint32_t entry) { return mesh.region.empty() ? 0 : mesh.region[entry / 2]; };
   Walls walls;
+  walls.defect = changing_vertex(mesh, on_wall);
   table.for_each_group([&](const Triangle& key, std::span<const FaceTable::Entry> on_face) {
     const std::uint32_t last = on_face.back().face;
     if ((last & kListed) == 0) {

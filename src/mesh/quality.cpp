@@ -157,9 +157,11 @@ std::vector<QualitySummary> quality_of_regions(const TetMesh& mesh) {
   const std::uint32_t regions = mesh.tets.empty() ? 0 : 1 + *std::max_element(mesh.region.begin(), mesh.region.end());
   const Groups<> tets = group_by_owner(regions, static_cast<std::uint32_t>(mesh.tets.size()),
                                        [&](std::uint32_t t) { return mesh.region[t]; });
-  std::vector<QualitySummary> found;
-  for (std::uint32_t r = 0; r < regions; ++r)
-    found.push_back(summarize(mesh, tets[r].size(), [&](std::size_t i) { return tets[r][i]; }));
+  std::vector<QualitySummary> found(regions);
+  parallel_for(
+      regions,
+      [&](std::size_t r) { found[r] = summarize(mesh, tets[r].size(), [&](std::size_t i) { return tets[r][i]; }); },
+      Split::kSingly);
   return found;
 }
 

@@ -23,8 +23,10 @@ std::vector<std::uint32_t> numbered(const std::vector<std::uint8_t>& used) {
 
 void note_what_was_done(const Settled& settled, Complex& complex) {
   if (settled.moved_back > 0)
-    complex.notes.push_back(fmt::format("{} moved back toward the corners of voxels, where surfaces would have crossed",
-                                        counted(settled.moved_back, "vertex", "vertices")));
+    complex.notes.push_back(
+        fmt::format("{} moved back toward the corners of voxels, where surfaces would have crossed or met in "
+                    "sharp wedges",
+                    counted(settled.moved_back, "vertex", "vertices")));
   if (settled.joined > 0)
     complex.notes.push_back(fmt::format("regions touch themselves or each other in {} where surfaces found no room",
                                         counted(settled.joined, "point")));

@@ -10,30 +10,43 @@
 
 namespace octafront::nets {
 
-/// What keeps a net from being a complex, exactly, found in layers of the lattice so that memory stays small.
+/// Quads at fault, ascending, each once.
+struct Conflicts {
+  /// With triangles that cross others or are without area, or around edges where the regions do not come in their turn.
+  std::vector<std::uint32_t> invalid;
+  /// That leave a region only a sharp wedge between them, or lie at sharp corners of curves: no good element fits in
+  /// there. None whose vertices may not yield.
+  std::vector<std::uint32_t> sharp;
+  bool empty() const { return invalid.empty() && sharp.empty(); }
+};
+
+/// What keeps a net from being a complex, exactly, and from being a good one, found in layers of the lattice so that
+/// memory stays small.
 class ConflictSearch {
  public:
-  /// `world`: the vertices, which may be a mirror image. `on_edges_of_many`: those that may be on edges of more than
-  /// two quads.
+  /// `world`: the vertices, which may be a mirror image. `may_yield`: per vertex, whether it is asked to where the net
+  /// is sharp.
   ConflictSearch(const Net& net, std::span<const Vec3> world, bool is_mirrored,
-                 std::span<const std::uint8_t> on_edges_of_many);
+                 std::span<const std::uint8_t> may_yield);
 
-  /// The quads at fault: those with triangles that cross others or are without area, and those around edges where the
-  /// regions do not come in their turn. Ascending, each once.
-  std::vector<std::uint32_t> all(const RunContext& context) const;
+  Conflicts all(const RunContext& context) const;
   /// The same of the quads near moved vertices.
-  std::vector<std::uint32_t> near(const std::vector<VertexIndex>& moved, const RunContext& context) const;
+  Conflicts near(const std::vector<VertexIndex>& moved, const RunContext& context) const;
 
  private:
   struct Part;
-  void search(const Part& part, std::vector<std::uint32_t>& bad, const RunContext& context) const;
-  void find_crossings(const Part& part, std::vector<std::uint32_t>& bad, const RunContext& context) const;
-  void find_disorder(const Part& part, std::vector<std::uint32_t>& bad) const;
+  struct CurveEnd;
+  void search(const Part& part, Conflicts& found, const RunContext& context) const;
+  void find_crossings(const Part& part, Conflicts& found, const RunContext& context) const;
+  void find_around_edges(const Part& part, Conflicts& found) const;
+  void find_sharp_corners(std::vector<CurveEnd> ends, Conflicts& found) const;
+  void find_folds(const Part& part, Conflicts& found) const;
+  void add_sharp(std::uint32_t quad, Conflicts& found) const;
 
   const Net& net_;
   std::span<const Vec3> world_;
   bool is_mirrored_;
-  std::span<const std::uint8_t> many_;
+  std::span<const std::uint8_t> may_yield_;
 };
 
 }  // namespace octafront::nets

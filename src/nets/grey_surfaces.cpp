@@ -153,7 +153,7 @@ Complex complex_of_bands(const Image& image, const std::vector<GreyBand>& bands,
   Placement placement(net, quads_at, lattice, values, limits, cells);
   std::vector<Vec3> x = placement.place();
   spread(stencils, placement, x, context);
-  nets::Settled settled = nets::settle(net, quads_at, stencils, lattice, x, context);
+  nets::Settled settled = nets::settle(net, quads_at, lattice, x, context);
   return nets::assemble(net, lattice, std::move(settled), x, nets::names_of(labels));
 }
 

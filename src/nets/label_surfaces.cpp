@@ -39,7 +39,7 @@ Complex complex_of_labels(const LabelImage& image, const LabelSurfaceOptions& op
       if (sizes.voxels[l] < kFewVoxels) wanted[l] = -1;
     if (options.keep_volumes) nets::keep_volumes(net, quads_at, cells, lattice, wanted, x, context);
   }
-  nets::Settled settled = nets::settle(net, quads_at, stencils, lattice, x, context);
+  nets::Settled settled = nets::settle(net, quads_at, lattice, x, context);
   return nets::assemble(net, lattice, std::move(settled), x, nets::names_of(image));
 }
 

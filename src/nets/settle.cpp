@@ -16,31 +16,29 @@ constexpr int kJoin = 5;      // then one vertex for the corner
 
 class Settling {
  public:
-  Settling(Net& net, const Groups<>& quads_at, const Stencils& stencils, const Lattice& lattice, std::vector<Vec3>& x,
-           const RunContext& context)
+  Settling(Net& net, const Groups<>& quads_at, const Lattice& lattice, std::vector<Vec3>& x, const RunContext& context)
       : net_(net),
         quads_at_(quads_at),
         lattice_(lattice),
         x_(x),
         context_(context),
         level_(x.size(), 0),
-        many_(x.size()) {
-    for (VertexIndex v = 0; v < x.size(); ++v) {
-      many_[v] = stencils.is_on_curve_edge(v);
+        may_yield_(x.size(), 1) {
+    for (VertexIndex v = 0; v < x.size(); ++v)
       if (net.shares_corner[v]) copies_[net.corner[v]].push_back(v);
-    }
   }
 
   Settled run() && {
     choose_diagonals(net_, lattice_, x_);
     settled_.world.resize(x_.size());
     parallel_for(x_.size(), [&](std::size_t v) { settled_.world[v] = lattice_.to_world(x_[v]); });
-    std::vector<std::uint32_t> bad = search().all(context_);
-    settled_.conflicts = bad.size();
-    while (!bad.empty()) {
+    Conflicts found = search().all(context_);
+    settled_.conflicts = found.invalid.size();
+    settled_.sharp = found.sharp.size();
+    while (!found.empty()) {
       context_.check();
-      const std::vector<VertexIndex> moved = retreat(bad);
-      bad = search().near(moved, context_);
+      const std::vector<VertexIndex> moved = retreat(found);
+      found = search().near(moved, context_);
     }
     settled_.moved_back =
         static_cast<std::uint64_t>(std::count_if(level_.begin(), level_.end(), [](auto l) { return l > 0; }));
@@ -48,14 +46,23 @@ class Settling {
   }
 
  private:
-  ConflictSearch search() const { return {net_, settled_.world, lattice_.is_mirrored(), many_}; }
+  ConflictSearch search() const { return {net_, settled_.world, lattice_.is_mirrored(), may_yield_}; }
 
-  std::vector<VertexIndex> retreat(const std::vector<std::uint32_t>& bad) {
+  std::vector<VertexIndex> vertices_of(const std::vector<std::uint32_t>& quads) const {
     std::vector<VertexIndex> vertices;
-    for (const std::uint32_t q : bad) vertices.insert(vertices.end(), net_.quads[q].v.begin(), net_.quads[q].v.end());
+    for (const std::uint32_t q : quads) vertices.insert(vertices.end(), net_.quads[q].v.begin(), net_.quads[q].v.end());
     std::sort(vertices.begin(), vertices.end());
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-    std::vector<VertexIndex> moved;
+    return vertices;
+  }
+
+  std::vector<VertexIndex> retreat(const Conflicts& found) {
+    std::vector<VertexIndex> vertices = vertices_of(found.sharp), moved;
+    std::erase_if(vertices, [&](VertexIndex v) { return !may_yield_[v]; });
+    const std::vector<VertexIndex> must = vertices_of(found.invalid);
+    vertices.insert(vertices.end(), must.begin(), must.end());
+    std::sort(vertices.begin(), vertices.end());
+    vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
     for (const VertexIndex v : vertices) step_back(v, moved);
     for (const VertexIndex v : moved) {
       settled_.world[v] = lattice_.to_world(x_[v]);
@@ -66,6 +73,7 @@ class Settling {
 
   void step_back(VertexIndex v, std::vector<VertexIndex>& moved) {
     const std::uint8_t level = level_[v] = static_cast<std::uint8_t>(std::min<int>(level_[v] + 1, kJoin));
+    if (level > kHalvings) may_yield_[v] = 0;
     const bool joins = level == kJoin && net_.shares_corner[v];
     if (joins) return join_corner(v, moved);
     x_[v] = level <= kHalvings ? (x_[v] + net_.start[v]) / 2 : net_.start[v];
@@ -79,13 +87,11 @@ class Settling {
       x_[copy] = net_.start[copy] = lattice_.at(net_.corner[v]);
       net_.shares_corner[copy] = 0;
       level_[copy] = kJoin;
-      many_[copy] = 1;
       settled_.joined += copy != one;
       moved.push_back(copy);
       for (const std::uint32_t q : quads_at_[copy]) {
         for (VertexIndex& corner : net_.quads[q].v)
           if (corner == copy) corner = one;
-        for (const VertexIndex corner : net_.quads[q].v) many_[corner] = 1;
       }
     }
   }
@@ -95,16 +101,16 @@ class Settling {
   const Lattice& lattice_;
   std::vector<Vec3>& x_;
   const RunContext& context_;
-  std::vector<std::uint8_t> level_, many_;
+  std::vector<std::uint8_t> level_, may_yield_;
   std::map<Corner, std::vector<VertexIndex>> copies_;
   Settled settled_;
 };
 
 }  // namespace
 
-Settled settle(Net& net, const Groups<>& quads_at, const Stencils& stencils, const Lattice& lattice,
-               std::vector<Vec3>& x, const RunContext& context) {
-  return Settling(net, quads_at, stencils, lattice, x, context).run();
+Settled settle(Net& net, const Groups<>& quads_at, const Lattice& lattice, std::vector<Vec3>& x,
+               const RunContext& context) {
+  return Settling(net, quads_at, lattice, x, context).run();
 }
 
 }  // namespace octafront::nets

@@ -107,10 +107,7 @@ std::optional<std::string> first_surface_defect(const SurfaceMesh& result, const
 std::optional<std::string> first_complex_defect_but_crossings(const SurfaceMesh& complex, std::vector<Vec3>* places) {
   if (auto bad = first_bad_vertex(complex)) return bad;
   const EdgeTable edges = make_edge_table(complex.points.size(), complex.triangles);
-  const SurfaceDefects found = defects::find_region_defects(as_it_is(complex), edges, {});
-  if (places)
-    for (const SurfaceDefects::Kind* kind : {&found.open_edges, &found.region_conflicts, &found.degenerate_faces})
-      for (const SurfaceDefects::Place& place : kind->first) places->push_back(place.at);
+  const SurfaceDefects found = defects::find_region_defects(as_it_is(complex), edges, {}, places);
   return first_line(found);
 }
 

@@ -55,8 +55,8 @@ class Phases {
   }
 
  private:
-  void queue_up(std::vector<Triangle>& faces, std::uint8_t level) {
-    for (const Triangle& t : faces) front_.queue.push_back({t, level, false});
+  void queue_up(std::vector<FrontFace>& faces, std::uint8_t level) {
+    for (const FrontFace& f : faces) front_.queue.push_back({f, level, false});
     faces.clear();
   }
 
@@ -132,9 +132,9 @@ class Phases {
         for (VertexIndex& v : corners) v = v < own ? r.found[v] : first_own + (v - own);
       };
       for (Tet& t : r.tets) renumber(t);
-      for (WaitingFace& w : r.queue) renumber(w.corners);
-      for (Triangle& t : r.held) renumber(t);
-      for (Triangle& t : r.passive) renumber(t);
+      for (WaitingFace& w : r.queue) renumber(w.face.corners);
+      for (FrontFace& f : r.held) renumber(f.corners);
+      for (FrontFace& f : r.passive) renumber(f.corners);
       const auto put = [](const auto& from, auto& to, std::size_t at) {
         std::copy(from.begin(), from.end(), to.begin() + static_cast<std::ptrdiff_t>(at));
       };

@@ -115,7 +115,8 @@ bool Attempt::place(FaceIndex face, const Limits& limits) {
   ideal_distance_ = options_.ideal_distance * limits.ideal_factor;
   ideal_at_ = centroid + normal_ * (ideal_distance_ * size);
   const double r = limits.search_radius * size;
-  const SearchRegion region = region_to_search(r);
+  SearchRegion region = region_to_search(r);
+  region.of = front_.face(face).region;
   if (!strictly_inside(region.box, territory_, kTerritoryMargin * size)) return false;
   counters_.faces_found += near_.gather(front_, face, region, size);
   ideal_ = normal_ * ideal_distance_;
@@ -282,13 +283,14 @@ Attempt::Outcome Attempt::advance(FaceIndex face, const Limits& limits, std::vec
 }
 
 void Attempt::commit(FaceIndex face, VertexIndex apex, const Contact& contact, std::vector<QueuedFace>& created) {
+  const std::uint32_t region = front_.face(face).region;
   front_.add_tet(base_, apex);
   front_.remove_face(face);
   for (int i = 0; i < 3; ++i)
     if (contact.face[i] != kNone) front_.remove_face(contact.face[i]);
   for (int i = 0; i < 3; ++i)
     if (contact.face[i] == kNone)
-      created.push_back(front_.queued(front_.add_face({base_[(i + 1) % 3], base_[(i + 2) % 3], apex})));
+      created.push_back(front_.queued(front_.add_face({{base_[(i + 1) % 3], base_[(i + 2) % 3], apex}, region})));
 }
 
 }  // namespace octafront

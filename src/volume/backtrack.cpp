@@ -36,7 +36,7 @@ FrontState front_of(const std::vector<Wall>& walls, const std::vector<VertexInde
   const auto local = [&](VertexIndex v) {
     return static_cast<VertexIndex>(std::lower_bound(global.begin(), global.end(), v) - global.begin());
   };
-  for (const Wall& w : walls) front.queue.push_back({{local(w[0]), local(w[1]), local(w[2])}});
+  for (const Wall& w : walls) front.queue.push_back({{{local(w[0]), local(w[1]), local(w[2])}}});
   return front;
 }
 

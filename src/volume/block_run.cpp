@@ -5,6 +5,7 @@
 #include "volume/front.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace octafront {
@@ -12,6 +13,7 @@ namespace octafront {
 namespace {
 
 constexpr std::size_t kFacesBetweenChecks = 512;
+constexpr int kAllLayers = std::numeric_limits<int>::max();
 
 class BlockRun {
  public:
@@ -47,8 +49,8 @@ class BlockRun {
       return local[v];
     };
     for (const FrontBlock::Member m : block_.members) {
-      const Triangle& t = state_.face(m.face);
-      front_.add_face({number(t[0]), number(t[1]), number(t[2])});
+      const auto& [t, region] = state_.face(m.face);
+      front_.add_face({{number(t[0]), number(t[1]), number(t[2])}, region});
     }
   }
 
@@ -69,7 +71,8 @@ class BlockRun {
     const VolumeOptions::Order order = phase_.task.options.order;
     std::vector<Turn> layer = first_layer();
     if (order == VolumeOptions::Order::kNewest) return work_off_newest(std::move(layer));
-    for (int layers = phase_.layers; !layer.empty() && layers > 0 && !over_budget(); --layers) {
+    for (int layers = block_.is_of_regions ? kAllLayers : phase_.layers; !layer.empty() && layers > 0 && !over_budget();
+         --layers) {
       if (order == VolumeOptions::Order::kSmallest) sort_by_area(layer);
       created_.clear();
       for (const Turn& turn : layer) take(turn);
@@ -127,17 +130,17 @@ class BlockRun {
 
   void collect() {
     for (const Turn& t : deferred_)
-      if (front_.alive(t.face)) result_.queue.push_back({front_.corners(t.face.face), t.level, true});
+      if (front_.alive(t.face)) result_.queue.push_back({front_.face(t.face.face), t.level, true});
     for (const Turn& t : next_)
-      if (front_.alive(t.face)) result_.queue.push_back({front_.corners(t.face.face), t.level, false});
+      if (front_.alive(t.face)) result_.queue.push_back({front_.face(t.face.face), t.level, false});
     const std::size_t first_passive = state_.queue.size() + state_.held.size();
     for (FaceIndex f = 0; f < block_.members.size(); ++f) {
       const FrontBlock::Member m = block_.members[f];
       if (!m.owned || m.face < state_.queue.size() || !front_.alive({f, 0})) continue;
-      (m.face < first_passive ? result_.held : result_.passive).push_back(front_.corners(f));
+      (m.face < first_passive ? result_.held : result_.passive).push_back(front_.face(f));
     }
     for (const QueuedFace& q : held_)
-      if (front_.alive(q)) result_.held.push_back(front_.corners(q.face));
+      if (front_.alive(q)) result_.held.push_back(front_.face(q.face));
     for (std::size_t v = result_.found.size(); v < front_.vertices().size(); ++v) {
       result_.points.push_back(front_.vertices()[v].at);
       result_.sizes.push_back(front_.vertices()[v].size);

@@ -24,7 +24,7 @@ struct BlockResult {
   std::vector<float> sizes;
   std::vector<Tet> tets;
   std::vector<WaitingFace> queue;
-  std::vector<Triangle> held, passive;
+  std::vector<FrontFace> held, passive;
   std::size_t deferred = 0;  ///< turns that reached beyond the block
   FrontWork work;
   FrontCounters counters;

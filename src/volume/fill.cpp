@@ -2,10 +2,13 @@
 
 #include <octafront/error.h>
 
+#include "core/disjoint_sets.h"
 #include "core/morton.h"
 #include "core/parallel.h"
 #include "core/stage_timer.h"
+#include "geometry/sight_line.h"
 #include "lattice/core.h"
+#include "mesh/complex.h"
 #include "mesh/renumber.h"
 #include "recovery/recover.h"
 #include "recovery/refine.h"
@@ -47,25 +50,47 @@ FrontState start_front(const SurfaceMesh& surface, const SizeField& sizes) {
   FrontState front;
   front.domain = bounding_box(surface.points);
   front.finest_size = sizes.min_size();
+  front.regions = region_count(surface);
   front.points = surface.points;
   front.queue.reserve(surface.triangles.size());
   for (const std::uint32_t t : spatial_order(surface, front.domain)) {
     const auto& [a, b, c] = surface.triangles[t];
     const auto [ahead, behind] = surface.sides_of(t);
-    if (behind != kNone) front.queue.push_back({{a, c, b}});
-    if (ahead != kNone) front.queue.push_back({{a, b, c}});
+    if (behind != kNone) front.queue.push_back({{{a, c, b}, behind}});
+    if (ahead != kNone) front.queue.push_back({{{a, b, c}, ahead}});
   }
   return front;
 }
 
+/// The region around each point of the core of a complex. The core touches no wall, so each part of it that hangs
+/// together lies in one, which a line of sight finds.
+std::vector<std::uint32_t> regions_of_core(const LatticeCore& core, const SurfaceMesh& surface) {
+  DisjointSets parts(core.points.size());
+  for (const Tet& t : core.tets)
+    for (int i = 1; i < 4; ++i) parts.join(t[0], t[i]);
+  const SightLines lines(surface.points, surface.triangles);
+  std::vector<std::uint32_t> region(core.points.size(), kNone);
+  for (VertexIndex v = 0; v < region.size(); ++v) {
+    std::uint32_t& of_part = region[parts.find(v)];
+    if (of_part == kNone) {
+      const std::optional<Side> side = lines.first_side(core.points[v], 0);
+      if (side) of_part = surface.sides_of(triangle_of(*side))[*side % 2];
+    }
+    region[v] = of_part;
+  }
+  return region;
+}
+
 /// Puts the core's tetrahedra in place, and its skin, which the front has to meet.
-void add_core(FrontState& front, LatticeCore core) {
+void add_core(FrontState& front, LatticeCore core, const SurfaceMesh& surface) {
+  const std::vector<std::uint32_t> region =
+      front.regions > 1 ? regions_of_core(core, surface) : std::vector<std::uint32_t>(core.points.size(), 0);
   const auto first = static_cast<VertexIndex>(front.points.size());
   front.points.insert(front.points.end(), core.points.begin(), core.points.end());
   for (Tet& t : core.tets)
     for (VertexIndex& v : t) v += first;
   front.passive.reserve(core.skin.size());
-  for (const auto& [a, b, c] : core.skin) front.passive.push_back({a + first, c + first, b + first});
+  for (const auto& [a, b, c] : core.skin) front.passive.push_back({{a + first, c + first, b + first}, region[a]});
   front.work.tets = core.tets.size();
   front.filled.push_back(std::move(core.tets));
 }
@@ -125,7 +150,7 @@ TetMesh fill_by_front(const SurfaceMesh& surface, const SizeField& sizes, const 
       const double start = process_cpu_seconds();
       LatticeCore core = build_lattice_core(surface, sizes, stage.context());
       stage.count("core tetrahedra", static_cast<double>(core.tets.size()));
-      add_core(front, std::move(core));
+      add_core(front, std::move(core), surface);
       stage.count("core CPU seconds", process_cpu_seconds() - start);
     }
     set_sizes(front, sizes);
@@ -140,7 +165,7 @@ TetMesh fill_by_front(const SurfaceMesh& surface, const SizeField& sizes, const 
       throw MeshingError("the front made " + std::to_string(front.work.tets) +
                          " tetrahedra without closing; check the surface for self-intersections, or choose a larger "
                          "element size");
-    walls = std::move(front.held);
+    for (const FrontFace& f : front.held) walls.push_back(f.corners);
     mesh.points = std::move(front.points);
     mesh.tets = joined(front.filled);
   }

@@ -19,7 +19,7 @@ VertexIndex Front::add_vertex(Vec3 at, double size) {
   return static_cast<VertexIndex>(vertices_.size() - 1);
 }
 
-FaceIndex Front::add_face(const Triangle& corners) {
+FaceIndex Front::add_face(const FrontFace& added) {
   FaceIndex face;
   if (free_.empty()) {
     face = static_cast<FaceIndex>(faces_.size());
@@ -28,10 +28,10 @@ FaceIndex Front::add_face(const Triangle& corners) {
     face = free_.back();
     free_.pop_back();
   }
-  faces_[face].corners = corners;
+  faces_[face].face = added;
   Box3 box;
-  for (const VertexIndex v : corners) box.add(vertices_[v].at);
-  index_.insert(face, corners, box);
+  for (const VertexIndex v : added.corners) box.add(vertices_[v].at);
+  index_.insert(face, added.corners, box, added.region);
   return face;
 }
 
@@ -51,7 +51,7 @@ std::optional<std::string> Front::first_inconsistency() const {
   for (const FaceIndex face : free_)
     if (index_.contains(face)) return "face " + std::to_string(face) + " is free and in the index";
   for (FaceIndex face = 0; face < faces_.size(); ++face) {
-    const auto& [a, b, c] = faces_[face].corners;
+    const auto& [a, b, c] = faces_[face].face.corners;
     if (std::max({a, b, c}) >= vertices_.size()) return "face " + std::to_string(face) + " has no such corner";
     if (a == b || b == c || c == a) return "face " + std::to_string(face) + " has a corner twice";
   }

@@ -19,6 +19,13 @@ struct FrontVertex {
   mutable std::uint32_t local = 0;  ///< scratch of Neighborhood
 };
 
+/// A face of the front: its corners, and the region that it bounds on its unfilled side, kNone where nobody knows. Only
+/// faces of one region can be in each other's way: walls between regions are faces of both.
+struct FrontFace {
+  Triangle corners{};
+  std::uint32_t region = kNone;
+};
+
 /// A face that waits in a queue. Ids of faces are used again; the generation tells whether it is still the same face.
 struct QueuedFace {
   FaceIndex face;
@@ -33,7 +40,7 @@ class Front {
   Front(const Box3& domain, double finest_size);
 
   VertexIndex add_vertex(Vec3 at, double size);
-  FaceIndex add_face(const Triangle& corners);
+  FaceIndex add_face(const FrontFace& face);
   void remove_face(FaceIndex face);
   /// Records the tetrahedron (face, apex); the faces are the caller's business.
   void add_tet(const Triangle& face, VertexIndex apex);
@@ -41,7 +48,8 @@ class Front {
   const std::vector<FrontVertex>& vertices() const { return vertices_; }
   const FrontVertex& vertex(VertexIndex v) const { return vertices_[v]; }
   Vec3 at(VertexIndex v) const { return vertices_[v].at; }
-  const Triangle& corners(FaceIndex face) const { return faces_[face].corners; }
+  const FrontFace& face(FaceIndex face) const { return faces_[face].face; }
+  const Triangle& corners(FaceIndex face) const { return faces_[face].face.corners; }
   QueuedFace queued(FaceIndex face) const { return {face, faces_[face].generation}; }
   bool alive(QueuedFace q) const { return faces_[q.face].generation == q.generation; }
   const FrontIndex& index() const { return index_; }
@@ -56,7 +64,7 @@ class Front {
 
  private:
   struct Face {
-    Triangle corners;
+    FrontFace face;
     std::uint32_t generation = 0;
   };
 

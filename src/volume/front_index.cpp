@@ -109,7 +109,7 @@ std::uint32_t FrontIndex::new_block(std::uint32_t cell, std::uint32_t next) {
   return id;
 }
 
-void FrontIndex::insert(FaceIndex face, const Triangle& corners, const Box3& box) {
+void FrontIndex::insert(FaceIndex face, const Triangle& corners, const Box3& box, std::uint32_t region) {
   const Vec3 extent = box.extent(), middle = box.center() - origin_;
   const double widest = std::max({extent.x, extent.y, extent.z});
   int level = 0;
@@ -141,6 +141,7 @@ void FrontIndex::insert(FaceIndex face, const Triangle& corners, const Box3& box
     block.corner[axis][slot] = corners[axis];
   }
   block.face[slot] = face;
+  block.region[slot] = region;
   if (face >= place_.size()) place_.resize(std::max<std::size_t>(face + 1, 2 * place_.size()), kNone);
   place_[face] = head * kWidth + slot;
   if (faces_at_level_[level]++ == 0) levels_ |= 1u << level;
@@ -163,6 +164,7 @@ void FrontIndex::remove(FaceIndex face) {
     first.boxes.hi[axis][last] = -1e30f;
   }
   hole.face[slot] = first.face[last];
+  hole.region[slot] = first.region[last];
   place_[hole.face[slot]] = place;
   place_[face] = kNone;
   if (last == 0) {
@@ -264,6 +266,7 @@ void FrontIndex::find_in_cells(const Brick& brick, std::uint64_t cells, const Se
       const Block& block = blocks_[id];
       for (unsigned hits = cull_boxes(block.boxes, local); hits != 0; hits &= hits - 1) {
         const int s = std::countr_zero(hits);
+        if (block.region[s] != region.of && block.region[s] != kNone && region.of != kNone) continue;
         out.push_back({block.face[s], {block.corner[0][s], block.corner[1][s], block.corner[2][s]}});
       }
     }

@@ -25,6 +25,7 @@ struct SearchRegion {
   double radius = 0;
   Vec3 normal;  ///< unit length
   double offset = 0;
+  std::uint32_t of = kNone;  ///< the region of a complex whose faces are asked for; kNone: any
 };
 
 /// Where the active front is: finds the faces whose boxes reach into a region.
@@ -46,8 +47,8 @@ class FrontIndex {
   /// domain has more than 2^20 of them along an axis).
   FrontIndex(const Box3& domain, double finest_cell);
 
-  /// Requires that `face` is not in the index.
-  void insert(FaceIndex face, const Triangle& corners, const Box3& box);
+  /// Requires that `face` is not in the index. A face of no region is found by all.
+  void insert(FaceIndex face, const Triangle& corners, const Box3& box, std::uint32_t region = kNone);
   void remove(FaceIndex face);
   /// Appends the faces that reach into the region to `out`; some that just miss it may be among them.
   void find(const SearchRegion& region, std::vector<Found>& out) const;
@@ -67,6 +68,7 @@ class FrontIndex {
     BoxBlock boxes;
     std::uint32_t corner[3][kWidth];
     FaceIndex face[kWidth];
+    std::uint32_t region[kWidth];
     std::uint32_t next, cell, count;  // cell: brick * 64 + cell of the brick
   };
   struct Brick {

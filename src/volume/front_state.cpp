@@ -14,7 +14,7 @@ std::optional<std::string> FrontState::first_inconsistency() const {
   std::vector<Triangle> all;
   all.reserve(faces());
   for (std::size_t i = 0; i < faces(); ++i) {
-    const auto& [a, b, c] = all.emplace_back(face(i));
+    const auto& [a, b, c] = all.emplace_back(face(i).corners);
     if (std::max({a, b, c}) >= points.size()) return "a face of the front has a corner that is no vertex";
     if (a == b || b == c || c == a) return "a face of the front has a corner twice";
   }

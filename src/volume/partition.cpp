@@ -25,7 +25,7 @@ class Divider {
   Divider(const FrontState& front, const PartitionRule& rule) : rule_(rule), boxes_(front.faces()) {
     queued_ = front.queue.size();
     parallel_for(boxes_.size(), [&](std::size_t f) {
-      for (const VertexIndex v : front.face(f)) boxes_[f].add(front.points[v]);
+      for (const VertexIndex v : front.face(f).corners) boxes_[f].add(front.points[v]);
     });
   }
 
@@ -105,12 +105,58 @@ class Divider {
   std::size_t queued_ = 0;
 };
 
+constexpr Box3 kEverywhere{{-kInfinity, -kInfinity, -kInfinity}, {kInfinity, kInfinity, kInfinity}};
+
+/// A block for the faces of each region; none if a face's region is not known.
+std::vector<FrontBlock> blocks_of_regions(const FrontState& front) {
+  std::vector<FrontBlock> blocks(front.regions);
+  for (FrontBlock& block : blocks) block.territory = kEverywhere;
+  for (std::uint32_t f = 0; f < front.faces(); ++f) {
+    const std::uint32_t region = front.face(f).region;
+    if (region >= front.regions) return {};
+    blocks[region].members.push_back({f, true});
+    blocks[region].queued += f < front.queue.size();
+  }
+  return blocks;
+}
+
+/// Takes the faces of another region in, in the order of their numbers.
+void take_in(FrontBlock& block, const FrontBlock& other) {
+  const auto middle = static_cast<std::ptrdiff_t>(block.members.size());
+  block.members.insert(block.members.end(), other.members.begin(), other.members.end());
+  std::inplace_merge(block.members.begin(), block.members.begin() + middle, block.members.end(),
+                     [](FrontBlock::Member a, FrontBlock::Member b) { return a.face < b.face; });
+  block.queued += other.queued;
+}
+
+/// Regions with few faces together, large ones divided.
+std::vector<FrontBlock> partition_regions(const FrontState& front, std::vector<FrontBlock> regions,
+                                          const PartitionRule& rule) {
+  const Divider divider(front, rule);
+  std::vector<FrontBlock> blocks, few;
+  for (FrontBlock& region : regions) {
+    if (region.queued > rule.queued_faces) {
+      std::vector<FrontBlock> parts = divider.divide(std::move(region));
+      std::move(parts.begin(), parts.end(), std::back_inserter(blocks));
+    } else if (few.empty() || few.back().queued + region.queued > rule.queued_faces) {
+      few.push_back(std::move(region));
+    } else {
+      take_in(few.back(), region);
+    }
+  }
+  for (FrontBlock& block : few) {
+    block.is_of_regions = true;
+    blocks.push_back(std::move(block));
+  }
+  return blocks;
+}
+
 }  // namespace
 
 FrontBlock FrontBlock::whole(const FrontState& front) {
   require_in_range(front.faces(), kMostFaces, "faces of the front");
   FrontBlock block;
-  block.territory = {{-kInfinity, -kInfinity, -kInfinity}, {kInfinity, kInfinity, kInfinity}};
+  block.territory = kEverywhere;
   block.members.resize(front.faces());
   for (std::uint32_t f = 0; f < block.members.size(); ++f) block.members[f] = {f, true};
   block.queued = front.queue.size();
@@ -118,6 +164,10 @@ FrontBlock FrontBlock::whole(const FrontState& front) {
 }
 
 std::vector<FrontBlock> partition_front(const FrontState& front, const PartitionRule& rule) {
+  require_in_range(front.faces(), FrontBlock::kMostFaces, "faces of the front");
+  if (front.regions > 1)
+    if (std::vector<FrontBlock> regions = blocks_of_regions(front); !regions.empty())
+      return partition_regions(front, std::move(regions), rule);
   return Divider(front, rule).divide(FrontBlock::whole(front));
 }
 

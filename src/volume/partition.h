@@ -17,6 +17,7 @@ struct FrontBlock {
   Box3 territory;                                                      ///< open; infinite where no other block lies
   std::vector<Member> members;  ///< every face that reaches into the territory, in ascending order
   std::size_t queued = 0;       ///< owned faces of the queue
+  bool is_of_regions = false;   ///< all of some regions, nothing of which is in other blocks: worked off to its end
 
   /// Everything in one block. Throws MeshingError if the front has more than kMostFaces.
   static FrontBlock whole(const FrontState& front);
@@ -27,9 +28,10 @@ struct PartitionRule {
   double quantile = 0.5;            ///< where it is divided: share of its queued faces on the lower side
 };
 
-/// Divides space by planes across the longer extents of the queue until no block has too many queued faces, or a plane
-/// would cut what too many of them reach. Blocks therefore follow the sizes of the elements, and
-/// hold alike amounts of work. The result depends on the front and the rule alone.
+/// Regions are apart: several small ones make a block, large ones are divided by themselves. Divides space by planes
+/// across the longer extents of the queue until no block has too many queued faces, or a plane would cut what too many
+/// of them reach. Blocks therefore follow the sizes of the elements, and hold alike amounts of work. The result depends
+/// on the front and the rule alone.
 std::vector<FrontBlock> partition_front(const FrontState& front, const PartitionRule& rule);
 
 }  // namespace octafront

@@ -81,6 +81,23 @@ class Images(unittest.TestCase):
         self.assertEqual(len(found["regions"]), 5)
         self.run_cli("check", out)
 
+    def test_labels_that_touch_themselves_everywhere_become_a_mesh(self):
+        # Noise at the scale of voxels: surfaces that touch in lone edges and points, layers of one voxel, labels of one.
+        size, state = (12, 12, 12), 7
+        values = []
+        for _ in range(size[0] * size[1] * size[2]):
+            state = state * 1103515245 + 12345 & 0x7fffffff
+            values.append((state >> 16) % 3)
+        values[0] = 9
+        image = self.write("noise.nii", nifti(size, values))
+        out, report = self.dir / "noise.msh", self.dir / "noise.json"
+        self.run_cli("mesh", image, "--size", "1.5", "-o", out, "--json", report, "--improve", "fast")
+        found = json.loads(report.read_text())
+        self.assertEqual([r["name"] for r in found["regions"]], ["label 1", "label 2", "label 9"])
+        for region, before in zip(found["regions"][:2], found["input_regions"]):
+            self.assertAlmostEqual(region["volume"] / before["volume"], 1, delta=0.05)
+        self.run_cli("check", out)
+
     def test_ignored_and_merged_labels(self):
         image = self.two_boxes()
         self.assertEqual(list(self.volumes(image, "--ignore", "0,7")), ["label 3"])

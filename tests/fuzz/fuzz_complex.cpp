@@ -1,5 +1,5 @@
-// Any triangles (triangles_of_bytes.h). Arranged, no triangles cross any more and input points stay; cells have volumes,
-// and what becomes of them is a complex or an InputError.
+// Any triangles (triangles_of_bytes.h). Arranged, no triangles cross any more and input points stay; cells have
+// volumes, and what becomes of them is a complex or an InputError.
 
 #include <octafront/complex.h>
 #include <octafront/error.h>

@@ -6,12 +6,15 @@
 #include "improve/edit_blocks.h"
 #include "improve/explain.h"
 #include "improve/fewest_poor.h"
+#include "improve/input_force.h"
 #include "improve/start_meshes.h"
 #include "improve/vertex_blocks.h"
+#include "support/complexes.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -331,6 +334,40 @@ TEST(Explain, NamesWhatTheBoundaryForces) {
   EXPECT_EQ(triangle.by_cause[Shortfall::kNotForced].elements, 0u);
 
   EXPECT_EQ(shortfall_of(kuhn_cube(2)).elements, 0u);
+}
+
+/// What lies around curves of a complex: two boxes upon each other, and curves far from their walls.
+class ForceOfCurves {
+ public:
+  ForceOfCurves(const std::vector<Vec3>& points, const std::vector<Edge>& edges, std::vector<VertexIndex> corners)
+      : surface_(stacked_layers({10, 10}).surface), features_{{}, std::move(corners)} {
+    for (Vec3& p : surface_.points) p = p * 10 - Vec3{5, 5, 50};
+    const auto first = static_cast<VertexIndex>(surface_.points.size());
+    surface_.points.insert(surface_.points.end(), points.begin(), points.end());
+    for (const auto& [a, b] : edges) features_.edges.push_back({first + a, first + b});
+    for (VertexIndex& v : features_.corners) v += first;
+    tree_.emplace(surface_);
+  }
+  InputForce::Cause at(Vec3 center, double h) const {
+    return InputForce(BoundaryInput{surface_, *tree_, features_, features_}).cause_at(center, h);
+  }
+
+ private:
+  SurfaceMesh surface_;
+  Features features_;
+  std::optional<TriangleTree> tree_;
+};
+
+TEST(InputForce, CurvesOfAComplexThatRunSideBySide) {
+  const ForceOfCurves beside({{0, 0, 0}, {2, 0, 0}, {0, 0.02, 0}, {2, 0.02, 0}}, {{0, 1}, {2, 3}}, {0, 1, 2, 3});
+  EXPECT_EQ(beside.at({1, 0.01, 0}, 0.3), InputForce::Cause::kThin);
+  EXPECT_EQ(beside.at({1, 0.01, 0}, 0.1), InputForce::Cause::kNone);  // small enough to fit between them
+  // At three degrees from one corner, far behind it: 20 degrees would let them part by .18 within the element.
+  const ForceOfCurves wedge({{0, 0, 0}, {2, 0, 0}, {2, 0.1, 0}}, {{0, 1}, {0, 2}}, {0, 1, 2});
+  EXPECT_EQ(wedge.at({1.3, 0.03, 0}, 0.5), InputForce::Cause::kCorner);
+  EXPECT_EQ(wedge.at({1.3, 0.03, 0}, 0.1), InputForce::Cause::kNone);
+  const ForceOfCurves straight({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 1}, {1, 2}}, {0, 1, 2});
+  EXPECT_EQ(straight.at({1, 0.03, 0}, 0.5), InputForce::Cause::kNone);
 }
 
 double deficit(const EditMesh& mesh) {

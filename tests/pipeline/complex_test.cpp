@@ -250,6 +250,12 @@ TEST(Complex, WhatIsNotCleanIsRefusedWithPlaces) {
   EXPECT_EQ(words_of(floating), "");
 }
 
+/// Corners do not tell which lies in which: all corners of a part may be those of others.
+TEST(Complex, PartsThatTouchOthersWithAllTheirCornersAreClean) {
+  const SurfaceMesh walls = rough_walls(6, nearest_of(5, 4003), 4003);
+  expect_complex(generate(walls, keeping(0.25)), walls);
+}
+
 TEST(Complex, OtherMethodsSayThatTheyFillOneRegion) {
   for (const Method method : {Method::kAft, Method::kOctree}) {
     Options o;

@@ -123,6 +123,161 @@ class Meshing(Case):
         self.assertEqual(len(mesh.faces), 12)
 
 
+
+class Images(Case):
+    """A core in a rind, voxels of 1 x 1 x 1.5."""
+
+    def setUp(self):
+        super().setUp()
+        i, j, k = np.indices((30, 26, 18))
+        self.distance = np.sqrt((i - 15.) ** 2 + (j - 13.) ** 2 + (1.5 * (k - 9.)) ** 2)
+        self.labels = np.where(self.distance < 6, 2, np.where(self.distance < 10, 1, 0))
+        self.affine = np.array([[0, -1, 0, 5], [1, 0, 0, 2], [0, 0, 1.5, 3], [0, 0, 0, 1.]])
+
+    def test_labels_of_an_array_become_regions(self):
+        mesh = octafront.mesh_image(self.labels, spacing=(1, 1, 1.5), labels={1: "rind", 2: "core"}, size=1.2)
+        self.assertTrue(octafront.check(mesh))
+        self.assertEqual(mesh.names["regions"], ["rind", "core"])
+        volumes = tet_volumes(mesh)
+        for region, label in enumerate((1, 2)):
+            self.assertAlmostEqual(volumes[mesh.regions == region].sum() / (1.5 * (self.labels == label).sum()), 1, delta=0.03)
+        made = {r["name"]: r["volume"] for r in mesh.report["image"]["regions"]}
+        self.assertAlmostEqual(made["core"], 1.5 * (self.labels == 2).sum(), delta=1e-3 * made["core"])
+
+    def test_any_type_and_layout_is_the_same_image(self):
+        first = octafront.image_surface(self.labels.astype(np.uint8), self.affine)
+        for values in (self.labels.astype(np.int64), self.labels.astype(np.float64), self.labels.astype(">i2"),
+                       np.asfortranarray(self.labels), np.repeat(self.labels, 2, axis=0)[::2], self.labels.tolist()):
+            again = octafront.image_surface(np.asarray(values), self.affine, threads=2)
+            np.testing.assert_array_equal(again.points, first.points)
+            np.testing.assert_array_equal(again.sides, first.sides)
+        self.assertEqual(octafront.image_surface(self.labels * (2**24 + 1.0)).region_names, ["label 16777217", "label 33554434"])
+
+    def test_an_affine_map_places_the_voxels(self):
+        plain = octafront.image_surface(self.labels, spacing=(1, 1, 1.5)).points
+        placed = octafront.image_surface(self.labels, self.affine).points
+        steps = plain / (1, 1, 1.5)
+        np.testing.assert_allclose(placed, steps @ self.affine[:3, :3].T + self.affine[:3, 3], atol=1e-9)
+        for bad in ({"affine": np.eye(3)}, {"affine": np.diag([1, 1, 1, 2.])}, {"spacing": (1, 2)},
+                    {"affine": self.affine, "spacing": 1}, {"series": 1}):
+            with self.assertRaises(octafront.OptionError):
+                octafront.image_surface(self.labels, **bad)
+        with self.assertRaises(octafront.InputError):
+            octafront.image_surface(self.labels, np.diag([1, 1, 0, 1]))
+
+    def test_grey_values_lie_between_voxels(self):
+        ball = octafront.image_surface(-self.distance, iso=-8.3, spacing=(1, 1, 1.5))
+        middle = np.array([15, 13, 13.5])
+        np.testing.assert_allclose(np.linalg.norm(ball.points - middle, axis=1), 8.3, atol=0.1)
+        both = octafront.image_surface(-self.distance, bands={"core": (-5, None), "rind": (-9, -5)}, spacing=(1, 1, 1.5))
+        self.assertEqual(both.region_names, ["core", "rind"])
+        with self.assertRaises(octafront.InputError) as caught:
+            octafront.mesh_image(self.distance)
+        self.assertIn("`bands`", str(caught.exception))
+        broken = self.distance.copy()
+        broken[3, 4, 5] = np.nan
+        with self.assertRaisesRegex(octafront.InputError, r"voxel \(3, 4, 5\)"):
+            octafront.image_surface(broken, iso=5)
+
+    def test_regions_are_chosen_and_cleaned(self):
+        regions = lambda **keywords: [r["name"] for r in octafront.image_surface(self.labels, **keywords).report["regions"]]
+        self.assertEqual(regions(), ["label 1", "label 2"])
+        self.assertEqual(regions(ignore=()), ["label 0", "label 1", "label 2"])
+        self.assertEqual(regions(ignore=[0, 1]), ["label 2"])
+        self.assertEqual(regions(merge={"both": (1, 2)}), ["both"])
+        speck = self.labels.copy()
+        speck[1, 1, 1] = 1
+        notes = octafront.image_surface(speck, islands=2).report["notes"]
+        self.assertTrue(any("islands" in note for note in notes), notes)
+        self.assertEqual(octafront.image_surface(self.labels, crop=((15, None), (None, 25), (0, 17)), resample=2).report["size"], [8, 13, 9])
+        with self.assertRaisesRegex(octafront.InputError, "label 2"):
+            octafront.image_surface(self.labels, crop=((15, None), (0, 25), (0, 17)), closed_at_box=False)
+        for bad in ({"kind": "gray"}, {"islands": -1}, {"close_voxels": 1000}, {"merge": {"a": ["x"]}}, {"crop": ((-1, 3), (0, 1), (0, 1))},
+                    {"iso": 1, "kind": "labels"}, {"resample": 0}):
+            with self.assertRaises(octafront.OptionError, msg=bad):
+                octafront.image_surface(self.labels, **bad)
+        with self.assertRaises(TypeError):
+            octafront.mesh_image(self.labels, sise=2)
+
+    def test_files_and_the_command_line_make_the_same(self):
+        program = pathlib.Path(sys.executable).parent / "octafront"
+        file, names, report = SAMPLES / "head_labels.nii.gz", SAMPLES / "head_labels.txt", self.folder / "r.json"
+        subprocess.run([program, "mesh", file, "--labels", names, "--size", "14", "-o", self.folder / "h.msh", "--json", report],
+                       check=True, stdout=subprocess.DEVNULL)
+        mesh = octafront.mesh_image(file, labels=names, size=14)
+        self.assertEqual(mesh.report["hash"], json.loads(report.read_text())["hash"])
+        self.assertEqual(mesh.names["regions"], ["skin", "skull", "csf", "brain", "lesion"])
+        self.assertEqual(mesh.report["image"]["frame"], "RAS")
+        with self.assertRaisesRegex(octafront.InputError, "no such file"):
+            octafront.image_surface(self.folder / "none.nii")
+        with self.assertRaises(octafront.OptionError):
+            octafront.image_surface(file, spacing=2)
+
+
+def tet_volumes(mesh):
+    a, b, c, d = (mesh.points[mesh.tets[:, i]] for i in range(4))
+    return np.einsum("ij,ij->i", np.cross(b - a, c - a), d - a) / 6
+
+
+class Complexes(Case):
+    """Boxes, whose volumes are exact."""
+
+    @staticmethod
+    def block(lo, hi):
+        points, triangles = cube()
+        points = np.asarray(points, float)
+        least, extent = points.min(axis=0), np.ptp(points, axis=0)
+        return octafront.Surface((points - least) / extent * (np.subtract(hi, lo)) + lo, triangles)
+
+    def test_bodies_share_faces_and_the_later_one_has_its_way(self):
+        joined = octafront.join_bodies({"plate": self.block((0, 0, 0), (4, 4, 1)), "pin": self.block((1, 1, 0), (2, 2, 3))})
+        made = {r["name"]: r["volume"] for r in joined.report["regions"]}
+        self.assertAlmostEqual(made["plate"], 15, places=12)
+        self.assertAlmostEqual(made["pin"], 3, places=12)
+        mesh = octafront.mesh(joined, size=0.5)
+        self.assertTrue(octafront.check(mesh))
+        self.assertEqual(mesh.names["regions"], ["plate", "pin"])
+        self.assertGreater(len(mesh.interfaces), 0)
+        volumes = tet_volumes(mesh)
+        self.assertAlmostEqual(volumes[mesh.regions == 1].sum(), 3, places=9)
+
+    def test_regions_are_named_and_emptied_by_points(self):
+        with_wall = octafront.join_bodies({"a": self.block((0, 0, 0), (1, 1, 1)), "b": self.block((1, 0, 0), (3, 1, 1))})
+        walls = octafront.Surface(with_wall.points, with_wall.triangles)
+        cells = octafront.complex_of_walls(walls, regions={"left": (0.5, 0.5, 0.5)})
+        self.assertEqual({r["name"]: round(r["volume"], 12) for r in cells.report["regions"]}, {"left": 1, "region_1": 2})
+        one = octafront.complex_of_walls(walls, regions={"all": [(0.5, 0.5, 0.5), (2, 0.5, 0.5)]}, threads=1)
+        self.assertEqual([round(r["volume"], 12) for r in one.report["regions"]], [3])
+        half = octafront.complex_of_walls(walls, voids=np.array([[2, 0.5, 0.5]]))
+        self.assertEqual([round(r["volume"], 12) for r in half.report["regions"]], [1])
+        self.assertEqual(octafront.complex_of_walls(*cube()).report["regions"], [])
+
+    def test_a_leak_has_its_way_with_it(self):
+        points, triangles = self.block((0, 0, 0), (1, 1, 1)).points, self.block((0, 0, 0), (1, 1, 1)).triangles
+        open_box = octafront.Surface(points, triangles[1:])
+        with self.assertRaises(octafront.InputError) as raised:
+            octafront.complex_of_walls(open_box, regions={"in": (0.5, 0.5, 0.5)})
+        self.assertGreater(len(raised.exception.leak), 1)
+        with self.assertRaisesRegex(octafront.OptionError, "`cells` is one of auto, merge, regions"):
+            octafront.complex_of_walls(open_box, cells="all")
+        with self.assertRaisesRegex(octafront.OptionError, "three coordinates"):
+            octafront.complex_of_walls(open_box, regions={"in": (0.5, 0.5)})
+
+    def test_a_soup_is_mended(self):
+        box = self.block((0, 0, 0), (1, 1, 1))
+        clean = octafront.mend(box)
+        self.assertTrue(clean.report["clean"])
+        np.testing.assert_array_equal(clean.points, box.points)
+        closed = octafront.mend(box.points, box.triangles[1:])
+        self.assertFalse(closed.report["clean"])
+        self.assertAlmostEqual(closed.report["volume_after"], 1, places=9)
+        self.assertTrue(octafront.check(octafront.mesh(closed, size=0.3)))
+        wrapped = octafront.mend(box, way="wrap", distance=0.1)
+        self.assertLess(wrapped.points.min(), -0.05)
+        with self.assertRaises(octafront.InputError):
+            octafront.mend(box.points, box.triangles[:1])
+
+
 class Sizes(Case):
     def test_a_function_is_asked_in_batches(self):
         batches = []

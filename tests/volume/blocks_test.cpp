@@ -7,6 +7,7 @@
 #include "volume/fill.h"
 
 #include <cmath>
+#include <set>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -29,18 +30,18 @@ FrontState front_on(const SurfaceMesh& surface, double size) {
     const auto& [a, b, c] = surface.triangles[t];
     // Some of each kind.
     if (t % 7 == 0)
-      front.held.push_back({a, c, b});
+      front.held.push_back({{a, c, b}});
     else if (t % 5 == 0)
-      front.passive.push_back({a, c, b});
+      front.passive.push_back({{a, c, b}});
     else
-      front.queue.push_back({{a, c, b}});
+      front.queue.push_back({{{a, c, b}}});
   }
   return front;
 }
 
 Box3 box_of(const FrontState& front, std::size_t face) {
   Box3 box;
-  for (const VertexIndex v : front.face(face)) box.add(front.points[v]);
+  for (const VertexIndex v : front.face(face).corners) box.add(front.points[v]);
   return box;
 }
 
@@ -74,12 +75,47 @@ TEST(Partition, GivesEveryFaceOneOwnerAndListsAllThatReachIn) {
   }
 }
 
+TEST(Partition, KeepsRegionsApart) {
+  FrontState front = front_on(icosphere(4), kEdgeOfIcosphere / 16);
+  // The first region has half of the faces, the others an eighth each.
+  const auto region_of = [&](const Triangle& t) {
+    const Vec3 p = front.points[t[0]];
+    return p.x < 0 ? 0u : 1u + (p.y > 0 ? 1u : 0u) + (p.z > 0 ? 2u : 0u);
+  };
+  front.regions = 5;
+  for (WaitingFace& w : front.queue) w.face.region = region_of(w.face.corners);
+  for (FrontFace& f : front.held) f.region = region_of(f.corners);
+  for (FrontFace& f : front.passive) f.region = region_of(f.corners);
+  const std::vector<FrontBlock> blocks = partition_front(front, {1000, 0.5});
+  std::vector<int> owners(front.faces(), 0);
+  std::set<std::uint32_t> alone;
+  for (const FrontBlock& block : blocks) {
+    EXPECT_LE(block.queued, 1000u);
+    std::set<std::uint32_t> regions;
+    for (std::size_t i = 0; i < block.members.size(); ++i) {
+      owners[block.members[i].face] += block.members[i].owned;
+      regions.insert(front.face(block.members[i].face).region);
+      if (i > 0) {
+        EXPECT_LT(block.members[i - 1].face, block.members[i].face);
+      }
+    }
+    if (block.is_of_regions)
+      alone.insert(regions.begin(), regions.end());
+    else
+      EXPECT_EQ(regions, (std::set<std::uint32_t>{0}));
+  }
+  EXPECT_EQ(alone, (std::set<std::uint32_t>{1, 2, 3, 4}));
+  for (std::size_t f = 0; f < owners.size(); ++f) EXPECT_EQ(owners[f], 1) << f;
+  front.passive[0].region = kNone;
+  for (const FrontBlock& block : partition_front(front, {1000, 0.5})) EXPECT_FALSE(block.is_of_regions);
+}
+
 TEST(FrontState, FindsWhatIsWrongWithIt) {
   const FrontState whole = front_on(icosphere(2), kEdgeOfIcosphere / 4);
   EXPECT_EQ(whole.first_inconsistency(), std::nullopt);
   FrontState open = whole, turned = whole, more = whole, sizeless = whole;
   open.held.pop_back();
-  std::swap(turned.passive[3][0], turned.passive[3][1]);
+  std::swap(turned.passive[3].corners[0], turned.passive[3].corners[1]);
   more.filled.push_back({{0, 1, 2, 3}});
   sizeless.sizes.pop_back();
   for (const FrontState& broken : {open, turned, more, sizeless}) EXPECT_NE(broken.first_inconsistency(), std::nullopt);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <random>
+#include <set>
 #include <stdexcept>
 #include <string>
 
@@ -87,6 +88,24 @@ TEST(FrontIndex, LeavesOutWhatLiesBehindThePlaneOrBeyondTheSphere) {
   EXPECT_EQ(found[0].face, 2u);
 }
 
+TEST(FrontIndex, FindsTheFacesOfOneRegionAndThoseOfNone) {
+  FrontIndex index({{0, 0, 0}, {10, 10, 10}}, 1);
+  const Box3 box{{4.9, 4.9, 4.9}, {5.1, 5.1, 5.1}};
+  for (const FaceIndex face : {0u, 1u, 2u, 3u}) index.insert(face, {0, 1, 2}, box, face < 3 ? face : kNone);
+  index.remove(0);  // another takes its place
+  SearchRegion region{.box = box, .center = box.center(), .radius = 1, .normal = {0, 0, 1}, .offset = 0, .of = 2};
+  const auto found = [&] {
+    std::vector<FrontIndex::Found> list;
+    index.find(region, list);
+    std::set<FaceIndex> faces;
+    for (const auto& f : list) faces.insert(f.face);
+    return faces;
+  };
+  EXPECT_EQ(found(), (std::set<FaceIndex>{2, 3}));
+  region.of = kNone;
+  EXPECT_EQ(found(), (std::set<FaceIndex>{1, 2, 3}));
+}
+
 /// Both break the contract: a face is in the index once, and has three corners.
 TEST(Front, FindsWhatIsWrongWithIt) {
   const auto complaint = [](const auto& broken) -> std::string {
@@ -108,8 +127,8 @@ TEST(Front, FindsWhatIsWrongWithIt) {
     return complaint([&] {
       Front front(domain, 0.1);
       for (const Vec3 p : {Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 1, 0}}) front.add_vertex(p, 0.1);
-      front.add_face({0, 1, 2});
-      front.add_face(face);
+      front.add_face({{0, 1, 2}});
+      front.add_face({face});
       front.remove_face(0);
       return front.first_inconsistency();
     });

@@ -3,13 +3,15 @@
 #include "core/disjoint_sets.h"
 #include "core/wording.h"
 #include "geometry/radial_order.h"
+#include "geometry/sight_line.h"
 #include "mesh/complex.h"
 #include "surface/defects/steps.h"
-#include "surface/repair/steps.h"
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <optional>
+#include <set>
+#include <utility>
 
 namespace octafront::defects {
 
@@ -43,9 +45,9 @@ std::vector<Spoke> spokes_of(const SurfaceMesh& mesh, const EdgeTable& table, st
   return spokes;
 }
 
-/// Sides of triangles that look into the same space next to an edge are joined.
-void find_conflicts(const RepairedSurface& repaired, const EdgeTable& table, DisjointSets& spaces,
-                    SurfaceDefects& found) {
+/// Sides of triangles that look into the same space next to an edge must be of one region.
+void find_conflicts(const RepairedSurface& repaired, const EdgeTable& table, SurfaceDefects& found,
+                    std::vector<Vec3>* edges) {
   const SurfaceMesh& mesh = repaired.surface;
   FirstPlaces open(found.open_edges), conflicts(found.region_conflicts);
   for (std::size_t e = 0; e < table.size(); ++e) {
@@ -54,70 +56,54 @@ void find_conflicts(const RepairedSurface& repaired, const EdgeTable& table, Dis
     for (std::size_t i = 0; i < spokes.size(); ++i) {
       const std::uint32_t from = spokes[i].side_behind(), to = spokes[(i + 1) % spokes.size()].side_before();
       agree = agree && region_of(mesh, from) == region_of(mesh, to);
-      spaces.join(from, to);
     }
     if (agree) continue;
     std::vector<std::uint32_t> faces;
     for (const Spoke& spoke : spokes) faces.push_back(mesh.source_of(spoke.triangle));
     const auto [a, b] = table.edges[e];
-    (spokes.size() == 1 ? open : conflicts).add(std::move(faces), (mesh.points[a] + mesh.points[b]) * 0.5);
+    const Vec3 middle = (mesh.points[a] + mesh.points[b]) * 0.5;
+    (spokes.size() == 1 ? open : conflicts).add(std::move(faces), middle);
+    if (edges != nullptr) edges->push_back(middle);
   }
 }
 
-/// The spaces between the triangles as closed surfaces: two triangles for each of the complex.
-struct Spaces {
-  SurfaceMesh sides;  ///< side s of the complex is triangle s, facing away from its space
-  repair::Pieces pieces;
-};
-
-Spaces spaces_of(const SurfaceMesh& mesh, DisjointSets& joined) {
-  Spaces spaces;
-  spaces.sides.points = mesh.points;
-  std::map<std::uint32_t, std::uint32_t> number;
-  for (std::uint32_t s = 0; s < 2 * mesh.triangles.size(); ++s) {
-    const Triangle& t = mesh.triangles[s / 2];
-    spaces.sides.triangles.push_back(s % 2 == 1 ? t : Triangle{t[0], t[2], t[1]});
-    const auto next = static_cast<std::uint32_t>(number.size());
-    spaces.pieces.piece_of_triangle.push_back(number.try_emplace(joined.find(s), next).first->second);
-  }
-  spaces.pieces.orientable.assign(number.size(), 1);
-  return spaces;
-}
-
-/// A part of the complex that hangs together over edges has one space around it: that must be of the region that the
-/// part lies in. All others are bounded, and enclose a volume.
-void find_misplaced(const RepairedSurface& repaired, const EdgeTable& table, DisjointSets& joined,
-                    const RunContext& context, SurfaceDefects& found) {
-  const SurfaceMesh& mesh = repaired.surface;
-  const Spaces spaces = spaces_of(mesh, joined);
-  const std::vector<std::uint32_t>& piece_of = spaces.pieces.piece_of_triangle;
-  const std::vector<int> sign = repair::volume_signs(spaces.sides, spaces.pieces);
+/// Parts of the complex that hang together over edges.
+DisjointSets parts_of(const SurfaceMesh& mesh, const EdgeTable& table) {
   DisjointSets parts(mesh.triangles.size());
   for (std::size_t e = 0; e < table.size(); ++e)
     for (const HalfEdge h : table.uses(e)) parts.join(table.uses(e)[0] / 3, h / 3);
-  std::vector<char> bounded(sign.size());
-  for (std::size_t p = 0; p < sign.size(); ++p) bounded[p] = sign[p] >= 0;
-  const repair::Nesting nesting = repair::find_nesting(spaces.sides, spaces.pieces, bounded, context);
-  struct Part {
-    std::uint32_t around = kNone, inner = kNone;  ///< sides of triangles
-  };
-  std::map<std::uint32_t, Part> part_at;
-  std::vector<std::uint32_t> first_side(sign.size(), kNone);
-  for (std::uint32_t s = 0; s < piece_of.size(); ++s) {
-    if (first_side[piece_of[s]] == kNone) first_side[piece_of[s]] = s;
-    Part& part = part_at[parts.find(s / 2)];
-    std::uint32_t& place = bounded[piece_of[s]] ? part.inner : part.around;
-    if (place == kNone) place = s;
-  }
+  return parts;
+}
+
+/// A part has one space around it, which must be of the region that the part lies in. What a line sees between two
+/// triangles that it crosses one after the other is one space, and lines through all parts tell which spaces are one.
+void find_misplaced(const RepairedSurface& repaired, const EdgeTable& table, const RunContext& context,
+                    SurfaceDefects& found) {
+  const SurfaceMesh& mesh = repaired.surface;
+  DisjointSets parts = parts_of(mesh, table);
+  std::vector<std::uint8_t> has_line(mesh.triangles.size(), 0), is_misplaced(mesh.triangles.size(), 0);
   FirstPlaces places(found.misplaced_parts);
-  for (const auto& [first, part] : part_at) {
-    if (part.inner == kNone) continue;
-    const std::uint32_t outer = nesting.parent[piece_of[part.inner]];
-    const std::uint32_t there = outer == kNone ? kNone : region_of(mesh, first_side[outer]);
-    const std::uint32_t around = part.around == kNone ? part.inner : part.around;  // a sheet by itself
-    if (region_of(mesh, around) == there) continue;
-    const Triangle& t = mesh.triangles[around / 2];
-    places.add({mesh.source_of(around / 2)}, (mesh.points[t[0]] + mesh.points[t[1]] + mesh.points[t[2]]) / 3);
+  const auto complain = [&](std::uint32_t t) {
+    if (std::exchange(is_misplaced[parts.find(t)], 1) != 0) return;
+    const auto& [a, b, c] = mesh.triangles[t];
+    places.add({mesh.source_of(t)}, (mesh.points[a] + mesh.points[b] + mesh.points[c]) / 3);
+  };
+  const SightLines lines(mesh.points, mesh.triangles);
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const std::optional<SightLines::Line> line = has_line[parts.find(t)] == 0 ? lines.line_through(t) : std::nullopt;
+    if (!line) continue;
+    context.check();
+    has_line[parts.find(t)] = 1;
+    std::set<std::uint32_t> entered;
+    std::uint32_t here = kNone, last = kNone;
+    for (const SightLines::Crossing& c : lines.crossings(line->p, line->axis)) {
+      // Where a part is seen for the first time, the space before it is the one around it.
+      const bool enters = entered.insert(parts.find(c.triangle)).second;
+      if (region_of(mesh, c.below()) != here) complain(enters ? c.triangle : last);
+      here = region_of(mesh, c.above());
+      last = c.triangle;
+    }
+    if (here != kNone) complain(last);
   }
 }
 
@@ -134,11 +120,11 @@ SurfaceDefects find_complex_defects(const RepairedSurface& repaired, const EdgeT
                        : found;  // around crossings nothing can be sorted
 }
 
-SurfaceDefects find_region_defects(const RepairedSurface& repaired, const EdgeTable& table, const RunContext& context) {
+SurfaceDefects find_region_defects(const RepairedSurface& repaired, const EdgeTable& table, const RunContext& context,
+                                   std::vector<Vec3>* edges) {
   SurfaceDefects found;
-  DisjointSets spaces(2 * repaired.surface.triangles.size());
-  find_conflicts(repaired, table, spaces, found);
-  if (found.clean()) find_misplaced(repaired, table, spaces, context, found);
+  find_conflicts(repaired, table, found, edges);
+  if (found.clean()) find_misplaced(repaired, table, context, found);
   return found;
 }
 

@@ -31,7 +31,9 @@ SurfaceDefects find_defects(const RepairedSurface& repaired, const EdgeTable& ta
 /// regions do not agree; where there are none of those either, parts that lie in another region than they say.
 SurfaceDefects find_complex_defects(const RepairedSurface& repaired, const EdgeTable& table, const RunContext& context);
 /// What it finds of regions, where nothing crosses.
-SurfaceDefects find_region_defects(const RepairedSurface& repaired, const EdgeTable& table, const RunContext& context);
+/// `edges`: gets the middles of all edges at fault, if it is no null.
+SurfaceDefects find_region_defects(const RepairedSurface& repaired, const EdgeTable& table, const RunContext& context,
+                                   std::vector<Vec3>* edges = nullptr);
 
 /// Pairs of faces that meet elsewhere than in what they share; counting stops at kMostPairs.
 void find_self_intersections(const RepairedSurface& repaired, const EdgeTable& table, const RunContext& context,

@@ -88,7 +88,7 @@ class NoiseFilter {
   NoiseFilter(const InputSurface& input, const SizeField& sizes) : marked_(input), sizes_(sizes) {
     const HalfEdgeMesh& mesh = input.mesh;
     sharp_.assign(mesh.start.size(), kUnknown);
-    size_.assign(mesh.start.size(), 0);
+    size_.assign(mesh.start.size(), 1);  // seams that edges do not name stay whatever they are
   }
 
   std::vector<Edge> run(std::vector<Edge> edges) {

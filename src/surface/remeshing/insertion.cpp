@@ -76,7 +76,7 @@ class Inserter {
       if (vertex_of_point_[ids[i]] != kNone) continue;
       const HalfEdge along = curve.samples[i].half_edge;
       const VertexIndex from = along == on ? previous : input_.mesh.start[along];
-      const HalfEdge h = mesh_.find(from, input_.mesh.end(along));
+      const HalfEdge h = rest_of(along, from);
       const VertexIndex x = mesh_.add_vertex(point.p, VertexKind::kCurve, {}, point.h, point.face);
       mesh_.split_edge(h, x);
       mesh_.place[x] = {number, curve.samples[i].along};
@@ -85,6 +85,16 @@ class Inserter {
       on = along;
       ++counts_.inserted;
     }
+  }
+
+  /// What is left of a half-edge of the input from a vertex on it to its end. Beside a slit another edge has the same
+  /// ends: that of the same face is meant.
+  HalfEdge rest_of(HalfEdge along, VertexIndex from) const {
+    HalfEdge rest = kNone;
+    mesh_.for_each_outgoing(from, [&](HalfEdge h) {
+      if (mesh_.end(h) == input_.mesh.end(along) && mesh_.origin[h / 3] == along / 3) rest = h;
+    });
+    return rest;
   }
 
   void adopt(std::uint32_t id, VertexIndex v, VertexKind kind) {

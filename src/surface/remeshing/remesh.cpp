@@ -39,6 +39,9 @@ constexpr double kCap = 0.6;
 /// ... but where they have fallen below this part of the first ones, size is not the reason: the input's own triangles
 /// return within this many first sizes, and within so many times that where it still crosses.
 constexpr double kVain = 0.3, kRestored = 2, kMoreRestored = 1.6;
+/// Nor is size the reason in a complex where the input's triangles are about as large as those that are wanted: none of
+/// their heights is below this part of the size. So it is between the voxels of an image.
+constexpr double kAsLarge = 0.5;
 /// The same where the new surface strays too far from the input, and for how many rounds.
 constexpr double kDeviationCap = 0.7;
 constexpr int kMostDeviationRounds = 5;
@@ -239,7 +242,6 @@ class Remesher {
         seamed_(!surface_.sides.empty() ? std::optional(cut_along_seams(surface)) : std::nullopt),
         input_(seamed_ ? std::move(seamed_->input) : make_input_surface(surface.mesh(), surface.edges())) {
     if (!seamed_) kind_.emplace(surface_, surface.edges());
-    if (seamed_) seams_ = seam_edges(input_);
   }
 
   Remeshed run() {
@@ -264,9 +266,9 @@ class Remesher {
   Compacted attempt(Effort effort) {
     const RunContext& context = stage_.context();
     progress(0);
-    set_features(input_, seams_);  // no walk crosses them
+    set_features(input_, {});  // no walk crosses seams
     set_features(input_, features_at_scale(input_, features(), sizes_));
-    std::vector<std::uint8_t> is_fixed = mark_restored(input_, restored_);
+    std::vector<std::uint8_t> is_fixed = mark_restored(input_, known_.tree(), restored_);
     const SizeField sizes = fitted_sizes(is_fixed);
     const std::vector<Curve> curves = curves_of(sizes, is_fixed);
     progress(0.05);
@@ -341,8 +343,9 @@ class Remesher {
     coarsen_seams(mesh, context, counts_.coarsen);
     settle_seams(mesh, sizes);
     progress(0.6);
-    improve_surface(mesh, input_, curves, sizes, context, counts_.improve);
     counts_.divided_edges = divide_repeated_edges(mesh, known_, sizes);
+    improve_surface(mesh, input_, curves, sizes, context, counts_.improve);
+    counts_.divided_edges += divide_repeated_edges(mesh, known_, sizes);
     counts_.divided_edges += divide_repeated_triangles(mesh, known_, sizes);
   }
 
@@ -433,14 +436,14 @@ class Remesher {
   bool is_sound(const Compacted& c) {
     const auto crossings = c.is_clear ? Crossings{} : find_crossings(c.result.surface);
     counts_.crossings += crossings.size();
-    if (!crossings.empty()) {
-      cap_or_restore(centers_of(c.result.surface, crossings));
-      return false;
-    }
-    std::vector<Vec3> places;
-    const auto defect = kind_ ? kind_->first_defect_but_crossings(c.result.surface)
-                              : first_complex_defect_but_crossings(c.result.surface, &places);
-    if (!defect) return true;
+    std::vector<Vec3> places = centers_of(c.result.surface, crossings);
+    std::optional<std::string> defect;
+    // In a complex what does not agree shows beside what crosses; both are left to the same round.
+    if (seamed_)
+      defect = first_complex_defect_but_crossings(c.result.surface, &places);
+    else if (crossings.empty())
+      defect = kind_->first_defect_but_crossings(c.result.surface);
+    if (!defect && crossings.empty()) return true;
     if (!places.empty()) {
       cap_or_restore(places);
     } else {
@@ -459,20 +462,30 @@ class Remesher {
   void cap_or_restore(const std::vector<Vec3>& places) {
     std::vector<Vec3> to_cap;
     const std::size_t before = restored_.size();
-    bool has_grown = false;
+    bool in_vain = false;
     for (const Vec3 p : places) {
       const auto around = restored_around(p, 1);
       if (around != restored_.end()) {
         if (static_cast<std::size_t>(around - restored_.begin()) < before) around->radius *= kMoreRestored;
-        has_grown = true;
+        in_vain |= around->in_vain;
       } else if (sizes_.at(p) < kVain * first_.at(p) || restored_around(p, kMoreRestored) != restored_.end()) {
         restored_.push_back({p, kRestored * first_.at(p)});
+        in_vain = true;
+      } else if (seamed_ && is_as_large(p)) {
+        restored_.push_back({p, kRestored * sizes_.at(p), false});
       } else {
         to_cap.push_back(p);
       }
     }
-    if (has_grown || restored_.size() > before) forget_caps();
+    if (in_vain) forget_caps();
     if (!to_cap.empty()) cap(to_cap, kCap);
+  }
+
+  /// Whether the input's triangle at p is as large as those that are wanted there.
+  bool is_as_large(Vec3 p) const {
+    const auto [a, b, c] = known_.tree().corners(known_.tree().nearest(p).triangle);
+    const double longest = std::max({distance(a, b), distance(b, c), distance(c, a)});
+    return length(cross(b - a, c - a)) >= kAsLarge * sizes_.at(p) * longest;
   }
 
   /// The first place where the input's triangles return that has p within so many radii.
@@ -487,7 +500,7 @@ class Remesher {
     for (Caps& caps : caps_) {
       std::erase_if(caps.places, [&](Vec3 p) {
         return std::any_of(restored_.begin(), restored_.end(),
-                           [&](const Ball& b) { return distance(b.center, p) < b.radius; });
+                           [&](const Ball& b) { return b.in_vain && distance(b.center, p) < b.radius; });
       });
       sizes_ = capped_near(sizes_, caps.places, caps.factor, stage_.context());
     }
@@ -553,7 +566,6 @@ class Remesher {
   const Stage& stage_;
   std::optional<SeamedSurface> seamed_;  ///< of a complex
   InputSurface input_;
-  std::vector<Edge> seams_;          ///< edges of input_
   std::optional<SurfaceKind> kind_;  ///< of a single surface
   Counts counts_;
 };

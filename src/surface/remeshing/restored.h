@@ -1,5 +1,6 @@
 #pragma once
 
+#include "geometry/triangle_tree.h"
 #include "surface/remeshing/walk.h"
 
 #include <vector>
@@ -10,10 +11,12 @@ namespace octafront::remeshing {
 struct Ball {
   Vec3 center;
   double radius;
+  bool in_vain = true;  ///< sizes were made smaller here, which did not help
 };
 
 /// Marks all edges of the triangles that reach into the balls as features: what lies between lines on every side stays
-/// as it is. Returns which vertices those triangles have: they must stay too.
-std::vector<std::uint8_t> mark_restored(InputSurface& input, const std::vector<Ball>& balls);
+/// as it is. `tree` holds the triangles of the input that are no backs. Returns which vertices those triangles have:
+/// they must stay too.
+std::vector<std::uint8_t> mark_restored(InputSurface& input, const TriangleTree& tree, const std::vector<Ball>& balls);
 
 }  // namespace octafront::remeshing

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <unordered_map>
 #include <utility>
@@ -291,17 +292,22 @@ Vec3 centroid_of(const WorkingMesh& mesh, std::uint32_t t) {
   return (mesh.corner(t, 0) + mesh.corner(t, 1) + mesh.corner(t, 2)) / 3;
 }
 
-/// The point of the complex's own patch that is nearest to p. It looks at all of the patch: for few points.
-TriangleTree::Nearest nearest_of_patch(const KnownSurface& complex, std::uint32_t patch, Vec3 p) {
-  const SurfaceMesh& surface = complex.mesh();
-  TriangleTree::Nearest best;
-  for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
-    if (surface.patch_of(t) != patch) continue;
-    const auto& [a, b, c] = surface.triangles[t];
-    const Vec3 q = closest_point_on_triangle(p, surface.points[a], surface.points[b], surface.points[c]);
-    if (const double d = squared_distance(p, q); d < best.squared_distance) best = {q, t, d};
+/// The point of the complex's own patch that is nearest to p. It looks farther and farther, from `reach` on.
+TriangleTree::Nearest nearest_of_patch(const KnownSurface& complex, std::uint32_t patch, Vec3 p, double reach) {
+  const Box3 all = complex.tree().box();
+  for (;; reach *= 2) {
+    TriangleTree::Nearest best;
+    best.squared_distance = reach * reach;
+    const Vec3 r{reach, reach, reach};
+    complex.tree().for_each_box_near({p - r, p + r}, [&](std::uint32_t t, const TriangleCorners& c) {
+      if (complex.mesh().patch_of(t) != patch) return true;
+      const Vec3 q = closest_point_on_triangle(p, c[0], c[1], c[2]);
+      const double d = squared_distance(p, q);
+      if (d < best.squared_distance || (d == best.squared_distance && t < best.triangle)) best = {q, t, d};
+      return true;
+    });
+    if (best.triangle != kNone || reach > 2 * length(all.hi - all.lo)) return best;
   }
-  return best;
 }
 
 /// How far triangles may turn in the passes over the seams, and how many may meet at a vertex.
@@ -358,17 +364,20 @@ class SeamCoarsener {
     return mesh_.may_collapse(h) ? star.quality_after(static_cast<std::size_t>(i), limits.turn, 0) : 0;
   }
 
-  /// Where stars of copies touch, one collapse would change what another was judged by.
-  bool stars_are_apart(const std::vector<VertexIndex>& copies) const {
-    std::vector<VertexIndex> all;
-    for (const VertexIndex v : copies) {
-      all.push_back(v);
-      mesh_.for_each_outgoing(v, [&](HalfEdge h) {
-        if (!mesh_.is_behind(h)) all.push_back(mesh_.end(h));
-      });
-    }
-    std::sort(all.begin(), all.end());
-    return std::adjacent_find(all.begin(), all.end()) == all.end();
+  /// Where the star of a copy has another one, or what that goes to, one collapse would change what the other was
+  /// judged by: its triangles, or who is whose neighbour.
+  bool stars_are_apart(const std::vector<HalfEdge>& collapses) const {
+    for (const HalfEdge h : collapses)
+      for (const HalfEdge g : collapses) {
+        if (g == h) continue;
+        const VertexIndex u = mesh_.start[g], w = mesh_.end(g);
+        if (u == mesh_.end(h) || w == mesh_.end(h)) return false;
+        bool meets = false;
+        mesh_.for_each_outgoing(mesh_.start[h],
+                                [&](HalfEdge o) { meets = meets || mesh_.end(o) == u || mesh_.end(o) == w; });
+        if (meets) return false;
+      }
+    return true;
   }
 
   bool remove(const std::vector<VertexIndex>& copies, const SeamPass& limits) {
@@ -392,7 +401,7 @@ class SeamCoarsener {
       best = worst;
       chosen = here;
     }
-    if (chosen.empty() || !stars_are_apart(copies)) return false;
+    if (chosen.empty() || !stars_are_apart(chosen)) return false;
     for (const HalfEdge h : chosen) {
       const VertexIndex target = mesh_.end(h);
       mesh_.collapse(h);
@@ -416,13 +425,6 @@ class SeamCoarsener {
 
 SeamedSurface cut_along_seams(const KnownSurface& complex) {
   return Cutter(complex).run();
-}
-
-std::vector<Edge> seam_edges(const InputSurface& input) {
-  std::vector<Edge> edges;
-  for (HalfEdge h = 0; h < input.mesh.start.size(); ++h)
-    if (h < input.mesh.twin[h] && input.is_seam(h)) edges.push_back({input.mesh.start[h], input.mesh.end(h)});
-  return edges;
 }
 
 SeamedCurves chained_curves(const InputSurface& input, const SeamedSurface& seamed, const SizeField& sizes,
@@ -463,6 +465,34 @@ void settle_seams(WorkingMesh& mesh, const SizeField& sizes) {
   }
 }
 
+namespace {
+
+constexpr double kTurnedQuality = 0.2;  // squared
+constexpr TurnLimits kTurnedLimits{0.5, 0.2};
+
+/// Turns an edge that there is elsewhere, if the new one runs to a vertex that no other part has.
+bool turn_away(WorkingMesh& mesh, HalfEdge h) {
+  const VertexIndex a = mesh.start[h], b = mesh.end(h), c = mesh.apex(h), d = mesh.apex(mesh.twin[h]);
+  if ((mesh.is_sewn(c) && mesh.is_sewn(d)) || !mesh.may_flip(h)) return false;
+  const auto quality = [&](VertexIndex u, VertexIndex v, VertexIndex w) {
+    return squared_quality(mesh.points[u], mesh.points[v], mesh.points[w]);
+  };
+  if (std::min(quality(a, d, c), quality(b, c, d)) < kTurnedQuality || !flip_is_sound(mesh, h, kTurnedLimits))
+    return false;
+  mesh.flip(h);
+  return true;
+}
+
+/// Puts the point of the edge's own patch that is nearest to its middle on it.
+void divide(WorkingMesh& mesh, HalfEdge h, const KnownSurface& complex, const SizeField& sizes) {
+  const Vec3 a = mesh.points[mesh.start[h]], b = mesh.points[mesh.end(h)];
+  const TriangleTree::Nearest at = nearest_of_patch(complex, mesh.patch[h / 3], (a + b) * 0.5, distance(a, b));
+  const Vec3 n = normalized(mesh.area_vector(h / 3) + mesh.area_vector(mesh.twin[h] / 3));
+  mesh.split_edge(h, mesh.add_vertex(at.point, VertexKind::kFree, n, sizes.at(at.point), at.triangle));
+}
+
+}  // namespace
+
 std::uint64_t divide_repeated_edges(WorkingMesh& mesh, const KnownSurface& complex, const SizeField& sizes) {
   const std::vector<VertexIndex> sewn = sewn_vertices(mesh);
   std::map<Edge, HalfEdge> first;
@@ -477,14 +507,8 @@ std::uint64_t divide_repeated_edges(WorkingMesh& mesh, const KnownSurface& compl
       const Edge key{std::min(sewn[a], sewn[b]), std::max(sewn[a], sewn[b])};
       if (!first.try_emplace(key, h).second && !seams) repeated.push_back(h);
     }
-  for (const HalfEdge h : repeated) {
-    const Vec3 middle = (mesh.points[mesh.start[h]] + mesh.points[mesh.end(h)]) * 0.5;
-    const auto nearest = complex.tree().nearest(middle);
-    const bool is_own = complex.mesh().patch_of(nearest.triangle) == mesh.patch[h / 3];
-    const Vec3 p = is_own ? nearest.point : middle;
-    const Vec3 n = normalized(mesh.area_vector(h / 3) + mesh.area_vector(mesh.twin[h] / 3));
-    mesh.split_edge(h, mesh.add_vertex(p, VertexKind::kFree, n, sizes.at(p), nearest.triangle));
-  }
+  for (const HalfEdge h : repeated)
+    if (!turn_away(mesh, h)) divide(mesh, h, complex, sizes);
   return repeated.size();
 }
 
@@ -502,7 +526,8 @@ std::uint64_t divide_repeated_triangles(WorkingMesh& mesh, const KnownSurface& c
   for (const auto& [key, triangles] : alike) {
     if (triangles.size() < 2) continue;
     for (const std::uint32_t t : triangles) {
-      const TriangleTree::Nearest at = nearest_of_patch(complex, mesh.patch[t], centroid_of(mesh, t));
+      const TriangleTree::Nearest at =
+          nearest_of_patch(complex, mesh.patch[t], centroid_of(mesh, t), std::sqrt(length(mesh.area_vector(t))));
       const Vec3 n = normalized(mesh.area_vector(t));
       mesh.split_triangle(t, mesh.add_vertex(at.point, VertexKind::kFree, n, sizes.at(at.point), at.triangle));
       ++divided;

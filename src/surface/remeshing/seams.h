@@ -30,9 +30,6 @@ struct SeamedSurface {
 /// REQUIRES a clean complex. Its own patches are kept.
 SeamedSurface cut_along_seams(const KnownSurface& complex);
 
-/// The edges of the cut surface along which it was cut.
-std::vector<Edge> seam_edges(const InputSurface& input);
-
 /// The curves of the cut surface, not divided.
 struct SeamedCurves {
   std::vector<Curve> curves;
@@ -54,8 +51,8 @@ void coarsen_seams(WorkingMesh& mesh, const RunContext& context, CoarsenCounts& 
 /// The vertices on seams are corners from here on: seams change no more.
 void settle_seams(WorkingMesh& mesh, const SizeField& sizes);
 
-/// Divides edges between vertices on seams that there are in other parts, or on the seams, too: once sewn, they would
-/// be one. The new vertices lie on `complex`. Returns how many.
+/// Turns or divides edges between vertices on seams that there are in other parts, or on the seams, too: once sewn,
+/// they would be one. New vertices lie on their own patch of `complex`. Returns how many.
 std::uint64_t divide_repeated_edges(WorkingMesh& mesh, const KnownSurface& complex, const SizeField& sizes);
 
 /// Divides triangles that other parts have on the same three vertices of seams, by a point of their own patch: once

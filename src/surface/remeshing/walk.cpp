@@ -90,6 +90,13 @@ void set_features(InputSurface& input, const std::vector<Edge>& edges) {
     mesh.set_feature(h, true);
     input.on_feature[e[0]] = input.on_feature[e[1]] = 1;
   }
+  if (input.first_back == kNone) return;
+  // Around a slit two seams run between the same two vertices, of which find() knows one.
+  for (HalfEdge h = 0; h < mesh.start.size(); ++h) {
+    if (!input.is_seam(h)) continue;
+    mesh.set_feature(h, true);
+    input.on_feature[mesh.start[h]] = 1;
+  }
 }
 
 InputSurface make_input_surface(const SurfaceMesh& surface, const EdgeTable& edges) {

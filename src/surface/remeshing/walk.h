@@ -30,7 +30,7 @@ struct InputSurface {
 
 /// Adjacency and normals; no feature edge is marked yet.
 InputSurface make_input_surface(const SurfaceMesh& surface, const EdgeTable& edges);
-/// Replaces the feature edges.
+/// Replaces the feature edges. Seams are features whatever `edges` say.
 void set_features(InputSurface& input, const std::vector<Edge>& edges);
 
 /// A point of the input surface and a face that it lies in.

@@ -166,6 +166,8 @@ bool WorkingMesh::has_more_than_three(VertexIndex v) const {
 bool WorkingMesh::keeps_manifold(HalfEdge h) const {
   const VertexIndex u = start[h], w = end(h), a = apex(h), b = apex(twin[h]);
   if (!has_more_than_three(a) || !has_more_than_three(b)) return false;
+  // Beside a slit, where two edges run between the same vertices, w would be left with two triangles back to back.
+  if (!has_more_than_three(u) && !has_more_than_three(w)) return false;
   // u and w have just a and b as common neighbours.
   int common = 0;
   for_each_outgoing(u, [&](HalfEdge o) {

@@ -2,14 +2,14 @@
 
 #include <octafront/surface_mesh.h>
 
-#include "cells/side_graph.h"
+#include "geometry/triangle_side.h"
 #include "geometry/triangle_tree.h"
 
 #include <optional>
 #include <span>
 #include <vector>
 
-namespace octafront::cells {
+namespace octafront {
 
 /// Lines parallel to an axis, and the triangles that they cross, in exact order. A line is moved by an infinitesimal
 /// across its direction, so that it crosses no edge and no vertex.
@@ -54,4 +54,4 @@ class SightLines {
   TriangleTree tree_;
 };
 
-}  // namespace octafront::cells
+}  // namespace octafront

@@ -1,4 +1,4 @@
-#include "cells/sight_line.h"
+#include "geometry/sight_line.h"
 
 #include "geometry/big_float.h"
 #include "geometry/measures.h"
@@ -8,7 +8,7 @@
 #include <array>
 #include <cmath>
 
-namespace octafront::cells {
+namespace octafront {
 namespace {
 
 using exact::BigFloat;
@@ -104,4 +104,4 @@ std::optional<SightLines::Line> SightLines::line_through(std::uint32_t triangle)
   return std::nullopt;
 }
 
-}  // namespace octafront::cells
+}  // namespace octafront
