@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -187,6 +188,24 @@ TEST(Arrange, SkinsDoubledWithinRoundingEnd) {
   EXPECT_GT(made.largest_move, 0);
   EXPECT_LT(made.largest_move, 1e-11);
   EXPECT_LT(made.triangles.size(), 2 * soup.triangles.size());
+}
+
+/// Thirty triangles on a lattice of thirds, found by fuzzing: rounding made ever more crossings of them.
+TEST(Arrange, ASoupThatRoundingDidNotSettleEnds) {
+  const std::string thirds =
+      "301000020000100230102032333333333333333333333333333333333333033333333333333333333333333333"
+      "333333333333333200033333333333333333303311120210001202012300230001330133232200000022010002"
+      "100022000333333333333333333333333333333333333333333333333333333330022200300210031010223023";
+  SurfaceMesh soup;
+  for (std::size_t i = 0; i < thirds.size(); i += 3) {
+    const auto at = [&](std::size_t k) { return 1.0 / 3 * (thirds[i + k] - '0'); };
+    soup.points.push_back({at(0), at(1), at(2)});
+    const auto n = static_cast<VertexIndex>(soup.points.size());
+    if (n % 3 == 0) soup.triangles.push_back({n - 3, n - 2, n - 1});
+  }
+  const Arrangement made = arrange(soup.points, soup.triangles);
+  EXPECT_TRUE(self_intersections(made.points, made.triangles).empty());
+  EXPECT_LT(made.passes, 12);
 }
 
 /// Triangles turned against each other by so little that their crossings are long and thin.
