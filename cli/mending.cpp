@@ -82,8 +82,6 @@ void mend(Session& session, const std::filesystem::path& file, SurfaceMesh& surf
     session.found({{"repair", report}});
   if (!a.defects.empty()) write_surface(a.defects, marks_of(mended.report), session.context());
   if (mended.report.clean) return;
-  // What moves and invents nothing is done, and told, by those who mesh.
-  if (mended.report.changes.empty() && a.command != "repair") return;
   session.say_notes("repair", mended.report.notes);
   surface = std::move(mended.surface);
 }

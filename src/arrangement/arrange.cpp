@@ -3,6 +3,7 @@
 #include <octafront/error.h>
 
 #include "arrangement/divide.h"
+#include "arrangement/snap.h"
 #include "core/wording.h"
 #include "geometry/predicates.h"
 #include "geometry/self_intersection.h"
@@ -11,7 +12,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <numeric>
 #include <unordered_map>
 
@@ -22,19 +22,17 @@ namespace {
 
 using arrangement::Divided;
 using arrangement::PointTable;
+using arrangement::Soup;
 
-/// How many times rounding may make new crossings, and from which pass on points are rounded to a grid that grows
-/// coarser: nearly all input ends in two or three passes.
-constexpr int kMostPasses = 24, kFirstGridPass = 4;
+/// How many times rounding may make new crossings, and from which pass on what nearly meets is brought together, each
+/// time from farther away: nearly all input ends in two or three passes.
+constexpr int kMostPasses = 24, kFirstSnap = 1;
+/// What is brought together may come near to others: so often in a pass.
+constexpr int kMostSnaps = 4;
+/// The first reach, of the diagonal, and what it grows by: up to 1e-6 in the last pass.
+constexpr double kReach = 1e-13, kGrowth = 2;
 /// What does not settle must not grow without end either.
-constexpr std::size_t kMostGrowth = 8;
-
-/// Triangles on their way, each with its origins in the input.
-struct Soup {
-  std::vector<Vec3> points;
-  std::vector<Triangle> triangles;
-  std::vector<std::vector<Origin>> origins;
-};
+constexpr std::size_t kMostGrowth = 8, kFewPairs = 100;
 
 bool lexicographic(Vec3 a, Vec3 b) {
   return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
@@ -74,14 +72,52 @@ std::uint64_t tidy(Soup& soup) {
   return flat;
 }
 
+void put_in_order(std::vector<Origin>& origins) {
+  std::sort(origins.begin(), origins.end(), [](const Origin& a, const Origin& b) {
+    return std::pair(a.triangle, a.reversed) < std::pair(b.triangle, b.reversed);
+  });
+}
+
+/// Of triangles on the same corners one stays, with the origins of all.
+void merge_equal(Soup& soup) {
+  const auto corners = [&](std::uint32_t t) {
+    Triangle sorted = soup.triangles[t];
+    std::sort(sorted.begin(), sorted.end());
+    return sorted;
+  };
+  const auto is_even = [&](std::uint32_t t) {
+    const auto [a, b, c] = soup.triangles[t];
+    return (a < b) == (b < c) ? a < b : c < a;
+  };
+  std::vector<std::pair<Triangle, std::uint32_t>> order;
+  for (std::uint32_t t = 0; t < soup.triangles.size(); ++t) order.emplace_back(corners(t), t);
+  std::sort(order.begin(), order.end());
+  std::vector<char> gone(order.size(), 0);
+  for (std::size_t i = 0, first = 0; i < order.size(); ++i) {
+    if (order[i].first != order[first].first) first = i;
+    if (i == first) continue;
+    const std::uint32_t kept = order[first].second, t = order[i].second;
+    const bool turned = is_even(kept) != is_even(t);
+    for (const Origin& o : soup.origins[t]) soup.origins[kept].push_back({o.triangle, o.reversed != turned});
+    gone[t] = 1;
+  }
+  std::size_t left = 0;
+  for (std::uint32_t t = 0; t < gone.size(); ++t) {
+    if (gone[t]) continue;
+    soup.triangles[left] = soup.triangles[t];
+    if (left != t) soup.origins[left] = std::move(soup.origins[t]);
+    put_in_order(soup.origins[left++]);
+  }
+  soup.triangles.resize(left);
+  soup.origins.resize(left);
+}
+
 /// Origins of a pass in terms of the input; several ways to one face add up to its own, or to none in all.
 std::vector<Origin> composed(const std::vector<Origin>& of_pass, const Soup& before) {
   std::vector<Origin> all;
   for (const Origin& o : of_pass)
     for (const Origin& p : before.origins[o.triangle]) all.push_back({p.triangle, p.reversed != o.reversed});
-  std::sort(all.begin(), all.end(), [](const Origin& a, const Origin& b) {
-    return std::pair(a.triangle, a.reversed) < std::pair(b.triangle, b.reversed);
-  });
+  put_in_order(all);
   return all;
 }
 
@@ -100,10 +136,16 @@ class Arranger {
   Arrangement result() {
     result_.degenerate = tidy(soup_);
     for (;; ++result_.passes) {
-      const auto pairs = self_intersections(soup_.points, soup_.triangles, kAll, context_);
+      auto pairs = self_intersections(soup_.points, soup_.triangles, kAll, context_);
+      for (int k = 0; k < kMostSnaps && result_.passes >= kFirstSnap && !pairs.empty(); ++k) {
+        bring_together(pairs);
+        pairs = self_intersections(soup_.points, soup_.triangles, kAll, context_);
+      }
       if (result_.passes == 0) result_.crossing_pairs = pairs.size();
       if (pairs.empty()) return finished();
-      const bool grows = first_pass_ > 0 && soup_.triangles.size() > kMostGrowth * first_pass_;
+      least_pairs_ = std::min(least_pairs_, pairs.size());
+      const bool grows = first_pass_ > 0 && (soup_.triangles.size() > kMostGrowth * first_pass_ ||
+                                             pairs.size() > kMostGrowth * (least_pairs_ + kFewPairs));
       if (result_.passes == kMostPasses || grows) give_up(pairs);
       pass(pairs);
       if (result_.passes == 0) first_pass_ = soup_.triangles.size();
@@ -129,26 +171,14 @@ class Arranger {
     next.triangles = std::move(divided.triangles);
     for (const std::vector<Origin>& of_pass : divided.origins) next.origins.push_back(composed(of_pass, soup_));
     soup_ = std::move(next);
-    if (result_.passes >= kFirstGridPass) round_to_grid();
     tidy(soup_);
   }
 
-  /// Where rounding to doubles goes on making crossings, points that are not the input's go to a grid, or to an input
-  /// point nearby.
-  void round_to_grid() {
-    const double cell = std::ldexp(1.0, std::ilogb(diagonal_) - 50 + 2 * (result_.passes - kFirstGridPass));
-    const auto key = [&](Vec3 p) {
-      return std::array{std::round(p.x / cell), std::round(p.y / cell), std::round(p.z / cell)};
-    };
-    std::map<std::array<double, 3>, VertexIndex> taken;
-    for (VertexIndex v = 0; v < inputs_; ++v) taken.try_emplace(key(soup_.points[v]), v);
-    for (std::size_t v = inputs_; v < soup_.points.size(); ++v) {
-      const std::array<double, 3> k = key(soup_.points[v]);
-      const auto near = taken.find(k);
-      const Vec3 to = near != taken.end() ? soup_.points[near->second] : Vec3{k[0], k[1], k[2]} * cell;
-      result_.largest_move = std::max(result_.largest_move, distance(to, soup_.points[v]));
-      soup_.points[v] = to;
-    }
+  void bring_together(const std::vector<std::array<std::uint32_t, 2>>& pairs) {
+    const double reach = kReach * std::pow(kGrowth, result_.passes - kFirstSnap) * diagonal_;
+    result_.largest_move = std::max(result_.largest_move, arrangement::snap(soup_, pairs, reach));
+    tidy(soup_);
+    merge_equal(soup_);
   }
 
   Arrangement finished() {
@@ -208,7 +238,8 @@ class Arranger {
   const RunContext& context_;
   std::size_t inputs_;
   double diagonal_ = 0;
-  std::size_t first_pass_ = 0;  ///< triangles behind it
+  std::size_t first_pass_ = 0;      ///< triangles behind it
+  std::size_t least_pairs_ = kAll;  ///< so far
   Soup soup_;
   Arrangement result_;
 };

@@ -19,8 +19,8 @@ using Numbers = std::vector<std::uint32_t>;
 
 class PolygonCap {
  public:
-  PolygonCap(std::span<const Vec3> points, std::span<const Vec3> beyond, const IsTaken& is_taken)
-      : points_(points), beyond_(beyond), is_taken_(is_taken) {
+  PolygonCap(std::span<const Vec3> points, std::span<const Vec3> beyond, const IsTaken& is_taken, Least least)
+      : points_(points), beyond_(beyond), is_taken_(is_taken), least_(least) {
     double around = 0;
     for (std::size_t i = 0; i < points.size(); ++i) around += distance(points[i], points[(i + 1) % points.size()]);
     penalty_ = around * static_cast<double>(points.size());
@@ -80,7 +80,8 @@ class PolygonCap {
   bool is_rim(std::uint32_t a, std::uint32_t b) const { return (a + 1) % points_.size() == b; }
 
   double bend(const Numbers& polygon, std::size_t i, std::size_t j, Vec3 n, Vec3 other) const {
-    return other == Vec3{} ? 0 : distance(at(polygon[i]), at(polygon[j])) * distance(n, other);
+    return least_ == Least::kArea || other == Vec3{} ? 0
+                                                     : distance(at(polygon[i]), at(polygon[j])) * distance(n, other);
   }
 
   /// Best costs of all sub-polygons i..j, by their size; what bends at their chord is added by the next larger one.
@@ -129,6 +130,7 @@ class PolygonCap {
   std::span<const Vec3> points_;
   std::span<const Vec3> beyond_;
   const IsTaken& is_taken_;
+  Least least_;
   double penalty_ = 0, per_area_ = 0;
   std::vector<double> cost_;
   std::vector<std::uint32_t> middle_;
@@ -138,8 +140,9 @@ class PolygonCap {
 
 }  // namespace
 
-Cap triangulate_polygon(std::span<const Vec3> polygon, std::span<const Vec3> beyond, const IsTaken& is_taken) {
-  return PolygonCap(polygon, beyond, is_taken).result();
+Cap triangulate_polygon(std::span<const Vec3> polygon, std::span<const Vec3> beyond, const IsTaken& is_taken,
+                        Least least) {
+  return PolygonCap(polygon, beyond, is_taken, least).result();
 }
 
 }  // namespace octafront::mend

@@ -12,10 +12,9 @@ namespace octafront::mend {
 /// A hole and the triangles over it.
 struct Hole {
   std::vector<Triangle> cap;
+  std::vector<Vec3> inner;             ///< points of the cap that are not on the rim, in the order of their vertices
   std::uint32_t rim_triangle = kNone;  ///< of the draft
-  double area = 0;                     ///< of the cap
-  double width = 0;                    ///< twice the area over the length of the rim: of a strip its width
-  Vec3 at;
+  double area = 0;                     ///< of the cap before it was made smooth
 };
 
 struct ClosedHoles {
@@ -26,7 +25,8 @@ struct ClosedHoles {
 
 /// Caps for the holes of all parts that nearly enclose something, and none for sheets: parts whose caps would be too
 /// large a share of themselves, or that would enclose a volume thinner than the tolerance. Where some parts are closed
-/// already, open ones must be nearly so too.
+/// already, open ones must be nearly so too. Where the surface around a hole bends, its cap goes on so; the points that
+/// this takes come behind those of the draft.
 ClosedHoles close_holes(repair::Draft& draft, double tolerance);
 
 }  // namespace octafront::mend

@@ -200,6 +200,24 @@ void fill_thin_gaps(const Arrangement& arranged, const Cells& cells, double tole
   for (const std::uint32_t c : labels.filled) labels.inside[c] = 1;
 }
 
+/// Cells inside that are thinner than the tolerance, with the outside behind most of their walls: what an open sheet
+/// and its caps enclose beside a body.
+void empty_thin_flaps(const Arrangement& arranged, const Cells& cells, double tolerance, Labels& labels) {
+  constexpr double kMostly = 0.6;
+  const std::vector<double> volumes = cells.volumes(), area = wall_areas(arranged, cells);
+  std::vector<double> outer(cells.count(), 0);
+  for (std::size_t t = 0; t < arranged.triangles.size(); ++t) {
+    const auto [front, back] = cells.sides_of(t);
+    if (front == back) continue;
+    if (!labels.inside[front]) outer[back] += area_of(arranged, t);
+    if (!labels.inside[back]) outer[front] += area_of(arranged, t);
+  }
+  for (std::uint32_t c = 1; c < cells.count(); ++c)
+    if (labels.inside[c] && 2 * std::abs(volumes[c]) < tolerance * area[c] && outer[c] > kMostly * area[c])
+      labels.emptied.push_back(c);
+  for (const std::uint32_t c : labels.emptied) labels.inside[c] = 0;
+}
+
 /// Bodies that are thinner than the tolerance: nobody could fill them with elements.
 void empty_thin_bodies(const Arrangement& arranged, const Cells& cells, double tolerance, Labels& labels) {
   DisjointSets bodies(cells.count());
@@ -233,6 +251,7 @@ Labels label_cells(const Arrangement& arranged, const Cells& cells, const PieceO
   labels.winding = windings_of(arranged, cells, walls_of(arranged, cells, pieces, labels.turned), context);
   cut_doubtful(arranged, cells, labels);
   fill_thin_gaps(arranged, cells, tolerance, labels);
+  empty_thin_flaps(arranged, cells, tolerance, labels);
   empty_thin_bodies(arranged, cells, tolerance, labels);
   return labels;
 }

@@ -8,6 +8,7 @@
 #include "core/disjoint_sets.h"
 #include "core/wording.h"
 #include "geometry/measures.h"
+#include "geometry/triangle_tree.h"
 #include "mend/holes.h"
 #include "mend/label.h"
 #include "mend/lattice_skin.h"
@@ -19,6 +20,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -58,20 +61,19 @@ void clean_faces(Draft& draft) {
 /// The soup on its way to the result.
 class Mending {
  public:
-  Mending(const SurfaceMesh& soup, const MendOptions& options, const RunContext& context, MendReport& report)
+  Mending(const SurfaceMesh& soup, const RunContext& context, MendReport& report)
       : soup_(soup),
-        options_(options),
         context_(context),
         report_(report),
         draft_(repair::make_draft({soup.points, soup.triangles, {}, {}, {}}, context)) {}
 
-  SurfaceMesh result() {
-    context_.report("mending", -1);
-    weld();
+  /// By steps that keep what is not broken; nullopt where they fail.
+  std::optional<SurfaceMesh> exact_result(double weld_reach) {
+    weld(weld_reach);
     orient();
     close();
     try {
-      SurfaceMesh surface = exact_result();
+      SurfaceMesh surface = arranged_result();
       if (is_clean(surface, context_)) return surface;
       report_.notes.push_back("what touches could not be drawn apart");
     } catch (const InputError& error) {
@@ -80,21 +82,14 @@ class Mending {
     } catch (const MeshingError& error) {
       report_.notes.push_back(error.what());
     }
-    return rebuilt_result();
-  }
-
- private:
-  SurfaceMesh exact_result() {
-    const Arrangement arranged = arrange(draft_.mesh.points, all_triangles(), context_);
-    report_.crossing_pairs = arranged.crossing_pairs;
-    report_.largest_move = std::max(report_.largest_move, arranged.largest_move);
-    SurfaceMesh surface = surface_of(arranged, best_skin(arranged));
-    separate(surface);
-    return surface;
+    return std::nullopt;
   }
 
   /// The last rung: by the winding number alone, on a lattice.
   SurfaceMesh rebuilt_result() {
+    weld(report_.tolerance);
+    orient();
+    close();
     SurfaceMesh walls{draft_.mesh.points, all_triangles(), {}, {}, {}};
     LatticeSkin skin;
     try {
@@ -110,9 +105,33 @@ class Mending {
       if (skin.is_far[t]) far += size;
     }
     const bool is_flake = 2 * std::abs(enclosed_volume(skin.surface)) < 2 * kLatticeEdge * report_.diagonal * all;
-    if (far > kMostInvented * all || is_flake) refuse_open();
+    if (far > kMostInvented * all || is_flake || part_left_out(walls, skin.surface) > kMostIdle) refuse_open();
     report_.changes.push_back({Kind::kRebuilt, skin.surface.points.front(), all, skin.surface.triangles.size()});
     return named(std::move(skin));
+  }
+
+ private:
+  SurfaceMesh arranged_result() {
+    const Arrangement arranged = arrange(draft_.mesh.points, all_triangles(), context_);
+    report_.crossing_pairs = arranged.crossing_pairs;
+    report_.largest_move = std::max(report_.largest_move, arranged.largest_move);
+    SurfaceMesh surface = surface_of(arranged, best_skin(arranged));
+    separate(surface);
+    return surface;
+  }
+
+  /// Of the area of the input, what lies outside of a surface and away from it: a terrain around a house.
+  double part_left_out(const SurfaceMesh& walls, const SurfaceMesh& skin) const {
+    const TriangleTree tree(skin);
+    double all = 0, left_out = 0;
+    for (std::size_t t = 0; t < draft_.mesh.triangles.size(); ++t) {
+      const auto [a, b, c] = walls.triangles[t];
+      const double size = triangle_area(walls.points[a], walls.points[b], walls.points[c]);
+      const Vec3 middle = centroid(walls.points[a], walls.points[b], walls.points[c]);
+      all += size;
+      if (!tree.is_within(middle, kLatticeEdge * report_.diagonal) && !tree.contains(middle)) left_out += size;
+    }
+    return all > 0 ? left_out / all : 0;
   }
 
   [[noreturn]] static void refuse_open() {
@@ -142,9 +161,9 @@ class Mending {
     return std::move(skin.surface);
   }
 
-  void weld() {
+  void weld(double reach) {
     clean_faces(draft_);
-    const Welded welded = weld_open_edges(draft_, report_.tolerance);
+    const Welded welded = weld_open_edges(draft_, reach);
     report_.joined_vertices = welded.joined;
     report_.divided_edges = welded.divided;
     report_.largest_move = std::max(report_.largest_move, welded.largest_move);
@@ -312,7 +331,6 @@ class Mending {
   static constexpr double kLatticeEdge = 0.015, kMostInvented = 0.45;
 
   const SurfaceMesh& soup_;
-  const MendOptions& options_;
   const RunContext& context_;
   MendReport& report_;
   Draft draft_;
@@ -320,6 +338,21 @@ class Mending {
   repair::InputFaces turned_;
   std::vector<Hole> holes_;
 };
+
+SurfaceMesh mended_soup(const SurfaceMesh& soup, const RunContext& context, MendReport& report) {
+  context.report("mending", -1);
+  const MendReport before = report;
+  std::optional<MendReport> failed;
+  // What was brought together may have been in the way: next time less of it.
+  for (const double part : {1.0, 0.05, 1e-3, 0.0}) {
+    report = before;
+    if (auto surface = Mending(soup, context, report).exact_result(part * report.tolerance)) return std::move(*surface);
+    if (!failed) failed = report;
+    if (report.joined_vertices + report.divided_edges == 0) break;
+  }
+  report = *failed;
+  return Mending(soup, context, report).rebuilt_result();
+}
 
 /// Of the diagonal; nearer skins would have too many triangles.
 constexpr double kWrapDistance = 0.01, kLeastWrap = 0.0005;
@@ -361,7 +394,7 @@ Mended mend_surface(const SurfaceMesh& soup, const MendOptions& options, const R
     const bool is_enough = find_defects(repaired, context).clean();
     report.clean = is_enough && !has_changed(repaired);
     if (!is_enough)
-      mended.surface = Mending(soup, options, context, report).result();
+      mended.surface = mended_soup(soup, context, report);
     else if (report.clean)
       mended.surface = soup;
     else

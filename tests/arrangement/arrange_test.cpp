@@ -174,5 +174,38 @@ TEST(Arrange, TheSameOnAnyNumberOfThreads) {
   EXPECT_EQ(made[0].origins, made[1].origins);
 }
 
+/// Skins a rounding apart cross in slivers, which rounding would make more of.
+TEST(Arrange, SkinsDoubledWithinRoundingEnd) {
+  SurfaceMesh soup = testing::torus(30, 12);
+  const SurfaceMesh one = soup;
+  for (const Vec3 p : one.points) soup.points.push_back(p * (1 + 1e-15));
+  const auto first = static_cast<VertexIndex>(one.points.size());
+  for (const auto& [a, b, c] : one.triangles) soup.triangles.push_back({first + a, first + b, first + c});
+  ASSERT_FALSE(self_intersections(soup.points, soup.triangles, 1).empty());
+  const Arrangement made = arrange(soup.points, soup.triangles);
+  EXPECT_TRUE(self_intersections(made.points, made.triangles).empty());
+  EXPECT_GT(made.largest_move, 0);
+  EXPECT_LT(made.largest_move, 1e-11);
+  EXPECT_LT(made.triangles.size(), 2 * soup.triangles.size());
+}
+
+/// Triangles turned against each other by so little that their crossings are long and thin.
+TEST(Arrange, NearlyParallelFacesEnd) {
+  for (const double turn : {1e-5, 1e-9, 1e-13, 3e-16}) {
+    SurfaceMesh soup;
+    Random random(7);
+    for (int k = 0; k < 12; ++k) {
+      const auto first = static_cast<VertexIndex>(soup.points.size());
+      for (int i = 0; i < 3; ++i) {
+        const double x = random.unit(), y = random.unit();
+        soup.points.push_back({x, y, turn * k * (x - y + 0.1 * random.unit())});
+      }
+      soup.triangles.push_back({first, first + 1, first + 2});
+    }
+    const Arrangement made = arrange(soup.points, soup.triangles);
+    EXPECT_TRUE(self_intersections(made.points, made.triangles).empty()) << turn;
+  }
+}
+
 }  // namespace
 }  // namespace octafront
