@@ -74,19 +74,24 @@ Cells::Cells(std::span<const Vec3> points, std::span<const Triangle> triangles, 
 
 std::vector<double> Cells::volumes() const {
   std::vector<long double> six(count_, 0);
-  const Vec3 center = lines_.tree().box().center();
-  for (std::size_t t = 0; t < triangles_.size(); ++t) {
-    const auto [a, b, c] = triangles_[t];
-    const Vec3 p = points_[a] - center, q = points_[b] - center, r = points_[c] - center;
+  // Each cell is seen from a vertex of its own: far from it what a tiny one has would cancel.
+  std::vector<VertexIndex> origin(count_, kNone);
+  const auto six_volumes_from = [&](VertexIndex o, const Triangle& t) {
+    const Vec3 p = points_[t[0]] - points_[o], q = points_[t[1]] - points_[o], r = points_[t[2]] - points_[o];
     const auto det = [](double x, double y, double z, double w) {
       return static_cast<long double>(x) * w - static_cast<long double>(y) * z;
     };
-    const long double v = p.x * det(q.y, q.z, r.y, r.z) + p.y * det(q.z, q.x, r.z, r.x) + p.z * det(q.x, q.y, r.x, r.y);
-    six[cell_[2 * t]] -= v;
-    six[cell_[2 * t + 1]] += v;
-  }
+    return p.x * det(q.y, q.z, r.y, r.z) + p.y * det(q.z, q.x, r.z, r.x) + p.z * det(q.x, q.y, r.x, r.y);
+  };
+  for (std::size_t t = 0; t < triangles_.size(); ++t)
+    for (const bool is_behind : {false, true}) {
+      const std::uint32_t cell = cell_[2 * t + (is_behind ? 1 : 0)];
+      if (origin[cell] == kNone) origin[cell] = triangles_[t][0];
+      six[cell] += (is_behind ? 1 : -1) * six_volumes_from(origin[cell], triangles_[t]);
+    }
   std::vector<double> volumes;
-  for (const long double v : six) volumes.push_back(static_cast<double>(v / 6));
+  // Enclosed cells have a volume; of slivers rounding may leave less than nothing.
+  for (const long double v : six) volumes.push_back(std::max(0.0, static_cast<double>(v / 6)));
   volumes[0] = 0;
   return volumes;
 }

@@ -1,6 +1,8 @@
 #include "improve/boundary_guide.h"
 
+#include "core/disjoint_sets.h"
 #include "geometry/measures.h"
+#include "mesh/edge_table.h"
 
 #include <algorithm>
 #include <cmath>
@@ -55,6 +57,7 @@ BoundaryGuide::BoundaryGuide(const EditMesh& mesh, const BoundaryInput& input, c
   for (const VertexIndex v : frozen) frozen_[here[v]] = 1;
   for (const VertexIndex v : input.pinned) pinned_[here[v]] = 1;
   freeze_where_regions_meet(mesh);
+  if (!input.surface.sides.empty()) freeze_where_boundary_touches_itself(mesh);
   for (VertexIndex v = 0; v < kind_.size(); ++v)
     if (frozen_[v]) kind_[v] = Kind::kFixed;
   for (VertexIndex v = 0; v < kind_.size(); ++v)
@@ -73,6 +76,35 @@ void BoundaryGuide::freeze_where_regions_meet(const EditMesh& mesh) {
   for (HalfFace h = 0; h < 4 * mesh.slots(); ++h)
     if (mesh.across(h) == kBetweenRegions)
       for (const int corner : kTetFaces[h % 4]) frozen_[mesh.tet(h / 4)[corner]] = 1;
+}
+
+/// At edges with other than two triangles, and at vertices around which they do not hang together: who walks around
+/// there sees a part of the elements only.
+void BoundaryGuide::freeze_where_boundary_touches_itself(const EditMesh& mesh) {
+  std::vector<Triangle> boundary;
+  for (HalfFace h = 0; h < 4 * mesh.slots(); ++h) {
+    if (!mesh.alive(h / 4) || !is_outside(mesh.across(h)) || mesh.across(h) == kBetweenRegions) continue;
+    const auto& f = kTetFaces[h % 4];
+    const Tet& t = mesh.tet(h / 4);
+    boundary.push_back({t[f[0]], t[f[1]], t[f[2]]});
+  }
+  const EdgeTable table = make_edge_table(mesh.vertices(), boundary);
+  DisjointSets fans(3 * boundary.size());  // of corners
+  const auto corner_at = [&](HalfEdge h, VertexIndex v) { return start_of(boundary, h) == v ? h : next_of(h); };
+  for (std::size_t e = 0; e < table.size(); ++e)
+    for (const VertexIndex v : table.edges[e]) {
+      const auto uses = table.uses(e);
+      if (uses.size() == 2)
+        fans.join(corner_at(uses[0], v), corner_at(uses[1], v));
+      else
+        frozen_[v] = 1;
+    }
+  std::vector<std::uint32_t> fan_at(mesh.vertices(), kNone);
+  for (HalfEdge k = 0; k < 3 * boundary.size(); ++k) {
+    std::uint32_t& fan = fan_at[start_of(boundary, k)];
+    if (fan == kNone) fan = fans.find(k);
+    if (fan != fans.find(k)) frozen_[start_of(boundary, k)] = 1;
+  }
 }
 
 bool BoundaryGuide::may_turn(VertexIndex a, VertexIndex b) const {

@@ -15,7 +15,8 @@
 
 namespace octafront::improve {
 
-/// The surface that the boundary of a mesh stands for; the boundary is a 2-manifold. Everything must outlive the guide.
+/// The surface that the boundary of a mesh stands for; the boundary is a 2-manifold, but for edges and vertices where
+/// that of a complex touches itself: there it stays. Everything must outlive the guide.
 struct BoundaryInput {
   const SurfaceMesh& surface;  ///< clean
   const TriangleTree& tree;    ///< over its triangles
@@ -71,6 +72,7 @@ class BoundaryGuide {
 
  private:
   void freeze_where_regions_meet(const EditMesh& mesh);
+  void freeze_where_boundary_touches_itself(const EditMesh& mesh);
   std::vector<Kind> kind_;
   std::vector<std::uint8_t> frozen_, pinned_;
   std::vector<std::pair<VertexIndex, Vec3>> fixed_;  ///< vertices that do not slide, and where they were; sorted

@@ -4,6 +4,7 @@
 #include <octafront/validity.h>
 
 #include "core/thread_limit.h"
+#include "geometry/measures.h"
 #include "improve/fewest_poor.h"
 #include "improve/improve.h"
 #include "improve/passes.h"
@@ -91,6 +92,27 @@ TEST(Boundary, SlidesOnTheSidesAndEdgesOfACube) {
   EXPECT_EQ(places(slid, true), places(start, true));
   EXPECT_EQ(places(slid, false).size(), places(start, false).size());
   EXPECT_NE(places(slid, false), places(start, false));
+}
+
+/// Two pairs of tetrahedra, one pair with a common edge, one with a common vertex: walks around these see half.
+TEST(Boundary, StaysWhereItTouchesItself) {
+  TetMesh touching;
+  touching.points = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {1, 1, 0}, {-1, 0, 0}, {-1, -1, 0}, {5, 0, 0},
+                     {6, 0, 0}, {6, 1, 0}, {6, 0, 1}, {4, 0, 0}, {4, -1, 0}, {4, 0, -1}};
+  touching.tets = {{0, 1, 3, 2}, {0, 1, 5, 4}, {6, 7, 8, 9}, {6, 10, 11, 12}};
+  for (Tet& t : touching.tets) {
+    const auto at = [&](int i) { return touching.points[t[i]]; };
+    if (signed_volume(at(0), at(1), at(2), at(3)) < 0) std::swap(t[2], t[3]);
+  }
+  const TetMesh mesh = with_boundary(touching);
+  SurfaceMesh complex = boundary_of(mesh);
+  complex.sides.assign(complex.triangles.size(), {kNone, 0});
+  const Features none;
+  const TriangleTree tree(complex);
+  const EditMesh edit{TetMesh{mesh}};
+  const BoundaryGuide guide(edit, {complex, tree, none, none}, {});
+  for (VertexIndex v = 0; v < mesh.points.size(); ++v)
+    EXPECT_EQ(guide.is_frozen(edit.numbers_here()[v]), v == 0 || v == 1 || v == 6) << v;
 }
 
 TEST(Boundary, StaysWhenTold) {
