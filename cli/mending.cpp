@@ -46,6 +46,13 @@ SurfaceMesh marks_of(const MendReport& report) {
   return marks;
 }
 
+/// Whether duplicates and turned faces were all there was: the mesher's own repair sees to these and says so, with
+/// places.
+bool is_tidied_only(const MendReport& r) {
+  return r.changes.empty() && r.crossing_pairs == 0 && r.joined_vertices == 0 && r.divided_edges == 0 &&
+         r.separated_vertices == 0 && r.largest_move == 0;
+}
+
 /// Keeps what keep[t] says of an array with a value for each triangle, or none.
 template <class T>
 void keep_marked(std::vector<T>& values, const std::vector<char>& keep) {
@@ -81,7 +88,7 @@ void mend(Session& session, const std::filesystem::path& file, SurfaceMesh& surf
   else
     session.found({{"repair", report}});
   if (!a.defects.empty()) write_surface(a.defects, marks_of(mended.report), session.context());
-  if (mended.report.clean) return;
+  if (mended.report.clean || (a.command != "repair" && is_tidied_only(mended.report))) return;
   session.say_notes("repair", mended.report.notes);
   surface = std::move(mended.surface);
 }

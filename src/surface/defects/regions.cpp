@@ -78,7 +78,7 @@ DisjointSets parts_of(const SurfaceMesh& mesh, const EdgeTable& table) {
 /// A part has one space around it, which must be of the region that the part lies in. What a line sees between two
 /// triangles that it crosses one after the other is one space, and lines through all parts tell which spaces are one.
 void find_misplaced(const RepairedSurface& repaired, const EdgeTable& table, const RunContext& context,
-                    SurfaceDefects& found) {
+                    SurfaceDefects& found, std::vector<Vec3>* all) {
   const SurfaceMesh& mesh = repaired.surface;
   DisjointSets parts = parts_of(mesh, table);
   std::vector<std::uint8_t> has_line(mesh.triangles.size(), 0), is_misplaced(mesh.triangles.size(), 0);
@@ -86,7 +86,9 @@ void find_misplaced(const RepairedSurface& repaired, const EdgeTable& table, con
   const auto complain = [&](std::uint32_t t) {
     if (std::exchange(is_misplaced[parts.find(t)], 1) != 0) return;
     const auto& [a, b, c] = mesh.triangles[t];
-    places.add({mesh.source_of(t)}, (mesh.points[a] + mesh.points[b] + mesh.points[c]) / 3);
+    const Vec3 middle = (mesh.points[a] + mesh.points[b] + mesh.points[c]) / 3;
+    places.add({mesh.source_of(t)}, middle);
+    if (all) all->push_back(middle);
   };
   const SightLines lines(mesh.points, mesh.triangles);
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -121,10 +123,10 @@ SurfaceDefects find_complex_defects(const RepairedSurface& repaired, const EdgeT
 }
 
 SurfaceDefects find_region_defects(const RepairedSurface& repaired, const EdgeTable& table, const RunContext& context,
-                                   std::vector<Vec3>* edges) {
+                                   std::vector<Vec3>* places) {
   SurfaceDefects found;
-  find_conflicts(repaired, table, found, edges);
-  if (found.clean()) find_misplaced(repaired, table, context, found);
+  find_conflicts(repaired, table, found, places);
+  if (found.clean()) find_misplaced(repaired, table, context, found, places);
   return found;
 }
 

@@ -30,10 +30,10 @@ SurfaceDefects find_defects(const RepairedSurface& repaired, const EdgeTable& ta
 /// The defects of a complex: faces without area, crossings; where there are none of those, edges around which the
 /// regions do not agree; where there are none of those either, parts that lie in another region than they say.
 SurfaceDefects find_complex_defects(const RepairedSurface& repaired, const EdgeTable& table, const RunContext& context);
-/// What it finds of regions, where nothing crosses.
-/// `edges`: gets the middles of all edges at fault, if it is no null.
+/// What it finds of regions, where nothing crosses. `places`, if it is not null, gets the middles of all edges at fault
+/// and a place on each part.
 SurfaceDefects find_region_defects(const RepairedSurface& repaired, const EdgeTable& table, const RunContext& context,
-                                   std::vector<Vec3>* edges = nullptr);
+                                   std::vector<Vec3>* places = nullptr);
 
 /// Pairs of faces that meet elsewhere than in what they share; counting stops at kMostPairs.
 void find_self_intersections(const RepairedSurface& repaired, const EdgeTable& table, const RunContext& context,
