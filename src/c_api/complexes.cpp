@@ -9,7 +9,6 @@
 #include "c_api/job.h"
 #include "c_api/json_keys.h"
 
-#include <map>
 #include <utility>
 
 namespace octafront::c_api {
@@ -21,15 +20,6 @@ using Json = nlohmann::ordered_json;
 Vec3 point_of(const Json& row) {
   if (row.size() != 3) throw OptionError(fmt::format("a point has three coordinates, not {}", row.dump()));
   return {row.at(0).get<double>(), row.at(1).get<double>(), row.at(2).get<double>()};
-}
-
-template <class T>
-T one_of(const std::map<std::string, T>& choices, const Json& value, const char* key) {
-  const auto found = choices.find(value.get<std::string>());
-  if (found != choices.end()) return found->second;
-  std::string names;
-  for (const auto& [name, choice] : choices) names += (names.empty() ? "" : ", ") + name;
-  throw OptionError(fmt::format("`{}` is one of {}; {} is none of them", key, names, value.dump()));
 }
 
 ComplexOptions complex_options_from(const Json& json) {
@@ -65,11 +55,7 @@ MendOptions mend_options_from(const Json& json) {
   return options;
 }
 
-void give(octafront_job& job, SurfaceMesh surface) {
-  job.surface = std::make_unique<octafront_surface>(octafront_surface{std::move(surface)});
-}
-
-void give(octafront_job& job, Complex complex) {
+void give_complex(octafront_job& job, Complex complex) {
   job.report["regions"] = json_of_regions(complex);
   job.report["notes"] = complex.notes;
   give(job, std::move(complex.surface));
@@ -91,7 +77,7 @@ void divide(octafront_job& job, const SurfaceMesh& walls, const ComplexOptions& 
   require_indices(walls);
   with_leak(job, [&] {
     std::optional<Complex> complex = complex_of_walls(walls, options, job.context());
-    if (complex) return give(job, std::move(*complex));
+    if (complex) return give_complex(job, std::move(*complex));
     job.report = {{"regions", Json::array()}, {"notes", Json::array()}};
     give(job, walls);
   });
@@ -99,7 +85,7 @@ void divide(octafront_job& job, const SurfaceMesh& walls, const ComplexOptions& 
 
 void join(octafront_job& job, const std::vector<Body>& bodies, const ComplexOptions& options) {
   for (const Body& body : bodies) require_indices(body.surface);
-  with_leak(job, [&] { give(job, join_bodies(bodies, options, job.context())); });
+  with_leak(job, [&] { give_complex(job, join_bodies(bodies, options, job.context())); });
 }
 
 void mend(octafront_job& job, const SurfaceMesh& soup, const MendOptions& options) {

@@ -89,10 +89,7 @@ std::uint32_t closing_of(const Json& value) {
 
 ImageRegions::Kind kind_named(const std::string& name) {
   using Kind = ImageRegions::Kind;
-  if (name == "auto") return Kind::kAuto;
-  if (name == "labels") return Kind::kLabels;
-  if (name == "grey") return Kind::kGrey;
-  throw OptionError(fmt::format("`kind` is one of auto, labels, grey; \"{}\" is none of them", name));
+  return one_of<Kind>({{"auto", Kind::kAuto}, {"labels", Kind::kLabels}, {"grey", Kind::kGrey}}, name, "kind");
 }
 
 LabelOptions labels_from(const Json& json, const RunContext& context) {
@@ -169,7 +166,7 @@ void make_surface(octafront_job& job, const Image& image, const Json& json) {
   Json notes = used.notes;
   for (std::string& note : complex.notes) notes.push_back(std::move(note));
   job.report["notes"] = std::move(notes);
-  job.surface = std::make_unique<octafront_surface>(octafront_surface{std::move(complex.surface)});
+  give(job, std::move(complex.surface));
 }
 
 }  // namespace

@@ -81,4 +81,15 @@ namespace octafront::c_api {
 /// A job, or null where there is no memory or thread for one.
 octafront_job* started(const octafront_job::Work& work, int threads = 0);
 
+/// What the job leaves.
+inline void give(octafront_job& job, SurfaceMesh surface) {
+  job.surface = std::make_unique<octafront_surface>(octafront_surface{std::move(surface)});
+}
+inline void give(octafront_job& job, TetMesh mesh) {
+  job.mesh = std::make_unique<octafront_mesh>(octafront_mesh{std::move(mesh)});
+}
+inline void give(octafront_job& job, const SizeField& sizes) {
+  job.sizes = std::make_unique<octafront_sizes>(octafront_sizes{sizes});
+}
+
 }  // namespace octafront::c_api

@@ -5,7 +5,10 @@
 #include <octafront/complex.h>
 #include <octafront/error.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include <fmt/core.h>
 
@@ -21,6 +24,16 @@ void with(const nlohmann::ordered_json& object, const char* key, const Take& tak
   } catch (const nlohmann::ordered_json::exception&) {
     throw OptionError(fmt::format("`{}` is not understood: {}", key, found->dump()));
   }
+}
+
+/// The choice that is named; throws OptionError that lists them if there is none of that name.
+template <class T>
+T one_of(const std::map<std::string, T>& choices, const std::string& name, const char* key) {
+  const auto found = choices.find(name);
+  if (found != choices.end()) return found->second;
+  std::string names;
+  for (const auto& [known, choice] : choices) names += (names.empty() ? "" : ", ") + known;
+  throw OptionError(fmt::format("`{}` is one of {}; \"{}\" is none of them", key, names, name));
 }
 
 /// Names and volumes.

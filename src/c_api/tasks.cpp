@@ -11,6 +11,7 @@
 #include <octafront/validity.h>
 
 #include "c_api/job.h"
+#include "c_api/json_keys.h"
 #include "io/raw_mesh.h"
 
 #include <map>
@@ -25,18 +26,6 @@ namespace {
 using Json = octafront_job::Json;
 
 thread_local std::string last_error, last_text;
-
-void give(octafront_job& job, SurfaceMesh surface) {
-  job.surface = std::make_unique<octafront_surface>(octafront_surface{std::move(surface)});
-}
-
-void give(octafront_job& job, TetMesh mesh) {
-  job.mesh = std::make_unique<octafront_mesh>(octafront_mesh{std::move(mesh)});
-}
-
-void give(octafront_job& job, const SizeField& sizes) {
-  job.sizes = std::make_unique<octafront_sizes>(octafront_sizes{sizes});
-}
 
 Json json_of(const RepairedSurface& r) {
   return {{"merged_vertices", r.merged_vertices},
@@ -78,14 +67,11 @@ void repair(octafront_job& job, const SurfaceMesh& surface) {
 }
 
 Solver solver_named(const std::string& name) {
-  const std::map<std::string, Solver> solvers{{"abaqus", Solver::kAbaqus},
-                                              {"ansys", Solver::kAnsys},
-                                              {"nastran", Solver::kNastran},
-                                              {"calculix", Solver::kCalculix}};
-  const auto found = solvers.find(name);
-  if (found == solvers.end())
-    throw OptionError(fmt::format("`solver` is one of abaqus, ansys, nastran, calculix; \"{}\" is none of them", name));
-  return found->second;
+  return one_of<Solver>({{"abaqus", Solver::kAbaqus},
+                         {"ansys", Solver::kAnsys},
+                         {"nastran", Solver::kNastran},
+                         {"calculix", Solver::kCalculix}},
+                        name, "solver");
 }
 
 void check(octafront_job& job, const TetMesh& mesh, const std::string& solver) {

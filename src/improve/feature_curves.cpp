@@ -1,17 +1,13 @@
 #include "improve/feature_curves.h"
 
 namespace octafront::improve {
-namespace {
 
-/// Segments as flat triangles, for the tree.
 TriangleTree tree_of_segments(const SurfaceMesh& surface, const std::vector<Edge>& edges) {
   std::vector<Triangle> segments;
   segments.reserve(edges.size());
   for (const auto& [a, b] : edges) segments.push_back({a, b, b});
   return TriangleTree(surface.points, segments);
 }
-
-}  // namespace
 
 FeatureCurves::FeatureCurves(const SurfaceMesh& surface, const Features& features)
     : surface_(surface),

@@ -65,17 +65,6 @@ std::vector<std::array<VertexIndex, 2>> ends_of(const Features& features, const 
   return ends;
 }
 
-TriangleTree tree_of_segments(const SurfaceMesh& surface, const std::vector<Edge>& edges) {
-  std::vector<Triangle> flat;
-  for (const auto& [a, b] : edges) flat.push_back({a, b, b});
-  return {surface.points, flat};
-}
-
-Vec3 nearest_on_segment(Vec3 p, Vec3 a, Vec3 b) {
-  const Vec3 ab = b - a;
-  return a + std::clamp(dot(p - a, ab) / squared_length(ab), 0.0, 1.0) * ab;
-}
-
 }  // namespace
 
 InputForce::InputForce(const BoundaryInput& input) : input_(input), is_complex_(is_complex(input.surface)) {
@@ -138,7 +127,7 @@ InputForce::Cause InputForce::between_near_curves(Vec3 center, double h) const {
   std::vector<Near> near;
   segments_->for_each_box_near({center - Vec3{h, h, h}, center + Vec3{h, h, h}},
                                [&](std::uint32_t edge, const TriangleCorners& c) {
-                                 const Vec3 at = nearest_on_segment(center, c[0], c[1]);
+                                 const Vec3 at = closest_point_on_segment(center, c[0], c[1]);
                                  if (squared_length(at - center) < h * h) near.push_back({edge, at});
                                  return true;
                                });
@@ -148,7 +137,7 @@ InputForce::Cause InputForce::between_near_curves(Vec3 center, double h) const {
       const auto &p = segments_->corners(one.edge), &q = segments_->corners(other.edge);
       const Vec3 along = normalized(p[1] - p[0]);
       if (std::abs(dot(along, normalized(q[1] - q[0]))) < std::cos(kNarrow)) continue;
-      const Vec3 across = nearest_on_segment(one.at, q[0], q[1]) - one.at;
+      const Vec3 across = closest_point_on_segment(one.at, q[0], q[1]) - one.at;
       // One that goes on where the other ends is not beside it.
       const double gap = length(across);
       if (gap == 0 || std::abs(dot(across, along)) > std::sin(kNarrow) * gap) continue;
