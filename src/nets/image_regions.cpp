@@ -14,6 +14,10 @@ namespace octafront {
 
 namespace {
 
+// Smoothed surfaces pass up to .87 voxels from the corners of voxels that stick out; with this on top nothing is
+// farther from the voxels than one. In voxels.
+constexpr double kDeviation = 0.16;
+
 using Kind = ImageRegions::Kind;
 
 bool speaks_of_labels(const LabelOptions& labels) {
@@ -133,6 +137,9 @@ double smallest_spacing(const ImageGrid& grid) {
 Options options_for_voxels(Options options, double spacing) {
   options.surface.keep_volumes = true;
   SizeOptions& sizes = options.size;
+  const bool follows = !options.surface.keep && options.method != Method::kRecover && options.method != Method::kOctree;
+  if (follows && !options.surface.max_deviation && !sizes.elements)
+    options.surface.max_deviation = kDeviation * spacing;
   if (!sizes.size && !sizes.elements) return options;
   if (!sizes.gap) sizes.gap = 1;
   if (!sizes.min_size) sizes.min_size = std::min(spacing, sizes.size.value_or(spacing));

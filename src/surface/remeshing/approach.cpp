@@ -2,6 +2,7 @@
 
 #include "geometry/live_triangles.h"
 #include "geometry/measures.h"
+#include "surface/remeshing/seams.h"
 
 #include <algorithm>
 #include <array>
@@ -25,10 +26,32 @@ std::array<double, 3> weights_at(const TriangleCorners& t, Vec3 p) {
   return w;
 }
 
+/// The working mesh as LiveTriangles looks at it: sewn, without backs.
+class SewnMesh {
+ public:
+  explicit SewnMesh(const WorkingMesh& mesh) : mesh_(mesh) {
+    if (mesh.first_back != kNone) sewn_ = sewn_vertices(mesh);
+  }
+
+  std::size_t triangle_count() const { return mesh_.triangle_count(); }
+  bool is_removed(std::size_t t) const { return mesh_.is_removed(t) || mesh_.is_back(t); }
+  Vec3 corner(std::uint32_t t, int i) const { return mesh_.corner(t, i); }
+  Triangle triangle(std::uint32_t t) const {
+    const Triangle own = mesh_.triangle(t);
+    return {vertex(own[0]), vertex(own[1]), vertex(own[2])};
+  }
+  /// Those that came later are not on seams.
+  VertexIndex vertex(VertexIndex v) const { return v < sewn_.size() ? sewn_[v] : v; }
+
+ private:
+  const WorkingMesh& mesh_;
+  std::vector<VertexIndex> sewn_;
+};
+
 class Approacher {
  public:
   Approacher(WorkingMesh& mesh, const InputSurface& input, const std::vector<std::uint8_t>& is_fixed)
-      : mesh_(mesh), input_(input), is_fixed_(is_fixed), live_(mesh) {}
+      : mesh_(mesh), input_(input), is_fixed_(is_fixed), sewn_(mesh), live_(sewn_) {}
 
   std::uint64_t run(std::span<const FarPlace> places) {
     std::vector<std::uint8_t> is_touched(mesh_.triangle_count(), 0);
@@ -61,6 +84,7 @@ class Approacher {
     const std::uint32_t t = place.triangle;
     const Vec3 p = place.on_input.p, normal = input_.normal_at(place.on_input.face, p);
     if (!(dot(mesh_.area_vector(t), normal) > 0)) return false;
+    if (mesh_.first_back != kNone && mesh_.patch[t] != input_.patch[place.on_input.face]) return false;
     const std::array<double, 3> weight = weights_at(live_.corners(t), p);
     std::array<std::uint32_t, 3> order{0, 1, 2};
     std::sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) { return weight[i] < weight[j]; });
@@ -114,7 +138,7 @@ class Approacher {
     mesh_.for_each_outgoing(v, [&](HalfEdge h) {
       const VertexIndex a = mesh_.end(h), b = mesh_.apex(h);
       old_.push_back(h / 3);
-      new_.push_back({{v, a, b}, {p, mesh_.points[a], mesh_.points[b]}});
+      new_.push_back({{sewn_.vertex(v), sewn_.vertex(a), sewn_.vertex(b)}, {p, mesh_.points[a], mesh_.points[b]}});
     });
   }
 
@@ -128,7 +152,7 @@ class Approacher {
       for (HalfEdge h = 3 * t; h < 3 * t + 3; ++h) {
         if (edge != kNone && (h == edge || h == mesh_.twin[edge])) continue;
         const VertexIndex a = mesh_.start[h], b = mesh_.end(h);
-        new_.push_back({{a, b, x}, {mesh_.points[a], mesh_.points[b], p}});
+        new_.push_back({{sewn_.vertex(a), sewn_.vertex(b), x}, {mesh_.points[a], mesh_.points[b], p}});
       }
     }
   }
@@ -141,7 +165,7 @@ class Approacher {
     }
     for (const IdTriangle& made : new_) {
       const auto& [a, b, c] = made.corners;
-      if (LiveTriangles<WorkingMesh>::is_degenerate(made.corners)) return false;
+      if (LiveTriangles<SewnMesh>::is_degenerate(made.corners)) return false;
       if (triangle_radius_ratio(a, b, c) < std::min(kLeastShape, before)) return false;
     }
     const int allowed = live_.crossings_among(old_);
@@ -151,7 +175,8 @@ class Approacher {
   WorkingMesh& mesh_;
   const InputSurface& input_;
   const std::vector<std::uint8_t>& is_fixed_;
-  LiveTriangles<WorkingMesh> live_;
+  const SewnMesh sewn_;
+  LiveTriangles<SewnMesh> live_;
   std::vector<std::uint32_t> old_;
   std::vector<IdTriangle> new_;
 };

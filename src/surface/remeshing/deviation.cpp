@@ -88,22 +88,50 @@ void add_suspects(double limit, double far, const TriangleCorners& corners, std:
   }
 }
 
+/// Of a triangle so much longer than those made there its inside is looked at in any case.
+constexpr double kNoSmaller = 2;
+
+double longest_edge(const TriangleCorners& t) {
+  return std::sqrt(
+      std::max({squared_distance(t[0], t[1]), squared_distance(t[1], t[2]), squared_distance(t[2], t[0])}));
+}
+
+TriangleCorners corners_of(const SurfaceMesh& surface, std::uint32_t t) {
+  const auto& [a, b, c] = surface.triangles[t];
+  return {surface.points[a], surface.points[b], surface.points[c]};
+}
+
 /// Samples of the input that may be far: of triangles whose corners are not all well within the limit.
-std::vector<Sample> suspects(double limit, double far, const SurfaceMesh& input, const TriangleTree& made) {
+std::vector<Sample> suspects(double limit, double far, const SurfaceMesh& input, const TriangleTree& made,
+                             const Scope& scope) {
+  const bool is_coarse = scope.fine == Fine::kParts;
   const std::vector<double> reach = reach_of_vertices(input);
   std::vector<std::uint8_t> is_safe(reach.size());
+  std::vector<double> made_edge(is_coarse ? 0 : reach.size());  // near a vertex that is not safe
   parallel_for(reach.size(), [&](std::size_t v) {
-    is_safe[v] = reach[v] < limit && made.is_within(input.points[v], limit - reach[v]);
+    is_safe[v] = (scope.asked && !scope.asked(input.points[v])) ||
+                 (reach[v] < limit && made.is_within(input.points[v], limit - reach[v]));
+    if (!is_safe[v] && !is_coarse) made_edge[v] = longest_edge(made.corners(made.nearest(input.points[v]).triangle));
   });
+  const auto is_fine = [&](std::uint32_t t) {
+    if (is_coarse) return false;
+    const auto& [a, b, c] = input.triangles[t];
+    return longest_edge(corners_of(input, t)) <= kNoSmaller * std::max({made_edge[a], made_edge[b], made_edge[c]});
+  };
   constexpr std::size_t kRange = 256;
   const auto collect = [&](std::size_t begin, std::size_t end, std::vector<Sample>& found) {
     for (auto t = static_cast<std::uint32_t>(begin); t < end; ++t) {
       const auto& [a, b, c] = input.triangles[t];
-      if (!is_safe[a] || !is_safe[b] || !is_safe[c])
-        add_suspects(limit, far, {input.points[a], input.points[b], input.points[c]}, t, made, found);
+      if ((!is_safe[a] || !is_safe[b] || !is_safe[c]) && !is_fine(t))
+        add_suspects(limit, far, corners_of(input, t), t, made, found);
     }
   };
-  return parallel_collect<Sample>(input.triangles.size(), kRange, collect);
+  std::vector<Sample> found = parallel_collect<Sample>(input.triangles.size(), kRange, collect);
+  if (is_coarse) return found;
+  const std::vector<Sample> corners = vertices_of(input);
+  for (std::size_t v = 0; v < corners.size(); ++v)
+    if (!is_safe[v] && corners[v].triangle != kNone) found.push_back(corners[v]);
+  return found;
 }
 
 std::vector<Sample> samples_of(const SurfaceMesh& made) {
@@ -145,17 +173,34 @@ TriangleTree::Nearest nearest_facing(const TriangleTree& tree, Vec3 p, Vec3 norm
 }  // namespace
 
 std::vector<FarPlace> places_beyond(double limit, double far, const SurfaceMesh& made, const SurfaceMesh& input,
-                                    const TriangleTree& input_tree) {
+                                    const TriangleTree& input_tree, const Scope& scope) {
   std::vector<FarPlace> places;
   double distance = 0;
-  for (const auto& [p, t, within] : beyond(limit, samples_of(made), input_tree)) {
+  std::vector<Sample> samples = samples_of(made);
+  if (scope.asked) std::erase_if(samples, [&](const Sample& s) { return !scope.asked(s.p); });
+  for (const auto& [p, t, within] : beyond(limit, samples, input_tree)) {
     const TriangleTree::Nearest nearest = nearest_facing(input_tree, p, normal_of(made, t), distance);
     places.push_back({p, {nearest.point, nearest.triangle}, distance, t, within});
   }
   const TriangleTree made_tree(made);
-  for (const auto& [p, t, within] : beyond(limit, suspects(limit, far, input, made_tree), made_tree)) {
+  for (const auto& [p, t, within] : beyond(limit, suspects(limit, far, input, made_tree, scope), made_tree)) {
     const std::uint32_t triangle = nearest_facing(made_tree, p, normal_of(input, t), distance).triangle;
     places.push_back({p, {p, t}, distance, triangle, within});
+  }
+  return places;
+}
+
+std::vector<FarPlace> places_under(const std::vector<std::uint32_t>& triangles, const SurfaceMesh& made,
+                                   const TriangleTree& input_tree) {
+  std::vector<FarPlace> places;
+  double distance = 0;
+  for (const std::uint32_t t : triangles) {
+    const auto [a, b, c] = corners_of(made, t);
+    const Vec3 normal = normal_of(made, t);
+    for (const Vec3 p : {centroid(a, b, c), (a + b) * 0.5, (b + c) * 0.5, (c + a) * 0.5}) {
+      const TriangleTree::Nearest nearest = nearest_facing(input_tree, p, normal, distance);
+      places.push_back({p, {nearest.point, nearest.triangle}, distance, t});
+    }
   }
   return places;
 }

@@ -1,5 +1,6 @@
 #include "surface/remeshing/remesh.h"
 
+#include "core/parallel.h"
 #include "core/validate.h"
 #include "mesh/complex.h"
 #include "sizing/make_size_field.h"
@@ -22,8 +23,12 @@
 #include "surface/surface_check.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <numeric>
+#include <set>
+#include <tuple>
 
 #include <fmt/core.h>
 
@@ -55,11 +60,22 @@ constexpr double kComeNear = 0.9;
 /// From this part of it on nobody shall move the triangles later: sliding vertices stray by a fifth more.
 constexpr double kLeftAlone = 0.75;
 constexpr double kFewFar = 0.02;
+/// In a complex sizes are made smaller by how far it strays: to come to this part of the bound, to no less than this
+/// part of themselves at once.
+constexpr double kAim = 0.75, kLeastPart = 0.4;
+/// So often in a round; there are no more than two for this.
+constexpr int kRefinements = 3;
+/// And from there they rise faster than elsewhere, as around corners: it is a matter of single ridges and tips.
+constexpr double kSteep = 0.4;
+/// Within so many sizes of such a place other places may change.
+constexpr double kTouched = 4;
 
 /// Triangles below this 2r/R are mended at the end, by moving the surface no farther than this part of the size.
 constexpr double kBadShape = 0.25, kMovedPart = 0.25;
 /// Mending one crossing may uncover another. Where more triangles than this cross the sizes are too large.
 constexpr int kMendingRounds = 4, kFewCrossing = 300;
+/// In a complex points of the input are put in again where that left no more than this part of what crossed.
+constexpr double kWorthAnother = 0.7;
 
 struct Counts {
   std::uint64_t placed = 0, tried = 0;
@@ -75,6 +91,7 @@ struct Counts {
 struct Nearness {
   std::vector<Vec3> approached;         ///< where points of the input were put in
   std::vector<Vec3> far;                ///< where it strays still
+  std::vector<PointSize> wanted;        ///< sizes by which it would stray less there, in a complex
   std::vector<VertexIndex> near_limit;  ///< corners of triangles that nearly do, in the working mesh
 };
 
@@ -204,6 +221,19 @@ std::vector<Vec3> thinned(const SizeField& sizes, const std::vector<Vec3>& place
   return kept;
 }
 
+/// Of places within their size of an earlier one the earlier one is enough.
+std::vector<PointSize> thinned(std::vector<PointSize> places) {
+  if (places.empty()) return places;
+  PointGrid grid(places.front().p);
+  std::erase_if(places, [&](const PointSize& s) {
+    bool is_new = true;
+    grid.for_each_near(s.p, s.size, 1, [&](std::uint32_t, Vec3) { is_new = false; });
+    if (is_new) grid.add(s.p, s.size);
+    return !is_new;
+  });
+  return places;
+}
+
 /// Sizes made smaller around places.
 struct Caps {
   std::vector<Vec3> places;
@@ -270,7 +300,7 @@ class Remesher {
     set_features(input_, {});  // no walk crosses seams
     set_features(input_, features_at_scale(input_, features(), sizes_));
     std::vector<std::uint8_t> is_fixed = mark_restored(input_, known_.tree(), restored_);
-    const SizeField sizes = fitted_sizes(is_fixed);
+    SizeField sizes = fitted_sizes(is_fixed);
     const std::vector<Curve> curves = curves_of(sizes, is_fixed);
     progress(0.05);
     const FrontPoints front = place_points(input_, curves, sizes, context);
@@ -289,10 +319,9 @@ class Remesher {
     Nearness nearness;
     if (effort == Effort::kFull && seamed_) {
       change_between_seams(mesh, curves, sizes);
-      clear = std::ranges::count(crossing_triangles(mesh), 1) == 0;
-      const std::vector<FarPlace> places = far_places(mesh);
-      nearness.far = positions_beyond(tolerance_, places);
-      nearness.near_limit = corners_at(mesh, places);
+      refine_far(mesh, curves, sizes, nearness);
+      clear = mend_crossings(mesh, is_fixed);
+      approach_far(mesh, sizes, is_fixed, nearness);
     } else if (effort == Effort::kFull) {
       remove_input_vertices(mesh, sizes, context, counts_.coarsen);
       progress(0.6);
@@ -350,6 +379,83 @@ class Remesher {
     counts_.divided_edges += divide_repeated_triangles(mesh, known_, sizes);
   }
 
+  /// Of a complex, smaller sizes and more triangles where it strays, while that helps.
+  void refine_far(WorkingMesh& mesh, const std::vector<Curve>& curves, SizeField& sizes, Nearness& n) {
+    std::vector<FarPlace> places = far_places(mesh, 1);
+    for (int k = 0; k < kRefinements && !places.empty(); ++k) {
+      const std::vector<PointSize> wanted = sizes_against(places, sizes);
+      n.wanted.insert(n.wanted.end(), wanted.begin(), wanted.end());
+      sizes = capped_steeply(sizes, wanted, kSteep, stage_.context());
+      refine(mesh, curves, sizes);
+      places = far_places(mesh, 1, near_to(places, sizes));
+    }
+  }
+
+  /// Points of the complex where the mesh strays still. What is left then lies beside seams: another round has to
+  /// divide these.
+  void approach_far(WorkingMesh& mesh, const SizeField& sizes, const std::vector<std::uint8_t>& is_fixed, Nearness& n) {
+    std::vector<FarPlace> places = far_places(mesh);
+    n.near_limit = corners_at(mesh, places);
+    for (int k = 0; k < kApproaches; ++k) {
+      std::erase_if(places, [&](const FarPlace& p) { return p.distance < kComeNear * tolerance_; });
+      const std::uint64_t put_in = places.empty() ? 0 : approach(mesh, input_, is_fixed, places);
+      if (put_in == 0) break;
+      counts_.approached += put_in;
+      places = far_places(mesh, kLeftAlone, near_to(places, sizes));
+      const std::vector<VertexIndex> near = corners_at(mesh, places);
+      n.near_limit.insert(n.near_limit.end(), near.begin(), near.end());
+    }
+    n.far = positions_beyond(tolerance_, places);
+    const std::vector<PointSize> wanted = sizes_against(places, sizes);
+    n.wanted.insert(n.wanted.end(), wanted.begin(), wanted.end());
+  }
+
+  /// Points within some sizes of places: where what is done about these may show.
+  static std::function<bool(Vec3)> near_to(const std::vector<FarPlace>& places, const SizeField& sizes) {
+    double largest = 0;
+    for (const FarPlace& place : places) largest = std::max(largest, sizes.at(place.at));
+    const auto cell_of = [side = kTouched * largest](Vec3 p) {
+      return std::array{std::llround(p.x / side), std::llround(p.y / side), std::llround(p.z / side)};
+    };
+    std::set<std::array<long long, 3>> cells, middles;
+    for (const FarPlace& place : places) middles.insert(cell_of(place.at));
+    for (const auto& [i, j, k] : middles)
+      for (int n = 0; n < 27; ++n) cells.insert({i + n % 3 - 1, j + n / 3 % 3 - 1, k + n / 9 - 1});
+    return [cells = std::move(cells), cell_of](Vec3 p) { return cells.contains(cell_of(p)); };
+  }
+
+  /// Puts points of the complex into triangles that cross others: chords between near sheets. True if nothing crosses
+  /// then.
+  bool mend_crossings(WorkingMesh& mesh, const std::vector<std::uint8_t>& is_fixed) {
+    for (double before = HUGE_VAL;;) {
+      const std::vector<std::uint32_t> number = front_triangles(mesh);
+      const SurfaceMesh alive = triangles_of(mesh, number);
+      std::vector<std::uint32_t> crossing;
+      for (const auto& pair : find_crossings(alive)) crossing.insert(crossing.end(), pair.begin(), pair.end());
+      std::sort(crossing.begin(), crossing.end());
+      crossing.erase(std::unique(crossing.begin(), crossing.end()), crossing.end());
+          if (crossing.empty()) return true;
+      const auto now = static_cast<double>(crossing.size());
+      if (now > kFewFar * static_cast<double>(number.size()) || now > kWorthAnother * before) return false;
+      before = now;
+      std::vector<FarPlace> places = places_under(crossing, alive, known_.tree());
+      for (FarPlace& place : places) place.triangle = number[place.triangle];
+      const std::uint64_t put_in = approach(mesh, input_, is_fixed, places);
+      counts_.approached += put_in;
+      if (put_in == 0) return false;
+    }
+  }
+
+  /// Divides what is longer than the sizes ask for, and makes good triangles of it.
+  void refine(WorkingMesh& mesh, const std::vector<Curve>& curves, const SizeField& sizes) {
+    parallel_for(mesh.points.size(), [&](std::size_t v) {
+      if (mesh.outgoing[v] != kNone) mesh.size[v] = sizes.at(mesh.points[v]);
+    });
+    improve_surface(mesh, input_, curves, sizes, stage_.context(), counts_.improve);
+    counts_.divided_edges += divide_repeated_edges(mesh, known_, sizes);
+    counts_.divided_edges += divide_repeated_triangles(mesh, known_, sizes);
+  }
+
   /// Puts in points of the input where the mesh strays at few places and nothing crosses. `clear`: whether that is
   /// known, before and after.
   Nearness come_near(WorkingMesh& mesh, const std::vector<std::uint8_t>& is_fixed, bool& clear) {
@@ -371,8 +477,28 @@ class Remesher {
     }
   }
 
+  /// Sizes by which the mesh would stray no more: what chords cut off grows with the square of their length. Of places
+  /// near to each other that of the smallest size.
+  std::vector<PointSize> sizes_against(const std::vector<FarPlace>& places, const SizeField& sizes) const {
+    std::vector<PointSize> wanted;
+    for (const FarPlace& place : places) {
+      if (place.distance < tolerance_) continue;
+      const double part = std::sqrt(kAim * tolerance_ / place.distance);
+      wanted.push_back({place.at, sizes.at(place.at) * std::max(part, kLeastPart)});
+    }
+    std::sort(wanted.begin(), wanted.end(), [](const PointSize& a, const PointSize& b) {
+      return std::tie(a.size, a.p.x, a.p.y, a.p.z) < std::tie(b.size, b.p.x, b.p.y, b.p.z);
+    });
+    return thinned(std::move(wanted));
+  }
+
   /// Smaller sizes where the surface strayed.
   void cap_far(const Compacted& c) {
+    if (seamed_ && !c.nearness.wanted.empty()) {
+      wanted_.push_back(c.nearness.wanted);
+      sizes_ = capped_steeply(sizes_, wanted_.back(), kSteep, stage_.context());
+    }
+    if (seamed_) return;
     std::vector<Vec3> places = c.nearness.far;
     places.insert(places.end(), c.nearness.approached.begin(), c.nearness.approached.end());
     if (!places.empty()) cap(places, kDeviationCap);
@@ -392,12 +518,14 @@ class Remesher {
     return corners;
   }
 
-  /// Where the mesh is too far from the input, or nearly so, by the numbers of its triangles.
-  std::vector<FarPlace> far_places(const WorkingMesh& mesh) const {
+  /// Where the mesh is farther from the input than this part of what is allowed, by the numbers of its triangles.
+  std::vector<FarPlace> far_places(const WorkingMesh& mesh, double part = kLeftAlone,
+                                   std::function<bool(Vec3)> asked = {}) const {
     if (!limits_deviation()) return {};
+    const Scope scope{seamed_ ? Fine::kCorners : Fine::kParts, std::move(asked)};
     const std::vector<std::uint32_t> number = front_triangles(mesh);
-    std::vector<FarPlace> places = places_beyond(kLeftAlone * *options_.max_deviation, *options_.max_deviation,
-                                                 triangles_of(mesh, number), surface_, known_.tree());
+    std::vector<FarPlace> places = places_beyond(part * *options_.max_deviation, *options_.max_deviation,
+                                                 triangles_of(mesh, number), surface_, known_.tree(), scope);
     for (FarPlace& place : places) place.triangle = number[place.triangle];
     return places;
   }
@@ -444,7 +572,7 @@ class Remesher {
       defect = first_complex_defect_but_crossings(c.result.surface, &places);
     else if (crossings.empty())
       defect = kind_->first_defect_but_crossings(c.result.surface);
-    if (!defect && crossings.empty()) return true;
+        if (!defect && crossings.empty()) return true;
     if (!places.empty()) {
       cap_or_restore(places);
     } else {
@@ -498,6 +626,8 @@ class Remesher {
   /// The sizes again without what was asked of them where the input's triangles have returned.
   void forget_caps() {
     sizes_ = first_;
+    for (const std::vector<PointSize>& wanted : wanted_)
+      sizes_ = capped_steeply(sizes_, wanted, kSteep, stage_.context());
     for (Caps& caps : caps_) {
       std::erase_if(caps.places, [&](Vec3 p) {
         return std::any_of(restored_.begin(), restored_.end(),
@@ -510,7 +640,8 @@ class Remesher {
   /// Whether the surface is as near to the input as was asked, or could be made so in the rounds allowed; otherwise the
   /// sizes are made smaller. Leaves the sources.
   bool is_true(Compacted& c) {
-    const bool is_last = counts_.rounds == kMostRounds || counts_.deviation_rounds == kMostDeviationRounds;
+    const bool is_last = counts_.rounds == kMostRounds ||
+                         (seamed_ ? counts_.rounds > 1 : counts_.deviation_rounds == kMostDeviationRounds);
     c.result.source = sources_of(c);
     std::vector<PointSize> turned;
     if (options_.normal_deviation) {
@@ -564,7 +695,8 @@ class Remesher {
   const SizeField first_;       ///< the sizes as they were asked
   SizeField sizes_;             ///< and as they are now
   std::vector<Caps> caps_;
-  std::vector<Ball> restored_;  ///< where the input's own triangles stay
+  std::vector<std::vector<PointSize>> wanted_;  ///< against deviation, in a complex
+  std::vector<Ball> restored_;                  ///< where the input's own triangles stay
   const SurfaceOptions& options_;
   double tolerance_;  ///< for details of the input: none moves farther
   const Stage& stage_;
