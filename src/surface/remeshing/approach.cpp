@@ -2,7 +2,7 @@
 
 #include "geometry/live_triangles.h"
 #include "geometry/measures.h"
-#include "surface/remeshing/seams.h"
+#include "surface/remeshing/sewn_mesh.h"
 
 #include <algorithm>
 #include <array>
@@ -25,28 +25,6 @@ std::array<double, 3> weights_at(const TriangleCorners& t, Vec3 p) {
   for (int i = 0; i < 3; ++i) w[i] = dot(double_area_normal(p, t[(i + 1) % 3], t[(i + 2) % 3]), n) / squared_length(n);
   return w;
 }
-
-/// The working mesh as LiveTriangles looks at it: sewn, without backs.
-class SewnMesh {
- public:
-  explicit SewnMesh(const WorkingMesh& mesh) : mesh_(mesh) {
-    if (mesh.first_back != kNone) sewn_ = sewn_vertices(mesh);
-  }
-
-  std::size_t triangle_count() const { return mesh_.triangle_count(); }
-  bool is_removed(std::size_t t) const { return mesh_.is_removed(t) || mesh_.is_back(t); }
-  Vec3 corner(std::uint32_t t, int i) const { return mesh_.corner(t, i); }
-  Triangle triangle(std::uint32_t t) const {
-    const Triangle own = mesh_.triangle(t);
-    return {vertex(own[0]), vertex(own[1]), vertex(own[2])};
-  }
-  /// Those that came later are not on seams.
-  VertexIndex vertex(VertexIndex v) const { return v < sewn_.size() ? sewn_[v] : v; }
-
- private:
-  const WorkingMesh& mesh_;
-  std::vector<VertexIndex> sewn_;
-};
 
 class Approacher {
  public:

@@ -72,10 +72,14 @@ constexpr double kTouched = 4;
 
 /// Triangles below this 2r/R are mended at the end, by moving the surface no farther than this part of the size.
 constexpr double kBadShape = 0.25, kMovedPart = 0.25;
+/// In a complex once more at the very end, within this part of the bound on deviation.
+constexpr double kLittle = 0.3;
 /// Mending one crossing may uncover another. Where more triangles than this cross the sizes are too large.
 constexpr int kMendingRounds = 4, kFewCrossing = 300;
 /// In a complex points of the input are put in again where that left no more than this part of what crossed.
 constexpr double kWorthAnother = 0.7;
+/// Not nearer to their triangles than this part of their size.
+constexpr double kInPlane = 0.02;
 
 struct Counts {
   std::uint64_t placed = 0, tried = 0;
@@ -158,7 +162,8 @@ Compacted compacted(const WorkingMesh& mesh, const SurfaceMesh& input, const Siz
   std::vector<Edge>& edges = c.result.features.edges;
   std::sort(edges.begin(), edges.end());
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());  // a seam has one in each of its parts
-  for (const VertexIndex v : c.nearness.near_limit) c.result.near_limit.push_back(old_to_new[sewn[v]]);
+  for (const VertexIndex v : c.nearness.near_limit)
+    if (mesh.outgoing[v] != kNone) c.result.near_limit.push_back(old_to_new[sewn[v]]);
   return c;
 }
 
@@ -320,15 +325,17 @@ class Remesher {
     if (effort == Effort::kFull && seamed_) {
       change_between_seams(mesh, curves, sizes);
       refine_far(mesh, curves, sizes, nearness);
-      clear = mend_crossings(mesh, is_fixed);
+      mend_crossings(mesh, is_fixed);
+      mend_places(mesh, lines_fixed(mesh), tolerance_);
       approach_far(mesh, sizes, is_fixed, nearness);
+      clear = mend_places(mesh, lines_fixed(mesh), kLittle * tolerance_);
     } else if (effort == Effort::kFull) {
       remove_input_vertices(mesh, sizes, context, counts_.coarsen);
       progress(0.6);
       counts_.merged_lines = merge_lines(mesh, is_fixed, tolerance_);
       improve_surface(mesh, input_, curves, sizes, context, counts_.improve);
       counts_.merged_lines += merge_lines(mesh, is_fixed, tolerance_);
-      clear = mend_places(mesh, is_fixed);
+      clear = mend_places(mesh, is_fixed, tolerance_);
       nearness = come_near(mesh, is_fixed, clear);
     } else {
       counts_.coarsen.input_vertices_left = surface_.points.size();
@@ -394,16 +401,12 @@ class Remesher {
   /// Points of the complex where the mesh strays still. What is left then lies beside seams: another round has to
   /// divide these.
   void approach_far(WorkingMesh& mesh, const SizeField& sizes, const std::vector<std::uint8_t>& is_fixed, Nearness& n) {
-    std::vector<FarPlace> places = far_places(mesh);
-    n.near_limit = corners_at(mesh, places);
+    std::vector<FarPlace> places = far_places(mesh, kComeNear);
     for (int k = 0; k < kApproaches; ++k) {
-      std::erase_if(places, [&](const FarPlace& p) { return p.distance < kComeNear * tolerance_; });
       const std::uint64_t put_in = places.empty() ? 0 : approach(mesh, input_, is_fixed, places);
       if (put_in == 0) break;
       counts_.approached += put_in;
-      places = far_places(mesh, kLeftAlone, near_to(places, sizes));
-      const std::vector<VertexIndex> near = corners_at(mesh, places);
-      n.near_limit.insert(n.near_limit.end(), near.begin(), near.end());
+      places = far_places(mesh, kComeNear, near_to(places, sizes));
     }
     n.far = positions_beyond(tolerance_, places);
     const std::vector<PointSize> wanted = sizes_against(places, sizes);
@@ -424,9 +427,8 @@ class Remesher {
     return [cells = std::move(cells), cell_of](Vec3 p) { return cells.contains(cell_of(p)); };
   }
 
-  /// Puts points of the complex into triangles that cross others: chords between near sheets. True if nothing crosses
-  /// then.
-  bool mend_crossings(WorkingMesh& mesh, const std::vector<std::uint8_t>& is_fixed) {
+  /// Puts points of the complex into triangles that cross others: chords between near sheets.
+  void mend_crossings(WorkingMesh& mesh, const std::vector<std::uint8_t>& is_fixed) {
     for (double before = HUGE_VAL;;) {
       const std::vector<std::uint32_t> number = front_triangles(mesh);
       const SurfaceMesh alive = triangles_of(mesh, number);
@@ -434,16 +436,27 @@ class Remesher {
       for (const auto& pair : find_crossings(alive)) crossing.insert(crossing.end(), pair.begin(), pair.end());
       std::sort(crossing.begin(), crossing.end());
       crossing.erase(std::unique(crossing.begin(), crossing.end()), crossing.end());
-          if (crossing.empty()) return true;
+      if (crossing.empty()) return;
       const auto now = static_cast<double>(crossing.size());
-      if (now > kFewFar * static_cast<double>(number.size()) || now > kWorthAnother * before) return false;
+      if (now > kFewFar * static_cast<double>(number.size()) || now > kWorthAnother * before) return;
       before = now;
       std::vector<FarPlace> places = places_under(crossing, alive, known_.tree());
       for (FarPlace& place : places) place.triangle = number[place.triangle];
+      // A point in the plane of its triangle changes nothing, and leaves a flat element.
+      std::erase_if(places, [&](const FarPlace& p) {
+        return p.distance < kInPlane * std::sqrt(length(mesh.area_vector(p.triangle)));
+      });
       const std::uint64_t put_in = approach(mesh, input_, is_fixed, places);
       counts_.approached += put_in;
-      if (put_in == 0) return false;
+      if (put_in == 0) return;
     }
+  }
+
+  /// Of a complex, per vertex whether it is on a seam or another line.
+  static std::vector<std::uint8_t> lines_fixed(const WorkingMesh& mesh) {
+    std::vector<std::uint8_t> is_fixed(mesh.points.size());
+    for (VertexIndex v = 0; v < is_fixed.size(); ++v) is_fixed[v] = mesh.on_curve(v);
+    return is_fixed;
   }
 
   /// Divides what is longer than the sizes ask for, and makes good triangles of it.
@@ -473,7 +486,7 @@ class Remesher {
       counts_.approached += put_in;
       const std::vector<Vec3> all = positions_beyond(0, places);
       n.approached.insert(n.approached.end(), all.begin(), all.end());
-      clear = mend_places(mesh, is_fixed);
+      clear = mend_places(mesh, is_fixed, tolerance_);
     }
   }
 
@@ -532,13 +545,14 @@ class Remesher {
 
   /// What is left of bad triangles, of edges too sharp for any element, and of crossings where these are few. True if
   /// it is known that nothing crosses then.
-  bool mend_places(WorkingMesh& mesh, const std::vector<std::uint8_t>& is_fixed) {
-    FoldLimits limits{.tolerance = tolerance_,
+  bool mend_places(WorkingMesh& mesh, const std::vector<std::uint8_t>& is_fixed, double tolerance) {
+    FoldLimits limits{.tolerance = tolerance,
                       .size_part = kMovedPart,
                       .least_shape = kBadShape,
                       .keep_lines = true,
                       .onto = &known_.tree(),
-                      .is_fixed = is_fixed};
+                      .is_fixed = is_fixed,
+                      .patch_of = seamed_ ? &input_.patch : nullptr};
     for (int round = 0; round < kMendingRounds; ++round) {
       const std::vector<std::uint8_t> crossing = crossing_triangles(mesh);
       const auto count = std::count(crossing.begin(), crossing.end(), 1);
