@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace octafront::remeshing {
 
@@ -65,19 +66,51 @@ std::vector<double> reach_of_vertices(const SurfaceMesh& surface) {
 /// beside no farther than the one, over which the distance changes evenly, and no less far than the other.
 constexpr double kWidest = 0.3, kFinest = 0.1;
 
+/// Looks at parts of the input for what may be farther than the limit from a surface that was made. A triangle is
+/// convex: what has its corners within the limit of one lies within the limit of it.
+class PartsOfInput {
+ public:
+  PartsOfInput(double limit, double far, const TriangleTree& made) : limit_(limit), far_(far), made_(made) {}
+
+  Part operator()(const TriangleCorners& part, Vec3 middle, double reach) const {
+    nearest_ = made_.nearest(middle, bound(middle)).triangle;
+    const TriangleCorners& t = made_.corners(nearest_);
+    const double d = distance_to(t, middle);
+    if (d + reach < limit_) return Part::kWithin;
+    if (d < limit_ && std::ranges::all_of(part, [&](Vec3 p) { return distance_to(t, p) < limit_; }))
+      return Part::kWithin;
+    return reach <= finest(t) || !(d < far_) ? Part::kVisit : Part::kDivide;
+  }
+
+ private:
+  static double distance_to(const TriangleCorners& t, Vec3 p) {
+    return distance(p, closest_point_on_triangle(p, t[0], t[1], t[2]));
+  }
+
+  /// The nearest triangle to p is no farther than that of the last part, and a little more.
+  double bound(Vec3 p) const {
+    if (nearest_ == kNone) return TriangleTree::kFar;
+    const double last = distance_to(made_.corners(nearest_), p);
+    return 1.001 * last * last + std::numeric_limits<double>::min();
+  }
+
+  double finest(const TriangleCorners& t) const {
+    const double squared_edge =
+        std::max({squared_distance(t[0], t[1]), squared_distance(t[1], t[2]), squared_distance(t[2], t[0])});
+    const double edge = std::sqrt(squared_edge);
+    return std::clamp(limit_, kFinest * edge, kWidest * edge);
+  }
+
+  double limit_, far_;
+  const TriangleTree& made_;
+  mutable std::uint32_t nearest_ = kNone;  ///< to the last part
+};
+
 /// Samples of a triangle of the input that may be far.
-void add_suspects(double limit, double far, const TriangleCorners& corners, std::uint32_t t, const TriangleTree& made,
+void add_suspects(const TriangleCorners& corners, std::uint32_t t, const PartsOfInput& look,
                   std::vector<Sample>& found) {
   const std::size_t before = found.size();
-  const auto is_within = [&](Vec3 p, double distance) { return made.is_within(p, distance); };
-  const auto finest = [&](Vec3 p) {
-    const TriangleCorners b = made.corners(made.nearest(p).triangle);
-    const double squared_edge =
-        std::max({squared_distance(b[0], b[1]), squared_distance(b[1], b[2]), squared_distance(b[2], b[0])});
-    const double edge = std::sqrt(squared_edge);
-    return std::clamp(limit, kFinest * edge, kWidest * edge);
-  };
-  for_each_doubtful_part(corners, limit, far, is_within, finest, [&](Vec3 p) {
+  for_each_doubtful_part(corners, look, [&](Vec3 p) {
     found.push_back({p, t, true});
     return true;
   });
@@ -97,10 +130,11 @@ std::vector<Sample> suspects(double limit, double far, const SurfaceMesh& input,
   });
   constexpr std::size_t kRange = 256;
   const auto collect = [&](std::size_t begin, std::size_t end, std::vector<Sample>& found) {
+    const PartsOfInput look(limit, far, made);
     for (auto t = static_cast<std::uint32_t>(begin); t < end; ++t) {
       const auto& [a, b, c] = input.triangles[t];
       if (!is_safe[a] || !is_safe[b] || !is_safe[c])
-        add_suspects(limit, far, {input.points[a], input.points[b], input.points[c]}, t, made, found);
+        add_suspects({input.points[a], input.points[b], input.points[c]}, t, look, found);
     }
   };
   return parallel_collect<Sample>(input.triangles.size(), kRange, collect);
