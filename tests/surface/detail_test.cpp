@@ -13,6 +13,8 @@
 
 #include <algorithm>
 #include <numbers>
+#include <numeric>
+#include <set>
 
 #include <gtest/gtest.h>
 
