@@ -111,6 +111,7 @@ auto run_on_input(Session& session, const Generator& generator) {
   Options options = checked_options(session);
   const SurfaceFile file = read_domain(session);
   if (session.voxel_spacing() > 0) options = options_for_voxels(std::move(options), session.voxel_spacing());
+  if (session.mending_tolerance() > 0) options = options_for_mended(std::move(options), session.mending_tolerance());
   try {
     if (!a.page.empty()) find_repairs(session, file.surface);
     return generator(file.surface, options, session.context());

@@ -88,6 +88,7 @@ void mend(Session& session, const std::filesystem::path& file, SurfaceMesh& surf
   else
     session.found({{"repair", report}});
   if (!a.defects.empty()) write_surface(a.defects, marks_of(mended.report), session.context());
+  if (!mended.report.clean) session.mended_within(mended.report.tolerance);
   if (mended.report.clean || (a.command != "repair" && is_tidied_only(mended.report))) return;
   session.say_notes("repair", mended.report.notes);
   surface = std::move(mended.surface);

@@ -45,4 +45,9 @@ SizeResult generate_sizes(const SurfaceMesh& surface, const Options& options = {
 /// Throws OptionError with a sentence if the options contradict each other or lie outside their ranges.
 void check_options(const Options& options);
 
+/// For a surface that was mended within `tolerance` (MendReport, input units): a mesh of automatic sizes stays as near
+/// to it, unless `options` already bounds the deviation, keeps the surface's triangles, or has a method that follows
+/// none.
+Options options_for_mended(Options options, double tolerance);
+
 }  // namespace octafront

@@ -331,13 +331,12 @@ class BoundaryEditor {
   double worst_distance(const std::vector<TriangleCorners>& triangles, const Finest& finest) const {
     const double limit = guide_.tolerance();
     double worst = limit;
+    const auto is_near_input = [&](Vec3 p, double d) { return guide_.tree().is_within(p, d); };
     for (const TriangleCorners& t : triangles)
-      for_each_doubtful_part(
-          t, limit, HUGE_VAL, [&](Vec3 p, double d) { return guide_.tree().is_within(p, d); }, finest,
-          [&](Vec3 p) {
-            worst = std::max(worst, std::sqrt(guide_.tree().nearest(p).squared_distance));
-            return true;
-          });
+      for_each_doubtful_part(t, farther_than(limit, HUGE_VAL, is_near_input, finest), [&](Vec3 p) {
+        worst = std::max(worst, std::sqrt(guide_.tree().nearest(p).squared_distance));
+        return true;
+      });
     return worst;
   }
 
@@ -358,10 +357,10 @@ class BoundaryEditor {
     for (const TriangleCorners& t : old_)
       for (const Vec3 p : t) box.add(p);
     const Vec3 around{limit, limit, limit};
-    if (!guide_.tree().for_each_box_near({box.lo - around, box.hi + around},
-                                         [&](std::uint32_t, const TriangleCorners& t) {
-                                           return for_each_doubtful_part(t, limit, limit, near_new, finest, is_kept);
-                                         }))
+    if (!guide_.tree().for_each_box_near(
+            {box.lo - around, box.hi + around}, [&](std::uint32_t, const TriangleCorners& t) {
+              return for_each_doubtful_part(t, farther_than(limit, limit, near_new, finest), is_kept);
+            }))
       return false;
     std::vector<TriangleCorners> made;
     for (const IdTriangle& t : new_) made.push_back(t.corners);

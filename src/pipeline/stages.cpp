@@ -1,6 +1,7 @@
 #include "pipeline/stages.h"
 
 #include <octafront/error.h>
+#include <octafront/generate.h>
 #include <octafront/validity.h>
 
 #include "core/parallel.h"
@@ -76,11 +77,14 @@ void face_outward(Examined& found) {
 // With sizes of our own choosing the surface stays true by default; sizes that the user gave are left as they are.
 constexpr double kAutomaticDeviation = 0.004;  // of the diagonal; sampled, so that 0.005 is kept in all
 
+bool has_automatic_sizes(const Options& options) {
+  const SizeOptions& size = options.size;
+  return !size.size && !size.elements && !size.callback && !size.field && size.point_sizes.empty();
+}
+
 SurfaceOptions true_to_input(const Prepared& p, const Options& options) {
   SurfaceOptions surface = options.surface;
-  const SizeOptions& size = options.size;
-  if (!surface.max_deviation && !size.size && !size.elements && !size.callback && !size.field &&
-      size.point_sizes.empty())
+  if (!surface.max_deviation && has_automatic_sizes(options))
     surface.max_deviation = kAutomaticDeviation * bounding_box(p.surface.mesh().points).diagonal();
   return surface;
 }
@@ -88,11 +92,14 @@ SurfaceOptions true_to_input(const Prepared& p, const Options& options) {
 // Where sizes are given, detail is what is smaller than this part of them.
 constexpr double kDetail = 0.1;
 
-/// Up to here detail of the input may be smoothed over; 0: it is all kept.
-double detail_tolerance(const SurfaceMesh& surface, const Options& options) {
+// Of a deviation that the user bounds, what unfolding may use up: the new surface keeps the rest, and improvement too.
+constexpr double kUnfolded = 0.25;
+
+/// Up to here detail of the input may be smoothed over; 0: it is all kept. Of a deviation that the user bounds, `part`.
+double detail_tolerance(const SurfaceMesh& surface, const Options& options, double part) {
   if (keeps_surface(options) || traits_of(options.method).makes_own_boundary() || !surface.sides.empty()) return 0;
   const double automatic = kAutomaticDeviation * bounding_box(surface.points).diagonal();
-  if (options.surface.max_deviation) return std::min(automatic, *options.surface.max_deviation);
+  if (options.surface.max_deviation) return std::min(automatic, part * *options.surface.max_deviation);
   return options.size.size ? std::min(automatic, kDetail * *options.size.size) : automatic;
 }
 
@@ -149,25 +156,34 @@ bool may_slide(const ImproveOptions& options) {
          options.level != ImproveOptions::Level::kPaper;
 }
 
-// Folds, flaps and blades below the tolerance are taken away: no element could fill them.
-void smooth_detail(Examined& found, Run& run) {
+// Folds, flaps and blades below the tolerance are taken away: no element could fill them. Returns how far that moved
+// each triangle.
+std::vector<double> smooth_detail(Examined& found, Run& run) {
   SurfaceMesh& surface = found.repaired.surface;
-  const double tolerance = detail_tolerance(surface, run.options);
-  if (tolerance == 0) return;
-  run.stage("detail", [&](const Stage& stage) {
+  const double tolerance = detail_tolerance(surface, run.options, kUnfolded);
+  if (tolerance == 0) return {};
+  return run.stage("detail", [&](const Stage& stage) {
     auto unfolded = remeshing::unfold(surface, found.edges, tolerance, stage.context());
     stage.count("folds mended", unfolded ? static_cast<double>(unfolded->mended.operations) : 0);
-    if (!unfolded) return;
+    if (!unfolded) return std::vector<double>{};
     stage.count("folds left", static_cast<double>(unfolded->mended.folds_left));
     stage.count("largest move", unfolded->mended.largest_move);
-    stage.note(fmt::format("the surface was unfolded in {} steps of {:.3g} at most: `max_deviation` 0 keeps all folds",
+    stage.note(fmt::format("the surface was unfolded in {} steps, by {:.3g} at most: `max_deviation` 0 keeps all folds",
                            unfolded->mended.operations, unfolded->mended.largest_move));
     surface = std::move(unfolded->surface);
     found.edges = make_edge_table(surface.points.size(), surface.triangles);
+    return std::move(unfolded->mended.moved);
   });
 }
 
 }  // namespace
+
+Options options_for_mended(Options options, double tolerance) {
+  if (keeps_surface(options) || traits_of(options.method).makes_own_boundary() || !has_automatic_sizes(options))
+    return options;
+  if (!options.surface.max_deviation) options.surface.max_deviation = tolerance;
+  return options;
+}
 
 Prepared prepare(const SurfaceMesh& soup, Run& run) {
   SurfaceDomain::Defects defects{};
@@ -187,7 +203,8 @@ Prepared prepare(const SurfaceMesh& soup, Run& run) {
   });
   run.report.input_volume = enclosed_volume(found.repaired.surface);
   const bool is_plain = found.repaired.surface.sides.empty();
-  if (defects == SurfaceDomain::Defects::kClean && is_plain) smooth_detail(found, run);
+  std::vector<double> moved;
+  if (defects == SurfaceDomain::Defects::kClean && is_plain) moved = smooth_detail(found, run);
   SurfaceMesh& surface = found.repaired.surface;
   Features features = run.stage("features", [&](const Stage& stage) {
     Features of_surface = detect_features(surface, found.edges, run.options.surface.feature_angle);
@@ -198,7 +215,7 @@ Prepared prepare(const SurfaceMesh& soup, Run& run) {
     return of_surface;
   });
   run.report.bodies = found.repaired.bodies;
-  return {KnownSurface(std::move(surface), std::move(found.edges), std::move(features)), defects};
+  return {KnownSurface(std::move(surface), std::move(found.edges), std::move(features)), defects, std::move(moved)};
 }
 
 SizeField choose_sizes(const Prepared& input, Run& run) {
@@ -220,7 +237,9 @@ SizeField choose_sizes(const Prepared& input, Run& run) {
 Remeshed triangulate(const Prepared& input, const SizeField& sizes, Run& run) {
   if (keeps_surface(run.options)) return input_as_it_is(input.surface, sizes);
   return run.stage("surface front", [&](const Stage& stage) {
-    Remeshed remeshed = remesh_surface(input.surface, sizes, true_to_input(input, run.options), stage);
+    std::span<const double> moved;
+    if (run.options.surface.max_deviation) moved = input.moved;
+    Remeshed remeshed = remesh_surface(input.surface, sizes, true_to_input(input, run.options), stage, moved);
     stage.count("triangles", static_cast<double>(remeshed.surface.triangles.size()));
     note_volume_loss(enclosed_volume(remeshed.surface), run.report.input_volume, stage);
     // Strips between lines and the bounds on deviation have made sizes smaller since the first prediction.
@@ -255,9 +274,10 @@ void improve_elements(const Prepared& input, Filled& filled, Run& run) {
     const bool is_ours = !keeps_surface(run.options) && input.defects == SurfaceDomain::Defects::kClean;
     std::optional<improve::BoundaryInput> on;
     if (is_ours)
-      on.emplace(improve::BoundaryInput{input.surface.mesh(), input.surface.tree(), input.surface.features(),
-                                        boundary.features, detail_tolerance(input.surface.mesh(), run.options),
-                                        boundary.near_limit});
+      on.emplace(improve::BoundaryInput{
+          input.surface.mesh(), input.surface.tree(), input.surface.features(), boundary.features,
+          detail_tolerance(input.surface.mesh(), run.options, input.moved.empty() ? 1 : 1 - kUnfolded),
+          boundary.near_limit});
     if (improve_mesh(mesh, on ? &*on : nullptr, run.options.improve, stage, &boundary.features)) {
       if (on) renew_sources(mesh, hull_of(boundary.surface), on->surface, on->tree);
       follow_boundary(mesh, boundary.surface);

@@ -20,6 +20,7 @@ namespace octafront {
 struct Prepared {
   KnownSurface surface;                                             ///< repaired, unfolded
   SurfaceDomain::Defects defects = SurfaceDomain::Defects::kClean;  ///< other than clean where the method allows it
+  std::vector<double> moved = {};  ///< per triangle how far unfolding moved it at most; empty: nothing was unfolded
 };
 
 /// A mesh and the surface that it fills, triangle for triangle.

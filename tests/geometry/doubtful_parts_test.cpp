@@ -25,7 +25,7 @@ double finest(Vec3) {
 
 std::vector<Vec3> doubtful(const TriangleCorners& t) {
   std::vector<Vec3> found;
-  for_each_doubtful_part(t, kLimit, kLimit, near_ball, finest, [&](Vec3 p) {
+  for_each_doubtful_part(t, farther_than(kLimit, kLimit, near_ball, finest), [&](Vec3 p) {
     found.push_back(p);
     return true;
   });
@@ -62,25 +62,25 @@ TEST(DoubtfulParts, AreFoundWhereOnlyASmallPartStrays) {
 
 TEST(DoubtfulParts, AreNotDividedWhereAllIsFar) {
   int asked = 0;
-  for_each_doubtful_part(
-      {Vec3{2, 0, 0}, Vec3{0, 2, 0}, Vec3{0, 0, 2}}, 1e-300, 1e-300, near_ball, [](Vec3) { return 1e-301; },
-      [&](Vec3) {
-        ++asked;
-        return true;
-      });
+  const auto finest_of_all = [](Vec3) { return 1e-301; };
+  for_each_doubtful_part({Vec3{2, 0, 0}, Vec3{0, 2, 0}, Vec3{0, 0, 2}},
+                         farther_than(1e-300, 1e-300, near_ball, finest_of_all), [&](Vec3) {
+                           ++asked;
+                           return true;
+                         });
   EXPECT_EQ(asked, 1);
 }
 
 TEST(DoubtfulParts, AreAskedForNoLongerOnceFalse) {
   int asked = 0;
-  EXPECT_FALSE(for_each_doubtful_part({Vec3{2, 0, 0}, Vec3{3, 0, 0}, Vec3{2, 1, 0}}, kLimit, kLimit, near_ball, finest,
-                                      [&](Vec3) {
+  EXPECT_FALSE(for_each_doubtful_part({Vec3{2, 0, 0}, Vec3{3, 0, 0}, Vec3{2, 1, 0}},
+                                      farther_than(kLimit, kLimit, near_ball, finest), [&](Vec3) {
                                         ++asked;
                                         return false;
                                       }));
   EXPECT_EQ(asked, 1);
-  EXPECT_TRUE(for_each_doubtful_part({Vec3{0.5, 0, 0}, Vec3{0, 0.5, 0}, Vec3{0, 0, 0.5}}, kLimit, kLimit, near_ball,
-                                     finest, [](Vec3) { return false; }));
+  EXPECT_TRUE(for_each_doubtful_part({Vec3{0.5, 0, 0}, Vec3{0, 0.5, 0}, Vec3{0, 0, 0.5}},
+                                     farther_than(kLimit, kLimit, near_ball, finest), [](Vec3) { return false; }));
 }
 
 }  // namespace

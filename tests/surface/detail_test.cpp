@@ -13,6 +13,8 @@
 
 #include <algorithm>
 #include <numbers>
+#include <numeric>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -208,6 +210,13 @@ TEST(Fallback, IsLocal) {
   EXPECT_GT(coarse, 0.9 * static_cast<double>(all));
 }
 
+std::vector<remeshing::FarPlace> places_beyond(double limit, const SurfaceMesh& made, const SurfaceMesh& input) {
+  std::vector<std::uint32_t> number(made.triangles.size());
+  std::iota(number.begin(), number.end(), 0u);
+  const TriangleTree tree(input);
+  return remeshing::DeviationWatch(limit, limit, input, tree).look(made, number);
+}
+
 /// A sphere with a bump narrower than the triangles that are to come: vertices pass it by.
 SurfaceMesh bumpy_sphere() {
   SurfaceMesh s = icosphere(5);
@@ -223,14 +232,39 @@ TEST(Approach, MendsAPlaceThatStraysWithoutAnotherRound) {
   EXPECT_EQ(counter(report, "rounds"), 1);
   EXPECT_GT(counter(report, "points against deviation"), 0);
   EXPECT_TRUE(remeshing::find_crossings(made.surface).empty());
-  EXPECT_TRUE(remeshing::places_beyond(0.02, 0.02, made.surface, input, TriangleTree(input)).empty());
+  EXPECT_TRUE(places_beyond(0.02, made.surface, input).empty());
 }
 
-TEST(PlacesBeyond, AreFoundFromBothSides) {
+TEST(DeviationWatch, FindsAgainWhatAllAnewWouldFind) {
+  const SurfaceMesh input = bumpy_sphere();
+  const TriangleTree tree(input);
+  SurfaceMesh made = icosphere(4);
+  std::vector<std::uint32_t> number(made.triangles.size());
+  std::iota(number.begin(), number.end(), 10u);
+  remeshing::DeviationWatch watch(0.01, 0.02, input, tree);
+  const auto triangles_at = [](const std::vector<remeshing::FarPlace>& places) {
+    std::set<std::uint32_t> found;
+    for (const remeshing::FarPlace& place : places) found.insert(place.triangle);
+    return found;
+  };
+  EXPECT_FALSE(watch.look(made, number).empty());
+  for (const double height : {0.05, -0.03, 0.0}) {
+    made.points[made.triangles[7][1]] *= 1 + height;
+    const auto again = triangles_at(watch.look(made, number));
+    EXPECT_EQ(again, triangles_at(remeshing::DeviationWatch(0.01, 0.02, input, tree).look(made, number)));
+    EXPECT_EQ(again, triangles_at(watch.look(made, number)));
+  }
+  made.triangles.pop_back();  // it leaves a hole in the input's sight
+  number.pop_back();
+  EXPECT_EQ(triangles_at(watch.look(made, number)),
+            triangles_at(remeshing::DeviationWatch(0.01, 0.02, input, tree).look(made, number)));
+}
+
+TEST(DeviationWatch, FindsFromBothSides) {
   const SurfaceMesh smooth = icosphere(4), spiked = spiked_sphere(0.1);
-  EXPECT_TRUE(remeshing::places_beyond(0.11, 0.11, smooth, spiked, TriangleTree(spiked)).empty());
+  EXPECT_TRUE(places_beyond(0.11, smooth, spiked).empty());
   for (const auto& [made, input] : {std::pair{&smooth, &spiked}, std::pair{&spiked, &smooth}}) {
-    const auto places = remeshing::places_beyond(0.05, 0.05, *made, *input, TriangleTree(*input));
+    const auto places = places_beyond(0.05, *made, *input);
     ASSERT_FALSE(places.empty());
     for (const remeshing::FarPlace& place : places)
       EXPECT_LT(distance(place.at, spiked.points[spiked.triangles[7][1]]), 0.1);

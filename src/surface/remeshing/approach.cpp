@@ -15,8 +15,8 @@ namespace {
 constexpr double kOnEdge = 0.2;
 /// Where a corner weighs more than this it goes there itself.
 constexpr double kAtCorner = 0.8;
-/// No new triangle is worse than this 2r/R, unless one was: the others are mended later.
-constexpr double kLeastShape = 0.1;
+/// No new triangle is worse than this 2r/R, unless one was: what is mended for its shape strays again.
+constexpr double kLeastShape = 0.35;
 
 /// Weights of the corners that make up the point nearest to p in the plane of a triangle.
 std::array<double, 3> weights_at(const TriangleCorners& t, Vec3 p) {
@@ -28,8 +28,9 @@ std::array<double, 3> weights_at(const TriangleCorners& t, Vec3 p) {
 
 class Approacher {
  public:
-  Approacher(WorkingMesh& mesh, const InputSurface& input, const std::vector<std::uint8_t>& is_fixed)
-      : mesh_(mesh), input_(input), is_fixed_(is_fixed), sewn_(mesh), live_(sewn_) {}
+  Approacher(WorkingMesh& mesh, const InputSurface& input, const TriangleTree& tree,
+             const std::vector<std::uint8_t>& is_fixed)
+      : mesh_(mesh), input_(input), tree_(tree), is_fixed_(is_fixed), sewn_(mesh), live_(sewn_) {}
 
   std::uint64_t run(std::span<const FarPlace> places) {
     std::vector<std::uint8_t> is_touched(mesh_.triangle_count(), 0);
@@ -61,29 +62,48 @@ class Approacher {
   bool put_in(const FarPlace& place) {
     const std::uint32_t t = place.triangle;
     const Vec3 p = place.on_input.p, normal = input_.normal_at(place.on_input.face, p);
-    if (!(dot(mesh_.area_vector(t), normal) > 0)) return false;
-    if (mesh_.first_back != kNone && mesh_.patch[t] != input_.patch[place.on_input.face]) return false;
+    if (!(dot(mesh_.area_vector(t), normal) > 0) || !is_of_patch(place.on_input, t)) return halve(t);
     const std::array<double, 3> weight = weights_at(live_.corners(t), p);
     std::array<std::uint32_t, 3> order{0, 1, 2};
     std::sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) { return weight[i] < weight[j]; });
     const VertexIndex corner = mesh_.start[3 * t + order[2]];
     if (weight[order[2]] > kAtCorner && may_move(corner) && move(corner, place.on_input, normal)) return true;
     const auto edge = [&](int i) { return next_of(3 * t + order[i]); };
-    if (weight[order[0]] < kOnEdge && divide(place, edge(0), normal)) return true;
-    return divide(place, kNone, normal) || divide(place, edge(0), normal) || divide(place, edge(1), normal) ||
-           divide(place, edge(2), normal);
+    if (weight[order[0]] < kOnEdge && divide(t, edge(0), place.on_input, normal)) return true;
+    return divide(t, kNone, place.on_input, normal) || divide(t, edge(0), place.on_input, normal) ||
+           divide(t, edge(1), place.on_input, normal) || divide(t, edge(2), place.on_input, normal) || halve(t);
+  }
+
+  /// Points of a complex go onto their own patch.
+  bool is_of_patch(SurfacePoint p, std::uint32_t t) const {
+    return mesh_.first_back == kNone || mesh_.patch[t] == input_.patch[p.face];
+  }
+
+  /// The longest edge that may be, at its middle: the place itself comes next where triangles are smaller.
+  bool halve(std::uint32_t t) {
+    std::array<HalfEdge, 3> edges{3 * t, 3 * t + 1, 3 * t + 2};
+    const auto length_of = [&](HalfEdge h) {
+      return squared_distance(mesh_.points[mesh_.start[h]], mesh_.points[mesh_.end(h)]);
+    };
+    std::sort(edges.begin(), edges.end(), [&](HalfEdge g, HalfEdge h) { return length_of(g) > length_of(h); });
+    return std::ranges::any_of(edges, [&](HalfEdge h) {
+      const TriangleTree::Nearest at = tree_.nearest((mesh_.points[mesh_.start[h]] + mesh_.points[mesh_.end(h)]) * 0.5);
+      const Vec3 normal = input_.normal_at(at.triangle, at.point);
+      return dot(mesh_.area_vector(t), normal) > 0 && is_of_patch({at.point, at.triangle}, t) &&
+             divide(t, h, {at.point, at.triangle}, normal);
+    });
   }
 
   /// The edge, or for kNone the triangle.
-  bool divide(const FarPlace& place, HalfEdge edge, Vec3 normal) {
+  bool divide(std::uint32_t triangle, HalfEdge edge, SurfacePoint at, Vec3 normal) {
     if (edge != kNone && mesh_.is_feature[edge]) return false;
-    plan_split(place.triangle, edge, place.on_input.p);
+    plan_split(triangle, edge, at.p);
     if (!is_sound()) return false;
-    const Triangle t = mesh_.triangle(place.triangle);
+    const Triangle t = mesh_.triangle(triangle);
     const double size = (mesh_.size[t[0]] + mesh_.size[t[1]] + mesh_.size[t[2]]) / 3;
-    const VertexIndex x = mesh_.add_vertex(place.on_input.p, VertexKind::kFree, normal, size, place.on_input.face);
+    const VertexIndex x = mesh_.add_vertex(at.p, VertexKind::kFree, normal, size, at.face);
     if (edge == kNone) {
-      mesh_.split_triangle(place.triangle, x);
+      mesh_.split_triangle(triangle, x);
     } else {
       mesh_.split_edge(edge, x);
     }
@@ -152,6 +172,7 @@ class Approacher {
 
   WorkingMesh& mesh_;
   const InputSurface& input_;
+  const TriangleTree& tree_;
   const std::vector<std::uint8_t>& is_fixed_;
   const SewnMesh sewn_;
   LiveTriangles<SewnMesh> live_;
@@ -161,9 +182,9 @@ class Approacher {
 
 }  // namespace
 
-std::uint64_t approach(WorkingMesh& mesh, const InputSurface& input, const std::vector<std::uint8_t>& is_fixed,
-                       std::span<const FarPlace> places) {
-  return Approacher(mesh, input, is_fixed).run(places);
+std::uint64_t approach(WorkingMesh& mesh, const InputSurface& input, const TriangleTree& tree,
+                       const std::vector<std::uint8_t>& is_fixed, std::span<const FarPlace> places) {
+  return Approacher(mesh, input, tree, is_fixed).run(places);
 }
 
 }  // namespace octafront::remeshing

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace octafront::remeshing {
 
@@ -28,56 +29,69 @@ std::vector<Sample> beyond(double limit, const std::vector<Sample>& all, const T
   return far;
 }
 
-/// Each vertex with one of its triangles; vertices of none have kNone.
-std::vector<Sample> vertices_of(const SurfaceMesh& surface) {
-  std::vector<Sample> vertices(surface.points.size(), {{}, kNone});
-  for (std::uint32_t t = static_cast<std::uint32_t>(surface.triangles.size()); t-- > 0;)
-    for (const VertexIndex v : surface.triangles[t]) vertices[v] = {surface.points[v], t};
-  return vertices;
-}
-
-/// Middles of the edges that `is_asked(v, w)`.
-template <typename Asked>
-void add_edge_middles(const SurfaceMesh& surface, Asked&& is_asked, std::vector<Sample>& samples) {
-  for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
-    for (int i = 0; i < 3; ++i) {
-      const VertexIndex v = surface.triangles[t][i], w = surface.triangles[t][(i + 1) % 3];
-      if (v < w && is_asked(v, w)) samples.push_back({(surface.points[v] + surface.points[w]) * 0.5, t});
-    }
-  }
-}
-
-/// Per vertex how far from the nearest corner a point of its triangles may lie: a part of the longest edge, the whole
-/// of that part in an equilateral triangle.
-std::vector<double> reach_of_vertices(const SurfaceMesh& surface) {
+/// For vertices of reach 0 and more, how far from the nearest corner a point of their triangles may lie: a part of the
+/// longest edge, the whole of that part in an equilateral triangle.
+void note_reach(const SurfaceMesh& surface, std::vector<double>& reach) {
   constexpr double kReach = 0.57736;  // 1 / sqrt(3), a little more
-  std::vector<double> reach(surface.points.size(), 0);
   for (const Triangle& t : surface.triangles) {
+    if (reach[t[0]] < 0 && reach[t[1]] < 0 && reach[t[2]] < 0) continue;
     for (int i = 0; i < 3; ++i) {
       const double l = kReach * distance(surface.points[t[i]], surface.points[t[(i + 1) % 3]]);
-      for (const VertexIndex v : t) reach[v] = std::max(reach[v], l);
+      for (const VertexIndex v : t)
+        if (reach[v] >= 0) reach[v] = std::max(reach[v], l);
     }
   }
-  return reach;
 }
 
 /// How far parts of the input reach that are divided no further: as far as the limit, but in edges of the triangle
 /// beside no farther than the one, over which the distance changes evenly, and no less far than the other.
 constexpr double kWidest = 0.3, kFinest = 0.1;
 
+/// Looks at parts of the input for what may be farther than the limit from a surface that was made. A triangle is
+/// convex: what has its corners within the limit of one lies within the limit of it.
+class PartsOfInput {
+ public:
+  PartsOfInput(double limit, double far, const TriangleTree& made) : limit_(limit), far_(far), made_(made) {}
+
+  Part operator()(const TriangleCorners& part, Vec3 middle, double reach) const {
+    nearest_ = made_.nearest(middle, bound(middle)).triangle;
+    const TriangleCorners& t = made_.corners(nearest_);
+    const double d = distance_to(t, middle);
+    if (d + reach < limit_) return Part::kWithin;
+    if (d < limit_ && std::ranges::all_of(part, [&](Vec3 p) { return distance_to(t, p) < limit_; }))
+      return Part::kWithin;
+    return reach <= finest(t) || !(d < far_) ? Part::kVisit : Part::kDivide;
+  }
+
+ private:
+  static double distance_to(const TriangleCorners& t, Vec3 p) {
+    return distance(p, closest_point_on_triangle(p, t[0], t[1], t[2]));
+  }
+
+  /// The nearest triangle to p is no farther than that of the last part, and a little more.
+  double bound(Vec3 p) const {
+    if (nearest_ == kNone) return TriangleTree::kFar;
+    const double last = distance_to(made_.corners(nearest_), p);
+    return 1.001 * last * last + std::numeric_limits<double>::min();
+  }
+
+  double finest(const TriangleCorners& t) const {
+    const double squared_edge =
+        std::max({squared_distance(t[0], t[1]), squared_distance(t[1], t[2]), squared_distance(t[2], t[0])});
+    const double edge = std::sqrt(squared_edge);
+    return std::clamp(limit_, kFinest * edge, kWidest * edge);
+  }
+
+  double limit_, far_;
+  const TriangleTree& made_;
+  mutable std::uint32_t nearest_ = kNone;  ///< to the last part
+};
+
 /// Samples of a triangle of the input that may be far.
-void add_suspects(double limit, double far, const TriangleCorners& corners, std::uint32_t t, const TriangleTree& made,
+void add_suspects(const TriangleCorners& corners, std::uint32_t t, const PartsOfInput& look,
                   std::vector<Sample>& found) {
   const std::size_t before = found.size();
-  const auto is_within = [&](Vec3 p, double distance) { return made.is_within(p, distance); };
-  const auto finest = [&](Vec3 p) {
-    const TriangleCorners b = made.corners(made.nearest(p).triangle);
-    const double squared_edge =
-        std::max({squared_distance(b[0], b[1]), squared_distance(b[1], b[2]), squared_distance(b[2], b[0])});
-    const double edge = std::sqrt(squared_edge);
-    return std::clamp(limit, kFinest * edge, kWidest * edge);
-  };
-  for_each_doubtful_part(corners, limit, far, is_within, finest, [&](Vec3 p) {
+  for_each_doubtful_part(corners, look, [&](Vec3 p) {
     found.push_back({p, t, true});
     return true;
   });
@@ -88,61 +102,51 @@ void add_suspects(double limit, double far, const TriangleCorners& corners, std:
   }
 }
 
-/// Of a triangle so much longer than those made there its inside is looked at in any case.
-constexpr double kNoSmaller = 2;
-
-double longest_edge(const TriangleCorners& t) {
-  return std::sqrt(
-      std::max({squared_distance(t[0], t[1]), squared_distance(t[1], t[2]), squared_distance(t[2], t[0])}));
-}
-
-TriangleCorners corners_of(const SurfaceMesh& surface, std::uint32_t t) {
-  const auto& [a, b, c] = surface.triangles[t];
-  return {surface.points[a], surface.points[b], surface.points[c]};
-}
-
-/// Samples of the input that may be far: of triangles whose corners are not all well within the limit.
-std::vector<Sample> suspects(double limit, double far, const SurfaceMesh& input, const TriangleTree& made,
-                             const Scope& scope) {
-  const bool is_coarse = scope.fine == Fine::kParts;
-  const std::vector<double> reach = reach_of_vertices(input);
-  std::vector<std::uint8_t> is_safe(reach.size());
-  std::vector<double> made_edge(is_coarse ? 0 : reach.size());  // near a vertex that is not safe
-  parallel_for(reach.size(), [&](std::size_t v) {
-    is_safe[v] = (scope.asked && !scope.asked(input.points[v])) ||
-                 (reach[v] < limit && made.is_within(input.points[v], limit - reach[v]));
-    if (!is_safe[v] && !is_coarse) made_edge[v] = longest_edge(made.corners(made.nearest(input.points[v]).triangle));
+/// Samples of the input that may be far: of those triangles whose corners are not all well within the limit.
+std::vector<Sample> suspects(double limit, double far, const SurfaceMesh& input,
+                             const std::vector<std::uint32_t>& triangles, const TriangleTree& made) {
+  std::vector<double> reach(input.points.size(), -1);
+  std::vector<VertexIndex> vertices;
+  for (const std::uint32_t t : triangles)
+    for (const VertexIndex v : input.triangles[t])
+      if (reach[v] < 0) {
+        reach[v] = 0;
+        vertices.push_back(v);
+      }
+  note_reach(input, reach);
+  std::vector<std::uint8_t> is_safe(reach.size(), 0);
+  parallel_for(vertices.size(), [&](std::size_t i) {
+    const VertexIndex v = vertices[i];
+    is_safe[v] = reach[v] < limit && made.is_within(input.points[v], limit - reach[v]);
   });
-  const auto is_fine = [&](std::uint32_t t) {
-    if (is_coarse) return false;
-    const auto& [a, b, c] = input.triangles[t];
-    return longest_edge(corners_of(input, t)) <= kNoSmaller * std::max({made_edge[a], made_edge[b], made_edge[c]});
-  };
   constexpr std::size_t kRange = 256;
   const auto collect = [&](std::size_t begin, std::size_t end, std::vector<Sample>& found) {
-    for (auto t = static_cast<std::uint32_t>(begin); t < end; ++t) {
-      const auto& [a, b, c] = input.triangles[t];
-      if ((!is_safe[a] || !is_safe[b] || !is_safe[c]) && !is_fine(t))
-        add_suspects(limit, far, corners_of(input, t), t, made, found);
+    const PartsOfInput look(limit, far, made);
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto& [a, b, c] = input.triangles[triangles[i]];
+      if (!is_safe[a] || !is_safe[b] || !is_safe[c])
+        add_suspects({input.points[a], input.points[b], input.points[c]}, triangles[i], look, found);
     }
   };
-  std::vector<Sample> found = parallel_collect<Sample>(input.triangles.size(), kRange, collect);
-  if (is_coarse) return found;
-  const std::vector<Sample> corners = vertices_of(input);
-  for (std::size_t v = 0; v < corners.size(); ++v)
-    if (!is_safe[v] && corners[v].triangle != kNone) found.push_back(corners[v]);
-  return found;
+  return parallel_collect<Sample>(triangles.size(), kRange, collect);
 }
 
-std::vector<Sample> samples_of(const SurfaceMesh& made) {
-  std::vector<Sample> samples = vertices_of(made);
-  std::erase_if(samples, [](const Sample& s) { return s.triangle == kNone; });
-  for (std::uint32_t t = 0; t < made.triangles.size(); ++t) {
+/// Corners, middles of edges and centroids, a corner or an edge with one of its triangles.
+std::vector<Sample> samples_of(const SurfaceMesh& made, const std::vector<std::uint32_t>& triangles) {
+  std::vector<Sample> samples;
+  std::vector<std::uint8_t> is_taken(made.points.size(), 0);
+  for (const std::uint32_t t : triangles) {
+    for (const VertexIndex v : made.triangles[t]) {
+      if (!is_taken[v]) samples.push_back({made.points[v], t});
+      is_taken[v] = 1;
+    }
+  }
+  for (const std::uint32_t t : triangles) {
     const auto [a, b, c] = made.triangles[t];
     samples.push_back({centroid(made.points[a], made.points[b], made.points[c]), t});
+    for (const auto& [v, w] : {Edge{a, b}, Edge{b, c}, Edge{c, a}})
+      samples.push_back({(made.points[v] + made.points[w]) * 0.5, t});
   }
-  add_edge_middles(
-      made, [](VertexIndex, VertexIndex) { return true; }, samples);
   return samples;
 }
 
@@ -170,24 +174,74 @@ TriangleTree::Nearest nearest_facing(const TriangleTree& tree, Vec3 p, Vec3 norm
   return best;
 }
 
+Box3 box_of(const TriangleCorners& t, double margin) {
+  const Vec3 m{margin, margin, margin};
+  return {min(min(t[0], t[1]), t[2]) - m, max(max(t[0], t[1]), t[2]) + m};
+}
+
 }  // namespace
 
-std::vector<FarPlace> places_beyond(double limit, double far, const SurfaceMesh& made, const SurfaceMesh& input,
-                                    const TriangleTree& input_tree, const Scope& scope) {
-  std::vector<FarPlace> places;
+DeviationWatch::DeviationWatch(double limit, double far, const SurfaceMesh& input, const TriangleTree& input_tree)
+    : limit_(limit), far_(far), input_(input), input_tree_(input_tree), is_near_change_(input.triangles.size(), 1) {}
+
+std::vector<FarPlace> DeviationWatch::look(const SurfaceMesh& made, const std::vector<std::uint32_t>& number) {
+  const std::vector<std::uint32_t> changed = note_changes(made, number);
+  const auto forget = [&](const FarPlace& p) { return is_changed_[p.triangle] != 0; };
+  for (const FarPlace& place : of_input_)
+    if (forget(place)) is_near_change_[place.on_input.face] = 1;
+  std::erase_if(of_input_, [&](const FarPlace& p) { return is_near_change_[p.on_input.face] != 0; });
+  std::erase_if(of_made_, forget);
+
   double distance = 0;
-  std::vector<Sample> samples = samples_of(made);
-  if (scope.asked) std::erase_if(samples, [&](const Sample& s) { return !scope.asked(s.p); });
-  for (const auto& [p, t, within] : beyond(limit, samples, input_tree)) {
-    const TriangleTree::Nearest nearest = nearest_facing(input_tree, p, normal_of(made, t), distance);
-    places.push_back({p, {nearest.point, nearest.triangle}, distance, t, within});
+  for (const auto& [p, t, within] : beyond(limit_, samples_of(made, changed), input_tree_)) {
+    const TriangleTree::Nearest nearest = nearest_facing(input_tree_, p, normal_of(made, t), distance);
+    of_made_.push_back({p, {nearest.point, nearest.triangle}, distance, number[t], within});
   }
+  std::vector<std::uint32_t> asked;
+  for (std::uint32_t t = 0; t < input_.triangles.size(); ++t)
+    if (is_near_change_[t]) asked.push_back(t);
   const TriangleTree made_tree(made);
-  for (const auto& [p, t, within] : beyond(limit, suspects(limit, far, input, made_tree, scope), made_tree)) {
-    const std::uint32_t triangle = nearest_facing(made_tree, p, normal_of(input, t), distance).triangle;
-    places.push_back({p, {p, t}, distance, triangle, within});
+  for (const auto& [p, t, within] : beyond(limit_, suspects(limit_, far_, input_, asked, made_tree), made_tree)) {
+    const std::uint32_t triangle = nearest_facing(made_tree, p, normal_of(input_, t), distance).triangle;
+    of_input_.push_back({p, {p, t}, distance, number[triangle], within});
   }
-  return places;
+  std::ranges::fill(is_near_change_, 0);
+  std::vector<FarPlace> all = of_made_;
+  all.insert(all.end(), of_input_.begin(), of_input_.end());
+  return all;
+}
+
+/// What is not as it was: new triangles of `made`, by their place in it; is_changed_, by number; the input around.
+std::vector<std::uint32_t> DeviationWatch::note_changes(const SurfaceMesh& made,
+                                                        const std::vector<std::uint32_t>& number) {
+  const bool is_first = last_.empty();
+  const std::uint32_t numbers =
+      std::max(static_cast<std::uint32_t>(last_.size()), number.empty() ? 0 : number.back() + 1);
+  last_.resize(numbers);
+  is_changed_.assign(numbers, 1);
+  std::vector<std::uint32_t> changed;
+  std::vector<std::optional<TriangleCorners>> now(numbers);
+  for (std::uint32_t t = 0; t < made.triangles.size(); ++t) {
+    const auto [a, b, c] = made.triangles[t];
+    now[number[t]] = {made.points[a], made.points[b], made.points[c]};
+    if (last_[number[t]] == now[number[t]]) {
+      is_changed_[number[t]] = 0;
+    } else {
+      changed.push_back(t);
+    }
+  }
+  for (std::uint32_t k = 0; k < numbers && !is_first; ++k) {
+    if (!is_changed_[k]) continue;
+    for (const auto& corners : {last_[k], now[k]}) {
+      if (!corners) continue;
+      input_tree_.for_each_box_near(box_of(*corners, limit_), [&](std::uint32_t t, const TriangleCorners&) {
+        is_near_change_[t] = 1;
+        return true;
+      });
+    }
+  }
+  last_ = std::move(now);
+  return changed;
 }
 
 std::vector<FarPlace> places_under(const std::vector<std::uint32_t>& triangles, const SurfaceMesh& made,
@@ -195,7 +249,8 @@ std::vector<FarPlace> places_under(const std::vector<std::uint32_t>& triangles, 
   std::vector<FarPlace> places;
   double distance = 0;
   for (const std::uint32_t t : triangles) {
-    const auto [a, b, c] = corners_of(made, t);
+    const Vec3 a = made.points[made.triangles[t][0]], b = made.points[made.triangles[t][1]],
+               c = made.points[made.triangles[t][2]];
     const Vec3 normal = normal_of(made, t);
     for (const Vec3 p : {centroid(a, b, c), (a + b) * 0.5, (b + c) * 0.5, (c + a) * 0.5}) {
       const TriangleTree::Nearest nearest = nearest_facing(input_tree, p, normal, distance);

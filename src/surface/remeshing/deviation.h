@@ -5,7 +5,7 @@
 #include "geometry/triangle_tree.h"
 #include "surface/remeshing/walk.h"
 
-#include <functional>
+#include <optional>
 #include <vector>
 
 namespace octafront::remeshing {
@@ -19,21 +19,29 @@ struct FarPlace {
   bool within = false;             ///< inside a triangle of the input, not at its corners or the middles of its edges
 };
 
-/// What is looked at of triangles of the input that are not much longer than those made there: whatever part of them
-/// may be far, or their corners, between which there is little. Nets of voxels consist of such.
-enum class Fine { kParts, kCorners };
+/// Looks for places where a surface that is being made lies farther from its input than `limit`, at the centroids, edge
+/// midpoints and vertices of the made one, and at the vertices and edge midpoints of the input and wherever else it may
+/// lie beyond the limit; no deeper where it is known to lie beyond `far`. Where nothing changed since the last look,
+/// what was found then stands. `input_tree` is over the triangles of `input`; both must outlive it.
+class DeviationWatch {
+ public:
+  DeviationWatch(double limit, double far, const SurfaceMesh& input, const TriangleTree& input_tree);
 
-/// What is looked at.
-struct Scope {
-  Fine fine = Fine::kParts;
-  std::function<bool(Vec3)> asked = {};  ///< only points where this is true, of both surfaces; empty: all
+  /// The places of `made`, whose triangles are called by `number`: ascending, the same ones for the same triangles in
+  /// each look.
+  std::vector<FarPlace> look(const SurfaceMesh& made, const std::vector<std::uint32_t>& number);
+
+ private:
+  std::vector<std::uint32_t> note_changes(const SurfaceMesh& made, const std::vector<std::uint32_t>& number);
+
+  double limit_, far_;
+  const SurfaceMesh& input_;
+  const TriangleTree& input_tree_;
+  std::vector<std::optional<TriangleCorners>> last_;  ///< by number
+  std::vector<std::uint8_t> is_changed_;              ///< by number
+  std::vector<std::uint8_t> is_near_change_;          ///< per triangle of the input
+  std::vector<FarPlace> of_made_, of_input_;          ///< found from the one or the other
 };
-
-/// Places where two surfaces are farther apart than `limit`, looked for at the centroids, edge midpoints and vertices
-/// of `made`, and at the vertices and edge midpoints of `input` and wherever else it may lie beyond the limit; no
-/// deeper where it is known to lie beyond `far`. `input_tree` is over the triangles of `input`.
-std::vector<FarPlace> places_beyond(double limit, double far, const SurfaceMesh& made, const SurfaceMesh& input,
-                                    const TriangleTree& input_tree, const Scope& scope = {});
 
 /// The points of the input that lie under the middles of these triangles and of their edges, however near.
 std::vector<FarPlace> places_under(const std::vector<std::uint32_t>& triangles, const SurfaceMesh& made,

@@ -46,6 +46,7 @@ struct Change {
   std::uint32_t face = kNone;  ///< the triangle of `onto` that the place lies in
   double badness = 0;          ///< how much more there is of it afterwards
   double move = 0;
+  double moved = 0;  ///< with what was done to these triangles before
 };
 
 double distance_to(Vec3 p, const std::vector<TriangleCorners>& triangles) {
@@ -81,6 +82,7 @@ class FoldMender {
       : mesh_(mesh), limits_(limits), edits_(mesh, limits.is_fixed), sewn_(mesh), live_(sewn_) {
     if (limits.crossing) crosses_ = *limits.crossing;
     crosses_.resize(mesh.triangle_count(), 0);
+    result_.moved.resize(mesh.triangle_count(), 0);
   }
 
   MendedFolds run(const RunContext& context) {
@@ -261,12 +263,20 @@ class FoldMender {
     if (!shapes_are_fair()) return;
     change.move = std::max(farthest(old_corners_, new_corners_), farthest(new_corners_, old_corners_));
     if (change.move > limit_) return;
+    change.moved = change.move + moved_so_far();
+    if (change.moved > limits_.total) return;
     sewn_new_.clear();
     for (const IdTriangle& t : new_) sewn_new_.push_back(sewn_.sewn(t));
     const int left = live_.crossings_among(sewn_new_, old_, std::max(1, crossings));
     change.badness += kCrossing * left;
     if (left > 0 && left >= crossings) return;
     if (change.badness < to_beat) best_ = change;
+  }
+
+  double moved_so_far() const {
+    double most = 0;
+    for (const std::uint32_t t : old_) most = std::max(most, result_.moved[t]);
+    return most;
   }
 
   bool is_old(std::uint32_t t) const { return std::find(old_.begin(), old_.end(), t) != old_.end(); }
@@ -346,6 +356,7 @@ class FoldMender {
       mesh_.split_edge(h, x);
       mesh_.for_each_outgoing(x, [&](HalfEdge o) { touched.push_back(o / 3); });
       crosses_.resize(mesh_.triangle_count(), 0);
+      result_.moved.resize(mesh_.triangle_count(), 0);
     }
     if (best_.kind == Change::Kind::kMove) {
       mesh_.points[v] = best_.place;
@@ -353,8 +364,9 @@ class FoldMender {
       mesh_.mark_star_changed(v);
     }
     note_changed(touched);
+    for (const std::uint32_t t : touched) result_.moved[t] = std::max(result_.moved[t], best_.moved);
     ++result_.operations;
-    result_.largest_move = std::max(result_.largest_move, best_.move);
+    result_.largest_move = std::max(result_.largest_move, best_.moved);
   }
 
   void note_changed(const std::vector<std::uint32_t>& touched) {

@@ -5,6 +5,7 @@
 #include "geometry/triangle_tree.h"
 #include "surface/remeshing/working_mesh.h"
 
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -15,6 +16,7 @@ struct FoldLimits {
   double tolerance = 0;     ///< input units
   double size_part = 0;     ///< of the size at the place: what counts where that is less; 0: whatever the size
   double least_shape = 0;   ///< triangles below this 2r/R are bad too
+  double total = HUGE_VAL;  ///< what moves at one place add up to at most, input units
   bool keep_lines = false;  ///< feature lines are no folds, however sharp
   /// Triangles that cross others, one flag each, are bad too: edges of theirs are also divided; null: none.
   const std::vector<std::uint8_t>* crossing = nullptr;
@@ -27,7 +29,8 @@ struct FoldLimits {
 struct MendedFolds {
   std::uint64_t operations = 0;  ///< flips, collapses and moves
   std::uint64_t folds_left = 0;  ///< edges that are as sharp still
-  double largest_move = 0;       ///< of a single operation; several at one place may add up
+  double largest_move = 0;       ///< what the moves at one place add up to at most
+  std::vector<double> moved;     ///< that, per triangle of the working mesh
 };
 
 /// Takes away folds, flaps and spikes: edges at which the surface turns back on itself, by less than 25 degrees inside

@@ -25,9 +25,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <numeric>
-#include <set>
 #include <tuple>
 
 #include <fmt/core.h>
@@ -48,12 +46,13 @@ constexpr double kVain = 0.3, kRestored = 2, kMoreRestored = 1.6;
 /// Nor is size the reason in a complex where the input's triangles are about as large as those that are wanted: none of
 /// their heights is below this part of the size. So it is between the voxels of an image.
 constexpr double kAsLarge = 0.5;
-/// The same where the new surface strays too far from the input, and for how many rounds.
-constexpr double kDeviationCap = 0.7;
+/// The same where the new surface strays too far from the input, and for how many rounds; more at once where it strays
+/// so many times as far as it may.
+constexpr double kDeviationCap = 0.7, kMuchTooFar = 2, kDeviationCapFar = 0.5;
 constexpr int kMostDeviationRounds = 5;
-/// How often points of the input are put in where the new surface strays, if it does so at few places: at this part of
-/// its triangles. At more of them it is made anew with smaller sizes.
-constexpr int kApproaches = 3;
+/// How often points of the input are put in where the new surface strays or nearly does, and where it strays still, if
+/// it does so at few places: at this part of its triangles. At more of them it is made anew with smaller sizes.
+constexpr int kApproaches = 3, kMostApproaches = 6;
 /// Points are put in from this part of the bound on, where the input has vertices or long edges: smaller sizes are the
 /// better answer elsewhere.
 constexpr double kComeNear = 0.9;
@@ -67,8 +66,6 @@ constexpr double kAim = 0.75, kLeastPart = 0.4;
 constexpr int kRefinements = 3;
 /// And from there they rise faster than elsewhere, as around corners: it is a matter of single ridges and tips.
 constexpr double kSteep = 0.4;
-/// Within so many sizes of such a place other places may change.
-constexpr double kTouched = 4;
 
 /// Triangles below this 2r/R are mended at the end, by moving the surface no farther than this part of the size.
 constexpr double kBadShape = 0.25, kMovedPart = 0.25;
@@ -94,7 +91,7 @@ struct Counts {
 /// How near the new surface lies to the input.
 struct Nearness {
   std::vector<Vec3> approached;         ///< where points of the input were put in
-  std::vector<Vec3> far;                ///< where it strays still
+  std::vector<Vec3> far, farther;       ///< where it strays still: too far, and much too far
   std::vector<PointSize> wanted;        ///< sizes by which it would stray less there, in a complex
   std::vector<VertexIndex> near_limit;  ///< corners of triangles that nearly do, in the working mesh
 };
@@ -190,11 +187,11 @@ std::vector<std::uint8_t> crossing_triangles(const WorkingMesh& mesh) {
 /// How much of the input's triangulation an attempt may change.
 enum class Effort { kFull, kInsertOnly };
 
-/// Where the places are that lie farther than the limit.
-std::vector<Vec3> positions_beyond(double limit, const std::vector<FarPlace>& places) {
+/// Where the places are that lie farther than the limit, but not as far as `end`.
+std::vector<Vec3> positions_beyond(double limit, const std::vector<FarPlace>& places, double end = HUGE_VAL) {
   std::vector<Vec3> positions;
   for (const FarPlace& place : places)
-    if (place.distance >= limit) positions.push_back(place.at);
+    if (place.distance >= limit && place.distance < end) positions.push_back(place.at);
   return positions;
 }
 
@@ -267,9 +264,11 @@ void report_counts(const Counts& counts, const Stage& stage) {
 /// Attempts with ever smaller sizes where the last one was not good enough.
 class Remesher {
  public:
-  Remesher(const KnownSurface& surface, const SizeField& sizes, const SurfaceOptions& options, const Stage& stage)
+  Remesher(const KnownSurface& surface, const SizeField& sizes, const SurfaceOptions& options, const Stage& stage,
+           std::span<const double> moved)
       : known_(surface),
         surface_(surface.mesh()),
+        moved_(moved),
         first_(sizes),
         sizes_(sizes),
         options_(options),
@@ -324,10 +323,11 @@ class Remesher {
     Nearness nearness;
     if (effort == Effort::kFull && seamed_) {
       change_between_seams(mesh, curves, sizes);
-      refine_far(mesh, curves, sizes, nearness);
+      DeviationWatch watch = deviation_watch();
+      refine_far(mesh, watch, curves, sizes, nearness);
       mend_crossings(mesh, is_fixed);
       mend_places(mesh, lines_fixed(mesh), tolerance_);
-      approach_far(mesh, sizes, is_fixed, nearness);
+      approach_far(mesh, watch, sizes, is_fixed, nearness);
       clear = mend_places(mesh, lines_fixed(mesh), kLittle * tolerance_);
     } else if (effort == Effort::kFull) {
       remove_input_vertices(mesh, sizes, context, counts_.coarsen);
@@ -387,44 +387,32 @@ class Remesher {
   }
 
   /// Of a complex, smaller sizes and more triangles where it strays, while that helps.
-  void refine_far(WorkingMesh& mesh, const std::vector<Curve>& curves, SizeField& sizes, Nearness& n) {
-    std::vector<FarPlace> places = far_places(mesh, 1);
-    for (int k = 0; k < kRefinements && !places.empty(); ++k) {
-      const std::vector<PointSize> wanted = sizes_against(places, sizes);
+  void refine_far(WorkingMesh& mesh, DeviationWatch& watch, const std::vector<Curve>& curves, SizeField& sizes,
+                  Nearness& n) {
+    for (int k = 0; k < kRefinements; ++k) {
+      const std::vector<PointSize> wanted = sizes_against(far_places(mesh, watch), sizes);
+      if (wanted.empty()) return;
       n.wanted.insert(n.wanted.end(), wanted.begin(), wanted.end());
       sizes = capped_steeply(sizes, wanted, kSteep, stage_.context());
       refine(mesh, curves, sizes);
-      places = far_places(mesh, 1, near_to(places, sizes));
     }
   }
 
   /// Points of the complex where the mesh strays still. What is left then lies beside seams: another round has to
   /// divide these.
-  void approach_far(WorkingMesh& mesh, const SizeField& sizes, const std::vector<std::uint8_t>& is_fixed, Nearness& n) {
-    std::vector<FarPlace> places = far_places(mesh, kComeNear);
+  void approach_far(WorkingMesh& mesh, DeviationWatch& watch, const SizeField& sizes,
+                    const std::vector<std::uint8_t>& is_fixed, Nearness& n) {
+    std::vector<FarPlace> places = far_places(mesh, watch);
     for (int k = 0; k < kApproaches; ++k) {
-      const std::uint64_t put_in = places.empty() ? 0 : approach(mesh, input_, is_fixed, places);
+      std::erase_if(places, [&](const FarPlace& p) { return p.distance < kComeNear * tolerance_; });
+      const std::uint64_t put_in = places.empty() ? 0 : approach(mesh, input_, known_.tree(), is_fixed, places);
       if (put_in == 0) break;
       counts_.approached += put_in;
-      places = far_places(mesh, kComeNear, near_to(places, sizes));
+      places = far_places(mesh, watch);
     }
     n.far = positions_beyond(tolerance_, places);
     const std::vector<PointSize> wanted = sizes_against(places, sizes);
     n.wanted.insert(n.wanted.end(), wanted.begin(), wanted.end());
-  }
-
-  /// Points within some sizes of places: where what is done about these may show.
-  static std::function<bool(Vec3)> near_to(const std::vector<FarPlace>& places, const SizeField& sizes) {
-    double largest = 0;
-    for (const FarPlace& place : places) largest = std::max(largest, sizes.at(place.at));
-    const auto cell_of = [side = kTouched * largest](Vec3 p) {
-      return std::array{std::llround(p.x / side), std::llround(p.y / side), std::llround(p.z / side)};
-    };
-    std::set<std::array<long long, 3>> cells, middles;
-    for (const FarPlace& place : places) middles.insert(cell_of(place.at));
-    for (const auto& [i, j, k] : middles)
-      for (int n = 0; n < 27; ++n) cells.insert({i + n % 3 - 1, j + n / 3 % 3 - 1, k + n / 9 - 1});
-    return [cells = std::move(cells), cell_of](Vec3 p) { return cells.contains(cell_of(p)); };
   }
 
   /// Puts points of the complex into triangles that cross others: chords between near sheets.
@@ -446,7 +434,7 @@ class Remesher {
       std::erase_if(places, [&](const FarPlace& p) {
         return p.distance < kInPlane * std::sqrt(length(mesh.area_vector(p.triangle)));
       });
-      const std::uint64_t put_in = approach(mesh, input_, is_fixed, places);
+      const std::uint64_t put_in = approach(mesh, input_, known_.tree(), is_fixed, places);
       counts_.approached += put_in;
       if (put_in == 0) return;
     }
@@ -472,22 +460,33 @@ class Remesher {
   /// Puts in points of the input where the mesh strays at few places and nothing crosses. `clear`: whether that is
   /// known, before and after.
   Nearness come_near(WorkingMesh& mesh, const std::vector<std::uint8_t>& is_fixed, bool& clear) {
-    Nearness n;
+    std::vector<Vec3> approached;
+    DeviationWatch watch = deviation_watch();
     for (int k = 0;; ++k) {
-      std::vector<FarPlace> places = far_places(mesh);
-      n.far = positions_beyond(tolerance_, places);
-      n.near_limit = corners_at(mesh, places);
+      std::vector<FarPlace> places = far_places(mesh, watch);
+      Nearness n = nearness_of(mesh, places);
       std::erase_if(places,
                     [&](const FarPlace& p) { return p.within || p.distance < kComeNear * *options_.max_deviation; });
       const bool few =
           static_cast<double>(count_triangles(places)) < kFewFar * static_cast<double>(mesh.triangle_count());
-      const std::uint64_t put_in = clear && few && k < kApproaches ? approach(mesh, input_, is_fixed, places) : 0;
-      if (put_in == 0) return n;
+      const int most = n.far.empty() && n.farther.empty() ? kApproaches : kMostApproaches;
+      const std::uint64_t put_in =
+          clear && few && k < most ? approach(mesh, input_, known_.tree(), is_fixed, places) : 0;
+      if (put_in == 0) {
+        n.approached = std::move(approached);
+        return n;
+      }
       counts_.approached += put_in;
       const std::vector<Vec3> all = positions_beyond(0, places);
-      n.approached.insert(n.approached.end(), all.begin(), all.end());
+      approached.insert(approached.end(), all.begin(), all.end());
       clear = mend_places(mesh, is_fixed, tolerance_);
     }
+  }
+
+  Nearness nearness_of(const WorkingMesh& mesh, const std::vector<FarPlace>& places) const {
+    const double much = kMuchTooFar * tolerance_;
+    return {
+        {}, positions_beyond(tolerance_, places, much), positions_beyond(much, places), {}, corners_at(mesh, places)};
   }
 
   /// Sizes by which the mesh would stray no more: what chords cut off grows with the square of their length. Of places
@@ -515,6 +514,7 @@ class Remesher {
     std::vector<Vec3> places = c.nearness.far;
     places.insert(places.end(), c.nearness.approached.begin(), c.nearness.approached.end());
     if (!places.empty()) cap(places, kDeviationCap);
+    if (!c.nearness.farther.empty()) cap(c.nearness.farther, kDeviationCapFar);
   }
 
   static std::size_t count_triangles(const std::vector<FarPlace>& places) {
@@ -531,17 +531,17 @@ class Remesher {
     return corners;
   }
 
-  /// Where the mesh is farther from the input than this part of what is allowed, by the numbers of its triangles.
-  std::vector<FarPlace> far_places(const WorkingMesh& mesh, double part = kLeftAlone,
-                                   std::function<bool(Vec3)> asked = {}) const {
+  /// Where the mesh is too far from the input, or nearly so, by the numbers of its triangles.
+  std::vector<FarPlace> far_places(const WorkingMesh& mesh, DeviationWatch& watch) const {
     if (!limits_deviation()) return {};
-    const Scope scope{seamed_ ? Fine::kCorners : Fine::kParts, std::move(asked)};
     const std::vector<std::uint32_t> number = front_triangles(mesh);
-    std::vector<FarPlace> places = places_beyond(part * *options_.max_deviation, *options_.max_deviation,
-                                                 triangles_of(mesh, number), surface_, known_.tree(), scope);
-    for (FarPlace& place : places) place.triangle = number[place.triangle];
+    std::vector<FarPlace> places = watch.look(triangles_of(mesh, number), number);
+    if (!moved_.empty())
+      for (FarPlace& place : places) place.distance += moved_[place.on_input.face];
     return places;
   }
+
+  DeviationWatch deviation_watch() const { return {kLeftAlone * tolerance_, tolerance_, surface_, known_.tree()}; }
 
   /// What is left of bad triangles, of edges too sharp for any element, and of crossings where these are few. True if
   /// it is known that nothing crosses then.
@@ -586,7 +586,7 @@ class Remesher {
       defect = first_complex_defect_but_crossings(c.result.surface, &places);
     else if (crossings.empty())
       defect = kind_->first_defect_but_crossings(c.result.surface);
-        if (!defect && crossings.empty()) return true;
+    if (!defect && crossings.empty()) return true;
     if (!places.empty()) {
       cap_or_restore(places);
     } else {
@@ -662,10 +662,11 @@ class Remesher {
       turned = turned_places(*options_.normal_deviation, c.result.surface, input_, sizes_, c.vertex_face, c.is_inner,
                              c.result.source);
     }
-    if ((c.nearness.far.empty() && turned.empty()) || is_last) {
-      if (limits_deviation()) stage_.count("places beyond the deviation", static_cast<double>(c.nearness.far.size()));
+    const std::size_t far = c.nearness.far.size() + c.nearness.farther.size();
+    if ((far == 0 && turned.empty()) || is_last) {
+      if (limits_deviation()) stage_.count("places beyond the deviation", static_cast<double>(far));
       if (options_.normal_deviation) stage_.count("triangles turned too far", static_cast<double>(turned.size()));
-      note_what_is_left(c.nearness.far.size(), turned.size());
+      note_what_is_left(far, turned.size());
       return true;
     }
     ++counts_.deviation_rounds;
@@ -706,8 +707,9 @@ class Remesher {
 
   const KnownSurface& known_;
   const SurfaceMesh& surface_;  ///< of known_
-  const SizeField first_;       ///< the sizes as they were asked
-  SizeField sizes_;             ///< and as they are now
+  std::span<const double> moved_;
+  const SizeField first_;  ///< the sizes as they were asked
+  SizeField sizes_;        ///< and as they are now
   std::vector<Caps> caps_;
   std::vector<std::vector<PointSize>> wanted_;  ///< against deviation, in a complex
   std::vector<Ball> restored_;                  ///< where the input's own triangles stay
@@ -730,8 +732,8 @@ Remeshed input_as_it_is(const KnownSurface& surface, const SizeField& sizes) {
 }
 
 Remeshed remesh_surface(const KnownSurface& surface, const SizeField& sizes, const SurfaceOptions& options,
-                        const Stage& stage) {
-  return Remesher(surface, sizes, options, stage).run();
+                        const Stage& stage, std::span<const double> moved) {
+  return Remesher(surface, sizes, options, stage, moved).run();
 }
 
 }  // namespace octafront

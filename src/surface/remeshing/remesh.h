@@ -8,6 +8,7 @@
 #include "mesh/known_surface.h"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace octafront {
@@ -23,9 +24,10 @@ struct Remeshed {
 };
 
 /// The surface front. Requires a clean surface (see surface_mesh.h). The result is checked: closed, manifold, same
-/// components and genus, no self-intersection, features present; throws MeshingError if no attempt passes.
+/// components and genus, no self-intersection, features present; throws MeshingError if no attempt passes. `moved`: per
+/// triangle how far it lies from what the deviation is asked of, at most; empty: it is that.
 Remeshed remesh_surface(const KnownSurface& surface, const SizeField& sizes, const SurfaceOptions& options,
-                        const Stage& stage);
+                        const Stage& stage, std::span<const double> moved = {});
 
 /// The input's own triangles in the place of new ones.
 Remeshed input_as_it_is(const KnownSurface& surface, const SizeField& sizes);

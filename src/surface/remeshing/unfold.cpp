@@ -19,8 +19,9 @@ WorkingMesh bordered(const InputSurface& input) {
   return mesh;
 }
 
-SurfaceMesh compacted(const WorkingMesh& mesh, const SurfaceMesh& input) {
+Unfolded compacted(const WorkingMesh& mesh, const SurfaceMesh& input, MendedFolds mended) {
   SurfaceMesh surface;
+  std::vector<double> moved;
   std::vector<VertexIndex> renumbered(mesh.points.size(), kNone);
   for (VertexIndex v = 0; v < mesh.points.size(); ++v) {
     if (mesh.outgoing[v] == kNone) continue;
@@ -33,8 +34,10 @@ SurfaceMesh compacted(const WorkingMesh& mesh, const SurfaceMesh& input) {
     surface.triangles.push_back({renumbered[a], renumbered[b], renumbered[c]});
     if (!input.patch.empty()) surface.patch.push_back(mesh.patch[t]);
     surface.source.push_back(input.source_of(t));
+    moved.push_back(mended.moved[t]);
   }
-  return surface;
+  mended.moved = std::move(moved);
+  return {std::move(surface), std::move(mended)};
 }
 
 }  // namespace
@@ -43,9 +46,9 @@ std::optional<Unfolded> unfold(const SurfaceMesh& surface, const EdgeTable& edge
                                const RunContext& context) {
   WorkingMesh mesh = bordered(make_input_surface(surface, edges));
   const std::vector<std::uint8_t> none_fixed;
-  const MendedFolds mended = mend_folds(mesh, {.tolerance = tolerance, .is_fixed = none_fixed}, context);
+  MendedFolds mended = mend_folds(mesh, {.tolerance = tolerance, .total = tolerance, .is_fixed = none_fixed}, context);
   if (mended.operations == 0) return std::nullopt;
-  return Unfolded{compacted(mesh, surface), mended};
+  return compacted(mesh, surface, std::move(mended));
 }
 
 }  // namespace octafront::remeshing
