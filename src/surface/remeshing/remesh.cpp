@@ -541,7 +541,9 @@ class Remesher {
     return places;
   }
 
-  DeviationWatch deviation_watch() const { return {kLeftAlone * tolerance_, tolerance_, surface_, known_.tree()}; }
+  DeviationWatch deviation_watch() const {
+    return {kLeftAlone * tolerance_, tolerance_, surface_, known_.tree(), seamed_ ? Fine::kCorners : Fine::kParts};
+  }
 
   /// What is left of bad triangles, of edges too sharp for any element, and of crossings where these are few. True if
   /// it is known that nothing crosses then.
@@ -586,7 +588,7 @@ class Remesher {
       defect = first_complex_defect_but_crossings(c.result.surface, &places);
     else if (crossings.empty())
       defect = kind_->first_defect_but_crossings(c.result.surface);
-    if (!defect && crossings.empty()) return true;
+        if (!defect && crossings.empty()) return true;
     if (!places.empty()) {
       cap_or_restore(places);
     } else {
