@@ -588,7 +588,7 @@ class Remesher {
       defect = first_complex_defect_but_crossings(c.result.surface, &places);
     else if (crossings.empty())
       defect = kind_->first_defect_but_crossings(c.result.surface);
-        if (!defect && crossings.empty()) return true;
+    if (!defect && crossings.empty()) return true;
     if (!places.empty()) {
       cap_or_restore(places);
     } else {
