@@ -346,12 +346,15 @@ void declare_surface(CLI::App& command, Arguments& a) {
   SurfaceOptions& o = a.options.surface;
   auto* group = command.add_option_group("Surface");
   group->add_flag("--keep-surface", o.keep, "The input triangles become the boundary, exactly");
-  group->add_option("--feature-angle", o.feature_angle, "Edges that bend by more degrees than this are kept")
+  group
+      ->add_option("--feature-angle", o.feature_angle, "Edges that bend by more degrees than this are kept; images: 85")
       ->type_name("DEG")
       ->capture_default_str();
-  add_length(*group, a, "--max-deviation", o.max_deviation,
-             "Smaller elements where the surface would stray farther from the input, and how far folds and needles "
-             "of it give way; 0: not at all [0.4 % of the diagonal with automatic sizes, else none]")
+  add_length(
+      *group, a, "--max-deviation", o.max_deviation,
+      "Smaller elements where the surface would stray farther from the input, and how far folds and needles "
+      "of it give way; 0: not at all [images: 0.16 voxels, but not with --elements; else 0.4 % of the diagonal with "
+      "automatic sizes]")
       ->type_name("D");
   group
       ->add_option("--normal-deviation", o.normal_deviation,

@@ -95,10 +95,17 @@ class LiveTriangles {
       is_changed_[t] = 1;
     }
     std::erase_if(changed_, [&](std::uint32_t t) { return surface_.is_removed(t); });
+    if (changed_.size() > kMostChanged + in_tree_.size() / kPartChanged) plant_tree();
   }
 
  private:
+  /// The list is searched one by one: when it is longer than this a new tree is due.
+  static constexpr std::size_t kMostChanged = 1000, kPartChanged = 100;
+
   void plant_tree() {
+    in_tree_.clear();
+    changed_.clear();
+    is_changed_.assign(surface_.triangle_count(), 0);
     std::vector<Vec3> points;
     std::vector<Triangle> triangles;
     for (std::uint32_t t = 0; t < surface_.triangle_count(); ++t) {

@@ -1,10 +1,13 @@
 // Complexes of labels: valid whatever the labels are, true to their volumes, the same on any number of threads.
 
 #include <octafront/error.h>
+#include <octafront/generate.h>
 #include <octafront/image_surface.h>
 #include <octafront/repair.h>
 #include <octafront/run_context.h>
 
+#include "geometry/hausdorff.h"
+#include "mesh/complex.h"
 #include "support/complexes.h"
 #include "support/random.h"
 #include "voxel_images.h"
@@ -184,6 +187,47 @@ TEST(ComplexOfLabels, RefusesWhatMakesNoSense) {
   bad = good;
   bad.grid.slices = {0, 1, 1, 2, 3};
   EXPECT_THROW(complex_of_labels(bad), InputError);
+}
+
+TEST(ImageOptions, FollowTheVoxelsUnlessToldOtherwise) {
+  Options asked;
+  asked.size.size = 6;
+  const Options made = options_for_voxels(asked, 2);
+  ASSERT_TRUE(made.surface.max_deviation);
+  EXPECT_LT(*made.surface.max_deviation, 1);
+  EXPECT_GT(*made.surface.max_deviation, 0);
+  EXPECT_GT(made.surface.feature_angle, asked.surface.feature_angle);
+  asked.surface.max_deviation = 3;
+  asked.surface.feature_angle = 30;
+  EXPECT_EQ(options_for_voxels(asked, 2).surface.max_deviation, 3);
+  EXPECT_EQ(options_for_voxels(asked, 2).surface.feature_angle, 30);
+  Options counted;
+  counted.size.elements = 1000;
+  EXPECT_FALSE(options_for_voxels(counted, 2).surface.max_deviation);
+  Options kept;
+  kept.surface.keep = true;
+  EXPECT_FALSE(options_for_voxels(kept, 2).surface.max_deviation);
+}
+
+/// How far the hull of a mesh by these options lies from that of the complex.
+double strays(const SurfaceMesh& complex, const Options& options) {
+  const TetMesh mesh = generate(complex, options_for_voxels(options, 1)).mesh;
+  const SurfaceMesh hull{mesh.points, mesh.boundary, {}, {}, {}};
+  return hausdorff_distance(hull_of(complex), hull, 0.02).lower;
+}
+
+// A body with ribs as thick as two voxels on it, of two labels: elements of four voxels cut them off.
+TEST(ImageOptions, CoarseElementsStayWithinAPartOfAVoxel) {
+  const LabelImage image = label_image(grid_around_origin({40, 40, 40}, {1, 1, 1}), 2, [](Vec3 p) {
+    const double r = length(p), rib = std::abs(std::fmod(p.z + 100, 10) - 5);
+    return r < 12 || (r < 15 && rib < 1.5) ? (p.x < 0 ? 0 : 1) : -1;
+  });
+  const SurfaceMesh complex = complex_of_labels(image).surface;
+  Options options;
+  options.size.size = 4;
+  EXPECT_LT(strays(complex, options), 0.35);
+  options.surface.max_deviation = 5;
+  EXPECT_GT(strays(complex, options), 0.7);
 }
 
 }  // namespace

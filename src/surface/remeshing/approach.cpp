@@ -2,6 +2,7 @@
 
 #include "geometry/live_triangles.h"
 #include "geometry/measures.h"
+#include "surface/remeshing/sewn_mesh.h"
 
 #include <algorithm>
 #include <array>
@@ -29,7 +30,7 @@ class Approacher {
  public:
   Approacher(WorkingMesh& mesh, const InputSurface& input, const TriangleTree& tree,
              const std::vector<std::uint8_t>& is_fixed)
-      : mesh_(mesh), input_(input), tree_(tree), is_fixed_(is_fixed), live_(mesh) {}
+      : mesh_(mesh), input_(input), tree_(tree), is_fixed_(is_fixed), sewn_(mesh), live_(sewn_) {}
 
   std::uint64_t run(std::span<const FarPlace> places) {
     std::vector<std::uint8_t> is_touched(mesh_.triangle_count(), 0);
@@ -61,7 +62,7 @@ class Approacher {
   bool put_in(const FarPlace& place) {
     const std::uint32_t t = place.triangle;
     const Vec3 p = place.on_input.p, normal = input_.normal_at(place.on_input.face, p);
-    if (!(dot(mesh_.area_vector(t), normal) > 0)) return halve(t);
+    if (!(dot(mesh_.area_vector(t), normal) > 0) || !is_of_patch(place.on_input, t)) return halve(t);
     const std::array<double, 3> weight = weights_at(live_.corners(t), p);
     std::array<std::uint32_t, 3> order{0, 1, 2};
     std::sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) { return weight[i] < weight[j]; });
@@ -71,6 +72,11 @@ class Approacher {
     if (weight[order[0]] < kOnEdge && divide(t, edge(0), place.on_input, normal)) return true;
     return divide(t, kNone, place.on_input, normal) || divide(t, edge(0), place.on_input, normal) ||
            divide(t, edge(1), place.on_input, normal) || divide(t, edge(2), place.on_input, normal) || halve(t);
+  }
+
+  /// Points of a complex go onto their own patch.
+  bool is_of_patch(SurfacePoint p, std::uint32_t t) const {
+    return mesh_.first_back == kNone || mesh_.patch[t] == input_.patch[p.face];
   }
 
   /// The longest edge that may be, at its middle: the place itself comes next where triangles are smaller.
@@ -83,7 +89,8 @@ class Approacher {
     return std::ranges::any_of(edges, [&](HalfEdge h) {
       const TriangleTree::Nearest at = tree_.nearest((mesh_.points[mesh_.start[h]] + mesh_.points[mesh_.end(h)]) * 0.5);
       const Vec3 normal = input_.normal_at(at.triangle, at.point);
-      return dot(mesh_.area_vector(t), normal) > 0 && divide(t, h, {at.point, at.triangle}, normal);
+      return dot(mesh_.area_vector(t), normal) > 0 && is_of_patch({at.point, at.triangle}, t) &&
+             divide(t, h, {at.point, at.triangle}, normal);
     });
   }
 
@@ -129,7 +136,7 @@ class Approacher {
     mesh_.for_each_outgoing(v, [&](HalfEdge h) {
       const VertexIndex a = mesh_.end(h), b = mesh_.apex(h);
       old_.push_back(h / 3);
-      new_.push_back({{v, a, b}, {p, mesh_.points[a], mesh_.points[b]}});
+      new_.push_back({{sewn_.vertex(v), sewn_.vertex(a), sewn_.vertex(b)}, {p, mesh_.points[a], mesh_.points[b]}});
     });
   }
 
@@ -143,7 +150,7 @@ class Approacher {
       for (HalfEdge h = 3 * t; h < 3 * t + 3; ++h) {
         if (edge != kNone && (h == edge || h == mesh_.twin[edge])) continue;
         const VertexIndex a = mesh_.start[h], b = mesh_.end(h);
-        new_.push_back({{a, b, x}, {mesh_.points[a], mesh_.points[b], p}});
+        new_.push_back({{sewn_.vertex(a), sewn_.vertex(b), x}, {mesh_.points[a], mesh_.points[b], p}});
       }
     }
   }
@@ -156,7 +163,7 @@ class Approacher {
     }
     for (const IdTriangle& made : new_) {
       const auto& [a, b, c] = made.corners;
-      if (LiveTriangles<WorkingMesh>::is_degenerate(made.corners)) return false;
+      if (LiveTriangles<SewnMesh>::is_degenerate(made.corners)) return false;
       if (triangle_radius_ratio(a, b, c) < std::min(kLeastShape, before)) return false;
     }
     const int allowed = live_.crossings_among(old_);
@@ -167,7 +174,8 @@ class Approacher {
   const InputSurface& input_;
   const TriangleTree& tree_;
   const std::vector<std::uint8_t>& is_fixed_;
-  LiveTriangles<WorkingMesh> live_;
+  const SewnMesh sewn_;
+  LiveTriangles<SewnMesh> live_;
   std::vector<std::uint32_t> old_;
   std::vector<IdTriangle> new_;
 };

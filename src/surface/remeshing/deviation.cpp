@@ -244,4 +244,20 @@ std::vector<std::uint32_t> DeviationWatch::note_changes(const SurfaceMesh& made,
   return changed;
 }
 
+std::vector<FarPlace> places_under(const std::vector<std::uint32_t>& triangles, const SurfaceMesh& made,
+                                   const TriangleTree& input_tree) {
+  std::vector<FarPlace> places;
+  double distance = 0;
+  for (const std::uint32_t t : triangles) {
+    const Vec3 a = made.points[made.triangles[t][0]], b = made.points[made.triangles[t][1]],
+               c = made.points[made.triangles[t][2]];
+    const Vec3 normal = normal_of(made, t);
+    for (const Vec3 p : {centroid(a, b, c), (a + b) * 0.5, (b + c) * 0.5, (c + a) * 0.5}) {
+      const TriangleTree::Nearest nearest = nearest_facing(input_tree, p, normal, distance);
+      places.push_back({p, {nearest.point, nearest.triangle}, distance, t});
+    }
+  }
+  return places;
+}
+
 }  // namespace octafront::remeshing

@@ -43,4 +43,8 @@ class DeviationWatch {
   std::vector<FarPlace> of_made_, of_input_;          ///< found from the one or the other
 };
 
+/// The points of the input that lie under the middles of these triangles and of their edges, however near.
+std::vector<FarPlace> places_under(const std::vector<std::uint32_t>& triangles, const SurfaceMesh& made,
+                                   const TriangleTree& input_tree);
+
 }  // namespace octafront::remeshing

@@ -1,9 +1,9 @@
 #include "surface/remeshing/mend_folds.h"
 
-#include "geometry/live_triangles.h"
 #include "geometry/measures.h"
 #include "geometry/predicates.h"
 #include "surface/remeshing/line_edits.h"
+#include "surface/remeshing/sewn_mesh.h"
 
 #include <algorithm>
 #include <cmath>
@@ -79,7 +79,7 @@ double folding(Vec3 n, Vec3 m) {
 class FoldMender {
  public:
   FoldMender(WorkingMesh& mesh, const FoldLimits& limits)
-      : mesh_(mesh), limits_(limits), edits_(mesh, limits.is_fixed), live_(mesh) {
+      : mesh_(mesh), limits_(limits), edits_(mesh, limits.is_fixed), sewn_(mesh), live_(sewn_) {
     if (limits.crossing) crosses_ = *limits.crossing;
     crosses_.resize(mesh.triangle_count(), 0);
     result_.moved.resize(mesh.triangle_count(), 0);
@@ -122,7 +122,7 @@ class FoldMender {
   }
 
   void push(std::uint32_t t) {
-    if (mesh_.is_removed(t)) return;
+    if (mesh_.is_removed(t) || mesh_.is_back(t)) return;
     const double badness = badness_of(t);
     if (badness > 0) queue_.push({badness, t});
   }
@@ -164,6 +164,7 @@ class FoldMender {
     const HalfEdge g = mesh_.twin[h];
     old_.assign({h / 3, g / 3});
     const VertexIndex a = mesh_.start[h], b = mesh_.start[g], c = mesh_.apex(h), d = mesh_.apex(g);
+    if (is_seamed() && edits_.must_stay(c) && edits_.must_stay(d)) return;
     new_.clear();
     for (const Triangle& t : {Triangle{a, d, c}, Triangle{b, c, d}})
       new_.push_back({t, {mesh_.points[t[0]], mesh_.points[t[1]], mesh_.points[t[2]]}});
@@ -175,8 +176,25 @@ class FoldMender {
   void consider_collapse(HalfEdge h) {
     const VertexIndex u = mesh_.start[h], w = mesh_.end(h);
     if (distance(mesh_.points[u], mesh_.points[w]) > kLongest * limit_ || !edits_.may_collapse(h)) return;
+    if (is_seamed() && edits_.must_stay(w) && joins_seams(h)) return;
     gather_star(u, mesh_.points[w], w);
     judge({Change::Kind::kCollapse, h}, w);
+  }
+
+  bool is_seamed() const { return mesh_.first_back != kNone; }
+  /// Whether a new edge would run between two vertices that stay: on seams it may be there in another part.
+  bool joins_seams(HalfEdge h) const {
+    const VertexIndex w = mesh_.end(h), a = mesh_.apex(h), b = mesh_.apex(mesh_.twin[h]);
+    bool found = false;
+    mesh_.for_each_outgoing(mesh_.start[h], [&](HalfEdge o) {
+      const VertexIndex v = mesh_.end(o);
+      found = found || (v != w && v != a && v != b && edits_.must_stay(v));
+    });
+    return found;
+  }
+  /// Of a complex, whether what is stood for belongs to the same patch there.
+  bool is_of_patch(const TriangleTree::Nearest& place, std::uint32_t t) const {
+    return limits_.patch_of == nullptr || (*limits_.patch_of)[place.triangle] == mesh_.patch[t];
   }
 
   void consider_moves(HalfEdge at) {
@@ -189,6 +207,7 @@ class FoldMender {
       Change change{Change::Kind::kMove, at, p + (middle - p) * step};
       if (limits_.onto) {
         const TriangleTree::Nearest nearest = limits_.onto->nearest(change.place);
+        if (!is_of_patch(nearest, at / 3)) continue;
         change.place = nearest.point;
         change.face = nearest.triangle;
       }
@@ -203,6 +222,7 @@ class FoldMender {
     const HalfEdge g = mesh_.twin[h];
     const VertexIndex a = mesh_.start[h], b = mesh_.start[g], c = mesh_.apex(h), d = mesh_.apex(g);
     const TriangleTree::Nearest middle = limits_.onto->nearest((mesh_.points[a] + mesh_.points[b]) * 0.5);
+    if (!is_of_patch(middle, h / 3)) return;
     const auto x = static_cast<VertexIndex>(mesh_.points.size());
     old_.assign({h / 3, g / 3});
     new_.clear();
@@ -245,7 +265,9 @@ class FoldMender {
     if (change.move > limit_) return;
     change.moved = change.move + moved_so_far();
     if (change.moved > limits_.total) return;
-    const int left = live_.crossings_among(new_, old_, std::max(1, crossings));
+    sewn_new_.clear();
+    for (const IdTriangle& t : new_) sewn_new_.push_back(sewn_.sewn(t));
+    const int left = live_.crossings_among(sewn_new_, old_, std::max(1, crossings));
     change.badness += kCrossing * left;
     if (left > 0 && left >= crossings) return;
     if (change.badness < to_beat) best_ = change;
@@ -316,8 +338,8 @@ class FoldMender {
 
   bool still_crosses(std::uint32_t t) {
     old_.assign({t});
-    if (LiveTriangles<WorkingMesh>::is_degenerate(corners(t))) return true;
-    return live_.crossings({mesh_.triangle(t), corners(t)}, old_, 1) > 0;
+    if (LiveTriangles<SewnMesh>::is_degenerate(corners(t))) return true;
+    return live_.crossings({sewn_.triangle(t), corners(t)}, old_, 1) > 0;
   }
 
   void apply() {
@@ -370,14 +392,15 @@ class FoldMender {
   WorkingMesh& mesh_;
   const FoldLimits& limits_;
   LineEdits edits_;
-  LiveTriangles<WorkingMesh> live_;
+  const SewnMesh sewn_;
+  LiveTriangles<SewnMesh> live_;
   std::vector<std::uint8_t> crosses_;  ///< per triangle
   std::priority_queue<std::pair<double, std::uint32_t>> queue_;
   MendedFolds result_;
   double limit_ = 0;
   Change best_;
   std::vector<std::uint32_t> old_;
-  std::vector<IdTriangle> new_;
+  std::vector<IdTriangle> new_, sewn_new_;
   std::vector<std::array<std::uint8_t, 3>> is_line_;  ///< per new triangle and edge, from corner i to the next
   std::vector<TriangleCorners> old_corners_, new_corners_;
   std::vector<Side> sides_;

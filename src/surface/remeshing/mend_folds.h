@@ -22,6 +22,8 @@ struct FoldLimits {
   const std::vector<std::uint8_t>* crossing = nullptr;
   const TriangleTree* onto = nullptr;         ///< vertices that move are put on this surface; null: wherever they go
   const std::vector<std::uint8_t>& is_fixed;  ///< by vertex: stays; those beyond its end need not
+  /// Of a complex, by triangle of `onto`: vertices stay on their own patch. Its seams must be fixed.
+  const std::vector<std::uint32_t>* patch_of = nullptr;
 };
 
 struct MendedFolds {

@@ -1,5 +1,6 @@
 #include "surface/remeshing/remesh.h"
 
+#include "core/parallel.h"
 #include "core/validate.h"
 #include "mesh/complex.h"
 #include "sizing/make_size_field.h"
@@ -22,8 +23,10 @@
 #include "surface/surface_check.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
+#include <tuple>
 
 #include <fmt/core.h>
 
@@ -56,11 +59,24 @@ constexpr double kComeNear = 0.9;
 /// From this part of it on nobody shall move the triangles later: sliding vertices stray by a fifth more.
 constexpr double kLeftAlone = 0.75;
 constexpr double kFewFar = 0.02;
+/// In a complex sizes are made smaller by how far it strays: to come to this part of the bound, to no less than this
+/// part of themselves at once.
+constexpr double kAim = 0.75, kLeastPart = 0.4;
+/// So often in a round; there are no more than two for this.
+constexpr int kRefinements = 3;
+/// And from there they rise faster than elsewhere, as around corners: it is a matter of single ridges and tips.
+constexpr double kSteep = 0.4;
 
 /// Triangles below this 2r/R are mended at the end, by moving the surface no farther than this part of the size.
 constexpr double kBadShape = 0.25, kMovedPart = 0.25;
+/// In a complex once more at the very end, within this part of the bound on deviation.
+constexpr double kLittle = 0.3;
 /// Mending one crossing may uncover another. Where more triangles than this cross the sizes are too large.
 constexpr int kMendingRounds = 4, kFewCrossing = 300;
+/// In a complex points of the input are put in again where that left no more than this part of what crossed.
+constexpr double kWorthAnother = 0.7;
+/// Not nearer to their triangles than this part of their size.
+constexpr double kInPlane = 0.02;
 
 struct Counts {
   std::uint64_t placed = 0, tried = 0;
@@ -76,6 +92,7 @@ struct Counts {
 struct Nearness {
   std::vector<Vec3> approached;         ///< where points of the input were put in
   std::vector<Vec3> far, farther;       ///< where it strays still: too far, and much too far
+  std::vector<PointSize> wanted;        ///< sizes by which it would stray less there, in a complex
   std::vector<VertexIndex> near_limit;  ///< corners of triangles that nearly do, in the working mesh
 };
 
@@ -142,7 +159,8 @@ Compacted compacted(const WorkingMesh& mesh, const SurfaceMesh& input, const Siz
   std::vector<Edge>& edges = c.result.features.edges;
   std::sort(edges.begin(), edges.end());
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());  // a seam has one in each of its parts
-  for (const VertexIndex v : c.nearness.near_limit) c.result.near_limit.push_back(old_to_new[sewn[v]]);
+  for (const VertexIndex v : c.nearness.near_limit)
+    if (mesh.outgoing[v] != kNone) c.result.near_limit.push_back(old_to_new[sewn[v]]);
   return c;
 }
 
@@ -203,6 +221,19 @@ std::vector<Vec3> thinned(const SizeField& sizes, const std::vector<Vec3>& place
     grid.add(p, h);
   }
   return kept;
+}
+
+/// Of places within their size of an earlier one the earlier one is enough.
+std::vector<PointSize> thinned(std::vector<PointSize> places) {
+  if (places.empty()) return places;
+  PointGrid grid(places.front().p);
+  std::erase_if(places, [&](const PointSize& s) {
+    bool is_new = true;
+    grid.for_each_near(s.p, s.size, 1, [&](std::uint32_t, Vec3) { is_new = false; });
+    if (is_new) grid.add(s.p, s.size);
+    return !is_new;
+  });
+  return places;
 }
 
 /// Sizes made smaller around places.
@@ -273,7 +304,7 @@ class Remesher {
     set_features(input_, {});  // no walk crosses seams
     set_features(input_, features_at_scale(input_, features(), sizes_));
     std::vector<std::uint8_t> is_fixed = mark_restored(input_, known_.tree(), restored_);
-    const SizeField sizes = fitted_sizes(is_fixed);
+    SizeField sizes = fitted_sizes(is_fixed);
     const std::vector<Curve> curves = curves_of(sizes, is_fixed);
     progress(0.05);
     const FrontPoints front = place_points(input_, curves, sizes, context);
@@ -292,17 +323,19 @@ class Remesher {
     Nearness nearness;
     if (effort == Effort::kFull && seamed_) {
       change_between_seams(mesh, curves, sizes);
-      clear = std::ranges::count(crossing_triangles(mesh), 1) == 0;
       DeviationWatch watch = deviation_watch();
-      const std::vector<FarPlace> places = far_places(mesh, watch);
-      nearness = nearness_of(mesh, places);
+      refine_far(mesh, watch, curves, sizes, nearness);
+      mend_crossings(mesh, is_fixed);
+      mend_places(mesh, lines_fixed(mesh), tolerance_);
+      approach_far(mesh, watch, sizes, is_fixed, nearness);
+      clear = mend_places(mesh, lines_fixed(mesh), kLittle * tolerance_);
     } else if (effort == Effort::kFull) {
       remove_input_vertices(mesh, sizes, context, counts_.coarsen);
       progress(0.6);
       counts_.merged_lines = merge_lines(mesh, is_fixed, tolerance_);
       improve_surface(mesh, input_, curves, sizes, context, counts_.improve);
       counts_.merged_lines += merge_lines(mesh, is_fixed, tolerance_);
-      clear = mend_places(mesh, is_fixed);
+      clear = mend_places(mesh, is_fixed, tolerance_);
       nearness = come_near(mesh, is_fixed, clear);
     } else {
       counts_.coarsen.input_vertices_left = surface_.points.size();
@@ -353,6 +386,77 @@ class Remesher {
     counts_.divided_edges += divide_repeated_triangles(mesh, known_, sizes);
   }
 
+  /// Of a complex, smaller sizes and more triangles where it strays, while that helps.
+  void refine_far(WorkingMesh& mesh, DeviationWatch& watch, const std::vector<Curve>& curves, SizeField& sizes,
+                  Nearness& n) {
+    for (int k = 0; k < kRefinements; ++k) {
+      const std::vector<PointSize> wanted = sizes_against(far_places(mesh, watch), sizes);
+      if (wanted.empty()) return;
+      n.wanted.insert(n.wanted.end(), wanted.begin(), wanted.end());
+      sizes = capped_steeply(sizes, wanted, kSteep, stage_.context());
+      refine(mesh, curves, sizes);
+    }
+  }
+
+  /// Points of the complex where the mesh strays still. What is left then lies beside seams: another round has to
+  /// divide these.
+  void approach_far(WorkingMesh& mesh, DeviationWatch& watch, const SizeField& sizes,
+                    const std::vector<std::uint8_t>& is_fixed, Nearness& n) {
+    std::vector<FarPlace> places = far_places(mesh, watch);
+    for (int k = 0; k < kApproaches; ++k) {
+      std::erase_if(places, [&](const FarPlace& p) { return p.distance < kComeNear * tolerance_; });
+      const std::uint64_t put_in = places.empty() ? 0 : approach(mesh, input_, known_.tree(), is_fixed, places);
+      if (put_in == 0) break;
+      counts_.approached += put_in;
+      places = far_places(mesh, watch);
+    }
+    n.far = positions_beyond(tolerance_, places);
+    const std::vector<PointSize> wanted = sizes_against(places, sizes);
+    n.wanted.insert(n.wanted.end(), wanted.begin(), wanted.end());
+  }
+
+  /// Puts points of the complex into triangles that cross others: chords between near sheets.
+  void mend_crossings(WorkingMesh& mesh, const std::vector<std::uint8_t>& is_fixed) {
+    for (double before = HUGE_VAL;;) {
+      const std::vector<std::uint32_t> number = front_triangles(mesh);
+      const SurfaceMesh alive = triangles_of(mesh, number);
+      std::vector<std::uint32_t> crossing;
+      for (const auto& pair : find_crossings(alive)) crossing.insert(crossing.end(), pair.begin(), pair.end());
+      std::sort(crossing.begin(), crossing.end());
+      crossing.erase(std::unique(crossing.begin(), crossing.end()), crossing.end());
+      if (crossing.empty()) return;
+      const auto now = static_cast<double>(crossing.size());
+      if (now > kFewFar * static_cast<double>(number.size()) || now > kWorthAnother * before) return;
+      before = now;
+      std::vector<FarPlace> places = places_under(crossing, alive, known_.tree());
+      for (FarPlace& place : places) place.triangle = number[place.triangle];
+      // A point in the plane of its triangle changes nothing, and leaves a flat element.
+      std::erase_if(places, [&](const FarPlace& p) {
+        return p.distance < kInPlane * std::sqrt(length(mesh.area_vector(p.triangle)));
+      });
+      const std::uint64_t put_in = approach(mesh, input_, known_.tree(), is_fixed, places);
+      counts_.approached += put_in;
+      if (put_in == 0) return;
+    }
+  }
+
+  /// Of a complex, per vertex whether it is on a seam or another line.
+  static std::vector<std::uint8_t> lines_fixed(const WorkingMesh& mesh) {
+    std::vector<std::uint8_t> is_fixed(mesh.points.size());
+    for (VertexIndex v = 0; v < is_fixed.size(); ++v) is_fixed[v] = mesh.on_curve(v);
+    return is_fixed;
+  }
+
+  /// Divides what is longer than the sizes ask for, and makes good triangles of it.
+  void refine(WorkingMesh& mesh, const std::vector<Curve>& curves, const SizeField& sizes) {
+    parallel_for(mesh.points.size(), [&](std::size_t v) {
+      if (mesh.outgoing[v] != kNone) mesh.size[v] = sizes.at(mesh.points[v]);
+    });
+    improve_surface(mesh, input_, curves, sizes, stage_.context(), counts_.improve);
+    counts_.divided_edges += divide_repeated_edges(mesh, known_, sizes);
+    counts_.divided_edges += divide_repeated_triangles(mesh, known_, sizes);
+  }
+
   /// Puts in points of the input where the mesh strays at few places and nothing crosses. `clear`: whether that is
   /// known, before and after.
   Nearness come_near(WorkingMesh& mesh, const std::vector<std::uint8_t>& is_fixed, bool& clear) {
@@ -375,17 +479,38 @@ class Remesher {
       counts_.approached += put_in;
       const std::vector<Vec3> all = positions_beyond(0, places);
       approached.insert(approached.end(), all.begin(), all.end());
-      clear = mend_places(mesh, is_fixed);
+      clear = mend_places(mesh, is_fixed, tolerance_);
     }
   }
 
   Nearness nearness_of(const WorkingMesh& mesh, const std::vector<FarPlace>& places) const {
     const double much = kMuchTooFar * tolerance_;
-    return {{}, positions_beyond(tolerance_, places, much), positions_beyond(much, places), corners_at(mesh, places)};
+    return {
+        {}, positions_beyond(tolerance_, places, much), positions_beyond(much, places), {}, corners_at(mesh, places)};
+  }
+
+  /// Sizes by which the mesh would stray no more: what chords cut off grows with the square of their length. Of places
+  /// near to each other that of the smallest size.
+  std::vector<PointSize> sizes_against(const std::vector<FarPlace>& places, const SizeField& sizes) const {
+    std::vector<PointSize> wanted;
+    for (const FarPlace& place : places) {
+      if (place.distance < tolerance_) continue;
+      const double part = std::sqrt(kAim * tolerance_ / place.distance);
+      wanted.push_back({place.at, sizes.at(place.at) * std::max(part, kLeastPart)});
+    }
+    std::sort(wanted.begin(), wanted.end(), [](const PointSize& a, const PointSize& b) {
+      return std::tie(a.size, a.p.x, a.p.y, a.p.z) < std::tie(b.size, b.p.x, b.p.y, b.p.z);
+    });
+    return thinned(std::move(wanted));
   }
 
   /// Smaller sizes where the surface strayed.
   void cap_far(const Compacted& c) {
+    if (seamed_ && !c.nearness.wanted.empty()) {
+      wanted_.push_back(c.nearness.wanted);
+      sizes_ = capped_steeply(sizes_, wanted_.back(), kSteep, stage_.context());
+    }
+    if (seamed_) return;
     std::vector<Vec3> places = c.nearness.far;
     places.insert(places.end(), c.nearness.approached.begin(), c.nearness.approached.end());
     if (!places.empty()) cap(places, kDeviationCap);
@@ -420,13 +545,14 @@ class Remesher {
 
   /// What is left of bad triangles, of edges too sharp for any element, and of crossings where these are few. True if
   /// it is known that nothing crosses then.
-  bool mend_places(WorkingMesh& mesh, const std::vector<std::uint8_t>& is_fixed) {
-    FoldLimits limits{.tolerance = tolerance_,
+  bool mend_places(WorkingMesh& mesh, const std::vector<std::uint8_t>& is_fixed, double tolerance) {
+    FoldLimits limits{.tolerance = tolerance,
                       .size_part = kMovedPart,
                       .least_shape = kBadShape,
                       .keep_lines = true,
                       .onto = &known_.tree(),
-                      .is_fixed = is_fixed};
+                      .is_fixed = is_fixed,
+                      .patch_of = seamed_ ? &input_.patch : nullptr};
     for (int round = 0; round < kMendingRounds; ++round) {
       const std::vector<std::uint8_t> crossing = crossing_triangles(mesh);
       const auto count = std::count(crossing.begin(), crossing.end(), 1);
@@ -514,6 +640,8 @@ class Remesher {
   /// The sizes again without what was asked of them where the input's triangles have returned.
   void forget_caps() {
     sizes_ = first_;
+    for (const std::vector<PointSize>& wanted : wanted_)
+      sizes_ = capped_steeply(sizes_, wanted, kSteep, stage_.context());
     for (Caps& caps : caps_) {
       std::erase_if(caps.places, [&](Vec3 p) {
         return std::any_of(restored_.begin(), restored_.end(),
@@ -526,7 +654,8 @@ class Remesher {
   /// Whether the surface is as near to the input as was asked, or could be made so in the rounds allowed; otherwise the
   /// sizes are made smaller. Leaves the sources.
   bool is_true(Compacted& c) {
-    const bool is_last = counts_.rounds == kMostRounds || counts_.deviation_rounds == kMostDeviationRounds;
+    const bool is_last = counts_.rounds == kMostRounds ||
+                         (seamed_ ? counts_.rounds > 1 : counts_.deviation_rounds == kMostDeviationRounds);
     c.result.source = sources_of(c);
     std::vector<PointSize> turned;
     if (options_.normal_deviation) {
@@ -582,7 +711,8 @@ class Remesher {
   const SizeField first_;  ///< the sizes as they were asked
   SizeField sizes_;        ///< and as they are now
   std::vector<Caps> caps_;
-  std::vector<Ball> restored_;  ///< where the input's own triangles stay
+  std::vector<std::vector<PointSize>> wanted_;  ///< against deviation, in a complex
+  std::vector<Ball> restored_;                  ///< where the input's own triangles stay
   const SurfaceOptions& options_;
   double tolerance_;  ///< for details of the input: none moves farther
   const Stage& stage_;
