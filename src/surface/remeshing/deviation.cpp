@@ -102,9 +102,17 @@ void add_suspects(const TriangleCorners& corners, std::uint32_t t, const PartsOf
   }
 }
 
+/// Of a triangle so much longer than those made there its inside is looked at in any case.
+constexpr double kNoSmaller = 2;
+
+double longest_edge(const TriangleCorners& t) {
+  return std::sqrt(
+      std::max({squared_distance(t[0], t[1]), squared_distance(t[1], t[2]), squared_distance(t[2], t[0])}));
+}
+
 /// Samples of the input that may be far: of those triangles whose corners are not all well within the limit.
 std::vector<Sample> suspects(double limit, double far, const SurfaceMesh& input,
-                             const std::vector<std::uint32_t>& triangles, const TriangleTree& made) {
+                             const std::vector<std::uint32_t>& triangles, const TriangleTree& made, Fine fine) {
   std::vector<double> reach(input.points.size(), -1);
   std::vector<VertexIndex> vertices;
   for (const std::uint32_t t : triangles)
@@ -115,20 +123,33 @@ std::vector<Sample> suspects(double limit, double far, const SurfaceMesh& input,
       }
   note_reach(input, reach);
   std::vector<std::uint8_t> is_safe(reach.size(), 0);
+  std::vector<double> made_edge(fine == Fine::kCorners ? reach.size() : 0);  // near vertices that are not safe
   parallel_for(vertices.size(), [&](std::size_t i) {
     const VertexIndex v = vertices[i];
     is_safe[v] = reach[v] < limit && made.is_within(input.points[v], limit - reach[v]);
+    if (!is_safe[v] && fine == Fine::kCorners)
+      made_edge[v] = longest_edge(made.corners(made.nearest(input.points[v]).triangle));
   });
   constexpr std::size_t kRange = 256;
   const auto collect = [&](std::size_t begin, std::size_t end, std::vector<Sample>& found) {
     const PartsOfInput look(limit, far, made);
     for (std::size_t i = begin; i < end; ++i) {
       const auto& [a, b, c] = input.triangles[triangles[i]];
-      if (!is_safe[a] || !is_safe[b] || !is_safe[c])
-        add_suspects({input.points[a], input.points[b], input.points[c]}, triangles[i], look, found);
+      if (is_safe[a] && is_safe[b] && is_safe[c]) continue;
+      const TriangleCorners corners{input.points[a], input.points[b], input.points[c]};
+      const bool is_fine = fine == Fine::kCorners &&
+                           longest_edge(corners) <= kNoSmaller * std::max({made_edge[a], made_edge[b], made_edge[c]});
+      if (!is_fine) add_suspects(corners, triangles[i], look, found);
     }
   };
-  return parallel_collect<Sample>(triangles.size(), kRange, collect);
+  std::vector<Sample> found = parallel_collect<Sample>(triangles.size(), kRange, collect);
+  if (fine == Fine::kParts) return found;
+  for (const std::uint32_t t : triangles)
+    for (const VertexIndex v : input.triangles[t]) {
+      if (!is_safe[v]) found.push_back({input.points[v], t});
+      is_safe[v] = 1;  // once
+    }
+  return found;
 }
 
 /// Corners, middles of edges and centroids, a corner or an edge with one of its triangles.
@@ -181,8 +202,14 @@ Box3 box_of(const TriangleCorners& t, double margin) {
 
 }  // namespace
 
-DeviationWatch::DeviationWatch(double limit, double far, const SurfaceMesh& input, const TriangleTree& input_tree)
-    : limit_(limit), far_(far), input_(input), input_tree_(input_tree), is_near_change_(input.triangles.size(), 1) {}
+DeviationWatch::DeviationWatch(double limit, double far, const SurfaceMesh& input, const TriangleTree& input_tree,
+                               Fine fine)
+    : limit_(limit),
+      far_(far),
+      fine_(fine),
+      input_(input),
+      input_tree_(input_tree),
+      is_near_change_(input.triangles.size(), 1) {}
 
 std::vector<FarPlace> DeviationWatch::look(const SurfaceMesh& made, const std::vector<std::uint32_t>& number) {
   const std::vector<std::uint32_t> changed = note_changes(made, number);
@@ -201,7 +228,8 @@ std::vector<FarPlace> DeviationWatch::look(const SurfaceMesh& made, const std::v
   for (std::uint32_t t = 0; t < input_.triangles.size(); ++t)
     if (is_near_change_[t]) asked.push_back(t);
   const TriangleTree made_tree(made);
-  for (const auto& [p, t, within] : beyond(limit_, suspects(limit_, far_, input_, asked, made_tree), made_tree)) {
+  for (const auto& [p, t, within] :
+       beyond(limit_, suspects(limit_, far_, input_, asked, made_tree, fine_), made_tree)) {
     const std::uint32_t triangle = nearest_facing(made_tree, p, normal_of(input_, t), distance).triangle;
     of_input_.push_back({p, {p, t}, distance, number[triangle], within});
   }

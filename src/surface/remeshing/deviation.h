@@ -19,13 +19,18 @@ struct FarPlace {
   bool within = false;             ///< inside a triangle of the input, not at its corners or the middles of its edges
 };
 
+/// What is looked at of triangles of the input that are not much longer than those made there: whatever part of them
+/// may be far, or their corners, between which there is little. Nets of voxels consist of such.
+enum class Fine { kParts, kCorners };
+
 /// Looks for places where a surface that is being made lies farther from its input than `limit`, at the centroids, edge
 /// midpoints and vertices of the made one, and at the vertices and edge midpoints of the input and wherever else it may
 /// lie beyond the limit; no deeper where it is known to lie beyond `far`. Where nothing changed since the last look,
 /// what was found then stands. `input_tree` is over the triangles of `input`; both must outlive it.
 class DeviationWatch {
  public:
-  DeviationWatch(double limit, double far, const SurfaceMesh& input, const TriangleTree& input_tree);
+  DeviationWatch(double limit, double far, const SurfaceMesh& input, const TriangleTree& input_tree,
+                 Fine fine = Fine::kParts);
 
   /// The places of `made`, whose triangles are called by `number`: ascending, the same ones for the same triangles in
   /// each look.
@@ -35,6 +40,7 @@ class DeviationWatch {
   std::vector<std::uint32_t> note_changes(const SurfaceMesh& made, const std::vector<std::uint32_t>& number);
 
   double limit_, far_;
+  Fine fine_;
   const SurfaceMesh& input_;
   const TriangleTree& input_tree_;
   std::vector<std::optional<TriangleCorners>> last_;  ///< by number

@@ -541,7 +541,9 @@ class Remesher {
     return places;
   }
 
-  DeviationWatch deviation_watch() const { return {kLeftAlone * tolerance_, tolerance_, surface_, known_.tree()}; }
+  DeviationWatch deviation_watch() const {
+    return {kLeftAlone * tolerance_, tolerance_, surface_, known_.tree(), seamed_ ? Fine::kCorners : Fine::kParts};
+  }
 
   /// What is left of bad triangles, of edges too sharp for any element, and of crossings where these are few. True if
   /// it is known that nothing crosses then.
