@@ -350,11 +350,11 @@ void declare_surface(CLI::App& command, Arguments& a) {
       ->add_option("--feature-angle", o.feature_angle, "Edges that bend by more degrees than this are kept; images: 85")
       ->type_name("DEG")
       ->capture_default_str();
-  add_length(
-      *group, a, "--max-deviation", o.max_deviation,
-      "Smaller elements where the surface would stray farther from the input, and how far folds and needles "
-      "of it give way; 0: not at all [images: 0.16 voxels, but not with --elements; else 0.4 % of the diagonal with "
-      "automatic sizes]")
+  add_length(*group, a, "--max-deviation", o.max_deviation,
+             "Smaller elements where the surface would stray farther from the input, and how far folds and needles "
+             "of it give way; 0: not at all [images: 0.16 voxels, but not with --elements; what repair changed: its "
+             "tolerance, else 0.4 % of the diagonal, with "
+             "automatic sizes]")
       ->type_name("D");
   group
       ->add_option("--normal-deviation", o.normal_deviation,

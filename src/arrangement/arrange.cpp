@@ -72,10 +72,22 @@ std::uint64_t tidy(Soup& soup) {
   return flat;
 }
 
-void put_in_order(std::vector<Origin>& origins) {
+/// In order, and each way as often as it is left when opposite ones cancel; of one that cancels altogether both stay,
+/// for what lies there shall be known.
+void settle(std::vector<Origin>& origins) {
   std::sort(origins.begin(), origins.end(), [](const Origin& a, const Origin& b) {
     return std::pair(a.triangle, a.reversed) < std::pair(b.triangle, b.reversed);
   });
+  std::size_t kept = 0;
+  for (std::size_t i = 0, end = 0; i < origins.size(); i = end) {
+    const std::uint32_t triangle = origins[i].triangle;
+    std::size_t ways[2] = {0, 0};
+    for (end = i; end < origins.size() && origins[end].triangle == triangle; ++end) ++ways[origins[end].reversed];
+    const std::size_t both = std::min(ways[0], ways[1]), left = ways[0] == ways[1] ? 1 : 0;
+    for (const bool reversed : {false, true})
+      for (std::size_t k = both - left; k < ways[reversed]; ++k) origins[kept++] = {triangle, reversed};
+  }
+  origins.resize(kept);
 }
 
 /// Of triangles on the same corners one stays, with the origins of all.
@@ -106,7 +118,7 @@ void merge_equal(Soup& soup) {
     if (gone[t]) continue;
     soup.triangles[left] = soup.triangles[t];
     if (left != t) soup.origins[left] = std::move(soup.origins[t]);
-    put_in_order(soup.origins[left++]);
+    settle(soup.origins[left++]);
   }
   soup.triangles.resize(left);
   soup.origins.resize(left);
@@ -117,7 +129,7 @@ std::vector<Origin> composed(const std::vector<Origin>& of_pass, const Soup& bef
   std::vector<Origin> all;
   for (const Origin& o : of_pass)
     for (const Origin& p : before.origins[o.triangle]) all.push_back({p.triangle, p.reversed != o.reversed});
-  put_in_order(all);
+  settle(all);
   return all;
 }
 

@@ -20,6 +20,10 @@ struct Facet {
   std::vector<std::uint32_t> contacts;   ///< numbers of Contacts::all
 };
 
+/// At how many points three faces may cross. Soups of real things have few such points, even if parts of theirs lie on
+/// each other; faces that all cross all others have a cube of their number.
+constexpr std::size_t kCrossingsInAll = 50'000, kCrossingsPerFace = 10;
+
 /// What becomes of a facet: points count from the table's; behind all of them its own crossings.
 struct FacetPieces {
   struct Piece {
@@ -68,8 +72,8 @@ int viewing_axis(Vec3 a, Vec3 b, Vec3 c) {
 class FacetDivider {
  public:
   FacetDivider(const PointTable& table, std::span<const Triangle> triangles, const Contacts& contacts,
-               const Facet& facet)
-      : table_(table), triangles_(triangles), contacts_(contacts), facet_(facet) {}
+               const Facet& facet, CrossingBudget& budget)
+      : table_(table), triangles_(triangles), contacts_(contacts), facet_(facet), budget_(budget) {}
 
   FacetPieces pieces() {
     FacetPieces result;
@@ -78,7 +82,7 @@ class FacetDivider {
     Box3 box;
     for (const std::uint32_t t : facet_.triangles)
       for (const VertexIndex v : triangles_[t]) box.add(at(v));
-    PlaneMesh mesh(plane_through(at(a), at(b), at(c)), result.axis, box);
+    PlaneMesh mesh(plane_through(at(a), at(b), at(c)), result.axis, box, &budget_);
     add_points(mesh, result);
     add_segments(mesh, result.axis);
     mesh.improve();
@@ -149,6 +153,7 @@ class FacetDivider {
   std::span<const Triangle> triangles_;
   const Contacts& contacts_;
   const Facet& facet_;
+  CrossingBudget& budget_;
   std::vector<std::pair<std::uint32_t, PlaneMesh::Node>> node_;  ///< of points, sorted
   std::vector<std::uint32_t> number_;                            ///< per node
 };
@@ -176,11 +181,12 @@ Divided divide(PointTable& table, std::span<const Triangle> triangles,
   const Contacts contacts = find_contacts(table, triangles, pairs, context);
   const std::vector<Facet> facets = facets_of(contacts, triangles.size());
   std::vector<FacetPieces> made(facets.size());
+  CrossingBudget budget(kCrossingsInAll + kCrossingsPerFace * triangles.size());
   parallel_for(
       facets.size(),
       [&](std::size_t f) {
         context.check();
-        made[f] = FacetDivider(table, triangles, contacts, facets[f]).pieces();
+        made[f] = FacetDivider(table, triangles, contacts, facets[f], budget).pieces();
       },
       Split::kAdaptive);
 

@@ -1,8 +1,12 @@
 #include "arrangement/plane_mesh.h"
 
+#include <octafront/error.h>
+
 #include <algorithm>
 #include <iterator>
 #include <utility>
+
+#include <fmt/core.h>
 
 namespace octafront::arrangement {
 namespace {
@@ -32,7 +36,16 @@ double cotangent(Vec3 apex, Vec3 p, Vec3 q) {
 
 }  // namespace
 
-PlaneMesh::PlaneMesh(const Homogeneous& plane, int axis, const Box3& box) : plane_(plane), axis_(axis) {
+void CrossingBudget::take() {
+  if (taken_++ < most_) return;
+  throw InputError(
+      fmt::format("more than {} points lie on three faces or more at once: where all faces cross all others there is "
+                  "no surface to keep",
+                  most_));
+}
+
+PlaneMesh::PlaneMesh(const Homogeneous& plane, int axis, const Box3& box, CrossingBudget* budget)
+    : plane_(plane), axis_(axis), budget_(budget) {
   const int u = next(axis), v = next(u);
   const Vec3 center = box.center(), extent = box.extent();
   // Far enough that every point lies well inside, also where extents vanish.
@@ -264,6 +277,7 @@ PlaneMesh::Node PlaneMesh::clear_way(Node a, Node b, std::uint32_t cut) {
   for (;;) {
     const Triangle3& t = triangles_[across.triangle];
     if (const std::uint32_t m = t.mark[across.corner]; m != kNone) {
+      if (budget_) budget_->take();
       crossings_.push_back(planes_meet(plane_, cuts_[cut], cuts_[marks_[m].cut]));
       const ExactPoint& x = crossings_.back();
       const Node n = new_node({x.at, &x.place});

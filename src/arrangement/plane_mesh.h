@@ -6,11 +6,25 @@
 #include "core/random.h"
 
 #include <array>
+#include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <vector>
 
 namespace octafront::arrangement {
+
+/// What the meshes of all planes may spend on points where segments cross, together.
+class CrossingBudget {
+ public:
+  explicit CrossingBudget(std::size_t most) : most_(most) {}
+  /// Takes one; throws InputError if there is none left.
+  void take();
+
+ private:
+  const std::size_t most_;
+  std::atomic<std::size_t> taken_ = 0;
+};
 
 /// A constrained triangulation in a plane, grown point by point and segment by segment; segments that cross get a
 /// vertex where they do. All decisions are exact; flips towards Delaunay triangles are a choice of quality.
@@ -21,7 +35,8 @@ class PlaneMesh {
   using Border = std::vector<std::uint32_t>;
 
   /// For points of the plane within the box; `axis` is the one along which they are seen, not parallel to the plane.
-  PlaneMesh(const Homogeneous& plane, int axis, const Box3& box);
+  /// Crossings are taken from the budget, if there is one, which must outlive the mesh.
+  PlaneMesh(const Homogeneous& plane, int axis, const Box3& box, CrossingBudget* budget = nullptr);
   PlaneMesh(const PlaneMesh&) = delete;
   PlaneMesh& operator=(const PlaneMesh&) = delete;
 
@@ -86,6 +101,7 @@ class PlaneMesh {
   std::vector<Triangle3> triangles_;
   std::vector<Mark> marks_;
   std::vector<Homogeneous> cuts_;
+  CrossingBudget* budget_;
   std::deque<ExactPoint> crossings_;
   std::vector<Node> crossing_nodes_;
   std::uint32_t last_ = 0;

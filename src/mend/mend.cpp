@@ -8,6 +8,7 @@
 #include "core/disjoint_sets.h"
 #include "core/wording.h"
 #include "geometry/measures.h"
+#include "geometry/predicates.h"
 #include "geometry/triangle_tree.h"
 #include "mend/holes.h"
 #include "mend/label.h"
@@ -34,6 +35,28 @@ using Kind = MendChange::Kind;
 
 /// Of the diagonal.
 constexpr double kTolerance = 1e-3;
+
+[[noreturn]] void refuse_open() {
+  throw InputError(
+      "the surface encloses nothing: it is a sheet, or more open than closed. Give it a thickness or close it; "
+      "`repair` wrap makes a closed skin around it");
+}
+
+/// Exactly; what has no area at all does not count as a plane.
+bool lies_in_a_plane(const SurfaceMesh& soup) {
+  const auto corners = [&](const Triangle& t) {
+    return TriangleCorners{soup.points[t[0]], soup.points[t[1]], soup.points[t[2]]};
+  };
+  const auto first = std::ranges::find_if(soup.triangles, [&](const Triangle& t) {
+    const TriangleCorners c = corners(t);
+    return !collinear(c[0], c[1], c[2]);
+  });
+  if (first == soup.triangles.end()) return false;
+  const TriangleCorners plane = corners(*first);
+  return std::ranges::all_of(soup.triangles, [&](const Triangle& t) {
+    return std::ranges::all_of(corners(t), [&](Vec3 p) { return orient3d(plane[0], plane[1], plane[2], p) == 0; });
+  });
+}
 
 double tolerance_of(const MendOptions& options, double diagonal) {
   if (!options.tolerance) return kTolerance * diagonal;
@@ -132,12 +155,6 @@ class Mending {
       if (!tree.is_within(middle, kLatticeEdge * report_.diagonal) && !tree.contains(middle)) left_out += size;
     }
     return all > 0 ? left_out / all : 0;
-  }
-
-  [[noreturn]] static void refuse_open() {
-    throw InputError(
-        "the surface encloses nothing: it is a sheet, or more open than closed. Give it a thickness or close it; "
-        "`repair` wrap makes a closed skin around it");
   }
 
   /// Patches and faces of the input, by the nearest walls.
@@ -390,6 +407,7 @@ Mended mend_surface(const SurfaceMesh& soup, const MendOptions& options, const R
   if (options.way == MendOptions::Way::kWrap) {
     mended.surface = wrapped(soup, options, context, report);
   } else {
+    if (lies_in_a_plane(soup)) refuse_open();
     RepairedSurface repaired = repair_surface(soup, context);
     const bool is_enough = find_defects(repaired, context).clean();
     report.clean = is_enough && !has_changed(repaired);

@@ -1,5 +1,7 @@
 #include "arrangement/plane_mesh.h"
 
+#include <octafront/error.h>
+
 #include "support/random.h"
 
 #include <cmath>
@@ -88,6 +90,20 @@ TEST(PlaneMesh, CoversEveryFaceByItsArea) {
     }
     for (std::size_t f = 0; f < wanted.size(); ++f) EXPECT_NEAR(covered[f], wanted[f], 1e-12);
   }
+}
+
+TEST(PlaneMesh, TakesNoMoreCrossingsThanItMay) {
+  CrossingBudget budget(3);
+  PlaneMesh mesh(kGround, 2, kBox, &budget);
+  const auto cross = [&](double y) {
+    const auto a = mesh.add_point({Vec3{0.1, y, 0}}), b = mesh.add_point({Vec3{0.9, y, 0}});
+    mesh.add_segment(a, b, plane_along_axis({0.1, y, 0}, {0.9, y, 0}, 2));
+  };
+  const auto a = mesh.add_point({Vec3{0.5, 0.05, 0}}), b = mesh.add_point({Vec3{0.5, 0.95, 0}});
+  mesh.add_segment(a, b, plane_along_axis({0.5, 0.05, 0}, {0.5, 0.95, 0}, 2));
+  for (const double y : {0.2, 0.4, 0.6}) cross(y);
+  EXPECT_EQ(mesh.crossings().size(), 3);
+  EXPECT_THROW(cross(0.8), InputError);
 }
 
 }  // namespace

@@ -70,9 +70,11 @@ class View:
         self.settle()
 
     def settle(self):
-        """Until the picture stands still."""
+        """Until the picture stands still: over frames that were drawn, however long a busy machine takes for one."""
         last, same, end = None, 0, time.time() + 20
         while same < 3 and time.time() < end:
+            self.driver.execute_async_script(
+                "const done = arguments[0]; requestAnimationFrame(() => requestAnimationFrame(() => done()))")
             now = self.camera()
             same = same + 1 if now == last else 0
             last = now
