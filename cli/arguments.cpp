@@ -175,6 +175,10 @@ void declare_complex(CLI::App& command, Arguments& a) {
       *group, "--nested", o.nested,
       {{"direction", Nested::kByDirection}, {"cavity", Nested::kCavity}, {"region", Nested::kRegion}},
       "Closed shells inside others: cavities where they face inward and regions where outward, or all the same");
+  add_choice<Overlap>(
+      *group, "--overlap", a.overlap, {{"union", Overlap::kUnion}, {"regions", Overlap::kRegions}},
+      "Parts of one file that overlap: united, or a region for each name of a patch (solid, group), the "
+      "later one where they overlap");
   group
       ->add_option("--tolerance", o.tolerance,
                    "Several files: what is nearer than this comes together; 0: exactly as they are [a millionth of "

@@ -31,6 +31,7 @@ enum class Preset { kDraft, kStandard, kFine };
 enum class Repair { kNone, kAuto, kWrap };
 /// What becomes of walls with one region on both sides.
 enum class Sheets { kKeep, kDrop };
+enum class Overlap { kUnion, kRegions };
 
 /// What the user typed, as the commands need it.
 struct Arguments {
@@ -42,6 +43,7 @@ struct Arguments {
   ImageArguments image;
   Repair repair = Repair::kAuto;
   Sheets sheets = Sheets::kKeep;
+  Overlap overlap = Overlap::kUnion;
   MendOptions mend;               ///< but for what `repair` says, and the tolerance, which is that of `complex`
   std::filesystem::path defects;  ///< where the changes of repair are shown; empty: nowhere
   std::vector<std::filesystem::path> meshes;               ///< that are written; "-": to standard output

@@ -38,6 +38,14 @@ std::vector<std::string> names_of(const std::vector<std::filesystem::path>& file
   return names;
 }
 
+SurfaceFile joined(Session& session, const std::vector<Body>& bodies, const ComplexOptions& options,
+                   const std::string& format) {
+  session.context().report("joining", -1);
+  Complex complex = join_bodies(bodies, options, session.context());
+  tell_regions(session, complex);
+  return {std::move(complex.surface), format, {}};
+}
+
 SurfaceFile read_bodies(Session& session, Defects defects) {
   const Arguments& a = session.arguments();
   const std::vector<std::string> names = names_of(a.bodies);
@@ -53,10 +61,26 @@ SurfaceFile read_bodies(Session& session, Defects defects) {
     if (defects == Defects::kMended) mend(session, a.bodies[i], file.surface);
     bodies.push_back({names[i], std::move(file.surface)});
   }
-  session.context().report("joining", -1);
-  Complex complex = join_bodies(bodies, options, session.context());
-  tell_regions(session, complex);
-  return {std::move(complex.surface), "several files", {}};
+  return joined(session, bodies, options, "several files");
+}
+
+/// Parts of one file that have names of their own.
+SurfaceFile read_parts(Session& session, Defects defects) {
+  const Arguments& a = session.arguments();
+  const SurfaceFile file = read_one(session, a.input);
+  if (!file.surface.sides.empty())
+    throw InputError(fmt::format("{}: has regions already; leave out --overlap", a.input.string()));
+  std::vector<Body> bodies = bodies_by_name(file.surface);
+  if (bodies.size() < 2)
+    throw InputError(
+        fmt::format("{}: --overlap regions needs parts with names of their own (solids, groups); all of it is \"{}\"",
+                    a.input.string(), bodies.empty() ? "" : bodies[0].name));
+  if (defects == Defects::kMended)
+    for (Body& body : bodies) mend(session, fmt::format("{} ({})", a.input.string(), body.name), body.surface);
+  ComplexOptions options = a.complex;
+  options.regions.insert(options.regions.end(), file.regions.begin(), file.regions.end());
+  options.voids.insert(options.voids.end(), file.voids.begin(), file.voids.end());
+  return joined(session, bodies, options, file.format);
 }
 
 /// A single body with sheets in it, and nobody asked for regions: repair has more to say of what hangs in a body, for a
@@ -126,7 +150,9 @@ std::filesystem::path leak_file(std::filesystem::path output) {
 SurfaceFile read_domain(Session& session, Defects defects) {
   if (is_image_input(session.arguments())) return read_image_domain(session);
   try {
-    return session.arguments().bodies.size() > 1 ? read_bodies(session, defects) : read_walls(session, defects);
+    if (session.arguments().bodies.size() > 1) return read_bodies(session, defects);
+    return session.arguments().overlap == Overlap::kRegions ? read_parts(session, defects)
+                                                            : read_walls(session, defects);
   } catch (const LeakError& leak) {
     fail_with_way(session, leak);
   }

@@ -63,6 +63,11 @@ struct Body {
   SurfaceMesh surface;  ///< closed, free of self-intersections, after repair; patches keep their names
 };
 
+/// The bodies of one surface, by names of patches, in their order: a patch that is closed by itself is a body; of the
+/// others what hangs together is one, with the name of the patch that has most of its faces. Parts of one name are one
+/// body, patches without one are `part_1` by their number.
+std::vector<Body> bodies_by_name(const SurfaceMesh& surface);
+
 /// The complex of several bodies: where they touch they share faces, where they overlap the later one has its way, and
 /// gaps below the tolerance close: vertices of later bodies move onto earlier ones. Seeds name and empty what no body
 /// fills. A body that later ones cover all over is refused. Throws InputError, with the name of the body at fault;

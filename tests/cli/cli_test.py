@@ -76,6 +76,22 @@ class CommandLine(unittest.TestCase):
         # The other way round the plate has its way.
         self.assertAlmostEqual(self.regions_of(bolt, plate)["bolt"], 0.25, 12)
 
+    def test_parts_of_one_file_unite_or_are_regions_by_name(self):
+        both = self.dir / "both.obj"
+        lines = []
+        for low, high in ((0, 2), (1, 3)):
+            lines += [f"v {x} {y} {z}" for z in (low, high) for y in (low, high) for x in (low, high)]
+        for name, first in (("bone", 1), ("marrow", 9)):
+            lines += [f"g {name}"] + ["f {} {} {}".format(*(c + first for c in f)) for f in self.CUBE]
+        both.write_text("\n".join(lines) + "\n")
+        self.assertEqual(self.regions_of(both, "--overlap", "regions"), {"bone": 7, "marrow": 8})
+        done = self.run_cli("mesh", both, "--overlap", "regions", "-o", self.dir / "parts.vtu")
+        self.assertIn("marrow", done.stdout)
+        united = json.loads(self.run_cli("mesh", both, "-o", self.dir / "one.vtu", "--json", "-").stdout)
+        self.assertAlmostEqual(united["volume"], 15, 9)
+        one = self.write_box("one.off", (0, 0, 0), (1, 1, 1))
+        self.assertIn("names", self.run_cli("mesh", one, "--overlap", "regions", "-o", self.dir / "a.vtu", status=3).stderr)
+
     def test_a_body_that_is_covered_is_refused_by_name(self):
         inner = self.write_box("inner.off", (1, 1, 1), (2, 2, 2))
         outer = self.write_box("outer.off", (0, 0, 0), (3, 3, 3))
