@@ -78,14 +78,17 @@ void note_cuts(MendReport& report, const Arrangement& arranged, const std::vecto
 void note_dropped(MendReport& report, repair::Draft& draft, const std::vector<char>& used) {
   const EdgeTable& table = draft.edges();
   DisjointSets parts(draft.mesh.triangles.size());
-  for (std::size_t e = 0; e < table.size(); ++e)
-    for (const HalfEdge h : table.uses(e)) parts.join(table.uses(e)[0] / 3, h / 3);
-  std::vector<char> is_left(used.size(), 0);
-  for (std::uint32_t t = 0; t < used.size(); ++t)
-    if (used[t]) is_left[parts.find(t)] = 1;
+  for (std::size_t e = 0; e < table.size(); ++e) {
+    std::uint32_t first = kNone;
+    for (const HalfEdge h : table.uses(e)) {
+      if (used[h / 3]) continue;
+      if (first != kNone) parts.join(first, h / 3);
+      first = h / 3;
+    }
+  }
   Gathered dropped(Kind::kDropped);
   for (std::uint32_t t = 0; t < used.size(); ++t) {
-    if (is_left[parts.find(t)]) continue;
+    if (used[t]) continue;
     dropped.add(parts.find(t), middle_of(draft.mesh.points, draft.mesh.triangles[t]),
                 area_of(draft.mesh.points, draft.mesh.triangles[t]), draft.face[t]);
   }

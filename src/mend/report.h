@@ -16,7 +16,7 @@ namespace octafront::mend {
 /// Input triangles that were divided or lie double, by places that hang together.
 void note_cuts(MendReport& report, const Arrangement& arranged, const std::vector<std::uint32_t>& face);
 
-/// Parts of the draft of which nothing is left.
+/// Faces of the draft of which nothing is left, by what hangs together of them.
 void note_dropped(MendReport& report, repair::Draft& draft, const std::vector<char>& used);
 
 /// Faces that were turned to agree with their neighbours, and pieces that faced the wrong way.

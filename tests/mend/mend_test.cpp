@@ -166,6 +166,17 @@ TEST(MendSurface, ThinGapsFill) {
   EXPECT_NEAR(enclosed_volume(kept.surface), 1.999 - 0.00025, 1e-12);
 }
 
+TEST(MendSurface, FinsAreDroppedAndSaid) {
+  SurfaceMesh soup = box_at({}, {1, 1, 1});
+  soup.patch.clear();
+  const Triangle on_it = soup.triangles[0];
+  soup.points.push_back({3, 3, 3});
+  soup.triangles.push_back({on_it[0], on_it[1], static_cast<VertexIndex>(soup.points.size() - 1)});
+  const Mended result = mended(soup);
+  EXPECT_EQ(result.surface.triangles.size(), soup.triangles.size() - 1);
+  EXPECT_EQ(result.report.count(Kind::kDropped), 1u);
+}
+
 TEST(MendSurface, SheetsAreRefusedWithWords) {
   SurfaceMesh terrain;
   constexpr int n = 8;
