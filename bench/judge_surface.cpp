@@ -209,7 +209,7 @@ Judged make(const SurfaceMesh& input, const Arguments& a) {
   if (a.triangles) options.size.size = std::sqrt(area(input) * 4 / std::sqrt(3.0) / *a.triangles);
   SurfaceResult result = generate_surface(input, options);
   StageReport ignored;
-  const KnownSurface known(input, options.surface.feature_angle);
+  const KnownSurface known(input, options.surface.angle_of_features());
   SizeField asked = make_size_field(known, options.size, {{}, ignored});
   return {std::move(result.surface), result.sizes, std::move(asked), std::move(result.report)};
 }
@@ -240,7 +240,7 @@ Json run(const Arguments& a) {
   }
   if (!a.output.empty()) write_surface(a.output, made.surface);
   Json j{{"triangles", made.surface.triangles.size()}, {"defect", nullptr}};
-  if (!a.only_times) j = judge(made, input, SurfaceOptions{}.feature_angle);
+  if (!a.only_times) j = judge(made, input, SurfaceOptions::kFeatureAngle);
   j["input_triangles"] = input.triangles.size();
   j["size_seconds"] = cpu_of(made.report, "size field");
   j["front_seconds"] = cpu_of(made.report, "surface front");

@@ -351,9 +351,9 @@ void declare_surface(CLI::App& command, Arguments& a) {
   auto* group = command.add_option_group("Surface");
   group->add_flag("--keep-surface", o.keep, "The input triangles become the boundary, exactly");
   group
-      ->add_option("--feature-angle", o.feature_angle, "Edges that bend by more degrees than this are kept; images: 85")
-      ->type_name("DEG")
-      ->capture_default_str();
+      ->add_option("--feature-angle", o.feature_angle,
+                   "Edges that bend by more degrees than this are kept [40; images: 85]")
+      ->type_name("DEG");
   add_length(*group, a, "--max-deviation", o.max_deviation,
              "Smaller elements where the surface would stray farther from the input, and how far folds and needles "
              "of it give way; 0: not at all [images: 0.16 voxels, but not with --elements; what repair changed: its "
@@ -439,9 +439,8 @@ void declare_ground(CLI::App& command, Arguments& a) {
   auto* group = command.add_option_group("Boundary", "Stays as it is, unless a surface is given");
   group->add_option("--surface", a.surface, "The surface that was meshed: the boundary may slide along it")
       ->type_name("FILE");
-  group->add_option("--feature-angle", a.options.surface.feature_angle, "Edges that bend by more degrees are kept")
-      ->type_name("DEG")
-      ->capture_default_str();
+  group->add_option("--feature-angle", a.options.surface.feature_angle, "Edges that bend by more degrees are kept [40]")
+      ->type_name("DEG");
 }
 
 void declare_order(CLI::App& command, Arguments& a) {

@@ -83,8 +83,7 @@ double smallest_spacing(const ImageGrid& grid);
 /// layers thinner than the size would lose their shape, so they get an element across; and nothing is smaller than a
 /// voxel. What was given stays. Whatever the sizes, regions keep their volumes, and unless a number of elements is
 /// given the surface follows the net so closely (max_deviation, .16 voxels) that it is no farther than a voxel from the
-/// voxels' faces. Of features only the edges of the image's box are kept (feature_angle 85 in the place of the
-/// default).
+/// voxels' faces. Of features only the edges of the image's box are kept (feature_angle 85), unless an angle is given.
 Options options_for_voxels(Options options, double spacing);
 
 }  // namespace octafront

@@ -54,7 +54,7 @@ class TriangleTree {
   }
 
   /// Calls visit(triangle, corners) for each triangle whose box meets the closed box, until one says false; returns
-  /// false if one did.
+  /// false if one did. The box may shrink meanwhile.
   template <class Visit>
   bool for_each_box_near(const Box3& box, Visit&& visit) const {
     bool on = true;

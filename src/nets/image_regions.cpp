@@ -144,7 +144,7 @@ Options options_for_voxels(Options options, double spacing) {
   const bool follows = !options.surface.keep && options.method != Method::kRecover && options.method != Method::kOctree;
   if (follows && !options.surface.max_deviation && !sizes.elements)
     options.surface.max_deviation = kDeviation * spacing;
-  if (options.surface.feature_angle == SurfaceOptions{}.feature_angle) options.surface.feature_angle = kBoxAngle;
+  if (!options.surface.feature_angle) options.surface.feature_angle = kBoxAngle;
   if (!sizes.size && !sizes.elements) return options;
   if (!sizes.gap) sizes.gap = 1;
   if (!sizes.min_size) sizes.min_size = std::min(spacing, sizes.size.value_or(spacing));

@@ -199,7 +199,8 @@ std::vector<Row> surface_rows() {
           of("keep_surface", "The input triangles become the boundary, exactly", "keep"),
           [](auto& o) -> auto& { return o.surface.keep; }),
       row(
-          of("feature_angle", "Edges that bend by more degrees than this are kept", {}, "mesh surface size improve"),
+          of("feature_angle", "Edges that bend by more degrees than this are kept; without a value 40, of images 85",
+             {}, "mesh surface size improve"),
           [](auto& o) -> auto& { return o.surface.feature_angle; }),
       row(
           of("max_deviation",

@@ -92,7 +92,7 @@ void raise_order(TetMesh& mesh, const Ground* ground, Run& run) {
   if (run.options.order < 2) return;
   run.stage("second order", [&](const Stage& stage) {
     run.report.second_order = ground ? curve_to_surface(mesh, ground->of_mesh.edges, ground->surface,
-                                                        run.options.surface.feature_angle, stage.context())
+                                                        run.options.surface.angle_of_features(), stage.context())
                                      : add_straight_edges(mesh, stage.context());
     count_edges(run.report.second_order, stage);
   });
@@ -114,7 +114,7 @@ Improved improve_existing(const TetMesh& mesh, const Options& options, const Sur
   std::optional<Ground> ground;
   if (surface)
     run.stage("surface", [&](const Stage& stage) {
-      ground.emplace(prepare_ground(mesh, *surface, options.surface.feature_angle, stage.context()));
+      ground.emplace(prepare_ground(mesh, *surface, options.surface.angle_of_features(), stage.context()));
     });
   run.stage("improve", [&](const Stage& stage) {
     std::optional<improve::BoundaryInput> on;

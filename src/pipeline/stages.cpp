@@ -147,7 +147,7 @@ Filled stuff(const Prepared& input, const SizeField& sizes, Run& run) {
     return stuffed;
   });
   for (std::uint32_t& triangle : mesh.source) triangle = input.surface.mesh().source_of(triangle);
-  Remeshed boundary = boundary_of_stuffed(mesh, sizes, run.options.surface.feature_angle);
+  Remeshed boundary = boundary_of_stuffed(mesh, sizes, run.options.surface.angle_of_features());
   return {std::move(mesh), std::move(boundary)};
 }
 
@@ -207,7 +207,7 @@ Prepared prepare(const SurfaceMesh& soup, Run& run) {
   if (defects == SurfaceDomain::Defects::kClean && is_plain) moved = smooth_detail(found, run);
   SurfaceMesh& surface = found.repaired.surface;
   Features features = run.stage("features", [&](const Stage& stage) {
-    Features of_surface = detect_features(surface, found.edges, run.options.surface.feature_angle);
+    Features of_surface = detect_features(surface, found.edges, run.options.surface.angle_of_features());
     stage.count("feature edges", static_cast<double>(of_surface.edges.size()));
     stage.count("corners", static_cast<double>(of_surface.corners.size()));
     if (run.options.surface.patches_by_features)
@@ -297,7 +297,7 @@ void raise_order(const Prepared& input, Filled& filled, Run& run) {
     run.report.second_order = keeps_surface(run.options)
                                   ? add_straight_edges(mesh, stage.context())
                                   : curve_to_surface(mesh, boundary.features.edges, input.surface,
-                                                     run.options.surface.feature_angle, stage.context());
+                                                     run.options.surface.angle_of_features(), stage.context());
     std::copy_n(mesh.points.begin(), boundary.surface.points.size(), boundary.surface.points.begin());
     count_edges(run.report.second_order, stage);
   });

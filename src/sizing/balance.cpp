@@ -14,6 +14,8 @@ namespace octafront {
 
 namespace {
 
+constexpr std::size_t kFewKeys = std::size_t{1} << 16;
+
 void sort_unique(std::vector<OctreeKey>& cells) {
   std::sort(cells.begin(), cells.end());
   cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
@@ -35,10 +37,13 @@ void DividedCells::close() {
   for (int l = OctreeKey::kMaxLevel; l > 0; --l) {
     sort_unique(levels_[l]);
     std::vector<OctreeKey> parents;
+    std::size_t most = kFewKeys;
     for (std::size_t i = 0; i < levels_[l].size(); ++i) {
       add_parents_around(levels_[l][i], parents);
       // Siblings share most of their parents' neighbours; thin the list out before it grows large.
-      if (parents.size() > (std::size_t{1} << 16)) sort_unique(parents);
+      if (parents.size() <= most) continue;
+      sort_unique(parents);
+      most = std::max(kFewKeys, 2 * parents.size());
     }
     levels_[l - 1].insert(levels_[l - 1].end(), parents.begin(), parents.end());
   }

@@ -196,11 +196,11 @@ TEST(ImageOptions, FollowTheVoxelsUnlessToldOtherwise) {
   ASSERT_TRUE(made.surface.max_deviation);
   EXPECT_LT(*made.surface.max_deviation, 1);
   EXPECT_GT(*made.surface.max_deviation, 0);
-  EXPECT_GT(made.surface.feature_angle, asked.surface.feature_angle);
+  EXPECT_GT(made.surface.angle_of_features(), asked.surface.angle_of_features());
   asked.surface.max_deviation = 3;
-  asked.surface.feature_angle = 30;
+  asked.surface.feature_angle = SurfaceOptions::kFeatureAngle;
   EXPECT_EQ(options_for_voxels(asked, 2).surface.max_deviation, 3);
-  EXPECT_EQ(options_for_voxels(asked, 2).surface.feature_angle, 30);
+  EXPECT_EQ(options_for_voxels(asked, 2).surface.feature_angle, SurfaceOptions::kFeatureAngle);
   Options counted;
   counted.size.elements = 1000;
   EXPECT_FALSE(options_for_voxels(counted, 2).surface.max_deviation);

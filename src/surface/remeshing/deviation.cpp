@@ -176,23 +176,41 @@ Vec3 normal_of(const SurfaceMesh& surface, std::uint32_t t) {
   return double_area_normal(surface.points[a], surface.points[b], surface.points[c]);
 }
 
+bool faces_along(const TriangleCorners& t, Vec3 normal) {
+  return dot(double_area_normal(t[0], t[1], t[2]), normal) > 0;
+}
+
+Box3 box_around(Vec3 p, double reach) {
+  return {p - Vec3{reach, reach, reach}, p + Vec3{reach, reach, reach}};
+}
+
 /// The nearest point to p of the triangles that face along `normal`, if it is within kOtherSide times the distance of
 /// the nearest point of all: of a thin wall the right side. Otherwise that one, which is at `distance`.
 TriangleTree::Nearest nearest_facing(const TriangleTree& tree, Vec3 p, Vec3 normal, double& distance) {
-  constexpr double kOtherSide = 3;
+  constexpr double kOtherSide = 3, kALittleMore = 1.001;
   const TriangleTree::Nearest any = tree.nearest(p);
   distance = std::sqrt(any.squared_distance);
   const double reach = kOtherSide * distance;
   TriangleTree::Nearest best{any.point, any.triangle, reach * reach};
-  tree.for_each_box_near({p - Vec3{reach, reach, reach}, p + Vec3{reach, reach, reach}},
-                         [&](std::uint32_t triangle, const TriangleCorners& t) {
-                           if (!(dot(double_area_normal(t[0], t[1], t[2]), normal) > 0)) return true;
-                           const Vec3 q = closest_point_on_triangle(p, t[0], t[1], t[2]);
-                           const double d = squared_distance(p, q);
-                           if (d < best.squared_distance) best = {q, triangle, d};
-                           return true;
-                         });
+  Box3 box = box_around(p, faces_along(tree.corners(any.triangle), normal) ? kALittleMore * distance : reach);
+  tree.for_each_box_near(box, [&](std::uint32_t triangle, const TriangleCorners& t) {
+    if (!faces_along(t, normal)) return true;
+    const Vec3 q = closest_point_on_triangle(p, t[0], t[1], t[2]);
+    const double d = squared_distance(p, q);
+    if (!(d < best.squared_distance)) return true;
+    best = {q, triangle, d};
+    box = box_around(p, kALittleMore * std::sqrt(d));
+    return true;
+  });
   return best;
+}
+
+/// A place for each sample.
+template <class PlaceOf>
+void append(std::vector<FarPlace>& places, const std::vector<Sample>& samples, const PlaceOf& place_of) {
+  const std::size_t before = places.size();
+  places.resize(before + samples.size());
+  parallel_for(samples.size(), [&](std::size_t i) { places[before + i] = place_of(samples[i]); });
 }
 
 Box3 box_of(const TriangleCorners& t, double margin) {
@@ -219,20 +237,21 @@ std::vector<FarPlace> DeviationWatch::look(const SurfaceMesh& made, const std::v
   std::erase_if(of_input_, [&](const FarPlace& p) { return is_near_change_[p.on_input.face] != 0; });
   std::erase_if(of_made_, forget);
 
-  double distance = 0;
-  for (const auto& [p, t, within] : beyond(limit_, samples_of(made, changed), input_tree_)) {
-    const TriangleTree::Nearest nearest = nearest_facing(input_tree_, p, normal_of(made, t), distance);
-    of_made_.push_back({p, {nearest.point, nearest.triangle}, distance, number[t], within});
-  }
+  append(of_made_, beyond(limit_, samples_of(made, changed), input_tree_), [&](const Sample& s) {
+    double distance = 0;
+    const TriangleTree::Nearest nearest = nearest_facing(input_tree_, s.p, normal_of(made, s.triangle), distance);
+    return FarPlace{s.p, {nearest.point, nearest.triangle}, distance, number[s.triangle], s.within};
+  });
   std::vector<std::uint32_t> asked;
   for (std::uint32_t t = 0; t < input_.triangles.size(); ++t)
     if (is_near_change_[t]) asked.push_back(t);
   const TriangleTree made_tree(made);
-  for (const auto& [p, t, within] :
-       beyond(limit_, suspects(limit_, far_, input_, asked, made_tree, fine_), made_tree)) {
-    const std::uint32_t triangle = nearest_facing(made_tree, p, normal_of(input_, t), distance).triangle;
-    of_input_.push_back({p, {p, t}, distance, number[triangle], within});
-  }
+  const std::vector<Sample> far = beyond(limit_, suspects(limit_, far_, input_, asked, made_tree, fine_), made_tree);
+  append(of_input_, far, [&](const Sample& s) {
+    double distance = 0;
+    const std::uint32_t triangle = nearest_facing(made_tree, s.p, normal_of(input_, s.triangle), distance).triangle;
+    return FarPlace{s.p, {s.p, s.triangle}, distance, number[triangle], s.within};
+  });
   std::ranges::fill(is_near_change_, 0);
   std::vector<FarPlace> all = of_made_;
   all.insert(all.end(), of_input_.begin(), of_input_.end());

@@ -32,6 +32,8 @@ constexpr double kCrossing = 1;
 constexpr double kLeastShape = 0.02;
 /// Parts of the way to the mean of its neighbours that a vertex is tried at.
 constexpr double kSteps[] = {1, 0.5, 0.25};
+/// And, if it crosses in a complex, of the ways to each of these and away from it.
+constexpr double kCrossingSteps[] = {0.5, 0.25, -0.25};
 /// Operations per place at most, on average: others may spring up beside one that is mended.
 constexpr std::size_t kOperationsPerPlace = 8;
 /// An edge longer than this many times the move allowed cannot collapse within it.
@@ -140,6 +142,7 @@ class FoldMender {
       if (most_folded <= kFold - tier.angle && shape_lack(corners(t)) == 0 && !crosses_[t]) return;
       best_ = {};
       limit_ = std::min(limits_.tolerance, tier.move * allowed_at(t));
+      if (crosses_[t]) limit_ = std::max(limit_, limits_.crossing_part * mesh_.size[mesh_.start[3 * t]]);
       for (HalfEdge h = 3 * t; h < 3 * t + 3; ++h) {
         const HalfEdge g = mesh_.twin[h];
         for (const HalfEdge e : {h, next_of(g), previous_of(g)}) {
@@ -192,28 +195,47 @@ class FoldMender {
     });
     return found;
   }
-  /// Of a complex, whether what is stood for belongs to the same patch there.
-  bool is_of_patch(const TriangleTree::Nearest& place, std::uint32_t t) const {
-    return limits_.patch_of == nullptr || (*limits_.patch_of)[place.triangle] == mesh_.patch[t];
+  /// The point of what is stood for that is nearest to p; of a complex, if there is one of the triangle's own patch no
+  /// farther than it may move: beside seams others may be nearer.
+  TriangleTree::Nearest nearest_of_patch(Vec3 p, std::uint32_t t) const {
+    const TriangleTree::Nearest any = limits_.onto->nearest(p);
+    if (limits_.patch_of == nullptr || (*limits_.patch_of)[any.triangle] == mesh_.patch[t]) return any;
+    TriangleTree::Nearest best{{}, kNone, limit_ * limit_};
+    const Vec3 reach{limit_, limit_, limit_};
+    limits_.onto->for_each_box_near({p - reach, p + reach}, [&](std::uint32_t face, const TriangleCorners& c) {
+      if ((*limits_.patch_of)[face] != mesh_.patch[t]) return true;
+      const Vec3 q = closest_point_on_triangle(p, c[0], c[1], c[2]);
+      const double d = squared_distance(p, q);
+      if (d < best.squared_distance) best = {q, face, d};
+      return true;
+    });
+    return best;
   }
 
   void consider_moves(HalfEdge at) {
     const VertexIndex v = mesh_.start[at];
     if (mesh_.on_curve(v) || edits_.must_stay(v)) return;
+    const Vec3 p = mesh_.points[v];
     Vec3 sum;
-    mesh_.for_each_outgoing(v, [&](HalfEdge h) { sum += mesh_.points[mesh_.end(h)]; });
-    const Vec3 p = mesh_.points[v], middle = sum / mesh_.valence(v);
-    for (const double step : kSteps) {
-      Change change{Change::Kind::kMove, at, p + (middle - p) * step};
-      if (limits_.onto) {
-        const TriangleTree::Nearest nearest = limits_.onto->nearest(change.place);
-        if (!is_of_patch(nearest, at / 3)) continue;
-        change.place = nearest.point;
-        change.face = nearest.triangle;
-      }
-      gather_star(v, change.place, kNone);
-      judge(change, kNone);
+    std::vector<Vec3> ring;
+    mesh_.for_each_outgoing(v, [&](HalfEdge h) { ring.push_back(mesh_.points[mesh_.end(h)]); });
+    for (const Vec3 q : ring) sum += q;
+    for (const double step : kSteps) consider_move(at, p + (sum / static_cast<double>(ring.size()) - p) * step);
+    if (!crosses_[at / 3] || limits_.crossing_part == 0) return;
+    for (const Vec3 q : ring)
+      for (const double step : kCrossingSteps) consider_move(at, p + (q - p) * step);
+  }
+
+  void consider_move(HalfEdge at, Vec3 to) {
+    Change change{Change::Kind::kMove, at, to};
+    if (limits_.onto) {
+      const TriangleTree::Nearest nearest = nearest_of_patch(to, at / 3);
+      if (nearest.triangle == kNone) return;
+      change.place = nearest.point;
+      change.face = nearest.triangle;
     }
+    gather_star(mesh_.start[at], change.place, kNone);
+    judge(change, kNone);
   }
 
   /// A vertex on the middle of an edge, put on the surface that is stood for: chords of a sheet come nearer to it.
@@ -221,8 +243,8 @@ class FoldMender {
     if (mesh_.is_feature[h] || !limits_.onto) return;
     const HalfEdge g = mesh_.twin[h];
     const VertexIndex a = mesh_.start[h], b = mesh_.start[g], c = mesh_.apex(h), d = mesh_.apex(g);
-    const TriangleTree::Nearest middle = limits_.onto->nearest((mesh_.points[a] + mesh_.points[b]) * 0.5);
-    if (!is_of_patch(middle, h / 3)) return;
+    const TriangleTree::Nearest middle = nearest_of_patch((mesh_.points[a] + mesh_.points[b]) * 0.5, h / 3);
+    if (middle.triangle == kNone) return;
     const auto x = static_cast<VertexIndex>(mesh_.points.size());
     old_.assign({h / 3, g / 3});
     new_.clear();

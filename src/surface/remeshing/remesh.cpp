@@ -2,6 +2,7 @@
 
 #include "core/parallel.h"
 #include "core/validate.h"
+#include "geometry/measures.h"
 #include "mesh/complex.h"
 #include "sizing/make_size_field.h"
 #include "surface/remeshing/approach.h"
@@ -62,6 +63,10 @@ constexpr double kFewFar = 0.02;
 /// In a complex sizes are made smaller by how far it strays: to come to this part of the bound, to no less than this
 /// part of themselves at once.
 constexpr double kAim = 0.75, kLeastPart = 0.4;
+/// But where it strays at first, with triangles as small as the input's, at more places than this part of their number,
+/// the input is noise: what chords of its steps cut off shrinks only as they do, and each new triangulation crosses
+/// elsewhere.
+constexpr double kNoise = 0.2;
 /// So often in a round; there are no more than two for this.
 constexpr int kRefinements = 3;
 /// And from there they rise faster than elsewhere, as around corners: it is a matter of single ridges and tips.
@@ -73,6 +78,9 @@ constexpr double kBadShape = 0.25, kMovedPart = 0.25;
 constexpr double kLittle = 0.3;
 /// Mending one crossing may uncover another. Where more triangles than this cross the sizes are too large.
 constexpr int kMendingRounds = 4, kFewCrossing = 300;
+/// In a complex, what crosses may move by this part of the size, on its own patch: the bound on deviation leaves no way
+/// out between sheets a voxel apart. And this part of all triangles is few, where it is more than that.
+constexpr double kCrossingPart = 0.5, kFewCrossingPart = 0.005;
 /// In a complex points of the input are put in again where that left no more than this part of what crossed.
 constexpr double kWorthAnother = 0.7;
 /// Not nearer to their triangles than this part of their size.
@@ -184,6 +192,10 @@ std::vector<std::uint8_t> crossing_triangles(const WorkingMesh& mesh) {
   return crossing;
 }
 
+double longest_edge_of(const TriangleCorners& t) {
+  return std::max({distance(t[0], t[1]), distance(t[1], t[2]), distance(t[2], t[0])});
+}
+
 /// How much of the input's triangulation an attempt may change.
 enum class Effort { kFull, kInsertOnly };
 
@@ -282,6 +294,7 @@ class Remesher {
   Remeshed run() {
     for (counts_.rounds = 1; counts_.rounds <= kMostRounds; ++counts_.rounds) {
       Compacted c = attempt(Effort::kFull);
+      if (is_noise_) return kept_as_noise();
       if (is_sound(c) && is_true(c)) return finished(c);
       cap_far(c);
     }
@@ -325,10 +338,12 @@ class Remesher {
       change_between_seams(mesh, curves, sizes);
       DeviationWatch watch = deviation_watch();
       refine_far(mesh, watch, curves, sizes, nearness);
-      mend_crossings(mesh, is_fixed);
-      mend_places(mesh, lines_fixed(mesh), tolerance_);
-      approach_far(mesh, watch, sizes, is_fixed, nearness);
-      clear = mend_places(mesh, lines_fixed(mesh), kLittle * tolerance_);
+      if (!is_noise_) {
+        mend_crossings(mesh, is_fixed);
+        mend_places(mesh, lines_fixed(mesh), tolerance_);
+        approach_far(mesh, watch, sizes, is_fixed, nearness);
+        clear = mend_places(mesh, lines_fixed(mesh), kLittle * tolerance_);
+      }
     } else if (effort == Effort::kFull) {
       remove_input_vertices(mesh, sizes, context, counts_.coarsen);
       progress(0.6);
@@ -390,12 +405,22 @@ class Remesher {
   void refine_far(WorkingMesh& mesh, DeviationWatch& watch, const std::vector<Curve>& curves, SizeField& sizes,
                   Nearness& n) {
     for (int k = 0; k < kRefinements; ++k) {
-      const std::vector<PointSize> wanted = sizes_against(far_places(mesh, watch), sizes);
+      const std::vector<FarPlace> places = far_places(mesh, watch);
+      if (k == 0 && counts_.rounds == 1) is_noise_ = is_noise(places, sizes, front_triangles(mesh).size());
+      if (is_noise_) return;
+      const std::vector<PointSize> wanted = sizes_against(places, sizes);
       if (wanted.empty()) return;
       n.wanted.insert(n.wanted.end(), wanted.begin(), wanted.end());
       sizes = capped_steeply(sizes, wanted, kSteep, stage_.context());
       refine(mesh, curves, sizes);
     }
+  }
+
+  bool is_noise(const std::vector<FarPlace>& places, const SizeField& sizes, std::size_t triangles) const {
+    const auto in_vain = std::count_if(places.begin(), places.end(), [&](const FarPlace& p) {
+      return p.distance >= tolerance_ && sizes.at(p.at) <= longest_edge_of(known_.tree().corners(p.on_input.face));
+    });
+    return static_cast<double>(in_vain) > kNoise * static_cast<double>(triangles);
   }
 
   /// Points of the complex where the mesh strays still. What is left then lies beside seams: another round has to
@@ -551,19 +576,22 @@ class Remesher {
     FoldLimits limits{.tolerance = tolerance,
                       .size_part = kMovedPart,
                       .least_shape = kBadShape,
+                      .crossing_part = seamed_ ? kCrossingPart : 0,
                       .keep_lines = true,
                       .onto = &known_.tree(),
                       .is_fixed = is_fixed,
                       .patch_of = seamed_ ? &input_.patch : nullptr};
+    const auto part = static_cast<std::int64_t>(kFewCrossingPart * static_cast<double>(mesh.triangle_count()));
+    const std::int64_t few = seamed_ ? std::max<std::int64_t>(kFewCrossing, part) : kFewCrossing;
     for (int round = 0; round < kMendingRounds; ++round) {
       const std::vector<std::uint8_t> crossing = crossing_triangles(mesh);
       const auto count = std::count(crossing.begin(), crossing.end(), 1);
       if (round > 0 && count == 0) return true;
-      limits.crossing = count <= kFewCrossing ? &crossing : nullptr;
+      limits.crossing = count <= few ? &crossing : nullptr;
       const std::uint64_t done = mend_folds(mesh, limits, stage_.context()).operations;
       counts_.places_mended += done;
       if (count == 0) return true;  // mending makes no crossings
-      if (done == 0 || count > kFewCrossing) return false;
+      if (done == 0 || count > few) return false;
     }
     return false;
   }
@@ -628,9 +656,8 @@ class Remesher {
 
   /// Whether the input's triangle at p is as large as those that are wanted there.
   bool is_as_large(Vec3 p) const {
-    const auto [a, b, c] = known_.tree().corners(known_.tree().nearest(p).triangle);
-    const double longest = std::max({distance(a, b), distance(b, c), distance(c, a)});
-    return length(cross(b - a, c - a)) >= kAsLarge * sizes_.at(p) * longest;
+    const TriangleCorners& t = known_.tree().corners(known_.tree().nearest(p).triangle);
+    return length(double_area_normal(t[0], t[1], t[2])) >= kAsLarge * sizes_.at(p) * longest_edge_of(t);
   }
 
   /// The first place where the input's triangles return that has p within so many radii.
@@ -690,6 +717,15 @@ class Remesher {
                       turned, *options_.normal_deviation));
   }
 
+  Remeshed kept_as_noise() {
+    report_counts(counts_, stage_);
+    stage_.note(
+        fmt::format("the surface was kept as it is: no triangles but its own follow such noise within {:.4g}. "
+                    "Clean the input first, or give a larger `max_deviation`",
+                    tolerance_));
+    return input_as_it_is(known_, sizes_);
+  }
+
   Remeshed finished(Compacted& c) {
     const std::vector<Vec3>& near = c.nearness.approached;
     if (!near.empty())
@@ -722,6 +758,7 @@ class Remesher {
   InputSurface input_;
   std::optional<SurfaceKind> kind_;  ///< of a single surface
   Counts counts_;
+  bool is_noise_ = false;  ///< of a complex: no triangles but its own follow it
 };
 
 }  // namespace
