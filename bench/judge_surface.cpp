@@ -240,7 +240,7 @@ Json run(const Arguments& a) {
   }
   if (!a.output.empty()) write_surface(a.output, made.surface);
   Json j{{"triangles", made.surface.triangles.size()}, {"defect", nullptr}};
-  if (!a.only_times) j = judge(made, input, SurfaceOptions::kFeatureAngle);
+  if (!a.only_times) j = judge(made, input, kDefaultFeatureAngle);
   j["input_triangles"] = input.triangles.size();
   j["size_seconds"] = cpu_of(made.report, "size field");
   j["front_seconds"] = cpu_of(made.report, "surface front");

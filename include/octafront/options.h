@@ -73,14 +73,16 @@ struct SizeOptions {
   std::function<void(std::span<const Vec3> points, std::span<double> sizes)> callback;
 };
 
+/// Degrees from which an edge is a feature, where nothing else is said.
+inline constexpr double kDefaultFeatureAngle = 40;
+
 /// How the surface is triangulated anew.
 struct SurfaceOptions {
   bool keep = false;  ///< the input triangles become the boundary, exactly
-  /// Degrees between face normals from which an edge is kept as a feature; (0, 180). Without a value kFeatureAngle, of
-  /// images 85.
+  /// Degrees between face normals from which an edge is kept as a feature; (0, 180). Without a value
+  /// kDefaultFeatureAngle, of images 85.
   std::optional<double> feature_angle;
-  static constexpr double kFeatureAngle = 40;
-  double angle_of_features() const { return feature_angle.value_or(kFeatureAngle); }
+  double angle_of_features() const { return feature_angle.value_or(kDefaultFeatureAngle); }
   /// Where the new surface strays farther from the input than this (input units, >= 0), the sizes are made smaller, for
   /// a few rounds. Folds, spikes and lines too near to each other for an element are smoothed over within this
   /// distance. 0: no such detail is touched, and the sizes alone decide. Without a value: .4 % of the diagonal where

@@ -20,7 +20,8 @@ void require(bool holds, const char* sentence) {
 void check_options(const Options& options) {
   check_size_options(options.size);
   const SurfaceOptions& surface = options.surface;
-  require(surface.angle_of_features() > 0 && surface.angle_of_features() < 180, "`feature_angle` is in degrees, between 0 and 180");
+  require(surface.angle_of_features() > 0 && surface.angle_of_features() < 180,
+          "`feature_angle` is in degrees, between 0 and 180");
   require(!surface.max_deviation || (std::isfinite(*surface.max_deviation) && *surface.max_deviation >= 0),
           "`max_deviation` is a distance in the units of the input, not below 0");
   require(!surface.normal_deviation || (*surface.normal_deviation > 0 && *surface.normal_deviation <= 90),

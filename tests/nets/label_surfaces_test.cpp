@@ -198,9 +198,9 @@ TEST(ImageOptions, FollowTheVoxelsUnlessToldOtherwise) {
   EXPECT_GT(*made.surface.max_deviation, 0);
   EXPECT_GT(made.surface.angle_of_features(), asked.surface.angle_of_features());
   asked.surface.max_deviation = 3;
-  asked.surface.feature_angle = SurfaceOptions::kFeatureAngle;
+  asked.surface.feature_angle = kDefaultFeatureAngle;
   EXPECT_EQ(options_for_voxels(asked, 2).surface.max_deviation, 3);
-  EXPECT_EQ(options_for_voxels(asked, 2).surface.feature_angle, SurfaceOptions::kFeatureAngle);
+  EXPECT_EQ(options_for_voxels(asked, 2).surface.feature_angle, kDefaultFeatureAngle);
   Options counted;
   counted.size.elements = 1000;
   EXPECT_FALSE(options_for_voxels(counted, 2).surface.max_deviation);
