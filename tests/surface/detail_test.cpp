@@ -235,6 +235,19 @@ TEST(Approach, MendsAPlaceThatStraysWithoutAnotherRound) {
   EXPECT_TRUE(places_beyond(0.02, made.surface, input).empty());
 }
 
+TEST(DeviationWatch, RoundingMayHideTheNearestTriangle) {
+  // A face of almost no size at a vertex of the made surface, nearer to it than its own coordinates are exact.
+  const Vec3 a{0.0144217, 0.0273499, 0.99549}, b{0.0492329, -0.0014078, 0.9920928};
+  SurfaceMesh made, input;
+  made.points = {a, {8.6160231305757192e-32, 1.3940329699783265e-31, 1}, b};
+  made.triangles = {{0, 1, 2}};
+  const Vec3 m{3.6394480898000725e-33, -6.006948655464061e-33, 1};
+  const double e = 1e-32;
+  input.points = {a, b, m + Vec3{e, 0, 0}, m + Vec3{-e, e, 0}, m + Vec3{0, -e, 0}};
+  input.triangles = {{0, 2, 1}, {0, 3, 1}, {0, 4, 1}, {2, 3, 4}};
+  EXPECT_TRUE(places_beyond(1e-3, made, input).empty());
+}
+
 TEST(DeviationWatch, FindsAgainWhatAllAnewWouldFind) {
   const SurfaceMesh input = bumpy_sphere();
   const TriangleTree tree(input);

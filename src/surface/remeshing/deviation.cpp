@@ -54,7 +54,9 @@ class PartsOfInput {
   PartsOfInput(double limit, double far, const TriangleTree& made) : limit_(limit), far_(far), made_(made) {}
 
   Part operator()(const TriangleCorners& part, Vec3 middle, double reach) const {
-    nearest_ = made_.nearest(middle, bound(middle)).triangle;
+    // Where rounding hides even the last part's triangle behind the bound, that one is as good.
+    if (const std::uint32_t nearest = made_.nearest(middle, bound(middle)).triangle; nearest != kNone)
+      nearest_ = nearest;
     const TriangleCorners& t = made_.corners(nearest_);
     const double d = distance_to(t, middle);
     if (d + reach < limit_) return Part::kWithin;
