@@ -83,10 +83,8 @@ void mend(Session& session, const std::filesystem::path& file, SurfaceMesh& surf
   if (a.repair == Repair::kNone || !surface.sides.empty()) return;
   Mended mended = mend_surface(surface, options_of(a), session.context());
   const Json report = Json::parse(to_json(mended.report));
-  if (a.bodies.size() > 1)
-    session.found({{"repair " + file.string(), report}});
-  else
-    session.found({{"repair", report}});
+  const bool is_one_of_several = a.bodies.size() > 1 || file != a.input;
+  session.found({{is_one_of_several ? "repair " + file.string() : "repair", report}});
   if (!a.defects.empty()) write_surface(a.defects, marks_of(mended.report), session.context());
   if (!mended.report.clean) session.mended_within(mended.report.tolerance);
   if (mended.report.clean || (a.command != "repair" && is_tidied_only(mended.report))) return;

@@ -1,5 +1,7 @@
 #include <octafront/complex.h>
 
+#include "core/disjoint_sets.h"
+
 #include <algorithm>
 #include <array>
 #include <map>
@@ -67,18 +69,14 @@ class PartsByName {
 
   /// What hangs together is one part, by the patch that has most of its faces.
   void name_open_parts(const std::vector<std::size_t>& open) {
-    std::vector<VertexIndex> up(surface_.points.size());
-    std::iota(up.begin(), up.end(), 0);
-    const auto root = [&](VertexIndex v) {
-      while (up[v] != v) v = up[v] = up[up[v]];
-      return v;
-    };
+    DisjointSets hanging_together(surface_.points.size());
     for (const std::size_t t : open)
-      for (int i = 1; i < 3; ++i) up[root(corner(t, i))] = root(corner(t, 0));
+      for (int i = 1; i < 3; ++i) hanging_together.join(corner(t, 0), corner(t, i));
+    const auto set_of = [&](std::size_t t) { return hanging_together.find(corner(t, 0)); };
     std::map<VertexIndex, std::map<std::uint32_t, std::size_t>> faces;
-    for (const std::size_t t : open) ++faces[root(corner(t, 0))][named(surface_.patch_of(t))];
+    for (const std::size_t t : open) ++faces[set_of(t)][named(surface_.patch_of(t))];
     for (const std::size_t t : open) {
-      const auto& counts = faces[root(corner(t, 0))];
+      const auto& counts = faces[set_of(t)];
       part_of_[t] = std::max_element(counts.begin(), counts.end(), [](const auto& a, const auto& b) {
                       return a.second < b.second;
                     })->first;
