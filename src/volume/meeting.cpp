@@ -104,40 +104,90 @@ bool segment_meets(const NamedPoint& p, const NamedPoint& q, const Corners& t, i
   return least >= 0 || most <= 0;
 }
 
+/// The signs on which the planes through a tetrahedron's faces and a triangle's plane decide. First those of which
+/// floating point is sure, 0 where it is not: they settle nearly all cases.
+class Planes {
+ public:
+  Planes(const std::array<NamedPoint, 4>& t, const std::array<NamedPoint, 3>& f) : t_(t), f_(f) {
+    for (int j = 0; j < 3; ++j)
+      for (int i = 0; i < 4; ++i)
+        if (t[i].id == f[j].id) shared_f[j] = i, shared_t[i] = j;
+  }
+
+  /// The triangle's plane, or one of the tetrahedron, has the other strictly on one side but for shared corners.
+  template <class Sign>
+  bool triangle_separates(const Sign& sign) {
+    bool above = true, below = true;
+    for (int i = 0; i < 4; ++i) {
+      if (shared_t[i] >= 0) continue;
+      if (side[i] == 0) side[i] = sign(f_[0].at, f_[1].at, f_[2].at, t_[i].at);
+      above = above && side[i] > 0;
+      below = below && side[i] < 0;
+    }
+    return above || below;
+  }
+  template <class Sign>
+  bool tet_separates(const Sign& sign) {
+    for (int i = 0; i < 4; ++i) {
+      const auto& c = kTetFaces[i];
+      bool separates = true;
+      for (int j = 0; j < 3; ++j) {
+        if (shared_f[j] >= 0)
+          outer[i][j] = shared_f[j] == i ? -1 : 0;
+        else if (outer[i][j] == 0)
+          outer[i][j] = sign(t_[c[0]].at, t_[c[1]].at, t_[c[2]].at, f_[j].at);
+        separates = separates && (outer[i][j] > 0 || (shared_f[j] >= 0 && shared_f[j] != i));
+      }
+      if (separates) return true;
+    }
+    return false;
+  }
+
+  /// The one corner that both share lies on a plane through an edge of each that has them strictly apart. Its signs are
+  /// those that are known: that of corner m against the plane through corner k and a corner l of the triangle is that
+  /// of l against the plane through k and m.
+  bool edges_separate() const {
+    int j = -1;
+    for (int i = 0; i < 3; ++i)
+      if (shared_f[i] >= 0) {
+        if (j >= 0) return false;
+        j = i;
+      }
+    if (j < 0) return false;
+    const auto& ring = kTetFaces[shared_f[j]];
+    for (int turn = 0; turn < 3; ++turn) {
+      const int k = ring[turn], m = ring[(turn + 1) % 3], n = ring[(turn + 2) % 3];
+      for (const int step : {1, 2}) {
+        const int l = (j + step) % 3, of_tet = outer[n][l], of_triangle = step == 1 ? side[k] : -side[k];
+        if (of_tet != 0 && outer[m][l] == -of_tet && of_triangle == -of_tet) return true;
+      }
+    }
+    return false;
+  }
+
+  int shared_f[3] = {-1, -1, -1}, shared_t[4] = {-1, -1, -1, -1};
+  int outer[4][3] = {};  ///< of the triangle's corners against the planes of the tetrahedron, +1 on the outer side
+  int side[4] = {};      ///< of the tetrahedron's corners against the plane of the triangle
+
+ private:
+  const std::array<NamedPoint, 4>& t_;
+  const std::array<NamedPoint, 3>& f_;
+};
+
 }  // namespace
 
 bool meets_beyond_shared_simplex(const std::array<NamedPoint, 4>& t, const std::array<NamedPoint, 3>& f) {
-  int shared_f[3], shared_t[4] = {-1, -1, -1, -1};
-  for (int j = 0; j < 3; ++j) {
-    shared_f[j] = -1;
-    for (int i = 0; i < 4; ++i)
-      if (t[i].id == f[j].id) shared_f[j] = i, shared_t[i] = j;
-  }
-  // Signs of the triangle's corners against the planes of the tetrahedron, +1 on the outer side.
-  int outer[4][3];
-  for (int i = 0; i < 4; ++i) {
-    const auto& c = kTetFaces[i];
-    bool separates = true;
-    for (int j = 0; j < 3; ++j) {
-      outer[i][j] = shared_f[j] < 0 ? orient3d(t[c[0]].at, t[c[1]].at, t[c[2]].at, f[j].at) : shared_f[j] == i ? -1 : 0;
-      separates = separates && (outer[i][j] > 0 || (shared_f[j] >= 0 && shared_f[j] != i));
-    }
-    if (separates) return false;
-  }
+  Planes planes(t, f);
+  if (planes.triangle_separates(orient3d_filter) || planes.tet_separates(orient3d_filter) || planes.edges_separate())
+    return false;
+  if (planes.triangle_separates(orient3d) || planes.tet_separates(orient3d)) return false;
+  const auto& outer = planes.outer;
   for (int j = 0; j < 3; ++j)
-    if (shared_f[j] < 0 && outer[0][j] <= 0 && outer[1][j] <= 0 && outer[2][j] <= 0 && outer[3][j] <= 0) return true;
-  // Signs of the tetrahedron's corners against the plane of the triangle.
-  int side[4];
-  bool above = true, below = true;
-  for (int i = 0; i < 4; ++i) {
-    side[i] = shared_t[i] >= 0 ? 0 : orient3d(f[0].at, f[1].at, f[2].at, t[i].at);
-    above = above && (shared_t[i] >= 0 || side[i] > 0);
-    below = below && (shared_t[i] >= 0 || side[i] < 0);
-  }
-  if (above || below) return false;
+    if (planes.shared_f[j] < 0 && outer[0][j] <= 0 && outer[1][j] <= 0 && outer[2][j] <= 0 && outer[3][j] <= 0)
+      return true;
   const Corners triangle{&f[0], &f[1], &f[2]};
   for (const auto& [i, j] : kTetEdges)
-    if (segment_meets(t[i], t[j], triangle, side[i], side[j])) return true;
+    if (segment_meets(t[i], t[j], triangle, planes.side[i], planes.side[j])) return true;
   for (int i = 0; i < 4; ++i) {
     const auto& c = kTetFaces[i];
     const Corners face{&t[c[0]], &t[c[1]], &t[c[2]]};
