@@ -50,7 +50,8 @@ class MeanSmoother {
     }
     const std::span<const Vec3> axes = slides ? sliding_->axes() : kAxes;
     const double edge = star_.batch().mean_edge(at);
-    Vec3 step = slides ? newton_step(at, axes, edge, old_deficit) : free_step(at, edge, old_deficit);
+    sketch_.take(star_.batch(), at, edge);
+    Vec3 step = edge * (slides ? newton_step(axes, old_deficit) : free_step(old_deficit));
     if (slides && squared_length(step) < kLeastSlide * kLeastSlide * edge * edge) return false;
     for (int k = 0; k < kTries; ++k, step *= kShorten) {
       Vec3 to = at + step;
@@ -67,32 +68,32 @@ class MeanSmoother {
   }
 
  private:
-  Vec3 free_step(Vec3 at, double edge, double here) {
-    const double h = kDifference * edge;
-    constexpr double r = 0.57735026918962576;
+  // Steps, in mean edge lengths; `here`: the sum as it is.
+  Vec3 free_step(double here) {
+    constexpr double h = kDifference, r = 0.57735026918962576;
     constexpr std::array<Vec3, 4> kCorners{{{r, r, r}, {r, -r, -r}, {-r, r, -r}, {-r, -r, r}}};
     Vec3 sum;
     double mean = 0;
     for (const Vec3 d : kCorners) {
-      const double f = star_.deficit_at(at + h * d);
+      const double f = sketch_.deficit_at(h * d);
       sum += (f - here) * d;
       mean += 0.25 * (f - here);
     }
     const Vec3 slope = (0.75 / h) * sum;
     const double bend = 2 * mean / (h * h), steep = length(slope);
     if (!(steep > 0)) return {};
-    const double far = bend > 0 ? std::min(steep / bend, kFarthest * edge) : kUphill * edge;
+    const double far = bend > 0 ? std::min(steep / bend, kFarthest) : kUphill;
     return (-far / steep) * slope;
   }
 
-  Vec3 newton_step(Vec3 at, std::span<const Vec3> axes, double edge, double here) {
-    const double h = kDifference * edge;
+  Vec3 newton_step(std::span<const Vec3> axes, double here) {
+    constexpr double h = kDifference;
     Vec3 step;
     for (const Vec3 axis : axes) {
-      const double ahead = star_.deficit_at(at + h * axis), behind = star_.deficit_at(at - h * axis);
+      const double ahead = sketch_.deficit_at(h * axis), behind = sketch_.deficit_at(-h * axis);
       const double slope = (ahead - behind) / (2 * h), bend = (ahead + behind - 2 * here) / (h * h);
-      const double wanted = bend > 0 ? -slope / bend : slope > 0 ? -kUphill * edge : kUphill * edge;
-      step += std::clamp(wanted, -kFarthest * edge, kFarthest * edge) * axis;
+      const double wanted = bend > 0 ? -slope / bend : slope > 0 ? -kUphill : kUphill;
+      step += std::clamp(wanted, -kFarthest, kFarthest) * axis;
     }
     return step;
   }
@@ -100,6 +101,7 @@ class MeanSmoother {
   EditMesh& mesh_;
   Floor floor_;
   StarEdit star_;
+  StarSketch sketch_;
   std::optional<SlidingVertex> sliding_;
 };
 

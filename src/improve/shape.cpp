@@ -2,6 +2,8 @@
 
 #include "geometry/predicates.h"
 
+#include <array>
+
 // The kernel is plain arithmetic without branches, compiled once for each width of vector unit and chosen at run time.
 // All versions give the same bits: no contraction, no reassociation.
 
@@ -124,8 +126,7 @@ OCTAFRONT_INLINE void shape_of_edges(Vec3 u, Vec3 v, Vec3 w, double& beta, doubl
 }
 
 template <Objective kObjective>
-OCTAFRONT_INLINE void star_kernel(ShapeBatch& s, Vec3 apex) {
-  const int n = s.size;
+OCTAFRONT_INLINE void star_kernel(ShapeBatch& s, Vec3 apex, int n) {
   for (int i = 0; i < n; ++i) {
     const Vec3 b{s.corner[1][0][i], s.corner[1][1][i], s.corner[1][2][i]};
     const Vec3 c{s.corner[2][0][i], s.corner[2][1][i], s.corner[2][2][i]};
@@ -134,21 +135,8 @@ OCTAFRONT_INLINE void star_kernel(ShapeBatch& s, Vec3 apex) {
   }
 }
 
-OCTAFRONT_INLINE void star_beta_kernel(ShapeBatch& s, Vec3 apex) {
-  const int n = s.size;
-  for (int i = 0; i < n; ++i) {
-    const Vec3 b{s.corner[1][0][i], s.corner[1][1][i], s.corner[1][2][i]};
-    const Vec3 c{s.corner[2][0][i], s.corner[2][1][i], s.corner[2][2][i]};
-    const Vec3 d{s.corner[3][0][i], s.corner[3][1][i], s.corner[3][2][i]};
-    const Vec3 u = b - apex, v = c - apex, w = d - apex;
-    const Faces f = faces_of_edges(u, v, w);
-    s.beta[i] = beta_of(f, volume_of(f, u, v, w));
-  }
-}
-
 template <Objective kObjective>
-OCTAFRONT_INLINE void element_kernel(ShapeBatch& s) {
-  const int n = s.size;
+OCTAFRONT_INLINE void element_kernel(ShapeBatch& s, int n) {
   for (int i = 0; i < n; ++i) {
     const Vec3 a{s.corner[0][0][i], s.corner[0][1][i], s.corner[0][2][i]};
     const Vec3 b{s.corner[1][0][i], s.corner[1][1][i], s.corner[1][2][i]};
@@ -158,48 +146,93 @@ OCTAFRONT_INLINE void element_kernel(ShapeBatch& s) {
   }
 }
 
+/// The same as beta_of(), in single precision; lengths are about one.
+struct Float3 {
+  float x, y, z;
+};
+
+OCTAFRONT_INLINE Float3 cross(Float3 a, Float3 b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+OCTAFRONT_INLINE float dot(Float3 a, Float3 b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+constexpr float kTinyFloat = 1e-30f;
+
+OCTAFRONT_INLINE float lack_of_edges(Float3 u, Float3 v, Float3 w) {
+  const Float3 b = cross(v, w), c = cross(w, u), d = cross(u, v), a{b.x + c.x + d.x, b.y + c.y + d.y, b.z + c.z + d.z};
+  const float uu = dot(u, u), vv = dot(v, v), ww = dot(w, w);
+  const Float3 center{uu * b.x + vv * c.x + ww * d.x, uu * b.y + vv * c.y + ww * d.y, uu * b.z + vv * c.z + ww * d.z};
+  const float area = std::sqrt(dot(a, a) + kTinyFloat) + std::sqrt(dot(b, b) + kTinyFloat) +
+                     std::sqrt(dot(c, c) + kTinyFloat) + std::sqrt(dot(d, d) + kTinyFloat);
+  const float det = dot(d, w), beta = 6 * det * std::abs(det) / (area * std::sqrt(dot(center, center) + kTinyFloat));
+  const float lack = 1 - (beta < -1 ? -1 : beta > 1 ? 1 : beta);
+  return lack * lack;
+}
+
+}  // namespace
+
+struct SketchKernel {
+  static OCTAFRONT_INLINE void run(StarSketch& s, Float3 apex) {
+    const auto edge = [&](int k, int i) {
+      return Float3{s.corner_[k][0][i] - apex.x, s.corner_[k][1][i] - apex.y, s.corner_[k][2][i] - apex.z};
+    };
+    for (int i = 0; i < s.size_; ++i) s.lack_[i] = lack_of_edges(edge(0, i), edge(1, i), edge(2, i));
+  }
+};
+
+namespace {
+
 struct Kernels {
-  void (*star)(ShapeBatch&, Vec3);
-  void (*star_beta)(ShapeBatch&, Vec3);
-  void (*elements)(ShapeBatch&);
+  void (*star)(ShapeBatch&, Vec3, int);
+  void (*elements)(ShapeBatch&, int);
 };
 
 template <Objective kObjective>
-void star_plain(ShapeBatch& s, Vec3 apex) {
-  star_kernel<kObjective>(s, apex);
-}
-void star_beta_plain(ShapeBatch& s, Vec3 apex) {
-  star_beta_kernel(s, apex);
+void star_plain(ShapeBatch& s, Vec3 apex, int n) {
+  star_kernel<kObjective>(s, apex, n);
 }
 template <Objective kObjective>
-void elements_plain(ShapeBatch& s) {
-  element_kernel<kObjective>(s);
+void elements_plain(ShapeBatch& s, int n) {
+  element_kernel<kObjective>(s, n);
+}
+void sketch_plain(StarSketch& s, Float3 apex) {
+  SketchKernel::run(s, apex);
 }
 
 #if defined(__x86_64__) && defined(__GNUC__)
 template <Objective kObjective>
-__attribute__((target("avx2"))) void star_avx2(ShapeBatch& s, Vec3 apex) {
-  star_kernel<kObjective>(s, apex);
-}
-__attribute__((target("avx2"))) void star_beta_avx2(ShapeBatch& s, Vec3 apex) {
-  star_beta_kernel(s, apex);
+__attribute__((target("avx2"))) void star_avx2(ShapeBatch& s, Vec3 apex, int n) {
+  star_kernel<kObjective>(s, apex, n);
 }
 template <Objective kObjective>
-__attribute__((target("avx2"))) void elements_avx2(ShapeBatch& s) {
-  element_kernel<kObjective>(s);
+__attribute__((target("avx2"))) void elements_avx2(ShapeBatch& s, int n) {
+  element_kernel<kObjective>(s, n);
+}
+__attribute__((target("avx2"))) void sketch_avx2(StarSketch& s, Float3 apex) {
+  SketchKernel::run(s, apex);
+}
+
+bool has_avx2() {
+  __builtin_cpu_init();
+  return __builtin_cpu_supports("avx2");
 }
 
 template <Objective kObjective>
 Kernels best_kernels() {
-  __builtin_cpu_init();
-  if (__builtin_cpu_supports("avx2")) return {star_avx2<kObjective>, star_beta_avx2, elements_avx2<kObjective>};
-  return {star_plain<kObjective>, star_beta_plain, elements_plain<kObjective>};
+  if (has_avx2()) return {star_avx2<kObjective>, elements_avx2<kObjective>};
+  return {star_plain<kObjective>, elements_plain<kObjective>};
 }
+
+const auto sketch_kernel = has_avx2() ? sketch_avx2 : sketch_plain;
 #else
 template <Objective kObjective>
 Kernels best_kernels() {
-  return {star_plain<kObjective>, star_beta_plain, elements_plain<kObjective>};
+  return {star_plain<kObjective>, elements_plain<kObjective>};
 }
+
+const auto sketch_kernel = sketch_plain;
 #endif
 
 /// In the order of the enumeration.
@@ -213,12 +246,24 @@ const Kernels& kernels(Objective objective) {
 
 }  // namespace
 
+/// How many elements to evaluate: the last one again and again until vectors are full, for what is left over by them
+/// costs as much one by one.
+int ShapeBatch::fill_up(int first_corner) {
+  constexpr int kVector = 4;
+  if (size == 0) return 0;
+  const int n = (size + kVector - 1) / kVector * kVector;
+  for (int k = first_corner; k < 4; ++k)
+    for (auto& axis : corner[k])
+      for (int i = size; i < n; ++i) axis[i] = axis[size - 1];
+  return n;
+}
+
 void ShapeBatch::evaluate_star(Vec3 apex) {
-  kernels(objective).star(*this, apex);
+  kernels(objective).star(*this, apex, fill_up(1));
 }
 
 void ShapeBatch::evaluate() {
-  kernels(objective).elements(*this);
+  kernels(objective).elements(*this, fill_up(0));
 }
 
 double ShapeBatch::worst() const {
@@ -249,15 +294,34 @@ double ShapeBatch::deficit() const {
   return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
-double ShapeBatch::deficit_at(Vec3 apex) {
-  kernels(objective).star_beta(*this, apex);
-  return deficit();
-}
-
 double ShapeBatch::mean_edge(Vec3 apex) const {
   double sum = 0;
   for (int i = 0; i < size; ++i) sum += distance(apex, {corner[1][0][i], corner[1][1][i], corner[1][2][i]});
   return sum / size;
+}
+
+void StarSketch::take(const ShapeBatch& star, Vec3 origin, double unit) {
+  constexpr int kVector = 8;
+  const double per_unit = 1 / unit;
+  const std::array<double, 3> o{origin.x, origin.y, origin.z};
+  size_ = (star.size + kVector - 1) / kVector * kVector;
+  for (int k = 0; k < 3; ++k)
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double* from = star.corner[k + 1][axis];
+      float* to = corner_[k][axis];
+      for (int i = 0; i < star.size; ++i) to[i] = static_cast<float>((from[i] - o[axis]) * per_unit);
+      for (int i = star.size; i < size_; ++i) to[i] = to[star.size - 1];
+    }
+  used_ = star.size;
+}
+
+double StarSketch::deficit_at(Vec3 apex) {
+  sketch_kernel(*this, {static_cast<float>(apex.x), static_cast<float>(apex.y), static_cast<float>(apex.z)});
+  for (int i = used_; i < size_; ++i) lack_[i] = 0;
+  float sum[8] = {};
+  for (int i = 0; i < size_; i += 8)
+    for (int k = 0; k < 8; ++k) sum[k] += lack_[i + k];
+  return double{(sum[0] + sum[1]) + (sum[2] + sum[3])} + double{(sum[4] + sum[5]) + (sum[6] + sum[7])};
 }
 
 Shape shape_of(Vec3 a, Vec3 b, Vec3 c, Vec3 d, Objective objective) {

@@ -28,8 +28,6 @@ class StarEdit {
     at_ = at;
     batch_.evaluate_star(at);
   }
-  /// Sum of (1 - beta)^2 of the star with the vertex elsewhere; for comparison only, not to be committed.
-  double deficit_at(Vec3 at) { return batch_.deficit_at(at); }
   ShapeBatch& batch() { return batch_; }
   const ShapeBatch& batch() const { return batch_; }
   float worst_score() const { return static_cast<float>(batch_.worst()); }
