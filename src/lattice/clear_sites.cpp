@@ -2,6 +2,7 @@
 
 #include "core/disjoint_sets.h"
 #include "core/parallel.h"
+#include "geometry/measures.h"
 #include "geometry/predicates.h"
 
 #include <algorithm>
@@ -50,29 +51,58 @@ bool plane_separates(const std::array<Vec3, 4>& tet, const TriangleCorners& tria
 
 ClearSites::ClearSites(const LatticeOctree& lattice, const TriangleTree& triangles, const TriangleTree& hull,
                        const RunContext& context)
-    : lattice_(lattice), triangles_(triangles), hull_(hull), near_(lattice.tree.size()) {
-  measure_distances(context);
+    : lattice_(lattice), triangles_(triangles), hull_(hull), space_(lattice.tree.size()) {
+  distance_.resize(2 * space_.size());
+  measure_centers(context);
   find_inside();
+  measure_corners(context);
 }
 
-void ClearSites::measure_distances(const RunContext& context) {
-  const std::size_t leaves = lattice_.tree.size();
-  distance_.resize(2 * leaves);
-  parallel_for(leaves, [&](std::size_t i) {
-    if (i % kLeavesBetweenChecks == 0) context.check();
-    const double side = lattice_.root.side_of(lattice_.tree.leaf(i)), all_far = (kFarthest + kHalfDiagonal) * side;
-    const auto center = static_cast<SiteNumber>(2 * i), corner = center + 1;
-    const double distance = distance_within(all_far, position_of(center));
-    near_[i] = distance < all_far;
-    distance_[center] = kept(distance, side);
-    distance_[corner] = near_[i] ? measured(position_of(corner), side) : distance_[center];
+void ClearSites::measure_centers(const RunContext& context) {
+  parallel_ranges(space_.size(), Split::kAdaptive, [&](std::size_t begin, std::size_t end) {
+    std::uint32_t near_by = kNone;
+    for (std::size_t i = begin; i < end; ++i) {
+      if (i % kLeavesBetweenChecks == 0) context.check();
+      const double side = lattice_.root.side_of(lattice_.tree.leaf(i)), all_far = (kFarthest + kHalfDiagonal) * side;
+      const auto center = static_cast<SiteNumber>(2 * i);
+      const double distance = distance_within(all_far, position_of(center), kCoreClearance * side, near_by);
+      space_[i] = distance >= all_far ? Space::kFar : distance >= kHalfDiagonal * side ? Space::kClear : Space::kNear;
+      distance_[center] = kept(distance, side);
+    }
   });
 }
 
-/// To the surface from p, if that is less.
-double ClearSites::distance_within(double farthest, Vec3 p) const {
-  const auto nearest = triangles_.nearest(p, farthest * farthest);
-  return nearest.triangle == kNone ? farthest : std::sqrt(nearest.squared_distance);
+/// No tetrahedron of the core has a corner in a leaf that lies outside with all of its cell.
+void ClearSites::measure_corners(const RunContext& context) {
+  parallel_ranges(space_.size(), Split::kAdaptive, [&](std::size_t begin, std::size_t end) {
+    std::uint32_t near_by = kNone;
+    for (std::size_t i = begin; i < end; ++i) {
+      if (i % kLeavesBetweenChecks == 0) context.check();
+      const auto center = static_cast<SiteNumber>(2 * i), corner = center + 1;
+      if (space_[i] == Space::kFar)
+        distance_[corner] = distance_[center];
+      else if (space_[i] == Space::kNear || inside_[i])
+        distance_[corner] = measured(position_of(corner), lattice_.root.side_of(lattice_.tree.leaf(i)), near_by);
+    }
+  });
+}
+
+/// To the surface from p, if that is less than `farthest`; of what is less than `enough`, any. `near_by`: a triangle
+/// that may be near, for a search with a good limit is short; it becomes one that is.
+double ClearSites::distance_within(double farthest, Vec3 p, double enough, std::uint32_t& near_by) const {
+  double least = farthest * farthest;
+  bool found = false;
+  if (near_by != kNone) {
+    const auto& [a, b, c] = triangles_.corners(near_by);
+    const double squared = squared_distance(p, closest_point_on_triangle(p, a, b, c)), distance = std::sqrt(squared);
+    if (distance < enough) return distance;
+    found = squared < least;
+    least = std::min(least, squared);
+  }
+  const auto nearest = triangles_.nearest(p, least);
+  if (nearest.triangle == kNone) return found ? std::sqrt(least) : farthest;
+  near_by = nearest.triangle;
+  return std::sqrt(nearest.squared_distance);
 }
 
 float ClearSites::kept(double distance, double side) {
@@ -80,15 +110,16 @@ float ClearSites::kept(double distance, double side) {
   return static_cast<float>(kRoundingDown * std::min(distance, kFarthest * side));
 }
 
-float ClearSites::measured(Vec3 p, double side) const {
-  return kept(distance_within(kFarthest * side, p), side);
+float ClearSites::measured(Vec3 p, double side, std::uint32_t& near_by) const {
+  return kept(distance_within(kFarthest * side, p, kCoreClearance * side, near_by), side);
 }
 
 float ClearSites::distance_of(LatticeSite site) const {
   const auto [x, y, z] = unpack_site(site);
   // The side of the smallest leaves of which the site can be a corner: whoever asks, the answer is the same.
   const std::uint32_t units = 1u << std::countr_zero(x | y | z | OctreeKey::kSide);
-  return measured(position(lattice_.root, site), lattice_.root.side / OctreeKey::kSide * units);
+  std::uint32_t near_by = kNone;
+  return measured(position(lattice_.root, site), lattice_.root.side / OctreeKey::kSide * units, near_by);
 }
 
 /// Where the balls about two sites cover the edge between them, the sites lie on one side of the surface: one inside

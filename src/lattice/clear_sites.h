@@ -46,8 +46,8 @@ class ClearSites {
     return s % 2 == 0 ? lattice_.root.center_of(leaf) : lattice_.root.corner_of(leaf);
   }
 
-  /// A lower bound of the distance to the surface; 0 where a site is not clear of it. REQUIRES a site that is not
-  /// hanging.
+  /// A lower bound of the distance to the surface; 0 where a site is not clear of it, or known to lie outside. REQUIRES
+  /// a site that is not hanging.
   float distance(SiteNumber s) const { return distance_[s]; }
   /// The same for any site.
   float distance_of(LatticeSite site) const;
@@ -55,23 +55,27 @@ class ClearSites {
   bool center_is_inside(std::size_t leaf) const { return inside_[leaf] != 0; }
   bool contains(Vec3 p) const { return hull_.contains(p); }
   /// No site of the leaf can be part of the core.
-  bool is_far_outside(std::size_t leaf) const { return !near_[leaf] && !inside_[leaf]; }
+  bool is_far_outside(std::size_t leaf) const { return is_far(leaf) && !inside_[leaf]; }
   /// The leaf is so far from the surface that all in it is clear.
-  bool is_far(std::size_t leaf) const { return !near_[leaf]; }
+  bool is_far(std::size_t leaf) const { return space_[leaf] == Space::kFar; }
   /// It is proved that the tetrahedron does not touch the surface, from which its corners have at least this distance.
   /// True is exact; false may only mean that there is no simple proof.
   bool is_clear(const std::array<Vec3, 4>& corners, float least_distance) const;
 
  private:
-  void measure_distances(const RunContext& context);
-  double distance_within(double farthest, Vec3 p) const;
+  /// How near the surface comes to a leaf: kClear, not into its cell; kFar, not even near to it.
+  enum class Space : std::uint8_t { kNear, kClear, kFar };
+
+  void measure_centers(const RunContext& context);
+  void measure_corners(const RunContext& context);
+  double distance_within(double farthest, Vec3 p, double enough, std::uint32_t& near_by) const;
   static float kept(double distance, double side);
-  float measured(Vec3 p, double side) const;
+  float measured(Vec3 p, double side, std::uint32_t& near_by) const;
   void find_inside();
 
   const LatticeOctree& lattice_;
   const TriangleTree &triangles_, &hull_;
-  std::vector<std::uint8_t> near_;    ///< per leaf
+  std::vector<Space> space_;          ///< per leaf
   std::vector<float> distance_;       ///< per site that does not hang
   std::vector<std::uint8_t> inside_;  ///< per leaf, of its centre
 };

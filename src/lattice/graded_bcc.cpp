@@ -29,8 +29,17 @@ OctreeKey step(OctreeKey key, int axis, int by, int axis2 = 0, int by2 = 0) {
 // right-handed frame; corners of the face are numbered counter-clockwise seen from +axis.
 class LeafFace {
  public:
-  LeafFace(const Octree& tree, OctreeKey leaf, int axis, bool high)
-      : tree_(tree), leaf_(leaf), axis_(axis), u_((axis + 1) % 3), v_((axis + 2) % 3), high_(high) {}
+  /// The leaves across its faces: the lower one and the upper one of each axis; keys that are not valid at the root's.
+  using Across = std::array<std::array<OctreeKey, 2>, 3>;
+
+  LeafFace(const Octree& tree, OctreeKey leaf, const Across& neighbours, int axis, bool high)
+      : tree_(tree),
+        leaf_(leaf),
+        neighbours_(neighbours),
+        axis_(axis),
+        u_((axis + 1) % 3),
+        v_((axis + 2) % 3),
+        high_(high) {}
 
   // The two centres and each edge of the face between leaves of one size; called for the upper faces only.
   template <class Visit>
@@ -84,13 +93,15 @@ class LeafFace {
   bool edge_is_divided(OctreeKey across, int i) const {
     constexpr std::array<int, 4> kSide{-1, 1, 1, -1};  // edge 0 lies at low v, 1 at high u, 2 at high v, 3 at low u
     const int away = i % 2 == 0 ? v_ : u_;
-    return is_finer(step(leaf_, away, kSide[i])) || is_finer(step(across, away, kSide[i]));
+    const OctreeKey beside = neighbours_[away][kSide[i] > 0];
+    if (!beside.is_valid()) return false;
+    if (beside.level() > leaf_.level()) return true;
+    return tree_.leaf(tree_.find(step(across, away, kSide[i]))).level() > leaf_.level();
   }
-
-  bool is_finer(OctreeKey cell) const { return cell.is_valid() && tree_.leaf(tree_.find(cell)).level() > cell.level(); }
 
   const Octree& tree_;
   OctreeKey leaf_;
+  const Across& neighbours_;
   int axis_, u_, v_;
   bool high_;
 };
@@ -104,16 +115,20 @@ Vec3 position(const RootCube& root, LatticeSite site) {
 void for_each_lattice_tet_of(const Octree& tree, std::size_t i,
                              const std::function<void(const std::array<LatticeSite, 4>&)>& visit) {
   const OctreeKey leaf = tree.leaf(i);
-  for (int side = 0; side < 6; ++side) {
-    const int axis = side / 2;
-    const bool high = side % 2 == 1;
-    const OctreeKey beyond = step(leaf, axis, high ? 1 : -1);
-    if (!beyond.is_valid()) continue;
-    const OctreeKey across = tree.leaf(tree.find(beyond));
-    const LeafFace face(tree, leaf, axis, high);
-    if (across == beyond && high) face.visit_equal(across, visit);
-    if (across.level() < leaf.level()) face.visit_larger(across, visit);
-  }
+  LeafFace::Across neighbours;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const bool high : {false, true}) {
+      const OctreeKey beyond = step(leaf, axis, high ? 1 : -1);
+      neighbours[axis][high] = beyond.is_valid() ? tree.leaf(tree.find(beyond)) : beyond;
+    }
+  for (int axis = 0; axis < 3; ++axis)
+    for (const bool high : {false, true}) {
+      const OctreeKey across = neighbours[axis][high];
+      if (!across.is_valid()) continue;
+      const LeafFace face(tree, leaf, neighbours, axis, high);
+      if (across.level() == leaf.level() && high) face.visit_equal(across, visit);
+      if (across.level() < leaf.level()) face.visit_larger(across, visit);
+    }
 }
 
 void for_each_lattice_tet(const Octree& tree, const std::function<void(const std::array<LatticeSite, 4>&)>& visit) {
