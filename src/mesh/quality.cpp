@@ -47,21 +47,44 @@ std::array<Direction, 6> angles_of(const std::array<Vec3, 4>& q) {
           angle(v - u, na, nd), angle(w - u, na, nc), angle(w - v, na, nb)};
 }
 
-// The lower borders of the classes of 10 degrees but the first.
-std::array<Direction, 17> class_borders() {
-  std::array<Direction, 17> borders{};
-  for (int i = 0; i < 17; ++i) {
-    const double angle = (i + 1) * std::numbers::pi / 18;
-    borders[i] = {std::cos(angle), std::sin(angle)};
+// Classes of 10 degrees. What is at hand grows with the angle from 0 to 2 and needs one division; a table tells the
+// class of most of its values, and the class before the border that lies within the rest.
+class AngleClasses {
+ public:
+  AngleClasses() {
+    for (int i = 0; i < kClasses - 1; ++i) {
+      const double angle = (i + 1) * std::numbers::pi / kClasses;
+      border_[i] = {std::cos(angle), std::sin(angle)};
+    }
+    std::uint8_t next = 0;
+    for (int step = 0; step <= kSteps; ++step) {
+      // Rounding may put an angle one step too far, never past a whole one.
+      while (next < kClasses - 1 && step_of(border_[next]) < step - 1) ++next;
+      first_[step] = next;
+    }
   }
-  return borders;
-}
+
+  std::size_t of(const Direction& angle) const {
+    std::size_t c = first_[step_of(angle)];
+    while (c < kClasses - 1 && !angle.is_below(border_[c])) ++c;
+    return c;
+  }
+
+ private:
+  static constexpr int kClasses = 18, kSteps = 256;
+
+  static int step_of(const Direction& d) {
+    const double step = (1 - d.x / (std::abs(d.x) + d.y)) * (0.5 * kSteps);
+    return step < kSteps ? static_cast<int>(step) : kSteps;
+  }
+
+  std::array<Direction, kClasses - 1> border_;  ///< the lower ones of all classes but the first
+  std::array<std::uint8_t, kSteps + 1> first_;  ///< the least class that an angle of this step may have
+};
 
 std::size_t class_of(const Direction& angle) {
-  static const std::array<Direction, 17> borders = class_borders();
-  const auto above = std::partition_point(borders.begin(), borders.end(),
-                                          [&](const Direction& border) { return !angle.is_below(border); });
-  return static_cast<std::size_t>(above - borders.begin());
+  static const AngleClasses classes;
+  return classes.of(angle);
 }
 
 // The summary of a stretch of elements; beta_mean holds the sum, and the extreme angles wait to be converted.

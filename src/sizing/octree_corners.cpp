@@ -17,22 +17,11 @@ using Units = std::array<std::uint32_t, 3>;
 class Numbering {
  public:
   explicit Numbering(const Octree& tree) : tree_(tree), tables_(thread_count() == 1 ? 1 : kTables) {
-    const std::size_t slots = 8 * tree.size();
-    const Buckets<> by_table(slots, tables_.size(), [&](std::size_t i, const auto& add) {
-      add(table_of(code(position(i))), static_cast<std::uint32_t>(i));
-    });
-    std::vector<std::uint32_t> first(slots);
-    parallel_for(
-        tables_.size(),
-        [&](std::size_t t) {
-          tables_[t].reset(by_table[t].size() / 5);
-          for (const std::uint32_t i : by_table[t]) first[i] = tables_[t].find_or_add(code(position(i)), i);
-        },
-        Split::kSingly);
-    number_.resize(slots);
-    for (std::size_t i = 0; i < slots; ++i)
+    const std::vector<std::uint32_t> first = tables_.size() == 1 ? first_slots() : first_slots_by_table();
+    number_.resize(first.size());
+    for (std::size_t i = 0; i < first.size(); ++i)
       if (first[i] == i) number_[i] = corners_++;
-    parallel_for(slots, [&](std::size_t i) {
+    parallel_for(first.size(), [&](std::size_t i) {
       if (first[i] != i) number_[i] = number_[first[i]];
     });
   }
@@ -51,6 +40,40 @@ class Numbering {
 
  private:
   static constexpr std::size_t kTables = 64;
+  static constexpr int kRecentBits = 12;
+
+  /// The table knows all corners; three of four are those of a leaf shortly before.
+  std::vector<std::uint32_t> first_slots() {
+    struct Recent {
+      std::uint64_t code;
+      std::uint32_t first;
+    };
+    std::vector<Recent> recent(std::size_t{1} << kRecentBits, {FlatKeys<std::uint64_t>::kEmpty, 0});
+    std::vector<std::uint32_t> first(8 * tree_.size());
+    tables_[0].reset(first.size() / 5);
+    for (std::uint32_t i = 0; i < first.size(); ++i) {
+      const std::uint64_t at = code(position(i));
+      Recent& known = recent[FlatKeys<std::uint64_t>::hash(at) >> (64 - kRecentBits)];
+      if (known.code != at) known = {at, tables_[0].find_or_add(at, i)};
+      first[i] = known.first;
+    }
+    return first;
+  }
+
+  std::vector<std::uint32_t> first_slots_by_table() {
+    std::vector<std::uint32_t> first(8 * tree_.size());
+    const Buckets<> by_table(first.size(), tables_.size(), [&](std::size_t i, const auto& add) {
+      add(table_of(code(position(i))), static_cast<std::uint32_t>(i));
+    });
+    parallel_for(
+        tables_.size(),
+        [&](std::size_t t) {
+          tables_[t].reset(by_table[t].size() / 5);
+          for (const std::uint32_t i : by_table[t]) first[i] = tables_[t].find_or_add(code(position(i)), i);
+        },
+        Split::kSingly);
+    return first;
+  }
 
   static std::uint64_t code(Units p) { return (std::uint64_t{p[0]} << 21 | p[1]) << 21 | p[2]; }
   /// The bits behind those by which the tables themselves tell codes apart.
