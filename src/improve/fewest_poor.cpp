@@ -88,7 +88,7 @@ Vec3 LackDescent::damped_step() const {
 
 PassResult relieve_vertices(EditMesh& mesh, float threshold, const RunContext& context) {
   const StarTable stars(mesh);
-  const VertexBlocks blocks(mesh, stars);
+  const VertexBlocks blocks(mesh);
   const Floor floor = mesh.floor();
   return blocks.run(context, [&](std::span<const VertexIndex> vertices) {
     PassResult block;

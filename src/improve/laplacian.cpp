@@ -37,6 +37,13 @@ class NeighbourMean {
   std::vector<VertexIndex> seen_;  ///< the last vertex whose neighbour this one was
 };
 
+/// Stars whose beta are all above it are left alone: next to nothing moves there, above all not in a lattice.
+constexpr float kGoodEnough = 0.93f;
+
+bool is_good_enough(const EditMesh& mesh, std::span<const HalfFace> star) {
+  return std::all_of(star.begin(), star.end(), [&](HalfFace h) { return mesh.shape(h / 4).beta > kGoodEnough; });
+}
+
 bool allowed(const EditMesh& mesh, const StarEdit& star, MoveRule rule) {
   float old_worst = 2, new_worst = 2;
   double gain = 0;
@@ -57,7 +64,7 @@ bool allowed(const EditMesh& mesh, const StarEdit& star, MoveRule rule) {
 PassResult laplacian_sweeps(EditMesh& mesh, int sweeps, double relaxation, MoveRule rule, const RunContext& context) {
   PassResult result;
   const StarTable stars(mesh);
-  const VertexBlocks blocks(mesh, stars);
+  const VertexBlocks blocks(mesh);
   const Floor floor = mesh.floor();
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     NeighbourMean mean(mesh);  // anew each time: it knows the last vertex that asked, not the sweep
@@ -65,6 +72,7 @@ PassResult laplacian_sweeps(EditMesh& mesh, int sweeps, double relaxation, MoveR
       PassResult block;
       StarEdit star(mesh);
       for (const VertexIndex v : vertices) {
+        if (rule == MoveRule::kMeanRises && is_good_enough(mesh, stars.of(v))) continue;
         if (!star.load(v, stars.of(v))) continue;
         ++block.tried;
         const Vec3 p = mesh.point(v);

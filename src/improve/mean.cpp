@@ -110,7 +110,7 @@ class MeanSmoother {
 PassResult smooth_mean(EditMesh& mesh, int sweeps, const RunContext& context, const BoundaryGuide* guide) {
   PassResult result;
   const StarTable stars(mesh);
-  const VertexBlocks blocks(mesh, stars, guide);
+  const VertexBlocks blocks(mesh, guide);
   const Floor floor = mesh.floor();
   for (int sweep = 0; sweep < sweeps; ++sweep)
     result += blocks.run(context, [&](std::span<const VertexIndex> vertices) {

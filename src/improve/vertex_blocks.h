@@ -17,7 +17,7 @@ namespace octafront::improve {
 /// left by that is one block at the end.
 class VertexBlocks {
  public:
-  VertexBlocks(const EditMesh& mesh, const StarTable& stars, const BoundaryGuide* guide = nullptr);
+  explicit VertexBlocks(const EditMesh& mesh, const BoundaryGuide* guide = nullptr);
 
   /// Calls `work(vertices)` for each block, which returns what it did; blocks of one stage run in parallel.
   template <typename Work>

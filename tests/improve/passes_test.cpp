@@ -95,7 +95,7 @@ TEST(EditMesh, FindsStarsAndRings) {
 TEST(VertexBlocks, OfOneStageShareNoVertexAndHoldEachInnerOneOnce) {
   const EditMesh mesh(kuhn_cube(24));
   const StarTable stars(mesh);
-  const VertexBlocks blocks(mesh, stars);
+  const VertexBlocks blocks(mesh);
   std::vector<int> moved(mesh.vertices(), 0);
   EXPECT_GT(blocks.stages()[0].size(), 2u);
   for (const auto& stage : blocks.stages()) {
