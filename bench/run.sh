@@ -9,6 +9,7 @@
 #   bench/run.sh elements    --elements N met? prediction, sizes in the volume          -> docs/benchmarks.md
 #   bench/run.sh gradation   gradations from .05 to .5 side by side                       -> docs/gradation.md
 #   bench/run.sh volume      kept surfaces up to 10 M elements, against TetGen, HXT and Netgen -> docs/volume-bench.md
+#   bench/run.sh graded      sizes that follow curvature, against HXT and TetGen side by side; from STL -> docs/volume-bench.md
 #   bench/run.sh peers       surfaces kept and made anew, against TetGen, Gmsh, Netgen and CGAL -> build/release/experiments/peers.json
 #   bench/run.sh complexes   several regions in one mesh, against TetGen and Gmsh       -> docs/complex.md
 #   bench/run.sh improve     improvement against its targets, never worse, start meshes of others -> docs/improve-bench.md
@@ -23,12 +24,12 @@ cd "$(dirname "$0")/.."
 source scripts/lib/apt.sh
 
 case ${1:-} in
-  status | derived | pipeline | surface | elements | gradation | volume | peers | complexes | improve | formats | second_order | dry_run | repair | known_answers | images) ;;
-  *) sed -n '2,21s/^# \{0,1\}//p' "$0"; exit 2 ;;
+  status | derived | pipeline | surface | elements | gradation | volume | graded | peers | complexes | improve | formats | second_order | dry_run | repair | known_answers | images) ;;
+  *) sed -n '2,22s/^# \{0,1\}//p' "$0"; exit 2 ;;
 esac
 need_packages "${build_packages[@]}" python3
 [ "$1" != surface ] || need_packages gmsh netgen libcgal-dev libgmp-dev libmpfr-dev
-[ "$1" != volume ] || need_packages "${peer_packages[@]}"
+{ [ "$1" != volume ] && [ "$1" != graded ]; } || need_packages "${peer_packages[@]}"
 [ "$1" != improve ] || need_packages "${peer_packages[@]}"
 [ "$1" != peers ] || need_packages "${peer_packages[@]}" libcgal-dev libgmp-dev libmpfr-dev libboost-dev
 [ "$1" != complexes ] || need_packages "${test_packages[@]}" tetgen gmsh python3-gmsh

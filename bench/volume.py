@@ -256,4 +256,5 @@ def cpu_name():
     return "unknown processor"
 
 
-main()
+if __name__ == "__main__":
+    main()
