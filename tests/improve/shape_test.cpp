@@ -99,5 +99,48 @@ TEST(Shape, ScoresAreWhatTheObjectivesSay) {
   EXPECT_GT(seen, 1000);
 }
 
+/// A star about `center`: faces around it, some of them seen from behind once it is moved.
+ShapeBatch random_star(testing::Random& random, int size, Vec3 center, double scale) {
+  ShapeBatch star;
+  const auto direction = [&] {
+    const double x = random.unit() - 0.5, y = random.unit() - 0.5;
+    return normalized(Vec3{x, y, random.unit() - 0.5});
+  };
+  while (star.size < size) {
+    const Vec3 b = direction(), c = direction(), d = direction();
+    if (dot(cross(b, c), d) > 0.1) star.add(center + scale * b, center + scale * c, center + scale * d);
+  }
+  return star;
+}
+
+// Single precision, whatever the place and the scale of the star, and whatever fills up the last vector.
+TEST(Shape, SketchOfAStarIsTheStar) {
+  testing::Random random(3);
+  for (int size = 1; size < 40; ++size)
+    for (const double scale : {1.0, 1e-20, 1e15}) {
+      const Vec3 center = scale * Vec3{30, -20, 10};
+      ShapeBatch star = random_star(random, size, center, scale);
+      StarSketch sketch;
+      sketch.take(star, center, scale);
+      for (int i = 0; i < 8; ++i) {
+        const Vec3 step = 0.2 * Vec3{random.unit(), random.unit(), random.unit()};
+        star.evaluate_star(center + scale * step);
+        ASSERT_NEAR(sketch.deficit_at(step), star.deficit(), 1e-5 * size) << size << " at scale " << scale;
+      }
+    }
+}
+
+TEST(Shape, OfABatchIsThatOfEachElement) {
+  testing::Random random(4);
+  for (int size = 1; size < 20; ++size) {
+    ShapeBatch star = random_star(random, size, {}, 1);
+    star.evaluate_star({0.1, 0, 0});
+    for (int i = 0; i < size; ++i) {
+      const auto corner = [&](int k) { return Vec3{star.corner[k][0][i], star.corner[k][1][i], star.corner[k][2][i]}; };
+      ASSERT_EQ(star.shape(i), shape_of({0.1, 0, 0}, corner(1), corner(2), corner(3)));
+    }
+  }
+}
+
 }  // namespace
 }  // namespace octafront::improve

@@ -108,5 +108,42 @@ TEST(Meeting, AgreesWithSamplingOnASmallLattice) {
   EXPECT_GT(separate, 500);
 }
 
+// The unit tetrahedron is the positive octant around its corner: the triangle meets it where a point of the side
+// opposite has no negative coordinate.
+TEST(Meeting, OfConesAroundOneSharedCornerIsSeenFromTheCorner) {
+  std::mt19937 random(20261123);
+  std::uniform_real_distribution<double> coordinate(-1, 1);
+  const auto point = [&] {
+    const double x = coordinate(random), y = coordinate(random);
+    return Vec3{x, y, coordinate(random)};
+  };
+  int meetings = 0, separate = 0;
+  for (int trial = 0; trial < 20000; ++trial) {
+    const Vec3 p = point(), q = point();
+    double least = 0, most = 1;  // of the part of the way from p to q
+    for (int axis = 0; axis < 3; ++axis) {
+      const double root = p[axis] / (p[axis] - q[axis]);
+      if (p[axis] < 0) least = std::max(least, q[axis] < 0 ? 2 : root);
+      if (p[axis] >= 0 && q[axis] < 0) most = std::min(most, root);
+    }
+    const bool meets = least <= most;
+    ++(meets ? meetings : separate);
+    for (const auto& order : {std::array{0, 1, 2, 3}, {1, 2, 0, 3}, {1, 0, 3, 2}, {1, 2, 3, 0}}) {
+      // The last order is odd: the tetrahedron is turned by its other corners.
+      TetCorners t{kUnit[order[0]], kUnit[order[1]], kUnit[order[2]], kUnit[order[3]]};
+      if (orient3d(t[0].at, t[1].at, t[2].at, t[3].at) < 0) std::swap(t[0], t[1]);
+      TriangleCorners f{{kUnit[0], {8, p}, {9, q}}};
+      for (int turn = 0; turn < 3; ++turn) {
+        ASSERT_EQ(meets_beyond_shared_simplex(t, f), meets) << "trial " << trial;
+        std::rotate(f.begin(), f.begin() + 1, f.end());
+      }
+      std::swap(f[1], f[2]);
+      ASSERT_EQ(meets_beyond_shared_simplex(t, f), meets) << "trial " << trial;
+    }
+  }
+  EXPECT_GT(meetings, 3000);
+  EXPECT_GT(separate, 3000);
+}
+
 }  // namespace
 }  // namespace octafront
