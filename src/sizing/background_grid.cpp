@@ -60,7 +60,7 @@ class GridMaker {
     if (rules_.interior_below_surface && !samples_.empty()) {
       ceiling_ = std::min(ceiling_, largest_at_samples());
     }
-    if (divide_by_field()) {
+    if (!rules_.only_surface && divide_by_field()) {
       make_field();
     } else {
       fill_field();

@@ -30,6 +30,7 @@ struct GridRules {
   int plain_level = 5;
   bool resolve_surface = false;  ///< divide by leaf_per_size even where sizes are equal
   bool keep_sources = false;     ///< leave OctreeField::source
+  bool only_surface = false;     ///< leaves without samples may stay too large for the sizes in them
 };
 
 /// Leaves on the surface follow the samples, those inside the graded field; 2:1 balanced. Samples are not kept. What is
