@@ -9,6 +9,7 @@
 #include "improve/edit_mesh.h"
 
 #include <cstdint>
+#include <span>
 
 namespace octafront::improve {
 
@@ -75,6 +76,15 @@ PassResult collapse_vertices(EditMesh& mesh, float threshold, Goal goal, const R
 /// Moves the inner vertices of the elements with a score below `threshold` to where the elements around them lack least
 /// in sum (fewest_poor.h).
 PassResult relieve_vertices(EditMesh& mesh, float threshold, const RunContext& context);
+
+struct TakenBack {
+  PassResult pass;
+  bool clear = false;  ///< no triangles of the boundary cross
+};
+/// Where triangles of the boundary have come to cross, their vertices and those around go back to where they were when
+/// the mesh was taken, in `taken`, or part of the way, as long as that makes no element worse than the worst.
+TakenBack take_back_crossings(EditMesh& mesh, std::span<const Vec3> taken, const BoundaryGuide& guide,
+                              const RunContext& context);
 
 struct BoundaryEdits {
   PassResult result;

@@ -119,6 +119,15 @@ class Schedule {
          [&] { return insert_vertices(mesh_, threshold, Goal::kFewestPoor, stage_.context()); });
   }
 
+  /// Where the boundary crosses itself it goes back. True if it is known that nothing crosses then.
+  bool uncross(std::span<const Vec3> taken) {
+    if (!guide_) return false;
+    const TakenBack back = take_back_crossings(mesh_, taken, *guide_, stage_.context());
+    if (back.pass.tried > 0) note("slides taken back", back.pass);
+    validate(mesh_);
+    return back.clear;
+  }
+
   /// What the elements lack, in sum.
   double lack() const {
     double sum = 0;
@@ -326,6 +335,7 @@ struct Better {
   TetMesh mesh;
   std::vector<VertexIndex> taken;
   Features features;
+  bool is_clear = false;  ///< it is known that its boundary does not cross itself
 };
 
 /// The features in the numbering of the result; `edges` and `corners` are in that of the mesh that was taken.
@@ -354,11 +364,12 @@ Better improved(const TetMesh& mesh, const BoundaryInput* boundary, const Bounda
   if (boundary) guide.emplace(edit, *boundary, frozen);
   Schedule run(edit, guide ? &*guide : nullptr, options, stage);
   run_schedule(run, options);
+  const bool is_clear = run.uncross(mesh.points);
   run.explain(input);
   std::vector<VertexIndex> taken = edit.numbers_taken();
   Features features;
   if (guide) features = renumbered(guide->feature_edges_taken(edit), boundary->of_mesh.corners, taken);
-  return {edit.release(), std::move(taken), std::move(features)};
+  return {edit.release(), std::move(taken), std::move(features), is_clear};
 }
 
 bool same_boundary(const TetMesh& a, const TetMesh& b) {
@@ -391,10 +402,11 @@ bool improve_mesh(TetMesh& mesh, const BoundaryInput* input, const ImproveOption
   std::vector<VertexIndex> frozen;
   for (int retry = 0;; ++retry) {
     StageReport attempt = stage.report();
-    auto [better, taken, of_better] =
+    auto [better, taken, of_better, is_clear] =
         improved(mesh, retry < kMostRetries ? boundary : nullptr, input, frozen, options, {stage.context(), attempt});
     const bool moved = !same_boundary(mesh, better);
-    const std::vector<VertexIndex> crossing = moved ? where_boundary_crosses(better) : std::vector<VertexIndex>{};
+    const std::vector<VertexIndex> crossing =
+        moved && !is_clear ? where_boundary_crosses(better) : std::vector<VertexIndex>{};
     if (crossing.empty()) {
       stage.report() = std::move(attempt);
       stage.count("runs with places of the boundary frozen", retry);

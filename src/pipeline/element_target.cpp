@@ -21,6 +21,10 @@ constexpr int kElementsAttempts = 5, kSurfaceAttempts = 7;
 // where the volume decides, more slowly where gradation or details of the surface do: down to the least slope, from
 // which on a step would go nowhere.
 constexpr double kSteepest = -4, kFlattest = -0.5;
+// Counts that change by less than this part of the least slope stand still: limits and details decide, not the sizes.
+constexpr double kStandsStill = 0.1;
+// Smaller steps say nothing: the lattice's cells may double with them, or not.
+constexpr double kTellingStep = 0.1;
 class CountSearch {
  public:
   explicit CountSearch(double wanted) : wanted_(std::log(wanted)) {}
@@ -40,6 +44,12 @@ class CountSearch {
       scale_ =
           above_->scale + (below_->scale - above_->scale) * (above_->count - wanted_) / (above_->count - below_->count);
     return std::exp(scale_);
+  }
+
+  /// Whether the count would have had to change by the last step, and did not.
+  bool stands_still(double made) const {
+    const double step = scale_ - last_->scale;
+    return std::abs(step) > kTellingStep && (std::log(made) - last_->count) / step > kStandsStill * kFlattest;
   }
 
  private:
@@ -93,9 +103,11 @@ auto meet_target(const SizeField& sizes, Run& run, std::size_t first_stage, int 
     run.report.stages.back().notes.push_back(
         fmt::format("the sizes before had {:.0f} elements {} where {} were wanted: all sizes scaled by {:.4g}", last,
                     counted, *run.options.size.elements, factor));
+    const bool stands_still = search.stands_still(next.count);
     last = next.count;
     // The lattice doubles its cells: counts may jump over the target, and an earlier try may be the better one.
     if (miss(last) < miss(best.count)) best = std::move(next);
+    if (stands_still) break;
   }
   run.report.expected_tets = best.expected;
   return best;

@@ -5,6 +5,7 @@
 
 #include "core/thread_limit.h"
 #include "geometry/measures.h"
+#include "geometry/self_intersection.h"
 #include "improve/fewest_poor.h"
 #include "improve/improve.h"
 #include "improve/passes.h"
@@ -206,6 +207,47 @@ TEST(Boundary, FacesBetweenRegionsAreKept) {
   EXPECT_EQ(first_defect(mesh), std::nullopt);
   add(mesh, after);
   for (int r = 0; r < 2; ++r) EXPECT_NEAR(after[r], before[r], 1e-12);
+}
+
+/// Two cubes beside each other, this far apart.
+TetMesh two_cubes(double apart) {
+  TetMesh both = kuhn_cube(4);
+  const TetMesh other = transformed(kuhn_cube(4), 1, {1 + apart, 0, 0});
+  both.boundary.clear();
+  both.patch.clear();
+  both.source.clear();
+  const auto shift = static_cast<VertexIndex>(both.points.size());
+  both.points.insert(both.points.end(), other.points.begin(), other.points.end());
+  for (Tet t : other.tets) {
+    for (VertexIndex& v : t) v += shift;
+    both.tets.push_back(t);
+  }
+  return with_boundary(std::move(both));
+}
+
+TEST(Boundary, WhatCrossesGoesBackToWhereItWas) {
+  const TetMesh start = two_cubes(0.05);
+  TetMesh crossing = start;
+  const auto moved = static_cast<std::size_t>(std::find(start.points.begin(), start.points.end(), Vec3{1, 0.5, 0.5}) -
+                                              start.points.begin());
+  crossing.points[moved].x += 0.1;
+  ASSERT_FALSE(self_intersections(crossing.points, crossing.boundary).empty());
+  const SurfaceMesh surface = boundary_of(start);
+  const Features features = detect_features(surface, 40);
+  const TriangleTree tree(surface);
+  EditMesh edit{TetMesh{crossing}};
+  const BoundaryGuide guide(edit, {surface, tree, features, features}, {});
+  const TakenBack back = take_back_crossings(edit, start.points, guide, {});
+  EXPECT_TRUE(back.clear);
+  EXPECT_EQ(back.pass.done, 1u);
+  const TetMesh made = edit.release();
+  EXPECT_EQ(first_defect(made), std::nullopt);
+  EXPECT_EQ(made.points[moved], start.points[moved]);
+  EXPECT_TRUE(self_intersections(made.points, made.boundary).empty());
+  // Frozen, it cannot.
+  EditMesh again{TetMesh{crossing}};
+  const BoundaryGuide frozen(again, {surface, tree, features, features}, {static_cast<VertexIndex>(moved)});
+  EXPECT_FALSE(take_back_crossings(again, start.points, frozen, {}).clear);
 }
 
 TEST(FeatureCurves, AreWalkedToTheirEndsAndNoFarther) {

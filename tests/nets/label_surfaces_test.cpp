@@ -209,6 +209,22 @@ TEST(ImageOptions, FollowTheVoxelsUnlessToldOtherwise) {
   EXPECT_FALSE(options_for_voxels(kept, 2).surface.max_deviation);
 }
 
+// A body with 27 labels of one voxel each in it: no size makes fewer elements than these need.
+TEST(ImageOptions, ANumberOfElementsThatDetailsForbidIsGivenUpSoon) {
+  const LabelImage image = label_image(grid_around_origin({15, 15, 15}, {1, 1, 1}), 28, [](Vec3 p) {
+    const auto at = [](double x) { return std::abs(x) < 4.5 && std::fmod(x + 20, 4) == 0 ? int(x + 4) / 4 : -1; };
+    if (at(p.x) >= 0 && at(p.y) >= 0 && at(p.z) >= 0) return 1 + at(p.x) + 3 * at(p.y) + 9 * at(p.z);
+    return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) < 7 ? 0 : -1;
+  });
+  Options options;
+  options.size.elements = 50;
+  const Result made = generate(complex_of_labels(image).surface, options_for_voxels(options, 1));
+  EXPECT_EQ(made.mesh.region_names.size(), 28u);
+  const auto earlier = std::count_if(made.report.stages.begin(), made.report.stages.end(),
+                                     [](const StageReport& s) { return s.name == "surface front (earlier try)"; });
+  EXPECT_LE(earlier, 4);
+}
+
 /// How far the hull of a mesh by these options lies from that of the complex.
 double strays(const SurfaceMesh& complex, const Options& options) {
   const TetMesh mesh = generate(complex, options_for_voxels(options, 1)).mesh;

@@ -18,8 +18,6 @@ constexpr double kAtCorner = 0.8;
 /// In a complex no edge is halved nearer to itself than this part of its length: crossings stay as they are, and what
 /// lies in one plane leaves flat elements where regions touch themselves.
 constexpr double kInPlane = 0.02;
-/// No new triangle is worse than this 2r/R, unless one was: what is mended for its shape strays again.
-constexpr double kLeastShape = 0.35;
 
 /// Weights of the corners that make up the point nearest to p in the plane of a triangle.
 std::array<double, 3> weights_at(const TriangleCorners& t, Vec3 p) {
@@ -32,8 +30,14 @@ std::array<double, 3> weights_at(const TriangleCorners& t, Vec3 p) {
 class Approacher {
  public:
   Approacher(WorkingMesh& mesh, const InputSurface& input, const TriangleTree& tree,
-             const std::vector<std::uint8_t>& is_fixed)
-      : mesh_(mesh), input_(input), tree_(tree), is_fixed_(is_fixed), sewn_(mesh), live_(sewn_) {}
+             const std::vector<std::uint8_t>& is_fixed, double least_shape)
+      : mesh_(mesh),
+        input_(input),
+        tree_(tree),
+        is_fixed_(is_fixed),
+        least_shape_(least_shape),
+        sewn_(mesh),
+        live_(sewn_) {}
 
   std::uint64_t run(std::span<const FarPlace> places) {
     std::vector<std::uint8_t> is_touched(mesh_.triangle_count(), 0);
@@ -168,7 +172,7 @@ class Approacher {
     for (const IdTriangle& made : new_) {
       const auto& [a, b, c] = made.corners;
       if (LiveTriangles<SewnMesh>::is_degenerate(made.corners)) return false;
-      if (triangle_radius_ratio(a, b, c) < std::min(kLeastShape, before)) return false;
+      if (triangle_radius_ratio(a, b, c) < std::min(least_shape_, before)) return false;
     }
     const int allowed = live_.crossings_among(old_);
     return live_.crossings_among(new_, old_, allowed + 1) <= allowed;
@@ -178,6 +182,7 @@ class Approacher {
   const InputSurface& input_;
   const TriangleTree& tree_;
   const std::vector<std::uint8_t>& is_fixed_;
+  double least_shape_;
   const SewnMesh sewn_;
   LiveTriangles<SewnMesh> live_;
   std::vector<std::uint32_t> old_;
@@ -187,8 +192,9 @@ class Approacher {
 }  // namespace
 
 std::uint64_t approach(WorkingMesh& mesh, const InputSurface& input, const TriangleTree& tree,
-                       const std::vector<std::uint8_t>& is_fixed, std::span<const FarPlace> places) {
-  return Approacher(mesh, input, tree, is_fixed).run(places);
+                       const std::vector<std::uint8_t>& is_fixed, std::span<const FarPlace> places,
+                       double least_shape) {
+  return Approacher(mesh, input, tree, is_fixed, least_shape).run(places);
 }
 
 }  // namespace octafront::remeshing

@@ -167,7 +167,7 @@ class FoldMender {
     const HalfEdge g = mesh_.twin[h];
     old_.assign({h / 3, g / 3});
     const VertexIndex a = mesh_.start[h], b = mesh_.start[g], c = mesh_.apex(h), d = mesh_.apex(g);
-    if (is_seamed() && edits_.must_stay(c) && edits_.must_stay(d)) return;
+    if (mesh_.is_sewn(c) && mesh_.is_sewn(d)) return;
     new_.clear();
     for (const Triangle& t : {Triangle{a, d, c}, Triangle{b, c, d}})
       new_.push_back({t, {mesh_.points[t[0]], mesh_.points[t[1]], mesh_.points[t[2]]}});
@@ -179,19 +179,18 @@ class FoldMender {
   void consider_collapse(HalfEdge h) {
     const VertexIndex u = mesh_.start[h], w = mesh_.end(h);
     if (distance(mesh_.points[u], mesh_.points[w]) > kLongest * limit_ || !edits_.may_collapse(h)) return;
-    if (is_seamed() && edits_.must_stay(w) && joins_seams(h)) return;
+    if (mesh_.is_sewn(w) && joins_seams(h)) return;
     gather_star(u, mesh_.points[w], w);
     judge({Change::Kind::kCollapse, h}, w);
   }
 
-  bool is_seamed() const { return mesh_.first_back != kNone; }
-  /// Whether a new edge would run between two vertices that stay: on seams it may be there in another part.
+  /// Whether a new edge would run between two vertices on seams: it may be there in another part.
   bool joins_seams(HalfEdge h) const {
     const VertexIndex w = mesh_.end(h), a = mesh_.apex(h), b = mesh_.apex(mesh_.twin[h]);
     bool found = false;
     mesh_.for_each_outgoing(mesh_.start[h], [&](HalfEdge o) {
       const VertexIndex v = mesh_.end(o);
-      found = found || (v != w && v != a && v != b && edits_.must_stay(v));
+      found = found || (v != w && v != a && v != b && mesh_.is_sewn(v));
     });
     return found;
   }

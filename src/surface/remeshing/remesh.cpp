@@ -10,16 +10,17 @@
 #include "surface/remeshing/corner_sizes.h"
 #include "surface/remeshing/crossings.h"
 #include "surface/remeshing/deviation.h"
+#include "surface/remeshing/flat_sizes.h"
 #include "surface/remeshing/improve.h"
 #include "surface/remeshing/insertion.h"
 #include "surface/remeshing/keep_volumes.h"
 #include "surface/remeshing/mend_folds.h"
 #include "surface/remeshing/merge_lines.h"
 #include "surface/remeshing/narrow_strips.h"
-#include "surface/remeshing/point_grid.h"
 #include "surface/remeshing/restored.h"
 #include "surface/remeshing/seams.h"
 #include "surface/remeshing/source_triangles.h"
+#include "surface/remeshing/thinned.h"
 #include "surface/remeshing/turning.h"
 #include "surface/surface_check.h"
 
@@ -27,7 +28,6 @@
 #include <array>
 #include <cmath>
 #include <numeric>
-#include <tuple>
 
 #include <fmt/core.h>
 
@@ -63,12 +63,17 @@ constexpr double kFewFar = 0.02;
 /// In a complex sizes are made smaller by how far it strays: to come to this part of the bound, to no less than this
 /// part of themselves at once.
 constexpr double kAim = 0.75, kLeastPart = 0.4;
+/// Nor to less than this part of the input's own edges; where they are no more than so many times that, and it strays
+/// still, the input's triangles return.
+constexpr double kFinest = 0.5, kStuck = 1.5;
+/// A complex that strays at fewer places than this part of its triangles is not made anew for it.
+constexpr double kVeryFew = 1e-4;
 /// But where it strays at first, with triangles as small as the input's, at more places than this part of their number,
 /// the input is noise: what chords of its steps cut off shrinks only as they do, and each new triangulation crosses
 /// elsewhere.
 constexpr double kNoise = 0.2;
-/// So often in a round; there are no more than two for this.
-constexpr int kRefinements = 3;
+/// So often in the first round, and once in the second; there are no more for this.
+constexpr int kRefinements = 2;
 /// And from there they rise faster than elsewhere, as around corners: it is a matter of single ridges and tips.
 constexpr double kSteep = 0.4;
 
@@ -85,6 +90,9 @@ constexpr double kCrossingPart = 0.5, kFewCrossingPart = 0.005;
 constexpr double kWorthAnother = 0.7;
 /// Not nearer to their triangles than this part of their size.
 constexpr double kInPlane = 0.02;
+/// What crosses still at the end may be divided into triangles of this 2r/R, so often.
+constexpr double kAnyShape = 0.05;
+constexpr int kLastMendings = 3;
 
 struct Counts {
   std::uint64_t placed = 0, tried = 0;
@@ -101,6 +109,7 @@ struct Nearness {
   std::vector<Vec3> approached;         ///< where points of the input were put in
   std::vector<Vec3> far, farther;       ///< where it strays still: too far, and much too far
   std::vector<PointSize> wanted;        ///< sizes by which it would stray less there, in a complex
+  std::vector<PointSize> stuck;         ///< where no size would help, and the size there: the same
   std::vector<VertexIndex> near_limit;  ///< corners of triangles that nearly do, in the working mesh
 };
 
@@ -220,34 +229,6 @@ std::vector<Vec3> centers_of(const SurfaceMesh& surface, const std::vector<std::
   return centers;
 }
 
-/// Of places within half a size of each other one is enough.
-std::vector<Vec3> thinned(const SizeField& sizes, const std::vector<Vec3>& places) {
-  std::vector<Vec3> kept;
-  PointGrid grid(places.front());
-  for (const Vec3 p : places) {
-    const double h = sizes.at(p);
-    bool is_new = true;
-    grid.for_each_near(p, h, 0.5, [&](std::uint32_t, Vec3) { is_new = false; });
-    if (!is_new) continue;
-    kept.push_back(p);
-    grid.add(p, h);
-  }
-  return kept;
-}
-
-/// Of places within their size of an earlier one the earlier one is enough.
-std::vector<PointSize> thinned(std::vector<PointSize> places) {
-  if (places.empty()) return places;
-  PointGrid grid(places.front().p);
-  std::erase_if(places, [&](const PointSize& s) {
-    bool is_new = true;
-    grid.for_each_near(s.p, s.size, 1, [&](std::uint32_t, Vec3) { is_new = false; });
-    if (is_new) grid.add(s.p, s.size);
-    return !is_new;
-  });
-  return places;
-}
-
 /// Sizes made smaller around places.
 struct Caps {
   std::vector<Vec3> places;
@@ -292,6 +273,7 @@ class Remesher {
   }
 
   Remeshed run() {
+    if (seamed_ && limits_deviation()) foresee_deviation();
     for (counts_.rounds = 1; counts_.rounds <= kMostRounds; ++counts_.rounds) {
       Compacted c = attempt(Effort::kFull);
       if (is_noise_) return kept_as_noise();
@@ -310,6 +292,16 @@ class Remesher {
   }
 
  private:
+  /// What most triangles of a complex would be made smaller for in further rounds.
+  void foresee_deviation() {
+    set_features(input_, {});
+    set_features(input_, features_at_scale(input_, features(), sizes_));
+    std::vector<std::uint8_t> is_fixed(input_.mesh.points.size(), 0);
+    const std::vector<Curve> curves = chained_curves(input_, *seamed_, sizes_, is_fixed).curves;
+    const std::vector<PointSize> wanted = sizes_by_flatness(input_, curves, sizes_, tolerance_, stage_.context());
+    first_ = sizes_ = capped_steeply(sizes_, wanted, kSteep, stage_.context());
+  }
+
   /// One triangulation by the sizes as they are now.
   Compacted attempt(Effort effort) {
     const RunContext& context = stage_.context();
@@ -342,7 +334,7 @@ class Remesher {
         mend_crossings(mesh, is_fixed);
         mend_places(mesh, lines_fixed(mesh), tolerance_);
         approach_far(mesh, watch, sizes, is_fixed, nearness);
-        clear = mend_places(mesh, lines_fixed(mesh), kLittle * tolerance_);
+        clear = mend_places(mesh, lines_fixed(mesh), kLittle * tolerance_) || mend_last_crossings(mesh, is_fixed);
       }
     } else if (effort == Effort::kFull) {
       remove_input_vertices(mesh, sizes, context, counts_.coarsen);
@@ -404,7 +396,8 @@ class Remesher {
   /// Of a complex, smaller sizes and more triangles where it strays, while that helps.
   void refine_far(WorkingMesh& mesh, DeviationWatch& watch, const std::vector<Curve>& curves, SizeField& sizes,
                   Nearness& n) {
-    for (int k = 0; k < kRefinements; ++k) {
+    const int most = counts_.rounds == 1 ? kRefinements : 1;
+    for (int k = 0; k < most; ++k) {
       const std::vector<FarPlace> places = far_places(mesh, watch);
       if (k == 0 && counts_.rounds == 1) is_noise_ = is_noise(places, sizes, front_triangles(mesh).size());
       if (is_noise_) return;
@@ -438,10 +431,19 @@ class Remesher {
     n.far = positions_beyond(tolerance_, places);
     const std::vector<PointSize> wanted = sizes_against(places, sizes);
     n.wanted.insert(n.wanted.end(), wanted.begin(), wanted.end());
+    for (const FarPlace& place : places)
+      if (place.distance >= tolerance_ && sizes.at(place.at) <= kStuck * finest_at(place))
+        n.stuck.push_back({place.at, finest_at(place)});
+    n.stuck = smallest_ones(std::move(n.stuck));
+  }
+
+  /// No size at the place is worth to be less: what strays then does so for another reason.
+  double finest_at(const FarPlace& place) const {
+    return kFinest * longest_edge_of(known_.tree().corners(place.on_input.face));
   }
 
   /// Puts points of the complex into triangles that cross others: chords between near sheets.
-  void mend_crossings(WorkingMesh& mesh, const std::vector<std::uint8_t>& is_fixed) {
+  void mend_crossings(WorkingMesh& mesh, const std::vector<std::uint8_t>& is_fixed, double least_shape = kFairShape) {
     for (double before = HUGE_VAL;;) {
       const std::vector<std::uint32_t> number = front_triangles(mesh);
       const SurfaceMesh alive = triangles_of(mesh, number);
@@ -459,10 +461,19 @@ class Remesher {
       std::erase_if(places, [&](const FarPlace& p) {
         return p.distance < kInPlane * std::sqrt(length(mesh.area_vector(p.triangle)));
       });
-      const std::uint64_t put_in = approach(mesh, input_, known_.tree(), is_fixed, places);
+      const std::uint64_t put_in = approach(mesh, input_, known_.tree(), is_fixed, places, least_shape);
       counts_.approached += put_in;
       if (put_in == 0) return;
     }
+  }
+
+  /// Whatever the shapes, where a few cross still: another round costs more. True if it is known that nothing crosses.
+  bool mend_last_crossings(WorkingMesh& mesh, const std::vector<std::uint8_t>& is_fixed) {
+    for (int k = 0; k < kLastMendings; ++k) {
+      mend_crossings(mesh, is_fixed, kAnyShape);
+      if (mend_places(mesh, lines_fixed(mesh), kLittle * tolerance_)) return true;
+    }
+    return false;
   }
 
   /// Of a complex, per vertex whether it is on a seam or another line.
@@ -510,8 +521,12 @@ class Remesher {
 
   Nearness nearness_of(const WorkingMesh& mesh, const std::vector<FarPlace>& places) const {
     const double much = kMuchTooFar * tolerance_;
-    return {
-        {}, positions_beyond(tolerance_, places, much), positions_beyond(much, places), {}, corners_at(mesh, places)};
+    return {{},
+            positions_beyond(tolerance_, places, much),
+            positions_beyond(much, places),
+            {},
+            {},
+            corners_at(mesh, places)};
   }
 
   /// Sizes by which the mesh would stray no more: what chords cut off grows with the square of their length. Of places
@@ -521,12 +536,10 @@ class Remesher {
     for (const FarPlace& place : places) {
       if (place.distance < tolerance_) continue;
       const double part = std::sqrt(kAim * tolerance_ / place.distance);
-      wanted.push_back({place.at, sizes.at(place.at) * std::max(part, kLeastPart)});
+      const double now = sizes.at(place.at), finest = finest_at(place);
+      if (now > finest) wanted.push_back({place.at, std::max(finest, now * std::max(part, kLeastPart))});
     }
-    std::sort(wanted.begin(), wanted.end(), [](const PointSize& a, const PointSize& b) {
-      return std::tie(a.size, a.p.x, a.p.y, a.p.z) < std::tie(b.size, b.p.x, b.p.y, b.p.z);
-    });
-    return thinned(std::move(wanted));
+    return smallest_ones(std::move(wanted));
   }
 
   /// Smaller sizes where the surface strayed.
@@ -535,6 +548,8 @@ class Remesher {
       wanted_.push_back(c.nearness.wanted);
       sizes_ = capped_steeply(sizes_, wanted_.back(), kSteep, stage_.context());
     }
+    for (const PointSize& s : c.nearness.stuck)
+      if (restored_around(s.p, 1) == restored_.end()) restored_.push_back({s.p, kRestored * s.size / kFinest, false});
     if (seamed_) return;
     std::vector<Vec3> places = c.nearness.far;
     places.insert(places.end(), c.nearness.approached.begin(), c.nearness.approached.end());
@@ -618,7 +633,7 @@ class Remesher {
       defect = kind_->first_defect_but_crossings(c.result.surface);
     if (!defect && crossings.empty()) return true;
     if (!places.empty()) {
-      cap_or_restore(places);
+      cap_or_restore(places, seamed_ ? c.result.sizes : sizes_);
     } else {
       stage_.note("an attempt was dropped: " + *defect);
       sizes_ = scaled(sizes_, kCap, stage_.context());
@@ -632,7 +647,8 @@ class Remesher {
   }
 
   /// Smaller sizes around what crosses; where that was in vain, the input's own triangles, and the first sizes again.
-  void cap_or_restore(const std::vector<Vec3>& places) {
+  /// `made_by`: of a complex the sizes that were fitted to its seams.
+  void cap_or_restore(const std::vector<Vec3>& places, const SizeField& made_by) {
     std::vector<Vec3> to_cap;
     const std::size_t before = restored_.size();
     bool in_vain = false;
@@ -641,11 +657,11 @@ class Remesher {
       if (around != restored_.end()) {
         if (static_cast<std::size_t>(around - restored_.begin()) < before) around->radius *= kMoreRestored;
         in_vain |= around->in_vain;
+      } else if (seamed_ && (made_by.at(p) < kVain * first_.at(p) || is_as_large(p, made_by))) {
+        restored_.push_back({p, kRestored * made_by.at(p), false});
       } else if (sizes_.at(p) < kVain * first_.at(p) || restored_around(p, kMoreRestored) != restored_.end()) {
         restored_.push_back({p, kRestored * first_.at(p)});
         in_vain = true;
-      } else if (seamed_ && is_as_large(p)) {
-        restored_.push_back({p, kRestored * sizes_.at(p), false});
       } else {
         to_cap.push_back(p);
       }
@@ -655,9 +671,9 @@ class Remesher {
   }
 
   /// Whether the input's triangle at p is as large as those that are wanted there.
-  bool is_as_large(Vec3 p) const {
+  bool is_as_large(Vec3 p, const SizeField& sizes) const {
     const TriangleCorners& t = known_.tree().corners(known_.tree().nearest(p).triangle);
-    return length(double_area_normal(t[0], t[1], t[2])) >= kAsLarge * sizes_.at(p) * longest_edge_of(t);
+    return length(double_area_normal(t[0], t[1], t[2])) >= kAsLarge * sizes.at(p) * longest_edge_of(t);
   }
 
   /// The first place where the input's triangles return that has p within so many radii.
@@ -683,15 +699,18 @@ class Remesher {
   /// Whether the surface is as near to the input as was asked, or could be made so in the rounds allowed; otherwise the
   /// sizes are made smaller. Leaves the sources.
   bool is_true(Compacted& c) {
-    const bool is_last = counts_.rounds == kMostRounds ||
-                         (seamed_ ? counts_.rounds > 1 : counts_.deviation_rounds == kMostDeviationRounds);
+    const std::size_t far = c.nearness.far.size() + c.nearness.farther.size();
+    const bool is_last =
+        counts_.rounds == kMostRounds ||
+        (seamed_ ? counts_.rounds > 1 ||
+                       static_cast<double>(far) < kVeryFew * static_cast<double>(c.result.surface.triangles.size())
+                 : counts_.deviation_rounds == kMostDeviationRounds);
     c.result.source = sources_of(c);
     std::vector<PointSize> turned;
     if (options_.normal_deviation) {
       turned = turned_places(*options_.normal_deviation, c.result.surface, input_, sizes_, c.vertex_face, c.is_inner,
                              c.result.source);
     }
-    const std::size_t far = c.nearness.far.size() + c.nearness.farther.size();
     if ((far == 0 && turned.empty()) || is_last) {
       if (limits_deviation()) stage_.count("places beyond the deviation", static_cast<double>(far));
       if (options_.normal_deviation) stage_.count("triangles turned too far", static_cast<double>(turned.size()));
@@ -737,7 +756,7 @@ class Remesher {
     if (!restored_.empty())
       stage_.note(
           fmt::format("the input's own triangles stay in {} places, the first around ({:.6g}, {:.6g}, {:.6g}): "
-                      "others cross there at every size",
+                      "others cross or stray there at every size",
                       restored_.size(), restored_[0].center.x, restored_[0].center.y, restored_[0].center.z));
     report_counts(counts_, stage_);
     return std::move(c.result);
@@ -746,8 +765,8 @@ class Remesher {
   const KnownSurface& known_;
   const SurfaceMesh& surface_;  ///< of known_
   std::span<const double> moved_;
-  const SizeField first_;  ///< the sizes as they were asked
-  SizeField sizes_;        ///< and as they are now
+  SizeField first_;  ///< the sizes as they were asked
+  SizeField sizes_;  ///< and as they are now
   std::vector<Caps> caps_;
   std::vector<std::vector<PointSize>> wanted_;  ///< against deviation, in a complex
   std::vector<Ball> restored_;                  ///< where the input's own triangles stay

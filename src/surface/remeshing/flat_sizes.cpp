@@ -1,0 +1,177 @@
+#include "surface/remeshing/flat_sizes.h"
+
+#include "core/parallel.h"
+#include "geometry/measures.h"
+#include "surface/remeshing/thinned.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace octafront::remeshing {
+
+namespace {
+
+/// How far from its middle an equilateral triangle reaches, in edges.
+constexpr double kReach = 0.577;
+/// Corners of new triangles lie anywhere between the two planes, so what is between them is off by less: measured on
+/// images of labels.
+constexpr double kPlanesApart = 1.3;
+/// How far the curve may be from a chord of it, in tolerances.
+constexpr double kOffChord = 1;
+/// The disc grows by this from look to look.
+constexpr double kGrowth = 1.25;
+/// Where normals cancel out to less than this part of the area the surface has turned.
+constexpr double kFacing = 0.5;
+/// Sizes above this part of the wanted one are not worth a place.
+constexpr double kWorthwhile = 0.85;
+
+/// Grows discs on the input.
+class Disc {
+ public:
+  explicit Disc(const InputSurface& input) : input_(input), seen_(input.mesh.triangle_count(), 0) {}
+
+  /// The radius up to which the patch around the face stays between two planes so far apart, at most `most`.
+  double flat_radius(std::uint32_t face, double most, double apart) {
+    const double least = kReach * std::sqrt(length(area_normal(face)));
+    if (least >= most) return most;
+    gather(face, most);
+    const Vec3 p = center(face);
+    double before = least, height_before = 0;
+    Vec3 normal, middle;
+    double weight = 0;
+    std::size_t next = 0;
+    for (double r = least;; r = std::min(r * kGrowth, most)) {
+      for (; next < faces_.size() && faces_[next].first <= r; ++next) {
+        const Vec3 n = area_normal(faces_[next].second);
+        const double area = length(n);
+        normal += n;
+        middle += (center(faces_[next].second) - p) * area;
+        weight += area;
+      }
+      if (length(normal) < kFacing * weight) return before;
+      const double height = height_of(next, p + middle / weight, normal / length(normal));
+      if (height > apart) return before + (r - before) * (apart - height_before) / (height - height_before);
+      if (r >= most) return most;
+      before = r;
+      height_before = height;
+    }
+  }
+
+ private:
+  Vec3 center(std::uint32_t t) const {
+    const HalfEdgeMesh& m = input_.mesh;
+    return (m.corner(t, 0) + m.corner(t, 1) + m.corner(t, 2)) / 3;
+  }
+  Vec3 area_normal(std::uint32_t t) const {
+    const HalfEdgeMesh& m = input_.mesh;
+    return cross(m.corner(t, 1) - m.corner(t, 0), m.corner(t, 2) - m.corner(t, 0));
+  }
+
+  /// The faces of the patch within the radius, by their middles, nearest first.
+  void gather(std::uint32_t face, double radius) {
+    const HalfEdgeMesh& m = input_.mesh;
+    const Vec3 p = center(face);
+    faces_.assign(1, {0.0, face});
+    seen_[face] = ++round_;
+    for (std::size_t i = 0; i < faces_.size(); ++i) {
+      for (HalfEdge h = 3 * faces_[i].second; h < 3 * faces_[i].second + 3; ++h) {
+        const std::uint32_t across = m.twin[h] / 3;
+        if (input_.is_back(across) || input_.patch[across] != input_.patch[face] || seen_[across] == round_) continue;
+        seen_[across] = round_;
+        const double d = distance(center(across), p);
+        if (d <= radius) faces_.push_back({d, across});
+      }
+    }
+    std::sort(faces_.begin(), faces_.end());
+  }
+
+  /// How far the corners of the first faces spread along the normal.
+  double height_of(std::size_t count, Vec3 origin, Vec3 normal) const {
+    double low = 0, high = 0;
+    for (std::size_t i = 0; i < count; ++i)
+      for (int k = 0; k < 3; ++k) {
+        const double height = dot(input_.mesh.corner(faces_[i].second, k) - origin, normal);
+        low = std::min(low, height);
+        high = std::max(high, height);
+      }
+    return high - low;
+  }
+
+  const InputSurface& input_;
+  std::vector<std::uint32_t> seen_;  ///< per face: the round in which it was
+  std::uint32_t round_ = 0;
+  std::vector<std::pair<double, std::uint32_t>> faces_;  ///< by distance
+};
+
+/// Sizes for the edges along a curve.
+class Chords {
+ public:
+  Chords(const HalfEdgeMesh& mesh, const Curve& curve) : closed_(curve.closed) {
+    for (const HalfEdge h : curve.half_edges) points_.push_back(mesh.points[mesh.start[h]]);
+    if (!closed_) points_.push_back(mesh.points[mesh.end(curve.half_edges.back())]);
+  }
+
+  std::size_t count() const { return points_.size(); }
+  Vec3 point(std::size_t i) const { return points_[i]; }
+
+  /// The length of the longest chord around the point, the same number of points to either side, from which what it
+  /// cuts off is no farther than that; at most `most`, and no less than the edges beside the point.
+  double straight_length(std::size_t i, double most, double apart) const {
+    double before = 0;
+    for (std::size_t k = 1; 2 * k < points_.size(); ++k) {
+      if (!closed_ && (k > i || i + k >= points_.size())) break;
+      const Vec3 a = at(i, -k), b = at(i, k);
+      const double l = distance(a, b);
+      if (k > 1 && (l < before || farthest(i, k, a, b) > apart)) return before;
+      if (l >= most) return most;
+      before = l;
+    }
+    return most;
+  }
+
+ private:
+  Vec3 at(std::size_t i, std::ptrdiff_t by) const {
+    const auto n = static_cast<std::ptrdiff_t>(points_.size());
+    return points_[static_cast<std::size_t>((static_cast<std::ptrdiff_t>(i) + by + n) % n)];
+  }
+  double farthest(std::size_t i, std::size_t k, Vec3 a, Vec3 b) const {
+    double most = 0;
+    for (std::ptrdiff_t j = 1 - static_cast<std::ptrdiff_t>(k); j < static_cast<std::ptrdiff_t>(k); ++j)
+      most = std::max(most, squared_distance(at(i, j), closest_point_on_segment(at(i, j), a, b)));
+    return std::sqrt(most);
+  }
+
+  bool closed_;
+  std::vector<Vec3> points_;
+};
+
+}  // namespace
+
+std::vector<PointSize> sizes_by_flatness(const InputSurface& input, const std::vector<Curve>& curves,
+                                         const SizeField& sizes, double tolerance, const RunContext& context) {
+  const HalfEdgeMesh& mesh = input.mesh;
+  std::vector<PointSize> of_face(mesh.triangle_count());
+  PerThread<Disc> discs;
+  parallel_for(mesh.triangle_count(), [&](std::size_t t) {
+    if (input.is_back(t)) return;
+    const auto face = static_cast<std::uint32_t>(t);
+    const Vec3 p = (mesh.corner(face, 0) + mesh.corner(face, 1) + mesh.corner(face, 2)) / 3;
+    const double wanted = sizes.at(p);
+    Disc& disc = discs.local([&] { return Disc(input); });
+    const double size = disc.flat_radius(face, kReach * wanted, kPlanesApart * tolerance) / kReach;
+    if (size < kWorthwhile * wanted) of_face[t] = {p, size};
+  });
+  context.check();
+  std::erase_if(of_face, [](const PointSize& s) { return s.size == 0; });
+  for (const Curve& curve : curves) {
+    const Chords chords(mesh, curve);
+    for (std::size_t i = 0; i < chords.count(); ++i) {
+      const double wanted = sizes.at(chords.point(i));
+      const double size = chords.straight_length(i, wanted, kOffChord * tolerance);
+      if (size < kWorthwhile * wanted) of_face.push_back({chords.point(i), size});
+    }
+  }
+  return smallest_ones(std::move(of_face));
+}
+
+}  // namespace octafront::remeshing
