@@ -63,9 +63,6 @@ constexpr double kFewFar = 0.02;
 /// In a complex sizes are made smaller by how far it strays: to come to this part of the bound, to no less than this
 /// part of themselves at once.
 constexpr double kAim = 0.75, kLeastPart = 0.4;
-/// Nor to less than this part of the input's own edges; where they are no more than so many times that, and it strays
-/// still, the input's triangles return.
-constexpr double kFinest = 0.5, kStuck = 1.5;
 /// A complex that strays at fewer places than this part of its triangles is not made anew for it.
 constexpr double kVeryFew = 1e-4;
 /// But where it strays at first, with triangles as small as the input's, at more places than this part of their number,
@@ -109,7 +106,6 @@ struct Nearness {
   std::vector<Vec3> approached;         ///< where points of the input were put in
   std::vector<Vec3> far, farther;       ///< where it strays still: too far, and much too far
   std::vector<PointSize> wanted;        ///< sizes by which it would stray less there, in a complex
-  std::vector<PointSize> stuck;         ///< where no size would help, and the size there: the same
   std::vector<VertexIndex> near_limit;  ///< corners of triangles that nearly do, in the working mesh
 };
 
@@ -431,15 +427,6 @@ class Remesher {
     n.far = positions_beyond(tolerance_, places);
     const std::vector<PointSize> wanted = sizes_against(places, sizes);
     n.wanted.insert(n.wanted.end(), wanted.begin(), wanted.end());
-    for (const FarPlace& place : places)
-      if (place.distance >= tolerance_ && sizes.at(place.at) <= kStuck * finest_at(place))
-        n.stuck.push_back({place.at, finest_at(place)});
-    n.stuck = smallest_ones(std::move(n.stuck));
-  }
-
-  /// No size at the place is worth to be less: what strays then does so for another reason.
-  double finest_at(const FarPlace& place) const {
-    return kFinest * longest_edge_of(known_.tree().corners(place.on_input.face));
   }
 
   /// Puts points of the complex into triangles that cross others: chords between near sheets.
@@ -521,12 +508,8 @@ class Remesher {
 
   Nearness nearness_of(const WorkingMesh& mesh, const std::vector<FarPlace>& places) const {
     const double much = kMuchTooFar * tolerance_;
-    return {{},
-            positions_beyond(tolerance_, places, much),
-            positions_beyond(much, places),
-            {},
-            {},
-            corners_at(mesh, places)};
+    return {
+        {}, positions_beyond(tolerance_, places, much), positions_beyond(much, places), {}, corners_at(mesh, places)};
   }
 
   /// Sizes by which the mesh would stray no more: what chords cut off grows with the square of their length. Of places
@@ -536,8 +519,7 @@ class Remesher {
     for (const FarPlace& place : places) {
       if (place.distance < tolerance_) continue;
       const double part = std::sqrt(kAim * tolerance_ / place.distance);
-      const double now = sizes.at(place.at), finest = finest_at(place);
-      if (now > finest) wanted.push_back({place.at, std::max(finest, now * std::max(part, kLeastPart))});
+      wanted.push_back({place.at, sizes.at(place.at) * std::max(part, kLeastPart)});
     }
     return smallest_ones(std::move(wanted));
   }
@@ -548,8 +530,6 @@ class Remesher {
       wanted_.push_back(c.nearness.wanted);
       sizes_ = capped_steeply(sizes_, wanted_.back(), kSteep, stage_.context());
     }
-    for (const PointSize& s : c.nearness.stuck)
-      if (restored_around(s.p, 1) == restored_.end()) restored_.push_back({s.p, kRestored * s.size / kFinest, false});
     if (seamed_) return;
     std::vector<Vec3> places = c.nearness.far;
     places.insert(places.end(), c.nearness.approached.begin(), c.nearness.approached.end());
@@ -756,7 +736,7 @@ class Remesher {
     if (!restored_.empty())
       stage_.note(
           fmt::format("the input's own triangles stay in {} places, the first around ({:.6g}, {:.6g}, {:.6g}): "
-                      "others cross or stray there at every size",
+                      "others cross there at every size",
                       restored_.size(), restored_[0].center.x, restored_[0].center.y, restored_[0].center.z));
     report_counts(counts_, stage_);
     return std::move(c.result);
