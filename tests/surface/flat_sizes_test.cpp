@@ -28,7 +28,7 @@ TEST(FlatSizes, NothingIsAskedForOnFlatSides) {
 }
 
 TEST(FlatSizes, FallWithTheSquareRootOfTheToleranceOnASphere) {
-  const InputSurface sphere = input_of(icosphere(6));
+  const InputSurface sphere = input_of(icosphere(5));
   double before = 0;
   for (const double tolerance : {0.005, 0.02}) {
     const std::vector<PointSize> places = sizes_by_flatness(sphere, {}, SizeField::uniform(1), tolerance, {});

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace octafront::remeshing {
 
@@ -22,6 +23,8 @@ constexpr double kOffChord = 1;
 constexpr double kGrowth = 1.25;
 /// Where normals cancel out to less than this part of the area the surface has turned.
 constexpr double kFacing = 0.5;
+/// What is flat so far needs no look at all of it: larger sizes are found by how far the surface strays.
+constexpr std::size_t kMostFaces = 600;
 /// Sizes above this part of the wanted one are not worth a place.
 constexpr double kWorthwhile = 0.85;
 
@@ -32,24 +35,26 @@ class Disc {
 
   /// The radius up to which the patch around the face stays between two planes so far apart, at most `most`.
   double flat_radius(std::uint32_t face, double most, double apart) {
-    const double least = kReach * std::sqrt(length(area_normal(face)));
+    const double least = kReach * mean_edge(face);
     if (least >= most) return most;
-    gather(face, most);
+    start(face);
     const Vec3 p = center(face);
     double before = least, height_before = 0;
     Vec3 normal, middle;
     double weight = 0;
     std::size_t next = 0;
     for (double r = least;; r = std::min(r * kGrowth, most)) {
-      for (; next < faces_.size() && faces_[next].first <= r; ++next) {
-        const Vec3 n = area_normal(faces_[next].second);
+      grow(r);
+      if (faces_.size() > kMostFaces) return most;
+      for (; next < faces_.size(); ++next) {
+        const Vec3 n = area_normal(faces_[next]);
         const double area = length(n);
         normal += n;
-        middle += (center(faces_[next].second) - p) * area;
+        middle += (center(faces_[next]) - p) * area;
         weight += area;
       }
       if (length(normal) < kFacing * weight) return before;
-      const double height = height_of(next, p + middle / weight, normal / length(normal));
+      const double height = height_of(p + middle / weight, normal / length(normal));
       if (height > apart) return before + (r - before) * (apart - height_before) / (height - height_before);
       if (r >= most) return most;
       before = r;
@@ -62,35 +67,46 @@ class Disc {
     const HalfEdgeMesh& m = input_.mesh;
     return (m.corner(t, 0) + m.corner(t, 1) + m.corner(t, 2)) / 3;
   }
+  double mean_edge(std::uint32_t t) const {
+    const Vec3 a = input_.mesh.corner(t, 0), b = input_.mesh.corner(t, 1), c = input_.mesh.corner(t, 2);
+    return (distance(a, b) + distance(b, c) + distance(c, a)) / 3;
+  }
   Vec3 area_normal(std::uint32_t t) const {
     const HalfEdgeMesh& m = input_.mesh;
     return cross(m.corner(t, 1) - m.corner(t, 0), m.corner(t, 2) - m.corner(t, 0));
   }
 
-  /// The faces of the patch within the radius, by their middles, nearest first.
-  void gather(std::uint32_t face, double radius) {
-    const HalfEdgeMesh& m = input_.mesh;
-    const Vec3 p = center(face);
-    faces_.assign(1, {0.0, face});
+  void start(std::uint32_t face) {
+    faces_.clear();
+    rim_.assign(1, {0.0, face});
+    middle_ = center(face);
     seen_[face] = ++round_;
-    for (std::size_t i = 0; i < faces_.size(); ++i) {
-      for (HalfEdge h = 3 * faces_[i].second; h < 3 * faces_[i].second + 3; ++h) {
+  }
+
+  /// Takes in the faces of the patch within the radius, by their middles, nearest first.
+  void grow(double radius) {
+    const HalfEdgeMesh& m = input_.mesh;
+    while (!rim_.empty() && rim_.front().first <= radius && faces_.size() <= kMostFaces) {
+      std::pop_heap(rim_.begin(), rim_.end(), std::greater<>());
+      const std::uint32_t face = rim_.back().second;
+      rim_.pop_back();
+      faces_.push_back(face);
+      for (HalfEdge h = 3 * face; h < 3 * face + 3; ++h) {
         const std::uint32_t across = m.twin[h] / 3;
         if (input_.is_back(across) || input_.patch[across] != input_.patch[face] || seen_[across] == round_) continue;
         seen_[across] = round_;
-        const double d = distance(center(across), p);
-        if (d <= radius) faces_.push_back({d, across});
+        rim_.push_back({distance(center(across), middle_), across});
+        std::push_heap(rim_.begin(), rim_.end(), std::greater<>());
       }
     }
-    std::sort(faces_.begin(), faces_.end());
   }
 
-  /// How far the corners of the first faces spread along the normal.
-  double height_of(std::size_t count, Vec3 origin, Vec3 normal) const {
+  /// How far the corners of the faces spread along the normal.
+  double height_of(Vec3 origin, Vec3 normal) const {
     double low = 0, high = 0;
-    for (std::size_t i = 0; i < count; ++i)
+    for (const std::uint32_t face : faces_)
       for (int k = 0; k < 3; ++k) {
-        const double height = dot(input_.mesh.corner(faces_[i].second, k) - origin, normal);
+        const double height = dot(input_.mesh.corner(face, k) - origin, normal);
         low = std::min(low, height);
         high = std::max(high, height);
       }
@@ -100,7 +116,9 @@ class Disc {
   const InputSurface& input_;
   std::vector<std::uint32_t> seen_;  ///< per face: the round in which it was
   std::uint32_t round_ = 0;
-  std::vector<std::pair<double, std::uint32_t>> faces_;  ///< by distance
+  Vec3 middle_;
+  std::vector<std::uint32_t> faces_;
+  std::vector<std::pair<double, std::uint32_t>> rim_;  ///< a heap: what is next to be taken in, by distance
 };
 
 /// Sizes for the edges along a curve.
