@@ -16,15 +16,15 @@ namespace {
 // Sizes that miss the number are scaled, by what came out, and tried again.
 constexpr double kElementsTolerance = 0.12;  // tighter than the 15 % promised: improvement still changes the count
 constexpr int kElementsAttempts = 5, kSurfaceAttempts = 7;
+// Counts that change by less than this part of the least slope stand still: limits and details decide, not the sizes.
+constexpr double kStandsStill = 0.1;
+// Smaller steps say nothing: the lattice's cells may double with them, or not.
+constexpr double kTellingStep = 0.1;
 // By how much to scale the first sizes next, by the last two counts; once one was above and one below, by the nearest
 // such two, or their middle where the last two were on one side. The count falls with the third power of the sizes
 // where the volume decides, more slowly where gradation or details of the surface do: down to the least slope, from
 // which on a step would go nowhere.
 constexpr double kSteepest = -4, kFlattest = -0.5;
-// Counts that change by less than this part of the least slope stand still: limits and details decide, not the sizes.
-constexpr double kStandsStill = 0.1;
-// Smaller steps say nothing: the lattice's cells may double with them, or not.
-constexpr double kTellingStep = 0.1;
 class CountSearch {
  public:
   explicit CountSearch(double wanted) : wanted_(std::log(wanted)) {}

@@ -745,7 +745,7 @@ class Remesher {
   const KnownSurface& known_;
   const SurfaceMesh& surface_;  ///< of known_
   std::span<const double> moved_;
-  SizeField first_;  ///< the sizes as they were asked
+  SizeField first_;  ///< the sizes as they were asked, in a complex as they were foreseen
   SizeField sizes_;  ///< and as they are now
   std::vector<Caps> caps_;
   std::vector<std::vector<PointSize>> wanted_;  ///< against deviation, in a complex
