@@ -7,6 +7,7 @@
 #include "core/parallel.h"
 #include "curved/curved.h"
 #include "improve/improve.h"
+#include "improve/raise_flat.h"
 #include "improve/slide_interfaces.h"
 #include "mesh/complex.h"
 #include "pipeline/follow_boundary.h"
@@ -156,6 +157,28 @@ bool may_slide(const ImproveOptions& options) {
          options.level != ImproveOptions::Level::kPaper;
 }
 
+// Corners of elements that stayed flat may leave the surface by this part of what it may stray.
+constexpr double kRaised = 0.5;
+
+double raise_limit(const SurfaceMesh& surface, const Options& options) {
+  if (options.surface.max_deviation) return kRaised * *options.surface.max_deviation;
+  return kRaised * detail_tolerance(surface, options, 1);
+}
+
+/// What the boundary itself keeps poor: vertices of interfaces slide, and corners of flat elements leave the surface.
+void ease_boundary(const KnownSurface& input, Filled& filled, const Options& options, const Stage& stage) {
+  auto& [mesh, boundary] = filled;
+  if (!input.mesh().sides.empty())
+    stage.count("interface vertices moved",
+                static_cast<double>(slide_interfaces(mesh, boundary.surface, boundary.features, input.mesh(), stage)));
+  if (const double limit = raise_limit(input.mesh(), options); limit > 0) {
+    const RaisedFlat raised = raise_flat(mesh, boundary.surface, limit, stage);
+    stage.count("corners of flat elements moved", static_cast<double>(raised.vertices));
+    stage.count("largest move of such a corner", raised.largest_move);
+  }
+  std::copy_n(mesh.points.begin(), boundary.surface.points.size(), boundary.surface.points.begin());
+}
+
 // Folds, flaps and blades below the tolerance are taken away: no element could fill them. Returns how far that moved
 // each triangle.
 std::vector<double> smooth_detail(Examined& found, Run& run) {
@@ -282,11 +305,7 @@ void improve_elements(const Prepared& input, Filled& filled, Run& run) {
       if (on) renew_sources(mesh, hull_of(boundary.surface), on->surface, on->tree);
       follow_boundary(mesh, boundary.surface);
     }
-    if (on && !on->surface.sides.empty() && may_slide(run.options.improve)) {
-      stage.count("interface vertices moved",
-                  static_cast<double>(slide_interfaces(mesh, boundary.surface, boundary.features, on->surface, stage)));
-      std::copy_n(mesh.points.begin(), boundary.surface.points.size(), boundary.surface.points.begin());
-    }
+    if (on && may_slide(run.options.improve)) ease_boundary(input.surface, filled, run.options, stage);
   });
 }
 
