@@ -4,6 +4,7 @@
 #include "nets/fans.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace octafront::nets {
@@ -13,6 +14,10 @@ namespace {
 // A slope passes up to half a voxel from the terraces that it becomes, and must have room for that; but vertices that
 // reach the wall of their cell could meet their neighbours there.
 constexpr float kMostRoom = 0.998f;
+
+// The corners of the box, .87 voxels away, are middles of voxels: a surface that elements draw a little off it would
+// have them on the wrong side. Balls are as round and terraces as sloped with .79 as with all of the box, not with .76.
+constexpr double kFarthest = 0.79;
 
 // Layers stay half a voxel thick; where three labels meet each has an edge, which may be thinner: at .5 lines of
 // three labels lay .29 voxels off, at .75 .20, and
@@ -80,6 +85,7 @@ void VertexCells::keep_layers_apart(VertexIndex v) {
 
 Vec3 VertexCells::clamped(VertexIndex v, Vec3 p) const {
   const Corner& c = net_.corner[v];
+  double squared_way = 0;  // in voxels
   for (int a = 0; a < 3; ++a) {
     const double wall = lattice_.wall(a, c[a]);
     if (lattice_.on_box(c, a)) {
@@ -87,9 +93,16 @@ Vec3 VertexCells::clamped(VertexIndex v, Vec3 p) const {
       continue;
     }
     const auto [below, above] = share_[v][a];
-    p[a] = std::clamp(p[a], wall + below * (lattice_.middle(a, c[a] - 1) - wall),
-                      wall + above * (lattice_.middle(a, c[a]) - wall));
+    const double to_below = lattice_.middle(a, c[a] - 1) - wall, to_above = lattice_.middle(a, c[a]) - wall;
+    p[a] = std::clamp(p[a], wall + below * to_below, wall + above * to_above);
+    const double way = 0.5 * (p[a] - wall) / (p[a] < wall ? to_below : to_above);
+    squared_way += way * way;
   }
+  if (squared_way <= kFarthest * kFarthest) return p;
+  const double part = kFarthest / std::sqrt(squared_way);
+  const Vec3 corner = lattice_.at(c);
+  for (int a = 0; a < 3; ++a)
+    if (!lattice_.on_box(c, a)) p[a] = corner[a] + part * (p[a] - corner[a]);
   return p;
 }
 

@@ -9,9 +9,9 @@
 
 namespace octafront::nets {
 
-/// How much room a vertex has: a box around its corner, up to the middles of the voxels there, flat on the image's box.
-/// Less at labels of few voxels, which smoothing would pull together to points, and toward voxels that are a layer by
-/// themselves, whose two sides would come together.
+/// How much room a vertex has: a box around its corner, up to the middles of the voxels there, without its corners, and
+/// flat on the image's box. Less at labels of few voxels, which smoothing would pull together to points, and toward
+/// voxels that are a layer by themselves, whose two sides would come together.
 class VertexCells {
  public:
   /// `voxels`: of each label; empty: labels of few voxels have room like others.
