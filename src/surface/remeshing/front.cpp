@@ -29,6 +29,20 @@ constexpr double kLeastFactor = 0.9;
 constexpr int kMostParts = 64;
 constexpr double kSixtyDegrees = std::numbers::pi / 3;
 
+/// What the grid knows of a point: on which sheet it lies.
+struct OnSheet {
+  Vec3 normal;
+  bool on_feature = false;
+};
+using Grid = PointGrid<OnSheet>;
+
+/// Grows with the angle of (x, y), from -2 to 2, and costs a division.
+double turn_of(double x, double y) {
+  const double sum = std::abs(x) + std::abs(y), s = sum > 0 ? y / sum : 0;
+  if (x >= 0) return s;
+  return y >= 0 ? 2 - s : -2 - s;
+}
+
 class Front {
  public:
   /// Places by `factor` times the sizes inside patches.
@@ -56,16 +70,24 @@ class Front {
   }
 
  private:
+  /// By its direction in the plane of a point.
   struct Neighbour {
-    double angle;
+    double turn, x, y;
     std::uint32_t id;
+
+    double angle() const { return std::atan2(y, x); }
   };
+  /// Whether less than 90 degrees lie between a and b, which follows it or is the first after the last.
+  static bool is_acute(const Neighbour& a, const Neighbour& b) {
+    const double turn = b.turn - a.turn;
+    return (turn > 0 || turn < -2) && a.x * b.x + a.y * b.y > 0 && a.x * b.y - a.y * b.x > 0;
+  }
 
   double size_at(Vec3 p) const { return factor_ * sizes_.at(p); }
 
   void add(const FrontPoint& point) {
     result_.points.push_back(point);
-    grid_.add(point.p, point.h);
+    grid_.add(point.p, point.h, {point.normal, point.on_feature});
   }
 
   void add_curve(const Curve& curve) {
@@ -115,16 +137,16 @@ class Front {
     point.h = size_at(x.p);
     point.parent = parent;
     bool is_free = true;
-    grid_.for_each_near(x.p, point.h, kSpacing, [&](std::uint32_t id, Vec3 q) {
+    grid_.for_each_near(x.p, point.h, kSpacing, [&](const Grid::Entry& other) {
       if (!is_free) return;
-      const double near = kSpacing * 0.5 * (point.h + result_.points[id].h);
-      if (squared_length(q - x.p) < near * near && same_sheet(point, result_.points[id])) is_free = false;
+      const double near = kSpacing * 0.5 * (point.h + other.size);
+      if (squared_length(other.p - x.p) < near * near && same_sheet(point, other)) is_free = false;
     });
     if (is_free) add(point);
   }
 
-  static bool same_sheet(const FrontPoint& a, const FrontPoint& b) {
-    if (!b.on_feature && dot(a.normal, b.normal) < kSheetCosine) return false;
+  static bool same_sheet(const FrontPoint& a, const Grid::Entry& b) {
+    if (!b.data.on_feature && dot(a.normal, b.data.normal) < kSheetCosine) return false;
     const Vec3 d = b.p - a.p;
     return std::abs(dot(d, a.normal)) <= kSheetOffset * length(d);
   }
@@ -162,26 +184,31 @@ class Front {
     const Vec3 n = point.normal;
     const Vec3 axis = std::abs(n.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
     Vec3 u = normalized(cross(axis, n)), v = cross(n, u);
-    neighbours_.clear();
-    grid_.for_each_near(point.p, point.h, kReach, [&](std::uint32_t other, Vec3 q) {
-      if (other == id) return;
-      const double reach = kReach * 0.5 * (point.h + result_.points[other].h);
-      const Vec3 d = q - point.p;
-      if (squared_length(d) > reach * reach || !same_sheet(point, result_.points[other])) return;
-      neighbours_.push_back({std::atan2(dot(d, v), dot(d, u)), other});
-    });
-    std::sort(neighbours_.begin(), neighbours_.end(), [](const Neighbour& a, const Neighbour& b) {
-      return a.angle != b.angle ? a.angle < b.angle : a.id < b.id;
-    });
-    if (neighbours_.empty()) neighbours_.push_back({0, kNone}), leave(id, point, u, v, 0);
+    find_neighbours(id, point, u, v);
+    if (neighbours_.empty()) neighbours_.push_back({0, 1, 0, kNone}), leave(id, point, u, v, 0);
     const std::size_t count = neighbours_.size();
     for (std::size_t i = 0; i < count; ++i) {
-      const double from = neighbours_[i].angle;
-      const double gap =
-          (i + 1 < count ? neighbours_[i + 1].angle : neighbours_[0].angle + 2 * std::numbers::pi) - from;
+      const Neighbour &a = neighbours_[i], &b = neighbours_[(i + 1) % count];
+      if (is_acute(a, b)) continue;  // nearly always: no need of angles
+      const double from = a.angle(), gap = b.angle() + (i + 1 < count ? 0 : 2 * std::numbers::pi) - from;
       const int parts = static_cast<int>(std::lround(gap / kSixtyDegrees));
       for (int k = 1; k < parts; ++k) leave(id, point, u, v, from + gap * k / parts);
     }
+  }
+
+  /// Of the same sheet, by angle.
+  void find_neighbours(std::uint32_t id, const FrontPoint& point, Vec3 u, Vec3 v) {
+    neighbours_.clear();
+    grid_.for_each_near(point.p, point.h, kReach, [&](const Grid::Entry& other) {
+      if (other.id == id) return;
+      const double reach = kReach * 0.5 * (point.h + other.size);
+      const Vec3 d = other.p - point.p;
+      if (squared_length(d) > reach * reach || !same_sheet(point, other)) return;
+      const double x = dot(d, u), y = dot(d, v);
+      neighbours_.push_back({turn_of(x, y), x, y, other.id});
+    });
+    std::sort(neighbours_.begin(), neighbours_.end(),
+              [](const Neighbour& a, const Neighbour& b) { return a.turn != b.turn ? a.turn < b.turn : a.id < b.id; });
   }
 
   void leave(std::uint32_t id, const FrontPoint& point, Vec3 u, Vec3 v, double angle) {
@@ -256,7 +283,7 @@ class Front {
   const InputSurface& input_;
   const SizeField& sizes_;
   double factor_;
-  PointGrid grid_;
+  Grid grid_;
   FrontPoints result_;
   std::map<VertexIndex, std::uint32_t> of_vertex_;
   std::vector<Neighbour> neighbours_;
@@ -266,15 +293,17 @@ class Front {
 
 /// The integral of 1 / h^2 over a triangle, by its parts no longer than about two sizes.
 double demand_of(Vec3 a, Vec3 b, Vec3 c, const SizeField& sizes) {
-  const Vec3 middle = (a + b + c) / 3;
+  const auto size_at = [&](double u, double v) { return sizes.at(a * (1 - u - v) + b * u + c * v); };
+  const double in_middle = size_at(1.0 / 3, 1.0 / 3);
   const double longest = std::sqrt(std::max({squared_length(a - b), squared_length(b - c), squared_length(c - a)}));
-  const int n = std::clamp(static_cast<int>(longest / (2 * sizes.at(middle))) + 1, 1, kMostParts);
+  const int n = std::clamp(static_cast<int>(longest / (2 * in_middle)) + 1, 1, kMostParts);
+  if (n == 1) return 1 / (in_middle * in_middle) * 0.5 * length(cross(b - a, c - a));
   double sum = 0;
   for (int i = 0; i < n; ++i) {
     for (int j = 0; j < 2 * (n - i) - 1; ++j) {
       // Parts come in pairs along a row: upright ones, and between them such as stand on their tip.
       const double third = j % 2 == 0 ? 1.0 / 3 : 2.0 / 3, u = (i + third) / n, v = (j / 2 + third) / n;
-      const double h = sizes.at(a * (1 - u - v) + b * u + c * v);
+      const double h = size_at(u, v);
       sum += 1 / (h * h);
     }
   }

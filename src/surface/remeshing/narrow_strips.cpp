@@ -102,12 +102,11 @@ SizeField fitted_to_strips(const InputSurface& input, const SizeField& sizes, co
     found[i] = narrow_places(input, sizes, sides[i], rules);
   });
   std::vector<PointSize> places;
-  PointGrid kept(mesh.points.empty() ? Vec3{} : mesh.points.front());
+  PointGrid<NoData> kept(mesh.points.empty() ? Vec3{} : mesh.points.front());
   for (const std::vector<Narrow>& along : found) {
     for (const auto& [p, size] : along) {
       bool is_new = true;
-      kept.for_each_near(p, size, kSamePlace,
-                         [&, s = size](std::uint32_t id, Vec3) { is_new &= places[id].size > 1.1 * s; });
+      kept.for_each_near(p, size, kSamePlace, [&, s = size](const auto& e) { is_new &= e.size > 1.1 * s; });
       if (!is_new) continue;
       places.push_back({p, size});
       kept.add(p, size);
