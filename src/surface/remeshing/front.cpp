@@ -334,11 +334,13 @@ double points_made(const InputSurface& input, const std::vector<FrontPoint>& poi
 
 FrontPoints place_points(const InputSurface& input, const std::vector<Curve>& curves, const SizeField& sizes,
                          const RunContext& context) {
-  const double wanted = points_wanted(input, sizes);
-  FrontPoints best;
-  double factor = 1, least = HUGE_VAL;
+  double wanted = 0, factor = 1, least = HUGE_VAL;
+  FrontPoints made, best;
+  const auto place = [&] { made = Front(input, sizes, factor).run(curves, context); };
+  // The first time nothing depends on the number wanted.
+  parallel_invoke(place, [&] { wanted = points_wanted(input, sizes); });
   for (int attempt = 0; attempt < kMostPlacings; ++attempt) {
-    FrontPoints made = Front(input, sizes, factor).run(curves, context);
+    if (attempt > 0) place();
     const double surplus = points_made(input, made.points) / wanted;
     if (std::abs(surplus - 1) < least) {
       least = std::abs(surplus - 1);
