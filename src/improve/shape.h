@@ -71,15 +71,17 @@ struct Floor {
 /// Corner 0 of all elements may be one point (a star about it) or its own for each.
 struct ShapeBatch {
   static constexpr int kBatch = 256;
+  /// Rows a power of two apart would all lie in the same few sets of the cache.
+  static constexpr int kRow = kBatch + 8;
   using Objective = ImproveOptions::Objective;
 
   explicit ShapeBatch(Objective o = Objective::kBalanced) : objective(o) {}
 
   Objective objective;
   int size = 0;
-  alignas(64) double corner[4][3][kBatch];  ///< [corner][axis][element]
-  alignas(64) double beta[kBatch], small[kBatch], large[kBatch];
-  alignas(64) double quality[kBatch];  ///< the score, in double precision for derivatives
+  alignas(64) double corner[4][3][kRow];  ///< [corner][axis][element]
+  alignas(64) double beta[kRow], small[kRow], large[kRow];
+  alignas(64) double quality[kRow];  ///< the score, in double precision for derivatives
 
   bool full() const { return size == kBatch; }
   /// Adds an element that shares corner 0 with the others.
@@ -130,9 +132,10 @@ class StarSketch {
 
  private:
   friend struct SketchKernel;
-  int used_ = 0, size_ = 0;                             ///< elements, and with those that fill the last vector up
-  alignas(64) float corner_[3][3][ShapeBatch::kBatch];  ///< [corner - 1][axis][element]
-  alignas(64) float lack_[ShapeBatch::kBatch];          ///< (1 - beta)^2
+  static constexpr int kRow = ShapeBatch::kBatch + 16;
+  int used_ = 0, size_ = 0;               ///< elements, and with those that fill the last vector up
+  alignas(64) float corner_[3][3][kRow];  ///< [corner - 1][axis][element]
+  alignas(64) float lack_[kRow];          ///< (1 - beta)^2
 };
 
 /// One element by itself; the same values as a batch gives, bit for bit.
