@@ -23,7 +23,7 @@ class FaceMatcher {
     entries_.resize(at);
   }
 
-  /// The waiting partner of the face, taken out, or kNone after putting this one in.
+  /// The waiting partner of the face, by its corners in ascending order, taken out; or kNone after putting this one in.
   std::uint32_t match(const Triangle& key, std::uint32_t id) {
     const VertexIndex v = key[0] - first_;
     Entry* first = entries_.data() + begin_[v];
@@ -50,6 +50,34 @@ class FaceMatcher {
   std::vector<std::uint32_t> begin_, next_;
   std::vector<Entry> entries_;
 };
+
+/// The corners of a tet in ascending order, and which of its corners each is.
+struct SortedTet {
+  std::array<VertexIndex, 4> vertex;
+  std::array<HalfFace, 4> corner;
+
+  explicit SortedTet(const Tet& t) {
+    std::array<std::uint64_t, 4> key;
+    for (std::uint32_t i = 0; i < 4; ++i) key[i] = std::uint64_t{t[i]} << 2 | i;
+    const auto order = [&](int i, int j) {
+      const std::uint64_t low = std::min(key[i], key[j]), high = std::max(key[i], key[j]);
+      key[i] = low, key[j] = high;
+    };
+    order(0, 1), order(2, 3), order(0, 2), order(1, 3), order(1, 2);
+    for (int i = 0; i < 4; ++i) {
+      vertex[i] = static_cast<VertexIndex>(key[i] >> 2);
+      corner[i] = static_cast<HalfFace>(key[i] & 3);
+    }
+  }
+  /// The key of the face without the i-th least corner.
+  Triangle face_opposite(int i) const { return {vertex[i == 0], vertex[1 + (i <= 1)], vertex[2 + (i <= 2)]}; }
+};
+
+std::array<VertexIndex, 2> least_two(const Tet& t) {
+  const VertexIndex low = std::min(t[0], t[1]), high = std::max(t[0], t[1]);
+  const VertexIndex other_low = std::min(t[2], t[3]), other_high = std::max(t[2], t[3]);
+  return {std::min(low, other_low), std::min(std::max(low, other_low), std::min(high, other_high))};
+}
 
 std::string name_of(HalfFace h) {
   return "face " + std::to_string(h % 4) + " of tetrahedron " + std::to_string(h / 4);
@@ -85,23 +113,36 @@ std::optional<std::string> wrong_at_tet(const TetComplex& c, TetIndex t) {
 void TetComplex::connect(std::size_t vertices, std::span<const Triangle> boundary) {
   across.assign(4 * tets.size(), kNone);
   const RangeBuckets ranges(vertices);
-  const auto range_of = [&](const Triangle& t) { return ranges.of(face_key(t)[0]); };
-  const Buckets<> half_faces(tets.size(), ranges.count(), [&](std::size_t t, const auto& add) {
-    for (HalfFace h = static_cast<HalfFace>(4 * t), end = h + 4; h < end; ++h) add(range_of(face(h)), h);
+  // Tets by the ranges of the least corners of their faces, one or two: most lie in one.
+  const Buckets<> tets_at(tets.size(), ranges.count(), [&](std::size_t t, const auto& add) {
+    const auto [least, second] = least_two(tets[t]);
+    add(ranges.of(least), static_cast<TetIndex>(t));
+    if (ranges.of(second) != ranges.of(least)) add(ranges.of(second), static_cast<TetIndex>(t));
   });
   const Buckets<> outside(boundary.size(), ranges.count(), [&](std::size_t b, const auto& add) {
-    add(range_of(boundary[b]), static_cast<std::uint32_t>(b));
+    add(ranges.of(face_key(boundary[b])[0]), static_cast<std::uint32_t>(b));
   });
   // Both sides of a face are in one range: what a thread writes is its own.
   parallel_for(ranges.count(), [&](std::size_t r) {
     const auto first = static_cast<VertexIndex>(ranges.begin(r));
     std::vector<std::uint32_t> count(ranges.end(r) - first, 0);
-    for (const HalfFace h : half_faces[r]) ++count[face_key(face(h))[0] - first];
+    for (const TetIndex t : tets_at[r]) {
+      const auto [least, second] = least_two(tets[t]);
+      if (ranges.of(least) == r) count[least - first] += 3;
+      if (ranges.of(second) == r) ++count[second - first];
+    }
     for (const std::uint32_t b : outside[r]) ++count[face_key(boundary[b])[0] - first];
     FaceMatcher matcher(first, std::move(count));
     for (const std::uint32_t b : outside[r]) matcher.match(face_key(boundary[b]), kFirstOutside + b);
-    for (const HalfFace h : half_faces[r])
-      if (const HalfFace other = matcher.match(face_key(face(h)), h); other != kNone) join(h, other);
+    for (const TetIndex t : tets_at[r]) {
+      const SortedTet sorted(tets[t]);
+      for (int i = 0; i < 4; ++i) {
+        const Triangle key = sorted.face_opposite(i);
+        if (ranges.of(key[0]) != r) continue;
+        const HalfFace h = 4 * t + sorted.corner[i];
+        if (const HalfFace other = matcher.match(key, h); other != kNone) join(h, other);
+      }
+    }
   });
   tet_at.assign(vertices, kNone);
   for (TetIndex t = 0; t < slots(); ++t)
