@@ -54,14 +54,26 @@ class Groups {
 inline constexpr std::uint32_t kNoOwner = 0xffffffffu;
 
 /// The numbers 0 ... items - 1 by owner_of(number), ascending in each group, without those of kNoOwner. By several
-/// threads: first into ranges of owners, then range by range; one thread is faster without.
+/// threads: first into ranges of owners, then range by range; one thread is faster without, and without a branch where
+/// some have no owner: they are counted as those of one owner more, and put one over the other.
 template <class OwnerOf>
 Groups<> group_by_owner(std::size_t owners, std::uint32_t items, const OwnerOf& owner_of) {
-  if (thread_count() == 1)
-    return {owners, [&](const auto& add) {
-              for (std::uint32_t i = 0; i < items; ++i)
-                if (const std::uint32_t owner = owner_of(i); owner != kNoOwner) add(owner, i);
-            }};
+  if (thread_count() == 1) {
+    const auto nobody = static_cast<std::uint32_t>(owners);
+    std::vector<std::uint32_t> first(owners + 1, 0);
+    for (std::uint32_t i = 0; i < items; ++i) ++first[std::min<std::uint32_t>(owner_of(i), nobody)];
+    std::uint32_t sum = 0;
+    for (std::size_t o = 0; o < owners; ++o) sum += std::exchange(first[o], sum);
+    first[owners] = sum;
+    std::vector<std::uint32_t> next = first, grouped(sum + std::size_t{1});
+    for (std::uint32_t i = 0; i < items; ++i) {
+      const std::uint32_t owner = std::min<std::uint32_t>(owner_of(i), nobody);
+      grouped[next[owner]] = i;
+      next[owner] += owner != nobody;
+    }
+    grouped.pop_back();
+    return {std::move(first), std::move(grouped)};
+  }
   const RangeBuckets ranges(owners);
   Buckets<> by_range(items, ranges.count(), [&](std::size_t i, const auto& add) {
     const std::uint32_t owner = owner_of(static_cast<std::uint32_t>(i));
