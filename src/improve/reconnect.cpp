@@ -52,7 +52,9 @@ class Reconnector {
   bool improve(TetIndex t) {
     best_.clear();
     best_.gain = kLeastGain;
-    for (const auto& [i, j] : kTetEdges) try_edge(t, i, j);
+    const unsigned closed = faces_to_worse(t);
+    for (const auto& [i, j] : kTetEdges)
+      if ((closed & ~(1u << i | 1u << j)) == 0) try_edge(t, i, j);
     if (goal_ != Goal::kMeanQuick)
       for (int i = 0; i < 4; ++i) try_face(t, i);
     if (guide_ && goal_ == Goal::kWorst)
@@ -87,6 +89,17 @@ class Reconnector {
         orient3d(mesh_.point(t[0]), mesh_.point(t[1]), mesh_.point(t[2]), mesh_.point(t[3])) <= 0)
       return kUnusable;
     return value_of(s);
+  }
+
+  /// A bit for each face of t that lies on the boundary or has a worse element behind it: its edges are looked at from
+  /// there, or not at all.
+  unsigned faces_to_worse(TetIndex t) const {
+    unsigned faces = 0;
+    for (HalfFace i = 0; i < 4; ++i) {
+      const HalfFace o = mesh_.across(4 * t + i);
+      if (is_outside(o) || mesh_.worse(o / 4, t)) faces |= 1u << i;
+    }
+    return faces;
   }
 
   void try_edge(TetIndex t, int i, int j) {
