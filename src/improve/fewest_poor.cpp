@@ -2,7 +2,6 @@
 
 #include "improve/passes.h"
 #include "improve/star_edit.h"
-#include "improve/star_table.h"
 #include "improve/vertex_blocks.h"
 
 #include <algorithm>
@@ -87,17 +86,16 @@ Vec3 LackDescent::damped_step() const {
 }
 
 PassResult relieve_vertices(EditMesh& mesh, float threshold, const RunContext& context) {
-  const StarTable stars(mesh);
-  const VertexBlocks blocks(mesh);
+  const VertexBlocks blocks(mesh, nullptr, [&](const Shape& s) { return s.score < threshold; });
   const Floor floor = mesh.floor();
   return blocks.run(context, [&](std::span<const VertexIndex> vertices) {
     PassResult block;
     Reliever reliever(mesh, floor);
     for (const VertexIndex v : vertices) {
       const auto is_poor = [&](HalfFace h) { return mesh.shape(h / 4).score < threshold; };
-      if (!std::ranges::any_of(stars.of(v), is_poor)) continue;
+      if (!std::ranges::any_of(blocks.star(v), is_poor)) continue;
       ++block.tried;
-      block.done += reliever.run(v, stars.of(v));
+      block.done += reliever.run(v, blocks.star(v));
     }
     return block;
   });

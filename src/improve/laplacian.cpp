@@ -1,6 +1,5 @@
 #include "improve/passes.h"
 #include "improve/star_edit.h"
-#include "improve/star_table.h"
 #include "improve/vertex_blocks.h"
 
 #include <algorithm>
@@ -37,9 +36,6 @@ class NeighbourMean {
   std::vector<VertexIndex> seen_;  ///< the last vertex whose neighbour this one was
 };
 
-/// Stars whose beta are all above it are left alone: next to nothing moves there, above all not in a lattice.
-constexpr float kGoodEnough = 0.93f;
-
 bool is_good_enough(const EditMesh& mesh, std::span<const HalfFace> star) {
   return std::all_of(star.begin(), star.end(), [&](HalfFace h) { return mesh.shape(h / 4).beta > kGoodEnough; });
 }
@@ -63,8 +59,8 @@ bool allowed(const EditMesh& mesh, const StarEdit& star, MoveRule rule) {
 
 PassResult laplacian_sweeps(EditMesh& mesh, int sweeps, double relaxation, MoveRule rule, const RunContext& context) {
   PassResult result;
-  const StarTable stars(mesh);
-  const VertexBlocks blocks(mesh);
+  const bool all = rule == MoveRule::kWorstRises;
+  const VertexBlocks blocks(mesh, nullptr, [all](const Shape& s) { return all || s.beta <= kGoodEnough; });
   const Floor floor = mesh.floor();
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     NeighbourMean mean(mesh);  // anew each time: it knows the last vertex that asked, not the sweep
@@ -72,8 +68,8 @@ PassResult laplacian_sweeps(EditMesh& mesh, int sweeps, double relaxation, MoveR
       PassResult block;
       StarEdit star(mesh);
       for (const VertexIndex v : vertices) {
-        if (rule == MoveRule::kMeanRises && is_good_enough(mesh, stars.of(v))) continue;
-        if (!star.load(v, stars.of(v))) continue;
+        if (!all && is_good_enough(mesh, blocks.star(v))) continue;
+        if (!star.load(v, blocks.star(v))) continue;
         ++block.tried;
         const Vec3 p = mesh.point(v);
         star.evaluate(p + relaxation * (mean(v, star.faces()) - p));

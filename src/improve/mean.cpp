@@ -5,7 +5,6 @@
 
 #include "improve/passes.h"
 #include "improve/star_edit.h"
-#include "improve/star_table.h"
 #include "improve/vertex_blocks.h"
 
 #include <algorithm>
@@ -19,7 +18,6 @@ namespace {
 constexpr double kDifference = 0.04;  ///< step of the differences, in mean edge lengths: wide enough to see the bend
 constexpr double kFarthest = 0.2;     ///< longest step along an axis, in mean edge lengths
 constexpr double kUphill = 0.1;       ///< step where the second derivative gives none, in mean edge lengths
-constexpr float kGoodEnough = 0.93f;
 constexpr double kShorten = 0.4;
 constexpr int kTries = 2;
 constexpr double kLeastSlide = 0.03;  ///< steps on the surface below this, in mean edge lengths, are not worth a search
@@ -109,8 +107,7 @@ class MeanSmoother {
 
 PassResult smooth_mean(EditMesh& mesh, int sweeps, const RunContext& context, const BoundaryGuide* guide) {
   PassResult result;
-  const StarTable stars(mesh);
-  const VertexBlocks blocks(mesh, guide);
+  const VertexBlocks blocks(mesh, guide, [](const Shape& s) { return s.beta <= kGoodEnough; });
   const Floor floor = mesh.floor();
   for (int sweep = 0; sweep < sweeps; ++sweep)
     result += blocks.run(context, [&](std::span<const VertexIndex> vertices) {
@@ -118,7 +115,7 @@ PassResult smooth_mean(EditMesh& mesh, int sweeps, const RunContext& context, co
       MeanSmoother smoother(mesh, floor, guide);
       for (const VertexIndex v : vertices) {
         ++block.tried;
-        block.done += smoother.run(v, stars.of(v));
+        block.done += smoother.run(v, blocks.star(v));
       }
       return block;
     });

@@ -31,6 +31,9 @@ enum class MoveRule {
 };
 /// Elements above this score may get worse in exchange for a better mean.
 inline constexpr float kMeanRisesGuard = 0.6f;
+/// Stars whose beta are all above it are left alone by moves for the mean: next to nothing moves there, above all not
+/// in a lattice.
+inline constexpr float kGoodEnough = 0.93f;
 
 /// Sweeps over the inner vertices, block by block (vertex_blocks.h), in parallel: each goes the part `relaxation` of
 /// the way to the mean of its neighbours, weighted by the length of the edges to them, if the rule allows.

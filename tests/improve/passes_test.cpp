@@ -94,7 +94,6 @@ TEST(EditMesh, FindsStarsAndRings) {
 
 TEST(VertexBlocks, OfOneStageShareNoVertexAndHoldEachInnerOneOnce) {
   const EditMesh mesh(kuhn_cube(24));
-  const StarTable stars(mesh);
   const VertexBlocks blocks(mesh);
   std::vector<int> moved(mesh.vertices(), 0);
   EXPECT_GT(blocks.stages()[0].size(), 2u);
@@ -103,7 +102,7 @@ TEST(VertexBlocks, OfOneStageShareNoVertexAndHoldEachInnerOneOnce) {
     for (std::size_t b = 0; b < stage.size(); ++b)
       for (const VertexIndex v : stage[b]) {
         ++moved[v];
-        for (const HalfFace h : stars.of(v))
+        for (const HalfFace h : blocks.star(v))
           for (const VertexIndex u : mesh.tet(h / 4)) {
             ASSERT_TRUE(owner[u] == stage.size() || owner[u] == b);
             owner[u] = b;
