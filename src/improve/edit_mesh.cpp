@@ -18,6 +18,9 @@ namespace octafront::improve {
 
 namespace {
 
+/// Room for the slots that blocks will ask for: otherwise the first to ask has the whole mesh copied.
+constexpr std::size_t kRoomPart = 16, kLeastRoom = 1024;
+
 void renumber_faces(TetMesh& mesh, const std::vector<VertexIndex>& new_of_old) {
   for (std::vector<Triangle>* faces : {&mesh.boundary, &mesh.interfaces})
     for (Triangle& t : *faces)
@@ -56,8 +59,12 @@ void EditMesh::take(TetMesh& mesh) {
   });
   renumber_faces(mesh, new_of_old);
   had_regions_ = !mesh.region.empty();
-  complex_.tets.reserve(mesh.tets.size());
-  if (had_regions_) region_.reserve(mesh.tets.size());
+  const std::size_t room = mesh.tets.size() + mesh.tets.size() / kRoomPart + kLeastRoom;
+  complex_.tets.reserve(room);
+  complex_.across.reserve(4 * room);
+  complex_.marks.reserve(room);
+  shapes_.reserve(room);
+  if (had_regions_) region_.reserve(room);
   const Groups<> by_corner = group_by_least_corner(mesh.tets, points_.size());
   for (const TetIndex t : by_corner.items()) {
     complex_.tets.push_back(mesh.tets[t]);
