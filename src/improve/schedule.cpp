@@ -84,9 +84,10 @@ class Schedule {
     pass("optimised vertices", [&] { return optimize_vertices(mesh_, threshold, stage_.context(), guide_); });
   }
 
-  /// Rounds for the worst, until one changes nothing; insertion from round `insert_from` on, below `poor`.
+  /// Rounds for the worst, until one changes nothing or nothing is left; insertion from round `insert_from` on, below
+  /// `poor`.
   void rounds_for_worst(int rounds, float threshold, int insert_from, float poor) {
-    for (int round = 0; round < rounds; ++round) {
+    for (int round = 0; round < rounds && floor().score < threshold; ++round) {
       const std::uint64_t before = changes_;
       if (round >= insert_from) insert(poor);
       optimize(threshold);
