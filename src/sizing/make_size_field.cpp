@@ -22,8 +22,15 @@ constexpr double kRootMargin = 0.02;
 /// --elements: sizes are scaled until the expected number is this close.
 constexpr double kCountTolerance = 0.02;
 constexpr int kMostScalings = 10;
+/// A number that stays farther off, in logarithms, is told to the user.
+constexpr double kWorthANote = 0.05;
 /// The count falls with the third power of the sizes, less what gradation decides: so much on average over models.
 constexpr double kMeanSlope = -2.3, kSteepest = -4, kFlattest = -1;
+/// Leaves of the first look, over those of the grid: a quarter of its time, for a count that is off by up to 10 %.
+constexpr double kFirstLook = 2;
+/// A count off by less, in logarithms, is mended on the leaves that there are: sizes change by a third of it.
+constexpr double kOnSameLeaves = 0.15;
+constexpr double kSlopeOfWhole = -3;
 /// How often the scale is corrected on the grid that there is, before a new one is made.
 constexpr int kForesteps = 2;
 /// Elements that the automatic size makes at most, about: some seconds of work, and more than most models need.
@@ -69,10 +76,12 @@ std::vector<SizeSample> even_samples(const SurfaceMesh& surface, double h, const
   return samples;
 }
 
+/// `coarser`: leaves so many times larger than they are to be.
 SizeField grid_field(const SurfaceMesh& surface, const WantedSizes& wanted, const SizeOptions& options,
-                     const RunContext& context) {
+                     const RunContext& context, double coarser = 1) {
   const RootCube root = RootCube::around(bounding_box(surface.points), kRootMargin);
-  const GridRules rules = rules_for(wanted, options, root);
+  GridRules rules = rules_for(wanted, options, root);
+  rules.leaf_per_size *= coarser;
   std::vector<SizeSample> samples = wanted.even && !rules.resolve_surface
                                         ? even_samples(surface, wanted.face.front(), root, context)
                                         : sample_surface(surface, wanted.face, wanted.at_place, context);
@@ -103,7 +112,7 @@ OctreeField with_scaled_sources(const OctreeField& grid, double factor, const Si
 double step_to_count(const SizeField& sizes, double more, const TetPrediction& expected, const SizeOptions& options) {
   const OctreeField& grid = *as_octree_field(sizes);
   double step = more / kMeanSlope;
-  if (grid.source.empty()) return step;
+  if (grid.source.empty() || step == 0) return step;
   const auto expected_here = expected.on_leaves_of(grid);
   const double here = std::log(expected_here(grid));
   for (int i = 0; i < kForesteps; ++i) {
@@ -113,23 +122,39 @@ double step_to_count(const SizeField& sizes, double more, const TetPrediction& e
   return step;
 }
 
+/// Whether a field multiplied by a factor is the one that multiplied sources give: nothing in it stays what it is.
+bool scales_as_a_whole(const SizeOptions& options) {
+  return !options.min_size && !options.max_size && options.regions.empty();
+}
+
+// A first look on larger leaves tells the scale but for some percent, a grid is made at that scale, and what is left is
+// taken off it as it is: one grid of full resolution.
 SizeField scaled_to_count(const SurfaceMesh& surface, const WantedSizes& wanted, const SizeOptions& options,
                           const Stage& stage) {
   const double target = std::log(static_cast<double>(*options.elements));
   const TetPrediction expected(surface);
-  SizeField best = grid_field(surface, wanted, options, stage.context()), last = best;
-  double scale = 0, more = target - std::log(expected(best)), least_miss = std::abs(more);
+  SizeField last = grid_field(surface, wanted, options, stage.context(), kFirstLook), best = last;
+  double scale = 0, more = target - std::log(expected(last)), least_miss = HUGE_VAL;
   int steps = 0;
   for (; least_miss > kCountTolerance && steps < kMostScalings; ++steps) {
-    scale += step_to_count(last, more, expected, options);
-    last = grid_field(surface, scaled(wanted, std::exp(scale), options), options, stage.context());
+    const bool on_same_leaves = steps > 0 && std::abs(more) < kOnSameLeaves && scales_as_a_whole(options);
+    if (on_same_leaves) {
+      scale += more / kSlopeOfWhole;
+      last = octafront::scaled(last, std::exp(more / kSlopeOfWhole), stage.context());
+    } else {
+      scale += step_to_count(last, more, expected, options);
+      last = grid_field(surface, scaled(wanted, std::exp(scale), options), options, stage.context());
+    }
     more = target - std::log(expected(last));
-    if (std::abs(more) >= least_miss) continue;
-    least_miss = std::abs(more);
-    best = last;
+    if (std::abs(more) < least_miss) {
+      least_miss = std::abs(more);
+      best = last;
+    } else if (on_same_leaves && least_miss < kWorthANote) {
+      break;  // the lattice's cells double here or there: counts jump
+    }
   }
   stage.count("scalings", steps);
-  if (least_miss > 0.05) {
+  if (least_miss > kWorthANote) {
     stage.note(fmt::format("{} elements were asked for, but the limits on the size give {:.3g}", *options.elements,
                            expected(best)));
   }
