@@ -112,6 +112,28 @@ TEST(VertexBlocks, OfOneStageShareNoVertexAndHoldEachInnerOneOnce) {
   for (VertexIndex v = 0; v < mesh.vertices(); ++v) EXPECT_EQ(moved[v], mesh.on_boundary(v) ? 0 : 1);
 }
 
+TEST(VertexBlocks, WithWorkToDoHoldTheInnerVerticesOfItsElementsAndAllOfTheirStars) {
+  const EditMesh mesh(perturbed(kuhn_cube(24), 0.3, 5));
+  const float limit = 0.5f;
+  const auto needs_work = [&](const Shape& s) { return s.beta < limit; };
+  const VertexBlocks all(mesh), some(mesh, nullptr, needs_work);
+  std::vector<std::uint8_t> held(mesh.vertices(), 0);
+  for (const auto& stage : some.stages())
+    for (const auto& block : stage)
+      for (const VertexIndex v : block) held[v] = 1;
+  std::size_t left_out = 0;
+  for (VertexIndex v = 0; v < mesh.vertices(); ++v) {
+    if (mesh.on_boundary(v)) continue;
+    const auto star = all.star(v);
+    const bool wanted = std::ranges::any_of(star, [&](HalfFace h) { return needs_work(mesh.shape(h / 4)); });
+    ASSERT_EQ(held[v] != 0, wanted);
+    ASSERT_TRUE(!wanted || std::ranges::equal(some.star(v), star));
+    left_out += !wanted;
+  }
+  EXPECT_GT(left_out, 0u);
+  EXPECT_GT(std::ranges::count(held, 1), 0);
+}
+
 TEST(EditBlocks, OfOneStageShareNoTetAndLoseNone) {
   EditMesh mesh(kuhn_cube(24));
   std::vector<TetIndex> all = tets_below(mesh, 2.0f);
