@@ -7,6 +7,7 @@
 #include "improve/fewest_poor.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <span>
 #include <utility>
@@ -26,9 +27,9 @@ constexpr int kRounds = 6;
 /// Steps of a vertex at most, and what the sum of what elements lack must fall by.
 constexpr int kSteps = 12;
 constexpr double kLeastFall = 0.1;
-/// Parts of the reach at which places are tried; inner vertices reach so far, in edges.
+/// Parts of the reach at which places are tried, and the reach in edges.
 constexpr double kParts[] = {0.3, 0.9};
-constexpr double kInnerReach = 0.3;
+constexpr double kReach = 0.3;
 /// Triangles between whose normals the square of the sine is less lie in one plane.
 constexpr double kFlat = 1e-10;
 
@@ -112,7 +113,7 @@ class FlatRaiser {
     if (star.size() > ShapeBatch::kBatch || lies_on_flat(around)) return false;
     load(v, star);
     const Vec3 from = mesh_.points[v], home = home_of(v);
-    const double reach = around.empty() ? kInnerReach * star_.mean_edge(from) : limit_;
+    const double reach = std::min(kReach * star_.mean_edge(from), around.empty() ? HUGE_VAL : limit_);
     star_.evaluate_star(from);
     const double had = lack_of(star_);
     const auto allowed = [&](Vec3 to) { return distance(home, to) <= reach && star_.star_acceptable(to, positive_); };

@@ -96,12 +96,18 @@ constexpr double kDetail = 0.1;
 // Of a deviation that the user bounds, what unfolding may use up: the new surface keeps the rest, and improvement too.
 constexpr double kUnfolded = 0.25;
 
-/// Up to here detail of the input may be smoothed over; 0: it is all kept. Of a deviation that the user bounds, `part`.
-double detail_tolerance(const SurfaceMesh& surface, const Options& options, double part) {
-  if (keeps_surface(options) || traits_of(options.method).makes_own_boundary() || !surface.sides.empty()) return 0;
+/// What is smaller is detail. Of a deviation that the user bounds, `part`.
+double scale_of_detail(const SurfaceMesh& surface, const Options& options, double part) {
   const double automatic = kAutomaticDeviation * bounding_box(surface.points).diagonal();
   if (options.surface.max_deviation) return std::min(automatic, part * *options.surface.max_deviation);
   return options.size.size ? std::min(automatic, kDetail * *options.size.size) : automatic;
+}
+
+/// Up to here detail of the input may be smoothed over; 0: it is all kept.
+double detail_tolerance(const SurfaceMesh& surface, const Options& options, double part) {
+  const bool keeps_all =
+      keeps_surface(options) || traits_of(options.method).makes_own_boundary() || !surface.sides.empty();
+  return keeps_all ? 0 : scale_of_detail(surface, options, part);
 }
 
 // A body that loses more than this has lost details that somebody may want.
@@ -160,18 +166,13 @@ bool may_slide(const ImproveOptions& options) {
 // Corners of elements that stayed flat may leave the surface by this part of what it may stray.
 constexpr double kRaised = 0.5;
 
-double raise_limit(const SurfaceMesh& surface, const Options& options) {
-  if (options.surface.max_deviation) return kRaised * *options.surface.max_deviation;
-  return kRaised * detail_tolerance(surface, options, 1);
-}
-
 /// What the boundary itself keeps poor: vertices of interfaces slide, and corners of flat elements leave the surface.
 void ease_boundary(const KnownSurface& input, Filled& filled, const Options& options, const Stage& stage) {
   auto& [mesh, boundary] = filled;
   if (!input.mesh().sides.empty())
     stage.count("interface vertices moved",
                 static_cast<double>(slide_interfaces(mesh, boundary.surface, boundary.features, input.mesh(), stage)));
-  if (const double limit = raise_limit(input.mesh(), options); limit > 0) {
+  if (const double limit = scale_of_detail(input.mesh(), options, 1) * kRaised; limit > 0) {
     const RaisedFlat raised = raise_flat(mesh, boundary.surface, limit, stage);
     stage.count("corners of flat elements moved", static_cast<double>(raised.vertices));
     stage.count("largest move of such a corner", raised.largest_move);
