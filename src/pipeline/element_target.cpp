@@ -121,31 +121,15 @@ void note_missed_target(double count, const char* counted, Run& run) {
                   keeps_surface(run.options) ? "kept triangles" : "features and size limits", count, counted));
 }
 
-/// A surface is given up after its first round where that is so far from the number: further ones change it by less.
-constexpr double kFarOff = 0.25;
-
 Try<Remeshed> surface_to_target(const Prepared& input, SizeField sizes, Run& run) {
-  if (!run.options.size.elements || keeps_surface(run.options)) {
-    Remeshed made = triangulate(input, sizes, run);
-    return {std::move(sizes), std::move(made), run.report.expected_tets, run.report.expected_tets};
+  if (run.options.size.elements && !keeps_surface(run.options)) {
+    const double factor = std::cbrt(traits_of(run.options.method).tets_per_expected);
+    if (factor != 1) sizes = scaled(sizes, factor, run.context());
   }
-  const double factor = std::cbrt(traits_of(run.options.method).tets_per_expected);
-  if (factor != 1) sizes = scaled(sizes, factor, run.context());
-  const auto wanted = static_cast<double>(*run.options.size.elements);
-  const auto comes_near = [&](const Remeshed& first) {
-    return std::abs(expected_elements(first, run) / wanted - 1) <= kFarOff;
-  };
-  const std::size_t first_stage = run.report.stages.size();
-  Try<Remeshed> best = meet_target(
-      sizes, run, first_stage, kSurfaceAttempts, "expected",
-      [&](const SizeField& by) { return triangulate(input, by, run, comes_near); },
+  return meet_target(
+      sizes, run, run.report.stages.size(), kSurfaceAttempts, "expected",
+      [&](const SizeField& by) { return triangulate(input, by, run); },
       [&](const Remeshed&) { return run.report.expected_tets; });
-  if (best.made.is_draft) {
-    rename_earlier(run.report, first_stage);
-    best.made = triangulate(input, best.sizes, run);
-    best.expected = best.count = run.report.expected_tets;
-  }
-  return best;
 }
 
 }  // namespace

@@ -258,22 +258,17 @@ SizeField choose_sizes(const Prepared& input, Run& run) {
   return sizes;
 }
 
-double expected_elements(const Remeshed& surface, const Run& run) {
-  return traits_of(run.options.method).tets_per_expected * expected_tets_within(surface.sizes, surface.surface);
-}
-
-Remeshed triangulate(const Prepared& input, const SizeField& sizes, Run& run,
-                     const std::optional<WorthMore>& worth_more) {
+Remeshed triangulate(const Prepared& input, const SizeField& sizes, Run& run) {
   if (keeps_surface(run.options)) return input_as_it_is(input.surface, sizes);
   return run.stage("surface front", [&](const Stage& stage) {
     std::span<const double> moved;
     if (run.options.surface.max_deviation) moved = input.moved;
-    Remeshed remeshed =
-        remesh_surface(input.surface, sizes, true_to_input(input, run.options), stage, moved, worth_more);
+    Remeshed remeshed = remesh_surface(input.surface, sizes, true_to_input(input, run.options), stage, moved);
     stage.count("triangles", static_cast<double>(remeshed.surface.triangles.size()));
-    if (!remeshed.is_draft) note_volume_loss(enclosed_volume(remeshed.surface), run.report.input_volume, stage);
+    note_volume_loss(enclosed_volume(remeshed.surface), run.report.input_volume, stage);
     // Strips between lines and the bounds on deviation have made sizes smaller since the first prediction.
-    run.report.expected_tets = expected_elements(remeshed, run);
+    run.report.expected_tets =
+        traits_of(run.options.method).tets_per_expected * expected_tets_within(remeshed.sizes, remeshed.surface);
     return remeshed;
   });
 }

@@ -36,13 +36,8 @@ Prepared prepare(const SurfaceMesh& input, Run& run);
 /// The sizes that the options ask for; report.expected_tets says how many elements they promise.
 SizeField choose_sizes(const Prepared& input, Run& run);
 
-/// The surface triangulated anew to the sizes, or the input's triangles where the run keeps them. A draft where
-/// `worth_more` says that its first round is not worth further ones.
-Remeshed triangulate(const Prepared& input, const SizeField& sizes, Run& run,
-                     const std::optional<WorthMore>& worth_more = {});
-
-/// How many elements a surface and its sizes promise.
-double expected_elements(const Remeshed& surface, const Run& run);
+/// The surface triangulated anew to the sizes, or the input's triangles where the run keeps them.
+Remeshed triangulate(const Prepared& input, const SizeField& sizes, Run& run);
 
 /// triangulate(), again with scaled sizes until the elements expected meet the number that was asked for or cannot.
 Remeshed triangulate_to_target(const Prepared& input, const SizeField& sizes, Run& run);

@@ -357,25 +357,6 @@ TEST(FeaturePatches, PartsOfANamedPatchKeepItsName) {
   EXPECT_EQ(names, (std::multiset<std::string>{"wall.1", "wall.2", "wall.3", "wall.4", "wall.5", "lid"}));
 }
 
-TEST(Remesh, GivesUpASurfaceThatIsNotWorthMore) {
-  const SurfaceMesh input = icosphere(3);
-  const auto made = [&](bool worth) {
-    std::size_t seen = 0;
-    StageReport report;
-    Remeshed surface = remesh_surface(KnownSurface(input, Features{}), SizeField::uniform(0.2), {}, {{}, report}, {},
-                                      [&](const Remeshed& first) {
-                                        seen = first.surface.triangles.size();
-                                        return worth;
-                                      });
-    EXPECT_GT(seen, 100u);
-    return surface;
-  };
-  const Remeshed kept = made(true), dropped = made(false);
-  EXPECT_FALSE(kept.is_draft);
-  EXPECT_TRUE(dropped.is_draft);
-  EXPECT_EQ(dropped.surface.triangles.size(), kept.surface.triangles.size());
-}
-
 TEST(Remesh, StopsWhenAsked) {
   const std::atomic<bool> stop{true};
   RunContext context;

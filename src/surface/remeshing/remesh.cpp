@@ -269,12 +269,11 @@ class Remesher {
     if (!seamed_) kind_.emplace(surface_, surface.edges());
   }
 
-  Remeshed run(const std::optional<WorthMore>& worth_more) {
+  Remeshed run() {
     if (seamed_ && limits_deviation()) foresee_deviation();
     for (counts_.rounds = 1; counts_.rounds <= kMostRounds; ++counts_.rounds) {
       Compacted c = attempt(Effort::kFull);
       if (is_noise_) return kept_as_noise();
-      if (counts_.rounds == 1 && worth_more && !(*worth_more)(c.result)) return draft_of(c);
       if (is_sound(c) && is_true(c)) return finished(c);
       cap_far(c);
     }
@@ -726,12 +725,6 @@ class Remesher {
     return input_as_it_is(known_, sizes_);
   }
 
-  Remeshed draft_of(Compacted& c) {
-    report_counts(counts_, stage_);
-    c.result.is_draft = true;
-    return std::move(c.result);
-  }
-
   Remeshed finished(Compacted& c) {
     const std::vector<Vec3>& near = c.nearness.approached;
     if (!near.empty())
@@ -777,8 +770,8 @@ Remeshed input_as_it_is(const KnownSurface& surface, const SizeField& sizes) {
 }
 
 Remeshed remesh_surface(const KnownSurface& surface, const SizeField& sizes, const SurfaceOptions& options,
-                        const Stage& stage, std::span<const double> moved, const std::optional<WorthMore>& worth_more) {
-  return Remesher(surface, sizes, options, stage, moved).run(worth_more);
+                        const Stage& stage, std::span<const double> moved) {
+  return Remesher(surface, sizes, options, stage, moved).run();
 }
 
 }  // namespace octafront

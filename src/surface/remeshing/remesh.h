@@ -4,12 +4,10 @@
 #include <octafront/size_field.h>
 #include <octafront/surface_mesh.h>
 
-#include "core/function_ref.h"
 #include "core/stage.h"
 #include "mesh/known_surface.h"
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -23,19 +21,13 @@ struct Remeshed {
   SizeField sizes;                    ///< what was asked, capped where self-intersections forced smaller elements
   /// The corners of triangles that lie nearly as far from the input as they may.
   std::vector<VertexIndex> near_limit = {};
-  bool is_draft = false;  ///< given up after its first round, and good for counting only: it may cross itself
 };
-
-/// Whether a surface as it comes out of the first round is worth further ones.
-using WorthMore = FunctionRef<bool(const Remeshed& first)>;
 
 /// The surface front. Requires a clean surface (see surface_mesh.h). The result is checked: closed, manifold, same
 /// components and genus, no self-intersection, features present; throws MeshingError if no attempt passes. `moved`: per
-/// triangle how far it lies from what the deviation is asked of, at most; empty: it is that. The result is a draft
-/// where `worth_more` is given and says no.
+/// triangle how far it lies from what the deviation is asked of, at most; empty: it is that.
 Remeshed remesh_surface(const KnownSurface& surface, const SizeField& sizes, const SurfaceOptions& options,
-                        const Stage& stage, std::span<const double> moved = {},
-                        const std::optional<WorthMore>& worth_more = {});
+                        const Stage& stage, std::span<const double> moved = {});
 
 /// The input's own triangles in the place of new ones.
 Remeshed input_as_it_is(const KnownSurface& surface, const SizeField& sizes);
