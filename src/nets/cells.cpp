@@ -52,9 +52,14 @@ bool is_layer(const Lattice& lattice, Corner voxel, int axis) {
 
 }  // namespace
 
-VertexCells::VertexCells(const Lattice& lattice, const Net& net, std::span<const std::uint64_t> voxels)
-    : lattice_(lattice), net_(net), share_(net.corner.size()) {
+VertexCells::VertexCells(const Lattice& lattice, const Net& net)
+    : farthest_(HUGE_VAL), lattice_(lattice), net_(net), share_(net.corner.size()) {
   parallel_for(net.corner.size(), [&](std::size_t v) { keep_layers_apart(static_cast<VertexIndex>(v)); });
+}
+
+VertexCells::VertexCells(const Lattice& lattice, const Net& net, std::span<const std::uint64_t> voxels)
+    : VertexCells(lattice, net) {
+  farthest_ = kFarthest;
   std::vector<float> of_label(voxels.size());
   std::transform(voxels.begin(), voxels.end(), of_label.begin(), room_of);
   if (std::find_if(of_label.begin(), of_label.end(), [](float s) { return s < kMostRoom; }) == of_label.end()) return;
@@ -98,8 +103,8 @@ Vec3 VertexCells::clamped(VertexIndex v, Vec3 p) const {
     const double way = 0.5 * (p[a] - wall) / (p[a] < wall ? to_below : to_above);
     squared_way += way * way;
   }
-  if (squared_way <= kFarthest * kFarthest) return p;
-  const double part = kFarthest / std::sqrt(squared_way);
+  if (squared_way <= farthest_ * farthest_) return p;
+  const double part = farthest_ / std::sqrt(squared_way);
   const Vec3 corner = lattice_.at(c);
   for (int a = 0; a < 3; ++a)
     if (!lattice_.on_box(c, a)) p[a] = corner[a] + part * (p[a] - corner[a]);

@@ -148,7 +148,7 @@ Complex complex_of_bands(const Image& image, const std::vector<GreyBand>& bands,
   context.check();
   const Groups<> quads_at = nets::quads_at_vertices(net);
   const nets::Stencils stencils(net, quads_at);
-  const nets::VertexCells cells(lattice, net, {});
+  const nets::VertexCells cells(lattice, net);
   const GreyValues values(image, lattice);
   Placement placement(net, quads_at, lattice, values, limits, cells);
   std::vector<Vec3> x = placement.place();

@@ -68,7 +68,7 @@ constexpr double kVeryFew = 1e-4;
 /// But where it strays at first, with triangles as small as the input's, at more places than this part of their number,
 /// the input is noise: what chords of its steps cut off shrinks only as they do, and each new triangulation crosses
 /// elsewhere.
-constexpr double kNoise = 0.13;
+constexpr double kNoise = 0.08;
 /// So often in a round; there are no more than two for this. (Two in the first and one in the second are half the time,
 /// and leave 208 places of a skull too far where three leave 6, and 138 elements below .4 instead of 27.)
 constexpr int kRefinements = 3;
