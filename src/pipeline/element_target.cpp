@@ -30,34 +30,34 @@ class CountSearch {
   explicit CountSearch(double wanted) : wanted_(std::log(wanted)) {}
 
   double next_factor(double made) {
-    const Point now{scale_, std::log(made)};
+    const Point now{scale_, std::log(made), true};
     const bool is_above = now.count > wanted_;
-    const bool is_again = last_ && (last_->count > wanted_) == is_above;
-    if (last_ && now.scale != last_->scale)
-      slope_ = std::clamp((now.count - last_->count) / (now.scale - last_->scale), kSteepest, kFlattest);
+    const bool is_again = last_.known && (last_.count > wanted_) == is_above;
+    if (last_.known && now.scale != last_.scale)
+      slope_ = std::clamp((now.count - last_.count) / (now.scale - last_.scale), kSteepest, kFlattest);
     (is_above ? above_ : below_) = last_ = now;
-    if (!above_ || !below_)
+    if (!above_.known || !below_.known)
       scale_ += (wanted_ - now.count) / slope_;
     else if (is_again)
-      scale_ = 0.5 * (above_->scale + below_->scale);
+      scale_ = 0.5 * (above_.scale + below_.scale);
     else
-      scale_ =
-          above_->scale + (below_->scale - above_->scale) * (above_->count - wanted_) / (above_->count - below_->count);
+      scale_ = above_.scale + (below_.scale - above_.scale) * (above_.count - wanted_) / (above_.count - below_.count);
     return std::exp(scale_);
   }
 
   /// Whether the count would have had to change by the last step, and did not.
   bool stands_still(double made) const {
-    const double step = scale_ - last_->scale;
-    return std::abs(step) > kTellingStep && (std::log(made) - last_->count) / step > kStandsStill * kFlattest;
+    const double step = scale_ - last_.scale;
+    return std::abs(step) > kTellingStep && (std::log(made) - last_.count) / step > kStandsStill * kFlattest;
   }
 
  private:
   struct Point {
-    double scale, count;
+    double scale = 0, count = 0;
+    bool known = false;
   };
   double wanted_, scale_ = 0, slope_ = -3;
-  std::optional<Point> last_, above_, below_;
+  Point last_, above_, below_;
 };
 
 bool meets(double wanted, double count) {

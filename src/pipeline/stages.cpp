@@ -251,10 +251,12 @@ SizeField choose_sizes(const Prepared& input, Run& run) {
     return keeps_surface(run.options) ? size_field_of_surface(input.surface, size, stage)
                                       : make_size_field(input.surface, size, stage);
   });
+  const MethodTraits& method = traits_of(run.options.method);
   const SurfaceMesh& surface = input.surface.mesh();
-  run.report.expected_tets =
-      traits_of(run.options.method).tets_per_expected *
-      (keeps_surface(run.options) ? expected_tets_within(sizes, surface) : expected_tets(sizes, surface));
+  if (keeps_surface(run.options))
+    run.report.expected_tets = method.tets_per_expected * expected_tets_within(sizes, surface);
+  else if (method.makes_own_boundary())
+    run.report.expected_tets = method.tets_per_expected * expected_tets(sizes, surface);
   return sizes;
 }
 

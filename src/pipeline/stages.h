@@ -33,7 +33,8 @@ struct Filled {
 /// where the surface is made anew, finds the features.
 Prepared prepare(const SurfaceMesh& input, Run& run);
 
-/// The sizes that the options ask for; report.expected_tets says how many elements they promise.
+/// The sizes that the options ask for; report.expected_tets says how many elements they promise, if no surface made to
+/// them will tell better.
 SizeField choose_sizes(const Prepared& input, Run& run);
 
 /// The surface triangulated anew to the sizes, or the input's triangles where the run keeps them.

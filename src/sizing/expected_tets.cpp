@@ -18,6 +18,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <vector>
 
 namespace octafront {
 
@@ -37,13 +38,6 @@ constexpr double kMissPerMixed = 0.2;
 /// A thin wall or two that change the number by less than this part are lost in the spread of kTetsPerCube.
 constexpr double kWorthCounting = 0.05;
 
-/// What the sizes ask for, in parts: lengths in units of the root's side, elements in units of kTetsPerCube.
-struct Demand {
-  double shell = 0;              ///< elements of the front, in the leaves that the surface runs through
-  std::map<int, double> volume;  ///< of the leaves inside, by step of their size, more where sizes change
-  double surface_size = 0;       ///< half of the surface's triangles will be smaller
-};
-
 double size_of_step(int step) {
   return std::exp2((step + 0.5) / kStepsPerOctave);
 }
@@ -51,13 +45,56 @@ int step_of_size(double h) {
   return static_cast<int>(std::floor(std::log2(h) * kStepsPerOctave));
 }
 
+/// Amounts by step of size.
+class BySize {
+ public:
+  double& operator[](int step) {
+    if (amounts_.empty()) first_ = step;
+    if (step < first_) {
+      amounts_.insert(amounts_.begin(), static_cast<std::size_t>(first_ - step), 0.0);
+      first_ = step;
+    }
+    const auto place = static_cast<std::size_t>(step - first_);
+    if (place >= amounts_.size()) amounts_.resize(place + 1, 0.0);
+    return amounts_[place];
+  }
+  /// Calls visit(size, amount), from small to large sizes.
+  template <class Visit>
+  void for_each(Visit&& visit) const {
+    for (std::size_t i = 0; i < amounts_.size(); ++i)
+      if (amounts_[i] != 0) visit(size_of_step(first_ + static_cast<int>(i)), amounts_[i]);
+  }
+  BySize& operator+=(const BySize& other) {
+    for (std::size_t i = 0; i < other.amounts_.size(); ++i)
+      (*this)[other.first_ + static_cast<int>(i)] += other.amounts_[i];
+    return *this;
+  }
+
+ private:
+  int first_ = 0;
+  std::vector<double> amounts_;  ///< from step first_ on
+};
+
+/// What the sizes ask for, in parts: lengths in units of the root's side, elements in units of kTetsPerCube.
+struct Demand {
+  double shell = 0;         ///< elements of the front, in the leaves that the surface runs through
+  BySize volume;            ///< of the leaves inside, more where sizes change
+  double surface_size = 0;  ///< half of the surface's triangles will be smaller
+
+  Demand& operator+=(const Demand& other) {
+    shell += other.shell;
+    volume += other.volume;
+    return *this;
+  }
+};
+
 double lattice_size(double h, double cell) {
   return cell * std::exp2(std::floor(std::log2(kLatticeTooLong * h / cell)));
 }
 
 double elements_inside(const Demand& demand, double cell) {
   double sum = 0;
-  for (const auto& [step, volume] : demand.volume) sum += volume / std::pow(lattice_size(size_of_step(step), cell), 3);
+  demand.volume.for_each([&](double h, double volume) { sum += volume / std::pow(lattice_size(h, cell), 3); });
   return sum;
 }
 
@@ -65,18 +102,18 @@ double elements_inside(const Demand& demand, double cell) {
 double largest_share(const Demand& demand, double cell) {
   std::map<double, double> volume_of;
   double all = 0, most = 0;
-  for (const auto& [step, volume] : demand.volume) {
-    double& sum = volume_of[lattice_size(size_of_step(step), cell)];
+  demand.volume.for_each([&](double h, double volume) {
+    double& sum = volume_of[lattice_size(h, cell)];
     sum += volume;
     all += volume;
     most = std::max(most, sum);
-  }
+  });
   return all > 0 ? most / all : 1;
 }
 
 double elements_asked_inside(const Demand& demand) {
   double sum = 0;
-  for (const auto& [step, volume] : demand.volume) sum += volume / std::pow(size_of_step(step), 3);
+  demand.volume.for_each([&](double h, double volume) { sum += volume / std::pow(h, 3); });
   return sum;
 }
 
@@ -149,32 +186,27 @@ void for_each_gauss_point(const std::array<double, 8>& h, Visit&& visit) {
   for (int i = 0; i < 8; ++i) visit(trilinear(h, kAt[i & 1], kAt[i >> 1 & 1], kAt[i >> 2]));
 }
 
-/// What the sizes around a Gauss point of a leaf ask for.
-struct Ask {
-  std::optional<int> step;  ///< of the size, inside
-  double amount;            ///< of volume inside, else of elements of the shell
-};
+/// What the sizes in a leaf ask for.
+void add_demand(const OctreeField& field, std::size_t leaf, double fraction, Demand& demand) {
+  const double side = 1.0 / (1u << field.tree.leaf(leaf).level()), part = side * side * side / 8;
+  const double steps = 1 + kTetsPerSlope * slope_in(field.h[leaf], side);
+  for_each_gauss_point(field.h[leaf], [&](double h) {
+    if (fraction == 1)
+      demand.volume[step_of_size(h)] += steps * part;
+    else
+      demand.shell += fraction * part / (h * h * h);
+  });
+}
 
 Demand demand_of(const OctreeField& field, const DividedSurface& surface, const std::vector<double>& sizes) {
   const std::vector<double>& fraction = surface.fraction;
-  constexpr std::size_t kRange = 1024;
-  const auto asked =
-      parallel_collect<Ask>(field.tree.size(), kRange, [&](std::size_t begin, std::size_t end, std::vector<Ask>& out) {
-        for (std::size_t l = begin; l < end; ++l) {
-          if (fraction[l] == 0) continue;
-          const double side = 1.0 / (1u << field.tree.leaf(l).level()), part = side * side * side / 8;
-          const double steps = 1 + kTetsPerSlope * slope_in(field.h[l], side);
-          for_each_gauss_point(field.h[l], [&](double h) {
-            if (fraction[l] == 1)
-              out.push_back({step_of_size(h), steps * part});
-            else
-              out.push_back({std::nullopt, fraction[l] * part / (h * h * h)});
-          });
-        }
-      });
-  Demand demand;
+  Demand demand = parallel_sum(field.tree.size(), [&](std::size_t begin, std::size_t end) {
+    Demand part;
+    for (std::size_t l = begin; l < end; ++l)
+      if (fraction[l] > 0) add_demand(field, l, fraction[l], part);
+    return part;
+  });
   demand.surface_size = median_on_surface(field, surface.pieces, sizes);
-  for (const Ask& ask : asked) (ask.step ? demand.volume[*ask.step] : demand.shell) += ask.amount;
   return demand;
 }
 

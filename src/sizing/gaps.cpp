@@ -62,10 +62,9 @@ void GapFinder::measure_middles(const SurfaceMesh& surface) {
   for (std::size_t i = 0; i < first.size(); ++i) *known_.find(neighbourhood(first[i])) = widths[i];
 }
 
-double GapFinder::width(const PlaceOnSurface& place) {
-  double& width = known_.find_or_add(neighbourhood(place), kUnknown);
-  if (width == kUnknown) width = measure(place);
-  return width;
+double GapFinder::width(const PlaceOnSurface& place) const {
+  const double* shared = known_.find(neighbourhood(place));
+  return shared ? *shared : measure(place);
 }
 
 double GapFinder::measure(const PlaceOnSurface& place) const {

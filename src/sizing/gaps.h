@@ -18,8 +18,8 @@ constexpr bool faces(Vec3 n, Vec3 m) {
 }
 
 /// Walls and gaps: how far it is from a place of the surface to the sheet that faces it, along the inward and the
-/// outward normal. Places that lie close together on one side share an answer, so that dense scans cost no more than
-/// coarse ones.
+/// outward normal. Places that lie close together on one side share an answer where triangles are small, so that dense
+/// scans cost no more than coarse ones.
 class GapFinder {
  public:
   static constexpr double kOpen = std::numeric_limits<double>::infinity();
@@ -29,9 +29,9 @@ class GapFinder {
 
   /// Distance to the facing sheet; kOpen if there is none within reach. Sheets that meet at more than about 45 degrees
   /// do not face each other: an edge is no gap. The middle of the first triangle in a neighbourhood answers for it all;
-  /// where there is none, the place that is asked first.
-  double width(const PlaceOnSurface& place);
-  /// The same of this place and no other: the answer is not shared.
+  /// where there is none, each place for itself. Safe on any number of threads.
+  double width(const PlaceOnSurface& place) const;
+  /// The same of this place, shared by none.
   double measure(const PlaceOnSurface& place) const;
 
  private:

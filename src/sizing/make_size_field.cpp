@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <fmt/core.h>
 
@@ -132,8 +133,12 @@ bool scales_as_a_whole(const SizeOptions& options) {
 SizeField scaled_to_count(const SurfaceMesh& surface, const WantedSizes& wanted, const SizeOptions& options,
                           const Stage& stage) {
   const double target = std::log(static_cast<double>(*options.elements));
-  const TetPrediction expected(surface);
-  SizeField last = grid_field(surface, wanted, options, stage.context(), kFirstLook), best = last;
+  std::optional<TetPrediction> prediction;
+  std::optional<SizeField> first_look;
+  parallel_invoke([&] { prediction.emplace(surface); },
+                  [&] { first_look = grid_field(surface, wanted, options, stage.context(), kFirstLook); });
+  const TetPrediction& expected = *prediction;
+  SizeField last = *first_look, best = last;
   double scale = 0, more = target - std::log(expected(last)), least_miss = HUGE_VAL;
   int steps = 0;
   for (; least_miss > kCountTolerance && steps < kMostScalings; ++steps) {

@@ -17,17 +17,19 @@ using Units = std::array<std::uint32_t, 3>;
 class Numbering {
  public:
   explicit Numbering(const Octree& tree) : tree_(tree), tables_(thread_count() == 1 ? 1 : kTables) {
-    const std::vector<std::uint32_t> first = tables_.size() == 1 ? first_slots() : first_slots_by_table();
-    number_.resize(first.size());
-    for (std::size_t i = 0; i < first.size(); ++i)
-      if (first[i] == i) number_[i] = corners_++;
-    parallel_for(first.size(), [&](std::size_t i) {
-      if (first[i] != i) number_[i] = number_[first[i]];
+    first_ = tables_.size() == 1 ? first_slots() : first_slots_by_table();
+    number_.resize(first_.size());
+    for (std::size_t i = 0; i < first_.size(); ++i)
+      if (is_first(i)) number_[i] = corners_++;
+    parallel_for(first_.size(), [&](std::size_t i) {
+      if (!is_first(i)) number_[i] = number_[first_[i]];
     });
   }
 
   std::uint32_t corners() const { return corners_; }
   std::uint32_t of_slot(std::size_t slot) const { return number_[slot]; }
+  /// Whether no slot before it has the same corner.
+  bool is_first(std::size_t slot) const { return first_[slot] == slot; }
   /// REQUIRES: p is a corner.
   std::uint32_t find(Units p) const { return number_[*tables_[table_of(code(p))].find(code(p))]; }
   /// Corner i of a leaf has the halves of child i.
@@ -81,7 +83,7 @@ class Numbering {
 
   const Octree& tree_;
   std::vector<FlatMap<std::uint64_t, std::uint32_t>> tables_;  ///< from codes to the first slot
-  std::vector<std::uint32_t> number_;                          ///< per slot
+  std::vector<std::uint32_t> first_, number_;                  ///< per slot: the first with its corner, its number
   std::uint32_t corners_ = 0;
 };
 
@@ -203,8 +205,9 @@ OctreeCorners octree_corners(const Octree& tree) {
   parallel_for(tree.size(), [&](std::size_t l) {
     for (std::uint32_t i = 0; i < 8; ++i) corners.of_leaf[l][i] = numbers.of_slot(8 * l + i);
   });
-  for (std::size_t i = 0, next = 0; i < 8 * tree.size(); ++i)
-    if (numbers.of_slot(i) == next) corners.position[next++] = numbers.position(i);
+  parallel_for(8 * tree.size(), [&](std::size_t i) {
+    if (numbers.is_first(i)) corners.position[numbers.of_slot(i)] = numbers.position(i);
+  });
   const std::vector<HangingCorner> hanging = hanging_corners(tree, corners);
   std::vector<std::uint32_t> slot(corners.size(), 0);
   for (std::size_t i = 0; i < hanging.size(); ++i) slot[hanging[i].corner] = static_cast<std::uint32_t>(i + 1);

@@ -2,9 +2,11 @@
 
 #include <octafront/error.h>
 
+#include "core/parallel.h"
 #include "geometry/measures.h"
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <limits>
 
@@ -17,8 +19,8 @@ namespace {
 constexpr std::size_t kMostSamples = 50'000'000;
 /// A triangle lies within this part of its longest edge about its centroid.
 constexpr double kReachOfEdge = 0.6;
-/// Triangles that are sampled together where sizes come in batches.
-constexpr std::uint32_t kFacesAtOnce = 4096;
+/// Triangles that are sampled together, by one thread or for one batch of sizes.
+constexpr std::size_t kFacesAtOnce = 4096;
 
 class Sampler {
  public:
@@ -97,33 +99,49 @@ bool BatchedSizes::fetch() {
   return true;
 }
 
-std::vector<SizeSample> sample_surface(const SurfaceMesh& surface, const std::vector<double>& face_size,
-                                       const SizeAtPlace& size_at, const RunContext& context) {
-  std::vector<SizeSample> samples;
-  samples.reserve(surface.triangles.size());
-  Sampler sampler(face_size, size_at, samples);
-  const auto sample_faces = [&](std::uint32_t begin, std::uint32_t end) {
-    for (std::uint32_t f = begin; f < end; ++f) {
-      if (f % 1024 == 0) context.check();
-      const Triangle& t = surface.triangles[f];
-      const Vec3 a = surface.points[t[0]], b = surface.points[t[1]], c = surface.points[t[2]];
-      sampler.sample(a, b, c, unit_normal(a, b, c), f);
-    }
-  };
-  const auto faces = static_cast<std::uint32_t>(surface.triangles.size());
-  if (!size_at.batched) {
-    sample_faces(0, faces);
-    return samples;
+namespace {
+
+/// The samples of some triangles, behind those that there are.
+void sample_faces(const SurfaceMesh& surface, Sampler sampler, std::size_t begin, std::size_t end) {
+  for (std::size_t f = begin; f < end; ++f) {
+    const Triangle& t = surface.triangles[f];
+    const Vec3 a = surface.points[t[0]], b = surface.points[t[1]], c = surface.points[t[2]];
+    sampler.sample(a, b, c, unit_normal(a, b, c), static_cast<std::uint32_t>(f));
   }
-  // Each round knows the sizes of one more level of halves.
-  for (std::uint32_t begin = 0; begin < faces; begin += kFacesAtOnce) {
-    const std::size_t finished = samples.size();
+}
+
+// Each round knows the sizes of one more level of halves.
+std::vector<SizeSample> sample_in_batches(const SurfaceMesh& surface, const std::vector<double>& face_size,
+                                          const SizeAtPlace& size_at, const RunContext& context) {
+  std::vector<SizeSample> samples;
+  for (std::size_t begin = 0; begin < surface.triangles.size(); begin += kFacesAtOnce) {
+    const std::size_t finished = samples.size(), end = std::min(surface.triangles.size(), begin + kFacesAtOnce);
     do {
       context.check();
       samples.erase(samples.begin() + static_cast<std::ptrdiff_t>(finished), samples.end());
-      sample_faces(begin, std::min(faces, begin + kFacesAtOnce));
+      sample_faces(surface, Sampler(face_size, size_at, samples), begin, end);
     } while (size_at.batched->fetch());
   }
+  return samples;
+}
+
+}  // namespace
+
+std::vector<SizeSample> sample_surface(const SurfaceMesh& surface, const std::vector<double>& face_size,
+                                       const SizeAtPlace& size_at, const RunContext& context) {
+  if (size_at.batched) return sample_in_batches(surface, face_size, size_at, context);
+  std::atomic<std::size_t> total{0};
+  std::vector<SizeSample> samples = parallel_collect<SizeSample>(
+      surface.triangles.size(), kFacesAtOnce, [&](std::size_t begin, std::size_t end, std::vector<SizeSample>& part) {
+        context.check();
+        if (total > kMostSamples) return;
+        sample_faces(surface, Sampler(face_size, size_at, part), begin, end);
+        total += part.size();
+      });
+  if (total <= kMostSamples) return samples;
+  // One after the other, so that the place named is the same on any number of threads.
+  samples = {};
+  sample_faces(surface, Sampler(face_size, size_at, samples), 0, surface.triangles.size());
   return samples;
 }
 
