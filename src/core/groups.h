@@ -53,9 +53,46 @@ class Groups {
 /// An item that is in no group.
 inline constexpr std::uint32_t kNoOwner = 0xffffffffu;
 
+/// The same as group_by_owner: a counting sort of stretches of the numbers, a thread each, which counts apart. Those of
+/// no owner are counted as those of one more, and put one over the other.
+template <class OwnerOf>
+Groups<> group_in_stretches(std::size_t owners, std::uint32_t items, const OwnerOf& owner_of, std::size_t stretches) {
+  constexpr std::size_t kApart = 16;  // numbers of a cache line: no thread waits for another's
+  const auto nobody = static_cast<std::uint32_t>(owners);
+  std::vector<std::vector<std::uint32_t>> next(stretches);
+  // visit(i, its owner, the numbers of the stretch)
+  const auto for_each = [&](const auto& visit) {
+    const auto begin = [&](std::size_t s) { return static_cast<std::uint32_t>(std::uint64_t{items} * s / stretches); };
+    const auto visit_stretch = [&, nobody](std::size_t s) {
+      std::uint32_t* of_stretch = next[s].data();
+      for (std::uint32_t i = begin(s), end = begin(s + 1); i < end; ++i)
+        visit(i, std::min<std::uint32_t>(owner_of(i), nobody), of_stretch);
+    };
+    parallel_for(stretches, visit_stretch, Split::kSingly);
+  };
+  for (auto& of_stretch : next) of_stretch.resize(owners + 1);
+  for_each([](std::uint32_t, std::uint32_t owner, std::uint32_t* count) { ++count[owner]; });
+  std::vector<std::uint32_t> first(owners + 1);
+  std::uint32_t sum = 0;
+  for (std::size_t o = 0; o < owners; ++o) {
+    first[o] = sum;
+    for (auto& of_stretch : next) sum += std::exchange(of_stretch[o], sum);
+  }
+  first[owners] = sum;
+  std::vector<std::uint32_t> grouped(sum + kApart * stretches);
+  for (std::size_t s = 0; s < stretches; ++s) next[s][owners] = static_cast<std::uint32_t>(sum + kApart * s);
+  for_each([nobody, to = grouped.data()](std::uint32_t i, std::uint32_t owner, std::uint32_t* at) {
+    to[at[owner]] = i;
+    at[owner] += owner != nobody;
+  });
+  grouped.resize(sum);
+  return {std::move(first), std::move(grouped)};
+}
+
 /// The numbers 0 ... items - 1 by owner_of(number), ascending in each group, without those of kNoOwner. By several
-/// threads: first into ranges of owners, then range by range; one thread is faster without, and without a branch where
-/// some have no owner: they are counted as those of one owner more, and put one over the other.
+/// threads: in stretches of the numbers if there are enough of them to make up for counting in each; else first into
+/// ranges of owners, then range by range. One thread is faster without, and without a branch where some have no owner:
+/// they are counted as those of one owner more, and put one over the other.
 template <class OwnerOf>
 Groups<> group_by_owner(std::size_t owners, std::uint32_t items, const OwnerOf& owner_of) {
   if (thread_count() == 1) {
@@ -74,6 +111,8 @@ Groups<> group_by_owner(std::size_t owners, std::uint32_t items, const OwnerOf& 
     grouped.pop_back();
     return {std::move(first), std::move(grouped)};
   }
+  if (const std::size_t threads = thread_count(); 2 * threads * owners <= items)
+    return group_in_stretches(owners, items, owner_of, threads);
   const RangeBuckets ranges(owners);
   Buckets<> by_range(items, ranges.count(), [&](std::size_t i, const auto& add) {
     const std::uint32_t owner = owner_of(static_cast<std::uint32_t>(i));

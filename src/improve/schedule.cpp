@@ -1,5 +1,6 @@
 #include <octafront/quality.h>
 
+#include "core/parallel.h"
 #include "core/stage_timer.h"
 #include "core/validate.h"
 #include "geometry/predicates.h"
@@ -131,11 +132,12 @@ class Schedule {
 
   /// What the elements lack, in sum.
   double lack() const {
-    double sum = 0;
-    for (TetIndex t = 0; t < mesh_.slots(); ++t) {
-      if (mesh_.alive(t)) sum += lack_of(mesh_.shape(t).score);
-    }
-    return sum;
+    return parallel_sum(mesh_.slots(), [this](std::size_t begin, std::size_t end) {
+      double sum = 0;
+      for (auto t = static_cast<TetIndex>(begin); t < end; ++t)
+        if (mesh_.alive(t)) sum += lack_of(mesh_.shape(t).score);
+      return sum;
+    });
   }
 
   Floor floor() const { return mesh_.floor(); }

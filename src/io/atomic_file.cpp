@@ -2,6 +2,10 @@
 
 #include <octafront/error.h>
 
+#include "core/parallel.h"
+
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <cerrno>
 #include <cstring>
@@ -128,6 +132,27 @@ void AtomicFile::write(const void* bytes, std::size_t size) {
   if (size >= kBuffer) return write_out(static_cast<const char*>(bytes), size);
   std::memcpy(buffer_.get() + filled_, bytes, size);
   filled_ += size;
+}
+
+void AtomicFile::write_records(std::size_t count, std::size_t size,
+                               FunctionRef<void(std::size_t begin, std::size_t end, char* to)> form) {
+  const std::size_t batch = std::min(count, kBatch / size);  // records
+  std::array<std::unique_ptr<char[]>, 2> room;
+  for (auto& r : room) r.reset(new char[batch * size]);
+  const auto form_batch = [&](std::size_t first, char* to) {
+    const std::size_t records = std::min(batch, count - first);
+    parallel_ranges(records, Split::kAdaptive,
+                    [&](std::size_t begin, std::size_t end) { form(first + begin, first + end, to + begin * size); });
+  };
+  if (count > 0) form_batch(0, room[0].get());
+  for (std::size_t first = 0; first < count; first += batch, std::swap(room[0], room[1])) {
+    const std::size_t next = first + batch;
+    parallel_invoke([&] { write(room[0].get(), std::min(batch, count - first) * size); },
+                    [&] {
+                      if (next < count) form_batch(next, room[1].get());
+                    });
+    context_.check();
+  }
 }
 
 void AtomicFile::restart(std::uint64_t position) {

@@ -2,6 +2,8 @@
 
 #include <octafront/run_context.h>
 
+#include "core/function_ref.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -24,6 +26,10 @@ class AtomicFile {
 
   void write(const void* bytes, std::size_t size);
   void write(std::string_view text) { write(text.data(), text.size()); }
+  /// Writes `count` records of `size` bytes each. form(begin, end, to) puts some of them at `to`; several threads do
+  /// that at a time, while another one gives those that are ready to the system.
+  void write_records(std::size_t count, std::size_t size,
+                     FunctionRef<void(std::size_t begin, std::size_t end, char* to)> form);
   /// Bytes written so far.
   std::uint64_t position() const { return flushed_ + filled_; }
   /// Forgets what was written from there on.
@@ -46,6 +52,7 @@ class AtomicFile {
   [[noreturn]] void fail(std::string_view what, int error) const;
 
   static constexpr std::size_t kBuffer = std::size_t{1} << 18;
+  static constexpr std::size_t kBatch = std::size_t{1} << 20;  ///< of records, in bytes
 
   RunContext context_;
   std::string name_;

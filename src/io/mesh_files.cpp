@@ -1,6 +1,7 @@
 #include <octafront/error.h>
 #include <octafront/io.h>
 
+#include "core/thread_limit.h"
 #include "io/formats.h"
 #include "io/raw_mesh.h"
 #include "io/readers.h"
@@ -110,6 +111,7 @@ void check_mesh_target(const std::string& file, const std::string& name) {
 std::vector<std::string> write_mesh(const std::string& file, const TetMesh& mesh, const RunContext& context,
                                     const std::string& name) {
   check_mesh_target(file, name);
+  const ThreadLimit limit(context.threads);
   const io::Format& format = mesh_format(file, name);
   const io::MeshParts parts(mesh, !format.info.holds.second_order);
   io::MeshOutput out(file, context);

@@ -2,6 +2,7 @@
 
 #include <octafront/io.h>
 
+#include "core/parallel.h"
 #include "io/boundary.h"
 #include "mesh/face_table.h"
 
@@ -113,14 +114,20 @@ const std::vector<Side>& MeshParts::sides() const {
   std::vector<char> is_listed(mesh_.points.size(), 0);  // most tets touch no face of the list
   for (const Triangle& t : all)
     for (const VertexIndex v : t) is_listed[v] = 1;
-  for (TetIndex t = 0; t < mesh_.tets.size(); ++t)
-    for (int i = 0; i < 4; ++i) {
-      const Triangle of_tet = face_of(mesh_.tets[t], i);
-      if (!is_listed[of_tet[0]] || !is_listed[of_tet[1]] || !is_listed[of_tet[2]]) continue;
-      for (const FaceTable::Entry& listed : table.group_of(of_tet))
-        if (sides_[listed.face].tet == kNone || is_even(of_tet) == is_even(all[listed.face]))
-          sides_[listed.face] = {t, i};
-    }
+  constexpr std::size_t kRange = 16384;
+  const auto candidates =
+      parallel_collect<Side>(mesh_.tets.size(), kRange, [&](std::size_t begin, std::size_t end, auto& found) {
+        for (auto t = static_cast<TetIndex>(begin); t < end; ++t)
+          for (int i = 0; i < 4; ++i) {
+            const auto& [a, b, c] = face_of(mesh_.tets[t], i);
+            if (is_listed[a] && is_listed[b] && is_listed[c]) found.push_back({t, i});
+          }
+      });
+  for (const Side& side : candidates) {
+    const Triangle of_tet = face_of(mesh_.tets[side.tet], side.face);
+    for (const FaceTable::Entry& listed : table.group_of(of_tet))
+      if (sides_[listed.face].tet == kNone || is_even(of_tet) == is_even(all[listed.face])) sides_[listed.face] = side;
+  }
   return sides_;
 }
 
@@ -157,10 +164,8 @@ Combinations combinations(const MeshParts& mesh, NamedSet::Kind kind) {
     out.parts.push_back(std::move(parts[c]));
   }
   for (std::uint32_t& c : of) c = number[c];
-  out.members = {out.parts.size(), [&](const auto& add) {
-                   for (std::uint32_t i = 0; i < of.size(); ++i)
-                     if (of[i] != kNone) add(of[i], i);
-                 }};
+  out.members =
+      group_by_owner(out.parts.size(), static_cast<std::uint32_t>(of.size()), [&](std::uint32_t i) { return of[i]; });
   out.of = std::move(of);
   return out;
 }

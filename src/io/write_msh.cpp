@@ -5,6 +5,7 @@
 
 #include <octafront/error.h>
 
+#include "core/parallel.h"
 #include "io/boundary.h"
 #include "io/formats.h"
 #include "io/text_writer.h"
@@ -12,6 +13,8 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <cstring>
 #include <limits>
 #include <string>
 #include <utility>
@@ -94,7 +97,7 @@ void write_names(TextWriter& out, const MeshParts& mesh, const std::vector<std::
 class Msh4Writer {
  public:
   Msh4Writer(AtomicFile& file, const MeshParts& mesh)
-      : file_(file), text_(file), mesh_(mesh), nodes_of_(mesh), physical_(physical_tags(mesh)) {
+      : file_(file), text_(file), mesh_(mesh), physical_(physical_tags(mesh)) {
     for (std::size_t d = 0; d < 4; ++d) by_[d] = combinations(mesh, kKindOfDimension[d]);
     make_entities();
     assign_nodes();
@@ -146,16 +149,30 @@ class Msh4Writer {
 
   void assign_nodes() {
     std::vector<std::uint32_t> entity(mesh_.points(), kNone);
-    for (std::uint32_t e = 0; e < entities_.size(); ++e)
-      for (const std::uint32_t m : members_of(entities_[e]))
-        nodes_of_.put<std::uint64_t>(entities_[e].dimension, m, [&](std::uint64_t tag) {
-          entity[tag - 1] = std::min(entity[tag - 1], e);
-          entities_[e].box.add(mesh_.mesh().points[tag - 1]);
+    for (std::uint32_t e = 0; e < entities_.size(); ++e) entities_[e].box = take_nodes(e, entity).box;
+    nodes_ = group_by_owner(entities_.size(), static_cast<std::uint32_t>(entity.size()),
+                            [&](std::uint32_t v) { return entity[v]; });
+  }
+
+  struct BoxSum {
+    Box3 box;
+    void operator+=(const BoxSum& other) { box.add(other.box); }
+  };
+
+  /// Gives the nodes of an entity to it that no entity before it has. Returns where they all are.
+  BoxSum take_nodes(std::uint32_t e, std::vector<std::uint32_t>& entity) const {
+    const auto members = members_of(entities_[e]);
+    return parallel_sum(members.size(), [&](std::size_t begin, std::size_t end) {
+      BoxSum sum;
+      ElementNodes nodes_of(mesh_);
+      for (const std::uint32_t m : members.subspan(begin, end - begin))
+        nodes_of.put<std::uint64_t>(entities_[e].dimension, m, [&](std::uint64_t tag) {
+          const std::atomic_ref of_node(entity[tag - 1]);
+          if (of_node.load(std::memory_order_relaxed) == kNone) of_node.store(e, std::memory_order_relaxed);
+          sum.box.add(mesh_.mesh().points[tag - 1]);
         });
-    nodes_ = {entities_.size(), [&](const auto& add) {
-                for (VertexIndex v = 0; v < entity.size(); ++v)
-                  if (entity[v] != kNone) add(entity[v], v);
-              }};
+      return sum;
+    });
   }
 
   /// The tags of the entities of faces that bound each of tetrahedra.
@@ -209,9 +226,11 @@ class Msh4Writer {
       put(entities_[e].tag);
       put<std::int32_t>(0);  // no parameters on the surface
       put(std::uint64_t{nodes_[e].size()});
-      for (const VertexIndex v : nodes_[e]) put(std::uint64_t{v} + 1);
-      for (const VertexIndex v : nodes_[e])
-        for (int axis = 0; axis < 3; ++axis) put(mesh_.mesh().points[v][axis]);
+      put_records(nodes_[e], [](VertexIndex v) { return std::array{std::uint64_t{v} + 1}; });
+      put_records(nodes_[e], [this](VertexIndex v) {
+        const Vec3 p = mesh_.mesh().points[v];
+        return std::array{p.x, p.y, p.z};
+      });
     }
     text_ << "\n$EndNodes\n";
   }
@@ -228,19 +247,52 @@ class Msh4Writer {
       put(e.tag);
       put(type_of(e.dimension, mesh_.second_order()));
       put(std::uint64_t{members_of(e).size()});
-      std::uint64_t point = by_[0].members.first(e.dimension == 0 ? e.slot : 0);
-      for (const std::uint32_t m : members_of(e)) {
-        put(e.dimension == 0 ? ++point : first[static_cast<std::size_t>(e.dimension)] + m + 1);
-        nodes_of_.put<std::uint64_t>(e.dimension, m, [&](std::uint64_t tag) { put(tag); });
-      }
+      write_members(e, first[static_cast<std::size_t>(e.dimension)]);
     }
     text_ << "\n$EndElements\n";
+  }
+
+  /// The elements of an entity, `before` of which come before those of its dimension.
+  void write_members(const Entity& e, std::uint64_t before) {
+    const auto members = members_of(e);
+    const std::uint64_t points = by_[0].members.first(e.dimension == 0 ? e.slot : 0);
+    const std::size_t nodes = nodes_per_element(e.dimension);
+    file_.write_records(members.size(), (1 + nodes) * sizeof(std::uint64_t),
+                        [&](std::size_t begin, std::size_t end, char* to) {
+                          ElementNodes nodes_of(mesh_);
+                          const auto put_tag = [&](std::uint64_t tag) {
+                            std::memcpy(to, &tag, sizeof tag);
+                            to += sizeof tag;
+                          };
+                          for (std::size_t i = begin; i < end; ++i) {
+                            put_tag((e.dimension == 0 ? points + i : before + members[i]) + 1);
+                            nodes_of.put<std::uint64_t>(e.dimension, members[i], put_tag);
+                          }
+                        });
+  }
+
+  std::size_t nodes_per_element(int dimension) const {
+    return dimension == 0   ? 1
+           : dimension == 1 ? mesh_.nodes_per_edge()
+           : dimension == 2 ? mesh_.nodes_per_face()
+                            : mesh_.nodes_per_tet();
+  }
+
+  /// For each of these nodes what record(v) returns, an array.
+  template <class Record>
+  void put_records(std::span<const VertexIndex> nodes, const Record& record) {
+    constexpr std::size_t kSize = sizeof(record(VertexIndex{}));
+    file_.write_records(nodes.size(), kSize, [&](std::size_t begin, std::size_t end, char* to) {
+      for (std::size_t i = begin; i < end; ++i, to += kSize) {
+        const auto values = record(nodes[i]);
+        std::memcpy(to, values.data(), kSize);
+      }
+    });
   }
 
   AtomicFile& file_;
   TextWriter text_;
   const MeshParts& mesh_;
-  ElementNodes nodes_of_;
   std::vector<std::int32_t> physical_;  ///< of each part
   std::array<Combinations, 4> by_;      ///< by dimension
   std::vector<Entity> entities_;        ///< by dimension

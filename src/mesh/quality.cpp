@@ -193,20 +193,30 @@ std::vector<PoorElement> worst_elements(const TetMesh& mesh, std::size_t count) 
     const auto& [a, b, c, d] = mesh.tets[t];
     return std::array<Vec3, 4>{mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]};
   };
-  std::vector<std::pair<double, TetIndex>> all(mesh.tets.size());
-  parallel_for(all.size(), [&](std::size_t t) {
-    const auto [a, b, c, d] = corners(t);
-    const double beta = radius_ratio(a, b, c, d);
-    all[t] = {std::isnan(beta) ? -1 : beta, static_cast<TetIndex>(t)};
-  });
-  const auto end = all.begin() + static_cast<std::ptrdiff_t>(std::min(count, all.size()));
-  std::partial_sort(all.begin(), end, all.end());
+  using Candidate = std::pair<double, TetIndex>;
+  const auto keep_least = [count](std::vector<Candidate>& of) {
+    const std::size_t kept = std::min(count, of.size());
+    std::partial_sort(of.begin(), of.begin() + static_cast<std::ptrdiff_t>(kept), of.end());
+    of.resize(kept);
+  };
+  // Whoever is among the worst of all is among the worst of its range.
+  constexpr std::size_t kRange = 8192;
+  auto all = parallel_collect<Candidate>(mesh.tets.size(), kRange,
+                                         [&](std::size_t begin, std::size_t end, std::vector<Candidate>& found) {
+                                           for (std::size_t t = begin; t < end; ++t) {
+                                             const auto [a, b, c, d] = corners(t);
+                                             const double beta = radius_ratio(a, b, c, d);
+                                             found.push_back({std::isnan(beta) ? -1 : beta, static_cast<TetIndex>(t)});
+                                           }
+                                           keep_least(found);
+                                         });
+  keep_least(all);
   std::vector<PoorElement> worst;
-  for (auto e = all.begin(); e != end; ++e) {
-    const auto [a, b, c, d] = corners(e->second);
+  for (const auto& [beta, t] : all) {
+    const auto [a, b, c, d] = corners(t);
     const auto angles = dihedral_angles(a, b, c, d);
     const auto [least, most] = std::minmax_element(angles.begin(), angles.end());
-    worst.push_back({e->second, (a + b + c + d) / 4, e->first, *least, *most});
+    worst.push_back({t, (a + b + c + d) / 4, beta, *least, *most});
   }
   return worst;
 }

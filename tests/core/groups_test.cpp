@@ -68,6 +68,20 @@ TEST(Groups, ByOwnerAreTheSameOnAnyNumberOfThreads) {
     for (const std::uint32_t i : one[owner]) ASSERT_EQ(owner_of(i), owner);
 }
 
+TEST(Groups, OfFewOwnersAreTheSameOnAnyNumberOfThreads) {
+  const auto owner_of = [](std::uint32_t i) { return i % 5 == 3 ? kNoOwner : i * 2654435761u % 1001; };
+  const auto make = [&](int threads) {
+    const ThreadLimit limit(threads);
+    return group_by_owner(1001, 20'000, owner_of);
+  };
+  const Groups<> one = make(1);
+  for (const int threads : {2, 3, 8}) {
+    const Groups<> several = make(threads);
+    EXPECT_EQ(one.items(), several.items());
+    for (std::uint32_t owner = 0; owner <= 1001; ++owner) ASSERT_EQ(one.first(owner), several.first(owner));
+  }
+}
+
 TEST(Groups, OfRowsAtVerticesNameEachRowAtEachOfItsVertices) {
   const std::vector<std::array<std::uint32_t, 3>> triangles{{0, 1, 2}, {2, 1, 3}};
   const Groups<> at = rows_at_vertices(5, triangles);
