@@ -33,6 +33,7 @@ GapFinder::GapFinder(const KnownSurface& known, double nearest, double reach)
   const SurfaceMesh& surface = known.mesh();
   either_way_ = !surface.sides.empty();
   normal_.resize(surface.triangles.size());
+  inside_.resize(surface.triangles.size());
   parallel_for(normal_.size(), [&](std::size_t f) {
     const auto& [a, b, c] = surface.triangles[f];
     normal_[f] = unit_normal(surface.points[a], surface.points[b], surface.points[c]);
@@ -62,9 +63,14 @@ void GapFinder::measure_middles(const SurfaceMesh& surface) {
   for (std::size_t i = 0; i < first.size(); ++i) *known_.find(neighbourhood(first[i])) = widths[i];
 }
 
-double GapFinder::width(const PlaceOnSurface& place) const {
-  const double* shared = known_.find(neighbourhood(place));
-  return shared ? *shared : measure(place);
+double GapFinder::width(const PlaceOnSurface& place) {
+  const std::uint64_t here = neighbourhood(place);
+  if (const double* shared = known_.find(here)) return *shared;
+  std::unique_ptr<Widths>& inside = inside_[place.face];
+  if (!inside) inside = std::make_unique<Widths>();
+  double& width = inside->find_or_add(here, kUnknown);
+  if (width == kUnknown) width = measure(place);
+  return width;
 }
 
 double GapFinder::measure(const PlaceOnSurface& place) const {

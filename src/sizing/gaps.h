@@ -8,6 +8,7 @@
 #include "sizing/surface_samples.h"
 
 #include <limits>
+#include <memory>
 #include <vector>
 
 namespace octafront {
@@ -29,8 +30,9 @@ class GapFinder {
 
   /// Distance to the facing sheet; kOpen if there is none within reach. Sheets that meet at more than about 45 degrees
   /// do not face each other: an edge is no gap. The middle of the first triangle in a neighbourhood answers for it all;
-  /// where there is none, each place for itself. Safe on any number of threads.
-  double width(const PlaceOnSurface& place) const;
+  /// where there is none, the first place of the same triangle there that was asked for. So places of one triangle must
+  /// be asked for by one thread, in one order; different triangles by any.
+  double width(const PlaceOnSurface& place);
   /// The same of this place, shared by none.
   double measure(const PlaceOnSurface& place) const;
 
@@ -45,7 +47,9 @@ class GapFinder {
   double nearest_, reach_;
   bool either_way_ = false;  ///< of a complex, whose triangles do not face outward
   int level_;                ///< of the cells whose places share an answer
-  FlatMap<std::uint64_t, double> known_;
+  using Widths = FlatMap<std::uint64_t, double>;  ///< by neighbourhood
+  Widths known_;
+  std::vector<std::unique_ptr<Widths>> inside_;  ///< of a triangle that reaches beyond its middle's; most have none
 };
 
 }  // namespace octafront

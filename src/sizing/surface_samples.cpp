@@ -21,6 +21,8 @@ constexpr std::size_t kMostSamples = 50'000'000;
 constexpr double kReachOfEdge = 0.6;
 /// Triangles that are sampled together, by one thread or for one batch of sizes.
 constexpr std::size_t kFacesAtOnce = 4096;
+/// Few triangles are large ones, with many samples each: they are divided among threads too.
+constexpr std::size_t kLeastRanges = 64;
 
 class Sampler {
  public:
@@ -131,8 +133,9 @@ std::vector<SizeSample> sample_surface(const SurfaceMesh& surface, const std::ve
                                        const SizeAtPlace& size_at, const RunContext& context) {
   if (size_at.batched) return sample_in_batches(surface, face_size, size_at, context);
   std::atomic<std::size_t> total{0};
+  const std::size_t range = std::clamp<std::size_t>(surface.triangles.size() / kLeastRanges, 1, kFacesAtOnce);
   std::vector<SizeSample> samples = parallel_collect<SizeSample>(
-      surface.triangles.size(), kFacesAtOnce, [&](std::size_t begin, std::size_t end, std::vector<SizeSample>& part) {
+      surface.triangles.size(), range, [&](std::size_t begin, std::size_t end, std::vector<SizeSample>& part) {
         context.check();
         if (total > kMostSamples) return;
         sample_faces(surface, Sampler(face_size, size_at, part), begin, end);
