@@ -11,8 +11,11 @@ std::vector<VertexIndex> spatial_order(const std::vector<Vec3>& points) {
   Box3 box;
   for (const Vec3& p : points) box.add(p);
   const Vec3 extent = box.empty() ? Vec3{} : box.extent();
-  const double side = std::max({extent.x, extent.y, extent.z});
-  const double scale = side > 0 ? 2097151 / side : 0;
+  return spatial_order(points, {box.lo, std::max({extent.x, extent.y, extent.z})});
+}
+
+std::vector<VertexIndex> spatial_order(const std::vector<Vec3>& points, const Cube& cube) {
+  const double scale = cube.side > 0 ? 2097151 / cube.side : 0;
   struct Key {
     std::uint64_t code;
     VertexIndex vertex;
@@ -20,7 +23,7 @@ std::vector<VertexIndex> spatial_order(const std::vector<Vec3>& points) {
   };
   std::vector<Key> keys(points.size());
   parallel_for(points.size(), [&](std::size_t v) {
-    const Vec3 p = (points[v] - box.lo) * scale;
+    const Vec3 p = (points[v] - cube.lo) * scale;
     const auto cell = [](double c) { return static_cast<std::uint64_t>(c); };
     keys[v] = {morton_code(cell(p.z), cell(p.y), cell(p.x)), static_cast<VertexIndex>(v)};
   });

@@ -8,16 +8,15 @@
 
 #include <algorithm>
 #include <atomic>
-#include <bit>
 #include <vector>
 
 namespace octafront::improve {
 
 /// The inner vertices, and those of the boundary that may slide if a guide is given, with their stars, in an order of
 /// blocks in which they may be moved in parallel, the same for any number of threads: for passes that change no
-/// connection. Blocks are stretches of the numbering, which follows a space-filling curve. A vertex whose neighbours
-/// all lie in its own block shares no element with one of another block. What is left over by the first division is
-/// divided anew with the blocks shifted by half, and what is left by that is one block at the end.
+/// connection. In a stage no vertex has a neighbour in another block. Blocks of the first stage are stretches of the
+/// numbering, which follows a space-filling curve, those of the second stretches of a curve in shifted cells, of what
+/// the first left over; what is left by that is one block at the end.
 class VertexBlocks {
  public:
   /// All of them.
@@ -50,34 +49,25 @@ class VertexBlocks {
   const std::vector<std::vector<std::vector<VertexIndex>>>& stages() const { return stages_; }
 
  private:
-  static constexpr VertexIndex kLeastBlock = 4096;  ///< vertices: below this most of a block is its rim
-  static constexpr VertexIndex kMostBlocks = 256;
-  static constexpr int kShifts = 2;
-  static constexpr std::uint8_t kWorked = 1
-                                          << kShifts;  ///< in the marks; bit s: neighbours in another block of shift s
+  static constexpr std::uint8_t kWorked = 1, kAtRim = 2;  ///< in the marks; kAtRim: of a block of the first stage
 
-  /// How the vertices are divided, by either shift.
-  struct Division {
-    int bits;
-    explicit Division(std::size_t vertices)
-        : bits(std::countr_zero(
-              std::max(kLeastBlock, std::bit_ceil(static_cast<VertexIndex>(vertices) / kMostBlocks + 1)))) {}
-    VertexIndex shift(int s) const { return s == 0 ? 0 : VertexIndex{1} << (bits - 1); }
-    std::size_t block_of(VertexIndex v, int s) const { return (v + shift(s)) >> bits; }
-  };
+  /// Stretches of one length: how many bits of a number are those within a stretch.
+  static int bits_of_stretch(std::size_t vertices);
+  /// What the first stage leaves, in the blocks of the second; what that leaves comes back.
+  std::vector<VertexIndex> divide_shifted(const EditMesh& mesh, const std::vector<VertexIndex>& waiting);
 
   /// One sweep over the tets, which is quicker than star by star.
   template <typename NeedsWork>
   static std::vector<std::uint8_t> marks(const EditMesh& mesh, const NeedsWork& needs_work) {
-    const Division division(mesh.vertices());
+    const int bits = bits_of_stretch(mesh.vertices());
     std::vector<std::uint8_t> marks(mesh.vertices(), 0);
     parallel_for(mesh.slots(), [&](std::size_t i) {
       const auto t = static_cast<TetIndex>(i);
       if (!mesh.alive(t)) return;
       const Tet& c = mesh.tet(t);
       const VertexIndex least = std::min({c[0], c[1], c[2], c[3]}), most = std::max({c[0], c[1], c[2], c[3]});
-      std::uint8_t mark = needs_work(mesh.shape(t)) ? kWorked : 0;
-      for (int s = 0; s < kShifts; ++s) mark |= (division.block_of(least, s) != division.block_of(most, s)) << s;
+      const std::uint8_t mark =
+          (needs_work(mesh.shape(t)) ? kWorked : 0) | (least >> bits != most >> bits ? kAtRim : 0);
       if (mark == 0) return;
       for (const VertexIndex v : c) {
         const std::atomic_ref shared(marks[v]);

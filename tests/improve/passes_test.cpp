@@ -92,24 +92,24 @@ TEST(EditMesh, FindsStarsAndRings) {
     }
 }
 
-TEST(VertexBlocks, OfOneStageShareNoVertexAndHoldEachInnerOneOnce) {
-  const EditMesh mesh(kuhn_cube(24));
+TEST(VertexBlocks, OfOneStageHaveNoNeighboursAndHoldEachInnerVertexOnce) {
+  const EditMesh mesh(kuhn_cube(36));
   const VertexBlocks blocks(mesh);
   std::vector<int> moved(mesh.vertices(), 0);
+  ASSERT_EQ(blocks.stages().size(), 3u);
   EXPECT_GT(blocks.stages()[0].size(), 2u);
+  EXPECT_GT(blocks.stages()[1].size(), 2u);
   for (const auto& stage : blocks.stages()) {
-    std::vector<std::size_t> owner(mesh.vertices(), stage.size());
+    std::vector<std::size_t> block_of(mesh.vertices(), stage.size());
     for (std::size_t b = 0; b < stage.size(); ++b)
-      for (const VertexIndex v : stage[b]) {
-        ++moved[v];
+      for (const VertexIndex v : stage[b]) ++moved[v], block_of[v] = b;
+    for (std::size_t b = 0; b < stage.size(); ++b)
+      for (const VertexIndex v : stage[b])
         for (const HalfFace h : blocks.star(v))
-          for (const VertexIndex u : mesh.tet(h / 4)) {
-            ASSERT_TRUE(owner[u] == stage.size() || owner[u] == b);
-            owner[u] = b;
-          }
-      }
+          for (const VertexIndex u : mesh.tet(h / 4)) ASSERT_TRUE(block_of[u] == stage.size() || block_of[u] == b);
   }
   for (VertexIndex v = 0; v < mesh.vertices(); ++v) EXPECT_EQ(moved[v], mesh.on_boundary(v) ? 0 : 1);
+  EXPECT_LT(blocks.stages()[2][0].size(), mesh.vertices() / 10);
 }
 
 TEST(VertexBlocks, WithWorkToDoHoldTheInnerVerticesOfItsElementsAndAllOfTheirStars) {
