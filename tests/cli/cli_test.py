@@ -1,6 +1,7 @@
 """The command line as a user meets it: cli_test.py OCTAFRONT SAMPLES_DIR."""
 import csv
 import json
+import math
 import pathlib
 import os
 import pty
@@ -337,6 +338,28 @@ class CommandLine(unittest.TestCase):
         self.run_cli("repair", self.part, "-o", same)
         surfaces = [self.run_cli("check", f).stdout.partition("clean: ")[2] for f in (self.part, same)]
         self.assertEqual(surfaces[0], surfaces[1])
+
+    def write_torus(self, name, inside_out):
+        n, m = 24, 12
+        at = [[2 * math.pi * i / n, 2 * math.pi * j / m] for i in range(n) for j in range(m)]
+        points = [((3 + math.cos(v)) * math.cos(u), (3 + math.cos(v)) * math.sin(u), math.sin(v)) for u, v in at]
+        faces = []
+        for i in range(n):
+            for j in range(m):
+                a, b, c, d = (m * ((i + x) % n) + (j + y) % m for x, y in ((0, 0), (1, 0), (1, 1), (0, 1)))
+                faces += [(a, b, c), (a, c, d)]
+        lines = ["OFF", f"{len(points)} {len(faces)} 0", *(" ".join(map(str, p)) for p in points),
+                 *("3 {} {} {}".format(*((f[0], f[2], f[1]) if inside_out else f)) for f in faces)]
+        (self.dir / name).write_text("\n".join(lines) + "\n")
+        return self.dir / name
+
+    def test_a_surface_inside_out_is_meshed_as_if_it_were_not(self):
+        sizes = []
+        for inside_out in (False, True):
+            report = self.dir / "r.json"
+            self.run_cli("mesh", self.write_torus("torus.off", inside_out), "-o", self.dir / "m.vtu", "--json", report)
+            sizes.append(json.loads(report.read_text())["tets"])
+        self.assertEqual(*sizes)
 
     def test_a_sheet_is_refused_and_can_be_wrapped(self):
         sheet, out = self.dir / "sheet.off", self.dir / "skin.off"
