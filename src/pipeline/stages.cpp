@@ -77,6 +77,7 @@ void face_outward(Examined& found) {
 
 // With sizes of our own choosing the surface stays true by default; sizes that the user gave are left as they are.
 constexpr double kAutomaticDeviation = 0.004;  // of the diagonal; sampled, so that 0.005 is kept in all
+constexpr double kAutomaticSlack = 1.15;
 
 bool has_automatic_sizes(const Options& options) {
   const SizeOptions& size = options.size;
@@ -85,8 +86,9 @@ bool has_automatic_sizes(const Options& options) {
 
 SurfaceOptions true_to_input(const Prepared& p, const Options& options) {
   SurfaceOptions surface = options.surface;
-  if (!surface.max_deviation && has_automatic_sizes(options))
-    surface.max_deviation = kAutomaticDeviation * bounding_box(p.surface.mesh().points).diagonal();
+  if (surface.max_deviation || !has_automatic_sizes(options)) return surface;
+  surface.max_deviation = kAutomaticDeviation * bounding_box(p.surface.mesh().points).diagonal();
+  surface.deviation_slack = kAutomaticSlack;
   return surface;
 }
 

@@ -142,7 +142,9 @@ class FoldMender {
       if (most_folded <= kFold - tier.angle && shape_lack(corners(t)) == 0 && !crosses_[t]) return;
       best_ = {};
       limit_ = std::min(limits_.tolerance, tier.move * allowed_at(t));
-      if (crosses_[t]) limit_ = std::max(limit_, limits_.crossing_part * mesh_.size[mesh_.start[3 * t]]);
+      if (crosses_[t])
+        limit_ =
+            std::max(limit_, std::min(limits_.crossing_part * mesh_.size[mesh_.start[3 * t]], limits_.crossing_most));
       for (HalfEdge h = 3 * t; h < 3 * t + 3; ++h) {
         const HalfEdge g = mesh_.twin[h];
         for (const HalfEdge e : {h, next_of(g), previous_of(g)}) {

@@ -13,12 +13,13 @@ namespace octafront::remeshing {
 
 /// What counts as a fold or as a bad triangle, and how far the surface may move to be rid of it.
 struct FoldLimits {
-  double tolerance = 0;      ///< input units
-  double size_part = 0;      ///< of the size at the place: what counts where that is less; 0: whatever the size
-  double least_shape = 0;    ///< triangles below this 2r/R are bad too
-  double crossing_part = 0;  ///< what crosses may move by this part of the size instead, if that is more
-  double total = HUGE_VAL;   ///< what moves at one place add up to at most, input units
-  bool keep_lines = false;   ///< feature lines are no folds, however sharp
+  double tolerance = 0;             ///< input units
+  double size_part = 0;             ///< of the size at the place: what counts where that is less; 0: whatever the size
+  double least_shape = 0;           ///< triangles below this 2r/R are bad too
+  double crossing_part = 0;         ///< what crosses may move by this part of the size instead, if that is more
+  double crossing_most = HUGE_VAL;  ///< but by no more than this, input units
+  double total = HUGE_VAL;          ///< what moves at one place add up to at most, input units
+  bool keep_lines = false;          ///< feature lines are no folds, however sharp
   /// Triangles that cross others, one flag each, are bad too: edges of theirs are also divided; null: none.
   const std::vector<std::uint8_t>* crossing = nullptr;
   const TriangleTree* onto = nullptr;         ///< vertices that move are put on this surface; null: wherever they go

@@ -28,6 +28,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -60,6 +61,9 @@ constexpr double kComeNear = 0.9;
 /// From this part of it on nobody shall move the triangles later: sliding vertices stray by a fifth more.
 constexpr double kLeftAlone = 0.75;
 constexpr double kFewFar = 0.02;
+/// At fewer than this part it is mended where it strays or crosses; another round would cost as much as the first. Of a
+/// small surface rounds cost little, and make better triangles.
+constexpr double kNoRound = 3e-4;
 /// In a complex sizes are made smaller by how far it strays: to come to this part of the bound, to no less than this
 /// part of themselves at once.
 constexpr double kAim = 0.75, kLeastPart = 0.4;
@@ -81,8 +85,9 @@ constexpr double kBadShape = 0.25, kMovedPart = 0.25;
 constexpr double kLittle = 0.3;
 /// Mending one crossing may uncover another. Where more triangles than this cross the sizes are too large.
 constexpr int kMendingRounds = 4, kFewCrossing = 300;
-/// In a complex, what crosses may move by this part of the size, on its own patch: the bound on deviation leaves no way
-/// out between sheets a voxel apart. And this part of all triangles is few, where it is more than that.
+/// What crosses may move by this part of the size, in a complex on its own patch and farther than the bound on
+/// deviation, which leaves no way out between sheets a voxel apart. And there this part of all triangles is few, where
+/// it is more.
 constexpr double kCrossingPart = 0.5, kFewCrossingPart = 0.005;
 /// In a complex points of the input are put in again where that left no more than this part of what crossed.
 constexpr double kWorthAnother = 0.7;
@@ -106,7 +111,8 @@ struct Counts {
 struct Nearness {
   std::vector<Vec3> approached;         ///< where points of the input were put in
   std::vector<Vec3> far, farther;       ///< where it strays still: too far, and much too far
-  std::vector<PointSize> wanted;        ///< sizes by which it would stray less there, in a complex
+  bool is_near_enough = false;          ///< though there are such places
+  std::vector<PointSize> wanted;        ///< sizes by which it would stray less there
   std::vector<VertexIndex> near_limit;  ///< corners of triangles that nearly do, in the working mesh
 };
 
@@ -340,7 +346,7 @@ class Remesher {
       improve_surface(mesh, input_, curves, sizes, context, counts_.improve);
       counts_.merged_lines += merge_lines(mesh, is_fixed, tolerance_);
       clear = mend_places(mesh, is_fixed, tolerance_);
-      nearness = come_near(mesh, is_fixed, clear);
+      nearness = come_near(mesh, curves, sizes, is_fixed, clear);
     } else {
       counts_.coarsen.input_vertices_left = surface_.points.size();
     }
@@ -476,40 +482,90 @@ class Remesher {
       if (mesh.outgoing[v] != kNone) mesh.size[v] = sizes.at(mesh.points[v]);
     });
     improve_surface(mesh, input_, curves, sizes, stage_.context(), counts_.improve);
+    if (!seamed_) return;
     counts_.divided_edges += divide_repeated_edges(mesh, known_, sizes);
     counts_.divided_edges += divide_repeated_triangles(mesh, known_, sizes);
   }
 
-  /// Puts in points of the input where the mesh strays at few places and nothing crosses. `clear`: whether that is
-  /// known, before and after.
-  Nearness come_near(WorkingMesh& mesh, const std::vector<std::uint8_t>& is_fixed, bool& clear) {
-    std::vector<Vec3> approached;
+  /// What strays or crosses at few places is mended where it is: by points of the input, and smaller triangles where
+  /// these do not help. `clear`: whether it is known that nothing crosses, before and after.
+  Nearness come_near(WorkingMesh& mesh, const std::vector<Curve>& curves, SizeField& sizes,
+                     const std::vector<std::uint8_t>& is_fixed, bool& clear) {
+    Nearness n;
     DeviationWatch watch = deviation_watch();
     for (int k = 0;; ++k) {
       std::vector<FarPlace> places = far_places(mesh, watch);
-      Nearness n = nearness_of(mesh, places);
-      std::erase_if(places,
-                    [&](const FarPlace& p) { return p.within || p.distance < kComeNear * *options_.max_deviation; });
-      const bool few =
-          static_cast<double>(count_triangles(places)) < kFewFar * static_cast<double>(mesh.triangle_count());
-      const int most = n.far.empty() && n.farther.empty() ? kApproaches : kMostApproaches;
-      const std::uint64_t put_in =
-          clear && few && k < most ? approach(mesh, input_, known_.tree(), is_fixed, places) : 0;
-      if (put_in == 0) {
-        n.approached = std::move(approached);
-        return n;
+      if (put_in_points(mesh, watch, is_fixed, places, n)) {
+        clear = mend_places(mesh, is_fixed, tolerance_, clear);
+        places = far_places(mesh, watch);
       }
-      counts_.approached += put_in;
-      const std::vector<Vec3> all = positions_beyond(0, places);
-      approached.insert(approached.end(), all.begin(), all.end());
+      n.far = positions_beyond(tolerance_, places, kMuchTooFar * tolerance_);
+      n.farther = positions_beyond(kMuchTooFar * tolerance_, places);
+      n.near_limit = corners_at(mesh, places);
+      n.is_near_enough = is_near_enough(mesh, places);
+      if (k == kRefinements || (clear && n.is_near_enough)) return n;
+      std::vector<PointSize> wanted = sizes_where_few(mesh, places, sizes, clear);
+      if (wanted.empty()) return n;
+      for (const Vec3 p : std::exchange(n.approached, {})) wanted.push_back({p, kDeviationCap * sizes.at(p)});
+      wanted = smallest_ones(std::move(wanted));
+      n.wanted.insert(n.wanted.end(), wanted.begin(), wanted.end());
+      sizes = capped_steeply(sizes, wanted, kSteep, stage_.context());
+      refine(mesh, curves, sizes);
       clear = mend_places(mesh, is_fixed, tolerance_);
     }
   }
 
-  Nearness nearness_of(const WorkingMesh& mesh, const std::vector<FarPlace>& places) const {
-    const double much = kMuchTooFar * tolerance_;
-    return {
-        {}, positions_beyond(tolerance_, places, much), positions_beyond(much, places), {}, corners_at(mesh, places)};
+  /// Points of the input at the places, and where it strays then, while that leaves fewer; false if none was put in.
+  bool put_in_points(WorkingMesh& mesh, DeviationWatch& watch, const std::vector<std::uint8_t>& is_fixed,
+                     std::vector<FarPlace> places, Nearness& n) {
+    const auto strays = [&] {
+      return std::ranges::count_if(places, [&](const FarPlace& p) { return p.distance > tolerance_; });
+    };
+    bool any = false;
+    for (int k = 0; k < kMostApproaches; ++k) {
+      const auto before = strays();
+      std::erase_if(places, [&](const FarPlace& p) { return p.within || p.distance < kComeNear * tolerance_; });
+      if (places.empty() || !are_few(count_triangles(places), mesh, kFewFar)) return any;
+      const std::uint64_t put_in = approach(mesh, input_, known_.tree(), is_fixed, places);
+      if (put_in == 0) return any;
+      any = true;
+      counts_.approached += put_in;
+      const std::vector<Vec3> there = positions_beyond(0, places);
+      n.approached.insert(n.approached.end(), there.begin(), there.end());
+      places = far_places(mesh, watch);
+      if (before > 0 ? strays() >= before : k + 1 == kApproaches) return any;
+    }
+    return any;
+  }
+
+  /// Whether it strays nowhere, or a little at few places.
+  bool is_near_enough(const WorkingMesh& mesh, std::vector<FarPlace> places) const {
+    std::erase_if(places, [&](const FarPlace& p) { return p.distance < tolerance_; });
+    const double most = options_.deviation_slack * tolerance_;
+    return places.empty() || (are_few(count_triangles(places), mesh, kNoRound) &&
+                              std::ranges::all_of(places, [&](const FarPlace& p) { return p.distance <= most; }));
+  }
+
+  static bool are_few(std::ptrdiff_t triangles, const WorkingMesh& mesh, double part) {
+    return static_cast<double>(triangles) < part * static_cast<double>(mesh.triangle_count());
+  }
+
+  /// Sizes by which it would stray no more, and smaller ones where it crosses; none if that is at many places.
+  std::vector<PointSize> sizes_where_few(const WorkingMesh& mesh, std::vector<FarPlace> places, const SizeField& sizes,
+                                         bool clear) const {
+    std::erase_if(places, [&](const FarPlace& p) { return p.distance < tolerance_; });
+    if (!are_few(count_triangles(places), mesh, kNoRound)) return {};
+    std::vector<PointSize> wanted = sizes_against(places, sizes);
+    if (clear) return wanted;
+    const std::vector<std::uint8_t> crossing = crossing_triangles(mesh);
+    if (!are_few(std::count(crossing.begin(), crossing.end(), 1), mesh, kNoRound)) return {};
+    for (std::uint32_t t = 0; t < crossing.size(); ++t) {
+      if (!crossing[t]) continue;
+      const auto [a, b, c] = mesh.triangle(t);
+      const Vec3 middle = centroid(mesh.points[a], mesh.points[b], mesh.points[c]);
+      wanted.push_back({middle, kCap * sizes.at(middle)});
+    }
+    return smallest_ones(std::move(wanted));
   }
 
   /// Sizes by which the mesh would stray no more: what chords cut off grows with the square of their length. Of places
@@ -526,7 +582,7 @@ class Remesher {
 
   /// Smaller sizes where the surface strayed.
   void cap_far(const Compacted& c) {
-    if (seamed_ && !c.nearness.wanted.empty()) {
+    if (!c.nearness.wanted.empty()) {
       wanted_.push_back(c.nearness.wanted);
       sizes_ = capped_steeply(sizes_, wanted_.back(), kSteep, stage_.context());
     }
@@ -537,11 +593,11 @@ class Remesher {
     if (!c.nearness.farther.empty()) cap(c.nearness.farther, kDeviationCapFar);
   }
 
-  static std::size_t count_triangles(const std::vector<FarPlace>& places) {
+  static std::ptrdiff_t count_triangles(const std::vector<FarPlace>& places) {
     std::vector<std::uint32_t> triangles;
     for (const FarPlace& place : places) triangles.push_back(place.triangle);
     std::sort(triangles.begin(), triangles.end());
-    return static_cast<std::size_t>(std::unique(triangles.begin(), triangles.end()) - triangles.begin());
+    return std::unique(triangles.begin(), triangles.end()) - triangles.begin();
   }
 
   static std::vector<VertexIndex> corners_at(const WorkingMesh& mesh, const std::vector<FarPlace>& places) {
@@ -566,12 +622,13 @@ class Remesher {
   }
 
   /// What is left of bad triangles, of edges too sharp for any element, and of crossings where these are few. True if
-  /// it is known that nothing crosses then.
-  bool mend_places(WorkingMesh& mesh, const std::vector<std::uint8_t>& is_fixed, double tolerance) {
+  /// it is known that nothing crosses then. `clear`: whether it is known before.
+  bool mend_places(WorkingMesh& mesh, const std::vector<std::uint8_t>& is_fixed, double tolerance, bool clear = false) {
     FoldLimits limits{.tolerance = tolerance,
                       .size_part = kMovedPart,
                       .least_shape = kBadShape,
-                      .crossing_part = seamed_ ? kCrossingPart : 0,
+                      .crossing_part = kCrossingPart,
+                      .crossing_most = seamed_ ? HUGE_VAL : tolerance,
                       .keep_lines = true,
                       .onto = &known_.tree(),
                       .is_fixed = is_fixed,
@@ -579,7 +636,8 @@ class Remesher {
     const auto part = static_cast<std::int64_t>(kFewCrossingPart * static_cast<double>(mesh.triangle_count()));
     const std::int64_t few = seamed_ ? std::max<std::int64_t>(kFewCrossing, part) : kFewCrossing;
     for (int round = 0; round < kMendingRounds; ++round) {
-      const std::vector<std::uint8_t> crossing = crossing_triangles(mesh);
+      const std::vector<std::uint8_t> crossing =
+          clear ? std::vector<std::uint8_t>(mesh.triangle_count()) : crossing_triangles(mesh);
       const auto count = std::count(crossing.begin(), crossing.end(), 1);
       if (round > 0 && count == 0) return true;
       limits.crossing = count <= few ? &crossing : nullptr;
@@ -679,7 +737,7 @@ class Remesher {
   /// Whether the surface is as near to the input as was asked, or could be made so in the rounds allowed; otherwise the
   /// sizes are made smaller. Leaves the sources.
   bool is_true(Compacted& c) {
-    const std::size_t far = c.nearness.far.size() + c.nearness.farther.size();
+    const std::size_t far = c.nearness.is_near_enough ? 0 : c.nearness.far.size() + c.nearness.farther.size();
     const bool is_last =
         counts_.rounds == kMostRounds ||
         (seamed_ ? counts_.rounds > 1 ||
