@@ -3,7 +3,7 @@
 // improve: better elements in the same body. Takes a valid tetrahedral mesh, leaves a valid one: vertices have moved,
 // edges and faces have been exchanged; those of the boundary only where the surface is given on which they may. Single
 // passes are in passes.h, their order in schedule.cpp, what an element is worth in shape.h, the mesh they work on in
-// edit_mesh.h.
+// edit_mesh.h. What is flat even then gets room off the surface, at the very end: raise_flat.h.
 
 #include <octafront/options.h>
 #include <octafront/size_field.h>

@@ -77,7 +77,7 @@ void face_outward(Examined& found) {
 
 // With sizes of our own choosing the surface stays true by default; sizes that the user gave are left as they are.
 constexpr double kAutomaticDeviation = 0.004;  // of the diagonal; sampled, so that 0.005 is kept in all
-constexpr double kAutomaticSlack = 1.15;
+constexpr double kAutomaticSlack = 1.03;
 
 bool has_automatic_sizes(const Options& options) {
   const SizeOptions& size = options.size;
