@@ -1,7 +1,7 @@
 """Derives surfaces from the clean models: derive_models.py CLEAN_DIR CT_PACKAGE_DIR TARGET PROGRAM."""
 import concurrent.futures
-import os
 import json
+import os
 import pathlib
 import subprocess
 import sys
