@@ -27,6 +27,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -493,6 +494,7 @@ class Remesher {
                      const std::vector<std::uint8_t>& is_fixed, bool& clear) {
     Nearness n;
     DeviationWatch watch = deviation_watch();
+    std::size_t before = std::numeric_limits<std::size_t>::max();
     for (int k = 0;; ++k) {
       std::vector<FarPlace> places = far_places(mesh, watch);
       if (put_in_points(mesh, watch, is_fixed, places, n)) {
@@ -505,11 +507,12 @@ class Remesher {
       n.is_near_enough = is_near_enough(mesh, places);
       if (k == kRefinements || (clear && n.is_near_enough)) return n;
       std::vector<PointSize> wanted = sizes_where_few(mesh, places, sizes, clear);
-      if (wanted.empty()) return n;
+      if (wanted.empty() || wanted.size() >= before) return n;
+      before = wanted.size();
       for (const Vec3 p : std::exchange(n.approached, {})) wanted.push_back({p, kDeviationCap * sizes.at(p)});
       wanted = smallest_ones(std::move(wanted));
       n.wanted.insert(n.wanted.end(), wanted.begin(), wanted.end());
-      sizes = capped_steeply(sizes, wanted, kSteep, stage_.context());
+      sizes = capped(sizes, wanted);
       refine(mesh, curves, sizes);
       clear = mend_places(mesh, is_fixed, tolerance_);
     }
@@ -580,11 +583,17 @@ class Remesher {
     return smallest_ones(std::move(wanted));
   }
 
+  /// A steep field lets all sizes rise steeply from then on, which makes far fewer elements: for complexes only.
+  SizeField capped(const SizeField& sizes, const std::vector<PointSize>& wanted) const {
+    return seamed_ ? capped_steeply(sizes, wanted, kSteep, stage_.context())
+                   : capped_at(sizes, wanted, stage_.context());
+  }
+
   /// Smaller sizes where the surface strayed.
   void cap_far(const Compacted& c) {
     if (!c.nearness.wanted.empty()) {
       wanted_.push_back(c.nearness.wanted);
-      sizes_ = capped_steeply(sizes_, wanted_.back(), kSteep, stage_.context());
+      sizes_ = capped(sizes_, wanted_.back());
     }
     if (seamed_) return;
     std::vector<Vec3> places = c.nearness.far;
@@ -723,8 +732,7 @@ class Remesher {
   /// The sizes again without what was asked of them where the input's triangles have returned.
   void forget_caps() {
     sizes_ = first_;
-    for (const std::vector<PointSize>& wanted : wanted_)
-      sizes_ = capped_steeply(sizes_, wanted, kSteep, stage_.context());
+    for (const std::vector<PointSize>& wanted : wanted_) sizes_ = capped(sizes_, wanted);
     for (Caps& caps : caps_) {
       std::erase_if(caps.places, [&](Vec3 p) {
         return std::any_of(restored_.begin(), restored_.end(),
@@ -806,7 +814,7 @@ class Remesher {
   SizeField first_;  ///< the sizes as they were asked, in a complex as they were foreseen
   SizeField sizes_;  ///< and as they are now
   std::vector<Caps> caps_;
-  std::vector<std::vector<PointSize>> wanted_;  ///< against deviation, in a complex
+  std::vector<std::vector<PointSize>> wanted_;  ///< against deviation and crossings
   std::vector<Ball> restored_;                  ///< where the input's own triangles stay
   const SurfaceOptions& options_;
   double tolerance_;  ///< for details of the input: none moves farther
