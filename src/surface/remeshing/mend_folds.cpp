@@ -32,7 +32,7 @@ constexpr double kCrossing = 1;
 constexpr double kLeastShape = 0.02;
 /// Parts of the way to the mean of its neighbours that a vertex is tried at.
 constexpr double kSteps[] = {1, 0.5, 0.25};
-/// And, if it crosses in a complex, of the ways to each of these and away from it.
+/// And, if it crosses, of the ways to each of these and away from it.
 constexpr double kCrossingSteps[] = {0.5, 0.25, -0.25};
 /// Operations per place at most, on average: others may spring up beside one that is mended.
 constexpr std::size_t kOperationsPerPlace = 8;
