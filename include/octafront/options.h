@@ -89,10 +89,8 @@ struct SurfaceOptions {
   /// the sizes are automatic; else the sizes decide, and details give way by a tenth of the size (folds; at most .4 %
   /// of the diagonal) to a quarter of it (lines).
   std::optional<double> max_deviation;
-  /// It is not made anew for a few places that stray so many times as far at most; >= 1. Of the automatic bound 1.03.
-  double deviation_slack = 1;
-  /// Sizes are made smaller, too, where the new triangles turn by more than this many degrees against the input's surface
-  /// at their corners and centroid; (0, 90].
+  /// The same where the new triangles turn by more than this many degrees against the input's surface at their corners
+  /// and centroid; (0, 90].
   std::optional<double> normal_deviation;
   /// Each part of the surface that feature edges enclose becomes a patch of its own; parts of a named patch keep its
   /// name, with a number behind it where there are several.

@@ -24,7 +24,6 @@ void check_options(const Options& options) {
           "`feature_angle` is in degrees, between 0 and 180");
   require(!surface.max_deviation || (std::isfinite(*surface.max_deviation) && *surface.max_deviation >= 0),
           "`max_deviation` is a distance in the units of the input, not below 0");
-  require(surface.deviation_slack >= 1, "`deviation_slack` is a factor, not below 1");
   require(!surface.normal_deviation || (*surface.normal_deviation > 0 && *surface.normal_deviation <= 90),
           "`normal_deviation` is in degrees, above 0 and at most 90");
   require(!(keeps_surface(options) && (surface.max_deviation || surface.normal_deviation)),

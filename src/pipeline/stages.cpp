@@ -77,6 +77,7 @@ void face_outward(Examined& found) {
 
 // With sizes of our own choosing the surface stays true by default; sizes that the user gave are left as they are.
 constexpr double kAutomaticDeviation = 0.004;  // of the diagonal; sampled, so that 0.005 is kept in all
+/// The surface is not made anew for a few places that stray so many times as far.
 constexpr double kAutomaticSlack = 1.03;
 
 bool has_automatic_sizes(const Options& options) {
@@ -86,9 +87,8 @@ bool has_automatic_sizes(const Options& options) {
 
 SurfaceOptions true_to_input(const Prepared& p, const Options& options) {
   SurfaceOptions surface = options.surface;
-  if (surface.max_deviation || !has_automatic_sizes(options)) return surface;
-  surface.max_deviation = kAutomaticDeviation * bounding_box(p.surface.mesh().points).diagonal();
-  surface.deviation_slack = kAutomaticSlack;
+  if (!surface.max_deviation && has_automatic_sizes(options))
+    surface.max_deviation = kAutomaticDeviation * bounding_box(p.surface.mesh().points).diagonal();
   return surface;
 }
 
@@ -267,7 +267,9 @@ Remeshed triangulate(const Prepared& input, const SizeField& sizes, Run& run) {
   return run.stage("surface front", [&](const Stage& stage) {
     std::span<const double> moved;
     if (run.options.surface.max_deviation) moved = input.moved;
-    Remeshed remeshed = remesh_surface(input.surface, sizes, true_to_input(input, run.options), stage, moved);
+    const SurfaceOptions surface = true_to_input(input, run.options);
+    const double slack = surface.max_deviation == run.options.surface.max_deviation ? 1 : kAutomaticSlack;
+    Remeshed remeshed = remesh_surface(input.surface, sizes, surface, stage, moved, slack);
     stage.count("triangles", static_cast<double>(remeshed.surface.triangles.size()));
     note_volume_loss(enclosed_volume(remeshed.surface), run.report.input_volume, stage);
     // Strips between lines and the bounds on deviation have made sizes smaller since the first prediction.

@@ -45,8 +45,8 @@ class GapFinder {
   std::vector<Vec3> normal_;
   RootCube root_;
   double nearest_, reach_;
-  bool either_way_ = false;  ///< of a complex, whose triangles do not face outward
-  int level_;                ///< of the cells whose places share an answer
+  bool either_way_ = false;                       ///< of a complex, whose triangles do not face outward
+  int level_;                                     ///< of the cells whose places share an answer
   using Widths = FlatMap<std::uint64_t, double>;  ///< by neighbourhood
   Widths known_;
   std::vector<std::unique_ptr<Widths>> inside_;  ///< of a triangle that reaches beyond its middle's; most have none

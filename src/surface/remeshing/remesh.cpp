@@ -262,7 +262,7 @@ void report_counts(const Counts& counts, const Stage& stage) {
 class Remesher {
  public:
   Remesher(const KnownSurface& surface, const SizeField& sizes, const SurfaceOptions& options, const Stage& stage,
-           std::span<const double> moved)
+           std::span<const double> moved, double slack)
       : known_(surface),
         surface_(surface.mesh()),
         moved_(moved),
@@ -270,6 +270,7 @@ class Remesher {
         sizes_(sizes),
         options_(options),
         tolerance_(options.max_deviation.value_or(HUGE_VAL)),
+        slack_(slack),
         stage_(stage),
         seamed_(!surface_.sides.empty() ? std::optional(cut_along_seams(surface)) : std::nullopt),
         input_(seamed_ ? std::move(seamed_->input) : make_input_surface(surface.mesh(), surface.edges())) {
@@ -544,7 +545,7 @@ class Remesher {
   /// Whether it strays nowhere, or a little at few places.
   bool is_near_enough(const WorkingMesh& mesh, std::vector<FarPlace> places) const {
     std::erase_if(places, [&](const FarPlace& p) { return p.distance < tolerance_; });
-    const double most = options_.deviation_slack * tolerance_;
+    const double most = slack_ * tolerance_;
     return places.empty() || (are_few(count_triangles(places), mesh, kNoRound) &&
                               std::ranges::all_of(places, [&](const FarPlace& p) { return p.distance <= most; }));
   }
@@ -818,6 +819,7 @@ class Remesher {
   std::vector<Ball> restored_;                  ///< where the input's own triangles stay
   const SurfaceOptions& options_;
   double tolerance_;  ///< for details of the input: none moves farther
+  double slack_;      ///< what few places may stray, in tolerances
   const Stage& stage_;
   std::optional<SeamedSurface> seamed_;  ///< of a complex
   InputSurface input_;
@@ -836,8 +838,8 @@ Remeshed input_as_it_is(const KnownSurface& surface, const SizeField& sizes) {
 }
 
 Remeshed remesh_surface(const KnownSurface& surface, const SizeField& sizes, const SurfaceOptions& options,
-                        const Stage& stage, std::span<const double> moved) {
-  return Remesher(surface, sizes, options, stage, moved).run();
+                        const Stage& stage, std::span<const double> moved, double slack) {
+  return Remesher(surface, sizes, options, stage, moved, slack).run();
 }
 
 }  // namespace octafront

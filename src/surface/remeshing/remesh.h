@@ -25,9 +25,10 @@ struct Remeshed {
 
 /// The surface front. Requires a clean surface (see surface_mesh.h). The result is checked: closed, manifold, same
 /// components and genus, no self-intersection, features present; throws MeshingError if no attempt passes. `moved`: per
-/// triangle how far it lies from what the deviation is asked of, at most; empty: it is that.
+/// triangle how far it lies from what the deviation is asked of, at most; empty: it is that. `slack`: it is not made
+/// anew for a few places that stray so many times as far as it may.
 Remeshed remesh_surface(const KnownSurface& surface, const SizeField& sizes, const SurfaceOptions& options,
-                        const Stage& stage, std::span<const double> moved = {});
+                        const Stage& stage, std::span<const double> moved = {}, double slack = 1);
 
 /// The input's own triangles in the place of new ones.
 Remeshed input_as_it_is(const KnownSurface& surface, const SizeField& sizes);
