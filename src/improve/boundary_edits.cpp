@@ -8,6 +8,7 @@
 #include "geometry/predicates.h"
 #include "improve/edit_blocks.h"
 #include "improve/fewest_poor.h"
+#include "improve/flat_walls.h"
 #include "improve/input_force.h"
 #include "improve/passes.h"
 #include "improve/star_edit.h"
@@ -63,6 +64,7 @@ class BoundaryEditor {
         guide_(guide),
         live_(mesh),
         force_(guide.input()),
+        walls_(guide.surface(), guide.tree(), guide.input().features),
         floor_(mesh.floor()),
         batch_(mesh.objective()),
         star_edit_(mesh) {}
@@ -134,10 +136,13 @@ class BoundaryEditor {
     if (!may_move(v, on_features) || !block_.star(v, star_) || !star_edit_.load(v, star_)) return false;
     link_ = link_of(star_);
     const Vec3 from = mesh_.point(v);
+    take_old();
+    if (walls_.hold(old_)) return false;
+    const double limit = limit_at(from);
     descent_.descend(star_edit_.batch(), from, kSteps, [&](Vec3 to) {
       if (!star_edit_.acceptable(to, floor_)) return false;
       plan_move(v, to);
-      return guide_.is_near_home(v, to, limit_at(from)) && is_true(from);
+      return guide_.is_near_home(v, to, limit) && is_true(from, limit);
     });
     if (!descent_.moved()) return false;
     if (star_edit_.current_lack() - descent_.lack() < kLeastFall) return false;
@@ -183,7 +188,8 @@ class BoundaryEditor {
     if (!std::binary_search(link_.boundary_vertices.begin(), link_.boundary_vertices.end(), w)) return;
     Collapse c{u, w, 0, {}, {}, {}, {}};
     if (!plan_tets(c) || !(c.gain > best_.gain) || !keeps_manifold(u, w) || !plan_boundary(c)) return;
-    if (is_true(mesh_.point(u)) && crosses_nothing() && stays_near()) best_ = std::move(c);
+    const Vec3 p = mesh_.point(u);
+    if (is_true(p, limit_at(p)) && crosses_nothing() && stays_near()) best_ = std::move(c);
   }
 
   /// The tets with u at w, and what is gained; false if one would not be usable.
@@ -297,12 +303,12 @@ class BoundaryEditor {
   double limit_at(Vec3 p) const {
     double edges = 0;
     for (const VertexIndex v : link_.boundary_vertices) edges += distance(p, mesh_.point(v));
-    return std::min(guide_.tolerance(), kMovedPart * edges / static_cast<double>(link_.boundary_vertices.size()));
+    return std::min(guide_.tolerance_at(p), kMovedPart * edges / static_cast<double>(link_.boundary_vertices.size()));
   }
 
-  /// Whether the new triangles stray little, from the vertex p too, which the old ones had in common.
-  bool is_true(Vec3 p) const {
-    const double limit = limit_at(p);
+  /// Whether the new triangles stray by no more than the limit, from the vertex p too, which the old ones had in
+  /// common.
+  bool is_true(Vec3 p, double limit) const {
     double away = HUGE_VAL;
     std::vector<TriangleCorners> after;
     for (const IdTriangle& t : new_) {
@@ -379,6 +385,7 @@ class BoundaryEditor {
   BoundaryGuide& guide_;
   LiveTriangles<EditMesh> live_;
   InputForce force_;
+  FlatWalls walls_;
   Floor floor_;
   ShapeBatch batch_;
   std::vector<HalfFace> star_, star_of_other_;

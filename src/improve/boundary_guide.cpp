@@ -40,6 +40,7 @@ BoundaryGuide::BoundaryGuide(const EditMesh& mesh, const BoundaryInput& input, c
       frozen_(mesh.vertices(), 0),
       pinned_(mesh.vertices(), 0),
       input_(input),
+      leeway_(input.surface, input.tree),
       curves_(input.surface, input.features) {
   const std::vector<VertexIndex> here = mesh.numbers_here();
   for (VertexIndex v = 0; v < kind_.size(); ++v)
@@ -146,14 +147,18 @@ BoundaryGuide::Truth BoundaryGuide::truth_of(std::span<const TriangleCorners> tr
   return truth;
 }
 
-bool BoundaryGuide::is_true(const Truth& truth, double edge) {
-  return truth.squared_distance <= kNear * kNear * edge * edge && truth.cosine >= kFacesAlike;
+double BoundaryGuide::near_at(Vec3 p, double edge) const {
+  return leeway_.at(p, kNear * edge);
 }
 
-bool BoundaryGuide::keeps_truth(const Truth& had, const Truth& has, double edge) {
-  if (is_true(has, edge)) return true;
-  if (is_true(had, edge)) return false;
-  return has.squared_distance <= std::max(had.squared_distance, kNear * kNear * edge * edge) &&
+bool BoundaryGuide::is_true(const Truth& truth, double near) {
+  return truth.squared_distance <= near * near && truth.cosine >= kFacesAlike;
+}
+
+bool BoundaryGuide::keeps_truth(const Truth& had, const Truth& has, double near) {
+  if (is_true(has, near)) return true;
+  if (is_true(had, near)) return false;
+  return has.squared_distance <= std::max(had.squared_distance, near * near) &&
          has.cosine >= std::min(had.cosine, kFacesAlike);
 }
 
@@ -161,7 +166,8 @@ bool BoundaryGuide::keeps_truth(std::span<const TriangleCorners> before, std::sp
   double edge = 0;
   for (const TriangleCorners& t : after) edge += distance(t[0], t[1]) / static_cast<double>(after.size());
   const Truth has = truth_of(after);
-  return is_true(has, edge) || keeps_truth(truth_of(before), has, edge);
+  const double near = near_at(after[0][0], edge);
+  return is_true(has, near) || keeps_truth(truth_of(before), has, near);
 }
 
 bool SlidingVertex::load(VertexIndex v, std::span<const HalfFace> star) {
@@ -173,6 +179,7 @@ bool SlidingVertex::load(VertexIndex v, std::span<const HalfFace> star) {
   axes_count_ = 0;
   edge_ = 0;
   had_.reset();
+  near_.reset();
   bool one_patch = true;
   for (const HalfFace h : star) {
     const TetIndex t = h / 4;
@@ -218,6 +225,11 @@ const NearbyTriangles& SlidingVertex::nearby() const {
   return nearby_;
 }
 
+double SlidingVertex::near_limit() const {
+  if (!near_) near_ = guide_.near_at(at_, edge_);
+  return *near_;
+}
+
 bool SlidingVertex::snap(Vec3& place) const {
   if (kind_ == BoundaryGuide::Kind::kCurve) {
     const auto there = guide_.curves().walk(on_curve_, dot(place - at_, axes_[0]));
@@ -238,9 +250,9 @@ bool SlidingVertex::keeps_truth(Vec3 place) const {
   for (std::size_t k = 0; k < moved_.size(); ++k)
     if (!(dot(area_normal(moved_[k]), area_normal(triangles_[k])) > 0)) return false;
   const BoundaryGuide::Truth has = guide_.truth_of(moved_, &nearby());
-  if (BoundaryGuide::is_true(has, edge_)) return true;
+  if (BoundaryGuide::is_true(has, near_limit())) return true;
   if (!had_) had_ = guide_.truth_of(triangles_, &nearby());
-  return BoundaryGuide::keeps_truth(*had_, has, edge_);
+  return BoundaryGuide::keeps_truth(*had_, has, near_limit());
 }
 
 }  // namespace octafront::improve

@@ -4,6 +4,7 @@
 // feature curves along their curve, corners nowhere. Every change is judged by how true to the input it leaves the
 // boundary.
 
+#include "geometry/leeway.h"
 #include "geometry/nearby_triangles.h"
 #include "improve/edit_mesh.h"
 #include "improve/feature_curves.h"
@@ -47,6 +48,8 @@ class BoundaryGuide {
   /// A vertex of a curve has gone to another of that curve.
   void merge_curve(VertexIndex gone, VertexIndex onto);
   double tolerance() const { return input_.tolerance; }
+  /// How far the boundary may stray around p: by the tolerance, and by the leeway there.
+  double tolerance_at(Vec3 p) const { return leeway_.at(p, input_.tolerance); }
   /// Whether a place for a vertex of the boundary lies within `limit` of the surface or curve that the vertex is on; of
   /// a corner, of where it was.
   bool is_near_home(VertexIndex v, Vec3 place, double limit) const;
@@ -63,10 +66,12 @@ class BoundaryGuide {
   };
   /// `nearby`: what of the input is around, where that was gathered.
   Truth truth_of(std::span<const TriangleCorners> triangles, const NearbyTriangles* nearby = nullptr) const;
-  /// True if triangles of which one would lie so are true by the fixed limits; `edge`: their size.
-  static bool is_true(const Truth& truth, double edge);
+  /// How far triangles of this size around p may lie from the input whatever they did before; input units.
+  double near_at(Vec3 p, double edge) const;
+  /// True if triangles of which one would lie so are true, `near` as near_at() says.
+  static bool is_true(const Truth& truth, double near);
   /// True if triangles that lie like `has` may replace those that lie like `had`: they are true, or no worse.
-  static bool keeps_truth(const Truth& had, const Truth& has, double edge);
+  static bool keeps_truth(const Truth& had, const Truth& has, double near);
   /// The same for the triangles themselves.
   bool keeps_truth(std::span<const TriangleCorners> before, std::span<const TriangleCorners> after) const;
 
@@ -78,6 +83,7 @@ class BoundaryGuide {
   std::vector<std::pair<VertexIndex, Vec3>> fixed_;  ///< vertices that do not slide, and where they were; sorted
   std::vector<Edge> feature_edges_;                  ///< in the numbering of the EditMesh, sorted
   BoundaryInput input_;
+  Leeway leeway_;
   FeatureCurves curves_;
 };
 
@@ -98,6 +104,7 @@ class SlidingVertex {
  private:
   bool load_curve();
   const NearbyTriangles& nearby() const;
+  double near_limit() const;
 
   const EditMesh& mesh_;
   const BoundaryGuide& guide_;
@@ -109,6 +116,7 @@ class SlidingVertex {
   FeatureCurves::Place on_curve_;
   std::vector<TriangleCorners> triangles_;           ///< corner 0 is the vertex
   double edge_ = 0;                                  ///< mean length of the boundary edges around it
+  mutable std::optional<double> near_;               ///< near_at() there, once that was asked for
   mutable std::optional<BoundaryGuide::Truth> had_;  ///< as the triangles lie now, once that was asked for
   mutable std::vector<TriangleCorners> moved_;
   mutable bool gathered_ = false;

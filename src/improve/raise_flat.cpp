@@ -30,8 +30,6 @@ constexpr double kLeastFall = 0.1;
 /// Parts of the reach at which places are tried, and the reach in edges.
 constexpr double kParts[] = {0.3, 0.9};
 constexpr double kReach = 0.3;
-/// Triangles between whose normals the square of the sine is less lie in one plane.
-constexpr double kFlat = 1e-10;
 
 /// The triangles of a surface whose vertices move with those of a mesh, for LiveTriangles.
 struct MovingSurface {
@@ -45,15 +43,14 @@ struct MovingSurface {
 
 class FlatRaiser {
  public:
-  FlatRaiser(TetMesh& mesh, const SurfaceMesh& filled, double limit)
-      : mesh_(mesh), filled_(filled), limit_(limit), surface_{mesh.points, filled.triangles}, live_(surface_) {}
+  FlatRaiser(TetMesh& mesh, const SurfaceMesh& filled, const RaiseLimits& limits)
+      : mesh_(mesh), filled_(filled), limits_(limits), surface_{mesh.points, filled.triangles}, live_(surface_) {}
 
   RaisedFlat run(const Stage& stage) {
     for (int round = 0; round < kRounds; ++round) {
       stage.check();
       const std::vector<TetIndex> poor = find_poor();
       if (poor.empty()) break;
-      if (round == 0) is_flat_ = find_flat_patches();
       gather(poor);
       std::uint64_t moved = 0;
       for (const TetIndex t : poor) moved += raise(t);
@@ -102,9 +99,21 @@ class FlatRaiser {
 
   /// Moves one corner of the element, if one may and that helps.
   bool raise(TetIndex t) {
-    if (shape_of(t).score >= kPoor) return false;
+    if (shape_of(t).score >= kPoor || is_forced(t)) return false;
     const Tet corners = mesh_.tets[t];
     return std::any_of(corners.begin(), corners.end(), [&](VertexIndex v) { return move(v); });
+  }
+
+  bool is_forced(TetIndex t) const {
+    if (limits_.force == nullptr) return false;
+    const auto& [a, b, c, d] = mesh_.tets[t];
+    const Vec3 p = mesh_.points[a], q = mesh_.points[b], r = mesh_.points[c], s = mesh_.points[d];
+    return limits_.force->cause_at(centroid(p, q, r, s), std::sqrt(longest_squared_edge(p, q, r, s))) !=
+           improve::InputForce::Cause::kNone;
+  }
+
+  double allowed_at(Vec3 home) const {
+    return limits_.leeway ? limits_.leeway->at(home, limits_.distance) : limits_.distance;
   }
 
   bool move(VertexIndex v) {
@@ -113,7 +122,7 @@ class FlatRaiser {
     if (star.size() > ShapeBatch::kBatch || lies_on_flat(around)) return false;
     load(v, star);
     const Vec3 from = mesh_.points[v], home = home_of(v);
-    const double reach = std::min(kReach * star_.mean_edge(from), around.empty() ? HUGE_VAL : limit_);
+    const double reach = std::min(kReach * star_.mean_edge(from), around.empty() ? HUGE_VAL : allowed_at(home));
     star_.evaluate_star(from);
     const double had = lack_of(star_);
     const auto allowed = [&](Vec3 to) { return distance(home, to) <= reach && star_.star_acceptable(to, positive_); };
@@ -169,34 +178,20 @@ class FlatRaiser {
     }
   }
 
-  /// Patches whose triangles all lie in one plane: walls that are meant to be flat.
-  std::vector<std::uint8_t> find_flat_patches() const {
-    std::vector<std::uint8_t> is_flat;
-    std::vector<Vec3> first;
-    for (std::uint32_t t = 0; t < filled_.triangles.size(); ++t) {
-      const std::uint32_t patch = filled_.patch_of(t);
-      if (patch >= first.size()) first.resize(patch + 1), is_flat.resize(patch + 1, 1);
-      const auto& [a, b, c] = filled_.triangles[t];
-      const Vec3 n = unit_normal(mesh_.points[a], mesh_.points[b], mesh_.points[c]);
-      if (squared_length(first[patch]) == 0) first[patch] = n;
-      if (squared_length(cross(first[patch], n)) > kFlat) is_flat[patch] = 0;
-    }
-    return is_flat;
-  }
-
   bool lies_on_flat(std::span<const std::uint32_t> around) const {
-    return std::any_of(around.begin(), around.end(),
-                       [&](std::uint32_t t) { return is_flat_[filled_.patch_of(t)] != 0; });
+    if (limits_.walls == nullptr) return false;
+    std::vector<TriangleCorners> corners;
+    for (const std::uint32_t t : around) corners.push_back(live_.corners(t));
+    return limits_.walls->hold(corners);
   }
 
   TetMesh& mesh_;
   const SurfaceMesh& filled_;
-  const double limit_;
+  const RaiseLimits limits_;
   const MovingSurface surface_;
   LiveTriangles<MovingSurface> live_;
   std::vector<std::uint32_t> number_;  ///< of each vertex whose star was gathered
   Groups<> tets_, triangles_;          ///< by that number
-  std::vector<std::uint8_t> is_flat_;  ///< per patch
   std::map<VertexIndex, Vec3> homes_;  ///< where vertices of surfaces that moved were
   ShapeBatch star_;
   improve::LackDescent descent_;
@@ -206,8 +201,8 @@ class FlatRaiser {
 
 }  // namespace
 
-RaisedFlat raise_flat(TetMesh& mesh, const SurfaceMesh& filled, double limit, const Stage& stage) {
-  return FlatRaiser(mesh, filled, limit).run(stage);
+RaisedFlat raise_flat(TetMesh& mesh, const SurfaceMesh& filled, const RaiseLimits& limits, const Stage& stage) {
+  return FlatRaiser(mesh, filled, limits).run(stage);
 }
 
 }  // namespace octafront

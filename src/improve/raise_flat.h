@@ -4,6 +4,9 @@
 #include <octafront/tet_mesh.h>
 
 #include "core/stage.h"
+#include "geometry/leeway.h"
+#include "improve/flat_walls.h"
+#include "improve/input_force.h"
 
 namespace octafront {
 
@@ -13,11 +16,19 @@ struct RaisedFlat {
   double largest_move = 0;     ///< input units
 };
 
+/// What holds corners back.
+struct RaiseLimits {
+  double distance = 0;                         ///< input units
+  const Leeway* leeway = nullptr;              ///< no farther than that either; null: whatever it is
+  improve::FlatWalls* walls = nullptr;         ///< whose vertices stay; null: there are none
+  const improve::InputForce* force = nullptr;  ///< elements that the input keeps poor stay as they are; null: none are
+};
+
 /// Moves corners of elements below beta .2 or 10 degrees, where those around lack less in sum then. Where sheets nearly
-/// touch, all four corners lie on surfaces, along which no place is better; they leave them, by `limit` (input units)
-/// and .3 of the edges around at most. Vertices of flat faces stay. No element is inverted and no triangle crosses
-/// another (exact signs). `filled`: the surface or complex that the mesh fills, whose vertices are the mesh's first
-/// ones.
-RaisedFlat raise_flat(TetMesh& mesh, const SurfaceMesh& filled, double limit, const Stage& stage);
+/// touch, all four corners lie on surfaces, along which no place is better; they leave them, within the limits and by
+/// .3 of the edges around at most. No element is inverted and no triangle
+/// crosses another (exact signs). `filled`: the surface or complex that the mesh fills, whose vertices are the mesh's
+/// first ones.
+RaisedFlat raise_flat(TetMesh& mesh, const SurfaceMesh& filled, const RaiseLimits& limits, const Stage& stage);
 
 }  // namespace octafront

@@ -14,6 +14,10 @@ namespace {
 /// single precision, turns it by tens of degrees. It takes the direction of the neighbour that it agrees with best, so
 /// a sharp edge beside it is found once, not on both of its sides.
 constexpr double kNoise = 1e-5;
+/// But what lies between faces that look away from each other, by this cosine or less, is the rim of a thin plate.
+constexpr double kLookAway = -0.9;
+/// Rows of slivers that a rim has at most.
+constexpr int kRimRows = 16;
 
 double lowest_height(Vec3 a, Vec3 b, Vec3 c) {
   const double longest = std::max({distance(a, b), distance(b, c), distance(c, a)});
@@ -29,6 +33,54 @@ void for_neighbours(const EdgeTable& table, const std::vector<std::uint32_t>& ed
     if (uses.size() == 2) visit(uses[0] / 3 == face ? uses[1] / 3 : uses[0] / 3);
   }
 }
+
+/// Whether across the two longest edges of a sliver, and of the slivers that lie there, faces look away from each
+/// other.
+class RimFinder {
+ public:
+  RimFinder(const SurfaceMesh& surface, const EdgeTable& table, const std::vector<std::uint32_t>& edge_of,
+            const std::vector<Vec3>& normal, const std::vector<char>& is_face)
+      : surface_(surface), table_(table), edge_of_(edge_of), normal_(normal), is_face_(is_face) {}
+
+  bool is_rim(std::uint32_t sliver) const {
+    const HalfEdge s = shortest(sliver);
+    const std::uint32_t up = face_across(next_of(s)), down = face_across(next_of(next_of(s)));
+    return up != kNone && down != kNone && dot(normal_[up], normal_[down]) <= kLookAway;
+  }
+
+ private:
+  HalfEdge shortest(std::uint32_t face) const {
+    HalfEdge least = 3 * face;
+    for (const HalfEdge h : {3 * face + 1, 3 * face + 2})
+      if (length_of(h) < length_of(least)) least = h;
+    return least;
+  }
+  double length_of(HalfEdge h) const {
+    return distance(surface_.points[start_of(surface_.triangles, h)],
+                    surface_.points[start_of(surface_.triangles, next_of(h))]);
+  }
+  HalfEdge twin(HalfEdge h) const {
+    const auto uses = table_.uses(edge_of_[h]);
+    if (uses.size() != 2) return kNone;
+    return uses[0] == h ? uses[1] : uses[0];
+  }
+  /// The first face that is no sliver, straight on; kNone: none within kRimRows.
+  std::uint32_t face_across(HalfEdge h) const {
+    for (int row = 0; row < kRimRows; ++row) {
+      const HalfEdge there = twin(h);
+      if (there == kNone || is_face_[there / 3]) return there == kNone ? kNone : there / 3;
+      const HalfEdge s = shortest(there / 3);
+      h = next_of(s) == there ? next_of(there) : next_of(s);
+    }
+    return kNone;
+  }
+
+  const SurfaceMesh& surface_;
+  const EdgeTable& table_;
+  const std::vector<std::uint32_t>& edge_of_;
+  const std::vector<Vec3>& normal_;
+  const std::vector<char>& is_face_;
+};
 
 /// Unit normals; slivers get the direction of a neighbour, the best agreement first.
 std::vector<Vec3> face_directions(const SurfaceMesh& surface, const EdgeTable& table) {
@@ -49,6 +101,9 @@ std::vector<Vec3> face_directions(const SurfaceMesh& surface, const EdgeTable& t
   if (slivers.empty() || slivers.size() == faces) return normal;
 
   const std::vector<std::uint32_t> edge_of = table.edge_of_half_edge();
+  const std::vector<char> is_face = settled;
+  const RimFinder rims(surface, table, edge_of, normal, is_face);
+  for (const std::uint32_t f : slivers) settled[f] = rims.is_rim(f);
   using Offer = std::tuple<double, std::uint32_t, std::uint32_t>;  // disagreement, sliver, who offers its direction
   std::priority_queue<Offer, std::vector<Offer>, std::greater<>> offers;
   const auto offer = [&](std::uint32_t from, std::uint32_t to) {

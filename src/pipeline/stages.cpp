@@ -169,13 +169,22 @@ bool may_slide(const ImproveOptions& options) {
 constexpr double kRaised = 0.5;
 
 /// What the boundary itself keeps poor: vertices of interfaces slide, and corners of flat elements leave the surface.
-void ease_boundary(const KnownSurface& input, Filled& filled, const Options& options, const Stage& stage) {
+void ease_boundary(const improve::BoundaryInput& on, Filled& filled, const Options& options, const Stage& stage) {
   auto& [mesh, boundary] = filled;
-  if (!input.mesh().sides.empty())
+  if (is_complex(on.surface))
     stage.count("interface vertices moved",
-                static_cast<double>(slide_interfaces(mesh, boundary.surface, boundary.features, input.mesh(), stage)));
-  if (const double limit = scale_of_detail(input.mesh(), options, 1) * kRaised; limit > 0) {
-    const RaisedFlat raised = raise_flat(mesh, boundary.surface, limit, stage);
+                static_cast<double>(slide_interfaces(mesh, boundary.surface, boundary.features, on.surface, stage)));
+  if (const double limit = scale_of_detail(on.surface, options, 1) * kRaised; limit > 0) {
+    improve::FlatWalls walls(on.surface, on.tree, on.features);
+    RaiseLimits limits{limit, nullptr, &walls, nullptr};
+    const Leeway leeway(on.surface, on.tree);
+    std::optional<improve::InputForce> force;
+    // Between walls of a complex, as near to each other as one likes, there is no other way out.
+    if (!is_complex(on.surface)) {
+      force.emplace(on);
+      limits.leeway = &leeway, limits.force = &*force;
+    }
+    const RaisedFlat raised = raise_flat(mesh, boundary.surface, limits, stage);
     stage.count("corners of flat elements moved", static_cast<double>(raised.vertices));
     stage.count("largest move of such a corner", raised.largest_move);
   }
@@ -312,7 +321,7 @@ void improve_elements(const Prepared& input, Filled& filled, Run& run) {
       if (on) renew_sources(mesh, hull_of(boundary.surface), on->surface, on->tree);
       follow_boundary(mesh, boundary.surface);
     }
-    if (on && may_slide(run.options.improve)) ease_boundary(input.surface, filled, run.options, stage);
+    if (on && may_slide(run.options.improve)) ease_boundary(*on, filled, run.options, stage);
   });
 }
 

@@ -145,6 +145,8 @@ class FoldMender {
       if (crosses_[t])
         limit_ =
             std::max(limit_, std::min(limits_.crossing_part * mesh_.size[mesh_.start[3 * t]], limits_.crossing_most));
+      if (limits_.leeway)
+        for (const Vec3 p : corners(t)) limit_ = limits_.leeway->at(p, limit_);
       for (HalfEdge h = 3 * t; h < 3 * t + 3; ++h) {
         const HalfEdge g = mesh_.twin[h];
         for (const HalfEdge e : {h, next_of(g), previous_of(g)}) {

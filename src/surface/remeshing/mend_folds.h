@@ -2,6 +2,7 @@
 
 #include <octafront/run_context.h>
 
+#include "geometry/leeway.h"
 #include "geometry/triangle_tree.h"
 #include "surface/remeshing/working_mesh.h"
 
@@ -18,6 +19,7 @@ struct FoldLimits {
   double least_shape = 0;           ///< triangles below this 2r/R are bad too
   double crossing_part = 0;         ///< what crosses may move by this part of the size instead, if that is more
   double crossing_most = HUGE_VAL;  ///< but by no more than this, input units
+  const Leeway* leeway = nullptr;   ///< no move is longer than that there; null: whatever it is
   double total = HUGE_VAL;          ///< what moves at one place add up to at most, input units
   bool keep_lines = false;          ///< feature lines are no folds, however sharp
   /// Triangles that cross others, one flag each, are bad too: edges of theirs are also divided; null: none.

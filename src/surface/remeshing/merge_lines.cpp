@@ -24,8 +24,8 @@ constexpr TurnLimits kLimits{0.2, -0.3};
 
 class LineMerger {
  public:
-  LineMerger(WorkingMesh& mesh, const std::vector<std::uint8_t>& is_fixed, double tolerance)
-      : mesh_(mesh), edits_(mesh, is_fixed), tolerance_(tolerance), star_(mesh) {}
+  LineMerger(WorkingMesh& mesh, const std::vector<std::uint8_t>& is_fixed, double tolerance, const Leeway& leeway)
+      : mesh_(mesh), edits_(mesh, is_fixed), tolerance_(tolerance), leeway_(leeway), star_(mesh) {}
 
   std::uint64_t run() {
     std::vector<std::uint32_t> here(mesh_.triangle_count());
@@ -51,6 +51,8 @@ class LineMerger {
     return length <= tolerance_ && length < part * 0.5 * (mesh_.size[a] + mesh_.size[b]);
   }
 
+  bool has_leeway(VertexIndex v, double move) const { return leeway_.at(at(v), move) >= move; }
+
   /// Collapses the shortest edge of the triangle if it joins two points of lines and is short.
   bool close(std::uint32_t t) {
     const HalfEdge first = 3 * t;
@@ -71,7 +73,7 @@ class LineMerger {
     const auto i = std::find(star_.ring().begin(), star_.ring().end(), h) - star_.ring().begin();
     const double least = kGain * star_.quality_now();
     if (!(star_.quality_after(static_cast<std::size_t>(i), kLimits, least) > least)) return false;
-    if (!edits_.may_collapse(h)) return false;
+    if (!edits_.may_collapse(h) || !has_leeway(mesh_.start[h], length_of(h))) return false;
     const VertexIndex w = mesh_.end(h);
     edits_.collapse(h);
     note_changed_around(w);
@@ -88,7 +90,8 @@ class LineMerger {
     if (!mesh_.is_feature[h]) return false;
     const HalfEdge g = mesh_.twin[h];
     const VertexIndex a = mesh_.start[h], b = mesh_.start[g], c = mesh_.apex(h), d = mesh_.apex(g);
-    if (!is_small(distance(at(c), closest_point_on_segment(at(c), at(a), at(b))), a, b, kFlat)) return false;
+    const double move = distance(at(c), closest_point_on_segment(at(c), at(a), at(b)));
+    if (!is_small(move, a, b, kFlat) || !has_leeway(c, move)) return false;
     const double before = std::min(quality(h), quality(g));
     const double after = std::min(squared_quality(at(a), at(d), at(c)), squared_quality(at(b), at(c), at(d)));
     if (!(after > kGain * before) || !flip_is_sound(mesh_, h, kLimits) || !edits_.may_flip(h)) return false;
@@ -104,14 +107,16 @@ class LineMerger {
   WorkingMesh& mesh_;
   LineEdits edits_;
   double tolerance_;
+  const Leeway& leeway_;
   StarCollapse star_;
   std::vector<std::uint32_t> changed_;  ///< triangles to look at in the next round
 };
 
 }  // namespace
 
-std::uint64_t merge_lines(WorkingMesh& mesh, const std::vector<std::uint8_t>& is_fixed, double tolerance) {
-  return LineMerger(mesh, is_fixed, tolerance).run();
+std::uint64_t merge_lines(WorkingMesh& mesh, const std::vector<std::uint8_t>& is_fixed, double tolerance,
+                          const Leeway& leeway) {
+  return LineMerger(mesh, is_fixed, tolerance, leeway).run();
 }
 
 }  // namespace octafront::remeshing

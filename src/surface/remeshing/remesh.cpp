@@ -270,6 +270,7 @@ class Remesher {
         sizes_(sizes),
         options_(options),
         tolerance_(options.max_deviation.value_or(HUGE_VAL)),
+        leeway_(surface.mesh(), surface.tree()),
         slack_(slack),
         stage_(stage),
         seamed_(!surface_.sides.empty() ? std::optional(cut_along_seams(surface)) : std::nullopt),
@@ -344,9 +345,9 @@ class Remesher {
     } else if (effort == Effort::kFull) {
       remove_input_vertices(mesh, sizes, context, counts_.coarsen);
       progress(0.6);
-      counts_.merged_lines = merge_lines(mesh, is_fixed, tolerance_);
+      counts_.merged_lines = merge_lines(mesh, is_fixed, tolerance_, leeway_);
       improve_surface(mesh, input_, curves, sizes, context, counts_.improve);
-      counts_.merged_lines += merge_lines(mesh, is_fixed, tolerance_);
+      counts_.merged_lines += merge_lines(mesh, is_fixed, tolerance_, leeway_);
       clear = mend_places(mesh, is_fixed, tolerance_);
       nearness = come_near(mesh, curves, sizes, is_fixed, clear);
     } else {
@@ -639,6 +640,7 @@ class Remesher {
                       .least_shape = kBadShape,
                       .crossing_part = kCrossingPart,
                       .crossing_most = seamed_ ? HUGE_VAL : tolerance,
+                      .leeway = &leeway_,
                       .keep_lines = true,
                       .onto = &known_.tree(),
                       .is_fixed = is_fixed,
@@ -819,7 +821,8 @@ class Remesher {
   std::vector<Ball> restored_;                  ///< where the input's own triangles stay
   const SurfaceOptions& options_;
   double tolerance_;  ///< for details of the input: none moves farther
-  double slack_;      ///< what few places may stray, in tolerances
+  Leeway leeway_;
+  double slack_;  ///< what few places may stray, in tolerances
   const Stage& stage_;
   std::optional<SeamedSurface> seamed_;  ///< of a complex
   InputSurface input_;
