@@ -1,6 +1,7 @@
 #include <octafront/generate.h>
 #include <octafront/named_groups.h>
 
+#include "pipeline/kept_shape.h"
 #include "pipeline/methods.h"
 #include "pipeline/pipeline.h"
 #include "pipeline/stages.h"
@@ -12,7 +13,8 @@ Result generate(const SurfaceMesh& surface, const Options& options, const RunCon
   const Prepared input = prepare(surface, run);
   const SizeField sizes = choose_sizes(input, run);
   Filled filled = fill_to_target(input, sizes, run);
-  improve_elements(input, filled, run);
+  improve_in_shape(input, filled, run);
+  check_shape(input, filled, run);
   raise_order(input, filled, run);
   add_patch_curves(filled.mesh);
   check_result(filled.mesh, &filled.boundary.surface, run);

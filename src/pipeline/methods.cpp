@@ -54,4 +54,9 @@ bool keeps_surface(const Options& options) {
   return options.surface.keep || traits_of(options.method).always_keeps;
 }
 
+bool has_automatic_sizes(const Options& options) {
+  const SizeOptions& size = options.size;
+  return !size.size && !size.elements && !size.callback && !size.field && size.point_sizes.empty();
+}
+
 }  // namespace octafront

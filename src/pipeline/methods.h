@@ -27,4 +27,7 @@ const MethodTraits& traits_of(Method method);
 /// Whether the input's triangles become the boundary.
 bool keeps_surface(const Options& options);
 
+/// Whether the mesher chooses the sizes: nothing says what they are, whatever limits or refines them.
+bool has_automatic_sizes(const Options& options);
+
 }  // namespace octafront

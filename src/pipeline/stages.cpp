@@ -11,6 +11,7 @@
 #include "improve/slide_interfaces.h"
 #include "mesh/complex.h"
 #include "pipeline/follow_boundary.h"
+#include "pipeline/kept_shape.h"
 #include "pipeline/methods.h"
 #include "pipeline/pipeline.h"
 #include "sizing/make_size_field.h"
@@ -80,18 +81,6 @@ constexpr double kAutomaticDeviation = 0.004;  // of the diagonal; sampled, so t
 /// The surface is not made anew for a few places that stray so many times as far.
 constexpr double kAutomaticSlack = 1.03;
 
-bool has_automatic_sizes(const Options& options) {
-  const SizeOptions& size = options.size;
-  return !size.size && !size.elements && !size.callback && !size.field && size.point_sizes.empty();
-}
-
-SurfaceOptions true_to_input(const Prepared& p, const Options& options) {
-  SurfaceOptions surface = options.surface;
-  if (!surface.max_deviation && has_automatic_sizes(options))
-    surface.max_deviation = kAutomaticDeviation * bounding_box(p.surface.mesh().points).diagonal();
-  return surface;
-}
-
 // Where sizes are given, detail is what is smaller than this part of them.
 constexpr double kDetail = 0.1;
 
@@ -110,18 +99,6 @@ double detail_tolerance(const SurfaceMesh& surface, const Options& options, doub
   const bool keeps_all =
       keeps_surface(options) || traits_of(options.method).makes_own_boundary() || !surface.sides.empty();
   return keeps_all ? 0 : scale_of_detail(surface, options, part);
-}
-
-// A body that loses more than this has lost details that somebody may want.
-constexpr double kLargeLoss = 0.02;
-
-void note_volume_loss(double made, double input, const Stage& stage) {
-  const double change = made / input - 1;
-  if (std::abs(change) < kLargeLoss) return;
-  stage.note(
-      fmt::format("elements of this size change the volume by {:+.1f} %: `max_deviation` makes them "
-                  "smaller where they stray from the input",
-                  100 * change));
 }
 
 // A part of the volume of a clean surface that the octree method may miss without a word: its boundary is blunt.
@@ -201,6 +178,11 @@ std::vector<double> smooth_detail(Examined& found, Run& run) {
     auto unfolded = remeshing::unfold(surface, found.edges, tolerance, stage.context());
     stage.count("folds mended", unfolded ? static_cast<double>(unfolded->mended.operations) : 0);
     if (!unfolded) return std::vector<double>{};
+    const double change = change_of_volume(enclosed_volume(unfolded->surface), run.report.input_volume);
+    if (std::abs(change) > kVolumeKept) {
+      stage.note(fmt::format("folds and blades stay: without them the volume is {:+.1f} % off", 100 * change));
+      return std::vector<double>{};
+    }
     stage.count("folds left", static_cast<double>(unfolded->mended.folds_left));
     stage.count("largest move", unfolded->mended.largest_move);
     stage.note(fmt::format("the surface was unfolded in {} steps, by {:.3g} at most: `max_deviation` 0 keeps all folds",
@@ -212,6 +194,13 @@ std::vector<double> smooth_detail(Examined& found, Run& run) {
 }
 
 }  // namespace
+
+SurfaceOptions true_to_input(const SurfaceMesh& input, const Options& options) {
+  SurfaceOptions surface = options.surface;
+  if (!surface.max_deviation && has_automatic_sizes(options))
+    surface.max_deviation = kAutomaticDeviation * bounding_box(input.points).diagonal();
+  return surface;
+}
 
 Options options_for_mended(Options options, double tolerance) {
   if (keeps_surface(options) || traits_of(options.method).makes_own_boundary() || !has_automatic_sizes(options))
@@ -276,11 +265,12 @@ Remeshed triangulate(const Prepared& input, const SizeField& sizes, Run& run) {
   return run.stage("surface front", [&](const Stage& stage) {
     std::span<const double> moved;
     if (run.options.surface.max_deviation) moved = input.moved;
-    const SurfaceOptions surface = true_to_input(input, run.options);
+    const SurfaceOptions surface = true_to_input(input.surface.mesh(), run.options);
     const double slack = surface.max_deviation == run.options.surface.max_deviation ? 1 : kAutomaticSlack;
-    Remeshed remeshed = remesh_surface(input.surface, sizes, surface, stage, moved, slack);
+    Remeshed remeshed = remeshed_in_shape(input, sizes, run, stage, [&](const SizeField& by) {
+      return remesh_surface(input.surface, by, surface, stage, moved, slack);
+    });
     stage.count("triangles", static_cast<double>(remeshed.surface.triangles.size()));
-    note_volume_loss(enclosed_volume(remeshed.surface), run.report.input_volume, stage);
     // Strips between lines and the bounds on deviation have made sizes smaller since the first prediction.
     run.report.expected_tets =
         traits_of(run.options.method).tets_per_expected * expected_tets_within(remeshed.sizes, remeshed.surface);
@@ -307,7 +297,7 @@ Filled fill_surface(const Prepared& input, Remeshed boundary, Run& run) {
   return {std::move(mesh), std::move(boundary)};
 }
 
-void improve_elements(const Prepared& input, Filled& filled, Run& run) {
+void improve_elements(const Prepared& input, Filled& filled, Run& run, const ImproveOptions& options) {
   run.stage("improve", [&](const Stage& stage) {
     auto& [mesh, boundary] = filled;
     const bool is_ours = !keeps_surface(run.options) && input.defects == SurfaceDomain::Defects::kClean;
@@ -317,11 +307,11 @@ void improve_elements(const Prepared& input, Filled& filled, Run& run) {
           input.surface.mesh(), input.surface.tree(), input.surface.features(), boundary.features,
           detail_tolerance(input.surface.mesh(), run.options, input.moved.empty() ? 1 : 1 - kUnfolded),
           boundary.near_limit});
-    if (improve_mesh(mesh, on ? &*on : nullptr, run.options.improve, stage, &boundary.features)) {
+    if (improve_mesh(mesh, on ? &*on : nullptr, options, stage, &boundary.features)) {
       if (on) renew_sources(mesh, hull_of(boundary.surface), on->surface, on->tree);
       follow_boundary(mesh, boundary.surface);
     }
-    if (on && may_slide(run.options.improve)) ease_boundary(*on, filled, run.options, stage);
+    if (on && may_slide(options)) ease_boundary(*on, filled, run.options, stage);
   });
 }
 

@@ -37,6 +37,9 @@ Prepared prepare(const SurfaceMesh& input, Run& run);
 /// them will tell better.
 SizeField choose_sizes(const Prepared& input, Run& run);
 
+/// How true the surface stays to the input: as asked, and with automatic sizes within .4 % of the diagonal.
+SurfaceOptions true_to_input(const SurfaceMesh& input, const Options& options);
+
 /// The surface triangulated anew to the sizes, or the input's triangles where the run keeps them.
 Remeshed triangulate(const Prepared& input, const SizeField& sizes, Run& run);
 
@@ -51,8 +54,8 @@ Filled fill_surface(const Prepared& input, Remeshed boundary, Run& run);
 /// The surface as by triangulate_to_target(), filled; again if the elements made do not meet the number.
 Filled fill_to_target(const Prepared& input, const SizeField& sizes, Run& run);
 
-/// Better elements; `filled.boundary` follows what became of the boundary.
-void improve_elements(const Prepared& input, Filled& filled, Run& run);
+/// Better elements by these options; `filled.boundary` follows what became of the boundary.
+void improve_elements(const Prepared& input, Filled& filled, Run& run, const ImproveOptions& options);
 
 /// Mid-side nodes where the run asks for second order, on the smooth surface of the input unless its triangles are
 /// kept; `filled.boundary` follows.

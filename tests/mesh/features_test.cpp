@@ -76,6 +76,16 @@ SurfaceMesh cube_with_sliver(double height_y, double height_z) {
   return s;
 }
 
+TEST(Features, RimsOfPlatesAsThinAsNoiseHaveEdgesOnBothSides) {
+  for (const int squares : {1, 4}) {
+    SurfaceMesh plate = testing::box(1, 1, 1e-6, squares);
+    plate.patch.clear();
+    const Features found = detect_features(plate, 40);
+    EXPECT_EQ(found.edges.size(), 8u * squares + 4u * squares);
+    EXPECT_EQ(found.corners.size(), 8u);
+  }
+}
+
 TEST(Features, SliverAtAnEdgeDoesNotDoubleIt) {
   for (const auto& [y, z] : {std::pair{1e-7, 1e-7}, std::pair{-1e-7, 1e-7}, std::pair{0., 1e-7}, std::pair{1e-7, 0.}}) {
     SurfaceMesh s = cube_with_sliver(y, z);

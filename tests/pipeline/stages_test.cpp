@@ -26,7 +26,7 @@ TEST(Stages, OneAfterTheOtherMakeWhatGenerateMakes) {
   const Prepared input = prepare(torus, run);
   const SizeField sizes = choose_sizes(input, run);
   Filled filled = fill_to_target(input, sizes, run);
-  improve_elements(input, filled, run);
+  improve_elements(input, filled, run, run.options.improve);
   check_result(filled.mesh, &filled.boundary.surface, run);
   EXPECT_EQ(mesh_hash(filled.mesh), generate(torus, options).report.hash);
 }
@@ -52,7 +52,7 @@ TEST(Stages, EachCanBeCalledAlone) {
 
   octafront::Run better(options, context);
   const double before = summarize_quality(filled.mesh).beta_mean;
-  improve_elements(input, filled, better);
+  improve_elements(input, filled, better, better.options.improve);
   EXPECT_GT(summarize_quality(filled.mesh).beta_mean, before);
   EXPECT_EQ(better.report.stages.size(), 1U);
 }
