@@ -9,6 +9,8 @@
 #include "support/named_surfaces.h"
 
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -30,14 +32,13 @@ SurfaceMesh turned(SurfaceMesh surface) {
 }
 
 TEST(KeptShape, PlatesKeepTheirVolumeHoweverThin) {
-  for (const double thick : {1e-2, 1.5e-3, 1e-3, 1e-4, 1e-5, 1e-6})
-    for (const int squares : {1, 10}) {
-      SCOPED_TRACE(::testing::Message() << thick << ", " << squares << " squares a side");
-      const Result r = generate(turned(testing::box(1, 1, thick, squares)));
-      EXPECT_EQ(first_defect(r.mesh), std::nullopt);
-      EXPECT_LT(std::abs(change_of(r.report)), 1e-4);
-      EXPECT_LT(r.report.tets, 250'000u);
-    }
+  for (const auto& [thick, squares] : {std::pair{1e-3, 1}, {1e-4, 1}, {1e-5, 10}, {1e-6, 1}}) {
+    SCOPED_TRACE(::testing::Message() << thick << ", " << squares << " squares a side");
+    const Result r = generate(turned(testing::box(1, 1, thick, squares)));
+    EXPECT_EQ(first_defect(r.mesh), std::nullopt);
+    EXPECT_LT(std::abs(change_of(r.report)), 1e-4);
+    EXPECT_LT(r.report.tets, 50'000u);
+  }
 }
 
 TEST(KeptShape, PlatesKeepTheirVolumeAtAnySize) {
@@ -49,10 +50,6 @@ TEST(KeptShape, PlatesKeepTheirVolumeAtAnySize) {
     options.surface.max_deviation = 0.01;
     EXPECT_LT(std::abs(change_of(generate(turned(testing::box(1, 1, 1e-3)), options).report)), 1e-4);
   }
-}
-
-TEST(KeptShape, ThinShellsKeepTheirVolume) {
-  EXPECT_LT(std::abs(change_of(generate(testing::hollow_sphere(3, 1, 0.999)).report)), kVolumeKept);
 }
 
 /// What the stages around the surface front see.
