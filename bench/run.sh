@@ -18,26 +18,28 @@
 #   bench/run.sh repair      the defective models, repaired and meshed                  -> docs/repair-status.md
 #   bench/run.sh known_answers   2,000 clean models damaged in known ways, repaired and judged -> docs/repair-known.md
 #   bench/run.sh images      volumes of labels, each label judged; --peers: beside CGAL -> docs/images-status.md
+#   bench/run.sh thin        plates, discs, tubes, shells 1:10 to 1:1e6, beside Gmsh and TetGen -> docs/thin-bodies.md
 #   bench/run.sh dry_run     mesh --dry-run: elements, time and memory said and taken -> docs/command-line.md
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/lib/apt.sh
 
 case ${1:-} in
-  status | derived | pipeline | surface | elements | gradation | volume | graded | peers | complexes | improve | formats | second_order | dry_run | repair | known_answers | images) ;;
-  *) sed -n '2,22s/^# \{0,1\}//p' "$0"; exit 2 ;;
+  status | derived | pipeline | surface | elements | gradation | volume | graded | peers | complexes | improve | formats | second_order | dry_run | repair | known_answers | images | thin) ;;
+  *) sed -n '2,23s/^# \{0,1\}//p' "$0"; exit 2 ;;
 esac
 need_packages "${build_packages[@]}" python3
 [ "$1" != surface ] || need_packages gmsh netgen libcgal-dev libgmp-dev libmpfr-dev
 { [ "$1" != volume ] && [ "$1" != graded ]; } || need_packages "${peer_packages[@]}"
 [ "$1" != improve ] || need_packages "${peer_packages[@]}"
+[ "$1" != thin ] || need_packages tetgen gmsh
 [ "$1" != peers ] || need_packages "${peer_packages[@]}" libcgal-dev libgmp-dev libmpfr-dev libboost-dev
 [ "$1" != complexes ] || need_packages "${test_packages[@]}" tetgen gmsh python3-gmsh
 [ "$1" != known_answers ] || need_packages "${test_packages[@]}"
 [ "$1" != repair ] || need_packages python3-numpy python3-meshio
 [ "$1" != images ] || need_packages libcgal-dev libgmp-dev libmpfr-dev libboost-dev
 [ "$1" != images ] || [ -d volumes ] || scripts/get-volumes.sh
-[ "$1" = formats ] || [ "$1" = complexes ] || [ "$1" = images ] || [ -d models/clean ] || scripts/get-models.sh --ct
+[ "$1" = formats ] || [ "$1" = complexes ] || [ "$1" = images ] || [ "$1" = thin ] || [ -d models/clean ] || scripts/get-models.sh --ct
 tests=OFF
 [ "$1" != complexes ] && [ "$1" != known_answers ] || tests=ON  # what makes complexes is theirs, and a judge
 cmake --preset release -DOCTAFRONT_BUILD_TESTS=$tests >/dev/null
