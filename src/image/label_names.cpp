@@ -4,6 +4,7 @@
 
 #include <octafront/image.h>
 
+#include "core/utf8.h"
 #include "io/scanner.h"
 
 #include <algorithm>
@@ -201,7 +202,10 @@ class JsonNames {
     try {
       all = Json::parse(input_.bytes);
     } catch (const Json::parse_error& e) {
-      input_.fail_at_byte(input_.bytes.data() + std::min(e.byte, input_.bytes.size()), "is no valid JSON here");
+      input_.fail_at_byte(input_.bytes.data() + std::min(e.byte, input_.bytes.size()),
+                          is_utf8(input_.bytes) ? "is no valid JSON here"
+                                                : "is no valid JSON here: JSON is in UTF-8, and this is not; save "
+                                                  "it as UTF-8");
     }
     const Json& list = all.is_object() && all.contains("labels") ? all["labels"] : all;
     if (list.is_array()) {

@@ -2,6 +2,7 @@
 #include <octafront/image.h>
 
 #include "core/parallel.h"
+#include "core/utf8.h"
 #include "core/wording.h"
 
 #include <algorithm>
@@ -100,7 +101,7 @@ Pairs pairs_of(const std::vector<T>& values, const std::array<std::uint32_t, 3>&
 /// Which name each value has, and which are outside.
 class Naming {
  public:
-  Naming(const Image& image, const LabelOptions& options) {
+  Naming(const Image& image, const LabelOptions& options, std::vector<std::string>& notes) {
     for (const LabelName& n : image.names) names_[n.value] = n.name;
     for (const LabelName& n : options.names) names_[n.value] = n.name;
     for (const LabelMerge& merge : options.merge)
@@ -109,6 +110,9 @@ class Naming {
           throw OptionError(fmt::format("the value {} is merged twice (`merge`)", value));
         names_[value] = merge.name;
       }
+    NameCleaning cleaning;
+    for (auto& [value, name] : names_) cleaning.clean(name);
+    cleaning.tell(notes);
     const std::vector<std::int64_t> outside = options.ignore.value_or(std::vector<std::int64_t>{0});
     ignored_.insert(outside.begin(), outside.end());
     for (const std::int64_t value : merged_) {
@@ -230,7 +234,7 @@ LabelImage labels_of(const Image& image, const LabelOptions& options) {
         "meshed by its values (`iso`, `band`)");
   LabelImage out;
   out.grid = image.grid;
-  const Naming naming(image, options);
+  const Naming naming(image, options, out.notes);
   const Regions regions(*counts, naming, out);
   out.regions.resize(image.grid.voxels());
   std::visit(

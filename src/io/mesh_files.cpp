@@ -2,10 +2,13 @@
 #include <octafront/io.h>
 
 #include "core/thread_limit.h"
+#include "core/utf8.h"
 #include "io/formats.h"
 #include "io/raw_mesh.h"
 #include "io/readers.h"
 #include "io/recognize.h"
+
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -43,10 +46,20 @@ RawMesh raw_mesh(const Input& input) {
   }
 }
 
+TetMesh with_clean_names(TetMesh mesh, std::vector<std::string>& notes) {
+  NameCleaning names;
+  for (auto* list : {&mesh.region_names, &mesh.patch_names, &mesh.curve_names}) names.clean(*list);
+  for (NamedSet& set : mesh.sets) names.clean(set.name);
+  names.tell(notes);
+  return mesh;
+}
+
 }  // namespace
 
 MeshFile read_mesh_bytes(const Input& input) {
-  return ordered_mesh(raw_mesh(input), input);
+  MeshFile file = ordered_mesh(raw_mesh(input), input);
+  file.mesh = with_clean_names(std::move(file.mesh), file.notes);
+  return file;
 }
 
 }  // namespace io
@@ -120,6 +133,7 @@ std::vector<std::string> write_mesh(const std::string& file, const TetMesh& mesh
     out.note(
         fmt::format("{} holds the boundary alone: {} tetrahedra are left out", format.info.title, mesh.tets.size()));
   } else {
+    out.note(parts.note_on_names());
     for (std::string& note : io::losses(format.info, parts)) out.note(std::move(note));
     format.write_mesh(out, parts);
   }

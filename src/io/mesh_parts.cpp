@@ -63,6 +63,7 @@ MeshParts::MeshParts(const TetMesh& mesh, bool linear)
     const NamedSet& set = mesh.sets[s];
     const bool is_named = !set.name.empty();
     std::string name = is_named ? set.name : default_name(Part::Origin::kSet, s, false);
+    names_.clean(name);
     std::span<const std::uint32_t> members = set.members;
     if (set.kind == NamedSet::Kind::kNodes)
       members = members.first(
@@ -79,8 +80,9 @@ void MeshParts::add_numbered(Part::Origin origin, const Groups<>& members, const
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     const std::uint32_t n = numbers[i];
     const bool is_named = n < names.size() && !names[n].empty();
-    parts_.push_back(
-        {origin, kind, n, is_named ? names[n] : default_name(origin, n, numbers.size() == 1), is_named, members[i]});
+    std::string name = is_named ? names[n] : default_name(origin, n, numbers.size() == 1);
+    names_.clean(name);
+    parts_.push_back({origin, kind, n, std::move(name), is_named, members[i]});
   }
 }
 

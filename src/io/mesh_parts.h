@@ -3,6 +3,7 @@
 #include <octafront/tet_mesh.h>
 
 #include "core/groups.h"
+#include "core/utf8.h"
 #include "mesh/edge_nodes.h"
 
 #include <algorithm>
@@ -88,6 +89,8 @@ class MeshParts {
   const std::vector<Part>& parts() const { return parts_; }
   /// Those of one origin.
   std::span<const Part> parts(Part::Origin origin) const;
+  /// What had to change for them to be UTF-8 without control characters, as writers get them; empty: nothing.
+  std::string note_on_names() const { return names_.note(); }
   /// The nodes of a part, ascending, mid-side nodes too.
   std::vector<VertexIndex> nodes_of(const Part& part) const;
 
@@ -102,6 +105,7 @@ class MeshParts {
   std::array<Groups<>, 3> groups_;
   std::array<std::vector<std::uint32_t>, 3> numbers_;
   std::vector<Part> parts_;
+  NameCleaning names_;
   mutable std::vector<Side> sides_;
 };
 

@@ -1,6 +1,7 @@
 #include <octafront/error.h>
 #include <octafront/io.h>
 
+#include "core/utf8.h"
 #include "io/formats.h"
 #include "io/readers.h"
 #include "io/recognize.h"
@@ -11,7 +12,9 @@ namespace octafront {
 
 namespace io {
 
-SurfaceFile read_surface_bytes(const Input& input) {
+namespace {
+
+SurfaceFile as_in_file(const Input& input) {
   switch (recognize_surface(input)) {
     case SurfaceKind::kBinaryStl:
       return read_binary_stl(input);
@@ -32,6 +35,18 @@ SurfaceFile read_surface_bytes(const Input& input) {
     default:
       return read_ply(input);
   }
+}
+
+}  // namespace
+
+SurfaceFile read_surface_bytes(const Input& input) {
+  SurfaceFile file = as_in_file(input);
+  NameCleaning names;
+  names.clean(file.surface.patch_names);
+  names.clean(file.surface.region_names);
+  for (RegionSeed& seed : file.regions) names.clean(seed.name);
+  names.tell(file.notes);
+  return file;
 }
 
 }  // namespace io

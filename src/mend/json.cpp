@@ -28,7 +28,7 @@ std::string to_json(const MendReport& r) {
               {"bodies", r.bodies},
               {"notes", r.notes},
               {"changes", changes}}
-      .dump(2);
+      .dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
 }  // namespace octafront

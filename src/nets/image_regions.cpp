@@ -1,6 +1,7 @@
 #include <octafront/error.h>
 #include <octafront/image_surface.h>
 
+#include "core/utf8.h"
 #include "nets/clean_bands.h"
 
 #include <algorithm>
@@ -38,9 +39,13 @@ void check_options_of(Kind kind, const ImageRegions& regions) {
         "them out");
 }
 
-std::vector<GreyBand> named(std::vector<GreyBand> bands) {
-  for (std::size_t b = 0; b < bands.size(); ++b)
+std::vector<GreyBand> named(std::vector<GreyBand> bands, std::vector<std::string>& notes) {
+  NameCleaning names;
+  for (std::size_t b = 0; b < bands.size(); ++b) {
     if (bands[b].name.empty()) bands[b].name = bands.size() == 1 ? "body" : fmt::format("band {}", b + 1);
+    names.clean(bands[b].name);
+  }
+  names.tell(notes);
   return bands;
 }
 
@@ -97,11 +102,12 @@ Complex with_notes(Complex complex, std::vector<std::string> notes) {
 
 Complex complex_of_grey(const Image& image, const ImageRegions& regions, const RunContext& context) {
   if (regions.bands.empty()) fail_without_bands(image);
-  const std::vector<GreyBand> bands = named(regions.bands);
+  std::vector<std::string> notes;
+  const std::vector<GreyBand> bands = named(regions.bands, notes);
   Image cleaned;
   if (regions.clean.any()) cleaned = nets::cleaned_bands(image, bands, regions.clean, context);
   const Image& used = regions.clean.any() ? cleaned : image;
-  std::vector<std::string> notes = cleaned.notes;
+  add(notes, cleaned.notes);
   add(notes, ends_at_edge(labels_of_bands(used, bands), regions.closed_at_box));
   context.report("surfaces", -1);
   return with_notes(complex_of_bands(used, bands, context), std::move(notes));

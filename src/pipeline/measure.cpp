@@ -1,6 +1,7 @@
 #include <octafront/tet_mesh.h>
 
 #include "core/parallel.h"
+#include "core/utf8.h"
 #include "pipeline/pipeline.h"
 
 #include <algorithm>
@@ -90,6 +91,7 @@ void describe_regions(const TetMesh& mesh, Report& report) {
   }
   for (std::uint32_t r = 0; r < quality.size(); ++r) {
     report.regions[r].name = r < mesh.region_names.size() ? mesh.region_names[r] : std::string();
+    NameCleaning().clean(report.regions[r].name);
     report.regions[r].quality = quality[r];
   }
 }

@@ -30,7 +30,7 @@ std::string to_json(const SurfaceDefects& d) {
               {"degenerate_faces", json_of(d.degenerate_faces)},
               {"region_conflicts", json_of(d.region_conflicts)},
               {"misplaced_parts", json_of(d.misplaced_parts)}}
-      .dump(2);
+      .dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
 std::string to_json(const JacobianSummary& found) {
@@ -41,7 +41,7 @@ std::string to_json(const JacobianSummary& found) {
               {"least_tet", found.least_tet},
               {"invalid", found.invalid},
               {"first", first}}
-      .dump(2);
+      .dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
 std::string to_json(const std::vector<SolverFinding>& findings) {
@@ -56,7 +56,7 @@ std::string to_json(const std::vector<SolverFinding>& findings) {
                    {"count", f.count},
                    {"worst", worst}});
   }
-  return all.dump(2);
+  return all.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
 }  // namespace octafront

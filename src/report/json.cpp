@@ -82,7 +82,7 @@ std::string to_json(const Report& report) {
   j["wall_seconds"] = report.wall_seconds;
   j["cpu_seconds"] = report.cpu_seconds;
   j["peak_memory_bytes"] = report.peak_memory_bytes;
-  return j.dump(2) + "\n";
+  return j.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace octafront

@@ -2,6 +2,7 @@
 
 #include <octafront/error.h>
 
+#include "core/utf8.h"
 #include "geometry/triangle_tree.h"
 #include "mesh/complex.h"
 #include "mesh/curve_names.h"
@@ -38,7 +39,9 @@ class Named {
   }
 
   NamedSizes run() {
-    for (const NamedSize& named : options_.named) {
+    for (NamedSize named : options_.named) {
+      // As those of the surface are.
+      NameCleaning().clean(named.name);
       const double h = std::max(named.size, options_.min_size.value_or(0));
       const bool is_region = ask_region(named.name, h), is_patch = ask_patch(named.name, h);
       if (!ask_curve(named.name, h) && !is_region && !is_patch) throw_unknown(named.name);
