@@ -19,9 +19,9 @@ bool has_one_shell(const SurfaceMesh& surface) {
                      [&](const Triangle& t) { return sets.find(t[0]) == first; });
 }
 
-/// Of the bodies, per tetrahedron; empty if there is only one.
+/// Of the bodies, per tetrahedron; empty if there is only one, or if the surface names one region: its pieces are one.
 std::vector<std::uint32_t> regions_of(const TetMesh& mesh, const SurfaceMesh& surface) {
-  if (has_one_shell(surface)) return {};
+  if (surface.region_names.size() == 1 || has_one_shell(surface)) return {};
   // What tetrahedra connect: a body's outer shell and its cavities.
   DisjointSets sets(mesh.points.size());
   for (const Tet& t : mesh.tets)
@@ -42,6 +42,7 @@ std::vector<std::uint32_t> regions_of(const TetMesh& mesh, const SurfaceMesh& su
 void bind_to_surface(TetMesh& mesh, const SurfaceMesh& surface) {
   mesh.region = surface.sides.empty() ? regions_of(mesh, surface) : regions_within(surface, mesh);
   mesh.region_names = surface.region_names;
+  mesh.region_labels = surface.region_labels;
   list_faces(surface, mesh);
 }
 
