@@ -35,8 +35,8 @@ void note_what_was_done(const Settled& settled, Complex& complex) {
 }  // namespace
 
 Complex assemble(const Net& net, const Lattice& lattice, Settled settled, std::span<const Vec3> straight,
-                 const std::vector<std::string>& names) {
-  std::vector<std::uint8_t> used_vertex(net.corner.size(), 0), used_label(names.size(), 0);
+                 const std::vector<LabelImage::Label>& labels, bool keeps_values) {
+  std::vector<std::uint8_t> used_vertex(net.corner.size(), 0), used_label(labels.size(), 0);
   for (const Quad& q : net.quads) {
     for (const VertexIndex v : q.v) used_vertex[v] = 1;
     for (const Label l : {q.lower, q.upper})
@@ -46,10 +46,11 @@ Complex assemble(const Net& net, const Lattice& lattice, Settled settled, std::s
   const auto region = [&](Label l) { return l == LabelImage::kNoRegion ? kNone : region_of[l]; };
   Complex complex;
   SurfaceMesh& surface = complex.surface;
-  const std::vector<double> volumes = volumes_of(net, straight, names.size());
-  for (std::size_t l = 0; l < names.size(); ++l) {
+  const std::vector<double> volumes = volumes_of(net, straight, labels.size());
+  for (std::size_t l = 0; l < labels.size(); ++l) {
     if (!used_label[l]) continue;
-    surface.region_names.push_back(names[l]);
+    surface.region_names.push_back(labels[l].name);
+    if (keeps_values) surface.region_labels.push_back(labels[l].value);
     complex.volumes.push_back(volumes[l] * lattice.volume_scale());
   }
   for (std::size_t v = 0; v < settled.world.size(); ++v)

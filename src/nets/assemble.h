@@ -10,9 +10,9 @@
 
 namespace octafront::nets {
 
-/// The net as a complex of those of the labels that have quads, in their order; `names` of all labels. Notes say what
-/// settling did.
+/// The net as a complex of those of the labels that have quads, in their order, with their names; with their values if
+/// `keeps_values`. Notes say what settling did.
 Complex assemble(const Net& net, const Lattice& lattice, Settled settled, std::span<const Vec3> straight,
-                 const std::vector<std::string>& names);
+                 const std::vector<LabelImage::Label>& labels, bool keeps_values);
 
 }  // namespace octafront::nets

@@ -154,7 +154,7 @@ Complex complex_of_bands(const Image& image, const std::vector<GreyBand>& bands,
   std::vector<Vec3> x = placement.place();
   spread(stencils, placement, x, context);
   nets::Settled settled = nets::settle(net, quads_at, lattice, x, context);
-  return nets::assemble(net, lattice, std::move(settled), x, nets::names_of(labels));
+  return nets::assemble(net, lattice, std::move(settled), x, labels.labels, false);
 }
 
 }  // namespace octafront

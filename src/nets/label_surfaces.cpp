@@ -1,6 +1,7 @@
 #include <octafront/image_surface.h>
 
 #include "core/thread_limit.h"
+#include "core/wording.h"
 #include "nets/assemble.h"
 #include "nets/check_image.h"
 #include "nets/fairing.h"
@@ -8,14 +9,39 @@
 #include "nets/settle.h"
 #include "nets/volumes.h"
 
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
 namespace octafront {
 
 namespace {
 
 using nets::Lattice;
 
-// The smallest labels would have to leave their voxels' cells to keep their volume.
-constexpr std::uint64_t kFewVoxels = 8;
+// A label whose volume is off by more than this part is named. Those do not reach their voxels' volume whose surfaces
+// find no room: voxels of several labels by turns, chains of voxels that touch in points.
+constexpr double kWorthANote = 0.1;
+constexpr std::size_t kMostNamed = 5;
+
+void note_lost_volumes(const LabelImage& image, const nets::LabelSizes& sizes, double scale, Complex& complex) {
+  std::string words;
+  std::size_t count = 0, r = 0;
+  for (std::size_t l = 0; l < image.labels.size(); ++l) {
+    if (sizes.voxels[l] == 0) continue;
+    const double voxels = sizes.volume[l] * scale, made = complex.volumes[r++];
+    if (std::abs(made / voxels - 1) <= kWorthANote || ++count > kMostNamed) continue;
+    words += fmt::format("{}\"{}\" ({}, {:.6g}; made {:.6g})", words.empty() ? "" : ", ", image.labels[l].name,
+                         counted(sizes.voxels[l], "voxel"), voxels, made);
+  }
+  if (count == 0) return;
+  if (count > kMostNamed) words += fmt::format(" and {} more", count - kMostNamed);
+  complex.notes.push_back(
+      fmt::format("the volume of {} differs from that of its voxels by more than {:.0f} %, for want of room: {}",
+                  counted(count, "region"), 100 * kWorthANote, words));
+}
 
 }  // namespace
 
@@ -34,13 +60,12 @@ Complex complex_of_labels(const LabelImage& image, const LabelSurfaceOptions& op
   if (options.smooth) {
     const nets::VertexCells cells(lattice, net, sizes.voxels);
     nets::fair(stencils, cells, x, context);
-    std::vector<double> wanted = sizes.volume;
-    for (std::size_t l = 0; l < wanted.size(); ++l)
-      if (sizes.voxels[l] < kFewVoxels) wanted[l] = -1;
-    if (options.keep_volumes) nets::keep_volumes(net, quads_at, cells, lattice, wanted, x, context);
+    if (options.keep_volumes) nets::keep_volumes(net, quads_at, cells, lattice, sizes.volume, x, context);
   }
   nets::Settled settled = nets::settle(net, quads_at, lattice, x, context);
-  return nets::assemble(net, lattice, std::move(settled), x, nets::names_of(image));
+  Complex complex = nets::assemble(net, lattice, std::move(settled), x, image.labels, true);
+  if (options.keep_volumes) note_lost_volumes(image, sizes, lattice.volume_scale(), complex);
+  return complex;
 }
 
 }  // namespace octafront
