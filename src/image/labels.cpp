@@ -47,8 +47,8 @@ std::optional<std::vector<ValueCount>> counted_in_map(const std::vector<T>& valu
 template <class T>
 bool all_whole(const std::vector<T>& values) {
   if constexpr (std::is_integral_v<T>) return true;
-  // Beyond this not every whole number is one of single precision.
-  constexpr double kMost = 1 << 24;
+  // Labels beyond 2^24 may have been rounded to single precision, which their reader says; these can be counted.
+  constexpr double kMost = 0x1p53;
   return parallel_find(values.size(), [&](std::size_t i) {
            const double v = values[i];
            return v != std::floor(v) || std::abs(v) > kMost;

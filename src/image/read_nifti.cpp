@@ -283,6 +283,7 @@ class Nifti {
     const bool has_rows = header_.sform_code > 0 && is_invertible(rows);
     const bool has_quaternion = header_.qform_code > 0 && is_invertible(quaternion);
     if (header_.sform_code > 0 && !has_rows) note("its sform is no invertible map and is passed over");
+    if (!has_rows) note_negative_spacing();
     if (has_rows) {
       take(rows, ", placed by its sform");
       if (has_quaternion) compare(rows, quaternion);
@@ -293,6 +294,14 @@ class Nifti {
       image_.frame = "";
       note("the header does not say where the voxels lie: they begin at 0, by their spacing alone");
     }
+  }
+
+  /// What counts where there are no rows: the lengths of the steps; only a map of the header may turn them.
+  void note_negative_spacing() {
+    for (std::size_t i = 1; i <= 3; ++i)
+      if (header_.pixdim[i] < 0)
+        note(fmt::format("the header's spacing along axis {} is {:.6g}, below 0; its amount is taken", i - 1,
+                         header_.pixdim[i]));
   }
 
   void compare(const Affine& rows, const Affine& quaternion) {
