@@ -41,6 +41,9 @@ struct SurfaceMesh {
   /// One per triangle; empty: one region, 0, lies behind every triangle, and nothing in front.
   std::vector<Sides> sides = {};
   std::vector<std::string> region_names = {};  ///< region r is region_names[r]; may be shorter than their number
+  /// Numbers that regions have where they come from: labels of an image; region r is label region_labels[r]. Empty:
+  /// they have none.
+  std::vector<std::int64_t> region_labels = {};
 
   std::uint32_t patch_of(std::size_t triangle) const { return patch.empty() ? 0 : patch[triangle]; }
   std::uint32_t source_of(std::size_t triangle) const {

@@ -49,16 +49,17 @@ struct NamedSet {
 ///
 /// Triangles and edges have no mid-side nodes of their own: theirs are those of the tetrahedra at them.
 struct TetMesh {
-  std::vector<Vec3> points;               ///< input units
-  std::vector<Tet> tets;                  ///< positive, indices into points
-  std::vector<std::uint32_t> region;      ///< one per tet: number of the body it lies in; empty: all 0
-  std::vector<std::string> region_names;  ///< region r is region_names[r]; may be shorter than the number of regions
-  std::vector<Triangle> boundary;         ///< the boundary faces, counter-clockwise seen from outside
-  std::vector<std::uint32_t> patch;       ///< one per boundary face: its patch; empty: all 0
-  std::vector<std::uint32_t> source;      ///< one per boundary face: the input face nearest to it, or it; may be empty
-  std::vector<std::string> patch_names;   ///< as in SurfaceMesh; also of the patches of interfaces
-  std::vector<Triangle> interfaces;       ///< faces inside that belong to a patch: between regions, or sheets; either
-                                          ///< side may be in front
+  std::vector<Vec3> points;                 ///< input units
+  std::vector<Tet> tets;                    ///< positive, indices into points
+  std::vector<std::uint32_t> region;        ///< one per tet: number of the body it lies in; empty: all 0
+  std::vector<std::string> region_names;    ///< region r is region_names[r]; may be shorter than the number of regions
+  std::vector<std::int64_t> region_labels;  ///< as in SurfaceMesh
+  std::vector<Triangle> boundary;           ///< the boundary faces, counter-clockwise seen from outside
+  std::vector<std::uint32_t> patch;         ///< one per boundary face: its patch; empty: all 0
+  std::vector<std::uint32_t> source;     ///< one per boundary face: the input face nearest to it, or it; may be empty
+  std::vector<std::string> patch_names;  ///< as in SurfaceMesh; also of the patches of interfaces
+  std::vector<Triangle> interfaces;      ///< faces inside that belong to a patch: between regions, or sheets; either
+                                         ///< side may be in front
   std::vector<std::uint32_t> interface_patch;  ///< one per interface: its patch; empty: all 0
   std::vector<Edge> curve_edges;               ///< edges of tets that lie on curves; either end may come first
   std::vector<std::uint32_t> curve;            ///< one per curve edge: its curve; empty: all 0

@@ -7,6 +7,9 @@
 #include "mesh/face_table.h"
 
 #include <algorithm>
+#include <cstdlib>
+#include <functional>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <utility>
@@ -57,6 +60,7 @@ MeshParts::MeshParts(const TetMesh& mesh, bool linear)
     });
     groups_[k] = std::move(by.members);
     numbers_[k] = std::move(by.numbers);
+    if (k == 0) take_labels();
     add_numbered(kOrigins[k], groups_[k], numbers_[k], *names[k]);
   }
   for (std::uint32_t s = 0; s < mesh.sets.size(); ++s) {
@@ -68,8 +72,22 @@ MeshParts::MeshParts(const TetMesh& mesh, bool linear)
     if (set.kind == NamedSet::Kind::kNodes)
       members = members.first(
           static_cast<std::size_t>(std::lower_bound(members.begin(), members.end(), points_) - members.begin()));
-    parts_.push_back({Part::Origin::kSet, set.kind, s, std::move(name), is_named, members});
+    parts_.push_back({Part::Origin::kSet, set.kind, s, s + 1, std::move(name), is_named, members});
   }
+}
+
+void MeshParts::take_labels() {
+  const std::vector<std::int64_t>& labels = mesh_.region_labels;
+  const std::vector<std::uint32_t>& regions = numbers_[0];
+  // Files have signed numbers of 32 bits, and some of them count on from the last one.
+  constexpr std::int64_t kMost = std::numeric_limits<std::int32_t>::max() / 2;
+  if (regions.empty() || regions.back() >= labels.size() ||
+      !std::all_of(labels.begin(), labels.end(), [](std::int64_t l) { return std::abs(l) <= kMost; }))
+    return;
+  labels_.assign(labels.begin(), labels.end());
+  // Readers number regions in the order of their tags.
+  labels_are_tags_ = labels_.front() > 0 &&
+                     std::adjacent_find(labels_.begin(), labels_.end(), std::greater_equal<>()) == labels_.end();
 }
 
 void MeshParts::add_numbered(Part::Origin origin, const Groups<>& members, const std::vector<std::uint32_t>& numbers,
@@ -80,9 +98,10 @@ void MeshParts::add_numbered(Part::Origin origin, const Groups<>& members, const
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     const std::uint32_t n = numbers[i];
     const bool is_named = n < names.size() && !names[n].empty();
+    const std::uint32_t tag = origin == Part::Origin::kRegion ? tag_of_region(n) : n + 1;
     std::string name = is_named ? names[n] : default_name(origin, n, numbers.size() == 1);
     names_.clean(name);
-    parts_.push_back({origin, kind, n, std::move(name), is_named, members[i]});
+    parts_.push_back({origin, kind, n, tag, std::move(name), is_named, members[i]});
   }
 }
 

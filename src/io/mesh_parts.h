@@ -21,6 +21,7 @@ struct Part {
   Origin origin;
   NamedSet::Kind kind;   ///< regions: elements; patches: faces; curves: edges
   std::uint32_t number;  ///< of the region, patch or curve, or place in `sets`
+  std::uint32_t tag;     ///< the same for formats whose numbers are above 0: one more, or of a region tag_of_region()
   std::string name;      ///< as given, or made by default_name()
   bool is_named;         ///< false: the name was made
   std::span<const std::uint32_t> members;
@@ -54,6 +55,13 @@ class MeshParts {
     return f < mesh_.boundary.size() ? mesh_.boundary[f] : mesh_.interfaces[f - mesh_.boundary.size()];
   }
   std::uint32_t region_of(std::size_t t) const { return mesh_.region.empty() ? 0 : mesh_.region[t]; }
+  /// The labels of regions, where each that occurs has one that files can hold; else empty.
+  const std::vector<std::int32_t>& labels() const { return labels_; }
+  /// What formats call region r that have a number above 0 for each: its label where all have one of their own, else
+  /// r + 1.
+  std::uint32_t tag_of_region(std::uint32_t r) const {
+    return labels_are_tags_ ? static_cast<std::uint32_t>(labels_[r]) : r + 1;
+  }
   std::uint32_t patch_of(std::size_t f) const {
     const bool inside = f >= mesh_.boundary.size();
     const auto& patch = inside ? mesh_.interface_patch : mesh_.patch;
@@ -95,6 +103,7 @@ class MeshParts {
   std::vector<VertexIndex> nodes_of(const Part& part) const;
 
  private:
+  void take_labels();
   void add_numbered(Part::Origin origin, const Groups<>& members, const std::vector<std::uint32_t>& numbers,
                     const std::vector<std::string>& names);
 
@@ -106,6 +115,8 @@ class MeshParts {
   std::array<std::vector<std::uint32_t>, 3> numbers_;
   std::vector<Part> parts_;
   NameCleaning names_;
+  std::vector<std::int32_t> labels_;
+  bool labels_are_tags_ = false;
   mutable std::vector<Side> sides_;
 };
 

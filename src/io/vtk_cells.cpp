@@ -30,6 +30,7 @@ VtkCells::VtkCells(const MeshParts& mesh)
       each_{mesh.nodes_per_tet(), mesh.nodes_per_face(), mesh.nodes_per_edge()},
       types_(kTypes[mesh.second_order()]),
       data_{{"region", false, false}, {"patch", false, false}} {
+  if (!mesh.labels().empty()) data_.push_back({"label", false, false});
   if (mesh.edges() > 0) data_.push_back({"curve", false, false});
   const auto& source = mesh.mesh().source;
   if (!std::all_of(source.begin(), source.end(), [](std::uint32_t face) { return face == kNone; }))
@@ -72,6 +73,10 @@ std::int32_t VtkCells::number(std::string_view name, std::uint64_t cell) const {
   if (name == "region") {
     const TetIndex t = tet_of(cell);
     return t == kNone ? 0 : static_cast<std::int32_t>(mesh_.region_of(t));
+  }
+  if (name == "label") {
+    const TetIndex t = tet_of(cell);
+    return t == kNone ? 0 : mesh_.labels()[mesh_.region_of(t)];
   }
   if (name == "patch") return k == 1 ? static_cast<std::int32_t>(mesh_.patch_of(cell - ends_[0])) : -1;
   if (name == "curve") return k == 2 ? static_cast<std::int32_t>(mesh_.curve_of(cell - ends_[1])) : -1;

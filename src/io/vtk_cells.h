@@ -11,6 +11,7 @@ namespace octafront::io {
 
 /// A mesh as the cells of VTK: tetrahedra, then faces, then edges of curves; and the data on them. Of cells:
 ///   region  body of a tetrahedron; a face has that of its tetrahedron
+///   label   of the image, of a region's elements and of their faces (only where regions are labels)
 ///   patch   of a face; -1 for others
 ///   curve   of an edge; -1 for others (only where there are curves)
 ///   source  input face that a face of the boundary still is; -1 for others (only where there is one)

@@ -105,7 +105,7 @@ class ExodusWriter {
     std::vector<std::int32_t> numbers;
     for (std::size_t r = 0; r < regions.size(); ++r) {
       parts.push_back(r);
-      numbers.push_back(static_cast<std::int32_t>(regions[r].number) + 1);
+      numbers.push_back(static_cast<std::int32_t>(regions[r].tag));
       order_.insert(order_.end(), regions[r].members.begin(), regions[r].members.end());
     }
     place_.resize(order_.size());

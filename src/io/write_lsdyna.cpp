@@ -23,7 +23,7 @@ class LsDynaWriter {
     text_ << "*KEYWORD\n$ Mesh by octafront: materials and what loads it are for you to add\n*TITLE\nmesh\n";
     text_.line("*SECTION_SOLID\n         1{:10}", mesh_.second_order() ? 16 : 10);
     for (const Part& region : mesh_.parts(Part::Origin::kRegion))
-      text_.line("*PART\n{}\n{:10}         1{:10}", title(region), region.number + 1, region.number + 1);
+      text_.line("*PART\n{}\n{:10}         1{:10}", title(region), region.tag, region.tag);
     text_ << "*NODE\n";
     for (std::size_t v = 0; v < mesh_.points(); ++v) {
       text_.field(8, std::uint64_t{v} + 1);
@@ -34,7 +34,7 @@ class LsDynaWriter {
     text_ << "*ELEMENT_SOLID\n";
     std::array<VertexIndex, 10> room;
     for (std::size_t t = 0; t < mesh_.tets(); ++t) {
-      text_.field(8, std::uint64_t{t} + 1).field(8, std::uint64_t{mesh_.region_of(t)} + 1) << '\n';
+      text_.field(8, std::uint64_t{t} + 1).field(8, std::uint64_t{mesh_.tag_of_region(mesh_.region_of(t))}) << '\n';
       const auto nodes = mesh_.tet_nodes(t, room);
       // A tetrahedron of four nodes is a degenerate brick: the last one again.
       for (std::size_t k = 0; k < room.size(); ++k) text_.field(8, std::uint64_t{nodes[k < nodes.size() ? k : 3]} + 1);

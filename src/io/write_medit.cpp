@@ -34,7 +34,7 @@ void for_each_section(const MeshParts& mesh, const Write& write) {
       [&](std::size_t i) { return mesh.patch_of(i) + 1; });
   write(
       kTetrahedra, mesh.tets(), mesh.nodes_per_tet(), [&](std::size_t i, std::size_t k) { return mesh.tet_node(i, k); },
-      [&](std::size_t i) { return mesh.region_of(i) + 1; });
+      [&](std::size_t i) { return mesh.tag_of_region(mesh.region_of(i)); });
 }
 
 }  // namespace

@@ -64,14 +64,14 @@ class ElementNodes {
   std::array<VertexIndex, 3> edge_;
 };
 
-/// Tags of physical groups: regions, patches and curves keep their numbers, sets follow.
+/// Tags of physical groups: regions, patches and curves keep their numbers, regions of an image their labels; sets
+/// follow.
 std::vector<std::int32_t> physical_tags(const MeshParts& mesh) {
   std::vector<std::int32_t> tags;
   std::array<std::int32_t, 4> last{};
   for (const Part& part : mesh.parts()) {
     std::int32_t& of_kind = last[static_cast<std::size_t>(part.kind)];
-    const std::int32_t tag =
-        part.origin == Part::Origin::kSet ? of_kind + 1 : static_cast<std::int32_t>(part.number) + 1;
+    const std::int32_t tag = part.origin == Part::Origin::kSet ? of_kind + 1 : static_cast<std::int32_t>(part.tag);
     of_kind = std::max(of_kind, tag);
     tags.push_back(tag);
   }
@@ -331,10 +331,10 @@ class Msh2Writer {
     for (const std::int32_t n : {type_of(dimension, mesh_.second_order()), static_cast<std::int32_t>(count), 2}) put(n);
     for (std::uint32_t i = 0; i < count; ++i) {
       put(++tag_);
-      const std::uint32_t part = dimension == 1   ? mesh_.curve_of(i)
-                                 : dimension == 2 ? mesh_.patch_of(i)
-                                                  : mesh_.region_of(i);
-      for (int k = 0; k < 2; ++k) put(static_cast<std::int32_t>(part) + 1);
+      const std::uint32_t part_tag = dimension == 1   ? mesh_.curve_of(i) + 1
+                                     : dimension == 2 ? mesh_.patch_of(i) + 1
+                                                      : mesh_.tag_of_region(mesh_.region_of(i));
+      for (int k = 0; k < 2; ++k) put(static_cast<std::int32_t>(part_tag));
       nodes_of_.put<std::int32_t>(dimension, i, [&](std::int32_t tag) { put(tag); });
     }
   }

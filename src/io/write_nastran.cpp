@@ -19,7 +19,7 @@ using Origin = Part::Origin;
 class NastranWriter {
  public:
   NastranWriter(MeshOutput& out, const MeshParts& mesh) : text_(out.file()), mesh_(mesh) {
-    for (const Part& region : mesh.parts(Origin::kRegion)) first_shell_ = std::max(first_shell_, region.number + 2);
+    for (const Part& region : mesh.parts(Origin::kRegion)) first_shell_ = std::max(first_shell_, region.tag + 1);
   }
 
   void write() {
@@ -29,7 +29,7 @@ class NastranWriter {
     for (const Part& part : mesh_.parts())
       if (part.origin == Origin::kSet || part.origin == Origin::kCurve) write_set(part, ++number);
     text_ << "BEGIN BULK\n";
-    for (const Part& region : mesh_.parts(Origin::kRegion)) card("PSOLID", region.number + 1, region.number + 1);
+    for (const Part& region : mesh_.parts(Origin::kRegion)) card("PSOLID", region.tag, region.tag);
     for (const Part& patch : mesh_.parts(Origin::kPatch)) card("PSHELL", first_shell_ + patch.number);
     for (std::uint64_t v = 0; v < mesh_.points(); ++v) {
       const Vec3 p = mesh_.mesh().points[v];
@@ -43,7 +43,7 @@ class NastranWriter {
               first_shell_ + std::uint64_t{mesh_.patch_of(f)}, mesh_.face_nodes(f, triangle));
     std::array<VertexIndex, 10> tet;
     for (std::size_t t = 0; t < mesh_.tets(); ++t)
-      element("CTETRA  ", t + 1, std::uint64_t{mesh_.region_of(t)} + 1, mesh_.tet_nodes(t, tet));
+      element("CTETRA  ", t + 1, std::uint64_t{mesh_.tag_of_region(mesh_.region_of(t))}, mesh_.tet_nodes(t, tet));
     text_ << "ENDDATA\n";
   }
 
@@ -53,7 +53,7 @@ class NastranWriter {
   }
 
   void write_names() {
-    for (const Part& region : mesh_.parts(Origin::kRegion)) name("PSOLID", region.number + 1, region);
+    for (const Part& region : mesh_.parts(Origin::kRegion)) name("PSOLID", region.tag, region);
     for (const Part& patch : mesh_.parts(Origin::kPatch)) name("PSHELL", first_shell_ + patch.number, patch);
     std::uint64_t number = 0;
     for (const Part& part : mesh_.parts())

@@ -29,7 +29,7 @@ void write_tetgen(MeshOutput& output, const MeshParts& mesh) {
     for (std::size_t t = 0; t < mesh.tets(); ++t) {
       out << std::uint64_t{t} + 1;
       for (std::size_t k = 0; k < mesh.nodes_per_tet(); ++k) out << ' ' << mesh.tet_node(t, kTet[k]) + 1;
-      out << ' ' << mesh.region_of(t) + 1 << '\n';
+      out << ' ' << mesh.tag_of_region(mesh.region_of(t)) << '\n';
     }
   }
   {

@@ -90,7 +90,7 @@ class XdmfWriter {
     // Names are attributes of XML, which all readers pass over; <Information> stops some.
     std::string names;
     for (const Part& part : mesh_.parts(grid.origin))
-      if (part.is_named) names += fmt::format(" name_{}=\"{}\"", part.number + 1, escaped(part.name));
+      if (part.is_named) names += fmt::format(" name_{}=\"{}\"", part.tag, escaped(part.name));
     write_attribute(out, fmt::format("{}\"{}", grid.number, names), "Cell", group + "/numbers", n,
                     [&](std::uint64_t i) { return number(grid, i); });
     std::size_t sets = 0;
@@ -104,9 +104,9 @@ class XdmfWriter {
   }
 
   std::int32_t number(const Grid& grid, std::uint64_t i) const {
-    return 1 + static_cast<std::int32_t>(grid.kind == Kind::kElements ? mesh_.region_of(i)
-                                         : grid.kind == Kind::kFaces  ? mesh_.patch_of(i)
-                                                                      : mesh_.curve_of(i));
+    return static_cast<std::int32_t>(grid.kind == Kind::kElements ? mesh_.tag_of_region(mesh_.region_of(i))
+                                     : grid.kind == Kind::kFaces  ? 1 + mesh_.patch_of(i)
+                                                                  : 1 + mesh_.curve_of(i));
   }
 
   void write_topology(const Grid& grid, const std::string& path) {

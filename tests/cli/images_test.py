@@ -112,6 +112,66 @@ class Images(unittest.TestCase):
         for label, region in zip((1, 2), found["regions"]):
             self.assertAlmostEqual(region["volume"] / values.count(label), 1, delta=0.01, msg=region["name"])
 
+    def test_pieces_of_one_label_are_one_region(self):
+        two = (5, (1, 1, 1), (4, 4, 4))
+        pieces = {
+            "apart": boxes((10, 10, 10), two, (5, (6, 6, 6), (9, 9, 9))),
+            "corner": boxes((10, 10, 10), two, (5, (4, 4, 4), (7, 7, 7))),
+            "diagonal": boxes((10, 10, 10), *((5, (i, i, i), (i + 1, i + 1, i + 1)) for i in range(2, 7))),
+        }
+        for name, values in pieces.items():
+            image = self.write(f"{name}.nii", nifti((10, 10, 10), values))
+            for ending in ("vtu", "msh", "inp", "med"):
+                out = self.dir / f"{name}.{ending}"
+                made = self.run_cli("mesh", image, "--size", "1", "-o", out, "--improve", "fast")
+                if ending == "vtu":
+                    self.assertRegex(made.stdout, "[25] bodies")
+                groups = [g["name"] for g in self.info(out)["groups"] if g["origin"] == "region"]
+                self.assertEqual(groups, ["label 5"], f"{name}.{ending}")
+
+    def test_small_labels_keep_the_volume_of_their_voxels(self):
+        for shape in ((1, 1, 1), (2, 1, 1), (3, 1, 1), (4, 1, 1), (2, 2, 1), (5, 1, 1)):
+            small = (1, (4, 4, 4), tuple(4 + n for n in shape))
+            voxels = shape[0] * shape[1] * shape[2]
+            for inside in (False, True):
+                around = [(2, (1, 1, 1), (10, 10, 10))] if inside else []
+                image = self.write("small.nii", nifti((11, 11, 11), boxes((11, 11, 11), *around, small)))
+                self.assertAlmostEqual(self.volumes(image)["label 1"] / voxels, 1, delta=0.1, msg=f"{shape} {inside}")
+
+    def test_volumes_that_are_lost_are_named_with_their_voxels(self):
+        inside = range(1, 7)
+        values = [1 + (i + j + k) % 2 if i in inside and j in inside and k in inside else 0
+                  for k in range(8) for j in range(8) for i in range(8)]
+        said = self.run_cli("check", self.write("checkerboard.nii", nifti((8, 8, 8), values))).stdout
+        self.assertRegex(said, r'volume of 2 regions differs .* "label 1" \(108 voxels, 108; made [0-9.]+\)')
+
+    def test_images_too_far_away_for_their_voxels_are_refused(self):
+        for origin, status in (("0,1e17,0", 3), ("1e12,0,0", 0)):
+            header = ("NRRD0004\ntype: uint8\ndimension: 3\nspace: right-anterior-superior\nsizes: 6 6 6\n"
+                      f"space directions: (1,0,0) (0,1,0) (0,0,1)\nspace origin: ({origin})\nencoding: raw\n\n")
+            image = self.write("far.nrrd", header.encode() + bytes(boxes((6, 6, 6), (1, (1, 1, 1), (5, 5, 5)))))
+            for options in ((), ("--iso", "0.5")):
+                said = self.run_cli("check", image, *options, status=status)
+                self.assertEqual("double precision" in said.stderr, status != 0)
+
+    def test_regions_carry_the_numbers_of_their_labels(self):
+        image, out = self.two_boxes(), self.dir / "numbers"
+        self.run_cli("mesh", image, "--size", "2", "-o", f"{out}.vtk", "--improve", "fast")
+        self.assertIn(b"label", pathlib.Path(f"{out}.vtk").read_bytes())
+        self.run_cli("mesh", image, "--size", "2", "-o", f"{out}.mesh", "--improve", "fast")
+        tets = pathlib.Path(f"{out}.mesh").read_text().split("Tetrahedra\n")[1].split("\n")[1:]
+        references = {line.split()[4] for line in tets if len(line.split()) == 5}
+        self.assertEqual(references, {"3", "7"})
+
+    def test_large_numbers_are_labels_and_negative_spacing_is_said(self):
+        size = (6, 6, 6)
+        values = boxes(size, (4000000000, (1, 1, 1), (5, 5, 5)))
+        image = self.write("large.nii", nifti(size, values, code=768, pack="I"))
+        self.assertEqual(list(self.volumes(image)), ["label 4000000000"])
+        data = bytearray(nifti(size, boxes(size, (1, (1, 1, 1), (5, 5, 5))), spacing=(1, -1, 1)))
+        struct.pack_into("<h", data, 254, 0)
+        self.assertRegex(self.run_cli("check", self.write("negative.nii", bytes(data))).stdout, "axis 1 is -1, below 0")
+
     def test_ignored_and_merged_labels(self):
         image = self.two_boxes()
         self.assertEqual(list(self.volumes(image, "--ignore", "0,7")), ["label 3"])

@@ -162,6 +162,7 @@ Compacted compacted(const WorkingMesh& mesh, const SurfaceMesh& input, const Siz
   }
   s.patch_names = input.patch_names;
   s.region_names = input.region_names;
+  s.region_labels = input.region_labels;
   for (std::uint32_t t = 0; t < mesh.triangle_count(); ++t) {
     if (mesh.is_removed(t) || mesh.is_back(t)) continue;
     Triangle triangle;
