@@ -50,6 +50,23 @@ SurfaceMesh needle_cylinder(int n, double radius, double height) {
   return s;
 }
 
+/// Of needles from a fan to the tip.
+SurfaceMesh sharp_cone(int sides, double radius, double height) {
+  SurfaceMesh s;
+  for (int i = 0; i < sides; ++i) {
+    const double a = 2 * std::numbers::pi * i / sides;
+    s.points.push_back({radius * std::cos(a), radius * std::sin(a), 0});
+  }
+  s.points.push_back({0, 0, 0});
+  s.points.push_back({0, 0, height});
+  const auto n = static_cast<VertexIndex>(sides);
+  for (VertexIndex i = 0; i < n; ++i) {
+    s.triangles.push_back({i, (i + 1) % n, n + 1});
+    s.triangles.push_back({(i + 1) % n, i, n});
+  }
+  return s;
+}
+
 SurfaceMesh box(double x, double y, double z) {
   SurfaceMesh s = cube(1);
   for (Vec3& p : s.points) p = {p.x * x, p.y * y, p.z * z};
@@ -355,6 +372,16 @@ TEST(FeaturePatches, PartsOfANamedPatchKeepItsName) {
   EXPECT_EQ(divide_into_patches(s, make_edge_table(s.points.size(), s.triangles), detect_features(s, 40)), 6u);
   std::multiset<std::string> names(s.patch_names.begin(), s.patch_names.end());
   EXPECT_EQ(names, (std::multiset<std::string>{"wall.1", "wall.2", "wall.3", "wall.4", "wall.5", "lid"}));
+}
+
+// The normal of the tip is the axis, by which every point near it would be on a sheet of its own: the front placed
+// hundreds of times as many as there is room for.
+TEST(Remesh, TipsOfConesAreNoPlaceForThousandsOfPoints) {
+  StageReport report;
+  const KnownSurface cone(sharp_cone(64, 0.05, 1), 40);
+  const Remeshed r = remesh_surface(cone, make_size_field(cone, {}, {{}, report}), {}, {{}, report});
+  const std::map<std::string, double> counted(report.counters.begin(), report.counters.end());
+  EXPECT_LT(counted.at("places tried"), 4.0 * static_cast<double>(r.surface.triangles.size()));
 }
 
 TEST(Remesh, StopsWhenAsked) {

@@ -26,7 +26,7 @@ double cotangent_at(Vec3 apex, Vec3 a, Vec3 b) {
 bool faces_outward(const WorkingMesh& mesh, Vec3 area_vector, const VertexIndex (&vertices)[3], double cosine) {
   const double bound = cosine * length(area_vector);
   for (const VertexIndex v : vertices) {
-    if (mesh.is_free(v) && !(dot(area_vector, mesh.normal[v]) > bound)) return false;
+    if (mesh.has_normal(v) && !(dot(area_vector, mesh.normal[v]) > bound)) return false;
   }
   return true;
 }

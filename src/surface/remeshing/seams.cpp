@@ -138,15 +138,7 @@ class Cutter {
     m.is_feature.assign(m.start.size(), 0);
     m.outgoing.assign(m.points.size(), kNone);
     for (HalfEdge h = 0; h < m.start.size(); ++h) m.outgoing[m.start[h]] = h;
-    const auto all = static_cast<std::uint32_t>(m.triangle_count());
-    input.face_normal.resize(all);
-    input.vertex_normal.assign(m.points.size(), Vec3{});
-    for (std::uint32_t t = 0; t < all; ++t) {
-      const Vec3 n = input.mesh.area_vector(t);
-      input.face_normal[t] = normalized(n);
-      for (int i = 0; i < 3; ++i) input.vertex_normal[input.mesh.start[3 * t + i]] += n;
-    }
-    for (Vec3& n : input.vertex_normal) n = normalized(n);
+    remeshing::find_normals(input);
     set_features(input, {});
   }
 

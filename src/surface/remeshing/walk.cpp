@@ -6,6 +6,10 @@ namespace octafront::remeshing {
 
 namespace {
 
+/// A vertex has no normal where a face around it turns from their mean by more than this cosine says: at the tip of a
+/// cone that is its axis, and every point near the tip would seem to lie above all others, on a sheet of its own.
+constexpr double kPointed = 0.6;
+
 /// Longest path of a walk, in crossed triangles: dense scans under coarse elements cross some hundreds.
 constexpr int kMaxSteps = 20000;
 
@@ -73,9 +77,9 @@ Vec3 InputSurface::normal_at(std::uint32_t face, Vec3 p) const {
   const double w[3] = {std::max(0.0, dot(cross(b, c), n)), std::max(0.0, dot(cross(c, a), n)),
                        std::max(0.0, dot(cross(a, b), n))};
   const double sum = w[0] + w[1] + w[2];
-  if (!(sum > 0)) return on_feature[v[0]] ? n : vertex_normal[v[0]];
+  if (!(sum > 0)) return is_smooth_at(v[0]) ? vertex_normal[v[0]] : n;
   Vec3 result;
-  for (int i = 0; i < 3; ++i) result += (on_feature[v[i]] ? n : vertex_normal[v[i]]) * (w[i] / sum);
+  for (int i = 0; i < 3; ++i) result += (is_smooth_at(v[i]) ? vertex_normal[v[i]] : n) * (w[i] / sum);
   const double l = length(result);
   return l > 0.1 ? result / l : n;
 }
@@ -99,20 +103,30 @@ void set_features(InputSurface& input, const std::vector<Edge>& edges) {
   }
 }
 
+void find_normals(InputSurface& input) {
+  const HalfEdgeMesh& mesh = input.mesh;
+  const std::size_t faces = mesh.triangle_count();
+  input.face_normal.resize(faces);
+  input.vertex_normal.assign(mesh.points.size(), Vec3{});
+  for (std::uint32_t t = 0; t < faces; ++t) {
+    const Vec3 n = mesh.area_vector(t);
+    input.face_normal[t] = normalized(n);
+    for (int i = 0; i < 3; ++i) input.vertex_normal[mesh.start[3 * t + i]] += n;
+  }
+  for (Vec3& n : input.vertex_normal) n = normalized(n);
+  std::vector<std::uint8_t> is_pointed(mesh.points.size(), 0);
+  for (HalfEdge h = 0; h < mesh.start.size(); ++h)
+    if (dot(input.vertex_normal[mesh.start[h]], input.face_normal[h / 3]) < kPointed) is_pointed[mesh.start[h]] = 1;
+  for (VertexIndex v = 0; v < is_pointed.size(); ++v)
+    if (is_pointed[v]) input.vertex_normal[v] = {};
+}
+
 InputSurface make_input_surface(const SurfaceMesh& surface, const EdgeTable& edges) {
   InputSurface input;
   input.mesh = make_half_edge_mesh(surface, edges);
-  const std::size_t faces = input.mesh.triangle_count();
-  input.face_normal.resize(faces);
-  input.vertex_normal.assign(surface.points.size(), Vec3{});
-  input.patch.resize(faces);
-  for (std::uint32_t t = 0; t < faces; ++t) {
-    const Vec3 n = input.mesh.area_vector(t);
-    input.face_normal[t] = normalized(n);
-    input.patch[t] = surface.patch_of(t);
-    for (int i = 0; i < 3; ++i) input.vertex_normal[input.mesh.start[3 * t + i]] += n;
-  }
-  for (Vec3& n : input.vertex_normal) n = normalized(n);
+  input.patch.resize(input.mesh.triangle_count());
+  for (std::uint32_t t = 0; t < input.patch.size(); ++t) input.patch[t] = surface.patch_of(t);
+  find_normals(input);
   set_features(input, {});
   return input;
 }

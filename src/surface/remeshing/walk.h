@@ -9,7 +9,7 @@ namespace octafront::remeshing {
 struct InputSurface {
   HalfEdgeMesh mesh;
   std::vector<Vec3> face_normal;         ///< unit; zero where degenerate
-  std::vector<Vec3> vertex_normal;       ///< unit, weighted by area
+  std::vector<Vec3> vertex_normal;       ///< unit, weighted by area; zero at tips, around which faces look every way
   std::vector<std::uint8_t> on_feature;  ///< per vertex: some feature edge ends there
   std::vector<std::uint32_t> patch;      ///< per triangle
   /// Triangles of patches from here on are backs: see seams.h.
@@ -23,11 +23,15 @@ struct InputSurface {
     return found;
   }
 
-  /// Smooth normal at a point of a face: interpolated between vertex normals, where the corner lies on a feature
-  /// the face's own.
+  bool is_smooth_at(VertexIndex v) const { return !on_feature[v] && vertex_normal[v] != Vec3{}; }
+
+  /// Smooth normal at a point of a face: interpolated between vertex normals, where the corner is a tip or lies on a
+  /// feature the face's own.
   Vec3 normal_at(std::uint32_t face, Vec3 p) const;
 };
 
+/// Normals of the faces and vertices of its mesh.
+void find_normals(InputSurface& input);
 /// Adjacency and normals; no feature edge is marked yet.
 InputSurface make_input_surface(const SurfaceMesh& surface, const EdgeTable& edges);
 /// Replaces the feature edges. Seams are features whatever `edges` say.

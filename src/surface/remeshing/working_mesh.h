@@ -28,7 +28,7 @@ struct WorkingMesh : HalfEdgeMesh {
   explicit WorkingMesh(const InputSurface& input);
 
   std::vector<VertexKind> kind;       ///< per vertex
-  std::vector<Vec3> normal;           ///< per vertex: of the input surface there; zero on curves
+  std::vector<Vec3> normal;           ///< per vertex: of the input surface there; zero on curves, and at tips
   std::vector<double> size;           ///< per vertex: wanted there
   std::vector<std::uint32_t> face;    ///< per vertex: an input face that it lies in
   std::vector<std::uint32_t> patch;   ///< per triangle
@@ -69,6 +69,7 @@ struct WorkingMesh : HalfEdgeMesh {
   std::vector<std::uint32_t> alive_triangles() const;
   bool is_free(VertexIndex v) const { return kind[v] == VertexKind::kFree || kind[v] == VertexKind::kRemovable; }
   bool on_curve(VertexIndex v) const { return !is_free(v); }
+  bool has_normal(VertexIndex v) const { return is_free(v) && normal[v] != Vec3{}; }
   int valence(VertexIndex v) const {
     int n = 0;
     for_each_outgoing(v, [&](HalfEdge) { ++n; });
