@@ -17,6 +17,7 @@
 #   bench/run.sh second_order   all clean models, balls, tori, cylinders: proven? how true? at what cost? -> docs/second-order.md
 #   bench/run.sh repair      the defective models, repaired and meshed                  -> docs/repair-status.md
 #   bench/run.sh known_answers   2,000 clean models damaged in known ways, repaired and judged -> docs/repair-known.md
+#   bench/run.sh damage      clean models damaged in 24 ways beside the undamaged ones -> docs/damage.md
 #   bench/run.sh images      volumes of labels, each label judged; --peers: beside CGAL -> docs/images-status.md
 #   bench/run.sh thin        plates, discs, tubes, shells 1:10 to 1:1e6, beside Gmsh and TetGen -> docs/thin-bodies.md
 #   bench/run.sh dry_run     mesh --dry-run: elements, time and memory said and taken -> docs/command-line.md
@@ -25,8 +26,8 @@ cd "$(dirname "$0")/.."
 source scripts/lib/apt.sh
 
 case ${1:-} in
-  status | derived | pipeline | surface | elements | gradation | volume | graded | peers | complexes | improve | formats | second_order | dry_run | repair | known_answers | images | thin) ;;
-  *) sed -n '2,23s/^# \{0,1\}//p' "$0"; exit 2 ;;
+  status | derived | pipeline | surface | elements | gradation | volume | graded | peers | complexes | improve | formats | second_order | dry_run | repair | known_answers | damage | images | thin) ;;
+  *) sed -n '2,24s/^# \{0,1\}//p' "$0"; exit 2 ;;
 esac
 need_packages "${build_packages[@]}" python3
 [ "$1" != surface ] || need_packages gmsh netgen libcgal-dev libgmp-dev libmpfr-dev
@@ -36,7 +37,7 @@ need_packages "${build_packages[@]}" python3
 [ "$1" != peers ] || need_packages "${peer_packages[@]}" libcgal-dev libgmp-dev libmpfr-dev libboost-dev
 [ "$1" != complexes ] || need_packages "${test_packages[@]}" tetgen gmsh python3-gmsh
 [ "$1" != known_answers ] || need_packages "${test_packages[@]}"
-[ "$1" != repair ] || need_packages python3-numpy python3-meshio
+{ [ "$1" != repair ] && [ "$1" != damage ]; } || need_packages python3-numpy python3-meshio
 [ "$1" != images ] || need_packages libcgal-dev libgmp-dev libmpfr-dev libboost-dev
 [ "$1" != images ] || [ -d volumes ] || scripts/get-volumes.sh
 [ "$1" = formats ] || [ "$1" = complexes ] || [ "$1" = images ] || [ "$1" = thin ] || [ -d models/clean ] || scripts/get-models.sh --ct
@@ -54,5 +55,5 @@ cmake --build --preset release --target octafront_cli octafront_evaluate octafro
 [ "$1" != peers ] || cmake --build --preset release --target peer_cgal_mesh || echo "without CGAL's mesher" >&2
 [ "$1" != images ] || cmake --build --preset release --target octafront_judge_image peer_cgal_labels
 python=python3
-[ "$1" != repair ] && [ "$1" != known_answers ] || python=/usr/bin/python3  # Debian's, with its NumPy
+[ "$1" != repair ] && [ "$1" != known_answers ] && [ "$1" != damage ] || python=/usr/bin/python3  # Debian's, with its NumPy
 exec "$python" "bench/$1.py" build/release "${@:2}"

@@ -356,7 +356,7 @@ void declare_surface(CLI::App& command, Arguments& a) {
       ->type_name("DEG");
   add_length(*group, a, "--max-deviation", o.max_deviation,
              "Smaller elements where the surface would stray farther from the input, and how far folds and needles "
-             "of it give way; 0: not at all [images: 0.16 voxels, but not with --elements; what repair changed: its "
+             "of it give way; 0: not at all [images: 0.16 voxels, but not with --elements; what repair moved: its "
              "tolerance, else 0.4 % of the diagonal, with "
              "automatic sizes]")
       ->type_name("D");

@@ -109,18 +109,29 @@ template <class Generator>
 auto run_on_input(Session& session, const Generator& generator) {
   const Arguments& a = session.arguments();
   Options options = checked_options(session);
-  const SurfaceFile file = read_domain(session);
+  SurfaceFile file = read_domain(session);
   if (session.voxel_spacing() > 0) options = options_for_voxels(std::move(options), session.voxel_spacing());
-  if (session.mending_tolerance() > 0) options = options_for_mended(std::move(options), session.mending_tolerance());
   try {
     if (!a.page.empty()) find_repairs(session, file.surface);
-    return generator(file.surface, options, session.context());
+    return generator(Mended{std::move(file.surface), {}, session.bound()}, options, session.context());
   } catch (const OpenCavityError& error) {
     const std::filesystem::path beside = cavity_neighbour(a);
     throw with_cavity_written(error, beside.empty() ? "octafront" : beside);
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: {}", a.input.string(), error.what()));
   }
+}
+
+Result make_mesh(const Mended& input, const Options& options, const RunContext& context) {
+  return generate(input, options, context);
+}
+
+SizeResult make_sizes(const Mended& input, const Options& options, const RunContext& context) {
+  return generate_sizes(input, options, context);
+}
+
+SurfaceResult make_surface(const Mended& input, const Options& options, const RunContext& context) {
+  return generate_surface(input, options, context);
 }
 
 void say_written(const Session& session) {
@@ -147,10 +158,10 @@ std::filesystem::path file_at_fault(const Arguments& a, const SurfaceMesh& surfa
 
 void run_mesh(Session& session) {
   const Arguments& a = session.arguments();
-  if (a.dry_run) return tell_estimate(session, run_on_input(session, generate_sizes));
+  if (a.dry_run) return tell_estimate(session, run_on_input(session, make_sizes));
   check_mesh_targets(a);
   check_page_target(a.page);
-  const Result result = run_on_input(session, generate);
+  const Result result = run_on_input(session, make_mesh);
   write_mesh_targets(session, result.mesh);
   session.tell(result.report);
   tell_worst(session, result.mesh, result.report.quality);
@@ -160,7 +171,7 @@ void run_mesh(Session& session) {
 void run_surface(Session& session) {
   const Arguments& a = session.arguments();
   check_surface_target(a.output);
-  const SurfaceResult result = run_on_input(session, generate_surface);
+  const SurfaceResult result = run_on_input(session, make_surface);
   session.context().report("writing", -1);
   write_surface(a.output, result.surface, session.context());
   session.tell(result.report);
@@ -179,7 +190,7 @@ void run_repair(Session& session) {
 void run_size(Session& session) {
   const Arguments& a = session.arguments();
   if (!a.output.empty()) check_size_field_target(a.output);
-  const SizeResult result = run_on_input(session, generate_sizes);
+  const SizeResult result = run_on_input(session, make_sizes);
   if (!a.output.empty()) write_size_field(a.output, result.sizes, session.context());
   session.tell(result.report);
   if (!a.output.empty()) say_written(session);

@@ -87,7 +87,7 @@ void mend(Session& session, const std::filesystem::path& file, SurfaceMesh& surf
   session.found({{is_one_of_several ? "repair " + file.string() : "repair", report}});
   if (!a.defects.empty()) write_surface(a.defects, marks_of(mended.report), session.context());
   if (mended.report.clean || (a.command != "repair" && is_tidied_only(mended.report))) return;
-  session.mended_within(mended.report.tolerance);
+  if (!is_one_of_several) session.mended_with(std::move(mended.bound));
   session.say_notes("repair", mended.report.notes);
   surface = std::move(mended.surface);
 }

@@ -7,6 +7,8 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace octafront::cli {
 
@@ -36,9 +38,9 @@ class Session {
   /// The smallest distance of voxels of the image that was read; 0 until one was.
   void read_voxels(double spacing) { voxel_spacing_ = spacing; }
   double voxel_spacing() const { return voxel_spacing_; }
-  /// The tolerance within which the surface was mended; 0 unless it was.
-  void mended_within(double tolerance) { mending_tolerance_ = tolerance; }
-  double mending_tolerance() const { return mending_tolerance_; }
+  /// Mended::bound of the surface, if it was mended and is all of the input.
+  void mended_with(std::vector<double> bound) { bound_ = std::move(bound); }
+  const std::vector<double>& bound() const { return bound_; }
 
   /// All that is known of the run; `error` is null for one that did what it was asked.
   Json json(const Json& error) const;
@@ -49,7 +51,8 @@ class Session {
   const Arguments& arguments_;
   RunContext context_;
   Json findings_ = Json::object();
-  double voxel_spacing_ = 0, mending_tolerance_ = 0;
+  double voxel_spacing_ = 0;
+  std::vector<double> bound_;
 };
 
 /// The output that a cavity which stays open is written beside; empty if there is none.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <octafront/mend.h>
 #include <octafront/options.h>
 #include <octafront/repair.h>
 #include <octafront/report.h>
@@ -45,9 +46,12 @@ SizeResult generate_sizes(const SurfaceMesh& surface, const Options& options = {
 /// Throws OptionError with a sentence if the options contradict each other or lie outside their ranges.
 void check_options(const Options& options);
 
-/// For a surface that was mended within `tolerance` (MendReport, input units): a mesh of automatic sizes stays as near
-/// to it, unless `options` already bounds the deviation, keeps the surface's triangles, or has a method that follows
-/// none.
-Options options_for_mended(Options options, double tolerance);
+/// The same of a surface that was mended: where repair moved something (Mended::bound) a mesh of automatic sizes stays
+/// nearer to it than elsewhere, unless `options` bounds the deviation itself.
+///
+/// Example: generate(mend_surface(read_surface("scan.stl").surface)) meshes whatever the file holds.
+Result generate(const Mended& mended, const Options& options = {}, const RunContext& context = {});
+SurfaceResult generate_surface(const Mended& mended, const Options& options = {}, const RunContext& context = {});
+SizeResult generate_sizes(const Mended& mended, const Options& options = {}, const RunContext& context = {});
 
 }  // namespace octafront

@@ -92,6 +92,9 @@ std::string to_json(const MendReport& report);
 struct Mended {
   SurfaceMesh surface;  ///< clean; `source` refers to the input's faces
   MendReport report;
+  /// Per triangle of `surface` how near a mesh of automatic sizes stays to it, where that is nearer than elsewhere
+  /// (input units, > 0): the tolerance, where repair moved something; infinity: no nearer. Empty: so everywhere.
+  std::vector<double> bound = {};
 };
 
 /// A clean surface from any soup of triangles. Open edges that lie within the tolerance of each other are brought

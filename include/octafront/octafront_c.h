@@ -62,7 +62,8 @@ typedef struct {
 } octafront_array;
 
 /** Arrays of a surface: points (F64 x 3), triangles (U32 x 3), patch, source (U32 x 1), sides (U32 x 2: region in
- * front, behind; 0xffffffff: outside). Its lists of names: patch_names, region_names. */
+ * front, behind; 0xffffffff: outside), bound (F64 x 1: of a mended surface, how near a mesh of automatic sizes stays to
+ * each triangle where repair moved something; infinite elsewhere). Its lists of names: patch_names, region_names. */
 octafront_surface* octafront_surface_new(void);
 void octafront_surface_free(octafront_surface* surface);
 int octafront_surface_array(const octafront_surface* surface, const char* name, octafront_array* out);

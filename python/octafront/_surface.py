@@ -121,6 +121,13 @@ class Surface:
         return np.broadcast_to(np.array([OUTSIDE, 0], dtype=np.uint32), (len(self.triangles), 2))
 
     @property
+    def bounds(self):
+        """(m,) float64, of a mended surface: how near a mesh of automatic sizes stays to each triangle where repair moved
+        something; infinite where that is no nearer than elsewhere."""
+        found = self._handle.view("bound")
+        return found if len(found) else np.broadcast_to(np.float64(np.inf), (len(self.triangles),))
+
+    @property
     def patch_names(self):
         """Patch p is called patch_names[p]; may be shorter than the number of patches."""
         return self._handle.names("patch_names")
@@ -154,7 +161,7 @@ class Surface:
 
     def __getstate__(self):
         return {"arrays": {name: np.array(self._handle.view(name))
-                           for name in ("points", "triangles", "patch", "source", "sides")},
+                           for name in ("points", "triangles", "patch", "source", "sides", "bound")},
                 "patch_names": self.patch_names, "region_names": self.region_names, "report": self.report}
 
     def __setstate__(self, state):

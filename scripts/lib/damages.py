@@ -18,6 +18,8 @@ from solids import Solid
 # Shares of the diagonal. The tolerance that the cases are made for is 1e-3.
 FOLD = 3e-4          # height of folds
 T_GAP = 2e-4         # how far a new vertex lies off the edge that it divides
+CUT = 3e-3          # how far halves stand apart
+JITTER = 2e-4       # how far vertices move
 REACH = 0.01         # how far around a defect edges are not judged
 HOLE_MARGIN = 0.1    # a hole's zone grows by this share of its diameter
 HOLE_LOSS = {0.01: 0.15, 0.03: 0.3, 0.1: 2.85}  # percent of the volume that closing the holes flat may cost
@@ -458,6 +460,93 @@ def debris(solid, rng):
     return made
 
 
+# ------------------------------------------------------------------------------------------------- single places
+
+
+def one_triangle(solid, rng):
+    """One triangle is missing."""
+    t = int(rng.integers(len(solid.triangles)))
+    soup = Solid(solid.points, np.delete(solid.triangles, t, axis=0))
+    zone = solid.points[solid.triangles[t]]
+    return case(solid, soup, f"triangle {t} missing", zones=[zone], touched=boxes([zone], solids.diagonal(solid)))
+
+
+def joint_row(solid, rng):
+    """Along one path of edges the triangles of one side end in vertices that those of the other side do not have."""
+    d, beyond = solids.diagonal(solid), solids.twins(solid.triangles)
+    t, rows = int(rng.integers(len(solid.triangles))), {}
+    for _ in range(min(24, len(solid.triangles) // 8)):  # a strip of triangles: every other edge of its side
+        k = int(rng.integers(3))
+        rows.setdefault(t, k)
+        t = int(beyond[t, (k + 1) % 3])
+    points, triangles = list(solid.points), solid.triangles.tolist()
+    for t, k in rows.items():
+        a, b, c = (solid.triangles[t].tolist() * 2)[k:k + 3]
+        points.append((solid.points[a] + solid.points[b]) / 2 + T_GAP * d * rng.random() * direction(rng))
+        triangles[t] = [a, len(points) - 1, c]
+        triangles.append([len(points) - 1, b, c])
+    return case(solid, Solid(np.array(points), np.array(triangles)), f"a row of {len(rows)} T-junctions",
+                touched=boxes([solid.points[solid.triangles[list(rows)]].reshape(-1, 3)], d))
+
+
+def inside_out(solid, rng):
+    return case(solid, Solid(solid.points, solid.triangles[:, ::-1]), "all inside out")
+
+
+def cut(solid, rng):
+    """The triangles on one side of a plane stand off by .3 % of the diagonal."""
+    d, normal = solids.diagonal(solid), direction(rng)
+    height = solid.points[solid.triangles].mean(axis=1) @ normal
+    above = height > height.min() + np.ptp(height) * rng.uniform(0.3, 0.7)
+    if not 0 < above.sum() < len(above):
+        raise Unsuitable("nothing on one side")
+    triangles = np.where(above[:, None], solid.triangles + len(solid.points), solid.triangles)
+    soup = Solid(np.concatenate([solid.points, solid.points + CUT * d * normal]), triangles)
+    made = case(solid, soup, f"cut in two, {100 * CUT:g} % apart")
+    made.touched = boxes([solid.points], d)
+    return made
+
+
+def rotated(solid, rng):
+    """The same body a second time, turned by three degrees about its middle."""
+    axis, angle = direction(rng), math.radians(3)
+    middle = solid.points.mean(axis=0)
+    arm = solid.points - middle
+    turned_arm = (math.cos(angle) * arm + math.sin(angle) * np.cross(axis, arm)
+                  + (1 - math.cos(angle)) * (arm @ axis)[:, None] * axis)
+    copy = Solid(middle + turned_arm, solid.triangles)
+    made = case(solid, add(solid, *copy), "two copies, turned by 3 degrees")
+    made.truth, made.expected, made.touched = [solid, copy], {}, boxes([solid.points], solids.diagonal(solid))
+    return made
+
+
+def jitter(solid, rng):
+    """Every vertex moved at random."""
+    d = solids.diagonal(solid)
+    moves = rng.normal(size=solid.points.shape)
+    moves *= (JITTER * d * rng.random(len(moves)) / np.linalg.norm(moves, axis=1))[:, None]
+    made = case(solid, Solid(solid.points + moves, solid.triangles), f"vertices moved by up to {100 * JITTER:g} %")
+    made.touched = boxes([solid.points], d)
+    return made
+
+
+def spike(solid, rng):
+    """One vertex pulled out by a twentieth of the diagonal."""
+    v, d = int(rng.integers(len(solid.points))), solids.diagonal(solid)
+    points = solid.points.copy()
+    points[v] += 0.05 * d * vertex_normals(solid)[v]
+    around = solid.points[solid.triangles[(solid.triangles == v).any(axis=1)]].reshape(-1, 3)
+    return case(solid, Solid(points, solid.triangles), f"vertex {v} pulled out", zones=[around], touched=boxes([around], d))
+
+
+def scattered(solid, rng):
+    """A twentieth of the triangles is missing, here and there."""
+    keep = rng.random(len(solid.triangles)) >= 0.05
+    made = case(solid, Solid(solid.points, solid.triangles[keep]), f"{(~keep).sum()} triangles missing")
+    made.touched = boxes([solid.points], solids.diagonal(solid))
+    return made
+
+
 KINDS = {
     "hole-1": lambda s, r: holes(s, r, 0.01, 1), "hole-3": lambda s, r: holes(s, r, 0.03, 1),
     "hole-10": lambda s, r: holes(s, r, 0.1, 1),
@@ -467,3 +556,8 @@ KINDS = {
     "turned": turned, "doubled": doubled, "united": united, "t-junctions": t_junctions,
     "torn-.01": lambda s, r: torn(s, r, 1e-4), "torn-.05": lambda s, r: torn(s, r, 5e-4),
     "walls": walls, "fins": fins, "folds": folds, "debris": debris}
+
+MORE = {"triangle": one_triangle, "t-row": joint_row, "inside-out": inside_out, "cut": cut, "rotated": rotated,
+        "jitter": jitter, "spike": spike, "scattered": scattered}
+"""Kinds for bench/damage.py alone: the answer is not known so well, or repair has little to do. (The numbers of the cases of
+KINDS depend on how many there are.)"""

@@ -18,13 +18,15 @@ namespace octafront::c_api {
 namespace {
 
 /// Calls visit(list) for the list of that name. One place says what the arrays of a surface are called...
-template <class Mesh, class Visit>
-void visit_surface_array(Mesh& mesh, std::string_view name, const Visit& visit) {
+template <class Surface, class Visit>
+void visit_surface_array(Surface& surface, std::string_view name, const Visit& visit) {
+  auto& mesh = surface.mesh;
   if (name == "points") return visit(mesh.points);
   if (name == "triangles") return visit(mesh.triangles);
   if (name == "patch") return visit(mesh.patch);
   if (name == "source") return visit(mesh.source);
   if (name == "sides") return visit(mesh.sides);
+  if (name == "bound") return visit(surface.bound);
   throw OptionError(fmt::format("a surface has no array \"{}\"", name));
 }
 
@@ -127,11 +129,11 @@ void octafront_surface_free(octafront_surface* surface) {
 }
 
 int octafront_surface_array(const octafront_surface* surface, const char* name, octafront_array* out) {
-  return guarded([&] { visit_surface_array(surface->mesh, name, [&](const auto& list) { *out = array_of(list); }); });
+  return guarded([&] { visit_surface_array(*surface, name, [&](const auto& list) { *out = array_of(list); }); });
 }
 
 int octafront_surface_set_array(octafront_surface* surface, const char* name, const void* data, size_t rows) {
-  return guarded([&] { visit_surface_array(surface->mesh, name, [&](auto& list) { assign(list, data, rows); }); });
+  return guarded([&] { visit_surface_array(*surface, name, [&](auto& list) { assign(list, data, rows); }); });
 }
 
 int octafront_surface_add_name(octafront_surface* surface, const char* list, const char* name, size_t length) {

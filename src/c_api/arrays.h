@@ -22,6 +22,10 @@ struct Layout<Vec3> {
   static_assert(sizeof(Vec3) == 3 * sizeof(double));
   static constexpr std::uint32_t kType = OCTAFRONT_F64, kColumns = 3;
 };
+template <>
+struct Layout<double> {
+  static constexpr std::uint32_t kType = OCTAFRONT_F64, kColumns = 1;
+};
 
 template <class Element>
 octafront_array array_of(const std::vector<Element>& list) {

@@ -12,9 +12,11 @@
 
 #include <string>
 #include <utility>
+#include <vector>
 
 struct octafront_surface {
   octafront::SurfaceMesh mesh;
+  std::vector<double> bound = {};  ///< Mended::bound
 };
 
 struct octafront_mesh {

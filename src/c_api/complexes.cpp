@@ -93,6 +93,7 @@ void mend(octafront_job& job, const SurfaceMesh& soup, const MendOptions& option
   Mended mended = mend_surface(soup, options, job.context());
   job.report = Json::parse(to_json(mended.report));
   give(job, std::move(mended.surface));
+  job.surface->bound = std::move(mended.bound);
 }
 
 }  // namespace

@@ -41,6 +41,10 @@ Json json_of(const RepairedSurface& r) {
           {"notes", r.notes}};
 }
 
+Mended mended_of(const octafront_surface& surface) {
+  return {surface.mesh, {}, surface.bound};
+}
+
 /// Runs a generator; if it refuses the surface, the evidence goes along.
 template <class Generator>
 auto with_evidence(octafront_job& job, const SurfaceMesh& surface, const Generator& generator) {
@@ -196,8 +200,8 @@ octafront_job* octafront_generate(const octafront_surface* surface, const octafr
   return started(
       [surface, options](octafront_job& job) {
         const Options with_events = job.options_of(options);
-        Result result =
-            with_evidence(job, surface->mesh, [&] { return generate(surface->mesh, with_events, job.context()); });
+        Result result = with_evidence(job, surface->mesh,
+                                      [&] { return generate(mended_of(*surface), with_events, job.context()); });
         job.report = Json::parse(to_json(result.report));
         give(job, std::move(result.mesh));
         give(job, result.sizes);
@@ -211,7 +215,7 @@ octafront_job* octafront_generate_surface(const octafront_surface* surface, cons
       [surface, options](octafront_job& job) {
         const Options with_events = job.options_of(options);
         SurfaceResult result = with_evidence(
-            job, surface->mesh, [&] { return generate_surface(surface->mesh, with_events, job.context()); });
+            job, surface->mesh, [&] { return generate_surface(mended_of(*surface), with_events, job.context()); });
         job.report = Json::parse(to_json(result.report));
         give(job, std::move(result.surface));
         give(job, result.sizes);
@@ -225,7 +229,7 @@ octafront_job* octafront_generate_sizes(const octafront_surface* surface, const 
       [surface, options](octafront_job& job) {
         const Options with_events = job.options_of(options);
         const SizeResult result = with_evidence(
-            job, surface->mesh, [&] { return generate_sizes(surface->mesh, with_events, job.context()); });
+            job, surface->mesh, [&] { return generate_sizes(mended_of(*surface), with_events, job.context()); });
         job.report = Json::parse(to_json(result.report));
         give(job, result.sizes);
       },

@@ -22,6 +22,7 @@ double Leeway::at(Vec3 p, double allowed) const {
   if (is_complex_) return allowed;
   const TriangleTree::Nearest home = tree_.nearest(p);
   if (home.triangle == kNone) return allowed;
+  if (!bound_.empty()) allowed = std::min(allowed, bound_[home.triangle]);
   const double touching = kTouching * tree_.box().diagonal();
   const Vec3 around{touching, touching, touching};
   // Longer ways shorten nothing, and none is longer than the model.

@@ -40,7 +40,7 @@ BoundaryGuide::BoundaryGuide(const EditMesh& mesh, const BoundaryInput& input, c
       frozen_(mesh.vertices(), 0),
       pinned_(mesh.vertices(), 0),
       input_(input),
-      leeway_(input.surface, input.tree),
+      leeway_(input.surface, input.tree, input.bound),
       curves_(input.surface, input.features) {
   const std::vector<VertexIndex> here = mesh.numbers_here();
   for (VertexIndex v = 0; v < kind_.size(); ++v)

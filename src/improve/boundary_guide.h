@@ -26,6 +26,8 @@ struct BoundaryInput {
   double tolerance = 0;        ///< the boundary may stray so far where that rids it of what keeps elements poor
   /// Vertices of the mesh whose triangles stray nearly as far as they may: they do not slide, nor do their edges turn.
   std::vector<VertexIndex> pinned = {};
+  /// Per triangle of `surface` how far the boundary may stray there, where that is less; empty: so nowhere.
+  std::span<const double> bound = {};
 };
 
 class BoundaryGuide {

@@ -22,6 +22,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <unordered_map>
 #include <utility>
 
 #include <fmt/core.h>
@@ -393,6 +394,33 @@ SurfaceMesh wrapped(const SurfaceMesh& soup, const MendOptions& options, const R
   return std::move(skin.surface);
 }
 
+/// Points of faces that were divided are rounded: what lies no farther from its face, in diagonals, was not moved.
+constexpr double kUnmoved = 1e-9;
+
+/// For what was moved, by no more than the tolerance, the tolerance; what was invented nobody knows any nearer. Empty
+/// if nothing was moved.
+std::vector<double> bounds_of(const SurfaceMesh& soup, const SurfaceMesh& made, const MendReport& report) {
+  if (report.tolerance == 0 || report.count(Kind::kRebuilt) > 0) return {};
+  std::unordered_map<std::uint32_t, std::uint32_t> face_of;
+  for (std::uint32_t t = 0; t < soup.triangles.size() && !soup.source.empty(); ++t) face_of.emplace(soup.source[t], t);
+  std::vector<double> bounds(made.triangles.size(), HUGE_VAL);
+  bool any = false;
+  for (std::size_t t = 0; t < bounds.size(); ++t) {
+    const std::uint32_t source = made.source_of(t);
+    const auto& [a, b, c] = soup.triangles[soup.source.empty() ? source : face_of.at(source)];
+    double moved = 0;
+    for (const VertexIndex v : made.triangles[t]) {
+      const Vec3 p = made.points[v];
+      moved =
+          std::max(moved, distance(p, closest_point_on_triangle(p, soup.points[a], soup.points[b], soup.points[c])));
+    }
+    if (!(moved > kUnmoved * report.diagonal && moved <= report.tolerance)) continue;
+    bounds[t] = report.tolerance;
+    any = true;
+  }
+  return any ? bounds : std::vector<double>{};
+}
+
 }  // namespace
 
 Mended mend_surface(const SurfaceMesh& soup, const MendOptions& options, const RunContext& context) {
@@ -411,12 +439,14 @@ Mended mend_surface(const SurfaceMesh& soup, const MendOptions& options, const R
     RepairedSurface repaired = repair_surface(soup, context);
     const bool is_enough = find_defects(repaired, context).clean();
     report.clean = is_enough && !has_changed(repaired);
-    if (!is_enough)
+    if (!is_enough) {
       mended.surface = mended_soup(soup, context, report);
-    else if (report.clean)
+      mended.bound = bounds_of(soup, mended.surface, report);
+    } else if (report.clean) {
       mended.surface = soup;
-    else
+    } else {
       mended.surface = std::move(repaired.surface);
+    }
     if (is_enough) report.notes = repaired.notes;
   }
   finish_report(report, mended.surface);

@@ -8,7 +8,11 @@
 
 namespace octafront {
 
-Result generate(const SurfaceMesh& surface, const Options& options, const RunContext& context) {
+namespace {
+
+/// `surface`: a SurfaceMesh, or Mended.
+template <class Surface>
+Result mesh_of(const Surface& surface, const Options& options, const RunContext& context) {
   Run run(options, context);
   const Prepared input = prepare(surface, run);
   const SizeField sizes = choose_sizes(input, run);
@@ -23,7 +27,8 @@ Result generate(const SurfaceMesh& surface, const Options& options, const RunCon
   return {std::move(filled.mesh), filled.boundary.sizes, run.close()};
 }
 
-SurfaceResult generate_surface(const SurfaceMesh& surface, const Options& options, const RunContext& context) {
+template <class Surface>
+SurfaceResult boundary_of_mesh(const Surface& surface, const Options& options, const RunContext& context) {
   Run run(options, context);
   const Prepared input = prepare(surface, run);
   const SizeField sizes = choose_sizes(input, run);
@@ -35,12 +40,39 @@ SurfaceResult generate_surface(const SurfaceMesh& surface, const Options& option
   return {std::move(made.surface), made.sizes, run.close()};
 }
 
-SizeResult generate_sizes(const SurfaceMesh& surface, const Options& options, const RunContext& context) {
+template <class Surface>
+SizeResult sizes_of(const Surface& surface, const Options& options, const RunContext& context) {
   Run run(options, context);
   const Prepared input = prepare(surface, run);
   SizeField sizes = choose_sizes(input, run);
   if (traits_of(options.method).has_front) sizes = triangulate_to_target(input, sizes, run).sizes;
   return {std::move(sizes), run.close()};
+}
+
+}  // namespace
+
+Result generate(const SurfaceMesh& surface, const Options& options, const RunContext& context) {
+  return mesh_of(surface, options, context);
+}
+
+Result generate(const Mended& mended, const Options& options, const RunContext& context) {
+  return mesh_of(mended, options, context);
+}
+
+SurfaceResult generate_surface(const SurfaceMesh& surface, const Options& options, const RunContext& context) {
+  return boundary_of_mesh(surface, options, context);
+}
+
+SurfaceResult generate_surface(const Mended& mended, const Options& options, const RunContext& context) {
+  return boundary_of_mesh(mended, options, context);
+}
+
+SizeResult generate_sizes(const SurfaceMesh& surface, const Options& options, const RunContext& context) {
+  return sizes_of(surface, options, context);
+}
+
+SizeResult generate_sizes(const Mended& mended, const Options& options, const RunContext& context) {
+  return sizes_of(mended, options, context);
 }
 
 }  // namespace octafront

@@ -154,7 +154,7 @@ void ease_boundary(const improve::BoundaryInput& on, Filled& filled, const Optio
   if (const double limit = scale_of_detail(on.surface, options, 1) * kRaised; limit > 0) {
     improve::FlatWalls walls(on.surface, on.tree, on.features);
     RaiseLimits limits{limit, nullptr, &walls, nullptr};
-    const Leeway leeway(on.surface, on.tree);
+    const Leeway leeway(on.surface, on.tree, on.bound);
     std::optional<improve::InputForce> force;
     // Between walls of a complex, as near to each other as one likes, there is no other way out.
     if (!is_complex(on.surface)) {
@@ -193,23 +193,38 @@ std::vector<double> smooth_detail(Examined& found, Run& run) {
   });
 }
 
-}  // namespace
-
-SurfaceOptions true_to_input(const SurfaceMesh& input, const Options& options) {
-  SurfaceOptions surface = options.surface;
-  if (!surface.max_deviation && has_automatic_sizes(options))
-    surface.max_deviation = kAutomaticDeviation * bounding_box(input.points).diagonal();
-  return surface;
+/// What unfolding leaves of the bound on the deviation, if the user gave one.
+std::vector<double> left_of_bound(std::vector<double> moved, const SurfaceOptions& options) {
+  if (!options.max_deviation) return {};
+  for (double& d : moved) d = *options.max_deviation - d;
+  return moved;
 }
 
-Options options_for_mended(Options options, double tolerance) {
-  if (keeps_surface(options) || traits_of(options.method).makes_own_boundary() || !has_automatic_sizes(options))
-    return options;
-  if (!options.surface.max_deviation) options.surface.max_deviation = tolerance;
-  return options;
+void require_bounds(const Mended& mended) {
+  if (mended.bound.empty()) return;
+  if (mended.bound.size() != mended.surface.triangles.size())
+    throw OptionError(fmt::format("there are {} bounds for {} triangles: give one for each, or none",
+                                  mended.bound.size(), mended.surface.triangles.size()));
+  const auto wrong = std::ranges::find_if(mended.bound, [](double b) { return !(b > 0); });
+  if (wrong != mended.bound.end())
+    throw OptionError(fmt::format("the bound of triangle {} is {}: it is a length above 0, or infinite",
+                                  wrong - mended.bound.begin(), *wrong));
 }
 
-Prepared prepare(const SurfaceMesh& soup, Run& run) {
+/// The bounds of a mended surface, for triangles whose sources are its own; these then are those of its triangles.
+std::vector<double> bounds_by_source(const Mended& mended, SurfaceMesh& surface) {
+  std::vector<double> bound;
+  std::vector<std::uint32_t> source;
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    bound.push_back(mended.bound[surface.source_of(t)]);
+    source.push_back(mended.surface.source_of(surface.source_of(t)));
+  }
+  surface.source = std::move(source);
+  return bound;
+}
+
+/// `mended`: null, or what the soup is of, without sources.
+Prepared prepare(const SurfaceMesh& soup, const Mended* mended, Run& run) {
   SurfaceDomain::Defects defects{};
   Examined found = run.stage("repair", [&](const Stage& stage) {
     Examined examined = examine_surface(soup, stage.context());
@@ -229,6 +244,7 @@ Prepared prepare(const SurfaceMesh& soup, Run& run) {
   const bool is_plain = found.repaired.surface.sides.empty();
   std::vector<double> moved;
   if (defects == SurfaceDomain::Defects::kClean && is_plain) moved = smooth_detail(found, run);
+  const bool unfolded = !moved.empty();
   SurfaceMesh& surface = found.repaired.surface;
   Features features = run.stage("features", [&](const Stage& stage) {
     Features of_surface = detect_features(surface, found.edges, run.options.surface.angle_of_features());
@@ -239,7 +255,32 @@ Prepared prepare(const SurfaceMesh& soup, Run& run) {
     return of_surface;
   });
   run.report.bodies = found.repaired.bodies;
-  return {KnownSurface(std::move(surface), std::move(found.edges), std::move(features)), defects, std::move(moved)};
+  std::vector<double> bound =
+      mended ? bounds_by_source(*mended, surface) : left_of_bound(std::move(moved), run.options.surface);
+  return {KnownSurface(std::move(surface), std::move(found.edges), std::move(features)), defects, std::move(bound),
+          unfolded};
+}
+
+}  // namespace
+
+SurfaceOptions true_to_input(const SurfaceMesh& input, const Options& options) {
+  SurfaceOptions surface = options.surface;
+  if (!surface.max_deviation && has_automatic_sizes(options))
+    surface.max_deviation = kAutomaticDeviation * bounding_box(input.points).diagonal();
+  return surface;
+}
+
+Prepared prepare(const SurfaceMesh& input, Run& run) {
+  return prepare(input, nullptr, run);
+}
+
+Prepared prepare(const Mended& mended, Run& run) {
+  require_bounds(mended);
+  if (mended.bound.empty() || run.options.surface.max_deviation || !has_automatic_sizes(run.options))
+    return prepare(mended.surface, run);
+  SurfaceMesh numbered = mended.surface;
+  numbered.source.clear();
+  return prepare(numbered, &mended, run);
 }
 
 SizeField choose_sizes(const Prepared& input, Run& run) {
@@ -249,7 +290,7 @@ SizeField choose_sizes(const Prepared& input, Run& run) {
     if (const auto degrees = run.options.surface.normal_deviation)
       refuse_huge_turning(input.surface, size, *degrees, run.context());
     return keeps_surface(run.options) ? size_field_of_surface(input.surface, size, stage)
-                                      : make_size_field(input.surface, size, stage);
+                                      : make_size_field(input.surface, size, stage, input.bound);
   });
   const MethodTraits& method = traits_of(run.options.method);
   const SurfaceMesh& surface = input.surface.mesh();
@@ -263,12 +304,10 @@ SizeField choose_sizes(const Prepared& input, Run& run) {
 Remeshed triangulate(const Prepared& input, const SizeField& sizes, Run& run) {
   if (keeps_surface(run.options)) return input_as_it_is(input.surface, sizes);
   return run.stage("surface front", [&](const Stage& stage) {
-    std::span<const double> moved;
-    if (run.options.surface.max_deviation) moved = input.moved;
     const SurfaceOptions surface = true_to_input(input.surface.mesh(), run.options);
     const double slack = surface.max_deviation == run.options.surface.max_deviation ? 1 : kAutomaticSlack;
     Remeshed remeshed = remeshed_in_shape(input, sizes, run, stage, [&](const SizeField& by) {
-      return remesh_surface(input.surface, by, surface, stage, moved, slack);
+      return remesh_surface(input.surface, by, surface, stage, input.bound, slack);
     });
     stage.count("triangles", static_cast<double>(remeshed.surface.triangles.size()));
     // Strips between lines and the bounds on deviation have made sizes smaller since the first prediction.
@@ -305,8 +344,8 @@ void improve_elements(const Prepared& input, Filled& filled, Run& run, const Imp
     if (is_ours)
       on.emplace(improve::BoundaryInput{
           input.surface.mesh(), input.surface.tree(), input.surface.features(), boundary.features,
-          detail_tolerance(input.surface.mesh(), run.options, input.moved.empty() ? 1 : 1 - kUnfolded),
-          boundary.near_limit});
+          detail_tolerance(input.surface.mesh(), run.options, input.unfolded ? 1 - kUnfolded : 1), boundary.near_limit,
+          input.bound});
     if (improve_mesh(mesh, on ? &*on : nullptr, options, stage, &boundary.features)) {
       if (on) renew_sources(mesh, hull_of(boundary.surface), on->surface, on->tree);
       follow_boundary(mesh, boundary.surface);

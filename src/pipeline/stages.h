@@ -3,6 +3,7 @@
 // The stages of a run, one function each, in the order of the pipeline. What a stage takes is const and what it makes
 // is new, but for improvement, which changes the mesh in place; any of them can be called alone with a Run of its own.
 
+#include <octafront/mend.h>
 #include <octafront/repair.h>
 #include <octafront/second_order.h>
 #include <octafront/size_field.h>
@@ -20,7 +21,10 @@ namespace octafront {
 struct Prepared {
   KnownSurface surface;                                             ///< repaired, unfolded
   SurfaceDomain::Defects defects = SurfaceDomain::Defects::kClean;  ///< other than clean where the method allows it
-  std::vector<double> moved = {};  ///< per triangle how far unfolding moved it at most; empty: nothing was unfolded
+  /// Per triangle of the surface how near the new one stays to it, where that is nearer than elsewhere: by what
+  /// unfolding has used up of a bound of the user's, and where repair moved something. Empty: so nowhere.
+  std::vector<double> bound = {};
+  bool unfolded = false;  ///< folds were taken off
 };
 
 /// A mesh and the surface that it fills, triangle for triangle.
@@ -32,6 +36,8 @@ struct Filled {
 /// Repairs the input, refuses what the method cannot mesh (InputError), takes off folds that the tolerance lets go
 /// where the surface is made anew, finds the features.
 Prepared prepare(const SurfaceMesh& input, Run& run);
+/// The same of a mended surface. Its bounds hold where the sizes are automatic and the user bounds nothing.
+Prepared prepare(const Mended& input, Run& run);
 
 /// The sizes that the options ask for; report.expected_tets says how many elements they promise, if no surface made to
 /// them will tell better.

@@ -17,7 +17,8 @@ namespace octafront {
 /// Builds the octree background grid from the sources of `options` on a clean surface: 2:1 balanced, sizes at leaf
 /// corners, graded, continuous inside leaves. Throws OptionError for contradictions and values out of range.
 /// With options.elements the sizes are scaled until expected_tets() meets it.
-SizeField make_size_field(const KnownSurface& surface, const SizeOptions& options, const Stage& stage);
+SizeField make_size_field(const KnownSurface& surface, const SizeOptions& options, const Stage& stage,
+                          std::span<const double> chord_errors = {});
 
 /// Throws OptionError if triangles that turn by no more than so many degrees against the surface would give more
 /// elements than a mesh can hold.

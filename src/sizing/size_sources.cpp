@@ -94,9 +94,12 @@ void apply_curvature(const SurfaceCurvature& curvature, double elements, double 
   }
 }
 
-void apply_chord_error(const SurfaceCurvature& curvature, double error, double floor, std::vector<double>& face) {
+/// `error_of`: of a face.
+template <class ErrorOf>
+void apply_chord_errors(const SurfaceCurvature& curvature, const ErrorOf& error_of, double floor,
+                        std::vector<double>& face) {
   for (std::size_t f = 0; f < face.size(); ++f) {
-    const double k = curvature.largest[f];
+    const double k = curvature.largest[f], error = error_of(f);
     if (k * face[f] * face[f] > 6 * error) face[f] = std::max(floor, size_of_chord_error(error, k));
   }
 }
@@ -196,21 +199,28 @@ double model_extent(const SurfaceMesh& surface) {
   return 2 * std::sqrt(3 * std::max(0.0, square / mass - squared_length(moment / mass)));
 }
 
-WantedSizes wanted_sizes(const KnownSurface& known, const SizeOptions& options, const Stage& stage) {
+WantedSizes wanted_sizes(const KnownSurface& known, const SizeOptions& options, const Stage& stage,
+                         std::span<const double> chord_errors) {
   const SurfaceMesh& surface = known.mesh();
   const Choice choice = choose(surface, options);
   WantedSizes wanted;
   wanted.face.assign(surface.triangles.size(), choice.base);
   double scale = 1;
   const Affordable affordable(surface, options);
-  if (choice.curvature > 0 || options.facets || options.chord_error) {
+  const bool limits_chords = options.chord_error || !chord_errors.empty();
+  if (choice.curvature > 0 || options.facets || limits_chords) {
     const FaceNeighbours across = smooth_face_neighbours(known.edges(), known.features().edges);
     if (options.facets) apply_facets(surface, across, choice.floor, wanted.face);
-    if (choice.curvature > 0 || options.chord_error) {
+    if (choice.curvature > 0 || limits_chords) {
       const SurfaceCurvature curvature = surface_curvature(surface, across, stage.context());
       if (options.curvature) affordable.curvature(*options.curvature, curvature);
       if (options.chord_error) affordable.max_deviation(*options.chord_error, curvature);
-      if (options.chord_error) apply_chord_error(curvature, *options.chord_error, choice.floor, wanted.face);
+      if (limits_chords) {
+        const auto error_of = [&](std::size_t f) {
+          return std::min(options.chord_error.value_or(HUGE_VAL), chord_errors.empty() ? HUGE_VAL : chord_errors[f]);
+        };
+        apply_chord_errors(curvature, error_of, choice.floor, wanted.face);
+      }
       if (choice.curvature > 0) apply_curvature(curvature, choice.curvature, choice.floor, wanted.face);
       if (choice.automatic) scale = automatic_scale(surface, curvature, wanted.face);
     }

@@ -11,6 +11,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace octafront {
@@ -39,7 +40,9 @@ double model_extent(const SurfaceMesh& surface);
 
 /// Asks every source that `options` names; the automatic choice if it names none. Throws OptionError. Refers to the
 /// surface, which must outlive it.
-WantedSizes wanted_sizes(const KnownSurface& known, const SizeOptions& options, const Stage& stage);
+/// `chord_errors`: per triangle what options.chord_error says of all; infinity: nothing; empty: so everywhere.
+WantedSizes wanted_sizes(const KnownSurface& known, const SizeOptions& options, const Stage& stage,
+                         std::span<const double> chord_errors = {});
 
 /// The sources that are asked place by place and that hold for every kind of surface: options.point_sizes and the
 /// callback, whose answers are checked. Empty if there are none. Refers to `surface`, which must outlive it.

@@ -66,6 +66,30 @@ TEST(MendSurface, WhatIsCleanComesBackBitForBit) {
   }
 }
 
+TEST(MendSurface, BoundsHoldWhereSomethingMovedOnly) {
+  const SurfaceMesh ball = testing::icosphere(3);
+  EXPECT_TRUE(mended(without(ball, [](Vec3 p) { return p.z > 0.95; })).bound.empty());  // nothing moved
+  EXPECT_TRUE(mended(testing::joined(ball, testing::transformed(ball, 1, {0.5, 0.1, 0}))).bound.empty());
+
+  SurfaceMesh torn = ball;  // one triangle with corners of its own
+  const Vec3 place = torn.points[torn.triangles[0][0]];
+  for (VertexIndex& v : torn.triangles[0]) {
+    torn.points.push_back(torn.points[v] + Vec3{3e-4, 2e-4, -1e-4});
+    v = static_cast<VertexIndex>(torn.points.size() - 1);
+  }
+  const Mended result = mended(torn);
+  ASSERT_EQ(result.bound.size(), result.surface.triangles.size());
+  std::size_t tight = 0;
+  for (std::size_t t = 0; t < result.bound.size(); ++t) {
+    if (std::isinf(result.bound[t])) continue;
+    ++tight;
+    EXPECT_EQ(result.bound[t], result.report.tolerance);
+    EXPECT_LT(distance(result.surface.points[result.surface.triangles[t][0]], place), 0.6);
+  }
+  EXPECT_GE(tight, 4u);
+  EXPECT_LT(tight, 30u);
+}
+
 TEST(MendSurface, OverlappingPartsUnite) {
   const Mended result = mended(testing::joined(box_at({0, 0, 0}, {2, 2, 2}), box_at({1, 1, 1}, {2, 2, 2})));
   EXPECT_NEAR(enclosed_volume(result.surface), 15, 1e-12);

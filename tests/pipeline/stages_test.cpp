@@ -7,6 +7,8 @@
 #include "pipeline/pipeline.h"
 #include "support/named_surfaces.h"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 namespace octafront {
@@ -55,6 +57,37 @@ TEST(Stages, EachCanBeCalledAlone) {
   improve_elements(input, filled, better, better.options.improve);
   EXPECT_GT(summarize_quality(filled.mesh).beta_mean, before);
   EXPECT_EQ(better.report.stages.size(), 1U);
+}
+
+TEST(Stages, OneMissingTriangleCostsNoElements) {
+  SurfaceMesh holed = testing::icosphere(4);
+  const double whole = static_cast<double>(generate(holed).report.tets);
+  holed.triangles.erase(holed.triangles.begin() + 40);
+  const Mended mended = mend_surface(holed);
+  EXPECT_NEAR(static_cast<double>(generate(mended).report.tets) / whole, 1, 0.1);
+}
+
+TEST(Stages, BoundsOfAMendedSurfaceFollowItsTriangles) {
+  Mended mended{testing::icosphere(4), {}, {}};
+  const double loose = static_cast<double>(generate(mended).report.tets);
+  const std::size_t triangles = mended.surface.triangles.size();
+  mended.bound.assign(triangles, HUGE_VAL);
+  for (std::size_t t = 0; t < triangles; ++t)
+    if (mended.surface.points[mended.surface.triangles[t][0]].z > 0.9) mended.bound[t] = 1e-3;
+  for (std::uint32_t t = 0; t < triangles; ++t) mended.surface.source.push_back(7 * t);
+  const Result made = generate(mended);
+  EXPECT_GT(static_cast<double>(made.report.tets), 1.05 * loose);
+  EXPECT_LT(static_cast<double>(made.report.tets), 2 * loose);
+  for (const std::uint32_t source : made.mesh.source) EXPECT_EQ(source % 7, 0u);
+  // A bound of the user's holds everywhere.
+  Options options;
+  options.surface.max_deviation = 0.02;
+  EXPECT_EQ(generate(mended, options).report.hash, generate(mended.surface, options).report.hash);
+
+  mended.bound.pop_back();
+  EXPECT_THROW(generate(mended), OptionError);
+  mended.bound.push_back(0);
+  EXPECT_THROW(generate(mended), OptionError);
 }
 
 TEST(Stages, ARunIsRefusedBeforeItBegins) {

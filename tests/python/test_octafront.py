@@ -272,6 +272,12 @@ class Complexes(Case):
         self.assertFalse(closed.report["clean"])
         self.assertAlmostEqual(closed.report["volume_after"], 1, places=9)
         self.assertTrue(octafront.check(octafront.mesh(closed, size=0.3)))
+        self.assertTrue(np.all(np.isinf(closed.bounds)))  # nothing moved
+        torn = np.array(box.points)[np.array(box.triangles)].reshape(-1, 3)
+        torn[:3] += (0, 1e-4, 2e-4)
+        sewn = octafront.mend(torn, np.arange(len(torn)).reshape(-1, 3))
+        self.assertTrue(np.any(sewn.bounds == sewn.report["tolerance"]))
+        np.testing.assert_array_equal(pickle.loads(pickle.dumps(sewn)).bounds, sewn.bounds)
         wrapped = octafront.mend(box, way="wrap", distance=0.1)
         self.assertLess(wrapped.points.min(), -0.05)
         with self.assertRaises(octafront.InputError):

@@ -273,6 +273,24 @@ TEST(DeviationWatch, FindsAgainWhatAllAnewWouldFind) {
             triangles_at(remeshing::DeviationWatch(0.01, 0.02, input, tree).look(made, number)));
 }
 
+TEST(DeviationWatch, LooksCloserAtTrianglesWithABoundOfTheirOwn) {
+  const SurfaceMesh input = icosphere(4), made = icosphere(2);  // some .02 below
+  const TriangleTree tree(input);
+  std::vector<std::uint32_t> number(made.triangles.size());
+  std::iota(number.begin(), number.end(), 0u);
+  std::vector<double> bound(input.triangles.size(), HUGE_VAL);
+  for (std::size_t t = 0; t < bound.size(); ++t)
+    if (input.points[input.triangles[t][0]].x > 0.5) bound[t] = 0.01;
+  EXPECT_TRUE(remeshing::DeviationWatch(0.04, 0.04, input, tree).look(made, number).empty());
+  const auto places =
+      remeshing::DeviationWatch(0.04, 0.04, input, tree, remeshing::Fine::kParts, bound).look(made, number);
+  EXPECT_FALSE(places.empty());
+  for (const remeshing::FarPlace& place : places) {
+    EXPECT_GT(place.at.x, 0.35);
+    EXPECT_GE(place.distance, 0.04);  // as many times more
+  }
+}
+
 TEST(DeviationWatch, FindsFromBothSides) {
   const SurfaceMesh smooth = icosphere(4), spiked = spiked_sphere(0.1);
   EXPECT_TRUE(places_beyond(0.11, smooth, spiked).empty());

@@ -290,6 +290,34 @@ TEST(Remesh, StaysWithinTheAskedDeviation) {
   EXPECT_LT(fine.sizes.min_size(), 0.4);
 }
 
+TEST(Remesh, ABoundOfSomeTrianglesHoldsThere) {
+  const SurfaceMesh input = icosphere(5, 1);
+  const KnownSurface known(input, Features{});
+  SurfaceOptions options;
+  options.max_deviation = 0.02;
+  std::vector<double> bound(input.triangles.size(), HUGE_VAL);
+  for (std::size_t t = 0; t < bound.size(); ++t)
+    if (input.points[input.triangles[t][0]].z > 0.8) bound[t] = 0.002;
+  StageReport report;
+  const auto h = SizeField::uniform(0.4);
+  const auto triangles = [&](const SurfaceOptions& asked, std::span<const double> of_triangle) {
+    return remesh_surface(known, h, asked, {{}, report}, of_triangle).surface.triangles.size();
+  };
+  const SurfaceMesh made = remesh_surface(known, h, options, {{}, report}, bound).surface;
+  double above = 0, below = 0;
+  for (const auto& [a, b, c] : made.triangles) {
+    const Vec3 middle = (made.points[a] + made.points[b] + made.points[c]) / 3;
+    double& farthest = middle.z > 0.85 * length(middle) ? above : below;
+    farthest = std::max(farthest, 1 - length(middle));
+  }
+  EXPECT_LT(above, 0.0025);
+  EXPECT_GT(below, 0.01);
+  SurfaceOptions everywhere;
+  everywhere.max_deviation = 0.002;
+  EXPECT_GT(triangles(options, bound), triangles(options, {}));
+  EXPECT_LT(triangles(options, bound), triangles(everywhere, {}) / 2);
+}
+
 /// The largest angle between a triangle and the sphere's normal at one of its corners, degrees.
 double most_turned(const SurfaceMesh& on_unit_sphere) {
   double least = 1;

@@ -12,17 +12,11 @@ namespace octafront::remeshing {
 
 namespace {
 
-/// A point of a triangle.
-struct Sample {
-  Vec3 p;
-  std::uint32_t triangle;
-  bool within = false;  ///< not at its corners or the middles of its edges
-};
-
-/// The samples of `all` that are farther than `limit` from the surface, in their order.
-std::vector<Sample> beyond(double limit, const std::vector<Sample>& all, const TriangleTree& surface) {
+/// The samples of `all` of which is_far(sample) says so, in their order.
+template <class IsFar>
+std::vector<Sample> far_ones(const std::vector<Sample>& all, const IsFar& is_far_one) {
   std::vector<std::uint8_t> is_far(all.size());
-  parallel_for(all.size(), [&](std::size_t i) { is_far[i] = !surface.is_within(all[i].p, limit); });
+  parallel_for(all.size(), [&](std::size_t i) { is_far[i] = is_far_one(all[i]); });
   std::vector<Sample> far;
   for (std::size_t i = 0; i < all.size(); ++i)
     if (is_far[i]) far.push_back(all[i]);
@@ -51,7 +45,9 @@ constexpr double kWidest = 0.3, kFinest = 0.1;
 /// convex: what has its corners within the limit of one lies within the limit of it.
 class PartsOfInput {
  public:
-  PartsOfInput(double limit, double far, const TriangleTree& made) : limit_(limit), far_(far), made_(made) {}
+  explicit PartsOfInput(const TriangleTree& made) : made_(made) {}
+
+  void set_limits(double limit, double far) { limit_ = limit, far_ = far; }
 
   Part operator()(const TriangleCorners& part, Vec3 middle, double reach) const {
     // Where rounding hides even the last part's triangle behind the bound, that one is as good.
@@ -84,7 +80,7 @@ class PartsOfInput {
     return std::clamp(limit_, kFinest * edge, kWidest * edge);
   }
 
-  double limit_, far_;
+  double limit_ = 0, far_ = 0;
   const TriangleTree& made_;
   mutable std::uint32_t nearest_ = kNone;  ///< to the last part
 };
@@ -113,35 +109,40 @@ double longest_edge(const TriangleCorners& t) {
 }
 
 /// Samples of the input that may be far: of those triangles whose corners are not all well within the limit.
-std::vector<Sample> suspects(double limit, double far, const SurfaceMesh& input,
+/// `part_of`: a triangle's part of the limit and of `far`.
+template <class PartOf>
+std::vector<Sample> suspects(double limit, double far, const PartOf& part_of, const SurfaceMesh& input,
                              const std::vector<std::uint32_t>& triangles, const TriangleTree& made, Fine fine) {
-  std::vector<double> reach(input.points.size(), -1);
+  std::vector<double> reach(input.points.size(), -1), limit_at(input.points.size(), limit);
   std::vector<VertexIndex> vertices;
   for (const std::uint32_t t : triangles)
-    for (const VertexIndex v : input.triangles[t])
-      if (reach[v] < 0) {
-        reach[v] = 0;
-        vertices.push_back(v);
-      }
+    for (const VertexIndex v : input.triangles[t]) {
+      limit_at[v] = std::min(limit_at[v], limit * part_of(t));
+      if (reach[v] >= 0) continue;
+      reach[v] = 0;
+      vertices.push_back(v);
+    }
   note_reach(input, reach);
   std::vector<std::uint8_t> is_safe(reach.size(), 0);
   std::vector<double> made_edge(fine == Fine::kCorners ? reach.size() : 0);  // near vertices that are not safe
   parallel_for(vertices.size(), [&](std::size_t i) {
     const VertexIndex v = vertices[i];
-    is_safe[v] = reach[v] < limit && made.is_within(input.points[v], limit - reach[v]);
+    is_safe[v] = reach[v] < limit_at[v] && made.is_within(input.points[v], limit_at[v] - reach[v]);
     if (!is_safe[v] && fine == Fine::kCorners)
       made_edge[v] = longest_edge(made.corners(made.nearest(input.points[v]).triangle));
   });
   constexpr std::size_t kRange = 256;
   const auto collect = [&](std::size_t begin, std::size_t end, std::vector<Sample>& found) {
-    const PartsOfInput look(limit, far, made);
+    PartsOfInput look(made);
     for (std::size_t i = begin; i < end; ++i) {
       const auto& [a, b, c] = input.triangles[triangles[i]];
       if (is_safe[a] && is_safe[b] && is_safe[c]) continue;
       const TriangleCorners corners{input.points[a], input.points[b], input.points[c]};
       const bool is_fine = fine == Fine::kCorners &&
                            longest_edge(corners) <= kNoSmaller * std::max({made_edge[a], made_edge[b], made_edge[c]});
-      if (!is_fine) add_suspects(corners, triangles[i], look, found);
+      if (is_fine) continue;
+      look.set_limits(part_of(triangles[i]) * limit, part_of(triangles[i]) * far);
+      add_suspects(corners, triangles[i], look, found);
     }
   };
   std::vector<Sample> found = parallel_collect<Sample>(triangles.size(), kRange, collect);
@@ -223,13 +224,30 @@ Box3 box_of(const TriangleCorners& t, double margin) {
 }  // namespace
 
 DeviationWatch::DeviationWatch(double limit, double far, const SurfaceMesh& input, const TriangleTree& input_tree,
-                               Fine fine)
+                               Fine fine, std::span<const double> bound)
     : limit_(limit),
       far_(far),
       fine_(fine),
       input_(input),
       input_tree_(input_tree),
-      is_near_change_(input.triangles.size(), 1) {}
+      is_near_change_(input.triangles.size(), 1) {
+  std::vector<Triangle> tighter;
+  for (std::uint32_t t = 0; t < bound.size(); ++t) {
+    part_.push_back(std::min(1.0, bound[t] / far));
+    least_part_ = std::min(least_part_, part_[t]);
+    if (part_[t] < 1) tighter.push_back(input.triangles[t]);
+  }
+  if (!tighter.empty()) tighter_.emplace(input.points, tighter);
+}
+
+/// Samples that lie farther than the limit of what is nearest, and some that do not.
+std::vector<Sample> DeviationWatch::far_of_made(const SurfaceMesh& made,
+                                                const std::vector<std::uint32_t>& changed) const {
+  return far_ones(samples_of(made, changed), [&](const Sample& s) {
+    if (!input_tree_.is_within(s.p, limit_)) return true;
+    return tighter_ && tighter_->is_within(s.p, limit_) && !input_tree_.is_within(s.p, least_part_ * limit_);
+  });
+}
 
 std::vector<FarPlace> DeviationWatch::look(const SurfaceMesh& made, const std::vector<std::uint32_t>& number) {
   const std::vector<std::uint32_t> changed = note_changes(made, number);
@@ -239,20 +257,25 @@ std::vector<FarPlace> DeviationWatch::look(const SurfaceMesh& made, const std::v
   std::erase_if(of_input_, [&](const FarPlace& p) { return is_near_change_[p.on_input.face] != 0; });
   std::erase_if(of_made_, forget);
 
-  append(of_made_, beyond(limit_, samples_of(made, changed), input_tree_), [&](const Sample& s) {
+  append(of_made_, far_of_made(made, changed), [&](const Sample& s) {
     double distance = 0;
     const TriangleTree::Nearest nearest = nearest_facing(input_tree_, s.p, normal_of(made, s.triangle), distance);
-    return FarPlace{s.p, {nearest.point, nearest.triangle}, distance, number[s.triangle], s.within};
+    return FarPlace{
+        s.p, {nearest.point, nearest.triangle}, distance / part_of(nearest.triangle), number[s.triangle], s.within};
   });
+  if (tighter_) std::erase_if(of_made_, [&](const FarPlace& p) { return p.distance < limit_; });
   std::vector<std::uint32_t> asked;
   for (std::uint32_t t = 0; t < input_.triangles.size(); ++t)
     if (is_near_change_[t]) asked.push_back(t);
   const TriangleTree made_tree(made);
-  const std::vector<Sample> far = beyond(limit_, suspects(limit_, far_, input_, asked, made_tree, fine_), made_tree);
+  const auto part = [&](std::uint32_t t) { return part_of(t); };
+  const std::vector<Sample> far =
+      far_ones(suspects(limit_, far_, part, input_, asked, made_tree, fine_),
+               [&](const Sample& s) { return !made_tree.is_within(s.p, part_of(s.triangle) * limit_); });
   append(of_input_, far, [&](const Sample& s) {
     double distance = 0;
     const std::uint32_t triangle = nearest_facing(made_tree, s.p, normal_of(input_, s.triangle), distance).triangle;
-    return FarPlace{s.p, {s.p, s.triangle}, distance, number[triangle], s.within};
+    return FarPlace{s.p, {s.p, s.triangle}, distance / part_of(s.triangle), number[triangle], s.within};
   });
   std::ranges::fill(is_near_change_, 0);
   std::vector<FarPlace> all = of_made_;

@@ -263,15 +263,15 @@ void report_counts(const Counts& counts, const Stage& stage) {
 class Remesher {
  public:
   Remesher(const KnownSurface& surface, const SizeField& sizes, const SurfaceOptions& options, const Stage& stage,
-           std::span<const double> moved, double slack)
+           std::span<const double> bound, double slack)
       : known_(surface),
         surface_(surface.mesh()),
-        moved_(moved),
+        bound_(bound),
         first_(sizes),
         sizes_(sizes),
         options_(options),
         tolerance_(options.max_deviation.value_or(HUGE_VAL)),
-        leeway_(surface.mesh(), surface.tree()),
+        leeway_(surface.mesh(), surface.tree(), bound),
         slack_(slack),
         stage_(stage),
         seamed_(!surface_.sides.empty() ? std::optional(cut_along_seams(surface)) : std::nullopt),
@@ -623,14 +623,12 @@ class Remesher {
   std::vector<FarPlace> far_places(const WorkingMesh& mesh, DeviationWatch& watch) const {
     if (!limits_deviation()) return {};
     const std::vector<std::uint32_t> number = front_triangles(mesh);
-    std::vector<FarPlace> places = watch.look(triangles_of(mesh, number), number);
-    if (!moved_.empty())
-      for (FarPlace& place : places) place.distance += moved_[place.on_input.face];
-    return places;
+    return watch.look(triangles_of(mesh, number), number);
   }
 
   DeviationWatch deviation_watch() const {
-    return {kLeftAlone * tolerance_, tolerance_, surface_, known_.tree(), seamed_ ? Fine::kCorners : Fine::kParts};
+    const Fine fine = seamed_ ? Fine::kCorners : Fine::kParts;
+    return {kLeftAlone * tolerance_, tolerance_, surface_, known_.tree(), fine, bound_};
   }
 
   /// What is left of bad triangles, of edges too sharp for any element, and of crossings where these are few. True if
@@ -813,10 +811,10 @@ class Remesher {
   }
 
   const KnownSurface& known_;
-  const SurfaceMesh& surface_;  ///< of known_
-  std::span<const double> moved_;
-  SizeField first_;  ///< the sizes as they were asked, in a complex as they were foreseen
-  SizeField sizes_;  ///< and as they are now
+  const SurfaceMesh& surface_;     ///< of known_
+  std::span<const double> bound_;  ///< see remesh_surface()
+  SizeField first_;                ///< the sizes as they were asked, in a complex as they were foreseen
+  SizeField sizes_;                ///< and as they are now
   std::vector<Caps> caps_;
   std::vector<std::vector<PointSize>> wanted_;  ///< against deviation and crossings
   std::vector<Ball> restored_;                  ///< where the input's own triangles stay
@@ -842,8 +840,8 @@ Remeshed input_as_it_is(const KnownSurface& surface, const SizeField& sizes) {
 }
 
 Remeshed remesh_surface(const KnownSurface& surface, const SizeField& sizes, const SurfaceOptions& options,
-                        const Stage& stage, std::span<const double> moved, double slack) {
-  return Remesher(surface, sizes, options, stage, moved, slack).run();
+                        const Stage& stage, std::span<const double> bound, double slack) {
+  return Remesher(surface, sizes, options, stage, bound, slack).run();
 }
 
 }  // namespace octafront

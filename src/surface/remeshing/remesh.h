@@ -24,11 +24,11 @@ struct Remeshed {
 };
 
 /// The surface front. Requires a clean surface (see surface_mesh.h). The result is checked: closed, manifold, same
-/// components and genus, no self-intersection, features present; throws MeshingError if no attempt passes. `moved`: per
-/// triangle how far it lies from what the deviation is asked of, at most; empty: it is that. `slack`: it is not made
-/// anew for a few places that stray so many times as far as it may.
+/// components and genus, no self-intersection, features present; throws MeshingError if no attempt passes. `bound`: per
+/// triangle of the surface what options.max_deviation is there, if that is less; empty: so nowhere. `slack`: it is not
+/// made anew for a few places that stray so many times as far as it may.
 Remeshed remesh_surface(const KnownSurface& surface, const SizeField& sizes, const SurfaceOptions& options,
-                        const Stage& stage, std::span<const double> moved = {}, double slack = 1);
+                        const Stage& stage, std::span<const double> bound = {}, double slack = 1);
 
 /// The input's own triangles in the place of new ones.
 Remeshed input_as_it_is(const KnownSurface& surface, const SizeField& sizes);

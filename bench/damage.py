@@ -1,0 +1,184 @@
+"""Does damage cost more than its place? Clean models, each damaged in every way that scripts/lib/damages.py knows, are
+meshed with default options, and compared with the undamaged model: elements, CPU time, volume, angles.
+
+Usage: bench/run.sh damage [--models N] [--only SUBSTRING] [--kinds A,B] [--faces MOST] [--timeout SECONDS] [--lines FILE]
+                           [--program OCTAFRONT]
+The N smallest clean models of models/clean with 100 faces and more (by default 40, of 8,000 faces at most). Writes
+docs/damage.md. --lines appends a JSON object for each run to FILE and leaves out those that are there, so that a campaign may stop and go on.
+"""
+import argparse
+import json
+import pathlib
+import statistics
+import subprocess
+import sys
+import tempfile
+import zlib
+
+import numpy as np
+
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT / "scripts/lib"))
+import damages  # noqa: E402
+import solids  # noqa: E402
+from bounded import run  # noqa: E402
+
+PAGE = ROOT / "docs/damage.md"
+KINDS = damages.KINDS | damages.MORE
+MOST = 1.3      # times the elements and the time of the undamaged model
+LARGE = 1.0     # damage of a larger part of the surface, in percent, may cost more
+LEAST_FACES = 100
+NOT_THE_TIME = 0.3  # CPU seconds: where both runs take less, their ratio is that of starting up
+
+
+def models(most_faces, only):
+    """Clean ones, by the number of their faces."""
+    found, seen = [], set()
+    for file in sorted((ROOT / "models/clean").glob("*.off")):
+        if only not in file.name:
+            continue
+        try:
+            solid = solids.read_off(file)
+        except (ValueError, IndexError):  # with colours or normals: there are enough others
+            continue
+        twin = solid.triangles.tobytes() in seen  # the same model from another collection
+        if not twin and LEAST_FACES <= len(solid.triangles) <= most_faces and solids.is_strictly_clean(solid):
+            seen.add(solid.triangles.tobytes())
+            found.append((len(solid.triangles), file.name, solid))
+    return [(name, solid) for _, name, solid in sorted(found, key=lambda m: m[:2])]
+
+
+def corners_of(solid):
+    """Per triangle its corners in an order of their own, to be compared bit for bit."""
+    return [tuple(sorted(map(tuple, t))) for t in solid.points[solid.triangles].tolist()]
+
+
+def damaged_part(made):
+    """Of the area, in percent, what is no longer there as it was; which way it faces does not count. 100 where the answer
+    is another body."""
+    if len(made.truth) > 1:
+        return 100.0
+    left = set(corners_of(made.soup))
+    lost = sum(a for a, t in zip(solids.areas(made.truth[0]), corners_of(made.truth[0])) if t not in left)
+    return 100 * lost / solids.areas(made.truth[0]).sum()
+
+
+def meshed(program, file, folder, timeout):
+    report = pathlib.Path(folder, "report.json")
+    report.unlink(missing_ok=True)
+    status, message, cpu, _ = run([program, "mesh", file, "-o", pathlib.Path(folder, "mesh.vtu"), "--json", report, "-q",
+                                   "--threads", "1", "--sheets", "drop"], timeout)
+    if status != 0:
+        return {"failed": "no end" if status is None else f"status {status}: {message[:160]}", "cpu": cpu}
+    r = json.loads(report.read_text())
+    quality = r["quality"]
+    return {"cpu": cpu, "tets": r["tets"], "volume": r["volume"], "least": quality["dihedral_min_degrees"],
+            "most": quality["dihedral_max_degrees"]}
+
+
+def rows_of(a, name, solid, done):
+    """Of one model: the undamaged one, and each kind."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = pathlib.Path(folder, "model.off")
+        for kind in ["", *a.kinds.split(",")]:
+            if (name, kind) in done:
+                continue
+            row = {"model": name, "kind": kind}
+            if not kind:
+                solids.write_off(file, solid)
+            else:
+                rng = np.random.default_rng(zlib.crc32(f"{name} {kind}".encode()))
+                try:
+                    made = KINDS[kind](solid, rng)
+                except damages.Unsuitable:
+                    continue
+                row |= {"what": made.what, "part": damaged_part(made)}
+                solids.write_off(file, made.soup)
+            yield row | meshed(a.program, file, folder, a.timeout)
+
+
+# -------------------------------------------------------------------------------------------------------- page
+
+
+def compared(rows):
+    """Damaged runs with the figures over those of the undamaged model."""
+    clean = {r["model"]: r for r in rows if not r["kind"] and "failed" not in r}
+    out = []
+    for r in rows:
+        c = clean.get(r["model"])
+        if not r["kind"] or not c:
+            continue
+        if "failed" not in r:
+            quick = max(r["cpu"], c["cpu"]) < NOT_THE_TIME
+            r = r | {"elements x": r["tets"] / c["tets"], "time x": 1 if quick else r["cpu"] / c["cpu"],
+                     "volume %": 100 * (r["volume"] / c["volume"] - 1), "poor": r["least"] < 10 or r["most"] > 160}
+        out.append(r)
+    return out
+
+
+def is_too_much(r):
+    return r["part"] <= LARGE and max(r["elements x"], r["time x"]) > MOST
+
+
+def line(name, its):
+    made = [r for r in its if "failed" not in r]
+    if not made:
+        return f"| {name} | {len(its)} | 0 | | | | | | |"
+    small = [r for r in made if r["part"] <= LARGE]
+    worst = [f"{statistics.median(r[key] for r in made):.2f}, {max(r[key] for r in made):.2f}" for key in ("elements x", "time x")]
+    return (f"| {name} | {len(its)} | {len(made)} | {statistics.median(r['part'] for r in made):.2f} | {' | '.join(worst)} | "
+            f"{sum(not is_too_much(r) for r in small)} of {len(small)} | {max((abs(r['volume %']) for r in made)):.2f} | "
+            f"{sum(r['poor'] for r in made)} |")
+
+
+def table(rows):
+    head = ("| damage | cases | meshed | damaged, % of the area (median) | elements, times (median, most) | CPU time, times | "
+            f"at most {MOST} times, of damage up to {LARGE:g} % | volume, % (most) | outside 10-160° |")
+    out = [head, "|" + " --- |" * 9]
+    for kind in [k for k in KINDS if any(r["kind"] == k for r in rows)]:
+        out.append(line(kind, [r for r in rows if r["kind"] == kind]))
+    return "\n".join([*out, line("**all**", rows)]) + "\n"
+
+
+def page(rows, command, version):
+    left = [r for r in rows if "failed" in r or is_too_much(r)]
+    lines = [f"| {r['model']} | {r['kind']} | {r['what']} | " + (f"{r['failed'].replace('|', '/')} |" if "failed" in r else
+             f"damaged {r['part']:.2f} %: elements {r['elements x']:.2f} times, time {r['time x']:.2f} times |") for r in left]
+    return "\n".join([
+        "# What damage costs", "", f"Written by `{command}`, {version}.", "",
+        f"{len({r['model'] for r in rows})} clean models, each damaged in up to {len(KINDS)} ways (`scripts/lib/damages.py`), meshed with default options "
+        "(and `--sheets drop`, on one thread), over the undamaged model. CPU times of runs that take less than "
+        f"{NOT_THE_TIME} s do not count. *Damaged*: the area of what is no longer "
+        "there as it was, whichever way it faces; all of it where the answer is another body.", "",
+        table(rows), f"## Refused, or more than {MOST} times as much", "",
+        "| model | damage | what | result |", "| --- | --- | --- | --- |", *lines, ""])
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("build", type=pathlib.Path)
+    parser.add_argument("--models", type=int, default=40)
+    parser.add_argument("--only", default="", help="models whose name has this")
+    parser.add_argument("--kinds", default=",".join(KINDS))
+    parser.add_argument("--faces", type=int, default=8000, help="of a model, at most")
+    parser.add_argument("--timeout", type=float, default=100, help="CPU seconds for each run")
+    parser.add_argument("--lines", type=pathlib.Path)
+    parser.add_argument("--program", type=pathlib.Path, help="another build of octafront")
+    a = parser.parse_args()
+    a.program = a.program or a.build / "cli/octafront"
+    old = [json.loads(text) for text in a.lines.open()] if a.lines and a.lines.exists() else []
+    rows, done = list(old), {(r["model"], r["kind"]) for r in old}
+    for name, solid in models(a.faces, a.only)[:a.models]:
+        for row in rows_of(a, name, solid, done):
+            rows.append(row)
+            if a.lines:
+                with a.lines.open("a") as f:
+                    f.write(json.dumps(row) + "\n")
+    rows = compared(rows)
+    version = subprocess.run([a.program, "--version"], capture_output=True, text=True).stdout.strip()
+    print(table(rows))
+    PAGE.write_text(page(rows, "bench/run.sh damage" + "".join(f" {w}" for w in sys.argv[2:]), version))
+
+
+if __name__ == "__main__":
+    main()
