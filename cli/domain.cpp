@@ -46,6 +46,28 @@ SurfaceFile joined(Session& session, const std::vector<Body>& bodies, const Comp
   return {std::move(complex.surface), format, {}};
 }
 
+/// Says which of several files is at fault.
+void mend_body(Session& session, const std::filesystem::path& file, SurfaceMesh& surface) {
+  try {
+    mend(session, file, surface);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", file.string(), error.what()));
+  }
+}
+
+/// Parts with names that became one body: there is an option that keeps them apart.
+void tell_united_parts(const Session& session, const SurfaceMesh& read, const SurfaceMesh& mended) {
+  if (read.patch_names.size() < 2 || mended.triangles == read.triangles) return;
+  const std::vector<Body> parts = bodies_by_name(read);
+  const auto is_closed = [](const Body& body) {
+    return body.surface.patch.empty() && enclosed_volume(body.surface) > 0;
+  };
+  if (std::count_if(parts.begin(), parts.end(), is_closed) < 2) return;
+  session.say_notes("repair", {fmt::format("the parts \"{}\", \"{}\"{} overlap and are united; --overlap regions "
+                                           "makes regions of them, by their names",
+                                           parts[0].name, parts[1].name, parts.size() > 2 ? " ..." : "")});
+}
+
 SurfaceFile read_bodies(Session& session, Defects defects) {
   const Arguments& a = session.arguments();
   const std::vector<std::string> names = names_of(a.bodies);
@@ -58,7 +80,7 @@ SurfaceFile read_bodies(Session& session, Defects defects) {
           fmt::format("{}: is a complex of several regions by itself; give it alone", a.bodies[i].string()));
     options.regions.insert(options.regions.end(), file.regions.begin(), file.regions.end());
     options.voids.insert(options.voids.end(), file.voids.begin(), file.voids.end());
-    if (defects == Defects::kMended) mend(session, a.bodies[i], file.surface);
+    if (defects == Defects::kMended) mend_body(session, a.bodies[i], file.surface);
     bodies.push_back({names[i], std::move(file.surface)});
   }
   return joined(session, bodies, options, "several files");
@@ -108,7 +130,9 @@ SurfaceFile read_walls(Session& session, Defects defects) {
       file.surface = std::move(complex->surface);
       if (defects == Defects::kMended) drop_sheets(session, file.surface);
     } else if (defects == Defects::kMended) {
+      const SurfaceMesh read = file.surface;
       mend(session, a.input, file.surface);
+      if (a.overlap == Overlap::kUnion) tell_united_parts(session, read, file.surface);
     }
   } catch (const LeakError& leak) {
     throw LeakError(fmt::format("{}: {}", a.input.string(), leak.what()), leak.way);

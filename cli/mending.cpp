@@ -70,11 +70,14 @@ void drop_sheets(Session& session, SurfaceMesh& complex) {
   for (const Sides& sides : complex.sides) keep.push_back(sides[0] != sides[1]);
   const auto dropped = std::count(keep.begin(), keep.end(), 0);
   if (dropped == 0) return;
+  const double before = area(complex);
   keep_marked(complex.triangles, keep);
   keep_marked(complex.patch, keep);
   keep_marked(complex.source, keep);
   keep_marked(complex.sides, keep);
-  session.say_notes("repair", {counted(static_cast<std::uint64_t>(dropped), "face") + " of sheets dropped."});
+  session.say_notes("repair",
+                    {fmt::format("{} of sheets dropped, area {:.4g}; --sheets keep keeps them",
+                                 counted(static_cast<std::uint64_t>(dropped), "face"), before - area(complex))});
   session.found({{"dropped_sheet_faces", dropped}});
 }
 

@@ -1,11 +1,15 @@
+#include "cells/bodies.h"
+
 #include <octafront/complex.h>
 #include <octafront/repair.h>
 
 #include "cells/close_gaps.h"
 #include "cells/labelled.h"
+#include "core/utf8.h"
 #include "core/wording.h"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <queue>
 #include <utility>
@@ -143,6 +147,44 @@ void refuse_covered_bodies(const Labelled& labelled, const std::vector<Body>& bo
   }
 }
 
+/// Names the bodies that share space, those with most of it first.
+void note_overlaps(const Labelled& labelled, const std::vector<Windings>& windings, const std::vector<Body>& bodies,
+                   std::vector<std::string>& notes) {
+  const std::vector<double> volumes = labelled.cells.volumes();
+  std::map<std::pair<std::uint32_t, std::uint32_t>, double> shared;  // by who has it, and who would have had it
+  for (std::size_t c = 0; c < windings.size(); ++c)
+    for (const auto& [body, times] : windings[c])
+      if (times > 0 && body != labelled.region[c] && labelled.region[c] < bodies.size())
+        shared[{labelled.region[c], body}] += volumes[c];
+  if (shared.empty()) return;
+  std::vector<std::pair<double, std::pair<std::uint32_t, std::uint32_t>>> pairs;
+  for (const auto& [pair, volume] : shared) pairs.emplace_back(-volume, pair);
+  std::sort(pairs.begin(), pairs.end());
+  constexpr std::size_t kMostNamed = 5;
+  std::string words;
+  for (std::size_t i = 0; i < std::min(kMostNamed, pairs.size()); ++i) {
+    const auto& [volume, pair] = pairs[i];
+    words += fmt::format("{}\"{}\" takes {:.4g} from \"{}\"", i == 0 ? "" : ", ", bodies[pair.first].name, -volume,
+                         bodies[pair.second].name);
+  }
+  if (pairs.size() > kMostNamed) words += fmt::format(" and {} more pairs", pairs.size() - kMostNamed);
+  notes.push_back("bodies overlap, and the later one has its way, by volume: " + words);
+}
+
+/// Whether of two bodies that share cells one always has all of its cells in common with the other.
+bool are_nested(const std::vector<Windings>& windings) {
+  std::map<std::uint32_t, std::size_t> cells_of;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> shared;
+  for (const Windings& w : windings)
+    for (auto a = w.begin(); a != w.end(); ++a) {
+      ++cells_of[a->first];
+      for (auto b = std::next(a); b != w.end(); ++b) ++shared[{a->first, b->first}];
+    }
+  return std::all_of(shared.begin(), shared.end(), [&](const auto& pair) {
+    return pair.second == std::min(cells_of[pair.first.first], cells_of[pair.first.second]);
+  });
+}
+
 /// Patches of the outside by body, of interfaces by both bodies; a body's own patches keep their names.
 class Patches {
  public:
@@ -175,14 +217,16 @@ double tolerance_of(const ComplexOptions& options, const std::vector<Vec3>& poin
 
 }  // namespace
 
-Complex join_bodies(const std::vector<Body>& bodies, const ComplexOptions& options, const RunContext& context) {
+namespace cells {
+
+Joined joined_bodies(const std::vector<Body>& bodies, const ComplexOptions& options, const RunContext& context) {
   if (bodies.empty()) throw OptionError("there is no body to join");
   if (options.tolerance && !(*options.tolerance >= 0))
     throw OptionError(fmt::format("`tolerance` is {}; it must not be below 0", *options.tolerance));
   Complex before;
   Together all = put_together(bodies, before, context);
   const double tolerance = tolerance_of(options, all.points);
-  cells::ClosedGaps closed = cells::close_gaps({all.points, all.triangles, all.body}, tolerance, context);
+  ClosedGaps closed = close_gaps({all.points, all.triangles, all.body}, tolerance, context);
   const Arrangement arranged = arrange(closed.points, closed.triangles, context);
   const Cells cells(arranged.points, arranged.triangles, context);
 
@@ -193,13 +237,13 @@ Complex join_bodies(const std::vector<Body>& bodies, const ComplexOptions& optio
   for (const Body& b : bodies) labelled.names.push_back(b.name);
   const std::uint64_t filled = fill_gaps(labelled, tolerance);
   refuse_covered_bodies(labelled, bodies, windings);
-  cells::apply_seeds(labelled, options);
+  apply_seeds(labelled, options);
   if (options.cells == ComplexOptions::Cells::kMerge)
     for (std::uint32_t& r : labelled.region)
       if (r != kNone) r = 0;
 
   Patches patches(bodies);
-  Complex complex = cells::complex_of(labelled, [&](std::size_t t, Sides sides) {
+  Complex complex = complex_of(labelled, [&](std::size_t t, Sides sides) {
     const std::uint32_t face = closed.source[arranged.origins_of(t)[0].triangle];
     std::vector<std::uint32_t> around;
     for (const Origin& o : arranged.origins_of(t)) around.push_back(body_of[o.triangle]);
@@ -213,9 +257,11 @@ Complex join_bodies(const std::vector<Body>& bodies, const ComplexOptions& optio
           break;
         }
     }
-    return cells::Face{patches.patch_of(all.body[face], all.patch[face], others), all.source[face]};
+    return Face{patches.patch_of(all.body[face], all.patch[face], others), all.source[face]};
   });
   complex.surface.patch_names = patches.names();
+  // Said of the regions, from whose names these are made.
+  NameCleaning().clean(complex.surface.patch_names);
   std::vector<std::string> notes = std::move(before.notes);
   if (closed.moved > 0)
     notes.push_back(fmt::format("{} moved onto earlier bodies within the tolerance of {:.3g}, by {:.3g} at most",
@@ -223,14 +269,16 @@ Complex join_bodies(const std::vector<Body>& bodies, const ComplexOptions& optio
   if (arranged.new_points > 0)
     notes.push_back(fmt::format("faces divided where bodies meet, at {}", counted(arranged.new_points, "new point")));
   if (filled > 0) notes.push_back(fmt::format("{} between bodies closed", counted(filled, "thin gap")));
-  const auto overlapped =
-      std::count_if(windings.begin(), windings.end(), [](const Windings& w) { return w.size() > 1; });
-  if (overlapped > 0)
-    notes.push_back(fmt::format("{} where bodies overlap: the later one has its way",
-                                counted(static_cast<std::uint64_t>(overlapped), "cell")));
+  note_overlaps(labelled, windings, bodies, notes);
   notes.insert(notes.end(), complex.notes.begin(), complex.notes.end());
   complex.notes = std::move(notes);
-  return complex;
+  return {std::move(complex), are_nested(windings)};
+}
+
+}  // namespace cells
+
+Complex join_bodies(const std::vector<Body>& bodies, const ComplexOptions& options, const RunContext& context) {
+  return cells::joined_bodies(bodies, options, context).complex;
 }
 
 }  // namespace octafront

@@ -1,5 +1,6 @@
 #include "cells/labelled.h"
 
+#include "core/utf8.h"
 #include "core/wording.h"
 
 #include <algorithm>
@@ -137,6 +138,9 @@ Complex complex_of(const Labelled& labelled, const std::function<Face(std::size_
     surface.patch.push_back(patch);
     surface.source.push_back(source);
   }
+  NameCleaning names;
+  names.clean(surface.region_names);
+  names.tell(complex.notes);
   if (sheets > 0)
     complex.notes.push_back(fmt::format("{} with one region on both sides {} as sheets", counted(sheets, "face"),
                                         sheets == 1 ? "stays" : "stay"));

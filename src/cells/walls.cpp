@@ -1,6 +1,7 @@
 #include <octafront/complex.h>
 #include <octafront/repair.h>
 
+#include "cells/bodies.h"
 #include "cells/labelled.h"
 #include "core/wording.h"
 #include "mesh/surface_topology.h"
@@ -39,6 +40,12 @@ void check_input(const SurfaceMesh& surface) {
 bool is_asked_for(const ComplexOptions& options) {
   return options.cells != ComplexOptions::Cells::kAuto || options.nested != ComplexOptions::Nested::kByDirection ||
          !options.regions.empty() || !options.voids.empty();
+}
+
+/// Whether solids with names of their own say all that is asked.
+bool is_for_solids(const ComplexOptions& options) {
+  return options.cells != ComplexOptions::Cells::kMerge && options.nested == ComplexOptions::Nested::kByDirection &&
+         options.regions.empty() && options.voids.empty();
 }
 
 /// Whether the surface is to be meshed as it is, or refused by those who mesh it: not the walls of several cells.
@@ -205,6 +212,8 @@ std::optional<Complex> complex_of_walls(const SurfaceMesh& surface, const Comple
   check_input(surface);
   if (!surface.sides.empty()) return relabelled(surface, options, context);
   const bool asked = is_asked_for(options);
+  if (is_for_solids(options))
+    if (std::optional<Complex> solids = cells::complex_of_solids(surface, options, context)) return solids;
   if (!asked && is_plain(surface, context)) return std::nullopt;
   const Arrangement arranged = arrange(surface.points, surface.triangles, context);
   const Cells cells(arranged.points, arranged.triangles, context);

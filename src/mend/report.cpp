@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
+#include <tuple>
 
 #include <fmt/core.h>
 
@@ -152,6 +154,18 @@ void note_closed(MendReport& report) {
                               : fmt::format("; {} beyond the tolerance: patch \"{}\"", beyond, kClosedByRepair)));
 }
 
+/// A dropped part of the surface's area that may have been meant: an inner wall, a crack.
+constexpr double kWorthKeeping = 1e-3;
+
+void note_lost(MendReport& report) {
+  const Sum dropped = sum_of(report, Kind::kDropped);
+  if (dropped.changes == 0) return;
+  const bool may_matter = dropped.largest > kWorthKeeping * report.area_before;
+  report.notes.push_back(fmt::format("{} dropped ({}, area {:.4g}): inside of others, or bounding nothing{}.",
+                                     counted(dropped.changes, "part"), counted(dropped.faces, "face"), dropped.size,
+                                     may_matter ? "; `cells` regions keeps inner walls and cracks" : ""));
+}
+
 void write_notes(MendReport& report) {
   auto& notes = report.notes;
   if (report.joined_vertices + report.divided_edges > 0)
@@ -167,9 +181,7 @@ void write_notes(MendReport& report) {
                                 counted(sum_of(report, Kind::kCut).changes, "place")));
   if (const Sum filled = sum_of(report, Kind::kFilled); filled.changes > 0)
     notes.push_back(fmt::format("{} narrower than the tolerance filled.", counted(filled.changes, "enclosed gap")));
-  if (const Sum dropped = sum_of(report, Kind::kDropped); dropped.changes > 0)
-    notes.push_back(fmt::format("{} dropped ({}, area {:.4g}): inside of others, or bounding nothing.",
-                                counted(dropped.changes, "part"), counted(dropped.faces, "face"), dropped.size));
+  note_lost(report);
   if (report.separated_vertices > 0)
     notes.push_back(
         fmt::format("parts that touched drawn apart at {}.", counted(report.separated_vertices, "vertex", "vertices")));
@@ -181,8 +193,16 @@ void write_notes(MendReport& report) {
                               change(report.volume_before, report.volume_after)));
 }
 
+/// Vertices at one place are one: a clean surface comes back as it is.
 std::uint32_t parts_of(const SurfaceMesh& surface) {
   DisjointSets sets(surface.points.size());
+  const auto& p = surface.points;
+  const auto key = [&](VertexIndex v) { return std::tuple(p[v].x, p[v].y, p[v].z); };
+  std::vector<VertexIndex> order(p.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](VertexIndex a, VertexIndex b) { return key(a) < key(b); });
+  for (std::size_t i = 1; i < order.size(); ++i)
+    if (key(order[i]) == key(order[i - 1])) sets.join(order[i - 1], order[i]);
   for (const Triangle& t : surface.triangles)
     for (const VertexIndex v : t) sets.join(t[0], v);
   std::vector<char> used(surface.points.size(), 0);

@@ -108,6 +108,73 @@ TEST(JoinBodies, TheLaterOneHasItsWay) {
   EXPECT_NEAR(inside.volumes[1], 0.125, 1e-12);
 }
 
+/// Solids of one file, a patch each.
+SurfaceMesh in_one_file(const std::vector<Body>& solids) {
+  SurfaceMesh all;
+  for (const Body& solid : solids) {
+    const auto first = static_cast<VertexIndex>(all.points.size());
+    all.points.insert(all.points.end(), solid.surface.points.begin(), solid.surface.points.end());
+    for (const auto& [a, b, c] : solid.surface.triangles) {
+      all.triangles.push_back({first + a, first + b, first + c});
+      all.patch.push_back(static_cast<std::uint32_t>(all.patch_names.size()));
+    }
+    all.patch_names.push_back(solid.name);
+  }
+  return all;
+}
+
+SurfaceMesh moved_cube(double scale, double x, double yz) {
+  return testing::transformed(testing::cube(1), scale, {x, yz, yz});
+}
+
+TEST(JoinBodies, OverlapsNameTheBodiesAndTheVolume) {
+  const Complex complex = join_bodies({{"a", testing::cube(1)}, {"b", moved_cube(1, .5, 0)}});
+  const auto said = [&](const std::string& words) {
+    return std::any_of(complex.notes.begin(), complex.notes.end(),
+                       [&](const std::string& note) { return note.find(words) != std::string::npos; });
+  };
+  EXPECT_TRUE(said("\"b\" takes 0.5 from \"a\""));
+}
+
+TEST(SolidsOfOneFile, ThatTouchAreRegionsByName) {
+  const auto complex = complex_of_walls(in_one_file({{"left", testing::cube(1)}, {"right", moved_cube(0.5, 1, 0.25)}}));
+  ASSERT_TRUE(complex);
+  EXPECT_EQ(complex->surface.region_names, (std::vector<std::string>{"left", "right"}));
+  EXPECT_NEAR(complex->volumes[1], 0.125, 1e-12);
+  EXPECT_NEAR(interface_area(complex->surface), 0.25, 1e-12);
+}
+
+TEST(SolidsOfOneFile, InsideOthersAreRegionsByNameInAnyOrder) {
+  for (const bool inner_first : {false, true}) {
+    std::vector<Body> solids{{"A", testing::cube(1)}, {"ball", moved_cube(0.5, 0.25, 0.25)}};
+    if (inner_first) std::swap(solids[0], solids[1]);
+    const auto complex = complex_of_walls(in_one_file(solids));
+    ASSERT_TRUE(complex);
+    EXPECT_EQ(complex->surface.region_names, (std::vector<std::string>{"A", "ball"}));
+    EXPECT_NEAR(complex->volumes[0], 0.875, 1e-12);
+  }
+}
+
+TEST(SolidsOfOneFile, StayPlainWhereNothingIsShared) {
+  const SurfaceMesh apart = in_one_file({{"a", testing::cube(1)}, {"b", moved_cube(1, 3, 0)}});
+  EXPECT_FALSE(complex_of_walls(apart));
+  // Who overlaps is united by repair, and so is who asks for that.
+  EXPECT_FALSE(complex_of_walls(in_one_file({{"a", testing::cube(1)}, {"b", moved_cube(1, 0.5, 0.25)}})));
+  ComplexOptions merge;
+  merge.cells = ComplexOptions::Cells::kMerge;
+  const auto one = complex_of_walls(in_one_file({{"a", testing::cube(1)}, {"b", moved_cube(1, 1, 0)}}), merge);
+  ASSERT_TRUE(one);
+  EXPECT_EQ(one->volumes.size(), 1U);
+  // A shell that faces inward is a cavity, whatever it is called.
+  SurfaceMesh hole = moved_cube(0.5, 0.25, 0.25);
+  for (Triangle& t : hole.triangles) std::swap(t[1], t[2]);
+  EXPECT_FALSE(complex_of_walls(in_one_file({{"a", testing::cube(1)}, {"hole", hole}})));
+  ComplexOptions regions;
+  regions.cells = ComplexOptions::Cells::kRegions;
+  ASSERT_TRUE(complex_of_walls(apart, regions));
+  EXPECT_EQ(complex_of_walls(apart, regions)->surface.region_names, (std::vector<std::string>{"a", "b"}));
+}
+
 TEST(JoinBodies, ABodyThatIsCoveredIsRefusedByName) {
   try {
     join_bodies({{"small", testing::transformed(testing::cube(1), 0.5, {.25, .25, .25})}, {"large", testing::cube(1)}});

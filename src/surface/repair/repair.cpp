@@ -54,10 +54,12 @@ void drop_degenerate(Draft& draft, RepairedSurface& result) {
 }
 
 void clean_faces(Draft& draft, RepairedSurface& result) {
+  // Formats such as STL have three vertices of its own for each triangle: that they are merged is no news.
+  const bool is_soup = draft.mesh.points.size() == 3 * draft.mesh.triangles.size();
   const Merged merged = merge_vertices(draft);
   result.merged_vertices = merged.merged;
   result.unused_vertices = merged.unused;
-  if (merged.merged > 0)
+  if (merged.merged > 0 && !is_soup)
     result.notes.push_back(
         fmt::format("{} merged into others at the same place.", counted(merged.merged, "vertex", "vertices")));
   drop_degenerate(draft, result);
