@@ -38,8 +38,8 @@ struct NamedSize {
   double size = 0;  ///< > 0, input units
 };
 
-/// Where element sizes come from. Every source is optional; where several speak, the smallest size wins.
-/// With no source at all an automatic size is chosen from the model (see make_size_field).
+/// Where element sizes come from. Every source is optional; the smallest size wins. With none the size is automatic (see
+/// make_size_field); `size`, `point_sizes` and `callback` switch that off and decide alone, up to limits and gradation.
 struct SizeOptions {
   std::optional<double> size;            ///< uniform edge length, input units, > 0
   std::optional<std::int64_t> elements;  ///< target number of tetrahedra, > 0; the sizes are scaled to meet it
@@ -69,7 +69,7 @@ struct SizeOptions {
   std::vector<NamedSize> named;  ///< sizes of regions, patches and curves by their names
   /// All sizes, as read_size_field() returns them: no other source may be given with it, nor limits.
   std::optional<SizeField> field;
-  /// A further source on the surface, asked at many points at once: fills in a size > 0 for each. May be empty.
+  /// A source on the whole surface, asked at many points at once: fills in a size > 0 for each. May be empty.
   std::function<void(std::span<const Vec3> points, std::span<double> sizes)> callback;
 };
 

@@ -18,6 +18,7 @@ Result mesh_of(const Surface& surface, const Options& options, const RunContext&
   const SizeField sizes = choose_sizes(input, run);
   Filled filled = fill_to_target(input, sizes, run);
   improve_in_shape(input, filled, run);
+  note_missed_elements(filled.mesh, run);
   check_shape(input, filled, run);
   raise_order(input, filled, run);
   add_patch_curves(filled.mesh);

@@ -5,6 +5,7 @@
 #include <octafront/validity.h>
 
 #include "core/parallel.h"
+#include "core/utf8.h"
 #include "curved/curved.h"
 #include "improve/improve.h"
 #include "improve/raise_flat.h"
@@ -211,6 +212,14 @@ void require_bounds(const Mended& mended) {
                                   wrong - mended.bound.begin(), *wrong));
 }
 
+/// Of arrays: readers have done so already.
+void clean_names(SurfaceMesh& surface, const Stage& stage) {
+  NameCleaning names;
+  names.clean(surface.patch_names);
+  names.clean(surface.region_names);
+  if (std::string note = names.note(); !note.empty()) stage.note(std::move(note));
+}
+
 /// The bounds of a mended surface, for triangles whose sources are its own; these then are those of its triangles.
 std::vector<double> bounds_by_source(const Mended& mended, SurfaceMesh& surface) {
   std::vector<double> bound;
@@ -238,6 +247,7 @@ Prepared prepare(const SurfaceMesh& soup, const Mended* mended, Run& run) {
     stage.count("bodies", repaired.bodies);
     stage.count("cavities", repaired.cavities);
     if (!repaired.surface.sides.empty()) divide_by_sides(examined.repaired.surface);
+    clean_names(examined.repaired.surface, stage);
     return examined;
   });
   run.report.input_volume = enclosed_volume(found.repaired.surface);
@@ -289,6 +299,7 @@ SizeField choose_sizes(const Prepared& input, Run& run) {
     if (!size.field && run.options.surface.max_deviation != 0.0) size.chord_error = run.options.surface.max_deviation;
     if (const auto degrees = run.options.surface.normal_deviation)
       refuse_huge_turning(input.surface, size, *degrees, run.context());
+    note_misplaced_sizes(input.surface.mesh(), size, stage);
     return keeps_surface(run.options) ? size_field_of_surface(input.surface, size, stage)
                                       : make_size_field(input.surface, size, stage, input.bound);
   });

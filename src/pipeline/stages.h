@@ -60,6 +60,9 @@ Filled fill_surface(const Prepared& input, Remeshed boundary, Run& run);
 /// The surface as by triangulate_to_target(), filled; again if the elements made do not meet the number.
 Filled fill_to_target(const Prepared& input, const SizeField& sizes, Run& run);
 
+/// Says so if a mesh that is done misses the number of elements that was asked for by more than 15 %.
+void note_missed_elements(const TetMesh& mesh, Run& run);
+
 /// Better elements by these options; `filled.boundary` follows what became of the boundary.
 void improve_elements(const Prepared& input, Filled& filled, Run& run, const ImproveOptions& options);
 

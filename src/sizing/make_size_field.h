@@ -20,6 +20,10 @@ namespace octafront {
 SizeField make_size_field(const KnownSurface& surface, const SizeOptions& options, const Stage& stage,
                           std::span<const double> chord_errors = {});
 
+/// Says which regions and points of `options` lie outside of the model's box, and how much of the surface a field does
+/// not cover. Throws OptionError for a field that covers none of it.
+void note_misplaced_sizes(const SurfaceMesh& surface, const SizeOptions& options, const Stage& stage);
+
 /// Throws OptionError if triangles that turn by no more than so many degrees against the surface would give more
 /// elements than a mesh can hold.
 void refuse_huge_turning(const KnownSurface& surface, const SizeOptions& options, double degrees,

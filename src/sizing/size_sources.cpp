@@ -55,14 +55,18 @@ Choice choose(const SurfaceMesh& surface, const SizeOptions& o) {
   Choice c;
   c.automatic =
       !o.size && !o.curvature && !o.gap && !o.feature_elements && !o.facets && !o.callback && o.point_sizes.empty();
-  c.base = o.size ? *o.size : model_extent(surface) / kExtentPerSize;
-  // Sizes at points speak for the whole surface: there is no need of a size where nobody asks.
+  const double ours = model_extent(surface) / kExtentPerSize;
+  c.base = o.size.value_or(ours);
+  // Sizes at points and a function speak for the whole surface: there is no need of a size where nobody asks, and ours
+  // would cut what they ask for.
+  if (!o.size && o.callback) c.base = model_extent(surface);
   if (!o.size && !o.point_sizes.empty()) c.base = largest_of(o.point_sizes);
   if (o.max_size)
     c.base = o.size ? std::min(c.base, *o.max_size) : (c.automatic ? std::min(c.base, *o.max_size) : *o.max_size);
   c.base = std::max(c.base, o.min_size.value_or(0));
-  c.floor = o.min_size.value_or(c.base * (c.automatic ? kAutomaticFloor : kChosenFloor));
-  c.gap_floor = o.min_size.value_or(c.base * (c.automatic ? kAutomaticGapFloor : kChosenFloor));
+  const double usual = o.callback && !o.size ? std::min(c.base, ours) : c.base;
+  c.floor = o.min_size.value_or(usual * (c.automatic ? kAutomaticFloor : kChosenFloor));
+  c.gap_floor = o.min_size.value_or(usual * (c.automatic ? kAutomaticGapFloor : kChosenFloor));
   c.gap = o.gap.value_or(c.automatic ? kAutomaticGap : 0);
   c.curvature = o.curvature.value_or(c.automatic ? kAutomaticCurvature : 0);
   c.feature_elements = o.feature_elements.value_or(c.automatic ? kAutomaticFeatureElements : 0);
@@ -126,7 +130,7 @@ double automatic_scale(const SurfaceMesh& surface, const SurfaceCurvature& curva
 SizeAtPlace least_of(const SizeAtPlace& a, const SizeAtPlace& b) {
   if (!a || !b) return a ? a : b;
   return {[a = a.at, b = b.at](const PlaceOnSurface& s) { return std::min(a(s), b(s)); },
-          a.batched ? a.batched : b.batched};
+          a.batched ? a.batched : b.batched, std::min(a.spacing, b.spacing)};
 }
 
 /// The sources that are asked place by place, in one function; empty if there are none. A wall below a floor of our own
@@ -170,6 +174,7 @@ SizeAtPlace given_sizes(const SurfaceMesh& surface, const SizeOptions& options) 
   if (options.callback) {
     callback.batched = std::make_shared<BatchedSizes>(options.callback);
     callback.at = [sizes = callback.batched](const PlaceOnSurface& s) { return sizes->at(s.p); };
+    callback.spacing = model_extent(surface) / kExtentPerSize;
   }
   return least_of(points, callback);
 }

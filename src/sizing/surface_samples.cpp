@@ -35,7 +35,8 @@ class Sampler {
     if (size_at_) h = std::min(h, size_at_({p, n, face}));
     const double ab = squared_distance(a, b), bc = squared_distance(b, c), ca = squared_distance(c, a);
     const double longest = std::max({ab, bc, ca});
-    if (longest <= h * h) {
+    const double most = std::min(h, size_at_.spacing);
+    if (longest <= most * most) {
       if (samples_.size() == kMostSamples) {
         throw OptionError(fmt::format(
             "sizes as small as {:.4g} near ({:.6g}, {:.6g}, {:.6g}) are too small for this surface: its "

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <span>
 #include <unordered_map>
@@ -47,13 +48,17 @@ struct SizeAtPlace {
   std::function<double(const PlaceOnSurface&)> at = {};  ///< may be empty
   std::shared_ptr<BatchedSizes> batched = {};            ///< after it has fetched, `at` answers better; may be null
 
+  /// Places are no farther apart than this, so that none is missed where sizes are small amid large ones.
+  double spacing = std::numeric_limits<double>::infinity();
+
   explicit operator bool() const { return static_cast<bool>(at); }
   double operator()(const PlaceOnSurface& place) const { return at(place); }
 };
 
-/// Samples of a surface, dense enough for its sizes: triangles longer than the size at their centroid are halved along
-/// their longest edge until they are not. `face_size` bounds the size on each triangle; `size_at`, which may be empty,
-/// may ask for less at a place. Throws OptionError if more than 50 million samples were needed.
+/// Samples of a surface, dense enough for its sizes: triangles longer than the size at their centroid, or than
+/// `size_at.spacing`, are halved along their longest edge until they are not. `face_size` bounds the size on each
+/// triangle; `size_at`, which may be empty, may ask for less at a place. Throws OptionError if more than 50 million
+/// samples were needed.
 std::vector<SizeSample> sample_surface(const SurfaceMesh& surface, const std::vector<double>& face_size,
                                        const SizeAtPlace& size_at, const RunContext& context);
 

@@ -220,6 +220,62 @@ TEST(SizeField, FeatureCurvesGetTheirElements) {
   EXPECT_NEAR(h.at({0.5, 1, 0}), 0.1 + o.gradation, 0.02);
 }
 
+// The automatic size has no say where a function speaks for the whole surface, nor does any size between its samples.
+TEST(SizeField, ACallbackAloneIsNotCapped) {
+  SizeOptions o;
+  o.callback = each([](Vec3) { return 0.3; });
+  const SizeField even = make(cube(1), o);
+  EXPECT_NEAR(even.min_size(), 0.3, 1e-3);
+  EXPECT_NEAR(even.max_size(), 0.3, 1e-3);
+  o.callback = each([](Vec3 p) { return 0.1 + length(p - Vec3{1, 1, 1}); });
+  o.gradation = 1;
+  const SizeField far = make(cube(1), o);
+  EXPECT_NEAR(far.at({1, 1, 1}), 0.1, 0.08);
+  EXPECT_GT(far.at({0, 0, 0}), 1);
+  // Small in one corner of large faces that are large at their middle.
+  o.callback = each([](Vec3 p) { return length(p - Vec3{1, 1, 1}) < 0.15 ? 0.02 : 5.0; });
+  EXPECT_LT(make(cube(1), o).at({1, 1, 1}), 0.03);
+  o.max_size = 0.2;
+  EXPECT_LE(make(cube(1), o).max_size(), 0.2);
+}
+
+std::vector<std::string> notes_on(const SizeOptions& options) {
+  StageReport report;
+  const RunContext context;
+  note_misplaced_sizes(cube(2), options, Stage(context, report));
+  return report.notes;
+}
+
+TEST(MisplacedSizes, AreSaid) {
+  SizeOptions inside;
+  inside.regions = {{{0.5, 0.5, 0.5}, {0.5, 0.5, 0.5}, 0.1, 0.1}, {{-1, -1, -1}, {9, 9, 0.1}, 0, 0.2}};
+  inside.point_sizes = {{{0, 0, 0}, 0.1}, {{1.05, 1, 1}, 0.2}};
+  inside.field = SizeField::uniform(0.1);
+  EXPECT_TRUE(notes_on(inside).empty());
+  SizeOptions outside = inside;
+  outside.regions.push_back({{50, 50, 50}, {50, 50, 50}, 1, 0.05});
+  ASSERT_EQ(notes_on(outside).size(), 1U);
+  EXPECT_NE(notes_on(outside)[0].find("1 of 3 regions in `regions` lies outside"), std::string::npos)
+      << notes_on(outside)[0];
+  outside.regions.clear();
+  outside.point_sizes.push_back({{50, 50, 50}, 0.02});
+  ASSERT_EQ(notes_on(outside).size(), 1U);
+  EXPECT_NE(notes_on(outside)[0].find("1 of 3 points in `point_sizes` lies outside"), std::string::npos);
+}
+
+TEST(MisplacedSizes, AFieldCoversTheModel) {
+  SizeOptions o;
+  o.size = 0.2;
+  SizeOptions with_field;
+  with_field.field = make(cube(2), o);
+  EXPECT_TRUE(notes_on(with_field).empty());
+  with_field.field = make(transformed(cube(2), 1, {0.5, 0, 0}), o);
+  ASSERT_EQ(notes_on(with_field).size(), 1U);
+  EXPECT_NE(notes_on(with_field)[0].find("% of the surface's vertices lie outside"), std::string::npos);
+  with_field.field = make(transformed(cube(2), 1, {10, 0, 0}), o);
+  EXPECT_THROW(notes_on(with_field), OptionError);
+}
+
 TEST(SizeField, InteriorStaysBelowTheSurfaceUnlessGraded) {
   SizeOptions o;
   o.callback = each([](Vec3 p) { return 0.05 + 0.05 * std::abs(p.x); });
