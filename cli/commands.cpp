@@ -7,11 +7,14 @@
 #include "images.h"
 #include "inputs.h"
 #include "open_cavity.h"
+#include "overlaps.h"
 #include "page.h"
 #include "presets.h"
 #include "targets.h"
 #include "tell.h"
 #include "text.h"
+
+#include <optional>
 
 #include <fmt/core.h>
 
@@ -71,12 +74,22 @@ std::uint64_t ask_solver(Session& session, const TetMesh& mesh) {
   return refused;
 }
 
+/// A file whose elements are all the other way round has another convention, and reading them is no guess.
+std::optional<std::string> inverted(const MeshFile& file) {
+  const std::size_t all = file.mesh.tets.size();
+  if (file.turned == 0 || file.turned == all) return std::nullopt;
+  return fmt::format("{} of its {} elements are inverted", file.turned, all);
+}
+
 void check_tet_mesh(Session& session) {
   const std::string name = session.arguments().input.string();
-  const TetMesh mesh = read_mesh_input(session);
+  const MeshFile file = read_mesh_file_input(session);
+  const TetMesh& mesh = file.mesh;
   const std::uint64_t refused = ask_solver(session, mesh);
   prove_jacobians(session, mesh);
-  const auto defect = first_defect(mesh, session.context());
+  auto defect = first_defect(mesh, session.context());
+  if (!defect) defect = inverted(file);
+  if (!defect) defect = first_overlap(mesh, session.context());
   session.found({{"kind", "mesh"}, {"valid", !defect}});
   if (defect) throw InputError(fmt::format("{}: not a valid mesh: {}", name, *defect));
   tell_mesh(session, mesh, "a valid mesh");

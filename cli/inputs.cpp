@@ -26,12 +26,16 @@ bool is_tet_mesh_file(const std::filesystem::path& file) {
 }
 
 TetMesh read_mesh_input(const Session& session) {
+  return read_mesh_file_input(session).mesh;
+}
+
+MeshFile read_mesh_file_input(const Session& session) {
   const Arguments& a = session.arguments();
   MeshFile file = read_mesh_file(a.input, session.context());
   session.say(fmt::format("{}: {}, {} tetrahedra{}\n", a.input.string(), file.format, file.mesh.tets.size(),
                           file.mesh.is_second_order() ? " of second order" : ""));
   session.say_notes("reading", file.notes);
-  return std::move(file.mesh);
+  return file;
 }
 
 }  // namespace octafront::cli

@@ -27,9 +27,9 @@ struct SurfaceFile {
   std::vector<Vec3> voids = {};          ///< the same: its holes
 };
 
-/// Reads STL (binary, ASCII), OBJ, OFF, PLY (ASCII, both binary byte orders), TetGen's .poly and .smesh, and triangles
-/// of Gmsh's MSH 2.2 and 4.1 and of MEDIT, recognised by content; the name only breaks ties. A mesh of tetrahedra in
-/// one of the latter gives its boundary and its interfaces with their sides. Coordinates keep double precision. OBJ
+/// Reads STL (binary, ASCII), OBJ, OFF, PLY (ASCII, both binary byte orders), TetGen's .poly and .smesh, and meshes of
+/// any format that read_mesh_file() knows, recognised by content; the name only breaks ties. A mesh of tetrahedra
+/// gives its boundary and its interfaces with their sides. Coordinates keep double precision. OBJ
 /// groups and materials, and ASCII STL solids, become patches, so do facet markers, physical groups and references. The
 /// properties "front" and "back" of the faces of a PLY file are SurfaceMesh::sides (-1: outside), its comments "region
 /// 0 steel" their names. Throws InputError with file, line or byte offset, and the reason. Memory is bounded by a small
@@ -92,6 +92,7 @@ struct MeshFile {
   TetMesh mesh;
   std::string format;              ///< e.g. "Gmsh MSH 4.1"
   std::vector<std::string> notes;  ///< what a user should know, e.g. "3 hexahedra were left out"
+  std::uint64_t turned = 0;        ///< tetrahedra that were inverted in the file
 };
 
 /// Reads a tetrahedral mesh, linear or of second order, with its groups, in any format of known_formats() that

@@ -15,9 +15,8 @@
 namespace octafront {
 
 namespace io {
-namespace {
 
-RawMesh raw_mesh(const Input& input) {
+RawMesh read_raw_mesh(const Input& input) {
   switch (recognize_mesh(input)) {
     case MeshKind::kVtu:
       return read_vtu(input);
@@ -46,6 +45,8 @@ RawMesh raw_mesh(const Input& input) {
   }
 }
 
+namespace {
+
 TetMesh with_clean_names(TetMesh mesh, std::vector<std::string>& notes) {
   NameCleaning names;
   for (auto* list : {&mesh.region_names, &mesh.patch_names, &mesh.curve_names}) names.clean(*list);
@@ -57,7 +58,7 @@ TetMesh with_clean_names(TetMesh mesh, std::vector<std::string>& notes) {
 }  // namespace
 
 MeshFile read_mesh_bytes(const Input& input) {
-  MeshFile file = ordered_mesh(raw_mesh(input), input);
+  MeshFile file = ordered_mesh(read_raw_mesh(input), input);
   file.mesh = with_clean_names(std::move(file.mesh), file.notes);
   return file;
 }

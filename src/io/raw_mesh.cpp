@@ -115,7 +115,7 @@ class Ordering {
     }
     if (raw_.other_elements > 0)
       raw_.notes.push_back(fmt::format("{} elements of other kinds were left out", raw_.other_elements));
-    return {std::move(mesh_), std::move(raw_.format), std::move(raw_.notes)};
+    return {std::move(mesh_), std::move(raw_.format), std::move(raw_.notes), turned_};
   }
 
  private:
@@ -175,18 +175,17 @@ class Ordering {
     mesh_.tets = std::move(raw_.tets);
     mesh_.mid_nodes = std::move(raw_.mid_nodes);
     const auto& p = mesh_.points;
-    std::size_t turned = 0;
     for (std::size_t t = 0; t < mesh_.tets.size(); ++t) {
       auto& [a, b, c, d] = mesh_.tets[t];
       if (orient3d(p[a], p[b], p[c], p[d]) >= 0) continue;
-      ++turned;
+      ++turned_;
       std::swap(c, d);
       if (mesh_.mid_nodes.empty()) continue;
       auto& m = mesh_.mid_nodes[t];
       std::swap(m[1], m[2]);
       std::swap(m[3], m[4]);
     }
-    if (turned > 0) raw_.notes.push_back(fmt::format("{} inverted tetrahedra were turned", turned));
+    if (turned_ > 0) raw_.notes.push_back(fmt::format("{} inverted tetrahedra were turned", turned_));
     Numbered regions = raw_.tet_ref.empty() ? by_groups(raw_.groups, Kind::kElements, mesh_.tets.size())
                                             : by_reference(raw_.tet_ref, raw_.region_names);
     for (std::uint32_t& n : regions.numbers)
@@ -386,6 +385,7 @@ class Ordering {
   RawMesh raw_;
   const Input& input_;
   TetMesh mesh_;
+  std::uint64_t turned_ = 0;
   std::vector<VertexIndex> number_;               ///< of the points of the file
   std::vector<std::uint32_t> face_of_, edge_of_;  ///< of the triangles and edges of the file
 };

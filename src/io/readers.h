@@ -37,6 +37,8 @@ RawMesh read_med(const Input& input);
 
 /// Recognise and read.
 SurfaceFile read_surface_bytes(const Input& input);
+/// A mesh in whatever format it is.
+RawMesh read_raw_mesh(const Input& input);
 MeshFile read_mesh_bytes(const Input& input);
 
 }  // namespace octafront::io

@@ -149,7 +149,7 @@ bool claims_to_be_stl(const Input& input) {
 }
 
 constexpr std::string_view kSurfaces =
-    "a surface as STL, OBJ, OFF, PLY, TetGen .poly or .smesh, or as triangles of Gmsh .msh or MEDIT .mesh";
+    "a surface as STL, OBJ, OFF, PLY, TetGen .poly or .smesh, or a mesh of one of the formats that are read";
 constexpr std::string_view kMeshes =
     "a mesh as VTU, VTK, Gmsh .msh, Abaqus .inp, Nastran .bdf, I-deas .unv, MED, XDMF, MEDIT .mesh or .meshb, Netgen "
     ".vol "
@@ -173,6 +173,13 @@ bool has_ending(const Input& input, std::initializer_list<std::string_view> endi
 bool is_binary_medit(std::string_view bytes) {
   constexpr std::string_view kOne("\x01\0\0\0"sv);
   return bytes.starts_with(kOne) && bytes.size() > 8 && bytes[4] >= 1 && bytes[4] <= 4;
+}
+
+/// Whether well_known_kind() says that it is a mesh which is read here.
+bool is_mesh(std::string_view kind) {
+  return kind.find("unstructured grid") != std::string_view::npos ||
+         kind.find("legacy VTK") != std::string_view::npos || kind == "an XDMF mesh" || kind == "an HDF5 file" ||
+         kind == "a Netgen mesh";
 }
 
 /// Formats that are told by their text; none of them has a magic word.
@@ -217,7 +224,10 @@ SurfaceKind recognize_surface(const Input& input) {
   if (first == "$MeshFormat") return SurfaceKind::kMsh;
   if (first.starts_with("MeshVersionFormatted")) return SurfaceKind::kMedit;
   if (is_binary_medit(bytes)) return SurfaceKind::kMeditBinary;
-  if (const std::string_view kind = well_known_kind(bytes); !kind.empty()) fail_other_kind(input, kind, kSurfaces);
+  if (const std::string_view kind = well_known_kind(bytes); !kind.empty()) {
+    if (is_mesh(kind)) return SurfaceKind::kOtherMesh;
+    fail_other_kind(input, kind, kSurfaces);
+  }
   if (has_ending(input, {".poly", ".smesh"})) return SurfaceKind::kPoly;
   if (is_off_keyword(first)) return SurfaceKind::kOff;
   const bool binary = looks_binary(bytes);
@@ -229,6 +239,7 @@ SurfaceKind recognize_surface(const Input& input) {
   const Format* format = format_of(input.name);
   if (!binary && format != nullptr && format->info.name == "off" && is_plain_number(first)) return SurfaceKind::kOff;
   if (first.empty()) input.fail("holds nothing but blanks and comments; export it again");
+  if (!binary && text_kind(input, first, scan.word())) return SurfaceKind::kOtherMesh;
   fail_unknown(input, kSurfaces);
 }
 

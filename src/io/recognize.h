@@ -6,11 +6,11 @@
 
 namespace octafront::io {
 
-enum class SurfaceKind { kBinaryStl, kAsciiStl, kObj, kOff, kPly, kPoly, kMsh, kMedit, kMeditBinary };
+enum class SurfaceKind { kBinaryStl, kAsciiStl, kObj, kOff, kPly, kPoly, kMsh, kMedit, kMeditBinary, kOtherMesh };
 enum class MeshKind { kVtu, kVtk, kMsh, kMedit, kMeditBinary, kAbaqus, kNastran, kUnv, kNetgen, kTetgen, kXdmf, kHdf5 };
 
-/// What the bytes are, whatever the name; the name decides only where the bytes leave a choice. Throws InputError with
-/// what the file looks like instead.
+/// What the bytes are (kOtherMesh: what recognize_mesh() knows), whatever the name; the name decides only where the
+/// bytes leave a choice. Throws InputError with what the file looks like instead.
 SurfaceKind recognize_surface(const Input& input);
 MeshKind recognize_mesh(const Input& input);
 

@@ -32,6 +32,8 @@ SurfaceFile as_in_file(const Input& input) {
       return surface_of(read_medit(input), input);
     case SurfaceKind::kMeditBinary:
       return surface_of(read_medit_binary(input), input);
+    case SurfaceKind::kOtherMesh:
+      return surface_of(read_raw_mesh(input), input);
     default:
       return read_ply(input);
   }
