@@ -221,8 +221,10 @@ void declare_mesh_output(CLI::App& command, Arguments& a) {
   command
       .add_option("-o,--output", a.meshes,
                   "Mesh, its format by the ending: " + formats_that(&FormatInfo::writes_mesh) +
-                      "; several: each is written; -: to standard output, alone, with --format")
+                      "; several: each is written; -: to standard output, alone, with --format; /dev/null: nowhere, "
+                      "with --format")
       ->type_name("FILE")
+      ->transform([](const std::string& file) { return file == "/dev/stdout" ? std::string("-") : file; })
       ->allow_extra_args(false);
   command
       .add_option("--format", a.formats,

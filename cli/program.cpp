@@ -64,7 +64,7 @@ Program::Program() {
   app_.footer(
       "octafront help mesh: options and examples of a command\n"
       "Exit status: 0 done, 2 usage, 3 input refused, 4 no valid mesh, 5 output not written, 6 out of memory, "
-      "130 interrupted, 1 a bug of ours");
+      "130 interrupted (also by a hang-up), 1 a bug of ours");
   declare_makers();
   declare_lookers();
   declare_helpers();

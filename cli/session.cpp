@@ -77,6 +77,13 @@ void Session::say_notes(const std::string& stage, const std::vector<std::string>
   for (const std::string& note : notes) say(fmt::format("note ({}): {}\n", stage, note));
 }
 
+void Session::warn(const std::string& stage, const std::vector<std::string>& notes) const {
+  if (!arguments_.quiet && uses_of_standard_output(arguments_) == 0) return say_notes(stage, notes);
+  clear_progress();
+  for (const std::string& note : notes)
+    fmt::print(stderr, "octafront: warning ({}): {}\n", stage, printable(arguments_.names.translated(note)));
+}
+
 void Session::tell(const Report& report) {
   say(to_table(report));
   found(Json::parse(arguments_.names.translated(to_json(report))));

@@ -30,6 +30,8 @@ class Session {
   /// What was asked for itself, such as a manual: byte by byte.
   void say_exactly(const std::string& text) const;
   void say_notes(const std::string& stage, const std::vector<std::string>& notes) const;
+  /// Notes on what was asked for and is not there: on stderr where others are not shown.
+  void warn(const std::string& stage, const std::vector<std::string>& notes) const;
   /// The table of a run; the same goes into the JSON file.
   void tell(const Report& report);
   /// Further keys of the JSON file.

@@ -23,8 +23,18 @@ std::string format_of(const Arguments& a, std::size_t i) {
   return a.formats.empty() ? "" : a.formats[i];
 }
 
-void check_pipe(const std::string& format) {
-  if (format.empty()) throw OptionError("-o - has no ending: say which format goes to standard output, with --format");
+bool is_null(const std::filesystem::path& file) {
+  return file == "/dev/null";
+}
+
+/// What goes to no file has no ending.
+void check_format(const std::filesystem::path& file, const std::string& format) {
+  if (format.empty())
+    throw OptionError(fmt::format("-o {} has no ending: say which format is written, with --format", file.string()));
+}
+
+void check_pipe(const std::filesystem::path& file, const std::string& format) {
+  check_format(file, format);
   for (const FormatInfo& info : known_formats())
     if (info.writes_mesh && info.name == format && !info.one_file)
       throw OptionError(fmt::format("{} is written to several files: it cannot go to standard output", info.title));
@@ -67,10 +77,11 @@ void copy_to_standard_output(const std::filesystem::path& file, const RunContext
 /// Formats go back in their files, so that a pipe gets a file that is complete.
 std::vector<std::string> write_one(const std::filesystem::path& file, const TetMesh& mesh, const std::string& format,
                                    const RunContext& context) {
-  if (file != kStandardOutput) return write_mesh(file, mesh, context, format);
+  if (file != kStandardOutput && !is_null(file)) return write_mesh(file, mesh, context, format);
   const TemporaryFolder folder;
   const std::filesystem::path whole = folder.file("mesh");
   std::vector<std::string> notes = write_mesh(whole, mesh, context, format);
+  if (is_null(file)) return notes;
   clear_progress();
   copy_to_standard_output(whole, context);
   return notes;
@@ -83,8 +94,15 @@ void check_mesh_targets(const Arguments& a) {
   if (!a.formats.empty() && a.formats.size() != a.meshes.size())
     throw OptionError(fmt::format("--format is given {} and -o {} times: give each output its format, in turn",
                                   a.formats.size(), a.meshes.size()));
-  for (std::size_t i = 0; i < a.meshes.size(); ++i)
-    a.meshes[i] == kStandardOutput ? check_pipe(format_of(a, i)) : check_mesh_target(a.meshes[i], format_of(a, i));
+  for (std::size_t i = 0; i < a.meshes.size(); ++i) {
+    const std::string format = format_of(a, i);
+    if (a.meshes[i] == kStandardOutput)
+      check_pipe(a.meshes[i], format);
+    else if (is_null(a.meshes[i]))
+      check_format(a.meshes[i], format);
+    else
+      check_mesh_target(a.meshes[i], format);
+  }
 }
 
 void write_mesh_targets(Session& session, TetMesh mesh) {
@@ -95,10 +113,10 @@ void write_mesh_targets(Session& session, TetMesh mesh) {
   Json all = Json::array();
   for (std::size_t i = 0; i < a.meshes.size(); ++i) {
     session.context().report("writing", -1);
-    std::vector<std::string> notes = group_notes;
-    for (std::string& note : write_one(a.meshes[i], mesh, format_of(a, i), session.context()))
-      notes.push_back(std::move(note));
+    std::vector<std::string> notes = write_one(a.meshes[i], mesh, format_of(a, i), session.context());
+    session.warn("writing", group_notes);
     session.say_notes("writing", notes);
+    notes.insert(notes.begin(), group_notes.begin(), group_notes.end());
     all.push_back({{"file", a.meshes[i].string()}, {"notes", notes}});
     group_notes.clear();
   }

@@ -177,6 +177,10 @@ void AtomicFile::overwrite(std::uint64_t position, const void* bytes, std::size_
   }
 }
 
+fs::path AtomicFile::path_for_library() const {
+  return temporary_.empty() ? fs::path(fmt::format("/proc/self/fd/{}", fd_)) : temporary_;
+}
+
 void AtomicFile::give_name() {
   const fs::path name = temporary_beside(target_);
   const std::string self = fmt::format("/proc/self/fd/{}", fd_);
@@ -190,7 +194,9 @@ void AtomicFile::give_name() {
 /// Some file systems make nameless files but cannot name them.
 void AtomicFile::copy_to_named() {
   const int nameless = fd_;
-  const std::uint64_t size = flushed_;
+  struct stat status {};
+  if (::fstat(nameless, &status) != 0) fail("cannot be copied", errno);
+  const auto size = static_cast<std::uint64_t>(status.st_size);  // a library may have written it
   fd_ = -1;
   flushed_ = 0;
   try {

@@ -30,6 +30,8 @@ class AtomicFile {
   /// that at a time, while another one gives those that are ready to the system.
   void write_records(std::size_t count, std::size_t size,
                      FunctionRef<void(std::size_t begin, std::size_t end, char* to)> form);
+  /// Where a library that makes files by itself writes this one instead of us; it is to replace what is there.
+  std::filesystem::path path_for_library() const;
   /// Bytes written so far.
   std::uint64_t position() const { return flushed_ + filled_; }
   /// Forgets what was written from there on.

@@ -75,7 +75,10 @@ Hdf5Writer::Hdf5Writer(const std::filesystem::path& file, std::string target, Ru
   prepare_library();
   const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   if (ordered) H5Pset_link_creation_order(creation.get(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
-  file_ = check(H5Fcreate(file.c_str(), H5F_ACC_EXCL, creation.get(), H5P_DEFAULT), "cannot be created");
+  // Through stdio: the library's default driver asks for the real path of links, and a nameless file has none.
+  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  H5Pset_fapl_stdio(access.get());
+  file_ = check(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()), "cannot be created");
 }
 
 Hdf5Writer::~Hdf5Writer() {

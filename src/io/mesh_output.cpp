@@ -2,12 +2,9 @@
 
 #include <octafront/error.h>
 
-#include <cerrno>
 #include <system_error>
 
-#include <fcntl.h>
 #include <fmt/core.h>
-#include <unistd.h>
 
 namespace octafront::io {
 namespace {
@@ -19,23 +16,9 @@ namespace fs = std::filesystem;
       fmt::format("{}: {}: {}; an older one of this name is unchanged", file.string(), what, error.message()));
 }
 
-void flush_to_disk(const fs::path& file) {
-  const int fd = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
-  const int done = fd < 0 ? -1 : ::fsync(fd);
-  const std::error_code error(errno, std::generic_category());
-  if (fd >= 0) ::close(fd);
-  if (done != 0) fail(file, "cannot be written to the disk", error);
-}
-
-/// Renames over files; a folder takes the place of an older one, which goes only then.
+/// The folder takes the place of an older one, which goes only then.
 void put_in_place(const fs::path& temporary, const fs::path& final) {
   std::error_code error;
-  if (!fs::is_directory(temporary)) {
-    flush_to_disk(temporary);
-    fs::rename(temporary, final, error);
-    if (error) fail(final, "cannot be renamed into place", error);
-    return;
-  }
   const fs::path old = temporary.string() + ".old";
   if (fs::exists(final)) fs::rename(final, old, error);
   if (error) fail(final, "cannot be replaced", error);
@@ -69,13 +52,7 @@ AtomicFile& MeshOutput::beside(const std::string& name) {
 }
 
 fs::path MeshOutput::path_for_library(const std::string& name) {
-  fs::path final = target_;
-  if (!name.empty()) final.replace_filename(name);
-  check_writable(final);
-  final = links_followed(final);
-  fs::path temporary = temporary_beside(final);
-  pending_.push_back({temporary, final});
-  return temporary;
+  return (name.empty() ? file() : beside(name)).path_for_library();
 }
 
 fs::path MeshOutput::folder() {

@@ -48,7 +48,7 @@ class MeshOutput {
   std::filesystem::path target_;
   RunContext context_;
   std::vector<std::unique_ptr<AtomicFile>> files_;
-  std::vector<Pending> pending_;  ///< files of libraries, and the folder
+  std::vector<Pending> pending_;  ///< the folder, if there is one
   std::vector<std::string> notes_;
 };
 

@@ -13,6 +13,7 @@ import sys
 import tempfile
 import time
 import unittest
+import xml.etree.ElementTree
 
 OCTAFRONT, SAMPLES = sys.argv[1], pathlib.Path(sys.argv[2])
 
@@ -92,6 +93,87 @@ class CommandLine(unittest.TestCase):
         self.assertAlmostEqual(united["volume"], 15, 9)
         one = self.write_box("one.off", (0, 0, 0), (1, 1, 1))
         self.assertIn("names", self.run_cli("mesh", one, "--overlap", "regions", "-o", self.dir / "a.vtu", status=3).stderr)
+
+    def write_solids(self, name, *solids):
+        """An STL file of boxes, as bytes: (name, low, high) each."""
+        lines = []
+        for title, low, high in solids:
+            corners = [[(low, high)[n >> axis & 1][axis] for axis in range(3)] for n in range(8)]
+            lines.append(b"solid " + title)
+            for face in self.CUBE:
+                vertices = b"".join("vertex {} {} {}\n".format(*corners[c]).encode() for c in face)
+                lines.append(b"facet normal 0 0 0\nouter loop\n" + vertices + b"endloop\nendfacet")
+            lines.append(b"endsolid " + title)
+        (self.dir / name).write_bytes(b"\n".join(lines) + b"\n")
+        return self.dir / name
+
+    def test_names_in_latin_1_become_utf_8(self):
+        both = self.write_solids("both.stl", (b"K\xf6rper", (0, 0, 0), (1, 1, 1)), (b"Loch \x1b", (1, 0, 0), (2, 1, 1)))
+        out = self.dir / "both.vtu"
+        done = self.run_cli("mesh", both, "--size", ".4", "-o", out, "-o", self.dir / "both.xdmf", "--json", self.dir / "r.json")
+        self.assertIn('taken as Latin-1: "K\u00f6rper"', done.stdout)
+        self.assertIn("1 name had control characters", done.stdout)
+        found = json.loads((self.dir / "r.json").read_text())
+        self.assertEqual([r["name"] for r in found["regions"]], ["K\u00f6rper", "Loch  "])
+        for file in self.dir.glob("*.xdmf"):
+            xml.etree.ElementTree.parse(file)
+        # The tags of the VTU file, without the data behind them.
+        head = out.read_bytes().split(b"<AppendedData")[0] + b"</VTKFile>"
+        self.assertIn("K\u00f6rper", ",".join(e.get("Name", "") for e in xml.etree.ElementTree.fromstring(head).iter()))
+
+    def test_solids_of_one_file_that_touch_or_nest_are_regions(self):
+        touching = self.write_solids("t.stl", (b"left", (0, 0, 0), (1, 1, 1)), (b"right", (1, 0, 0), (2, 1, 1)))
+        self.assertEqual(self.regions_of(touching), {"left": 1, "right": 1})
+        nested = self.write_solids("n.stl", (b"ball", (1, 1, 1), (2, 2, 2)), (b"A", (0, 0, 0), (3, 3, 3)))
+        self.assertEqual(self.regions_of(nested), {"A": 26, "ball": 1})
+        crossing = self.write_solids("c.stl", (b"a", (0, 0, 0), (2, 2, 2)), (b"b", (1, 1, 1), (3, 3, 3)))
+        said = self.run_cli("mesh", crossing, "--size", 1, "-o", self.dir / "c.vtu").stdout
+        self.assertIn('the parts "a", "b" overlap and are united; --overlap regions', said)
+        said = self.run_cli("mesh", crossing, "--size", 1, "-o", self.dir / "c.vtu", "--overlap", "regions").stdout
+        self.assertIn('"b" takes 1 from "a"', said)
+
+    def test_what_is_dropped_has_an_option_that_keeps_it(self):
+        # A wall that hangs in the box, on one of its sides.
+        corners = [(x, y, z) for z in (0, 2) for y in (0, 2) for x in (0, 2)] + [(1, 0, .5), (1, 0, 1.5), (1, 1, 1)]
+        faces = [*self.CUBE, (8, 9, 10)]
+        crack = self.dir / "crack.off"
+        crack.write_text("\n".join(["OFF", f"{len(corners)} {len(faces)} 0", *("{} {} {}".format(*c) for c in corners),
+                                    *("3 {} {} {}".format(*f) for f in faces)]) + "\n")
+        said = self.run_cli("mesh", crack, "--size", 1, "-o", self.dir / "c.vtu").stdout
+        self.assertRegex(said, "area 0.5.*--cells regions|--sheets keep")
+        sheet = self.dir / "sheet.off"
+        sheet.write_text("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")
+        box = self.write_box("box.off", (0, 0, 0), (2, 2, 2))
+        self.assertIn("sheet.off: ", self.run_cli("mesh", box, sheet, "-o", self.dir / "c.vtu", status=3).stderr)
+
+    def test_sizes_that_lie_elsewhere_are_named(self):
+        box = self.write_box("box.off", (0, 0, 0), (1, 1, 1))
+        regions, points, grid = self.dir / "r.json", self.dir / "p.csv", self.dir / "grid.vtu"
+        regions.write_text('[{"point": [50, 50, 50], "size": 0.1}]')
+        said = self.run_cli("mesh", box, "--size", ".5", "--regions", regions, "-o", self.dir / "a.vtu").stdout
+        self.assertIn("1 of 1 region in --regions lies outside of the model", said)
+        points.write_text("50, 50, 50, 0.3\n")
+        said = self.run_cli("mesh", box, "--point-sizes", points, "-o", self.dir / "a.vtu").stdout
+        self.assertIn("1 of 1 point in --point-sizes lies outside of the model", said)
+        far = self.write_box("far.off", (10, 0, 0), (11, 1, 1))
+        self.run_cli("size", far, "--size", ".5", "-o", grid)
+        refused = self.run_cli("mesh", box, "--size-field", grid, "-o", self.dir / "b.vtu", status=2).stderr
+        self.assertIn("the model lies elsewhere", refused)
+
+    def test_a_number_that_is_missed_is_said(self):
+        said = self.run_cli("mesh", SAMPLES / "bracket.stl", "--elements", 10, "-o", self.dir / "a.vtu").stdout
+        self.assertRegex(said, r"10 elements were wanted; .* do not allow it: \d+ made")
+
+    def test_a_group_of_nothing_is_said_under_quiet_too(self):
+        done = self.run_cli("mesh", self.part, "-q", "-o", self.dir / "a.vtu", "--group", "g=patches:none")
+        self.assertEqual(done.stdout, "")
+        self.assertIn('the mesh has no patch "none"', done.stderr)
+
+    def test_devices_as_outputs(self):
+        whole = self.run_cli("mesh", self.part, "-o", self.dir / "a.mesh") and (self.dir / "a.mesh").read_text()
+        self.assertEqual(self.run_cli("mesh", self.part, "-o", "/dev/stdout", "--format", "medit").stdout, whole)
+        self.run_cli("mesh", self.part, "-o", "/dev/null", "--format", "vtu")
+        self.assertIn("--format", self.run_cli("mesh", self.part, "-o", "/dev/null", status=2).stderr)
 
     def test_a_body_that_is_covered_is_refused_by_name(self):
         inner = self.write_box("inner.off", (1, 1, 1), (2, 2, 2))

@@ -73,6 +73,13 @@ class Images(unittest.TestCase):
             self.assertAlmostEqual(volume / (64 * voxels[value]), 1, 2, name)
         self.assertEqual(list(self.volumes(self.two_boxes())), ["label 3", "label 7"])
 
+    def test_names_of_labels_in_latin_1(self):
+        names = self.write("names.txt", b"3 K\xf6rper\n7 Herz\n")
+        report = self.dir / "r.json"
+        said = self.run_cli("mesh", self.two_boxes(), "--labels", names, "--size", 4, "-o", self.dir / "l.vtu", "--json", report)
+        self.assertIn("taken as Latin-1: \"K\u00f6rper\"", said.stdout)
+        self.assertEqual([r["name"] for r in json.loads(report.read_text())["regions"]], ["K\u00f6rper", "Herz"])
+
     def test_a_mesh_of_labels_from_end_to_end(self):
         out, report = self.dir / "out.msh", self.dir / "r.json"
         self.run_cli("mesh", LABELS, "--labels", NAMES, "-o", out, "--json", report, "--improve", "fast")

@@ -27,6 +27,17 @@ std::size_t files_in(const fs::path& folder) {
   return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
 }
 
+// Even a process that is killed meanwhile leaves nothing behind.
+TEST(AtomicFile, ALibraryWritesItWithoutAName) {
+  const testing::TemporaryFolder folder;
+  io::AtomicFile file(folder / "a.med");
+  std::ofstream(file.path_for_library()) << "by a library";
+  const bool has_no_name = file.path_for_library().string().starts_with("/proc");
+  EXPECT_EQ(std::filesystem::is_empty(folder.path()), has_no_name);
+  file.commit();
+  EXPECT_EQ(testing::file_bytes(folder / "a.med"), "by a library");
+}
+
 TEST(AtomicFile, AppearsOnlyWhenCommitted) {
   const TemporaryFolder folder;
   const auto target = folder / "a.txt";
