@@ -1,6 +1,7 @@
 #include "sizing/size_sources.h"
 
 #include <octafront/error.h>
+#include <octafront/mend.h>
 
 #include "geometry/measures.h"
 #include "sizing/affordable.h"
@@ -127,6 +128,31 @@ double automatic_scale(const SurfaceMesh& surface, const SurfaceCurvature& curva
   return loss > allowed ? std::max(kLeastAutomaticScale, std::sqrt(allowed / loss)) : 1;
 }
 
+/// What says how a surface is shaped. Where repair closed holes it does not: those faces bend as they had to, and their
+/// rims are no lines of the body.
+struct ShapeLines {
+  std::vector<Edge> borders;  ///< across these no curvature is known; sorted
+  Features features;          ///< those that ask for sizes
+};
+
+ShapeLines lines_of_shape(const KnownSurface& known) {
+  const SurfaceMesh& surface = known.mesh();
+  const auto name = std::ranges::find(surface.patch_names, kClosedByRepair);
+  if (name == surface.patch_names.end()) return {known.features().edges, known.features()};
+  const auto invented = static_cast<std::uint32_t>(name - surface.patch_names.begin());
+  ShapeLines lines{{}, {{}, known.features().corners}};
+  const std::vector<Edge>& all = known.features().edges;
+  for (std::size_t e = 0; e < known.edges().size(); ++e) {
+    const Edge& edge = known.edges().edges[e];
+    const bool is_ours = std::ranges::any_of(known.edges().uses(e),
+                                             [&](std::uint32_t h) { return surface.patch_of(h / 3) == invented; });
+    const bool is_feature = std::ranges::binary_search(all, edge);
+    if (is_ours || is_feature) lines.borders.push_back(edge);
+    if (is_feature && !is_ours) lines.features.edges.push_back(edge);
+  }
+  return lines;
+}
+
 SizeAtPlace least_of(const SizeAtPlace& a, const SizeAtPlace& b) {
   if (!a || !b) return a ? a : b;
   return {[a = a.at, b = b.at](const PlaceOnSurface& s) { return std::min(a(s), b(s)); },
@@ -212,9 +238,10 @@ WantedSizes wanted_sizes(const KnownSurface& known, const SizeOptions& options, 
   wanted.face.assign(surface.triangles.size(), choice.base);
   double scale = 1;
   const Affordable affordable(surface, options);
+  const ShapeLines lines = lines_of_shape(known);
   const bool limits_chords = options.chord_error || !chord_errors.empty();
   if (choice.curvature > 0 || options.facets || limits_chords) {
-    const FaceNeighbours across = smooth_face_neighbours(known.edges(), known.features().edges);
+    const FaceNeighbours across = smooth_face_neighbours(known.edges(), lines.borders);
     if (options.facets) apply_facets(surface, across, choice.floor, wanted.face);
     if (choice.curvature > 0 || limits_chords) {
       const SurfaceCurvature curvature = surface_curvature(surface, across, stage.context());
@@ -231,7 +258,7 @@ WantedSizes wanted_sizes(const KnownSurface& known, const SizeOptions& options, 
     }
   }
   if (choice.feature_elements > 0) {
-    const std::vector<FeatureCurve> curves = feature_curves(surface, known.features());
+    const std::vector<FeatureCurve> curves = feature_curves(surface, lines.features);
     if (options.feature_elements) affordable.feature_elements(choice.feature_elements, curves);
     wanted.points = feature_samples(surface, curves, choice.feature_elements, choice.floor, choice.base);
   }
