@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 #include <thread>
 
 #include <fmt/core.h>
@@ -19,6 +20,8 @@ struct Cost {
   double of(const Estimate& e) const { return per_tet * e.tets + per_face * e.boundary_faces; }
 };
 constexpr Cost kFillSeconds{2e-6, 12e-6}, kImproveSeconds{0.6e-6, 9e-6}, kBytes{115, 900};
+// The same of triangles that are kept and longer than the sizes: for each size along their longest edges beyond two.
+constexpr double kFillPerSizeOfEdge = 0.1e-3, kImprovePerSizeOfEdge = 0.25e-3;
 constexpr double kBytesOfProgram = 20e6, kFileBytesPerTet = 14;
 /// Twice as many threads take about 1 / 1.7 of the time.
 constexpr double kThreadPower = 0.75;
@@ -39,13 +42,13 @@ double improvement_share(ImproveOptions::Level level) {
   }
 }
 
-/// Of the surface that will be filled: the last one that a stage counted.
-double triangles_of(const Report& report) {
-  double triangles = 0;
+/// What a stage counted, the last one that did; 0 if none did.
+double counted_as(std::string_view name, const Report& report) {
+  double count = 0;
   for (const StageReport& stage : report.stages)
     for (const auto& [key, value] : stage.counters)
-      if (key == "triangles") triangles = value;
-  return triangles;
+      if (key == name) count = value;
+  return count;
 }
 
 std::string in_words(double seconds) {
@@ -64,8 +67,11 @@ Estimate estimate_run(const Report& sizes, const Options& options, int threads) 
   const double used = threads > 0 ? std::min(threads, machine) : machine;
   Estimate e;
   e.tets = sizes.expected_tets;
-  e.boundary_faces = triangles_of(sizes);
-  const double work = kFillSeconds.of(e) + improvement_share(options.improve.level) * kImproveSeconds.of(e);
+  e.boundary_faces = counted_as("triangles", sizes);
+  const double long_edges = counted_as("sizes along long edges", sizes),
+               improving = improvement_share(options.improve.level);
+  const double work = kFillSeconds.of(e) + improving * kImproveSeconds.of(e) +
+                      long_edges * (kFillPerSizeOfEdge + improving * kImprovePerSizeOfEdge);
   // Of the processor, not the clock: what else the machine does now is not this run's.
   if (options.method == Method::kOctreeAft) e.seconds = (sizes.cpu_seconds + work) / std::pow(used, kThreadPower);
   e.memory_bytes = std::max(static_cast<double>(sizes.peak_memory_bytes), kBytesOfProgram + kBytes.of(e));

@@ -72,6 +72,18 @@ double mean_shortfall(const SurfaceMesh& surface, const std::vector<double>& fac
   return std::exp(sum / static_cast<double>(face.size()));
 }
 
+/// Sizes that the longest edges of triangles have beyond two, in all: elements between a large triangle and small sizes
+/// take many times the time of others, in the front and in improvement.
+double sizes_along_long_edges(const SurfaceMesh& surface, const OctreeField& grid) {
+  double sum = 0;
+  for (const auto& [i, j, k] : surface.triangles) {
+    const Vec3 a = surface.points[i], b = surface.points[j], c = surface.points[k];
+    const double longest = std::max({distance(a, b), distance(b, c), distance(c, a)});
+    sum += std::max(0.0, longest / grid.at(centroid(a, b, c)) - 2);
+  }
+  return sum;
+}
+
 /// The triangles that are kept stand for the size on the surface; these sources would ask for other triangles.
 void note_unused_sources(const SizeOptions& options, const Stage& stage) {
   std::string names;
@@ -141,6 +153,7 @@ SizeField size_field_of_surface(const KnownSurface& known, const SizeOptions& op
   auto grid = make_background_grid(root, samples, rules, stage.context());
   stage.count("leaves", static_cast<double>(grid->tree.size()));
   stage.count("levels", grid->tree.depth());
+  stage.count("sizes along long edges", sizes_along_long_edges(surface, *grid));
   return SizeFunction::field(with_regions(std::move(grid), options, stage.context()));
 }
 

@@ -34,6 +34,10 @@ double tets_per_triangle(double thickness) {
   return a.tets + (b.tets - a.tets) * (thickness - a.thickness) / (b.thickness - a.thickness);
 }
 
+/// A wall of one layer, in sizes. Triangles that are kept may be so many times fewer than the sizes ask for: then walls
+/// of several layers have points inside, and the volume decides there too.
+constexpr double kOneLayer = 1.05, kCoarse = 0.75;
+
 /// Places looked at, spread evenly over the triangles that the surface will have: shares to a percent, in milliseconds.
 constexpr int kPlaces = 4096;
 /// Rays begin this part of the model inside the surface, so as not to meet it where they start.
@@ -65,11 +69,13 @@ double ThinWalls::excess_tets(const std::vector<SurfacePiece>& pieces, const std
     const std::size_t k = looked_at[i].piece;
     looked_at[i].walls = thickness(pieces[k].p, normalized(pieces[k].n), kThickest * sizes[k]) / sizes[k];
   });
+  const bool are_coarse = triangles_per_square < kCoarse * kTrianglesPerSquare;
   double excess = 0;
-  for (const Place& p : looked_at)
+  for (const Place& p : looked_at) {
+    if (p.walls >= kThickest || (are_coarse && p.walls > kOneLayer)) continue;
     // The elements of one side of the wall, less those that its half of the volume stands for.
-    if (p.walls < kThickest)
-      excess += p.places * step * (triangles_per_square * tets_per_triangle(p.walls) - kTetsPerCube * p.walls / 2);
+    excess += p.places * step * (triangles_per_square * tets_per_triangle(p.walls) - kTetsPerCube * p.walls / 2);
+  }
   return excess;
 }
 

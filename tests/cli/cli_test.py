@@ -164,6 +164,40 @@ class CommandLine(unittest.TestCase):
         said = self.run_cli("mesh", SAMPLES / "bracket.stl", "--elements", 10, "-o", self.dir / "a.vtu").stdout
         self.assertRegex(said, r"10 elements were wanted; .* do not allow it: \d+ made")
 
+    def test_a_dry_run_knows_of_kept_triangles(self):
+        # Larger than the size: points inside the walls, which the triangles alone do not ask for.
+        options = ("mesh", SAMPLES / "bracket.stl", "--keep-surface", "--size", 2, "--json", "-", "--improve", "none")
+        said = json.loads(self.run_cli(*options, "--dry-run").stdout)["dry_run"]["expected_tets"]
+        made = json.loads(self.run_cli(*options, "-o", self.dir / "a.vtu").stdout)["tets"]
+        self.assertLess(abs(said / made - 1), 0.3)
+
+    def test_check_refuses_inverted_torn_and_doubled_meshes(self):
+        corners = ["0 0 0", "1 0 0", "0 1 0", "0 0 1", "0 0 -1"]
+        inner = [".1 .1 .1", ".2 .1 .1", ".1 .2 .1", ".1 .1 .2"]
+
+        def check(points, tets, status):
+            file = self.dir / "m.mesh"
+            file.write_text("MeshVersionFormatted 2\nDimension 3\nVertices {}\n{}\nTetrahedra {}\n{}\nEnd\n".format(
+                len(points), "\n".join(p + " 0" for p in points), len(tets), "\n".join(t + " 1" for t in tets)))
+            return self.run_cli("check", file, status=status).stderr
+
+        check(corners, ["1 2 3 4", "1 3 2 5"], 0)
+        # All the other way round is another convention; some are a defect.
+        check(corners, ["2 1 3 4", "3 1 2 5"], 0)
+        self.assertIn("1 of its 2 elements are inverted", check(corners, ["1 2 3 4", "3 1 2 5"], 3))
+        self.assertIn("torn", check(corners + corners[:3], ["1 2 3 4", "6 8 7 5"], 3))
+        self.assertIn("torn, or in two copies", check(corners[:4] * 2, ["1 2 3 4", "5 6 7 8"], 3))
+        self.assertIn("cross or touch", check(corners[:4] + ["-.5 .1 .1", ".5 .1 .1", "-.5 .2 .1", "-.5 .1 .2"], ["1 2 3 4", "5 6 7 8"], 3))
+        self.assertIn("inside of other elements", check(corners[:4] + inner, ["1 2 3 4", "5 6 7 8"], 3))
+
+    def test_meshes_of_all_formats_are_meshed_anew(self):
+        bracket = SAMPLES / "bracket.stl"
+        outputs = [self.dir / f"a.{ending}" for ending in ("vtu", "vtk", "inp", "bdf", "unv", "vol")]
+        self.run_cli("mesh", bracket, "--size", 12, *(word for o in outputs for word in ("-o", o)))
+        for file in outputs:
+            found = json.loads(self.run_cli("mesh", file, "--size", 12, "-o", self.dir / "b.vtu", "--json", "-").stdout)
+            self.assertLess(abs(found["volume"] / found["input_volume"] - 1), 0.02, file.name)
+
     def test_a_group_of_nothing_is_said_under_quiet_too(self):
         done = self.run_cli("mesh", self.part, "-q", "-o", self.dir / "a.vtu", "--group", "g=patches:none")
         self.assertEqual(done.stdout, "")
