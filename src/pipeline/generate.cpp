@@ -21,6 +21,7 @@ Result mesh_of(const Surface& surface, const Options& options, const RunContext&
   note_missed_elements(filled.mesh, run);
   check_shape(input, filled, run);
   raise_order(input, filled, run);
+  name_patches(input, filled);
   add_patch_curves(filled.mesh);
   check_result(filled.mesh, &filled.boundary.surface, run);
   describe(filled.mesh, run.report);
@@ -34,6 +35,7 @@ SurfaceResult boundary_of_mesh(const Surface& surface, const Options& options, c
   const Prepared input = prepare(surface, run);
   const SizeField sizes = choose_sizes(input, run);
   Remeshed made = triangulate_to_target(input, sizes, run);
+  name_closed_patch(input.closed, input.surface.tree(), made.surface);
   run.report.points = made.surface.points.size();
   run.report.boundary_faces = made.surface.triangles.size();
   run.report.volume = enclosed_volume(made.surface);

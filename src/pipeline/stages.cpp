@@ -256,6 +256,7 @@ Prepared prepare(const SurfaceMesh& soup, const Mended* mended, Run& run) {
   if (defects == SurfaceDomain::Defects::kClean && is_plain) moved = smooth_detail(found, run);
   const bool unfolded = !moved.empty();
   SurfaceMesh& surface = found.repaired.surface;
+  ClosedPatch closed = take_closed_patch(surface, found.edges);
   Features features = run.stage("features", [&](const Stage& stage) {
     Features of_surface = detect_features(surface, found.edges, run.options.surface.angle_of_features());
     stage.count("feature edges", static_cast<double>(of_surface.edges.size()));
@@ -268,7 +269,7 @@ Prepared prepare(const SurfaceMesh& soup, const Mended* mended, Run& run) {
   std::vector<double> bound =
       mended ? bounds_by_source(*mended, surface) : left_of_bound(std::move(moved), run.options.surface);
   return {KnownSurface(std::move(surface), std::move(found.edges), std::move(features)), defects, std::move(bound),
-          unfolded};
+          unfolded, std::move(closed)};
 }
 
 }  // namespace
@@ -300,8 +301,9 @@ SizeField choose_sizes(const Prepared& input, Run& run) {
     if (const auto degrees = run.options.surface.normal_deviation)
       refuse_huge_turning(input.surface, size, *degrees, run.context());
     note_misplaced_sizes(input.surface.mesh(), size, stage);
-    return keeps_surface(run.options) ? size_field_of_surface(input.surface, size, stage)
-                                      : make_size_field(input.surface, size, stage, input.bound);
+    return keeps_surface(run.options)
+               ? size_field_of_surface(input.surface, size, stage)
+               : make_size_field(input.surface, size, stage, {input.bound, input.closed.is_in_it});
   });
   const MethodTraits& method = traits_of(run.options.method);
   const SurfaceMesh& surface = input.surface.mesh();
@@ -376,6 +378,12 @@ void raise_order(const Prepared& input, Filled& filled, Run& run) {
     std::copy_n(mesh.points.begin(), boundary.surface.points.size(), boundary.surface.points.begin());
     count_edges(run.report.second_order, stage);
   });
+}
+
+void name_patches(const Prepared& input, Filled& filled) {
+  if (input.closed.patch == kNone) return;
+  name_closed_patch(input.closed, input.surface.tree(), filled.mesh);
+  name_closed_patch(input.closed, input.surface.tree(), filled.boundary.surface);
 }
 
 void count_edges(const SecondOrderSummary& made, const Stage& stage) {

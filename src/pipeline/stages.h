@@ -11,6 +11,7 @@
 #include <octafront/tet_mesh.h>
 
 #include "mesh/known_surface.h"
+#include "pipeline/closed_patch.h"
 #include "pipeline/run.h"
 #include "stuffing/implicit_domain.h"
 #include "surface/remeshing/remesh.h"
@@ -25,6 +26,7 @@ struct Prepared {
   /// unfolding has used up of a bound of the user's, and where repair moved something. Empty: so nowhere.
   std::vector<double> bound = {};
   bool unfolded = false;  ///< folds were taken off
+  ClosedPatch closed = {};
 };
 
 /// A mesh and the surface that it fills, triangle for triangle.
@@ -69,6 +71,9 @@ void improve_elements(const Prepared& input, Filled& filled, Run& run, const Imp
 /// Mid-side nodes where the run asks for second order, on the smooth surface of the input unless its triangles are
 /// kept; `filled.boundary` follows.
 void raise_order(const Prepared& input, Filled& filled, Run& run);
+
+/// Names what repair closed, in the mesh and `filled.boundary`.
+void name_patches(const Prepared& input, Filled& filled);
 
 /// Enters what became of the edges into the stage's report.
 void count_edges(const SecondOrderSummary& made, const Stage& stage);

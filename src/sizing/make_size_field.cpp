@@ -214,12 +214,12 @@ void refuse_huge_counts(const SurfaceMesh& surface, const WantedSizes& wanted) {
 }  // namespace
 
 SizeField make_size_field(const KnownSurface& known, const SizeOptions& options, const Stage& stage,
-                          std::span<const double> chord_errors) {
+                          const FaceRules& rules) {
   const SurfaceMesh& surface = known.mesh();
   check_size_options(options);
   if (surface.triangles.empty()) throw InputError("the surface has no triangles: there is nothing to choose sizes for");
   if (options.field) return *options.field;
-  WantedSizes wanted = wanted_sizes(known, options, stage, chord_errors);
+  WantedSizes wanted = wanted_sizes(known, options, stage, rules);
   if (wanted.automatic && !options.elements && options.automatic_factor != 1)
     wanted = scaled(wanted, options.automatic_factor, options);
   if (!options.elements) refuse_huge_counts(surface, wanted);

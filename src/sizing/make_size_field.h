@@ -10,15 +10,23 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace octafront {
+
+/// What holds of single triangles of a surface, on top of SizeOptions.
+struct FaceRules {
+  std::span<const double> chord_errors = {};  ///< SizeOptions::chord_error; infinity: nothing; empty: so everywhere
+  /// Not 0: nobody knows how the surface bends there, so it asks for no size. Empty: so nowhere.
+  std::span<const std::uint8_t> is_invented = {};
+};
 
 /// Builds the octree background grid from the sources of `options` on a clean surface: 2:1 balanced, sizes at leaf
 /// corners, graded, continuous inside leaves. Throws OptionError for contradictions and values out of range.
 /// With options.elements the sizes are scaled until expected_tets() meets it.
 SizeField make_size_field(const KnownSurface& surface, const SizeOptions& options, const Stage& stage,
-                          std::span<const double> chord_errors = {});
+                          const FaceRules& rules = {});
 
 /// Says which regions and points of `options` lie outside of the model's box, and how much of the surface a field does
 /// not cover. Throws OptionError for a field that covers none of it.

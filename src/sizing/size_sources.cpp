@@ -1,7 +1,6 @@
 #include "sizing/size_sources.h"
 
 #include <octafront/error.h>
-#include <octafront/mend.h>
 
 #include "geometry/measures.h"
 #include "sizing/affordable.h"
@@ -128,24 +127,21 @@ double automatic_scale(const SurfaceMesh& surface, const SurfaceCurvature& curva
   return loss > allowed ? std::max(kLeastAutomaticScale, std::sqrt(allowed / loss)) : 1;
 }
 
-/// What says how a surface is shaped. Where repair closed holes it does not: those faces bend as they had to, and their
+/// What says how a surface is shaped. Faces that repair invented do not: they bend as they had to, and their
 /// rims are no lines of the body.
 struct ShapeLines {
   std::vector<Edge> borders;  ///< across these no curvature is known; sorted
   Features features;          ///< those that ask for sizes
 };
 
-ShapeLines lines_of_shape(const KnownSurface& known) {
-  const SurfaceMesh& surface = known.mesh();
-  const auto name = std::ranges::find(surface.patch_names, kClosedByRepair);
-  if (name == surface.patch_names.end()) return {known.features().edges, known.features()};
-  const auto invented = static_cast<std::uint32_t>(name - surface.patch_names.begin());
+ShapeLines lines_of_shape(const KnownSurface& known, std::span<const std::uint8_t> is_invented) {
+  if (is_invented.empty()) return {known.features().edges, known.features()};
   ShapeLines lines{{}, {{}, known.features().corners}};
   const std::vector<Edge>& all = known.features().edges;
   for (std::size_t e = 0; e < known.edges().size(); ++e) {
     const Edge& edge = known.edges().edges[e];
-    const bool is_ours = std::ranges::any_of(known.edges().uses(e),
-                                             [&](std::uint32_t h) { return surface.patch_of(h / 3) == invented; });
+    const bool is_ours =
+        std::ranges::any_of(known.edges().uses(e), [&](std::uint32_t h) { return is_invented[h / 3] != 0; });
     const bool is_feature = std::ranges::binary_search(all, edge);
     if (is_ours || is_feature) lines.borders.push_back(edge);
     if (is_feature && !is_ours) lines.features.edges.push_back(edge);
@@ -231,15 +227,15 @@ double model_extent(const SurfaceMesh& surface) {
 }
 
 WantedSizes wanted_sizes(const KnownSurface& known, const SizeOptions& options, const Stage& stage,
-                         std::span<const double> chord_errors) {
+                         const FaceRules& rules) {
   const SurfaceMesh& surface = known.mesh();
   const Choice choice = choose(surface, options);
   WantedSizes wanted;
   wanted.face.assign(surface.triangles.size(), choice.base);
   double scale = 1;
   const Affordable affordable(surface, options);
-  const ShapeLines lines = lines_of_shape(known);
-  const bool limits_chords = options.chord_error || !chord_errors.empty();
+  const ShapeLines lines = lines_of_shape(known, rules.is_invented);
+  const bool limits_chords = options.chord_error || !rules.chord_errors.empty();
   if (choice.curvature > 0 || options.facets || limits_chords) {
     const FaceNeighbours across = smooth_face_neighbours(known.edges(), lines.borders);
     if (options.facets) apply_facets(surface, across, choice.floor, wanted.face);
@@ -249,7 +245,8 @@ WantedSizes wanted_sizes(const KnownSurface& known, const SizeOptions& options, 
       if (options.chord_error) affordable.max_deviation(*options.chord_error, curvature);
       if (limits_chords) {
         const auto error_of = [&](std::size_t f) {
-          return std::min(options.chord_error.value_or(HUGE_VAL), chord_errors.empty() ? HUGE_VAL : chord_errors[f]);
+          return std::min(options.chord_error.value_or(HUGE_VAL),
+                          rules.chord_errors.empty() ? HUGE_VAL : rules.chord_errors[f]);
         };
         apply_chord_errors(curvature, error_of, choice.floor, wanted.face);
       }

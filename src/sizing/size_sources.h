@@ -7,6 +7,7 @@
 #include "mesh/index_range.h"
 #include "mesh/known_surface.h"
 #include "sizing/background_grid.h"
+#include "sizing/make_size_field.h"
 #include "sizing/surface_samples.h"
 
 #include <cmath>
@@ -40,9 +41,8 @@ double model_extent(const SurfaceMesh& surface);
 
 /// Asks every source that `options` names; the automatic choice if it names none. Throws OptionError. Refers to the
 /// surface, which must outlive it.
-/// `chord_errors`: per triangle what options.chord_error says of all; infinity: nothing; empty: so everywhere.
 WantedSizes wanted_sizes(const KnownSurface& known, const SizeOptions& options, const Stage& stage,
-                         std::span<const double> chord_errors = {});
+                         const FaceRules& rules = {});
 
 /// The sources that are asked place by place and that hold for every kind of surface: options.point_sizes and the
 /// callback, whose answers are checked. Empty if there are none. Refers to `surface`, which must outlive it.
