@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <numeric>
 #include <tuple>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -48,7 +49,7 @@ std::optional<std::string> first_line(const SurfaceDefects& defects) {
 }  // namespace
 
 /// Requires a surface that is closed and manifold.
-std::vector<SurfaceKind::Shell> SurfaceKind::shells_of(const SurfaceMesh& surface, const EdgeTable& edges) {
+SurfaceKind::Shells SurfaceKind::shells_of(const SurfaceMesh& surface, const EdgeTable& edges) {
   const RunContext context;
   repair::Draft draft{surface, std::vector<std::uint32_t>(surface.triangles.size()), context, edges};
   const repair::Pieces pieces = repair::orient_pieces(draft);
@@ -71,9 +72,10 @@ std::vector<SurfaceKind::Shell> SurfaceKind::shells_of(const SurfaceMesh& surfac
     kinds[p].genus = (2 - vertices[p] + faces[p] / 2) / 2;
     kinds[p].depth = nesting.depth[p];
     kinds[p].sign = sign[p];
+    kinds[p].piece = p;
   }
   std::sort(kinds.begin(), kinds.end(), [](const Shell& a, const Shell& b) { return a.key() < b.key(); });
-  return kinds;
+  return {std::move(kinds), pieces.piece_of_triangle};
 }
 
 std::string SurfaceKind::words(const Shell& shell) {
@@ -81,16 +83,38 @@ std::string SurfaceKind::words(const Shell& shell) {
                      at_point(shell.at));
 }
 
-SurfaceKind::SurfaceKind(const SurfaceMesh& input, const EdgeTable& edges) : wanted_(shells_of(input, edges)) {}
+SurfaceKind::SurfaceKind(const SurfaceMesh& input, const EdgeTable& edges) : wanted_(shells_of(input, edges).sorted) {}
 
-std::optional<std::string> SurfaceKind::first_defect_but_crossings(const SurfaceMesh& result) const {
+/// Per piece whether it faces the wrong way, or is of a kind of which there are more than are wanted.
+std::vector<std::uint8_t> SurfaceKind::wrong_pieces(const std::vector<Shell>& made) const {
+  const auto by_key = [](const Shell& a, const Shell& b) { return a.key() < b.key(); };
+  std::vector<std::uint8_t> is_wrong(made.size(), 0);
+  for (const Shell& shell : made) {
+    const auto [first, last] = std::equal_range(made.begin(), made.end(), shell, by_key);
+    const auto [wanted, end] = std::equal_range(wanted_.begin(), wanted_.end(), shell, by_key);
+    is_wrong[shell.piece] = !shell.faces_right() || last - first > end - wanted;
+  }
+  return is_wrong;
+}
+
+std::optional<std::string> SurfaceKind::first_defect_but_crossings(const SurfaceMesh& result,
+                                                                   std::vector<Vec3>* places) const {
   if (auto defect = first_bad_vertex(result)) return defect;
   const RepairedSurface as_is = as_it_is(result);
   const EdgeTable table = make_edge_table(result.points.size(), result.triangles);
   if (auto defect = first_line(defects::find_defects_but_crossings(as_is, table, RunContext{}))) return defect;
-  const std::vector<Shell> made = shells_of(result, table);
+  const auto [made, piece_of_triangle] = shells_of(result, table);
+  if (places) {
+    const std::vector<std::uint8_t> is_wrong = wrong_pieces(made);
+    std::vector<char> is_taken(result.points.size(), 0);
+    for (std::size_t t = 0; t < result.triangles.size(); ++t) {
+      if (!is_wrong[piece_of_triangle[t]]) continue;
+      for (const VertexIndex v : result.triangles[t])
+        if (!std::exchange(is_taken[v], 1)) places->push_back(result.points[v]);
+    }
+  }
   for (const Shell& shell : made)
-    if (shell.sign != (shell.depth % 2 == 0 ? 1 : -1)) return words(shell) + " is inside out";
+    if (!shell.faces_right()) return words(shell) + " is inside out";
   if (made.size() != wanted_.size())
     return fmt::format("{} instead of {}", counted(made.size(), "shell"), wanted_.size());
   for (std::size_t k = 0; k < made.size(); ++k)
