@@ -20,14 +20,15 @@
 #   bench/run.sh damage      clean models damaged in 24 ways beside the undamaged ones -> docs/damage.md
 #   bench/run.sh images      volumes of labels, each label judged; --peers: beside CGAL -> docs/images-status.md
 #   bench/run.sh thin        plates, discs, tubes, shells 1:10 to 1:1e6, beside Gmsh and TetGen -> docs/thin-bodies.md
+#   bench/run.sh budget      automatic sizes: budget said, elements made, time, what was given up -> docs/budget-status.md
 #   bench/run.sh dry_run     mesh --dry-run: elements, time and memory said and taken -> docs/command-line.md
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/lib/apt.sh
 
 case ${1:-} in
-  status | derived | pipeline | surface | elements | gradation | volume | graded | peers | complexes | improve | formats | second_order | dry_run | repair | known_answers | damage | images | thin) ;;
-  *) sed -n '2,24s/^# \{0,1\}//p' "$0"; exit 2 ;;
+  status | derived | pipeline | surface | elements | gradation | volume | graded | peers | complexes | improve | formats | second_order | dry_run | repair | known_answers | damage | images | thin | budget) ;;
+  *) sed -n '2,25s/^# \{0,1\}//p' "$0"; exit 2 ;;
 esac
 need_packages "${build_packages[@]}" python3
 [ "$1" != surface ] || need_packages gmsh netgen libcgal-dev libgmp-dev libmpfr-dev

@@ -41,16 +41,18 @@ double change_of_volume(double made, double input) {
 }
 
 Remeshed remeshed_in_shape(const Prepared& input, const SizeField& sizes, const Run& run, const Stage& stage,
-                           const std::function<Remeshed(const SizeField&)>& remesh) {
+                           const std::function<Remeshed(const SizeField&)>& remesh, double budget) {
   Remeshed made = remesh(sizes);
   if (!has_automatic_sizes(run.options) || is_complex(input.surface.mesh())) return made;
   const auto change = [&] { return change_of_volume(enclosed_volume(made.surface), run.report.input_volume); };
   double scale = 1;
   for (int k = 0; k < kTries && is_off(change()); ++k) {
     scale *= std::max(kLeastScale, std::sqrt(kAim * kVolumeKept / std::abs(change())));
+    const SizeField smaller = scaled(sizes, scale, stage.context());
+    if (std::isfinite(budget) && expected_tets(smaller, input.surface.mesh()) > budget) break;
     stage.note(fmt::format("the automatic sizes change the volume by {:+.1f} %: made again by {:.2g} of them",
                            100 * change(), scale));
-    made = remesh(scaled(sizes, scale, stage.context()));
+    made = remesh(smaller);
   }
   if (!is_off(change())) return made;
   stage.note(fmt::format("the input's triangles are kept: others change the volume by {:+.1f} %", 100 * change()));

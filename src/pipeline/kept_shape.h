@@ -5,6 +5,7 @@
 
 #include "pipeline/stages.h"
 
+#include <cmath>
 #include <functional>
 
 namespace octafront {
@@ -16,9 +17,10 @@ inline constexpr double kVolumeKept = 0.01;
 double change_of_volume(double made, double input);
 
 /// The surface made by `sizes`. If its volume is off by more than kVolumeKept and sizes are automatic: made again by
-/// smaller ones, and the input's own triangles if that does not help. A note says so.
+/// smaller ones, and the input's own triangles if that does not help, or takes more elements than `budget`. A note says
+/// so.
 Remeshed remeshed_in_shape(const Prepared& input, const SizeField& sizes, const Run& run, const Stage& stage,
-                           const std::function<Remeshed(const SizeField&)>& remesh);
+                           const std::function<Remeshed(const SizeField&)>& remesh, double budget = HUGE_VAL);
 
 /// The volume filled and improved. Where improvement changes the volume by more than kVolumeKept it is done once more
 /// on a boundary that stays where it is.

@@ -82,6 +82,13 @@ constexpr double kAutomaticDeviation = 0.004;  // of the diagonal; sampled, so t
 /// The surface is not made anew for a few places that stray so many times as far.
 constexpr double kAutomaticSlack = 1.03;
 
+/// Elements that sizes of our own choice come to at most, by the prediction; HUGE_VAL if the user chose them, or how
+/// near the surface stays.
+double budget_of(const SurfaceMesh& surface, const Options& options) {
+  const bool bounds = options.surface.max_deviation || options.surface.normal_deviation || keeps_surface(options);
+  return bounds ? HUGE_VAL : automatic_budget(surface, options.size) / traits_of(options.method).tets_per_expected;
+}
+
 // Where sizes are given, detail is what is smaller than this part of them.
 constexpr double kDetail = 0.1;
 
@@ -297,13 +304,15 @@ Prepared prepare(const Mended& mended, Run& run) {
 SizeField choose_sizes(const Prepared& input, Run& run) {
   SizeField sizes = run.stage("size field", [&](const Stage& stage) {
     SizeOptions size = run.options.size;
+    const double budget = budget_of(input.surface.mesh(), run.options);
+    if (std::isfinite(budget)) stage.count("budget of elements", budget);
     if (!size.field && run.options.surface.max_deviation != 0.0) size.chord_error = run.options.surface.max_deviation;
     if (const auto degrees = run.options.surface.normal_deviation)
       refuse_huge_turning(input.surface, size, *degrees, run.context());
     note_misplaced_sizes(input.surface.mesh(), size, stage);
     return keeps_surface(run.options)
                ? size_field_of_surface(input.surface, size, stage)
-               : make_size_field(input.surface, size, stage, {input.bound, input.closed.is_in_it});
+               : make_size_field(input.surface, size, stage, {input.bound, input.closed.is_in_it}, budget);
   });
   const MethodTraits& method = traits_of(run.options.method);
   const SurfaceMesh& surface = input.surface.mesh();
@@ -319,9 +328,13 @@ Remeshed triangulate(const Prepared& input, const SizeField& sizes, Run& run) {
   return run.stage("surface front", [&](const Stage& stage) {
     const SurfaceOptions surface = true_to_input(input.surface.mesh(), run.options);
     const double slack = surface.max_deviation == run.options.surface.max_deviation ? 1 : kAutomaticSlack;
-    Remeshed remeshed = remeshed_in_shape(input, sizes, run, stage, [&](const SizeField& by) {
-      return remesh_surface(input.surface, by, surface, stage, input.bound, slack);
-    });
+    const double budget = budget_of(input.surface.mesh(), run.options);
+    Remeshed remeshed = remeshed_in_shape(
+        input, sizes, run, stage,
+        [&](const SizeField& by) {
+          return remesh_surface(input.surface, by, surface, stage, input.bound, {slack, budget});
+        },
+        budget);
     stage.count("triangles", static_cast<double>(remeshed.surface.triangles.size()));
     // Strips between lines and the bounds on deviation have made sizes smaller since the first prediction.
     run.report.expected_tets =

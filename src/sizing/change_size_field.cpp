@@ -1,5 +1,6 @@
 // New size fields from old ones: scaled, and capped near points.
 
+#include "core/parallel.h"
 #include "sizing/gradation.h"
 #include "sizing/grid_caps.h"
 #include "sizing/make_size_field.h"
@@ -62,6 +63,31 @@ std::vector<SizeCap> caps_at(const std::vector<PointSize>& places) {
   return caps;
 }
 
+/// How often the floor of sizes is corrected: to a hundredth of the way between the least and greatest size.
+constexpr int kFloorSteps = 8;
+
+/// The sizes of `first` at the corners of the leaves of `grid`, in its units.
+std::vector<std::array<double, 8>> at_corners(const OctreeField& grid, const SizeField& first) {
+  std::vector<std::array<double, 8>> h(grid.tree.size());
+  parallel_for(h.size(), [&](std::size_t l) {
+    const OctreeKey leaf = grid.tree.leaf(l);
+    const Vec3 lo = grid.root.corner_of(leaf);
+    const double side = grid.root.side / (1u << leaf.level());
+    for (int k = 0; k < 8; ++k)
+      h[l][k] = first.at(lo + side * Vec3{double(k & 1), double(k >> 1 & 1), double(k >> 2)}) / grid.root.side;
+  });
+  return h;
+}
+
+/// The sizes of `grid` raised to a floor, but not above `most`.
+OctreeField raised(const OctreeField& grid, const std::vector<std::array<double, 8>>& most, double floor) {
+  OctreeField result = grid;
+  for (std::size_t l = 0; l < result.h.size(); ++l)
+    for (int k = 0; k < 8; ++k) result.h[l][k] = std::max(result.h[l][k], std::min(most[l][k], floor));
+  result.find_range();
+  return result;
+}
+
 /// Cuts sizes that rise faster than the field's gradation.
 void grade_again(OctreeField& field, const RunContext& context) {
   const OctreeCorners corners = octree_corners(field.tree);
@@ -100,6 +126,26 @@ SizeField capped_at(const SizeField& sizes, const std::vector<PointSize>& places
 SizeField capped_steeply(const SizeField& sizes, const std::vector<PointSize>& places, double gradation,
                          const RunContext& context) {
   return places.empty() ? sizes : capped(sizes, caps_at(places), context, gradation);
+}
+
+WithinCount within_count(const SizeField& finer, const SizeField& first, const TetPrediction& expected, double most,
+                         const RunContext& context) {
+  context.check();
+  const OctreeField* grid = as_octree_field(finer);
+  if (grid == nullptr) return {finer, expected(finer), 0};
+  const auto expected_here = expected.on_leaves_of(*grid);
+  const double asked = expected_here(*grid);
+  if (asked <= most) return {finer, asked, 0};
+  const auto most_sizes = at_corners(*grid, first);
+  double low = std::log(grid->low), high = std::log(first.max_size() / grid->root.side);
+  for (int step = 0; step < kFloorSteps; ++step) {
+    const double floor = 0.5 * (low + high);
+    (expected_here(raised(*grid, most_sizes, std::exp(floor))) > most ? low : high) = floor;
+  }
+  auto coarser = std::make_shared<OctreeField>(raised(*grid, most_sizes, std::exp(high)));
+  grade_again(*coarser, context);
+  coarser->find_range();
+  return {SizeField(SizeFunction::field(std::move(coarser))), asked, std::exp(high) * grid->root.side};
 }
 
 SizeField scaled(const SizeField& sizes, double factor, const RunContext& context) {

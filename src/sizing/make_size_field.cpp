@@ -34,11 +34,17 @@ constexpr double kOnSameLeaves = 0.15;
 constexpr double kSlopeOfWhole = -3;
 /// How often the scale is corrected on the grid that there is, before a new one is made.
 constexpr int kForesteps = 2;
-/// Elements that the automatic size makes at most, about: some seconds of work, and more than most models need.
-constexpr double kAutomaticBudget = 400'000;
-/// Small sizes are raised by this factor at most: real details, such as a thousand small holes, would be lost.
+/// Elements that sizes of our own choice come to at most, about: some ten seconds of work, and more than most models
+/// need; for each triangle of the input twenty more.
+constexpr double kBudget = 1e6, kBudgetPerTriangle = 20, kMostBudget = 3e6;
+/// Of these what details get before the surface is made, which takes the rest for what it has to follow: strips between
+/// lines, and places where it would stray.
+constexpr double kForDetails = 400'000;
+/// For that small sizes are raised by this factor at most: real details, such as a thousand small holes, would be lost.
 constexpr double kMostRaised = 2.7;
 constexpr int kBudgetSteps = 6;
+/// No floor needs to be above the model's extent, which is thirty base sizes.
+constexpr double kLargestFloor = 30;
 constexpr double kNearBudget = 0.07;
 /// Samples along the side of the root cube where one size holds everywhere: two to a leaf of GridRules::plain_level.
 constexpr double kPlainSamples = 64;
@@ -170,35 +176,55 @@ WantedSizes raised(const WantedSizes& wanted, double floor) {
   WantedSizes result = wanted;
   for (double& h : result.face) h = std::max(h, floor);
   for (SizeSample& s : result.points) s.h = std::max(s.h, floor);
+  result.ceiling = std::max(result.ceiling, floor);
   if (wanted.at_place) {
     result.at_place.at = [f = wanted.at_place.at, floor](const PlaceOnSurface& p) { return std::max(f(p), floor); };
   }
   return result;
 }
 
+/// Raised to the least of some floors between `low` and `high` that leaves no more than `most` elements; to `high`
+/// where even that leaves more.
+struct Raised {
+  SizeField field;
+  double count;
+};
+Raised raised_to_count(const SurfaceMesh& surface, const WantedSizes& wanted, const SizeOptions& options,
+                       const TetPrediction& expected, double most, double low, double high, const RunContext& context) {
+  std::optional<Raised> best;
+  for (int step = 0; step < kBudgetSteps; ++step) {
+    const double floor = step == 0 ? high : std::sqrt(low * high);
+    SizeField coarser = grid_field(surface, raised(wanted, floor), options, context);
+    const double count = expected(coarser);
+    const bool is_within = count <= most, is_near = std::abs(count / most - 1) < kNearBudget;
+    (is_within ? high : low) = floor;
+    if (is_within || is_near || step == 0) best = {std::move(coarser), count};
+    if (is_near || (step == 0 && !is_within)) break;
+  }
+  return std::move(*best);
+}
+
 /// Sizes of our own choice must not make a large mesh that nobody asked for, as the noise of a scan does, or a thousand
 /// small holes: then the smallest sizes are raised until the number of elements is within the budget.
 SizeField within_budget(const SurfaceMesh& surface, const WantedSizes& wanted, const SizeOptions& options,
-                        SizeField field, const Stage& stage) {
+                        SizeField field, double budget, const Stage& stage) {
   const TetPrediction expected(surface);
-  const double first = expected(field), budget = kAutomaticBudget / std::pow(options.automatic_factor, 3);
-  if (first <= budget) return field;
-  double low = field.min_size(), high = std::min(wanted.ceiling, kMostRaised * low);
-  for (int step = 0; step < kBudgetSteps; ++step) {
-    const double floor = step == 0 ? high : std::sqrt(low * high);
-    SizeField coarser = grid_field(surface, raised(wanted, floor), options, stage.context());
-    const double count = expected(coarser);
-    const bool is_within = count <= budget, is_near = std::abs(count / budget - 1) < kNearBudget;
-    (is_within ? high : low) = floor;
-    if (is_within || is_near || step == 0) field = std::move(coarser);
-    if (is_near || (step == 0 && !is_within)) break;
-  }
+  const double first = expected(field), for_details = kForDetails / std::pow(options.automatic_factor, 3);
+  if (first <= for_details) return field;
+  const double low = field.min_size(), high = std::min(wanted.ceiling, kMostRaised * low);
+  Raised made = raised_to_count(surface, wanted, options, expected, for_details, low, high, stage.context());
+  if (made.count > budget)
+    made = raised_to_count(surface, wanted, options, expected, budget, high,
+                           kLargestFloor * *std::ranges::max_element(wanted.face), stage.context());
+  const std::string in_all =
+      std::isfinite(budget) ? fmt::format(", and with what the surface takes for {:.2g} million at most", budget / 1e6)
+                            : "";
   stage.note(fmt::format(
       "the details of this surface ask for {:.2g} million elements; the automatic size stops at {:.4g}, for about "
-      "{:.2g} "
-      "million. For more of the details ask for them, e.g. with `elements`, `curvature`, `gap` or `min_size`",
-      first / 1e6, field.min_size(), expected(field) / 1e6));
-  return field;
+      "{:.2g} million{}. For more of the details ask for them, e.g. with `automatic_factor`, `elements`, `curvature`, "
+      "`gap` or `min_size`",
+      first / 1e6, made.field.min_size(), made.count / 1e6, in_all));
+  return std::move(made.field);
 }
 
 void refuse_huge_counts(const SurfaceMesh& surface, const WantedSizes& wanted) {
@@ -213,8 +239,14 @@ void refuse_huge_counts(const SurfaceMesh& surface, const WantedSizes& wanted) {
 
 }  // namespace
 
+double automatic_budget(const SurfaceMesh& surface, const SizeOptions& options) {
+  if (!has_automatic_sizes(options)) return HUGE_VAL;
+  const double budget = kBudget + kBudgetPerTriangle * static_cast<double>(surface.triangles.size());
+  return std::min(budget, kMostBudget) / std::pow(options.automatic_factor, 3);
+}
+
 SizeField make_size_field(const KnownSurface& known, const SizeOptions& options, const Stage& stage,
-                          const FaceRules& rules) {
+                          const FaceRules& rules, double budget) {
   const SurfaceMesh& surface = known.mesh();
   check_size_options(options);
   if (surface.triangles.empty()) throw InputError("the surface has no triangles: there is nothing to choose sizes for");
@@ -225,7 +257,8 @@ SizeField make_size_field(const KnownSurface& known, const SizeOptions& options,
   if (!options.elements) refuse_huge_counts(surface, wanted);
   SizeField field = options.elements ? scaled_to_count(surface, wanted, options, stage)
                                      : grid_field(surface, wanted, options, stage.context());
-  if (wanted.automatic && !options.elements) field = within_budget(surface, wanted, options, std::move(field), stage);
+  if (wanted.automatic && !options.elements)
+    field = within_budget(surface, wanted, options, std::move(field), budget, stage);
   const OctreeField& grid = *as_octree_field(field);
   stage.count("leaves", static_cast<double>(grid.tree.size()));
   stage.count("levels", grid.tree.depth());

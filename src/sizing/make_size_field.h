@@ -7,6 +7,7 @@
 #include "core/stage.h"
 #include "mesh/known_surface.h"
 
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -24,13 +25,18 @@ struct FaceRules {
 
 /// Builds the octree background grid from the sources of `options` on a clean surface: 2:1 balanced, sizes at leaf
 /// corners, graded, continuous inside leaves. Throws OptionError for contradictions and values out of range.
-/// With options.elements the sizes are scaled until expected_tets() meets it.
+/// With options.elements the sizes are scaled until expected_tets() meets it. `budget`: elements that
+/// sizes of our own choice come to at most.
 SizeField make_size_field(const KnownSurface& surface, const SizeOptions& options, const Stage& stage,
-                          const FaceRules& rules = {});
+                          const FaceRules& rules = {}, double budget = HUGE_VAL);
 
 /// Says which regions and points of `options` lie outside of the model's box, and how much of the surface a field does
 /// not cover. Throws OptionError for a field that covers none of it.
 void note_misplaced_sizes(const SurfaceMesh& surface, const SizeOptions& options, const Stage& stage);
+
+/// How many elements sizes of our own choice come to at most, about: kBudget and kBudgetPerTriangle for each triangle
+/// of the surface, kMostBudget at most; known before anything is made. HUGE_VAL if the user chose sizes.
+double automatic_budget(const SurfaceMesh& surface, const SizeOptions& options);
 
 /// Throws OptionError if triangles that turn by no more than so many degrees against the surface would give more
 /// elements than a mesh can hold.
@@ -43,6 +49,17 @@ SizeField size_field_of_surface(const KnownSurface& surface, const SizeOptions& 
 
 struct OctreeField;
 class ThinWalls;
+class TetPrediction;
+
+/// `finer` where it has no more than `most` elements, else with its smallest sizes raised to one floor, which it has
+/// too, but nowhere above `first`: what is asked for on top of `first` is met as far as the elements go.
+struct WithinCount {
+  SizeField sizes;
+  double asked = 0;  ///< elements by `finer`
+  double floor = 0;  ///< 0: nothing was raised
+};
+WithinCount within_count(const SizeField& finer, const SizeField& first, const TetPrediction& expected, double most,
+                         const RunContext& context);
 
 /// How many tetrahedra a mesh of the inside of a surface by given sizes will have: the integral of c / h^3, c measured;
 /// in walls of few layers as many as the triangles of their surface ask for. Refers to `surface`, which must outlive

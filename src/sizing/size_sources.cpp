@@ -51,10 +51,13 @@ double largest_of(const std::vector<PointSize>& points) {
   return largest;
 }
 
+bool has_automatic_base(const SizeOptions& o) {
+  return !o.size && !o.curvature && !o.gap && !o.feature_elements && !o.facets && !o.callback && o.point_sizes.empty();
+}
+
 Choice choose(const SurfaceMesh& surface, const SizeOptions& o) {
   Choice c;
-  c.automatic =
-      !o.size && !o.curvature && !o.gap && !o.feature_elements && !o.facets && !o.callback && o.point_sizes.empty();
+  c.automatic = has_automatic_base(o);
   const double ours = model_extent(surface) / kExtentPerSize;
   c.base = o.size.value_or(ours);
   // Sizes at points and a function speak for the whole surface: there is no need of a size where nobody asks, and ours
@@ -179,6 +182,11 @@ SizeAtPlace sizes_at_places(const KnownSurface& surface, const Choice& choice, c
 }
 
 }  // namespace
+
+bool has_automatic_sizes(const SizeOptions& o) {
+  return has_automatic_base(o) && !o.elements && !o.field && !o.min_size && !o.max_size && o.regions.empty() &&
+         o.named.empty();
+}
 
 void refuse_huge_turning(const KnownSurface& surface, const SizeOptions& options, double degrees,
                          const RunContext& context) {

@@ -34,6 +34,9 @@ struct WantedSizes {
   bool automatic = false;          ///< the user left the choice to us
 };
 
+/// Whether all sizes are of our own choice.
+bool has_automatic_sizes(const SizeOptions& options);
+
 /// A measure of the model that neither rotation nor triangulation changes: 2 sqrt(3) times the root mean square
 /// distance of the surface from its centre of gravity. A sphere's is the diagonal of its bounding box, a rod's is its
 /// length.

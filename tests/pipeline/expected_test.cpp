@@ -6,6 +6,8 @@
 #include "support/named_surfaces.h"
 
 #include <algorithm>
+#include <cmath>
+#include <random>
 
 #include <gtest/gtest.h>
 
@@ -44,6 +46,58 @@ TEST(Expected, ThinWallsHaveTheElementsAnnounced) {
     EXPECT_LT(share(made.report.expected_tets, static_cast<double>(made.report.tets)), 0.15);
     EXPECT_LT(share(generate_sizes(m.surface, options).report.expected_tets, made.report.expected_tets), 1e-9);
   }
+}
+
+/// A ball whose vertices lie off it, in and out: it strays, and makes feature lines, however it is divided.
+SurfaceMesh rough_ball() {
+  SurfaceMesh ball = testing::icosphere(4);
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> off(-0.03, 0.03);
+  for (Vec3& p : ball.points) p = p * (1 + off(random));
+  return ball;
+}
+
+bool has_note(const Report& report, const std::string& words) {
+  return std::any_of(report.stages.begin(), report.stages.end(), [&](const StageReport& stage) {
+    return std::any_of(stage.notes.begin(), stage.notes.end(),
+                       [&](const std::string& note) { return note.find(words) != std::string::npos; });
+  });
+}
+
+double counted(const Report& report, const std::string& what) {
+  for (const StageReport& stage : report.stages)
+    for (const auto& [name, value] : stage.counters)
+      if (name == what) return value;
+  return -1;
+}
+
+TEST(Expected, AutomaticSizesKeepToTheirBudgetAndSayWhatTheyGiveUp) {
+  Options options;
+  options.size.automatic_factor = 5;
+  const Report kept = generate(rough_ball(), options).report;
+  const double budget = counted(kept, "budget of elements");
+  EXPECT_NEAR(budget, (1e6 + 20 * 5120) / 125, 1);
+  EXPECT_LT(static_cast<double>(kept.tets), 1.3 * budget);
+  EXPECT_LT(share(kept.expected_tets, static_cast<double>(kept.tets)), 0.15);
+  EXPECT_TRUE(has_note(kept, "has a budget of 0.0088 million"));
+  EXPECT_TRUE(has_note(kept, "from the input, up to"));
+  // The same bound as a wish of the user's own has no budget.
+  options.surface.max_deviation = 0.004 * bounding_box(rough_ball().points).diagonal();
+  const Report asked = generate_sizes(rough_ball(), options).report;
+  EXPECT_EQ(counted(asked, "budget of elements"), -1);
+  EXPECT_GT(asked.expected_tets, 1.5 * budget);
+}
+
+TEST(Expected, TinyPartsMakeNoSmallElementsElsewhere) {
+  const SurfaceMesh ball = testing::icosphere(4);
+  SurfaceMesh with_crumbs = ball;
+  for (int k = 0; k < 12; ++k) {
+    const double angle = 0.5 * k;
+    with_crumbs = testing::joined(with_crumbs, testing::transformed(testing::icosphere(0), 2e-3,
+                                                                    {1.3 * std::cos(angle), 1.3 * std::sin(angle), 0}));
+  }
+  const double plain = generate_sizes(ball).report.expected_tets;
+  EXPECT_LT(generate_sizes(with_crumbs).report.expected_tets, 1.5 * plain);
 }
 
 bool says_why_not(const Report& report) {

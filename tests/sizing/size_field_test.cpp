@@ -355,6 +355,50 @@ TEST(CappedNear, LowersTheSizeThereAndStaysGraded) {
   }
 }
 
+TEST(WithinCount, RaisesSmallSizesButNotAboveTheFirst) {
+  const SurfaceMesh ball = icosphere(3);
+  const SizeField first = make(ball, {}), finer = capped_at(first, {{{1, 0, 0}, 0.01}, {{0, -1, 0}, 0.02}}, {});
+  const TetPrediction expected(ball);
+  const double few = expected(first), many = expected(finer), most = std::sqrt(few * many);
+  ASSERT_GT(many, 1.5 * few);
+  EXPECT_EQ(within_count(finer, first, expected, 1.1 * many, {}).floor, 0);
+  const WithinCount met = within_count(finer, first, expected, most, {});
+  EXPECT_EQ(met.asked, many);
+  EXPECT_GT(met.floor, 0.01);
+  EXPECT_NEAR(expected(met.sizes) / most, 1, 0.1);
+  EXPECT_LE(expected(within_count(finer, first, expected, 1, {}).sizes), 1.02 * few);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> at(-1, 1);
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3 p{at(random), at(random), at(random)};
+    EXPECT_LE(met.sizes.at(p), first.at(p) * 1.001);
+    EXPECT_GE(met.sizes.at(p), finer.at(p) * 0.999);
+  }
+}
+
+TEST(AutomaticBudget, GrowsWithTheTrianglesAndIsTheUsersOwnWhereHeChooses) {
+  const SurfaceMesh ball = icosphere(2), fine = icosphere(4);
+  EXPECT_GT(automatic_budget(fine, {}), automatic_budget(ball, {}));
+  SizeOptions o;
+  o.automatic_factor = 2;
+  EXPECT_EQ(automatic_budget(ball, o), automatic_budget(ball, {}) / 8);
+  o.curvature = 30;
+  EXPECT_EQ(automatic_budget(ball, o), HUGE_VAL);
+}
+
+/// Thousands of thin walls: raising the smallest sizes a little does not help.
+TEST(AutomaticBudget, HoldsForDetailsWithoutEnd) {
+  SurfaceMesh plates = box(1, 1, 0.002);
+  for (int k = 1; k < 60; ++k) plates = testing::joined(plates, transformed(box(1, 1, 0.002), 1, {0, 0, 0.016 * k}));
+  const KnownSurface known(plates, 40);
+  StageReport report;
+  const double budget = 100'000;
+  const SizeField sizes = make_size_field(known, {}, {RunContext{}, report}, {}, budget);
+  EXPECT_LT(expected_tets(sizes, plates), 1.1 * budget);
+  ASSERT_EQ(report.notes.size(), 1u);
+  EXPECT_NE(report.notes[0].find("0.1 million at most"), std::string::npos) << report.notes[0];
+}
+
 TEST(Scaled, MultipliesAllSizes) {
   const SizeField h = make(torus(60, 24), {}), twice = scaled(h, 2, RunContext{});
   EXPECT_DOUBLE_EQ(twice.at({1, 0.2, 0.1}), 2 * h.at({1, 0.2, 0.1}));

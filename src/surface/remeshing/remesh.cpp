@@ -46,6 +46,11 @@ constexpr double kCap = 0.6;
 /// ... but where they have fallen below this part of the first ones, size is not the reason: the input's own triangles
 /// return within this many first sizes, and within so many times that where it still crosses.
 constexpr double kVain = 0.3, kRestored = 2, kMoreRestored = 1.6;
+/// A shell that came out inside out is smaller than its elements: it needs much smaller ones at once.
+constexpr double kCapOfShells = 0.29;
+/// Where all rounds together have made so many times the triangles of the last one, what crosses gets the input's
+/// triangles at once, and later no other round is made: no surface takes more than so many times the work of its last.
+constexpr double kPatience = 4, kWornOut = 10;
 /// Nor is size the reason in a complex where the input's triangles are about as large as those that are wanted: none of
 /// their heights is below this part of the size. So it is between the voxels of an image.
 constexpr double kAsLarge = 0.5;
@@ -104,14 +109,15 @@ struct Counts {
   CoarsenCounts coarsen;
   ImproveCounts improve;
   std::uint64_t divided_edges = 0, merged_lines = 0, places_mended = 0, approached = 0, restored = 0;
-  std::uint64_t crossings = 0;
+  std::uint64_t crossings = 0, triangles = 0;  ///< of all rounds
   int rounds = 0, deviation_rounds = 0;
 };
 
 /// How near the new surface lies to the input.
 struct Nearness {
-  std::vector<Vec3> approached;         ///< where points of the input were put in
-  std::vector<Vec3> far, farther;       ///< where it strays still: too far, and much too far
+  std::vector<Vec3> approached;    ///< where points of the input were put in
+  std::vector<Vec3> far, farther;  ///< where it strays still: too far, and much too far
+  double farthest = 0;
   bool is_near_enough = false;          ///< though there are such places
   std::vector<PointSize> wanted;        ///< sizes by which it would stray less there
   std::vector<VertexIndex> near_limit;  ///< corners of triangles that nearly do, in the working mesh
@@ -221,6 +227,12 @@ std::vector<Vec3> positions_beyond(double limit, const std::vector<FarPlace>& pl
   return positions;
 }
 
+double farthest_of(const std::vector<FarPlace>& places) {
+  double farthest = 0;
+  for (const FarPlace& place : places) farthest = std::max(farthest, place.distance);
+  return farthest;
+}
+
 std::vector<Vec3> centers_of(const SurfaceMesh& surface, const std::vector<std::array<std::uint32_t, 2>>& pairs) {
   std::vector<std::uint32_t> triangles;
   for (const auto& [s, t] : pairs) triangles.insert(triangles.end(), {s, t});
@@ -256,6 +268,7 @@ void report_counts(const Counts& counts, const Stage& stage) {
   stage.count("crossing pairs mended", static_cast<double>(counts.crossings));
   stage.count("places left as in the input", static_cast<double>(counts.restored));
   stage.count("rounds", counts.rounds);
+  stage.count("triangles of all rounds", static_cast<double>(counts.triangles));
   stage.count("rounds for deviation", counts.deviation_rounds);
 }
 
@@ -263,7 +276,7 @@ void report_counts(const Counts& counts, const Stage& stage) {
 class Remesher {
  public:
   Remesher(const KnownSurface& surface, const SizeField& sizes, const SurfaceOptions& options, const Stage& stage,
-           std::span<const double> bound, double slack)
+           std::span<const double> bound, const FrontLimits& limits)
       : known_(surface),
         surface_(surface.mesh()),
         bound_(bound),
@@ -272,7 +285,7 @@ class Remesher {
         options_(options),
         tolerance_(options.max_deviation.value_or(HUGE_VAL)),
         leeway_(surface.mesh(), surface.tree(), bound),
-        slack_(slack),
+        limits_(limits),
         stage_(stage),
         seamed_(!surface_.sides.empty() ? std::optional(cut_along_seams(surface)) : std::nullopt),
         input_(seamed_ ? std::move(seamed_->input) : make_input_surface(surface.mesh(), surface.edges())) {
@@ -281,9 +294,11 @@ class Remesher {
 
   Remeshed run() {
     if (seamed_ && limits_deviation()) foresee_deviation();
-    for (counts_.rounds = 1; counts_.rounds <= kMostRounds; ++counts_.rounds) {
+    for (counts_.rounds = 1; counts_.rounds <= kMostRounds && !is_worn_out(kWornOut); ++counts_.rounds) {
       Compacted c = attempt(Effort::kFull);
       if (is_noise_) return kept_as_noise();
+      last_triangles_ = c.result.surface.triangles.size();
+      counts_.triangles += last_triangles_;
       if (is_sound(c) && is_true(c)) return finished(c);
       cap_far(c);
     }
@@ -306,7 +321,24 @@ class Remesher {
     std::vector<std::uint8_t> is_fixed(input_.mesh.points.size(), 0);
     const std::vector<Curve> curves = chained_curves(input_, *seamed_, sizes_, is_fixed).curves;
     const std::vector<PointSize> wanted = sizes_by_flatness(input_, curves, sizes_, tolerance_, stage_.context());
-    first_ = sizes_ = capped_steeply(sizes_, wanted, kSteep, stage_.context());
+    first_ = sizes_ = affordable(capped_steeply(sizes_, wanted, kSteep, stage_.context()));
+  }
+
+  /// Whether all rounds together have made more than so many times the triangles of the last one.
+  bool is_worn_out(double times) const {
+    return static_cast<double>(counts_.triangles) > times * static_cast<double>(last_triangles_);
+  }
+
+  /// The sizes as far as the budget goes.
+  SizeField affordable(const SizeField& finer) {
+    if (!std::isfinite(limits_.budget)) return finer;
+    if (!expected_) expected_.emplace(surface_);
+    const WithinCount met = within_count(finer, first_, *expected_, limits_.budget, stage_.context());
+    if (met.floor == 0) return finer;
+    if (spent_.floor == 0) spent_.round = counts_.rounds;
+    spent_.asked = std::max(spent_.asked, met.asked);
+    spent_.floor = met.floor;
+    return met.sizes;
   }
 
   /// One triangulation by the sizes as they are now.
@@ -365,10 +397,10 @@ class Remesher {
 
   /// The sizes as they are now, smaller where what stands still is nearer together: strips between lines, and corners
   /// of seams.
-  SizeField fitted_sizes(std::vector<std::uint8_t> is_fixed) const {
+  SizeField fitted_sizes(std::vector<std::uint8_t> is_fixed) {
     const StripRules& rules = seamed_ ? kStripsOfWalls : kStrips;
     SizeField sizes = fitted_to_strips(input_, sizes_, rules, stage_.context());
-    return seamed_ ? fitted_to_corners(input_, *seamed_, is_fixed, sizes, stage_.context()) : sizes;
+    return affordable(seamed_ ? fitted_to_corners(input_, *seamed_, is_fixed, sizes, stage_.context()) : sizes);
   }
 
   /// Divided; of a complex, `is_fixed` gets the corners that its parts share.
@@ -410,8 +442,9 @@ class Remesher {
       const std::vector<PointSize> wanted = sizes_against(places, sizes);
       if (wanted.empty()) return;
       n.wanted.insert(n.wanted.end(), wanted.begin(), wanted.end());
-      sizes = capped_steeply(sizes, wanted, kSteep, stage_.context());
+      sizes = affordable(capped_steeply(sizes, wanted, kSteep, stage_.context()));
       refine(mesh, curves, sizes);
+      if (spent_.floor > 0) return;
     }
   }
 
@@ -435,6 +468,7 @@ class Remesher {
       places = far_places(mesh, watch);
     }
     n.far = positions_beyond(tolerance_, places);
+    n.farthest = farthest_of(places);
     const std::vector<PointSize> wanted = sizes_against(places, sizes);
     n.wanted.insert(n.wanted.end(), wanted.begin(), wanted.end());
   }
@@ -506,6 +540,7 @@ class Remesher {
       }
       n.far = positions_beyond(tolerance_, places, kMuchTooFar * tolerance_);
       n.farther = positions_beyond(kMuchTooFar * tolerance_, places);
+      n.farthest = farthest_of(places);
       n.near_limit = corners_at(mesh, places);
       n.is_near_enough = is_near_enough(mesh, places);
       if (k == kRefinements || (clear && n.is_near_enough)) return n;
@@ -547,7 +582,7 @@ class Remesher {
   /// Whether it strays nowhere, or a little at few places.
   bool is_near_enough(const WorkingMesh& mesh, std::vector<FarPlace> places) const {
     std::erase_if(places, [&](const FarPlace& p) { return p.distance < tolerance_; });
-    const double most = slack_ * tolerance_;
+    const double most = limits_.slack * tolerance_;
     return places.empty() || (are_few(count_triangles(places), mesh, kNoRound) &&
                               std::ranges::all_of(places, [&](const FarPlace& p) { return p.distance <= most; }));
   }
@@ -679,10 +714,10 @@ class Remesher {
     if (seamed_)
       defect = first_complex_defect_but_crossings(c.result.surface, &places);
     else if (crossings.empty())
-      defect = kind_->first_defect_but_crossings(c.result.surface);
+      defect = kind_->first_defect_but_crossings(c.result.surface, &places);
     if (!defect && crossings.empty()) return true;
     if (!places.empty()) {
-      cap_or_restore(places, seamed_ ? c.result.sizes : sizes_);
+      cap_or_restore(places, seamed_ ? c.result.sizes : sizes_, crossings.empty() && !seamed_ ? kCapOfShells : kCap);
     } else {
       stage_.note("an attempt was dropped: " + *defect);
       sizes_ = scaled(sizes_, kCap, stage_.context());
@@ -697,7 +732,7 @@ class Remesher {
 
   /// Smaller sizes around what crosses; where that was in vain, the input's own triangles, and the first sizes again.
   /// `made_by`: of a complex the sizes that were fitted to its seams.
-  void cap_or_restore(const std::vector<Vec3>& places, const SizeField& made_by) {
+  void cap_or_restore(const std::vector<Vec3>& places, const SizeField& made_by, double factor) {
     std::vector<Vec3> to_cap;
     const std::size_t before = restored_.size();
     bool in_vain = false;
@@ -708,7 +743,8 @@ class Remesher {
         in_vain |= around->in_vain;
       } else if (seamed_ && (made_by.at(p) < kVain * first_.at(p) || is_as_large(p, made_by))) {
         restored_.push_back({p, kRestored * made_by.at(p), false});
-      } else if (sizes_.at(p) < kVain * first_.at(p) || restored_around(p, kMoreRestored) != restored_.end()) {
+      } else if (sizes_.at(p) < kVain * first_.at(p) || is_worn_out(kPatience) ||
+                 restored_around(p, kMoreRestored) != restored_.end()) {
         restored_.push_back({p, kRestored * first_.at(p)});
         in_vain = true;
       } else {
@@ -716,7 +752,7 @@ class Remesher {
       }
     }
     if (in_vain) forget_caps();
-    if (!to_cap.empty()) cap(to_cap, kCap);
+    if (!to_cap.empty()) cap(to_cap, factor);
   }
 
   /// Whether the input's triangle at p is as large as those that are wanted there.
@@ -749,10 +785,10 @@ class Remesher {
   bool is_true(Compacted& c) {
     const std::size_t far = c.nearness.is_near_enough ? 0 : c.nearness.far.size() + c.nearness.farther.size();
     const bool is_last =
-        counts_.rounds == kMostRounds ||
+        counts_.rounds == kMostRounds || (spent_.floor > 0 && counts_.rounds > spent_.round) ||
         (seamed_ ? counts_.rounds > 1 ||
                        static_cast<double>(far) < kVeryFew * static_cast<double>(c.result.surface.triangles.size())
-                 : counts_.deviation_rounds == kMostDeviationRounds);
+                 : counts_.deviation_rounds == kMostDeviationRounds || is_worn_out(kPatience));
     c.result.source = sources_of(c);
     std::vector<PointSize> turned;
     if (options_.normal_deviation) {
@@ -762,7 +798,7 @@ class Remesher {
     if ((far == 0 && turned.empty()) || is_last) {
       if (limits_deviation()) stage_.count("places beyond the deviation", static_cast<double>(far));
       if (options_.normal_deviation) stage_.count("triangles turned too far", static_cast<double>(turned.size()));
-      note_what_is_left(far, turned.size());
+      note_what_is_left(far, c.nearness.farthest, turned.size());
       return true;
     }
     ++counts_.deviation_rounds;
@@ -773,8 +809,10 @@ class Remesher {
   bool limits_deviation() const { return options_.max_deviation.value_or(0) > 0; }
 
   /// What the user asked for and does not get.
-  void note_what_is_left(std::size_t far, std::size_t turned) {
-    if (far > 0)
+  void note_what_is_left(std::size_t far, double farthest, std::size_t turned) {
+    if (spent_.floor > 0)
+      note_spent_budget(far, farthest);
+    else if (far > 0)
       stage_.note(fmt::format("{} places lie farther than {:.4g} from the input still: a smaller size helps", far,
                               *options_.max_deviation));
     if (turned > 0)
@@ -782,6 +820,19 @@ class Remesher {
           fmt::format("{} triangles turn by more than {:.4g} degrees against the input still: it is "
                       "rough there, or turns sharply without a feature edge",
                       turned, *options_.normal_deviation));
+  }
+
+  void note_spent_budget(std::size_t far, double farthest) {
+    std::string left, by;
+    if (far > 0) {
+      left = fmt::format(", and {} places lie farther than {:.4g} from the input, up to {:.4g}", far,
+                         *options_.max_deviation, farthest);
+      by = fmt::format("`max_deviation` {:.4g} or ", *options_.max_deviation);
+    }
+    stage_.note(
+        fmt::format("this surface asks for {:.2g} million elements, and the automatic size has a budget of {:.2g} "
+                    "million: it stops at {:.4g}{}. For more ask for it, e.g. with {}`automatic_factor` 0.7",
+                    spent_.asked / 1e6, limits_.budget / 1e6, spent_.floor, left, by));
   }
 
   Remeshed kept_as_noise() {
@@ -795,7 +846,7 @@ class Remesher {
 
   Remeshed finished(Compacted& c) {
     const std::vector<Vec3>& near = c.nearness.approached;
-    if (!near.empty())
+    if (!near.empty() && spent_.floor == 0)
       c.result.sizes = capped_near(c.result.sizes, thinned(c.result.sizes, near), kDeviationCap, stage_.context());
     if (options_.keep_volumes && seamed_)
       stage_.count("vertices moved for volumes",
@@ -821,12 +872,18 @@ class Remesher {
   const SurfaceOptions& options_;
   double tolerance_;  ///< for details of the input: none moves farther
   Leeway leeway_;
-  double slack_;  ///< what few places may stray, in tolerances
+  FrontLimits limits_;
   const Stage& stage_;
   std::optional<SeamedSurface> seamed_;  ///< of a complex
   InputSurface input_;
   std::optional<SurfaceKind> kind_;  ///< of a single surface
   Counts counts_;
+  std::optional<TetPrediction> expected_;  ///< made when it is needed
+  struct Spent {
+    double asked = 0, floor = 0;  ///< 0: it is not
+    int round = 0;                ///< since when
+  } spent_;                       ///< the budget
+  std::size_t last_triangles_ = 0;
   bool is_noise_ = false;  ///< of a complex: no triangles but its own follow it
 };
 
@@ -840,8 +897,8 @@ Remeshed input_as_it_is(const KnownSurface& surface, const SizeField& sizes) {
 }
 
 Remeshed remesh_surface(const KnownSurface& surface, const SizeField& sizes, const SurfaceOptions& options,
-                        const Stage& stage, std::span<const double> bound, double slack) {
-  return Remesher(surface, sizes, options, stage, bound, slack).run();
+                        const Stage& stage, std::span<const double> bound, const FrontLimits& limits) {
+  return Remesher(surface, sizes, options, stage, bound, limits).run();
 }
 
 }  // namespace octafront

@@ -7,6 +7,7 @@
 #include "core/stage.h"
 #include "mesh/known_surface.h"
 
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -23,12 +24,19 @@ struct Remeshed {
   std::vector<VertexIndex> near_limit = {};
 };
 
+/// How far a wish may be missed to spare work.
+struct FrontLimits {
+  double slack = 1;  ///< the surface is not made anew for a few places that stray so many times as far as it may
+  /// Elements that the sizes come to at most, by the prediction. What strips and the deviation ask for beyond that is
+  /// given up, and said; what crosses is not.
+  double budget = HUGE_VAL;
+};
+
 /// The surface front. Requires a clean surface (see surface_mesh.h). The result is checked: closed, manifold, same
 /// components and genus, no self-intersection, features present; throws MeshingError if no attempt passes. `bound`: per
-/// triangle of the surface what options.max_deviation is there, if that is less; empty: so nowhere. `slack`: it is not
-/// made anew for a few places that stray so many times as far as it may.
+/// triangle of the surface what options.max_deviation is there, if that is less; empty: so nowhere.
 Remeshed remesh_surface(const KnownSurface& surface, const SizeField& sizes, const SurfaceOptions& options,
-                        const Stage& stage, std::span<const double> bound = {}, double slack = 1);
+                        const Stage& stage, std::span<const double> bound = {}, const FrontLimits& limits = {});
 
 /// The input's own triangles in the place of new ones.
 Remeshed input_as_it_is(const KnownSurface& surface, const SizeField& sizes);

@@ -1,0 +1,105 @@
+"""Meshes models at automatic size, and writes docs/budget-status.md: the budget of elements, what was made of it, how long
+that took, and what was given up.
+
+Usage: bench/run.sh budget [--only SUBSTRING] [--timeout CPU_SECONDS] [FOLDER_OR_FILE ...]
+Without folders: models/clean, models/dirty, and models/derived where there is one. One model at a time, on one thread.
+"""
+import argparse
+import json
+import pathlib
+import resource
+import subprocess
+import tempfile
+
+OVER = 1.3  # met within 30 %
+
+
+def mesh(program, model, seconds):
+    """The report, or the exit status as a word."""
+    with tempfile.TemporaryDirectory() as folder:
+        report = pathlib.Path(folder, "report.json")
+        done = subprocess.run(
+            [program, "mesh", model, "-o", pathlib.Path(folder, "mesh.msh"), "--json", report, "-q", "--threads", "1"],
+            capture_output=True, text=True,
+            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds)))
+        if done.returncode < 0:
+            return f"no end in {seconds} CPU s"
+        return json.loads(report.read_text()) if done.returncode == 0 else f"exit {done.returncode}"
+
+
+def counter(report, stage, key):
+    return next((s["counters"][key] for s in report["stages"] if s["name"] == stage and key in s["counters"]), 0)
+
+
+def figures(model, report):
+    triangles = counter(report, "surface front", "triangles")
+    notes = [n for s in report["stages"] for n in s["notes"]]
+    return {
+        "model": model.name, "faces": int(counter(report, "repair", "triangles")),
+        "budget": counter(report, "size field", "budget of elements"), "said": report["expected_tets"],
+        "tets": report["tets"], "cpu": report["cpu_seconds"], "memory": report["peak_memory_bytes"],
+        "rounds": int(counter(report, "surface front", "rounds")),
+        "work": counter(report, "surface front", "triangles of all rounds") / max(1, triangles),
+        "spent": any("has a budget of" in n for n in notes),
+        "raised": any("the automatic size stops at" in n for n in notes)}
+
+
+def given_up(row):
+    return "strips or nearness" if row["spent"] else "details" if row["raised"] else ""
+
+
+def page(rows, failed):
+    over = [r for r in rows if r["budget"] and r["tets"] > OVER * r["budget"]]
+    off = [r for r in rows if abs(r["said"] / r["tets"] - 1) > OVER - 1]
+    lines = [
+        "# The budget of automatic sizes", "",
+        "Written by `bench/run.sh budget`, one model at a time on one thread; what the budget is: "
+        "`docs/sizes-and-surface.md`. *Said* is the prediction once the surface is made, which is what `--dry-run` "
+        "says; *work* is the triangles of all rounds of the surface front over those of the last.", "",
+        f"{len(rows)} models meshed, {len(failed)} not. Above 1.3 times the budget: **{len(over)}**"
+        + (" (" + ", ".join(r["model"] for r in over) + ")" if over else "")
+        + f". Said and made more than 30 % apart: **{len(off)}**"
+        + (" (" + ", ".join(r["model"] for r in off) + ")" if off else "")
+        + f". Budget spent: {sum(r['spent'] for r in rows)}. Most elements: {max(r['tets'] for r in rows):,}. "
+        f"Most CPU time: {max(r['cpu'] for r in rows):.1f} s. Most memory: {max(r['memory'] for r in rows) / 1e6:.0f} MB.",
+        "", "| model | triangles | budget | said | made | rounds | work | CPU s | MB | given up |",
+        "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |"]
+    for r in rows:
+        lines.append(f"| {r['model']} | {r['faces']:,} | {r['budget']:,.0f} | {r['said']:,.0f} | {r['tets']:,} | "
+                     f"{r['rounds']} | {r['work']:.1f} | {r['cpu']:.1f} | {r['memory'] / 1e6:.0f} | {given_up(r)} |")
+    if failed:
+        lines += ["", "Not meshed:", ""] + [f"- {name}: {why}" for name, why in failed]
+    return "\n".join(lines) + "\n"
+
+
+def models(paths):
+    for path in map(pathlib.Path, paths):
+        yield from sorted(path.iterdir()) if path.is_dir() else [path]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("build", type=pathlib.Path)
+    parser.add_argument("paths", nargs="*")
+    parser.add_argument("--only", default="")
+    parser.add_argument("--timeout", type=int, default=300)
+    parser.add_argument("--output", default="docs/budget-status.md", type=pathlib.Path)
+    options = parser.parse_args()
+    paths = options.paths or [f for f in ("models/clean", "models/dirty", "models/derived") if pathlib.Path(f).is_dir()]
+    rows, failed = [], []
+    for model in models(paths):
+        if options.only not in model.name:
+            continue
+        report = mesh(options.build / "cli/octafront", model, options.timeout)
+        if isinstance(report, str):
+            failed.append((model.name, report))
+            print(f"{model.name:32} {report}", flush=True)
+        else:
+            rows.append(figures(model, report))
+            print(f"{model.name:32} {rows[-1]['tets']:>10,} of {rows[-1]['budget']:>10,.0f} {rows[-1]['cpu']:6.1f} s "
+                  f"{given_up(rows[-1])}", flush=True)
+        options.output.write_text(page(rows, failed) if rows else "")
+
+
+if __name__ == "__main__":
+    main()
