@@ -123,7 +123,11 @@ auto run_on_input(Session& session, const Generator& generator) {
   const Arguments& a = session.arguments();
   Options options = checked_options(session);
   SurfaceFile file = read_domain(session);
-  if (session.voxel_spacing() > 0) options = options_for_voxels(std::move(options), session.voxel_spacing());
+  if (session.voxel_spacing() > 0) {
+    if (const std::string lost = given_up_for_size(options, session.voxel_spacing()); !lost.empty())
+      session.say_notes("sizes", {lost});
+    options = options_for_voxels(std::move(options), session.voxel_spacing());
+  }
   try {
     if (!a.page.empty()) find_repairs(session, file.surface);
     return generator(Mended{std::move(file.surface), {}, session.bound()}, options, session.context());

@@ -54,6 +54,11 @@ bool is_layer(const Lattice& lattice, Corner voxel, int axis) {
 
 VertexCells::VertexCells(const Lattice& lattice, const Net& net)
     : farthest_(HUGE_VAL), lattice_(lattice), net_(net), share_(net.corner.size()) {
+  for (int a = 0; a < 3; ++a)
+    for (std::int32_t i = 0; i <= lattice.size(a); ++i) {
+      const double wall = lattice.wall(a, i);
+      half_over_room_[a].push_back({0.5 / (lattice.middle(a, i - 1) - wall), 0.5 / (lattice.middle(a, i) - wall)});
+    }
   parallel_for(net.corner.size(), [&](std::size_t v) { keep_layers_apart(static_cast<VertexIndex>(v)); });
 }
 
@@ -100,7 +105,7 @@ Vec3 VertexCells::clamped(VertexIndex v, Vec3 p) const {
     const auto [below, above] = share_[v][a];
     const double to_below = lattice_.middle(a, c[a] - 1) - wall, to_above = lattice_.middle(a, c[a]) - wall;
     p[a] = std::clamp(p[a], wall + below * to_below, wall + above * to_above);
-    const double way = 0.5 * (p[a] - wall) / (p[a] < wall ? to_below : to_above);
+    const double way = (p[a] - wall) * half_over_room_[a][c[a]][p[a] < wall ? 0 : 1];
     squared_way += way * way;
   }
   if (squared_way <= farthest_ * farthest_) return p;

@@ -27,6 +27,8 @@ class VertexCells {
   double farthest_;  ///< from the corner, in voxels
   const Lattice& lattice_;
   const Net& net_;
+  /// Per axis, wall and side, lower ones first: a half over the signed way to the middles of the voxels there.
+  std::array<std::vector<std::array<double, 2>>, 3> half_over_room_;
   /// Per vertex, axis and side, lower ones first: part of the way to the middles of the voxels there.
   std::vector<std::array<std::array<float, 2>, 3>> share_;
 };

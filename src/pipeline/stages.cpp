@@ -95,10 +95,16 @@ constexpr double kDetail = 0.1;
 // Of a deviation that the user bounds, what unfolding may use up: the new surface keeps the rest, and improvement too.
 constexpr double kUnfolded = 0.25;
 
+/// What the surface may stray where that was said: a bound, or with automatic sizes the distance that they shall keep.
+std::optional<double> asked_deviation(const Options& options) {
+  if (options.surface.max_deviation || !has_automatic_sizes(options)) return options.surface.max_deviation;
+  return options.size.chord_error;
+}
+
 /// What is smaller is detail. Of a deviation that the user bounds, `part`.
 double scale_of_detail(const SurfaceMesh& surface, const Options& options, double part) {
   const double automatic = kAutomaticDeviation * bounding_box(surface.points).diagonal();
-  if (options.surface.max_deviation) return std::min(automatic, part * *options.surface.max_deviation);
+  if (const auto asked = asked_deviation(options)) return std::min(automatic, part * *asked);
   return options.size.size ? std::min(automatic, kDetail * *options.size.size) : automatic;
 }
 
@@ -202,9 +208,10 @@ std::vector<double> smooth_detail(Examined& found, Run& run) {
 }
 
 /// What unfolding leaves of the bound on the deviation, if the user gave one.
-std::vector<double> left_of_bound(std::vector<double> moved, const SurfaceOptions& options) {
-  if (!options.max_deviation) return {};
-  for (double& d : moved) d = *options.max_deviation - d;
+std::vector<double> left_of_bound(std::vector<double> moved, const Options& options) {
+  const auto asked = asked_deviation(options);
+  if (!asked) return {};
+  for (double& d : moved) d = *asked - d;
   return moved;
 }
 
@@ -274,7 +281,7 @@ Prepared prepare(const SurfaceMesh& soup, const Mended* mended, Run& run) {
   });
   run.report.bodies = found.repaired.bodies;
   std::vector<double> bound =
-      mended ? bounds_by_source(*mended, surface) : left_of_bound(std::move(moved), run.options.surface);
+      mended ? bounds_by_source(*mended, surface) : left_of_bound(std::move(moved), run.options);
   return {KnownSurface(std::move(surface), std::move(found.edges), std::move(features)), defects, std::move(bound),
           unfolded, std::move(closed)};
 }
@@ -283,8 +290,10 @@ Prepared prepare(const SurfaceMesh& soup, const Mended* mended, Run& run) {
 
 SurfaceOptions true_to_input(const SurfaceMesh& input, const Options& options) {
   SurfaceOptions surface = options.surface;
-  if (!surface.max_deviation && has_automatic_sizes(options))
-    surface.max_deviation = kAutomaticDeviation * bounding_box(input.points).diagonal();
+  if (!surface.max_deviation && has_automatic_sizes(options)) {
+    const double automatic = kAutomaticDeviation * bounding_box(input.points).diagonal();
+    surface.max_deviation = std::min(automatic, asked_deviation(options).value_or(automatic));
+  }
   return surface;
 }
 
@@ -306,7 +315,7 @@ SizeField choose_sizes(const Prepared& input, Run& run) {
     SizeOptions size = run.options.size;
     const double budget = budget_of(input.surface.mesh(), run.options);
     if (std::isfinite(budget)) stage.count("budget of elements", budget);
-    if (!size.field && run.options.surface.max_deviation != 0.0) size.chord_error = run.options.surface.max_deviation;
+    if (const auto asked = asked_deviation(run.options); !size.field && asked != 0.0) size.chord_error = asked;
     if (const auto degrees = run.options.surface.normal_deviation)
       refuse_huge_turning(input.surface, size, *degrees, run.context());
     note_misplaced_sizes(input.surface.mesh(), size, stage);

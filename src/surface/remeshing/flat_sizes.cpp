@@ -28,17 +28,33 @@ constexpr std::size_t kMostFaces = 600;
 /// Sizes above this part of the wanted one are not worth a place.
 constexpr double kWorthwhile = 0.85;
 
+/// The faces of the input, as discs look at them again and again.
+struct Faces {
+  std::vector<Vec3> center, area;  ///< area: twice the area along the normal
+  std::vector<double> twice_area;
+
+  explicit Faces(const HalfEdgeMesh& m) : center(m.triangle_count()), area(center.size()), twice_area(center.size()) {
+    parallel_for(center.size(), [&](std::size_t i) {
+      const auto t = static_cast<std::uint32_t>(i);
+      center[i] = (m.corner(t, 0) + m.corner(t, 1) + m.corner(t, 2)) / 3;
+      area[i] = cross(m.corner(t, 1) - m.corner(t, 0), m.corner(t, 2) - m.corner(t, 0));
+      twice_area[i] = length(area[i]);
+    });
+  }
+};
+
 /// Grows discs on the input.
 class Disc {
  public:
-  explicit Disc(const InputSurface& input) : input_(input), seen_(input.mesh.triangle_count(), 0) {}
+  Disc(const InputSurface& input, const Faces& of)
+      : input_(input), of_(of), seen_(input.mesh.triangle_count(), 0), seen_vertex_(input.mesh.points.size(), 0) {}
 
   /// The radius up to which the patch around the face stays between two planes so far apart, at most `most`.
   double flat_radius(std::uint32_t face, double most, double apart) {
     const double least = kReach * mean_edge(face);
     if (least >= most) return most;
     start(face);
-    const Vec3 p = center(face);
+    const Vec3 p = of_.center[face];
     double before = least, height_before = 0;
     Vec3 normal, middle;
     double weight = 0;
@@ -47,11 +63,10 @@ class Disc {
       grow(r);
       if (faces_.size() > kMostFaces) return most;
       for (; next < faces_.size(); ++next) {
-        const Vec3 n = area_normal(faces_[next]);
-        const double area = length(n);
-        normal += n;
-        middle += (center(faces_[next]) - p) * area;
-        weight += area;
+        const std::uint32_t f = faces_[next];
+        normal += of_.area[f];
+        middle += (of_.center[f] - p) * of_.twice_area[f];
+        weight += of_.twice_area[f];
       }
       if (length(normal) < kFacing * weight) return before;
       const double height = height_of(p + middle / weight, normal / length(normal));
@@ -63,23 +78,16 @@ class Disc {
   }
 
  private:
-  Vec3 center(std::uint32_t t) const {
-    const HalfEdgeMesh& m = input_.mesh;
-    return (m.corner(t, 0) + m.corner(t, 1) + m.corner(t, 2)) / 3;
-  }
   double mean_edge(std::uint32_t t) const {
     const Vec3 a = input_.mesh.corner(t, 0), b = input_.mesh.corner(t, 1), c = input_.mesh.corner(t, 2);
     return (distance(a, b) + distance(b, c) + distance(c, a)) / 3;
   }
-  Vec3 area_normal(std::uint32_t t) const {
-    const HalfEdgeMesh& m = input_.mesh;
-    return cross(m.corner(t, 1) - m.corner(t, 0), m.corner(t, 2) - m.corner(t, 0));
-  }
 
   void start(std::uint32_t face) {
     faces_.clear();
+    points_.clear();
     rim_.assign(1, {0.0, face});
-    middle_ = center(face);
+    middle_ = of_.center[face];
     seen_[face] = ++round_;
   }
 
@@ -92,10 +100,14 @@ class Disc {
       rim_.pop_back();
       faces_.push_back(face);
       for (HalfEdge h = 3 * face; h < 3 * face + 3; ++h) {
+        if (const VertexIndex v = m.start[h]; seen_vertex_[v] != round_) {
+          seen_vertex_[v] = round_;
+          points_.push_back(m.points[v]);
+        }
         const std::uint32_t across = m.twin[h] / 3;
         if (input_.is_back(across) || input_.patch[across] != input_.patch[face] || seen_[across] == round_) continue;
         seen_[across] = round_;
-        rim_.push_back({distance(center(across), middle_), across});
+        rim_.push_back({distance(of_.center[across], middle_), across});
         std::push_heap(rim_.begin(), rim_.end(), std::greater<>());
       }
     }
@@ -104,20 +116,21 @@ class Disc {
   /// How far the corners of the faces spread along the normal.
   double height_of(Vec3 origin, Vec3 normal) const {
     double low = 0, high = 0;
-    for (const std::uint32_t face : faces_)
-      for (int k = 0; k < 3; ++k) {
-        const double height = dot(input_.mesh.corner(face, k) - origin, normal);
-        low = std::min(low, height);
-        high = std::max(high, height);
-      }
+    for (const Vec3& p : points_) {
+      const double height = dot(p - origin, normal);
+      low = std::min(low, height);
+      high = std::max(high, height);
+    }
     return high - low;
   }
 
   const InputSurface& input_;
-  std::vector<std::uint32_t> seen_;  ///< per face: the round in which it was
+  const Faces& of_;
+  std::vector<std::uint32_t> seen_, seen_vertex_;  ///< per face and vertex: the round in which it was
   std::uint32_t round_ = 0;
   Vec3 middle_;
   std::vector<std::uint32_t> faces_;
+  std::vector<Vec3> points_;                           ///< corners of the faces, each once
   std::vector<std::pair<double, std::uint32_t>> rim_;  ///< a heap: what is next to be taken in, by distance
 };
 
@@ -169,13 +182,14 @@ std::vector<PointSize> sizes_by_flatness(const InputSurface& input, const std::v
                                          const SizeField& sizes, double tolerance, const RunContext& context) {
   const HalfEdgeMesh& mesh = input.mesh;
   std::vector<PointSize> of_face(mesh.triangle_count());
+  const Faces faces(mesh);
   PerThread<Disc> discs;
   parallel_for(mesh.triangle_count(), [&](std::size_t t) {
     if (input.is_back(t)) return;
     const auto face = static_cast<std::uint32_t>(t);
-    const Vec3 p = (mesh.corner(face, 0) + mesh.corner(face, 1) + mesh.corner(face, 2)) / 3;
+    const Vec3 p = faces.center[t];
     const double wanted = sizes.at(p);
-    Disc& disc = discs.local([&] { return Disc(input); });
+    Disc& disc = discs.local([&] { return Disc(input, faces); });
     const double size = disc.flat_radius(face, kReach * wanted, kPlanesApart * tolerance) / kReach;
     if (size < kWorthwhile * wanted) of_face[t] = {p, size};
   });

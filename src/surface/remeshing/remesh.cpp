@@ -103,6 +103,12 @@ constexpr double kInPlane = 0.02;
 constexpr double kAnyShape = 0.05;
 constexpr int kLastMendings = 3;
 
+/// How a budget of elements is kept: by so many raises of the bound on deviation at most, each by a factor from here to
+/// there, by how the number of elements fell with the last one; one that exceeds it by so much is near enough.
+constexpr int kMostRaises = 6;
+constexpr double kLeastRaise = 1.2, kMostRaise = 4, kNearBudget = 1.1;
+constexpr double kFirstSlope = 0.7, kFlattest = 0.3, kSteepest = 1.5;
+
 struct Counts {
   std::uint64_t placed = 0, tried = 0;
   InsertionCounts insertion;
@@ -320,8 +326,34 @@ class Remesher {
     set_features(input_, features_at_scale(input_, features(), sizes_));
     std::vector<std::uint8_t> is_fixed(input_.mesh.points.size(), 0);
     const std::vector<Curve> curves = chained_curves(input_, *seamed_, sizes_, is_fixed).curves;
-    const std::vector<PointSize> wanted = sizes_by_flatness(input_, curves, sizes_, tolerance_, stage_.context());
-    first_ = sizes_ = affordable(capped_steeply(sizes_, wanted, kSteep, stage_.context()));
+    SizeField foreseen = followed_within(tolerance_, curves);
+    if (std::isfinite(limits_.budget)) stray_within_budget(curves, foreseen);
+    first_ = sizes_ = affordable(foreseen);
+  }
+
+  SizeField followed_within(double tolerance, const std::vector<Curve>& curves) const {
+    const std::vector<PointSize> wanted = sizes_by_flatness(input_, curves, sizes_, tolerance, stage_.context());
+    return capped_steeply(sizes_, wanted, kSteep, stage_.context());
+  }
+
+  /// The surface of a complex may stray farther if following it would take more elements than the budget has.
+  void stray_within_budget(const std::vector<Curve>& curves, SizeField& foreseen) {
+    if (!expected_) expected_.emplace(surface_);
+    const double asked = tolerance_, first = (*expected_)(foreseen);
+    double count = first, slope = kFirstSlope;
+    for (int step = 0; step < kMostRaises && count > kNearBudget * limits_.budget; ++step) {
+      const double raise = std::clamp(std::pow(count / limits_.budget, 1 / slope), kLeastRaise, kMostRaise);
+      foreseen = followed_within(tolerance_ *= raise, curves);
+      const double now = (*expected_)(foreseen);
+      slope = std::clamp(std::log(count / now) / std::log(raise), kFlattest, kSteepest);
+      count = now;
+    }
+    if (tolerance_ == asked) return;
+    stage_.note(
+        fmt::format("within {:.3g} of the input there would be about {:.2g} million elements; the automatic size has a "
+                    "budget of {:.2g} million, so the surface may stray by {:.3g}. For more ask for it, e.g. with "
+                    "`max_deviation`, `size` or `elements`",
+                    asked, first / 1e6, limits_.budget / 1e6, tolerance_));
   }
 
   /// Whether all rounds together have made more than so many times the triangles of the last one.
