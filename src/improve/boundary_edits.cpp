@@ -363,10 +363,15 @@ class BoundaryEditor {
     for (const TriangleCorners& t : old_)
       for (const Vec3 p : t) box.add(p);
     const Vec3 around{limit, limit, limit};
-    if (!guide_.tree().for_each_box_near(
-            {box.lo - around, box.hi + around}, [&](std::uint32_t, const TriangleCorners& t) {
-              return for_each_doubtful_part(t, farther_than(limit, limit, near_new, finest), is_kept);
-            }))
+    box = {box.lo - around, box.hi + around};
+    // An input triangle may be far larger than what changed: elsewhere nothing of it needs a look.
+    const auto is_doubtful = [&, look = farther_than(limit, limit, near_new, finest)](const TriangleCorners& part,
+                                                                                      Vec3 middle, double reach) {
+      return box_of(part).overlaps(box) ? look(part, middle, reach) : Part::kWithin;
+    };
+    if (!guide_.tree().for_each_box_near(box, [&](std::uint32_t, const TriangleCorners& t) {
+          return for_each_doubtful_part(t, is_doubtful, is_kept);
+        }))
       return false;
     std::vector<TriangleCorners> made;
     for (const IdTriangle& t : new_) made.push_back(t.corners);

@@ -109,11 +109,17 @@ InputForce::Wall InputForce::wall_at(Vec3 p, Vec3 center, double h) const {
   const bool in_front = is_complex_ && dot(center - at.point, normal) > 0;
   const Vec3 inward = in_front ? normal : -normal;
   Wall wall{HUGE_VAL, distance(at.point, center)};
-  constexpr double kSkin = 1e-6;  // of h: the ray leaves the triangle that it starts from
-  const TriangleTree::RayHit hit = input_.tree.first_hit(at.point + inward * (kSkin * h), inward, h);
-  if (hit.triangle == kNone || hit.triangle == at.triangle) return wall;
-  const double facing = dot(normal_of(hit.triangle), inward);
-  if ((is_complex_ ? std::abs(facing) : facing) > std::cos(kNarrow)) wall.thickness = hit.t;
+  const double skin = 1e-6 * h;  // the ray leaves the triangle that it starts from
+  const auto is_behind = [&](const TriangleTree::RayHit& hit) {
+    if (hit.triangle == kNone || hit.triangle == at.triangle) return false;
+    const double facing = dot(normal_of(hit.triangle), inward);
+    return (is_complex_ ? std::abs(facing) : facing) > std::cos(kNarrow);
+  };
+  const Vec3 from = at.point + inward * skin;
+  if (const TriangleTree::RayHit hit = input_.tree.first_hit(from, inward, h); is_behind(hit)) wall.thickness = hit.t;
+  // Where the wall is thinner than the skin its other side lies behind the start.
+  if (const TriangleTree::RayHit hit = input_.tree.first_hit(from, -inward, 2 * skin); is_behind(hit))
+    wall.thickness = std::max(0.0, skin - hit.t);
   return wall;
 }
 

@@ -82,10 +82,17 @@ double ThinWalls::excess_tets(const std::vector<SurfacePiece>& pieces, const std
 /// Way to the sheet that faces p from behind; GapFinder::kOpen if there is none within reach.
 double ThinWalls::thickness(Vec3 p, Vec3 normal, double reach) const {
   const double skipped = kSkipped * tree_.box().diagonal();
-  const TriangleTree::RayHit hit = tree_.first_hit(p - skipped * normal, -normal, reach);
-  if (hit.triangle == kNone) return GapFinder::kOpen;
-  const auto& [a, b, c] = tree_.corners(hit.triangle);
-  return faces(unit_normal(a, b, c), normal) ? skipped + hit.t : GapFinder::kOpen;
+  const Vec3 from = p - skipped * normal;
+  const auto is_other_side = [&](const TriangleTree::RayHit& hit) {
+    if (hit.triangle == kNone) return false;
+    const auto& [a, b, c] = tree_.corners(hit.triangle);
+    return faces(unit_normal(a, b, c), normal);
+  };
+  // Where the wall is thinner than what is skipped its other side lies behind the start.
+  if (const TriangleTree::RayHit hit = tree_.first_hit(from, normal, skipped); is_other_side(hit))
+    return std::max(0.0, skipped - hit.t);
+  const TriangleTree::RayHit hit = tree_.first_hit(from, -normal, reach);
+  return is_other_side(hit) ? skipped + hit.t : GapFinder::kOpen;
 }
 
 }  // namespace octafront

@@ -32,7 +32,7 @@ SurfaceMesh turned(SurfaceMesh surface) {
 }
 
 TEST(KeptShape, PlatesKeepTheirVolumeHoweverThin) {
-  for (const auto& [thick, squares] : {std::pair{1e-3, 1}, {1e-4, 1}, {1e-5, 10}, {1e-6, 1}}) {
+  for (const auto& [thick, squares] : {std::pair{1e-3, 1}, {1e-4, 1}, {1e-5, 10}, {1e-6, 1}, {1e-9, 1}}) {
     SCOPED_TRACE(::testing::Message() << thick << ", " << squares << " squares a side");
     const Result r = generate(turned(testing::box(1, 1, thick, squares)));
     EXPECT_EQ(first_defect(r.mesh), std::nullopt);

@@ -322,7 +322,7 @@ TEST(ExpectedTets, OfAPlateThinnerThanItsElements) {
   SizeOptions o;
   o.size = 0.02;
   const double one_layer = 1.5 * 2 * 4 / std::sqrt(3) / (0.02 * 0.02);
-  for (const double thickness : {1e-2, 1e-3, 1e-5}) {
+  for (const double thickness : {1e-2, 1e-3, 1e-5, 1e-9}) {
     const SurfaceMesh plate = box(1, 1, thickness, 1);
     EXPECT_NEAR(expected_tets(make(plate, o), plate), one_layer, 0.05 * one_layer) << thickness;
   }
