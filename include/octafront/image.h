@@ -141,8 +141,8 @@ LabelImage labels_of(const Image& image, const LabelOptions& options = {});
 /// Reads names of values: a table of lines "3 liver", also with colours or other numbers behind (as 3D Slicer's colour
 /// tables and FreeSurfer have them) or before a quoted name (ITK-SNAP's label files), with commas, or with a line of
 /// titles; or JSON: {"3": "liver"}, {"liver": 3} or [{"value": 3, "name": "liver"}], alone or as "labels" of an object.
-/// Names are the file's bytes; labels_of() makes UTF-8 of them, and says so. Throws InputError with the line for what is
-/// none of these, or names a value twice.
+/// Names are the file's bytes; labels_of() makes UTF-8 of them, and says so. Throws InputError with the line for what
+/// is none of these, or names a value twice.
 std::vector<LabelName> read_label_names(const std::string& file, const RunContext& context = no_context());
 
 /// What is cleaned before meshing; nothing unless asked for. Volumes are in the cubed unit of the file.

@@ -38,8 +38,8 @@ struct NamedSize {
   double size = 0;  ///< > 0, input units
 };
 
-/// Where element sizes come from. Every source is optional; the smallest size wins. With none the size is automatic (see
-/// make_size_field); `size`, `point_sizes` and `callback` switch that off and decide alone, up to limits and gradation.
+/// Where element sizes come from. Every source is optional; the smallest size wins. With none the size is automatic
+/// (make_size_field); `size`, `point_sizes` and `callback` switch that off: they decide alone, up to limits, gradation.
 struct SizeOptions {
   std::optional<double> size;            ///< uniform edge length, input units, > 0
   std::optional<std::int64_t> elements;  ///< target number of tetrahedra, > 0; the sizes are scaled to meet it

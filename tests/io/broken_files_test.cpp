@@ -48,8 +48,9 @@ TEST(BadSurfaceFiles, AreNamedForWhatTheyAre) {
       {"web page", "\n<!DOCTYPE html><html>404</html>", {"web page", "download"}},
       {"gzip", "\x1f\x8b\x08 and so on", {"gzip", "gunzip"}},
       {"zip", std::string("PK\x03\x04", 4) + "...", {"ZIP", "3MF"}},
-      {"vtk", "# vtk DataFile Version 3.0\n", {"legacy VTK"}},
-      {"vtu", "<?xml version=\"1.0\"?><VTKFile type=\"UnstructuredGrid\">", {"VTK unstructured grid"}},
+      // Meshes may be read as surfaces: their readers say what is wrong with them.
+      {"vtk", "# vtk DataFile Version 3.0\n", {"ASCII or BINARY"}},
+      {"vtu", "<?xml version=\"1.0\"?><VTKFile type=\"UnstructuredGrid\">", {"no VTU file"}},
       {"step", "ISO-10303-21;\nHEADER;", {"STEP", "triangulate"}},
       {"lfs", "version https://git-lfs.github.com/spec/v1\noid sha256:0", {"git lfs pull"}},
       {"iges", std::string(72, ' ') + "S      1\nrest", {"IGES"}},
