@@ -190,12 +190,22 @@ TEST(ComplexOfLabels, RefusesWhatMakesNoSense) {
 }
 
 TEST(ImageOptions, FollowTheVoxelsUnlessToldOtherwise) {
+  const Options automatic = options_for_voxels({}, 2);
+  ASSERT_TRUE(automatic.size.chord_error);
+  EXPECT_LT(*automatic.size.chord_error, 1);
+  EXPECT_FALSE(automatic.surface.max_deviation);  // a budget may let it stray
   Options asked;
-  asked.size.size = 6;
-  const Options made = options_for_voxels(asked, 2);
+  asked.size.size = 2;
+  Options made = options_for_voxels(asked, 2);
   ASSERT_TRUE(made.surface.max_deviation);
   EXPECT_LT(*made.surface.max_deviation, 1);
   EXPECT_GT(*made.surface.max_deviation, 0);
+  EXPECT_EQ(given_up_for_size(asked, 2), "");
+  asked.size.size = 12;  // coarser than voxels: the size rules
+  made = options_for_voxels(asked, 2);
+  EXPECT_GT(*made.surface.max_deviation, 2);
+  EXPECT_EQ(made.size.min_size, 6);
+  EXPECT_NE(given_up_for_size(asked, 2), "");
   EXPECT_GT(made.surface.angle_of_features(), asked.surface.angle_of_features());
   asked.surface.max_deviation = 3;
   asked.surface.feature_angle = kDefaultFeatureAngle;
@@ -233,7 +243,7 @@ double strays(const SurfaceMesh& complex, const Options& options) {
 }
 
 // A body with ribs as thick as two voxels on it, of two labels: elements of four voxels cut them off.
-TEST(ImageOptions, CoarseElementsStayWithinAPartOfAVoxel) {
+TEST(ImageOptions, CoarseElementsStayAsNearAsAsked) {
   const LabelImage image = label_image(grid_around_origin({40, 40, 40}, {1, 1, 1}), 2, [](Vec3 p) {
     const double r = length(p), rib = std::abs(std::fmod(p.z + 100, 10) - 5);
     return r < 12 || (r < 15 && rib < 1.5) ? (p.x < 0 ? 0 : 1) : -1;
@@ -241,9 +251,54 @@ TEST(ImageOptions, CoarseElementsStayWithinAPartOfAVoxel) {
   const SurfaceMesh complex = complex_of_labels(image).surface;
   Options options;
   options.size.size = 4;
+  EXPECT_LT(strays(complex, options), 1.1);
+  options.surface.max_deviation = 0.16;
   EXPECT_LT(strays(complex, options), 0.35);
   options.surface.max_deviation = 5;
   EXPECT_GT(strays(complex, options), 0.7);
+}
+
+// A ball of three labels with bumps of half a voxel that elements of four need not follow.
+TEST(ImageOptions, ASizeCoarserThanVoxelsRules) {
+  const LabelImage image = label_image(grid_around_origin({48, 48, 48}, {1, 1, 1}), 3, [](Vec3 p) {
+    const double r = length(p) + 0.6 * std::sin(p.x) * std::sin(p.y) * std::sin(p.z);
+    return r > 20 ? -1 : p.x < 0 ? 0 : p.y < 0 ? 1 : 2;
+  });
+  const SurfaceMesh complex = complex_of_labels(image).surface;
+  const auto count = [&](const Options& options) {
+    return static_cast<double>(generate(complex, options).mesh.tets.size());
+  };
+  Options by_size;
+  by_size.size.size = 4;
+  const double asked = count(by_size), made = count(options_for_voxels(by_size, 1));
+  EXPECT_LT(made, 1.4 * asked);  // a small body: most of it is wedge
+  EXPECT_GT(made, 0.7 * asked);
+  by_size.surface.max_deviation = 0.16;
+  EXPECT_GT(count(options_for_voxels(by_size, 1)), 1.6 * asked);  // what following the voxels takes
+}
+
+// Bumps that take more elements than an automatic size may make.
+TEST(ImageOptions, AutomaticSizesHaveABudget) {
+  const LabelImage image = label_image(grid_around_origin({64, 64, 64}, {1, 1, 1}), 2, [](Vec3 p) {
+    const double r = length(p) + 0.8 * std::sin(0.6 * p.x) * std::sin(0.6 * p.y) * std::sin(0.6 * p.z);
+    return r > 28 ? -1 : p.x < 0 ? 0 : 1;
+  });
+  const SurfaceMesh complex = complex_of_labels(image).surface;
+  Options options = options_for_voxels({}, 1);
+  options.size.automatic_factor = 2.5;  // a budget of 64,000
+  const Result within = generate(complex, options);
+  EXPECT_LT(within.mesh.tets.size(), 1.3 * 64000);
+  const auto says = [](const Report& report) {
+    return std::ranges::any_of(report.stages, [](const StageReport& s) {
+      return std::ranges::any_of(s.notes,
+                                 [](const std::string& n) { return n.find("automatic size makes") != n.npos; });
+    });
+  };
+  EXPECT_TRUE(says(within.report));
+  options.surface.max_deviation = options.size.chord_error;  // asked for
+  const Result followed = generate(complex, options);
+  EXPECT_GT(followed.mesh.tets.size(), 1.3 * 64000);
+  EXPECT_FALSE(says(followed.report));
 }
 
 }  // namespace
