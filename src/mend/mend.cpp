@@ -43,6 +43,17 @@ constexpr double kTolerance = 1e-3;
       "`repair` wrap makes a closed skin around it");
 }
 
+/// Where more than this part of all corners had to be joined the triangles were loose.
+constexpr double kLoose = 0.5;
+
+[[noreturn]] void refuse_loose(const MendReport& report, std::size_t corners) {
+  throw InputError(fmt::format(
+      "the triangles do not hang together: {} of their {} corners were brought together, over gaps of up to "
+      "{:.4g}, and enclose nothing still. Where edges are shorter than gaps nobody can tell which belong "
+      "together: give the triangles common corners; `repair` wrap makes a closed skin around them",
+      report.joined_vertices, corners, 2 * report.largest_move));
+}
+
 /// Exactly; what has no area at all does not count as a plane.
 bool lies_in_a_plane(const SurfaceMesh& soup) {
   const auto corners = [&](const Triangle& t) {
@@ -119,7 +130,7 @@ class Mending {
     try {
       skin = skin_of_lattice(walls, kLatticeEdge * report_.diagonal, context_);
     } catch (const MeshingError&) {
-      refuse_open();
+      refuse();
     }
     double all = 0, far = 0;
     for (std::size_t t = 0; t < skin.surface.triangles.size(); ++t) {
@@ -129,12 +140,18 @@ class Mending {
       if (skin.is_far[t]) far += size;
     }
     const bool is_flake = 2 * std::abs(enclosed_volume(skin.surface)) < 2 * kLatticeEdge * report_.diagonal * all;
-    if (far > kMostInvented * all || is_flake || part_left_out(walls, skin.surface) > kMostIdle) refuse_open();
+    if (far > kMostInvented * all || is_flake || part_left_out(walls, skin.surface) > kMostIdle) refuse();
     report_.changes.push_back({Kind::kRebuilt, skin.surface.points.front(), all, skin.surface.triangles.size()});
     return named(std::move(skin));
   }
 
  private:
+  [[noreturn]] void refuse() const {
+    if (static_cast<double>(report_.joined_vertices) > kLoose * static_cast<double>(soup_.points.size()))
+      refuse_loose(report_, soup_.points.size());
+    refuse_open();
+  }
+
   SurfaceMesh arranged_result() {
     const Arrangement arranged = arrange(draft_.mesh.points, all_triangles(), context_);
     report_.crossing_pairs = arranged.crossing_pairs;
@@ -197,7 +214,7 @@ class Mending {
 
   void close() {
     ClosedHoles closed = close_holes(draft_, report_.tolerance);
-    if (closed.is_one_sheet) refuse_open();
+    if (closed.is_one_sheet) refuse();
     holes_ = std::move(closed.holes);
     // Where there is nothing but sheets, they together may enclose something.
     const bool all = std::find(closed.is_sheet.begin(), closed.is_sheet.end(), 0) == closed.is_sheet.end();

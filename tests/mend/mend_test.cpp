@@ -5,12 +5,14 @@
 #include "core/thread_limit.h"
 #include "geometry/hausdorff.h"
 #include "support/named_surfaces.h"
+#include "support/random.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -244,6 +246,35 @@ TEST(MendSurface, SoupsOfAnyKindEnd) {
       mended(soup);
     } catch (const InputError&) {
     }
+  }
+}
+
+// A thin cylinder of needles, each with corners of its own: around it edges are no longer than the gaps.
+TEST(MendSurface, LooseTrianglesAreNotCalledASheet) {
+  SurfaceMesh loose;
+  testing::Random random(1);
+  const auto add = [&](std::array<Vec3, 3> corners) {
+    const auto first = static_cast<VertexIndex>(loose.points.size());
+    for (const Vec3 p : corners) {
+      const double x = random.between(-1, 1), y = random.between(-1, 1), z = random.between(-1, 1);
+      loose.points.push_back(p + Vec3{x, y, z} * 4e-4);
+    }
+    loose.triangles.push_back({first, first + 1, first + 2});
+  };
+  const auto at = [](int k, double z) {
+    return Vec3{0.03 * std::cos(k * std::numbers::pi / 90), 0.03 * std::sin(k * std::numbers::pi / 90), z};
+  };
+  for (int k = 0; k < 180; ++k) {
+    add({at(k, 0), at(k + 1, 0), at(k + 1, 1)});
+    add({at(k, 0), at(k + 1, 1), at(k, 1)});
+    add({at(k + 1, 0), at(k, 0), {0, 0, 0}});
+    add({at(k, 1), at(k + 1, 1), {0, 0, 1}});
+  }
+  try {
+    mended(loose);
+    FAIL() << "mended: a soup that is not is wanted here";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("do not hang together"), std::string::npos) << error.what();
   }
 }
 
