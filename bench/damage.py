@@ -154,6 +154,10 @@ def page(rows, command, version):
         "| model | damage | what | result |", "| --- | --- | --- | --- |", *lines, ""])
 
 
+def command(a):
+    return f"bench/run.sh damage --models {a.models}" + (f" --kinds {a.kinds}" if a.kinds != ",".join(KINDS) else "")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", type=pathlib.Path)
@@ -177,7 +181,7 @@ def main():
     rows = compared(rows)
     version = subprocess.run([a.program, "--version"], capture_output=True, text=True).stdout.strip()
     print(table(rows))
-    PAGE.write_text(page(rows, "bench/run.sh damage" + "".join(f" {w}" for w in sys.argv[2:]), version))
+    PAGE.write_text(page(rows, command(a), version))
 
 
 if __name__ == "__main__":
