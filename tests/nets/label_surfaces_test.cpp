@@ -277,29 +277,5 @@ TEST(ImageOptions, ASizeCoarserThanVoxelsRules) {
   EXPECT_GT(count(options_for_voxels(by_size, 1)), 1.6 * asked);  // what following the voxels takes
 }
 
-// Bumps that take more elements than an automatic size may make.
-TEST(ImageOptions, AutomaticSizesHaveABudget) {
-  const LabelImage image = label_image(grid_around_origin({64, 64, 64}, {1, 1, 1}), 2, [](Vec3 p) {
-    const double r = length(p) + 0.8 * std::sin(0.6 * p.x) * std::sin(0.6 * p.y) * std::sin(0.6 * p.z);
-    return r > 28 ? -1 : p.x < 0 ? 0 : 1;
-  });
-  const SurfaceMesh complex = complex_of_labels(image).surface;
-  Options options = options_for_voxels({}, 1);
-  options.size.automatic_factor = 2.5;  // a budget of 64,000
-  const Result within = generate(complex, options);
-  EXPECT_LT(within.mesh.tets.size(), 1.3 * 64000);
-  const auto says = [](const Report& report) {
-    return std::ranges::any_of(report.stages, [](const StageReport& s) {
-      return std::ranges::any_of(s.notes,
-                                 [](const std::string& n) { return n.find("automatic size makes") != n.npos; });
-    });
-  };
-  EXPECT_TRUE(says(within.report));
-  options.surface.max_deviation = options.size.chord_error;  // asked for
-  const Result followed = generate(complex, options);
-  EXPECT_GT(followed.mesh.tets.size(), 1.3 * 64000);
-  EXPECT_FALSE(says(followed.report));
-}
-
 }  // namespace
 }  // namespace octafront
