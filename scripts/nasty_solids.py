@@ -1,0 +1,201 @@
+#!/usr/bin/python3
+"""Meshes generated nasty but legal solids at three sizes, and judges each run; writes docs/nasty-solids.md.
+
+  scripts/nasty_solids.py [FIRST:END] [--seed N] [--families A,B] [--sizes automatic,coarse,fine] [--page] [--keep FOLDER]
+  scripts/nasty_solids.py --write NUMBER FILE.off          a case as a file
+
+Cases 0 to 1999 by default, one at a time on one thread, each within a limit on its processor time. A run is good if it ends
+with a mesh that `octafront check` finds valid, in time, with elements in proportion, and keeps the volume. One line for each
+that is not; status 1 if there are any. Needs a built octafront (build/release, or OCTAFRONT=FILE) and nothing else.
+"""
+import argparse
+import collections
+import datetime
+import json
+import math
+import os
+import pathlib
+import platform
+import resource
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT / "scripts/lib"))
+import nasty_solids as solids
+
+OCTAFRONT = os.environ.get("OCTAFRONT", str(ROOT / "build/release/cli/octafront"))
+PAGE = ROOT / "docs/nasty-solids.md"
+SIZES = ("automatic", "coarse", "fine")
+COARSE = 1 / 8
+"""The coarse size, in diagonals."""
+FINE = 20_000
+"""Elements that the fine size shall make, about."""
+PER_CUBE, PER_SQUARE = 8.5, 3.4
+"""Elements of size 1 in a unit of volume, and on a unit of area of something thin."""
+MOST_ELEMENTS = 600_000
+"""With an automatic size. With a given one: MANY times as many as it asks for, and FORCED for each triangle of the input."""
+MANY, FORCED, FEW = 4, 40, 2_000
+FIXED_SECONDS, TIMES_PLAIN = 5, 20
+LOST = 0.01
+Run = collections.namedtuple("Run", "number family size status cpu elements volume least smallest largest faults said")
+
+
+def expected(solid, h):
+    return PER_CUBE * solids.volume(solid) / h**3 + PER_SQUARE * solids.area(solid) / h**2
+
+
+def size_for(solid, elements):
+    low, high = 1e-9 * solids.diagonal(solid), solids.diagonal(solid)
+    for _ in range(60):
+        h = math.sqrt(low * high)
+        low, high = (low, h) if expected(solid, h) < elements else (h, high)
+    return high
+
+
+def measured(command, limit):
+    """(status, its error output, processor time)."""
+    def confine():
+        resource.setrlimit(resource.RLIMIT_CPU, (int(limit) + 1, int(limit) + 2))
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    ended = subprocess.run(command, capture_output=True, text=True, errors="replace", preexec_fn=confine, check=False)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return ended.returncode, ended.stderr, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+
+def mesh(path, folder, size, limit):
+    """(status, error output, seconds, report)"""
+    report, made = folder / "report.json", folder / "made.vtu"
+    for old in (report, made):
+        old.unlink(missing_ok=True)
+    command = [OCTAFRONT, "mesh", str(path), "-o", str(made), "--threads", "1", "--json", str(report)]
+    status, error, cpu = measured(command + ([] if size is None else ["--size", repr(size)]), limit)
+    return status, error, cpu, json.loads(report.read_text()) if report.exists() else {}
+
+
+def plain_seconds(folder):
+    """Per element of a ball, about as many as the cases have."""
+    ball = solids.sphere(1.0, 48)
+    path = folder / "ball.off"
+    solids.write_off(path, ball)
+    _, _, cpu, report = mesh(path, folder, size_for(ball, FINE), 60)
+    return cpu / report["tets"]
+
+
+def judge(number, family, solid, name, folder, plain):
+    path = folder / f"{number:04}.off"
+    h = {"automatic": None, "coarse": COARSE * solids.diagonal(solid), "fine": size_for(solid, FINE)}[name]
+    limit = FIXED_SECONDS + TIMES_PLAIN * plain * (MOST_ELEMENTS if h is None else MANY * FINE) + 10
+    status, error, cpu, report = mesh(path, folder, h, limit)
+    notes = [n for stage in report.get("stages", []) for n in stage["notes"]]
+    faults, elements, quality = [], report.get("tets", 0), report.get("quality", {})
+    change = report["volume"] / solids.volume(solid) - 1 if status == 0 else math.nan
+    said = any("change the volume" in n for n in notes)
+    if status in (-24, -9):
+        faults.append(f"no end in {limit:.0f} s")
+    elif status != 0:
+        faults.append(f"status {status}: {error.strip().splitlines()[0] if error.strip() else ''}")
+    else:
+        if cpu > FIXED_SECONDS + TIMES_PLAIN * plain * elements:
+            faults.append(f"{cpu:.1f} s for {elements} elements")
+        most = MOST_ELEMENTS if h is None else MANY * expected(solid, h) + FORCED * len(solid.triangles) + FEW
+        if elements > most:
+            faults.append(f"{elements} elements, where {most:.0f} are many")
+        if abs(change) > LOST and not (said and h is not None):
+            faults.append(f"volume {100 * change:+.2f} %")
+        if "valid" not in subprocess.run([OCTAFRONT, "check", str(folder / "made.vtu")], capture_output=True, text=True,
+                                         check=False).stdout:
+            faults.append("not valid")
+    return Run(number, family, name, status, cpu, elements, change, quality.get("beta_min", math.nan),
+               quality.get("dihedral_min_degrees", math.nan), quality.get("dihedral_max_degrees", math.nan), faults, said)
+
+
+def table(runs):
+    lines = ["| family | runs | good | refused | no end | CPU s, median | worst | elements, median | most | volume off by, worst |"
+             " worst where nothing is said |", "| --- | " + "--: | " * 10]
+    lines[1] = lines[1].rstrip()
+    for family in [*solids.FAMILIES, None]:
+        here = [r for r in runs if family in (r.family, None)]
+        done = [r for r in here if r.status == 0]
+        if not done:
+            continue
+        unsaid = [abs(r.volume) for r in done if not r.said]
+        lines.append("| {} | {} | {} | {} | {} | {:.2f} | {:.1f} | {:,.0f} | {:,} | {:.2f} % | {:.2f} % |".format(
+            (family or "all").replace("_", " "), len(here), sum(not r.faults for r in here),
+            sum(r.status not in (0, -24, -9) for r in here), sum(r.status in (-24, -9) for r in here),
+            statistics.median(r.cpu for r in here), max(r.cpu for r in here), statistics.median(r.elements for r in done),
+            max(r.elements for r in done), 100 * max(abs(r.volume) for r in done), 100 * max(unsaid, default=0)))
+    return lines
+
+
+def page(runs, arguments, plain):
+    git = subprocess.run(["git", "-C", ROOT, "log", "-1", "--format=%h"], capture_output=True, text=True, check=False).stdout.strip()
+    processor = next((line.partition(":")[2].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")), platform.machine())
+    faulty = [r for r in runs if r.faults]
+    PAGE.write_text("\n".join([
+        "# Nasty solids", "",
+        "Written by `scripts/nasty_solids.py --page`; do not edit.", "",
+        f"Cases {arguments.cases}, seed {arguments.seed}, {len(runs)} runs at commit {git}, {datetime.date.today()}, {processor}.", "",
+        "Generated closed solids that are legal and awkward: `scripts/lib/nasty_solids.py` says which. Each is meshed with automatic sizes, with"
+        f" `--size` of an eighth of its diagonal (coarse), and with one for about {FINE:,} elements (fine), on one thread. A run is good if"
+        f" it ends with a valid mesh, in {FIXED_SECONDS} CPU s and {TIMES_PLAIN} times what a ball takes for as many elements"
+        f" ({1e6 * plain:.1f} us each), with at most {MOST_ELEMENTS:,} elements (or, where a size is given, {MANY} times what it asks for,"
+        f" {FORCED} for each triangle of the input and {FEW:,}), and within {100 * LOST:.0f} % of the exact volume. Where a given size cannot"
+        " keep the volume a note has to say so.", "",
+        *table(runs), "",
+        f"What was not good ({len(faulty)} of {len(runs)}):", "",
+        *(f"- {r.number} {r.family}, {r.size}: {'; '.join(r.faults)}" for r in faulty[:60]),
+        *([f"- and {len(faulty) - 60} more"] if len(faulty) > 60 else []), ""]))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("cases", nargs="?", default="0:2000", metavar="FIRST:END")
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--families")
+    parser.add_argument("--sizes", default=",".join(SIZES))
+    parser.add_argument("--seconds", type=float, default=math.inf, help="begin no further case after so many")
+    parser.add_argument("--page", action="store_true")
+    parser.add_argument("--json", metavar="FILE", help="all runs")
+    parser.add_argument("--keep", metavar="FOLDER", help="leave the solids that failed there")
+    parser.add_argument("--write", nargs=2, metavar=("NUMBER", "FILE.off"))
+    arguments = parser.parse_args()
+    if arguments.write:
+        solids.write_off(arguments.write[1], solids.make(int(arguments.write[0]), arguments.seed)[1])
+        return 0
+    first, end = (int(x) for x in arguments.cases.split(":"))
+    families = arguments.families.split(",") if arguments.families else list(solids.FAMILIES)
+    runs, begun = [], time.monotonic()
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        plain = plain_seconds(folder)
+        for number in range(first, end):
+            family, solid = solids.make(number, arguments.seed)
+            if family not in families:
+                continue
+            if time.monotonic() - begun > arguments.seconds:
+                arguments.cases = f"{first}:{number}"
+                break
+            path = folder / f"{number:04}.off"
+            solids.write_off(path, solid)
+            for size in arguments.sizes.split(","):
+                runs.append(judge(number, family, solid, size, folder, plain))
+                if runs[-1].faults:
+                    print(f"{number} {family}, {size}: {'; '.join(runs[-1].faults)}", flush=True)
+                    if arguments.keep:
+                        pathlib.Path(arguments.keep, path.name).write_bytes(path.read_bytes())
+            path.unlink()
+    bad = sum(bool(r.faults) for r in runs)
+    print(f"{len(runs) - bad} of {len(runs)} good; {sum(r.cpu for r in runs):.0f} CPU s, the longest {max(r.cpu for r in runs):.1f}")
+    if arguments.json:
+        pathlib.Path(arguments.json).write_text(json.dumps([r._asdict() for r in runs]))
+    if arguments.page:
+        page(runs, arguments, plain)
+    return 1 if bad else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
