@@ -12,7 +12,7 @@ namespace {
 /// Triangles between whose normals the square of the sine is less lie in one plane: files round, walls do not bend.
 constexpr double kFlat = 1e-6;
 /// A part of a surface in one plane is a wall if features are this part of its rim, or from so many triangles on.
-constexpr double kFramed = 0.5;
+constexpr double kFramed = 0.9;
 constexpr std::size_t kMany = 16;
 
 bool in_one_plane(Vec3 n, Vec3 m) {

@@ -84,7 +84,7 @@ class Meshing(Case):
         names = ["bottom", "top", "front", "back", "left", "right \"><script>"]
         surface = octafront.Surface(points, triangles, patches=patches, patch_names=names)
         mesh = octafront.mesh(surface, size=0.3)
-        self.assertEqual(mesh.names["patches"], ["line end", "ÿ broken", *names[2:]])
+        self.assertEqual(mesh.names["patches"], names)
         top = mesh.faces[mesh.patches == 1]
         self.assertTrue((mesh.points[top][..., 2] == 1).all())
         self.assertTrue(any("|" in name for name in mesh.names["curves"]))
@@ -590,7 +590,7 @@ class Meshes(Case):
         names = ["line\nend", "\udcff broken", "x" * 10000, "<script>alert(1)</script>"]
         surface = octafront.Surface(points, triangles, patches=np.arange(12) // 3, patch_names=names)
         mesh = octafront.mesh(surface, size=0.5)
-        self.assertEqual(mesh.names["patches"], names)
+        self.assertEqual(mesh.names["patches"], ["line end", "ÿ broken", *names[2:]])
         self.assertNotIn("<script>", mesh._repr_html_())
         mesh._repr_html_().encode()
 
