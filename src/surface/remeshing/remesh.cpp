@@ -108,6 +108,8 @@ constexpr int kLastMendings = 3;
 constexpr int kMostRaises = 6;
 constexpr double kLeastRaise = 1.2, kMostRaise = 4, kNearBudget = 1.1;
 constexpr double kFirstSlope = 0.7, kFlattest = 0.3, kSteepest = 1.5;
+/// No surface is begun whose elements would be more than so many times the budget: what crosses is not bound by it.
+constexpr double kFarBeyond = 2;
 
 struct Counts {
   std::uint64_t placed = 0, tried = 0;
@@ -301,6 +303,7 @@ class Remesher {
   Remeshed run() {
     if (seamed_ && limits_deviation()) foresee_deviation();
     for (counts_.rounds = 1; counts_.rounds <= kMostRounds && !is_worn_out(kWornOut); ++counts_.rounds) {
+      if (counts_.rounds > 1 && is_far_beyond_budget()) return kept_for_budget();
       Compacted c = attempt(Effort::kFull);
       if (is_noise_) return kept_as_noise();
       last_triangles_ = c.result.surface.triangles.size();
@@ -359,6 +362,22 @@ class Remesher {
   /// Whether all rounds together have made more than so many times the triangles of the last one.
   bool is_worn_out(double times) const {
     return static_cast<double>(counts_.triangles) > times * static_cast<double>(last_triangles_);
+  }
+
+  /// Whether what crosses has made sizes so small that the elements would be far more than the budget has.
+  bool is_far_beyond_budget() {
+    if (!std::isfinite(limits_.budget)) return false;
+    if (!expected_) expected_.emplace(surface_);
+    return (*expected_)(sizes_) > kFarBeyond * limits_.budget;
+  }
+
+  Remeshed kept_for_budget() {
+    report_counts(counts_, stage_);
+    stage_.note(
+        fmt::format("the surface was kept as it is: others cross at every size for which the automatic size's "
+                    "budget of {:.2g} million elements suffices. Give a `size` to have them anyway",
+                    limits_.budget / 1e6));
+    return input_as_it_is(known_, first_);
   }
 
   /// The sizes as far as the budget goes.
