@@ -148,8 +148,11 @@ def main():
         "*Before*: commit 912d740, by `--before PROGRAM`.", "",
         "Plates of 1 x 1, discs of radius 1 (48 corners), tubes of radius 1 and height 2 (48 corners), shells of spheres of radius 1 "
         "(10,240 triangles), turned by some angles; thickness in the same units. Volume against the input's, in percent; every file "
-        f"is judged by `octafront_evaluate`. Gmsh: surface anew at size {SIZE}; TetGen keeps the input's triangles. At most "
-        f"{a.timeout:.0f} s.", "",
+        f"is judged by `octafront_evaluate`. Gmsh: surface anew at size {SIZE}; TetGen keeps the input's triangles, and fills "
+        f"the cavities of shells, as no hole is marked. At most {a.timeout:.0f} s.", "",
+        "Angles near 0 and 180 degrees are what one layer of elements makes of such walls. Where both sides are divided alike an "
+        "element may span an edge and the one right behind it: its angles are 0 and 180 up to rounding, its volume is above 0 by "
+        "exact sign only.", "",
         "| body | thickness | mesher | volume, % | elements | dihedral angles | CPU s |", "| --- | --- | --- | --- | --- | --- | --- |",
         *rows, ""]))
 
