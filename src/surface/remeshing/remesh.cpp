@@ -108,8 +108,9 @@ constexpr int kLastMendings = 3;
 constexpr int kMostRaises = 6;
 constexpr double kLeastRaise = 1.2, kMostRaise = 4, kNearBudget = 1.1;
 constexpr double kFirstSlope = 0.7, kFlattest = 0.3, kSteepest = 1.5;
-/// No surface is begun whose elements would be more than so many times the budget: what crosses is not bound by it.
-constexpr double kFarBeyond = 2;
+/// What crosses is not bound by the budget, but no smaller triangles are tried from this part of it on: they would take
+/// more elements than it has.
+constexpr double kMostTriangles = 0.3;
 
 struct Counts {
   std::uint64_t placed = 0, tried = 0;
@@ -303,12 +304,12 @@ class Remesher {
   Remeshed run() {
     if (seamed_ && limits_deviation()) foresee_deviation();
     for (counts_.rounds = 1; counts_.rounds <= kMostRounds && !is_worn_out(kWornOut); ++counts_.rounds) {
-      if (counts_.rounds > 1 && is_far_beyond_budget()) return kept_for_budget();
       Compacted c = attempt(Effort::kFull);
       if (is_noise_) return kept_as_noise();
       last_triangles_ = c.result.surface.triangles.size();
       counts_.triangles += last_triangles_;
       if (is_sound(c) && is_true(c)) return finished(c);
+      if (static_cast<double>(last_triangles_) > kMostTriangles * limits_.budget) return kept_for_budget();
       cap_far(c);
     }
     Compacted c = attempt(Effort::kInsertOnly);
@@ -362,13 +363,6 @@ class Remesher {
   /// Whether all rounds together have made more than so many times the triangles of the last one.
   bool is_worn_out(double times) const {
     return static_cast<double>(counts_.triangles) > times * static_cast<double>(last_triangles_);
-  }
-
-  /// Whether what crosses has made sizes so small that the elements would be far more than the budget has.
-  bool is_far_beyond_budget() {
-    if (!std::isfinite(limits_.budget)) return false;
-    if (!expected_) expected_.emplace(surface_);
-    return (*expected_)(sizes_) > kFarBeyond * limits_.budget;
   }
 
   Remeshed kept_for_budget() {
