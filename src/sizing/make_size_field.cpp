@@ -240,7 +240,7 @@ void refuse_huge_counts(const SurfaceMesh& surface, const WantedSizes& wanted) {
 }  // namespace
 
 double automatic_budget(const SurfaceMesh& surface, const SizeOptions& options) {
-  if (!has_automatic_sizes(options)) return HUGE_VAL;
+  if (!has_no_size_source(options)) return HUGE_VAL;
   const double budget = kBudget + kBudgetPerTriangle * static_cast<double>(surface.triangles.size());
   return std::min(budget, kMostBudget) / std::pow(options.automatic_factor, 3);
 }

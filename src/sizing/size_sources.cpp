@@ -183,7 +183,7 @@ SizeAtPlace sizes_at_places(const KnownSurface& surface, const Choice& choice, c
 
 }  // namespace
 
-bool has_automatic_sizes(const SizeOptions& o) {
+bool has_no_size_source(const SizeOptions& o) {
   return has_automatic_base(o) && !o.elements && !o.field && !o.min_size && !o.max_size && o.regions.empty() &&
          o.named.empty();
 }

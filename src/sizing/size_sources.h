@@ -34,8 +34,8 @@ struct WantedSizes {
   bool automatic = false;          ///< the user left the choice to us
 };
 
-/// Whether all sizes are of our own choice.
-bool has_automatic_sizes(const SizeOptions& options);
+/// Whether nothing says what the sizes are, so that all are of our own choice.
+bool has_no_size_source(const SizeOptions& options);
 
 /// A measure of the model that neither rotation nor triangulation changes: 2 sqrt(3) times the root mean square
 /// distance of the surface from its centre of gravity. A sphere's is the diagonal of its bounding box, a rod's is its
