@@ -830,7 +830,7 @@ class Remesher {
   bool is_true(Compacted& c) {
     const std::size_t far = c.nearness.is_near_enough ? 0 : c.nearness.far.size() + c.nearness.farther.size();
     const bool is_last =
-        counts_.rounds == kMostRounds || (spent_.floor > 0 && counts_.rounds > spent_.round) ||
+        counts_.rounds == kMostRounds || (spent_.floor > 0 && (counts_.rounds > spent_.round || counts_.rounds > 1)) ||
         (seamed_ ? counts_.rounds > 1 ||
                        static_cast<double>(far) < kVeryFew * static_cast<double>(c.result.surface.triangles.size())
                  : counts_.deviation_rounds == kMostDeviationRounds || is_worn_out(kPatience));
