@@ -10,6 +10,7 @@
 #include "geometry/measures.h"
 #include "geometry/predicates.h"
 #include "geometry/triangle_tree.h"
+#include "mend/dust.h"
 #include "mend/holes.h"
 #include "mend/label.h"
 #include "mend/lattice_skin.h"
@@ -109,7 +110,7 @@ class Mending {
     close();
     try {
       SurfaceMesh surface = arranged_result();
-      if (is_clean(surface, context_)) return surface;
+      if (is_clean(surface, context_)) return without_dust(std::move(surface));
       report_.notes.push_back("what touches could not be drawn apart");
     } catch (const InputError& error) {
       // Rounding found no end, or a piece has no inside in doubles.
@@ -158,6 +159,19 @@ class Mending {
     report_.largest_move = std::max(report_.largest_move, arranged.largest_move);
     SurfaceMesh surface = surface_of(arranged, best_skin(arranged));
     separate(surface);
+    return surface;
+  }
+
+  /// Where that would make crossings only the finest dust is taken out, or none.
+  SurfaceMesh without_dust(SurfaceMesh surface) {
+    for (const double part : kDust) {
+      SurfaceMesh tidy = surface;
+      const double reach = part * report_.tolerance;
+      if (drop_dust(tidy, reach) == 0) break;
+      if (!is_clean(tidy, context_)) continue;
+      report_.largest_move = std::max(report_.largest_move, reach);
+      return tidy;
+    }
     return surface;
   }
 
@@ -236,7 +250,7 @@ class Mending {
   Skin best_skin(const Arrangement& arranged) {
     const Cells cells(arranged.points, arranged.triangles, context_);
     const Labels labels = label_cells(arranged, cells, pieces_, report_.tolerance, context_);
-    Skin skin = skin_of_cells(arranged, cells, labels);
+    Skin skin = skin_of_cells(arranged, all_triangles(), cells, labels, context_);
     if (leaves_out_little(skin)) {
       note_turned(report_, draft_, pieces_.piece, labels.turned, turned_);
       note_filled(report_, arranged, cells, labels.filled);
@@ -357,6 +371,8 @@ class Mending {
     report_.separated_vertices = done.places.size();
   }
 
+  /// Of the tolerance: triangles as low as this are left by cuts that nearly meet, and by rounding; nobody draws them.
+  static constexpr double kDust[] = {1e-3, 1e-6, 1e-10};
   /// Of the tolerance, for what touches.
   static constexpr double kMostDrawn = 0.25;
   /// Of the area of the soup, what may bound nothing.
@@ -411,8 +427,9 @@ SurfaceMesh wrapped(const SurfaceMesh& soup, const MendOptions& options, const R
   return std::move(skin.surface);
 }
 
-/// Points of faces that were divided are rounded: what lies no farther from its face, in diagonals, was not moved.
-constexpr double kUnmoved = 1e-9;
+/// Points of faces that were divided are rounded, and dust is taken out: what lies no farther from its face than this
+/// part of the tolerance was not moved.
+constexpr double kUnmoved = 0.01;
 
 /// For what was moved, by no more than the tolerance, the tolerance; what was invented nobody knows any nearer. Empty
 /// if nothing was moved.
@@ -431,7 +448,7 @@ std::vector<double> bounds_of(const SurfaceMesh& soup, const SurfaceMesh& made, 
       moved =
           std::max(moved, distance(p, closest_point_on_triangle(p, soup.points[a], soup.points[b], soup.points[c])));
     }
-    if (!(moved > kUnmoved * report.diagonal && moved <= report.tolerance)) continue;
+    if (!(moved > kUnmoved * report.tolerance && moved <= report.tolerance)) continue;
     bounds[t] = report.tolerance;
     any = true;
   }

@@ -1,6 +1,7 @@
 #include "mend/skin.h"
 
 #include "geometry/measures.h"
+#include "mend/whole_faces.h"
 
 namespace octafront::mend {
 namespace {
@@ -27,7 +28,8 @@ void drop_unused_points(Skin& skin) {
 
 }  // namespace
 
-Skin skin_of_cells(const Arrangement& arranged, const Cells& cells, const Labels& labels) {
+Skin skin_of_cells(const Arrangement& arranged, const std::vector<Triangle>& given, const Cells& cells,
+                   const Labels& labels, const RunContext& context) {
   Skin skin;
   skin.points = arranged.points;
   for (std::uint32_t t = 0; t < arranged.triangles.size(); ++t) {
@@ -40,6 +42,7 @@ Skin skin_of_cells(const Arrangement& arranged, const Cells& cells, const Labels
     skin.triangles.push_back(labels.inside[back] ? Triangle{a, b, c} : Triangle{a, c, b});
     skin.wall.push_back(t);
   }
+  restore_whole_faces(arranged, given, skin, context);
   drop_unused_points(skin);
   return skin;
 }

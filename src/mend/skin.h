@@ -20,7 +20,8 @@ struct Skin {
   double idle_area = 0;             ///< of walls with outside on both sides
 };
 
-/// By cells of the arrangement.
-Skin skin_of_cells(const Arrangement& arranged, const Cells& cells, const Labels& labels);
+/// By cells of the arrangement. Faces of which nothing is missing are in it as they were `given` to be arranged.
+Skin skin_of_cells(const Arrangement& arranged, const std::vector<Triangle>& given, const Cells& cells,
+                   const Labels& labels, const RunContext& context);
 
 }  // namespace octafront::mend

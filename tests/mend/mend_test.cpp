@@ -203,6 +203,44 @@ TEST(MendSurface, FinsAreDroppedAndSaid) {
   EXPECT_EQ(result.report.count(Kind::kDropped), 1u);
 }
 
+TEST(MendSurface, FinsThatCrossLeaveNothingBehind) {
+  const SurfaceMesh clean = box_at({}, {1, 1, 1}, 4);
+  SurfaceMesh soup = clean;
+  soup.patch.clear();
+  const auto first = static_cast<VertexIndex>(soup.points.size());
+  soup.points.insert(soup.points.end(), {{0.31, 0.33, 0.5}, {0.47, 0.62, 1.3}, {0.9, 0.57, 1.2}});
+  soup.triangles.push_back({first, first + 1, first + 2});
+  const Mended result = mended(soup);
+  EXPECT_EQ(result.surface.triangles.size(), clean.triangles.size());
+  EXPECT_EQ(result.surface.points.size(), clean.points.size());
+  EXPECT_NEAR(enclosed_volume(result.surface), 1, 1e-14);
+  EXPECT_EQ(result.report.count(Kind::kDropped), 1u);
+}
+
+TEST(MendSurface, FacesThatArePartlyCoveredStayDivided) {
+  const Mended result = mended(testing::joined(box_at({}, {1, 1, 1}), box_at({0.3, 0.3, 0.5}, {0.2, 0.2, 1})));
+  EXPECT_NEAR(enclosed_volume(result.surface), 1.02, 1e-12);
+  EXPECT_GT(result.surface.triangles.size(), 24u);
+}
+
+double least_height(const SurfaceMesh& surface) {
+  double least = HUGE_VAL;
+  for (const auto& [a, b, c] : surface.triangles) {
+    const Vec3 p = surface.points[a], q = surface.points[b], r = surface.points[c];
+    least = std::min(least, length(cross(q - p, r - p)) / std::max({distance(p, q), distance(q, r), distance(r, p)}));
+  }
+  return least;
+}
+
+TEST(MendSurface, CutsThatNearlyMeetLeaveNoDust) {
+  // The second box begins 1e-9 beside an edge of the triangulation of the first one, and ends as near to its corner.
+  const SurfaceMesh soup =
+      testing::joined(box_at({}, {1, 1, 1}, 4), box_at({0.25 + 1e-9, 0.25 - 1e-9, 0.5}, {0.5, 0.5 + 2e-9, 1}));
+  const Mended result = mended(soup);
+  EXPECT_GT(least_height(result.surface), 1e-7);
+  EXPECT_NEAR(enclosed_volume(result.surface), 1.125, 1e-7);
+}
+
 TEST(MendSurface, SheetsAreRefusedWithWords) {
   SurfaceMesh terrain;
   constexpr int n = 8;
