@@ -231,17 +231,44 @@ std::optional<CurvePlace> CurvePoints::place_between(HalfEdge h, double part) co
   return CurvePlace{from.curve, wrapped(curve, from.along + part * (to - from.along))};
 }
 
-bool CurvePoints::split_is_better(HalfEdge h, Vec3 x, double gain) const {
-  double before = 1, after = 1;
+/// Least 2r/R of the two triangles at a feature edge.
+double CurvePoints::shape_beside(HalfEdge h) const {
+  double least = 1;
+  for (const HalfEdge side : {h, mesh_.twin[h]})
+    least = std::min(least, triangle_radius_ratio(mesh_.points[mesh_.start[side]], mesh_.points[mesh_.end(side)],
+                                                  mesh_.points[mesh_.apex(side)]));
+  return least;
+}
+
+/// The same of the four that a point on it makes; 0 if one turns too far.
+double CurvePoints::shape_after_split(HalfEdge h, Vec3 x) const {
+  double least = 1;
   for (const HalfEdge side : {h, mesh_.twin[h]}) {
-    const VertexIndex a = mesh_.start[side], b = mesh_.end(side), c = mesh_.apex(side);
-    const Vec3 pa = mesh_.points[a], pb = mesh_.points[b], pc = mesh_.points[c], star = mesh_.area_vector(side / 3);
-    before = std::min(before, triangle_radius_ratio(pa, pb, pc));
-    after = std::min({after, triangle_radius_ratio(pa, x, pc), triangle_radius_ratio(x, pb, pc)});
-    if (!turns_little(cross(x - pa, pc - pa), star, kLimits.star)) return false;
-    if (!turns_little(cross(pb - x, pc - x), star, kLimits.star)) return false;
+    const Vec3 a = mesh_.points[mesh_.start[side]], b = mesh_.points[mesh_.end(side)],
+               c = mesh_.points[mesh_.apex(side)];
+    const Vec3 star = mesh_.area_vector(side / 3);
+    if (!turns_little(cross(x - a, c - a), star, kLimits.star)) return 0;
+    if (!turns_little(cross(b - x, c - x), star, kLimits.star)) return 0;
+    least = std::min({least, triangle_radius_ratio(a, x, c), triangle_radius_ratio(x, b, c)});
   }
-  return after > std::max(kWorthIt, gain * before);
+  return least;
+}
+
+/// The point of the curve that divides a feature edge in the proportion `part`, if its curve is known and passes there.
+std::optional<CurvePoints::Division> CurvePoints::division(HalfEdge h, double part) const {
+  const Vec3 a = mesh_.points[mesh_.start[h]], b = mesh_.points[mesh_.end(h)];
+  const std::optional<CurvePlace> place = place_between(h, part);
+  if (!place) return std::nullopt;
+  const CurvePoint x = point_along(input_, curves_[place->curve], place->along);
+  if (distance(x.p, a + (b - a) * part) > kAstray * distance(a, b)) return std::nullopt;
+  return Division{*place, x};
+}
+
+void CurvePoints::split_at(HalfEdge h, const Division& at) {
+  const Vec3 p = at.point.p;
+  const VertexIndex v = mesh_.add_vertex(p, VertexKind::kCurve, {}, sizes_.at(p), at.point.half_edge / 3);
+  mesh_.place[v] = at.place;
+  mesh_.split_edge(h, v);
 }
 
 bool CurvePoints::split(HalfEdge h, double gain) {
@@ -250,13 +277,17 @@ bool CurvePoints::split(HalfEdge h, double gain) {
   const double part = dot(c - a, b - a) / squared_length(b - a);
   const double shorter = std::min(part, 1 - part);
   if (!(shorter > kLeastPart && shorter * distance(a, b) > kShortestRelief * mesh_.size[mesh_.start[h]])) return false;
-  const std::optional<CurvePlace> place = place_between(h, part);
-  if (!place) return false;
-  const CurvePoint x = point_along(input_, curves_[place->curve], place->along);
-  if (distance(x.p, a + (b - a) * part) > kAstray * distance(a, b) || !split_is_better(h, x.p, gain)) return false;
-  const VertexIndex v = mesh_.add_vertex(x.p, VertexKind::kCurve, {}, sizes_.at(x.p), x.half_edge / 3);
-  mesh_.place[v] = *place;
-  mesh_.split_edge(h, v);
+  const std::optional<Division> at = division(h, part);
+  if (!at || !(shape_after_split(h, at->point.p) > std::max(kWorthIt, gain * shape_beside(h)))) return false;
+  split_at(h, *at);
+  return true;
+}
+
+bool CurvePoints::halve(HalfEdge h) {
+  if (mesh_.is_seam(h)) return false;
+  const std::optional<Division> at = division(h, 0.5);
+  if (!at || !(shape_after_split(h, at->point.p) > 0)) return false;
+  split_at(h, *at);
   return true;
 }
 

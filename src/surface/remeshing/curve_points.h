@@ -22,6 +22,8 @@ class CurvePoints {
   /// Divides the feature edge of h where it lies nearest to its apex, if that lifts the worst of the triangles on both
   /// sides by `gain`.
   bool split(HalfEdge h, double gain);
+  /// Divides the feature edge of h in its middle, if no triangle turns too far by that.
+  bool halve(HalfEdge h);
 
  private:
   struct Corner {
@@ -35,6 +37,10 @@ class CurvePoints {
     VertexIndex before = kNone, after = kNone;
     double from = 0, to = 0;  ///< their places along the curve, around that of v
   };
+  struct Division {
+    CurvePlace place;
+    CurvePoint point;
+  };
 
   bool gather(VertexIndex v);
   bool find_neighbours(VertexIndex v);
@@ -46,7 +52,10 @@ class CurvePoints {
   bool lengths_within(Vec3 p, double least, double most) const;
   void move(VertexIndex v, const CurvePoint& x);
   std::optional<CurvePlace> place_between(HalfEdge h, double part) const;
-  bool split_is_better(HalfEdge h, Vec3 x, double gain) const;
+  std::optional<Division> division(HalfEdge h, double part) const;
+  double shape_beside(HalfEdge h) const;
+  double shape_after_split(HalfEdge h, Vec3 x) const;
+  void split_at(HalfEdge h, const Division& at);
 
   WorkingMesh& mesh_;
   const InputSurface& input_;

@@ -4,6 +4,7 @@
 #include "surface/remeshing/star_collapse.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace octafront::remeshing {
 
@@ -42,7 +43,11 @@ class LengthAdjuster {
     }
     const std::size_t half_edges = mesh_.start.size();
     for (HalfEdge h = 0; h < half_edges; ++h) {
-      if (mesh_.start[h] != kNone && h < mesh_.twin[h] && !mesh_.is_feature[h]) split_if_long(h);
+      if (mesh_.start[h] == kNone || h > mesh_.twin[h]) continue;
+      if (!mesh_.is_feature[h])
+        split_if_long(h);
+      else if (relative_length(h) > kLong)
+        counts_.splits += curve_points_.halve(h);
     }
     mend_all();
   }
@@ -83,22 +88,28 @@ class LengthAdjuster {
     }
   }
 
+  /// The middle is walked to from an end inside a patch; where both lie on curves, from a vertex opposite.
   void split_if_long(HalfEdge h) {
     if (relative_length(h) <= kLong) return;
-    HalfEdge from = h;
-    if (mesh_.kind[mesh_.start[from]] != VertexKind::kFree) from = mesh_.twin[h];
-    const VertexIndex u = mesh_.start[from];
-    if (mesh_.kind[u] != VertexKind::kFree) return;
-    const Vec3 p = mesh_.points[u], q = mesh_.points[mesh_.end(from)], n = mesh_.normal[u];
-    const Vec3 d = normalized((q - p) - n * dot(q - p, n));
-    const double l = distance(p, q);
+    const HalfEdge g = mesh_.twin[h];
+    const Vec3 a = mesh_.points[mesh_.start[h]], b = mesh_.points[mesh_.start[g]];
+    for (const VertexIndex from : {mesh_.start[h], mesh_.start[g], mesh_.apex(h), mesh_.apex(g)}) {
+      if (mesh_.kind[from] != VertexKind::kFree) continue;
+      const std::optional<SurfacePoint> x = walk_from(from, (a + b) * 0.5);
+      if (!x || distance(x->p, (a + b) * 0.5) > kAstray * distance(a, b) || !split_is_sound(h, x->p)) continue;
+      const Vec3 normal = input_.normal_at(x->face, x->p);
+      mesh_.split_edge(h, mesh_.add_vertex(x->p, VertexKind::kFree, normal, sizes_.at(x->p), x->face));
+      ++counts_.splits;
+      return;
+    }
+  }
+
+  std::optional<SurfacePoint> walk_from(VertexIndex v, Vec3 target) const {
+    const Vec3 p = mesh_.points[v], n = mesh_.normal[v];
+    const Vec3 along = normalized((target - p) - n * dot(target - p, n));
     SurfacePoint x;
-    if (walk(input_, {p, mesh_.face[u]}, d, n, 0.5 * l, x) != WalkEnd::kArrived) return;
-    if (distance(x.p, (p + q) * 0.5) > kAstray * l || !split_is_sound(from, x.p)) return;
-    const VertexIndex v =
-        mesh_.add_vertex(x.p, VertexKind::kFree, input_.normal_at(x.face, x.p), sizes_.at(x.p), x.face);
-    mesh_.split_edge(from, v);
-    ++counts_.splits;
+    if (walk(input_, {p, mesh_.face[v]}, along, n, distance(p, target), x) != WalkEnd::kArrived) return std::nullopt;
+    return x;
   }
 
   bool split_is_sound(HalfEdge h, Vec3 x) const {
