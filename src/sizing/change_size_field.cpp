@@ -15,7 +15,7 @@ namespace octafront {
 namespace {
 
 /// A cap holds unchanged within this many of the old sizes around its point, and rises at the gradation from there.
-constexpr double kCapReach = 1.5;
+constexpr double kCapReach = CapShape{}.reach;
 
 struct Scaled final : SizeFunction {
   Scaled(SizeField old, double factor) : sizes(std::move(old)), by(factor) {
@@ -56,10 +56,10 @@ SizeField capped(const SizeField& sizes, std::vector<SizeCap> caps, const RunCon
   return SizeFunction::field(std::make_shared<Capped>(sizes, std::move(caps), rise));
 }
 
-std::vector<SizeCap> caps_at(const std::vector<PointSize>& places) {
+std::vector<SizeCap> caps_at(const std::vector<PointSize>& places, double reach) {
   std::vector<SizeCap> caps;
   caps.reserve(places.size());
-  for (const PointSize& s : places) caps.push_back({s.p, s.p, s.size, kCapReach * s.size});
+  for (const PointSize& s : places) caps.push_back({s.p, s.p, s.size, reach * s.size});
   return caps;
 }
 
@@ -119,13 +119,9 @@ SizeField capped_near(const SizeField& sizes, const std::vector<Vec3>& points, d
   return capped(sizes, std::move(caps), context);
 }
 
-SizeField capped_at(const SizeField& sizes, const std::vector<PointSize>& places, const RunContext& context) {
-  return places.empty() ? sizes : capped(sizes, caps_at(places), context);
-}
-
-SizeField capped_steeply(const SizeField& sizes, const std::vector<PointSize>& places, double gradation,
-                         const RunContext& context) {
-  return places.empty() ? sizes : capped(sizes, caps_at(places), context, gradation);
+SizeField capped_at(const SizeField& sizes, const std::vector<PointSize>& places, const RunContext& context,
+                    const CapShape& shape) {
+  return places.empty() ? sizes : capped(sizes, caps_at(places, shape.reach), context, shape.gradation);
 }
 
 WithinCount within_count(const SizeField& finer, const SizeField& first, const TetPrediction& expected, double most,

@@ -99,12 +99,14 @@ inline constexpr double kLatticeTooLong = 1.5;
 SizeField capped_near(const SizeField& sizes, const std::vector<Vec3>& points, double factor,
                       const RunContext& context);
 
-/// The size field capped to the sizes at the places, within 1.5 of them.
-SizeField capped_at(const SizeField& sizes, const std::vector<PointSize>& places, const RunContext& context);
+struct CapShape {
+  double reach = 1.5;    ///< in sizes of a place: so far they hold unchanged
+  double gradation = 0;  ///< more than the field's: sizes may rise as fast from the places, and anywhere from then on
+};
 
-/// The same, and from the places sizes may rise faster than the field's gradation, as they may from then on.
-SizeField capped_steeply(const SizeField& sizes, const std::vector<PointSize>& places, double gradation,
-                         const RunContext& context);
+/// The size field capped to the sizes at the places.
+SizeField capped_at(const SizeField& sizes, const std::vector<PointSize>& places, const RunContext& context,
+                    const CapShape& shape = {});
 
 /// All sizes multiplied by `factor`; where they then rise faster than the gradation they are cut.
 SizeField scaled(const SizeField& sizes, double factor, const RunContext& context);

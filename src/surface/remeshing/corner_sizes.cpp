@@ -138,7 +138,7 @@ class CornerFitter {
 SizeField fitted_to_corners(const InputSurface& input, const SeamedSurface& seamed, std::vector<std::uint8_t> is_fixed,
                             const SizeField& sizes, const RunContext& context) {
   const SeamedCurves chained = chained_curves(input, seamed, sizes, is_fixed);
-  return capped_steeply(sizes, CornerFitter(input, seamed, chained, sizes).run(context), kSteep, context);
+  return capped_at(sizes, CornerFitter(input, seamed, chained, sizes).run(context), context, {.gradation = kSteep});
 }
 
 }  // namespace octafront::remeshing

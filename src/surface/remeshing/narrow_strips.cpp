@@ -112,7 +112,7 @@ SizeField fitted_to_strips(const InputSurface& input, const SizeField& sizes, co
       kept.add(p, size);
     }
   }
-  return capped_steeply(sizes, places, rules.gradation, context);
+  return capped_at(sizes, places, context, {.gradation = rules.gradation});
 }
 
 }  // namespace octafront::remeshing

@@ -69,7 +69,7 @@ constexpr double kLeftAlone = 0.75;
 constexpr double kFewFar = 0.02;
 /// At fewer than this part it is mended where it strays or crosses; another round would cost as much as the first. Of a
 /// small surface rounds cost little, and make better triangles.
-constexpr double kNoRound = 3e-4;
+constexpr double kNoRound = 1e-3;
 /// In a complex sizes are made smaller by how far it strays: to come to this part of the bound, to no less than this
 /// part of themselves at once.
 constexpr double kAim = 0.75, kLeastPart = 0.4;
@@ -82,6 +82,8 @@ constexpr double kNoise = 0.08;
 /// So often in a round; there are no more than two for this. (Two in the first and one in the second are half the time,
 /// and leave 208 places of a skull too far where three leave 6, and 138 elements below .4 instead of 27.)
 constexpr int kRefinements = 3;
+/// In a single surface so often, until so many in a row have left no fewer places.
+constexpr int kMostRefinements = 8, kMostInVain = 2;
 /// And from there they rise faster than elsewhere, as around corners: it is a matter of single ridges and tips.
 constexpr double kSteep = 0.4;
 
@@ -255,10 +257,10 @@ std::vector<Vec3> centers_of(const SurfaceMesh& surface, const std::vector<std::
   return centers;
 }
 
-/// Sizes made smaller around places.
+/// Sizes made smaller at places.
 struct Caps {
-  std::vector<Vec3> places;
-  double factor;
+  std::vector<PointSize> places;
+  CapShape shape;
 };
 
 void report_counts(const Counts& counts, const Stage& stage) {
@@ -337,7 +339,7 @@ class Remesher {
 
   SizeField followed_within(double tolerance, const std::vector<Curve>& curves) const {
     const std::vector<PointSize> wanted = sizes_by_flatness(input_, curves, sizes_, tolerance, stage_.context());
-    return capped_steeply(sizes_, wanted, kSteep, stage_.context());
+    return capped_at(sizes_, wanted, stage_.context(), {.gradation = kSteep});
   }
 
   /// The surface of a complex may stray farther if following it would take more elements than the budget has.
@@ -392,8 +394,9 @@ class Remesher {
     progress(0);
     set_features(input_, {});  // no walk crosses seams
     set_features(input_, features_at_scale(input_, features(), sizes_));
+    const SizeField in_strips = fitted_to_strips(input_, sizes_, seamed_ ? kStripsOfWalls : kStrips, stage_.context());
     std::vector<std::uint8_t> is_fixed = mark_restored(input_, known_.tree(), restored_);
-    SizeField sizes = fitted_sizes(is_fixed);
+    SizeField sizes = fitted_sizes(in_strips, is_fixed);
     const std::vector<Curve> curves = curves_of(sizes, is_fixed);
     progress(0.05);
     const FrontPoints front = place_points(input_, curves, sizes, context);
@@ -440,12 +443,9 @@ class Remesher {
 
   const Features& features() const { return seamed_ ? seamed_->features : known_.features(); }
 
-  /// The sizes as they are now, smaller where what stands still is nearer together: strips between lines, and corners
-  /// of seams.
-  SizeField fitted_sizes(std::vector<std::uint8_t> is_fixed) {
-    const StripRules& rules = seamed_ ? kStripsOfWalls : kStrips;
-    SizeField sizes = fitted_to_strips(input_, sizes_, rules, stage_.context());
-    return affordable(seamed_ ? fitted_to_corners(input_, *seamed_, is_fixed, sizes, stage_.context()) : sizes);
+  /// `in_strips`, smaller where corners of seams are nearer together, as far as the budget goes.
+  SizeField fitted_sizes(const SizeField& in_strips, const std::vector<std::uint8_t>& is_fixed) {
+    return affordable(seamed_ ? fitted_to_corners(input_, *seamed_, is_fixed, in_strips, stage_.context()) : in_strips);
   }
 
   /// Divided; of a complex, `is_fixed` gets the corners that its parts share.
@@ -487,7 +487,7 @@ class Remesher {
       const std::vector<PointSize> wanted = sizes_against(places, sizes);
       if (wanted.empty()) return;
       n.wanted.insert(n.wanted.end(), wanted.begin(), wanted.end());
-      sizes = affordable(capped_steeply(sizes, wanted, kSteep, stage_.context()));
+      sizes = affordable(capped_at(sizes, wanted, stage_.context(), {.gradation = kSteep}));
       refine(mesh, curves, sizes);
       if (spent_.floor > 0) return;
     }
@@ -576,8 +576,8 @@ class Remesher {
                      const std::vector<std::uint8_t>& is_fixed, bool& clear) {
     Nearness n;
     DeviationWatch watch = deviation_watch();
-    std::size_t before = std::numeric_limits<std::size_t>::max();
-    for (int k = 0;; ++k) {
+    std::size_t least = std::numeric_limits<std::size_t>::max();
+    for (int k = 0, in_vain = 0;; ++k) {
       std::vector<FarPlace> places = far_places(mesh, watch);
       if (put_in_points(mesh, watch, is_fixed, places, n)) {
         clear = mend_places(mesh, is_fixed, tolerance_, clear);
@@ -588,14 +588,14 @@ class Remesher {
       n.farthest = farthest_of(places);
       n.near_limit = corners_at(mesh, places);
       n.is_near_enough = is_near_enough(mesh, places);
-      if (k == kRefinements || (clear && n.is_near_enough)) return n;
+      if (k == kMostRefinements || (clear && n.is_near_enough)) return n;
       std::vector<PointSize> wanted = sizes_where_few(mesh, places, sizes, clear);
-      if (wanted.empty() || wanted.size() >= before) return n;
-      before = wanted.size();
-      for (const Vec3 p : std::exchange(n.approached, {})) wanted.push_back({p, kDeviationCap * sizes.at(p)});
-      wanted = smallest_ones(std::move(wanted));
+      in_vain = wanted.size() < least ? 0 : in_vain + 1;
+      if (wanted.empty() || in_vain == kMostInVain) return n;
+      least = std::min(least, wanted.size());
       n.wanted.insert(n.wanted.end(), wanted.begin(), wanted.end());
-      sizes = capped(sizes, wanted);
+      for (const Vec3 p : std::exchange(n.approached, {})) wanted.push_back({p, kDeviationCap * sizes.at(p)});
+      sizes = capped_at(sizes, smallest_ones(std::move(wanted)), stage_.context(), shape_against_deviation());
       refine(mesh, curves, sizes);
       clear = mend_places(mesh, is_fixed, tolerance_);
     }
@@ -667,20 +667,13 @@ class Remesher {
   }
 
   /// A steep field lets all sizes rise steeply from then on, which makes far fewer elements: for complexes only.
-  SizeField capped(const SizeField& sizes, const std::vector<PointSize>& wanted) const {
-    return seamed_ ? capped_steeply(sizes, wanted, kSteep, stage_.context())
-                   : capped_at(sizes, wanted, stage_.context());
-  }
+  CapShape shape_against_deviation() const { return {.gradation = seamed_ ? kSteep : 0}; }
 
   /// Smaller sizes where the surface strayed.
   void cap_far(const Compacted& c) {
-    if (!c.nearness.wanted.empty()) {
-      wanted_.push_back(c.nearness.wanted);
-      sizes_ = capped(sizes_, wanted_.back());
-    }
+    add({c.nearness.wanted, shape_against_deviation()});
     if (seamed_) return;
     std::vector<Vec3> places = c.nearness.far;
-    places.insert(places.end(), c.nearness.approached.begin(), c.nearness.approached.end());
     if (!places.empty()) cap(places, kDeviationCap);
     if (!c.nearness.farther.empty()) cap(c.nearness.farther, kDeviationCapFar);
   }
@@ -771,8 +764,14 @@ class Remesher {
   }
 
   void cap(const std::vector<Vec3>& places, double factor) {
-    caps_.push_back({thinned(sizes_, places), factor});
-    sizes_ = capped_near(sizes_, caps_.back().places, factor, stage_.context());
+    Caps caps{{}, {.reach = CapShape{}.reach / factor}};
+    for (const Vec3 p : thinned(sizes_, places)) caps.places.push_back({p, factor * sizes_.at(p)});
+    add(std::move(caps));
+  }
+
+  void add(Caps caps) {
+    sizes_ = capped_at(sizes_, caps.places, stage_.context(), caps.shape);
+    caps_.push_back(std::move(caps));
   }
 
   /// Smaller sizes around what crosses; where that was in vain, the input's own triangles, and the first sizes again.
@@ -815,13 +814,12 @@ class Remesher {
   /// The sizes again without what was asked of them where the input's triangles have returned.
   void forget_caps() {
     sizes_ = first_;
-    for (const std::vector<PointSize>& wanted : wanted_) sizes_ = capped(sizes_, wanted);
     for (Caps& caps : caps_) {
-      std::erase_if(caps.places, [&](Vec3 p) {
+      std::erase_if(caps.places, [&](const PointSize& s) {
         return std::any_of(restored_.begin(), restored_.end(),
-                           [&](const Ball& b) { return b.in_vain && distance(b.center, p) < b.radius; });
+                           [&](const Ball& b) { return b.in_vain && distance(b.center, s.p) < b.radius; });
       });
-      sizes_ = capped_near(sizes_, caps.places, caps.factor, stage_.context());
+      sizes_ = capped_at(sizes_, caps.places, stage_.context(), caps.shape);
     }
   }
 
@@ -847,7 +845,7 @@ class Remesher {
       return true;
     }
     ++counts_.deviation_rounds;
-    sizes_ = capped_at(sizes_, turned, stage_.context());
+    add({std::move(turned), {}});
     return false;
   }
 
@@ -911,9 +909,8 @@ class Remesher {
   std::span<const double> bound_;  ///< see remesh_surface()
   SizeField first_;                ///< the sizes as they were asked, in a complex as they were foreseen
   SizeField sizes_;                ///< and as they are now
-  std::vector<Caps> caps_;
-  std::vector<std::vector<PointSize>> wanted_;  ///< against deviation and crossings
-  std::vector<Ball> restored_;                  ///< where the input's own triangles stay
+  std::vector<Caps> caps_;         ///< between the two
+  std::vector<Ball> restored_;     ///< where the input's own triangles stay
   const SurfaceOptions& options_;
   double tolerance_;  ///< for details of the input: none moves farther
   Leeway leeway_;
