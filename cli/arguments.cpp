@@ -145,7 +145,7 @@ void declare_input(CLI::App& command, Arguments& a, const std::string& what) {
 }
 
 void declare_complex(CLI::App& command, Arguments& a) {
-  ComplexOptions& o = a.complex;
+  ComplexOptions& o = a.intake.complex;
   auto* group = command.add_option_group("Several materials", "Cells between walls, or bodies of several files");
   group
       ->add_option_function<std::vector<std::string>>(
@@ -175,8 +175,9 @@ void declare_complex(CLI::App& command, Arguments& a) {
       *group, "--nested", o.nested,
       {{"direction", Nested::kByDirection}, {"cavity", Nested::kCavity}, {"region", Nested::kRegion}},
       "Closed shells inside others: cavities where they face inward and regions where outward, or all the same");
+  using Overlap = IntakeOptions::Overlap;
   add_choice<Overlap>(
-      *group, "--overlap", a.overlap, {{"union", Overlap::kUnion}, {"regions", Overlap::kRegions}},
+      *group, "--overlap", a.intake.overlap, {{"union", Overlap::kUnion}, {"regions", Overlap::kRegions}},
       "Parts of one file that overlap: united, or a region for each name of a patch (solid, group), the "
       "later one where they overlap");
   group
@@ -188,16 +189,18 @@ void declare_complex(CLI::App& command, Arguments& a) {
 
 void declare_repair(CLI::App& command, Arguments& a) {
   auto* group = command.add_option_group("Repair", "Surfaces that cannot be meshed as they are");
-  add_choice<Repair>(*group, "--repair", a.repair,
-                     {{"none", Repair::kNone}, {"auto", Repair::kAuto}, {"wrap", Repair::kWrap}},
+  using Repair = IntakeOptions::Repair;
+  using Sheets = IntakeOptions::Sheets;
+  add_choice<Repair>(*group, "--repair", a.intake.repair,
+                     {{"none", Repair::kOff}, {"auto", Repair::kAuto}, {"wrap", Repair::kWrap}},
                      "none: they are refused; auto: holes are closed, crossings resolved, what bounds nothing dropped, "
                      "the rest stays; wrap: a closed skin around everything");
   add_choice<Sheets>(
-      *group, "--sheets", a.sheets, {{"keep", Sheets::kKeep}, {"drop", Sheets::kDrop}},
+      *group, "--sheets", a.intake.sheets, {{"keep", Sheets::kKeep}, {"drop", Sheets::kDrop}},
       "Walls inside of a region of a clean complex that bound nothing: cracks to keep, or debris. What has "
       "to be mended loses them");
   group
-      ->add_option("--wrap-distance", a.mend.distance,
+      ->add_option("--wrap-distance", a.intake.wrap_distance,
                    "How far the skin lies from the surface [a hundredth of the diagonal]")
       ->type_name("D");
   group

@@ -1,12 +1,10 @@
 #pragma once
 
-#include <octafront/complex.h>
-#include <octafront/mend.h>
+#include <octafront/domain.h>
 #include <octafront/named_groups.h>
 #include <octafront/options.h>
 #include <octafront/solver_checks.h>
 
-#include "image_arguments.h"
 #include "option_names.h"
 
 #include <CLI/CLI.hpp>
@@ -27,27 +25,16 @@ struct TypedLength {
 /// What people choose who do not want to think: how fine automatic sizes are, and how long elements are improved.
 enum class Preset { kDraft, kStandard, kFine };
 
-/// What becomes of surfaces that cannot be meshed as they are.
-enum class Repair { kNone, kAuto, kWrap };
-/// What becomes of walls with one region on both sides.
-enum class Sheets { kKeep, kDrop };
-enum class Overlap { kUnion, kRegions };
-
 /// What the user typed, as the commands need it.
 struct Arguments {
   std::string command;
   std::string command_line;  ///< quoted for a shell
   std::filesystem::path input, output, json, surface, page;
   std::vector<std::filesystem::path> bodies;  ///< all inputs, the first one too, of commands that take several
-  ComplexOptions complex;
-  ImageArguments image;
-  Repair repair = Repair::kAuto;
-  Sheets sheets = Sheets::kKeep;
-  Overlap overlap = Overlap::kUnion;
-  MendOptions mend;               ///< but for what `repair` says, and the tolerance, which is that of `complex`
-  std::filesystem::path defects;  ///< where the changes of repair are shown; empty: nowhere
-  std::vector<std::filesystem::path> meshes;               ///< that are written; "-": to standard output
-  std::vector<std::string> formats;                        ///< of the meshes in turn; empty: by their endings
+  IntakeOptions intake;                       ///< what becomes of them on the way in
+  std::filesystem::path defects;              ///< where the changes of repair are shown; empty: nowhere
+  std::vector<std::filesystem::path> meshes;  ///< that are written; "-": to standard output
+  std::vector<std::string> formats;           ///< of the meshes in turn; empty: by their endings
   std::filesystem::path regions, point_sizes, size_field;  ///< files with sizes; empty: none
   Options options;
   std::optional<Solver> solver;      ///< whose limits a mesh is checked by

@@ -4,7 +4,6 @@
 
 #include "domain.h"
 #include "estimate.h"
-#include "images.h"
 #include "inputs.h"
 #include "open_cavity.h"
 #include "overlaps.h"
@@ -98,14 +97,16 @@ void check_tet_mesh(Session& session) {
 
 void check_surface(Session& session) {
   const std::string name = session.arguments().input.string();
-  const SurfaceFile file = read_domain(session, Defects::kLeft);
+  IntakeOptions as_it_is = session.arguments().intake;
+  as_it_is.repair = IntakeOptions::Repair::kOff;
+  const Domain domain = open_input(session, as_it_is);
   session.context().report("checking", -1);
-  const RepairedSurface repaired = repair_surface(file.surface, session.context());
+  const RepairedSurface repaired = repair_surface(domain.surface, session.context());
   for (const std::string& note : repaired.notes) session.say("would repair: " + note + "\n");
   const SurfaceDefects defects = find_defects(repaired, session.context());
   session.found({{"kind", "surface"},
-                 {"format", file.format},
-                 {"triangles", file.surface.triangles.size()},
+                 {"format", domain.format},
+                 {"triangles", domain.surface.triangles.size()},
                  {"clean", defects.clean()},
                  {"repairs", repaired.notes},
                  {"defects", Json::parse(to_json(defects))}});
@@ -121,34 +122,17 @@ void check_surface(Session& session) {
 template <class Generator>
 auto run_on_input(Session& session, const Generator& generator) {
   const Arguments& a = session.arguments();
-  Options options = checked_options(session);
-  SurfaceFile file = read_domain(session);
-  if (session.voxel_spacing() > 0) {
-    if (const std::string lost = given_up_for_size(options, session.voxel_spacing()); !lost.empty())
-      session.say_notes("sizes", {lost});
-    options = options_for_voxels(std::move(options), session.voxel_spacing());
-  }
+  const Options options = checked_options(session);
+  const Domain domain = open_input(session, a.intake);
   try {
-    if (!a.page.empty()) find_repairs(session, file.surface);
-    return generator(Mended{std::move(file.surface), {}, session.bound()}, options, session.context());
+    if (!a.page.empty()) find_repairs(session, domain.surface);
+    return generator(domain, options, session.context());
   } catch (const OpenCavityError& error) {
     const std::filesystem::path beside = cavity_neighbour(a);
     throw with_cavity_written(error, beside.empty() ? "octafront" : beside);
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: {}", a.input.string(), error.what()));
   }
-}
-
-Result make_mesh(const Mended& input, const Options& options, const RunContext& context) {
-  return generate(input, options, context);
-}
-
-SizeResult make_sizes(const Mended& input, const Options& options, const RunContext& context) {
-  return generate_sizes(input, options, context);
-}
-
-SurfaceResult make_surface(const Mended& input, const Options& options, const RunContext& context) {
-  return generate_surface(input, options, context);
 }
 
 void say_written(const Session& session) {
@@ -175,10 +159,10 @@ std::filesystem::path file_at_fault(const Arguments& a, const SurfaceMesh& surfa
 
 void run_mesh(Session& session) {
   const Arguments& a = session.arguments();
-  if (a.dry_run) return tell_estimate(session, run_on_input(session, make_sizes));
+  if (a.dry_run) return tell_estimate(session, run_on_input(session, generate_sizes));
   check_mesh_targets(a);
   check_page_target(a.page);
-  const Result result = run_on_input(session, make_mesh);
+  const Result result = run_on_input(session, generate);
   write_mesh_targets(session, result.mesh);
   session.tell(result.report);
   tell_worst(session, result.mesh, result.report.quality);
@@ -188,7 +172,7 @@ void run_mesh(Session& session) {
 void run_surface(Session& session) {
   const Arguments& a = session.arguments();
   check_surface_target(a.output);
-  const SurfaceResult result = run_on_input(session, make_surface);
+  const SurfaceResult result = run_on_input(session, generate_surface);
   session.context().report("writing", -1);
   write_surface(a.output, result.surface, session.context());
   session.tell(result.report);
@@ -198,16 +182,18 @@ void run_surface(Session& session) {
 void run_repair(Session& session) {
   const Arguments& a = session.arguments();
   check_surface_target(a.output);
-  const SurfaceFile file = read_domain(session);
+  IntakeOptions options = a.intake;
+  options.tidies = true;
+  const Domain domain = open_input(session, options);
   session.context().report("writing", -1);
-  write_surface(a.output, file.surface, session.context());
+  write_surface(a.output, domain.surface, session.context());
   say_written(session);
 }
 
 void run_size(Session& session) {
   const Arguments& a = session.arguments();
   if (!a.output.empty()) check_size_field_target(a.output);
-  const SizeResult result = run_on_input(session, make_sizes);
+  const SizeResult result = run_on_input(session, generate_sizes);
   if (!a.output.empty()) write_size_field(a.output, result.sizes, session.context());
   session.tell(result.report);
   if (!a.output.empty()) say_written(session);

@@ -1,14 +1,9 @@
 #include "domain.h"
 
-#include <octafront/complex.h>
 #include <octafront/error.h>
+#include <octafront/io.h>
 
-#include "images.h"
-#include "mending.h"
-#include "text.h"
-
-#include <algorithm>
-#include <utility>
+#include <string>
 #include <vector>
 
 #include <fmt/core.h>
@@ -17,129 +12,31 @@ namespace octafront::cli {
 
 namespace {
 
-SurfaceFile read_one(const Session& session, const std::filesystem::path& file) {
-  SurfaceFile read = read_surface(file, session.context());
-  session.say(
-      fmt::format("{}: {}, {}\n", file.string(), read.format, counted(read.surface.triangles.size(), "triangle")));
-  session.say_notes("reading", read.notes);
-  return read;
-}
-
-/// The stems of the files, with numbers behind those that occurred before.
-std::vector<std::string> names_of(const std::vector<std::filesystem::path>& files) {
-  std::vector<std::string> names;
-  for (const std::filesystem::path& file : files) {
-    const std::string stem = file.stem().string();
-    std::string name = stem;
-    for (int n = 2; std::find(names.begin(), names.end(), name) != names.end(); ++n)
-      name = fmt::format("{}_{}", stem, n);
-    names.push_back(std::move(name));
-  }
-  return names;
-}
-
-SurfaceFile joined(Session& session, const std::vector<Body>& bodies, const ComplexOptions& options,
-                   const std::string& format) {
-  session.context().report("joining", -1);
-  Complex complex = join_bodies(bodies, options, session.context());
-  tell_regions(session, complex);
-  return {std::move(complex.surface), format, {}};
-}
-
-/// Says which of several files is at fault.
-void mend_body(Session& session, const std::filesystem::path& file, SurfaceMesh& surface) {
-  try {
-    mend(session, file, surface);
-  } catch (const InputError& error) {
-    throw InputError(fmt::format("{}: {}", file.string(), error.what()));
+/// Adds an octahedron at each change, large enough to be seen beside the model, in the patch of its kind.
+void add_marks(const MendReport& report, SurfaceMesh& marks) {
+  constexpr double kRadius = 0.004;  // of the diagonal
+  const double r = kRadius * report.diagonal;
+  for (const MendChange& change : report.changes) {
+    const auto first = static_cast<VertexIndex>(marks.points.size());
+    for (const Vec3 off : {Vec3{r, 0, 0}, Vec3{-r, 0, 0}, Vec3{0, r, 0}, Vec3{0, -r, 0}, Vec3{0, 0, r}, Vec3{0, 0, -r}})
+      marks.points.push_back(change.at + off);
+    for (const VertexIndex x : {0u, 1u})
+      for (const VertexIndex y : {2u, 3u})
+        for (const VertexIndex z : {4u, 5u}) {
+          const bool even = (x + y + z) % 2 == 0;
+          marks.triangles.push_back({first + x, first + (even ? y : z), first + (even ? z : y)});
+          marks.patch.push_back(static_cast<std::uint32_t>(change.kind));
+        }
   }
 }
 
-/// Parts with names that became one body: there is an option that keeps them apart.
-void tell_united_parts(const Session& session, const SurfaceMesh& read, const SurfaceMesh& mended) {
-  if (read.patch_names.size() < 2 || mended.triangles == read.triangles) return;
-  const std::vector<Body> parts = bodies_by_name(read);
-  const auto is_closed = [](const Body& body) {
-    return body.surface.patch.empty() && enclosed_volume(body.surface) > 0;
-  };
-  if (std::count_if(parts.begin(), parts.end(), is_closed) < 2) return;
-  session.say_notes("repair", {fmt::format("the parts \"{}\", \"{}\"{} overlap and are united; --overlap regions "
-                                           "makes regions of them, by their names",
-                                           parts[0].name, parts[1].name, parts.size() > 2 ? " ..." : "")});
-}
-
-SurfaceFile read_bodies(Session& session, Defects defects) {
-  const Arguments& a = session.arguments();
-  const std::vector<std::string> names = names_of(a.bodies);
-  std::vector<Body> bodies;
-  ComplexOptions options = a.complex;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    SurfaceFile file = read_one(session, a.bodies[i]);
-    if (!file.surface.sides.empty())
-      throw InputError(
-          fmt::format("{}: is a complex of several regions by itself; give it alone", a.bodies[i].string()));
-    options.regions.insert(options.regions.end(), file.regions.begin(), file.regions.end());
-    options.voids.insert(options.voids.end(), file.voids.begin(), file.voids.end());
-    if (defects == Defects::kMended) mend_body(session, a.bodies[i], file.surface);
-    bodies.push_back({names[i], std::move(file.surface)});
-  }
-  return joined(session, bodies, options, "several files");
-}
-
-/// Parts of one file that have names of their own.
-SurfaceFile read_parts(Session& session, Defects defects) {
-  const Arguments& a = session.arguments();
-  const SurfaceFile file = read_one(session, a.input);
-  if (!file.surface.sides.empty())
-    throw InputError(fmt::format("{}: has regions already; leave out --overlap", a.input.string()));
-  std::vector<Body> bodies = bodies_by_name(file.surface);
-  if (bodies.size() < 2)
-    throw InputError(
-        fmt::format("{}: --overlap regions needs parts with names of their own (solids, groups); all of it is \"{}\"",
-                    a.input.string(), bodies.empty() ? "" : bodies[0].name));
-  if (defects == Defects::kMended)
-    for (Body& body : bodies) mend(session, fmt::format("{} ({})", a.input.string(), body.name), body.surface);
-  ComplexOptions options = a.complex;
-  options.regions.insert(options.regions.end(), file.regions.begin(), file.regions.end());
-  options.voids.insert(options.voids.end(), file.voids.begin(), file.voids.end());
-  return joined(session, bodies, options, file.format);
-}
-
-/// A single body with sheets in it, and nobody asked for regions: repair has more to say of what hangs in a body, for a
-/// shell with a hole may be a cavity.
-bool is_for_repair(const Arguments& a, const ComplexOptions& options, const Complex& complex) {
-  const auto& sides = complex.surface.sides;
-  return a.repair == Repair::kAuto && a.sheets == Sheets::kDrop && complex.volumes.size() == 1 &&
-         options.regions.empty() && options.voids.empty() &&
-         std::any_of(sides.begin(), sides.end(), [](const Sides& s) { return s[0] == s[1]; });
-}
-
-SurfaceFile read_walls(Session& session, Defects defects) {
-  const Arguments& a = session.arguments();
-  SurfaceFile file = read_one(session, a.input);
-  ComplexOptions options = a.complex;
-  options.regions.insert(options.regions.end(), file.regions.begin(), file.regions.end());
-  options.voids.insert(options.voids.end(), file.voids.begin(), file.voids.end());
-  try {
-    session.context().report("cells", -1);
-    const bool wraps = defects == Defects::kMended && a.repair == Repair::kWrap;
-    auto complex = wraps ? std::nullopt : complex_of_walls(file.surface, options, session.context());
-    if (complex && defects == Defects::kMended && is_for_repair(a, options, *complex)) complex.reset();
-    if (complex) {
-      tell_regions(session, *complex);
-      file.surface = std::move(complex->surface);
-      if (defects == Defects::kMended) drop_sheets(session, file.surface);
-    } else if (defects == Defects::kMended) {
-      const SurfaceMesh read = file.surface;
-      mend(session, a.input, file.surface);
-      if (a.overlap == Overlap::kUnion) tell_united_parts(session, read, file.surface);
-    }
-  } catch (const LeakError& leak) {
-    throw LeakError(fmt::format("{}: {}", a.input.string(), leak.what()), leak.way);
-  } catch (const InputError& error) {
-    throw InputError(fmt::format("{}: {}", a.input.string(), error.what()));
-  }
-  return file;
+/// The changes of all repairs; a patch for each kind.
+SurfaceMesh marks_of(const std::vector<IntakeRepair>& repairs) {
+  SurfaceMesh marks;
+  for (const IntakeRepair& repair : repairs) add_marks(repair.report, marks);
+  for (int k = 0; k <= static_cast<int>(MendChange::Kind::kRebuilt); ++k)
+    marks.patch_names.emplace_back(name_of(static_cast<MendChange::Kind>(k)));
+  return marks;
 }
 
 [[noreturn]] void fail_with_way(Session& session, const LeakError& leak) {
@@ -154,29 +51,22 @@ SurfaceFile read_walls(Session& session, Defects defects) {
 
 }  // namespace
 
-void tell_regions(Session& session, const Complex& complex) {
-  session.say_notes("regions", complex.notes);
-  Json regions = Json::array();
-  const std::vector<std::string>& names = complex.surface.region_names;
-  for (std::size_t r = 0; r < complex.volumes.size(); ++r) {
-    // One region alone needs no name.
-    const std::string name = r < names.size() ? names[r] : "body";
-    regions.push_back({{"name", name}, {"volume", complex.volumes[r]}});
-    session.say(fmt::format("  region \"{}\": volume {:.6g}\n", name, complex.volumes[r]));
-  }
-  if (!regions.empty()) session.found({{"input_regions", regions}});
-}
-
 std::filesystem::path leak_file(std::filesystem::path output) {
   return output.replace_extension(".leak.ply");
 }
 
-SurfaceFile read_domain(Session& session, Defects defects) {
-  if (is_image_input(session.arguments())) return read_image_domain(session);
+Domain open_input(Session& session, const IntakeOptions& options) {
+  const Arguments& a = session.arguments();
+  IntakeOptions told = options;
+  told.tell = [&](const IntakeNote& note) {
+    note.stage.empty() ? session.say(note.text + "\n") : session.say_notes(note.stage, {note.text});
+  };
   try {
-    if (session.arguments().bodies.size() > 1) return read_bodies(session, defects);
-    return session.arguments().overlap == Overlap::kRegions ? read_parts(session, defects)
-                                                            : read_walls(session, defects);
+    Domain domain = open_domain(std::vector<std::string>(a.bodies.begin(), a.bodies.end()), told, session.context());
+    session.found(Json::parse(to_json(domain)));
+    if (!a.defects.empty() && !domain.repairs.empty())
+      write_surface(a.defects, marks_of(domain.repairs), session.context());
+    return domain;
   } catch (const LeakError& leak) {
     fail_with_way(session, leak);
   }

@@ -1,7 +1,6 @@
 #pragma once
 
-#include <octafront/complex.h>
-#include <octafront/io.h>
+#include <octafront/domain.h>
 
 #include "session.h"
 
@@ -12,13 +11,8 @@ namespace octafront::cli {
 /// Where a way through a leak is written to, beside the output.
 std::filesystem::path leak_file(std::filesystem::path output);
 
-/// Says what regions a complex has, and their volumes.
-void tell_regions(Session& session, const Complex& complex);
-/// What becomes of defects: mended as the options say, or left for whoever looks for them.
-enum class Defects { kMended, kLeft };
-
-/// Reads the input or inputs of a command, and makes a complex of them where their walls or the options say so. Says
-/// what was read and done. Throws InputError; for leaks with the way written to leak_file(), if there is an output.
-SurfaceFile read_domain(Session& session, Defects defects = Defects::kMended);
+/// Opens the input or inputs of a command; what is found and done is said, and shown where a file for that is wanted.
+/// Throws InputError, OptionError; for leaks with the way written to leak_file(), if there is an output.
+Domain open_input(Session& session, const IntakeOptions& options);
 
 }  // namespace octafront::cli

@@ -35,13 +35,12 @@ std::vector<std::int64_t> whole_numbers(const std::string& option, const std::st
 
 /// Calls `take` with what stands behind an option, each time it stands there.
 template <class Take>
-CLI::Option* add(CLI::App& group, ImageArguments& a, const std::string& option, const std::string& type,
-                 const std::string& help, const Take& take) {
+CLI::Option* add(CLI::App& group, const std::string& option, const std::string& type, const std::string& help,
+                 const Take& take) {
   return group
       .add_option_function<std::vector<std::string>>(
           option,
-          [&a, option, take](const std::vector<std::string>& all) {
-            a.given.push_back(option);
+          [take](const std::vector<std::string>& all) {
             for (const std::string& typed : all) take(typed);
           },
           help)
@@ -49,8 +48,8 @@ CLI::Option* add(CLI::App& group, ImageArguments& a, const std::string& option, 
       ->allow_extra_args(false);
 }
 
-void declare_values(CLI::App& group, ImageArguments& a) {
-  add(group, a, "--image", "auto|labels|grey",
+void declare_values(CLI::App& group, ImageIntake& a) {
+  add(group, "--image", "auto|labels|grey",
       "What the voxels hold; auto: labels if they are whole numbers that neighbours mostly share [auto]",
       [&a](const std::string& typed) {
         using Kind = ImageRegions::Kind;
@@ -58,39 +57,39 @@ void declare_values(CLI::App& group, ImageArguments& a) {
         if (typed != "labels" && typed != "grey" && typed != "auto")
           refuse("--image", typed, "is none of auto, labels, grey");
       });
-  add(group, a, "--iso", "V", "Grey image: what has this value or more is one region; its surface lies between voxels",
+  add(group, "--iso", "V", "Grey image: what has this value or more is one region; its surface lies between voxels",
       [&a](const std::string& typed) {
         a.regions.bands.push_back({finite("--iso", typed, typed), std::numeric_limits<double>::infinity(), {}});
       });
-  add(group, a, "--band", "[NAME=]LO:HI",
+  add(group, "--band", "[NAME=]LO:HI",
       "Grey image: values from LO up to below HI are a region; several for several materials, which share their "
       "surfaces; one end may be missing",
       [&a](const std::string& typed) { a.regions.bands.push_back(grey_band(typed)); });
-  add(group, a, "--labels", "FILE",
+  add(group, "--labels", "FILE",
       "Names of labels: lines such as \"3 liver\", JSON, label files of ITK-SNAP, colour tables of 3D Slicer [those of "
       "the file, else \"label 3\"]",
-      [&a](const std::string& typed) { a.names = typed; });
-  add(group, a, "--ignore", "A,B,...", "Labels outside of all regions; none: no label is [0]",
+      [&a](const std::string& typed) { a.names_file = typed; });
+  add(group, "--ignore", "A,B,...", "Labels outside of all regions; none: no label is [0]",
       [&a](const std::string& typed) {
         a.regions.labels.ignore =
             typed == "none" ? std::vector<std::int64_t>{} : whole_numbers("--ignore", typed, typed);
       });
-  add(group, a, "--merge", "A,B=NAME", "These labels are one region",
+  add(group, "--merge", "A,B=NAME", "These labels are one region",
       [&a](const std::string& typed) { a.regions.labels.merge.push_back(label_merge(typed)); });
 }
 
-void declare_cleaning(CLI::App& group, ImageArguments& a) {
+void declare_cleaning(CLI::App& group, ImageIntake& a) {
   const auto volume = [](const std::string& option, const std::string& typed) {
     const double v = finite(option, typed, typed);
     if (v < 0) refuse(option, typed, "is below 0");
     return v;
   };
-  add(group, a, "--islands", "V",
+  add(group, "--islands", "V",
       "Pieces of regions below this volume go to what surrounds them; each region keeps its largest",
       [&a, volume](const std::string& typed) { a.regions.clean.islands = volume("--islands", typed); });
-  add(group, a, "--holes", "V", "Pieces of the outside below this volume, not at the image's edge, are filled",
+  add(group, "--holes", "V", "Pieces of the outside below this volume, not at the image's edge, are filled",
       [&a, volume](const std::string& typed) { a.regions.clean.holes = volume("--holes", typed); });
-  add(group, a, "--close-voxels", "N", "Gaps of regions toward the outside close that are up to 2 N voxels wide",
+  add(group, "--close-voxels", "N", "Gaps of regions toward the outside close that are up to 2 N voxels wide",
       [&a](const std::string& typed) {
         const std::int64_t n = whole("--close-voxels", typed, typed);
         if (n < 0 || n > 64) refuse("--close-voxels", typed, "is not from 0 to 64");
@@ -98,30 +97,23 @@ void declare_cleaning(CLI::App& group, ImageArguments& a) {
       });
 }
 
-void declare_grid(CLI::App& group, ImageArguments& a) {
-  add(group, a, "--crop", "I0:I1,J0:J1,K0:K1",
+void declare_grid(CLI::App& group, ImageIntake& a) {
+  add(group, "--crop", "I0:I1,J0:J1,K0:K1",
       "Only these voxels along i, j and k, counted from 0, the last ones too; an end that is missing stays",
+      [&a](const std::string& typed) { a.crop = voxel_ranges(typed); });
+  add(group, "--resample", "S|SI,SJ,SK", "Voxels of this size, or of these along i, j and k, first",
       [&a](const std::string& typed) {
-        a.crop = voxel_ranges(typed);
-        a.crops = true;
-      });
-  add(group, a, "--resample", "S|SI,SJ,SK", "Voxels of this size, or of these along i, j and k, first",
-      [&a](const std::string& typed) {
-        a.spacing.clear();
+        a.resample.clear();
         for (const std::string& word : CLI::detail::split(typed, ','))
-          a.spacing.push_back(finite("--resample", typed, word));
-        if (a.spacing.size() != 1 && a.spacing.size() != 3)
+          a.resample.push_back(finite("--resample", typed, word));
+        if (a.resample.size() != 1 && a.resample.size() != 3)
           refuse("--resample", typed, "is neither one size nor three");
-        for (const double s : a.spacing)
+        for (const double s : a.resample)
           if (!(s > 0)) refuse("--resample", typed, "has a size that is not above 0");
       });
   group
       .add_flag_function(
-          "--closed-at-box",
-          [&a](std::int64_t n) {
-            a.given.emplace_back("--closed-at-box");
-            a.regions.closed_at_box = n > 0;
-          },
+          "--closed-at-box", [&a](std::int64_t n) { a.regions.closed_at_box = n > 0; },
           "What reaches the edge of the image ends flat there, which is said [yes]; --closed-at-box=no: it is refused")
       ->type_name("");
 }
@@ -169,8 +161,8 @@ std::array<VoxelRange, 3> voxel_ranges(const std::string& typed) {
   return ranges;
 }
 
-void declare_image_choice(CLI::App& command, ImageArguments& a) {
-  add(command, a, "--series", "N", "Which of several images of a folder, a file or a project, counted from 1",
+void declare_image_choice(CLI::App& command, ImageIntake& a) {
+  add(command, "--series", "N", "Which of several images of a folder, a file or a project, counted from 1",
       [&a](const std::string& typed) {
         const std::int64_t n = whole("--series", typed, typed);
         if (n < 1 || n > 0xffffffff) refuse("--series", typed, "is not counted from 1");
@@ -178,7 +170,7 @@ void declare_image_choice(CLI::App& command, ImageArguments& a) {
       });
 }
 
-void declare_image(CLI::App& command, ImageArguments& a) {
+void declare_image(CLI::App& command, ImageIntake& a) {
   auto* group = command.add_option_group("Images", "Voxels: a region per label, or per band of grey values");
   declare_image_choice(*group, a);
   declare_values(*group, a);

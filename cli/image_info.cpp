@@ -1,6 +1,7 @@
+#include "image_info.h"
+
 #include <octafront/image.h>
 
-#include "images.h"
 #include "tell.h"
 
 #include <algorithm>
@@ -142,7 +143,11 @@ void tell_values(Session& session, const Image& image) {
 }  // namespace
 
 void tell_image_info(Session& session) {
-  const Image image = read_image_input(session);
+  const Arguments& a = session.arguments();
+  const std::vector<std::string> files(a.bodies.begin(), a.bodies.end());
+  const Image image = read_image(files, a.intake.image.choice, session.context());
+  session.say(fmt::format("{}: {}, {}\n", a.input.string(), image.format, in_words(image.grid)));
+  session.say_notes("reading", image.notes);
   tell_grid(session, image);
   if (looks_like_labels(image)) return tell_labels(session, image);
   tell_values(session, image);

@@ -1,7 +1,7 @@
 #include <octafront/octafront.h>
 
 #include "commands.h"
-#include "images.h"
+#include "image_info.h"
 #include "inputs.h"
 #include "tell.h"
 #include "units.h"
@@ -83,7 +83,9 @@ bool tell_size_field_info(Session& session) {
 
 void run_info(Session& session) {
   const std::filesystem::path& file = session.arguments().input;
-  if (is_image_input(session.arguments())) return tell_image_info(session);
+  if (is_image(file)) return tell_image_info(session);
+  if (session.arguments().intake.image.choice.series > 0)
+    throw OptionError(fmt::format("--series is for images, and {} is none that is known here", file.string()));
   if (session.arguments().bodies.size() > 1) throw OptionError("info tells of one file at a time");
   if (!is_tet_mesh_file(file)) return tell_surface_info(session);
   try {

@@ -4,6 +4,7 @@
 
 #include "commands.h"
 #include "completion.h"
+#include "image_arguments.h"
 #include "manual.h"
 #include "text.h"
 #include "units.h"
@@ -95,7 +96,7 @@ void Program::declare_makers() {
           run_mesh);
   declare_input(*mesh, a);
   declare_complex(*mesh, a);
-  declare_image(*mesh, a.image);
+  declare_image(*mesh, a.intake.image);
   declare_repair(*mesh, a);
   declare_mesh_output(*mesh, a);
   declare_preset(*mesh, a);
@@ -113,7 +114,7 @@ void Program::declare_makers() {
                           "  octafront surface scan.ply -o even.stl --size 0.5\n", run_surface);
   declare_input(*surface, a);
   declare_complex(*surface, a);
-  declare_image(*surface, a.image);
+  declare_image(*surface, a.intake.image);
   declare_repair(*surface, a);
   declare_output(*surface, a, "Surface: .stl, .obj, .off or .ply", true);
   declare_sizes(*surface, a);
@@ -140,7 +141,7 @@ void Program::declare_makers() {
       run_size);
   declare_input(*size, a);
   declare_complex(*size, a);
-  declare_image(*size, a.image);
+  declare_image(*size, a.intake.image);
   declare_repair(*size, a);
   declare_output(*size, a, "Background grid: .vtu", false);
   declare_sizes(*size, a);
@@ -181,7 +182,7 @@ void Program::declare_lookers() {
                        "  octafront info part.msh --json -\n",
                        run_info);
   declare_input(*info, a, "Surface, mesh, image, or size field as `octafront size -o` writes it");
-  declare_image_choice(*info, a.image);
+  declare_image_choice(*info, a.intake.image);
   declare_report(*info, a);
   declare_run(*info, a);
 
@@ -191,7 +192,7 @@ void Program::declare_lookers() {
                         run_check);
   declare_input(*check, a, "Surface or mesh; or several surfaces, a body each");
   declare_complex(*check, a);
-  declare_image(*check, a.image);
+  declare_image(*check, a.intake.image);
   declare_solver(*check, a);
   declare_report(*check, a);
   declare_run(*check, a);

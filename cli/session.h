@@ -7,7 +7,6 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace octafront::cli {
@@ -37,13 +36,6 @@ class Session {
   /// Further keys of the JSON file.
   void found(const Json& keys) { findings_.update(keys); }
 
-  /// The smallest distance of voxels of the image that was read; 0 until one was.
-  void read_voxels(double spacing) { voxel_spacing_ = spacing; }
-  double voxel_spacing() const { return voxel_spacing_; }
-  /// Mended::bound of the surface, if it was mended and is all of the input.
-  void mended_with(std::vector<double> bound) { bound_ = std::move(bound); }
-  const std::vector<double>& bound() const { return bound_; }
-
   /// All that is known of the run; `error` is null for one that did what it was asked.
   Json json(const Json& error) const;
   /// Writes the JSON file if one is wanted; `error` is null for a run that did what it was asked. Throws OutputError.
@@ -53,8 +45,6 @@ class Session {
   const Arguments& arguments_;
   RunContext context_;
   Json findings_ = Json::object();
-  double voxel_spacing_ = 0;
-  std::vector<double> bound_;
 };
 
 /// The output that a cavity which stays open is written beside; empty if there is none.

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <octafront/mend.h>
+#include <octafront/domain.h>
 #include <octafront/options.h>
 #include <octafront/repair.h>
 #include <octafront/report.h>
@@ -18,14 +18,18 @@ struct Result {
   Report report;
 };
 
-/// From a closed surface to a valid tetrahedral mesh: repair, features, size field, surface front, volume front,
-/// improvement, check. The surface may be any triangle soup; what repair cannot mend is refused.
+/// From a domain (octafront/domain.h) to a valid tetrahedral mesh: repair, features, size field, surface front, volume
+/// front, improvement, check. A SurfaceMesh is a domain as it stands: repair_surface() tidies it, and what has defects
+/// beyond that is refused; open_domain() mends it first. Where a domain was mended, a mesh of automatic sizes stays
+/// nearer to what was moved (Domain::bound), unless `options` bounds the deviation itself; for a domain from an image
+/// the options are those of options_for_voxels(), and what these give up is a note of the report.
 ///
-/// Example: generate(read_surface("bracket.stl").surface) meshes at an automatic size.
+/// Examples: generate(open_domain("scan.stl")) meshes whatever the file holds, at an automatic size;
+/// generate(read_surface("bracket.stl").surface) what is a closed surface.
 ///
-/// The result keeps every law of first_defect(), and depends on nothing but `surface` and `options`.
+/// The result keeps every law of first_defect(), and depends on nothing but `domain` and `options`.
 /// Throws OptionError, InputError (defects, listed), MeshingError, Cancelled.
-Result generate(const SurfaceMesh& surface, const Options& options = {}, const RunContext& context = {});
+Result generate(const Domain& domain, const Options& options = {}, const RunContext& context = {});
 
 /// The run up to the surface front: what the boundary of the mesh will be.
 struct SurfaceResult {
@@ -33,7 +37,7 @@ struct SurfaceResult {
   SizeField sizes;
   Report report;
 };
-SurfaceResult generate_surface(const SurfaceMesh& surface, const Options& options = {}, const RunContext& context = {});
+SurfaceResult generate_surface(const Domain& domain, const Options& options = {}, const RunContext& context = {});
 
 /// The sizes, as they are after the surface front has made them smaller where lines run side by side or the surface
 /// would stray too far; report.expected_tets predicts the number of tetrahedra from them.
@@ -41,17 +45,22 @@ struct SizeResult {
   SizeField sizes;
   Report report;
 };
-SizeResult generate_sizes(const SurfaceMesh& surface, const Options& options = {}, const RunContext& context = {});
+SizeResult generate_sizes(const Domain& domain, const Options& options = {}, const RunContext& context = {});
 
 /// Throws OptionError with a sentence if the options contradict each other or lie outside their ranges.
 void check_options(const Options& options);
 
-/// The same of a surface that was mended: where repair moved something (Mended::bound) a mesh of automatic sizes stays
-/// nearer to it than elsewhere, unless `options` bounds the deviation itself.
+/// Options for an image, as they suit voxels so far apart; what was given stays.
 ///
-/// Example: generate(mend_surface(read_surface("scan.stl").surface)) meshes whatever the file holds.
-Result generate(const Mended& mended, const Options& options = {}, const RunContext& context = {});
-SurfaceResult generate_surface(const Mended& mended, const Options& options = {}, const RunContext& context = {});
-SizeResult generate_sizes(const Mended& mended, const Options& options = {}, const RunContext& context = {});
+/// A size that was given rules where it is coarser than voxels: surfaces may stray by a quarter of what it exceeds them
+/// by, layers thinner than the size get an element across where that takes no smaller ones than half of it, and nothing
+/// is smaller than a voxel. With automatic sizes surfaces follow the net so closely (.16 voxels) that they are no
+/// farther than a voxel from the voxels' faces, as far as the budget of automatic sizes allows. A number of elements
+/// decides by itself. Whatever the sizes, regions keep their volumes. Of features only the edges of the image's box are
+/// kept (feature_angle 85), unless an angle is given.
+Options options_for_voxels(Options options, double spacing);
+
+/// What options_for_voxels() gives up for a size that is coarser than voxels, as a sentence; empty: nothing.
+std::string given_up_for_size(const Options& options, double spacing);
 
 }  // namespace octafront

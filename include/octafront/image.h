@@ -30,6 +30,9 @@ struct ImageGrid {
   friend bool operator==(const ImageGrid&, const ImageGrid&) = default;
 };
 
+/// "80 x 80 x 60 voxels of 1 x 1 x 2".
+std::string in_words(const ImageGrid& grid);
+
 /// A value that voxels have, and its name.
 struct LabelName {
   std::int64_t value = 0;

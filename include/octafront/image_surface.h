@@ -3,7 +3,6 @@
 #include <octafront/complex.h>
 #include <octafront/image.h>
 #include <octafront/no_context.h>
-#include <octafront/options.h>
 
 #include <string>
 #include <vector>
@@ -78,18 +77,5 @@ Complex complex_of_image(const Image& image, const ImageRegions& regions = {},
 
 /// The smallest distance of neighbouring voxels along i, j or k.
 double smallest_spacing(const ImageGrid& grid);
-
-/// Options for an image, as they suit voxels so far apart; what was given stays.
-///
-/// A size that was given rules where it is coarser than voxels: surfaces may stray by a quarter of what it exceeds them
-/// by, layers thinner than the size get an element across where that takes no smaller ones than half of it, and nothing
-/// is smaller than a voxel. With automatic sizes surfaces follow the net so closely (.16 voxels) that they are no
-/// farther than a voxel from the voxels' faces, as far as the budget of automatic sizes allows. A number of elements
-/// decides by itself. Whatever the sizes, regions keep their volumes. Of features only the edges of the image's box are
-/// kept (feature_angle 85), unless an angle is given.
-Options options_for_voxels(Options options, double spacing);
-
-/// What options_for_voxels() gives up for a size that is coarser than voxels, as a sentence; empty: nothing.
-std::string given_up_for_size(const Options& options, double spacing);
 
 }  // namespace octafront

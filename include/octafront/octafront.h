@@ -3,6 +3,7 @@
 // Everything that users of the library include.
 
 #include <octafront/complex.h>
+#include <octafront/domain.h>
 #include <octafront/error.h>
 #include <octafront/generate.h>
 #include <octafront/image.h>

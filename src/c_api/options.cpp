@@ -1,5 +1,5 @@
 #include <octafront/error.h>
-#include <octafront/image_surface.h>
+#include <octafront/generate.h>
 #include <octafront/io.h>
 #include <octafront/option_table.h>
 

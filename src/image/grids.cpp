@@ -7,6 +7,15 @@
 
 #include <fmt/core.h>
 
+namespace octafront {
+
+std::string in_words(const ImageGrid& grid) {
+  return fmt::format("{} voxels of {:.6g} x {:.6g} x {:.6g}", image::in_words(grid.size), length(grid.axes[0]),
+                     length(grid.axes[1]), length(grid.axes[2]));
+}
+
+}  // namespace octafront
+
 namespace octafront::image {
 
 std::string in_words(const std::array<std::uint32_t, 3>& sizes) {

@@ -6,16 +6,33 @@
 #include "pipeline/pipeline.h"
 #include "pipeline/stages.h"
 
+#include <utility>
+
 namespace octafront {
 
 namespace {
 
-/// `surface`: a SurfaceMesh, or Mended.
-template <class Surface>
-Result mesh_of(const Surface& surface, const Options& options, const RunContext& context) {
+/// What a domain asks for beside what the user does.
+Options suited(const Domain& domain, const Options& asked) {
+  return domain.voxel_spacing > 0 ? options_for_voxels(asked, domain.voxel_spacing) : asked;
+}
+
+/// The sizes; what they give up because `asked` is coarser than voxels is said.
+SizeField choose_sizes(const Prepared& input, const Domain& domain, const Options& asked, Run& run) {
+  SizeField sizes = choose_sizes(input, run);
+  if (domain.voxel_spacing == 0) return sizes;
+  if (std::string lost = given_up_for_size(asked, domain.voxel_spacing); !lost.empty())
+    run.report.stages.back().notes.push_back(std::move(lost));
+  return sizes;
+}
+
+}  // namespace
+
+Result generate(const Domain& domain, const Options& asked, const RunContext& context) {
+  const Options options = suited(domain, asked);
   Run run(options, context);
-  const Prepared input = prepare(surface, run);
-  const SizeField sizes = choose_sizes(input, run);
+  const Prepared input = prepare(domain, run);
+  const SizeField sizes = choose_sizes(input, domain, asked, run);
   Filled filled = fill_to_target(input, sizes, run);
   improve_in_shape(input, filled, run);
   note_missed_elements(filled.mesh, run);
@@ -29,11 +46,11 @@ Result mesh_of(const Surface& surface, const Options& options, const RunContext&
   return {std::move(filled.mesh), filled.boundary.sizes, run.close()};
 }
 
-template <class Surface>
-SurfaceResult boundary_of_mesh(const Surface& surface, const Options& options, const RunContext& context) {
+SurfaceResult generate_surface(const Domain& domain, const Options& asked, const RunContext& context) {
+  const Options options = suited(domain, asked);
   Run run(options, context);
-  const Prepared input = prepare(surface, run);
-  const SizeField sizes = choose_sizes(input, run);
+  const Prepared input = prepare(domain, run);
+  const SizeField sizes = choose_sizes(input, domain, asked, run);
   Remeshed made = triangulate_to_target(input, sizes, run);
   name_closed_patch(input.closed, input.surface.tree(), made.surface);
   run.report.points = made.surface.points.size();
@@ -43,39 +60,13 @@ SurfaceResult boundary_of_mesh(const Surface& surface, const Options& options, c
   return {std::move(made.surface), made.sizes, run.close()};
 }
 
-template <class Surface>
-SizeResult sizes_of(const Surface& surface, const Options& options, const RunContext& context) {
+SizeResult generate_sizes(const Domain& domain, const Options& asked, const RunContext& context) {
+  const Options options = suited(domain, asked);
   Run run(options, context);
-  const Prepared input = prepare(surface, run);
-  SizeField sizes = choose_sizes(input, run);
+  const Prepared input = prepare(domain, run);
+  SizeField sizes = choose_sizes(input, domain, asked, run);
   if (traits_of(options.method).has_front) sizes = triangulate_to_target(input, sizes, run).sizes;
   return {std::move(sizes), run.close()};
-}
-
-}  // namespace
-
-Result generate(const SurfaceMesh& surface, const Options& options, const RunContext& context) {
-  return mesh_of(surface, options, context);
-}
-
-Result generate(const Mended& mended, const Options& options, const RunContext& context) {
-  return mesh_of(mended, options, context);
-}
-
-SurfaceResult generate_surface(const SurfaceMesh& surface, const Options& options, const RunContext& context) {
-  return boundary_of_mesh(surface, options, context);
-}
-
-SurfaceResult generate_surface(const Mended& mended, const Options& options, const RunContext& context) {
-  return boundary_of_mesh(mended, options, context);
-}
-
-SizeResult generate_sizes(const SurfaceMesh& surface, const Options& options, const RunContext& context) {
-  return sizes_of(surface, options, context);
-}
-
-SizeResult generate_sizes(const Mended& mended, const Options& options, const RunContext& context) {
-  return sizes_of(mended, options, context);
 }
 
 }  // namespace octafront

@@ -215,7 +215,7 @@ std::vector<double> left_of_bound(std::vector<double> moved, const Options& opti
   return moved;
 }
 
-void require_bounds(const Mended& mended) {
+void require_bounds(const Domain& mended) {
   if (mended.bound.empty()) return;
   if (mended.bound.size() != mended.surface.triangles.size())
     throw OptionError(fmt::format("there are {} bounds for {} triangles: give one for each, or none",
@@ -234,8 +234,8 @@ void clean_names(SurfaceMesh& surface, const Stage& stage) {
   if (std::string note = names.note(); !note.empty()) stage.note(std::move(note));
 }
 
-/// The bounds of a mended surface, for triangles whose sources are its own; these then are those of its triangles.
-std::vector<double> bounds_by_source(const Mended& mended, SurfaceMesh& surface) {
+/// The bounds of a mended domain, for triangles whose sources are its own; these then are those of its triangles.
+std::vector<double> bounds_by_source(const Domain& mended, SurfaceMesh& surface) {
   std::vector<double> bound;
   std::vector<std::uint32_t> source;
   for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
@@ -247,7 +247,7 @@ std::vector<double> bounds_by_source(const Mended& mended, SurfaceMesh& surface)
 }
 
 /// `mended`: null, or what the soup is of, without sources.
-Prepared prepare(const SurfaceMesh& soup, const Mended* mended, Run& run) {
+Prepared prepare(const SurfaceMesh& soup, const Domain* mended, Run& run) {
   SurfaceDomain::Defects defects{};
   Examined found = run.stage("repair", [&](const Stage& stage) {
     Examined examined = examine_surface(soup, stage.context());
@@ -297,17 +297,13 @@ SurfaceOptions true_to_input(const SurfaceMesh& input, const Options& options) {
   return surface;
 }
 
-Prepared prepare(const SurfaceMesh& input, Run& run) {
-  return prepare(input, nullptr, run);
-}
-
-Prepared prepare(const Mended& mended, Run& run) {
-  require_bounds(mended);
-  if (mended.bound.empty() || run.options.surface.max_deviation || !has_automatic_sizes(run.options))
-    return prepare(mended.surface, run);
-  SurfaceMesh numbered = mended.surface;
+Prepared prepare(const Domain& domain, Run& run) {
+  require_bounds(domain);
+  if (domain.bound.empty() || run.options.surface.max_deviation || !has_automatic_sizes(run.options))
+    return prepare(domain.surface, nullptr, run);
+  SurfaceMesh numbered = domain.surface;
   numbered.source.clear();
-  return prepare(numbered, &mended, run);
+  return prepare(numbered, &domain, run);
 }
 
 SizeField choose_sizes(const Prepared& input, Run& run) {

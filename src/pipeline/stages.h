@@ -3,7 +3,7 @@
 // The stages of a run, one function each, in the order of the pipeline. What a stage takes is const and what it makes
 // is new, but for improvement, which changes the mesh in place; any of them can be called alone with a Run of its own.
 
-#include <octafront/mend.h>
+#include <octafront/domain.h>
 #include <octafront/repair.h>
 #include <octafront/second_order.h>
 #include <octafront/size_field.h>
@@ -36,10 +36,9 @@ struct Filled {
 };
 
 /// Repairs the input, refuses what the method cannot mesh (InputError), takes off folds that the tolerance lets go
-/// where the surface is made anew, finds the features.
-Prepared prepare(const SurfaceMesh& input, Run& run);
-/// The same of a mended surface. Its bounds hold where the sizes are automatic and the user bounds nothing.
-Prepared prepare(const Mended& input, Run& run);
+/// where the surface is made anew, finds the features. The bounds of a mended one hold where the sizes are automatic
+/// and the user bounds nothing.
+Prepared prepare(const Domain& input, Run& run);
 
 /// The sizes that the options ask for; report.expected_tets says how many elements they promise, if no surface made to
 /// them will tell better.

@@ -1,0 +1,131 @@
+#pragma once
+
+#include <octafront/complex.h>
+#include <octafront/image.h>
+#include <octafront/image_surface.h>
+#include <octafront/mend.h>
+#include <octafront/no_context.h>
+#include <octafront/surface_mesh.h>
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace octafront {
+
+// One way in: files, several bodies, arrays and images become a Domain, and generate() (octafront/generate.h) makes a
+// mesh of it. The command line, C and Python go this way too, so all of them make the same mesh of the same input.
+
+/// A sentence about what was found or done on the way in.
+struct IntakeNote {
+  std::string stage;  ///< "reading", "resampling", "regions", "repair"; empty: what an input is, not what was done
+  std::string text;
+};
+
+/// The first and the last voxel along an axis, counted from 0, both inside; without a value to the end.
+struct VoxelRange {
+  std::optional<std::uint32_t> first = {}, last = {};
+};
+
+/// How an image becomes a domain.
+struct ImageIntake {
+  ImageChoice choice;                 ///< of several images in a file, a folder or a project
+  ImageRegions regions;               ///< labels, or bands of grey values, and what is cleaned
+  std::string names_file;             ///< for read_label_names(): go before the names in `regions`; empty: none
+  std::array<VoxelRange, 3> crop;     ///< only these voxels along i, j and k
+  std::vector<double> resample = {};  ///< spacing of the voxels to work with, > 0, the unit of the file: one, or three
+};
+
+/// What is done with an input that cannot be meshed as it is, and how its parts become regions.
+struct IntakeOptions {
+  /// Seeds, voids, cells, and nested shells. `tolerance` is that of several bodies, and what repair keeps to: see
+  /// ComplexOptions and MendOptions, which have defaults of their own.
+  ComplexOptions complex;
+  /// Surfaces that cannot be meshed as they are. kOff: they stay as they are, and generate() refuses them. kAuto:
+  /// holes are closed, crossings resolved, what bounds nothing dropped, the rest stays. kWrap: a closed skin around
+  /// all.
+  enum class Repair { kOff, kAuto, kWrap };
+  Repair repair = Repair::kAuto;
+  std::optional<double> wrap_distance = {};  ///< MendOptions::distance
+  /// Walls of a clean complex that lie inside of one region: cracks to keep, or debris.
+  enum class Sheets { kKeep, kDrop };
+  Sheets sheets = Sheets::kKeep;
+  /// Parts of one surface that overlap: united, or each name of a patch a region, the later one where they overlap.
+  enum class Overlap { kUnion, kRegions };
+  Overlap overlap = Overlap::kUnion;
+  /// Faces that are there twice or turned, where that is all there is, are left to generate(), which sees to them by
+  /// itself and says so. On: they are put in order here, for a surface that goes somewhere else.
+  bool tidies = false;
+  ImageIntake image;
+  /// Told of each note as it comes: a long way in has something to say before its end, and before it fails.
+  std::function<void(const IntakeNote&)> tell = {};
+};
+
+/// What mend_surface() did to an input, or a part of one.
+struct IntakeRepair {
+  std::string of;  ///< the file, or "FILE (NAME)" of one part; empty: the whole input
+  MendReport report;
+};
+
+/// What generate() takes: a surface or a complex, and what is known of where it came from. A SurfaceMesh, and what
+/// mend_surface() returns, are domains as they stand; their triangles are copied unless they are moved.
+struct Domain {
+  Domain() = default;
+  Domain(SurfaceMesh as_it_is) : surface(std::move(as_it_is)) {}  // NOLINT(google-explicit-constructor)
+  Domain(Mended mended)                                           // NOLINT(google-explicit-constructor)
+      : surface(std::move(mended.surface)), bound(std::move(mended.bound)) {}
+
+  /// With SurfaceMesh::sides and names where there are several regions. `source` refers to the faces of the input.
+  SurfaceMesh surface;
+  /// Mended::bound: where repair moved something a mesh of automatic sizes stays nearer to the surface.
+  std::vector<double> bound = {};
+  /// The smallest distance of the voxels of an image: generate() works by options that suit them, as
+  /// options_for_voxels() says. 0: it is not from an image.
+  double voxel_spacing = 0;
+
+  /// Voxels of the image along i, j and k, as they were taken.
+  std::array<std::uint32_t, 3> voxels = {0, 0, 0};
+
+  std::string format = {};                 ///< of the input: "binary STL", "several files", ...
+  std::vector<double> volumes = {};        ///< of the regions of a complex, as they are; empty: a plain surface
+  std::vector<IntakeNote> notes = {};      ///< in the order in which they were told
+  std::vector<IntakeRepair> repairs = {};  ///< of each surface that was looked at, clean ones too
+  std::uint64_t dropped_sheet_faces = 0;   ///< by IntakeOptions::Sheets::kDrop
+};
+
+/// What is known of a domain but for its triangles, as one JSON object with the keys of the command line's report:
+/// "repair" (of one part: "repair PART"), "input_regions", "dropped_sheet_faces", each where there is something to say.
+std::string to_json(const Domain& domain);
+
+/// Opens a file, or several, a body each, whose regions get the names of the files. What read_surface() or read_image()
+/// knows, told by content; of images several files are the slices of one.
+///
+/// A surface with walls or parts inside becomes a complex of regions (complex_of_walls()); a plain one that is clean
+/// stays as it is, bit for bit; what has defects is mended as the options say (mend_surface()). Several bodies are
+/// mended one by one, then joined (join_bodies()). An image is cropped, resampled, and becomes the complex of its
+/// labels or bands (complex_of_image()).
+///
+/// Example: generate(open_domain("scan.stl")) meshes whatever the file holds.
+///
+/// The result depends on nothing but the files and the options, not on the number of threads. Throws InputError, which
+/// names the file; LeakError; OptionError, also for options of images beside a file that is none; Cancelled.
+Domain open_domain(const std::vector<std::string>& files, const IntakeOptions& options = {},
+                   const RunContext& context = no_context());
+Domain open_domain(const std::string& file, const IntakeOptions& options = {},
+                   const RunContext& context = no_context());
+
+/// The same of arrays: a surface or soup. What is known of it already stays known.
+Domain open_domain(Domain input, const IntakeOptions& options = {}, const RunContext& context = no_context());
+
+/// The same of several bodies, any soups, whose regions get their names.
+Domain open_domain(std::vector<Body> bodies, const IntakeOptions& options = {},
+                   const RunContext& context = no_context());
+
+/// The same of an image in memory; `options.image.choice` is not asked.
+Domain open_domain(const Image& image, const IntakeOptions& options = {}, const RunContext& context = no_context());
+
+}  // namespace octafront

@@ -1,0 +1,180 @@
+// What an input becomes on the way in, and what is said of it.
+
+#include <octafront/domain.h>
+#include <octafront/error.h>
+#include <octafront/io.h>
+
+#include "support/named_surfaces.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+
+#include <gtest/gtest.h>
+
+namespace octafront {
+namespace {
+
+using testing::cube;
+using testing::transformed;
+
+SurfaceMesh without_triangle(SurfaceMesh surface, int t) {
+  surface.triangles.erase(surface.triangles.begin() + t);
+  if (!surface.patch.empty()) surface.patch.erase(surface.patch.begin() + t);
+  return surface;
+}
+
+/// Whether a note of a stage has these words.
+bool says(const Domain& domain, const std::string& stage, const std::string& words) {
+  return std::any_of(domain.notes.begin(), domain.notes.end(),
+                     [&](const IntakeNote& n) { return n.stage == stage && n.text.find(words) != std::string::npos; });
+}
+
+/// A folder for the files of one test.
+class Intake : public ::testing::Test {
+ protected:
+  void SetUp() override { std::filesystem::create_directories(folder_); }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+  std::string file(const std::string& name, const SurfaceMesh& surface) const {
+    const std::string path = folder_ / name;
+    write_surface(path, surface);
+    return path;
+  }
+
+ private:
+  std::filesystem::path folder_ =
+      std::filesystem::path(::testing::TempDir()) / ::testing::UnitTest::GetInstance()->current_test_info()->name();
+};
+
+TEST_F(Intake, ACleanSurfaceStaysAsItIs) {
+  const SurfaceMesh clean = testing::icosphere(2);
+  const Domain domain = open_domain(clean);
+  EXPECT_EQ(domain.surface.triangles, clean.triangles);
+  EXPECT_TRUE(domain.bound.empty() && domain.notes.empty() && domain.volumes.empty());
+  ASSERT_EQ(domain.repairs.size(), 1u);
+  EXPECT_TRUE(domain.repairs[0].report.clean);
+}
+
+TEST_F(Intake, ASoupIsMendedUnlessItShallNotBe) {
+  const SurfaceMesh open = without_triangle(cube(2), 5);
+  const Domain mended = open_domain(open);
+  EXPECT_NEAR(enclosed_volume(mended.surface), 1, 1e-12);
+  EXPECT_TRUE(says(mended, "repair", "closed"));
+  EXPECT_NE(to_json(mended).find("\"repair\":{\"clean\":false"), std::string::npos) << to_json(mended);
+  const Domain again = open_domain(mended);
+  EXPECT_EQ(again.surface.triangles, mended.surface.triangles);
+  EXPECT_EQ(again.bound, mended.bound);
+  IntakeOptions off;
+  off.repair = IntakeOptions::Repair::kOff;
+  EXPECT_EQ(open_domain(open, off).surface.triangles, open.triangles);
+  IntakeOptions wrap;
+  wrap.repair = IntakeOptions::Repair::kWrap;
+  wrap.wrap_distance = 0.1;
+  EXPECT_GT(enclosed_volume(open_domain(cube(2), wrap).surface), 1.3);
+}
+
+TEST_F(Intake, WhatOnlyNeedsTidyingIsLeftToTheMesherUnlessAskedFor) {
+  SurfaceMesh turned = cube(1);
+  std::swap(turned.triangles[3][0], turned.triangles[3][1]);
+  turned.patch.clear();
+  EXPECT_EQ(open_domain(turned).surface.triangles, turned.triangles);
+  IntakeOptions tidy;
+  tidy.tidies = true;
+  EXPECT_NEAR(enclosed_volume(open_domain(turned, tidy).surface), 1, 1e-12);
+}
+
+TEST_F(Intake, SeveralFilesAreBodiesNamedByThem) {
+  const std::string plate = file("part.stl", cube(1)), pin = file("pin.ply", transformed(cube(1), 1, {1, 0, 0}));
+  const Domain domain =
+      open_domain({plate, pin, file("open.off", without_triangle(transformed(cube(2), 1, {2, 0, 0}), 0))});
+  EXPECT_EQ(domain.surface.region_names, (std::vector<std::string>{"part", "pin", "open"}));
+  ASSERT_EQ(domain.volumes.size(), 3u);
+  for (const double volume : domain.volumes) EXPECT_NEAR(volume, 1, 1e-12);
+  EXPECT_EQ(domain.format, "several files");
+  ASSERT_EQ(domain.repairs.size(), 3u);
+  EXPECT_EQ(domain.repairs[0].of, plate);
+  EXPECT_FALSE(domain.repairs[2].report.clean);
+  // Files of one name, and the same of arrays.
+  EXPECT_EQ(open_domain({plate, file("part.off", transformed(cube(1), 1, {1, 0, 0}))}).surface.region_names[1],
+            "part_2");
+  const Domain arrays = open_domain(std::vector<Body>{{"a", cube(1)}, {"b", transformed(cube(1), 1, {1, 0, 0})}});
+  EXPECT_EQ(arrays.surface.region_names, (std::vector<std::string>{"a", "b"}));
+}
+
+TEST_F(Intake, WallsMakeRegionsAndPartsMayKeepTheirNames) {
+  SurfaceMesh walls = testing::joined(cube(1), transformed(cube(1), 1, {1, 0, 0}));
+  walls.patch.clear();
+  IntakeOptions seeded;
+  seeded.complex.regions = {{"left", {0.5, 0.5, 0.5}}};
+  const Domain cells = open_domain(walls, seeded);
+  EXPECT_EQ(std::count(cells.surface.region_names.begin(), cells.surface.region_names.end(), "left"), 1);
+  IntakeOptions apart;
+  apart.overlap = IntakeOptions::Overlap::kRegions;
+  EXPECT_THROW(open_domain(walls, apart), InputError) << "parts without names";
+  walls.patch.assign(12, 0);
+  walls.patch.insert(walls.patch.end(), 12, 1);
+  walls.patch_names = {"one", "two"};
+  EXPECT_EQ(open_domain(walls, apart).surface.region_names, walls.patch_names);
+}
+
+TEST_F(Intake, AnImageIsOneOfItsRegionsAndKnowsItsVoxels) {
+  Image image;
+  image.grid.size = {12, 10, 8};
+  image.grid.axes = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 0.5}}};
+  std::vector<std::uint8_t> values(image.grid.voxels(), 0);
+  for (std::uint32_t k = 2; k < 6; ++k)
+    for (std::uint32_t j = 2; j < 8; ++j)
+      for (std::uint32_t i = 2; i < 10; ++i) values[i + 12 * (j + 10 * k)] = i < 6 ? 1 : 3;
+  image.values = values;
+  image.notes = {"of a reader"};
+  IntakeOptions options;
+  options.image.regions.labels.names = {{3, "right"}};
+  const Domain domain = open_domain(image, options);
+  EXPECT_EQ(domain.surface.region_names, (std::vector<std::string>{"label 1", "right"}));
+  EXPECT_EQ(domain.voxel_spacing, 0.5);
+  EXPECT_TRUE(says(domain, "reading", "of a reader"));
+  options.image.crop[0].last = 5;
+  options.image.resample = {1};
+  const Domain part = open_domain(image, options);
+  EXPECT_EQ(part.voxels, (std::array<std::uint32_t, 3>{6, 10, 4}));
+  EXPECT_EQ(part.voxel_spacing, 1);
+  EXPECT_EQ(part.volumes.size(), 1u);
+  options.image.resample = {1, 2};
+  EXPECT_THROW(open_domain(image, options), OptionError);
+}
+
+TEST_F(Intake, RefusalsSayWhatAndWhere) {
+  const auto refusal = [](const std::vector<std::string>& files, const IntakeOptions& options) {
+    try {
+      open_domain(files, options);
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  SurfaceMesh sheet = cube(1);
+  sheet.triangles.resize(2), sheet.patch.clear();
+  const std::string lone = file("sheet.off", sheet), whole = file("cube.off", cube(1));
+  EXPECT_EQ(refusal({lone}, {}).find(lone + ": "), 0u);
+  EXPECT_EQ(refusal({whole, lone}, {}).find(lone + ": "), 0u) << "the file at fault, not the first one";
+  IntakeOptions banded;
+  banded.image.regions.bands = {{0, 1, "low"}};
+  EXPECT_NE(refusal({whole}, banded).find("`band` is for images, and " + whole), std::string::npos);
+  EXPECT_THROW(open_domain(cube(1), banded), OptionError);
+  EXPECT_THROW(open_domain(SurfaceMesh{}), InputError);
+  EXPECT_THROW(open_domain(std::vector<std::string>{}), OptionError);
+}
+
+TEST_F(Intake, NotesAreToldAsTheyCome) {
+  std::vector<std::string> told;
+  IntakeOptions options;
+  options.tell = [&](const IntakeNote& n) { told.push_back(n.stage + "|" + n.text); };
+  const std::string open = file("open.off", without_triangle(cube(2), 5));
+  const Domain domain = open_domain(open, options);
+  ASSERT_EQ(told.size(), domain.notes.size());
+  EXPECT_EQ(told[0], "|" + open + ": OFF, 47 triangles");
+  EXPECT_EQ(told[1].find("repair|"), 0u) << told[1];
+}
+
+}  // namespace
+}  // namespace octafront
