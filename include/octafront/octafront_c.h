@@ -20,7 +20,7 @@
 extern "C" {
 #endif
 
-typedef struct octafront_surface octafront_surface; /**< a SurfaceMesh (octafront/surface_mesh.h) */
+typedef struct octafront_surface octafront_surface; /**< a SurfaceMesh, or a Domain (octafront/domain.h) */
 typedef struct octafront_mesh octafront_mesh;       /**< a TetMesh (octafront/tet_mesh.h) */
 typedef struct octafront_sizes octafront_sizes;     /**< a SizeField (octafront/size_field.h) */
 typedef struct octafront_image octafront_image;     /**< an Image (octafront/image.h) */
@@ -46,6 +46,8 @@ const char* octafront_last_error(void);
 /** JSON, an array: name, field, group, tasks, kind, choices, default, help of each option (octafront/option_table.h).
  */
 const char* octafront_option_table(void);
+/** The same of what is asked on the way in, IntakeOptions: keys for octafront_open_files() and its like. */
+const char* octafront_intake_table(void);
 /** JSON, an array: name, title, endings, what can be read and written, of each file format. */
 const char* octafront_formats(void);
 
@@ -72,6 +74,11 @@ int octafront_surface_set_array(octafront_surface* surface, const char* name, co
 int octafront_surface_add_name(octafront_surface* surface, const char* list, const char* name, size_t length);
 /** The i-th name of a list, null behind the last one. */
 const char* octafront_surface_name(const octafront_surface* surface, const char* list, size_t i, size_t* length);
+
+/** Of a complex made from an image, the smallest distance of its voxels: octafront_generate() works by options that
+ * suit them; 0: it is not from an image. Opening an image sets it. */
+double octafront_surface_voxel(const octafront_surface* surface);
+void octafront_surface_set_voxel(octafront_surface* surface, double spacing);
 
 /** Arrays of a mesh: points (F64 x 3), tets (U32 x 4), region (U32 x 1), boundary (U32 x 3), patch, source (U32 x 1),
  * interfaces (U32 x 3), interface_patch (U32 x 1), curve_edges (U32 x 2), curve (U32 x 1), mid_nodes (U32 x 6). Its
@@ -134,7 +141,7 @@ int octafront_options_point_sizes_file(octafront_options* options, const char* f
 int octafront_options_size_of(octafront_options* options, const char* name, size_t length, double size);
 /** SizeOptions::field. */
 int octafront_options_field(octafront_options* options, const octafront_sizes* sizes);
-/** options_for_voxels() of octafront/image_surface.h, after all other options. */
+/** options_for_voxels() of octafront/generate.h, after all other options; octafront_generate() does so by itself. */
 void octafront_options_for_voxels(octafront_options* options, double spacing);
 /** Jobs with these options ask for sizes, or tell of passes, by events. */
 void octafront_options_ask_sizes(octafront_options* options);
@@ -171,12 +178,23 @@ octafront_job* octafront_read_sizes(const char* file, double gradation); /**< ->
 octafront_job* octafront_write_sizes(const octafront_sizes* sizes, const char* file);
 /** -> image: read_image() of octafront/image.h, a file, a folder or several files; `series` 0: the only one. */
 octafront_job* octafront_read_image(const char* const* files, size_t count, uint32_t series);
-/** -> surface: complex_of_image() of octafront/image_surface.h, with `voxel`, the smallest spacing, in the report.
- * `json` is an object, all of whose keys may be missing: kind ("auto", "labels", "grey"), names ([[3, "liver"], ...]),
- * names_file, ignore ([0, 7]), merge ([["cortex", [3, 4]], ...]), bands ([["bone", 226, null], ...]), islands, holes,
- * close_voxels, closed_at_box, crop ([[first, last], ...], null for an end that stays), resample (one or three). */
+/** -> surface, a domain: open_domain() of octafront/domain.h, the way in that the command line takes too: regions of
+ * what has walls or parts inside, mending of what has defects, images as regions. Of several files or bodies each is a
+ * region. What octafront_generate() makes of the result is what `octafront mesh` makes of the same files. The report
+ * has format, notes, regions (names and volumes), repair (of one of several: "repair NAME"; mend_surface()),
+ * dropped_sheet_faces, and of images voxel, the smallest spacing, and size; that of a failure may have `leak`, the way
+ * through a hole. Bodies are copied.
+ *
+ * `json` is an object, all of whose keys may be missing: the names of octafront_intake_table(), and regions
+ * ([["steel", [x, y, z]], ...]), voids ([[x, y, z], ...]); for images names ([[3, "liver"], ...]), names_file, ignore
+ * ([0, 7]), merge ([["cortex", [3, 4]], ...]), bands ([["bone", 226, null], ...]), crop ([[first, last], ...], null for
+ * an end that stays), resample (one or three). */
+octafront_job* octafront_open_files(const char* const* files, size_t count, const char* json, int threads);
+octafront_job* octafront_open_surface(const octafront_surface* surface, const char* json, int threads);
+octafront_job* octafront_open_bodies(const octafront_surface* const* bodies, const char* const* names, size_t count,
+                                     const char* json, int threads);
 octafront_job* octafront_image_surface(const octafront_image* image, const char* json, int threads);
-/** -> mesh, sizes: generate(). */
+/** -> mesh, sizes: generate(). A surface that was not opened is taken as it is, and refused if it has defects. */
 octafront_job* octafront_generate(const octafront_surface* surface, const octafront_options* options, int threads);
 /** -> surface, sizes: generate_surface(). */
 octafront_job* octafront_generate_surface(const octafront_surface* surface, const octafront_options* options,

@@ -10,6 +10,8 @@
 
 namespace octafront {
 
+struct IntakeOptions;
+
 /// What is known of one option, for programs that set options by name: bindings to other languages, forms, files.
 struct OptionInfo {
   enum class Kind { kNumber, kWhole, kFlag, kChoice };
@@ -35,5 +37,11 @@ OptionValue option_value(const Options& options, std::string_view name);
 /// Sets an option; numbers may come as whole ones. Ranges are looked at by check_options(). Throws OptionError if there
 /// is no option of that name, or for a value of another kind.
 void set_option(Options& options, std::string_view name, const OptionValue& value);
+
+/// The same of what is asked on the way in (octafront/domain.h). No rows have ComplexOptions::regions and voids,
+/// ImageIntake::names_file, crop and resample, LabelOptions, ImageRegions::bands, IntakeOptions::tidies and tell.
+const std::vector<OptionInfo>& intake_table();
+OptionValue option_value(const IntakeOptions& options, std::string_view name);
+void set_option(IntakeOptions& options, std::string_view name, const OptionValue& value);
 
 }  // namespace octafront

@@ -20,13 +20,13 @@ namespace {
 /// Calls visit(list) for the list of that name. One place says what the arrays of a surface are called...
 template <class Surface, class Visit>
 void visit_surface_array(Surface& surface, std::string_view name, const Visit& visit) {
-  auto& mesh = surface.mesh;
+  auto& mesh = surface.domain.surface;
   if (name == "points") return visit(mesh.points);
   if (name == "triangles") return visit(mesh.triangles);
   if (name == "patch") return visit(mesh.patch);
   if (name == "source") return visit(mesh.source);
   if (name == "sides") return visit(mesh.sides);
-  if (name == "bound") return visit(surface.bound);
+  if (name == "bound") return visit(surface.domain.bound);
   throw OptionError(fmt::format("a surface has no array \"{}\"", name));
 }
 
@@ -137,11 +137,19 @@ int octafront_surface_set_array(octafront_surface* surface, const char* name, co
 }
 
 int octafront_surface_add_name(octafront_surface* surface, const char* list, const char* name, size_t length) {
-  return guarded([&] { names_of(surface->mesh, list).emplace_back(name, length); });
+  return guarded([&] { names_of(surface->domain.surface, list).emplace_back(name, length); });
 }
 
 const char* octafront_surface_name(const octafront_surface* surface, const char* list, size_t i, size_t* length) {
-  return name_of(surface->mesh, list, i, length);
+  return name_of(surface->domain.surface, list, i, length);
+}
+
+double octafront_surface_voxel(const octafront_surface* surface) {
+  return surface->domain.voxel_spacing;
+}
+
+void octafront_surface_set_voxel(octafront_surface* surface, double spacing) {
+  surface->domain.voxel_spacing = spacing;
 }
 
 octafront_mesh* octafront_mesh_new() {

@@ -3,6 +3,7 @@
 // c_api: the library for other languages (octafront/octafront_c.h): opaque objects, arrays and names by name, work as
 // jobs that the caller waits for. Takes and leaves plain pointers and JSON; adds nothing of its own to the library.
 
+#include <octafront/domain.h>
 #include <octafront/image.h>
 #include <octafront/octafront_c.h>
 #include <octafront/options.h>
@@ -12,11 +13,9 @@
 
 #include <string>
 #include <utility>
-#include <vector>
 
 struct octafront_surface {
-  octafront::SurfaceMesh mesh;
-  std::vector<double> bound = {};  ///< Mended::bound
+  octafront::Domain domain;
 };
 
 struct octafront_mesh {

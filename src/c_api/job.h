@@ -1,5 +1,6 @@
 #pragma once
 
+#include <octafront/error.h>
 #include <octafront/octafront_c.h>
 #include <octafront/run_context.h>
 
@@ -81,9 +82,24 @@ namespace octafront::c_api {
 /// A job, or null where there is no memory or thread for one.
 octafront_job* started(const octafront_job::Work& work, int threads = 0);
 
+/// A leak leaves the way through it in the report.
+template <class Work>
+void with_leak(octafront_job& job, const Work& work) {
+  try {
+    work();
+  } catch (const LeakError& leak) {
+    job.report["leak"] = octafront_job::Json::array();
+    for (const Vec3 p : leak.way) job.report["leak"].push_back({p.x, p.y, p.z});
+    throw;
+  }
+}
+
+/// Copies.
+std::vector<Body> bodies_of(const octafront_surface* const* bodies, const char* const* names, std::size_t count);
+
 /// What the job leaves.
-inline void give(octafront_job& job, SurfaceMesh surface) {
-  job.surface = std::make_unique<octafront_surface>(octafront_surface{std::move(surface)});
+inline void give(octafront_job& job, Domain domain) {
+  job.surface = std::make_unique<octafront_surface>(octafront_surface{std::move(domain)});
 }
 inline void give(octafront_job& job, TetMesh mesh) {
   job.mesh = std::make_unique<octafront_mesh>(octafront_mesh{std::move(mesh)});

@@ -2,13 +2,13 @@
 
 // Arguments and reports as JSON.
 
-#include <octafront/complex.h>
+#include <octafront/domain.h>
 #include <octafront/error.h>
+#include <octafront/option_table.h>
 
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <vector>
 
 #include <fmt/core.h>
 
@@ -36,13 +36,10 @@ T one_of(const std::map<std::string, T>& choices, const std::string& name, const
   throw OptionError(fmt::format("`{}` is one of {}; \"{}\" is none of them", key, names, name));
 }
 
-/// Names and volumes.
-inline nlohmann::ordered_json json_of_regions(const Complex& complex) {
-  auto regions = nlohmann::ordered_json::array();
-  const std::vector<std::string>& names = complex.surface.region_names;
-  for (std::size_t r = 0; r < complex.volumes.size(); ++r)
-    regions.push_back({{"name", r < names.size() ? names[r] : ""}, {"volume", complex.volumes[r]}});
-  return regions;
-}
+/// The single value of an option. Throws OptionError for anything else.
+OptionValue value_of(const std::string& name, const nlohmann::ordered_json& json);
+
+/// What is asked on the way in, by the names of intake_table() and the keys that take more than one value.
+IntakeOptions intake_from(const nlohmann::ordered_json& json);
 
 }  // namespace octafront::c_api

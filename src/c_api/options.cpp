@@ -4,6 +4,7 @@
 #include <octafront/option_table.h>
 
 #include "c_api/c_api.h"
+#include "c_api/json_keys.h"
 
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -27,16 +28,6 @@ Json json_of(const OptionValue& value) {
       value);
 }
 
-OptionValue value_of(const std::string& name, const Json& json) {
-  if (json.is_null()) return {};
-  if (json.is_boolean()) return json.get<bool>();
-  if (json.is_number_unsigned() && json.get<std::uint64_t>() > INT64_MAX) return json.get<double>();
-  if (json.is_number_integer()) return json.get<std::int64_t>();
-  if (json.is_number()) return json.get<double>();
-  if (json.is_string()) return json.get<std::string>();
-  throw OptionError(fmt::format("`{}` needs a single value", name));
-}
-
 const char* name_of(OptionInfo::Kind kind) {
   switch (kind) {
     case OptionInfo::Kind::kNumber:
@@ -51,10 +42,11 @@ const char* name_of(OptionInfo::Kind kind) {
   return "";
 }
 
-std::string described_options() {
+template <class All>
+std::string described(const std::vector<OptionInfo>& table) {
   Json all = Json::array();
-  const Options defaults;
-  for (const OptionInfo& info : option_table()) {
+  const All defaults;
+  for (const OptionInfo& info : table) {
     all.push_back({{"name", info.name},
                    {"field", info.field},
                    {"group", info.group},
@@ -84,13 +76,28 @@ std::string described_formats() {
 
 }  // namespace
 
+OptionValue value_of(const std::string& name, const Json& json) {
+  if (json.is_null()) return {};
+  if (json.is_boolean()) return json.get<bool>();
+  if (json.is_number_unsigned() && json.get<std::uint64_t>() > INT64_MAX) return json.get<double>();
+  if (json.is_number_integer()) return json.get<std::int64_t>();
+  if (json.is_number()) return json.get<double>();
+  if (json.is_string()) return json.get<std::string>();
+  throw OptionError(fmt::format("`{}` needs a single value", name));
+}
+
 }  // namespace octafront::c_api
 
 using namespace octafront;
 using namespace octafront::c_api;
 
 const char* octafront_option_table() {
-  static const std::string text = described_options();
+  static const std::string text = described<Options>(option_table());
+  return text.c_str();
+}
+
+const char* octafront_intake_table() {
+  static const std::string text = described<IntakeOptions>(intake_table());
   return text.c_str();
 }
 

@@ -41,19 +41,19 @@ Json json_of(const RepairedSurface& r) {
           {"notes", r.notes}};
 }
 
-Mended mended_of(const octafront_surface& surface) {
-  return {surface.mesh, {}, surface.bound};
-}
-
-/// Runs a generator; if it refuses the surface, the evidence goes along.
+/// Runs a generator, by the options with their events; if it refuses the surface, the evidence goes along.
 template <class Generator>
-auto with_evidence(octafront_job& job, const SurfaceMesh& surface, const Generator& generator) {
-  require_indices(surface);
+auto made_of(octafront_job& job, const octafront_surface& surface, const octafront_options* options,
+             const Generator& generator) {
+  const Domain& domain = surface.domain;
+  require_indices(domain.surface);
   try {
-    return generator();
+    auto result = generator(domain, job.options_of(options), job.context());
+    job.report = Json::parse(to_json(result.report));
+    return result;
   } catch (const InputError&) {
-    if (const SurfaceDefects d = find_defects(repair_surface(surface, job.context()), job.context()); !d.clean())
-      job.report["defects"] = Json::parse(to_json(d));
+    const SurfaceDefects d = find_defects(repair_surface(domain.surface, job.context()), job.context());
+    if (!d.clean()) job.report["defects"] = Json::parse(to_json(d));
     throw;
   }
 }
@@ -162,8 +162,8 @@ octafront_job* octafront_read_surface(const char* file) {
 
 octafront_job* octafront_write_surface(const octafront_surface* surface, const char* file) {
   return started([surface, file = std::string(file)](octafront_job& job) {
-    require_indices(surface->mesh);
-    write_surface(file, surface->mesh, job.context());
+    require_indices(surface->domain.surface);
+    write_surface(file, surface->domain.surface, job.context());
   });
 }
 
@@ -199,10 +199,7 @@ octafront_job* octafront_write_sizes(const octafront_sizes* sizes, const char* f
 octafront_job* octafront_generate(const octafront_surface* surface, const octafront_options* options, int threads) {
   return started(
       [surface, options](octafront_job& job) {
-        const Options with_events = job.options_of(options);
-        Result result = with_evidence(job, surface->mesh,
-                                      [&] { return generate(mended_of(*surface), with_events, job.context()); });
-        job.report = Json::parse(to_json(result.report));
+        Result result = made_of(job, *surface, options, generate);
         give(job, std::move(result.mesh));
         give(job, result.sizes);
       },
@@ -213,10 +210,7 @@ octafront_job* octafront_generate_surface(const octafront_surface* surface, cons
                                           int threads) {
   return started(
       [surface, options](octafront_job& job) {
-        const Options with_events = job.options_of(options);
-        SurfaceResult result = with_evidence(
-            job, surface->mesh, [&] { return generate_surface(mended_of(*surface), with_events, job.context()); });
-        job.report = Json::parse(to_json(result.report));
+        SurfaceResult result = made_of(job, *surface, options, generate_surface);
         give(job, std::move(result.surface));
         give(job, result.sizes);
       },
@@ -226,13 +220,7 @@ octafront_job* octafront_generate_surface(const octafront_surface* surface, cons
 octafront_job* octafront_generate_sizes(const octafront_surface* surface, const octafront_options* options,
                                         int threads) {
   return started(
-      [surface, options](octafront_job& job) {
-        const Options with_events = job.options_of(options);
-        const SizeResult result = with_evidence(
-            job, surface->mesh, [&] { return generate_sizes(mended_of(*surface), with_events, job.context()); });
-        job.report = Json::parse(to_json(result.report));
-        give(job, result.sizes);
-      },
+      [surface, options](octafront_job& job) { give(job, made_of(job, *surface, options, generate_sizes).sizes); },
       threads);
 }
 
@@ -241,9 +229,9 @@ octafront_job* octafront_improve(const octafront_mesh* mesh, const octafront_sur
   return started(
       [mesh, ground, options](octafront_job& job) {
         require_indices(mesh->mesh);
-        if (ground != nullptr) require_indices(ground->mesh);
+        if (ground != nullptr) require_indices(ground->domain.surface);
         Improved improved = improve_existing(mesh->mesh, job.options_of(options),
-                                             ground != nullptr ? &ground->mesh : nullptr, job.context());
+                                             ground != nullptr ? &ground->domain.surface : nullptr, job.context());
         Report before;
         before.tets = mesh->mesh.tets.size();
         before.quality = improved.before;
@@ -255,7 +243,7 @@ octafront_job* octafront_improve(const octafront_mesh* mesh, const octafront_sur
 }
 
 octafront_job* octafront_repair(const octafront_surface* surface) {
-  return started([surface](octafront_job& job) { repair(job, surface->mesh); });
+  return started([surface](octafront_job& job) { repair(job, surface->domain.surface); });
 }
 
 octafront_job* octafront_check(const octafront_mesh* mesh, const char* solver) {

@@ -1,141 +1,24 @@
-#include <octafront/error.h>
-#include <octafront/option_table.h>
-
-#include <cmath>
-#include <functional>
-#include <optional>
-#include <type_traits>
-#include <utility>
-
-#include <fmt/core.h>
+#include "options/rows.h"
 
 namespace octafront {
 
 namespace {
 
-using Kind = OptionInfo::Kind;
+using namespace options;
 
-constexpr double kLargestWhole = 9e18;
-
-/// An option, and how to reach its value.
-struct Row {
-  OptionInfo info;
-  std::function<OptionValue(const Options&)> get;
-  std::function<void(Options&, const OptionValue&)> set;
-};
-
-[[noreturn]] void refuse(std::string_view name, std::string_view what) {
-  throw OptionError(fmt::format("`{}` {}", name, what));
-}
-
-double number_of(std::string_view name, const OptionValue& value) {
-  if (const auto* whole = std::get_if<std::int64_t>(&value)) return static_cast<double>(*whole);
-  if (const auto* number = std::get_if<double>(&value)) return *number;
-  refuse(name, "needs a number");
-}
-
-std::int64_t whole_of(std::string_view name, const OptionValue& value) {
-  if (const auto* whole = std::get_if<std::int64_t>(&value)) return *whole;
-  const double number = number_of(name, value);
-  if (!(std::abs(number) < kLargestWhole) || number != std::floor(number)) refuse(name, "needs a whole number");
-  return static_cast<std::int64_t>(number);
-}
-
-bool flag_of(std::string_view name, const OptionValue& value) {
-  if (const auto* flag = std::get_if<bool>(&value)) return *flag;
-  refuse(name, "is true or false");
-}
-
-/// How values of a field's type come and go.
-template <class Field>
-struct Conversion;
-
-template <>
-struct Conversion<double> {
-  static constexpr Kind kKind = Kind::kNumber;
-  static OptionValue shown(double field) { return field; }
-  static double taken(std::string_view name, const OptionValue& value) { return number_of(name, value); }
-};
-
-template <>
-struct Conversion<std::int64_t> {
-  static constexpr Kind kKind = Kind::kWhole;
-  static OptionValue shown(std::int64_t field) { return field; }
-  static std::int64_t taken(std::string_view name, const OptionValue& value) { return whole_of(name, value); }
-};
-
-template <>
-struct Conversion<int> {
-  static constexpr Kind kKind = Kind::kWhole;
-  static OptionValue shown(int field) { return std::int64_t{field}; }
-  static int taken(std::string_view name, const OptionValue& value) {
-    const std::int64_t whole = whole_of(name, value);
-    if (!std::in_range<int>(whole)) refuse(name, "is out of range");
-    return static_cast<int>(whole);
-  }
-};
-
-template <>
-struct Conversion<bool> {
-  static constexpr Kind kKind = Kind::kFlag;
-  static OptionValue shown(bool field) { return field; }
-  static bool taken(std::string_view name, const OptionValue& value) { return flag_of(name, value); }
-};
-
-template <class Value>
-struct Conversion<std::optional<Value>> {
-  static constexpr Kind kKind = Conversion<Value>::kKind;
-  static OptionValue shown(const std::optional<Value>& field) {
-    return field ? Conversion<Value>::shown(*field) : OptionValue{};
-  }
-  static std::optional<Value> taken(std::string_view name, const OptionValue& value) {
-    if (std::holds_alternative<std::monostate>(value)) return std::nullopt;
-    return Conversion<Value>::taken(name, value);
-  }
-};
-
-/// `field` maps Options, const or not, to the field.
 template <class Access>
-Row row(OptionInfo info, Access field) {
-  using Field = std::remove_cvref_t<decltype(field(std::declval<Options&>()))>;
-  info.kind = Conversion<Field>::kKind;
-  return {
-      info, [field](const Options& o) { return Conversion<Field>::shown(field(o)); },
-      [field, name = info.name](Options& o, const OptionValue& v) { field(o) = Conversion<Field>::taken(name, v); }};
+Row<Options> row(const OptionInfo& info, Access field) {
+  return row_of_field<Options>(info, field);
 }
-
-template <class Value>
-using Names = std::vector<std::pair<std::string_view, Value>>;
 
 template <class Value, class Access>
-Row choice(OptionInfo info, Access field, const Names<Value>& names) {
-  info.kind = Kind::kChoice;
-  std::string listed;
-  for (const auto& [name, value] : names) {
-    info.choices.push_back(name);
-    listed += (listed.empty() ? "" : ", ") + std::string(name);
-  }
-  const auto get = [field, names](const Options& o) -> OptionValue {
-    for (const auto& [name, value] : names)
-      if (value == field(o)) return std::string(name);
-    return {};
-  };
-  const auto set = [field, names, listed, option = info.name](Options& o, const OptionValue& given) {
-    const auto* typed = std::get_if<std::string>(&given);
-    for (const auto& [name, value] : names)
-      if (typed != nullptr && *typed == name) {
-        field(o) = value;
-        return;
-      }
-    refuse(option, fmt::format("is one of {}{}", listed,
-                               typed != nullptr ? fmt::format("; \"{}\" is none of them", *typed) : ""));
-  };
-  return {info, get, set};
+Row<Options> choice(const OptionInfo& info, Access field, const Names<Value>& names) {
+  return row_of_choice<Options, Value>(info, field, names);
 }
 
 /// A flag whose name says the opposite of its field.
 template <class Access>
-Row opposite(OptionInfo info, Access field) {
+Row<Options> opposite(OptionInfo info, Access field) {
   info.kind = Kind::kFlag;
   return {info, [field](const Options& o) -> OptionValue { return !field(o); },
           [field, name = info.name](Options& o, const OptionValue& v) { field(o) = !flag_of(name, v); }};
@@ -146,7 +29,7 @@ OptionInfo about(std::string_view name, std::string_view field, std::string_view
   return {name, field, group, tasks, Kind::kNumber, {}, help};
 }
 
-std::vector<Row> size_rows() {
+std::vector<Row<Options>> size_rows() {
   const auto of = [](std::string_view name, std::string_view help) {
     return about(name, name, "Sizes", "mesh surface size", help);
   };
@@ -189,7 +72,7 @@ std::vector<Row> size_rows() {
   };
 }
 
-std::vector<Row> surface_rows() {
+std::vector<Row<Options>> surface_rows() {
   const auto of = [](std::string_view name, std::string_view help, std::string_view field = {},
                      std::string_view tasks = "mesh surface size") {
     return about(name, field.empty() ? name : field, "Surface", tasks, help);
@@ -222,7 +105,7 @@ std::vector<Row> surface_rows() {
   };
 }
 
-std::vector<Row> volume_rows() {
+std::vector<Row<Options>> volume_rows() {
   const auto of = [](std::string_view name, std::string_view help) {
     return about(name, name, "Volume", "mesh", help);
   };
@@ -256,7 +139,7 @@ std::vector<Row> volume_rows() {
   };
 }
 
-std::vector<Row> improve_rows() {
+std::vector<Row<Options>> improve_rows() {
   const auto of = [](std::string_view name, std::string_view help, std::string_view field = {}) {
     return about(name, field.empty() ? name : field, "Improvement", "mesh improve", help);
   };
@@ -300,9 +183,9 @@ std::vector<Row> improve_rows() {
   };
 }
 
-const std::vector<Row>& rows() {
-  static const std::vector<Row> all = [] {
-    std::vector<Row> list;
+const std::vector<Row<Options>>& rows() {
+  static const std::vector<Row<Options>> all = [] {
+    std::vector<Row<Options>> list;
     for (const auto& part : {size_rows(), surface_rows(), volume_rows(), improve_rows()})
       list.insert(list.end(), part.begin(), part.end());
     return list;
@@ -310,29 +193,19 @@ const std::vector<Row>& rows() {
   return all;
 }
 
-const Row& row_of(std::string_view name) {
-  for (const Row& r : rows())
-    if (r.info.name == name) return r;
-  throw OptionError(fmt::format("there is no option \"{}\"", name));
-}
-
 }  // namespace
 
 const std::vector<OptionInfo>& option_table() {
-  static const std::vector<OptionInfo> table = [] {
-    std::vector<OptionInfo> list;
-    for (const Row& r : rows()) list.push_back(r.info);
-    return list;
-  }();
+  static const std::vector<OptionInfo> table = infos_of(rows());
   return table;
 }
 
 OptionValue option_value(const Options& options, std::string_view name) {
-  return row_of(name).get(options);
+  return row_named(rows(), name).get(options);
 }
 
 void set_option(Options& options, std::string_view name, const OptionValue& value) {
-  row_of(name).set(options, value);
+  row_named(rows(), name).set(options, value);
 }
 
 }  // namespace octafront
