@@ -7,7 +7,7 @@ options; a test compares.
 import pathlib
 import sys
 
-from octafront._library import option_table
+from octafront._library import intake_table, option_table
 from octafront._options import keywords_of
 
 TEMPLATE = '''\
@@ -127,25 +127,27 @@ class Mesh:
     def plot(self, clip: Sequence[float] | None = (1, 0, 0), **keywords: Any) -> Any: ...
     def __len__(self) -> int: ...
 
+Input = Surface | Path | Sequence[Path] | Mapping[str, Surface | Path]
+
 class Checked:
     text: str
     def __bool__(self) -> bool: ...
     def __getattr__(self, name: str) -> Any: ...
 
-def mesh(points: npt.ArrayLike | Surface, triangles: npt.ArrayLike | None = None, *,
+def mesh(points: npt.ArrayLike | Input, triangles: npt.ArrayLike | None = None, *,
 {mesh}) -> Mesh: ...
 def mesh_file(path: Path, *,
 {mesh}) -> Mesh: ...
 def mesh_image(image: npt.ArrayLike | Path | Sequence[Path], affine: npt.ArrayLike | None = None, *,
-{of_images},
+    spacing: npt.ArrayLike | None = None,
 {mesh}) -> Mesh: ...
 def image_surface(image: npt.ArrayLike | Path | Sequence[Path], affine: npt.ArrayLike | None = None, *,
 {of_images},
     progress: Progress | None = None,
     threads: int = 0) -> Surface: ...
-def surface(points: npt.ArrayLike | Surface, triangles: npt.ArrayLike | None = None, *,
+def surface(points: npt.ArrayLike | Input, triangles: npt.ArrayLike | None = None, *,
 {surface}) -> Surface: ...
-def size_field(points: npt.ArrayLike | Surface, triangles: npt.ArrayLike | None = None, *,
+def size_field(points: npt.ArrayLike | Input, triangles: npt.ArrayLike | None = None, *,
 {size}) -> SizeField: ...
 def improve(mesh: Mesh | Path, *, surface: Surface | Path | None = None,
 {improve}) -> Mesh: ...
@@ -169,6 +171,11 @@ def formats() -> list[dict[str, Any]]: ...
 '''
 
 FURTHER = {
+    "region": "Mapping[str, npt.ArrayLike] | None = None", "void": "npt.ArrayLike | None = None",
+    "labels": "Mapping[int, str] | Path | None = None", "ignore": "Sequence[int] | int | None = None",
+    "merge": "Mapping[str, Sequence[int]] | None = None", "iso": "float | None = None",
+    "bands": "Mapping[str, tuple[float | None, float | None]] | None = None",
+    "crop": "Sequence[Sequence[int | None]] | None = None", "resample": "float | Sequence[float] | None = None",
     "regions": "Places | None = None", "point_sizes": "npt.ArrayLike | Path | None = None",
     "size_of": "Mapping[str, float] | None = None", "size_field": "SizeField | Path | None = None",
     "after_pass": "Callable[[str, dict[str, Any]], object] | None = None", "progress": "Progress | None = None",
@@ -200,7 +207,7 @@ def declared(row):
 
 
 def keywords(task):
-    table = {row["name"]: declared(row) for row in option_table()}
+    table = {row["name"]: declared(row) for row in option_table() + intake_table()}
     lines = [f"    {name}: {table.get(name) or FURTHER[name]}" for name in keywords_of(task)]
     return ",\n".join(lines)
 

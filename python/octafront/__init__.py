@@ -11,9 +11,11 @@ work, tell how far they are by progress=, and end at Ctrl-C.
 
 import inspect as _inspect
 import json as _json
+import os as _os
 
 from . import _complexes, errors
-from ._images import surface_of_image as _surface_of_image
+from ._images import is_file as _is_file, surface_of_image as _surface_of_image
+from ._intake import opened as _opened
 from ._jobs import Job as _Job
 from ._library import bytes_of as _bytes_of, call as _call
 from ._mesh import Checked, Mesh
@@ -31,11 +33,16 @@ __all__ = ["Cancelled", "Checked", "Error", "InputError", "InternalError", "Mesh
 
 @_takes_options("mesh")
 def mesh(points, triangles=None, **keywords):
-    """A tetrahedral mesh of what a closed surface encloses: a Mesh, valid in every element.
+    """A tetrahedral mesh of what a surface encloses: a Mesh, valid in every element.
 
-    points: (n, 3) float64, any unit of length; triangles: (m, 3) indices. Or a Surface alone, which may have patches,
-    names, and several regions. The surface may be any soup of triangles: what can be mended without moving a vertex is
-    mended, and said in the report; what cannot is refused: InputError, with `defects`.
+    points: (n, 3) float64, any unit of length; triangles: (m, 3) indices. Or alone: a Surface, which may have patches,
+    names, and several regions; a file (STL, OBJ, OFF, PLY, images of voxels, ..., recognised by content); a list of files,
+    or {name: Surface or file}, a region each.
+
+    All of it goes the way of the command line, to the same mesh, bit for bit: walls and parts inside become regions, a
+    soup is mended (repair="none": it is refused, InputError with `defects`). report["intake"] says what was found and
+    done: "format", "notes", "regions" with names and volumes, "repair" with places. A Surface that came out of mend(),
+    join_bodies(), complex_of_walls() or image_surface() is meshed as it is.
 
     Without options for sizes they are chosen automatically; where several speak, the smallest wins. The result depends
     on nothing but the input and the options, bit for bit, not on the number of threads.
@@ -43,19 +50,18 @@ def mesh(points, triangles=None, **keywords):
     Raises OptionError, InputError, MeshingError, Cancelled, MemoryError.
 
     >>> octafront.mesh(points, triangles, size=0.5, progress=lambda phase, fraction: True)
+    >>> octafront.mesh("scan.stl", elements=200_000).save("scan.inp")
     """
-    given, settings = _surface_of(points, triangles), _Settings("mesh", "mesh", keywords)
-    return _meshed(given, settings)
+    return _meshed(points, triangles, _Settings("mesh", "mesh", keywords))
 
 
 @_takes_options("mesh")
 def mesh_file(path, **keywords):
-    """The same of a file: STL, OBJ, OFF or PLY, recognised by content.
+    """mesh() of a file.
 
     >>> octafront.mesh_file("part.stl", elements=200_000).save("part.inp")
     """
-    settings = _Settings("mesh_file", "mesh", keywords)
-    return _meshed(Surface.read(path), settings, path)
+    return _meshed(path, None, _Settings("mesh_file", "mesh", keywords))
 
 
 def image_surface(image, affine=None, *, spacing=None, series=0, kind="auto", labels=None, ignore=None, merge=None,
@@ -87,45 +93,46 @@ def image_surface(image, affine=None, *, spacing=None, series=0, kind="auto", la
     """
     regions = {"kind": kind, "labels": labels, "ignore": ignore, "merge": merge, "iso": iso, "bands": bands,
                "islands": islands, "holes": holes, "close_voxels": close_voxels, "crop": crop, "resample": resample,
-               "closed_at_box": closed_at_box, "threads": threads}
-    return _surface_of_image(image, affine, spacing, series, regions, progress)
-
-
-_OF_IMAGES = [name for name in _inspect.signature(image_surface).parameters if name not in ("progress", "threads")]
+               "closed_at_box": closed_at_box}
+    return _surface_of_image(image, affine, spacing, series, regions, threads, progress)
 
 
 @_takes_options("mesh", _inspect.signature(image_surface))
 def mesh_image(image, affine=None, **keywords):
-    """A tetrahedral mesh of an image, one region per label or band: a Mesh. First image_surface(), whose keywords come
-    first, then mesh(): with size or elements there is at least one element across thin layers, and none smaller than a
+    """A tetrahedral mesh of an image, one region per label or band: a Mesh. First image_surface(), then mesh(), with the
+    keywords of both: with size or elements there is at least one element across thin layers, and none smaller than a
     voxel, unless gap and min_size say otherwise. report["image"] is the report of the first step.
 
     >>> octafront.mesh_image("head.nii.gz", labels={1: "skin", 2: "skull"}, size=4).save("head.msh")
     >>> octafront.mesh_image(nibabel_image.get_fdata(), nibabel_image.affine, elements=500_000)
     """
-    of_image = {name: keywords.pop(name) for name in _OF_IMAGES if name in keywords}
+    spacing = keywords.pop("spacing", None)
     settings = _Settings("mesh_image", "mesh", keywords)
-    made = image_surface(image, affine, progress=settings.progress, threads=settings.threads, **of_image)
-    settings.suit_voxels(made.report["voxel"])
-    mesh = _meshed(made, settings)
+    series = settings.intake.pop("series", 0)
+    made = _surface_of_image(image, affine, spacing, series, settings.intake, settings.threads, settings.progress)
+    settings.intake = {}
+    mesh = _meshed(made, None, settings)
     mesh.report["image"] = made.report
     return mesh
 
 
-def _meshed(surface, settings, path=None):
-    job = _Job("generate", surface._handle, settings.options, settings.threads, **settings.functions())
-    report = _run(job, path)
+def _meshed(points, triangles, settings):
+    job, report = _generated("generate", points, triangles, settings)
     return Mesh._of(job.take("mesh"), report, job.take("sizes"))
 
 
-def _run(job, path=None):
-    """What is wrong with a file is said with its name."""
+def _generated(how, points, triangles, settings):
+    """A job that has ended, and its report with that of the way in. What is wrong with a file is said with its name."""
+    domain = _opened(points, triangles, settings)
+    job = _Job(how, domain._handle, settings.options, settings.threads, **settings.functions())
     try:
-        return job.run()
+        report = job.run()
     except InputError as error:
-        if path is not None:
-            error.args = (f"{path}: {error}",)
+        if _is_file(points):
+            error.args = (f"{_os.fsdecode(points)}: {error}",)
         raise
+    report["intake"] = domain.report
+    return job, report
 
 
 @_takes_options("surface")
@@ -134,10 +141,8 @@ def surface(points, triangles=None, **keywords):
 
     points, triangles: as for mesh(). Raises OptionError, InputError, MeshingError, Cancelled.
     """
-    given, settings = _surface_of(points, triangles), _Settings("surface", "surface", keywords)
-    job = _Job("generate_surface", given._handle, settings.options, settings.threads, **settings.functions())
-    report = _run(job)
-    return Surface._of(job.take("surface"), report)
+    job, report = _generated("generate_surface", points, triangles, _Settings("surface", "surface", keywords))
+    return Surface._of(job.take("surface"), report, opened=True)
 
 
 @_takes_options("size")
@@ -146,9 +151,7 @@ def size_field(points, triangles=None, **keywords):
 
     points, triangles: as for mesh(). Raises OptionError, InputError, MeshingError, Cancelled.
     """
-    given, settings = _surface_of(points, triangles), _Settings("size_field", "size", keywords)
-    job = _Job("generate_sizes", given._handle, settings.options, settings.threads, **settings.functions())
-    report = _run(job)
+    job, report = _generated("generate_sizes", points, triangles, _Settings("size_field", "size", keywords))
     return SizeField._of(job.take("sizes"), report)
 
 
@@ -169,12 +172,12 @@ def improve(mesh, *, surface=None, **keywords):
     ground = surface if surface is None or isinstance(surface, Surface) else Surface.read(surface)
     job = _Job("improve", old._handle, ground and ground._handle, settings.options, settings.threads,
                **settings.functions())
-    report = _run(job)
+    report = job.run()
     return Mesh._of(job.take("mesh"), report)
 
 
 def repair(points, triangles=None):
-    """What mesh() makes of a surface before it begins: a Surface, no vertex moved. Its report tells what was done
+    """What is made of a surface without moving or inventing anything: a Surface. Its report tells what was done
     ("notes", and a count of each kind), whether it is "clean", and if not, its "defects".
 
     points, triangles: as for mesh(). Raises InputError for indices out of range and coordinates that are not finite.
@@ -190,8 +193,7 @@ def mend(points, triangles=None, *, tolerance=None, way="auto", distance=None, p
     is gone. A Surface; its report says what was done, with places. A clean surface comes back as it was.
 
     points, triangles: as for mesh(). way: "wrap" makes a closed skin at a `distance` around everything instead (default:
-    a hundredth of the diagonal). mesh() by itself may stray .4 % of the diagonal from what came out; give it the
-    tolerance as max_deviation, too, to have the mesh within it.
+    a hundredth of the diagonal). mesh() mends by itself; this is for the surface alone.
 
     Raises InputError where the soup encloses nothing, OptionError, Cancelled.
 

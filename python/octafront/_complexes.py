@@ -10,47 +10,58 @@ from ._surface import Surface
 
 
 def of_walls(surface, regions, voids, cells, nested, threads, progress):
-    keys = {"regions": _seeds(regions), "voids": _points(voids), "cells": cells, "nested": nested}
-    return _made(Job("complex_of_walls", surface._handle, _text(keys), threads, progress=progress))
+    keys = {"regions": seeds_of(regions), "voids": points_in(voids), "cells": cells, "nested": nested}
+    made = _made(Job("complex_of_walls", surface._handle, text_of_keys(keys), threads, progress=progress))
+    # A plain surface came back as it was, with the defects it may have.
+    made._opened = bool(made.report["regions"])
+    return made
 
 
 def of_bodies(bodies, regions, voids, cells, tolerance, threads, progress):
+    handles, names, surfaces = arguments_of(bodies)
+    keys = {"regions": seeds_of(regions), "voids": points_in(voids), "cells": cells, "tolerance": tolerance}
+    return _made(Job("join_bodies", handles, names, len(surfaces), text_of_keys(keys), threads, progress=progress))
+
+
+def arguments_of(bodies):
+    """Addresses and names of {name: Surface or file}, and the surfaces, which must live as long."""
     surfaces = {str(name): body if isinstance(body, Surface) else Surface.read(body) for name, body in bodies.items()}
     if not surfaces:
-        raise errors.OptionError("join_bodies() needs bodies: {name: Surface or file, ...}")
+        raise errors.OptionError("bodies are {name: Surface or file, ...}, one at least")
     handles = (ctypes.c_void_p * len(surfaces))(*(body._handle.address for body in surfaces.values()))
-    names = (ctypes.c_char_p * len(surfaces))(*(bytes_of(name) for name in surfaces))
-    keys = {"regions": _seeds(regions), "voids": _points(voids), "cells": cells, "tolerance": tolerance}
-    return _made(Job("join_bodies", handles, names, len(surfaces), _text(keys), threads, progress=progress))
+    return handles, (ctypes.c_char_p * len(surfaces))(*(bytes_of(name) for name in surfaces)), surfaces
 
 
 def mended(surface, tolerance, way, distance, threads, progress):
     keys = {"tolerance": tolerance, "way": way, "distance": distance}
-    return _made(Job("mend", surface._handle, _text(keys), threads, progress=progress))
+    return _made(Job("mend", surface._handle, text_of_keys(keys), threads, progress=progress))
 
 
 def _made(job):
     report = job.run()
-    return Surface._of(job.take("surface"), report)
+    return Surface._of(job.take("surface"), report, opened=True)
 
 
-def _seeds(regions):
+def seeds_of(regions):
     """Points by name, one or several for each, as rows."""
     rows = []
     for name, at in (regions or {}).items():
-        points = _points(at)
+        points = points_in(at)
         rows += [[str(name), point] for point in ([points] if points and not isinstance(points[0], list) else points)]
     return rows
 
 
-def _points(value):
+def points_in(value):
     if value is None:
         return []
     try:
-        return [_points(row) if hasattr(row, "__len__") else float(row) for row in value]
+        return [points_in(row) if hasattr(row, "__len__") else float(row) for row in value]
     except (TypeError, ValueError):
         raise errors.OptionError(f"a point has three coordinates, not {value!r}") from None
 
 
-def _text(keys):
-    return json.dumps({key: value for key, value in keys.items() if value is not None}).encode()
+def text_of_keys(keys):
+    try:
+        return json.dumps({key: value for key, value in keys.items() if value is not None}, allow_nan=False).encode()
+    except ValueError:
+        raise errors.OptionError("numbers have to be finite: one of those on the way in is not") from None

@@ -13,41 +13,40 @@ from ._surface import Surface
 _U8, _I16, _U16, _I32, _F32 = 3, 4, 5, 6, 7
 _WHOLE = (("uint8", _U8), ("int16", _I16), ("uint16", _U16), ("int32", _I32))
 
-# Keywords about regions, with what says so to the library; labels= has its own.
-_REGIONS = ("kind", "ignore", "islands", "holes", "close_voxels", "closed_at_box", "resample")
+# Keywords that the library takes in other words.
+_REWORDED = ("labels", "merge", "iso", "bands", "crop")
 
 
-def surface_of_image(image, affine, spacing, series, regions, progress=None):
+def surface_of_image(image, affine, spacing, series, regions, threads=0, progress=None):
     """The complex of an image as a Surface; its report has the notes of the reader too."""
     handle, read = _image_of(image, affine, spacing, series)
-    job = Job("image_surface", handle, json.dumps(_described(regions)).encode(), regions.get("threads", 0), progress=progress)
+    job = Job("image_surface", handle, json.dumps(described(regions)).encode(), threads, progress=progress)
     try:
         report = job.run()
     except errors.InputError as error:
-        if _is_file(image):
+        if is_file(image):
             error.args = (f"{os.fsdecode(image)}: {error}",)
         raise
-    report["notes"] = read.get("notes", []) + report["notes"]
     report.update({key: read[key] for key in ("format", "unit", "frame") if key in read})
-    return Surface._of(job.take("surface"), report)
+    return Surface._of(job.take("surface"), report, opened=True)
 
 
-def _is_file(image):
+def is_file(image):
     return isinstance(image, (str, bytes, os.PathLike))
 
 
 def _image_of(image, affine, spacing, series):
-    if _is_file(image) or _are_files(image):
+    if is_file(image) or are_files(image):
         if affine is not None or spacing is not None:
             raise errors.OptionError("`affine` and `spacing` are for arrays: files say where their voxels lie")
-        return _read([image] if _is_file(image) else image, series)
+        return _read([image] if is_file(image) else image, series)
     if series:
         raise errors.OptionError("`series` is for files that hold several images")
     return _of_array(image, affine, spacing), {}
 
 
-def _are_files(image):
-    return isinstance(image, (list, tuple)) and len(image) > 0 and all(_is_file(one) for one in image)
+def are_files(image):
+    return isinstance(image, (list, tuple)) and len(image) > 0 and all(is_file(one) for one in image)
 
 
 def _read(files, series):
@@ -110,9 +109,9 @@ def _map_of(affine, spacing):
     return np.ascontiguousarray(rows[:3])
 
 
-def _described(regions):
-    """The keywords about regions as the library takes them."""
-    said = {name: _plain(regions[name]) for name in _REGIONS if regions.get(name) is not None}
+def described(regions):
+    """The keywords about images and regions as the library takes them."""
+    said = {name: _plain(value) for name, value in regions.items() if value is not None and name not in _REWORDED}
     if "ignore" in said and not isinstance(said["ignore"], list):
         said["ignore"] = [said["ignore"]]
     said.update(_names(regions.get("labels")))
@@ -131,7 +130,7 @@ def _described(regions):
 def _names(labels):
     if labels is None:
         return {}
-    if _is_file(labels):
+    if is_file(labels):
         return {"names_file": text_of(file_of(labels))}
     return {"names": [[int(value), str(name)] for value, name in dict(labels).items()]}
 

@@ -41,12 +41,13 @@ _number, _pointer = ctypes.c_double, ctypes.c_void_p
 _length = ctypes.POINTER(ctypes.c_size_t)
 
 _PROTOTYPES = {
-    "version": (_text,), "last_error": (_text,), "option_table": (_text,), "formats": (_text,),
+    "version": (_text,), "last_error": (_text,), "option_table": (_text,), "intake_table": (_text,), "formats": (_text,),
     "surface_new": (_handle,), "surface_free": (None, _handle),
     "surface_array": (_whole, _handle, _text, ctypes.POINTER(Array)),
     "surface_set_array": (_whole, _handle, _text, _pointer, _size),
     "surface_add_name": (_whole, _handle, _text, _text, _size),
     "surface_name": (_pointer, _handle, _text, _size, _length),
+    "surface_voxel": (_number, _handle), "surface_set_voxel": (None, _handle, _number),
     "mesh_new": (_handle,), "mesh_free": (None, _handle),
     "mesh_array": (_whole, _handle, _text, ctypes.POINTER(Array)),
     "mesh_set_array": (_whole, _handle, _text, _pointer, _size),
@@ -69,12 +70,13 @@ _PROTOTYPES = {
     "options_regions_file": (_whole, _handle, _text), "options_point_sizes_file": (_whole, _handle, _text),
     "options_size_of": (_whole, _handle, _text, _size, _number),
     "options_field": (_whole, _handle, _handle), "options_ask_sizes": (None, _handle),
-    "options_for_voxels": (None, _handle, _number),
     "options_tell_passes": (None, _handle),
     "read_surface": (_handle, _text), "write_surface": (_handle, _handle, _text),
     "read_mesh": (_handle, _text), "write_mesh": (_handle, _handle, _text, _text),
     "read_image": (_handle, ctypes.POINTER(_text), _size, ctypes.c_uint32),
     "image_surface": (_handle, _handle, _text, _whole),
+    "open_files": (_handle, ctypes.POINTER(_text), _size, _text, _whole), "open_surface": (_handle, _handle, _text, _whole),
+    "open_bodies": (_handle, ctypes.POINTER(_handle), ctypes.POINTER(_text), _size, _text, _whole),
     "complex_of_walls": (_handle, _handle, _text, _whole),
     "join_bodies": (_handle, ctypes.POINTER(_handle), ctypes.POINTER(_text), _size, _text, _whole),
     "mend": (_handle, _handle, _text, _whole),
@@ -112,9 +114,16 @@ def option_table():
 
 
 @functools.lru_cache(maxsize=None)
+def intake_table():
+    """The same of what is asked on the way in."""
+    return json.loads(call("intake_table"))
+
+
+@functools.lru_cache(maxsize=None)
 def _spoken_names():
-    names = {row["name"] for row in option_table()}
-    fields = {row["field"]: row["name"] for row in option_table() if row["field"] not in names}
+    rows = option_table() + intake_table()
+    names = {row["name"] for row in rows}
+    fields = {row["field"]: row["name"] for row in rows if row["field"] not in names}
     return {**fields, "field": "size_field", "band": "bands"}
 
 

@@ -1,5 +1,5 @@
-"""Keywords of the functions: the library's table of options (octafront/option_table.h), and what takes more than one
-value. Nothing is listed twice: a new row of the table is a new keyword here."""
+"""Keywords of the functions: the library's tables of options (octafront/option_table.h), and what takes more than one
+value. Nothing is listed twice: a new row of a table is a new keyword here."""
 
 import difflib
 import functools
@@ -11,11 +11,24 @@ import os
 import textwrap
 
 from . import errors
-from ._library import Handle, bytes_of, call, demand, file_of, option_table, pointer
+from ._library import Handle, bytes_of, call, demand, file_of, intake_table, option_table, pointer
 from ._numpy import np
 
-# Beside the table: name, which functions heed it, what it is.
-_FURTHER = [
+# Beside the tables, of the way in: name, what it is.
+_OF_INTAKE = [
+    ("region", "{name: point or points}: the cell around each point is a region of this name"),
+    ("void", "Points whose cells stay empty"),
+    ("labels", "Of an image: {3: \"liver\"}, or a file of names"),
+    ("ignore", "Values of an image outside of all regions; () for none [0]"),
+    ("merge", "{\"cortex\": (3, 4)}: these values of an image are one region"),
+    ("iso", "Of a grey image: what has this value or more is the region \"body\""),
+    ("bands", "Of a grey image: {\"skin\": (-200, 226), \"bone\": (226, None)}, values from the first up to below the "
+              "second; None: no limit"),
+    ("crop", "Of an image: ((i0, i1), (j0, j1), (k0, k1)), counted from 0, the last ones too; None for an end that stays"),
+    ("resample", "Spacing of the voxels to work with, one number or three"),
+]
+# Beside the table of options: name, which functions heed it, what it is.
+_FURTHER = [(name, "mesh surface size", text) for name, text in _OF_INTAKE] + [
     ("regions", "mesh surface size",
      "Places with a size of their own: a list of {\"box\": [[x, y, z], [x, y, z]], \"size\": h}, {\"sphere\": [x, y, "
      "z], \"radius\": r, \"size\": h}, {\"point\": [x, y, z], \"size\": h}, or an array (n, 4) of points and sizes, or "
@@ -34,7 +47,12 @@ _FURTHER = [
 
 
 def _rows(task):
-    return [row for row in option_table() if task in row["tasks"].split()]
+    return [row for row in option_table() + intake_table() if task in row["tasks"].split()]
+
+
+@functools.lru_cache(maxsize=None)
+def _intake_keywords():
+    return {row["name"] for row in intake_table()} | {name for name, _ in _OF_INTAKE}
 
 
 def _further(task):
@@ -48,13 +66,14 @@ def keywords_of(task):
 
 
 class Settings:
-    """The keywords of a call, taken apart: `options` for the library, and what Python serves."""
+    """The keywords of a call, taken apart: `options` for the library, `intake` for the way in, and what Python serves."""
 
     def __init__(self, function, task, keywords):
         keywords = {name: value for name, value in keywords.items() if _is_known(function, task, name)}
         given = {name: value for name, value in keywords.items() if value is not None}
         self.progress, self.after_pass = given.pop("progress", None), given.pop("after_pass", None)
         self.threads = _threads(given.pop("threads", 0))
+        self.intake = {name: given.pop(name) for name in list(given) if name in _intake_keywords()}
         self.options = Handle("options")
         self.size_at = None
         self._set_sizes(given)
@@ -62,10 +81,6 @@ class Settings:
         demand("options_set", self.options, json.dumps(values).encode())
         if self.after_pass:
             call("options_tell_passes", self.options)
-
-    def suit_voxels(self, spacing):
-        """Sizes as they suit an image, unless something else was said."""
-        call("options_for_voxels", self.options, spacing)
 
     def functions(self):
         return {"progress": self.progress, "after_pass": self.after_pass, "size_at": self.size_at}

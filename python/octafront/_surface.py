@@ -4,7 +4,7 @@ import importlib
 
 from . import errors
 from ._jobs import Job
-from ._library import Handle, file_of
+from ._library import Handle, call, file_of
 from ._numpy import np
 
 OUTSIDE = 0xFFFFFFFF
@@ -75,13 +75,17 @@ class Surface:
         handle.set_names("region_names", region_names)
         self._take(handle, {})
 
+    # Whether the library has opened it: then it is meshed as it is.
+    _opened = False
+
     def _take(self, handle, report):
         self._handle, self.report = handle, report
 
     @classmethod
-    def _of(cls, address, report=None):
+    def _of(cls, address, report=None, opened=False):
         surface = cls.__new__(cls)
         surface._take(Handle("surface", address), report or {})
+        surface._opened = opened
         return surface
 
     @classmethod
@@ -162,7 +166,8 @@ class Surface:
     def __getstate__(self):
         return {"arrays": {name: np.array(self._handle.view(name))
                            for name in ("points", "triangles", "patch", "source", "sides", "bound")},
-                "patch_names": self.patch_names, "region_names": self.region_names, "report": self.report}
+                "patch_names": self.patch_names, "region_names": self.region_names, "report": self.report,
+                "voxel": call("surface_voxel", self._handle), "opened": self._opened}
 
     def __setstate__(self, state):
         handle = Handle("surface")
@@ -170,7 +175,9 @@ class Surface:
             handle.set(name, array)
         for name in ("patch_names", "region_names"):
             handle.set_names(name, state[name])
+        call("surface_set_voxel", handle, state["voxel"])
         self._take(handle, state["report"])
+        self._opened = state["opened"]
 
     def __repr__(self):
         return f"<octafront.Surface: {len(self.triangles)} triangles, {len(self.points)} points>"
@@ -193,5 +200,5 @@ def surface_of(points, triangles):
             raise TypeError("give a Surface, or points and triangles, not both")
         return points
     if triangles is None:
-        raise TypeError("give points (n, 3) and triangles (m, 3), or a Surface; files are read by mesh_file() and read()")
+        raise TypeError("give points (n, 3) and triangles (m, 3), or a Surface")
     return Surface(points, triangles)

@@ -258,7 +258,7 @@ class Complexes(Case):
         with self.assertRaises(octafront.InputError) as raised:
             octafront.complex_of_walls(open_box, regions={"in": (0.5, 0.5, 0.5)})
         self.assertGreater(len(raised.exception.leak), 1)
-        with self.assertRaisesRegex(octafront.OptionError, "`cells` is one of auto, merge, regions"):
+        with self.assertRaisesRegex(octafront.OptionError, "`cells` is one of auto, regions, merge"):
             octafront.complex_of_walls(open_box, cells="all")
         with self.assertRaisesRegex(octafront.OptionError, "three coordinates"):
             octafront.complex_of_walls(open_box, regions={"in": (0.5, 0.5)})
@@ -282,6 +282,82 @@ class Complexes(Case):
         self.assertLess(wrapped.points.min(), -0.05)
         with self.assertRaises(octafront.InputError):
             octafront.mend(box.points, box.triangles[:1])
+
+
+class OneWayIn(Case):
+    """Of the same input the command line and Python make the same mesh, bit for bit."""
+
+    def line(self, *arguments):
+        report = self.folder / "report.json"
+        program = pathlib.Path(sys.executable).parent / "octafront"
+        subprocess.run([program, "mesh", *map(str, arguments), "-o", self.folder / "mesh.vtu", "--json", report], check=True,
+                       stdout=subprocess.DEVNULL)
+        return json.loads(report.read_text())
+
+    def soup(self):
+        """Two spheres that overlap, one of them with a hole."""
+        points, triangles = sphere()
+        shifted = np.vstack([points, points + (0.7, 0, 0)])
+        return octafront.Surface(shifted, np.vstack([triangles[1:], triangles + len(points)]))
+
+    def test_a_clean_file(self):
+        file = SAMPLES / "bracket.stl"
+        expected = self.line(file, "--size", 6)["hash"]
+        for source in (file, str(file), [file], octafront.Surface.read(file)):
+            self.assertEqual(octafront.mesh(source, size=6).report["hash"], expected)
+
+    def test_a_soup(self):
+        soup, file = self.soup(), self.folder / "soup.off"
+        soup.save(file)
+        expected = self.line(file, "--size", .4, "--tolerance", .01)
+        for source in (file, soup, octafront.Surface.read(file), octafront.mend(soup, tolerance=.01)):
+            self.assertEqual(octafront.mesh(source, size=.4, tolerance=.01).report["hash"], expected["hash"])
+        self.assertEqual(octafront.mesh(octafront.mend(soup, tolerance=.01), size=.4).report["hash"], expected["hash"])
+        made = octafront.mesh(soup.points, soup.triangles, size=.4, tolerance=.01)
+        self.assertEqual(made.report["hash"], expected["hash"])
+        self.assertEqual(made.report["intake"]["repair"], expected["repair"])
+        self.assertTrue(made.report["intake"]["notes"])
+        automatic = self.line(file)["hash"]  # where bounds of repair hold
+        self.assertEqual(octafront.mesh(file).report["hash"], automatic)
+        self.assertEqual(octafront.mesh(pickle.loads(pickle.dumps(octafront.mend(soup)))).report["hash"], automatic)
+        with self.assertRaises(octafront.InputError):
+            octafront.mesh(soup, repair="none")
+
+    def test_two_bodies(self):
+        plate, pin = Complexes.block((0, 0, 0), (1, 1, 1)), Complexes.block((.25, .25, 1), (.75, .75, 1.5))
+        files = [self.folder / "plate.off", self.folder / "pin.off"]
+        plate.save(files[0]), pin.save(files[1])
+        expected = self.line(*files, "--size", .25)["hash"]
+        for source in (files, {"plate": plate, "pin": files[1]}, octafront.join_bodies({"plate": plate, "pin": pin})):
+            mesh = octafront.mesh(source, size=.25)
+            self.assertEqual(mesh.report["hash"], expected)
+            self.assertEqual(mesh.names["regions"], ["plate", "pin"])
+
+    def test_images(self):
+        file, names = SAMPLES / "head_labels.nii.gz", SAMPLES / "head_labels.txt"
+        expected = self.line(file, "--labels", names, "--resample", 12, "--size", 30)["hash"]
+        surface = octafront.image_surface(file, labels=names, resample=12)
+        for mesh in (octafront.mesh(file, labels=names, resample=12, size=30), octafront.mesh(surface, size=30),
+                     octafront.mesh_image(file, labels=names, resample=12, size=30),
+                     octafront.mesh(pickle.loads(pickle.dumps(surface)), size=30)):
+            self.assertEqual(mesh.report["hash"], expected)
+        grey, bands = SAMPLES / "head_ct.nii.gz", {"skin": (-200, 226), "bone": (226, None)}
+        expected = self.line(grey, "--band", "skin=-200:226", "--band", "bone=226:", "--resample", 12, "--size", 30)["hash"]
+        self.assertEqual(octafront.mesh(grey, bands=bands, resample=12, size=30).report["hash"], expected)
+
+    def test_what_is_asked_on_the_way_in(self):
+        plate = Complexes.block((0, 0, 0), (1, 1, 1))
+        walls = octafront.Surface(plate.points, plate.triangles)
+        self.assertEqual(octafront.mesh(walls, size=.5, region={"it": (.5, .5, .5)}).names["regions"], ["it"])
+        for bad in ({"cells": "all"}, {"tolerance": -1}, {"tolerance": float("inf")}, {"bands": {"a": (0, 1)}},
+                    {"close_voxels": -1}, {"repair": True}, {"region": {"in": (.5, .5)}}):
+            with self.assertRaises(octafront.OptionError, msg=bad):
+                octafront.mesh(self.soup(), size=.5, **bad)
+        with self.assertRaises(octafront.InputError) as raised:
+            octafront.mesh(walls.points, walls.triangles[1:], region={"in": (.5, .5, .5)})
+        self.assertGreater(len(raised.exception.leak), 1)
+        self.assertEqual(octafront.surface(self.soup(), size=.4).report["intake"]["repair"]["clean"], False)
+        self.assertGreater(octafront.size_field(self.soup(), size=.4).expected_tets, 100)
 
 
 class Sizes(Case):
@@ -384,7 +460,7 @@ class Refusals(Case):
 
     def test_defects_are_evidence(self):
         points, triangles = cube()
-        error = self.refused(octafront.InputError, "open edge", octafront.mesh, points, triangles[:-1])
+        error = self.refused(octafront.InputError, "open edge", octafront.mesh, points, triangles[:-1], repair="none")
         self.assertEqual(error.defects["open_edges"]["count"], 3)
         self.assertEqual(error.defects["region_conflicts"]["count"], 0)
         place = error.defects["open_edges"]["first"][0]
@@ -398,7 +474,7 @@ class Refusals(Case):
         self.refused(octafront.InputError, "bad.off, byte 5", octafront.mesh_file, bad)
         open_cube = self.folder / "open.off"
         octafront.Surface(cube()[0], cube()[1][:-1]).save(open_cube)
-        self.refused(octafront.InputError, "^.*open.off: ", octafront.mesh_file, open_cube)
+        self.refused(octafront.InputError, "^.*open.off: ", octafront.mesh_file, open_cube, repair="none")
         mesh = octafront.mesh(*cube(), size=0.5)
         self.refused(octafront.OptionError, "ending", mesh.save, self.folder / "mesh.xyz")
         self.refused(octafront.OutputError, "", mesh.save, self.folder / "nowhere" / "mesh.vtu")
@@ -497,7 +573,7 @@ class Running(Case):
             mesh = octafront.mesh(*sphere(), size=0.12)
             mesh.element_quality(), mesh.sets, mesh.names, octafront.check(mesh)
             try:
-                octafront.mesh(sphere()[0], sphere()[1][:-1])
+                octafront.mesh(sphere()[0], sphere()[1][:-1], repair="none")
             except octafront.InputError:
                 pass
 

@@ -1,0 +1,36 @@
+"""The way in: what a function is given becomes the Surface that is meshed, as the command line makes it of files."""
+
+import ctypes
+from collections.abc import Mapping
+
+from . import _complexes, _images
+from ._jobs import Job
+from ._library import file_of
+from ._surface import Surface, surface_of
+
+
+def opened(source, triangles, settings):
+    """source: points, with triangles; a Surface, a file, a list of files, or {name: Surface or file}. A Surface that the
+    library made is taken as it is, unless keywords ask for something on the way in."""
+    keys, threads = _complexes.text_of_keys(_described(settings.intake)), settings.threads
+    if triangles is None and (_images.is_file(source) or _images.are_files(source)):
+        files = [source] if _images.is_file(source) else source
+        names = (ctypes.c_char_p * len(files))(*(file_of(file) for file in files))
+        job = Job("open_files", names, len(files), keys, threads, progress=settings.progress)
+    elif triangles is None and isinstance(source, Mapping):
+        handles, names, surfaces = _complexes.arguments_of(source)
+        job = Job("open_bodies", handles, names, len(surfaces), keys, threads, progress=settings.progress)
+    else:
+        surface = surface_of(source, triangles)
+        if surface._opened and not settings.intake:
+            return surface
+        job = Job("open_surface", surface._handle, keys, threads, progress=settings.progress)
+    report = job.run()
+    return Surface._of(job.take("surface"), report, opened=True)
+
+
+def _described(given):
+    given = dict(given)
+    seeds, voids = given.pop("region", None), given.pop("void", None)
+    return {"regions": _complexes.seeds_of(seeds) or None, "voids": _complexes.points_in(voids) or None,
+            **_images.described(given)}
