@@ -1,3 +1,4 @@
+#include <octafront/domain.h>
 #include <octafront/error.h>
 #include <octafront/option_table.h>
 
@@ -24,14 +25,15 @@ OptionValue another(const OptionInfo& info, const OptionValue& value) {
   return {};
 }
 
-TEST(OptionTable, WhatIsSetIsThereAndNothingElseChanges) {
-  for (const OptionInfo& info : option_table()) {
-    const Options defaults;
-    Options options;
+template <class All>
+void expect_each_by_itself(const std::vector<OptionInfo>& table) {
+  for (const OptionInfo& info : table) {
+    const All defaults;
+    All options;
     const OptionValue value = another(info, option_value(defaults, info.name));
     ASSERT_NE(value, option_value(defaults, info.name)) << info.name;
     set_option(options, info.name, value);
-    for (const OptionInfo& other : option_table()) {
+    for (const OptionInfo& other : table) {
       const OptionValue expected = other.name == info.name ? value : option_value(defaults, other.name);
       EXPECT_EQ(option_value(options, other.name), expected) << info.name << " " << other.name;
     }
@@ -40,9 +42,16 @@ TEST(OptionTable, WhatIsSetIsThereAndNothingElseChanges) {
   }
 }
 
+TEST(OptionTable, WhatIsSetIsThereAndNothingElseChanges) {
+  expect_each_by_itself<Options>(option_table());
+  expect_each_by_itself<IntakeOptions>(intake_table());
+}
+
 TEST(OptionTable, NamesAreThereOnceAndSayWhatTheyAre) {
   std::set<std::string_view> names;
-  for (const OptionInfo& info : option_table()) {
+  std::vector<OptionInfo> all = option_table();
+  all.insert(all.end(), intake_table().begin(), intake_table().end());
+  for (const OptionInfo& info : all) {
     EXPECT_TRUE(names.insert(info.name).second) << info.name;
     EXPECT_FALSE(info.help.empty() || info.group.empty() || info.tasks.empty()) << info.name;
     EXPECT_EQ(info.kind == OptionInfo::Kind::kChoice, !info.choices.empty()) << info.name;
@@ -81,6 +90,10 @@ TEST(OptionTable, WholeNumbersAreNumbersToo) {
   EXPECT_EQ(options.size.elements, 100000);
   set_option(options, "size", {});
   EXPECT_FALSE(options.size.size);
+  IntakeOptions intake;
+  EXPECT_THROW(set_option(intake, "series", std::int64_t{-1}), OptionError);
+  set_option(intake, "series", std::int64_t{2});
+  EXPECT_EQ(intake.image.choice.series, 2u);
 }
 
 }  // namespace
