@@ -10,7 +10,11 @@
 #include "support/named_surfaces.h"
 #include "support/random.h"
 #include "surface/feature_patches.h"
+#include "surface/remeshing/coarsen.h"
 #include "surface/remeshing/crossings.h"
+#include "surface/remeshing/front.h"
+#include "surface/remeshing/improve.h"
+#include "surface/remeshing/insertion.h"
 
 #include <algorithm>
 #include <map>
@@ -368,6 +372,47 @@ TEST(Remesh, PointsOfLinesSideBySideFaceEachOther) {
     }
   }
   EXPECT_GT(sum / static_cast<double>(count), 0.95);
+}
+
+/// A working mesh of the surface by one size, as the front leaves it, with its curves.
+struct Drawn {
+  remeshing::InputSurface input;
+  std::vector<remeshing::Curve> curves;
+  remeshing::WorkingMesh mesh;
+};
+
+Drawn drawn(const SurfaceMesh& surface, double h) {
+  using namespace remeshing;
+  const KnownSurface known(surface, 40);
+  const SizeField sizes = SizeField::uniform(h);
+  InputSurface input = make_input_surface(known.mesh(), known.edges());
+  set_features(input, known.features().edges);
+  std::vector<Curve> curves = chain_curves(input, known.features().corners, {}, sizes);
+  divide_curves(input, sizes, curves);
+  InsertionCounts inserted;
+  CoarsenCounts coarsened;
+  WorkingMesh mesh = insert_points(input, curves, place_points(input, curves, sizes, {}), {}, inserted);
+  remove_input_vertices(mesh, sizes, {}, coarsened);
+  return {std::move(input), std::move(curves), std::move(mesh)};
+}
+
+double longest_edge(const remeshing::WorkingMesh& mesh) {
+  double longest = 0;
+  for (HalfEdge h = 0; h < mesh.start.size(); ++h)
+    if (mesh.start[h] != kNone)
+      longest = std::max(longest, distance(mesh.points[mesh.start[h]], mesh.points[mesh.end(h)]));
+  return longest;
+}
+
+TEST(ImproveSurface, DividesAllLongEdgesOnceSizesAreSmaller) {
+  // A bar of two elements: most of its edges lie on lines, or between a point of a line and one inside.
+  Drawn d = drawn(box(8, 1, 1), 0.5);
+  EXPECT_GT(longest_edge(d.mesh), 0.5);
+  const double h = 0.2;
+  d.mesh.size.assign(d.mesh.size.size(), h);
+  remeshing::ImproveCounts counts;
+  for (int k = 0; k < 3; ++k) improve_surface(d.mesh, d.input, d.curves, SizeField::uniform(h), {}, counts);
+  EXPECT_LT(longest_edge(d.mesh), 1.6 * h);
 }
 
 TEST(FeaturePatches, EachFaceOfACubeIsOne) {

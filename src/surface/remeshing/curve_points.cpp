@@ -202,6 +202,18 @@ bool CurvePoints::relieve(VertexIndex v, double gain) {
   return chosen.has_value();
 }
 
+/// Whether an edge from a point inside the curve to a corner goes to the curve's start. Where both ends of the curve
+/// are one corner, the lengths tell.
+bool CurvePoints::ends_at_start(const Curve& curve, double along, VertexIndex inside, VertexIndex corner) const {
+  const double whole = curve.reach.back();
+  const Vec3 p = mesh_.points[corner];
+  const double from_start = distance(p, point_along(input_, curve, 0).p);
+  const double from_end = distance(p, point_along(input_, curve, whole).p);
+  if (from_start != from_end) return from_start < from_end;
+  const double l = distance(mesh_.points[inside], p);
+  return std::abs(along - l) < std::abs(whole - along - l);
+}
+
 /// The place of the point that divides a feature edge in the proportion `part`, if its curve is known.
 std::optional<CurvePlace> CurvePoints::place_between(HalfEdge h, double part) const {
   VertexIndex u = mesh_.start[h], w = mesh_.end(h);
@@ -221,8 +233,7 @@ std::optional<CurvePlace> CurvePoints::place_between(HalfEdge h, double part) co
   const double whole = curve.reach.back();
   double to = mesh_.place[w].along;
   if (!is_inside(w)) {
-    const double l = distance(mesh_.points[u], mesh_.points[w]);
-    to = std::abs(from.along - l) < std::abs(whole - from.along - l) ? 0 : whole;
+    to = ends_at_start(curve, from.along, u, w) ? 0 : whole;
   } else if (mesh_.place[w].curve != from.curve) {
     return std::nullopt;
   } else if (curve.closed && std::abs(to - from.along) > 0.5 * whole) {

@@ -51,6 +51,7 @@ class CurvePoints {
   double deviation(const Curve& curve, double along, Vec3 p) const;
   bool lengths_within(Vec3 p, double least, double most) const;
   void move(VertexIndex v, const CurvePoint& x);
+  bool ends_at_start(const Curve& curve, double along, VertexIndex inside, VertexIndex corner) const;
   std::optional<CurvePlace> place_between(HalfEdge h, double part) const;
   std::optional<Division> division(HalfEdge h, double part) const;
   double shape_beside(HalfEdge h) const;

@@ -83,7 +83,7 @@ constexpr double kNoise = 0.08;
 /// and leave 208 places of a skull too far where three leave 6, and 138 elements below .4 instead of 27.)
 constexpr int kRefinements = 3;
 /// In a single surface so often, until so many in a row have left no fewer places.
-constexpr int kMostRefinements = 8, kMostInVain = 2;
+constexpr int kMostRefinements = 5, kMostInVain = 2;
 /// And from there they rise faster than elsewhere, as around corners: it is a matter of single ridges and tips.
 constexpr double kSteep = 0.4;
 
@@ -649,7 +649,8 @@ class Remesher {
       if (!crossing[t]) continue;
       const auto [a, b, c] = mesh.triangle(t);
       const Vec3 middle = centroid(mesh.points[a], mesh.points[b], mesh.points[c]);
-      wanted.push_back({middle, kCap * sizes.at(middle)});
+      if (const double size = sizes.at(middle); size >= kVain * first_.at(middle))
+        wanted.push_back({middle, kCap * size});
     }
     return smallest_ones(std::move(wanted));
   }
