@@ -2,6 +2,7 @@
 
 #include "core/parallel.h"
 #include "geometry/measures.h"
+#include "geometry/spatial_order.h"
 #include "surface/remeshing/thinned.h"
 
 #include <algorithm>
@@ -27,6 +28,10 @@ constexpr double kFacing = 0.5;
 constexpr std::size_t kMostFaces = 600;
 /// Sizes above this part of the wanted one are not worth a place.
 constexpr double kWorthwhile = 0.85;
+/// A disc speaks for the faces within this part of its radius: theirs would be as large, but for that part.
+constexpr double kSpeaksFor = 0.25;
+/// Faces are looked at by blocks of so many, in spatial order; discs speak for faces of their own block.
+constexpr std::size_t kBlock = 4096;
 
 /// The faces of the input, as discs look at them again and again.
 struct Faces {
@@ -52,8 +57,8 @@ class Disc {
   /// The radius up to which the patch around the face stays between two planes so far apart, at most `most`.
   double flat_radius(std::uint32_t face, double most, double apart) {
     const double least = kReach * mean_edge(face);
-    if (least >= most) return most;
     start(face);
+    if (least >= most) return most;
     const Vec3 p = of_.center[face];
     double before = least, height_before = 0;
     Vec3 normal, middle;
@@ -74,6 +79,17 @@ class Disc {
       if (r >= most) return most;
       before = r;
       height_before = height;
+    }
+  }
+
+  /// Calls visit(face) for the faces of the last disc within this radius, and within a part of the disc itself.
+  template <class Visit>
+  void for_each_within(double radius, double part, const Visit& visit) const {
+    if (faces_.empty()) return;
+    radius = std::min(radius, part * distance(of_.center[faces_.back()], middle_));
+    for (const std::uint32_t f : faces_) {
+      if (distance(of_.center[f], middle_) > radius) return;
+      visit(f);
     }
   }
 
@@ -176,34 +192,46 @@ class Chords {
   std::vector<Vec3> points_;
 };
 
+/// Discs that speak for all faces but those of backs.
+std::vector<PointSize> sizes_of_faces(const InputSurface& input, const SizeField& sizes, double tolerance) {
+  const Faces faces(input.mesh);
+  const std::vector<std::uint32_t> order = spatial_order(faces.center);
+  std::vector<std::uint32_t> block_of(order.size());
+  parallel_for(order.size(), [&](std::size_t k) { block_of[order[k]] = static_cast<std::uint32_t>(k / kBlock); });
+  std::vector<std::uint8_t> is_done(order.size(), 0);
+  PerThread<Disc> discs;
+  return parallel_collect<PointSize>(
+      order.size(), kBlock, [&](std::size_t begin, std::size_t end, std::vector<PointSize>& places) {
+        Disc& disc = discs.local([&] { return Disc(input, faces); });
+        for (std::size_t k = begin; k < end; ++k) {
+          const std::uint32_t face = order[k];
+          if (is_done[face] || input.is_back(face)) continue;
+          const Vec3 p = faces.center[face];
+          const double wanted = sizes.at(p);
+          const double radius = disc.flat_radius(face, kReach * wanted, kPlanesApart * tolerance);
+          if (radius < kWorthwhile * kReach * wanted) places.push_back({p, radius / kReach});
+          disc.for_each_within(kSpeaksFor * radius, kSpeaksFor, [&](std::uint32_t f) {
+            if (block_of[f] == k / kBlock) is_done[f] = 1;
+          });
+        }
+      });
+}
+
 }  // namespace
 
 std::vector<PointSize> sizes_by_flatness(const InputSurface& input, const std::vector<Curve>& curves,
                                          const SizeField& sizes, double tolerance, const RunContext& context) {
-  const HalfEdgeMesh& mesh = input.mesh;
-  std::vector<PointSize> of_face(mesh.triangle_count());
-  const Faces faces(mesh);
-  PerThread<Disc> discs;
-  parallel_for(mesh.triangle_count(), [&](std::size_t t) {
-    if (input.is_back(t)) return;
-    const auto face = static_cast<std::uint32_t>(t);
-    const Vec3 p = faces.center[t];
-    const double wanted = sizes.at(p);
-    Disc& disc = discs.local([&] { return Disc(input, faces); });
-    const double size = disc.flat_radius(face, kReach * wanted, kPlanesApart * tolerance) / kReach;
-    if (size < kWorthwhile * wanted) of_face[t] = {p, size};
-  });
+  std::vector<PointSize> places = sizes_of_faces(input, sizes, tolerance);
   context.check();
-  std::erase_if(of_face, [](const PointSize& s) { return s.size == 0; });
   for (const Curve& curve : curves) {
-    const Chords chords(mesh, curve);
+    const Chords chords(input.mesh, curve);
     for (std::size_t i = 0; i < chords.count(); ++i) {
       const double wanted = sizes.at(chords.point(i));
       const double size = chords.straight_length(i, wanted, kOffChord * tolerance);
-      if (size < kWorthwhile * wanted) of_face.push_back({chords.point(i), size});
+      if (size < kWorthwhile * wanted) places.push_back({chords.point(i), size});
     }
   }
-  return smallest_ones(std::move(of_face));
+  return smallest_ones(std::move(places));
 }
 
 }  // namespace octafront::remeshing
