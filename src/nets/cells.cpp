@@ -53,13 +53,16 @@ bool is_layer(const Lattice& lattice, Corner voxel, int axis) {
 }  // namespace
 
 VertexCells::VertexCells(const Lattice& lattice, const Net& net)
-    : farthest_(HUGE_VAL), lattice_(lattice), net_(net), share_(net.corner.size()) {
+    : farthest_(HUGE_VAL), net_(net), share_(net.corner.size()) {
   for (int a = 0; a < 3; ++a)
     for (std::int32_t i = 0; i <= lattice.size(a); ++i) {
-      const double wall = lattice.wall(a, i);
-      half_over_room_[a].push_back({0.5 / (lattice.middle(a, i - 1) - wall), 0.5 / (lattice.middle(a, i) - wall)});
+      const double at = lattice.wall(a, i), below = lattice.middle(a, i - 1) - at, above = lattice.middle(a, i) - at;
+      walls_[a].push_back({at, below, above, 0.5 / below, 0.5 / above});
     }
-  parallel_for(net.corner.size(), [&](std::size_t v) { keep_layers_apart(static_cast<VertexIndex>(v)); });
+  // Flat on the image's box.
+  for (std::vector<Wall>& walls : walls_)
+    for (Wall* wall : {&walls.front(), &walls.back()}) wall->to_below = wall->to_above = 0;
+  parallel_for(net.corner.size(), [&](std::size_t v) { keep_layers_apart(lattice, static_cast<VertexIndex>(v)); });
 }
 
 VertexCells::VertexCells(const Lattice& lattice, const Net& net, std::span<const std::uint64_t> voxels)
@@ -76,9 +79,9 @@ VertexCells::VertexCells(const Lattice& lattice, const Net& net, std::span<const
             for (float& share : sides) share = std::min(share, of_label[label]);
 }
 
-void VertexCells::keep_layers_apart(VertexIndex v) {
+void VertexCells::keep_layers_apart(const Lattice& lattice, VertexIndex v) {
   const Corner& c = net_.corner[v];
-  const bool joins_three = label_count(octants_at(lattice_, c)) > 2;
+  const bool joins_three = label_count(octants_at(lattice, c)) > 2;
   for (int axis = 0; axis < 3; ++axis)
     for (int side = 0; side < 2; ++side) {
       float& share = share_[v][axis][side];
@@ -88,32 +91,27 @@ void VertexCells::keep_layers_apart(VertexIndex v) {
         voxel[axis] = c[axis] - 1 + side;
         voxel[(axis + 1) % 3] = c[(axis + 1) % 3] - (o & 1);
         voxel[(axis + 2) % 3] = c[(axis + 2) % 3] - (o >> 1);
-        if (is_layer(lattice_, voxel, axis)) share = joins_three ? kRoomAtLines : kRoomInLayers;
+        if (is_layer(lattice, voxel, axis)) share = joins_three ? kRoomAtLines : kRoomInLayers;
       }
     }
 }
 
 Vec3 VertexCells::clamped(VertexIndex v, Vec3 p) const {
   const Corner& c = net_.corner[v];
+  Vec3 corner;
   double squared_way = 0;  // in voxels
   for (int a = 0; a < 3; ++a) {
-    const double wall = lattice_.wall(a, c[a]);
-    if (lattice_.on_box(c, a)) {
-      p[a] = wall;
-      continue;
-    }
+    const Wall& wall = walls_[a][static_cast<std::size_t>(c[a])];
     const auto [below, above] = share_[v][a];
-    const double to_below = lattice_.middle(a, c[a] - 1) - wall, to_above = lattice_.middle(a, c[a]) - wall;
-    p[a] = std::clamp(p[a], wall + below * to_below, wall + above * to_above);
-    const double way = (p[a] - wall) * half_over_room_[a][c[a]][p[a] < wall ? 0 : 1];
+    // No branches: which side a vertex moves to nobody can foresee.
+    const double move = std::min(std::max(p[a] - wall.at, below * wall.to_below), above * wall.to_above);
+    const double way = std::max(move * wall.half_over_below, move * wall.half_over_above);
     squared_way += way * way;
+    corner[a] = wall.at;
+    p[a] = move;
   }
-  if (squared_way <= farthest_ * farthest_) return p;
-  const double part = farthest_ / std::sqrt(squared_way);
-  const Vec3 corner = lattice_.at(c);
-  for (int a = 0; a < 3; ++a)
-    if (!lattice_.on_box(c, a)) p[a] = corner[a] + part * (p[a] - corner[a]);
-  return p;
+  if (squared_way <= farthest_ * farthest_) return corner + p;
+  return corner + p * (farthest_ / std::sqrt(squared_way));
 }
 
 }  // namespace octafront::nets

@@ -22,13 +22,16 @@ class VertexCells {
   Vec3 clamped(VertexIndex v, Vec3 p) const;
 
  private:
-  void keep_layers_apart(VertexIndex v);
+  /// A wall between voxels, and the signed ways to the middles of those below and above.
+  struct Wall {
+    double at, to_below, to_above;
+    double half_over_below, half_over_above;  ///< a half over each way
+  };
+  void keep_layers_apart(const Lattice& lattice, VertexIndex v);
 
   double farthest_;  ///< from the corner, in voxels
-  const Lattice& lattice_;
   const Net& net_;
-  /// Per axis, wall and side, lower ones first: a half over the signed way to the middles of the voxels there.
-  std::array<std::vector<std::array<double, 2>>, 3> half_over_room_;
+  std::array<std::vector<Wall>, 3> walls_;  ///< per axis
   /// Per vertex, axis and side, lower ones first: part of the way to the middles of the voxels there.
   std::vector<std::array<std::array<float, 2>, 3>> share_;
 };

@@ -3,7 +3,6 @@
 #include "core/parallel.h"
 
 #include <cmath>
-#include <utility>
 
 namespace octafront::nets {
 
@@ -18,20 +17,22 @@ constexpr double kStep = 1 / 4.5;
 
 void fair(const Stencils& stencils, const VertexCells& cells, std::vector<Vec3>& x, const RunContext& context) {
   const std::size_t n = x.size();
-  std::vector<Vec3> next(n), r(n);
-  const auto index = [](std::size_t v) { return static_cast<VertexIndex>(v); };
-  std::vector<Vec3> ahead = x;
+  std::vector<Vec3> ahead = x, weighted(n);
   double t = 1;
   for (int sweep = 0; sweep < kSweeps; ++sweep) {
     context.check();
     const double t_next = (1 + std::sqrt(1 + 4 * t * t)) / 2, momentum = (t - 1) / t_next;
     t = t_next;
-    parallel_for(n, [&](std::size_t v) { r[v] = stencils.difference(ahead, index(v)); });
-    parallel_for(n, [&](std::size_t v) {
-      next[v] = cells.clamped(index(v), ahead[v] - stencils.transposed(r, index(v)) * kStep);
+    parallel_for(n, [&](std::size_t i) {
+      const auto v = static_cast<VertexIndex>(i);
+      weighted[v] = stencils.difference(ahead, v) * stencils.weight(v);
     });
-    parallel_for(n, [&](std::size_t v) { ahead[v] = next[v] + (next[v] - x[v]) * momentum; });
-    std::swap(x, next);
+    parallel_for(n, [&](std::size_t i) {
+      const auto v = static_cast<VertexIndex>(i);
+      const Vec3 next = cells.clamped(v, ahead[v] - stencils.transposed(weighted, v) * kStep);
+      ahead[v] = next + (next - x[v]) * momentum;
+      x[v] = next;
+    });
   }
 }
 

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
+#include <vector>
 
 namespace octafront::nets {
 
@@ -31,9 +33,13 @@ struct Uses {
   }
 };
 
-}  // namespace
+/// A neighbour, and whether the edge to it is one of a curve.
+struct Link {
+  VertexIndex to : 31;
+  VertexIndex is_curve : 1;
+};
 
-void Stencils::collect(const Net& net, const Groups<>& quads_at, VertexIndex v, std::vector<Link>& links) {
+void collect(const Net& net, const Groups<>& quads_at, VertexIndex v, std::vector<Link>& links) {
   links.clear();
   const Uses uses(net, quads_at[v], v);
   for (int i = 0; i < uses.count;) {
@@ -45,26 +51,47 @@ void Stencils::collect(const Net& net, const Groups<>& quads_at, VertexIndex v, 
   }
 }
 
-Stencils::Stencils(const Net& net, const Groups<>& quads_at)
-    : curve_edges_(net.corner.size()), weight_(net.corner.size()) {
-  const std::size_t n = net.corner.size();
-  first_.assign(n + 1, 0);
-  PerThread<std::vector<Link>> scratch;
+/// What collect(v, items) leaves for each vertex. It is called twice.
+template <class Item, class Collect>
+Groups<Item> per_vertex(std::size_t n, const Collect& collect_at) {
+  std::vector<std::uint32_t> first(n + 1, 0);
+  PerThread<std::vector<Item>> scratch;
   parallel_for(n, [&](std::size_t v) {
-    std::vector<Link>& links = scratch.local();
-    collect(net, quads_at, static_cast<VertexIndex>(v), links);
-    first_[v + 1] = static_cast<std::uint32_t>(links.size());
-    const auto curves = static_cast<std::uint32_t>(
-        std::count_if(links.begin(), links.end(), [](const Link& l) { return l.is_curve != 0; }));
-    curve_edges_[v] = static_cast<std::uint8_t>(curves);
-    weight_[v] = 1.0 / (curves > 1 ? curves : static_cast<std::uint32_t>(links.size()));
+    std::vector<Item>& items = scratch.local();
+    collect_at(static_cast<VertexIndex>(v), items);
+    first[v + 1] = static_cast<std::uint32_t>(items.size());
   });
-  for (std::size_t v = 0; v < n; ++v) first_[v + 1] += first_[v];
-  links_.resize(first_[n]);
+  for (std::size_t v = 0; v < n; ++v) first[v + 1] += first[v];
+  std::vector<Item> all(first[n]);
   parallel_for(n, [&](std::size_t v) {
-    std::vector<Link>& links = scratch.local();
-    collect(net, quads_at, static_cast<VertexIndex>(v), links);
-    std::copy(links.begin(), links.end(), links_.begin() + first_[v]);
+    std::vector<Item>& items = scratch.local();
+    collect_at(static_cast<VertexIndex>(v), items);
+    std::copy(items.begin(), items.end(), all.begin() + first[v]);
+  });
+  return {std::move(first), std::move(all)};
+}
+
+}  // namespace
+
+Stencils::Stencils(const Net& net, const Groups<>& quads_at) {
+  const std::size_t n = net.corner.size();
+  const auto links =
+      per_vertex<Link>(n, [&](VertexIndex v, std::vector<Link>& found) { collect(net, quads_at, v, found); });
+  // A lone edge of a curve at a vertex is one in which a surface touches itself.
+  std::vector<std::uint8_t> is_on_curve(n);
+  parallel_for(n, [&](std::size_t v) {
+    is_on_curve[v] = std::ranges::count_if(links[v], [](const Link& l) { return l.is_curve != 0; }) > 1;
+  });
+  const auto counts = [&](VertexIndex of, const Link& l) { return !is_on_curve[of] || l.is_curve != 0; };
+  own_ = per_vertex<VertexIndex>(n, [&](VertexIndex v, std::vector<VertexIndex>& found) {
+    found.clear();
+    for (const Link& l : links[v])
+      if (counts(v, l)) found.push_back(l.to);
+  });
+  users_ = per_vertex<VertexIndex>(n, [&](VertexIndex v, std::vector<VertexIndex>& found) {
+    found.clear();
+    for (const Link& l : links[v])
+      if (counts(l.to, l)) found.push_back(l.to);
   });
 }
 
