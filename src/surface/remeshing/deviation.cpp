@@ -5,8 +5,10 @@
 #include "geometry/measures.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace octafront::remeshing {
 
@@ -216,6 +218,11 @@ void append(std::vector<FarPlace>& places, const std::vector<Sample>& samples, c
   parallel_for(samples.size(), [&](std::size_t i) { places[before + i] = place_of(samples[i]); });
 }
 
+/// One behind the last of numbers that ascend.
+std::uint32_t end_of(const std::vector<std::uint32_t>& number) {
+  return number.empty() ? 0 : number.back() + 1;
+}
+
 Box3 box_of(const TriangleCorners& t, double margin) {
   const Vec3 m{margin, margin, margin};
   return {min(min(t[0], t[1]), t[2]) - m, max(max(t[0], t[1]), t[2]) + m};
@@ -286,32 +293,31 @@ std::vector<FarPlace> DeviationWatch::look(const SurfaceMesh& made, const std::v
 /// What is not as it was: new triangles of `made`, by their place in it; is_changed_, by number; the input around.
 std::vector<std::uint32_t> DeviationWatch::note_changes(const SurfaceMesh& made,
                                                         const std::vector<std::uint32_t>& number) {
-  const bool is_first = last_.empty();
-  const std::uint32_t numbers =
-      std::max(static_cast<std::uint32_t>(last_.size()), number.empty() ? 0 : number.back() + 1);
-  last_.resize(numbers);
+  const bool is_first = last_.corners.empty();
+  const std::uint32_t numbers = std::max(end_of(last_.number), end_of(number));
   is_changed_.assign(numbers, 1);
   std::vector<std::uint32_t> changed;
-  std::vector<std::optional<TriangleCorners>> now(numbers);
-  for (std::uint32_t t = 0; t < made.triangles.size(); ++t) {
+  Looked now{number, {}};
+  now.corners.reserve(number.size());
+  std::size_t k = 0;  // in last_, whose numbers ascend too
+  for (std::uint32_t t = 0; t < number.size(); ++t) {
     const auto [a, b, c] = made.triangles[t];
-    now[number[t]] = {made.points[a], made.points[b], made.points[c]};
-    if (last_[number[t]] == now[number[t]]) {
+    now.corners.push_back({made.points[a], made.points[b], made.points[c]});
+    while (k < last_.number.size() && last_.number[k] < number[t]) ++k;
+    const bool was_there = k < last_.number.size() && last_.number[k] == number[t];
+    if (was_there && last_.corners[k] == now.corners.back())
       is_changed_[number[t]] = 0;
-    } else {
+    else
       changed.push_back(t);
-    }
   }
-  for (std::uint32_t k = 0; k < numbers && !is_first; ++k) {
-    if (!is_changed_[k]) continue;
-    for (const auto& corners : {last_[k], now[k]}) {
-      if (!corners) continue;
-      input_tree_.for_each_box_near(box_of(*corners, limit_), [&](std::uint32_t t, const TriangleCorners&) {
-        is_near_change_[t] = 1;
+  for (const Looked* look : std::array<const Looked*, 2>{&last_, &now})
+    for (std::size_t t = 0; t < look->number.size() && !is_first; ++t) {
+      if (!is_changed_[look->number[t]]) continue;
+      input_tree_.for_each_box_near(box_of(look->corners[t], limit_), [&](std::uint32_t face, const TriangleCorners&) {
+        is_near_change_[face] = 1;
         return true;
       });
     }
-  }
   last_ = std::move(now);
   return changed;
 }

@@ -46,6 +46,12 @@ class DeviationWatch {
   std::vector<FarPlace> look(const SurfaceMesh& made, const std::vector<std::uint32_t>& number);
 
  private:
+  /// The triangles of a look.
+  struct Looked {
+    std::vector<std::uint32_t> number;
+    std::vector<TriangleCorners> corners;
+  };
+
   double part_of(std::uint32_t triangle) const { return part_.empty() ? 1 : part_[triangle]; }
   std::vector<Sample> far_of_made(const SurfaceMesh& made, const std::vector<std::uint32_t>& changed) const;
   std::vector<std::uint32_t> note_changes(const SurfaceMesh& made, const std::vector<std::uint32_t>& number);
@@ -54,13 +60,13 @@ class DeviationWatch {
   Fine fine_;
   const SurfaceMesh& input_;
   const TriangleTree& input_tree_;
-  std::vector<double> part_;                          ///< per triangle of the input, of the limits; empty: 1
-  double least_part_ = 1;                             ///< of them
-  std::optional<TriangleTree> tighter_;               ///< over those triangles of which it is less than 1
-  std::vector<std::optional<TriangleCorners>> last_;  ///< by number
-  std::vector<std::uint8_t> is_changed_;              ///< by number
-  std::vector<std::uint8_t> is_near_change_;          ///< per triangle of the input
-  std::vector<FarPlace> of_made_, of_input_;          ///< found from the one or the other
+  std::vector<double> part_;             ///< per triangle of the input, of the limits; empty: 1
+  double least_part_ = 1;                ///< of them
+  std::optional<TriangleTree> tighter_;  ///< over those triangles of which it is less than 1
+  Looked last_;
+  std::vector<std::uint8_t> is_changed_;      ///< by number
+  std::vector<std::uint8_t> is_near_change_;  ///< per triangle of the input
+  std::vector<FarPlace> of_made_, of_input_;  ///< found from the one or the other
 };
 
 /// The points of the input that lie under the middles of these triangles and of their edges, however near.
