@@ -19,6 +19,8 @@ namespace {
 /// but to no less than this part of themselves, so often.
 constexpr double kAim = 0.5, kLeastScale = 0.4;
 constexpr int kTries = 2;
+/// Predictions of so many bounds are believed, without a surface that would be made in vain.
+constexpr double kHopeless = 3;
 /// Vertices that leave the surface, and chords between them, lie within so many bounds on deviation.
 constexpr double kStray = 2;
 
@@ -34,6 +36,24 @@ double change_of_extent(const Box3& made, const Box3& input) {
   return most;
 }
 
+/// Whether it can be foreseen that no sizes within the budget keep the volume, as those of thousands of bodies.
+bool is_hopeless(const Prepared& input, const SizeField& sizes, double budget, const Stage& stage) {
+  if (!std::isfinite(budget)) return false;
+  const double loss = predicted_volume_loss(input.surface, sizes, stage.context());
+  if (loss <= kHopeless * kVolumeKept) return false;
+  const SizeField smaller = scaled(sizes, std::sqrt(kVolumeKept / loss), stage.context());
+  if (expected_tets(smaller, input.surface.mesh()) <= budget) return false;
+  stage.note(
+      fmt::format("the input's triangles are kept: others would change the volume by about {:+.1f} %", -100 * loss));
+  return true;
+}
+
+Remeshed input_that_stays(const Prepared& input, const SizeField& sizes) {
+  Remeshed kept = input_as_it_is(input.surface, sizes);
+  kept.stays = true;
+  return kept;
+}
+
 }  // namespace
 
 double change_of_volume(double made, double input) {
@@ -42,8 +62,9 @@ double change_of_volume(double made, double input) {
 
 Remeshed remeshed_in_shape(const Prepared& input, const SizeField& sizes, const Run& run, const Stage& stage,
                            const std::function<Remeshed(const SizeField&)>& remesh, double budget) {
+  if (!has_automatic_sizes(run.options) || is_complex(input.surface.mesh())) return remesh(sizes);
+  if (is_hopeless(input, sizes, budget, stage)) return input_that_stays(input, sizes);
   Remeshed made = remesh(sizes);
-  if (!has_automatic_sizes(run.options) || is_complex(input.surface.mesh())) return made;
   const auto change = [&] { return change_of_volume(enclosed_volume(made.surface), run.report.input_volume); };
   double scale = 1;
   for (int k = 0; k < kTries && is_off(change()); ++k) {
@@ -56,11 +77,14 @@ Remeshed remeshed_in_shape(const Prepared& input, const SizeField& sizes, const 
   }
   if (!is_off(change())) return made;
   stage.note(fmt::format("the input's triangles are kept: others change the volume by {:+.1f} %", 100 * change()));
-  return input_as_it_is(input.surface, sizes);
+  return input_that_stays(input, sizes);
 }
 
 void improve_in_shape(const Prepared& input, Filled& filled, Run& run) {
   if (is_complex(input.surface.mesh())) return improve_elements(input, filled, run, run.options.improve);
+  ImproveOptions staying = run.options.improve;
+  staying.move_boundary = false;
+  if (filled.boundary.stays) return improve_elements(input, filled, run, staying);
   const Remeshed boundary = filled.boundary;
   const double before = enclosed_volume(boundary.surface);
   improve_elements(input, filled, run, run.options.improve);
@@ -70,9 +94,7 @@ void improve_in_shape(const Prepared& input, Filled& filled, Run& run) {
   run.report.stages.back().notes.push_back(
       fmt::format("this changed the volume by {:+.1f} %: done again on a boundary that stays", 100 * change));
   filled = fill_surface(input, boundary, run);
-  ImproveOptions options = run.options.improve;
-  options.move_boundary = false;
-  improve_elements(input, filled, run, options);
+  improve_elements(input, filled, run, staying);
 }
 
 void check_shape(const Prepared& input, const Filled& filled, Run& run) {

@@ -70,6 +70,10 @@ void Affordable::gap(double elements, const GapFinder& gaps) const {
   require("gap", elements, tets);
 }
 
+double Affordable::tets_by(const std::vector<double>& face) const {
+  return tets_on_faces([&](std::size_t f) { return face[f]; });
+}
+
 template <class SizeOfFace>
 double Affordable::tets_on_faces(SizeOfFace&& size_of_face) const {
   double sum = 0;

@@ -25,6 +25,8 @@ class Affordable {
   void normal_deviation(double degrees, const SurfaceCurvature& of_faces) const;
   void feature_elements(double elements, const std::vector<FeatureCurve>& curves) const;
   void gap(double elements, const GapFinder& gaps) const;
+  /// Elements by these sizes, one for each face.
+  double tets_by(const std::vector<double>& face) const;
 
  private:
   template <class SizeOfFace>

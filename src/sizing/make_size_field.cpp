@@ -4,6 +4,7 @@
 
 #include "core/parallel.h"
 #include "mesh/index_range.h"
+#include "sizing/affordable.h"
 #include "sizing/background_grid.h"
 #include "sizing/region_caps.h"
 #include "sizing/size_sources.h"
@@ -43,6 +44,9 @@ constexpr double kForDetails = 400'000;
 /// For that small sizes are raised by this factor at most: real details, such as a thousand small holes, would be lost.
 constexpr double kMostRaised = 2.7;
 constexpr int kBudgetSteps = 6;
+/// Details that ask for so many budgets, as thousands of small bodies do, are counted on the surface alone: their grid
+/// would take more time and memory than the mesh.
+constexpr double kFarBeyond = 3;
 /// No floor needs to be above the model's extent, which is thirty base sizes.
 constexpr double kLargestFloor = 30;
 constexpr double kNearBudget = 0.07;
@@ -207,11 +211,17 @@ Raised raised_to_count(const SurfaceMesh& surface, const WantedSizes& wanted, co
 /// Sizes of our own choice must not make a large mesh that nobody asked for, as the noise of a scan does, or a thousand
 /// small holes: then the smallest sizes are raised until the number of elements is within the budget.
 SizeField within_budget(const SurfaceMesh& surface, const WantedSizes& wanted, const SizeOptions& options,
-                        SizeField field, double budget, const Stage& stage) {
+                        double budget, const Stage& stage) {
   const TetPrediction expected(surface);
-  const double first = expected(field), for_details = kForDetails / std::pow(options.automatic_factor, 3);
-  if (first <= for_details) return field;
-  const double low = field.min_size(), high = std::min(wanted.ceiling, kMostRaised * low);
+  const double for_details = kForDetails / std::pow(options.automatic_factor, 3);
+  double first = Affordable(surface, options).tets_by(wanted.face), low = *std::ranges::min_element(wanted.face);
+  if (!(first > kFarBeyond * budget)) {
+    SizeField field = grid_field(surface, wanted, options, stage.context());
+    first = expected(field);
+    if (first <= for_details) return field;
+    low = field.min_size();
+  }
+  const double high = std::min(wanted.ceiling, kMostRaised * low);
   Raised made = raised_to_count(surface, wanted, options, expected, for_details, low, high, stage.context());
   if (made.count > budget)
     made = raised_to_count(surface, wanted, options, expected, budget, high,
@@ -255,10 +265,9 @@ SizeField make_size_field(const KnownSurface& known, const SizeOptions& options,
   if (wanted.automatic && !options.elements && options.automatic_factor != 1)
     wanted = scaled(wanted, options.automatic_factor, options);
   if (!options.elements) refuse_huge_counts(surface, wanted);
-  SizeField field = options.elements ? scaled_to_count(surface, wanted, options, stage)
-                                     : grid_field(surface, wanted, options, stage.context());
-  if (wanted.automatic && !options.elements)
-    field = within_budget(surface, wanted, options, std::move(field), budget, stage);
+  SizeField field = options.elements   ? scaled_to_count(surface, wanted, options, stage)
+                    : wanted.automatic ? within_budget(surface, wanted, options, budget, stage)
+                                       : grid_field(surface, wanted, options, stage.context());
   const OctreeField& grid = *as_octree_field(field);
   stage.count("leaves", static_cast<double>(grid.tree.size()));
   stage.count("levels", grid.tree.depth());

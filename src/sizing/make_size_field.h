@@ -38,6 +38,9 @@ void note_misplaced_sizes(const SurfaceMesh& surface, const SizeOptions& options
 /// of the surface, kMostBudget at most; known before anything is made. HUGE_VAL if the user chose sizes.
 double automatic_budget(const SurfaceMesh& surface, const SizeOptions& options);
 
+/// The part of its volume that a surface made by these sizes loses, by its curvature: chords cut it off.
+double predicted_volume_loss(const KnownSurface& surface, const SizeField& sizes, const RunContext& context);
+
 /// Throws OptionError if triangles that turn by no more than so many degrees against the surface would give more
 /// elements than a mesh can hold.
 void refuse_huge_turning(const KnownSurface& surface, const SizeOptions& options, double degrees,

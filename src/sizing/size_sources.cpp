@@ -195,6 +195,16 @@ void refuse_huge_turning(const KnownSurface& surface, const SizeOptions& options
   Affordable(surface.mesh(), options).normal_deviation(degrees, curvature);
 }
 
+double predicted_volume_loss(const KnownSurface& known, const SizeField& sizes, const RunContext& context) {
+  const SurfaceMesh& surface = known.mesh();
+  const SurfaceCurvature curvature =
+      surface_curvature(surface, smooth_face_neighbours(known.edges(), known.features().edges), context);
+  std::vector<double> face;
+  for (const auto& [a, b, c] : surface.triangles)
+    face.push_back(sizes.at(centroid(surface.points[a], surface.points[b], surface.points[c])));
+  return predicted_volume_loss(surface, curvature, face) / std::abs(enclosed_volume(surface));
+}
+
 SizeAtPlace given_sizes(const SurfaceMesh& surface, const SizeOptions& options) {
   SizeAtPlace points, callback;
   if (!options.point_sizes.empty()) {

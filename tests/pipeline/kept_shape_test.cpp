@@ -89,6 +89,33 @@ TEST(KeptShape, TheInputsTrianglesAreKeptWhereNothingHelps) {
   EXPECT_EQ(made.surface, bench.input.surface.mesh());
 }
 
+TEST(KeptShape, NoSurfaceIsMadeInVainWhereNoSizesWithinTheBudgetKeepTheVolume) {
+  Bench bench;
+  const SizeField coarse = SizeField::uniform(0.5);  // loses 9 % of a ball's volume
+  for (const double budget : {30.0, 1e6}) {
+    int made = 0;
+    const auto make = [&](const SizeField&) {
+      ++made;
+      return bench.scaled_by(1);
+    };
+    const Remeshed result = remeshed_in_shape(bench.input, coarse, bench.run, bench.stage, make, budget);
+    EXPECT_EQ(made, budget < 100 ? 0 : 1) << budget;
+    EXPECT_EQ(result.stays, budget < 100) << budget;
+    EXPECT_EQ(result.surface, bench.input.surface.mesh());
+  }
+}
+
+TEST(KeptShape, ABoundaryThatStaysIsNotMovedByImprovement) {
+  Bench bench;
+  Remeshed kept = bench.scaled_by(1);
+  kept.stays = true;
+  const SurfaceMesh before = kept.surface;
+  Filled filled = fill_surface(bench.input, std::move(kept), bench.run);
+  improve_in_shape(bench.input, filled, bench.run);
+  EXPECT_EQ(filled.boundary.surface, before);
+  EXPECT_EQ(bench.run.report.stages.back().name, "improve");
+}
+
 TEST(KeptShape, ABodyThatIsNotTheInputIsNotHandedOut) {
   Bench bench;
   EXPECT_NO_THROW(check_shape(bench.input, {{}, bench.scaled_by(1.003)}, bench.run));

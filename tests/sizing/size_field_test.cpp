@@ -399,6 +399,22 @@ TEST(AutomaticBudget, HoldsForDetailsWithoutEnd) {
   EXPECT_NE(report.notes[0].find("0.1 million at most"), std::string::npos) << report.notes[0];
 }
 
+/// Their details are counted on the surface alone.
+TEST(AutomaticBudget, HoldsForManyBodies) {
+  const SurfaceMesh ball = icosphere(1);
+  SurfaceMesh balls = ball;
+  for (int k = 1; k < 64; ++k)
+    balls = testing::joined(balls, transformed(ball, 1, 3 * Vec3{double(k % 4), double(k / 4 % 4), double(k / 16)}));
+  const KnownSurface known(balls, 40);
+  StageReport report;
+  const double budget = 50'000;
+  const SizeField sizes = make_size_field(known, {}, {RunContext{}, report}, {}, budget);
+  const double expected = expected_tets(sizes, balls);
+  EXPECT_LT(expected, 1.1 * budget);
+  EXPECT_GT(expected, 0.1 * budget);
+  EXPECT_EQ(report.notes.size(), 1u);
+}
+
 TEST(Scaled, MultipliesAllSizes) {
   const SizeField h = make(torus(60, 24), {}), twice = scaled(h, 2, RunContext{});
   EXPECT_DOUBLE_EQ(twice.at({1, 0.2, 0.1}), 2 * h.at({1, 0.2, 0.1}));

@@ -22,6 +22,7 @@ struct Remeshed {
   SizeField sizes;                    ///< what was asked, capped where self-intersections forced smaller elements
   /// The corners of triangles that lie nearly as far from the input as they may.
   std::vector<VertexIndex> near_limit = {};
+  bool stays = false;  ///< vertices that moved would change the volume too much: improvement leaves them where they are
 };
 
 /// How far a wish may be missed to spare work.
