@@ -1,5 +1,6 @@
 #include "failure.h"
 #include "program.h"
+#include "rehearsal.h"
 #include "session.h"
 #include "terminal.h"
 #include "text.h"
@@ -47,6 +48,7 @@ int run(Program& program, int argc, char** argv) {
   }
   Session session(*arguments);
   try {
+    rehearse_reading(*arguments);
     program.chosen()(session);
     session.write_json(nullptr);
     return finished(kDone);
