@@ -33,8 +33,8 @@ cairo_status_t append(void* text, const unsigned char* bytes, unsigned count) {
   return CAIRO_STATUS_SUCCESS;
 }
 
-void finish(cairo_surface_t* surface, cairo_status_t status, const std::string& bytes,
-            const std::filesystem::path& file) {
+void finish_picture(cairo_surface_t* surface, cairo_status_t status, const std::string& bytes,
+                    const std::filesystem::path& file) {
   cairo_surface_destroy(surface);
   if (status != CAIRO_STATUS_SUCCESS) throw OutputError(file.string() + ": " + cairo_status_to_string(status));
   write_text(file, bytes);
@@ -99,12 +99,12 @@ void draw(const std::filesystem::path& stem, double width, double height, const 
   cairo_surface_t* vector = cairo_svg_surface_create_for_stream(append, &svg_bytes, width, height);
   paint(vector, 1, chart);
   cairo_surface_finish(vector);
-  finish(vector, cairo_surface_status(vector), svg_bytes, svg);
+  finish_picture(vector, cairo_surface_status(vector), svg_bytes, svg);
   cairo_surface_t* pixels = cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(kPixelsPerPoint * width),
                                                        static_cast<int>(kPixelsPerPoint * height));
   paint(pixels, kPixelsPerPoint, chart);
   const cairo_status_t packed = cairo_surface_write_to_png_stream(pixels, append, &png_bytes);
-  finish(pixels, packed, png_bytes, png);
+  finish_picture(pixels, packed, png_bytes, png);
 }
 
 }  // namespace octafront::cli

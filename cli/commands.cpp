@@ -22,7 +22,7 @@ namespace octafront::cli {
 namespace {
 
 // Files with sizes are small: they are read, and all options checked, before the input.
-Options checked_options(const Session& session) {
+Options checked_options_of(const Session& session) {
   const Arguments& a = session.arguments();
   Options options = with_preset(a);
   if (!a.regions.empty()) options.size.regions = read_size_regions(a.regions, session.context());
@@ -122,7 +122,7 @@ void check_surface(Session& session) {
 template <class Generator>
 auto run_on_input(Session& session, const Generator& generator) {
   const Arguments& a = session.arguments();
-  const Options options = checked_options(session);
+  const Options options = checked_options_of(session);
   const Domain domain = open_input(session, a.intake);
   try {
     if (!a.page.empty()) find_repairs(session, domain.surface);
@@ -144,7 +144,7 @@ void say_written(const Session& session) {
 }
 
 /// The last step of a run that made a mesh: its page, if one is wanted.
-void finish(Session& session, const TetMesh& mesh, const SizeField* sizes) {
+void finish_run(Session& session, const TetMesh& mesh, const SizeField* sizes) {
   if (!session.arguments().page.empty()) write_page(session.arguments().page, session, mesh, sizes);
   say_written(session);
 }
@@ -166,7 +166,7 @@ void run_mesh(Session& session) {
   write_mesh_targets(session, result.mesh);
   session.tell(result.report);
   tell_worst(session, result.mesh, result.report.quality);
-  finish(session, result.mesh, &result.sizes);
+  finish_run(session, result.mesh, &result.sizes);
 }
 
 void run_surface(Session& session) {
@@ -220,7 +220,7 @@ void run_improve(Session& session) {
   session.say(fmt::format("improved: {}\n", quality_in_words(result.report.quality)));
   session.tell(result.report);
   tell_worst(session, result.mesh, result.report.quality);
-  finish(session, result.mesh, nullptr);
+  finish_run(session, result.mesh, nullptr);
 }
 
 void run_convert(Session& session) {

@@ -34,7 +34,7 @@ Comparison run_one(const std::filesystem::path& input, const SurfaceFile& file, 
 }
 
 /// One for each number of elements asked for, all checked before the first run.
-std::vector<Options> checked_options(const CompareArguments& a) {
+std::vector<Options> options_to_compare(const CompareArguments& a) {
   std::vector<Options> all;
   for (const std::int64_t count : a.elements) all.emplace_back(a.common.options).size.elements = count;
   if (all.empty()) all.push_back(a.common.options);
@@ -84,7 +84,7 @@ void declare_compare(CLI::App& command, CompareArguments& a) {
 }
 
 void run_compare(const CompareArguments& a, Session& session) {
-  const std::vector<Options> runs = checked_options(a);
+  const std::vector<Options> runs = options_to_compare(a);
   std::error_code error;
   std::filesystem::create_directories(a.common.output, error);
   if (error) throw OutputError(fmt::format("{}: {}", a.common.output.string(), error.message()));

@@ -67,7 +67,7 @@ Total total_of(const std::vector<Comparison>& all, const std::string& method) {
   return t;
 }
 
-Json json_of(const Comparison& c) {
+Json json_of_run(const Comparison& c) {
   Json j{{"model", c.model}, {"faces", c.faces}, {"method", c.method}};
   j["elements_wanted"] = c.elements_wanted > 0 ? Json(c.elements_wanted) : Json(nullptr);
   j["failure"] = c.failure.empty() ? Json(nullptr) : Json(c.failure);
@@ -78,9 +78,9 @@ Json json_of(const Comparison& c) {
   return j;
 }
 
-Json json_of(const std::vector<Comparison>& all) {
+Json json_of_runs(const std::vector<Comparison>& all) {
   Json j;
-  for (const Comparison& c : all) j["runs"].push_back(json_of(c));
+  for (const Comparison& c : all) j["runs"].push_back(json_of_run(c));
   for (const std::string& method : methods_in(all)) {
     const Total t = total_of(all, method);
     const PowerLaw law = fit_power_law(t.times);
@@ -222,7 +222,7 @@ std::vector<std::filesystem::path> comparison_files(const std::filesystem::path&
 
 void write_comparison(const std::filesystem::path& folder, const std::vector<Comparison>& all) {
   write_text(folder / "compare.csv", csv_of(all));
-  write_text(folder / "compare.json", json_of(all).dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  write_text(folder / "compare.json", json_of_runs(all).dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
   if (!can_draw()) return;
   draw_beta(folder, all);
   draw_times(folder, all);

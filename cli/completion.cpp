@@ -26,11 +26,11 @@ Value value_of(const CLI::Option& option) {
   return {.file = type.starts_with("FILE") || type == "MESH" || type == "DIR"};
 }
 
-std::string joined(const std::vector<std::string>& words) {
+std::string joined_words(const std::vector<std::string>& words) {
   return CLI::detail::join(words, " ");
 }
 
-std::vector<std::string> names_of(const CLI::Option& option) {
+std::vector<std::string> names_of_option(const CLI::Option& option) {
   std::vector<std::string> names;
   for (const std::string& name : option.get_snames()) names.push_back("-" + name);
   for (const std::string& name : option.get_lnames()) names.push_back("--" + name);
@@ -40,7 +40,7 @@ std::vector<std::string> names_of(const CLI::Option& option) {
 /// Of a command, without those by place.
 std::vector<const CLI::Option*> named_options(const CLI::App& command) {
   std::vector<const CLI::Option*> options = options_of(command);
-  std::erase_if(options, [](const CLI::Option* option) { return names_of(*option).empty(); });
+  std::erase_if(options, [](const CLI::Option* option) { return names_of_option(*option).empty(); });
   return options;
 }
 
@@ -53,7 +53,7 @@ std::vector<std::string> command_names(const CLI::App& app) {
 /// Words that may stand by place, such as the shells of `completion`.
 std::vector<std::string> words_by_place(const CLI::App& app, const CLI::App& command) {
   for (const CLI::Option* option : options_of(command)) {
-    if (!names_of(*option).empty()) continue;
+    if (!names_of_option(*option).empty()) continue;
     if (option->get_type_name() == "COMMAND") return command_names(app);
     return value_of(*option).words;
   }
@@ -63,17 +63,18 @@ std::vector<std::string> words_by_place(const CLI::App& app, const CLI::App& com
 std::string bash_command(const CLI::App& app, const CLI::App& command) {
   std::string values, names;
   for (const CLI::Option* option : named_options(command)) {
-    names += (names.empty() ? "" : " ") + joined(names_of(*option));
+    names += (names.empty() ? "" : " ") + joined_words(names_of_option(*option));
     const Value value = value_of(*option);
     if (value.none) continue;
-    values += fmt::format("        {}) {}; return ;;\n", CLI::detail::join(names_of(*option), "|"),
+    values += fmt::format("        {}) {}; return ;;\n", CLI::detail::join(names_of_option(*option), "|"),
                           value.words.empty()
                               ? (value.file ? "compopt -o default" : ":")
-                              : fmt::format("COMPREPLY=($(compgen -W '{}' -- \"$word\"))", joined(value.words)));
+                              : fmt::format("COMPREPLY=($(compgen -W '{}' -- \"$word\"))", joined_words(value.words)));
   }
   const std::vector<std::string> words = words_by_place(app, command);
-  const std::string by_place =
-      words.empty() ? "compopt -o default" : fmt::format("COMPREPLY=($(compgen -W '{}' -- \"$word\"))", joined(words));
+  const std::string by_place = words.empty()
+                                   ? "compopt -o default"
+                                   : fmt::format("COMPREPLY=($(compgen -W '{}' -- \"$word\"))", joined_words(words));
   return fmt::format(
       "    {})\n      case $before in\n{}      esac\n      if [[ $word == -* ]]; then COMPREPLY=($(compgen -W '{}' -- "
       "\"$word\"))\n      else {}\n      fi ;;\n",
@@ -86,7 +87,7 @@ std::string bash_script(const CLI::App& app) {
       "  local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]}\n  COMPREPLY=()\n"
       "  if [ \"$COMP_CWORD\" -eq 1 ]; then\n";
   text += fmt::format("    COMPREPLY=($(compgen -W '{} --help --version' -- \"$word\"))\n    return\n  fi\n",
-                      joined(command_names(app)));
+                      joined_words(command_names(app)));
   text += "  case ${COMP_WORDS[1]} in\n";
   for (const CLI::App* command : commands_of(app)) text += bash_command(app, *command);
   return text + "  esac\n}\ncomplete -F _octafront octafront\n";
@@ -108,18 +109,19 @@ std::string zsh_text(const std::string& text) {
 
 std::string zsh_value(const Value& value) {
   if (value.none) return "";
-  if (!value.words.empty()) return ":value:(" + joined(value.words) + ")";
+  if (!value.words.empty()) return ":value:(" + joined_words(value.words) + ")";
   return value.file ? ":file:_files" : ":value: ";
 }
 
 std::string zsh_command(const CLI::App& app, const CLI::App& command) {
   std::string text = fmt::format("    {})\n      _arguments -s", command.get_name());
   for (const CLI::Option* option : named_options(command))
-    for (const std::string& name : names_of(*option))
+    for (const std::string& name : names_of_option(*option))
       text += fmt::format(" \\\n        '*{}[{}]{}'", name, zsh_text(option->get_description()),
                           zsh_value(value_of(*option)));
   const std::vector<std::string> words = words_by_place(app, command);
-  text += words.empty() ? " \\\n        '*:file:_files'" : fmt::format(" \\\n        ':word:({})'", joined(words));
+  text +=
+      words.empty() ? " \\\n        '*:file:_files'" : fmt::format(" \\\n        ':word:({})'", joined_words(words));
   return text + " ;;\n";
 }
 
@@ -146,7 +148,7 @@ std::string fish_option(const std::string& command, const CLI::Option& option) {
   for (const std::string& name : option.get_lnames()) text += " -l " + name;
   const Value value = value_of(option);
   if (!value.none) text += value.file ? " -r -F" : " -x";
-  if (!value.words.empty()) text += fmt::format(" -a '{}'", joined(value.words));
+  if (!value.words.empty()) text += fmt::format(" -a '{}'", joined_words(value.words));
   return text + fmt::format(" -d '{}'\n", fish_text(option.get_description()));
 }
 
@@ -159,7 +161,7 @@ std::string fish_script(const CLI::App& app) {
     const std::vector<std::string> words = words_by_place(app, *command);
     if (!words.empty())
       text += fmt::format("complete -c octafront -n '__fish_seen_subcommand_from {}' -f -a '{}'\n", command->get_name(),
-                          joined(words));
+                          joined_words(words));
   }
   return text;
 }

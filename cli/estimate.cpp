@@ -51,7 +51,7 @@ double counted_as(std::string_view name, const Report& report) {
   return count;
 }
 
-std::string in_words(double seconds) {
+std::string time_in_words(double seconds) {
   if (seconds < 60) return fmt::format("{:.2g} s", std::max(0.1, seconds));
   return fmt::format("{:.0f} min", std::ceil(seconds / 60));
 }
@@ -91,7 +91,8 @@ void tell_estimate(Session& session, const SizeResult& sizes) {
                    {"seconds", e.seconds ? Json(*e.seconds) : Json()},
                    {"memory_bytes", e.memory_bytes},
                    {"file_bytes", e.file_bytes}}}});
-  const std::string time = e.seconds ? "about " + in_words(*e.seconds) + " in all" : "time: not known for this method";
+  const std::string time =
+      e.seconds ? "about " + time_in_words(*e.seconds) + " in all" : "time: not known for this method";
   session.say(
       fmt::format("\ndry run: nothing was made. About {:.3g} elements, sizes from {:.4g} to {:.4g}; {}, {} of memory, "
                   "a .vtu of {}\n",

@@ -35,7 +35,7 @@ std::string toward(Vec3 axis, const std::string& frame) {
   }
 }
 
-Box3 box_of(const ImageGrid& grid) {
+Box3 box_of_grid(const ImageGrid& grid) {
   Box3 box;
   for (unsigned corner = 0; corner < 8; ++corner) {
     const auto end = [&](unsigned axis, double last) { return (corner >> axis & 1) != 0 ? last + 0.5 : -0.5; };
@@ -51,7 +51,7 @@ double volume_of_voxel(const ImageGrid& grid) {
 
 void tell_grid(Session& session, const Image& image) {
   const ImageGrid& grid = image.grid;
-  const Box3 box = box_of(grid);
+  const Box3 box = box_of_grid(grid);
   session.found({{"kind", "image"},
                  {"format", image.format},
                  {"size", grid.size},
@@ -130,10 +130,10 @@ void tell_values(Session& session, const Image& image) {
         session.say(fmt::format("  grey values {:.6g} to {:.6g}; from, voxels\n", least, largest));
         for (std::size_t b = 0; b < kBins; ++b) {
           // Bars grow with the logarithm: background is most of nearly every image.
-          constexpr double kWidth = 40;
+          constexpr double kBarWidth = 40;
           const double part = std::log1p(static_cast<double>(counts[b])) / std::log1p(static_cast<double>(most));
           session.say(fmt::format("  {:>12.6g} {:>12} {}\n", least + static_cast<double>(b) * step, counts[b],
-                                  std::string(static_cast<std::size_t>(kWidth * part), '#')));
+                                  std::string(static_cast<std::size_t>(kBarWidth * part), '#')));
         }
       },
       image.values);

@@ -12,7 +12,7 @@ namespace octafront::cli {
 
 namespace {
 
-Json json_of(const Box3& box) {
+Json json_of_box(const Box3& box) {
   return {place(box.lo), place(box.hi)};
 }
 
@@ -40,7 +40,7 @@ void tell_surface_info(Session& session) {
                  {"format", file.format},
                  {"triangles", s.triangles.size()},
                  {"vertices", s.points.size()},
-                 {"box", json_of(box)},
+                 {"box", json_of_box(box)},
                  {"area", area(s)},
                  {"patches", s.patch_names},
                  {"unit", unit},
@@ -59,7 +59,7 @@ void tell_mesh_info(Session& session, const TetMesh& mesh) {
     volume += dot(cross(mesh.points[j] - p, mesh.points[k] - p), mesh.points[l] - p) / 6;
   }
   session.found(
-      {{"kind", "mesh"}, {"order", mesh.is_second_order() ? 2 : 1}, {"box", json_of(box)}, {"volume", volume}});
+      {{"kind", "mesh"}, {"order", mesh.is_second_order() ? 2 : 1}, {"box", json_of_box(box)}, {"volume", volume}});
   session.say(
       fmt::format("  {}\n  volume {:.6g}, order {}\n", box_in_words(box), volume, mesh.is_second_order() ? 2 : 1));
   tell_mesh(session, mesh, "a mesh");

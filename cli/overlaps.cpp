@@ -60,7 +60,7 @@ Doubled doubled_faces(const SurfaceMesh& surface) {
   return doubled;
 }
 
-std::string in_words(Vec3 p) {
+std::string place_in_words(Vec3 p) {
   return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x, p.y, p.z);
 }
 
@@ -72,16 +72,16 @@ std::optional<std::string> first_overlap(const TetMesh& mesh, const RunContext& 
     return fmt::format(
         "it is torn, or in two copies: {} of its boundary's faces {} at the same place with nodes of their own, the "
         "first near {}. Merge the nodes that are there twice",
-        counted(doubled.pairs, "pair"), doubled.pairs == 1 ? "lies" : "lie", in_words(doubled.at));
+        counted(doubled.pairs, "pair"), doubled.pairs == 1 ? "lies" : "lie", place_in_words(doubled.at));
   const SurfaceDefects found = find_defects(boundary, context);
   if (found.self_intersections.count > 0)
     return fmt::format("parts of it overlap: {} of its boundary's faces cross or touch, the first near {}",
                        counted(found.self_intersections.count, "pair"),
-                       in_words(found.self_intersections.first.front().at));
+                       place_in_words(found.self_intersections.first.front().at));
   if (found.misplaced_parts.count > 0)
     return fmt::format("parts of it overlap: {} of its boundary {} inside of other elements, the first near {}",
                        counted(found.misplaced_parts.count, "part"), found.misplaced_parts.count == 1 ? "lies" : "lie",
-                       in_words(found.misplaced_parts.first.front().at));
+                       place_in_words(found.misplaced_parts.first.front().at));
   return std::nullopt;
 }
 

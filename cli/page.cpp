@@ -73,7 +73,7 @@ std::vector<Change> face_changes(const SurfaceMesh& input, const SurfaceMesh& ou
   return {removed, divided, turned};
 }
 
-Json json_of(const Change& change) {
+Json json_of_change(const Change& change) {
   Json places = Json::array();
   for (const Vec3& p : change.places) places.push_back({p.x, p.y, p.z});
   return {{"what", change.what}, {"count", change.count}, {"places", places}};
@@ -97,7 +97,7 @@ void find_repairs(Session& session, const SurfaceMesh& input) {
                                     std::pair{"vertices removed that no face used", repaired.unused_vertices}})
     if (count > 0) repairs.push_back({{"what", what}, {"count", count}, {"places", Json::array()}});
   for (const Change& change : face_changes(triangles, repaired.surface))
-    if (change.count > 0) repairs.push_back(json_of(change));
+    if (change.count > 0) repairs.push_back(json_of_change(change));
   session.found({{"repairs", repairs}});
 }
 

@@ -18,6 +18,9 @@ inline constexpr std::uint32_t kNone = 0xffffffffu;
 using Triangle = std::array<VertexIndex, 3>;
 /// Two vertex indices; as a key of an undirected edge the smaller one comes first.
 using Edge = std::array<VertexIndex, 2>;
+constexpr Edge sorted_edge(VertexIndex a, VertexIndex b) {
+  return a < b ? Edge{a, b} : Edge{b, a};
+}
 
 /// The regions on the two sides of a triangle: in front, where its normal points, and behind; kNone: outside.
 using Sides = std::array<std::uint32_t, 2>;

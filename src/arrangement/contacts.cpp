@@ -37,10 +37,6 @@ struct Meeting {
   }
 };
 
-Edge sorted_edge(VertexIndex a, VertexIndex b) {
-  return {std::min(a, b), std::max(a, b)};
-}
-
 class Finder {
  public:
   Finder(const PointTable& table, std::span<const Triangle> triangles) : table_(table), triangles_(triangles) {}

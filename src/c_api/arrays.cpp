@@ -57,7 +57,7 @@ auto& names_of(Mesh& mesh, std::string_view list) {
 }
 
 template <class Mesh>
-const char* name_of(const Mesh& mesh, const char* list, std::size_t i, std::size_t* length) {
+const char* name_in_list(const Mesh& mesh, const char* list, std::size_t i, std::size_t* length) {
   const char* found = nullptr;
   guarded([&] {
     const auto& names = names_of(mesh, list);
@@ -83,7 +83,7 @@ void require_range(const std::vector<Element>& list, std::size_t points, const c
             fmt::format("{} {} names point {}, but there are {} points, counted from 0", what, i, v, points));
 }
 
-void require_finite(const std::vector<Vec3>& points) {
+void require_finite_points(const std::vector<Vec3>& points) {
   for (std::size_t i = 0; i < points.size(); ++i)
     if (!is_finite(points[i]))
       throw InputError(fmt::format("point {} has coordinates ({}, {}, {}): they must be finite", i, points[i].x,
@@ -93,7 +93,7 @@ void require_finite(const std::vector<Vec3>& points) {
 }  // namespace
 
 void require_indices(const SurfaceMesh& s) {
-  require_finite(s.points);
+  require_finite_points(s.points);
   require_range(s.triangles, s.points.size(), "triangle");
   require_length(s.patch.size(), s.triangles.size(), "patches", "triangles");
   require_length(s.source.size(), s.triangles.size(), "sources", "triangles");
@@ -101,7 +101,7 @@ void require_indices(const SurfaceMesh& s) {
 }
 
 void require_indices(const TetMesh& m) {
-  require_finite(m.points);
+  require_finite_points(m.points);
   require_range(m.tets, m.points.size(), "tet");
   require_range(m.boundary, m.points.size(), "face");
   require_range(m.interfaces, m.points.size(), "interface");
@@ -141,7 +141,7 @@ int octafront_surface_add_name(octafront_surface* surface, const char* list, con
 }
 
 const char* octafront_surface_name(const octafront_surface* surface, const char* list, size_t i, size_t* length) {
-  return name_of(surface->domain.surface, list, i, length);
+  return name_in_list(surface->domain.surface, list, i, length);
 }
 
 double octafront_surface_voxel(const octafront_surface* surface) {
@@ -173,7 +173,7 @@ int octafront_mesh_add_name(octafront_mesh* mesh, const char* list, const char* 
 }
 
 const char* octafront_mesh_name(const octafront_mesh* mesh, const char* list, size_t i, size_t* length) {
-  return name_of(mesh->mesh, list, i, length);
+  return name_in_list(mesh->mesh, list, i, length);
 }
 
 namespace {

@@ -38,7 +38,7 @@ Image::Values values_of(int type, const void* values, std::size_t n) {
   }
 }
 
-void require_finite(const Image& image) {
+void require_finite_values(const Image& image) {
   const auto* values = std::get_if<std::vector<float>>(&image.values);
   if (values == nullptr) return;
   for (std::size_t v = 0; v < values->size(); ++v)
@@ -58,7 +58,7 @@ Image image_of(int type, const std::uint32_t* size, const void* values, const do
   for (std::size_t axis = 0; axis < 3; ++axis) image.grid.axes[axis] = {map[axis], map[4 + axis], map[8 + axis]};
   image.grid.origin = {map[3], map[7], map[11]};
   image.values = values_of(type, values, image.grid.voxels());
-  require_finite(image);
+  require_finite_values(image);
   return image;
 }
 

@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json json_of(const OptionValue& value) {
+Json json_of_value(const OptionValue& value) {
   return std::visit(
       [](const auto& v) -> Json {
         if constexpr (std::is_same_v<std::decay_t<decltype(v)>, std::monostate>)
@@ -28,7 +28,7 @@ Json json_of(const OptionValue& value) {
       value);
 }
 
-const char* name_of(OptionInfo::Kind kind) {
+const char* name_of_kind(OptionInfo::Kind kind) {
   switch (kind) {
     case OptionInfo::Kind::kNumber:
       return "number";
@@ -51,9 +51,9 @@ std::string described(const std::vector<OptionInfo>& table) {
                    {"field", info.field},
                    {"group", info.group},
                    {"tasks", info.tasks},
-                   {"kind", name_of(info.kind)},
+                   {"kind", name_of_kind(info.kind)},
                    {"choices", info.choices},
-                   {"default", json_of(option_value(defaults, info.name))},
+                   {"default", json_of_value(option_value(defaults, info.name))},
                    {"help", info.help}});
   }
   return all.dump();

@@ -27,7 +27,7 @@ using Json = octafront_job::Json;
 
 thread_local std::string last_error, last_text;
 
-Json json_of(const RepairedSurface& r) {
+Json json_of_repair(const RepairedSurface& r) {
   return {{"merged_vertices", r.merged_vertices},
           {"unused_vertices", r.unused_vertices},
           {"duplicate_faces", r.duplicate_faces},
@@ -62,7 +62,7 @@ void repair(octafront_job& job, const SurfaceMesh& surface) {
   require_indices(surface);
   RepairedSurface repaired = repair_surface(surface, job.context());
   const SurfaceDefects defects = find_defects(repaired, job.context());
-  job.report = json_of(repaired);
+  job.report = json_of_repair(repaired);
   job.report["clean"] = defects.clean();
   job.report["defects"] = Json::parse(to_json(defects));
   job.report["described"] = defects.describe();

@@ -18,10 +18,6 @@ namespace {
 
 using arrangement::PlaneMesh;
 
-Edge sorted_edge(VertexIndex a, VertexIndex b) {
-  return {std::min(a, b), std::max(a, b)};
-}
-
 Box3 grown(Box3 box, double by) {
   box.lo -= Vec3{by, by, by};
   box.hi += Vec3{by, by, by};

@@ -22,7 +22,7 @@ constexpr double kMostBend = 0.2;
 // this.
 constexpr double kMostMove = 0.5;
 // Less is rounding.
-constexpr double kStraight = 1e-7;
+constexpr double kStraightBend = 1e-7;
 
 enum class On : std::uint8_t { kNothing, kSurface, kCurve, kCorner };
 
@@ -130,7 +130,7 @@ class Search {
     for (std::size_t i = 0; i < vertices_.size(); ++i) {
       const VertexIndex v = vertices_[i];
       moved[v] = displacement(targets_[i], point(v), kMostMove * shortest_[v]);
-      if (moved[v] && length(*moved[v]) > kStraight * shortest_[v]) bends.corners.push_back({v, *moved[v]});
+      if (moved[v] && length(*moved[v]) > kStraightBend * shortest_[v]) bends.corners.push_back({v, *moved[v]});
     }
     // An edge that bends to the surface with an end that stays away from it would be a bump.
     for (std::size_t e = 0; e < table_.size(); ++e) {
@@ -140,7 +140,7 @@ class Search {
       if (!by) continue;
       const Vec3 bend = *by - 0.5 * (*moved[a] + *moved[b]);
       const double part = length(bend) / edge_length(e);
-      if (part > kStraight && part <= kMostBend) bends.edges.push_back({table_.edges[e], bend});
+      if (part > kStraightBend && part <= kMostBend) bends.edges.push_back({table_.edges[e], bend});
     }
     return bends;
   }

@@ -31,11 +31,11 @@ struct Judged {
 };
 
 // Edges that bend by so little are straight but for rounding.
-constexpr double kStraight = 1 - 1e-9;  // as a bound of the scaled Jacobian
+constexpr double kStraightJacobian = 1 - 1e-9;  // as a bound of the scaled Jacobian
 
 Judged judge(const TetMesh& mesh, TetIndex t) {
   const QuadraticTet nodes = quadratic_nodes(mesh, t);
-  if (least_scaled_jacobian_bound(nodes) > kStraight) return {};
+  if (least_scaled_jacobian_bound(nodes) > kStraightJacobian) return {};
   const auto coefficients = jacobian_coefficients(nodes);
   const double least = *std::min_element(coefficients.begin(), coefficients.end());
   const double straight = six_volumes(nodes[0], nodes[1], nodes[2], nodes[3]);
@@ -92,7 +92,7 @@ double curved_volume(const TetMesh& mesh) {
   parallel_for(volumes.size(), [&](std::size_t t) {
     const QuadraticTet nodes = quadratic_nodes(mesh, static_cast<TetIndex>(t));
     volumes[t] = signed_volume(nodes[0], nodes[1], nodes[2], nodes[3]);
-    if (least_scaled_jacobian_bound(nodes) > kStraight) return;
+    if (least_scaled_jacobian_bound(nodes) > kStraightJacobian) return;
     const auto coefficients = jacobian_coefficients(nodes);
     // The integral of a polynomial over the unit tetrahedron is the mean of its coefficients over six.
     volumes[t] = std::accumulate(coefficients.begin(), coefficients.end(), 0.0) / (6.0 * coefficients.size());

@@ -10,7 +10,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <vector>
 
 namespace octafront {
 
@@ -34,8 +36,14 @@ inline Vec3 unit_normal(Vec3 a, Vec3 b, Vec3 c) {
   return normalized(double_area_normal(a, b, c));
 }
 
+/// Edge of an equilateral triangle of area 1.
+inline constexpr double kEdgeOfUnitArea = 1.5196713713031851;
+
 inline double triangle_area(Vec3 a, Vec3 b, Vec3 c) {
   return 0.5 * length(double_area_normal(a, b, c));
+}
+inline double triangle_area(const std::vector<Vec3>& points, const std::array<std::uint32_t, 3>& t) {
+  return triangle_area(points[t[0]], points[t[1]], points[t[2]]);
 }
 
 constexpr Vec3 centroid(Vec3 a, Vec3 b, Vec3 c) {

@@ -156,7 +156,7 @@ struct View {
 };
 
 View view_from(VertexIndex center, std::span<const Vec3> points, const Triangle& t, std::uint32_t number) {
-  constexpr double kRounding = 1e-9;
+  constexpr double kRoundingOfView = 1e-9;
   Box3 box;
   std::array<Vec3, 2> u;
   int n = 0;
@@ -167,7 +167,7 @@ View view_from(VertexIndex center, std::span<const Vec3> points, const Triangle&
   if (!usable) return {{{-2, -2, -2}, {2, 2, 2}}, number};
   const double squared_chord = squared_length(u[1] - u[0]);
   // An arc of angle x rises by 1 - cos(x / 2) = c^2 / 8 + ..., at most c^2 / 4 up to half a turn.
-  const double bulge = squared_chord / 4 + kRounding;
+  const double bulge = squared_chord / 4 + kRoundingOfView;
   box.add(u[0]);
   box.add(u[1]);
   box.lo -= Vec3{bulge, bulge, bulge};

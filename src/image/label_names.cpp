@@ -20,7 +20,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-bool is_whole(std::string_view word, std::int64_t& value) {
+bool is_whole_number(std::string_view word, std::int64_t& value) {
   double number = 0;
   if (!io::parse_number(word, number) || number != std::floor(number) || !(std::abs(number) < 1e15)) return false;
   value = static_cast<std::int64_t>(number);
@@ -135,7 +135,7 @@ class Table {
 
   bool has_titles() {
     std::int64_t value = 0;
-    if (is_whole(lines_[0].words[0], value)) return false;
+    if (is_whole_number(lines_[0].words[0], value)) return false;
     const Line& titles = lines_[0];
     value_column_ = column(titles, {"value", "labelvalue", "index", "id", "number", "label"});
     name_column_ = column(titles, {"name", "labelname", "label name", "structure", "region"});
@@ -147,7 +147,8 @@ class Table {
     for (std::size_t i = 1; i < lines_.size(); ++i) {
       const Line& line = lines_[i];
       std::int64_t value = 0;
-      if (line.words.size() <= std::max(value_column_, name_column_) || !is_whole(line.words[value_column_], value))
+      if (line.words.size() <= std::max(value_column_, name_column_) ||
+          !is_whole_number(line.words[value_column_], value))
         fail(line);
       names_.add(value, line.words[name_column_], line.at);
     }
@@ -159,7 +160,7 @@ class Table {
     const std::size_t behind = numbers_behind_names();
     for (const Line& line : lines_) {
       std::int64_t value = 0;
-      if (line.words.size() < 2 || !is_whole(line.words[0], value)) fail(line);
+      if (line.words.size() < 2 || !is_whole_number(line.words[0], value)) fail(line);
       const auto quoted = std::find(line.quoted.begin() + 1, line.quoted.end(), true);
       if (quoted != line.quoted.end()) {
         names_.add(value, line.words[static_cast<std::size_t>(quoted - line.quoted.begin())], line.at);
@@ -222,9 +223,9 @@ class JsonNames {
   /// {"3": "liver"} or {"liver": 3}
   void add_pair(const std::string& key, const Json& value) {
     std::int64_t number = 0;
-    if (value.is_string() && is_whole(key, number)) return add(number, value.get<std::string>());
+    if (value.is_string() && is_whole_number(key, number)) return add(number, value.get<std::string>());
     if (value.is_number_integer()) return add(value.get<std::int64_t>(), key);
-    if (value.is_object() && is_whole(key, number) && value.contains("name") && value["name"].is_string())
+    if (value.is_object() && is_whole_number(key, number) && value.contains("name") && value["name"].is_string())
       return add(number, value["name"].get<std::string>());
     input_.fail(fmt::format("the entry {} is neither \"3\": \"liver\" nor \"liver\": 3", io::in_quotes(key)));
   }

@@ -28,9 +28,9 @@ std::string unescaped(std::string_view text) {
   return out;
 }
 
-class Parser {
+class PlistParser {
  public:
-  explicit Parser(const io::Input& input) : input_(input), rest_(input.bytes) {}
+  explicit PlistParser(const io::Input& input) : input_(input), rest_(input.bytes) {}
 
   Plist parse() {
     if (rest_.starts_with("bplist")) input_.fail("is a binary property list; XML is read here");
@@ -100,7 +100,7 @@ const Plist& Plist::at(const std::string& key) const {
 }
 
 Plist parse_plist(const io::Input& input) {
-  return Parser(input).parse();
+  return PlistParser(input).parse();
 }
 
 }  // namespace octafront::image

@@ -14,7 +14,7 @@ namespace octafront::image {
 namespace {
 
 constexpr std::string_view kMagic = "#INRIMAGE-4#{";
-constexpr std::size_t kBlock = 256;
+constexpr std::size_t kHeaderBlock = 256;
 
 class Inr {
  public:
@@ -45,8 +45,9 @@ class Inr {
     constexpr std::size_t kMostBlocks = 64;
     std::string header;
     while (header.find("##}") == std::string::npos) {
-      if (header.size() == kMostBlocks * kBlock) input_.fail("the INR header has no end (##}); the file is damaged");
-      header += source_.require(kBlock, "the INR header");
+      if (header.size() == kMostBlocks * kHeaderBlock)
+        input_.fail("the INR header has no end (##}); the file is damaged");
+      header += source_.require(kHeaderBlock, "the INR header");
     }
     for (std::size_t at = 0; at < header.size();) {
       const std::size_t end = std::min(header.find('\n', at), header.size());

@@ -17,7 +17,7 @@
 namespace octafront::image {
 namespace {
 
-constexpr std::uint64_t kBlock = 512;
+constexpr std::uint64_t kTarBlock = 512;
 
 /// A file of a tar.
 struct Entry {
@@ -52,12 +52,12 @@ class Project {
   void for_each_file(const std::function<bool(const Entry&, ByteSource&)>& visit) const {
     ByteSource source(input_, 0, Packing::kDetect);
     for (;;) {
-      const std::string header(source.take(kBlock));
-      if (header.size() < kBlock || header.find_first_not_of('\0') == std::string::npos) return;
+      const std::string header(source.take(kTarBlock));
+      if (header.size() < kTarBlock || header.find_first_not_of('\0') == std::string::npos) return;
       Entry entry{header.substr(0, 100), octal(source, header.substr(124, 12))};
       entry.name.resize(std::min(entry.name.find('\0'), entry.name.size()));
       entry.name.erase(0, entry.name.rfind('/') + 1);
-      const std::uint64_t padded = (entry.size + kBlock - 1) / kBlock * kBlock;
+      const std::uint64_t padded = (entry.size + kTarBlock - 1) / kTarBlock * kTarBlock;
       const bool is_file = header[156] == '0' || header[156] == '\0';
       if (is_file && visit(entry, source)) {
         source.skip(padded - entry.size, "the archive");
@@ -206,7 +206,7 @@ class Project {
 }  // namespace
 
 bool is_invesalius(std::string_view head) {
-  return head.size() >= kBlock && head.substr(257, 5) == "ustar";
+  return head.size() >= kTarBlock && head.substr(257, 5) == "ustar";
 }
 
 Image read_invesalius(const Reading& reading) {

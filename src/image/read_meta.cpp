@@ -16,13 +16,7 @@
 namespace octafront::image {
 namespace {
 
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && io::is_blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && io::is_blank(text.back())) text.remove_suffix(1);
-  return text;
-}
-
-std::optional<VoxelType> type_of(const std::string& name) {
+std::optional<VoxelType> type_of_meta(const std::string& name) {
   static const std::map<std::string, VoxelType> kNames{
       {"MET_CHAR", VoxelType::kInt8},         {"MET_UCHAR", VoxelType::kUInt8},   {"MET_SHORT", VoxelType::kInt16},
       {"MET_USHORT", VoxelType::kUInt16},     {"MET_INT", VoxelType::kInt32},     {"MET_UINT", VoxelType::kUInt32},
@@ -62,7 +56,7 @@ class Meta {
     std::size_t at = 0;
     while (at < input_.bytes.size()) {
       const std::size_t end = std::min(input_.bytes.find('\n', at), input_.bytes.size());
-      const std::string_view line = trimmed(input_.bytes.substr(at, end - at));
+      const std::string_view line = io::trimmed(input_.bytes.substr(at, end - at));
       const char* const begin = input_.bytes.data() + at;
       at = std::min(end + 1, input_.bytes.size());
       const std::size_t equals = line.find('=');
@@ -70,8 +64,8 @@ class Meta {
       if (equals == std::string_view::npos)
         input_.fail_at_line(begin, fmt::format("expected \"Key = value\" in the MetaImage header, found {}",
                                                io::in_quotes(line.substr(0, 60))));
-      const std::string key(trimmed(line.substr(0, equals)));
-      values_.insert_or_assign(key, Value{std::string(trimmed(line.substr(equals + 1))), begin});
+      const std::string key(io::trimmed(line.substr(0, equals)));
+      values_.insert_or_assign(key, Value{std::string(io::trimmed(line.substr(equals + 1))), begin});
       if (key != "ElementDataFile") continue;
       data_at_ = at;
       return;
@@ -97,7 +91,7 @@ class Meta {
     const auto found = values_.find(key);
     if (found == values_.end()) return {};
     std::vector<double> all;
-    std::string_view rest = trimmed(found->second.text);
+    std::string_view rest = io::trimmed(found->second.text);
     while (!rest.empty()) {
       std::size_t end = 0;
       while (end < rest.size() && !io::is_blank(rest[end])) ++end;
@@ -105,7 +99,7 @@ class Meta {
       if (!io::parse_number(rest.substr(0, end), value) || !std::isfinite(value))
         input_.fail_at_line(found->second.at, fmt::format("expected a number, found {}", io::in_quotes(rest)));
       all.push_back(value);
-      rest = trimmed(rest.substr(end));
+      rest = io::trimmed(rest.substr(end));
     }
     if (all.size() != count)
       input_.fail_at_line(found->second.at,
@@ -167,7 +161,7 @@ class Meta {
 
   StoredVoxels stored() const {
     const std::string name = text("ElementType");
-    const std::optional<VoxelType> type = type_of(name);
+    const std::optional<VoxelType> type = type_of_meta(name);
     if (!type)
       input_.fail_at_line(at("ElementType"),
                           fmt::format("ElementType {} is no type of voxels that is read here", io::in_quotes(name)));
@@ -210,11 +204,11 @@ class Meta {
   std::vector<std::string> names_of(const std::string& file) const {
     if (file.starts_with("LIST")) return listed();
     std::vector<std::string> words;
-    for (std::string_view rest = trimmed(file); !rest.empty();) {
+    for (std::string_view rest = io::trimmed(file); !rest.empty();) {
       std::size_t end = 0;
       while (end < rest.size() && !io::is_blank(rest[end])) ++end;
       words.emplace_back(rest.substr(0, end));
-      rest = trimmed(rest.substr(end));
+      rest = io::trimmed(rest.substr(end));
     }
     if (words.size() < 3 || words[0].find('%') == std::string::npos) return {file};
     const auto number = [&](std::size_t i) {
@@ -229,7 +223,7 @@ class Meta {
     std::vector<std::string> names;
     for (std::size_t begin = data_at_; begin < input_.bytes.size();) {
       const std::size_t end = std::min(input_.bytes.find('\n', begin), input_.bytes.size());
-      const std::string_view line = trimmed(input_.bytes.substr(begin, end - begin));
+      const std::string_view line = io::trimmed(input_.bytes.substr(begin, end - begin));
       if (!line.empty()) names.emplace_back(line);
       begin = end + 1;
     }
@@ -247,7 +241,7 @@ class Meta {
 
 bool is_meta(std::string_view head) {
   // Other files may have lines with "="; these keys only MetaImage has.
-  const std::string_view begin = trimmed(head.substr(0, 64));
+  const std::string_view begin = io::trimmed(head.substr(0, 64));
   return (begin.starts_with("ObjectType") || begin.starts_with("NDims") || begin.starts_with("Comment")) &&
          head.find("DimSize") != std::string_view::npos && head.find("Element") != std::string_view::npos;
 }

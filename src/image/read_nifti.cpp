@@ -112,7 +112,7 @@ Header header_2(const Fields& f) {
   return h;
 }
 
-std::optional<VoxelType> type_of(int datatype) {
+std::optional<VoxelType> type_of_nifti(int datatype) {
   switch (datatype) {
     case 2:
       return VoxelType::kUInt8;
@@ -322,7 +322,7 @@ class Nifti {
   }
 
   StoredVoxels stored() const {
-    const std::optional<VoxelType> type = type_of(header_.datatype);
+    const std::optional<VoxelType> type = type_of_nifti(header_.datatype);
     if (!type)
       input_.fail(fmt::format("holds {}, not one number per voxel; convert it to a scalar image first",
                               name_of_other_type(header_.datatype)));
@@ -376,7 +376,7 @@ class Nifti {
     return name.replace_extension(name.extension() == ".HDR" ? ".IMG" : ".img").string() + (is_compressed ? ".gz" : "");
   }
 
-  void note(std::string sentence) { image_.notes.push_back(std::move(sentence)); }
+  void note(std::string_view sentence) { image_.notes.emplace_back(sentence); }
 
   const Reading& reading_;
   const io::Input& input_;
@@ -393,7 +393,7 @@ bool is_nifti(std::string_view head) {
   if (head.size() < kHeader1) return false;
   const std::optional<Header> h = header_of(head);
   // Analyze has no magic word: its extent and a possible type must do.
-  return h && h->dim[0] >= 1 && h->dim[0] <= 7 && (!h->is_analyze || type_of(h->datatype));
+  return h && h->dim[0] >= 1 && h->dim[0] <= 7 && (!h->is_analyze || type_of_nifti(h->datatype));
 }
 
 Image read_nifti(const Reading& reading) {

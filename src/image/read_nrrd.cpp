@@ -24,15 +24,9 @@ std::string lower(std::string_view text) {
   return out;
 }
 
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && io::is_blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && io::is_blank(text.back())) text.remove_suffix(1);
-  return text;
-}
-
 std::vector<std::string> words_of(std::string_view text) {
   std::vector<std::string> words;
-  for (text = trimmed(text); !text.empty(); text = trimmed(text)) {
+  for (text = io::trimmed(text); !text.empty(); text = io::trimmed(text)) {
     std::size_t end = 0;
     while (end < text.size() && !io::is_blank(text[end])) ++end;
     words.emplace_back(text.substr(0, end));
@@ -41,7 +35,7 @@ std::vector<std::string> words_of(std::string_view text) {
   return words;
 }
 
-std::optional<VoxelType> type_of(const std::string& name) {
+std::optional<VoxelType> type_of_nrrd(const std::string& name) {
   static const std::map<std::string, VoxelType> kNames{
       {"signed char", VoxelType::kInt8},
       {"int8", VoxelType::kInt8},
@@ -131,7 +125,7 @@ class Nrrd {
 
   void read_line(std::string_view line, const char* at) {
     if (line.starts_with('#') || list_ == List::kOpen) {
-      if (list_ == List::kOpen && !line.starts_with('#')) files_.names.emplace_back(trimmed(line));
+      if (list_ == List::kOpen && !line.starts_with('#')) files_.names.emplace_back(io::trimmed(line));
       return;
     }
     const std::size_t colon = line.find(':');
@@ -142,10 +136,10 @@ class Nrrd {
       keys_.insert_or_assign(std::string(line.substr(0, colon)), std::string(line.substr(colon + 2)));
       return;
     }
-    std::string name = lower(trimmed(line.substr(0, colon)));
+    std::string name = lower(io::trimmed(line.substr(0, colon)));
     std::erase(name, ' ');  // "data file" is "datafile" too
     std::erase(name, '-');
-    const std::string value(trimmed(line.substr(colon + 1)));
+    const std::string value(io::trimmed(line.substr(colon + 1)));
     fields_.insert_or_assign(name, Field{value, at});
     if (name == "datafile" && value.starts_with("LIST")) list_ = List::kOpen;
   }
@@ -234,11 +228,11 @@ class Nrrd {
     const Field* f = field("spacedirections");
     std::vector<std::optional<Vec3>> all;
     if (f == nullptr) return all;
-    std::string_view rest = trimmed(f->value);
+    std::string_view rest = io::trimmed(f->value);
     while (!rest.empty()) {
       if (rest.starts_with("none")) {
         all.emplace_back(std::nullopt);
-        rest = trimmed(rest.substr(4));
+        rest = io::trimmed(rest.substr(4));
         continue;
       }
       all.emplace_back(vector(*f, rest));
@@ -259,7 +253,7 @@ class Nrrd {
     const std::vector<std::string> words = words_of(inside);
     if (words.size() != 3)
       input_.fail_at_line(f.at, fmt::format("expected three coordinates, found {}", io::in_quotes(rest)));
-    rest = trimmed(rest.substr(end + 1));
+    rest = io::trimmed(rest.substr(end + 1));
     return {number(f, words[0]), number(f, words[1]), number(f, words[2])};
   }
 
@@ -304,7 +298,7 @@ class Nrrd {
 
   StoredVoxels stored() const {
     const Field& f = required("type");
-    const std::optional<VoxelType> type = type_of(lower(f.value));
+    const std::optional<VoxelType> type = type_of_nrrd(lower(f.value));
     if (!type)
       input_.fail_at_line(f.at, fmt::format("{} is no type of voxels that is read here", io::in_quotes(f.value)));
     StoredVoxels s;

@@ -17,7 +17,7 @@
 namespace octafront::image {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 const std::map<std::string, VoxelType> kTypes{{"int8", VoxelType::kInt8},       {"uint8", VoxelType::kUInt8},
                                               {"int16", VoxelType::kInt16},     {"uint16", VoxelType::kUInt16},

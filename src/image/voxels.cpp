@@ -103,7 +103,7 @@ Image::Values as_integers(std::size_t n, const At& at, std::vector<std::string>&
   return as_floats(n, at, range, notes);
 }
 
-bool is_whole(double x) {
+bool is_whole_of_32_bits(double x) {
   return x == std::floor(x) && std::abs(x) < 0x1p31;
 }
 
@@ -119,7 +119,8 @@ Image::Values decoded(std::string_view bytes, const StoredVoxels& stored, std::v
       if (!is_scaled) return collected<T>(n, at);
     }
     if (!is_scaled) return as_integers(n, at, notes);
-    if (is_whole(stored.slope) && is_whole(stored.intercept)) return as_integers(n, scaled, notes);
+    if (is_whole_of_32_bits(stored.slope) && is_whole_of_32_bits(stored.intercept))
+      return as_integers(n, scaled, notes);
   }
   if (!is_scaled) return as_floats(n, at, range_of(n, at), notes);
   Range range = range_of(n, scaled);

@@ -20,21 +20,21 @@ namespace octafront::improve {
 namespace {
 
 /// What the sum that elements lack must fall by.
-constexpr double kLeastFall = 0.1;
+constexpr double kLeastFallByEdit = 0.1;
 /// New edges are at most this many times as long as the longest edge of the star that they replace.
-constexpr double kLongest = 1.5;
+constexpr double kLongestOfEdit = 1.5;
 /// The boundary strays by this part of the edges around the vertex that goes at most, or by the tolerance, if less.
 constexpr double kMovedPart = 0.25;
 /// Cosine of the angle between a new boundary triangle and the input beneath it, unless an old one was worse.
 constexpr double kFacing = 0.5;
 /// Below this, features may give way too: where curves of a scan's noise meet, nothing else is left to move.
-constexpr float kPoor = 0.2f;
+constexpr float kPoorAtFeature = 0.2f;
 /// Triangles that lie beyond the tolerance already may be followed by such as lie so much farther: samples differ.
 constexpr double kNoWorse = 1.02;
 /// How finely triangles are looked at, in edges: over these the distance changes evenly.
 constexpr double kSpacing = 0.1;
 /// Steps per vertex that moves at most.
-constexpr int kSteps = 8;
+constexpr int kStepsOfEdit = 8;
 
 /// Whether two sorted ranges have a common value that is not in a third.
 template <typename T>
@@ -89,7 +89,7 @@ class BoundaryEditor {
  private:
   struct Collapse {
     VertexIndex gone = kNone, onto = kNone;
-    double gain = kLeastFall;
+    double gain = kLeastFallByEdit;
     std::vector<TetIndex> old_tets;
     std::vector<Tet> new_tets;
     std::vector<Shape> shapes;
@@ -115,7 +115,7 @@ class BoundaryEditor {
         if (w != u && mesh_.on_boundary(w)) consider(u, w);
     }
     if (best_.gone == kNone) {
-      const bool on_features = mesh_.shape(t).score < kPoor;
+      const bool on_features = mesh_.shape(t).score < kPoorAtFeature;
       return std::any_of(corners.begin(), corners.end(), [&](VertexIndex v) { return move(v, on_features); });
     }
     if (!block_.replace(best_.old_tets, best_.new_tets, best_.shapes, created_, &best_.change)) return false;
@@ -139,13 +139,13 @@ class BoundaryEditor {
     take_old();
     if (walls_.hold(old_)) return false;
     const double limit = limit_at(from);
-    descent_.descend(star_edit_.batch(), from, kSteps, [&](Vec3 to) {
+    descent_.descend(star_edit_.batch(), from, kStepsOfEdit, [&](Vec3 to) {
       if (!star_edit_.acceptable(to, floor_)) return false;
       plan_move(v, to);
       return guide_.is_near_home(v, to, limit) && is_true(from, limit);
     });
     if (!descent_.moved()) return false;
-    if (star_edit_.current_lack() - descent_.lack() < kLeastFall) return false;
+    if (star_edit_.current_lack() - descent_.lack() < kLeastFallByEdit) return false;
     plan_move(v, descent_.place());
     if (!crosses_nothing() || !stays_near()) return false;
     star_edit_.evaluate(descent_.place());
@@ -206,7 +206,7 @@ class BoundaryEditor {
       Tet made = mesh_.tet(h / 4);
       made[h % 4] = c.onto;
       for (const VertexIndex v : made)
-        if (distance(p, mesh_.point(v)) > kLongest * longest) return false;
+        if (distance(p, mesh_.point(v)) > kLongestOfEdit * longest) return false;
       c.new_tets.push_back(made);
       batch_.add(mesh_.point(made[0]), mesh_.point(made[1]), mesh_.point(made[2]), mesh_.point(made[3]));
     }

@@ -12,7 +12,7 @@ namespace {
 
 /// A boundary triangle this near to the input, in edge lengths, is as true as the size asks for: the chord of a circle
 /// of 24 elements is .033 of its length away from it.
-constexpr double kNear = 0.03;
+constexpr double kTrueToInput = 0.03;
 /// Cosine of the angle between a boundary triangle and the input beneath it that is always allowed.
 constexpr double kFacesAlike = 0.8;
 /// A curve vertex farther from the input's curves than this, in edge lengths, belongs to none of them. Those of the
@@ -148,7 +148,7 @@ BoundaryGuide::Truth BoundaryGuide::truth_of(std::span<const TriangleCorners> tr
 }
 
 double BoundaryGuide::near_at(Vec3 p, double edge) const {
-  return leeway_.at(p, kNear * edge);
+  return leeway_.at(p, kTrueToInput * edge);
 }
 
 bool BoundaryGuide::is_true(const Truth& truth, double near) {

@@ -12,13 +12,13 @@ namespace octafront::improve {
 namespace {
 
 /// New edges are at most this many times as long as the mean edge of the star that they replace: sizes stay honest.
-constexpr double kLongest = 2;
+constexpr double kLongestOfCollapse = 2;
 /// What the sum of (1 - beta)^2 must fall to, as a part of what it was; or by how much the worst score must rise. The
 /// sum and not the mean: elements go as well, and meshes of others often have too many (Netgen's start meshes a third).
 constexpr double kFall = 0.9;
 constexpr float kRise = 0.05f;
 /// What the sum that elements lack must fall by.
-constexpr double kLeastFall = 0.1;
+constexpr double kLeastFallByCollapse = 0.1;
 constexpr double kNever = 1e9;
 
 class Collapser {
@@ -55,7 +55,7 @@ class Collapser {
     old_lack_ = goal_ == Goal::kFewestPoor ? star_.current_lack() : star_.current_deficit();
     find_neighbours(v);
     VertexIndex best = kNone;
-    double least = goal_ == Goal::kFewestPoor ? old_lack_ - kLeastFall : kFall * old_lack_;
+    double least = goal_ == Goal::kFewestPoor ? old_lack_ - kLeastFallByCollapse : kFall * old_lack_;
     for (const VertexIndex u : neighbours_) {
       const double lack = lack_at(u);
       if (lack < least) least = lack, best = u;
@@ -74,7 +74,7 @@ class Collapser {
     double sum = 0;
     for (const VertexIndex u : neighbours_) sum += distance(mesh_.point(v), mesh_.point(u));
     const double mean = sum / static_cast<double>(neighbours_.size());
-    squared_limit_ = kLongest * kLongest * mean * mean;
+    squared_limit_ = kLongestOfCollapse * kLongestOfCollapse * mean * mean;
   }
 
   /// What is to fall, with the vertex at its neighbour u: sum of (1 - beta)^2, or for kFewestPoor the sum of what the

@@ -7,12 +7,12 @@
 namespace octafront::improve {
 namespace {
 
-constexpr VertexIndex kLeastBlock = 4096;  ///< vertices: below this most of a block is its rim
-constexpr VertexIndex kMostBlocks = 256;
+constexpr VertexIndex kLeastEditBlock = 4096;  ///< vertices: below this most of a block is its rim
+constexpr VertexIndex kMostEditBlocks = 256;
 /// Slots reserved for each block: some, and a part of the number of elements that it works on. Passes make little more
 /// than they take away; what finds no slot is left as it is.
 constexpr std::size_t kRoom = 64;
-constexpr std::size_t kRoomPart = 4;
+constexpr std::size_t kBlockRoomPart = 4;
 
 /// Takes the last `count` of a list, in the order in which they would come off it.
 template <typename Index>
@@ -26,7 +26,7 @@ std::vector<Index> take_last(std::vector<Index>& from, std::size_t count) {
 
 EditBlocks::EditBlocks(EditMesh& mesh, const std::vector<TetIndex>& tets, int stage, bool adds_vertices) : mesh_(mesh) {
   const auto n = static_cast<VertexIndex>(mesh.original_.size());
-  const VertexIndex size = std::max(kLeastBlock, n / kMostBlocks + 1);
+  const VertexIndex size = std::max(kLeastEditBlock, n / kMostEditBlocks + 1);
   if (stage + 1 == kStages || n <= size) {
     shares_.push_back({EditBlock(mesh), tets, {}, {}});
     return;
@@ -47,13 +47,13 @@ void EditBlocks::divide(const std::vector<TetIndex>& tets, VertexIndex size, Ver
     (whole ? own[b] : left_).push_back(t);
     vertices += whole && adds_vertices;
   }
-  for (const auto& o : own) room += o.empty() ? 0 : kRoom + o.size() / kRoomPart;
+  for (const auto& o : own) room += o.empty() ? 0 : kRoom + o.size() / kBlockRoomPart;
   if (mesh_.complex_.free.size() < room) mesh_.reserve_tets(room - mesh_.complex_.free.size());
   if (mesh_.free_points_.size() < vertices) mesh_.reserve_points(vertices - mesh_.free_points_.size());
   for (VertexIndex b = 0; b < own.size(); ++b) {
     if (own[b].empty()) continue;
     const VertexIndex first = b * size < shift ? 0 : b * size - shift, last = (b + 1) * size - shift;
-    EditBlock block(mesh_, first, last - first, take_last(mesh_.complex_.free, kRoom + own[b].size() / kRoomPart),
+    EditBlock block(mesh_, first, last - first, take_last(mesh_.complex_.free, kRoom + own[b].size() / kBlockRoomPart),
                     take_last(mesh_.free_points_, adds_vertices ? own[b].size() : 0));
     shares_.push_back({std::move(block), std::move(own[b]), {}, {}});
   }

@@ -19,7 +19,7 @@ namespace octafront::improve {
 namespace {
 
 /// Room for the slots that blocks will ask for: otherwise the first to ask has the whole mesh copied.
-constexpr std::size_t kRoomPart = 16, kLeastRoom = 1024;
+constexpr std::size_t kMeshRoomPart = 16, kLeastRoom = 1024;
 
 void renumber_faces(TetMesh& mesh, const std::vector<VertexIndex>& new_of_old) {
   for (std::vector<Triangle>* faces : {&mesh.boundary, &mesh.interfaces})
@@ -59,7 +59,7 @@ void EditMesh::take(TetMesh& mesh) {
   });
   renumber_faces(mesh, new_of_old);
   had_regions_ = !mesh.region.empty();
-  const std::size_t room = mesh.tets.size() + mesh.tets.size() / kRoomPart + kLeastRoom;
+  const std::size_t room = mesh.tets.size() + mesh.tets.size() / kMeshRoomPart + kLeastRoom;
   complex_.tets.reserve(room);
   complex_.across.reserve(4 * room);
   complex_.marks.reserve(room);

@@ -9,11 +9,11 @@
 namespace octafront::improve {
 namespace {
 
-constexpr double kDifference = 1e-6;    ///< step of the differences, in edge lengths
-constexpr double kFirstDamping = 0.01;  ///< of the mean second derivative
-constexpr double kFarthest = 0.5;       ///< longest step, in mean edge lengths
+constexpr double kPoorDifference = 1e-6;  ///< step of the differences, in edge lengths
+constexpr double kFirstDamping = 0.01;    ///< of the mean second derivative
+constexpr double kFarthestForPoor = 0.5;  ///< longest step, in mean edge lengths
 
-constexpr int kSteps = 8;  ///< per vertex at most
+constexpr int kStepsForPoor = 8;  ///< per vertex at most
 
 class Reliever {
  public:
@@ -22,7 +22,8 @@ class Reliever {
   /// True if the vertex moved.
   bool run(VertexIndex v, std::span<const HalfFace> faces) {
     if (!star_.load(v, faces)) return false;
-    descent_.descend(star_.batch(), mesh_.point(v), kSteps, [&](Vec3 at) { return star_.acceptable(at, floor_); });
+    descent_.descend(star_.batch(), mesh_.point(v), kStepsForPoor,
+                     [&](Vec3 at) { return star_.acceptable(at, floor_); });
     if (!descent_.moved()) return false;
     star_.evaluate(descent_.place());
     star_.commit();
@@ -43,8 +44,8 @@ void LackDescent::begin(ShapeBatch& batch, Vec3 start) {
   moved_ = false;
   damping_ = kFirstDamping;
   const double edge = batch.mean_edge(start);
-  difference_ = kDifference * edge;
-  farthest_ = kFarthest * edge;
+  difference_ = kPoorDifference * edge;
+  farthest_ = kFarthestForPoor * edge;
   batch.evaluate_star(start);
   lack_ = lack_of(batch);
 }

@@ -17,7 +17,7 @@ constexpr double kNarrow = 20 * std::numbers::pi / 180;
 constexpr double kThin = 0.1;
 /// A wedge is looked for this far from the element, in sizes, and must show at two places: less is a fold, which is
 /// ours to smooth over.
-constexpr double kNear = 0.5, kFar = 1.6;
+constexpr double kNearWedge = 0.5, kFarWedge = 1.6;
 constexpr int kPlaces = 2;
 /// Steps of a walk along a feature curve: it ends sooner unless the input is far finer than the elements.
 constexpr int kMostSteps = 1000;
@@ -88,9 +88,9 @@ InputForce::Cause InputForce::cause_at(Vec3 center, double h) const {
   int wedge = 0, thin = 0;
   for (const Vec3 d : kDirections) {
     const Wall wall = wall_at(center + d * h, center, h);
-    if (wall.distance > kFar * h) continue;
+    if (wall.distance > kFarWedge * h) continue;
     thin += wall.thickness < kThin * h && wall.distance < h;
-    wedge += wall.distance > kNear * h && wall.thickness < std::tan(kNarrow) * wall.distance;
+    wedge += wall.distance > kNearWedge * h && wall.thickness < std::tan(kNarrow) * wall.distance;
   }
   if (wedge >= kPlaces) return Cause::kWedge;
   return thin >= kPlaces ? Cause::kThin : Cause::kNone;
@@ -98,7 +98,7 @@ InputForce::Cause InputForce::cause_at(Vec3 center, double h) const {
 
 /// How thick the body is at the point of the surface nearest to p, up to the sheet that faces the other way.
 InputForce::Wall InputForce::wall_at(Vec3 p, Vec3 center, double h) const {
-  const TriangleTree::Nearest at = input_.tree.nearest(p, kFar * kFar * h * h);
+  const TriangleTree::Nearest at = input_.tree.nearest(p, kFarWedge * kFarWedge * h * h);
   if (at.triangle == kNone) return {HUGE_VAL, HUGE_VAL};
   const auto normal_of = [&](std::uint32_t t) {
     const auto& [a, b, c] = input_.tree.corners(t);

@@ -13,12 +13,12 @@
 namespace octafront::improve {
 namespace {
 
-constexpr int kLargestCavity = 48;    ///< tets
-constexpr int kClimbSteps = 4;        ///< per growth step
-constexpr int kLastSteps = 12;        ///< for the best cavity
-constexpr float kLeastGain = 0.02f;   ///< more elements must be worth it
-constexpr float kLeastRelief = 0.3f;  ///< the same for what they lack
-constexpr int kPatience = 10;         ///< growth steps without a better star before giving up
+constexpr int kLargestCavity = 48;           ///< tets
+constexpr int kClimbSteps = 4;               ///< per growth step
+constexpr int kLastSteps = 12;               ///< for the best cavity
+constexpr float kLeastGainOfVertex = 0.02f;  ///< more elements must be worth it
+constexpr float kLeastRelief = 0.3f;         ///< the same for what they lack
+constexpr int kPatience = 10;                ///< growth steps without a better star before giving up
 /// After so many elements in a row that could not be bettered the rest of a block is left: in walls thinner than their
 /// elements all are poor, and none has room for a vertex. Elsewhere some tens in a row are the most.
 constexpr int kHopeless = 256;
@@ -57,7 +57,7 @@ class Inserter {
     tets_.resize(best_size_);
     load_star();
     const Vec3 p = climb(best_place_, kLastSteps);
-    if (gain() <= (goal_ == Goal::kWorst ? kLeastGain : kLeastRelief) || !star_.star_acceptable(p, floor_))
+    if (gain() <= (goal_ == Goal::kWorst ? kLeastGainOfVertex : kLeastRelief) || !star_.star_acceptable(p, floor_))
       return false;
     return commit(p);
   }

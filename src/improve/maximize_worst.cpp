@@ -5,8 +5,8 @@
 namespace octafront::improve {
 namespace {
 
-constexpr double kFirstReach = 0.15;  ///< in squared edge lengths
-constexpr double kDifference = 1e-6;  ///< step of the differences, in edge lengths
+constexpr double kFirstReach = 0.15;       ///< in squared edge lengths
+constexpr double kWorstDifference = 1e-6;  ///< step of the differences, in edge lengths
 constexpr int kDualSteps = 24;
 constexpr double kDualGap = 1e-3;
 
@@ -18,7 +18,7 @@ void WorstMaximizer::begin(ShapeBatch& batch, Vec3 start) {
   size_ = batch.size;
   const double edge = batch.mean_edge(start);
   reach_ = kFirstReach * edge * edge;
-  difference_ = kDifference * edge;
+  difference_ = kWorstDifference * edge;
 }
 
 void WorstMaximizer::linearize(ShapeBatch& batch, std::span<const Vec3> axes) {

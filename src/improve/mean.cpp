@@ -15,9 +15,10 @@
 namespace octafront::improve {
 namespace {
 
-constexpr double kDifference = 0.04;  ///< step of the differences, in mean edge lengths: wide enough to see the bend
-constexpr double kFarthest = 0.2;     ///< longest step along an axis, in mean edge lengths
-constexpr double kUphill = 0.1;       ///< step where the second derivative gives none, in mean edge lengths
+constexpr double kMeanDifference =
+    0.04;  ///< step of the differences, in mean edge lengths: wide enough to see the bend
+constexpr double kFarthestForMean = 0.2;  ///< longest step along an axis, in mean edge lengths
+constexpr double kUphill = 0.1;           ///< step where the second derivative gives none, in mean edge lengths
 constexpr double kShorten = 0.4;
 constexpr int kTries = 2;
 constexpr double kLeastSlide = 0.03;  ///< steps on the surface below this, in mean edge lengths, are not worth a search
@@ -68,7 +69,7 @@ class MeanSmoother {
  private:
   // Steps, in mean edge lengths; `here`: the sum as it is.
   Vec3 free_step(double here) {
-    constexpr double h = kDifference, r = 0.57735026918962576;
+    constexpr double h = kMeanDifference, r = 0.57735026918962576;
     constexpr std::array<Vec3, 4> kCorners{{{r, r, r}, {r, -r, -r}, {-r, r, -r}, {-r, -r, r}}};
     Vec3 sum;
     double mean = 0;
@@ -80,18 +81,18 @@ class MeanSmoother {
     const Vec3 slope = (0.75 / h) * sum;
     const double bend = 2 * mean / (h * h), steep = length(slope);
     if (!(steep > 0)) return {};
-    const double far = bend > 0 ? std::min(steep / bend, kFarthest) : kUphill;
+    const double far = bend > 0 ? std::min(steep / bend, kFarthestForMean) : kUphill;
     return (-far / steep) * slope;
   }
 
   Vec3 newton_step(std::span<const Vec3> axes, double here) {
-    constexpr double h = kDifference;
+    constexpr double h = kMeanDifference;
     Vec3 step;
     for (const Vec3 axis : axes) {
       const double ahead = sketch_.deficit_at(h * axis), behind = sketch_.deficit_at(-h * axis);
       const double slope = (ahead - behind) / (2 * h), bend = (ahead + behind - 2 * here) / (h * h);
       const double wanted = bend > 0 ? -slope / bend : slope > 0 ? -kUphill : kUphill;
-      step += std::clamp(wanted, -kFarthest, kFarthest) * axis;
+      step += std::clamp(wanted, -kFarthestForMean, kFarthestForMean) * axis;
     }
     return step;
   }

@@ -8,7 +8,7 @@
 namespace octafront::improve {
 namespace {
 
-constexpr int kSteps = 8;  ///< steps per vertex at most
+constexpr int kStepsOfVertex = 8;  ///< steps per vertex at most
 
 /// What the worst must gain for each unit that the sum of (1 - beta)^2 around the vertex rises. Where the boundary
 /// forces a bad element, good ones around it would otherwise pay for next to nothing.
@@ -44,15 +44,16 @@ class WorstOptimizer {
 
  private:
   bool move(VertexIndex v) {
-    maximizer_.climb(star_.batch(), mesh_.point(v), kSteps, [&](Vec3 at) { return star_.acceptable(at, floor_); });
+    maximizer_.climb(star_.batch(), mesh_.point(v), kStepsOfVertex,
+                     [&](Vec3 at) { return star_.acceptable(at, floor_); });
     return commit();
   }
 
   bool slide(VertexIndex v) {
     if (!sliding_->load(v, star_.faces())) return false;
     maximizer_.climb_along(
-        sliding_->axes(), [&](Vec3& place) { return sliding_->snap(place); }, star_.batch(), mesh_.point(v), kSteps,
-        [&](Vec3 at) { return star_.acceptable(at, floor_) && sliding_->keeps_truth(at); });
+        sliding_->axes(), [&](Vec3& place) { return sliding_->snap(place); }, star_.batch(), mesh_.point(v),
+        kStepsOfVertex, [&](Vec3 at) { return star_.acceptable(at, floor_) && sliding_->keeps_truth(at); });
     return commit();
   }
 

@@ -21,12 +21,12 @@ using improve::Shape;
 using improve::ShapeBatch;
 
 /// Scores below this are beta below .2 or angles as bad.
-constexpr float kPoor = 0.2f;
+constexpr float kPoorToRaise = 0.2f;
 /// Elements made poor by a move are looked at again, so often at most.
-constexpr int kRounds = 6;
+constexpr int kRaiseRounds = 6;
 /// Steps of a vertex at most, and what the sum of what elements lack must fall by.
-constexpr int kSteps = 12;
-constexpr double kLeastFall = 0.1;
+constexpr int kStepsOfRaise = 12;
+constexpr double kLeastFallByRaise = 0.1;
 /// Parts of the reach at which places are tried, and the reach in edges.
 constexpr double kParts[] = {0.3, 0.9};
 constexpr double kReach = 0.3;
@@ -47,7 +47,7 @@ class FlatRaiser {
       : mesh_(mesh), filled_(filled), limits_(limits), surface_{mesh.points, filled.triangles}, live_(surface_) {}
 
   RaisedFlat run(const Stage& stage) {
-    for (int round = 0; round < kRounds; ++round) {
+    for (int round = 0; round < kRaiseRounds; ++round) {
       stage.check();
       const std::vector<TetIndex> poor = find_poor();
       if (poor.empty()) break;
@@ -72,7 +72,7 @@ class FlatRaiser {
     parallel_for(score.size(), [&](std::size_t t) { score[t] = shape_of(static_cast<TetIndex>(t)).score; });
     std::vector<TetIndex> poor;
     for (TetIndex t = 0; t < score.size(); ++t)
-      if (score[t] < kPoor) poor.push_back(t);
+      if (score[t] < kPoorToRaise) poor.push_back(t);
     std::sort(poor.begin(), poor.end(),
               [&](TetIndex s, TetIndex t) { return std::pair(score[s], s) < std::pair(score[t], t); });
     return poor;
@@ -99,7 +99,7 @@ class FlatRaiser {
 
   /// Moves one corner of the element, if one may and that helps.
   bool raise(TetIndex t) {
-    if (shape_of(t).score >= kPoor || is_forced(t)) return false;
+    if (shape_of(t).score >= kPoorToRaise || is_forced(t)) return false;
     const Tet corners = mesh_.tets[t];
     return std::any_of(corners.begin(), corners.end(), [&](VertexIndex v) { return move(v); });
   }
@@ -126,8 +126,8 @@ class FlatRaiser {
     star_.evaluate_star(from);
     const double had = lack_of(star_);
     const auto allowed = [&](Vec3 to) { return distance(home, to) <= reach && star_.star_acceptable(to, positive_); };
-    descent_.descend(star_, best_around(home, reach, from, had, allowed), kSteps, allowed);
-    if (had - descent_.lack() < kLeastFall) return false;
+    descent_.descend(star_, best_around(home, reach, from, had, allowed), kStepsOfRaise, allowed);
+    if (had - descent_.lack() < kLeastFallByRaise) return false;
     mesh_.points[v] = descent_.place();
     live_.note_changed(around);
     if (live_.crossings_among(around) == 0) {

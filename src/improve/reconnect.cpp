@@ -35,7 +35,7 @@ struct Refill {
 
 // A change must gain at least this. Sums of the same numbers in another order differ in their last bits: on a regular
 // lattice two refills of equal worth would otherwise replace each other for ever.
-constexpr float kLeastGain = 1e-5f;
+constexpr float kLeastGainOfRefill = 1e-5f;
 
 constexpr std::size_t kQuickRing = 4;
 
@@ -51,7 +51,7 @@ class Reconnector {
   /// created(). False if none is better.
   bool improve(TetIndex t) {
     best_.clear();
-    best_.gain = kLeastGain;
+    best_.gain = kLeastGainOfRefill;
     const unsigned closed = faces_to_worse(t);
     for (const auto& [i, j] : kTetEdges)
       if ((closed & ~(1u << i | 1u << j)) == 0) try_edge(t, i, j);

@@ -223,7 +223,7 @@ class Schedule {
 /// Scores below which elements are worked on. The reference elements of shape.h have .45; .6 is about 30 degrees.
 constexpr float kWanted = 0.6f, kWantedBest = 0.65f;
 /// Below this a new vertex is worth its elements.
-constexpr float kPoor = 0.5f;
+constexpr float kPoorToInsert = 0.5f;
 /// Below these, reconnection serves the mean.
 constexpr float kGood = 0.8f, kGoodBest = 0.9f;
 
@@ -260,7 +260,7 @@ void run_default(Schedule& run, const ImproveOptions& options) {
   run.flips(kWanted);
   run.smooth_mean(1);
   if (run.mean_beta() - before > kWorthARound) rounds_for_mean(run, kGood);
-  run.rounds_for_worst(4, kWanted, 2, kPoor);
+  run.rounds_for_worst(4, kWanted, 2, kPoorToInsert);
 }
 
 /// Rounds against poor elements end when one takes away less than this part of what the elements lack.

@@ -19,9 +19,9 @@ namespace {
 
 constexpr int kSweeps = 3;
 /// Parts of the way to a wanted place that are tried.
-constexpr double kSteps[] = {1, 0.5, 0.25};
+constexpr double kPartsOfSlide[] = {1, 0.5, 0.25};
 /// Moves that gain less, in beta, are not worth it; above the second no element is in need.
-constexpr double kGain = 0.01, kGood = 0.5;
+constexpr double kGain = 0.01, kGoodBesideInterface = 0.5;
 /// Cosine of the turn of a triangle of the interface that is allowed.
 constexpr double kTurn = 0.9;
 
@@ -72,7 +72,8 @@ class InterfaceSlider {
     parallel_for(mesh_.tets.size(), [&](std::size_t t) {
       const auto& [a, b, c, d] = mesh_.tets[t];
       if (!slides(a) && !slides(b) && !slides(c) && !slides(d)) return;
-      is_poor[t] = radius_ratio(mesh_.points[a], mesh_.points[b], mesh_.points[c], mesh_.points[d]) <= kGood;
+      is_poor[t] =
+          radius_ratio(mesh_.points[a], mesh_.points[b], mesh_.points[c], mesh_.points[d]) <= kGoodBesideInterface;
     });
     for (TetIndex t = 0; t < mesh_.tets.size(); ++t)
       if (is_poor[t] != 0)
@@ -138,9 +139,9 @@ class InterfaceSlider {
   bool improve(VertexIndex v) {
     const Vec3 here = mesh_.points[v];
     const double now = worst(v, here);
-    if (now > kGood) return false;
+    if (now > kGoodBesideInterface) return false;
     const Vec3 way = wanted_place(v) - here;
-    for (const double step : kSteps) {
+    for (const double step : kPartsOfSlide) {
       const auto nearest = tree_of(patch_[v]).nearest(here + way * step);
       if (nearest.triangle == kNone || worst(v, nearest.point) < now + kGain || !turns_little(v, nearest.point))
         continue;

@@ -12,7 +12,7 @@
 namespace octafront::improve {
 namespace {
 
-constexpr float kLeastGain = 0.01f;
+constexpr float kLeastGainOfPolyhedron = 0.01f;
 
 /// A small cavity is quickly searched; a larger one has more ways to be filled.
 constexpr std::array<std::size_t, 2> kCorners{8, PolyhedronSearch::kMostCorners};
@@ -31,7 +31,8 @@ class PolyhedronReconnector {
       grow(most);
       if (tets_.size() == last) continue;
       last = tets_.size();
-      if (list_faces() && search_.fill(points_, faces_, floor_, mesh_.shape(t).score + kLeastGain)) return commit();
+      if (list_faces() && search_.fill(points_, faces_, floor_, mesh_.shape(t).score + kLeastGainOfPolyhedron))
+        return commit();
     }
     return false;
   }

@@ -9,9 +9,9 @@ namespace octafront::improve {
 namespace {
 
 /// Parts of the way back that a vertex is tried at.
-constexpr double kSteps[] = {1, 0.5, 0.25};
+constexpr double kPartsOfWayBack[] = {1, 0.5, 0.25};
 /// What did not go back in so many rounds, each of which looks farther around, is left.
-constexpr int kRounds = 4;
+constexpr int kTakeBackRounds = 4;
 
 /// Vertices of triangles of the boundary that cross, and of those `around` triangles away.
 std::vector<std::uint8_t> beside_crossings(const EditMesh& mesh, int around) {
@@ -40,7 +40,7 @@ bool take_back(EditBlock& block, StarEdit& star, VertexIndex v, Vec3 home, const
   EditMesh& mesh = block.mesh();
   if (!block.star(v, walked) || !star.load(v, walked)) return false;
   const Vec3 p = mesh.point(v);
-  for (const double step : kSteps) {
+  for (const double step : kPartsOfWayBack) {
     const Vec3 to = step == 1 ? home : p + (home - p) * step;
     star.evaluate(to);
     if (!star.acceptable(to, floor)) continue;
@@ -55,10 +55,10 @@ bool take_back(EditBlock& block, StarEdit& star, VertexIndex v, Vec3 home, const
 TakenBack take_back_crossings(EditMesh& mesh, std::span<const Vec3> taken, const BoundaryGuide& guide,
                               const RunContext& context) {
   TakenBack result;
-  for (int round = 0; round <= kRounds; ++round) {
+  for (int round = 0; round <= kTakeBackRounds; ++round) {
     std::vector<std::uint8_t> near = beside_crossings(mesh, round);
     result.clear = std::find(near.begin(), near.end(), 1) == near.end();
-    if (result.clear || round == kRounds) return result;
+    if (result.clear || round == kTakeBackRounds) return result;
     const auto home = [&](VertexIndex v) { return taken[mesh.number_taken(v)]; };
     for (VertexIndex v = 0; v < near.size(); ++v) near[v] = near[v] && guide.may_slide(v) && mesh.point(v) != home(v);
     std::vector<TetIndex> tets;

@@ -8,8 +8,8 @@ namespace octafront::improve {
 
 namespace {
 
-constexpr std::size_t kLeastBlock = 4096;  ///< vertices: below this most of a block is its rim
-constexpr std::size_t kMostBlocks = 256;
+constexpr std::size_t kLeastVertexBlock = 4096;  ///< vertices: below this most of a block is its rim
+constexpr std::size_t kMostVertexBlocks = 256;
 
 /// A cube twice as large as that of the numbering, a third of it lower: its halves, quarters and so on, at any depth,
 /// never lie on one plane with those of the numbering's.
@@ -26,7 +26,7 @@ std::vector<VertexIndex> order_in_shifted_cells(const EditMesh& mesh, const std:
 }  // namespace
 
 int VertexBlocks::bits_of_stretch(std::size_t vertices) {
-  return std::countr_zero(std::max(kLeastBlock, std::bit_ceil(vertices / kMostBlocks + 1)));
+  return std::countr_zero(std::max(kLeastVertexBlock, std::bit_ceil(vertices / kMostVertexBlocks + 1)));
 }
 
 VertexBlocks::VertexBlocks(const EditMesh& mesh, const BoundaryGuide* guide, std::vector<std::uint8_t> marks) {

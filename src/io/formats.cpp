@@ -135,7 +135,7 @@ constexpr std::array kFormats{
                           "NAME.node, .ele, .face, .edge with markers", write_tetgen)),
 };
 
-bool has_ending(std::string_view endings, std::string_view ending) {
+bool lists_ending(std::string_view endings, std::string_view ending) {
   while (!endings.empty()) {
     const std::size_t end = std::min(endings.find(' '), endings.size());
     if (equal_ignoring_case(ending, endings.substr(0, end))) return true;
@@ -153,7 +153,7 @@ std::span<const Format> formats() {
 const Format* format_of(const std::filesystem::path& file) {
   const std::string ending = file.extension().string();
   for (const Format& format : kFormats)
-    if (!ending.empty() && has_ending(format.info.endings, ending)) return &format;
+    if (!ending.empty() && lists_ending(format.info.endings, ending)) return &format;
   return file.filename() == "polyMesh" ? format_named("openfoam") : nullptr;
 }
 

@@ -51,8 +51,8 @@ void prepare_library() {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 }
 
-/// The innermost reason that the library gives.
-std::string reason() {
+/// The innermost hdf5_reason that the library gives.
+std::string hdf5_reason() {
   std::string text;
   H5Ewalk2(
       H5E_DEFAULT, H5E_WALK_DOWNWARD,
@@ -86,7 +86,7 @@ Hdf5Writer::~Hdf5Writer() {
 }
 
 void Hdf5Writer::fail(std::string_view what) const {
-  throw OutputError(fmt::format("{}: {}: {}; an older file of this name is unchanged", target_, what, reason()));
+  throw OutputError(fmt::format("{}: {}: {}; an older file of this name is unchanged", target_, what, hdf5_reason()));
 }
 
 std::int64_t Hdf5Writer::check(std::int64_t id, std::string_view what) const {
@@ -194,7 +194,7 @@ void Hdf5Writer::close() {
   context_.check();
   const std::int64_t closing = std::exchange(file_, -1);
   const bool flushed = H5Fflush(closing, H5F_SCOPE_GLOBAL) >= 0;
-  const std::string why = flushed ? std::string() : reason();
+  const std::string why = flushed ? std::string() : hdf5_reason();
   if (H5Fclose(closing) < 0 || !flushed)
     throw OutputError(fmt::format("{}: cannot be written: {}; an older file of this name is unchanged", target_, why));
 }
@@ -206,7 +206,7 @@ Hdf5Reader::Hdf5Reader(const std::filesystem::path& file, std::string name, RunC
   file_bytes_ = std::filesystem::file_size(file, error);
   if (error) fail(fmt::format("{} cannot be opened: {}", file.string(), error.message()));
   file_ = H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
-  if (file_ < 0) fail(fmt::format("{} cannot be opened as HDF5: {}", file.string(), reason()));
+  if (file_ < 0) fail(fmt::format("{} cannot be opened as HDF5: {}", file.string(), hdf5_reason()));
 }
 
 Hdf5Reader::~Hdf5Reader() {
@@ -276,7 +276,7 @@ std::vector<T> Hdf5Reader::values(const std::string& path, std::int64_t type) co
   check_size(set.get(), path, count);
   std::vector<T> all(count);
   if (count > 0 && H5Dread(set.get(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, all.data()) < 0)
-    fail(fmt::format("{} cannot be read: {}", path, reason()));
+    fail(fmt::format("{} cannot be read: {}", path, hdf5_reason()));
   return all;
 }
 
@@ -299,7 +299,7 @@ std::string Hdf5Reader::bytes(const std::string& path) const {
   check_size(set.get(), path, count);
   std::string all(count * each, '\0');
   if (!all.empty() && H5Dread(set.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, all.data()) < 0)
-    fail(fmt::format("{} cannot be read: {}", path, reason()));
+    fail(fmt::format("{} cannot be read: {}", path, hdf5_reason()));
   return all;
 }
 

@@ -32,7 +32,7 @@ class Descriptor {
   int fd_;
 };
 
-std::string reason(int error) {
+std::string system_reason(int error) {
   return std::generic_category().message(error);
 }
 
@@ -55,7 +55,7 @@ std::size_t read_fully(int fd, char* to, std::size_t size, const std::string& na
     if (got == 0) break;
     if (got < 0) {
       if (errno == EINTR || errno == EAGAIN) continue;
-      throw InputError(fmt::format("{}, byte {}: cannot be read: {}", name, done, reason(errno)));
+      throw InputError(fmt::format("{}, byte {}: cannot be read: {}", name, done, system_reason(errno)));
     }
     done += static_cast<std::size_t>(got);
   }
@@ -119,10 +119,10 @@ LoadedFile::LoadedFile(const std::filesystem::path& file, const RunContext& cont
   const Descriptor fd(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (fd.get() < 0) {
     if (errno == ENOENT) input_.fail("there is no such file");
-    input_.fail(fmt::format("cannot be opened: {}", reason(errno)));
+    input_.fail(fmt::format("cannot be opened: {}", system_reason(errno)));
   }
   struct stat status {};
-  if (::fstat(fd.get(), &status) != 0) input_.fail(fmt::format("cannot be examined: {}", reason(errno)));
+  if (::fstat(fd.get(), &status) != 0) input_.fail(fmt::format("cannot be examined: {}", system_reason(errno)));
   if (S_ISDIR(status.st_mode)) input_.fail("is a directory, not a file");
   std::size_t size = 0;
   if (S_ISREG(status.st_mode)) {

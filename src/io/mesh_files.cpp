@@ -7,6 +7,7 @@
 #include "io/raw_mesh.h"
 #include "io/readers.h"
 #include "io/recognize.h"
+#include "mesh/renumber.h"
 
 #include <utility>
 
@@ -95,15 +96,9 @@ SurfaceMesh boundary_surface(const TetMesh& mesh) {
   SurfaceMesh surface;
   surface.patch = mesh.patch;
   surface.patch_names = mesh.patch_names;
-  std::vector<VertexIndex> number(mesh.points.size(), kNone);
-  for (const Triangle& t : mesh.boundary)
-    for (const VertexIndex v : t) number[v] = 0;
-  for (VertexIndex v = 0; v < number.size(); ++v) {
-    if (number[v] == kNone) continue;
-    number[v] = static_cast<VertexIndex>(surface.points.size());
-    surface.points.push_back(mesh.points[v]);
-  }
-  for (const auto& [a, b, c] : mesh.boundary) surface.triangles.push_back({number[a], number[b], number[c]});
+  surface.points = mesh.points;
+  surface.triangles = mesh.boundary;
+  drop_unused_points(surface.points, surface.triangles);
   return surface;
 }
 

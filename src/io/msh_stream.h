@@ -1,12 +1,19 @@
 #pragma once
 
+#include <octafront/tet_mesh.h>
+
 #include "io/input.h"
 #include "io/scanner.h"
 
+#include <array>
 #include <cstdint>
 #include <string_view>
 
 namespace octafront::io {
+
+/// What Gmsh's physical groups of dimension 0 to 3 hold.
+inline constexpr std::array<NamedSet::Kind, 4> kKindOfDimension{NamedSet::Kind::kNodes, NamedSet::Kind::kEdges,
+                                                                NamedSet::Kind::kFaces, NamedSet::Kind::kElements};
 
 /// The values of a Gmsh file, in text or little-endian binary, and its sections "$Name ... $EndName".
 class MshStream {

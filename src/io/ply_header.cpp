@@ -11,7 +11,7 @@
 namespace octafront::io {
 namespace {
 
-std::optional<PlyType> type_of(std::string_view name) {
+std::optional<PlyType> ply_type_of(std::string_view name) {
   constexpr std::array<std::pair<std::string_view, PlyType>, 18> kNames{{
       {"char", PlyType::kInt8},
       {"int8", PlyType::kInt8},
@@ -133,7 +133,7 @@ class HeaderParser {
   }
 
   PlyType known_type(std::string_view name) {
-    const std::optional<PlyType> type = type_of(name);
+    const std::optional<PlyType> type = ply_type_of(name);
     if (!type) scan_.fail(fmt::format("{} is no type of PLY; the file is damaged: export it again", in_quotes(name)));
     return *type;
   }

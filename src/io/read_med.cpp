@@ -17,18 +17,18 @@ namespace {
 
 using Kind = NamedSet::Kind;
 
-struct CellType {
+struct MedCell {
   std::string_view name;
   Kind kind;
   std::size_t nodes;
   std::array<std::uint8_t, 10> order;  ///< places of our nodes in MED's list
 };
-constexpr std::array kCells{CellType{"TE4", Kind::kElements, 4, {0, 2, 1, 3}},
-                            CellType{"T10", Kind::kElements, 10, {0, 2, 1, 3, 6, 5, 4, 7, 9, 8}},
-                            CellType{"TR3", Kind::kFaces, 3, {0, 1, 2}},
-                            CellType{"TR6", Kind::kFaces, 6, {0, 1, 2, 3, 4, 5}},
-                            CellType{"SE2", Kind::kEdges, 2, {0, 1}},
-                            CellType{"SE3", Kind::kEdges, 3, {0, 1, 2}}};
+constexpr std::array kMedCells{MedCell{"TE4", Kind::kElements, 4, {0, 2, 1, 3}},
+                               MedCell{"T10", Kind::kElements, 10, {0, 2, 1, 3, 6, 5, 4, 7, 9, 8}},
+                               MedCell{"TR3", Kind::kFaces, 3, {0, 1, 2}},
+                               MedCell{"TR6", Kind::kFaces, 6, {0, 1, 2, 3, 4, 5}},
+                               MedCell{"SE2", Kind::kEdges, 2, {0, 1}},
+                               MedCell{"SE3", Kind::kEdges, 3, {0, 1, 2}}};
 
 class Med {
  public:
@@ -97,10 +97,11 @@ class Med {
 
   void read_cells(const std::string& name) {
     const std::string path = step_ + "/MAI/" + name;
-    const auto type = std::find_if(kCells.begin(), kCells.end(), [&](const CellType& t) { return t.name == name; });
+    const auto type =
+        std::find_if(kMedCells.begin(), kMedCells.end(), [&](const MedCell& t) { return t.name == name; });
     if (!file_.has(path + "/NOD")) return;
     const std::vector<std::int64_t> nodes = file_.integers(path + "/NOD");
-    if (type == kCells.end()) {
+    if (type == kMedCells.end()) {
       // Of polyhedra and the like the number of nodes is not known: what counts is that they are told.
       if (name != "PO1")
         raw_.other_elements +=

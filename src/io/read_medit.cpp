@@ -20,19 +20,19 @@ bool is_keyword(std::string_view word) {
   return !word.empty() && ((word[0] >= 'A' && word[0] <= 'Z') || (word[0] >= 'a' && word[0] <= 'z'));
 }
 
-struct Section {
+struct ReadSection {
   std::string_view name;
   int code;
   int dimension;      ///< 0 vertices, 1 edges, 2 triangles and quadrilaterals, 3 tetrahedra, -1: others
   std::size_t nodes;  ///< of an element
 };
-constexpr std::array kSections{Section{"Vertices", 4, 0, 0},          Section{"Edges", 5, 1, 2},
-                               Section{"EdgesP2", 25, 1, 3},          Section{"Triangles", 6, 2, 3},
-                               Section{"TrianglesP2", 24, 2, 6},      Section{"Tetrahedra", 8, 3, 4},
-                               Section{"TetrahedraP2", 30, 3, 10},    Section{"Quadrilaterals", 7, 2, 4},
-                               Section{"Prisms", 9, -1, 6},           Section{"Hexahedra", 10, -1, 8},
-                               Section{"QuadrilateralsQ2", 27, 2, 9}, Section{"HexahedraQ2", 33, -1, 27},
-                               Section{"Pyramids", 49, -1, 5}};
+constexpr std::array kSections{ReadSection{"Vertices", 4, 0, 0},          ReadSection{"Edges", 5, 1, 2},
+                               ReadSection{"EdgesP2", 25, 1, 3},          ReadSection{"Triangles", 6, 2, 3},
+                               ReadSection{"TrianglesP2", 24, 2, 6},      ReadSection{"Tetrahedra", 8, 3, 4},
+                               ReadSection{"TetrahedraP2", 30, 3, 10},    ReadSection{"Quadrilaterals", 7, 2, 4},
+                               ReadSection{"Prisms", 9, -1, 6},           ReadSection{"Hexahedra", 10, -1, 8},
+                               ReadSection{"QuadrilateralsQ2", 27, 2, 9}, ReadSection{"HexahedraQ2", 33, -1, 27},
+                               ReadSection{"Pyramids", 49, -1, 5}};
 
 /// What both kinds of file share; `Source` yields numbers and knows how to complain.
 template <class Source>
@@ -40,7 +40,7 @@ class SectionReader {
  public:
   SectionReader(Source& source, RawMesh& raw) : source_(source), raw_(raw) {}
 
-  void read(const Section& section, std::uint64_t count) {
+  void read(const ReadSection& section, std::uint64_t count) {
     if (section.dimension < 0) {
       raw_.other_elements += count;
     } else if (section.dimension == 0) {
@@ -61,7 +61,7 @@ class SectionReader {
     }
   }
 
-  void read_elements(const Section& section, std::uint64_t count) {
+  void read_elements(const ReadSection& section, std::uint64_t count) {
     std::array<VertexIndex, 10> nodes;
     for (std::uint64_t i = 0; i < count; ++i) {
       for (std::size_t k = 0; k < section.nodes; ++k) nodes[k] = vertex();
@@ -106,7 +106,7 @@ class MeditText {
       ended = word == "End";
       if (word == "Dimension") check_dimension(word.data());
       const auto section =
-          std::find_if(kSections.begin(), kSections.end(), [&](const Section& s) { return s.name == word; });
+          std::find_if(kSections.begin(), kSections.end(), [&](const ReadSection& s) { return s.name == word; });
       if (is_keyword(word) && section != kSections.end()) sections.read(*section, count(*section));
     }
     if (!ended) scan_.fail_expected("\"End\"");
@@ -124,7 +124,7 @@ class MeditText {
     if (dimension != 3) input_.fail_at_line(at, fmt::format("the mesh is of dimension {}, not 3", dimension));
   }
 
-  std::uint64_t count(const Section& section) {
+  std::uint64_t count(const ReadSection& section) {
     scan_.at_end();
     const char* const at = scan_.position();
     const std::int64_t n = scan_.integer(fmt::format("the number of {}", section.name));
@@ -154,7 +154,7 @@ class MeditBinary {
       const std::uint64_t next = version_ < 3 ? static_cast<std::uint32_t>(get<std::int32_t>()) : get<std::uint64_t>();
       const char* const begin = at_;
       const auto section =
-          std::find_if(kSections.begin(), kSections.end(), [&](const Section& s) { return s.code == code; });
+          std::find_if(kSections.begin(), kSections.end(), [&](const ReadSection& s) { return s.code == code; });
       if (code == kDimension && get<std::int32_t>() != 3) fail("the mesh is of another dimension than 3");
       if (section != kSections.end()) sections.read(*section, count(*section));
       // Sections only follow each other, so that reading ends.
@@ -187,7 +187,7 @@ class MeditBinary {
     return value;
   }
 
-  std::uint64_t count(const Section& section) {
+  std::uint64_t count(const ReadSection& section) {
     const char* const at = at_;
     const std::int64_t n = integer({});
     const std::uint64_t word = version_ < 4 ? 4 : 8;

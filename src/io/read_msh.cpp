@@ -53,9 +53,6 @@ int kept_dimension(std::int64_t type) {
   }
 }
 
-constexpr std::array<NamedSet::Kind, 4> kKindOfDimension{NamedSet::Kind::kNodes, NamedSet::Kind::kEdges,
-                                                         NamedSet::Kind::kFaces, NamedSet::Kind::kElements};
-
 /// From the tags of nodes, which may have gaps and any order, to indices.
 class NodeTags {
  public:

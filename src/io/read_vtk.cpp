@@ -35,11 +35,11 @@ struct Type {
   std::string_view name;
   std::size_t bytes;
 };
-constexpr std::array kTypes{Type{"double", 8},         Type{"float", 4},        Type{"int", 4},
-                            Type{"unsigned_char", 1},  Type{"char", 1},         Type{"short", 2},
-                            Type{"unsigned_short", 2}, Type{"unsigned_int", 4}, Type{"long", 8},
-                            Type{"unsigned_long", 8},  Type{"vtktypeint64", 8}, Type{"vtkidtype", 8},
-                            Type{"vtktypeint32", 4},   Type{"vtktypeuint8", 1}, Type{"vtktypeint8", 1}};
+constexpr std::array kVtkTypes{Type{"double", 8},         Type{"float", 4},        Type{"int", 4},
+                               Type{"unsigned_char", 1},  Type{"char", 1},         Type{"short", 2},
+                               Type{"unsigned_short", 2}, Type{"unsigned_int", 4}, Type{"long", 8},
+                               Type{"unsigned_long", 8},  Type{"vtktypeint64", 8}, Type{"vtkidtype", 8},
+                               Type{"vtktypeint32", 4},   Type{"vtktypeuint8", 1}, Type{"vtktypeint8", 1}};
 
 class Vtk {
  public:
@@ -80,7 +80,7 @@ class Vtk {
   }
 
   static const Type* type_named(std::string_view name) {
-    for (const Type& type : kTypes)
+    for (const Type& type : kVtkTypes)
       if (equal_ignoring_case(name, type.name)) return &type;
     return nullptr;
   }

@@ -36,7 +36,7 @@ struct Attribute {
   bool of_nodes = false;
   Item item;
 };
-struct Grid {
+struct ReadGrid {
   std::string topology;
   std::uint64_t nodes_per_element = 0;
   std::optional<Item> cells, points;
@@ -45,26 +45,26 @@ struct Grid {
 };
 
 /// XDMF's types: name in lower case, number in mixed lists, VTK's type, nodes.
-struct CellType {
+struct XdmfCell {
   std::string_view name;
   std::int64_t number;
   std::int64_t vtk;
   std::size_t nodes;
 };
-constexpr std::array kTypes{CellType{"tetrahedron", 6, 10, 4},     CellType{"tetrahedron_10", 38, 24, 10},
-                            CellType{"tet_10", 38, 24, 10},        CellType{"triangle", 4, 5, 3},
-                            CellType{"triangle_6", 36, 22, 6},     CellType{"tri_6", 36, 22, 6},
-                            CellType{"polyline", 2, 3, 2},         CellType{"edge_3", 34, 21, 3},
-                            CellType{"quadrilateral", 5, 9, 4},    CellType{"pyramid", 7, 14, 5},
-                            CellType{"wedge", 8, 13, 6},           CellType{"hexahedron", 9, 12, 8},
-                            CellType{"hexahedron_20", 48, 25, 20}, CellType{"polyvertex", 1, 1, 1}};
+constexpr std::array kXdmfCells{XdmfCell{"tetrahedron", 6, 10, 4},     XdmfCell{"tetrahedron_10", 38, 24, 10},
+                                XdmfCell{"tet_10", 38, 24, 10},        XdmfCell{"triangle", 4, 5, 3},
+                                XdmfCell{"triangle_6", 36, 22, 6},     XdmfCell{"tri_6", 36, 22, 6},
+                                XdmfCell{"polyline", 2, 3, 2},         XdmfCell{"edge_3", 34, 21, 3},
+                                XdmfCell{"quadrilateral", 5, 9, 4},    XdmfCell{"pyramid", 7, 14, 5},
+                                XdmfCell{"wedge", 8, 13, 6},           XdmfCell{"hexahedron", 9, 12, 8},
+                                XdmfCell{"hexahedron_20", 48, 25, 20}, XdmfCell{"polyvertex", 1, 1, 1}};
 
 /// The grids of one file.
 class XdmfFile {
  public:
   explicit XdmfFile(const Input& input) : input_(input), tags_(input) {}
 
-  std::vector<Grid> grids() {
+  std::vector<ReadGrid> grids() {
     bool ended = false;
     for (XmlTag tag = tags_.next(); !tag.name.empty(); tag = tags_.next()) {
       if (tag.closes) {
@@ -98,7 +98,7 @@ class XdmfFile {
         tag.attribute("GridType", "Uniform") != "Tree")
       grids_.emplace_back();
     if (grids_.empty()) return;
-    Grid& grid = grids_.back();
+    ReadGrid& grid = grids_.back();
     if (tag.name == "Topology") {
       within_ = tag.name;
       for (const char c : tag.attribute("TopologyType", tag.attribute("Type"))) grid.topology += to_lower(c);
@@ -123,7 +123,7 @@ class XdmfFile {
     if (name == within_) within_ = {};
   }
 
-  void take_item(const XmlTag& tag, Grid& grid) {
+  void take_item(const XmlTag& tag, ReadGrid& grid) {
     const std::size_t begin = static_cast<std::size_t>(tag.behind - input_.bytes.data());
     const std::size_t end = std::min(input_.bytes.find('<', begin), input_.bytes.size());
     const std::string_view format = tag.attribute("Format", "XML");
@@ -166,7 +166,7 @@ class XdmfFile {
 
   const Input& input_;
   XmlTags tags_;
-  std::vector<Grid> grids_;
+  std::vector<ReadGrid> grids_;
   std::string_view within_;
   std::map<std::string, std::unique_ptr<Hdf5Reader>> files_;
 };
@@ -191,10 +191,10 @@ class Xdmf {
  private:
   void read_file(const Input& input) {
     XdmfFile file(input);
-    for (const Grid& grid : file.grids()) read_grid(input, file, grid);
+    for (const ReadGrid& grid : file.grids()) read_grid(input, file, grid);
   }
 
-  void read_grid(const Input& input, XdmfFile& file, const Grid& grid) {
+  void read_grid(const Input& input, XdmfFile& file, const ReadGrid& grid) {
     if (!grid.cells || !grid.points) return;
     if (raw_.points.empty()) {
       const std::vector<double> xyz = file.reals(*grid.points, 0);
@@ -216,20 +216,20 @@ class Xdmf {
   }
 
   template <class Visit>
-  static void for_each_cell(const Input& input, const Grid& grid, std::span<const std::int64_t> cells,
+  static void for_each_cell(const Input& input, const ReadGrid& grid, std::span<const std::int64_t> cells,
                             const Visit& visit) {
     const auto type =
-        std::find_if(kTypes.begin(), kTypes.end(), [&](const CellType& t) { return t.name == grid.topology; });
-    if (grid.topology != "mixed" && type == kTypes.end())
+        std::find_if(kXdmfCells.begin(), kXdmfCells.end(), [&](const XdmfCell& t) { return t.name == grid.topology; });
+    if (grid.topology != "mixed" && type == kXdmfCells.end())
       input.fail(fmt::format("elements of type {} are not known here", in_quotes(grid.topology)));
     std::uint64_t c = 0;
     for (std::size_t at = 0; at < cells.size(); ++c) {
-      const CellType* of = grid.topology != "mixed" ? &*type : nullptr;
+      const XdmfCell* of = grid.topology != "mixed" ? &*type : nullptr;
       if (of == nullptr) {
         const std::int64_t number = cells[at++];
         const auto found =
-            std::find_if(kTypes.begin(), kTypes.end(), [&](const CellType& t) { return t.number == number; });
-        if (found == kTypes.end()) input.fail(fmt::format("elements of type {} are not known here", number));
+            std::find_if(kXdmfCells.begin(), kXdmfCells.end(), [&](const XdmfCell& t) { return t.number == number; });
+        if (found == kXdmfCells.end()) input.fail(fmt::format("elements of type {} are not known here", number));
         of = &*found;
         // Lines and points say how many nodes they have.
         if (number <= 2 && at < cells.size()) ++at;
@@ -240,13 +240,13 @@ class Xdmf {
     }
   }
 
-  static std::uint64_t count_cells(const Input& input, const Grid& grid, std::span<const std::int64_t> cells) {
+  static std::uint64_t count_cells(const Input& input, const ReadGrid& grid, std::span<const std::int64_t> cells) {
     std::uint64_t count = 0;
     for_each_cell(input, grid, cells, [&](std::uint64_t, std::int64_t, std::span<const std::int64_t>) { ++count; });
     return count;
   }
 
-  void take_attributes(XdmfFile& file, const Grid& grid, std::uint64_t count, VtkCellData& data) {
+  void take_attributes(XdmfFile& file, const ReadGrid& grid, std::uint64_t count, VtkCellData& data) {
     for (const Attribute& attribute : grid.attributes) {
       const std::string& name = attribute.name;
       std::vector<std::int64_t>* const to = name == "region"                                 ? &data.region

@@ -164,7 +164,7 @@ bool has_line(std::string_view bytes, std::string_view word) {
   return false;
 }
 
-bool has_ending(const Input& input, std::initializer_list<std::string_view> endings) {
+bool ends_in(const Input& input, std::initializer_list<std::string_view> endings) {
   const std::string ending = std::filesystem::path(input.name).extension().string();
   return std::any_of(endings.begin(), endings.end(),
                      [&](std::string_view e) { return equal_ignoring_case(ending, e); });
@@ -187,8 +187,8 @@ std::optional<MeshKind> text_kind(const Input& input, std::string_view first, st
   if (first == "mesh3d") return MeshKind::kNetgen;
   if (first == "-1" && is_plain_number(second) && second.size() <= 5) return MeshKind::kUnv;
   if (input.bytes.starts_with("*KEYWORD")) return std::nullopt;
-  if (has_ending(input, {".ele", ".node"})) return MeshKind::kTetgen;
-  if (has_ending(input, {".bdf", ".nas"}) || has_line(input.bytes, "BEGIN BULK") || has_line(input.bytes, "GRID") ||
+  if (ends_in(input, {".ele", ".node"})) return MeshKind::kTetgen;
+  if (ends_in(input, {".bdf", ".nas"}) || has_line(input.bytes, "BEGIN BULK") || has_line(input.bytes, "GRID") ||
       has_line(input.bytes, "CTETRA"))
     return MeshKind::kNastran;
   if (first.starts_with('*') && first.size() > 1) return MeshKind::kAbaqus;
@@ -228,7 +228,7 @@ SurfaceKind recognize_surface(const Input& input) {
     if (is_mesh(kind)) return SurfaceKind::kOtherMesh;
     fail_other_kind(input, kind, kSurfaces);
   }
-  if (has_ending(input, {".poly", ".smesh"})) return SurfaceKind::kPoly;
+  if (ends_in(input, {".poly", ".smesh"})) return SurfaceKind::kPoly;
   if (is_off_keyword(first)) return SurfaceKind::kOff;
   const bool binary = looks_binary(bytes);
   if (!binary && equal_ignoring_case(first, "solid")) return SurfaceKind::kAsciiStl;

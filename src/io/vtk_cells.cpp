@@ -7,7 +7,7 @@ namespace {
 
 using Kind = NamedSet::Kind;
 
-constexpr std::array<std::array<std::uint8_t, 3>, 2> kTypes{{{10, 5, 3}, {24, 22, 21}}};
+constexpr std::array<std::array<std::uint8_t, 3>, 2> kVtkCells{{{10, 5, 3}, {24, 22, 21}}};
 
 std::string_view plural(Kind kind) {
   switch (kind) {
@@ -28,7 +28,7 @@ VtkCells::VtkCells(const MeshParts& mesh)
     : mesh_(mesh),
       ends_{mesh.tets(), mesh.tets() + mesh.faces(), mesh.tets() + mesh.faces() + mesh.edges()},
       each_{mesh.nodes_per_tet(), mesh.nodes_per_face(), mesh.nodes_per_edge()},
-      types_(kTypes[mesh.second_order()]),
+      types_(kVtkCells[mesh.second_order()]),
       data_{{"region", false, false}, {"patch", false, false}} {
   if (!mesh.labels().empty()) data_.push_back({"label", false, false});
   if (mesh.edges() > 0) data_.push_back({"curve", false, false});

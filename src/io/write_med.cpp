@@ -22,15 +22,16 @@ using Kind = NamedSet::Kind;
 constexpr std::size_t kLongestGroup = 80, kLongestFamily = 64;
 
 /// Of a kind of cell: MED's name and number, linear and of second order, and the places of our nodes in its list.
-struct CellType {
+struct MedSection {
   Kind kind;
   std::array<const char*, 2> name;
   std::array<std::int32_t, 2> number;
   std::array<std::uint8_t, 10> order;
 };
-constexpr std::array kCells{CellType{Kind::kElements, {"TE4", "T10"}, {304, 310}, {0, 2, 1, 3, 6, 5, 4, 7, 9, 8}},
-                            CellType{Kind::kFaces, {"TR3", "TR6"}, {203, 206}, {0, 1, 2, 3, 4, 5}},
-                            CellType{Kind::kEdges, {"SE2", "SE3"}, {102, 103}, {0, 1, 2}}};
+constexpr std::array kMedSections{
+    MedSection{Kind::kElements, {"TE4", "T10"}, {304, 310}, {0, 2, 1, 3, 6, 5, 4, 7, 9, 8}},
+    MedSection{Kind::kFaces, {"TR3", "TR6"}, {203, 206}, {0, 1, 2, 3, 4, 5}},
+    MedSection{Kind::kEdges, {"SE2", "SE3"}, {102, 103}, {0, 1, 2}}};
 
 class MedWriter {
  public:
@@ -47,7 +48,7 @@ class MedWriter {
     file_.group(kStep + "/MAI");
     file_.attribute(kStep + "/MAI", "CGT", 1);
     write_families_head();
-    for (const CellType& type : kCells) write_cells(type);
+    for (const MedSection& type : kMedSections) write_cells(type);
     file_.close();
   }
 
@@ -129,7 +130,7 @@ class MedWriter {
     file_.texts(family + "/GRO/NOM", names, kLongestGroup);
   }
 
-  void write_cells(const CellType& type) {
+  void write_cells(const MedSection& type) {
     const Combinations families = combinations(mesh_, type.kind);
     const std::uint64_t count = families.of.size();
     if (count == 0) return;

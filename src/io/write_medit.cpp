@@ -14,11 +14,11 @@ namespace octafront::io {
 namespace {
 
 /// A section of elements: its keyword, linear and of second order, as text and number.
-struct Section {
+struct WrittenSection {
   const char *name, *name2;
   std::int32_t code, code2;
 };
-constexpr Section kEdges{"Edges", "EdgesP2", 5, 25}, kTriangles{"Triangles", "TrianglesP2", 6, 24},
+constexpr WrittenSection kEdges{"Edges", "EdgesP2", 5, 25}, kTriangles{"Triangles", "TrianglesP2", 6, 24},
     kTetrahedra{"Tetrahedra", "TetrahedraP2", 8, 30};
 
 /// Calls write(section, count, nodes each, node_at(i, k), reference_at(i)) for each section.
@@ -46,7 +46,7 @@ void write_medit(MeshOutput& output, const MeshParts& mesh) {
     const Vec3 p = mesh.mesh().points[v];
     out << p.x << ' ' << p.y << ' ' << p.z << " 0\n";
   }
-  for_each_section(mesh, [&](const Section& section, std::size_t count, std::size_t nodes, const auto& node_at,
+  for_each_section(mesh, [&](const WrittenSection& section, std::size_t count, std::size_t nodes, const auto& node_at,
                              const auto& reference_at) {
     out << '\n' << (mesh.second_order() ? section.name2 : section.name) << '\n' << std::uint64_t{count} << '\n';
     for (std::size_t i = 0; i < count; ++i) {
@@ -82,7 +82,7 @@ void write_medit_binary(MeshOutput& output, const MeshParts& mesh) {
     std::memcpy(record.data(), xyz.data(), sizeof xyz);
     out.write(record.data(), record.size());
   }
-  for_each_section(mesh, [&](const Section& section, std::size_t count, std::size_t nodes, const auto& node_at,
+  for_each_section(mesh, [&](const WrittenSection& section, std::size_t count, std::size_t nodes, const auto& node_at,
                              const auto& reference_at) {
     head(mesh.second_order() ? section.code2 : section.code, count, 4 * (nodes + 1));
     std::array<std::uint32_t, 11> record;

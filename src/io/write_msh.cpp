@@ -8,6 +8,7 @@
 #include "core/parallel.h"
 #include "io/boundary.h"
 #include "io/formats.h"
+#include "io/msh_stream.h"
 #include "io/text_writer.h"
 #include "io/writers.h"
 
@@ -24,10 +25,8 @@ namespace {
 
 using Kind = NamedSet::Kind;
 
-constexpr std::array<Kind, 4> kKindOfDimension{Kind::kNodes, Kind::kEdges, Kind::kFaces, Kind::kElements};
-
 /// Gmsh's type of an element of that dimension.
-std::int32_t type_of(int dimension, bool second_order) {
+std::int32_t gmsh_type_of(int dimension, bool second_order) {
   constexpr std::array<std::array<std::int32_t, 4>, 2> kTypes{{{15, 1, 2, 4}, {15, 8, 9, 11}}};
   return kTypes[second_order][static_cast<std::size_t>(dimension)];
 }
@@ -82,7 +81,8 @@ int dimension_of(Kind kind) {
   return static_cast<int>(std::find(kKindOfDimension.begin(), kKindOfDimension.end(), kind) - kKindOfDimension.begin());
 }
 
-void write_names(TextWriter& out, const MeshParts& mesh, const std::vector<std::int32_t>& tags, bool with_sets) {
+void write_physical_names(TextWriter& out, const MeshParts& mesh, const std::vector<std::int32_t>& tags,
+                          bool with_sets) {
   std::vector<std::size_t> named;
   for (std::size_t p = 0; p < mesh.parts().size(); ++p) {
     const Part& part = mesh.parts()[p];
@@ -107,7 +107,7 @@ class Msh4Writer {
     text_ << "$MeshFormat\n4.1 1 8\n";
     put<std::int32_t>(1);
     text_ << "\n$EndMeshFormat\n";
-    write_names(text_, mesh_, physical_, true);
+    write_physical_names(text_, mesh_, physical_, true);
     write_entities();
     write_nodes();
     write_elements();
@@ -245,7 +245,7 @@ class Msh4Writer {
     for (const Entity& e : entities_) {
       put<std::int32_t>(e.dimension);
       put(e.tag);
-      put(type_of(e.dimension, mesh_.second_order()));
+      put(gmsh_type_of(e.dimension, mesh_.second_order()));
       put(std::uint64_t{members_of(e).size()});
       write_members(e, first[static_cast<std::size_t>(e.dimension)]);
     }
@@ -309,7 +309,7 @@ class Msh2Writer {
     text_ << "$MeshFormat\n2.2 1 8\n";
     put(1);
     text_ << "\n$EndMeshFormat\n";
-    write_names(text_, mesh_, physical_tags(mesh_), false);
+    write_physical_names(text_, mesh_, physical_tags(mesh_), false);
     text_.line("$Nodes\n{}", mesh_.points());
     for (std::size_t v = 0; v < mesh_.points(); ++v) {
       put(static_cast<std::int32_t>(v) + 1);
@@ -328,7 +328,8 @@ class Msh2Writer {
 
   void write_elements(int dimension, std::size_t count) {
     if (count == 0) return;
-    for (const std::int32_t n : {type_of(dimension, mesh_.second_order()), static_cast<std::int32_t>(count), 2}) put(n);
+    for (const std::int32_t n : {gmsh_type_of(dimension, mesh_.second_order()), static_cast<std::int32_t>(count), 2})
+      put(n);
     for (std::uint32_t i = 0; i < count; ++i) {
       put(++tag_);
       const std::uint32_t part_tag = dimension == 1   ? mesh_.curve_of(i) + 1

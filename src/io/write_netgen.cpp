@@ -12,11 +12,11 @@ namespace octafront::io {
 namespace {
 
 /// Places of VTK's nodes in Netgen's list.
-constexpr std::array<std::uint8_t, 10> kTet{0, 2, 1, 3, 6, 4, 7, 5, 9, 8};
+constexpr std::array<std::uint8_t, 10> kNetgenTet{0, 2, 1, 3, 6, 4, 7, 5, 9, 8};
 constexpr std::array<std::uint8_t, 6> kTriangle{0, 1, 2, 4, 5, 3};
 
 /// Names of the parts of one origin by number, counted from 1; those without one get what they are called elsewhere.
-void write_names(TextWriter& out, std::string_view section, std::span<const Part> parts) {
+void write_names_of_parts(TextWriter& out, std::string_view section, std::span<const Part> parts) {
   if (parts.empty()) return;
   out.line("\n{}\n{}", section, parts.size());
   for (const Part& part : parts) out.line("{} {}", part.number + 1, part.name);
@@ -39,7 +39,7 @@ void write_netgen(MeshOutput& output, const MeshParts& mesh) {
   out.line("\n# matnr np p1 p2 p3 p4\nvolumeelements\n{}", mesh.tets());
   for (std::size_t t = 0; t < mesh.tets(); ++t) {
     out << mesh.region_of(t) + 1 << ' ' << std::uint64_t{mesh.nodes_per_tet()};
-    for (std::size_t k = 0; k < mesh.nodes_per_tet(); ++k) out << ' ' << mesh.tet_node(t, kTet[k]) + 1;
+    for (std::size_t k = 0; k < mesh.nodes_per_tet(); ++k) out << ' ' << mesh.tet_node(t, kNetgenTet[k]) + 1;
     out << '\n';
   }
   out.line("\n# surfid 0 p1 p2 trignum1 trignum2 domin domout ednr1 dist1 ednr2 dist2\nedgesegmentsgi2\n{}",
@@ -61,9 +61,9 @@ void write_netgen(MeshOutput& output, const MeshParts& mesh) {
     output.note(legal.note());
     return parts;
   };
-  write_names(out, "materials", with_one_word(Part::Origin::kRegion));
-  write_names(out, "bcnames", with_one_word(Part::Origin::kPatch));
-  write_names(out, "cd2names", with_one_word(Part::Origin::kCurve));
+  write_names_of_parts(out, "materials", with_one_word(Part::Origin::kRegion));
+  write_names_of_parts(out, "bcnames", with_one_word(Part::Origin::kPatch));
+  write_names_of_parts(out, "cd2names", with_one_word(Part::Origin::kCurve));
   out << "\nendmesh\n";
 }
 

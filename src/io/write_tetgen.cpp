@@ -10,7 +10,7 @@ namespace octafront::io {
 namespace {
 
 /// Places of VTK's nodes in TetGen's list: mid-side nodes are those of 34 14 12 23 24 13.
-constexpr std::array<std::uint8_t, 10> kTet{0, 1, 2, 3, 9, 7, 4, 5, 8, 6};
+constexpr std::array<std::uint8_t, 10> kTetgenTet{0, 1, 2, 3, 9, 7, 4, 5, 8, 6};
 
 }  // namespace
 
@@ -28,7 +28,7 @@ void write_tetgen(MeshOutput& output, const MeshParts& mesh) {
     out.line("{} {} 1", mesh.tets(), mesh.nodes_per_tet());
     for (std::size_t t = 0; t < mesh.tets(); ++t) {
       out << std::uint64_t{t} + 1;
-      for (std::size_t k = 0; k < mesh.nodes_per_tet(); ++k) out << ' ' << mesh.tet_node(t, kTet[k]) + 1;
+      for (std::size_t k = 0; k < mesh.nodes_per_tet(); ++k) out << ' ' << mesh.tet_node(t, kTetgenTet[k]) + 1;
       out << ' ' << mesh.tag_of_region(mesh.region_of(t)) << '\n';
     }
   }

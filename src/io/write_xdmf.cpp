@@ -22,7 +22,7 @@ using Kind = NamedSet::Kind;
 using Origin = Part::Origin;
 
 /// A kind of element and how XDMF calls it.
-struct Grid {
+struct WrittenGrid {
   const char* name;
   Kind kind;
   Origin origin;
@@ -30,8 +30,8 @@ struct Grid {
   const char* prefix;  ///< of the attributes of sets
   std::array<const char*, 2> topology;
 };
-constexpr Grid kMesh{"mesh",   Kind::kElements, Origin::kRegion,
-                     "region", "elements ",     {"Tetrahedron", "Tetrahedron_10"}},
+constexpr WrittenGrid kMesh{"mesh",   Kind::kElements, Origin::kRegion,
+                            "region", "elements ",     {"Tetrahedron", "Tetrahedron_10"}},
     kPatches{"patches", Kind::kFaces, Origin::kPatch, "patch", "faces ", {"Triangle", "Triangle_6"}},
     kCurves{"curves", Kind::kEdges, Origin::kCurve, "curve", "edges ", {"Polyline", "Edge_3"}};
 
@@ -42,17 +42,17 @@ class XdmfWriter {
   void write() {
     write_file(kMesh, stem_, out_.file());
     // Empty ones too: older files of these names would be taken for ours.
-    for (const Grid& grid : {kPatches, kCurves}) {
+    for (const WrittenGrid& grid : {kPatches, kCurves}) {
       const std::string stem = stem_ + "_" + grid.name;
       write_file(grid, stem, out_.beside(stem + ".xdmf"));
     }
   }
 
  private:
-  std::uint64_t count(const Grid& grid) const {
+  std::uint64_t count(const WrittenGrid& grid) const {
     return grid.kind == Kind::kElements ? mesh_.tets() : grid.kind == Kind::kFaces ? mesh_.faces() : mesh_.edges();
   }
-  std::uint64_t nodes(const Grid& grid) const {
+  std::uint64_t nodes(const WrittenGrid& grid) const {
     return grid.kind == Kind::kElements ? mesh_.nodes_per_tet()
            : grid.kind == Kind::kFaces  ? mesh_.nodes_per_face()
                                         : mesh_.nodes_per_edge();
@@ -64,7 +64,7 @@ class XdmfWriter {
              shape, type, precision, escaped(file), path);
   }
 
-  void write_file(const Grid& grid, const std::string& stem, AtomicFile& file) {
+  void write_file(const WrittenGrid& grid, const std::string& stem, AtomicFile& file) {
     h5_ = stem + ".h5";
     values_.emplace(out_.path_for_library(h5_), out_.target().string(), out_.context());
     values_->group("/Mesh");
@@ -72,13 +72,13 @@ class XdmfWriter {
     values_->close();
   }
 
-  void write_grid(const Grid& grid, AtomicFile& file) {
+  void write_grid(const WrittenGrid& grid, AtomicFile& file) {
     TextWriter out(file);
     const std::string group = std::string("/Mesh/") + grid.name;
     values_->group(group);
     const std::uint64_t n = count(grid), each = nodes(grid);
     out << "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n";
-    out.line("    <Grid Name=\"{}\" GridType=\"Uniform\">", grid.name);
+    out.line("    <WrittenGrid Name=\"{}\" GridType=\"Uniform\">", grid.name);
     out.line("      <Topology TopologyType=\"{}\" NumberOfElements=\"{}\" NodesPerElement=\"{}\">",
              grid.topology[mesh_.second_order()], n, each);
     item(out, fmt::format("{} {}", n, each), "Int", 8, h5_, group + "/topology");
@@ -100,16 +100,16 @@ class XdmfWriter {
         write_set(out, (of_nodes ? "nodes " : grid.prefix) + part.name, part, of_nodes ? mesh_.points() : n,
                   fmt::format("{}/set_{}", group, ++sets));
     }
-    out << "    </Grid>\n  </Domain>\n</Xdmf>\n";
+    out << "    </WrittenGrid>\n  </Domain>\n</Xdmf>\n";
   }
 
-  std::int32_t number(const Grid& grid, std::uint64_t i) const {
+  std::int32_t number(const WrittenGrid& grid, std::uint64_t i) const {
     return static_cast<std::int32_t>(grid.kind == Kind::kElements ? mesh_.tag_of_region(mesh_.region_of(i))
                                      : grid.kind == Kind::kFaces  ? 1 + mesh_.patch_of(i)
                                                                   : 1 + mesh_.curve_of(i));
   }
 
-  void write_topology(const Grid& grid, const std::string& path) {
+  void write_topology(const WrittenGrid& grid, const std::string& path) {
     const std::uint64_t each = nodes(grid);
     values_->dataset(path, {count(grid), each},
                      Hdf5Writer::Fill<std::int64_t>([&](std::uint64_t first, std::span<std::int64_t> to) {

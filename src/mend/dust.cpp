@@ -3,6 +3,7 @@
 #include "geometry/measures.h"
 #include "geometry/predicates.h"
 #include "mesh/edge_table.h"
+#include "mesh/renumber.h"
 
 #include <algorithm>
 #include <array>
@@ -190,21 +191,6 @@ class DustPass {
   std::vector<char> is_gone_;                ///< per triangle
 };
 
-void drop_unused_points(SurfaceMesh& surface) {
-  std::vector<VertexIndex> number(surface.points.size(), kNone);
-  for (const Triangle& t : surface.triangles)
-    for (const VertexIndex v : t) number[v] = 0;
-  VertexIndex kept = 0;
-  for (std::size_t v = 0; v < number.size(); ++v) {
-    if (number[v] == kNone) continue;
-    surface.points[kept] = surface.points[v];
-    number[v] = kept++;
-  }
-  surface.points.resize(kept);
-  for (Triangle& t : surface.triangles)
-    for (VertexIndex& v : t) v = number[v];
-}
-
 }  // namespace
 
 std::uint64_t drop_dust(SurfaceMesh& surface, double reach) {
@@ -214,7 +200,7 @@ std::uint64_t drop_dust(SurfaceMesh& surface, double reach) {
     if (done == 0) break;
     all += done;
   }
-  if (all > 0) drop_unused_points(surface);
+  if (all > 0) drop_unused_points(surface.points, surface.triangles);
   return all;
 }
 

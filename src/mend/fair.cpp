@@ -1,6 +1,7 @@
 #include "mend/fair.h"
 
 #include "geometry/measures.h"
+#include "mend/loops.h"
 
 #include <algorithm>
 #include <array>
@@ -14,11 +15,6 @@ namespace octafront::mend {
 namespace {
 
 constexpr std::uint32_t kRim = 0xffffffffu;
-using Corners = std::array<std::uint32_t, 3>;
-
-std::uint64_t key_of(std::uint32_t a, std::uint32_t b) {
-  return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
-}
 
 /// Triangles over a polygon, divided and flipped.
 class Refinement {
@@ -41,7 +37,7 @@ class Refinement {
     across_.assign(triangles_.size(), {kRim, kRim, kRim});
     for (std::uint32_t t = 0; t < triangles_.size(); ++t)
       for (std::uint32_t i = 0; i < 3; ++i) {
-        const auto [at, is_new] = first.try_emplace(key_of(triangles_[t][i], triangles_[t][(i + 1) % 3]), 3 * t + i);
+        const auto [at, is_new] = first.try_emplace(edge_key(triangles_[t][i], triangles_[t][(i + 1) % 3]), 3 * t + i);
         edges_.insert(at->first);
         if (is_new) continue;
         across_[t][i] = at->second / 3;
@@ -52,7 +48,7 @@ class Refinement {
   /// Sizes at the corners: those of the rim's edges; inside they grow where there would be too many points.
   void find_scales(std::size_t most) {
     double area = 0, squares = 0;
-    for (const Corners& t : triangles_) area += triangle_area(points_[t[0]], points_[t[1]], points_[t[2]]);
+    for (const Triangle& t : triangles_) area += triangle_area(points_, t);
     for (std::size_t i = 0; i < rim_; ++i) {
       const Vec3 p = points_[i];
       scale_.push_back(0.5 * (distance(p, points_[(i + 1) % rim_]) + distance(p, points_[(i + rim_ - 1) % rim_])));
@@ -89,7 +85,7 @@ class Refinement {
     across_.push_back({over_ca, t, u});
     replace(over_bc, t, u);
     replace(over_ca, t, w);
-    for (const std::uint32_t corner : {a, b, c}) edges_.insert(key_of(corner, v));
+    for (const std::uint32_t corner : {a, b, c}) edges_.insert(edge_key(corner, v));
     return true;
   }
 
@@ -122,7 +118,7 @@ class Refinement {
     if (angle_at(r, p, q) + angle_at(s, p, q) <= std::numbers::pi + kClearly) return false;
     const double before = dot(unit_normal(p, q, r), unit_normal(q, p, s)),
                  after = dot(unit_normal(r, p, s), unit_normal(s, q, r));
-    if (after < std::min(before, 0.0) || edges_.contains(key_of(c, d)) || (c < rim_ && d < rim_ && is_taken_(c, d)))
+    if (after < std::min(before, 0.0) || edges_.contains(edge_key(c, d)) || (c < rim_ && d < rim_ && is_taken_(c, d)))
       return false;
     const std::uint32_t over_bc = across_[t][(i + 1) % 3], over_ca = across_[t][(i + 2) % 3],
                         over_ad = across_[u][(j + 1) % 3], over_db = across_[u][(j + 2) % 3];
@@ -132,8 +128,8 @@ class Refinement {
     across_[u] = {over_db, over_bc, t};
     replace(over_ad, u, t);
     replace(over_bc, t, u);
-    edges_.erase(key_of(a, b));
-    edges_.insert(key_of(c, d));
+    edges_.erase(edge_key(a, b));
+    edges_.insert(edge_key(c, d));
     return true;
   }
 
@@ -145,7 +141,7 @@ class Refinement {
   std::vector<double> scale_;
   double growth_ = 1;  ///< of sizes, with each division
   Cap triangles_;
-  std::vector<Corners> across_;  ///< the triangle behind each edge
+  std::vector<Triangle> across_;  ///< the triangle behind each edge
   std::unordered_set<std::uint64_t> edges_;
   const IsTaken& is_taken_;
 };
@@ -157,7 +153,7 @@ class Fairing {
       : rim_(static_cast<std::uint32_t>(polygon.size())), points_(polygon.begin(), polygon.end()) {
     points_.insert(points_.end(), cap.inner.begin(), cap.inner.end());
     std::vector<std::vector<std::uint32_t>> neighbours(points_.size());
-    for (const Corners& t : cap.triangles)
+    for (const Triangle& t : cap.triangles)
       for (std::size_t i = 0; i < 3; ++i) {
         neighbours[t[i]].push_back(t[(i + 1) % 3]);
         neighbours[t[(i + 1) % 3]].push_back(t[i]);

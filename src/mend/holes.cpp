@@ -26,10 +26,6 @@ constexpr double kMostCappedBeside = 0.3, kNearlyClosed = 0.05;
 /// Of the area of the cap that bends least, where the least area is taken instead.
 constexpr double kMuchLess = 0.8;
 
-std::uint64_t key_of(VertexIndex a, VertexIndex b) {
-  return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b);
-}
-
 /// Edges with a vertex on a rim.
 struct RimEdges {
   std::unordered_set<std::uint64_t> between;                 ///< those with both: caps should not use them again
@@ -41,7 +37,7 @@ RimEdges edges_at(const EdgeTable& table, const std::vector<Loop>& loops, std::s
     for (const VertexIndex v : loop.vertices) on_rim[v] = 1;
   RimEdges edges;
   for (const auto& [a, b] : table.edges) {
-    if (on_rim[a] && on_rim[b]) edges.between.insert(key_of(a, b));
+    if (on_rim[a] && on_rim[b]) edges.between.insert(edge_key(a, b));
     if (on_rim[a]) edges.leaving.emplace_back(a, b);
     if (on_rim[b]) edges.leaving.emplace_back(b, a);
   }
@@ -96,7 +92,7 @@ class Rim {
  private:
   IsTaken is_taken() const {
     return [this](std::uint32_t i, std::uint32_t j) {
-      return taken_.contains(key_of(loop_.vertices[i], loop_.vertices[j]));
+      return taken_.contains(edge_key(loop_.vertices[i], loop_.vertices[j]));
     };
   }
 
@@ -141,9 +137,9 @@ struct Part {
   bool is_thin(double tolerance) const { return 2 * std::abs(volume) <= tolerance * area; }
 };
 
-class Parts {
+class PartsOfDraft {
  public:
-  Parts(const Draft& draft, const EdgeTable& table) : draft_(draft), sets_(draft.mesh.triangles.size()) {
+  PartsOfDraft(const Draft& draft, const EdgeTable& table) : draft_(draft), sets_(draft.mesh.triangles.size()) {
     for (std::size_t e = 0; e < table.size(); ++e)
       for (const HalfEdge h : table.uses(e)) sets_.join(table.uses(e)[0] / 3, h / 3);
     part_.resize(draft.mesh.triangles.size());
@@ -234,7 +230,7 @@ ClosedHoles close_holes(Draft& draft, double tolerance) {
   };
   std::vector<Hole> all(loops.size());
   for_each_rim([&](std::size_t i) { all[i] = rims[i].closed(Least::kBend); });
-  Parts parts(draft, table);
+  PartsOfDraft parts(draft, table);
   for (const Hole& hole : all) parts.add_cap(hole);
   for (std::size_t i = 0; i < all.size(); ++i) {
     // What bends least may go down into a bowl instead of over it.

@@ -20,11 +20,6 @@ constexpr double kCertain = 0.2;
 /// Points that are looked at in each cell.
 constexpr int kSamples = 3;
 
-double area_of(const Arrangement& a, std::size_t t) {
-  const auto [p, q, r] = a.triangles[t];
-  return triangle_area(a.points[p], a.points[q], a.points[r]);
-}
-
 /// Pieces whose back lies at the unbounded cell, by area. Where that is the greater part, pieces that do not lie there
 /// are of the same mind.
 std::vector<char> turned_pieces(const Arrangement& arranged, const Cells& cells, const PieceOf& pieces) {
@@ -33,7 +28,8 @@ std::vector<char> turned_pieces(const Arrangement& arranged, const Cells& cells,
     const auto [front, back] = cells.sides_of(t);
     if (front == back || (front != 0 && back != 0)) continue;
     for (const Origin& o : arranged.origins_of(t))
-      ((front == 0) != o.reversed ? right : wrong)[pieces.piece[o.triangle]] += area_of(arranged, t);
+      ((front == 0) != o.reversed ? right : wrong)[pieces.piece[o.triangle]] +=
+          triangle_area(arranged.points, arranged.triangles[t]);
   }
   const bool most = std::accumulate(wrong.begin(), wrong.end(), 0.0) > std::accumulate(right.begin(), right.end(), 0.0);
   std::vector<char> turned(pieces.count);
@@ -79,7 +75,7 @@ class Sampler {
 
   std::vector<Sample> samples(const RunContext& context) {
     std::vector<double> area(arranged_.triangles.size());
-    for (std::size_t t = 0; t < area.size(); ++t) area[t] = area_of(arranged_, t);
+    for (std::size_t t = 0; t < area.size(); ++t) area[t] = triangle_area(arranged_.points, arranged_.triangles[t]);
     std::vector<std::uint32_t> order(area.size());
     std::iota(order.begin(), order.end(), 0u);
     std::stable_sort(order.begin(), order.end(), [&](std::uint32_t s, std::uint32_t t) { return area[s] > area[t]; });
@@ -153,7 +149,7 @@ std::vector<double> wall_areas(const Arrangement& arranged, const Cells& cells) 
   for (std::size_t t = 0; t < arranged.triangles.size(); ++t) {
     const auto sides = cells.sides_of(t);
     if (sides[0] == sides[1]) continue;
-    for (const std::uint32_t c : sides) area[c] += area_of(arranged, t);
+    for (const std::uint32_t c : sides) area[c] += triangle_area(arranged.points, arranged.triangles[t]);
   }
   return area;
 }
@@ -177,7 +173,7 @@ void cut_doubtful(const Arrangement& arranged, const Cells& cells, Labels& label
   if (labels.doubtful > 0) {
     for (std::size_t t = 0; t < arranged.triangles.size(); ++t) {
       const auto [front, back] = cells.sides_of(t);
-      if (front != back) cut.add_edge(front, back, area_of(arranged, t));
+      if (front != back) cut.add_edge(front, back, triangle_area(arranged.points, arranged.triangles[t]));
     }
     labels.inside = cut.on_source_side();
     return;
@@ -191,8 +187,8 @@ void fill_thin_gaps(const Arrangement& arranged, const Cells& cells, double tole
   std::vector<double> inner(cells.count(), 0);
   for (std::size_t t = 0; t < arranged.triangles.size(); ++t) {
     const auto [front, back] = cells.sides_of(t);
-    if (labels.inside[front]) inner[back] += area_of(arranged, t);
-    if (labels.inside[back]) inner[front] += area_of(arranged, t);
+    if (labels.inside[front]) inner[back] += triangle_area(arranged.points, arranged.triangles[t]);
+    if (labels.inside[back]) inner[front] += triangle_area(arranged.points, arranged.triangles[t]);
   }
   for (std::uint32_t c = 1; c < cells.count(); ++c)
     if (!labels.inside[c] && 2 * std::abs(volumes[c]) < tolerance * area[c] && 2 * inner[c] > area[c])
@@ -209,8 +205,8 @@ void empty_thin_flaps(const Arrangement& arranged, const Cells& cells, double to
   for (std::size_t t = 0; t < arranged.triangles.size(); ++t) {
     const auto [front, back] = cells.sides_of(t);
     if (front == back) continue;
-    if (!labels.inside[front]) outer[back] += area_of(arranged, t);
-    if (!labels.inside[back]) outer[front] += area_of(arranged, t);
+    if (!labels.inside[front]) outer[back] += triangle_area(arranged.points, arranged.triangles[t]);
+    if (!labels.inside[back]) outer[front] += triangle_area(arranged.points, arranged.triangles[t]);
   }
   for (std::uint32_t c = 1; c < cells.count(); ++c)
     if (labels.inside[c] && 2 * std::abs(volumes[c]) < tolerance * area[c] && outer[c] > kMostly * area[c])
@@ -232,7 +228,7 @@ void empty_thin_bodies(const Arrangement& arranged, const Cells& cells, double t
   for (std::size_t t = 0; t < arranged.triangles.size(); ++t) {
     const auto [front, back] = cells.sides_of(t);
     if (labels.inside[front] != labels.inside[back])
-      area[bodies.find(labels.inside[front] ? front : back)] += area_of(arranged, t);
+      area[bodies.find(labels.inside[front] ? front : back)] += triangle_area(arranged.points, arranged.triangles[t]);
   }
   for (std::uint32_t c = 1; c < cells.count(); ++c) {
     const std::uint32_t body = bodies.find(c);

@@ -10,6 +10,12 @@
 
 namespace octafront::mend {
 
+/// The edge between two vertices as a key of hash tables.
+constexpr std::uint64_t edge_key(VertexIndex a, VertexIndex b) {
+  const auto [low, high] = sorted_edge(a, b);
+  return std::uint64_t{low} << 32 | high;
+}
+
 /// The rim of a hole: its vertices in the order that triangles which close it run along it, none of them twice.
 struct Loop {
   std::vector<VertexIndex> vertices;

@@ -22,10 +22,6 @@ Vec3 middle_of(const std::vector<Vec3>& points, const Triangle& t) {
   return centroid(points[t[0]], points[t[1]], points[t[2]]);
 }
 
-double area_of(const std::vector<Vec3>& points, const Triangle& t) {
-  return triangle_area(points[t[0]], points[t[1]], points[t[2]]);
-}
-
 /// Triangles gathered into changes by the number of what they belong to.
 class Gathered {
  public:
@@ -72,7 +68,7 @@ void note_cuts(MendReport& report, const Arrangement& arranged, const std::vecto
     for (const Origin& o : arranged.origins_of(t))
       if (o.triangle < face.size()) first = std::min(first, face[o.triangle]);
     cuts.add(groups.find(arranged.triangles[t][0]), middle_of(arranged.points, arranged.triangles[t]),
-             area_of(arranged.points, arranged.triangles[t]), first);
+             triangle_area(arranged.points, arranged.triangles[t]), first);
   }
   cuts.move_to(report);
 }
@@ -92,7 +88,7 @@ void note_dropped(MendReport& report, repair::Draft& draft, const std::vector<ch
   for (std::uint32_t t = 0; t < used.size(); ++t) {
     if (used[t]) continue;
     dropped.add(parts.find(t), middle_of(draft.mesh.points, draft.mesh.triangles[t]),
-                area_of(draft.mesh.points, draft.mesh.triangles[t]), draft.face[t]);
+                triangle_area(draft.mesh.points, draft.mesh.triangles[t]), draft.face[t]);
   }
   dropped.move_to(report);
 }
@@ -104,7 +100,7 @@ void note_turned(MendReport& report, const repair::Draft& draft, const std::vect
     const bool before = std::binary_search(faces.begin(), faces.end(), draft.face[t]);
     if (before == static_cast<bool>(turned[piece[t]])) continue;
     all.add(piece[t], middle_of(draft.mesh.points, draft.mesh.triangles[t]),
-            area_of(draft.mesh.points, draft.mesh.triangles[t]), draft.face[t]);
+            triangle_area(draft.mesh.points, draft.mesh.triangles[t]), draft.face[t]);
   }
   all.move_to(report);
 }

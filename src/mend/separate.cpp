@@ -23,7 +23,7 @@ namespace {
 
 /// A copy moves by a part of the shortest edge beside it at most, and half as far again where it still touches.
 constexpr double kStep = 0.2;
-constexpr int kRounds = 30;
+constexpr int kSeparateRounds = 30;
 
 /// A vertex of one fan: where it was, which way it goes, how far.
 struct Copy {
@@ -305,7 +305,7 @@ class Separation {
 
   /// Where fewer than all but one fan have a way of their own. Neighbours of what was cut wait for the next round.
   void cut_tips(Separated& done) {
-    for (int round = 0; round < kRounds && cut_some_tips(done); ++round) {
+    for (int round = 0; round < kSeparateRounds && cut_some_tips(done); ++round) {
     }
   }
 
@@ -391,7 +391,7 @@ class Separation {
     if (copies_.empty()) return true;
     const std::vector<Triangle> near = concerned();
     Random random(1);
-    for (int round = 0; round < kRounds; ++round) {
+    for (int round = 0; round < kSeparateRounds; ++round) {
       for (const Copy& c : copies_) surface_.points[c.vertex] = c.from + c.step * c.way;
       const auto pairs = self_intersections(surface_.points, near, kMostPairs, context_);
       if (pairs.empty()) return true;

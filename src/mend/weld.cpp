@@ -19,7 +19,7 @@ using repair::Draft;
 /// vertex already, which enclose an angle below 30 degrees then, and of others.
 constexpr double kNearShared = 0.5, kNear = 0.75;
 /// What is joined in one round brings other edges together: few rounds do.
-constexpr int kRounds = 8;
+constexpr int kWeldRounds = 8;
 
 struct OpenEdge {
   VertexIndex from, to;
@@ -130,7 +130,7 @@ class Welder {
   Welder(Draft& draft, double tolerance) : draft_(draft), tolerance_(tolerance) {}
 
   Welded result() {
-    for (int round = 0; round < kRounds; ++round) {
+    for (int round = 0; round < kWeldRounds; ++round) {
       const bool fitted = join_edges(), joined = join_vertices(), divided = divide_edges();
       if (!fitted && !joined && !divided) break;
     }

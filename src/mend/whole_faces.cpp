@@ -11,7 +11,7 @@ namespace octafront::mend {
 namespace {
 
 /// A face of the input by its parts.
-struct Parts {
+struct FaceParts {
   std::uint32_t in_all = 0, in_skin = 0;  ///< of the arrangement, and of these
   std::uint32_t first = kNone;            ///< of the skin
   bool first_is_reversed = false;         ///< against the face
@@ -30,7 +30,7 @@ class WholeFaces {
     }
     Skin restored = with_faces_put_back();
     if (restored.triangles == skin_.triangles) return;
-    // Parts are rounded: what passed beside them might cross the face.
+    // FaceParts are rounded: what passed beside them might cross the face.
     if (self_intersections(restored.points, restored.triangles, 1, context).empty()) skin_ = std::move(restored);
   }
 
@@ -43,11 +43,11 @@ class WholeFaces {
       const bool is_turned = !is_rotation(skin_.triangles[t], arranged_.triangles[skin_.wall[t]]);
       for (const Origin& o : origins(t)) add_part(o.triangle, t, is_turned != o.reversed);
     }
-    for (Parts& p : parts_) p.is_whole = !p.face_both_ways && p.in_skin > 0 && p.in_skin == p.in_all;
+    for (FaceParts& p : parts_) p.is_whole = !p.face_both_ways && p.in_skin > 0 && p.in_skin == p.in_all;
   }
 
   void add_part(std::uint32_t face, std::uint32_t t, bool is_reversed) {
-    Parts& parts = parts_[face];
+    FaceParts& parts = parts_[face];
     if (parts.first == kNone) parts.first = t, parts.first_is_reversed = is_reversed;
     parts.face_both_ways |= is_reversed != parts.first_is_reversed;
     ++parts.in_skin;
@@ -116,7 +116,7 @@ class WholeFaces {
   const Arrangement& arranged_;
   const std::vector<Triangle>& given_;
   Skin& skin_;
-  std::vector<Parts> parts_;            ///< per face
+  std::vector<FaceParts> parts_;        ///< per face
   std::vector<std::uint32_t> face_of_;  ///< per triangle of the skin, the whole face that it is a part of
 };
 

@@ -44,18 +44,19 @@ HalfEdgeMesh make_half_edge_mesh(const SurfaceMesh& surface, const EdgeTable& ed
 
 namespace {
 
-std::string name_of(HalfEdge h) {
+std::string name_of_half_edge(HalfEdge h) {
   return "half-edge " + std::to_string(h);
 }
 
 std::optional<std::string> wrong_at_half_edge(const HalfEdgeMesh& mesh, HalfEdge h) {
   const HalfEdge g = mesh.twin[h];
-  if (g >= mesh.start.size()) return name_of(h) + " has no twin";
-  if (mesh.twin[g] != h) return name_of(g) + " does not know its twin, " + name_of(h);
+  if (g >= mesh.start.size()) return name_of_half_edge(h) + " has no twin";
+  if (mesh.twin[g] != h) return name_of_half_edge(g) + " does not know its twin, " + name_of_half_edge(h);
   if (mesh.start[g] != mesh.end(h) || mesh.end(g) != mesh.start[h])
-    return name_of(h) + " and its twin, " + name_of(g) + ", do not run along one edge in opposite directions";
-  if (mesh.start[h] == mesh.end(h)) return name_of(h) + " ends where it starts";
-  if (mesh.is_feature[h] != mesh.is_feature[g]) return name_of(h) + " and its twin are not both features";
+    return name_of_half_edge(h) + " and its twin, " + name_of_half_edge(g) +
+           ", do not run along one edge in opposite directions";
+  if (mesh.start[h] == mesh.end(h)) return name_of_half_edge(h) + " ends where it starts";
+  if (mesh.is_feature[h] != mesh.is_feature[g]) return name_of_half_edge(h) + " and its twin are not both features";
   return std::nullopt;
 }
 
@@ -68,7 +69,7 @@ std::optional<std::string> count_starts(const HalfEdgeMesh& mesh, std::vector<st
   count.assign(mesh.points.size(), 0);
   for (HalfEdge h = 0; h < half_edges; ++h) {
     if (mesh.start[h] == kNone && mesh.end(h) == kNone) continue;
-    if (mesh.start[h] >= mesh.points.size()) return name_of(h) + " leaves a vertex that there is not";
+    if (mesh.start[h] >= mesh.points.size()) return name_of_half_edge(h) + " leaves a vertex that there is not";
     ++count[mesh.start[h]];
   }
   return std::nullopt;
@@ -82,7 +83,7 @@ std::optional<std::string> HalfEdgeMesh::first_inconsistency(VertexIndex v) cons
   // Who looks at both sides before going on comes back: no half-edge is reached from two.
   for (HalfEdge h = first;;) {
     if (h >= start.size() || start[h] != v)
-      return name_of(h) + " is given as leaving vertex " + std::to_string(v) + ", and does not";
+      return name_of_half_edge(h) + " is given as leaving vertex " + std::to_string(v) + ", and does not";
     for (const HalfEdge side : {h, previous_of(h)})
       if (auto wrong = wrong_at_half_edge(*this, side)) return wrong;
     h = rotated(h);

@@ -39,4 +39,12 @@ void drop_unused_points(TetMesh& mesh, std::size_t kept) {
   renumber_vertices(mesh, number);
 }
 
+void drop_unused_points(std::vector<Vec3>& points, std::vector<Triangle>& triangles) {
+  std::vector<VertexIndex> number(points.size(), kNone);
+  for (const Triangle& t : triangles)
+    for (const VertexIndex v : t) number[v] = 0;
+  keep_numbered(points, number);
+  renumber(triangles, number);
+}
+
 }  // namespace octafront

@@ -22,5 +22,7 @@ void renumber_vertices(TetMesh& mesh, const std::vector<VertexIndex>& number);
 
 /// Points that no tetrahedron uses go; the first `kept` stay where they are, used or not.
 void drop_unused_points(TetMesh& mesh, std::size_t kept = 0);
+/// Points that no triangle uses go.
+void drop_unused_points(std::vector<Vec3>& points, std::vector<Triangle>& triangles);
 
 }  // namespace octafront

@@ -79,17 +79,19 @@ std::array<VertexIndex, 2> least_two(const Tet& t) {
   return {std::min(low, other_low), std::min(std::max(low, other_low), std::min(high, other_high))};
 }
 
-std::string name_of(HalfFace h) {
+std::string name_of_half_face(HalfFace h) {
   return "face " + std::to_string(h % 4) + " of tetrahedron " + std::to_string(h / 4);
 }
 
 std::optional<std::string> wrong_at_face(const TetComplex& c, HalfFace h) {
   const HalfFace o = c.across[h];
   if (is_outside(o)) return std::nullopt;
-  if (o / 4 >= c.slots() || !c.alive(o / 4)) return "across " + name_of(h) + " lies a tetrahedron that is gone";
-  if (c.across[o] != h) return name_of(o) + " does not know its neighbour across, " + name_of(h);
+  if (o / 4 >= c.slots() || !c.alive(o / 4))
+    return "across " + name_of_half_face(h) + " lies a tetrahedron that is gone";
+  if (c.across[o] != h) return name_of_half_face(o) + " does not know its neighbour across, " + name_of_half_face(h);
   if (face_key(c.face(o)) != face_key(c.face(h)) || is_even(c.face(o)) == is_even(c.face(h)))
-    return name_of(h) + " and " + name_of(o) + " are neighbours, but not one face seen from both sides";
+    return name_of_half_face(h) + " and " + name_of_half_face(o) +
+           " are neighbours, but not one face seen from both sides";
   return std::nullopt;
 }
 

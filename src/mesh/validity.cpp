@@ -98,7 +98,7 @@ std::optional<std::string> set_defect(const TetMesh& mesh) {
 
 Edge edge_of(const Tet& t, std::size_t e) {
   const VertexIndex a = t[static_cast<std::size_t>(kTetEdges[e][0])], b = t[static_cast<std::size_t>(kTetEdges[e][1])];
-  return {std::min(a, b), std::max(a, b)};
+  return sorted_edge(a, b);
 }
 
 std::optional<std::string> curve_defect(const TetMesh& mesh) {

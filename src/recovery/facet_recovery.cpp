@@ -15,10 +15,6 @@ constexpr int kPasses = 8;
 // A facet that was divided this often is finished without flips that could bring new edges into its way.
 constexpr int kDivisionsBeforeStrict = 40;
 
-Edge ordered(VertexIndex a, VertexIndex b) {
-  return {std::min(a, b), std::max(a, b)};
-}
-
 }  // namespace
 
 HalfFace BoundaryRecovery::find_face(const Triangle& f) {
@@ -44,7 +40,7 @@ void BoundaryRecovery::crossing_edges(const Polygon& polygon, std::vector<Edge>&
     if (!mesh_.closed_ring(tets[k], edges[k][0], edges[k][1], ring_)) continue;
     for (const TetIndex t : ring_.tets) {
       for (const auto& [i, j] : kTetEdges) {
-        const Edge e = ordered(mesh_.tets[t][i], mesh_.tets[t][j]);
+        const Edge e = sorted_edge(mesh_.tets[t][i], mesh_.tets[t][j]);
         if (known.contains(e) || hindrance.of_edge(e[0], e[1]) == 0) continue;
         known.insert(e);
         edges.push_back(e);
@@ -71,7 +67,7 @@ void BoundaryRecovery::crossing_edge_at_side(const Polygon& polygon, std::size_t
     const int before = points_.orient(u, v, p, w), after = points_.orient(u, v, w, q);
     if (after <= 0 || before < 0) continue;
     if (before > 0) {
-      edges.push_back(ordered(p, q));
+      edges.push_back(sorted_edge(p, q));
       tets.push_back(ring_.tets[i]);
       return;
     }

@@ -20,7 +20,7 @@ constexpr double kLargestSphere = 0.75, kSpacing = 0.7, kClearance = 0.3;
 // Moves of a refused centre towards its element.
 constexpr int kMoves = 4;
 // A cavity larger than this, or a walk longer, comes of a mesh that is far from Delaunay: not worth it.
-constexpr std::size_t kMaxCavity = 300;
+constexpr std::size_t kMaxCavityOfPoint = 300;
 constexpr int kMaxWalk = 1000;
 
 struct Sphere {
@@ -135,7 +135,7 @@ class Refiner {
       for (HalfFace h = 4 * cavity_[k]; h < 4 * cavity_[k] + 4; ++h) {
         const HalfFace o = complex_.across[h];
         if (is_outside(o) || inside(o) || !in_sphere(o / 4, p)) continue;
-        if (cavity_.size() >= kMaxCavity) return false;
+        if (cavity_.size() >= kMaxCavityOfPoint) return false;
         complex_.marks[o / 4] = marked_;
         cavity_.push_back(o / 4);
       }

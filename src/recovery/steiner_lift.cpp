@@ -24,7 +24,7 @@ constexpr int kDirections = 4, kMoreEachRound = 2;
 // How far chance leads away from there, by turns: wide for stars that are hardly open, narrow for the good ones.
 constexpr double kWide = 1.5, kNarrow = 0.5;
 // Cavities larger than this bring distant elements in for nothing.
-constexpr std::size_t kMaxCavity = 400;
+constexpr std::size_t kMaxCavityOfLift = 400;
 
 }  // namespace
 
@@ -260,7 +260,7 @@ double SteinerLift::cavity_quality(Vec3 x, const std::vector<TetComplex::Boundar
 }
 
 bool SteinerLift::place(VertexIndex s, Vec3 x, const std::vector<TetComplex::BoundaryFace>& boundary) {
-  if (!grow_cavity(s, x, kMaxCavity)) return false;
+  if (!grow_cavity(s, x, kMaxCavityOfLift)) return false;
   std::vector<Tet> fresh;
   const auto cone = [&](const Triangle& f) { fresh.push_back({f[0], f[2], f[1], s}); };
   for (const Triangle& f : rim_) cone(f);
@@ -321,7 +321,7 @@ std::optional<Vec3> SteinerLift::best_place(VertexIndex s, const std::vector<Fan
     if (found > 0 && ++heights_after_first > kHeightsAfterFirst) break;
     for (int k = 0; k < kDirections + kMoreEachRound * round; ++k) {
       const Vec3 x = at + direction(around, k) * (h * around.size);
-      if (!sees_fans(x, fans) || !grow_cavity(s, x, kMaxCavity)) continue;
+      if (!sees_fans(x, fans) || !grow_cavity(s, x, kMaxCavityOfLift)) continue;
       ++found;
       const double q = cavity_quality(x, boundary);
       if (q <= best_quality) continue;

@@ -4,14 +4,6 @@
 
 namespace octafront::recovery {
 
-namespace {
-
-Edge ordered(VertexIndex a, VertexIndex b) {
-  return {std::min(a, b), std::max(a, b)};
-}
-
-}  // namespace
-
 SubdividedSurface::SubdividedSurface(const std::vector<Triangle>& triangles) : triangles_(triangles) {
   edges_.reserve(triangles.size() * 3 / 2);
   for (const Triangle& t : triangles) {
@@ -23,7 +15,7 @@ std::vector<Edge> SubdividedSurface::input_edges() const {
   std::vector<Edge> list;
   list.reserve(3 * triangles_.size());
   for (const Triangle& t : triangles_) {
-    for (int i = 0; i < 3; ++i) list.push_back(ordered(t[i], t[(i + 1) % 3]));
+    for (int i = 0; i < 3; ++i) list.push_back(sorted_edge(t[i], t[(i + 1) % 3]));
   }
   std::ranges::sort(list);
   list.erase(std::ranges::unique(list).begin(), list.end());
@@ -34,11 +26,11 @@ void SubdividedSurface::split_edge(VertexIndex a, VertexIndex b, VertexIndex s) 
   edges_.erase(a, b);
   edges_.insert(a, s);
   edges_.insert(s, b);
-  middle_.emplace(ordered(a, b), s);
+  middle_.emplace(sorted_edge(a, b), s);
 }
 
 void SubdividedSurface::expand(VertexIndex a, VertexIndex b, std::vector<VertexIndex>& chain) const {
-  const auto it = middle_.find(ordered(a, b));
+  const auto it = middle_.find(sorted_edge(a, b));
   if (it == middle_.end()) {
     chain.push_back(a);
     return;
@@ -50,7 +42,7 @@ void SubdividedSurface::expand(VertexIndex a, VertexIndex b, std::vector<VertexI
 bool SubdividedSurface::is_divided(const Triangle& t) const {
   if (middle_.empty()) return false;
   for (int i = 0; i < 3; ++i) {
-    if (middle_.contains(ordered(t[i], t[(i + 1) % 3]))) return true;
+    if (middle_.contains(sorted_edge(t[i], t[(i + 1) % 3]))) return true;
   }
   return false;
 }

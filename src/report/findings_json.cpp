@@ -12,7 +12,7 @@ Json place(Vec3 p) {
   return {p.x, p.y, p.z};
 }
 
-Json json_of(const SurfaceDefects::Kind& kind) {
+Json json_of_kind(const SurfaceDefects::Kind& kind) {
   Json first = Json::array();
   for (const SurfaceDefects::Place& p : kind.first) first.push_back({{"at", place(p.at)}, {"faces", p.faces}});
   return {{"count", kind.count}, {"first", first}};
@@ -21,15 +21,15 @@ Json json_of(const SurfaceDefects::Kind& kind) {
 }  // namespace
 
 std::string to_json(const SurfaceDefects& d) {
-  return Json{{"open_edges", json_of(d.open_edges)},
+  return Json{{"open_edges", json_of_kind(d.open_edges)},
               {"open_loops", d.open_loops},
-              {"non_manifold_edges", json_of(d.non_manifold_edges)},
-              {"misoriented_edges", json_of(d.misoriented_edges)},
-              {"non_manifold_vertices", json_of(d.non_manifold_vertices)},
-              {"self_intersections", json_of(d.self_intersections)},
-              {"degenerate_faces", json_of(d.degenerate_faces)},
-              {"region_conflicts", json_of(d.region_conflicts)},
-              {"misplaced_parts", json_of(d.misplaced_parts)}}
+              {"non_manifold_edges", json_of_kind(d.non_manifold_edges)},
+              {"misoriented_edges", json_of_kind(d.misoriented_edges)},
+              {"non_manifold_vertices", json_of_kind(d.non_manifold_vertices)},
+              {"self_intersections", json_of_kind(d.self_intersections)},
+              {"degenerate_faces", json_of_kind(d.degenerate_faces)},
+              {"region_conflicts", json_of_kind(d.region_conflicts)},
+              {"misplaced_parts", json_of_kind(d.misplaced_parts)}}
       .dump(2, ' ', false, Json::error_handler_t::replace);
 }
 

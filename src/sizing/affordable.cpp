@@ -16,7 +16,7 @@ namespace octafront {
 namespace {
 
 /// Rays that look for walls: enough for the first digit of the number.
-constexpr int kPlaces = 1024;
+constexpr int kRaysForGaps = 1024;
 /// The angle that the inside fills around a feature curve, taken to be a right one.
 constexpr double kInsideAngle = std::numbers::pi / 2;
 
@@ -56,7 +56,7 @@ void Affordable::feature_elements(double elements, const std::vector<FeatureCurv
 }
 
 void Affordable::gap(double elements, const GapFinder& gaps) const {
-  const double step = all_area_ / kPlaces;
+  const double step = all_area_ / kRaysForGaps;
   double passed = 0, next = 0.5 * step, tets = 0;
   for (std::uint32_t f = 0; f < area_.size(); ++f) {
     passed += area_[f];

@@ -79,8 +79,8 @@ std::vector<std::array<double, 8>> at_corners(const OctreeField& grid, const Siz
   return h;
 }
 
-/// The sizes of `grid` raised to a floor, but not above `most`.
-OctreeField raised(const OctreeField& grid, const std::vector<std::array<double, 8>>& most, double floor) {
+/// The sizes of `grid` raised_grid to a floor, but not above `most`.
+OctreeField raised_grid(const OctreeField& grid, const std::vector<std::array<double, 8>>& most, double floor) {
   OctreeField result = grid;
   for (std::size_t l = 0; l < result.h.size(); ++l)
     for (int k = 0; k < 8; ++k) result.h[l][k] = std::max(result.h[l][k], std::min(most[l][k], floor));
@@ -136,9 +136,9 @@ WithinCount within_count(const SizeField& finer, const SizeField& first, const T
   double low = std::log(grid->low), high = std::log(first.max_size() / grid->root.side);
   for (int step = 0; step < kFloorSteps; ++step) {
     const double floor = 0.5 * (low + high);
-    (expected_here(raised(*grid, most_sizes, std::exp(floor))) > most ? low : high) = floor;
+    (expected_here(raised_grid(*grid, most_sizes, std::exp(floor))) > most ? low : high) = floor;
   }
-  auto coarser = std::make_shared<OctreeField>(raised(*grid, most_sizes, std::exp(high)));
+  auto coarser = std::make_shared<OctreeField>(raised_grid(*grid, most_sizes, std::exp(high)));
   grade_again(*coarser, context);
   coarser->find_range();
   return {SizeField(SizeFunction::field(std::move(coarser))), asked, std::exp(high) * grid->root.side};

@@ -20,8 +20,6 @@ constexpr double kAnsweredPart = 0.7;
 /// Balls are laid in blocks of this many triangles, next to each other along the octree's curve: in the same order
 /// however the triangles are numbered, and by as many threads as there are.
 constexpr std::size_t kFacesPerBlock = 2048;
-/// Edge of an equilateral triangle of area 1.
-constexpr double kEdgeOfUnitArea = 1.5196713713031851;
 
 /// A symmetric tensor and the area that it was gathered over.
 struct TensorSum {

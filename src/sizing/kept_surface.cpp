@@ -18,12 +18,9 @@ namespace octafront {
 
 namespace {
 
-/// Edge of an equilateral triangle of area 1.
-constexpr double kEdgeOfUnitArea = 1.5196713713031851;
-
 /// Where triangles of very different sizes meet, gradation pulls sizes below most of the triangles. Then all are raised
 /// by the mean shortfall, within limits, so that sizes lie about the triangles as often above as below.
-constexpr double kRaisedFrom = 1.03, kMostRaised = 1.5;
+constexpr double kRaisedFrom = 1.03, kMostKeptRaised = 1.5;
 /// Where the mean shortfall is above this, the triangles ask for steeper changes of size than gradation allows:
 /// following it would make two to three times the elements, and more of them poor. Then sizes may change this much
 /// faster, and once more. Meshes of scans, up to 1.26 at a gradation of .2, keep about that, which serves their
@@ -144,7 +141,7 @@ SizeField size_field_of_surface(const KnownSurface& known, const SizeOptions& op
         "length",
         rules.gradation));
   }
-  shortfall = std::min(kMostRaised, shortfall);
+  shortfall = std::min(kMostKeptRaised, shortfall);
   if (shortfall > kRaisedFrom) {
     std::vector<double> raised = face;
     for (double& h : raised) h *= shortfall;

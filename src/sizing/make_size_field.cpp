@@ -41,8 +41,9 @@ constexpr double kBudget = 1e6, kBudgetPerTriangle = 20, kMostBudget = 3e6;
 /// Of these what details get before the surface is made, which takes the rest for what it has to follow: strips between
 /// lines, and places where it would stray.
 constexpr double kForDetails = 400'000;
-/// For that small sizes are raised by this factor at most: real details, such as a thousand small holes, would be lost.
-constexpr double kMostRaised = 2.7;
+/// For that small sizes are raised by this factor at most: real details, such as a thousand small holes, would
+/// be lost.
+constexpr double kMostSmallRaised = 2.7;
 constexpr int kBudgetSteps = 6;
 /// Details that ask for so many budgets, as thousands of small bodies do, are counted on the surface alone: their grid
 /// would take more time and memory than the mesh.
@@ -176,7 +177,7 @@ SizeField scaled_to_count(const SurfaceMesh& surface, const WantedSizes& wanted,
   return best;
 }
 
-WantedSizes raised(const WantedSizes& wanted, double floor) {
+WantedSizes raised_wanted(const WantedSizes& wanted, double floor) {
   WantedSizes result = wanted;
   for (double& h : result.face) h = std::max(h, floor);
   for (SizeSample& s : result.points) s.h = std::max(s.h, floor);
@@ -198,7 +199,7 @@ Raised raised_to_count(const SurfaceMesh& surface, const WantedSizes& wanted, co
   std::optional<Raised> best;
   for (int step = 0; step < kBudgetSteps; ++step) {
     const double floor = step == 0 ? high : std::sqrt(low * high);
-    SizeField coarser = grid_field(surface, raised(wanted, floor), options, context);
+    SizeField coarser = grid_field(surface, raised_wanted(wanted, floor), options, context);
     const double count = expected(coarser);
     const bool is_within = count <= most, is_near = std::abs(count / most - 1) < kNearBudget;
     (is_within ? high : low) = floor;
@@ -221,7 +222,7 @@ SizeField within_budget(const SurfaceMesh& surface, const WantedSizes& wanted, c
     if (first <= for_details) return field;
     low = field.min_size();
   }
-  const double high = std::min(wanted.ceiling, kMostRaised * low);
+  const double high = std::min(wanted.ceiling, kMostSmallRaised * low);
   Raised made = raised_to_count(surface, wanted, options, expected, for_details, low, high, stage.context());
   if (made.count > budget)
     made = raised_to_count(surface, wanted, options, expected, budget, high,

@@ -82,7 +82,7 @@ void apply_facets(const SurfaceMesh& surface, const FaceNeighbours& across, doub
   std::vector<double> areas(surface.triangles.size());
   for (std::size_t f = 0; f < areas.size(); ++f) {
     const Triangle& t = surface.triangles[f];
-    areas[f] = triangle_area(surface.points[t[0]], surface.points[t[1]], surface.points[t[2]]);
+    areas[f] = triangle_area(surface.points, t);
   }
   for (std::size_t f = 0; f < areas.size(); ++f) {
     double sum = areas[f];
@@ -118,8 +118,7 @@ double predicted_volume_loss(const SurfaceMesh& surface, const SurfaceCurvature&
   double sum = 0;
   for (std::size_t f = 0; f < face.size(); ++f) {
     const Triangle& t = surface.triangles[f];
-    sum += triangle_area(surface.points[t[0]], surface.points[t[1]], surface.points[t[2]]) * curvature.sum[f] *
-           face[f] * face[f] / 16;
+    sum += triangle_area(surface.points, t) * curvature.sum[f] * face[f] * face[f] / 16;
   }
   return std::abs(sum);
 }

@@ -39,7 +39,7 @@ double tets_per_triangle(double thickness) {
 constexpr double kOneLayer = 1.05, kCoarse = 0.75;
 
 /// Places looked at, spread evenly over the triangles that the surface will have: shares to a percent, in milliseconds.
-constexpr int kPlaces = 4096;
+constexpr int kPlacesOfWalls = 4096;
 /// Rays begin this part of the model inside the surface, so as not to meet it where they start.
 constexpr double kSkipped = 1e-7;
 
@@ -51,7 +51,7 @@ double ThinWalls::excess_tets(const std::vector<SurfacePiece>& pieces, const std
   double all = 0;
   for (std::size_t i = 0; i < pieces.size(); ++i) all += squares(i);
   const double triangles_per_square = triangles ? static_cast<double>(*triangles) / all : kTrianglesPerSquare;
-  const double step = all / kPlaces;
+  const double step = all / kPlacesOfWalls;
   struct Place {
     std::size_t piece;
     double places, walls = 0;  ///< thickness, in sizes

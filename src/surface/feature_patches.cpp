@@ -9,8 +9,8 @@ namespace octafront {
 namespace {
 
 /// Per triangle the part it lies in.
-std::vector<std::uint32_t> parts_of(const SurfaceMesh& surface, const EdgeTable& table, const Features& features,
-                                    std::uint32_t& parts) {
+std::vector<std::uint32_t> parts_between_features(const SurfaceMesh& surface, const EdgeTable& table,
+                                                  const Features& features, std::uint32_t& parts) {
   const std::vector<std::uint32_t> edge_of = table.edge_of_half_edge();
   std::vector<std::uint32_t> part(surface.triangles.size(), kNone), stack;
   parts = 0;
@@ -58,7 +58,7 @@ std::vector<std::string> names_of(const SurfaceMesh& surface, const std::vector<
 std::uint32_t divide_into_patches(SurfaceMesh& surface, const EdgeTable& edges, const Features& features) {
   if (surface.triangles.empty()) return 0;
   std::uint32_t parts = 0;
-  const std::vector<std::uint32_t> part = parts_of(surface, edges, features, parts);
+  const std::vector<std::uint32_t> part = parts_between_features(surface, edges, features, parts);
   if (!surface.patch_names.empty()) surface.patch_names = names_of(surface, part, parts);
   surface.patch = part;
   return parts;

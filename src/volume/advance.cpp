@@ -16,7 +16,6 @@ namespace octafront {
 namespace {
 
 constexpr int kMostRounds = 8;
-constexpr int kAllLayers = std::numeric_limits<int>::max();
 /// A queue of no more faces than this is worked off to its end in one block.
 constexpr std::size_t kSmallQueue = 1500;
 /// Queued faces in a block: their front fits the second-level cache. From 600 to 4000, time and quality change by less

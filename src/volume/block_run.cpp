@@ -13,7 +13,6 @@ namespace octafront {
 namespace {
 
 constexpr std::size_t kFacesBetweenChecks = 512;
-constexpr int kAllLayers = std::numeric_limits<int>::max();
 
 class BlockRun {
  public:

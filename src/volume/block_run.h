@@ -5,9 +5,12 @@
 #include "volume/partition.h"
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace octafront {
+
+inline constexpr int kAllLayers = std::numeric_limits<int>::max();
 
 /// What the blocks of a phase have in common. They read it, and change nothing of it.
 struct FrontPhase {

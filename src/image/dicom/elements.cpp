@@ -60,11 +60,11 @@ bool has_long_length(std::string_view vr) {
   return false;
 }
 
-class Parser {
+class DicomParser {
  public:
   using Visit = std::function<void(const std::vector<Level>&, const Element&)>;
 
-  Parser(const io::Input& input, const Visit& visit) : input_(input), visit_(visit), progress_(input) {}
+  DicomParser(const io::Input& input, const Visit& visit) : input_(input), visit_(visit), progress_(input) {}
 
   Syntax parse() {
     const bool has_preamble = input_.bytes.size() > kPreamble + 4 && input_.bytes.substr(kPreamble, 4) == "DICM";
@@ -218,7 +218,7 @@ bool is_dicom(std::string_view head) {
 
 Syntax for_each_element(const io::Input& input,
                         const std::function<void(const std::vector<Level>&, const Element&)>& visit) {
-  return Parser(input, visit).parse();
+  return DicomParser(input, visit).parse();
 }
 
 }  // namespace octafront::image

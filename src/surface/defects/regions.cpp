@@ -68,7 +68,7 @@ void find_conflicts(const RepairedSurface& repaired, const EdgeTable& table, Sur
 }
 
 /// Parts of the complex that hang together over edges.
-DisjointSets parts_of(const SurfaceMesh& mesh, const EdgeTable& table) {
+DisjointSets parts_of_sides(const SurfaceMesh& mesh, const EdgeTable& table) {
   DisjointSets parts(mesh.triangles.size());
   for (std::size_t e = 0; e < table.size(); ++e)
     for (const HalfEdge h : table.uses(e)) parts.join(table.uses(e)[0] / 3, h / 3);
@@ -80,7 +80,7 @@ DisjointSets parts_of(const SurfaceMesh& mesh, const EdgeTable& table) {
 void find_misplaced(const RepairedSurface& repaired, const EdgeTable& table, const RunContext& context,
                     SurfaceDefects& found, std::vector<Vec3>* all) {
   const SurfaceMesh& mesh = repaired.surface;
-  DisjointSets parts = parts_of(mesh, table);
+  DisjointSets parts = parts_of_sides(mesh, table);
   std::vector<std::uint8_t> has_line(mesh.triangles.size(), 0), is_misplaced(mesh.triangles.size(), 0);
   FirstPlaces places(found.misplaced_parts);
   const auto complain = [&](std::uint32_t t) {

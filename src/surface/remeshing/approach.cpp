@@ -17,7 +17,7 @@ constexpr double kOnEdge = 0.2;
 constexpr double kAtCorner = 0.8;
 /// In a complex no edge is halved nearer to itself than this part of its length: crossings stay as they are, and what
 /// lies in one plane leaves flat elements where regions touch themselves.
-constexpr double kInPlane = 0.02;
+constexpr double kInOwnPlane = 0.02;
 
 /// Weights of the corners that make up the point nearest to p in the plane of a triangle.
 std::array<double, 3> weights_at(const TriangleCorners& t, Vec3 p) {
@@ -95,7 +95,7 @@ class Approacher {
     std::sort(edges.begin(), edges.end(), [&](HalfEdge g, HalfEdge h) { return length_of(g) > length_of(h); });
     return std::ranges::any_of(edges, [&](HalfEdge h) {
       const TriangleTree::Nearest at = tree_.nearest((mesh_.points[mesh_.start[h]] + mesh_.points[mesh_.end(h)]) * 0.5);
-      if (mesh_.first_back != kNone && at.squared_distance < kInPlane * kInPlane * length_of(h)) return false;
+      if (mesh_.first_back != kNone && at.squared_distance < kInOwnPlane * kInOwnPlane * length_of(h)) return false;
       const Vec3 normal = input_.normal_at(at.triangle, at.point);
       return dot(mesh_.area_vector(t), normal) > 0 && is_of_patch({at.point, at.triangle}, t) &&
              divide(t, h, {at.point, at.triangle}, normal);

@@ -14,7 +14,7 @@ namespace octafront::remeshing {
 namespace {
 
 /// How fast sizes rise around a corner: by more than elsewhere, for a tiny edge shall not cost thousands of elements.
-constexpr double kSteep = 0.7;
+constexpr double kSteepAroundCorners = 0.7;
 /// No size falls below this part of what it was.
 constexpr double kFloor = 1e-3;
 /// Edges three times as long as the shortest one make fair triangles still (2r/R of .56): so much of the distance. (4
@@ -24,7 +24,7 @@ constexpr double kSizePerRoom = 3;
 /// and do not fall upon each other.
 constexpr double kPerLoop = 6;
 /// Where sizes would stay above this part nothing is gained.
-constexpr double kWorthwhile = 0.85;
+constexpr double kWorthwhileAtCorner = 0.85;
 /// Where curves part at less than 30 degrees they force poor elements; sizes do not follow them into their wedge, but
 /// stop at this part of the edge that leads to it.
 constexpr double kWedge = 0.5;
@@ -119,7 +119,7 @@ class CornerFitter {
 
   void add_place(Vec3 p, double room, std::vector<PointSize>& places) const {
     const double size = sizes_.at(p), wanted = kSizePerRoom * room;
-    if (wanted < kWorthwhile * size) places.push_back({p, std::max(wanted, kFloor * size)});
+    if (wanted < kWorthwhileAtCorner * size) places.push_back({p, std::max(wanted, kFloor * size)});
   }
 
   const HalfEdgeMesh& mesh_;
@@ -138,7 +138,8 @@ class CornerFitter {
 SizeField fitted_to_corners(const InputSurface& input, const SeamedSurface& seamed, std::vector<std::uint8_t> is_fixed,
                             const SizeField& sizes, const RunContext& context) {
   const SeamedCurves chained = chained_curves(input, seamed, sizes, is_fixed);
-  return capped_at(sizes, CornerFitter(input, seamed, chained, sizes).run(context), context, {.gradation = kSteep});
+  return capped_at(sizes, CornerFitter(input, seamed, chained, sizes).run(context), context,
+                   {.gradation = kSteepAroundCorners});
 }
 
 }  // namespace octafront::remeshing

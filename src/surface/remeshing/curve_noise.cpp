@@ -15,7 +15,7 @@ constexpr double kReaches[] = {0.3, 0.45, 0.6};
 constexpr double kScaleCosine = 0.866;
 /// A chain that fails the test at scale is noise if it is shorter than this, in element sizes: longer ones are steps
 /// and grooves of a machined part, which are straight and keep their lines however fine they are.
-constexpr double kShort = 1.5, kShortDangling = 4;
+constexpr double kShortChain = 1.5, kShortDangling = 4;
 /// A chain with two loose ends is noise below this length.
 constexpr double kShortIsolated = 1;
 /// A closed curve this short has no room for three segments worth the name.
@@ -32,7 +32,7 @@ constexpr double kBluntCosine = 0.423, kSomewhatRough = 0.15;
 /// across triangles shows as edges on both sides of it.
 constexpr double kShortDouble = 1;
 /// Removing chains joins others; that settles within a few rounds.
-constexpr int kRounds = 6;
+constexpr int kNoiseRounds = 6;
 
 Vec3 normal_aside(const InputSurface& input, HalfEdge h, double size) {
   const HalfEdgeMesh& mesh = input.mesh;
@@ -75,7 +75,7 @@ bool is_noise(const ChainFacts& f) {
     if (f.between_junctions && f.length < kShortRung) return true;
   }
   if (f.sharp >= 0.5 * f.length) return false;
-  return f.length < (f.loose_ends > 0 ? kShortDangling : kShort);
+  return f.length < (f.loose_ends > 0 ? kShortDangling : kShortChain);
 }
 
 /// Regions of a complex keep their edges, but for those of scans.
@@ -93,7 +93,7 @@ class NoiseFilter {
 
   std::vector<Edge> run(std::vector<Edge> edges) {
     judge_edges(edges);
-    for (int round = 0; round < kRounds; ++round) {
+    for (int round = 0; round < kNoiseRounds; ++round) {
       set_features(marked_, edges);
       const std::size_t before = edges.size();
       drop_noise();

@@ -10,9 +10,9 @@ namespace octafront::remeshing {
 namespace {
 
 /// Steps below this part of the size are not worth it, and none goes farther than this part of the way to a neighbour.
-constexpr double kLeastStep = 2e-2, kMostStep = 0.35;
+constexpr double kLeastCurveStep = 2e-2, kMostStep = 0.35;
 /// Segments of the curve stay within these lengths, in wanted sizes.
-constexpr double kShortest = 0.7, kLongest = 1.4;
+constexpr double kShortestSegment = 0.7, kLongestSegment = 1.4;
 /// Bends of the curve may always be cut by this part of the size.
 constexpr double kFreeSagitta = 0.01;
 /// The worst triangle may only get worse above this squared quality.
@@ -24,8 +24,8 @@ constexpr double kShortestRelief = 0.3, kLongestRelief = 1.6;
 /// neighbours would suffer.
 constexpr double kWorthIt = 0.42;
 /// Edges are divided no nearer to an end than this part of them; a point farther off its place than this went astray.
-constexpr double kLeastPart = 0.2, kAstray = 0.2;
-constexpr TurnLimits kLimits{0.5, 0.2};
+constexpr double kLeastPartOfEdge = 0.2, kAstrayOfCurve = 0.2;
+constexpr TurnLimits kCurveLimits{0.5, 0.2};
 
 double wrapped(const Curve& curve, double along) {
   const double whole = curve.reach.back();
@@ -108,8 +108,8 @@ bool CurvePoints::judge(VertexIndex v, Vec3 p, Quality& quality) const {
   quality = {};
   for (const Corner& c : ring_) {
     const Vec3 a = mesh_.points[c.a], b = mesh_.points[c.b], area_vector = cross(a - p, b - p);
-    if (!turns_little(area_vector, c.star, kLimits.star)) return false;
-    if (!faces_outward(mesh_, area_vector, {v, c.a, c.b}, kLimits.surface)) return false;
+    if (!turns_little(area_vector, c.star, kCurveLimits.star)) return false;
+    if (!faces_outward(mesh_, area_vector, {v, c.a, c.b}, kCurveLimits.surface)) return false;
     const double q = squared_quality(p, a, b);
     quality.sum += q;
     quality.worst = std::min(quality.worst, q);
@@ -156,7 +156,7 @@ bool CurvePoints::slide(VertexIndex v) {
   if (mesh_.place[v].curve == kNone || !gather(v) || !find_neighbours(v)) return false;
   const Curve& curve = curves_[mesh_.place[v].curve];
   const double now = mesh_.place[v].along, h = mesh_.size[v], step = step_wanted(v);
-  if (std::abs(step) < kLeastStep * h) return false;
+  if (std::abs(step) < kLeastCurveStep * h) return false;
   Quality before;
   if (!judge(v, mesh_.points[v], before)) return false;
   const double allowed = std::max(kFreeSagitta * h, deviation(curve, now, mesh_.points[v]));
@@ -165,7 +165,7 @@ bool CurvePoints::slide(VertexIndex v) {
     if (!(along > neighbours_.from && along < neighbours_.to)) continue;
     const CurvePoint x = point_along(input_, curve, wrapped(curve, along));
     Quality after;
-    if (!lengths_within(x.p, kShortest * h, kLongest * h) || !judge(v, x.p, after)) continue;
+    if (!lengths_within(x.p, kShortestSegment * h, kLongestSegment * h) || !judge(v, x.p, after)) continue;
     if (!(after.sum > before.sum && after.worst >= std::min(before.worst, kFairQuality))) continue;
     if (deviation(curve, along, x.p) > allowed) continue;
     move(v, x);
@@ -258,8 +258,8 @@ double CurvePoints::shape_after_split(HalfEdge h, Vec3 x) const {
     const Vec3 a = mesh_.points[mesh_.start[side]], b = mesh_.points[mesh_.end(side)],
                c = mesh_.points[mesh_.apex(side)];
     const Vec3 star = mesh_.area_vector(side / 3);
-    if (!turns_little(cross(x - a, c - a), star, kLimits.star)) return 0;
-    if (!turns_little(cross(b - x, c - x), star, kLimits.star)) return 0;
+    if (!turns_little(cross(x - a, c - a), star, kCurveLimits.star)) return 0;
+    if (!turns_little(cross(b - x, c - x), star, kCurveLimits.star)) return 0;
     least = std::min({least, triangle_radius_ratio(a, x, c), triangle_radius_ratio(x, b, c)});
   }
   return least;
@@ -271,7 +271,7 @@ std::optional<CurvePoints::Division> CurvePoints::division(HalfEdge h, double pa
   const std::optional<CurvePlace> place = place_between(h, part);
   if (!place) return std::nullopt;
   const CurvePoint x = point_along(input_, curves_[place->curve], place->along);
-  if (distance(x.p, a + (b - a) * part) > kAstray * distance(a, b)) return std::nullopt;
+  if (distance(x.p, a + (b - a) * part) > kAstrayOfCurve * distance(a, b)) return std::nullopt;
   return Division{*place, x};
 }
 
@@ -287,7 +287,8 @@ bool CurvePoints::split(HalfEdge h, double gain) {
   const Vec3 a = mesh_.points[mesh_.start[h]], b = mesh_.points[mesh_.end(h)], c = mesh_.points[mesh_.apex(h)];
   const double part = dot(c - a, b - a) / squared_length(b - a);
   const double shorter = std::min(part, 1 - part);
-  if (!(shorter > kLeastPart && shorter * distance(a, b) > kShortestRelief * mesh_.size[mesh_.start[h]])) return false;
+  if (!(shorter > kLeastPartOfEdge && shorter * distance(a, b) > kShortestRelief * mesh_.size[mesh_.start[h]]))
+    return false;
   const std::optional<Division> at = division(h, part);
   if (!at || !(shape_after_split(h, at->point.p) > std::max(kWorthIt, gain * shape_beside(h)))) return false;
   split_at(h, *at);

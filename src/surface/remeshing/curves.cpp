@@ -14,7 +14,7 @@ constexpr double kCornerCosine = 0.766;
 constexpr double kCornerDistance = 0.8, kSharpCornerCosine = 0.259;
 /// A division point this close to a vertex of the curve, in segments, is that vertex. Two points are a segment apart:
 /// they never become the same vertex.
-constexpr double kSnapToVertex = 0.02;
+constexpr double kSnapInSegments = 0.02;
 
 struct FeatureGraph {
   std::vector<std::uint32_t> degree;
@@ -178,7 +178,7 @@ CurvePoint point_at(const InputSurface& input, const Curve& curve, const Measure
 }
 
 void snap_to_vertex(const HalfEdgeMesh& mesh, double segment, CurvePoint& c) {
-  const double l = edge_length(mesh, c.half_edge), tolerance = kSnapToVertex * segment;
+  const double l = edge_length(mesh, c.half_edge), tolerance = kSnapInSegments * segment;
   if (c.t * l < tolerance) {
     c.vertex = mesh.start[c.half_edge];
   } else if ((1 - c.t) * l < tolerance) {
@@ -187,7 +187,7 @@ void snap_to_vertex(const HalfEdgeMesh& mesh, double segment, CurvePoint& c) {
   if (c.vertex != kNone) c.p = mesh.points[c.vertex];
 }
 
-void divide(const InputSurface& input, const SizeField& sizes, const Measure& m, int segments, Curve& curve) {
+void divide_curve(const InputSurface& input, const SizeField& sizes, const Measure& m, int segments, Curve& curve) {
   const HalfEdgeMesh& mesh = input.mesh;
   std::size_t piece = 0, middle_piece = 0;
   for (int i = 0; i <= segments; ++i) {
@@ -270,7 +270,7 @@ void divide_curves(const InputSurface& input, const SizeField& sizes, std::vecto
     if (segments[i] == 1 && single[ends(curves[i])] > 1) segments[i] = 2;
     curves[i].samples.clear();
     curves[i].middles.clear();
-    divide(input, sizes, measures[i], segments[i], curves[i]);
+    divide_curve(input, sizes, measures[i], segments[i], curves[i]);
   }
 }
 

@@ -14,7 +14,7 @@ namespace octafront::remeshing {
 namespace {
 
 /// How far from its middle an equilateral triangle reaches, in edges.
-constexpr double kReach = 0.577;
+constexpr double kReachOfTriangle = 0.577;
 /// Corners of new triangles lie anywhere between the two planes, so what is between them is off by less: measured on
 /// images of labels.
 constexpr double kPlanesApart = 1.3;
@@ -27,7 +27,7 @@ constexpr double kFacing = 0.5;
 /// What is flat so far needs no look at all of it: larger sizes are found by how far the surface strays.
 constexpr std::size_t kMostFaces = 600;
 /// Sizes above this part of the wanted one are not worth a place.
-constexpr double kWorthwhile = 0.85;
+constexpr double kWorthwhilePlace = 0.85;
 /// A disc speaks for the faces within this part of its radius: theirs would be as large, but for that part.
 constexpr double kSpeaksFor = 0.25;
 /// Faces are looked at by blocks of so many, in spatial order; discs speak for faces of their own block.
@@ -56,7 +56,7 @@ class Disc {
 
   /// The radius up to which the patch around the face stays between two planes so far apart, at most `most`.
   double flat_radius(std::uint32_t face, double most, double apart) {
-    const double least = kReach * mean_edge(face);
+    const double least = kReachOfTriangle * mean_edge(face);
     start(face);
     if (least >= most) return most;
     const Vec3 p = of_.center[face];
@@ -208,8 +208,8 @@ std::vector<PointSize> sizes_of_faces(const InputSurface& input, const SizeField
           if (is_done[face] || input.is_back(face)) continue;
           const Vec3 p = faces.center[face];
           const double wanted = sizes.at(p);
-          const double radius = disc.flat_radius(face, kReach * wanted, kPlanesApart * tolerance);
-          if (radius < kWorthwhile * kReach * wanted) places.push_back({p, radius / kReach});
+          const double radius = disc.flat_radius(face, kReachOfTriangle * wanted, kPlanesApart * tolerance);
+          if (radius < kWorthwhilePlace * kReachOfTriangle * wanted) places.push_back({p, radius / kReachOfTriangle});
           disc.for_each_within(kSpeaksFor * radius, kSpeaksFor, [&](std::uint32_t f) {
             if (block_of[f] == k / kBlock) is_done[f] = 1;
           });
@@ -228,7 +228,7 @@ std::vector<PointSize> sizes_by_flatness(const InputSurface& input, const std::v
     for (std::size_t i = 0; i < chords.count(); ++i) {
       const double wanted = sizes.at(chords.point(i));
       const double size = chords.straight_length(i, wanted, kOffChord * tolerance);
-      if (size < kWorthwhile * wanted) places.push_back({chords.point(i), size});
+      if (size < kWorthwhilePlace * wanted) places.push_back({chords.point(i), size});
     }
   }
   return smallest_ones(std::move(places));

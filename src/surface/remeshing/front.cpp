@@ -15,7 +15,7 @@ namespace {
 /// No two points of a sheet are nearer than this, in element sizes.
 constexpr double kSpacing = 0.7;
 /// Points within this reach, in element sizes, fill the angle around a point.
-constexpr double kReach = 1.5;
+constexpr double kReachOfFront = 1.5;
 /// Points are on one sheet if their normals agree by this cosine (elements may be coarse for the curvature) ...
 constexpr double kSheetCosine = 0.2;
 /// ... and their offset along the normal stays below this part of their distance.
@@ -24,7 +24,7 @@ constexpr double kSheetOffset = 0.75;
 constexpr double kSurplus = 0.045;
 constexpr int kMostPlacings = 3;
 /// Sizes are changed by no more than this for it: small models at coarse sizes have no room to make up.
-constexpr double kLeastFactor = 0.9;
+constexpr double kLeastFactorOfCurve = 0.9;
 /// A triangle is sampled in this many rows at most.
 constexpr int kMostParts = 64;
 constexpr double kSixtyDegrees = std::numbers::pi / 3;
@@ -199,9 +199,9 @@ class Front {
   /// Of the same sheet, by angle.
   void find_neighbours(std::uint32_t id, const FrontPoint& point, Vec3 u, Vec3 v) {
     neighbours_.clear();
-    grid_.for_each_near(point.p, point.h, kReach, [&](const Grid::Entry& other) {
+    grid_.for_each_near(point.p, point.h, kReachOfFront, [&](const Grid::Entry& other) {
       if (other.id == id) return;
-      const double reach = kReach * 0.5 * (point.h + other.size);
+      const double reach = kReachOfFront * 0.5 * (point.h + other.size);
       const Vec3 d = other.p - point.p;
       if (squared_length(d) > reach * reach || !same_sheet(point, other)) return;
       const double x = dot(d, u), y = dot(d, v);
@@ -347,7 +347,7 @@ FrontPoints place_points(const InputSurface& input, const std::vector<Curve>& cu
       best = std::move(made);
     }
     if (least < kSurplus) break;
-    factor = std::clamp(factor * std::sqrt(surplus), kLeastFactor, 1 / kLeastFactor);
+    factor = std::clamp(factor * std::sqrt(surplus), kLeastFactorOfCurve, 1 / kLeastFactorOfCurve);
   }
   return best;
 }

@@ -19,12 +19,12 @@ namespace {
 constexpr TurnLimits kFlipLimits{0.7, 0.2};
 constexpr TurnLimits kMoveLimits{0.5, 0.2};
 /// Steps shorter than this, in element sizes, are not worth a walk (a fifth of that gains .001 of mean quality).
-constexpr double kLeastStep = 1e-2;
+constexpr double kLeastFreeStep = 1e-2;
 /// A flip for the sake of valence may not make a triangle worse than this (squared quality).
 constexpr double kValenceFlipQuality = 0.25;
 /// Rounds of flips and smoothing: quality gains little beyond. At coarse sizes the third is worth .001 of mean quality,
 /// in large meshes .0002 for a sixth of the time.
-constexpr int kRounds = 3, kRoundsOfMany = 2;
+constexpr int kImproveRounds = 3, kRoundsOfMany = 2;
 constexpr std::size_t kMany = 100000;
 /// Vertices or half-edges that one thread looks through at a time.
 constexpr std::size_t kRange = 16384;
@@ -84,7 +84,7 @@ class VertexSmoother {
     Vec3 d = sum / weights;
     d -= n * dot(d, n);
     const double step = length(d);
-    if (step < kLeastStep * h) return false;
+    if (step < kLeastFreeStep * h) return false;
     Star before;
     const bool was_sound = judge(p, n, before);
     for (const double part : {1.0, 0.4}) {
@@ -131,7 +131,7 @@ class SurfaceImprover {
         blocks_(mesh) {}
 
   void run() {
-    const int rounds = mesh_.points.size() < kMany ? kRounds : kRoundsOfMany;
+    const int rounds = mesh_.points.size() < kMany ? kImproveRounds : kRoundsOfMany;
     for (int round = 0; round < rounds; ++round) {
       if (round > 0) {
         adjust_lengths(mesh_, input_, curve_points_, sizes_, counts_);

@@ -12,7 +12,7 @@ namespace {
 /// A point this close to the border of its input face, in element sizes, is put on the border.
 constexpr double kSnapToEdge = 1e-3;
 /// A point this close to a vertex, in element sizes, is that vertex.
-constexpr double kSnapToVertex = 1e-2;
+constexpr double kSnapInSizes = 1e-2;
 
 /// Bounds against walks and flips that rounding might keep from ending; a point in the wrong part of its face is put on
 /// the nearest edge or left out.
@@ -143,7 +143,7 @@ class Inserter {
     const FrontPoint& point = front_.points[id];
     for (int i = 0; i < 3; ++i) {
       const VertexIndex v = mesh_.start[3 * t + i];
-      if (distance(mesh_.points[v], point.p) > kSnapToVertex * point.h) continue;
+      if (distance(mesh_.points[v], point.p) > kSnapInSizes * point.h) continue;
       if (mesh_.kind[v] == VertexKind::kRemovable) {
         adopt(id, v, VertexKind::kFree);
       } else {

@@ -15,10 +15,10 @@ namespace octafront::remeshing {
 namespace {
 
 constexpr double kMostMove = 0.2;  // of the shortest edge: triangles keep their shape
-constexpr int kSteps = 3;          // volumes are nearly linear in moves so small
+constexpr int kVolumeSteps = 3;    // volumes are nearly linear in moves so small
 constexpr int kRoundsBack = 8;
-constexpr std::size_t kMostRegions = 3000;  // the system is dense
-constexpr double kFlat = 1e-10;             // what cosines of equal normals may lack of 1
+constexpr std::size_t kMostRegionsSolved = 3000;  // the system is dense
+constexpr double kSamePlane = 1e-10;              // what cosines of equal normals may lack of 1
 
 std::vector<double> volumes_of(const SurfaceMesh& complex, std::size_t regions) {
   std::vector<double> volumes(regions, 0);
@@ -70,7 +70,7 @@ class Keeper {
   }
 
   std::uint64_t run(const RunContext& context) {
-    for (int step = 0; step < kSteps; ++step) {
+    for (int step = 0; step < kVolumeSteps; ++step) {
       context.check();
       press();
     }
@@ -105,7 +105,7 @@ class Keeper {
       const auto around = at[v];
       for (std::size_t i = 0; i < around.size() && moves_[v]; ++i)
         for (std::size_t k = i + 1; k < around.size(); ++k)
-          if (std::abs(dot(normal[around[i]], normal[around[k]])) > 1 - kFlat) moves_[v] = 0;
+          if (std::abs(dot(normal[around[i]], normal[around[k]])) > 1 - kSamePlane) moves_[v] = 0;
     }
   }
 
@@ -185,7 +185,7 @@ class Keeper {
 
 std::uint64_t keep_volumes(SurfaceMesh& complex, const Features& features, const SurfaceMesh& input,
                            const RunContext& context) {
-  if (complex.sides.empty() || region_count(input) > kMostRegions) return 0;
+  if (complex.sides.empty() || region_count(input) > kMostRegionsSolved) return 0;
   return Keeper(complex, features, input).run(context);
 }
 

@@ -11,11 +11,11 @@ namespace octafront::remeshing {
 namespace {
 
 /// Lengths beyond these, in wanted sizes, are mended; the front and smoothing leave few.
-constexpr double kLong = 1.5, kShort = 0.6;
+constexpr double kLongEdge = 1.5, kShortEdge = 0.6;
 /// Triangles below this squared quality are bad (2r/R of about 0.5).
-constexpr double kBad = 0.2;
+constexpr double kBadLength = 0.2;
 /// An operation on a bad triangle must raise the worst around by this factor, so that two never undo each other.
-constexpr double kGain = 1.3;
+constexpr double kGainOfLengths = 1.3;
 /// The same for points of curves, by 2r/R.
 constexpr double kCurveGain = 1.15;
 /// Mending one triangle may spoil or free another.
@@ -27,9 +27,9 @@ constexpr double kEquilateral = 0.8660254037844386;
 constexpr double kTiny = 0.2;
 /// Segments that turn by less than this (sine) are one line.
 constexpr double kStraight = 1e-9;
-constexpr TurnLimits kLimits{0.2, -0.3};
+constexpr TurnLimits kEdgeLimits{0.2, -0.3};
 /// A split point lies near the middle of its edge, or the walk to it went astray.
-constexpr double kAstray = 0.35;
+constexpr double kAstrayOfEdge = 0.35;
 
 class LengthAdjuster {
  public:
@@ -46,7 +46,7 @@ class LengthAdjuster {
       if (mesh_.start[h] == kNone || h > mesh_.twin[h]) continue;
       if (!mesh_.is_feature[h])
         split_if_long(h);
-      else if (relative_length(h) > kLong)
+      else if (relative_length(h) > kLongEdge)
         counts_.splits += curve_points_.halve(h);
     }
     mend_all();
@@ -56,7 +56,7 @@ class LengthAdjuster {
     for (int round = 0; round < kMendRounds; ++round) {
       bool any = false;
       for (std::uint32_t t = 0; t < mesh_.triangle_count(); ++t) {
-        if (!mesh_.is_removed(t) && !mesh_.is_back(t) && quality(3 * t) < kBad) any |= mend(t);
+        if (!mesh_.is_removed(t) && !mesh_.is_back(t) && quality(3 * t) < kBadLength) any |= mend(t);
       }
       if (!any) break;
     }
@@ -74,14 +74,15 @@ class LengthAdjuster {
 
   void collapse_if_short(VertexIndex v) {
     bool is_short = false;
-    mesh_.for_each_outgoing(v, [&](HalfEdge h) { is_short = is_short || relative_length(h) < kShort; });
+    mesh_.for_each_outgoing(v, [&](HalfEdge h) { is_short = is_short || relative_length(h) < kShortEdge; });
     if (!is_short) return;
     star_.gather(v);
     const double now = star_.quality_now();
     for (std::size_t i = 0; i < star_.ring().size(); ++i) {
       const HalfEdge h = star_.ring()[i];
-      if (relative_length(h) >= kShort || star_.longest_after(i) > kLong) continue;
-      if (!(star_.quality_after(i, kLimits, std::min(0.5 * now, kBad)) > 0) || !mesh_.may_collapse(h)) continue;
+      if (relative_length(h) >= kShortEdge || star_.longest_after(i) > kLongEdge) continue;
+      if (!(star_.quality_after(i, kEdgeLimits, std::min(0.5 * now, kBadLength)) > 0) || !mesh_.may_collapse(h))
+        continue;
       mesh_.collapse(h);
       ++counts_.collapses;
       return;
@@ -90,13 +91,13 @@ class LengthAdjuster {
 
   /// The middle is walked to from an end inside a patch; where both lie on curves, from a vertex opposite.
   void split_if_long(HalfEdge h) {
-    if (relative_length(h) <= kLong) return;
+    if (relative_length(h) <= kLongEdge) return;
     const HalfEdge g = mesh_.twin[h];
     const Vec3 a = mesh_.points[mesh_.start[h]], b = mesh_.points[mesh_.start[g]];
     for (const VertexIndex from : {mesh_.start[h], mesh_.start[g], mesh_.apex(h), mesh_.apex(g)}) {
       if (mesh_.kind[from] != VertexKind::kFree) continue;
       const std::optional<SurfacePoint> x = walk_from(from, (a + b) * 0.5);
-      if (!x || distance(x->p, (a + b) * 0.5) > kAstray * distance(a, b) || !split_is_sound(h, x->p)) continue;
+      if (!x || distance(x->p, (a + b) * 0.5) > kAstrayOfEdge * distance(a, b) || !split_is_sound(h, x->p)) continue;
       const Vec3 normal = input_.normal_at(x->face, x->p);
       mesh_.split_edge(h, mesh_.add_vertex(x->p, VertexKind::kFree, normal, sizes_.at(x->p), x->face));
       ++counts_.splits;
@@ -117,7 +118,7 @@ class LengthAdjuster {
     const Vec3 star = mesh_.area_vector(h / 3) + mesh_.area_vector(g / 3);
     for (const HalfEdge side : {next_of(h), previous_of(h), next_of(g), previous_of(g)}) {
       const Vec3 a = mesh_.points[mesh_.start[side]] - x, b = mesh_.points[mesh_.end(side)] - x;
-      if (!turns_little(cross(a, b), star, kLimits.star)) return false;
+      if (!turns_little(cross(a, b), star, kEdgeLimits.star)) return false;
     }
     return true;
   }
@@ -175,7 +176,7 @@ class LengthAdjuster {
       const double l = length(d);
       SurfacePoint x;
       if (!(l > 0) || walk(input_, {p, mesh_.face[v]}, d / l, n, l, x) != WalkEnd::kArrived) continue;
-      if (!(worst_around(x.p, star) > kGain * worst)) continue;
+      if (!(worst_around(x.p, star) > kGainOfLengths * worst)) continue;
       mesh_.points[v] = x.p;
       mesh_.face[v] = x.face;
       mesh_.normal[v] = input_.normal_at(x.face, x.p);
@@ -191,7 +192,7 @@ class LengthAdjuster {
   double worst_around(Vec3 p, Vec3 star) const {
     double worst = 1;
     for (const auto& [a, b] : ring_) {
-      if (!turns_little(cross(a - p, b - p), star, kLimits.star)) return 0;
+      if (!turns_little(cross(a - p, b - p), star, kEdgeLimits.star)) return 0;
       worst = std::min(worst, squared_quality(p, a, b));
     }
     return worst;
@@ -220,8 +221,8 @@ class LengthAdjuster {
     if (mesh_.first_back != kNone) return false;  // regions keep their corners
     star_.gather(u);
     const auto i = std::find(star_.ring().begin(), star_.ring().end(), h) - star_.ring().begin();
-    const double least = kGain * star_.quality_now();
-    if (!(star_.quality_after(static_cast<std::size_t>(i), kLimits, least) > least)) return false;
+    const double least = kGainOfLengths * star_.quality_now();
+    if (!(star_.quality_after(static_cast<std::size_t>(i), kEdgeLimits, least) > least)) return false;
     if (!mesh_.may_collapse(h, true) || ends_straight_line(u)) return false;
     if (mesh_.kind[u] == VertexKind::kCorner) mesh_.kind[w] = VertexKind::kCorner;
     mesh_.collapse(h);
@@ -235,8 +236,8 @@ class LengthAdjuster {
     const Vec3 a = mesh_.points[mesh_.start[h]], b = mesh_.points[mesh_.end(h)];
     const Vec3 c = mesh_.points[mesh_.apex(h)], d = mesh_.points[mesh_.apex(g)];
     const double before = std::min(quality(h), quality(g));
-    if (!(std::min(squared_quality(a, d, c), squared_quality(b, c, d)) > kGain * before)) return false;
-    if (!flip_is_sound(mesh_, h, kLimits) || !mesh_.may_flip(h)) return false;
+    if (!(std::min(squared_quality(a, d, c), squared_quality(b, c, d)) > kGainOfLengths * before)) return false;
+    if (!flip_is_sound(mesh_, h, kEdgeLimits) || !mesh_.may_flip(h)) return false;
     mesh_.flip(h);
     ++counts_.flips;
     return true;
@@ -244,12 +245,12 @@ class LengthAdjuster {
 
   bool remove_if_better(VertexIndex v) {
     star_.gather(v);
-    double best = kGain * star_.quality_now();
+    double best = kGainOfLengths * star_.quality_now();
     HalfEdge chosen = kNone;
     for (std::size_t i = 0; i < star_.ring().size(); ++i) {
       const HalfEdge h = star_.ring()[i];
-      const double quality = star_.quality_after(i, kLimits, best);
-      if (!(quality > best) || star_.longest_after(i) > kLong || !mesh_.may_collapse(h)) continue;
+      const double quality = star_.quality_after(i, kEdgeLimits, best);
+      if (!(quality > best) || star_.longest_after(i) > kLongEdge || !mesh_.may_collapse(h)) continue;
       best = quality;
       chosen = h;
     }

@@ -25,19 +25,19 @@ struct Tier {
 };
 constexpr Tier kTiers[] = {{kFold, 0.25}, {15 * kDegree, 1}, {14 * kDegree, 2}};
 /// What an operation must take away around a place to be worth it: radians of folding, or 2r/R of bad triangles.
-constexpr double kGain = 0.01;
+constexpr double kGainOfMending = 0.01;
 /// What a pair of triangles that cross counts.
 constexpr double kCrossing = 1;
 /// No new triangle is worse than this 2r/R, unless one was, where no limit is given.
 constexpr double kLeastShape = 0.02;
 /// Parts of the way to the mean of its neighbours that a vertex is tried at.
-constexpr double kSteps[] = {1, 0.5, 0.25};
+constexpr double kPartsOfWay[] = {1, 0.5, 0.25};
 /// And, if it crosses, of the ways to each of these and away from it.
 constexpr double kCrossingSteps[] = {0.5, 0.25, -0.25};
 /// Operations per place at most, on average: others may spring up beside one that is mended.
 constexpr std::size_t kOperationsPerPlace = 8;
 /// An edge longer than this many times the move allowed cannot collapse within it.
-constexpr double kLongest = 20;
+constexpr double kLongestToCollapse = 20;
 
 /// What may be done.
 struct Change {
@@ -182,7 +182,7 @@ class FoldMender {
 
   void consider_collapse(HalfEdge h) {
     const VertexIndex u = mesh_.start[h], w = mesh_.end(h);
-    if (distance(mesh_.points[u], mesh_.points[w]) > kLongest * limit_ || !edits_.may_collapse(h)) return;
+    if (distance(mesh_.points[u], mesh_.points[w]) > kLongestToCollapse * limit_ || !edits_.may_collapse(h)) return;
     if (mesh_.is_sewn(w) && joins_seams(h)) return;
     gather_star(u, mesh_.points[w], w);
     judge({Change::Kind::kCollapse, h}, w);
@@ -223,7 +223,7 @@ class FoldMender {
     std::vector<Vec3> ring;
     mesh_.for_each_outgoing(v, [&](HalfEdge h) { ring.push_back(mesh_.points[mesh_.end(h)]); });
     for (const Vec3 q : ring) sum += q;
-    for (const double step : kSteps) consider_move(at, p + (sum / static_cast<double>(ring.size()) - p) * step);
+    for (const double step : kPartsOfWay) consider_move(at, p + (sum / static_cast<double>(ring.size()) - p) * step);
     if (!crosses_[at / 3] || limits_.crossing_part == 0) return;
     for (const Vec3 q : ring)
       for (const double step : kCrossingSteps) consider_move(at, p + (q - p) * step);
@@ -276,7 +276,7 @@ class FoldMender {
   void judge(Change change, VertexIndex merged) {
     const auto after = badness_after(merged, mesh_.start[change.half_edge]);
     if (!after) return;
-    const double to_beat = best_.kind == Change::Kind::kNone ? -kGain : best_.badness;
+    const double to_beat = best_.kind == Change::Kind::kNone ? -kGainOfMending : best_.badness;
     const bool any_crossing = std::any_of(old_.begin(), old_.end(), [&](std::uint32_t t) { return crosses_[t] != 0; });
     const int crossings = any_crossing ? live_.crossings_among(old_) : 0;
     change.badness = *after - badness_before() - kCrossing * crossings;

@@ -13,14 +13,14 @@ namespace octafront::remeshing {
 namespace {
 
 /// Triangles below this squared quality are bad (needles of 15 degrees, 2r/R of about 0.5).
-constexpr double kBad = 0.2;
+constexpr double kBadBetweenLines = 0.2;
 /// What is narrower than this, in wanted sizes, closes; an apex this near to its line takes it over.
-constexpr double kNarrow = 0.25, kFlat = 0.2;
+constexpr double kNarrow = 0.25, kFlatApex = 0.2;
 /// The worst triangle around must get better by this factor, so that no two operations undo each other.
-constexpr double kGain = 1.3;
+constexpr double kGainOfMerging = 1.3;
 /// Closing one triangle of a strip makes room for the next.
-constexpr int kRounds = 20;
-constexpr TurnLimits kLimits{0.2, -0.3};
+constexpr int kMergeRounds = 20;
+constexpr TurnLimits kLineLimits{0.2, -0.3};
 
 class LineMerger {
  public:
@@ -31,9 +31,9 @@ class LineMerger {
     std::vector<std::uint32_t> here(mesh_.triangle_count());
     std::iota(here.begin(), here.end(), 0u);
     std::uint64_t operations = 0;
-    for (int round = 0; round < kRounds && !here.empty(); ++round) {
+    for (int round = 0; round < kMergeRounds && !here.empty(); ++round) {
       for (const std::uint32_t t : here) {
-        if (!mesh_.is_removed(t) && quality(3 * t) < kBad) operations += close(t) || pass_line_on(t);
+        if (!mesh_.is_removed(t) && quality(3 * t) < kBadBetweenLines) operations += close(t) || pass_line_on(t);
       }
       std::sort(changed_.begin(), changed_.end());
       changed_.erase(std::unique(changed_.begin(), changed_.end()), changed_.end());
@@ -71,8 +71,8 @@ class LineMerger {
   bool collapse_if_better(HalfEdge h) {
     star_.gather(mesh_.start[h]);
     const auto i = std::find(star_.ring().begin(), star_.ring().end(), h) - star_.ring().begin();
-    const double least = kGain * star_.quality_now();
-    if (!(star_.quality_after(static_cast<std::size_t>(i), kLimits, least) > least)) return false;
+    const double least = kGainOfMerging * star_.quality_now();
+    if (!(star_.quality_after(static_cast<std::size_t>(i), kLineLimits, least) > least)) return false;
     if (!edits_.may_collapse(h) || !has_leeway(mesh_.start[h], length_of(h))) return false;
     const VertexIndex w = mesh_.end(h);
     edits_.collapse(h);
@@ -91,10 +91,11 @@ class LineMerger {
     const HalfEdge g = mesh_.twin[h];
     const VertexIndex a = mesh_.start[h], b = mesh_.start[g], c = mesh_.apex(h), d = mesh_.apex(g);
     const double move = distance(at(c), closest_point_on_segment(at(c), at(a), at(b)));
-    if (!is_small(move, a, b, kFlat) || !has_leeway(c, move)) return false;
+    if (!is_small(move, a, b, kFlatApex) || !has_leeway(c, move)) return false;
     const double before = std::min(quality(h), quality(g));
     const double after = std::min(squared_quality(at(a), at(d), at(c)), squared_quality(at(b), at(c), at(d)));
-    if (!(after > kGain * before) || !flip_is_sound(mesh_, h, kLimits) || !edits_.may_flip(h)) return false;
+    if (!(after > kGainOfMerging * before) || !flip_is_sound(mesh_, h, kLineLimits) || !edits_.may_flip(h))
+      return false;
     edits_.flip(h);
     for (const VertexIndex v : {a, b, c, d}) note_changed_around(v);
     return true;

@@ -11,7 +11,7 @@ namespace octafront::remeshing {
 namespace {
 
 /// Strips in which the size would stay above this part are left alone.
-constexpr double kWorthwhile = 0.85;
+constexpr double kWorthwhileStrip = 0.85;
 /// Places to look from, in sizes, along a line.
 constexpr double kStep = 0.5;
 /// A place this near to one already kept, in the sizes wanted there, adds nothing.
@@ -55,9 +55,9 @@ struct Narrow {
 
 /// The size that the strip beside h asks for at p; `old` if there is none.
 double size_beside(const InputSurface& input, HalfEdge h, Vec3 p, double old, const StripRules& rules) {
-  const double width = width_at(input, h, p, kWorthwhile / rules.size_per_width * old, rules.parallel);
+  const double width = width_at(input, h, p, kWorthwhileStrip / rules.size_per_width * old, rules.parallel);
   const double wanted = rules.size_per_width * width;
-  if (!(wanted < kWorthwhile * old) || width < rules.hopeless * old) return old;
+  if (!(wanted < kWorthwhileStrip * old) || width < rules.hopeless * old) return old;
   return std::max(rules.floor * old, wanted);
 }
 

@@ -476,7 +476,7 @@ bool turn_away(WorkingMesh& mesh, HalfEdge h) {
 }
 
 /// Puts the point of the edge's own patch that is nearest to its middle on it.
-void divide(WorkingMesh& mesh, HalfEdge h, const KnownSurface& complex, const SizeField& sizes) {
+void divide_edge(WorkingMesh& mesh, HalfEdge h, const KnownSurface& complex, const SizeField& sizes) {
   const Vec3 a = mesh.points[mesh.start[h]], b = mesh.points[mesh.end(h)];
   const TriangleTree::Nearest at = nearest_of_patch(complex, mesh.patch[h / 3], (a + b) * 0.5, distance(a, b));
   const Vec3 n = normalized(mesh.area_vector(h / 3) + mesh.area_vector(mesh.twin[h] / 3));
@@ -500,7 +500,7 @@ std::uint64_t divide_repeated_edges(WorkingMesh& mesh, const KnownSurface& compl
       if (!first.try_emplace(key, h).second && !seams) repeated.push_back(h);
     }
   for (const HalfEdge h : repeated)
-    if (!turn_away(mesh, h)) divide(mesh, h, complex, sizes);
+    if (!turn_away(mesh, h)) divide_edge(mesh, h, complex, sizes);
   return repeated.size();
 }
 

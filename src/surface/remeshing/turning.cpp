@@ -10,7 +10,7 @@ namespace octafront::remeshing {
 namespace {
 
 /// Turning falls as the size; noise does not, so a step is neither too timid nor too bold.
-constexpr double kSafety = 0.85, kLeastFactor = 0.5, kMostFactor = 0.85;
+constexpr double kSafety = 0.85, kLeastTurnFactor = 0.5, kMostTurnFactor = 0.85;
 
 double cosine_to(const InputSurface& input, Vec3 normal, std::uint32_t face, Vec3 p) {
   return std::max(dot(normal, input.normal_at(face, p)), dot(normal, input.face_normal[face]));
@@ -34,7 +34,8 @@ std::vector<PointSize> turned_places(double degrees, const SurfaceMesh& made, co
     }
     if (cosine >= least) continue;
     const double turn = std::acos(std::clamp(cosine, -1.0, 1.0));
-    places.push_back({middle, sizes.at(middle) * std::clamp(kSafety * limit / turn, kLeastFactor, kMostFactor)});
+    places.push_back(
+        {middle, sizes.at(middle) * std::clamp(kSafety * limit / turn, kLeastTurnFactor, kMostTurnFactor)});
   }
   return places;
 }

@@ -19,7 +19,7 @@ WorkingMesh bordered(const InputSurface& input) {
   return mesh;
 }
 
-Unfolded compacted(const WorkingMesh& mesh, const SurfaceMesh& input, MendedFolds mended) {
+Unfolded unfolded(const WorkingMesh& mesh, const SurfaceMesh& input, MendedFolds mended) {
   SurfaceMesh surface;
   std::vector<double> moved;
   std::vector<VertexIndex> renumbered(mesh.points.size(), kNone);
@@ -48,7 +48,7 @@ std::optional<Unfolded> unfold(const SurfaceMesh& surface, const EdgeTable& edge
   const std::vector<std::uint8_t> none_fixed;
   MendedFolds mended = mend_folds(mesh, {.tolerance = tolerance, .total = tolerance, .is_fixed = none_fixed}, context);
   if (mended.operations == 0) return std::nullopt;
-  return compacted(mesh, surface, std::move(mended));
+  return unfolded(mesh, surface, std::move(mended));
 }
 
 }  // namespace octafront::remeshing

@@ -18,7 +18,7 @@ namespace {
 constexpr double kSmallest = 1e-50, kLargest = 1e50;
 
 /// Reports and files have a line for each region.
-constexpr std::uint32_t kMostRegions = 1u << 24;
+constexpr std::uint32_t kMostRegionNumbers = 1u << 24;
 
 std::uint64_t mix(std::uint64_t x) {
   x ^= x >> 32;
@@ -97,9 +97,9 @@ void check_input(const SurfaceMesh& soup) {
     throw InputError(fmt::format("{} pairs of sides are given for {} triangles", soup.sides.size(), faces));
   for (std::size_t t = 0; t < soup.sides.size(); ++t)
     for (const std::uint32_t region : soup.sides[t])
-      if (region != kNone && region >= kMostRegions)
+      if (region != kNone && region >= kMostRegionNumbers)
         throw InputError(fmt::format("face {} names region {}: regions are numbered from 0, below {}",
-                                     soup.source_of(t), region, kMostRegions));
+                                     soup.source_of(t), region, kMostRegionNumbers));
   // Half-edges are numbered with 32 bits.
   if (faces > kNone / 3 - 1)
     throw InputError(fmt::format("{} triangles are too many (at most {})", faces, kNone / 3 - 1));
