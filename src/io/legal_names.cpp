@@ -35,11 +35,12 @@ std::string LegalNames::legal(std::string_view name) {
     const bool good = is_letter(c) || is_digit(c) || rules_.also.find(c) != std::string_view::npos;
     made += !good ? '_' : rules_.upper_case ? to_upper(c) : c;
   }
-  if (made.empty() || (rules_.letter_first && !is_letter(made[0]))) made = (rules_.upper_case ? "N" : "n") + made;
+  if (made.empty() || (rules_.letter_first && !is_letter(made[0])))
+    made.insert(made.begin(), rules_.upper_case ? 'N' : 'n');
   made.resize(std::min(made.size(), rules_.longest));
   const std::string base = made;
   for (int n = 2; !taken_.insert(key(made)).second; ++n) {
-    const std::string number = "_" + std::to_string(n);
+    const std::string number = fmt::format("_{}", n);
     made = base.substr(0, rules_.longest - number.size()) + number;
   }
   // That all is in upper case is no news.

@@ -132,7 +132,7 @@ class Ordering {
     const auto lacks = [](const auto& row) { return has_none(row); };
     if (mids.empty()) return;
     if (mids.size() < raw_.tets.size() || std::any_of(mids.begin(), mids.end(), lacks)) {
-      raw_.notes.push_back("tetrahedra with and without mid-side nodes are mixed: all are taken as linear");
+      raw_.notes.emplace_back("tetrahedra with and without mid-side nodes are mixed: all are taken as linear");
       mids.clear();
     }
     enum : char { kUnused, kCorner };

@@ -21,12 +21,6 @@ namespace {
 
 using Kind = NamedSet::Kind;
 
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-  return text;
-}
-
 /// Lines joined to cards.
 class Cards {
  public:
@@ -156,7 +150,7 @@ class Nastran {
       } else if (name == "CHEXA" || name == "CPENTA" || name == "CPYRAM" || name == "CQUAD4" || name == "CQUAD8") {
         ++raw_.other_elements;
       } else if (name == "INCLUDE") {
-        raw_.notes.push_back("INCLUDE is not followed: the file that it names was not read");
+        raw_.notes.emplace_back("INCLUDE is not followed: the file that it names was not read");
       }
     }
     if (other_systems_ > 0)

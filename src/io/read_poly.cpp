@@ -296,7 +296,7 @@ class Poly {
       regions_.push_back({fmt::format("region_{:g}", attribute), at});
       scan_.skip_line();
     }
-    if (sized) builder_.notes.push_back("largest volumes of elements in regions are not taken over; give sizes");
+    if (sized) builder_.notes.emplace_back("largest volumes of elements in regions are not taken over; give sizes");
   }
 
   void name_patches() {

@@ -86,12 +86,11 @@ class OpenFoamWriter {
   template <class Visit>
   void for_each_face(const Visit& visit) const {
     for (TetIndex t = 0; t < mesh_.tets(); ++t) {
-      std::array<std::pair<HalfFace, HalfFace>, 4> upper;
-      std::size_t count = 0;
-      for (HalfFace h = 4 * t; h < 4 * t + 4; ++h)
-        if (across_[h] != kNone && across_[h] / 4 > t) upper[count++] = {across_[h], h};
-      std::sort(upper.begin(), upper.begin() + static_cast<std::ptrdiff_t>(count));
-      for (std::size_t k = 0; k < count; ++k) visit(upper[k].second, upper[k].first);
+      std::array<std::pair<HalfFace, HalfFace>, 4> faces;
+      for (HalfFace h = 4 * t; h < 4 * t + 4; ++h) faces[h % 4] = {across_[h], h};
+      std::sort(faces.begin(), faces.end());
+      for (const auto& [other, own] : faces)
+        if (other != kNone && other / 4 > t) visit(own, other);
     }
     for (const Part& patch : mesh_.parts(Part::Origin::kPatch))
       for (const std::uint32_t f : patch.members)
