@@ -23,7 +23,7 @@ namespace octafront::c_api {
 
 namespace {
 
-using Json = octafront_job::Json;
+using Json = nlohmann::ordered_json;
 
 thread_local std::string last_error, last_text;
 

@@ -103,7 +103,7 @@ Column exact_column(const QuadraticTet& q, int i, int c) {
   return column;
 }
 
-auto determinant(const Column& a, const Column& b, const Column& c) {
+auto determinant_of_columns(const Column& a, const Column& b, const Column& c) {
   const auto x = a[0] * (b[1] * c[2] - b[2] * c[1]);
   const auto y = a[1] * (b[2] * c[0] - b[0] * c[2]);
   const auto z = a[2] * (b[0] * c[1] - b[1] * c[0]);
@@ -113,7 +113,7 @@ auto determinant(const Column& a, const Column& b, const Column& c) {
 /// The sign of one coefficient: that of the sum over all six permutations, whether some are equal or not.
 int exact_sign(const QuadraticTet& q, const Index& n) {
   const auto det = [&](int a, int b, int c) {
-    return determinant(exact_column(q, a, 1), exact_column(q, b, 2), exact_column(q, c, 3));
+    return determinant_of_columns(exact_column(q, a, 1), exact_column(q, b, 2), exact_column(q, c, 3));
   };
   const auto [i, j, k] = n;
   return ((det(i, j, k) + det(j, k, i) + det(k, i, j)) + (det(i, k, j) + det(k, j, i) + det(j, i, k))).sign();

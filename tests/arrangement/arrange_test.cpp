@@ -43,7 +43,7 @@ SurfaceMesh general_soup(std::uint64_t seed, int triangles) {
   });
 }
 
-double area_of(const std::vector<Vec3>& points, const Triangle& t) {
+double area_of_triangle(const std::vector<Vec3>& points, const Triangle& t) {
   return length(cross(points[t[1]] - points[t[0]], points[t[2]] - points[t[0]])) / 2;
 }
 
@@ -61,16 +61,16 @@ void expect_arranged(const SurfaceMesh& soup, const Arrangement& made) {
     ASSERT_FALSE(made.origins_of(t).empty());
     EXPECT_FALSE(made.origins_of(t)[0].reversed);
     for (const Origin& o : made.origins_of(t)) {
-      covered[o.triangle] += area_of(made.points, made.triangles[t]);
+      covered[o.triangle] += area_of_triangle(made.points, made.triangles[t]);
       const double turn =
           dot(normal_of(made.points, made.triangles[t]), normal_of(soup.points, soup.triangles[o.triangle]));
-      if (area_of(made.points, made.triangles[t]) > 1e-9) {
+      if (area_of_triangle(made.points, made.triangles[t]) > 1e-9) {
         EXPECT_EQ(turn < 0, o.reversed);
       }
     }
   }
   for (std::size_t t = 0; t < soup.triangles.size(); ++t)
-    EXPECT_NEAR(covered[t], area_of(soup.points, soup.triangles[t]), 1e-9) << "triangle " << t;
+    EXPECT_NEAR(covered[t], area_of_triangle(soup.points, soup.triangles[t]), 1e-9) << "triangle " << t;
 }
 
 /// Corners of what each two triangles have in common are vertices of both.
@@ -88,7 +88,8 @@ void expect_oracle_agrees(const SurfaceMesh& soup, const Arrangement& made) {
   };
   for (std::size_t s = 0; s < soup.triangles.size(); ++s)
     for (std::size_t t = 0; t < soup.triangles.size(); ++t) {
-      if (s == t || area_of(soup.points, soup.triangles[s]) == 0 || area_of(soup.points, soup.triangles[t]) == 0)
+      if (s == t || area_of_triangle(soup.points, soup.triangles[s]) == 0 ||
+          area_of_triangle(soup.points, soup.triangles[t]) == 0)
         continue;
       std::vector<testing::RationalPoint> polygon;
       for (const Vec3 p : triangle(s)) polygon.push_back(testing::rational(p));

@@ -11,7 +11,7 @@
 namespace octafront::arrangement {
 namespace {
 
-double area_of(const PlaneMesh& mesh, const PlaneMesh::Piece& piece) {
+double area_of_piece(const PlaneMesh& mesh, const PlaneMesh::Piece& piece) {
   const Vec3 a = mesh.place(piece.corners[0]).at, b = mesh.place(piece.corners[1]).at,
              c = mesh.place(piece.corners[2]).at;
   return cross(b - a, c - a).z / 2;
@@ -56,8 +56,8 @@ TEST(PlaneMesh, PiecesKnowWhatCoversThem) {
   mesh.improve();
   std::array<double, 3> area{};
   for (const auto& piece : mesh.pieces()) {
-    EXPECT_GT(area_of(mesh, piece), 0);
-    area[piece.faces.size() == 2 ? 2 : piece.faces[0]] += area_of(mesh, piece);
+    EXPECT_GT(area_of_piece(mesh, piece), 0);
+    area[piece.faces.size() == 2 ? 2 : piece.faces[0]] += area_of_piece(mesh, piece);
   }
   EXPECT_DOUBLE_EQ(area[0], 4);
   EXPECT_DOUBLE_EQ(area[1], 4);
@@ -85,8 +85,8 @@ TEST(PlaneMesh, CoversEveryFaceByItsArea) {
     mesh.improve();
     covered.resize(wanted.size());
     for (const auto& piece : mesh.pieces()) {
-      EXPECT_GT(area_of(mesh, piece), 0);
-      for (const std::uint32_t face : piece.faces) covered[face] += area_of(mesh, piece);
+      EXPECT_GT(area_of_piece(mesh, piece), 0);
+      for (const std::uint32_t face : piece.faces) covered[face] += area_of_piece(mesh, piece);
     }
     for (std::size_t f = 0; f < wanted.size(); ++f) EXPECT_NEAR(covered[f], wanted[f], 1e-12);
   }

@@ -14,7 +14,7 @@ namespace octafront {
 namespace {
 
 // Coordinates k / 64 up to 1: coincidences and flat shapes occur.
-Vec3 any_point() {
+Vec3 any_measured_point() {
   return testing::lattice_point(64, 1.0 / 64);
 }
 
@@ -42,7 +42,7 @@ TEST(TetMeasures, DihedralCosinesFollowTheOrderOfEdges) {
 }
 
 RC_GTEST_PROP(TetMeasures, RadiusRatioIsThreeRadiiAndNeverNaN, ()) {
-  const Vec3 a = any_point(), b = any_point(), c = any_point(), d = any_point();
+  const Vec3 a = any_measured_point(), b = any_measured_point(), c = any_measured_point(), d = any_measured_point();
   const double beta = tet_radius_ratio(a, b, c, d);
   RC_ASSERT(std::abs(beta) <= 1 + 1e-12);
   const double det = six_volumes(a, b, c, d);
@@ -55,7 +55,7 @@ RC_GTEST_PROP(TetMeasures, RadiusRatioIsThreeRadiiAndNeverNaN, ()) {
 }
 
 RC_GTEST_PROP(TetMeasures, CircumcentreIsEquidistant, ()) {
-  const Vec3 a = any_point(), b = any_point(), c = any_point(), d = any_point();
+  const Vec3 a = any_measured_point(), b = any_measured_point(), c = any_measured_point(), d = any_measured_point();
   RC_PRE(std::abs(six_volumes(a, b, c, d)) > 1e-2);
   const Vec3 o = circumcenter(a, b, c, d);
   for (const Vec3 p : {b, c, d}) RC_ASSERT(std::abs(distance(o, p) - distance(o, a)) < 1e-9);
@@ -65,7 +65,7 @@ RC_GTEST_PROP(TetMeasures, CircumcentreIsEquidistant, ()) {
 }
 
 RC_GTEST_PROP(TriangleMeasures, RadiusRatioIsTwoRadiiAndNeverNaN, ()) {
-  const Vec3 a = any_point(), b = any_point(), c = any_point();
+  const Vec3 a = any_measured_point(), b = any_measured_point(), c = any_measured_point();
   const double ratio = triangle_radius_ratio(a, b, c), area = triangle_area(a, b, c);
   if (area == 0) {
     RC_ASSERT(ratio == 0);
@@ -77,13 +77,13 @@ RC_GTEST_PROP(TriangleMeasures, RadiusRatioIsTwoRadiiAndNeverNaN, ()) {
 }
 
 RC_GTEST_PROP(Angles, OfATriangleSumToPi, ()) {
-  const Vec3 a = any_point(), b = any_point(), c = any_point();
+  const Vec3 a = any_measured_point(), b = any_measured_point(), c = any_measured_point();
   RC_PRE(a != b && b != c && c != a);
   RC_ASSERT(std::abs(angle_at(a, b, c) + angle_at(b, c, a) + angle_at(c, a, b) - std::numbers::pi) < 1e-12);
 }
 
 RC_GTEST_PROP(Angles, SolidAnglesFromInsideSumToTheSphere, ()) {
-  Vec3 a = any_point(), b = any_point(), c = any_point(), d = any_point();
+  Vec3 a = any_measured_point(), b = any_measured_point(), c = any_measured_point(), d = any_measured_point();
   RC_PRE(std::abs(six_volumes(a, b, c, d)) > 1e-3);
   if (six_volumes(a, b, c, d) < 0) std::swap(a, b);
   const Vec3 m = centroid(a, b, c, d);
@@ -93,7 +93,7 @@ RC_GTEST_PROP(Angles, SolidAnglesFromInsideSumToTheSphere, ()) {
 }
 
 RC_GTEST_PROP(ClosestPoint, OfATriangleBeatsAGridOfItsPoints, ()) {
-  const Vec3 a = any_point(), b = any_point(), c = any_point(), p = any_point();
+  const Vec3 a = any_measured_point(), b = any_measured_point(), c = any_measured_point(), p = any_measured_point();
   const Vec3 q = closest_point_on_triangle(p, a, b, c);
   const double nearest = distance(p, q);
   constexpr int kSteps = 12;
@@ -105,7 +105,7 @@ RC_GTEST_PROP(ClosestPoint, OfATriangleBeatsAGridOfItsPoints, ()) {
 }
 
 RC_GTEST_PROP(SegmentDistance, IsTheLeastOverManyPoints, ()) {
-  const Vec3 p = any_point(), q = any_point(), a = any_point(), b = any_point();
+  const Vec3 p = any_measured_point(), q = any_measured_point(), a = any_measured_point(), b = any_measured_point();
   RC_PRE(p != q && a != b);
   constexpr int kSteps = 200;
   double least = distance(p, a);

@@ -16,7 +16,7 @@ namespace {
 using testing::BigInteger;
 using testing::Random;
 
-constexpr int kFraction = 300;
+constexpr int kFractionOfBends = 300;
 constexpr std::array<std::array<int, 2>, 6> kEdges{{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
 
 QuadraticTet straight(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
@@ -33,7 +33,7 @@ QuadraticTet unit() {
 // --- the oracle: derivatives of the shape functions at the corners, all in integers of any length
 
 BigInteger big(double x) {
-  return BigInteger(x, kFraction);
+  return BigInteger(x, kFractionOfBends);
 }
 
 /// 4 N derivative weights: d/d lambda_c of the interpolation at corner i, minus that by lambda_0.

@@ -14,6 +14,8 @@
 namespace octafront {
 namespace {
 
+using testing::any_contains;
+using testing::contains;
 using testing::dicom_slice;
 using testing::DicomSlice;
 using testing::input_error;
@@ -39,13 +41,6 @@ std::vector<DicomSlice> sample_slices(DicomSlice::Syntax syntax = DicomSlice::Sy
 
 std::vector<std::int16_t> values_of(const Image& image) {
   return std::get<std::vector<std::int16_t>>(image.values);
-}
-
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-bool any_contains(const std::vector<std::string>& notes, const std::string& part) {
-  return std::any_of(notes.begin(), notes.end(), [&](const std::string& n) { return contains(n, part); });
 }
 
 /// Slices straight above one another, at these heights.

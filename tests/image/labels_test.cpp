@@ -12,12 +12,8 @@
 namespace octafront {
 namespace {
 
+using testing::any_contains;
 using testing::input_error;
-
-bool any_contains(const std::vector<std::string>& notes, const std::string& part) {
-  return std::any_of(notes.begin(), notes.end(),
-                     [&](const std::string& n) { return n.find(part) != std::string::npos; });
-}
 
 template <class T>
 Image image_of(std::array<std::uint32_t, 3> size, std::vector<T> values) {

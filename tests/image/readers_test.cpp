@@ -12,6 +12,8 @@
 namespace octafront {
 namespace {
 
+using testing::any_contains;
+using testing::contains;
 using testing::input_error;
 using testing::Nifti;
 using testing::raw;
@@ -32,16 +34,6 @@ void expect_values(const Image& image, const std::vector<double>& expected) {
 std::vector<double> sample_numbers() {
   const std::vector<std::int16_t> v = sample_values();
   return {v.begin(), v.end()};
-}
-
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
-bool any_contains(const std::vector<std::string>& notes, const std::string& part) {
-  for (const std::string& note : notes)
-    if (contains(note, part)) return true;
-  return false;
 }
 
 TEST(ImageReaders, EveryKindGivesTheSameImage) {

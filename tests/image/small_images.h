@@ -6,6 +6,7 @@
 
 #include "image/readers.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -86,5 +87,12 @@ std::string raw(const std::vector<T>& values, bool big_endian = false) {
 
 /// The message of the InputError that `read` throws; fails the test if it throws none or another one.
 std::string input_error(const std::function<void()>& read);
+
+inline bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+inline bool any_contains(const std::vector<std::string>& notes, const std::string& part) {
+  return std::any_of(notes.begin(), notes.end(), [&](const std::string& n) { return contains(n, part); });
+}
 
 }  // namespace octafront::testing

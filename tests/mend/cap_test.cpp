@@ -11,7 +11,7 @@
 namespace octafront::mend {
 namespace {
 
-bool nothing(std::uint32_t, std::uint32_t) {
+bool no_edge_is_there(std::uint32_t, std::uint32_t) {
   return false;
 }
 
@@ -42,7 +42,7 @@ double polygon_area(const std::vector<Vec3>& points) {
 TEST(TriangulatePolygon, CoversPlanePolygonsOnce) {
   for (const int n : {3, 4, 17, 256, 257, 1000}) {
     const std::vector<Vec3> points = circle(n);
-    const Cap cap = triangulate_polygon(points, std::vector<Vec3>(points.size()), nothing);
+    const Cap cap = triangulate_polygon(points, std::vector<Vec3>(points.size()), no_edge_is_there);
     EXPECT_EQ(cap.size(), points.size() - 2);
     EXPECT_NEAR(area_of(cap, points), polygon_area(points), 1e-12);
     for (const auto& [a, b, c] : cap) EXPECT_GT(double_area_normal(points[a], points[b], points[c]).z, 0);
@@ -53,7 +53,7 @@ TEST(TriangulatePolygon, FollowsTheRim) {
   std::vector<Vec3> points;  // an L
   for (const auto& [x, y] : {std::pair{0, 0}, {3, 0}, {3, 1}, {1, 1}, {1, 3}, {0, 3}})
     points.push_back({double(x), double(y), 0});
-  const Cap cap = triangulate_polygon(points, std::vector<Vec3>(points.size()), nothing);
+  const Cap cap = triangulate_polygon(points, std::vector<Vec3>(points.size()), no_edge_is_there);
   EXPECT_NEAR(area_of(cap, points), 5, 1e-12);
 }
 
@@ -69,10 +69,10 @@ TEST(TriangulatePolygon, BendsAsLittleAsItCan) {
   };
   const Vec3 n = normalized(double_area_normal(points[0], points[1], points[2]));
   const Vec3 m = normalized(double_area_normal(points[0], points[2], points[3]));
-  EXPECT_TRUE(has_edge(triangulate_polygon(points, std::vector<Vec3>{n, n, m, m}, nothing), 0, 2));
+  EXPECT_TRUE(has_edge(triangulate_polygon(points, std::vector<Vec3>{n, n, m, m}, no_edge_is_there), 0, 2));
   const Vec3 k = normalized(double_area_normal(points[0], points[1], points[3]));
   const Vec3 l = normalized(double_area_normal(points[1], points[2], points[3]));
-  EXPECT_TRUE(has_edge(triangulate_polygon(points, std::vector<Vec3>{k, l, l, k}, nothing), 1, 3));
+  EXPECT_TRUE(has_edge(triangulate_polygon(points, std::vector<Vec3>{k, l, l, k}, no_edge_is_there), 1, 3));
 }
 
 TEST(TriangulatePolygon, LeavesEdgesAloneThatAreThere) {

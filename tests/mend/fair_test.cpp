@@ -12,7 +12,7 @@
 namespace octafront::mend {
 namespace {
 
-bool nothing(std::uint32_t, std::uint32_t) {
+bool no_edge_is_taken(std::uint32_t, std::uint32_t) {
   return false;
 }
 
@@ -38,8 +38,8 @@ Calotte calotte(double angle, int n) {
 TEST(Faired, GoesOnAsTheSurfaceAroundIt) {
   for (const double angle : {0.3, 0.6}) {
     const Calotte hole = calotte(angle, 40);
-    const Cap flat = triangulate_polygon(hole.rim, std::vector<Vec3>(hole.rim.size()), nothing);
-    const FairCap cap = faired(hole.rim, flat, hole.beyond, nothing, 4000);
+    const Cap flat = triangulate_polygon(hole.rim, std::vector<Vec3>(hole.rim.size()), no_edge_is_taken);
+    const FairCap cap = faired(hole.rim, flat, hole.beyond, no_edge_is_taken, 4000);
     ASSERT_GT(cap.inner.size(), 20u);
     const double rise = 1 - std::cos(angle);
     double highest = -1, farthest = 0;
@@ -54,8 +54,8 @@ TEST(Faired, GoesOnAsTheSurfaceAroundIt) {
 
 TEST(Faired, IsOneDiscAlongTheRim) {
   const Calotte hole = calotte(0.5, 31);
-  const Cap flat = triangulate_polygon(hole.rim, std::vector<Vec3>(hole.rim.size()), nothing);
-  const FairCap cap = faired(hole.rim, flat, hole.beyond, nothing, 4000);
+  const Cap flat = triangulate_polygon(hole.rim, std::vector<Vec3>(hole.rim.size()), no_edge_is_taken);
+  const FairCap cap = faired(hole.rim, flat, hole.beyond, no_edge_is_taken, 4000);
   std::map<std::array<std::uint32_t, 2>, int> sides;
   for (const auto& t : cap.triangles)
     for (std::size_t i = 0; i < 3; ++i) ++sides[{t[i], t[(i + 1) % 3]}];
@@ -72,9 +72,9 @@ TEST(Faired, IsOneDiscAlongTheRim) {
 
 TEST(Faired, FewerPointsWhereTheRimIsFine) {
   const Calotte hole = calotte(0.8, 400);
-  const Cap flat = triangulate_polygon(hole.rim, std::vector<Vec3>(hole.rim.size()), nothing);
-  const std::size_t all = faired(hole.rim, flat, hole.beyond, nothing, 100000).inner.size();
-  const std::size_t few = faired(hole.rim, flat, hole.beyond, nothing, 100).inner.size();
+  const Cap flat = triangulate_polygon(hole.rim, std::vector<Vec3>(hole.rim.size()), no_edge_is_taken);
+  const std::size_t all = faired(hole.rim, flat, hole.beyond, no_edge_is_taken, 100000).inner.size();
+  const std::size_t few = faired(hole.rim, flat, hole.beyond, no_edge_is_taken, 100).inner.size();
   EXPECT_GT(few, 0u);
   EXPECT_LT(2 * few, all);
 }

@@ -21,7 +21,7 @@ constexpr double kEndless = std::numeric_limits<double>::infinity();
 using testing::grey_image;
 using testing::grid_around_origin;
 
-void expect_clean(const SurfaceMesh& surface) {
+void expect_no_defects(const SurfaceMesh& surface) {
   const RepairedSurface repaired = repair_surface(surface);
   EXPECT_TRUE(repaired.notes.empty()) << repaired.notes.front();
   const SurfaceDefects defects = find_defects(repaired);
@@ -35,7 +35,7 @@ TEST(ComplexOfBands, ABallLiesWhereItsValuesSay) {
                                    [](Vec3 p) { return 100 * std::exp(-squared_length(p) / 50); });
     const double radius = 7.1, iso = 100 * std::exp(-radius * radius / 50);
     const Complex complex = complex_of_bands(image, {{iso, kEndless, "ball"}});
-    expect_clean(complex.surface);
+    expect_no_defects(complex.surface);
     double worst = 0;
     for (const Vec3 p : complex.surface.points) worst = std::max(worst, std::abs(length(p) - radius));
     // What is linear between voxels errs by an eighth of the second derivative at most, about.
@@ -47,7 +47,7 @@ TEST(ComplexOfBands, ABallLiesWhereItsValuesSay) {
 TEST(ComplexOfBands, BandsNest) {
   const Image image = grey_image(grid_around_origin({24, 24, 24}, {1, 1, 1}), [](Vec3 p) { return 20 - length(p); });
   const Complex complex = complex_of_bands(image, {{16, kEndless, "core"}, {10, 16, "mantle"}, {11 - 2.5, 10, "skin"}});
-  expect_clean(complex.surface);
+  expect_no_defects(complex.surface);
   ASSERT_EQ(complex.surface.region_names, (std::vector<std::string>{"core", "mantle", "skin"}));
   const auto ball = [](double r) { return 4.0 / 3 * std::numbers::pi * r * r * r; };
   EXPECT_NEAR(complex.volumes[0] / ball(4), 1, 0.06);
@@ -61,7 +61,7 @@ TEST(ComplexOfBands, NoiseIsAlwaysAComplex) {
     testing::Random random(seed);
     const Image image =
         grey_image(grid_around_origin({9, 8, 7}, {1, 1, 1.5}), [&](Vec3) { return random.integer(0, 20); });
-    expect_clean(complex_of_bands(image, {{5, 10, "low"}, {10, 16, "middle"}, {18, kEndless, "high"}}).surface);
+    expect_no_defects(complex_of_bands(image, {{5, 10, "low"}, {10, 16, "middle"}, {18, kEndless, "high"}}).surface);
   }
 }
 

@@ -46,7 +46,7 @@ int voxels_of(const LabelImage& image, int label) {
   return static_cast<int>(std::count(image.regions.begin(), image.regions.end(), label));
 }
 
-LabelImage ball(double radius, Vec3 spacing, std::uint32_t size) {
+LabelImage labelled_ball(double radius, Vec3 spacing, std::uint32_t size) {
   return label_image(grid_around_origin({size, size, size}, spacing), 1,
                      [&](Vec3 p) { return length(p) < radius ? 0 : -1; });
 }
@@ -90,7 +90,7 @@ TEST(ComplexOfLabels, EveryPairOfTwoCubesOfVoxelsIsAComplex) {
 }
 
 TEST(ComplexOfLabels, FacesOfVoxelsAreKeptWithoutSmoothing) {
-  const LabelImage image = ball(3.2, {1, 1, 1}, 9);
+  const LabelImage image = labelled_ball(3.2, {1, 1, 1}, 9);
   const Complex complex = complex_of_labels(image, {false, false});
   expect_clean(complex.surface);
   EXPECT_NEAR(complex.volumes[0], voxels_of(image, 0), 1e-9);
@@ -171,7 +171,7 @@ TEST(ComplexOfLabels, TheSameBitsOnAnyNumberOfThreads) {
 }
 
 TEST(ComplexOfLabels, RefusesWhatMakesNoSense) {
-  const LabelImage good = ball(2, {1, 1, 1}, 5);
+  const LabelImage good = labelled_ball(2, {1, 1, 1}, 5);
   LabelImage bad = good;
   bad.regions.pop_back();
   EXPECT_THROW(complex_of_labels(bad), InputError);
@@ -258,7 +258,7 @@ TEST(ImageOptions, CoarseElementsStayAsNearAsAsked) {
   EXPECT_GT(strays(complex, options), 0.7);
 }
 
-// A ball of three labels with bumps of half a voxel that elements of four need not follow.
+// A labelled_ball of three labels with bumps of half a voxel that elements of four need not follow.
 TEST(ImageOptions, ASizeCoarserThanVoxelsRules) {
   const LabelImage image = label_image(grid_around_origin({48, 48, 48}, {1, 1, 1}), 3, [](Vec3 p) {
     const double r = length(p) + 0.6 * std::sin(p.x) * std::sin(p.y) * std::sin(p.z);

@@ -68,7 +68,7 @@ bool everywhere(Vec3) {
   return true;
 }
 
-Measured ball(double radius, double voxel, Vec3 shape, double degrees) {
+Measured measured_ball(double radius, double voxel, Vec3 shape, double degrees) {
   const auto size = [&](double s) { return static_cast<std::uint32_t>(2 * radius / (voxel * s)) + 5; };
   const ImageGrid grid =
       turned(grid_around_origin({size(shape.x), size(shape.y), size(shape.z)}, shape * voxel), degrees);
@@ -80,7 +80,7 @@ Measured ball(double radius, double voxel, Vec3 shape, double degrees) {
 TEST(TrueSurfaces, BallsAreRound) {
   double last = 1e300;
   for (const double voxel : {1.0, 0.5, 0.25}) {
-    const Measured plain = ball(20, voxel, {1, 1, 1}, 0), turned = ball(20, voxel, {1, 1, 1}, 31);
+    const Measured plain = measured_ball(20, voxel, {1, 1, 1}, 0), turned = measured_ball(20, voxel, {1, 1, 1}, 31);
     show("ball", voxel, plain);
     show("ball, turned", voxel, turned);
     EXPECT_LT(plain.angle_of_95, 4);
@@ -93,7 +93,7 @@ TEST(TrueSurfaces, BallsAreRound) {
 
 TEST(TrueSurfaces, FlatVoxelsMakeRoundBallsToo) {
   for (const double voxel : {1.0, 0.5}) {
-    const Measured m = ball(24, voxel, {1, 1, 2}, 17);
+    const Measured m = measured_ball(24, voxel, {1, 1, 2}, 17);
     show("ball, voxels 1:1:2, turned", voxel, m);
     EXPECT_LT(m.angle_of_95, 5);
     EXPECT_LT(m.largest_distance, voxel);
@@ -145,7 +145,7 @@ TEST(TrueSurfaces, TerracesBecomeSlopes) {
 }
 
 TEST(TrueSurfaces, LinesWhereThreeLabelsMeetLieWhereTheyShould) {
-  // Thirds of a ball: lines along a slanted axis, planes through it.
+  // Thirds of a measured_ball: lines along a slanted axis, planes through it.
   const Vec3 axis = normalized({1, 2, 5}), side = normalized(cross(axis, {1, 0, 0})), other = cross(axis, side);
   const auto third = [&](Vec3 p) {
     const double turn = std::atan2(dot(p, other), dot(p, side)) / (2 * std::numbers::pi) + 0.5;

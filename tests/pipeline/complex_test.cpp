@@ -27,7 +27,7 @@ using testing::nearest_of;
 using testing::rough_walls;
 using testing::volume_of_region;
 
-struct Sample {
+struct ComplexSample {
   std::string name;
   SurfaceMesh complex;
   double size;
@@ -44,12 +44,12 @@ SurfaceMesh cracked_box() {
       [](Vec3 m) { return m.z == 0.5 && is_between(m.x, 0.2, 0.8) && is_between(m.y, 0.2, 0.8); });
 }
 
-std::vector<Sample> samples() {
+std::vector<ComplexSample> samples() {
   const GridPlanes even{even_planes(5), even_planes(5), even_planes(5)};
   const auto number = [](bool x, bool y, bool z) {
     return std::uint32_t(x) + 2 * std::uint32_t(y) + 4 * std::uint32_t(z);
   };
-  std::vector<Sample> all;
+  std::vector<ComplexSample> all;
   all.push_back({"two boxes", box_walls(even, [](Vec3 c) { return c.x > 0.5 ? 1u : 0u; }), 0.25});
   all.push_back({"layers",
                  box_walls({even_planes(9), even_planes(9), {0, 0.25, 0.35, 0.4, 0.7, 1}},
@@ -98,14 +98,14 @@ void expect_complex(const Result& r, const SurfaceMesh& complex) {
 }
 
 TEST(Complex, EveryRegionIsFilledWithItsTrianglesKept) {
-  for (const Sample& s : samples()) {
+  for (const ComplexSample& s : samples()) {
     SCOPED_TRACE(s.name);
     expect_complex(generate(s.complex, keeping(s.size)), s.complex);
   }
 }
 
 TEST(Complex, RecoveryAloneFillsEveryRegion) {
-  for (const Sample& s : samples()) {
+  for (const ComplexSample& s : samples()) {
     SCOPED_TRACE(s.name);
     Options o = keeping(s.size);
     o.method = Method::kRecover;
@@ -114,14 +114,14 @@ TEST(Complex, RecoveryAloneFillsEveryRegion) {
 }
 
 TEST(Complex, WhichWayTrianglesFaceDoesNotMatter) {
-  for (const Sample& s : samples()) {
+  for (const ComplexSample& s : samples()) {
     SCOPED_TRACE(s.name);
     expect_complex(generate(testing::shuffled(s.complex, 3), keeping(s.size)), s.complex);
   }
 }
 
 TEST(Complex, PatchesAreTriangulatedAnewAndFit) {
-  for (const Sample& s : samples()) {
+  for (const ComplexSample& s : samples()) {
     SCOPED_TRACE(s.name);
     Options o;
     o.size.size = 0.12;
@@ -207,7 +207,7 @@ TEST(Complex, SizesByNameHoldWhereTheyAreAsked) {
 }
 
 TEST(Complex, TheSameBitsOnAnyNumberOfThreads) {
-  const Sample foam = samples().back();
+  const ComplexSample foam = samples().back();
   Options o;
   o.size.size = 0.08;
   RunContext context;
@@ -267,7 +267,7 @@ TEST(Complex, OtherMethodsSayThatTheyFillOneRegion) {
 TEST(Complex, SecondOrderKeepsEveryRegion) {
   Options o = keeping(0.25);
   o.order = 2;
-  for (const Sample& s : samples()) {
+  for (const ComplexSample& s : samples()) {
     SCOPED_TRACE(s.name);
     EXPECT_EQ(first_defect(generate(s.complex, o).mesh), std::nullopt);
   }

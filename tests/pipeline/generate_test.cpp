@@ -14,13 +14,13 @@
 namespace octafront {
 namespace {
 
-struct Sample {
+struct ClosedSample {
   const char* name;
   SurfaceMesh surface;
   double size;
 };
 
-std::vector<Sample> closed_samples() {
+std::vector<ClosedSample> closed_samples() {
   return {{"cube", testing::cube(1), 0.15},
           {"tetrahedron", testing::unit_tetrahedron(), 0.12},
           {"sphere", testing::icosphere(4), 0.2},
@@ -37,7 +37,7 @@ Options sized(double h) {
 }
 
 TEST(Generate, FillsTheSurfaceItWasGiven) {
-  for (const Sample& s : closed_samples()) {
+  for (const ClosedSample& s : closed_samples()) {
     SCOPED_TRACE(s.name);
     const Result r = generate(s.surface, sized(s.size));
     EXPECT_EQ(first_defect(r.mesh), std::nullopt);
@@ -49,7 +49,7 @@ TEST(Generate, FillsTheSurfaceItWasGiven) {
 }
 
 TEST(Generate, KeepsTheSurfaceExactlyWhenAsked) {
-  for (Sample s : closed_samples()) {
+  for (ClosedSample s : closed_samples()) {
     if (std::string(s.name) == "cube") s.surface = testing::cube(6);
     SCOPED_TRACE(s.name);
     Options o = sized(s.size);
@@ -184,7 +184,7 @@ TEST(Generate, PredictsWhatTheBoundOnDeviationAdds) {
 }
 
 TEST(Generate, EveryMethodMakesAValidMesh) {
-  for (const Sample& s : closed_samples())
+  for (const ClosedSample& s : closed_samples())
     for (const Method method : {Method::kOctreeAft, Method::kAft, Method::kOctree, Method::kRecover}) {
       SCOPED_TRACE(std::string(s.name) + " " + std::to_string(static_cast<int>(method)));
       Options o = sized(s.size);

@@ -18,7 +18,7 @@
 namespace octafront {
 namespace {
 
-TetMesh recovered(const SurfaceMesh& surface) {
+TetMesh to_refine(const SurfaceMesh& surface) {
   StageReport report;
   return recover_volume(surface, {{}, report});
 }
@@ -42,7 +42,7 @@ double least_spacing(const TetMesh& mesh, std::size_t first, const SizeField& si
 
 TEST(RefineInterior, MakesElementsOfTheSize) {
   const SurfaceMesh surface = testing::cube(8);
-  const TetMesh coarse = recovered(surface);
+  const TetMesh coarse = to_refine(surface);
   const SizeField sizes = SizeField::uniform(1.0 / 8);
   const TetMesh mesh = refined(coarse, sizes);
   const auto defect = first_defect(mesh, surface);
@@ -57,7 +57,7 @@ TEST(RefineInterior, MakesElementsOfTheSize) {
 TEST(RefineInterior, FollowsSizesThatVary) {
   const SurfaceMesh surface = testing::cube(4);
   const SizeField sizes = SizeField::from_function([](Vec3 p) { return 0.05 + 0.2 * p.x; }, 0.05, 0.25);
-  const TetMesh coarse = recovered(surface), mesh = refined(coarse, sizes);
+  const TetMesh coarse = to_refine(surface), mesh = refined(coarse, sizes);
   const auto defect = first_defect(mesh, surface);
   ASSERT_FALSE(defect) << *defect;
   const auto left = std::ranges::count_if(mesh.points, [](Vec3 p) { return p.x < 0.5; });
@@ -66,7 +66,7 @@ TEST(RefineInterior, FollowsSizesThatVary) {
 }
 
 TEST(RefineInterior, LeavesAMeshOfTheRightSizeAlone) {
-  const TetMesh coarse = recovered(testing::icosphere(1));
+  const TetMesh coarse = to_refine(testing::icosphere(1));
   EXPECT_EQ(refined(coarse, SizeField::uniform(10)).tets, coarse.tets);
 }
 
@@ -75,14 +75,14 @@ TEST(RefineInterior, KeepsNastySurfaces) {
     const testing::NastySurface nasty = testing::nasty_surface(seed);
     SCOPED_TRACE(nasty.name);
     const double diagonal = bounding_box(nasty.surface.points).diagonal();
-    const TetMesh mesh = refined(recovered(nasty.surface), SizeField::uniform(0.05 * diagonal));
+    const TetMesh mesh = refined(to_refine(nasty.surface), SizeField::uniform(0.05 * diagonal));
     const auto defect = first_defect(mesh, nasty.surface);
     EXPECT_FALSE(defect) << *defect;
   }
 }
 
 TEST(RefineInterior, EndsWhenCancelled) {
-  TetMesh mesh = recovered(testing::cube(4));
+  TetMesh mesh = to_refine(testing::cube(4));
   const std::atomic<bool> cancel = true;
   RunContext context;
   context.cancel = &cancel;

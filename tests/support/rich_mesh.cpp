@@ -8,7 +8,7 @@
 namespace octafront::testing {
 namespace {
 
-using Cell = std::array<int, 3>;
+using GridCell = std::array<int, 3>;
 
 /// The side of the cube that all corners lie on: 0 to 5, or -1.
 template <class Row>
@@ -68,14 +68,14 @@ NamedSet set_of(const char* name, NamedSet::Kind kind, std::size_t count, const 
 
 TetMesh rich_mesh(int n) {
   TetMesh mesh;
-  const auto at = [n](Cell g) { return static_cast<VertexIndex>((g[0] * (n + 1) + g[1]) * (n + 1) + g[2]); };
+  const auto at = [n](GridCell g) { return static_cast<VertexIndex>((g[0] * (n + 1) + g[1]) * (n + 1) + g[2]); };
   for (int i = 0; i <= n; ++i)
     for (int j = 0; j <= n; ++j)
       for (int k = 0; k <= n; ++k) mesh.points.push_back({double(i), double(j), double(k)});
   constexpr int kPaths[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
   for (int cell = 0; cell < n * n * n; ++cell)
     for (int path = 0; path < 6; ++path) {
-      Cell g{cell / (n * n), cell / n % n, cell % n};
+      GridCell g{cell / (n * n), cell / n % n, cell % n};
       const bool is_right = 2 * g[0] >= n;
       Tet t{at(g)};
       for (std::size_t step = 0; step < 3; ++step) {

@@ -6,7 +6,7 @@
 #include "support/named_surfaces.h"
 #include "surface/remeshing/crossings.h"
 #include "surface/remeshing/deviation.h"
-#include "surface/remeshing/remesh.h"
+#include "surface/remeshing/remesh_within.h"
 #include "surface/remeshing/restored.h"
 #include "surface/remeshing/unfold.h"
 #include "surface/surface_check.h"
@@ -67,7 +67,8 @@ SurfaceMesh spiked_sphere(double height) {
   return s;
 }
 
-Remeshed remesh(const SurfaceMesh& surface, double h, StageReport& report, std::optional<double> deviation = {}) {
+Remeshed remesh_within(const SurfaceMesh& surface, double h, StageReport& report,
+                       std::optional<double> deviation = {}) {
   SurfaceOptions options;
   options.max_deviation = deviation;
   return remesh_surface(KnownSurface(surface, 40), SizeField::uniform(h), options, {{}, report});
@@ -121,7 +122,7 @@ TEST(MergeLines, OneLineDrawnAsANeedleBecomesOneLine) {
   const SurfaceMesh needle = box_with_needle(0.03);
   ASSERT_LT(worst_shape(needle), 0.1);
   StageReport report;
-  const Remeshed made = remesh(needle, 0.15, report);
+  const Remeshed made = remesh_within(needle, 0.15, report);
   EXPECT_GT(counter(report, "lines merged"), 0);
   EXPECT_GT(worst_shape(made.surface), 0.3);
   EXPECT_EQ(first_surface_defect(made.surface, needle), std::nullopt);
@@ -129,7 +130,7 @@ TEST(MergeLines, OneLineDrawnAsANeedleBecomesOneLine) {
 
 TEST(MergeLines, LinesStayWhereNothingMayMove) {
   StageReport report;
-  const Remeshed made = remesh(box_with_needle(0.03), 0.15, report, 0.0);
+  const Remeshed made = remesh_within(box_with_needle(0.03), 0.15, report, 0.0);
   EXPECT_EQ(counter(report, "lines merged"), 0);
   EXPECT_LT(worst_shape(made.surface), 0.3);
 }
@@ -139,7 +140,7 @@ TEST(MergeLines, AStripWithAPatchOfItsOwnIsNotLost) {
   needle.patch.assign(needle.triangles.size(), 0);
   needle.patch[9] = 1;
   StageReport report;
-  const Remeshed made = remesh(needle, 0.15, report);
+  const Remeshed made = remesh_within(needle, 0.15, report);
   EXPECT_GT(std::count(made.surface.patch.begin(), made.surface.patch.end(), 1u), 0);
 }
 
@@ -158,7 +159,7 @@ TEST(Restored, TrianglesThatReachIntoABallStayWhole) {
 
 TEST(Detail, ASpikeBelowTheSizeIsPulledIn) {
   StageReport report;
-  const Remeshed made = remesh(spiked_sphere(0.03), 0.2, report);
+  const Remeshed made = remesh_within(spiked_sphere(0.03), 0.2, report);
   EXPECT_GT(worst_shape(made.surface), 0.4);
   for (const Vec3 p : made.surface.points) EXPECT_LT(length(p), 1.02);
 }
@@ -196,7 +197,7 @@ TEST(Fallback, IsLocal) {
   const SurfaceMesh capped = capped_ball(1e-4);
   ASSERT_TRUE(remeshing::find_crossings(capped).empty());
   StageReport report;
-  const Remeshed made = remesh(capped, 0.25, report, 0.0);
+  const Remeshed made = remesh_within(capped, 0.25, report, 0.0);
   EXPECT_GT(counter(report, "places left as in the input"), 0);
   EXPECT_EQ(first_surface_defect(made.surface, capped), std::nullopt);
   // Away from the gap the sizes are those that were asked for.
@@ -228,7 +229,7 @@ SurfaceMesh bumpy_sphere() {
 TEST(Approach, MendsAPlaceThatStraysWithoutAnotherRound) {
   const SurfaceMesh input = bumpy_sphere();
   StageReport report;
-  const Remeshed made = remesh(input, 0.25, report, 0.02);
+  const Remeshed made = remesh_within(input, 0.25, report, 0.02);
   EXPECT_EQ(counter(report, "rounds"), 1);
   EXPECT_GT(counter(report, "points against deviation"), 0);
   EXPECT_TRUE(remeshing::find_crossings(made.surface).empty());

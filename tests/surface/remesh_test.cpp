@@ -87,7 +87,7 @@ SurfaceMesh close_sheets() {
   return joined(icosphere(4, 1), reversed(icosphere(4, 0.93)));
 }
 
-std::vector<NamedSurface> samples() {
+std::vector<NamedSurface> samples_to_remesh() {
   return {{"fine sphere", icosphere(4), 0.25},
           {"coarse sphere", icosphere(1), 0.15},
           {"torus", torus(60, 24), 0.12},
@@ -134,7 +134,7 @@ std::uint32_t component_count(const SurfaceMesh& s) {
 }
 
 TEST(Remesh, KeepsTopologyAndNeverCrossesItself) {
-  for (const NamedSurface& sample : samples()) {
+  for (const NamedSurface& sample : samples_to_remesh()) {
     SCOPED_TRACE(sample.name);
     const Remeshed r = remesh(sample.surface, sample.h);
     EXPECT_EQ(euler_characteristic(r.surface), euler_characteristic(sample.surface));

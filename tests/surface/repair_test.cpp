@@ -59,13 +59,13 @@ SurfaceMesh soup_of(const SurfaceMesh& s) {
   return soup;
 }
 
-std::vector<SurfaceMesh> samples() {
+std::vector<SurfaceMesh> samples_to_repair() {
   return {testing::cube(3), testing::unit_tetrahedron(), testing::icosphere(2), testing::torus(12, 8),
           testing::hollow_sphere(1)};
 }
 
 TEST(Repair, LeavesCleanSurfacesAlone) {
-  for (const SurfaceMesh& s : samples()) {
+  for (const SurfaceMesh& s : samples_to_repair()) {
     const RepairedSurface repaired = repair_surface(s);
     EXPECT_EQ(repaired.surface, s);
     EXPECT_TRUE(repaired.notes.empty()) << repaired.notes.front();
@@ -75,7 +75,7 @@ TEST(Repair, LeavesCleanSurfacesAlone) {
 
 TEST(Repair, UndoesTurnedFacesSoupAndOrder) {
   std::mt19937 random(1);
-  for (const SurfaceMesh& s : samples()) {
+  for (const SurfaceMesh& s : samples_to_repair()) {
     for (int round = 0; round < 5; ++round) {
       const SurfaceMesh broken = soup_of(with_random_faces_turned(shuffled(s, random), random));
       const RepairedSurface repaired = repair_surface(broken);
@@ -89,7 +89,7 @@ TEST(Repair, UndoesTurnedFacesSoupAndOrder) {
 
 TEST(Repair, ScaleAndShiftChangeNothing) {
   std::mt19937 random(2);
-  for (const SurfaceMesh& s : samples()) {
+  for (const SurfaceMesh& s : samples_to_repair()) {
     for (const double scale : {1e-6, 1e6}) {
       const SurfaceMesh moved = testing::transformed(s, scale, Vec3{100, -20, 3} * scale);
       const RepairedSurface repaired = repair_surface(soup_of(with_random_faces_turned(moved, random)));
