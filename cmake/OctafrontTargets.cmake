@@ -4,13 +4,7 @@ add_library(octafront_flags INTERFACE)
 target_compile_features(octafront_flags INTERFACE cxx_std_20)
 # Contraction to fused multiply-add breaks the floating-point filters of the exact predicates.
 target_compile_options(octafront_flags INTERFACE -ffp-contract=off -Wall -Wextra -Wshadow -Wpedantic
-                                                 $<$<BOOL:${OCTAFRONT_WERROR}>:-Werror>
-                                                 # What GCC 12 guesses of strings moved through inlined code stays a warning.
-                                                 $<$<CXX_COMPILER_ID:GNU>:-Wno-error=array-bounds>
-                                                 $<$<CXX_COMPILER_ID:GNU>:-Wno-error=restrict>
-                                                 $<$<CXX_COMPILER_ID:GNU>:-Wno-error=stringop-overflow>
-                                                 $<$<CXX_COMPILER_ID:GNU>:-Wno-error=stringop-overread>
-                                                 $<$<CXX_COMPILER_ID:GNU>:-Wno-error=maybe-uninitialized>)
+                                                 $<$<BOOL:${OCTAFRONT_WERROR}>:-Werror>)
 if(OCTAFRONT_VALIDATE)
   target_compile_definitions(octafront_flags INTERFACE OCTAFRONT_VALIDATION)
 endif()
@@ -39,6 +33,13 @@ if(OCTAFRONT_PCH)
   octafront_precompile(octafront_pch octafront_pch)
 endif()
 
+# octafront_unity(TARGET SOURCES ...): TARGET is compiled many sources at a time; the SOURCES stay objects of their own.
+# tests/house sees to it that no two sources of a folder give the same name to different things.
+function(octafront_unity target)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${OCTAFRONT_UNITY} UNITY_BUILD_BATCH_SIZE 12)
+  set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+endfunction()
+
 # octafront_room(NAME SOURCES ... [ROOMS ...] [LIBS ...])
 # One static library per folder of src/: it can be built and tested alone. ROOMS are those that
 # its row in ARCHITECTURE.md names (tests/house compares).
@@ -53,6 +54,7 @@ function(octafront_room name)
   endforeach()
   target_link_libraries(octafront_${name} PUBLIC ${ROOM_LIBS})
   octafront_precompile(octafront_${name} octafront_pch)
+  octafront_unity(octafront_${name})
 endfunction()
 
 # octafront_test(NAME SOURCES ... [ROOMS ...]): a GoogleTest binary tests/NAME, linked with just those rooms.
@@ -64,5 +66,6 @@ function(octafront_test name)
     target_link_libraries(test_${name} PRIVATE octafront_${room})
   endforeach()
   octafront_precompile(test_${name} octafront_test_support)
+  octafront_unity(test_${name})
   gtest_discover_tests(test_${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600 LABELS ${name} COST ${test_cost})
 endfunction()

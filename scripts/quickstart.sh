@@ -13,7 +13,7 @@ if [ ! -e "$input" ] && [ -e "$caller/$input" ]; then input=$caller/$input; fi
 [ -f "$input" ] || { echo "quickstart: no such file: $input" >&2; exit 3; }
 
 need_packages "${build_packages[@]}"
-cmake --preset release -DOCTAFRONT_BUILD_TESTS=OFF -DOCTAFRONT_BUILD_BENCH=OFF -DOCTAFRONT_BUILD_EXAMPLES=OFF \
+cmake --preset release -DOCTAFRONT_UNITY=ON -DOCTAFRONT_BUILD_TESTS=OFF -DOCTAFRONT_BUILD_BENCH=OFF -DOCTAFRONT_BUILD_EXAMPLES=OFF \
   -B build/quickstart >/dev/null
 cmake --build build/quickstart --target octafront_cli
 

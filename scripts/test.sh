@@ -23,7 +23,10 @@ need_packages "${build_packages[@]}" "${test_packages[@]}"
   need_packages "${format_packages[@]}" "${doc_packages[@]}" "${browser_packages[@]}" "${shell_packages[@]}" "${image_packages[@]}"
 [ ${#which[@]} -gt 0 ] || [ -d volumes/nibabel ] || scripts/get-volumes.sh --readers ||
   echo "the test volumes cannot be fetched here: tests that need them are skipped"
-cmake --preset "$preset" -DOCTAFRONT_BUILD_BENCH=OFF -DOCTAFRONT_WERROR=ON >/dev/null
+# A new folder is built whole: by many sources at a time. One that is there stays as it is.
+fresh=()
+[ -f "build/$preset/CMakeCache.txt" ] || fresh=(-DOCTAFRONT_UNITY=ON)
+cmake --preset "$preset" "${fresh[@]}" -DOCTAFRONT_BUILD_BENCH=OFF -DOCTAFRONT_WERROR=ON >/dev/null
 cmake --build --preset "$preset" "${targets[@]}"
 failed=build/$preset/Testing/Temporary/LastTestsFailed.log
 rm -f "$failed"

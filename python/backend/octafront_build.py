@@ -95,6 +95,7 @@ def build_sdist(sdist_directory, config_settings=None):
 def compile_in(build, jobs):
     if not (build / "CMakeCache.txt").exists():
         run("cmake", "-S", ROOT, "-B", build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DOCTAFRONT_HDF5=OFF",
+            "-DOCTAFRONT_UNITY=ON",
             "-DOCTAFRONT_BUILD_TESTS=OFF", "-DOCTAFRONT_BUILD_EXAMPLES=OFF")
     run("cmake", "--build", build, *(["-j", str(jobs)] if jobs else []), "--target", *TARGETS)
 
