@@ -4,30 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace octafront::arrangement {
 namespace {
 
-/// Relative error of the rounded coordinates of an exact point, with room for the error of a subtraction.
-constexpr double kRounded = 1.8e-15;
+using exact::det2;
+using exact::kRounded;
 
-BigFloat det2(const BigFloat& a, const BigFloat& b, const BigFloat& c, const BigFloat& d) {
-  return a * d - b * c;
-}
-
-/// a x b . c of the rows without column `skip`.
-BigFloat minor_without(int skip, const Homogeneous& a, const Homogeneous& b, const Homogeneous& c) {
-  std::array<int, 3> k{};
-  for (int i = 0, n = 0; i < 4; ++i)
-    if (i != skip) k[n++] = i;
-  return a[k[0]] * det2(b[k[1]], b[k[2]], c[k[1]], c[k[2]]) - a[k[1]] * det2(b[k[0]], b[k[2]], c[k[0]], c[k[2]]) +
-         a[k[2]] * det2(b[k[0]], b[k[1]], c[k[0]], c[k[1]]);
-}
-
-ExactPoint rounded(Homogeneous h) {
-  if (h[3].sign() < 0)
-    for (BigFloat& x : h) x = -x;
-  const Vec3 at{quotient(h[0], h[3]), quotient(h[1], h[3]), quotient(h[2], h[3])};
+ExactPoint exact_point(Homogeneous h) {
+  h = exact::with_positive_weight(std::move(h));
+  const Vec3 at = exact::rounded(h);
   return {std::move(h), at};
 }
 
@@ -52,19 +39,7 @@ int orient_exact(int axis, const Place& a, const Place& b, const Place& c) {
 }  // namespace
 
 Homogeneous homogeneous(const Place& p) {
-  if (p.exact) return *p.exact;
-  return {BigFloat(p.at.x), BigFloat(p.at.y), BigFloat(p.at.z), BigFloat(1.0)};
-}
-
-Homogeneous plane_through(Vec3 a, Vec3 b, Vec3 c) {
-  std::array<BigFloat, 3> u, v;
-  for (int i = 0; i < 3; ++i) {
-    u[i] = difference(b[i], a[i]);
-    v[i] = difference(c[i], a[i]);
-  }
-  Homogeneous plane{det2(u[1], u[2], v[1], v[2]), det2(u[2], u[0], v[2], v[0]), det2(u[0], u[1], v[0], v[1]), {}};
-  plane[3] = -(plane[0] * BigFloat(a.x) + plane[1] * BigFloat(a.y) + plane[2] * BigFloat(a.z));
-  return plane;
+  return p.exact ? *p.exact : exact::homogeneous(p.at);
 }
 
 Homogeneous plane_along_axis(Vec3 a, Vec3 b, int axis) {
@@ -77,19 +52,11 @@ Homogeneous plane_along_axis(Vec3 a, Vec3 b, int axis) {
 }
 
 ExactPoint line_meets_plane(Vec3 p, Vec3 q, const Homogeneous& plane) {
-  const auto value = [&](Vec3 r) {
-    return plane[0] * BigFloat(r.x) + plane[1] * BigFloat(r.y) + plane[2] * BigFloat(r.z) + plane[3];
-  };
-  const BigFloat at_p = value(p), at_q = value(q);
-  Homogeneous h;
-  for (int i = 0; i < 3; ++i) h[i] = at_p * BigFloat(q[i]) - at_q * BigFloat(p[i]);
-  h[3] = at_p - at_q;
-  return rounded(std::move(h));
+  return exact_point(exact::line_meets_plane(exact::homogeneous(p), exact::homogeneous(q), plane));
 }
 
 ExactPoint planes_meet(const Homogeneous& a, const Homogeneous& b, const Homogeneous& c) {
-  return rounded(
-      {minor_without(0, a, b, c), -minor_without(1, a, b, c), minor_without(2, a, b, c), -minor_without(3, a, b, c)});
+  return exact_point(exact::plane_through(a, b, c));
 }
 
 int compare(const Place& a, const Place& b) {

@@ -2,16 +2,14 @@
 
 #include <octafront/vec.h>
 
-#include "geometry/big_float.h"
-
-#include <array>
+#include "geometry/homogeneous.h"
 
 namespace octafront::arrangement {
 
 using exact::BigFloat;
 
-/// Of a point: (x, y, z, w) with w > 0 stands for (x, y, z) / w. Of a plane: (n, k) is n . x + k = 0.
-using Homogeneous = std::array<BigFloat, 4>;
+using exact::Homogeneous;
+using exact::plane_through;
 
 /// A point whose place is rational: where planes through input vertices meet.
 struct ExactPoint {
@@ -27,8 +25,6 @@ struct Place {
 
 Homogeneous homogeneous(const Place& p);
 
-/// The plane through three points, positive where orient3d(a, b, c, .) is.
-Homogeneous plane_through(Vec3 a, Vec3 b, Vec3 c);
 /// The plane through the line ab that is parallel to an axis. Requires that the line is not.
 Homogeneous plane_along_axis(Vec3 a, Vec3 b, int axis);
 

@@ -11,23 +11,10 @@ namespace octafront::recovery {
 
 namespace {
 
-BigFloat det2(const BigFloat& a, const BigFloat& b, const BigFloat& c, const BigFloat& d) {
-  return a * d - b * c;
-}
-
-// The plane (n, k) through three homogeneous points, as the linear form that is zero on it. On (x, y, z, w) with w > 0
-// it has the sign of orient3d(a, b, c, .).
-Homogeneous plane_through(const Homogeneous& a, const Homogeneous& b, const Homogeneous& c) {
-  // Expanded along a: the 2x2 minors of b and c.
-  const auto m = [&](int i, int j) { return det2(b[i], b[j], c[i], c[j]); };
-  const BigFloat m01 = m(0, 1), m02 = m(0, 2), m03 = m(0, 3), m12 = m(1, 2), m13 = m(1, 3), m23 = m(2, 3);
-  return {a[1] * m23 - a[2] * m13 + a[3] * m12, -(a[0] * m23 - a[2] * m03 + a[3] * m02),
-          a[0] * m13 - a[1] * m03 + a[3] * m01, -(a[0] * m12 - a[1] * m02 + a[2] * m01)};
-}
-
-BigFloat value(const Homogeneous& plane, const Homogeneous& p) {
-  return plane[0] * p[0] + plane[1] * p[1] + plane[2] * p[2] + plane[3] * p[3];
-}
+using exact::det2;
+using exact::kRounded;
+using exact::plane_through;
+using exact::value;
 
 double largest(Vec3 a) {
   return std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)});
@@ -37,7 +24,7 @@ double largest(Vec3 a) {
 int filtered_orient(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
   const Vec3 u = b - a, v = c - a, w = d - a;
   const double det = dot(cross(u, v), w);
-  const double error = 1.8e-15 * std::max({largest(a), largest(b), largest(c), largest(d)});
+  const double error = kRounded * std::max({largest(a), largest(b), largest(c), largest(d)});
   const double p = largest(u) + error, q = largest(v) + error, r = largest(w) + error;
   const double bound = 6.1 * error * (p * q + q * r + r * p) + 1e-14 * p * q * r;
   return det > bound ? 1 : det < -bound ? -1 : 0;
@@ -80,15 +67,11 @@ VertexIndex ExactPoints::add(Vec3 p) {
 }
 
 VertexIndex ExactPoints::add(Homogeneous h, std::vector<std::uint32_t> planes) {
-  if (h[3].sign() < 0) {
-    for (BigFloat& x : h) x = -x;
-  }
+  h = exact::with_positive_weight(std::move(h));
   if (first_steiner_ == kNone) first_steiner_ = size();
-  Vec3 p, rest;
-  for (int i = 0; i < 3; ++i) {
-    p[i] = quotient(h[i], h[3]);
-    rest[i] = quotient(h[i] - h[3] * BigFloat(p[i]), h[3]);
-  }
+  const Vec3 p = exact::rounded(h);
+  Vec3 rest;
+  for (int i = 0; i < 3; ++i) rest[i] = quotient(h[i] - h[3] * BigFloat(p[i]), h[3]);
   point_.push_back(p);
   steiner_.push_back({{h.begin(), h.end()}, rest, std::move(planes), {}});
   steiner_.back().lines.fill({kNone, kNone});
@@ -173,7 +156,7 @@ Homogeneous ExactPoints::homogeneous(VertexIndex v) const {
     const std::vector<BigFloat>& h = steiner_[v - first_steiner_].coordinate;
     return {h[0], h[1], h[2], h[3]};
   }
-  return {BigFloat(point_[v].x), BigFloat(point_[v].y), BigFloat(point_[v].z), BigFloat(1.0)};
+  return exact::homogeneous(point_[v]);
 }
 
 VertexIndex ExactPoints::add_between(VertexIndex a, VertexIndex b, double t) {
@@ -188,11 +171,7 @@ VertexIndex ExactPoints::add_between(VertexIndex a, VertexIndex b, double t) {
 
 VertexIndex ExactPoints::add_crossing(VertexIndex p, VertexIndex q, VertexIndex a, VertexIndex b, VertexIndex c) {
   const Homogeneous plane = plane_through(homogeneous(a), homogeneous(b), homogeneous(c));
-  const Homogeneous hp = homogeneous(p), hq = homogeneous(q);
-  const BigFloat dp = value(plane, hp), dq = value(plane, hq);
-  Homogeneous h;
-  for (int i = 0; i < 4; ++i) h[i] = hp[i] * dq - hq[i] * dp;
-  const VertexIndex s = add(std::move(h), shared_planes(p, q));
+  const VertexIndex s = add(exact::line_meets_plane(homogeneous(p), homogeneous(q), plane), shared_planes(p, q));
   steiner_.back().lines[0] = {p, q};
   return s;
 }
@@ -206,9 +185,7 @@ VertexIndex ExactPoints::add_crossing(VertexIndex p, VertexIndex q, VertexIndex 
                                     det2(hx[u], hx[v], hy[u], hy[v])};
     const BigFloat dp = l[0] * hp[u] + l[1] * hp[v] + l[2] * hp[3], dq = l[0] * hq[u] + l[1] * hq[v] + l[2] * hq[3];
     if (dp.sign() * dq.sign() >= 0) continue;
-    Homogeneous h;
-    for (int i = 0; i < 4; ++i) h[i] = hp[i] * dq - hq[i] * dp;
-    const VertexIndex s = add(std::move(h), shared_planes(p, q));
+    const VertexIndex s = add(exact::zero_between(hp, dp, hq, dq), shared_planes(p, q));
     steiner_.back().lines = {Edge{p, q}, Edge{x, y}};
     return s;
   }
@@ -238,8 +215,7 @@ int ExactPoints::orient(VertexIndex a, VertexIndex b, VertexIndex c, Vec3 p) con
   if (const int s = filtered_orient({two_doubles(point_[a], rest_of(a)), two_doubles(point_[b], rest_of(b)),
                                      two_doubles(point_[c], rest_of(c)), two_doubles(p, {})}))
     return s;
-  const Homogeneous last{BigFloat(p.x), BigFloat(p.y), BigFloat(p.z), BigFloat(1.0)};
-  return value(plane_through(homogeneous(a), homogeneous(b), homogeneous(c)), last).sign();
+  return value(plane_through(homogeneous(a), homogeneous(b), homogeneous(c)), exact::homogeneous(p)).sign();
 }
 
 }  // namespace octafront::recovery

@@ -3,7 +3,7 @@
 #include <octafront/surface_mesh.h>
 
 #include "core/groups.h"
-#include "geometry/big_float.h"
+#include "geometry/homogeneous.h"
 #include "geometry/predicates.h"
 
 #include <array>
@@ -14,8 +14,7 @@ namespace octafront::recovery {
 
 using exact::BigFloat;
 
-/// Homogeneous coordinates (x, y, z, w) of the point (x, y, z) / w, w > 0.
-using Homogeneous = std::array<BigFloat, 4>;
+using exact::Homogeneous;
 
 /// The vertices of the recovery: given points, which are doubles, and Steiner points on edges and facets, whose exact
 /// place is a rational. All signs are exact.

@@ -14,7 +14,6 @@ namespace octafront {
 namespace {
 
 using testing::BigInteger;
-using testing::Random;
 
 constexpr int kFractionOfBends = 300;
 constexpr std::array<std::array<int, 2>, 6> kEdges{{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
@@ -84,7 +83,7 @@ TEST(QuadraticTet, StraightElementsHaveTwentyTimesTheSameCoefficient) {
 }
 
 TEST(QuadraticTet, CoefficientsAreThoseOfTheDeterminant) {
-  Random random(1);
+  testing::Random random(1);
   for (int round = 0; round < 100; ++round) {
     QuadraticTet q = unit();
     for (Vec3& p : q) p += {random.between(-0.2, 0.2), random.between(-0.2, 0.2), random.between(-0.2, 0.2)};
@@ -143,7 +142,7 @@ TEST(QuadraticTet, ExactlyZeroIsNotPositive) {
 }
 
 TEST(QuadraticTet, SignsAgreeWithIntegersWhereRoundingIsNotSure) {
-  Random random(2);
+  testing::Random random(2);
   int positive = 0, negative = 0;
   for (int round = 0; round < 400; ++round) {
     // Flat to a few units in the last place, or with a node where a coefficient vanishes; near the origin or far.
@@ -168,7 +167,7 @@ TEST(QuadraticTet, SignsAgreeWithIntegersWhereRoundingIsNotSure) {
 }
 
 TEST(QuadraticTet, TheBoundIsBelowTheLeastCoefficient) {
-  Random random(4);
+  testing::Random random(4);
   int sure = 0;
   for (int round = 0; round < 300; ++round) {
     const double bend = random.magnitude(1e-6, 0.1);
@@ -191,7 +190,7 @@ TEST(QuadraticTet, TheBoundIsBelowTheLeastCoefficient) {
 }
 
 TEST(QuadraticTet, SignsDoNotDependOnScale) {
-  Random random(3);
+  testing::Random random(3);
   for (int round = 0; round < 50; ++round) {
     QuadraticTet q = unit();
     for (std::size_t mid = 4; mid < 10; ++mid)
