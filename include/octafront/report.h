@@ -62,7 +62,7 @@ std::string to_json(const SurfaceDefects& defects);
 std::string to_json(const JacobianSummary& found);
 std::string to_json(const std::vector<SolverFinding>& findings);
 
-/// The report as a table for a terminal, at most 100 columns wide.
+/// The report as a table for a terminal, at most 100 columns wide but for notes.
 std::string to_table(const Report& report);
 
 }  // namespace octafront

@@ -41,6 +41,13 @@ std::string count_line(const Report& report) {
   return line + "\n";
 }
 
+std::string volume_line(const Report& report) {
+  // An open surface encloses nothing to compare with.
+  if (report.input_volume == 0) return fmt::format("volume {:.6g}\n", report.volume);
+  return fmt::format("volume {:.6g} (input {:.6g}, {:+.3f} %)\n", report.volume, report.input_volume,
+                     100 * (report.volume / report.input_volume - 1));
+}
+
 std::string stage_lines(const Report& report) {
   std::string out = fmt::format("{:<34}{:>10}{:>10}\n", "stage", "wall s", "cpu s");
   for (const StageReport& s : report.stages)
@@ -110,8 +117,7 @@ std::string to_table(const Report& report) {
     out += counted_in_groups(static_cast<std::uint64_t>(report.expected_tets), "tetrahedron", "tetrahedra") +
            " expected from the sizes\n";
   if (report.boundary_faces > 0)
-    out += fmt::format("volume {:.6g} (input {:.6g}, {:+.3f} %)\n", report.volume, report.input_volume,
-                       100 * (report.volume / report.input_volume - 1));
+    out += volume_line(report);
   if (report.tets > 0) out.append("\n").append(quality_lines(report.quality));
   if (report.regions.size() > 1) out += region_lines(report.regions);
   if (report.second_order.edges > 0) out += second_order_lines(report.second_order);
