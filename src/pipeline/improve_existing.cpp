@@ -68,7 +68,7 @@ Ground prepare_ground(const TetMesh& mesh, const SurfaceMesh& surface, double fe
   KnownSurface known(std::move(repaired), std::move(found.edges), std::move(features));
   const SurfaceMesh boundary = boundary_of(mesh);
   require_on_surface(mesh, boundary, known);
-  if (const auto defect = first_surface_defect(without_inner_points(boundary), known.mesh()))
+  if (const auto defect = first_surface_defect(without_inner_points(boundary), known.mesh(), context))
     throw InputError("the boundary of the mesh cannot be moved on the surface given: " + *defect);
   return {std::move(known), detect_features(boundary, feature_angle)};
 }

@@ -97,12 +97,12 @@ std::vector<std::uint8_t> SurfaceKind::wrong_pieces(const std::vector<Shell>& ma
   return is_wrong;
 }
 
-std::optional<std::string> SurfaceKind::first_defect_but_crossings(const SurfaceMesh& result,
+std::optional<std::string> SurfaceKind::first_defect_but_crossings(const SurfaceMesh& result, const RunContext& context,
                                                                    std::vector<Vec3>* places) const {
   if (auto defect = first_bad_vertex(result)) return defect;
   const RepairedSurface as_is = as_it_is(result);
   const EdgeTable table = make_edge_table(result.points.size(), result.triangles);
-  if (auto defect = first_line(defects::find_defects_but_crossings(as_is, table, RunContext{}))) return defect;
+  if (auto defect = first_line(defects::find_defects_but_crossings(as_is, table, context))) return defect;
   const auto [made, piece_of_triangle] = shells_of(result, table);
   if (places) {
     const std::vector<std::uint8_t> is_wrong = wrong_pieces(made);
@@ -122,16 +122,19 @@ std::optional<std::string> SurfaceKind::first_defect_but_crossings(const Surface
   return std::nullopt;
 }
 
-std::optional<std::string> first_surface_defect(const SurfaceMesh& result, const SurfaceMesh& input) {
+std::optional<std::string> first_surface_defect(const SurfaceMesh& result, const SurfaceMesh& input,
+                                                const RunContext& context) {
   if (auto defect = first_bad_vertex(result)) return defect;
-  if (auto defect = first_line(find_defects(as_it_is(result)))) return defect;
-  return SurfaceKind(input, make_edge_table(input.points.size(), input.triangles)).first_defect_but_crossings(result);
+  if (auto defect = first_line(find_defects(as_it_is(result), context))) return defect;
+  return SurfaceKind(input, make_edge_table(input.points.size(), input.triangles))
+      .first_defect_but_crossings(result, context);
 }
 
-std::optional<std::string> first_complex_defect_but_crossings(const SurfaceMesh& complex, std::vector<Vec3>* places) {
+std::optional<std::string> first_complex_defect_but_crossings(const SurfaceMesh& complex, const RunContext& context,
+                                                              std::vector<Vec3>* places) {
   if (auto bad = first_bad_vertex(complex)) return bad;
   const EdgeTable edges = make_edge_table(complex.points.size(), complex.triangles);
-  const SurfaceDefects found = defects::find_region_defects(as_it_is(complex), edges, {}, places);
+  const SurfaceDefects found = defects::find_region_defects(as_it_is(complex), edges, context, places);
   return first_line(found);
 }
 

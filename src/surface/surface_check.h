@@ -1,5 +1,6 @@
 #pragma once
 
+#include <octafront/no_context.h>
 #include <octafront/surface_mesh.h>
 
 #include "mesh/edge_table.h"
@@ -19,12 +20,13 @@ namespace octafront {
 ///   - no self-intersection, exactly
 ///   - as many shells as `input`, of the same genus and nested as deep
 /// Requires that `input` is clean. Cost: O(n log n), about 1.5 s per million triangles of `result`.
-std::optional<std::string> first_surface_defect(const SurfaceMesh& result, const SurfaceMesh& input);
+std::optional<std::string> first_surface_defect(const SurfaceMesh& result, const SurfaceMesh& input,
+                                                const RunContext& context = no_context());
 
 /// The first way in which a complex that came out is not one, but for crossings, as a sentence: edges around which the
 /// regions do not agree, parts in another region than they say. About 2 s per million triangles. `places` gets the
 /// first ones of each kind, where they are known.
-std::optional<std::string> first_complex_defect_but_crossings(const SurfaceMesh& complex,
+std::optional<std::string> first_complex_defect_but_crossings(const SurfaceMesh& complex, const RunContext& context,
                                                               std::vector<Vec3>* places = nullptr);
 
 /// The same in parts, for callers that check several surfaces made from one input, and know their self-intersections.
@@ -33,7 +35,7 @@ class SurfaceKind {
   SurfaceKind(const SurfaceMesh& input, const EdgeTable& edges);
   /// The first defect of `result` but for self-intersections. About 0.5 s per million triangles. `places` gets the
   /// vertices of the shells that are not as they should be, if that is the defect.
-  std::optional<std::string> first_defect_but_crossings(const SurfaceMesh& result,
+  std::optional<std::string> first_defect_but_crossings(const SurfaceMesh& result, const RunContext& context,
                                                         std::vector<Vec3>* places = nullptr) const;
 
  private:

@@ -55,9 +55,9 @@ TEST(SurfaceCheck, TellsWhichShellIsInsideOut) {
   const SurfaceMesh two = testing::joined(ball, small), wrong = testing::joined(ball, testing::reversed(small));
   const SurfaceKind kind(two, make_edge_table(two.points.size(), two.triangles));
   std::vector<Vec3> places;
-  EXPECT_EQ(kind.first_defect_but_crossings(two, &places), std::nullopt);
+  EXPECT_EQ(kind.first_defect_but_crossings(two, {}, &places), std::nullopt);
   EXPECT_TRUE(places.empty());
-  EXPECT_NE(kind.first_defect_but_crossings(wrong, &places), std::nullopt);
+  EXPECT_NE(kind.first_defect_but_crossings(wrong, {}, &places), std::nullopt);
   EXPECT_EQ(places.size(), small.points.size());
   for (const Vec3 p : places) EXPECT_LT(distance(p, {5, 0, 0}), 0.2);
 }

@@ -74,7 +74,8 @@ class Keeper {
       context.check();
       press();
     }
-    if (!take_back_crossings(context) || first_complex_defect_but_crossings(complex_)) complex_.points = before_;
+    if (!take_back_crossings(context) || first_complex_defect_but_crossings(complex_, context))
+      complex_.points = before_;
     std::uint64_t moved = 0;
     for (std::size_t v = 0; v < before_.size(); ++v) moved += complex_.points[v] != before_[v];
     return moved;

@@ -16,6 +16,8 @@ constexpr double kWorthwhileStrip = 0.85;
 constexpr double kStep = 0.5;
 /// A place this near to one already kept, in the sizes wanted there, adds nothing.
 constexpr double kSamePlace = 0.75;
+/// A place beside another one is of use only if its size is smaller than that of the other by more than this factor.
+constexpr double kSameSize = 1.1;
 
 /// The feature edge of a face that p, a point of its border, lies on.
 HalfEdge feature_at(const HalfEdgeMesh& mesh, std::uint32_t face, Vec3 p) {
@@ -106,7 +108,7 @@ SizeField fitted_to_strips(const InputSurface& input, const SizeField& sizes, co
   for (const std::vector<Narrow>& along : found) {
     for (const auto& [p, size] : along) {
       bool is_new = true;
-      kept.for_each_near(p, size, kSamePlace, [&, s = size](const auto& e) { is_new &= e.size > 1.1 * s; });
+      kept.for_each_near(p, size, kSamePlace, [&, s = size](const auto& e) { is_new &= e.size > kSameSize * s; });
       if (!is_new) continue;
       places.push_back({p, size});
       kept.add(p, size);

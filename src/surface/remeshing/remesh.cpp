@@ -751,9 +751,9 @@ class Remesher {
     std::optional<std::string> defect;
     // In a complex what does not agree shows beside what crosses; both are left to the same round.
     if (seamed_)
-      defect = first_complex_defect_but_crossings(c.result.surface, &places);
+      defect = first_complex_defect_but_crossings(c.result.surface, stage_.context(), &places);
     else if (crossings.empty())
-      defect = kind_->first_defect_but_crossings(c.result.surface, &places);
+      defect = kind_->first_defect_but_crossings(c.result.surface, stage_.context(), &places);
     if (!defect && crossings.empty()) return true;
     if (!places.empty()) {
       cap_or_restore(places, seamed_ ? c.result.sizes : sizes_, crossings.empty() && !seamed_ ? kCapOfShells : kCap);

@@ -54,8 +54,7 @@ void drop_degenerate(Draft& draft, RepairedSurface& result) {
 }
 
 void clean_faces(Draft& draft, RepairedSurface& result) {
-  // Formats such as STL have three vertices of its own for each triangle: that they are merged is no news.
-  const bool is_soup = draft.mesh.points.size() == 3 * draft.mesh.triangles.size();
+  const bool is_soup = has_vertices_of_each_triangle(draft.mesh);
   const Merged merged = merge_vertices(draft);
   result.merged_vertices = merged.merged;
   result.unused_vertices = merged.unused;
@@ -137,6 +136,10 @@ RepairedSurface repair::mend(Draft& draft) {
   nest(draft, pieces, result);
   result.surface = finished(draft);
   return result;
+}
+
+bool has_vertices_of_each_triangle(const SurfaceMesh& surface) {
+  return surface.points.size() == 3 * surface.triangles.size();
 }
 
 RepairedSurface repair_surface(const SurfaceMesh& soup, const RunContext& context) {
