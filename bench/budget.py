@@ -41,7 +41,7 @@ def figures(model, report):
         "rounds": int(counter(report, "surface front", "rounds")),
         "work": counter(report, "surface front", "triangles of all rounds") / max(1, triangles),
         "spent": any("has a budget of" in n for n in notes),
-        "raised": any("the automatic size stops at" in n for n in notes)}
+        "raised": any("automatic sizes are no smaller than" in n for n in notes)}
 
 
 def given_up(row):

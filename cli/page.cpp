@@ -93,7 +93,8 @@ void find_repairs(Session& session, const SurfaceMesh& input) {
   triangles.source.clear();  // triangles, not the polygons of the file
   const RepairedSurface repaired = repair_surface(triangles, session.context());
   Json repairs = Json::array();
-  for (const auto& [what, count] : {std::pair{"vertices merged, at the same place", repaired.merged_vertices},
+  const std::uint64_t merged = has_vertices_of_each_triangle(triangles) ? 0 : repaired.merged_vertices;
+  for (const auto& [what, count] : {std::pair{"vertices merged, at the same place", merged},
                                     std::pair{"vertices removed that no face used", repaired.unused_vertices}})
     if (count > 0) repairs.push_back({{"what", what}, {"count", count}, {"places", Json::array()}});
   for (const Change& change : face_changes(triangles, repaired.surface))

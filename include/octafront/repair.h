@@ -36,6 +36,9 @@ struct RepairedSurface {
 /// for it. Cost: O(n log n), about a second per million triangles.
 RepairedSurface repair_surface(const SurfaceMesh& soup, const RunContext& context = no_context());
 
+/// Whether there are as many vertices as corners of triangles, as in STL files: that repair merges them is no news.
+bool has_vertices_of_each_triangle(const SurfaceMesh& surface);
+
 /// What keeps a surface from being meshed, found exactly.
 struct SurfaceDefects {
   struct Place {

@@ -20,6 +20,8 @@ namespace {
 constexpr int kSweeps = 3;
 /// Parts of the way to a wanted place that are tried.
 constexpr double kPartsOfSlide[] = {1, 0.5, 0.25};
+/// Elements count by the inverse of their quality; flatter ones than this alike, so that none decides alone.
+constexpr double kLeastShape = 0.05;
 /// Moves that gain less, in beta, are not worth it; above the second no element is in need.
 constexpr double kGain = 0.01, kGoodBesideInterface = 0.5;
 /// Cosine of the turn of a triangle of the interface that is allowed.
@@ -129,7 +131,8 @@ class InterfaceSlider {
     double weights = 0;
     for (const TetIndex t : tets_[v]) {
       const auto& [a, b, c, d] = mesh_.tets[t];
-      const double w = 1 / (0.05 + radius_ratio(mesh_.points[a], mesh_.points[b], mesh_.points[c], mesh_.points[d]));
+      const double w =
+          1 / (kLeastShape + radius_ratio(mesh_.points[a], mesh_.points[b], mesh_.points[c], mesh_.points[d]));
       for (const VertexIndex u : mesh_.tets[t])
         if (u != v) sum += mesh_.points[u] * w, weights += w;
     }

@@ -51,7 +51,7 @@ void prepare_library() {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 }
 
-/// The innermost hdf5_reason that the library gives.
+/// The innermost reason that the library gives.
 std::string hdf5_reason() {
   std::string text;
   H5Ewalk2(

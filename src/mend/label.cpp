@@ -199,6 +199,7 @@ void fill_thin_gaps(const Arrangement& arranged, const Cells& cells, double tole
 /// Cells inside that are thinner than the tolerance, with the outside behind most of their walls: what an open sheet
 /// and its caps enclose beside a body.
 void empty_thin_flaps(const Arrangement& arranged, const Cells& cells, double tolerance, Labels& labels) {
+  // Of the area of its walls. A thin cell has two sides of half of it each: more is both.
   constexpr double kMostly = 0.6;
   const std::vector<double> volumes = cells.volumes(), area = wall_areas(arranged, cells);
   std::vector<double> outer(cells.count(), 0);

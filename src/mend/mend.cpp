@@ -390,12 +390,14 @@ class Mending {
   std::vector<Hole> holes_;
 };
 
+/// Of the tolerance, in turn: what was brought together may have been in the way, so each time less of it is.
+constexpr double kParts[] = {1.0, 0.05, 1e-3, 0.0};
+
 SurfaceMesh mended_soup(const SurfaceMesh& soup, const RunContext& context, MendReport& report) {
   context.report("mending", -1);
   const MendReport before = report;
   std::optional<MendReport> failed;
-  // What was brought together may have been in the way: next time less of it.
-  for (const double part : {1.0, 0.05, 1e-3, 0.0}) {
+  for (const double part : kParts) {
     report = before;
     if (auto surface = Mending(soup, context, report).exact_result(part * report.tolerance)) return std::move(*surface);
     if (!failed) failed = report;

@@ -42,6 +42,7 @@ Way common_way(const std::vector<Vec3>& vectors) {
   Way way{};
   for (const Vec3 v : vectors) way.to += v;
   way.to = normalized(way.to);
+  // Turns towards the worst vector gain less and less: what is not found by then hardly exists.
   constexpr int kTries = 40;
   constexpr double kEnough = 0.15, kTurn = 0.3;
   for (int i = 0;; ++i) {

@@ -30,7 +30,7 @@ class WholeFaces {
     }
     Skin restored = with_faces_put_back();
     if (restored.triangles == skin_.triangles) return;
-    // FaceParts are rounded: what passed beside them might cross the face.
+    // Parts are rounded: what passed beside them might cross the face.
     if (self_intersections(restored.points, restored.triangles, 1, context).empty()) skin_ = std::move(restored);
   }
 

@@ -190,10 +190,14 @@ VertexIndex BoundaryRecovery::divide_edge(VertexIndex a, VertexIndex b, const st
   return place_at_crossing(a, b, crossings[best], at[best]);
 }
 
+// Parts of the way through an element that are kept free at both ends. A wide middle holds a short number; where that
+// is not inside, one nearer to the middle is.
+constexpr double kMargins[] = {0.25, 0.4, 0.49};
+
 VertexIndex BoundaryRecovery::place_inside(VertexIndex a, VertexIndex b, TetIndex tet, double enter, double leave) {
   const Edge line = line_of(a, b);
   const double ta = parameter(line, a), tb = parameter(line, b);
-  for (const double margin : {0.25, 0.4, 0.49}) {
+  for (const double margin : kMargins) {
     double lo = ta + (tb - ta) * (enter + margin * (leave - enter));
     double hi = ta + (tb - ta) * (leave - margin * (leave - enter));
     if (lo > hi) std::swap(lo, hi);

@@ -9,6 +9,7 @@ namespace octafront::recovery {
 
 namespace {
 
+// Rounds over the points that found no place: others have gone meanwhile, and more directions are tried.
 constexpr int kRounds = 4;
 // Candidates that are compared before the best is taken.
 constexpr int kEnoughCandidates = 12;

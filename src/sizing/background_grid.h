@@ -18,6 +18,9 @@ struct SizeSample {
   double area = 0;   ///< of the part of the surface that the sample stands for
 };
 
+/// Room between the model and the faces of the root cube, in parts of its side.
+inline constexpr double kRootMargin = 0.02;
+
 /// How a background grid is made of samples.
 struct GridRules {
   double gradation = 0.2;

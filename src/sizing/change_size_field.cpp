@@ -79,7 +79,7 @@ std::vector<std::array<double, 8>> at_corners(const OctreeField& grid, const Siz
   return h;
 }
 
-/// The sizes of `grid` raised_grid to a floor, but not above `most`.
+/// The sizes of `grid` raised to a floor, but not above `most`.
 OctreeField raised_grid(const OctreeField& grid, const std::vector<std::array<double, 8>>& most, double floor) {
   OctreeField result = grid;
   for (std::size_t l = 0; l < result.h.size(); ++l)

@@ -214,7 +214,7 @@ Demand demand_of(const OctreeField& field, const DividedSurface& surface, const 
 std::shared_ptr<const OctreeField> sampled_grid(const SizeField& sizes, const SurfaceMesh& surface) {
   constexpr int kLevel = 5;  // 32^3 leaves
   auto field = std::make_shared<OctreeField>();
-  field->root = RootCube::around(bounding_box(surface.points), 0.02);
+  field->root = RootCube::around(bounding_box(surface.points), kRootMargin);
   std::vector<OctreeKey> leaves;
   for (OctreeKey k = OctreeKey::containing(0, 0, 0, kLevel); leaves.size() < 1u << (3 * kLevel);
        k = OctreeKey::from_id(k.range_max() + (k.id() - k.range_min()) + 2)) {

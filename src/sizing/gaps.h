@@ -13,9 +13,11 @@
 
 namespace octafront {
 
-/// Whether sheets with these unit normals face each other, or turn their backs: within about 45 degrees.
+/// Whether sheets with these unit normals face each other, or turn their backs: within about 45 degrees. Beyond, they
+/// form a corner rather than a wall or a gap.
 constexpr bool faces(Vec3 n, Vec3 m) {
-  return dot(n, m) < -0.7;
+  constexpr double kMostCosine = -0.7;
+  return dot(n, m) < kMostCosine;
 }
 
 /// Walls and gaps: how far it is from a place of the surface to the sheet that faces it, along the inward and the

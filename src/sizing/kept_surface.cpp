@@ -1,6 +1,7 @@
 // Sizes for a surface whose triangles stay as they are.
 
 #include "geometry/measures.h"
+#include "sizing/background_grid.h"
 #include "sizing/face_neighbours.h"
 #include "sizing/make_size_field.h"
 #include "sizing/named_sizes.h"
@@ -18,6 +19,8 @@ namespace octafront {
 
 namespace {
 
+/// Of the model's extent: triangles that are smaller are slivers, which say nothing of the size of elements.
+constexpr double kFloorOfExtent = 1e-5;
 /// Where triangles of very different sizes meet, gradation pulls sizes below most of the triangles. Then all are raised
 /// by the mean shortfall, within limits, so that sizes lie about the triangles as often above as below.
 constexpr double kRaisedFrom = 1.03, kMostKeptRaised = 1.5;
@@ -104,8 +107,8 @@ SizeField size_field_of_surface(const KnownSurface& known, const SizeOptions& op
   check_size_options(options);
   if (options.field) return *options.field;
   note_unused_sources(options, stage);
-  const RootCube root = RootCube::around(bounding_box(surface.points), 0.02);
-  const double floor = options.min_size.value_or(model_extent(surface) * 1e-5);
+  const RootCube root = RootCube::around(bounding_box(surface.points), kRootMargin);
+  const double floor = options.min_size.value_or(model_extent(surface) * kFloorOfExtent);
   std::vector<double> face = face_sizes(known);
   for (double& h : face) h = std::max(h, floor);
   const SizeAtPlace at_place = given_sizes(surface, options);

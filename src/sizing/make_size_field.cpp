@@ -19,8 +19,6 @@ namespace octafront {
 
 namespace {
 
-/// Room between the model and the faces of the root cube.
-constexpr double kRootMargin = 0.02;
 /// --elements: sizes are scaled until the expected number is this close.
 constexpr double kCountTolerance = 0.02;
 constexpr int kMostScalings = 10;
@@ -228,13 +226,12 @@ SizeField within_budget(const SurfaceMesh& surface, const WantedSizes& wanted, c
     made = raised_to_count(surface, wanted, options, expected, budget, high,
                            kLargestFloor * *std::ranges::max_element(wanted.face), stage.context());
   const std::string in_all =
-      std::isfinite(budget) ? fmt::format(", and with what the surface takes for {:.2g} million at most", budget / 1e6)
-                            : "";
+      std::isfinite(budget) ? fmt::format(" (with what the surface takes, at most {:.2g} million)", budget / 1e6) : "";
   stage.note(fmt::format(
-      "the details of this surface ask for {:.2g} million elements; the automatic size stops at {:.4g}, for about "
-      "{:.2g} million{}. For more of the details ask for them, e.g. with `automatic_factor`, `elements`, `curvature`, "
-      "`gap` or `min_size`",
-      first / 1e6, made.field.min_size(), made.count / 1e6, in_all));
+      "the details of this surface ask for sizes down to {:.3g}, which is {:.3g} million elements: automatic sizes are "
+      "no smaller than {:.3g}, which is about {:.3g} million{}. For more of the details ask for them, e.g. with "
+      "`automatic_factor`, `elements`, `curvature`, `gap` or `min_size`",
+      low, first / 1e6, made.field.min_size(), made.count / 1e6, in_all));
   return std::move(made.field);
 }
 

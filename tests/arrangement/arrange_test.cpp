@@ -15,10 +15,8 @@
 namespace octafront {
 namespace {
 
-using testing::Random;
-
-SurfaceMesh random_soup(std::uint64_t seed, int triangles, const std::function<Vec3(Random&)>& point) {
-  Random random(seed);
+SurfaceMesh random_soup(std::uint64_t seed, int triangles, const std::function<Vec3(testing::Random&)>& point) {
+  testing::Random random(seed);
   SurfaceMesh soup;
   for (int t = 0; t < triangles; ++t) {
     const auto first = static_cast<VertexIndex>(soup.points.size());
@@ -30,14 +28,14 @@ SurfaceMesh random_soup(std::uint64_t seed, int triangles, const std::function<V
 
 /// A small lattice: corners on edges, edges on edges, triangles in common planes.
 SurfaceMesh lattice_soup(std::uint64_t seed, int triangles, int side) {
-  return random_soup(seed, triangles, [side](Random& r) {
+  return random_soup(seed, triangles, [side](testing::Random& r) {
     const int x = r.integer(0, side), y = r.integer(0, side), z = r.integer(0, side);
     return Vec3{1.0 * x, 1.0 * y, 1.0 * z};
   });
 }
 
 SurfaceMesh general_soup(std::uint64_t seed, int triangles) {
-  return random_soup(seed, triangles, [](Random& r) {
+  return random_soup(seed, triangles, [](testing::Random& r) {
     const double x = r.unit(), y = r.unit(), z = r.unit();
     return Vec3{x, y, z};
   });
@@ -125,7 +123,7 @@ TEST(Arrange, AFlatSoupIsOneFacet) {
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
     SCOPED_TRACE(seed);
     // A plane that no axis sees as it is; small integers keep it exact.
-    const SurfaceMesh soup = random_soup(seed, 30, [](Random& r) {
+    const SurfaceMesh soup = random_soup(seed, 30, [](testing::Random& r) {
       const int x = r.integer(0, 9), y = r.integer(0, 9);
       return Vec3{1.0 * x, 1.0 * y, 2.0 * x - 3.0 * y};
     });
@@ -213,7 +211,7 @@ TEST(Arrange, ASoupThatRoundingDidNotSettleEnds) {
 TEST(Arrange, NearlyParallelFacesEnd) {
   for (const double turn : {1e-5, 1e-9, 1e-13, 3e-16}) {
     SurfaceMesh soup;
-    Random random(7);
+    testing::Random random(7);
     for (int k = 0; k < 12; ++k) {
       const auto first = static_cast<VertexIndex>(soup.points.size());
       for (int i = 0; i < 3; ++i) {

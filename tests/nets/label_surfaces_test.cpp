@@ -258,7 +258,7 @@ TEST(ImageOptions, CoarseElementsStayAsNearAsAsked) {
   EXPECT_GT(strays(complex, options), 0.7);
 }
 
-// A labelled_ball of three labels with bumps of half a voxel that elements of four need not follow.
+// A ball of three labels with bumps of half a voxel that elements of four need not follow.
 TEST(ImageOptions, ASizeCoarserThanVoxelsRules) {
   const LabelImage image = label_image(grid_around_origin({48, 48, 48}, {1, 1, 1}), 3, [](Vec3 p) {
     const double r = length(p) + 0.6 * std::sin(p.x) * std::sin(p.y) * std::sin(p.z);

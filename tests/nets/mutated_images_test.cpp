@@ -25,7 +25,6 @@ namespace octafront {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::Random;
 
 struct Seed {
   std::string name, bytes;
@@ -43,12 +42,12 @@ std::vector<Seed> seeds() {
   return all;
 }
 
-std::size_t place_in(const std::string& bytes, Random& random) {
+std::size_t place_in(const std::string& bytes, testing::Random& random) {
   return static_cast<std::size_t>(random.bits() % std::max<std::size_t>(bytes.size(), 1));
 }
 
 /// A number that headers should not have, or seldom have.
-double odd_number(Random& random) {
+double odd_number(testing::Random& random) {
   constexpr std::array kOdd{0.0,
                             -0.0,
                             1.0,
@@ -85,7 +84,7 @@ void overwrite(std::string& bytes, std::size_t at, T value, bool turned) {
 }
 
 /// A binary field, aligned as fields are.
-void change_field(std::string& bytes, Random& random) {
+void change_field(std::string& bytes, testing::Random& random) {
   const double value = odd_number(random);
   const bool turned = random.integer(0, 3) == 0;
   const std::size_t at = place_in(bytes, random) & ~std::size_t{1};
@@ -108,7 +107,7 @@ void change_field(std::string& bytes, Random& random) {
 }
 
 /// A number in a text, by another one; a bit where there is none.
-void change_number(std::string& bytes, Random& random) {
+void change_number(std::string& bytes, testing::Random& random) {
   const std::size_t from = place_in(bytes, random);
   const std::size_t at = bytes.find_first_of("0123456789", from);
   if (at == std::string::npos) return change_field(bytes, random);
@@ -118,7 +117,7 @@ void change_number(std::string& bytes, Random& random) {
   bytes.replace(at, end - at, text.str());
 }
 
-void flip_bits(std::string& bytes, Random& random) {
+void flip_bits(std::string& bytes, testing::Random& random) {
   if (bytes.empty()) return;
   for (int n = random.integer(1, 4); n > 0; --n) {
     char& c = bytes[place_in(bytes, random)];
@@ -126,7 +125,7 @@ void flip_bits(std::string& bytes, Random& random) {
   }
 }
 
-void cut_or_repeat(std::string& bytes, Random& random) {
+void cut_or_repeat(std::string& bytes, testing::Random& random) {
   const std::size_t at = place_in(bytes, random), length = static_cast<std::size_t>(random.integer(1, 64));
   switch (random.integer(0, 3)) {
     case 0:
@@ -144,12 +143,12 @@ void cut_or_repeat(std::string& bytes, Random& random) {
 }
 
 /// The head of one file, the rest of another.
-void splice(std::string& bytes, const std::string& other, Random& random) {
+void splice(std::string& bytes, const std::string& other, testing::Random& random) {
   bytes = bytes.substr(0, place_in(bytes, random)) + other.substr(place_in(other, random));
 }
 
 /// A line of a text where another one was, or once more.
-void move_line(std::string& bytes, Random& random) {
+void move_line(std::string& bytes, testing::Random& random) {
   const auto line_at = [&](std::size_t at) {
     const std::size_t begin = bytes.rfind('\n', at), end = bytes.find('\n', at);
     return std::array{begin == std::string::npos ? 0 : begin + 1, end == std::string::npos ? bytes.size() : end + 1};
@@ -160,7 +159,7 @@ void move_line(std::string& bytes, Random& random) {
   bytes.insert(line_at(place_in(bytes, random))[0], line);
 }
 
-std::string mutated(const std::vector<Seed>& all, Random& random) {
+std::string mutated(const std::vector<Seed>& all, testing::Random& random) {
   std::string bytes = all[random.bits() % all.size()].bytes;
   for (int n = random.integer(1, 3); n > 0; --n) {
     const int kind = random.integer(0, 9);
@@ -209,7 +208,7 @@ TEST(MutatedImages, EndSoundOrWithAReason) {
   ASSERT_GT(all.size(), 40u);
   int read = 0;
   for (int number = 0; number < cases; ++number) {
-    Random random(static_cast<std::uint64_t>(number));
+    testing::Random random(static_cast<std::uint64_t>(number));
     const std::string bytes = mutated(all, random);
     testing::Broken broken;
     try {

@@ -145,7 +145,7 @@ TEST(TrueSurfaces, TerracesBecomeSlopes) {
 }
 
 TEST(TrueSurfaces, LinesWhereThreeLabelsMeetLieWhereTheyShould) {
-  // Thirds of a measured_ball: lines along a slanted axis, planes through it.
+  // Thirds of a ball: lines along a slanted axis, planes through it.
   const Vec3 axis = normalized({1, 2, 5}), side = normalized(cross(axis, {1, 0, 0})), other = cross(axis, side);
   const auto third = [&](Vec3 p) {
     const double turn = std::atan2(dot(p, other), dot(p, side)) / (2 * std::numbers::pi) + 0.5;
