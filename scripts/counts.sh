@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # How large the house is, and what a day's work in it costs.
 #   scripts/counts.sh [--build] [ROOT]
-#     --build   also the seconds to build the library afresh and after tet_mesh.h was touched (minutes, without ccache)
+#     --build   also the seconds to build library and tool as quickstart.sh does, and as those who edit do: afresh and
+#               after a header or a source was touched (half an hour, without ccache)
 #     ROOT      the tree to look at, by default this one: a checkout of an older commit, to compare with
 # Seconds are of the processor (user and system), so load matters little; parsing is the best of three. Which structures
 # there are is guessed from their marks in the text: a guide to where the same thing is made twice, not a proof.
@@ -14,7 +15,7 @@ build="" root=$PWD
 for argument in "$@"; do
   case $argument in
     --build) build=1 ;;
-    -*) sed -n '2,8s/^# \{0,1\}//p' "$0" >&2; exit 2 ;;
+    -*) sed -n '2,9s/^# \{0,1\}//p' "$0" >&2; exit 2 ;;
     *) root=$argument ;;
   esac
 done
@@ -60,8 +61,15 @@ for header in fmt/format.h $(cd include && ls octafront/*.h); do
   row "  to parse $header$([ "$header" = fmt/format.h ] && echo ', to compare machines by')" "$best"
 done
 [ -n "$build" ] || exit 0
-cmake -G Ninja -S . -B "$parse/build" -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER_LAUNCHER= -DOCTAFRONT_BUILD_TESTS=OFF \
-  -DOCTAFRONT_BUILD_EXAMPLES=OFF >/dev/null
-row "  to build the library" "$(seconds ninja -C "$parse/build" octafront)"
-touch include/octafront/tet_mesh.h
-row "  to build it after tet_mesh.h was touched" "$(seconds ninja -C "$parse/build" octafront)"
+configure() {
+  cmake -G Ninja -S . -B "$1" -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER_LAUNCHER= -DOCTAFRONT_PCH="$2" \
+    -DOCTAFRONT_UNITY="$3" -DOCTAFRONT_BUILD_TESTS=OFF -DOCTAFRONT_BUILD_EXAMPLES=OFF >/dev/null
+}
+configure "$parse/whole" OFF ON
+row "  to build library and tool, many sources at a time" "$(seconds ninja -C "$parse/whole" octafront_cli)"
+configure "$parse/build" ON OFF
+row "  to build them source by source" "$(seconds ninja -C "$parse/build" octafront_cli)"
+for touched in include/octafront/tet_mesh.h include/octafront/surface_mesh.h src/improve/schedule.cpp; do
+  touch "$touched"
+  row "  after $touched was touched" "$(seconds ninja -C "$parse/build" octafront_cli)"
+done
