@@ -116,8 +116,7 @@ std::string to_table(const Report& report) {
   if (report.expected_tets > 0)
     out += counted_in_groups(static_cast<std::uint64_t>(report.expected_tets), "tetrahedron", "tetrahedra") +
            " expected from the sizes\n";
-  if (report.boundary_faces > 0)
-    out += volume_line(report);
+  if (report.boundary_faces > 0) out += volume_line(report);
   if (report.tets > 0) out.append("\n").append(quality_lines(report.quality));
   if (report.regions.size() > 1) out += region_lines(report.regions);
   if (report.second_order.edges > 0) out += second_order_lines(report.second_order);

@@ -58,7 +58,7 @@ class OneWayIn : public ::testing::Test {
       std::filesystem::path(::testing::TempDir()) / ::testing::UnitTest::GetInstance()->current_test_info()->name();
 };
 
-int status_at_end(octafront_job* job) {
+int status_at_quiet_end(octafront_job* job) {
   octafront_event event;
   while (octafront_job_wait(job, -1, &event) != OCTAFRONT_EVENT_END) {
   }
@@ -71,12 +71,12 @@ std::pair<Json, Json> of_c(const Case& c) {
   std::vector<const char*> files;
   for (const std::string& f : c.files) files.push_back(f.c_str());
   octafront_job* opening = octafront_open_files(files.data(), files.size(), c.keys.c_str(), 1);
-  EXPECT_EQ(status_at_end(opening), OCTAFRONT_DONE);
+  EXPECT_EQ(status_at_quiet_end(opening), OCTAFRONT_DONE);
   octafront_surface* domain = octafront_job_take_surface(opening);
   octafront_options* options = octafront_options_new();
   octafront_options_set(options, Json{{"size", c.size}}.dump().c_str());
   octafront_job* meshing = octafront_generate(domain, options, 1);
-  EXPECT_EQ(status_at_end(meshing), OCTAFRONT_DONE);
+  EXPECT_EQ(status_at_quiet_end(meshing), OCTAFRONT_DONE);
   std::pair<Json, Json> reports{Json::parse(octafront_job_report(opening)), Json::parse(octafront_job_report(meshing))};
   octafront_job_free(meshing);
   octafront_job_free(opening);
