@@ -34,7 +34,7 @@ void add_marks(const MendReport& report, SurfaceMesh& marks) {
 SurfaceMesh marks_of(const std::vector<IntakeRepair>& repairs) {
   SurfaceMesh marks;
   for (const IntakeRepair& repair : repairs) add_marks(repair.report, marks);
-  for (int k = 0; k <= static_cast<int>(MendChange::Kind::kRebuilt); ++k)
+  for (int k = 0; k <= static_cast<int>(MendChange::Kind::kLaidFlat); ++k)
     marks.patch_names.emplace_back(name_of(static_cast<MendChange::Kind>(k)));
   return marks;
 }

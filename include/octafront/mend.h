@@ -37,6 +37,7 @@ struct MendChange {
     kFilled,     ///< an enclosed gap narrower than the tolerance; size: volume
     kSeparated,  ///< a vertex where parts touched, drawn apart; size: the move
     kRebuilt,    ///< made anew from a lattice; size: area
+    kLaidFlat,   ///< a crumple within the tolerance that crossed itself; size: the largest move of all
   };
   Kind kind;
   Vec3 at;                           ///< where to look
@@ -66,6 +67,8 @@ constexpr const char* name_of(MendChange::Kind kind) {
       return "separated";
     case Kind::kRebuilt:
       return "rebuilt";
+    case Kind::kLaidFlat:
+      return "laid flat";
   }
   return "";
 }

@@ -10,6 +10,7 @@
 #include "geometry/measures.h"
 #include "geometry/predicates.h"
 #include "geometry/triangle_tree.h"
+#include "mend/crumples.h"
 #include "mend/dust.h"
 #include "mend/holes.h"
 #include "mend/label.h"
@@ -107,6 +108,7 @@ class Mending {
   std::optional<SurfaceMesh> exact_result(double weld_reach) {
     weld(weld_reach);
     orient();
+    lay_flat();
     close();
     try {
       SurfaceMesh surface = arranged_result();
@@ -224,6 +226,16 @@ class Mending {
     const repair::Pieces found = repair::orient_pieces(draft_);
     pieces_ = {found.piece_of_triangle, found.count()};
     turned_ = found.turned_faces;
+  }
+
+  void lay_flat() {
+    const LaidFlat done = lay_crumples_flat(draft_, report_.tolerance);
+    if (done.faces == 0) return;
+    report_.largest_move = std::max(report_.largest_move, done.largest_move);
+    for (const Vec3 p : done.places) report_.changes.push_back({Kind::kLaidFlat, p, done.largest_move});
+    const repair::InputFaces turned = std::move(turned_);
+    orient();
+    turned_ = turned;
   }
 
   void close() {

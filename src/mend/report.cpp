@@ -170,6 +170,9 @@ void write_notes(MendReport& report) {
                                 counted(report.divided_edges, "edge")));
   if (const Sum turned = sum_of(report, Kind::kTurned); turned.changes > 0)
     notes.push_back(fmt::format("{} turned, in {}.", counted(turned.faces, "face"), counted(turned.changes, "part")));
+  if (const Sum flat = sum_of(report, Kind::kLaidFlat); flat.changes > 0)
+    notes.push_back(
+        fmt::format("{} that crossed themselves within the tolerance laid flat.", counted(flat.changes, "crumple")));
   note_closed(report);
   if (report.crossing_pairs > 0)
     notes.push_back(fmt::format("{} of faces that crossed, overlapped or touched resolved, in {}.",

@@ -217,6 +217,49 @@ TEST(MendSurface, FinsThatCrossLeaveNothingBehind) {
   EXPECT_EQ(result.report.count(Kind::kDropped), 1u);
 }
 
+/// A triangle divided inside, the inner triangle turned half way round and tilted: three layers that cross.
+SurfaceMesh with_a_crumple(SurfaceMesh surface, std::size_t t, double height) {
+  const auto [a, b, c] = surface.triangles[t];
+  const Vec3 p = surface.points[a], q = surface.points[b], r = surface.points[c], m = (p + q + r) / 3;
+  const Vec3 up = normalized(cross(q - p, r - p)) * height;
+  const auto first = static_cast<VertexIndex>(surface.points.size());
+  surface.points.insert(surface.points.end(),
+                        {m - (p - m) * 0.4 + up, m - (q - m) * 0.4 - up * 0.7, m - (r - m) * 0.4 - up * 0.4});
+  const VertexIndex d = first, e = first + 1, f = first + 2;
+  surface.patch.clear();
+  surface.triangles[t] = {a, b, e};
+  for (const Triangle& more : {Triangle{a, e, d}, {b, c, f}, {b, f, e}, {c, a, d}, {c, d, f}, {d, e, f}})
+    surface.triangles.push_back(more);
+  return surface;
+}
+
+TEST(MendSurface, CrumplesWithinTheToleranceAreLaidFlat) {
+  const SurfaceMesh clean = box_at({}, {1, 1, 1}, 4);
+  SurfaceMesh soup = with_a_crumple(with_a_crumple(clean, 3, 3e-4), 40, 5e-4);
+  ASSERT_FALSE(find_defects(repair_surface(soup)).clean());
+  const Mended result = mended(soup);
+  EXPECT_EQ(result.report.count(Kind::kLaidFlat), 2u);
+  EXPECT_EQ(result.surface.triangles.size(), clean.triangles.size());
+  EXPECT_NEAR(enclosed_volume(result.surface), 1, 1e-14);
+  EXPECT_NEAR(area(result.surface), 6, 1e-14);
+  EXPECT_GT(result.report.largest_move, 2e-4);
+  EXPECT_LT(result.report.largest_move, result.report.tolerance);
+}
+
+TEST(MendSurface, CrumplesBeyondTheToleranceStay) {
+  const SurfaceMesh soup = with_a_crumple(box_at({}, {1, 1, 1}, 4), 3, 0.01);
+  const Mended result = mended(soup);
+  EXPECT_EQ(result.report.count(Kind::kLaidFlat), 0u);
+  EXPECT_GT(result.report.crossing_pairs, 0u);
+}
+
+TEST(MendSurface, BodiesThatOverlapWithinTheToleranceAreUnitedNotLaidFlat) {
+  const Mended result =
+      mended(testing::joined(box_at({}, {1, 1, 1}, 4), box_at({0.2, 0.2, 0.9995}, {0.3, 0.3, 0.5}, 2)));
+  EXPECT_EQ(result.report.count(Kind::kLaidFlat), 0u);
+  EXPECT_EQ(result.report.bodies, 1u);
+}
+
 TEST(MendSurface, FacesThatArePartlyCoveredStayDivided) {
   const Mended result = mended(testing::joined(box_at({}, {1, 1, 1}), box_at({0.3, 0.3, 0.5}, {0.2, 0.2, 1})));
   EXPECT_NEAR(enclosed_volume(result.surface), 1.02, 1e-12);
