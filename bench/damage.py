@@ -25,6 +25,7 @@ from bounded import run  # noqa: E402
 
 PAGE = ROOT / "docs/damage.md"
 KINDS = damages.KINDS | damages.MORE
+CLEAN = "undamaged"
 MOST = 1.3      # times the elements and the time of the undamaged model
 LARGE = 1.0     # damage of a larger part of the surface, in percent, may cost more
 LEAST_FACES = 100
@@ -48,19 +49,13 @@ def models(most_faces, only):
     return [(name, solid) for _, name, solid in sorted(found, key=lambda m: m[:2])]
 
 
-def corners_of(solid):
-    """Per triangle its corners in an order of their own, to be compared bit for bit."""
-    return [tuple(sorted(map(tuple, t))) for t in solid.points[solid.triangles].tolist()]
-
-
 def damaged_part(made):
     """Of the area, in percent, what is no longer there as it was; which way it faces does not count. 100 where the answer
     is another body."""
     if len(made.truth) > 1:
         return 100.0
-    left = set(corners_of(made.soup))
-    lost = sum(a for a, t in zip(solids.areas(made.truth[0]), corners_of(made.truth[0])) if t not in left)
-    return 100 * lost / solids.areas(made.truth[0]).sum()
+    areas = solids.areas(made.truth[0])
+    return 100 * areas[damages.lost_triangles(made)[0]].sum() / areas.sum()
 
 
 def meshed(program, file, folder, timeout):
@@ -76,25 +71,32 @@ def meshed(program, file, folder, timeout):
             "most": quality["dihedral_max_degrees"]}
 
 
+def undamaged(made, solid):
+    """What a damaged model is compared with, by name: the model, or where holes need smaller triangles the model divided."""
+    count = len(made.truth[0].triangles)
+    return CLEAN if count == len(solid.triangles) else f"{CLEAN}, divided into {count}"
+
+
 def rows_of(a, name, solid, done):
-    """Of one model: the undamaged one, and each kind."""
+    """Of one model: each kind, and before it the undamaged one."""
+    done = set(done)
     with tempfile.TemporaryDirectory() as folder:
         file = pathlib.Path(folder, "model.off")
-        for kind in ["", *a.kinds.split(",")]:
-            if (name, kind) in done:
+
+        def row(kind, surface, **more):
+            solids.write_off(file, surface)
+            done.add((name, kind))
+            return {"model": name, "kind": kind} | more | meshed(a.program, file, folder, a.timeout)
+        for kind in [k for k in a.kinds.split(",") if (name, k) not in done]:
+            rng = np.random.default_rng(zlib.crc32(f"{name} {kind}".encode()))
+            try:
+                made = KINDS[kind](solid, rng)
+            except damages.Unsuitable:
                 continue
-            row = {"model": name, "kind": kind}
-            if not kind:
-                solids.write_off(file, solid)
-            else:
-                rng = np.random.default_rng(zlib.crc32(f"{name} {kind}".encode()))
-                try:
-                    made = KINDS[kind](solid, rng)
-                except damages.Unsuitable:
-                    continue
-                row |= {"what": made.what, "part": damaged_part(made)}
-                solids.write_off(file, made.soup)
-            yield row | meshed(a.program, file, folder, a.timeout)
+            base = undamaged(made, solid)
+            if (name, base) not in done:
+                yield row(base, made.truth[0])
+            yield row(kind, made.soup, base=base, what=made.what, part=damaged_part(made))
 
 
 # -------------------------------------------------------------------------------------------------------- page
@@ -102,11 +104,11 @@ def rows_of(a, name, solid, done):
 
 def compared(rows):
     """Damaged runs with the figures over those of the undamaged model."""
-    clean = {r["model"]: r for r in rows if not r["kind"] and "failed" not in r}
+    clean = {(r["model"], r["kind"]): r for r in rows if r["kind"] not in KINDS and "failed" not in r}
     out = []
     for r in rows:
-        c = clean.get(r["model"])
-        if not r["kind"] or not c:
+        c = clean.get((r["model"], r.get("base")))
+        if not c:
             continue
         if "failed" not in r:
             quick = max(r["cpu"], c["cpu"]) < NOT_THE_TIME
@@ -147,7 +149,7 @@ def page(rows, command, version):
     return "\n".join([
         "# What damage costs", "", f"Written by `{command}`, {version}.", "",
         f"{len({r['model'] for r in rows})} clean models, each damaged in up to {len(KINDS)} ways (`scripts/lib/damages.py`), meshed with default options "
-        "(and `--sheets drop`, on one thread), over the undamaged model. CPU times of runs that take less than "
+        "(and `--sheets drop`, on one thread), over the undamaged model (divided into as small triangles, where holes need them). CPU times of runs that take less than "
         f"{NOT_THE_TIME} s do not count. *Damaged*: the area of what is no longer "
         "there as it was, whichever way it faces; all of it where the answer is another body.", "",
         table(rows), f"## Refused, or more than {MOST} times as much", "",

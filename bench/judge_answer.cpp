@@ -44,6 +44,10 @@ class Truth {
       trees_.push_back(std::make_unique<TriangleTree>(solids_.back()));
       box_.add(trees_.back()->box());
     }
+    for (std::size_t s = 0; s < solids_.size(); ++s) {
+      is_lost_.emplace_back(solids_[s].triangles.size(), 0);
+      for (const std::uint32_t t : known["lost"][s]) is_lost_[s][t] = 1;
+    }
     for (const auto& d : known["directions"]) directions_.push_back({d[0], d[1], d[2]});
     for (const auto& z : known["zones"]) zones_.push_back(z.get<std::vector<double>>());
     for (const auto& b : known["touched"])
@@ -77,6 +81,20 @@ class Truth {
       if (trees_.size() > 1 && t->contains(p)) deepest = std::max(deepest, d);
     }
     return deepest > 0 ? deepest : nearest;
+  }
+  /// Whether the damage is at that triangle: it was no longer there as it had been.
+  bool is_lost(std::size_t solid, std::uint32_t triangle) const { return is_lost_[solid][triangle] != 0; }
+  /// Whether it is at the place nearest to a point.
+  bool is_near_damage(Vec3 p) const {
+    double nearest = TriangleTree::kFar;
+    bool is_near = false;
+    for (std::size_t s = 0; s < trees_.size(); ++s) {
+      const auto found = trees_[s]->nearest(p);
+      if (found.squared_distance >= nearest) continue;
+      nearest = found.squared_distance;
+      is_near = is_lost(s, found.triangle);
+    }
+    return is_near;
   }
   /// Whether a point of one solid's surface is also one of the union's: not inside another solid, nor within `margin`.
   bool is_bare(Vec3 p, std::size_t solid, double margin) const {
@@ -121,29 +139,41 @@ class Truth {
   std::vector<Vec3> directions_;
   std::vector<std::vector<double>> zones_;
   std::vector<Box3> touched_;
+  std::vector<std::vector<char>> is_lost_;  ///< per solid and triangle
   Box3 box_;
 };
 
+/// Both ways, at the damage and in all.
 Json distances(const Truth& truth, const SurfaceMesh& made, const TriangleTree& tree) {
   const double spacing = kSpacing * truth.diagonal();
-  Farthest to_truth, from_truth;
+  Farthest to_truth, from_truth, to_damage, from_damage;
   const double same = kSame * truth.diagonal();
   for (const Triangle& t : made.triangles) {
     const TriangleCorners c = corners_of(made, t);
     if (truth.trees().size() == 1 && farthest_from_one(c, *truth.trees()[0]) < same) continue;
     sample(c, spacing, [&](Vec3 p) {
-      if (!truth.in_zone(p)) to_truth.add(truth.distance_to(p), p);
+      if (truth.in_zone(p)) return;
+      const double d = truth.distance_to(p);
+      to_truth.add(d, p);
+      if (d > to_damage.distance && truth.is_near_damage(p)) to_damage.add(d, p);
     });
   }
   for (std::size_t s = 0; s < truth.solids().size(); ++s)
-    for (const Triangle& t : truth.solids()[s].triangles) {
-      const TriangleCorners c = corners_of(truth.solids()[s], t);
+    for (std::uint32_t t = 0; t < truth.solids()[s].triangles.size(); ++t) {
+      const TriangleCorners c = corners_of(truth.solids()[s], truth.solids()[s].triangles[t]);
       if (farthest_from_one(c, tree) < same) continue;
       sample(c, spacing, [&](Vec3 p) {
-        if (!truth.in_zone(p) && truth.is_bare(p, s, 0)) from_truth.add(std::sqrt(tree.nearest(p).squared_distance), p);
+        if (truth.in_zone(p) || !truth.is_bare(p, s, 0)) return;
+        const double d = std::sqrt(tree.nearest(p).squared_distance);
+        from_truth.add(d, p);
+        if (truth.is_lost(s, t)) from_damage.add(d, p);
       });
     }
-  return {{"to_truth", to_truth.json(truth.diagonal())}, {"from_truth", from_truth.json(truth.diagonal())}};
+  const double diagonal = truth.diagonal();
+  return {{"to_truth", to_truth.json(diagonal)},
+          {"from_truth", from_truth.json(diagonal)},
+          {"to_damage", to_damage.json(diagonal)},
+          {"from_damage", from_damage.json(diagonal)}};
 }
 
 /// Points in the box, and points near the surface: half of each.

@@ -85,6 +85,7 @@ def write(folder, number, kind, name, made, seed):
              "solids": [str(t) for t in truth], "expected": made.expected, "directions": DIRECTIONS,
              "zones": [zone(z) for z in made.zones],
              "touched": [[list(lo), list(hi)] for lo, hi in made.touched],
+             "lost": [np.flatnonzero(lost).tolist() for lost in damages.lost_triangles(made)],
              "damaged_triangles": len(made.soup.triangles)}
     stem.with_suffix(".json").write_text(json.dumps(known, default=float))
     return known

@@ -53,6 +53,17 @@ def add(soup, points, triangles):
     return Solid(*solids.together([soup, (np.asarray(points, float).reshape(-1, 3), np.asarray(triangles, int))]))
 
 
+def corners_of(solid):
+    """Per triangle its corners in an order of their own, to be compared bit for bit."""
+    return [tuple(sorted(map(tuple, t))) for t in solid.points[solid.triangles].tolist()]
+
+
+def lost_triangles(made):
+    """Per solid of the truth, which of its triangles are no longer there as they were; which way they face does not count."""
+    left = set(corners_of(made.soup))
+    return [np.array([t not in left for t in corners_of(solid)], bool) for solid in made.truth]
+
+
 def direction(rng):
     v = rng.normal(size=3)
     return v / np.linalg.norm(v)

@@ -38,9 +38,9 @@ def mesh(solid, *options):
 def expect(what, case, result, wrong, kind="turned"):
     """`wrong` is part of what the judge says, "" if it should say nothing."""
     known = known_answers.damage.write(FOLDER.name, 1, kind, what, case, 0)
-    distance = known_answers.MESH_DISTANCE if result.suffix == ".mesh" else known_answers.TOLERANCE
+    distances = {".mesh": (known_answers.MESH_DISTANCE, known_answers.MESH_AT_DAMAGE)}.get(result.suffix, (known_answers.TOLERANCE,) * 2)
     measured = known_answers.measure(BUILD, pathlib.Path(FOLDER.name, "0001.json"), result)
-    said = "; ".join(known_answers.wrong(known, measured, distance, result.suffix == ".off"))
+    said = "; ".join(known_answers.wrong(known, measured, *distances, result.suffix == ".off"))
     if (wrong not in said) if wrong else said:
         failures.append(f"{what}: should say '{wrong}', says '{said}'")
 
@@ -137,6 +137,16 @@ def wrong_meshes():
     expect("mesh of a part", case_of("two_parts"), mesh(SHAPES["sphere"]), "components 1, not 2")
 
 
+def meshes_at_damage():
+    """What a mesh may be off is less where the model was damaged."""
+    box = SHAPES["box"]
+    off = Solid(box.points + (0.003 * solids.diagonal(box), 0, 0), box.triangles)
+    expect("mesh beside its place", case_of("box"), mesh(off), "")
+    for name, moves in (("all moved", np.ones(len(box.points))), ("one corner moved", np.arange(len(box.points)) == 0)):
+        soup = Solid(box.points + 1e-5 * moves[:, None], box.triangles)
+        expect(f"mesh beside its place, {name}", damages.case(box, soup, name), mesh(off), "damage")
+
+
 def untouched():
     box = SHAPES["box"]
     nudged = moved(box, 3, 0)
@@ -148,7 +158,7 @@ def untouched():
             failures.append(f"untouched, {what}: says '{known_answers.changed(box, made)}'")
 
 
-for test in (right_results, holes, wrong_surfaces, wrong_meshes, untouched):
+for test in (right_results, holes, wrong_surfaces, wrong_meshes, meshes_at_damage, untouched):
     test()
 print("\n".join(failures) or "the judge sees what is wrong")
 sys.exit(1 if failures else 0)
