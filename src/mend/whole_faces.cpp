@@ -1,5 +1,6 @@
 #include "mend/whole_faces.h"
 
+#include "geometry/measures.h"
 #include "geometry/self_intersection.h"
 
 #include <algorithm>
@@ -10,9 +11,13 @@
 namespace octafront::mend {
 namespace {
 
+/// FaceParts with less than this of their face's area come from rounding. Some lie outside of what they are cut from,
+/// and none is missed.
+constexpr double kRounding = 1e-10;
+
 /// A face of the input by its parts.
 struct FaceParts {
-  std::uint32_t in_all = 0, in_skin = 0;  ///< of the arrangement, and of these
+  std::uint32_t in_all = 0, in_skin = 0;  ///< of the arrangement, and of these; those of rounding do not count
   std::uint32_t first = kNone;            ///< of the skin
   bool first_is_reversed = false;         ///< against the face
   bool face_both_ways = false;
@@ -30,15 +35,18 @@ class WholeFaces {
     }
     Skin restored = with_faces_put_back();
     if (restored.triangles == skin_.triangles) return;
-    // Parts are rounded: what passed beside them might cross the face.
-    if (self_intersections(restored.points, restored.triangles, 1, context).empty()) skin_ = std::move(restored);
+    // FaceParts are rounded: what passed beside them might cross the face, and what hung on them be left alone.
+    if (is_closed(restored) && self_intersections(restored.points, restored.triangles, 1, context).empty())
+      skin_ = std::move(restored);
   }
 
  private:
   std::span<const Origin> origins(std::uint32_t t) const { return arranged_.origins_of(skin_.wall[t]); }
 
   void count_parts() {
-    for (const Origin& o : arranged_.origins) ++parts_[o.triangle].in_all;
+    for (std::uint32_t t = 0; t < arranged_.triangles.size(); ++t)
+      for (const Origin& o : arranged_.origins_of(t))
+        if (!is_of_rounding(t, o.triangle)) ++parts_[o.triangle].in_all;
     for (std::uint32_t t = 0; t < skin_.triangles.size(); ++t) {
       const bool is_turned = !is_rotation(skin_.triangles[t], arranged_.triangles[skin_.wall[t]]);
       for (const Origin& o : origins(t)) add_part(o.triangle, t, is_turned != o.reversed);
@@ -50,7 +58,32 @@ class WholeFaces {
     FaceParts& parts = parts_[face];
     if (parts.first == kNone) parts.first = t, parts.first_is_reversed = is_reversed;
     parts.face_both_ways |= is_reversed != parts.first_is_reversed;
-    ++parts.in_skin;
+    if (!is_of_rounding(skin_.wall[t], face)) ++parts.in_skin;
+  }
+
+  double area_of(const Triangle& t) const {
+    return triangle_area(arranged_.points[t[0]], arranged_.points[t[1]], arranged_.points[t[2]]);
+  }
+  bool is_of_rounding(std::uint32_t part, std::uint32_t face) const {
+    return area_of(arranged_.triangles[part]) < kRounding * area_of(given_[face]);
+  }
+
+  /// Whether as many triangles run along each edge one way as the other way.
+  static bool is_closed(const Skin& skin) {
+    std::vector<std::pair<Edge, int>> runs;
+    for (const Triangle& t : skin.triangles)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const VertexIndex a = t[k], b = t[(k + 1) % 3];
+        runs.push_back({{std::min(a, b), std::max(a, b)}, a < b ? 1 : -1});
+      }
+    std::ranges::sort(runs);
+    int sum = 0;
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      sum += runs[i].second;
+      if (i + 1 < runs.size() && runs[i + 1].first == runs[i].first) continue;
+      if (sum != 0) return false;
+    }
+    return true;
   }
 
   static bool is_rotation(const Triangle& a, const Triangle& b) {

@@ -217,6 +217,39 @@ TEST(MendSurface, FinsThatCrossLeaveNothingBehind) {
   EXPECT_EQ(result.report.count(Kind::kDropped), 1u);
 }
 
+/// The section of a convex body around the origin by the plane normal . x = height, as a fan of its own points.
+SurfaceMesh with_a_wall(SurfaceMesh surface, const SurfaceMesh& body, Vec3 normal, double height) {
+  const Vec3 middle = normal * (height / dot(normal, normal));
+  for (const Triangle& t : body.triangles) {
+    std::vector<Vec3> ends{middle};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3 p = body.points[t[k]], q = body.points[t[(k + 1) % 3]];
+      const double a = dot(normal, p) - height, b = dot(normal, q) - height;
+      if ((a > 0) != (b > 0)) ends.push_back(p + (q - p) * (a / (a - b)));
+    }
+    if (ends.size() != 3) continue;
+    const auto first = static_cast<VertexIndex>(surface.points.size());
+    surface.points.insert(surface.points.end(), ends.begin(), ends.end());
+    surface.triangles.push_back({first, first + 1, first + 2});
+  }
+  return surface;
+}
+
+TEST(MendSurface, WallsThroughABodyLeaveItsFacesWhole) {
+  const SurfaceMesh body = testing::icosphere(1);
+  testing::Random random(7);
+  int whole = 0;
+  for (int i = 0; i < 13; ++i) {
+    SurfaceMesh soup = body;
+    for (int wall = 0; wall < 4; ++wall) {
+      const Vec3 normal{random.unit() - 0.5, random.unit() - 0.5, random.unit() - 0.5};
+      soup = with_a_wall(soup, body, normal, 0.3 * length(normal) * random.unit());
+    }
+    whole += mended(soup).surface.triangles.size() == body.triangles.size();
+  }
+  EXPECT_GE(whole, 12);  // the third one keeps its cuts
+}
+
 /// A triangle divided inside, the inner triangle turned half way round and tilted: three layers that cross.
 SurfaceMesh with_a_crumple(SurfaceMesh surface, std::size_t t, double height) {
   const auto [a, b, c] = surface.triangles[t];
