@@ -148,7 +148,7 @@ def page(rows, command, version):
              f"damaged {r['part']:.2f} %: elements {r['elements x']:.2f} times, time {r['time x']:.2f} times |") for r in left]
     return "\n".join([
         "# What damage costs", "", f"Written by `{command}`, {version}.", "",
-        f"{len({r['model'] for r in rows})} clean models, each damaged in up to {len(KINDS)} ways (`scripts/lib/damages.py`), meshed with default options "
+        f"{len({r['model'] for r in rows})} clean models, each damaged in up to {len({r['kind'] for r in rows})} ways (`scripts/lib/damages.py`), meshed with default options "
         "(and `--sheets drop`, on one thread), over the undamaged model (divided into as small triangles, where holes need them). CPU times of runs that take less than "
         f"{NOT_THE_TIME} s do not count. *Damaged*: the area of what is no longer "
         "there as it was, whichever way it faces; all of it where the answer is another body.", "",
