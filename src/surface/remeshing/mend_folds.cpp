@@ -58,12 +58,15 @@ double distance_to(Vec3 p, const std::vector<TriangleCorners>& triangles) {
   return std::sqrt(least);
 }
 
-/// How far the first triangles lie from the others, at their corners, middles of edges and centroids.
-double farthest(const std::vector<TriangleCorners>& from, const std::vector<TriangleCorners>& to) {
+/// How far the first triangles lie from the others, at their corners, middles of edges and centroids; nobody asks how
+/// much farther than the limit.
+double farthest(const std::vector<TriangleCorners>& from, const std::vector<TriangleCorners>& to, double limit) {
   double most = 0;
   for (const auto& [a, b, c] : from) {
-    for (const Vec3 p : {a, b, c, (a + b) * 0.5, (b + c) * 0.5, (c + a) * 0.5, centroid(a, b, c)})
+    for (const Vec3 p : {a, b, c, (a + b) * 0.5, (b + c) * 0.5, (c + a) * 0.5, centroid(a, b, c)}) {
       most = std::max(most, distance_to(p, to));
+      if (most > limit) return most;
+    }
   }
   return most;
 }
@@ -278,18 +281,23 @@ class FoldMender {
     if (!after) return;
     const double to_beat = best_.kind == Change::Kind::kNone ? -kGainOfMending : best_.badness;
     const bool any_crossing = std::any_of(old_.begin(), old_.end(), [&](std::uint32_t t) { return crosses_[t] != 0; });
-    const int crossings = any_crossing ? live_.crossings_among(old_) : 0;
-    change.badness = *after - badness_before() - kCrossing * crossings;
-    if (!(change.badness < to_beat)) return;
+    change.badness = *after - badness_before();
+    if (!any_crossing && !(change.badness < to_beat)) return;
     old_corners_.clear();
     new_corners_.clear();
     for (const std::uint32_t t : old_) old_corners_.push_back(corners(t));
     for (const IdTriangle& t : new_) new_corners_.push_back(t.corners);
     if (!shapes_are_fair()) return;
-    change.move = std::max(farthest(old_corners_, new_corners_), farthest(new_corners_, old_corners_));
+    change.move = farthest(old_corners_, new_corners_, limit_);
+    if (change.move > limit_) return;
+    change.move = std::max(change.move, farthest(new_corners_, old_corners_, limit_));
     if (change.move > limit_) return;
     change.moved = change.move + moved_so_far();
     if (change.moved > limits_.total) return;
+    // Searched last, for that takes the longest.
+    const int crossings = any_crossing ? live_.crossings_among(old_) : 0;
+    change.badness -= kCrossing * crossings;
+    if (!(change.badness < to_beat)) return;
     sewn_new_.clear();
     for (const IdTriangle& t : new_) sewn_new_.push_back(sewn_.sewn(t));
     const int left = live_.crossings_among(sewn_new_, old_, std::max(1, crossings));
