@@ -11,7 +11,7 @@
 namespace octafront::mend {
 namespace {
 
-/// FaceParts with less than this of their face's area come from rounding. Some lie outside of what they are cut from,
+/// Parts with less than this of their face's area come from rounding. Some lie outside of what they are cut from,
 /// and none is missed.
 constexpr double kRounding = 1e-10;
 
@@ -35,7 +35,7 @@ class WholeFaces {
     }
     Skin restored = with_faces_put_back();
     if (restored.triangles == skin_.triangles) return;
-    // FaceParts are rounded: what passed beside them might cross the face, and what hung on them be left alone.
+    // Parts are rounded: what passed beside them might cross the face, and what hung on them be left alone.
     if (is_closed(restored) && self_intersections(restored.points, restored.triangles, 1, context).empty())
       skin_ = std::move(restored);
   }

@@ -16,7 +16,7 @@ namespace {
 constexpr double kSpacing = 0.7;
 /// Points within this reach, in element sizes, fill the angle around a point.
 constexpr double kReachOfFront = 1.5;
-/// Points are on one sheet if their normals agree by this cosine (elements may be coarse for the curvature) ...
+/// Points of a part are on one sheet if their normals agree by this cosine (elements may be coarse for the curvature) ...
 constexpr double kSheetCosine = 0.2;
 /// ... and their offset along the normal stays below this part of their distance.
 constexpr double kSheetOffset = 0.75;
@@ -32,6 +32,7 @@ constexpr double kSixtyDegrees = std::numbers::pi / 3;
 /// What the grid knows of a point: on which sheet it lies.
 struct OnSheet {
   Vec3 normal;
+  std::uint32_t part = 0;
   bool on_feature = false;
 };
 using Grid = PointGrid<OnSheet>;
@@ -47,19 +48,21 @@ class Front {
  public:
   /// Places by `factor` times the sizes inside patches.
   Front(const InputSurface& input, const SizeField& sizes, double factor)
-      : input_(input), sizes_(sizes), factor_(factor), grid_(bounding_box(input.mesh.points).center()) {}
+      : input_(input),
+        sizes_(sizes),
+        factor_(factor),
+        part_(component_of_triangle(input.mesh, parts_)),
+        grid_(bounding_box(input.mesh.points).center()) {}
 
   FrontPoints run(const std::vector<Curve>& curves, const RunContext& context) {
     for (const Curve& c : curves) add_curve(c);
     for (std::size_t c = 0; c < curves.size(); ++c) place_apexes(curves[c], c);
-    std::uint32_t components = 0;
-    const std::vector<std::uint32_t> component = component_of_triangle(input_.mesh, components);
-    std::vector<std::uint8_t> reached(components, 0);
-    for (const FrontPoint& p : result_.points) reached[component[p.face]] = 1;
+    std::vector<std::uint8_t> reached(parts_, 0);
+    for (const FrontPoint& p : result_.points) reached[part_[p.face]] = 1;
     advance(context);
-    for (std::uint32_t face = 0; face < component.size(); ++face) {
-      if (reached[component[face]]) continue;
-      reached[component[face]] = 1;
+    for (std::uint32_t face = 0; face < part_.size(); ++face) {
+      if (reached[part_[face]]) continue;
+      reached[part_[face]] = 1;
       place_seed(face);
       advance(context);
     }
@@ -87,7 +90,7 @@ class Front {
 
   void add(const FrontPoint& point) {
     result_.points.push_back(point);
-    grid_.add(point.p, point.h, {point.normal, point.on_feature});
+    grid_.add(point.p, point.h, {point.normal, part_[point.face], point.on_feature});
   }
 
   void add_curve(const Curve& curve) {
@@ -145,7 +148,8 @@ class Front {
     if (is_free) add(point);
   }
 
-  static bool same_sheet(const FrontPoint& a, const Grid::Entry& b) {
+  bool same_sheet(const FrontPoint& a, const Grid::Entry& b) const {
+    if (part_[a.face] != b.data.part) return false;  // however near: shells lie within shells
     if (!b.data.on_feature && dot(a.normal, b.data.normal) < kSheetCosine) return false;
     const Vec3 d = b.p - a.p;
     return std::abs(dot(d, a.normal)) <= kSheetOffset * length(d);
@@ -283,6 +287,8 @@ class Front {
   const InputSurface& input_;
   const SizeField& sizes_;
   double factor_;
+  std::uint32_t parts_ = 0;
+  std::vector<std::uint32_t> part_;  ///< per triangle of the input: which connected part it belongs to
   Grid grid_;
   FrontPoints result_;
   std::map<VertexIndex, std::uint32_t> of_vertex_;
