@@ -457,6 +457,17 @@ TEST(Remesh, TipsOfConesAreNoPlaceForThousandsOfPoints) {
   EXPECT_LT(counted.at("places tried"), 4.0 * static_cast<double>(r.surface.triangles.size()));
 }
 
+// Points of one shell stood for those of the other, which came out as a few triangles across the whole body.
+TEST(Remesh, ShellsThatFaceAlikeGetPointsOfTheirOwn) {
+  const Remeshed r = remesh(joined(joined(icosphere(4, 1), reversed(icosphere(4, 0.995))), icosphere(4, 0.99)), 0.1);
+  std::uint32_t shells = 0;
+  std::vector<int> triangles(3);
+  for (const std::uint32_t c : component_of_triangle(make_half_edge_mesh(r.surface), shells)) ++triangles.at(c);
+  ASSERT_EQ(shells, 3u);
+  const auto [least, most] = std::minmax_element(triangles.begin(), triangles.end());
+  EXPECT_LT(*most, 1.1 * *least);
+}
+
 TEST(Remesh, StopsWhenAsked) {
   const std::atomic<bool> stop{true};
   RunContext context;

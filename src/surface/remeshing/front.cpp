@@ -16,7 +16,8 @@ namespace {
 constexpr double kSpacing = 0.7;
 /// Points within this reach, in element sizes, fill the angle around a point.
 constexpr double kReachOfFront = 1.5;
-/// Points of a part are on one sheet if their normals agree by this cosine (elements may be coarse for the curvature) ...
+/// Points of a part are on one sheet if their normals agree by this cosine, for elements may be coarse for the
+/// curvature ...
 constexpr double kSheetCosine = 0.2;
 /// ... and their offset along the normal stays below this part of their distance.
 constexpr double kSheetOffset = 0.75;
