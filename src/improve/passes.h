@@ -103,4 +103,8 @@ BoundaryEdits edit_boundary(EditMesh& mesh, float threshold, BoundaryGuide& guid
 /// where that serves the goal: kWorst or kFewestPoor.
 PassResult insert_vertices(EditMesh& mesh, float threshold, Goal goal, const RunContext& context);
 
+/// Replaces elements that span an edge of a thin wall and the one right behind it, flat up to rounding, and those
+/// around one of their edges, by the star of a new vertex.
+PassResult open_flat_elements(EditMesh& mesh, const RunContext& context);
+
 }  // namespace octafront::improve

@@ -121,6 +121,10 @@ class Schedule {
          [&] { return insert_vertices(mesh_, threshold, Goal::kFewestPoor, stage_.context()); });
   }
 
+  void open_flat() {
+    pass("flat elements opened", [&] { return open_flat_elements(mesh_, stage_.context()); });
+  }
+
   /// Where the boundary crosses itself it goes back. True if it is known that nothing crosses then.
   bool uncross(std::span<const Vec3> taken) {
     if (!guide_) return false;
@@ -324,9 +328,11 @@ void run_schedule(Schedule& run, const ImproveOptions& options) {
       return run_fast(run, options);
     case ImproveOptions::Level::kDefault:
       run_default(run, options);
-      return relieve(run);
+      relieve(run);
+      return run.open_flat();
     case ImproveOptions::Level::kBest:
-      return run_best(run, options);
+      run_best(run, options);
+      return run.open_flat();
   }
 }
 

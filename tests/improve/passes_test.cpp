@@ -506,4 +506,33 @@ TEST(SmallPolyhedra, KeepTheLawsAndRaiseTheWorst) {
 }
 
 }  // namespace
+/// Two prisms of a wall, side by side, and between them the element on the edge 0 1 and the edge 2 3 right behind it.
+/// The diagonals of each prism run around: with one turned it has no elements.
+TetMesh wall_with_flat_element(double thickness) {
+  TetMesh mesh;
+  mesh.points = {{0, 0, thickness}, {1, 0, thickness},    {0, 0, 0},   {1, 1e-20, 0}, {0.5, 1, thickness},
+                 {0.5, 1, 0},       {0.5, -1, thickness}, {0.5, -1, 0}};
+  mesh.tets = {{0, 1, 2, 3}, {0, 3, 1, 4}, {0, 3, 4, 5}, {0, 3, 5, 2}, {1, 2, 0, 6}, {1, 2, 6, 7}, {1, 2, 7, 3}};
+  for (Tet& t : mesh.tets)
+    if (orient3d(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]) < 0) std::swap(t[2], t[3]);
+  return with_boundary(std::move(mesh));
+}
+
+TEST(OpenFlatElements, AVertexGoesBesideWhatSpansAnEdgeAndTheOneBehind) {
+  for (const double thickness : {1e-1, 1e-3, 1e-6}) {
+    const TetMesh before = wall_with_flat_element(thickness);
+    EditMesh mesh(TetMesh{before});
+    EXPECT_EQ(reconnect(mesh, 1, Goal::kWorst, {}).done, 0u);
+    EXPECT_EQ(open_flat_elements(mesh, {}).done, 1u);
+    const TetMesh after = mesh.release();
+    expect_laws(before, after);
+    for (const Tet& t : after.tets)
+      EXPECT_GT(signed_volume(after.points[t[0]], after.points[t[1]], after.points[t[2]], after.points[t[3]]),
+                0.01 * volume(after))
+          << thickness;
+    EditMesh again(TetMesh{after});
+    EXPECT_EQ(open_flat_elements(again, {}).done, 0u);
+  }
+}
+
 }  // namespace octafront::improve
