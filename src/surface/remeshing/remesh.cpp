@@ -54,6 +54,9 @@ constexpr double kPatience = 4, kWornOut = 10;
 /// Nor is size the reason in a complex where the input's triangles are about as large as those that are wanted: none of
 /// their heights is below this part of the size. So it is between the voxels of an image.
 constexpr double kAsLarge = 0.5;
+/// Where a user's size crosses, triangles of the input are what was asked if they are as large and no longer than so
+/// many sizes: smaller sizes take many times the elements between shells that nearly touch.
+constexpr double kAsLong = 4;
 /// The same where the new surface strays too far from the input, and for how many rounds; more at once where it strays
 /// so many times as far as it may.
 constexpr double kDeviationCap = 0.7, kMuchTooFar = 2, kDeviationCapFar = 0.5;
@@ -788,7 +791,7 @@ class Remesher {
         in_vain |= around->in_vain;
       } else if (seamed_ && (made_by.at(p) < kVain * first_.at(p) || is_as_large(p, made_by))) {
         restored_.push_back({p, kRestored * made_by.at(p), false});
-      } else if (sizes_.at(p) < kVain * first_.at(p) || is_worn_out(kPatience) ||
+      } else if (sizes_.at(p) < kVain * first_.at(p) || is_as_asked(p) || is_worn_out(kPatience) ||
                  restored_around(p, kMoreRestored) != restored_.end()) {
         restored_.push_back({p, kRestored * first_.at(p)});
         in_vain = true;
@@ -800,9 +803,19 @@ class Remesher {
     if (!to_cap.empty()) cap(to_cap, factor);
   }
 
+  /// Of a single surface and a size that a user gave, whether the input's triangle at p is about as large as asked.
+  bool is_as_asked(Vec3 p) const {
+    if (seamed_ || std::isfinite(limits_.budget) || !is_as_large(p, first_)) return false;
+    return longest_edge_of(input_triangle_at(p)) <= kAsLong * first_.at(p);
+  }
+
+  const TriangleCorners& input_triangle_at(Vec3 p) const {
+    return known_.tree().corners(known_.tree().nearest(p).triangle);
+  }
+
   /// Whether the input's triangle at p is as large as those that are wanted there.
   bool is_as_large(Vec3 p, const SizeField& sizes) const {
-    const TriangleCorners& t = known_.tree().corners(known_.tree().nearest(p).triangle);
+    const TriangleCorners& t = input_triangle_at(p);
     return length(double_area_normal(t[0], t[1], t[2])) >= kAsLarge * sizes.at(p) * longest_edge_of(t);
   }
 
