@@ -24,7 +24,7 @@ using Triangles = std::vector<std::uint32_t>;
 /// Around what crosses so many rings of triangles are tried, the fewest first.
 constexpr int kMostRings = 2;
 /// What was laid flat leaves room for what could not be before.
-constexpr int kMostPasses = 4;
+constexpr int kMostPassesOverCrumples = 4;
 /// What needs more triangles is no crumple but a surface of its own.
 constexpr std::size_t kMostTriangles = 2000;
 /// Distances are known to this part of the tolerance.
@@ -310,7 +310,7 @@ class Crumples {
 
 LaidFlat lay_crumples_flat(Draft& draft, double tolerance) {
   LaidFlat all;
-  for (int pass = 0; pass < kMostPasses && tolerance > 0; ++pass) {
+  for (int pass = 0; pass < kMostPassesOverCrumples && tolerance > 0; ++pass) {
     const LaidFlat done = Crumples(draft, tolerance).run();
     if (done.faces == 0) break;
     all.faces += done.faces;

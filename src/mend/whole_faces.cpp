@@ -13,7 +13,7 @@ namespace {
 
 /// Parts with less than this of their face's area come from rounding. Some lie outside of what they are cut from,
 /// and none is missed.
-constexpr double kRounding = 1e-10;
+constexpr double kRoundingOfParts = 1e-10;
 
 /// A face of the input by its parts.
 struct FaceParts {
@@ -65,7 +65,7 @@ class WholeFaces {
     return triangle_area(arranged_.points[t[0]], arranged_.points[t[1]], arranged_.points[t[2]]);
   }
   bool is_of_rounding(std::uint32_t part, std::uint32_t face) const {
-    return area_of(arranged_.triangles[part]) < kRounding * area_of(given_[face]);
+    return area_of(arranged_.triangles[part]) < kRoundingOfParts * area_of(given_[face]);
   }
 
   /// Whether as many triangles run along each edge one way as the other way.
