@@ -2,6 +2,7 @@
 
 #include <octafront/error.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <memory>
@@ -149,10 +150,10 @@ std::string tar(const std::vector<std::pair<std::string, std::string>>& files) {
   std::string out;
   for (const auto& [name, bytes] : files) {
     std::string head(512, '\0');
-    head.replace(0, name.size(), name);
-    head.replace(124, 11, fmt::format("{:011o}", bytes.size()));
+    std::ranges::copy(name, head.begin());
+    std::ranges::copy(fmt::format("{:011o}", bytes.size()), head.begin() + 124);
     head[156] = name.ends_with('/') ? '5' : '0';
-    head.replace(257, 5, "ustar");
+    std::ranges::copy(std::string_view("ustar"), head.begin() + 257);
     out += head + bytes + std::string((512 - bytes.size() % 512) % 512, '\0');
   }
   return out + std::string(1024, '\0');

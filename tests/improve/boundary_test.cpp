@@ -273,7 +273,7 @@ TEST(FeatureCurves, AreWalkedAroundBends) {
   EXPECT_EQ(curves.walk(*start, 0.75)->at, (Vec3{1, 0.25, 0}));
 }
 
-double lack_of(const TetMesh& mesh) {
+double lack_of_elements(const TetMesh& mesh) {
   double sum = 0;
   for (const auto& [a, b, c, d] : mesh.tets)
     sum += improve::lack_of(shape_of(mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]).score);
@@ -312,7 +312,7 @@ TEST(BoundaryEdits, CollapseAShortEdgeOfASide) {
   EXPECT_GT(edits.result.done, 0u);
   EXPECT_EQ(first_defect(made), std::nullopt);
   EXPECT_LT(made.boundary.size(), start.boundary.size());
-  EXPECT_LT(lack_of(made), 0.5 * lack_of(start));
+  EXPECT_LT(lack_of_elements(made), 0.5 * lack_of_elements(start));
   EXPECT_EQ(made.patch.size(), made.boundary.size());
   EXPECT_NEAR(enclosed_volume(boundary_of(made)), 1, 1e-3);
 }
@@ -327,7 +327,7 @@ TEST(BoundaryEdits, StrayNoFartherThanTheTolerance) {
     const auto [made, edits] = edited(start, kTolerance);
     done += edits.result.done;
     EXPECT_EQ(first_defect(made), std::nullopt);
-    EXPECT_LE(lack_of(made), lack_of(start));
+    EXPECT_LE(lack_of_elements(made), lack_of_elements(start));
     for (const Triangle& t : made.boundary)
       for (const VertexIndex v : t) EXPECT_TRUE(tree.is_within(made.points[v], 2 * kTolerance));
     const TriangleTree boundary(boundary_of(made));

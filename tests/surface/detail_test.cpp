@@ -6,7 +6,7 @@
 #include "support/named_surfaces.h"
 #include "surface/remeshing/crossings.h"
 #include "surface/remeshing/deviation.h"
-#include "surface/remeshing/remesh_within.h"
+#include "surface/remeshing/remesh.h"
 #include "surface/remeshing/restored.h"
 #include "surface/remeshing/unfold.h"
 #include "surface/surface_check.h"
