@@ -17,7 +17,7 @@ struct Sized {
 
 /// Points on a bumpy sheet around the origin, whose sizes double several times from one side of it to the other.
 std::vector<Sized> graded_sheet() {
-  Random random(7);
+  octafront::Random random(7);
   std::vector<Sized> points;
   for (int i = 0; i < 4000; ++i) {
     const double x = 8 * random.unit() - 4, y = 8 * random.unit() - 4;

@@ -247,7 +247,7 @@ TEST(Remesh, FollowsAGradedField) {
 
 /// The steepest slope of the sizes between points of the box, near each other and far.
 double steepest(const SizeField& sizes, const Box3& box) {
-  Random random(7);
+  testing::Random random(7);
   const auto anywhere = [&] {
     return Vec3{random.between(box.lo.x, box.hi.x), random.between(box.lo.y, box.hi.y),
                 random.between(box.lo.z, box.hi.z)};
