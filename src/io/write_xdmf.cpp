@@ -78,7 +78,7 @@ class XdmfWriter {
     values_->group(group);
     const std::uint64_t n = count(grid), each = nodes(grid);
     out << "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n";
-    out.line("    <WrittenGrid Name=\"{}\" GridType=\"Uniform\">", grid.name);
+    out.line("    <Grid Name=\"{}\" GridType=\"Uniform\">", grid.name);
     out.line("      <Topology TopologyType=\"{}\" NumberOfElements=\"{}\" NodesPerElement=\"{}\">",
              grid.topology[mesh_.second_order()], n, each);
     item(out, fmt::format("{} {}", n, each), "Int", 8, h5_, group + "/topology");
@@ -100,7 +100,7 @@ class XdmfWriter {
         write_set(out, (of_nodes ? "nodes " : grid.prefix) + part.name, part, of_nodes ? mesh_.points() : n,
                   fmt::format("{}/set_{}", group, ++sets));
     }
-    out << "    </WrittenGrid>\n  </Domain>\n</Xdmf>\n";
+    out << "    </Grid>\n  </Domain>\n</Xdmf>\n";
   }
 
   std::int32_t number(const WrittenGrid& grid, std::uint64_t i) const {

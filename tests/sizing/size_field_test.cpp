@@ -396,7 +396,7 @@ TEST(AutomaticBudget, HoldsForDetailsWithoutEnd) {
   const SizeField sizes = make_size_field(known, {}, {RunContext{}, report}, {}, budget);
   EXPECT_LT(expected_tets(sizes, plates), 1.1 * budget);
   ASSERT_EQ(report.notes.size(), 1u);
-  EXPECT_NE(report.notes[0].find("0.1 million at most"), std::string::npos) << report.notes[0];
+  EXPECT_NE(report.notes[0].find("at most 0.1 million"), std::string::npos) << report.notes[0];
 }
 
 /// Their details are counted on the surface alone.
