@@ -11,6 +11,8 @@ import resource
 import subprocess
 import tempfile
 
+from origin import origin
+
 OVER = 1.3  # met within 30 %
 
 
@@ -39,6 +41,7 @@ def figures(model, report):
         "budget": counter(report, "size field", "budget of elements"), "said": report["expected_tets"],
         "tets": report["tets"], "cpu": report["cpu_seconds"], "memory": report["peak_memory_bytes"],
         "rounds": int(counter(report, "surface front", "rounds")),
+        "beta": report["quality"]["beta_min"], "angle": report["quality"]["dihedral_min_degrees"],
         "work": counter(report, "surface front", "triangles of all rounds") / max(1, triangles),
         "spent": any("has a budget of" in n for n in notes),
         "raised": any("automatic sizes are no smaller than" in n for n in notes)}
@@ -53,20 +56,21 @@ def page(rows, failed):
     off = [r for r in rows if abs(r["said"] / r["tets"] - 1) > OVER - 1]
     lines = [
         "# The budget of automatic sizes", "",
-        "Written by `bench/run.sh budget`, one model at a time on one thread; what the budget is: "
+        f"Written by `bench/run.sh budget` ({origin()}), one model at a time on one thread; what the budget is: "
         "`docs/sizes-and-surface.md`. *Said* is the prediction once the surface is made, which is what `--dry-run` "
-        "says; *work* is the triangles of all rounds of the surface front over those of the last.", "",
+        "says; *least β* and *least angle* (dihedral, degrees) are of the worst element, forced by the input or not; "
+        "*work* is the triangles of all rounds of the surface front over those of the last.", "",
         f"{len(rows)} models meshed, {len(failed)} not. Above 1.3 times the budget: **{len(over)}**"
         + (" (" + ", ".join(r["model"] for r in over) + ")" if over else "")
         + f". Said and made more than 30 % apart: **{len(off)}**"
         + (" (" + ", ".join(r["model"] for r in off) + ")" if off else "")
         + f". Budget spent: {sum(r['spent'] for r in rows)}. Most elements: {max(r['tets'] for r in rows):,}. "
         f"Most CPU time: {max(r['cpu'] for r in rows):.1f} s. Most memory: {max(r['memory'] for r in rows) / 1e6:.0f} MB.",
-        "", "| model | triangles | budget | said | made | rounds | work | CPU s | MB | given up |",
-        "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |"]
+        "", "| model | triangles | budget | said | made | least β | least angle | rounds | work | CPU s | MB | given up |",
+        "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |"]
     for r in rows:
         lines.append(f"| {r['model']} | {r['faces']:,} | {r['budget']:,.0f} | {r['said']:,.0f} | {r['tets']:,} | "
-                     f"{r['rounds']} | {r['work']:.1f} | {r['cpu']:.1f} | {r['memory'] / 1e6:.0f} | {given_up(r)} |")
+                     f"{r['beta']:.3f} | {r['angle']:.1f} | {r['rounds']} | {r['work']:.1f} | {r['cpu']:.1f} | {r['memory'] / 1e6:.0f} | {given_up(r)} |")
     if failed:
         lines += ["", "Not meshed:", ""] + [f"- {name}: {why}" for name, why in failed]
     return "\n".join(lines) + "\n"
