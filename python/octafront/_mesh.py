@@ -4,7 +4,7 @@ import ctypes
 import json
 import types
 
-from . import _html, errors
+from . import _html, _meshio, errors
 from ._jobs import Job
 from ._library import Array, Handle, _View, bytes_of, call, demand, file_of, pointer, spoken, text_of
 from ._numpy import np
@@ -232,16 +232,28 @@ class Mesh:
         return grid
 
     def to_meshio(self):
-        """A meshio.Mesh: tetrahedra with the cell data "region", triangles of the boundary with "patch", and sets."""
-        meshio = wanted("meshio")
-        cells, _ = self._vtk_cells()
-        blocks = [("tetra" if self.order == 1 else "tetra10", cells.astype(np.int64)),
-                  ("triangle", self.faces.astype(np.int64))]
-        nothing = [np.zeros(len(cells), np.int64), np.zeros(len(self.faces), np.int64)]
-        data = {"region": [self.regions.astype(np.int64), nothing[1]],
-                "patch": [nothing[0], self.patches.astype(np.int64)]}
-        sets = {name: members.astype(np.int64) for name, (kind, members) in self.sets.items() if kind == "nodes"}
-        return meshio.Mesh(np.array(self.points), blocks, cell_data=data, point_sets=sets)
+        """A meshio.Mesh of blocks: tetrahedra with the cell data "region"; triangles of the boundary, then those inside,
+        with "patch"; lines with "curve". Named parts and sets are cell_sets, of nodes point_sets; field_data and the cell
+        data "gmsh:physical" (number + 1) are as of a .msh file."""
+        names, cells = self.names, self._vtk_cells()[0]
+        blocks = [_meshio.Block("tetra" if self.order == 1 else "tetra10", cells, "region", 3, self.regions, names["regions"]),
+                  _meshio.Block("triangle", self.faces, "patch", 2, self.patches, names["patches"])]
+        if len(self.interfaces):
+            blocks.append(_meshio.Block("triangle", self.interfaces, "patch", 2, self.interface_patches, names["patches"]))
+        if len(self.curve_edges):
+            blocks.append(_meshio.Block("line", self.curve_edges, "curve", 1, self.curves, names["curves"]))
+        point_sets = {name: members.astype(np.int64) for name, (kind, members) in self.sets.items() if kind == "nodes"}
+        return _meshio.mesh_of(self.points, blocks, self._sets_of_blocks(len(blocks) - 1), point_sets)
+
+    def _sets_of_blocks(self, last):
+        """(name, which block, members) of the sets of cells, in the blocks of to_meshio()."""
+        for name, (kind, members) in self.sets.items():
+            if kind == "faces":
+                inside = np.searchsorted(members, len(self.faces))
+                parts = [(1, members[:inside]), (2, members[inside:] - len(self.faces))]
+                yield from ((name, block, part) for block, part in parts if len(part))
+            elif kind != "nodes":
+                yield name, 0 if kind == "elements" else last, members
 
     def plot(self, clip=(1, 0, 0), **keywords):
         """Shows the mesh by pyvista, coloured by beta and cut open by whole elements: those whose centres lie behind the

@@ -91,6 +91,64 @@ class Libraries(unittest.TestCase):
             self.assertEqual(again.quality["beta_min"], mesh.quality["beta_min"])
         self.assertEqual(len(octafront.Surface(*cube()).to_meshio().cells[0].data), 12)
 
+    def test_meshio_has_the_names_of_the_file(self):
+        mesh = two_cubes()
+        sets = mesh.sets
+        with tempfile.TemporaryDirectory() as folder:
+            mesh.save(folder + "/m.msh")
+            file, there, tagged = meshio.read(folder + "/m.msh"), mesh.to_meshio(), mesh.to_meshio()
+            for part in ("region", "patch", "curve"):  # meshio cannot read what it writes of them
+                del tagged.cell_data[part]
+            meshio.write(folder + "/again.msh", tagged, file_format="gmsh22")
+            again = meshio.read(folder + "/again.msh")
+        parts = [name for names in mesh.names.values() for name in names]
+        self.assertEqual(len(parts), 2 + 11 + 20)
+        for name in parts:
+            self.assertEqual(there.field_data[name].tolist(), file.field_data[name].tolist(), name)
+            self.assertEqual(again.field_data[name].tolist(), file.field_data[name].tolist(), name)
+        for name in [*parts, "some", "both", "edges"]:
+            self.assertEqual(cells_of(there, name), cells_of(file, name), name)
+            self.assertTrue(cells_of(there, name), name)
+        for kind in ("tetra", "triangle", "line"):
+            for name in ("gmsh:physical", "gmsh:geometrical"):
+                tags = there.get_cell_data(name, kind)
+                self.assertEqual(np.bincount(tags).tolist(), np.bincount(file.get_cell_data("gmsh:physical", kind)).tolist())
+        self.assertEqual(there.point_sets["held"].tolist(), sets["held"][1].tolist())
+        self.assertEqual(len(there.cells[1].data), len(mesh.faces))
+
+    def test_meshio_loses_none_of_two_equal_names(self):
+        mesh = two_cubes().add_set("bottom", [0], kind="faces").add_set("low", [5], kind="faces")
+        there = mesh.to_meshio()
+        self.assertEqual(there.cell_sets["bottom_"][1].tolist(), [0])
+        self.assertEqual(there.cell_sets["bottom"][1].tolist(), np.flatnonzero(mesh.patches == 0).tolist())
+        self.assertEqual(there.cell_sets["low"][0].tolist(), np.flatnonzero(mesh.regions == 0).tolist())
+        self.assertEqual(there.cell_sets["low"][1].tolist(), [5])
+
+    def test_meshio_has_the_patches_of_a_surface(self):
+        there = octafront.Surface(*cube(), patches=np.arange(12) // 6, patch_names=["a", "b"]).to_meshio()
+        self.assertEqual(there.cell_sets["b"][0].tolist(), [6, 7, 8, 9, 10, 11])
+        self.assertEqual(there.field_data["b"].tolist(), [2, 2])
+
+
+def two_cubes():
+    """One on the other, with a patch for each of eleven sides, and sets of all kinds."""
+    points, triangles = cube()
+    walls = np.vstack([triangles, triangles[[t for t in range(12) if t not in (0, 1)]] + 8])
+    sides = np.array([[-1, 0]] * 12 + [[-1, 1]] * 10)
+    sides[[2, 3]] = [1, 0]
+    names = ["bottom", "wall", *(f"side {i}" for i in range(9))]
+    surface = octafront.Surface(np.vstack([points, points + [0, 0, 1]]), walls, sides=sides, region_names=["low", "high"],
+                                patches=np.arange(22) // 2, patch_names=names)
+    mesh = octafront.mesh(surface, size=0.4).add_set("held", box=[[0, 0, 0], [1, 1, 0]])
+    mesh.add_set("some", [1, 3], kind="elements").add_set("edges", [1, 2], kind="edges")
+    return mesh.add_set("both", [2, 5, len(mesh.faces) + 1], kind="faces")
+
+
+def cells_of(mesh, name):
+    """Where the corners of the cells of a set lie."""
+    return {frozenset(map(tuple, mesh.points[corners])) for block, members in zip(mesh.cells, mesh.cell_sets[name])
+            for corners in block.data[members.astype(int)]}
+
 
 if __name__ == "__main__":
     unittest.main()
