@@ -255,7 +255,8 @@ def check(what, triangles=None, *, solver=None):
 def read(path):
     """A Mesh, or a Surface, as the file has it: of a format that formats() lists.
 
-    Which of the two the ending says; STL, OBJ, OFF and PLY are surfaces. Raises InputError with line or byte.
+    Which of the two the ending says; STL, OBJ, OFF and PLY are surfaces. Who knows, and type checkers, have
+    Surface.read() and Mesh.read(). Raises InputError with line or byte.
     """
     endings = {ending for f in formats() if f["reads_mesh"] for ending in f["endings"].split()}
     name = path.decode(errors="replace") if isinstance(path, bytes) else str(path)
