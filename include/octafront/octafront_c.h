@@ -125,6 +125,11 @@ void octafront_sizes_free(octafront_sizes* sizes);
 int octafront_sizes_at(const octafront_sizes* sizes, const double* points, size_t n, double* out);
 void octafront_sizes_bounds(const octafront_sizes* sizes, double* least, double* largest);
 octafront_sizes* octafront_sizes_uniform(double h);
+/** The sizes as bytes, valid until the next call of this thread: for another process of this machine, where they become
+ * the same sizes, bit for bit. Fails for those of a function. */
+int octafront_sizes_pack(const octafront_sizes* sizes, const char** bytes, size_t* length);
+/** Null where the bytes are not such sizes. */
+octafront_sizes* octafront_sizes_unpack(const char* bytes, size_t length);
 
 octafront_options* octafront_options_new(void);
 void octafront_options_free(octafront_options* options);

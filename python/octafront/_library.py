@@ -65,6 +65,7 @@ _PROTOTYPES = {
     "sizes_free": (None, _handle), "sizes_at": (_whole, _handle, _pointer, _size, _pointer),
     "sizes_bounds": (None, _handle, ctypes.POINTER(_number), ctypes.POINTER(_number)),
     "sizes_uniform": (_handle, _number),
+    "sizes_pack": (_whole, _handle, ctypes.POINTER(_pointer), _length), "sizes_unpack": (_handle, _text, _size),
     "options_new": (_handle,), "options_free": (None, _handle), "options_set": (_whole, _handle, _text),
     "options_regions": (_whole, _handle, _pointer, _size), "options_point_sizes": (_whole, _handle, _pointer, _size),
     "options_regions_file": (_whole, _handle, _text), "options_point_sizes_file": (_whole, _handle, _text),
@@ -165,6 +166,10 @@ class Handle:
     def __del__(self, call=call):
         if getattr(self, "address", None):
             call(self.kind + "_free", self.address)
+
+    def __reduce_ex__(self, protocol):
+        # A copy of the address would be freed twice.
+        raise TypeError(f"the {self.kind} of the library cannot be copied or pickled by themselves")
 
     @property
     def _as_parameter_(self):

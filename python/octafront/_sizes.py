@@ -2,8 +2,9 @@
 
 import ctypes
 
+from . import errors
 from ._jobs import Job
-from ._library import Handle, call, demand, file_of, pointer
+from ._library import Handle, call, demand, file_of, pointer, text_of
 from ._numpy import np
 from ._surface import points_of
 
@@ -19,7 +20,6 @@ class SizeField:
         """The same size `h` everywhere, > 0."""
         address = call("sizes_uniform", float(h))
         if not address:
-            from . import errors
             raise errors.OptionError(f"a size must be above 0, but is {h}")
         self._handle, self.report = Handle("sizes", address), {}
 
@@ -66,6 +66,17 @@ class SizeField:
         least, largest = ctypes.c_double(), ctypes.c_double()
         call("sizes_bounds", self._handle, ctypes.byref(least), ctypes.byref(largest))
         return least.value, largest.value
+
+    def __getstate__(self):
+        at, length = ctypes.c_void_p(), ctypes.c_size_t()
+        demand("sizes_pack", self._handle, ctypes.byref(at), ctypes.byref(length))
+        return {"packed": ctypes.string_at(at.value, length.value), "report": self.report}
+
+    def __setstate__(self, state):
+        address = call("sizes_unpack", state["packed"], len(state["packed"]))
+        if not address:
+            raise errors.InputError(text_of(call("last_error")))
+        self._handle, self.report = Handle("sizes", address), state["report"]
 
     def __repr__(self):
         return f"<octafront.SizeField: {self.min:.6g} to {self.max:.6g}>"

@@ -5,6 +5,7 @@
 
 #include "c_api/c_api.h"
 #include "c_api/json_keys.h"
+#include "sizing/packed_sizes.h"
 
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -184,5 +185,19 @@ octafront_sizes* octafront_sizes_uniform(double h) {
     if (!(h > 0)) throw OptionError(fmt::format("a size must be above 0, but is {}", h));
     made = new octafront_sizes{SizeField::uniform(h)};
   });
+  return made;
+}
+
+int octafront_sizes_pack(const octafront_sizes* sizes, const char** bytes, size_t* length) {
+  return guarded([&] {
+    std::string packed = packed_sizes(sizes->field);
+    *length = packed.size();
+    *bytes = kept(std::move(packed));
+  });
+}
+
+octafront_sizes* octafront_sizes_unpack(const char* bytes, size_t length) {
+  octafront_sizes* made = nullptr;
+  guarded([&] { made = new octafront_sizes{unpacked_sizes({bytes, length})}; });
   return made;
 }

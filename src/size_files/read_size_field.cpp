@@ -79,13 +79,7 @@ Octree tree_of(const io::Input& input, const GridFile& grid, const RootCube& roo
     leaves.push_back(root.cell(0.5 * (lo + hi)).ancestor(static_cast<int>(level)));
   }
   std::sort(leaves.begin(), leaves.end());
-  std::uint64_t next = OctreeKey::root().range_min();
-  bool covers = true;
-  for (const OctreeKey leaf : leaves) {
-    covers = covers && leaf.range_min() == next;
-    next = leaf.range_max() + 2;
-  }
-  if (!covers || next != OctreeKey::root().range_max() + 2) input.fail("has cells that do not cover its cube once");
+  if (!cover_the_root(leaves)) input.fail("has cells that do not cover its cube once");
   Octree tree(std::move(leaves));
   if (!tree.is_balanced()) input.fail("has neighbouring cells that differ by more than a factor of two");
   return tree;

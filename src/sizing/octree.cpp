@@ -11,6 +11,9 @@ namespace {
 /// A grid of at most this many levels: 8^6 entries are one megabyte.
 constexpr int kMaxGridLevel = 6;
 
+/// From the last id of a cell to the first one of the next: cells of the finest level have odd ids.
+constexpr std::uint64_t kNextCell = 2;
+
 /// Place of the cell on the curve of the cells of `level`.
 std::size_t position_at(OctreeKey cell, int level) {
   return static_cast<std::size_t>(cell.id() >> (3 * (OctreeKey::kMaxLevel - level) + 1)) &
@@ -67,7 +70,6 @@ bool Octree::is_balanced() const {
 }
 
 std::optional<std::string> Octree::first_inconsistency() const {
-  constexpr std::uint64_t kNextCell = 2;  // cells of the finest level have odd ids
   std::uint64_t begin = OctreeKey::root().range_min();
   for (std::size_t i = 0; i < leaves_.size(); ++i) {
     if (!leaves_[i].is_valid()) return "leaf " + std::to_string(i) + " of the octree is no cell";
@@ -78,6 +80,15 @@ std::optional<std::string> Octree::first_inconsistency() const {
   }
   if (begin != OctreeKey::root().range_max() + kNextCell) return "the leaves of the octree end before the root does";
   return std::nullopt;
+}
+
+bool cover_the_root(const std::vector<OctreeKey>& leaves) {
+  std::uint64_t begin = OctreeKey::root().range_min();
+  for (const OctreeKey leaf : leaves) {
+    if (!leaf.is_valid() || leaf.range_min() != begin) return false;
+    begin = leaf.range_max() + kNextCell;
+  }
+  return begin == OctreeKey::root().range_max() + kNextCell;
 }
 
 }  // namespace octafront

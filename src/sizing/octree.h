@@ -71,6 +71,9 @@ class Octree {
   int grid_level_ = 0, depth_ = 0;
 };
 
+/// True if the keys are cells, sorted, that cover the root without overlap: what an Octree can be made of.
+bool cover_the_root(const std::vector<OctreeKey>& leaves);
+
 /// The cells of an octree that are divided, level by level. A set under construction: divide() may be called in any
 /// order; ancestors need not be given.
 class DividedCells {

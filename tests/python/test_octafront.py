@@ -24,6 +24,10 @@ from shapes import cube, sphere
 SAMPLES = pathlib.Path(os.environ["OCTAFRONT_SAMPLES"])
 
 
+def hash_by_field(field):
+    return octafront.mesh(*sphere(), size=field).report["hash"]
+
+
 def meshed_hash(_):
     return octafront.mesh(*sphere(), size=0.2).report["hash"]
 
@@ -395,6 +399,22 @@ class Sizes(Case):
         field.save(self.folder / "grid.vtu")
         again = octafront.SizeField.read(self.folder / "grid.vtu")
         self.assertAlmostEqual(again([[0.5, 0, 0]])[0], field([[0.5, 0, 0]])[0], places=6)
+
+    def test_a_copy_of_a_field_makes_the_same_mesh(self):
+        for field in (octafront.size_field(*sphere(), size=0.3, gradation=0.3, interior="graded"), octafront.SizeField(0.35)):
+            expected = hash_by_field(field)
+            for copied in (pickle.loads(pickle.dumps(field)), copy.copy(field), copy.deepcopy(field)):
+                self.assertEqual((hash_by_field(copied), copied.report), (expected, field.report))
+            with multiprocessing.get_context("spawn").Pool(2) as pool:
+                self.assertEqual(set(pool.map_async(hash_by_field, [field] * 2).get(timeout=120)), {expected})
+        packed = field.__getstate__()
+        with self.assertRaisesRegex(octafront.InputError, "no packed size field"):
+            octafront.SizeField.__new__(octafront.SizeField).__setstate__({**packed, "packed": packed["packed"][:-1]})
+
+    def test_what_the_library_holds_is_not_copied_by_its_address(self):
+        for made in (octafront.SizeField(1), octafront.Surface(*cube())):
+            with self.assertRaisesRegex(TypeError, "cannot be copied"):
+                copy.copy(made._handle)
 
     def test_regions_and_points(self):
         plain = len(octafront.mesh(*cube(), size=0.4))

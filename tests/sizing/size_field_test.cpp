@@ -3,6 +3,7 @@
 
 #include "sizing/make_size_field.h"
 #include "sizing/octree_field.h"
+#include "sizing/packed_sizes.h"
 #include "sizing/size_sources.h"
 #include "support/named_surfaces.h"
 
@@ -419,6 +420,36 @@ TEST(Scaled, MultipliesAllSizes) {
   const SizeField h = make(torus(60, 24), {}), twice = scaled(h, 2, RunContext{});
   EXPECT_DOUBLE_EQ(twice.at({1, 0.2, 0.1}), 2 * h.at({1, 0.2, 0.1}));
   EXPECT_DOUBLE_EQ(scaled(SizeField::uniform(3), 2, RunContext{}).at({}), 6);
+}
+
+TEST(PackedSizes, AnswerWithTheSameBits) {
+  for (const Case& c : cases()) {
+    SCOPED_TRACE(c.name);
+    const SizeField field = make(c.surface, c.options);
+    const SizeField again = unpacked_sizes(packed_sizes(field));
+    EXPECT_EQ(SizeFunction::behind(again).gradation, SizeFunction::behind(field).gradation);
+    EXPECT_EQ(again.min_size(), field.min_size());
+    EXPECT_EQ(again.max_size(), field.max_size());
+    for (const Vec3 p : c.surface.points) EXPECT_EQ(again.at(0.9 * p), field.at(0.9 * p));
+  }
+  EXPECT_EQ(unpacked_sizes(packed_sizes(SizeField::uniform(0.3))).at({}), 0.3);
+}
+
+TEST(PackedSizes, WhatHasNoGridAndWhatIsDamagedIsRefused) {
+  const SizeField rising = SizeField::from_function([](Vec3 p) { return p.x; }, 1, 2);
+  EXPECT_THROW(packed_sizes(rising), OptionError);
+  SizeOptions options;
+  options.size = 0.5;
+  const std::string good = packed_sizes(make(cube(1), options));
+  for (const std::size_t length : {std::size_t{0}, std::size_t{7}, good.size() / 2, good.size() - 1})
+    EXPECT_THROW(unpacked_sizes(std::string_view(good).substr(0, length)), InputError) << length;
+  EXPECT_THROW(unpacked_sizes(good + good), InputError);
+  // The mark, the number of leaves, the first key, the sign of the last size.
+  for (const std::size_t at : {std::size_t{0}, std::size_t{8}, std::size_t{56}, good.size() - 1}) {
+    std::string damaged = good;
+    damaged[at] ^= '\x80';
+    EXPECT_THROW(unpacked_sizes(damaged), InputError) << at;
+  }
 }
 
 TEST(ChangedSizes, StopWhenAsked) {
