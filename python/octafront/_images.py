@@ -8,7 +8,7 @@ from . import errors
 from ._jobs import Job
 from ._library import Handle, bytes_of, call, file_of, pointer, text_of
 from ._numpy import np
-from ._surface import Surface
+from ._surface import Surface, array_of
 
 _U8, _I16, _U16, _I32, _F32 = 3, 4, 5, 6, 7
 _WHOLE = (("uint8", _U8), ("int16", _I16), ("uint16", _U16), ("int32", _I32))
@@ -57,7 +57,7 @@ def _read(files, series):
 
 
 def _of_array(values, affine, spacing):
-    values = np.asarray(values)
+    values = array_of(values, "an image")
     if values.ndim != 3 or values.size == 0:
         raise errors.OptionError(f"an image has the shape (ni, nj, nk), not {values.shape}")
     typed, code = _typed(values)
@@ -97,11 +97,11 @@ def _map_of(affine, spacing):
     if affine is not None and spacing is not None:
         raise errors.OptionError("give `affine` or `spacing`, not both")
     if affine is None:
-        steps = np.asarray(1.0 if spacing is None else spacing, dtype=np.float64)
+        steps = array_of(1.0 if spacing is None else spacing, "`spacing`", np.float64)
         if steps.shape not in ((), (3,)):
             raise errors.OptionError(f"`spacing` is one number or three, not of shape {steps.shape}")
         return np.ascontiguousarray(np.hstack([np.diag(np.broadcast_to(steps, 3)), np.zeros((3, 1))]))
-    rows = np.asarray(affine, dtype=np.float64)
+    rows = array_of(affine, "`affine`", np.float64)
     if rows.shape not in ((4, 4), (3, 4)):
         raise errors.OptionError(f"`affine` is a matrix (4, 4) from (i, j, k, 1) to the world, not of shape {rows.shape}")
     if rows.shape == (4, 4) and not np.array_equal(rows[3], (0, 0, 0, 1)):

@@ -8,7 +8,7 @@ from . import _html, _meshio, errors
 from ._jobs import Job
 from ._library import Array, Handle, _View, bytes_of, call, demand, file_of, pointer, spoken, text_of
 from ._numpy import np
-from ._surface import _or_zeros, column_of, points_of, rows_of, wanted
+from ._surface import _or_zeros, array_of, column_of, points_of, rows_of, wanted
 
 _KINDS = ["nodes", "edges", "faces", "elements"]
 _ARRAYS = ["points", "tets", "region", "boundary", "patch", "source", "interfaces", "interface_patch", "curve_edges",
@@ -37,7 +37,8 @@ class Mesh:
     def __init__(self, points, tets, *, regions=None, region_names=(), faces=None, patches=None, patch_names=()):
         raw = Handle("mesh")
         raw.set("points", points_of(points))
-        second_order = np.ndim(tets) == 2 and np.shape(tets)[1] == 10
+        tets = array_of(tets, "tets")
+        second_order = tets.ndim == 2 and tets.shape[1] == 10
         tets = rows_of(tets, 10 if second_order else 4, np.uint32, "tets")
         raw.set("tets", tets[:, :4])
         if second_order:
@@ -190,7 +191,7 @@ class Mesh:
             demand("mesh_add_set", self._handle, number, raw, len(raw), pointer(members), len(members))
             return self
         corners = None if box is None else np.sort(points_of(box, "box"), axis=0)
-        ball = None if sphere is None else np.array([*sphere[0], sphere[1]], dtype=np.float64)
+        ball = None if sphere is None else array_of([*sphere[0], sphere[1]], "sphere", np.float64)
         # Numbers count from 0 here as everywhere in Python; the library's count from 1 as in files.
         words = [bytes_of(p if isinstance(p, str) else str(int(p) + 1)) for p in (patches or ())]
         note = ctypes.c_char_p()

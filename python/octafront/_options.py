@@ -13,6 +13,7 @@ import textwrap
 from . import errors
 from ._library import Handle, bytes_of, call, demand, file_of, intake_table, option_table, pointer
 from ._numpy import np
+from ._surface import array_of
 
 # Beside the tables, of the way in: name, what it is.
 _OF_INTAKE = [
@@ -150,10 +151,7 @@ def _plain(name, value):
 
 
 def _numbers(value, columns, name, what):
-    try:
-        rows = np.ascontiguousarray(value, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise errors.OptionError(f"`{name}` are rows of {what}: {error}") from None
+    rows = np.ascontiguousarray(array_of(value, f"`{name}`, rows of {what},", np.float64))
     if rows.ndim != 2 or rows.shape[1] != columns:
         raise errors.OptionError(f"`{name}` are rows of {what}: an array of shape (n, {columns}), not {rows.shape}")
     return rows
@@ -171,7 +169,7 @@ def _region_row(i, region):
     if len(places) != 1 or "size" not in region or set(region) - {places[0], "radius", "size"}:
         raise errors.OptionError(f"region {i} needs exactly one of \"box\", \"sphere\" and \"point\", a \"size\", and "
                                  f"at most a \"radius\" beside; it has {sorted(region)}")
-    corners = np.asarray(region[places[0]], dtype=np.float64)
+    corners = array_of(region[places[0]], f"\"{places[0]}\" of region {i}", np.float64)
     if corners.shape != ((2, 3) if places[0] == "box" else (3,)):
         raise errors.OptionError(f"region {i} needs " + ("[[x, y, z], [x, y, z]]" if places[0] == "box" else "[x, y, z]")
                                  + f" in \"{places[0]}\"")

@@ -10,13 +10,21 @@ from ._numpy import np
 OUTSIDE = 0xFFFFFFFF
 
 
+def array_of(value, name, dtype=None):
+    """`value` as NumPy has it. Raises OptionError where that is no array: rows of unequal length, words for numbers."""
+    try:
+        return np.asarray(value, dtype)
+    except (TypeError, ValueError) as error:
+        raise errors.OptionError(f"{name} must be numbers in rows of equal length: {error}") from None
+
+
 def points_of(value, name="points"):
     return rows_of(value, 3, np.float64, name)
 
 
 def rows_of(value, columns, dtype, name):
     """`value` as a C-ordered array of a dtype, without a copy if it is one. Raises OptionError."""
-    array = np.asarray(value)
+    array = array_of(value, name)
     if array.size == 0:
         array = array.reshape(0, columns).astype(dtype)
     if array.ndim != 2 or array.shape[1] != columns:
@@ -25,7 +33,7 @@ def rows_of(value, columns, dtype, name):
 
 
 def column_of(value, dtype, name):
-    array = np.asarray(value)
+    array = array_of(value, name)
     if array.ndim != 1:
         raise errors.OptionError(f"{name} must have the shape (n,), not {array.shape}")
     return np.ascontiguousarray(_numbers(array, dtype, name))
@@ -186,7 +194,7 @@ class Surface:
 
 def _with_outside(sides):
     """-1 says OUTSIDE too."""
-    sides = np.asarray(sides)
+    sides = array_of(sides, "sides")
     return np.where(sides == -1, OUTSIDE, sides) if sides.dtype.kind == "i" else sides
 
 

@@ -471,6 +471,18 @@ class Refusals(Case):
         self.refused(octafront.OptionError, "whole numbers, not float64", octafront.mesh, points, triangles * 1.0)
         self.refused(octafront.OptionError, "holds -1", octafront.mesh, points, triangles - 1)
         self.refused(octafront.OptionError, "numbers, not <U", octafront.mesh, points.astype(str), triangles)
+        ragged, equal = [[0, 0, 0], [1, 0]], "rows of equal length"
+        self.refused(octafront.OptionError, "points must be.*" + equal, octafront.mesh, ragged, triangles)
+        self.refused(octafront.OptionError, "triangles must be.*" + equal, octafront.mesh, points, ragged)
+        self.refused(octafront.OptionError, "patches must be.*" + equal, octafront.Surface, points, triangles, patches=ragged)
+        self.refused(octafront.OptionError, "sides must be.*" + equal, octafront.Surface, points, triangles, sides=ragged)
+        self.refused(octafront.OptionError, "tets must be.*" + equal, octafront.Mesh, points, ragged)
+        self.refused(octafront.OptionError, "an image must be.*" + equal, octafront.image_surface, [ragged])
+        self.refused(octafront.OptionError, "`spacing` must be", octafront.image_surface, np.ones((3, 3, 3)), spacing=ragged)
+        self.refused(octafront.OptionError, "`affine` must be", octafront.image_surface, np.ones((3, 3, 3)), ragged)
+        self.refused(octafront.OptionError, "`point_sizes`.*" + equal, octafront.mesh, points, triangles, point_sizes=ragged)
+        self.refused(octafront.OptionError, '"box" of region 0', octafront.mesh, points, triangles,
+                     regions=[{"box": ragged, "size": 1}])
         error = self.refused(octafront.InputError, "names point 8, but there are 8", octafront.mesh, points, triangles + 1)
         self.assertIsInstance(error, ValueError)
         points[3, 1] = np.nan
@@ -482,6 +494,7 @@ class Refusals(Case):
         points, triangles = cube()
         error = self.refused(octafront.InputError, "open edge", octafront.mesh, points, triangles[:-1], repair="none")
         self.assertEqual(error.defects["open_edges"]["count"], 3)
+        self.assertFalse(str(error).endswith("\n"))
         self.assertEqual(error.defects["region_conflicts"]["count"], 0)
         place = error.defects["open_edges"]["first"][0]
         self.assertEqual(len(place["at"]), 3)

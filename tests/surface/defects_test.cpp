@@ -184,7 +184,15 @@ TEST(Defects, MessageSaysHowManyWhereAndWhatToDo) {
       defects_of(s).describe(),
       "1 hole (3 open edges): edge at (0, 1, 2) (face 0); edge at (1, 2, 2) (face 6); edge at (1, 1, 2) (face 10). "
       "Close the surface, e.g. in MeshLab with \"Close Holes\"; if faces only fail to touch, with \"Merge Close "
-      "Vertices\".\n");
+      "Vertices\".");
+}
+
+TEST(Defects, MessageHasALineForEachKindAndNoneBehind) {
+  SurfaceDefects defects;
+  defects.open_edges.count = defects.degenerate_faces.count = 1;
+  const std::string text = defects.describe();
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
+  EXPECT_NE(text.back(), '\n');
 }
 
 }  // namespace

@@ -40,7 +40,8 @@ std::string places_of(const SurfaceDefects::Kind& kind, const char* where) {
 void describe(std::string& text, const SurfaceDefects::Kind& kind, const std::string& what, const char* where,
               const char* remedy) {
   if (kind.count == 0) return;
-  text += fmt::format("{}: {}. {}\n", what, places_of(kind, where), remedy);
+  if (!text.empty()) text += '\n';
+  text += fmt::format("{}: {}. {}", what, places_of(kind, where), remedy);
 }
 
 }  // namespace
@@ -53,7 +54,7 @@ bool SurfaceDefects::clean() const {
 }
 
 std::string SurfaceDefects::describe() const {
-  if (no_faces) return "No face is left: the input has none with an area.\n";
+  if (no_faces) return "No face is left: the input has none with an area.";
   std::string text;
   octafront::describe(text, open_edges,
                       open_loops == 0
