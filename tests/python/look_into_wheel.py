@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Is a wheel what it says? Needs readelf.
+"""Is a wheel what it says? Needs readelf and nm.
 
     look_into_wheel.py WHEEL SOURCE
 
 - Everything that its binaries need is inside, or a part of glibc or of GCC's run time.
 - No binary asks for a newer glibc than the name of the wheel says, nor for a newer libstdc++ than that system has.
 - The licence and version of each library inside is told, ours too, and py.typed and stubs are there.
+- The library shows its C interface and nothing of C++, its own or that of libraries inside.
 - RECORD is right, and the version that of CMakeLists.txt.
 """
 import base64
@@ -23,6 +24,11 @@ EVERYWHERE = {"libc.so.6", "libm.so.6", "libstdc++.so.6", "libgcc_s.so.1", "ld-l
 
 def readelf(option, file):
     return subprocess.run(["readelf", "--wide", option, file], check=True, capture_output=True, text=True).stdout
+
+
+def exported(file):
+    lines = subprocess.run(["nm", "--dynamic", "--defined-only", file], check=True, capture_output=True, text=True).stdout
+    return {line.split()[-1] for line in lines.splitlines()}
 
 
 def look(wheel, source):
@@ -47,8 +53,13 @@ def look(wheel, source):
             require(path in ([], ["$ORIGIN"]), f"{name} looks for libraries in {path}")
             if name in ("liboctafront.so", "octafront"):
                 require(path == ["$ORIGIN"], f"{name} does not look beside itself")
-            for a, b in re.findall(r"GLIBC_(\d+)\.(\d+)", readelf("-V", file)):
-                require((int(a), int(b)) <= (int(tag[1]), int(tag[2])), f"{name} needs glibc {a}.{b}")
+            newest = max((int(a), int(b)) for a, b in re.findall(r"GLIBC_(\d+)\.(\d+)", readelf("-V", file)))
+            print(f"{name} needs glibc {newest[0]}.{newest[1]}")
+            require(newest <= (int(tag[1]), int(tag[2])), f"{name} needs a newer glibc than the name of the wheel says")
+            if name == "liboctafront.so":
+                shown = exported(file)
+                require("octafront_generate" in shown, "the C interface is not shown")
+                require(all(s.startswith("octafront_") for s in shown), f"{name} shows {sorted(shown)[:3]} and more")
     contents = wheel.read(next(n for n in names if n.endswith("/licenses/contents.txt"))).decode()
     for library in binaries:
         stem = library.removeprefix("lib").split(".")[0]
