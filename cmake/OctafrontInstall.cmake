@@ -41,10 +41,22 @@ write_basic_package_version_file(octafrontConfigVersion.cmake COMPATIBILITY Same
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/octafrontConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/octafrontConfigVersion.cmake
         DESTINATION ${package_dir} COMPONENT development)
 
-# pkg-config: from where the file lies, so that the whole prefix may be moved.
-set(pc_hdf5 "")
-if(OCTAFRONT_HDF5_LIBRARY)
-  set(pc_hdf5 ${OCTAFRONT_HDF5_LIBRARY})
+# pkg-config: from where the file lies, so that the whole prefix may be moved. A static library wants what it stands on
+# at every link, also by a C compiler; with a shared one that is private.
+set(pc_stands_on ${CMAKE_CXX_IMPLICIT_LINK_LIBRARIES})
+list(FILTER pc_stands_on EXCLUDE REGEX "^(gcc|gcc_s|c)$")
+list(TRANSFORM pc_stands_on PREPEND "-l" REGEX "^[^-/]")
+list(JOIN pc_stands_on " " pc_stands_on)
+set(pc_stands_on "${OCTAFRONT_HDF5_LIBRARY} -lpthread ${pc_stands_on}")
+get_target_property(pc_kind octafront TYPE)
+if(pc_kind STREQUAL "STATIC_LIBRARY")
+  set(pc_private "")
+  set(pc_libs ${pc_stands_on})
+  set(pc_libs_private "")
+else()
+  set(pc_private ".private")
+  set(pc_libs "")
+  set(pc_libs_private ${pc_stands_on})
 endif()
 file(RELATIVE_PATH pc_prefix ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
 configure_file(cmake/octafront.pc.in octafront.pc @ONLY)

@@ -6,11 +6,10 @@ prefix=$1 examples=$2 scratch=$3
 mkdir -p "$scratch"
 PKG_CONFIG_PATH=$(dirname "$(find "$prefix" -name octafront.pc)")
 export PKG_CONFIG_PATH
-# Which way it is linked is the library's choice; a static one wants what it stands on.
-flags=$(pkg-config --cflags octafront) libraries=$(pkg-config --static --libs octafront)
-c++ $flags "$examples/mesh_a_sphere.cpp" -o "$scratch/sphere" $libraries
-cc -std=c99 -c $(pkg-config --cflags-only-I octafront) "$examples/mesh_from_c.c" -o "$scratch/cube.o"
-c++ "$scratch/cube.o" -o "$scratch/cube" $libraries
+# As README says it: the library knows whether it is static, and what it wants then.
+pkg_config="pkg-config --cflags --libs octafront"
+c++ -std=c++20 "$examples/mesh_a_sphere.cpp" -o "$scratch/sphere" $($pkg_config)
+cc -std=c99 -Wall -Wextra -Wpedantic -Werror "$examples/mesh_from_c.c" -o "$scratch/cube" $($pkg_config)
 LD_LIBRARY_PATH=$(dirname "$PKG_CONFIG_PATH") "$scratch/sphere" "$scratch/sphere.vtu"
 LD_LIBRARY_PATH=$(dirname "$PKG_CONFIG_PATH") "$scratch/cube" "$scratch/cube.vtu"
 test -s "$scratch/sphere.vtu" && test -s "$scratch/cube.vtu"
@@ -24,7 +23,7 @@ code=$(awk '/^```cpp/ { on = 1; next } /^```/ { on = 0 } on' "$examples/../READM
   echo "$code" | grep -v '^#include'
   echo '}'
 } >"$scratch/readme.cpp"
-c++ $flags "$scratch/readme.cpp" -o "$scratch/readme" $libraries
+c++ -std=c++20 "$scratch/readme.cpp" -o "$scratch/readme" $($pkg_config)
 cp "$examples/../samples/bracket.stl" "$scratch/part.stl"
 cd "$scratch"
 LD_LIBRARY_PATH=$(dirname "$PKG_CONFIG_PATH") ./readme
