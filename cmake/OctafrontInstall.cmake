@@ -1,6 +1,7 @@
 # `cmake --install`, what find_package(octafront) and pkg-config find, and `cpack -G DEB`. Two components: what one runs,
 # and what programs of others are built with.
 include(CMakePackageConfigHelpers)
+find_program(OCTAFRONT_GZIP gzip)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/octafront)
 set(doc_dir ${CMAKE_INSTALL_DATADIR}/doc)
@@ -21,15 +22,21 @@ endif()
 # The manual page and what completes commands in shells, which the tool writes itself.
 if(TARGET octafront_cli)
   set(shell_dir ${PROJECT_BINARY_DIR}/shell)
-  add_custom_command(OUTPUT ${shell_dir}/octafront.1 ${shell_dir}/octafront.bash ${shell_dir}/_octafront ${shell_dir}/octafront.fish
+  set(manual ${shell_dir}/octafront.1)
+  if(OCTAFRONT_GZIP)
+    set(manual ${shell_dir}/octafront.1.gz)
+    set(compress COMMAND ${OCTAFRONT_GZIP} -9nkf ${shell_dir}/octafront.1)
+  endif()
+  add_custom_command(OUTPUT ${manual} ${shell_dir}/octafront.bash ${shell_dir}/_octafront ${shell_dir}/octafront.fish
     COMMAND ${CMAKE_COMMAND} -E make_directory ${shell_dir}
     COMMAND octafront_cli help --man > ${shell_dir}/octafront.1
+    ${compress}
     COMMAND octafront_cli completion bash > ${shell_dir}/octafront.bash
     COMMAND octafront_cli completion zsh > ${shell_dir}/_octafront
     COMMAND octafront_cli completion fish > ${shell_dir}/octafront.fish
     DEPENDS octafront_cli)
-  add_custom_target(octafront_shell_files ALL DEPENDS ${shell_dir}/octafront.1)
-  install(FILES ${shell_dir}/octafront.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT runtime)
+  add_custom_target(octafront_shell_files ALL DEPENDS ${manual})
+  install(FILES ${manual} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT runtime)
   install(FILES ${shell_dir}/octafront.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME octafront
           COMPONENT runtime)
   install(FILES ${shell_dir}/_octafront DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions COMPONENT runtime)
@@ -47,7 +54,13 @@ set(pc_stands_on ${CMAKE_CXX_IMPLICIT_LINK_LIBRARIES})
 list(FILTER pc_stands_on EXCLUDE REGEX "^(gcc|gcc_s|c)$")
 list(TRANSFORM pc_stands_on PREPEND "-l" REGEX "^[^-/]")
 list(JOIN pc_stands_on " " pc_stands_on)
-set(pc_stands_on "${OCTAFRONT_HDF5_LIBRARY} -lpthread ${pc_stands_on}")
+# By its name where linkers look anyway: then the file is right for every architecture.
+set(pc_hdf5 "${OCTAFRONT_HDF5_LIBRARY}")
+cmake_path(GET OCTAFRONT_HDF5_LIBRARY PARENT_PATH hdf5_dir)
+if(hdf5_dir IN_LIST CMAKE_CXX_IMPLICIT_LINK_DIRECTORIES)
+  string(REGEX REPLACE "^.*/lib([^/]*)[.](so|a)$" "-l\\1" pc_hdf5 "${OCTAFRONT_HDF5_LIBRARY}")
+endif()
+set(pc_stands_on "${pc_hdf5} -lpthread ${pc_stands_on}")
 get_target_property(pc_kind octafront TYPE)
 if(pc_kind STREQUAL "STATIC_LIBRARY")
   set(pc_private "")
@@ -85,4 +98,17 @@ if(OCTAFRONT_HDF5_LIBRARY)
 endif()
 list(JOIN dev_depends ", " CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS)
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "Tetrahedral finite element meshes from closed surfaces: C++ and C library")
+
+# What a Debian package has to say of itself.
+if(OCTAFRONT_GZIP)
+  set(debian_dir ${PROJECT_BINARY_DIR}/debian)
+  string(TIMESTAMP changelog_date "%a, %d %b %Y %H:%M:%S +0000" UTC)
+  configure_file(cmake/debian/changelog.in ${debian_dir}/changelog @ONLY)
+  add_custom_command(OUTPUT ${debian_dir}/changelog.gz COMMAND ${OCTAFRONT_GZIP} -9nkf ${debian_dir}/changelog
+                     DEPENDS ${debian_dir}/changelog)
+  add_custom_target(octafront_debian_files ALL DEPENDS ${debian_dir}/changelog.gz)
+  set(debian_files cmake/debian/copyright ${debian_dir}/changelog.gz)
+  install(FILES ${debian_files} DESTINATION ${doc_dir}/octafront COMPONENT runtime)
+  install(FILES ${debian_files} DESTINATION ${doc_dir}/liboctafront-dev COMPONENT development)
+endif()
 include(CPack)
