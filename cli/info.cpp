@@ -35,7 +35,7 @@ void tell_surface_info(Session& session) {
   const SurfaceFile file = read_input(session);
   const SurfaceMesh& s = file.surface;
   const Box3 box = bounding_box(s.points);
-  const std::string unit = a.unit.empty() ? unit_of_file(a.input) : a.unit;
+  const std::string unit = a.unit.empty() ? unit_of_file(a.input.string()) : a.unit;
   session.found({{"kind", "surface"},
                  {"format", file.format},
                  {"triangles", s.triangles.size()},

@@ -24,4 +24,5 @@
 #include <octafront/solver_checks.h>
 #include <octafront/surface_mesh.h>
 #include <octafront/tet_mesh.h>
+#include <octafront/units.h>
 #include <octafront/validity.h>

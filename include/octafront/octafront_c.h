@@ -48,6 +48,11 @@ const char* octafront_last_error(void);
 const char* octafront_option_table(void);
 /** The same of what is asked on the way in, IntakeOptions: keys for octafront_open_files() and its like. */
 const char* octafront_intake_table(void);
+/** JSON, an array: name, metres and words of each unit of length (octafront/units.h). */
+const char* octafront_units(void);
+/** The unit that a file says its coordinates are in, "" for none; null if it is an image that cannot be read. Valid
+ * until the next call of this thread. */
+const char* octafront_unit_of_file(const char* file);
 /** JSON, an array: name, title, endings, what can be read and written, of each file format. */
 const char* octafront_formats(void);
 

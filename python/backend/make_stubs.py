@@ -9,6 +9,7 @@ import sys
 
 from octafront._library import intake_table, option_table
 from octafront._options import keywords_of
+from octafront._units import LENGTHS
 
 TEMPLATE = '''\
 # Made by python/backend/make_stubs.py: edit that.
@@ -178,7 +179,7 @@ FURTHER = {
     "crop": "Sequence[Sequence[int | None]] | None = None", "resample": "float | Sequence[float] | None = None",
     "regions": "Places | None = None", "point_sizes": "npt.ArrayLike | Path | None = None",
     "size_of": "Mapping[str, float] | None = None", "size_field": "SizeField | Path | None = None",
-    "after_pass": "Callable[[str, dict[str, Any]], object] | None = None", "progress": "Progress | None = None",
+    "unit": "str | None = None", "after_pass": "Callable[[str, dict[str, Any]], object] | None = None", "progress": "Progress | None = None",
     "threads": "int = 0",
 }
 OF_IMAGES = """\
@@ -201,6 +202,8 @@ KINDS = {"number": "float", "whole": "int", "flag": "bool"}
 
 def declared(row):
     kind = f"Literal[{', '.join(map(repr, row['choices']))}]" if row["choices"] else KINDS[row["kind"]]
+    if row["name"] in LENGTHS:
+        kind += " | str"
     if row["name"] == "size":
         kind += " | SizeFunction | SizeField"
     return f"{kind} | None = None" if row["default"] is None else f"{kind} = {row['default']!r}"

@@ -52,7 +52,7 @@ def mesh(points, triangles=None, **keywords):
     >>> octafront.mesh(points, triangles, size=0.5, progress=lambda phase, fraction: True)
     >>> octafront.mesh("scan.stl", elements=200_000).save("scan.inp")
     """
-    return _meshed(points, triangles, _Settings("mesh", "mesh", keywords))
+    return _meshed(points, triangles, _Settings("mesh", "mesh", keywords, points))
 
 
 @_takes_options("mesh")
@@ -61,7 +61,7 @@ def mesh_file(path, **keywords):
 
     >>> octafront.mesh_file("part.stl", elements=200_000).save("part.inp")
     """
-    return _meshed(path, None, _Settings("mesh_file", "mesh", keywords))
+    return _meshed(path, None, _Settings("mesh_file", "mesh", keywords, path))
 
 
 def image_surface(image, affine=None, *, spacing=None, series=0, kind="auto", labels=None, ignore=None, merge=None,
@@ -107,7 +107,7 @@ def mesh_image(image, affine=None, **keywords):
     >>> octafront.mesh_image(nibabel_image.get_fdata(), nibabel_image.affine, elements=500_000)
     """
     spacing = keywords.pop("spacing", None)
-    settings = _Settings("mesh_image", "mesh", keywords)
+    settings = _Settings("mesh_image", "mesh", keywords, image)
     series = settings.intake.pop("series", 0)
     made = _surface_of_image(image, affine, spacing, series, settings.intake, settings.threads, settings.progress)
     settings.intake = {}
@@ -141,7 +141,7 @@ def surface(points, triangles=None, **keywords):
 
     points, triangles: as for mesh(). Raises OptionError, InputError, MeshingError, Cancelled.
     """
-    job, report = _generated("generate_surface", points, triangles, _Settings("surface", "surface", keywords))
+    job, report = _generated("generate_surface", points, triangles, _Settings("surface", "surface", keywords, points))
     return Surface._of(job.take("surface"), report, opened=True)
 
 
@@ -151,7 +151,7 @@ def size_field(points, triangles=None, **keywords):
 
     points, triangles: as for mesh(). Raises OptionError, InputError, MeshingError, Cancelled.
     """
-    job, report = _generated("generate_sizes", points, triangles, _Settings("size_field", "size", keywords))
+    job, report = _generated("generate_sizes", points, triangles, _Settings("size_field", "size", keywords, points))
     return SizeField._of(job.take("sizes"), report)
 
 

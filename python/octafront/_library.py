@@ -42,6 +42,7 @@ _length = ctypes.POINTER(ctypes.c_size_t)
 
 _PROTOTYPES = {
     "version": (_text,), "last_error": (_text,), "option_table": (_text,), "intake_table": (_text,), "formats": (_text,),
+    "units": (_text,), "unit_of_file": (_text, _text),
     "surface_new": (_handle,), "surface_free": (None, _handle),
     "surface_array": (_whole, _handle, _text, ctypes.POINTER(Array)),
     "surface_set_array": (_whole, _handle, _text, _pointer, _size),

@@ -14,6 +14,7 @@ from . import errors
 from ._library import Handle, bytes_of, call, demand, file_of, intake_table, option_table, pointer
 from ._numpy import np
 from ._surface import array_of
+from ._units import convert_lengths
 
 # Beside the tables, of the way in: name, what it is.
 _OF_INTAKE = [
@@ -39,6 +40,9 @@ _FURTHER = [(name, "mesh surface size", text) for name, text in _OF_INTAKE] + [
     ("size_of", "mesh surface size",
      "{name: edge length} of regions (their boundary and inside), patches and curves, by their names"),
     ("size_field", "mesh surface size", "All sizes: a SizeField, or a file that one wrote; alone"),
+    ("unit", "mesh surface size",
+     "What the input's coordinates count, for lengths with a unit of their own, such as size=\"2mm\": um, mm, cm, m, in or "
+     "ft; files may say it"),
     ("after_pass", "mesh improve", "after_pass(name, worst), told of every pass of improvement"),
     ("progress", "mesh surface size improve",
      "progress(phase, fraction), told how far the run is; fraction is None where it is unknown. What returns False ends "
@@ -67,11 +71,13 @@ def keywords_of(task):
 
 
 class Settings:
-    """The keywords of a call, taken apart: `options` for the library, `intake` for the way in, and what Python serves."""
+    """The keywords of a call about `source`, taken apart: `options` for the library, `intake` for the way in, and what
+    Python serves."""
 
-    def __init__(self, function, task, keywords):
+    def __init__(self, function, task, keywords, source=None):
         keywords = {name: value for name, value in keywords.items() if _is_known(function, task, name)}
         given = {name: value for name, value in keywords.items() if value is not None}
+        convert_lengths(given, source)
         self.progress, self.after_pass = given.pop("progress", None), given.pop("after_pass", None)
         self.threads = _threads(given.pop("threads", 0))
         self.intake = {name: given.pop(name) for name in list(given) if name in _intake_keywords()}

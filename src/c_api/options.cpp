@@ -2,6 +2,7 @@
 #include <octafront/generate.h>
 #include <octafront/io.h>
 #include <octafront/option_table.h>
+#include <octafront/units.h>
 
 #include "c_api/c_api.h"
 #include "c_api/json_keys.h"
@@ -75,6 +76,13 @@ std::string described_formats() {
   return all.dump();
 }
 
+std::string described_units() {
+  Json all = Json::array();
+  for (const LengthUnit& unit : length_units())
+    all.push_back({{"name", unit.name}, {"metres", unit.metres}, {"words", unit.words}});
+  return all.dump();
+}
+
 }  // namespace
 
 OptionValue value_of(const std::string& name, const Json& json) {
@@ -105,6 +113,17 @@ const char* octafront_intake_table() {
 const char* octafront_formats() {
   static const std::string text = described_formats();
   return text.c_str();
+}
+
+const char* octafront_units() {
+  static const std::string text = described_units();
+  return text.c_str();
+}
+
+const char* octafront_unit_of_file(const char* file) {
+  const char* unit = nullptr;
+  guarded([&] { unit = kept(unit_of_file(file)); });
+  return unit;
 }
 
 octafront_options* octafront_options_new() {

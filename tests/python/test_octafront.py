@@ -416,6 +416,26 @@ class Sizes(Case):
             with self.assertRaisesRegex(TypeError, "cannot be copied"):
                 copy.copy(made._handle)
 
+    def test_lengths_have_units_as_on_the_command_line(self):
+        plain, inches = SAMPLES / "bracket.stl", self.folder / "in.obj"
+        octafront.Surface.read(plain).save(inches)
+        inches.write_text("# File units = inches\n" + inches.read_text())
+        program = pathlib.Path(sys.executable).parent / "octafront"
+        for file, line, said in ((plain, ["--size", "0.6cm", "--unit", "mm", "--max-deviation", "0.005in"],
+                                  {"size": "0.6cm", "unit": "MM", "max_deviation": " 0.005 in"}),
+                                 (inches, ["--size", "160mm", "--min-size", "4in"], {"size": "160mm", "min_size": "4in"})):
+            report = self.folder / "report.json"
+            subprocess.run([program, "mesh", file, "-o", self.folder / "m.vtu", "--json", report, *line], check=True,
+                           stdout=subprocess.DEVNULL)
+            for source in (file, [file]):
+                self.assertEqual(octafront.mesh(source, **said).report["hash"], json.loads(report.read_text())["hash"])
+        self.assertEqual(octafront.mesh(*cube(), size="0.5").report["hash"], octafront.mesh(*cube(), size=0.5).report["hash"])
+        for bad, words in (({"size": "2mm"}, "does not say what its coordinates count"), ({"size": "2 miles"}, "its unit"),
+                           ({"size": "mm"}, "needs a number, or a length"), ({"size": 1, "unit": "mile"}, "one of um, mm"),
+                           ({"size": "-1"}, "above 0"), ({"size": "inf"}, "needs a number")):
+            with self.assertRaisesRegex(octafront.OptionError, words, msg=bad):
+                octafront.mesh(*cube(), **bad)
+
     def test_regions_and_points(self):
         plain = len(octafront.mesh(*cube(), size=0.4))
         region = {"sphere": [0.5, 0.5, 0.5], "radius": 0.2, "size": 0.08}
