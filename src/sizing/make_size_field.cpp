@@ -207,12 +207,19 @@ Raised raised_to_count(const SurfaceMesh& surface, const WantedSizes& wanted, co
   return std::move(*best);
 }
 
+/// Elements that a largest size alone makes: they are the user's own choice.
+double forced_by_largest(const SurfaceMesh& surface, const SizeOptions& options) {
+  if (!options.max_size) return 0;
+  const double h = *options.max_size;
+  return kTetsPerCube * std::abs(enclosed_volume(surface)) / (h * h * h) + kTetsPerSquare * area(surface) / (h * h);
+}
+
 /// Sizes of our own choice must not make a large mesh that nobody asked for, as the noise of a scan does, or a thousand
 /// small holes: then the smallest sizes are raised until the number of elements is within the budget.
 SizeField within_budget(const SurfaceMesh& surface, const WantedSizes& wanted, const SizeOptions& options,
                         double budget, const Stage& stage) {
   const TetPrediction expected(surface);
-  const double for_details = kForDetails / std::pow(options.automatic_factor, 3);
+  const double for_details = kForDetails / std::pow(options.automatic_factor, 3) + forced_by_largest(surface, options);
   double first = Affordable(surface, options).tets_by(wanted.face), low = *std::ranges::min_element(wanted.face);
   if (!(first > kFarBeyond * budget)) {
     SizeField field = grid_field(surface, wanted, options, stage.context());
@@ -223,8 +230,10 @@ SizeField within_budget(const SurfaceMesh& surface, const WantedSizes& wanted, c
   const double high = std::min(wanted.ceiling, kMostSmallRaised * low);
   Raised made = raised_to_count(surface, wanted, options, expected, for_details, low, high, stage.context());
   if (made.count > budget)
-    made = raised_to_count(surface, wanted, options, expected, budget, high,
-                           kLargestFloor * *std::ranges::max_element(wanted.face), stage.context());
+    made = raised_to_count(
+        surface, wanted, options, expected, budget, high,
+        std::min(kLargestFloor * *std::ranges::max_element(wanted.face), options.max_size.value_or(HUGE_VAL)),
+        stage.context());
   const std::string in_all =
       std::isfinite(budget) ? fmt::format(" (with what the surface takes, at most {:.2g} million)", budget / 1e6) : "";
   stage.note(fmt::format(
@@ -250,7 +259,7 @@ void refuse_huge_counts(const SurfaceMesh& surface, const WantedSizes& wanted) {
 double automatic_budget(const SurfaceMesh& surface, const SizeOptions& options) {
   if (!has_no_size_source(options)) return HUGE_VAL;
   const double budget = kBudget + kBudgetPerTriangle * static_cast<double>(surface.triangles.size());
-  return std::min(budget, kMostBudget) / std::pow(options.automatic_factor, 3);
+  return std::min(budget, kMostBudget) / std::pow(options.automatic_factor, 3) + forced_by_largest(surface, options);
 }
 
 SizeField make_size_field(const KnownSurface& known, const SizeOptions& options, const Stage& stage,

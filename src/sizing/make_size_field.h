@@ -35,7 +35,8 @@ SizeField make_size_field(const KnownSurface& surface, const SizeOptions& option
 void note_misplaced_sizes(const SurfaceMesh& surface, const SizeOptions& options, const Stage& stage);
 
 /// How many elements sizes of our own choice come to at most, about: kBudget and kBudgetPerTriangle for each triangle
-/// of the surface, kMostBudget at most; known before anything is made. HUGE_VAL if the user chose sizes.
+/// of the surface, kMostBudget at most, and what `max_size` makes by itself; known before anything is made. HUGE_VAL if
+/// the user chose sizes.
 double automatic_budget(const SurfaceMesh& surface, const SizeOptions& options);
 
 /// The part of its volume that a surface made by these sizes loses, by its curvature: chords cut it off.

@@ -183,8 +183,7 @@ SizeAtPlace sizes_at_places(const KnownSurface& surface, const Choice& choice, c
 }  // namespace
 
 bool has_no_size_source(const SizeOptions& o) {
-  return has_automatic_base(o) && !o.elements && !o.field && !o.min_size && !o.max_size && o.regions.empty() &&
-         o.named.empty();
+  return has_automatic_base(o) && !o.elements && !o.field && !o.min_size && o.regions.empty() && o.named.empty();
 }
 
 void refuse_huge_turning(const KnownSurface& surface, const SizeOptions& options, double degrees,
@@ -287,7 +286,7 @@ WantedSizes wanted_sizes(const KnownSurface& known, const SizeOptions& options, 
   wanted.ceiling = graded ? options.max_size.value_or(std::numeric_limits<double>::infinity()) : choice.base * scale;
   wanted.ceiling = std::max(wanted.ceiling, options.min_size.value_or(0));
   const auto [least, most] = std::minmax_element(wanted.face.begin(), wanted.face.end());
-  wanted.automatic = choice.automatic && !options.min_size && !options.max_size;
+  wanted.automatic = choice.automatic && !options.min_size;
   wanted.even = !wanted.at_place && wanted.points.empty() && *least == *most;
   stage.count("base size", choice.base * scale);
   stage.count("extent", model_extent(surface));

@@ -34,7 +34,7 @@ struct WantedSizes {
   bool automatic = false;          ///< the user left the choice to us
 };
 
-/// Whether nothing says what the sizes are, so that all are of our own choice.
+/// Whether nothing says what the sizes are, so that all are of our own choice, up to a largest one.
 bool has_no_size_source(const SizeOptions& options);
 
 /// A measure of the model that neither rotation nor triangulation changes: 2 sqrt(3) times the root mean square

@@ -387,6 +387,23 @@ TEST(AutomaticBudget, GrowsWithTheTrianglesAndIsTheUsersOwnWhereHeChooses) {
   EXPECT_EQ(automatic_budget(ball, o), HUGE_VAL);
 }
 
+/// A largest size is no wish for details: what it makes by itself comes on top, and no more.
+TEST(AutomaticBudget, HoldsBelowALargestSize) {
+  const SurfaceMesh ball = icosphere(2);
+  SizeOptions o;
+  o.max_size = 0.5;
+  EXPECT_GT(automatic_budget(ball, o), automatic_budget(ball, {}));
+  EXPECT_LT(automatic_budget(ball, o), 1.01 * automatic_budget(ball, {}));
+  SurfaceMesh plates = box(1, 1, 0.002);
+  for (int k = 1; k < 20; ++k) plates = testing::joined(plates, transformed(box(1, 1, 0.002), 1, {0, 0, 0.016 * k}));
+  const KnownSurface known(plates, 40);
+  StageReport report;
+  const double budget = 100'000;
+  const SizeField sizes = make_size_field(known, o, {RunContext{}, report}, {}, budget);
+  EXPECT_LT(expected_tets(sizes, plates), 1.1 * budget);
+  EXPECT_LE(sizes.max_size(), *o.max_size);
+}
+
 /// Thousands of thin walls: raising the smallest sizes a little does not help.
 TEST(AutomaticBudget, HoldsForDetailsWithoutEnd) {
   SurfaceMesh plates = box(1, 1, 0.002);
