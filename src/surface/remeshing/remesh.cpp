@@ -51,6 +51,9 @@ constexpr double kCapOfShells = 0.29;
 /// Where all rounds together have made so many times the triangles of the last one, what crosses gets the input's
 /// triangles at once, and later no other round is made: no surface takes more than so many times the work of its last.
 constexpr double kPatience = 4, kWornOut = 10;
+/// Where all that crosses does so among the input's triangles, so many rounds in a row, no round will end it: points on
+/// their edges are rounded, and sheets may lie nearer to each other than that.
+constexpr int kMostStuck = 4;
 /// Nor is size the reason in a complex where the input's triangles are about as large as those that are wanted: none of
 /// their heights is below this part of the size. So it is between the voxels of an image.
 constexpr double kAsLarge = 0.5;
@@ -308,7 +311,8 @@ class Remesher {
 
   Remeshed run() {
     if (seamed_ && limits_deviation()) foresee_deviation();
-    for (counts_.rounds = 1; counts_.rounds <= kMostRounds && !is_worn_out(kWornOut); ++counts_.rounds) {
+    for (counts_.rounds = 1; counts_.rounds <= kMostRounds && !is_worn_out(kWornOut) && stuck_ < kMostStuck;
+         ++counts_.rounds) {
       Compacted c = attempt(Effort::kFull);
       if (is_noise_) return kept_as_noise();
       last_triangles_ = c.result.surface.triangles.size();
@@ -783,11 +787,15 @@ class Remesher {
   void cap_or_restore(const std::vector<Vec3>& places, const SizeField& made_by, double factor) {
     std::vector<Vec3> to_cap;
     const std::size_t before = restored_.size();
-    bool in_vain = false;
+    std::vector<std::uint8_t> has_grown(before, 0);
+    bool in_vain = false, all_restored = true;
     for (const Vec3 p : places) {
       const auto around = restored_around(p, 1);
+      all_restored &= around != restored_.end();
       if (around != restored_.end()) {
-        if (static_cast<std::size_t>(around - restored_.begin()) < before) around->radius *= kMoreRestored;
+        const auto i = static_cast<std::size_t>(around - restored_.begin());
+        // Of a complex once for each place: its balls are as small as voxels.
+        if (i < before && (seamed_ || !has_grown[i])) around->radius *= kMoreRestored, has_grown[i] = 1;
         in_vain |= around->in_vain;
       } else if (seamed_ && (made_by.at(p) < kVain * first_.at(p) || is_as_large(p, made_by))) {
         restored_.push_back({p, kRestored * made_by.at(p), false});
@@ -799,6 +807,7 @@ class Remesher {
         to_cap.push_back(p);
       }
     }
+    stuck_ = all_restored && !seamed_ ? stuck_ + 1 : 0;
     if (in_vain) forget_caps();
     if (!to_cap.empty()) cap(to_cap, factor);
   }
@@ -940,6 +949,7 @@ class Remesher {
     int round = 0;                ///< since when
   } spent_;                       ///< the budget
   std::size_t last_triangles_ = 0;
+  int stuck_ = 0;  ///< see kMostStuck
   bool is_noise_ = false;  ///< of a complex: no triangles but its own follow it
 };
 
