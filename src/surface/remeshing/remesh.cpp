@@ -949,7 +949,7 @@ class Remesher {
     int round = 0;                ///< since when
   } spent_;                       ///< the budget
   std::size_t last_triangles_ = 0;
-  int stuck_ = 0;  ///< see kMostStuck
+  int stuck_ = 0;          ///< see kMostStuck
   bool is_noise_ = false;  ///< of a complex: no triangles but its own follow it
 };
 
