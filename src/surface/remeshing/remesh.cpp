@@ -321,15 +321,14 @@ class Remesher {
       if (static_cast<double>(last_triangles_) > kMostTriangles * limits_.budget) return kept_for_budget();
       cap_far(c);
     }
+    if (stuck_ == kMostStuck) return kept_in_crossings();
     Compacted c = attempt(Effort::kInsertOnly);
     if (is_sound(c)) {
       stage_.note("the surface's own vertices were kept: coarser triangles would cross");
       c.result.source = sources_of(c);
       return finished(c);
     }
-    report_counts(counts_, stage_);
-    stage_.note("the surface was kept as it is: every other triangulation tried crosses itself");
-    return input_as_it_is(known_, sizes_);
+    return kept_in_crossings();
   }
 
  private:
@@ -372,6 +371,12 @@ class Remesher {
   /// Whether all rounds together have made more than so many times the triangles of the last one.
   bool is_worn_out(double times) const {
     return static_cast<double>(counts_.triangles) > times * static_cast<double>(last_triangles_);
+  }
+
+  Remeshed kept_in_crossings() {
+    report_counts(counts_, stage_);
+    stage_.note("the surface was kept as it is: every other triangulation tried crosses itself");
+    return input_as_it_is(known_, first_);
   }
 
   Remeshed kept_for_budget() {
