@@ -12,6 +12,7 @@
 #include <cctype>
 #include <cmath>
 
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
 namespace octafront {
@@ -21,8 +22,8 @@ using Kind = NamedSet::Kind;
 using testing::TemporaryFolder;
 
 std::string file_name(const FormatInfo& info) {
-  const std::string ending(info.endings.substr(0, info.endings.find(' ')));
-  return "mesh" + (ending.empty() ? "." + std::string(info.name) : ending);
+  const std::string_view ending = info.endings.substr(0, info.endings.find(' '));
+  return ending.empty() ? fmt::format("mesh.{}", info.name) : fmt::format("mesh{}", ending);
 }
 
 /// Formats list sets in an order of their own.
