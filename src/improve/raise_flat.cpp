@@ -104,12 +104,15 @@ class FlatRaiser {
     return std::any_of(corners.begin(), corners.end(), [&](VertexIndex v) { return move(v); });
   }
 
+  /// Narrow corners of curves are no reason: where nothing but noise makes them, a move within the limits opens them,
+  /// and the corners of flat faces stay anyway.
   bool is_forced(TetIndex t) const {
     if (limits_.force == nullptr) return false;
     const auto& [a, b, c, d] = mesh_.tets[t];
     const Vec3 p = mesh_.points[a], q = mesh_.points[b], r = mesh_.points[c], s = mesh_.points[d];
-    return limits_.force->cause_at(centroid(p, q, r, s), std::sqrt(longest_squared_edge(p, q, r, s))) !=
-           improve::InputForce::Cause::kNone;
+    using Cause = improve::InputForce::Cause;
+    const Cause cause = limits_.force->cause_at(centroid(p, q, r, s), std::sqrt(longest_squared_edge(p, q, r, s)));
+    return cause == Cause::kThin || cause == Cause::kWedge;
   }
 
   double allowed_at(Vec3 home) const {

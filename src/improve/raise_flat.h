@@ -21,7 +21,7 @@ struct RaiseLimits {
   double distance = 0;                         ///< input units
   const Leeway* leeway = nullptr;              ///< no farther than that either; null: whatever it is
   improve::FlatWalls* walls = nullptr;         ///< whose vertices stay; null: there are none
-  const improve::InputForce* force = nullptr;  ///< elements that the input keeps poor stay as they are; null: none are
+  const improve::InputForce* force = nullptr;  ///< elements of thin walls and wedges stay as they are; null: none are
 };
 
 /// Moves corners of elements below beta .2 or 10 degrees, where those around lack less in sum then. Where sheets nearly

@@ -69,5 +69,23 @@ TEST(RaiseFlat, LeavesGoodElementsAlone) {
   EXPECT_EQ(raised(good, surface_of(good), 0.25).vertices, 0u);
 }
 
+TEST(RaiseFlat, CornersBetweenCurvesAreNoReasonToStayFlat) {
+  const TetMesh before = [] {
+    TetMesh mesh = with_flat_element(1e-9);
+    mesh.points[0].x = -7;
+    return mesh;
+  }();
+  const SurfaceMesh surface = surface_of(before);
+  const TriangleTree tree(surface);
+  const Features curves{{{0, 2}, {0, 3}}, {0}};  // 16 degrees apart
+  const improve::BoundaryInput input{surface, tree, curves, curves};
+  const improve::InputForce force(input);
+  ASSERT_EQ(force.cause_at({-1.5, 0, 0}, 7), improve::InputForce::Cause::kCorner);
+  TetMesh mesh = before;
+  StageReport report;
+  EXPECT_GT(raise_flat(mesh, surface, {0.25, nullptr, nullptr, &force}, {no_context(), report}).vertices, 0u);
+  EXPECT_EQ(first_defect(mesh), std::nullopt);
+}
+
 }  // namespace
 }  // namespace octafront
