@@ -1,0 +1,96 @@
+#pragma once
+
+// The steps of a round in which single surfaces and complexes differ. One object is chosen before the first round.
+
+#include "mesh/features.h"
+#include "surface/remeshing/narrow_strips.h"
+#include "surface/remeshing/outcome.h"
+#include "surface/remeshing/round_sizes.h"
+#include "surface/remeshing/seams.h"
+#include "surface/surface_check.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace octafront::remeshing {
+
+/// Sizes around crossing triangles become this part of what they were ...
+inline constexpr double kCap = 0.6;
+/// ... but where they have fallen below this part of the first ones, size is not the reason: the input's own triangles
+/// return within this many sizes.
+inline constexpr double kVain = 0.3, kRestored = 2;
+/// Where all rounds together have made so many times the triangles of the last one, what crosses gets the input's
+/// triangles at once.
+inline constexpr double kPatience = 4;
+
+class FrontKind {
+ public:
+  explicit FrontKind(FrontWork& work) : work_(work) {}
+  virtual ~FrontKind() = default;
+  FrontKind(const FrontKind&) = delete;
+  FrontKind& operator=(const FrontKind&) = delete;
+
+  /// What the front walks on, and the features of it.
+  virtual InputSurface& input() = 0;
+  virtual const Features& features() const = 0;
+  virtual const StripRules& strips() const = 0;
+  /// The sizes that are known before the first round to be needed.
+  virtual void foresee(RoundSizes&) {}
+  /// Smaller sizes where what is fixed asks for them.
+  virtual SizeField fitted(const SizeField& in_strips, const std::vector<std::uint8_t>& is_fixed) const = 0;
+  /// Divided; `is_fixed` may get more vertices.
+  virtual std::vector<Curve> curves(const SizeField& sizes, std::vector<std::uint8_t>& is_fixed) = 0;
+  /// What a mesh into which all points were inserted needs before anything else.
+  virtual void settle_input(WorkingMesh&) const {}
+  /// Makes good triangles of the draft, near to the input and clear of crossings as far as that goes.
+  virtual void adjust(Draft&, const RoundSizes&) = 0;
+  /// No triangles but the input's own follow it.
+  virtual bool is_noise() const { return false; }
+
+  /// What keeps the surface from being clean and of the input's kind, beside that it `crosses`; and where, if that is
+  /// known.
+  virtual std::optional<std::string> first_defect(const SurfaceMesh& made, bool crosses, std::vector<Vec3>& at) = 0;
+  /// Smaller sizes at these places, or the input's triangles. `crosses`: what was found there.
+  virtual void answer(const std::vector<Vec3>& places, const Outcome&, bool crosses, RoundSizes&) = 0;
+  /// No other round is made for `far` places that stray.
+  virtual bool leaves_far(std::size_t far, const Outcome&) const = 0;
+  /// Smaller sizes where the surface strayed.
+  virtual void cap_far(const Nearness&, RoundSizes&) const = 0;
+  virtual bool is_stuck() const { return false; }
+  virtual void finish(Remeshed& made, const Nearness& near) const = 0;
+
+ protected:
+  /// Divides what is longer than the sizes of the draft ask for, and makes good triangles of it.
+  void divide_long(Draft& draft);
+
+  struct PlaceLimits {
+    double tolerance = 0;             ///< input units
+    double crossing_most = HUGE_VAL;  ///< see FoldLimits
+    std::int64_t few_crossing = 0;    ///< sizes are too large where more cross
+    const std::vector<std::uint32_t>* patch_of = nullptr;
+  };
+  /// What is left of bad triangles, of edges too sharp for any element, and of crossings where these are few. True if
+  /// it is known that nothing crosses then. `clear`: whether it is known before.
+  bool mend_places(WorkingMesh& mesh, const std::vector<std::uint8_t>& is_fixed, const PlaceLimits& limits, bool clear);
+
+  const TriangleCorners& input_triangle_at(Vec3 p) const;
+  /// Whether the input's triangle at p is as large as those that are wanted there.
+  bool is_as_large(Vec3 p, const SizeField& sizes) const;
+  /// In a single surface and in a complex alike.
+  bool is_in_vain(Vec3 p, const RoundSizes& sizes) const;
+
+  FrontWork& work_;
+};
+
+std::unique_ptr<FrontKind> make_plain_front(FrontWork& work);
+std::unique_ptr<FrontKind> make_seamed_front(FrontWork& work);
+
+/// At fewer triangles than this a mesh is mended anyway.
+inline constexpr std::int64_t kFewCrossing = 300;
+
+/// The longest edge of a triangle.
+double longest_edge_of(const TriangleCorners& t);
+
+}  // namespace octafront::remeshing

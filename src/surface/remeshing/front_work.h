@@ -1,0 +1,90 @@
+#pragma once
+
+// What all rounds of the surface front work on, what one of them makes, and what they did.
+
+#include <octafront/run_context.h>
+
+#include "core/stage.h"
+#include "geometry/leeway.h"
+#include "mesh/known_surface.h"
+#include "surface/remeshing/coarsen.h"
+#include "surface/remeshing/curves.h"
+#include "surface/remeshing/element_budget.h"
+#include "surface/remeshing/improve.h"
+#include "surface/remeshing/insertion.h"
+#include "surface/remeshing/remesh.h"
+
+#include <span>
+#include <vector>
+
+namespace octafront::remeshing {
+
+struct FrontCounts {
+  std::uint64_t placed = 0, tried = 0;
+  InsertionCounts insertion;
+  CoarsenCounts coarsen;
+  ImproveCounts improve;
+  std::uint64_t divided_edges = 0, merged_lines = 0, places_mended = 0, approached = 0, restored = 0;
+  std::uint64_t crossings = 0, triangles = 0;  ///< of all rounds
+  int rounds = 0, deviation_rounds = 0;
+  std::size_t last_triangles = 0;  ///< of the last round
+
+  /// Whether all rounds together have made more than so many times the triangles of the last one.
+  bool exceed(double times) const {
+    return static_cast<double>(triangles) > times * static_cast<double>(last_triangles);
+  }
+  /// What counts the last round alone is 0 again.
+  void start_round(std::uint64_t points_placed, std::uint64_t places_tried);
+  void report(const Stage& stage) const;
+};
+
+/// What is given, but for the sizes, and what was done and spent. Refers to what it is made of.
+struct FrontWork {
+  FrontWork(const KnownSurface& surface, const SurfaceOptions& given, const Stage& by, std::span<const double> bounds,
+            const FrontLimits& limited)
+      : known(surface),
+        options(given),
+        stage(by),
+        bound(bounds),
+        limits(limited),
+        leeway(surface.mesh(), surface.tree(), bounds),
+        tolerance(given.max_deviation.value_or(HUGE_VAL)),
+        budget(surface.mesh(), limited.budget, by) {}
+
+  bool limits_deviation() const { return options.max_deviation.value_or(0) > 0; }
+  const SurfaceMesh& surface() const { return known.mesh(); }
+  /// Nobody knows how many rounds there will be: each takes half of what is left.
+  void progress(double part_of_round) const;
+
+  const KnownSurface& known;
+  const SurfaceOptions& options;
+  const Stage& stage;
+  std::span<const double> bound;  ///< see remesh_surface()
+  FrontLimits limits;
+  Leeway leeway;
+  double tolerance;  ///< for details of the input: none moves farther
+  ElementBudget budget;
+  FrontCounts counts;
+};
+
+/// How near the new surface lies to the input.
+struct Nearness {
+  std::vector<Vec3> approached;    ///< where points of the input were put in
+  std::vector<Vec3> far, farther;  ///< where it strays still: too far, and much too far
+  double farthest = 0;
+  bool is_near_enough = false;          ///< though there are such places
+  std::vector<PointSize> wanted;        ///< sizes by which it would stray less there
+  std::vector<VertexIndex> near_limit;  ///< corners of triangles that nearly do, in the working mesh
+};
+
+/// What a round makes.
+struct Draft {
+  SizeField sizes;                     ///< that it was made by
+  std::vector<std::uint8_t> is_fixed;  ///< per vertex of the input: it stays where it is
+  std::vector<Curve> curves;           ///< divided
+  WorkingMesh mesh;
+  Nearness nearness;
+  bool is_clear = false;  ///< it is known that nothing crosses
+};
+
+}  // namespace octafront::remeshing

@@ -1,0 +1,285 @@
+// The steps of a complex, on its parts cut open along seams (seams.h).
+
+#include "geometry/measures.h"
+#include "mesh/complex.h"
+#include "surface/remeshing/approach.h"
+#include "surface/remeshing/corner_sizes.h"
+#include "surface/remeshing/crossings.h"
+#include "surface/remeshing/flat_sizes.h"
+#include "surface/remeshing/front_kind.h"
+#include "surface/remeshing/keep_volumes.h"
+#include "surface/remeshing/nearness.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/core.h>
+
+namespace octafront::remeshing {
+
+namespace {
+
+/// A complex that strays at fewer places than this part of its triangles is not made anew for it.
+constexpr double kVeryFew = 1e-4;
+/// But where it strays at first, with triangles as small as the input's, at more places than this part of their number,
+/// the input is noise: what chords of its steps cut off shrinks only as they do, and each new triangulation crosses
+/// elsewhere.
+constexpr double kNoise = 0.08;
+/// So often sizes are made smaller where it strays in a round; there are no more than two for this. (Two in the first
+/// and one in the second are half the time, and leave 208 places of a skull too far where three leave 6, and 138
+/// elements below .4 instead of 27.)
+constexpr int kRefinements = 3;
+/// And from there they rise faster than elsewhere, as around corners: it is a matter of single ridges and tips. That
+/// makes far fewer elements.
+constexpr double kSteep = 0.4;
+/// How often points of the input are put in where it strays still.
+constexpr int kApproaches = 3;
+/// Mended once more at the very end, within this part of the bound on deviation.
+constexpr double kLittle = 0.3;
+/// This part of all triangles is few that cross, where it is more than of single surfaces: between sheets a voxel
+/// apart.
+constexpr double kFewCrossingPart = 0.005;
+/// Points go into what crosses where that is at fewer than this part of its triangles, and again where that left no
+/// more than so much of it.
+constexpr double kFewToDivide = 0.02, kWorthAnother = 0.7;
+/// Not nearer to their triangles than this part of their size.
+constexpr double kInPlane = 0.02;
+/// What crosses still at the end may be divided into triangles of this 2r/R, so often.
+constexpr double kAnyShape = 0.05;
+constexpr int kLastMendings = 3;
+/// How a budget of elements is kept: by so many raises of the bound on deviation at most, each by a factor from here to
+/// there, by how the number of elements fell with the last one; one that exceeds it by so much is near enough.
+constexpr int kMostRaises = 6;
+constexpr double kLeastRaise = 1.2, kMostRaise = 4, kNearBudget = 1.1;
+constexpr double kFirstSlope = 0.7, kFlattest = 0.3, kSteepest = 1.5;
+
+/// Per vertex whether it is on a seam or another line.
+std::vector<std::uint8_t> on_lines(const WorkingMesh& mesh) {
+  std::vector<std::uint8_t> is_fixed(mesh.points.size());
+  for (VertexIndex v = 0; v < is_fixed.size(); ++v) is_fixed[v] = mesh.on_curve(v);
+  return is_fixed;
+}
+
+class SeamedFront : public FrontKind {
+ public:
+  explicit SeamedFront(FrontWork& work) : FrontKind(work), seamed_(cut_along_seams(work.known)) {}
+
+  InputSurface& input() override { return seamed_.input; }
+  const Features& features() const override { return seamed_.features; }
+  const StripRules& strips() const override { return kStripsOfWalls; }
+
+  /// What most triangles would be made smaller for in further rounds.
+  void foresee(RoundSizes& sizes) override {
+    if (!work_.limits_deviation()) return;
+    set_features(input(), {});
+    set_features(input(), features_at_scale(input(), features(), sizes.now()));
+    std::vector<std::uint8_t> is_fixed(input().mesh.points.size(), 0);
+    const std::vector<Curve> curves = chained_curves(input(), seamed_, sizes.now(), is_fixed).curves;
+    SizeField foreseen = followed_within(work_.tolerance, curves, sizes.now());
+    if (work_.budget.is_limited()) stray_within_budget(curves, sizes.now(), foreseen);
+    sizes.start_with(work_.budget.affordable(foreseen, sizes.first(), work_.counts.rounds));
+  }
+
+  /// Smaller where corners of seams are nearer together.
+  SizeField fitted(const SizeField& in_strips, const std::vector<std::uint8_t>& is_fixed) const override {
+    return fitted_to_corners(seamed_.input, seamed_, is_fixed, in_strips, work_.stage.context());
+  }
+
+  std::vector<Curve> curves(const SizeField& sizes, std::vector<std::uint8_t>& is_fixed) override {
+    return divided_curves(input(), seamed_, sizes, is_fixed);
+  }
+
+  void settle_input(WorkingMesh& mesh) const override {
+    mesh.pinned = seamed_.pinned;
+    for (VertexIndex v = 0; v < mesh.pinned.size(); ++v)
+      if (mesh.pinned[v] || v >= seamed_.first_tip) mesh.kind[v] = VertexKind::kCorner;
+  }
+
+  void adjust(Draft& draft, const RoundSizes& sizes) override {
+    change_between_seams(draft);
+    DeviationWatch watch(kLeftAlone * work_.tolerance, work_.tolerance, work_.surface(), work_.known.tree(),
+                         Fine::kCorners, work_.bound);
+    refine_far(draft, watch, sizes.first());
+    if (is_noise_) return;
+    mend_crossings(draft);
+    mend_between_lines(draft.mesh, work_.tolerance);
+    approach_far(draft, watch);
+    draft.is_clear = mend_between_lines(draft.mesh, kLittle * work_.tolerance) || mend_last_crossings(draft);
+  }
+
+  bool is_noise() const override { return is_noise_; }
+
+  /// What does not agree shows beside what crosses; both are left to the same round.
+  std::optional<std::string> first_defect(const SurfaceMesh& made, bool, std::vector<Vec3>& at) override {
+    return first_complex_defect_but_crossings(made, work_.stage.context(), &at);
+  }
+
+  /// By the sizes that were fitted to the seams.
+  void answer(const std::vector<Vec3>& places, const Outcome& made, bool, RoundSizes& sizes) override {
+    const SizeField& by = made.result.sizes;
+    sizes.cap_or_restore(places, kCap, false, [&](Vec3 p) -> std::optional<Ball> {
+      if (by.at(p) < kVain * sizes.first().at(p) || is_as_large(p, by)) return Ball{p, kRestored * by.at(p), false};
+      if (is_in_vain(p, sizes)) return Ball{p, kRestored * sizes.first().at(p)};
+      return {};
+    });
+  }
+
+  bool leaves_far(std::size_t far, const Outcome& made) const override {
+    return work_.counts.rounds > 1 ||
+           static_cast<double>(far) < kVeryFew * static_cast<double>(made.result.surface.triangles.size());
+  }
+
+  void cap_far(const Nearness& near, RoundSizes& sizes) const override {
+    sizes.add(near.wanted, {.gradation = kSteep});
+  }
+
+  void finish(Remeshed& made, const Nearness&) const override {
+    if (!work_.options.keep_volumes) return;
+    const std::uint64_t moved = keep_volumes(made.surface, made.features, work_.surface(), work_.stage.context());
+    work_.stage.count("vertices moved for volumes", static_cast<double>(moved));
+  }
+
+ private:
+  SizeField followed_within(double tolerance, const std::vector<Curve>& curves, const SizeField& sizes) const {
+    const RunContext& context = work_.stage.context();
+    const std::vector<PointSize> wanted = sizes_by_flatness(seamed_.input, curves, sizes, tolerance, context);
+    return capped_at(sizes, wanted, context, {.gradation = kSteep});
+  }
+
+  /// The surface may stray farther if following it would take more elements than the budget has.
+  void stray_within_budget(const std::vector<Curve>& curves, const SizeField& sizes, SizeField& foreseen) {
+    ElementBudget& budget = work_.budget;
+    double& tolerance = work_.tolerance;
+    const double asked = tolerance, first = budget.expected(foreseen);
+    double count = first, slope = kFirstSlope;
+    for (int step = 0; step < kMostRaises && count > kNearBudget * budget.most(); ++step) {
+      const double raise = std::clamp(std::pow(count / budget.most(), 1 / slope), kLeastRaise, kMostRaise);
+      foreseen = followed_within(tolerance *= raise, curves, sizes);
+      const double now = budget.expected(foreseen);
+      slope = std::clamp(std::log(count / now) / std::log(raise), kFlattest, kSteepest);
+      count = now;
+    }
+    if (tolerance == asked) return;
+    work_.stage.note(
+        fmt::format("within {:.3g} of the input there would be about {:.2g} million elements; the automatic size has a "
+                    "budget of {:.2g} million, so the surface may stray by {:.3g}. For more ask for it, e.g. with "
+                    "`max_deviation`, `size` or `elements`",
+                    asked, first / 1e6, budget.most() / 1e6, tolerance));
+  }
+
+  /// What remove_input_vertices() and improve_surface() do of a single surface: seams first, which are the same for all
+  /// that ends there, and once more when their surroundings are coarse.
+  void change_between_seams(Draft& draft) {
+    const RunContext& context = work_.stage.context();
+    WorkingMesh& mesh = draft.mesh;
+    coarsen_seams(mesh, context, work_.counts.coarsen);
+    remove_input_vertices(mesh, draft.sizes, context, work_.counts.coarsen);
+    coarsen_seams(mesh, context, work_.counts.coarsen);
+    settle_seams(mesh, draft.sizes);
+    work_.progress(0.6);
+    work_.counts.divided_edges = divide_repeated_edges(mesh, work_.known, draft.sizes);
+    improve_surface(mesh, input(), draft.curves, draft.sizes, context, work_.counts.improve);
+    divide_repeated(draft);
+  }
+
+  void divide_repeated(Draft& draft) {
+    work_.counts.divided_edges += divide_repeated_edges(draft.mesh, work_.known, draft.sizes);
+    work_.counts.divided_edges += divide_repeated_triangles(draft.mesh, work_.known, draft.sizes);
+  }
+
+  bool mend_between_lines(WorkingMesh& mesh, double tolerance) {
+    const auto part = static_cast<std::int64_t>(kFewCrossingPart * static_cast<double>(mesh.triangle_count()));
+    const PlaceLimits limits{tolerance, HUGE_VAL, std::max(kFewCrossing, part), &seamed_.input.patch};
+    return mend_places(mesh, on_lines(mesh), limits, false);
+  }
+
+  /// Smaller sizes and more triangles where it strays, while that helps.
+  void refine_far(Draft& draft, DeviationWatch& watch, const SizeField& first) {
+    for (int k = 0; k < kRefinements; ++k) {
+      const std::vector<FarPlace> places = far_places(work_, draft.mesh, watch);
+      if (k == 0 && work_.counts.rounds == 1) is_noise_ = strays_as_noise(places, draft);
+      if (is_noise_) return;
+      const std::vector<PointSize> wanted = note_wanted(draft, places);
+      if (wanted.empty()) return;
+      const SizeField finer = capped_at(draft.sizes, wanted, work_.stage.context(), {.gradation = kSteep});
+      draft.sizes = work_.budget.affordable(finer, first, work_.counts.rounds);
+      divide_long(draft);
+      divide_repeated(draft);
+      if (work_.budget.is_spent()) return;
+    }
+  }
+
+  std::vector<PointSize> note_wanted(Draft& draft, const std::vector<FarPlace>& places) const {
+    std::vector<PointSize> wanted = sizes_against(places, work_.tolerance, draft.sizes);
+    draft.nearness.wanted.insert(draft.nearness.wanted.end(), wanted.begin(), wanted.end());
+    return wanted;
+  }
+
+  bool strays_as_noise(const std::vector<FarPlace>& places, const Draft& draft) const {
+    const auto in_vain = std::count_if(places.begin(), places.end(), [&](const FarPlace& p) {
+      return p.distance >= work_.tolerance &&
+             draft.sizes.at(p.at) <= longest_edge_of(work_.known.tree().corners(p.on_input.face));
+    });
+    return static_cast<double>(in_vain) > kNoise * static_cast<double>(front_triangles(draft.mesh).size());
+  }
+
+  /// Points of the complex where the draft strays still. What is left then lies beside seams: another round has to
+  /// divide these.
+  void approach_far(Draft& draft, DeviationWatch& watch) {
+    std::vector<FarPlace> places = far_places(work_, draft.mesh, watch);
+    for (int k = 0; k < kApproaches; ++k) {
+      std::erase_if(places, [&](const FarPlace& p) { return p.distance < kComeNear * work_.tolerance; });
+      const std::uint64_t put_in =
+          places.empty() ? 0 : approach(draft.mesh, input(), work_.known.tree(), draft.is_fixed, places);
+      if (put_in == 0) break;
+      work_.counts.approached += put_in;
+      places = far_places(work_, draft.mesh, watch);
+    }
+    draft.nearness.far = positions_beyond(work_.tolerance, places);
+    draft.nearness.farthest = farthest_of(places);
+    note_wanted(draft, places);
+  }
+
+  /// Puts points of the complex into triangles that cross others: chords between near sheets.
+  void mend_crossings(Draft& draft, double least_shape = kFairShape) {
+    WorkingMesh& mesh = draft.mesh;
+    for (double before = HUGE_VAL;;) {
+      const std::vector<std::uint32_t> number = front_triangles(mesh);
+      const SurfaceMesh alive = sewn_triangles(mesh, number);
+      const std::vector<std::uint32_t> crossing = triangles_of(find_crossings(alive));
+      if (crossing.empty()) return;
+      const auto now = static_cast<double>(crossing.size());
+      if (now > kFewToDivide * static_cast<double>(number.size()) || now > kWorthAnother * before) return;
+      before = now;
+      std::vector<FarPlace> places = places_under(crossing, alive, work_.known.tree());
+      for (FarPlace& place : places) place.triangle = number[place.triangle];
+      // A point in the plane of its triangle changes nothing, and leaves a flat element.
+      std::erase_if(places, [&](const FarPlace& p) {
+        return p.distance < kInPlane * std::sqrt(length(mesh.area_vector(p.triangle)));
+      });
+      const std::uint64_t put_in = approach(mesh, input(), work_.known.tree(), draft.is_fixed, places, least_shape);
+      work_.counts.approached += put_in;
+      if (put_in == 0) return;
+    }
+  }
+
+  /// Whatever the shapes, where a few cross still: another round costs more. True if it is known that nothing crosses.
+  bool mend_last_crossings(Draft& draft) {
+    for (int k = 0; k < kLastMendings; ++k) {
+      mend_crossings(draft, kAnyShape);
+      if (mend_between_lines(draft.mesh, kLittle * work_.tolerance)) return true;
+    }
+    return false;
+  }
+
+  SeamedSurface seamed_;
+  bool is_noise_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<FrontKind> make_seamed_front(FrontWork& work) {
+  return std::make_unique<SeamedFront>(work);
+}
+
+}  // namespace octafront::remeshing
