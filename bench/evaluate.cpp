@@ -4,7 +4,7 @@
 
 #include <octafront/octafront.h>
 
-#include "geometry/hausdorff.h"
+#include "base/geometry/hausdorff.h"
 #include "surface_bound.h"
 
 #include <cstdio>

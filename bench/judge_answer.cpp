@@ -4,9 +4,9 @@
 
 #include <octafront/octafront.h>
 
-#include "core/random.h"
-#include "geometry/measures.h"
-#include "geometry/triangle_tree.h"
+#include "base/core/random.h"
+#include "base/geometry/measures.h"
+#include "base/geometry/triangle_tree.h"
 #include "made_result.h"
 
 #include <algorithm>

@@ -7,10 +7,10 @@
 
 #include <octafront/octafront.h>
 
-#include "core/disjoint_sets.h"
-#include "core/parallel.h"
-#include "geometry/triangle_tree.h"
-#include "image/runs.h"
+#include "base/core/disjoint_sets.h"
+#include "base/core/parallel.h"
+#include "base/geometry/triangle_tree.h"
+#include "images/labels/runs.h"
 
 #include <algorithm>
 #include <charconv>

@@ -4,10 +4,10 @@
 
 #include <octafront/octafront.h>
 
-#include "core/random.h"
-#include "geometry/measures.h"
-#include "geometry/triangle_tree.h"
-#include "geometry/winding_number.h"
+#include "base/core/random.h"
+#include "base/geometry/measures.h"
+#include "base/geometry/triangle_tree.h"
+#include "base/geometry/winding_number.h"
 #include "made_result.h"
 
 #include <cmath>

@@ -6,12 +6,12 @@
 
 #include <octafront/octafront.h>
 
-#include "geometry/hausdorff.h"
-#include "geometry/measures.h"
-#include "mesh/features.h"
-#include "pipeline/pipeline.h"
+#include "base/geometry/hausdorff.h"
+#include "base/geometry/measures.h"
+#include "base/mesh/features.h"
+#include "pipeline/stages/measure.h"
 #include "sizing/make_size_field.h"
-#include "surface/surface_check.h"
+#include "surface/check/surface_check.h"
 
 #include <algorithm>
 #include <cmath>

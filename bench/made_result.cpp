@@ -1,6 +1,6 @@
 #include "made_result.h"
 
-#include "core/disjoint_sets.h"
+#include "base/core/disjoint_sets.h"
 
 #include <array>
 #include <map>

@@ -4,8 +4,8 @@
 
 #include <octafront/octafront.h>
 
-#include "geometry/measures.h"
-#include "geometry/triangle_tree.h"
+#include "base/geometry/measures.h"
+#include "base/geometry/triangle_tree.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>

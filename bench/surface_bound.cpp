@@ -2,8 +2,8 @@
 
 #include <octafront/quality.h>
 
-#include "geometry/measures.h"
-#include "geometry/triangle_tree.h"
+#include "base/geometry/measures.h"
+#include "base/geometry/triangle_tree.h"
 
 #include <algorithm>
 #include <array>

@@ -3,10 +3,10 @@
 
 #include <octafront/quality.h>
 
-#include "core/stage_timer.h"
-#include "core/thread_limit.h"
+#include "base/core/stage_timer.h"
+#include "base/core/thread_limit.h"
+#include "fill/front/fill.h"
 #include "support/named_surfaces.h"
-#include "volume/fill.h"
 
 #include <algorithm>
 #include <cstdlib>

@@ -4,7 +4,7 @@
 
 #include <octafront/octafront.h>
 
-#include "io/atomic_file.h"
+#include "formats/containers/atomic_file.h"
 
 #include <chrono>
 #include <cmath>

@@ -5,12 +5,12 @@
 #include "domain.h"
 #include "estimate.h"
 #include "inputs.h"
+#include "mesh_in_words.h"
 #include "open_cavity.h"
 #include "overlaps.h"
 #include "page.h"
 #include "presets.h"
 #include "targets.h"
-#include "tell.h"
 #include "text.h"
 
 #include <optional>

@@ -2,7 +2,7 @@
 
 #include <octafront/image.h>
 
-#include "tell.h"
+#include "mesh_in_words.h"
 
 #include <algorithm>
 #include <array>

@@ -3,7 +3,7 @@
 #include "commands.h"
 #include "image_info.h"
 #include "inputs.h"
-#include "tell.h"
+#include "mesh_in_words.h"
 #include "units.h"
 
 #include <fmt/core.h>

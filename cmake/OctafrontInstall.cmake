@@ -6,7 +6,7 @@ find_program(OCTAFRONT_GZIP gzip)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/octafront)
 set(doc_dir ${CMAKE_INSTALL_DATADIR}/doc)
 set(texts LICENSE NOTICE licenses)
-install(TARGETS octafront EXPORT octafrontTargets
+install(TARGETS octafront octafront_mesher EXPORT octafrontTargets
         ARCHIVE COMPONENT development
         LIBRARY COMPONENT runtime NAMELINK_COMPONENT development)
 install(EXPORT octafrontTargets NAMESPACE octafront:: DESTINATION ${package_dir} COMPONENT development)

@@ -1,4 +1,4 @@
-# Flags that every one of our targets shares, and the two helpers that declare a room and its tests.
+# Flags that every one of our targets shares, and the helpers that declare a wing, its rooms and its tests.
 
 add_library(octafront_flags INTERFACE)
 target_compile_features(octafront_flags INTERFACE cxx_std_20)
@@ -40,31 +40,44 @@ function(octafront_unity target)
   set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()
 
-# octafront_room(NAME SOURCES ... [ROOMS ...] [LIBS ...])
-# One static library per folder of src/: it can be built and tested alone. ROOMS are those that
-# its row in ARCHITECTURE.md names (tests/house compares).
-function(octafront_room name)
-  cmake_parse_arguments(ROOM "" "" "SOURCES;ROOMS;LIBS" ${ARGN})
-  add_library(octafront_${name} STATIC ${ROOM_SOURCES})
-  set_target_properties(octafront_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
-  target_include_directories(octafront_${name} PUBLIC ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src)
-  target_link_libraries(octafront_${name} PRIVATE octafront_flags)
-  foreach(room IN LISTS ROOM_ROOMS)
-    target_link_libraries(octafront_${name} PUBLIC octafront_${room})
+# octafront_wing(NAME [WINGS ...] [LIBS ...]): a static library of the rooms that follow. WINGS are those that the rows of
+# its rooms in ARCHITECTURE.md name (tests/house compares).
+function(octafront_wing name)
+  cmake_parse_arguments(WING "" "" "WINGS;LIBS" ${ARGN})
+  set(target octafront_${name})
+  add_library(${target} STATIC)
+  set_target_properties(${target} PROPERTIES LINKER_LANGUAGE CXX POSITION_INDEPENDENT_CODE ON)
+  target_include_directories(${target} PUBLIC ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src)
+  target_link_libraries(${target} PRIVATE octafront_flags PUBLIC ${WING_LIBS})
+  foreach(wing IN LISTS WING_WINGS)
+    target_link_libraries(${target} PUBLIC octafront_${wing})
   endforeach()
-  target_link_libraries(octafront_${name} PUBLIC ${ROOM_LIBS})
-  octafront_precompile(octafront_${name} octafront_pch)
-  octafront_unity(octafront_${name})
+  octafront_precompile(${target} octafront_pch)
+  octafront_unity(${target})
 endfunction()
 
-# octafront_test(NAME SOURCES ... [ROOMS ...]): a GoogleTest binary tests/NAME, linked with just those rooms.
+# octafront_room(WING/ROOM SOURCES ...): the sources of a room, from its folder; of a wing that is one room: its own.
+function(octafront_room path)
+  cmake_parse_arguments(ROOM "" "" "SOURCES" ${ARGN})
+  string(REGEX MATCH "^([a-z]+)/?(.*)" path ${path})
+  set(target octafront_${CMAKE_MATCH_1})
+  if(CMAKE_MATCH_2)
+    list(TRANSFORM ROOM_SOURCES PREPEND ${CMAKE_MATCH_2}/ REGEX "^[^/]")
+  endif()
+  target_sources(${target} PRIVATE ${ROOM_SOURCES})
+  set_source_files_properties(${ROOM_SOURCES} PROPERTIES UNITY_GROUP ${path})
+endfunction()
+
+# octafront_test(NAME SOURCES ... [WINGS ...] [LIBS ...]): a GoogleTest binary tests/NAME, linked with the wing of that
+# name, if there is one, and WINGS.
 function(octafront_test name)
-  cmake_parse_arguments(T "" "" "SOURCES;ROOMS;LIBS" ${ARGN})
+  cmake_parse_arguments(T "" "" "SOURCES;WINGS;LIBS" ${ARGN})
+  list(TRANSFORM T_WINGS PREPEND octafront_)
+  if(TARGET octafront_${name})
+    list(PREPEND T_WINGS octafront_${name})
+  endif()
   add_executable(test_${name} ${T_SOURCES})
-  target_link_libraries(test_${name} PRIVATE octafront_flags octafront_test_support GTest::gtest_main ${T_LIBS})
-  foreach(room IN LISTS T_ROOMS)
-    target_link_libraries(test_${name} PRIVATE octafront_${room})
-  endforeach()
+  target_link_libraries(test_${name} PRIVATE octafront_flags octafront_test_support GTest::gtest_main ${T_LIBS} ${T_WINGS})
   octafront_precompile(test_${name} octafront_test_support)
   octafront_unity(test_${name})
   gtest_discover_tests(test_${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600 LABELS ${name} COST ${test_cost})

@@ -69,7 +69,7 @@ configure "$parse/whole" OFF ON
 row "  to build library and tool, many sources at a time" "$(seconds ninja -C "$parse/whole" octafront_cli)"
 configure "$parse/build" ON OFF
 row "  to build them source by source" "$(seconds ninja -C "$parse/build" octafront_cli)"
-for touched in include/octafront/tet_mesh.h include/octafront/surface_mesh.h src/improve/schedule.cpp; do
+for touched in include/octafront/tet_mesh.h include/octafront/surface_mesh.h src/improve/schedule/schedule.cpp; do
   touch "$touched"
   row "  after $touched was touched" "$(seconds ninja -C "$parse/build" octafront_cli)"
 done

@@ -7,6 +7,6 @@ cd "$(dirname "$0")/.."
 source scripts/lib/apt.sh
 need_packages "${build_packages[@]}"
 cmake --preset release >/dev/null
-cmake --build --preset release --target test_nets
+cmake --build --preset release --target test_images
 cd build/release
-OCTAFRONT_MUTATED_IMAGES=${1:-20000} exec tests/nets/test_nets --gtest_filter='MutatedImages.*'
+OCTAFRONT_MUTATED_IMAGES=${1:-20000} exec tests/images/test_images --gtest_filter='MutatedImages.*'

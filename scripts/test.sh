@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Builds everything and runs the tests, the lowest rooms first. Installs what is missing (Debian 12).
+# Builds everything and runs the tests, the lowest wings first. Installs what is missing (Debian 12).
 #   scripts/test.sh [--all | --low] [PRESET] [CTEST OPTION ...]
 #     --all     with the long tests: large models, a campaign of nasty surfaces, solved examples
-#     --low     only the rooms that all others stand on: core, geometry, mesh, surface
+#     --low     only what all others stand on: base, soup, surface
 #     PRESET    a configure preset, by default release; also: dev (validators), asan-ubsan, tsan
-#     CTEST OPTION   e.g. -L volume (the tests of one room), --stop-on-failure
-# What failed is listed at the end, the lowest room first, with the command that repeats it.
+#     CTEST OPTION   e.g. -L fill (the tests of one wing), --stop-on-failure
+# What failed is listed at the end, the lowest wing first, with the command that repeats it.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/lib/apt.sh
@@ -13,7 +13,7 @@ source scripts/lib/apt.sh
 which=(-LE long) targets=()
 case ${1:-} in
   --all) which=() && shift ;;
-  --low) which=(-L '^(core|geometry|mesh|surface)$') targets=(--target test_core test_geometry test_mesh test_surface) && shift ;;
+  --low) which=(-L '^(base|soup|surface)$') targets=(--target test_base test_soup test_surface) && shift ;;
 esac
 preset=release
 if [ $# -gt 0 ] && [[ $1 != -* ]]; then preset=$1 && shift; fi
@@ -33,7 +33,7 @@ rm -f "$failed"
 ctest --preset "$preset" -j "$(nproc)" "${which[@]}" "$@" && exit
 
 echo
-echo "failed, the lowest room first:"
+echo "failed, the lowest wing first:"
 sort -n "$failed" | sed 's/^[0-9]*:/  /'
 echo "once more, only these: ctest --preset $preset --rerun-failed"
 exit 1

@@ -27,11 +27,11 @@ test_packages=(libgtest-dev librapidcheck-dev python3 python3-numpy python3-venv
 format_packages=(gmsh python3-gmsh calculix-ccx python3-meshio python3-vtk9 python3-h5py python3-med netcdf-bin cgns-convert openfoam tetgen lintian)
 # Pages of docstrings, and what checks types: those of --all.
 doc_packages=(doxygen python3-sphinx mypy)
-# What opens the report page (tests/page): also of --all.
+# What opens the report page (tests/report/page): also of --all.
 browser_packages=(chromium chromium-driver python3-selenium fonts-dejavu-core)
 # What reads manual and completions (tests/cli): also of --all; without them these are read by fewer programs.
 shell_packages=(groff zsh fish)
-# What reads images beside us (tests/image): also of --all.
+# What reads images beside us (tests/images): also of --all.
 image_packages=(python3-nibabel python3-pydicom)
 # Other meshers, which some benchmarks run beside ours.
 peer_packages=(tetgen gmsh netgen)

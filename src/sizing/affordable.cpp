@@ -2,7 +2,7 @@
 
 #include <octafront/error.h>
 
-#include "geometry/measures.h"
+#include "base/geometry/measures.h"
 #include "sizing/size_sources.h"
 
 #include <algorithm>

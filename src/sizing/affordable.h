@@ -3,7 +3,7 @@
 #include <octafront/options.h>
 #include <octafront/surface_mesh.h>
 
-#include "mesh/features.h"
+#include "base/mesh/features.h"
 #include "sizing/curvature.h"
 #include "sizing/feature_sizes.h"
 #include "sizing/gaps.h"

@@ -1,6 +1,6 @@
 #include "sizing/background_grid.h"
 
-#include "core/parallel.h"
+#include "base/core/parallel.h"
 #include "sizing/gradation.h"
 #include "sizing/inside_fraction.h"
 

@@ -1,6 +1,6 @@
 // New size fields from old ones: scaled, and capped near points.
 
-#include "core/parallel.h"
+#include "base/core/parallel.h"
 #include "sizing/gradation.h"
 #include "sizing/grid_caps.h"
 #include "sizing/make_size_field.h"

@@ -1,6 +1,6 @@
 #include <octafront/error.h>
 
-#include "mesh/index_range.h"
+#include "base/mesh/index_range.h"
 #include "sizing/size_sources.h"
 
 #include <cmath>

@@ -6,8 +6,8 @@
 // up to 2.4 times as many elements as were asked for, or .3 times. Over an octave of choices the mean of the numbers
 // made is the number asked for; there is always a choice that makes it (nearly).
 
-#include "core/parallel.h"
-#include "mesh/complex.h"
+#include "base/core/parallel.h"
+#include "base/mesh/complex.h"
 #include "sizing/background_grid.h"
 #include "sizing/inside_fraction.h"
 #include "sizing/make_size_field.h"

@@ -2,7 +2,7 @@
 
 #include <octafront/surface_mesh.h>
 
-#include "mesh/edge_table.h"
+#include "base/mesh/edge_table.h"
 
 #include <array>
 #include <cstdint>

@@ -1,6 +1,6 @@
 #include "sizing/feature_sizes.h"
 
-#include "core/groups.h"
+#include "base/core/groups.h"
 
 #include <algorithm>
 

@@ -2,7 +2,7 @@
 
 #include <octafront/surface_mesh.h>
 
-#include "mesh/features.h"
+#include "base/mesh/features.h"
 #include "sizing/background_grid.h"
 
 #include <vector>

@@ -1,7 +1,7 @@
 #include "sizing/gaps.h"
 
-#include "core/parallel.h"
-#include "geometry/measures.h"
+#include "base/core/parallel.h"
+#include "base/geometry/measures.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,8 +2,8 @@
 
 #include <octafront/surface_mesh.h>
 
-#include "core/flat_map.h"
-#include "mesh/known_surface.h"
+#include "base/core/flat_map.h"
+#include "base/mesh/known_surface.h"
 #include "sizing/octree.h"
 #include "sizing/surface_samples.h"
 

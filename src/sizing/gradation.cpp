@@ -18,8 +18,8 @@
 
 #include "sizing/gradation.h"
 
-#include "core/groups.h"
-#include "core/parallel.h"
+#include "base/core/groups.h"
+#include "base/core/parallel.h"
 
 #include <algorithm>
 #include <cmath>

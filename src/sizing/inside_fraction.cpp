@@ -1,7 +1,7 @@
 #include "sizing/inside_fraction.h"
 
-#include "core/buckets.h"
-#include "core/parallel.h"
+#include "base/core/buckets.h"
+#include "base/core/parallel.h"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 // Sizes for a surface whose triangles stay as they are.
 
-#include "geometry/measures.h"
+#include "base/geometry/measures.h"
 #include "sizing/background_grid.h"
 #include "sizing/face_neighbours.h"
 #include "sizing/make_size_field.h"

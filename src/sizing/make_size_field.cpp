@@ -2,8 +2,8 @@
 
 #include <octafront/error.h>
 
-#include "core/parallel.h"
-#include "mesh/index_range.h"
+#include "base/core/parallel.h"
+#include "base/mesh/index_range.h"
 #include "sizing/affordable.h"
 #include "sizing/background_grid.h"
 #include "sizing/region_caps.h"

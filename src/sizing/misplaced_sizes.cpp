@@ -2,7 +2,7 @@
 
 #include <octafront/error.h>
 
-#include "core/wording.h"
+#include "base/core/wording.h"
 #include "sizing/make_size_field.h"
 #include "sizing/octree_field.h"
 

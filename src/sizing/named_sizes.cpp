@@ -2,11 +2,11 @@
 
 #include <octafront/error.h>
 
-#include "core/utf8.h"
-#include "geometry/triangle_tree.h"
-#include "mesh/complex.h"
-#include "mesh/curve_names.h"
-#include "mesh/index_range.h"
+#include "base/core/utf8.h"
+#include "base/geometry/triangle_tree.h"
+#include "base/mesh/complex.h"
+#include "base/mesh/curve_names.h"
+#include "base/mesh/index_range.h"
 #include "sizing/size_sources.h"
 
 #include <algorithm>

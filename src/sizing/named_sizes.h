@@ -2,7 +2,7 @@
 
 #include <octafront/options.h>
 
-#include "mesh/known_surface.h"
+#include "base/mesh/known_surface.h"
 #include "sizing/background_grid.h"
 
 #include <vector>

@@ -1,6 +1,6 @@
 #include "sizing/octree.h"
 
-#include "core/validate.h"
+#include "base/core/validate.h"
 
 #include <algorithm>
 

@@ -62,7 +62,7 @@ class Octree {
   /// True if no two leaves that share a face, an edge or a corner differ by more than one level. O(leaves log leaves).
   bool is_balanced() const;
 
-  /// Where the leaves do not cover the root once, in order, or find() does not find them (core/validate.h).
+  /// Where the leaves do not cover the root once, in order, or find() does not find them (base/core/validate.h).
   std::optional<std::string> first_inconsistency() const;
 
  private:

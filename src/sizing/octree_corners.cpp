@@ -1,8 +1,8 @@
 #include "sizing/octree_corners.h"
 
-#include "core/buckets.h"
-#include "core/flat_map.h"
-#include "core/parallel.h"
+#include "base/core/buckets.h"
+#include "base/core/flat_map.h"
+#include "base/core/parallel.h"
 
 #include <algorithm>
 

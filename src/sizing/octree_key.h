@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/morton.h"
+#include "base/core/morton.h"
 
 #include <array>
 #include <bit>

@@ -1,6 +1,6 @@
 #include "sizing/point_sizes.h"
 
-#include "geometry/measures.h"
+#include "base/geometry/measures.h"
 
 #include <algorithm>
 

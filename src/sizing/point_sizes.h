@@ -3,7 +3,7 @@
 #include <octafront/options.h>
 #include <octafront/surface_mesh.h>
 
-#include "geometry/triangle_tree.h"
+#include "base/geometry/triangle_tree.h"
 #include "sizing/surface_samples.h"
 
 #include <optional>

@@ -2,7 +2,7 @@
 
 #include <octafront/error.h>
 
-#include "mesh/index_range.h"
+#include "base/mesh/index_range.h"
 #include "sizing/grid_caps.h"
 #include "sizing/size_sources.h"
 

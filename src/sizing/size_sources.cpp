@@ -2,7 +2,7 @@
 
 #include <octafront/error.h>
 
-#include "geometry/measures.h"
+#include "base/geometry/measures.h"
 #include "sizing/affordable.h"
 #include "sizing/curvature.h"
 #include "sizing/feature_sizes.h"

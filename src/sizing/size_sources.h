@@ -3,9 +3,9 @@
 #include <octafront/options.h>
 #include <octafront/surface_mesh.h>
 
-#include "core/stage.h"
-#include "mesh/index_range.h"
-#include "mesh/known_surface.h"
+#include "base/core/stage.h"
+#include "base/mesh/index_range.h"
+#include "base/mesh/known_surface.h"
 #include "sizing/background_grid.h"
 #include "sizing/make_size_field.h"
 #include "sizing/surface_samples.h"

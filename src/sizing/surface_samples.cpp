@@ -2,8 +2,8 @@
 
 #include <octafront/error.h>
 
-#include "core/parallel.h"
-#include "geometry/measures.h"
+#include "base/core/parallel.h"
+#include "base/geometry/measures.h"
 
 #include <algorithm>
 #include <atomic>

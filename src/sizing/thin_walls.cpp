@@ -1,7 +1,7 @@
 #include "sizing/thin_walls.h"
 
-#include "core/parallel.h"
-#include "geometry/measures.h"
+#include "base/core/parallel.h"
+#include "base/geometry/measures.h"
 #include "sizing/gaps.h"
 #include "sizing/size_sources.h"
 

@@ -2,7 +2,7 @@
 
 #include <octafront/surface_mesh.h>
 
-#include "geometry/triangle_tree.h"
+#include "base/geometry/triangle_tree.h"
 #include "sizing/inside_fraction.h"
 
 #include <optional>

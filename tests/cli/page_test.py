@@ -1,4 +1,4 @@
-"""The report page as a file, without a browser: page_test.py OCTAFRONT SAMPLES_DIR. In one: tests/page/browser_test.py."""
+"""The report page as a file, without a browser: page_test.py OCTAFRONT SAMPLES_DIR. In one: tests/report/page/browser_test.py."""
 import json
 import math
 import os

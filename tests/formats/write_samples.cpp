@@ -4,7 +4,7 @@
 
 #include <octafront/io.h>
 
-#include "io/mesh_parts.h"
+#include "formats/parts/mesh_parts.h"
 #include "support/rich_mesh.h"
 
 #include <cmath>

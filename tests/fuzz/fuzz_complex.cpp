@@ -4,9 +4,9 @@
 #include <octafront/complex.h>
 #include <octafront/error.h>
 
-#include "arrangement/arrange.h"
-#include "cells/find_cells.h"
-#include "geometry/self_intersection.h"
+#include "base/geometry/self_intersection.h"
+#include "soup/arrangement/arrange.h"
+#include "soup/cells/find_cells.h"
 #include "triangles_of_bytes.h"
 
 #include <cmath>

@@ -2,8 +2,8 @@
 
 #include <octafront/error.h>
 
-#include "io/mesh_parts.h"
-#include "io/readers.h"
+#include "formats/parts/mesh_parts.h"
+#include "formats/read/readers.h"
 
 #include <algorithm>
 #include <cstdint>

@@ -3,7 +3,7 @@
 #include <octafront/error.h>
 #include <octafront/repair.h>
 
-#include "io/readers.h"
+#include "formats/read/readers.h"
 
 #include <cstdint>
 #include <cstdlib>

@@ -2,7 +2,7 @@
 
 #include <octafront/error.h>
 
-#include "size_files/readers.h"
+#include "formats/size_files/readers.h"
 
 #include <cmath>
 #include <cstdint>

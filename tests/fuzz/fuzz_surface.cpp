@@ -2,7 +2,7 @@
 
 #include <octafront/error.h>
 
-#include "io/readers.h"
+#include "formats/read/readers.h"
 
 #include <cstdint>
 #include <cstdlib>

@@ -2,8 +2,8 @@
 
 #include <octafront/error.h>
 
-#include "io/read_tetgen.h"
-#include "io/readers.h"
+#include "formats/read/read_tetgen.h"
+#include "formats/read/readers.h"
 
 #include <array>
 #include <cstdint>

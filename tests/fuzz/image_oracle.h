@@ -5,8 +5,8 @@
 #include <octafront/error.h>
 #include <octafront/image.h>
 
-#include "image/label_names.h"
-#include "image/readers.h"
+#include "images/files/label_names.h"
+#include "images/files/readers.h"
 
 #include <algorithm>
 #include <cmath>

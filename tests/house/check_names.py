@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""No two sources of a room give one name to different things in their unnamed namespaces: then many of them can be
+"""No two sources of a room (and no two tests of a wing) give one name to different things in their unnamed namespaces: then many of them can be
 compiled as one (OCTAFRONT_UNITY), and no overload of another file is chosen unseen. Aliases of the same type may repeat.
 
     check_names.py ROOT | --self-test
@@ -44,7 +44,7 @@ def read_sources(root):
     for top in ("src", "tests", "cli"):
         for path in (root / top).rglob("*.cpp"):
             parts = path.relative_to(root).parts
-            room = top if top == "cli" else "/".join(parts[:2])
+            room = top if top == "cli" else "/".join(parts[: 3 if top == "src" else 2][: len(parts) - 1])
             if room not in ("tests/corpus", "tests/fuzz", "tests/install"):
                 sources[room]["/".join(parts)] = path.read_text()
     return sources

@@ -1,17 +1,19 @@
 #!/usr/bin/env python3
-"""Do the rooms keep to their walls? Reads every #include and compares it with the table of rooms in ARCHITECTURE.md.
+"""Do wings and rooms keep to their walls? Reads every #include and compares it with the tables of ARCHITECTURE.md.
 
     check_walls.py ROOT          prints each breach as a line; status 1 if there are any
     check_walls.py --self-test   builds a small house with one breach of each kind, and must find them all
 
 What holds:
-- A room includes from itself, from the rooms that its row names, and public headers; its CMake ROOMS are that row.
-- A row names rooms of rows above it, and only such as the room needs: it includes from them, or includes a public header
-  that they define. So dependencies go down, and the table does not outlive them.
-- Each room has a header ROOM/ROOM.h that begins with what the room is for. A house with rooms inside (surface/repair)
-  shows them there: its room header may include them all.
+- A wing (src/fill) is one room or holds rooms (src/fill/lattice). A row of the table of wings names the wings that it may
+  include from, all of rows above it: wings form no circle. Its CMake WINGS are that row.
+- A room includes from itself, from what its row names, rooms or whole wings, and public headers.
+- A row names rooms of rows above it, and only what the room needs: it includes from them, or includes a public header
+  that they define. So dependencies go down, and the tables do not outlive them.
+- Each room has one header that begins with what the room is for.
 - Public headers include public headers. The command line includes public headers and its own.
-- Tests of a room include that room, rooms that it could reach, and tests/support. Benchmarks may look into any room.
+- Tests of a room include that room, rooms that it could reach, and tests/support; those of a wing what its rooms reach.
+  Benchmarks may look into any room.
 """
 import pathlib
 import re
@@ -22,15 +24,26 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*(?:"([^"]+)"|<octafront/([^>]+)>)', re.
 
 
 def read_tables(text):
-    """From ARCHITECTURE.md: {room: rooms it may include from} in the order of rows, {public header: defining room}."""
-    rooms, homes = {}, {}
+    """From ARCHITECTURE.md: {wing: wings it may include from} and {room: rooms and wings it may include from} in the order
+    of rows, {public header: rooms that define it}."""
+    wings, rooms, homes = {}, {}, {}
     for line in text.splitlines():
         cells = [cell.strip() for cell in line.strip().strip("|").split("|")]
-        if len(cells) == 4 and re.fullmatch(r"`[\w/]+`", cells[0]):
-            rooms[cells[0].strip("`")] = re.findall(r"`([\w/]+)`", cells[1])
-        if len(cells) == 2 and re.fullmatch(r"`[\w/]+`", cells[0]):
-            homes.update((header, cells[0].strip("`")) for header in re.findall(r"`(\w+\.h)`", cells[1]))
-    return rooms, homes
+        if not re.fullmatch(r"`[\w/]+`", cells[0]):
+            continue
+        name, named = cells[0].strip("`"), re.findall(r"`([\w/]+)`", cells[1])
+        if len(cells) == 3:
+            wings[name] = named
+        if len(cells) == 4:
+            rooms[name] = named
+        if len(cells) == 2:
+            for header in re.findall(r"`(\w+\.h)`", cells[1]):
+                homes.setdefault(header, set()).add(name)
+    return wings, rooms, homes
+
+
+def wing_of(room):
+    return room.split("/")[0]
 
 
 def sources(folder):
@@ -46,7 +59,7 @@ def includes(path):
 class House:
     def __init__(self, root):
         self.root = root
-        self.rooms, self.homes = read_tables((root / "ARCHITECTURE.md").read_text())
+        self.wings, self.rooms, self.homes = read_tables((root / "ARCHITECTURE.md").read_text())
         self.breaches = []
 
     def breach(self, where, what):
@@ -54,23 +67,29 @@ class House:
         self.breaches.append(f"{where}: {what}")
 
     def room_of(self, header):
-        """The room that "surface/repair/steps.h" lies in: the deepest one; None if in no room."""
+        """The room that "fill/lattice/core.h" lies in; None if in no room."""
         parts = header.split("/")[:-1]
-        while parts and "/".join(parts) not in self.rooms:
-            parts.pop()
-        return "/".join(parts) or None
+        return next((room for room in ("/".join(parts[:2]), *parts[:1]) if room in self.rooms), None)
+
+    def rooms_in(self, name):
+        """A room alone, a wing's rooms."""
+        return {name} if name in self.rooms else {room for room in self.rooms if wing_of(room) == name}
+
+    def row(self, room):
+        return set().union(*map(self.rooms_in, self.rooms[room]))
 
     def reach(self, room):
         """A room and all below it."""
-        return {room}.union(*(self.reach(r) for r in self.rooms[room]))
+        return {room}.union(*(self.reach(r) for r in self.row(room)))
 
     def check_order(self):
-        seen = set()
-        for room, below in self.rooms.items():
-            for other in below:
-                if other not in seen:
-                    self.breach("ARCHITECTURE.md", f"{room} names {other}, which is no row above it")
-            seen.add(room)
+        for table, what in (self.wings, "wing"), (self.rooms, "room"):
+            seen = set()
+            for name, below in table.items():
+                for other in below:
+                    if not (seen & self.rooms_in(other) if other not in table else other in seen):
+                        self.breach("ARCHITECTURE.md", f"{name} names {other}, which is no {what} of a row above it")
+                seen.add(name)
 
     def check_rooms(self):
         src, needed = self.root / "src", {room: set() for room in self.rooms}
@@ -80,37 +99,39 @@ class House:
                 self.breach(path, "lies in no room of ARCHITECTURE.md")
                 continue
             own, public = includes(path)
-            is_room_header = path.relative_to(src).as_posix() == f"{room}/{room}.h"
             for header in own:
                 other = self.room_of(header)
-                if other == room or (is_room_header and header.startswith(room + "/")):
-                    continue
-                needed[room].add(other)
-                if other not in self.rooms[room]:
-                    self.breach(path, f'includes "{header}", where {room} may not reach')
-            needed[room].update(self.homes.get(header) for header in public)
+                if other != room:
+                    needed[room].add(other)
+                    if other not in self.row(room):
+                        self.breach(path, f'includes "{header}", where {room} may not reach')
+            needed[room] = needed[room].union(*(self.homes.get(header, ()) for header in public))
         for room, below in self.rooms.items():
-            for other in set(below) - needed[room]:
-                self.breach("ARCHITECTURE.md", f"{room} no longer needs {other}")
+            for name in below:
+                if not self.rooms_in(name) & needed[room]:
+                    self.breach("ARCHITECTURE.md", f"{room} no longer needs {name}")
+
+    def check_wings(self):
+        for wing, below in self.wings.items():
+            used = {wing_of(other) for room in self.rooms_in(wing) for other in self.rooms[room]} - {wing}
+            for other in sorted(used ^ set(below)):
+                self.breach("ARCHITECTURE.md", f"the row of {wing} {'does not name' if other in used else 'needs not name'} {other}")
 
     def check_room_headers(self):
         for room in self.rooms:
-            header = self.root / "src" / room / f"{room.split('/')[-1]}.h"
-            if not header.exists():
-                self.breach(header, "is missing: each room has a header that says what it is for")
-            elif not header.read_text().startswith(f"#pragma once\n\n// {room}: "):
-                self.breach(header, f'does not begin with "// {room}: " and what the room is for')
+            begin = f"#pragma once\n\n// {room}: "
+            files = [path for path in sources(self.root / "src" / room) if path.read_text().startswith(begin)]
+            if len(files) != 1:
+                self.breach(f"src/{room}", f'{len(files)} headers begin with "// {room}: " and what the room is for')
 
     def check_cmake(self):
-        for path in sorted(self.root.glob("src/*/CMakeLists.txt")):
-            room = path.parent.name
-            row = {r for name, below in self.rooms.items() if name.split("/")[0] == room for r in below}
-            row = {r.split("/")[0] for r in row} - {room}
-            words = re.search(r"octafront_room\(([^)]*)\)", path.read_text()).group(1).split()
-            listed = words[words.index("ROOMS") + 1 :] if "ROOMS" in words else []
-            listed = set(listed[: listed.index("LIBS")] if "LIBS" in listed else listed)
-            if listed != row:
-                self.breach(path, f"ROOMS are {sorted(listed)}, ARCHITECTURE.md names {sorted(row)}")
+        for wing, below in self.wings.items():
+            path = self.root / "src" / wing / "CMakeLists.txt"
+            words = re.search(r"octafront_wing\(([^)]*)\)", path.read_text()).group(1).split()
+            listed = words[words.index("WINGS") + 1 :] if "WINGS" in words else []
+            listed = listed[: listed.index("LIBS")] if "LIBS" in listed else listed
+            if set(listed) != set(below):
+                self.breach(path, f"WINGS are {sorted(listed)}, ARCHITECTURE.md names {sorted(below)}")
 
     def check_outside(self):
         for path in sources(self.root / "include"):
@@ -121,18 +142,19 @@ class House:
                 if not (path.parent / header).exists():
                     self.breach(path, f'includes "{header}"; the command line sees public headers only')
         for path in sources(self.root / "tests"):
-            folder = path.relative_to(self.root / "tests").parts[0]
-            tested = [room for room in self.rooms if room.split("/")[0] == folder] or self.rooms
+            folder = path.relative_to(self.root / "tests").parent.as_posix()
+            tested = self.rooms_in(folder) or self.rooms_in(wing_of(folder)) or self.rooms
             may = {"support"}.union(*map(self.reach, tested))
             for header in includes(path)[0]:
                 room = self.room_of(header) or header.split("/")[0]
-                beside = (path.parent / header).exists() or (self.root / folder / header).exists()
+                beside = any((root / header).exists() for root in (path.parent, self.root / "tests", self.root / folder))
                 if room not in may and not beside:
                     self.breach(path, f'includes "{header}", which {folder} cannot reach')
 
     def check(self):
         self.check_order()
         self.check_rooms()
+        self.check_wings()
         self.check_room_headers()
         self.check_cmake()
         self.check_outside()
@@ -141,33 +163,39 @@ class House:
 
 def self_test():
     files = {
-        "ARCHITECTURE.md": "| `low` | - | a | b |\n| `mid` | `low` | a | b |\n| `house` | `low`, `house/in` | a | b |\n"
-        "| `house/in` | - | a | b |\n| `top` | `mid`, `low` | a | b |\n\n| `low` | `p.h` |\n",
+        "ARCHITECTURE.md": "| `low` | - | it |\n| `mid` | `low`, `top` | it |\n| `top` | `mid` | it |\n\n"
+        "| `low` | - | a | b |\n| `mid/one` | `mid/two`, `low` | a | b |\n| `mid/two` | - | a | b |\n"
+        "| `top` | `mid`, `low` | a | b |\n\n| `low` | `p.h` |\n",
         "include/octafront/p.h": '#include "low/low.h"\n',
         "src/low/low.h": "#pragma once\n\n// low: it\n",
-        "src/low/up.cpp": '#include "mid/mid.h"\n',
-        "src/low/CMakeLists.txt": "octafront_room(low SOURCES up.cpp ROOMS mid LIBS x)",
-        "src/mid/mid.h": "#pragma once\n\n#include <octafront/p.h>\n",
-        "src/house/house.h": '#pragma once\n\n// house: it\n#include "house/in/in.h"\n#include "low/low.h"\n',
-        "src/house/in/in.h": '#pragma once\n\n// house/in: it\n#include "low/low.h"\n',
-        "src/stray/x.h": "",
-        "src/top/a.cpp": '#include "mid/mid.h"\n',
+        "src/low/up.cpp": '#include "mid/two/two.h"\n',
+        "src/low/CMakeLists.txt": "octafront_wing(low WINGS mid LIBS x)",
+        "src/mid/CMakeLists.txt": "octafront_wing(mid WINGS low top)",
+        "src/mid/one/one.h": "#pragma once\n\n// mid/one: it\n#include <octafront/p.h>\n",
+        "src/mid/two/two.h": '#pragma once\n\n// mid/two: it\n#include "mid/one/one.h"\n',
+        "src/mid/stray.h": "",
+        "src/top/a.cpp": '#include "mid/one/one.h"\n',
+        "src/top/CMakeLists.txt": "octafront_wing(top WINGS mid)",
         "cli/main.cpp": '#include "low/low.h"\n',
         "tests/low/a_test.cpp": '#include "top/top.h"\n#include "support/s.h"\n',
+        "tests/mid/two/a_test.cpp": '#include "mid/one/one.h"\n',
     }
     expected = [
-        "ARCHITECTURE.md: house names house/in, which is no row above it",
-        'src/house/in/in.h: includes "low/low.h", where house/in may not reach',
-        'src/low/up.cpp: includes "mid/mid.h", where low may not reach',
-        "src/stray/x.h: lies in no room of ARCHITECTURE.md",
-        "ARCHITECTURE.md: house no longer needs house/in",
+        "ARCHITECTURE.md: mid names top, which is no wing of a row above it",
+        "ARCHITECTURE.md: mid/one names mid/two, which is no room of a row above it",
+        'src/low/up.cpp: includes "mid/two/two.h", where low may not reach',
+        "src/mid/stray.h: lies in no room of ARCHITECTURE.md",
+        'src/mid/two/two.h: includes "mid/one/one.h", where mid/two may not reach',
+        "ARCHITECTURE.md: mid/one no longer needs mid/two",
         "ARCHITECTURE.md: top no longer needs low",
-        'src/mid/mid.h: does not begin with "// mid: " and what the room is for',
-        "src/top/top.h: is missing: each room has a header that says what it is for",
-        "src/low/CMakeLists.txt: ROOMS are ['mid'], ARCHITECTURE.md names []",
+        "ARCHITECTURE.md: the row of mid needs not name top",
+        "ARCHITECTURE.md: the row of top does not name low",
+        'src/top: 0 headers begin with "// top: " and what the room is for',
+        "src/low/CMakeLists.txt: WINGS are ['mid'], ARCHITECTURE.md names []",
         'include/octafront/p.h: is public and includes "low/low.h"',
         'cli/main.cpp: includes "low/low.h"; the command line sees public headers only',
         'tests/low/a_test.cpp: includes "top/top.h", which low cannot reach',
+        'tests/mid/two/a_test.cpp: includes "mid/one/one.h", which mid/two cannot reach',
     ]
     with tempfile.TemporaryDirectory() as folder:
         root = pathlib.Path(folder)

@@ -34,9 +34,9 @@ def fields(header):
 def main():
     root, program = pathlib.Path(sys.argv[1]), sys.argv[2]
     declared = fields((root / "include/octafront/options.h").read_text())
-    table = (root / "src/options/option_table.cpp").read_text()
+    table = (root / "src/pipeline/options/option_table.cpp").read_text()
     reached = set(re.findall(r"return o\.([\w.]+);", table))
-    intake = (root / "src/options/intake_table.cpp").read_text()
+    intake = (root / "src/pipeline/options/intake_table.cpp").read_text()
     names = set(re.findall(r'(?:of|about)\(\s*"(\w+)"', table + intake))
     breaches = [f"options.h has {f}, and option_table.cpp no row for it"
                 for f in sorted(declared - reached) if f.split(".")[-1] not in MORE_THAN_ONE_VALUE]

@@ -1,7 +1,7 @@
 #include "improve/start_meshes.h"
 
-#include "geometry/measures.h"
-#include "geometry/predicates.h"
+#include "base/geometry/measures.h"
+#include "base/geometry/predicates.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "sizing/octree.h"
 
-#include "core/validate.h"
+#include "base/core/validate.h"
 #include "sizing/inside_fraction.h"
 #include "sizing/octree_corners.h"
 #include "support/named_surfaces.h"

@@ -1,7 +1,7 @@
 #include "support/nasty_surfaces.h"
 
-#include "geometry/predicates.h"
-#include "geometry/self_intersection.h"
+#include "base/geometry/predicates.h"
+#include "base/geometry/self_intersection.h"
 #include "support/named_surfaces.h"
 #include "support/random.h"
 

@@ -2,7 +2,7 @@
 
 #include <octafront/size_field.h>
 
-#include "core/stage.h"
+#include "base/core/stage.h"
 #include "sizing/make_size_field.h"
 
 #include <cmath>

@@ -1,8 +1,8 @@
 #include "surface/remeshing/front_kind.h"
 
-#include "core/parallel.h"
-#include "geometry/measures.h"
-#include "surface/remeshing/mend_folds.h"
+#include "base/core/parallel.h"
+#include "base/geometry/measures.h"
+#include "surface/folds/mend_folds.h"
 
 #include <algorithm>
 

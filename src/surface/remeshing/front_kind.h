@@ -2,12 +2,12 @@
 
 // The steps of a round in which single surfaces and complexes differ. One object is chosen before the first round.
 
-#include "mesh/features.h"
-#include "surface/remeshing/narrow_strips.h"
+#include "base/mesh/features.h"
+#include "surface/check/surface_check.h"
 #include "surface/remeshing/outcome.h"
 #include "surface/remeshing/round_sizes.h"
-#include "surface/remeshing/seams.h"
-#include "surface/surface_check.h"
+#include "surface/seams/seams.h"
+#include "surface/sizes/narrow_strips.h"
 
 #include <memory>
 #include <optional>

@@ -4,15 +4,15 @@
 
 #include <octafront/run_context.h>
 
-#include "core/stage.h"
-#include "geometry/leeway.h"
-#include "mesh/known_surface.h"
-#include "surface/remeshing/coarsen.h"
-#include "surface/remeshing/curves.h"
+#include "base/core/stage.h"
+#include "base/geometry/leeway.h"
+#include "base/mesh/known_surface.h"
+#include "surface/edits/coarsen.h"
+#include "surface/front/insertion.h"
+#include "surface/lines/curves.h"
 #include "surface/remeshing/element_budget.h"
-#include "surface/remeshing/improve.h"
-#include "surface/remeshing/insertion.h"
 #include "surface/remeshing/remesh.h"
+#include "surface/shaping/shaping.h"
 
 #include <span>
 #include <vector>

@@ -1,9 +1,9 @@
 #include "surface/remeshing/keep_volumes.h"
 
-#include "core/groups.h"
-#include "mesh/complex.h"
-#include "surface/remeshing/crossings.h"
-#include "surface/surface_check.h"
+#include "base/core/groups.h"
+#include "base/mesh/complex.h"
+#include "surface/check/surface_check.h"
+#include "surface/ground/crossings.h"
 
 #include <algorithm>
 #include <cmath>

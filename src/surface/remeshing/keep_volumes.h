@@ -3,7 +3,7 @@
 #include <octafront/run_context.h>
 #include <octafront/surface_mesh.h>
 
-#include "mesh/features.h"
+#include "base/mesh/features.h"
 
 #include <cstdint>
 

@@ -1,8 +1,8 @@
 #include "surface/remeshing/nearness.h"
 
 #include "surface/remeshing/outcome.h"
-#include "surface/remeshing/seams.h"
-#include "surface/remeshing/thinned.h"
+#include "surface/seams/seams.h"
+#include "surface/sizes/thinned.h"
 
 #include <algorithm>
 #include <cmath>

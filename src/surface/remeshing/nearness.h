@@ -2,7 +2,7 @@
 
 // Where the surface that is being made strays from the input, and the sizes by which it would not.
 
-#include "surface/remeshing/deviation.h"
+#include "surface/ground/deviation.h"
 #include "surface/remeshing/front_work.h"
 
 #include <vector>

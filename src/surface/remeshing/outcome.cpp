@@ -1,7 +1,7 @@
 #include "surface/remeshing/outcome.h"
 
-#include "surface/remeshing/crossings.h"
-#include "surface/remeshing/seams.h"
+#include "surface/ground/crossings.h"
+#include "surface/seams/seams.h"
 
 #include <algorithm>
 #include <utility>

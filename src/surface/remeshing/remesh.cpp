@@ -1,12 +1,12 @@
 #include "surface/remeshing/remesh.h"
 
-#include "core/validate.h"
-#include "geometry/measures.h"
-#include "surface/remeshing/crossings.h"
-#include "surface/remeshing/front.h"
+#include "base/core/validate.h"
+#include "base/geometry/measures.h"
+#include "surface/front/front.h"
+#include "surface/ground/crossings.h"
+#include "surface/ground/source_triangles.h"
+#include "surface/ground/turning.h"
 #include "surface/remeshing/front_kind.h"
-#include "surface/remeshing/source_triangles.h"
-#include "surface/remeshing/turning.h"
 
 #include <cmath>
 #include <numeric>

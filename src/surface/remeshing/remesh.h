@@ -4,8 +4,8 @@
 #include <octafront/size_field.h>
 #include <octafront/surface_mesh.h>
 
-#include "core/stage.h"
-#include "mesh/known_surface.h"
+#include "base/core/stage.h"
+#include "base/mesh/known_surface.h"
 
 #include <cmath>
 #include <cstdint>

@@ -1,7 +1,7 @@
 #include "surface/remeshing/round_sizes.h"
 
-#include "geometry/measures.h"
-#include "surface/remeshing/thinned.h"
+#include "base/geometry/measures.h"
+#include "surface/sizes/thinned.h"
 
 #include <algorithm>
 #include <utility>

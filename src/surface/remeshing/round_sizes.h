@@ -2,9 +2,9 @@
 
 #include <octafront/size_field.h>
 
-#include "core/function_ref.h"
+#include "base/core/function_ref.h"
 #include "sizing/make_size_field.h"
-#include "surface/remeshing/restored.h"
+#include "surface/ground/kept_places.h"
 
 #include <optional>
 #include <vector>

@@ -1,14 +1,14 @@
 // The steps of a complex, on its parts cut open along seams (seams.h).
 
-#include "geometry/measures.h"
-#include "mesh/complex.h"
-#include "surface/remeshing/approach.h"
-#include "surface/remeshing/corner_sizes.h"
-#include "surface/remeshing/crossings.h"
-#include "surface/remeshing/flat_sizes.h"
+#include "base/geometry/measures.h"
+#include "base/mesh/complex.h"
+#include "surface/folds/draw_to_input.h"
+#include "surface/ground/crossings.h"
 #include "surface/remeshing/front_kind.h"
 #include "surface/remeshing/keep_volumes.h"
 #include "surface/remeshing/nearness.h"
+#include "surface/sizes/corner_sizes.h"
+#include "surface/sizes/flat_sizes.h"
 
 #include <algorithm>
 #include <cmath>

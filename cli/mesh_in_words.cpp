@@ -1,0 +1,72 @@
+#include "mesh_in_words.h"
+
+#include <octafront/io.h>
+#include <octafront/report.h>
+
+#include <fmt/core.h>
+
+namespace octafront::cli {
+
+namespace {
+
+Vec3 middle(const TetMesh& mesh, TetIndex tet) {
+  const auto& [a, b, c, d] = mesh.tets[tet];
+  return (mesh.points[a] + mesh.points[b] + mesh.points[c] + mesh.points[d]) / 4;
+}
+
+/// The groups of a mesh and their sizes, in words and for programs.
+void tell_groups(Session& session, const TetMesh& mesh) {
+  Json all = Json::array();
+  std::string words;
+  for (const GroupInfo& group : groups_of(mesh)) {
+    all.push_back({{"origin", group.origin}, {"name", group.name}, {"size", group.size}});
+    words += fmt::format("  {} \"{}\": {}\n", group.origin, group.name, group.size);
+  }
+  session.found({{"groups", all}});
+  if (!words.empty()) session.say("groups:\n" + words);
+}
+
+}  // namespace
+
+Json place(Vec3 p) {
+  return {p.x, p.y, p.z};
+}
+
+// A number alone is hard to find in a viewer.
+void tell_worst(Session& session, const TetMesh& mesh, const QualitySummary& quality) {
+  const Vec3 p = middle(mesh, quality.beta_min_tet);
+  session.say(fmt::format("worst element: number {} at ({:.6g}, {:.6g}, {:.6g}), beta {:.4f}\n", quality.beta_min_tet,
+                          p.x, p.y, p.z, quality.beta_min));
+  session.found({{"worst_element", {{"number", quality.beta_min_tet}, {"at", place(p)}, {"beta", quality.beta_min}}}});
+  constexpr std::size_t kListed = 20;
+  Json worst = Json::array();
+  for (const PoorElement& e : worst_elements(mesh, kListed))
+    worst.push_back({{"number", e.tet},
+                     {"at", place(e.at)},
+                     {"beta", e.beta},
+                     {"dihedral_min_degrees", e.dihedral_min},
+                     {"dihedral_max_degrees", e.dihedral_max}});
+  session.found({{"worst_elements", worst}});
+}
+
+std::string quality_in_words(const QualitySummary& q) {
+  return fmt::format("{}; least beta {:.4f}, mean {:.4f}, dihedral angles {:.1f} to {:.1f} degrees",
+                     q.elements == 1 ? "1 tetrahedron" : fmt::format("{} tetrahedra", q.elements), q.beta_min,
+                     q.beta_mean, q.dihedral_min, q.dihedral_max);
+}
+
+void tell_mesh(Session& session, const TetMesh& mesh, const std::string& what) {
+  Report report;
+  report.points = mesh.points.size();
+  report.tets = mesh.tets.size();
+  report.boundary_faces = mesh.boundary.size();
+  report.quality = summarize_quality(mesh);
+  session.found({{"points", report.points}, {"tets", report.tets}, {"boundary_faces", report.boundary_faces}});
+  session.found({{"quality", Json::parse(to_json(report))["quality"]}});
+  session.say(
+      fmt::format("{}: {} of {}\n", session.arguments().input.string(), what, quality_in_words(report.quality)));
+  if (!mesh.tets.empty()) tell_worst(session, mesh, report.quality);
+  tell_groups(session, mesh);
+}
+
+}  // namespace octafront::cli

@@ -1,0 +1,66 @@
+#include "base/core/parallel.h"
+
+#include "base/core/thread_limit.h"
+
+#include <oneapi/tbb/enumerable_thread_specific.h>
+#include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/parallel_invoke.h>
+
+namespace octafront {
+
+void parallel_ranges(std::size_t n, Split split, FunctionRef<void(std::size_t begin, std::size_t end)> body) {
+  using Range = tbb::blocked_range<std::size_t>;
+  const auto run = [&body](const Range& range) { body(range.begin(), range.end()); };
+  if (split == Split::kSingly)
+    tbb::parallel_for(Range(0, n), run, tbb::simple_partitioner{});
+  else
+    tbb::parallel_for(Range(0, n), run);
+}
+
+std::size_t thread_count() {
+  return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+}
+
+void parallel_invoke(FunctionRef<void()> a, FunctionRef<void()> b) {
+  tbb::parallel_invoke(a, b);
+}
+
+struct ThreadSlots::Impl {
+  void (*drop)(void*);
+  tbb::enumerable_thread_specific<void*> slots{nullptr};
+};
+
+ThreadSlots::ThreadSlots(void (*drop)(void*)) : impl_(new Impl{drop}) {}
+
+ThreadSlots::~ThreadSlots() {
+  for_each(impl_->drop);
+  delete impl_;
+}
+
+void* ThreadSlots::local(FunctionRef<void*()> make) {
+  void*& slot = impl_->slots.local();
+  if (slot == nullptr) slot = make();
+  return slot;
+}
+
+void ThreadSlots::for_each(FunctionRef<void(void*)> visit) {
+  for (void* slot : impl_->slots)
+    if (slot != nullptr) visit(slot);
+}
+
+struct ThreadLimit::Control {
+  tbb::global_control control;
+};
+
+ThreadLimit::ThreadLimit(int threads) {
+  if (threads > 0)
+    control_ = new Control{
+        tbb::global_control(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads))};
+}
+
+ThreadLimit::~ThreadLimit() {
+  delete control_;
+}
+
+}  // namespace octafront

@@ -1,0 +1,22 @@
+#include "base/core/stage_timer.h"
+
+#include <sys/resource.h>
+
+namespace octafront {
+
+double process_cpu_seconds() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](timeval t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+StageTimer::StageTimer(StageReport& report)
+    : report_(report), wall_start_(std::chrono::steady_clock::now()), cpu_start_(process_cpu_seconds()) {}
+
+StageTimer::~StageTimer() {
+  report_.wall_seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - wall_start_).count();
+  report_.cpu_seconds += process_cpu_seconds() - cpu_start_;
+}
+
+}  // namespace octafront

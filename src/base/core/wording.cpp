@@ -1,0 +1,36 @@
+#include "base/core/wording.h"
+
+#include <algorithm>
+
+#include <fmt/core.h>
+
+namespace octafront {
+namespace {
+
+constexpr std::size_t kMostFaces = 5;  // more are no help in a sentence
+
+}  // namespace
+
+std::string noun(std::uint64_t n, const std::string& one, const std::string& many) {
+  return n == 1 ? one : many.empty() ? one + "s" : many;
+}
+
+std::string counted(std::uint64_t n, const std::string& one, const std::string& many) {
+  return fmt::format("{} {}", n, noun(n, one, many));
+}
+
+std::string in_faces(std::span<const std::uint32_t> faces) {
+  if (faces.empty()) return "";
+  const std::size_t shown = std::min(faces.size(), kMostFaces);
+  std::string list;
+  for (std::size_t i = 0; i < shown; ++i)
+    list += fmt::format("{}{}", i == 0 ? "" : i + 1 < shown ? ", " : " and ", faces[i]);
+  return fmt::format(" ({}face{} {})", shown < faces.size() ? "first: " : "", shown == 1 ? "" : "s", list);
+}
+
+std::string at_point(Vec3 p) {
+  // Adding 0 keeps "-0" out of messages.
+  return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x + 0.0, p.y + 0.0, p.z + 0.0);
+}
+
+}  // namespace octafront

@@ -1,0 +1,282 @@
+#include <octafront/named_groups.h>
+
+#include "base/mesh/curve_names.h"
+#include "base/mesh/edge_table.h"
+#include "base/mesh/face_table.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cstring>
+#include <map>
+#include <span>
+#include <unordered_map>
+
+#include <fmt/core.h>
+
+namespace octafront {
+namespace {
+
+using Kind = NamedSet::Kind;
+
+/// The points that lie where the rule says.
+std::vector<bool> points_within(const TetMesh& mesh, const GroupRule& rule) {
+  std::vector<bool> inside(mesh.points.size());
+  for (std::size_t v = 0; v < inside.size(); ++v) {
+    const Vec3 p = mesh.points[v];
+    if (const auto* box = std::get_if<Box3>(&rule.where)) {
+      inside[v] = true;
+      for (int axis = 0; axis < 3; ++axis)
+        inside[v] = inside[v] && p[axis] >= box->lo[axis] && p[axis] <= box->hi[axis];
+    } else {
+      const auto& ball = std::get<GroupRule::Sphere>(rule.where);
+      inside[v] = squared_length(p - ball.center) <= ball.radius * ball.radius;
+    }
+  }
+  return inside;
+}
+
+template <class Rows>
+void add_rows_within(const Rows& rows, const std::vector<bool>& inside, std::uint32_t first,
+                     std::vector<std::uint32_t>& members) {
+  for (std::uint32_t i = 0; i < rows.size(); ++i)
+    if (std::all_of(rows[i].begin(), rows[i].end(), [&](VertexIndex v) { return inside[v]; }))
+      members.push_back(first + i);
+}
+
+std::vector<std::uint32_t> members_within(const TetMesh& mesh, const GroupRule& rule) {
+  const std::vector<bool> inside = points_within(mesh, rule);
+  std::vector<std::uint32_t> members;
+  if (rule.kind == Kind::kNodes)
+    for (VertexIndex v = 0; v < inside.size(); ++v)
+      if (inside[v]) members.push_back(v);
+  if (rule.kind == Kind::kElements) add_rows_within(mesh.tets, inside, 0, members);
+  if (rule.kind == Kind::kEdges) add_rows_within(mesh.curve_edges, inside, 0, members);
+  if (rule.kind == Kind::kFaces) {
+    add_rows_within(mesh.boundary, inside, 0, members);
+    add_rows_within(mesh.interfaces, inside, static_cast<std::uint32_t>(mesh.boundary.size()), members);
+  }
+  return members;
+}
+
+/// The number of a patch by its name, or by its number from 1; kNone if there is none.
+std::uint32_t patch_called(const TetMesh& mesh, const std::string& name) {
+  const auto named = std::find(mesh.patch_names.begin(), mesh.patch_names.end(), name);
+  if (named != mesh.patch_names.end()) return static_cast<std::uint32_t>(named - mesh.patch_names.begin());
+  std::uint32_t number = 0;
+  const auto [stop, error] = std::from_chars(name.data(), name.data() + name.size(), number);
+  return error == std::errc() && stop == name.data() + name.size() && number > 0 ? number - 1 : kNone;
+}
+
+std::vector<std::uint32_t> members_of_patches(const TetMesh& mesh, const std::vector<std::uint32_t>& patches) {
+  std::vector<std::uint32_t> members;
+  const auto add = [&](std::size_t faces, const std::vector<std::uint32_t>& patch, std::size_t first) {
+    for (std::size_t f = 0; f < faces; ++f)
+      if (std::find(patches.begin(), patches.end(), patch.empty() ? 0 : patch[f]) != patches.end())
+        members.push_back(static_cast<std::uint32_t>(first + f));
+  };
+  add(mesh.boundary.size(), mesh.patch, 0);
+  add(mesh.interfaces.size(), mesh.interface_patch, mesh.boundary.size());
+  return members;
+}
+
+/// From the vertices of one mesh to those at the same coordinates in another one; kNone where there is none.
+std::vector<VertexIndex> same_places(const TetMesh& from, const TetMesh& to) {
+  struct Hash {
+    std::size_t operator()(const std::array<double, 3>& p) const {
+      std::uint64_t hash = 0;
+      for (const double x : p) {
+        std::uint64_t bits;
+        std::memcpy(&bits, &x, sizeof bits);
+        hash = (hash ^ bits) * 0x9e3779b97f4a7c15ull;
+        hash ^= hash >> 32;
+      }
+      return hash;
+    }
+  };
+  // -0 and 0 are one place.
+  const auto key = [](Vec3 p) { return std::array<double, 3>{p.x + 0.0, p.y + 0.0, p.z + 0.0}; };
+  std::unordered_map<std::array<double, 3>, VertexIndex, Hash> at;
+  at.reserve(to.points.size());
+  for (VertexIndex v = 0; v < to.points.size(); ++v) at.emplace(key(to.points[v]), v);
+  std::vector<VertexIndex> place;
+  place.reserve(from.points.size());
+  for (const Vec3& p : from.points) {
+    const auto found = at.find(key(p));
+    place.push_back(found == at.end() ? kNone : found->second);
+  }
+  return place;
+}
+
+class Carrying {
+ public:
+  Carrying(const TetMesh& before, TetMesh& mesh) : before_(before), mesh_(mesh), place_(same_places(before, mesh)) {}
+
+  std::vector<std::string> result() {
+    mesh_.region_names = before_.region_names;
+    mesh_.curve_names = before_.curve_names;
+    carry_interfaces();
+    carry_curves();
+    find_boundary();
+    mesh_.sets.clear();
+    for (const NamedSet& set : before_.sets) carry_set(set);
+    return std::move(notes_);
+  }
+
+ private:
+  template <std::size_t N>
+  bool moved(std::array<VertexIndex, N>& row) const {
+    for (VertexIndex& v : row) {
+      v = place_[v];
+      if (v == kNone) return false;
+    }
+    return true;
+  }
+
+  void carry_interfaces() {
+    std::vector<Triangle> wanted = before_.interfaces;
+    std::vector<bool> there(wanted.size());
+    for (std::size_t f = 0; f < wanted.size(); ++f) {
+      there[f] = moved(wanted[f]);
+      if (!there[f]) wanted[f] = {0, 0, 0};
+    }
+    const FaceTable table = face_table(mesh_.points.size(), wanted);
+    std::vector<int> tets(wanted.size(), 0);
+    for (const Tet& t : mesh_.tets)
+      for (int i = 0; i < 4; ++i)
+        for (const FaceTable::Entry& listed : table.group_of(face_of(t, i))) ++tets[listed.face];
+    mesh_.interfaces.clear();
+    mesh_.interface_patch.clear();
+    interface_of_.assign(wanted.size(), kNone);
+    for (std::size_t f = 0; f < wanted.size(); ++f) {
+      if (!there[f] || tets[f] != 2) continue;
+      interface_of_[f] = static_cast<std::uint32_t>(mesh_.interfaces.size());
+      mesh_.interfaces.push_back(wanted[f]);
+      if (!before_.interface_patch.empty()) mesh_.interface_patch.push_back(before_.interface_patch[f]);
+    }
+    lose(before_.interfaces.size() - mesh_.interfaces.size(), "interface faces");
+  }
+
+  void carry_curves() {
+    std::vector<Edge> edges;
+    for (const Tet& t : mesh_.tets)
+      for (const auto& [i, j] : kTetEdges) {
+        const VertexIndex a = t[static_cast<std::size_t>(i)], b = t[static_cast<std::size_t>(j)];
+        if (!before_.curve_edges.empty()) edges.push_back({std::min(a, b), std::max(a, b)});
+      }
+    std::sort(edges.begin(), edges.end());
+    mesh_.curve_edges.clear();
+    mesh_.curve.clear();
+    edge_of_.assign(before_.curve_edges.size(), kNone);
+    for (std::size_t e = 0; e < before_.curve_edges.size(); ++e) {
+      Edge edge = before_.curve_edges[e];
+      if (!moved(edge) ||
+          !std::binary_search(edges.begin(), edges.end(), Edge{std::min(edge[0], edge[1]), std::max(edge[0], edge[1])}))
+        continue;
+      edge_of_[e] = static_cast<std::uint32_t>(mesh_.curve_edges.size());
+      mesh_.curve_edges.push_back(edge);
+      if (!before_.curve.empty()) mesh_.curve.push_back(before_.curve[e]);
+    }
+    lose(before_.curve_edges.size() - mesh_.curve_edges.size(), "edges of curves");
+  }
+
+  void find_boundary() {
+    const FaceTable table = face_table(mesh_.points.size(), mesh_.boundary);
+    boundary_of_.assign(before_.boundary.size(), kNone);
+    for (std::size_t f = 0; f < before_.boundary.size(); ++f) {
+      Triangle t = before_.boundary[f];
+      if (!moved(t)) continue;
+      const auto group = table.group_of(t);
+      if (!group.empty()) boundary_of_[f] = group.front().face;
+    }
+  }
+
+  void carry_set(const NamedSet& set) {
+    NamedSet kept{set.name, set.kind, {}};
+    if (set.kind == Kind::kElements) {
+      if (mesh_.tets == before_.tets) kept.members = set.members;
+    } else {
+      for (const std::uint32_t m : set.members) {
+        const std::uint32_t to = carried(set.kind, m);
+        if (to != kNone) kept.members.push_back(to);
+      }
+    }
+    std::sort(kept.members.begin(), kept.members.end());
+    kept.members.erase(std::unique(kept.members.begin(), kept.members.end()), kept.members.end());
+    lose(set.members.size() - kept.members.size(), fmt::format("members of the set \"{}\"", set.name));
+    if (!kept.members.empty()) mesh_.sets.push_back(std::move(kept));
+  }
+
+  std::uint32_t carried(Kind kind, std::uint32_t m) const {
+    if (kind == Kind::kNodes) return place_[m];
+    if (kind == Kind::kEdges) return edge_of_[m];
+    const auto faces = static_cast<std::uint32_t>(before_.boundary.size());
+    if (m < faces) return boundary_of_[m];
+    const std::uint32_t inside = interface_of_[m - faces];
+    return inside == kNone ? kNone : static_cast<std::uint32_t>(mesh_.boundary.size()) + inside;
+  }
+
+  void lose(std::size_t count, const std::string& what) {
+    if (count > 0) notes_.push_back(fmt::format("{} {} are no longer in the mesh, and left out", count, what));
+  }
+
+  const TetMesh& before_;
+  TetMesh& mesh_;
+  std::vector<VertexIndex> place_;
+  std::vector<std::uint32_t> interface_of_, edge_of_, boundary_of_;  ///< of those before
+  std::vector<std::string> notes_;
+};
+
+}  // namespace
+
+std::string add_group(TetMesh& mesh, const GroupRule& rule) {
+  NamedSet set{rule.name, rule.kind, {}};
+  std::string unknown;
+  if (const auto* names = std::get_if<std::vector<std::string>>(&rule.where)) {
+    set.kind = Kind::kFaces;
+    std::vector<std::uint32_t> patches;
+    for (const std::string& name : *names) {
+      patches.push_back(patch_called(mesh, name));
+      if (members_of_patches(mesh, {patches.back()}).empty())
+        unknown += fmt::format("{}\"{}\"", unknown.empty() ? "" : ", ", name);
+    }
+    set.members = members_of_patches(mesh, patches);
+  } else {
+    set.members = members_within(mesh, rule);
+  }
+  const bool is_empty = set.members.empty();
+  if (!is_empty) mesh.sets.push_back(std::move(set));
+  if (!unknown.empty())
+    return fmt::format("group \"{}\": the mesh has no patch {}{}", rule.name, unknown,
+                       is_empty ? "; it is left out" : "");
+  return is_empty ? fmt::format("group \"{}\": nothing lies there; it is left out", rule.name) : std::string();
+}
+
+void add_patch_curves(TetMesh& mesh) {
+  if ((mesh.patch.empty() && mesh.interfaces.empty()) || !mesh.curve_edges.empty()) return;
+  std::vector<Triangle> faces = mesh.boundary;
+  faces.insert(faces.end(), mesh.interfaces.begin(), mesh.interfaces.end());
+  const auto patch_of = [&](std::uint32_t face) {
+    const bool is_inside = face >= mesh.boundary.size();
+    const auto& patch = is_inside ? mesh.interface_patch : mesh.patch;
+    return patch.empty() ? 0 : patch[is_inside ? face - mesh.boundary.size() : face];
+  };
+  const EdgeTable table = make_edge_table(mesh.points.size(), faces);
+  std::map<std::vector<std::uint32_t>, std::uint32_t> curve_of;
+  for (std::size_t e = 0; e < table.size(); ++e) {
+    std::vector<std::uint32_t> patches;
+    for (const HalfEdge h : table.uses(e)) patches.push_back(patch_of(h / 3));
+    std::sort(patches.begin(), patches.end());
+    patches.erase(std::unique(patches.begin(), patches.end()), patches.end());
+    if (patches.size() < 2 && table.uses(e).size() == 2) continue;
+    mesh.curve_edges.push_back(table.edges[e]);
+    mesh.curve.push_back(curve_of.try_emplace(patches, static_cast<std::uint32_t>(curve_of.size())).first->second);
+  }
+  mesh.curve_names.assign(curve_of.size(), {});
+  for (const auto& [patches, curve] : curve_of) mesh.curve_names[curve] = curve_name(patches, mesh.patch_names);
+}
+
+std::vector<std::string> carry_groups(const TetMesh& before, TetMesh& mesh) {
+  return Carrying(before, mesh).result();
+}
+
+}  // namespace octafront

@@ -1,0 +1,224 @@
+#include <octafront/quality.h>
+
+#include "base/core/groups.h"
+#include "base/core/parallel.h"
+#include "base/geometry/measures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+namespace octafront {
+
+namespace {
+
+// Corners seen from a in units of the longest edge, so that no power of a length overflows or underflows.
+std::array<Vec3, 4> normalized_corners(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
+  std::array<Vec3, 4> q{Vec3{}, b - a, c - a, d - a};
+  double size = 0;
+  for (const Vec3& v : q) size = std::max({size, std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+  if (size > 0)
+    for (Vec3& v : q) v = v / size;
+  return q;
+}
+
+// An angle in [0, 180] degrees as a direction of any length: its order needs neither a root nor an arc tangent.
+struct Direction {
+  double x, y;  // y >= 0, not both 0
+  double degrees() const { return std::atan2(y, x) * (180 / std::numbers::pi); }
+  bool is_below(const Direction& other) const {
+    const double turn = x * other.y - y * other.x;
+    return turn > 0 || (turn == 0 && x > 0 && other.x < 0);
+  }
+};
+
+// Angles from one determinant and the products of face normals: y over x keeps the digits of needles and slivers.
+std::array<Direction, 6> angles_of(const std::array<Vec3, 4>& q) {
+  const Vec3 u = q[1] - q[0], v = q[2] - q[0], w = q[3] - q[0];
+  const Vec3 nb = cross(v, w), nc = cross(w, u), nd = cross(u, v), na = -(nb + nc + nd);
+  const double det = std::abs(dot(u, nb));
+  const auto angle = [&](Vec3 edge, Vec3 m, Vec3 n) {
+    const Direction d{-dot(m, n), length(edge) * det};
+    return d.x == 0 && d.y == 0 ? Direction{1, 0} : d;
+  };
+  return {angle(u, nc, nd),     angle(v, nb, nd),     angle(w, nb, nc),
+          angle(v - u, na, nd), angle(w - u, na, nc), angle(w - v, na, nb)};
+}
+
+// Classes of 10 degrees. What is at hand grows with the angle from 0 to 2 and needs one division; a table tells the
+// class of most of its values, and the class before the border that lies within the rest.
+class AngleClasses {
+ public:
+  AngleClasses() {
+    for (int i = 0; i < kClasses - 1; ++i) {
+      const double angle = (i + 1) * std::numbers::pi / kClasses;
+      border_[i] = {std::cos(angle), std::sin(angle)};
+    }
+    std::uint8_t next = 0;
+    for (int step = 0; step <= kSteps; ++step) {
+      // Rounding may put an angle one step too far, never past a whole one.
+      while (next < kClasses - 1 && step_of(border_[next]) < step - 1) ++next;
+      first_[step] = next;
+    }
+  }
+
+  std::size_t of(const Direction& angle) const {
+    std::size_t c = first_[step_of(angle)];
+    while (c < kClasses - 1 && !angle.is_below(border_[c])) ++c;
+    return c;
+  }
+
+ private:
+  static constexpr int kClasses = 18, kSteps = 256;
+
+  static int step_of(const Direction& d) {
+    const double step = (1 - d.x / (std::abs(d.x) + d.y)) * (0.5 * kSteps);
+    return step < kSteps ? static_cast<int>(step) : kSteps;
+  }
+
+  std::array<Direction, kClasses - 1> border_;  ///< the lower ones of all classes but the first
+  std::array<std::uint8_t, kSteps + 1> first_;  ///< the least class that an angle of this step may have
+};
+
+std::size_t class_of(const Direction& angle) {
+  static const AngleClasses classes;
+  return classes.of(angle);
+}
+
+// The summary of a stretch of elements; beta_mean holds the sum, and the extreme angles wait to be converted.
+struct Part {
+  QualitySummary summary;
+  Direction least{-1, 0}, most{1, 0};
+
+  void add_tet(TetIndex tet, const std::array<Vec3, 4>& q) {
+    QualitySummary& s = summary;
+    const double beta = std::min(1.0, tet_radius_ratio(q[0], q[1], q[2], q[3]));
+    ++s.elements;
+    s.beta_mean += beta;
+    ++s.beta_classes[static_cast<std::size_t>(std::clamp(static_cast<int>(beta * 5), 0, 4))];
+    if (s.beta_min_tet == kNone || beta < s.beta_min) {
+      s.beta_min = beta;
+      s.beta_min_tet = tet;
+    }
+    for (const Direction& angle : angles_of(q)) {
+      if (angle.is_below(least)) least = angle;
+      if (most.is_below(angle)) most = angle;
+      ++s.dihedral_histogram[class_of(angle)];
+    }
+  }
+  void convert_angles() {
+    summary.dihedral_min = least.degrees();
+    summary.dihedral_max = most.degrees();
+  }
+};
+
+// beta_mean holds the sum until the end; `part` follows `whole` in the order of elements.
+void add_summary(QualitySummary& whole, const QualitySummary& part) {
+  whole.elements += part.elements;
+  whole.beta_mean += part.beta_mean;
+  for (std::size_t i = 0; i < whole.beta_classes.size(); ++i) whole.beta_classes[i] += part.beta_classes[i];
+  for (std::size_t i = 0; i < whole.dihedral_histogram.size(); ++i)
+    whole.dihedral_histogram[i] += part.dihedral_histogram[i];
+  if (whole.beta_min_tet == kNone || part.beta_min < whole.beta_min) {
+    whole.beta_min = part.beta_min;
+    whole.beta_min_tet = part.beta_min_tet;
+  }
+  whole.dihedral_min = std::min(whole.dihedral_min, part.dihedral_min);
+  whole.dihedral_max = std::max(whole.dihedral_max, part.dihedral_max);
+}
+
+/// Of n tets; tet_at(i) is the number of the i-th.
+template <class TetAt>
+QualitySummary summarize(const TetMesh& mesh, std::size_t n, const TetAt& tet_at) {
+  // Blocks of fixed size, added in order: the sums do not depend on the number of threads.
+  constexpr std::size_t kBlock = 8192;
+  if (n == 0) return {};
+  std::vector<Part> parts((n + kBlock - 1) / kBlock);
+  parallel_for(parts.size(), [&](std::size_t block) {
+    for (std::size_t i = block * kBlock; i < std::min(n, (block + 1) * kBlock); ++i) {
+      const TetIndex t = tet_at(i);
+      const auto& [a, b, c, d] = mesh.tets[t];
+      const auto& p = mesh.points;
+      parts[block].add_tet(t, normalized_corners(p[a], p[b], p[c], p[d]));
+    }
+    parts[block].convert_angles();
+  });
+  QualitySummary whole;
+  whole.dihedral_min = 180;
+  for (const Part& part : parts) add_summary(whole, part.summary);
+  whole.beta_mean /= static_cast<double>(n);
+  return whole;
+}
+
+}  // namespace
+
+double radius_ratio(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
+  const auto q = normalized_corners(a, b, c, d);
+  return std::clamp(tet_radius_ratio(q[0], q[1], q[2], q[3]), -1.0, 1.0);
+}
+
+double radius_ratio(Vec3 a, Vec3 b, Vec3 c) {
+  const auto q = normalized_corners(a, b, c, a);
+  return std::min(1.0, triangle_radius_ratio(q[0], q[1], q[2]));
+}
+
+std::array<double, 6> dihedral_angles(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
+  std::array<double, 6> degrees{};
+  const auto angles = angles_of(normalized_corners(a, b, c, d));
+  std::transform(angles.begin(), angles.end(), degrees.begin(), [](const Direction& angle) { return angle.degrees(); });
+  return degrees;
+}
+
+QualitySummary summarize_quality(const TetMesh& mesh) {
+  return summarize(mesh, mesh.tets.size(), [](std::size_t i) { return static_cast<TetIndex>(i); });
+}
+
+std::vector<QualitySummary> quality_of_regions(const TetMesh& mesh) {
+  if (mesh.region.empty()) return {summarize_quality(mesh)};
+  const std::uint32_t regions = mesh.tets.empty() ? 0 : 1 + *std::max_element(mesh.region.begin(), mesh.region.end());
+  const Groups<> tets = group_by_owner(regions, static_cast<std::uint32_t>(mesh.tets.size()),
+                                       [&](std::uint32_t t) { return mesh.region[t]; });
+  std::vector<QualitySummary> found(regions);
+  parallel_for(
+      regions,
+      [&](std::size_t r) { found[r] = summarize(mesh, tets[r].size(), [&](std::size_t i) { return tets[r][i]; }); },
+      Split::kSingly);
+  return found;
+}
+
+std::vector<PoorElement> worst_elements(const TetMesh& mesh, std::size_t count) {
+  const auto corners = [&](std::size_t t) {
+    const auto& [a, b, c, d] = mesh.tets[t];
+    return std::array<Vec3, 4>{mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]};
+  };
+  using Candidate = std::pair<double, TetIndex>;
+  const auto keep_least = [count](std::vector<Candidate>& of) {
+    const std::size_t kept = std::min(count, of.size());
+    std::partial_sort(of.begin(), of.begin() + static_cast<std::ptrdiff_t>(kept), of.end());
+    of.resize(kept);
+  };
+  // Whoever is among the worst of all is among the worst of its range.
+  constexpr std::size_t kRange = 8192;
+  auto all = parallel_collect<Candidate>(mesh.tets.size(), kRange,
+                                         [&](std::size_t begin, std::size_t end, std::vector<Candidate>& found) {
+                                           for (std::size_t t = begin; t < end; ++t) {
+                                             const auto [a, b, c, d] = corners(t);
+                                             const double beta = radius_ratio(a, b, c, d);
+                                             found.push_back({std::isnan(beta) ? -1 : beta, static_cast<TetIndex>(t)});
+                                           }
+                                           keep_least(found);
+                                         });
+  keep_least(all);
+  std::vector<PoorElement> worst;
+  for (const auto& [beta, t] : all) {
+    const auto [a, b, c, d] = corners(t);
+    const auto angles = dihedral_angles(a, b, c, d);
+    const auto [least, most] = std::minmax_element(angles.begin(), angles.end());
+    worst.push_back({t, (a + b + c + d) / 4, beta, *least, *most});
+  }
+  return worst;
+}
+
+}  // namespace octafront

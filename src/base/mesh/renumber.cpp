@@ -1,0 +1,50 @@
+#include "base/mesh/renumber.h"
+
+#include <algorithm>
+
+namespace octafront {
+
+void keep_numbered(std::vector<Vec3>& points, std::vector<VertexIndex>& number) {
+  VertexIndex next = 0;
+  for (std::size_t v = 0; v < points.size(); ++v) {
+    if (number[v] == kNone) continue;
+    points[next] = points[v];
+    number[v] = next++;
+  }
+  points.resize(next);
+}
+
+void renumber_vertices(TetMesh& mesh, const std::vector<VertexIndex>& number) {
+  renumber(mesh.tets, number);
+  renumber(mesh.mid_nodes, number);
+  renumber(mesh.boundary, number);
+  renumber(mesh.interfaces, number);
+  renumber(mesh.curve_edges, number);
+  for (NamedSet& set : mesh.sets) {
+    if (set.kind != NamedSet::Kind::kNodes) continue;
+    for (std::uint32_t& v : set.members) v = number[v];
+    std::sort(set.members.begin(), set.members.end());
+    set.members.erase(std::lower_bound(set.members.begin(), set.members.end(), kNone), set.members.end());
+  }
+}
+
+void drop_unused_points(TetMesh& mesh, std::size_t kept) {
+  std::vector<VertexIndex> number(mesh.points.size(), kNone);
+  std::fill_n(number.begin(), kept, 0);
+  for (const Tet& t : mesh.tets)
+    for (const VertexIndex v : t) number[v] = 0;
+  for (const auto& mids : mesh.mid_nodes)
+    for (const VertexIndex v : mids) number[v] = 0;
+  keep_numbered(mesh.points, number);
+  renumber_vertices(mesh, number);
+}
+
+void drop_unused_points(std::vector<Vec3>& points, std::vector<Triangle>& triangles) {
+  std::vector<VertexIndex> number(points.size(), kNone);
+  for (const Triangle& t : triangles)
+    for (const VertexIndex v : t) number[v] = 0;
+  keep_numbered(points, number);
+  renumber(triangles, number);
+}
+
+}  // namespace octafront

@@ -1,0 +1,373 @@
+#include <octafront/run_context.h>
+#include <octafront/validity.h>
+
+#include "base/core/buckets.h"
+#include "base/core/parallel.h"
+#include "base/geometry/measures.h"
+#include "base/geometry/predicates.h"
+#include "base/mesh/complex.h"
+#include "base/mesh/complex_defects.h"
+#include "base/mesh/face_table.h"
+#include "base/mesh/quadratic_nodes.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <span>
+
+#include <fmt/core.h>
+
+namespace octafront {
+
+namespace {
+
+// All digits, so that a report can be reproduced.
+std::string place(Vec3 p) {
+  return fmt::format("({}, {}, {})", p.x, p.y, p.z);
+}
+
+std::string described(const std::vector<Vec3>& points, const Triangle& t) {
+  return fmt::format("{} {} {} at {} {} {}", t[0], t[1], t[2], place(points[t[0]]), place(points[t[1]]),
+                     place(points[t[2]]));
+}
+
+/// A row of vertices that are not all there.
+template <class Rows>
+std::optional<std::string> range_defect(const Rows& rows, std::size_t n, const char* what) {
+  const auto too_large = [n](VertexIndex v) { return v >= n; };
+  const std::size_t i = parallel_find(
+      rows.size(), [&](std::size_t row) { return std::any_of(rows[row].begin(), rows[row].end(), too_large); });
+  if (i == rows.size()) return std::nullopt;
+  const VertexIndex v = *std::find_if(rows[i].begin(), rows[i].end(), too_large);
+  return fmt::format("{} {} refers to vertex {}, but there are only {}", what, i, v, n);
+}
+
+std::optional<std::string> point_defect(const TetMesh& mesh) {
+  if (mesh.tets.empty()) return "the mesh has no tetrahedra";
+  const std::size_t n = mesh.points.size();
+  if (const std::size_t v = parallel_find(n, [&](std::size_t i) { return !is_finite(mesh.points[i]); }); v < n)
+    return fmt::format("vertex {} {} is not finite", v, place(mesh.points[v]));
+  if (auto d = range_defect(mesh.tets, n, "tetrahedron")) return d;
+  if (auto d = range_defect(mesh.mid_nodes, n, "tetrahedron")) return d;
+  if (auto d = range_defect(mesh.boundary, n, "boundary face")) return d;
+  if (auto d = range_defect(mesh.interfaces, n, "interface")) return d;
+  if (auto d = range_defect(mesh.curve_edges, n, "curve edge")) return d;
+  std::vector<char> used(n, 0);
+  const auto use = [&](const auto& rows) {
+    parallel_for(rows.size(), [&](std::size_t i) {
+      for (const VertexIndex v : rows[i]) std::atomic_ref(used[v]).store(1, std::memory_order_relaxed);
+    });
+  };
+  use(mesh.tets);
+  use(mesh.mid_nodes);
+  const auto unused = std::find(used.begin(), used.end(), 0);
+  if (unused != used.end()) {
+    const auto v = static_cast<std::size_t>(unused - used.begin());
+    return fmt::format("vertex {} {} belongs to no tetrahedron", v, place(mesh.points[v]));
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> array_defect(const TetMesh& mesh) {
+  const auto misfit = [](const char* name, std::size_t size, std::size_t wanted,
+                         const char* of) -> std::optional<std::string> {
+    if (size == 0 || size == wanted) return std::nullopt;
+    return fmt::format("{} has {} entries for {} {}", name, size, wanted, of);
+  };
+  if (auto d = misfit("region", mesh.region.size(), mesh.tets.size(), "tetrahedra")) return d;
+  if (auto d = misfit("patch", mesh.patch.size(), mesh.boundary.size(), "boundary faces")) return d;
+  if (auto d = misfit("source", mesh.source.size(), mesh.boundary.size(), "boundary faces")) return d;
+  if (auto d = misfit("interface_patch", mesh.interface_patch.size(), mesh.interfaces.size(), "interfaces")) return d;
+  if (auto d = misfit("curve", mesh.curve.size(), mesh.curve_edges.size(), "curve edges")) return d;
+  return misfit("mid_nodes", mesh.mid_nodes.size(), mesh.tets.size(), "tetrahedra");
+}
+
+std::optional<std::string> set_defect(const TetMesh& mesh) {
+  for (const NamedSet& set : mesh.sets) {
+    const auto& m = set.members;
+    if (std::adjacent_find(m.begin(), m.end(), std::greater_equal<>()) != m.end())
+      return fmt::format("the members of set {} are not ascending", set.name);
+    const std::size_t most = mesh.count(set.kind);
+    if (!m.empty() && m.back() >= most)
+      return fmt::format("set {} has the member {}, but there are only {}", set.name, m.back(), most);
+  }
+  return std::nullopt;
+}
+
+Edge edge_of(const Tet& t, std::size_t e) {
+  const VertexIndex a = t[static_cast<std::size_t>(kTetEdges[e][0])], b = t[static_cast<std::size_t>(kTetEdges[e][1])];
+  return sorted_edge(a, b);
+}
+
+std::optional<std::string> curve_defect(const TetMesh& mesh) {
+  if (mesh.curve_edges.empty()) return std::nullopt;
+  std::vector<Edge> wanted = mesh.curve_edges;
+  std::vector<bool> at_curve(mesh.points.size(), false);
+  for (auto& [a, b] : wanted) {
+    if (a > b) std::swap(a, b);
+    at_curve[a] = at_curve[b] = true;
+  }
+  std::sort(wanted.begin(), wanted.end());
+  std::vector<bool> found(wanted.size(), false);
+  for (const Tet& t : mesh.tets)
+    for (std::size_t e = 0; e < 6; ++e) {
+      const Edge edge = edge_of(t, e);
+      if (!at_curve[edge[0]] || !at_curve[edge[1]]) continue;
+      for (auto at = std::lower_bound(wanted.begin(), wanted.end(), edge); at != wanted.end() && *at == edge; ++at)
+        found[static_cast<std::size_t>(at - wanted.begin())] = true;
+    }
+  const auto lost = std::find(found.begin(), found.end(), false);
+  if (lost == found.end()) return std::nullopt;
+  const auto [a, b] = wanted[static_cast<std::size_t>(lost - found.begin())];
+  return fmt::format("the curve edge {} {} at {} {} is no edge of a tetrahedron", a, b, place(mesh.points[a]),
+                     place(mesh.points[b]));
+}
+
+/// Each edge has one mid-side node, which no other edge has, and which is no corner.
+std::optional<std::string> mid_node_defect(const TetMesh& mesh) {
+  if (!mesh.is_second_order()) return std::nullopt;
+  VertexIndex corners = 0;
+  for (const Tet& t : mesh.tets) corners = std::max(corners, 1 + *std::max_element(t.begin(), t.end()));
+  std::vector<Edge> edge_at(mesh.points.size(), Edge{kNone, kNone});
+  std::size_t nodes = 0;
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+    for (std::size_t e = 0; e < 6; ++e) {
+      const VertexIndex mid = mesh.mid_nodes[t][e];
+      const Edge edge = edge_of(mesh.tets[t], e);
+      if (mid < corners) return fmt::format("the mid-side node {} of tetrahedron {} is not behind all corners", mid, t);
+      nodes += edge_at[mid][0] == kNone;
+      if (edge_at[mid][0] == kNone) edge_at[mid] = edge;
+      if (edge_at[mid] != edge)
+        return fmt::format("the mid-side node {} {} is on two edges: {} {} and {} {}", mid, place(mesh.points[mid]),
+                           edge_at[mid][0], edge_at[mid][1], edge[0], edge[1]);
+    }
+  std::sort(edge_at.begin(), edge_at.end());
+  const auto twice = std::adjacent_find(edge_at.begin(), edge_at.begin() + static_cast<std::ptrdiff_t>(nodes));
+  if (twice == edge_at.begin() + static_cast<std::ptrdiff_t>(nodes)) return std::nullopt;
+  return fmt::format("the edge {} {} has several mid-side nodes", (*twice)[0], (*twice)[1]);
+}
+
+std::optional<std::string> sign_defect(const TetMesh& mesh) {
+  const auto& p = mesh.points;
+  const auto sign_of = [&](std::size_t t) {
+    const auto& [a, b, c, d] = mesh.tets[t];
+    return orient3d(p[a], p[b], p[c], p[d]);
+  };
+  const std::size_t t = parallel_find(mesh.tets.size(), [&](std::size_t i) { return sign_of(i) != 1; });
+  if (t == mesh.tets.size()) return std::nullopt;
+  const auto& [a, b, c, d] = mesh.tets[t];
+  return fmt::format("tetrahedron {} is {}, volume {:.3g}: vertices {} {} {} {} at {} {} {} {}", t,
+                     sign_of(t) == 0 ? "flat" : "inverted", signed_volume(p[a], p[b], p[c], p[d]), a, b, c, d,
+                     place(p[a]), place(p[b]), place(p[c]), place(p[d]));
+}
+
+std::optional<std::string> jacobian_defect(const TetMesh& mesh) {
+  if (!mesh.is_second_order()) return std::nullopt;
+  const auto t = static_cast<TetIndex>(parallel_find(mesh.tets.size(), [&](std::size_t i) {
+    return !has_positive_jacobian(quadratic_nodes(mesh, static_cast<TetIndex>(i)));
+  }));
+  if (t == mesh.tets.size()) return std::nullopt;
+  const auto nodes = quadratic_nodes(mesh, t);
+  const auto coefficients = jacobian_coefficients(nodes);
+  return fmt::format("the Jacobian of tetrahedron {} at {} is not proven positive: its least coefficient is {:.3g}", t,
+                     place(centroid(nodes[0], nodes[1], nodes[2], nodes[3])),
+                     *std::min_element(coefficients.begin(), coefficients.end()));
+}
+
+// What a face is of, packed into a number of the face table: faces of tets sort before those of the boundary list.
+struct FaceOwner {
+  std::uint32_t number;
+  explicit FaceOwner(std::uint32_t face) : number(face) {}
+  FaceOwner(std::uint32_t of, bool listed, const Triangle& corners)
+      : number(static_cast<std::uint32_t>(listed) << 31 | of << 1 | static_cast<std::uint32_t>(is_even(corners))) {}
+
+  bool listed() const { return number >> 31 != 0; }
+  bool even() const { return (number & 1) != 0; }
+  std::uint32_t of() const { return number >> 1 & (kMostOwners - 1); }  // a tet, or if listed, a face of the list
+
+  static constexpr std::uint32_t kMostOwners = 1u << 30;
+};
+
+/// The faces of the tets and the listed ones, by ranges of their least vertices: a range at a time is looked at.
+class FacesInRanges {
+ public:
+  explicit FacesInRanges(const TetMesh& mesh)
+      : mesh_(mesh),
+        ranges_(mesh.points.size()),
+        half_faces_(mesh.tets.size(), ranges_.count(),
+                    [&](std::size_t t, const auto& add) {
+                      for (int i = 0; i < 4; ++i)
+                        add(range_of(face_of(mesh.tets[t], i)), static_cast<std::uint32_t>(4 * t) + i);
+                    }),
+        listed_(mesh.boundary.size() + mesh.interfaces.size(), ranges_.count(),
+                [&](std::size_t f, const auto& add) { add(range_of(listed(f)), static_cast<std::uint32_t>(f)); }) {}
+
+  std::size_t ranges() const { return ranges_.count(); }
+  /// The faces of one range, numbered by their owners.
+  FaceTable table(std::size_t range) const {
+    const auto first = static_cast<VertexIndex>(ranges_.begin(range));
+    return {first, ranges_.end(range) - first, [&](const auto& add) {
+              for (const std::uint32_t h : half_faces_[range]) {
+                const Triangle corners = face_of(mesh_.tets[h / 4], static_cast<int>(h % 4));
+                add(corners, FaceOwner(h / 4, false, corners).number);
+              }
+              for (const std::uint32_t f : listed_[range]) add(listed(f), FaceOwner(f, true, listed(f)).number);
+            }};
+  }
+
+ private:
+  std::size_t range_of(const Triangle& t) const { return ranges_.of(face_key(t)[0]); }
+  /// Interfaces count on behind the boundary.
+  const Triangle& listed(std::size_t f) const {
+    return f < mesh_.boundary.size() ? mesh_.boundary[f] : mesh_.interfaces[f - mesh_.boundary.size()];
+  }
+
+  const TetMesh& mesh_;
+  RangeBuckets ranges_;
+  Buckets<> half_faces_, listed_;
+};
+
+bool is_interface(const TetMesh& mesh, FaceOwner f) {
+  return f.listed() && f.of() >= mesh.boundary.size();
+}
+
+std::string name(const TetMesh& mesh, FaceOwner f) {
+  if (is_interface(mesh, f)) return fmt::format("interface {}", f.of() - mesh.boundary.size());
+  return fmt::format("{} {}", f.listed() ? "boundary face" : "tetrahedron", f.of());
+}
+
+// The common cases: two tets from opposite sides, with an interface or without; a tet and its listed face.
+bool is_good(const TetMesh& mesh, std::span<const FaceTable::Entry> group) {
+  if (group.size() < 2 || group.size() > 3) return false;
+  const FaceOwner a(group[0].face), b(group[1].face), last(group.back().face);
+  if (a.listed() || (a.even() == b.even()) != b.listed()) return false;
+  return group.size() == 2 ? !is_interface(mesh, b) : !b.listed() && is_interface(mesh, last);
+}
+
+// Faces with the same corners: one or two tets, or one tet and one face of the boundary list.
+std::optional<std::string> face_group_defect(const TetMesh& mesh, const Triangle& corners,
+                                             std::span<const FaceTable::Entry> group) {
+  const auto name_of = [&](FaceOwner f) { return name(mesh, f); };
+  const std::string where = "face " + described(mesh.points, corners);
+  const FaceOwner a(group[0].face);
+  if (a.listed()) return fmt::format("{} is {} but belongs to no tetrahedron", where, name_of(a));
+  if (group.size() == 1) return fmt::format("{} of tetrahedron {} is open but not listed as boundary", where, a.of());
+  const FaceOwner b(group[1].face);
+  if (group.size() > 2)
+    return fmt::format("{} belongs to {}, {} and {}", where, name_of(a), name_of(b),
+                       name_of(FaceOwner(group.back().face)));
+  if (!b.listed()) return fmt::format("{}: {} and {} lie on the same side", where, name_of(a), name_of(b));
+  if (is_interface(mesh, b)) return fmt::format("{}: {} has no tetrahedron behind it", where, name_of(b));
+  return fmt::format("{}: {} faces inward", where, name_of(b));
+}
+
+std::optional<std::string> face_defect(const TetMesh& mesh) {
+  const FacesInRanges faces(mesh);
+  const auto defect_in = [&](std::size_t range) {
+    std::optional<std::string> defect;
+    faces.table(range).for_each_group([&](const Triangle& key, std::span<const FaceTable::Entry> group) {
+      if (!defect && !is_good(mesh, group)) defect = face_group_defect(mesh, key, group);
+    });
+    return defect;
+  };
+  const std::size_t range = parallel_find(faces.ranges(), [&](std::size_t r) { return defect_in(r).has_value(); });
+  return range < faces.ranges() ? defect_in(range) : std::nullopt;
+}
+
+// The sum of six volumes of the tetrahedra (a, b, c, o), with what rounding may do to it: little of the sum where they
+// are large, but much where they are flat.
+struct RoundedSum {
+  double six_volumes = 0, magnitude = 0, products = 0;
+  void add(Vec3 a, Vec3 b, Vec3 c) {
+    const double term = dot(a, cross(b, c));
+    six_volumes += term;
+    magnitude += std::abs(term);
+    products += std::sqrt(squared_length(a) * squared_length(b) * squared_length(c));
+  }
+  RoundedSum& operator+=(const RoundedSum& other) {
+    six_volumes += other.six_volumes;
+    magnitude += other.magnitude;
+    products += other.products;
+    return *this;
+  }
+};
+
+// Follows from the other laws, so it guards the checks themselves: equal but for rounding.
+std::optional<std::string> volume_defect(const TetMesh& mesh) {
+  const auto& p = mesh.points;
+  const Vec3 o = bounding_box(p).center();
+  const auto tets = parallel_sum(mesh.tets.size(), [&](std::size_t begin, std::size_t end) {
+    RoundedSum sum;
+    for (std::size_t t = begin; t < end; ++t) {
+      const auto& [a, b, c, d] = mesh.tets[t];
+      sum.add(p[b] - p[a], p[c] - p[a], p[d] - p[a]);
+    }
+    return sum;
+  });
+  RoundedSum enclosed;
+  for (const auto& [a, b, c] : mesh.boundary) enclosed.add(p[a] - o, p[b] - o, p[c] - o);
+  constexpr double kRoundingsPerTerm = 16, epsilon = std::numeric_limits<double>::epsilon();
+  const auto terms = static_cast<double>(mesh.tets.size() + mesh.boundary.size());
+  const double rounding = epsilon * (terms * (tets.magnitude + enclosed.magnitude) +
+                                     kRoundingsPerTerm * (tets.products + enclosed.products));
+  if (std::abs(tets.six_volumes - enclosed.six_volumes) <= rounding) return std::nullopt;
+  return fmt::format("the tetrahedra have a volume of {:.17g}, their boundary encloses {:.17g}", tets.six_volumes / 6,
+                     enclosed.six_volumes / 6);
+}
+
+// A triangle by its coordinates, rotated so that the least corner comes first.
+using PlacedTriangle = std::array<std::array<double, 3>, 3>;
+
+std::vector<PlacedTriangle> placed_triangles(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles) {
+  std::vector<PlacedTriangle> out;
+  out.reserve(triangles.size());
+  for (const Triangle& t : triangles) {
+    PlacedTriangle placed;
+    for (int i = 0; i < 3; ++i) placed[i] = {points[t[i]].x, points[t[i]].y, points[t[i]].z};
+    std::rotate(placed.begin(), std::min_element(placed.begin(), placed.end()), placed.end());
+    out.push_back(placed);
+  }
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+std::string place(const PlacedTriangle& t) {
+  const auto corner = [](const std::array<double, 3>& p) { return place(Vec3{p[0], p[1], p[2]}); };
+  return corner(t[0]) + " " + corner(t[1]) + " " + corner(t[2]);
+}
+
+std::optional<std::string> boundary_difference(const TetMesh& mesh, const SurfaceMesh& surface) {
+  std::vector<PlacedTriangle> made, wanted;
+  parallel_invoke([&] { made = placed_triangles(mesh.points, mesh.boundary); },
+                  [&] { wanted = placed_triangles(surface.points, surface.triangles); });
+  const auto [m, w] = std::mismatch(made.begin(), made.end(), wanted.begin(), wanted.end());
+  if (w != wanted.end() && (m == made.end() || *w < *m))
+    return "the boundary lacks the surface's triangle " + place(*w);
+  if (m != made.end()) return "the boundary has a triangle that the surface has not: " + place(*m);
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<std::string> first_defect(const TetMesh& mesh, const RunContext& context) {
+  if (std::max(mesh.tets.size(), mesh.boundary.size() + mesh.interfaces.size()) >= FaceOwner::kMostOwners)
+    return "a mesh of 2^30 tetrahedra or more cannot be checked";
+  for (const auto check : {point_defect, array_defect, set_defect, sign_defect, face_defect, curve_defect,
+                           mid_node_defect, jacobian_defect, volume_defect}) {
+    context.check();
+    if (auto defect = check(mesh)) return defect;
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> first_defect(const TetMesh& mesh, const SurfaceMesh& surface, const RunContext& context) {
+  if (auto defect = first_defect(mesh, context)) return defect;
+  for (const Triangle& t : surface.triangles)
+    for (const VertexIndex v : t)
+      if (v >= surface.points.size()) return fmt::format("the surface has no vertex {} for one of its triangles", v);
+  return is_complex(surface) ? difference_to_complex(mesh, surface) : boundary_difference(mesh, surface);
+}
+
+}  // namespace octafront

@@ -1,0 +1,253 @@
+#include "doors/c_api/arrays.h"
+
+#include <octafront/error.h>
+#include <octafront/named_groups.h>
+#include <octafront/quality.h>
+#include <octafront/report.h>
+
+#include "doors/c_api/c_api.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include <fmt/core.h>
+
+namespace octafront::c_api {
+
+namespace {
+
+/// Calls visit(list) for the list of that name. One place says what the arrays of a surface are called...
+template <class Surface, class Visit>
+void visit_surface_array(Surface& surface, std::string_view name, const Visit& visit) {
+  auto& mesh = surface.domain.surface;
+  if (name == "points") return visit(mesh.points);
+  if (name == "triangles") return visit(mesh.triangles);
+  if (name == "patch") return visit(mesh.patch);
+  if (name == "source") return visit(mesh.source);
+  if (name == "sides") return visit(mesh.sides);
+  if (name == "bound") return visit(surface.domain.bound);
+  throw OptionError(fmt::format("a surface has no array \"{}\"", name));
+}
+
+/// ... and those of a mesh.
+template <class Mesh, class Visit>
+void visit_mesh_array(Mesh& mesh, std::string_view name, const Visit& visit) {
+  if (name == "points") return visit(mesh.points);
+  if (name == "tets") return visit(mesh.tets);
+  if (name == "region") return visit(mesh.region);
+  if (name == "boundary") return visit(mesh.boundary);
+  if (name == "patch") return visit(mesh.patch);
+  if (name == "source") return visit(mesh.source);
+  if (name == "interfaces") return visit(mesh.interfaces);
+  if (name == "interface_patch") return visit(mesh.interface_patch);
+  if (name == "curve_edges") return visit(mesh.curve_edges);
+  if (name == "curve") return visit(mesh.curve);
+  if (name == "mid_nodes") return visit(mesh.mid_nodes);
+  throw OptionError(fmt::format("a mesh has no array \"{}\"", name));
+}
+
+template <class Mesh>
+auto& names_of(Mesh& mesh, std::string_view list) {
+  if (list == "patch_names") return mesh.patch_names;
+  if (list == "region_names") return mesh.region_names;
+  if constexpr (requires { mesh.curve_names; })
+    if (list == "curve_names") return mesh.curve_names;
+  throw OptionError(fmt::format("there is no list of names \"{}\"", list));
+}
+
+template <class Mesh>
+const char* name_in_list(const Mesh& mesh, const char* list, std::size_t i, std::size_t* length) {
+  const char* found = nullptr;
+  guarded([&] {
+    const auto& names = names_of(mesh, list);
+    if (i >= names.size()) return;
+    *length = names[i].size();
+    found = names[i].c_str();
+  });
+  return found;
+}
+
+void require_length(std::size_t length, std::size_t wanted, const char* list, const char* owner) {
+  if (length != 0 && length != wanted)
+    throw InputError(
+        fmt::format("{} has {} values for {} {}: give one for each, or none", list, length, wanted, owner));
+}
+
+template <class Element>
+void require_range(const std::vector<Element>& list, std::size_t points, const char* what) {
+  for (std::size_t i = 0; i < list.size(); ++i)
+    for (const VertexIndex v : list[i])
+      if (v >= points)
+        throw InputError(
+            fmt::format("{} {} names point {}, but there are {} points, counted from 0", what, i, v, points));
+}
+
+void require_finite_points(const std::vector<Vec3>& points) {
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (!is_finite(points[i]))
+      throw InputError(fmt::format("point {} has coordinates ({}, {}, {}): they must be finite", i, points[i].x,
+                                   points[i].y, points[i].z));
+}
+
+}  // namespace
+
+void require_indices(const SurfaceMesh& s) {
+  require_finite_points(s.points);
+  require_range(s.triangles, s.points.size(), "triangle");
+  require_length(s.patch.size(), s.triangles.size(), "patches", "triangles");
+  require_length(s.source.size(), s.triangles.size(), "sources", "triangles");
+  require_length(s.sides.size(), s.triangles.size(), "sides", "triangles");
+}
+
+void require_indices(const TetMesh& m) {
+  require_finite_points(m.points);
+  require_range(m.tets, m.points.size(), "tet");
+  require_range(m.boundary, m.points.size(), "face");
+  require_range(m.interfaces, m.points.size(), "interface");
+  require_range(m.curve_edges, m.points.size(), "curve edge");
+  require_range(m.mid_nodes, m.points.size(), "row of mid_nodes");
+  require_length(m.region.size(), m.tets.size(), "regions", "tets");
+  require_length(m.mid_nodes.size(), m.tets.size(), "mid_nodes", "tets");
+  require_length(m.patch.size(), m.boundary.size(), "patches", "faces");
+  require_length(m.source.size(), m.boundary.size(), "sources", "faces");
+  require_length(m.interface_patch.size(), m.interfaces.size(), "interface patches", "interfaces");
+  require_length(m.curve.size(), m.curve_edges.size(), "curves", "curve edges");
+}
+
+}  // namespace octafront::c_api
+
+using namespace octafront;
+using namespace octafront::c_api;
+
+octafront_surface* octafront_surface_new() {
+  return new octafront_surface;
+}
+
+void octafront_surface_free(octafront_surface* surface) {
+  delete surface;
+}
+
+int octafront_surface_array(const octafront_surface* surface, const char* name, octafront_array* out) {
+  return guarded([&] { visit_surface_array(*surface, name, [&](const auto& list) { *out = array_of(list); }); });
+}
+
+int octafront_surface_set_array(octafront_surface* surface, const char* name, const void* data, size_t rows) {
+  return guarded([&] { visit_surface_array(*surface, name, [&](auto& list) { assign(list, data, rows); }); });
+}
+
+int octafront_surface_add_name(octafront_surface* surface, const char* list, const char* name, size_t length) {
+  return guarded([&] { names_of(surface->domain.surface, list).emplace_back(name, length); });
+}
+
+const char* octafront_surface_name(const octafront_surface* surface, const char* list, size_t i, size_t* length) {
+  return name_in_list(surface->domain.surface, list, i, length);
+}
+
+double octafront_surface_voxel(const octafront_surface* surface) {
+  return surface->domain.voxel_spacing;
+}
+
+void octafront_surface_set_voxel(octafront_surface* surface, double spacing) {
+  surface->domain.voxel_spacing = spacing;
+}
+
+octafront_mesh* octafront_mesh_new() {
+  return new octafront_mesh;
+}
+
+void octafront_mesh_free(octafront_mesh* mesh) {
+  delete mesh;
+}
+
+int octafront_mesh_array(const octafront_mesh* mesh, const char* name, octafront_array* out) {
+  return guarded([&] { visit_mesh_array(mesh->mesh, name, [&](const auto& list) { *out = array_of(list); }); });
+}
+
+int octafront_mesh_set_array(octafront_mesh* mesh, const char* name, const void* data, size_t rows) {
+  return guarded([&] { visit_mesh_array(mesh->mesh, name, [&](auto& list) { assign(list, data, rows); }); });
+}
+
+int octafront_mesh_add_name(octafront_mesh* mesh, const char* list, const char* name, size_t length) {
+  return guarded([&] { names_of(mesh->mesh, list).emplace_back(name, length); });
+}
+
+const char* octafront_mesh_name(const octafront_mesh* mesh, const char* list, size_t i, size_t* length) {
+  return name_in_list(mesh->mesh, list, i, length);
+}
+
+namespace {
+
+NamedSet::Kind kind_of(int kind) {
+  if (kind < OCTAFRONT_NODES || kind > OCTAFRONT_ELEMENTS) throw OptionError(fmt::format("no kind of set is {}", kind));
+  return static_cast<NamedSet::Kind>(kind);
+}
+
+}  // namespace
+
+size_t octafront_mesh_sets(const octafront_mesh* mesh) {
+  return mesh->mesh.sets.size();
+}
+
+int octafront_mesh_set(const octafront_mesh* mesh, size_t i, int* kind, const char** name, size_t* length,
+                       octafront_array* members) {
+  return guarded([&] {
+    const NamedSet& set = mesh->mesh.sets.at(i);
+    *kind = static_cast<int>(set.kind);
+    *name = set.name.c_str();
+    *length = set.name.size();
+    *members = array_of(set.members);
+  });
+}
+
+int octafront_mesh_add_set(octafront_mesh* mesh, int kind, const char* name, size_t length, const uint32_t* members,
+                           size_t count) {
+  return guarded([&] {
+    NamedSet set{std::string(name, length), kind_of(kind), {}};
+    assign(set.members, members, count);
+    const std::size_t most = mesh->mesh.count(set.kind);
+    if (std::adjacent_find(set.members.begin(), set.members.end(), std::greater_equal<>()) != set.members.end())
+      throw OptionError("the members of a set are ascending, each once");
+    if (!set.members.empty() && set.members.back() >= most)
+      throw OptionError(fmt::format("the set names {}, but there are {}, counted from 0", set.members.back(), most));
+    mesh->mesh.sets.push_back(std::move(set));
+  });
+}
+
+int octafront_mesh_add_group(octafront_mesh* mesh, int kind, const char* name, size_t length, const double* box,
+                             const double* ball, const char* const* patches, size_t patch_count, const char** note) {
+  return guarded([&] {
+    GroupRule rule{std::string(name, length), kind_of(kind), {}};
+    if (box != nullptr) rule.where = Box3{{box[0], box[1], box[2]}, {box[3], box[4], box[5]}};
+    if (ball != nullptr) rule.where = GroupRule::Sphere{{ball[0], ball[1], ball[2]}, ball[3]};
+    if (patches != nullptr) rule.where = std::vector<std::string>(patches, patches + patch_count);
+    *note = kept(add_group(mesh->mesh, rule));
+  });
+}
+
+int octafront_mesh_quality(const octafront_mesh* mesh, double* beta, double* least, double* largest) {
+  return guarded([&] {
+    require_indices(mesh->mesh);
+    const std::vector<Vec3>& p = mesh->mesh.points;
+    for (std::size_t i = 0; i < mesh->mesh.tets.size(); ++i) {
+      const auto& [a, b, c, d] = mesh->mesh.tets[i];
+      if (beta != nullptr) beta[i] = radius_ratio(p[a], p[b], p[c], p[d]);
+      if (least == nullptr && largest == nullptr) continue;
+      const auto angles = dihedral_angles(p[a], p[b], p[c], p[d]);
+      if (least != nullptr) least[i] = *std::min_element(angles.begin(), angles.end());
+      if (largest != nullptr) largest[i] = *std::max_element(angles.begin(), angles.end());
+    }
+  });
+}
+
+const char* octafront_mesh_summary(const octafront_mesh* mesh) {
+  const char* text = nullptr;
+  guarded([&] {
+    require_indices(mesh->mesh);
+    Report report;
+    report.tets = mesh->mesh.tets.size();
+    report.quality = summarize_quality(mesh->mesh);
+    text = kept(nlohmann::ordered_json::parse(to_json(report))["quality"].dump());
+  });
+  return text;
+}

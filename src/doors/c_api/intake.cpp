@@ -1,0 +1,169 @@
+// The way in: files, surfaces, bodies and images become domains.
+
+#include <octafront/domain.h>
+#include <octafront/error.h>
+
+#include "doors/c_api/c_api.h"
+#include "doors/c_api/job.h"
+#include "doors/c_api/json_keys.h"
+
+#include <limits>
+#include <utility>
+
+#include <fmt/core.h>
+
+namespace octafront::c_api {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Vec3 point_of(const Json& row) {
+  if (row.size() != 3) throw OptionError(fmt::format("a point has three coordinates, not {}", row.dump()));
+  return {row.at(0).get<double>(), row.at(1).get<double>(), row.at(2).get<double>()};
+}
+
+GreyBand band_of(const Json& row) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  return {row.at(1).is_null() ? -kInfinity : row.at(1).get<double>(),
+          row.at(2).is_null() ? kInfinity : row.at(2).get<double>(), row.at(0).get<std::string>()};
+}
+
+std::optional<std::uint32_t> voxel_of(const Json& value) {
+  if (value.is_null()) return std::nullopt;
+  const auto n = value.get<std::int64_t>();
+  if (n < 0 || n >= std::numeric_limits<std::uint32_t>::max())
+    throw OptionError(fmt::format("`crop` has the voxel {}, which no image has", n));
+  return static_cast<std::uint32_t>(n);
+}
+
+/// A key whose value is more than one.
+using Take = void (*)(IntakeOptions&, const Json&);
+
+const std::map<std::string, Take>& lists() {
+  static const std::map<std::string, Take> all{
+      {"regions",
+       [](IntakeOptions& o, const Json& v) {
+         for (const Json& row : v) o.complex.regions.push_back({row.at(0).get<std::string>(), point_of(row.at(1))});
+       }},
+      {"voids",
+       [](IntakeOptions& o, const Json& v) {
+         for (const Json& row : v) o.complex.voids.push_back(point_of(row));
+       }},
+      {"names_file", [](IntakeOptions& o, const Json& v) { o.image.names_file = v.get<std::string>(); }},
+      {"names",
+       [](IntakeOptions& o, const Json& v) {
+         for (const Json& row : v)
+           o.image.regions.labels.names.push_back({row.at(0).get<std::int64_t>(), row.at(1).get<std::string>()});
+       }},
+      {"ignore",
+       [](IntakeOptions& o, const Json& v) { o.image.regions.labels.ignore = v.get<std::vector<std::int64_t>>(); }},
+      {"merge",
+       [](IntakeOptions& o, const Json& v) {
+         for (const Json& row : v)
+           o.image.regions.labels.merge.push_back(
+               {row.at(0).get<std::string>(), row.at(1).get<std::vector<std::int64_t>>()});
+       }},
+      {"bands",
+       [](IntakeOptions& o, const Json& v) {
+         for (const Json& row : v) o.image.regions.bands.push_back(band_of(row));
+       }},
+      {"crop",
+       [](IntakeOptions& o, const Json& v) {
+         for (std::size_t axis = 0; axis < 3; ++axis)
+           o.image.crop[axis] = {voxel_of(v.at(axis).at(0)), voxel_of(v.at(axis).at(1))};
+       }},
+      {"resample",
+       [](IntakeOptions& o, const Json& v) {
+         o.image.resample = v.is_number() ? std::vector{v.get<double>()} : v.get<std::vector<double>>();
+       }},
+  };
+  return all;
+}
+
+/// Leaves a domain, and what was found and done in the report, also of an opening that fails.
+void open(octafront_job& job, IntakeOptions options, const std::function<Domain(const IntakeOptions&)>& opened) {
+  job.report["notes"] = Json::array();
+  options.tell = [&](const IntakeNote& note) {
+    if (!note.stage.empty()) job.report["notes"].push_back(note.text);
+  };
+  with_leak(job, [&] {
+    Domain domain = opened(options);
+    job.report["format"] = domain.format;
+    job.report["regions"] = Json::array();
+    const Json known = Json::parse(to_json(domain));
+    for (const auto& [key, value] : known.items()) job.report[key == "input_regions" ? "regions" : key] = value;
+    if (domain.voxel_spacing > 0) {
+      job.report["size"] = domain.voxels;
+      job.report["voxel"] = domain.voxel_spacing;
+    }
+    give(job, std::move(domain));
+  });
+}
+
+}  // namespace
+
+IntakeOptions intake_from(const Json& json) {
+  IntakeOptions options;
+  for (const auto& [name, value] : json.items()) {
+    const auto list = lists().find(name);
+    if (list != lists().end()) {
+      with(json, name.c_str(), [&](const Json& v) { list->second(options, v); });
+    } else if (!value.is_null()) {
+      set_option(options, name, value_of(name, value));
+    }
+  }
+  return options;
+}
+
+std::vector<Body> bodies_of(const octafront_surface* const* bodies, const char* const* names, std::size_t count) {
+  std::vector<Body> all;
+  for (std::size_t i = 0; i < count; ++i) all.push_back({names[i], bodies[i]->domain.surface});
+  return all;
+}
+
+}  // namespace octafront::c_api
+
+using namespace octafront;
+using namespace octafront::c_api;
+
+octafront_job* octafront_open_files(const char* const* files, size_t count, const char* json, int threads) {
+  return started(
+      [names = std::vector<std::string>(files, files + count), text = std::string(json)](octafront_job& job) {
+        open(job, intake_from(Json::parse(text)),
+             [&](const IntakeOptions& options) { return open_domain(names, options, job.context()); });
+      },
+      threads);
+}
+
+octafront_job* octafront_open_surface(const octafront_surface* surface, const char* json, int threads) {
+  return started(
+      [surface, text = std::string(json)](octafront_job& job) {
+        require_indices(surface->domain.surface);
+        open(job, intake_from(Json::parse(text)),
+             [&](const IntakeOptions& options) { return open_domain(surface->domain, options, job.context()); });
+      },
+      threads);
+}
+
+octafront_job* octafront_open_bodies(const octafront_surface* const* bodies, const char* const* names, size_t count,
+                                     const char* json, int threads) {
+  std::vector<Body> all;
+  if (guarded([&] { all = bodies_of(bodies, names, count); }) != 0) return nullptr;
+  return started(
+      [all = std::move(all), text = std::string(json)](octafront_job& job) {
+        for (const Body& body : all) require_indices(body.surface);
+        open(job, intake_from(Json::parse(text)),
+             [&](const IntakeOptions& options) { return open_domain(all, options, job.context()); });
+      },
+      threads);
+}
+
+octafront_job* octafront_image_surface(const octafront_image* image, const char* json, int threads) {
+  return started(
+      [image, text = std::string(json)](octafront_job& job) {
+        open(job, intake_from(Json::parse(text)),
+             [&](const IntakeOptions& options) { return open_domain(image->image, options, job.context()); });
+      },
+      threads);
+}

@@ -1,0 +1,186 @@
+#include "doors/c_api/job.h"
+
+#include <octafront/error.h>
+
+#include <chrono>
+#include <new>
+#include <utility>
+
+using namespace octafront;
+
+octafront_job::octafront_job(const Work& work, int threads) {
+  context_.cancel = &cancelled_;
+  context_.threads = threads;
+  context_.progress = [this](std::string_view stage, double fraction) { post_progress(stage, fraction); };
+  worker_ = std::thread([this, work] { run(work); });
+}
+
+octafront_job::~octafront_job() {
+  cancel();
+  worker_.join();
+}
+
+void octafront_job::run(const Work& work) {
+  try {
+    work(*this);
+    close(OCTAFRONT_DONE, "");
+  } catch (const OptionError& e) {
+    close(OCTAFRONT_USAGE, e.what());
+  } catch (const InputError& e) {
+    close(OCTAFRONT_INPUT, e.what());
+  } catch (const OpenCavityError& e) {
+    surface = std::make_unique<octafront_surface>(octafront_surface{e.cavity});
+    close(OCTAFRONT_MESHING, e.what());
+  } catch (const MeshingError& e) {
+    close(OCTAFRONT_MESHING, e.what());
+  } catch (const OutputError& e) {
+    close(OCTAFRONT_OUTPUT, e.what());
+  } catch (const Cancelled& e) {
+    close(OCTAFRONT_CANCELLED, e.what());
+  } catch (const std::bad_alloc&) {
+    close(OCTAFRONT_MEMORY, "out of memory; ask for fewer elements (`elements`, `size`)");
+  } catch (const std::exception& e) {
+    close(OCTAFRONT_INTERNAL, std::string("unexpected error, which is a bug of ours: ") + e.what());
+  }
+}
+
+void octafront_job::close(int status, std::string message) {
+  const std::lock_guard lock(mutex_);
+  status_ = status;
+  message_ = std::move(message);
+  ended_ = true;
+  for_caller_.notify_all();
+}
+
+void octafront_job::post(Event event) {
+  const std::lock_guard lock(mutex_);
+  events_.push_back(std::move(event));
+  for_caller_.notify_all();
+}
+
+// Of a stage only the latest word counts, and nobody is woken for it: the caller looks often enough.
+void octafront_job::post_progress(std::string_view stage, double fraction) {
+  const std::lock_guard lock(mutex_);
+  if (events_.empty() || events_.back().kind != OCTAFRONT_EVENT_PROGRESS || events_.back().text != stage)
+    events_.push_back({OCTAFRONT_EVENT_PROGRESS, std::string(stage), {}});
+  events_.back().values[0] = fraction;
+}
+
+void octafront_job::ask(std::span<const Vec3> points, std::span<double> sizes_wanted) {
+  std::unique_lock lock(mutex_);
+  asked_ = points;
+  answers_ = sizes_wanted;
+  is_asked_ = true;
+  for_caller_.notify_all();
+  for_worker_.wait(lock, [&] { return !is_asked_ || cancelled_.load(); });
+  is_asked_ = is_shown_ = false;
+  if (cancelled_.load()) throw Cancelled();
+}
+
+Options octafront_job::options_of(const octafront_options* given) {
+  if (given == nullptr) return {};
+  Options options = given->options;
+  if (given->asks_sizes)
+    options.size.callback = [this](std::span<const Vec3> points, std::span<double> answers) { ask(points, answers); };
+  if (given->tells_passes) {
+    options.improve.after_pass = [this](const std::string& pass, const ImproveOptions::Worst& worst) {
+      post(
+          {OCTAFRONT_EVENT_PASS, pass, {worst.beta, worst.dihedral_min, worst.dihedral_max, worst.positive ? 1. : 0.}});
+    };
+  }
+  return options;
+}
+
+bool octafront_job::take_event(octafront_event& event) {
+  event = {};
+  if (!events_.empty()) {
+    current_ = std::move(events_.front());
+    events_.pop_front();
+    event.kind = current_.kind;
+    event.text = current_.text.c_str();
+    std::copy(current_.values.begin(), current_.values.end(), event.values);
+    return true;
+  }
+  if (is_asked_ && !is_shown_) {
+    is_shown_ = true;
+    event.kind = OCTAFRONT_EVENT_SIZES;
+    event.points = &asked_.front().x;
+    event.sizes = answers_.data();
+    event.count = asked_.size();
+    return true;
+  }
+  if (ended_) event.kind = OCTAFRONT_EVENT_END;
+  return ended_;
+}
+
+int octafront_job::wait(double seconds, octafront_event& event) {
+  std::unique_lock lock(mutex_);
+  const auto something = [&] { return take_event(event); };
+  if (seconds < 0)
+    for_caller_.wait(lock, something);
+  else
+    for_caller_.wait_for(lock, std::chrono::duration<double>(seconds), something);
+  return event.kind;
+}
+
+void octafront_job::answer() {
+  const std::lock_guard lock(mutex_);
+  is_asked_ = false;
+  for_worker_.notify_all();
+}
+
+void octafront_job::cancel() {
+  const std::lock_guard lock(mutex_);
+  cancelled_.store(true);
+  for_worker_.notify_all();
+}
+
+const char* octafront_job::report_text() {
+  // Names of files may hold bytes that no text has.
+  report_text_ = report.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return report_text_.c_str();
+}
+
+int octafront_job_wait(octafront_job* job, double seconds, octafront_event* event) {
+  return job->wait(seconds, *event);
+}
+
+void octafront_job_answer(octafront_job* job) {
+  job->answer();
+}
+
+void octafront_job_cancel(octafront_job* job) {
+  job->cancel();
+}
+
+void octafront_job_free(octafront_job* job) {
+  delete job;
+}
+
+int octafront_job_status(const octafront_job* job) {
+  return job->status();
+}
+
+const char* octafront_job_message(const octafront_job* job) {
+  return job->message();
+}
+
+const char* octafront_job_report(octafront_job* job) {
+  return job->report_text();
+}
+
+octafront_surface* octafront_job_take_surface(octafront_job* job) {
+  return job->surface.release();
+}
+
+octafront_mesh* octafront_job_take_mesh(octafront_job* job) {
+  return job->mesh.release();
+}
+
+octafront_sizes* octafront_job_take_sizes(octafront_job* job) {
+  return job->sizes.release();
+}
+
+octafront_image* octafront_job_take_image(octafront_job* job) {
+  return job->image.release();
+}

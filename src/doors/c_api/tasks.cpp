@@ -1,0 +1,266 @@
+// What jobs do: each task is one call of the library.
+
+#include <octafront/error.h>
+#include <octafront/generate.h>
+#include <octafront/improve_existing.h>
+#include <octafront/io.h>
+#include <octafront/repair.h>
+#include <octafront/report_page.h>
+#include <octafront/second_order.h>
+#include <octafront/solver_checks.h>
+#include <octafront/validity.h>
+
+#include "doors/c_api/job.h"
+#include "doors/c_api/json_keys.h"
+#include "formats/parts/raw_mesh.h"
+
+#include <map>
+#include <utility>
+
+#include <fmt/core.h>
+
+namespace octafront::c_api {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+thread_local std::string last_error, last_text;
+
+Json json_of_repair(const RepairedSurface& r) {
+  return {{"merged_vertices", r.merged_vertices},
+          {"unused_vertices", r.unused_vertices},
+          {"duplicate_faces", r.duplicate_faces},
+          {"degenerate_faces", r.degenerate_faces},
+          {"divided_faces", r.divided_faces},
+          {"turned_faces", r.turned_faces},
+          {"turned_shells", r.turned_shells},
+          {"shells", r.shells},
+          {"cavities", r.cavities},
+          {"bodies", r.bodies},
+          {"notes", r.notes}};
+}
+
+/// Runs a generator, by the options with their events; if it refuses the surface, the evidence goes along.
+template <class Generator>
+auto made_of(octafront_job& job, const octafront_surface& surface, const octafront_options* options,
+             const Generator& generator) {
+  const Domain& domain = surface.domain;
+  require_indices(domain.surface);
+  try {
+    auto result = generator(domain, job.options_of(options), job.context());
+    job.report = Json::parse(to_json(result.report));
+    return result;
+  } catch (const InputError&) {
+    const SurfaceDefects d = find_defects(repair_surface(domain.surface, job.context()), job.context());
+    if (!d.clean()) job.report["defects"] = Json::parse(to_json(d));
+    throw;
+  }
+}
+
+void repair(octafront_job& job, const SurfaceMesh& surface) {
+  require_indices(surface);
+  RepairedSurface repaired = repair_surface(surface, job.context());
+  const SurfaceDefects defects = find_defects(repaired, job.context());
+  job.report = json_of_repair(repaired);
+  job.report["clean"] = defects.clean();
+  job.report["defects"] = Json::parse(to_json(defects));
+  job.report["described"] = defects.describe();
+  if (defects.clean()) job.report["volume"] = enclosed_volume(repaired.surface);
+  give(job, std::move(repaired.surface));
+}
+
+Solver solver_named(const std::string& name) {
+  return one_of<Solver>({{"abaqus", Solver::kAbaqus},
+                         {"ansys", Solver::kAnsys},
+                         {"nastran", Solver::kNastran},
+                         {"calculix", Solver::kCalculix}},
+                        name, "solver");
+}
+
+void check(octafront_job& job, const TetMesh& mesh, const std::string& solver) {
+  require_indices(mesh);
+  const auto defect = first_defect(mesh, job.context());
+  job.report["valid"] = !defect;
+  job.report["defect"] = defect ? Json(*defect) : Json(nullptr);
+  if (mesh.is_second_order()) job.report["second_order"] = Json::parse(to_json(check_jacobians(mesh, job.context())));
+  Json groups = Json::array();
+  for (const GroupInfo& g : groups_of(mesh))
+    groups.push_back({{"origin", g.origin}, {"name", g.name}, {"size", g.size}});
+  job.report["groups"] = groups;
+  if (solver.empty()) return;
+  job.report["solver"] = Json::parse(to_json(check_for_solver(mesh, solver_named(solver), job.context())));
+}
+
+std::vector<std::int64_t> references(const std::vector<std::uint32_t>& numbers, std::size_t count) {
+  std::vector<std::int64_t> refs(count, 1);
+  for (std::size_t i = 0; i < numbers.size(); ++i) refs[i] = std::int64_t{numbers[i]} + 1;
+  return refs;
+}
+
+std::map<std::int64_t, std::string> named(const std::vector<std::string>& names) {
+  std::map<std::int64_t, std::string> by_reference;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (!names[i].empty()) by_reference.emplace(i + 1, names[i]);
+  return by_reference;
+}
+
+void order_mesh(octafront_job& job, const TetMesh& mesh) {
+  require_indices(mesh);
+  io::RawMesh raw;
+  raw.format = "arrays";
+  raw.points = mesh.points;
+  raw.tets = mesh.tets;
+  raw.mid_nodes = mesh.mid_nodes;
+  raw.tet_ref = references(mesh.region, mesh.tets.size());
+  raw.triangles = mesh.boundary;
+  raw.triangle_ref = references(mesh.patch, mesh.boundary.size());
+  raw.region_names = named(mesh.region_names);
+  raw.surface_names = named(mesh.patch_names);
+  MeshFile ordered = io::ordered_mesh(std::move(raw), {"the arrays of the mesh", {}, job.context()});
+  job.report["notes"] = ordered.notes;
+  give(job, std::move(ordered.mesh));
+}
+
+}  // namespace
+
+octafront_job* started(const octafront_job::Work& work, int threads) {
+  octafront_job* job = nullptr;
+  guarded([&] { job = new octafront_job(work, threads); });
+  return job;
+}
+
+void remember_error(std::string message) {
+  last_error = std::move(message);
+}
+
+const char* kept(std::string text) {
+  last_text = std::move(text);
+  return last_text.c_str();
+}
+
+}  // namespace octafront::c_api
+
+using namespace octafront;
+using namespace octafront::c_api;
+
+const char* octafront_version() {
+  return OCTAFRONT_VERSION;
+}
+
+const char* octafront_last_error() {
+  return last_error.c_str();
+}
+
+octafront_job* octafront_read_surface(const char* file) {
+  return started([file = std::string(file)](octafront_job& job) {
+    SurfaceFile read = read_surface(file, job.context());
+    job.report = {{"format", read.format}, {"notes", read.notes}};
+    give(job, std::move(read.surface));
+  });
+}
+
+octafront_job* octafront_write_surface(const octafront_surface* surface, const char* file) {
+  return started([surface, file = std::string(file)](octafront_job& job) {
+    require_indices(surface->domain.surface);
+    write_surface(file, surface->domain.surface, job.context());
+  });
+}
+
+octafront_job* octafront_read_mesh(const char* file) {
+  return started([file = std::string(file)](octafront_job& job) {
+    MeshFile read = read_mesh_file(file, job.context());
+    job.report = {{"format", read.format}, {"notes", read.notes}};
+    give(job, std::move(read.mesh));
+  });
+}
+
+octafront_job* octafront_write_mesh(const octafront_mesh* mesh, const char* file, const char* format) {
+  return started([mesh, file = std::string(file), format = std::string(format)](octafront_job& job) {
+    check_mesh_target(file, format);
+    require_indices(mesh->mesh);
+    job.report["notes"] = write_mesh(file, mesh->mesh, job.context(), format);
+  });
+}
+
+octafront_job* octafront_read_sizes(const char* file, double gradation) {
+  return started([file = std::string(file), gradation](octafront_job& job) {
+    give(job, read_size_field(file, gradation, job.context()));
+  });
+}
+
+octafront_job* octafront_write_sizes(const octafront_sizes* sizes, const char* file) {
+  return started([sizes, file = std::string(file)](octafront_job& job) {
+    check_size_field_target(file);
+    write_size_field(file, sizes->field, job.context());
+  });
+}
+
+octafront_job* octafront_generate(const octafront_surface* surface, const octafront_options* options, int threads) {
+  return started(
+      [surface, options](octafront_job& job) {
+        Result result = made_of(job, *surface, options, generate);
+        give(job, std::move(result.mesh));
+        give(job, result.sizes);
+      },
+      threads);
+}
+
+octafront_job* octafront_generate_surface(const octafront_surface* surface, const octafront_options* options,
+                                          int threads) {
+  return started(
+      [surface, options](octafront_job& job) {
+        SurfaceResult result = made_of(job, *surface, options, generate_surface);
+        give(job, std::move(result.surface));
+        give(job, result.sizes);
+      },
+      threads);
+}
+
+octafront_job* octafront_generate_sizes(const octafront_surface* surface, const octafront_options* options,
+                                        int threads) {
+  return started(
+      [surface, options](octafront_job& job) { give(job, made_of(job, *surface, options, generate_sizes).sizes); },
+      threads);
+}
+
+octafront_job* octafront_improve(const octafront_mesh* mesh, const octafront_surface* ground,
+                                 const octafront_options* options, int threads) {
+  return started(
+      [mesh, ground, options](octafront_job& job) {
+        require_indices(mesh->mesh);
+        if (ground != nullptr) require_indices(ground->domain.surface);
+        Improved improved = improve_existing(mesh->mesh, job.options_of(options),
+                                             ground != nullptr ? &ground->domain.surface : nullptr, job.context());
+        Report before;
+        before.tets = mesh->mesh.tets.size();
+        before.quality = improved.before;
+        job.report = Json::parse(to_json(improved.report));
+        job.report["before"] = Json::parse(to_json(before))["quality"];
+        give(job, std::move(improved.mesh));
+      },
+      threads);
+}
+
+octafront_job* octafront_repair(const octafront_surface* surface) {
+  return started([surface](octafront_job& job) { repair(job, surface->domain.surface); });
+}
+
+octafront_job* octafront_check(const octafront_mesh* mesh, const char* solver) {
+  return started([mesh, solver = std::string(solver != nullptr ? solver : "")](octafront_job& job) {
+    check(job, mesh->mesh, solver);
+  });
+}
+
+octafront_job* octafront_write_page(const octafront_mesh* mesh, const octafront_sizes* sizes, const char* report,
+                                    const char* file) {
+  return started([mesh, sizes, report = std::string(report), file = std::string(file)](octafront_job& job) {
+    check_text_target(file);
+    require_indices(mesh->mesh);
+    write_text(file, report_page(mesh->mesh, sizes != nullptr ? &sizes->field : nullptr, report, job.context()));
+  });
+}
+
+octafront_job* octafront_order_mesh(const octafront_mesh* mesh) {
+  return started([mesh](octafront_job& job) { order_mesh(job, mesh->mesh); });
+}

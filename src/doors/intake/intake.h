@@ -1,0 +1,32 @@
+#pragma once
+
+// doors/intake: the way in. Takes files, bodies, arrays and images; asks cells, mend and nets, in the order that all
+// doors share; leaves a Domain: what generate() meshes, and what was found and done (octafront/domain.h).
+
+#include <octafront/domain.h>
+
+#include <string>
+#include <vector>
+
+namespace octafront::intake {
+
+/// Enters a note into the domain, and tells it.
+void note(Domain& domain, const IntakeOptions& options, std::string stage, std::string text);
+void note_all(Domain& domain, const IntakeOptions& options, const std::string& stage,
+              const std::vector<std::string>& texts);
+
+/// Makes a complex the surface of the domain; says what regions it has, and their volumes.
+void take_complex(Domain& domain, const IntakeOptions& options, Complex complex);
+
+/// One region alone needs no name: it is "body" then.
+std::string region_name(const Domain& domain, std::size_t region);
+
+/// Makes the complex of an image the surface of the domain, with what its reader had to say. `name` is that of the
+/// file, or empty.
+void take_image(Domain& domain, const IntakeOptions& options, const Image& image, const std::string& name,
+                const RunContext& context);
+
+/// Throws OptionError if something is asked of images, for an input `name` that is none.
+void refuse_image_options(const ImageIntake& image, const std::string& name);
+
+}  // namespace octafront::intake

@@ -1,0 +1,20 @@
+#include <octafront/domain.h>
+
+#include "doors/intake/intake.h"
+
+#include <nlohmann/json.hpp>
+
+namespace octafront {
+
+std::string to_json(const Domain& domain) {
+  using Json = nlohmann::ordered_json;
+  Json all = Json::object();
+  for (const IntakeRepair& repair : domain.repairs)
+    all[repair.of.empty() ? "repair" : "repair " + repair.of] = Json::parse(to_json(repair.report));
+  for (std::size_t r = 0; r < domain.volumes.size(); ++r)
+    all["input_regions"].push_back({{"name", intake::region_name(domain, r)}, {"volume", domain.volumes[r]}});
+  if (domain.dropped_sheet_faces > 0) all["dropped_sheet_faces"] = domain.dropped_sheet_faces;
+  return all.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace octafront

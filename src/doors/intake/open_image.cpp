@@ -1,0 +1,109 @@
+#include <octafront/error.h>
+#include <octafront/image.h>
+#include <octafront/image_surface.h>
+
+#include "doors/intake/intake.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace octafront::intake {
+
+namespace {
+
+VoxelBox box_of(const std::array<VoxelRange, 3>& crop, const ImageGrid& grid) {
+  VoxelBox box;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    box.lo[axis] = crop[axis].first.value_or(0);
+    box.hi[axis] = crop[axis].last ? *crop[axis].last + 1 : grid.size[axis];
+  }
+  return box;
+}
+
+bool crops(const ImageIntake& asked) {
+  return std::ranges::any_of(asked.crop, [](const VoxelRange& r) { return r.first || r.last; });
+}
+
+Vec3 spacing_of(const std::vector<double>& resample) {
+  if (resample.size() == 1) return Vec3{1, 1, 1} * resample[0];
+  if (resample.size() == 3) return {resample[0], resample[1], resample[2]};
+  throw OptionError(fmt::format("`resample` has {} sizes: give one, or three along i, j and k", resample.size()));
+}
+
+/// Cropped and resampled as asked; nullopt if neither was.
+std::optional<Image> taken(Domain& domain, const IntakeOptions& options, const Image& image,
+                           const ImageRegions& regions, const RunContext& context) {
+  const ImageIntake& asked = options.image;
+  std::optional<Image> part;
+  if (crops(asked)) part = cropped(image, box_of(asked.crop, image.grid));
+  if (!asked.resample.empty()) {
+    const Image& from = part ? *part : image;
+    const bool labels = kind_of(from, regions) == ImageRegions::Kind::kLabels;
+    Image made = resampled(from, spacing_of(asked.resample), labels, context);
+    made.notes.erase(made.notes.begin(), made.notes.begin() + static_cast<std::ptrdiff_t>(from.notes.size()));
+    note_all(domain, options, "resampling", made.notes);
+    part = std::move(made);
+  }
+  if (part) note(domain, options, "", fmt::format("  taken: {}", in_words(part->grid)));
+  return part;
+}
+
+ImageRegions regions_of(const ImageIntake& asked, const RunContext& context) {
+  ImageRegions regions = asked.regions;
+  if (asked.names_file.empty()) return regions;
+  std::vector<LabelName>& names = regions.labels.names;
+  std::vector<LabelName> all = read_label_names(asked.names_file, context);
+  all.insert(all.end(), names.begin(), names.end());
+  names = std::move(all);
+  return regions;
+}
+
+void check_cleaning(const CleanOptions& clean) {
+  for (const auto& [option, volume] : {std::pair{"islands", clean.islands}, std::pair{"holes", clean.holes}})
+    if (!(volume >= 0)) throw OptionError(fmt::format("`{}` is {}: it must not be below 0", option, volume));
+  constexpr std::uint32_t kMost = 64;
+  if (clean.closing > kMost)
+    throw OptionError(fmt::format("`close_voxels` is {}: it is from 0 to {}", clean.closing, kMost));
+}
+
+}  // namespace
+
+void refuse_image_options(const ImageIntake& image, const std::string& name) {
+  const LabelOptions& labels = image.regions.labels;
+  const CleanOptions& clean = image.regions.clean;
+  const std::pair<bool, const char*> given[] = {{image.choice.series > 0, "series"},
+                                                {image.regions.kind != ImageRegions::Kind::kAuto, "image"},
+                                                {!image.regions.bands.empty(), "band"},
+                                                {!image.names_file.empty() || !labels.names.empty(), "labels"},
+                                                {labels.ignore.has_value(), "ignore"},
+                                                {!labels.merge.empty(), "merge"},
+                                                {clean.islands > 0, "islands"},
+                                                {clean.holes > 0, "holes"},
+                                                {clean.closing > 0, "close_voxels"},
+                                                {!image.regions.closed_at_box, "closed_at_box"},
+                                                {crops(image), "crop"},
+                                                {!image.resample.empty(), "resample"}};
+  for (const auto& [is_given, option] : given)
+    if (is_given) throw OptionError(fmt::format("`{}` is for images, and {} is none that is known here", option, name));
+}
+
+void take_image(Domain& domain, const IntakeOptions& options, const Image& image, const std::string& name,
+                const RunContext& context) {
+  check_cleaning(options.image.regions.clean);
+  note_all(domain, options, "reading", image.notes);
+  const ImageRegions regions = regions_of(options.image, context);
+  const std::optional<Image> part = taken(domain, options, image, regions, context);
+  const Image& used = part ? *part : image;
+  domain.format = image.format;
+  domain.voxel_spacing = smallest_spacing(used.grid);
+  domain.voxels = used.grid.size;
+  try {
+    take_complex(domain, options, complex_of_image(used, regions, context));
+  } catch (const InputError& error) {
+    throw InputError(name.empty() ? error.what() : fmt::format("{}: {}", name, error.what()));
+  }
+}
+
+}  // namespace octafront::intake

@@ -1,0 +1,67 @@
+#include <octafront/image.h>
+#include <octafront/units.h>
+
+#include "formats/containers/scanner.h"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+namespace octafront {
+
+namespace {
+
+constexpr std::array kUnits{LengthUnit{"um", 1e-6, " micrometers micrometres microns micron "},
+                            LengthUnit{"mm", 1e-3, " millimeters millimetres millimeter millimetre "},
+                            LengthUnit{"cm", 1e-2, " centimeters centimetres centimeter centimetre "},
+                            LengthUnit{"m", 1, " meters metres meter metre "},
+                            LengthUnit{"in", 0.0254, " inches inch "},
+                            LengthUnit{"ft", 0.3048, " feet foot "}};
+
+/// Of several images in a file all have the unit of the first.
+std::string unit_of_image(const std::string& file) {
+  const std::string unit = read_image(file, {1}).unit;
+  return unit_named(unit) == nullptr ? "" : unit;
+}
+
+std::string beginning_of(const std::string& file) {
+  constexpr std::size_t kBeginning = 4096;
+  std::string text(kBeginning, '\0');
+  std::ifstream in(file, std::ios::binary);
+  in.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(in.gcount()));
+  std::transform(text.begin(), text.end(), text.begin(), io::to_lower);
+  return text;
+}
+
+}  // namespace
+
+std::span<const LengthUnit> length_units() {
+  return kUnits;
+}
+
+const LengthUnit* unit_named(const std::string& name) {
+  for (const LengthUnit& unit : kUnits)
+    if (unit.name == name || (!name.empty() && unit.words.find(" " + name + " ") != std::string_view::npos))
+      return &unit;
+  return nullptr;
+}
+
+std::string unit_of_file(const std::string& file) {
+  std::error_code error;
+  if (is_image(file)) return unit_of_image(file);
+  if (!std::filesystem::is_regular_file(file, error)) return {};
+  constexpr std::string_view kWords = "file units =";
+  std::istringstream lines(beginning_of(file));
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t at = line.find(kWords);
+    if (line.empty() || line[0] != '#' || at == std::string::npos) continue;
+    const LengthUnit* unit = unit_named(std::string(io::trimmed(std::string_view(line).substr(at + kWords.size()))));
+    return unit == nullptr ? "" : std::string(unit->name);
+  }
+  return {};
+}
+
+}  // namespace octafront

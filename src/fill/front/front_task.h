@@ -1,0 +1,68 @@
+#pragma once
+
+#include <octafront/options.h>
+#include <octafront/size_field.h>
+
+#include "base/core/stage.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+namespace octafront {
+
+/// By what a front advances; all of it outlives the advance.
+struct FrontTask {
+  const SizeField& sizes;
+  const VolumeOptions& options;
+  const Stage& stage;
+};
+
+/// What a front has done: it decides when a run stops, and is counted in work, not in time, so that the result never
+/// depends on the machine.
+struct FrontWork {
+  std::size_t tets = 0;          ///< made
+  double volume = 0;             ///< filled
+  std::uint64_t face_tests = 0;  ///< candidates times the faces around them
+
+  FrontWork& operator+=(const FrontWork& more) {
+    tets += more.tets;
+    volume += more.volume;
+    face_tests += more.face_tests;
+    return *this;
+  }
+};
+
+/// Where a run stops, whatever remains.
+struct AdvanceBudget {
+  std::size_t tets = 0;
+  double volume = std::numeric_limits<double>::infinity();  ///< more means that the front leaks
+  std::uint64_t face_tests = std::numeric_limits<std::uint64_t>::max();
+
+  bool exceeded_by(const FrontWork& work) const {
+    return work.tets > tets || work.volume > volume || work.face_tests > face_tests;
+  }
+  /// What is left after work that has not exceeded it.
+  AdvanceBudget after(const FrontWork& work) const {
+    return {tets - work.tets, volume - work.volume, face_tests - work.face_tests};
+  }
+};
+
+/// Statistics for reports. They depend on input and options alone, and nothing depends on them.
+struct FrontCounters {
+  std::uint64_t attempts = 0, candidates = 0, exact_tests = 0, ideal_points = 0, retries = 0, faces_found = 0,
+                deferred = 0;
+
+  FrontCounters& operator+=(const FrontCounters& more) {
+    attempts += more.attempts;
+    candidates += more.candidates;
+    exact_tests += more.exact_tests;
+    ideal_points += more.ideal_points;
+    retries += more.retries;
+    faces_found += more.faces_found;
+    deferred += more.deferred;
+    return *this;
+  }
+};
+
+}  // namespace octafront

@@ -1,0 +1,155 @@
+#include "fill/front/ladder.h"
+
+#include <octafront/error.h>
+
+#include "base/core/stage_timer.h"
+#include "base/core/validate.h"
+#include "base/mesh/renumber.h"
+#include "fill/cavity/cavity.h"
+#include "fill/front/backtrack.h"
+#include "fill/front/recover_cavity.h"
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <string>
+
+namespace octafront {
+
+namespace {
+
+using Ranking = VolumeOptions::Ranking;
+
+/// Other choices, in the order in which they are tried.
+constexpr std::array<BacktrackVariant, 4> kBeforeStar{{{1, 1.0, Ranking::kQuality},
+                                                       {1, 0.8, Ranking::kSolidAngle},
+                                                       {2, 1.0, Ranking::kQuality},
+                                                       {2, 0.7, Ranking::kQuality}}};
+constexpr std::array<BacktrackVariant, 3> kAfterStar{
+    {{3, 1.0, Ranking::kQuality}, {3, 0.6, Ranking::kSolidAngle}, {4, 0.8, Ranking::kQuality}}};
+
+/// The bare cavity first: rings only help where no doubles fit between its walls.
+constexpr std::array<int, 4> kRecoveryRings{0, 1, 2, 4};
+
+/// Work that backtracking may spend in all, in faces tested: about two seconds, and an eighth of what the front took.
+/// On surfaces of needles most trials fail, and the lower rungs are quick.
+constexpr std::uint64_t kBacktrackingFaceTests = 5'000'000;
+constexpr std::uint64_t kFaceTestsPerTet = 3;
+
+/// Adds the CPU time that run() takes to `seconds`; the rungs are tried one after the other.
+template <class Run>
+auto timed(double& seconds, Run&& run) {
+  const double start = process_cpu_seconds();
+  auto result = run();
+  seconds += process_cpu_seconds() - start;
+  return result;
+}
+
+/// Where the cavities are, with room for some rings of tetrahedra; nothing if they are too many to tell apart quickly.
+std::vector<Box3> surroundings(const std::vector<Vec3>& points, const Cavities& cavities) {
+  constexpr std::size_t kMost = 64;
+  std::vector<Box3> boxes;
+  if (cavities.size() > kMost) return boxes;
+  for (std::size_t c = 0; c < cavities.size(); ++c) {
+    Box3 box;
+    for (const Wall& w : cavities.walls(c))
+      for (const VertexIndex v : w) box.add(points[v]);
+    const double margin = 2 * box.diagonal();
+    boxes.push_back({box.lo - Vec3{margin, margin, margin}, box.hi + Vec3{margin, margin, margin}});
+  }
+  return boxes;
+}
+
+std::vector<Triangle> two_sided_triangles(const SurfaceMesh& surface) {
+  std::vector<Triangle> found;
+  for (std::size_t t = 0; t < surface.sides.size(); ++t)
+    if (surface.sides[t][0] != kNone && surface.sides[t][1] != kNone) found.push_back(surface.triangles[t]);
+  return found;
+}
+
+[[noreturn]] void give_up(const WorkMesh& mesh, const std::vector<Wall>& walls) {
+  std::vector<VertexIndex> global;
+  SurfaceMesh surface = surface_of(mesh, walls, global);
+  const Vec3 p = bounding_box(surface.points).center();
+  throw OpenCavityError("a cavity of " + std::to_string(walls.size()) + " faces near (" + std::to_string(p.x) + ", " +
+                            std::to_string(p.y) + ", " + std::to_string(p.z) +
+                            ") could not be filled; please report it with the surface",
+                        std::move(surface));
+}
+
+/// Tries one rung after the other on a cavity, and counts.
+class Ladder {
+ public:
+  /// `face_tests`: work that backtracking may spend in all. Cavities with more walls than `most_walls` are given up.
+  Ladder(const FrontTask& task, std::uint64_t face_tests, std::size_t most_walls)
+      : task_(task), face_tests_(face_tests), most_walls_(most_walls) {}
+
+  void close(const OpenCavity& cavity) {
+    task_.stage.check();
+    ++cavities_;
+    if (by_front(cavity, kBeforeStar) || by_star(cavity) || by_front(cavity, kAfterStar)) return;
+    if (cavity.walls().size() > most_walls_ || !by_recovery(cavity)) give_up(cavity.mesh, cavity.walls());
+  }
+
+  void report_to(const Stage& stage) const {
+    stage.count("cavities", cavities_);
+    stage.count("closed by backtracking", by_front_);
+    stage.count("closed by kernel points", by_star_);
+    stage.count("closed by recovery", by_recovery_);
+    stage.count("growth steps", growth_steps_);
+    stage.count("backtracking CPU seconds", front_seconds_);
+    stage.count("kernel points CPU seconds", star_seconds_);
+    stage.count("recovery CPU seconds", recovery_seconds_);
+  }
+
+ private:
+  bool by_front(const OpenCavity& cavity, std::span<const BacktrackVariant> variants) {
+    const bool closed = std::any_of(variants.begin(), variants.end(), [&](const BacktrackVariant& variant) {
+      return timed(front_seconds_, [&] { return close_by_front(cavity, variant, task_, face_tests_); });
+    });
+    by_front_ += closed;
+    return closed;
+  }
+
+  bool by_star(const OpenCavity& cavity) {
+    const StarResult star = timed(star_seconds_, [&] { return close_by_star(cavity); });
+    growth_steps_ += star.growth_steps;
+    by_star_ += star.closed;
+    return star.closed;
+  }
+
+  bool by_recovery(const OpenCavity& cavity) {
+    const bool closed = std::any_of(kRecoveryRings.begin(), kRecoveryRings.end(), [&](int rings) {
+      return timed(recovery_seconds_, [&] { return close_by_recovery(cavity, rings, task_.stage.context()); });
+    });
+    by_recovery_ += closed;
+    return closed;
+  }
+
+  const FrontTask& task_;
+  std::uint64_t face_tests_;
+  const std::size_t most_walls_;
+  int cavities_ = 0, by_front_ = 0, by_star_ = 0, growth_steps_ = 0, by_recovery_ = 0;
+  double front_seconds_ = 0, star_seconds_ = 0, recovery_seconds_ = 0;  // CPU, closed or not
+};
+
+}  // namespace
+
+void close_cavities(TetMesh& mesh, const std::vector<Wall>& walls, const SurfaceMesh& surface, const FrontTask& task) {
+  if (walls.empty()) return;
+  const double start = process_cpu_seconds();
+  Ladder ladder(task, kBacktrackingFaceTests + kFaceTestsPerTet * mesh.tets.size(), surface.triangles.size());
+  Cavities cavities(walls);
+  const std::vector<Box3> focus = surroundings(mesh.points, cavities);
+  WorkMesh work(std::move(mesh.points), std::move(mesh.tets), focus, two_sided_triangles(surface));
+  for (std::uint32_t c = 0; c < cavities.size(); ++c)
+    if (!cavities.walls(c).empty()) ladder.close({work, cavities, c});
+  validate(work);
+  mesh.points = work.take_points();
+  mesh.tets = work.take_tets();
+  drop_unused_points(mesh, surface.points.size());
+  ladder.report_to(task.stage);
+  task.stage.count("closing CPU seconds", process_cpu_seconds() - start);
+}
+
+}  // namespace octafront

@@ -1,0 +1,70 @@
+#pragma once
+
+// formats/containers: what many formats are made of: bytes of a file and complaints about places in them (input.h),
+// words and numbers of a text (scanner.h), XML, HDF5, netCDF; files written beside and renamed into place
+// (atomic_file.h).
+
+#include <octafront/run_context.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace octafront::io {
+
+/// The bytes of a file and its name, and how to complain about a place in it. Does not own the bytes.
+struct Input {
+  std::string name;
+  std::string_view bytes;
+  RunContext context = {};
+
+  /// Throws InputError "NAME: message".
+  [[noreturn]] void fail(std::string_view message) const;
+  /// Throws InputError "NAME, line N: message"; `at` points into `bytes` (or to its end).
+  [[noreturn]] void fail_at_line(const char* at, std::string_view message) const;
+  /// Throws InputError "NAME, byte N: message".
+  [[noreturn]] void fail_at_byte(const char* at, std::string_view message) const;
+};
+
+/// Asks every few milliseconds of reading whether to go on, and tells how far it is.
+class ReadingProgress {
+ public:
+  explicit ReadingProgress(const Input& input) : input_(&input) { set_next(input.bytes.data()); }
+  /// To be told of every place that is reached.
+  void reach(const char* at) {
+    if (at >= next_) [[unlikely]]
+      tell(at);
+  }
+
+ private:
+  void set_next(const char* at) {
+    constexpr std::ptrdiff_t kStride = std::ptrdiff_t{1} << 18;
+    next_ = at + std::min(kStride, input_->bytes.data() + input_->bytes.size() - at);
+  }
+  /// Throws Cancelled.
+  void tell(const char* at);
+
+  const Input* input_;
+  const char* next_;
+};
+
+/// A file read whole. Reading is preferred to mapping: a file that shrinks while it is mapped kills the process.
+class LoadedFile {
+ public:
+  /// Throws InputError for a missing file, a directory, a device, an empty file, or one too large for the memory;
+  /// Cancelled, also while a pipe has nothing to read.
+  explicit LoadedFile(const std::filesystem::path& file, const RunContext& context = {});
+  const Input& input() const { return input_; }
+
+ private:
+  std::unique_ptr<char[]> bytes_;
+  Input input_;
+};
+
+/// `text` in quotes for a message: cut to some forty characters, unprintable bytes as \xNN.
+std::string in_quotes(std::string_view text);
+
+}  // namespace octafront::io

@@ -1,0 +1,140 @@
+#include <octafront/error.h>
+#include <octafront/io.h>
+
+#include "base/core/thread_limit.h"
+#include "base/core/utf8.h"
+#include "base/mesh/renumber.h"
+#include "formats/parts/raw_mesh.h"
+#include "formats/read/readers.h"
+#include "formats/table/formats.h"
+#include "formats/table/recognize.h"
+
+#include <utility>
+
+#include <fmt/core.h>
+
+namespace octafront {
+
+namespace io {
+
+RawMesh read_raw_mesh(const Input& input) {
+  switch (recognize_mesh(input)) {
+    case MeshKind::kVtu:
+      return read_vtu(input);
+    case MeshKind::kVtk:
+      return read_vtk(input);
+    case MeshKind::kMsh:
+      return read_msh(input);
+    case MeshKind::kMeditBinary:
+      return read_medit_binary(input);
+    case MeshKind::kAbaqus:
+      return read_abaqus(input);
+    case MeshKind::kNastran:
+      return read_nastran(input);
+    case MeshKind::kUnv:
+      return read_unv(input);
+    case MeshKind::kNetgen:
+      return read_netgen(input);
+    case MeshKind::kTetgen:
+      return read_tetgen(input);
+    case MeshKind::kXdmf:
+      return read_xdmf(input);
+    case MeshKind::kHdf5:
+      return read_med(input);
+    default:
+      return read_medit(input);
+  }
+}
+
+namespace {
+
+TetMesh with_clean_names(TetMesh mesh, std::vector<std::string>& notes) {
+  NameCleaning names;
+  for (auto* list : {&mesh.region_names, &mesh.patch_names, &mesh.curve_names}) names.clean(*list);
+  for (NamedSet& set : mesh.sets) names.clean(set.name);
+  names.tell(notes);
+  return mesh;
+}
+
+}  // namespace
+
+MeshFile read_mesh_bytes(const Input& input) {
+  MeshFile file = ordered_mesh(read_raw_mesh(input), input);
+  file.mesh = with_clean_names(std::move(file.mesh), file.notes);
+  return file;
+}
+
+}  // namespace io
+
+namespace {
+
+std::string all_names() {
+  std::string names;
+  for (const io::Format& format : io::formats())
+    if (format.info.writes_mesh) names += (names.empty() ? "" : ", ") + std::string(format.info.name);
+  return names;
+}
+
+const io::Format& mesh_format(const std::filesystem::path& file, const std::string& name) {
+  const io::Format* format = name.empty() ? io::format_of(file) : io::format_named(name);
+  if (format == nullptr && !name.empty())
+    throw OptionError(fmt::format("there is no format \"{}\"; `format` is one of {}", name, all_names()));
+  if (format == nullptr)
+    throw OptionError(fmt::format("{}: the ending \"{}\" names no mesh format; use one of {}, or `format`",
+                                  file.string(), file.extension().string(),
+                                  io::endings_that(&FormatInfo::writes_mesh)));
+  if (format->write_mesh == nullptr && format->write_surface == nullptr)
+    throw OptionError(
+        fmt::format("{}: this octafront was built without HDF5, which {} needs; build it with libhdf5-dev "
+                    "installed, or write another format",
+                    file.string(), format->info.title));
+  return *format;
+}
+
+/// Of a format of surfaces only.
+SurfaceMesh boundary_surface(const TetMesh& mesh) {
+  SurfaceMesh surface;
+  surface.patch = mesh.patch;
+  surface.patch_names = mesh.patch_names;
+  surface.points = mesh.points;
+  surface.triangles = mesh.boundary;
+  drop_unused_points(surface.points, surface.triangles);
+  return surface;
+}
+
+}  // namespace
+
+MeshFile read_mesh_file(const std::string& file, const RunContext& context) {
+  return io::read_mesh_bytes(io::LoadedFile(file, context).input());
+}
+
+TetMesh read_mesh(const std::string& file, const RunContext& context) {
+  return read_mesh_file(file, context).mesh;
+}
+
+void check_mesh_target(const std::string& file, const std::string& name) {
+  const io::Format& format = mesh_format(file, name);
+  format.is_folder ? io::check_folder_writable(file) : io::check_writable(file);
+}
+
+std::vector<std::string> write_mesh(const std::string& file, const TetMesh& mesh, const RunContext& context,
+                                    const std::string& name) {
+  check_mesh_target(file, name);
+  const ThreadLimit limit(context.threads);
+  const io::Format& format = mesh_format(file, name);
+  const io::MeshParts parts(mesh, !format.info.holds.second_order);
+  io::MeshOutput out(file, context);
+  if (format.write_mesh == nullptr) {
+    format.write_surface(out.file(), boundary_surface(mesh));
+    out.note(
+        fmt::format("{} holds the boundary alone: {} tetrahedra are left out", format.info.title, mesh.tets.size()));
+  } else {
+    out.note(parts.note_on_names());
+    for (std::string& note : io::losses(format.info, parts)) out.note(std::move(note));
+    format.write_mesh(out, parts);
+  }
+  out.commit();
+  return std::move(out.notes());
+}
+
+}  // namespace octafront

@@ -1,0 +1,80 @@
+#include "formats/parts/legal_names.h"
+
+#include "formats/containers/scanner.h"
+#include "formats/parts/mesh_output.h"
+#include "formats/parts/mesh_parts.h"
+
+#include <algorithm>
+
+#include <fmt/core.h>
+
+namespace octafront::io {
+namespace {
+
+constexpr bool is_letter(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+}
+constexpr bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+constexpr char to_upper(char c) {
+  return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+}
+
+}  // namespace
+
+std::string LegalNames::key(std::string_view name) const {
+  std::string all(name);
+  if (rules_.ignores_case) std::transform(all.begin(), all.end(), all.begin(), to_lower);
+  return all;
+}
+
+std::string LegalNames::legal(std::string_view name) {
+  std::string made;
+  for (const char c : name.substr(0, rules_.longest)) {
+    const bool good = is_letter(c) || is_digit(c) || rules_.also.find(c) != std::string_view::npos;
+    made += !good ? '_' : rules_.upper_case ? to_upper(c) : c;
+  }
+  if (made.empty() || (rules_.letter_first && !is_letter(made[0])))
+    made.insert(made.begin(), rules_.upper_case ? 'N' : 'n');
+  made.resize(std::min(made.size(), rules_.longest));
+  const std::string base = made;
+  for (int n = 2; !taken_.insert(key(made)).second; ++n) {
+    const std::string number = fmt::format("_{}", n);
+    made = base.substr(0, rules_.longest - number.size()) + number;
+  }
+  // That all is in upper case is no news.
+  if (key(made) != key(name)) changed_.push_back(fmt::format("\"{}\" is {}", one_line(name), made));
+  return made;
+}
+
+std::string LegalNames::note() const {
+  if (changed_.empty()) return {};
+  constexpr std::size_t kMost = 5;
+  std::string all = "names were changed to what the format takes: ";
+  for (std::size_t i = 0; i < std::min(kMost, changed_.size()); ++i) all += (i > 0 ? ", " : "") + changed_[i];
+  return changed_.size() > kMost ? all + fmt::format(" and {} more", changed_.size() - kMost) : all;
+}
+
+std::vector<std::string> legal_names(MeshOutput& out, const MeshParts& mesh, const NameRules& rules,
+                                     std::span<const Part::Origin> of) {
+  LegalNames of_elements(rules), of_others(rules);
+  std::vector<std::string> names;
+  for (const Part& part : mesh.parts()) {
+    const bool is_wanted = std::find(of.begin(), of.end(), part.origin) != of.end();
+    LegalNames& legal = part.kind == NamedSet::Kind::kElements ? of_elements : of_others;
+    names.push_back(is_wanted ? legal.legal(part.name) : std::string());
+  }
+  out.note(of_elements.note());
+  out.note(of_others.note());
+  return names;
+}
+
+std::string one_line(std::string_view name) {
+  std::string out(name);
+  std::replace_if(
+      out.begin(), out.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
+  return out;
+}
+
+}  // namespace octafront::io

@@ -1,0 +1,55 @@
+#pragma once
+
+#include "formats/containers/atomic_file.h"
+#include "formats/parts/legal_names.h"
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace octafront::io {
+
+/// Where a mesh goes: one file, several, or a folder. They get their names when all are complete; whatever fails
+/// before, older ones stay as they were. What a writer has to tell the user goes into `notes`.
+class MeshOutput {
+ public:
+  MeshOutput(std::filesystem::path target, RunContext context) : target_(std::move(target)), context_(context) {}
+  ~MeshOutput();
+  MeshOutput(const MeshOutput&) = delete;
+  MeshOutput& operator=(const MeshOutput&) = delete;
+
+  const std::filesystem::path& target() const { return target_; }
+  const RunContext& context() const { return context_; }
+  /// The file that was asked for.
+  AtomicFile& file();
+  /// Another one beside it, with this ending instead.
+  AtomicFile& sibling(const std::string& ending);
+  /// Another one beside it, of that name.
+  AtomicFile& beside(const std::string& name);
+  /// A place for a library that writes a file by itself: of the target's name in the end, or of this name beside it.
+  std::filesystem::path path_for_library(const std::string& name = {});
+  /// A new folder that takes the target's place in the end.
+  std::filesystem::path folder();
+  void note(std::string text) {
+    if (!text.empty()) notes_.push_back(std::move(text));
+  }
+
+  /// All files get their names. Throws OutputError.
+  void commit();
+  std::vector<std::string>& notes() { return notes_; }
+
+ private:
+  struct Pending {
+    std::filesystem::path temporary, final;
+  };
+
+  std::filesystem::path target_;
+  RunContext context_;
+  std::vector<std::unique_ptr<AtomicFile>> files_;
+  std::vector<Pending> pending_;  ///< the folder, if there is one
+  std::vector<std::string> notes_;
+};
+
+}  // namespace octafront::io

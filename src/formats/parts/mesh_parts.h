@@ -1,0 +1,156 @@
+#pragma once
+
+// formats/parts: a mesh between file and arrays. Readers leave elements and faces (raw_mesh.h, surface_builder.h),
+// which become an ordered TetMesh or SurfaceMesh in one place; writers see regions, patches, curves and sets as one
+// list of parts.
+
+#include <octafront/tet_mesh.h>
+
+#include "base/core/groups.h"
+#include "base/core/utf8.h"
+#include "base/mesh/edge_nodes.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace octafront::io {
+
+/// A region, patch, curve or further set of a mesh, as files have them.
+struct Part {
+  enum class Origin { kRegion, kPatch, kCurve, kSet };
+  Origin origin;
+  NamedSet::Kind kind;   ///< regions: elements; patches: faces; curves: edges
+  std::uint32_t number;  ///< of the region, patch or curve, or place in `sets`
+  std::uint32_t tag;     ///< the same for formats whose numbers are above 0: one more, or of a region tag_of_region()
+  std::string name;      ///< as given, or made by default_name()
+  bool is_named;         ///< false: the name was made
+  std::span<const std::uint32_t> members;
+};
+
+/// The name of a part that has none: "body" or "body_2", "patch_3", "curve_4". `only`: there is no other one.
+std::string default_name(Part::Origin origin, std::uint32_t number, bool only);
+
+/// A face of a tetrahedron: the one opposite to its corner `face`.
+struct Side {
+  TetIndex tet;
+  int face;
+};
+
+/// A mesh as writers see it: the boundary and the interfaces as one list of faces, and all that has a number or name as
+/// one list of parts, which every format turns into sets of its own. Refers to the mesh. O(mesh).
+class MeshParts {
+ public:
+  /// `linear`: mid-side nodes and the points that are nothing else are passed over.
+  explicit MeshParts(const TetMesh& mesh, bool linear = false);
+
+  const TetMesh& mesh() const { return mesh_; }
+  /// Points that are to be written: the first ones of the mesh.
+  std::size_t points() const { return points_; }
+  std::size_t tets() const { return mesh_.tets.size(); }
+  std::size_t faces() const { return mesh_.boundary.size() + mesh_.interfaces.size(); }
+  std::size_t edges() const { return mesh_.curve_edges.size(); }
+  bool second_order() const { return second_order_; }
+
+  const Triangle& face(std::size_t f) const {
+    return f < mesh_.boundary.size() ? mesh_.boundary[f] : mesh_.interfaces[f - mesh_.boundary.size()];
+  }
+  std::uint32_t region_of(std::size_t t) const { return mesh_.region.empty() ? 0 : mesh_.region[t]; }
+  /// The labels of regions, where each that occurs has one that files can hold; else empty.
+  const std::vector<std::int32_t>& labels() const { return labels_; }
+  /// What formats call region r that have a number above 0 for each: its label where all have one of their own, else
+  /// r + 1.
+  std::uint32_t tag_of_region(std::uint32_t r) const {
+    return labels_are_tags_ ? static_cast<std::uint32_t>(labels_[r]) : r + 1;
+  }
+  std::uint32_t patch_of(std::size_t f) const {
+    const bool inside = f >= mesh_.boundary.size();
+    const auto& patch = inside ? mesh_.interface_patch : mesh_.patch;
+    return patch.empty() ? 0 : patch[inside ? f - mesh_.boundary.size() : f];
+  }
+  std::uint32_t curve_of(std::size_t e) const { return mesh_.curve.empty() ? 0 : mesh_.curve[e]; }
+
+  /// Corners and, at second order, mid-side nodes, in the order of VTK (edges 12 23 13 14 24 34; 12 23 31; 12).
+  std::span<const VertexIndex> tet_nodes(std::size_t t, std::array<VertexIndex, 10>& room) const;
+  std::span<const VertexIndex> face_nodes(std::size_t f, std::array<VertexIndex, 6>& room) const;
+  std::span<const VertexIndex> edge_nodes(std::size_t e, std::array<VertexIndex, 3>& room) const;
+  /// One of them.
+  VertexIndex tet_node(std::size_t t, std::size_t k) const {
+    constexpr std::array<std::uint8_t, 6> kMids{0, 3, 1, 2, 4, 5};  // of kTetEdges
+    return k < 4 ? mesh_.tets[t][k] : mesh_.mid_nodes[t][kMids[k - 4]];
+  }
+  VertexIndex face_node(std::size_t f, std::size_t k) const {
+    const Triangle& t = face(f);
+    return k < 3 ? t[k] : mids_(t[k - 3], t[(k - 2) % 3]);
+  }
+  VertexIndex edge_node(std::size_t e, std::size_t k) const {
+    const Edge& edge = mesh_.curve_edges[e];
+    return k < 2 ? edge[k] : mids_(edge[0], edge[1]);
+  }
+  std::size_t nodes_per_tet() const { return second_order_ ? 10 : 4; }
+  std::size_t nodes_per_face() const { return second_order_ ? 6 : 3; }
+  std::size_t nodes_per_edge() const { return second_order_ ? 3 : 2; }
+
+  /// Per face the tetrahedron that it looks out of (for an interface one of its two). Made at the first call.
+  const std::vector<Side>& sides() const;
+
+  /// Regions, patches and curves that have members, ascending, then the sets of the mesh.
+  const std::vector<Part>& parts() const { return parts_; }
+  /// Those of one origin.
+  std::span<const Part> parts(Part::Origin origin) const;
+  /// What had to change for them to be UTF-8 without control characters, as writers get them; empty: nothing.
+  std::string note_on_names() const { return names_.note(); }
+  /// The nodes of a part, ascending, mid-side nodes too.
+  std::vector<VertexIndex> nodes_of(const Part& part) const;
+
+ private:
+  void take_labels();
+  void add_numbered(Part::Origin origin, const Groups<>& members, const std::vector<std::uint32_t>& numbers,
+                    const std::vector<std::string>& names);
+
+  const TetMesh& mesh_;
+  bool second_order_;
+  std::size_t points_;
+  EdgeNodes mids_;
+  std::array<Groups<>, 3> groups_;
+  std::array<std::vector<std::uint32_t>, 3> numbers_;
+  std::vector<Part> parts_;
+  NameCleaning names_;
+  std::vector<std::int32_t> labels_;
+  bool labels_are_tags_ = false;
+  mutable std::vector<Side> sides_;
+};
+
+/// Elements of one kind by the parts that they are in: every combination that occurs once, in order. Formats whose
+/// elements have one place each (entities, families) name those places by several parts.
+struct Combinations {
+  std::vector<std::vector<std::uint32_t>> parts;  ///< of each combination: indices into MeshParts::parts(), ascending
+  Groups<> members;                               ///< its elements; nodes in no set are in none
+  std::vector<std::uint32_t> of;                  ///< per element its combination; kNone: none
+};
+Combinations combinations(const MeshParts& mesh, NamedSet::Kind kind);
+
+/// Numbers of elements that occur, ascending, and the elements of each.
+struct ByNumber {
+  std::vector<std::uint32_t> numbers;
+  Groups<> members;
+};
+template <class NumberOf>
+ByNumber by_number(std::uint32_t count, const NumberOf& number_of) {
+  // Consecutive elements mostly share a number: equal neighbours are passed over before sorting.
+  ByNumber by;
+  for (std::uint32_t i = 0; i < count; ++i)
+    if (by.numbers.empty() || by.numbers.back() != number_of(i)) by.numbers.push_back(number_of(i));
+  std::sort(by.numbers.begin(), by.numbers.end());
+  by.numbers.erase(std::unique(by.numbers.begin(), by.numbers.end()), by.numbers.end());
+  const auto slot = [&](std::uint32_t i) {
+    return std::lower_bound(by.numbers.begin(), by.numbers.end(), number_of(i)) - by.numbers.begin();
+  };
+  by.members = group_by_owner(by.numbers.size(), count, slot);
+  return by;
+}
+
+}  // namespace octafront::io

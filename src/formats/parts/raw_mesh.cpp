@@ -1,0 +1,490 @@
+#include "formats/parts/raw_mesh.h"
+
+#include "base/geometry/predicates.h"
+#include "base/mesh/face_table.h"
+#include "base/mesh/renumber.h"
+#include "formats/parts/boundary.h"
+#include "formats/parts/mesh_parts.h"
+
+#include <algorithm>
+#include <functional>
+#include <utility>
+
+#include <fmt/core.h>
+
+namespace octafront::io {
+namespace {
+
+/// From references of a file to numbers from 0.
+class Numbering {
+ public:
+  explicit Numbering(const std::vector<std::int64_t>& refs) {
+    // Consecutive elements mostly share a reference: equal neighbours are passed over before sorting.
+    for (const std::int64_t r : refs)
+      if (sorted_.empty() || sorted_.back() != r) sorted_.push_back(r);
+    std::sort(sorted_.begin(), sorted_.end());
+    sorted_.erase(std::unique(sorted_.begin(), sorted_.end()), sorted_.end());
+    constexpr std::int64_t kMostKept = 1 << 20;  // what follows may keep a table of them
+    keeps_ = sorted_.empty() || (sorted_.front() >= 1 && sorted_.back() <= kMostKept);
+  }
+
+  std::uint32_t number(std::int64_t ref) const {
+    if (keeps_) return static_cast<std::uint32_t>(ref - 1);
+    return static_cast<std::uint32_t>(std::lower_bound(sorted_.begin(), sorted_.end(), ref) - sorted_.begin());
+  }
+  bool has(std::int64_t ref) const { return std::binary_search(sorted_.begin(), sorted_.end(), ref); }
+  std::uint32_t unused() const { return sorted_.empty() ? 0 : number(sorted_.back()) + 1; }
+
+ private:
+  std::vector<std::int64_t> sorted_;
+  bool keeps_;
+};
+
+using Kind = NamedSet::Kind;
+
+/// Numbers and names of regions, patches or curves, of the elements of the file.
+struct Numbered {
+  std::vector<std::uint32_t> numbers;  ///< one per element of the file; kNone: in no group
+  std::vector<std::string> names;
+  std::uint32_t next = 0;  ///< a number that is free
+};
+
+void set_name(std::vector<std::string>& names, std::uint32_t number, const std::string& name) {
+  if (name.empty()) return;
+  if (number >= names.size()) names.resize(number + 1);
+  names[number] = name;
+}
+
+Numbered by_reference(const std::vector<std::int64_t>& refs, const std::map<std::int64_t, std::string>& names) {
+  const Numbering numbering(refs);
+  Numbered out;
+  out.numbers.reserve(refs.size());
+  for (const std::int64_t r : refs) out.numbers.push_back(numbering.number(r));
+  for (const auto& [ref, name] : names)
+    if (numbering.has(ref)) set_name(out.names, numbering.number(ref), name);
+  out.next = numbering.unused();
+  return out;
+}
+
+/// Groups that overlap no earlier one become numbers, and leave the list.
+Numbered by_groups(std::vector<RawMesh::Group>& groups, Kind kind, std::size_t elements) {
+  Numbered out;
+  out.numbers.assign(elements, kNone);
+  std::erase_if(groups, [&](const RawMesh::Group& group) {
+    const auto taken = [&](std::uint32_t m) { return out.numbers[m] != kNone; };
+    const auto& members = group.members;
+    if (group.kind != kind || members.empty() || std::any_of(members.begin(), members.end(), taken)) return false;
+    for (const std::uint32_t m : members) out.numbers[m] = out.next;
+    set_name(out.names, out.next++, group.name);
+    return true;
+  });
+  return out;
+}
+
+/// A name that writers make where there is none is none.
+void forget_default_names(std::vector<std::string>& names, Part::Origin origin, bool only) {
+  for (std::uint32_t n = 0; n < names.size(); ++n)
+    if (names[n] == default_name(origin, n, only)) names[n].clear();
+  while (!names.empty() && names.back().empty()) names.pop_back();
+}
+
+void forget_zeros(std::vector<std::uint32_t>& numbers) {
+  if (std::all_of(numbers.begin(), numbers.end(), [](std::uint32_t n) { return n == 0; })) numbers.clear();
+}
+
+Triangle sorted(Triangle t) {
+  std::sort(t.begin(), t.end());
+  return t;
+}
+
+bool has_none(std::span<const std::uint32_t> row) {
+  return std::find(row.begin(), row.end(), kNone) != row.end();
+}
+
+/// Brings a file's mesh in order, step by step.
+class Ordering {
+ public:
+  Ordering(RawMesh&& raw, const Input& input) : raw_(std::move(raw)), input_(input) {}
+
+  MeshFile result() {
+    require_tets();
+    for (const auto step : {&Ordering::check_mid_nodes, &Ordering::number_points, &Ordering::take_tets,
+                            &Ordering::take_faces, &Ordering::take_edges, &Ordering::take_sets}) {
+      input_.context.check();
+      (this->*step)();
+    }
+    if (raw_.other_elements > 0)
+      raw_.notes.push_back(fmt::format("{} elements of other kinds were left out", raw_.other_elements));
+    return {std::move(mesh_), std::move(raw_.format), std::move(raw_.notes), turned_};
+  }
+
+ private:
+  void require_tets() const {
+    if (!raw_.tets.empty()) return;
+    input_.fail(raw_.other_elements + raw_.triangles.size() > 0
+                    ? fmt::format("holds no tetrahedra, only {} triangles and {} elements of other kinds",
+                                  raw_.triangles.size(), raw_.other_elements)
+                    : "holds no tetrahedra");
+  }
+
+  void check_mid_nodes() {
+    auto& mids = raw_.mid_nodes;
+    const auto lacks = [](const auto& row) { return has_none(row); };
+    if (mids.empty()) return;
+    if (mids.size() < raw_.tets.size() || std::any_of(mids.begin(), mids.end(), lacks)) {
+      raw_.notes.emplace_back("tetrahedra with and without mid-side nodes are mixed: all are taken as linear");
+      mids.clear();
+    }
+    enum : char { kUnused, kCorner };
+    std::vector<char> use(raw_.points.size(), kUnused);
+    for (const Tet& t : raw_.tets)
+      for (const VertexIndex v : t) use[v] = kCorner;
+    for (std::size_t t = 0; t < mids.size(); ++t)
+      for (const VertexIndex v : mids[t])
+        if (use[v] == kCorner)
+          input_.fail(
+              fmt::format("the node {} (counted from 0) is a corner of one tetrahedron and a mid-side node of "
+                          "tetrahedron {}; the file is damaged: export it again",
+                          v, t));
+  }
+
+  /// Corners first, then mid-side nodes; unused ones go.
+  void number_points() {
+    const std::size_t n = raw_.points.size();
+    std::vector<char> use(n, 0);
+    for (const Tet& t : raw_.tets)
+      for (const VertexIndex v : t) use[v] = 1;
+    for (const auto& mids : raw_.mid_nodes)
+      for (const VertexIndex v : mids) use[v] = 2;
+    number_.assign(n, kNone);
+    for (const char wanted : {1, 2})
+      for (VertexIndex v = 0; v < n; ++v) {
+        if (use[v] != wanted) continue;
+        number_[v] = static_cast<VertexIndex>(mesh_.points.size());
+        mesh_.points.push_back(raw_.points[v]);
+      }
+    renumber(raw_.tets, number_);
+    renumber(raw_.mid_nodes, number_);
+    // Triangles and edges at dropped points bound no tetrahedron; they go with what does not match.
+    renumber(raw_.triangles, number_);
+    renumber(raw_.edges, number_);
+    std::vector<Vec3>().swap(raw_.points);
+  }
+
+  void take_tets() {
+    mesh_.tets = std::move(raw_.tets);
+    mesh_.mid_nodes = std::move(raw_.mid_nodes);
+    const auto& p = mesh_.points;
+    for (std::size_t t = 0; t < mesh_.tets.size(); ++t) {
+      auto& [a, b, c, d] = mesh_.tets[t];
+      if (orient3d(p[a], p[b], p[c], p[d]) >= 0) continue;
+      ++turned_;
+      std::swap(c, d);
+      if (mesh_.mid_nodes.empty()) continue;
+      auto& m = mesh_.mid_nodes[t];
+      std::swap(m[1], m[2]);
+      std::swap(m[3], m[4]);
+    }
+    if (turned_ > 0) raw_.notes.push_back(fmt::format("{} inverted tetrahedra were turned", turned_));
+    Numbered regions = raw_.tet_ref.empty() ? by_groups(raw_.groups, Kind::kElements, mesh_.tets.size())
+                                            : by_reference(raw_.tet_ref, raw_.region_names);
+    for (std::uint32_t& n : regions.numbers)
+      if (n == kNone) n = regions.next;
+    mesh_.region = std::move(regions.numbers);
+    forget_zeros(mesh_.region);
+    mesh_.region_names = std::move(regions.names);
+    const bool only =
+        std::adjacent_find(mesh_.region.begin(), mesh_.region.end(), std::not_equal_to<>()) == mesh_.region.end();
+    forget_default_names(mesh_.region_names, Part::Origin::kRegion, only);
+  }
+
+  /// The triangles of the file where they are faces of the boundary, in their order, then what is missing; those
+  /// between two tetrahedra are interfaces.
+  /// Faces that are there several times, as sides of elements in several groups, become one.
+  void merge_equal_triangles() {
+    const FaceTable table = face_table(mesh_.points.size() + 1, clamped_triangles());
+    std::vector<std::uint32_t> first(raw_.triangles.size());
+    table.for_each_group([&](const Triangle&, std::span<const FaceTable::Entry> same) {
+      for (const FaceTable::Entry& entry : same) first[entry.face] = same.front().face;
+    });
+    for (RawMesh::Group& group : raw_.groups)
+      if (group.kind == Kind::kFaces)
+        for (std::uint32_t& m : group.members) m = first[m];
+  }
+  /// Points that are gone are one behind all.
+  std::vector<Triangle> clamped_triangles() const {
+    std::vector<Triangle> all = raw_.triangles;
+    for (Triangle& t : all)
+      for (VertexIndex& v : t) v = std::min(v, static_cast<VertexIndex>(mesh_.points.size()));
+    return all;
+  }
+
+  void take_faces() {
+    if (raw_.triangle_ref.empty()) merge_equal_triangles();
+    Numbered patches = raw_.triangle_ref.empty() ? by_groups(raw_.groups, Kind::kFaces, raw_.triangles.size())
+                                                 : by_reference(raw_.triangle_ref, raw_.surface_names);
+    // Without any group a triangle says no more than that it is there.
+    const std::uint32_t free = patches.next;
+    face_of_.assign(raw_.triangles.size(), kNone);
+    std::vector<std::uint32_t> inside;
+    take_boundary(patches, free, inside);
+    take_interfaces(patches, free, inside);
+    forget_zeros(mesh_.patch);
+    forget_zeros(mesh_.interface_patch);
+    mesh_.patch_names = std::move(patches.names);
+    forget_default_names(mesh_.patch_names, Part::Origin::kPatch, false);
+  }
+
+  void take_boundary(const Numbered& patches, std::uint32_t free, std::vector<std::uint32_t>& inside) {
+    // Sorted by vertices already.
+    std::vector<Triangle> faces = boundary_of(mesh_.tets, mesh_.points.size());
+    std::vector<std::uint32_t> taken_by(faces.size(), kNone);
+    const auto patch_of = [&](std::size_t i) { return patches.numbers[i] == kNone ? free : patches.numbers[i]; };
+    for (std::uint32_t i = 0; i < raw_.triangles.size(); ++i) {
+      if (has_none(raw_.triangles[i])) continue;
+      const Triangle key = sorted(raw_.triangles[i]);
+      const auto at = std::lower_bound(faces.begin(), faces.end(), key,
+                                       [](const Triangle& f, const Triangle& k) { return sorted(f) < k; });
+      if (at == faces.end() || sorted(*at) != key) {
+        inside.push_back(i);
+        continue;
+      }
+      std::uint32_t& taken = taken_by[static_cast<std::size_t>(at - faces.begin())];
+      face_of_[i] = taken == kNone ? static_cast<std::uint32_t>(mesh_.boundary.size()) : taken;
+      if (taken != kNone) continue;
+      taken = face_of_[i];
+      // Keep the corner that the file has first, so that a triangle that faces outward already stays as it is.
+      Triangle outward = *at;
+      while (outward[0] != raw_.triangles[i][0]) std::rotate(outward.begin(), outward.begin() + 1, outward.end());
+      mesh_.boundary.push_back(outward);
+      mesh_.patch.push_back(patch_of(i));
+      if (!raw_.triangle_source.empty()) mesh_.source.push_back(raw_.triangle_source[i]);
+    }
+    const std::size_t given = mesh_.boundary.size();
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+      if (taken_by[f] != kNone) continue;
+      mesh_.boundary.push_back(faces[f]);
+      mesh_.patch.push_back(free);
+      if (!raw_.triangle_source.empty()) mesh_.source.push_back(kNone);
+    }
+    if (given > 0 && given < mesh_.boundary.size())
+      raw_.notes.push_back(
+          fmt::format("{} boundary faces that the file lacks were added", mesh_.boundary.size() - given));
+  }
+
+  void take_interfaces(const Numbered& patches, std::uint32_t free, const std::vector<std::uint32_t>& inside) {
+    std::vector<Triangle> faces;
+    for (const std::uint32_t i : inside) faces.push_back(raw_.triangles[i]);
+    const FaceTable table = face_table(mesh_.points.size(), faces);
+    std::vector<std::uint8_t> tets(faces.size(), 0);
+    for (const Tet& t : mesh_.tets)
+      for (int i = 0; i < 4; ++i)
+        for (const FaceTable::Entry& listed : table.group_of(face_of(t, i))) ++tets[listed.face];
+    std::size_t dropped = 0;
+    for (std::size_t k = 0; k < inside.size(); ++k) {
+      dropped += tets[k] < 2;
+      if (tets[k] < 2) continue;
+      // A triangle that is there twice is taken once.
+      const std::uint32_t first = table.group_of(faces[k]).front().face, i = inside[k];
+      if (first < k) {
+        face_of_[i] = face_of_[inside[first]];
+        continue;
+      }
+      face_of_[i] = static_cast<std::uint32_t>(mesh_.boundary.size() + mesh_.interfaces.size());
+      mesh_.interfaces.push_back(faces[k]);
+      mesh_.interface_patch.push_back(patches.numbers[i] == kNone ? free : patches.numbers[i]);
+    }
+    if (dropped > 0) raw_.notes.push_back(fmt::format("{} triangles that bound no tetrahedron were left out", dropped));
+  }
+
+  void take_edges() {
+    Numbered curves = raw_.edge_ref.empty() ? by_groups(raw_.groups, Kind::kEdges, raw_.edges.size())
+                                            : by_reference(raw_.edge_ref, raw_.curve_names);
+    edge_of_.assign(raw_.edges.size(), kNone);
+    if (raw_.edges.empty()) return;
+    std::vector<std::pair<Edge, std::uint32_t>> wanted;
+    std::vector<bool> marked(mesh_.points.size(), false);
+    for (std::uint32_t i = 0; i < raw_.edges.size(); ++i) {
+      auto [a, b] = raw_.edges[i];
+      if (a == kNone || b == kNone || a == b) continue;
+      marked[a] = marked[b] = true;
+      wanted.push_back({{std::min(a, b), std::max(a, b)}, i});
+    }
+    std::sort(wanted.begin(), wanted.end());
+    const std::vector<bool> is_edge = edges_of_tets(wanted, marked);
+    // The first of equal ones, in the order of the file.
+    std::vector<std::uint32_t> first(raw_.edges.size(), kNone);
+    for (std::size_t k = 0; k < wanted.size(); ++k) {
+      if (!is_edge[k]) continue;
+      const bool again = k > 0 && wanted[k].first == wanted[k - 1].first;
+      first[wanted[k].second] = again ? first[wanted[k - 1].second] : wanted[k].second;
+    }
+    for (std::uint32_t i = 0; i < raw_.edges.size(); ++i) {
+      if (first[i] == kNone) continue;
+      edge_of_[i] = first[i] == i ? static_cast<std::uint32_t>(mesh_.curve_edges.size()) : edge_of_[first[i]];
+      if (first[i] != i) continue;
+      mesh_.curve_edges.push_back(raw_.edges[i]);
+      mesh_.curve.push_back(curves.numbers[i] == kNone ? curves.next : curves.numbers[i]);
+    }
+    const auto dropped = std::count(first.begin(), first.end(), kNone);
+    if (dropped > 0) raw_.notes.push_back(fmt::format("{} edges of no tetrahedron were left out", dropped));
+    forget_zeros(mesh_.curve);
+    mesh_.curve_names = std::move(curves.names);
+    forget_default_names(mesh_.curve_names, Part::Origin::kCurve, false);
+  }
+
+  std::vector<bool> edges_of_tets(const std::vector<std::pair<Edge, std::uint32_t>>& wanted,
+                                  const std::vector<bool>& marked) const {
+    std::vector<bool> found(wanted.size(), false);
+    for (const Tet& t : mesh_.tets)
+      for (const auto& [i, j] : kTetEdges) {
+        const VertexIndex a = t[static_cast<std::size_t>(i)], b = t[static_cast<std::size_t>(j)];
+        if (!marked[a] || !marked[b]) continue;
+        const std::pair<Edge, std::uint32_t> key{{std::min(a, b), std::max(a, b)}, 0};
+        for (auto at = std::lower_bound(wanted.begin(), wanted.end(), key);
+             at != wanted.end() && at->first == key.first; ++at)
+          found[static_cast<std::size_t>(at - wanted.begin())] = true;
+      }
+    return found;
+  }
+
+  void take_sets() {
+    // Sets of nodes come last: what they may repeat must be there.
+    for (RawMesh::Group& group : raw_.groups)
+      if (group.kind != Kind::kNodes) take_set(group);
+    const auto is_of_nodes = [](const RawMesh::Group& group) { return group.kind == Kind::kNodes; };
+    if (std::none_of(raw_.groups.begin(), raw_.groups.end(), is_of_nodes)) return;
+    const MeshParts parts(mesh_);
+    for (RawMesh::Group& group : raw_.groups)
+      if (is_of_nodes(group)) take_set(group, &parts);
+  }
+
+  void take_set(RawMesh::Group& group, const MeshParts* parts = nullptr) {
+    const std::vector<std::uint32_t>* number = group.kind == Kind::kNodes   ? &number_
+                                               : group.kind == Kind::kFaces ? &face_of_
+                                               : group.kind == Kind::kEdges ? &edge_of_
+                                                                            : nullptr;
+    auto& members = group.members;
+    if (number)
+      for (std::uint32_t& m : members) m = (*number)[m];
+    std::sort(members.begin(), members.end());
+    members.erase(std::lower_bound(members.begin(), members.end(), kNone), members.end());
+    members.erase(std::unique(members.begin(), members.end()), members.end());
+    if (parts == nullptr || !is_implied(group, *parts))
+      mesh_.sets.push_back({std::move(group.name), group.kind, std::move(members)});
+  }
+
+  /// Solvers want the nodes of patches as sets too: a set of nodes that a part of its name has anyhow says nothing new.
+  static bool is_implied(const RawMesh::Group& group, const MeshParts& parts) {
+    if (group.kind != Kind::kNodes) return false;
+    return std::any_of(parts.parts().begin(), parts.parts().end(), [&](const Part& part) {
+      return part.name == group.name && parts.nodes_of(part) == group.members;
+    });
+  }
+
+  RawMesh raw_;
+  const Input& input_;
+  TetMesh mesh_;
+  std::uint64_t turned_ = 0;
+  std::vector<VertexIndex> number_;               ///< of the points of the file
+  std::vector<std::uint32_t> face_of_, edge_of_;  ///< of the triangles and edges of the file
+};
+
+}  // namespace
+
+void RawMesh::add_tet(std::span<const VertexIndex> nodes, std::int64_t ref, const MidOrder& order) {
+  tets.push_back({nodes[0], nodes[1], nodes[2], nodes[3]});
+  tet_ref.push_back(ref);
+  const bool has_mids = nodes.size() >= 10;
+  if (!has_mids && mid_nodes.empty()) return;
+  std::array<VertexIndex, 6> mids;
+  mids.fill(kNone);
+  mid_nodes.resize(tets.size() - 1, mids);
+  for (std::size_t i = 0; has_mids && i < 6; ++i) mids[order[i]] = nodes[4 + i];
+  mid_nodes.push_back(mids);
+}
+
+void RawMesh::add_face(std::span<const VertexIndex> nodes, std::int64_t ref) {
+  const bool is_triangle = nodes.size() == 3 || nodes.size() == 6;
+  if (is_triangle) {
+    triangles.push_back({nodes[0], nodes[1], nodes[2]});
+  } else {
+    const double first = squared_length(points[nodes[2]] - points[nodes[0]]);
+    const double second = squared_length(points[nodes[3]] - points[nodes[1]]);
+    // Of equal ones that at the lowest node: whoever lists the face, and from wherever, divides it alike.
+    const bool at_lowest = std::min(nodes[0], nodes[2]) < std::min(nodes[1], nodes[3]);
+    const std::size_t k = first < second || (first == second && at_lowest) ? 0 : 1;
+    triangles.push_back({nodes[k], nodes[k + 1], nodes[k + 2]});
+    triangles.push_back({nodes[k], nodes[k + 2], nodes[(k + 3) % 4]});
+  }
+  triangle_ref.resize(triangles.size(), ref);
+}
+
+MeshFile ordered_mesh(RawMesh raw, const Input& input) {
+  return Ordering(std::move(raw), input).result();
+}
+
+namespace {
+
+/// Boundary and interfaces of a mesh, with the regions on both sides.
+SurfaceMesh walls_of(TetMesh mesh) {
+  SurfaceMesh surface;
+  surface.triangles = std::move(mesh.boundary);
+  surface.triangles.insert(surface.triangles.end(), mesh.interfaces.begin(), mesh.interfaces.end());
+  const std::size_t outside = surface.triangles.size() - mesh.interfaces.size();
+  if (!mesh.patch.empty() || !mesh.interface_patch.empty()) {
+    surface.patch = std::move(mesh.patch);
+    surface.patch.resize(outside, 0);
+    surface.patch.insert(surface.patch.end(), mesh.interface_patch.begin(), mesh.interface_patch.end());
+    surface.patch.resize(surface.triangles.size(), 0);
+  }
+  surface.sides.assign(surface.triangles.size(), {kNone, kNone});
+  const FaceTable table = face_table(mesh.points.size(), surface.triangles);
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+    for (int i = 0; i < 4; ++i)
+      for (const FaceTable::Entry& entry : table.group_of(face_of(mesh.tets[t], i))) {
+        const auto& [a, b, c] = surface.triangles[entry.face];
+        const auto& p = mesh.points;
+        const int side = orient3d(p[a], p[b], p[c], p[mesh.tets[t][static_cast<std::size_t>(i)]]) > 0 ? 0 : 1;
+        surface.sides[entry.face][static_cast<std::size_t>(side)] = mesh.region.empty() ? 0 : mesh.region[t];
+      }
+  surface.points = std::move(mesh.points);
+  surface.patch_names = std::move(mesh.patch_names);
+  surface.region_names = std::move(mesh.region_names);
+  const bool is_plain = std::all_of(surface.sides.begin(), surface.sides.end(), [](const Sides& s) {
+    return s == Sides{kNone, 0};
+  });
+  if (is_plain) surface.sides.clear();
+  return surface;
+}
+
+}  // namespace
+
+SurfaceFile surface_of(RawMesh raw, const Input& input) {
+  if (!raw.tets.empty()) {
+    MeshFile file = ordered_mesh(std::move(raw), input);
+    file.notes.push_back(fmt::format("boundary and interfaces of {} tetrahedra taken", file.mesh.tets.size()));
+    return {walls_of(std::move(file.mesh)), file.format, std::move(file.notes)};
+  }
+  if (raw.triangles.empty())
+    input.fail(fmt::format("holds no triangles ({} elements of other kinds): there is no surface to mesh",
+                           raw.other_elements));
+  SurfaceFile file;
+  Numbered patches = raw.triangle_ref.empty() ? by_groups(raw.groups, Kind::kFaces, raw.triangles.size())
+                                              : by_reference(raw.triangle_ref, raw.surface_names);
+  for (std::uint32_t& n : patches.numbers)
+    if (n == kNone) n = patches.next;
+  forget_zeros(patches.numbers);
+  file.surface.points = std::move(raw.points);
+  file.surface.triangles = std::move(raw.triangles);
+  file.surface.patch = std::move(patches.numbers);
+  file.surface.patch_names = std::move(patches.names);
+  forget_default_names(file.surface.patch_names, Part::Origin::kPatch, false);
+  file.format = std::move(raw.format);
+  file.notes = std::move(raw.notes);
+  if (raw.other_elements > 0)
+    file.notes.push_back(fmt::format("{} elements of other kinds were left out", raw.other_elements));
+  return file;
+}
+
+}  // namespace octafront::io

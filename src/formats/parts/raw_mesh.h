@@ -1,0 +1,71 @@
+#pragma once
+
+#include <octafront/io.h>
+
+#include "formats/containers/input.h"
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace octafront::io {
+
+/// Where mid-side nodes stand behind the corners: place i of a file's list is the edge kMids[i] of kTetEdges (12 13 14
+/// 23 24 34).
+using MidOrder = std::array<std::uint8_t, 6>;
+/// 12 23 13 14 24 34, of nearly all formats.
+inline constexpr MidOrder kVtkMids{0, 3, 1, 2, 4, 5};
+/// 12 23 13 14 34 24.
+inline constexpr MidOrder kGmshMids{0, 3, 1, 2, 5, 4};
+/// 12 13 14 23 24 34: MEDIT, Netgen.
+inline constexpr MidOrder kPlainMids{0, 1, 2, 3, 4, 5};
+
+/// A mesh as a file has it: before orientation, boundary and numbering are put in order. All indices are known to be in
+/// range.
+struct RawMesh {
+  /// What a format calls by a name alone. Members: points, edges, triangles or tets of this struct.
+  struct Group {
+    std::string name;
+    NamedSet::Kind kind;
+    std::vector<std::uint32_t> members = {};
+  };
+
+  std::string format;  ///< for messages, e.g. "Gmsh MSH 4.1"
+  std::vector<Vec3> points;
+  std::vector<Tet> tets;
+  std::vector<std::array<VertexIndex, 6>> mid_nodes;  ///< one per tet, in the order of kTetEdges; empty: linear
+  std::vector<std::int64_t> tet_ref;                  ///< one per tet; empty: regions come from groups
+  std::vector<Triangle> triangles;
+  std::vector<std::int64_t> triangle_ref;      ///< one per triangle; empty: patches come from groups
+  std::vector<std::uint32_t> triangle_source;  ///< one per triangle, or empty
+  std::vector<Edge> edges;
+  std::vector<std::int64_t> edge_ref;                                            ///< as of triangles
+  std::map<std::int64_t, std::string> region_names, surface_names, curve_names;  ///< by reference
+  std::vector<Group> groups;
+  std::uint64_t other_elements = 0;  ///< of kinds that a TetMesh does not hold
+  std::vector<std::string> notes;
+
+  /// Adds a tetrahedron whose nodes are corners, then mid-side nodes in that order, if it has them. A file must not mix
+  /// both kinds; ordered_mesh() refuses it.
+  void add_tet(std::span<const VertexIndex> nodes, std::int64_t ref, const MidOrder& order = kVtkMids);
+  /// Adds a triangle, of three nodes or six, or the two of a quadrilateral, of four, eight or nine, along its shorter
+  /// diagonal. The points must be known.
+  void add_face(std::span<const VertexIndex> nodes, std::int64_t ref);
+};
+
+/// Turns inverted tetrahedra, drops unused vertices and triangles that bound nothing, adds boundary faces that are
+/// missing (in a patch of their own), turns triangles outward, and numbers regions and patches: reference r becomes
+/// r - 1 where all references are small and positive, else they are counted through in increasing order. Triangles
+/// between two tetrahedra become interfaces; edges of no tetrahedron go. Groups become what MeshFile says. Throws
+/// InputError if there are no tetrahedra, or if their mid-side nodes contradict each other.
+MeshFile ordered_mesh(RawMesh raw, const Input& input);
+
+/// The triangles as a surface, references or groups as patches; of a mesh with tetrahedra its boundary and interfaces,
+/// with the regions on both sides. Throws InputError if there are no triangles.
+SurfaceFile surface_of(RawMesh raw, const Input& input);
+
+}  // namespace octafront::io

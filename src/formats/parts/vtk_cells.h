@@ -1,0 +1,59 @@
+#pragma once
+
+#include "formats/parts/mesh_parts.h"
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace octafront::io {
+
+/// A mesh as the cells of VTK: tetrahedra, then faces, then edges of curves; and the data on them. Of cells:
+///   region  body of a tetrahedron; a face has that of its tetrahedron
+///   label   of the image, of a region's elements and of their faces (only where regions are labels)
+///   patch   of a face; -1 for others
+///   curve   of an edge; -1 for others (only where there are curves)
+///   source  input face that a face of the boundary still is; -1 for others (only where there is one)
+///   "nodes NAME", "edges NAME", "faces NAME", "elements NAME"   1 for the members of a set, 0 for others
+/// Names of regions, patches and curves are field data: an array "patch NAME" that holds the number of the patch.
+class VtkCells {
+ public:
+  explicit VtkCells(const MeshParts& mesh);
+
+  std::uint64_t size() const { return ends_[2]; }
+  /// Nodes of all cells together.
+  std::uint64_t nodes() const { return end_of(size() - 1); }
+  std::uint8_t type(std::uint64_t cell) const { return types_[kind(cell)]; }
+  /// Where the nodes of a cell end in the list of all.
+  std::uint64_t end_of(std::uint64_t cell) const;
+  std::uint64_t nodes_of(std::uint64_t cell) const { return each_[kind(cell)]; }
+  /// One of all nodes.
+  VertexIndex node(std::uint64_t at) const;
+  /// The tetrahedron that speaks for a cell; kNone for edges.
+  TetIndex tet_of(std::uint64_t cell) const;
+
+  struct Data {
+    std::string name;
+    bool of_points;
+    bool is_set;  ///< 0 or 1
+  };
+  /// All arrays but beta.
+  const std::vector<Data>& data() const { return data_; }
+  std::int32_t value(std::size_t data, std::uint64_t at) const;
+  /// "patch NAME" and its number, for all names.
+  std::vector<std::pair<std::string, std::uint32_t>> names() const;
+
+ private:
+  std::size_t kind(std::uint64_t cell) const { return cell < ends_[0] ? 0 : cell < ends_[1] ? 1 : 2; }
+  std::int32_t number(std::string_view name, std::uint64_t cell) const;
+
+  const MeshParts& mesh_;
+  std::array<std::uint64_t, 3> ends_;  ///< of the cells of a kind
+  std::array<std::uint64_t, 3> each_;  ///< nodes of one
+  std::array<std::uint8_t, 3> types_;
+  std::vector<Data> data_;
+  std::vector<std::vector<bool>> sets_;  ///< of the last data, by point or cell
+};
+
+}  // namespace octafront::io

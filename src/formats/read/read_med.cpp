@@ -1,0 +1,165 @@
+// MED 3 and 4: nodes, tetrahedra, triangles and edges of the first mesh at its first step; groups by their families.
+// See write_med.cpp for the order of nodes.
+
+#include "formats/containers/hdf5_file.h"
+#include "formats/parts/raw_mesh.h"
+#include "formats/read/readers.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include <fmt/core.h>
+
+namespace octafront::io {
+namespace {
+
+using Kind = NamedSet::Kind;
+
+struct MedCell {
+  std::string_view name;
+  Kind kind;
+  std::size_t nodes;
+  std::array<std::uint8_t, 10> order;  ///< places of our nodes in MED's list
+};
+constexpr std::array kMedCells{MedCell{"TE4", Kind::kElements, 4, {0, 2, 1, 3}},
+                               MedCell{"T10", Kind::kElements, 10, {0, 2, 1, 3, 6, 5, 4, 7, 9, 8}},
+                               MedCell{"TR3", Kind::kFaces, 3, {0, 1, 2}},
+                               MedCell{"TR6", Kind::kFaces, 6, {0, 1, 2, 3, 4, 5}},
+                               MedCell{"SE2", Kind::kEdges, 2, {0, 1}},
+                               MedCell{"SE3", Kind::kEdges, 3, {0, 1, 2}}};
+
+class Med {
+ public:
+  explicit Med(const Input& input) : file_(input.name, input.name, input.context) { raw_.format = "MED"; }
+
+  RawMesh read() {
+    const auto meshes = file_.members("/ENS_MAA");
+    if (meshes.empty()) file_.fail("is an HDF5 file, but no MED mesh (it has no /ENS_MAA)");
+    if (meshes.size() > 1) raw_.notes.push_back(fmt::format("of {} meshes the first was read", meshes.size()));
+    mesh_ = "/ENS_MAA/" + meshes[0];
+    const auto steps = file_.members(mesh_);
+    if (steps.empty()) file_.fail("has a mesh without any step; the file is damaged");
+    step_ = mesh_ + "/" + steps[0];
+    families_ = "/FAS/" + meshes[0];
+    read_nodes();
+    read_families();
+    for (const std::string& type : file_.members(step_ + "/MAI")) read_cells(type);
+    make_groups();
+    return std::move(raw_);
+  }
+
+ private:
+  using Groups = std::map<std::pair<std::string, Kind>, std::vector<std::uint32_t>>;
+
+  void read_nodes() {
+    const std::vector<double> xyz = file_.reals(step_ + "/NOE/COO");
+    const std::size_t n = xyz.size() / 3;
+    if (xyz.size() % 3 != 0 || n >= kNone) file_.fail("has coordinates that are not of dimension 3");
+    for (std::size_t v = 0; v < n; ++v) {
+      const Vec3 p{xyz[v], xyz[n + v], xyz[2 * n + v]};
+      if (!is_finite(p)) file_.fail(fmt::format("node {} is ({}, {}, {}), which is no place", v + 1, p.x, p.y, p.z));
+      raw_.points.push_back(p);
+    }
+  }
+
+  /// The groups of each family; those of nodes are positive, those of elements negative.
+  void read_families() {
+    constexpr std::size_t kLength = 80;
+    for (const char* kind : {"/NOEUD", "/ELEME"})
+      for (const std::string& family : file_.members(families_ + kind)) {
+        const std::string path = families_ + kind + "/" + family;
+        if (!file_.has(path + "/GRO/NOM")) continue;
+        const std::string names = file_.bytes(path + "/GRO/NOM");
+        std::vector<std::string>& groups = groups_of_family_[file_.integer_attribute(path, "NUM")];
+        for (std::size_t at = 0; at + kLength <= names.size(); at += kLength) {
+          std::string name = names.substr(at, kLength);
+          name.resize(std::min(name.size(), name.find('\0')));
+          while (!name.empty() && name.back() == ' ') name.pop_back();
+          groups.push_back(std::move(name));
+        }
+      }
+    // From -1 downward, as they were numbered: alphabetical order puts -10 before -2.
+    for (auto family = groups_of_family_.rbegin(); family != groups_of_family_.rend(); ++family)
+      for (const std::string& name : family->second)
+        if (std::find(order_.begin(), order_.end(), name) == order_.end()) order_.push_back(name);
+    if (!file_.has(step_ + "/NOE/FAM")) return;
+    const std::vector<std::int64_t> of = file_.integers(step_ + "/NOE/FAM");
+    for (std::uint32_t v = 0; v < std::min(of.size(), raw_.points.size()); ++v) add_to_groups(of[v], Kind::kNodes, v);
+  }
+
+  void add_to_groups(std::int64_t family, Kind kind, std::uint32_t member) {
+    const auto found = groups_of_family_.find(family);
+    if (found == groups_of_family_.end()) return;
+    for (const std::string& name : found->second) members_[{name, kind}].push_back(member);
+  }
+
+  void read_cells(const std::string& name) {
+    const std::string path = step_ + "/MAI/" + name;
+    const auto type =
+        std::find_if(kMedCells.begin(), kMedCells.end(), [&](const MedCell& t) { return t.name == name; });
+    if (!file_.has(path + "/NOD")) return;
+    const std::vector<std::int64_t> nodes = file_.integers(path + "/NOD");
+    if (type == kMedCells.end()) {
+      // Of polyhedra and the like the number of nodes is not known: what counts is that they are told.
+      if (name != "PO1")
+        raw_.other_elements +=
+            nodes.empty() ? 0 : static_cast<std::uint64_t>(file_.integer_attribute(path + "/NOD", "NBR"));
+      return;
+    }
+    const std::size_t count = nodes.size() / type->nodes;
+    if (nodes.size() % type->nodes != 0) file_.fail(fmt::format("{} is no multiple of {}", path, type->nodes));
+    std::vector<std::int64_t> family;
+    if (file_.has(path + "/FAM")) family = file_.integers(path + "/FAM");
+    std::array<VertexIndex, 10> all;
+    for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t k = 0; k < type->nodes; ++k) {
+        const std::int64_t v = nodes[k * count + i];
+        if (v < 1 || static_cast<std::uint64_t>(v) > raw_.points.size())
+          file_.fail(fmt::format("an element has the node {} of {}; the file is damaged: export it again", v,
+                                 raw_.points.size()));
+        all[type->order[k]] = static_cast<VertexIndex>(v - 1);
+      }
+      const std::uint32_t member = add(type->kind, std::span(all).first(type->nodes));
+      if (i < family.size()) add_to_groups(family[i], type->kind, member);
+    }
+  }
+
+  std::uint32_t add(Kind kind, std::span<const VertexIndex> nodes) {
+    if (kind == Kind::kElements) {
+      raw_.add_tet(nodes, 0);
+      return static_cast<std::uint32_t>(raw_.tets.size() - 1);
+    }
+    if (kind == Kind::kFaces) {
+      raw_.triangles.push_back({nodes[0], nodes[1], nodes[2]});
+      return static_cast<std::uint32_t>(raw_.triangles.size() - 1);
+    }
+    raw_.edges.push_back({nodes[0], nodes[1]});
+    return static_cast<std::uint32_t>(raw_.edges.size() - 1);
+  }
+
+  /// Groups are in the order in which families name them.
+  void make_groups() {
+    raw_.tet_ref.clear();
+    for (const std::string& name : order_)
+      for (const Kind kind : {Kind::kElements, Kind::kFaces, Kind::kEdges, Kind::kNodes})
+        if (const auto found = members_.find({name, kind}); found != members_.end())
+          raw_.groups.push_back({name, kind, std::move(found->second)});
+  }
+
+  Hdf5Reader file_;
+  RawMesh raw_;
+  std::string mesh_, step_, families_;
+  std::map<std::int64_t, std::vector<std::string>> groups_of_family_;
+  std::vector<std::string> order_;  ///< names of groups as they are first named
+  Groups members_;
+};
+
+}  // namespace
+
+RawMesh read_med(const Input& input) {
+  return Med(input).read();
+}
+
+}  // namespace octafront::io

@@ -1,0 +1,416 @@
+// Gmsh MSH 4.1 and 2.2, text and binary. Points, edges, triangles and tetrahedra are kept, linear or quadratic, and
+// quadrilaterals as two triangles; their references are the first physical group of their entity, or the entity's own
+// tag where it has none; further groups are sets, groups of points sets of nodes. All in the order of their tags.
+
+#include "base/mesh/renumber.h"
+#include "formats/parts/msh_stream.h"
+#include "formats/parts/raw_mesh.h"
+#include "formats/read/readers.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <numeric>
+#include <span>
+#include <string>
+#include <utility>
+
+#include <fmt/core.h>
+
+namespace octafront::io {
+namespace {
+
+/// Nodes of an element of Gmsh's type, 0 if the type is unknown.
+std::uint64_t nodes_of_type(std::int64_t type) {
+  constexpr std::array<std::uint8_t, 32> kNodes{0, 2,  3,  4,  4, 8,  6,  5,  3,  6,  9, 10, 27, 18, 14, 1,
+                                                8, 20, 15, 13, 9, 10, 12, 15, 15, 21, 4, 5,  6,  20, 35, 56};
+  if (type >= 0 && type < static_cast<std::int64_t>(kNodes.size())) return kNodes[static_cast<std::size_t>(type)];
+  if (type == 92) return 64;
+  if (type == 93) return 125;
+  return 0;
+}
+
+/// What a TetMesh has of them: 0 for points to 3 for tetrahedra, linear or quadratic; -1 for others. Quadrilaterals
+/// become triangles.
+int kept_dimension(std::int64_t type) {
+  switch (type) {
+    case 15:
+      return 0;
+    case 1:
+    case 8:
+      return 1;
+    case 2:
+    case 3:
+    case 9:
+    case 10:
+    case 16:
+      return 2;
+    case 4:
+    case 11:
+      return 3;
+    default:
+      return -1;
+  }
+}
+
+/// From the tags of nodes, which may have gaps and any order, to indices.
+class NodeTags {
+ public:
+  void add(std::uint64_t tag) {
+    if (!tags_.empty() && tag != tags_.back() + 1) consecutive_ = false;
+    tags_.push_back(tag);
+  }
+  /// Returns a tag that occurs twice, if there is one.
+  std::pair<bool, std::uint64_t> finish() {
+    if (consecutive_) return {false, 0};
+    for (std::uint32_t i = 0; i < tags_.size(); ++i) sorted_.emplace_back(tags_[i], i);
+    std::sort(sorted_.begin(), sorted_.end());
+    const auto twice = std::adjacent_find(sorted_.begin(), sorted_.end(),
+                                          [](const auto& a, const auto& b) { return a.first == b.first; });
+    return twice == sorted_.end() ? std::pair{false, std::uint64_t{0}} : std::pair{true, twice->first};
+  }
+  /// kNone if there is no such node.
+  VertexIndex index_of(std::uint64_t tag) const {
+    if (tags_.empty()) return kNone;
+    if (consecutive_)
+      return tag >= tags_[0] && tag - tags_[0] < tags_.size() ? static_cast<VertexIndex>(tag - tags_[0]) : kNone;
+    const auto at = std::lower_bound(sorted_.begin(), sorted_.end(), std::pair{tag, std::uint32_t{0}});
+    return at != sorted_.end() && at->first == tag ? at->second : kNone;
+  }
+  bool empty() const { return tags_.empty(); }
+  const std::vector<std::uint64_t>& tags() const { return tags_; }
+
+ private:
+  std::vector<std::uint64_t> tags_;
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> sorted_;
+  bool consecutive_ = true;
+};
+
+class Msh {
+ public:
+  explicit Msh(const Input& input) : input_(input), in_(input) {}
+
+  RawMesh read() {
+    for (std::string_view name = in_.next_section(); !name.empty(); name = in_.next_section()) {
+      if (name == "MeshFormat") {
+        read_format();
+      } else if (name == "PhysicalNames") {
+        read_names();
+      } else if (name == "Entities" && version_ == 4) {
+        read_entities();
+      } else if (name == "Nodes") {
+        require_format();
+        version_ == 4 ? read_nodes_4() : read_nodes_2();
+        if (const auto [twice, tag] = tags_.finish(); twice)
+          in_.fail(fmt::format("two nodes have the tag {}; the file is damaged: export it again", tag));
+      } else if (name == "Elements") {
+        require_format();
+        has_elements_ = true;
+        version_ == 4 ? read_elements_4() : read_elements_2();
+      } else {
+        in_.skip_section(name);
+        continue;
+      }
+      in_.end_section(name);
+    }
+    if (!has_elements_)
+      input_.fail("has no section $Elements; it is truncated or holds no mesh: copy or export it again");
+    finish_groups();
+    sort_by_tags();
+    raw_.format = version_ == 4 ? "Gmsh MSH 4.1" : "Gmsh MSH 2.2";
+    return std::move(raw_);
+  }
+
+ private:
+  void require_format() const {
+    if (version_ == 0) in_.fail("the section $MeshFormat must come first; the file is damaged: export it again");
+  }
+
+  void read_format() {
+    const double version = in_.text().number("the version of the format");
+    const std::int64_t type = in_.text().integer("the type of the file (0 or 1)");
+    const std::int64_t size = in_.text().integer("the size of a number");
+    if (version != 4.1 && !(version >= 2 && version < 3))
+      in_.fail(fmt::format(
+          "version {} of Gmsh's format is not read here; save it as 4.1 (gmsh FILE -save -format msh41)", version));
+    if (size != 8) in_.fail(fmt::format("numbers of {} bytes are not read here; save it on a 64-bit machine", size));
+    version_ = version == 4.1 ? 4 : 2;
+    if (type == 0) return;
+    in_.text().skip_line();
+    in_.text().set_position(in_.position() + std::min<std::size_t>(1, in_.text().bytes_left()));
+    in_.set_binary();
+    if (in_.int32("the mark of the byte order") != 1)
+      in_.fail("big-endian files are not read here; save it on a little-endian machine or as text");
+  }
+
+  void read_names() {
+    Scanner& text = in_.text();
+    const std::int64_t count = text.integer("the number of names");
+    for (std::int64_t i = 0; i < count; ++i) {
+      const std::int64_t dimension = text.integer("the dimension of a physical group");
+      const std::int64_t tag = text.integer("the tag of a physical group");
+      std::string_view name = text.rest_of_line();
+      if (name.size() < 2 || name.front() != '"' || name.back() != '"') text.fail_expected("a name in quotes");
+      name = name.substr(1, name.size() - 2);
+      if (dimension >= 0 && dimension < 4) names_[{static_cast<int>(dimension), tag}] = name;
+    }
+  }
+
+  void read_entities() {
+    std::array<std::uint64_t, 4> counts;
+    for (std::uint64_t& n : counts) n = in_.size("a number of entities");
+    for (int dimension = 0; dimension < 4; ++dimension) {
+      const std::uint64_t reals = dimension == 0 ? 3 : 6;
+      in_.check_count(counts[static_cast<std::size_t>(dimension)], reals, dimension == 0 ? 1 : 2, 1, "entities");
+      for (std::uint64_t i = 0; i < counts[static_cast<std::size_t>(dimension)]; ++i) {
+        const std::int64_t tag = in_.int32("the tag of an entity");
+        in_.skip_real(reals);
+        const std::uint64_t groups = in_.size("the number of physical groups");
+        if (groups > 0) {
+          in_.check_count(groups, 0, 0, 1, "physical groups");
+          std::vector<std::int64_t>& of_entity = physical_[{dimension, tag}];
+          // The sign tells the orientation of the entity in its group.
+          for (std::uint64_t g = 0; g < groups; ++g) of_entity.push_back(std::abs(in_.int32("a physical group")));
+        }
+        if (dimension > 0) in_.skip_int32(in_.size("the number of bounding entities"));
+      }
+    }
+  }
+
+  void add_node(std::uint64_t tag) {
+    if (raw_.points.size() >= kNone - 1) in_.fail(fmt::format("holds more than {} nodes", kNone - 1));
+    tags_.add(tag);
+  }
+
+  Vec3 point() {
+    const double x = in_.real("a coordinate"), y = in_.real("a coordinate"), z = in_.real("a coordinate");
+    return {x, y, z};
+  }
+
+  void read_nodes_4() {
+    const std::uint64_t blocks = in_.size("the number of blocks of nodes");
+    in_.skip_size(3);
+    for (std::uint64_t b = 0; b < blocks; ++b) {
+      const std::int64_t dimension = in_.int32("the dimension of an entity");
+      in_.skip_int32(1);
+      const bool parametric = in_.int32("whether nodes have parameters") != 0;
+      const std::uint64_t count = in_.size("the number of nodes");
+      if (dimension < 0 || dimension > 3)
+        in_.fail(fmt::format("an entity of dimension {}; the file is damaged", dimension));
+      const std::uint64_t parameters = parametric ? static_cast<std::uint64_t>(dimension) : 0;
+      in_.check_count(count, 3 + parameters, 1, 0, "nodes");
+      for (std::uint64_t i = 0; i < count; ++i) add_node(in_.size("the tag of a node"));
+      for (std::uint64_t i = 0; i < count; ++i) {
+        raw_.points.push_back(point());
+        in_.skip_real(parameters);
+      }
+    }
+  }
+
+  void read_nodes_2() {
+    const std::uint64_t count = static_cast<std::uint64_t>(in_.text().integer("the number of nodes"));
+    skip_line_end();
+    in_.check_count(count, 3, 0, 1, "nodes");
+    for (std::uint64_t i = 0; i < count; ++i) {
+      add_node(static_cast<std::uint64_t>(in_.int32("the tag of a node")));
+      raw_.points.push_back(point());
+    }
+  }
+
+  /// Counts stand in a line of text also in binary files of version 2.
+  void skip_line_end() {
+    if (!in_.is_binary()) return;
+    in_.text().skip_line();
+    in_.text().set_position(in_.position() + std::min<std::size_t>(1, in_.text().bytes_left()));
+  }
+
+  VertexIndex node(std::uint64_t tag) const {
+    const VertexIndex v = tags_.index_of(tag);
+    if (v == kNone)
+      in_.fail(tags_.empty() ? "the elements come before the nodes, which is not read here; export it again"
+                             : fmt::format("an element has the node {}, which the file lacks; the file is damaged: "
+                                           "export it again",
+                                           tag));
+    return v;
+  }
+
+  /// An element of a kept type; `groups` beyond the first one are sets, and all of those of points.
+  template <class Tag>
+  void add_element(std::int64_t type, std::uint64_t tag, std::int64_t ref, std::span<const std::int64_t> groups,
+                   const Tag& next_tag) {
+    std::array<VertexIndex, 10> nodes;
+    const std::size_t count = nodes_of_type(type);
+    for (std::size_t i = 0; i < count; ++i) nodes[i] = node(next_tag());
+    const int dimension = kept_dimension(type);
+    const auto d = static_cast<std::size_t>(dimension);
+    std::uint32_t index = nodes[0], parts = 1;
+    if (dimension == 3) {
+      index = static_cast<std::uint32_t>(raw_.tets.size());
+      raw_.add_tet(std::span(nodes).first(count), ref, kGmshMids);
+    } else if (dimension == 2) {
+      index = static_cast<std::uint32_t>(raw_.triangles.size());
+      raw_.add_face(std::span(nodes).first(count), ref);
+      parts = static_cast<std::uint32_t>(raw_.triangles.size()) - index;
+    } else if (dimension == 1) {
+      index = static_cast<std::uint32_t>(raw_.edges.size());
+      raw_.edges.push_back({nodes[0], nodes[1]});
+      raw_.edge_ref.push_back(ref);
+    }
+    if (dimension > 0) element_tags_[d].insert(element_tags_[d].end(), parts, tag);
+    for (const std::int64_t group : groups.subspan(std::min<std::size_t>(dimension > 0, groups.size())))
+      for (std::uint32_t k = 0; k < parts; ++k) members_[{dimension, group}].push_back(index + k);
+  }
+
+  std::string name_of(int dimension, std::int64_t group) const {
+    const auto name = names_.find({dimension, group});
+    return name != names_.end() ? name->second : fmt::format("physical_{}", group);
+  }
+
+  void finish_groups() {
+    for (const auto& [key, name] : names_) {
+      if (key.first == 1) raw_.curve_names[key.second] = name;
+      if (key.first == 2) raw_.surface_names[key.second] = name;
+      if (key.first == 3) raw_.region_names[key.second] = name;
+    }
+    for (auto& [key, members] : members_)
+      raw_.groups.push_back(
+          {name_of(key.first, key.second), kKindOfDimension[static_cast<std::size_t>(key.first)], std::move(members)});
+  }
+
+  /// From places to places in the order of the tags; empty if they are in order.
+  static std::vector<std::uint32_t> places_by_tag(const std::vector<std::uint64_t>& tags) {
+    if (std::is_sorted(tags.begin(), tags.end())) return {};
+    std::vector<std::uint32_t> order(tags.size()), place(tags.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return tags[a] < tags[b]; });
+    for (std::uint32_t i = 0; i < order.size(); ++i) place[order[i]] = i;
+    return place;
+  }
+  template <class T>
+  static void permute(std::vector<T>& items, const std::vector<std::uint32_t>& place) {
+    if (items.empty() || place.empty()) return;
+    std::vector<T> ordered(items.size());
+    for (std::size_t i = 0; i < items.size(); ++i) ordered[place[i]] = items[i];
+    items = std::move(ordered);
+  }
+
+  /// Files list by entity; tags tell the order in which things were made.
+  void sort_by_tags() {
+    std::array<std::vector<std::uint32_t>, 4> place{places_by_tag(tags_.tags())};
+    for (std::size_t d = 1; d < 4; ++d) place[d] = places_by_tag(element_tags_[d]);
+    permute(raw_.points, place[0]);
+    if (!place[0].empty()) {
+      renumber(raw_.tets, place[0]);
+      renumber(raw_.triangles, place[0]);
+      renumber(raw_.edges, place[0]);
+      for (auto& mids : raw_.mid_nodes)
+        for (VertexIndex& v : mids)
+          if (v != kNone) v = place[0][v];
+    }
+    permute(raw_.edges, place[1]);
+    permute(raw_.edge_ref, place[1]);
+    permute(raw_.triangles, place[2]);
+    permute(raw_.triangle_ref, place[2]);
+    permute(raw_.tets, place[3]);
+    permute(raw_.mid_nodes, place[3]);
+    permute(raw_.tet_ref, place[3]);
+    for (RawMesh::Group& group : raw_.groups) {
+      const auto& to = place[static_cast<std::size_t>(dimension_of(group.kind))];
+      if (!to.empty())
+        for (std::uint32_t& m : group.members) m = to[m];
+    }
+  }
+  static int dimension_of(NamedSet::Kind kind) {
+    return static_cast<int>(std::find(kKindOfDimension.begin(), kKindOfDimension.end(), kind) -
+                            kKindOfDimension.begin());
+  }
+
+  std::uint64_t known_nodes_of_type(std::int64_t type) {
+    const std::uint64_t nodes = nodes_of_type(type);
+    if (nodes == 0) in_.fail(fmt::format("elements of type {} are not known here; export linear tetrahedra", type));
+    return nodes;
+  }
+
+  void read_elements_4() {
+    const std::uint64_t blocks = in_.size("the number of blocks of elements");
+    in_.skip_size(3);
+    for (std::uint64_t b = 0; b < blocks; ++b) {
+      const std::int64_t dimension = in_.int32("the dimension of an entity");
+      const std::int64_t entity = in_.int32("the tag of an entity");
+      const std::int64_t type = in_.int32("the type of elements");
+      const std::uint64_t nodes = known_nodes_of_type(type);
+      const std::uint64_t count = in_.size("the number of elements");
+      in_.check_count(count, 0, nodes + 1, 0, "elements");
+      const auto physical = physical_.find({static_cast<int>(dimension), entity});
+      const std::span<const std::int64_t> groups =
+          physical == physical_.end() ? std::span<const std::int64_t>() : physical->second;
+      const std::int64_t ref = groups.empty() ? entity : groups[0];
+      if (kept_dimension(type) < 0) {
+        raw_.other_elements += count;
+        in_.skip_size(count * (nodes + 1));
+        continue;
+      }
+      for (std::uint64_t i = 0; i < count; ++i) {
+        const std::uint64_t tag = in_.size("the tag of an element");
+        add_element(type, tag, ref, groups, [this] { return in_.size("a node of an element"); });
+      }
+    }
+  }
+
+  /// One element of version 2 behind its type: tags, the first two of which are the physical group and the entity.
+  void read_element_2(std::int64_t type, std::uint64_t number, std::int64_t tag_count) {
+    std::array<std::int64_t, 2> tags{};
+    for (std::int64_t k = 0; k < tag_count; ++k) {
+      const std::int64_t tag = in_.int32("a tag of an element");
+      if (k < 2) tags[static_cast<std::size_t>(k)] = tag;
+    }
+    if (kept_dimension(type) < 0) {
+      ++raw_.other_elements;
+      in_.skip_int32(known_nodes_of_type(type));
+      return;
+    }
+    const std::span<const std::int64_t> groups(tags.data(), tags[0] != 0);
+    add_element(type, number, tags[0] != 0 ? tags[0] : tags[1], groups,
+                [this] { return static_cast<std::uint64_t>(in_.int32("a node of an element")); });
+  }
+
+  void read_elements_2() {
+    const std::int64_t count = in_.text().integer("the number of elements");
+    skip_line_end();
+    in_.check_count(static_cast<std::uint64_t>(count), 0, 0, 2, "elements");
+    for (std::int64_t i = 0; i < count;) {
+      std::uint64_t number = in_.is_binary() ? 0 : static_cast<std::uint64_t>(in_.int32("the number of an element"));
+      const std::int64_t type = in_.int32("the type of an element");
+      const std::int64_t together = in_.is_binary() ? in_.int32("the number of elements") : 1;
+      const std::int64_t tag_count = in_.int32("the number of tags of an element");
+      if (together < 1 || together > count - i || tag_count < 0 || tag_count > 1000)
+        in_.fail(
+            fmt::format("{} elements with {} tags each; the file is damaged: export it again", together, tag_count));
+      for (std::int64_t k = 0; k < together; ++k) {
+        if (in_.is_binary()) number = static_cast<std::uint64_t>(in_.int32("the number of an element"));
+        read_element_2(type, number, tag_count);
+      }
+      i += together;
+    }
+  }
+
+  const Input& input_;
+  MshStream in_;
+  int version_ = 0;
+  bool has_elements_ = false;
+  NodeTags tags_;
+  // By dimension and tag.
+  std::map<std::pair<int, std::int64_t>, std::vector<std::int64_t>> physical_;  ///< of entities
+  std::map<std::pair<int, std::int64_t>, std::string> names_;
+  std::map<std::pair<int, std::int64_t>, std::vector<std::uint32_t>> members_;  ///< of groups that are sets
+  std::array<std::vector<std::uint64_t>, 4> element_tags_;
+  RawMesh raw_;
+};
+
+}  // namespace
+
+RawMesh read_msh(const Input& input) {
+  return Msh(input).read();
+}
+
+}  // namespace octafront::io

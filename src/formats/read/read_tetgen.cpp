@@ -1,0 +1,133 @@
+// TetGen: NAME.node, NAME.ele, and, where they are there, NAME.face and NAME.edge. Numbers count from 0 or 1, as the
+// first node says. Markers and the first attribute of tetrahedra are references.
+
+#include "formats/read/read_tetgen.h"
+
+#include "formats/containers/scanner.h"
+#include "formats/parts/raw_mesh.h"
+#include "formats/parts/surface_builder.h"
+#include "formats/read/readers.h"
+
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+
+#include <fmt/core.h>
+
+namespace octafront::io {
+namespace {
+
+/// Mid-side nodes behind the corners: 34 14 12 23 24 13.
+constexpr MidOrder kTetgenMids{5, 2, 0, 3, 4, 1};
+
+class Tetgen {
+ public:
+  explicit Tetgen(const TetgenFiles& files) : files_(files) { raw_.format = "TetGen"; }
+
+  RawMesh read() {
+    read_nodes();
+    read_tets();
+    if (files_.face)
+      read_rows(*files_.face, "triangles", [&](Scanner& scan, bool has_marker) {
+        raw_.triangles.push_back({vertex(scan), vertex(scan), vertex(scan)});
+        raw_.triangle_ref.push_back(has_marker ? scan.integer("a marker") : 1);
+      });
+    if (files_.edge)
+      read_rows(*files_.edge, "edges", [&](Scanner& scan, bool has_marker) {
+        raw_.edges.push_back({vertex(scan), vertex(scan)});
+        raw_.edge_ref.push_back(has_marker ? scan.integer("a marker") : 1);
+      });
+    return std::move(raw_);
+  }
+
+ private:
+  std::int64_t count(const Input& input, Scanner& scan, std::string_view what, std::uint64_t least_bytes) const {
+    scan.at_end();
+    const char* const at = scan.position();
+    const std::int64_t n = scan.integer(fmt::format("the number of {}", what));
+    if (n < 0) scan.fail(fmt::format("{} {}; the file is damaged", n, what));
+    check_claim(input, at, {static_cast<std::uint64_t>(n), least_bytes, what}, scan.bytes_left());
+    return n;
+  }
+
+  void read_nodes() {
+    Scanner scan(files_.node, '#');
+    const std::int64_t n = count(files_.node, scan, "nodes", 8);
+    if (scan.integer("the dimension") != 3) scan.fail("the nodes are not of dimension 3");
+    scan.skip_line();
+    for (std::int64_t i = 0; i < n; ++i) {
+      const std::int64_t id = scan.integer("the number of a node");
+      if (i == 0) first_ = id;
+      if ((first_ != 0 && first_ != 1) || id != first_ + i)
+        scan.fail(
+            fmt::format("expected node {}, found {}; nodes count from 0 or 1, one after the other", first_ + i, id));
+      const double x = scan.number("a coordinate"), y = scan.number("a coordinate"), z = scan.number("a coordinate");
+      raw_.points.push_back({x, y, z});
+      scan.skip_line();
+    }
+  }
+
+  VertexIndex vertex(Scanner& scan) const {
+    const std::int64_t v = scan.integer("a node");
+    if (v < first_ || static_cast<std::uint64_t>(v - first_) >= raw_.points.size())
+      scan.fail(fmt::format("there is no node {}; the file is damaged", v));
+    return static_cast<VertexIndex>(v - first_);
+  }
+
+  void read_tets() {
+    Scanner scan(files_.ele, '#');
+    const std::int64_t n = count(files_.ele, scan, "tetrahedra", 10), nodes = scan.integer("the nodes of each"),
+                       attributes = scan.integer("the number of attributes");
+    if (nodes != 4 && nodes != 10) scan.fail(fmt::format("tetrahedra of {} nodes; expected 4 or 10", nodes));
+    std::array<VertexIndex, 10> all;
+    for (std::int64_t i = 0; i < n; ++i) {
+      scan.integer("the number of a tetrahedron");
+      for (std::size_t k = 0; k < static_cast<std::size_t>(nodes); ++k) all[k] = vertex(scan);
+      // Attributes are reals that mostly are whole.
+      const double region = attributes > 0 ? scan.number("an attribute") : 1;
+      const bool is_whole = std::abs(region) < 1e15 && region == std::floor(region);
+      raw_.add_tet(std::span(all).first(static_cast<std::size_t>(nodes)),
+                   is_whole ? static_cast<std::int64_t>(region) : 1, kTetgenMids);
+      scan.skip_line();
+    }
+  }
+
+  template <class Row>
+  void read_rows(const Input& input, std::string_view what, const Row& row) {
+    Scanner scan(input, '#');
+    const std::int64_t n = count(input, scan, what, 6);
+    const bool has_marker = scan.integer("whether there are markers") > 0;
+    scan.skip_line();
+    for (std::int64_t i = 0; i < n; ++i) {
+      scan.integer("a number");
+      row(scan, has_marker);
+      scan.skip_line();
+    }
+  }
+
+  const TetgenFiles& files_;
+  std::int64_t first_ = 1;
+  RawMesh raw_;
+};
+
+}  // namespace
+
+RawMesh read_tetgen(const TetgenFiles& files) {
+  return Tetgen(files).read();
+}
+
+RawMesh read_tetgen(const Input& input) {
+  namespace fs = std::filesystem;
+  const auto beside = [&](const char* ending) { return fs::path(input.name).replace_extension(ending); };
+  const auto load = [&](const char* ending) { return LoadedFile(beside(ending), input.context); };
+  const LoadedFile node = load(".node"), ele = load(".ele");
+  std::error_code error;
+  std::optional<LoadedFile> face, edge;
+  if (fs::exists(beside(".face"), error)) face.emplace(beside(".face"), input.context);
+  if (fs::exists(beside(".edge"), error)) edge.emplace(beside(".edge"), input.context);
+  return read_tetgen(
+      TetgenFiles{node.input(), ele.input(), face ? &face->input() : nullptr, edge ? &edge->input() : nullptr});
+}
+
+}  // namespace octafront::io

@@ -1,0 +1,111 @@
+#include "formats/read/vtk_reading.h"
+
+#include <array>
+
+#include <fmt/core.h>
+
+namespace octafront::io {
+namespace {
+
+using Kind = NamedSet::Kind;
+
+struct SetPrefix {
+  std::string_view prefix;
+  Kind kind;
+};
+constexpr std::array kSetPrefixes{SetPrefix{"nodes ", Kind::kNodes}, SetPrefix{"edges ", Kind::kEdges},
+                                  SetPrefix{"faces ", Kind::kFaces}, SetPrefix{"elements ", Kind::kElements}};
+
+RawMesh::Group group_named(std::string_view array) {
+  for (const auto& [prefix, kind] : kSetPrefixes)
+    if (array.starts_with(prefix)) return {std::string(array.substr(prefix.size())), kind};
+  return {};
+}
+
+std::int64_t at_or(const std::vector<std::int64_t>& values, std::uint64_t i, std::int64_t otherwise) {
+  return values.empty() ? otherwise : values[i];
+}
+
+}  // namespace
+
+bool is_set_name(std::string_view array) {
+  return !group_named(array).name.empty();
+}
+
+VtkCellTaker::VtkCellTaker(const Input& input, RawMesh& raw, const VtkCellData& data)
+    : input_(input), raw_(raw), data_(data) {
+  for (const auto& [name, values] : data.sets) groups_.push_back(group_named(name));
+}
+
+VertexIndex VtkCellTaker::node(std::uint64_t cell, std::int64_t index) const {
+  if (index < 0 || static_cast<std::uint64_t>(index) >= raw_.points.size())
+    input_.fail(
+        fmt::format("cell {} has the corner {}, but the file has only {} points; the file is damaged: export it again",
+                    cell, index, raw_.points.size()));
+  return static_cast<VertexIndex>(index);
+}
+
+void VtkCellTaker::take(std::uint64_t cell, std::int64_t type, std::span<const std::int64_t> nodes) {
+  enum : std::int64_t { kLine = 3, kTriangle = 5, kTetra = 10, kLine3 = 21, kTriangle6 = 22, kTetra10 = 24 };
+  const std::size_t count = nodes.size();
+  std::array<VertexIndex, 10> all;
+  const auto take_nodes = [&] {
+    for (std::size_t k = 0; k < count; ++k) all[k] = node(cell, nodes[k]);
+  };
+  Kind kind;
+  std::size_t member = 0;
+  if ((type == kTetra && count == 4) || (type == kTetra10 && count == 10)) {
+    take_nodes();
+    kind = Kind::kElements;
+    member = raw_.tets.size();
+    raw_.add_tet(std::span(all).first(count), at_or(data_.region, cell, 1));
+  } else if ((type == kTriangle && count == 3) || (type == kTriangle6 && count == 6)) {
+    take_nodes();
+    kind = Kind::kFaces;
+    member = raw_.triangles.size();
+    raw_.triangles.push_back({all[0], all[1], all[2]});
+    raw_.triangle_ref.push_back(at_or(data_.patch, cell, 1));
+    if (!data_.source.empty()) {
+      const std::int64_t face = data_.source[cell];
+      raw_.triangle_source.push_back(face >= 0 && face < std::int64_t{kNone} ? static_cast<std::uint32_t>(face)
+                                                                             : kNone);
+    }
+  } else if (((type == kLine && count == 2) || (type == kLine3 && count == 3)) && !data_.curve.empty() &&
+             data_.curve[cell] > 0) {
+    // Lines that nobody calls a curve may be anything, such as the bars of a frame.
+    take_nodes();
+    kind = Kind::kEdges;
+    member = raw_.edges.size();
+    raw_.edges.push_back({all[0], all[1]});
+    raw_.edge_ref.push_back(data_.curve[cell]);
+  } else {
+    ++raw_.other_elements;
+    return;
+  }
+  for (std::size_t s = 0; s < groups_.size(); ++s)
+    if (groups_[s].kind == kind && data_.sets[s].second[cell] != 0)
+      groups_[s].members.push_back(static_cast<std::uint32_t>(member));
+}
+
+void VtkCellTaker::finish() {
+  for (RawMesh::Group& group : groups_) raw_.groups.push_back(std::move(group));
+}
+
+void add_node_set(RawMesh& raw, std::string_view array, std::span<const std::int64_t> is_member) {
+  RawMesh::Group group = group_named(array);
+  if (group.kind != Kind::kNodes) return;
+  for (std::uint32_t v = 0; v < is_member.size(); ++v)
+    if (is_member[v] != 0) group.members.push_back(v);
+  raw.groups.push_back(std::move(group));
+}
+
+void add_vtk_name(RawMesh& raw, std::string_view array, std::int64_t number) {
+  if (number < 0 || number >= std::int64_t{kNone}) return;
+  const std::array kinds{std::pair{std::string_view("region "), &raw.region_names},
+                         std::pair{std::string_view("patch "), &raw.surface_names},
+                         std::pair{std::string_view("curve "), &raw.curve_names}};
+  for (const auto& [prefix, names] : kinds)
+    if (array.starts_with(prefix)) (*names)[number + 1] = array.substr(prefix.size());
+}
+
+}  // namespace octafront::io

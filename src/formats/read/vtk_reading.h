@@ -1,0 +1,46 @@
+#pragma once
+
+#include "formats/containers/input.h"
+#include "formats/parts/raw_mesh.h"
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace octafront::io {
+
+/// Data of the cells of a VTK file; each empty or one per cell. Numbers are references: counted from 1.
+struct VtkCellData {
+  std::vector<std::int64_t> region, patch, curve, source;
+  std::vector<std::pair<std::string, std::vector<std::int64_t>>> sets;  ///< not 0: a member
+};
+
+/// Whether an array is a set as vtk_cells.h has them: "nodes NAME", "faces NAME".
+bool is_set_name(std::string_view array);
+
+/// Takes the cells of a VTK file one by one: tetrahedra, triangles and lines, linear or quadratic.
+class VtkCellTaker {
+ public:
+  VtkCellTaker(const Input& input, RawMesh& raw, const VtkCellData& data);
+  /// Throws InputError for nodes out of range.
+  void take(std::uint64_t cell, std::int64_t type, std::span<const std::int64_t> nodes);
+  /// Hands over the sets.
+  void finish();
+
+ private:
+  VertexIndex node(std::uint64_t cell, std::int64_t index) const;
+
+  const Input& input_;
+  RawMesh& raw_;
+  const VtkCellData& data_;
+  std::vector<RawMesh::Group> groups_;
+};
+
+void add_node_set(RawMesh& raw, std::string_view array, std::span<const std::int64_t> is_member);
+/// A field "patch NAME" with the number of the patch, and the like.
+void add_vtk_name(RawMesh& raw, std::string_view array, std::int64_t number);
+
+}  // namespace octafront::io

@@ -1,0 +1,186 @@
+#include "formats/table/formats.h"
+
+#include "formats/containers/scanner.h"
+#include "formats/write/writers.h"
+
+#include <array>
+
+namespace octafront::io {
+namespace {
+
+constexpr bool kYes = true, kNo = false;
+
+#ifdef OCTAFRONT_WITH_HDF5
+constexpr auto kWriteMed = write_med, kWriteXdmf = write_xdmf, kWriteCgns = write_cgns;
+#else
+constexpr void (*kWriteMed)(MeshOutput&, const MeshParts&) = nullptr;
+constexpr auto kWriteXdmf = kWriteMed, kWriteCgns = kWriteMed;
+#endif
+
+/// A format of surfaces; of a mesh it takes the boundary.
+constexpr Format surface(std::string_view name, std::string_view title, std::string_view endings,
+                         std::string_view carries, void (*write)(AtomicFile&, const SurfaceMesh&)) {
+  return {{name, title, endings, kYes, kYes, kNo, kYes, {}, carries, true}, write};
+}
+
+constexpr Format mesh(std::string_view name, std::string_view title, std::string_view endings, bool reads,
+                      FormatHolds holds, std::string_view carries, void (*write)(MeshOutput&, const MeshParts&)) {
+  return {{name, title, endings, kNo, kNo, reads, write != nullptr, holds, carries, true}, nullptr, write};
+}
+
+constexpr FormatHolds kAll{.regions = Keeps::kNames,
+                           .patches = Keeps::kNames,
+                           .curves = Keeps::kNames,
+                           .interfaces = true,
+                           .node_sets = true,
+                           .edge_sets = true,
+                           .face_sets = true,
+                           .element_sets = true,
+                           .second_order = true};
+
+/// Names and sets of most solvers: all but edges, which become sets of their nodes.
+constexpr FormatHolds kSolver = [] {
+  FormatHolds holds = kAll;
+  holds.curves = Keeps::kNodeSets;
+  holds.edge_sets = false;
+  return holds;
+}();
+
+constexpr FormatHolds kNumbersOnly{.regions = Keeps::kNumbers,
+                                   .patches = Keeps::kNumbers,
+                                   .curves = Keeps::kNumbers,
+                                   .interfaces = true,
+                                   .second_order = true};
+
+constexpr FormatHolds binary(FormatHolds holds) {
+  holds.binary = true;
+  return holds;
+}
+constexpr FormatHolds without_edges(FormatHolds holds) {
+  holds.curves = Keeps::kNodeSets;
+  holds.edge_sets = false;
+  return holds;
+}
+constexpr FormatHolds without_sets(FormatHolds holds) {
+  holds.node_sets = holds.edge_sets = holds.face_sets = holds.element_sets = false;
+  return holds;
+}
+constexpr FormatHolds kAnsys = [] {
+  FormatHolds holds = kSolver;
+  holds.patches = Keeps::kNodeSets;
+  holds.face_sets = false;
+  return holds;
+}();
+constexpr Format of_several_files(Format format) {
+  format.info.one_file = false;
+  return format;
+}
+constexpr FormatHolds kSu2{.patches = Keeps::kNames};
+constexpr FormatHolds kOpenFoam{.regions = Keeps::kNames, .patches = Keeps::kNames, .interfaces = true};
+
+constexpr std::array kFormats{
+    surface("stl", "STL", ".stl",
+            "read as text or binary, written binary: single precision, no shared vertices, no patches (read: named "
+            "solids)",
+            write_stl),
+    surface("obj", "OBJ", ".obj", "double precision, patches by name as groups", write_obj),
+    surface("off", "OFF", ".off", "double precision, no patches", write_off),
+    surface("ply", "PLY", ".ply",
+            "read as text or binary, written binary: double precision, patches, and regions on "
+            "both sides, with names",
+            write_ply),
+    Format{{"poly",
+            "TetGen PLC",
+            ".poly .smesh",
+            kYes,
+            kNo,
+            kNo,
+            kNo,
+            {},
+            "facets, with markers as patches, regions and holes; read only"},
+           nullptr},
+    mesh("vtu", "VTU", ".vtu", kYes, binary(kAll),
+         "VTK unstructured grid, compressed: numbers, names and sets as arrays; beta per element", write_vtu),
+    mesh("msh", "Gmsh MSH 4.1", ".msh", kYes, binary(kAll), "all as physical groups", write_msh),
+    mesh("msh22", "Gmsh MSH 2.2", "", kYes, binary(without_sets(kAll)), "regions, patches, curves as physical groups",
+         write_msh2),
+    mesh("abaqus", "Abaqus, CalculiX", ".inp", kYes, kSolver, "ELSET, NSET, SURFACE; numbers of at most 20 characters",
+         write_abaqus),
+    mesh("nastran", "Nastran", ".bdf .nas", kYes, kSolver,
+         "PSOLID, PSHELL, SET; numbers of at most 16 characters (9 to 15 digits)", write_nastran),
+    mesh("unv", "I-deas universal", ".unv", kYes, kAll, "groups (dataset 2477); 17 digits", write_unv),
+    mesh("med", "MED 4", ".med", kYes, binary(kAll), "families and groups; needs HDF5", kWriteMed),
+    of_several_files(
+        mesh("xdmf", "XDMF", ".xdmf", kYes, binary(kAll), "with values in files .h5 beside; needs HDF5", kWriteXdmf)),
+    mesh("exodus", "Exodus II", ".exo .e .ex2", kNo, binary(kSolver), "blocks, node, side and element sets",
+         write_exodus),
+    mesh("ansys", "Ansys archive", ".cdb", kNo, kAnsys, "components; 17 digits", write_ansys),
+    mesh("lsdyna", "LS-DYNA", ".k .key", kNo, kSolver,
+         "parts and sets; numbers of at most 16 characters (9 to 15 digits)", write_lsdyna),
+    mesh("febio", "FEBio 4", ".feb", kNo, kAll, "Elements, Surface, Edge, NodeSet, ElementSet", write_febio),
+    mesh("su2", "SU2", ".su2", kNo, kSu2, "markers", write_su2),
+    [] {
+      Format format = of_several_files(mesh("openfoam", "OpenFOAM polyMesh", "", kNo, kOpenFoam,
+                                            "a folder, named polyMesh: patches, cellZones, faceZones", write_openfoam));
+      format.is_folder = true;
+      return format;
+    }(),
+    mesh("cgns", "CGNS", ".cgns", kNo, binary(without_edges(without_sets(kAll))),
+         "sections and boundary conditions; needs HDF5", kWriteCgns),
+    mesh("vtk", "legacy VTK", ".vtk", kYes, binary(kAll), "as VTU, uncompressed", write_vtk),
+    mesh("medit", "MEDIT", ".mesh", kYes, kNumbersOnly, "text: references", write_medit),
+    mesh("meditb", "MEDIT binary", ".meshb", kYes, binary(kNumbersOnly), "references", write_medit_binary),
+    mesh("netgen", "Netgen", ".vol", kYes, without_sets(kAll), "materials, bcnames, cd2names", write_netgen),
+    of_several_files(mesh("tetgen", "TetGen", ".ele .node", kYes, kNumbersOnly,
+                          "NAME.node, .ele, .face, .edge with markers", write_tetgen)),
+};
+
+bool lists_ending(std::string_view endings, std::string_view ending) {
+  while (!endings.empty()) {
+    const std::size_t end = std::min(endings.find(' '), endings.size());
+    if (equal_ignoring_case(ending, endings.substr(0, end))) return true;
+    endings.remove_prefix(std::min(end + 1, endings.size()));
+  }
+  return false;
+}
+
+}  // namespace
+
+std::span<const Format> formats() {
+  return kFormats;
+}
+
+const Format* format_of(const std::filesystem::path& file) {
+  const std::string ending = file.extension().string();
+  for (const Format& format : kFormats)
+    if (!ending.empty() && lists_ending(format.info.endings, ending)) return &format;
+  return file.filename() == "polyMesh" ? format_named("openfoam") : nullptr;
+}
+
+const Format* format_named(std::string_view name) {
+  for (const Format& format : kFormats)
+    if (equal_ignoring_case(name, format.info.name)) return &format;
+  return nullptr;
+}
+
+std::string endings_that(bool FormatInfo::*can) {
+  std::string endings;
+  for (const Format& format : kFormats) {
+    if (!(format.info.*can) || format.info.endings.empty()) continue;
+    if (!endings.empty()) endings += ", ";
+    endings += format.info.endings.substr(0, format.info.endings.find(' '));
+  }
+  return endings;
+}
+
+}  // namespace octafront::io
+
+namespace octafront {
+
+std::vector<FormatInfo> known_formats() {
+  std::vector<FormatInfo> all;
+  for (const io::Format& format : io::formats()) all.push_back(format.info);
+  return all;
+}
+
+}  // namespace octafront

@@ -1,0 +1,99 @@
+// Ansys archive (.cdb): NBLOCK, EBLOCK, and a component (CMBLOCK) of elements per region and set of elements, of nodes
+// for every other part. Elements are SOLID187, or SOLID285 if linear; their material is the region, counted from 1.
+
+#include "formats/containers/text_writer.h"
+#include "formats/write/writers.h"
+
+#include <array>
+#include <span>
+#include <string>
+
+namespace octafront::io {
+namespace {
+
+using Kind = NamedSet::Kind;
+
+constexpr std::size_t kLongestName = 32;
+
+class AnsysWriter {
+ public:
+  AnsysWriter(MeshOutput& out, const MeshParts& mesh)
+      : text_(out.file()),
+        mesh_(mesh),
+        names_(legal_names(out, mesh, {.longest = kLongestName, .also = "_", .upper_case = true})) {}
+
+  void write() {
+    text_ << "/COM,Mesh by octafront: materials and what loads it are for you to add\n/PREP7\n";
+    for (std::size_t p = 0; p < names_.size(); ++p)
+      text_.line("/COM,NAME {} IS \"{}\"", names_[p], one_line(mesh_.parts()[p].name));
+    text_.line("ET,1,{}", mesh_.second_order() ? 187 : 285);
+    text_.line("NBLOCK,6,SOLID,{0:10},{0:10}\n(3i10,6e25.16e3)", mesh_.points());
+    for (std::size_t v = 0; v < mesh_.points(); ++v) {
+      const Vec3 p = mesh_.mesh().points[v];
+      text_.field(10, std::uint64_t{v} + 1) << "         0         0";
+      text_.line("{}{}{}", real(p.x), real(p.y), real(p.z));
+    }
+    text_.line("N,R5.3,LOC,       -1,\nEBLOCK,19,SOLID,{0:10},{0:10}\n(19i10)", mesh_.tets());
+    for (std::size_t t = 0; t < mesh_.tets(); ++t) write_element(t);
+    text_ << "        -1\n";
+    for (std::size_t p = 0; p < names_.size(); ++p) write_component(mesh_.parts()[p], names_[p]);
+    text_ << "FINISH\n";
+  }
+
+ private:
+  /// Three digits of exponent, as the format line says.
+  static std::string real(double value) {
+    const std::string text = fmt::format("{:.16E}", value);
+    const std::size_t digits = text.find('E') + 2;  // behind the sign of the exponent
+    return fmt::format("{:>25}", fmt::format("{}{:0>3}", text.substr(0, digits), text.substr(digits)));
+  }
+
+  void write_element(std::size_t t) {
+    const std::uint64_t region = mesh_.region_of(t) + 1, count = mesh_.nodes_per_tet();
+    // Material, type, real constants, section, coordinate system, death, solid model, shape, nodes, not used, number.
+    for (const std::uint64_t n :
+         {region, std::uint64_t{1}, std::uint64_t{1}, std::uint64_t{1}, std::uint64_t{0}, std::uint64_t{0},
+          std::uint64_t{0}, std::uint64_t{0}, count, std::uint64_t{0}, std::uint64_t{t} + 1})
+      text_.field(10, n);
+    constexpr std::size_t kInFirstLine = 8;
+    std::array<VertexIndex, 10> room;
+    const auto nodes = mesh_.tet_nodes(t, room);
+    for (std::size_t k = 0; k < nodes.size(); ++k) {
+      if (k == kInFirstLine) text_ << '\n';
+      text_.field(10, std::uint64_t{nodes[k]} + 1);
+    }
+    text_ << '\n';
+  }
+
+  void write_component(const Part& part, const std::string& name) {
+    const bool of_elements = part.kind == Kind::kElements;
+    const std::vector<VertexIndex> nodes = of_elements ? std::vector<VertexIndex>() : mesh_.nodes_of(part);
+    const std::span<const std::uint32_t> members = of_elements ? part.members : std::span<const std::uint32_t>(nodes);
+    // The end of a run of numbers is negative.
+    std::vector<std::int64_t> items;
+    for (std::size_t i = 0, j = 0; i < members.size(); i = j) {
+      while (j < members.size() && members[j] == members[i] + (j - i)) ++j;
+      items.push_back(std::int64_t{members[i]} + 1);
+      if (j - i > 1) items.push_back(-(std::int64_t{members[j - 1]} + 1));
+    }
+    if (items.empty()) return;
+    text_.line("CMBLOCK,{:<8},{},{:10}\n(8i10)", name, of_elements ? "ELEM" : "NODE", items.size());
+    constexpr std::size_t kInLine = 8;
+    for (std::size_t i = 0; i < items.size(); ++i) {
+      text_ << fmt::format("{:10}", items[i]);
+      if (i % kInLine == kInLine - 1 || i + 1 == items.size()) text_ << '\n';
+    }
+  }
+
+  TextWriter text_;
+  const MeshParts& mesh_;
+  std::vector<std::string> names_;
+};
+
+}  // namespace
+
+void write_ansys(MeshOutput& out, const MeshParts& mesh) {
+  AnsysWriter(out, mesh).write();
+}
+
+}  // namespace octafront::io

@@ -1,0 +1,195 @@
+// Exodus II in netCDF classic: a block of elements per region, side sets for patches, node sets for sets of nodes and
+// for the nodes of curves, element sets. Elements stand block by block; the map tells their numbers in the mesh.
+
+#include <octafront/error.h>
+
+#include "formats/containers/netcdf_writer.h"
+#include "formats/write/writers.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <map>
+#include <memory>
+#include <string>
+
+namespace octafront::io {
+namespace {
+
+using Kind = NamedSet::Kind;
+using Value = NetcdfWriter::Value;
+
+/// Sides 1 = 124, 2 = 234, 3 = 134, 4 = 123, by the corner that they lack.
+constexpr std::array<std::int32_t, 4> kSide{2, 3, 1, 4};
+
+class ExodusWriter {
+ public:
+  ExodusWriter(MeshOutput& out, const MeshParts& mesh) : file_(out.file()), mesh_(mesh) {
+    constexpr std::size_t kLongest = 255, kUsual = 32;
+    std::size_t longest = kUsual;
+    LegalNames unique({.longest = kLongest, .also = " _-.:#+*/()[]{}%$&!?=<>~^@|;'\"", .letter_first = false});
+    for (const Part& part : mesh.parts()) {
+      names_.push_back(unique.legal(part.name));
+      longest = std::max(longest, names_.back().size());
+    }
+    out.note(unique.note());
+    length_of_name_ = longest + 1;
+  }
+
+  void write() {
+    file_.attribute({"api_version", 8.03F});
+    file_.attribute({"version", 8.03F});
+    file_.attribute({"floating_point_word_size", std::int32_t{8}});
+    file_.attribute({"file_size", std::int32_t{1}});
+    file_.attribute({"maximum_name_length", static_cast<std::int32_t>(length_of_name_ - 1)});
+    file_.attribute({"title", std::string("mesh by octafront")});
+    file_.dimension("len_string", 33);
+    file_.dimension("len_line", 81);
+    name_ = file_.dimension("len_name", length_of_name_);
+    file_.dimension("four", 4);
+    time_ = file_.dimension("time_step", 0);
+    declare_nodes();
+    declare_blocks();
+    const auto parts_of = [this](auto wanted) {
+      std::vector<std::size_t> all;
+      for (std::size_t p = 0; p < names_.size(); ++p)
+        if (mesh_.parts()[p].origin != Part::Origin::kRegion && !mesh_.parts()[p].members.empty() &&
+            wanted(mesh_.parts()[p].kind))
+          all.push_back(p);
+      return all;
+    };
+    declare_node_sets(parts_of([](Kind k) { return k == Kind::kNodes || k == Kind::kEdges; }));
+    declare_side_sets(parts_of([](Kind k) { return k == Kind::kFaces; }));
+    declare_element_sets(parts_of([](Kind k) { return k == Kind::kElements; }));
+    file_.variable("time_whole", NetcdfWriter::kDouble, {time_}, [](std::uint64_t) { return Value(0.0); });
+    file_.write();
+  }
+
+ private:
+  using Type = NetcdfWriter::Type;
+
+  void declare_nodes() {
+    const std::uint32_t axes = file_.dimension("num_dim", 3), nodes = file_.dimension("num_nodes", mesh_.points());
+    for (int axis = 0; axis < 3; ++axis)
+      file_.variable(
+          std::string("coord") + "xyz" [axis], Type::kDouble, { nodes },
+          [this, axis](std::uint64_t v) { return Value(mesh_.mesh().points[v][axis]); });
+    declare_texts("coor_names", axes, {"x", "y", "z"});
+  }
+
+  void declare_texts(const std::string& name, std::uint32_t dimension, std::vector<std::string> texts) {
+    file_.variable(name, Type::kChar, {dimension, name_}, [this, texts = std::move(texts)](std::uint64_t i) {
+      const std::string& text = texts[i / length_of_name_];
+      const std::size_t at = i % length_of_name_;
+      return Value(std::int32_t{at < text.size() ? text[at] : '\0'});
+    });
+  }
+
+  /// Status, numbers and names of blocks or sets.
+  void declare_list(const std::string& prefix, std::uint32_t dimension, const std::vector<std::size_t>& parts,
+                    std::vector<std::int32_t> numbers) {
+    file_.variable(prefix + "_status", Type::kInt, {dimension}, [](std::uint64_t) { return Value(1); });
+    file_.variable(prefix + "_prop1", Type::kInt, {dimension},
+                   [numbers = std::move(numbers)](std::uint64_t i) { return Value(numbers[i]); },
+                   {{"name", std::string("ID")}});
+    std::vector<std::string> names;
+    for (const std::size_t p : parts) names.push_back(names_[p]);
+    declare_texts(prefix + "_names", dimension, std::move(names));
+  }
+
+  void declare_blocks() {
+    const auto regions = mesh_.parts(Part::Origin::kRegion);
+    const std::uint32_t elements = file_.dimension("num_elem", mesh_.tets()),
+                        blocks = file_.dimension("num_el_blk", regions.size());
+    std::vector<std::size_t> parts;
+    std::vector<std::int32_t> numbers;
+    for (std::size_t r = 0; r < regions.size(); ++r) {
+      parts.push_back(r);
+      numbers.push_back(static_cast<std::int32_t>(regions[r].tag));
+      order_.insert(order_.end(), regions[r].members.begin(), regions[r].members.end());
+    }
+    place_.resize(order_.size());
+    for (std::uint32_t i = 0; i < order_.size(); ++i) place_[order_[i]] = i;
+    declare_list("eb", blocks, parts, std::move(numbers));
+    for (std::size_t r = 0; r < regions.size(); ++r) {
+      const std::string n = std::to_string(r + 1);
+      const std::uint32_t count = file_.dimension("num_el_in_blk" + n, regions[r].members.size()),
+                          nodes = file_.dimension("num_nod_per_el" + n, mesh_.nodes_per_tet());
+      const auto members = regions[r].members;
+      file_.variable("connect" + n, Type::kInt, {count, nodes},
+                     [this, members](std::uint64_t i) {
+                       const std::uint64_t each = mesh_.nodes_per_tet();
+                       return Value(static_cast<std::int32_t>(mesh_.tet_node(members[i / each], i % each) + 1));
+                     },
+                     {{"elem_type", std::string(mesh_.second_order() ? "TETRA10" : "TETRA4")}});
+    }
+    file_.variable("elem_num_map", Type::kInt, {elements},
+                   [this](std::uint64_t i) { return Value(static_cast<std::int32_t>(order_[i] + 1)); });
+  }
+
+  static std::vector<std::int32_t> counted(std::size_t count) {
+    std::vector<std::int32_t> numbers;
+    for (std::size_t i = 0; i < count; ++i) numbers.push_back(static_cast<std::int32_t>(i) + 1);
+    return numbers;
+  }
+
+  void declare_node_sets(const std::vector<std::size_t>& parts) {
+    if (parts.empty()) return;
+    declare_list("ns", file_.dimension("num_node_sets", parts.size()), parts, counted(parts.size()));
+    for (std::size_t s = 0; s < parts.size(); ++s) {
+      const std::string n = std::to_string(s + 1);
+      auto nodes = mesh_.nodes_of(mesh_.parts()[parts[s]]);
+      const std::uint32_t count = file_.dimension("num_nod_ns" + n, nodes.size());
+      file_.variable("node_ns" + n, Type::kInt, {count}, [nodes = std::move(nodes)](std::uint64_t i) {
+        return Value(static_cast<std::int32_t>(nodes[i]) + 1);
+      });
+    }
+  }
+
+  void declare_side_sets(const std::vector<std::size_t>& parts) {
+    if (parts.empty()) return;
+    declare_list("ss", file_.dimension("num_side_sets", parts.size()), parts, counted(parts.size()));
+    for (std::size_t s = 0; s < parts.size(); ++s) {
+      const std::string n = std::to_string(s + 1);
+      const auto members = mesh_.parts()[parts[s]].members;
+      const std::uint32_t count = file_.dimension("num_side_ss" + n, members.size());
+      file_.variable("elem_ss" + n, Type::kInt, {count}, [this, members](std::uint64_t i) {
+        return Value(static_cast<std::int32_t>(place_[mesh_.sides()[members[i]].tet]) + 1);
+      });
+      file_.variable("side_ss" + n, Type::kInt, {count}, [this, members](std::uint64_t i) {
+        return Value(kSide[static_cast<std::size_t>(mesh_.sides()[members[i]].face)]);
+      });
+    }
+  }
+
+  void declare_element_sets(const std::vector<std::size_t>& parts) {
+    if (parts.empty()) return;
+    declare_list("els", file_.dimension("num_elem_sets", parts.size()), parts, counted(parts.size()));
+    for (std::size_t s = 0; s < parts.size(); ++s) {
+      const std::string n = std::to_string(s + 1);
+      const auto members = mesh_.parts()[parts[s]].members;
+      const std::uint32_t count = file_.dimension("num_ele_els" + n, members.size());
+      file_.variable("elem_els" + n, Type::kInt, {count}, [this, members](std::uint64_t i) {
+        return Value(static_cast<std::int32_t>(place_[members[i]]) + 1);
+      });
+    }
+  }
+
+  NetcdfWriter file_;
+  const MeshParts& mesh_;
+  std::vector<std::string> names_;  ///< of the parts
+  std::size_t length_of_name_;
+  std::uint32_t name_ = 0, time_ = 0;
+  std::vector<std::uint32_t> order_, place_;  ///< tetrahedra block by block, and where each one is there
+};
+
+}  // namespace
+
+void write_exodus(MeshOutput& out, const MeshParts& mesh) {
+  constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
+  if (mesh.points() > kMost || mesh.tets() > kMost)
+    throw OutputError(out.target().string() + ": Exodus counts with 32 bits, too few for this mesh; write .vtu");
+  ExodusWriter(out, mesh).write();
+}
+
+}  // namespace octafront::io

@@ -1,0 +1,362 @@
+// Gmsh MSH 4.1 and 2.2, binary. Regions, patches, curves and sets are physical groups of dimension 3, 2, 1 (of nodes:
+// 0); the first three have their number, counted from 1, as tag. Each combination of groups that elements are in is an
+// entity. A node belongs to the entity of the least dimension at it. Node and element tags are indices plus 1, elements
+// counting the points first, then edges, triangles, tetrahedra.
+
+#include <octafront/error.h>
+
+#include "base/core/parallel.h"
+#include "formats/containers/text_writer.h"
+#include "formats/parts/boundary.h"
+#include "formats/parts/msh_stream.h"
+#include "formats/write/writers.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cstring>
+#include <limits>
+#include <string>
+#include <utility>
+
+namespace octafront::io {
+namespace {
+
+using Kind = NamedSet::Kind;
+
+/// Gmsh's type of an element of that dimension.
+std::int32_t gmsh_type_of(int dimension, bool second_order) {
+  constexpr std::array<std::array<std::int32_t, 4>, 2> kTypes{{{15, 1, 2, 4}, {15, 8, 9, 11}}};
+  return kTypes[second_order][static_cast<std::size_t>(dimension)];
+}
+
+/// Names stand in quotes, which Gmsh does not escape.
+std::string unquoted(std::string_view name) {
+  std::string out = one_line(name);
+  std::replace(out.begin(), out.end(), '"', '_');
+  return out;
+}
+
+/// Nodes of an element, tags counting from 1, in Gmsh's order.
+class ElementNodes {
+ public:
+  explicit ElementNodes(const MeshParts& mesh) : mesh_(mesh) {}
+
+  template <class Tag, class Put>
+  void put(int dimension, std::uint32_t element, const Put& put_tag) {
+    const auto all = [&](std::span<const VertexIndex> nodes) {
+      for (const VertexIndex v : nodes) put_tag(static_cast<Tag>(v + Tag{1}));
+    };
+    if (dimension == 0) return put_tag(static_cast<Tag>(element + Tag{1}));
+    if (dimension == 1) return all(mesh_.edge_nodes(element, edge_));
+    if (dimension == 2) return all(mesh_.face_nodes(element, face_));
+    const auto nodes = mesh_.tet_nodes(element, tet_);
+    if (mesh_.second_order()) std::swap(tet_[8], tet_[9]);  // 34 before 24
+    all(nodes);
+  }
+
+ private:
+  const MeshParts& mesh_;
+  std::array<VertexIndex, 10> tet_;
+  std::array<VertexIndex, 6> face_;
+  std::array<VertexIndex, 3> edge_;
+};
+
+/// Tags of physical groups: regions, patches and curves keep their numbers, regions of an image their labels; sets
+/// follow.
+std::vector<std::int32_t> physical_tags(const MeshParts& mesh) {
+  std::vector<std::int32_t> tags;
+  std::array<std::int32_t, 4> last{};
+  for (const Part& part : mesh.parts()) {
+    std::int32_t& of_kind = last[static_cast<std::size_t>(part.kind)];
+    const std::int32_t tag = part.origin == Part::Origin::kSet ? of_kind + 1 : static_cast<std::int32_t>(part.tag);
+    of_kind = std::max(of_kind, tag);
+    tags.push_back(tag);
+  }
+  return tags;
+}
+
+int dimension_of(Kind kind) {
+  return static_cast<int>(std::find(kKindOfDimension.begin(), kKindOfDimension.end(), kind) - kKindOfDimension.begin());
+}
+
+void write_physical_names(TextWriter& out, const MeshParts& mesh, const std::vector<std::int32_t>& tags,
+                          bool with_sets) {
+  std::vector<std::size_t> named;
+  for (std::size_t p = 0; p < mesh.parts().size(); ++p) {
+    const Part& part = mesh.parts()[p];
+    if (part.is_named && (with_sets || part.origin != Part::Origin::kSet)) named.push_back(p);
+  }
+  out.line("$PhysicalNames\n{}", named.size());
+  for (const std::size_t p : named)
+    out.line("{} {} \"{}\"", dimension_of(mesh.parts()[p].kind), tags[p], unquoted(mesh.parts()[p].name));
+  out << "$EndPhysicalNames\n";
+}
+
+class Msh4Writer {
+ public:
+  Msh4Writer(AtomicFile& file, const MeshParts& mesh)
+      : file_(file), text_(file), mesh_(mesh), physical_(physical_tags(mesh)) {
+    for (std::size_t d = 0; d < 4; ++d) by_[d] = combinations(mesh, kKindOfDimension[d]);
+    make_entities();
+    assign_nodes();
+  }
+
+  void write() {
+    text_ << "$MeshFormat\n4.1 1 8\n";
+    put<std::int32_t>(1);
+    text_ << "\n$EndMeshFormat\n";
+    write_physical_names(text_, mesh_, physical_, true);
+    write_entities();
+    write_nodes();
+    write_elements();
+  }
+
+ private:
+  struct Entity {
+    int dimension;
+    std::uint32_t slot;  ///< its combination
+    std::int32_t tag;
+    Box3 box = {};
+  };
+
+  template <class T>
+  void put(T value) {
+    file_.write(&value, sizeof value);
+  }
+
+  const std::vector<std::uint32_t>& groups_of(const Entity& e) const {
+    return by_[static_cast<std::size_t>(e.dimension)].parts[e.slot];
+  }
+  std::span<const std::uint32_t> members_of(const Entity& e) const {
+    return by_[static_cast<std::size_t>(e.dimension)].members[e.slot];
+  }
+
+  /// An entity in one group has its tag, others follow behind all.
+  void make_entities() {
+    for (int d = 0; d < 4; ++d) {
+      const auto& parts = by_[static_cast<std::size_t>(d)].parts;
+      first_[static_cast<std::size_t>(d)] = entities_.size();
+      std::int32_t next = 1;
+      for (const auto& groups : parts)
+        if (groups.size() == 1) next = std::max(next, physical_[groups[0]] + 1);
+      for (std::uint32_t c = 0; c < parts.size(); ++c)
+        entities_.push_back({d, c, parts[c].size() == 1 ? physical_[parts[c][0]] : next++});
+    }
+    first_[4] = entities_.size();
+  }
+
+  void assign_nodes() {
+    std::vector<std::uint32_t> entity(mesh_.points(), kNone);
+    for (std::uint32_t e = 0; e < entities_.size(); ++e) entities_[e].box = take_nodes(e, entity).box;
+    nodes_ = group_by_owner(entities_.size(), static_cast<std::uint32_t>(entity.size()),
+                            [&](std::uint32_t v) { return entity[v]; });
+  }
+
+  struct BoxSum {
+    Box3 box;
+    void operator+=(const BoxSum& other) { box.add(other.box); }
+  };
+
+  /// Gives the nodes of an entity to it that no entity before it has. Returns where they all are.
+  BoxSum take_nodes(std::uint32_t e, std::vector<std::uint32_t>& entity) const {
+    const auto members = members_of(entities_[e]);
+    return parallel_sum(members.size(), [&](std::size_t begin, std::size_t end) {
+      BoxSum sum;
+      ElementNodes nodes_of(mesh_);
+      for (const std::uint32_t m : members.subspan(begin, end - begin))
+        nodes_of.put<std::uint64_t>(entities_[e].dimension, m, [&](std::uint64_t tag) {
+          const std::atomic_ref of_node(entity[tag - 1]);
+          if (of_node.load(std::memory_order_relaxed) == kNone) of_node.store(e, std::memory_order_relaxed);
+          sum.box.add(mesh_.mesh().points[tag - 1]);
+        });
+      return sum;
+    });
+  }
+
+  /// The tags of the entities of faces that bound each of tetrahedra.
+  std::vector<std::vector<std::int32_t>> bounding() const {
+    std::vector<std::vector<std::int32_t>> of(by_[3].parts.size());
+    if (mesh_.faces() == 0) return of;
+    for (std::size_t f = 0; f < mesh_.faces(); ++f) {
+      const TetIndex t = mesh_.sides()[f].tet;
+      if (t == kNone) continue;
+      const std::int32_t tag = entities_[first_[2] + by_[2].of[f]].tag;
+      auto& list = of[by_[3].of[t]];
+      if (list.empty() || list.back() != tag) list.push_back(tag);
+    }
+    for (auto& list : of) {
+      std::sort(list.begin(), list.end());
+      list.erase(std::unique(list.begin(), list.end()), list.end());
+    }
+    return of;
+  }
+
+  void write_entities() {
+    text_ << "$Entities\n";
+    for (std::size_t d = 0; d < 4; ++d) put(std::uint64_t{first_[d + 1] - first_[d]});
+    const auto surfaces = bounding();
+    for (const Entity& e : entities_) {
+      put(e.tag);
+      for (const Vec3& corner : {e.box.lo, e.box.hi}) {
+        for (int axis = 0; axis < 3; ++axis) put(corner[axis]);
+        if (e.dimension == 0) break;
+      }
+      put(std::uint64_t{groups_of(e).size()});
+      for (const std::uint32_t p : groups_of(e)) put(physical_[p]);
+      if (e.dimension == 0) continue;
+      const bool is_volume = e.dimension == 3;
+      put(std::uint64_t{is_volume ? surfaces[e.slot].size() : 0});
+      for (std::size_t i = 0; is_volume && i < surfaces[e.slot].size(); ++i) put(surfaces[e.slot][i]);
+    }
+    text_ << "\n$EndEntities\n";
+  }
+
+  void write_nodes() {
+    text_ << "$Nodes\n";
+    std::uint64_t blocks = 0;
+    for (std::size_t e = 0; e < entities_.size(); ++e) blocks += !nodes_[e].empty();
+    for (const std::uint64_t n :
+         {blocks, std::uint64_t{nodes_.items().size()}, std::uint64_t{1}, std::uint64_t{mesh_.points()}})
+      put(n);
+    for (std::size_t e = 0; e < entities_.size(); ++e) {
+      if (nodes_[e].empty()) continue;
+      put<std::int32_t>(entities_[e].dimension);
+      put(entities_[e].tag);
+      put<std::int32_t>(0);  // no parameters on the surface
+      put(std::uint64_t{nodes_[e].size()});
+      put_records(nodes_[e], [](VertexIndex v) { return std::array{std::uint64_t{v} + 1}; });
+      put_records(nodes_[e], [this](VertexIndex v) {
+        const Vec3 p = mesh_.mesh().points[v];
+        return std::array{p.x, p.y, p.z};
+      });
+    }
+    text_ << "\n$EndNodes\n";
+  }
+
+  void write_elements() {
+    // The points are those in sets of nodes.
+    std::array<std::uint64_t, 5> first{0, by_[0].members.items().size()};
+    const std::array<std::uint64_t, 4> counts{first[1], mesh_.edges(), mesh_.faces(), mesh_.tets()};
+    for (std::size_t d = 1; d < 4; ++d) first[d + 1] = first[d] + counts[d];
+    text_ << "$Elements\n";
+    for (const std::uint64_t n : {std::uint64_t{entities_.size()}, first[4], std::uint64_t{1}, first[4]}) put(n);
+    for (const Entity& e : entities_) {
+      put<std::int32_t>(e.dimension);
+      put(e.tag);
+      put(gmsh_type_of(e.dimension, mesh_.second_order()));
+      put(std::uint64_t{members_of(e).size()});
+      write_members(e, first[static_cast<std::size_t>(e.dimension)]);
+    }
+    text_ << "\n$EndElements\n";
+  }
+
+  /// The elements of an entity, `before` of which come before those of its dimension.
+  void write_members(const Entity& e, std::uint64_t before) {
+    const auto members = members_of(e);
+    const std::uint64_t points = by_[0].members.first(e.dimension == 0 ? e.slot : 0);
+    const std::size_t nodes = nodes_per_element(e.dimension);
+    file_.write_records(members.size(), (1 + nodes) * sizeof(std::uint64_t),
+                        [&](std::size_t begin, std::size_t end, char* to) {
+                          ElementNodes nodes_of(mesh_);
+                          const auto put_tag = [&](std::uint64_t tag) {
+                            std::memcpy(to, &tag, sizeof tag);
+                            to += sizeof tag;
+                          };
+                          for (std::size_t i = begin; i < end; ++i) {
+                            put_tag((e.dimension == 0 ? points + i : before + members[i]) + 1);
+                            nodes_of.put<std::uint64_t>(e.dimension, members[i], put_tag);
+                          }
+                        });
+  }
+
+  std::size_t nodes_per_element(int dimension) const {
+    return dimension == 0   ? 1
+           : dimension == 1 ? mesh_.nodes_per_edge()
+           : dimension == 2 ? mesh_.nodes_per_face()
+                            : mesh_.nodes_per_tet();
+  }
+
+  /// For each of these nodes what record(v) returns, an array.
+  template <class Record>
+  void put_records(std::span<const VertexIndex> nodes, const Record& record) {
+    constexpr std::size_t kSize = sizeof(record(VertexIndex{}));
+    file_.write_records(nodes.size(), kSize, [&](std::size_t begin, std::size_t end, char* to) {
+      for (std::size_t i = begin; i < end; ++i, to += kSize) {
+        const auto values = record(nodes[i]);
+        std::memcpy(to, values.data(), kSize);
+      }
+    });
+  }
+
+  AtomicFile& file_;
+  TextWriter text_;
+  const MeshParts& mesh_;
+  std::vector<std::int32_t> physical_;  ///< of each part
+  std::array<Combinations, 4> by_;      ///< by dimension
+  std::vector<Entity> entities_;        ///< by dimension
+  std::array<std::size_t, 5> first_{};
+  Groups<> nodes_;  ///< of each entity
+};
+
+/// Elements with two tags each: their physical group, and the same as their entity.
+class Msh2Writer {
+ public:
+  Msh2Writer(AtomicFile& file, const MeshParts& mesh) : file_(file), text_(file), mesh_(mesh), nodes_of_(mesh) {}
+
+  void write() {
+    text_ << "$MeshFormat\n2.2 1 8\n";
+    put(1);
+    text_ << "\n$EndMeshFormat\n";
+    write_physical_names(text_, mesh_, physical_tags(mesh_), false);
+    text_.line("$Nodes\n{}", mesh_.points());
+    for (std::size_t v = 0; v < mesh_.points(); ++v) {
+      put(static_cast<std::int32_t>(v) + 1);
+      const Vec3 p = mesh_.mesh().points[v];
+      const std::array<double, 3> xyz{p.x, p.y, p.z};
+      file_.write(xyz.data(), sizeof xyz);
+    }
+    const std::array<std::size_t, 4> counts{0, mesh_.edges(), mesh_.faces(), mesh_.tets()};
+    text_.line("\n$EndNodes\n$Elements\n{}", counts[1] + counts[2] + counts[3]);
+    for (int d = 1; d < 4; ++d) write_elements(d, counts[static_cast<std::size_t>(d)]);
+    text_ << "\n$EndElements\n";
+  }
+
+ private:
+  void put(std::int32_t value) { file_.write(&value, sizeof value); }
+
+  void write_elements(int dimension, std::size_t count) {
+    if (count == 0) return;
+    for (const std::int32_t n : {gmsh_type_of(dimension, mesh_.second_order()), static_cast<std::int32_t>(count), 2})
+      put(n);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      put(++tag_);
+      const std::uint32_t part_tag = dimension == 1   ? mesh_.curve_of(i) + 1
+                                     : dimension == 2 ? mesh_.patch_of(i) + 1
+                                                      : mesh_.tag_of_region(mesh_.region_of(i));
+      for (int k = 0; k < 2; ++k) put(static_cast<std::int32_t>(part_tag));
+      nodes_of_.put<std::int32_t>(dimension, i, [&](std::int32_t tag) { put(tag); });
+    }
+  }
+
+  AtomicFile& file_;
+  TextWriter text_;
+  const MeshParts& mesh_;
+  ElementNodes nodes_of_;
+  std::int32_t tag_ = 0;
+};
+
+}  // namespace
+
+void write_msh(MeshOutput& out, const MeshParts& mesh) {
+  Msh4Writer(out.file(), mesh).write();
+}
+
+void write_msh2(MeshOutput& out, const MeshParts& mesh) {
+  constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
+  if (mesh.points() > kMost || mesh.edges() + mesh.faces() + mesh.tets() > kMost)
+    throw OutputError(out.target().string() + ": MSH 2.2 counts with 32 bits, too few for this mesh; write MSH 4.1");
+  Msh2Writer(out.file(), mesh).write();
+}
+
+}  // namespace octafront::io

@@ -1,0 +1,120 @@
+// I-deas universal file: datasets 2411 (nodes), 2412 (elements), 2477 (groups). Every part is a group of elements or of
+// nodes; the physical property of an element is its region, patch or curve, counted from 1. Mid-side nodes stand
+// between the corners.
+
+#include "formats/containers/text_writer.h"
+#include "formats/write/writers.h"
+
+#include <array>
+#include <span>
+#include <string>
+
+namespace octafront::io {
+namespace {
+
+using Kind = NamedSet::Kind;
+
+constexpr std::string_view kDelimiter = "    -1\n";
+
+/// Places of VTK's nodes in a list of the format.
+constexpr std::array<std::uint8_t, 10> kTet10{0, 4, 1, 5, 2, 6, 7, 8, 9, 3};
+constexpr std::array<std::uint8_t, 6> kTriangle6{0, 3, 1, 4, 2, 5};
+constexpr std::array<std::uint8_t, 3> kBeam3{0, 2, 1};
+
+/// Others end a name at the first blank.
+constexpr NameRules kNames{
+    .longest = 40, .also = "_-.:+<>&\"'()[]{}/*=#%$!?@~^|,;", .letter_first = false, .ignores_case = false};
+
+class UnvWriter {
+ public:
+  UnvWriter(MeshOutput& out, const MeshParts& mesh)
+      : text_(out.file()), mesh_(mesh), names_(legal_names(out, mesh, kNames)) {}
+
+  void write() {
+    open(2411);
+    for (std::uint64_t v = 0; v < mesh_.points(); ++v) {
+      text_.field(10, v + 1).field(10, one).field(10, one).field(10, std::uint64_t{11}) << '\n';
+      const Vec3 p = mesh_.mesh().points[v];
+      // The letter D is what Fortran reads as a double.
+      text_.line("{}{}{}", real(p.x), real(p.y), real(p.z));
+    }
+    text_ << kDelimiter;
+    open(2412);
+    const bool second = mesh_.second_order();
+    for (std::size_t e = 0; e < mesh_.edges(); ++e) {
+      head(first_edge() + e, second ? 24 : 21, mesh_.curve_of(e), mesh_.nodes_per_edge());
+      text_ << "         0         1         1\n";
+      nodes(mesh_.edge_nodes(e, edge_), kBeam3);
+    }
+    for (std::size_t f = 0; f < mesh_.faces(); ++f) {
+      head(first_face() + f, second ? 92 : 91, mesh_.patch_of(f), mesh_.nodes_per_face());
+      nodes(mesh_.face_nodes(f, face_), kTriangle6);
+    }
+    for (std::size_t t = 0; t < mesh_.tets(); ++t) {
+      head(t + 1, second ? 118 : 111, mesh_.region_of(t), mesh_.nodes_per_tet());
+      nodes(mesh_.tet_nodes(t, tet_), kTet10);
+    }
+    text_ << kDelimiter;
+    open(2477);
+    std::uint64_t number = 0;
+    for (const Part& part : mesh_.parts()) write_group(part, ++number);
+    text_ << kDelimiter;
+  }
+
+ private:
+  static constexpr std::uint64_t one = 1;
+
+  std::uint64_t first_face() const { return mesh_.tets() + 1; }
+  std::uint64_t first_edge() const { return first_face() + mesh_.faces(); }
+
+  static std::string real(double value) {
+    std::string text = fmt::format("{:25.16E}", value);
+    text[text.find('E')] = 'D';
+    return text;
+  }
+
+  void open(int dataset) { text_.line("{}{:6}", kDelimiter, dataset); }
+
+  void head(std::uint64_t id, std::uint64_t type, std::uint64_t property, std::uint64_t count) {
+    constexpr std::uint64_t kColor = 7;
+    text_.field(10, id).field(10, type).field(10, property + 1).field(10, one).field(10, kColor).field(10, count);
+    text_ << '\n';
+  }
+
+  /// Linear elements list their corners; `places` is for those of second order.
+  void nodes(std::span<const VertexIndex> all, std::span<const std::uint8_t> places) {
+    constexpr std::size_t kInLine = 8;
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      if (k == kInLine) text_ << '\n';
+      text_.field(10, std::uint64_t{all[mesh_.second_order() ? places[k] : k]} + 1);
+    }
+    text_ << '\n';
+  }
+
+  void write_group(const Part& part, std::uint64_t number) {
+    const std::uint64_t type = part.kind == Kind::kNodes ? 7 : 8;
+    const std::uint64_t first = part.kind == Kind::kFaces ? first_face() : part.kind == Kind::kEdges ? first_edge() : 1;
+    text_.field(10, number) << "         0         0         0         0         0         0";
+    text_.field(10, std::uint64_t{part.members.size()}) << '\n';
+    text_ << names_[number - 1] << '\n';
+    for (std::size_t i = 0; i < part.members.size(); ++i) {
+      text_.field(10, type).field(10, first + part.members[i]) << "         0         0";
+      if (i % 2 == 1 || i + 1 == part.members.size()) text_ << '\n';
+    }
+  }
+
+  TextWriter text_;
+  const MeshParts& mesh_;
+  std::vector<std::string> names_;
+  std::array<VertexIndex, 10> tet_;
+  std::array<VertexIndex, 6> face_;
+  std::array<VertexIndex, 3> edge_;
+};
+
+}  // namespace
+
+void write_unv(MeshOutput& out, const MeshParts& mesh) {
+  UnvWriter(out, mesh).write();
+}
+
+}  // namespace octafront::io

@@ -1,0 +1,116 @@
+// VTK unstructured grid (XML): the cells and data of formats/parts/vtk_cells.h, and
+//   beta    quality of a tetrahedron; a face has that of its tetrahedron, so that face and tetrahedron, which a viewer
+//           draws at the same place, have one colour
+
+#include <octafront/quality.h>
+
+#include "formats/containers/text_writer.h"
+#include "formats/containers/vtk_xml.h"
+#include "formats/containers/vtu_arrays.h"
+#include "formats/parts/vtk_cells.h"
+#include "formats/write/writers.h"
+
+#include <limits>
+#include <string>
+
+namespace octafront::io {
+namespace {
+
+class VtuWriter {
+ public:
+  VtuWriter(AtomicFile& file, const MeshParts& parts)
+      : parts_(parts), mesh_(parts.mesh()), out_(file), arrays_(file), cells_(parts) {}
+
+  void write() {
+    out_ << "<?xml version=\"1.0\"?>\n"
+            "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\" "
+            "compressor=\"vtkZLibDataCompressor\">\n"
+            "  <UnstructuredGrid>\n";
+    out_ << "    <FieldData>\n";
+    for (const auto& [name, number] : cells_.names())
+      out_.line("      <DataArray type=\"Int32\" Name=\"{}\" NumberOfTuples=\"1\" format=\"ascii\">{}</DataArray>",
+                escaped(name), number);
+    out_ << "    </FieldData>\n";
+    out_ << "    <Piece NumberOfPoints=\"" << std::uint64_t{parts_.points()} << "\" NumberOfCells=\"" << cells_.size()
+         << "\">\n";
+    declare_points();
+    declare_cells();
+    declare_data();
+    out_ << "    </Piece>\n  </UnstructuredGrid>\n";
+    arrays_.write_data();
+    out_ << "</VTKFile>\n";
+  }
+
+ private:
+  void declare_points() {
+    out_ << "      <Points>\n";
+    arrays_.declare<double>("Float64", "Points", 3, 3 * std::uint64_t{parts_.points()},
+                            [this](std::uint64_t i) { return mesh_.points[i / 3][static_cast<int>(i % 3)]; });
+    out_ << "      </Points>\n";
+  }
+
+  template <class T>
+  void declare_indices(std::string_view type) {
+    arrays_.declare<T>(type, "connectivity", 1, cells_.nodes(),
+                       [this](std::uint64_t i) { return static_cast<T>(cells_.node(i)); });
+    arrays_.declare<T>(type, "offsets", 1, cells_.size(),
+                       [this](std::uint64_t i) { return static_cast<T>(cells_.end_of(i)); });
+  }
+
+  void declare_cells() {
+    constexpr std::uint64_t kMostInt32 = std::numeric_limits<std::int32_t>::max();
+    out_ << "      <Cells>\n";
+    if (cells_.nodes() <= kMostInt32 && parts_.points() <= kMostInt32) {
+      declare_indices<std::int32_t>("Int32");
+    } else {
+      declare_indices<std::int64_t>("Int64");
+    }
+    arrays_.declare<std::uint8_t>("UInt8", "types", 1, cells_.size(),
+                                  [this](std::uint64_t i) { return cells_.type(i); });
+    out_ << "      </Cells>\n";
+  }
+
+  void declare_arrays(bool of_points) {
+    for (std::size_t d = 0; d < cells_.data().size(); ++d) {
+      const VtkCells::Data& data = cells_.data()[d];
+      if (data.of_points != of_points) continue;
+      const std::uint64_t count = of_points ? parts_.points() : cells_.size();
+      if (data.is_set) {
+        arrays_.declare<std::uint8_t>("UInt8", escaped(data.name), 1, count, [this, d](std::uint64_t i) {
+          return static_cast<std::uint8_t>(cells_.value(d, i));
+        });
+      } else {
+        arrays_.declare<std::int32_t>("Int32", data.name, 1, count,
+                                      [this, d](std::uint64_t i) { return cells_.value(d, i); });
+      }
+    }
+  }
+
+  void declare_data() {
+    out_ << "      <PointData>\n";
+    declare_arrays(true);
+    out_ << "      </PointData>\n      <CellData Scalars=\"beta\">\n";
+    declare_arrays(false);
+    arrays_.declare<float>("Float32", "beta", 1, cells_.size(), [this](std::uint64_t i) {
+      const TetIndex t = cells_.tet_of(i);
+      if (t == kNone) return 0.0F;
+      const auto& [a, b, c, d] = mesh_.tets[t];
+      return static_cast<float>(radius_ratio(mesh_.points[a], mesh_.points[b], mesh_.points[c], mesh_.points[d]));
+    });
+    out_ << "      </CellData>\n";
+  }
+
+  const MeshParts& parts_;
+  const TetMesh& mesh_;
+  TextWriter out_;
+  VtuArrays arrays_;
+  VtkCells cells_;
+};
+
+}  // namespace
+
+void write_vtu(MeshOutput& out, const MeshParts& mesh) {
+  VtuWriter(out.file(), mesh).write();
+}
+
+}  // namespace octafront::io

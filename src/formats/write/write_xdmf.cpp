@@ -1,0 +1,164 @@
+// XDMF 3 as FEniCSx, ParaView and meshio read it: NAME.xdmf with one grid of tetrahedra, NAME_patches.xdmf and
+// NAME_curves.xdmf with those of faces and edges, each with its values in a file .h5 of the same stem, where FEniCSx
+// looks for them. Regions, patches and curves are attributes of
+// cells, counted from 1; sets are attributes that are 1 for members ("elements NAME", "nodes NAME" ...). Names stand
+// in the tags of these attributes: name_1="inlet".
+
+#include "formats/containers/hdf5_file.h"
+#include "formats/containers/text_writer.h"
+#include "formats/containers/vtk_xml.h"
+#include "formats/write/writers.h"
+
+#include <array>
+#include <optional>
+#include <string>
+
+#include <fmt/core.h>
+
+namespace octafront::io {
+namespace {
+
+using Kind = NamedSet::Kind;
+using Origin = Part::Origin;
+
+/// A kind of element and how XDMF calls it.
+struct WrittenGrid {
+  const char* name;
+  Kind kind;
+  Origin origin;
+  const char* number;  ///< the attribute with the number of the part
+  const char* prefix;  ///< of the attributes of sets
+  std::array<const char*, 2> topology;
+};
+constexpr WrittenGrid kMesh{"mesh",   Kind::kElements, Origin::kRegion,
+                            "region", "elements ",     {"Tetrahedron", "Tetrahedron_10"}},
+    kPatches{"patches", Kind::kFaces, Origin::kPatch, "patch", "faces ", {"Triangle", "Triangle_6"}},
+    kCurves{"curves", Kind::kEdges, Origin::kCurve, "curve", "edges ", {"Polyline", "Edge_3"}};
+
+class XdmfWriter {
+ public:
+  XdmfWriter(MeshOutput& out, const MeshParts& mesh) : out_(out), mesh_(mesh), stem_(out.target().stem().string()) {}
+
+  void write() {
+    write_file(kMesh, stem_, out_.file());
+    // Empty ones too: older files of these names would be taken for ours.
+    for (const WrittenGrid& grid : {kPatches, kCurves}) {
+      const std::string stem = stem_ + "_" + grid.name;
+      write_file(grid, stem, out_.beside(stem + ".xdmf"));
+    }
+  }
+
+ private:
+  std::uint64_t count(const WrittenGrid& grid) const {
+    return grid.kind == Kind::kElements ? mesh_.tets() : grid.kind == Kind::kFaces ? mesh_.faces() : mesh_.edges();
+  }
+  std::uint64_t nodes(const WrittenGrid& grid) const {
+    return grid.kind == Kind::kElements ? mesh_.nodes_per_tet()
+           : grid.kind == Kind::kFaces  ? mesh_.nodes_per_face()
+                                        : mesh_.nodes_per_edge();
+  }
+
+  void item(TextWriter& out, const std::string& shape, std::string_view type, std::size_t precision,
+            const std::string& file, const std::string& path) {
+    out.line("        <DataItem Dimensions=\"{}\" NumberType=\"{}\" Precision=\"{}\" Format=\"HDF\">{}:{}</DataItem>",
+             shape, type, precision, escaped(file), path);
+  }
+
+  void write_file(const WrittenGrid& grid, const std::string& stem, AtomicFile& file) {
+    h5_ = stem + ".h5";
+    values_.emplace(out_.path_for_library(h5_), out_.target().string(), out_.context());
+    values_->group("/Mesh");
+    write_grid(grid, file);
+    values_->close();
+  }
+
+  void write_grid(const WrittenGrid& grid, AtomicFile& file) {
+    TextWriter out(file);
+    const std::string group = std::string("/Mesh/") + grid.name;
+    values_->group(group);
+    const std::uint64_t n = count(grid), each = nodes(grid);
+    out << "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n";
+    out.line("    <Grid Name=\"{}\" GridType=\"Uniform\">", grid.name);
+    out.line("      <Topology TopologyType=\"{}\" NumberOfElements=\"{}\" NodesPerElement=\"{}\">",
+             grid.topology[mesh_.second_order()], n, each);
+    item(out, fmt::format("{} {}", n, each), "Int", 8, h5_, group + "/topology");
+    write_topology(grid, group + "/topology");
+    out << "      </Topology>\n      <Geometry GeometryType=\"XYZ\">\n";
+    item(out, fmt::format("{} 3", mesh_.points()), "Float", 8, stem_ + ".h5", "/Mesh/mesh/geometry");
+    if (grid.kind == Kind::kElements) write_points(group + "/geometry");
+    out << "      </Geometry>\n";
+    // Names are attributes of XML, which all readers pass over; <Information> stops some.
+    std::string names;
+    for (const Part& part : mesh_.parts(grid.origin))
+      if (part.is_named) names += fmt::format(" name_{}=\"{}\"", part.tag, escaped(part.name));
+    write_attribute(out, fmt::format("{}\"{}", grid.number, names), "Cell", group + "/numbers", n,
+                    [&](std::uint64_t i) { return number(grid, i); });
+    std::size_t sets = 0;
+    for (const Part& part : mesh_.parts(Origin::kSet)) {
+      const bool of_nodes = part.kind == Kind::kNodes && grid.kind == Kind::kElements;
+      if (part.kind == grid.kind || of_nodes)
+        write_set(out, (of_nodes ? "nodes " : grid.prefix) + part.name, part, of_nodes ? mesh_.points() : n,
+                  fmt::format("{}/set_{}", group, ++sets));
+    }
+    out << "    </Grid>\n  </Domain>\n</Xdmf>\n";
+  }
+
+  std::int32_t number(const WrittenGrid& grid, std::uint64_t i) const {
+    return static_cast<std::int32_t>(grid.kind == Kind::kElements ? mesh_.tag_of_region(mesh_.region_of(i))
+                                     : grid.kind == Kind::kFaces  ? 1 + mesh_.patch_of(i)
+                                                                  : 1 + mesh_.curve_of(i));
+  }
+
+  void write_topology(const WrittenGrid& grid, const std::string& path) {
+    const std::uint64_t each = nodes(grid);
+    values_->dataset(path, {count(grid), each},
+                     Hdf5Writer::Fill<std::int64_t>([&](std::uint64_t first, std::span<std::int64_t> to) {
+                       for (std::uint64_t k = 0; k < to.size(); ++k) {
+                         const std::uint64_t i = (first + k) / each, at = (first + k) % each;
+                         to[k] = grid.kind == Kind::kElements ? mesh_.tet_node(i, at)
+                                 : grid.kind == Kind::kFaces  ? mesh_.face_node(i, at)
+                                                              : mesh_.edge_node(i, at);
+                       }
+                     }));
+  }
+
+  void write_points(const std::string& path) {
+    values_->dataset(path, {mesh_.points(), 3},
+                     Hdf5Writer::Fill<double>([&](std::uint64_t first, std::span<double> to) {
+                       for (std::uint64_t k = 0; k < to.size(); ++k)
+                         to[k] = mesh_.mesh().points[(first + k) / 3][static_cast<int>((first + k) % 3)];
+                     }));
+  }
+
+  /// `name` with the quote behind it, and more attributes of XML if there are any.
+  template <class ValueAt>
+  void write_attribute(TextWriter& out, const std::string& name, std::string_view center, const std::string& path,
+                       std::uint64_t n, const ValueAt& value_at) {
+    out.line("      <Attribute AttributeType=\"Scalar\" Center=\"{}\" Name=\"{}>", center, name);
+    item(out, fmt::format("{} 1", n), "Int", 4, h5_, path);
+    out << "      </Attribute>\n";
+    values_->dataset(path, {n, 1}, Hdf5Writer::Fill<std::int32_t>([&](std::uint64_t first, std::span<std::int32_t> to) {
+                       for (std::uint64_t k = 0; k < to.size(); ++k) to[k] = value_at(first + k);
+                     }));
+  }
+
+  void write_set(TextWriter& out, const std::string& name, const Part& part, std::uint64_t n, const std::string& path) {
+    std::vector<bool> is_in(n, false);
+    for (const std::uint32_t m : part.members) is_in[m] = true;
+    write_attribute(out, escaped(name) + '"', part.kind == Kind::kNodes ? "Node" : "Cell", path, n,
+                    [&](std::uint64_t i) { return std::int32_t{is_in[i]}; });
+  }
+
+  MeshOutput& out_;
+  const MeshParts& mesh_;
+  std::string stem_, h5_;             ///< of the target; and the file of values_
+  std::optional<Hdf5Writer> values_;  ///< of the grid that is being written
+};
+
+}  // namespace
+
+void write_xdmf(MeshOutput& out, const MeshParts& mesh) {
+  XdmfWriter(out, mesh).write();
+}
+
+}  // namespace octafront::io

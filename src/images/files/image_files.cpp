@@ -1,0 +1,181 @@
+#include <octafront/error.h>
+
+#include "formats/containers/scanner.h"
+#include "images/files/byte_source.h"
+#include "images/files/dicom/dicom.h"
+#include "images/files/readers.h"
+
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <initializer_list>
+
+#include <fmt/core.h>
+
+namespace octafront::image {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What files are told by.
+constexpr std::size_t kHead = 4096;
+
+struct Kind {
+  bool (*matches)(std::string_view head);
+  Image (*read)(const Reading& reading);
+};
+
+Image read_raw_by_header(const Reading& reading) {
+  return read_raw(reading);
+}
+
+constexpr std::array kKinds{Kind{is_inr, read_inr},
+                            Kind{is_nrrd, read_nrrd},
+                            Kind{is_dicom, read_dicom},
+                            Kind{is_nifti, read_nifti},
+                            Kind{is_invesalius, read_invesalius},
+                            Kind{is_meta, read_meta},
+                            Kind{is_raw_header, read_raw_by_header}};
+
+/// The first bytes of a file, unpacked if they are compressed: as many as come before what is damaged, which readers
+/// will complain about.
+std::string head_of(const io::Input& input) {
+  // The last is what the largest magic word needs: that of NIfTI.
+  for (const std::size_t count : {kHead, kHead / 8, std::size_t{348}}) {
+    try {
+      return std::string(ByteSource(input, 0, Packing::kDetect).take(count));
+    } catch (const InputError&) {
+    }
+  }
+  return {};
+}
+
+const Kind* kind_of(std::string_view head) {
+  for (const Kind& kind : kKinds)
+    if (kind.matches(head)) return &kind;
+  return nullptr;
+}
+
+KeptFile opened_beside(const fs::path& file, const std::string& name, const RunContext& context) {
+  const auto loaded = std::make_shared<const io::LoadedFile>(file.parent_path() / name, context);
+  return {loaded->input(), loaded};
+}
+
+/// The JSON file beside raw voxels: scan.json or scan.raw.json for scan.raw. Empty if there is none.
+fs::path raw_header_of(const fs::path& file) {
+  fs::path name = file;
+  std::error_code error;
+  for (const fs::path& header : {fs::path(file.string() + ".json"), name.replace_extension(".json")})
+    if (header != file && fs::is_regular_file(header, error)) return header;
+  return {};
+}
+
+std::string first_bytes(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::string bytes(kHead, '\0');
+  stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(stream.gcount()));
+  return head_of({file.string(), bytes});
+}
+
+/// Whether a file has no kind of its own, but one beside that explains it.
+bool is_raw(const fs::path& file) {
+  const fs::path header = raw_header_of(file);
+  return !header.empty() && kind_of(first_bytes(file)) == nullptr && is_raw_header(first_bytes(header));
+}
+
+SliceFiles slice_files(const std::vector<std::string>& files, const RunContext& context) {
+  const auto open = [&files, &context](std::size_t f) {
+    const auto loaded = std::make_shared<const io::LoadedFile>(files[f], context);
+    return KeptFile{loaded->input(), loaded};
+  };
+  return {files, open};
+}
+
+}  // namespace
+
+/// Of a list of files, all of which must be slices.
+Image read_slices(const std::vector<std::string>& files, const ImageChoice& choice, const RunContext& context) {
+  for (const std::string& file : files)
+    if (!is_dicom(first_bytes(file)))
+      throw InputError(
+          fmt::format("{}: is no DICOM file; several files make an image only if all are DICOM slices", file));
+  try {
+    return read_series(slice_files(files, context), choice, context);
+  } catch (const InputError& error) {
+    const std::string what = error.what();
+    throw InputError(what.starts_with("holds") ? fmt::format("the list of {} files {}", files.size(), what) : what);
+  }
+}
+
+Image read_folder(const std::string& folder, const ImageChoice& choice, const RunContext& context) {
+  const std::vector<std::string> names = dicom_files_in(folder, context);
+  SliceFiles files = slice_files(names, context);
+  files.skip_others = true;
+  try {
+    return read_series(files, choice, context);
+  } catch (const InputError& error) {
+    const std::string what = error.what();
+    throw InputError(what.starts_with("holds") ? fmt::format("{}: {}", folder, what) : what);
+  }
+}
+
+Image read_image_bytes(const Reading& reading) {
+  const std::string head = head_of(reading.input);
+  if (const Kind* kind = kind_of(head)) return kind->read(reading);
+  reading.input.fail(fmt::format(
+      "is no image of a kind that is known here (NIfTI, NRRD, MetaImage, INR, InVesalius, DICOM, or raw voxels with a "
+      "JSON file beside them); it begins with {}",
+      io::in_quotes(head.substr(0, 24))));
+}
+
+std::uint32_t chosen_series(const Reading& reading, std::uint64_t count, const std::string& what) {
+  const std::uint32_t wanted = reading.choice.series;
+  if (wanted == 0 && count > 1)
+    reading.input.fail(fmt::format("holds {} {}; choose one by its number, from 1 (`series`)", count, what));
+  if (wanted > count)
+    reading.input.fail(fmt::format("has no {} of number {}: it holds {} (`series`)", what, wanted, count));
+  return wanted == 0 ? 0 : wanted - 1;
+}
+
+}  // namespace octafront::image
+
+namespace octafront {
+
+namespace {
+
+/// Without -0, which looks odd where it is printed.
+Image tidied(Image image) {
+  for (Vec3& axis : image.grid.axes) axis += Vec3{};
+  image.grid.origin += Vec3{};
+  return image;
+}
+
+}  // namespace
+
+Image read_image(const std::vector<std::string>& files, const ImageChoice& choice, const RunContext& context) {
+  if (files.empty()) throw OptionError("no file of an image is given");
+  const std::filesystem::path file = files.front();
+  if (files.size() > 1) return tidied(image::read_slices(files, choice, context));
+  if (std::filesystem::is_directory(file)) return tidied(image::read_folder(files.front(), choice, context));
+  const auto beside = [&](const std::string& name) { return image::opened_beside(file, name, context); };
+  if (image::is_raw(file)) {
+    const io::LoadedFile header(image::raw_header_of(file), context);
+    return tidied(image::read_raw({header.input(), choice, beside}, file.filename().string()));
+  }
+  const io::LoadedFile loaded(file, context);
+  return tidied(image::read_image_bytes({loaded.input(), choice, beside}));
+}
+
+Image read_image(const std::string& file, const ImageChoice& choice, const RunContext& context) {
+  return read_image(std::vector<std::string>{file}, choice, context);
+}
+
+bool is_image(const std::string& file) {
+  std::error_code error;
+  if (std::filesystem::is_directory(file, error)) return true;
+  if (!std::filesystem::is_regular_file(file, error)) return false;
+  return image::kind_of(image::first_bytes(file)) != nullptr || image::is_raw(file);
+}
+
+}  // namespace octafront

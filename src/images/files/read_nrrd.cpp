@@ -1,0 +1,412 @@
+// NRRD: lines "field: value" and "key:=value", an empty line, voxels; or the voxels in files that the header names.
+// https://teem.sourceforge.net/nrrd/format.html. Names of segments are read as 3D Slicer writes them (.seg.nrrd).
+
+#include "formats/containers/scanner.h"
+#include "images/files/grids.h"
+#include "images/files/readers.h"
+#include "images/files/slice_files.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include <fmt/core.h>
+
+namespace octafront::image {
+namespace {
+
+std::string lower(std::string_view text) {
+  std::string out(text);
+  std::transform(out.begin(), out.end(), out.begin(), io::to_lower);
+  return out;
+}
+
+std::vector<std::string> words_of(std::string_view text) {
+  std::vector<std::string> words;
+  for (text = io::trimmed(text); !text.empty(); text = io::trimmed(text)) {
+    std::size_t end = 0;
+    while (end < text.size() && !io::is_blank(text[end])) ++end;
+    words.emplace_back(text.substr(0, end));
+    text.remove_prefix(end);
+  }
+  return words;
+}
+
+std::optional<VoxelType> type_of_nrrd(const std::string& name) {
+  static const std::map<std::string, VoxelType> kNames{
+      {"signed char", VoxelType::kInt8},
+      {"int8", VoxelType::kInt8},
+      {"int8_t", VoxelType::kInt8},
+      {"uchar", VoxelType::kUInt8},
+      {"unsigned char", VoxelType::kUInt8},
+      {"uint8", VoxelType::kUInt8},
+      {"uint8_t", VoxelType::kUInt8},
+      {"short", VoxelType::kInt16},
+      {"short int", VoxelType::kInt16},
+      {"signed short", VoxelType::kInt16},
+      {"signed short int", VoxelType::kInt16},
+      {"int16", VoxelType::kInt16},
+      {"int16_t", VoxelType::kInt16},
+      {"ushort", VoxelType::kUInt16},
+      {"unsigned short", VoxelType::kUInt16},
+      {"unsigned short int", VoxelType::kUInt16},
+      {"uint16", VoxelType::kUInt16},
+      {"uint16_t", VoxelType::kUInt16},
+      {"int", VoxelType::kInt32},
+      {"signed int", VoxelType::kInt32},
+      {"int32", VoxelType::kInt32},
+      {"int32_t", VoxelType::kInt32},
+      {"uint", VoxelType::kUInt32},
+      {"unsigned int", VoxelType::kUInt32},
+      {"uint32", VoxelType::kUInt32},
+      {"uint32_t", VoxelType::kUInt32},
+      {"longlong", VoxelType::kInt64},
+      {"long long", VoxelType::kInt64},
+      {"long long int", VoxelType::kInt64},
+      {"signed long long", VoxelType::kInt64},
+      {"signed long long int", VoxelType::kInt64},
+      {"int64", VoxelType::kInt64},
+      {"int64_t", VoxelType::kInt64},
+      {"ulonglong", VoxelType::kUInt64},
+      {"unsigned long long", VoxelType::kUInt64},
+      {"unsigned long long int", VoxelType::kUInt64},
+      {"uint64", VoxelType::kUInt64},
+      {"uint64_t", VoxelType::kUInt64},
+      {"float", VoxelType::kFloat32},
+      {"double", VoxelType::kFloat64},
+  };
+  const auto found = kNames.find(name);
+  return found == kNames.end() ? std::nullopt : std::optional(found->second);
+}
+
+class Nrrd {
+ public:
+  explicit Nrrd(const Reading& reading) : reading_(reading), input_(reading.input) {}
+
+  Image read() {
+    read_lines();
+    read_sizes();
+    image_.format = "NRRD";
+    place();
+    check_grid(input_, image_.grid);
+    read_values();
+    name_segments();
+    return std::move(image_);
+  }
+
+ private:
+  struct Field {
+    std::string value;
+    const char* at = nullptr;
+  };
+
+  /// Fields and keys up to the empty line, or the end.
+  void read_lines() {
+    std::size_t at = input_.bytes.find('\n') + 1;
+    if (at == 0) input_.fail("ends behind the first line of an NRRD header; it is truncated: copy or export it again");
+    constexpr std::size_t kMostHeader = std::size_t{1} << 24;
+    for (;;) {
+      if (at >= input_.bytes.size() || at > kMostHeader) break;
+      const std::size_t end = std::min(input_.bytes.find('\n', at), input_.bytes.size());
+      std::string_view line = input_.bytes.substr(at, end - at);
+      if (line.ends_with('\r')) line.remove_suffix(1);
+      const char* const begin = input_.bytes.data() + at;
+      at = end + 1;
+      if (line.empty()) {
+        data_at_ = std::min(at, input_.bytes.size());
+        break;
+      }
+      read_line(line, begin);
+    }
+  }
+
+  void read_line(std::string_view line, const char* at) {
+    if (line.starts_with('#') || list_ == List::kOpen) {
+      if (list_ == List::kOpen && !line.starts_with('#')) files_.names.emplace_back(io::trimmed(line));
+      return;
+    }
+    const std::size_t colon = line.find(':');
+    if (colon == std::string_view::npos)
+      input_.fail_at_line(
+          at, fmt::format("expected \"field: value\" in the NRRD header, found {}", io::in_quotes(line.substr(0, 60))));
+    if (line.substr(colon).starts_with(":=")) {
+      keys_.insert_or_assign(std::string(line.substr(0, colon)), std::string(line.substr(colon + 2)));
+      return;
+    }
+    std::string name = lower(io::trimmed(line.substr(0, colon)));
+    std::erase(name, ' ');  // "data file" is "datafile" too
+    std::erase(name, '-');
+    const std::string value(io::trimmed(line.substr(colon + 1)));
+    fields_.insert_or_assign(name, Field{value, at});
+    if (name == "datafile" && value.starts_with("LIST")) list_ = List::kOpen;
+  }
+
+  const Field* field(const std::string& name) const {
+    const auto found = fields_.find(name);
+    return found == fields_.end() ? nullptr : &found->second;
+  }
+  const Field& required(const std::string& name) const {
+    const Field* f = field(name);
+    if (f == nullptr) input_.fail(fmt::format("has no field \"{}\" in its NRRD header; export it again", name));
+    return *f;
+  }
+  std::string text(const std::string& name) const {
+    const Field* f = field(name);
+    return f == nullptr ? "" : f->value;
+  }
+
+  double number(const Field& f, std::string_view word) const {
+    double value = 0;
+    if (!io::parse_number(word, value))
+      input_.fail_at_line(f.at, fmt::format("expected a number, found {}", io::in_quotes(word)));
+    return value;
+  }
+  std::int64_t whole(const Field& f, std::string_view word) const {
+    const double value = number(f, word);
+    if (!(std::abs(value) < 1e15) || value != std::floor(value))
+      input_.fail_at_line(f.at, fmt::format("expected a whole number, found {}", io::in_quotes(word)));
+    return static_cast<std::int64_t>(value);
+  }
+
+  /// One value per axis of the file.
+  std::vector<std::string> per_axis(const std::string& name) const {
+    const Field* f = field(name);
+    if (f == nullptr) return {};
+    std::vector<std::string> words = words_of(f->value);
+    if (words.size() != dimension_)
+      input_.fail_at_line(f->at,
+                          fmt::format("has {} values for {} axes; the file is damaged", words.size(), dimension_));
+    return words;
+  }
+
+  void read_sizes() {
+    const Field& f = required("dimension");
+    const std::int64_t dimension = whole(f, f.value);
+    if (dimension >= 0 && dimension < 3) fail_flat(input_);
+    if (dimension > 4 || dimension < 0)
+      input_.fail_at_line(f.at,
+                          fmt::format("has {} dimensions; three are read here, or four with `series`", dimension));
+    dimension_ = static_cast<std::size_t>(dimension);
+    const Field& sizes = required("sizes");
+    for (const std::string& word : per_axis("sizes")) sizes_.push_back(whole(sizes, word));
+    vectors_ = vectors();
+    find_extra_axis();
+    Sizes space{};
+    for (std::size_t i = 0; i < 3; ++i) space[i] = sizes_[axes_[i]];
+    image_.grid.size = checked_sizes(input_, space);
+    if (extra_) checked_sizes(input_, {sizes_[*extra_], 1, 1});
+  }
+
+  /// Of four axes one is none of space: the one without direction, of a kind that says so, or else the last.
+  void find_extra_axis() {
+    if (dimension_ == 4) {
+      extra_ = 3;
+      const std::vector<std::string> kinds = per_axis("kinds");
+      for (std::size_t i = 0; i < 4; ++i) {
+        const bool has_direction = vectors_.empty() || vectors_[i].has_value();
+        const bool is_space = kinds.empty() || lower(kinds[i]) == "domain" || lower(kinds[i]) == "space";
+        if (!has_direction || !is_space) {
+          extra_ = i;
+          break;
+        }
+      }
+      if (*extra_ != 0 && *extra_ != 3)
+        input_.fail("has its list of values on an axis in the middle; export it with that axis first or last");
+    }
+    for (std::size_t i = 0, n = 0; i < dimension_; ++i)
+      if (i != extra_) axes_[n++] = i;
+    for (const std::size_t axis : axes_)
+      if (!vectors_.empty() && !vectors_[axis])
+        input_.fail(fmt::format("has no space direction for axis {}; export it with directions", axis));
+  }
+
+  /// "(1,0,0) none (0,1,0)": one per axis, nullopt for none. Empty if the header has no directions.
+  std::vector<std::optional<Vec3>> vectors() const {
+    const Field* f = field("spacedirections");
+    std::vector<std::optional<Vec3>> all;
+    if (f == nullptr) return all;
+    std::string_view rest = io::trimmed(f->value);
+    while (!rest.empty()) {
+      if (rest.starts_with("none")) {
+        all.emplace_back(std::nullopt);
+        rest = io::trimmed(rest.substr(4));
+        continue;
+      }
+      all.emplace_back(vector(*f, rest));
+    }
+    if (all.size() != dimension_)
+      input_.fail_at_line(f->at,
+                          fmt::format("has {} directions for {} axes; the file is damaged", all.size(), dimension_));
+    return all;
+  }
+
+  /// Takes "(x,y,z)" from the front of a text.
+  Vec3 vector(const Field& f, std::string_view& rest) const {
+    const std::size_t end = rest.find(')');
+    if (!rest.starts_with('(') || end == std::string_view::npos)
+      input_.fail_at_line(f.at, fmt::format("expected a vector such as (1,0,0), found {}", io::in_quotes(rest)));
+    std::string inside(rest.substr(1, end - 1));
+    std::replace(inside.begin(), inside.end(), ',', ' ');
+    const std::vector<std::string> words = words_of(inside);
+    if (words.size() != 3)
+      input_.fail_at_line(f.at, fmt::format("expected three coordinates, found {}", io::in_quotes(rest)));
+    rest = io::trimmed(rest.substr(end + 1));
+    return {number(f, words[0]), number(f, words[1]), number(f, words[2])};
+  }
+
+  void place() {
+    ImageGrid& grid = image_.grid;
+    if (!vectors_.empty()) {
+      for (std::size_t i = 0; i < 3; ++i) grid.axes[i] = *vectors_[axes_[i]];
+      if (const Field* f = field("spaceorigin")) {
+        std::string_view value = f->value;
+        grid.origin = vector(*f, value);
+      }
+    } else {
+      const std::vector<std::string> spacings = per_axis("spacings"), mins = per_axis("axismins");
+      for (std::size_t i = 0; i < 3; ++i) {
+        const int axis = static_cast<int>(i);
+        if (!spacings.empty()) grid.axes[i][axis] = finite_or(number(required("spacings"), spacings[axes_[i]]), 1);
+        if (!mins.empty()) grid.origin[axis] = finite_or(number(required("axismins"), mins[axes_[i]]), 0);
+      }
+      if (spacings.empty()) image_.notes.emplace_back("the header has no spacing; 1 is taken");
+    }
+    set_frame();
+  }
+
+  static double finite_or(double value, double otherwise) { return std::isfinite(value) ? value : otherwise; }
+
+  void set_frame() {
+    const std::string space = lower(text("space"));
+    for (const auto& [prefix, short_name] : {std::pair{"right-anterior-superior", "RAS"},
+                                             {"ras", "RAS"},
+                                             {"left-anterior-superior", "LAS"},
+                                             {"las", "LAS"},
+                                             {"left-posterior-superior", "LPS"},
+                                             {"lps", "LPS"}})
+      if (space.starts_with(prefix)) image_.frame = short_name;
+    const std::vector<std::string> units = words_of(text(field("spaceunits") != nullptr ? "spaceunits" : "units"));
+    if (!units.empty()) {
+      std::string unit = units[field("spaceunits") != nullptr ? 0 : std::min(axes_[0], units.size() - 1)];
+      std::erase(unit, '"');
+      if (unit == "mm" || unit == "m" || unit == "um" || unit == "cm") image_.unit = unit;
+    }
+  }
+
+  StoredVoxels stored() const {
+    const Field& f = required("type");
+    const std::optional<VoxelType> type = type_of_nrrd(lower(f.value));
+    if (!type)
+      input_.fail_at_line(f.at, fmt::format("{} is no type of voxels that is read here", io::in_quotes(f.value)));
+    StoredVoxels s;
+    s.type = *type;
+    const std::string endian = lower(text("endian"));
+    if (endian == "big") {
+      s.big_endian = true;
+    } else if (endian != "little" && bytes_of(s.type) > 1 && !is_text()) {
+      input_.fail("does not say \"endian: little\" or \"endian: big\" in its NRRD header; export it again");
+    }
+    return s;
+  }
+
+  std::string encoding() const { return lower(required("encoding").value); }
+  bool is_text() const { return encoding() == "ascii" || encoding() == "text" || encoding() == "txt"; }
+
+  void read_values() {
+    const std::string how = encoding();
+    if (how == "gzip" || how == "gz") {
+      files_.packing = Packing::kZlib;
+      image_.format += ", compressed";
+    } else if (how != "raw" && !is_text()) {
+      input_.fail_at_line(
+          required("encoding").at,
+          fmt::format("the encoding {} is not read here; export it as raw or gzip", io::in_quotes(how)));
+    }
+    if (const Field* f = field("lineskip"))
+      files_.skipped_lines = static_cast<std::uint64_t>(std::max<std::int64_t>(0, whole(*f, f->value)));
+    if (const Field* f = field("byteskip")) {
+      const std::int64_t skip = whole(*f, f->value);
+      files_.at_end = skip < 0;
+      files_.skipped_bytes = static_cast<std::uint64_t>(std::max<std::int64_t>(0, skip));
+    }
+    const std::uint64_t voxels = image_.grid.voxels(), lists = extra_ ? static_cast<std::uint64_t>(sizes_[*extra_]) : 1;
+    series_ = chosen_series(reading_, lists, "values per voxel");
+    const bool interleaved = extra_ == 0;
+    const Picked picked{interleaved ? series_ : series_ * voxels, voxels, interleaved ? lists : 1};
+    if (is_text()) return read_text();
+    find_files();
+    image_.values = files_.names.empty()
+                        ? read_attached(reading_, data_at_, files_, voxels * lists, picked, stored(), image_.notes)
+                        : read_data_files(reading_, files_, voxels * lists, picked, stored(), image_.notes);
+  }
+
+  void read_text() {
+    if (extra_ || field("datafile") != nullptr)
+      input_.fail("holds text that is not one volume in the file itself; export it as raw or gzip");
+    image_.format += ", text";
+    image_.values =
+        read_text_voxels(input_, input_.bytes.data() + data_at_, image_.grid.size, stored().type, image_.notes);
+  }
+
+  void find_files() {
+    const Field* f = field("datafile");
+    if (f == nullptr) {
+      if (data_at_ == 0) input_.fail("its header has no end (an empty line) and names no data file; it is truncated");
+      return;
+    }
+    if (list_ == List::kOpen) return;
+    const std::vector<std::string> words = words_of(f->value);
+    if (words.size() >= 3 && words[0].find('%') != std::string::npos) {
+      const std::int64_t step = words.size() > 3 ? whole(*f, words[3]) : 1;
+      files_.names = numbered_names(input_, words[0], whole(*f, words[1]), whole(*f, words[2]), step);
+    } else {
+      files_.names = {f->value};
+    }
+  }
+
+  /// Segment3_Name:=liver, Segment3_LabelValue:=7, Segment3_Layer:=0
+  void name_segments() {
+    for (const auto& [key, name] : keys_) {
+      if (!key.starts_with("Segment") || !key.ends_with("_Name")) continue;
+      const std::string prefix = key.substr(0, key.size() - 4);
+      const auto value = keys_.find(prefix + "LabelValue"), layer = keys_.find(prefix + "Layer");
+      double number = 0;
+      if (value == keys_.end() || !io::parse_number(value->second, number) || !(std::abs(number) < 1e15)) continue;
+      if (layer != keys_.end() && extra_ && layer->second != std::to_string(series_)) continue;
+      image_.names.push_back({static_cast<std::int64_t>(number), name});
+    }
+    std::sort(image_.names.begin(), image_.names.end(),
+              [](const LabelName& a, const LabelName& b) { return a.value < b.value; });
+  }
+
+  enum class List { kNone, kOpen };
+
+  const Reading& reading_;
+  const io::Input& input_;
+  std::map<std::string, Field> fields_;
+  std::map<std::string, std::string> keys_;
+  List list_ = List::kNone;
+  DataFiles files_;
+  std::size_t data_at_ = 0, dimension_ = 0;
+  std::vector<std::int64_t> sizes_;  ///< of all axes
+  std::vector<std::optional<Vec3>> vectors_;
+  std::array<std::size_t, 3> axes_{};  ///< of space
+  std::optional<std::size_t> extra_;   ///< the axis of a list of values
+  std::uint32_t series_ = 0;
+  Image image_;
+};
+
+}  // namespace
+
+bool is_nrrd(std::string_view head) {
+  return head.starts_with("NRRD00");
+}
+
+Image read_nrrd(const Reading& reading) {
+  return Nrrd(reading).read();
+}
+
+}  // namespace octafront::image

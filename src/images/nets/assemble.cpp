@@ -1,0 +1,80 @@
+#include "images/nets/assemble.h"
+
+#include "base/core/parallel.h"
+#include "base/core/wording.h"
+#include "images/nets/volumes.h"
+
+#include <utility>
+
+#include <fmt/core.h>
+
+namespace octafront::nets {
+
+namespace {
+
+/// Gives what is used numbers from 0 on, in order; kNone to the rest.
+std::vector<std::uint32_t> numbered(const std::vector<std::uint8_t>& used) {
+  std::vector<std::uint32_t> number(used.size(), kNone);
+  std::uint32_t next = 0;
+  for (std::size_t i = 0; i < used.size(); ++i)
+    if (used[i]) number[i] = next++;
+  return number;
+}
+
+void note_what_was_done(const Settled& settled, Complex& complex) {
+  if (settled.moved_back > 0)
+    complex.notes.push_back(
+        fmt::format("{} moved back toward the corners of voxels, where surfaces would have crossed or met in "
+                    "sharp wedges",
+                    counted(settled.moved_back, "vertex", "vertices")));
+  if (settled.joined > 0)
+    complex.notes.push_back(fmt::format("regions touch themselves or each other in {} where surfaces found no room",
+                                        counted(settled.joined, "point")));
+}
+
+}  // namespace
+
+Complex assemble(const Net& net, const Lattice& lattice, Settled settled, std::span<const Vec3> straight,
+                 const std::vector<LabelImage::Label>& labels, bool keeps_values) {
+  std::vector<std::uint8_t> used_vertex(net.corner.size(), 0), used_label(labels.size(), 0);
+  for (const Quad& q : net.quads) {
+    for (const VertexIndex v : q.v) used_vertex[v] = 1;
+    for (const Label l : {q.lower, q.upper})
+      if (l != LabelImage::kNoRegion) used_label[l] = 1;
+  }
+  const std::vector<std::uint32_t> vertex = numbered(used_vertex), region_of = numbered(used_label);
+  const auto region = [&](Label l) { return l == LabelImage::kNoRegion ? kNone : region_of[l]; };
+  Complex complex;
+  SurfaceMesh& surface = complex.surface;
+  const std::vector<double> volumes = volumes_of(net, straight, labels.size());
+  for (std::size_t l = 0; l < labels.size(); ++l) {
+    if (!used_label[l]) continue;
+    surface.region_names.push_back(labels[l].name);
+    if (keeps_values) surface.region_labels.push_back(labels[l].value);
+    complex.volumes.push_back(volumes[l] * lattice.volume_scale());
+  }
+  for (std::size_t v = 0; v < settled.world.size(); ++v)
+    if (used_vertex[v]) surface.points.push_back(settled.world[v]);
+  surface.triangles.resize(2 * net.quads.size());
+  surface.sides.resize(2 * net.quads.size());
+  const bool mirrored = lattice.is_mirrored();
+  parallel_for(net.quads.size(), [&](std::size_t q) {
+    const Quad& quad = net.quads[q];
+    Sides sides{region(quad.upper), region(quad.lower)};
+    // The outside, or else the region of the higher number, comes to lie in front.
+    const bool turn = sides[0] < sides[1];
+    if (turn) std::swap(sides[0], sides[1]);
+    const auto triangles = triangles_of(quad);
+    for (int i = 0; i < 2; ++i) {
+      Triangle t = triangles[i];
+      if (turn != mirrored) std::swap(t[1], t[2]);
+      for (VertexIndex& v : t) v = vertex[v];
+      surface.triangles[2 * q + i] = t;
+      surface.sides[2 * q + i] = sides;
+    }
+  });
+  note_what_was_done(settled, complex);
+  return complex;
+}
+
+}  // namespace octafront::nets

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <octafront/run_context.h>
+
+#include "images/nets/net.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace octafront::nets {
+
+/// Quads at fault, ascending, each once.
+struct Conflicts {
+  /// With triangles that cross others or are without area, or around edges where the regions do not come in their turn.
+  std::vector<std::uint32_t> invalid;
+  /// That leave a region only a sharp wedge between them, or lie at sharp corners of curves: no good element fits in
+  /// there. None whose vertices may not yield.
+  std::vector<std::uint32_t> sharp;
+  bool empty() const { return invalid.empty() && sharp.empty(); }
+};
+
+/// What keeps a net from being a complex, exactly, and from being a good one, found in layers of the lattice so that
+/// memory stays small.
+class ConflictSearch {
+ public:
+  /// `world`: the vertices, which may be a mirror image. `may_yield`: per vertex, whether it is asked to where the net
+  /// is sharp.
+  ConflictSearch(const Net& net, std::span<const Vec3> world, bool is_mirrored,
+                 std::span<const std::uint8_t> may_yield);
+
+  Conflicts all(const RunContext& context) const;
+  /// The same of the quads near moved vertices.
+  Conflicts near(const std::vector<VertexIndex>& moved, const RunContext& context) const;
+
+ private:
+  struct Part;
+  struct CurveEnd;
+  void search(const Part& part, Conflicts& found, const RunContext& context) const;
+  void find_crossings(const Part& part, Conflicts& found, const RunContext& context) const;
+  void find_around_edges(const Part& part, Conflicts& found) const;
+  void find_sharp_corners(std::vector<CurveEnd> ends, Conflicts& found) const;
+  void find_folds(const Part& part, Conflicts& found) const;
+  void add_sharp(std::uint32_t quad, Conflicts& found) const;
+
+  const Net& net_;
+  std::span<const Vec3> world_;
+  bool is_mirrored_;
+  std::span<const std::uint8_t> may_yield_;
+};
+
+}  // namespace octafront::nets

@@ -1,0 +1,139 @@
+#include <octafront/error.h>
+#include <octafront/image_surface.h>
+
+#include "base/core/utf8.h"
+#include "images/nets/clean_bands.h"
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace octafront {
+
+namespace {
+
+using Kind = ImageRegions::Kind;
+
+bool speaks_of_labels(const LabelOptions& labels) {
+  return !labels.names.empty() || labels.ignore || !labels.merge.empty();
+}
+
+void check_options_of(Kind kind, const ImageRegions& regions) {
+  if (kind == Kind::kGrey && speaks_of_labels(regions.labels))
+    throw OptionError(
+        "`labels`, `ignore` and `merge` are for images of labels, `iso` and `band` for grey ones; give one kind");
+  if (kind == Kind::kLabels && !regions.bands.empty())
+    throw OptionError(
+        "`iso` and `band` are for grey images, and this one is taken as labels; say that it is a grey image, or leave "
+        "them out");
+}
+
+std::vector<GreyBand> named(std::vector<GreyBand> bands, std::vector<std::string>& notes) {
+  NameCleaning names;
+  for (std::size_t b = 0; b < bands.size(); ++b) {
+    if (bands[b].name.empty()) bands[b].name = bands.size() == 1 ? "body" : fmt::format("band {}", b + 1);
+    names.clean(bands[b].name);
+  }
+  names.tell(notes);
+  return bands;
+}
+
+std::pair<double, double> range_of(const Image& image) {
+  return std::visit(
+      [](const auto& values) -> std::pair<double, double> {
+        const auto [least, largest] = std::minmax_element(values.begin(), values.end());
+        return {static_cast<double>(*least), static_cast<double>(*largest)};
+      },
+      image.values);
+}
+
+[[noreturn]] void fail_without_bands(const Image& image) {
+  const auto [least, largest] = range_of(image);
+  throw InputError(
+      fmt::format("is a grey image (values {:.6g} to {:.6g}): say which values are meant, `iso` V for what is V and "
+                  "more, or `band` LO:HI; or that its values are labels. octafront info shows how often they occur",
+                  least, largest));
+}
+
+/// Which regions end at the edge of the image, as a note; or refuses them.
+std::vector<std::string> ends_at_edge(const LabelImage& labels, bool closed_at_box) {
+  const std::vector<std::uint8_t> reached = faces_reached(labels);
+  constexpr std::array kFaces{"first i", "last i", "first j", "last j", "first k", "last k"};
+  std::string words;
+  std::size_t count = 0;
+  constexpr std::size_t kMostNamed = 5;
+  for (std::size_t r = 0; r < reached.size(); ++r) {
+    if (reached[r] == 0 || ++count > kMostNamed) continue;
+    std::string faces;
+    for (std::size_t f = 0; f < kFaces.size(); ++f)
+      if ((reached[r] >> f & 1) != 0) faces += (faces.empty() ? "" : ", ") + std::string(kFaces[f]);
+    words += fmt::format("{}\"{}\" ({})", words.empty() ? "" : ", ", labels.labels[r].name, faces);
+  }
+  if (count == 0) return {};
+  if (count > kMostNamed) words += fmt::format(" and {} more", count - kMostNamed);
+  if (!closed_at_box)
+    throw InputError(
+        fmt::format("regions reach the edge of the image: {}; with `closed_at_box` they end flat there, with `ignore` "
+                    "or `crop` they can be left out",
+                    words));
+  return {fmt::format("closed flat at the edge of the image: {}", words)};
+}
+
+void add(std::vector<std::string>& all, std::vector<std::string> more) {
+  all.insert(all.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+}
+
+Complex with_notes(Complex complex, std::vector<std::string> notes) {
+  add(notes, std::move(complex.notes));
+  complex.notes = std::move(notes);
+  return complex;
+}
+
+Complex complex_of_grey(const Image& image, const ImageRegions& regions, const RunContext& context) {
+  if (regions.bands.empty()) fail_without_bands(image);
+  std::vector<std::string> notes;
+  const std::vector<GreyBand> bands = named(regions.bands, notes);
+  Image cleaned;
+  if (regions.clean.any()) cleaned = nets::cleaned_bands(image, bands, regions.clean, context);
+  const Image& used = regions.clean.any() ? cleaned : image;
+  add(notes, cleaned.notes);
+  add(notes, ends_at_edge(labels_of_bands(used, bands), regions.closed_at_box));
+  context.report("surfaces", -1);
+  return with_notes(complex_of_bands(used, bands, context), std::move(notes));
+}
+
+Complex complex_of_segmentation(const Image& image, const ImageRegions& regions, const RunContext& context) {
+  LabelImage labels = labels_of(image, regions.labels);
+  std::vector<std::string> notes = std::exchange(labels.notes, {});
+  if (regions.clean.any()) {
+    labels = cleaned(labels, regions.clean, context);
+    add(notes, labels.notes);
+  }
+  add(notes, ends_at_edge(labels, regions.closed_at_box));
+  context.report("surfaces", -1);
+  return with_notes(complex_of_labels(labels, {}, context), std::move(notes));
+}
+
+}  // namespace
+
+Kind kind_of(const Image& image, const ImageRegions& regions) {
+  if (regions.kind != Kind::kAuto) return regions.kind;
+  if (!regions.bands.empty()) return Kind::kGrey;
+  return speaks_of_labels(regions.labels) || looks_like_labels(image) ? Kind::kLabels : Kind::kGrey;
+}
+
+Complex complex_of_image(const Image& image, const ImageRegions& regions, const RunContext& context) {
+  const Kind kind = kind_of(image, regions);
+  check_options_of(kind, regions);
+  return kind == Kind::kGrey ? complex_of_grey(image, regions, context)
+                             : complex_of_segmentation(image, regions, context);
+}
+
+double smallest_spacing(const ImageGrid& grid) {
+  return std::min({length(grid.axes[0]), length(grid.axes[1]), length(grid.axes[2])});
+}
+
+}  // namespace octafront

@@ -1,0 +1,44 @@
+#pragma once
+
+#include "base/core/groups.h"
+#include "images/nets/net.h"
+
+#include <array>
+#include <span>
+
+namespace octafront::nets {
+
+/// Which vertices speak for the fairness of the surface at each vertex: its neighbours; on a curve, where other than
+/// two labels meet or the surface reaches the image's box, those on the curve.
+class Stencils {
+ public:
+  Stencils(const Net& net, const Groups<>& quads_at);
+
+  /// The mean of the stencil less the vertex itself.
+  Vec3 difference(std::span<const Vec3> x, VertexIndex v) const {
+    Vec3 sum;
+    for (const VertexIndex to : own_[v]) sum += x[to];
+    return sum * weight(v) - x[v];
+  }
+  /// One over the size of the stencil.
+  double weight(VertexIndex v) const { return kWeights[own_[v].size()]; }
+  /// What the differences make of a vertex: the transposed of the above. `weighted`: the differences times weights.
+  Vec3 transposed(std::span<const Vec3> weighted, VertexIndex v) const {
+    Vec3 sum;
+    for (const VertexIndex of : users_[v]) sum += weighted[of];
+    return sum - weighted[v] * static_cast<double>(own_[v].size());
+  }
+
+ private:
+  /// By the size of a stencil: two for each of twelve quads at most.
+  static constexpr auto kWeights = [] {
+    std::array<double, 25> weights{};
+    for (int k = 1; k < 25; ++k) weights[k] = 1.0 / k;
+    return weights;
+  }();
+
+  Groups<VertexIndex> own_;    ///< the stencil of each vertex
+  Groups<VertexIndex> users_;  ///< those in whose stencils it is
+};
+
+}  // namespace octafront::nets

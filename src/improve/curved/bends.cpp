@@ -1,0 +1,167 @@
+#include "improve/curved/bends.h"
+
+#include "base/core/parallel.h"
+#include "base/geometry/measures.h"
+#include "base/mesh/edge_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+
+namespace octafront::curved {
+
+namespace {
+
+// A vertex on a curve of the input is there but for rounding; in parts of the model's diagonal.
+constexpr double kOnCurve = 1e-7;
+// An edge that wants to bend by more than this part of its length is not resolved by the mesh: half of a quarter turn.
+constexpr double kMostBend = 0.2;
+// Corners lie on the input's triangles, and go as far as those are from the smooth surface: where they are large, that
+// is a good part of an edge of the mesh. The boundary of a stuffed lattice lies beside them, and follows as far as
+// this.
+constexpr double kMostMove = 0.5;
+// Less is rounding.
+constexpr double kStraightBend = 1e-7;
+
+enum class On : std::uint8_t { kNothing, kSurface, kCurve, kCorner };
+
+struct Target {
+  On on = On::kNothing;
+  Foot foot;
+};
+
+class Search {
+ public:
+  Search(const TetMesh& mesh, const std::vector<Edge>& sharp, SmoothSurface& surface)
+      : mesh_(mesh), surface_(surface), faces_(mesh.boundary) {
+    faces_.insert(faces_.end(), mesh.interfaces.begin(), mesh.interfaces.end());
+    table_ = make_edge_table(mesh.points.size(), faces_);
+    tolerance_ = kOnCurve * bounding_box(mesh.points).diagonal();
+    mark_curves(sharp);
+    gather_vertices();
+  }
+
+  Bends run() {
+    locate();
+    prepare();
+    return displacements();
+  }
+
+ private:
+  Vec3 point(VertexIndex v) const { return mesh_.points[v]; }
+  double edge_length(std::size_t e) const { return distance(point(table_.edges[e][0]), point(table_.edges[e][1])); }
+  Vec3 middle(std::size_t e) const { return 0.5 * (point(table_.edges[e][0]) + point(table_.edges[e][1])); }
+  Vec3 face_normal(std::size_t f) const {
+    const auto& [a, b, c] = faces_[f];
+    return double_area_normal(point(a), point(b), point(c));
+  }
+
+  /// Edges that are features of the mesh and lie along a sharp curve of the input. Others between patches are smooth.
+  void mark_curves(const std::vector<Edge>& sharp) {
+    on_curve_.assign(table_.size(), 0);
+    parallel_for(table_.size(), [&](std::size_t e) {
+      const Edge edge = table_.edges[e];
+      if (!std::binary_search(sharp.begin(), sharp.end(), edge)) return;
+      on_curve_[e] = surface_.curve_foot(point(edge[0]), tolerance_) &&
+                     surface_.curve_foot(point(edge[1]), tolerance_) &&
+                     surface_.curve_foot(middle(e), kMostBend * edge_length(e));
+    });
+  }
+
+  void gather_vertices() {
+    normal_.assign(mesh_.points.size(), {});
+    shortest_.assign(mesh_.points.size(), TriangleTree::kFar);
+    vertex_on_curve_.assign(mesh_.points.size(), 0);
+    for (std::size_t f = 0; f < faces_.size(); ++f)
+      for (const VertexIndex v : faces_[f]) normal_[v] += face_normal(f);
+    for (std::size_t e = 0; e < table_.size(); ++e)
+      for (const VertexIndex v : table_.edges[e]) {
+        shortest_[v] = std::min(shortest_[v], edge_length(e));
+        vertex_on_curve_[v] |= on_curve_[e];
+      }
+    for (VertexIndex v = 0; v < mesh_.points.size(); ++v)
+      if (shortest_[v] < TriangleTree::kFar) vertices_.push_back(v);
+  }
+
+  Target target(bool on_curve, Vec3 p, Vec3 normal, double reach) const {
+    const auto foot = on_curve ? surface_.curve_foot(p, reach) : surface_.surface_foot(p, normalized(normal), reach);
+    if (!foot) return {};
+    return {on_curve ? On::kCurve : On::kSurface, *foot};
+  }
+
+  Target target_of_vertex(VertexIndex v) const {
+    const Target found = target(vertex_on_curve_[v], point(v), normal_[v], kMostMove * shortest_[v]);
+    return found.on == On::kCurve && surface_.is_corner(found.foot, tolerance_) ? Target{On::kCorner, {}} : found;
+  }
+  Target target_of_edge(std::size_t e) const {
+    Vec3 normal;
+    for (const std::uint32_t h : table_.uses(e)) normal += normalized(face_normal(h / 3));
+    return target(on_curve_[e], middle(e), normal, kMostBend * edge_length(e));
+  }
+
+  void locate() {
+    targets_.resize(vertices_.size() + table_.size());
+    parallel_for(vertices_.size(), [&](std::size_t i) { targets_[i] = target_of_vertex(vertices_[i]); });
+    parallel_for(table_.size(), [&](std::size_t e) { targets_[vertices_.size() + e] = target_of_edge(e); });
+  }
+
+  void prepare() {
+    std::vector<Foot> on_surface, on_curves;
+    for (const Target& t : targets_) {
+      if (t.on == On::kSurface) on_surface.push_back(t.foot);
+      if (t.on == On::kCurve) on_curves.push_back(t.foot);
+    }
+    surface_.prepare(on_surface, on_curves);
+  }
+
+  /// From p to the smooth surface; nothing if there is none, or too far.
+  std::optional<Vec3> displacement(const Target& t, Vec3 p, double most) const {
+    if (t.on == On::kNothing) return std::nullopt;
+    if (t.on == On::kCorner) return Vec3{};
+    const Vec3 by = (t.on == On::kCurve ? surface_.curve_point(t.foot) : surface_.surface_point(t.foot)) - p;
+    if (squared_length(by) > most * most) return std::nullopt;
+    return by;
+  }
+
+  Bends displacements() const {
+    Bends bends;
+    std::vector<std::optional<Vec3>> moved(mesh_.points.size());
+    for (std::size_t i = 0; i < vertices_.size(); ++i) {
+      const VertexIndex v = vertices_[i];
+      moved[v] = displacement(targets_[i], point(v), kMostMove * shortest_[v]);
+      if (moved[v] && length(*moved[v]) > kStraightBend * shortest_[v]) bends.corners.push_back({v, *moved[v]});
+    }
+    // An edge that bends to the surface with an end that stays away from it would be a bump.
+    for (std::size_t e = 0; e < table_.size(); ++e) {
+      const auto& [a, b] = table_.edges[e];
+      if (!moved[a] || !moved[b]) continue;
+      const auto by = displacement(targets_[vertices_.size() + e], middle(e), kMostMove * edge_length(e));
+      if (!by) continue;
+      const Vec3 bend = *by - 0.5 * (*moved[a] + *moved[b]);
+      const double part = length(bend) / edge_length(e);
+      if (part > kStraightBend && part <= kMostBend) bends.edges.push_back({table_.edges[e], bend});
+    }
+    return bends;
+  }
+
+  const TetMesh& mesh_;
+  SmoothSurface& surface_;
+  std::vector<Triangle> faces_;  // the boundary, and interfaces
+  EdgeTable table_;              // their edges
+  double tolerance_ = 0;
+  std::vector<char> on_curve_;         // per edge
+  std::vector<char> vertex_on_curve_;  // per vertex of the mesh, as the next two
+  std::vector<Vec3> normal_;
+  std::vector<double> shortest_;  // edge at a vertex; infinite inside
+  std::vector<VertexIndex> vertices_;
+  std::vector<Target> targets_;
+};
+
+}  // namespace
+
+Bends find_bends(const TetMesh& mesh, const std::vector<Edge>& sharp, SmoothSurface& surface) {
+  return Search(mesh, sharp, surface).run();
+}
+
+}  // namespace octafront::curved

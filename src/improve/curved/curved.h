@@ -1,0 +1,26 @@
+#pragma once
+
+// improve/curved: elements of second order. Takes a valid linear mesh and the surface that its boundary stands for,
+// leaves mid-side nodes: those of the boundary on the smooth surface, as far as every element is proven valid. The
+// public face is octafront/second_order.h.
+
+#include <octafront/second_order.h>
+
+#include "base/mesh/known_surface.h"
+
+#include <vector>
+
+namespace octafront {
+
+/// As make_second_order(), with what the pipeline knows already. `sharp`: feature edges of the boundary of the mesh,
+/// sorted, those between patches too.
+SecondOrderSummary curve_to_surface(TetMesh& mesh, const std::vector<Edge>& sharp, const KnownSurface& surface,
+                                    double feature_angle, const RunContext& context);
+
+/// Volume of a second-order mesh, curved as it is. Unit: input unit cubed.
+double curved_volume(const TetMesh& mesh);
+
+/// With straight edges.
+SecondOrderSummary add_straight_edges(TetMesh& mesh, const RunContext& context);
+
+}  // namespace octafront

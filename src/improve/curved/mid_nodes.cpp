@@ -1,0 +1,67 @@
+#include "improve/curved/mid_nodes.h"
+
+#include "base/core/groups.h"
+#include "base/core/parallel.h"
+
+#include <algorithm>
+
+namespace octafront::curved {
+
+namespace {
+
+/// A place where an edge is used, at its lower end.
+struct Use {
+  VertexIndex high;
+  std::uint32_t tet_edge;  // 6 * tet + edge
+};
+
+}  // namespace
+
+std::uint32_t TetEdges::find(VertexIndex a, VertexIndex b) const {
+  if (a > b) std::swap(a, b);
+  const auto begin = high.begin() + first[a], end = high.begin() + first[a + 1];
+  const auto at = std::lower_bound(begin, end, b);
+  return at != end && *at == b ? static_cast<std::uint32_t>(at - high.begin()) : kNone;
+}
+
+TetEdges add_straight_mid_nodes(TetMesh& mesh) {
+  const std::size_t corners = mesh.points.size();
+  Groups<Use> uses(corners, [&](const auto& add) {
+    for (std::uint32_t t = 0; t < mesh.tets.size(); ++t)
+      for (std::uint32_t e = 0; e < 6; ++e) {
+        const VertexIndex a = mesh.tets[t][static_cast<std::size_t>(kTetEdges[e][0])],
+                          b = mesh.tets[t][static_cast<std::size_t>(kTetEdges[e][1])];
+        add(std::min(a, b), Use{std::max(a, b), 6 * t + e});
+      }
+  });
+  TetEdges edges;
+  edges.first.assign(corners + 1, 0);
+  parallel_for(corners, [&](std::size_t v) {
+    const auto here = uses[v];
+    std::sort(here.begin(), here.end(), [](const Use& x, const Use& y) { return x.high < y.high; });
+    std::uint32_t count = 0;
+    for (std::size_t i = 0; i < here.size(); ++i) count += i == 0 || here[i].high != here[i - 1].high;
+    edges.first[v + 1] = count;
+  });
+  for (std::size_t v = 0; v < corners; ++v) edges.first[v + 1] += edges.first[v];
+
+  edges.high.resize(edges.first[corners]);
+  edges.low.resize(edges.high.size());
+  mesh.points.resize(corners + edges.size());
+  mesh.mid_nodes.resize(mesh.tets.size());
+  parallel_for(corners, [&](std::size_t v) {
+    const auto here = uses[v];
+    std::uint32_t e = edges.first[v] - 1;
+    for (std::size_t i = 0; i < here.size(); ++i) {
+      if (i == 0 || here[i].high != here[i - 1].high) {
+        edges.high[++e] = here[i].high;
+        edges.low[e] = static_cast<VertexIndex>(v);
+        mesh.points[corners + e] = 0.5 * (mesh.points[v] + mesh.points[here[i].high]);
+      }
+      mesh.mid_nodes[here[i].tet_edge / 6][here[i].tet_edge % 6] = static_cast<VertexIndex>(corners + e);
+    }
+  });
+  return edges;
+}
+
+}  // namespace octafront::curved

@@ -1,0 +1,153 @@
+#include <octafront/error.h>
+#include <octafront/run_context.h>
+#include <octafront/second_order.h>
+
+#include "base/core/parallel.h"
+#include "base/core/thread_limit.h"
+#include "base/geometry/measures.h"
+#include "base/mesh/features.h"
+#include "base/mesh/quadratic_nodes.h"
+#include "improve/curved/bends.h"
+#include "improve/curved/curved.h"
+#include "improve/curved/easing.h"
+#include "improve/curved/mid_nodes.h"
+#include "improve/curved/smooth_surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include <fmt/core.h>
+
+namespace octafront {
+
+namespace {
+
+// Room for the answer of one element.
+struct Judged {
+  double scaled = 1;
+  bool valid = true;
+};
+
+// Edges that bend by so little are straight but for rounding.
+constexpr double kStraightJacobian = 1 - 1e-9;  // as a bound of the scaled Jacobian
+
+Judged judge(const TetMesh& mesh, TetIndex t) {
+  const QuadraticTet nodes = quadratic_nodes(mesh, t);
+  if (least_scaled_jacobian_bound(nodes) > kStraightJacobian) return {};
+  const auto coefficients = jacobian_coefficients(nodes);
+  const double least = *std::min_element(coefficients.begin(), coefficients.end());
+  const double straight = six_volumes(nodes[0], nodes[1], nodes[2], nodes[3]);
+  return {straight == 0 ? 0 : least / std::abs(straight), has_positive_jacobian(nodes)};
+}
+
+void refuse_mid_nodes(const TetMesh& mesh) {
+  if (mesh.is_second_order())
+    throw InputError("the mesh is of second order already; take it back to first order first");
+}
+
+/// What is proven of the result, by its coordinates.
+void prove(const TetMesh& mesh, SecondOrderSummary& summary, const RunContext& context) {
+  const JacobianSummary found = check_jacobians(mesh, context);
+  summary.least_scaled_jacobian = found.least_scaled_jacobian;
+  summary.least_tet = found.least_tet;
+  if (found.invalid == 0) return;
+  const InvalidElement& first = found.first.front();
+  throw MeshingError(fmt::format(
+      "element {} at ({:.6g}, {:.6g}, {:.6g}) is so flat that rounding turns it when its edges get nodes in their "
+      "middle "
+      "({} such elements): no second order for this mesh. Improve it first, or move the model to the origin.",
+      first.tet, first.at.x, first.at.y, first.at.z, found.invalid));
+}
+
+// Where curves are by angle alone: patches may meet where the surface is smooth.
+Features sharp_features(const KnownSurface& surface, double feature_angle) {
+  if (surface.mesh().patch.empty()) return surface.features();
+  return detect_features({surface.mesh().points, surface.mesh().triangles, {}, {}, {}}, surface.edges(), feature_angle);
+}
+
+SurfaceMesh boundary_of_mesh(const TetMesh& mesh) {
+  return {mesh.points, mesh.boundary, {}, {}, {}};
+}
+
+}  // namespace
+
+SecondOrderSummary curve_to_surface(TetMesh& mesh, const std::vector<Edge>& sharp, const KnownSurface& surface,
+                                    double feature_angle, const RunContext& context) {
+  refuse_mid_nodes(mesh);
+  SecondOrderSummary summary;
+  curved::SmoothSurface smooth(surface.mesh(), surface.edges(), surface.tree(), sharp_features(surface, feature_angle));
+  const curved::Bends bends = curved::find_bends(mesh, sharp, smooth);
+  context.check();
+  curved::move_corners(mesh, bends.corners, summary, context);
+  const curved::TetEdges edges = curved::add_straight_mid_nodes(mesh);
+  curved::bend_edges(mesh, edges, bends.edges, summary, context);
+  prove(mesh, summary, context);
+  return summary;
+}
+
+double curved_volume(const TetMesh& mesh) {
+  std::vector<double> volumes(mesh.tets.size());
+  parallel_for(volumes.size(), [&](std::size_t t) {
+    const QuadraticTet nodes = quadratic_nodes(mesh, static_cast<TetIndex>(t));
+    volumes[t] = signed_volume(nodes[0], nodes[1], nodes[2], nodes[3]);
+    if (least_scaled_jacobian_bound(nodes) > kStraightJacobian) return;
+    const auto coefficients = jacobian_coefficients(nodes);
+    // The integral of a polynomial over the unit tetrahedron is the mean of its coefficients over six.
+    volumes[t] = std::accumulate(coefficients.begin(), coefficients.end(), 0.0) / (6.0 * coefficients.size());
+  });
+  return std::accumulate(volumes.begin(), volumes.end(), 0.0);
+}
+
+SecondOrderSummary add_straight_edges(TetMesh& mesh, const RunContext& context) {
+  refuse_mid_nodes(mesh);
+  SecondOrderSummary summary;
+  const curved::TetEdges edges = curved::add_straight_mid_nodes(mesh);
+  summary.edges = summary.straight = edges.size();
+  prove(mesh, summary, context);
+  return summary;
+}
+
+SecondOrderSummary make_second_order(TetMesh& mesh, const SurfaceMesh* surface, double feature_angle,
+                                     const RunContext& context) {
+  const ThreadLimit limit(context.threads);
+  if (!surface) return add_straight_edges(mesh, context);
+  const KnownSurface known(*surface, feature_angle);
+  return curve_to_surface(mesh, detect_features(boundary_of_mesh(mesh), feature_angle).edges, known, feature_angle,
+                          context);
+}
+
+void make_linear(TetMesh& mesh) {
+  if (!mesh.is_second_order()) return;
+  VertexIndex corners = 0;
+  for (const Tet& t : mesh.tets) corners = std::max(corners, 1 + *std::max_element(t.begin(), t.end()));
+  mesh.points.resize(corners);
+  mesh.mid_nodes.clear();
+  for (NamedSet& set : mesh.sets)
+    if (set.kind == NamedSet::Kind::kNodes) std::erase_if(set.members, [&](std::uint32_t v) { return v >= corners; });
+}
+
+JacobianSummary check_jacobians(const TetMesh& mesh, const RunContext& context) {
+  JacobianSummary summary;
+  if (!mesh.is_second_order()) return summary;
+  const ThreadLimit limit(context.threads);
+  std::vector<Judged> judged(mesh.tets.size());
+  parallel_for(judged.size(), [&](std::size_t t) { judged[t] = judge(mesh, static_cast<TetIndex>(t)); });
+  constexpr std::size_t kListed = 10;
+  for (TetIndex t = 0; t < judged.size(); ++t) {
+    if (summary.least_tet == kNone || judged[t].scaled < summary.least_scaled_jacobian) {
+      summary.least_scaled_jacobian = judged[t].scaled;
+      summary.least_tet = t;
+    }
+    if (judged[t].valid) continue;
+    ++summary.invalid;
+    const auto& [a, b, c, d] = mesh.tets[t];
+    if (summary.first.size() < kListed)
+      summary.first.push_back(
+          {t, centroid(mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]), judged[t].scaled});
+  }
+  return summary;
+}
+
+}  // namespace octafront

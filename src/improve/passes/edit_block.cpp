@@ -1,0 +1,129 @@
+#include "improve/passes/edit_block.h"
+
+#include "base/core/validate.h"
+
+namespace octafront::improve {
+
+EditBlock::EditBlock(EditMesh& mesh, VertexIndex first, VertexIndex count, std::vector<TetIndex> free_tets,
+                     std::vector<VertexIndex> free_points)
+    : mesh_(mesh),
+      complex_(mesh.complex_),
+      first_(first),
+      count_(count),
+      mark_(mesh.complex_.last_mark),
+      free_tets_(std::move(free_tets)),
+      free_points_(std::move(free_points)) {}
+
+bool EditBlock::star(VertexIndex v, std::vector<HalfFace>& faces) {
+  faces.clear();
+  const std::uint32_t mark = next_mark();
+  const TetIndex first = complex_.tet_at[v];
+  if (!allowed(first)) return false;
+  complex_.marks[first] = mark;
+  faces.push_back(4 * first + mesh_.corner_of(first, v));
+  for (std::size_t k = 0; k < faces.size(); ++k) {
+    const TetIndex t = faces[k] / 4;
+    const int i = static_cast<int>(faces[k] % 4);
+    for (int j = 1; j < 4; ++j) {
+      const HalfFace o = complex_.across[4 * t + ((i + j) & 3)];
+      if (is_outside(o) || complex_.marks[o / 4] == mark) continue;
+      if (!allowed(o / 4)) return false;
+      complex_.marks[o / 4] = mark;
+      faces.push_back(4 * (o / 4) + mesh_.corner_of(o / 4, v));
+    }
+  }
+  return true;
+}
+
+bool EditBlock::edge_ring(TetIndex t, int i, int j, EdgeRing& out) {
+  const TetComplex::Turn turn = complex_.turn_around(t, i, j, out, [&](TetIndex next) { return allowed(next); });
+  if (turn != TetComplex::Turn::kOpen) return turn == TetComplex::Turn::kClosed;
+  // An open fan: what lies on the other side of t goes before it.
+  TetIndex at = t;
+  VertexIndex from = out.ring[0], to = out.ring[1];
+  for (;;) {
+    const HalfFace o = complex_.across[4 * at + mesh_.corner_of(at, to)];
+    if (is_outside(o)) return true;
+    if (!allowed(o / 4)) return false;
+    at = o / 4;
+    to = from;
+    from = complex_.tets[at][o % 4];
+    out.tets.insert(out.tets.begin(), at);
+    out.ring.insert(out.ring.begin(), from);
+  }
+}
+
+bool EditBlock::edge_ring_where_worst(TetIndex t, int i, int j, std::size_t longest, EdgeRing& out) {
+  return complex_.turn_around(t, i, j, out, [&](TetIndex next) {
+    return out.tets.size() < longest && allowed(next) && !mesh_.worse(next, t);
+  }) == TetComplex::Turn::kClosed;
+}
+
+TetIndex EditBlock::slot() {
+  if (whole_ && complex_.free.empty()) mesh_.reserve_tets(1);
+  std::vector<TetIndex>& free = free_tets();
+  const TetIndex t = free.back();
+  free.pop_back();
+  return t;
+}
+
+bool EditBlock::replace(std::span<const TetIndex> old_tets, std::span<const Tet> new_tets,
+                        std::span<const Shape> shapes, std::vector<TetIndex>& created, const BoundaryChange* change) {
+  if (new_tets.size() > old_tets.size() && !has_room(new_tets.size() - old_tets.size())) return false;
+  rim_.reset(4 * (old_tets.size() + new_tets.size()));
+  for (const TetIndex t : old_tets) rim_.open(complex_, t);
+  const bool has_regions = mesh_.had_regions_;
+  const std::uint32_t region = has_regions ? mesh_.region_[old_tets[0]] : 0;
+  for (const TetIndex t : old_tets)
+    for (const VertexIndex v : complex_.tets[t]) complex_.tet_at[v] = kNone;
+  if (change) change_boundary(*change);
+  created.clear();
+  for (std::size_t k = 0; k < new_tets.size(); ++k) {
+    const TetIndex t = k < old_tets.size() ? old_tets[k] : slot();
+    complex_.tets[t] = new_tets[k];
+    mesh_.shapes_[t] = shapes[k];
+    if (has_regions) mesh_.region_[t] = region;
+    created.push_back(t);
+  }
+  for (std::size_t k = new_tets.size(); k < old_tets.size(); ++k) {
+    complex_.tets[old_tets[k]] = {kNone, kNone, kNone, kNone};
+    mesh_.shapes_[old_tets[k]] = kNoShape;
+    free_tets().push_back(old_tets[k]);
+  }
+  for (const TetIndex t : created) {
+    for (const VertexIndex v : complex_.tets[t]) complex_.tet_at[v] = t;
+    rim_.tie(complex_, t);
+  }
+  validate(mesh_, created);
+  return true;
+}
+
+void EditBlock::change_boundary(const BoundaryChange& change) {
+  std::vector<Triangle>& boundary = mesh_.rest_.boundary;
+  for (const HalfFace b : change.gone) {
+    rim_.toggle(boundary[b - kFirstOutside], kNone);
+    boundary[b - kFirstOutside] = {kNone, kNone, kNone};
+  }
+  for (const auto& [number, corners] : change.made) {
+    boundary[number - kFirstOutside] = corners;
+    // Where a tet goes without another in its place, the triangle lies on its neighbour.
+    const HalfFace behind = rim_.toggle(corners, number);
+    if (behind == kNone) continue;
+    complex_.across[behind] = number;
+    for (const VertexIndex v : corners) complex_.tet_at[v] = behind / 4;
+  }
+}
+
+VertexIndex EditBlock::add_vertex(Vec3 p, VertexIndex beside, std::size_t tets) {
+  if (!has_room(tets)) return kNone;
+  std::vector<VertexIndex>& free = whole_ ? mesh_.free_points_ : free_points_;
+  if (whole_ && free.empty()) mesh_.reserve_points(1);
+  if (free.empty()) return kNone;
+  const VertexIndex v = free.back();
+  free.pop_back();
+  mesh_.points_[v] = p;
+  mesh_.key_[v] = mesh_.key_[beside];
+  return v;
+}
+
+}  // namespace octafront::improve

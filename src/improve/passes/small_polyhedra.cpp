@@ -1,0 +1,125 @@
+// Reconnection of small polyhedra: some tetrahedra around a bad one go, and the space that they filled is filled anew
+// from the same vertices as well as a search can. It finds changes that no row of flips reaches without getting worse
+// on the way.
+
+#include "improve/passes/edit_blocks.h"
+#include "improve/passes/passes.h"
+#include "improve/shape/polyhedron_search.h"
+
+#include <algorithm>
+#include <array>
+
+namespace octafront::improve {
+namespace {
+
+constexpr float kLeastGainOfPolyhedron = 0.01f;
+
+/// A small cavity is quickly searched; a larger one has more ways to be filled.
+constexpr std::array<std::size_t, 2> kCorners{8, PolyhedronSearch::kMostCorners};
+
+class PolyhedronReconnector {
+ public:
+  PolyhedronReconnector(EditBlock& block, const Floor& floor)
+      : block_(block), mesh_(block.mesh()), floor_(floor), search_(mesh_.objective()) {}
+
+  /// True if tet t and others around it were replaced by better ones; those are in created().
+  bool improve(TetIndex t) {
+    std::size_t last = 0;
+    tets_.assign(1, t);
+    corners_.assign(mesh_.tet(t).begin(), mesh_.tet(t).end());
+    for (const std::size_t most : kCorners) {
+      grow(most);
+      if (tets_.size() == last) continue;
+      last = tets_.size();
+      if (list_faces() && search_.fill(points_, faces_, floor_, mesh_.shape(t).score + kLeastGainOfPolyhedron))
+        return commit();
+    }
+    return false;
+  }
+
+  const std::vector<TetIndex>& created() const { return created_; }
+
+ private:
+  bool holds(TetIndex t) const { return std::find(tets_.begin(), tets_.end(), t) != tets_.end(); }
+  bool is_corner(VertexIndex v) const { return std::find(corners_.begin(), corners_.end(), v) != corners_.end(); }
+
+  /// Adds neighbours until none fits: first those without a new corner, else the worst.
+  void grow(std::size_t most_corners) {
+    for (;;) {
+      TetIndex next = kNone;
+      bool next_is_free = false;
+      for (const TetIndex t : tets_)
+        for (int i = 0; i < 4; ++i) {
+          const HalfFace across = mesh_.across(4 * t + i);
+          if (is_outside(across) || holds(across / 4)) continue;
+          const bool free = is_corner(mesh_.tet(across / 4)[across % 4]);
+          if (!free && (next_is_free || corners_.size() >= most_corners)) continue;
+          const TetIndex behind = block_.behind(4 * t + i);
+          if (behind == kNone) continue;
+          if (next == kNone || free > next_is_free || mesh_.worse(behind, next)) next = behind, next_is_free = free;
+        }
+      if (next == kNone || tets_.size() >= kMostTets) return;
+      tets_.push_back(next);
+      for (const VertexIndex v : mesh_.tet(next))
+        if (!is_corner(v)) corners_.push_back(v);
+    }
+  }
+
+  PolyhedronSearch::Corner number_of(VertexIndex v) const {
+    return static_cast<PolyhedronSearch::Corner>(std::find(corners_.begin(), corners_.end(), v) - corners_.begin());
+  }
+
+  /// False if the polyhedron has too many faces.
+  bool list_faces() {
+    faces_.clear();
+    for (const TetIndex t : tets_)
+      for (int i = 0; i < 4; ++i) {
+        const HalfFace across = mesh_.across(4 * t + i);
+        if (!is_outside(across) && holds(across / 4)) continue;
+        if (faces_.size() == PolyhedronSearch::kMostFaces) return false;
+        const Tet& c = mesh_.tet(t);
+        const auto& f = kTetFaces[i];
+        faces_.push_back({number_of(c[f[0]]), number_of(c[f[1]]), number_of(c[f[2]])});
+      }
+    points_.clear();
+    for (const VertexIndex v : corners_) points_.push_back(mesh_.point(v));
+    return true;
+  }
+
+  bool commit() {
+    new_tets_.clear();
+    shapes_.clear();
+    for (const PolyhedronSearch::Made& m : search_.made()) {
+      Tet& t = new_tets_.emplace_back();
+      for (int k = 0; k < 4; ++k) t[k] = corners_[m.corners[k]];
+      shapes_.push_back(m.shape);
+    }
+    return block_.replace(tets_, new_tets_, shapes_, created_);
+  }
+
+  static constexpr std::size_t kMostTets = 24;
+
+  EditBlock& block_;
+  EditMesh& mesh_;
+  Floor floor_;
+  PolyhedronSearch search_;
+  std::vector<TetIndex> tets_, created_;
+  std::vector<VertexIndex> corners_;
+  std::vector<Vec3> points_;
+  std::vector<PolyhedronSearch::Face> faces_;
+  std::vector<Tet> new_tets_;
+  std::vector<Shape> shapes_;
+};
+
+}  // namespace
+
+PassResult reconnect_small_polyhedra(EditMesh& mesh, float threshold, const RunContext& context) {
+  const Floor floor = mesh.floor();
+  return for_each_block(mesh, tets_below(mesh, threshold), context,
+                        [&](EditBlock& block, const std::vector<TetIndex>& tets, std::vector<TetIndex>& left) {
+                          PolyhedronReconnector reconnector(block, floor);
+                          return improve_each(reconnector, block, tets, threshold, left);
+                        });
+}
+
+}  // namespace octafront::improve

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <octafront/surface_mesh.h>
+#include <octafront/tet_mesh.h>
+
+#include "base/core/stage.h"
+#include "base/geometry/leeway.h"
+#include "improve/boundary/flat_walls.h"
+#include "improve/boundary/input_force.h"
+
+namespace octafront {
+
+/// What raise_flat() did.
+struct RaisedFlat {
+  std::uint64_t vertices = 0;  ///< that moved
+  double largest_move = 0;     ///< input units
+};
+
+/// What holds corners back.
+struct RaiseLimits {
+  double distance = 0;                         ///< input units
+  const Leeway* leeway = nullptr;              ///< no farther than that either; null: whatever it is
+  improve::FlatWalls* walls = nullptr;         ///< whose vertices stay; null: there are none
+  const improve::InputForce* force = nullptr;  ///< elements of thin walls and wedges stay as they are; null: none are
+};
+
+/// Moves corners of elements below beta .2 or 10 degrees, where those around lack less in sum then. Where sheets nearly
+/// touch, all four corners lie on surfaces, along which no place is better; they leave them, within the limits and by
+/// .3 of the edges around at most. No element is inverted and no triangle
+/// crosses another (exact signs). `filled`: the surface or complex that the mesh fills, whose vertices are the mesh's
+/// first ones.
+RaisedFlat raise_flat(TetMesh& mesh, const SurfaceMesh& filled, const RaiseLimits& limits, const Stage& stage);
+
+}  // namespace octafront

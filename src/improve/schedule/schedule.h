@@ -1,0 +1,33 @@
+#pragma once
+
+// improve/schedule: better elements in the same body. Takes a valid tetrahedral mesh, leaves a valid one: vertices
+// have moved, edges and faces have been exchanged; those of the boundary only where the surface is given on which
+// they may. Single passes are in passes.h, their order in schedule.cpp, what an element is worth in shape.h, the mesh
+// they work on in edit_mesh.h. What is flat even then gets room off the surface, at the very end: raise_flat.h.
+
+#include <octafront/options.h>
+#include <octafront/size_field.h>
+#include <octafront/tet_mesh.h>
+
+#include "base/core/stage.h"
+#include "improve/boundary/boundary_guide.h"
+
+namespace octafront {
+
+/// Throws OptionError for values out of their range.
+void check_improve_options(const ImproveOptions& options);
+
+/// Makes the elements of a valid mesh better, by the schedule of options.level. Without `input` the boundary does
+/// not change, and is the user's own. With it, and unless options.move_boundary is off, vertices of the boundary slide
+/// along the surface or curve that they lie on, corners stay, and edges inside patches may turn; the boundary stays as
+/// near to the input as it was (see BoundaryGuide::keeps_truth), free of self-intersections (exactly), with the same
+/// number of triangles, each of the same patch, unless the input has a tolerance: see edit_boundary(). Regions stay
+/// with what they belong to. No pass makes the worst element worse, and none inverts one (exact signs). On an exception
+/// the mesh is as it was. Throws OptionError, Cancelled, and MeshingError if the faces of the mesh do not match. The
+/// report gets, for each pass, the places looked at, those changed, and CPU time per element. Returns true if the
+/// boundary changed; `features`, where given, then become those of the new boundary, in its numbering (they may be
+/// input->of_mesh).
+bool improve_mesh(TetMesh& mesh, const improve::BoundaryInput* input, const ImproveOptions& options, const Stage& stage,
+                  Features* features = nullptr);
+
+}  // namespace octafront

@@ -1,0 +1,249 @@
+#include "improve/shape/edit_mesh.h"
+
+#include <octafront/error.h>
+
+#include "base/core/groups.h"
+#include "base/core/parallel.h"
+#include "base/core/validate.h"
+#include "base/geometry/predicates.h"
+#include "base/geometry/spatial_order.h"
+#include "base/mesh/index_range.h"
+
+#include <algorithm>
+#include <array>
+
+#include <fmt/core.h>
+
+namespace octafront::improve {
+
+namespace {
+
+/// Room for the slots that blocks will ask for: otherwise the first to ask has the whole mesh copied.
+constexpr std::size_t kMeshRoomPart = 16, kLeastRoom = 1024;
+
+void renumber_faces(TetMesh& mesh, const std::vector<VertexIndex>& new_of_old) {
+  for (std::vector<Triangle>* faces : {&mesh.boundary, &mesh.interfaces})
+    for (Triangle& t : *faces)
+      for (VertexIndex& v : t) v = new_of_old[v];
+}
+
+/// The tets by their least corner.
+Groups<> group_by_least_corner(const std::vector<Tet>& tets, std::size_t vertices) {
+  return group_by_owner(vertices, static_cast<TetIndex>(tets.size()), [&](TetIndex t) {
+    return std::min({tets[t][0], tets[t][1], tets[t][2], tets[t][3]});
+  });
+}
+
+}  // namespace
+
+EditMesh::EditMesh(TetMesh&& mesh, ImproveOptions::Objective objective) : objective_(objective) {
+  require_in_range(mesh.tets.size(), kMostTetsToImprove, "tetrahedra to improve");
+  take(mesh);
+  rest_ = std::move(mesh);
+  connect();
+  compute_shapes();
+}
+
+void EditMesh::take(TetMesh& mesh) {
+  original_ = spatial_order(mesh.points);
+  std::vector<VertexIndex> new_of_old(mesh.points.size());
+  points_.reserve(mesh.points.size());
+  key_.reserve(mesh.points.size());
+  for (VertexIndex v = 0; v < original_.size(); ++v) {
+    new_of_old[original_[v]] = v;
+    points_.push_back(mesh.points[original_[v]]);
+    key_.push_back(v);
+  }
+  parallel_for(mesh.tets.size(), [&](std::size_t t) {
+    for (VertexIndex& v : mesh.tets[t]) v = new_of_old[v];
+  });
+  renumber_faces(mesh, new_of_old);
+  had_regions_ = !mesh.region.empty();
+  const std::size_t room = mesh.tets.size() + mesh.tets.size() / kMeshRoomPart + kLeastRoom;
+  complex_.tets.reserve(room);
+  complex_.across.reserve(4 * room);
+  complex_.marks.reserve(room);
+  shapes_.reserve(room);
+  if (had_regions_) region_.reserve(room);
+  const Groups<> by_corner = group_by_least_corner(mesh.tets, points_.size());
+  for (const TetIndex t : by_corner.items()) {
+    complex_.tets.push_back(mesh.tets[t]);
+    if (had_regions_) region_.push_back(mesh.region[t]);
+  }
+  mesh.tets = std::vector<Tet>();
+  mesh.points = std::vector<Vec3>();
+}
+
+void EditMesh::connect() {
+  complex_.connect(points_.size(), rest_.boundary);
+  complex_.part(points_.size(), rest_.interfaces, kBetweenRegions);
+  on_boundary_.assign(points_.size(), 0);
+  for (const Triangle& t : rest_.boundary)
+    for (const VertexIndex v : t) on_boundary_[v] = 1;
+  for (const Triangle& t : rest_.interfaces)
+    for (const VertexIndex v : t) on_boundary_[v] = 1;
+  const auto& across = complex_.across;
+  if (const std::size_t h = parallel_find(across.size(), [&](std::size_t i) { return across[i] == kNone; });
+      h < across.size())
+    throw_unmatched(static_cast<HalfFace>(h));
+  if (!had_regions_) return;
+  for (HalfFace h = 0; h < across.size(); ++h)
+    if (const HalfFace o = across[h]; !is_outside(o) && region_[h / 4] != region_[o / 4]) part(h, o);
+}
+
+void EditMesh::throw_unmatched(HalfFace h) const {
+  const Triangle f = face_key(complex_.face(h));
+  throw MeshingError(fmt::format("face ({}, {}, {}) of tetrahedron {} is neither shared nor on the boundary", f[0],
+                                 f[1], f[2], h / 4));
+}
+
+void EditMesh::part(HalfFace h, HalfFace other) {
+  for (const HalfFace side : {h, other}) complex_.across[side] = kBetweenRegions;
+  for (const VertexIndex v : complex_.face(h)) on_boundary_[v] = 1;
+}
+
+void EditMesh::compute_shapes() {
+  shapes_.resize(complex_.tets.size());
+  parallel_ranges(shapes_.size(), Split::kAdaptive, [this](std::size_t begin, std::size_t end) {
+    ShapeBatch batch(objective_);
+    for (std::size_t first = begin; first < end; first += ShapeBatch::kBatch) {
+      batch.size = 0;
+      for (std::size_t t = first; t < std::min<std::size_t>(end, first + ShapeBatch::kBatch); ++t) {
+        const Tet& c = complex_.tets[t];
+        batch.add(points_[c[0]], points_[c[1]], points_[c[2]], points_[c[3]]);
+      }
+      batch.evaluate();
+      for (int i = 0; i < batch.size; ++i) shapes_[first + static_cast<std::size_t>(i)] = batch.shape(i);
+    }
+  });
+}
+
+std::vector<VertexIndex> EditMesh::numbers_taken() const {
+  const std::vector<VertexIndex> here = numbers_here();
+  std::vector<VertexIndex> taken;
+  for (VertexIndex v = 0; v < points_.size(); ++v)
+    if (complex_.tet_at[v < here.size() ? here[v] : v] != kNone) taken.push_back(v < here.size() ? v : kNone);
+  return taken;
+}
+
+TetMesh EditMesh::release() {
+  TetMesh mesh = std::move(rest_);
+  // Vertices go back to where they were; those that improvement added follow.
+  std::vector<VertexIndex> here = numbers_here();
+  for (auto v = static_cast<VertexIndex>(here.size()); v < points_.size(); ++v) here.push_back(v);
+  std::vector<VertexIndex> new_of_old(points_.size(), kNone);
+  for (const VertexIndex v : here)
+    if (complex_.tet_at[v] != kNone) {
+      new_of_old[v] = static_cast<VertexIndex>(mesh.points.size());
+      mesh.points.push_back(points_[v]);
+    }
+  std::size_t kept = 0;
+  for (TetIndex t = 0; t < complex_.tets.size(); ++t) {
+    if (!alive(t)) continue;
+    if (had_regions_) region_[kept] = region_[t];
+    for (int i = 0; i < 4; ++i) complex_.tets[kept][i] = new_of_old[complex_.tets[t][i]];
+    ++kept;
+  }
+  complex_.tets.resize(kept);
+  if (had_regions_) region_.resize(kept);
+  drop_removed_triangles(mesh);
+  renumber_faces(mesh, new_of_old);
+  mesh.tets = std::move(complex_.tets);
+  if (had_regions_) mesh.region = std::move(region_);
+  return mesh;
+}
+
+void EditMesh::drop_removed_triangles(TetMesh& mesh) {
+  const auto last_into = [](auto& list, std::size_t t) {
+    if (list.empty()) return;
+    list[t] = list.back();
+    list.pop_back();
+  };
+  for (std::size_t t = mesh.boundary.size(); t-- > 0;) {
+    if (mesh.boundary[t][0] != kNone) continue;
+    last_into(mesh.boundary, t);
+    last_into(mesh.patch, t);
+    last_into(mesh.source, t);
+  }
+}
+
+void EditMesh::move(VertexIndex v, Vec3 to, std::span<const HalfFace> star_faces, const ShapeBatch& shapes) {
+  points_[v] = to;
+  for (std::size_t k = 0; k < star_faces.size(); ++k) shapes_[star_faces[k] / 4] = shapes.shape(static_cast<int>(k));
+  for (std::size_t k = 0; kValidate && k < star_faces.size(); ++k) validate(*this, std::array{star_faces[k] / 4});
+}
+
+std::vector<VertexIndex> EditMesh::numbers_here() const {
+  std::vector<VertexIndex> here(original_.size());
+  for (VertexIndex v = 0; v < original_.size(); ++v) here[original_[v]] = v;
+  return here;
+}
+
+void EditMesh::reserve_tets(std::size_t more) {
+  const std::size_t first = complex_.tets.size(), last = first + more;
+  complex_.tets.resize(last, {kNone, kNone, kNone, kNone});
+  complex_.across.resize(4 * last);
+  shapes_.resize(last, kNoShape);
+  if (had_regions_) region_.resize(last);
+  complex_.marks.resize(last, 0);
+  for (std::size_t t = last; t-- > first;) complex_.free.push_back(static_cast<TetIndex>(t));
+}
+
+void EditMesh::reserve_points(std::size_t more) {
+  const std::size_t first = points_.size(), last = first + more;
+  points_.resize(last);
+  complex_.tet_at.resize(last, kNone);
+  on_boundary_.resize(last, 0);
+  key_.resize(last, 0);
+  for (std::size_t v = last; v-- > first;) free_points_.push_back(static_cast<VertexIndex>(v));
+}
+
+std::optional<std::string> EditMesh::wrong_at_tet(TetIndex t) const {
+  if (!alive(t)) return shapes_[t] == kNoShape ? std::nullopt : std::optional{fmt::format("slot {} has a shape", t)};
+  for (HalfFace h = 4 * t; h < 4 * t + 4; ++h) {
+    const HalfFace o = across(h);
+    if (!is_outside(o) || o == kBetweenRegions) continue;
+    const std::uint32_t b = o - kFirstOutside;
+    if (b >= rest_.boundary.size() || face_key(rest_.boundary[b]) != face_key(complex_.face(h)))
+      return fmt::format("across face {} of tetrahedron {} lies no boundary triangle on its corners", h % 4, t);
+  }
+  const Tet& c = tet(t);
+  const Vec3 p = point(c[0]), q = point(c[1]), r = point(c[2]), s = point(c[3]);
+  if (orient3d(p, q, r, s) <= 0) return fmt::format("tetrahedron {} is not positive", t);
+  if (shapes_[t] != shape_of(p, q, r, s, objective_))
+    return fmt::format("the shape of tetrahedron {} is not its own", t);
+  return std::nullopt;
+}
+
+std::optional<std::string> EditMesh::first_inconsistency() const {
+  if (auto wrong = complex_.first_inconsistency()) return wrong;
+  for (TetIndex t = 0; t < slots(); ++t)
+    if (auto wrong = wrong_at_tet(t)) return wrong;
+  return std::nullopt;
+}
+
+std::optional<std::string> EditMesh::first_inconsistency(std::span<const TetIndex> touched) const {
+  if (auto wrong = complex_.first_inconsistency(touched)) return wrong;
+  for (const TetIndex t : touched)
+    if (auto wrong = wrong_at_tet(t)) return wrong;
+  return std::nullopt;
+}
+
+Floor EditMesh::floor() const {
+  return parallel_sum(shapes_.size(), [this](std::size_t begin, std::size_t end) {
+    Floor f;
+    for (std::size_t t = begin; t < end; ++t) f.add(shapes_[t]);
+    return f;
+  });
+}
+
+double EditMesh::beta_sum() const {
+  return parallel_sum(shapes_.size(), [this](std::size_t begin, std::size_t end) {
+    double sum = 0;
+    for (std::size_t t = begin; t < end; ++t)
+      if (complex_.alive(static_cast<TetIndex>(t))) sum += shapes_[t].beta;
+    return sum;
+  });
+}
+
+}  // namespace octafront::improve

@@ -1,0 +1,117 @@
+#pragma once
+
+// A tetrahedral mesh that can be changed in place: a TetComplex, with the places of the vertices and what its elements
+// are worth. Taken from a TetMesh and given back to it; boundary triangles keep their number, patch and source
+// throughout, as long as they are there. Inside, vertices and tets are numbered along a space-filling curve, for the
+// cache. Vertices move here; connections are walked and changed by way of an EditBlock (edit_block.h).
+
+#include <octafront/tet_mesh.h>
+
+#include "base/mesh/tet_complex.h"
+#include "improve/shape/shape.h"
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace octafront::improve {
+
+/// What lies across a face between two regions: such faces are kept like those of the boundary. Across those lies
+/// kFirstOutside + the number of the boundary triangle.
+inline constexpr HalfFace kBetweenRegions = kNone - 1;
+
+class EditMesh {
+ public:
+  /// Requires a valid mesh. Throws MeshingError if there are more than kMostTetsToImprove, or if faces do not match
+  /// (with their corners).
+  explicit EditMesh(TetMesh&& mesh, ImproveOptions::Objective objective = ImproveOptions::Objective::kBalanced);
+
+  /// The mesh back, compacted: vertices in the order they came in, without unused ones, new ones behind; tets in order
+  /// of space; boundary triangles by their numbers, the last ones in the place of those that went.
+  TetMesh release();
+  /// For each vertex of the mesh that release() is to give, its number in the mesh that was taken, or kNone if new.
+  std::vector<VertexIndex> numbers_taken() const;
+
+  /// What the scores of the shapes say.
+  ImproveOptions::Objective objective() const { return objective_; }
+  std::size_t slots() const { return complex_.tets.size(); }
+  std::size_t vertices() const { return points_.size(); }
+  std::size_t live_tets() const { return complex_.tets.size() - complex_.free.size(); }
+  bool alive(TetIndex t) const { return complex_.alive(t); }
+  const Tet& tet(TetIndex t) const { return complex_.tets[t]; }
+  Vec3 point(VertexIndex v) const { return points_[v]; }
+  const Shape& shape(TetIndex t) const { return shapes_[t]; }
+  HalfFace across(HalfFace h) const { return complex_.across[h]; }
+  bool on_boundary(VertexIndex v) const { return on_boundary_[v] != 0; }
+  /// Any tet at v; kNone if v is no longer used.
+  TetIndex tet_of(VertexIndex v) const { return complex_.tet_at[v]; }
+
+  /// Patch of the boundary triangle that lies across (see across()).
+  std::uint32_t boundary_patch(HalfFace across) const {
+    if (across == kBetweenRegions) return kNone;
+    return rest_.patch.empty() ? 0 : rest_.patch[across - kFirstOutside];
+  }
+  /// The triangles of the boundary, by number from 0: the surface that LiveTriangles looks at.
+  std::size_t triangle_count() const { return rest_.boundary.size(); }
+  bool is_removed(std::size_t triangle) const { return rest_.boundary[triangle][0] == kNone; }
+  Triangle triangle(std::size_t t) const { return rest_.boundary[t]; }
+  Vec3 corner(std::size_t t, int i) const { return points_[rest_.boundary[t][i]]; }
+  /// The number that a vertex had in the mesh that was taken. Requires that it was there.
+  VertexIndex number_taken(VertexIndex v) const { return original_[v]; }
+  /// For each vertex of the mesh that was taken, its number here.
+  std::vector<VertexIndex> numbers_here() const;
+
+  bool has(TetIndex t, VertexIndex v) const { return complex_.has(t, v); }
+  /// Corner of t at which v lies. Requires that it does.
+  int corner_of(TetIndex t, VertexIndex v) const { return complex_.corner_of(t, v); }
+
+  /// Moves a vertex and sets the shapes of its star (faces as from star(), shapes in the same order).
+  void move(VertexIndex v, Vec3 to, std::span<const HalfFace> star_faces, const ShapeBatch& shapes);
+
+  /// The first thing that is wrong: in the complex, across a boundary face, a tet that is not positive, a shape that is
+  /// not that of its tet.
+  std::optional<std::string> first_inconsistency() const;
+  /// Looks at these tets only.
+  std::optional<std::string> first_inconsistency(std::span<const TetIndex> touched) const;
+
+  /// Worst of each measure over the mesh.
+  Floor floor() const;
+  /// Sum of beta over the mesh, in a fixed order.
+  double beta_sum() const;
+
+  /// t is worse than `than`; of equals, the one with the lower number.
+  bool worse(TetIndex t, TetIndex than) const {
+    const float a = shapes_[t].score, b = shapes_[than].score;
+    return a != b ? a < b : t < than;
+  }
+
+ private:
+  friend class EditBlock;
+  friend class EditBlocks;
+
+  /// More slots, on top of the free lists, the first ones uppermost.
+  void reserve_tets(std::size_t more);
+  void reserve_points(std::size_t more);
+  void take(TetMesh& mesh);
+  std::optional<std::string> wrong_at_tet(TetIndex t) const;
+  [[noreturn]] void throw_unmatched(HalfFace h) const;
+  void part(HalfFace h, HalfFace other);
+  void connect();
+  static void drop_removed_triangles(TetMesh& mesh);
+  void compute_shapes();
+
+  ImproveOptions::Objective objective_;
+  TetComplex complex_;
+  std::vector<Vec3> points_;
+  std::vector<Shape> shapes_;
+  std::vector<std::uint32_t> region_;  ///< per slot; empty if there were none
+  std::vector<std::uint8_t> on_boundary_;
+  std::vector<VertexIndex> free_points_;  ///< numbers of no vertex, behind those that were taken
+  std::vector<VertexIndex> key_;          ///< for each vertex: a number that grows along the space-filling curve
+  std::vector<VertexIndex> original_;     ///< the number of each vertex in the mesh that was taken
+  TetMesh rest_;                          ///< boundary, patches, sources, names: carried through; no tets, no points
+  bool had_regions_ = false;
+};
+
+}  // namespace octafront::improve

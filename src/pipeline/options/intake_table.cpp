@@ -1,0 +1,141 @@
+#include <octafront/domain.h>
+
+#include "pipeline/options/rows.h"
+
+namespace octafront {
+
+namespace {
+
+using namespace options;
+
+OptionInfo about_intake(std::string_view name, std::string_view group, std::string_view help,
+                        std::string_view field = {}) {
+  return {name, field.empty() ? name : field, group, "mesh surface size", OptionInfo::Kind::kNumber, {}, help};
+}
+
+template <class Access>
+Row<IntakeOptions> intake_row(const OptionInfo& info, Access field) {
+  return row_of_field<IntakeOptions>(info, field);
+}
+
+template <class Value, class Access>
+Row<IntakeOptions> intake_choice(const OptionInfo& info, Access field, const Names<Value>& names) {
+  return row_of_choice<IntakeOptions, Value>(info, field, names);
+}
+
+std::vector<Row<IntakeOptions>> material_rows() {
+  using Cells = ComplexOptions::Cells;
+  using Nested = ComplexOptions::Nested;
+  using Overlap = IntakeOptions::Overlap;
+  constexpr const char* kGroup = "Several materials";
+  return {
+      intake_choice<Cells>(
+          about_intake("cells", kGroup,
+                       "auto: cells between inner walls are regions, plain surfaces stay what they are; regions: "
+                       "every enclosed cell, also where walls lie double or cross; merge: one region without the "
+                       "walls"),
+          [](auto& o) -> auto& { return o.complex.cells; },
+          {{"auto", Cells::kAuto}, {"regions", Cells::kRegions}, {"merge", Cells::kMerge}}),
+      intake_choice<Nested>(
+          about_intake(
+              "nested", kGroup,
+              "Closed shells inside others: cavities where they face inward and regions where outward, or all the "
+              "same"),
+          [](auto& o) -> auto& { return o.complex.nested; },
+          {{"direction", Nested::kByDirection}, {"cavity", Nested::kCavity}, {"region", Nested::kRegion}}),
+      intake_choice<Overlap>(
+          about_intake("overlap", kGroup,
+                       "Parts of one input that overlap: united, or a region for each name of a patch, the later "
+                       "one where they overlap"),
+          [](auto& o) -> auto& { return o.overlap; }, {{"union", Overlap::kUnion}, {"regions", Overlap::kRegions}}),
+      intake_row(
+          about_intake(
+              "tolerance", kGroup,
+              "Several bodies: what is nearer than this comes together; 0: exactly as they are; without a value a "
+              "millionth of the diagonal. Repair: nothing moves farther than this; without a value a thousandth"),
+          [](auto& o) -> auto& { return o.complex.tolerance; }),
+  };
+}
+
+std::vector<Row<IntakeOptions>> repair_rows() {
+  using Repair = IntakeOptions::Repair;
+  using Sheets = IntakeOptions::Sheets;
+  constexpr const char* kGroup = "Repair";
+  return {
+      intake_choice<Repair>(
+          about_intake("repair", kGroup,
+                       "Surfaces that cannot be meshed as they are. none: they are refused; auto: holes are "
+                       "closed, crossings resolved, what bounds nothing dropped, the rest stays; wrap: a closed "
+                       "skin around everything"),
+          [](auto& o) -> auto& { return o.repair; },
+          {{"none", Repair::kOff}, {"auto", Repair::kAuto}, {"wrap", Repair::kWrap}}),
+      intake_choice<Sheets>(
+          about_intake("sheets", kGroup,
+                       "Walls inside of a region of a clean complex that bound nothing: cracks to keep, or debris"),
+          [](auto& o) -> auto& { return o.sheets; }, {{"keep", Sheets::kKeep}, {"drop", Sheets::kDrop}}),
+      intake_row(
+          about_intake("wrap_distance", kGroup,
+                       "How far the skin lies from the surface; without a value a hundredth of the diagonal"),
+          [](auto& o) -> auto& { return o.wrap_distance; }),
+  };
+}
+
+std::vector<Row<IntakeOptions>> image_rows() {
+  using Kind = ImageRegions::Kind;
+  constexpr const char* kGroup = "Images";
+  return {
+      intake_row(
+          about_intake("series", kGroup,
+                       "Which of several images of a folder, a file or a project, counted from 1; 0: the only one"),
+          [](auto& o) -> auto& { return o.image.choice.series; }),
+      intake_choice<Kind>(
+          about_intake("kind", kGroup,
+                       "What the voxels hold; auto: labels if they are whole numbers that neighbours mostly share",
+                       "image"),
+          [](auto& o) -> auto& { return o.image.regions.kind; },
+          {{"auto", Kind::kAuto}, {"labels", Kind::kLabels}, {"grey", Kind::kGrey}}),
+      intake_row(
+          about_intake("islands", kGroup,
+                       "Pieces of regions below this volume go to what surrounds them; each region keeps its largest"),
+          [](auto& o) -> auto& { return o.image.regions.clean.islands; }),
+      intake_row(
+          about_intake("holes", kGroup, "Pieces of the outside below this volume, not at the image's edge, are filled"),
+          [](auto& o) -> auto& { return o.image.regions.clean.holes; }),
+      intake_row(
+          about_intake("close_voxels", kGroup,
+                       "Gaps of regions toward the outside close that are up to twice as many voxels "
+                       "wide; 64 at most"),
+          [](auto& o) -> auto& { return o.image.regions.clean.closing; }),
+      intake_row(
+          about_intake("closed_at_box", kGroup,
+                       "What reaches the edge of the image ends flat there; false: it is refused"),
+          [](auto& o) -> auto& { return o.image.regions.closed_at_box; }),
+  };
+}
+
+const std::vector<Row<IntakeOptions>>& intake_rows() {
+  static const std::vector<Row<IntakeOptions>> all = [] {
+    std::vector<Row<IntakeOptions>> list;
+    for (const auto& part : {material_rows(), repair_rows(), image_rows()})
+      list.insert(list.end(), part.begin(), part.end());
+    return list;
+  }();
+  return all;
+}
+
+}  // namespace
+
+const std::vector<OptionInfo>& intake_table() {
+  static const std::vector<OptionInfo> table = infos_of(intake_rows());
+  return table;
+}
+
+OptionValue option_value(const IntakeOptions& options, std::string_view name) {
+  return row_named(intake_rows(), name).get(options);
+}
+
+void set_option(IntakeOptions& options, std::string_view name, const OptionValue& value) {
+  row_named(intake_rows(), name).set(options, value);
+}
+
+}  // namespace octafront

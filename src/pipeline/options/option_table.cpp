@@ -1,0 +1,211 @@
+#include "pipeline/options/rows.h"
+
+namespace octafront {
+
+namespace {
+
+using namespace options;
+
+template <class Access>
+Row<Options> row(const OptionInfo& info, Access field) {
+  return row_of_field<Options>(info, field);
+}
+
+template <class Value, class Access>
+Row<Options> choice(const OptionInfo& info, Access field, const Names<Value>& names) {
+  return row_of_choice<Options, Value>(info, field, names);
+}
+
+/// A flag whose name says the opposite of its field.
+template <class Access>
+Row<Options> opposite(OptionInfo info, Access field) {
+  info.kind = Kind::kFlag;
+  return {info, [field](const Options& o) -> OptionValue { return !field(o); },
+          [field, name = info.name](Options& o, const OptionValue& v) { field(o) = !flag_of(name, v); }};
+}
+
+OptionInfo about(std::string_view name, std::string_view field, std::string_view group, std::string_view tasks,
+                 std::string_view help) {
+  return {name, field, group, tasks, Kind::kNumber, {}, help};
+}
+
+std::vector<Row<Options>> size_rows() {
+  const auto of = [](std::string_view name, std::string_view help) {
+    return about(name, name, "Sizes", "mesh surface size", help);
+  };
+  using Interior = SizeOptions::Interior;
+  return {
+      row(
+          of("size", "Edge length, in units of the input"), [](auto& o) -> auto& { return o.size.size; }),
+      row(
+          of("elements", "Number of tetrahedra wanted, met within 15 %"),
+          [](auto& o) -> auto& { return o.size.elements; }),
+      row(
+          of("curvature", "Elements per full turn of a curved surface, 3 at least"),
+          [](auto& o) -> auto& { return o.size.curvature; }),
+      row(
+          of("gap", "Elements across thin walls and narrow gaps"), [](auto& o) -> auto& { return o.size.gap; }),
+      row(
+          of("feature_elements", "Elements along each feature curve at least"),
+          [](auto& o) -> auto& { return o.size.feature_elements; }),
+      row(
+          of("chord_error", "Sizes by which triangles stay this near to a curved surface, in units of the input"),
+          [](auto& o) -> auto& { return o.size.chord_error; }),
+      row(
+          of("facets", "Sizes follow the areas of the input's facets (the paper's rule)"),
+          [](auto& o) -> auto& { return o.size.facets; }),
+      row(
+          of("min_size", "No size falls below this, in units of the input"),
+          [](auto& o) -> auto& { return o.size.min_size; }),
+      row(
+          of("max_size", "No size rises above this, in units of the input"),
+          [](auto& o) -> auto& { return o.size.max_size; }),
+      row(
+          of("automatic_factor", "Automatic sizes times this: .5 makes about eight times as many elements; .1 to 10"),
+          [](auto& o) -> auto& { return o.size.automatic_factor; }),
+      row(
+          of("gradation", "How fast sizes may change: |h(x) - h(y)| <= gradation |x - y|; .01 to 1"),
+          [](auto& o) -> auto& { return o.size.gradation; }),
+      choice<Interior>(of("interior", "Inside no larger than on the surface, or growing inward"),
+                       [](auto& o) -> auto& { return o.size.interior; },
+                       {{"uniform", Interior::kUniform}, {"graded", Interior::kGraded}}),
+  };
+}
+
+std::vector<Row<Options>> surface_rows() {
+  const auto of = [](std::string_view name, std::string_view help, std::string_view field = {},
+                     std::string_view tasks = "mesh surface size") {
+    return about(name, field.empty() ? name : field, "Surface", tasks, help);
+  };
+  return {
+      row(
+          of("keep_surface", "The input triangles become the boundary, exactly", "keep"),
+          [](auto& o) -> auto& { return o.surface.keep; }),
+      row(
+          of("feature_angle", "Edges that bend by more degrees than this are kept; without a value 40, of images 85",
+             {}, "mesh surface size improve"),
+          [](auto& o) -> auto& { return o.surface.feature_angle; }),
+      row(
+          of("max_deviation",
+             "Smaller elements where the surface would stray farther from the input, in units of the input, and how "
+             "far folds and needles of it give way; 0: not at all; without a value .4 % of the diagonal with automatic "
+             "sizes, else none"),
+          [](auto& o) -> auto& { return o.surface.max_deviation; }),
+      row(
+          of("normal_deviation",
+             "Smaller elements where triangles would turn by more degrees against the input; at most 90"),
+          [](auto& o) -> auto& { return o.surface.normal_deviation; }),
+      row(
+          of("patches", "Each part of the surface that feature edges enclose becomes a patch", "patches_by_features"),
+          [](auto& o) -> auto& { return o.surface.patches_by_features; }),
+      row(
+          of("keep_volumes", "Regions of a complex keep the volumes that they have in the input; images do so unasked",
+             {}, "mesh surface"),
+          [](auto& o) -> auto& { return o.surface.keep_volumes; }),
+  };
+}
+
+std::vector<Row<Options>> volume_rows() {
+  const auto of = [](std::string_view name, std::string_view help) {
+    return about(name, name, "Volume", "mesh", help);
+  };
+  using Core = VolumeOptions::Core;
+  using Ranking = VolumeOptions::Ranking;
+  using Order = VolumeOptions::Order;
+  return {
+      choice<Method>(
+          of("method",
+             "octree-aft: the volume front; aft: the classical front, slow, for comparison; octree: a lattice cut at "
+             "the surface, fast, also with defects, but not on the input's triangles; recover: the input's triangles "
+             "kept, with as few points inside as possible"),
+          [](auto& o) -> auto& { return o.method; },
+          {{"octree-aft", Method::kOctreeAft},
+           {"aft", Method::kAft},
+           {"octree", Method::kOctree},
+           {"recover", Method::kRecover}}),
+      row(
+          of("ideal_distance", "Ideal point above its face, as a multiple of the size there; .3 to 1.5"),
+          [](auto& o) -> auto& { return o.volume.ideal_distance; }),
+      choice<Core>(
+          of("core", "lattice: the inside is a lattice, the front fills the shell around it; none: all by the front"),
+          [](auto& o) -> auto& { return o.volume.core; }, {{"lattice", Core::kLattice}, {"none", Core::kOff}}),
+      choice<Ranking>(of("ranking", "Order of candidates"), [](auto& o) -> auto& { return o.volume.ranking; },
+                      {{"solid-angle", Ranking::kSolidAngle}, {"quality", Ranking::kQuality}}),
+      choice<Order>(
+          of("queue",
+             "Order of the front's faces: layer by layer, the smallest of each layer first, or the newest first"),
+          [](auto& o) -> auto& { return o.volume.order; },
+          {{"layers", Order::kLayers}, {"smallest", Order::kSmallest}, {"newest", Order::kNewest}}),
+  };
+}
+
+std::vector<Row<Options>> improve_rows() {
+  const auto of = [](std::string_view name, std::string_view help, std::string_view field = {}) {
+    return about(name, field.empty() ? name : field, "Improvement", "mesh improve", help);
+  };
+  using Level = ImproveOptions::Level;
+  using Objective = ImproveOptions::Objective;
+  return {
+      choice<Level>(of("improve", "How the finished mesh is improved", "level"),
+                    [](auto& o) -> auto& { return o.improve.level; },
+                    {{"none", Level::kOff},
+                     {"paper", Level::kPaper},
+                     {"fast", Level::kFast},
+                     {"default", Level::kDefault},
+                     {"best", Level::kBest}}),
+      choice<Objective>(
+          of("objective",
+             "What is improved at the worst elements: beta and dihedral angles, one of them alone, the mean ratio, or "
+             "what the checks of structural solvers look at"),
+          [](auto& o) -> auto& { return o.improve.objective; },
+          {{"balanced", Objective::kBalanced},
+           {"beta", Objective::kBeta},
+           {"min-dihedral", Objective::kMinDihedral},
+           {"max-dihedral", Objective::kMaxDihedral},
+           {"mean-ratio", Objective::kMeanRatio},
+           {"solver", Objective::kSolver}}),
+      row(
+          of("relaxation", "phi of the paper's weighted Laplacian, above 0 and at most 1"),
+          [](auto& o) -> auto& { return o.improve.relaxation; }),
+      row(
+          of("sweeps", "Sweeps of the paper's weighted Laplacian"), [](auto& o) -> auto& { return o.improve.sweeps; }),
+      opposite(
+          of("fix_boundary", "No vertex of the boundary slides on the surface, no edge turns", "move_boundary"),
+          [](auto& o) -> auto& { return o.improve.move_boundary; }),
+      row(
+          of("improve_time", "Seconds after which no further pass begins (then not repeatable)", "seconds"),
+          [](auto& o) -> auto& { return o.improve.seconds; }),
+      row(
+          about("order", "order", "Elements", "mesh improve",
+                "2: elements of second order, with mid-side nodes; those of the boundary on the smooth surface that "
+                "the input stands for, every element proven valid; 1: linear ones"),
+          [](auto& o) -> auto& { return o.order; }),
+  };
+}
+
+const std::vector<Row<Options>>& rows() {
+  static const std::vector<Row<Options>> all = [] {
+    std::vector<Row<Options>> list;
+    for (const auto& part : {size_rows(), surface_rows(), volume_rows(), improve_rows()})
+      list.insert(list.end(), part.begin(), part.end());
+    return list;
+  }();
+  return all;
+}
+
+}  // namespace
+
+const std::vector<OptionInfo>& option_table() {
+  static const std::vector<OptionInfo> table = infos_of(rows());
+  return table;
+}
+
+OptionValue option_value(const Options& options, std::string_view name) {
+  return row_named(rows(), name).get(options);
+}
+
+void set_option(Options& options, std::string_view name, const OptionValue& value) {
+  row_named(rows(), name).set(options, value);
+}
+
+}  // namespace octafront

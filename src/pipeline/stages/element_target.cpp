@@ -1,0 +1,167 @@
+#include "pipeline/stages/methods.h"
+#include "pipeline/stages/stages.h"
+#include "sizing/make_size_field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+
+#include <fmt/core.h>
+
+namespace octafront {
+
+namespace {
+
+// Sizes that miss the number are scaled, by what came out, and tried again.
+constexpr double kElementsPromised = 0.15;
+constexpr double kElementsTolerance = 0.12;  // tighter, for improvement still changes the count
+constexpr int kElementsAttempts = 5, kSurfaceAttempts = 7;
+// Counts that change by less than this part of the least slope stand still: limits and details decide, not the sizes.
+constexpr double kStandsStill = 0.1;
+// Smaller steps say nothing: the lattice's cells may double with them, or not.
+constexpr double kTellingStep = 0.1;
+// By how much to scale the first sizes next, by the last two counts; once one was above and one below, by the nearest
+// such two, or their middle where the last two were on one side. The count falls with the third power of the sizes
+// where the volume decides, more slowly where gradation or details of the surface do: down to the least slope, from
+// which on a step would go nowhere.
+constexpr double kSteepest = -4, kFlattest = -0.5;
+class CountSearch {
+ public:
+  explicit CountSearch(double wanted) : wanted_(std::log(wanted)) {}
+
+  double next_factor(double made) {
+    const Point now{scale_, std::log(made), true};
+    const bool is_above = now.count > wanted_;
+    const bool is_again = last_.known && (last_.count > wanted_) == is_above;
+    if (last_.known && now.scale != last_.scale)
+      slope_ = std::clamp((now.count - last_.count) / (now.scale - last_.scale), kSteepest, kFlattest);
+    (is_above ? above_ : below_) = last_ = now;
+    if (!above_.known || !below_.known)
+      scale_ += (wanted_ - now.count) / slope_;
+    else if (is_again)
+      scale_ = 0.5 * (above_.scale + below_.scale);
+    else
+      scale_ = above_.scale + (below_.scale - above_.scale) * (above_.count - wanted_) / (above_.count - below_.count);
+    return std::exp(scale_);
+  }
+
+  /// Whether the count would have had to change by the last step, and did not.
+  bool stands_still(double made) const {
+    const double step = scale_ - last_.scale;
+    return std::abs(step) > kTellingStep && (std::log(made) - last_.count) / step > kStandsStill * kFlattest;
+  }
+
+ private:
+  struct Point {
+    double scale = 0, count = 0;
+    bool known = false;
+  };
+  double wanted_, scale_ = 0, slope_ = -3;
+  Point last_, above_, below_;
+};
+
+bool meets(double wanted, double count) {
+  return std::abs(count / wanted - 1) <= kElementsTolerance;
+}
+
+/// The stages from here on made what was not kept.
+void rename_earlier(Report& report, std::size_t first_stage) {
+  for (std::size_t s = first_stage; s < report.stages.size(); ++s) {
+    if (!report.stages[s].name.ends_with("(earlier try)")) report.stages[s].name += " (earlier try)";
+  }
+}
+
+/// What sizes came to.
+template <class Made>
+struct Try {
+  SizeField sizes;
+  Made made;
+  double expected;  ///< elements, by the prediction
+  double count;     ///< elements, by the search
+};
+
+/// make(sizes), again with scaled sizes until the elements meet the number wanted or cannot; the best try counts. The
+/// tries, `attempts` at most, began at `first_stage` of the report; `counted` is the word for what count(made) leaves.
+template <class Make, class Count>
+auto meet_target(const SizeField& sizes, Run& run, std::size_t first_stage, int attempts, const char* counted,
+                 Make&& make, Count&& count) {
+  const auto attempt = [&](const SizeField& by) {
+    auto made = make(by);
+    const double elements = count(made);
+    return Try<decltype(made)>{by, std::move(made), run.report.expected_tets, elements};
+  };
+  auto best = attempt(sizes);
+  if (!run.options.size.elements || keeps_surface(run.options)) return best;
+  const auto wanted = static_cast<double>(*run.options.size.elements);
+  const auto miss = [&](double elements) { return std::abs(std::log(elements / wanted)); };
+  CountSearch search(wanted);
+  double last = best.count;
+  for (int tries = 1; tries < attempts && !meets(wanted, last); ++tries) {
+    const double factor = search.next_factor(last);
+    rename_earlier(run.report, first_stage);
+    auto next = attempt(scaled(sizes, factor, run.context()));
+    run.report.stages.back().notes.push_back(
+        fmt::format("the sizes before had {:.0f} elements {} where {} were wanted: all sizes scaled by {:.4g}", last,
+                    counted, *run.options.size.elements, factor));
+    const bool stands_still = search.stands_still(next.count);
+    last = next.count;
+    // The lattice doubles its cells: counts may jump over the target, and an earlier try may be the better one.
+    if (miss(last) < miss(best.count)) best = std::move(next);
+    if (stands_still) break;
+  }
+  run.report.expected_tets = best.expected;
+  return best;
+}
+
+void note_missed_target(double count, const char* counted, Run& run) {
+  const auto& wanted = run.options.size.elements;
+  if (!wanted || std::abs(count / static_cast<double>(*wanted) - 1) <= kElementsPromised) return;
+  run.report.stages.back().notes.push_back(
+      fmt::format("{} elements were wanted; the {} do not allow it: {:.0f} {}", *wanted,
+                  keeps_surface(run.options) ? "kept triangles" : "features and size limits", count, counted));
+}
+
+Try<Remeshed> surface_to_target(const Prepared& input, SizeField sizes, Run& run) {
+  if (run.options.size.elements && !keeps_surface(run.options)) {
+    const double factor = std::cbrt(traits_of(run.options.method).tets_per_expected);
+    if (factor != 1) sizes = scaled(sizes, factor, run.context());
+  }
+  return meet_target(
+      sizes, run, run.report.stages.size(), kSurfaceAttempts, "expected",
+      [&](const SizeField& by) { return triangulate(input, by, run); },
+      [&](const Remeshed&) { return run.report.expected_tets; });
+}
+
+}  // namespace
+
+Remeshed triangulate_to_target(const Prepared& input, const SizeField& sizes, Run& run) {
+  Try<Remeshed> best = surface_to_target(input, sizes, run);
+  note_missed_target(best.expected, "expected", run);
+  return std::move(best.made);
+}
+
+// The prediction knows of strips and bounds on deviation once there is a surface, which takes a part of the time that
+// the volume takes: it is made to meet the number first, and the mesh then seldom misses it.
+Filled fill_to_target(const Prepared& input, const SizeField& sizes, Run& run) {
+  const std::size_t first_stage = run.report.stages.size();
+  std::optional<Try<Remeshed>> surface;
+  if (!traits_of(run.options.method).makes_own_boundary()) surface = surface_to_target(input, sizes, run);
+  std::optional<Remeshed> first;
+  if (surface) first = std::move(surface->made);
+  const auto make = [&](const SizeField& by) {
+    if (!first) return fill(input, by, run);
+    Remeshed boundary = std::move(*first);
+    first.reset();
+    return fill_surface(input, std::move(boundary), run);
+  };
+  auto best = meet_target(surface ? surface->sizes : sizes, run, first_stage, kElementsAttempts, "in the mesh", make,
+                          [](const Filled& made) { return static_cast<double>(made.mesh.tets.size()); });
+  return std::move(best.made);
+}
+
+void note_missed_elements(const TetMesh& mesh, Run& run) {
+  note_missed_target(static_cast<double>(mesh.tets.size()), "made", run);
+}
+
+}  // namespace octafront

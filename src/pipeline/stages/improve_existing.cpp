@@ -1,0 +1,137 @@
+#include <octafront/error.h>
+#include <octafront/improve_existing.h>
+#include <octafront/named_groups.h>
+#include <octafront/repair.h>
+#include <octafront/validity.h>
+
+#include "improve/curved/curved.h"
+#include "improve/schedule/schedule.h"
+#include "pipeline/stages/follow_boundary.h"
+#include "pipeline/stages/stages.h"
+#include "soup/defects/examine.h"
+#include "surface/check/surface_check.h"
+
+#include <optional>
+#include <utility>
+
+#include <fmt/core.h>
+
+namespace octafront {
+namespace {
+
+SurfaceMesh without_inner_points(const SurfaceMesh& surface) {
+  SurfaceMesh out;
+  std::vector<VertexIndex> here(surface.points.size(), kNone);
+  for (Triangle t : surface.triangles) {
+    for (VertexIndex& v : t) {
+      if (here[v] == kNone) {
+        here[v] = static_cast<VertexIndex>(out.points.size());
+        out.points.push_back(surface.points[v]);
+      }
+      v = here[v];
+    }
+    out.triangles.push_back(t);
+  }
+  return out;
+}
+
+/// A surface for the boundary to move on, and what of either must be kept.
+struct Ground {
+  KnownSurface surface;
+  Features of_mesh;
+};
+
+/// Vertices this near to the surface, in parts of the diagonal, lie on it: files round to seven digits.
+constexpr double kOnSurface = 1e-5;
+
+void require_on_surface(const TetMesh& mesh, const SurfaceMesh& boundary, const KnownSurface& surface) {
+  const double limit = kOnSurface * bounding_box(surface.mesh().points).diagonal();
+  for (const Triangle& t : boundary.triangles)
+    for (const VertexIndex v : t) {
+      const Vec3 p = mesh.points[v];
+      if (surface.tree().nearest(p, limit * limit).triangle != kNone) continue;
+      throw InputError(fmt::format(
+          "the boundary of the mesh does not lie on the surface given: vertex {} at ({}, {}, {}) is farther from it "
+          "than {:.3g}. Give the surface that was meshed, or none: then the boundary stays as it is.",
+          v, p.x, p.y, p.z, limit));
+    }
+}
+
+Ground prepare_ground(const TetMesh& mesh, const SurfaceMesh& surface, double feature_angle,
+                      const RunContext& context) {
+  Examined found = examine_surface(surface, context);
+  if (!found.defects.clean()) throw InputError(found.defects.describe());
+  SurfaceMesh& repaired = found.repaired.surface;
+  // The patches of mesh and surface may be numbered differently; those of the mesh are kept as feature curves.
+  repaired.patch.clear();
+  Features features = detect_features(repaired, found.edges, feature_angle);
+  KnownSurface known(std::move(repaired), std::move(found.edges), std::move(features));
+  const SurfaceMesh boundary = boundary_of(mesh);
+  require_on_surface(mesh, boundary, known);
+  if (const auto defect = first_surface_defect(without_inner_points(boundary), known.mesh(), context))
+    throw InputError("the boundary of the mesh cannot be moved on the surface given: " + *defect);
+  return {std::move(known), detect_features(boundary, feature_angle)};
+}
+
+void require_valid(const TetMesh& mesh, const RunContext& context) {
+  if (const auto defect = first_defect(mesh, context)) throw InputError("not a valid mesh: " + *defect);
+}
+
+/// The mesh as it is; what improvement does not know of leaves `mesh`.
+TetMesh put_groups_aside(TetMesh& mesh) {
+  TetMesh before = mesh;
+  mesh.interfaces.clear();
+  mesh.interface_patch.clear();
+  mesh.curve_edges.clear();
+  mesh.curve.clear();
+  mesh.sets.clear();
+  return before;
+}
+
+void raise_order(TetMesh& mesh, const Ground* ground, Run& run) {
+  if (run.options.order < 2) return;
+  run.stage("second order", [&](const Stage& stage) {
+    run.report.second_order = ground ? curve_to_surface(mesh, ground->of_mesh.edges, ground->surface,
+                                                        run.options.surface.angle_of_features(), stage.context())
+                                     : add_straight_edges(mesh, stage.context());
+    count_edges(run.report.second_order, stage);
+  });
+}
+
+}  // namespace
+
+Improved improve_existing(const TetMesh& mesh, const Options& options, const SurfaceMesh* surface,
+                          const RunContext& context) {
+  Run run(options, context);
+  Improved result;
+  run.stage("check of the input", [&](const Stage& stage) { require_valid(mesh, stage.context()); });
+  result.mesh = mesh;
+  make_linear(result.mesh);
+  // What improvement does not know of goes, and comes back as far as it is still there.
+  const TetMesh before = put_groups_aside(result.mesh);
+  result.before = summarize_quality(mesh);
+  run.report.input_volume = enclosed_volume(boundary_of(mesh));
+  std::optional<Ground> ground;
+  if (surface)
+    run.stage("surface", [&](const Stage& stage) {
+      ground.emplace(prepare_ground(mesh, *surface, options.surface.angle_of_features(), stage.context()));
+    });
+  run.stage("improve", [&](const Stage& stage) {
+    std::optional<improve::BoundaryInput> on;
+    if (ground)
+      on.emplace(improve::BoundaryInput{ground->surface.mesh(), ground->surface.tree(), ground->surface.features(),
+                                        ground->of_mesh});
+    if (improve_mesh(result.mesh, on ? &*on : nullptr, options.improve, stage) && on)
+      renew_sources(result.mesh, boundary_of(mesh), on->surface, on->tree);
+  });
+  run.stage("groups", [&](const Stage& stage) {
+    for (const std::string& note : carry_groups(before, result.mesh)) stage.note(note);
+  });
+  raise_order(result.mesh, ground ? &*ground : nullptr, run);
+  check_result(result.mesh, nullptr, run);
+  describe(result.mesh, run.report);
+  result.report = run.close();
+  return result;
+}
+
+}  // namespace octafront

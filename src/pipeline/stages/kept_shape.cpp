@@ -1,0 +1,127 @@
+#include "pipeline/stages/kept_shape.h"
+
+#include <octafront/error.h>
+
+#include "base/mesh/complex.h"
+#include "pipeline/stages/methods.h"
+#include "sizing/make_size_field.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/core.h>
+
+namespace octafront {
+
+namespace {
+
+/// What chords cut off falls with the square of their length: sizes are made smaller to come to this part of the bound,
+/// but to no less than this part of themselves, so often.
+constexpr double kAim = 0.5, kLeastScale = 0.4;
+constexpr int kTries = 2;
+/// Predictions of so many bounds are believed, without a surface that would be made in vain.
+constexpr double kHopeless = 3;
+/// Vertices that leave the surface, and chords between them, lie within so many bounds on deviation.
+constexpr double kStray = 2;
+
+bool is_off(double change) {
+  return std::abs(change) > kVolumeKept;
+}
+
+/// By how much the box has moved at the worst of its sides.
+double change_of_extent(const Box3& made, const Box3& input) {
+  double most = 0;
+  for (int axis = 0; axis < 3; ++axis)
+    most = std::max({most, std::abs(made.lo[axis] - input.lo[axis]), std::abs(made.hi[axis] - input.hi[axis])});
+  return most;
+}
+
+/// Whether it can be foreseen that no sizes within the budget keep the volume, as those of thousands of bodies.
+bool is_hopeless(const Prepared& input, const SizeField& sizes, double budget, const Stage& stage) {
+  if (!std::isfinite(budget)) return false;
+  const double loss = predicted_volume_loss(input.surface, sizes, stage.context());
+  if (loss <= kHopeless * kVolumeKept) return false;
+  const SizeField smaller = scaled(sizes, std::sqrt(kVolumeKept / loss), stage.context());
+  if (expected_tets(smaller, input.surface.mesh()) <= budget) return false;
+  stage.note(
+      fmt::format("the input's triangles are kept: others would change the volume by about {:+.1f} %", -100 * loss));
+  return true;
+}
+
+Remeshed input_that_stays(const Prepared& input, const SizeField& sizes) {
+  Remeshed kept = input_as_it_is(input.surface, sizes);
+  kept.stays = true;
+  return kept;
+}
+
+}  // namespace
+
+double change_of_volume(double made, double input) {
+  return made / input - 1;
+}
+
+Remeshed remeshed_in_shape(const Prepared& input, const SizeField& sizes, const Run& run, const Stage& stage,
+                           const std::function<Remeshed(const SizeField&)>& remesh, double budget) {
+  if (!has_automatic_sizes(run.options) || is_complex(input.surface.mesh())) return remesh(sizes);
+  if (is_hopeless(input, sizes, budget, stage)) return input_that_stays(input, sizes);
+  Remeshed made = remesh(sizes);
+  const auto change = [&] { return change_of_volume(enclosed_volume(made.surface), run.report.input_volume); };
+  double scale = 1;
+  for (int k = 0; k < kTries && is_off(change()); ++k) {
+    scale *= std::max(kLeastScale, std::sqrt(kAim * kVolumeKept / std::abs(change())));
+    const SizeField smaller = scaled(sizes, scale, stage.context());
+    if (std::isfinite(budget) && expected_tets(smaller, input.surface.mesh()) > budget) break;
+    stage.note(fmt::format("the automatic sizes change the volume by {:+.1f} %: made again by {:.2g} of them",
+                           100 * change(), scale));
+    made = remesh(smaller);
+  }
+  if (!is_off(change())) return made;
+  stage.note(fmt::format("the input's triangles are kept: others change the volume by {:+.1f} %", 100 * change()));
+  return input_that_stays(input, sizes);
+}
+
+void improve_in_shape(const Prepared& input, Filled& filled, Run& run) {
+  if (is_complex(input.surface.mesh())) return improve_elements(input, filled, run, run.options.improve);
+  ImproveOptions staying = run.options.improve;
+  staying.move_boundary = false;
+  if (filled.boundary.stays) return improve_elements(input, filled, run, staying);
+  const Remeshed boundary = filled.boundary;
+  const double before = enclosed_volume(boundary.surface);
+  improve_elements(input, filled, run, run.options.improve);
+  const double change = change_of_volume(enclosed_volume(filled.boundary.surface), before);
+  if (!is_off(change)) return;
+  run.report.stages.back().name += " (earlier try)";
+  run.report.stages.back().notes.push_back(
+      fmt::format("this changed the volume by {:+.1f} %: done again on a boundary that stays", 100 * change));
+  filled = fill_surface(input, boundary, run);
+  improve_elements(input, filled, run, staying);
+}
+
+void check_shape(const Prepared& input, const Filled& filled, Run& run) {
+  if (keeps_surface(run.options) || traits_of(run.options.method).makes_own_boundary()) return;
+  const SurfaceMesh &before = input.surface.mesh(), &after = filled.boundary.surface;
+  if (is_complex(before)) return;
+  const double change = change_of_volume(enclosed_volume(after), run.report.input_volume);
+  if (!has_automatic_sizes(run.options)) {
+    if (is_off(change))
+      run.report.stages.back().notes.push_back(
+          fmt::format("elements of this size change the volume by {:+.1f} %: `max_deviation` makes them smaller where "
+                      "they stray from the input",
+                      100 * change));
+    return;
+  }
+  if (is_off(change))
+    throw MeshingError(
+        fmt::format("the mesh has {:.4g} % of the input's volume. Give a size, or keep the surface's own "
+                    "triangles by `keep`",
+                    100 * (1 + change)));
+  const double stray = change_of_extent(bounding_box(after.points), bounding_box(before.points));
+  const double bound = *true_to_input(before, run.options).max_deviation;
+  if (bound > 0 && stray > kStray * bound)
+    throw MeshingError(
+        fmt::format("the mesh reaches {:.4g} beyond the input or ends as much before it. Give a size, or "
+                    "keep the surface's own triangles by `keep`",
+                    stray));
+}
+
+}  // namespace octafront

@@ -1,0 +1,124 @@
+#include "pipeline/stages/measure.h"
+
+#include <octafront/tet_mesh.h>
+
+#include "base/core/parallel.h"
+#include "base/core/utf8.h"
+
+#include <algorithm>
+#include <bit>
+#include <span>
+
+#include <sys/resource.h>
+
+namespace octafront {
+
+namespace {
+
+std::uint64_t edge_key(VertexIndex a, VertexIndex b) {
+  return (std::uint64_t{std::min(a, b)} << 32) | std::max(a, b);
+}
+
+SizeSummary summarize(std::vector<std::uint64_t>& keys, const std::vector<Vec3>& points, const SizeField& sizes) {
+  constexpr double kShortest = 0.7, kLongest = 1.4;  // the band in which users call a length "as asked"
+  parallel_sort(keys);
+  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+  SizeSummary summary;
+  summary.edges = keys.size();
+  if (keys.empty()) return summary;
+  std::vector<double> ratios(keys.size());
+  parallel_for(keys.size(), [&](std::size_t i) {
+    const Vec3 a = points[keys[i] >> 32], b = points[keys[i] & 0xffffffffu];
+    ratios[i] = distance(a, b) / sizes.at((a + b) * 0.5);
+  });
+  std::uint64_t within = 0;
+  double sum = 0;
+  for (const double ratio : ratios) {
+    sum += ratio;
+    within += ratio >= kShortest && ratio <= kLongest;
+  }
+  summary.mean_ratio = sum / static_cast<double>(keys.size());
+  summary.share_within = static_cast<double>(within) / static_cast<double>(keys.size());
+  return summary;
+}
+
+class Fnv {
+ public:
+  template <class T>
+  void add(const T& value) {
+    for (const unsigned char byte : std::bit_cast<std::array<unsigned char, sizeof(T)>>(value))
+      hash_ = (hash_ ^ byte) * 0x100000001b3ull;
+  }
+  std::uint64_t value() const { return hash_; }
+
+ private:
+  std::uint64_t hash_ = 0xcbf29ce484222325ull;
+};
+
+}  // namespace
+
+SizeSummary summarize_surface_edges(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
+                                    const SizeField& sizes) {
+  std::vector<std::uint64_t> keys;
+  keys.reserve(triangles.size() * 3);
+  for (const auto& [a, b, c] : triangles) keys.insert(keys.end(), {edge_key(a, b), edge_key(b, c), edge_key(c, a)});
+  return summarize(keys, points, sizes);
+}
+
+SizeSummary summarize_volume_edges(const TetMesh& mesh, const SizeField& sizes) {
+  std::vector<std::uint64_t> keys;
+  // Sorting every edge of a large mesh would cost a tenth of making it: an evenly spread part of the tets gives the
+  // same shares to a third digit.
+  constexpr std::size_t kSample = 100'000;
+  const std::size_t step = std::max<std::size_t>(1, mesh.tets.size() / kSample);
+  for (std::size_t t = 0; t < mesh.tets.size(); t += step)
+    for (const auto& [i, j] : kTetEdges) keys.push_back(edge_key(mesh.tets[t][i], mesh.tets[t][j]));
+  return summarize(keys, mesh.points, sizes);
+}
+
+void describe_sizes(const TetMesh& mesh, const SizeField& sizes, Report& report) {
+  report.surface_edges = summarize_surface_edges(mesh.points, mesh.boundary, sizes);
+  report.volume_edges = summarize_volume_edges(mesh, sizes);
+}
+
+void describe_regions(const TetMesh& mesh, Report& report) {
+  if (mesh.region.empty()) return;
+  const std::vector<QualitySummary> quality = quality_of_regions(mesh);
+  report.regions.assign(quality.size(), {});
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    const auto& [a, b, c, d] = mesh.tets[t];
+    const Vec3 p = mesh.points[a];
+    report.regions[mesh.region[t]].volume += dot(cross(mesh.points[b] - p, mesh.points[c] - p), mesh.points[d] - p) / 6;
+  }
+  for (std::uint32_t r = 0; r < quality.size(); ++r) {
+    report.regions[r].name = r < mesh.region_names.size() ? mesh.region_names[r] : std::string();
+    NameCleaning().clean(report.regions[r].name);
+    report.regions[r].quality = quality[r];
+  }
+}
+
+std::uint64_t mesh_hash(const TetMesh& mesh) {
+  Fnv hash;
+  for (const Vec3& p : mesh.points)
+    for (int axis = 0; axis < 3; ++axis) hash.add(p[axis]);
+  for (const Tet& tet : mesh.tets)
+    for (const VertexIndex v : tet) hash.add(v);
+  for (const Triangle& face : mesh.boundary)
+    for (const VertexIndex v : face) hash.add(v);
+  for (const std::uint32_t region : mesh.region) hash.add(region);
+  for (const std::uint32_t patch : mesh.patch) hash.add(patch);
+  for (const auto& mids : mesh.mid_nodes)
+    for (const VertexIndex v : mids) hash.add(v);
+  for (const Triangle& face : mesh.interfaces)
+    for (const VertexIndex v : face) hash.add(v);
+  for (const std::uint32_t patch : mesh.interface_patch) hash.add(patch);
+  return hash.value();
+}
+
+std::uint64_t peak_memory_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+}  // namespace octafront

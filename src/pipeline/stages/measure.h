@@ -1,0 +1,27 @@
+#pragma once
+
+#include <octafront/report.h>
+#include <octafront/size_field.h>
+#include <octafront/tet_mesh.h>
+
+namespace octafront {
+
+/// Edge lengths over wanted lengths: of the boundary's edges, and of all edges of the mesh.
+SizeSummary summarize_surface_edges(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
+                                    const SizeField& sizes);
+SizeSummary summarize_volume_edges(const TetMesh& mesh, const SizeField& sizes);
+
+/// Fills in what the report says of sizes: asked for against made.
+void describe_sizes(const TetMesh& mesh, const SizeField& sizes, Report& report);
+
+/// Fills in what the report says of each region.
+void describe_regions(const TetMesh& mesh, Report& report);
+
+/// A fingerprint of coordinates (bits), tets, regions, boundary, interfaces, patches and mid-side nodes: equal meshes,
+/// equal hash (FNV-1a, 64 bits).
+std::uint64_t mesh_hash(const TetMesh& mesh);
+
+/// Largest resident memory of this process so far.
+std::uint64_t peak_memory_bytes();
+
+}  // namespace octafront

@@ -1,0 +1,435 @@
+#include "pipeline/stages/stages.h"
+
+#include <octafront/error.h>
+#include <octafront/generate.h>
+#include <octafront/validity.h>
+
+#include "base/core/parallel.h"
+#include "base/core/utf8.h"
+#include "base/mesh/complex.h"
+#include "base/mesh/complex_patches.h"
+#include "base/mesh/feature_patches.h"
+#include "fill/stuffing/stuff.h"
+#include "improve/boundary/slide_interfaces.h"
+#include "improve/curved/curved.h"
+#include "improve/schedule/raise_flat.h"
+#include "improve/schedule/schedule.h"
+#include "pipeline/stages/follow_boundary.h"
+#include "pipeline/stages/kept_shape.h"
+#include "pipeline/stages/measure.h"
+#include "pipeline/stages/methods.h"
+#include "sizing/make_size_field.h"
+#include "soup/defects/examine.h"
+#include "surface/folds/unfold.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <fmt/core.h>
+
+namespace octafront {
+
+namespace {
+
+// Doubles that lie too few steps apart leave no room for vertices between them.
+constexpr double kLeastExtent = 1e-12;  // diagonal over the largest coordinate
+
+void refuse_lost_precision(const SurfaceMesh& surface) {
+  const Box3 box = bounding_box(surface.points);
+  const Vec3 far = max(box.hi, -box.lo);
+  const double largest = std::max({far.x, far.y, far.z});
+  if (box.diagonal() < kLeastExtent * largest)
+    throw InputError(fmt::format(
+        "the model is {:.3g} across but lies {:.3g} away from the origin: double precision has too few points "
+        "there to mesh it. Move the model to the origin.",
+        box.diagonal(), largest));
+}
+
+// Over area times diagonal; a sheet of a thousandth of its width has a hundred times as much.
+constexpr double kLeastVolume = 1e-6;
+
+void refuse_complex_for_method(const SurfaceMesh& surface, Method method) {
+  if (surface.sides.empty() || traits_of(method).fills_complexes) return;
+  throw OptionError(fmt::format(
+      "{} regions or sheets are given, and this method fills one region only: choose method octree-aft or recover",
+      region_count(surface)));
+}
+
+// Defects are refused, but by the octree method, which lives with them: then they are notes.
+SurfaceDomain::Defects judge_defects(const SurfaceDefects& found, Method method, const Stage& stage) {
+  if (found.clean()) return SurfaceDomain::Defects::kClean;
+  if (traits_of(method).needs_clean || found.no_faces) throw InputError(found.describe());
+  stage.note("the surface has defects; inside is where its winding number says so. " + found.describe());
+  const bool closed =
+      found.open_edges.count == 0 && found.non_manifold_edges.count == 0 && found.misoriented_edges.count == 0;
+  return closed ? SurfaceDomain::Defects::kClosed : SurfaceDomain::Defects::kOpen;
+}
+
+// An open surface has no outside that repair could find: what it nearly encloses says which way it faces.
+void face_outward(Examined& found) {
+  SurfaceMesh& surface = found.repaired.surface;
+  const double volume = enclosed_volume(surface), scale = area(surface) * bounding_box(surface.points).diagonal();
+  if (std::abs(volume) < kLeastVolume * scale)
+    throw InputError("the surface is flat, or as much inside out as not: it encloses no volume that could be filled");
+  if (volume > 0) return;
+  for (Triangle& t : surface.triangles) std::swap(t[1], t[2]);
+  found.edges = make_edge_table(surface.points.size(), surface.triangles);
+}
+
+// With sizes of our own choosing the surface stays true by default; sizes that the user gave are left as they are.
+constexpr double kAutomaticDeviation = 0.004;  // of the diagonal; sampled, so that 0.005 is kept in all
+/// The surface is not made anew for a few places that stray so many times as far.
+constexpr double kAutomaticSlack = 1.03;
+
+/// Elements that sizes of our own choice come to at most, by the prediction; HUGE_VAL if the user chose them, or how
+/// near the surface stays.
+double budget_of(const SurfaceMesh& surface, const Options& options) {
+  const bool bounds = options.surface.max_deviation || options.surface.normal_deviation || keeps_surface(options);
+  return bounds ? HUGE_VAL : automatic_budget(surface, options.size) / traits_of(options.method).tets_per_expected;
+}
+
+// Where sizes are given, detail is what is smaller than this part of them.
+constexpr double kDetail = 0.1;
+
+// Of a deviation that the user bounds, what unfolding may use up: the new surface keeps the rest, and improvement too.
+constexpr double kUnfolded = 0.25;
+
+/// What the surface may stray where that was said: a bound, or with automatic sizes the distance that they shall keep.
+std::optional<double> asked_deviation(const Options& options) {
+  if (options.surface.max_deviation || !has_automatic_sizes(options)) return options.surface.max_deviation;
+  return options.size.chord_error;
+}
+
+/// What is smaller is detail. Of a deviation that the user bounds, `part`.
+double scale_of_detail(const SurfaceMesh& surface, const Options& options, double part) {
+  const double automatic = kAutomaticDeviation * bounding_box(surface.points).diagonal();
+  if (const auto asked = asked_deviation(options)) return std::min(automatic, part * *asked);
+  return options.size.size ? std::min(automatic, kDetail * *options.size.size) : automatic;
+}
+
+/// Up to here detail of the input may be smoothed over; 0: it is all kept.
+double detail_tolerance(const SurfaceMesh& surface, const Options& options, double part) {
+  const bool keeps_all =
+      keeps_surface(options) || traits_of(options.method).makes_own_boundary() || !surface.sides.empty();
+  return keeps_all ? 0 : scale_of_detail(surface, options, part);
+}
+
+// A part of the volume of a clean surface that the octree method may miss without a word: its boundary is blunt.
+constexpr double kVolumeTolerance = 0.03;
+
+void note_lost_volume(const TetMesh& mesh, const Prepared& p, const Stage& stage) {
+  if (p.defects != SurfaceDomain::Defects::kClean) return;
+  const double share = enclosed_volume(boundary_of(mesh)) / enclosed_volume(p.surface.mesh());
+  if (std::abs(share - 1) > kVolumeTolerance)
+    stage.note(
+        fmt::format("the mesh has {:.1f} % of the volume inside the surface: parts thinner than an "
+                    "element are lost. Ask for smaller elements, or for a `gap` of 2 or more.",
+                    100 * share));
+}
+
+// The boundary of a stuffed mesh in the place of a triangulated surface.
+Remeshed boundary_of_stuffed(const TetMesh& mesh, const SizeField& sizes, double feature_angle) {
+  SurfaceMesh surface{{}, mesh.boundary, mesh.patch, mesh.patch_names, {}};
+  VertexIndex vertices = 0;
+  for (const Triangle& t : surface.triangles) vertices = std::max(vertices, 1 + std::max({t[0], t[1], t[2]}));
+  surface.points.assign(mesh.points.begin(), mesh.points.begin() + vertices);
+  Features features = detect_features(surface, feature_angle);
+  return {std::move(surface), std::move(features), {}, sizes};
+}
+
+/// The octree method makes its boundary itself.
+Filled stuff(const Prepared& input, const SizeField& sizes, Run& run) {
+  TetMesh mesh = run.stage(traits_of(run.options.method).stage, [&](const Stage& stage) {
+    TetMesh stuffed = stuff_surface(input.surface.mesh(), input.surface.features(), input.defects, sizes, stage);
+    stage.count("tets", static_cast<double>(stuffed.tets.size()));
+    note_lost_volume(stuffed, input, stage);
+    return stuffed;
+  });
+  for (std::uint32_t& triangle : mesh.source) triangle = input.surface.mesh().source_of(triangle);
+  Remeshed boundary = boundary_of_stuffed(mesh, sizes, run.options.surface.angle_of_features());
+  return {std::move(mesh), std::move(boundary)};
+}
+
+bool may_slide(const ImproveOptions& options) {
+  return options.move_boundary && options.level != ImproveOptions::Level::kOff &&
+         options.level != ImproveOptions::Level::kPaper;
+}
+
+// Corners of elements that stayed flat may leave the surface by this part of what it may stray.
+constexpr double kRaised = 0.5;
+
+/// What the boundary itself keeps poor: vertices of interfaces slide, and corners of flat elements leave the surface.
+void ease_boundary(const improve::BoundaryInput& on, Filled& filled, const Options& options, const Stage& stage) {
+  auto& [mesh, boundary] = filled;
+  if (is_complex(on.surface))
+    stage.count("interface vertices moved",
+                static_cast<double>(slide_interfaces(mesh, boundary.surface, boundary.features, on.surface, stage)));
+  if (const double limit = scale_of_detail(on.surface, options, 1) * kRaised; limit > 0) {
+    improve::FlatWalls walls(on.surface, on.tree, on.features);
+    RaiseLimits limits{limit, nullptr, &walls, nullptr};
+    const Leeway leeway(on.surface, on.tree, on.bound);
+    std::optional<improve::InputForce> force;
+    // Between walls of a complex, as near to each other as one likes, there is no other way out.
+    if (!is_complex(on.surface)) {
+      force.emplace(on);
+      limits.leeway = &leeway, limits.force = &*force;
+    }
+    const RaisedFlat raised = raise_flat(mesh, boundary.surface, limits, stage);
+    stage.count("corners of flat elements moved", static_cast<double>(raised.vertices));
+    stage.count("largest move of such a corner", raised.largest_move);
+  }
+  std::copy_n(mesh.points.begin(), boundary.surface.points.size(), boundary.surface.points.begin());
+}
+
+// Folds, flaps and blades below the tolerance are taken away: no element could fill them. Returns how far that moved
+// each triangle.
+std::vector<double> smooth_detail(Examined& found, Run& run) {
+  SurfaceMesh& surface = found.repaired.surface;
+  const double tolerance = detail_tolerance(surface, run.options, kUnfolded);
+  if (tolerance == 0) return {};
+  return run.stage("detail", [&](const Stage& stage) {
+    auto unfolded = remeshing::unfold(surface, found.edges, tolerance, stage.context());
+    stage.count("folds mended", unfolded ? static_cast<double>(unfolded->mended.operations) : 0);
+    if (!unfolded) return std::vector<double>{};
+    const double change = change_of_volume(enclosed_volume(unfolded->surface), run.report.input_volume);
+    if (std::abs(change) > kVolumeKept) {
+      stage.note(fmt::format("folds and blades stay: without them the volume is {:+.1f} % off", 100 * change));
+      return std::vector<double>{};
+    }
+    stage.count("folds left", static_cast<double>(unfolded->mended.folds_left));
+    stage.count("largest move", unfolded->mended.largest_move);
+    stage.note(fmt::format("the surface was unfolded in {} steps, by {:.3g} at most: `max_deviation` 0 keeps all folds",
+                           unfolded->mended.operations, unfolded->mended.largest_move));
+    surface = std::move(unfolded->surface);
+    found.edges = make_edge_table(surface.points.size(), surface.triangles);
+    return std::move(unfolded->mended.moved);
+  });
+}
+
+/// What unfolding leaves of the bound on the deviation, if the user gave one.
+std::vector<double> left_of_bound(std::vector<double> moved, const Options& options) {
+  const auto asked = asked_deviation(options);
+  if (!asked) return {};
+  for (double& d : moved) d = *asked - d;
+  return moved;
+}
+
+void require_bounds(const Domain& mended) {
+  if (mended.bound.empty()) return;
+  if (mended.bound.size() != mended.surface.triangles.size())
+    throw OptionError(fmt::format("there are {} bounds for {} triangles: give one for each, or none",
+                                  mended.bound.size(), mended.surface.triangles.size()));
+  const auto wrong = std::ranges::find_if(mended.bound, [](double b) { return !(b > 0); });
+  if (wrong != mended.bound.end())
+    throw OptionError(fmt::format("the bound of triangle {} is {}: it is a length above 0, or infinite",
+                                  wrong - mended.bound.begin(), *wrong));
+}
+
+/// Of arrays: readers have done so already.
+void clean_names(SurfaceMesh& surface, const Stage& stage) {
+  NameCleaning names;
+  names.clean(surface.patch_names);
+  names.clean(surface.region_names);
+  if (std::string note = names.note(); !note.empty()) stage.note(std::move(note));
+}
+
+/// The bounds of a mended domain, for triangles whose sources are its own; these then are those of its triangles.
+std::vector<double> bounds_by_source(const Domain& mended, SurfaceMesh& surface) {
+  std::vector<double> bound;
+  std::vector<std::uint32_t> source;
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    bound.push_back(mended.bound[surface.source_of(t)]);
+    source.push_back(mended.surface.source_of(surface.source_of(t)));
+  }
+  surface.source = std::move(source);
+  return bound;
+}
+
+/// `mended`: null, or what the soup is of, without sources.
+Prepared prepare(const SurfaceMesh& soup, const Domain* mended, Run& run) {
+  SurfaceDomain::Defects defects{};
+  Examined found = run.stage("repair", [&](const Stage& stage) {
+    Examined examined = examine_surface(soup, stage.context());
+    const RepairedSurface& repaired = examined.repaired;
+    for (const std::string& note : repaired.notes) stage.note(note);
+    refuse_complex_for_method(repaired.surface, run.options.method);
+    defects = judge_defects(examined.defects, run.options.method, stage);
+    if (defects == SurfaceDomain::Defects::kOpen) face_outward(examined);
+    refuse_lost_precision(repaired.surface);
+    stage.count("triangles", static_cast<double>(repaired.surface.triangles.size()));
+    stage.count("bodies", repaired.bodies);
+    stage.count("cavities", repaired.cavities);
+    if (!repaired.surface.sides.empty()) divide_by_sides(examined.repaired.surface);
+    clean_names(examined.repaired.surface, stage);
+    return examined;
+  });
+  run.report.input_volume = enclosed_volume(found.repaired.surface);
+  const bool is_plain = found.repaired.surface.sides.empty();
+  std::vector<double> moved;
+  if (defects == SurfaceDomain::Defects::kClean && is_plain) moved = smooth_detail(found, run);
+  const bool unfolded = !moved.empty();
+  SurfaceMesh& surface = found.repaired.surface;
+  ClosedPatch closed = take_closed_patch(surface, found.edges);
+  Features features = run.stage("features", [&](const Stage& stage) {
+    Features of_surface = detect_features(surface, found.edges, run.options.surface.angle_of_features());
+    stage.count("feature edges", static_cast<double>(of_surface.edges.size()));
+    stage.count("corners", static_cast<double>(of_surface.corners.size()));
+    if (run.options.surface.patches_by_features)
+      stage.count("patches", divide_into_patches(surface, found.edges, of_surface));
+    return of_surface;
+  });
+  run.report.bodies = found.repaired.bodies;
+  std::vector<double> bound =
+      mended ? bounds_by_source(*mended, surface) : left_of_bound(std::move(moved), run.options);
+  return {KnownSurface(std::move(surface), std::move(found.edges), std::move(features)), defects, std::move(bound),
+          unfolded, std::move(closed)};
+}
+
+}  // namespace
+
+SurfaceOptions true_to_input(const SurfaceMesh& input, const Options& options) {
+  SurfaceOptions surface = options.surface;
+  if (!surface.max_deviation && has_automatic_sizes(options)) {
+    const double automatic = kAutomaticDeviation * bounding_box(input.points).diagonal();
+    surface.max_deviation = std::min(automatic, asked_deviation(options).value_or(automatic));
+  }
+  return surface;
+}
+
+Prepared prepare(const Domain& domain, Run& run) {
+  require_bounds(domain);
+  if (domain.bound.empty() || run.options.surface.max_deviation || !has_automatic_sizes(run.options))
+    return prepare(domain.surface, nullptr, run);
+  SurfaceMesh numbered = domain.surface;
+  numbered.source.clear();
+  return prepare(numbered, &domain, run);
+}
+
+SizeField choose_sizes(const Prepared& input, Run& run) {
+  SizeField sizes = run.stage("size field", [&](const Stage& stage) {
+    SizeOptions size = run.options.size;
+    const double budget = budget_of(input.surface.mesh(), run.options);
+    if (std::isfinite(budget)) stage.count("budget of elements", budget);
+    if (const auto asked = asked_deviation(run.options); !size.field && asked != 0.0) size.chord_error = asked;
+    if (const auto degrees = run.options.surface.normal_deviation)
+      refuse_huge_turning(input.surface, size, *degrees, run.context());
+    note_misplaced_sizes(input.surface.mesh(), size, stage);
+    return keeps_surface(run.options)
+               ? size_field_of_surface(input.surface, size, stage)
+               : make_size_field(input.surface, size, stage, {input.bound, input.closed.is_in_it}, budget);
+  });
+  const MethodTraits& method = traits_of(run.options.method);
+  const SurfaceMesh& surface = input.surface.mesh();
+  if (keeps_surface(run.options))
+    run.report.expected_tets = method.tets_per_expected * expected_tets_within(sizes, surface);
+  else if (method.makes_own_boundary())
+    run.report.expected_tets = method.tets_per_expected * expected_tets(sizes, surface);
+  return sizes;
+}
+
+Remeshed triangulate(const Prepared& input, const SizeField& sizes, Run& run) {
+  if (keeps_surface(run.options)) return input_as_it_is(input.surface, sizes);
+  return run.stage("surface front", [&](const Stage& stage) {
+    const SurfaceOptions surface = true_to_input(input.surface.mesh(), run.options);
+    const double slack = surface.max_deviation == run.options.surface.max_deviation ? 1 : kAutomaticSlack;
+    const double budget = budget_of(input.surface.mesh(), run.options);
+    Remeshed remeshed = remeshed_in_shape(
+        input, sizes, run, stage,
+        [&](const SizeField& by) {
+          return remesh_surface(input.surface, by, surface, stage, input.bound, {slack, budget});
+        },
+        budget);
+    stage.count("triangles", static_cast<double>(remeshed.surface.triangles.size()));
+    // Strips between lines and the bounds on deviation have made sizes smaller since the first prediction.
+    run.report.expected_tets =
+        traits_of(run.options.method).tets_per_expected * expected_tets_within(remeshed.sizes, remeshed.surface);
+    return remeshed;
+  });
+}
+
+Filled fill(const Prepared& input, const SizeField& sizes, Run& run) {
+  if (traits_of(run.options.method).makes_own_boundary()) return stuff(input, sizes, run);
+  return fill_surface(input, triangulate(input, sizes, run), run);
+}
+
+Filled fill_surface(const Prepared& input, Remeshed boundary, Run& run) {
+  const MethodTraits& method = traits_of(run.options.method);
+  TetMesh mesh = run.stage(method.stage, [&](const Stage& stage) {
+    TetMesh filled = method.fill(boundary, run.options.volume, stage);
+    stage.count("tets", static_cast<double>(filled.tets.size()));
+    return filled;
+  });
+  mesh.source.reserve(mesh.boundary.size());
+  for (std::size_t t = 0; t < boundary.source.size(); ++t)
+    if (boundary.surface.sides_of(t)[0] == kNone)
+      mesh.source.push_back(input.surface.mesh().source_of(boundary.source[t]));
+  return {std::move(mesh), std::move(boundary)};
+}
+
+void improve_elements(const Prepared& input, Filled& filled, Run& run, const ImproveOptions& options) {
+  run.stage("improve", [&](const Stage& stage) {
+    auto& [mesh, boundary] = filled;
+    const bool is_ours = !keeps_surface(run.options) && input.defects == SurfaceDomain::Defects::kClean;
+    std::optional<improve::BoundaryInput> on;
+    if (is_ours)
+      on.emplace(improve::BoundaryInput{
+          input.surface.mesh(), input.surface.tree(), input.surface.features(), boundary.features,
+          detail_tolerance(input.surface.mesh(), run.options, input.unfolded ? 1 - kUnfolded : 1), boundary.near_limit,
+          input.bound});
+    if (improve_mesh(mesh, on ? &*on : nullptr, options, stage, &boundary.features)) {
+      if (on) renew_sources(mesh, hull_of(boundary.surface), on->surface, on->tree);
+      follow_boundary(mesh, boundary.surface);
+    }
+    if (on && may_slide(options)) ease_boundary(*on, filled, run.options, stage);
+  });
+}
+
+void raise_order(const Prepared& input, Filled& filled, Run& run) {
+  if (run.options.order < 2) return;
+  run.stage("second order", [&](const Stage& stage) {
+    auto& [mesh, boundary] = filled;
+    run.report.second_order = keeps_surface(run.options)
+                                  ? add_straight_edges(mesh, stage.context())
+                                  : curve_to_surface(mesh, boundary.features.edges, input.surface,
+                                                     run.options.surface.angle_of_features(), stage.context());
+    std::copy_n(mesh.points.begin(), boundary.surface.points.size(), boundary.surface.points.begin());
+    count_edges(run.report.second_order, stage);
+  });
+}
+
+void name_patches(const Prepared& input, Filled& filled) {
+  if (input.closed.patch == kNone) return;
+  name_closed_patch(input.closed, input.surface.tree(), filled.mesh);
+  name_closed_patch(input.closed, input.surface.tree(), filled.boundary.surface);
+}
+
+void count_edges(const SecondOrderSummary& made, const Stage& stage) {
+  stage.count("curved edges", static_cast<double>(made.curved));
+  stage.count("eased edges", static_cast<double>(made.eased));
+  stage.count("straight edges", static_cast<double>(made.straight));
+}
+
+void check_result(const TetMesh& mesh, const SurfaceMesh* surface, Run& run) {
+  run.stage("check", [&](const Stage& stage) {
+    const auto defect = surface ? first_defect(mesh, *surface, stage.context()) : first_defect(mesh, stage.context());
+    if (defect)
+      throw MeshingError("the mesh made is not valid, which is a bug of ours; please report it with the input. " +
+                         *defect);
+  });
+}
+
+SurfaceMesh boundary_of(const TetMesh& mesh) {
+  return {mesh.points, mesh.boundary, mesh.patch, {}, {}};
+}
+
+void describe(const TetMesh& mesh, Report& report) {
+  report.points = mesh.points.size();
+  report.tets = mesh.tets.size();
+  report.boundary_faces = mesh.boundary.size();
+  report.volume = mesh.is_second_order() ? curved_volume(mesh) : enclosed_volume(boundary_of(mesh));
+  parallel_invoke([&] { report.quality = summarize_quality(mesh); }, [&] { report.hash = mesh_hash(mesh); });
+  describe_regions(mesh, report);
+}
+
+}  // namespace octafront

@@ -1,0 +1,92 @@
+#pragma once
+
+// pipeline/stages: the list of stages. Takes a domain and options, runs the wings one after the other, times them,
+// and leaves a checked mesh and a report. The public face is octafront/generate.h.
+//
+// One function each, in the order of the pipeline. What a stage takes is const and what it makes
+// is new, but for improvement, which changes the mesh in place; any of them can be called alone with a Run of its own.
+
+#include <octafront/domain.h>
+#include <octafront/repair.h>
+#include <octafront/second_order.h>
+#include <octafront/size_field.h>
+#include <octafront/surface_mesh.h>
+#include <octafront/tet_mesh.h>
+
+#include "base/mesh/known_surface.h"
+#include "fill/stuffing/implicit_domain.h"
+#include "pipeline/stages/closed_patch.h"
+#include "pipeline/stages/run.h"
+#include "surface/remeshing/remesh.h"
+
+namespace octafront {
+
+/// The input as every later stage needs it.
+struct Prepared {
+  KnownSurface surface;                                             ///< repaired, unfolded
+  SurfaceDomain::Defects defects = SurfaceDomain::Defects::kClean;  ///< other than clean where the method allows it
+  /// Per triangle of the surface how near the new one stays to it, where that is nearer than elsewhere: by what
+  /// unfolding has used up of a bound of the user's, and where repair moved something. Empty: so nowhere.
+  std::vector<double> bound = {};
+  bool unfolded = false;  ///< folds were taken off
+  ClosedPatch closed = {};
+};
+
+/// A mesh and the surface that it fills, triangle for triangle.
+struct Filled {
+  TetMesh mesh;
+  Remeshed boundary;
+};
+
+/// Repairs the input, refuses what the method cannot mesh (InputError), takes off folds that the tolerance lets go
+/// where the surface is made anew, finds the features. The bounds of a mended one hold where the sizes are automatic
+/// and the user bounds nothing.
+Prepared prepare(const Domain& input, Run& run);
+
+/// The sizes that the options ask for; report.expected_tets says how many elements they promise, if no surface made to
+/// them will tell better.
+SizeField choose_sizes(const Prepared& input, Run& run);
+
+/// How true the surface stays to the input: as asked, and with automatic sizes within .4 % of the diagonal.
+SurfaceOptions true_to_input(const SurfaceMesh& input, const Options& options);
+
+/// The surface triangulated anew to the sizes, or the input's triangles where the run keeps them.
+Remeshed triangulate(const Prepared& input, const SizeField& sizes, Run& run);
+
+/// triangulate(), again with scaled sizes until the elements expected meet the number that was asked for or cannot.
+Remeshed triangulate_to_target(const Prepared& input, const SizeField& sizes, Run& run);
+
+/// Surface and volume by the run's method.
+Filled fill(const Prepared& input, const SizeField& sizes, Run& run);
+/// The volume of a surface that triangulate() left.
+Filled fill_surface(const Prepared& input, Remeshed boundary, Run& run);
+
+/// The surface as by triangulate_to_target(), filled; again if the elements made do not meet the number.
+Filled fill_to_target(const Prepared& input, const SizeField& sizes, Run& run);
+
+/// Says so if a mesh that is done misses the number of elements that was asked for by more than 15 %.
+void note_missed_elements(const TetMesh& mesh, Run& run);
+
+/// Better elements by these options; `filled.boundary` follows what became of the boundary.
+void improve_elements(const Prepared& input, Filled& filled, Run& run, const ImproveOptions& options);
+
+/// Mid-side nodes where the run asks for second order, on the smooth surface of the input unless its triangles are
+/// kept; `filled.boundary` follows.
+void raise_order(const Prepared& input, Filled& filled, Run& run);
+
+/// Names what repair closed, in the mesh and `filled.boundary`.
+void name_patches(const Prepared& input, Filled& filled);
+
+/// Enters what became of the edges into the stage's report.
+void count_edges(const SecondOrderSummary& made, const Stage& stage);
+
+/// Throws MeshingError if the mesh breaks a law of first_defect(), or its boundary is not `surface` where one is given.
+void check_result(const TetMesh& mesh, const SurfaceMesh* surface, Run& run);
+
+/// The boundary with the mesh's points and patches.
+SurfaceMesh boundary_of(const TetMesh& mesh);
+
+/// Fills in what the report says of every mesh: counts, volume, quality, hash.
+void describe(const TetMesh& mesh, Report& report);
+
+}  // namespace octafront

@@ -1,0 +1,131 @@
+#include <octafront/report.h>
+
+#include "base/core/wording.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/core.h>
+
+namespace octafront {
+
+namespace {
+
+// 1234567 -> "1 234 567"
+std::string grouped(std::uint64_t n) {
+  std::string digits = std::to_string(n);
+  for (int at = static_cast<int>(digits.size()) - 3; at > 0; at -= 3)
+    digits.insert(static_cast<std::size_t>(at), 1, ' ');
+  return digits;
+}
+
+std::string bar(double share) {
+  constexpr int kWidth = 40;
+  return std::string(static_cast<std::size_t>(std::lround(share * kWidth)), '#');
+}
+
+std::string counted_in_groups(std::uint64_t n, const std::string& one, const std::string& many = "") {
+  return grouped(n) + " " + noun(n, one, many);
+}
+
+std::string count_line(const Report& report) {
+  const std::string vertices = counted_in_groups(report.points, "vertex", "vertices");
+  if (report.tets == 0) {
+    if (report.boundary_faces == 0) return "";
+    return counted_in_groups(report.boundary_faces, "triangle") + ", " + vertices + "\n";
+  }
+  std::string line = counted_in_groups(report.tets, "tetrahedron", "tetrahedra") + ", " + vertices + ", " +
+                     counted_in_groups(report.boundary_faces, "boundary triangle");
+  // Nobody counts the bodies of a mesh that was there before, and an open surface has none.
+  if (report.bodies > 0) line += ", " + counted(report.bodies, "body", "bodies");
+  return line + "\n";
+}
+
+std::string volume_line(const Report& report) {
+  // An open surface encloses nothing to compare with.
+  if (report.input_volume == 0) return fmt::format("volume {:.6g}\n", report.volume);
+  return fmt::format("volume {:.6g} (input {:.6g}, {:+.3f} %)\n", report.volume, report.input_volume,
+                     100 * (report.volume / report.input_volume - 1));
+}
+
+std::string stage_lines(const Report& report) {
+  std::string out = fmt::format("{:<34}{:>10}{:>10}\n", "stage", "wall s", "cpu s");
+  for (const StageReport& s : report.stages)
+    out += fmt::format("  {:<32}{:>10.3f}{:>10.3f}\n", s.name, s.wall_seconds, s.cpu_seconds);
+  out += fmt::format("  {:<32}{:>10.3f}{:>10.3f}\n", "total", report.wall_seconds, report.cpu_seconds);
+  return out;
+}
+
+std::string note_lines(const Report& report) {
+  std::string out;
+  for (const StageReport& s : report.stages)
+    for (const std::string& note : s.notes) out += fmt::format("note ({}): {}\n", s.name, note);
+  return out;
+}
+
+std::string quality_lines(const QualitySummary& q) {
+  constexpr const char* kClasses[5] = {"0.0 - 0.2", "0.2 - 0.4", "0.4 - 0.6", "0.6 - 0.8", "0.8 - 1.0"};
+  std::string out = "quality, beta = 3 r / R\n";
+  for (int c = 0; c < 5; ++c) {
+    const double share =
+        static_cast<double>(q.beta_classes[c]) / static_cast<double>(std::max<std::uint64_t>(1, q.elements));
+    out += fmt::format("  {}{:>16}{:>9.3f} %  {}\n", kClasses[c], grouped(q.beta_classes[c]), 100 * share, bar(share));
+  }
+  out += fmt::format("  mean {:.4f}, least {:.4f} (tet {})\n", q.beta_mean, q.beta_min, q.beta_min_tet);
+  out += fmt::format("  dihedral angles from {:.1f} to {:.1f} degrees\n", q.dihedral_min, q.dihedral_max);
+  return out;
+}
+
+std::string second_order_lines(const SecondOrderSummary& s) {
+  std::string out =
+      fmt::format("second order, every element proven valid\n  edges {}: {} curved, {} eased, {} straight\n",
+                  grouped(s.edges), grouped(s.curved), grouped(s.eased), grouped(s.straight));
+  if (s.moved + s.held > 0)
+    out += fmt::format("  corners moved to the smooth surface: {}; held back: {}\n", grouped(s.moved), grouped(s.held));
+  return out + fmt::format("  least scaled Jacobian {:.4f} (tet {}), largest bend {:.3f} of an edge\n",
+                           s.least_scaled_jacobian, s.least_tet, s.largest_bend);
+}
+
+constexpr std::size_t kMostRegionLines = 24;
+
+std::string region_lines(const std::vector<RegionSummary>& regions) {
+  std::string out =
+      fmt::format("{:<32}{:>12}{:>14}{:>12}{:>12}\n", "region", "tetrahedra", "volume", "mean beta", "least beta");
+  for (std::size_t r = 0; r < std::min(regions.size(), kMostRegionLines); ++r) {
+    const RegionSummary& region = regions[r];
+    out +=
+        fmt::format("  {:<30.30}{:>12}{:>14.6g}{:>12.4f}{:>12.4f}\n",
+                    region.name.empty() ? fmt::format("region {}", r + 1) : region.name,
+                    grouped(region.quality.elements), region.volume, region.quality.beta_mean, region.quality.beta_min);
+  }
+  if (regions.size() > kMostRegionLines)
+    out += fmt::format("  ... and {} more: all of them are in the JSON report\n", regions.size() - kMostRegionLines);
+  return out;
+}
+
+std::string size_line(const char* what, const SizeSummary& s) {
+  return fmt::format("  {:<16}mean {:.3f} of the length wanted, {:.1f} % within 0.7 - 1.4\n", what, s.mean_ratio,
+                     100 * s.share_within);
+}
+
+}  // namespace
+
+std::string to_table(const Report& report) {
+  std::string out;
+  out += count_line(report);
+  if (report.expected_tets > 0)
+    out += counted_in_groups(static_cast<std::uint64_t>(report.expected_tets), "tetrahedron", "tetrahedra") +
+           " expected from the sizes\n";
+  if (report.boundary_faces > 0) out += volume_line(report);
+  if (report.tets > 0) out.append("\n").append(quality_lines(report.quality));
+  if (report.regions.size() > 1) out += region_lines(report.regions);
+  if (report.second_order.edges > 0) out += second_order_lines(report.second_order);
+  if (report.surface_edges.edges > 0) out += "edge lengths\n" + size_line("surface", report.surface_edges);
+  if (report.volume_edges.edges > 0) out += size_line("volume", report.volume_edges);
+  out.append("\n").append(stage_lines(report));
+  out += fmt::format("peak memory {:.0f} MB\n", static_cast<double>(report.peak_memory_bytes) / 1e6);
+  out += note_lines(report);
+  return out;
+}
+
+}  // namespace octafront

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <octafront/repair.h>
+#include <octafront/run_context.h>
+
+#include "base/mesh/edge_table.h"
+
+namespace octafront {
+
+/// repair_surface() and find_defects() in one, with the edges of the repaired surface, which both look at.
+struct Examined {
+  RepairedSurface repaired;
+  EdgeTable edges;
+  SurfaceDefects defects;
+};
+Examined examine_surface(const SurfaceMesh& soup, const RunContext& context);
+
+}  // namespace octafront

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <octafront/surface_mesh.h>
+
+#include "soup/tidy/steps.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace octafront::mend {
+
+/// A hole and the triangles over it.
+struct Hole {
+  std::vector<Triangle> cap;
+  std::vector<Vec3> inner;             ///< points of the cap that are not on the rim, in the order of their vertices
+  std::uint32_t rim_triangle = kNone;  ///< of the draft
+  double area = 0;                     ///< of the cap before it was made smooth
+};
+
+struct ClosedHoles {
+  std::vector<Hole> holes;
+  std::vector<char> is_sheet;  ///< per triangle of the draft
+  bool is_one_sheet = false;   ///< all hangs together, and caps would be nearly as large as the rest
+};
+
+/// Caps for the holes of all parts that nearly enclose something, and none for sheets: parts whose caps would be too
+/// large a share of themselves, or that would enclose a volume thinner than the tolerance. Where some parts are closed
+/// already, open ones must be nearly so too. Where the surface around a hole bends, its cap goes on so; the points that
+/// this takes come behind those of the draft.
+ClosedHoles close_holes(repair::Draft& draft, double tolerance);
+
+}  // namespace octafront::mend

@@ -1,0 +1,85 @@
+#include "soup/tidy/steps.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace octafront::repair {
+namespace {
+
+/// Walks over one piece from its first triangle and decides for each triangle whether it must turn to agree with that.
+class PieceWalk {
+ public:
+  explicit PieceWalk(Draft& draft)
+      : triangles_(draft.mesh.triangles),
+        table_(draft.edges()),
+        context_(draft.context),
+        edge_of_(table_.edge_of_half_edge()),
+        turn_(triangles_.size(), 0) {}
+
+  const std::vector<std::uint32_t>& members() const { return members_; }
+  bool turns(std::uint32_t t) const { return turn_[t]; }
+
+  /// Returns whether all agree.
+  bool run(std::uint32_t seed, std::uint32_t piece, std::vector<std::uint32_t>& piece_of) {
+    members_.assign(1, seed);
+    piece_of[seed] = piece;
+    bool agree = true;
+    for (std::size_t k = 0; k < members_.size(); ++k) {
+      if (k % 4096 == 0) context_.check();
+      const std::uint32_t t = members_[k];
+      for (std::uint32_t i = 0; i < 3; ++i) {
+        const auto uses = table_.uses(edge_of_[3 * t + i]);
+        if (uses.size() != 2) continue;
+        const std::uint32_t other = uses[0] / 3 == t ? uses[1] : uses[0], neighbour = other / 3;
+        const bool along = start_of(triangles_, 3 * t + i) == start_of(triangles_, other);
+        const char turn = static_cast<char>(turn_[t] != along);
+        if (piece_of[neighbour] == kNone) {
+          piece_of[neighbour] = piece;
+          turn_[neighbour] = turn;
+          members_.push_back(neighbour);
+        } else if (turn_[neighbour] != turn) {
+          agree = false;
+        }
+      }
+    }
+    return agree;
+  }
+
+ private:
+  const std::vector<Triangle>& triangles_;
+  const EdgeTable& table_;
+  const RunContext& context_;
+  const std::vector<std::uint32_t> edge_of_;
+  std::vector<char> turn_;
+  std::vector<std::uint32_t> members_;
+};
+
+}  // namespace
+
+Pieces orient_pieces(Draft& draft) {
+  std::vector<Triangle>& triangles = draft.mesh.triangles;
+  PieceWalk walk(draft);
+  Pieces pieces;
+  pieces.piece_of_triangle.assign(triangles.size(), kNone);
+  std::vector<std::uint32_t> to_turn;
+  for (std::uint32_t seed = 0; seed < triangles.size(); ++seed) {
+    if (pieces.piece_of_triangle[seed] != kNone) continue;
+    pieces.orientable.push_back(walk.run(seed, pieces.count(), pieces.piece_of_triangle));
+    const auto& members = walk.members();
+    const auto turning = static_cast<std::size_t>(
+        std::count_if(members.begin(), members.end(), [&](std::uint32_t t) { return walk.turns(t); }));
+    const bool turn_the_turning = 2 * turning <= members.size();
+    for (const std::uint32_t t : members)
+      if (walk.turns(t) == turn_the_turning) to_turn.push_back(t);
+  }
+  for (const std::uint32_t t : to_turn) {
+    std::swap(triangles[t][1], triangles[t][2]);
+    pieces.turned_faces.push_back(draft.face[t]);
+  }
+  pieces.turned = to_turn.size();
+  if (pieces.turned > 0) draft.known_edges.reset();
+  sort_unique(pieces.turned_faces);
+  return pieces;
+}
+
+}  // namespace octafront::repair

@@ -1,0 +1,29 @@
+#include "base/mesh/renumber.h"
+
+#include <gtest/gtest.h>
+
+namespace octafront {
+namespace {
+
+TEST(DropUnusedPoints, ClosesTheGapsAndKeepsTheOrder) {
+  TetMesh mesh;
+  for (int i = 0; i < 8; ++i) mesh.points.push_back({double(i), 0, 0});
+  mesh.tets = {{7, 2, 4, 5}};
+  mesh.boundary = {{2, 4, 7}};
+  drop_unused_points(mesh);
+  EXPECT_EQ(mesh.points, (std::vector<Vec3>{{2, 0, 0}, {4, 0, 0}, {5, 0, 0}, {7, 0, 0}}));
+  EXPECT_EQ(mesh.tets, (std::vector<Tet>{{3, 0, 1, 2}}));
+  EXPECT_EQ(mesh.boundary, (std::vector<Triangle>{{0, 1, 3}}));
+}
+
+TEST(DropUnusedPoints, LeavesTheFirstWhereTheyAre) {
+  TetMesh mesh;
+  for (int i = 0; i < 8; ++i) mesh.points.push_back({double(i), 0, 0});
+  mesh.tets = {{7, 2, 4, 5}};
+  drop_unused_points(mesh, 3);
+  EXPECT_EQ(mesh.points.size(), 6u);
+  EXPECT_EQ(mesh.tets, (std::vector<Tet>{{5, 2, 3, 4}}));
+}
+
+}  // namespace
+}  // namespace octafront

@@ -1,0 +1,76 @@
+#include <octafront/error.h>
+#include <octafront/generate.h>
+#include <octafront/improve_existing.h>
+#include <octafront/validity.h>
+
+#include "base/geometry/hausdorff.h"
+#include "support/named_surfaces.h"
+
+#include <gtest/gtest.h>
+
+namespace octafront {
+namespace {
+
+TetMesh unimproved(const SurfaceMesh& surface, double size) {
+  Options options;
+  options.size.size = size;
+  options.improve.level = ImproveOptions::Level::kOff;
+  return generate(surface, options).mesh;
+}
+
+TEST(ImproveExisting, KeepsTheBoundaryUnlessThereIsASurface) {
+  const TetMesh start = unimproved(testing::torus(40, 20), 0.2);
+  const Improved better = improve_existing(start);
+  EXPECT_GT(better.report.quality.beta_mean, better.before.beta_mean);
+  EXPECT_GE(better.report.quality.beta_min, better.before.beta_min);
+  EXPECT_EQ(first_defect(better.mesh, {start.points, start.boundary, {}, {}, {}}), std::nullopt);
+}
+
+TEST(ImproveExisting, SlidesOnASurfaceAndStaysTrueToIt) {
+  const SurfaceMesh surface = testing::icosphere(4);
+  const TetMesh start = unimproved(surface, 0.25);
+  const Improved fixed = improve_existing(start), slid = improve_existing(start, {}, &surface);
+  EXPECT_GT(slid.report.quality.beta_mean, fixed.report.quality.beta_mean);
+  EXPECT_EQ(first_defect(slid.mesh), std::nullopt);
+  EXPECT_NE(first_defect(slid.mesh, {start.points, start.boundary, {}, {}, {}}), std::nullopt);
+  const SurfaceMesh before{start.points, start.boundary, {}, {}, {}},
+      after{slid.mesh.points, slid.mesh.boundary, {}, {}, {}};
+  const double tolerance = 1e-3;
+  EXPECT_LE(hausdorff_distance(after, surface, tolerance).lower,
+            1.1 * hausdorff_distance(before, surface, tolerance).upper);
+  // Sources are the nearest input faces still.
+  for (std::size_t t = 0; t < slid.mesh.boundary.size(); ++t) {
+    const auto& [a, b, c] = slid.mesh.boundary[t];
+    const Vec3 middle = (slid.mesh.points[a] + slid.mesh.points[b] + slid.mesh.points[c]) / 3;
+    const auto& [x, y, z] = surface.triangles[slid.mesh.source[t]];
+    EXPECT_LT(distance(middle, (surface.points[x] + surface.points[y] + surface.points[z]) / 3), 0.15);
+  }
+}
+
+TEST(ImproveExisting, GainsNextToNothingOnTheResultOfBest) {
+  const SurfaceMesh surface = testing::icosphere(4);
+  Options options;
+  options.size.size = 0.25;
+  options.improve.level = ImproveOptions::Level::kBest;
+  const TetMesh best = generate(surface, options).mesh;
+  for (const SurfaceMesh* ground : {&surface, static_cast<const SurfaceMesh*>(nullptr)}) {
+    const Improved again = improve_existing(best, options, ground);
+    EXPECT_LT(again.report.quality.beta_min, again.before.beta_min + 0.01);
+  }
+}
+
+TEST(ImproveExisting, RefusesWhatIsNotValid) {
+  TetMesh mesh = unimproved(testing::cube(1), 0.5);
+  const SurfaceMesh other = testing::icosphere(2);
+  EXPECT_THROW(improve_existing(mesh, {}, &other), InputError);
+  std::swap(mesh.tets[3][0], mesh.tets[3][1]);
+  try {
+    improve_existing(mesh);
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("tetrahedron 3 is inverted"), std::string::npos) << e.what();
+  }
+}
+
+}  // namespace
+}  // namespace octafront
