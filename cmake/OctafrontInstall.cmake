@@ -6,10 +6,13 @@ find_program(OCTAFRONT_GZIP gzip)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/octafront)
 set(doc_dir ${CMAKE_INSTALL_DATADIR}/doc)
 set(texts LICENSE NOTICE licenses)
-install(TARGETS octafront octafront_mesher EXPORT octafrontTargets
-        ARCHIVE COMPONENT development
-        LIBRARY COMPONENT runtime NAMELINK_COMPONENT development)
-install(EXPORT octafrontTargets NAMESPACE octafront:: DESTINATION ${package_dir} COMPONENT development)
+# Who asks for the mesher alone need not have what the rest stands on: an export of its own.
+foreach(library octafront_mesher octafront)
+  install(TARGETS ${library} EXPORT ${library}Targets
+          ARCHIVE COMPONENT development
+          LIBRARY COMPONENT runtime NAMELINK_COMPONENT development)
+  install(EXPORT ${library}Targets NAMESPACE octafront:: DESTINATION ${package_dir} COMPONENT development)
+endforeach()
 install(DIRECTORY include/octafront DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development)
 install(FILES LICENSE NOTICE DESTINATION ${doc_dir}/liboctafront-dev COMPONENT development)
 install(DIRECTORY licenses DESTINATION ${doc_dir}/liboctafront-dev COMPONENT development)
@@ -53,28 +56,33 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/octafrontConfig.cmake ${CMAKE_CURRENT_
 set(pc_stands_on ${CMAKE_CXX_IMPLICIT_LINK_LIBRARIES})
 list(FILTER pc_stands_on EXCLUDE REGEX "^(gcc|gcc_s|c)$")
 list(TRANSFORM pc_stands_on PREPEND "-l" REGEX "^[^-/]")
-list(JOIN pc_stands_on " " pc_stands_on)
 # By its name where linkers look anyway: then the file is right for every architecture.
 set(pc_hdf5 "${OCTAFRONT_HDF5_LIBRARY}")
 cmake_path(GET OCTAFRONT_HDF5_LIBRARY PARENT_PATH hdf5_dir)
 if(hdf5_dir IN_LIST CMAKE_CXX_IMPLICIT_LINK_DIRECTORIES)
   string(REGEX REPLACE "^.*/lib([^/]*)[.](so|a)$" "-l\\1" pc_hdf5 "${OCTAFRONT_HDF5_LIBRARY}")
 endif()
-set(pc_stands_on "${pc_hdf5} -lpthread ${pc_stands_on}")
+list(PREPEND pc_stands_on -lpthread)
+list(JOIN pc_stands_on " " pc_stands_on)
 get_target_property(pc_kind octafront TYPE)
-if(pc_kind STREQUAL "STATIC_LIBRARY")
-  set(pc_private "")
-  set(pc_libs ${pc_stands_on})
-  set(pc_libs_private "")
-else()
-  set(pc_private ".private")
-  set(pc_libs "")
-  set(pc_libs_private ${pc_stands_on})
-endif()
 file(RELATIVE_PATH pc_prefix ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
-configure_file(cmake/octafront.pc.in octafront.pc @ONLY)
-install(FILES ${CMAKE_CURRENT_BINARY_DIR}/octafront.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig
-        COMPONENT development)
+# octafront_pc(NAME BROUGHT REQUIRES LIBS): the file of library NAME, whose users link BROUGHT too, and the rest if it
+# is static.
+function(octafront_pc pc_name pc_brought pc_requires pc_libs)
+  if(pc_kind STREQUAL "STATIC_LIBRARY")
+    string(APPEND pc_brought " ${pc_requires}")
+    set(pc_requires "")
+    set(pc_libs_private "")
+  else()
+    set(pc_libs_private "${pc_libs}")
+    set(pc_libs "")
+  endif()
+  configure_file(cmake/octafront.pc.in ${pc_name}.pc @ONLY)
+  install(FILES ${CMAKE_CURRENT_BINARY_DIR}/${pc_name}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig
+          COMPONENT development)
+endfunction()
+octafront_pc(octafront_mesher "" "tbb fmt" "${pc_stands_on}")
+octafront_pc(octafront "octafront_mesher" "fmt zlib" "${pc_hdf5} ${pc_stands_on}")
 
 # cpack -G DEB: octafront_*.deb with the tool, liboctafront-dev_*.deb with the library.
 set(CPACK_PACKAGE_NAME octafront)

@@ -10,6 +10,8 @@ export PKG_CONFIG_PATH
 pkg_config="pkg-config --cflags --libs octafront"
 c++ -std=c++20 "$examples/mesh_a_sphere.cpp" -o "$scratch/sphere" $($pkg_config)
 cc -std=c99 -Wall -Wextra -Wpedantic -Werror "$examples/mesh_from_c.c" -o "$scratch/cube" $($pkg_config)
+c++ -std=c++20 "$examples/mesh_arrays.cpp" -o "$scratch/arrays" $(pkg-config --cflags --libs octafront_mesher)
+LD_LIBRARY_PATH=$(dirname "$PKG_CONFIG_PATH") "$scratch/arrays"
 LD_LIBRARY_PATH=$(dirname "$PKG_CONFIG_PATH") "$scratch/sphere" "$scratch/sphere.vtu"
 LD_LIBRARY_PATH=$(dirname "$PKG_CONFIG_PATH") "$scratch/cube" "$scratch/cube.vtu"
 test -s "$scratch/sphere.vtu" && test -s "$scratch/cube.vtu"

@@ -1,0 +1,118 @@
+#!/usr/bin/env python3
+"""The house in numbers and a picture: wings, rooms, arrows, circles, files and lines.
+
+    scripts/house.py [COMMIT ...]   prints docs/house.md: the tree as it is, beside older commits
+
+Rooms are those that ARCHITECTURE.md of that commit names; an arrow is a room (or wing) of which a file includes one of
+another; a circle is a set of rooms that reach each other.
+"""
+import collections
+import pathlib
+import re
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"]+)"', re.M)
+
+
+def git(*arguments):
+    return subprocess.run(["git", "-C", ROOT, *arguments], check=True, capture_output=True, text=True).stdout
+
+
+def tree(commit):
+    """{path under src: text}, and ARCHITECTURE.md."""
+    if commit is None:
+        paths = [ROOT / p for p in git("ls-files", "src").split()]
+        return {p.relative_to(ROOT / "src").as_posix(): p.read_text() for p in paths if p.exists()}, (ROOT / "ARCHITECTURE.md").read_text()
+    paths = git("ls-tree", "-r", "--name-only", commit, "src").split()
+    return {p[4:]: git("show", f"{commit}:{p}") for p in paths}, git("show", f"{commit}:ARCHITECTURE.md")
+
+
+def rows(architecture, columns):
+    """{room or wing: what its row names} of the table with so many columns."""
+    cells = ([c.strip() for c in line.strip().strip("|").split("|")] for line in architecture.splitlines())
+    return {c[0].strip("`"): re.findall(r"`([\w/]+)`", c[1]) for c in cells if len(c) == columns and re.fullmatch(r"`[\w/]+`", c[0])}
+
+
+def arrows_between(files, place):
+    arrows = collections.defaultdict(set)
+    for path, text in files.items():
+        for header in INCLUDE.findall(text):
+            here, there = place(path), place(header)
+            if here and there and here != there:
+                arrows[here].add(there)
+    return arrows
+
+
+def circles(arrows):
+    def reach(start):
+        seen, todo = set(), [start]
+        while todo:
+            for other in arrows.get(todo.pop(), ()):
+                if other not in seen:
+                    seen.add(other)
+                    todo.append(other)
+        return seen
+
+    reached = {name: reach(name) for name in arrows}
+    return {frozenset(o for o in reached[name] if name in reached.get(o, ())) for name in arrows if name in reached[name]}
+
+
+class House:
+    def __init__(self, commit):
+        self.files, architecture = tree(commit)
+        self.name = git("log", "-1", "--format=%h of %cd", "--date=format:%Y-%m-%d", commit or "HEAD").strip()
+        self.may, self.rooms = rows(architecture, 3), rows(architecture, 4)
+        self.room_arrows = arrows_between(self.files, self.room)
+        self.wing_arrows = arrows_between(self.files, self.wing)
+        self.wings = collections.Counter(filter(None, map(self.wing, self.files)))
+
+    def room(self, path):
+        parts = path.split("/")[:-1]
+        return next(("/".join(parts[:n]) for n in range(len(parts), 0, -1) if "/".join(parts[:n]) in self.rooms), None)
+
+    def wing(self, path):
+        return path.split("/")[0] if "/" in path else None
+
+    def lines(self, place=None, name=None):
+        return sum(text.count("\n") for path, text in self.files.items() if place is None or place(path) == name)
+
+    def row(self):
+        in_room = collections.Counter(filter(None, map(self.room, self.files)))
+        return [self.name, len(self.wings), len(self.rooms), sum(map(len, self.room_arrows.values())), len(circles(self.room_arrows)),
+                sum(map(len, self.wing_arrows.values())), len(circles(self.wing_arrows)), len(self.files), max(in_room.values()), f"{self.lines():,}"]
+
+
+def picture(house):
+    """The table of wings in ARCHITECTURE.md, to which tests/house holds the includes, without arrows that follow."""
+    below = {}
+    for wing, named in house.may.items():
+        below[wing] = set(named).union(*(below[other] for other in named))
+    yield "```mermaid"
+    yield "flowchart BT"
+    for wing, named in house.may.items():
+        rooms = ", ".join(sorted(room.split("/")[1] for room in house.rooms if room.startswith(wing + "/")))
+        yield f'  {wing}["<b>{wing}</b>{"<br>" if rooms else ""}{rooms}"]'
+        yield from (f"  {wing} --> {other}" for other in named if not any(other in below[o] for o in named))
+    yield "```"
+
+
+def main():
+    houses = [House(commit) for commit in sys.argv[1:]] + [House(None)]
+    now = houses[-1]
+    print("# The house\n\nWhat `ARCHITECTURE.md` says in words, counted: `scripts/house.py", *sys.argv[1:], end="` wrote this page.\n\n")
+    print("| commit | folders in `src/` | rooms | arrows between rooms | circles of rooms | arrows between folders | circles of these | files | most in a room | lines |")
+    print("| --- |" + " ---: |" * 9)
+    for house in houses:
+        print("|", " | ".join(map(str, house.row())), "|")
+    print("\nAn arrow: a file of one includes a header of the other. The last row is the tree on top of the commit that it names.\n")
+    print(*picture(now), sep="\n")
+    print("\nBy the table of wings; arrows that follow from others are left out.\n\n| wing | rooms | files | lines |\n| --- | ---: | ---: | ---: |")
+    for wing in sorted(now.wings, key=lambda w: -now.lines(now.wing, w)):
+        rooms = sum(r.split("/")[0] == wing for r in now.rooms)
+        print(f"| `{wing}` | {rooms} | {now.wings[wing]} | {now.lines(now.wing, wing):,} |")
+
+
+if __name__ == "__main__":
+    main()
