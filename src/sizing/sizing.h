@@ -7,9 +7,3 @@
 //
 //   sources (size_sources.h) -> samples of the surface -> octree, divided by them (background_grid.h)
 //     -> corner values (gradation.h) -> OctreeField -> at(p), expected_tets()
-
-#include <octafront/size_field.h>
-
-#include "sizing/make_size_field.h"
-#include "sizing/octree.h"
-#include "sizing/octree_field.h"

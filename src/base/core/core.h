@@ -4,9 +4,3 @@
 // several threads (parallel.h), words of messages (wording.h), and the containers of working structures, each in a
 // header of its own: groups.h, buckets.h, flat_map.h, disjoint_sets.h, morton.h, random.h, validate.h. Takes nothing,
 // knows nothing of meshes.
-
-#include <octafront/run_context.h>
-
-#include "base/core/stage.h"
-#include "base/core/stage_timer.h"
-#include "base/core/thread_limit.h"

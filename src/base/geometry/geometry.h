@@ -4,11 +4,3 @@
 // intersection tests, on which every decision about topology rests; measures in plain floating point, which only ever
 // choose between alternatives; a tree over triangles for nearest points, boxes and rays. Takes coordinates and index
 // triples, leaves signs, numbers and ids; knows nothing of meshes as a whole.
-
-#include "base/geometry/hausdorff.h"
-#include "base/geometry/measures.h"
-#include "base/geometry/predicates.h"
-#include "base/geometry/self_intersection.h"
-#include "base/geometry/triangle_box.h"
-#include "base/geometry/triangle_intersection.h"
-#include "base/geometry/triangle_tree.h"

@@ -5,12 +5,3 @@
 // every mesh keeps before it leaves the library (octafront/validity.h). Takes the flat arrays of the public headers,
 // leaves tables of indices that follow the input's order alone. Rooms that change a mesh in place do it by the
 // complex of tet_complex.h.
-
-#include <octafront/quality.h>
-#include <octafront/surface_mesh.h>
-#include <octafront/tet_mesh.h>
-#include <octafront/validity.h>
-
-#include "base/mesh/adjacency.h"
-#include "base/mesh/known_surface.h"
-#include "base/mesh/surface_topology.h"

@@ -6,5 +6,3 @@
 // steps as the other front.
 //
 //   surface_sizes, classic_front (alternating_tree) -> classic_attempt, smallest face first -> front/ladder
-
-#include "fill/classic/fill_classic.h"

@@ -6,6 +6,3 @@
 // (boundary_recovery.h); what lies outside is taken away (carve.h), and the points on the surface leave it for the
 // inside (steiner_lift.h). It knows of no size; refine.h then adds points inside by a size field. docs/recovery.md says
 // why it ends.
-
-#include "fill/recovery/recover.h"
-#include "fill/recovery/refine.h"

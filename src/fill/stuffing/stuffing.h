@@ -6,5 +6,3 @@
 //
 //   stuffing_octree -> lattice_graph (sides, cut edges; implicit_domain says what is inside) -> cut_lattice (warp, cut)
 //     -> manifold (no parts that touch in an edge or a point) -> snap_features (corners and curves) -> patches, regions
-
-#include "fill/stuffing/stuff.h"

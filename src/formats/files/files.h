@@ -5,10 +5,5 @@
 // way, it writes surfaces and meshes so that a file is either complete or not there. Readers believe nothing that a
 // file says about itself before its bytes bear it out.
 //
-// To add a format: a reader in readers.h with its case in recognize.cpp, a writer in writers.h, a line in formats.cpp.
-
-#include <octafront/io.h>
-
-#include "formats/read/readers.h"
-#include "formats/table/formats.h"
-#include "formats/write/writers.h"
+// To add a format: a reader in read/readers.h with its case in table/recognize.cpp, a writer in write/writers.h, a line
+// in table/formats.cpp.

@@ -10,7 +10,3 @@
 // byte_source.h  bytes one after another, unpacked on the way
 // voxels.h       bytes to numbers
 // grids.h        what sizes and axes must fulfil
-
-#include <octafront/image.h>
-
-#include "images/files/readers.h"

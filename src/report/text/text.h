@@ -2,5 +2,3 @@
 
 // report/text: a run's Report as JSON for programs and as a table for people. Takes a Report, leaves text; knows no
 // mesh.
-
-#include <octafront/report.h>

@@ -5,5 +5,3 @@
 // the order of the wing's steps: lines (curves, divided), front (places points, puts them into the input
 // triangulation), edits (the input's own vertices collapse away), shaping, folds; and rounds of them with smaller sizes
 // where the surface crosses itself or strays, until its own triangles stay (ground/kept_places).
-
-#include "surface/remeshing/remesh.h"
