@@ -1,4 +1,4 @@
-"""Meshes models at automatic size, and writes docs/budget-status.md: the budget of elements, what was made of it, how long
+"""Meshes models at automatic size, and writes docs/measured/budget-status.md: the budget of elements, what was made of it, how long
 that took, and what was given up.
 
 Usage: bench/run.sh budget [--only SUBSTRING] [--timeout CPU_SECONDS] [FOLDER_OR_FILE ...]
@@ -57,7 +57,7 @@ def page(rows, failed):
     lines = [
         "# The budget of automatic sizes", "",
         f"Written by `bench/run.sh budget` ({origin()}), one model at a time on one thread; what the budget is: "
-        "`docs/sizes-and-surface.md`. *Said* is the prediction once the surface is made, which is what `--dry-run` "
+        "`docs/how/sizes-and-surface.md`. *Said* is the prediction once the surface is made, which is what `--dry-run` "
         "says; *least β* and *least angle* (dihedral, degrees) are of the worst element, forced by the input or not; "
         "*work* is the triangles of all rounds of the surface front over those of the last.", "",
         f"{len(rows)} models meshed, {len(failed)} not. Above 1.3 times the budget: **{len(over)}**"
@@ -87,7 +87,7 @@ def main():
     parser.add_argument("paths", nargs="*")
     parser.add_argument("--only", default="")
     parser.add_argument("--timeout", type=int, default=300)
-    parser.add_argument("--output", default="docs/budget-status.md", type=pathlib.Path)
+    parser.add_argument("--output", default="docs/measured/budget-status.md", type=pathlib.Path)
     options = parser.parse_args()
     paths = options.paths or [f for f in ("models/clean", "models/dirty", "models/derived") if pathlib.Path(f).is_dir()]
     rows, failed = [], []

@@ -4,7 +4,7 @@ meshed with default options, and compared with the undamaged model: elements, CP
 Usage: bench/run.sh damage [--models N] [--only SUBSTRING] [--kinds A,B] [--faces MOST] [--timeout SECONDS] [--lines FILE]
                            [--program OCTAFRONT]
 The N smallest clean models of models/clean with 100 faces and more (by default 40, of 8,000 faces at most). Writes
-docs/damage.md. --lines appends a JSON object for each run to FILE and leaves out those that are there, so that a campaign may stop and go on.
+docs/measured/damage.md. --lines appends a JSON object for each run to FILE and leaves out those that are there, so that a campaign may stop and go on.
 """
 import argparse
 import json
@@ -23,7 +23,7 @@ import damages  # noqa: E402
 import solids  # noqa: E402
 from bounded import run  # noqa: E402
 
-PAGE = ROOT / "docs/damage.md"
+PAGE = ROOT / "docs/measured/damage.md"
 KINDS = damages.KINDS | damages.MORE
 CLEAN = "undamaged"
 MOST = 1.3      # times the elements and the time of the undamaged model

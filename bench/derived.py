@@ -1,4 +1,4 @@
-"""Meshes the clean models and all surfaces derived from them, and writes docs/derived-status.md: is every element as good
+"""Meshes the clean models and all surfaces derived from them, and writes docs/measured/derived-status.md: is every element as good
 as the input lets it be, is every run as fast as its size says?
 
 Usage: bench/run.sh derived [--only SUBSTRING] [--jobs N] [--timeout SECONDS] [--every N]
@@ -74,8 +74,8 @@ def main():
     text = ["# The clean models and what is derived from them", "",
             f"Written by `bench/run.sh derived{f' --every {a.every}' if a.every > 1 else ''}` over {len(models)} surfaces "
             "(`scripts/get-models.sh`, `scripts/derive-models.sh`), two at a time on two cores. What forced means: "
-            "`docs/sizes-and-surface.md`. The worst ten at automatic sizes, each around its worst element, forced or not "
-            "(`scripts/pictures.sh`):", "", "![](images/derived-worst.png)", ""]
+            "`docs/how/sizes-and-surface.md`. The worst ten at automatic sizes, each around its worst element, forced or not "
+            "(`scripts/pictures.sh`):", "", "![](../images/derived-worst.png)", ""]
     with concurrent.futures.ThreadPoolExecutor(a.jobs) as pool:
         for name, options in RUNS.items():
             rows = list(pool.map(lambda m: mesh_and_judge(a.build, m, [*options, "--threads", "1"], a.timeout), models))
@@ -84,7 +84,7 @@ def main():
             text += [f"## Sizes: {name}", "", summary(name, made, failed).replace("\n", "\n\n"), "The worst ten:", "", worst_table(made)]
             print(summary(name, made, failed), flush=True)
             if not a.only:
-                pathlib.Path("docs/derived-status.md").write_text("\n".join(text))
+                pathlib.Path("docs/measured/derived-status.md").write_text("\n".join(text))
 
 
 main()

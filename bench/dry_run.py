@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """How near `octafront mesh --dry-run` comes: bench/dry_run.py BUILD [--fit]
 
-Runs each case dry and in earnest, one thread, and writes the table of docs/command-line.md. Time is that of the processor,
+Runs each case dry and in earnest, one thread, and writes the table of docs/use/command-line.md. Time is that of the processor,
 which other work on the machine changes little. --fit: prints what an element takes instead, for the constants of
 cli/estimate.cpp.
 """
@@ -71,7 +71,7 @@ def main():
                          f"{made['peak_memory_bytes'] / 1e6:.0f} MB | {off_by(guess['memory_bytes'], made['peak_memory_bytes'])} |")
             print(lines[-1], flush=True)
     if "--fit" not in sys.argv:
-        page = ROOT / "docs/command-line.md"
+        page = ROOT / "docs/use/command-line.md"
         before, rest = page.read_text().split("<!-- dry run -->")
         page.write_text(before + "<!-- dry run -->\n" + "\n".join(lines) + "\n<!-- end -->" + rest.split("<!-- end -->")[1])
 

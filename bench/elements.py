@@ -1,7 +1,7 @@
 """--elements N met within 15 %? And how well sizes predict their number of elements, and are met in the volume.
 
 Usage: bench/run.sh elements [--fast]
-Writes its tables into docs/benchmarks.md. --fast leaves out 1 M elements.
+Writes its tables into docs/measured/benchmarks.md. --fast leaves out 1 M elements.
 """
 import argparse
 import csv
@@ -67,7 +67,7 @@ def main():
     args = parser.parse_args()
     diagonals = {r["file"]: float(r["bbox_diagonal"]) for r in csv.DictReader(open("bench/models.csv"))}
     text_lines = [*predictions(args.build, diagonals), "", *targets(args.build, COUNTS[: 2 if args.fast else 3])]
-    page = pathlib.Path("docs/benchmarks.md")
+    page = pathlib.Path("docs/measured/benchmarks.md")
     text = page.read_text()
     if MARKS[0] not in text:
         text += f"\n## Numbers of elements, and sizes in the volume\n\n`bench/run.sh elements`.\n\n{MARKS[0]}\n{MARKS[1]}\n"

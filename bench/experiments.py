@@ -1,4 +1,4 @@
-"""Runs the experiments of docs/experiments.md and writes that page: scripts/experiments.sh builds, then calls this.
+"""Runs the experiments of docs/measured/experiments.md and writes that page: scripts/experiments.sh builds, then calls this.
 
 Usage: experiments.py BUILD [STEP...]    steps: dragon compare growth skull peers pictures page
 Each step leaves its results in BUILD/experiments, so that single steps can be repeated.
@@ -94,8 +94,8 @@ class Experiments:
                         shutil.copy(made, IMAGES / f"experiments-{run}-{chart}.{ending}")
 
     def page(self):
-        pathlib.Path("docs/experiments.md").write_text(experiments_page.page(self.work))
-        print("written: docs/experiments.md")
+        pathlib.Path("docs/measured/experiments.md").write_text(experiments_page.page(self.work))
+        print("written: docs/measured/experiments.md")
 
 
 STEPS = ["dragon", "compare", "growth", "skull", "peers", "pictures", "page"]

@@ -1,4 +1,4 @@
-"""Writes docs/experiments.md from what experiments.py measured. Every figure in the text comes from the data."""
+"""Writes docs/measured/experiments.md from what experiments.py measured. Every figure in the text comes from the data."""
 import csv
 import json
 import pathlib

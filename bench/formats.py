@@ -1,5 +1,5 @@
 """Speed of the writers of meshes: bench/run.sh formats [MILLIONS]. Linear meshes in every format, binary ones of second order
-too. The tables go to docs/formats-bench.md."""
+too. The tables go to docs/measured/formats-bench.md."""
 import pathlib
 import subprocess
 import sys
@@ -11,7 +11,7 @@ with tempfile.TemporaryDirectory(dir=build) as folder:
                              stdout=subprocess.PIPE).stdout
               for size, order, formats in ((millions, "1", []), (str(float(millions) / 4), "2",
                                                                  ["vtu", "vtk", "msh", "med", "xdmf", "exodus", "abaqus"]))]
-page = pathlib.Path("docs/formats-bench.md")
+page = pathlib.Path("docs/measured/formats-bench.md")
 page.write_text(f"""# How fast meshes are written
 
 `bench/run.sh formats {millions}`: a bent box of two regions and six patches; each format beside a plain write of as many bytes to

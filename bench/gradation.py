@@ -1,5 +1,5 @@
 """How fast should sizes change? Meshes made with gradations from .05 to .5: at one number of elements, at automatic sizes
-that grow into the volume, and around a point with a thousandth of the size. Writes docs/gradation.md.
+that grow into the volume, and around a point with a thousandth of the size. Writes docs/measured/gradation.md.
 
 Usage: bench/run.sh gradation [--only SUBSTRING] [--timeout SECONDS] [--parts N]
 """
@@ -93,7 +93,7 @@ def main():
                 "of all.", ""]
         for title, what, which, options in parts[:a.parts]:
             text += [f"## {title}", "", what, "", table(a.build, which, options, a.timeout)]
-    pathlib.Path("docs/gradation.md").write_text("\n".join(text))
+    pathlib.Path("docs/measured/gradation.md").write_text("\n".join(text))
 
 
 main()

@@ -1,5 +1,5 @@
 """Meshes whose sizes follow curvature, against HXT and TetGen side by side, and what such meshes are worth: writes the
-section "Sizes that follow curvature" of docs/volume-bench.md.
+section "Sizes that follow curvature" of docs/measured/volume-bench.md.
 
 Usage: bench/run.sh graded [--counts 1000000,4000000] [--models bunny00.off,...] [--runs N] [--large ELEMENTS]
 
@@ -21,7 +21,7 @@ MODELS = ["bunny00.off", "armadillo.off", "elephant.off", "couplingdown.off", "p
 COUNTS = [1_000_000]
 SMALLEST = 100_000
 PEERS_UP_TO = 5_000_000
-PAGE = pathlib.Path("docs/volume-bench.md")
+PAGE = pathlib.Path("docs/measured/volume-bench.md")
 MARKS = ("<!-- graded: begin -->", "<!-- graded: end -->")
 
 

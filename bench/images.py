@@ -2,7 +2,7 @@
 
 Usage: bench/run.sh images [--volumes NAME...] [--timeout SECONDS] [--peers] [--beside-only] [--page]
 Volumes are those of scripts/get-volumes.sh. Each is meshed on one thread; octafront_judge_image compares every label of the mesh with
-its voxels. Keeps each result in BUILD/images.json as soon as it is there; --page writes the tables of docs/images-status.md from all that
+its voxels. Keeps each result in BUILD/images.json as soon as it is there; --page writes the tables of docs/measured/images-status.md from all that
 are in it. With --peers also CGAL (libcgal-dev), on images turned into INR: labels kept, pieces, volumes, quality, elements per CPU second
 of the whole process, reading and writing included.
 """
@@ -41,7 +41,7 @@ VOLUMES = [("liver, 6 mm", "liver.inr.gz", ["--size", "6"], []),
            ("Cranium as DICOM", "Cranium.inv3", ["--iso", "226"], ["iso=226"])]
 # Volumes above that CGAL meshes too, at this size.
 PEERS = {"liver, 6 mm": 6, "liver, 3 mm": 3, "KmeansTest, 6 mm": 6, "HarvardOxford, 4 mm": 4}
-PAGE = BENCH.parent / "docs/images-status.md"
+PAGE = BENCH.parent / "docs/measured/images-status.md"
 LARGE = 1000  # voxels: what labels of so many must keep
 
 

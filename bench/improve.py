@@ -1,4 +1,4 @@
-"""Improvement against its targets, on our own meshes and on those of others: writes docs/improve-bench.md.
+"""Improvement against its targets, on our own meshes and on those of others: writes docs/measured/improve-bench.md.
 
 Usage: bench/run.sh improve [--generated N] [--skip-peers]
 
@@ -28,7 +28,7 @@ PEER_MODELS = ["bunny00.off", "elephant.off", "fandisk.off"]
 ELEMENTS = 200_000
 PEER_ELEMENTS = 60_000
 ELEMENTS_OF_UNIT_SIZE = 9.4  # elements of size 1 in a volume of 1, as the lattice makes them, measured
-PAGE = pathlib.Path("docs/improve-bench.md")
+PAGE = pathlib.Path("docs/measured/improve-bench.md")
 BENCH = pathlib.Path(__file__).resolve().parent
 TIMEOUT = 300
 

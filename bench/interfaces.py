@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Three tasks with the Python interfaces of Octafront and Gmsh, and with TetGen's program (bench/interfaces): what they
-take, and what an error looks like. Prints the table of docs/python.md.
+take, and what an error looks like. Prints the table of docs/use/python.md.
 
     bench/interfaces.py BIN      the folder of liboctafront.so: build/release/python/octafront/_bin
 

@@ -6,7 +6,7 @@ Cases are those of scripts/damage-models.py. Each is repaired (`octafront repair
 and meshed, with default options but --sheets drop (`octafront mesh`: on top of the tolerance the mesher may stray as far as it says itself).
 octafront_judge_answer measures both against the undamaged model. One line for each failure; --lines appends a JSON object
 for each case to FILE and leaves out those that are there, so that a campaign may stop and go on; --page writes
-docs/repair-known.md from it. Files of failed cases are kept in --keep. Ends with status 1 if a case failed.
+docs/measured/repair-known.md from it. Files of failed cases are kept in --keep. Ends with status 1 if a case failed.
 --clean instead repairs the undamaged models: they must come out bit for bit.
 """
 import argparse
@@ -33,7 +33,7 @@ MESH_DISTANCE = 5e-3      # elsewhere as near as meshes of clean surfaces stay: 
 VOLUME = 0.5              # percent
 VOLUME_OF_LARGEST = 3.0   # with holes of a tenth of the area
 EDGES = 1e-6              # of the diagonal
-PAGE = ROOT / "docs/repair-known.md"
+PAGE = ROOT / "docs/measured/repair-known.md"
 
 
 def measure(build, known_file, result):

@@ -4,7 +4,7 @@ Usage: bench/run.sh peers [--models NAME...] [--elements N] [--timeout SECONDS]
 Two comparisons: the surface kept (one that Octafront triangulated to the size, the same for all), and the surface
 triangulated anew by each mesher to the same size. Every mesh is written to a file, and octafront_evaluate judges the
 file. Times are CPU seconds of the whole process, reading and writing included, and of meshing alone where a mesher
-tells it. Prints the tables' rows and writes BUILD/experiments/peers.json, from which docs/experiments.md is made.
+tells it. Prints the tables' rows and writes BUILD/experiments/peers.json, from which docs/measured/experiments.md is made.
 """
 import argparse
 import json

@@ -1,4 +1,4 @@
-"""Elements per second of every stage on three models at two sizes: writes its table into docs/benchmarks.md.
+"""Elements per second of every stage on three models at two sizes: writes its table into docs/measured/benchmarks.md.
 
 Usage: bench/run.sh pipeline [--runs N] [--beside PROGRAM]
 CPU seconds, one thread, the least of N runs; a size is given so that the count comes out near the one wanted.
@@ -65,7 +65,7 @@ def table(head):
 
 
 def replace(marks, lines):
-    page = pathlib.Path("docs/benchmarks.md")
+    page = pathlib.Path("docs/measured/benchmarks.md")
     text = page.read_text()
     before, after = text.split(marks[0])[0], text.split(marks[1])[1]
     page.write_text(before + marks[0] + "\n" + "\n".join(lines) + "\n" + marks[1] + after)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """What Python costs over the command line: the same file read, meshed and written, in turn. Time is wall time, memory the
-peak of the process; ratios are of medians. Prints the table of docs/python.md.
+peak of the process; ratios are of medians. Prints the table of docs/use/python.md.
 
     bench/python_overhead.py PYTHON PROGRAM [--model FILE] [--elements N ...] [--repeats N] [--threads N]
 

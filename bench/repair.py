@@ -1,4 +1,4 @@
-"""Repairs and meshes the defective models of bench/models.csv and judges what came out; writes docs/repair-status.md.
+"""Repairs and meshes the defective models of bench/models.csv and judges what came out; writes docs/measured/repair-status.md.
 
 Usage: bench/run.sh repair [--only SUBSTRING] [--jobs N] [--timeout SECONDS] [--lines FILE] [--second-reader]
 Each model: `octafront repair MODEL -o SURFACE.obj` and `octafront mesh MODEL -o MESH.vtu`, default options, one thread. Both
@@ -19,10 +19,10 @@ ROOT = pathlib.Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "scripts/lib"))
 from bounded import run  # noqa: E402
 
-PAGE = ROOT / "docs/repair-status.md"
+PAGE = ROOT / "docs/measured/repair-status.md"
 TOLERANCE = 1e-3   # of the diagonal
 ANGLES = (10, 160)  # degrees that no element should leave, but where the input forces it
-# fTetWild on 35 of these models (docs/experiments.md says how others are run): what is to be beaten.
+# fTetWild on 35 of these models (docs/measured/experiments.md says how others are run): what is to be beaten.
 FTETWILD = {"meshed": "34 of 35", "CPU s": 25, "mean beta": 0.766, "angles": (8.7, 163), "farthest": 0.63, "not manifold": "17 of 34"}
 
 
@@ -146,7 +146,7 @@ def page(rows):
         "*Lost*: the part of the input's area farther than 1 ‰ from the boundary, and outside of it (sheets, fins) or inside (inner walls, "
         "debris). *Only input, only mesh inside*: random points where the input's generalised winding number is sure and the mesh says else; "
         "turned and doubled faces mislead the number.", "", *summary(rows), "",
-        "![before and after](images/repair.png)", "",
+        "![before and after](../images/repair.png)", "",
         "| " + " | ".join(head) + " |", "|" + " --- |" * len(head), *map(line, rows), ""])
 
 

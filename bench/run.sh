@@ -1,27 +1,27 @@
 #!/usr/bin/env bash
 # The benchmarks, by name. Builds what they need.
-#   bench/run.sh status      every model of bench/models.csv: valid? how true is the boundary?   -> docs/status.md
+#   bench/run.sh status      every model of bench/models.csv: valid? how true is the boundary?   -> docs/measured/status.md
 #   bench/run.sh derived     the clean models and what is derived from them: any element that nothing forces? any cliff?
-#                                                                                    -> docs/derived-status.md
-#   bench/run.sh pipeline    three models at 100 k and 1 M elements, elements per second and stage -> docs/benchmarks.md
+#                                                                                    -> docs/measured/derived-status.md
+#   bench/run.sh pipeline    three models at 100 k and 1 M elements, elements per second and stage -> docs/measured/benchmarks.md
 #                            --beside PROGRAM: against another build of octafront, side by side
-#   bench/run.sh surface     surfaces of all clean models and beside other remeshers  -> docs/surface-status.md, benchmarks.md
-#   bench/run.sh elements    --elements N met? prediction, sizes in the volume          -> docs/benchmarks.md
-#   bench/run.sh gradation   gradations from .05 to .5 side by side                       -> docs/gradation.md
-#   bench/run.sh volume      kept surfaces up to 10 M elements, against TetGen, HXT and Netgen -> docs/volume-bench.md
-#   bench/run.sh graded      sizes that follow curvature, against HXT and TetGen side by side; from STL -> docs/volume-bench.md
+#   bench/run.sh surface     surfaces of all clean models and beside other remeshers  -> docs/measured/surface-status.md, benchmarks.md
+#   bench/run.sh elements    --elements N met? prediction, sizes in the volume          -> docs/measured/benchmarks.md
+#   bench/run.sh gradation   gradations from .05 to .5 side by side                       -> docs/measured/gradation.md
+#   bench/run.sh volume      kept surfaces up to 10 M elements, against TetGen, HXT and Netgen -> docs/measured/volume-bench.md
+#   bench/run.sh graded      sizes that follow curvature, against HXT and TetGen side by side; from STL -> docs/measured/volume-bench.md
 #   bench/run.sh peers       surfaces kept and made anew, against TetGen, Gmsh, Netgen and CGAL -> build/release/experiments/peers.json
-#   bench/run.sh complexes   several regions in one mesh, against TetGen and Gmsh       -> docs/complex.md
-#   bench/run.sh improve     improvement against its targets, never worse, start meshes of others -> docs/improve-bench.md
-#   bench/run.sh formats     how fast meshes are written, every format beside a plain write -> docs/formats-bench.md
-#   bench/run.sh second_order   all clean models, balls, tori, cylinders: proven? how true? at what cost? -> docs/second-order.md
-#   bench/run.sh repair      the defective models, repaired and meshed                  -> docs/repair-status.md
-#   bench/run.sh known_answers   2,000 clean models damaged in known ways, repaired and judged -> docs/repair-known.md
-#   bench/run.sh damage      clean models damaged in 24 ways beside the undamaged ones -> docs/damage.md
-#   bench/run.sh images      volumes of labels, each label judged; --peers: beside CGAL -> docs/images-status.md
-#   bench/run.sh thin        plates, discs, tubes, shells 1:10 to 1:1e6, beside Gmsh and TetGen -> docs/thin-bodies.md
-#   bench/run.sh budget      automatic sizes: budget said, elements made, time, what was given up -> docs/budget-status.md
-#   bench/run.sh dry_run     mesh --dry-run: elements, time and memory said and taken -> docs/command-line.md
+#   bench/run.sh complexes   several regions in one mesh, against TetGen and Gmsh       -> docs/use/complex.md
+#   bench/run.sh improve     improvement against its targets, never worse, start meshes of others -> docs/measured/improve-bench.md
+#   bench/run.sh formats     how fast meshes are written, every format beside a plain write -> docs/measured/formats-bench.md
+#   bench/run.sh second_order   all clean models, balls, tori, cylinders: proven? how true? at what cost? -> docs/how/second-order.md
+#   bench/run.sh repair      the defective models, repaired and meshed                  -> docs/measured/repair-status.md
+#   bench/run.sh known_answers   2,000 clean models damaged in known ways, repaired and judged -> docs/measured/repair-known.md
+#   bench/run.sh damage      clean models damaged in 24 ways beside the undamaged ones -> docs/measured/damage.md
+#   bench/run.sh images      volumes of labels, each label judged; --peers: beside CGAL -> docs/measured/images-status.md
+#   bench/run.sh thin        plates, discs, tubes, shells 1:10 to 1:1e6, beside Gmsh and TetGen -> docs/measured/thin-bodies.md
+#   bench/run.sh budget      automatic sizes: budget said, elements made, time, what was given up -> docs/measured/budget-status.md
+#   bench/run.sh dry_run     mesh --dry-run: elements, time and memory said and taken -> docs/use/command-line.md
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/lib/apt.sh

@@ -1,7 +1,7 @@
 """Second order: is every element proven, how true is the curved boundary, what does it cost?
 
 Usage: bench/run.sh second_order [--shapes]
-Writes its tables into docs/second-order.md. --shapes leaves out the models.
+Writes its tables into docs/how/second-order.md. --shapes leaves out the models.
 """
 import argparse
 import json
@@ -10,7 +10,7 @@ import pathlib
 import statistics
 import subprocess
 
-PAGE = pathlib.Path("docs/second-order.md")
+PAGE = pathlib.Path("docs/how/second-order.md")
 
 
 def head(titles):

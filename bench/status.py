@@ -1,4 +1,4 @@
-"""Meshes every model of bench/models.csv and writes docs/status.md: what works, what does not, and why.
+"""Meshes every model of bench/models.csv and writes docs/measured/status.md: what works, what does not, and why.
 
 Usage: bench/run.sh status [--only SUBSTRING] [--jobs N] [--timeout SECONDS]
 Each mesh is written to a file and judged by octafront_evaluate, which reads it back.
@@ -153,7 +153,7 @@ def dirty_table(build, rows, timeout, pool):
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("build", type=pathlib.Path)
-    parser.add_argument("--only", default="", help="models whose name contains this; docs/status.md is not written")
+    parser.add_argument("--only", default="", help="models whose name contains this; docs/measured/status.md is not written")
     parser.add_argument("--jobs", type=int, default=2, help="models at a time")
     parser.add_argument("--timeout", type=float, default=300, help="seconds per model")
     args = parser.parse_args()
@@ -187,11 +187,11 @@ def main():
             "β = .1: on a triangle that allows no better one; with an edge of such a triangle, which the same needle "
             "makes poor; others. Then how many cavities "
             "the front left, which rung of the closing ladder closed how many, and whether all was filled by recovery "
-            "of the whole surface instead (docs/recovery.md).", "", *kept_table(kept), "", "## Dirty models", "",
+            "of the whole surface instead (docs/how/recovery.md).", "", *kept_table(kept), "", "## Dirty models", "",
             "O open, E non-manifold edge, V non-manifold vertex, S self-intersection, R misoriented, I inside out, "
             "D degenerate, U unused vertices. Exit 3 is a refusal with a message, of which the first line is shown; "
             "what repair can mend is meshed.", "", *dirty, ""]
-    pathlib.Path("docs/status.md").write_text("\n".join(text))
+    pathlib.Path("docs/measured/status.md").write_text("\n".join(text))
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 """Surface meshes of every clean model at automatic size and two uniform sizes, side by side with other remeshers.
 
 Usage: bench/run.sh surface [--only SUBSTRING] [--jobs N] [--skip-peers]
-Writes docs/surface-status.md and the tables marked "surface" in docs/benchmarks.md. Every surface is judged by
+Writes docs/measured/surface-status.md and the tables marked "surface" in docs/measured/benchmarks.md. Every surface is judged by
 octafront_judge_surface; those of Gmsh, Netgen and CGAL, where they are installed, by the same program.
 """
 import argparse
@@ -242,13 +242,13 @@ def main():
             "enclose less than 13°, with a feature edge shorter than .35 of the size, or between two lines that run side "
             "by side nearer than .08 of the size asked for: details finer than the size. Straight lines count from 4 "
             "sizes on.")
-    pathlib.Path("docs/surface-status.md").write_text(
+    pathlib.Path("docs/measured/surface-status.md").write_text(
         "\n".join(["# Surface meshes of all clean models", "", note, "", *summary, *tables, ""]))
-    page = pathlib.Path("docs/benchmarks.md")
+    page = pathlib.Path("docs/measured/benchmarks.md")
     text = page.read_text()
     if MARKS[0] not in text:
         text += f"\n## Surfaces\n\n{MARKS[0]}\n{MARKS[1]}\n"
-    middle = ["`bench/run.sh surface`; model by model: `docs/surface-status.md`. How many of the models reach each target:",
+    middle = ["`bench/run.sh surface`; model by model: `docs/measured/surface-status.md`. How many of the models reach each target:",
               "", *summary, "", f"Speed at {SPEED_TRIANGLES:,} triangles, one thread:", "", *rates,
               "", "CPU seconds of size field and surface front by the number of triangles:", "", *growths]
     if compared:

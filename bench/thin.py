@@ -2,7 +2,7 @@
 
 Usage: bench/run.sh thin [--before PROGRAM] [--timeout SECONDS] [--page]
 Every mesh is written to a file, and octafront_evaluate judges the file. CPU seconds of the whole process, one thread.
---before: another build of octafront, whose meshes are judged too. --page rewrites docs/thin-bodies.md; without --before its rows
+--before: another build of octafront, whose meshes are judged too. --page rewrites docs/measured/thin-bodies.md; without --before its rows
 of another build stay as they are.
 """
 import argparse
@@ -21,7 +21,7 @@ from peers.surfaces import write_off  # noqa: E402
 import json  # noqa: E402
 
 THICKNESS = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6]
-PAGE = pathlib.Path("docs/thin-bodies.md")
+PAGE = pathlib.Path("docs/measured/thin-bodies.md")
 SIZE = 0.05  # of those that are asked for a size: bodies are 1 to 2 across
 
 
@@ -156,7 +156,7 @@ def main():
         f"the cavities of shells, as no hole is marked. At most {a.timeout:.0f} s.", "",
         "Angles near 0 and 180 degrees are what one layer of elements makes of such walls. Where both sides are divided alike an "
         "element may span an edge and the one right behind it, flat up to rounding; improvement opens such elements by a vertex in "
-        "the wall (docs/improve.md). A few stay at rims, and where a cavity was closed by a kernel point.", "",
+        "the wall (docs/how/improve.md). A few stay at rims, and where a cavity was closed by a kernel point.", "",
         "| body | thickness | mesher | volume, % | elements | dihedral angles | CPU s |", "| --- | --- | --- | --- | --- | --- | --- |",
         *rows, ""]))
 

@@ -1,4 +1,4 @@
-"""The volume front against TetGen, Gmsh's HXT and Netgen on the same kept surfaces: writes docs/volume-bench.md.
+"""The volume front against TetGen, Gmsh's HXT and Netgen on the same kept surfaces: writes docs/measured/volume-bench.md.
 
 Usage: bench/run.sh volume [--counts 100000,1000000] [--models bunny00.off,...] [--threads N] [--timeout SECONDS]
                            [--only-threads]
@@ -24,7 +24,7 @@ MODELS = ["bunny00.off", "refined_elephant.off", "fandisk_large.off"]
 COUNTS = [100_000, 1_000_000, 4_000_000, 10_000_000]
 PEERS_UP_TO = {"TetGen": 5_000_000, "HXT": 5_000_000, "HXT, not optimised": 5_000_000, "Netgen": 150_000}
 EVALUATED_UP_TO = 12_000_000
-PAGE = pathlib.Path("docs/volume-bench.md")
+PAGE = pathlib.Path("docs/measured/volume-bench.md")
 
 
 def surface_of_size(build, model, size, out):

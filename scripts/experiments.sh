@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The paper's experiments and the peers, from nothing to docs/experiments.md: about 20 minutes on two cores.
+# The paper's experiments and the peers, from nothing to docs/measured/experiments.md: about 20 minutes on two cores.
 #   scripts/experiments.sh [STEP...]   steps: dragon compare growth skull peers pictures page; none: all of them
 # Installs what is missing (Debian 12), builds, measures one thread at a time. Do not use the machine meanwhile.
 set -euo pipefail

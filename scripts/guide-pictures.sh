@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Runs docs/guide.md and makes its pictures anew from what it leaves.
+# Runs docs/use/guide.md and makes its pictures anew from what it leaves.
 #   scripts/guide-pictures.sh [PYTHON]    an environment's Python that has octafront; by default that of the tests
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -9,7 +9,7 @@ python=${1:-build/release/tests/python/wheel/venv/bin/python}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-"$python" tests/docs/run_docs.py --all --keep "$work/guide" docs/guide.md >/dev/null
+"$python" tests/docs/run_docs.py --all --keep "$work/guide" docs/use/guide.md >/dev/null
 "$python" scripts/guide_page.py "$work/notebook.html"
 chromium --headless --no-sandbox --disable-gpu --hide-scrollbars --force-device-scale-factor=1.5 --window-size=680,160 \
   --screenshot=docs/images/guide-notebook.png "file://$work/notebook.html" 2>/dev/null

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Draws the bracket of docs/guide.md, bent: guide_bracket.py FOLDER PICTURE.png. Needs python3-vtk9; run under xvfb-run,
+"""Draws the bracket of docs/use/guide.md, bent: guide_bracket.py FOLDER PICTURE.png. Needs python3-vtk9; run under xvfb-run,
 with examples/solve in PYTHONPATH."""
 import pathlib
 import sys

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The house in numbers and a picture: wings, rooms, arrows, circles, files and lines.
 
-    scripts/house.py [COMMIT ...]   prints docs/house.md: the tree as it is, beside older commits
+    scripts/house.py [COMMIT ...]   prints docs/measured/house.md: the tree as it is, beside older commits
 
 Rooms are those that ARCHITECTURE.md of that commit names; an arrow is a room (or wing) of which a file includes one of
 another; a circle is a set of rooms that reach each other.

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Meshes generated nasty but legal solids at three sizes, and judges each run; writes docs/nasty-solids.md.
+"""Meshes generated nasty but legal solids at three sizes, and judges each run; writes docs/measured/nasty-solids.md.
 
   scripts/nasty_solids.py [FIRST:END[:STRIDE]] [--seed N] [--families A,B] [--sizes automatic,coarse,fine] [--page] [--keep FOLDER]
   scripts/nasty_solids.py --write NUMBER FILE.off          a case as a file
@@ -29,7 +29,7 @@ sys.path.insert(0, str(ROOT / "scripts/lib"))
 import nasty_solids as solids
 
 OCTAFRONT = os.environ.get("OCTAFRONT", str(ROOT / "build/release/cli/octafront"))
-PAGE = ROOT / "docs/nasty-solids.md"
+PAGE = ROOT / "docs/measured/nasty-solids.md"
 SIZES = ("automatic", "coarse", "fine")
 COARSE = 1 / 8
 """The coarse size, in diagonals."""

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Makes the pictures of the README anew: three meshes, cut open, elements coloured by quality; and those of
-# docs/second-order.md and docs/complex.md; and the worst ten of docs/derived-status.md, each around its worst element.
+# docs/how/second-order.md and docs/use/complex.md; and the worst ten of docs/measured/derived-status.md, each around its worst element.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/lib/apt.sh
@@ -23,7 +23,7 @@ scripts/make-complexes.sh "$work/complexes"
 picture complex "$work/complexes/spheres.ply" "" "--regions --size 700 560 --keep 0.55"
 
 meshes=()
-for model in $(awk '/^## Sizes: 100 k/ { exit } /^\| [^ ]*\.[a-z]+ \|/ { print $2 }' docs/derived-status.md); do
+for model in $(awk '/^## Sizes: 100 k/ { exit } /^\| [^ ]*\.[a-z]+ \|/ { print $2 }' docs/measured/derived-status.md); do
   meshes+=("$work/${model%.*}.vtu")
   "$octafront" mesh models/*/"$model" -o "${meshes[-1]}" -q
 done

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Meshes and solves the examples of examples/solve, and compares them with theory (docs/solved.md). Installs what it needs.
+# Meshes and solves the examples of examples/solve, and compares them with theory (docs/measured/solved.md). Installs what it needs.
 #   scripts/solve.sh [CASE ...]      with CalculiX: cantilever, pipe, patch, heat, plate, bar, sphere; by default all
 #   scripts/solve.sh --fenicsx       the pipe with FEniCSx (a gigabyte of packages)
 #   scripts/solve.sh --picture       all, and docs/images/solved.png anew

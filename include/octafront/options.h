@@ -103,7 +103,7 @@ struct SurfaceOptions {
 /// How the volume is filled.
 struct VolumeOptions {
   /// Distance of the ideal point from the face, as a multiple of the size there (the paper says 1; a regular
-  /// tetrahedron wants 0.816; a little less leaves better elements, see docs/volume-front.md). In [0.3, 1.5].
+  /// tetrahedron wants 0.816; a little less leaves better elements, see docs/how/volume-front.md). In [0.3, 1.5].
   double ideal_distance = 0.75;
   enum class Core { kOff, kLattice };
   /// kLattice: deep inside, the graded body-centred cubic lattice is the mesh, and the front fills the shell around it.
@@ -129,7 +129,7 @@ struct ImproveOptions {
     kMinDihedral,  ///< the smallest dihedral angle
     kMaxDihedral,  ///< the largest dihedral angle
     kMeanRatio,    ///< 12 (3 V)^(2/3) / (sum of squared edges)
-    kSolver,       ///< what the element checks of Abaqus, Ansys and CalculiX look at: docs/improve.md
+    kSolver,       ///< what the element checks of Abaqus, Ansys and CalculiX look at: docs/how/improve.md
   };
   Objective objective = Objective::kBalanced;
   double relaxation = 0.7;  ///< phi of the paper's weighted Laplacian, (0, 1]

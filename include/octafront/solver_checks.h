@@ -11,7 +11,7 @@ namespace octafront {
 
 enum class Solver { kAbaqus, kAnsys, kNastran, kCalculix };
 
-/// One documented limit of a solver, and the elements beyond it. Limits and their sources: docs/solver-checks.md.
+/// One documented limit of a solver, and the elements beyond it. Limits and their sources: docs/use/solver-checks.md.
 struct SolverFinding {
   std::string measure;   ///< e.g. "aspect ratio"
   bool refused = false;  ///< the solver stops; else it warns

@@ -16,7 +16,7 @@ wanted=$(grep -n '# error: ' typed.py | sed 's/:.*# error: / /')
 
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
-./code_of_docs.py "$scratch" ../../README.md ../../docs/guide.md ../../docs/python.md || exit 1
+./code_of_docs.py "$scratch" ../../README.md ../../docs/use/guide.md ../../docs/use/python.md || exit 1
 status=0
 for code in "$scratch"/*.py; do $mypy --check-untyped-defs "$code" || status=1; done
 exit $status

@@ -16,7 +16,7 @@ namespace octafront {
 
 namespace {
 
-// --- measures of an element; docs/solver-checks.md says whose they are
+// --- measures of an element; docs/use/solver-checks.md says whose they are
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 

@@ -18,7 +18,7 @@ constexpr double kNearestCandidate = 0.1;
 /// Trying all candidates of a face much larger than its surroundings would cost the square of the neighbourhood.
 constexpr std::size_t kMostCandidates = 40;
 /// The size used for a face stays within these multiples of its own edges (see the octree's front,
-/// docs/volume-front.md).
+/// docs/how/volume-front.md).
 constexpr double kLeastSizePerEdge = 0.45, kMostSizePerEdge = 2.0;
 
 /// Degrees of the unfilled wedge at the edge from p to q between two faces that see it, one of them with p before q:

@@ -17,7 +17,7 @@ namespace octafront {
 
 /// Least distance of the core from the surface, over the side of the lattice's cell there. The core's elements are
 /// better than those of the front that fills the shell around it, so nearer is better, down to where the shell becomes
-/// too thin for good elements (docs/volume-front.md has the measurement).
+/// too thin for good elements (docs/how/volume-front.md has the measurement).
 inline constexpr double kCoreClearance = 0.4;
 
 /// A site by number. Leaf i has 2 i for its centre and 2 i + 1 for its lower corner; the few other sites (they hang on

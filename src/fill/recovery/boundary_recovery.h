@@ -32,7 +32,7 @@ struct RecoveryCounts {
 /// It ends: a Steiner point is put strictly inside a crossed tet (or exactly into a crossing), which cuts the segment
 /// into parts that together cross nothing more than it did; a part that crosses one face only, between two tets that
 /// have its ends as apexes, is made by one flip. Other seeds make other choices, which end in other Steiner points. See
-/// docs/recovery.md.
+/// docs/how/recovery.md.
 class BoundaryRecovery {
  public:
   BoundaryRecovery(const RecoveryTask& task, SubdividedSurface& surface, std::size_t most_points)

@@ -1,6 +1,6 @@
 #pragma once
 
-// The last rung of the closing ladder, and the fast way to a coarse exact mesh. See docs/recovery.md.
+// The last rung of the closing ladder, and the fast way to a coarse exact mesh. See docs/how/recovery.md.
 
 #include <octafront/surface_mesh.h>
 #include <octafront/tet_mesh.h>

@@ -2,8 +2,8 @@
 
 Debian's Chromium without a window, driven by its own driver (python3-selenium): both come from one source package, so
 they fit each other. WebGL is drawn by the processor (SwiftShader); a machine with a graphics card is faster.
-  --pictures FOLDER   writes the pictures of docs/report.md there, and tests nothing
-  --times             prints docs/report.md's table of sizes and times, and tests nothing
+  --pictures FOLDER   writes the pictures of docs/use/report.md there, and tests nothing
+  --times             prints docs/use/report.md's table of sizes and times, and tests nothing
 """
 
 import json
@@ -372,7 +372,7 @@ class Browser(unittest.TestCase):
 
 
 def write_pictures(folder):
-    """The pictures of docs/report.md."""
+    """The pictures of docs/use/report.md."""
     with tempfile.TemporaryDirectory() as scratch:
         page = pathlib.Path(scratch) / "page.html"
         run_cli("mesh", SAMPLES / "gear.obj", "-o", pathlib.Path(scratch) / "m.vtu", "--patches", "--report", page)
