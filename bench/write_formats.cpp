@@ -1,6 +1,7 @@
 // Speed of the writers of meshes, each beside a plain write of as many bytes to the same disk:
 //   octafront_write_formats MILLIONS FOLDER [ORDER [FORMAT ...]]
-// A box of about so many million tetrahedra in two regions with six patches; prints a table for docs/measured/formats-bench.md.
+// A box of about so many million tetrahedra in two regions with six patches; prints a table for
+// docs/measured/formats-bench.md.
 
 #include <octafront/octafront.h>
 

@@ -9,7 +9,8 @@
 namespace octafront {
 
 /// A web page that shows a mesh in 3D, and what a report says of it: one file, which opens without a network in any
-/// browser of 2023 or later (WebGL 2, DecompressionStream). docs/use/report.md says what is in it, and how it is packed.
+/// browser of 2023 or later (WebGL 2, DecompressionStream). docs/use/report.md says what is in it, and how it is
+/// packed.
 ///
 /// `report` is a JSON object as `octafront --json` writes it, or to_json(); what it lacks is not shown. `sizes`, which
 /// may be null, are those that the mesh was made to: then elements can be coloured by their size against them. Points

@@ -6,8 +6,8 @@
 namespace octafront {
 
 /// What a new tetrahedron must keep to, beyond being valid. Lengths are in units of the wanted size. The levers and
-/// their order were found by measurement (docs/how/volume-front.md): each one keeps the front from closing up into shapes
-/// that no good element fits.
+/// their order were found by measurement (docs/how/volume-front.md): each one keeps the front from closing up into
+/// shapes that no good element fits.
 struct Limits {
   double search_radius;   ///< of the sphere of candidates around the ideal point
   double ideal_factor;    ///< shortens the distance of the ideal point
