@@ -82,6 +82,7 @@ struct MendReport {
   std::uint64_t joined_vertices = 0, divided_edges = 0;  ///< to bring open edges together
   std::uint64_t crossing_pairs = 0;                      ///< faces that met elsewhere than in what they share
   std::uint64_t separated_vertices = 0;
+  std::uint64_t based_holes = 0;  ///< closed by walls and a flat base, for a lid would have grazed the surface
   double area_before = 0, area_after = 0, volume_before = 0, volume_after = 0;
   std::uint32_t bodies = 0;         ///< of the result
   std::vector<MendChange> changes;  ///< by kind, each in the order of the input's faces

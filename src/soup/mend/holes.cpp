@@ -3,12 +3,15 @@
 #include "base/core/disjoint_sets.h"
 #include "base/core/parallel.h"
 #include "base/geometry/measures.h"
+#include "soup/mend/based_cap.h"
 #include "soup/mend/cap.h"
 #include "soup/mend/fair.h"
 #include "soup/mend/loops.h"
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <span>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
@@ -70,10 +73,8 @@ class Rim {
   /// Gives the hole a cap that goes on as the surface around it begins, if that bends at all of the rim. `next_to`:
   /// pairs of vertices on rims and what they share edges with, ascending.
   void make_fair(Hole& hole, const std::vector<std::pair<VertexIndex, VertexIndex>>& next_to) const {
-    std::unordered_map<VertexIndex, std::uint32_t> corner;
-    for (const VertexIndex v : loop_.vertices) corner.emplace(v, static_cast<std::uint32_t>(corner.size()));
-    Cap plain;
-    for (const Triangle& t : hole.cap) plain.push_back({corner.at(t[0]), corner.at(t[1]), corner.at(t[2])});
+    const auto corner = corners();
+    const Cap plain = by_corner(hole.cap, corner);
     if (!bends_around(plain)) return;
     std::vector<Spoke> spokes;
     for (std::uint32_t i = 0; i < loop_.vertices.size(); ++i) {
@@ -83,13 +84,45 @@ class Rim {
         if (!corner.contains(at->second)) spokes.emplace_back(i, draft_.mesh.points[at->second]);
     }
     FairCap fair = faired(polygon_, plain, spokes, is_taken(), kMostInner);
-    if (fair.inner.empty()) return;
-    hole.cap.clear();
-    for (const auto& t : fair.triangles) hole.cap.push_back({vertex(t[0]), vertex(t[1]), vertex(t[2])});
-    hole.inner = std::move(fair.inner);
+    if (!fair.inner.empty()) take(hole, std::move(fair));
+  }
+
+  /// Gives the hole a cap that keeps off the surface, if this one would graze it. `outward`: the cap's normals point
+  /// out of what it closes. `around`: points of the surface. Where that base would be thinner than the tolerance the
+  /// cap stays.
+  void set_off(Hole& hole, bool outward, std::span<const Vec3> around, double tolerance) const {
+    Box3 box;
+    for (const Vec3 p : polygon_) box.add(p);
+    if (kBaseThickness * box.diagonal() < tolerance || !grazes(by_corner(hole.cap, corners()))) return;
+    Vec3 twice;
+    for (std::size_t i = 0; i + 2 < polygon_.size(); ++i)
+      twice += double_area_normal(polygon_[0], polygon_[i + 1], polygon_[i + 2]);
+    if (twice == Vec3{}) return;
+    FairCap based = cap_with_base(polygon_, normalized(outward ? twice : -twice), around);
+    hole.has_base = !based.triangles.empty();
+    if (hole.has_base) take(hole, std::move(based));
   }
 
  private:
+  using Corners = std::unordered_map<VertexIndex, std::uint32_t>;
+  Corners corners() const {
+    Corners corner;
+    for (const VertexIndex v : loop_.vertices) corner.emplace(v, static_cast<std::uint32_t>(corner.size()));
+    return corner;
+  }
+
+  static Cap by_corner(const std::vector<Triangle>& triangles, const Corners& corner) {
+    Cap cap;
+    for (const Triangle& t : triangles) cap.push_back({corner.at(t[0]), corner.at(t[1]), corner.at(t[2])});
+    return cap;
+  }
+
+  void take(Hole& hole, FairCap by) const {
+    hole.cap.clear();
+    for (const auto& t : by.triangles) hole.cap.push_back({vertex(t[0]), vertex(t[1]), vertex(t[2])});
+    hole.inner = std::move(by.inner);
+  }
+
   IsTaken is_taken() const {
     return [this](std::uint32_t i, std::uint32_t j) {
       return taken_.contains(edge_key(loop_.vertices[i], loop_.vertices[j]));
@@ -102,26 +135,47 @@ class Rim {
     return i < n ? loop_.vertices[i] : static_cast<VertexIndex>(draft_.mesh.points.size()) + i - n;
   }
 
-  /// Whether the cap turns against what is beyond at most of the rim, and not as far as a lid does.
-  bool bends_around(const Cap& cap) const {
-    double around = 0, turned = 0, sum = 0;
+  /// How far the cap turns against what is beyond, edge by edge of the rim: radians, and the edge's length.
+  std::vector<std::pair<double, double>> turns(const Cap& cap) const {
+    std::vector<std::pair<double, double>> all;
     for (const auto& t : cap)
       for (std::size_t k = 0; k < 3; ++k) {
         const std::uint32_t i = t[k], j = t[(k + 1) % 3];
         if ((i + 1) % polygon_.size() != j || beyond_[i] == Vec3{}) continue;
         const Vec3 normal = unit_normal(polygon_[t[0]], polygon_[t[1]], polygon_[t[2]]);
-        const double turn = angle_at({}, normal, beyond_[i]), size = distance(polygon_[i], polygon_[j]);
-        around += size;
-        sum += turn * size;
-        if (turn > kLeastTurn) turned += size;
+        all.emplace_back(angle_at({}, normal, beyond_[i]), distance(polygon_[i], polygon_[j]));
       }
+    return all;
+  }
+
+  /// Whether the cap turns against what is beyond at most of the rim, and not as far as a lid does.
+  bool bends_around(const Cap& cap) const {
+    double around = 0, turned = 0, sum = 0;
+    for (const auto& [turn, size] : turns(cap)) {
+      around += size;
+      sum += turn * size;
+      if (turn > kLeastTurn) turned += size;
+    }
     return turned > kMostOfRim * around && sum < kMostTurn * around;
+  }
+
+  /// Whether the cap lies nearly on the surface beside it, at much of the rim.
+  bool grazes(const Cap& cap) const {
+    double around = 0, grazing = 0;
+    for (const auto& [turn, size] : turns(cap)) {
+      around += size;
+      if (turn > std::numbers::pi - kGrazing) grazing += size;
+    }
+    return grazing > kMostGrazing * around;
   }
 
   static constexpr std::size_t kMostInner = 4000;
   /// Radians: where the surface around is flatter than the least, a flat cap is as good; where a cap turns more than
   /// the most, the surface was cut off there.
   static constexpr double kLeastTurn = 0.08, kMostTurn = 1, kMostOfRim = 0.3;
+  /// Radians (10 degrees): elements in a wedge like that are bad ones. Of the rim, where a lid may be in such a wedge:
+  /// a few teeth of a torn rim lie so under any lid.
+  static constexpr double kGrazing = 0.175, kMostGrazing = 0.1;
 
   const Draft& draft_;
   const Loop& loop_;
@@ -178,6 +232,7 @@ class PartsOfDraft {
     add_cap(by);
   }
 
+  bool is_inside_out(std::uint32_t triangle) { return part_[sets_.find(triangle)].volume < 0; }
   bool is_sheet(std::uint32_t triangle) { return part_[sets_.find(triangle)].is_sheet; }
 
  private:
@@ -244,8 +299,12 @@ ClosedHoles close_holes(Draft& draft, double tolerance) {
   ClosedHoles result;
   for (std::uint32_t t = 0; t < draft.mesh.triangles.size(); ++t) result.is_sheet.push_back(parts.is_sheet(t));
   result.is_one_sheet = !draft.mesh.triangles.empty() && parts.is_one_sheet();
+  std::vector<char> is_outward;
+  for (const Hole& hole : all) is_outward.push_back(!parts.is_inside_out(hole.rim_triangle));
   for_each_rim([&](std::size_t i) {
-    if (!result.is_sheet[all[i].rim_triangle]) rims[i].make_fair(all[i], edges.leaving);
+    if (result.is_sheet[all[i].rim_triangle]) return;
+    rims[i].set_off(all[i], is_outward[i], draft.mesh.points, tolerance);
+    if (!all[i].has_base) rims[i].make_fair(all[i], edges.leaving);
   });
   std::erase_if(all, [&](const Hole& hole) { return result.is_sheet[hole.rim_triangle]; });
   add_inner_points(draft, all);

@@ -14,7 +14,8 @@ struct Hole {
   std::vector<Triangle> cap;
   std::vector<Vec3> inner;             ///< points of the cap that are not on the rim, in the order of their vertices
   std::uint32_t rim_triangle = kNone;  ///< of the draft
-  double area = 0;                     ///< of the cap before it was made smooth
+  double area = 0;                     ///< of the cap before it was made smooth or set off
+  bool has_base = false;               ///< the cap keeps off the surface, which a lid would graze
 };
 
 struct ClosedHoles {
@@ -25,8 +26,9 @@ struct ClosedHoles {
 
 /// Caps for the holes of all parts that nearly enclose something, and none for sheets: parts whose caps would be too
 /// large a share of themselves, or that would enclose a volume thinner than the tolerance. Where some parts are closed
-/// already, open ones must be nearly so too. Where the surface around a hole bends, its cap goes on so; the points that
-/// this takes come behind those of the draft.
+/// already, open ones must be nearly so too. Where the surface around a hole bends, its cap goes on so; where a lid
+/// would graze the surface, walls and a flat base close the hole. The points that this takes come behind those of the
+/// draft.
 ClosedHoles close_holes(repair::Draft& draft, double tolerance);
 
 }  // namespace octafront::mend

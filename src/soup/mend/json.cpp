@@ -21,6 +21,7 @@ std::string to_json(const MendReport& r) {
               {"divided_edges", r.divided_edges},
               {"crossing_pairs", r.crossing_pairs},
               {"separated_vertices", r.separated_vertices},
+              {"based_holes", r.based_holes},
               {"area_before", r.area_before},
               {"area_after", r.area_after},
               {"volume_before", r.volume_before},

@@ -242,6 +242,7 @@ class Mending {
     ClosedHoles closed = close_holes(draft_, report_.tolerance);
     if (closed.is_one_sheet) refuse();
     holes_ = std::move(closed.holes);
+    report_.based_holes = static_cast<std::uint64_t>(std::ranges::count_if(holes_, &Hole::has_base));
     // Where there is nothing but sheets, they together may enclose something.
     const bool all = std::find(closed.is_sheet.begin(), closed.is_sheet.end(), 0) == closed.is_sheet.end();
     pieces_.is_sheet.assign(pieces_.count, 0);

@@ -148,6 +148,9 @@ void note_closed(MendReport& report) {
                   holes.largest,
                   beyond == 0 ? ", all within the tolerance"
                               : fmt::format("; {} beyond the tolerance: patch \"{}\"", beyond, kClosedByRepair)));
+  if (report.based_holes > 0)
+    report.notes.push_back(fmt::format("{} closed by walls and a flat base, for a lid would have grazed the surface.",
+                                       counted(report.based_holes, "hole")));
 }
 
 /// A dropped part of the surface's area that may have been meant: an inner wall, a crack.

@@ -11,9 +11,11 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -155,6 +157,62 @@ TEST(MendSurface, HolesCloseAndAreNamed) {
     if (result.surface.patch[t] == 1) closed += length(cross(p[b] - p[a], p[c] - p[a])) / 2;
   }
   EXPECT_NEAR(closed, 2, 1e-12);
+}
+
+/// A hill that runs out flat; its rim is torn.
+SurfaceMesh hill() {
+  SurfaceMesh made;
+  constexpr VertexIndex n = 24;
+  testing::Random random(3);
+  for (VertexIndex y = 0; y <= n; ++y)
+    for (VertexIndex x = 0; x <= n; ++x) {
+      const bool at_rim = x % n == 0 || y % n == 0;
+      const auto stray = [&] { return at_rim ? 0.1 * random.unit() : 0; };
+      const double px = x / 3.0 - 4 + stray(), py = y / 3.0 - 4 + stray();
+      made.points.push_back({px, py, 9 * std::exp(-(px * px + py * py) / 3) + 0.05 * std::sin(5 * px) + stray()});
+    }
+  for (VertexIndex y = 0; y < n; ++y)
+    for (VertexIndex x = 0; x < n; ++x) {
+      const VertexIndex a = y * (n + 1) + x, b = a + 1, c = a + n + 1, d = c + 1;
+      made.triangles.push_back({a, b, d});
+      made.triangles.push_back({a, d, c});
+    }
+  return made;
+}
+
+/// Degrees: the least angle between two triangles of the surface, inside or outside.
+double sharpest(const SurfaceMesh& surface) {
+  const auto normal = [&](std::uint32_t t) {
+    const auto& [a, b, c] = surface.triangles[t];
+    return normalized(cross(surface.points[b] - surface.points[a], surface.points[c] - surface.points[a]));
+  };
+  std::map<std::pair<VertexIndex, VertexIndex>, std::uint32_t> first;
+  double least = 180;
+  for (std::uint32_t t = 0; t < surface.triangles.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto edge = std::minmax(surface.triangles[t][k], surface.triangles[t][(k + 1) % 3]);
+      const auto [at, is_new] = first.try_emplace(std::pair(edge), t);
+      if (is_new) continue;
+      const double between = std::clamp(dot(normal(t), normal(at->second)), -1.0, 1.0);
+      least = std::min(least, 180 - std::acos(between) * 180 / std::numbers::pi);
+    }
+  return least;
+}
+
+TEST(MendSurface, WhereALidWouldGrazeTheSurfaceABaseClosesIt) {
+  const SurfaceMesh up = hill();
+  const double volume = enclosed_volume(mended(up).surface);
+  SurfaceMesh down = up;
+  for (Triangle& t : down.triangles) std::swap(t[1], t[2]);
+  for (const SurfaceMesh& soup : {up, down}) {
+    const Mended result = mended(soup);
+    EXPECT_EQ(result.report.based_holes, 1u);
+    EXPECT_EQ(result.report.count(Kind::kDropped), 0u);
+    EXPECT_GT(sharpest(result.surface), 30);
+    EXPECT_NEAR(enclosed_volume(result.surface), volume, 1e-9 * volume);
+    EXPECT_EQ(result.report.bodies, 1u);
+  }
+  EXPECT_EQ(mended(without(box_at({0, 0, 0}, {1, 2, 3}, 3), [](Vec3 p) { return p.z == 3; })).report.based_holes, 0u);
 }
 
 TEST(MendSurface, TrianglesAwayFromDefectsStay) {
