@@ -1,6 +1,7 @@
 #include "soup/mend/based_cap.h"
 
 #include "base/geometry/predicates.h"
+#include "soup/mend/across.h"
 
 #include <algorithm>
 #include <array>
@@ -40,12 +41,7 @@ double distance_to_chord(Flat p, Flat a, Flat b) {
 /// A rim seen along a direction.
 class FlatRim {
  public:
-  FlatRim(std::span<const Vec3> rim, Vec3 away) : away_(away) {
-    const Vec3 a = away;
-    const Vec3 least = std::abs(a.x) < std::abs(a.y) ? (std::abs(a.x) < std::abs(a.z) ? Vec3{1, 0, 0} : Vec3{0, 0, 1})
-                                                     : (std::abs(a.y) < std::abs(a.z) ? Vec3{0, 1, 0} : Vec3{0, 0, 1});
-    u_ = normalized(cross(least, away));
-    v_ = cross(away, u_);
+  FlatRim(std::span<const Vec3> rim, Vec3 away) : axes_(axes_across(away)) {
     for (const Vec3 p : rim) points_.push_back(flat(p));
   }
 
@@ -107,7 +103,7 @@ class FlatRim {
   }
 
  private:
-  Flat flat(Vec3 p) const { return {dot(p, u_), dot(p, v_)}; }
+  Flat flat(Vec3 p) const { return {dot(p, axes_[0]), dot(p, axes_[1])}; }
 
   static bool meet(Flat a, Flat b, Flat c, Flat d) {
     return turn(a, b, c) * turn(a, b, d) <= 0 && turn(c, d, a) * turn(c, d, b) <= 0;
@@ -119,7 +115,7 @@ class FlatRim {
         points_.begin());
   }
 
-  Vec3 away_, u_, v_;
+  std::array<Vec3, 2> axes_;
   std::vector<Flat> points_;
 };
 

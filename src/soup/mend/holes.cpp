@@ -7,6 +7,7 @@
 #include "soup/mend/cap.h"
 #include "soup/mend/fair.h"
 #include "soup/mend/loops.h"
+#include "soup/mend/shared_lids.h"
 
 #include <algorithm>
 #include <cmath>
@@ -266,6 +267,21 @@ void add_inner_points(Draft& draft, std::vector<Hole>& holes) {
   }
 }
 
+/// Which holes have a lid in common now: it is the outer one's.
+std::vector<char> share_lids(const Draft& draft, const std::vector<Loop>& loops, const std::vector<char>& is_sheet,
+                             double tolerance, std::vector<Hole>& holes) {
+  std::vector<char> may_share, is_shared(holes.size(), 0);
+  for (const Hole& hole : holes) may_share.push_back(!is_sheet[hole.rim_triangle]);
+  for (SharedLid& lid : shared_lids(draft.mesh.points, loops, may_share, tolerance)) {
+    for (const std::uint32_t i : lid.loops) {
+      is_shared[i] = 1;
+      holes[i].cap.clear();
+    }
+    holes[lid.loops.front()].cap = std::move(lid.cap);
+  }
+  return is_shared;
+}
+
 }  // namespace
 
 ClosedHoles close_holes(Draft& draft, double tolerance) {
@@ -299,10 +315,11 @@ ClosedHoles close_holes(Draft& draft, double tolerance) {
   ClosedHoles result;
   for (std::uint32_t t = 0; t < draft.mesh.triangles.size(); ++t) result.is_sheet.push_back(parts.is_sheet(t));
   result.is_one_sheet = !draft.mesh.triangles.empty() && parts.is_one_sheet();
+  const std::vector<char> is_shared = share_lids(draft, loops, result.is_sheet, tolerance, all);
   std::vector<char> is_outward;
   for (const Hole& hole : all) is_outward.push_back(!parts.is_inside_out(hole.rim_triangle));
   for_each_rim([&](std::size_t i) {
-    if (result.is_sheet[all[i].rim_triangle]) return;
+    if (result.is_sheet[all[i].rim_triangle] || is_shared[i]) return;
     rims[i].set_off(all[i], is_outward[i], draft.mesh.points, tolerance);
     if (!all[i].has_base) rims[i].make_fair(all[i], edges.leaving);
   });

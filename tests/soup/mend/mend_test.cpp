@@ -215,6 +215,32 @@ TEST(MendSurface, WhereALidWouldGrazeTheSurfaceABaseClosesIt) {
   EXPECT_EQ(mended(without(box_at({0, 0, 0}, {1, 2, 3}, 3), [](Vec3 p) { return p.z == 3; })).report.based_holes, 0u);
 }
 
+/// A block with a blind hole from below, cut off there; the cut strays from its plane by up to a fifth of the
+/// tolerance.
+SurfaceMesh cut_block() {
+  const auto is_cut = [](Vec3 p) { return p.z == 0; };
+  SurfaceMesh hole = without(box_at({1, 1, 0}, {1, 1, 1}, 4), is_cut);
+  for (Triangle& t : hole.triangles) std::swap(t[1], t[2]);
+  SurfaceMesh block = testing::joined(without(box_at({0, 0, 0}, {3, 3, 3}, 6), is_cut), hole);
+  block.patch.clear();
+  testing::Random random(5);
+  for (Vec3& p : block.points)
+    if (p.z == 0) p.z = random.between(-1e-3, 1e-3);
+  return block;
+}
+
+TEST(MendSurface, ALidWithAHoleInItHasNoMembranes) {
+  SurfaceMesh block = cut_block();
+  for (int i = 0; i < 2; ++i) {
+    const Mended result = mended(block);
+    EXPECT_NEAR(enclosed_volume(result.surface), 26, 0.01);
+    EXPECT_GT(sharpest(result.surface), 70);  // that of the slanted block: 73.3
+    EXPECT_EQ(result.report.crossing_pairs, 0u);
+    EXPECT_EQ(result.report.bodies, 1u);
+    for (Vec3& p : block.points) p = {p.y, p.z + 0.3 * p.x, p.x};  // another plane
+  }
+}
+
 TEST(MendSurface, TrianglesAwayFromDefectsStay) {
   const SurfaceMesh soup = testing::joined(box_at({0, 0, 0}, {2, 2, 2}, 6), box_at({1.7, 1.7, 1.7}, {2, 2, 2}, 6));
   const Mended result = mended(soup);
