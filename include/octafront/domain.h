@@ -87,6 +87,10 @@ struct Domain {
   /// options_for_voxels() says. 0: it is not from an image.
   double voxel_spacing = 0;
 
+  /// fingerprint() of a surface that an exact search found clean, as open_domain() leaves it of images: generate() does
+  /// not search this very surface again. 0: of none.
+  std::uint64_t found_clean = 0;
+
   /// Voxels of the image along i, j and k, as they were taken.
   std::array<std::uint32_t, 3> voxels = {0, 0, 0};
 

@@ -65,4 +65,7 @@ double enclosed_volume(const SurfaceMesh& surface);
 /// Sum of the areas of the triangles. Unit: input unit squared.
 double area(const SurfaceMesh& surface);
 
+/// A number that tells this geometry from others: of its points, triangles and sides, bit for bit.
+std::uint64_t fingerprint(const SurfaceMesh& surface);
+
 }  // namespace octafront

@@ -1,5 +1,9 @@
 #include <octafront/surface_mesh.h>
 
+#include "core/random.h"
+
+#include <bit>
+
 namespace octafront {
 
 Box3 bounding_box(const std::vector<Vec3>& points) {
@@ -28,6 +32,19 @@ double area(const SurfaceMesh& surface) {
   for (const Triangle& t : surface.triangles)
     twice += length(cross(surface.points[t[1]] - surface.points[t[0]], surface.points[t[2]] - surface.points[t[0]]));
   return twice / 2;
+}
+
+std::uint64_t fingerprint(const SurfaceMesh& surface) {
+  std::uint64_t print = mixed_bits(surface.points.size()) + surface.triangles.size();
+  const auto add = [&](std::uint64_t bits) { print = mixed_bits(print ^ bits); };
+  for (const Vec3& p : surface.points)
+    for (const double x : {p.x, p.y, p.z}) add(std::bit_cast<std::uint64_t>(x));
+  for (const auto& [a, b, c] : surface.triangles) {
+    add(std::uint64_t{a} << 32 | b);
+    add(c);
+  }
+  for (const auto& [front, behind] : surface.sides) add(std::uint64_t{front} << 32 | behind);
+  return print;
 }
 
 }  // namespace octafront

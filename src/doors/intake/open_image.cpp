@@ -101,6 +101,7 @@ void take_image(Domain& domain, const IntakeOptions& options, const Image& image
   domain.voxels = used.grid.size;
   try {
     take_complex(domain, options, complex_of_image(used, regions, context));
+    domain.found_clean = fingerprint(domain.surface);
   } catch (const InputError& error) {
     throw InputError(name.empty() ? error.what() : fmt::format("{}: {}", name, error.what()));
   }

@@ -59,7 +59,7 @@ void require_on_surface(const TetMesh& mesh, const SurfaceMesh& boundary, const 
 
 Ground prepare_ground(const TetMesh& mesh, const SurfaceMesh& surface, double feature_angle,
                       const RunContext& context) {
-  Examined found = examine_surface(surface, context);
+  Examined found = examine_surface(surface, false, context);
   if (!found.defects.clean()) throw InputError(found.defects.describe());
   SurfaceMesh& repaired = found.repaired.surface;
   // The patches of mesh and surface may be numbered differently; those of the mesh are kept as feature curves.

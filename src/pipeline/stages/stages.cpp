@@ -226,6 +226,10 @@ void require_bounds(const Domain& mended) {
                                   wrong - mended.bound.begin(), *wrong));
 }
 
+bool is_known_clean(const Domain& domain) {
+  return domain.found_clean != 0 && domain.found_clean == fingerprint(domain.surface);
+}
+
 /// Of arrays: readers have done so already.
 void clean_names(SurfaceMesh& surface, const Stage& stage) {
   NameCleaning names;
@@ -246,11 +250,11 @@ std::vector<double> bounds_by_source(const Domain& mended, SurfaceMesh& surface)
   return bound;
 }
 
-/// `mended`: null, or what the soup is of, without sources.
-Prepared prepare(const SurfaceMesh& soup, const Domain* mended, Run& run) {
+/// `mended`: null, or what the soup is of, without sources. `is_clean`: it is known to be.
+Prepared prepare(const SurfaceMesh& soup, const Domain* mended, bool is_clean, Run& run) {
   SurfaceDomain::Defects defects{};
   Examined found = run.stage("repair", [&](const Stage& stage) {
-    Examined examined = examine_surface(soup, stage.context());
+    Examined examined = examine_surface(soup, is_clean, stage.context());
     const RepairedSurface& repaired = examined.repaired;
     for (const std::string& note : repaired.notes) stage.note(note);
     refuse_complex_for_method(repaired.surface, run.options.method);
@@ -300,10 +304,10 @@ SurfaceOptions true_to_input(const SurfaceMesh& input, const Options& options) {
 Prepared prepare(const Domain& domain, Run& run) {
   require_bounds(domain);
   if (domain.bound.empty() || run.options.surface.max_deviation || !has_automatic_sizes(run.options))
-    return prepare(domain.surface, nullptr, run);
+    return prepare(domain.surface, nullptr, is_known_clean(domain), run);
   SurfaceMesh numbered = domain.surface;
   numbered.source.clear();
-  return prepare(numbered, &domain, run);
+  return prepare(numbered, &domain, false, run);
 }
 
 SizeField choose_sizes(const Prepared& input, Run& run) {

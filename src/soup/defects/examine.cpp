@@ -7,13 +7,13 @@
 
 namespace octafront {
 
-Examined examine_surface(const SurfaceMesh& soup, const RunContext& context) {
+Examined examine_surface(const SurfaceMesh& soup, bool is_clean, const RunContext& context) {
   repair::Draft draft = repair::make_draft(soup, context);
   Examined result{repair::mend(draft), {}, {}};
   const SurfaceMesh& surface = result.repaired.surface;
   result.edges = draft.known_edges ? std::move(*draft.known_edges)
                                    : make_edge_table(surface.points.size(), surface.triangles, context);
-  result.defects = defects::find_defects(result.repaired, result.edges, context);
+  if (!is_clean) result.defects = defects::find_defects(result.repaired, result.edges, context);
   return result;
 }
 

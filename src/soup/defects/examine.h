@@ -13,6 +13,7 @@ struct Examined {
   EdgeTable edges;
   SurfaceDefects defects;
 };
-Examined examine_surface(const SurfaceMesh& soup, const RunContext& context);
+/// `is_clean`: the soup is known to have no defect, and none is looked for.
+Examined examine_surface(const SurfaceMesh& soup, bool is_clean, const RunContext& context);
 
 }  // namespace octafront

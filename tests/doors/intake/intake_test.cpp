@@ -3,6 +3,7 @@
 #include <octafront/domain.h>
 #include <octafront/error.h>
 #include <octafront/io.h>
+#include <octafront/repair.h>
 
 #include "support/named_surfaces.h"
 
@@ -132,6 +133,8 @@ TEST_F(Intake, AnImageIsOneOfItsRegionsAndKnowsItsVoxels) {
   const Domain domain = open_domain(image, options);
   EXPECT_EQ(domain.surface.region_names, (std::vector<std::string>{"label 1", "right"}));
   EXPECT_EQ(domain.voxel_spacing, 0.5);
+  EXPECT_EQ(domain.found_clean, fingerprint(domain.surface));
+  EXPECT_TRUE(find_defects(repair_surface(domain.surface)).clean());
   EXPECT_TRUE(says(domain, "reading", "of a reader"));
   options.image.crop[0].last = 5;
   options.image.resample = {1};

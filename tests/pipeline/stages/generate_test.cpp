@@ -149,6 +149,17 @@ TEST(Generate, RefusesASelfIntersectingSurface) {
   EXPECT_THROW(generate(crossing), InputError);
 }
 
+TEST(Generate, SearchesACleanSurfaceAgainOnceItIsAnotherOne) {
+  Domain domain = testing::cube(2);
+  domain.found_clean = fingerprint(domain.surface);
+  EXPECT_EQ(generate(domain).report.hash, generate(testing::cube(2)).report.hash);
+  domain.surface.points[0] = {5, 5, 5};  // through the opposite corner
+  EXPECT_NE(domain.found_clean, fingerprint(domain.surface));
+  EXPECT_THROW(generate(domain), InputError);
+  domain.found_clean = 0;
+  EXPECT_THROW(generate(domain), InputError);
+}
+
 TEST(Generate, RefusesAnEmptySurface) {
   EXPECT_THROW(generate(SurfaceMesh{}), InputError);
 }
