@@ -40,13 +40,45 @@ class GridCapper {
   }
 
  private:
-  /// The least that a cap allows in a cell.
-  double least_in(OctreeKey cell, const SizeCap& cap) const {
+  /// The least and the most that a cap allows in a cell.
+  struct Span {
+    double least, most;
+  };
+  Span span_in(OctreeKey cell, const SizeCap& cap) const {
     const Vec3 lo = old_.root.corner_of(cell);
     const double side = old_.root.side_of(cell);
     const Vec3 hi = lo + Vec3{side, side, side};
+    Vec3 far;
+    for (int a = 0; a < 3; ++a) far[a] = cap.lo[a] - lo[a] > hi[a] - cap.hi[a] ? lo[a] : hi[a];
     // Along each axis the nearest point of the cell to the box; the gap between the two boxes is theirs.
-    return cap.at(max(lo, min(max(cap.lo, min(lo, cap.hi)), hi)), gradation_);
+    return {cap.at(max(lo, min(max(cap.lo, min(lo, cap.hi)), hi)), gradation_), cap.at(far, gradation_)};
+  }
+
+  /// What may matter in a cell of the caps `near`.
+  struct Mattering {
+    std::vector<std::uint32_t> caps;
+    double least = std::numeric_limits<double>::infinity();
+  };
+
+  /// Those below the old sizes, but for what another one stays below all over the cell: of the many caps that grow into
+  /// a cell from afar few are left.
+  Mattering mattering(OctreeKey cell, const std::vector<std::uint32_t>& near) const {
+    double most = old_size_in(cell);
+    Mattering here;
+    std::vector<double> least;
+    for (const std::uint32_t i : near) {
+      const Span span = span_in(cell, caps_[i]);
+      if (span.least >= most) continue;
+      most = std::min(most, span.most);
+      here.caps.push_back(i);
+      least.push_back(span.least);
+      here.least = std::min(here.least, span.least);
+    }
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < least.size(); ++k)
+      if (least[k] <= most) here.caps[kept++] = here.caps[k];
+    here.caps.resize(kept);
+    return here;
   }
 
   double old_size_in(OctreeKey cell) const {
@@ -58,18 +90,12 @@ class GridCapper {
   /// Divides cells that are too large for the caps in them; `near`: the caps that may matter in the cell.
   void descend(OctreeKey cell, const std::vector<std::uint32_t>& near) {
     context_.check();
-    const double old_size = old_size_in(cell);
-    std::vector<std::uint32_t> here;
-    double least = std::numeric_limits<double>::infinity();
-    for (const std::uint32_t i : near) {
-      const double h = least_in(cell, caps_[i]);
-      if (h >= old_size) continue;
-      here.push_back(i);
-      least = std::min(least, h);
-    }
-    if (here.empty() || old_.root.side_of(cell) <= kLeafPerSize * least || cell.level() == OctreeKey::kMaxLevel) return;
+    const Mattering here = mattering(cell, near);
+    if (here.caps.empty() || old_.root.side_of(cell) <= kLeafPerSize * here.least ||
+        cell.level() == OctreeKey::kMaxLevel)
+      return;
     cells_.divide(cell);
-    for (int i = 0; i < 8; ++i) descend(cell.child(i), here);
+    for (int i = 0; i < 8; ++i) descend(cell.child(i), here.caps);
   }
 
   /// The old size at each corner, lowered by the caps near it.
@@ -87,11 +113,7 @@ class GridCapper {
 
   void lower(const Octree& tree, OctreeKey cell, const std::vector<std::uint32_t>& near, std::size_t& next,
              std::vector<double>& limit) const {
-    const double old_size = old_size_in(cell);
-    std::vector<std::uint32_t> here;
-    for (const std::uint32_t i : near) {
-      if (least_in(cell, caps_[i]) < old_size) here.push_back(i);
-    }
+    const std::vector<std::uint32_t> here = mattering(cell, near).caps;
     if (tree.leaf(next) != cell) {
       for (int i = 0; i < 8; ++i) lower(tree, cell.child(i), here, next, limit);
       return;

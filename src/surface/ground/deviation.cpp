@@ -310,16 +310,39 @@ std::vector<std::uint32_t> DeviationWatch::note_changes(const SurfaceMesh& made,
     else
       changed.push_back(t);
   }
-  for (const Looked* look : std::array<const Looked*, 2>{&last_, &now})
-    for (std::size_t t = 0; t < look->number.size() && !is_first; ++t) {
-      if (!is_changed_[look->number[t]]) continue;
-      input_tree_.for_each_box_near(box_of(look->corners[t], limit_), [&](std::uint32_t face, const TriangleCorners&) {
-        is_near_change_[face] = 1;
-        return true;
-      });
-    }
+  if (!is_first) {
+    std::vector<Vec3> corners;  // of what has gone and what has come
+    for (const Looked* look : std::array<const Looked*, 2>{&last_, &now})
+      for (std::size_t t = 0; t < look->number.size(); ++t)
+        if (is_changed_[look->number[t]])
+          corners.insert(corners.end(), look->corners[t].begin(), look->corners[t].end());
+    mark_near(corners);
+  }
   last_ = std::move(now);
   return changed;
+}
+
+/// The input near changed triangles, three corners each. Where these are many each face of the input asks whether one
+/// is near: if they asked, each would find the same hundreds of faces as its neighbours do.
+void DeviationWatch::mark_near(const std::vector<Vec3>& corners) {
+  constexpr std::size_t kMany = 16;  // faces of the input for each of them: fewer, and they are many
+  std::vector<Triangle> changed(corners.size() / 3);
+  for (VertexIndex t = 0; t < changed.size(); ++t) changed[t] = {3 * t, 3 * t + 1, 3 * t + 2};
+  if (kMany * changed.size() < input_.triangles.size()) {
+    for (const auto& [a, b, c] : changed)
+      input_tree_.for_each_box_near(box_of({corners[a], corners[b], corners[c]}, limit_),
+                                    [&](std::uint32_t face, const TriangleCorners&) {
+                                      is_near_change_[face] = 1;
+                                      return true;
+                                    });
+    return;
+  }
+  const TriangleTree tree(corners, changed);
+  parallel_for(input_.triangles.size(), [&](std::size_t face) {
+    const Box3 box = box_of(input_tree_.corners(static_cast<std::uint32_t>(face)), limit_);
+    if (!tree.for_each_box_near(box, [](std::uint32_t, const TriangleCorners&) { return false; }))
+      is_near_change_[face] = 1;
+  });
 }
 
 std::vector<FarPlace> places_under(const std::vector<std::uint32_t>& triangles, const SurfaceMesh& made,

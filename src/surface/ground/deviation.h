@@ -56,6 +56,8 @@ class DeviationWatch {
   std::vector<Sample> far_of_made(const SurfaceMesh& made, const std::vector<std::uint32_t>& changed) const;
   std::vector<std::uint32_t> note_changes(const SurfaceMesh& made, const std::vector<std::uint32_t>& number);
 
+  void mark_near(const std::vector<Vec3>& corners);
+
   double limit_, far_;
   Fine fine_;
   const SurfaceMesh& input_;
