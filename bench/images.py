@@ -213,6 +213,14 @@ def main():
         write_page(results)
 
 
+def with_old_rows(lines, old, names):
+    """The table with the rows of the page whose volumes were not measured now, all in the order of `names`."""
+    def name_of(row):
+        return row.split(" | ")[0].removeprefix("| ")
+    rows = {name_of(row): row for row in [*old[2:], *lines[2:]]}
+    return [*lines[:2], *(rows[name] for name in names if name in rows)]
+
+
 def write_page(results):
     """Each table stands between its marks; the text around them is written by hand."""
     page = PAGE.read_text()
@@ -220,7 +228,12 @@ def write_page(results):
     for mark, lines in (("volumes", table(rows)), ("poor elements", poor_elements(rows)),
                         ("beside CGAL", table(side_by_side(results)))):
         before, rest = page.split(f"<!-- {mark} -->\n")
-        page = before + f"<!-- {mark} -->\n" + "\n".join(lines) + "\n<!-- end -->" + rest.split("<!-- end -->", 1)[1]
+        old, behind = rest.split("<!-- end -->", 1)
+        names = [name for name, *_ in VOLUMES]
+        if mark == "beside CGAL":
+            names = [f"{name}: {who}" for name in PEERS for who in ("Octafront", "CGAL 5.5")]
+        lines = with_old_rows(lines, old.splitlines(), names)
+        page = before + f"<!-- {mark} -->\n" + "\n".join(lines) + "\n<!-- end -->" + behind
     PAGE.write_text(page)
 
 
