@@ -1,6 +1,6 @@
 #include <octafront/surface_mesh.h>
 
-#include "core/random.h"
+#include "base/core/random.h"
 
 #include <bit>
 

@@ -322,21 +322,20 @@ std::vector<std::uint32_t> DeviationWatch::note_changes(const SurfaceMesh& made,
   return changed;
 }
 
-/// The input near changed triangles, three corners each. Where these are many each face of the input asks whether one
-/// is near: if they asked, each would find the same hundreds of faces as its neighbours do.
+/// The input near changed triangles, three corners each. Where these find more than all of the input, the same faces
+/// again and again, each face asks instead whether one of them is near.
 void DeviationWatch::mark_near(const std::vector<Vec3>& corners) {
-  constexpr std::size_t kMany = 16;  // faces of the input for each of them: fewer, and they are many
   std::vector<Triangle> changed(corners.size() / 3);
   for (VertexIndex t = 0; t < changed.size(); ++t) changed[t] = {3 * t, 3 * t + 1, 3 * t + 2};
-  if (kMany * changed.size() < input_.triangles.size()) {
-    for (const auto& [a, b, c] : changed)
-      input_tree_.for_each_box_near(box_of({corners[a], corners[b], corners[c]}, limit_),
-                                    [&](std::uint32_t face, const TriangleCorners&) {
-                                      is_near_change_[face] = 1;
-                                      return true;
-                                    });
-    return;
-  }
+  std::size_t found = 0;
+  const bool are_few = std::ranges::all_of(changed, [&](const Triangle& t) {
+    return input_tree_.for_each_box_near(box_of({corners[t[0]], corners[t[1]], corners[t[2]]}, limit_),
+                                         [&](std::uint32_t face, const TriangleCorners&) {
+                                           is_near_change_[face] = 1;
+                                           return ++found <= input_.triangles.size();
+                                         });
+  });
+  if (are_few) return;
   const TriangleTree tree(corners, changed);
   parallel_for(input_.triangles.size(), [&](std::size_t face) {
     const Box3 box = box_of(input_tree_.corners(static_cast<std::uint32_t>(face)), limit_);
