@@ -7,15 +7,17 @@
 
 namespace octafront {
 
+std::uint64_t curve_code(Vec3 point, const Cube& cube) {
+  const Vec3 p = (point - cube.lo) * (cube.side > 0 ? 2097151 / cube.side : 0);
+  const auto cell = [](double c) { return static_cast<std::uint64_t>(c); };
+  return morton_code(cell(p.z), cell(p.y), cell(p.x));
+}
+
 std::vector<VertexIndex> spatial_order(const std::vector<Vec3>& points) {
   Box3 box;
   for (const Vec3& p : points) box.add(p);
   const Vec3 extent = box.empty() ? Vec3{} : box.extent();
-  return spatial_order(points, {box.lo, std::max({extent.x, extent.y, extent.z})});
-}
-
-std::vector<VertexIndex> spatial_order(const std::vector<Vec3>& points, const Cube& cube) {
-  const double scale = cube.side > 0 ? 2097151 / cube.side : 0;
+  const Cube cube{box.lo, std::max({extent.x, extent.y, extent.z})};
   struct Key {
     std::uint64_t code;
     VertexIndex vertex;
@@ -23,9 +25,7 @@ std::vector<VertexIndex> spatial_order(const std::vector<Vec3>& points, const Cu
   };
   std::vector<Key> keys(points.size());
   parallel_for(points.size(), [&](std::size_t v) {
-    const Vec3 p = (points[v] - cube.lo) * scale;
-    const auto cell = [](double c) { return static_cast<std::uint64_t>(c); };
-    keys[v] = {morton_code(cell(p.z), cell(p.y), cell(p.x)), static_cast<VertexIndex>(v)};
+    keys[v] = {curve_code(points[v], cube), static_cast<VertexIndex>(v)};
   });
   parallel_sort(keys);
   std::vector<VertexIndex> order(points.size());

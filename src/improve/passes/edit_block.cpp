@@ -4,12 +4,12 @@
 
 namespace octafront::improve {
 
-EditBlock::EditBlock(EditMesh& mesh, VertexIndex first, VertexIndex count, std::vector<TetIndex> free_tets,
+EditBlock::EditBlock(EditMesh& mesh, const Cells& cells, std::uint32_t cell, std::vector<TetIndex> free_tets,
                      std::vector<VertexIndex> free_points)
     : mesh_(mesh),
       complex_(mesh.complex_),
-      first_(first),
-      count_(count),
+      cells_(&cells),
+      cell_(cell),
       mark_(mesh.complex_.last_mark),
       free_tets_(std::move(free_tets)),
       free_points_(std::move(free_points)) {}
@@ -122,7 +122,7 @@ VertexIndex EditBlock::add_vertex(Vec3 p, VertexIndex beside, std::size_t tets) 
   const VertexIndex v = free.back();
   free.pop_back();
   mesh_.points_[v] = p;
-  mesh_.key_[v] = mesh_.key_[beside];
+  for (Cells& cells : mesh_.cells_) cells.of[v] = cells.of[beside];
   return v;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
 // The part of a mesh that one worker may look at and change while others work on theirs: the tetrahedra all of whose
-// vertices lie on one stretch of the numbering along the space-filling curve. No two blocks share such a tetrahedron,
+// vertices lie in one cell of a stage (base/blocks). No two blocks share such a tetrahedron,
 // or the corners of one. A search that leaves the block gives up and says so; slots for new tets and vertices are
 // reserved beforehand. A block may also be the whole mesh; then nothing is refused, and the mesh grows as it must.
 
@@ -17,8 +17,8 @@ class EditBlock {
  public:
   /// All of the mesh.
   explicit EditBlock(EditMesh& mesh) : mesh_(mesh), complex_(mesh.complex_), whole_(true) {}
-  /// The vertices with keys first, ..., first + count - 1, and slots that may be used.
-  EditBlock(EditMesh& mesh, VertexIndex first, VertexIndex count, std::vector<TetIndex> free_tets,
+  /// The vertices of one cell, and slots that may be used.
+  EditBlock(EditMesh& mesh, const Cells& cells, std::uint32_t cell, std::vector<TetIndex> free_tets,
             std::vector<VertexIndex> free_points);
 
   EditMesh& mesh() { return mesh_; }
@@ -27,10 +27,9 @@ class EditBlock {
   bool owns(TetIndex t) const {
     if (whole_) return true;
     for (const VertexIndex v : complex_.tets[t])
-      if (!in_range(mesh_.key_[v], first_, count_)) return false;
+      if (cells_->of[v] != cell_) return false;
     return true;
   }
-  static bool in_range(VertexIndex key, VertexIndex first, VertexIndex count) { return key - first < count; }
 
   /// True if one of the searches since the last call left the block.
   bool take_cut() { return std::exchange(cut_, false); }
@@ -91,7 +90,8 @@ class EditBlock {
   TetComplex& complex_;
   TetRim rim_;
   bool whole_ = false, cut_ = false;
-  VertexIndex first_ = 0, count_ = 0;
+  const Cells* cells_ = nullptr;
+  std::uint32_t cell_ = 0;
   std::uint32_t mark_ = 0;
   std::vector<TetIndex> free_tets_;
   std::vector<VertexIndex> free_points_;

@@ -7,8 +7,6 @@
 namespace octafront::improve {
 namespace {
 
-constexpr VertexIndex kLeastEditBlock = 4096;  ///< vertices: below this most of a block is its rim
-constexpr VertexIndex kMostEditBlocks = 256;
 /// Slots reserved for each block: some, and a part of the number of elements that it works on. Passes make little more
 /// than they take away; what finds no slot is left as it is.
 constexpr std::size_t kRoom = 64;
@@ -24,38 +22,30 @@ std::vector<Index> take_last(std::vector<Index>& from, std::size_t count) {
 
 }  // namespace
 
-EditBlocks::EditBlocks(EditMesh& mesh, const std::vector<TetIndex>& tets, int stage, bool adds_vertices) : mesh_(mesh) {
-  const auto n = static_cast<VertexIndex>(mesh.original_.size());
-  const VertexIndex size = std::max(kLeastEditBlock, n / kMostEditBlocks + 1);
-  if (stage + 1 == kStages || n <= size) {
-    shares_.push_back({EditBlock(mesh), tets, {}, {}});
-    return;
-  }
-  divide(tets, size, stage == 0 ? 0 : size / 2, adds_vertices);
+EditBlocks::EditBlocks(EditMesh& mesh, std::vector<TetIndex> tets, int stage, bool adds_vertices) : mesh_(mesh) {
+  if (stage == kCellStages || mesh.cells(stage).count <= 1)
+    shares_.push_back({EditBlock(mesh), std::move(tets), {}, {}});
+  else
+    divide(std::move(tets), mesh.cells(stage), adds_vertices);
 }
 
-void EditBlocks::divide(const std::vector<TetIndex>& tets, VertexIndex size, VertexIndex shift, bool adds_vertices) {
-  const auto n = static_cast<VertexIndex>(mesh_.original_.size());
-  std::vector<std::vector<TetIndex>> own((n + shift) / size + 1);
-  std::size_t room = 0, vertices = 0;
-  for (const TetIndex t : tets) {
-    if (!mesh_.alive(t)) continue;
-    const auto block_of = [&](VertexIndex v) { return (mesh_.key_[v] + shift) / size; };
-    const Tet& c = mesh_.tet(t);
-    const VertexIndex b = block_of(c[0]);
-    const bool whole = block_of(c[1]) == b && block_of(c[2]) == b && block_of(c[3]) == b;
-    (whole ? own[b] : left_).push_back(t);
-    vertices += whole && adds_vertices;
-  }
-  for (const auto& o : own) room += o.empty() ? 0 : kRoom + o.size() / kBlockRoomPart;
+void EditBlocks::divide(std::vector<TetIndex> tets, const Cells& cells, bool adds_vertices) {
+  std::erase_if(tets, [&](TetIndex t) { return !mesh_.alive(t); });
+  const ItemsByCell<TetIndex> by_cell(std::span<const TetIndex>(tets), cells.count,
+                                      [&](TetIndex t) { return cells.holding(mesh_.tet(t)); });
+  left_.assign(by_cell.left().begin(), by_cell.left().end());
+  const auto room_for = [](std::size_t count) { return count == 0 ? 0 : kRoom + count / kBlockRoomPart; };
+  std::size_t room = 0;
+  const std::size_t vertices = adds_vertices ? tets.size() - left_.size() : 0;
+  for (std::uint32_t c = 0; c < cells.count; ++c) room += room_for(by_cell[c].size());
   if (mesh_.complex_.free.size() < room) mesh_.reserve_tets(room - mesh_.complex_.free.size());
   if (mesh_.free_points_.size() < vertices) mesh_.reserve_points(vertices - mesh_.free_points_.size());
-  for (VertexIndex b = 0; b < own.size(); ++b) {
-    if (own[b].empty()) continue;
-    const VertexIndex first = b * size < shift ? 0 : b * size - shift, last = (b + 1) * size - shift;
-    EditBlock block(mesh_, first, last - first, take_last(mesh_.complex_.free, kRoom + own[b].size() / kBlockRoomPart),
-                    take_last(mesh_.free_points_, adds_vertices ? own[b].size() : 0));
-    shares_.push_back({std::move(block), std::move(own[b]), {}, {}});
+  for (std::uint32_t c = 0; c < cells.count; ++c) {
+    const std::span<const TetIndex> own = by_cell[c];
+    if (own.empty()) continue;
+    EditBlock block(mesh_, cells, c, take_last(mesh_.complex_.free, room_for(own.size())),
+                    take_last(mesh_.free_points_, adds_vertices ? own.size() : 0));
+    shares_.push_back({std::move(block), {own.begin(), own.end()}, {}, {}});
   }
 }
 

@@ -22,18 +22,17 @@ class EditBlocks {
     PassResult result;
   };
 
-  /// Divides the mesh into stretches of the space-filling curve, shifted by half a block in the second stage; the third
-  /// is the whole mesh. Each block gets those of `tets` that it owns, and slots for new ones, and for as many new
-  /// vertices if asked for; the rest is for finish().
-  EditBlocks(EditMesh& mesh, const std::vector<TetIndex>& tets, int stage, bool adds_vertices);
-  static constexpr int kStages = 3;
+  /// Divides the mesh by the cells of the stage; the last stage is the whole mesh. Each block gets those of `tets` that
+  /// it owns, and slots for new ones, and for as many new vertices if asked for; the rest is for finish().
+  EditBlocks(EditMesh& mesh, std::vector<TetIndex> tets, int stage, bool adds_vertices);
+  static constexpr int kStages = kCellStages + 1;
 
   std::vector<Share>& shares() { return shares_; }
   /// What no block could do, ascending; gives unused slots back.
   std::vector<TetIndex> finish();
 
  private:
-  void divide(const std::vector<TetIndex>& tets, VertexIndex size, VertexIndex shift, bool adds_vertices);
+  void divide(std::vector<TetIndex> tets, const Cells& cells, bool adds_vertices);
 
   EditMesh& mesh_;
   std::vector<Share> shares_;
@@ -47,7 +46,7 @@ PassResult for_each_block(EditMesh& mesh, std::vector<TetIndex> tets, const RunC
                           bool adds_vertices = false) {
   PassResult sum;
   for (int stage = 0; stage < EditBlocks::kStages && !tets.empty(); ++stage) {
-    EditBlocks blocks(mesh, tets, stage, adds_vertices);
+    EditBlocks blocks(mesh, std::move(tets), stage, adds_vertices);
     auto& shares = blocks.shares();
     parallel_for(shares.size(), [&](std::size_t b) {
       context.check();

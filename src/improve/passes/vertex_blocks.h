@@ -2,8 +2,7 @@
 
 #include <octafront/run_context.h>
 
-#include "base/core/groups.h"
-#include "base/core/parallel.h"
+#include "base/blocks/blocks.h"
 #include "improve/passes/passes.h"
 
 #include <algorithm>
@@ -14,9 +13,8 @@ namespace octafront::improve {
 
 /// The inner vertices, and those of the boundary that may slide if a guide is given, with their stars, in an order of
 /// blocks in which they may be moved in parallel, the same for any number of threads: for passes that change no
-/// connection. In a stage no vertex has a neighbour in another block. Blocks of the first stage are stretches of the
-/// numbering, which follows a space-filling curve, those of the second stretches of a curve in shifted cells, of what
-/// the first left over; what is left by that is one block at the end.
+/// connection. In a stage no vertex has a neighbour in another block: a block is what lies in one cell of the stage, of
+/// what the stages before left; what all of them leave is one block at the end.
 class VertexBlocks {
  public:
   /// All of them.
@@ -51,23 +49,19 @@ class VertexBlocks {
  private:
   static constexpr std::uint8_t kWorked = 1, kAtRim = 2;  ///< in the marks; kAtRim: of a block of the first stage
 
-  /// Stretches of one length: how many bits of a number are those within a stretch.
-  static int bits_of_stretch(std::size_t vertices);
-  /// What the first stage leaves, in the blocks of the second; what that leaves comes back.
-  std::vector<VertexIndex> divide_shifted(const EditMesh& mesh, const std::vector<VertexIndex>& waiting);
+  /// Makes blocks of the stage, of those that wait and have no neighbour in another cell that does; they wait no more.
+  void divide(const EditMesh& mesh, int stage, std::vector<VertexIndex>& waiting, std::vector<std::uint8_t>& waits);
 
   /// One sweep over the tets, which is quicker than star by star.
   template <typename NeedsWork>
   static std::vector<std::uint8_t> marks(const EditMesh& mesh, const NeedsWork& needs_work) {
-    const int bits = bits_of_stretch(mesh.vertices());
+    const Cells& cells = mesh.cells(0);
     std::vector<std::uint8_t> marks(mesh.vertices(), 0);
     parallel_for(mesh.slots(), [&](std::size_t i) {
       const auto t = static_cast<TetIndex>(i);
       if (!mesh.alive(t)) return;
       const Tet& c = mesh.tet(t);
-      const VertexIndex least = std::min({c[0], c[1], c[2], c[3]}), most = std::max({c[0], c[1], c[2], c[3]});
-      const std::uint8_t mark =
-          (needs_work(mesh.shape(t)) ? kWorked : 0) | (least >> bits != most >> bits ? kAtRim : 0);
+      const std::uint8_t mark = (needs_work(mesh.shape(t)) ? kWorked : 0) | (cells.holding(c) == kNoOwner ? kAtRim : 0);
       if (mark == 0) return;
       for (const VertexIndex v : c) {
         const std::atomic_ref shared(marks[v]);

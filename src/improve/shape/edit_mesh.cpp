@@ -18,6 +18,9 @@ namespace octafront::improve {
 
 namespace {
 
+/// Fewer would have more of their elements at rims, more share less well among threads.
+constexpr std::size_t kMostVerticesOfCell = 8192;
+
 /// Room for the slots that blocks will ask for: otherwise the first to ask has the whole mesh copied.
 constexpr std::size_t kMeshRoomPart = 16, kLeastRoom = 1024;
 
@@ -48,12 +51,11 @@ void EditMesh::take(TetMesh& mesh) {
   original_ = spatial_order(mesh.points);
   std::vector<VertexIndex> new_of_old(mesh.points.size());
   points_.reserve(mesh.points.size());
-  key_.reserve(mesh.points.size());
   for (VertexIndex v = 0; v < original_.size(); ++v) {
     new_of_old[original_[v]] = v;
     points_.push_back(mesh.points[original_[v]]);
-    key_.push_back(v);
   }
+  divide_in_cells();
   parallel_for(mesh.tets.size(), [&](std::size_t t) {
     for (VertexIndex& v : mesh.tets[t]) v = new_of_old[v];
   });
@@ -72,6 +74,13 @@ void EditMesh::take(TetMesh& mesh) {
   }
   mesh.tets = std::vector<Tet>();
   mesh.points = std::vector<Vec3>();
+}
+
+void EditMesh::divide_in_cells() {
+  Box3 box;
+  for (const Vec3& p : points_) box.add(p);
+  for (int stage = 0; stage < kCellStages; ++stage)
+    cells_[stage] = cells_of(points_, cube_of_stage(box, stage), kMostVerticesOfCell);
 }
 
 void EditMesh::connect() {
@@ -194,7 +203,7 @@ void EditMesh::reserve_points(std::size_t more) {
   points_.resize(last);
   complex_.tet_at.resize(last, kNone);
   on_boundary_.resize(last, 0);
-  key_.resize(last, 0);
+  for (Cells& cells : cells_) cells.of.resize(last, 0);
   for (std::size_t v = last; v-- > first;) free_points_.push_back(static_cast<VertexIndex>(v));
 }
 

@@ -7,9 +7,11 @@
 
 #include <octafront/tet_mesh.h>
 
+#include "base/blocks/blocks.h"
 #include "base/mesh/tet_complex.h"
 #include "improve/shape/shape.h"
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
@@ -62,6 +64,9 @@ class EditMesh {
   /// For each vertex of the mesh that was taken, its number here.
   std::vector<VertexIndex> numbers_here() const;
 
+  /// The vertices by cells, from where they were at the beginning; a new one is in those of one beside it.
+  const Cells& cells(int stage) const { return cells_[stage]; }
+
   bool has(TetIndex t, VertexIndex v) const { return complex_.has(t, v); }
   /// Corner of t at which v lies. Requires that it does.
   int corner_of(TetIndex t, VertexIndex v) const { return complex_.corner_of(t, v); }
@@ -94,6 +99,7 @@ class EditMesh {
   void reserve_tets(std::size_t more);
   void reserve_points(std::size_t more);
   void take(TetMesh& mesh);
+  void divide_in_cells();
   std::optional<std::string> wrong_at_tet(TetIndex t) const;
   [[noreturn]] void throw_unmatched(HalfFace h) const;
   void part(HalfFace h, HalfFace other);
@@ -108,9 +114,9 @@ class EditMesh {
   std::vector<std::uint32_t> region_;  ///< per slot; empty if there were none
   std::vector<std::uint8_t> on_boundary_;
   std::vector<VertexIndex> free_points_;  ///< numbers of no vertex, behind those that were taken
-  std::vector<VertexIndex> key_;          ///< for each vertex: a number that grows along the space-filling curve
-  std::vector<VertexIndex> original_;     ///< the number of each vertex in the mesh that was taken
-  TetMesh rest_;                          ///< boundary, patches, sources, names: carried through; no tets, no points
+  std::array<Cells, kCellStages> cells_;
+  std::vector<VertexIndex> original_;  ///< the number of each vertex in the mesh that was taken
+  TetMesh rest_;                       ///< boundary, patches, sources, names: carried through; no tets, no points
   bool had_regions_ = false;
 };
 

@@ -96,7 +96,7 @@ TEST(VertexBlocks, OfOneStageHaveNoNeighboursAndHoldEachInnerVertexOnce) {
   const EditMesh mesh(kuhn_cube(36));
   const VertexBlocks blocks(mesh);
   std::vector<int> moved(mesh.vertices(), 0);
-  ASSERT_EQ(blocks.stages().size(), 3u);
+  ASSERT_GT(blocks.stages().size(), 2u);
   EXPECT_GT(blocks.stages()[0].size(), 2u);
   EXPECT_GT(blocks.stages()[1].size(), 2u);
   for (const auto& stage : blocks.stages()) {
@@ -109,7 +109,8 @@ TEST(VertexBlocks, OfOneStageHaveNoNeighboursAndHoldEachInnerVertexOnce) {
           for (const VertexIndex u : mesh.tet(h / 4)) ASSERT_TRUE(block_of[u] == stage.size() || block_of[u] == b);
   }
   for (VertexIndex v = 0; v < mesh.vertices(); ++v) EXPECT_EQ(moved[v], mesh.on_boundary(v) ? 0 : 1);
-  EXPECT_LT(blocks.stages()[2][0].size(), mesh.vertices() / 10);
+  ASSERT_EQ(blocks.stages().back().size(), 1u);
+  EXPECT_LT(blocks.stages().back()[0].size(), mesh.vertices() / 50);
 }
 
 TEST(VertexBlocks, WithWorkToDoHoldTheInnerVerticesOfItsElementsAndAllOfTheirStars) {
@@ -135,7 +136,7 @@ TEST(VertexBlocks, WithWorkToDoHoldTheInnerVerticesOfItsElementsAndAllOfTheirSta
 }
 
 TEST(EditBlocks, OfOneStageShareNoTetAndLoseNone) {
-  EditMesh mesh(kuhn_cube(24));
+  EditMesh mesh(kuhn_cube(36));
   std::vector<TetIndex> all = tets_below(mesh, 2.0f);
   ASSERT_EQ(all.size(), mesh.live_tets());
   for (int stage = 0; stage < EditBlocks::kStages; ++stage) {
