@@ -3,7 +3,8 @@
 #include <octafront/error.h>
 
 #include "base/geometry/measures.h"
-#include "sizing/size_sources.h"
+#include "base/mesh/index_range.h"
+#include "sizing/tets_per_size.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,70 +16,40 @@ namespace octafront {
 
 namespace {
 
-/// Rays that look for walls: enough for the first digit of the number.
-constexpr int kRaysForGaps = 1024;
+/// Places that are looked at: enough for the first digit of the number.
+constexpr int kPlaces = 1024;
 /// The angle that the inside fills around a feature curve, taken to be a right one.
 constexpr double kInsideAngle = std::numbers::pi / 2;
 
 }  // namespace
 
 Affordable::Affordable(const SurfaceMesh& surface, const SizeOptions& options)
-    : surface_(surface), gradation_(options.gradation), least_(options.min_size.value_or(0)) {
+    : gradation_(options.gradation), least_(options.min_size.value_or(0)) {
   area_.reserve(surface.triangles.size());
-  for (const auto& [a, b, c] : surface.triangles) {
-    area_.push_back(triangle_area(surface.points[a], surface.points[b], surface.points[c]));
+  for (const Triangle& t : surface.triangles) {
+    area_.push_back(triangle_area(surface.points, t));
     all_area_ += area_.back();
   }
   if (all_area_ > 0) depth_ = std::abs(enclosed_volume(surface)) / all_area_;
 }
 
-void Affordable::curvature(double elements, const SurfaceCurvature& of_faces) const {
-  const double turn = 2 * std::numbers::pi / elements;
-  require("curvature", elements, tets_on_faces([&](std::size_t f) { return turn / of_faces.largest[f]; }));
+double Affordable::tets_on_faces(const SizeOfFace& size) const {
+  double sum = 0;
+  for (std::size_t f = 0; f < area_.size(); ++f) sum += tets_behind(area_[f], size(f));
+  return sum;
 }
 
-void Affordable::max_deviation(double distance, const SurfaceCurvature& of_faces) const {
-  require("max_deviation", distance,
-          tets_on_faces([&](std::size_t f) { return size_of_chord_error(distance, of_faces.largest[f]); }));
-}
-
-/// The corners of an equilateral triangle lie h / sqrt(3) from its centre, where it is parallel to the surface.
-void Affordable::normal_deviation(double degrees, const SurfaceCurvature& of_faces) const {
-  const double turn = degrees * std::numbers::pi / 180;
-  require("normal_deviation", degrees,
-          tets_on_faces([&](std::size_t f) { return std::numbers::sqrt3 * turn / of_faces.largest[f]; }));
-}
-
-void Affordable::feature_elements(double elements, const std::vector<FeatureCurve>& curves) const {
-  double tets = 0;
-  for (const FeatureCurve& curve : curves) tets += tets_around(curve.length, curve.length / elements);
-  require("feature_elements", elements, tets);
-}
-
-void Affordable::gap(double elements, const GapFinder& gaps) const {
-  const double step = all_area_ / kRaysForGaps;
+double Affordable::tets_at_places(const SizeOfFace& size) const {
+  const double step = all_area_ / kPlaces;
   double passed = 0, next = 0.5 * step, tets = 0;
-  for (std::uint32_t f = 0; f < area_.size(); ++f) {
+  for (std::size_t f = 0; f < area_.size(); ++f) {
     passed += area_[f];
     const double places = std::ceil((passed - next) / step);
     if (!(places > 0)) continue;
     next += places * step;
-    const auto& [i, j, k] = surface_.triangles[f];
-    const Vec3 a = surface_.points[i], b = surface_.points[j], c = surface_.points[k];
-    tets += tets_behind(places * step, gaps.measure({centroid(a, b, c), unit_normal(a, b, c), f}) / elements);
+    tets += tets_behind(places * step, size(f));
   }
-  require("gap", elements, tets);
-}
-
-double Affordable::tets_by(const std::vector<double>& face) const {
-  return tets_on_faces([&](std::size_t f) { return face[f]; });
-}
-
-template <class SizeOfFace>
-double Affordable::tets_on_faces(SizeOfFace&& size_of_face) const {
-  double sum = 0;
-  for (std::size_t f = 0; f < area_.size(); ++f) sum += tets_behind(area_[f], size_of_face(f));
-  return sum;
+  return tets;
 }
 
 /// Sizes grow from h on the surface: the integral of kTetsPerCube / (h + g d)^3 over the mean depth of the model.

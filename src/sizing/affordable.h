@@ -3,39 +3,34 @@
 #include <octafront/options.h>
 #include <octafront/surface_mesh.h>
 
-#include "base/mesh/features.h"
-#include "sizing/curvature.h"
-#include "sizing/feature_sizes.h"
-#include "sizing/gaps.h"
-
+#include <cstddef>
+#include <functional>
 #include <vector>
 
 namespace octafront {
 
-/// How many elements a wish for accuracy takes, from the surface alone: known before anything is divided. Each function
-/// throws OptionError, with that number, if it is more than a mesh can hold. The floors of our own choosing, below
-/// which no size falls, are no excuse: who asks for a billion elements along a curve would wait long for a thousandth
-/// of them.
+/// How many elements a wish for accuracy takes, estimated from the surface alone before anything is divided. Sizes are
+/// taken to grow at the gradation from where they are asked for, down to the mean depth of the model. A size is raised
+/// to `min_size`, but not to floors of our own choosing: who asks for a billion elements along a curve would wait long
+/// for a thousandth of them.
 class Affordable {
  public:
+  using SizeOfFace = std::function<double(std::size_t face)>;
+
   Affordable(const SurfaceMesh& surface, const SizeOptions& options);
 
-  void curvature(double elements, const SurfaceCurvature& of_faces) const;
-  void max_deviation(double distance, const SurfaceCurvature& of_faces) const;
-  void normal_deviation(double degrees, const SurfaceCurvature& of_faces) const;
-  void feature_elements(double elements, const std::vector<FeatureCurve>& curves) const;
-  void gap(double elements, const GapFinder& gaps) const;
-  /// Elements by these sizes, one for each face.
-  double tets_by(const std::vector<double>& face) const;
-
- private:
-  template <class SizeOfFace>
-  double tets_on_faces(SizeOfFace&& size_of_face) const;
-  double tets_behind(double area, double h) const;
+  /// Elements behind all faces, where each face asks for a size; infinity: it asks for none.
+  double tets_on_faces(const SizeOfFace& size) const;
+  /// The same from some thousand places, spread evenly over the surface, for sizes that take long to find.
+  double tets_at_places(const SizeOfFace& size) const;
+  /// Elements around a curve that asks for size h.
   double tets_around(double length, double h) const;
+  /// Throws OptionError, with the number, if `tets` are more than a mesh can hold: wish `wish` was given as `value`.
   void require(const char* wish, double value, double tets) const;
 
-  const SurfaceMesh& surface_;
+ private:
+  double tets_behind(double area, double h) const;
+
   std::vector<double> area_;
   double all_area_ = 0, depth_ = 0, gradation_, least_;
 };

@@ -14,6 +14,8 @@ namespace octafront {
 
 namespace {
 
+/// Room between the model and the faces of the root cube, in parts of its side.
+constexpr double kRootMargin = 0.02;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Sizes in a leaf that differ by less count as equal.
 constexpr double kPlainRatio = 1.02;
@@ -52,7 +54,7 @@ class GridMaker {
         samples_(sorted_samples(root, samples)),
         rules_(rules),
         context_(context),
-        ceiling_(rules.ceiling / root.side) {}
+        ceiling_(std::min(rules.ceiling, root.side) / root.side) {}
 
   std::shared_ptr<OctreeField> run() {
     divide_by_samples(OctreeKey::root(), samples_);
@@ -178,17 +180,9 @@ class GridMaker {
     field_ = std::make_shared<OctreeField>();
     field_->root = root_;
     field_->gradation = rules_.gradation;
-    field_->h = at_corners_of_leaves(value);
-    if (rules_.keep_sources) field_->source = at_corners_of_leaves(source);
+    field_->h = corners_.at_leaves(value);
+    if (rules_.keep_sources) field_->source = corners_.at_leaves(source);
     field_->tree = tree_;
-  }
-
-  std::vector<std::array<double, 8>> at_corners_of_leaves(const std::vector<double>& of_corner) const {
-    std::vector<std::array<double, 8>> of_leaf(tree_.size());
-    parallel_for(tree_.size(), [&](std::size_t l) {
-      for (int k = 0; k < 8; ++k) of_leaf[l][k] = of_corner[corners_.of_leaf[l][k]];
-    });
-    return of_leaf;
   }
 
   /// The largest size that is wanted on the surface and that gradation allows there.
@@ -264,6 +258,10 @@ class GridMaker {
 };
 
 }  // namespace
+
+RootCube root_around(const SurfaceMesh& surface) {
+  return RootCube::around(bounding_box(surface.points), kRootMargin);
+}
 
 std::shared_ptr<OctreeField> make_background_grid(const RootCube& root, const std::vector<SizeSample>& samples,
                                                   const GridRules& rules, const RunContext& context) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <octafront/run_context.h>
+#include <octafront/surface_mesh.h>
 
 #include "sizing/octree_field.h"
 
@@ -18,13 +19,13 @@ struct SizeSample {
   double area = 0;   ///< of the part of the surface that the sample stands for
 };
 
-/// Room between the model and the faces of the root cube, in parts of its side.
-inline constexpr double kRootMargin = 0.02;
+/// The cube that the background grid of a surface fills.
+RootCube root_around(const SurfaceMesh& surface);
 
 /// How a background grid is made of samples.
 struct GridRules {
   double gradation = 0.2;
-  double ceiling = 0;                  ///< no size rises above this, input units; required
+  double ceiling = 0;                  ///< no size rises above this, input units, nor above the root's side; required
   bool interior_below_surface = true;  ///< no size rises above the largest one at a sample (the paper's Cmax)
   /// Leaves with samples are divided until their side is at most this multiple of the size wanted there; away from the
   /// surface twice that. 2 puts sides into (h, 2 h].

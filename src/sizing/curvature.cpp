@@ -162,11 +162,80 @@ class CurvatureFinder {
   std::vector<std::uint32_t> block_;
 };
 
+/// The centroid of an equilateral triangle with its corners on a sphere of curvature k lies k h^2 / 6 below it.
+double size_of_chord_error(double error, double k) {
+  return std::sqrt(6 * error / k);
+}
+
+SurfaceCurvature curvature_between_features(const KnownSurface& known, const RunContext& context) {
+  return surface_curvature(known.mesh(), smooth_face_neighbours(known.edges(), known.features().edges), context);
+}
+
 }  // namespace
 
 SurfaceCurvature surface_curvature(const SurfaceMesh& surface, const FaceNeighbours& across,
                                    const RunContext& context) {
   return CurvatureFinder(surface, across).run(context);
+}
+
+void apply_curvature(const SurfaceCurvature& curvature, double elements, double floor, std::vector<double>& face) {
+  const double turn = 2 * std::numbers::pi / elements;
+  for (std::size_t f = 0; f < face.size(); ++f) {
+    if (curvature.largest[f] * face[f] > turn) face[f] = std::max(floor, turn / curvature.largest[f]);
+  }
+}
+
+void apply_chord_errors(const SurfaceCurvature& curvature, const std::function<double(std::size_t face)>& error_of,
+                        double floor, std::vector<double>& face) {
+  for (std::size_t f = 0; f < face.size(); ++f) {
+    const double k = curvature.largest[f], error = error_of(f);
+    if (k * face[f] * face[f] > 6 * error) face[f] = std::max(floor, size_of_chord_error(error, k));
+  }
+}
+
+void refuse_huge_curvature(const Affordable& affordable, const SizeOptions& options,
+                           const SurfaceCurvature& curvature) {
+  if (options.curvature) {
+    const double turn = 2 * std::numbers::pi / *options.curvature;
+    affordable.require("curvature", *options.curvature,
+                       affordable.tets_on_faces([&](std::size_t f) { return turn / curvature.largest[f]; }));
+  }
+  if (options.chord_error)
+    affordable.require("max_deviation", *options.chord_error, affordable.tets_on_faces([&](std::size_t f) {
+      return size_of_chord_error(*options.chord_error, curvature.largest[f]);
+    }));
+}
+
+// The corners of an equilateral triangle lie h / sqrt(3) from its centre, where it is parallel to the surface.
+void refuse_huge_turning(const KnownSurface& known, const SizeOptions& options, double degrees,
+                         const RunContext& context) {
+  const SurfaceCurvature curvature = curvature_between_features(known, context);
+  const double turn = degrees * std::numbers::pi / 180;
+  const Affordable affordable(known.mesh(), options);
+  affordable.require("normal_deviation", degrees, affordable.tets_on_faces([&](std::size_t f) {
+    return std::numbers::sqrt3 * turn / curvature.largest[f];
+  }));
+}
+
+// Vertices lie on the surface, with edges of length h between them: the triangles lie h^2 (k1 + k2) / 16 below it on
+// average.
+double predicted_volume_loss(const SurfaceMesh& surface, const SurfaceCurvature& curvature,
+                             const std::vector<double>& face) {
+  double sum = 0;
+  for (std::size_t f = 0; f < face.size(); ++f) {
+    const Triangle& t = surface.triangles[f];
+    sum += triangle_area(surface.points, t) * curvature.sum[f] * face[f] * face[f] / 16;
+  }
+  return std::abs(sum);
+}
+
+double predicted_volume_loss(const KnownSurface& known, const SizeField& sizes, const RunContext& context) {
+  const SurfaceMesh& surface = known.mesh();
+  const SurfaceCurvature curvature = curvature_between_features(known, context);
+  std::vector<double> face;
+  for (const auto& [a, b, c] : surface.triangles)
+    face.push_back(sizes.at(centroid(surface.points[a], surface.points[b], surface.points[c])));
+  return predicted_volume_loss(surface, curvature, face) / std::abs(enclosed_volume(surface));
 }
 
 }  // namespace octafront

@@ -6,12 +6,13 @@
 // up to 2.4 times as many elements as were asked for, or .3 times. Over an octave of choices the mean of the numbers
 // made is the number asked for; there is always a choice that makes it (nearly).
 
+#include "sizing/expected_tets.h"
+
 #include "base/core/parallel.h"
 #include "base/mesh/complex.h"
 #include "sizing/background_grid.h"
 #include "sizing/inside_fraction.h"
-#include "sizing/make_size_field.h"
-#include "sizing/size_sources.h"
+#include "sizing/tets_per_size.h"
 #include "sizing/thin_walls.h"
 
 #include <algorithm>
@@ -29,6 +30,8 @@ namespace {
 constexpr double kTetsPerSlope = 1.1;
 /// Sizes inside are told apart in steps of this part of an octave; so are the choices of the lattice.
 constexpr int kStepsPerOctave = 48;
+/// There are steps for sizes from 2^-32 to 2^8 of the root's side: more than octrees have levels.
+constexpr int kStepsBelow = 32 * kStepsPerOctave, kSteps = kStepsBelow + 8 * kStepsPerOctave;
 /// What a lattice that misses the number by e-fold is worth in octaves of distance to the surface's own size.
 constexpr double kMissPerOctave = 0.15;
 /// What a lattice that misses the number by e-fold is worth in parts of the volume that are not in cells of the
@@ -39,52 +42,30 @@ constexpr double kMissPerMixed = 0.2;
 constexpr double kWorthCounting = 0.05;
 
 double size_of_step(int step) {
-  return std::exp2((step + 0.5) / kStepsPerOctave);
+  return std::exp2((step - kStepsBelow + 0.5) / kStepsPerOctave);
 }
-int step_of_size(double h) {
-  return static_cast<int>(std::floor(std::log2(h) * kStepsPerOctave));
+std::size_t step_of_size(double h) {
+  const auto step = static_cast<int>(std::floor(std::log2(h) * kStepsPerOctave));
+  return static_cast<std::size_t>(std::clamp(step + kStepsBelow, 0, kSteps - 1));
 }
-
-/// Amounts by step of size.
-class BySize {
- public:
-  double& operator[](int step) {
-    if (amounts_.empty()) first_ = step;
-    if (step < first_) {
-      amounts_.insert(amounts_.begin(), static_cast<std::size_t>(first_ - step), 0.0);
-      first_ = step;
-    }
-    const auto place = static_cast<std::size_t>(step - first_);
-    if (place >= amounts_.size()) amounts_.resize(place + 1, 0.0);
-    return amounts_[place];
-  }
-  /// Calls visit(size, amount), from small to large sizes.
-  template <class Visit>
-  void for_each(Visit&& visit) const {
-    for (std::size_t i = 0; i < amounts_.size(); ++i)
-      if (amounts_[i] != 0) visit(size_of_step(first_ + static_cast<int>(i)), amounts_[i]);
-  }
-  BySize& operator+=(const BySize& other) {
-    for (std::size_t i = 0; i < other.amounts_.size(); ++i)
-      (*this)[other.first_ + static_cast<int>(i)] += other.amounts_[i];
-    return *this;
-  }
-
- private:
-  int first_ = 0;
-  std::vector<double> amounts_;  ///< from step first_ on
-};
 
 /// What the sizes ask for, in parts: lengths in units of the root's side, elements in units of kTetsPerCube.
 struct Demand {
-  double shell = 0;         ///< elements of the front, in the leaves that the surface runs through
-  BySize volume;            ///< of the leaves inside, more where sizes change
+  double shell = 0;  ///< elements of the front, in the leaves that the surface runs through
+  /// Volume of the leaves inside by step of size, more where sizes change.
+  std::vector<double> volume = std::vector<double>(kSteps);
   double surface_size = 0;  ///< half of the surface's triangles will be smaller
 
   Demand& operator+=(const Demand& other) {
     shell += other.shell;
-    volume += other.volume;
+    for (int s = 0; s < kSteps; ++s) volume[s] += other.volume[s];
     return *this;
+  }
+  /// Calls visit(size, volume), from small to large sizes.
+  template <class Visit>
+  void for_each_size(Visit&& visit) const {
+    for (int s = 0; s < kSteps; ++s)
+      if (volume[s] != 0) visit(size_of_step(s), volume[s]);
   }
 };
 
@@ -94,7 +75,7 @@ double lattice_size(double h, double cell) {
 
 double elements_inside(const Demand& demand, double cell) {
   double sum = 0;
-  demand.volume.for_each([&](double h, double volume) { sum += volume / std::pow(lattice_size(h, cell), 3); });
+  demand.for_each_size([&](double h, double volume) { sum += volume / std::pow(lattice_size(h, cell), 3); });
   return sum;
 }
 
@@ -102,7 +83,7 @@ double elements_inside(const Demand& demand, double cell) {
 double largest_share(const Demand& demand, double cell) {
   std::map<double, double> volume_of;
   double all = 0, most = 0;
-  demand.volume.for_each([&](double h, double volume) {
+  demand.for_each_size([&](double h, double volume) {
     double& sum = volume_of[lattice_size(h, cell)];
     sum += volume;
     all += volume;
@@ -113,7 +94,7 @@ double largest_share(const Demand& demand, double cell) {
 
 double elements_asked_inside(const Demand& demand) {
   double sum = 0;
-  demand.volume.for_each([&](double h, double volume) { sum += volume / std::pow(h, 3); });
+  demand.for_each_size([&](double h, double volume) { sum += volume / std::pow(h, 3); });
   return sum;
 }
 
@@ -214,21 +195,14 @@ Demand demand_of(const OctreeField& field, const DividedSurface& surface, const 
 std::shared_ptr<const OctreeField> sampled_grid(const SizeField& sizes, const SurfaceMesh& surface) {
   constexpr int kLevel = 5;  // 32^3 leaves
   auto field = std::make_shared<OctreeField>();
-  field->root = RootCube::around(bounding_box(surface.points), kRootMargin);
+  field->root = root_around(surface);
   std::vector<OctreeKey> leaves;
   for (OctreeKey k = OctreeKey::containing(0, 0, 0, kLevel); leaves.size() < 1u << (3 * kLevel);
        k = OctreeKey::from_id(k.range_max() + (k.id() - k.range_min()) + 2)) {
     leaves.push_back(k);
   }
   field->tree = Octree(std::move(leaves));
-  field->h.resize(field->tree.size());
-  const double side = field->root.side / (1 << kLevel);
-  for (std::size_t l = 0; l < field->tree.size(); ++l) {
-    const Vec3 lo = field->root.corner_of(field->tree.leaf(l));
-    for (int k = 0; k < 8; ++k) {
-      field->h[l][k] = sizes.at(lo + side * Vec3{double(k & 1), double(k >> 1 & 1), double(k >> 2)}) / field->root.side;
-    }
-  }
+  field->h = sizes_at_leaves(sizes, field->root, field->tree);
   field->find_range();
   return field;
 }

@@ -2,6 +2,7 @@
 
 #include "base/core/parallel.h"
 #include "base/geometry/measures.h"
+#include "sizing/thin_walls.h"
 
 #include <algorithm>
 #include <cmath>

@@ -13,13 +13,6 @@
 
 namespace octafront {
 
-/// Whether sheets with these unit normals face each other, or turn their backs: within about 45 degrees. Beyond, they
-/// form a corner rather than a wall or a gap.
-constexpr bool faces(Vec3 n, Vec3 m) {
-  constexpr double kMostCosine = -0.7;
-  return dot(n, m) < kMostCosine;
-}
-
 /// Walls and gaps: how far it is from a place of the surface to the sheet that faces it, along the inward and the
 /// outward normal. Places that lie close together on one side share an answer where triangles are small, so that dense
 /// scans cost no more than coarse ones.

@@ -291,15 +291,21 @@ class Grader {
 
 }  // namespace
 
-std::vector<double> graded_corner_values(const Octree& tree, const OctreeCorners& corners,
-                                         const std::vector<double>& caps, double gradation, double ceiling,
-                                         const RunContext& context) {
-  return graded_corners(tree, corners, {caps, caps}, gradation, ceiling, context).value;
-}
-
 GradedCorners graded_corners(const Octree& tree, const OctreeCorners& corners, const GradedCorners& caps,
                              double gradation, double ceiling, const RunContext& context) {
   return Grader(tree, corners, caps, gradation, ceiling).run(context);
+}
+
+std::shared_ptr<OctreeField> graded_field(const RootCube& root, Octree tree, const OctreeCorners& corners,
+                                          const std::vector<double>& caps, double gradation, double ceiling,
+                                          const RunContext& context) {
+  auto field = std::make_shared<OctreeField>();
+  field->root = root;
+  field->gradation = gradation;
+  field->h = corners.at_leaves(graded_corners(tree, corners, {caps, caps}, gradation, ceiling, context).value);
+  field->tree = std::move(tree);
+  field->find_range();
+  return field;
 }
 
 }  // namespace octafront

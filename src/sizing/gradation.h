@@ -3,7 +3,9 @@
 #include <octafront/run_context.h>
 
 #include "sizing/octree_corners.h"
+#include "sizing/octree_field.h"
 
+#include <memory>
 #include <vector>
 
 namespace octafront {
@@ -14,16 +16,17 @@ struct GradedCorners {
 };
 
 /// Corner values, as large as fairness allows, with value <= cap at every free corner, and a trilinear interpolant that
-/// obeys |h(x) - h(y)| <= gradation |x - y| in the whole root cube, not only between corners.
+/// obeys |h(x) - h(y)| <= gradation |x - y| in the whole root cube, not only between corners; and the part of each
+/// value that its source asked for, which is the whole of a ceiling.
 ///
 /// `caps` has one entry per corner, in units of the root cube's side (as the values are); entries of hanging corners
 /// are not read: what limits them must be laid on their shares. Values end at `ceiling`. At least one cap must be
 /// finite or the ceiling be. Cost: about 3 microseconds per corner whose value is not its cap.
-std::vector<double> graded_corner_values(const Octree& tree, const OctreeCorners& corners,
-                                         const std::vector<double>& caps, double gradation, double ceiling,
-                                         const RunContext& context);
-/// The same with the part of each cap that its source asked for, which is the whole of a ceiling.
 GradedCorners graded_corners(const Octree& tree, const OctreeCorners& corners, const GradedCorners& caps,
                              double gradation, double ceiling, const RunContext& context);
+/// The field of such values.
+std::shared_ptr<OctreeField> graded_field(const RootCube& root, Octree tree, const OctreeCorners& corners,
+                                          const std::vector<double>& caps, double gradation, double ceiling,
+                                          const RunContext& context);
 
 }  // namespace octafront

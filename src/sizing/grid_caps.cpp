@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 
 namespace octafront {
 
@@ -19,24 +20,11 @@ class GridCapper {
       : old_(old), caps_(caps), gradation_(gradation), context_(context), cells_(divided_cells(old.tree)) {}
 
   std::shared_ptr<OctreeField> run() {
-    std::vector<std::uint32_t> all(caps_.size());
-    for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
-    descend(OctreeKey::root(), all);
+    descend(OctreeKey::root(), all_caps());
     cells_.close();
-    auto field = std::make_shared<OctreeField>();
-    field->root = old_.root;
-    field->gradation = gradation_;
-    field->tree = cells_.tree();
-    corners_ = octree_corners(field->tree);
-    const std::vector<double> limit = corner_limits(field->tree);
-    const std::vector<double> value =
-        graded_corner_values(field->tree, corners_, limit, gradation_, old_.high, context_);
-    field->h.resize(field->tree.size());
-    for (std::size_t l = 0; l < field->tree.size(); ++l) {
-      for (int k = 0; k < 8; ++k) field->h[l][k] = value[corners_.of_leaf[l][k]];
-    }
-    field->find_range();
-    return field;
+    const Octree tree = cells_.tree();
+    corners_ = octree_corners(tree);
+    return graded_field(old_.root, tree, corners_, corner_limits(tree), gradation_, old_.high, context_);
   }
 
  private:
@@ -87,6 +75,12 @@ class GridCapper {
     return *std::max_element(old_.h[l].begin(), old_.h[l].end()) * old_.root.side;
   }
 
+  std::vector<std::uint32_t> all_caps() const {
+    std::vector<std::uint32_t> all(caps_.size());
+    std::iota(all.begin(), all.end(), 0);
+    return all;
+  }
+
   /// Divides cells that are too large for the caps in them; `near`: the caps that may matter in the cell.
   void descend(OctreeKey cell, const std::vector<std::uint32_t>& near) {
     context_.check();
@@ -104,10 +98,8 @@ class GridCapper {
     for (std::size_t c = 0; c < corners_.size(); ++c) {
       limit[c] = old_.at(old_.root.position(corners_.position[c])) / old_.root.side;
     }
-    std::vector<std::uint32_t> all(caps_.size());
-    for (std::uint32_t i = 0; i < all.size(); ++i) all[i] = i;
     std::size_t next = 0;
-    lower(tree, OctreeKey::root(), all, next, limit);
+    lower(tree, OctreeKey::root(), all_caps(), next, limit);
     return limit;
   }
 

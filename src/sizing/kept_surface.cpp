@@ -1,12 +1,14 @@
 // Sizes for a surface whose triangles stay as they are.
 
+#include "sizing/kept_surface.h"
+
 #include "base/geometry/measures.h"
-#include "sizing/background_grid.h"
+#include "sizing/check_size_options.h"
 #include "sizing/face_neighbours.h"
-#include "sizing/make_size_field.h"
+#include "sizing/given_sizes.h"
+#include "sizing/model_extent.h"
 #include "sizing/named_sizes.h"
-#include "sizing/region_caps.h"
-#include "sizing/size_sources.h"
+#include "sizing/source_grid.h"
 
 #include <algorithm>
 #include <cmath>
@@ -107,7 +109,7 @@ SizeField size_field_of_surface(const KnownSurface& known, const SizeOptions& op
   check_size_options(options);
   if (options.field) return *options.field;
   note_unused_sources(options, stage);
-  const RootCube root = RootCube::around(bounding_box(surface.points), kRootMargin);
+  const RootCube root = root_around(surface);
   const double floor = options.min_size.value_or(model_extent(surface) * kFloorOfExtent);
   std::vector<double> face = face_sizes(known);
   for (double& h : face) h = std::max(h, floor);
@@ -120,11 +122,7 @@ SizeField size_field_of_surface(const KnownSurface& known, const SizeOptions& op
     samples.insert(samples.end(), points.begin(), points.end());
     return samples;
   };
-  GridRules rules;
-  rules.gradation = options.gradation;
-  rules.interior_below_surface = options.interior == SizeOptions::Interior::kUniform;
-  rules.resolve_surface = !rules.interior_below_surface;
-  rules.ceiling = std::min({root.side, options.max_size.value_or(HUGE_VAL), options.size.value_or(HUGE_VAL)});
+  GridRules rules = grid_rules(options, std::min(options.max_size.value_or(HUGE_VAL), options.size.value_or(HUGE_VAL)));
   std::vector<SizeSample> samples = samples_of(face);
   const auto shortfall_at = [&](double gradation) {
     GridRules coarse = rules;

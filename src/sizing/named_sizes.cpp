@@ -7,7 +7,7 @@
 #include "base/mesh/complex.h"
 #include "base/mesh/curve_names.h"
 #include "base/mesh/index_range.h"
-#include "sizing/size_sources.h"
+#include "sizing/tets_per_size.h"
 
 #include <algorithm>
 #include <cmath>

@@ -197,6 +197,14 @@ std::vector<HangingCorner> hanging_corners(const Octree& tree, const OctreeCorne
 
 }  // namespace
 
+std::vector<std::array<double, 8>> OctreeCorners::at_leaves(const std::vector<double>& of_corner) const {
+  std::vector<std::array<double, 8>> result(of_leaf.size());
+  parallel_for(of_leaf.size(), [&](std::size_t l) {
+    for (int k = 0; k < 8; ++k) result[l][k] = of_corner[of_leaf[l][k]];
+  });
+  return result;
+}
+
 OctreeCorners octree_corners(const Octree& tree) {
   const Numbering numbers(tree);
   OctreeCorners corners;

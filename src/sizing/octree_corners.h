@@ -29,6 +29,8 @@ struct OctreeCorners {
   std::span<const Share> shares_of(std::uint32_t corner) const {
     return {shares.data() + first_share[corner], shares.data() + first_share[corner + 1]};
   }
+  /// Per leaf what its corners have.
+  std::vector<std::array<double, 8>> at_leaves(const std::vector<double>& of_corner) const;
 };
 
 /// REQUIRES: tree.is_balanced(). Corners are numbered as the leaves meet them. O(leaves log leaves).

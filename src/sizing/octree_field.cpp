@@ -1,5 +1,7 @@
 #include "sizing/octree_field.h"
 
+#include "base/core/parallel.h"
+
 #include <algorithm>
 
 namespace octafront {
@@ -22,6 +24,17 @@ void OctreeField::find_range() {
       high = std::max(high, v);
     }
   }
+}
+
+std::vector<std::array<double, 8>> sizes_at_leaves(const SizeField& sizes, const RootCube& root, const Octree& tree) {
+  std::vector<std::array<double, 8>> h(tree.size());
+  parallel_for(h.size(), [&](std::size_t l) {
+    const Vec3 lo = root.corner_of(tree.leaf(l));
+    const double side = root.side_of(tree.leaf(l));
+    for (int k = 0; k < 8; ++k)
+      h[l][k] = sizes.at(lo + side * Vec3{double(k & 1), double(k >> 1 & 1), double(k >> 2)}) / root.side;
+  });
+  return h;
 }
 
 const OctreeField* as_octree_field(const SizeField& sizes) {

@@ -29,6 +29,9 @@ struct OctreeField final : SizeFunction {
 /// The field behind `sizes` if it is a background grid, else null.
 const OctreeField* as_octree_field(const SizeField& sizes);
 
+/// Sizes at the corners of leaves, in units of root.side, as OctreeField::h has them.
+std::vector<std::array<double, 8>> sizes_at_leaves(const SizeField& sizes, const RootCube& root, const Octree& tree);
+
 /// Interpolation of eight corner values at local coordinates in [0, 1].
 inline double trilinear(const std::array<double, 8>& v, double x, double y, double z) {
   const double v00 = v[0] + x * (v[1] - v[0]), v10 = v[2] + x * (v[3] - v[2]);

@@ -17,8 +17,10 @@ struct Uniform final : SizeFunction {
 };
 
 struct FromFunction final : SizeFunction {
-  FromFunction(std::function<double(Vec3)> function, double low, double high)
-      : f(std::move(function)), lo(low), hi(high) {}
+  FromFunction(std::function<double(Vec3)> function, double low, double high, double by)
+      : f(std::move(function)), lo(low), hi(high) {
+    gradation = by;
+  }
   double at(Vec3 p) const override { return std::clamp(f(p), lo, hi); }
   double min_size() const override { return lo; }
   double max_size() const override { return hi; }
@@ -33,7 +35,11 @@ SizeField SizeField::uniform(double h) {
 }
 
 SizeField SizeField::from_function(std::function<double(Vec3)> h, double lo, double hi) {
-  return SizeFunction::field(std::make_shared<FromFunction>(std::move(h), lo, hi));
+  return SizeFunction::field(std::move(h), lo, hi, SizeOptions{}.gradation);
+}
+
+SizeField SizeFunction::field(std::function<double(Vec3)> h, double lo, double hi, double gradation) {
+  return field(std::make_shared<FromFunction>(std::move(h), lo, hi, gradation));
 }
 
 SizeField::SizeField(const SizeFunction& function) noexcept : function_(&function) {

@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <utility>
 
@@ -31,6 +32,8 @@ class SizeFunction {
     f.self_ = std::move(function);
     return SizeField(f);
   }
+  /// As SizeField::from_function(), of this gradation.
+  static SizeField field(std::function<double(Vec3)> h, double lo, double hi, double gradation);
   static const SizeFunction& behind(const SizeField& sizes) { return *sizes.function_; }
 
  private:

@@ -130,6 +130,12 @@ std::vector<SizeSample> sample_in_batches(const SurfaceMesh& surface, const std:
 
 }  // namespace
 
+SizeAtPlace least_of(const SizeAtPlace& a, const SizeAtPlace& b) {
+  if (!a || !b) return a ? a : b;
+  return {[a = a.at, b = b.at](const PlaceOnSurface& s) { return std::min(a(s), b(s)); },
+          a.batched ? a.batched : b.batched, std::min(a.spacing, b.spacing)};
+}
+
 std::vector<SizeSample> sample_surface(const SurfaceMesh& surface, const std::vector<double>& face_size,
                                        const SizeAtPlace& size_at, const RunContext& context) {
   if (size_at.batched) return sample_in_batches(surface, face_size, size_at, context);

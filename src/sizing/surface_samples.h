@@ -55,6 +55,9 @@ struct SizeAtPlace {
   double operator()(const PlaceOnSurface& place) const { return at(place); }
 };
 
+/// The smaller of two; where one is empty the other.
+SizeAtPlace least_of(const SizeAtPlace& a, const SizeAtPlace& b);
+
 /// Samples of a surface, dense enough for its sizes: triangles longer than the size at their centroid, or than
 /// `size_at.spacing`, are halved along their longest edge until they are not. `face_size` bounds the size on each
 /// triangle; `size_at`, which may be empty, may ask for less at a place. Throws OptionError if more than 50 million

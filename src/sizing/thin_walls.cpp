@@ -2,8 +2,7 @@
 
 #include "base/core/parallel.h"
 #include "base/geometry/measures.h"
-#include "sizing/gaps.h"
-#include "sizing/size_sources.h"
+#include "sizing/tets_per_size.h"
 
 #include <algorithm>
 #include <cmath>
@@ -79,7 +78,7 @@ double ThinWalls::excess_tets(const std::vector<SurfacePiece>& pieces, const std
   return excess;
 }
 
-/// Way to the sheet that faces p from behind; GapFinder::kOpen if there is none within reach.
+/// Way to the sheet that faces p from behind; infinite if there is none within reach.
 double ThinWalls::thickness(Vec3 p, Vec3 normal, double reach) const {
   const double skipped = kSkipped * tree_.box().diagonal();
   const Vec3 from = p - skipped * normal;
@@ -92,7 +91,7 @@ double ThinWalls::thickness(Vec3 p, Vec3 normal, double reach) const {
   if (const TriangleTree::RayHit hit = tree_.first_hit(from, normal, skipped); is_other_side(hit))
     return std::max(0.0, skipped - hit.t);
   const TriangleTree::RayHit hit = tree_.first_hit(from, -normal, reach);
-  return is_other_side(hit) ? skipped + hit.t : GapFinder::kOpen;
+  return is_other_side(hit) ? skipped + hit.t : HUGE_VAL;
 }
 
 }  // namespace octafront

@@ -10,6 +10,13 @@
 
 namespace octafront {
 
+/// Whether sheets with these unit normals face each other, or turn their backs: within about 45 degrees. Beyond, they
+/// form a corner rather than a wall or a gap.
+constexpr bool faces(Vec3 n, Vec3 m) {
+  constexpr double kMostCosine = -0.7;
+  return dot(n, m) < kMostCosine;
+}
+
 /// Walls of one to three layers of elements, whose number follows the surface and not the volume: a plate much thinner
 /// than its elements are wide has three of them for two triangles, however thin it is.
 class ThinWalls {

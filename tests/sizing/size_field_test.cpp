@@ -1,10 +1,16 @@
 #include <octafront/error.h>
 #include <octafront/size_field.h>
 
+#include "sizing/budget.h"
+#include "sizing/change_size_field.h"
+#include "sizing/check_size_options.h"
+#include "sizing/curvature.h"
+#include "sizing/expected_tets.h"
+#include "sizing/kept_surface.h"
 #include "sizing/make_size_field.h"
 #include "sizing/octree_field.h"
 #include "sizing/packed_sizes.h"
-#include "sizing/size_sources.h"
+#include "sizing/tets_per_size.h"
 #include "support/named_surfaces.h"
 
 #include <algorithm>

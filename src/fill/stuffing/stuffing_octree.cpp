@@ -1,6 +1,6 @@
 #include "fill/stuffing/stuffing_octree.h"
 
-#include "sizing/make_size_field.h"
+#include "sizing/expected_tets.h"
 
 #include <algorithm>
 

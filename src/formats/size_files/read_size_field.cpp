@@ -5,7 +5,6 @@
 #include "formats/containers/vtk_xml.h"
 #include "formats/size_files/readers.h"
 #include "sizing/gradation.h"
-#include "sizing/make_size_field.h"
 #include "sizing/octree_corners.h"
 #include "sizing/octree_field.h"
 
@@ -114,20 +113,12 @@ std::vector<double> corner_sizes(const GridFile& grid, const RootCube& root, con
 
 SizeField read_size_field_bytes(const io::Input& input, double gradation) {
   const GridFile grid = read_grid_file(input);
-  auto field = std::make_shared<OctreeField>();
-  field->root = root_of(input, grid);
-  field->gradation = gradation;
-  field->tree = tree_of(input, grid, field->root);
-  const OctreeCorners corners = octree_corners(field->tree);
-  const std::vector<double> caps = corner_sizes(grid, field->root, corners);
-  const double ceiling = *std::max_element(grid.size.begin(), grid.size.end()) / field->root.side;
-  const std::vector<double> value = graded_corner_values(field->tree, corners, caps, gradation, ceiling, input.context);
-  field->h.resize(field->tree.size());
-  for (std::size_t l = 0; l < field->tree.size(); ++l) {
-    for (int k = 0; k < 8; ++k) field->h[l][k] = value[corners.of_leaf[l][k]];
-  }
-  field->find_range();
-  return SizeFunction::field(std::move(field));
+  const RootCube root = root_of(input, grid);
+  const Octree tree = tree_of(input, grid, root);
+  const OctreeCorners corners = octree_corners(tree);
+  const double ceiling = *std::max_element(grid.size.begin(), grid.size.end()) / root.side;
+  return SizeFunction::field(
+      graded_field(root, tree, corners, corner_sizes(grid, root, corners), gradation, ceiling, input.context));
 }
 
 SizeField read_size_field(const std::string& file, double gradation, const RunContext& context) {

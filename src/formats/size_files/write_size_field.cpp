@@ -5,7 +5,6 @@
 
 #include "formats/containers/text_writer.h"
 #include "formats/containers/vtu_arrays.h"
-#include "sizing/make_size_field.h"
 #include "sizing/octree_corners.h"
 #include "sizing/octree_field.h"
 

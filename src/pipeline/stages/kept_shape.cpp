@@ -4,7 +4,9 @@
 
 #include "base/mesh/complex.h"
 #include "pipeline/stages/methods.h"
-#include "sizing/make_size_field.h"
+#include "sizing/change_size_field.h"
+#include "sizing/curvature.h"
+#include "sizing/expected_tets.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,7 @@
 #include <octafront/error.h>
 #include <octafront/io.h>
 
+#include "sizing/kept_surface.h"
 #include "sizing/make_size_field.h"
 #include "sizing/octree_field.h"
 #include "support/named_surfaces.h"

@@ -1,31 +1,25 @@
-#include "sizing/size_sources.h"
-
-#include <octafront/error.h>
+#include "sizing/wanted_sizes.h"
 
 #include "base/geometry/measures.h"
 #include "sizing/affordable.h"
 #include "sizing/curvature.h"
+#include "sizing/face_neighbours.h"
 #include "sizing/feature_sizes.h"
 #include "sizing/gaps.h"
-#include "sizing/make_size_field.h"
+#include "sizing/given_sizes.h"
+#include "sizing/model_extent.h"
 #include "sizing/named_sizes.h"
-#include "sizing/point_sizes.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <numbers>
-
-#include <fmt/core.h>
 
 namespace octafront {
 
 namespace {
 
-/// The automatic choice. Base size: extent / 30 makes some 20,000 elements of a ball. Curvature of 20 elements per turn
-/// keeps chords within 1.6 % of the radius of curvature.
-constexpr double kExtentPerSize = 30;
+/// The automatic choice. Curvature of 20 elements per turn keeps chords within 1.6 % of the radius of curvature.
 constexpr double kAutomaticCurvature = 20;
 constexpr double kAutomaticFeatureElements = 1;
 constexpr double kAutomaticGap = 1;
@@ -58,7 +52,7 @@ bool has_automatic_base(const SizeOptions& o) {
 Choice choose(const SurfaceMesh& surface, const SizeOptions& o) {
   Choice c;
   c.automatic = has_automatic_base(o);
-  const double ours = model_extent(surface) / kExtentPerSize;
+  const double ours = base_size(surface);
   c.base = o.size.value_or(ours);
   // Sizes at points and a function speak for the whole surface: there is no need of a size where nobody asks, and ours
   // would cut what they ask for.
@@ -94,35 +88,6 @@ void apply_facets(const SurfaceMesh& surface, const FaceNeighbours& across, doub
   }
 }
 
-void apply_curvature(const SurfaceCurvature& curvature, double elements, double floor, std::vector<double>& face) {
-  const double turn = 2 * std::numbers::pi / elements;
-  for (std::size_t f = 0; f < face.size(); ++f) {
-    if (curvature.largest[f] * face[f] > turn) face[f] = std::max(floor, turn / curvature.largest[f]);
-  }
-}
-
-/// `error_of`: of a face.
-template <class ErrorOf>
-void apply_chord_errors(const SurfaceCurvature& curvature, const ErrorOf& error_of, double floor,
-                        std::vector<double>& face) {
-  for (std::size_t f = 0; f < face.size(); ++f) {
-    const double k = curvature.largest[f], error = error_of(f);
-    if (k * face[f] * face[f] > 6 * error) face[f] = std::max(floor, size_of_chord_error(error, k));
-  }
-}
-
-/// Vertices on the surface and edges of length h between them: the triangles lie h^2 (k1 + k2) / 16 below it on
-/// average.
-double predicted_volume_loss(const SurfaceMesh& surface, const SurfaceCurvature& curvature,
-                             const std::vector<double>& face) {
-  double sum = 0;
-  for (std::size_t f = 0; f < face.size(); ++f) {
-    const Triangle& t = surface.triangles[f];
-    sum += triangle_area(surface.points, t) * curvature.sum[f] * face[f] * face[f] / 16;
-  }
-  return std::abs(sum);
-}
-
 double automatic_scale(const SurfaceMesh& surface, const SurfaceCurvature& curvature, const std::vector<double>& face) {
   const double loss = predicted_volume_loss(surface, curvature, face);
   const double allowed = kVolumeLoss * std::abs(enclosed_volume(surface));
@@ -151,10 +116,12 @@ ShapeLines lines_of_shape(const KnownSurface& known, std::span<const std::uint8_
   return lines;
 }
 
-SizeAtPlace least_of(const SizeAtPlace& a, const SizeAtPlace& b) {
-  if (!a || !b) return a ? a : b;
-  return {[a = a.at, b = b.at](const PlaceOnSurface& s) { return std::min(a(s), b(s)); },
-          a.batched ? a.batched : b.batched, std::min(a.spacing, b.spacing)};
+double tets_in_gaps(const SurfaceMesh& surface, const GapFinder& gaps, double elements, const Affordable& affordable) {
+  return affordable.tets_at_places([&](std::size_t f) {
+    const auto& [i, j, k] = surface.triangles[f];
+    const Vec3 a = surface.points[i], b = surface.points[j], c = surface.points[k];
+    return gaps.measure({centroid(a, b, c), unit_normal(a, b, c), static_cast<std::uint32_t>(f)}) / elements;
+  });
 }
 
 /// The sources that are asked place by place, in one function; empty if there are none. A wall below a floor of our own
@@ -164,7 +131,7 @@ SizeAtPlace sizes_at_places(const KnownSurface& surface, const Choice& choice, c
   SizeAtPlace gap;
   if (choice.gap > 0) {
     const auto gaps = std::make_shared<GapFinder>(surface, choice.gap_floor, choice.base * choice.gap);
-    if (options.gap) affordable.gap(choice.gap, *gaps);
+    if (options.gap) affordable.require("gap", choice.gap, tets_in_gaps(surface.mesh(), *gaps, choice.gap, affordable));
     gap.at = [gaps, choice, is_ours = !options.min_size](const PlaceOnSurface& place) {
       const double h = gaps->width(place) / choice.gap, floor = choice.gap_floor;
       if (h >= floor) return h;
@@ -180,111 +147,80 @@ SizeAtPlace sizes_at_places(const KnownSurface& surface, const Choice& choice, c
   return least_of(gap, given);
 }
 
+/// What facets and curvature ask of faces. Returns what all sizes are to be multiplied by for the volume.
+double apply_shape(const KnownSurface& known, const Choice& choice, const SizeOptions& options, const FaceRules& rules,
+                   const ShapeLines& lines, const Affordable& affordable, const RunContext& context,
+                   std::vector<double>& face) {
+  const bool limits_chords = options.chord_error || !rules.chord_errors.empty();
+  const bool needs_curvature = choice.curvature > 0 || limits_chords;
+  if (!options.facets && !needs_curvature) return 1;
+  const SurfaceMesh& surface = known.mesh();
+  const FaceNeighbours across = smooth_face_neighbours(known.edges(), lines.borders);
+  if (options.facets) apply_facets(surface, across, choice.floor, face);
+  if (!needs_curvature) return 1;
+  const SurfaceCurvature curvature = surface_curvature(surface, across, context);
+  refuse_huge_curvature(affordable, options, curvature);
+  const auto error_of = [&](std::size_t f) {
+    return std::min(options.chord_error.value_or(HUGE_VAL),
+                    rules.chord_errors.empty() ? HUGE_VAL : rules.chord_errors[f]);
+  };
+  if (limits_chords) apply_chord_errors(curvature, error_of, choice.floor, face);
+  if (choice.curvature > 0) apply_curvature(curvature, choice.curvature, choice.floor, face);
+  return choice.automatic ? automatic_scale(surface, curvature, face) : 1;
+}
+
+std::vector<SizeSample> samples_of_features(const SurfaceMesh& surface, const Choice& choice,
+                                            const SizeOptions& options, const Features& features,
+                                            const Affordable& affordable) {
+  if (!(choice.feature_elements > 0)) return {};
+  const std::vector<FeatureCurve> curves = feature_curves(surface, features);
+  if (options.feature_elements) {
+    double tets = 0;
+    for (const FeatureCurve& curve : curves)
+      tets += affordable.tets_around(curve.length, curve.length / choice.feature_elements);
+    affordable.require("feature_elements", choice.feature_elements, tets);
+  }
+  return feature_samples(surface, curves, choice.feature_elements, choice.floor, choice.base);
+}
+
+void add_samples(std::vector<SizeSample>& samples, const std::vector<SizeSample>& more) {
+  samples.insert(samples.end(), more.begin(), more.end());
+}
+
 }  // namespace
 
 bool has_no_size_source(const SizeOptions& o) {
   return has_automatic_base(o) && !o.elements && !o.field && !o.min_size && o.regions.empty() && o.named.empty();
 }
 
-void refuse_huge_turning(const KnownSurface& surface, const SizeOptions& options, double degrees,
-                         const RunContext& context) {
-  const SurfaceCurvature curvature =
-      surface_curvature(surface.mesh(), smooth_face_neighbours(surface.edges(), surface.features().edges), context);
-  Affordable(surface.mesh(), options).normal_deviation(degrees, curvature);
-}
-
-double predicted_volume_loss(const KnownSurface& known, const SizeField& sizes, const RunContext& context) {
-  const SurfaceMesh& surface = known.mesh();
-  const SurfaceCurvature curvature =
-      surface_curvature(surface, smooth_face_neighbours(known.edges(), known.features().edges), context);
-  std::vector<double> face;
-  for (const auto& [a, b, c] : surface.triangles)
-    face.push_back(sizes.at(centroid(surface.points[a], surface.points[b], surface.points[c])));
-  return predicted_volume_loss(surface, curvature, face) / std::abs(enclosed_volume(surface));
-}
-
-SizeAtPlace given_sizes(const SurfaceMesh& surface, const SizeOptions& options) {
-  SizeAtPlace points, callback;
-  if (!options.point_sizes.empty()) {
-    const auto sizes = std::make_shared<PointSizes>(surface, options.point_sizes);
-    points.at = [sizes](const PlaceOnSurface& s) { return sizes->at(s); };
-  }
-  if (options.callback) {
-    callback.batched = std::make_shared<BatchedSizes>(options.callback);
-    callback.at = [sizes = callback.batched](const PlaceOnSurface& s) { return sizes->at(s.p); };
-    callback.spacing = model_extent(surface) / kExtentPerSize;
-  }
-  return least_of(points, callback);
-}
-
-std::vector<SizeSample> samples_of_points(const SizeOptions& options, double floor) {
-  std::vector<SizeSample> samples;
-  for (const PointSize& s : options.point_sizes) {
-    const double h = std::max(floor, s.size);
-    samples.push_back({s.p, {}, h, 0});
-  }
-  return samples;
-}
-
-double model_extent(const SurfaceMesh& surface) {
-  const Vec3 origin = bounding_box(surface.points).center();
-  double mass = 0, square = 0;
-  Vec3 moment;
-  for (const Triangle& t : surface.triangles) {
-    const Vec3 a = surface.points[t[0]] - origin, b = surface.points[t[1]] - origin, c = surface.points[t[2]] - origin;
-    const double area = triangle_area(a, b, c);
-    const Vec3 sum = a + b + c;
-    mass += area;
-    moment += sum * (area / 3);
-    square += area / 12 * (squared_length(a) + squared_length(b) + squared_length(c) + squared_length(sum));
-  }
-  if (!(mass > 0)) return 0;
-  return 2 * std::sqrt(3 * std::max(0.0, square / mass - squared_length(moment / mass)));
+WantedSizes WantedSizes::with(const std::function<double(double)>& change) const {
+  WantedSizes result = *this;
+  for (double& h : result.face) h = change(h);
+  for (SizeSample& s : result.points) s.h = change(s.h);
+  result.ceiling = change(result.ceiling);
+  if (at_place) result.at_place.at = [f = at_place.at, change](const PlaceOnSurface& p) { return change(f(p)); };
+  return result;
 }
 
 WantedSizes wanted_sizes(const KnownSurface& known, const SizeOptions& options, const Stage& stage,
                          const FaceRules& rules) {
   const SurfaceMesh& surface = known.mesh();
+  const double least_size = options.min_size.value_or(0);
   const Choice choice = choose(surface, options);
-  WantedSizes wanted;
-  wanted.face.assign(surface.triangles.size(), choice.base);
-  double scale = 1;
   const Affordable affordable(surface, options);
   const ShapeLines lines = lines_of_shape(known, rules.is_invented);
-  const bool limits_chords = options.chord_error || !rules.chord_errors.empty();
-  if (choice.curvature > 0 || options.facets || limits_chords) {
-    const FaceNeighbours across = smooth_face_neighbours(known.edges(), lines.borders);
-    if (options.facets) apply_facets(surface, across, choice.floor, wanted.face);
-    if (choice.curvature > 0 || limits_chords) {
-      const SurfaceCurvature curvature = surface_curvature(surface, across, stage.context());
-      if (options.curvature) affordable.curvature(*options.curvature, curvature);
-      if (options.chord_error) affordable.max_deviation(*options.chord_error, curvature);
-      if (limits_chords) {
-        const auto error_of = [&](std::size_t f) {
-          return std::min(options.chord_error.value_or(HUGE_VAL),
-                          rules.chord_errors.empty() ? HUGE_VAL : rules.chord_errors[f]);
-        };
-        apply_chord_errors(curvature, error_of, choice.floor, wanted.face);
-      }
-      if (choice.curvature > 0) apply_curvature(curvature, choice.curvature, choice.floor, wanted.face);
-      if (choice.automatic) scale = automatic_scale(surface, curvature, wanted.face);
-    }
-  }
-  if (choice.feature_elements > 0) {
-    const std::vector<FeatureCurve> curves = feature_curves(surface, lines.features);
-    if (options.feature_elements) affordable.feature_elements(choice.feature_elements, curves);
-    wanted.points = feature_samples(surface, curves, choice.feature_elements, choice.floor, choice.base);
-  }
+  WantedSizes wanted;
+  wanted.face.assign(surface.triangles.size(), choice.base);
+  const double scale = apply_shape(known, choice, options, rules, lines, affordable, stage.context(), wanted.face);
+  wanted.points = samples_of_features(surface, choice, options, lines.features, affordable);
   const NamedSizes named = named_sizes(known, options);
   for (std::size_t f = 0; f < named.face.size(); ++f) wanted.face[f] = std::min(wanted.face[f], named.face[f] / scale);
-  wanted.points.insert(wanted.points.end(), named.points.begin(), named.points.end());
-  const std::vector<SizeSample> given = samples_of_points(options, options.min_size.value_or(0));
-  wanted.points.insert(wanted.points.end(), given.begin(), given.end());
-  for (double& h : wanted.face) h = std::max(h * scale, options.min_size.value_or(0));
+  add_samples(wanted.points, named.points);
+  add_samples(wanted.points, samples_of_points(options, least_size));
+  for (double& h : wanted.face) h = std::max(h * scale, least_size);
   wanted.at_place = sizes_at_places(known, choice, options, affordable);
-  const bool graded = options.interior == SizeOptions::Interior::kGraded;
-  wanted.ceiling = graded ? options.max_size.value_or(std::numeric_limits<double>::infinity()) : choice.base * scale;
-  wanted.ceiling = std::max(wanted.ceiling, options.min_size.value_or(0));
+  const bool is_graded = options.interior == SizeOptions::Interior::kGraded;
+  wanted.ceiling = std::max(is_graded ? options.max_size.value_or(HUGE_VAL) : choice.base * scale, least_size);
   const auto [least, most] = std::minmax_element(wanted.face.begin(), wanted.face.end());
   wanted.automatic = choice.automatic && !options.min_size;
   wanted.even = !wanted.at_place && wanted.points.empty() && *least == *most;
