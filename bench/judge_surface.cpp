@@ -10,7 +10,7 @@
 #include "base/geometry/measures.h"
 #include "base/mesh/features.h"
 #include "pipeline/stages/measure.h"
-#include "sizing/make_size_field.h"
+#include "sizing/search/make_size_field.h"
 #include "surface/check/surface_check.h"
 
 #include <algorithm>

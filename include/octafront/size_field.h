@@ -33,7 +33,7 @@ class SizeField {
   friend class SizeFunction;
   explicit SizeField(const SizeFunction& function) noexcept;
 
-  const SizeFunction* function_;  // counted; see sizing/size_function.h
+  const SizeFunction* function_;  // counted; see sizing/field/size_function.h
 };
 
 }  // namespace octafront

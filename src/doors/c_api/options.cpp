@@ -6,7 +6,7 @@
 
 #include "doors/c_api/c_api.h"
 #include "doors/c_api/json_keys.h"
-#include "sizing/packed_sizes.h"
+#include "sizing/field/packed_sizes.h"
 
 #include <nlohmann/json.hpp>
 #include <utility>

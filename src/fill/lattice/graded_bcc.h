@@ -17,7 +17,7 @@
 //      |         |          |
 //      + ------- + -------- +
 
-#include "sizing/octree.h"
+#include "sizing/field/octree.h"
 
 #include <array>
 #include <cstdint>

@@ -2,7 +2,7 @@
 
 #include "base/core/parallel.h"
 #include "fill/lattice/graded_bcc.h"
-#include "sizing/expected_tets.h"
+#include "sizing/prediction/expected_tets.h"
 
 #include <algorithm>
 #include <numeric>

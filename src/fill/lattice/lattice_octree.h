@@ -5,7 +5,7 @@
 #include <octafront/surface_mesh.h>
 
 #include "base/geometry/triangle_tree.h"
-#include "sizing/octree.h"
+#include "sizing/field/octree.h"
 
 #include <functional>
 #include <vector>

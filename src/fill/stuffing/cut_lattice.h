@@ -4,7 +4,7 @@
 
 #include "base/core/stage.h"
 #include "fill/stuffing/implicit_domain.h"
-#include "sizing/octree.h"
+#include "sizing/field/octree.h"
 
 namespace octafront {
 

@@ -1,6 +1,6 @@
 #include "fill/stuffing/stuffing_octree.h"
 
-#include "sizing/expected_tets.h"
+#include "sizing/prediction/expected_tets.h"
 
 #include <algorithm>
 

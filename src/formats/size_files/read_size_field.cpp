@@ -4,9 +4,9 @@
 
 #include "formats/containers/vtk_xml.h"
 #include "formats/size_files/readers.h"
-#include "sizing/gradation.h"
-#include "sizing/octree_corners.h"
-#include "sizing/octree_field.h"
+#include "sizing/field/gradation.h"
+#include "sizing/field/octree_corners.h"
+#include "sizing/field/octree_field.h"
 
 #include <algorithm>
 #include <cmath>

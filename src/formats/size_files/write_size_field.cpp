@@ -5,8 +5,8 @@
 
 #include "formats/containers/text_writer.h"
 #include "formats/containers/vtu_arrays.h"
-#include "sizing/octree_corners.h"
-#include "sizing/octree_field.h"
+#include "sizing/field/octree_corners.h"
+#include "sizing/field/octree_field.h"
 
 #include <fmt/core.h>
 

@@ -3,7 +3,7 @@
 
 #include "improve/schedule/schedule.h"
 #include "pipeline/stages/methods.h"
-#include "sizing/check_size_options.h"
+#include "sizing/sources/check_size_options.h"
 
 #include <cmath>
 

@@ -1,6 +1,6 @@
 #include "pipeline/stages/methods.h"
 #include "pipeline/stages/stages.h"
-#include "sizing/change_size_field.h"
+#include "sizing/field/change_size_field.h"
 
 #include <algorithm>
 #include <cmath>

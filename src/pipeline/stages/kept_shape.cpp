@@ -4,9 +4,9 @@
 
 #include "base/mesh/complex.h"
 #include "pipeline/stages/methods.h"
-#include "sizing/change_size_field.h"
-#include "sizing/curvature.h"
-#include "sizing/expected_tets.h"
+#include "sizing/field/change_size_field.h"
+#include "sizing/prediction/expected_tets.h"
+#include "sizing/sources/curvature.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 #include <octafront/size_field.h>
 
 #include "base/core/function_ref.h"
-#include "sizing/change_size_field.h"
+#include "sizing/field/change_size_field.h"
 #include "surface/ground/kept_places.h"
 
 #include <optional>

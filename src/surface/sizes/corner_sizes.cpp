@@ -3,7 +3,7 @@
 #include "base/core/parallel.h"
 #include "base/geometry/measures.h"
 #include "base/geometry/triangle_tree.h"
-#include "sizing/change_size_field.h"
+#include "sizing/field/change_size_field.h"
 
 #include <algorithm>
 #include <map>

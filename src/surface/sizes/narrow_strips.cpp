@@ -1,7 +1,7 @@
 #include "surface/sizes/narrow_strips.h"
 
 #include "base/core/parallel.h"
-#include "sizing/change_size_field.h"
+#include "sizing/field/change_size_field.h"
 #include "surface/sizes/point_grid.h"
 
 #include <algorithm>

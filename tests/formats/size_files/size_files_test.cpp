@@ -1,9 +1,9 @@
 #include <octafront/error.h>
 #include <octafront/io.h>
 
-#include "sizing/kept_surface.h"
-#include "sizing/make_size_field.h"
-#include "sizing/octree_field.h"
+#include "sizing/field/octree_field.h"
+#include "sizing/search/make_size_field.h"
+#include "sizing/sources/kept_surface.h"
 #include "support/named_surfaces.h"
 
 #include <filesystem>

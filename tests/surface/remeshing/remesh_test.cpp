@@ -7,7 +7,7 @@
 #include "base/geometry/measures.h"
 #include "base/mesh/feature_patches.h"
 #include "base/mesh/half_edge_mesh.h"
-#include "sizing/make_size_field.h"
+#include "sizing/search/make_size_field.h"
 #include "support/named_surfaces.h"
 #include "support/random.h"
 #include "surface/edits/coarsen.h"

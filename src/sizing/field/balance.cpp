@@ -1,0 +1,87 @@
+// The smallest 2:1 balanced octree that has given cells divided.
+//
+// If a cell c is divided, its children touch the 26 neighbours of c of its own level; 2:1 asks that these exist, which
+// means that their parents are divided. Seen from c the parents number eight, c's own included: along each axis c's
+// parent and the one on c's side of it. One sweep from the finest level to the root therefore closes the set. (The idea
+// of closing parents instead of rippling through leaves: T. Isaac, C. Burstedde, O. Ghattas, "Low-cost parallel
+// algorithms for 2:1 octree balance", 2012.)
+
+#include "sizing/field/octree.h"
+
+#include <algorithm>
+
+namespace octafront {
+
+namespace {
+
+constexpr std::size_t kFewKeys = std::size_t{1} << 16;
+
+void sort_unique(std::vector<OctreeKey>& cells) {
+  std::sort(cells.begin(), cells.end());
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+}
+
+void add_parents_around(OctreeKey cell, std::vector<OctreeKey>& parents) {
+  const OctreeKey parent = cell.parent();
+  const int c = cell.child_number();
+  for (int mask = 0; mask < 8; ++mask) {
+    const auto step = [&](int axis) { return (mask >> axis & 1) == 0 ? 0 : (c >> axis & 1) != 0 ? 1 : -1; };
+    const OctreeKey other = parent.neighbour(step(0), step(1), step(2));
+    if (other.is_valid()) parents.push_back(other);
+  }
+}
+
+}  // namespace
+
+void DividedCells::close() {
+  for (int l = OctreeKey::kMaxLevel; l > 0; --l) {
+    sort_unique(levels_[l]);
+    std::vector<OctreeKey> parents;
+    std::size_t most = kFewKeys;
+    for (std::size_t i = 0; i < levels_[l].size(); ++i) {
+      add_parents_around(levels_[l][i], parents);
+      // Siblings share most of their parents' neighbours; thin the list out before it grows large.
+      if (parents.size() <= most) continue;
+      sort_unique(parents);
+      most = std::max(kFewKeys, 2 * parents.size());
+    }
+    levels_[l - 1].insert(levels_[l - 1].end(), parents.begin(), parents.end());
+  }
+  sort_unique(levels_[0]);
+}
+
+Octree DividedCells::tree() const {
+  std::vector<OctreeKey> leaves;
+  std::array<std::size_t, OctreeKey::kMaxLevel + 1> next{};
+  // Depth first; on each level the cells come in the order of the curve, as they are sorted in levels_.
+  std::vector<OctreeKey> stack{OctreeKey::root()};
+  while (!stack.empty()) {
+    const OctreeKey cell = stack.back();
+    stack.pop_back();
+    const int l = cell.level();
+    if (next[l] < levels_[l].size() && levels_[l][next[l]] == cell && l < OctreeKey::kMaxLevel) {
+      ++next[l];
+      for (int i = 7; i >= 0; --i) stack.push_back(cell.child(i));
+    } else {
+      leaves.push_back(cell);
+    }
+  }
+  return Octree(std::move(leaves));
+}
+
+DividedCells divided_cells(const Octree& tree, const std::function<bool(std::size_t)>& stays) {
+  DividedCells cells;
+  for (std::size_t i = 0; i < tree.size(); ++i) {
+    // The first descendant of each divided cell names it once.
+    OctreeKey cell = tree.leaf(i);
+    bool is_whole = i + 7 < tree.size() && cell.level() > 0 && tree.leaf(i + 7) == cell.parent().child(7);
+    while (cell.level() > 0 && cell.child_number() == 0) {
+      cell = cell.parent();
+      if (!is_whole || !stays || stays(i)) cells.divide(cell);
+      is_whole = false;
+    }
+  }
+  return cells;
+}
+
+}  // namespace octafront

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <octafront/options.h>
+#include <octafront/size_field.h>
+#include <octafront/surface_mesh.h>
+
+#include "base/core/stage.h"
+#include "sizing/prediction/expected_tets.h"
+#include "sizing/sources/wanted_sizes.h"
+
+namespace octafront {
+
+/// How many elements sizes of our own choice come to at most, about: kBudget and kBudgetPerTriangle for each triangle
+/// of the surface, kMostBudget at most, and what `max_size` makes by itself; known before anything is made. HUGE_VAL if
+/// the user chose sizes.
+double automatic_budget(const SurfaceMesh& surface, const SizeOptions& options);
+
+/// A background grid of sizes of our own choice, which must not make a large mesh that nobody asked for, as the noise
+/// of a scan does, or a thousand small holes: then the smallest sizes are raised until the number of elements is within
+/// the budget.
+SizeField within_budget(const SurfaceMesh& surface, const WantedSizes& wanted, const SizeOptions& options,
+                        double budget, const Stage& stage);
+
+/// Sizes that keep within a number of elements.
+struct WithinCount {
+  SizeField sizes;
+  double asked = 0;  ///< elements by the sizes that were asked for
+  double floor = 0;  ///< no size is below this; 0: nothing was raised
+};
+
+/// `finer` where that has no more than `most` elements. Otherwise the sizes of `finer` that are below one floor are
+/// raised to this floor, but nowhere above `first`: what is asked for on top of `first` is met as far as the elements
+/// go.
+WithinCount within_count(const SizeField& finer, const SizeField& first, const TetPrediction& expected, double most,
+                         const RunContext& context);
+
+}  // namespace octafront

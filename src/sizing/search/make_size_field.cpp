@@ -1,0 +1,152 @@
+#include "sizing/search/make_size_field.h"
+
+#include <octafront/error.h>
+
+#include "base/core/parallel.h"
+#include "base/mesh/index_range.h"
+#include "sizing/field/change_size_field.h"
+#include "sizing/prediction/expected_tets.h"
+#include "sizing/prediction/tets_per_size.h"
+#include "sizing/search/budget.h"
+#include "sizing/sources/check_size_options.h"
+#include "sizing/sources/source_grid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <fmt/core.h>
+
+namespace octafront {
+
+namespace {
+
+/// --elements: sizes are scaled until the expected number is this close.
+constexpr double kCountTolerance = 0.02;
+constexpr int kMostScalings = 10;
+/// A number that stays farther off, in logarithms, is told to the user.
+constexpr double kWorthANote = 0.05;
+/// The count falls with the third power of the sizes, less what gradation decides: so much on average over models.
+constexpr double kMeanSlope = -2.3, kSteepest = -4, kFlattest = -1;
+/// Leaves of the first look, over those of the grid: a quarter of its time, for a count that is off by up to 10 %.
+constexpr double kFirstLook = 2;
+/// A count off by less, in logarithms, is mended on the leaves that there are: sizes change by a third of it.
+constexpr double kOnSameLeaves = 0.15;
+constexpr double kSlopeOfWhole = -3;
+/// How often the scale is corrected on the grid that there is, before a new one is made.
+constexpr int kForesteps = 2;
+
+WantedSizes scaled(const WantedSizes& wanted, double factor, const SizeOptions& options) {
+  return wanted.with([factor, low = options.min_size.value_or(0), high = options.max_size.value_or(HUGE_VAL)](
+                         double h) { return std::clamp(h * factor, low, high); });
+}
+
+/// The field that comes out, about, if all sources ask for `factor` times their size: on the same leaves, each size by
+/// the same source as before.
+OctreeField with_scaled_sources(const OctreeField& grid, double factor, const SizeOptions& options) {
+  const double low = options.min_size.value_or(0) / grid.root.side,
+               high = options.max_size.value_or(HUGE_VAL) / grid.root.side;
+  const bool is_flat = options.interior == SizeOptions::Interior::kUniform;
+  const double ceiling = is_flat ? std::clamp(grid.high * factor, low, high) : HUGE_VAL;
+  OctreeField result = grid;
+  parallel_for(grid.h.size(), [&](std::size_t l) {
+    for (int k = 0; k < 8; ++k) {
+      const double source = grid.source[l][k], growth = grid.h[l][k] - source;
+      result.h[l][k] = std::min(ceiling, std::clamp(source * factor, low, high) + growth);
+    }
+  });
+  result.find_range();
+  return result;
+}
+
+/// By how much to scale all sources so that the expected number of elements grows by `more`, all in logarithms.
+double step_to_count(const SizeField& sizes, double more, const TetPrediction& expected, const SizeOptions& options) {
+  const OctreeField& grid = *as_octree_field(sizes);
+  double step = more / kMeanSlope;
+  if (grid.source.empty() || step == 0) return step;
+  const auto expected_here = expected.on_leaves_of(grid);
+  const double here = std::log(expected_here(grid));
+  for (int i = 0; i < kForesteps; ++i) {
+    const double there = std::log(expected_here(with_scaled_sources(grid, std::exp(step), options)));
+    step = more / std::clamp((there - here) / step, kSteepest, kFlattest);
+  }
+  return step;
+}
+
+/// Whether a field multiplied by a factor is the one that multiplied sources give: nothing in it stays what it is.
+bool scales_as_a_whole(const SizeOptions& options) {
+  return !options.min_size && !options.max_size && options.regions.empty();
+}
+
+// A first look on larger leaves tells the scale but for some percent, a grid is made at that scale, and what is left is
+// taken off it as it is: one grid of full resolution.
+SizeField scaled_to_count(const SurfaceMesh& surface, const WantedSizes& wanted, const SizeOptions& options,
+                          const Stage& stage) {
+  const double target = std::log(static_cast<double>(*options.elements));
+  std::optional<TetPrediction> prediction;
+  std::optional<SizeField> first_look;
+  parallel_invoke([&] { prediction.emplace(surface); },
+                  [&] { first_look = source_grid(surface, wanted, options, stage.context(), kFirstLook); });
+  const TetPrediction& expected = *prediction;
+  SizeField last = *first_look, best = last;
+  double scale = 0, more = target - std::log(expected(last)), least_miss = HUGE_VAL;
+  int steps = 0;
+  for (; least_miss > kCountTolerance && steps < kMostScalings; ++steps) {
+    const bool on_same_leaves = steps > 0 && std::abs(more) < kOnSameLeaves && scales_as_a_whole(options);
+    if (on_same_leaves) {
+      scale += more / kSlopeOfWhole;
+      last = octafront::scaled(last, std::exp(more / kSlopeOfWhole), stage.context());
+    } else {
+      scale += step_to_count(last, more, expected, options);
+      last = source_grid(surface, scaled(wanted, std::exp(scale), options), options, stage.context());
+    }
+    more = target - std::log(expected(last));
+    if (std::abs(more) < least_miss) {
+      least_miss = std::abs(more);
+      best = last;
+    } else if (on_same_leaves && least_miss < kWorthANote) {
+      break;  // the lattice's cells double here or there: counts jump
+    }
+  }
+  stage.count("scalings", steps);
+  if (least_miss > kWorthANote) {
+    stage.note(fmt::format("{} elements were asked for, but the limits on the size give {:.3g}", *options.elements,
+                           expected(best)));
+  }
+  return best;
+}
+
+void refuse_huge_counts(const SurfaceMesh& surface, const WantedSizes& wanted) {
+  const double largest = *std::max_element(wanted.face.begin(), wanted.face.end());
+  const double by_volume = kTetsPerCube * std::abs(enclosed_volume(surface)) / (largest * largest * largest);
+  const double count = std::max(by_volume, kTetsPerSquare * area(surface) / (largest * largest));
+  if (count <= static_cast<double>(kMostElements)) return;
+  throw OptionError(fmt::format(
+      "a size of {:.4g} would give about {:.3g} elements, more than the {} that a mesh can hold: ask for a larger size",
+      largest, count, kMostElements));
+}
+
+}  // namespace
+
+SizeField make_size_field(const KnownSurface& known, const SizeOptions& options, const Stage& stage,
+                          const FaceRules& rules, double budget) {
+  const SurfaceMesh& surface = known.mesh();
+  check_size_options(options);
+  if (surface.triangles.empty()) throw InputError("the surface has no triangles: there is nothing to choose sizes for");
+  if (options.field) return *options.field;
+  WantedSizes wanted = wanted_sizes(known, options, stage, rules);
+  if (wanted.automatic && !options.elements && options.automatic_factor != 1)
+    wanted = scaled(wanted, options.automatic_factor, options);
+  if (!options.elements) refuse_huge_counts(surface, wanted);
+  SizeField field = options.elements   ? scaled_to_count(surface, wanted, options, stage)
+                    : wanted.automatic ? within_budget(surface, wanted, options, budget, stage)
+                                       : source_grid(surface, wanted, options, stage.context());
+  const OctreeField& grid = *as_octree_field(field);
+  stage.count("leaves", static_cast<double>(grid.tree.size()));
+  stage.count("levels", grid.tree.depth());
+  stage.count("smallest size", field.min_size());
+  stage.count("largest size", field.max_size());
+  return field;
+}
+
+}  // namespace octafront

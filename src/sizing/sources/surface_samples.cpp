@@ -1,0 +1,158 @@
+#include "sizing/sources/surface_samples.h"
+
+#include <octafront/error.h>
+
+#include "base/core/parallel.h"
+#include "base/geometry/measures.h"
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <limits>
+
+#include <fmt/core.h>
+
+namespace octafront {
+
+namespace {
+
+constexpr std::size_t kMostSamples = 50'000'000;
+/// A triangle lies within this part of its longest edge about its centroid.
+constexpr double kReachOfEdge = 0.6;
+/// Triangles that are sampled together, by one thread or for one batch of sizes.
+constexpr std::size_t kFacesAtOnce = 4096;
+/// Few triangles are large ones, with many samples each: they are divided among threads too.
+constexpr std::size_t kLeastRanges = 64;
+
+class Sampler {
+ public:
+  Sampler(const std::vector<double>& face_size, const SizeAtPlace& size_at, std::vector<SizeSample>& samples)
+      : face_size_(face_size), size_at_(size_at), samples_(samples) {}
+
+  void sample(Vec3 a, Vec3 b, Vec3 c, Vec3 n, std::uint32_t face) {
+    const Vec3 p = centroid(a, b, c);
+    double h = face_size_[face];
+    if (size_at_) h = std::min(h, size_at_({p, n, face}));
+    const double ab = squared_distance(a, b), bc = squared_distance(b, c), ca = squared_distance(c, a);
+    const double longest = std::max({ab, bc, ca});
+    const double most = std::min(h, size_at_.spacing);
+    if (longest <= most * most) {
+      if (samples_.size() == kMostSamples) {
+        throw OptionError(fmt::format(
+            "sizes as small as {:.4g} near ({:.6g}, {:.6g}, {:.6g}) are too small for this surface: its "
+            "background grid alone would need more than {} samples; ask for larger sizes or give a `min_size`",
+            h, p.x, p.y, p.z, kMostSamples));
+      }
+      samples_.push_back({p, n, h, kReachOfEdge * std::sqrt(longest), triangle_area(a, b, c)});
+    } else if (longest == ab) {
+      halve(c, a, b, n, face);
+    } else if (longest == bc) {
+      halve(a, b, c, n, face);
+    } else {
+      halve(b, c, a, n, face);
+    }
+  }
+
+ private:
+  void halve(Vec3 apex, Vec3 from, Vec3 to, Vec3 n, std::uint32_t face) {
+    const Vec3 middle = 0.5 * (from + to);
+    if (middle == from || middle == to)
+      throw OptionError(fmt::format(
+          "sizes near ({:.6g}, {:.6g}, {:.6g}) are smaller than the steps between doubles there; ask for larger "
+          "sizes, or move the model to the origin",
+          middle.x, middle.y, middle.z));
+    sample(apex, from, middle, n, face);
+    sample(apex, middle, to, n, face);
+  }
+
+  const std::vector<double>& face_size_;
+  const SizeAtPlace& size_at_;
+  std::vector<SizeSample>& samples_;
+};
+
+}  // namespace
+
+std::size_t BatchedSizes::Hash::operator()(const Vec3& p) const {
+  std::size_t hash = 0;
+  for (int axis = 0; axis < 3; ++axis)
+    hash = (hash ^ std::bit_cast<std::uint64_t>(p[axis])) * 0x9e3779b97f4a7c15u, hash ^= hash >> 32;
+  return hash;
+}
+
+double BatchedSizes::at(Vec3 p) {
+  const Vec3 positive_zeros = p + Vec3{};
+  const auto [it, is_new] = known_.try_emplace(positive_zeros, std::numeric_limits<double>::infinity());
+  if (is_new) missing_.push_back(positive_zeros);
+  return it->second;
+}
+
+bool BatchedSizes::fetch() {
+  if (missing_.empty()) return false;
+  std::vector<double> sizes(missing_.size());
+  ask_(missing_, sizes);
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    const Vec3 p = missing_[i];
+    if (!(sizes[i] > 0)) {
+      throw OptionError(fmt::format("the size callback returned {} at ({:.6g}, {:.6g}, {:.6g}): sizes must be above 0",
+                                    sizes[i], p.x, p.y, p.z));
+    }
+    known_[p] = sizes[i];
+  }
+  missing_.clear();
+  return true;
+}
+
+namespace {
+
+/// The samples of some triangles, behind those that there are.
+void sample_faces(const SurfaceMesh& surface, Sampler sampler, std::size_t begin, std::size_t end) {
+  for (std::size_t f = begin; f < end; ++f) {
+    const Triangle& t = surface.triangles[f];
+    const Vec3 a = surface.points[t[0]], b = surface.points[t[1]], c = surface.points[t[2]];
+    sampler.sample(a, b, c, unit_normal(a, b, c), static_cast<std::uint32_t>(f));
+  }
+}
+
+// Each round knows the sizes of one more level of halves.
+std::vector<SizeSample> sample_in_batches(const SurfaceMesh& surface, const std::vector<double>& face_size,
+                                          const SizeAtPlace& size_at, const RunContext& context) {
+  std::vector<SizeSample> samples;
+  for (std::size_t begin = 0; begin < surface.triangles.size(); begin += kFacesAtOnce) {
+    const std::size_t finished = samples.size(), end = std::min(surface.triangles.size(), begin + kFacesAtOnce);
+    do {
+      context.check();
+      samples.erase(samples.begin() + static_cast<std::ptrdiff_t>(finished), samples.end());
+      sample_faces(surface, Sampler(face_size, size_at, samples), begin, end);
+    } while (size_at.batched->fetch());
+  }
+  return samples;
+}
+
+}  // namespace
+
+SizeAtPlace least_of(const SizeAtPlace& a, const SizeAtPlace& b) {
+  if (!a || !b) return a ? a : b;
+  return {[a = a.at, b = b.at](const PlaceOnSurface& s) { return std::min(a(s), b(s)); },
+          a.batched ? a.batched : b.batched, std::min(a.spacing, b.spacing)};
+}
+
+std::vector<SizeSample> sample_surface(const SurfaceMesh& surface, const std::vector<double>& face_size,
+                                       const SizeAtPlace& size_at, const RunContext& context) {
+  if (size_at.batched) return sample_in_batches(surface, face_size, size_at, context);
+  std::atomic<std::size_t> total{0};
+  const std::size_t range = std::clamp<std::size_t>(surface.triangles.size() / kLeastRanges, 1, kFacesAtOnce);
+  std::vector<SizeSample> samples = parallel_collect<SizeSample>(
+      surface.triangles.size(), range, [&](std::size_t begin, std::size_t end, std::vector<SizeSample>& part) {
+        context.check();
+        if (total > kMostSamples) return;
+        sample_faces(surface, Sampler(face_size, size_at, part), begin, end);
+        total += part.size();
+      });
+  if (total <= kMostSamples) return samples;
+  // One after the other, so that the place named is the same on any number of threads.
+  samples = {};
+  sample_faces(surface, Sampler(face_size, size_at, samples), 0, surface.triangles.size());
+  return samples;
+}
+
+}  // namespace octafront

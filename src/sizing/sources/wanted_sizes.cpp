@@ -1,0 +1,232 @@
+#include "sizing/sources/wanted_sizes.h"
+
+#include "base/geometry/measures.h"
+#include "sizing/prediction/affordable.h"
+#include "sizing/sources/curvature.h"
+#include "sizing/sources/face_neighbours.h"
+#include "sizing/sources/feature_sizes.h"
+#include "sizing/sources/gaps.h"
+#include "sizing/sources/given_sizes.h"
+#include "sizing/sources/model_extent.h"
+#include "sizing/sources/named_sizes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+namespace octafront {
+
+namespace {
+
+/// The automatic choice. Curvature of 20 elements per turn keeps chords within 1.6 % of the radius of curvature.
+constexpr double kAutomaticCurvature = 20;
+constexpr double kAutomaticFeatureElements = 1;
+constexpr double kAutomaticGap = 1;
+/// Sources that follow details stop at this part of the base size unless min_size says otherwise: a spike or a crease
+/// of noise must not ask for elements without bound.
+constexpr double kAutomaticFloor = 1.0 / 5;
+constexpr double kAutomaticGapFloor = 1.0 / 12;
+constexpr double kChosenFloor = 1.0 / 200;
+/// Chords cut corners: the automatic choice is scaled until the volume lost so, as predicted, is below this part.
+constexpr double kVolumeLoss = 0.003;
+constexpr double kLeastAutomaticScale = 0.3;
+
+/// What the user's options come to, once defaults are filled in.
+struct Choice {
+  bool automatic = false;
+  double base = 0, floor = 0, gap_floor = 0;
+  double curvature = 0, gap = 0, feature_elements = 0;  ///< 0: not asked
+};
+
+double largest_of(const std::vector<PointSize>& points) {
+  double largest = 0;
+  for (const PointSize& s : points) largest = std::max(largest, s.size);
+  return largest;
+}
+
+bool has_automatic_base(const SizeOptions& o) {
+  return !o.size && !o.curvature && !o.gap && !o.feature_elements && !o.facets && !o.callback && o.point_sizes.empty();
+}
+
+Choice choose(const SurfaceMesh& surface, const SizeOptions& o) {
+  Choice c;
+  c.automatic = has_automatic_base(o);
+  const double ours = base_size(surface);
+  c.base = o.size.value_or(ours);
+  // Sizes at points and a function speak for the whole surface: there is no need of a size where nobody asks, and ours
+  // would cut what they ask for.
+  if (!o.size && o.callback) c.base = model_extent(surface);
+  if (!o.size && !o.point_sizes.empty()) c.base = largest_of(o.point_sizes);
+  if (o.max_size)
+    c.base = o.size ? std::min(c.base, *o.max_size) : (c.automatic ? std::min(c.base, *o.max_size) : *o.max_size);
+  c.base = std::max(c.base, o.min_size.value_or(0));
+  const double usual = o.callback && !o.size ? std::min(c.base, ours) : c.base;
+  c.floor = o.min_size.value_or(usual * (c.automatic ? kAutomaticFloor : kChosenFloor));
+  c.gap_floor = o.min_size.value_or(usual * (c.automatic ? kAutomaticGapFloor : kChosenFloor));
+  c.gap = o.gap.value_or(c.automatic ? kAutomaticGap : 0);
+  c.curvature = o.curvature.value_or(c.automatic ? kAutomaticCurvature : 0);
+  c.feature_elements = o.feature_elements.value_or(c.automatic ? kAutomaticFeatureElements : 0);
+  return c;
+}
+
+/// Facet areas averaged over each triangle and its neighbours, as sizes: the side of a square of that area. This is the
+/// paper's rule, by which a leaf is divided while its face is larger than the facets inside it.
+void apply_facets(const SurfaceMesh& surface, const FaceNeighbours& across, double floor, std::vector<double>& face) {
+  std::vector<double> areas(surface.triangles.size());
+  for (std::size_t f = 0; f < areas.size(); ++f) {
+    const Triangle& t = surface.triangles[f];
+    areas[f] = triangle_area(surface.points, t);
+  }
+  for (std::size_t f = 0; f < areas.size(); ++f) {
+    double sum = areas[f];
+    int n = 1;
+    for (const std::uint32_t g : across[f]) {
+      if (g != kNone) sum += areas[g], ++n;
+    }
+    face[f] = std::min(face[f], std::max(floor, std::sqrt(sum / n)));
+  }
+}
+
+double automatic_scale(const SurfaceMesh& surface, const SurfaceCurvature& curvature, const std::vector<double>& face) {
+  const double loss = predicted_volume_loss(surface, curvature, face);
+  const double allowed = kVolumeLoss * std::abs(enclosed_volume(surface));
+  return loss > allowed ? std::max(kLeastAutomaticScale, std::sqrt(allowed / loss)) : 1;
+}
+
+/// What says how a surface is shaped. Faces that repair invented do not: they bend as they had to, and their
+/// rims are no lines of the body.
+struct ShapeLines {
+  std::vector<Edge> borders;  ///< across these no curvature is known; sorted
+  Features features;          ///< those that ask for sizes
+};
+
+ShapeLines lines_of_shape(const KnownSurface& known, std::span<const std::uint8_t> is_invented) {
+  if (is_invented.empty()) return {known.features().edges, known.features()};
+  ShapeLines lines{{}, {{}, known.features().corners}};
+  const std::vector<Edge>& all = known.features().edges;
+  for (std::size_t e = 0; e < known.edges().size(); ++e) {
+    const Edge& edge = known.edges().edges[e];
+    const bool is_ours =
+        std::ranges::any_of(known.edges().uses(e), [&](std::uint32_t h) { return is_invented[h / 3] != 0; });
+    const bool is_feature = std::ranges::binary_search(all, edge);
+    if (is_ours || is_feature) lines.borders.push_back(edge);
+    if (is_feature && !is_ours) lines.features.edges.push_back(edge);
+  }
+  return lines;
+}
+
+double tets_in_gaps(const SurfaceMesh& surface, const GapFinder& gaps, double elements, const Affordable& affordable) {
+  return affordable.tets_at_places([&](std::size_t f) {
+    const auto& [i, j, k] = surface.triangles[f];
+    const Vec3 a = surface.points[i], b = surface.points[j], c = surface.points[k];
+    return gaps.measure({centroid(a, b, c), unit_normal(a, b, c), static_cast<std::uint32_t>(f)}) / elements;
+  });
+}
+
+/// The sources that are asked place by place, in one function; empty if there are none. A wall below a floor of our own
+/// choosing cannot be resolved: the thinner it is, the less small elements do for it, and the larger they may be.
+SizeAtPlace sizes_at_places(const KnownSurface& surface, const Choice& choice, const SizeOptions& options,
+                            const Affordable& affordable) {
+  SizeAtPlace gap;
+  if (choice.gap > 0) {
+    const auto gaps = std::make_shared<GapFinder>(surface, choice.gap_floor, choice.base * choice.gap);
+    if (options.gap) affordable.require("gap", choice.gap, tets_in_gaps(surface.mesh(), *gaps, choice.gap, affordable));
+    gap.at = [gaps, choice, is_ours = !options.min_size](const PlaceOnSurface& place) {
+      const double h = gaps->width(place) / choice.gap, floor = choice.gap_floor;
+      if (h >= floor) return h;
+      return is_ours ? floor * (floor / h) : floor;
+    };
+  }
+  SizeAtPlace given = given_sizes(surface.mesh(), options);
+  if (given && options.min_size) {
+    given.at = [given = given.at, floor = *options.min_size](const PlaceOnSurface& s) {
+      return std::max(floor, given(s));
+    };
+  }
+  return least_of(gap, given);
+}
+
+/// What facets and curvature ask of faces. Returns what all sizes are to be multiplied by for the volume.
+double apply_shape(const KnownSurface& known, const Choice& choice, const SizeOptions& options, const FaceRules& rules,
+                   const ShapeLines& lines, const Affordable& affordable, const RunContext& context,
+                   std::vector<double>& face) {
+  const bool limits_chords = options.chord_error || !rules.chord_errors.empty();
+  const bool needs_curvature = choice.curvature > 0 || limits_chords;
+  if (!options.facets && !needs_curvature) return 1;
+  const SurfaceMesh& surface = known.mesh();
+  const FaceNeighbours across = smooth_face_neighbours(known.edges(), lines.borders);
+  if (options.facets) apply_facets(surface, across, choice.floor, face);
+  if (!needs_curvature) return 1;
+  const SurfaceCurvature curvature = surface_curvature(surface, across, context);
+  refuse_huge_curvature(affordable, options, curvature);
+  const auto error_of = [&](std::size_t f) {
+    return std::min(options.chord_error.value_or(HUGE_VAL),
+                    rules.chord_errors.empty() ? HUGE_VAL : rules.chord_errors[f]);
+  };
+  if (limits_chords) apply_chord_errors(curvature, error_of, choice.floor, face);
+  if (choice.curvature > 0) apply_curvature(curvature, choice.curvature, choice.floor, face);
+  return choice.automatic ? automatic_scale(surface, curvature, face) : 1;
+}
+
+std::vector<SizeSample> samples_of_features(const SurfaceMesh& surface, const Choice& choice,
+                                            const SizeOptions& options, const Features& features,
+                                            const Affordable& affordable) {
+  if (!(choice.feature_elements > 0)) return {};
+  const std::vector<FeatureCurve> curves = feature_curves(surface, features);
+  if (options.feature_elements) {
+    double tets = 0;
+    for (const FeatureCurve& curve : curves)
+      tets += affordable.tets_around(curve.length, curve.length / choice.feature_elements);
+    affordable.require("feature_elements", choice.feature_elements, tets);
+  }
+  return feature_samples(surface, curves, choice.feature_elements, choice.floor, choice.base);
+}
+
+void add_samples(std::vector<SizeSample>& samples, const std::vector<SizeSample>& more) {
+  samples.insert(samples.end(), more.begin(), more.end());
+}
+
+}  // namespace
+
+bool has_no_size_source(const SizeOptions& o) {
+  return has_automatic_base(o) && !o.elements && !o.field && !o.min_size && o.regions.empty() && o.named.empty();
+}
+
+WantedSizes WantedSizes::with(const std::function<double(double)>& change) const {
+  WantedSizes result = *this;
+  for (double& h : result.face) h = change(h);
+  for (SizeSample& s : result.points) s.h = change(s.h);
+  result.ceiling = change(result.ceiling);
+  if (at_place) result.at_place.at = [f = at_place.at, change](const PlaceOnSurface& p) { return change(f(p)); };
+  return result;
+}
+
+WantedSizes wanted_sizes(const KnownSurface& known, const SizeOptions& options, const Stage& stage,
+                         const FaceRules& rules) {
+  const SurfaceMesh& surface = known.mesh();
+  const double least_size = options.min_size.value_or(0);
+  const Choice choice = choose(surface, options);
+  const Affordable affordable(surface, options);
+  const ShapeLines lines = lines_of_shape(known, rules.is_invented);
+  WantedSizes wanted;
+  wanted.face.assign(surface.triangles.size(), choice.base);
+  const double scale = apply_shape(known, choice, options, rules, lines, affordable, stage.context(), wanted.face);
+  wanted.points = samples_of_features(surface, choice, options, lines.features, affordable);
+  const NamedSizes named = named_sizes(known, options);
+  for (std::size_t f = 0; f < named.face.size(); ++f) wanted.face[f] = std::min(wanted.face[f], named.face[f] / scale);
+  add_samples(wanted.points, named.points);
+  add_samples(wanted.points, samples_of_points(options, least_size));
+  for (double& h : wanted.face) h = std::max(h * scale, least_size);
+  wanted.at_place = sizes_at_places(known, choice, options, affordable);
+  const bool is_graded = options.interior == SizeOptions::Interior::kGraded;
+  wanted.ceiling = std::max(is_graded ? options.max_size.value_or(HUGE_VAL) : choice.base * scale, least_size);
+  const auto [least, most] = std::minmax_element(wanted.face.begin(), wanted.face.end());
+  wanted.automatic = choice.automatic && !options.min_size;
+  wanted.even = !wanted.at_place && wanted.points.empty() && *least == *most;
+  stage.count("base size", choice.base * scale);
+  stage.count("extent", model_extent(surface));
+  return wanted;
+}
+
+}  // namespace octafront

@@ -1,0 +1,50 @@
+#pragma once
+
+// sizing/sources: what size is wanted where on a surface, and by whom: the user's options, curvature, gaps, feature
+// curves, facets, names, points, a callback, triangles that are kept; and the background grid of all that
+// (source_grid.h).
+
+#include <octafront/options.h>
+#include <octafront/surface_mesh.h>
+
+#include "base/core/stage.h"
+#include "base/mesh/known_surface.h"
+#include "sizing/field/background_grid.h"
+#include "sizing/sources/surface_samples.h"
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+namespace octafront {
+
+/// What holds of single triangles of a surface, on top of SizeOptions.
+struct FaceRules {
+  std::span<const double> chord_errors = {};  ///< SizeOptions::chord_error; infinity: nothing; empty: so everywhere
+  /// Not 0: nobody knows how the surface bends there, so it asks for no size. Empty: so nowhere.
+  std::span<const std::uint8_t> is_invented = {};
+};
+
+/// What all sources together want on a surface, before any of it is put into a grid. Input units.
+struct WantedSizes {
+  std::vector<double> face;        ///< per triangle
+  std::vector<SizeSample> points;  ///< at feature curves and the like
+  SizeAtPlace at_place;            ///< asked at each sample of the surface; may be empty
+  double ceiling = 0;              ///< no size inside rises above this
+  bool even = false;               ///< one size everywhere
+  bool automatic = false;          ///< the user left the choice to us
+
+  /// The same with `change` applied to every size.
+  WantedSizes with(const std::function<double(double)>& change) const;
+};
+
+/// Whether nothing says what the sizes are, so that all are of our own choice, up to a largest one.
+bool has_no_size_source(const SizeOptions& options);
+
+/// Asks every source that `options` names; the automatic choice if it names none. Throws OptionError. Refers to the
+/// surface, which must outlive it.
+WantedSizes wanted_sizes(const KnownSurface& known, const SizeOptions& options, const Stage& stage,
+                         const FaceRules& rules = {});
+
+}  // namespace octafront
