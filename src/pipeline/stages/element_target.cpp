@@ -1,6 +1,7 @@
 #include "pipeline/stages/methods.h"
 #include "pipeline/stages/stages.h"
 #include "sizing/field/change_size_field.h"
+#include "sizing/search/count_search.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,49 +18,6 @@ namespace {
 constexpr double kElementsPromised = 0.15;
 constexpr double kElementsTolerance = 0.12;  // tighter, for improvement still changes the count
 constexpr int kElementsAttempts = 5, kSurfaceAttempts = 7;
-// Counts that change by less than this part of the least slope stand still: limits and details decide, not the sizes.
-constexpr double kStandsStill = 0.1;
-// Smaller steps say nothing: the lattice's cells may double with them, or not.
-constexpr double kTellingStep = 0.1;
-// By how much to scale the first sizes next, by the last two counts; once one was above and one below, by the nearest
-// such two, or their middle where the last two were on one side. The count falls with the third power of the sizes
-// where the volume decides, more slowly where gradation or details of the surface do: down to the least slope, from
-// which on a step would go nowhere.
-constexpr double kSteepest = -4, kFlattest = -0.5;
-class CountSearch {
- public:
-  explicit CountSearch(double wanted) : wanted_(std::log(wanted)) {}
-
-  double next_factor(double made) {
-    const Point now{scale_, std::log(made), true};
-    const bool is_above = now.count > wanted_;
-    const bool is_again = last_.known && (last_.count > wanted_) == is_above;
-    if (last_.known && now.scale != last_.scale)
-      slope_ = std::clamp((now.count - last_.count) / (now.scale - last_.scale), kSteepest, kFlattest);
-    (is_above ? above_ : below_) = last_ = now;
-    if (!above_.known || !below_.known)
-      scale_ += (wanted_ - now.count) / slope_;
-    else if (is_again)
-      scale_ = 0.5 * (above_.scale + below_.scale);
-    else
-      scale_ = above_.scale + (below_.scale - above_.scale) * (above_.count - wanted_) / (above_.count - below_.count);
-    return std::exp(scale_);
-  }
-
-  /// Whether the count would have had to change by the last step, and did not.
-  bool stands_still(double made) const {
-    const double step = scale_ - last_.scale;
-    return std::abs(step) > kTellingStep && (std::log(made) - last_.count) / step > kStandsStill * kFlattest;
-  }
-
- private:
-  struct Point {
-    double scale = 0, count = 0;
-    bool known = false;
-  };
-  double wanted_, scale_ = 0, slope_ = -3;
-  Point last_, above_, below_;
-};
 
 bool meets(double wanted, double count) {
   return std::abs(count / wanted - 1) <= kElementsTolerance;
@@ -94,21 +52,20 @@ auto meet_target(const SizeField& sizes, Run& run, std::size_t first_stage, int 
   auto best = attempt(sizes);
   if (!run.options.size.elements || keeps_surface(run.options)) return best;
   const auto wanted = static_cast<double>(*run.options.size.elements);
-  const auto miss = [&](double elements) { return std::abs(std::log(elements / wanted)); };
   CountSearch search(wanted);
   double last = best.count;
-  for (int tries = 1; tries < attempts && !meets(wanted, last); ++tries) {
-    const double factor = search.next_factor(last);
+  search.came_out(last);
+  for (int tries = 1; tries < attempts && !meets(wanted, last) && !search.stands_still(); ++tries) {
+    search.step();
     rename_earlier(run.report, first_stage);
-    auto next = attempt(scaled(sizes, factor, run.context()));
+    auto next = attempt(scaled(sizes, search.factor(), run.context()));
     run.report.stages.back().notes.push_back(
         fmt::format("the sizes before had {:.0f} elements {} where {} were wanted: all sizes scaled by {:.4g}", last,
-                    counted, *run.options.size.elements, factor));
-    const bool stands_still = search.stands_still(next.count);
+                    counted, *run.options.size.elements, search.factor()));
     last = next.count;
+    search.came_out(last);
     // The lattice doubles its cells: counts may jump over the target, and an earlier try may be the better one.
-    if (miss(last) < miss(best.count)) best = std::move(next);
-    if (stands_still) break;
+    if (search.is_best()) best = std::move(next);
   }
   run.report.expected_tets = best.expected;
   return best;

@@ -8,6 +8,7 @@
 #include "sizing/prediction/expected_tets.h"
 #include "sizing/prediction/tets_per_size.h"
 #include "sizing/search/budget.h"
+#include "sizing/search/count_search.h"
 #include "sizing/sources/check_size_options.h"
 #include "sizing/sources/source_grid.h"
 
@@ -26,8 +27,8 @@ constexpr double kCountTolerance = 0.02;
 constexpr int kMostScalings = 10;
 /// A number that stays farther off, in logarithms, is told to the user.
 constexpr double kWorthANote = 0.05;
-/// The count falls with the third power of the sizes, less what gradation decides: so much on average over models.
-constexpr double kMeanSlope = -2.3, kSteepest = -4, kFlattest = -1;
+/// The slope of counts over sizes (CountSearch) on average over models.
+constexpr double kMeanSlope = -2.3;
 /// Leaves of the first look, over those of the grid: a quarter of its time, for a count that is off by up to 10 %.
 constexpr double kFirstLook = 2;
 /// A count off by less, in logarithms, is mended on the leaves that there are: sizes change by a third of it.
@@ -59,18 +60,20 @@ OctreeField with_scaled_sources(const OctreeField& grid, double factor, const Si
   return result;
 }
 
-/// By how much to scale all sources so that the expected number of elements grows by `more`, all in logarithms.
-double step_to_count(const SizeField& sizes, double more, const TetPrediction& expected, const SizeOptions& options) {
+/// The slope of counts over a factor on all sources, on the way to a number that is larger by `more`, a logarithm.
+double slope_of_sources(const SizeField& sizes, double more, const TetPrediction& expected,
+                        const SizeOptions& options) {
   const OctreeField& grid = *as_octree_field(sizes);
-  double step = more / kMeanSlope;
-  if (grid.source.empty() || step == 0) return step;
+  double slope = kMeanSlope;
+  if (grid.source.empty() || more == 0) return slope;
   const auto expected_here = expected.on_leaves_of(grid);
   const double here = std::log(expected_here(grid));
   for (int i = 0; i < kForesteps; ++i) {
+    const double step = more / slope;
     const double there = std::log(expected_here(with_scaled_sources(grid, std::exp(step), options)));
-    step = more / std::clamp((there - here) / step, kSteepest, kFlattest);
+    slope = CountSearch::slope_between(step, there - here);
   }
-  return step;
+  return slope;
 }
 
 /// Whether a field multiplied by a factor is the one that multiplied sources give: nothing in it stays what it is.
@@ -82,34 +85,37 @@ bool scales_as_a_whole(const SizeOptions& options) {
 // taken off it as it is: one grid of full resolution.
 SizeField scaled_to_count(const SurfaceMesh& surface, const WantedSizes& wanted, const SizeOptions& options,
                           const Stage& stage) {
-  const double target = std::log(static_cast<double>(*options.elements));
+  const auto wanted_count = static_cast<double>(*options.elements);
   std::optional<TetPrediction> prediction;
   std::optional<SizeField> first_look;
   parallel_invoke([&] { prediction.emplace(surface); },
                   [&] { first_look = source_grid(surface, wanted, options, stage.context(), kFirstLook); });
   const TetPrediction& expected = *prediction;
-  SizeField last = *first_look, best = last;
-  double scale = 0, more = target - std::log(expected(last)), least_miss = HUGE_VAL;
-  int steps = 0;
-  for (; least_miss > kCountTolerance && steps < kMostScalings; ++steps) {
-    const bool on_same_leaves = steps > 0 && std::abs(more) < kOnSameLeaves && scales_as_a_whole(options);
+  const double more = std::log(wanted_count) - std::log(expected(*first_look));
+  CountSearch search(wanted_count, more / slope_of_sources(*first_look, more, expected, options));
+  const auto grid_at_factor = [&] {
+    return source_grid(surface, scaled(wanted, search.factor(), options), options, stage.context());
+  };
+  SizeField last = grid_at_factor(), best = last;
+  search.came_out(expected(last));
+  int steps = 1;
+  for (; search.least_miss() > kCountTolerance && steps < kMostScalings && !search.stands_still(); ++steps) {
+    const bool on_same_leaves = std::abs(search.missing()) < kOnSameLeaves && scales_as_a_whole(options);
     if (on_same_leaves) {
-      scale += more / kSlopeOfWhole;
-      last = octafront::scaled(last, std::exp(more / kSlopeOfWhole), stage.context());
+      last = octafront::scaled(last, std::exp(search.missing() / kSlopeOfWhole), stage.context());
+      search.step(kSlopeOfWhole);
     } else {
-      scale += step_to_count(last, more, expected, options);
-      last = source_grid(surface, scaled(wanted, std::exp(scale), options), options, stage.context());
+      search.step(slope_of_sources(last, search.missing(), expected, options));
+      last = grid_at_factor();
     }
-    more = target - std::log(expected(last));
-    if (std::abs(more) < least_miss) {
-      least_miss = std::abs(more);
+    search.came_out(expected(last));
+    if (search.is_best())
       best = last;
-    } else if (on_same_leaves && least_miss < kWorthANote) {
+    else if (on_same_leaves && search.least_miss() < kWorthANote)
       break;  // the lattice's cells double here or there: counts jump
-    }
   }
   stage.count("scalings", steps);
-  if (least_miss > kWorthANote) {
+  if (search.least_miss() > kWorthANote) {
     stage.note(fmt::format("{} elements were asked for, but the limits on the size give {:.3g}", *options.elements,
                            expected(best)));
   }

@@ -1,0 +1,55 @@
+#include "sizing/search/count_search.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace octafront {
+
+namespace {
+
+/// From the least slope on a step would go nowhere.
+constexpr double kFirstSlope = -3, kSteepest = -4, kFlattest = -0.5;
+/// Counts that change by less than this part of the least slope stand still.
+constexpr double kStandsStill = 0.1;
+/// Smaller steps say nothing: the lattice's cells may double with them, or not.
+constexpr double kTellingStep = 0.1;
+
+}  // namespace
+
+CountSearch::CountSearch(double wanted, double scale)
+    : wanted_(std::log(wanted)), scale_(scale), slope_(kFirstSlope), least_miss_(HUGE_VAL) {}
+
+double CountSearch::factor() const {
+  return std::exp(scale_);
+}
+
+double CountSearch::slope_between(double scale_change, double count_change) {
+  return std::clamp(count_change / scale_change, kSteepest, kFlattest);
+}
+
+void CountSearch::came_out(double count) {
+  before_ = last_;
+  last_ = {scale_, std::log(count), true};
+  (is_above(last_) ? above_ : below_) = last_;
+  if (before_.is_known && before_.scale != scale_)
+    slope_ = slope_between(scale_ - before_.scale, last_.count - before_.count);
+  is_best_ = std::abs(missing()) < least_miss_;
+  if (is_best_) least_miss_ = std::abs(missing());
+}
+
+void CountSearch::step() {
+  if (!above_.is_known || !below_.is_known)
+    step(slope_);
+  else if (is_above(before_) == is_above(last_))
+    scale_ = 0.5 * (above_.scale + below_.scale);
+  else
+    scale_ = above_.scale + (below_.scale - above_.scale) * (above_.count - wanted_) / (above_.count - below_.count);
+}
+
+bool CountSearch::stands_still() const {
+  const double step = last_.scale - before_.scale;
+  return before_.is_known && std::abs(step) > kTellingStep &&
+         (last_.count - before_.count) / step > kStandsStill * kFlattest;
+}
+
+}  // namespace octafront
