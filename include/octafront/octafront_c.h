@@ -128,6 +128,10 @@ void octafront_image_free(octafront_image* image);
 void octafront_sizes_free(octafront_sizes* sizes);
 /** Edge lengths wanted at `n` points (n x 3). */
 int octafront_sizes_at(const octafront_sizes* sizes, const double* points, size_t n, double* out);
+/** The metrics that ask for these lengths: `n` symmetric matrices M of 3 x 3, in 1 / (unit of the points)^2. An edge e
+ * has the wanted length where e^T M e = 1. Sizes are the same in all directions: M is the identity / (edge length)^2.
+ */
+int octafront_sizes_metric_at(const octafront_sizes* sizes, const double* points, size_t n, double* out);
 void octafront_sizes_bounds(const octafront_sizes* sizes, double* least, double* largest);
 octafront_sizes* octafront_sizes_uniform(double h);
 /** The sizes as bytes, valid until the next call of this thread: for another process of this machine, where they become

@@ -2,6 +2,7 @@
 
 #include <octafront/vec.h>
 
+#include <array>
 #include <functional>
 
 namespace octafront {
@@ -22,6 +23,10 @@ class SizeField {
 
   /// The wanted edge length at p. Outside the background grid: the value at the nearest point of it.
   double at(Vec3 p) const;
+  /// The metric that asks for this edge length at p: a symmetric 3 x 3 matrix M in 1 / (input unit)^2. An edge, a
+  /// vector e, has the wanted length where e^T M e = 1. Sizes are the same in all directions: M is the identity /
+  /// at(p)^2.
+  std::array<std::array<double, 3>, 3> metric_at(Vec3 p) const;
   double min_size() const;
   double max_size() const;
 

@@ -64,6 +64,7 @@ _PROTOTYPES = {
     "mesh_summary": (_text, _handle),
     "image_new": (_handle, _whole, ctypes.POINTER(ctypes.c_uint32), _pointer, _pointer), "image_free": (None, _handle),
     "sizes_free": (None, _handle), "sizes_at": (_whole, _handle, _pointer, _size, _pointer),
+    "sizes_metric_at": (_whole, _handle, _pointer, _size, _pointer),
     "sizes_bounds": (None, _handle, ctypes.POINTER(_number), ctypes.POINTER(_number)),
     "sizes_uniform": (_handle, _number),
     "sizes_pack": (_whole, _handle, ctypes.POINTER(_pointer), _length), "sizes_unpack": (_handle, _text, _size),

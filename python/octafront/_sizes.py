@@ -42,9 +42,20 @@ class SizeField:
 
     def __call__(self, points):
         """Edge lengths wanted (n,) at points (n, 3), in units of the model; outside of it, that of its nearest point."""
+        return self._at("sizes_at", points, ())
+
+    def metric_at(self, points):
+        """The metrics (n, 3, 3) that ask for these lengths at points (n, 3), in 1 / (unit of the model)^2.
+
+        They are symmetric matrices M: an edge e has the wanted length where e @ M @ e == 1. Sizes are the same in all
+        directions: M is the identity / length^2.
+        """
+        return self._at("sizes_metric_at", points, (3, 3))
+
+    def _at(self, function, points, shape):
         points = points_of(points)
-        out = np.empty(len(points))
-        demand("sizes_at", self._handle, pointer(points), len(points), pointer(out))
+        out = np.empty((len(points), *shape))
+        demand(function, self._handle, pointer(points), len(points), pointer(out))
         return out
 
     @property

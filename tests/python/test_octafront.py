@@ -393,6 +393,8 @@ class Sizes(Case):
         field = octafront.size_field(*sphere(), size=0.25)
         self.assertAlmostEqual(field([[0, 0, 0]])[0], 0.25, places=3)
         self.assertEqual(field(np.zeros((5, 3))).shape, (5,))
+        self.assertEqual(field.metric_at(np.zeros((5, 3))).shape, (5, 3, 3))
+        np.testing.assert_array_equal(field.metric_at([[0, 0, 0]])[0], np.eye(3) / field([[0, 0, 0]])[0] ** 2)
         mesh = octafront.mesh(*sphere(), size_field=field)
         self.assertAlmostEqual(len(mesh) / field.expected_tets, 1, delta=0.25)
         self.assertEqual(octafront.mesh(*sphere(), size=field).report["hash"], mesh.report["hash"])

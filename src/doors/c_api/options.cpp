@@ -8,6 +8,7 @@
 #include "doors/c_api/json_keys.h"
 #include "sizing/field/packed_sizes.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -190,6 +191,14 @@ void octafront_sizes_free(octafront_sizes* sizes) {
 int octafront_sizes_at(const octafront_sizes* sizes, const double* points, size_t n, double* out) {
   return guarded([&] {
     for (std::size_t i = 0; i < n; ++i) out[i] = sizes->field.at({points[3 * i], points[3 * i + 1], points[3 * i + 2]});
+  });
+}
+
+int octafront_sizes_metric_at(const octafront_sizes* sizes, const double* points, size_t n, double* out) {
+  return guarded([&] {
+    for (std::size_t i = 0; i < n; ++i)
+      for (const auto& row : sizes->field.metric_at({points[3 * i], points[3 * i + 1], points[3 * i + 2]}))
+        out = std::copy(row.begin(), row.end(), out);
   });
 }
 

@@ -61,6 +61,10 @@ SizeField::~SizeField() {
 double SizeField::at(Vec3 p) const {
   return function_->at(p);
 }
+std::array<std::array<double, 3>, 3> SizeField::metric_at(Vec3 p) const {
+  const double h = at(p), m = 1 / (h * h);
+  return {{{m, 0, 0}, {0, m, 0}, {0, 0, m}}};
+}
 double SizeField::min_size() const {
   return function_->min_size();
 }

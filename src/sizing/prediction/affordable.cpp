@@ -4,7 +4,6 @@
 
 #include "base/geometry/measures.h"
 #include "base/mesh/index_range.h"
-#include "sizing/prediction/tets_per_size.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,6 +21,12 @@ constexpr int kPlaces = 1024;
 constexpr double kInsideAngle = std::numbers::pi / 2;
 
 }  // namespace
+
+void require_affordable(const std::string& what, double tets, const char* advice) {
+  if (tets <= static_cast<double>(kMostElements)) return;
+  throw OptionError(fmt::format("{} would give about {:.3g} elements, more than the {} that a mesh can hold: {}", what,
+                                tets, kMostElements, advice));
+}
 
 Affordable::Affordable(const SurfaceMesh& surface, const SizeOptions& options)
     : gradation_(options.gradation), least_(options.min_size.value_or(0)) {
@@ -66,11 +71,7 @@ double Affordable::tets_around(double length, double h) const {
 }
 
 void Affordable::require(const char* wish, double value, double tets) const {
-  if (tets <= static_cast<double>(kMostElements)) return;
-  throw OptionError(fmt::format(
-      "`{}` of {:.4g} would give about {:.3g} elements, more than the {} that a mesh can hold: ask for less, or set "
-      "`min_size`",
-      wish, value, tets, kMostElements));
+  require_affordable(fmt::format("`{}` of {:.4g}", wish, value), tets, "ask for less, or set `min_size`");
 }
 
 }  // namespace octafront

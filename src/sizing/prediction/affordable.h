@@ -5,9 +5,21 @@
 
 #include <cstddef>
 #include <functional>
+#include <string>
 #include <vector>
 
 namespace octafront {
+
+/// Tetrahedra per cube of the wanted edge length. Measured on uniform sizes of 1/20 and 1/50 of the diagonal over some
+/// twenty models: 9.24 with a spread of 3 %. (Space filled by regular tetrahedra would have 6 sqrt(2) = 8.49, the
+/// body-centred cubic lattice of that mean edge length has 9.45.)
+inline constexpr double kTetsPerCube = 9.24;
+/// Tetrahedra per square of the wanted edge length on the surface, where a wall has one layer of them: 1.47 for each
+/// triangle.
+inline constexpr double kTetsPerSquare = 3.4;
+
+/// Throws OptionError, with the number, if `what` gives more elements than a mesh can hold.
+void require_affordable(const std::string& what, double tets, const char* advice = "ask for a larger size");
 
 /// How many elements a wish for accuracy takes, estimated from the surface alone before anything is divided. Sizes are
 /// taken to grow at the gradation from where they are asked for, down to the mean depth of the model. A size is raised

@@ -12,7 +12,7 @@
 #include "base/mesh/complex.h"
 #include "sizing/field/background_grid.h"
 #include "sizing/field/inside_fraction.h"
-#include "sizing/prediction/tets_per_size.h"
+#include "sizing/prediction/affordable.h"
 #include "sizing/prediction/thin_walls.h"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 
 #include "base/core/parallel.h"
 #include "base/geometry/measures.h"
-#include "sizing/prediction/tets_per_size.h"
+#include "sizing/prediction/affordable.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,6 @@
 
 #include "sizing/field/change_size_field.h"
 #include "sizing/prediction/affordable.h"
-#include "sizing/prediction/tets_per_size.h"
 #include "sizing/sources/source_grid.h"
 
 #include <algorithm>

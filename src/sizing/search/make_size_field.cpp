@@ -3,10 +3,9 @@
 #include <octafront/error.h>
 
 #include "base/core/parallel.h"
-#include "base/mesh/index_range.h"
 #include "sizing/field/change_size_field.h"
+#include "sizing/prediction/affordable.h"
 #include "sizing/prediction/expected_tets.h"
-#include "sizing/prediction/tets_per_size.h"
 #include "sizing/search/budget.h"
 #include "sizing/search/count_search.h"
 #include "sizing/sources/check_size_options.h"
@@ -126,10 +125,7 @@ void refuse_huge_counts(const SurfaceMesh& surface, const WantedSizes& wanted) {
   const double largest = *std::max_element(wanted.face.begin(), wanted.face.end());
   const double by_volume = kTetsPerCube * std::abs(enclosed_volume(surface)) / (largest * largest * largest);
   const double count = std::max(by_volume, kTetsPerSquare * area(surface) / (largest * largest));
-  if (count <= static_cast<double>(kMostElements)) return;
-  throw OptionError(fmt::format(
-      "a size of {:.4g} would give about {:.3g} elements, more than the {} that a mesh can hold: ask for a larger size",
-      largest, count, kMostElements));
+  require_affordable(fmt::format("a size of {:.4g}", largest), count);
 }
 
 }  // namespace

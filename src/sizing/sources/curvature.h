@@ -7,13 +7,21 @@
 
 #include "base/mesh/known_surface.h"
 #include "sizing/prediction/affordable.h"
-#include "sizing/sources/face_neighbours.h"
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <vector>
 
 namespace octafront {
+
+/// Per triangle and corner i: the triangle across the edge from corner i to corner (i + 1) % 3; kNone where there is
+/// not exactly one other.
+using FaceNeighbours = std::vector<std::array<std::uint32_t, 3>>;
+
+/// Edges of `features` count as boundaries: nothing lies across them.
+FaceNeighbours smooth_face_neighbours(const EdgeTable& table, const std::vector<Edge>& features);
 
 /// Curvature of the smooth parts of a surface, per triangle; unit 1 / input unit.
 struct SurfaceCurvature {

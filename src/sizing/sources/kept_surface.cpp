@@ -4,7 +4,7 @@
 
 #include "base/geometry/measures.h"
 #include "sizing/sources/check_size_options.h"
-#include "sizing/sources/face_neighbours.h"
+#include "sizing/sources/curvature.h"
 #include "sizing/sources/given_sizes.h"
 #include "sizing/sources/model_extent.h"
 #include "sizing/sources/named_sizes.h"

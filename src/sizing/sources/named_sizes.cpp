@@ -6,8 +6,7 @@
 #include "base/geometry/triangle_tree.h"
 #include "base/mesh/complex.h"
 #include "base/mesh/curve_names.h"
-#include "base/mesh/index_range.h"
-#include "sizing/prediction/tets_per_size.h"
+#include "sizing/prediction/affordable.h"
 
 #include <algorithm>
 #include <cmath>
@@ -64,12 +63,7 @@ class Named {
   /// Points all over the inside of a region, so that its size holds in the middle too.
   void add_inside(const SurfaceMesh& boundary, const std::string& name, double h) {
     const double count = kTetsPerCube * std::abs(enclosed_volume(boundary)) / (h * h * h);
-    if (count > static_cast<double>(kMostElements))
-      throw OptionError(
-          fmt::format("size {:.4g} in \"{}\" would give about {:.3g} elements, more than the {} that a mesh can hold: "
-                      "ask for a larger "
-                      "size",
-                      h, name, count, kMostElements));
+    require_affordable(fmt::format("size {:.4g} in \"{}\"", h, name), count);
     const TriangleTree tree(boundary);
     const Box3 box = tree.box();
     const double step = kInside * h;

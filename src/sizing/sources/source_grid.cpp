@@ -1,10 +1,7 @@
 #include "sizing/sources/source_grid.h"
 
-#include <octafront/error.h>
-
-#include "base/mesh/index_range.h"
 #include "sizing/field/grid_caps.h"
-#include "sizing/prediction/tets_per_size.h"
+#include "sizing/prediction/affordable.h"
 
 #include <algorithm>
 #include <utility>
@@ -37,12 +34,8 @@ std::vector<SizeCap> caps_of_regions(const SizeOptions& options, const RootCube&
     const Vec3 reach{r.radius, r.radius, r.radius}, side{root.side, root.side, root.side};
     const Vec3 extent = max(min(r.hi + reach, root.lo + side) - max(r.lo - reach, root.lo), Vec3{});
     const double count = kTetsPerCube * extent.x / h * extent.y / h * extent.z / h;
-    if (count > static_cast<double>(kMostElements)) {
-      throw OptionError(
-          fmt::format("size {:.4g} in the region at ({:.6g}, {:.6g}, {:.6g}) would give about {:.3g} elements, "
-                      "more than the {} that a mesh can hold: ask for a larger size",
-                      h, r.lo.x, r.lo.y, r.lo.z, count, kMostElements));
-    }
+    require_affordable(fmt::format("size {:.4g} in the region at ({:.6g}, {:.6g}, {:.6g})", h, r.lo.x, r.lo.y, r.lo.z),
+                       count);
   }
   return caps;
 }

@@ -3,7 +3,6 @@
 #include "base/geometry/measures.h"
 #include "sizing/prediction/affordable.h"
 #include "sizing/sources/curvature.h"
-#include "sizing/sources/face_neighbours.h"
 #include "sizing/sources/feature_sizes.h"
 #include "sizing/sources/gaps.h"
 #include "sizing/sources/given_sizes.h"
@@ -39,12 +38,6 @@ struct Choice {
   double curvature = 0, gap = 0, feature_elements = 0;  ///< 0: not asked
 };
 
-double largest_of(const std::vector<PointSize>& points) {
-  double largest = 0;
-  for (const PointSize& s : points) largest = std::max(largest, s.size);
-  return largest;
-}
-
 bool has_automatic_base(const SizeOptions& o) {
   return !o.size && !o.curvature && !o.gap && !o.feature_elements && !o.facets && !o.callback && o.point_sizes.empty();
 }
@@ -57,9 +50,8 @@ Choice choose(const SurfaceMesh& surface, const SizeOptions& o) {
   // Sizes at points and a function speak for the whole surface: there is no need of a size where nobody asks, and ours
   // would cut what they ask for.
   if (!o.size && o.callback) c.base = model_extent(surface);
-  if (!o.size && !o.point_sizes.empty()) c.base = largest_of(o.point_sizes);
-  if (o.max_size)
-    c.base = o.size ? std::min(c.base, *o.max_size) : (c.automatic ? std::min(c.base, *o.max_size) : *o.max_size);
+  if (!o.size && !o.point_sizes.empty()) c.base = std::ranges::max_element(o.point_sizes, {}, &PointSize::size)->size;
+  if (o.max_size) c.base = o.size || c.automatic ? std::min(c.base, *o.max_size) : *o.max_size;
   c.base = std::max(c.base, o.min_size.value_or(0));
   const double usual = o.callback && !o.size ? std::min(c.base, ours) : c.base;
   c.floor = o.min_size.value_or(usual * (c.automatic ? kAutomaticFloor : kChosenFloor));
@@ -73,11 +65,8 @@ Choice choose(const SurfaceMesh& surface, const SizeOptions& o) {
 /// Facet areas averaged over each triangle and its neighbours, as sizes: the side of a square of that area. This is the
 /// paper's rule, by which a leaf is divided while its face is larger than the facets inside it.
 void apply_facets(const SurfaceMesh& surface, const FaceNeighbours& across, double floor, std::vector<double>& face) {
-  std::vector<double> areas(surface.triangles.size());
-  for (std::size_t f = 0; f < areas.size(); ++f) {
-    const Triangle& t = surface.triangles[f];
-    areas[f] = triangle_area(surface.points, t);
-  }
+  std::vector<double> areas;
+  for (const Triangle& t : surface.triangles) areas.push_back(triangle_area(surface.points, t));
   for (std::size_t f = 0; f < areas.size(); ++f) {
     double sum = areas[f];
     int n = 1;

@@ -77,6 +77,9 @@ TEST(CApi, AMeshAndWhatIsKnownOfIt) {
   double h = 0;
   EXPECT_EQ(octafront_sizes_at(sizes.get(), middle, 1, &h), 0);
   EXPECT_NEAR(h, 0.3, 1e-9);
+  double metric[9] = {};
+  EXPECT_EQ(octafront_sizes_metric_at(sizes.get(), middle, 1, metric), 0);
+  for (int i = 0; i < 9; ++i) EXPECT_EQ(metric[i], i % 4 == 0 ? 1 / (h * h) : 0);
 }
 
 TEST(CApi, SizesAreAskedForInBatchesAndTheWorkerWaits) {

@@ -78,6 +78,27 @@ TEST(SizeField, FollowsScaleAndShift) {
   }
 }
 
+/// An edge of the size, in whatever direction, has length 1 by the metric; shorter ones have less.
+TEST(SizeField, MetricsMeasureEdgesInSizes) {
+  const SurfaceMesh surface = torus(50, 20);
+  const SizeField h = sizes_of(surface, {});
+  std::mt19937 random(4);
+  for (int n = 0; n < 200; ++n) {
+    const Vec3 p = random_point(random, bounding_box(surface.points));
+    const Vec3 edge = h.at(p) * normalized(random_point(random, {{-1, -1, -1}, {1, 1, 1}}));
+    const auto metric = h.metric_at(p);
+    double squared = 0;
+    for (int i = 0; i < 3; ++i) {
+      for (int j = 0; j < 3; ++j) {
+        EXPECT_EQ(metric[i][j], metric[j][i]);
+        squared += edge[i] * metric[i][j] * edge[j];
+      }
+    }
+    ASSERT_NEAR(squared, 1, 1e-12);
+  }
+  EXPECT_EQ(SizeField::uniform(0.5).metric_at({})[2][2], 4);
+}
+
 TEST(SizeField, IsTheSameEveryTime) {
   const SizeField a = sizes_of(torus(60, 24), {}), b = sizes_of(torus(60, 24), {});
   EXPECT_EQ(as_octree_field(a)->h, as_octree_field(b)->h);

@@ -1,6 +1,6 @@
 #include "sizing/prediction/expected_tets.h"
 
-#include "sizing/prediction/tets_per_size.h"
+#include "sizing/prediction/affordable.h"
 #include "sizing/size_cases.h"
 #include "support/named_surfaces.h"
 
