@@ -147,7 +147,7 @@ class Collector {
   std::string first_refusal_;
 };
 
-std::string in_words(const Volume& v) {
+std::string volume_in_words(const Volume& v) {
   return fmt::format("{} {}, {} of {} x {} pixels", v.modality, io::in_quotes(v.description),
                      octafront::counted(v.slices.size(), "slice"), v.slices[0].size[0], v.slices[0].size[1]);
 }
@@ -156,7 +156,7 @@ const Volume& chosen(const std::vector<Volume>& volumes, const ImageChoice& choi
   if (choice.series == 0 && volumes.size() == 1) return volumes[0];
   if (choice.series != 0 && choice.series <= volumes.size()) return volumes[choice.series - 1];
   std::string list;
-  for (std::size_t v = 0; v < volumes.size(); ++v) list += fmt::format("\n  {}: {}", v + 1, in_words(volumes[v]));
+  for (std::size_t v = 0; v < volumes.size(); ++v) list += fmt::format("\n  {}: {}", v + 1, volume_in_words(volumes[v]));
   throw InputError(fmt::format("holds {}; choose one by its number (`series`):{}",
                                octafront::counted(volumes.size(), "series", "series"), list));
 }
@@ -319,7 +319,7 @@ Image read_series(const SliceFiles& files, const ImageChoice& choice, const RunC
   check_room(volume, files);
   Image image;
   image.notes = collector.notes();
-  image.format = fmt::format("DICOM, {}, {}", volume.syntax, in_words(volume));
+  image.format = fmt::format("DICOM, {}, {}", volume.syntax, volume_in_words(volume));
   image.unit = "mm";
   image.frame = "LPS";
   image.grid = Stack(volume, files).grid(image.notes);
