@@ -11,7 +11,7 @@ import resource
 import subprocess
 import tempfile
 
-from origin import origin
+from origin import written_by
 
 OVER = 1.3  # met within 30 %
 
@@ -56,7 +56,7 @@ def page(rows, failed):
     off = [r for r in rows if abs(r["said"] / r["tets"] - 1) > OVER - 1]
     lines = [
         "# The budget of automatic sizes", "",
-        f"Written by `bench/run.sh budget` ({origin()}), one model at a time on one thread; what the budget is: "
+        f"{written_by('bench/run.sh budget')}, one model at a time on one thread; what the budget is: "
         "`docs/how/sizes-and-surface.md`. *Said* is the prediction once the surface is made, which is what `--dry-run` "
         "says; *least β* and *least angle* (dihedral, degrees) are of the worst element, forced by the input or not; "
         "*work* is the triangles of all rounds of the surface front over those of the last.", "",

@@ -22,6 +22,7 @@ sys.path.insert(0, str(ROOT / "scripts/lib"))
 import damages  # noqa: E402
 import solids  # noqa: E402
 from bounded import run  # noqa: E402
+from origin import ORIGIN, written_by  # noqa: E402
 
 PAGE = ROOT / "docs/measured/damage.md"
 KINDS = damages.KINDS | damages.MORE
@@ -86,7 +87,7 @@ def rows_of(a, name, solid, done):
         def row(kind, surface, **more):
             solids.write_off(file, surface)
             done.add((name, kind))
-            return {"model": name, "kind": kind} | more | meshed(a.program, file, folder, a.timeout)
+            return {"model": name, "kind": kind, "origin": ORIGIN} | more | meshed(a.program, file, folder, a.timeout)
         for kind in [k for k in a.kinds.split(",") if (name, k) not in done]:
             rng = np.random.default_rng(zlib.crc32(f"{name} {kind}".encode()))
             try:
@@ -147,7 +148,7 @@ def page(rows, command, version):
     lines = [f"| {r['model']} | {r['kind']} | {r['what']} | " + (f"{r['failed'].replace('|', '/')} |" if "failed" in r else
              f"damaged {r['part']:.2f} %: elements {r['elements x']:.2f} times, time {r['time x']:.2f} times |") for r in left]
     return "\n".join([
-        "# What damage costs", "", f"Written by `{command}`, {version}.", "",
+        "# What damage costs", "", f"{written_by(command, {r['origin'] for r in rows})}, by {version}.", "",
         f"{len({r['model'] for r in rows})} clean models, each damaged in up to {len({r['kind'] for r in rows})} ways (`scripts/lib/damages.py`), meshed with default options "
         "(and `--sheets drop`, on one thread), over the undamaged model (divided into as small triangles, where holes need them). CPU times of runs that take less than "
         f"{NOT_THE_TIME} s do not count. *Damaged*: the area of what is no longer "

@@ -10,6 +10,7 @@ import concurrent.futures
 import pathlib
 import statistics
 
+from origin import written_by
 from status import mesh_and_judge
 
 RUNS = {"automatic": [], "100 k": ["--elements", "100000"]}
@@ -71,8 +72,9 @@ def main():
     models = sorted([*pathlib.Path("models/clean").iterdir(), *pathlib.Path("models/derived").iterdir()],
                     key=lambda p: (p.stat().st_size, p.name))
     models = [m for m in models if a.only in m.name][::a.every]
+    command = "bench/run.sh derived" + (f" --every {a.every}" if a.every > 1 else "")
     text = ["# The clean models and what is derived from them", "",
-            f"Written by `bench/run.sh derived{f' --every {a.every}' if a.every > 1 else ''}` over {len(models)} surfaces "
+            f"{written_by(command)} over {len(models)} surfaces "
             "(`scripts/get-models.sh`, `scripts/derive-models.sh`), two at a time on two cores. What forced means: "
             "`docs/how/sizes-and-surface.md`. The worst ten at automatic sizes, each around its worst element, forced or not "
             "(`scripts/pictures.sh`):", "", "![](../images/derived-worst.png)", ""]

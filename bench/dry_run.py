@@ -11,6 +11,8 @@ import subprocess
 import sys
 import tempfile
 
+from origin import written_by
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 CASES = [  # model, options
     ("samples/bracket.stl", []),
@@ -73,7 +75,7 @@ def main():
     if "--fit" not in sys.argv:
         page = ROOT / "docs/use/command-line.md"
         before, rest = page.read_text().split("<!-- dry run -->")
-        page.write_text(before + "<!-- dry run -->\n" + "\n".join(lines) + "\n<!-- end -->" + rest.split("<!-- end -->")[1])
+        page.write_text(before + "<!-- dry run -->\n" + f"{written_by('bench/run.sh dry_run')}.\n\n" + "\n".join(lines) + "\n<!-- end -->" + rest.split("<!-- end -->")[1])
 
 
 if __name__ == "__main__":

@@ -10,6 +10,8 @@ import pathlib
 import subprocess
 import tempfile
 
+from origin import written_by
+
 MODELS = ["bunny00.off", "elephant.off", "fandisk_large.off", "anchor_dense.off", "armadillo.off", "3torus.off",
           "knot1.off", "rotor.off", "joint.off", "homer.off"]
 COUNTS = [10_000, 100_000, 1_000_000]
@@ -66,11 +68,11 @@ def main():
     parser.add_argument("--fast", action="store_true")
     args = parser.parse_args()
     diagonals = {r["file"]: float(r["bbox_diagonal"]) for r in csv.DictReader(open("bench/models.csv"))}
-    text_lines = [*predictions(args.build, diagonals), "", *targets(args.build, COUNTS[: 2 if args.fast else 3])]
+    text_lines = [f"{written_by('bench/run.sh elements')}.", "", *predictions(args.build, diagonals), "", *targets(args.build, COUNTS[: 2 if args.fast else 3])]
     page = pathlib.Path("docs/measured/benchmarks.md")
     text = page.read_text()
     if MARKS[0] not in text:
-        text += f"\n## Numbers of elements, and sizes in the volume\n\n`bench/run.sh elements`.\n\n{MARKS[0]}\n{MARKS[1]}\n"
+        text += f"\n## Numbers of elements, and sizes in the volume\n\n{MARKS[0]}\n{MARKS[1]}\n"
     before, after = text.split(MARKS[0])[0], text.split(MARKS[1])[1]
     page.write_text(before + MARKS[0] + "\n" + "\n".join(text_lines) + "\n" + MARKS[1] + after)
 

@@ -13,6 +13,7 @@ import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import experiments_page  # noqa: E402
+from origin import ORIGIN  # noqa: E402
 from peers import surfaces  # noqa: E402
 
 CLEAN = pathlib.Path("models/clean")
@@ -93,11 +94,19 @@ class Experiments:
                     if made.exists():
                         shutil.copy(made, IMAGES / f"experiments-{run}-{chart}.{ending}")
 
+    def keep_origin(self, step):
+        """Which build a step measured: the page may be made later, of steps of several days."""
+        if step in MEASURING:
+            kept = self.work / "origins.json"
+            origins = json.loads(kept.read_text()) if kept.exists() else {}
+            kept.write_text(json.dumps(origins | {step: ORIGIN}))
+
     def page(self):
         pathlib.Path("docs/measured/experiments.md").write_text(experiments_page.page(self.work))
         print("written: docs/measured/experiments.md")
 
 
+MEASURING = {"compare", "growth", "skull", "peers"}
 STEPS = ["dragon", "compare", "growth", "skull", "peers", "pictures", "page"]
 
 
@@ -112,6 +121,7 @@ def main():
             parser.error(f"no step {step}")
         start = time.monotonic()
         getattr(experiments, step)()
+        experiments.keep_origin(step)
         print(f"{step}: {time.monotonic() - start:.0f} s", flush=True)
 
 

@@ -2,10 +2,10 @@
 import csv
 import json
 import pathlib
-import platform
-import subprocess
 
 from importlib.machinery import SourceFileLoader
+
+from origin import written_by
 
 METHODS = ["octree-aft", "aft", "octree"]
 CLASSES = ["0 - 0.2", "0.2 - 0.4", "0.4 - 0.6", "0.6 - 0.8", "0.8 - 1"]
@@ -34,13 +34,6 @@ def share(rows, k):
     elements = sum(int(r["elements"]) for r in rows)
     count = sum(int(r[CLASS_KEYS[k]]) for r in rows)
     return (100 * count / elements if elements else 0.0), count
-
-
-def machine():
-    cpu = next((line.split(":")[1].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")), "?")
-    commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True).stdout.strip()
-    cores = subprocess.run(["nproc"], capture_output=True, text=True).stdout.strip()
-    return f"{cores} cores of {cpu}, {platform.system()} {platform.release().split('-')[0]}, commit {commit or '?'}"
 
 
 def quality_table(runs):
@@ -165,7 +158,7 @@ def page(work):
     kept, anew, failed = peer_tables(work)
     template = pathlib.Path(__file__).with_name("experiments.md.in").read_text()
     models = len({r["model"] for r in compared})
-    values = {"machine": machine(), "models": models, "targets": table(["what", "wanted", "measured", ""], target_rows(work)),
+    values = {"written": written_by("scripts/experiments.sh", json.loads((work / "origins.json").read_text()).values()), "models": models, "targets": table(["what", "wanted", "measured", ""], target_rows(work)),
               "quality": quality_table(compared), "runs": model_table(compared),
               "growth": model_table(runs_of(work / "growth")), "skull": skull_table(work), "kept": kept, "anew": anew,
               "failed": failed}

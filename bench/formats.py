@@ -5,6 +5,8 @@ import subprocess
 import sys
 import tempfile
 
+from origin import written_by
+
 build, millions = pathlib.Path(sys.argv[1]), sys.argv[2] if len(sys.argv) > 2 else "10"
 with tempfile.TemporaryDirectory(dir=build) as folder:
     tables = [subprocess.run([build / "bench/octafront_write_formats", size, folder, order, *formats], check=True, text=True,
@@ -14,7 +16,7 @@ with tempfile.TemporaryDirectory(dir=build) as folder:
 page = pathlib.Path("docs/measured/formats-bench.md")
 page.write_text(f"""# How fast meshes are written
 
-`bench/run.sh formats {millions}`: a bent box of two regions and six patches; each format beside a plain write of as many bytes to
+{written_by(f'bench/run.sh formats {millions}')}: a bent box of two regions and six patches; each format beside a plain write of as many bytes to
 the same disk ("of a plain write": its share of that speed), flushed to the disk both. Memory is the highest of the process so far,
 the mesh included. VTU is compressed: its megabytes are a fifth of what the others write.
 

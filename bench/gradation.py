@@ -8,6 +8,7 @@ import pathlib
 import statistics
 import tempfile
 
+from origin import written_by
 from status import mesh_and_judge
 
 MODELS = ["bunny00.off", "armadillo.off", "couplingdown.off"]
@@ -89,7 +90,7 @@ def main():
             ("Sizes 1000 : 1", "A cube with elements of a tenth of its side, and of a thousandth of that at a point inside.", [cube],
              ["--size", "0.1", "--regions", point]),
         ]
-        text = ["# How fast sizes may change", "", "Written by `bench/run.sh gradation`, one thread. Means over the models, worst "
+        text = ["# How fast sizes may change", "", f"{written_by('bench/run.sh gradation')}, one thread. Means over the models, worst "
                 "of all.", ""]
         for title, what, which, options in parts[:a.parts]:
             text += [f"## {title}", "", what, "", table(a.build, which, options, a.timeout)]

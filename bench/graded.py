@@ -13,9 +13,10 @@ import json
 import pathlib
 import tempfile
 
+from origin import written_by
 from peers import gmsh, surfaces, tetgen
 from peers.process import finish, run_measured
-from volume import cpu_name, evaluate, exponent
+from volume import evaluate, exponent
 
 MODELS = ["bunny00.off", "armadillo.off", "elephant.off", "couplingdown.off", "pinion.off"]
 COUNTS = [1_000_000]
@@ -181,7 +182,7 @@ def write(sections):
         text += f"\n{MARKS[0]}\n{MARKS[1]}\n"
     before, after = text.split(MARKS[0])[0], text.split(MARKS[1])[1]
     lines = "\n\n".join(f"### {title}\n\n" + "\n".join(rows) for title, rows in sections.items())
-    head = f"## Sizes that follow curvature\n\n{__doc__.split(chr(10) * 2)[2].strip()}\n\nWritten by `bench/run.sh graded`, {cpu_name()}.\n\n"
+    head = f"## Sizes that follow curvature\n\n{__doc__.split(chr(10) * 2)[2].strip()}\n\n{written_by('bench/run.sh graded')}.\n\n"
     PAGE.write_text(before + MARKS[0] + "\n" + head + lines + "\n" + MARKS[1] + after)
 
 

@@ -10,6 +10,7 @@ import argparse
 import gzip
 import json
 import pathlib
+import re
 import struct
 import subprocess
 import sys
@@ -18,6 +19,7 @@ import tempfile
 BENCH = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(BENCH))
 from dicom_series import write_series  # noqa: E402
+from origin import ORIGIN, written_by  # noqa: E402
 from peers.process import finish, run_measured  # noqa: E402
 
 # Name, file, options, what octafront_judge_image is told.
@@ -93,7 +95,7 @@ def mesh_with_cgal(build, image, folder, timeout, size):
 
 
 def row_of(name, outcome, found):
-    row = {"name": name, "error": outcome.error, "cpu_seconds": outcome.cpu_seconds, "peak_mb": outcome.peak_bytes / 1e6}
+    row = {"name": name, "origin": ORIGIN, "error": outcome.error, "cpu_seconds": outcome.cpu_seconds, "peak_mb": outcome.peak_bytes / 1e6}
     if isinstance(outcome.log, dict):
         row.update(outcome.log)
     return {**row, **found} if found else row
@@ -213,27 +215,30 @@ def main():
         write_page(results)
 
 
-def with_old_rows(lines, old, names):
-    """The table with the rows of the page whose volumes were not measured now, all in the order of `names`."""
-    def name_of(row):
-        return row.split(" | ")[0].removeprefix("| ")
-    rows = {name_of(row): row for row in [*old[2:], *lines[2:]]}
-    return [*lines[:2], *(rows[name] for name in names if name in rows)]
+def part_of_page(command, shown, lines, old, names):
+    """Origin and table, with the rows of the old part whose volumes were not measured now, all in the order of `names`."""
+    def by_name(rows):
+        return {row.split(" | ")[0].removeprefix("| "): row for row in rows if row.startswith("| ")}
+    before, now = by_name(old.splitlines()), by_name(lines[2:])
+    origins = {row["origin"] for row in shown if "origin" in row}
+    if any(name in before and name not in now for name in names):
+        origins.update(re.search(r"\((commit .*)\)", old)[1].split("; "))
+    rows = before | now
+    return "\n".join([f"{written_by(command, origins)}.", "", *lines[:2], *(rows[name] for name in names if name in rows)])
 
 
 def write_page(results):
     """Each table stands between its marks; the text around them is written by hand."""
-    page = PAGE.read_text()
-    rows = results.of("alone", [name for name, *_ in VOLUMES])
-    for mark, lines in (("volumes", table(rows)), ("poor elements", poor_elements(rows)),
-                        ("beside CGAL", table(side_by_side(results)))):
+    page, names = PAGE.read_text(), [name for name, *_ in VOLUMES]
+    rows, beside = results.of("alone", names), side_by_side(results)
+    both = [f"{name}: {who}" for name in PEERS for who in ("Octafront", "CGAL 5.5")]
+    alone = "bench/run.sh images --page"
+    for mark, *part, order in (("volumes", alone, rows, table(rows), names),
+                               ("poor elements", alone, rows, poor_elements(rows), names),
+                               ("beside CGAL", "bench/run.sh images --peers --page", beside, table(beside), both)):
         before, rest = page.split(f"<!-- {mark} -->\n")
         old, behind = rest.split("<!-- end -->", 1)
-        names = [name for name, *_ in VOLUMES]
-        if mark == "beside CGAL":
-            names = [f"{name}: {who}" for name in PEERS for who in ("Octafront", "CGAL 5.5")]
-        lines = with_old_rows(lines, old.splitlines(), names)
-        page = before + f"<!-- {mark} -->\n" + "\n".join(lines) + "\n<!-- end -->" + behind
+        page = before + f"<!-- {mark} -->\n" + part_of_page(*part, old, order) + "\n<!-- end -->" + behind
     PAGE.write_text(page)
 
 

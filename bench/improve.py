@@ -18,6 +18,7 @@ import shutil
 import sys
 import tempfile
 
+from origin import written_by
 from peers import gmsh, netgen, surfaces, tetgen
 from peers.process import finish, run_measured
 
@@ -251,7 +252,7 @@ def main():
     build = args.build.resolve()
     head = ["model", "level", "elements", *(c[0] for c in COLUMNS.values()), "below .4, of them not forced",
             "edge over wanted", "Hausdorff %", "check"]
-    text = ["# Improvement, measured", "", "Written by `bench/run.sh improve`; what is measured, and how, is said at the top of "
+    text = ["# Improvement, measured", "", f"{written_by('bench/run.sh improve')}; what is measured, and how, is said at the top of "
             "`bench/improve.py`. CPU time of one thread. A figure in bold misses its target.", ""]
     with tempfile.TemporaryDirectory() as scratch:
         folder = pathlib.Path(scratch)

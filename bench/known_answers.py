@@ -26,6 +26,7 @@ damage = importlib.util.module_from_spec(spec)
 spec.loader.exec_module(damage)
 import solids  # noqa: E402, from scripts/lib
 from bounded import run  # noqa: E402, from scripts/lib
+from origin import ORIGIN, written_by  # noqa: E402
 
 TOLERANCE = 1e-3          # of the diagonal: the default of --tolerance
 MESH_AT_DAMAGE = 2e-3     # the mesh keeps within the tolerance of what repair moved
@@ -92,7 +93,7 @@ def do_case(build, number, a):
     kind, name, made = damage.make(number, a.seed, a.kinds.split(","), a.generated)
     with tempfile.TemporaryDirectory() as folder:
         known = damage.write(folder, number, kind, name, made, a.seed)
-        row = judge_case(build, folder, known, a.timeout, a.steps.split(","))
+        row = judge_case(build, folder, known, a.timeout, a.steps.split(",")) | {"origin": ORIGIN}
         if row["wrong"] and a.keep:
             kept = pathlib.Path(a.keep)
             kept.mkdir(parents=True, exist_ok=True)
@@ -171,7 +172,7 @@ def page(rows, command):
     failed = [r for r in rows if r["wrong"]]
     lines = [f"| {r['case']} | {r['kind']} | {r['model']} | {r['what']} | {'; '.join(r['wrong']).replace('|', '/')} |" for r in failed]
     return "\n".join([
-        "# Damaged models whose answer is known", "", f"Written by `{command}`.", "",
+        "# Damaged models whose answer is known", "", f"{written_by(command, {r['origin'] for r in rows})}.", "",
         f"{len(rows)} clean models, fetched and generated, damaged in known ways (`scripts/damage-models.py` says how), repaired and",
         "meshed with default options and `--sheets drop`, and measured against the undamaged model (`bench/judge_answer.cpp`), which repair never sees:", "",
         f"- **meshed**: `octafront mesh` gave a mesh. **All right**: the repaired surface and the mesh pass every test below.",

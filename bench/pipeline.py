@@ -10,6 +10,8 @@ import pathlib
 import subprocess
 import tempfile
 
+from origin import written_by
+
 MODELS = ["bunny00.off", "refined_elephant.off", "fandisk_large.off"]
 COUNTS = [100_000, 1_000_000]
 MARKS = ("<!-- pipeline: begin -->", "<!-- pipeline: end -->")
@@ -91,9 +93,10 @@ def main():
             if args.beside:
                 ratios.append(ratio_row(model, count, *made))
                 print(ratios[-1], flush=True)
-    replace(MARKS, lines)
+    said = f"{written_by('bench/run.sh pipeline')}, the least of {args.runs} runs."
+    replace(MARKS, [said, "", *lines])
     if args.beside:
-        replace(BESIDE_MARKS, ratios)
+        replace(BESIDE_MARKS, [f"{written_by('bench/run.sh pipeline --beside PROGRAM')}.", "", *ratios])
 
 
 main()

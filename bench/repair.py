@@ -18,6 +18,7 @@ import tempfile
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "scripts/lib"))
 from bounded import run  # noqa: E402
+from origin import ORIGIN, written_by  # noqa: E402
 
 PAGE = ROOT / "docs/measured/repair-status.md"
 TOLERANCE = 1e-3   # of the diagonal
@@ -49,7 +50,7 @@ def measure(build, model, result):
 
 def do_model(build, row, a):
     model = pathlib.Path("models/dirty", row["file"])
-    out = {"file": row["file"], "defects": row["defects"], "faces": row["faces"]}
+    out = {"file": row["file"], "defects": row["defects"], "faces": row["faces"], "origin": ORIGIN}
     with tempfile.TemporaryDirectory() as folder:
         for step, name, options in (("repair", "surface.obj", []), ("mesh", "mesh.vtu", ["--threads", "1"])):
             result, report = pathlib.Path(folder, name), pathlib.Path(folder, step + ".json")
@@ -140,7 +141,7 @@ def page(rows):
             "input lost outside, % of area", "inside", "only input, only mesh inside, points", "bodies", "tets",
             "angles °, mean β", "CPU s repair, mesh", "MB", "what was done, or why not"]
     return "\n".join([
-        "# Defective models", "", "Written by `bench/run.sh repair` (models: `scripts/get-models.sh`). O open, E non-manifold edge, V non-manifold "
+        "# Defective models", "", f"{written_by('bench/run.sh repair', {r['origin'] for r in rows})}. Models: `scripts/get-models.sh`. O open, E non-manifold edge, V non-manifold "
         "vertex, S self-intersection, R misoriented, I inside out, D degenerate, U unused vertices.", "",
         "Distances in ‰ of the diagonal, measured by sampling from the boundary to the input, except on the patch `closed by repair`. "
         "*Lost*: the part of the input's area farther than 1 ‰ from the boundary, and outside of it (sheets, fins) or inside (inner walls, "

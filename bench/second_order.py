@@ -10,6 +10,8 @@ import pathlib
 import statistics
 import subprocess
 
+from origin import written_by
+
 PAGE = pathlib.Path("docs/how/second-order.md")
 
 
@@ -91,9 +93,10 @@ def main():
     parser.add_argument("build", type=pathlib.Path)
     parser.add_argument("--shapes", action="store_true")
     args = parser.parse_args()
-    replace("shapes", shapes(args.build))
+    said = [f"{written_by('bench/run.sh second_order')}.", ""]
+    replace("shapes", said + shapes(args.build))
     if not args.shapes:
-        replace("models", models(args.build))
+        replace("models", said + models(args.build))
 
 
 main()

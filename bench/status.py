@@ -12,6 +12,8 @@ import subprocess
 import tempfile
 import time
 
+from origin import written_by
+
 SKULLS = ["skull_119k.off", "skull_204k.off", "skull_534k.off"]  # isosurfaces of CT volumes, only kept
 SKULL_TIMEOUT = 1200
 
@@ -177,8 +179,8 @@ def main():
     if args.only:
         return
     text = ["# Status over all test models", "",
-            "Written by `bench/run.sh status` (models: `scripts/get-models.sh`; two cores of a shared machine, so times "
-            "are rough). Every file is read back and judged by `bench/evaluate.cpp`: validity by exact signs, two-sided "
+            f"{written_by('bench/run.sh status')}. Models: `scripts/get-models.sh`. Two at a time, so times are rough. "
+            "Every file is read back and judged by `bench/evaluate.cpp`: validity by exact signs, two-sided "
             "Hausdorff distance to the input by sampling, volume against the enclosed volume of the input.", "",
             *summary, "", "## Clean models, automatic size", "", *table(auto, True), "",
             "## Clean models and CT isosurfaces, surface kept", "",

@@ -14,6 +14,8 @@ import resource
 import subprocess
 import tempfile
 
+from origin import written_by
+
 SETTINGS = [("automatic", None), ("diagonal / 40", 40), ("diagonal / 100", 100)]
 SPEED_MODELS = ["bunny00.off", "elephant.off", "fandisk_large.off", "anchor_dense.off", "armadillo.off", "3torus.off"]
 SPEED_TRIANGLES = 500_000
@@ -238,7 +240,7 @@ def main():
     if args.only:
         print("\n".join(tables))
         return
-    note = ("Written by `bench/run.sh surface`. *Forced* are triangles with a corner between two feature edges that "
+    note = (f"{written_by('bench/run.sh surface')}. *Forced* are triangles with a corner between two feature edges that "
             "enclose less than 13°, with a feature edge shorter than .35 of the size, or between two lines that run side "
             "by side nearer than .08 of the size asked for: details finer than the size. Straight lines count from 4 "
             "sizes on.")
@@ -248,7 +250,7 @@ def main():
     text = page.read_text()
     if MARKS[0] not in text:
         text += f"\n## Surfaces\n\n{MARKS[0]}\n{MARKS[1]}\n"
-    middle = ["`bench/run.sh surface`; model by model: `docs/measured/surface-status.md`. How many of the models reach each target:",
+    middle = [f"{written_by('bench/run.sh surface')}; model by model: `docs/measured/surface-status.md`. How many of the models reach each target:",
               "", *summary, "", f"Speed at {SPEED_TRIANGLES:,} triangles, one thread:", "", *rates,
               "", "CPU seconds of size field and surface front by the number of triangles:", "", *growths]
     if compared:

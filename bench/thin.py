@@ -8,13 +8,12 @@ of another build stay as they are.
 import argparse
 import math
 import pathlib
-import platform
 import subprocess
 import sys
 import tempfile
-import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+from origin import written_by  # noqa: E402
 from peers import gmsh, tetgen  # noqa: E402
 from peers.process import finish, run_measured  # noqa: E402
 from peers.surfaces import write_off  # noqa: E402
@@ -145,10 +144,9 @@ def main():
                     print(rows[-1], flush=True)
     if not a.page:
         return
-    commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True).stdout.strip()
     PAGE.write_text("\n".join([
         "# Thin bodies", "",
-        f"Written by `bench/run.sh thin --page` at {commit}, {time.strftime('%Y-%m-%d')}, {platform.machine()}, one thread. "
+        f"{written_by('bench/run.sh thin --page')}, one thread. "
         "*Before*: commit 912d740, by `--before PROGRAM`, on 2026-11-24.", "",
         "Plates of 1 x 1, discs of radius 1 (48 corners), tubes of radius 1 and height 2 (48 corners), shells of spheres of radius 1 "
         "(10,240 triangles), turned by some angles; thickness in the same units. Volume against the input's, in percent; every file "

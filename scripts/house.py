@@ -13,6 +13,9 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+sys.path.append(str(ROOT / "bench"))
+from origin import written_by  # noqa: E402
+
 INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"]+)"', re.M)
 
 
@@ -101,7 +104,7 @@ def picture(house):
 def main():
     houses = [House(commit) for commit in sys.argv[1:]] + [House(None)]
     now = houses[-1]
-    print("# The house\n\nWhat `ARCHITECTURE.md` says in words, counted: `scripts/house.py", *sys.argv[1:], end="` wrote this page.\n\n")
+    print("# The house\n\nWhat `ARCHITECTURE.md` says in words, counted.", written_by(" ".join(["scripts/house.py", *sys.argv[1:]])) + ".\n")
     print("| commit | folders in `src/` | rooms | arrows between rooms | circles of rooms | arrows between folders | circles of these | files | most in a room | lines |")
     print("| --- |" + " ---: |" * 9)
     for house in houses:

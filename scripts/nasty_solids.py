@@ -11,12 +11,10 @@ octafront (build/release, or OCTAFRONT=FILE) and nothing else.
 """
 import argparse
 import collections
-import datetime
 import json
 import math
 import os
 import pathlib
-import platform
 import resource
 import statistics
 import subprocess
@@ -25,8 +23,9 @@ import tempfile
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(ROOT / "scripts/lib"))
+sys.path[:0] = [str(ROOT / "scripts/lib"), str(ROOT / "bench")]
 import nasty_solids as solids
+from origin import written_by
 
 OCTAFRONT = os.environ.get("OCTAFRONT", str(ROOT / "build/release/cli/octafront"))
 PAGE = ROOT / "docs/measured/nasty-solids.md"
@@ -138,13 +137,11 @@ def table(runs):
 
 
 def page(runs, arguments, plain):
-    git = subprocess.run(["git", "-C", ROOT, "log", "-1", "--format=%h"], capture_output=True, text=True, check=False).stdout.strip()
-    processor = next((line.partition(":")[2].strip() for line in open("/proc/cpuinfo") if line.startswith("model name")), platform.machine())
+    command = f"scripts/nasty_solids.py {arguments.cases} --page"
     faulty = [r for r in runs if r.faults]
     PAGE.write_text("\n".join([
         "# Nasty solids", "",
-        "Written by `scripts/nasty_solids.py --page`; do not edit.", "",
-        f"Cases {arguments.cases}, seed {arguments.seed}, {len(runs)} runs at commit {git}, {datetime.date.today()}, {processor}.", "",
+        f"{written_by(command)}: cases {arguments.cases}, seed {arguments.seed}, {len(runs)} runs.", "",
         "Generated closed solids that are legal and awkward: `scripts/lib/nasty_solids.py` says which. Each is meshed with automatic sizes, with"
         f" `--size` of an eighth of its diagonal (coarse), and with one for about {FINE:,} elements (fine), on one thread. A run is good if"
         f" it ends with a valid mesh, in {FIXED_SECONDS} CPU s and {TIMES_PLAIN} times what a ball takes for as many elements"

@@ -21,5 +21,8 @@ case ${1:-} in
     python3 examples/solve/solve.py "$octafront" "$work"
     exec xvfb-run -a /usr/bin/python3 examples/solve/picture.py "$work" docs/images/solved.png
     ;;
-  *) exec python3 examples/solve/solve.py "$octafront" "$work" "$@" ;;
+  *)
+    python3 examples/solve/solve.py "$octafront" "$work" "$@"
+    PYTHONPATH=bench python3 -c 'import origin; print(f"For docs/measured/solved.md: Measured by `scripts/solve.sh` ({origin.ORIGIN})")'
+    ;;
 esac
