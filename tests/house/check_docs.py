@@ -1,0 +1,125 @@
+#!/usr/bin/env python3
+"""Do pages lead where they say, and tell where their figures come from?
+
+    check_docs.py ROOT          prints each fault as a line; status 1 if there are any
+    check_docs.py --self-test   writes pages with one fault of each kind, and must find them all
+
+What holds:
+- docs/README.md links to every page of docs/.
+- Each page of docs/measured says "Written by `COMMAND` (commit ..., date, machine" as bench/origin.py does, or "Measured by"
+  where the figures were put on the page by hand; the script that the command begins with exists.
+- Links, pictures and anchors of pages lead somewhere; so do paths in backticks that begin with a folder of the project.
+"""
+import pathlib
+import re
+import sys
+import tempfile
+
+ORIGIN = re.compile(r"(?:Written|Measured) by `(?P<script>[^` ]+)[^`]*` \(commit [0-9a-f]{7}(?: with changes)?, \d{4}-\d\d-\d\d, \w[^)]*\)")
+LINK = re.compile(r"\]\(([^)\s]+)\)")
+QUOTED = re.compile(r"`((?:bench|cli|cmake|docs|examples|include|licenses|python|samples|scripts|src|tests)/[\w./-]*)[^`]*`")
+FENCE = re.compile(r"^```.*?^```$", re.M | re.S)
+
+
+def anchors(text):
+    """As hosts of Markdown name headings."""
+    heads = re.findall(r"^#+ (.*)$", FENCE.sub("", text), re.M)
+    return {re.sub(r"[^\w\- ]", "", head.lower()).replace(" ", "-") for head in heads}
+
+
+class Docs:
+    def __init__(self, root):
+        self.root = root
+        self.pages = sorted((root / "docs").rglob("*.md"))
+        self.faults = []
+
+    def fault(self, page, what):
+        self.faults.append(f"{page.relative_to(self.root)}: {what}")
+
+    def check_index(self):
+        index = self.root / "docs/README.md"
+        linked = {(index.parent / link).resolve() for link in LINK.findall(index.read_text())}
+        for page in self.pages:
+            if page != index and page.resolve() not in linked:
+                self.fault(index, f"does not link to {page.relative_to(index.parent)}")
+
+    def check_origins(self):
+        for page in self.pages:
+            if page.parent.name != "measured":
+                continue
+            found = list(ORIGIN.finditer(page.read_text()))
+            if not found:
+                self.fault(page, "does not say which command wrote it, at which commit, when, on which machine")
+            for origin in found:
+                if not (self.root / origin["script"]).exists():
+                    self.fault(page, f"there is no {origin['script']}")
+
+    def check_link(self, page, link):
+        file, _, anchor = link.partition("#")
+        target = page.parent / file if file else page
+        if not target.exists():
+            self.fault(page, f"leads to {link}, which is not there")
+        elif anchor and anchor not in anchors(target.read_text()):
+            self.fault(page, f"leads to {link}, and there is no such heading")
+
+    def check_links(self):
+        for page in [*self.pages, *(self.root / name for name in ("README.md", "CONTRIBUTING.md", "ARCHITECTURE.md"))]:
+            text = FENCE.sub("", page.read_text())
+            for link in LINK.findall(text):
+                if not re.match(r"\w+:", link):
+                    self.check_link(page, link)
+            for path in QUOTED.findall(text):
+                if not (self.root / path).exists():
+                    self.fault(page, f"names {path}, which is not there")
+
+    def check(self):
+        self.check_index()
+        self.check_origins()
+        self.check_links()
+        return self.faults
+
+
+def self_test():
+    files = {
+        "README.md": "![a](docs/a.png) [b](docs/b.png) [there](https://there)\n```\n[c](c.png)\n```\n",
+        "CONTRIBUTING.md": "`docs/README.md`, `scripts/gone.sh --all`, `build/a`\n",
+        "ARCHITECTURE.md": "[here](#a-head-here) [gone](#gone)\n\n## A head, here\n",
+        "docs/README.md": "[use](use/use.md) [good](measured/good.md) [bare](measured/bare.md) [stray](measured/stray.md)\n",
+        "docs/a.png": "",
+        "docs/use/use.md": "[good](../measured/good.md#figures)\n",
+        "docs/use/lonely.md": "",
+        "docs/measured/good.md": "# Figures\n\nWritten by `bench/run.sh it --all` (commit 0123abc with changes, 2026-01-31, AMD EPYC), one thread.\n",
+        "docs/measured/bare.md": "Written by `bench/run.sh it`, commit 0123abc.\n",
+        "docs/measured/stray.md": "Measured by `bench/gone.sh` (commit 0123abc, 2026-01-31, AMD EPYC).\n",
+        "bench/run.sh": "",
+    }
+    expected = [
+        "README.md: leads to docs/b.png, which is not there",
+        "CONTRIBUTING.md: names scripts/gone.sh, which is not there",
+        "ARCHITECTURE.md: leads to #gone, and there is no such heading",
+        "docs/README.md: does not link to use/lonely.md",
+        "docs/measured/bare.md: does not say which command wrote it, at which commit, when, on which machine",
+        "docs/measured/stray.md: there is no bench/gone.sh",
+        "docs/measured/stray.md: names bench/gone.sh, which is not there",
+    ]
+    with tempfile.TemporaryDirectory() as folder:
+        root = pathlib.Path(folder)
+        for name, text in files.items():
+            (root / name).parent.mkdir(parents=True, exist_ok=True)
+            (root / name).write_text(text)
+        found = Docs(root).check()
+    for line in sorted(set(expected) ^ set(found)):
+        print("not found:" if line in expected else "not expected:", line)
+    return sorted(found) == sorted(expected)
+
+
+def main():
+    if sys.argv[1:] == ["--self-test"]:
+        return 0 if self_test() else 1
+    faults = Docs(pathlib.Path(sys.argv[1]).resolve()).check()
+    print(*faults, sep="\n")
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
