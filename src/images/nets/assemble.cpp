@@ -21,20 +21,20 @@ std::vector<std::uint32_t> numbered(const std::vector<std::uint8_t>& used) {
   return number;
 }
 
-void note_what_was_done(const Settled& settled, Complex& complex) {
-  if (settled.moved_back > 0)
+void note_what_was_done(const ResolvedNet& resolved, Complex& complex) {
+  if (resolved.moved_back > 0)
     complex.notes.push_back(
         fmt::format("{} moved back toward the corners of voxels, where surfaces would have crossed or met in "
                     "sharp wedges",
-                    counted(settled.moved_back, "vertex", "vertices")));
-  if (settled.joined > 0)
+                    counted(resolved.moved_back, "vertex", "vertices")));
+  if (resolved.joined > 0)
     complex.notes.push_back(fmt::format("regions touch themselves or each other in {} where surfaces found no room",
-                                        counted(settled.joined, "point")));
+                                        counted(resolved.joined, "point")));
 }
 
 }  // namespace
 
-Complex assemble(const Net& net, const Lattice& lattice, Settled settled, std::span<const Vec3> straight,
+Complex assemble(const Net& net, const Lattice& lattice, ResolvedNet resolved, std::span<const Vec3> straight,
                  const std::vector<LabelImage::Label>& labels, bool keeps_values) {
   std::vector<std::uint8_t> used_vertex(net.corner.size(), 0), used_label(labels.size(), 0);
   for (const Quad& q : net.quads) {
@@ -53,8 +53,8 @@ Complex assemble(const Net& net, const Lattice& lattice, Settled settled, std::s
     if (keeps_values) surface.region_labels.push_back(labels[l].value);
     complex.volumes.push_back(volumes[l] * lattice.volume_scale());
   }
-  for (std::size_t v = 0; v < settled.world.size(); ++v)
-    if (used_vertex[v]) surface.points.push_back(settled.world[v]);
+  for (std::size_t v = 0; v < resolved.world.size(); ++v)
+    if (used_vertex[v]) surface.points.push_back(resolved.world[v]);
   surface.triangles.resize(2 * net.quads.size());
   surface.sides.resize(2 * net.quads.size());
   const bool mirrored = lattice.is_mirrored();
@@ -73,7 +73,7 @@ Complex assemble(const Net& net, const Lattice& lattice, Settled settled, std::s
       surface.sides[2 * q + i] = sides;
     }
   });
-  note_what_was_done(settled, complex);
+  note_what_was_done(resolved, complex);
   return complex;
 }
 

@@ -12,10 +12,11 @@ namespace octafront::nets {
 
 /// Quads at fault, ascending, each once.
 struct Conflicts {
-  /// With triangles that cross others or are without area, or around edges where the regions do not come in their turn.
+  /// Quads with triangles that cross others or have no area, and quads around an edge where they do not follow each
+  /// other in the order of the regions between them.
   std::vector<std::uint32_t> invalid;
-  /// That leave a region only a sharp wedge between them, or lie at sharp corners of curves: no good element fits in
-  /// there. None whose vertices may not yield.
+  /// Quads that leave a region only a sharp wedge between them, or lie at sharp corners of curves: no good element fits
+  /// into such places. Quads whose vertices may not yield are not among them.
   std::vector<std::uint32_t> sharp;
   bool empty() const { return invalid.empty() && sharp.empty(); }
 };
@@ -24,8 +25,8 @@ struct Conflicts {
 /// memory stays small.
 class ConflictSearch {
  public:
-  /// `world`: the vertices, which may be a mirror image. `may_yield`: per vertex, whether it is asked to where the net
-  /// is sharp.
+  /// `world`: the vertices, which may be a mirror image. `may_yield`: per vertex, whether the vertex may be asked to go
+  /// back where the net is sharp.
   ConflictSearch(const Net& net, std::span<const Vec3> world, bool is_mirrored,
                  std::span<const std::uint8_t> may_yield);
 

@@ -153,8 +153,8 @@ Complex complex_of_bands(const Image& image, const std::vector<GreyBand>& bands,
   Placement placement(net, quads_at, lattice, values, limits, cells);
   std::vector<Vec3> x = placement.place();
   spread(stencils, placement, x, context);
-  nets::Settled settled = nets::settle(net, quads_at, lattice, x, context);
-  return nets::assemble(net, lattice, std::move(settled), x, labels.labels, false);
+  nets::ResolvedNet resolved = nets::resolve_conflicts(net, quads_at, lattice, x, context);
+  return nets::assemble(net, lattice, std::move(resolved), x, labels.labels, false);
 }
 
 }  // namespace octafront

@@ -62,8 +62,8 @@ Complex complex_of_labels(const LabelImage& image, const LabelSurfaceOptions& op
     nets::fair(stencils, cells, x, context);
     if (options.keep_volumes) nets::keep_volumes(net, quads_at, cells, lattice, sizes.volume, x, context);
   }
-  nets::Settled settled = nets::settle(net, quads_at, lattice, x, context);
-  Complex complex = nets::assemble(net, lattice, std::move(settled), x, image.labels, true);
+  nets::ResolvedNet resolved = nets::resolve_conflicts(net, quads_at, lattice, x, context);
+  Complex complex = nets::assemble(net, lattice, std::move(resolved), x, image.labels, true);
   if (options.keep_volumes) note_lost_volumes(image, sizes, lattice.volume_scale(), complex);
   return complex;
 }

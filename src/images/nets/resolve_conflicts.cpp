@@ -28,25 +28,25 @@ class Settling {
       if (net.shares_corner[v]) copies_[net.corner[v]].push_back(v);
   }
 
-  Settled run() && {
+  ResolvedNet run() && {
     choose_diagonals(net_, lattice_, x_);
-    settled_.world.resize(x_.size());
-    parallel_for(x_.size(), [&](std::size_t v) { settled_.world[v] = lattice_.to_world(x_[v]); });
+    resolved_.world.resize(x_.size());
+    parallel_for(x_.size(), [&](std::size_t v) { resolved_.world[v] = lattice_.to_world(x_[v]); });
     Conflicts found = search().all(context_);
-    settled_.conflicts = found.invalid.size();
-    settled_.sharp = found.sharp.size();
+    resolved_.conflicts = found.invalid.size();
+    resolved_.sharp = found.sharp.size();
     while (!found.empty()) {
       context_.check();
       const std::vector<VertexIndex> moved = retreat(found);
       found = search().near(moved, context_);
     }
-    settled_.moved_back =
+    resolved_.moved_back =
         static_cast<std::uint64_t>(std::count_if(level_.begin(), level_.end(), [](auto l) { return l > 0; }));
-    return std::move(settled_);
+    return std::move(resolved_);
   }
 
  private:
-  ConflictSearch search() const { return {net_, settled_.world, lattice_.is_mirrored(), may_yield_}; }
+  ConflictSearch search() const { return {net_, resolved_.world, lattice_.is_mirrored(), may_yield_}; }
 
   std::vector<VertexIndex> vertices_of(const std::vector<std::uint32_t>& quads) const {
     std::vector<VertexIndex> vertices;
@@ -65,7 +65,7 @@ class Settling {
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
     for (const VertexIndex v : vertices) step_back(v, moved);
     for (const VertexIndex v : moved) {
-      settled_.world[v] = lattice_.to_world(x_[v]);
+      resolved_.world[v] = lattice_.to_world(x_[v]);
       for (const std::uint32_t q : quads_at_[v]) choose_diagonal(net_, lattice_, x_, q);
     }
     return moved;
@@ -87,7 +87,7 @@ class Settling {
       x_[copy] = net_.start[copy] = lattice_.at(net_.corner[v]);
       net_.shares_corner[copy] = 0;
       level_[copy] = kJoin;
-      settled_.joined += copy != one;
+      resolved_.joined += copy != one;
       moved.push_back(copy);
       for (const std::uint32_t q : quads_at_[copy]) {
         for (VertexIndex& corner : net_.quads[q].v)
@@ -103,13 +103,13 @@ class Settling {
   const RunContext& context_;
   std::vector<std::uint8_t> level_, may_yield_;
   std::map<Corner, std::vector<VertexIndex>> copies_;
-  Settled settled_;
+  ResolvedNet resolved_;
 };
 
 }  // namespace
 
-Settled settle(Net& net, const Groups<>& quads_at, const Lattice& lattice, std::vector<Vec3>& x,
-               const RunContext& context) {
+ResolvedNet resolve_conflicts(Net& net, const Groups<>& quads_at, const Lattice& lattice, std::vector<Vec3>& x,
+                              const RunContext& context) {
   return Settling(net, quads_at, lattice, x, context).run();
 }
 

@@ -9,8 +9,8 @@
 
 namespace octafront::nets {
 
-/// What it took.
-struct Settled {
+/// The vertices that make a complex of the net, and what that took.
+struct ResolvedNet {
   std::vector<Vec3> world;       ///< per vertex
   std::uint64_t conflicts = 0;   ///< quads at fault at first
   std::uint64_t sharp = 0;       ///< quads that left sharp wedges at first
@@ -19,10 +19,10 @@ struct Settled {
 };
 
 /// Makes a complex of a net whose vertices were moved to x (straight space). The vertices of quads at fault go halfway
-/// back to where they started, again and again; then all the way; then, but not for sharp wedges, the vertices of their
-/// corner become one, at the corner. There the quads are faces of voxels, which do not cross: so this ends, always with
-/// a complex.
-Settled settle(Net& net, const Groups<>& quads_at, const Lattice& lattice, std::vector<Vec3>& x,
-               const RunContext& context);
+/// back to where they started, again and again, and then all the way. Where a quad is at fault even then, and not only
+/// sharp, all vertices of a corner of the lattice become one vertex at that corner. Between such vertices quads are
+/// faces of voxels, which do not cross, so the function always ends with a complex.
+ResolvedNet resolve_conflicts(Net& net, const Groups<>& quads_at, const Lattice& lattice, std::vector<Vec3>& x,
+                              const RunContext& context);
 
 }  // namespace octafront::nets

@@ -89,7 +89,7 @@ class PolyhedronReconnector {
   bool commit() {
     new_tets_.clear();
     shapes_.clear();
-    for (const PolyhedronSearch::Made& m : search_.made()) {
+    for (const PolyhedronSearch::Tet& m : search_.tets()) {
       Tet& t = new_tets_.emplace_back();
       for (int k = 0; k < 4; ++k) t[k] = corners_[m.corners[k]];
       shapes_.push_back(m.shape);

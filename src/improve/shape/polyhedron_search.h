@@ -28,12 +28,12 @@ class PolyhedronSearch {
   /// above `bound` and lie above the floor. REQUIRES: at most kMostCorners, kMostFaces.
   bool fill(std::span<const Vec3> corners, std::span<const Face> faces, const Floor& floor, float bound);
 
-  struct Made {
+  struct Tet {
     std::array<Corner, 4> corners;  ///< positive
     Shape shape;
   };
   /// What fill() found.
-  const std::vector<Made>& made() const { return best_; }
+  const std::vector<Tet>& tets() const { return best_; }
   float worst() const { return bound_; }
 
  private:
@@ -61,7 +61,7 @@ class PolyhedronSearch {
   ShapeBatch batch_;
   std::array<Shape, kFours> shape_;
   std::array<std::int8_t, kFours> sign_;  ///< of the four in ascending order; 0: not usable
-  std::vector<Made> stack_, best_;
+  std::vector<Tet> stack_, best_;
 };
 
 }  // namespace octafront::improve

@@ -8,8 +8,8 @@
 namespace octafront {
 
 Examined examine_surface(const SurfaceMesh& soup, bool is_clean, const RunContext& context) {
-  repair::Draft draft = repair::make_draft(soup, context);
-  Examined result{repair::mend(draft), {}, {}};
+  tidy::Draft draft = tidy::make_draft(soup, context);
+  Examined result{tidy::tidied(draft), {}, {}};
   const SurfaceMesh& surface = result.repaired.surface;
   result.edges = draft.known_edges ? std::move(*draft.known_edges)
                                    : make_edge_table(surface.points.size(), surface.triangles, context);

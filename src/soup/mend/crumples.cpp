@@ -18,7 +18,7 @@
 namespace octafront::mend {
 namespace {
 
-using repair::Draft;
+using tidy::Draft;
 using Triangles = std::vector<std::uint32_t>;
 
 /// Around what crosses so many rings of triangles are tried, the fewest first.
@@ -317,7 +317,7 @@ LaidFlat lay_crumples_flat(Draft& draft, double tolerance) {
     all.largest_move = std::max(all.largest_move, done.largest_move);
     all.places.insert(all.places.end(), done.places.begin(), done.places.end());
   }
-  if (all.faces > 0) repair::drop_unused_vertices(draft);
+  if (all.faces > 0) tidy::drop_unused_vertices(draft);
   return all;
 }
 

@@ -19,6 +19,6 @@ struct LaidFlat {
 /// their rim that bend least: folds that crossed would stay as layers with clefts between them, which no element fits.
 /// Only discs are taken, whose caps lie within the tolerance of them, both ways, and cross nothing. Requires that
 /// neighbouring triangles agree.
-LaidFlat lay_crumples_flat(repair::Draft& draft, double tolerance);
+LaidFlat lay_crumples_flat(tidy::Draft& draft, double tolerance);
 
 }  // namespace octafront::mend

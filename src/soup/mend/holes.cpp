@@ -20,7 +20,7 @@
 namespace octafront::mend {
 namespace {
 
-using repair::Draft;
+using tidy::Draft;
 
 /// A part with caps of more than this share of its own area is a sheet. Of a hemisphere it is half, of a tube as long
 /// as wide half too, of a terrain nearly all.

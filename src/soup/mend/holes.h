@@ -29,6 +29,6 @@ struct ClosedHoles {
 /// already, open ones must be nearly so too. Where the surface around a hole bends, its cap goes on so; where a lid
 /// would graze the surface, walls and a flat base close the hole. The points that this takes come behind those of the
 /// draft.
-ClosedHoles close_holes(repair::Draft& draft, double tolerance);
+ClosedHoles close_holes(tidy::Draft& draft, double tolerance);
 
 }  // namespace octafront::mend

@@ -33,7 +33,7 @@ namespace octafront {
 namespace {
 
 using namespace mend;
-using repair::Draft;
+using tidy::Draft;
 using Kind = MendChange::Kind;
 
 /// Of the diagonal.
@@ -89,10 +89,10 @@ bool has_changed(const RepairedSurface& r) {
 }
 
 void clean_faces(Draft& draft) {
-  repair::merge_vertices(draft);
-  repair::drop_degenerate(draft);
-  repair::drop_duplicates(draft);
-  repair::drop_unused_vertices(draft);
+  tidy::merge_vertices(draft);
+  tidy::drop_degenerate(draft);
+  tidy::drop_duplicates(draft);
+  tidy::drop_unused_vertices(draft);
 }
 
 /// The soup on its way to the result.
@@ -102,7 +102,7 @@ class Mending {
       : soup_(soup),
         context_(context),
         report_(report),
-        draft_(repair::make_draft({soup.points, soup.triangles, {}, {}, {}}, context)) {}
+        draft_(tidy::make_draft({soup.points, soup.triangles, {}, {}, {}}, context)) {}
 
   /// By steps that keep what is not broken; nullopt where they fail.
   std::optional<SurfaceMesh> exact_result(double weld_reach) {
@@ -223,7 +223,7 @@ class Mending {
   }
 
   void orient() {
-    const repair::Pieces found = repair::orient_pieces(draft_);
+    const tidy::Pieces found = tidy::orient_pieces(draft_);
     pieces_ = {found.piece_of_triangle, found.count()};
     turned_ = found.turned_faces;
   }
@@ -233,7 +233,7 @@ class Mending {
     if (done.faces == 0) return;
     report_.largest_move = std::max(report_.largest_move, done.largest_move);
     for (const Vec3 p : done.places) report_.changes.push_back({Kind::kLaidFlat, p, done.largest_move});
-    const repair::InputFaces turned = std::move(turned_);
+    const tidy::InputFaces turned = std::move(turned_);
     orient();
     turned_ = turned;
   }
@@ -399,7 +399,7 @@ class Mending {
   MendReport& report_;
   Draft draft_;
   PieceOf pieces_;  ///< of the draft's triangles and of the caps behind them
-  repair::InputFaces turned_;
+  tidy::InputFaces turned_;
   std::vector<Hole> holes_;
 };
 
@@ -475,7 +475,7 @@ std::vector<double> bounds_of(const SurfaceMesh& soup, const SurfaceMesh& made, 
 Mended mend_surface(const SurfaceMesh& soup, const MendOptions& options, const RunContext& context) {
   Mended mended;
   MendReport& report = mended.report;
-  repair::check_input(soup);
+  tidy::check_input(soup);
   if (!soup.sides.empty()) throw OptionError("a complex of regions is mended by nobody: give the walls without sides");
   report.diagonal = bounding_box(soup.points).diagonal();
   report.tolerance = tolerance_of(options, report.diagonal);

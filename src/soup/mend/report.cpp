@@ -73,7 +73,7 @@ void note_cuts(MendReport& report, const Arrangement& arranged, const std::vecto
   cuts.move_to(report);
 }
 
-void note_dropped(MendReport& report, repair::Draft& draft, const std::vector<char>& used) {
+void note_dropped(MendReport& report, tidy::Draft& draft, const std::vector<char>& used) {
   const EdgeTable& table = draft.edges();
   DisjointSets parts(draft.mesh.triangles.size());
   for (std::size_t e = 0; e < table.size(); ++e) {
@@ -93,8 +93,8 @@ void note_dropped(MendReport& report, repair::Draft& draft, const std::vector<ch
   dropped.move_to(report);
 }
 
-void note_turned(MendReport& report, const repair::Draft& draft, const std::vector<std::uint32_t>& piece,
-                 const std::vector<char>& turned, const repair::InputFaces& faces) {
+void note_turned(MendReport& report, const tidy::Draft& draft, const std::vector<std::uint32_t>& piece,
+                 const std::vector<char>& turned, const tidy::InputFaces& faces) {
   Gathered all(Kind::kTurned);
   for (std::uint32_t t = 0; t < draft.mesh.triangles.size(); ++t) {
     const bool before = std::binary_search(faces.begin(), faces.end(), draft.face[t]);

@@ -17,11 +17,11 @@ namespace octafront::mend {
 void note_cuts(MendReport& report, const Arrangement& arranged, const std::vector<std::uint32_t>& face);
 
 /// Faces of the draft of which nothing is left, by what hangs together of them.
-void note_dropped(MendReport& report, repair::Draft& draft, const std::vector<char>& used);
+void note_dropped(MendReport& report, tidy::Draft& draft, const std::vector<char>& used);
 
 /// Faces that were turned to agree with their neighbours, and pieces that faced the wrong way.
-void note_turned(MendReport& report, const repair::Draft& draft, const std::vector<std::uint32_t>& piece,
-                 const std::vector<char>& turned, const repair::InputFaces& faces);
+void note_turned(MendReport& report, const tidy::Draft& draft, const std::vector<std::uint32_t>& piece,
+                 const std::vector<char>& turned, const tidy::InputFaces& faces);
 
 void note_filled(MendReport& report, const Arrangement& arranged, const Cells& cells,
                  const std::vector<std::uint32_t>& filled);

@@ -13,7 +13,7 @@
 namespace octafront::mend {
 namespace {
 
-using repair::Draft;
+using tidy::Draft;
 
 /// How far the ends of edges that fit may be from each other, as a part of the shorter edge: of edges that share a
 /// vertex already, which enclose an angle below 30 degrees then, and of others.

@@ -18,6 +18,6 @@ struct Welded {
 /// Brings open edges together: the ends of edges that fit become one vertex in their middle, and edges are divided at
 /// vertices of open edges beside them. Nothing moves farther than the tolerance, no triangle loses a corner, and what
 /// lies together in small triangles is not mistaken for a gap: edges fit if they differ by less than their length.
-Welded weld_open_edges(repair::Draft& draft, double tolerance);
+Welded weld_open_edges(tidy::Draft& draft, double tolerance);
 
 }  // namespace octafront::mend

@@ -6,7 +6,7 @@
 #include <tuple>
 #include <unordered_map>
 
-namespace octafront::repair {
+namespace octafront::tidy {
 namespace {
 
 bool has_repeated_vertex(const Triangle& t) {
@@ -153,4 +153,4 @@ Degenerate drop_degenerate(Draft& draft) {
   return done;
 }
 
-}  // namespace octafront::repair
+}  // namespace octafront::tidy

@@ -5,7 +5,7 @@
 #include <array>
 #include <utility>
 
-namespace octafront::repair {
+namespace octafront::tidy {
 namespace {
 
 struct Group {
@@ -199,4 +199,4 @@ Duplicates drop_duplicates(Draft& draft) {
   return done;
 }
 
-}  // namespace octafront::repair
+}  // namespace octafront::tidy

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-namespace octafront::repair {
+namespace octafront::tidy {
 namespace {
 
 /// Side of p, moved by an infinitesimal (e, e^2) in the yz-plane, to the line from a to b there; 0 only if a and b
@@ -162,4 +162,4 @@ Nesting find_nesting(const SurfaceMesh& mesh, const Pieces& pieces, const std::v
   return nesting;
 }
 
-}  // namespace octafront::repair
+}  // namespace octafront::tidy

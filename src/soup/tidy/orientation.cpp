@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace octafront::repair {
+namespace octafront::tidy {
 namespace {
 
 /// Walks over one piece from its first triangle and decides for each triangle whether it must turn to agree with that.
@@ -82,4 +82,4 @@ Pieces orient_pieces(Draft& draft) {
   return pieces;
 }
 
-}  // namespace octafront::repair
+}  // namespace octafront::tidy

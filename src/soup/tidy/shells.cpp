@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-namespace octafront::repair {
+namespace octafront::tidy {
 namespace {
 
 /// A sum of doubles without rounding: nonoverlapping terms of increasing magnitude.
@@ -144,4 +144,4 @@ Shells orient_shells(Draft& draft, const Pieces& pieces) {
   return shells;
 }
 
-}  // namespace octafront::repair
+}  // namespace octafront::tidy

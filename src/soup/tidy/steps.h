@@ -12,7 +12,7 @@
 #include <optional>
 #include <vector>
 
-namespace octafront::repair {
+namespace octafront::tidy {
 
 /// The surface on its way through repair.
 struct Draft {
@@ -31,7 +31,7 @@ struct Draft {
 /// The input, checked.
 Draft make_draft(const SurfaceMesh& soup, const RunContext& context);
 /// All steps. Takes the mesh out of the draft; `known_edges`, if there are any, are those of the result.
-RepairedSurface mend(Draft& draft);
+RepairedSurface tidied(Draft& draft);
 
 /// Input faces that a step touched, each once, ascending.
 using InputFaces = std::vector<std::uint32_t>;
@@ -103,4 +103,4 @@ std::vector<int> volume_signs(const SurfaceMesh& mesh, const Pieces& pieces);
 void drop_marked(Draft& draft, const std::vector<char>& marked);
 void sort_unique(InputFaces& faces);
 
-}  // namespace octafront::repair
+}  // namespace octafront::tidy

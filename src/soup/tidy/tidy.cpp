@@ -12,7 +12,7 @@
 namespace octafront {
 namespace {
 
-using namespace repair;
+using namespace tidy;
 
 std::string was(std::uint64_t n) {
   return n == 1 ? "was" : "were";
@@ -30,7 +30,7 @@ SurfaceMesh finished(Draft& draft) {
 }
 
 void drop_duplicates(Draft& draft, RepairedSurface& result) {
-  const Duplicates done = repair::drop_duplicates(draft);
+  const Duplicates done = tidy::drop_duplicates(draft);
   result.duplicate_faces += done.copies + done.sheets;
   if (done.copies > 0)
     result.notes.push_back(
@@ -42,7 +42,7 @@ void drop_duplicates(Draft& draft, RepairedSurface& result) {
 }
 
 void drop_degenerate(Draft& draft, RepairedSurface& result) {
-  const Degenerate done = repair::drop_degenerate(draft);
+  const Degenerate done = tidy::drop_degenerate(draft);
   result.degenerate_faces += done.removed;
   result.divided_faces += done.divided;
   if (done.removed == 0) return;
@@ -114,7 +114,7 @@ void nest(Draft& draft, const Pieces& pieces, RepairedSurface& result) {
 
 }  // namespace
 
-Draft repair::make_draft(const SurfaceMesh& soup, const RunContext& context) {
+Draft tidy::make_draft(const SurfaceMesh& soup, const RunContext& context) {
   context.check();
   check_input(soup);
   Draft draft{soup, std::vector<std::uint32_t>(soup.triangles.size()), context};
@@ -122,7 +122,7 @@ Draft repair::make_draft(const SurfaceMesh& soup, const RunContext& context) {
   return draft;
 }
 
-RepairedSurface repair::mend(Draft& draft) {
+RepairedSurface tidy::tidied(Draft& draft) {
   RepairedSurface result;
   // One region may touch itself in edges and points: as a complex it can be meshed, as a plain surface it cannot.
   if (!is_complex(draft.mesh) && is_closed_manifold(draft.mesh.triangles, draft.mesh.points.size()))
@@ -144,7 +144,7 @@ bool has_vertices_of_each_triangle(const SurfaceMesh& surface) {
 
 RepairedSurface repair_surface(const SurfaceMesh& soup, const RunContext& context) {
   Draft draft = make_draft(soup, context);
-  return mend(draft);
+  return tidied(draft);
 }
 
 }  // namespace octafront

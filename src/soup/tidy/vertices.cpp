@@ -11,7 +11,7 @@
 
 #include <fmt/core.h>
 
-namespace octafront::repair {
+namespace octafront::tidy {
 namespace {
 
 /// Range in which the exact predicates are exact (see base/geometry/predicates.h).
@@ -163,4 +163,4 @@ void sort_unique(InputFaces& faces) {
   faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
 }
 
-}  // namespace octafront::repair
+}  // namespace octafront::tidy

@@ -10,7 +10,7 @@
 
 #include <fmt/core.h>
 
-namespace octafront::repair {
+namespace octafront::tidy {
 
 namespace {
 
@@ -110,4 +110,4 @@ void clean_walls(Draft& draft, RepairedSurface& result) {
   result.bodies = static_cast<std::uint32_t>(regions.size());
 }
 
-}  // namespace octafront::repair
+}  // namespace octafront::tidy

@@ -51,10 +51,10 @@ std::optional<std::string> first_line(const SurfaceDefects& defects) {
 /// Requires a surface that is closed and manifold.
 SurfaceKind::Shells SurfaceKind::shells_of(const SurfaceMesh& surface, const EdgeTable& edges) {
   const RunContext context;
-  repair::Draft draft{surface, std::vector<std::uint32_t>(surface.triangles.size()), context, edges};
-  const repair::Pieces pieces = repair::orient_pieces(draft);
-  const repair::Nesting nesting = repair::find_nesting(surface, pieces, std::vector<char>(pieces.count(), 1), context);
-  const std::vector<int> sign = repair::volume_signs(surface, pieces);
+  tidy::Draft draft{surface, std::vector<std::uint32_t>(surface.triangles.size()), context, edges};
+  const tidy::Pieces pieces = tidy::orient_pieces(draft);
+  const tidy::Nesting nesting = tidy::find_nesting(surface, pieces, std::vector<char>(pieces.count(), 1), context);
+  const std::vector<int> sign = tidy::volume_signs(surface, pieces);
   std::vector<Shell> kinds(pieces.count());
   std::vector<std::int64_t> vertices(pieces.count(), 0), faces(pieces.count(), 0);
   std::vector<char> counted_vertex(surface.points.size(), 0);

@@ -191,9 +191,9 @@ class Approacher {
 
 }  // namespace
 
-std::uint64_t approach(WorkingMesh& mesh, const InputSurface& input, const TriangleTree& tree,
-                       const std::vector<std::uint8_t>& is_fixed, std::span<const FarPlace> places,
-                       double least_shape) {
+std::uint64_t draw_to_input(WorkingMesh& mesh, const InputSurface& input, const TriangleTree& tree,
+                            const std::vector<std::uint8_t>& is_fixed, std::span<const FarPlace> places,
+                            double least_shape) {
   return Approacher(mesh, input, tree, is_fixed, least_shape).run(places);
 }
 

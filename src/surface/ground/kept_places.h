@@ -7,16 +7,17 @@
 
 namespace octafront::remeshing {
 
-/// A place where the input's own triangles are to stay.
-struct Ball {
+/// A ball in which the input's own triangles are to stay.
+struct KeptPlace {
   Vec3 center;
   double radius;
   bool in_vain = true;  ///< sizes were made smaller here, which did not help
 };
 
-/// Marks all edges of the triangles that reach into the balls as features: what lies between lines on every side stays
-/// as it is. `tree` holds the triangles of the input that are no backs. Returns which vertices those triangles have:
-/// they must stay too.
-std::vector<std::uint8_t> mark_restored(InputSurface& input, const TriangleTree& tree, const std::vector<Ball>& balls);
+/// Marks all edges of the input's triangles that reach into a kept place as features, because the front leaves a
+/// triangle between three features as it is. `tree` holds the triangles of the input that are no backs. Returns by
+/// vertex whether one of the marked triangles has it: such vertices must stay too.
+std::vector<std::uint8_t> mark_kept_places(InputSurface& input, const TriangleTree& tree,
+                                           const std::vector<KeptPlace>& balls);
 
 }  // namespace octafront::remeshing

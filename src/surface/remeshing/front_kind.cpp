@@ -67,7 +67,7 @@ bool FrontKind::is_as_large(Vec3 p, const SizeField& sizes) const {
 
 bool FrontKind::is_in_vain(Vec3 p, const RoundSizes& sizes) const {
   return sizes.now().at(p) < kVain * sizes.first().at(p) || work_.counts.exceed(kPatience) ||
-         sizes.is_restored_near(p, RoundSizes::kGrowthOfBalls);
+         sizes.is_kept_near(p, RoundSizes::kGrowthOfKeptPlaces);
 }
 
 double longest_edge_of(const TriangleCorners& t) {

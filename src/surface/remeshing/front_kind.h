@@ -20,7 +20,7 @@ namespace octafront::remeshing {
 inline constexpr double kCap = 0.6;
 /// ... but where they have fallen below this part of the first ones, size is not the reason: the input's own triangles
 /// return within this many sizes.
-inline constexpr double kVain = 0.3, kRestored = 2;
+inline constexpr double kVain = 0.3, kKeptRadius = 2;
 /// Where all rounds together have made so many times the triangles of the last one, what crosses gets the input's
 /// triangles at once.
 inline constexpr double kPatience = 4;

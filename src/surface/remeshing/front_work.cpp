@@ -28,7 +28,7 @@ void FrontCounts::report(const Stage& stage) const {
   stage.count("points against deviation", static_cast<double>(approached));
   stage.count("input vertices left", static_cast<double>(coarsen.input_vertices_left));
   stage.count("crossing pairs mended", static_cast<double>(crossings));
-  stage.count("places left as in the input", static_cast<double>(restored));
+  stage.count("places left as in the input", static_cast<double>(kept_places));
   stage.count("rounds", rounds);
   stage.count("triangles of all rounds", static_cast<double>(triangles));
   stage.count("rounds for deviation", deviation_rounds);

@@ -24,7 +24,7 @@ struct FrontCounts {
   InsertionCounts insertion;
   CoarsenCounts coarsen;
   ImproveCounts improve;
-  std::uint64_t divided_edges = 0, merged_lines = 0, places_mended = 0, approached = 0, restored = 0;
+  std::uint64_t divided_edges = 0, merged_lines = 0, places_mended = 0, approached = 0, kept_places = 0;
   std::uint64_t crossings = 0, triangles = 0;  ///< of all rounds
   int rounds = 0, deviation_rounds = 0;
   std::size_t last_triangles = 0;  ///< of the last round

@@ -91,12 +91,12 @@ class PlainFront : public FrontKind {
   }
 
   void answer(const std::vector<Vec3>& places, const Outcome&, bool crosses, RoundSizes& sizes) override {
-    const bool all_restored =
-        sizes.cap_or_restore(places, crosses ? kCap : kCapOfShells, true, [&](Vec3 p) -> std::optional<Ball> {
+    const bool all_kept =
+        sizes.cap_or_keep(places, crosses ? kCap : kCapOfShells, true, [&](Vec3 p) -> std::optional<KeptPlace> {
           if (!is_as_asked(p, sizes.first()) && !is_in_vain(p, sizes)) return {};
-          return Ball{p, kRestored * sizes.first().at(p)};
+          return KeptPlace{p, kKeptRadius * sizes.first().at(p)};
         });
-    stuck_ = all_restored ? stuck_ + 1 : 0;
+    stuck_ = all_kept ? stuck_ + 1 : 0;
   }
 
   bool leaves_far(std::size_t, const Outcome&) const override {
@@ -168,7 +168,7 @@ class PlainFront : public FrontKind {
       const auto before = strays();
       std::erase_if(places, [&](const FarPlace& p) { return p.within || p.distance < kComeNear * tolerance; });
       if (places.empty() || !are_few(count_triangles(places), draft.mesh, kFewFar)) return any;
-      const std::uint64_t put_in = approach(draft.mesh, input_, work_.known.tree(), draft.is_fixed, places);
+      const std::uint64_t put_in = draw_to_input(draft.mesh, input_, work_.known.tree(), draft.is_fixed, places);
       if (put_in == 0) return any;
       any = true;
       work_.counts.approached += put_in;

@@ -91,7 +91,7 @@ class Remesher {
     set_features(input, {});  // no walk crosses seams
     set_features(input, features_at_scale(input, kind_.features(), sizes_.now()));
     const SizeField in_strips = fitted_to_strips(input, sizes_.now(), kind_.strips(), context);
-    std::vector<std::uint8_t> is_fixed = mark_restored(input, work_.known.tree(), sizes_.restored());
+    std::vector<std::uint8_t> is_fixed = mark_kept_places(input, work_.known.tree(), sizes_.kept_places());
     SizeField sizes = work_.budget.affordable(kind_.fitted(in_strips, is_fixed), sizes_.first(), counts.rounds);
     std::vector<Curve> curves = kind_.curves(sizes, is_fixed);
     work_.progress(0.05);
@@ -194,13 +194,13 @@ class Remesher {
 
   Remeshed finished(Outcome& made) {
     kind_.finish(made.result, made.nearness);
-    const std::vector<Ball>& restored = sizes_.restored();
-    work_.counts.restored = restored.size();
-    if (!restored.empty())
+    const std::vector<KeptPlace>& kept = sizes_.kept_places();
+    work_.counts.kept_places = kept.size();
+    if (!kept.empty())
       work_.stage.note(
           fmt::format("the input's own triangles stay in {} places, the first around ({:.6g}, {:.6g}, {:.6g}): "
                       "others cross there at every size",
-                      restored.size(), restored[0].center.x, restored[0].center.y, restored[0].center.z));
+                      kept.size(), kept[0].center.x, kept[0].center.y, kept[0].center.z));
     work_.counts.report(work_.stage);
     return std::move(made.result);
   }

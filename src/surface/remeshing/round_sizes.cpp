@@ -19,22 +19,22 @@ void RoundSizes::add(std::vector<PointSize> wanted, const CapShape& shape) {
   caps_.push_back({std::move(wanted), shape});
 }
 
-bool RoundSizes::cap_or_restore(const std::vector<Vec3>& places, double factor, bool grow_once, ReturnAt returned) {
+bool RoundSizes::cap_or_keep(const std::vector<Vec3>& places, double factor, bool grow_once, KeepAt returned) {
   std::vector<Vec3> to_cap;
-  const std::size_t before = restored_.size();
+  const std::size_t before = kept_places_.size();
   std::vector<std::uint8_t> has_grown(before, 0);
-  bool in_vain = false, all_restored = true;
+  bool in_vain = false, all_kept = true;
   for (const Vec3 p : places) {
-    const auto around = restored_around(p);
-    if (around != restored_.end()) {
-      const auto i = static_cast<std::size_t>(around - restored_.begin());
-      if (i < before && !(grow_once && has_grown[i])) around->radius *= kGrowthOfBalls, has_grown[i] = 1;
+    const auto around = kept_place_around(p);
+    if (around != kept_places_.end()) {
+      const auto i = static_cast<std::size_t>(around - kept_places_.begin());
+      if (i < before && !(grow_once && has_grown[i])) around->radius *= kGrowthOfKeptPlaces, has_grown[i] = 1;
       in_vain |= around->in_vain;
       continue;
     }
-    all_restored = false;
-    if (const std::optional<Ball> ball = returned(p)) {
-      restored_.push_back(*ball);
+    all_kept = false;
+    if (const std::optional<KeptPlace> ball = returned(p)) {
+      kept_places_.push_back(*ball);
       in_vain |= ball->in_vain;
     } else {
       to_cap.push_back(p);
@@ -42,17 +42,17 @@ bool RoundSizes::cap_or_restore(const std::vector<Vec3>& places, double factor, 
   }
   if (in_vain) forget_caps();
   if (!to_cap.empty()) cap(to_cap, factor);
-  return all_restored;
+  return all_kept;
 }
 
-std::vector<Ball>::iterator RoundSizes::restored_around(Vec3 p) {
-  return std::find_if(restored_.begin(), restored_.end(),
-                      [&](const Ball& b) { return distance(b.center, p) < b.radius; });
+std::vector<KeptPlace>::iterator RoundSizes::kept_place_around(Vec3 p) {
+  return std::find_if(kept_places_.begin(), kept_places_.end(),
+                      [&](const KeptPlace& b) { return distance(b.center, p) < b.radius; });
 }
 
-bool RoundSizes::is_restored_near(Vec3 p, double radii) const {
-  return std::any_of(restored_.begin(), restored_.end(),
-                     [&](const Ball& b) { return distance(b.center, p) < radii * b.radius; });
+bool RoundSizes::is_kept_near(Vec3 p, double radii) const {
+  return std::any_of(kept_places_.begin(), kept_places_.end(),
+                     [&](const KeptPlace& b) { return distance(b.center, p) < radii * b.radius; });
 }
 
 /// The first sizes again, but for what was asked of them elsewhere.
@@ -60,8 +60,8 @@ void RoundSizes::forget_caps() {
   now_ = first_;
   for (Caps& caps : caps_) {
     std::erase_if(caps.places, [&](const PointSize& s) {
-      return std::any_of(restored_.begin(), restored_.end(),
-                         [&](const Ball& b) { return b.in_vain && distance(b.center, s.p) < b.radius; });
+      return std::any_of(kept_places_.begin(), kept_places_.end(),
+                         [&](const KeptPlace& b) { return b.in_vain && distance(b.center, s.p) < b.radius; });
     });
     now_ = capped_at(now_, caps.places, context_, caps.shape);
   }

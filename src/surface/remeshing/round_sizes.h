@@ -11,23 +11,24 @@
 
 namespace octafront::remeshing {
 
-/// What becomes of a place where triangles cross: the input's own triangles return there, or they do not yet.
-using ReturnAt = FunctionRef<std::optional<Ball>(Vec3)>;
+/// Asked of a place where triangles cross: the ball around it in which the input's own triangles return, or nothing
+/// while smaller sizes may still help.
+using KeepAt = FunctionRef<std::optional<KeptPlace>(Vec3)>;
 
 /// The sizes from round to round: as they were asked, and smaller at places where that did not do.
 class RoundSizes {
  public:
-  /// Balls in which triangles of the input cross still become so many times as large.
-  static constexpr double kGrowthOfBalls = 1.6;
+  /// A ball in which triangles still cross becomes so many times as large.
+  static constexpr double kGrowthOfKeptPlaces = 1.6;
 
   RoundSizes(const SizeField& first, const RunContext& context) : first_(first), now_(first), context_(context) {}
 
   const SizeField& first() const { return first_; }
   const SizeField& now() const { return now_; }
   /// Where the input's own triangles stay.
-  const std::vector<Ball>& restored() const { return restored_; }
+  const std::vector<KeptPlace>& kept_places() const { return kept_places_; }
 
-  /// Others in the place of those that were asked.
+  /// These sizes take the place of those that were asked for.
   void start_with(const SizeField& sizes) { first_ = now_ = sizes; }
   /// Smaller around the places by this factor.
   void cap(const std::vector<Vec3>& places, double factor);
@@ -36,13 +37,13 @@ class RoundSizes {
   /// All of them by this factor.
   void scale(double factor) { now_ = scaled(now_, factor, context_); }
 
-  /// Smaller by `factor` around places that cross; where `returned` says that size is not the reason the input's own
-  /// triangles return, in balls that grow where that does not help either: once for each place, or once in all.
-  /// Where sizes were made smaller in vain the first ones hold again. Returns whether the input's triangles had
-  /// returned at all places before.
-  bool cap_or_restore(const std::vector<Vec3>& places, double factor, bool grow_once, ReturnAt returned);
+  /// Makes sizes smaller by `factor` around places where triangles cross. Where `returned` gives a ball, the input's
+  /// own triangles return in it instead, and sizes that were made smaller there in vain are as they first were. A place
+  /// inside a ball of an earlier round makes that ball grow: for each such place, or once a round with `grow_once`.
+  /// Returns whether all places were inside balls of earlier rounds.
+  bool cap_or_keep(const std::vector<Vec3>& places, double factor, bool grow_once, KeepAt returned);
   /// Whether a ball reaches within so many radii of p.
-  bool is_restored_near(Vec3 p, double radii) const;
+  bool is_kept_near(Vec3 p, double radii) const;
 
  private:
   /// Sizes made smaller at places.
@@ -51,13 +52,13 @@ class RoundSizes {
     CapShape shape;
   };
 
-  std::vector<Ball>::iterator restored_around(Vec3 p);
+  std::vector<KeptPlace>::iterator kept_place_around(Vec3 p);
   void forget_caps();
 
   SizeField first_, now_;
   const RunContext& context_;
   std::vector<Caps> caps_;  ///< between the two
-  std::vector<Ball> restored_;
+  std::vector<KeptPlace> kept_places_;
 };
 
 }  // namespace octafront::remeshing

@@ -117,9 +117,10 @@ class SeamedFront : public FrontKind {
   /// By the sizes that were fitted to the seams.
   void answer(const std::vector<Vec3>& places, const Outcome& made, bool, RoundSizes& sizes) override {
     const SizeField& by = made.result.sizes;
-    sizes.cap_or_restore(places, kCap, false, [&](Vec3 p) -> std::optional<Ball> {
-      if (by.at(p) < kVain * sizes.first().at(p) || is_as_large(p, by)) return Ball{p, kRestored * by.at(p), false};
-      if (is_in_vain(p, sizes)) return Ball{p, kRestored * sizes.first().at(p)};
+    sizes.cap_or_keep(places, kCap, false, [&](Vec3 p) -> std::optional<KeptPlace> {
+      if (by.at(p) < kVain * sizes.first().at(p) || is_as_large(p, by))
+        return KeptPlace{p, kKeptRadius * by.at(p), false};
+      if (is_in_vain(p, sizes)) return KeptPlace{p, kKeptRadius * sizes.first().at(p)};
       return {};
     });
   }
@@ -230,7 +231,7 @@ class SeamedFront : public FrontKind {
     for (int k = 0; k < kApproaches; ++k) {
       std::erase_if(places, [&](const FarPlace& p) { return p.distance < kComeNear * work_.tolerance; });
       const std::uint64_t put_in =
-          places.empty() ? 0 : approach(draft.mesh, input(), work_.known.tree(), draft.is_fixed, places);
+          places.empty() ? 0 : draw_to_input(draft.mesh, input(), work_.known.tree(), draft.is_fixed, places);
       if (put_in == 0) break;
       work_.counts.approached += put_in;
       places = far_places(work_, draft.mesh, watch);
@@ -257,7 +258,8 @@ class SeamedFront : public FrontKind {
       std::erase_if(places, [&](const FarPlace& p) {
         return p.distance < kInPlane * std::sqrt(length(mesh.area_vector(p.triangle)));
       });
-      const std::uint64_t put_in = approach(mesh, input(), work_.known.tree(), draft.is_fixed, places, least_shape);
+      const std::uint64_t put_in =
+          draw_to_input(mesh, input(), work_.known.tree(), draft.is_fixed, places, least_shape);
       work_.counts.approached += put_in;
       if (put_in == 0) return;
     }

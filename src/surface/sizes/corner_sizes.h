@@ -7,10 +7,10 @@
 
 namespace octafront::remeshing {
 
-/// The sizes, no larger around each corner of a complex than it is from there to the nearest curve that does not end at
-/// it, or to the next corner; on closed curves no larger than a sixth of them. Where walls leave tiny edges, as in a
-/// foam, nothing may move, and elements of the wanted size would be flat. From there sizes rise steeply.
-/// `is_fixed` as of chained_curves().
+/// The sizes, made smaller where the curves of a complex ask for that. Around a corner the size is at most the distance
+/// to the next corner, and to the nearest curve that does not end at this corner; on a closed curve it is at most a
+/// sixth of the curve's length. Where walls leave tiny edges, as in a foam, no vertex may move, and elements of the
+/// wanted size would be flat. Away from such places sizes rise steeply. `is_fixed` as of chained_curves().
 SizeField fitted_to_corners(const InputSurface& input, const SeamedSurface& seamed, std::vector<std::uint8_t> is_fixed,
                             const SizeField& sizes, const RunContext& context);
 

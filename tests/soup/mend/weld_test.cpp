@@ -29,8 +29,8 @@ SurfaceMesh torn(const SurfaceMesh& whole, double gap) {
 
 bool is_closed_after(const SurfaceMesh& soup, double tolerance, double& move) {
   const RunContext context;
-  repair::Draft draft = repair::make_draft(soup, context);
-  repair::merge_vertices(draft);
+  tidy::Draft draft = tidy::make_draft(soup, context);
+  tidy::merge_vertices(draft);
   move = weld_open_edges(draft, tolerance).largest_move;
   return is_closed_manifold(draft.mesh.triangles, draft.mesh.points.size());
 }
@@ -68,8 +68,8 @@ TEST(WeldOpenEdges, LeavesFineRimsAlone) {
   SurfaceMesh sphere = testing::icosphere(4);
   std::erase_if(sphere.triangles, [&](const Triangle& t) { return sphere.points[t[0]].z > 0.5; });
   const RunContext context;
-  repair::Draft draft = repair::make_draft(sphere, context);
-  repair::merge_vertices(draft);
+  tidy::Draft draft = tidy::make_draft(sphere, context);
+  tidy::merge_vertices(draft);
   const std::vector<Triangle> before = draft.mesh.triangles;
   const Welded welded = weld_open_edges(draft, 0.2);
   EXPECT_EQ(welded.joined, 0u);

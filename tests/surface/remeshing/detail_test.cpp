@@ -144,11 +144,11 @@ TEST(MergeLines, AStripWithAPatchOfItsOwnIsNotLost) {
   EXPECT_GT(std::count(made.surface.patch.begin(), made.surface.patch.end(), 1u), 0);
 }
 
-TEST(Restored, TrianglesThatReachIntoABallStayWhole) {
+TEST(KeptPlaces, TrianglesThatReachIntoABallStayWhole) {
   const SurfaceMesh ball = icosphere(2);
   remeshing::InputSurface input = input_surface(ball);
   const Vec3 center = input.mesh.points[0];
-  const auto fixed = remeshing::mark_restored(input, TriangleTree(ball), {{center, 0.01}});
+  const auto fixed = remeshing::mark_kept_places(input, TriangleTree(ball), {{center, 0.01}});
   std::size_t lines = 0;
   for (const std::uint8_t f : input.mesh.is_feature) lines += f;
   std::size_t triangles = 0;
