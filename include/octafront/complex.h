@@ -50,10 +50,10 @@ class LeakError : public InputError {
   std::vector<Vec3> way;  ///< a polygon from one to the other that goes through no wall
 };
 
-/// The complex of the walls of one surface; nullopt if it is a plain one, to be meshed as it is: closed without inner
-/// walls, with cavities or several bodies or without, or not closed or crossing, which repair then says. Faces with one
-/// region on both sides stay as sheets. A surface with sides is a complex already; options then only name and empty its
-/// regions. Throws InputError, LeakError, Cancelled.
+/// The complex of the walls of one surface; nullopt if the surface is a plain one, without inner walls: one body or
+/// several, with cavities or without; also one that is open or crosses itself, as repair says later. Faces with the
+/// same region on both sides stay as sheets. A surface with sides is a complex already, and the options only name and
+/// empty its regions. Throws InputError, LeakError, Cancelled.
 std::optional<Complex> complex_of_walls(const SurfaceMesh& surface, const ComplexOptions& options = {},
                                         const RunContext& context = {});
 

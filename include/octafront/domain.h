@@ -57,11 +57,11 @@ struct IntakeOptions {
   /// Parts of one surface that overlap: united, or each name of a patch a region, the later one where they overlap.
   enum class Overlap { kUnion, kRegions };
   Overlap overlap = Overlap::kUnion;
-  /// Faces that are there twice or turned, where that is all there is, are left to generate(), which sees to them by
-  /// itself and says so. On: they are put in order here, for a surface that goes somewhere else.
+  /// Off: a surface that only has doubled or turned faces stays as it is, because generate() puts them in order itself
+  /// and says so. On: open_domain() puts them in order, for a surface that something else than generate() will take.
   bool tidies = false;
   ImageIntake image;
-  /// Told of each note as it comes: a long way in has something to say before its end, and before it fails.
+  /// Called with each note as soon as there is one, so that notes are known even where open_domain() throws later.
   std::function<void(const IntakeNote&)> tell = {};
 };
 

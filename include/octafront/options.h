@@ -83,14 +83,14 @@ struct SurfaceOptions {
   /// kDefaultFeatureAngle, of images 85.
   std::optional<double> feature_angle;
   double angle_of_features() const { return feature_angle.value_or(kDefaultFeatureAngle); }
-  /// Where the new surface strays farther from the input than this (input units, >= 0), the sizes are made smaller, for
-  /// a few rounds. Folds, spikes and lines too near to each other for an element are smoothed over within this
-  /// distance. 0: no such detail is touched, and the sizes alone decide. Without a value: .4 % of the diagonal where
-  /// the sizes are automatic; else the sizes decide, and details give way by a tenth of the size (folds; at most .4 %
-  /// of the diagonal) to a quarter of it (lines).
+  /// How far the new surface may stray from the input (input units, >= 0): where it strays farther, sizes are made
+  /// smaller, for a few rounds. Folds, spikes and lines too near to each other for an element are smoothed over within
+  /// this distance. 0: no such detail is touched, and the sizes alone decide. Without a value automatic sizes may stray
+  /// by .4 % of the diagonal. Other sizes then have no bound, and details give way: folds by a tenth of the size (at
+  /// most .4 % of the diagonal), lines by a quarter of the size.
   std::optional<double> max_deviation;
-  /// The same where the new triangles turn by more than this many degrees against the input's surface at their corners
-  /// and centroid; (0, 90].
+  /// By how many degrees new triangles may turn against the input's surface at their corners and centroid: where they
+  /// turn farther, sizes are made smaller, too; (0, 90].
   std::optional<double> normal_deviation;
   /// Each part of the surface that feature edges enclose becomes a patch of its own; parts of a named patch keep its
   /// name, with a number behind it where there are several.
