@@ -3,7 +3,7 @@
 #include <octafront/run_context.h>
 
 #include "base/mesh/tet_complex.h"
-#include "fill/recovery/exact_point.h"
+#include "fill/recovery/exact_points.h"
 
 #include <vector>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "fill/recovery/exact_point.h"
+#include "fill/recovery/exact_points.h"
 
 #include <vector>
 

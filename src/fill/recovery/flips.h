@@ -1,7 +1,7 @@
 #pragma once
 
 #include "base/core/flat_map.h"
-#include "fill/recovery/exact_point.h"
+#include "fill/recovery/exact_points.h"
 #include "fill/recovery/labelled_complex.h"
 
 #include <vector>

@@ -2,7 +2,7 @@
 
 #include <octafront/run_context.h>
 
-#include "fill/recovery/exact_point.h"
+#include "fill/recovery/exact_points.h"
 #include "fill/recovery/labelled_complex.h"
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "base/mesh/tet_complex.h"
-#include "fill/recovery/exact_point.h"
+#include "fill/recovery/exact_points.h"
 
 #include <optional>
 #include <vector>

@@ -1,4 +1,4 @@
-#include "fill/recovery/exact_point.h"
+#include "fill/recovery/exact_points.h"
 
 #include "base/geometry/double_double.h"
 
