@@ -19,6 +19,7 @@ import tempfile
 
 BENCH = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(BENCH))
+from origin import written_by  # noqa: E402
 from peers import complexes, tetgen  # noqa: E402
 from peers.process import finish, run_measured  # noqa: E402
 
@@ -181,6 +182,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
         subprocess.run([build / "tests/support/make_complexes", folder], check=True, stdout=subprocess.DEVNULL)
+        print(f"{written_by('bench/run.sh complexes' + (' --regions ...' if args.regions else ''))}.\n")
         if args.regions:
             print("| complex | regions | size | elements | us each | mean β | least angle | alone: elements | us each | mean β | least angle | time, ratio |")
             print("|" + " --- |" * 12, flush=True)

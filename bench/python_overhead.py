@@ -15,6 +15,8 @@ import sys
 import tempfile
 import time
 
+from origin import written_by
+
 CODE = "import octafront, sys; octafront.mesh_file(sys.argv[1], elements=int(sys.argv[2]), threads=int(sys.argv[3]))" \
        ".save(sys.argv[4])"
 
@@ -38,6 +40,7 @@ def main():
     parser.add_argument("--repeats", type=int, default=5)
     parser.add_argument("--threads", type=int, default=1)
     args = parser.parse_args()
+    print(f"{written_by('bench/python_overhead.py PYTHON PROGRAM')}.\n")
     print("| elements | wall s: CLI | Python | ratio | CPU s: CLI | Python | ratio | peak MB: CLI | Python | ratio |\n"
           "| ---: |" + " ---: |" * 9)
     with tempfile.TemporaryDirectory() as folder:
