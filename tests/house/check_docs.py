@@ -6,8 +6,9 @@
 
 What holds:
 - docs/README.md links to every page of docs/.
-- Each page of docs/measured says "Written by `COMMAND` (commit ..., date, machine" as bench/origin.py does, or "Measured by"
-  where the figures were put on the page by hand; the script that the command begins with exists.
+- Each page of docs/measured, and each part of others that a command wrote, says "Written by `COMMAND` (commit ..., date,
+  machine" as bench/origin.py does, or "Measured by" where the figures were put on the page by hand; the script that the
+  command begins with exists.
 - Links, pictures and anchors of pages lead somewhere; so do paths in backticks that begin with a folder of the project.
 """
 import pathlib
@@ -16,6 +17,7 @@ import sys
 import tempfile
 
 ORIGIN = re.compile(r"(?:Written|Measured) by `(?P<script>[^` ]+)[^`]*` \(commit [0-9a-f]{7}(?: with changes)?, \d{4}-\d\d-\d\d, \w[^)]*\)")
+WRITTEN = re.compile(r"(?:Written|Measured) by `(?:bench|scripts)/")
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 QUOTED = re.compile(r"`((?:bench|cli|cmake|docs|examples|include|licenses|python|samples|scripts|src|tests)/[\w./-]*)[^`]*`")
 FENCE = re.compile(r"^```.*?^```$", re.M | re.S)
@@ -45,10 +47,9 @@ class Docs:
 
     def check_origins(self):
         for page in self.pages:
-            if page.parent.name != "measured":
-                continue
-            found = list(ORIGIN.finditer(page.read_text()))
-            if not found:
+            text = page.read_text()
+            found = list(ORIGIN.finditer(text))
+            if len(found) < len(WRITTEN.findall(text)) or (page.parent.name == "measured" and not found):
                 self.fault(page, "does not say which command wrote it, at which commit, when, on which machine")
             for origin in found:
                 if not (self.root / origin["script"]).exists():
@@ -87,13 +88,14 @@ def self_test():
         "docs/README.md": "[use](use/use.md) [good](measured/good.md) [bare](measured/bare.md) [stray](measured/stray.md)\n",
         "docs/a.png": "",
         "docs/use/use.md": "[good](../measured/good.md#figures)\n",
-        "docs/use/lonely.md": "",
+        "docs/use/lonely.md": "Written by `bench/run.sh it`.\n",
         "docs/measured/good.md": "# Figures\n\nWritten by `bench/run.sh it --all` (commit 0123abc with changes, 2026-01-31, AMD EPYC), one thread.\n",
         "docs/measured/bare.md": "Written by `bench/run.sh it`, commit 0123abc.\n",
         "docs/measured/stray.md": "Measured by `bench/gone.sh` (commit 0123abc, 2026-01-31, AMD EPYC).\n",
         "bench/run.sh": "",
     }
     expected = [
+        "docs/use/lonely.md: does not say which command wrote it, at which commit, when, on which machine",
         "README.md: leads to docs/b.png, which is not there",
         "CONTRIBUTING.md: names scripts/gone.sh, which is not there",
         "ARCHITECTURE.md: leads to #gone, and there is no such heading",
