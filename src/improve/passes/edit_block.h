@@ -54,12 +54,12 @@ class EditBlock {
   /// Boundary triangles that take the place of others: numbers as across() gives them, corners counter-clockwise seen
   /// from outside. Those that are made carry numbers of some that go, and their patches.
   struct BoundaryChange {
-    struct Made {
+    struct NewTriangle {
       HalfFace number;
       Triangle corners;
     };
     std::vector<HalfFace> gone;
-    std::vector<Made> made;
+    std::vector<NewTriangle> made;
   };
 
   /// Puts new tets in place of old ones of the block that fill the same space. Returns where they are: `created` in

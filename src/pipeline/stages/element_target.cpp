@@ -31,10 +31,10 @@ void rename_earlier(Report& report, std::size_t first_stage) {
 }
 
 /// What sizes came to.
-template <class Made>
-struct Try {
+template <class Result>
+struct TriedSizes {
   SizeField sizes;
-  Made made;
+  Result made;
   double expected;  ///< elements, by the prediction
   double count;     ///< elements, by the search
 };
@@ -47,7 +47,7 @@ auto meet_target(const SizeField& sizes, Run& run, std::size_t first_stage, int 
   const auto attempt = [&](const SizeField& by) {
     auto made = make(by);
     const double elements = count(made);
-    return Try<decltype(made)>{by, std::move(made), run.report.expected_tets, elements};
+    return TriedSizes<decltype(made)>{by, std::move(made), run.report.expected_tets, elements};
   };
   auto best = attempt(sizes);
   if (!run.options.size.elements || keeps_surface(run.options)) return best;
@@ -79,7 +79,7 @@ void note_missed_target(double count, const char* counted, Run& run) {
                   keeps_surface(run.options) ? "kept triangles" : "features and size limits", count, counted));
 }
 
-Try<Remeshed> surface_to_target(const Prepared& input, SizeField sizes, Run& run) {
+TriedSizes<Remeshed> surface_to_target(const Prepared& input, SizeField sizes, Run& run) {
   if (run.options.size.elements && !keeps_surface(run.options)) {
     const double factor = std::cbrt(traits_of(run.options.method).tets_per_expected);
     if (factor != 1) sizes = scaled(sizes, factor, run.context());
@@ -93,7 +93,7 @@ Try<Remeshed> surface_to_target(const Prepared& input, SizeField sizes, Run& run
 }  // namespace
 
 Remeshed triangulate_to_target(const Prepared& input, const SizeField& sizes, Run& run) {
-  Try<Remeshed> best = surface_to_target(input, sizes, run);
+  TriedSizes<Remeshed> best = surface_to_target(input, sizes, run);
   note_missed_target(best.expected, "expected", run);
   return std::move(best.made);
 }
@@ -102,7 +102,7 @@ Remeshed triangulate_to_target(const Prepared& input, const SizeField& sizes, Ru
 // the volume takes: it is made to meet the number first, and the mesh then seldom misses it.
 Filled fill_to_target(const Prepared& input, const SizeField& sizes, Run& run) {
   const std::size_t first_stage = run.report.stages.size();
-  std::optional<Try<Remeshed>> surface;
+  std::optional<TriedSizes<Remeshed>> surface;
   if (!traits_of(run.options.method).makes_own_boundary()) surface = surface_to_target(input, sizes, run);
   std::optional<Remeshed> first;
   if (surface) first = std::move(surface->made);
