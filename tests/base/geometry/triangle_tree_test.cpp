@@ -29,7 +29,7 @@ SurfaceMesh any_soup(int triangles, int range) {
   return s;
 }
 
-TriangleCorners corners_of(const SurfaceMesh& s, const Triangle& t) {
+TriangleCorners tree_corners_of(const SurfaceMesh& s, const Triangle& t) {
   return {s.points[t[0]], s.points[t[1]], s.points[t[2]]};
 }
 
@@ -64,14 +64,14 @@ RC_GTEST_PROP(TriangleTree, NearestIsTheNearestOfAll, ()) {
     const Vec3 p = testing::lattice_point(12);
     double least = TriangleTree::kFar;
     for (const Triangle& t : s.triangles) {
-      const auto c = corners_of(s, t);
+      const auto c = tree_corners_of(s, t);
       least = std::min(least, squared_distance(p, closest_point_on_triangle(p, c[0], c[1], c[2])));
     }
     const auto found = tree.nearest(p);
     RC_ASSERT(found.squared_distance == least);
     RC_ASSERT(squared_distance(found.point, p) == least);
     const auto c = tree.corners(found.triangle);
-    RC_ASSERT(c == corners_of(s, s.triangles[found.triangle]));
+    RC_ASSERT(c == tree_corners_of(s, s.triangles[found.triangle]));
     RC_ASSERT(closest_point_on_triangle(p, c[0], c[1], c[2]) == found.point);
     RC_ASSERT(tree.nearest(p, least).triangle == kNone);
   }
@@ -96,7 +96,7 @@ RC_GTEST_PROP(TriangleTree, BoxQueryFindsEveryTriangleWithAPointInside, ()) {
   tree.for_each_overlapping(box, [&](std::uint32_t t) { RC_ASSERT(found.insert(t).second); });
   constexpr int kSteps = 10;
   for (std::uint32_t t = 0; t < s.triangles.size(); ++t) {
-    const auto [a, b, c] = corners_of(s, s.triangles[t]);
+    const auto [a, b, c] = tree_corners_of(s, s.triangles[t]);
     bool inside = false;
     for (int i = 0; i <= kSteps; ++i)
       for (int j = 0; i + j <= kSteps; ++j)
@@ -123,14 +123,15 @@ RC_GTEST_PROP(TriangleTree, SegmentHitsAreThoseOfEachTriangle, ()) {
   std::set<std::uint32_t> found;
   tree.for_each_hit(p, q, [&](std::uint32_t t, const SegmentHit&) { found.insert(t); });
   for (std::uint32_t t = 0; t < s.triangles.size(); ++t)
-    RC_ASSERT((found.count(t) == 1) == static_cast<bool>(segment_triangle_hit(p, q, corners_of(s, s.triangles[t]))));
+    RC_ASSERT((found.count(t) == 1) ==
+              static_cast<bool>(segment_triangle_hit(p, q, tree_corners_of(s, s.triangles[t]))));
 }
 
 TEST(FirstHit, EntersASphereAtItsRadiusThroughEdgesAndVerticesToo) {
   const SurfaceMesh sphere = testing::icosphere(3);
   const TriangleTree tree(sphere);
   for (const Triangle& t : sphere.triangles) {
-    const auto [a, b, c] = corners_of(sphere, t);
+    const auto [a, b, c] = tree_corners_of(sphere, t);
     for (const Vec3 target : {a, (a + b) * 0.5, centroid(a, b, c)}) {
       const auto in = tree.first_hit(target * 3, target * -1);
       ASSERT_NE(in.triangle, kNone);

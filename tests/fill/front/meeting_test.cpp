@@ -13,7 +13,7 @@ namespace octafront {
 namespace {
 
 using TetCorners = std::array<NamedPoint, 4>;
-using TriangleCorners = std::array<NamedPoint, 3>;
+using NamedCorners = std::array<NamedPoint, 3>;
 
 const TetCorners kUnit{{{0, {0, 0, 0}}, {1, {1, 0, 0}}, {2, {0, 1, 0}}, {3, {0, 0, 1}}}};
 
@@ -57,7 +57,7 @@ TEST(Meeting, SharedEdgeOpensLikeABook) {
 }
 
 /// Some point of a fine barycentric grid of the triangle lies in the tetrahedron, away from the shared simplex.
-bool sampled_meeting(const TetCorners& t, const TriangleCorners& f) {
+bool sampled_meeting(const TetCorners& t, const NamedCorners& f) {
   constexpr int kSteps = 12;
   for (int i = 0; i <= kSteps; ++i)
     for (int j = 0; i + j <= kSteps; ++j) {
@@ -88,7 +88,7 @@ TEST(Meeting, AgreesWithSamplingOnASmallLattice) {
   int meetings = 0, separate = 0;
   for (int trial = 0; trial < 20000; ++trial) {
     TetCorners t;
-    TriangleCorners f;
+    NamedCorners f;
     // Equal points get equal ids: seven corners share what they share.
     const auto named = [](Vec3 p) { return NamedPoint{static_cast<std::uint32_t>(p.x + 4 * p.y + 16 * p.z), p}; };
     for (auto& c : t) c = named(point());
@@ -132,7 +132,7 @@ TEST(Meeting, OfConesAroundOneSharedCornerIsSeenFromTheCorner) {
       // The last order is odd: the tetrahedron is turned by its other corners.
       TetCorners t{kUnit[order[0]], kUnit[order[1]], kUnit[order[2]], kUnit[order[3]]};
       if (orient3d(t[0].at, t[1].at, t[2].at, t[3].at) < 0) std::swap(t[0], t[1]);
-      TriangleCorners f{{kUnit[0], {8, p}, {9, q}}};
+      NamedCorners f{{kUnit[0], {8, p}, {9, q}}};
       for (int turn = 0; turn < 3; ++turn) {
         ASSERT_EQ(meets_beyond_shared_simplex(t, f), meets) << "trial " << trial;
         std::rotate(f.begin(), f.begin() + 1, f.end());
