@@ -2,16 +2,14 @@
 
 judge_test.py BUILD
 """
-import importlib.util
 import pathlib
 import subprocess
 import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-spec = importlib.util.spec_from_file_location("known_answers", ROOT / "bench/known_answers.py")
-known_answers = importlib.util.module_from_spec(spec)
-spec.loader.exec_module(known_answers)
+sys.path.insert(0, str(ROOT / "bench"))
+import known_answers  # noqa: E402
 import numpy as np  # noqa: E402
 import damages  # noqa: E402
 import solids  # noqa: E402

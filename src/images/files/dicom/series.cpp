@@ -156,7 +156,8 @@ const Volume& chosen(const std::vector<Volume>& volumes, const ImageChoice& choi
   if (choice.series == 0 && volumes.size() == 1) return volumes[0];
   if (choice.series != 0 && choice.series <= volumes.size()) return volumes[choice.series - 1];
   std::string list;
-  for (std::size_t v = 0; v < volumes.size(); ++v) list += fmt::format("\n  {}: {}", v + 1, volume_in_words(volumes[v]));
+  for (std::size_t v = 0; v < volumes.size(); ++v)
+    list += fmt::format("\n  {}: {}", v + 1, volume_in_words(volumes[v]));
   throw InputError(fmt::format("holds {}; choose one by its number (`series`):{}",
                                octafront::counted(volumes.size(), "series", "series"), list));
 }
