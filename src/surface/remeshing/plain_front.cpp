@@ -142,7 +142,6 @@ class PlainFront : public FrontKind {
       if (wanted.empty() || in_vain == kMostInVain) return;
       least = std::min(least, wanted.size());
       n.wanted.insert(n.wanted.end(), wanted.begin(), wanted.end());
-      for (const Vec3 p : std::exchange(n.approached, {})) wanted.push_back({p, kDeviationCap * draft.sizes.at(p)});
       draft.sizes = capped_at(draft.sizes, smallest_ones(std::move(wanted)), work_.stage.context());
       divide_long(draft);
       draft.is_clear = mend_draft(draft, false);
