@@ -157,13 +157,6 @@ bool fit(std::span<const Sample<kTerms, kSides>> samples, const std::array<std::
 
 }  // namespace
 
-Frame frame_at(Vec3 origin, Vec3 normal) {
-  const double x = std::abs(normal.x), y = std::abs(normal.y), z = std::abs(normal.z);
-  const Vec3 least = x <= y && x <= z ? Vec3{1, 0, 0} : y <= z ? Vec3{0, 1, 0} : Vec3{0, 0, 1};
-  const Vec3 u = normalized(cross(normal, least));
-  return {origin, u, cross(normal, u), normal};
-}
-
 Vec3 SurfaceFit::at(Vec3 p) const {
   if (!trusted) return p;
   const Vec3 l = frame.local(p);

@@ -2,20 +2,12 @@
 
 // Polynomials through points of a surface or a curve, by least squares: the surface between the vertices of the input.
 
-#include <octafront/vec.h>
+#include "base/geometry/frame.h"
 
 #include <array>
 #include <span>
 
 namespace octafront::curved {
-
-/// A frame at a point: `u`, `v` tangent to the surface, `n` its normal; for curves `u` along it.
-struct Frame {
-  Vec3 origin, u, v, n;
-  Vec3 local(Vec3 p) const { return {dot(p - origin, u), dot(p - origin, v), dot(p - origin, n)}; }
-};
-/// With the given unit normal and any tangents.
-Frame frame_at(Vec3 origin, Vec3 normal);
 
 /// The height of a smooth surface over the tangent plane of one vertex, a polynomial of degree four or less that goes
 /// through the vertex. Where the points around do not follow such a polynomial (noise, a kink, a flat face that meets a

@@ -1,7 +1,6 @@
 #include "soup/mend/based_cap.h"
 
-#include "base/geometry/predicates.h"
-#include "soup/mend/across.h"
+#include "soup/mend/flat_rim.h"
 
 #include <algorithm>
 #include <array>
@@ -22,27 +21,21 @@ constexpr int kSimplifications = 3;
 /// Of the reach, what a long edge is, and how straight the rim is along one.
 constexpr double kSpacing = 4, kStraight = 2e-3;
 
-using Flat = std::array<double, 2>;
-
-int turn(Flat a, Flat b, Flat c) {
-  return orient2d(a[0], a[1], b[0], b[1], c[0], c[1]);
-}
-
 double distance(Flat a, Flat b) {
-  return std::hypot(a[0] - b[0], a[1] - b[1]);
+  return std::hypot(a.x - b.x, a.y - b.y);
 }
 
 double distance_to_chord(Flat p, Flat a, Flat b) {
-  const double ux = b[0] - a[0], uy = b[1] - a[1], square = ux * ux + uy * uy;
-  const double along = square > 0 ? std::clamp(((p[0] - a[0]) * ux + (p[1] - a[1]) * uy) / square, 0.0, 1.0) : 0;
-  return std::hypot(p[0] - a[0] - along * ux, p[1] - a[1] - along * uy);
+  const double ux = b.x - a.x, uy = b.y - a.y, square = ux * ux + uy * uy;
+  const double along = square > 0 ? std::clamp(((p.x - a.x) * ux + (p.y - a.y) * uy) / square, 0.0, 1.0) : 0;
+  return std::hypot(p.x - a.x - along * ux, p.y - a.y - along * uy);
 }
 
 /// A rim seen along a direction.
 class FlatRim {
  public:
-  FlatRim(std::span<const Vec3> rim, Vec3 away) : axes_(axes_across(away)) {
-    for (const Vec3 p : rim) points_.push_back(flat(p));
+  FlatRim(std::span<const Vec3> rim, Vec3 away) : frame_(frame_at({}, away)) {
+    for (const Vec3 p : rim) points_.push_back(seen_along(frame_, p));
   }
 
   /// Corners of the rim such that it lies within the reach of the polygon through them (D. Douglas and T. Peucker,
@@ -91,20 +84,11 @@ class FlatRim {
   }
 
   bool is_over(Vec3 p, const std::vector<std::uint32_t>& corners) const {
-    const Flat q = flat(p);
-    bool inside = false;
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-      Flat a = points_[corners[i]], b = points_[corners[(i + 1) % corners.size()]];
-      if ((a[1] > q[1]) == (b[1] > q[1])) continue;
-      if (a[1] > b[1]) std::swap(a, b);
-      if (turn(a, b, q) > 0) inside = !inside;
-    }
-    return inside;
+    return is_inside(
+        corners.size(), [&](std::size_t i) { return points_[corners[i]]; }, seen_along(frame_, p));
   }
 
  private:
-  Flat flat(Vec3 p) const { return {dot(p, axes_[0]), dot(p, axes_[1])}; }
-
   static bool meet(Flat a, Flat b, Flat c, Flat d) {
     return turn(a, b, c) * turn(a, b, d) <= 0 && turn(c, d, a) * turn(c, d, b) <= 0;
   }
@@ -115,7 +99,7 @@ class FlatRim {
         points_.begin());
   }
 
-  std::array<Vec3, 2> axes_;
+  Frame frame_;
   std::vector<Flat> points_;
 };
 

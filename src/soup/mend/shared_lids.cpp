@@ -2,8 +2,7 @@
 
 #include "base/geometry/measures.h"
 #include "base/geometry/plane_mesh.h"
-#include "base/geometry/predicates.h"
-#include "soup/mend/across.h"
+#include "soup/mend/flat_rim.h"
 
 #include <algorithm>
 #include <map>
@@ -28,7 +27,7 @@ Vec3 area_vector(std::span<const Vec3> points, const Loop& loop) {
 class LidPlane {
  public:
   LidPlane(std::span<const Vec3> points, const Loop& outer, Vec3 normal)
-      : points_(points), outer_(outer), normal_(normal), axes_(axes_across(normal)) {
+      : points_(points), outer_(outer), normal_(normal), frame_(frame_at({}, normal)) {
     for (const VertexIndex v : outer.vertices) height_ += dot(points[v], normal) / double(outer.vertices.size());
   }
 
@@ -39,15 +38,9 @@ class LidPlane {
 
   /// By its first vertex.
   bool is_around(const Loop& loop) const {
-    const Vec3 q = flat(loop.vertices.front());
-    bool inside = false;
-    for (std::size_t i = 0; i < outer_.vertices.size(); ++i) {
-      Vec3 a = flat(outer_.vertices[i]), b = flat(outer_.vertices[(i + 1) % outer_.vertices.size()]);
-      if ((a.y > q.y) == (b.y > q.y)) continue;
-      if (a.y > b.y) std::swap(a, b);
-      if (orient2d(a.x, a.y, b.x, b.y, q.x, q.y) > 0) inside = !inside;
-    }
-    return inside;
+    return is_inside(
+        outer_.vertices.size(), [&](std::size_t i) { return seen_along(frame_, points_[outer_.vertices[i]]); },
+        seen_along(frame_, points_[loop.vertices.front()]));
   }
 
   /// Nothing where rims cross or meet, or run the wrong way.
@@ -80,7 +73,10 @@ class LidPlane {
   }
 
  private:
-  Vec3 flat(VertexIndex v) const { return {dot(points_[v], axes_[0]), dot(points_[v], axes_[1]), 0}; }
+  Vec3 flat(VertexIndex v) const {
+    const Flat p = seen_along(frame_, points_[v]);
+    return {p.x, p.y, 0};
+  }
 
   static std::set<std::array<VertexIndex, 2>> border_of(const std::vector<Triangle>& triangles) {
     std::set<std::array<VertexIndex, 2>> border;
@@ -93,7 +89,7 @@ class LidPlane {
   std::span<const Vec3> points_;
   const Loop& outer_;
   Vec3 normal_;
-  std::array<Vec3, 2> axes_;
+  Frame frame_;
   double height_ = 0;
 };
 
