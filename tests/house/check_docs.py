@@ -14,7 +14,8 @@ What holds:
 import pathlib
 import re
 import sys
-import tempfile
+
+from self_test import finds
 
 ORIGIN = re.compile(r"(?:Written|Measured) by `(?P<script>[^` ]+)[^`]*` \(commit [0-9a-f]{7}(?: with changes)?, \d{4}-\d\d-\d\d, \w[^)]*\)")
 WRITTEN = re.compile(r"(?:Written|Measured) by `(?:bench|scripts)/")
@@ -104,15 +105,7 @@ def self_test():
         "docs/measured/stray.md: there is no bench/gone.sh",
         "docs/measured/stray.md: names bench/gone.sh, which is not there",
     ]
-    with tempfile.TemporaryDirectory() as folder:
-        root = pathlib.Path(folder)
-        for name, text in files.items():
-            (root / name).parent.mkdir(parents=True, exist_ok=True)
-            (root / name).write_text(text)
-        found = Docs(root).check()
-    for line in sorted(set(expected) ^ set(found)):
-        print("not found:" if line in expected else "not expected:", line)
-    return sorted(found) == sorted(expected)
+    return finds(Docs, files, expected)
 
 
 def main():

@@ -5,6 +5,7 @@
 #include <octafront/octafront_c.h>
 
 #include "support/named_surfaces.h"
+#include "support/test_folder.h"
 
 #include <cstdlib>
 #include <filesystem>
@@ -31,17 +32,8 @@ struct Case {
   IntakeOptions intake = {};
 };
 
-class OneWayIn : public ::testing::Test {
+class OneWayIn : public testing::InItsFolder {
  protected:
-  void SetUp() override { std::filesystem::create_directories(folder_); }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  std::string file(const std::string& name, const SurfaceMesh& surface) const {
-    const std::string path = folder_ / name;
-    write_surface(path, surface);
-    return path;
-  }
-
   Json of_the_line(const Case& c) const {
     std::string command = OCTAFRONT_PROGRAM " mesh";
     for (const std::string& f : c.files) command += " " + f;
@@ -52,10 +44,6 @@ class OneWayIn : public ::testing::Test {
     std::ifstream in(json);
     return Json::parse(in);
   }
-
- private:
-  std::filesystem::path folder_ =
-      std::filesystem::path(::testing::TempDir()) / ::testing::UnitTest::GetInstance()->current_test_info()->name();
 };
 
 int status_at_quiet_end(octafront_job* job) {

@@ -6,6 +6,7 @@
 #include <octafront/repair.h>
 
 #include "support/named_surfaces.h"
+#include "support/test_folder.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -31,21 +32,7 @@ bool says(const Domain& domain, const std::string& stage, const std::string& wor
                      [&](const IntakeNote& n) { return n.stage == stage && n.text.find(words) != std::string::npos; });
 }
 
-/// A folder for the files of one test.
-class Intake : public ::testing::Test {
- protected:
-  void SetUp() override { std::filesystem::create_directories(folder_); }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-  std::string file(const std::string& name, const SurfaceMesh& surface) const {
-    const std::string path = folder_ / name;
-    write_surface(path, surface);
-    return path;
-  }
-
- private:
-  std::filesystem::path folder_ =
-      std::filesystem::path(::testing::TempDir()) / ::testing::UnitTest::GetInstance()->current_test_info()->name();
-};
+using Intake = testing::InItsFolder;
 
 TEST_F(Intake, ACleanSurfaceStaysAsItIs) {
   const SurfaceMesh clean = testing::icosphere(2);

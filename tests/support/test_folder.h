@@ -1,0 +1,28 @@
+#pragma once
+
+#include <octafront/io.h>
+
+#include <filesystem>
+#include <string>
+
+#include <gtest/gtest.h>
+
+namespace octafront::testing {
+
+/// A folder for the files of one test.
+class InItsFolder : public ::testing::Test {
+ protected:
+  void SetUp() override { std::filesystem::create_directories(folder_); }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::string file(const std::string& name, const SurfaceMesh& surface) const {
+    const std::string path = folder_ / name;
+    write_surface(path, surface);
+    return path;
+  }
+
+  const std::filesystem::path folder_ =
+      std::filesystem::path(::testing::TempDir()) / ::testing::UnitTest::GetInstance()->current_test_info()->name();
+};
+
+}  // namespace octafront::testing
