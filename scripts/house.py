@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """The house in numbers and a picture: wings, rooms, arrows, circles, files and lines.
 
-    scripts/house.py [COMMIT ...]   prints docs/measured/house.md: the tree as it is, beside older commits
+    scripts/house.py [COMMIT ...]   prints docs/measured/house.md: the tree as it is, beside older commits; the part that
+                                    scripts/touched.py wrote stays as it is committed
 
 Rooms are those that ARCHITECTURE.md of that commit names; an arrow is a room (or wing) of which a file includes one of
 another; a circle is a set of rooms that reach each other.
@@ -16,6 +17,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path.append(str(ROOT / "bench"))
 from origin import written_by  # noqa: E402
 
+TOUCHED = "## What an edit costs"  # of scripts/touched.py, to the page's end
 INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"]+)"', re.M)
 
 
@@ -115,6 +117,9 @@ def main():
     for wing in sorted(now.wings, key=lambda w: -now.lines(now.wing, w)):
         rooms = sum(r.split("/")[0] == wing for r in now.rooms)
         print(f"| `{wing}` | {rooms} | {now.wings[wing]} | {now.lines(now.wing, wing):,} |")
+    _, _, touched = git("show", "HEAD:docs/measured/house.md").partition(TOUCHED)
+    if touched:
+        print("\n" + TOUCHED + touched, end="")
 
 
 if __name__ == "__main__":
