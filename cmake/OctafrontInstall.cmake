@@ -1,5 +1,5 @@
-# `cmake --install`, what find_package(octafront) and pkg-config find, and `cpack -G DEB`. Two components: what one runs,
-# and what programs of others are built with.
+# `cmake --install`, what find_package(octafront) and pkg-config find, and `cpack -G DEB`. Components: what one runs,
+# what programs of others are built with, and what reads CAD, where that was built.
 include(CMakePackageConfigHelpers)
 find_program(OCTAFRONT_GZIP gzip)
 
@@ -84,7 +84,12 @@ endfunction()
 octafront_pc(octafront_mesher "" "tbb fmt" "${pc_stands_on}")
 octafront_pc(octafront "octafront_mesher" "fmt zlib" "${pc_hdf5} ${pc_stands_on}")
 
-# cpack -G DEB: octafront_*.deb with the tool, liboctafront-dev_*.deb with the library.
+if(TARGET octafront_cad_program)
+  install(FILES LICENSE NOTICE DESTINATION ${doc_dir}/octafront-cad COMPONENT cad)
+endif()
+
+# cpack -G DEB: octafront_*.deb with the tool, liboctafront-dev_*.deb with the library, octafront-cad_*.deb with what reads
+# CAD, which brings OpenCASCADE along.
 set(CPACK_PACKAGE_NAME octafront)
 set(CPACK_PACKAGE_VENDOR "The Octafront authors")
 set(CPACK_PACKAGE_CONTACT "The Octafront authors <octafront@localhost>")
@@ -92,12 +97,19 @@ set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
 set(CPACK_COMPONENTS_ALL runtime development)
+if(TARGET octafront_cad_program)
+  list(APPEND CPACK_COMPONENTS_ALL cad)
+endif()
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_NAME octafront)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SHLIBDEPS ON)
 set(CPACK_COMPONENT_RUNTIME_DESCRIPTION "Tetrahedral finite element meshes from closed surfaces: command line tool")
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_SUGGESTS octafront-cad)
+set(CPACK_DEBIAN_CAD_PACKAGE_NAME octafront-cad)
+set(CPACK_DEBIAN_CAD_PACKAGE_SHLIBDEPS ON)
+set(CPACK_COMPONENT_CAD_DESCRIPTION "Tetrahedral finite element meshes: reader of STEP, IGES and BREP")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME liboctafront-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(dev_depends libtbb-dev libfmt-dev zlib1g-dev)
@@ -118,5 +130,8 @@ if(OCTAFRONT_GZIP)
   set(debian_files cmake/debian/copyright ${debian_dir}/changelog.gz)
   install(FILES ${debian_files} DESTINATION ${doc_dir}/octafront COMPONENT runtime)
   install(FILES ${debian_files} DESTINATION ${doc_dir}/liboctafront-dev COMPONENT development)
+  if(TARGET octafront_cad_program)
+    install(FILES ${debian_files} DESTINATION ${doc_dir}/octafront-cad COMPONENT cad)
+  endif()
 endif()
 include(CPack)

@@ -41,10 +41,10 @@ def clashes(sources):
 
 def read_sources(root):
     sources = collections.defaultdict(dict)
-    for top in ("src", "tests", "cli"):
+    for top in ("src", "tests", "cli", "cad"):
         for path in (root / top).rglob("*.cpp"):
             parts = path.relative_to(root).parts
-            room = top if top == "cli" else "/".join(parts[: 3 if top == "src" else 2][: len(parts) - 1])
+            room = top if top in ("cli", "cad") else "/".join(parts[: 3 if top == "src" else 2][: len(parts) - 1])
             if room not in ("tests/corpus", "tests/fuzz", "tests/install"):
                 sources[room]["/".join(parts)] = path.read_text()
     return sources

@@ -1,0 +1,167 @@
+#include "read.h"
+#include "text.h"
+
+#include <Quantity_Color.hxx>
+#include <TColStd_HSequenceOfExtendedString.hxx>
+#include <TCollection_AsciiString.hxx>
+#include <TDF_Label.hxx>
+#include <TDF_LabelSequence.hxx>
+#include <TDataStd_Name.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopLoc_Location.hxx>
+#include <XCAFDoc_ColorTool.hxx>
+#include <XCAFDoc_DocumentTool.hxx>
+#include <XCAFDoc_LayerTool.hxx>
+#include <XCAFDoc_ShapeTool.hxx>
+#include <cmath>
+#include <map>
+#include <set>
+
+namespace octafront::cad {
+
+namespace {
+
+std::string utf8_of(const TCollection_ExtendedString& text) {
+  const TCollection_AsciiString bytes(text);
+  return to_utf8(std::string_view(bytes.ToCString(), static_cast<std::size_t>(bytes.Length())));
+}
+
+class DocumentReader {
+ public:
+  DocumentReader(const Handle(TDocStd_Document) & document, const LabelsOfShapes& said, Part& part)
+      : shapes_(XCAFDoc_DocumentTool::ShapeTool(document->Main())),
+        colours_(XCAFDoc_DocumentTool::ColorTool(document->Main())),
+        layers_(XCAFDoc_DocumentTool::LayerTool(document->Main())),
+        said_(said),
+        part_(part) {}
+
+  void read() {
+    TDF_LabelSequence free;
+    shapes_->GetFreeShapes(free);
+    for (const TDF_Label& label : free) visit(label, TopLoc_Location(), {});
+  }
+
+ private:
+  /// `outer`: what the assemblies around it say, where the shape itself says nothing.
+  void visit(const TDF_Label& label, const TopLoc_Location& place, Labels outer) {
+    if (XCAFDoc_ShapeTool::IsReference(label)) {
+      TDF_Label product;
+      if (!XCAFDoc_ShapeTool::GetReferredShape(label, product)) return;
+      // An instance's own name is a number in most files: the product's says more.
+      const Labels own = labels_of(label);
+      if (own.colour) outer.colour = own.colour;
+      if (!own.layer.empty()) outer.layer = own.layer;
+      return visit(product, place * XCAFDoc_ShapeTool::GetLocation(label), outer);
+    }
+    if (XCAFDoc_ShapeTool::IsAssembly(label)) {
+      TDF_LabelSequence components;
+      XCAFDoc_ShapeTool::GetComponents(label, components);
+      for (const TDF_Label& component : components) visit(component, place, outer);
+      return;
+    }
+    take_product(label, place, merged(labels_of(label), outer));
+  }
+
+  void take_product(const TDF_Label& label, const TopLoc_Location& place, const Labels& product) {
+    const LabelsOfShapes inside = labels_of_parts(label);
+    const TopoDS_Shape shape = XCAFDoc_ShapeTool::GetShape(label);
+    if (shape.IsNull()) return;
+    int solids = 0;
+    for (TopExp_Explorer it(shape, TopAbs_SOLID); it.More(); it.Next()) ++solids;
+    for (TopExp_Explorer it(shape, TopAbs_SOLID); it.More(); it.Next()) {
+      Labels own = of_shape(it.Current(), inside);
+      // One solid is the product; of several, each has its own name, if it has.
+      if (says_nothing(own.name) || (solids == 1 && !says_nothing(product.name))) own.name.clear();
+      Labels labels = merged(own, product);
+      if (says_nothing(labels.name)) labels.name.clear();
+      part_.solids.push_back({it.Current().Moved(place, false), labels});
+    }
+    for (TopExp_Explorer it(shape, TopAbs_FACE, TopAbs_SOLID); it.More(); it.Next())
+      part_.loose.push_back(it.Current().Moved(place, false));
+    for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next()) {
+      Labels own = of_shape(it.Current(), inside);
+      if (says_nothing(own.name)) own.name.clear();
+      if (!own.name.empty() || !own.layer.empty() || own.colour)
+        part_.face_labels.Bind(it.Current().Moved(place, false), own);
+    }
+  }
+
+  Labels of_shape(const TopoDS_Shape& shape, const LabelsOfShapes& inside) const {
+    const auto find = [&](const LabelsOfShapes& map) {
+      const auto found = map.find(shape.TShape().get());
+      return found == map.end() ? Labels{} : found->second;
+    };
+    return merged(find(said_), find(inside));
+  }
+
+  static Labels merged(Labels first, const Labels& second) {
+    if (first.name.empty()) first.name = second.name;
+    if (first.layer.empty()) first.layer = second.layer;
+    if (!first.colour) first.colour = second.colour;
+    return first;
+  }
+
+  LabelsOfShapes labels_of_parts(const TDF_Label& label) const {
+    LabelsOfShapes all;
+    TDF_LabelSequence inside;
+    XCAFDoc_ShapeTool::GetSubShapes(label, inside);
+    for (const TDF_Label& part : inside) {
+      const TopoDS_Shape shape = XCAFDoc_ShapeTool::GetShape(part);
+      if (!shape.IsNull()) all[shape.TShape().get()] = labels_of(part);
+    }
+    return all;
+  }
+
+  Labels labels_of(const TDF_Label& label) const {
+    Labels labels;
+    Handle(TDataStd_Name) name;
+    if (label.FindAttribute(TDataStd_Name::GetID(), name)) labels.name = utf8_of(name->Get());
+    Quantity_Color colour;
+    if (colours_->GetColor(label, XCAFDoc_ColorSurf, colour) || colours_->GetColor(label, XCAFDoc_ColorGen, colour)) {
+      double red, green, blue;
+      colour.Values(red, green, blue, Quantity_TOC_sRGB);
+      const auto byte = [](double x) {
+        return static_cast<std::uint8_t>(std::lround(std::min(1.0, std::max(0.0, x)) * 255));
+      };
+      labels.colour = Colour{byte(red), byte(green), byte(blue)};
+    }
+    Handle(TColStd_HSequenceOfExtendedString) layers;
+    if (layers_->GetLayers(label, layers) && !layers.IsNull() && layers->Length() > 0)
+      labels.layer = utf8_of(layers->Value(1));
+    return labels;
+  }
+
+  const Handle(XCAFDoc_ShapeTool) shapes_;
+  const Handle(XCAFDoc_ColorTool) colours_;
+  const Handle(XCAFDoc_LayerTool) layers_;
+  const LabelsOfShapes& said_;
+  Part& part_;
+};
+
+}  // namespace
+
+void take_document(const Handle(TDocStd_Document) & document, const LabelsOfShapes& said, Part& part) {
+  DocumentReader(document, said, part).read();
+}
+
+void take_shape(const TopoDS_Shape& shape, Part& part) {
+  for (TopExp_Explorer it(shape, TopAbs_SOLID); it.More(); it.Next()) part.solids.push_back({it.Current(), {}});
+  for (TopExp_Explorer it(shape, TopAbs_FACE, TopAbs_SOLID); it.More(); it.Next()) part.loose.push_back(it.Current());
+}
+
+void number_names(Part& part) {
+  std::set<std::string> taken;
+  std::map<std::string, int> used;
+  for (const Body& body : part.solids) taken.insert(body.labels.name);
+  for (Body& body : part.solids) {
+    const std::string name = body.labels.name;
+    int& n = used[name];
+    if (name.empty() || ++n == 1) continue;
+    // "bolt#2" may be a name that the file gives already.
+    while (taken.contains(name + "#" + std::to_string(n))) ++n;
+    body.labels.name = name + "#" + std::to_string(n);
+    taken.insert(body.labels.name);
+  }
+}
+
+}  // namespace octafront::cad

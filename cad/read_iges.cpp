@@ -1,0 +1,82 @@
+#include "pipe.h"
+#include "read.h"
+#include "text.h"
+
+#include <IGESCAFControl_Reader.hxx>
+#include <IGESControl_Controller.hxx>
+#include <IGESData_GlobalSection.hxx>
+#include <IGESData_IGESModel.hxx>
+#include <Interface_Check.hxx>
+#include <Interface_ReportEntity.hxx>
+#include <Interface_Static.hxx>
+#include <TCollection_HAsciiString.hxx>
+#include <algorithm>
+#include <cctype>
+
+#include <fmt/format.h>
+
+namespace octafront::cad {
+
+namespace {
+
+/// The names of the standard are short: "MM", "INCH".
+std::string unit_in_words(std::string name) {
+  std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
+  for (const auto& [brief, whole] : {std::pair{"mm", "millimetre"},
+                                     {"in", "inch"},
+                                     {"inch", "inch"},
+                                     {"m", "metre"},
+                                     {"cm", "centimetre"},
+                                     {"ft", "foot"},
+                                     {"mi", "mile"},
+                                     {"km", "kilometre"},
+                                     {"mil", "mil"},
+                                     {"um", "micrometre"},
+                                     {"uin", "microinch"}})
+    if (name == brief) return whole;
+  return name;
+}
+
+void read_unit(const IGESData_IGESModel& model, Part& part) {
+  const IGESData_GlobalSection& global = model.GlobalSection();
+  if (!global.UnitName().IsNull()) part.unit = unit_in_words(to_utf8(global.UnitName()->ToCString()));
+  // In the unit that is asked of the reader.
+  if (global.UnitValue() > 0) part.to_millimetres = global.UnitValue();
+}
+
+std::vector<std::string> complaints_of(const IGESData_IGESModel& model) {
+  std::vector<std::string> all;
+  for (int i = 1; i <= model.NbEntities(); ++i) {
+    if (!model.IsReportEntity(i)) continue;
+    const Handle(Interface_Check)& check = model.ReportEntity(i)->Check();
+    for (int k = 1; k <= check->NbFails(); ++k)
+      all.push_back(fmt::format("entity {}: {}", to_utf8(model.StringLabel(model.Value(i))->ToCString()),
+                                to_utf8(check->CFail(k))));
+  }
+  return all;
+}
+
+}  // namespace
+
+void read_iges(const std::string& path, const std::string& name, bool keep_going, Part& part) {
+  IGESControl_Controller::Init();
+  Interface_Static::SetCVal("xstep.cascade.unit", "MM");
+  IGESCAFControl_Reader reader;
+  send_progress("reading", "the text of the file");
+  const IFSelect_ReturnStatus status = reader.ReadFile(path.c_str());
+  const Handle(IGESData_IGESModel) model = reader.IGESModel();
+  if (status != IFSelect_RetDone || model.IsNull() || model->NbEntities() == 0)
+    throw Refusal(fmt::format("{} cannot be read as IGES: it is cut off, or not IGES at all", name));
+  const std::vector<std::string> said = complaints_of(*model);
+  if (!said.empty())
+    lost(fmt::format("{}: {}{}", name, said[0], said.size() > 1 ? fmt::format(" (and {} more)", said.size() - 1) : ""),
+         keep_going, part);
+  read_unit(*model, part);
+  Handle(TDocStd_Document) document = new TDocStd_Document("");
+  send_progress("reading", "its shapes");
+  if (!reader.Transfer(document, progress_of("reading", "its shapes")))
+    throw Refusal(fmt::format("{} holds no shape that can be read", name));
+  take_document(document, {}, part);
+}
+
+}  // namespace octafront::cad

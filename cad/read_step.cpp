@@ -1,0 +1,208 @@
+#include "pipe.h"
+#include "read.h"
+#include "text.h"
+
+#include <Interface_Check.hxx>
+#include <Interface_EntityIterator.hxx>
+#include <Interface_ReportEntity.hxx>
+#include <Interface_Static.hxx>
+#include <STEPCAFControl_Reader.hxx>
+#include <STEPConstruct_UnitContext.hxx>
+#include <STEPControl_Controller.hxx>
+#include <StepData_StepModel.hxx>
+#include <StepGeom_GeomRepContextAndGlobUnitAssCtxAndGlobUncertaintyAssCtx.hxx>
+#include <StepGeom_GeometricRepresentationContextAndGlobalUnitAssignedContext.hxx>
+#include <StepRepr_GlobalUnitAssignedContext.hxx>
+#include <StepRepr_RepresentationContext.hxx>
+#include <StepRepr_RepresentationItem.hxx>
+#include <StepShape_FaceSurface.hxx>
+#include <StepShape_ManifoldSolidBrep.hxx>
+#include <StepShape_ShapeRepresentation.hxx>
+#include <StepVisual_HArray1OfLayeredItem.hxx>
+#include <StepVisual_LayeredItem.hxx>
+#include <StepVisual_PresentationLayerAssignment.hxx>
+#include <StepVisual_StyledItem.hxx>
+#include <TColStd_SequenceOfAsciiString.hxx>
+#include <TCollection_HAsciiString.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TransferBRep.hxx>
+#include <Transfer_TransientProcess.hxx>
+#include <XSControl_TransferReader.hxx>
+#include <XSControl_WorkSession.hxx>
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+#include <iterator>
+#include <set>
+
+#include <fmt/format.h>
+
+namespace octafront::cad {
+
+namespace {
+
+std::string text_of(const Handle(TCollection_HAsciiString) & text) {
+  return text.IsNull() ? std::string() : to_utf8(text->ToCString());
+}
+
+/// "#123 (ADVANCED_FACE)".
+std::string entity_in_words(const StepData_StepModel& model, const Handle(Standard_Transient) & entity) {
+  return fmt::format("{} ({})", text_of(model.StringLabel(entity)), model.TypeName(entity, false));
+}
+
+/// What the reader complained of: of an entity, or of the file.
+std::vector<std::string> complaints(const StepData_StepModel& model) {
+  std::vector<std::string> all;
+  const Handle(Interface_Check)& whole = model.GlobalCheck();
+  for (int i = 1; !whole.IsNull() && i <= whole->NbFails(); ++i) all.push_back(to_utf8(whole->CFail(i)));
+  for (int i = 1; i <= model.NbEntities(); ++i) {
+    if (!model.IsReportEntity(i)) continue;
+    const Handle(Interface_Check)& check = model.ReportEntity(i)->Check();
+    for (int k = 1; k <= check->NbFails(); ++k)
+      all.push_back(entity_in_words(model, model.Value(i)) + ": " + to_utf8(check->CFail(k)));
+  }
+  return all;
+}
+
+std::string first_of(const std::vector<std::string>& sentences) {
+  if (sentences.empty()) return "";
+  return sentences.size() == 1 ? sentences[0] : fmt::format("{} (and {} more)", sentences[0], sentences.size() - 1);
+}
+
+Handle(StepRepr_GlobalUnitAssignedContext) units_of(const Handle(StepRepr_RepresentationContext) & context) {
+  if (const auto both = Handle(StepGeom_GeometricRepresentationContextAndGlobalUnitAssignedContext)::DownCast(context);
+      !both.IsNull())
+    return both->GlobalUnitAssignedContext();
+  if (const auto all = Handle(StepGeom_GeomRepContextAndGlobUnitAssCtxAndGlobUncertaintyAssCtx)::DownCast(context);
+      !all.IsNull())
+    return all->GlobalUnitAssignedContext();
+  return Handle(StepRepr_GlobalUnitAssignedContext)::DownCast(context);
+}
+
+/// How many millimetres the unit of length is of the first shape whose context says so; 0: none does.
+double millimetres_of_unit(const StepData_StepModel& model) {
+  for (int i = 1; i <= model.NbEntities(); ++i) {
+    const auto representation = Handle(StepShape_ShapeRepresentation)::DownCast(model.Value(i));
+    if (representation.IsNull()) continue;
+    const Handle(StepRepr_GlobalUnitAssignedContext) units = units_of(representation->ContextOfItems());
+    STEPConstruct_UnitContext factors;
+    if (units.IsNull() || factors.ComputeFactors(units) != 0 || !factors.LengthDone()) continue;
+    return factors.LengthFactor();
+  }
+  return 0;
+}
+
+void read_units(STEPControl_Reader& reader, Part& part) {
+  TColStd_SequenceOfAsciiString lengths, angles, solid_angles;
+  reader.FileUnits(lengths, angles, solid_angles);
+  std::set<std::string> different;
+  for (const TCollection_AsciiString& length : lengths) {
+    std::string name = to_utf8(length.ToCString());
+    std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
+    if (!different.insert(name).second) continue;
+    part.unit += (part.unit.empty() ? "" : ", ") + name;
+  }
+  if (different.size() > 1)
+    part.notes.push_back(
+        fmt::format("the file has parts in several units ({}): each came to millimetres by its own", part.unit));
+  if (const double millimetres = millimetres_of_unit(*reader.StepModel()); millimetres > 0)
+    part.to_millimetres = millimetres;
+}
+
+void add_layer(const TopoDS_Shape& shape, const std::string& layer, LabelsOfShapes& said) {
+  for (const TopAbs_ShapeEnum type : {TopAbs_SOLID, TopAbs_FACE}) {
+    bool any = false;
+    for (TopExp_Explorer it(shape, type); it.More(); it.Next()) {
+      Labels& labels = said[it.Current().TShape().get()];
+      if (labels.layer.empty()) labels.layer = layer;
+      any = true;
+    }
+    if (any) return;
+  }
+}
+
+/// Layers of the file, straight from its entities: the document drops those of faces that it has no label for.
+void read_layers(const StepVisual_PresentationLayerAssignment& assignment,
+                 const Handle(Transfer_TransientProcess) & process, LabelsOfShapes& said) {
+  if (assignment.AssignedItems().IsNull()) return;
+  const std::string layer = text_of(assignment.Name());
+  for (int k = 1; !layer.empty() && k <= assignment.NbAssignedItems(); ++k) {
+    Handle(Standard_Transient) item = assignment.AssignedItemsValue(k).Value();
+    if (const auto styled = Handle(StepVisual_StyledItem)::DownCast(item); !styled.IsNull()) item = styled->Item();
+    if (item.IsNull()) continue;
+    const TopoDS_Shape shape = TransferBRep::ShapeResult(process, item);
+    if (!shape.IsNull()) add_layer(shape, layer, said);
+  }
+}
+
+LabelsOfShapes read_entities(const StepData_StepModel& model, const Handle(Transfer_TransientProcess) & process) {
+  LabelsOfShapes said;
+  for (int i = 1; i <= model.NbEntities(); ++i) {
+    const Handle(Standard_Transient)& entity = model.Value(i);
+    if (const auto layer = Handle(StepVisual_PresentationLayerAssignment)::DownCast(entity); !layer.IsNull())
+      read_layers(*layer, process, said);
+    if (!entity->IsKind(STANDARD_TYPE(StepShape_ManifoldSolidBrep)) &&
+        !entity->IsKind(STANDARD_TYPE(StepShape_FaceSurface)))
+      continue;
+    const std::string name = text_of(Handle(StepRepr_RepresentationItem)::DownCast(entity)->Name());
+    if (says_nothing(name)) continue;
+    const TopoDS_Shape shape = TransferBRep::ShapeResult(process, entity);
+    if (!shape.IsNull()) said[shape.TShape().get()].name = name;
+  }
+  return said;
+}
+
+/// Solids and faces of the file that became no shape.
+std::vector<std::string> lost_entities(const StepData_StepModel& model,
+                                       const Handle(Transfer_TransientProcess) & process) {
+  std::vector<std::string> all;
+  for (int i = 1; i <= model.NbEntities(); ++i) {
+    const Handle(Standard_Transient)& entity = model.Value(i);
+    if (!entity->IsKind(STANDARD_TYPE(StepShape_ManifoldSolidBrep)) &&
+        !entity->IsKind(STANDARD_TYPE(StepShape_FaceSurface)))
+      continue;
+    const Handle(Transfer_Binder) binder = process->Find(entity);
+    if (binder.IsNull() || !TransferBRep::ShapeResult(binder).IsNull()) continue;
+    const Handle(Interface_Check)& check = binder->Check();
+    all.push_back(entity_in_words(model, entity) + " could not be made" +
+                  (check.IsNull() || check->NbFails() == 0 ? "" : ": " + to_utf8(check->CFail(1))));
+  }
+  return all;
+}
+
+bool is_utf8_file(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  const std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+  return is_utf8(bytes);
+}
+
+}  // namespace
+
+void read_step(const std::string& path, const std::string& name, bool keep_going, Part& part) {
+  STEPControl_Controller::Init();
+  Interface_Static::SetCVal("xstep.cascade.unit", "MM");
+  Interface_Static::SetCVal("read.stepcaf.codepage", is_utf8_file(path) ? "UTF8" : "iso8859-1");
+  STEPCAFControl_Reader reader;
+  reader.SetLayerMode(false), reader.SetPropsMode(false), reader.SetGDTMode(false), reader.SetMatMode(false);
+  reader.SetViewMode(false);
+  send_progress("reading", "the text of the file");
+  const IFSelect_ReturnStatus status = reader.ReadFile(path.c_str());
+  const Handle(StepData_StepModel) model = reader.ChangeReader().StepModel();
+  std::vector<std::string> said = model.IsNull() ? std::vector<std::string>() : complaints(*model);
+  if (status != IFSelect_RetDone && said.empty()) said = heard();
+  if (status != IFSelect_RetDone || model.IsNull() || model->NbEntities() == 0)
+    throw Refusal(fmt::format("{} cannot be read as STEP: {}", name,
+                              said.empty() ? "it is cut off, or not STEP at all" : first_of(said)));
+  if (!said.empty()) lost(fmt::format("{}: {}", name, first_of(said)), keep_going, part);
+  read_units(reader.ChangeReader(), part);
+  Handle(TDocStd_Document) document = new TDocStd_Document("");
+  send_progress("reading", "its shapes");
+  if (!reader.Transfer(document, progress_of("reading", "its shapes")))
+    throw Refusal(fmt::format("{} holds no shape that can be read{}", name, said.empty() ? "" : ": " + first_of(said)));
+  const Handle(Transfer_TransientProcess) process = reader.ChangeReader().WS()->TransferReader()->TransientProcess();
+  const std::vector<std::string> missing = lost_entities(*model, process);
+  if (!missing.empty()) lost(fmt::format("{}: {}", name, first_of(missing)), keep_going, part);
+  take_document(document, read_entities(*model, process), part);
+}
+
+}  // namespace octafront::cad

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "part.h"
+
+namespace octafront::cad {
+
+/// Solids in which the library's check finds fault are healed; taken back where that changes volume or drops a face.
+void heal(Part& part);
+/// Solids that are inside out are turned.
+void turn_outward(Part& part);
+/// Where there is no solid: faces are sewn along edges that nearly coincide, and what is closed becomes solids.
+void sew(Part& part);
+/// Solids that touch come to share faces. Throws Refusal where two overlap; where it cannot be done well, they stay as
+/// they are, and part.fused says so.
+void fuse(Part& part);
+
+}  // namespace octafront::cad

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <octafront/vec.h>
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace octafront {
+
+/// The geometry that an input of triangles stands for, as far as it is known, whoever answers. `patch` numbers the
+/// patches of the input's surface. Answers are the same on every thread.
+class TrueGeometry {
+ public:
+  virtual ~TrueGeometry() = default;
+
+  /// The point of the patch nearest to p, which lies near it; nothing if its geometry is not known there.
+  virtual std::optional<Vec3> on_face(std::uint32_t patch, Vec3 p) const = 0;
+  /// The point nearest to p of the edges in which some two of these patches meet; nothing where none do.
+  virtual std::optional<Vec3> on_edge(std::span<const std::uint32_t> patches, Vec3 p) const = 0;
+  /// Whether p is a vertex, bit for bit: it stays where it is.
+  virtual bool is_vertex(Vec3 p) const = 0;
+
+  virtual const std::vector<std::string>& patch_names() const = 0;
+  /// A patch may be several named parts that meet smoothly: the one that p lies nearest to, and the names of all.
+  virtual std::uint32_t part_at(std::uint32_t patch, Vec3 p) const = 0;
+  virtual const std::vector<std::string>& part_names() const = 0;
+};
+
+}  // namespace octafront

@@ -1,0 +1,202 @@
+#include "cad/reader/cad_reader.h"
+
+#include <octafront/error.h>
+
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <utility>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+extern char** environ;
+
+namespace octafront::cad {
+
+namespace {
+
+/// How often the user is heard while the program works.
+constexpr int kPollMilliseconds = 50;
+/// Nothing that octafront-cad sends is longer.
+constexpr std::uint64_t kLongestFrame = std::uint64_t{1} << 36;
+
+void close_end(int& fd) {
+  if (fd >= 0) close(fd);
+  fd = -1;
+}
+
+/// A pipe whose ends no other program that is started meanwhile inherits.
+std::array<int, 2> make_pipe() {
+  std::array<int, 2> ends{-1, -1};
+  if (pipe2(ends.data(), O_CLOEXEC) != 0)
+    throw InputError(fmt::format("no pipe to the CAD reader: {}", std::strerror(errno)));
+  return ends;
+}
+
+std::string place_of(const Where& where) {
+  if (where.lo == where.hi) return "";
+  const Vec3 c = 0.5 * (where.lo + where.hi);
+  return fmt::format(", around ({:.6g}, {:.6g}, {:.6g})", c.x, c.y, c.z);
+}
+
+std::string in_words(const Where& where) {
+  if (where.stage.empty()) return "at its start";
+  return fmt::format("while {}{}{}", where.stage, where.what.empty() ? "" : " " + where.what, place_of(where));
+}
+
+}  // namespace
+
+/// The program and the pipes to it. Writing to one that is dead must not kill us: SIGPIPE is held off by the caller's
+/// thread while it writes.
+class CadReader::Process {
+ public:
+  Process(const std::string& file, const ReaderOptions& options, Tell tell, const RunContext& context)
+      : options_(options), tell_(std::move(tell)), context_(context) {
+    const std::string program = reader_program();
+    std::array<int, 2> to = make_pipe(), from = make_pipe();
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_adddup2(&actions, to[0], 0);
+    posix_spawn_file_actions_adddup2(&actions, from[1], 1);
+    posix_spawn_file_actions_addopen(&actions, 2, "/dev/null", O_WRONLY, 0);
+    std::vector<std::string> arguments = arguments_of(program, file);
+    std::vector<char*> argv;
+    for (std::string& a : arguments) argv.push_back(a.data());
+    argv.push_back(nullptr);
+    const int failed = posix_spawn(&pid_, program.c_str(), &actions, nullptr, argv.data(), environ);
+    posix_spawn_file_actions_destroy(&actions);
+    close_end(to[0]), close_end(from[1]);
+    to_ = to[1], from_ = from[0];
+    if (failed != 0) {
+      pid_ = -1;
+      throw InputError(fmt::format("{} does not start: {}", program, std::strerror(failed)));
+    }
+  }
+
+  ~Process() {
+    close_end(to_), close_end(from_);
+    if (pid_ > 0) kill(pid_, SIGKILL), waitpid(pid_, nullptr, 0);
+  }
+  Process(const Process&) = delete;
+
+  void send(const std::string& line) {
+    sigset_t pipe, before;
+    sigemptyset(&pipe), sigaddset(&pipe, SIGPIPE);
+    pthread_sigmask(SIG_BLOCK, &pipe, &before);
+    std::size_t sent = 0;
+    while (sent < line.size()) {
+      const ssize_t n = write(to_, line.data() + sent, line.size() - sent);
+      if (n < 0 && errno == EINTR) continue;
+      if (n <= 0) break;  // it is dead: reading will tell
+      sent += static_cast<std::size_t>(n);
+    }
+    const timespec now{};
+    while (sigtimedwait(&pipe, nullptr, &now) > 0) {
+    }
+    pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  }
+
+  /// The content of the next frame of this kind; tells what comes before it.
+  std::string answer(FrameKind wanted) {
+    for (;;) {
+      const std::optional<Head> head = head_of(take(kFrameHead));
+      if (!head || head->length > kLongestFrame) throw InputError("the CAD reader does not keep to its protocol");
+      std::string content = take(head->length);
+      if (head->kind == wanted) return content;
+      if (head->kind == FrameKind::kError) throw InputError(content);
+      if (head->kind == FrameKind::kNote && tell_) tell_(content);
+      if (head->kind == FrameKind::kProgress) {
+        where_ = where_of(content);
+        context_.report(where_.stage, where_.done);
+      }
+    }
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  std::vector<std::string> arguments_of(const std::string& program, const std::string& file) const {
+    std::vector<std::string> arguments{program,    file,
+                                       "--memory", std::to_string(options_.memory),
+                                       "--cpu",    std::to_string(static_cast<long>(options_.seconds))};
+    if (!options_.fuses) arguments.push_back("--no-fuse");
+    if (!options_.heals) arguments.push_back("--no-heal");
+    if (options_.keeps_going) arguments.push_back("--keep-going");
+    return arguments;
+  }
+
+  std::string take(std::uint64_t n) {
+    while (received_.size() - read_ < n) receive();
+    std::string taken = received_.substr(read_, n);
+    read_ += n;
+    if (read_ == received_.size()) received_.clear(), read_ = 0;
+    return taken;
+  }
+
+  /// Waits for bytes; throws where none will come.
+  void receive() {
+    const auto begun = Clock::now();
+    for (;;) {
+      context_.check();
+      pollfd waiting{from_, POLLIN, 0};
+      const int ready = poll(&waiting, 1, kPollMilliseconds);
+      if (ready > 0) break;
+      if (std::chrono::duration<double>(Clock::now() - begun).count() > options_.seconds)
+        throw InputError(
+            fmt::format("the CAD reader was stopped after {:.0f} s without a sign of life {}. Give it more "
+                        "by `cad_seconds`, or a larger size",
+                        options_.seconds, in_words(where_)));
+    }
+    std::array<char, 1 << 16> block;
+    const ssize_t n = read(from_, block.data(), block.size());
+    if (n < 0 && errno == EINTR) return;
+    if (n <= 0) fail_as_ended();
+    received_.append(block.data(), static_cast<std::size_t>(n));
+  }
+
+  [[noreturn]] void fail_as_ended() {
+    int status = 0;
+    waitpid(pid_, &status, 0);
+    pid_ = -1;
+    const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+    if (signal == SIGXCPU || signal == SIGKILL)
+      throw InputError(
+          fmt::format("the CAD reader was stopped after {:.0f} s of work {}. Give it more by "
+                      "`cad_seconds`, or a larger size",
+                      options_.seconds, in_words(where_)));
+    throw InputError(fmt::format(
+        "the CAD reader (OpenCASCADE) failed {}: {}. The file may be damaged there; export it again, or leave that "
+        "part out",
+        in_words(where_),
+        signal != 0 ? fmt::format("signal {}", signal) : fmt::format("exit status {}", WEXITSTATUS(status))));
+  }
+
+  ReaderOptions options_;
+  Tell tell_;
+  const RunContext& context_;
+  pid_t pid_ = -1;
+  int to_ = -1, from_ = -1;
+  std::string received_;
+  std::size_t read_ = 0;
+  Where where_;
+};
+
+CadReader::CadReader(const std::string& file, const ReaderOptions& options, Tell tell, const RunContext& context)
+    : process_(std::make_unique<Process>(file, options, std::move(tell), context)),
+      opened_(opened_of(process_->answer(FrameKind::kOpened))) {}
+
+CadReader::~CadReader() = default;
+
+CadModel CadReader::triangulate(const Fineness& fineness) {
+  process_->send(fmt::format("triangulate {:.17g} {:.17g}\n", fineness.deflection, fineness.angle));
+  return model_of(process_->answer(FrameKind::kModel));
+}
+
+}  // namespace octafront::cad

@@ -1,0 +1,71 @@
+#include "cad/shapes/groups.h"
+
+#include "base/core/disjoint_sets.h"
+#include "cad/shapes/names.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace octafront::cad {
+
+namespace {
+
+/// What is smaller than this part of a size is tiny.
+constexpr double kTiny = 0.1;
+
+/// The mean width of faces: twice the area over the perimeter.
+std::vector<double> widths_of(const CadModel& model) {
+  std::vector<double> perimeter(model.faces.size(), 0);
+  for (const CadEdge& edge : model.edges)
+    if (!edge.is_seam)
+      for (const std::uint32_t f : edge.faces) perimeter[f] += edge.length;
+  std::vector<double> width;
+  for (std::size_t f = 0; f < model.faces.size(); ++f)
+    width.push_back(perimeter[f] > 0 ? 2 * model.faces[f].area / perimeter[f] : HUGE_VAL);
+  return width;
+}
+
+bool joins(const CadModel& model, const CadEdge& edge) {
+  return edge.is_smooth && !edge.is_seam && edge.faces.size() == 2 &&
+         model.faces[edge.faces[0]].sides == model.faces[edge.faces[1]].sides;
+}
+
+}  // namespace
+
+FaceGroups group_faces(const CadModel& model, std::optional<double> size) {
+  const std::vector<double> width = widths_of(model);
+  DisjointSets sets(model.faces.size());
+  for (const CadEdge& edge : model.edges) {
+    if (!size || !joins(model, edge)) continue;
+    const auto [a, b] = std::pair(edge.faces[0], edge.faces[1]);
+    if (std::min(width[a], width[b]) < *size || edge.length < kTiny * *size) sets.join(a, b);
+  }
+  std::vector<char> has_triangles(model.faces.size(), 0);
+  for (const std::uint32_t f : model.face_of) has_triangles[f] = 1;
+  const std::vector<std::string> names = face_names(model);
+  FaceGroups groups{std::vector<std::uint32_t>(model.faces.size(), kNone), {}};
+  std::vector<std::uint32_t> number(model.faces.size(), kNone), largest;
+  for (std::uint32_t f = 0; f < model.faces.size(); ++f) {
+    if (!has_triangles[f]) continue;
+    std::uint32_t& n = number[sets.find(f)];
+    if (n == kNone) n = static_cast<std::uint32_t>(largest.size()), largest.push_back(f);
+    groups.group_of[f] = n;
+    if (model.faces[f].area > model.faces[largest[n]].area) largest[n] = f;
+  }
+  for (const std::uint32_t f : largest) groups.names.push_back(names[f]);
+  return groups;
+}
+
+TinyThings tiny_things(const CadModel& model, double size) {
+  TinyThings tiny;
+  tiny.shortest_edge = HUGE_VAL;
+  for (const CadEdge& edge : model.edges) {
+    tiny.edges += edge.length < kTiny * size;
+    tiny.shortest_edge = std::min(tiny.shortest_edge, edge.length);
+  }
+  for (const Face& face : model.faces) tiny.faces += face.area < kTiny * size * kTiny * size;
+  for (const double w : widths_of(model)) tiny.narrow_faces += w < kTiny * size;
+  return tiny;
+}
+
+}  // namespace octafront::cad

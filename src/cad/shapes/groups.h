@@ -1,0 +1,31 @@
+#pragma once
+
+#include "cad/model/cad_model.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace octafront::cad {
+
+/// Faces that are meshed as one patch.
+struct FaceGroups {
+  std::vector<std::uint32_t> group_of;  ///< per face of the model; kNone for one without triangles
+  std::vector<std::string> names;       ///< per group: that of its largest face; all different
+};
+
+/// Each face a group of its own, but for narrow ones: faces that an edge joins all along which both have the same
+/// tangent plane are one where one of them is narrower than `size` or the edge shorter than a tenth of it, and they lie
+/// between the same solids. So no line forces small elements where the surface is smooth. Without a size each face is a
+/// group.
+FaceGroups group_faces(const CadModel& model, std::optional<double> size);
+
+/// Faces and edges that are small against elements of a size: what a user may want to know before meshing.
+struct TinyThings {
+  std::size_t edges = 0, faces = 0, narrow_faces = 0;
+  double shortest_edge = 0;
+};
+TinyThings tiny_things(const CadModel& model, double size);
+
+}  // namespace octafront::cad

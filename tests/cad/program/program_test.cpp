@@ -1,0 +1,204 @@
+#include "reader.h"
+#include "shapes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <numeric>
+
+#include <gtest/gtest.h>
+
+namespace octafront::testing {
+
+namespace {
+
+using cad::CadModel;
+using cad::SurfaceRecord;
+
+const std::string kFine = "triangulate 0.01 0.25\n";
+
+class CadProgram : public ::testing::Test {
+ protected:
+  void SetUp() override { std::filesystem::create_directories(folder_); }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::string written(const std::string& shape, const std::string& ending, const std::string& unit = "MM") const {
+    const std::string file = folder_ / (shape + ending);
+    write_shape(shape_named(shape), file, unit);
+    return file;
+  }
+
+  static CadModel model_of_file(const std::string& file, const std::vector<std::string>& options = {}) {
+    const Answer answer = run_reader(file, options, kFine);
+    EXPECT_EQ(answer.models.size(), 1u) << file << (answer.errors.empty() ? "" : answer.errors[0]);
+    return answer.models.empty() ? CadModel{} : answer.models[0];
+  }
+
+  const std::filesystem::path folder_ =
+      std::filesystem::path(::testing::TempDir()) / ::testing::UnitTest::GetInstance()->current_test_info()->name();
+};
+
+double volume_behind(const CadModel& m, std::uint32_t solid) {
+  double sum = 0;
+  for (std::size_t t = 0; t < m.triangles.size(); ++t) {
+    const Sides& sides = m.faces[m.face_of[t]].sides;
+    const Triangle& c = m.triangles[t];
+    const double six = dot(m.points[c[0]], cross(m.points[c[1]], m.points[c[2]]));
+    sum += six / 6 * ((sides[1] == solid ? 1 : 0) - (sides[0] == solid ? 1 : 0));
+  }
+  return sum;
+}
+
+/// How many edges of the solid's triangles have not exactly one triangle on each side.
+int open_edges(const CadModel& m, std::uint32_t solid) {
+  std::map<std::array<VertexIndex, 2>, int> ways;
+  for (std::size_t t = 0; t < m.triangles.size(); ++t) {
+    const Sides& sides = m.faces[m.face_of[t]].sides;
+    const Triangle& c = m.triangles[t];
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (sides[1] == solid) ++ways[{c[k], c[(k + 1) % 3]}];
+      if (sides[0] == solid) ++ways[{c[(k + 1) % 3], c[k]}];
+    }
+  }
+  int open = 0;
+  for (const auto& [edge, n] : ways) {
+    const auto back = ways.find({edge[1], edge[0]});
+    open += n != 1 || back == ways.end() || back->second != 1;
+  }
+  return open;
+}
+
+TEST_F(CadProgram, SolidsOfAllKindsAreClosedAndKeepTheirVolume) {
+  for (const std::string shape : {"box", "cylinder", "cone", "sphere", "torus", "revolved", "extruded", "filleted"})
+    for (const std::string ending : {".step", ".brep", ".igs"}) {
+      SCOPED_TRACE(shape + ending);
+      const CadModel m = model_of_file(written(shape, ending));
+      ASSERT_EQ(m.solids.size(), 1u);
+      EXPECT_TRUE(m.solids[0].closed);
+      EXPECT_EQ(open_edges(m, 0), 0);
+      EXPECT_NEAR(volume_behind(m, 0), m.solids[0].volume, 5e-3 * m.solids[0].volume);
+      if (const double known = volume_of_shape(shape); known > 0) {
+        EXPECT_NEAR(m.solids[0].volume, known, 1e-6 * known);
+      }
+      for (const cad::Face& face : m.faces) {
+        EXPECT_NE(face.surface.kind, SurfaceRecord::Kind::kNone);
+        EXPECT_EQ(face.sides, (Sides{kNone, 0}));
+        EXPECT_EQ(face.triangles, cad::Face::Triangles::kAsAsked);
+      }
+      for (const cad::CadEdge& edge : m.edges) {
+        EXPECT_NE(edge.curve.kind, cad::CurveRecord::Kind::kNone);
+        EXPECT_TRUE(std::is_sorted(edge.parameters.begin(), edge.parameters.end()));
+      }
+    }
+}
+
+TEST_F(CadProgram, AnalyticRecordsPassThroughTheCorners) {
+  const CadModel m = model_of_file(written("sphere", ".step"));
+  ASSERT_EQ(m.faces.size(), 1u);
+  const SurfaceRecord& s = m.faces[0].surface;
+  ASSERT_EQ(s.kind, SurfaceRecord::Kind::kSphere);
+  for (std::size_t t = 0; t < m.triangles.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const cad::Uv at = m.corners[t][k];
+      const Vec3 on = s.frame.origin +
+                      (s.frame.x * std::cos(at.u) + s.frame.y * std::sin(at.u)) * (s.radius * std::cos(at.v)) +
+                      s.frame.z * (s.radius * std::sin(at.v));
+      EXPECT_LT(distance(on, m.points[m.triangles[t][k]]), 1e-7);
+    }
+  const auto seams = std::count_if(m.edges.begin(), m.edges.end(), [](const auto& e) { return e.is_seam; });
+  EXPECT_EQ(seams, 1);
+}
+
+TEST_F(CadProgram, FilletsAreSmoothAndBoxesAreNot) {
+  for (const cad::CadEdge& edge : model_of_file(written("box", ".step")).edges) EXPECT_FALSE(edge.is_smooth);
+  for (const cad::CadEdge& edge : model_of_file(written("filleted", ".step")).edges) EXPECT_TRUE(edge.is_smooth);
+}
+
+TEST_F(CadProgram, UnitsComeToMillimetres) {
+  for (const std::string ending : {".step", ".igs"}) {
+    const Answer answer = run_reader(written("box", ending, "INCH"), {}, "end\n");
+    ASSERT_TRUE(answer.opened) << ending;
+    EXPECT_EQ(answer.opened->model.unit, "inch");
+    EXPECT_NEAR(answer.opened->model.to_millimetres, 25.4, 1e-12);
+    EXPECT_NEAR(answer.opened->hi.x - answer.opened->lo.x, 10, 1e-6);
+  }
+  const Answer answer = run_reader(written("box", ".brep"), {}, "end\n");
+  ASSERT_TRUE(answer.opened);
+  EXPECT_EQ(answer.opened->model.unit, "");
+  EXPECT_EQ(answer.opened->model.to_millimetres, 1);
+}
+
+TEST_F(CadProgram, TouchingSolidsShareAFace) {
+  const CadModel m = model_of_file(written("touching", ".brep"));
+  ASSERT_EQ(m.solids.size(), 2u);
+  EXPECT_TRUE(m.fused);
+  const auto shared = std::count_if(m.faces.begin(), m.faces.end(),
+                                    [](const cad::Face& f) { return f.sides[0] != kNone && f.sides[1] != kNone; });
+  EXPECT_EQ(shared, 1);
+  EXPECT_NEAR(volume_behind(m, 0), 1000, 1e-9);
+  EXPECT_NEAR(volume_behind(m, 1), 125, 1e-9);
+  EXPECT_EQ(open_edges(m, 0) + open_edges(m, 1), 0);
+  EXPECT_FALSE(model_of_file(written("touching", ".brep"), {"--no-fuse"}).fused);
+}
+
+TEST_F(CadProgram, OverlapIsRefusedWithItsVolume) {
+  const std::string file = written("overlapping", ".brep");
+  const Answer answer = run_reader(file, {}, kFine);
+  ASSERT_EQ(answer.errors.size(), 1u);
+  EXPECT_NE(answer.errors[0].find("solids 1 and 2 overlap in 50 mm^3"), std::string::npos) << answer.errors[0];
+  EXPECT_EQ(model_of_file(file, {"--no-fuse"}).solids.size(), 2u);
+}
+
+TEST_F(CadProgram, SameFileSameBytes) {
+  const std::string file = written("filleted", ".step");
+  EXPECT_EQ(run_reader(file, {}, kFine).bytes, run_reader(file, {}, kFine).bytes);
+}
+
+TEST_F(CadProgram, AnswersAsOftenAsAsked) {
+  const Answer answer = run_reader(written("cylinder", ".step"), {}, "triangulate 1 0.5\ntriangulate 0.01 0.1\nwhat\n");
+  ASSERT_EQ(answer.models.size(), 2u);
+  EXPECT_LT(answer.models[0].triangles.size(), answer.models[1].triangles.size());
+  EXPECT_EQ(answer.errors.size(), 1u);
+}
+
+TEST_F(CadProgram, WhatIsNoSolidIsRefusedInWords) {
+  std::ofstream(folder_ / "a.txt") << "hello";
+  std::ofstream(folder_ / "b.step") << "";
+  for (const std::string name : {"a.txt", "b.step", "none.step"}) {
+    const Answer answer = run_reader(folder_ / name, {}, kFine);
+    EXPECT_EQ(answer.errors.size(), 1u) << name;
+    EXPECT_FALSE(answer.opened);
+  }
+}
+
+/// Ends in time, with a whole frame, an answer or a signal.
+void expect_end(const std::string& file) {
+  const Answer answer = run_reader(file, {"--cpu", "10", "--memory", "4e9"}, kFine, 60);
+  EXPECT_NE(answer.signal, SIGKILL) << file << " hangs";
+  EXPECT_TRUE(answer.signal != 0 || !answer.errors.empty() || answer.models.size() == 1) << file;
+  EXPECT_TRUE(answer.signal != 0 || answer.complete) << file;
+}
+
+TEST_F(CadProgram, DamagedFilesEnd) {
+  for (const std::string ending : {".step", ".brep", ".igs"}) {
+    std::ifstream in(written("filleted", ending), std::ios::binary);
+    const std::string whole((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+    ASSERT_GT(whole.size(), 1000u);
+    for (std::size_t i = 1; i <= 20; ++i) {
+      const std::string cut = folder_ / ("cut" + ending), flipped = folder_ / ("flipped" + ending);
+      std::ofstream(cut, std::ios::binary) << whole.substr(0, whole.size() * i / 21);
+      std::string bytes = whole;
+      for (std::size_t k = 0; k < 5; ++k) bytes[(i * 7919 + k * 104729) % bytes.size()] ^= static_cast<char>(1 << k);
+      std::ofstream(flipped, std::ios::binary) << bytes;
+      expect_end(cut), expect_end(flipped);
+    }
+  }
+}
+
+}  // namespace
+
+}  // namespace octafront::testing

@@ -1,0 +1,110 @@
+#include "shapes.h"
+
+#include <BRepBuilderAPI_MakeEdge.hxx>
+#include <BRepBuilderAPI_MakeFace.hxx>
+#include <BRepBuilderAPI_MakeWire.hxx>
+#include <BRepFilletAPI_MakeFillet.hxx>
+#include <BRepPrimAPI_MakeBox.hxx>
+#include <BRepPrimAPI_MakeCone.hxx>
+#include <BRepPrimAPI_MakeCylinder.hxx>
+#include <BRepPrimAPI_MakePrism.hxx>
+#include <BRepPrimAPI_MakeRevol.hxx>
+#include <BRepPrimAPI_MakeSphere.hxx>
+#include <BRepPrimAPI_MakeTorus.hxx>
+#include <BRepTools.hxx>
+#include <BRep_Builder.hxx>
+#include <GeomAPI_PointsToBSpline.hxx>
+#include <Geom_BSplineCurve.hxx>
+#include <IGESControl_Controller.hxx>
+#include <IGESControl_Writer.hxx>
+#include <Interface_Static.hxx>
+#include <Message.hxx>
+#include <Message_Messenger.hxx>
+#include <Message_Printer.hxx>
+#include <STEPControl_Controller.hxx>
+#include <STEPControl_Writer.hxx>
+#include <TColgp_Array1OfPnt.hxx>
+#include <TopExp_Explorer.hxx>
+#include <TopoDS.hxx>
+#include <TopoDS_Compound.hxx>
+#include <cmath>
+#include <stdexcept>
+
+namespace octafront::testing {
+
+namespace {
+
+TopoDS_Shape pair_at(double x) {
+  TopoDS_Compound both;
+  BRep_Builder().MakeCompound(both);
+  BRep_Builder().Add(both, BRepPrimAPI_MakeBox(gp_Pnt(0, 0, 0), 10, 10, 10).Shape());
+  BRep_Builder().Add(both, BRepPrimAPI_MakeBox(gp_Pnt(x, 2, 2), 5, 5, 5).Shape());
+  return both;
+}
+
+/// A face between a spline over the x axis and that axis.
+TopoDS_Face under_spline() {
+  TColgp_Array1OfPnt points(1, 5);
+  for (int i = 1; i <= 5; ++i) points(i) = gp_Pnt(2.5 * (i - 1), 0, 4 + std::sin(1.3 * i));
+  const Handle(Geom_BSplineCurve) spline = GeomAPI_PointsToBSpline(points).Curve();
+  const gp_Pnt a(0, 0, 0), b(10, 0, 0);
+  return BRepBuilderAPI_MakeFace(BRepBuilderAPI_MakeWire(BRepBuilderAPI_MakeEdge(spline).Edge(),
+                                                         BRepBuilderAPI_MakeEdge(points(5), b).Edge(),
+                                                         BRepBuilderAPI_MakeEdge(b, a).Edge(),
+                                                         BRepBuilderAPI_MakeEdge(a, points(1)).Edge())
+                                     .Wire())
+      .Face();
+}
+
+TopoDS_Shape filleted() {
+  const TopoDS_Shape box = BRepPrimAPI_MakeBox(10, 10, 10).Shape();
+  BRepFilletAPI_MakeFillet fillet(box);
+  for (TopExp_Explorer it(box, TopAbs_EDGE); it.More(); it.Next()) fillet.Add(2, TopoDS::Edge(it.Current()));
+  return fillet.Shape();
+}
+
+}  // namespace
+
+TopoDS_Shape shape_named(const std::string& name) {
+  if (name == "box") return BRepPrimAPI_MakeBox(10, 10, 10).Shape();
+  if (name == "cylinder") return BRepPrimAPI_MakeCylinder(3, 10).Shape();
+  if (name == "cone") return BRepPrimAPI_MakeCone(4, 0, 10).Shape();
+  if (name == "sphere") return BRepPrimAPI_MakeSphere(5).Shape();
+  if (name == "torus") return BRepPrimAPI_MakeTorus(5, 2).Shape();
+  if (name == "revolved") return BRepPrimAPI_MakeRevol(under_spline(), gp_Ax1(gp_Pnt(), gp_Dir(1, 0, 0))).Shape();
+  if (name == "extruded") return BRepPrimAPI_MakePrism(under_spline(), gp_Vec(0, 8, 0)).Shape();
+  if (name == "filleted") return filleted();
+  if (name == "touching") return pair_at(10);
+  if (name == "overlapping") return pair_at(8);
+  if (name == "apart") return pair_at(20);
+  throw std::invalid_argument(name);
+}
+
+double volume_of_shape(const std::string& name) {
+  if (name == "box") return 1000;
+  if (name == "cylinder") return 90 * M_PI;
+  if (name == "cone") return 160 * M_PI / 3;
+  if (name == "sphere") return 500 * M_PI / 3;
+  if (name == "torus") return 40 * M_PI * M_PI;
+  return 0;
+}
+
+void write_shape(const TopoDS_Shape& shape, const std::string& file, const std::string& unit) {
+  Message::DefaultMessenger()->ChangePrinters().Clear();
+  if (file.ends_with(".brep")) {
+    BRepTools::Write(shape, file.c_str());
+  } else if (file.ends_with(".igs")) {
+    IGESControl_Controller::Init();
+    IGESControl_Writer writer(unit.c_str(), 1);
+    writer.AddShape(shape);
+    writer.Write(file.c_str());
+  } else {
+    STEPControl_Controller::Init();
+    Interface_Static::SetCVal("write.step.unit", unit.c_str());
+    STEPControl_Writer writer;
+    writer.Transfer(shape, STEPControl_AsIs);
+    writer.Write(file.c_str());
+  }
+}
+
+}  // namespace octafront::testing
