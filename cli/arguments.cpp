@@ -209,6 +209,19 @@ void declare_repair(CLI::App& command, Arguments& a) {
       ->type_name("FILE.ply");
 }
 
+void declare_cad(CLI::App& command, Arguments& a) {
+  CadIntake& cad = a.intake.cad;
+  auto* group = command.add_option_group("CAD", "STEP, IGES, BREP");
+  group->add_flag("--keep-edges", cad.keep_edges,
+                  "Keep all lines between faces, also where narrow faces meet smoothly");
+  group->add_flag("--keep-going", cad.keep_going, "Go on without what cannot be read");
+  group->add_flag_callback(
+      "--no-heal", [&cad] { cad.heal = false; }, "Leave invalid faces and solids as they are");
+  group->add_option("--cad-seconds", cad.seconds, "CPU time for reading, healing, fusing and triangles [300]")
+      ->type_name("S");
+  group->add_option("--cad-memory", cad.memory_gigabytes, "Memory for the same, gigabytes [8]")->type_name("GB");
+}
+
 void declare_mesh_input(CLI::App& command, Arguments& a) {
   command.add_option("input", a.input, "Tetrahedral mesh: " + formats_that(&FormatInfo::reads_mesh))
       ->required()

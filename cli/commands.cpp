@@ -123,7 +123,9 @@ template <class Generator>
 auto run_on_input(Session& session, const Generator& generator) {
   const Arguments& a = session.arguments();
   const Options options = checked_options_of(session);
-  const Domain domain = open_input(session, a.intake);
+  IntakeOptions intake = a.intake;
+  intake.cad.size = options.size.size;
+  const Domain domain = open_input(session, intake);
   try {
     if (!a.page.empty()) find_repairs(session, domain.surface);
     return generator(domain, options, session.context());

@@ -4,6 +4,7 @@
 #include "image_info.h"
 #include "inputs.h"
 #include "mesh_in_words.h"
+#include "text.h"
 #include "units.h"
 
 #include <fmt/core.h>
@@ -51,6 +52,28 @@ void tell_surface_info(Session& session) {
   session.say("octafront check says whether it can be meshed, octafront mesh --dry-run what that would take\n");
 }
 
+/// Of more solids the first ones are listed.
+constexpr std::size_t kListedSolids = 40;
+
+void tell_cad_info(Session& session) {
+  const Arguments& a = session.arguments();
+  const CadInfo info = read_cad_info(a.input.string(), a.intake, session.context());
+  session.found(Json::parse(to_json(info)));
+  session.say(fmt::format("{}: {}, {}, {}{}\n", a.input.string(), info.format, counted(info.solids.size(), "solid"),
+                          counted(info.faces.size(), "face"),
+                          info.named_faces > 0 ? fmt::format(", {} with names", info.named_faces) : ""));
+  session.say_notes("CAD", info.notes);
+  session.say(fmt::format("  {}\n  unit: {}\n", box_in_words(info.box),
+                          info.unit.empty() ? "the file does not say; taken as millimetres"
+                                            : fmt::format("{}; all lengths here are millimetres", info.unit)));
+  for (std::size_t s = 0; s < std::min(kListedSolids, info.solids.size()); ++s)
+    session.say(fmt::format("  solid \"{}\": volume {:.6g}, area {:.6g}\n", info.solids[s].name, info.solids[s].volume,
+                            info.solids[s].area));
+  if (info.solids.size() > kListedSolids)
+    session.say(fmt::format("  ... and {} more: --json has all of them\n", info.solids.size() - kListedSolids));
+  session.say("octafront mesh --dry-run says what meshing would take\n");
+}
+
 void tell_mesh_info(Session& session, const TetMesh& mesh) {
   const Box3 box = bounding_box(mesh.points);
   double volume = 0;
@@ -84,6 +107,7 @@ bool tell_size_field_info(Session& session) {
 void run_info(Session& session) {
   const std::filesystem::path& file = session.arguments().input;
   if (is_image(file)) return tell_image_info(session);
+  if (is_cad(file)) return tell_cad_info(session);
   if (session.arguments().intake.image.choice.series > 0)
     throw OptionError(fmt::format("--series is for images, and {} is none that is known here", file.string()));
   if (session.arguments().bodies.size() > 1) throw OptionError("info tells of one file at a time");

@@ -98,6 +98,7 @@ void Program::declare_makers() {
   declare_complex(*mesh, a);
   declare_image(*mesh, a.intake.image);
   declare_repair(*mesh, a);
+  declare_cad(*mesh, a);
   declare_mesh_output(*mesh, a);
   declare_preset(*mesh, a);
   declare_dry_run(*mesh, a);
@@ -116,6 +117,7 @@ void Program::declare_makers() {
   declare_complex(*surface, a);
   declare_image(*surface, a.intake.image);
   declare_repair(*surface, a);
+  declare_cad(*surface, a);
   declare_output(*surface, a, "Surface: .stl, .obj, .off or .ply", true);
   declare_sizes(*surface, a);
   declare_surface(*surface, a);
@@ -130,6 +132,7 @@ void Program::declare_makers() {
   declare_input(*repair, a);
   declare_complex(*repair, a);
   declare_repair(*repair, a);
+  declare_cad(*repair, a);
   declare_output(*repair, a, "Surface: .stl, .obj, .off or .ply", true);
   declare_report(*repair, a);
   declare_run(*repair, a);
@@ -143,6 +146,7 @@ void Program::declare_makers() {
   declare_complex(*size, a);
   declare_image(*size, a.intake.image);
   declare_repair(*size, a);
+  declare_cad(*size, a);
   declare_output(*size, a, "Background grid: .vtu", false);
   declare_sizes(*size, a);
   declare_surface(*size, a);

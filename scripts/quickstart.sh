@@ -13,9 +13,15 @@ if [ ! -e "$input" ] && [ -e "$caller/$input" ]; then input=$caller/$input; fi
 [ -f "$input" ] || { echo "quickstart: no such file: $input" >&2; exit 3; }
 
 need_packages "${build_packages[@]}"
+targets=(octafront_cli)
+case ${input,,} in
+  *.step | *.stp | *.stpz | *.step.gz | *.stp.gz | *.p21 | *.iges | *.igs | *.brep | *.brp)
+    need_packages "${cad_packages[@]}"
+    targets+=(octafront_cad_program) ;;
+esac
 cmake --preset release -DOCTAFRONT_UNITY=ON -DOCTAFRONT_BUILD_TESTS=OFF -DOCTAFRONT_BUILD_BENCH=OFF -DOCTAFRONT_BUILD_EXAMPLES=OFF \
   -B build/quickstart >/dev/null
-cmake --build build/quickstart --target octafront_cli
+cmake --build build/quickstart --target "${targets[@]}"
 
 name=$(basename "${input%.*}")
 mkdir -p out

@@ -10,12 +10,15 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace octafront {
+
+class TrueGeometry;
 
 // One way in: files, several bodies, arrays and images become a Domain, and generate() (octafront/generate.h) makes a
 // mesh of it. The command line, C and Python go this way too, so all of them make the same mesh of the same input.
@@ -40,6 +43,18 @@ struct ImageIntake {
   std::vector<double> resample = {};  ///< spacing of the voxels to work with, > 0, the unit of the file: one, or three
 };
 
+/// How a CAD file becomes a domain.
+struct CadIntake {
+  /// The edge length that elements will have, millimetres, > 0: triangles are made fine enough for it, and no line is
+  /// kept where narrow faces meet smoothly. Without a value a fortieth of the diagonal, and all lines are kept.
+  std::optional<double> size = {};
+  bool keep_edges = false;      ///< all lines between faces are kept, whatever the size
+  bool keep_going = false;      ///< a file of which a part cannot be read is meshed without it
+  bool heal = true;             ///< what is not valid is healed, where that changes no volume
+  double seconds = 300;         ///< CPU time for reading, healing, fusing and triangles, > 0
+  double memory_gigabytes = 8;  ///< for the same, > 0
+};
+
 /// What is done with an input that cannot be meshed as it is, and how its parts become regions.
 struct IntakeOptions {
   /// Seeds, voids, cells, and nested shells. `tolerance` is that of several bodies, and what repair keeps to: see
@@ -61,6 +76,7 @@ struct IntakeOptions {
   /// and says so. On: open_domain() puts them in order, for a surface that something else than generate() will take.
   bool tidies = false;
   ImageIntake image;
+  CadIntake cad;
   /// Called with each note as soon as there is one, so that notes are known even where open_domain() throws later.
   std::function<void(const IntakeNote&)> tell = {};
 };
@@ -90,6 +106,11 @@ struct Domain {
   /// fingerprint() of a surface that an exact search found clean, as open_domain() leaves it of images: generate() does
   /// not search this very surface again. 0: of none.
   std::uint64_t found_clean = 0;
+
+  /// Of CAD: what the triangles stand for; the patches of the surface are its patches. Vertices of the mesh lie on it.
+  std::shared_ptr<const TrueGeometry> geometry = {};
+  /// Of CAD: the volumes of the regions by it, which those of the mesh must meet. Empty: not known.
+  std::vector<double> true_volumes = {};
 
   /// Voxels of the image along i, j and k, as they were taken.
   std::array<std::uint32_t, 3> voxels = {0, 0, 0};

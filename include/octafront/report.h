@@ -32,8 +32,9 @@ struct SizeSummary {
 
 /// One region of a mesh.
 struct RegionSummary {
-  std::string name;   ///< may be empty
-  double volume = 0;  ///< input unit cubed
+  std::string name;        ///< may be empty
+  double volume = 0;       ///< input unit cubed; of curved elements as they are curved, where `true_volume` is known
+  double true_volume = 0;  ///< of the CAD solid; 0: not known
   QualitySummary quality;
 };
 
@@ -44,6 +45,7 @@ struct Report {
   std::uint32_t bodies = 0;
   double volume = 0;                   ///< of the mesh, input unit cubed
   double input_volume = 0;             ///< enclosed by the repaired input
+  double true_volume = 0;              ///< of the CAD solids; 0: not known
   double expected_tets = 0;            ///< predicted by the sizes before the volume is meshed
   QualitySummary quality;              ///< of the elements with straight edges
   std::vector<RegionSummary> regions;  ///< by number; empty if the mesh has only one

@@ -18,9 +18,9 @@ std::span<const LengthUnit> length_units();
 /// By its name or a word of files, in lower case; null if there is none.
 const LengthUnit* unit_named(const std::string& name);
 
-/// The unit that a file says its coordinates are in, or empty. Images mostly say it; of the formats of surfaces only
-/// OBJ has a custom for it, a comment "# File units = inches" near the beginning; STL, OFF and PLY have none. Throws
-/// InputError for an image that cannot be read.
+/// The unit that a file says its coordinates are in, or empty. Images mostly say it; CAD comes in "mm" always; of the
+/// formats of surfaces only OBJ has a custom for it, a comment "# File units = inches" near the beginning; STL, OFF and
+/// PLY have none. Throws InputError for an image that cannot be read.
 std::string unit_of_file(const std::string& file);
 
 }  // namespace octafront

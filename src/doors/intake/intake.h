@@ -21,6 +21,15 @@ void take_complex(Domain& domain, const IntakeOptions& options, Complex complex)
 /// One region alone needs no name: it is "body" then.
 std::string region_name(const Domain& domain, std::size_t region);
 
+/// What is left to do with a CAD file.
+struct CadTaken {
+  bool is_clean = false;          ///< nothing: the domain's surface can be meshed
+  std::vector<Body> bodies = {};  ///< solids to be joined; empty: the domain's surface is to be mended
+};
+
+/// Reads a CAD file into the domain: triangles, patches, names, the true geometry.
+CadTaken take_cad(Domain& domain, const IntakeOptions& options, const std::string& file, const RunContext& context);
+
 /// Makes the complex of an image the surface of the domain, with what its reader had to say. `name` is that of the
 /// file, or empty.
 void take_image(Domain& domain, const IntakeOptions& options, const Image& image, const std::string& name,

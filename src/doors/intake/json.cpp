@@ -1,3 +1,4 @@
+#include <octafront/cad.h>
 #include <octafront/domain.h>
 
 #include "doors/intake/intake.h"
@@ -14,6 +15,26 @@ std::string to_json(const Domain& domain) {
   for (std::size_t r = 0; r < domain.volumes.size(); ++r)
     all["input_regions"].push_back({{"name", intake::region_name(domain, r)}, {"volume", domain.volumes[r]}});
   if (domain.dropped_sheet_faces > 0) all["dropped_sheet_faces"] = domain.dropped_sheet_faces;
+  return all.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string to_json(const CadInfo& info) {
+  using Json = nlohmann::ordered_json;
+  const auto place = [](Vec3 p) { return Json::array({p.x, p.y, p.z}); };
+  Json solids = Json::array();
+  for (const CadInfo::Solid& solid : info.solids) {
+    solids.push_back({{"name", solid.name}, {"volume", solid.volume}, {"area", solid.area}});
+    if (!solid.layer.empty()) solids.back()["layer"] = solid.layer;
+  }
+  const Json all{{"kind", "CAD"},
+                 {"format", info.format},
+                 {"unit", info.unit},
+                 {"to_millimetres", info.to_millimetres},
+                 {"box", {place(info.box.lo), place(info.box.hi)}},
+                 {"solids", solids},
+                 {"faces", info.faces},
+                 {"named_faces", info.named_faces},
+                 {"notes", info.notes}};
   return all.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 

@@ -1,3 +1,4 @@
+#include <octafront/cad.h>
 #include <octafront/complex.h>
 #include <octafront/error.h>
 #include <octafront/io.h>
@@ -112,6 +113,18 @@ class Intake {
     for (Body& body : bodies) prepare_body(body, body.name);
     domain_.format = "several bodies";
     return joined(bodies);
+  }
+
+  Domain cad(const std::string& file) {
+    const CadTaken taken = naming(file, [&] { return take_cad(domain_, options_, file, context_); });
+    if (taken.is_clean) return std::move(domain_);
+    if (!taken.bodies.empty()) {
+      std::vector<Body> bodies = taken.bodies;
+      for (Body& body : bodies) mend_body(body, fmt::format("{} ({})", file, body.name));
+      return joined(bodies);
+    }
+    Input input{file, std::exchange(domain_, {})};
+    return surface(std::move(input));
   }
 
   Domain image(const Image& image, const std::string& name) {
@@ -291,6 +304,10 @@ Domain open_domain(const std::vector<std::string>& files, const IntakeOptions& o
   }
   refuse_image_options(options.image, files.front());
   Intake intake(options, context);
+  if (is_cad(files.front())) {
+    if (files.size() > 1) throw OptionError(fmt::format("{}: give one CAD file; its solids are the regions", files[0]));
+    return intake.cad(files.front());
+  }
   return files.size() > 1 ? intake.bodies(files) : intake.surface(intake.read(files.front()));
 }
 

@@ -1,3 +1,4 @@
+#include <octafront/cad.h>
 #include <octafront/image.h>
 #include <octafront/units.h>
 
@@ -52,6 +53,7 @@ const LengthUnit* unit_named(const std::string& name) {
 std::string unit_of_file(const std::string& file) {
   std::error_code error;
   if (is_image(file)) return unit_of_image(file);
+  if (is_cad(file)) return "mm";
   if (!std::filesystem::is_regular_file(file, error)) return {};
   constexpr std::string_view kWords = "file units =";
   std::istringstream lines(beginning_of(file));

@@ -49,7 +49,7 @@ constexpr std::array kMagics{
     Magic{0, "glTF"sv, "a glTF model: export it as STL, OBJ, OFF or PLY"},
     Magic{0, "Kaydara FBX"sv, "an FBX model: export it as STL, OBJ, OFF or PLY"},
     Magic{0, "BLENDER"sv, "a Blender file: export it as STL, OBJ or PLY"},
-    Magic{0, "ISO-10303-21"sv, "a STEP model: triangulate it in a CAD program and export it as STL"},
+    Magic{0, "ISO-10303-21"sv, "a STEP model: it is read where a whole input is (`octafront mesh`), not as a surface"},
     Magic{0, "DBRep_DrawableShape"sv, "an OpenCASCADE BREP model: triangulate it and export it as STL"},
     Magic{0, "CASCADE Topology"sv, "an OpenCASCADE BREP model: triangulate it and export it as STL"},
     Magic{0, "#VRML"sv, "a VRML scene: export it as STL, OBJ, OFF or PLY"},
@@ -210,7 +210,8 @@ std::string_view well_known_kind(std::string_view bytes) {
   const std::string_view text = without_byte_order_mark(bytes);
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   if (first != std::string_view::npos && text[first] == '<') return xml_kind(head_of(text));
-  if (looks_like_iges(bytes)) return "an IGES model: triangulate it in a CAD program and export it as STL";
+  if (looks_like_iges(bytes))
+    return "an IGES model: it is read where a whole input is (`octafront mesh`), not as a surface";
   return {};
 }
 

@@ -4,6 +4,7 @@
 
 #include <octafront/tet_mesh.h>
 
+#include "base/geometry/true_geometry.h"
 #include "improve/curved/smooth_surface.h"
 
 #include <vector>
@@ -30,5 +31,9 @@ struct Bends {
 
 /// `mesh` is linear. `sharp`: feature edges of its boundary, sorted, those between patches too. In parallel.
 Bends find_bends(const TetMesh& mesh, const std::vector<Edge>& sharp, SmoothSurface& surface);
+
+/// The same where the true geometry is known; the patches of the mesh are its patches. Edges bend as they do once their
+/// corners are on it. In parallel.
+Bends find_bends(const TetMesh& mesh, const TrueGeometry& geometry);
 
 }  // namespace octafront::curved

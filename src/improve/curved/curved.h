@@ -6,6 +6,7 @@
 
 #include <octafront/second_order.h>
 
+#include "base/geometry/true_geometry.h"
 #include "base/mesh/known_surface.h"
 
 #include <vector>
@@ -17,8 +18,17 @@ namespace octafront {
 SecondOrderSummary curve_to_surface(TetMesh& mesh, const std::vector<Edge>& sharp, const KnownSurface& surface,
                                     double feature_angle, const RunContext& context);
 
+/// Moves the corners on the boundary and on interfaces of a linear mesh to the true geometry, as far as elements keep
+/// half of their volume; what did not go the whole way tries again, for a few rounds. Counts `moved` and `held`.
+SecondOrderSummary move_to_geometry(TetMesh& mesh, const TrueGeometry& geometry, const RunContext& context);
+
+/// Gives a linear mesh whose corners are on the true geometry mid-side nodes on it.
+SecondOrderSummary curve_to_geometry(TetMesh& mesh, const TrueGeometry& geometry, const RunContext& context);
+
 /// Volume of a second-order mesh, curved as it is. Unit: input unit cubed.
 double curved_volume(const TetMesh& mesh);
+/// The same of each region of a mesh, linear ones too.
+std::vector<double> curved_volumes(const TetMesh& mesh);
 
 /// With straight edges.
 SecondOrderSummary add_straight_edges(TetMesh& mesh, const RunContext& context);

@@ -30,6 +30,9 @@ struct Judged {
   bool valid = true;
 };
 
+// Corners that elements held on their way to the true geometry try so often.
+constexpr int kRounds = 4;
+
 // Edges that bend by so little are straight but for rounding.
 constexpr double kStraightJacobian = 1 - 1e-9;  // as a bound of the scaled Jacobian
 
@@ -67,6 +70,25 @@ Features sharp_features(const KnownSurface& surface, double feature_angle) {
   return detect_features({surface.mesh().points, surface.mesh().triangles, {}, {}, {}}, surface.edges(), feature_angle);
 }
 
+/// Of each element as it is curved.
+std::vector<double> volumes_of_elements(const TetMesh& mesh) {
+  std::vector<double> volumes(mesh.tets.size());
+  parallel_for(volumes.size(), [&](std::size_t t) {
+    if (!mesh.is_second_order()) {
+      const auto& [a, b, c, d] = mesh.tets[t];
+      volumes[t] = signed_volume(mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]);
+      return;
+    }
+    const QuadraticTet nodes = quadratic_nodes(mesh, static_cast<TetIndex>(t));
+    volumes[t] = signed_volume(nodes[0], nodes[1], nodes[2], nodes[3]);
+    if (least_scaled_jacobian_bound(nodes) > kStraightJacobian) return;
+    const auto coefficients = jacobian_coefficients(nodes);
+    // The integral of a polynomial over the unit tetrahedron is the mean of its coefficients over six.
+    volumes[t] = std::accumulate(coefficients.begin(), coefficients.end(), 0.0) / (6.0 * coefficients.size());
+  });
+  return volumes;
+}
+
 SurfaceMesh boundary_of_mesh(const TetMesh& mesh) {
   return {mesh.points, mesh.boundary, {}, {}, {}};
 }
@@ -87,17 +109,44 @@ SecondOrderSummary curve_to_surface(TetMesh& mesh, const std::vector<Edge>& shar
   return summary;
 }
 
+SecondOrderSummary move_to_geometry(TetMesh& mesh, const TrueGeometry& geometry, const RunContext& context) {
+  SecondOrderSummary summary;
+  for (int round = 0; round < kRounds; ++round) {
+    context.check();
+    const curved::Bends bends = curved::find_bends(mesh, geometry);
+    SecondOrderSummary made;
+    curved::move_corners(mesh, bends.corners, made, context);
+    summary.moved += made.moved;
+    summary.held = made.held;
+    if (made.held == 0) break;
+  }
+  return summary;
+}
+
+SecondOrderSummary curve_to_geometry(TetMesh& mesh, const TrueGeometry& geometry, const RunContext& context) {
+  refuse_mid_nodes(mesh);
+  SecondOrderSummary summary;
+  const curved::Bends bends = curved::find_bends(mesh, geometry);
+  const curved::TetEdges edges = curved::add_straight_mid_nodes(mesh);
+  curved::bend_edges(mesh, edges, bends.edges, summary, context);
+  prove(mesh, summary, context);
+  return summary;
+}
+
 double curved_volume(const TetMesh& mesh) {
-  std::vector<double> volumes(mesh.tets.size());
-  parallel_for(volumes.size(), [&](std::size_t t) {
-    const QuadraticTet nodes = quadratic_nodes(mesh, static_cast<TetIndex>(t));
-    volumes[t] = signed_volume(nodes[0], nodes[1], nodes[2], nodes[3]);
-    if (least_scaled_jacobian_bound(nodes) > kStraightJacobian) return;
-    const auto coefficients = jacobian_coefficients(nodes);
-    // The integral of a polynomial over the unit tetrahedron is the mean of its coefficients over six.
-    volumes[t] = std::accumulate(coefficients.begin(), coefficients.end(), 0.0) / (6.0 * coefficients.size());
-  });
+  const std::vector<double> volumes = volumes_of_elements(mesh);
   return std::accumulate(volumes.begin(), volumes.end(), 0.0);
+}
+
+std::vector<double> curved_volumes(const TetMesh& mesh) {
+  const std::vector<double> volumes = volumes_of_elements(mesh);
+  std::vector<double> of_region;
+  for (std::size_t t = 0; t < volumes.size(); ++t) {
+    const std::uint32_t region = mesh.region.empty() ? 0 : mesh.region[t];
+    if (region >= of_region.size()) of_region.resize(region + 1, 0);
+    of_region[region] += volumes[t];
+  }
+  return of_region;
 }
 
 SecondOrderSummary add_straight_edges(TetMesh& mesh, const RunContext& context) {

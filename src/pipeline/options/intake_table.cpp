@@ -113,10 +113,37 @@ std::vector<Row<IntakeOptions>> image_rows() {
   };
 }
 
+std::vector<Row<IntakeOptions>> cad_rows() {
+  constexpr const char* kGroup = "CAD";
+  return {
+      intake_row(
+          about_intake(
+              "cad_size", kGroup,
+              "The edge length that elements will have: triangles are made fine enough for it, and no line is "
+              "kept where narrow faces meet smoothly; without a value a fortieth of the diagonal, and all lines"),
+          [](auto& o) -> auto& { return o.cad.size; }),
+      intake_row(
+          about_intake("keep_edges", kGroup, "All lines between faces are kept, tiny ones and smooth ones too"),
+          [](auto& o) -> auto& { return o.cad.keep_edges; }),
+      intake_row(
+          about_intake("keep_going", kGroup, "A file of which a part cannot be read is meshed without it"),
+          [](auto& o) -> auto& { return o.cad.keep_going; }),
+      intake_row(
+          about_intake("heal", kGroup, "What is not valid is healed, where that changes no volume"),
+          [](auto& o) -> auto& { return o.cad.heal; }),
+      intake_row(
+          about_intake("cad_seconds", kGroup, "CPU time for reading, healing, fusing and triangles; above 0"),
+          [](auto& o) -> auto& { return o.cad.seconds; }),
+      intake_row(
+          about_intake("cad_memory", kGroup, "Memory for the same in gigabytes; above 0"),
+          [](auto& o) -> auto& { return o.cad.memory_gigabytes; }),
+  };
+}
+
 const std::vector<Row<IntakeOptions>>& intake_rows() {
   static const std::vector<Row<IntakeOptions>> all = [] {
     std::vector<Row<IntakeOptions>> list;
-    for (const auto& part : {material_rows(), repair_rows(), image_rows()})
+    for (const auto& part : {material_rows(), repair_rows(), image_rows(), cad_rows()})
       list.insert(list.end(), part.begin(), part.end());
     return list;
   }();

@@ -1,3 +1,4 @@
+#include <octafront/error.h>
 #include <octafront/generate.h>
 #include <octafront/named_groups.h>
 
@@ -5,8 +6,13 @@
 #include "pipeline/stages/measure.h"
 #include "pipeline/stages/methods.h"
 #include "pipeline/stages/stages.h"
+#include "pipeline/stages/true_shape.h"
 
+#include <string>
 #include <utility>
+#include <vector>
+
+#include <fmt/core.h>
 
 namespace octafront {
 
@@ -14,6 +20,7 @@ namespace {
 
 /// What a domain asks for beside what the user does.
 Options suited(const Domain& domain, const Options& asked) {
+  if (domain.geometry) return options_for_geometry(asked);
   return domain.voxel_spacing > 0 ? options_for_voxels(asked, domain.voxel_spacing) : asked;
 }
 
@@ -26,9 +33,10 @@ SizeField choose_sizes(const Prepared& input, const Domain& domain, const Option
   return sizes;
 }
 
-}  // namespace
+/// So often a mesh is made with smaller bounds where solids do not keep their volume.
+constexpr int kTriesOfBounds = 3;
 
-Result generate(const Domain& domain, const Options& asked, const RunContext& context) {
+Result generate_once(const Domain& domain, const Options& asked, const RunContext& context) {
   const Options options = suited(domain, asked);
   Run run(options, context);
   const Prepared input = prepare(domain, run);
@@ -37,13 +45,42 @@ Result generate(const Domain& domain, const Options& asked, const RunContext& co
   improve_in_shape(input, filled, run);
   note_missed_elements(filled.mesh, run);
   check_shape(input, filled, run);
+  place_on_geometry(input, filled, run);
   raise_order(input, filled, run);
   name_patches(input, filled);
+  name_parts(input, filled);
   add_patch_curves(filled.mesh);
   check_result(filled.mesh, &filled.boundary.surface, run);
   describe(filled.mesh, run.report);
+  describe_true_volumes(filled.mesh, domain, run.report);
   describe_sizes(filled.mesh, filled.boundary.sizes, run.report);
   return {std::move(filled.mesh), filled.boundary.sizes, run.close()};
+}
+
+/// Whether smaller bounds would be heard: they are not where the user bounds the deviation, or keeps the triangles.
+bool heeds_bounds(const Options& options) {
+  return !keeps_surface(options) && !options.surface.max_deviation && traits_of(options.method).has_front;
+}
+
+}  // namespace
+
+Result generate(const Domain& domain, const Options& asked, const RunContext& context) {
+  Result made = generate_once(domain, asked, context);
+  std::vector<OffSolid> off = off_solids(domain, made.report);
+  if (off.empty()) return made;
+  Domain nearer = domain;
+  for (int k = 0; k < kTriesOfBounds && !off.empty() && heeds_bounds(asked); ++k) {
+    std::string why = "volumes were off, so elements were made smaller there: " + in_words(domain, off);
+    nearer.bound = tightened(nearer, off);
+    made = generate_once(nearer, asked, context);
+    made.report.stages.front().notes.push_back(std::move(why));
+    off = off_solids(domain, made.report);
+  }
+  if (off.empty()) return made;
+  throw MeshingError(
+      fmt::format("the mesh does not keep the volumes of the CAD solids within {:g} %: {}. Give a "
+                  "smaller size, or a smaller `max_deviation`",
+                  100 * kVolumeKept, in_words(domain, off)));
 }
 
 SurfaceResult generate_surface(const Domain& domain, const Options& asked, const RunContext& context) {

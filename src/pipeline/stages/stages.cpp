@@ -295,6 +295,11 @@ Prepared prepare(const SurfaceMesh& soup, const Domain* mended, bool is_clean, R
           unfolded, std::move(closed)};
 }
 
+Prepared on_geometry(const Domain& domain, Prepared prepared) {
+  prepared.geometry = domain.geometry.get();
+  return prepared;
+}
+
 }  // namespace
 
 SurfaceOptions true_to_input(const SurfaceMesh& input, const Options& options) {
@@ -308,11 +313,12 @@ SurfaceOptions true_to_input(const SurfaceMesh& input, const Options& options) {
 
 Prepared prepare(const Domain& domain, Run& run) {
   require_bounds(domain);
-  if (domain.bound.empty() || run.options.surface.max_deviation || !has_automatic_sizes(run.options))
-    return prepare(domain.surface, nullptr, is_known_clean(domain), run);
+  const bool are_bounds_asked = has_automatic_sizes(run.options) || domain.geometry;
+  if (domain.bound.empty() || run.options.surface.max_deviation || !are_bounds_asked)
+    return on_geometry(domain, prepare(domain.surface, nullptr, is_known_clean(domain), run));
   SurfaceMesh numbered = domain.surface;
   numbered.source.clear();
-  return prepare(numbered, &domain, false, run);
+  return on_geometry(domain, prepare(numbered, &domain, false, run));
 }
 
 SizeField choose_sizes(const Prepared& input, Run& run) {
@@ -326,7 +332,8 @@ SizeField choose_sizes(const Prepared& input, Run& run) {
     note_misplaced_sizes(input.surface.mesh(), size, stage);
     return keeps_surface(run.options)
                ? size_field_of_surface(input.surface, size, stage)
-               : make_size_field(input.surface, size, stage, {input.bound, input.closed.is_in_it}, budget);
+               : make_size_field(input.surface, size, stage,
+                                 {input.bound, input.closed.is_in_it, input.geometry != nullptr}, budget);
   });
   const MethodTraits& method = traits_of(run.options.method);
   const SurfaceMesh& surface = input.surface.mesh();
@@ -346,7 +353,7 @@ Remeshed triangulate(const Prepared& input, const SizeField& sizes, Run& run) {
     Remeshed remeshed = remeshed_in_shape(
         input, sizes, run, stage,
         [&](const SizeField& by) {
-          return remesh_surface(input.surface, by, surface, stage, input.bound, {slack, budget});
+          return remesh_surface(input.surface, by, surface, stage, input.kept_bound(), {slack, budget});
         },
         budget);
     stage.count("triangles", static_cast<double>(remeshed.surface.triangles.size()));
@@ -385,7 +392,7 @@ void improve_elements(const Prepared& input, Filled& filled, Run& run, const Imp
       on.emplace(improve::BoundaryInput{
           input.surface.mesh(), input.surface.tree(), input.surface.features(), boundary.features,
           detail_tolerance(input.surface.mesh(), run.options, input.unfolded ? 1 - kUnfolded : 1), boundary.near_limit,
-          input.bound});
+          input.kept_bound()});
     if (improve_mesh(mesh, on ? &*on : nullptr, options, stage, &boundary.features)) {
       if (on) renew_sources(mesh, hull_of(boundary.surface), on->surface, on->tree);
       follow_boundary(mesh, boundary.surface);
@@ -398,8 +405,9 @@ void raise_order(const Prepared& input, Filled& filled, Run& run) {
   if (run.options.order < 2) return;
   run.stage("second order", [&](const Stage& stage) {
     auto& [mesh, boundary] = filled;
-    run.report.second_order = keeps_surface(run.options)
-                                  ? add_straight_edges(mesh, stage.context())
+    run.report.second_order = keeps_surface(run.options) ? add_straight_edges(mesh, stage.context())
+                              : input.geometry
+                                  ? curve_to_geometry(mesh, *input.geometry, stage.context())
                                   : curve_to_surface(mesh, boundary.features.edges, input.surface,
                                                      run.options.surface.angle_of_features(), stage.context());
     std::copy_n(mesh.points.begin(), boundary.surface.points.size(), boundary.surface.points.begin());

@@ -13,11 +13,14 @@
 #include <octafront/surface_mesh.h>
 #include <octafront/tet_mesh.h>
 
+#include "base/geometry/true_geometry.h"
 #include "base/mesh/known_surface.h"
 #include "fill/stuffing/implicit_domain.h"
 #include "pipeline/stages/closed_patch.h"
 #include "pipeline/stages/run.h"
 #include "surface/remeshing/remesh.h"
+
+#include <span>
 
 namespace octafront {
 
@@ -30,6 +33,11 @@ struct Prepared {
   std::vector<double> bound = {};
   bool unfolded = false;  ///< folds were taken off
   ClosedPatch closed = {};
+  const TrueGeometry* geometry = nullptr;  ///< null: not known
+
+  /// The bounds that new triangles must keep by their places. Where vertices go to the true geometry afterwards, bounds
+  /// choose sizes and no more.
+  std::span<const double> kept_bound() const { return geometry ? std::span<const double>() : bound; }
 };
 
 /// A mesh and the surface that it fills, triangle for triangle.

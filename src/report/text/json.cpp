@@ -33,12 +33,14 @@ Json json_of(const QualitySummary& q) {
 
 Json json_of(const std::vector<RegionSummary>& regions) {
   Json all = Json::array();
-  for (std::size_t r = 0; r < regions.size(); ++r)
+  for (std::size_t r = 0; r < regions.size(); ++r) {
     all.push_back({{"number", r},
                    {"name", regions[r].name},
                    {"tets", regions[r].quality.elements},
                    {"volume", regions[r].volume},
                    {"quality", json_of(regions[r].quality)}});
+    if (regions[r].true_volume > 0) all.back()["true_volume"] = regions[r].true_volume;
+  }
   return all;
 }
 
@@ -70,6 +72,7 @@ std::string to_json(const Report& report) {
          {"volume", report.volume},
          {"input_volume", report.input_volume},
          {"expected_tets", report.expected_tets}};
+  if (report.true_volume > 0) j["true_volume"] = report.true_volume;
   if (report.tets > 0) {
     j["quality"] = json_of(report.quality);
     if (!report.regions.empty()) j["regions"] = json_of(report.regions);

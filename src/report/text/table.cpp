@@ -41,11 +41,18 @@ std::string count_line(const Report& report) {
   return line + "\n";
 }
 
+double percent_off(double volume, double of) {
+  return 100 * (volume / of - 1);
+}
+
 std::string volume_line(const Report& report) {
   // An open surface encloses nothing to compare with.
+  if (report.true_volume > 0)
+    return fmt::format("volume {:.6g} (CAD {:.6g}, {:+.3f} %)\n", report.volume, report.true_volume,
+                       percent_off(report.volume, report.true_volume));
   if (report.input_volume == 0) return fmt::format("volume {:.6g}\n", report.volume);
   return fmt::format("volume {:.6g} (input {:.6g}, {:+.3f} %)\n", report.volume, report.input_volume,
-                     100 * (report.volume / report.input_volume - 1));
+                     percent_off(report.volume, report.input_volume));
 }
 
 std::string stage_lines(const Report& report) {
@@ -97,6 +104,9 @@ std::string region_lines(const std::vector<RegionSummary>& regions) {
         fmt::format("  {:<30.30}{:>12}{:>14.6g}{:>12.4f}{:>12.4f}\n",
                     region.name.empty() ? fmt::format("region {}", r + 1) : region.name,
                     grouped(region.quality.elements), region.volume, region.quality.beta_mean, region.quality.beta_min);
+    if (region.true_volume > 0)
+      out += fmt::format("  {:<30}{:>12}{:>14.6g} ({:+.3f} %)\n", "  of the CAD solid", "", region.true_volume,
+                         percent_off(region.volume, region.true_volume));
   }
   if (regions.size() > kMostRegionLines)
     out += fmt::format("  ... and {} more: all of them are in the JSON report\n", regions.size() - kMostRegionLines);

@@ -35,6 +35,7 @@ constexpr double kLeastAutomaticScale = 0.3;
 struct Choice {
   bool automatic = false;
   double base = 0, floor = 0, gap_floor = 0;
+  double chosen_floor = 0;                              ///< where it is no automatic choice
   double curvature = 0, gap = 0, feature_elements = 0;  ///< 0: not asked
 };
 
@@ -54,7 +55,8 @@ Choice choose(const SurfaceMesh& surface, const SizeOptions& o) {
   if (o.max_size) c.base = o.size || c.automatic ? std::min(c.base, *o.max_size) : *o.max_size;
   c.base = std::max(c.base, o.min_size.value_or(0));
   const double usual = o.callback && !o.size ? std::min(c.base, ours) : c.base;
-  c.floor = o.min_size.value_or(usual * (c.automatic ? kAutomaticFloor : kChosenFloor));
+  c.chosen_floor = o.min_size.value_or(usual * kChosenFloor);
+  c.floor = c.automatic ? o.min_size.value_or(usual * kAutomaticFloor) : c.chosen_floor;
   c.gap_floor = o.min_size.value_or(usual * (c.automatic ? kAutomaticGapFloor : kChosenFloor));
   c.gap = o.gap.value_or(c.automatic ? kAutomaticGap : 0);
   c.curvature = o.curvature.value_or(c.automatic ? kAutomaticCurvature : 0);
@@ -153,7 +155,8 @@ double apply_shape(const KnownSurface& known, const Choice& choice, const SizeOp
     return std::min(options.chord_error.value_or(HUGE_VAL),
                     rules.chord_errors.empty() ? HUGE_VAL : rules.chord_errors[f]);
   };
-  if (limits_chords) apply_chord_errors(curvature, error_of, choice.floor, face);
+  if (limits_chords)
+    apply_chord_errors(curvature, error_of, rules.must_hold ? choice.chosen_floor : choice.floor, face);
   if (choice.curvature > 0) apply_curvature(curvature, choice.curvature, choice.floor, face);
   return choice.automatic ? automatic_scale(surface, curvature, face) : 1;
 }

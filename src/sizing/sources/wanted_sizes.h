@@ -24,6 +24,8 @@ struct FaceRules {
   std::span<const double> chord_errors = {};  ///< SizeOptions::chord_error; infinity: nothing; empty: so everywhere
   /// Not 0: nobody knows how the surface bends there, so it asks for no size. Empty: so nowhere.
   std::span<const std::uint8_t> is_invented = {};
+  /// Chord errors are what a body's volume needs: no floor of an automatic choice stops them.
+  bool must_hold = false;
 };
 
 /// What all sources together want on a surface, before any of it is put into a grid. Input units.

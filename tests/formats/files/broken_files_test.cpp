@@ -51,7 +51,7 @@ TEST(BadSurfaceFiles, AreNamedForWhatTheyAre) {
       // Meshes may be read as surfaces: their readers say what is wrong with them.
       {"vtk", "# vtk DataFile Version 3.0\n", {"ASCII or BINARY"}},
       {"vtu", "<?xml version=\"1.0\"?><VTKFile type=\"UnstructuredGrid\">", {"no VTU file"}},
-      {"step", "ISO-10303-21;\nHEADER;", {"STEP", "triangulate"}},
+      {"step", "ISO-10303-21;\nHEADER;", {"STEP", "octafront mesh"}},
       {"lfs", "version https://git-lfs.github.com/spec/v1\noid sha256:0", {"git lfs pull"}},
       {"iges", std::string(72, ' ') + "S      1\nrest", {"IGES"}},
       {"utf16", std::string("\xff\xfeO\0F\0F\0", 8), {"UTF-16"}},

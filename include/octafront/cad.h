@@ -1,0 +1,43 @@
+#pragma once
+
+#include <octafront/domain.h>
+#include <octafront/no_context.h>
+#include <octafront/vec.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace octafront {
+
+// CAD files: STEP, IGES, BREP. They are read by a program of its own, octafront-cad, which stands on OpenCASCADE and is
+// there where that was found when Octafront was built; open_domain() (octafront/domain.h) takes them like other files.
+
+/// Whether a file is one of CAD, by its first bytes, or by its name where these do not tell.
+bool is_cad(const std::string& file);
+
+/// What a CAD file holds.
+struct CadInfo {
+  struct Solid {
+    std::string name;
+    std::string layer;
+    double volume = 0, area = 0;  ///< of the true geometry; millimetres
+  };
+  std::string format;         ///< "STEP", "IGES", "BREP"
+  std::string unit;           ///< in words; empty: the file says none
+  double to_millimetres = 1;  ///< by which its numbers are multiplied
+  Box3 box;                   ///< millimetres
+  std::vector<Solid> solids;
+  std::vector<std::string> faces;  ///< their names, of the solids and of those beside them
+  std::uint64_t named_faces = 0;   ///< that have a name in the file
+  std::vector<std::string> notes;  ///< what was found, healed, fused
+};
+
+/// Reads, heals and fuses as open_domain() does, and makes no triangles. Throws InputError, OptionError, Cancelled.
+CadInfo read_cad_info(const std::string& file, const IntakeOptions& options = {},
+                      const RunContext& context = no_context());
+
+/// The same as one JSON object, lengths in millimetres.
+std::string to_json(const CadInfo& info);
+
+}  // namespace octafront

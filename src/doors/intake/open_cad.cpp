@@ -1,0 +1,272 @@
+#include <octafront/cad.h>
+#include <octafront/error.h>
+#include <octafront/repair.h>
+
+#include "base/core/wording.h"
+#include "cad/reader/cad_reader.h"
+#include "cad/shapes/groups.h"
+#include "cad/shapes/names.h"
+#include "cad/shapes/shapes.h"
+#include "doors/intake/intake.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace octafront::intake {
+
+namespace {
+
+using namespace cad;
+
+/// Without a size elements are thought to be a fortieth of the diagonal.
+constexpr double kSizeOfDiagonal = 1.0 / 40;
+/// Triangles lie nearer to the true faces than this part of an element, and of what the thinnest solid is thick (twice
+/// its volume over its area); but no finer than this part of the diagonal.
+constexpr double kDeflectionOfSize = 0.05, kDeflectionOfThickness = 0.1, kLeastDeflection = 2e-5;
+constexpr double kAngle = 0.25;
+/// Neither finer nor coarser triangles are safer from crossing each other, where faces meet at flat angles: these are
+/// tried, as multiples of deflection and angle, until there are clean ones.
+constexpr std::array<std::array<double, 2>, 5> kLadder{{{1, 1}, {0.5, 1}, {2, 2}, {0.25, 0.5}, {4, 2}}};
+/// Triangles whose volume is off by more are tried finer.
+constexpr double kVolumeOff = 0.003;
+/// Chords of elements may lie so deep, in parts of the volume of a solid over its area: what they cut off then is well
+/// below a percent of it.
+constexpr double kDepthOfThickness = 0.025;
+
+ReaderOptions reader_options(const IntakeOptions& options) {
+  const CadIntake& asked = options.cad;
+  return {options.overlap == IntakeOptions::Overlap::kUnion, asked.heal, asked.keep_going, asked.seconds,
+          static_cast<std::uint64_t>(asked.memory_gigabytes * 1e9)};
+}
+
+void check(const CadIntake& asked) {
+  const auto require = [](bool ok, const char* what) {
+    if (!ok) throw OptionError(fmt::format("`{}` must be above 0", what));
+  };
+  require(!asked.size || *asked.size > 0, "cad_size");
+  require(asked.seconds > 0, "cad_seconds");
+  require(asked.memory_gigabytes > 0, "cad_memory");
+}
+
+std::string unit_in_words(const CadModel& model) {
+  if (model.unit.empty()) return "unit not said, taken as millimetres";
+  if (model.to_millimetres == 1) return fmt::format("unit {}", model.unit);
+  return fmt::format("unit {}: numbers times {:g} are millimetres", model.unit, model.to_millimetres);
+}
+
+/// The thickness of the thinnest solid; infinite if there is none.
+double least_thickness(const CadModel& model) {
+  double least = HUGE_VAL;
+  for (const Solid& solid : model.solids)
+    if (solid.area > 0 && solid.volume > 0) least = std::min(least, 2 * solid.volume / solid.area);
+  return least;
+}
+
+/// The triangles of the solids, or of all faces where there are no solids.
+SurfaceMesh surface_of(const CadModel& model, const FaceGroups& groups) {
+  SurfaceMesh surface;
+  surface.points = model.points;
+  surface.patch_names = groups.names;
+  const bool has_solids = !model.solids.empty();
+  for (std::size_t t = 0; t < model.triangles.size(); ++t) {
+    const std::uint32_t f = model.face_of[t];
+    const Sides& sides = model.faces[f].sides;
+    if (has_solids && sides[0] == kNone && sides[1] == kNone) continue;
+    surface.triangles.push_back(model.triangles[t]);
+    surface.patch.push_back(groups.group_of[f]);
+    if (model.solids.size() > 1) surface.sides.push_back(sides);
+  }
+  if (has_solids) surface.region_names = solid_names(model);
+  return surface;
+}
+
+/// What the triangles of each solid enclose.
+std::vector<double> volumes_of(const CadModel& model) {
+  std::vector<double> volumes(model.solids.size(), 0);
+  for (std::size_t t = 0; t < model.triangles.size(); ++t) {
+    const auto& [a, b, c] = model.triangles[t];
+    const double v = dot(cross(model.points[a], model.points[b]), model.points[c]) / 6;
+    const Sides& sides = model.faces[model.face_of[t]].sides;
+    if (sides[0] != kNone) volumes[sides[0]] -= v;
+    if (sides[1] != kNone) volumes[sides[1]] += v;
+  }
+  return volumes;
+}
+
+/// By which part the volume of triangles is off, at the worst of the solids.
+double worst_volume(const CadModel& model) {
+  const std::vector<double> volumes = volumes_of(model);
+  double worst = 0;
+  for (std::size_t s = 0; s < volumes.size(); ++s)
+    worst = std::max(worst, std::abs(volumes[s] / model.solids[s].volume - 1));
+  return worst;
+}
+
+/// Triangles, and what is wrong with them.
+struct Triangulated {
+  CadModel model;
+  FaceGroups groups;
+  SurfaceMesh surface;
+  std::string defects = {};  ///< in words; empty: none
+  double off = 0;            ///< worst_volume()
+
+  bool is_good() const { return defects.empty() && off <= kVolumeOff; }
+  bool is_better_than(const Triangulated& other) const {
+    if (defects.empty() != other.defects.empty()) return defects.empty();
+    return off < other.off;
+  }
+};
+
+class CadIn {
+ public:
+  CadIn(const std::string& file, Domain& domain, const IntakeOptions& options, const RunContext& context)
+      : domain_(domain),
+        options_(options),
+        context_(context),
+        reader_(
+            file, reader_options(options), [&](const std::string& text) { note(domain, options, "CAD", text); },
+            context) {
+    say_what_it_is(file);
+    const Opened& opened = reader_.opened();
+    const double diagonal = distance(opened.lo, opened.hi);
+    size_ = options.cad.size.value_or(kSizeOfDiagonal * diagonal);
+    deflection_ = std::max(kLeastDeflection * diagonal,
+                           std::min(kDeflectionOfSize * size_, kDeflectionOfThickness * least_thickness(opened.model)));
+  }
+
+  Triangulated triangulate() {
+    Triangulated best = attempt(kLadder[0]);
+    for (std::size_t k = 1; k < kLadder.size() && !best.is_good() && !best.model.solids.empty(); ++k)
+      if (Triangulated other = attempt(kLadder[k]); other.is_better_than(best)) best = std::move(other);
+    tell(best);
+    return best;
+  }
+
+ private:
+  Triangulated attempt(const std::array<double, 2>& by) {
+    Triangulated made{reader_.triangulate({deflection_ * by[0], kAngle * by[1]}), {}, {}};
+    made.groups = group_faces(made.model, options_.cad.keep_edges ? std::nullopt : options_.cad.size);
+    made.surface = surface_of(made.model, made.groups);
+    if (made.model.solids.empty()) return made;
+    context_.report("checking", -1);
+    const SurfaceDefects found = find_defects(repair_surface(made.surface, context_), context_);
+    if (!found.clean()) made.defects = found.describe();
+    made.off = worst_volume(made.model);
+    return made;
+  }
+
+  void say_what_it_is(const std::string& file) {
+    const CadModel& model = reader_.opened().model;
+    domain_.format = model.format;
+    note(domain_, options_, "",
+         fmt::format("{}: {}, {}, {}, {}", file, model.format, counted(model.solids.size(), "solid"),
+                     counted(model.faces.size(), "face"), unit_in_words(model)));
+  }
+
+  void tell(const Triangulated& made) {
+    std::size_t loose = 0;
+    for (const Face& face : made.model.faces) loose += !made.model.solids.empty() && face.sides == Sides{kNone, kNone};
+    if (loose > 0) note(domain_, options_, "CAD", fmt::format("{} of no solid left out", counted(loose, "face")));
+    if (made.groups.names.size() < made.model.faces.size())
+      note(domain_, options_, "CAD",
+           fmt::format("{} faces are meshed as {}, where narrow ones go on smoothly; each keeps its name. `keep_edges` "
+                       "keeps every line",
+                       made.model.faces.size(), counted(made.groups.names.size(), "patch", "patches")));
+    const TinyThings tiny = tiny_things(made.model, size_);
+    if (tiny.edges + tiny.faces + tiny.narrow_faces > 0)
+      note(domain_, options_, "CAD",
+           fmt::format("against elements of {:.4g}: {} of {} edges, {} faces and {} narrow ones are tiny (below a "
+                       "tenth); the shortest edge is {:.3g}",
+                       size_, tiny.edges, made.model.edges.size(), tiny.faces, tiny.narrow_faces, tiny.shortest_edge));
+  }
+
+  Domain& domain_;
+  const IntakeOptions& options_;
+  const RunContext& context_;
+  CadReader reader_;
+  double size_ = 0, deflection_ = 0;
+};
+
+/// The triangles of each solid, facing away from it.
+std::vector<Body> bodies_of(const Triangulated& made) {
+  const std::vector<std::string> names = solid_names(made.model);
+  std::vector<Body> bodies;
+  for (std::uint32_t s = 0; s < names.size(); ++s) {
+    Body body{names[s], {made.model.points, {}, {}, made.groups.names, {}}};
+    for (std::size_t t = 0; t < made.model.triangles.size(); ++t) {
+      const std::uint32_t f = made.model.face_of[t];
+      const auto& [front, behind] = made.model.faces[f].sides;
+      if (front != s && behind != s) continue;
+      auto [a, b, c] = made.model.triangles[t];
+      if (front == s) std::swap(b, c);
+      body.surface.triangles.push_back({a, b, c});
+      body.surface.patch.push_back(made.groups.group_of[f]);
+    }
+    bodies.push_back(std::move(body));
+  }
+  return bodies;
+}
+
+/// How near the surface stays: by what each solid is thick.
+std::vector<double> bounds_of(const CadModel& model) {
+  std::vector<double> bound;
+  for (std::size_t t = 0; t < model.triangles.size(); ++t) {
+    const Sides& sides = model.faces[model.face_of[t]].sides;
+    if (sides[0] == kNone && sides[1] == kNone) continue;
+    double least = HUGE_VAL;
+    for (const std::uint32_t s : sides)
+      if (s != kNone && model.solids[s].area > 0 && model.solids[s].volume > 0)
+        least = std::min(least, kDepthOfThickness * model.solids[s].volume / model.solids[s].area);
+    bound.push_back(least);
+  }
+  return bound;
+}
+
+}  // namespace
+
+CadTaken take_cad(Domain& domain, const IntakeOptions& options, const std::string& file, const RunContext& context) {
+  check(options.cad);
+  Triangulated made = CadIn(file, domain, options, context).triangulate();
+  CadTaken taken;
+  const bool has_solids = !made.model.solids.empty();
+  taken.is_clean = has_solids && made.defects.empty();
+  if (!made.defects.empty()) note(domain, options, "CAD", "the triangles are mended: " + made.defects);
+  if (!taken.is_clean && made.model.solids.size() > 1) taken.bodies = bodies_of(made);
+  if (taken.is_clean) domain.bound = bounds_of(made.model);
+  for (const Solid& solid : made.model.solids) domain.true_volumes.push_back(solid.volume);
+  domain.surface = std::move(made.surface);
+  if (!taken.is_clean) domain.surface.sides.clear();
+  domain.geometry = std::make_shared<Shapes>(std::move(made.model), std::move(made.groups));
+  for (std::size_t r = 0; taken.is_clean && r < domain.true_volumes.size(); ++r) {
+    if (domain.true_volumes.size() > 1) domain.volumes.push_back(domain.true_volumes[r]);
+    note(domain, options, "",
+         fmt::format("  region \"{}\": volume {:.6g}", region_name(domain, r), domain.true_volumes[r]));
+  }
+  return taken;
+}
+
+}  // namespace octafront::intake
+
+namespace octafront {
+
+CadInfo read_cad_info(const std::string& file, const IntakeOptions& options, const RunContext& context) {
+  intake::check(options.cad);
+  CadInfo info;
+  const auto take = [&](const std::string& text) { info.notes.push_back(text); };
+  const cad::CadReader reader(file, intake::reader_options(options), take, context);
+  const auto& [lo, hi, model] = reader.opened();
+  info.format = model.format, info.unit = model.unit, info.to_millimetres = model.to_millimetres;
+  info.box.add(lo), info.box.add(hi);
+  const std::vector<std::string> names = cad::solid_names(model);
+  for (std::size_t s = 0; s < names.size(); ++s)
+    info.solids.push_back({names[s], model.solids[s].labels.layer, model.solids[s].volume, model.solids[s].area});
+  info.faces = cad::face_names(model);
+  for (const cad::Face& face : model.faces) info.named_faces += !face.labels.name.empty();
+  return info;
+}
+
+}  // namespace octafront

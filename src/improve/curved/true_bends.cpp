@@ -1,0 +1,112 @@
+#include "base/core/parallel.h"
+#include "base/mesh/edge_table.h"
+#include "improve/curved/bends.h"
+
+#include <algorithm>
+#include <optional>
+
+namespace octafront::curved {
+
+namespace {
+
+// As for the smooth surface of triangles (bends.cpp): more is not resolved by the mesh; less is rounding.
+constexpr double kMostTrueBend = 0.2, kMostTrueMove = 0.5;
+constexpr double kStraightTrueBend = 1e-7;
+
+/// Faces of the mesh that lie on the geometry, and where their corners and edges belong.
+class TrueSearch {
+ public:
+  TrueSearch(const TetMesh& mesh, const TrueGeometry& geometry)
+      : mesh_(mesh), geometry_(geometry), faces_(mesh.boundary), patch_(mesh.patch) {
+    patch_.resize(faces_.size());
+    faces_.insert(faces_.end(), mesh.interfaces.begin(), mesh.interfaces.end());
+    std::vector<std::uint32_t> inside = mesh.interface_patch;
+    inside.resize(mesh.interfaces.size());
+    patch_.insert(patch_.end(), inside.begin(), inside.end());
+    table_ = make_edge_table(mesh.points.size(), faces_);
+    find_patches();
+  }
+
+  Bends run() const {
+    Bends bends;
+    std::vector<std::optional<Vec3>> moved(mesh_.points.size());
+    parallel_for(moved.size(), [&](std::size_t v) { moved[v] = move_of(static_cast<VertexIndex>(v)); });
+    for (VertexIndex v = 0; v < moved.size(); ++v)
+      if (moved[v] && *moved[v] != Vec3{}) bends.corners.push_back({v, *moved[v]});
+    std::vector<std::optional<Vec3>> bend(table_.size());
+    parallel_for(table_.size(), [&](std::size_t e) { bend[e] = bend_of(e, moved); });
+    for (std::size_t e = 0; e < bend.size(); ++e)
+      if (bend[e]) bends.edges.push_back({table_.edges[e], *bend[e]});
+    return bends;
+  }
+
+ private:
+  using Patches = std::vector<std::uint32_t>;
+
+  void find_patches() {
+    patches_of_.resize(mesh_.points.size());
+    shortest_.assign(mesh_.points.size(), 0);
+    for (std::size_t f = 0; f < faces_.size(); ++f)
+      for (const VertexIndex v : faces_[f]) patches_of_[v].push_back(patch_[f]);
+    for (Patches& p : patches_of_) {
+      std::sort(p.begin(), p.end());
+      p.erase(std::unique(p.begin(), p.end()), p.end());
+    }
+    for (const Edge& edge : table_.edges) {
+      const double l = distance(mesh_.points[edge[0]], mesh_.points[edge[1]]);
+      for (const VertexIndex v : edge) shortest_[v] = shortest_[v] == 0 ? l : std::min(shortest_[v], l);
+    }
+  }
+
+  /// Where p belongs that lies on these patches. What lies on several that meet nowhere belongs to the nearest.
+  std::optional<Vec3> target(const Patches& patches, Vec3 p) const {
+    if (patches.size() > 1)
+      if (const auto on = geometry_.on_edge(patches, p)) return on;
+    std::optional<Vec3> best;
+    for (const std::uint32_t patch : patches)
+      if (const auto on = geometry_.on_face(patch, p))
+        if (!best || squared_length(*on - p) < squared_length(*best - p)) best = on;
+    return best;
+  }
+
+  /// Nothing for what stays because its place is not known, or too far.
+  std::optional<Vec3> move_of(VertexIndex v) const {
+    if (patches_of_[v].empty()) return std::nullopt;
+    const Vec3 p = mesh_.points[v];
+    if (geometry_.is_vertex(p)) return Vec3{};
+    const auto to = target(patches_of_[v], p);
+    if (!to || !is_finite(*to) || distance(*to, p) > kMostTrueMove * shortest_[v]) return std::nullopt;
+    return *to - p;
+  }
+
+  std::optional<Vec3> bend_of(std::size_t e, const std::vector<std::optional<Vec3>>& moved) const {
+    const auto& [a, b] = table_.edges[e];
+    if (!moved[a] || !moved[b]) return std::nullopt;
+    Patches patches;
+    for (const std::uint32_t h : table_.uses(e)) patches.push_back(patch_[h / 3]);
+    std::sort(patches.begin(), patches.end());
+    patches.erase(std::unique(patches.begin(), patches.end()), patches.end());
+    const Vec3 from = mesh_.points[a] + *moved[a], to = mesh_.points[b] + *moved[b], middle = 0.5 * (from + to);
+    const auto on = target(patches, middle);
+    if (!on || !is_finite(*on)) return std::nullopt;
+    const double part = distance(*on, middle) / distance(from, to);
+    if (!(part > kStraightTrueBend && part <= kMostTrueBend)) return std::nullopt;
+    return *on - middle;
+  }
+
+  const TetMesh& mesh_;
+  const TrueGeometry& geometry_;
+  std::vector<Triangle> faces_;  ///< the boundary, and interfaces
+  std::vector<std::uint32_t> patch_;
+  EdgeTable table_;
+  std::vector<Patches> patches_of_;  ///< per vertex
+  std::vector<double> shortest_;     ///< edge at a vertex
+};
+
+}  // namespace
+
+Bends find_bends(const TetMesh& mesh, const TrueGeometry& geometry) {
+  return TrueSearch(mesh, geometry).run();
+}
+
+}  // namespace octafront::curved

@@ -1,0 +1,40 @@
+#pragma once
+
+// Where the true geometry of the input is known (CAD): the mesh on it, and its volumes against the true ones.
+
+#include "pipeline/stages/stages.h"
+
+#include <string>
+#include <vector>
+
+namespace octafront {
+
+/// The options for a domain of CAD: lines are borders of patches, so that features by angle are those that a face has
+/// within itself.
+Options options_for_geometry(Options options);
+
+/// Moves the vertices of boundary and interfaces to the true geometry, and numbers patches as it does;
+/// `filled.boundary` follows. Where the input's triangles are kept only the patches change.
+void place_on_geometry(const Prepared& input, Filled& filled, Run& run);
+
+/// Patches of the mesh become the named parts that its faces lie in.
+void name_parts(const Prepared& input, Filled& filled);
+
+/// Enters the true volumes into the report, beside those of the mesh, curved as it is.
+void describe_true_volumes(const TetMesh& mesh, const Domain& domain, Report& report);
+
+/// A solid whose volume is off.
+struct OffSolid {
+  std::uint32_t region = 0;
+  double change = 0;  ///< part of the true volume
+};
+/// Those that are off by more than kVolumeKept, by the report.
+std::vector<OffSolid> off_solids(const Domain& domain, const Report& report);
+
+/// Bounds that let the solids keep their volume: where they are off they are made smaller.
+std::vector<double> tightened(const Domain& domain, const std::vector<OffSolid>& off);
+
+/// "solid \"a\" by +1.2 %, ..."
+std::string in_words(const Domain& domain, const std::vector<OffSolid>& off);
+
+}  // namespace octafront
