@@ -21,31 +21,35 @@
 #   bench/run.sh images      volumes of labels, each label judged; --peers: beside CGAL -> docs/measured/images-status.md
 #   bench/run.sh thin        plates, discs, tubes, shells 1:10 to 1:1e6, beside Gmsh and TetGen -> docs/measured/thin-bodies.md
 #   bench/run.sh budget      automatic sizes: budget said, elements made, time, what was given up -> docs/measured/budget-status.md
+#   bench/run.sh cad         CAD files at parts of their diagonal: volumes of solids, elements, time; --gmsh: beside Gmsh -> docs/measured/cad.md
 #   bench/run.sh dry_run     mesh --dry-run: elements, time and memory said and taken -> docs/use/command-line.md
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/lib/apt.sh
 
 case ${1:-} in
-  status | derived | pipeline | surface | elements | gradation | volume | graded | peers | complexes | improve | formats | second_order | dry_run | repair | known_answers | damage | images | thin | budget) ;;
-  *) sed -n '2,25s/^# \{0,1\}//p' "$0"; exit 2 ;;
+  status | derived | pipeline | surface | elements | gradation | volume | graded | peers | complexes | improve | formats | second_order | dry_run | repair | known_answers | damage | images | thin | budget | cad) ;;
+  *) sed -n '2,26s/^# \{0,1\}//p' "$0"; exit 2 ;;
 esac
 need_packages "${build_packages[@]}" python3
 [ "$1" != surface ] || need_packages gmsh netgen libcgal-dev libgmp-dev libmpfr-dev
 { [ "$1" != volume ] && [ "$1" != graded ]; } || need_packages "${peer_packages[@]}"
 [ "$1" != improve ] || need_packages "${peer_packages[@]}"
 [ "$1" != thin ] || need_packages tetgen gmsh
+[ "$1" != cad ] || need_packages gmsh "${cad_packages[@]}"
+[ "$1" != cad ] || [ -d cad-models ] || scripts/get-cad.sh
 [ "$1" != peers ] || need_packages "${peer_packages[@]}" libcgal-dev libgmp-dev libmpfr-dev libboost-dev
 [ "$1" != complexes ] || need_packages "${test_packages[@]}" tetgen gmsh python3-gmsh
 [ "$1" != known_answers ] || need_packages "${test_packages[@]}"
 { [ "$1" != repair ] && [ "$1" != damage ]; } || need_packages python3-numpy python3-meshio
 [ "$1" != images ] || need_packages libcgal-dev libgmp-dev libmpfr-dev libboost-dev
 [ "$1" != images ] || [ -d volumes ] || scripts/get-volumes.sh
-[ "$1" = formats ] || [ "$1" = complexes ] || [ "$1" = images ] || [ "$1" = thin ] || [ -d models/clean ] || scripts/get-models.sh --ct
+[ "$1" = formats ] || [ "$1" = complexes ] || [ "$1" = images ] || [ "$1" = thin ] || [ "$1" = cad ] || [ -d models/clean ] || scripts/get-models.sh --ct
 tests=OFF
 [ "$1" != complexes ] && [ "$1" != known_answers ] || tests=ON  # what makes complexes is theirs, and a judge
 cmake --preset release -DOCTAFRONT_BUILD_TESTS=$tests >/dev/null
 cmake --build --preset release --target octafront_cli octafront_evaluate octafront_judge_surface
+[ "$1" != cad ] || cmake --build --preset release --target octafront_cad_program
 [ "$1" != derived ] || [ -d models/derived ] || scripts/derive-models.sh build/release/cli/octafront
 [ "$1" != improve ] || cmake --build --preset release --target octafront_never_worse
 [ "$1" != formats ] || { cmake --build --preset release --target octafront_write_formats; exec python3 bench/formats.py build/release "${@:2}"; }

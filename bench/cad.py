@@ -1,0 +1,133 @@
+"""CAD files: meshed at parts of their diagonal? Volumes of solids against the true ones, elements, time; beside Gmsh.
+
+Usage: bench/run.sh cad [--only PART] [--timeout SECONDS] [--fine] [--gmsh] [--page]
+Files of cad-models/ (scripts/get-cad.sh). Each is read by `octafront info`, then meshed at a fortieth of its diagonal, linear, and with
+--fine at a hundredth, of second order. Volumes of ours are those of the report, solid by solid against OpenCASCADE's; --gmsh: Gmsh's
+Delaunay meshes of the same files and sizes, judged by octafront_evaluate. CPU seconds of whole processes, octafront-cad among them, one
+thread. --page rewrites docs/measured/cad.md.
+"""
+import argparse
+import json
+import math
+import pathlib
+import statistics
+import subprocess
+import sys
+import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+from origin import written_by  # noqa: E402
+from peers.process import finish, run_measured  # noqa: E402
+
+MODELS = pathlib.Path("cad-models")
+PAGE = pathlib.Path("docs/measured/cad.md")
+
+
+def info_of(program, file, timeout):
+    """What the file holds as JSON, and why not."""
+    with tempfile.TemporaryDirectory() as folder:
+        told = run_measured([program, "info", file.resolve(), "--json", "info.json"], folder, timeout)
+        report = pathlib.Path(folder, "info.json")
+        found = json.loads(report.read_text()) if report.is_file() else {}
+        return found if found.get("solids") is not None else None, told.error or "no solids"
+
+
+def ours(program, file, size, order, timeout):
+    with tempfile.TemporaryDirectory() as folder:
+        run = run_measured([program, "mesh", file.resolve(), "-o", "out.vtu", "--json", "report.json", "--size", repr(size), "--order",
+                            order, "--threads", "1"], folder, timeout)
+        run = finish(run, pathlib.Path(folder, "out.vtu"))
+        if run.error:
+            return {"error": run.error, "cpu": run.cpu_seconds}
+        report = json.loads(pathlib.Path(folder, "report.json").read_text())
+        solids = report.get("regions") or [report]
+        off = [100 * (s["volume"] / s["true_volume"] - 1) for s in solids if s.get("true_volume")]
+        quality = report["quality"]
+        return {"cpu": run.cpu_seconds, "tets": report["tets"], "off": max(off, key=abs) if off else math.nan,
+                "beta": quality["beta_mean"], "least": quality["beta_min"], "angle": quality["dihedral_min_degrees"],
+                "held": next((s["counters"].get("vertices held", 0) for s in report["stages"] if s["name"] == "true geometry"), 0)}
+
+
+def by_gmsh(build, file, size, order, volume, timeout):
+    with tempfile.TemporaryDirectory() as folder:
+        run = run_measured(["gmsh", "-3", file.resolve(), "-o", "out.msh", "-format", "msh41", "-bin", "-clmax", repr(size), "-nt", "1",
+                            "-setstring", "Geometry.OCCTargetUnit", "MM"], folder, timeout)
+        run = finish(run, pathlib.Path(folder, "out.msh"))
+        if run.error:
+            return {"error": run.error, "cpu": run.cpu_seconds}
+        done = subprocess.run([build / "bench/octafront_evaluate", run.mesh], capture_output=True, text=True, check=False)
+        if done.returncode != 0:
+            return {"error": "not a valid mesh: " + (done.stderr.strip().splitlines() or [""])[-1][:80], "cpu": run.cpu_seconds}
+        judged = json.loads(done.stdout)
+        return {"cpu": run.cpu_seconds, "tets": judged["tets"], "off": 100 * (judged["volume"] / volume - 1) if volume else math.nan,
+                "beta": judged["beta_mean"], "least": judged["beta_min"], "angle": judged["dihedral_min"]}
+
+
+def cells(made):
+    if "error" in made:
+        return f"{made['error'][:90]} | | | | {made['cpu']:.1f}"
+    return f"{made['tets']:,} | {made['off']:+.3f} | {made['beta']:.3f}, {made['least']:.3f} | {made['angle']:.1f} | {made['cpu']:.1f}"
+
+
+def summary(name, all_made):
+    done = [m for m in all_made if "error" not in m]
+    if not done:
+        return f"{name}: none of {len(all_made)}"
+    off = [abs(m["off"]) for m in done if not math.isnan(m["off"])]
+    return (f"{name}: {len(done)} of {len(all_made)} meshed; worst solid within .1 % in {sum(o <= .1 for o in off)}, within 1 % in "
+            f"{sum(o <= 1 for o in off)} of {len(off)}; smallest angle in the median {statistics.median(m['angle'] for m in done):.1f} "
+            f"degrees, below 10 in {sum(m['angle'] < 10 for m in done)}; mean beta {statistics.mean(m['beta'] for m in done):.3f}; "
+            f"{sum(m['tets'] for m in done):,} elements, {sum(m['cpu'] for m in all_made):.0f} CPU s")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("build", type=pathlib.Path)
+    parser.add_argument("--only", default="")
+    parser.add_argument("--timeout", type=float, default=120)
+    parser.add_argument("--fine", action="store_true")
+    parser.add_argument("--gmsh", action="store_true")
+    parser.add_argument("--page", action="store_true")
+    a = parser.parse_args()
+    program = (a.build / "cli/octafront").resolve()
+    sizes = [(40, "1")] + ([(100, "2")] if a.fine else [])
+    rows, refused = [], []
+    made = {(part, who): [] for part, _ in sizes for who in ("ours", "Gmsh")}
+    for file in sorted(MODELS.iterdir()):
+        if a.only not in file.name:
+            continue
+        info, why = info_of(program, file, a.timeout)
+        if not info or not info["solids"]:
+            refused.append(f"| {file.name} | {why[:120]} |")
+            print(refused[-1], flush=True)
+            continue
+        lo, hi = info["box"]
+        diagonal = math.dist(lo, hi)
+        volume = sum(s["volume"] for s in info["solids"])
+        for part, order in sizes:
+            mesh = ours(program, file, diagonal / part, order, a.timeout)
+            made[part, "ours"].append(mesh)
+            rows.append(f"| {file.name} | {len(info['solids'])}, {len(info['faces'])} | 1/{part}, {order} | ours | {cells(mesh)} |")
+            print(rows[-1], flush=True)
+            if a.gmsh:
+                peer = by_gmsh(a.build, file, diagonal / part, order, volume, a.timeout)
+                made[part, "Gmsh"].append(peer)
+                rows.append(f"| {file.name} | | 1/{part}, 1 | Gmsh | {cells(peer)} |")
+                print(rows[-1], flush=True)
+    lines = ["- " + summary(f"{who}, diagonal / {part}", m) + "." for (part, who), m in made.items() if m]
+    print("\n".join(lines))
+    if a.page:
+        PAGE.write_text("\n".join([
+            "# CAD files", "",
+            f"{written_by('bench/run.sh cad' + ' --fine' * a.fine + ' --gmsh' * a.gmsh + ' --page')}, one thread; at most {a.timeout:.0f} s a run.",
+            "",
+            "Files of Debian's occt-misc, netgen-doc, gmsh-doc and freecad-common (`scripts/get-cad.sh`), meshed at a part of their diagonal. "
+            "*Volume*: the solid that is worst off, against OpenCASCADE's volume of it, in percent; of curved elements as they are curved. Of "
+            "Gmsh the sum of all, linear. Solids that touch share faces here, and do not in Gmsh's run.", "",
+            *lines, "",
+            "| file | solids, faces | size, order | mesher | elements | volume, % | beta mean, least | least angle | CPU s |",
+            "| --- | --- | --- | --- | --- | --- | --- | --- | --- |", *rows, "",
+            "## Not meshed", "", "Without solids, or refused as they were read:", "", "| file | why |", "| --- | --- |", *refused, ""]))
+
+
+main()
