@@ -98,7 +98,7 @@ def main():
             continue
         info, why = info_of(program, file, a.timeout)
         if not info or not info["solids"]:
-            refused.append(f"| {file.name} | {why[:120]} |")
+            refused.append(f"| {file.name} | {why.replace(str(file.resolve()), file.name)[:120]} |")
             print(refused[-1], flush=True)
             continue
         lo, hi = info["box"]
