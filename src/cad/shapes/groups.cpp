@@ -10,11 +10,14 @@ namespace octafront::cad {
 
 namespace {
 
-/// What is smaller than this part of a size is tiny.
-constexpr double kTiny = 0.1;
+bool joins(const CadModel& model, const CadEdge& edge) {
+  return edge.is_smooth && !edge.is_seam && edge.faces.size() == 2 &&
+         model.faces[edge.faces[0]].sides == model.faces[edge.faces[1]].sides;
+}
 
-/// The mean width of faces: twice the area over the perimeter.
-std::vector<double> widths_of(const CadModel& model) {
+}  // namespace
+
+std::vector<double> mean_widths(const CadModel& model) {
   std::vector<double> perimeter(model.faces.size(), 0);
   for (const CadEdge& edge : model.edges)
     if (!edge.is_seam)
@@ -25,20 +28,13 @@ std::vector<double> widths_of(const CadModel& model) {
   return width;
 }
 
-bool joins(const CadModel& model, const CadEdge& edge) {
-  return edge.is_smooth && !edge.is_seam && edge.faces.size() == 2 &&
-         model.faces[edge.faces[0]].sides == model.faces[edge.faces[1]].sides;
-}
-
-}  // namespace
-
 FaceGroups group_faces(const CadModel& model, std::optional<double> size) {
-  const std::vector<double> width = widths_of(model);
+  const std::vector<double> width = mean_widths(model);
   DisjointSets sets(model.faces.size());
   for (const CadEdge& edge : model.edges) {
     if (!size || !joins(model, edge)) continue;
     const auto [a, b] = std::pair(edge.faces[0], edge.faces[1]);
-    if (std::min(width[a], width[b]) < *size || edge.length < kTiny * *size) sets.join(a, b);
+    if (std::min(width[a], width[b]) < *size || edge.length < kTinyOfSize * *size) sets.join(a, b);
   }
   std::vector<char> has_triangles(model.faces.size(), 0);
   for (const std::uint32_t f : model.face_of) has_triangles[f] = 1;
@@ -60,11 +56,11 @@ TinyThings tiny_things(const CadModel& model, double size) {
   TinyThings tiny;
   tiny.shortest_edge = HUGE_VAL;
   for (const CadEdge& edge : model.edges) {
-    tiny.edges += edge.length < kTiny * size;
+    tiny.edges += edge.length < kTinyOfSize * size;
     tiny.shortest_edge = std::min(tiny.shortest_edge, edge.length);
   }
-  for (const Face& face : model.faces) tiny.faces += face.area < kTiny * size * kTiny * size;
-  for (const double w : widths_of(model)) tiny.narrow_faces += w < kTiny * size;
+  for (const Face& face : model.faces) tiny.faces += face.area < kTinyOfSize * size * kTinyOfSize * size;
+  for (const double w : mean_widths(model)) tiny.narrow_faces += w < kTinyOfSize * size;
   return tiny;
 }
 
