@@ -21,7 +21,7 @@ namespace {
 constexpr double kLookAway = -0.5;
 /// Faces are parallel on both sides of a step: the cosine.
 constexpr double kParallel = 0.985;
-/// Collapsing and turning follow one another so often at most; three rounds are usual.
+/// So often is the whole done again at most; it ends long before, when nothing changes.
 constexpr int kRounds = 10;
 
 using Segment = std::array<VertexIndex, 2>;  ///< ascending
@@ -222,7 +222,14 @@ class Collapse {
     const double l = dot(along, along), part = l > 0 ? dot(to_apex, along) / l : 0;
     if (!(part > 0 && part < 1) || !(length(to_apex - part * along) < tiny_)) return false;
     const std::uint32_t u = beyond(t, a, b);
-    return u != kNone && split(t, u, {a, b, apex}, part);
+    return u != kNone && !looks_away(apex, u) && split(t, u, {a, b, apex}, part);
+  }
+
+  /// Is there a wide face at a vertex that looks away from a triangle?
+  bool looks_away(VertexIndex v, std::uint32_t u) const {
+    return std::any_of(around_[v].begin(), around_[v].end(), [&](std::uint32_t t) {
+      return !is_narrow_[face(t)] && dot(normal_[t], normal_[u]) < kLookAway;
+    });
   }
 
   double edge_length(const Triangle& t, std::size_t k) const {
