@@ -58,7 +58,7 @@ int status_at_quiet_end(octafront_job* job) {
 std::pair<Json, Json> of_c(const Case& c) {
   std::vector<const char*> files;
   for (const std::string& f : c.files) files.push_back(f.c_str());
-  octafront_job* opening = octafront_open_files(files.data(), files.size(), c.keys.c_str(), 1);
+  octafront_job* opening = octafront_open_files(files.data(), files.size(), c.keys.c_str(), nullptr, 1);
   EXPECT_EQ(status_at_quiet_end(opening), OCTAFRONT_DONE);
   octafront_surface* domain = octafront_job_take_surface(opening);
   octafront_options* options = octafront_options_new();
