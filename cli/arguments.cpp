@@ -341,8 +341,10 @@ void declare_sizes(CLI::App& command, Arguments& a) {
   group->add_option("--size-field", a.size_field, "All sizes, as `octafront size -o` writes them, edited or not; alone")
       ->type_name("FILE");
   group
-      ->add_option("--unit", a.unit,
-                   "What the input's coordinates count, for lengths with a unit; OBJ files may say it")
+      ->add_option(
+          "--unit", a.unit,
+          "What the input's coordinates count, for lengths with a unit; OBJ files may say it. Of CAD files what comes "
+          "out counts it, and what lengths are given [mm]")
       ->type_name(names_of_units("|"));
   group->add_flag("--facets", o.facets, "Sizes follow the areas of the input's facets (the paper's rule)");
   add_length(*group, a, "--min-size", o.min_size,

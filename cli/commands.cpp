@@ -123,9 +123,7 @@ template <class Generator>
 auto run_on_input(Session& session, const Generator& generator) {
   const Arguments& a = session.arguments();
   const Options options = checked_options_of(session);
-  IntakeOptions intake = a.intake;
-  intake.cad.size = options.size.size;
-  const Domain domain = open_input(session, intake);
+  const Domain domain = open_input(session, intake_for(options, a.intake));
   try {
     if (!a.page.empty()) find_repairs(session, domain.surface);
     return generator(domain, options, session.context());

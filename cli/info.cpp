@@ -63,14 +63,16 @@ void tell_cad_info(Session& session) {
                           counted(info.faces.size(), "face"),
                           info.named_faces > 0 ? fmt::format(", {} with names", info.named_faces) : ""));
   session.say_notes("CAD", info.notes);
-  session.say(fmt::format("  {}\n  unit: {}\n", box_in_words(info.box),
-                          info.unit.empty() ? "the file does not say; taken as millimetres"
-                                            : fmt::format("{}; all lengths here are millimetres", info.unit)));
+  session.say(fmt::format("  {}\n  unit: {}; all lengths here are in {}\n", box_in_words(info.box),
+                          info.unit.empty() ? "the file does not say, taken as millimetre" : info.unit, info.lengths));
   for (std::size_t s = 0; s < std::min(kListedSolids, info.solids.size()); ++s)
     session.say(fmt::format("  solid \"{}\": volume {:.6g}, area {:.6g}\n", info.solids[s].name, info.solids[s].volume,
                             info.solids[s].area));
   if (info.solids.size() > kListedSolids)
     session.say(fmt::format("  ... and {} more: --json has all of them\n", info.solids.size() - kListedSolids));
+  for (const CadInfo::Group& group : info.groups)
+    session.say(fmt::format("  {}: {}\n", group.name,
+                            group.faces > 0 ? counted(group.faces, "face") : counted(group.solids, "solid")));
   session.say("octafront mesh --dry-run says what meshing would take\n");
 }
 

@@ -36,6 +36,7 @@ void convert_lengths(Arguments& a) {
   a.unit = CLI::detail::to_lower(a.unit);
   if (!a.unit.empty() && unit_named(a.unit) == nullptr)
     throw OptionError(fmt::format("--unit is one of {}; \"{}\" is none of them", names_of_units(", "), a.unit));
+  if (!a.unit.empty()) a.intake.cad.unit = unit_named(a.unit)->name;
   if (a.lengths.empty()) return;
   const std::string of_file = a.unit.empty() ? unit_of_file(a.input.string()) : a.unit;
   for (const TypedLength& length : a.lengths) {

@@ -21,14 +21,21 @@ struct CadInfo {
   struct Solid {
     std::string name;
     std::string layer;
-    double volume = 0, area = 0;  ///< of the true geometry; millimetres
+    double volume = 0, area = 0;  ///< of the true geometry
   };
-  std::string format;         ///< "STEP", "IGES", "BREP"
-  std::string unit;           ///< in words; empty: the file says none
-  double to_millimetres = 1;  ///< by which its numbers are multiplied
-  Box3 box;                   ///< millimetres
+  /// A colour or a layer, as it becomes a set of the mesh.
+  struct Group {
+    std::string name;  ///< "color #ff8000", "layer NAME" of faces; "solids of color #ff8000", ...
+    std::size_t faces = 0, solids = 0;
+  };
+  std::string format;          ///< "STEP", "IGES", "BREP"
+  std::string unit;            ///< in words; empty: the file says none
+  double to_millimetres = 1;   ///< by which its numbers are multiplied
+  std::string lengths = "mm";  ///< the unit of the lengths here: CadIntake::unit
+  Box3 box;
   std::vector<Solid> solids;
   std::vector<std::string> faces;  ///< their names, of the solids and of those beside them
+  std::vector<Group> groups;
   std::uint64_t named_faces = 0;   ///< that have a name in the file
   std::vector<std::string> notes;  ///< what was found, healed, fused
 };
@@ -37,7 +44,7 @@ struct CadInfo {
 CadInfo read_cad_info(const std::string& file, const IntakeOptions& options = {},
                       const RunContext& context = no_context());
 
-/// The same as one JSON object, lengths in millimetres.
+/// The same as one JSON object.
 std::string to_json(const CadInfo& info);
 
 }  // namespace octafront

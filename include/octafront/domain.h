@@ -18,6 +18,7 @@
 
 namespace octafront {
 
+struct Options;
 class TrueGeometry;
 
 // One way in: files, several bodies, arrays and images become a Domain, and generate() (octafront/generate.h) makes a
@@ -45,9 +46,16 @@ struct ImageIntake {
 
 /// How a CAD file becomes a domain.
 struct CadIntake {
-  /// The edge length that elements will have, millimetres, > 0: triangles are made fine enough for it, and no line is
-  /// kept where narrow faces meet smoothly. Without a value a fortieth of the diagonal, and all lines are kept.
+  /// The edge length that elements will have, in `unit`, > 0: triangles are made fine enough for it, and no line is
+  /// kept where narrow faces meet smoothly. Without a value that of `elements`; without either a fortieth of the
+  /// diagonal, and all lines are kept.
   std::optional<double> size = {};
+  std::optional<std::int64_t> elements = {};  ///< the number of tetrahedra that the mesh will have, > 0
+  /// Faces, colours and layers by name: their faces are not meshed as one with others, as those need that have a size
+  /// of their own.
+  std::vector<std::string> apart = {};
+  /// What lengths count, those that are given here and those of the domain: a unit of octafront/units.h by its name.
+  std::string unit = "mm";
   bool keep_edges = false;      ///< all lines between faces are kept, whatever the size
   bool keep_going = false;      ///< a file of which a part cannot be read is meshed without it
   bool heal = true;             ///< what is not valid is healed, where that changes no volume
@@ -87,6 +95,12 @@ struct IntakeRepair {
   MendReport report;
 };
 
+/// The way in to a mesh by these options: where `intake` does not say it, a CAD file is triangulated for the size or
+/// the number of elements that they ask for, and faces with a size of their own stay apart.
+///
+/// Example: generate(open_domain("part.step", intake_for(options)), options) is what `octafront mesh` does.
+IntakeOptions intake_for(const Options& options, IntakeOptions intake = {});
+
 /// What generate() takes: a surface or a complex, and what is known of where it came from. A SurfaceMesh, and what
 /// mend_surface() returns, are domains as they stand; their triangles are copied unless they are moved.
 struct Domain {
@@ -115,6 +129,7 @@ struct Domain {
   /// Voxels of the image along i, j and k, as they were taken.
   std::array<std::uint32_t, 3> voxels = {0, 0, 0};
 
+  std::string unit = {};                   ///< that coordinates count, as far as that is known: of CAD
   std::string format = {};                 ///< of the input: "binary STL", "several files", ...
   std::vector<double> volumes = {};        ///< of the regions of a complex, as they are; empty: a plain surface
   std::vector<IntakeNote> notes = {};      ///< in the order in which they were told
@@ -143,7 +158,7 @@ Domain open_domain(const std::vector<std::string>& files, const IntakeOptions& o
 Domain open_domain(const std::string& file, const IntakeOptions& options = {},
                    const RunContext& context = no_context());
 
-/// The same of arrays: a surface or soup. What is known of it already stays known.
+/// The same of arrays: a surface or soup. What is known of it already stays known; that of a CAD file stays as it is.
 Domain open_domain(Domain input, const IntakeOptions& options = {}, const RunContext& context = no_context());
 
 /// The same of several bodies, any soups, whose regions get their names.

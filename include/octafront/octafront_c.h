@@ -53,6 +53,8 @@ const char* octafront_units(void);
 /** The unit that a file says its coordinates are in, "" for none; null if it is an image that cannot be read. Valid
  * until the next call of this thread. */
 const char* octafront_unit_of_file(const char* file);
+/** 1 if the file is one of CAD: is_cad() of octafront/cad.h. */
+int octafront_is_cad(const char* file);
 /** JSON, an array: name, title, endings, what can be read and written, of each file format. */
 const char* octafront_formats(void);
 
@@ -184,7 +186,7 @@ typedef struct {
 
 /** `threads`: at most so many; 0: all. A job begins at once; these return null only if there is no memory or thread.
  * Options may be null where they are the defaults. */
-octafront_job* octafront_read_surface(const char* file); /**< -> surface */
+octafront_job* octafront_read_surface(const char* file); /**< -> surface; of CAD a domain, as octafront_open_files() */
 octafront_job* octafront_write_surface(const octafront_surface* surface, const char* file);
 octafront_job* octafront_read_mesh(const char* file); /**< -> mesh */
 octafront_job* octafront_write_mesh(const octafront_mesh* mesh, const char* file, const char* format);
@@ -202,8 +204,12 @@ octafront_job* octafront_read_image(const char* const* files, size_t count, uint
  * `json` is an object, all of whose keys may be missing: the names of octafront_intake_table(), and regions
  * ([["steel", [x, y, z]], ...]), voids ([[x, y, z], ...]); for images names ([[3, "liver"], ...]), names_file, ignore
  * ([0, 7]), merge ([["cortex", [3, 4]], ...]), bands ([["bone", 226, null], ...]), crop ([[first, last], ...], null for
- * an end that stays), resample (one or three). */
-octafront_job* octafront_open_files(const char* const* files, size_t count, const char* json, int threads);
+ * an end that stays), resample (one or three); for CAD apart (["fillet", ...]).
+ *
+ * `options`: what octafront_generate() will be given, or null: files of CAD are triangulated for its sizes, as
+ * intake_for() of octafront/domain.h says. */
+octafront_job* octafront_open_files(const char* const* files, size_t count, const char* json,
+                                    const octafront_options* options, int threads);
 octafront_job* octafront_open_surface(const octafront_surface* surface, const char* json, int threads);
 octafront_job* octafront_open_bodies(const octafront_surface* const* bodies, const char* const* names, size_t count,
                                      const char* json, int threads);

@@ -5,7 +5,8 @@ Settings, by pip's --config-settings KEY=VALUE:
     jobs=N          compilers at the same time
 
 The wheel carries the libraries that ours need, but for those that every Linux has (EVERYWHERE), beside ours, where ours
-look first. It is tagged with the oldest glibc that all of them can run with, and for every Python 3: no compiled part
+look first; and where OpenCASCADE was found octafront-cad, which reads CAD files by OpenCASCADE's libraries of the system.
+It is tagged with the oldest glibc that all of them can run with, and for every Python 3: no compiled part
 knows of Python.
 """
 
@@ -21,7 +22,7 @@ import tomllib
 import zipfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-TARGETS = ["octafront_python", "octafront_python_cli"]
+TARGETS = ["octafront_python", "octafront_python_cli", "octafront_python_cad"]
 # Parts of glibc and of GCC's run time, which no wheel carries (manylinux says the same).
 EVERYWHERE = re.compile(r"(ld-linux.*|lib(c|m|dl|rt|pthread|gcc_s|stdc\+\+))\.so.*")
 # A fixed time: the same sources, the same wheel.
@@ -132,6 +133,8 @@ def collect(folder):
                 raise SystemExit(f"{match[1]} is needed and not found")
             found[match[1]] = pathlib.Path(match[2]).resolve()
             waiting.append(found[match[1]])
+    if (folder / "octafront-cad").exists():
+        found["octafront-cad"] = folder / "octafront-cad"
     return found
 
 
@@ -151,8 +154,8 @@ def licences(binaries):
     """Our licence, and those of all that is inside; contents.txt lists them, with versions."""
     texts = sorted((ROOT / "licenses").iterdir())
     for library in binaries:
-        stem = re.match(r"(?:lib)?([a-z0-9]+?)(?:\.so.*)?$", library)[1]
-        if stem != "octafront" and not any(text.stem == stem for text in texts):
+        stem = re.match(r"(?:lib)?([a-z0-9-]+?)(?:\.so.*)?$", library)[1]
+        if stem not in ("octafront", "octafront-cad") and not any(text.stem == stem for text in texts):
             raise SystemExit(f"the wheel would carry {library}, and licenses/{stem}.txt is missing")
     return [ROOT / "LICENSE", ROOT / "NOTICE", *texts]
 

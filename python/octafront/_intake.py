@@ -16,7 +16,7 @@ def opened(source, triangles, settings):
     if triangles is None and (_images.is_file(source) or _images.are_files(source)):
         files = [source] if _images.is_file(source) else source
         names = (ctypes.c_char_p * len(files))(*(file_of(file) for file in files))
-        job = Job("open_files", names, len(files), keys, threads, progress=settings.progress)
+        job = Job("open_files", names, len(files), keys, settings.options, threads, progress=settings.progress)
     elif triangles is None and isinstance(source, Mapping):
         handles, names, surfaces = _complexes.arguments_of(source)
         job = Job("open_bodies", handles, names, len(surfaces), keys, threads, progress=settings.progress)

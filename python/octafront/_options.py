@@ -14,7 +14,7 @@ from . import errors
 from ._library import Handle, bytes_of, call, demand, file_of, intake_table, option_table, pointer
 from ._numpy import np
 from ._surface import array_of
-from ._units import convert_lengths
+from ._units import convert_lengths, is_cad, name_of_unit
 
 # Beside the tables, of the way in: name, what it is.
 _OF_INTAKE = [
@@ -42,7 +42,7 @@ _FURTHER = [(name, "mesh surface size", text) for name, text in _OF_INTAKE] + [
     ("size_field", "mesh surface size", "All sizes: a SizeField, or a file that one wrote; alone"),
     ("unit", "mesh surface size",
      "What the input's coordinates count, for lengths with a unit of their own, such as size=\"2mm\": um, mm, cm, m, in or "
-     "ft; files may say it"),
+     "ft; files may say it. Of CAD files the mesh counts it, too, and lengths without a unit [mm]"),
     ("after_pass", "mesh improve", "after_pass(name, worst), told of every pass of improvement"),
     ("progress", "mesh surface size improve",
      "progress(phase, fraction), told how far the run is; fraction is None where it is unknown. What returns False ends "
@@ -77,7 +77,10 @@ class Settings:
     def __init__(self, function, task, keywords, source=None):
         keywords = {name: value for name, value in keywords.items() if _is_known(function, task, name)}
         given = {name: value for name, value in keywords.items() if value is not None}
+        unit = given.get("unit")
         convert_lengths(given, source)
+        if unit is not None and is_cad(source):
+            given.setdefault("cad_unit", name_of_unit(unit))
         self.progress, self.after_pass = given.pop("progress", None), given.pop("after_pass", None)
         self.threads = _threads(given.pop("threads", 0))
         self.intake = {name: given.pop(name) for name in list(given) if name in _intake_keywords()}

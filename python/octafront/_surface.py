@@ -98,7 +98,8 @@ class Surface:
 
     @classmethod
     def read(cls, path):
-        """Reads STL, OBJ, OFF or PLY, recognised by content. Raises InputError with line or byte."""
+        """Reads STL, OBJ, OFF or PLY, recognised by content, or CAD (STEP, IGES, BREP) as triangles for elements of a
+        fortieth of the diagonal; mesh("part.step", size=...) makes those that suit it. Raises InputError with line or byte."""
         job = Job("read_surface", file_of(path))
         report = job.run()
         return cls._of(job.take("surface"), report)

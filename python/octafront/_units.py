@@ -57,6 +57,17 @@ def _taken_apart(name, text):
     return value, word
 
 
+def name_of_unit(word):
+    """The short name of a unit that is known."""
+    word = str(word).lower()
+    return next(unit["name"] for unit in _table() if word in (unit["name"], *unit["words"].split()))
+
+
+def is_cad(source):
+    """Whether the source is a CAD file."""
+    return is_file(source) and bool(call("is_cad", file_of(source)))
+
+
 def _unit_of(source):
     file = source if is_file(source) else source[0] if are_files(source) else None
     if file is None:

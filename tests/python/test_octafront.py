@@ -288,15 +288,17 @@ class Complexes(Case):
             octafront.mend(box.points, box.triangles[:1])
 
 
-class OneWayIn(Case):
-    """Of the same input the command line and Python make the same mesh, bit for bit."""
-
+class BesideTheLine(Case):
     def line(self, *arguments):
         report = self.folder / "report.json"
         program = pathlib.Path(sys.executable).parent / "octafront"
         subprocess.run([program, "mesh", *map(str, arguments), "-o", self.folder / "mesh.vtu", "--json", report], check=True,
                        stdout=subprocess.DEVNULL)
         return json.loads(report.read_text())
+
+
+class OneWayIn(BesideTheLine):
+    """Of the same input the command line and Python make the same mesh, bit for bit."""
 
     def soup(self):
         """Two spheres that overlap, one of them with a hole."""
@@ -362,6 +364,46 @@ class OneWayIn(Case):
         self.assertGreater(len(raised.exception.leak), 1)
         self.assertEqual(octafront.surface(self.soup(), size=.4).report["intake"]["repair"]["clean"], False)
         self.assertGreater(octafront.size_field(self.soup(), size=.4).expected_tets, 100)
+
+
+class Cad(BesideTheLine):
+    def setUp(self):
+        super().setUp()
+        if not (pathlib.Path(octafront.__file__).parent / "_bin" / "octafront-cad").exists():
+            self.skipTest("built without OpenCASCADE")
+
+    def test_the_same_mesh_as_the_command_line(self):
+        file = SAMPLES / "bracket.step"
+        for keywords, line in (({"size": 6}, ["--size", 6]), ({"elements": 4000}, ["--elements", 4000]),
+                               ({"size": "6mm", "unit": "in"}, ["--size", "6mm", "--unit", "in"]),
+                               ({"size": 8, "size_of": {"color #d03030": 2}}, ["--size", 8, "--size-of", "color #d03030=2"])):
+            self.assertEqual(octafront.mesh(file, **keywords).report["hash"], self.line(file, *line)["hash"], keywords)
+
+    def test_names_sets_and_volumes(self):
+        mesh = octafront.mesh(SAMPLES / "assembly.step", size=6)
+        self.assertEqual(mesh.names["regions"], ["plate", "bracket", "bolt", "bolt#2"])
+        self.assertTrue({"seat", "fillet", "ground"} <= set(mesh.names["patches"]))
+        kind, members = mesh.sets["solids of color #f09020"]
+        self.assertEqual(kind, "elements")
+        self.assertEqual(set(mesh.regions[members]), {2, 3})
+        self.assertEqual(mesh.sets["layer mounting"][0], "faces")
+        for region in mesh.report["regions"]:
+            self.assertAlmostEqual(region["volume"] / region["true_volume"], 1, delta=.01)
+
+    def test_a_surface_that_was_read_keeps_its_geometry(self):
+        surface = octafront.read(SAMPLES / "bracket.step")
+        mesh = octafront.mesh(surface, size=6)
+        self.assertGreater(mesh.report["true_volume"], 22000)
+        self.assertEqual(octafront.mesh(surface, size=6, repair="auto").report["hash"], mesh.report["hash"])
+
+    def test_without_the_program_it_says_what_to_do(self):
+        os.environ["OCTAFRONT_CAD"] = "/bin/false"
+        self.addCleanup(os.environ.pop, "OCTAFRONT_CAD")
+        with self.assertRaisesRegex(octafront.InputError, "exit status 1"):
+            octafront.mesh(SAMPLES / "bracket.step")
+        os.environ["OCTAFRONT_CAD"] = str(self.folder / "none")
+        with self.assertRaisesRegex(octafront.InputError, "none does not start: No such file"):
+            octafront.mesh(SAMPLES / "bracket.step")
 
 
 class Sizes(Case):

@@ -10,6 +10,14 @@
 
 namespace octafront {
 
+/// Parts or regions that have something in common, a colour or a layer: of one kind, the other list is empty. One part
+/// or region may be in several groups.
+struct PartGroup {
+  std::string name;
+  std::vector<std::uint32_t> parts;  ///< ascending
+  std::vector<std::string> regions;  ///< their names
+};
+
 /// The geometry that an input of triangles stands for, as far as it is known, whoever answers. `patch` numbers the
 /// patches of the input's surface. Answers are the same on every thread.
 class TrueGeometry {
@@ -27,6 +35,10 @@ class TrueGeometry {
   /// A patch may be several named parts that meet smoothly: the one that p lies nearest to, and the names of all.
   virtual std::uint32_t part_at(std::uint32_t patch, Vec3 p) const = 0;
   virtual const std::vector<std::string>& part_names() const = 0;
+  /// The patch that a part is of; kNone: of none.
+  virtual std::uint32_t patch_of_part(std::uint32_t part) const = 0;
+  /// Further groups of parts or regions.
+  virtual const std::vector<PartGroup>& groups() const = 0;
 };
 
 }  // namespace octafront

@@ -24,6 +24,8 @@ namespace {
 
 /// How often the user is heard while the program works.
 constexpr int kPollMilliseconds = 50;
+/// How a program ends that cannot be loaded.
+constexpr int kNotStarted = 127;
 /// Nothing that octafront-cad sends is longer.
 constexpr std::uint64_t kLongestFrame = std::uint64_t{1} << 36;
 
@@ -171,6 +173,10 @@ class CadReader::Process {
           fmt::format("the CAD reader was stopped after {:.0f} s of work {}. Give it more by "
                       "`cad_seconds`, or a larger size",
                       options_.seconds, in_words(where_)));
+    if (WIFEXITED(status) && WEXITSTATUS(status) == kNotStarted && where_.stage.empty())
+      throw InputError(
+          "the CAD reader octafront-cad does not start: OpenCASCADE's libraries are not here, or not those that it was "
+          "built with. On Debian 12: apt-get install libocct-data-exchange-7.6 libocct-ocaf-7.6");
     throw InputError(fmt::format(
         "the CAD reader (OpenCASCADE) failed {}: {}. The file may be damaged there; export it again, or leave that "
         "part out",

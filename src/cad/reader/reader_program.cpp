@@ -50,7 +50,9 @@ std::string reader_program() {
   throw InputError(
       "CAD files (STEP, IGES, BREP) are read by the program octafront-cad, which is not here: it is built where "
       "OpenCASCADE is. On Debian: apt-get install libocct-data-exchange-dev libocct-ocaf-dev, then build Octafront "
-      "again (scripts/quickstart.sh PART.step does both); or name the program by the variable OCTAFRONT_CAD");
+      "again (scripts/quickstart.sh PART.step does both; the Python package: pip install . again); or name the program "
+      "of "
+      "another build by the variable OCTAFRONT_CAD");
 }
 
 }  // namespace octafront::cad

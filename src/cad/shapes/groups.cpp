@@ -15,6 +15,21 @@ bool joins(const CadModel& model, const CadEdge& edge) {
          model.faces[edge.faces[0]].sides == model.faces[edge.faces[1]].sides;
 }
 
+/// Per face the first of the names that it has, or that a label of it has; kNone: none.
+std::vector<std::uint32_t> which_of(const CadModel& model, std::span<const std::string> apart,
+                                    const std::vector<std::string>& names) {
+  std::vector<std::uint32_t> which(model.faces.size(), kNone);
+  const std::vector<LabelGroup> labels = label_groups(model);
+  for (std::uint32_t n = 0; n < apart.size(); ++n) {
+    for (std::size_t f = 0; f < names.size(); ++f)
+      if (names[f] == apart[n]) which[f] = std::min(which[f], n);
+    for (const LabelGroup& label : labels)
+      if (label.name == apart[n])
+        for (const std::uint32_t f : label.faces) which[f] = std::min(which[f], n);
+  }
+  return which;
+}
+
 }  // namespace
 
 std::vector<double> mean_widths(const CadModel& model) {
@@ -28,17 +43,19 @@ std::vector<double> mean_widths(const CadModel& model) {
   return width;
 }
 
-FaceGroups group_faces(const CadModel& model, std::optional<double> size) {
+FaceGroups group_faces(const CadModel& model, std::optional<double> size, std::span<const std::string> apart) {
+  const std::vector<std::string> names = face_names(model);
+  const std::vector<std::uint32_t> which = which_of(model, apart, names);
   const std::vector<double> width = mean_widths(model);
   DisjointSets sets(model.faces.size());
   for (const CadEdge& edge : model.edges) {
     if (!size || !joins(model, edge)) continue;
     const auto [a, b] = std::pair(edge.faces[0], edge.faces[1]);
+    if (which[a] != which[b]) continue;
     if (std::min(width[a], width[b]) < *size || edge.length < kTinyOfSize * *size) sets.join(a, b);
   }
   std::vector<char> has_triangles(model.faces.size(), 0);
   for (const std::uint32_t f : model.face_of) has_triangles[f] = 1;
-  const std::vector<std::string> names = face_names(model);
   FaceGroups groups{std::vector<std::uint32_t>(model.faces.size(), kNone), {}};
   std::vector<std::uint32_t> number(model.faces.size(), kNone), largest;
   for (std::uint32_t f = 0; f < model.faces.size(); ++f) {

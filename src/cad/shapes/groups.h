@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,8 +19,8 @@ struct FaceGroups {
 /// Each face a group of its own, but for narrow ones: faces that an edge joins all along which both have the same
 /// tangent plane are one where one of them is narrower than `size` or the edge shorter than a tenth of it, and they lie
 /// between the same solids. So no line forces small elements where the surface is smooth. Without a size each face is a
-/// group.
-FaceGroups group_faces(const CadModel& model, std::optional<double> size);
+/// group. Faces with one of the names `apart`, their own or that of a label, are one with such of the same name alone.
+FaceGroups group_faces(const CadModel& model, std::optional<double> size, std::span<const std::string> apart = {});
 
 /// The mean width of each face: twice its area over its perimeter; infinite where it has no edges.
 std::vector<double> mean_widths(const CadModel& model);

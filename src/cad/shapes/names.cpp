@@ -1,6 +1,9 @@
 #include "cad/shapes/names.h"
 
+#include <map>
 #include <set>
+
+#include <fmt/format.h>
 
 namespace octafront::cad {
 
@@ -24,6 +27,17 @@ std::vector<std::string> names_of(const std::vector<Item>& items, const std::str
   return names;
 }
 
+/// What the labels of an item are called.
+std::vector<std::string> label_names(const Labels& labels) {
+  std::vector<std::string> names;
+  if (labels.colour) {
+    const auto [red, green, blue] = *labels.colour;
+    names.push_back(fmt::format("color #{:02x}{:02x}{:02x}", red, green, blue));
+  }
+  if (!labels.layer.empty()) names.push_back("layer " + labels.layer);
+  return names;
+}
+
 }  // namespace
 
 std::vector<std::string> face_names(const CadModel& model) {
@@ -31,6 +45,18 @@ std::vector<std::string> face_names(const CadModel& model) {
 }
 std::vector<std::string> solid_names(const CadModel& model) {
   return names_of(model.solids, "solid");
+}
+
+std::vector<LabelGroup> label_groups(const CadModel& model) {
+  std::map<std::string, LabelGroup> by_name;
+  for (std::uint32_t f = 0; f < model.faces.size(); ++f)
+    for (const std::string& name : label_names(model.faces[f].labels)) by_name[name].faces.push_back(f);
+  for (std::uint32_t s = 0; s < model.solids.size(); ++s)
+    for (const std::string& name : label_names(model.solids[s].labels))
+      by_name["solids of " + name].solids.push_back(s);
+  std::vector<LabelGroup> groups;
+  for (auto& [name, group] : by_name) groups.push_back({name, std::move(group.faces), std::move(group.solids)});
+  return groups;
 }
 
 }  // namespace octafront::cad

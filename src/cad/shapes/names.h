@@ -2,6 +2,7 @@
 
 #include "cad/model/cad_model.h"
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -11,5 +12,13 @@ namespace octafront::cad {
 std::vector<std::string> face_names(const CadModel& model);
 /// The same for the solids: "solid N".
 std::vector<std::string> solid_names(const CadModel& model);
+
+/// A colour or a layer of the file, and the faces or solids that have it.
+struct LabelGroup {
+  std::string name;  ///< of faces "color #ff8000", "layer NAME"; of solids "solids of color #ff8000", ...
+  std::vector<std::uint32_t> faces, solids;
+};
+/// In the order of their names.
+std::vector<LabelGroup> label_groups(const CadModel& model);
 
 }  // namespace octafront::cad

@@ -28,8 +28,9 @@ std::array<double, 3> weights_of(Vec3 p, Vec3 a, Vec3 b, Vec3 c) {
 
 }  // namespace
 
-Shapes::Shapes(CadModel model, FaceGroups groups)
+Shapes::Shapes(CadModel model, FaceGroups groups, double millimetres)
     : model_(std::move(model)),
+      millimetres_(millimetres),
       group_of_(std::move(groups.group_of)),
       part_names_(face_names(model_)),
       patch_names_(std::move(groups.names)) {
@@ -51,11 +52,26 @@ Shapes::Shapes(CadModel model, FaceGroups groups)
     if (of.size() > 1)
       for (const std::uint32_t g : of) edges_of_[g].push_back(e);
   }
-  for (const VertexIndex v : model_.vertices) vertices_.push_back(model_.points[v]);
+  for (const VertexIndex v : model_.vertices) vertices_.push_back(model_.points[v] / millimetres_);
   std::sort(vertices_.begin(), vertices_.end(), before);
+  const std::vector<std::string> solids = solid_names(model_);
+  for (LabelGroup& label : label_groups(model_)) {
+    PartGroup& group = labelled_.emplace_back(PartGroup{std::move(label.name), std::move(label.faces), {}});
+    for (const std::uint32_t s : label.solids) group.regions.push_back(solids[s]);
+  }
 }
 
 std::optional<Vec3> Shapes::on_face(std::uint32_t patch, Vec3 p) const {
+  const std::optional<Vec3> found = nearest_on_face(patch, millimetres_ * p);
+  return found ? std::optional(*found / millimetres_) : std::nullopt;
+}
+
+std::optional<Vec3> Shapes::on_edge(std::span<const std::uint32_t> patches, Vec3 p) const {
+  const std::optional<Vec3> found = nearest_on_edge(patches, millimetres_ * p);
+  return found ? std::optional(*found / millimetres_) : std::nullopt;
+}
+
+std::optional<Vec3> Shapes::nearest_on_face(std::uint32_t patch, Vec3 p) const {
   if (patch >= groups_.size()) return std::nullopt;
   const Group& group = groups_[patch];
   const TriangleTree::Nearest found = group.tree.nearest(p);
@@ -71,7 +87,7 @@ std::optional<Vec3> Shapes::on_face(std::uint32_t patch, Vec3 p) const {
 
 std::uint32_t Shapes::part_at(std::uint32_t patch, Vec3 p) const {
   const Group& group = groups_[patch];
-  const TriangleTree::Nearest found = group.tree.nearest(p);
+  const TriangleTree::Nearest found = group.tree.nearest(millimetres_ * p);
   return found.triangle == kNone ? kNone : model_.face_of[group.triangles[found.triangle]];
 }
 
@@ -100,7 +116,7 @@ void Shapes::nearest_of(std::uint32_t edge, Vec3 p, OnEdge& best) const {
   }
 }
 
-std::optional<Vec3> Shapes::on_edge(std::span<const std::uint32_t> patches, Vec3 p) const {
+std::optional<Vec3> Shapes::nearest_on_edge(std::span<const std::uint32_t> patches, Vec3 p) const {
   OnEdge best;
   for (const std::uint32_t g : patches) {
     if (g >= groups_.size()) continue;

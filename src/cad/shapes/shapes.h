@@ -12,10 +12,11 @@
 
 namespace octafront::cad {
 
-/// A model asked for its true geometry. Patches are groups of faces.
+/// A model asked for its true geometry. Patches are groups of faces, parts faces. Points come and go in a unit of so
+/// many millimetres.
 class Shapes final : public TrueGeometry {
  public:
-  Shapes(CadModel model, FaceGroups groups);
+  Shapes(CadModel model, FaceGroups groups, double millimetres = 1);
 
   const CadModel& model() const { return model_; }
 
@@ -25,6 +26,8 @@ class Shapes final : public TrueGeometry {
   const std::vector<std::string>& patch_names() const override { return patch_names_; }
   std::uint32_t part_at(std::uint32_t patch, Vec3 p) const override;
   const std::vector<std::string>& part_names() const override { return part_names_; }
+  std::uint32_t patch_of_part(std::uint32_t part) const override { return group_of_[part]; }
+  const std::vector<PartGroup>& groups() const override { return labelled_; }
 
  private:
   struct Group {
@@ -38,15 +41,19 @@ class Shapes final : public TrueGeometry {
     double squared_distance = TriangleTree::kFar;
   };
 
+  std::optional<Vec3> nearest_on_face(std::uint32_t patch, Vec3 p) const;
+  std::optional<Vec3> nearest_on_edge(std::span<const std::uint32_t> patches, Vec3 p) const;
   void nearest_of(std::uint32_t edge, Vec3 p, OnEdge& best) const;
   bool joins(const CadEdge& edge, std::span<const std::uint32_t> patches) const;
 
   CadModel model_;
+  double millimetres_;
   std::vector<std::uint32_t> group_of_;  ///< per face
   std::vector<Group> groups_;
   std::vector<std::vector<std::uint32_t>> edges_of_;  ///< per group: edges between it and others
-  std::vector<Vec3> vertices_;                        ///< sorted
+  std::vector<Vec3> vertices_;                        ///< sorted, in the unit of points
   std::vector<std::string> part_names_, patch_names_;
+  std::vector<PartGroup> labelled_;
 };
 
 }  // namespace octafront::cad

@@ -1,7 +1,9 @@
 // The way in: files, surfaces, bodies and images become domains.
 
+#include <octafront/cad.h>
 #include <octafront/domain.h>
 #include <octafront/error.h>
+#include <octafront/options.h>
 
 #include "doors/c_api/c_api.h"
 #include "doors/c_api/job.h"
@@ -73,6 +75,7 @@ const std::map<std::string, Take>& lists() {
          for (std::size_t axis = 0; axis < 3; ++axis)
            o.image.crop[axis] = {voxel_of(v.at(axis).at(0)), voxel_of(v.at(axis).at(1))};
        }},
+      {"apart", [](IntakeOptions& o, const Json& v) { o.cad.apart = v.get<std::vector<std::string>>(); }},
       {"resample",
        [](IntakeOptions& o, const Json& v) {
          o.image.resample = v.is_number() ? std::vector{v.get<double>()} : v.get<std::vector<double>>();
@@ -127,13 +130,19 @@ std::vector<Body> bodies_of(const octafront_surface* const* bodies, const char* 
 using namespace octafront;
 using namespace octafront::c_api;
 
-octafront_job* octafront_open_files(const char* const* files, size_t count, const char* json, int threads) {
+octafront_job* octafront_open_files(const char* const* files, size_t count, const char* json,
+                                    const octafront_options* options, int threads) {
   return started(
-      [names = std::vector<std::string>(files, files + count), text = std::string(json)](octafront_job& job) {
-        open(job, intake_from(Json::parse(text)),
-             [&](const IntakeOptions& options) { return open_domain(names, options, job.context()); });
+      [names = std::vector<std::string>(files, files + count), text = std::string(json),
+       meant = options == nullptr ? Options{} : options->options](octafront_job& job) {
+        open(job, intake_for(meant, intake_from(Json::parse(text))),
+             [&](const IntakeOptions& intake) { return open_domain(names, intake, job.context()); });
       },
       threads);
+}
+
+int octafront_is_cad(const char* file) {
+  return is_cad(file) ? 1 : 0;
 }
 
 octafront_job* octafront_open_surface(const octafront_surface* surface, const char* json, int threads) {

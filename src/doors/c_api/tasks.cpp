@@ -1,5 +1,6 @@
 // What jobs do: each task is one call of the library.
 
+#include <octafront/cad.h>
 #include <octafront/error.h>
 #include <octafront/generate.h>
 #include <octafront/improve_existing.h>
@@ -154,6 +155,12 @@ const char* octafront_last_error() {
 
 octafront_job* octafront_read_surface(const char* file) {
   return started([file = std::string(file)](octafront_job& job) {
+    if (is_cad(file)) {
+      Domain domain = open_domain(file, {}, job.context());
+      job.report = {{"format", domain.format}, {"notes", Json::array()}};
+      for (const IntakeNote& note : domain.notes) job.report["notes"].push_back(note.text);
+      return give(job, std::move(domain));
+    }
     SurfaceFile read = read_surface(file, job.context());
     job.report = {{"format", read.format}, {"notes", read.notes}};
     give(job, std::move(read.surface));

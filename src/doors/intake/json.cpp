@@ -14,6 +14,7 @@ std::string to_json(const Domain& domain) {
     all[repair.of.empty() ? "repair" : "repair " + repair.of] = Json::parse(to_json(repair.report));
   for (std::size_t r = 0; r < domain.volumes.size(); ++r)
     all["input_regions"].push_back({{"name", intake::region_name(domain, r)}, {"volume", domain.volumes[r]}});
+  if (!domain.unit.empty()) all["unit"] = domain.unit;
   if (domain.dropped_sheet_faces > 0) all["dropped_sheet_faces"] = domain.dropped_sheet_faces;
   return all.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
@@ -26,14 +27,14 @@ std::string to_json(const CadInfo& info) {
     solids.push_back({{"name", solid.name}, {"volume", solid.volume}, {"area", solid.area}});
     if (!solid.layer.empty()) solids.back()["layer"] = solid.layer;
   }
-  const Json all{{"kind", "CAD"},
-                 {"format", info.format},
-                 {"unit", info.unit},
-                 {"to_millimetres", info.to_millimetres},
-                 {"box", {place(info.box.lo), place(info.box.hi)}},
-                 {"solids", solids},
-                 {"faces", info.faces},
-                 {"named_faces", info.named_faces},
+  Json groups = Json::array();
+  for (const CadInfo::Group& group : info.groups)
+    groups.push_back({{"name", group.name}, {"faces", group.faces}, {"solids", group.solids}});
+  const Json all{{"kind", "CAD"},           {"format", info.format},
+                 {"unit", info.unit},       {"to_millimetres", info.to_millimetres},
+                 {"lengths", info.lengths}, {"box", {place(info.box.lo), place(info.box.hi)}},
+                 {"solids", solids},        {"faces", info.faces},
+                 {"groups", groups},        {"named_faces", info.named_faces},
                  {"notes", info.notes}};
   return all.dump(-1, ' ', false, Json::error_handler_t::replace);
 }

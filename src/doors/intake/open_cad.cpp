@@ -1,6 +1,8 @@
 #include <octafront/cad.h>
 #include <octafront/error.h>
+#include <octafront/options.h>
 #include <octafront/repair.h>
+#include <octafront/units.h>
 
 #include "base/core/wording.h"
 #include "cad/reader/cad_reader.h"
@@ -9,6 +11,7 @@
 #include "cad/shapes/names.h"
 #include "cad/shapes/shapes.h"
 #include "doors/intake/intake.h"
+#include "sizing/prediction/affordable.h"
 
 #include <algorithm>
 #include <array>
@@ -49,14 +52,32 @@ void check(const CadIntake& asked) {
     if (!ok) throw OptionError(fmt::format("`{}` must be above 0", what));
   };
   require(!asked.size || *asked.size > 0, "cad_size");
+  require(!asked.elements || *asked.elements > 0, "cad_elements");
   require(asked.seconds > 0, "cad_seconds");
   require(asked.memory_gigabytes > 0, "cad_memory");
+  if (unit_named(asked.unit) == nullptr) throw OptionError(fmt::format("`cad_unit` \"{}\" is not known", asked.unit));
 }
 
-std::string unit_in_words(const CadModel& model) {
-  if (model.unit.empty()) return "unit not said, taken as millimetres";
-  if (model.to_millimetres == 1) return fmt::format("unit {}", model.unit);
-  return fmt::format("unit {}: numbers times {:g} are millimetres", model.unit, model.to_millimetres);
+/// How many millimetres a unit has.
+double millimetres_of(const CadIntake& asked) {
+  return unit_named(asked.unit)->metres / unit_named("mm")->metres;
+}
+
+std::string unit_in_words(const CadModel& model, const CadIntake& asked) {
+  const std::string of_file = model.unit.empty() ? "unit not said, taken as millimetre" : "unit " + model.unit;
+  const double factor = model.to_millimetres / millimetres_of(asked);
+  if (factor == 1) return of_file;
+  return fmt::format("{}: numbers times {:g} are lengths in \"{}\", as all here", of_file, factor, asked.unit);
+}
+
+/// The edge length that elements will have, millimetres, as far as that is asked for.
+std::optional<double> asked_size(const CadIntake& asked, const CadModel& model) {
+  if (asked.size) return *asked.size * millimetres_of(asked);
+  if (!asked.elements) return std::nullopt;
+  double volume = 0;
+  for (const Solid& solid : model.solids) volume += std::max(0.0, solid.volume);
+  if (volume == 0) return std::nullopt;
+  return std::cbrt(kTetsPerCube * volume / static_cast<double>(*asked.elements));
 }
 
 /// The thickness of the thinnest solid; infinite if there is none.
@@ -145,7 +166,8 @@ class CadIn {
     say_what_it_is(file);
     const Opened& opened = reader_.opened();
     const double diagonal = distance(opened.lo, opened.hi);
-    size_ = options.cad.size.value_or(kSizeOfDiagonal * diagonal);
+    asked_ = asked_size(options.cad, opened.model);
+    size_ = asked_.value_or(kSizeOfDiagonal * diagonal);
     deflection_ = std::max(kLeastDeflection * diagonal,
                            std::min(kDeflectionOfSize * size_, kDeflectionOfThickness * least_thickness(opened.model)));
   }
@@ -175,7 +197,7 @@ class CadIn {
 
   Triangulated judged(CadModel model) const {
     Triangulated made{std::move(model), {}, {}};
-    made.groups = group_faces(made.model, options_.cad.keep_edges ? std::nullopt : options_.cad.size);
+    made.groups = group_faces(made.model, options_.cad.keep_edges ? std::nullopt : asked_, options_.cad.apart);
     made.surface = surface_of(made.model, made.groups);
     if (made.model.solids.empty()) return made;
     context_.report("checking", -1);
@@ -190,7 +212,7 @@ class CadIn {
     domain_.format = model.format;
     note(domain_, options_, "",
          fmt::format("{}: {}, {}, {}, {}", file, model.format, counted(model.solids.size(), "solid"),
-                     counted(model.faces.size(), "face"), unit_in_words(model)));
+                     counted(model.faces.size(), "face"), unit_in_words(model, options_.cad)));
   }
 
   void tell(const Triangulated& made) {
@@ -208,19 +230,22 @@ class CadIn {
           domain_, options_, "CAD",
           fmt::format("{} and {} that are tiny against elements of {:.4g} have none of their own{}; `keep_edges` keeps "
                       "them",
-                      counted(faces.size(), "face"), counted(edges, "edge"), size_, listed(made.model, faces)));
+                      counted(faces.size(), "face"), counted(edges, "edge"), size_ / millimetres_of(options_.cad),
+                      listed(made.model, faces)));
     const TinyThings tiny = tiny_things(made.model, size_);
     if (tiny.edges + tiny.faces + tiny.narrow_faces > 0)
       note(domain_, options_, "CAD",
            fmt::format("against elements of {:.4g}: {} of {} edges, {} faces and {} narrow ones are tiny (below a "
                        "tenth); the shortest edge is {:.3g}",
-                       size_, tiny.edges, made.model.edges.size(), tiny.faces, tiny.narrow_faces, tiny.shortest_edge));
+                       size_ / millimetres_of(options_.cad), tiny.edges, made.model.edges.size(), tiny.faces,
+                       tiny.narrow_faces, tiny.shortest_edge / millimetres_of(options_.cad)));
   }
 
   Domain& domain_;
   const IntakeOptions& options_;
   const RunContext& context_;
   CadReader reader_;
+  std::optional<double> asked_;  ///< edge length
   double size_ = 0, deflection_ = 0;
 };
 
@@ -259,6 +284,11 @@ std::vector<double> bounds_of(const CadModel& model) {
   return bound;
 }
 
+/// Millimetres to the unit that is asked for.
+void convert(std::vector<Vec3>& points, double millimetres) {
+  for (Vec3& p : points) p = p / millimetres;
+}
+
 }  // namespace
 
 CadTaken take_cad(Domain& domain, const IntakeOptions& options, const std::string& file, const RunContext& context) {
@@ -270,10 +300,14 @@ CadTaken take_cad(Domain& domain, const IntakeOptions& options, const std::strin
   if (!made.defects.empty()) note(domain, options, "CAD", "the triangles are mended: " + made.defects);
   if (!taken.is_clean && made.model.solids.size() > 1) taken.bodies = bodies_of(made);
   if (taken.is_clean) domain.bound = bounds_of(made.model);
-  for (const Solid& solid : made.model.solids) domain.true_volumes.push_back(solid.volume);
-  domain.surface = std::move(made.surface);
+  const double unit = millimetres_of(options.cad);
+  for (double& d : domain.bound) d /= unit;
+  for (const Solid& solid : made.model.solids) domain.true_volumes.push_back(solid.volume / (unit * unit * unit));
+  domain.surface = std::move(made.surface), domain.unit = options.cad.unit;
+  convert(domain.surface.points, unit);
+  for (Body& body : taken.bodies) convert(body.surface.points, unit);
   if (!taken.is_clean) domain.surface.sides.clear();
-  domain.geometry = std::make_shared<Shapes>(std::move(made.model), std::move(made.groups));
+  domain.geometry = std::make_shared<Shapes>(std::move(made.model), std::move(made.groups), unit);
   for (std::size_t r = 0; taken.is_clean && r < domain.true_volumes.size(); ++r) {
     if (domain.true_volumes.size() > 1) domain.volumes.push_back(domain.true_volumes[r]);
     note(domain, options, "",
@@ -286,6 +320,16 @@ CadTaken take_cad(Domain& domain, const IntakeOptions& options, const std::strin
 
 namespace octafront {
 
+IntakeOptions intake_for(const Options& options, IntakeOptions intake) {
+  CadIntake& cad = intake.cad;
+  if (!cad.size && !cad.elements) {
+    cad.elements = options.size.elements;
+    if (!cad.elements) cad.size = options.size.size;
+  }
+  for (const NamedSize& named : options.size.named) cad.apart.push_back(named.name);
+  return intake;
+}
+
 CadInfo read_cad_info(const std::string& file, const IntakeOptions& options, const RunContext& context) {
   intake::check(options.cad);
   CadInfo info;
@@ -293,10 +337,15 @@ CadInfo read_cad_info(const std::string& file, const IntakeOptions& options, con
   const cad::CadReader reader(file, intake::reader_options(options), take, context);
   const auto& [lo, hi, model] = reader.opened();
   info.format = model.format, info.unit = model.unit, info.to_millimetres = model.to_millimetres;
-  info.box.add(lo), info.box.add(hi);
+  const double unit = intake::millimetres_of(options.cad);
+  info.lengths = options.cad.unit;
+  info.box.add(lo / unit), info.box.add(hi / unit);
   const std::vector<std::string> names = cad::solid_names(model);
   for (std::size_t s = 0; s < names.size(); ++s)
-    info.solids.push_back({names[s], model.solids[s].labels.layer, model.solids[s].volume, model.solids[s].area});
+    info.solids.push_back({names[s], model.solids[s].labels.layer, model.solids[s].volume / (unit * unit * unit),
+                           model.solids[s].area / (unit * unit)});
+  for (const cad::LabelGroup& group : cad::label_groups(model))
+    info.groups.push_back({group.name, group.faces.size(), group.solids.size()});
   info.faces = cad::face_names(model);
   for (const cad::Face& face : model.faces) info.named_faces += !face.labels.name.empty();
   return info;

@@ -317,6 +317,7 @@ Domain open_domain(const std::string& file, const IntakeOptions& options, const 
 
 Domain open_domain(Domain input, const IntakeOptions& options, const RunContext& context) {
   refuse_image_options(options.image, "a surface");
+  if (input.geometry) return input;
   return Intake(options, context).surface({"", std::move(input), {}, {}});
 }
 

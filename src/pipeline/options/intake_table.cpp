@@ -113,6 +113,11 @@ std::vector<Row<IntakeOptions>> image_rows() {
   };
 }
 
+/// Those of octafront/units.h, as a test compares.
+Names<std::string> units() {
+  return {{"um", "um"}, {"mm", "mm"}, {"cm", "cm"}, {"m", "m"}, {"in", "in"}, {"ft", "ft"}};
+}
+
 std::vector<Row<IntakeOptions>> cad_rows() {
   constexpr const char* kGroup = "CAD";
   return {
@@ -120,8 +125,16 @@ std::vector<Row<IntakeOptions>> cad_rows() {
           about_intake(
               "cad_size", kGroup,
               "The edge length that elements will have: triangles are made fine enough for it, and no line is "
-              "kept where narrow faces meet smoothly; without a value a fortieth of the diagonal, and all lines"),
+              "kept where narrow faces meet smoothly; without a value as size or elements ask, else a fortieth of the "
+              "diagonal, and all lines"),
           [](auto& o) -> auto& { return o.cad.size; }),
+      intake_row(
+          about_intake("cad_elements", kGroup,
+                       "The number of tetrahedra that the mesh will have, in place of cad_size; above 0"),
+          [](auto& o) -> auto& { return o.cad.elements; }),
+      intake_choice<std::string>(
+          about_intake("cad_unit", kGroup, "What lengths count, those that are given and those of the mesh"),
+          [](auto& o) -> auto& { return o.cad.unit; }, units()),
       intake_row(
           about_intake("keep_edges", kGroup, "All lines between faces are kept, tiny ones and smooth ones too"),
           [](auto& o) -> auto& { return o.cad.keep_edges; }),

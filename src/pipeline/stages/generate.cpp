@@ -20,7 +20,7 @@ namespace {
 
 /// What a domain asks for beside what the user does.
 Options suited(const Domain& domain, const Options& asked) {
-  if (domain.geometry) return options_for_geometry(asked);
+  if (domain.geometry) return options_for_geometry(domain, asked);
   return domain.voxel_spacing > 0 ? options_for_voxels(asked, domain.voxel_spacing) : asked;
 }
 

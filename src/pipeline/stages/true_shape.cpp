@@ -62,10 +62,63 @@ void name_parts_of(const TrueGeometry& geometry, const std::vector<Vec3>& points
   });
 }
 
+template <class Items, class Item>
+bool holds(const Items& items, const Item& item) {
+  return std::find(items.begin(), items.end(), item) != items.end();
+}
+
+/// The patches and regions that are meant by the name of a part or a group.
+std::vector<std::string> names_behind(const TrueGeometry& geometry, const std::string& name) {
+  std::vector<std::string> names;
+  const auto add_part = [&](std::uint32_t part) {
+    const std::uint32_t patch = geometry.patch_of_part(part);
+    if (patch < geometry.patch_names().size() && !holds(names, geometry.patch_names()[patch]))
+      names.push_back(geometry.patch_names()[patch]);
+  };
+  for (const PartGroup& group : geometry.groups()) {
+    if (group.name != name) continue;
+    for (const std::uint32_t part : group.parts) add_part(part);
+    names.insert(names.end(), group.regions.begin(), group.regions.end());
+  }
+  for (std::uint32_t part = 0; part < geometry.part_names().size(); ++part)
+    if (geometry.part_names()[part] == name) add_part(part);
+  return names;
+}
+
+/// The faces of the mesh by boundary, then interfaces, whose part is one of the group's.
+NamedSet faces_of(const PartGroup& group, const TetMesh& mesh) {
+  NamedSet set{group.name, NamedSet::Kind::kFaces, {}};
+  std::uint32_t number = 0;
+  for (const auto* parts : {&mesh.patch, &mesh.interface_patch})
+    for (const std::uint32_t part : *parts) {
+      if (std::binary_search(group.parts.begin(), group.parts.end(), part)) set.members.push_back(number);
+      ++number;
+    }
+  return set;
+}
+
+NamedSet elements_of(const PartGroup& group, const TetMesh& mesh) {
+  NamedSet set{group.name, NamedSet::Kind::kElements, {}};
+  std::vector<char> is_in(std::max<std::size_t>(1, mesh.region_names.size()), 0);
+  for (std::size_t r = 0; r < mesh.region_names.size(); ++r) is_in[r] = holds(group.regions, mesh.region_names[r]);
+  for (TetIndex t = 0; t < mesh.tets.size(); ++t) {
+    const std::uint32_t r = mesh.region.empty() ? 0 : mesh.region[t];
+    if (r < is_in.size() && is_in[r]) set.members.push_back(t);
+  }
+  return set;
+}
+
 }  // namespace
 
-Options options_for_geometry(Options options) {
+Options options_for_geometry(const Domain& domain, Options options) {
   if (!options.surface.feature_angle) options.surface.feature_angle = kAngleWithinFace;
+  std::vector<NamedSize> named;
+  for (const NamedSize& asked : options.size.named) {
+    const std::vector<std::string> behind = names_behind(*domain.geometry, asked.name);
+    if (behind.empty() || holds(domain.surface.region_names, asked.name)) named.push_back(asked);
+    for (const std::string& name : behind) named.push_back({name, asked.size});
+  }
+  options.size.named = std::move(named);
   return options;
 }
 
@@ -94,6 +147,10 @@ void name_parts(const Prepared& input, Filled& filled) {
   const auto known = static_cast<std::ptrdiff_t>(input.geometry->patch_names().size());
   names.insert(names.end(), mesh.patch_names.begin() + known, mesh.patch_names.end());
   mesh.patch_names = boundary.surface.patch_names = std::move(names);
+  for (const PartGroup& group : input.geometry->groups()) {
+    NamedSet set = group.parts.empty() ? elements_of(group, mesh) : faces_of(group, mesh);
+    if (!set.members.empty()) mesh.sets.push_back(std::move(set));
+  }
 }
 
 void describe_true_volumes(const TetMesh& mesh, const Domain& domain, Report& report) {

@@ -10,14 +10,14 @@
 namespace octafront {
 
 /// The options for a domain of CAD: lines are borders of patches, so that features by angle are those that a face has
-/// within itself.
-Options options_for_geometry(Options options);
+/// within itself; sizes of parts and of groups become those of their patches and regions.
+Options options_for_geometry(const Domain& domain, Options options);
 
 /// Moves the vertices of boundary and interfaces to the true geometry, and numbers patches as it does;
 /// `filled.boundary` follows. Where the input's triangles are kept only the patches change.
 void place_on_geometry(const Prepared& input, Filled& filled, Run& run);
 
-/// Patches of the mesh become the named parts that its faces lie in.
+/// Patches of the mesh become the named parts that its faces lie in; groups of parts and regions become sets.
 void name_parts(const Prepared& input, Filled& filled);
 
 /// Enters the true volumes into the report, beside those of the mesh, curved as it is.

@@ -21,6 +21,16 @@ TEST(Groups, DoNotReachAcrossSolids) {
   EXPECT_EQ(group_faces(model, 3).names.size(), 3u);
 }
 
+TEST(Groups, KeepNamedFacesApart) {
+  CadModel model = half_pipe(4);
+  model.faces[0].labels.colour = model.faces[1].labels.colour = Colour{255, 128, 0};
+  const std::vector<std::string> one{face_names(model)[1]}, both{"color #ff8000"};
+  EXPECT_EQ(group_faces(model, 3, one).names.size(), 3u);
+  EXPECT_EQ(group_faces(model, 3, both).names.size(), 2u) << "those of one colour are meshed as one";
+  model.faces[1].labels.colour.reset();
+  EXPECT_EQ(group_faces(model, 3, both).names.size(), 3u);
+}
+
 TEST(Groups, LeaveOutFacesWithoutTriangles) {
   CadModel model = half_pipe(4);
   model.faces.push_back({});
@@ -38,6 +48,22 @@ TEST(Names, AreAllDifferent) {
   CadModel model;
   for (const char* name : {"a", "", "a", "face 2", "a"}) model.faces.emplace_back().labels.name = name;
   EXPECT_EQ(face_names(model), (std::vector<std::string>{"a", "face 2#2", "a#2", "face 2", "a#3"}));
+}
+
+TEST(Names, ColoursAndLayersAreGroups) {
+  CadModel model;
+  model.faces.resize(3), model.solids.resize(2);
+  model.faces[0].labels.colour = model.faces[2].labels.colour = model.solids[1].labels.colour = Colour{0, 10, 255};
+  model.faces[2].labels.layer = "outside";
+  const std::vector<LabelGroup> groups = label_groups(model);
+  ASSERT_EQ(groups.size(), 3u);
+  EXPECT_EQ(groups[0].name, "color #000aff");
+  EXPECT_EQ(groups[0].faces, (std::vector<std::uint32_t>{0, 2}));
+  EXPECT_EQ(groups[1].name, "layer outside");
+  EXPECT_EQ(groups[1].faces, std::vector<std::uint32_t>{2});
+  EXPECT_EQ(groups[2].name, "solids of color #000aff");
+  EXPECT_EQ(groups[2].solids, std::vector<std::uint32_t>{1});
+  EXPECT_TRUE(groups[2].faces.empty());
 }
 
 }  // namespace

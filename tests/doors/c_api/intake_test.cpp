@@ -58,11 +58,11 @@ int status_at_quiet_end(octafront_job* job) {
 std::pair<Json, Json> of_c(const Case& c) {
   std::vector<const char*> files;
   for (const std::string& f : c.files) files.push_back(f.c_str());
-  octafront_job* opening = octafront_open_files(files.data(), files.size(), c.keys.c_str(), 1);
-  EXPECT_EQ(status_at_quiet_end(opening), OCTAFRONT_DONE);
-  octafront_surface* domain = octafront_job_take_surface(opening);
   octafront_options* options = octafront_options_new();
   octafront_options_set(options, Json{{"size", c.size}}.dump().c_str());
+  octafront_job* opening = octafront_open_files(files.data(), files.size(), c.keys.c_str(), options, 1);
+  EXPECT_EQ(status_at_quiet_end(opening), OCTAFRONT_DONE);
+  octafront_surface* domain = octafront_job_take_surface(opening);
   octafront_job* meshing = octafront_generate(domain, options, 1);
   EXPECT_EQ(status_at_quiet_end(meshing), OCTAFRONT_DONE);
   std::pair<Json, Json> reports{Json::parse(octafront_job_report(opening)), Json::parse(octafront_job_report(meshing))};
@@ -78,7 +78,7 @@ class OneWayInOf : public OneWayIn {
   void expect_one_mesh(const Case& c) const {
     Options options;
     options.size.size = c.size;
-    const Domain domain = open_domain(c.files, c.intake);
+    const Domain domain = open_domain(c.files, intake_for(options, c.intake));
     const Json cpp = Json::parse(to_json(generate(domain, options).report)), line = of_the_line(c);
     const auto [opened, made] = of_c(c);
     EXPECT_EQ(cpp["hash"], line["hash"]);
@@ -110,6 +110,15 @@ TEST_F(OneWayInOf, TwoBodies) {
   const SurfaceMesh pin = testing::transformed(testing::cube(1), 0.5, {0.25, 0.25, 1});
   expect_one_mesh({{file("plate.off", testing::cube(1)), file("pin.off", pin)}, 0.25, ""});
 }
+
+#ifdef OCTAFRONT_CAD_PROGRAM
+TEST_F(OneWayInOf, AnAssembly) {
+  setenv("OCTAFRONT_CAD", OCTAFRONT_CAD_PROGRAM, 1);
+  IntakeOptions intake;
+  intake.cad.unit = "cm";
+  expect_one_mesh({{kSamples + "/assembly.step"}, 0.5, "--unit cm", R"({"cad_unit": "cm"})", intake});
+}
+#endif
 
 TEST_F(OneWayInOf, AnImageOfLabels) {
   IntakeOptions intake;

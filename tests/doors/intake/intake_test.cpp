@@ -3,7 +3,10 @@
 #include <octafront/domain.h>
 #include <octafront/error.h>
 #include <octafront/io.h>
+#include <octafront/option_table.h>
+#include <octafront/options.h>
 #include <octafront/repair.h>
+#include <octafront/units.h>
 
 #include "support/named_surfaces.h"
 #include "support/test_folder.h"
@@ -153,6 +156,33 @@ TEST_F(Intake, RefusalsSayWhatAndWhere) {
   EXPECT_THROW(open_domain(cube(1), banded), OptionError);
   EXPECT_THROW(open_domain(SurfaceMesh{}), InputError);
   EXPECT_THROW(open_domain(std::vector<std::string>{}), OptionError);
+}
+
+TEST_F(Intake, SizesOfTheMeshGoToTheWayInUnlessThatHasItsOwn) {
+  Options options;
+  options.size.size = 2;
+  options.size.named = {{"fillet", 0.5}};
+  EXPECT_EQ(intake_for(options).cad.size, 2);
+  EXPECT_EQ(intake_for(options).cad.apart, std::vector<std::string>{"fillet"});
+  options.size.elements = 1000;
+  EXPECT_EQ(intake_for(options).cad.elements, 1000);
+  EXPECT_FALSE(intake_for(options).cad.size) << "sizes are scaled to meet the number";
+  IntakeOptions own;
+  own.cad.size = 3;
+  EXPECT_EQ(intake_for(options, own).cad.size, 3);
+  EXPECT_FALSE(intake_for(options, own).cad.elements);
+}
+
+TEST_F(Intake, UnitsOfCadAreThoseOfLength) {
+  std::size_t choices = 0;
+  for (const OptionInfo& info : intake_table())
+    if (info.name == "cad_unit") choices = info.choices.size();
+  EXPECT_EQ(choices, length_units().size());
+  IntakeOptions options;
+  for (const LengthUnit& unit : length_units()) {
+    set_option(options, "cad_unit", std::string(unit.name));
+    EXPECT_EQ(options.cad.unit, unit.name);
+  }
 }
 
 TEST_F(Intake, NotesAreToldAsTheyCome) {

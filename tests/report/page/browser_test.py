@@ -2,7 +2,7 @@
 
 Debian's Chromium without a window, driven by its own driver (python3-selenium): both come from one source package, so
 they fit each other. WebGL is drawn by the processor (SwiftShader); a machine with a graphics card is faster.
-  --pictures FOLDER   writes the pictures of docs/use/report.md there, and tests nothing
+  --pictures FOLDER   writes the pictures of docs/use/report.md and docs/use/cad.md there, and tests nothing
   --times             prints docs/use/report.md's table of sizes and times, and tests nothing
 """
 
@@ -261,6 +261,22 @@ class Browser(unittest.TestCase):
         view.click(".part input")
         self.assertEqual(view.wait(lambda: view.js("return octafront.vertices !== 18 && octafront.vertices")), 12)
 
+    def test_names_and_volumes_of_cad(self):
+        if not (pathlib.Path(OCTAFRONT).parent / "../cad/octafront-cad").exists():
+            self.skipTest("built without OpenCASCADE")
+        page, report = self.dir / "cad.html", self.dir / "cad.json"
+        run_cli("mesh", SAMPLES / "assembly.step", "-o", self.dir / "cad.vtu", "--size", 6, "--report", page, "--json", report)
+        view = self.open(page)
+        report = json.loads(report.read_text())
+        text = view.js("return document.getElementById('numbers').textContent")
+        for solid in report["regions"]:
+            self.assertIn(f"{solid['true_volume']:.6g}, ", text)
+            self.assertIn(solid["name"], text)
+        self.assertIn(f"(CAD {report['true_volume']:.6g}, ", text)
+        parts = view.js("return document.getElementById('parts').textContent")
+        for name in ("bolt#2", "fillet", "bolt hole 1", "ground"):
+            self.assertIn(name, parts)
+
     def test_colours_follow_the_choice(self):
         view = self.open()
         seen = []
@@ -372,7 +388,7 @@ class Browser(unittest.TestCase):
 
 
 def write_pictures(folder):
-    """The pictures of docs/use/report.md."""
+    """The pictures of docs/use/report.md and docs/use/cad.md."""
     with tempfile.TemporaryDirectory() as scratch:
         page = pathlib.Path(scratch) / "page.html"
         run_cli("mesh", SAMPLES / "gear.obj", "-o", pathlib.Path(scratch) / "m.vtu", "--patches", "--report", page)
@@ -394,6 +410,11 @@ def write_pictures(folder):
                 "[...document.querySelectorAll('summary')].find(t => t.textContent === 'Quality').scrollIntoView()")
         view.settle()
         driver.save_screenshot(str(folder / "report-numbers.png"))
+        run_cli("mesh", SAMPLES / "assembly.step", "-o", pathlib.Path(scratch) / "m.vtu", "--size", 4, "--report", page)
+        view = View(driver, page)
+        view.js("const s = document.getElementById('quantity'); s.value = 'patch'; s.dispatchEvent(new Event('change'))")
+        view.settle()
+        driver.save_screenshot(str(folder / "report-cad.png"))
         driver.quit()
 
 

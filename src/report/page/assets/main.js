@@ -383,7 +383,7 @@ function showNumbers() {
   document.title = "Octafront: " + brief(shown(title.split("/").pop()), 80);
   byId("title").replaceChildren(name(title.split("/").pop()));
   const facts = json("facts");
-  byId("numbers").append(...[summaryPanel(report, facts), worstPanel(report, goToElement), qualityPanel(report.quality), sizesPanel(report, mesh), stagesPanel(report), repairPanel(report, goToPlace), notesPanel(report, goToPlace), repeatPanel(report)].filter(Boolean));
+  byId("numbers").append(...[summaryPanel(report, facts), solidsPanel(report), worstPanel(report, goToElement), qualityPanel(report.quality), sizesPanel(report, mesh), stagesPanel(report), repairPanel(report, goToPlace), notesPanel(report, goToPlace), repeatPanel(report)].filter(Boolean));
   if (facts.second_order) byId("numbers").append(make("p", { class: "hint" }, "Elements of second order are drawn with straight edges."));
 }
 

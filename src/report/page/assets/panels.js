@@ -72,13 +72,24 @@ function withPlaces(sentence, goTo) {
 const place = (at, goTo, text = `(${at.map((x) => digits(x)).join(", ")})`) =>
   make("button", { class: "place", type: "button", title: "show this place", onclick: () => goTo(at) }, text);
 
+/** A true volume, and how far one that was made is from it. */
+const besideCad = (made, sure) => `${digits(sure, 6)}, ${made < sure ? "\u2212" : "+"}${Math.abs(100 * (made / sure - 1)).toFixed(3)} %`;
+
+function solidsPanel(report) {
+  const solids = (report.regions ?? []).filter((r) => r.true_volume);
+  if (solids.length === 0) return null;
+  const row = (r) => [name(r.name), number(r.tets, grouped(r.tets)), number(r.volume, digits(r.volume, 6)), number(r.true_volume, besideCad(r.volume, r.true_volume))];
+  return panel("CAD solids", make("div", { class: "scroll" }, table(solids.map(row), ["solid", "elements", "volume", "true volume"], "numbers list")));
+}
+
 function summaryPanel(report, facts) {
   const rows = [["elements", number(facts.tets, grouped(facts.tets))]];
   const add = (key, label, text) => key in report && report[key] !== 0 && rows.push([label, number(report[key], text(report[key]))]);
   add("points", "points", grouped);
   add("boundary_faces", "boundary faces", grouped);
   add("bodies", "bodies", grouped);
-  add("volume", "volume", (v) => digits(v, 6) + (report.input_volume ? ` (input ${digits(report.input_volume, 6)})` : ""));
+  add("volume", "volume", (v) => digits(v, 6) + (report.true_volume ? ` (CAD ${besideCad(v, report.true_volume)})` : report.input_volume ? ` (input ${digits(report.input_volume, 6)})` : ""));
+  add("unit", "lengths in", shown);
   add("wall_seconds", "made in", (s) => seconds(s) + " s");
   add("peak_memory_bytes", "peak memory", bytesInWords);
   add("hash", "hash", String);

@@ -1,0 +1,161 @@
+// CAD files on the way in and as meshes: the samples, which the program beside these tests makes anew.
+
+#include <octafront/cad.h>
+#include <octafront/error.h>
+#include <octafront/generate.h>
+
+#include "support/test_folder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace octafront {
+namespace {
+
+const std::string kBracket = OCTAFRONT_SAMPLES "/bracket.step", kAssembly = OCTAFRONT_SAMPLES "/assembly.step";
+
+/// Of what the bracket is made: two legs, the bend, less four holes.
+double volume_of_bracket() {
+  constexpr double kPi = std::numbers::pi;
+  return 40 * (46 * 6 + 36 * 6 + kPi / 4 * (14 * 14 - 8 * 8)) - 4 * kPi * 4 * 4 * 6;
+}
+
+class CadFiles : public testing::InItsFolder {
+ protected:
+  void SetUp() override {
+    InItsFolder::SetUp();
+    setenv("OCTAFRONT_CAD", OCTAFRONT_CAD_PROGRAM, 1);
+  }
+
+  static Result meshed(const std::string& file, const Options& options, const IntakeOptions& intake = {}) {
+    return generate(open_domain(file, intake_for(options, intake)), options);
+  }
+  static Options of_size(double size) {
+    Options options;
+    options.size.size = size;
+    return options;
+  }
+};
+
+const NamedSet* set_named(const TetMesh& mesh, const std::string& name) {
+  const auto found =
+      std::find_if(mesh.sets.begin(), mesh.sets.end(), [&](const NamedSet& s) { return s.name == name; });
+  return found == mesh.sets.end() ? nullptr : &*found;
+}
+
+/// How many faces of the boundary have this patch.
+std::size_t faces_of_patch(const TetMesh& mesh, const std::string& name) {
+  std::size_t count = 0;
+  for (const std::uint32_t p : mesh.patch) count += mesh.patch_names[p] == name;
+  return count;
+}
+
+TEST_F(CadFiles, TheSamplesSayWhatTheyAre) {
+  const CadInfo info = read_cad_info(kAssembly);
+  std::vector<std::string> solids;
+  for (const CadInfo::Solid& solid : info.solids) solids.push_back(solid.name);
+  EXPECT_EQ(solids, (std::vector<std::string>{"plate", "bracket", "bolt", "bolt#2"}));
+  EXPECT_NEAR(info.solids[1].volume, volume_of_bracket(), 1e-6 * volume_of_bracket());
+  EXPECT_EQ(info.named_faces, 6u);
+  std::vector<std::string> groups;
+  for (const CadInfo::Group& group : info.groups) groups.push_back(group.name);
+  EXPECT_EQ(groups, (std::vector<std::string>{"color #d03030", "layer mounting", "solids of color #4078c0",
+                                              "solids of color #b0b8c0", "solids of color #f09020"}));
+  EXPECT_EQ(info.groups.back().solids, 2u);
+}
+
+TEST_F(CadFiles, TheSamplesAreMadeAnew) {
+  ASSERT_EQ(std::system((OCTAFRONT_CAD_SAMPLES " " + folder_.string()).c_str()), 0);
+  EXPECT_EQ(to_json(read_cad_info(folder_ / "bracket.step")), to_json(read_cad_info(kBracket)));
+  EXPECT_EQ(to_json(read_cad_info(folder_ / "assembly.step")), to_json(read_cad_info(kAssembly)));
+}
+
+TEST_F(CadFiles, NamesColoursAndLayersAreInTheMesh) {
+  const Result made = meshed(kBracket, of_size(4));
+  EXPECT_NEAR(made.report.volume, volume_of_bracket(), 0.01 * volume_of_bracket());
+  EXPECT_NEAR(made.report.true_volume, volume_of_bracket(), 1e-6 * volume_of_bracket());
+  std::size_t red = 0, mounting = 0;
+  for (const char* hole : {"bolt hole 1", "bolt hole 2"}) red += faces_of_patch(made.mesh, hole);
+  for (const char* face : {"seat", "wall"}) mounting += faces_of_patch(made.mesh, face);
+  const NamedSet *colour = set_named(made.mesh, "color #d03030"), *layer = set_named(made.mesh, "layer mounting");
+  ASSERT_TRUE(colour && layer);
+  EXPECT_GT(red, 0u);
+  EXPECT_EQ(colour->members.size(), red);
+  EXPECT_EQ(layer->members.size(), mounting);
+  for (const std::uint32_t f : colour->members)
+    EXPECT_EQ(made.mesh.patch_names[made.mesh.patch[f]].rfind("bolt hole ", 0), 0u);
+  ASSERT_TRUE(set_named(made.mesh, "solids of color #4078c0"));
+  EXPECT_EQ(set_named(made.mesh, "solids of color #4078c0")->members.size(), made.mesh.tets.size());
+}
+
+TEST_F(CadFiles, SolidsShareFacesAndKeepTheirColours) {
+  const TetMesh mesh = meshed(kAssembly, of_size(5)).mesh;
+  EXPECT_EQ(mesh.region_names, (std::vector<std::string>{"plate", "bracket", "bolt", "bolt#2"}));
+  EXPECT_GT(mesh.interfaces.size(), 0u);
+  const NamedSet* bolts = set_named(mesh, "solids of color #f09020");
+  ASSERT_TRUE(bolts);
+  std::set<std::uint32_t> regions;
+  for (const std::uint32_t t : bolts->members) regions.insert(mesh.region[t]);
+  EXPECT_EQ(regions, (std::set<std::uint32_t>{2, 3}));
+}
+
+TEST_F(CadFiles, SizesByColourAndByFace) {
+  Options options = of_size(8);
+  const std::size_t before = faces_of_patch(meshed(kBracket, options).mesh, "bolt hole 1");
+  options.size.named = {{"color #d03030", 0.5}};
+  EXPECT_GT(faces_of_patch(meshed(kBracket, options).mesh, "bolt hole 1"), 4 * before);
+  // A face that is meshed as one with those beside it, whose name no patch has: of a size of its own.
+  options.size.named = {{"fillet", 2}};
+  const Domain domain = open_domain(kBracket, intake_for(options));
+  EXPECT_EQ(std::count(domain.surface.patch_names.begin(), domain.surface.patch_names.end(), "fillet"), 1);
+  EXPECT_NO_THROW(generate(domain, options));
+  IntakeOptions coarse;
+  coarse.cad.size = 30;
+  const Domain as_one = open_domain(kBracket, coarse);
+  EXPECT_EQ(std::count(as_one.surface.patch_names.begin(), as_one.surface.patch_names.end(), "fillet"), 0);
+  EXPECT_NO_THROW(generate_sizes(as_one, options));
+  options.size.named = {{"no such face", 2}};
+  EXPECT_THROW(generate_sizes(domain, options), OptionError);
+}
+
+TEST_F(CadFiles, ANumberOfElementsChoosesTheTriangles) {
+  Options few, many;
+  few.size.elements = 2000, many.size.elements = 200000;
+  const auto triangles = [](const Options& o) { return open_domain(kBracket, intake_for(o)).surface.triangles.size(); };
+  EXPECT_GT(triangles(many), triangles(few));
+  const Result made = meshed(kBracket, many);
+  EXPECT_NEAR(static_cast<double>(made.mesh.tets.size()), 200000, 30000);
+}
+
+TEST_F(CadFiles, UnitsScaleTheMesh) {
+  IntakeOptions inches;
+  inches.cad.unit = "in";
+  const Result made = meshed(kBracket, of_size(5 / 25.4), inches);
+  const double volume = volume_of_bracket() / (25.4 * 25.4 * 25.4);
+  EXPECT_NEAR(made.report.volume, volume, 0.01 * volume);
+  EXPECT_NEAR(made.report.true_volume, volume, 1e-6 * volume);
+  // Vertices on the holes are on their cylinders.
+  std::size_t looked_at = 0;
+  for (std::size_t f = 0; f < made.mesh.boundary.size(); ++f) {
+    if (made.mesh.patch_names[made.mesh.patch[f]] != "bolt hole 1") continue;
+    for (const VertexIndex v : made.mesh.boundary[f]) {
+      const Vec3 p = 25.4 * made.mesh.points[v];
+      EXPECT_NEAR(std::hypot(p.x - 45, p.y - 10), 4, 1e-7);
+      ++looked_at;
+    }
+  }
+  EXPECT_GT(looked_at, 20u);
+  IntakeOptions unknown;
+  unknown.cad.unit = "cubit";
+  EXPECT_THROW(open_domain(kBracket, unknown), OptionError);
+}
+
+}  // namespace
+}  // namespace octafront
