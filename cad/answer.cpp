@@ -97,7 +97,6 @@ class Attempts {
           },
           model);
       enter(Place::Stage::kSending, 0);
-      model.notes.insert(model.notes.end(), notes_.begin(), notes_.end());
       lift_cpu_limit();
       send(FrameKind::kModel, to_bytes(model));
     } catch (const Standard_Failure& failure) {
@@ -124,9 +123,8 @@ class Attempts {
     }
     int& rung = rung_[place_->face];
     rung = std::min(rung + 1, kLastRung);
-    notes_.push_back(fmt::format("OpenCASCADE {} at {}: {}", how, face_in_words(part_, topology_, place_->face),
-                                 rung == kLastRung ? "it stays without triangles" : "it is tried coarser"));
-    send_note(notes_.back());
+    send_note(fmt::format("OpenCASCADE {} at {}: {}", how, face_in_words(part_, topology_, place_->face),
+                          rung == kLastRung ? "it stays without triangles" : "it is tried coarser"));
     return true;
   }
 
@@ -136,7 +134,6 @@ class Attempts {
   const Fineness& fineness_;
   double seconds_;
   std::vector<int> rung_;
-  std::vector<std::string> notes_;
   Place* place_ = nullptr;
 };
 

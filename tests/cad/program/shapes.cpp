@@ -42,6 +42,15 @@ TopoDS_Shape pair_at(double x) {
   return both;
 }
 
+/// Boxes of 10 that share each other's halves.
+TopoDS_Shape three() {
+  TopoDS_Compound all;
+  BRep_Builder().MakeCompound(all);
+  for (const double x : {0.0, 5.0, 8.0})
+    BRep_Builder().Add(all, BRepPrimAPI_MakeBox(gp_Pnt(x, 0, 0), 10, 10, 10).Shape());
+  return all;
+}
+
 /// A face between a spline over the x axis and that axis.
 TopoDS_Face under_spline() {
   TColgp_Array1OfPnt points(1, 5);
@@ -77,6 +86,9 @@ TopoDS_Shape shape_named(const std::string& name) {
   if (name == "touching") return pair_at(10);
   if (name == "overlapping") return pair_at(8);
   if (name == "apart") return pair_at(20);
+  if (name == "within") return pair_at(3);
+  if (name == "nearly") return pair_at(10 - 1e-6);
+  if (name == "three") return three();
   throw std::invalid_argument(name);
 }
 
