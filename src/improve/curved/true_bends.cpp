@@ -11,7 +11,7 @@ namespace {
 
 // As for the smooth surface of triangles (bends.cpp): more is not resolved by the mesh; less is rounding.
 constexpr double kMostTrueBend = 0.2, kMostTrueMove = 0.5;
-constexpr double kStraightTrueBend = 1e-7;
+constexpr double kStraightTrueBend = 1e-9;
 
 /// Faces of the mesh that lie on the geometry, and where their corners and edges belong.
 class TrueSearch {
@@ -27,10 +27,12 @@ class TrueSearch {
     find_patches();
   }
 
-  Bends run() const {
+  Bends run() {
     Bends bends;
+    too_far_.assign(mesh_.points.size(), 0);
     std::vector<std::optional<Vec3>> moved(mesh_.points.size());
     parallel_for(moved.size(), [&](std::size_t v) { moved[v] = move_of(static_cast<VertexIndex>(v)); });
+    bends.too_far = static_cast<std::size_t>(std::count(too_far_.begin(), too_far_.end(), 1));
     for (VertexIndex v = 0; v < moved.size(); ++v)
       if (moved[v] && *moved[v] != Vec3{}) bends.corners.push_back({v, *moved[v]});
     std::vector<std::optional<Vec3>> bend(table_.size());
@@ -58,10 +60,10 @@ class TrueSearch {
     }
   }
 
-  /// Where p belongs that lies on these patches. What lies on several that meet nowhere belongs to the nearest.
-  std::optional<Vec3> target(const Patches& patches, Vec3 p) const {
+  /// Where p belongs that lies on these patches: where they meet, or if that is farther than `most`, on the nearest.
+  std::optional<Vec3> target(const Patches& patches, Vec3 p, double most) const {
     if (patches.size() > 1)
-      if (const auto on = geometry_.on_edge(patches, p)) return on;
+      if (const auto on = geometry_.on_edge(patches, p); on && distance(*on, p) <= most) return on;
     std::optional<Vec3> best;
     for (const std::uint32_t patch : patches)
       if (const auto on = geometry_.on_face(patch, p))
@@ -70,13 +72,16 @@ class TrueSearch {
   }
 
   /// Nothing for what stays because its place is not known, or too far.
-  std::optional<Vec3> move_of(VertexIndex v) const {
+  std::optional<Vec3> move_of(VertexIndex v) {
     if (patches_of_[v].empty()) return std::nullopt;
     const Vec3 p = mesh_.points[v];
     if (geometry_.is_vertex(p)) return Vec3{};
-    const auto to = target(patches_of_[v], p);
-    if (!to || !is_finite(*to) || distance(*to, p) > kMostTrueMove * shortest_[v]) return std::nullopt;
-    return *to - p;
+    const double most = kMostTrueMove * shortest_[v];
+    const auto to = target(patches_of_[v], p, most);
+    if (!to || !is_finite(*to)) return std::nullopt;
+    if (distance(*to, p) <= most) return *to - p;
+    too_far_[v] = 1;
+    return std::nullopt;
   }
 
   std::optional<Vec3> bend_of(std::size_t e, const std::vector<std::optional<Vec3>>& moved) const {
@@ -87,7 +92,7 @@ class TrueSearch {
     std::sort(patches.begin(), patches.end());
     patches.erase(std::unique(patches.begin(), patches.end()), patches.end());
     const Vec3 from = mesh_.points[a] + *moved[a], to = mesh_.points[b] + *moved[b], middle = 0.5 * (from + to);
-    const auto on = target(patches, middle);
+    const auto on = target(patches, middle, kMostTrueBend * distance(from, to));
     if (!on || !is_finite(*on)) return std::nullopt;
     const double part = distance(*on, middle) / distance(from, to);
     if (!(part > kStraightTrueBend && part <= kMostTrueBend)) return std::nullopt;
@@ -101,6 +106,7 @@ class TrueSearch {
   EdgeTable table_;
   std::vector<Patches> patches_of_;  ///< per vertex
   std::vector<double> shortest_;     ///< edge at a vertex
+  std::vector<char> too_far_;        ///< per vertex
 };
 
 }  // namespace
