@@ -118,7 +118,7 @@ SecondOrderSummary move_to_geometry(TetMesh& mesh, const TrueGeometry& geometry,
     curved::move_corners(mesh, bends.corners, made, context);
     summary.moved += made.moved;
     summary.held = made.held + bends.too_far;
-    if (made.held == 0) break;
+    if (summary.held == 0) break;
   }
   return summary;
 }

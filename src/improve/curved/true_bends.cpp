@@ -11,6 +11,8 @@ namespace {
 
 // As for the smooth surface of triangles (bends.cpp): more is not resolved by the mesh; less is rounding.
 constexpr double kMostTrueBend = 0.2, kMostTrueMove = 0.5;
+/// Corners go this far in steps, one a round; together with a neighbour whose way leads so far along theirs.
+constexpr double kFarthestTrueMove = 2, kAlong = 0.5;
 constexpr double kStraightTrueBend = 1e-9;
 
 /// Faces of the mesh that lie on the geometry, and where their corners and edges belong.
@@ -33,6 +35,7 @@ class TrueSearch {
     std::vector<std::optional<Vec3>> moved(mesh_.points.size());
     parallel_for(moved.size(), [&](std::size_t v) { moved[v] = move_of(static_cast<VertexIndex>(v)); });
     bends.too_far = static_cast<std::size_t>(std::count(too_far_.begin(), too_far_.end(), 1));
+    take_steps(moved);
     for (VertexIndex v = 0; v < moved.size(); ++v)
       if (moved[v] && *moved[v] != Vec3{}) bends.corners.push_back({v, *moved[v]});
     std::vector<std::optional<Vec3>> bend(table_.size());
@@ -79,14 +82,34 @@ class TrueSearch {
     const double most = kMostTrueMove * shortest_[v];
     const auto to = target(patches_of_[v], p, most);
     if (!to || !is_finite(*to)) return std::nullopt;
-    if (distance(*to, p) <= most) return *to - p;
-    too_far_[v] = 1;
-    return std::nullopt;
+    const double way = distance(*to, p);
+    too_far_[v] = way > most;
+    if (way > kFarthestTrueMove * shortest_[v]) return std::nullopt;
+    return *to - p;
+  }
+
+  /// Of the way of those that are too far only a step, and that where most neighbours go along: a whole face may lie
+  /// beside the geometry, but a vertex alone would press its elements flat.
+  void take_steps(std::vector<std::optional<Vec3>>& moved) const {
+    std::vector<std::uint32_t> beside(moved.size(), 0), along(moved.size(), 0);
+    const auto look = [&](VertexIndex v, VertexIndex u) {
+      if (!too_far_[v] || !moved[v]) return;
+      ++beside[v];
+      along[v] += moved[u] && dot(*moved[u], *moved[v]) > kAlong * squared_length(*moved[v]);
+    };
+    for (const auto& [a, b] : table_.edges) look(a, b), look(b, a);
+    for (std::size_t v = 0; v < moved.size(); ++v) {
+      if (!too_far_[v] || !moved[v]) continue;
+      if (2 * along[v] < beside[v])
+        moved[v].reset();
+      else
+        *moved[v] = kMostTrueMove * shortest_[v] / length(*moved[v]) * *moved[v];
+    }
   }
 
   std::optional<Vec3> bend_of(std::size_t e, const std::vector<std::optional<Vec3>>& moved) const {
     const auto& [a, b] = table_.edges[e];
-    if (!moved[a] || !moved[b]) return std::nullopt;
+    if (!moved[a] || !moved[b] || too_far_[a] || too_far_[b]) return std::nullopt;
     Patches patches;
     for (const std::uint32_t h : table_.uses(e)) patches.push_back(patch_[h / 3]);
     std::sort(patches.begin(), patches.end());
