@@ -12,7 +12,7 @@ namespace {
 // As for the smooth surface of triangles (bends.cpp): more is not resolved by the mesh; less is rounding.
 constexpr double kMostTrueBend = 0.2, kMostTrueMove = 0.5;
 /// Corners go this far in steps, one a round; together with a neighbour whose way leads so far along theirs.
-constexpr double kFarthestTrueMove = 2, kAlong = 0.5;
+constexpr double kFarthestTrueMove = 2, kSameWay = 0.5;
 constexpr double kStraightTrueBend = 1e-9;
 
 /// Faces of the mesh that lie on the geometry, and where their corners and edges belong.
@@ -34,8 +34,8 @@ class TrueSearch {
     too_far_.assign(mesh_.points.size(), 0);
     std::vector<std::optional<Vec3>> moved(mesh_.points.size());
     parallel_for(moved.size(), [&](std::size_t v) { moved[v] = move_of(static_cast<VertexIndex>(v)); });
-    bends.too_far = static_cast<std::size_t>(std::count(too_far_.begin(), too_far_.end(), 1));
     take_steps(moved);
+    bends.too_far = static_cast<std::size_t>(std::count(too_far_.begin(), too_far_.end(), 1));
     for (VertexIndex v = 0; v < moved.size(); ++v)
       if (moved[v] && *moved[v] != Vec3{}) bends.corners.push_back({v, *moved[v]});
     std::vector<std::optional<Vec3>> bend(table_.size());
@@ -63,48 +63,78 @@ class TrueSearch {
     }
   }
 
-  /// Where p belongs that lies on these patches: where they meet, or if that is farther than `most`, on the nearest.
-  std::optional<Vec3> target(const Patches& patches, Vec3 p, double most) const {
-    if (patches.size() > 1)
-      if (const auto on = geometry_.on_edge(patches, p); on && distance(*on, p) <= most) return on;
+  /// Where the patches meet, nearest to p, if that is no farther than `most`.
+  std::optional<Vec3> on_line(const Patches& patches, Vec3 p, double most) const {
+    if (patches.size() < 2) return std::nullopt;
+    const auto on = geometry_.on_edge(patches, p);
+    return on && distance(*on, p) <= most ? on : std::nullopt;
+  }
+
+  /// On the nearest of the patches.
+  std::optional<Vec3> on_patch(const Patches& patches, Vec3 p) const {
     std::optional<Vec3> best;
     for (const std::uint32_t patch : patches)
-      if (const auto on = geometry_.on_face(patch, p))
+      if (const auto on = geometry_.on_face(patch, p); on && is_finite(*on))
         if (!best || squared_length(*on - p) < squared_length(*best - p)) best = on;
     return best;
   }
 
-  /// Nothing for what stays because its place is not known, or too far.
+  /// The way to where the patches of v meet, or else to the nearest of them. Nothing for what stays because its place
+  /// is not known, or too far.
   std::optional<Vec3> move_of(VertexIndex v) {
     if (patches_of_[v].empty()) return std::nullopt;
     const Vec3 p = mesh_.points[v];
     if (geometry_.is_vertex(p)) return Vec3{};
-    const double most = kMostTrueMove * shortest_[v];
-    const auto to = target(patches_of_[v], p, most);
-    if (!to || !is_finite(*to)) return std::nullopt;
+    const auto line = on_line(patches_of_[v], p, kFarthestTrueMove * shortest_[v]);
+    const auto to = line ? line : on_patch(patches_of_[v], p);
+    if (!to) return std::nullopt;
     const double way = distance(*to, p);
-    too_far_[v] = way > most;
+    too_far_[v] = way > kMostTrueMove * shortest_[v];
     if (way > kFarthestTrueMove * shortest_[v]) return std::nullopt;
     return *to - p;
   }
 
-  /// Of the way of those that are too far only a step, and that where most neighbours go along: a whole face may lie
-  /// beside the geometry, but a vertex alone would press its elements flat.
-  void take_steps(std::vector<std::optional<Vec3>>& moved) const {
+  /// Of the way of those that are too far only a step, and that where most neighbours go along, of a line those on it:
+  /// a whole face may lie beside the geometry, but a vertex alone would press its elements flat.
+  void take_steps(std::vector<std::optional<Vec3>>& moved) {
+    const std::vector<char> together = who_goes_together(moved);
+    for (std::size_t v = 0; v < moved.size(); ++v) {
+      if (!too_far_[v] || !moved[v]) continue;
+      if (together[v] != 0)
+        *moved[v] = kMostTrueMove * shortest_[v] / length(*moved[v]) * *moved[v];
+      else
+        moved[v] = to_patch(v);
+    }
+  }
+
+  std::vector<char> who_goes_together(const std::vector<std::optional<Vec3>>& moved) const {
     std::vector<std::uint32_t> beside(moved.size(), 0), along(moved.size(), 0);
     const auto look = [&](VertexIndex v, VertexIndex u) {
       if (!too_far_[v] || !moved[v]) return;
+      if (shared_patches(v, u) < std::min<std::size_t>(2, patches_of_[v].size())) return;
       ++beside[v];
-      along[v] += moved[u] && dot(*moved[u], *moved[v]) > kAlong * squared_length(*moved[v]);
+      along[v] += moved[u] && dot(*moved[u], *moved[v]) > kSameWay * squared_length(*moved[v]);
     };
     for (const auto& [a, b] : table_.edges) look(a, b), look(b, a);
-    for (std::size_t v = 0; v < moved.size(); ++v) {
-      if (!too_far_[v] || !moved[v]) continue;
-      if (2 * along[v] < beside[v])
-        moved[v].reset();
-      else
-        *moved[v] = kMostTrueMove * shortest_[v] / length(*moved[v]) * *moved[v];
-    }
+    std::vector<char> together(moved.size(), 0);
+    for (std::size_t v = 0; v < moved.size(); ++v) together[v] = beside[v] > 0 && 2 * along[v] >= beside[v];
+    return together;
+  }
+
+  std::size_t shared_patches(VertexIndex v, VertexIndex u) const {
+    const Patches& of = patches_of_[u];
+    return static_cast<std::size_t>(std::count_if(patches_of_[v].begin(), patches_of_[v].end(), [&](std::uint32_t p) {
+      return std::binary_search(of.begin(), of.end(), p);
+    }));
+  }
+
+  /// For a vertex whose line is too far: to a patch of it, if that is near.
+  std::optional<Vec3> to_patch(std::size_t v) {
+    const Vec3 p = mesh_.points[v];
+    const auto to = on_patch(patches_of_[v], p);
+    if (!to || distance(*to, p) > kMostTrueMove * shortest_[v]) return std::nullopt;
+    too_far_[v] = 0;
+    return *to - p;
   }
 
   std::optional<Vec3> bend_of(std::size_t e, const std::vector<std::optional<Vec3>>& moved) const {
@@ -115,8 +145,9 @@ class TrueSearch {
     std::sort(patches.begin(), patches.end());
     patches.erase(std::unique(patches.begin(), patches.end()), patches.end());
     const Vec3 from = mesh_.points[a] + *moved[a], to = mesh_.points[b] + *moved[b], middle = 0.5 * (from + to);
-    const auto on = target(patches, middle, kMostTrueBend * distance(from, to));
-    if (!on || !is_finite(*on)) return std::nullopt;
+    auto on = on_line(patches, middle, kMostTrueBend * distance(from, to));
+    if (!on) on = on_patch(patches, middle);
+    if (!on) return std::nullopt;
     const double part = distance(*on, middle) / distance(from, to);
     if (!(part > kStraightTrueBend && part <= kMostTrueBend)) return std::nullopt;
     return *on - middle;
