@@ -136,22 +136,22 @@ class Judge {
   /// Cells of each dimension, closed: those of a corner, edge or face belong to all labels around it, once each.
   void euler_of_voxels() {
     const auto& n = image_.grid.size;
+    std::vector<std::uint16_t> around;
     for (std::int64_t k = 0; k <= n[2]; ++k)
       for (std::int64_t j = 0; j <= n[1]; ++j)
         for (std::int64_t i = 0; i <= n[0]; ++i)
           for (unsigned kind = 0; kind < 8; ++kind) {  // bit: the cell extends along that axis
-            std::array<std::uint16_t, 8> around{};
-            std::size_t m = 0;
+            around.clear();
             for (unsigned c = 0; c < 8; ++c) {
               if ((c & kind) != 0) continue;
               const auto back = [&](unsigned axis) { return static_cast<std::int64_t>(c >> axis & 1); };
-              around[m++] = at(i - back(0), j - back(1), k - back(2));
+              around.push_back(at(i - back(0), j - back(1), k - back(2)));
             }
-            std::sort(around.begin(), around.begin() + m);
-            const auto end = std::unique(around.begin(), around.begin() + m);
+            std::sort(around.begin(), around.end());
+            around.erase(std::unique(around.begin(), around.end()), around.end());
             const int dimension = static_cast<int>((kind & 1) + (kind >> 1 & 1) + (kind >> 2));
-            for (auto l = around.begin(); l != end; ++l)
-              if (*l != LabelImage::kNoRegion) found_[*l].euler_in += dimension % 2 == 0 ? 1 : -1;
+            for (const std::uint16_t l : around)
+              if (l != LabelImage::kNoRegion) found_[l].euler_in += dimension % 2 == 0 ? 1 : -1;
           }
   }
 

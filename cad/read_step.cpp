@@ -34,6 +34,7 @@
 #include <fstream>
 #include <iterator>
 #include <set>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -50,18 +51,41 @@ std::string entity_in_words(const StepData_StepModel& model, const Handle(Standa
   return fmt::format("{} ({})", text_of(model.StringLabel(entity)), model.TypeName(entity, false));
 }
 
-/// What the reader complained of: of an entity, or of the file.
-std::vector<std::string> complaints(const StepData_StepModel& model) {
-  std::vector<std::string> all;
+/// Do shapes, their places or their lengths hang on an entity? Colours, layers, tolerances, persons and dates do not.
+bool matters(const Handle(Standard_Transient) & entity) {
+  const std::string_view type = entity->DynamicType()->Name();
+  if (type == "StepRepr_DescriptiveRepresentationItem" || type == "StepRepr_Representation" ||
+      type.find("SolidAngleUnit") != type.npos)
+    return false;
+  if (type.starts_with("StepBasic_"))
+    return type.starts_with("StepBasic_Product") || type.find("Unit") != type.npos || type.find("Measure") != type.npos;
+  return type.starts_with("StepGeom_") || type.starts_with("StepShape_") || type.starts_with("StepRepr_");
+}
+
+/// Is a complaint of a parameter that is a mere label?
+bool is_of_a_label(std::string_view complaint) {
+  return complaint.find("(name)") != complaint.npos || complaint.find("(description)") != complaint.npos;
+}
+
+/// What the reader complained of: of the file, of entities that matter, and of others.
+struct Complaints {
+  std::vector<std::string> serious, others;
+};
+
+Complaints complaints(const StepData_StepModel& model) {
+  Complaints found;
   const Handle(Interface_Check)& whole = model.GlobalCheck();
-  for (int i = 1; !whole.IsNull() && i <= whole->NbFails(); ++i) all.push_back(to_utf8(whole->CFail(i)));
+  for (int i = 1; !whole.IsNull() && i <= whole->NbFails(); ++i) found.serious.push_back(to_utf8(whole->CFail(i)));
   for (int i = 1; i <= model.NbEntities(); ++i) {
     if (!model.IsReportEntity(i)) continue;
     const Handle(Interface_Check)& check = model.ReportEntity(i)->Check();
-    for (int k = 1; k <= check->NbFails(); ++k)
-      all.push_back(entity_in_words(model, model.Value(i)) + ": " + to_utf8(check->CFail(k)));
+    for (int k = 1; k <= check->NbFails(); ++k) {
+      const std::string what = to_utf8(check->CFail(k));
+      std::vector<std::string>& said = matters(model.Value(i)) && !is_of_a_label(what) ? found.serious : found.others;
+      said.push_back(entity_in_words(model, model.Value(i)) + ": " + what);
+    }
   }
-  return all;
+  return found;
 }
 
 std::string first_of(const std::vector<std::string>& sentences) {
@@ -188,12 +212,13 @@ void read_step(const std::string& path, const std::string& name, bool keep_going
   send_progress("reading", "the text of the file");
   const IFSelect_ReturnStatus status = reader.ReadFile(path.c_str());
   const Handle(StepData_StepModel) model = reader.ChangeReader().StepModel();
-  std::vector<std::string> said = model.IsNull() ? std::vector<std::string>() : complaints(*model);
+  auto [said, harmless] = model.IsNull() ? Complaints() : complaints(*model);
   if (status != IFSelect_RetDone && said.empty()) said = heard();
   if (status != IFSelect_RetDone || model.IsNull() || model->NbEntities() == 0)
     throw Refusal(fmt::format("{} cannot be read as STEP: {}", name,
                               said.empty() ? "it is cut off, or not STEP at all" : first_of(said)));
   if (!said.empty()) lost(fmt::format("{}: {}", name, first_of(said)), keep_going, part);
+  if (!harmless.empty()) part.notes.push_back("of what no shape hangs on was read with faults: " + first_of(harmless));
   read_units(reader.ChangeReader(), part);
   Handle(TDocStd_Document) document = new TDocStd_Document("");
   send_progress("reading", "its shapes");

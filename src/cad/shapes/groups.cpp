@@ -10,19 +10,9 @@ namespace octafront::cad {
 
 namespace {
 
-/// What is smaller than this part of a size is tiny.
-constexpr double kTiny = 0.1;
-
-/// The mean width of faces: twice the area over the perimeter.
-std::vector<double> widths_of(const CadModel& model) {
-  std::vector<double> perimeter(model.faces.size(), 0);
-  for (const CadEdge& edge : model.edges)
-    if (!edge.is_seam)
-      for (const std::uint32_t f : edge.faces) perimeter[f] += edge.length;
-  std::vector<double> width;
-  for (std::size_t f = 0; f < model.faces.size(); ++f)
-    width.push_back(perimeter[f] > 0 ? 2 * model.faces[f].area / perimeter[f] : HUGE_VAL);
-  return width;
+bool joins(const CadModel& model, const CadEdge& edge) {
+  return edge.is_smooth && !edge.is_seam && edge.faces.size() == 2 &&
+         model.faces[edge.faces[0]].sides == model.faces[edge.faces[1]].sides;
 }
 
 /// Per face the first of the names that it has, or that a label of it has; kNone: none.
@@ -40,23 +30,29 @@ std::vector<std::uint32_t> which_of(const CadModel& model, std::span<const std::
   return which;
 }
 
-bool joins(const CadModel& model, const CadEdge& edge) {
-  return edge.is_smooth && !edge.is_seam && edge.faces.size() == 2 &&
-         model.faces[edge.faces[0]].sides == model.faces[edge.faces[1]].sides;
-}
-
 }  // namespace
+
+std::vector<double> mean_widths(const CadModel& model) {
+  std::vector<double> perimeter(model.faces.size(), 0);
+  for (const CadEdge& edge : model.edges)
+    if (!edge.is_seam)
+      for (const std::uint32_t f : edge.faces) perimeter[f] += edge.length;
+  std::vector<double> width;
+  for (std::size_t f = 0; f < model.faces.size(); ++f)
+    width.push_back(perimeter[f] > 0 ? 2 * model.faces[f].area / perimeter[f] : HUGE_VAL);
+  return width;
+}
 
 FaceGroups group_faces(const CadModel& model, std::optional<double> size, std::span<const std::string> apart) {
   const std::vector<std::string> names = face_names(model);
   const std::vector<std::uint32_t> which = which_of(model, apart, names);
-  const std::vector<double> width = widths_of(model);
+  const std::vector<double> width = mean_widths(model);
   DisjointSets sets(model.faces.size());
   for (const CadEdge& edge : model.edges) {
     if (!size || !joins(model, edge)) continue;
     const auto [a, b] = std::pair(edge.faces[0], edge.faces[1]);
     if (which[a] != which[b]) continue;
-    if (std::min(width[a], width[b]) < *size || edge.length < kTiny * *size) sets.join(a, b);
+    if (std::min(width[a], width[b]) < *size || edge.length < kTinyOfSize * *size) sets.join(a, b);
   }
   std::vector<char> has_triangles(model.faces.size(), 0);
   for (const std::uint32_t f : model.face_of) has_triangles[f] = 1;
@@ -77,11 +73,11 @@ TinyThings tiny_things(const CadModel& model, double size) {
   TinyThings tiny;
   tiny.shortest_edge = HUGE_VAL;
   for (const CadEdge& edge : model.edges) {
-    tiny.edges += edge.length < kTiny * size;
+    tiny.edges += edge.length < kTinyOfSize * size;
     tiny.shortest_edge = std::min(tiny.shortest_edge, edge.length);
   }
-  for (const Face& face : model.faces) tiny.faces += face.area < kTiny * size * kTiny * size;
-  for (const double w : widths_of(model)) tiny.narrow_faces += w < kTiny * size;
+  for (const Face& face : model.faces) tiny.faces += face.area < kTinyOfSize * size * kTinyOfSize * size;
+  for (const double w : mean_widths(model)) tiny.narrow_faces += w < kTinyOfSize * size;
   return tiny;
 }
 

@@ -22,6 +22,12 @@ struct FaceGroups {
 /// group. Faces with one of the names `apart`, their own or that of a label, are one with such of the same name alone.
 FaceGroups group_faces(const CadModel& model, std::optional<double> size, std::span<const std::string> apart = {});
 
+/// The mean width of each face: twice its area over its perimeter; infinite where it has no edges.
+std::vector<double> mean_widths(const CadModel& model);
+
+/// What is smaller than this part of elements is tiny.
+inline constexpr double kTinyOfSize = 0.1;
+
 /// Faces and edges that are small against elements of a size: what a user may want to know before meshing.
 struct TinyThings {
   std::size_t edges = 0, faces = 0, narrow_faces = 0;

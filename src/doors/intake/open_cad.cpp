@@ -6,6 +6,7 @@
 
 #include "base/core/wording.h"
 #include "cad/reader/cad_reader.h"
+#include "cad/shapes/collapse.h"
 #include "cad/shapes/groups.h"
 #include "cad/shapes/names.h"
 #include "cad/shapes/shapes.h"
@@ -134,6 +135,7 @@ struct Triangulated {
   SurfaceMesh surface;
   std::string defects = {};  ///< in words; empty: none
   double off = 0;            ///< worst_volume()
+  Collapsed collapsed = {};
 
   bool is_good() const { return defects.empty() && off <= kVolumeOff; }
   bool is_better_than(const Triangulated& other) const {
@@ -141,6 +143,16 @@ struct Triangulated {
     return off < other.off;
   }
 };
+
+/// Names of the first few faces, in brackets.
+std::string listed(const CadModel& model, const std::vector<std::uint32_t>& faces) {
+  constexpr std::size_t kFew = 5;
+  if (faces.empty()) return "";
+  const std::vector<std::string> names = face_names(model);
+  std::string all;
+  for (std::size_t k = 0; k < std::min(kFew, faces.size()); ++k) all += (k > 0 ? ", " : " (") + names[faces[k]];
+  return all + (faces.size() > kFew ? ", ...)" : ")");
+}
 
 class CadIn {
  public:
@@ -170,7 +182,21 @@ class CadIn {
 
  private:
   Triangulated attempt(const std::array<double, 2>& by) {
-    Triangulated made{reader_.triangulate({deflection_ * by[0], kAngle * by[1]}), {}, {}};
+    const CadModel model = reader_.triangulate({deflection_ * by[0], kAngle * by[1]});
+    if (!options_.cad.keep_edges && !model.solids.empty()) {
+      CadModel simpler = model;
+      const Collapsed collapsed = collapse_tiny(simpler, kTinyOfSize * size_);
+      if (collapsed.edges + collapsed.faces.size() > 0)
+        if (Triangulated made = judged(std::move(simpler)); made.is_good()) {
+          made.collapsed = collapsed;
+          return made;
+        }
+    }
+    return judged(model);
+  }
+
+  Triangulated judged(CadModel model) const {
+    Triangulated made{std::move(model), {}, {}};
     made.groups = group_faces(made.model, options_.cad.keep_edges ? std::nullopt : asked_, options_.cad.apart);
     made.surface = surface_of(made.model, made.groups);
     if (made.model.solids.empty()) return made;
@@ -198,6 +224,14 @@ class CadIn {
            fmt::format("{} faces are meshed as {}, where narrow ones go on smoothly; each keeps its name. `keep_edges` "
                        "keeps every line",
                        made.model.faces.size(), counted(made.groups.names.size(), "patch", "patches")));
+    const auto& [faces, edges] = made.collapsed;
+    if (edges + faces.size() > 0)
+      note(
+          domain_, options_, "CAD",
+          fmt::format("{} and {} that are tiny against elements of {:.4g} have none of their own{}; `keep_edges` keeps "
+                      "them",
+                      counted(faces.size(), "face"), counted(edges, "edge"), size_ / millimetres_of(options_.cad),
+                      listed(made.model, faces)));
     const TinyThings tiny = tiny_things(made.model, size_);
     if (tiny.edges + tiny.faces + tiny.narrow_faces > 0)
       note(domain_, options_, "CAD",

@@ -107,7 +107,7 @@ ExactPoints::Planes ExactPoints::planes_of(VertexIndex v) const {
 std::vector<std::uint32_t> ExactPoints::shared_planes(VertexIndex a, VertexIndex b) const {
   std::vector<std::uint32_t> shared;
   std::ranges::set_intersection(planes_of(a), planes_of(b), std::back_inserter(shared));
-  shared.erase(std::ranges::unique(shared).begin(), shared.end());
+  shared.erase(std::unique(shared.begin(), shared.end()), shared.end());
   return shared;
 }
 

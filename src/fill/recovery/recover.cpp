@@ -11,7 +11,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <ranges>
 #include <stdexcept>
 
 #include <fmt/core.h>
@@ -19,6 +18,12 @@
 namespace octafront {
 
 namespace {
+
+bool has_coinciding(const std::vector<VertexIndex>& same_as) {
+  for (std::size_t v = 0; v < same_as.size(); ++v)
+    if (same_as[v] != v) return true;
+  return false;
+}
 
 using namespace recovery;
 
@@ -169,9 +174,7 @@ std::optional<TetMesh> recover(const SurfaceMesh& surface, std::uint32_t attempt
   validate<TetComplex>(mesh);
   count(stage, recovery.counts(), lift.counts());
   stage.count("attempts", attempt + 1);
-  if (!std::ranges::equal(same_as, std::views::iota(VertexIndex{0}, static_cast<VertexIndex>(same_as.size())))) {
-    restore_coinciding(surface, same_as, mesh);
-  }
+  if (has_coinciding(same_as)) restore_coinciding(surface, same_as, mesh);
   return extract(surface, points, mesh);
 }
 

@@ -190,7 +190,7 @@ class Refiner {
   bool loses_a_vertex() {
     const auto distinct = [](std::vector<VertexIndex>& v) {
       std::ranges::sort(v);
-      v.erase(std::ranges::unique(v).begin(), v.end());
+      v.erase(std::unique(v.begin(), v.end()), v.end());
       return v.size();
     };
     on_rim_ = rim_;

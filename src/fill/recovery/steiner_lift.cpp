@@ -81,7 +81,7 @@ std::vector<SteinerLift::Fan> SteinerLift::fans_around(VertexIndex s) {
     for (HalfFace h = 4 * t; h < 4 * t + 4; ++h) {
       if (!is_outside(mesh_.across[h]) || mesh_.apex(h) == s) continue;
       Triangle f = mesh_.face(h);
-      while (f[0] != s) std::ranges::rotate(f, f.begin() + 1);
+      while (f[0] != s) std::rotate(f.begin(), f.begin() + 1, f.end());
       spokes.push_back({f[1], f[2], mesh_.across[h] - kFirstOutside});
     }
   }
@@ -358,7 +358,7 @@ std::vector<VertexIndex> SteinerLift::run() {
     counts_.collapsed += before - open.size();
   }
   // Points inside facets first: the others then see fewer of them.
-  std::ranges::stable_partition(open, [&](VertexIndex s) { return fans_around(s).size() == 1; });
+  std::stable_partition(open.begin(), open.end(), [&](VertexIndex s) { return fans_around(s).size() == 1; });
   for (int round = 0; round < kRounds && !open.empty(); ++round) {
     const std::size_t before = open.size();
     std::erase_if(open, [&](VertexIndex s) {

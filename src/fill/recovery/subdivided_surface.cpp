@@ -18,7 +18,7 @@ std::vector<Edge> SubdividedSurface::input_edges() const {
     for (int i = 0; i < 3; ++i) list.push_back(sorted_edge(t[i], t[(i + 1) % 3]));
   }
   std::ranges::sort(list);
-  list.erase(std::ranges::unique(list).begin(), list.end());
+  list.erase(std::unique(list.begin(), list.end()), list.end());
   return list;
 }
 
