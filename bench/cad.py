@@ -3,7 +3,7 @@
 Usage: bench/run.sh cad [--only PART] [--timeout SECONDS] [--fine] [--gmsh] [--page]
 Files of cad-models/ (scripts/get-cad.sh). Each is read by `octafront info`, then meshed at a fortieth of its diagonal, linear, and with
 --fine at a hundredth, of second order. Volumes of ours are those of the report, solid by solid against OpenCASCADE's; --gmsh: Gmsh's
-Delaunay meshes of the same files and sizes, judged by octafront_evaluate. CPU seconds of whole processes, octafront-cad among them, one
+Delaunay meshes of the same files and sizes, judged by octafront_evaluate. octafront_judge_cad looks whether nodes are on the geometry. CPU seconds of whole processes, octafront-cad among them, one
 thread. --page rewrites docs/measured/cad.md.
 """
 import argparse
@@ -32,7 +32,15 @@ def info_of(program, file, timeout):
         return found if found.get("solids") is not None else None, told.error or "no solids"
 
 
-def ours(program, file, size, order, timeout):
+def off_geometry(build, mesh, file, timeout):
+    """How many nodes of the boundary are off the file's geometry, of how many, and the largest distance in diagonals."""
+    done = subprocess.run([build / "bench/octafront_judge_cad", mesh, file], capture_output=True, text=True, timeout=timeout, check=True)
+    judged = json.loads(done.stdout).values()
+    return {"nodes": sum(j["nodes"] for j in judged), "astray": sum(j["off"] for j in judged), "farthest": max(j["largest"] for j in judged)}
+
+
+def ours(build, file, size, order, timeout):
+    program = (build / "cli/octafront").resolve()
     with tempfile.TemporaryDirectory() as folder:
         run = run_measured([program, "mesh", file.resolve(), "-o", "out.vtu", "--json", "report.json", "--size", repr(size), "--order",
                             order, "--threads", "1"], folder, timeout)
@@ -45,6 +53,7 @@ def ours(program, file, size, order, timeout):
         quality = report["quality"]
         return {"cpu": run.cpu_seconds, "tets": report["tets"], "off": max(off, key=abs) if off else math.nan,
                 "beta": quality["beta_mean"], "least": quality["beta_min"], "angle": quality["dihedral_min_degrees"],
+                **off_geometry(build, run.mesh, file, 20 * timeout),
                 "held": next((s["counters"].get("vertices held", 0) for s in report["stages"] if s["name"] == "true geometry"), 0)}
 
 
@@ -65,8 +74,18 @@ def by_gmsh(build, file, size, order, volume, timeout):
 
 def cells(made):
     if "error" in made:
-        return f"{made['error'][:90]} | | | | {made['cpu']:.1f}"
-    return f"{made['tets']:,} | {made['off']:+.3f} | {made['beta']:.3f}, {made['least']:.3f} | {made['angle']:.1f} | {made['cpu']:.1f}"
+        return f"{made['error'][:90]} | | | | | {made['cpu']:.1f}"
+    astray = f"{made['astray']:,}" + (f" ({made['farthest']:.1g})" if made["astray"] else "") if "astray" in made else ""
+    return (f"{made['tets']:,} | {made['off']:+.3f} | {astray} | {made['beta']:.3f}, {made['least']:.3f} | {made['angle']:.1f} | "
+            f"{made['cpu']:.1f}")
+
+
+def nodes_in_words(done):
+    judged = [m for m in done if "astray" in m]
+    if not judged:
+        return ""
+    return (f"; off the geometry are {sum(m['astray'] for m in judged):,} of {sum(m['nodes'] for m in judged):,} nodes of the boundary, "
+            f"in {sum(m['astray'] > 0 for m in judged)} files")
 
 
 def summary(name, all_made):
@@ -76,7 +95,7 @@ def summary(name, all_made):
     off = [abs(m["off"]) for m in done if not math.isnan(m["off"])]
     return (f"{name}: {len(done)} of {len(all_made)} meshed; worst solid within .1 % in {sum(o <= .1 for o in off)}, within 1 % in "
             f"{sum(o <= 1 for o in off)} of {len(off)}; smallest angle in the median {statistics.median(m['angle'] for m in done):.1f} "
-            f"degrees, below 10 in {sum(m['angle'] < 10 for m in done)}; mean beta {statistics.mean(m['beta'] for m in done):.3f}; "
+            f"degrees, below 10 in {sum(m['angle'] < 10 for m in done)}{nodes_in_words(done)}; mean beta {statistics.mean(m['beta'] for m in done):.3f}; "
             f"{sum(m['tets'] for m in done):,} elements, {sum(m['cpu'] for m in all_made):.0f} CPU s")
 
 
@@ -105,7 +124,7 @@ def main():
         diagonal = math.dist(lo, hi)
         volume = sum(s["volume"] for s in info["solids"])
         for part, order in sizes:
-            mesh = ours(program, file, diagonal / part, order, a.timeout)
+            mesh = ours(a.build, file, diagonal / part, order, a.timeout)
             made[part, "ours"].append(mesh)
             rows.append(f"| {file.name} | {len(info['solids'])}, {len(info['faces'])} | 1/{part}, {order} | ours | {cells(mesh)} |")
             print(rows[-1], flush=True)
@@ -123,10 +142,12 @@ def main():
             "",
             "Files of Debian's occt-misc, netgen-doc, gmsh-doc and freecad-common (`scripts/get-cad.sh`), meshed at a part of their diagonal. "
             "*Volume*: the solid that is worst off, against OpenCASCADE's volume of it, in percent; of curved elements as they are curved. Of "
-            "Gmsh the sum of all, linear. Solids that touch share faces here, and do not in Gmsh's run.", "",
+            "Gmsh the sum of all, linear. *Astray*: nodes of the boundary, corners and mid-side nodes, that OpenCASCADE, which reads the file once "
+            "more, finds farther from its nearest face or edge than 1e-9 of the diagonal and than the tolerance there; the farthest, in diagonals. "
+            "Solids that touch share faces here, and do not in Gmsh's run.", "",
             *lines, "",
-            "| file | solids, faces | size, order | mesher | elements | volume, % | beta mean, least | least angle | CPU s |",
-            "| --- | --- | --- | --- | --- | --- | --- | --- | --- |", *rows, "",
+            "| file | solids, faces | size, order | mesher | elements | volume, % | astray | beta mean, least | least angle | CPU s |",
+            "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |", *rows, "",
             "## Not meshed", "", "Without solids, or refused as they were read:", "", "| file | why |", "| --- | --- |", *refused, ""]))
 
 

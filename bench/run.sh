@@ -49,7 +49,7 @@ tests=OFF
 [ "$1" != complexes ] && [ "$1" != known_answers ] || tests=ON  # what makes complexes is theirs, and a judge
 cmake --preset release -DOCTAFRONT_BUILD_TESTS=$tests >/dev/null
 cmake --build --preset release --target octafront_cli octafront_evaluate octafront_judge_surface
-[ "$1" != cad ] || cmake --build --preset release --target octafront_cad_program
+[ "$1" != cad ] || cmake --build --preset release --target octafront_cad_program octafront_judge_cad
 [ "$1" != derived ] || [ -d models/derived ] || scripts/derive-models.sh build/release/cli/octafront
 [ "$1" != improve ] || cmake --build --preset release --target octafront_never_worse
 [ "$1" != formats ] || { cmake --build --preset release --target octafront_write_formats; exec python3 bench/formats.py build/release "${@:2}"; }

@@ -38,12 +38,6 @@ Basis basis_at(const Knots& knots, double t) {
   return out;
 }
 
-/// A parameter brought into the range of the knots by whole periods.
-double wrapped(double t, const Knots& knots, double period) {
-  if (period <= 0 || (t >= knots.first() && t <= knots.last())) return t;
-  return t - period * std::floor((t - knots.first()) / period);
-}
-
 Vec3 on_circle(const Frame& f, double radius, double minor, double t) {
   return f.x * (radius * std::cos(t)) + f.y * (minor * std::sin(t));
 }
@@ -74,6 +68,11 @@ Vec3 nurbs_point(const SurfaceRecord& s, Uv at) {
 }
 
 }  // namespace
+
+double wrapped(double t, const Knots& knots, double period) {
+  if (period <= 0 || (t >= knots.first() && t <= knots.last())) return t;
+  return t - period * std::floor((t - knots.first()) / period);
+}
 
 Vec3 point_of(const CurveRecord& c, double t) {
   switch (c.kind) {

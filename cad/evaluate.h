@@ -8,4 +8,7 @@ namespace octafront::cad {
 Vec3 point_of(const CurveRecord& curve, double t);
 Vec3 point_of(const SurfaceRecord& surface, Uv at);
 
+/// A parameter brought into the range of the knots by whole periods; 0: there are none.
+double wrapped(double t, const Knots& knots, double period);
+
 }  // namespace octafront::cad

@@ -182,6 +182,18 @@ void project(const Geom_BSplineSurface& s, std::vector<SurfaceSample>& samples) 
   }
 }
 
+/// The same on a surface that kept its parameters: an edge may lie along a face by others than the face says. What is
+/// periods away stays so.
+void project_near(const Geom_BSplineSurface& s, const SurfaceRecord& record, std::vector<SurfaceSample>& samples) {
+  double bounds[4];
+  s.Bounds(bounds[0], bounds[1], bounds[2], bounds[3]);
+  for (SurfaceSample& x : samples) {
+    const Uv start{wrapped(x.at.u, record.u_knots, record.u_period), wrapped(x.at.v, record.v_knots, record.v_period)};
+    const Uv there = nearest(s, start, gp_Pnt(x.p.x, x.p.y, x.p.z), bounds);
+    x.at.u += there.u - start.u, x.at.v += there.v - start.v;
+  }
+}
+
 /// Points of the surface itself all over the box of the samples: a conversion may fit on the border alone.
 std::vector<SurfaceSample> points_inside(const Geom_Surface& surface, const std::vector<SurfaceSample>& samples) {
   constexpr int kSteps = 9;
@@ -207,7 +219,10 @@ SurfaceRecord nurbs_record(const TopoDS_Face& face, const Handle(Geom_Surface) &
   std::vector<SurfaceSample> all = points_inside(*surface, samples);
   all.insert(all.end(), samples.begin(), samples.end());
   if (fits(record, all, allowed)) return record;
-  project(*spline, all);
+  if (surface->IsKind(STANDARD_TYPE(Geom_BSplineSurface)))
+    project_near(*spline, record, all);
+  else
+    project(*spline, all);
   if (!fits(record, all, allowed)) return {};
   samples.assign(all.end() - static_cast<std::ptrdiff_t>(samples.size()), all.end());
   return record;

@@ -129,7 +129,8 @@ std::int64_t whole_number(double n) {
 void declare_input(CLI::App& command, Arguments& a, const std::string& what) {
   const std::string surface =
       "Closed surface, with inner walls or without: STL, OBJ, OFF, PLY, TetGen .poly, triangles of Gmsh .msh or MEDIT "
-      ".mesh; -: from standard input; or several files, a body each. Or an image of labels or grey values: NIfTI, "
+      ".mesh; -: from standard input; or several files, a body each. Or CAD: STEP, IGES, BREP. Or an image of labels "
+      "or grey values: NIfTI, "
       "NRRD, "
       "MetaImage, INR, raw with JSON, .inv3, DICOM (a folder or its files)";
   command
@@ -333,7 +334,9 @@ void declare_sizes(CLI::App& command, Arguments& a) {
           [&o](const std::vector<std::string>& all) {
             for (const std::string& text : all) o.named.push_back(named_size(text));
           },
-          "Edge length in and around a region, on a patch or along a curve, by its name; may be repeated")
+          "Edge length in and around a region, on a patch or along a curve, by its name, of CAD also by \"color "
+          "#ff8000\" "
+          "or \"layer NAME\"; may be repeated")
       ->type_name("NAME=H")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);

@@ -87,6 +87,7 @@ void Program::declare_makers() {
           "  octafront mesh part.stl -o part.vtu --preset fine         smaller elements, better ones\n"
           "  octafront mesh part.stl -o part.inp --size 2 --order 2    edges of length 2, curved elements\n"
           "  octafront mesh part.obj -o part.msh --unit mm --size 0.1in\n"
+          "  octafront mesh part.step -o part.inp --size 2             CAD: solids, names, colours\n"
           "  octafront mesh plate.stl bolt.stl -o bolted.msh           a region each, faces shared\n"
           "  octafront mesh labels.nii.gz -o organs.msh --labels names.txt    a region per label\n"
           "  octafront mesh head.nii.gz -o head.msh --band skin=-200:226 --band bone=226:\n"

@@ -58,12 +58,21 @@ Vec3 on_sphere(double radius, Vec3 q, Vec3 seed) {
   return radius * to;
 }
 
+/// A torus that meets itself on its axis has an inner sheet too, of circles about centres on the other side of it:
+/// whether that of the seed is this one.
+bool is_inner(const SurfaceRecord& s, Vec3 seed) {
+  if (s.minor <= s.radius) return false;
+  const double r = across(seed, {}).length;
+  const double outer = std::hypot(r - s.radius, seed.z) - s.minor, inner = std::hypot(r + s.radius, seed.z) - s.minor;
+  return std::abs(inner) < std::abs(outer);
+}
+
 Vec3 on_torus(const SurfaceRecord& s, Vec3 q, Vec3 seed) {
   const Across a = across(q, seed);
-  const Vec3 centre{s.radius * a.x, s.radius * a.y, 0};
+  const double radius = is_inner(s, seed) ? -s.radius : s.radius;
+  const Vec3 centre{radius * a.x, radius * a.y, 0};
   Vec3 to = q - centre;
   if (length(to) == 0) to = seed - centre;
-  // A torus that meets itself on its axis: the sheet of the seed may lie on the other side of it.
   return centre + s.minor * normalized(to);
 }
 

@@ -27,6 +27,7 @@ struct EdgeBend {
 struct Bends {
   std::vector<CornerMove> corners;  ///< ascending
   std::vector<EdgeBend> edges;      ///< ascending
+  std::size_t too_far = 0;          ///< corners that stay, for they would have to move too far
 };
 
 /// `mesh` is linear. `sharp`: feature edges of its boundary, sorted, those between patches too. In parallel.

@@ -117,8 +117,8 @@ SecondOrderSummary move_to_geometry(TetMesh& mesh, const TrueGeometry& geometry,
     SecondOrderSummary made;
     curved::move_corners(mesh, bends.corners, made, context);
     summary.moved += made.moved;
-    summary.held = made.held;
-    if (made.held == 0) break;
+    summary.held = made.held + bends.too_far;
+    if (summary.held == 0) break;
   }
   return summary;
 }

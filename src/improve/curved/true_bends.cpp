@@ -11,7 +11,9 @@ namespace {
 
 // As for the smooth surface of triangles (bends.cpp): more is not resolved by the mesh; less is rounding.
 constexpr double kMostTrueBend = 0.2, kMostTrueMove = 0.5;
-constexpr double kStraightTrueBend = 1e-7;
+/// Corners go this far in steps, one a round; together with a neighbour whose way leads so far along theirs.
+constexpr double kFarthestTrueMove = 2, kSameWay = 0.5;
+constexpr double kStraightTrueBend = 1e-9;
 
 /// Faces of the mesh that lie on the geometry, and where their corners and edges belong.
 class TrueSearch {
@@ -27,10 +29,13 @@ class TrueSearch {
     find_patches();
   }
 
-  Bends run() const {
+  Bends run() {
     Bends bends;
+    too_far_.assign(mesh_.points.size(), 0);
     std::vector<std::optional<Vec3>> moved(mesh_.points.size());
     parallel_for(moved.size(), [&](std::size_t v) { moved[v] = move_of(static_cast<VertexIndex>(v)); });
+    take_steps(moved);
+    bends.too_far = static_cast<std::size_t>(std::count(too_far_.begin(), too_far_.end(), 1));
     for (VertexIndex v = 0; v < moved.size(); ++v)
       if (moved[v] && *moved[v] != Vec3{}) bends.corners.push_back({v, *moved[v]});
     std::vector<std::optional<Vec3>> bend(table_.size());
@@ -58,37 +63,91 @@ class TrueSearch {
     }
   }
 
-  /// Where p belongs that lies on these patches. What lies on several that meet nowhere belongs to the nearest.
-  std::optional<Vec3> target(const Patches& patches, Vec3 p) const {
-    if (patches.size() > 1)
-      if (const auto on = geometry_.on_edge(patches, p)) return on;
+  /// Where the patches meet, nearest to p, if that is no farther than `most`.
+  std::optional<Vec3> on_line(const Patches& patches, Vec3 p, double most) const {
+    if (patches.size() < 2) return std::nullopt;
+    const auto on = geometry_.on_edge(patches, p);
+    return on && distance(*on, p) <= most ? on : std::nullopt;
+  }
+
+  /// On the nearest of the patches.
+  std::optional<Vec3> on_patch(const Patches& patches, Vec3 p) const {
     std::optional<Vec3> best;
     for (const std::uint32_t patch : patches)
-      if (const auto on = geometry_.on_face(patch, p))
+      if (const auto on = geometry_.on_face(patch, p); on && is_finite(*on))
         if (!best || squared_length(*on - p) < squared_length(*best - p)) best = on;
     return best;
   }
 
-  /// Nothing for what stays because its place is not known, or too far.
-  std::optional<Vec3> move_of(VertexIndex v) const {
+  /// The way to where the patches of v meet, or else to the nearest of them. Nothing for what stays because its place
+  /// is not known, or too far.
+  std::optional<Vec3> move_of(VertexIndex v) {
     if (patches_of_[v].empty()) return std::nullopt;
     const Vec3 p = mesh_.points[v];
     if (geometry_.is_vertex(p)) return Vec3{};
-    const auto to = target(patches_of_[v], p);
-    if (!to || !is_finite(*to) || distance(*to, p) > kMostTrueMove * shortest_[v]) return std::nullopt;
+    const auto line = on_line(patches_of_[v], p, kFarthestTrueMove * shortest_[v]);
+    const auto to = line ? line : on_patch(patches_of_[v], p);
+    if (!to) return std::nullopt;
+    const double way = distance(*to, p);
+    too_far_[v] = way > kMostTrueMove * shortest_[v];
+    if (way > kFarthestTrueMove * shortest_[v]) return std::nullopt;
+    return *to - p;
+  }
+
+  /// Of the way of those that are too far only a step, and that where most neighbours go along, of a line those on it:
+  /// a whole face may lie beside the geometry, but a vertex alone would press its elements flat.
+  void take_steps(std::vector<std::optional<Vec3>>& moved) {
+    const std::vector<char> together = who_goes_together(moved);
+    for (std::size_t v = 0; v < moved.size(); ++v) {
+      if (!too_far_[v] || !moved[v]) continue;
+      if (together[v] != 0)
+        *moved[v] = kMostTrueMove * shortest_[v] / length(*moved[v]) * *moved[v];
+      else
+        moved[v] = to_patch(v);
+    }
+  }
+
+  std::vector<char> who_goes_together(const std::vector<std::optional<Vec3>>& moved) const {
+    std::vector<std::uint32_t> beside(moved.size(), 0), along(moved.size(), 0);
+    const auto look = [&](VertexIndex v, VertexIndex u) {
+      if (!too_far_[v] || !moved[v]) return;
+      if (shared_patches(v, u) < std::min<std::size_t>(2, patches_of_[v].size())) return;
+      ++beside[v];
+      along[v] += moved[u] && dot(*moved[u], *moved[v]) > kSameWay * squared_length(*moved[v]);
+    };
+    for (const auto& [a, b] : table_.edges) look(a, b), look(b, a);
+    std::vector<char> together(moved.size(), 0);
+    for (std::size_t v = 0; v < moved.size(); ++v) together[v] = beside[v] > 0 && 2 * along[v] >= beside[v];
+    return together;
+  }
+
+  std::size_t shared_patches(VertexIndex v, VertexIndex u) const {
+    const Patches& of = patches_of_[u];
+    return static_cast<std::size_t>(std::count_if(patches_of_[v].begin(), patches_of_[v].end(), [&](std::uint32_t p) {
+      return std::binary_search(of.begin(), of.end(), p);
+    }));
+  }
+
+  /// For a vertex whose line is too far: to a patch of it, if that is near.
+  std::optional<Vec3> to_patch(std::size_t v) {
+    const Vec3 p = mesh_.points[v];
+    const auto to = on_patch(patches_of_[v], p);
+    if (!to || distance(*to, p) > kMostTrueMove * shortest_[v]) return std::nullopt;
+    too_far_[v] = 0;
     return *to - p;
   }
 
   std::optional<Vec3> bend_of(std::size_t e, const std::vector<std::optional<Vec3>>& moved) const {
     const auto& [a, b] = table_.edges[e];
-    if (!moved[a] || !moved[b]) return std::nullopt;
+    if (!moved[a] || !moved[b] || too_far_[a] || too_far_[b]) return std::nullopt;
     Patches patches;
     for (const std::uint32_t h : table_.uses(e)) patches.push_back(patch_[h / 3]);
     std::sort(patches.begin(), patches.end());
     patches.erase(std::unique(patches.begin(), patches.end()), patches.end());
     const Vec3 from = mesh_.points[a] + *moved[a], to = mesh_.points[b] + *moved[b], middle = 0.5 * (from + to);
-    const auto on = target(patches, middle);
-    if (!on || !is_finite(*on)) return std::nullopt;
+    auto on = on_line(patches, middle, kMostTrueBend * distance(from, to));
+    if (!on) on = on_patch(patches, middle);
+    if (!on) return std::nullopt;
     const double part = distance(*on, middle) / distance(from, to);
     if (!(part > kStraightTrueBend && part <= kMostTrueBend)) return std::nullopt;
     return *on - middle;
@@ -101,6 +160,7 @@ class TrueSearch {
   EdgeTable table_;
   std::vector<Patches> patches_of_;  ///< per vertex
   std::vector<double> shortest_;     ///< edge at a vertex
+  std::vector<char> too_far_;        ///< per vertex
 };
 
 }  // namespace

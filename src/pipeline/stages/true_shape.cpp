@@ -133,7 +133,8 @@ void place_on_geometry(const Prepared& input, Filled& filled, Run& run) {
     stage.count("vertices moved", static_cast<double>(made.moved));
     stage.count("vertices held", static_cast<double>(made.held));
     if (made.held > 0)
-      stage.note(fmt::format("{} vertices stay beside the true geometry: elements would turn inside out", made.held));
+      stage.note(fmt::format(
+          "{} vertices stay beside the true geometry: elements would turn inside out, or it is too far", made.held));
   });
 }
 

@@ -70,6 +70,9 @@ TEST(Nearest, IsWhereAnalyticSurfacesWereLeft) {
     expect_found_again(analytic(Kind::kCone, 2, -0.4), kPi * a, -2 + b, off);
     expect_found_again(analytic(Kind::kSphere, 2, 0), kPi * a, 1.4 * b, off);
     expect_found_again(analytic(Kind::kTorus, 2, 0.7), kPi * a, kPi * b, off);
+    // One that meets itself on its axis, where cos v is -.35: its outer sheet, and the inner one.
+    expect_found_again(analytic(Kind::kTorus, 0.7, 2), kPi * a, 1.6 * b, off);
+    expect_found_again(analytic(Kind::kTorus, 0.7, 2), kPi * a, kPi + b, off);
   }
 }
 
