@@ -220,6 +220,16 @@ TEST_F(CadProgram, WhoOverlapsByNextToNothingTouches) {
   EXPECT_NE(m.notes[0].find("is how they touch"), std::string::npos) << m.notes[0];
 }
 
+TEST_F(CadProgram, TangentContactIsRefusedWithItsPlace) {
+  const std::string file = written("groove", ".brep");
+  const Answer answer = run_reader(file, {}, kFine);
+  ASSERT_EQ(answer.errors.size(), 1u);
+  EXPECT_NE(answer.errors[0].find("solid 1 and solid 2 touch along lines where their faces are tangent"),
+            std::string::npos)
+      << answer.errors[0];
+  EXPECT_EQ(model_of_file(file, {"--overlap", "tell"}).solids.size(), 2u);
+}
+
 TEST_F(CadProgram, SameFileSameBytes) {
   const std::string file = written("filleted", ".step");
   EXPECT_EQ(run_reader(file, {}, kFine).bytes, run_reader(file, {}, kFine).bytes);
