@@ -66,6 +66,23 @@ TopoDS_Shape ball_in_groove() {
   return both;
 }
 
+/// The faces of a shape, of no solid and no shell.
+TopoDS_Shape faces_of(const TopoDS_Shape& shape) {
+  TopoDS_Compound all;
+  BRep_Builder().MakeCompound(all);
+  for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next()) BRep_Builder().Add(all, it.Current());
+  return all;
+}
+
+/// Boxes of 10, 6 and 2 around one point.
+TopoDS_Shape nested() {
+  TopoDS_Compound all;
+  BRep_Builder().MakeCompound(all);
+  for (const double half : {1.0, 5.0, 3.0})
+    BRep_Builder().Add(all, BRepPrimAPI_MakeBox(gp_Pnt(-half, -half, -half), gp_Pnt(half, half, half)).Shape());
+  return all;
+}
+
 /// A face between a spline over the x axis and that axis.
 TopoDS_Face under_spline() {
   TColgp_Array1OfPnt points(1, 5);
@@ -104,6 +121,7 @@ TopoDS_Shape shape_named(const std::string& name) {
   if (name == "within") return pair_at(3);
   if (name == "nearly") return pair_at(10 - 1e-6);
   if (name == "three") return three();
+  if (name == "nested faces") return faces_of(nested());
   if (name == "groove") return ball_in_groove();
   throw std::invalid_argument(name);
 }
