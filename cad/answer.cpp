@@ -113,7 +113,9 @@ class Attempts {
 
   /// False: there is nothing that another attempt could do without.
   bool learn_from(int status) {
-    const char* how = WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU ? "does not end" : "ends the process";
+    const char* how = WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU
+                          ? "does not end in its time (of CPU: on another machine it may)"
+                          : "ends the process";
     if (place_->stage != Place::Stage::kFace) {
       const bool record = place_->stage == Place::Stage::kRecord;
       send_error(record ? fmt::format("{} cannot be described: OpenCASCADE {} there",

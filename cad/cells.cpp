@@ -12,7 +12,10 @@
 #include <TopTools_ShapeMapHasher.hxx>
 #include <TopoDS_Shell.hxx>
 #include <TopoDS_Solid.hxx>
+#include <algorithm>
 #include <cmath>
+#include <map>
+#include <string>
 
 #include <fmt/format.h>
 
@@ -22,6 +25,9 @@ namespace {
 
 /// Most that fusing may change a solid's volume, relative: the library can lose nearly all of it and say nothing.
 constexpr double kFuseChange = 1e-3;
+/// A line in which two solids touch is longer than this part of the smaller one; so many shorter ones are crumbs.
+constexpr double kCrumb = 0.01;
+constexpr int kFewestCrumbs = 3;
 
 /// What `before` became; itself if nothing happened to it.
 TopTools_ListOfShape images_of(BOPAlgo_Builder& builder, const TopoDS_Shape& before) {
@@ -80,6 +86,37 @@ std::optional<Cells> cells_of(const std::vector<TopoDS_Shape>& solids, bool only
   } catch (const Standard_Failure&) {
     return std::nullopt;
   }
+}
+
+std::vector<Crumbs> crumbs_of(const Cells& cells) {
+  // Inside of a face lie only lines in which other solids touch it.
+  NCollection_IndexedDataMap<TopoDS_Shape, std::vector<std::size_t>, TopTools_ShapeMapHasher> inside;
+  std::vector<double> size;
+  for (std::size_t c = 0; c < cells.cells.size(); ++c) {
+    size.push_back(quick_box(cells.cells[c].solid).diagonal());
+    for (TopExp_Explorer face(cells.cells[c].solid, TopAbs_FACE); face.More(); face.Next())
+      for (TopExp_Explorer it(face.Current().Oriented(TopAbs_FORWARD), TopAbs_EDGE); it.More(); it.Next()) {
+        if (it.Current().Orientation() != TopAbs_INTERNAL) continue;
+        if (!inside.Contains(it.Current())) inside.Add(it.Current(), {});
+        inside.ChangeFromKey(it.Current()).push_back(c);
+      }
+  }
+  std::map<std::pair<std::size_t, std::size_t>, Crumbs> found;
+  for (int i = 1; i <= inside.Extent(); ++i) {
+    const std::vector<std::size_t>& of = inside.FindFromIndex(i);
+    if (of.size() != 2 || of[0] == of[1]) continue;
+    const double length = length_of(inside.FindKey(i));
+    if (length > kCrumb * std::min(size[of[0]], size[of[1]])) continue;
+    Crumbs& crumbs = found.try_emplace({of[0], of[1]}, Crumbs{of[0], of[1], 0, length, {}}).first->second;
+    if (crumbs.pieces++ == 0 || length < crumbs.shortest) {
+      const Box3 box = quick_box(inside.FindKey(i));
+      crumbs.shortest = length, crumbs.at = 0.5 * (box.lo + box.hi);
+    }
+  }
+  std::vector<Crumbs> all;
+  for (const auto& [pair, crumbs] : found)
+    if (crumbs.pieces >= kFewestCrumbs) all.push_back(crumbs);
+  return all;
 }
 
 TopoDS_Shape united(const std::vector<const Cell*>& cells) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <octafront/vec.h>
+
 #include <TopoDS_Shape.hxx>
 #include <cstddef>
 #include <optional>
@@ -24,6 +26,15 @@ struct Cells {
 /// By the library's general fuse. Nothing where it fails: each solid's volume is that of its pieces, within a
 /// thousandth. `only_touch`: by its quicker way for solids that have no space in common.
 std::optional<Cells> cells_of(const std::vector<TopoDS_Shape>& solids, bool only_touch);
+
+/// Where faces of two cells are tangent along a line, and the library found no line but crumbs of it.
+struct Crumbs {
+  std::size_t a, b;  ///< cells
+  int pieces = 0;
+  double shortest = 0;
+  Vec3 at;
+};
+std::vector<Crumbs> crumbs_of(const Cells& cells);
 
 /// Several cells as one solid, without the walls between them.
 TopoDS_Shape united(const std::vector<const Cell*>& cells);

@@ -83,6 +83,7 @@ class Shares {
       throw Refusal(in_words(part_, real_) +
                     ". `overlap` first or later gives what they share to one of them, new makes regions of it");
     if (!real_.empty() && overlap_ == Overlap::kTell) return leave();
+    refuse_crumbs();
     std::map<std::vector<std::size_t>, std::vector<const Cell*>> shares;
     for (const Cell& cell : cells_.cells) shares[takers_of(cell)].push_back(&cell);
     for (std::size_t i = 0; i < cluster_.size(); ++i)
@@ -125,6 +126,25 @@ class Shares {
     if (cell.owners.size() == 1 || (overlap_ == Overlap::kNew && is_real(cell))) return cell.owners;
     return {overlap_ == Overlap::kFirst ? cell.owners.front() : cell.owners.back()};
   }
+
+  /// Between faces that are tangent along a line there is no room for elements, however small: without the line itself
+  /// their triangles cross.
+  void refuse_crumbs() const {
+    const std::vector<Crumbs> all = crumbs_of(cells_);
+    if (all.empty() || overlap_ == Overlap::kTell) return;
+    std::string pairs;
+    for (std::size_t i = 0; i < std::min(kMostPairs, all.size()); ++i)
+      pairs += fmt::format("{}{} and {}", i == 0 ? "" : ", ", in_words(part_, solid_of(all[i].a)),
+                           in_words(part_, solid_of(all[i].b)));
+    if (all.size() > kMostPairs) pairs += fmt::format(" and {} more pairs", all.size() - kMostPairs);
+    throw Refusal(fmt::format(
+        "{} touch along lines where their faces are tangent, as a ball and its groove do, of which "
+        "OpenCASCADE finds crumbs only, the first near ({:.6g}, {:.6g}, {:.6g}): what lies between is thinner "
+        "than any element. Leave a gap there, or leave some of them out",
+        pairs, all[0].at.x, all[0].at.y, all[0].at.z));
+  }
+
+  std::size_t solid_of(std::size_t cell) const { return cluster_[cells_.cells[cell].owners[0]]; }
 
   void leave() {
     part_.notes.push_back(in_words(part_, real_));

@@ -220,6 +220,31 @@ TEST_F(CadProgram, WhoOverlapsByNextToNothingTouches) {
   EXPECT_NE(m.notes[0].find("is how they touch"), std::string::npos) << m.notes[0];
 }
 
+TEST_F(CadProgram, TangentContactIsRefusedWithItsPlace) {
+  const std::string file = written("groove", ".brep");
+  const Answer answer = run_reader(file, {}, kFine);
+  ASSERT_EQ(answer.errors.size(), 1u);
+  EXPECT_NE(answer.errors[0].find("solid 1 and solid 2 touch along lines where their faces are tangent"),
+            std::string::npos)
+      << answer.errors[0];
+  EXPECT_EQ(model_of_file(file, {"--overlap", "tell"}).solids.size(), 2u);
+}
+
+TEST_F(CadProgram, ShellsInShellsOfSewnFacesAreCavities) {
+  for (const std::string ending : {".brep", ".igs"}) {
+    SCOPED_TRACE(ending);
+    const CadModel m = model_of_file(written("nested faces", ending));
+    ASSERT_FALSE(m.notes.empty());
+    ASSERT_EQ(m.solids.size(), 2u) << m.notes[0];
+    EXPECT_NE(m.notes[0].find("2 solids with 1 cavity and 0 faces"), std::string::npos) << m.notes[0];
+    EXPECT_NEAR(m.solids[0].volume + m.solids[1].volume, 1000 - 216 + 8, 1e-6);
+    for (std::uint32_t s = 0; s < 2; ++s) {
+      EXPECT_NEAR(volume_behind(m, s), m.solids[s].volume, 1e-6);
+      EXPECT_EQ(open_edges(m, s), 0);
+    }
+  }
+}
+
 TEST_F(CadProgram, SameFileSameBytes) {
   const std::string file = written("filleted", ".step");
   EXPECT_EQ(run_reader(file, {}, kFine).bytes, run_reader(file, {}, kFine).bytes);
