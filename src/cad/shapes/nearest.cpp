@@ -79,8 +79,8 @@ Vec3 on_torus(const SurfaceRecord& s, Vec3 q, Vec3 seed) {
 /// A parameter within the knots: periods are taken off, or it is clamped.
 double within(double t, double first, double last, double period) {
   if (period > 0) {
-    while (t < first) t += period;
-    while (t > last) t -= period;
+    if (!std::isfinite(t)) return first;
+    if (t < first || t > last) t -= period * std::floor((t - first) / period);
   }
   return std::clamp(t, first, last);
 }
