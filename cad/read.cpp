@@ -1,6 +1,7 @@
 #include "read.h"
 
 #include "pipe.h"
+#include "unpack.h"
 
 #include <BRepTools.hxx>
 #include <BRep_Builder.hxx>
@@ -13,41 +14,15 @@
 #include <fstream>
 #include <system_error>
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
-#include <zlib.h>
 
 namespace octafront::cad {
 
 namespace {
 
 enum class Format { kStep, kIges, kBrep, kBinaryBrep, kUnknown };
-
-/// What the compressed file holds, in memory, under a path that is gone when the process is.
-std::string inflated(const std::string& file, double most_bytes) {
-  const int memory = memfd_create("octafront-cad", MFD_CLOEXEC);
-  const gzFile in = gzopen(file.c_str(), "rb");
-  if (memory < 0 || in == nullptr) throw Refusal(fmt::format("{} cannot be opened", file));
-  char buffer[1 << 16];
-  double total = 0;
-  int n = 0;
-  while ((n = gzread(in, buffer, sizeof buffer)) > 0) {
-    total += n;
-    if (most_bytes > 0 && total > most_bytes)
-      throw Refusal(fmt::format("{} unpacks to more than the memory that it may take", file));
-    for (int at = 0; at < n;) {
-      const ssize_t written = write(memory, buffer + at, static_cast<std::size_t>(n - at));
-      if (written <= 0) throw Refusal(fmt::format("{} cannot be unpacked: {}", file, std::strerror(errno)));
-      at += static_cast<int>(written);
-    }
-  }
-  const bool whole = n == 0 && gzclose(in) == Z_OK;
-  if (!whole) throw Refusal(fmt::format("{} is damaged: it cannot be unpacked to its end", file));
-  return fmt::format("/proc/self/fd/{}", memory);
-}
 
 std::string beginning_of(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
@@ -118,7 +93,7 @@ void read_brep(const std::string& path, const std::string& file, Format format, 
 }  // namespace
 
 void lost(const std::string& sentence, bool keep_going, Part& part) {
-  if (!keep_going) throw Refusal(sentence + "; use --keep-going to go on without");
+  if (!keep_going) throw Refusal(sentence + "; `keep_going` goes on without");
   part.notes.push_back(sentence + "; went on without");
 }
 
@@ -131,8 +106,7 @@ Part read_part(const Arguments& arguments) {
   if (access(file.c_str(), R_OK) != 0)
     throw Refusal(fmt::format("{} cannot be opened: {}", file, std::strerror(errno)));
   send_progress("reading", "");
-  std::string path = file, head = beginning_of(file);
-  if (head.starts_with("\x1f\x8b")) path = inflated(file, arguments.memory), head = beginning_of(path);
+  const std::string path = unpacked(file, arguments.memory), head = beginning_of(path);
   if (head.empty()) throw Refusal(fmt::format("{} is empty", file));
   Part part;
   switch (const Format format = format_of(head, file)) {

@@ -205,7 +205,7 @@ bool is_utf8_file(const std::string& path) {
 void read_step(const std::string& path, const std::string& name, bool keep_going, Part& part) {
   STEPControl_Controller::Init();
   Interface_Static::SetCVal("xstep.cascade.unit", "MM");
-  Interface_Static::SetCVal("read.stepcaf.codepage", is_utf8_file(path) ? "UTF8" : "iso8859-1");
+  Interface_Static::SetCVal("read.step.codepage", is_utf8_file(path) ? "UTF8" : "iso8859-1");
   STEPCAFControl_Reader reader;
   reader.SetLayerMode(false), reader.SetPropsMode(false), reader.SetGDTMode(false), reader.SetMatMode(false);
   reader.SetViewMode(false);

@@ -1,3 +1,4 @@
+#include "compressed.h"
 #include "reader.h"
 #include "shapes.h"
 
@@ -9,6 +10,7 @@
 #include <iterator>
 #include <map>
 #include <numeric>
+#include <regex>
 
 #include <gtest/gtest.h>
 
@@ -242,6 +244,83 @@ TEST_F(CadProgram, ShellsInShellsOfSewnFacesAreCavities) {
       EXPECT_NEAR(volume_behind(m, s), m.solids[s].volume, 1e-6);
       EXPECT_EQ(open_edges(m, s), 0);
     }
+  }
+}
+
+TEST_F(CadProgram, BinaryBrepIsTheSame) {
+  const CadModel binary = model_of_file(written("filleted", ".bin.brep")),
+                 text = model_of_file(written("filleted", ".brep"));
+  EXPECT_EQ(binary.format, "BREP");
+  EXPECT_EQ(binary.faces.size(), text.faces.size());
+  EXPECT_EQ(open_edges(binary, 0), 0);
+  ASSERT_EQ(binary.solids.size(), 1u);
+  EXPECT_NEAR(binary.solids[0].volume, text.solids[0].volume, 1e-9);
+}
+
+std::string content_of(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+TEST_F(CadProgram, CompressedFilesAreRead) {
+  const std::string text = content_of(written("box", ".step"));
+  const std::string gzip = folder_ / "gzip.stpz", zip = folder_ / "zip.stpz", cut = folder_ / "cut.stpz";
+  write_gzip(text, gzip), write_zip(text, "part.step", zip);
+  for (const std::string& file : {gzip, zip}) {
+    const CadModel m = model_of_file(file);
+    EXPECT_EQ(m.format, "STEP") << file;
+    ASSERT_EQ(m.solids.size(), 1u) << file;
+    EXPECT_NEAR(m.solids[0].volume, 1000, 1e-9);
+    std::ofstream(cut, std::ios::binary) << content_of(file).substr(0, 1000);
+    const Answer answer = run_reader(cut, {}, kFine);
+    ASSERT_EQ(answer.errors.size(), 1u);
+    EXPECT_NE(answer.errors[0].find("damaged"), std::string::npos) << answer.errors[0];
+  }
+}
+
+/// Calls the parts of an assembly that nobody named so.
+std::string with_parts_called(const std::string& text, const std::string& name) {
+  static const std::regex unnamed("'Open CASCADE STEP translator [0-9.]+ [0-9]+\\.[0-9]+'");
+  EXPECT_TRUE(std::regex_search(text, unnamed));
+  return std::regex_replace(text, unnamed, "'" + name + "'");
+}
+
+TEST_F(CadProgram, InstancesAreNumberedAndNamesOfAnyCodePageAreUtf8) {
+  const std::string file = written("instances", ".step"), text = content_of(file);
+  // Latin-1, as ISO 10303-21 writes it, and UTF-8, as many programs do.
+  for (const std::string name : {"Tr\xe4ger", R"(Tr\X2\00E4\X0\ger)", "Tr\u00e4ger"}) {
+    std::ofstream(file, std::ios::binary) << with_parts_called(text, name);
+    const CadModel m = model_of_file(file);
+    ASSERT_EQ(m.solids.size(), 2u);
+    EXPECT_EQ(m.solids[0].labels.name, "Tr\u00e4ger");
+    EXPECT_EQ(m.solids[1].labels.name, "Tr\u00e4ger#2");
+  }
+}
+
+/// Takes the first line out of a STEP file that defines such an entity; its number.
+std::string without_entity(const std::string& file, const std::string& type) {
+  const std::string text = content_of(file);
+  const std::size_t at = text.find(" = " + type + "(");
+  if (at == std::string::npos) return "none";
+  const std::size_t begin = text.rfind('#', at), end = text.find(";", at) + 1;
+  std::ofstream(file, std::ios::binary) << text.substr(0, begin) << text.substr(end);
+  return text.substr(begin, at - begin);
+}
+
+TEST_F(CadProgram, AMissingEntityIsNamedAndLeftOutIfAsked) {
+  for (const std::string type : {"ADVANCED_FACE", "PLANE", "CYLINDRICAL_SURFACE"}) {
+    SCOPED_TRACE(type);
+    const std::string file = written("filleted", ".step");
+    const std::string number = without_entity(file, type);
+    ASSERT_NE(number, "none");
+    const Answer refused = run_reader(file, {}, kFine);
+    ASSERT_EQ(refused.errors.size(), 1u);
+    EXPECT_NE(refused.errors[0].find(number), std::string::npos) << number << ": " << refused.errors[0];
+    EXPECT_NE(refused.errors[0].find("keep_going"), std::string::npos) << refused.errors[0];
+    const CadModel rest = model_of_file(file, {"--keep-going"});
+    EXPECT_GE(rest.faces.size(), 20u) << "of 26";
+    ASSERT_FALSE(rest.notes.empty());
+    EXPECT_NE(rest.notes[0].find("went on without"), std::string::npos) << rest.notes[0];
   }
 }
 

@@ -14,6 +14,7 @@
 #include <BRepPrimAPI_MakeTorus.hxx>
 #include <BRepTools.hxx>
 #include <BRep_Builder.hxx>
+#include <BinTools.hxx>
 #include <GeomAPI_PointsToBSpline.hxx>
 #include <Geom_BSplineCurve.hxx>
 #include <IGESControl_Controller.hxx>
@@ -83,6 +84,18 @@ TopoDS_Shape nested() {
   return all;
 }
 
+/// One box in two places.
+TopoDS_Shape instances() {
+  TopoDS_Compound both;
+  BRep_Builder().MakeCompound(both);
+  const TopoDS_Shape box = BRepPrimAPI_MakeBox(10, 10, 10).Shape();
+  gp_Trsf beside;
+  beside.SetTranslation(gp_Vec(30, 0, 0));
+  BRep_Builder().Add(both, box);
+  BRep_Builder().Add(both, box.Moved(beside));
+  return both;
+}
+
 /// A face between a spline over the x axis and that axis.
 TopoDS_Face under_spline() {
   TColgp_Array1OfPnt points(1, 5);
@@ -121,6 +134,7 @@ TopoDS_Shape shape_named(const std::string& name) {
   if (name == "within") return pair_at(3);
   if (name == "nearly") return pair_at(10 - 1e-6);
   if (name == "three") return three();
+  if (name == "instances") return instances();
   if (name == "nested faces") return faces_of(nested());
   if (name == "groove") return ball_in_groove();
   throw std::invalid_argument(name);
@@ -137,7 +151,9 @@ double volume_of_shape(const std::string& name) {
 
 void write_shape(const TopoDS_Shape& shape, const std::string& file, const std::string& unit) {
   Message::DefaultMessenger()->ChangePrinters().Clear();
-  if (file.ends_with(".brep")) {
+  if (file.ends_with(".bin.brep")) {
+    BinTools::Write(shape, file.c_str());
+  } else if (file.ends_with(".brep")) {
     BRepTools::Write(shape, file.c_str());
   } else if (file.ends_with(".igs")) {
     IGESControl_Controller::Init();
@@ -147,6 +163,7 @@ void write_shape(const TopoDS_Shape& shape, const std::string& file, const std::
   } else {
     STEPControl_Controller::Init();
     Interface_Static::SetCVal("write.step.unit", unit.c_str());
+    Interface_Static::SetIVal("write.step.assembly", 1);
     STEPControl_Writer writer;
     writer.Transfer(shape, STEPControl_AsIs);
     writer.Write(file.c_str());
