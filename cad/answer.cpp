@@ -97,7 +97,6 @@ class Attempts {
           },
           model);
       enter(Place::Stage::kSending, 0);
-      model.notes.insert(model.notes.end(), notes_.begin(), notes_.end());
       lift_cpu_limit();
       send(FrameKind::kModel, to_bytes(model));
     } catch (const Standard_Failure& failure) {
@@ -114,7 +113,9 @@ class Attempts {
 
   /// False: there is nothing that another attempt could do without.
   bool learn_from(int status) {
-    const char* how = WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU ? "does not end" : "ends the process";
+    const char* how = WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU
+                          ? "does not end in its time (of CPU: on another machine it may)"
+                          : "ends the process";
     if (place_->stage != Place::Stage::kFace) {
       const bool record = place_->stage == Place::Stage::kRecord;
       send_error(record ? fmt::format("{} cannot be described: OpenCASCADE {} there",
@@ -124,9 +125,8 @@ class Attempts {
     }
     int& rung = rung_[place_->face];
     rung = std::min(rung + 1, kLastRung);
-    notes_.push_back(fmt::format("OpenCASCADE {} at {}: {}", how, face_in_words(part_, topology_, place_->face),
-                                 rung == kLastRung ? "it stays without triangles" : "it is tried coarser"));
-    send_note(notes_.back());
+    send_note(fmt::format("OpenCASCADE {} at {}: {}", how, face_in_words(part_, topology_, place_->face),
+                          rung == kLastRung ? "it stays without triangles" : "it is tried coarser"));
     return true;
   }
 
@@ -136,7 +136,6 @@ class Attempts {
   const Fineness& fineness_;
   double seconds_;
   std::vector<int> rung_;
-  std::vector<std::string> notes_;
   Place* place_ = nullptr;
 };
 

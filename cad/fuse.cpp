@@ -1,17 +1,13 @@
+#include "cells.h"
 #include "measure.h"
 #include "pipe.h"
+#include "read.h"
 #include "steps.h"
 #include "topology.h"
 
-#include <BOPAlgo_Builder.hxx>
-#include <BRepCheck_Analyzer.hxx>
-#include <Standard_Failure.hxx>
-#include <TopExp_Explorer.hxx>
-#include <TopTools_IndexedMapOfShape.hxx>
 #include <algorithm>
-#include <cmath>
+#include <map>
 #include <numeric>
-#include <optional>
 
 #include <fmt/format.h>
 
@@ -19,23 +15,11 @@ namespace octafront::cad {
 
 namespace {
 
-/// Most that fusing may change a solid's volume, and all volumes together, relative.
-constexpr double kFuseChange = 1e-3;
-/// What two solids share is an overlap from this part of the smaller one on; less is how inexactly they touch.
-constexpr double kOverlap = 1e-6;
-
-struct Overlap {
-  std::size_t a, b;
-  double volume;
-};
-
-/// Of the solids of a cluster, in its order.
-struct Fused {
-  std::vector<TopoDS_Shape> solids;
-  std::vector<std::pair<TopoDS_Shape, TopoDS_Shape>> faces;  // before, after
-  std::vector<Overlap> overlaps;
-  bool good = false;
-};
+/// Solids that share less than this part of the smaller one touch, as inexactly as they were made: what they share is
+/// thinner than what any mesh shows.
+constexpr double kTouching = 1e-4;
+/// Pairs that a message lists.
+constexpr std::size_t kMostPairs = 10;
 
 using Cluster = std::vector<std::size_t>;
 
@@ -65,108 +49,181 @@ std::vector<Cluster> clusters_of(const Part& part) {
   return out;
 }
 
-/// The solids that `before` became; itself if nothing happened to it.
-TopTools_ListOfShape images_of(BOPAlgo_Builder& builder, const TopoDS_Shape& before) {
-  TopTools_ListOfShape images = builder.Modified(before);
-  if (images.IsEmpty() && !builder.IsDeleted(before)) images.Append(before);
-  return images;
+std::string name_of(const Part& part, std::size_t solid) {
+  const std::string& name = part.solids[solid].labels.name;
+  return name.empty() ? fmt::format("solid {}", solid + 1) : name;
 }
 
-Fused fused_by(const Part& part, const Cluster& cluster, BOPAlgo_GlueEnum glue) {
-  Fused out;
-  BOPAlgo_Builder builder;
-  for (const std::size_t i : cluster) builder.AddArgument(part.solids[i].solid);
-  builder.SetNonDestructive(true);
-  builder.SetRunParallel(false);
-  builder.SetGlue(glue);
-  builder.Perform(progress_of("fusing", fmt::format("{} solids", cluster.size())));
-  if (builder.HasErrors()) return out;
+/// Solids that have space in common, by their numbers in the part.
+struct Pair {
+  std::size_t a, b;
+  double volume, part_of_smaller;
+};
 
-  TopTools_IndexedMapOfShape results;
-  for (TopExp_Explorer it(builder.Shape(), TopAbs_SOLID); it.More(); it.Next()) results.Add(it.Current());
-  std::vector<std::vector<std::size_t>> owners(static_cast<std::size_t>(results.Extent()));
-  std::vector<std::vector<int>> owned(cluster.size());
-  for (std::size_t i = 0; i < cluster.size(); ++i)
-    for (const TopoDS_Shape& image : images_of(builder, part.solids[cluster[i]].solid)) {
-      const int r = results.FindIndex(image);
-      if (r == 0) continue;
-      owners[static_cast<std::size_t>(r - 1)].push_back(i);
-      owned[i].push_back(r);
+std::string in_words(const Part& part, const std::vector<Pair>& pairs) {
+  std::string words;
+  for (std::size_t i = 0; i < std::min(kMostPairs, pairs.size()); ++i)
+    words += fmt::format("{}{} and {} overlap in {:.3g} mm^3", i == 0 ? "" : ", ", in_words(part, pairs[i].a),
+                         in_words(part, pairs[i].b), pairs[i].volume);
+  if (pairs.size() > kMostPairs) words += fmt::format(" and {} more pairs", pairs.size() - kMostPairs);
+  return words;
+}
+
+/// The cells of a cluster, and who gets them.
+class Shares {
+ public:
+  Shares(Part& part, const Cluster& cluster, const Cells& cells, Overlap overlap)
+      : part_(part), cluster_(cluster), cells_(cells), overlap_(overlap) {
+    find_pairs();
+  }
+
+  /// Enters the solids; those that are new go to `added`. A solid of which nothing is left is null.
+  void give(std::vector<Body>& added) {
+    if (!real_.empty() && overlap_ == Overlap::kRefuse)
+      throw Refusal(in_words(part_, real_) +
+                    ". `overlap` first or later gives what they share to one of them, new makes regions of it");
+    if (!real_.empty() && overlap_ == Overlap::kTell) return leave();
+    refuse_crumbs();
+    std::map<std::vector<std::size_t>, std::vector<const Cell*>> shares;
+    for (const Cell& cell : cells_.cells) shares[takers_of(cell)].push_back(&cell);
+    for (std::size_t i = 0; i < cluster_.size(); ++i)
+      if (!shares.contains({i})) vanish(i);
+    for (const auto& [takers, cells] : shares) {
+      if (takers.size() == 1)
+        part_.solids[cluster_[takers[0]]].solid = united(cells);
+      else
+        added.push_back({united(cells), {name_of_all(takers), {}, {}}});
     }
-  bool shared = false;
-  for (std::size_t r = 0; r < owners.size(); ++r) {
-    if (owners[r].size() < 2) continue;
-    shared = true;
-    const std::size_t one = cluster[owners[r][0]], other = cluster[owners[r][1]];
-    const double common = std::abs(volume_of(results(static_cast<int>(r + 1))));
-    if (common > kOverlap * std::min(volume_of(part.solids[one].solid), volume_of(part.solids[other].solid)))
-      out.overlaps.push_back({one, other, common});
+    for (const auto& [before, after] : cells_.faces) pass_labels(before, after, part_.face_labels);
+    tell();
   }
-  if (shared) return out;
 
-  double before = 0, after = 0;
-  for (std::size_t i = 0; i < cluster.size(); ++i) {
-    if (owned[i].size() != 1) return out;
-    TopoDS_Shape solid = results(owned[i][0]);
-    double volume = volume_of(solid);
-    if (volume < 0) solid.Reverse(), volume = -volume;
-    const double own = volume_of(part.solids[cluster[i]].solid);
-    if (!(std::abs(volume - own) <= kFuseChange * own)) return out;
-    before += own, after += volume;
-    out.solids.push_back(solid);
-    for (TopExp_Explorer it(part.solids[cluster[i]].solid, TopAbs_FACE); it.More(); it.Next())
-      for (const TopoDS_Shape& image : images_of(builder, it.Current())) out.faces.emplace_back(it.Current(), image);
+ private:
+  void find_pairs() {
+    std::map<std::pair<std::size_t, std::size_t>, double> shared;
+    for (const Cell& cell : cells_.cells)
+      for (std::size_t i = 0; i < cell.owners.size(); ++i)
+        for (std::size_t k = i + 1; k < cell.owners.size(); ++k)
+          shared[{cell.owners[i], cell.owners[k]}] += cell.volume;
+    for (const auto& [pair, volume] : shared) {
+      const std::size_t a = cluster_[pair.first], b = cluster_[pair.second];
+      const double part = volume / std::min(volume_of(part_.solids[a].solid), volume_of(part_.solids[b].solid));
+      (part > kTouching ? real_ : tiny_).push_back({a, b, volume, part});
+    }
+    for (std::vector<Pair>* pairs : {&real_, &tiny_})
+      std::stable_sort(pairs->begin(), pairs->end(), [](const Pair& x, const Pair& y) { return x.volume > y.volume; });
   }
-  out.good =
-      static_cast<std::size_t>(results.Extent()) == cluster.size() && std::abs(after - before) <= kFuseChange * before;
-  return out;
-}
 
-/// As fused_by; what the library throws is no success.
-Fused tried(const Part& part, const Cluster& cluster, BOPAlgo_GlueEnum glue) {
-  try {
-    return fused_by(part, cluster, glue);
-  } catch (const Standard_Failure&) {
-    return {};
+  bool is_real(const Cell& cell) const {
+    const auto owns = [&](std::size_t solid) {
+      return std::any_of(cell.owners.begin(), cell.owners.end(), [&](std::size_t i) { return cluster_[i] == solid; });
+    };
+    return std::any_of(real_.begin(), real_.end(), [&](const Pair& p) { return owns(p.a) && owns(p.b); });
   }
-}
 
-[[noreturn]] void refuse(const Part& part, std::vector<Overlap> overlaps) {
-  std::stable_sort(overlaps.begin(), overlaps.end(),
-                   [](const Overlap& a, const Overlap& b) { return a.volume > b.volume; });
-  const Overlap& worst = overlaps[0];
-  const auto name = [&](std::size_t i) {
-    return part.solids[i].labels.name.empty() ? std::to_string(i + 1) : "'" + part.solids[i].labels.name + "'";
-  };
-  throw Refusal(fmt::format("solids {} and {} overlap in {:.3g} mm^3{}", name(worst.a), name(worst.b), worst.volume,
-                            overlaps.size() > 1 ? fmt::format(" (and {} more overlaps)", overlaps.size() - 1) : ""));
-}
+  /// One of its owners, or several for a region of their own.
+  std::vector<std::size_t> takers_of(const Cell& cell) const {
+    if (cell.owners.size() == 1 || (overlap_ == Overlap::kNew && is_real(cell))) return cell.owners;
+    return {overlap_ == Overlap::kFirst ? cell.owners.front() : cell.owners.back()};
+  }
 
-void take_fused(const Cluster& cluster, const Fused& fused, Part& part) {
-  for (std::size_t i = 0; i < cluster.size(); ++i) part.solids[cluster[i]].solid = fused.solids[i];
-  for (const auto& [before, after] : fused.faces) pass_labels(before, after, part.face_labels);
+  /// Between faces that are tangent along a line there is no room for elements, however small: without the line itself
+  /// their triangles cross.
+  void refuse_crumbs() const {
+    const std::vector<Crumbs> all = crumbs_of(cells_);
+    if (all.empty() || overlap_ == Overlap::kTell) return;
+    std::string pairs;
+    for (std::size_t i = 0; i < std::min(kMostPairs, all.size()); ++i)
+      pairs += fmt::format("{}{} and {}", i == 0 ? "" : ", ", in_words(part_, solid_of(all[i].a)),
+                           in_words(part_, solid_of(all[i].b)));
+    if (all.size() > kMostPairs) pairs += fmt::format(" and {} more pairs", all.size() - kMostPairs);
+    throw Refusal(fmt::format(
+        "{} touch along lines where their faces are tangent, as a ball and its groove do, of which "
+        "OpenCASCADE finds crumbs only, the first near ({:.6g}, {:.6g}, {:.6g}): what lies between is thinner "
+        "than any element. Leave a gap there, or leave some of them out",
+        pairs, all[0].at.x, all[0].at.y, all[0].at.z));
+  }
+
+  std::size_t solid_of(std::size_t cell) const { return cluster_[cells_.cells[cell].owners[0]]; }
+
+  void leave() {
+    part_.notes.push_back(in_words(part_, real_));
+    part_.fused = false;
+  }
+
+  void vanish(std::size_t i) {
+    const std::size_t solid = cluster_[i];
+    if (overlap_ != Overlap::kNew)
+      throw Refusal(fmt::format("nothing is left of {}: {} ones lie over all of it; take another `overlap`",
+                                cad::in_words(part_, solid), overlap_ == Overlap::kFirst ? "earlier" : "later"));
+    part_.solids[solid].solid.Nullify();
+  }
+
+  std::string name_of_all(const std::vector<std::size_t>& owners) const {
+    std::string names;
+    for (const std::size_t i : owners) {
+      if (!names.empty()) names += '&';
+      names += name_of(part_, cluster_[i]);
+    }
+    return names;
+  }
+
+  void tell() {
+    if (!real_.empty())
+      part_.notes.push_back(in_words(part_, real_) + (overlap_ == Overlap::kFirst   ? ": the first one has it"
+                                                      : overlap_ == Overlap::kLater ? ": the later one has it"
+                                                                                    : ": regions of their own"));
+    if (!tiny_.empty())
+      part_.notes.push_back(fmt::format("{}: so little, {:.2g} of the smaller solid at most, is how they touch",
+                                        in_words(part_, tiny_), worst_of_tiny()));
+  }
+
+  double worst_of_tiny() const {
+    double worst = 0;
+    for (const Pair& pair : tiny_) worst = std::max(worst, pair.part_of_smaller);
+    return worst;
+  }
+
+  Part& part_;
+  const Cluster& cluster_;
+  const Cells& cells_;
+  const Overlap overlap_;
+  std::vector<Pair> real_, tiny_;
+};
+
+/// Solids without a name are called by their numbers, which must not change when some go.
+void take_all(Part& part, std::vector<Body> added) {
+  const auto is_gone = [](const Body& body) { return body.solid.IsNull(); };
+  if (std::any_of(part.solids.begin(), part.solids.end(), is_gone))
+    for (std::size_t i = 0; i < part.solids.size(); ++i) part.solids[i].labels.name = name_of(part, i);
+  std::erase_if(part.solids, is_gone);
+  for (Body& body : added) part.solids.push_back(std::move(body));
+  number_names(part);
 }
 
 }  // namespace
 
-void fuse(Part& part) {
+void fuse(Part& part, Overlap overlap) {
+  std::vector<Body> added;
   for (const Cluster& cluster : clusters_of(part)) {
     const std::string what = fmt::format("{} solids from {} on", cluster.size(), in_words(part, cluster[0]));
     send_progress("fusing", what);
-    Fused fused = tried(part, cluster, BOPAlgo_GlueOff);
-    if (!fused.overlaps.empty()) refuse(part, fused.overlaps);
-    if (!fused.good) {
+    std::vector<TopoDS_Shape> solids;
+    for (const std::size_t i : cluster) solids.push_back(part.solids[i].solid);
+    std::optional<Cells> cells = cells_of(solids, false);
+    if (!cells) {
       send_progress("fusing", what + ", as solids that only touch");
-      fused = tried(part, cluster, BOPAlgo_GlueShift);
+      cells = cells_of(solids, true);
     }
-    if (fused.good) {
-      take_fused(cluster, fused, part);
+    if (cells) {
+      Shares(part, cluster, *cells, overlap).give(added);
     } else {
       part.fused = false;
       part.notes.push_back(
           fmt::format("{} could not be given common faces without a change of volume, and stay separate", what));
     }
   }
+  take_all(part, std::move(added));
 }
 
 }  // namespace octafront::cad

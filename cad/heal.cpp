@@ -58,6 +58,8 @@ std::optional<Healed> healed(const TopoDS_Shape& solid) {
     for (TopExp_Explorer part(face, TopAbs_FACE); !face.IsNull() && part.More(); part.Next())
       out.faces.emplace_back(it.Current(), part.Current());
   }
+  // What was turned before must not be turned again.
+  if (volume_of(out.solid) * volume_of(solid) < 0) out.solid.Reverse();
   out.valid = is_valid(out.solid);
   return out;
 }

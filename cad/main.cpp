@@ -24,6 +24,7 @@ namespace {
 
 constexpr const char* kUsage =
     "octafront-cad FILE [--memory BYTES] [--cpu SECONDS] [--no-fuse] [--no-heal] [--keep-going]\n"
+    "              [--overlap refuse|tell|first|later|new]\n"
     "Reads a STEP, IGES or BREP file for octafront, which starts it; speaks as src/cad/model/stream.h says.\n";
 
 std::optional<double> positive_number(const char* text) {
@@ -31,6 +32,21 @@ std::optional<double> positive_number(const char* text) {
   const double value = std::strtod(text, &end);
   if (end == text || *end != '\0' || !(value > 0) || !std::isfinite(value)) return std::nullopt;
   return value;
+}
+
+/// The file, or an option without a value; false: it is neither.
+bool take_word(const std::string& word, Arguments& a) {
+  if (word == "--no-fuse")
+    a.fuse = false;
+  else if (word == "--no-heal")
+    a.heal = false;
+  else if (word == "--keep-going")
+    a.keep_going = true;
+  else if (word.starts_with("--") || !a.file.empty())
+    return false;
+  else
+    a.file = word;
+  return true;
 }
 
 std::optional<Arguments> arguments_of(int argc, char** argv) {
@@ -42,16 +58,12 @@ std::optional<Arguments> arguments_of(int argc, char** argv) {
       const std::optional<double> value = i + 1 < argc ? positive_number(argv[++i]) : std::nullopt;
       if (!value) return std::nullopt;
       *number = *value;
-    } else if (word == "--no-fuse") {
-      a.fuse = false;
-    } else if (word == "--no-heal") {
-      a.heal = false;
-    } else if (word == "--keep-going") {
-      a.keep_going = true;
-    } else if (word.starts_with("--") || !a.file.empty()) {
+    } else if (word == "--overlap") {
+      const std::optional<Overlap> overlap = overlap_of(i + 1 < argc ? argv[++i] : "");
+      if (!overlap) return std::nullopt;
+      a.overlap = *overlap;
+    } else if (!take_word(word, a)) {
       return std::nullopt;
-    } else {
-      a.file = word;
     }
   }
   if (a.file.empty()) return std::nullopt;
@@ -65,7 +77,7 @@ Part opened_part(const Arguments& arguments) {
   if (arguments.heal) heal(part);
   if (part.solids.size() > 1) {
     if (arguments.fuse)
-      fuse(part);
+      fuse(part, arguments.overlap);
     else
       part.fused = false;
   }

@@ -2,7 +2,7 @@
 
 // cad: the program octafront-cad. What was read of a file, in the types of OpenCASCADE, as it goes from step to step.
 
-#include "cad/model/cad_model.h"
+#include "cad/model/stream.h"
 
 #include <NCollection_DataMap.hxx>
 #include <TopTools_ShapeMapHasher.hxx>
@@ -42,6 +42,7 @@ struct Arguments {
   double memory = 0;       ///< bytes; 0: no limit
   double cpu_seconds = 0;  ///< of the reading, and of each answer; 0: no limit
   bool fuse = true, heal = true, keep_going = false;
+  Overlap overlap = Overlap::kRefuse;
 };
 
 }  // namespace octafront::cad

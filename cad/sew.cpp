@@ -1,3 +1,4 @@
+#include "base/core/wording.h"
 #include "measure.h"
 #include "pipe.h"
 #include "steps.h"
@@ -5,6 +6,7 @@
 
 #include <BRepBuilderAPI_MakeSolid.hxx>
 #include <BRepBuilderAPI_Sewing.hxx>
+#include <BRepClass3d_SolidClassifier.hxx>
 #include <BRepLib.hxx>
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
@@ -12,6 +14,7 @@
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
+#include <TopoDS_Vertex.hxx>
 #include <optional>
 
 #include <fmt/format.h>
@@ -32,6 +35,55 @@ std::optional<TopoDS_Shape> solid_of(const TopoDS_Shape& shell) {
   return solid;
 }
 
+/// By its first vertex that lies on no face of the outer one.
+bool lies_in(const TopoDS_Shape& inner, const TopoDS_Shape& outer) {
+  for (TopExp_Explorer it(inner, TopAbs_VERTEX); it.More(); it.Next()) {
+    const TopoDS_Vertex vertex = TopoDS::Vertex(it.Current());
+    const BRepClass3d_SolidClassifier place(outer, BRep_Tool::Pnt(vertex), BRep_Tool::Tolerance(vertex));
+    if (place.State() == TopAbs_IN) return true;
+    if (place.State() == TopAbs_OUT) return false;
+  }
+  return false;
+}
+
+/// Of closed shells, each a solid: the smallest one around each; itself if there is none.
+std::vector<std::size_t> around(const std::vector<TopoDS_Shape>& solids) {
+  std::vector<double> volume;
+  std::vector<Box3> box;
+  for (const TopoDS_Shape& solid : solids) volume.push_back(volume_of(solid)), box.push_back(quick_box(solid));
+  std::vector<std::size_t> outer(solids.size());
+  for (std::size_t i = 0; i < solids.size(); ++i) {
+    outer[i] = i;
+    for (std::size_t k = 0; k < solids.size(); ++k)
+      if (volume[k] > volume[i] && box[k].overlaps(box[i]) && (outer[i] == i || volume[k] < volume[outer[i]]) &&
+          lies_in(solids[i], solids[k]))
+        outer[i] = k;
+  }
+  return outer;
+}
+
+/// Shells in shells are cavities, those in cavities solids again: faces alone do not say which side is filled.
+std::vector<TopoDS_Shape> with_cavities(const std::vector<TopoDS_Shape>& solids) {
+  const std::vector<std::size_t> outer = around(solids);
+  const auto is_cavity = [&](std::size_t i) {
+    bool odd = false;
+    for (; outer[i] != i; i = outer[i]) odd = !odd;
+    return odd;
+  };
+  std::vector<TopoDS_Shape> made;
+  for (std::size_t i = 0; i < solids.size(); ++i) {
+    if (is_cavity(i)) continue;
+    TopoDS_Solid solid;
+    BRep_Builder().MakeSolid(solid);
+    for (std::size_t k = 0; k < solids.size(); ++k)
+      if (k == i || outer[k] == i)
+        for (TopExp_Explorer shell(solids[k], TopAbs_SHELL); shell.More(); shell.Next())
+          BRep_Builder().Add(solid, k == i ? shell.Current() : shell.Current().Reversed());
+    made.push_back(solid);
+  }
+  return made;
+}
+
 }  // namespace
 
 void sew(Part& part) {
@@ -49,20 +101,24 @@ void sew(Part& part) {
     if (sewing.IsModified(face)) pass_labels(face, sewing.Modified(face), part.face_labels);
   const std::size_t faces = part.loose.size();
   part.loose.clear();
+  std::vector<TopoDS_Shape> closed;
   for (TopExp_Explorer it(sewn, TopAbs_SHELL); it.More(); it.Next()) {
     if (const std::optional<TopoDS_Shape> solid = solid_of(it.Current())) {
-      part.solids.push_back({*solid, {}});
+      closed.push_back(*solid);
     } else {
       for (TopExp_Explorer face(it.Current(), TopAbs_FACE); face.More(); face.Next())
         part.loose.push_back(face.Current());
     }
   }
   for (TopExp_Explorer it(sewn, TopAbs_FACE, TopAbs_SHELL); it.More(); it.Next()) part.loose.push_back(it.Current());
-  part.notes.push_back(
-      fmt::format("the file has no solids: of {} faces, sewn where edges lie within {:g} of the diagonal, came {} "
-                  "solid{} and {} face{} that belong to none",
-                  faces, kSewing, part.solids.size(), part.solids.size() == 1 ? "" : "s", part.loose.size(),
-                  part.loose.size() == 1 ? "" : "s"));
+  for (const TopoDS_Shape& solid : with_cavities(closed)) part.solids.push_back({solid, {}});
+  std::string came = counted(part.solids.size(), "solid");
+  if (const std::size_t cavities = closed.size() - part.solids.size(); cavities > 0)
+    came += " with " + counted(cavities, "cavity", "cavities");
+  part.notes.push_back(fmt::format(
+      "the file has no solids: of {}, sewn where edges lie within {:g} of the diagonal, came {} and {} that "
+      "belong{} to none",
+      counted(faces, "face"), kSewing, came, counted(part.loose.size(), "face"), part.loose.size() == 1 ? "s" : ""));
 }
 
 }  // namespace octafront::cad

@@ -10,8 +10,9 @@ void heal(Part& part);
 void turn_outward(Part& part);
 /// Where there is no solid: faces are sewn along edges that nearly coincide, and what is closed becomes solids.
 void sew(Part& part);
-/// Solids that touch come to share faces. Throws Refusal where two overlap; where it cannot be done well, they stay as
-/// they are, and part.fused says so.
-void fuse(Part& part);
+/// Solids that touch come to share faces, and space that several share goes where `overlap` says. Throws Refusal where
+/// that is nowhere, or where nothing is left of a solid; where it cannot be done well, they stay as they are, and
+/// part.fused says so.
+void fuse(Part& part, Overlap overlap);
 
 }  // namespace octafront::cad

@@ -1,5 +1,6 @@
 #include "triangulate.h"
 
+#include <BRepAdaptor_Surface.hxx>
 #include <BRepMesh_Context.hxx>
 #include <BRepMesh_DelabellaMeshAlgoFactory.hxx>
 #include <BRepMesh_FaceDiscret.hxx>
@@ -13,37 +14,35 @@
 #include <Message_ProgressIndicator.hxx>
 #include <Standard_Failure.hxx>
 #include <TopoDS_Compound.hxx>
-#include <ctime>
 
 namespace octafront::cad {
 
 namespace {
 
-/// CPU seconds that one face may take, by rung. A time, though a count of steps would be the same on every machine: the
-/// costs of the library's steps differ a thousandfold. So only a face that takes about that long may come out
-/// differently another time.
-constexpr double kSecondsOfFace[] = {8, 8, 24};
 constexpr double kCoarser[] = {1, 4, 16};
+/// Steps that one face may take: about as many points, and 5 s. Counted, for a time would come to other triangles on
+/// another machine.
+constexpr long kMostSteps = 100'000;
+/// Of a B-spline with more spans a step takes a hundred times as long: it goes to the quicker algorithm at once.
+constexpr int kMostSpans = 2000;
 
-double cpu_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+int spans_of(const TopoDS_Face& face) {
+  const BRepAdaptor_Surface surface(face, false);
+  if (surface.GetType() != GeomAbs_BSplineSurface) return 1;
+  return (surface.NbUKnots() - 1) * (surface.NbVKnots() - 1);
 }
 
-/// Breaks an algorithm off after a while: the library asks at each of its steps.
-class TimeLimit : public Message_ProgressIndicator {
+/// Breaks an algorithm off: the library asks at each of its steps.
+class StepLimit : public Message_ProgressIndicator {
  public:
-  explicit TimeLimit(double seconds) : end_(cpu_seconds() + seconds) {}
-  bool reached() const { return reached_; }
+  bool reached() const { return steps_ > kMostSteps; }
 
  protected:
-  Standard_Boolean UserBreak() override { return reached_ = reached_ || cpu_seconds() > end_; }
+  Standard_Boolean UserBreak() override { return ++steps_ > kMostSteps; }
   void Show(const Message_ProgressScope&, const Standard_Boolean) override {}
 
  private:
-  const double end_;
-  bool reached_ = false;
+  long steps_ = 0;
 };
 
 struct Watch {
@@ -62,6 +61,7 @@ class WatchedAlgorithm : public IMeshTools_MeshAlgo {
     const std::size_t f = watch_.topology.index_of(face->GetFace());
     watch_.on_face(f);
     const int flags = face->GetStatusMask();
+    if (watch_.rung[f] == 0 && spans_of(face->GetFace()) > kMostSpans) watch_.rung[f] = 1;
     for (int& rung = watch_.rung[f]; rung < kLastRung; ++rung) {
       face->UnsetStatus(static_cast<IMeshData_Status>(~flags));
       if (perform(face, parameters, rung)) return;
@@ -73,7 +73,7 @@ class WatchedAlgorithm : public IMeshTools_MeshAlgo {
   bool perform(const IMeshData::IFaceHandle& face, IMeshTools_Parameters parameters, int rung) {
     parameters.DeflectionInterior *= kCoarser[rung], parameters.AngleInterior *= kCoarser[rung];
     parameters.MinSize *= kCoarser[rung];
-    const Handle(TimeLimit) limit = new TimeLimit(kSecondsOfFace[rung]);
+    const Handle(StepLimit) limit = new StepLimit;
     try {
       const Handle(IMeshTools_MeshAlgo) algorithm = factory_of(rung)->GetAlgo(type_, parameters);
       if (algorithm.IsNull()) return false;

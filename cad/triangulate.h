@@ -12,7 +12,7 @@ namespace octafront::cad {
 inline constexpr int kLastRung = 3;
 
 /// Triangulates all faces on common points of their edges, by the library. A face that throws, or that takes too
-/// long, is tried coarser. `first_rung`: per face, where to begin; returned: where each ended.
+/// many steps, is tried coarser. `first_rung`: per face, where to begin; returned: where each ended.
 /// `on_face`: called before each.
 std::vector<int> triangulate(const Part& part, const Topology& topology, const Fineness& fineness,
                              const std::vector<int>& first_rung, const std::function<void(std::size_t)>& on_face);

@@ -176,11 +176,17 @@ void declare_complex(CLI::App& command, Arguments& a) {
       *group, "--nested", o.nested,
       {{"direction", Nested::kByDirection}, {"cavity", Nested::kCavity}, {"region", Nested::kRegion}},
       "Closed shells inside others: cavities where they face inward and regions where outward, or all the same");
-  using Overlap = IntakeOptions::Overlap;
+  using Overlap = ComplexOptions::Overlap;
   add_choice<Overlap>(
-      *group, "--overlap", a.intake.overlap, {{"union", Overlap::kUnion}, {"regions", Overlap::kRegions}},
-      "Parts of one file that overlap: united, or a region for each name of a patch (solid, group), the "
-      "later one where they overlap");
+      *group, "--overlap", o.overlap,
+      {{"auto", Overlap::kAuto},
+       {"first", Overlap::kFirst},
+       {"later", Overlap::kLater},
+       {"new", Overlap::kNew},
+       {"regions", Overlap::kLater}},
+      "What parts share where they overlap. auto: parts of one file are united, of several files the later one has it, "
+      "solids of a CAD file are refused; first, later: that one has it, each name of a patch (solid, group) a region; "
+      "new: it is a region of its own, a&b; regions: as later");
   group
       ->add_option("--tolerance", o.tolerance,
                    "Several files: what is nearer than this comes together; 0: exactly as they are [a millionth of "

@@ -31,6 +31,11 @@ struct ComplexOptions {
   /// Closed shells inside others. kByDirection: a shell that faces inward is a cavity, one that faces outward a region.
   enum class Nested { kByDirection, kCavity, kRegion };
   Nested nested = Nested::kByDirection;
+  /// What bodies share where they overlap. kAuto: of several bodies the later one has it, parts of one file are united,
+  /// solids of a CAD file are refused. kFirst, kLater: the first or the later body has it. kNew: it is a region of its
+  /// own, "a&b".
+  enum class Overlap { kAuto, kFirst, kLater, kNew };
+  Overlap overlap = Overlap::kAuto;
   /// Of several bodies: what is nearer than this comes together; input units, >= 0. Without a value a millionth of the
   /// diagonal, which is what single precision leaves of equal coordinates. 0: exactly as they are.
   std::optional<double> tolerance;
@@ -68,10 +73,10 @@ struct Body {
 /// body, patches without one are `part_1` by their number.
 std::vector<Body> bodies_by_name(const SurfaceMesh& surface);
 
-/// The complex of several bodies: where they touch they share faces, where they overlap the later one has its way, and
-/// gaps below the tolerance close: vertices of later bodies move onto earlier ones. Seeds name and empty what no body
-/// fills. A body that later ones cover all over is refused. Throws InputError, with the name of the body at fault;
-/// Cancelled.
+/// The complex of several bodies: where they touch they share faces, what they share where they overlap
+/// goes as the options say, and gaps below the tolerance close: vertices of later bodies move onto earlier ones. Seeds
+/// name and empty what no body fills. A body of which others leave nothing is refused. Throws InputError, with the name
+/// of the body at fault; Cancelled.
 Complex join_bodies(const std::vector<Body>& bodies, const ComplexOptions& options = {},
                     const RunContext& context = {});
 

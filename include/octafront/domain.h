@@ -65,7 +65,8 @@ struct CadIntake {
 
 /// What is done with an input that cannot be meshed as it is, and how its parts become regions.
 struct IntakeOptions {
-  /// Seeds, voids, cells, and nested shells. `tolerance` is that of several bodies, and what repair keeps to: see
+  /// Seeds, voids, cells, nested shells and overlaps: with anything but Overlap::kAuto each name of a patch of one
+  /// surface is a body. `tolerance` is that of several bodies, and what repair keeps to: see
   /// ComplexOptions and MendOptions, which have defaults of their own.
   ComplexOptions complex;
   /// Surfaces that cannot be meshed as they are. kOff: they stay as they are, and generate() refuses them. kAuto:
@@ -77,9 +78,6 @@ struct IntakeOptions {
   /// Walls of a clean complex that lie inside of one region: cracks to keep, or debris.
   enum class Sheets { kKeep, kDrop };
   Sheets sheets = Sheets::kKeep;
-  /// Parts of one surface that overlap: united, or each name of a patch a region, the later one where they overlap.
-  enum class Overlap { kUnion, kRegions };
-  Overlap overlap = Overlap::kUnion;
   /// Off: a surface that only has doubled or turned faces stays as it is, because generate() puts them in order itself
   /// and says so. On: open_domain() puts them in order, for a surface that something else than generate() will take.
   bool tidies = false;

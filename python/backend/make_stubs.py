@@ -163,7 +163,8 @@ def complex_of_walls(points: npt.ArrayLike | Surface, triangles: npt.ArrayLike |
                      progress: Progress | None = None, threads: int = 0) -> Surface: ...
 def join_bodies(bodies: Mapping[str, Surface | Path], *,
                 regions: Mapping[str, npt.ArrayLike] | None = None, voids: npt.ArrayLike | None = None,
-                cells: Literal["auto", "regions", "merge"] = "auto", tolerance: float | None = None,
+                cells: Literal["auto", "regions", "merge"] = "auto",
+                overlap: Literal["auto", "first", "later", "new", "regions"] = "auto", tolerance: float | None = None,
                 progress: Progress | None = None, threads: int = 0) -> Surface: ...
 def check(what: npt.ArrayLike | Surface | Mesh | Path, triangles: npt.ArrayLike | None = None, *,
           solver: Literal["abaqus", "ansys", "nastran", "calculix"] | None = None) -> Checked: ...

@@ -222,18 +222,20 @@ def complex_of_walls(points, triangles=None, *, regions=None, voids=None, cells=
     return _complexes.of_walls(_surface_of(points, triangles), regions, voids, cells, nested, threads, progress)
 
 
-def join_bodies(bodies, *, regions=None, voids=None, cells="auto", tolerance=None, progress=None, threads=0):
+def join_bodies(bodies, *, regions=None, voids=None, cells="auto", overlap="auto", tolerance=None, progress=None,
+                threads=0):
     """Several closed bodies as one complex, which mesh() fills with one mesh: where they touch they share faces, where
     they overlap the later one has its way. A Surface with a region for each, report as of complex_of_walls().
 
     bodies: {name: Surface, or its file}, in order. tolerance: what is nearer comes together (default: a millionth of the
     diagonal). regions and voids name and empty what bodies enclose but none fills; cells="merge": one region of all.
+    overlap: who has what bodies share: "first", "later", or "new": it is a region of its own, "a&b".
 
     Raises InputError, with the name of the body at fault; OptionError, Cancelled.
 
     >>> octafront.mesh(octafront.join_bodies({"plate": "plate.stl", "bolt": "bolt.stl"})).save("bolted.msh")
     """
-    return _complexes.of_bodies(bodies, regions, voids, cells, tolerance, threads, progress)
+    return _complexes.of_bodies(bodies, regions, voids, cells, overlap, tolerance, threads, progress)
 
 
 def check(what, triangles=None, *, solver=None):

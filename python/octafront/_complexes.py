@@ -17,9 +17,10 @@ def of_walls(surface, regions, voids, cells, nested, threads, progress):
     return made
 
 
-def of_bodies(bodies, regions, voids, cells, tolerance, threads, progress):
+def of_bodies(bodies, regions, voids, cells, overlap, tolerance, threads, progress):
     handles, names, surfaces = arguments_of(bodies)
-    keys = {"regions": seeds_of(regions), "voids": points_in(voids), "cells": cells, "tolerance": tolerance}
+    keys = {"regions": seeds_of(regions), "voids": points_in(voids), "cells": cells, "overlap": overlap,
+            "tolerance": tolerance}
     return _made(Job("join_bodies", handles, names, len(surfaces), text_of_keys(keys), threads, progress=progress))
 
 

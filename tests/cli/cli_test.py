@@ -129,7 +129,7 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(self.regions_of(nested), {"A": 26, "ball": 1})
         crossing = self.write_solids("c.stl", (b"a", (0, 0, 0), (2, 2, 2)), (b"b", (1, 1, 1), (3, 3, 3)))
         said = self.run_cli("mesh", crossing, "--size", 1, "-o", self.dir / "c.vtu").stdout
-        self.assertIn('the parts "a", "b" overlap and are united; --overlap regions', said)
+        self.assertIn('the parts "a", "b" overlap and are united; --overlap later', said)
         said = self.run_cli("mesh", crossing, "--size", 1, "-o", self.dir / "c.vtu", "--overlap", "regions").stdout
         self.assertIn('"b" takes 1 from "a"', said)
 

@@ -2,6 +2,7 @@
 
 #include <octafront/error.h>
 
+#include <array>
 #include <bit>
 #include <cstring>
 #include <type_traits>
@@ -195,7 +196,19 @@ void check(const CadModel& model) {
   }
 }
 
+/// In the order of Overlap.
+constexpr std::array<const char*, 5> kOverlapWords{"refuse", "tell", "first", "later", "new"};
+
 }  // namespace
+
+std::string word_of(Overlap overlap) {
+  return kOverlapWords[static_cast<std::size_t>(overlap)];
+}
+std::optional<Overlap> overlap_of(std::string_view word) {
+  for (std::size_t i = 0; i < kOverlapWords.size(); ++i)
+    if (word == kOverlapWords[i]) return static_cast<Overlap>(i);
+  return std::nullopt;
+}
 
 std::string to_bytes(const Where& where) {
   return bytes_of(where);

@@ -23,6 +23,13 @@ enum class FrameKind : std::uint8_t {
   kError = 'E',  ///< a sentence for the user; the end of an answer
 };
 
+/// Who gets the space that solids share: nobody, for they are refused, or stay as they are with a note; the first of
+/// them, the last, or a region of its own.
+enum class Overlap { kRefuse, kTell, kFirst, kLater, kNew };
+/// As arguments of the program have it; nothing for a word that is none.
+std::string word_of(Overlap overlap);
+std::optional<Overlap> overlap_of(std::string_view word);
+
 /// Where a reader is: what a message says if it dies there.
 struct Where {
   std::string stage;  ///< "reading", "healing", "fusing", "triangulating"

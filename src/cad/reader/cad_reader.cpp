@@ -125,10 +125,10 @@ class CadReader::Process {
   using Clock = std::chrono::steady_clock;
 
   std::vector<std::string> arguments_of(const std::string& program, const std::string& file) const {
-    std::vector<std::string> arguments{program,    file,
-                                       "--memory", std::to_string(options_.memory),
-                                       "--cpu",    std::to_string(static_cast<long>(options_.seconds))};
-    if (!options_.fuses) arguments.push_back("--no-fuse");
+    std::vector<std::string> arguments{program,     file,
+                                       "--memory",  std::to_string(options_.memory),
+                                       "--cpu",     std::to_string(static_cast<long>(options_.seconds)),
+                                       "--overlap", word_of(options_.overlap)};
     if (!options_.heals) arguments.push_back("--no-heal");
     if (options_.keeps_going) arguments.push_back("--keep-going");
     return arguments;

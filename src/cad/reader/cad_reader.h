@@ -16,7 +16,7 @@ namespace octafront::cad {
 
 /// What the reader is told, and what it may use.
 struct ReaderOptions {
-  bool fuses = true;                  ///< touching solids share faces
+  Overlap overlap = Overlap::kRefuse;
   bool heals = true;                  ///< what its check finds fault with
   bool keeps_going = false;           ///< without what cannot be read
   double seconds = 300;               ///< of CPU time, and of silence by the wall clock, > 0

@@ -23,12 +23,17 @@ std::string region_name(const Domain& domain, std::size_t region);
 
 /// What is left to do with a CAD file.
 struct CadTaken {
-  bool is_clean = false;          ///< nothing: the domain's surface can be meshed
-  std::vector<Body> bodies = {};  ///< solids to be joined; empty: the domain's surface is to be mended
+  bool is_clean = false;           ///< nothing: the domain's surface can be meshed
+  std::vector<Body> bodies = {};   ///< solids to be joined; empty: the domain's surface is to be mended
+  std::vector<double> bound = {};  ///< of these: how near the surface stays
 };
 
 /// Reads a CAD file into the domain: triangles, patches, names, the true geometry.
 CadTaken take_cad(Domain& domain, const IntakeOptions& options, const std::string& file, const RunContext& context);
+
+/// After `taken.bodies`, mended, were joined in the domain. Throws InputError where they overlap and nobody said who
+/// gets what they share.
+void finish_joined_cad(Domain& domain, const CadTaken& taken, ComplexOptions::Overlap overlap);
 
 /// Makes the complex of an image the surface of the domain, with what its reader had to say. `name` is that of the
 /// file, or empty.

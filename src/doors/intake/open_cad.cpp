@@ -40,10 +40,26 @@ constexpr double kVolumeOff = 0.003;
 /// Chords of elements may lie so deep, in parts of the volume of a solid over its area: what they cut off then is well
 /// below a percent of it.
 constexpr double kDepthOfThickness = 0.025;
+/// A part of its volume that a solid may lose where solids are joined by their triangles: these stray about as much.
+constexpr double kMostLost = 0.01;
+
+Overlap overlap_of_solids(ComplexOptions::Overlap asked) {
+  switch (asked) {
+    case ComplexOptions::Overlap::kAuto:
+      break;
+    case ComplexOptions::Overlap::kFirst:
+      return Overlap::kFirst;
+    case ComplexOptions::Overlap::kLater:
+      return Overlap::kLater;
+    case ComplexOptions::Overlap::kNew:
+      return Overlap::kNew;
+  }
+  return Overlap::kRefuse;
+}
 
 ReaderOptions reader_options(const IntakeOptions& options) {
   const CadIntake& asked = options.cad;
-  return {options.overlap == IntakeOptions::Overlap::kUnion, asked.heal, asked.keep_going, asked.seconds,
+  return {overlap_of_solids(options.complex.overlap), asked.heal, asked.keep_going, asked.seconds,
           static_cast<std::uint64_t>(asked.memory_gigabytes * 1e9)};
 }
 
@@ -213,9 +229,13 @@ class CadIn {
     note(domain_, options_, "",
          fmt::format("{}: {}, {}, {}, {}", file, model.format, counted(model.solids.size(), "solid"),
                      counted(model.faces.size(), "face"), unit_in_words(model, options_.cad)));
+    note_all(domain_, options_, "CAD", model.notes);
   }
 
   void tell(const Triangulated& made) {
+    const std::vector<std::string>& notes = made.model.notes;
+    const std::size_t told = std::min(notes.size(), reader_.opened().model.notes.size());
+    note_all(domain_, options_, "CAD", {notes.begin() + static_cast<std::ptrdiff_t>(told), notes.end()});
     std::size_t loose = 0;
     for (const Face& face : made.model.faces) loose += !made.model.solids.empty() && face.sides == Sides{kNone, kNone};
     if (loose > 0) note(domain_, options_, "CAD", fmt::format("{} of no solid left out", counted(loose, "face")));
@@ -269,17 +289,12 @@ std::vector<Body> bodies_of(const Triangulated& made) {
   return bodies;
 }
 
-/// How near the surface stays: by what each solid is thick.
-std::vector<double> bounds_of(const CadModel& model) {
+/// How near the surface stays to each solid: by what it is thick.
+std::vector<double> bounds_by_solid(const CadModel& model) {
   std::vector<double> bound;
-  for (std::size_t t = 0; t < model.triangles.size(); ++t) {
-    const Sides& sides = model.faces[model.face_of[t]].sides;
-    if (sides[0] == kNone && sides[1] == kNone) continue;
-    double least = HUGE_VAL;
-    for (const std::uint32_t s : sides)
-      if (s != kNone && model.solids[s].area > 0 && model.solids[s].volume > 0)
-        least = std::min(least, kDepthOfThickness * model.solids[s].volume / model.solids[s].area);
-    bound.push_back(least);
+  for (const Solid& solid : model.solids) {
+    const bool known = solid.area > 0 && solid.volume > 0;
+    bound.push_back(known ? kDepthOfThickness * solid.volume / solid.area : HUGE_VAL);
   }
   return bound;
 }
@@ -287,6 +302,47 @@ std::vector<double> bounds_of(const CadModel& model) {
 /// Millimetres to the unit that is asked for.
 void convert(std::vector<Vec3>& points, double millimetres) {
   for (Vec3& p : points) p = p / millimetres;
+}
+
+double bound_beside(const Sides& sides, const std::vector<double>& by_solid) {
+  double least = HUGE_VAL;
+  for (const std::uint32_t s : sides)
+    if (s < by_solid.size()) least = std::min(least, by_solid[s]);
+  return least;
+}
+
+std::vector<double> bounds_of(const CadModel& model) {
+  const std::vector<double> by_solid = bounds_by_solid(model);
+  std::vector<double> bound;
+  for (const std::uint32_t f : model.face_of) {
+    const Sides& sides = model.faces[f].sides;
+    if (sides[0] != kNone || sides[1] != kNone) bound.push_back(bound_beside(sides, by_solid));
+  }
+  return bound;
+}
+
+/// Patches of joined solids have names of the solids too: back to those of the faces.
+void take_patches_of_faces(SurfaceMesh& joined, const std::vector<Body>& bodies) {
+  std::vector<std::uint32_t> patch_of_source;
+  for (const Body& body : bodies) {
+    if (body.surface.patch_names != bodies[0].surface.patch_names) return;
+    for (std::size_t t = 0; t < body.surface.triangles.size(); ++t) patch_of_source.push_back(body.surface.patch_of(t));
+  }
+  for (std::size_t t = 0; t < joined.triangles.size(); ++t) joined.patch[t] = patch_of_source[joined.source_of(t)];
+  joined.patch_names = bodies[0].surface.patch_names;
+}
+
+/// Nobody said who gets what solids share: a region that lost more than triangles lose did overlap.
+void refuse_overlaps(const Domain& domain) {
+  for (std::size_t r = 0; r < domain.true_volumes.size() && r < domain.volumes.size(); ++r) {
+    const double lost = domain.true_volumes[r] - domain.volumes[r];
+    if (lost > kMostLost * domain.true_volumes[r])
+      throw InputError(
+          fmt::format("\"{}\" overlaps other solids in {:.3g} (its volume: {:.6g}). `overlap` first or later gives "
+                      "what they share to "
+                      "one of them, new makes regions of it",
+                      region_name(domain, r), lost, domain.true_volumes[r]));
+  }
 }
 
 }  // namespace
@@ -298,10 +354,12 @@ CadTaken take_cad(Domain& domain, const IntakeOptions& options, const std::strin
   const bool has_solids = !made.model.solids.empty();
   taken.is_clean = has_solids && made.defects.empty();
   if (!made.defects.empty()) note(domain, options, "CAD", "the triangles are mended: " + made.defects);
-  if (!taken.is_clean && made.model.solids.size() > 1) taken.bodies = bodies_of(made);
+  if (!taken.is_clean && made.model.solids.size() > 1)
+    taken.bodies = bodies_of(made), taken.bound = bounds_by_solid(made.model);
   if (taken.is_clean) domain.bound = bounds_of(made.model);
   const double unit = millimetres_of(options.cad);
   for (double& d : domain.bound) d /= unit;
+  for (double& d : taken.bound) d /= unit;
   for (const Solid& solid : made.model.solids) domain.true_volumes.push_back(solid.volume / (unit * unit * unit));
   domain.surface = std::move(made.surface), domain.unit = options.cad.unit;
   convert(domain.surface.points, unit);
@@ -314,6 +372,16 @@ CadTaken take_cad(Domain& domain, const IntakeOptions& options, const std::strin
          fmt::format("  region \"{}\": volume {:.6g}", region_name(domain, r), domain.true_volumes[r]));
   }
   return taken;
+}
+
+void finish_joined_cad(Domain& domain, const CadTaken& taken, ComplexOptions::Overlap overlap) {
+  take_patches_of_faces(domain.surface, taken.bodies);
+  if (overlap == ComplexOptions::Overlap::kAuto)
+    refuse_overlaps(domain);
+  else
+    domain.true_volumes = domain.volumes;
+  domain.bound.clear();
+  for (const Sides& sides : domain.surface.sides) domain.bound.push_back(bound_beside(sides, taken.bound));
 }
 
 }  // namespace octafront::intake
@@ -334,8 +402,11 @@ CadInfo read_cad_info(const std::string& file, const IntakeOptions& options, con
   intake::check(options.cad);
   CadInfo info;
   const auto take = [&](const std::string& text) { info.notes.push_back(text); };
-  const cad::CadReader reader(file, intake::reader_options(options), take, context);
+  cad::ReaderOptions asked = intake::reader_options(options);
+  if (asked.overlap == cad::Overlap::kRefuse) asked.overlap = cad::Overlap::kTell;
+  const cad::CadReader reader(file, asked, take, context);
   const auto& [lo, hi, model] = reader.opened();
+  info.notes.insert(info.notes.end(), model.notes.begin(), model.notes.end());
   info.format = model.format, info.unit = model.unit, info.to_millimetres = model.to_millimetres;
   const double unit = intake::millimetres_of(options.cad);
   info.lengths = options.cad.unit;

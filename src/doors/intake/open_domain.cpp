@@ -22,7 +22,7 @@ namespace {
 using namespace intake;
 using Repair = IntakeOptions::Repair;
 using Sheets = IntakeOptions::Sheets;
-using Overlap = IntakeOptions::Overlap;
+using Overlap = ComplexOptions::Overlap;
 
 /// Keeps what keep[t] says of an array with a value for each triangle, or none.
 template <class T>
@@ -91,9 +91,8 @@ class Intake {
   Domain surface(Input input) {
     if (input.read.surface.triangles.empty()) throw InputError("there is no triangle, and nothing to mesh");
     add_seeds(input);
-    if (options_.overlap == Overlap::kRegions) return named_parts(std::move(input));
-    const std::string name = input.name;
-    return naming(name, [&] { return walls(std::move(input)); });
+    if (complex_.overlap != Overlap::kAuto) return named_parts(std::move(input));
+    return plain(std::move(input));
   }
 
   /// The bodies of several files, or of arrays if there are none.
@@ -116,15 +115,17 @@ class Intake {
   }
 
   Domain cad(const std::string& file) {
-    const CadTaken taken = naming(file, [&] { return take_cad(domain_, options_, file, context_); });
+    CadTaken taken = naming(file, [&] { return take_cad(domain_, options_, file, context_); });
     if (taken.is_clean) return std::move(domain_);
     if (!taken.bodies.empty()) {
-      std::vector<Body> bodies = taken.bodies;
-      for (Body& body : bodies) mend_body(body, fmt::format("{} ({})", file, body.name));
-      return joined(bodies);
+      for (Body& body : taken.bodies) mend_body(body, fmt::format("{} ({})", file, body.name));
+      Domain domain = joined(taken.bodies);
+      naming(file, [&] { finish_joined_cad(domain, taken, complex_.overlap); });
+      return domain;
     }
+    if (domain_.surface.triangles.empty()) throw InputError(file + ": there is no triangle, and nothing to mesh");
     Input input{file, std::exchange(domain_, {})};
-    return surface(std::move(input));
+    return plain(std::move(input));
   }
 
   Domain image(const Image& image, const std::string& name) {
@@ -134,6 +135,11 @@ class Intake {
   }
 
  private:
+  Domain plain(Input input) {
+    const std::string name = input.name;
+    return naming(name, [&] { return walls(std::move(input)); });
+  }
+
   void say(const char* stage, std::string text) { note(domain_, options_, stage, std::move(text)); }
 
   void add_seeds(const Input& input) {
@@ -165,8 +171,8 @@ class Intake {
     std::vector<Body> bodies = bodies_by_name(surface);
     if (bodies.size() < 2)
       throw InputError(
-          fmt::format("{}`overlap` regions needs parts with names of their own (solids, groups); all of it is \"{}\"",
-                      prefix, bodies.empty() ? "" : bodies[0].name));
+          fmt::format("{}`overlap` needs parts with names of their own (solids, groups); all of it is \"{}\"", prefix,
+                      bodies.empty() ? "" : bodies[0].name));
     for (Body& body : bodies)
       mend_body(body, input.name.empty() ? body.name : fmt::format("{} ({})", input.name, body.name));
     domain_.format = input.read.format;
@@ -231,7 +237,7 @@ class Intake {
     if (!domain_.surface.sides.empty()) return;
     const SurfaceMesh read = domain_.surface;
     if (std::optional<Mended> mended = mend(domain_.surface, "")) domain_.bound = std::move(mended->bound);
-    if (options_.overlap == Overlap::kUnion) tell_united_parts(read);
+    if (complex_.overlap == Overlap::kAuto) tell_united_parts(read);
   }
 
   /// Mends a surface as the options say; what was done but for the surface, or nullopt if it stays as it is.
@@ -255,7 +261,7 @@ class Intake {
       return body.surface.patch.empty() && enclosed_volume(body.surface) > 0;
     };
     if (std::count_if(parts.begin(), parts.end(), is_closed) < 2) return;
-    say("repair", fmt::format("the parts \"{}\", \"{}\"{} overlap and are united; `overlap` regions makes regions of "
+    say("repair", fmt::format("the parts \"{}\", \"{}\"{} overlap and are united; `overlap` later makes regions of "
                               "them, by their names",
                               parts[0].name, parts[1].name, parts.size() > 2 ? " ..." : ""));
   }

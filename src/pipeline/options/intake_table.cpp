@@ -26,7 +26,7 @@ Row<IntakeOptions> intake_choice(const OptionInfo& info, Access field, const Nam
 std::vector<Row<IntakeOptions>> material_rows() {
   using Cells = ComplexOptions::Cells;
   using Nested = ComplexOptions::Nested;
-  using Overlap = IntakeOptions::Overlap;
+  using Overlap = ComplexOptions::Overlap;
   constexpr const char* kGroup = "Several materials";
   return {
       intake_choice<Cells>(
@@ -45,9 +45,15 @@ std::vector<Row<IntakeOptions>> material_rows() {
           {{"direction", Nested::kByDirection}, {"cavity", Nested::kCavity}, {"region", Nested::kRegion}}),
       intake_choice<Overlap>(
           about_intake("overlap", kGroup,
-                       "Parts of one input that overlap: united, or a region for each name of a patch, the later "
-                       "one where they overlap"),
-          [](auto& o) -> auto& { return o.overlap; }, {{"union", Overlap::kUnion}, {"regions", Overlap::kRegions}}),
+                       "What parts share where they overlap. auto: parts of one file are united, of several bodies the "
+                       "later one has it, solids of a CAD file are refused; first, later: that one has it, each name "
+                       "of a patch a region; new: it is a region of its own, a&b; regions: as later"),
+          [](auto& o) -> auto& { return o.complex.overlap; },
+          {{"auto", Overlap::kAuto},
+           {"first", Overlap::kFirst},
+           {"later", Overlap::kLater},
+           {"new", Overlap::kNew},
+           {"regions", Overlap::kLater}}),
       intake_row(
           about_intake(
               "tolerance", kGroup,

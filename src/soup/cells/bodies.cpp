@@ -14,7 +14,7 @@
 #include <queue>
 #include <utility>
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 namespace octafront {
 namespace {
@@ -60,6 +60,12 @@ Together put_together(const std::vector<Body>& bodies, Complex& complex, const R
   return all;
 }
 
+std::vector<std::string> names_of(const std::vector<std::uint32_t>& bodies, const std::vector<std::string>& names) {
+  std::vector<std::string> some;
+  for (const std::uint32_t b : bodies) some.push_back(names[b]);
+  return some;
+}
+
 /// How often each body winds around each cell; bodies that do not are left out.
 using Windings = std::map<std::uint32_t, int>;
 
@@ -93,15 +99,26 @@ std::vector<Windings> windings_of(const Arrangement& arranged, const Cells& cell
   return windings;
 }
 
-/// The last body around each cell.
-std::vector<std::uint32_t> owners_of(const std::vector<Windings>& windings) {
-  std::vector<std::uint32_t> owner;
+/// Which region each cell goes to; those of several bodies together follow the bodies, and their names `names`.
+std::vector<std::uint32_t> regions_of(const std::vector<Windings>& windings, ComplexOptions::Overlap overlap,
+                                      std::vector<std::string>& names) {
+  const std::vector<std::string> of_bodies = names;
+  std::map<std::vector<std::uint32_t>, std::uint32_t> together;
+  std::vector<std::uint32_t> region;
   for (const Windings& w : windings) {
-    owner.push_back(kNone);
+    std::vector<std::uint32_t> around;
     for (const auto& [body, times] : w)
-      if (times > 0) owner.back() = body;
+      if (times > 0) around.push_back(body);
+    if (around.size() < 2 || overlap != ComplexOptions::Overlap::kNew) {
+      const bool first = overlap == ComplexOptions::Overlap::kFirst;
+      region.push_back(around.empty() ? kNone : first ? around.front() : around.back());
+      continue;
+    }
+    const auto [at, is_new] = together.try_emplace(around, static_cast<std::uint32_t>(names.size()));
+    if (is_new) names.push_back(fmt::format("{}", fmt::join(names_of(around, of_bodies), "&")));
+    region.push_back(at->second);
   }
-  return owner;
+  return region;
 }
 
 /// Cells of no body that are thinner than the tolerance go to the body that they share most of their walls with.
@@ -134,22 +151,24 @@ std::uint64_t fill_gaps(Labelled& labelled, double tolerance) {
 }
 
 void refuse_covered_bodies(const Labelled& labelled, const std::vector<Body>& bodies,
-                           const std::vector<Windings>& windings) {
+                           const std::vector<Windings>& windings, bool earlier) {
+  const char* others = earlier ? "earlier" : "later";
   for (std::uint32_t b = 0; b < bodies.size(); ++b) {
     if (std::find(labelled.region.begin(), labelled.region.end(), b) != labelled.region.end()) continue;
     std::uint32_t by = kNone;
     for (std::size_t c = 0; c < windings.size(); ++c)
       if (windings[c].contains(b)) by = labelled.region[c];
     throw InputError(
-        fmt::format("{}: nothing of it is left, for later bodies lie over all of it{}; later ones have "
-                    "their way: give it behind them, or leave one out",
-                    bodies[b].name, by < bodies.size() ? fmt::format(" (as {} does)", bodies[by].name) : ""));
+        fmt::format("{}: nothing of it is left, for {} bodies lie over all of it{}; {} ones have their way: give it {} "
+                    "them, or leave one out",
+                    bodies[b].name, others, by < bodies.size() ? fmt::format(" (as {} does)", bodies[by].name) : "",
+                    others, earlier ? "before" : "behind"));
   }
 }
 
-/// Names the bodies that share space, those with most of it first.
+/// Names the bodies that share space, those with most of it first. `who`: has its way.
 void note_overlaps(const Labelled& labelled, const std::vector<Windings>& windings, const std::vector<Body>& bodies,
-                   std::vector<std::string>& notes) {
+                   const char* who, std::vector<std::string>& notes) {
   const std::vector<double> volumes = labelled.cells.volumes();
   std::map<std::pair<std::uint32_t, std::uint32_t>, double> shared;  // by who has it, and who would have had it
   for (std::size_t c = 0; c < windings.size(); ++c)
@@ -168,7 +187,22 @@ void note_overlaps(const Labelled& labelled, const std::vector<Windings>& windin
                          bodies[pair.second].name);
   }
   if (pairs.size() > kMostNamed) words += fmt::format(" and {} more pairs", pairs.size() - kMostNamed);
-  notes.push_back("bodies overlap, and the later one has its way, by volume: " + words);
+  notes.push_back(fmt::format("bodies overlap, and the {} one has its way, by volume: {}", who, words));
+}
+
+/// Says which regions are what bodies share.
+void note_common_regions(const Labelled& labelled, std::size_t bodies, std::size_t end,
+                         std::vector<std::string>& notes) {
+  if (end == bodies) return;
+  const std::vector<double> volumes = labelled.cells.volumes();
+  std::string words;
+  for (std::size_t r = bodies; r < end; ++r) {
+    double volume = 0;
+    for (std::size_t c = 0; c < volumes.size(); ++c)
+      if (labelled.region[c] == r) volume += volumes[c];
+    words += fmt::format("{}\"{}\" {:.4g}", r == bodies ? "" : ", ", labelled.names[r], volume);
+  }
+  notes.push_back("bodies overlap, and what they share are regions of their own, by volume: " + words);
 }
 
 /// Whether of two bodies that share cells one always has all of its cells in common with the other.
@@ -215,11 +249,21 @@ double tolerance_of(const ComplexOptions& options, const std::vector<Vec3>& poin
   return options.tolerance.value_or(kOfDiagonal * box.diagonal());
 }
 
+void note_changes(const cells::ClosedGaps& closed, double tolerance, const Arrangement& arranged,
+                  std::vector<std::string>& notes) {
+  if (closed.moved > 0)
+    notes.push_back(fmt::format("{} moved onto earlier bodies within the tolerance of {:.3g}, by {:.3g} at most",
+                                counted(closed.moved, "vertex", "vertices"), tolerance, closed.largest_move));
+  if (arranged.new_points > 0)
+    notes.push_back(fmt::format("faces divided where bodies meet, at {}", counted(arranged.new_points, "new point")));
+}
+
 }  // namespace
 
 namespace cells {
 
 Joined joined_bodies(const std::vector<Body>& bodies, const ComplexOptions& options, const RunContext& context) {
+  using Overlap = ComplexOptions::Overlap;
   if (bodies.empty()) throw OptionError("there is no body to join");
   if (options.tolerance && !(*options.tolerance >= 0))
     throw OptionError(fmt::format("`tolerance` is {}; it must not be below 0", *options.tolerance));
@@ -233,10 +277,13 @@ Joined joined_bodies(const std::vector<Body>& bodies, const ComplexOptions& opti
   std::vector<std::uint32_t> body_of;
   for (const std::uint32_t t : closed.source) body_of.push_back(all.body[t]);
   const std::vector<Windings> windings = windings_of(arranged, cells, body_of);
-  Labelled labelled{arranged, cells, owners_of(windings), {}};
+  Labelled labelled{arranged, cells, {}, {}};
   for (const Body& b : bodies) labelled.names.push_back(b.name);
+  labelled.region = regions_of(windings, options.overlap, labelled.names);
+  const std::size_t end_of_common = labelled.names.size();
   const std::uint64_t filled = fill_gaps(labelled, tolerance);
-  refuse_covered_bodies(labelled, bodies, windings);
+  const bool earlier = options.overlap == Overlap::kFirst;
+  if (options.overlap != Overlap::kNew) refuse_covered_bodies(labelled, bodies, windings, earlier);
   apply_seeds(labelled, options);
   if (options.cells == ComplexOptions::Cells::kMerge)
     for (std::uint32_t& r : labelled.region)
@@ -263,13 +310,10 @@ Joined joined_bodies(const std::vector<Body>& bodies, const ComplexOptions& opti
   // Said of the regions, from whose names these are made.
   NameCleaning().clean(complex.surface.patch_names);
   std::vector<std::string> notes = std::move(before.notes);
-  if (closed.moved > 0)
-    notes.push_back(fmt::format("{} moved onto earlier bodies within the tolerance of {:.3g}, by {:.3g} at most",
-                                counted(closed.moved, "vertex", "vertices"), tolerance, closed.largest_move));
-  if (arranged.new_points > 0)
-    notes.push_back(fmt::format("faces divided where bodies meet, at {}", counted(arranged.new_points, "new point")));
+  note_changes(closed, tolerance, arranged, notes);
   if (filled > 0) notes.push_back(fmt::format("{} between bodies closed", counted(filled, "thin gap")));
-  note_overlaps(labelled, windings, bodies, notes);
+  note_overlaps(labelled, windings, bodies, earlier ? "first" : "later", notes);
+  note_common_regions(labelled, bodies.size(), end_of_common, notes);
   notes.insert(notes.end(), complex.notes.begin(), complex.notes.end());
   complex.notes = std::move(notes);
   return {std::move(complex), are_nested(windings)};

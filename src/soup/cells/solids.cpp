@@ -72,7 +72,9 @@ std::optional<Complex> complex_of_solids(const SurfaceMesh& surface, const Compl
   const std::vector<Body> solids = solids_of(surface);
   if (solids.size() < 2 || (!asked && !boxes_meet(solids))) return std::nullopt;
   try {
-    Joined joined = joined_bodies(solids, options, context);
+    ComplexOptions inner_first = options;
+    inner_first.overlap = ComplexOptions::Overlap::kLater;
+    Joined joined = joined_bodies(solids, inner_first, context);
     if (!joined.nested || (!asked && !has_interfaces(joined.complex.surface))) return std::nullopt;
     joined.complex.notes.insert(
         joined.complex.notes.begin(),

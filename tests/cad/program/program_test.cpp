@@ -149,8 +149,100 @@ TEST_F(CadProgram, OverlapIsRefusedWithItsVolume) {
   const std::string file = written("overlapping", ".brep");
   const Answer answer = run_reader(file, {}, kFine);
   ASSERT_EQ(answer.errors.size(), 1u);
-  EXPECT_NE(answer.errors[0].find("solids 1 and 2 overlap in 50 mm^3"), std::string::npos) << answer.errors[0];
+  EXPECT_NE(answer.errors[0].find("solid 1 and solid 2 overlap in 50 mm^3"), std::string::npos) << answer.errors[0];
   EXPECT_EQ(model_of_file(file, {"--no-fuse"}).solids.size(), 2u);
+}
+
+TEST_F(CadProgram, OverlapGoesWhereItIsAsked) {
+  // Boxes of 1000 and 125 that share 50.
+  const std::string file = written("overlapping", ".brep");
+  const std::map<std::string, std::vector<double>> volumes = {
+      {"first", {1000, 75}}, {"later", {950, 125}}, {"new", {950, 75, 50}}, {"tell", {1000, 125}}};
+  for (const auto& [word, expected] : volumes) {
+    SCOPED_TRACE(word);
+    const CadModel m = model_of_file(file, {"--overlap", word});
+    ASSERT_EQ(m.solids.size(), expected.size());
+    EXPECT_EQ(m.fused, word != "tell");
+    ASSERT_EQ(m.notes.size(), 1u);
+    EXPECT_NE(m.notes[0].find("solid 1 and solid 2 overlap in 50 mm^3"), std::string::npos) << m.notes[0];
+    for (std::uint32_t s = 0; s < expected.size(); ++s) {
+      EXPECT_NEAR(m.solids[s].volume, expected[s], 1e-9);
+      EXPECT_NEAR(volume_behind(m, s), expected[s], 1e-9);
+      EXPECT_EQ(open_edges(m, s), 0);
+    }
+  }
+  EXPECT_EQ(model_of_file(file, {"--overlap", "new"}).solids[2].labels.name, "solid 1&solid 2");
+  EXPECT_EQ(run_reader(file, {"--overlap", "both"}, kFine).status, 2);
+}
+
+TEST_F(CadProgram, OverlapOfThreeIsEachPairs) {
+  const std::string file = written("three", ".brep");
+  const Answer refused = run_reader(file, {}, kFine);
+  ASSERT_EQ(refused.errors.size(), 1u);
+  for (const char* pair : {"solid 1 and solid 2 overlap in 500", "solid 2 and solid 3 overlap in 700",
+                           "solid 1 and solid 3 overlap in 200"})
+    EXPECT_NE(refused.errors[0].find(pair), std::string::npos) << refused.errors[0];
+  const CadModel apart = model_of_file(file, {"--overlap", "new"});
+  std::map<std::string, double> volumes;
+  for (const cad::Solid& solid : apart.solids) volumes[solid.labels.name] += solid.volume;
+  // The three together fill 18 x 10 x 10.
+  double sum = 0;
+  for (const auto& [name, volume] : volumes) sum += volume;
+  EXPECT_NEAR(sum, 1800, 1e-9);
+  EXPECT_NEAR(volumes["solid 1&solid 2&solid 3"], 200, 1e-9);
+  const CadModel first = model_of_file(file, {"--overlap", "first"});
+  ASSERT_EQ(first.solids.size(), 3u);
+  EXPECT_NEAR(first.solids[0].volume, 1000, 1e-9);
+  EXPECT_NEAR(first.solids[1].volume, 500, 1e-9);
+  EXPECT_NEAR(first.solids[2].volume, 300, 1e-9);
+}
+
+TEST_F(CadProgram, NothingLeftOfASolidIsRefused) {
+  const std::string file = written("within", ".brep");
+  const Answer answer = run_reader(file, {"--overlap", "first"}, kFine);
+  ASSERT_EQ(answer.errors.size(), 1u);
+  EXPECT_NE(answer.errors[0].find("nothing is left of solid 2"), std::string::npos) << answer.errors[0];
+  const CadModel later = model_of_file(file, {"--overlap", "later"});
+  ASSERT_EQ(later.solids.size(), 2u);
+  EXPECT_NEAR(volume_behind(later, 0), 875, 1e-9);
+  EXPECT_NEAR(volume_behind(later, 1), 125, 1e-9);
+  const CadModel apart = model_of_file(file, {"--overlap", "new"});
+  ASSERT_EQ(apart.solids.size(), 2u);
+  EXPECT_EQ(apart.solids[1].labels.name, "solid 1&solid 2");
+}
+
+TEST_F(CadProgram, WhoOverlapsByNextToNothingTouches) {
+  const CadModel m = model_of_file(written("nearly", ".brep"));
+  ASSERT_EQ(m.solids.size(), 2u);
+  EXPECT_TRUE(m.fused);
+  EXPECT_NEAR(m.solids[0].volume + m.solids[1].volume, 1125 - 25e-6, 1e-7);
+  ASSERT_EQ(m.notes.size(), 1u);
+  EXPECT_NE(m.notes[0].find("is how they touch"), std::string::npos) << m.notes[0];
+}
+
+TEST_F(CadProgram, TangentContactIsRefusedWithItsPlace) {
+  const std::string file = written("groove", ".brep");
+  const Answer answer = run_reader(file, {}, kFine);
+  ASSERT_EQ(answer.errors.size(), 1u);
+  EXPECT_NE(answer.errors[0].find("solid 1 and solid 2 touch along lines where their faces are tangent"),
+            std::string::npos)
+      << answer.errors[0];
+  EXPECT_EQ(model_of_file(file, {"--overlap", "tell"}).solids.size(), 2u);
+}
+
+TEST_F(CadProgram, ShellsInShellsOfSewnFacesAreCavities) {
+  for (const std::string ending : {".brep", ".igs"}) {
+    SCOPED_TRACE(ending);
+    const CadModel m = model_of_file(written("nested faces", ending));
+    ASSERT_FALSE(m.notes.empty());
+    ASSERT_EQ(m.solids.size(), 2u) << m.notes[0];
+    EXPECT_NE(m.notes[0].find("2 solids with 1 cavity and 0 faces"), std::string::npos) << m.notes[0];
+    EXPECT_NEAR(m.solids[0].volume + m.solids[1].volume, 1000 - 216 + 8, 1e-6);
+    for (std::uint32_t s = 0; s < 2; ++s) {
+      EXPECT_NEAR(volume_behind(m, s), m.solids[s].volume, 1e-6);
+      EXPECT_EQ(open_edges(m, s), 0);
+    }
+  }
 }
 
 TEST_F(CadProgram, SameFileSameBytes) {

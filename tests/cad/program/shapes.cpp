@@ -1,5 +1,6 @@
 #include "shapes.h"
 
+#include <BRepAlgoAPI_Cut.hxx>
 #include <BRepBuilderAPI_MakeEdge.hxx>
 #include <BRepBuilderAPI_MakeFace.hxx>
 #include <BRepBuilderAPI_MakeWire.hxx>
@@ -42,6 +43,46 @@ TopoDS_Shape pair_at(double x) {
   return both;
 }
 
+/// Boxes of 10 that share each other's halves.
+TopoDS_Shape three() {
+  TopoDS_Compound all;
+  BRep_Builder().MakeCompound(all);
+  for (const double x : {0.0, 5.0, 8.0})
+    BRep_Builder().Add(all, BRepPrimAPI_MakeBox(gp_Pnt(x, 0, 0), 10, 10, 10).Shape());
+  return all;
+}
+
+/// A shaft with a groove around it, and a ball that fits in.
+TopoDS_Shape ball_in_groove() {
+  TopoDS_Compound both;
+  BRep_Builder().MakeCompound(both);
+  const gp_Ax2 along(gp_Pnt(-63.0449, -33.1238, 0), gp_Dir(0, 1, 0)),
+      low(gp_Pnt(-63.0449, -43.1238, 0), gp_Dir(0, 1, 0));
+  BRep_Builder().Add(both, BRepAlgoAPI_Cut(BRepPrimAPI_MakeCylinder(low, 8.5, 20).Shape(),
+                                           BRepPrimAPI_MakeTorus(along, 9.5, 2).Shape())
+                               .Shape());
+  const double c = 0.5, s = std::sqrt(0.75);
+  BRep_Builder().Add(both, BRepPrimAPI_MakeSphere(gp_Pnt(-63.0449 + 9.5 * c, -33.1238, 9.5 * s), 2).Shape());
+  return both;
+}
+
+/// The faces of a shape, of no solid and no shell.
+TopoDS_Shape faces_of(const TopoDS_Shape& shape) {
+  TopoDS_Compound all;
+  BRep_Builder().MakeCompound(all);
+  for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next()) BRep_Builder().Add(all, it.Current());
+  return all;
+}
+
+/// Boxes of 10, 6 and 2 around one point.
+TopoDS_Shape nested() {
+  TopoDS_Compound all;
+  BRep_Builder().MakeCompound(all);
+  for (const double half : {1.0, 5.0, 3.0})
+    BRep_Builder().Add(all, BRepPrimAPI_MakeBox(gp_Pnt(-half, -half, -half), gp_Pnt(half, half, half)).Shape());
+  return all;
+}
+
 /// A face between a spline over the x axis and that axis.
 TopoDS_Face under_spline() {
   TColgp_Array1OfPnt points(1, 5);
@@ -77,6 +118,11 @@ TopoDS_Shape shape_named(const std::string& name) {
   if (name == "touching") return pair_at(10);
   if (name == "overlapping") return pair_at(8);
   if (name == "apart") return pair_at(20);
+  if (name == "within") return pair_at(3);
+  if (name == "nearly") return pair_at(10 - 1e-6);
+  if (name == "three") return three();
+  if (name == "nested faces") return faces_of(nested());
+  if (name == "groove") return ball_in_groove();
   throw std::invalid_argument(name);
 }
 

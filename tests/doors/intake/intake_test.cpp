@@ -100,7 +100,7 @@ TEST_F(Intake, WallsMakeRegionsAndPartsMayKeepTheirNames) {
   const Domain cells = open_domain(walls, seeded);
   EXPECT_EQ(std::count(cells.surface.region_names.begin(), cells.surface.region_names.end(), "left"), 1);
   IntakeOptions apart;
-  apart.overlap = IntakeOptions::Overlap::kRegions;
+  apart.complex.overlap = ComplexOptions::Overlap::kLater;
   EXPECT_THROW(open_domain(walls, apart), InputError) << "parts without names";
   walls.patch.assign(12, 0);
   walls.patch.insert(walls.patch.end(), 12, 1);

@@ -108,6 +108,41 @@ TEST(JoinBodies, TheLaterOneHasItsWay) {
   EXPECT_NEAR(inside.volumes[1], 0.125, 1e-12);
 }
 
+TEST(JoinBodies, WhatBodiesShareGoesWhereItIsAsked) {
+  const std::vector<Body> bodies{{"a", testing::cube(1)},
+                                 {"b", testing::transformed(testing::cube(1), 1, {.75, 0, 0})}};
+  using Overlap = ComplexOptions::Overlap;
+  const auto joined = [&](Overlap overlap) {
+    ComplexOptions options;
+    options.overlap = overlap;
+    return join_bodies(bodies, options);
+  };
+  EXPECT_NEAR(joined(Overlap::kFirst).volumes[1], 0.75, 1e-12);
+  EXPECT_NEAR(joined(Overlap::kLater).volumes[0], 0.75, 1e-12);
+  const Complex apart = joined(Overlap::kNew);
+  EXPECT_EQ(apart.surface.region_names, (std::vector<std::string>{"a", "b", "a&b"}));
+  ASSERT_EQ(apart.volumes.size(), 3U);
+  EXPECT_NEAR(apart.volumes[0], 0.75, 1e-12);
+  EXPECT_NEAR(apart.volumes[1], 0.75, 1e-12);
+  EXPECT_NEAR(apart.volumes[2], 0.25, 1e-12);
+  EXPECT_NEAR(testing::region_volumes(apart.surface)[2], 0.25, 1e-12);
+}
+
+TEST(JoinBodies, OfABodyWithinAnotherNothingIsLeftForThatOneFirst) {
+  const std::vector<Body> bodies{{"a", testing::cube(1)},
+                                 {"in", testing::transformed(testing::cube(1), 0.5, {.25, .25, .25})}};
+  ComplexOptions options;
+  options.overlap = ComplexOptions::Overlap::kFirst;
+  try {
+    join_bodies(bodies, options);
+    FAIL() << "it is covered";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("in: nothing of it is left, for earlier bodies"), std::string::npos);
+  }
+  options.overlap = ComplexOptions::Overlap::kNew;
+  EXPECT_EQ(join_bodies(bodies, options).surface.region_names, (std::vector<std::string>{"a", "a&in"}));
+}
+
 /// Solids of one file, a patch each.
 SurfaceMesh in_one_file(const std::vector<Body>& solids) {
   SurfaceMesh all;
