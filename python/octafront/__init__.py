@@ -36,7 +36,7 @@ def mesh(points, triangles=None, **keywords):
     """A tetrahedral mesh of what a surface encloses: a Mesh, valid in every element.
 
     points: (n, 3) float64, any unit of length; triangles: (m, 3) indices. Or alone: a Surface, which may have patches,
-    names, and several regions; a file (STL, OBJ, OFF, PLY, images of voxels, ..., recognised by content); a list of files,
+    names, and several regions; a file (STL, OBJ, OFF, PLY, CAD, images of voxels, ..., recognised by content); a list of files,
     or {name: Surface or file}, a region each.
 
     All of it goes the way of the command line, to the same mesh, bit for bit: walls and parts inside become regions, a
@@ -51,6 +51,7 @@ def mesh(points, triangles=None, **keywords):
 
     >>> octafront.mesh(points, triangles, size=0.5, progress=lambda phase, fraction: True)
     >>> octafront.mesh("scan.stl", elements=200_000).save("scan.inp")
+    >>> octafront.mesh("part.step", size=2, size_of={"color #ff8000": 0.5}).save("part.inp")
     """
     return _meshed(points, triangles, _Settings("mesh", "mesh", keywords, points))
 

@@ -36,10 +36,10 @@ bool has(const Triangle& t, VertexIndex v) {
 
 class Collapse {
  public:
-  Collapse(CadModel& model, double tiny, std::vector<bool> is_narrow)
+  Collapse(CadModel& model, double tiny, std::vector<bool> is_narrow, const std::vector<bool>& is_spared)
       : model_(model), tiny_(tiny), to_(model.points.size()), is_narrow_(std::move(is_narrow)) {
     std::iota(to_.begin(), to_.end(), VertexIndex{0});
-    for (std::size_t e = 0; e < model.edges.size(); ++e) lay_out(model.edges[e]);
+    for (std::size_t e = 0; e < model.edges.size(); ++e) lay_out(model.edges[e], is_spared);
     is_live_.assign(model.triangles.size(), 1);
     around_.resize(model.points.size()), origins_.resize(model.points.size()), rank_.resize(model.points.size(), 0);
     for (std::uint32_t t = 0; t < model.triangles.size(); ++t) {
@@ -81,8 +81,9 @@ class Collapse {
   /// Normals of triangles look out of the solid behind them, else of the one in front.
   double side_of_solid(std::uint32_t t) const { return model_.faces[face(t)].sides[1] != kNone ? 1 : -1; }
 
-  void lay_out(const CadEdge& edge) {
-    const bool is_tiny = edge.length < tiny_ && edge.vertices.front() != edge.vertices.back();
+  void lay_out(const CadEdge& edge, const std::vector<bool>& is_spared) {
+    const bool stays = std::any_of(edge.faces.begin(), edge.faces.end(), [&](std::uint32_t f) { return is_spared[f]; });
+    const bool is_tiny = !stays && edge.length < tiny_ && edge.vertices.front() != edge.vertices.back();
     for (std::size_t k = 0; k + 1 < edge.vertices.size(); ++k)
       (is_tiny ? tiny_segments_ : long_segments_).insert(segment(edge.vertices[k], edge.vertices[k + 1]));
   }
@@ -392,16 +393,17 @@ class Collapse {
 
 }  // namespace
 
-Collapsed collapse_tiny(CadModel& model, double tiny) {
-  std::vector<bool> is_narrow;
+Collapsed collapse_tiny(CadModel& model, double tiny, std::span<const std::uint32_t> spared) {
+  std::vector<bool> is_narrow, is_spared(model.faces.size(), false);
   for (const double w : mean_widths(model)) is_narrow.push_back(w < tiny);
+  for (const std::uint32_t f : spared) is_narrow[f] = false, is_spared[f] = true;
   const auto is_tiny = [&](const CadEdge& edge) { return edge.length < tiny; };
   if (std::find(is_narrow.begin(), is_narrow.end(), true) == is_narrow.end() &&
       std::none_of(model.edges.begin(), model.edges.end(), is_tiny))
     return {};
   while (true) {
     CadModel made = model;
-    const Collapsed collapsed = Collapse(made, tiny, is_narrow).run();
+    const Collapsed collapsed = Collapse(made, tiny, is_narrow, is_spared).run();
     bool is_done = true;
     for (const std::uint32_t f : made.face_of)
       if (is_narrow[f]) is_narrow[f] = is_done = false;

@@ -3,6 +3,7 @@
 #include "cad/model/cad_model.h"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace octafront::cad {
@@ -19,7 +20,8 @@ struct Collapsed {
 /// turn a triangle over or change how the surface hangs together stays, and so does a face that would not vanish as a
 /// whole. Edges of the model follow: of two that became
 /// one, the edge of the larger face stays, between the faces that meet in it now; it is smooth where these were
-/// parallel before. Whether the surface crosses itself afterwards is for the caller to see.
-Collapsed collapse_tiny(CadModel& model, double tiny);
+/// parallel before. `spared` faces and their edges stay. Whether the surface crosses itself afterwards is for the
+/// caller to see.
+Collapsed collapse_tiny(CadModel& model, double tiny, std::span<const std::uint32_t> spared = {});
 
 }  // namespace octafront::cad

@@ -32,6 +32,14 @@ std::vector<std::uint32_t> which_of(const CadModel& model, std::span<const std::
 
 }  // namespace
 
+std::vector<std::uint32_t> faces_named(const CadModel& model, std::span<const std::string> names) {
+  const std::vector<std::uint32_t> which = which_of(model, names, face_names(model));
+  std::vector<std::uint32_t> faces;
+  for (std::uint32_t f = 0; f < which.size(); ++f)
+    if (which[f] != kNone) faces.push_back(f);
+  return faces;
+}
+
 std::vector<double> mean_widths(const CadModel& model) {
   std::vector<double> perimeter(model.faces.size(), 0);
   for (const CadEdge& edge : model.edges)

@@ -22,6 +22,9 @@ struct FaceGroups {
 /// group. Faces with one of the names `apart`, their own or that of a label, are one with such of the same name alone.
 FaceGroups group_faces(const CadModel& model, std::optional<double> size, std::span<const std::string> apart = {});
 
+/// The faces that have one of these names, their own or that of a label; ascending.
+std::vector<std::uint32_t> faces_named(const CadModel& model, std::span<const std::string> names);
+
 /// The mean width of each face: twice its area over its perimeter; infinite where it has no edges.
 std::vector<double> mean_widths(const CadModel& model);
 

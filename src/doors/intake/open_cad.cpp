@@ -201,7 +201,7 @@ class CadIn {
     const CadModel model = reader_.triangulate({deflection_ * by[0], kAngle * by[1]});
     if (!options_.cad.keep_edges && !model.solids.empty()) {
       CadModel simpler = model;
-      const Collapsed collapsed = collapse_tiny(simpler, kTinyOfSize * size_);
+      const Collapsed collapsed = collapse_tiny(simpler, kTinyOfSize * size_, faces_named(simpler, options_.cad.apart));
       if (collapsed.edges + collapsed.faces.size() > 0)
         if (Triangulated made = judged(std::move(simpler)); made.is_good()) {
           made.collapsed = collapsed;

@@ -1,5 +1,7 @@
 #include "cad/shapes/collapse.h"
 
+#include "cad/shapes/groups.h"
+
 #include <algorithm>
 
 #include <gtest/gtest.h>
@@ -59,6 +61,18 @@ TEST(CollapseTiny, LeavesOneLineBetweenTheFacesThatAreLeft) {
 TEST(CollapseTiny, LeavesWhatIsLarger) {
   CadModel m = step();
   EXPECT_TRUE(collapse_tiny(m, .005).faces.empty());
+  EXPECT_EQ(m.triangles, step().triangles);
+}
+
+TEST(CollapseTiny, SparesFacesWithTheirEdges) {
+  CadModel m = step();
+  m.faces[1].labels.name = "step";
+  const std::vector<std::string> named{"step"};
+  const std::vector<std::uint32_t> spared = faces_named(m, named);
+  EXPECT_EQ(spared, std::vector<std::uint32_t>{1});
+  const Collapsed made = collapse_tiny(m, .05, spared);
+  EXPECT_TRUE(made.faces.empty());
+  EXPECT_EQ(made.edges, 0u);
   EXPECT_EQ(m.triangles, step().triangles);
 }
 
