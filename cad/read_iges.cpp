@@ -44,6 +44,22 @@ void read_unit(const IGESData_IGESModel& model, Part& part) {
   if (global.UnitValue() > 0) part.to_millimetres = global.UnitValue();
 }
 
+void replace(std::string& text, const std::string& before, const std::string& after) {
+  if (const std::size_t at = text.find(before); at != std::string::npos) text.replace(at, before.size(), after);
+}
+
+/// The library's sentences, some of which it never fills in, or has lost.
+std::string complaint_in_words(const std::string& complaint) {
+  std::string text = to_utf8(complaint);
+  if (text.starts_with("Unknown message")) return "its data are damaged";
+  replace(text, "parameter %d", "a parameter");
+  replace(text, " Process continues", "");
+  replace(text, "  ", " ");
+  replace(text, " : ", ": ");
+  text.erase(text.find_last_not_of(". ") + 1);
+  return text;
+}
+
 std::vector<std::string> complaints_of(const IGESData_IGESModel& model) {
   std::vector<std::string> all;
   for (int i = 1; i <= model.NbEntities(); ++i) {
@@ -51,7 +67,7 @@ std::vector<std::string> complaints_of(const IGESData_IGESModel& model) {
     const Handle(Interface_Check)& check = model.ReportEntity(i)->Check();
     for (int k = 1; k <= check->NbFails(); ++k)
       all.push_back(fmt::format("entity {}: {}", to_utf8(model.StringLabel(model.Value(i))->ToCString()),
-                                to_utf8(check->CFail(k))));
+                                complaint_in_words(check->CFail(k))));
   }
   return all;
 }

@@ -274,14 +274,23 @@ std::vector<Body> bodies_of(const Triangulated& made) {
   const std::vector<std::string> names = solid_names(made.model);
   std::vector<Body> bodies;
   for (std::uint32_t s = 0; s < names.size(); ++s) {
-    Body body{names[s], {made.model.points, {}, {}, made.groups.names, {}}};
+    Body body{names[s], {{}, {}, {}, made.groups.names, {}}};
+    std::vector<VertexIndex> number(made.model.points.size(), kNone);
     for (std::size_t t = 0; t < made.model.triangles.size(); ++t) {
       const std::uint32_t f = made.model.face_of[t];
       const auto& [front, behind] = made.model.faces[f].sides;
       if (front != s && behind != s) continue;
       auto [a, b, c] = made.model.triangles[t];
       if (front == s) std::swap(b, c);
-      body.surface.triangles.push_back({a, b, c});
+      Triangle triangle{a, b, c};
+      for (VertexIndex& v : triangle) {
+        if (number[v] == kNone) {
+          number[v] = static_cast<VertexIndex>(body.surface.points.size());
+          body.surface.points.push_back(made.model.points[v]);
+        }
+        v = number[v];
+      }
+      body.surface.triangles.push_back(triangle);
       body.surface.patch.push_back(made.groups.group_of[f]);
     }
     bodies.push_back(std::move(body));
