@@ -9,8 +9,8 @@ namespace octafront::curved {
 
 namespace {
 
-// As for the smooth surface of triangles (bends.cpp): more is not resolved by the mesh; less is rounding.
-constexpr double kMostTrueBend = 0.2, kMostTrueMove = 0.5;
+// More is not resolved by the mesh; less is rounding. A quarter of a circle bends by .21 of its chord.
+constexpr double kMostTrueBend = 0.3, kMostTrueMove = 0.5;
 /// Corners go this far in steps, one a round; together with a neighbour whose way leads so far along theirs.
 constexpr double kFarthestTrueMove = 2, kSameWay = 0.5;
 constexpr double kStraightTrueBend = 1e-9;

@@ -78,9 +78,9 @@ Result generate(const Domain& domain, const Options& asked, const RunContext& co
   }
   if (off.empty()) return made;
   throw MeshingError(
-      fmt::format("the mesh does not keep the volumes of the CAD solids within {:g} %: {}. Give a "
-                  "smaller size, or a smaller `max_deviation`",
-                  100 * kVolumeKept, in_words(domain, off)));
+      fmt::format("the mesh does not keep the volumes of the CAD solids within {:g} %: {}. {}", 100 * kVolumeKept,
+                  in_words(domain, off),
+                  asked.size.elements ? "Ask for more elements" : "Give a smaller size, or a smaller `max_deviation`"));
 }
 
 SurfaceResult generate_surface(const Domain& domain, const Options& asked, const RunContext& context) {
