@@ -5,6 +5,7 @@
 #include <octafront/octafront.h>
 
 #include "base/geometry/hausdorff.h"
+#include "base/geometry/measures.h"
 #include "surface_bound.h"
 
 #include <cstdio>
@@ -55,6 +56,10 @@ Json evaluate(const std::string& mesh_file, const std::string& surface_file, boo
   if (!surface_file.empty()) input = repair_surface(read_surface(surface_file).surface).surface;
   const auto defect = kept ? first_defect(mesh, input) : first_defect(mesh);
   Json j{{"tets", mesh.tets.size()}, {"points", mesh.points.size()}, {"boundary_faces", mesh.boundary.size()}};
+  double volume = 0;
+  for (const Tet& t : mesh.tets)
+    volume += signed_volume(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]);
+  j["volume"] = volume;
   j["defect"] = defect ? Json(*defect) : Json(nullptr);
   add_quality(j, mesh);
   if (!input.triangles.empty()) add_truth(j, mesh, input);

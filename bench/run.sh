@@ -21,7 +21,7 @@
 #   bench/run.sh images      volumes of labels, each label judged; --peers: beside CGAL -> docs/measured/images-status.md
 #   bench/run.sh thin        plates, discs, tubes, shells 1:10 to 1:1e6, beside Gmsh and TetGen -> docs/measured/thin-bodies.md
 #   bench/run.sh budget      automatic sizes: budget said, elements made, time, what was given up -> docs/measured/budget-status.md
-#   bench/run.sh cad         CAD files at parts of their diagonal: volumes of solids, elements, time; --gmsh: beside Gmsh -> docs/measured/cad.md
+#   bench/run.sh cad         CAD files at parts of their diagonal: volumes of solids, elements, time; --peers: beside Gmsh and Netgen -> docs/measured/cad.md
 #   bench/run.sh dry_run     mesh --dry-run: elements, time and memory said and taken -> docs/use/command-line.md
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -36,7 +36,7 @@ need_packages "${build_packages[@]}" python3
 { [ "$1" != volume ] && [ "$1" != graded ]; } || need_packages "${peer_packages[@]}"
 [ "$1" != improve ] || need_packages "${peer_packages[@]}"
 [ "$1" != thin ] || need_packages tetgen gmsh
-[ "$1" != cad ] || need_packages gmsh "${cad_packages[@]}"
+[ "$1" != cad ] || need_packages gmsh netgen "${cad_packages[@]}"
 [ "$1" != cad ] || [ -d cad-models ] || scripts/get-cad.sh
 [ "$1" != peers ] || need_packages "${peer_packages[@]}" libcgal-dev libgmp-dev libmpfr-dev libboost-dev
 [ "$1" != complexes ] || need_packages "${test_packages[@]}" tetgen gmsh python3-gmsh

@@ -1,6 +1,6 @@
 """Netgen (Debian: netgen), through its library: its front on a kept surface, and its STL mesher, which triangulates anew.
 
-As a program of its own, which fill() and remesh() run:  python3 -m peers.netgen SURFACE.off MESH.mesh [SIZE]
+As a program of its own, which these run:  python3 -m peers.netgen SURFACE.off|CAD MESH.mesh [SIZE]
 """
 import ctypes
 import pathlib
@@ -22,6 +22,11 @@ def fill(surface, folder, timeout, optimize=True):
 def remesh(surface, folder, timeout, size):
     """Triangulates `surface` (OFF) anew to `size` and fills it. The mesh is MEDIT."""
     return run(surface, folder, timeout, size)
+
+
+def mesh_cad(file, folder, timeout, size):
+    """Meshes a STEP, IGES or BREP file. The mesh is MEDIT."""
+    return run(file, folder, timeout, size)
 
 
 def run(surface, folder, timeout, *more):
@@ -113,6 +118,30 @@ def mesh_stl_surface(library, surface, size):
     return mesh, parameters, start
 
 
+CAD_READERS = {".stp": "16Ng_OCC_Load_STEPEPKc", ".step": "16Ng_OCC_Load_STEPEPKc", ".igs": "16Ng_OCC_Load_IGESEPKc",
+               ".iges": "16Ng_OCC_Load_IGESEPKc", ".brep": "16Ng_OCC_Load_BREPEPKc"}
+
+
+def mesh_cad_surface(library, file, size):
+    """Netgen's OpenCASCADE mesher: (mesh, parameters, resources used when it began)."""
+    pointer = ctypes.c_void_p
+    function(library, "7Ng_InitEv", None)()
+    start = resource.getrusage(resource.RUSAGE_SELF)
+    geometry = function(library, CAD_READERS[pathlib.Path(file).suffix.lower()], pointer, ctypes.c_char_p)(str(file).encode())
+    if not geometry:
+        sys.exit("error: netgen cannot read it")
+    parameters = Parameters()
+    function(library, "21Ng_Meshing_ParametersC1Ev", None, pointer)(ctypes.byref(parameters))
+    parameters.maxh = size
+    mesh = function(library, "10Ng_NewMeshEv", pointer)()
+    for name in ("23Ng_OCC_SetLocalMeshSizeEPPvS1_PNS_21Ng_Meshing_ParametersE", "23Ng_OCC_GenerateEdgeMeshEPPvS1_PNS_21Ng_Meshing_ParametersE",
+                 "26Ng_OCC_GenerateSurfaceMeshEPPvS1_PNS_21Ng_Meshing_ParametersE"):
+        status = function(library, name, ctypes.c_int, pointer, pointer, pointer)(geometry, mesh, ctypes.byref(parameters))
+        if status != 0:
+            sys.exit(f"error: netgen's {name[2:].split('EPP')[0]} returned {status}")
+    return mesh, parameters, start
+
+
 def surface_triangles(library, mesh):
     pointer = ctypes.c_void_p
     get = function(library, "20Ng_GetSurfaceElementEPPviPi", ctypes.c_int, pointer, ctypes.c_int, pointer)
@@ -125,7 +154,8 @@ def surface_triangles(library, mesh):
 
 def remesh_in_process(surface, out, size):
     library = load()
-    mesh, parameters, start = mesh_stl_surface(library, surface, size)
+    by = mesh_cad_surface if pathlib.Path(surface).suffix.lower() in CAD_READERS else mesh_stl_surface
+    mesh, parameters, start = by(library, surface, size)
     fill_mesh(library, mesh, parameters, start)
     made = surface_triangles(library, mesh)
     save(library, mesh, made, out)
