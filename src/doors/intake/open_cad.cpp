@@ -150,7 +150,8 @@ struct Triangulated {
   FaceGroups groups;
   SurfaceMesh surface;
   std::string defects = {};  ///< in words; empty: none
-  double off = 0;            ///< worst_volume()
+  SurfaceDefects::Kind crossings = {};
+  double off = 0;  ///< worst_volume()
   Collapsed collapsed = {};
 
   bool is_good() const { return defects.empty() && off <= kVolumeOff; }
@@ -159,6 +160,24 @@ struct Triangulated {
     return off < other.off;
   }
 };
+
+/// More pairs of triangles that cross than this part of all are no accident of the triangles: the solid passes through
+/// itself, and what could be mended of it is another solid.
+constexpr double kMostCrossings = 0.1;
+
+void refuse_crossing_solid(const Triangulated& made) {
+  const SurfaceMesh& surface = made.surface;
+  if (static_cast<double>(made.crossings.count) <= kMostCrossings * static_cast<double>(surface.triangles.size()))
+    return;
+  const SurfaceDefects::Place& first = made.crossings.first[0];
+  const auto name = [&](std::size_t k) { return surface.patch_names[surface.patch_of(first.faces[k])]; };
+  throw InputError(fmt::format(
+      "the solid passes through itself: {} pairs of triangles cross, the first near ({:.6g}, {:.6g}, {:.6g}) of \"{}\" "
+      "and \"{}\". OpenCASCADE may have read a face as the part of its surface that was cut away; mend the solid in "
+      "the "
+      "CAD system, or write the file anew",
+      made.crossings.count, first.at.x, first.at.y, first.at.z, name(0), name(1)));
+}
 
 /// Names of the first few faces, in brackets.
 std::string listed(const CadModel& model, const std::vector<std::uint32_t>& faces) {
@@ -218,7 +237,7 @@ class CadIn {
     if (made.model.solids.empty()) return made;
     context_.report("checking", -1);
     const SurfaceDefects found = find_defects(repair_surface(made.surface, context_), context_);
-    if (!found.clean()) made.defects = found.describe();
+    if (!found.clean()) made.defects = found.describe(), made.crossings = found.self_intersections;
     made.off = worst_volume(made.model);
     return made;
   }
@@ -362,6 +381,7 @@ CadTaken take_cad(Domain& domain, const IntakeOptions& options, const std::strin
   CadTaken taken;
   const bool has_solids = !made.model.solids.empty();
   taken.is_clean = has_solids && made.defects.empty();
+  if (made.model.solids.size() == 1) refuse_crossing_solid(made);
   if (!made.defects.empty()) note(domain, options, "CAD", "the triangles are mended: " + made.defects);
   if (!taken.is_clean && made.model.solids.size() > 1)
     taken.bodies = bodies_of(made), taken.bound = bounds_by_solid(made.model);
