@@ -5,10 +5,14 @@
 #include <BRep_Tool.hxx>
 #include <GProp_GProps.hxx>
 #include <ShapeAnalysis_ShapeTolerance.hxx>
+#include <Standard_Failure.hxx>
 
 namespace octafront::cad {
 
 namespace {
+
+/// Error of volumes and areas, relative. By a fixed number of Gauss points they are off by up to .6 %.
+constexpr double kIntegral = 1e-6;
 
 Box3 box_of(const Bnd_Box& box) {
   Box3 out;
@@ -23,13 +27,23 @@ Box3 box_of(const Bnd_Box& box) {
 
 double volume_of(const TopoDS_Shape& solid) {
   GProp_GProps properties;
-  BRepGProp::VolumeProperties(solid, properties);
+  try {
+    BRepGProp::VolumeProperties(solid, properties, kIntegral);
+  } catch (const Standard_Failure&) {
+    properties = {};
+    BRepGProp::VolumeProperties(solid, properties);
+  }
   return properties.Mass();
 }
 
 double area_of(const TopoDS_Shape& shape) {
   GProp_GProps properties;
-  BRepGProp::SurfaceProperties(shape, properties);
+  try {
+    BRepGProp::SurfaceProperties(shape, properties, kIntegral);
+  } catch (const Standard_Failure&) {
+    properties = {};
+    BRepGProp::SurfaceProperties(shape, properties);
+  }
   return properties.Mass();
 }
 

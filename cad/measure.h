@@ -7,7 +7,7 @@
 
 namespace octafront::cad {
 
-/// Of the true geometry, by Gauss points: negative if the solid is inside out.
+/// Of the true geometry, within a millionth: negative if the solid is inside out.
 double volume_of(const TopoDS_Shape& solid);
 double area_of(const TopoDS_Shape& shape);
 double length_of(const TopoDS_Shape& edge);

@@ -5,11 +5,16 @@
 #include <IGESCAFControl_Reader.hxx>
 #include <IGESControl_Controller.hxx>
 #include <IGESData_GlobalSection.hxx>
+#include <IGESData_IGESEntity.hxx>
 #include <IGESData_IGESModel.hxx>
 #include <Interface_Check.hxx>
 #include <Interface_ReportEntity.hxx>
 #include <Interface_Static.hxx>
 #include <TCollection_HAsciiString.hxx>
+#include <TransferBRep.hxx>
+#include <Transfer_TransientProcess.hxx>
+#include <XSControl_TransferReader.hxx>
+#include <XSControl_WorkSession.hxx>
 #include <algorithm>
 #include <cctype>
 
@@ -60,14 +65,40 @@ std::string complaint_in_words(const std::string& complaint) {
   return text;
 }
 
+std::string entity_of(const IGESData_IGESModel& model, const Handle(Standard_Transient) & entity) {
+  return "entity " + to_utf8(model.StringLabel(entity)->ToCString());
+}
+
+std::string first_in_words(const std::vector<std::string>& sentences) {
+  return sentences[0] + (sentences.size() > 1 ? fmt::format(" (and {} more)", sentences.size() - 1) : "");
+}
+
+/// Where the library takes a value of its own, of a view or a colour, nothing is lost.
 std::vector<std::string> complaints_of(const IGESData_IGESModel& model) {
   std::vector<std::string> all;
   for (int i = 1; i <= model.NbEntities(); ++i) {
     if (!model.IsReportEntity(i)) continue;
     const Handle(Interface_Check)& check = model.ReportEntity(i)->Check();
-    for (int k = 1; k <= check->NbFails(); ++k)
-      all.push_back(fmt::format("entity {}: {}", to_utf8(model.StringLabel(model.Value(i))->ToCString()),
-                                complaint_in_words(check->CFail(k))));
+    for (int k = 1; k <= check->NbFails(); ++k) {
+      const std::string text = complaint_in_words(check->CFail(k));
+      if (text.find("Default value") == std::string::npos)
+        all.push_back(entity_of(model, model.Value(i)) + ": " + text);
+    }
+  }
+  return all;
+}
+
+/// Bounded and trimmed surfaces, faces, shells and solids that became no shape.
+std::vector<std::string> lost_surfaces(const IGESData_IGESModel& model,
+                                       const Handle(Transfer_TransientProcess) & process) {
+  std::vector<std::string> all;
+  for (int i = 1; i <= model.NbEntities(); ++i) {
+    const Handle(IGESData_IGESEntity) entity = model.Entity(i);
+    const int type = entity->TypeNumber();
+    if (type != 143 && type != 144 && type != 186 && type != 510 && type != 514) continue;
+    const Handle(Transfer_Binder) binder = process->Find(entity);
+    if (!binder.IsNull() && TransferBRep::ShapeResult(binder).IsNull())
+      all.push_back(entity_of(model, entity) + " could not be made");
   }
   return all;
 }
@@ -84,14 +115,14 @@ void read_iges(const std::string& path, const std::string& name, bool keep_going
   if (status != IFSelect_RetDone || model.IsNull() || model->NbEntities() == 0)
     throw Refusal(fmt::format("{} cannot be read as IGES: it is cut off, or not IGES at all", name));
   const std::vector<std::string> said = complaints_of(*model);
-  if (!said.empty())
-    lost(fmt::format("{}: {}{}", name, said[0], said.size() > 1 ? fmt::format(" (and {} more)", said.size() - 1) : ""),
-         keep_going, part);
+  if (!said.empty()) lost(name + ": " + first_in_words(said), keep_going, part);
   read_unit(*model, part);
   Handle(TDocStd_Document) document = new TDocStd_Document("");
   send_progress("reading", "its shapes");
   if (!reader.Transfer(document, progress_of("reading", "its shapes")))
     throw Refusal(fmt::format("{} holds no shape that can be read", name));
+  const std::vector<std::string> missing = lost_surfaces(*model, reader.WS()->TransferReader()->TransientProcess());
+  if (!missing.empty()) lost(name + ": " + first_in_words(missing), keep_going, part);
   take_document(document, {}, part);
 }
 

@@ -51,41 +51,43 @@ std::string entity_in_words(const StepData_StepModel& model, const Handle(Standa
   return fmt::format("{} ({})", text_of(model.StringLabel(entity)), model.TypeName(entity, false));
 }
 
-/// Do shapes, their places or their lengths hang on an entity? Colours, layers, tolerances, persons and dates do not.
-bool matters(const Handle(Standard_Transient) & entity) {
+/// Whether shapes and their places hang on an entity, by the package of the library that its type is from: others are
+/// of colours, texts, dimensions, angles, people.
+bool bears_shapes(const Handle(Standard_Transient) & entity) {
   const std::string_view type = entity->DynamicType()->Name();
-  if (type == "StepRepr_DescriptiveRepresentationItem" || type == "StepRepr_Representation" ||
-      type.find("SolidAngleUnit") != type.npos)
-    return false;
-  if (type.starts_with("StepBasic_"))
-    return type.starts_with("StepBasic_Product") || type.find("Unit") != type.npos || type.find("Measure") != type.npos;
-  return type.starts_with("StepGeom_") || type.starts_with("StepShape_") || type.starts_with("StepRepr_");
+  for (const char* of_properties : {"StepRepr_Descriptive", "StepRepr_Value", "StepRepr_Compound", "StepRepr_Property"})
+    if (type.starts_with(of_properties)) return false;
+  if (type == "StepRepr_Representation") return false;
+  return type.starts_with("StepGeom_") || type.starts_with("StepShape_") || type.starts_with("StepRepr_") ||
+         type.starts_with("StepBasic_Product") || type.find("LengthUnit") != type.npos || type.starts_with("StepData_");
 }
 
-/// Is a complaint of a parameter that is a mere label?
-bool is_of_a_label(std::string_view complaint) {
-  return complaint.find("(name)") != complaint.npos || complaint.find("(description)") != complaint.npos;
+/// A name that is none does no harm, nor do texts and the like among the items of a shape, which the library does not
+/// know: what is missing is said otherwise.
+bool is_harmless(const std::string& complaint) {
+  const auto has = [&](const char* words) { return complaint.find(words) != std::string::npos; };
+  return has("not a quoted String") || (has("(representation_item)") && has("illegal type"));
 }
 
-/// What the reader complained of: of the file, of entities that matter, and of others.
+/// What the reader complained of.
 struct Complaints {
-  std::vector<std::string> serious, others;
+  std::vector<std::string> of_shapes, of_others;
 };
 
 Complaints complaints(const StepData_StepModel& model) {
-  Complaints found;
+  Complaints all;
   const Handle(Interface_Check)& whole = model.GlobalCheck();
-  for (int i = 1; !whole.IsNull() && i <= whole->NbFails(); ++i) found.serious.push_back(to_utf8(whole->CFail(i)));
+  for (int i = 1; !whole.IsNull() && i <= whole->NbFails(); ++i) all.of_shapes.push_back(to_utf8(whole->CFail(i)));
   for (int i = 1; i <= model.NbEntities(); ++i) {
     if (!model.IsReportEntity(i)) continue;
     const Handle(Interface_Check)& check = model.ReportEntity(i)->Check();
     for (int k = 1; k <= check->NbFails(); ++k) {
-      const std::string what = to_utf8(check->CFail(k));
-      std::vector<std::string>& said = matters(model.Value(i)) && !is_of_a_label(what) ? found.serious : found.others;
-      said.push_back(entity_in_words(model, model.Value(i)) + ": " + what);
+      const std::string text = to_utf8(check->CFail(k));
+      (bears_shapes(model.Value(i)) && !is_harmless(text) ? all.of_shapes : all.of_others)
+          .push_back(entity_in_words(model, model.Value(i)) + ": " + text);
     }
   }
-  return found;
+  return all;
 }
 
 std::string first_of(const std::vector<std::string>& sentences) {
@@ -212,13 +214,14 @@ void read_step(const std::string& path, const std::string& name, bool keep_going
   send_progress("reading", "the text of the file");
   const IFSelect_ReturnStatus status = reader.ReadFile(path.c_str());
   const Handle(StepData_StepModel) model = reader.ChangeReader().StepModel();
-  auto [said, harmless] = model.IsNull() ? Complaints() : complaints(*model);
+  Complaints all = model.IsNull() ? Complaints() : complaints(*model);
+  std::vector<std::string>& said = all.of_shapes;
   if (status != IFSelect_RetDone && said.empty()) said = heard();
   if (status != IFSelect_RetDone || model.IsNull() || model->NbEntities() == 0)
     throw Refusal(fmt::format("{} cannot be read as STEP: {}", name,
                               said.empty() ? "it is cut off, or not STEP at all" : first_of(said)));
   if (!said.empty()) lost(fmt::format("{}: {}", name, first_of(said)), keep_going, part);
-  if (!harmless.empty()) part.notes.push_back("of what no shape hangs on was read with faults: " + first_of(harmless));
+  if (!all.of_others.empty()) part.notes.push_back("damaged entities that no shape needs: " + first_of(all.of_others));
   read_units(reader.ChangeReader(), part);
   Handle(TDocStd_Document) document = new TDocStd_Document("");
   send_progress("reading", "its shapes");

@@ -324,6 +324,18 @@ TEST_F(CadProgram, AMissingEntityIsNamedAndLeftOutIfAsked) {
   }
 }
 
+TEST_F(CadProgram, DamagedColoursAndTextsAreANote) {
+  const std::string file = written("box", ".step");
+  std::string text = content_of(file);
+  const std::string damaged = "#99990=COLOUR_RGB($,1.,0.,0.);\n#99991=POINT_STYLE('',#99990,$,$);\n";
+  text.insert(text.rfind("ENDSEC;"), damaged);
+  std::ofstream(file, std::ios::binary) << text;
+  const CadModel m = model_of_file(file);
+  ASSERT_EQ(m.solids.size(), 1u);
+  ASSERT_EQ(m.notes.size(), 1u);
+  EXPECT_NE(m.notes[0].find("no shape needs: #99990 (COLOUR_RGB)"), std::string::npos) << m.notes[0];
+}
+
 TEST_F(CadProgram, SameFileSameBytes) {
   const std::string file = written("filleted", ".step");
   EXPECT_EQ(run_reader(file, {}, kFine).bytes, run_reader(file, {}, kFine).bytes);
