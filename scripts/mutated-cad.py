@@ -104,6 +104,8 @@ def main():
             outcomes[done.returncode if done else "no end"] += 1
             if done and done.returncode:
                 messages[re.sub(r"[\d.e+-]*\d[\d.e+-]*", "N", done.stderr.strip().replace(folder, ""))[:160]] += 1
+            if (number + 1 - first) % 200 == 0:
+                print(f"{number + 1 - first} of {count}: {dict(outcomes)}", file=sys.stderr, flush=True)
             if wrong:
                 bad += 1
                 print(f"{number}: {source.name} {damage.__name__}: {wrong}: {done.stderr.strip()[:300] if done else ''}", flush=True)
