@@ -30,7 +30,7 @@ using namespace cad;
 constexpr double kSizeOfDiagonal = 1.0 / 40;
 /// Triangles lie nearer to the true faces than this part of an element, and of what the thinnest solid is thick (twice
 /// its volume over its area); but no finer than this part of the diagonal.
-constexpr double kDeflectionOfSize = 0.05, kDeflectionOfThickness = 0.1, kLeastDeflection = 2e-5;
+constexpr double kDeflectionOfSize = 0.05, kDeflectionOfThickness = 0.04, kLeastDeflection = 2e-5;
 constexpr double kAngle = 0.25;
 /// Neither finer nor coarser triangles are safer from crossing each other, where faces meet at flat angles: these are
 /// tried, as multiples of deflection and angle, until there are clean ones.
