@@ -92,9 +92,9 @@ void read_brep(const std::string& path, const std::string& file, Format format, 
 
 }  // namespace
 
-void lost(const std::string& sentence, bool keep_going, Part& part) {
+void lost(const std::string& sentence, bool keep_going) {
   if (!keep_going) throw Refusal(sentence + "; `keep_going` goes on without");
-  part.notes.push_back(sentence + "; went on without");
+  send_note(sentence + "; went on without");
 }
 
 Part read_part(const Arguments& arguments) {

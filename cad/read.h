@@ -26,7 +26,8 @@ void take_shape(const TopoDS_Shape& shape, Part& part);
 /// Equal names get numbers, in order: "bolt", "bolt#2". Solids without a name stay so.
 void number_names(Part& part);
 
-/// A part of the file that could not be read ends the reading, or is a note if the user goes on without it.
-void lost(const std::string& sentence, bool keep_going, Part& part);
+/// A part of the file that could not be read ends the reading, or is a note if the user goes on without it: told
+/// at once, for what follows may crash over it.
+void lost(const std::string& sentence, bool keep_going);
 
 }  // namespace octafront::cad

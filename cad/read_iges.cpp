@@ -115,14 +115,14 @@ void read_iges(const std::string& path, const std::string& name, bool keep_going
   if (status != IFSelect_RetDone || model.IsNull() || model->NbEntities() == 0)
     throw Refusal(fmt::format("{} cannot be read as IGES: it is cut off, or not IGES at all", name));
   const std::vector<std::string> said = complaints_of(*model);
-  if (!said.empty()) lost(name + ": " + first_in_words(said), keep_going, part);
+  if (!said.empty()) lost(name + ": " + first_in_words(said), keep_going);
   read_unit(*model, part);
   Handle(TDocStd_Document) document = new TDocStd_Document("");
   send_progress("reading", "its shapes");
   if (!reader.Transfer(document, progress_of("reading", "its shapes")))
     throw Refusal(fmt::format("{} holds no shape that can be read", name));
   const std::vector<std::string> missing = lost_surfaces(*model, reader.WS()->TransferReader()->TransientProcess());
-  if (!missing.empty()) lost(name + ": " + first_in_words(missing), keep_going, part);
+  if (!missing.empty()) lost(name + ": " + first_in_words(missing), keep_going);
   take_document(document, {}, part);
 }
 

@@ -92,7 +92,11 @@ Complaints complaints(const StepData_StepModel& model) {
 
 std::string first_of(const std::vector<std::string>& sentences) {
   if (sentences.empty()) return "";
-  return sentences.size() == 1 ? sentences[0] : fmt::format("{} (and {} more)", sentences[0], sentences.size() - 1);
+  std::string first = sentences[0];
+  // How the library's parser begins.
+  for (const std::string_view noise : {"**** ERR StepFile : ", "Undefined Parsing: "})
+    if (first.starts_with(noise)) first.erase(0, noise.size());
+  return sentences.size() == 1 ? first : fmt::format("{} (and {} more)", first, sentences.size() - 1);
 }
 
 Handle(StepRepr_GlobalUnitAssignedContext) units_of(const Handle(StepRepr_RepresentationContext) & context) {
@@ -220,7 +224,7 @@ void read_step(const std::string& path, const std::string& name, bool keep_going
   if (status != IFSelect_RetDone || model.IsNull() || model->NbEntities() == 0)
     throw Refusal(fmt::format("{} cannot be read as STEP: {}", name,
                               said.empty() ? "it is cut off, or not STEP at all" : first_of(said)));
-  if (!said.empty()) lost(fmt::format("{}: {}", name, first_of(said)), keep_going, part);
+  if (!said.empty()) lost(fmt::format("{}: {}", name, first_of(said)), keep_going);
   if (!all.of_others.empty()) part.notes.push_back("damaged entities that no shape needs: " + first_of(all.of_others));
   read_units(reader.ChangeReader(), part);
   Handle(TDocStd_Document) document = new TDocStd_Document("");
@@ -229,7 +233,7 @@ void read_step(const std::string& path, const std::string& name, bool keep_going
     throw Refusal(fmt::format("{} holds no shape that can be read{}", name, said.empty() ? "" : ": " + first_of(said)));
   const Handle(Transfer_TransientProcess) process = reader.ChangeReader().WS()->TransferReader()->TransientProcess();
   const std::vector<std::string> missing = lost_entities(*model, process);
-  if (!missing.empty()) lost(fmt::format("{}: {}", name, first_of(missing)), keep_going, part);
+  if (!missing.empty()) lost(fmt::format("{}: {}", name, first_of(missing)), keep_going);
   take_document(document, read_entities(*model, process), part);
 }
 

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -61,7 +62,7 @@ auto naming(const std::string& input, const Work& work) {
     if (input.empty()) throw;
     throw LeakError(fmt::format("{}: {}", input, leak.what()), leak.way);
   } catch (const InputError& error) {
-    if (input.empty()) throw;
+    if (input.empty() || std::string_view(error.what()).starts_with(input)) throw;
     throw InputError(fmt::format("{}: {}", input, error.what()));
   }
 }
