@@ -10,6 +10,7 @@ import argparse
 import json
 import math
 import pathlib
+import re
 import statistics
 import subprocess
 import sys
@@ -35,7 +36,9 @@ def info_of(program, file, timeout):
 
 def off_geometry(build, mesh, file, timeout):
     """How many nodes of the boundary are off the file's geometry, of how many, and the largest distance in diagonals."""
-    done = subprocess.run([build / "bench/octafront_judge_cad", mesh, file], capture_output=True, text=True, timeout=timeout, check=True)
+    done = subprocess.run([build / "bench/octafront_judge_cad", mesh, file], capture_output=True, text=True, timeout=timeout, check=False)
+    if done.returncode != 0:
+        return {}
     judged = json.loads(done.stdout).values()
     return {"nodes": sum(j["nodes"] for j in judged), "astray": sum(j["off"] for j in judged), "farthest": max(j["largest"] for j in judged)}
 
@@ -88,9 +91,13 @@ def by_netgen(build, file, size, volume, timeout):
 PEERS = {"Gmsh": by_gmsh("del3d"), "Gmsh's HXT": by_gmsh("hxt"), "Netgen": by_netgen}
 
 
+def without_folders(sentence):
+    return re.sub(r"/\S*/", "", sentence)
+
+
 def cells(made):
     if "error" in made:
-        return f"{made['error'][:90]} | | | | | {made['cpu']:.1f}"
+        return f"{without_folders(made['error'])[:90]} | | | | | {made['cpu']:.1f}"
     astray = f"{made['astray']:,}" + (f" ({made['farthest']:.1g})" if made["astray"] else "") if "astray" in made else ""
     return (f"{made['tets']:,} | {made['off']:+.3f} | {astray} | {made['beta']:.3f}, {made['least']:.3f} | {made['angle']:.1f} | "
             f"{made['cpu']:.1f}")

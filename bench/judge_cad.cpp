@@ -220,6 +220,7 @@ Summary judged(const TetMesh& mesh, const std::vector<std::uint32_t>& nodes, con
   for (const std::uint32_t v : nodes) {
     const Vec3 p = unit * mesh.points[v];
     const Found found = geometry.nearest({p.x, p.y, p.z}, allowed / 10);
+    if (!std::isfinite(found.distance)) throw std::runtime_error("the file has no face and no edge to measure to");
     ++sum.nodes;
     sum.off += found.distance > std::max(allowed, found.tolerance);
     if (found.distance / diagonal > sum.largest) sum.largest = found.distance / diagonal, sum.where = mesh.points[v];
