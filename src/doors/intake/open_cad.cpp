@@ -349,13 +349,16 @@ std::vector<double> bounds_of(const CadModel& model) {
   return bound;
 }
 
-/// Patches of joined solids have names of the solids too: back to those of the faces.
+/// Patches of joined solids have names of the solids too: back to those of the faces, unless mending made faces that
+/// are of none.
 void take_patches_of_faces(SurfaceMesh& joined, const std::vector<Body>& bodies) {
   std::vector<std::uint32_t> patch_of_source;
   for (const Body& body : bodies) {
     if (body.surface.patch_names != bodies[0].surface.patch_names) return;
     for (std::size_t t = 0; t < body.surface.triangles.size(); ++t) patch_of_source.push_back(body.surface.patch_of(t));
   }
+  for (std::size_t t = 0; t < joined.triangles.size(); ++t)
+    if (joined.source_of(t) >= patch_of_source.size()) return;
   for (std::size_t t = 0; t < joined.triangles.size(); ++t) joined.patch[t] = patch_of_source[joined.source_of(t)];
   joined.patch_names = bodies[0].surface.patch_names;
 }

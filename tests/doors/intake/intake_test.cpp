@@ -1,5 +1,7 @@
 // What an input becomes on the way in, and what is said of it.
 
+#include "doors/intake/intake.h"
+
 #include <octafront/domain.h>
 #include <octafront/error.h>
 #include <octafront/io.h>
@@ -194,6 +196,21 @@ TEST_F(Intake, NotesAreToldAsTheyCome) {
   ASSERT_EQ(told.size(), domain.notes.size());
   EXPECT_EQ(told[0], "|" + open + ": OFF, 47 triangles");
   EXPECT_EQ(told[1].find("repair|"), 0u) << told[1];
+}
+
+TEST(JoinedCad, KeepsThePatchesOfFacesThatMendingMade) {
+  intake::CadTaken taken;
+  taken.bodies.push_back({"solid", {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}, {0}, {"face 1"}, {}}});
+  Domain domain;
+  domain.surface = taken.bodies[0].surface;
+  domain.surface.patch_names = {"solid: closed by repair"};
+  domain.surface.sides = {{kNone, 0}};
+  domain.surface.source = {7};  // of none of the triangles that the solid had
+  intake::finish_joined_cad(domain, taken, ComplexOptions::Overlap::kLater);
+  EXPECT_EQ(domain.surface.patch_names[domain.surface.patch_of(0)], "solid: closed by repair");
+  domain.surface.source = {0};
+  intake::finish_joined_cad(domain, taken, ComplexOptions::Overlap::kLater);
+  EXPECT_EQ(domain.surface.patch_names[domain.surface.patch_of(0)], "face 1");
 }
 
 }  // namespace
