@@ -24,6 +24,9 @@ constexpr double kParallel = 0.985;
 /// So often is the whole done again at most; it ends long before, when nothing changes.
 constexpr int kRounds = 10;
 
+/// Faces that would not vanish as a whole are left out, and all is done again: so often at most, then nothing is done.
+constexpr int kRuns = 4;
+
 using Segment = std::array<VertexIndex, 2>;  ///< ascending
 
 Segment segment(VertexIndex a, VertexIndex b) {
@@ -39,6 +42,7 @@ class Collapse {
   Collapse(CadModel& model, double tiny, std::vector<bool> is_narrow, const std::vector<bool>& is_spared)
       : model_(model), tiny_(tiny), to_(model.points.size()), is_narrow_(std::move(is_narrow)) {
     std::iota(to_.begin(), to_.end(), VertexIndex{0});
+    at_tiny_.assign(model.points.size(), 0);
     for (std::size_t e = 0; e < model.edges.size(); ++e) lay_out(model.edges[e], is_spared);
     is_live_.assign(model.triangles.size(), 1);
     around_.resize(model.points.size()), origins_.resize(model.points.size()), rank_.resize(model.points.size(), 0);
@@ -84,6 +88,7 @@ class Collapse {
   void lay_out(const CadEdge& edge, const std::vector<bool>& is_spared) {
     const bool stays = std::any_of(edge.faces.begin(), edge.faces.end(), [&](std::uint32_t f) { return is_spared[f]; });
     const bool is_tiny = !stays && edge.length < tiny_ && edge.vertices.front() != edge.vertices.back();
+    for (std::size_t k = 0; is_tiny && k < edge.vertices.size(); ++k) at_tiny_[edge.vertices[k]] = 1;
     for (std::size_t k = 0; k + 1 < edge.vertices.size(); ++k)
       (is_tiny ? tiny_segments_ : long_segments_).insert(segment(edge.vertices[k], edge.vertices[k + 1]));
   }
@@ -107,7 +112,7 @@ class Collapse {
       for (std::size_t k = 0; k < 3; ++k) {
         const Segment s = segment(model_.triangles[t][k], model_.triangles[t][(k + 1) % 3]);
         const bool crosses = is_narrow_[face(t)] && !long_segments_.contains(s);
-        if (!crosses && !tiny_segments_.contains(s)) continue;
+        if (!crosses && !(at_tiny_[s[0]] && at_tiny_[s[1]] && tiny_segments_.contains(s))) continue;
         if (const double l = distance(model_.points[s[0]], model_.points[s[1]]); l < tiny_) found.insert({l, s});
       }
     }
@@ -146,6 +151,7 @@ class Collapse {
     rename_segments(gone, kept);
     to_[gone] = kept;
     rank_[kept] = std::max(rank_[kept], rank_[gone]);
+    at_tiny_[kept] |= at_tiny_[gone];
     origins_[kept].push_back(model_.points[gone]);
     origins_[kept].insert(origins_[kept].end(), origins_[gone].begin(), origins_[gone].end());
     return true;
@@ -382,6 +388,7 @@ class Collapse {
   std::vector<VertexIndex> to_;  ///< where a vertex went; itself: it stayed
   std::vector<bool> is_narrow_;  ///< per face
   std::vector<char> is_live_;    ///< per triangle
+  std::vector<char> at_tiny_;    ///< per vertex: of a tiny edge
   std::vector<std::vector<std::uint32_t>> around_;
   std::vector<std::vector<Vec3>> origins_;  ///< per vertex: where those came from that went to it
   std::vector<double> rank_;                ///< per vertex: the area of the largest wide face at it
@@ -401,7 +408,7 @@ Collapsed collapse_tiny(CadModel& model, double tiny, std::span<const std::uint3
   if (std::find(is_narrow.begin(), is_narrow.end(), true) == is_narrow.end() &&
       std::none_of(model.edges.begin(), model.edges.end(), is_tiny))
     return {};
-  while (true) {
+  for (int run = 0; run < kRuns; ++run) {
     CadModel made = model;
     const Collapsed collapsed = Collapse(made, tiny, is_narrow, is_spared).run();
     bool is_done = true;
@@ -411,6 +418,7 @@ Collapsed collapse_tiny(CadModel& model, double tiny, std::span<const std::uint3
     model = std::move(made);
     return collapsed;
   }
+  return {};
 }
 
 }  // namespace octafront::cad
