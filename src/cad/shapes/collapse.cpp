@@ -9,7 +9,6 @@
 #include <map>
 #include <numeric>
 #include <set>
-#include <tuple>
 #include <utility>
 
 namespace octafront::cad {
@@ -23,7 +22,6 @@ constexpr double kLookAway = -0.5;
 constexpr double kParallel = 0.985;
 /// So often is the whole done again at most; it ends long before, when nothing changes.
 constexpr int kRounds = 10;
-
 /// Faces that would not vanish as a whole are left out, and all is done again: so often at most, then nothing is done.
 constexpr int kRuns = 4;
 
@@ -306,9 +304,11 @@ class Collapse {
       if (!vertices.empty() && vertices.back() == v) continue;
       vertices.push_back(v), parameters.push_back(edge.parameters[k]);
     }
+    std::set<Segment> divided;  // each once: later collapses can make one of two parts what the whole was
     for (std::size_t k = 0; k + 1 < vertices.size();) {
-      const auto found = split_of_.find(segment(vertices[k], vertices[k + 1]));
-      if (found == split_of_.end()) {
+      const Segment whole = segment(vertices[k], vertices[k + 1]);
+      const auto found = split_of_.find(whole);
+      if (found == split_of_.end() || !divided.insert(whole).second) {
         ++k;
         continue;
       }

@@ -18,10 +18,9 @@ struct Collapsed {
 /// closes onto the larger of the faces beside them, by edges of triangles that are collapsed and, where both sides have
 /// other samples, turned. No vertex moves by more than `tiny`. What would close a solid or a gap of that thickness,
 /// turn a triangle over or change how the surface hangs together stays, and so does a face that would not vanish as a
-/// whole. Edges of the model follow: of two that became
-/// one, the edge of the larger face stays, between the faces that meet in it now; it is smooth where these were
-/// parallel before. `spared` faces and their edges stay. Whether the surface crosses itself afterwards is for the
-/// caller to see.
+/// whole. Edges of the model follow: of two that became one, the edge of the larger face stays, between the faces that
+/// meet in it now; it is smooth where these were parallel before. `spared` faces and their edges stay. Whether the
+/// surface crosses itself afterwards is for the caller to see.
 Collapsed collapse_tiny(CadModel& model, double tiny, std::span<const std::uint32_t> spared = {});
 
 }  // namespace octafront::cad

@@ -174,8 +174,7 @@ void refuse_crossing_solid(const Triangulated& made) {
   throw InputError(fmt::format(
       "the solid passes through itself: {} pairs of triangles cross, the first near ({:.6g}, {:.6g}, {:.6g}) of \"{}\" "
       "and \"{}\". OpenCASCADE may have read a face as the part of its surface that was cut away; mend the solid in "
-      "the "
-      "CAD system, or write the file anew",
+      "the CAD system, or write the file anew",
       made.crossings.count, first.at.x, first.at.y, first.at.z, name(0), name(1)));
 }
 
@@ -370,8 +369,7 @@ void refuse_overlaps(const Domain& domain) {
     if (lost > kMostLost * domain.true_volumes[r])
       throw InputError(
           fmt::format("\"{}\" overlaps other solids in {:.3g} (its volume: {:.6g}). `overlap` first or later gives "
-                      "what they share to "
-                      "one of them, new makes regions of it",
+                      "what they share to one of them, new makes regions of it",
                       region_name(domain, r), lost, domain.true_volumes[r]));
   }
 }
