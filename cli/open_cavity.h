@@ -1,6 +1,7 @@
 #pragma once
 
 #include <octafront/error.h>
+#include <octafront/open_cavity_error.h>
 
 #include <filesystem>
 

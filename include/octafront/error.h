@@ -1,13 +1,7 @@
 #pragma once
 
-#include <octafront/surface_mesh.h>
-#include <octafront/vec.h>
-
-#include <cstdint>
 #include <stdexcept>
 #include <string>
-#include <utility>
-#include <vector>
 
 namespace octafront {
 
@@ -33,14 +27,6 @@ class InputError : public Error {
 class MeshingError : public Error {
  public:
   using Error::Error;
-};
-
-/// A cavity of the volume front that nothing could close. Carries the evidence: a small closed surface, facing outward.
-class OpenCavityError : public MeshingError {
- public:
-  OpenCavityError(const std::string& what, SurfaceMesh open_cavity)
-      : MeshingError(what), cavity(std::move(open_cavity)) {}
-  SurfaceMesh cavity;
 };
 
 /// The output could not be written. CLI status 5.

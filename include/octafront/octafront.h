@@ -7,12 +7,14 @@
 #include <octafront/domain.h>
 #include <octafront/error.h>
 #include <octafront/generate.h>
+#include <octafront/ids.h>
 #include <octafront/image.h>
 #include <octafront/image_surface.h>
 #include <octafront/improve_existing.h>
 #include <octafront/io.h>
 #include <octafront/mend.h>
 #include <octafront/named_groups.h>
+#include <octafront/open_cavity_error.h>
 #include <octafront/option_table.h>
 #include <octafront/options.h>
 #include <octafront/quality.h>

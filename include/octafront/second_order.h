@@ -1,14 +1,17 @@
 #pragma once
 
+#include <octafront/ids.h>
 #include <octafront/no_context.h>
-#include <octafront/surface_mesh.h>
 #include <octafront/tet_mesh.h>
+#include <octafront/vec.h>
 
 #include <cstdint>
 #include <optional>
 #include <vector>
 
 namespace octafront {
+
+struct SurfaceMesh;
 
 /// What became of the edges of a mesh when it was made one of second order, and how good its elements are.
 struct SecondOrderSummary {

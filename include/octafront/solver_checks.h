@@ -2,6 +2,7 @@
 
 #include <octafront/no_context.h>
 #include <octafront/tet_mesh.h>
+#include <octafront/vec.h>
 
 #include <cstdint>
 #include <string>

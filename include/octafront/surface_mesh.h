@@ -1,29 +1,13 @@
 #pragma once
 
+#include <octafront/ids.h>
 #include <octafront/vec.h>
 
-#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 namespace octafront {
-
-/// Index of a vertex in the `points` of its mesh. 32 bits: a mesh holds fewer than 2^32 - 1 vertices.
-using VertexIndex = std::uint32_t;
-/// "No such vertex, face, element or patch".
-inline constexpr std::uint32_t kNone = 0xffffffffu;
-
-/// Vertex indices, counter-clockwise when seen from outside the body.
-using Triangle = std::array<VertexIndex, 3>;
-/// Two vertex indices; as a key of an undirected edge the smaller one comes first.
-using Edge = std::array<VertexIndex, 2>;
-constexpr Edge sorted_edge(VertexIndex a, VertexIndex b) {
-  return a < b ? Edge{a, b} : Edge{b, a};
-}
-
-/// The regions on the two sides of a triangle: in front, where its normal points, and behind; kNone: outside.
-using Sides = std::array<std::uint32_t, 2>;
 
 /// A triangle surface as flat arrays: the boundary of one body, or a *complex* of several regions.
 ///

@@ -1,5 +1,7 @@
 #include "base/geometry/hausdorff.h"
 
+#include <octafront/surface_mesh.h>
+
 #include "base/core/parallel.h"
 #include "base/geometry/measures.h"
 

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <octafront/surface_mesh.h>
-
 #include "base/geometry/triangle_tree.h"
 
 #include <cstdint>
 
 namespace octafront {
+
+struct SurfaceMesh;
 
 /// Bounds on a Hausdorff distance, in input units: lower <= distance <= upper, to rounding.
 struct HausdorffBounds {

@@ -1,6 +1,7 @@
 #pragma once
 
-#include <octafront/surface_mesh.h>
+#include <octafront/ids.h>
+#include <octafront/vec.h>
 
 #include <vector>
 

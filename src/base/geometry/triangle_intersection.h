@@ -3,7 +3,7 @@
 // Do triangles and segments meet? Exact for all inputs of the range of predicates.h: touching, coplanar and collinear
 // cases are decided by signs alone. Boxes and one-sidedness come first, so that most pairs cost a few comparisons.
 
-#include <octafront/surface_mesh.h>
+#include <octafront/ids.h>
 #include <octafront/vec.h>
 
 #include <array>

@@ -1,5 +1,7 @@
 #include "base/geometry/triangle_tree.h"
 
+#include <octafront/surface_mesh.h>
+
 #include "base/core/parallel.h"
 #include "base/core/validate.h"
 #include "base/geometry/measures.h"
@@ -96,6 +98,8 @@ struct TriangleTree::Builder {
     tree.nodes_[n] = {box, child, 0};
   }
 };
+
+TriangleTree::TriangleTree(const SurfaceMesh& surface) : TriangleTree(surface.points, surface.triangles) {}
 
 TriangleTree::TriangleTree(std::span<const Vec3> points, std::span<const Triangle> triangles) {
   if (triangles.empty()) return;

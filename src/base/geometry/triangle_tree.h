@@ -1,6 +1,6 @@
 #pragma once
 
-#include <octafront/surface_mesh.h>
+#include <octafront/ids.h>
 #include <octafront/vec.h>
 
 #include "base/geometry/triangle_box.h"
@@ -16,6 +16,8 @@
 
 namespace octafront {
 
+struct SurfaceMesh;
+
 /// A tree of axis-parallel boxes over triangles: nearest points, boxes, segments, rays, inside or outside.
 /// Holds its own copy of the coordinates. Deterministic; built in O(n log n); queries are const and thread-safe.
 class TriangleTree {
@@ -24,7 +26,7 @@ class TriangleTree {
 
   /// REQUIRES finite coordinates.
   TriangleTree(std::span<const Vec3> points, std::span<const Triangle> triangles);
-  explicit TriangleTree(const SurfaceMesh& surface) : TriangleTree(surface.points, surface.triangles) {}
+  explicit TriangleTree(const SurfaceMesh& surface);
 
   bool empty() const { return items_.empty(); }
   Box3 box() const { return empty() ? Box3{} : nodes_[0].box; }

@@ -1,5 +1,7 @@
 #include "base/geometry/winding_number.h"
 
+#include <octafront/surface_mesh.h>
+
 #include "base/geometry/measures.h"
 
 #include <algorithm>

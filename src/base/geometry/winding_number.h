@@ -1,6 +1,5 @@
 #pragma once
 
-#include <octafront/surface_mesh.h>
 #include <octafront/vec.h>
 
 #include <array>
@@ -8,6 +7,8 @@
 #include <vector>
 
 namespace octafront {
+
+struct SurfaceMesh;
 
 /// The generalised winding number of a triangle soup: the sum of the solid angles of all triangles over 4 pi. 1 inside
 /// a closed outward surface and 0 outside it; over holes it passes smoothly from one to the other, and where shells

@@ -1,6 +1,7 @@
 #include "base/mesh/complex.h"
 
 #include <octafront/error.h>
+#include <octafront/surface_mesh.h>
 
 #include "base/core/disjoint_sets.h"
 #include "base/mesh/face_table.h"

@@ -3,7 +3,7 @@
 // A complex (octafront/surface_mesh.h) as the stages see it: which of its triangles bound what, and which faces and
 // regions a mesh that fills it has. A surface without `sides` is the complex of one region.
 
-#include <octafront/surface_mesh.h>
+#include <octafront/ids.h>
 #include <octafront/tet_mesh.h>
 
 #include "base/mesh/face_table.h"
@@ -13,6 +13,8 @@
 #include <vector>
 
 namespace octafront {
+
+struct SurfaceMesh;
 
 /// Whether the surface has more than one region, or sheets, or triangles that do not face outward.
 bool is_complex(const SurfaceMesh& surface);

@@ -1,12 +1,13 @@
 #pragma once
 
-#include <octafront/surface_mesh.h>
 #include <octafront/tet_mesh.h>
 
 #include <optional>
 #include <string>
 
 namespace octafront {
+
+struct SurfaceMesh;
 
 /// How a valid mesh differs from the complex that it should fill, as a sentence: a triangle of one that the other
 /// lacks, other regions on its sides, or regions that meet without an interface.

@@ -1,5 +1,7 @@
 #include "base/mesh/complex_patches.h"
 
+#include <octafront/surface_mesh.h>
+
 #include "base/mesh/complex.h"
 
 #include <map>

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <octafront/surface_mesh.h>
-
 namespace octafront {
+
+struct SurfaceMesh;
 
 /// Gives each pair of regions of each patch of a complex a patch of its own. One that has no name yet is called by the
 /// regions on its sides, "bone|skin", or by the one region behind it; where a name stood for several pairs, the regions

@@ -1,7 +1,7 @@
 #pragma once
 
+#include <octafront/ids.h>
 #include <octafront/run_context.h>
-#include <octafront/surface_mesh.h>
 
 #include <cstddef>
 #include <cstdint>

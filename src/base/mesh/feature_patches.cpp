@@ -1,5 +1,7 @@
 #include "base/mesh/feature_patches.h"
 
+#include <octafront/surface_mesh.h>
+
 #include <algorithm>
 
 #include <fmt/core.h>

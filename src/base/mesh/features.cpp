@@ -1,5 +1,7 @@
 #include "base/mesh/features.h"
 
+#include <octafront/surface_mesh.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>

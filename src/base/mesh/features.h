@@ -1,12 +1,14 @@
 #pragma once
 
-#include <octafront/surface_mesh.h>
+#include <octafront/ids.h>
 
 #include "base/mesh/edge_table.h"
 
 #include <vector>
 
 namespace octafront {
+
+struct SurfaceMesh;
 
 /// The lines and points of a surface that every later stage must keep.
 struct Features {

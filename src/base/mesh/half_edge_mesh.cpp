@@ -1,6 +1,7 @@
 #include "base/mesh/half_edge_mesh.h"
 
 #include <octafront/error.h>
+#include <octafront/surface_mesh.h>
 
 #include "base/core/validate.h"
 #include "base/mesh/surface_topology.h"

@@ -1,6 +1,7 @@
 #pragma once
 
-#include <octafront/surface_mesh.h>
+#include <octafront/ids.h>
+#include <octafront/vec.h>
 
 #include "base/mesh/edge_table.h"
 
@@ -10,6 +11,8 @@
 #include <vector>
 
 namespace octafront {
+
+struct SurfaceMesh;
 
 /// A closed manifold triangle surface with adjacency: the twin of a half-edge is the same edge in the other triangle,
 /// and `twin[twin[h]] = h`. Everything else is derived.

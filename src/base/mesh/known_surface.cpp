@@ -1,5 +1,7 @@
 #include "base/mesh/known_surface.h"
 
+#include <octafront/surface_mesh.h>
+
 #include <mutex>
 #include <optional>
 #include <utility>

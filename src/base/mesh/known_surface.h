@@ -1,5 +1,7 @@
 #pragma once
 
+#include <octafront/surface_mesh.h>
+
 #include "base/geometry/triangle_tree.h"
 #include "base/mesh/edge_table.h"
 #include "base/mesh/features.h"

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <octafront/tet_mesh.h>
+#include <octafront/vec.h>
 
 #include <cstddef>
 #include <vector>

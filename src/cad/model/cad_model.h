@@ -4,7 +4,7 @@
 // faces and edges as records. Made by the program octafront-cad, which alone knows OpenCASCADE; travels as bytes
 // (stream.h), and answers for itself afterwards (cad/shapes).
 
-#include <octafront/surface_mesh.h>
+#include <octafront/ids.h>
 #include <octafront/vec.h>
 
 #include <array>

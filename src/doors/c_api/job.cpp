@@ -1,6 +1,7 @@
 #include "doors/c_api/job.h"
 
 #include <octafront/error.h>
+#include <octafront/open_cavity_error.h>
 
 #include <chrono>
 #include <new>

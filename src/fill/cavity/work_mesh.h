@@ -1,7 +1,8 @@
 #pragma once
 
-#include <octafront/surface_mesh.h>
+#include <octafront/ids.h>
 #include <octafront/tet_mesh.h>
+#include <octafront/vec.h>
 
 #include "base/core/flat_map.h"
 #include "base/core/groups.h"

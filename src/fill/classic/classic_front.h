@@ -1,7 +1,8 @@
 #pragma once
 
-#include <octafront/surface_mesh.h>
+#include <octafront/ids.h>
 #include <octafront/tet_mesh.h>
+#include <octafront/vec.h>
 
 #include "fill/classic/alternating_tree.h"
 

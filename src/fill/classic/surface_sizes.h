@@ -1,9 +1,10 @@
 #pragma once
 
 #include <octafront/size_field.h>
-#include <octafront/surface_mesh.h>
 
 namespace octafront {
+
+struct SurfaceMesh;
 
 /// Sizes without a background grid: at a vertex of the surface the mean length of its edges, on a triangle
 /// interpolated, and at any other point what they are at the nearest point of the surface. They follow the surface

@@ -2,12 +2,13 @@
 
 #include <octafront/options.h>
 #include <octafront/size_field.h>
-#include <octafront/surface_mesh.h>
 #include <octafront/tet_mesh.h>
 
 #include "base/core/stage.h"
 
 namespace octafront {
+
+struct SurfaceMesh;
 
 /// Fills a clean surface with tetrahedra of the wanted size: the volume front, then the closing of what it leaves.
 /// The boundary of the result is `surface`, triangle for triangle; the first points of the result are those of the

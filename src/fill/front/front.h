@@ -6,8 +6,8 @@
 //   partition (blocks of space) -> front, front_index (open faces and what is near) -> advance, block_run
 //     (candidates, attempt, meeting) -> ladder (backtrack, the means of the cavity room, recover_cavity) -> regions
 
+#include <octafront/ids.h>
 #include <octafront/size_field.h>
-#include <octafront/surface_mesh.h>
 #include <octafront/tet_mesh.h>
 
 #include "fill/front/front_index.h"

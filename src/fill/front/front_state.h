@@ -1,6 +1,5 @@
 #pragma once
 
-#include <octafront/surface_mesh.h>
 #include <octafront/tet_mesh.h>
 #include <octafront/vec.h>
 

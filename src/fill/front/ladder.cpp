@@ -1,6 +1,7 @@
 #include "fill/front/ladder.h"
 
 #include <octafront/error.h>
+#include <octafront/open_cavity_error.h>
 
 #include "base/core/stage_timer.h"
 #include "base/core/validate.h"

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <octafront/run_context.h>
+#include <octafront/surface_mesh.h>
 
 #include "fill/cavity/excavation.h"
 

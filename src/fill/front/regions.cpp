@@ -1,5 +1,7 @@
 #include "fill/front/regions.h"
 
+#include <octafront/surface_mesh.h>
+
 #include "base/core/disjoint_sets.h"
 #include "base/mesh/complex.h"
 

@@ -1,9 +1,10 @@
 #pragma once
 
-#include <octafront/surface_mesh.h>
 #include <octafront/tet_mesh.h>
 
 namespace octafront {
+
+struct SurfaceMesh;
 
 /// `mesh` fills `surface`, whose points come first: the surface's triangles and patches become its boundary (of a
 /// complex, its boundary and interfaces), and its tetrahedra get their regions: those of the complex, or bodies (outer

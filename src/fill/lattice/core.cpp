@@ -1,5 +1,7 @@
 #include "fill/lattice/core.h"
 
+#include <octafront/surface_mesh.h>
+
 #include "base/core/parallel.h"
 #include "base/geometry/triangle_tree.h"
 #include "base/mesh/complex.h"

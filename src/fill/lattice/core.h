@@ -1,13 +1,15 @@
 #pragma once
 
+#include <octafront/ids.h>
 #include <octafront/run_context.h>
 #include <octafront/size_field.h>
-#include <octafront/surface_mesh.h>
 #include <octafront/tet_mesh.h>
 
 #include <vector>
 
 namespace octafront {
+
+struct SurfaceMesh;
 
 /// The tetrahedra of the lattice that lie deep inside a surface.
 struct LatticeCore {

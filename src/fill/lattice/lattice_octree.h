@@ -2,7 +2,6 @@
 
 #include <octafront/run_context.h>
 #include <octafront/size_field.h>
-#include <octafront/surface_mesh.h>
 
 #include "base/geometry/triangle_tree.h"
 #include "sizing/field/octree.h"
@@ -11,6 +10,8 @@
 #include <vector>
 
 namespace octafront {
+
+struct SurfaceMesh;
 
 /// The octree of a lattice: its leaves inside the surface have the side that the lattice needs for the wanted edge
 /// length; outside they stay coarse.

@@ -1,6 +1,7 @@
 #include "fill/recovery/carve.h"
 
 #include <octafront/error.h>
+#include <octafront/surface_mesh.h>
 
 #include <algorithm>
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <octafront/surface_mesh.h>
+
 #include "fill/recovery/exact_points.h"
 #include "fill/recovery/labelled_complex.h"
 #include "fill/recovery/subdivided_surface.h"

@@ -2,12 +2,13 @@
 
 // The last rung of the closing ladder, and the fast way to a coarse exact mesh. See docs/how/recovery.md.
 
-#include <octafront/surface_mesh.h>
 #include <octafront/tet_mesh.h>
 
 #include "base/core/stage.h"
 
 namespace octafront {
+
+struct SurfaceMesh;
 
 /// A cavity whose recovery needs very many points is rather made larger; a whole surface is tried again, with more.
 enum class RecoveryPatience { kCavity, kSurface };

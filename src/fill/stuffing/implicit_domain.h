@@ -1,12 +1,13 @@
 #pragma once
 
-#include <octafront/surface_mesh.h>
 #include <octafront/vec.h>
 
 #include "base/geometry/triangle_tree.h"
 #include "base/geometry/winding_number.h"
 
 namespace octafront {
+
+struct SurfaceMesh;
 
 /// What isosurface stuffing asks of the body that it fills. Queries are const and thread-safe.
 class ImplicitDomain {

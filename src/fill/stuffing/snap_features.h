@@ -1,7 +1,6 @@
 #pragma once
 
 #include <octafront/size_field.h>
-#include <octafront/surface_mesh.h>
 #include <octafront/tet_mesh.h>
 
 #include "base/core/stage.h"
@@ -9,6 +8,8 @@
 #include "base/mesh/features.h"
 
 namespace octafront {
+
+struct SurfaceMesh;
 
 /// Moves boundary vertices of a stuffed mesh onto the corners and feature curves of `surface` near them, wherever every
 /// tetrahedron around the vertex stays positive (exactly) and of fair shape, and the boundary does not meet itself

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <octafront/size_field.h>
-#include <octafront/surface_mesh.h>
 #include <octafront/tet_mesh.h>
 
 #include "base/core/stage.h"
@@ -9,6 +8,8 @@
 #include "fill/stuffing/implicit_domain.h"
 
 namespace octafront {
+
+struct SurfaceMesh;
 
 /// Fills `surface` by isosurface stuffing. Boundary faces get the patch of the input triangle nearest to them, and that
 /// triangle as their source; the boundary's vertices come first; regions are numbered by connected parts of the mesh,

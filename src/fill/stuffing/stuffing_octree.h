@@ -2,12 +2,13 @@
 
 #include <octafront/run_context.h>
 #include <octafront/size_field.h>
-#include <octafront/surface_mesh.h>
 
 #include "fill/lattice/lattice_octree.h"
 #include "fill/stuffing/implicit_domain.h"
 
 namespace octafront {
+
+struct SurfaceMesh;
 
 /// The octree below a stuffed lattice: leaves of the wanted size inside the body, and at least one leaf of that size
 /// beyond it all around, so that where sizes are uniform the boundary runs through leaves of one size only, and nowhere

@@ -1,3 +1,5 @@
+#include <octafront/surface_mesh.h>
+
 #include "fill/stuffing/implicit_domain.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <octafront/run_context.h>
-#include <octafront/surface_mesh.h>
+#include <octafront/vec.h>
 
 #include <cstdint>
 #include <span>

@@ -1,3 +1,5 @@
+#include <octafront/surface_mesh.h>
+
 #include "formats/containers/text_writer.h"
 #include "formats/write/writers.h"
 

@@ -1,4 +1,5 @@
 #include <octafront/error.h>
+#include <octafront/surface_mesh.h>
 
 #include "formats/write/writers.h"
 

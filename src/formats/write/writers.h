@@ -2,12 +2,15 @@
 
 // formats/write: writers, one source per format. They take a surface or MeshParts, and throw OutputError.
 
-#include <octafront/surface_mesh.h>
 #include <octafront/tet_mesh.h>
 
 #include "formats/containers/atomic_file.h"
 #include "formats/parts/mesh_output.h"
 #include "formats/parts/mesh_parts.h"
+
+namespace octafront {
+struct SurfaceMesh;
+}
 
 namespace octafront::io {
 

@@ -1,5 +1,7 @@
 #include "improve/boundary/feature_curves.h"
 
+#include <octafront/surface_mesh.h>
+
 namespace octafront::improve {
 
 TriangleTree tree_of_segments(const SurfaceMesh& surface, const std::vector<Edge>& edges) {

@@ -2,6 +2,7 @@
 
 // The feature curves of a surface as paths that a point can walk along.
 
+#include <octafront/ids.h>
 #include <octafront/surface_mesh.h>
 
 #include "base/geometry/triangle_tree.h"
@@ -10,6 +11,10 @@
 #include <array>
 #include <optional>
 #include <vector>
+
+namespace octafront {
+struct SurfaceMesh;
+}
 
 namespace octafront::improve {
 

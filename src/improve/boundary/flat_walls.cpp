@@ -1,5 +1,7 @@
 #include "improve/boundary/flat_walls.h"
 
+#include <octafront/surface_mesh.h>
+
 #include "base/core/disjoint_sets.h"
 #include "base/geometry/measures.h"
 

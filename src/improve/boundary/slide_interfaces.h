@@ -1,12 +1,13 @@
 #pragma once
 
-#include <octafront/surface_mesh.h>
 #include <octafront/tet_mesh.h>
 
 #include "base/core/stage.h"
 #include "base/mesh/features.h"
 
 namespace octafront {
+
+struct SurfaceMesh;
 
 /// Moves vertices inside the patches of interfaces along the input's patch, where that makes the worst element around
 /// them better, for some sweeps; those of curves and of the boundary stay. No element is inverted (exact signs), so no

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <octafront/surface_mesh.h>
 #include <octafront/tet_mesh.h>
 
 #include "base/core/stage.h"
@@ -9,6 +8,8 @@
 #include "improve/boundary/input_force.h"
 
 namespace octafront {
+
+struct SurfaceMesh;
 
 /// What raise_flat() did.
 struct RaisedFlat {

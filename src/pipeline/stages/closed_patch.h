@@ -1,6 +1,6 @@
 #pragma once
 
-#include <octafront/surface_mesh.h>
+#include <octafront/ids.h>
 #include <octafront/tet_mesh.h>
 
 #include "base/geometry/triangle_tree.h"
@@ -10,6 +10,8 @@
 #include <vector>
 
 namespace octafront {
+
+struct SurfaceMesh;
 
 /// What repair closed (kClosedByRepair). Its rim is no line of the body where the surface goes on smoothly: no element
 /// need follow it. So it is meshed as a part of the patches around it, and named again in the mesh.

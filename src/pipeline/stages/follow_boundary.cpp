@@ -1,5 +1,7 @@
 #include "pipeline/stages/follow_boundary.h"
 
+#include <octafront/surface_mesh.h>
+
 #include "base/core/parallel.h"
 
 #include <algorithm>

@@ -1,11 +1,12 @@
 #pragma once
 
-#include <octafront/surface_mesh.h>
 #include <octafront/tet_mesh.h>
 
 #include "base/geometry/triangle_tree.h"
 
 namespace octafront {
+
+struct SurfaceMesh;
 
 /// After improvement has moved the boundary: each triangle of the mesh that is no longer the one of `before` gets as
 /// its source that of the triangle of the `input` that is nearest now, found by the `tree` over it. `before`: the

@@ -10,7 +10,6 @@
 #include <octafront/repair.h>
 #include <octafront/second_order.h>
 #include <octafront/size_field.h>
-#include <octafront/surface_mesh.h>
 #include <octafront/tet_mesh.h>
 
 #include "base/geometry/true_geometry.h"
@@ -23,6 +22,8 @@
 #include <span>
 
 namespace octafront {
+
+struct SurfaceMesh;
 
 /// The input as every later stage needs it.
 struct Prepared {

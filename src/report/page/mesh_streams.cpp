@@ -1,6 +1,7 @@
 #include "report/page/mesh_streams.h"
 
 #include <octafront/quality.h>
+#include <octafront/surface_mesh.h>
 
 #include "base/core/parallel.h"
 #include "base/mesh/adjacency.h"

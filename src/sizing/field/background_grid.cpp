@@ -1,5 +1,7 @@
 #include "sizing/field/background_grid.h"
 
+#include <octafront/surface_mesh.h>
+
 #include "base/core/parallel.h"
 #include "sizing/field/gradation.h"
 #include "sizing/field/inside_fraction.h"

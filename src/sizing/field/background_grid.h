@@ -1,7 +1,6 @@
 #pragma once
 
 #include <octafront/run_context.h>
-#include <octafront/surface_mesh.h>
 
 #include "sizing/field/octree_field.h"
 
@@ -9,6 +8,8 @@
 #include <vector>
 
 namespace octafront {
+
+struct SurfaceMesh;
 
 /// A size wanted at a point of the surface, or in space.
 struct SizeSample {

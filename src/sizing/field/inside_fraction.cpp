@@ -1,5 +1,7 @@
 #include "sizing/field/inside_fraction.h"
 
+#include <octafront/surface_mesh.h>
+
 #include "base/core/buckets.h"
 #include "base/core/parallel.h"
 

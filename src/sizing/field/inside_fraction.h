@@ -1,13 +1,13 @@
 #pragma once
 
-#include <octafront/surface_mesh.h>
-
 #include "sizing/field/octree.h"
 
 #include <cstdint>
 #include <vector>
 
 namespace octafront {
+
+struct SurfaceMesh;
 
 /// A small flat part of the surface.
 struct SurfacePiece {

@@ -1,6 +1,7 @@
 #include "sizing/prediction/affordable.h"
 
 #include <octafront/error.h>
+#include <octafront/surface_mesh.h>
 
 #include "base/geometry/measures.h"
 #include "base/mesh/index_range.h"

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <octafront/options.h>
-#include <octafront/surface_mesh.h>
 
 #include <cstddef>
 #include <functional>
@@ -9,6 +8,8 @@
 #include <vector>
 
 namespace octafront {
+
+struct SurfaceMesh;
 
 /// Tetrahedra per cube of the wanted edge length. Measured on uniform sizes of 1/20 and 1/50 of the diagonal over some
 /// twenty models: 9.24 with a spread of 3 %. (Space filled by regular tetrahedra would have 6 sqrt(2) = 8.49, the

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <octafront/surface_mesh.h>
-
 #include "base/geometry/triangle_tree.h"
 #include "sizing/field/inside_fraction.h"
 
@@ -9,6 +7,8 @@
 #include <vector>
 
 namespace octafront {
+
+struct SurfaceMesh;
 
 /// Whether sheets with these unit normals face each other, or turn their backs: within about 45 degrees. Beyond, they
 /// form a corner rather than a wall or a gap.

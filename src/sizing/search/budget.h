@@ -2,13 +2,14 @@
 
 #include <octafront/options.h>
 #include <octafront/size_field.h>
-#include <octafront/surface_mesh.h>
 
 #include "base/core/stage.h"
 #include "sizing/prediction/expected_tets.h"
 #include "sizing/sources/wanted_sizes.h"
 
 namespace octafront {
+
+struct SurfaceMesh;
 
 /// How many elements sizes of our own choice come to at most, about: kBudget and kBudgetPerTriangle for each triangle
 /// of the surface, kMostBudget at most, and what `max_size` makes by itself; known before anything is made. HUGE_VAL if

@@ -1,11 +1,12 @@
 #pragma once
 
 #include <octafront/options.h>
-#include <octafront/surface_mesh.h>
 
 #include "base/core/stage.h"
 
 namespace octafront {
+
+struct SurfaceMesh;
 
 /// Throws OptionError for values out of range and for contradictions.
 void check_size_options(const SizeOptions& options);

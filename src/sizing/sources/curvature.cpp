@@ -1,5 +1,7 @@
 #include "sizing/sources/curvature.h"
 
+#include <octafront/surface_mesh.h>
+
 #include "base/core/parallel.h"
 #include "base/geometry/measures.h"
 #include "sizing/field/octree.h"

@@ -1,9 +1,9 @@
 #pragma once
 
+#include <octafront/ids.h>
 #include <octafront/options.h>
 #include <octafront/run_context.h>
 #include <octafront/size_field.h>
-#include <octafront/surface_mesh.h>
 
 #include "base/mesh/known_surface.h"
 #include "sizing/prediction/affordable.h"
@@ -15,6 +15,8 @@
 #include <vector>
 
 namespace octafront {
+
+struct SurfaceMesh;
 
 /// Per triangle and corner i: the triangle across the edge from corner i to corner (i + 1) % 3; kNone where there is
 /// not exactly one other.

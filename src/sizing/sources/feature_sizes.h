@@ -1,6 +1,6 @@
 #pragma once
 
-#include <octafront/surface_mesh.h>
+#include <octafront/ids.h>
 
 #include "base/mesh/features.h"
 #include "sizing/field/background_grid.h"
@@ -8,6 +8,8 @@
 #include <vector>
 
 namespace octafront {
+
+struct SurfaceMesh;
 
 /// A chain of feature edges between two corners, or a closed one.
 struct FeatureCurve {

@@ -1,5 +1,7 @@
 #include "sizing/sources/gaps.h"
 
+#include <octafront/surface_mesh.h>
+
 #include "base/core/parallel.h"
 #include "base/geometry/measures.h"
 #include "sizing/prediction/thin_walls.h"

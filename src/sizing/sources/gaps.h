@@ -1,7 +1,5 @@
 #pragma once
 
-#include <octafront/surface_mesh.h>
-
 #include "base/core/flat_map.h"
 #include "base/mesh/known_surface.h"
 #include "sizing/field/octree.h"
@@ -12,6 +10,8 @@
 #include <vector>
 
 namespace octafront {
+
+struct SurfaceMesh;
 
 /// Walls and gaps: how far it is from a place of the surface to the sheet that faces it, along the inward and the
 /// outward normal. Places that lie close together on one side share an answer where triangles are small, so that dense

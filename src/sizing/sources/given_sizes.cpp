@@ -1,5 +1,7 @@
 #include "sizing/sources/given_sizes.h"
 
+#include <octafront/surface_mesh.h>
+
 #include "base/geometry/measures.h"
 #include "base/geometry/triangle_tree.h"
 #include "sizing/sources/model_extent.h"

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <octafront/options.h>
-#include <octafront/surface_mesh.h>
 
 #include "sizing/field/background_grid.h"
 #include "sizing/sources/surface_samples.h"
@@ -9,6 +8,8 @@
 #include <vector>
 
 namespace octafront {
+
+struct SurfaceMesh;
 
 /// What options.point_sizes and options.callback want at places of a surface, be it kept or made anew; the smaller
 /// where both speak, empty if neither does. Answers of the callback are checked. Refers to `surface`, which must

@@ -1,5 +1,7 @@
 #include "sizing/sources/model_extent.h"
 
+#include <octafront/surface_mesh.h>
+
 #include "base/geometry/measures.h"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <octafront/surface_mesh.h>
-
 namespace octafront {
+
+struct SurfaceMesh;
 
 /// A measure of the model that neither rotation nor triangulation changes: 2 sqrt(3) times the root mean square
 /// distance of the surface from its centre of gravity. A sphere's is the diagonal of its bounding box, a rod's is its

@@ -1,6 +1,7 @@
 #include "sizing/sources/named_sizes.h"
 
 #include <octafront/error.h>
+#include <octafront/surface_mesh.h>
 
 #include "base/core/utf8.h"
 #include "base/geometry/triangle_tree.h"

@@ -3,7 +3,6 @@
 #include <octafront/options.h>
 #include <octafront/run_context.h>
 #include <octafront/size_field.h>
-#include <octafront/surface_mesh.h>
 
 #include "sizing/field/background_grid.h"
 #include "sizing/sources/wanted_sizes.h"
@@ -11,6 +10,8 @@
 #include <memory>
 
 namespace octafront {
+
+struct SurfaceMesh;
 
 /// How background grids are made by these options, with no size above `ceiling`.
 GridRules grid_rules(const SizeOptions& options, double ceiling);

@@ -1,6 +1,7 @@
 #include "sizing/sources/surface_samples.h"
 
 #include <octafront/error.h>
+#include <octafront/surface_mesh.h>
 
 #include "base/core/parallel.h"
 #include "base/geometry/measures.h"

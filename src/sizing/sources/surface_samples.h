@@ -1,7 +1,6 @@
 #pragma once
 
 #include <octafront/run_context.h>
-#include <octafront/surface_mesh.h>
 
 #include "sizing/field/background_grid.h"
 
@@ -15,6 +14,8 @@
 #include <vector>
 
 namespace octafront {
+
+struct SurfaceMesh;
 
 /// What the sampling asks at a place of a triangle; at least one must answer. Input units.
 struct PlaceOnSurface {

@@ -5,7 +5,6 @@
 // (source_grid.h).
 
 #include <octafront/options.h>
-#include <octafront/surface_mesh.h>
 
 #include "base/core/stage.h"
 #include "base/mesh/known_surface.h"

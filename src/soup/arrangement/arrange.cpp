@@ -1,6 +1,7 @@
 #include "soup/arrangement/arrange.h"
 
 #include <octafront/error.h>
+#include <octafront/surface_mesh.h>
 
 #include "base/core/wording.h"
 #include "base/geometry/predicates.h"

@@ -1,5 +1,7 @@
 #include "soup/cells/close_gaps.h"
 
+#include <octafront/surface_mesh.h>
+
 #include "base/geometry/measures.h"
 #include "base/geometry/plane_mesh.h"
 #include "base/geometry/predicates.h"

@@ -1,7 +1,8 @@
 #pragma once
 
+#include <octafront/ids.h>
 #include <octafront/run_context.h>
-#include <octafront/surface_mesh.h>
+#include <octafront/vec.h>
 
 #include "base/geometry/triangle_side.h"
 

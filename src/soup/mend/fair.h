@@ -1,7 +1,5 @@
 #pragma once
 
-#include <octafront/surface_mesh.h>
-
 #include "soup/mend/cap.h"
 
 #include <cstdint>

@@ -1,5 +1,7 @@
 #include "soup/mend/label.h"
 
+#include <octafront/surface_mesh.h>
+
 #include "base/core/disjoint_sets.h"
 #include "base/core/parallel.h"
 #include "base/geometry/measures.h"

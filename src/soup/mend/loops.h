@@ -1,6 +1,6 @@
 #pragma once
 
-#include <octafront/surface_mesh.h>
+#include <octafront/ids.h>
 
 #include "base/mesh/edge_table.h"
 

@@ -4,7 +4,7 @@
 // and of the same kind as the one that went in. Takes both, leaves the first defect as a sentence.
 
 #include <octafront/no_context.h>
-#include <octafront/surface_mesh.h>
+#include <octafront/vec.h>
 
 #include "base/mesh/edge_table.h"
 
@@ -15,6 +15,8 @@
 #include <vector>
 
 namespace octafront {
+
+struct SurfaceMesh;
 
 /// The first way in which `result` fails to be a clean surface of the same kind as `input`, as a sentence with ids and
 /// coordinates; nullopt if it is one:

@@ -1,5 +1,7 @@
 #include "surface/edits/working_mesh.h"
 
+#include <octafront/surface_mesh.h>
+
 #include "base/core/validate.h"
 
 #include <array>

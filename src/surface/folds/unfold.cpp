@@ -1,5 +1,7 @@
 #include "surface/folds/unfold.h"
 
+#include <octafront/surface_mesh.h>
+
 namespace octafront::remeshing {
 
 namespace {

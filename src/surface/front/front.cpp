@@ -1,5 +1,7 @@
 #include "surface/front/front.h"
 
+#include <octafront/surface_mesh.h>
+
 #include "base/core/parallel.h"
 #include "surface/sizes/point_grid.h"
 

@@ -1,5 +1,7 @@
 #include "surface/ground/source_triangles.h"
 
+#include <octafront/surface_mesh.h>
+
 #include "base/core/parallel.h"
 
 namespace octafront::remeshing {

@@ -1,5 +1,7 @@
 #include "surface/ground/turning.h"
 
+#include <octafront/surface_mesh.h>
+
 #include "base/geometry/measures.h"
 
 #include <algorithm>

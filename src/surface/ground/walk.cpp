@@ -1,5 +1,7 @@
 #include "surface/ground/walk.h"
 
+#include <octafront/surface_mesh.h>
+
 #include <algorithm>
 
 namespace octafront::remeshing {

@@ -1,3 +1,5 @@
+#include <octafront/surface_mesh.h>
+
 #include "base/core/parallel.h"
 #include "surface/lines/curves.h"
 

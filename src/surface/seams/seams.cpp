@@ -1,5 +1,7 @@
 #include "surface/seams/seams.h"
 
+#include <octafront/surface_mesh.h>
+
 #include "base/core/disjoint_sets.h"
 #include "base/geometry/measures.h"
 #include "surface/edits/star_collapse.h"

@@ -1,5 +1,7 @@
 #include "surface/sizes/flat_sizes.h"
 
+#include <octafront/surface_mesh.h>
+
 #include "base/core/parallel.h"
 #include "base/geometry/measures.h"
 #include "base/geometry/spatial_order.h"
