@@ -21,7 +21,7 @@ namespace {
 using Face = ClassicFront::Face;
 
 /// The front fills no more than the surface encloses, up to rounding: more means that it leaks.
-constexpr double kVolumeSlack = 1.0001;
+constexpr double kClassicVolumeSlack = 1.0001;
 constexpr int kMostRounds = 8;
 
 /// The smallest face advances first; among equal ones the oldest.
@@ -69,7 +69,7 @@ class Advance {
   void check() {
     stage_.check();
     if (steps_ % 8192 == 0) stage_.progress(front_.filled_volume() / volume_);
-    if (front_.filled_volume() > kVolumeSlack * volume_)
+    if (front_.filled_volume() > kClassicVolumeSlack * volume_)
       throw MeshingError(
           "the front has filled more than the surface encloses; check the surface for self-intersections, "
           "or choose a larger element size");
