@@ -38,7 +38,7 @@ if(OCTAFRONT_PCH)
 endif()
 
 # octafront_unity(TARGET SOURCES ...): TARGET is compiled many sources at a time; the SOURCES stay objects of their own.
-# tests/house sees to it that no two sources of a folder give the same name to different things.
+# tests/house sees to it that no two sources of a wing give the same name to different things.
 function(octafront_unity target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${OCTAFRONT_UNITY} UNITY_BUILD_BATCH_SIZE 24)
   set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
@@ -69,7 +69,6 @@ function(octafront_room path)
     list(TRANSFORM ROOM_SOURCES PREPEND ${CMAKE_MATCH_2}/ REGEX "^[^/]")
   endif()
   target_sources(${target} PRIVATE ${ROOM_SOURCES})
-  set_source_files_properties(${ROOM_SOURCES} PROPERTIES UNITY_GROUP ${path})
 endfunction()
 
 # octafront_test(NAME SOURCES ... [WINGS ...] [LIBS ...]): a GoogleTest binary tests/NAME, linked with the wing of that

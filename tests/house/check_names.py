@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""No two sources of a room (and no two tests of a wing) give one name to different things in their unnamed namespaces: then many of them can be
+"""No two sources, and no two tests, of a wing give one name to different things in their unnamed namespaces: then many of them can be
 compiled as one (OCTAFRONT_UNITY), and no overload of another file is chosen unseen. Aliases of the same type may repeat.
 
     check_names.py ROOT | --self-test
@@ -28,15 +28,15 @@ def names_in(text):
 
 
 def clashes(sources):
-    """sources: {room: {file: text}}. Yields a sentence for each name that two files of a room give to different things."""
-    for room, files in sorted(sources.items()):
+    """sources: {wing: {file: text}}. Yields a sentence for each name that two files of a wing give to different things."""
+    for wing, files in sorted(sources.items()):
         users = collections.defaultdict(list)
         for file, text in sorted(files.items()):
             for name, meaning in names_in(text).items():
                 users[name].append((file, meaning))
         for name, uses in sorted(users.items()):
             if len(uses) > 1 and (len({meaning for _, meaning in uses}) > 1 or not uses[0][1]):
-                yield f"{room}: {name} is a name of its own in {', '.join(file for file, _ in uses)}: let each say its subject"
+                yield f"{wing}: {name} is a name of its own in {', '.join(file for file, _ in uses)}: let each say its subject"
 
 
 def read_sources(root):
@@ -44,9 +44,9 @@ def read_sources(root):
     for top in ("src", "tests", "cli", "cad"):
         for path in (root / top).rglob("*.cpp"):
             parts = path.relative_to(root).parts
-            room = top if top in ("cli", "cad") else "/".join(parts[: 3 if top == "src" else 2][: len(parts) - 1])
-            if room not in ("tests/corpus", "tests/fuzz", "tests/install"):
-                sources[room]["/".join(parts)] = path.read_text()
+            wing = top if top in ("cli", "cad") else "/".join(parts[:2][: len(parts) - 1])
+            if wing not in ("tests/corpus", "tests/fuzz", "tests/install"):
+                sources[wing]["/".join(parts)] = path.read_text()
     return sources
 
 
@@ -57,11 +57,11 @@ def self_test():
                    "std::vector<int> made_of(int n) {\n  return kept(n);\n}\n")
     for body, name in [("constexpr int kThere = 3;\n", "kThere"), ("using Kind = A::C;\n", "Kind"), ("class Place {\n};\n", "Place"),
                        ("void made_of(double) {}\n", "made_of"), ("constexpr int kHere[] = {1};\n", "kHere")]:
-        found = list(clashes({"room": {"a.cpp": alone, "b.cpp": source(body)}}))
+        found = list(clashes({"wing": {"a.cpp": alone, "b.cpp": source(body)}}))
         assert len(found) == 1 and f" {name} " in found[0], (body, found)
-        assert not list(clashes({"room": {"a.cpp": alone}, "other": {"b.cpp": source(body)}}))
+        assert not list(clashes({"wing": {"a.cpp": alone}, "other": {"b.cpp": source(body)}}))
     for body in ["using Kind = A::B;\n", "void kept(int) {}\n", "struct Other {\n  int made_of() { return 0; }\n};\n"]:
-        assert not list(clashes({"room": {"a.cpp": alone, "b.cpp": source(body)}})), body
+        assert not list(clashes({"wing": {"a.cpp": alone, "b.cpp": source(body)}})), body
 
 
 def main():

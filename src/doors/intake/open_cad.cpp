@@ -63,7 +63,7 @@ ReaderOptions reader_options(const IntakeOptions& options) {
           static_cast<std::uint64_t>(asked.memory_gigabytes * 1e9)};
 }
 
-void check(const CadIntake& asked) {
+void check_cad_intake(const CadIntake& asked) {
   const auto require = [](bool ok, const char* what) {
     if (!ok) throw OptionError(fmt::format("`{}` must be above 0", what));
   };
@@ -377,7 +377,7 @@ void refuse_overlaps(const Domain& domain) {
 }  // namespace
 
 CadTaken take_cad(Domain& domain, const IntakeOptions& options, const std::string& file, const RunContext& context) {
-  check(options.cad);
+  check_cad_intake(options.cad);
   Triangulated made = CadIn(file, domain, options, context).triangulate();
   CadTaken taken;
   const bool has_solids = !made.model.solids.empty();
@@ -429,7 +429,7 @@ IntakeOptions intake_for(const Options& options, IntakeOptions intake) {
 }
 
 CadInfo read_cad_info(const std::string& file, const IntakeOptions& options, const RunContext& context) {
-  intake::check(options.cad);
+  intake::check_cad_intake(options.cad);
   CadInfo info;
   const auto take = [&](const std::string& text) { info.notes.push_back(text); };
   cad::ReaderOptions asked = intake::reader_options(options);

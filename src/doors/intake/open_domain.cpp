@@ -41,7 +41,7 @@ bool is_tidied_only(const MendReport& r) {
 }
 
 /// The stems of the files, with numbers behind those that occurred before.
-std::vector<std::string> names_of(const std::vector<std::string>& files) {
+std::vector<std::string> names_of_bodies(const std::vector<std::string>& files) {
   std::vector<std::string> names;
   for (const std::string& file : files) {
     const std::string stem = std::filesystem::path(file).stem().string();
@@ -98,7 +98,7 @@ class Intake {
 
   /// The bodies of several files, or of arrays if there are none.
   Domain bodies(const std::vector<std::string>& files) {
-    const std::vector<std::string> names = names_of(files);
+    const std::vector<std::string> names = names_of_bodies(files);
     std::vector<Body> bodies;
     for (std::size_t i = 0; i < files.size(); ++i) {
       Input input = read(files[i]);

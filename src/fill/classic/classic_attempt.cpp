@@ -14,12 +14,12 @@ namespace octafront {
 namespace {
 
 /// Candidates lie at least this share of the ideal point's distance away from the face's centroid.
-constexpr double kNearestCandidate = 0.1;
+constexpr double kNearestClassicCandidate = 0.1;
 /// Trying all candidates of a face much larger than its surroundings would cost the square of the neighbourhood.
-constexpr std::size_t kMostCandidates = 40;
+constexpr std::size_t kMostClassicCandidates = 40;
 /// The size used for a face stays within these multiples of its own edges (see the octree's front,
 /// docs/how/volume-front.md).
-constexpr double kLeastSizePerEdge = 0.45, kMostSizePerEdge = 2.0;
+constexpr double kLeastClassicSizePerEdge = 0.45, kMostClassicSizePerEdge = 2.0;
 
 /// Degrees of the unfilled wedge at the edge from p to q between two faces that see it, one of them with p before q:
 /// the first's third corner is a, the second's b.
@@ -40,7 +40,7 @@ void ClassicAttempt::place(ClassicFront::Face face, const ClassicLimits& limits)
   for (int i = 0; i < 3; ++i) longest = std::max(longest, distance(at_[i], at_[(i + 1) % 3]));
   const Vec3 middle = centroid(at_[0], at_[1], at_[2]), twice_area = double_area_normal(at_[0], at_[1], at_[2]);
   const double edge = std::sqrt(length(twice_area) * 2 / std::numbers::sqrt3);
-  size_ = std::clamp(sizes_.at(middle), kLeastSizePerEdge * edge, kMostSizePerEdge * longest);
+  size_ = std::clamp(sizes_.at(middle), kLeastClassicSizePerEdge * edge, kMostClassicSizePerEdge * longest);
   ideal_ = middle + normalized(twice_area) * (options_.ideal_distance * limits.ideal_factor * size_);
   const double r = limits.search_radius * size_;
   const Vec3 radius{r, r, r};
@@ -208,7 +208,7 @@ bool ClassicAttempt::advance(ClassicFront::Face face, const ClassicLimits& limit
   ++counters_.attempts;
   place(face, limits);
   const Vec3 middle = centroid(at_[0], at_[1], at_[2]);
-  const double radius = limits.search_radius * size_, least = kNearestCandidate * distance(ideal_, middle);
+  const double radius = limits.search_radius * size_, least = kNearestClassicCandidate * distance(ideal_, middle);
   std::vector<std::pair<double, VertexIndex>> candidates;
   for (const VertexIndex v : vertices_) {
     const Vec3 p = front_.at(v);
@@ -217,7 +217,7 @@ bool ClassicAttempt::advance(ClassicFront::Face face, const ClassicLimits& limit
     candidates.emplace_back(d, v);
   }
   std::sort(candidates.begin(), candidates.end());
-  if (candidates.size() > kMostCandidates) candidates.resize(kMostCandidates);
+  if (candidates.size() > kMostClassicCandidates) candidates.resize(kMostClassicCandidates);
   for (const auto& [d, v] : candidates) {
     Trial trial{v, front_.at(v)};
     if (!accept(trial, limits)) continue;

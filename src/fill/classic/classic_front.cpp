@@ -10,18 +10,20 @@ namespace octafront {
 
 namespace {
 
-std::array<double, 3> key_of(Vec3 p) {
+std::array<double, 3> tree_key_of(Vec3 p) {
   return {p.x, p.y, p.z};
 }
 }  // namespace
 
-ClassicFront::ClassicFront(const Box3& domain) : domain_(domain), vertex_tree_(key_of(domain.lo), key_of(domain.hi)) {}
+ClassicFront::ClassicFront(const Box3& domain)
+    : domain_(domain), vertex_tree_(tree_key_of(domain.lo), tree_key_of(domain.hi)) {}
 
 ClassicFront::FaceTree& ClassicFront::tree_for(double extent) {
   const int power = std::ilogb(extent);
   for (FaceTree& t : face_trees_)
     if (t.power == power) return t;
-  return face_trees_.emplace_back(FaceTree{power, AlternatingTree<3>(key_of(domain_.lo), key_of(domain_.hi))});
+  return face_trees_.emplace_back(
+      FaceTree{power, AlternatingTree<3>(tree_key_of(domain_.lo), tree_key_of(domain_.hi))});
 }
 
 VertexIndex ClassicFront::add_vertex(Vec3 at) {
@@ -37,12 +39,12 @@ ClassicFront::Face ClassicFront::add_face(const Triangle& corners) {
   Box3 box;
   for (const VertexIndex v : corners) {
     box.add(points_[v]);
-    if (faces_at_[v]++ == 0) vertex_tree_.insert(v, key_of(points_[v]));
+    if (faces_at_[v]++ == 0) vertex_tree_.insert(v, tree_key_of(points_[v]));
   }
   const Vec3 e = box.extent();
   FaceTree& tree = tree_for(std::max({e.x, e.y, e.z}));
   tree_of_face_.push_back(static_cast<std::uint8_t>(&tree - face_trees_.data()));
-  tree.tree.insert(face, key_of(box.center()));
+  tree.tree.insert(face, tree_key_of(box.center()));
   validate(*this, face);
   return face;
 }
@@ -70,7 +72,7 @@ void ClassicFront::faces_near(const Box3& box, std::vector<Face>& out) const {
     // A little more than half of the largest extent in the tree, for the middle is rounded.
     const double reach = 1.0001 * std::ldexp(1.0, t.power);
     const Vec3 more{reach, reach, reach};
-    t.tree.find({key_of(box.lo - more), key_of(box.hi + more)}, [&](Face f) {
+    t.tree.find({tree_key_of(box.lo - more), tree_key_of(box.hi + more)}, [&](Face f) {
       Box3 b;
       for (const VertexIndex v : faces_[f]) b.add(points_[v]);
       if (b.overlaps(box)) out.push_back(f);
@@ -79,7 +81,7 @@ void ClassicFront::faces_near(const Box3& box, std::vector<Face>& out) const {
 }
 
 void ClassicFront::vertices_near(const Box3& box, std::vector<VertexIndex>& out) const {
-  vertex_tree_.find({key_of(box.lo), key_of(box.hi)}, [&](VertexIndex v) { out.push_back(v); });
+  vertex_tree_.find({tree_key_of(box.lo), tree_key_of(box.hi)}, [&](VertexIndex v) { out.push_back(v); });
 }
 
 std::optional<std::string> ClassicFront::first_inconsistency(Face face) const {

@@ -22,7 +22,7 @@ using Face = ClassicFront::Face;
 
 /// The front fills no more than the surface encloses, up to rounding: more means that it leaks.
 constexpr double kClassicVolumeSlack = 1.0001;
-constexpr int kMostRounds = 8;
+constexpr int kMostClassicRounds = 8;
 
 /// The smallest face advances first; among equal ones the oldest.
 class Advance {
@@ -36,7 +36,7 @@ class Advance {
     for (Face f = 0; f < front_.face_count(); ++f) queue_.emplace(front_.size_of(f), f);
     work_off(0);
     // Each round lets the faces that wait try all levels; a success may have made room for others.
-    for (int round = 0; round < kMostRounds; ++round) {
+    for (int round = 0; round < kMostClassicRounds; ++round) {
       const std::size_t before = front_.tets().size();
       for (std::size_t level = 1; level < kClassicLimits.size(); ++level) {
         for (const Face f : std::exchange(held_, {}))
@@ -85,7 +85,7 @@ class Advance {
   std::uint64_t steps_ = 0;
 };
 
-void report_front(const Stage& stage, const ClassicCounters& c, std::size_t tets, std::size_t left) {
+void report_classic_front(const Stage& stage, const ClassicCounters& c, std::size_t tets, std::size_t left) {
   stage.count("front tetrahedra", static_cast<double>(tets));
   stage.count("attempts", static_cast<double>(c.attempts));
   stage.count("faces found", static_cast<double>(c.found_faces));
@@ -115,7 +115,7 @@ TetMesh fill_volume_classic(const SurfaceMesh& surface, const VolumeOptions& opt
     const double start = process_cpu_seconds();
     const std::vector<Face> left = Advance(front, task, enclosed_volume(surface), counters).run();
     stage.count("advance CPU seconds", process_cpu_seconds() - start);
-    report_front(stage, counters, front.tets().size(), left.size());
+    report_classic_front(stage, counters, front.tets().size(), left.size());
     for (const Face f : left) walls.push_back(front.corners(f));
     mesh.points = front.points();
     mesh.tets = front.tets();

@@ -83,10 +83,10 @@ class Tidier {
   const CellSizes wanted_;
 };
 
-class Divider {
+class CellDivider {
  public:
-  Divider(const RootCube& root, const SizeField& sizes, const std::vector<Box3>& reach,
-          const std::function<CellSide(OctreeKey)>& side_of, const RunContext& context)
+  CellDivider(const RootCube& root, const SizeField& sizes, const std::vector<Box3>& reach,
+              const std::function<CellSide(OctreeKey)>& side_of, const RunContext& context)
       : root_(root), wanted_{root, sizes}, reach_(reach), side_of_(side_of), context_(context) {}
 
   Octree run() {
@@ -165,7 +165,7 @@ RootCube lattice_root(const Box3& box, double leaf_side, double margin) {
 
 Octree divide_lattice(const RootCube& root, const SizeField& sizes, const std::vector<Box3>& reach,
                       const std::function<CellSide(OctreeKey)>& side_of, const RunContext& context) {
-  return Divider(root, sizes, reach, side_of, context).run();
+  return CellDivider(root, sizes, reach, side_of, context).run();
 }
 
 LatticeOctree build_lattice_octree(const SurfaceMesh& surface, const TriangleTree& hull, const SizeField& sizes,

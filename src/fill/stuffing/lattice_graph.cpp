@@ -24,9 +24,9 @@ void for_each_index(std::size_t n, const RunContext& context, const Visit& visit
   context.check();
 }
 
-class Builder {
+class LatticeGraphBuilder {
  public:
-  Builder(const RootCube& root, const Octree& tree, const ImplicitDomain& domain, const RunContext& context)
+  LatticeGraphBuilder(const RootCube& root, const Octree& tree, const ImplicitDomain& domain, const RunContext& context)
       : root_(root), domain_(domain), context_(context) {
     collect(tree);
   }
@@ -113,7 +113,7 @@ std::uint32_t LatticeGraph::cut_between(std::uint32_t a, std::uint32_t b) const 
 
 LatticeGraph build_lattice_graph(const RootCube& root, const Octree& tree, const ImplicitDomain& domain,
                                  const RunContext& context) {
-  return Builder(root, tree, domain, context).run();
+  return LatticeGraphBuilder(root, tree, domain, context).run();
 }
 
 }  // namespace octafront

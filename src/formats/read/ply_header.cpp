@@ -12,7 +12,7 @@ namespace octafront::io {
 namespace {
 
 std::optional<PlyType> ply_type_of(std::string_view name) {
-  constexpr std::array<std::pair<std::string_view, PlyType>, 18> kNames{{
+  constexpr std::array<std::pair<std::string_view, PlyType>, 18> kTypes{{
       {"char", PlyType::kInt8},
       {"int8", PlyType::kInt8},
       {"uchar", PlyType::kUInt8},
@@ -32,7 +32,7 @@ std::optional<PlyType> ply_type_of(std::string_view name) {
       {"double", PlyType::kDouble},
       {"float64", PlyType::kDouble},
   }};
-  for (const auto& [known, type] : kNames)
+  for (const auto& [known, type] : kTypes)
     if (name == known) return type;
   return std::nullopt;
 }

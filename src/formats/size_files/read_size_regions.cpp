@@ -14,41 +14,42 @@ namespace {
 
 using Json = nlohmann::json;
 
-[[noreturn]] void fail_at(const io::Input& input, std::size_t entry, const std::string& reason) {
+[[noreturn]] void fail_at_region(const io::Input& input, std::size_t entry, const std::string& reason) {
   input.fail(fmt::format("entry {} {}", entry, reason));
 }
 
 double number(const io::Input& input, std::size_t entry, const Json& value, const char* name) {
-  if (!value.is_number()) fail_at(input, entry, fmt::format("needs a number for \"{}\"", name));
+  if (!value.is_number()) fail_at_region(input, entry, fmt::format("needs a number for \"{}\"", name));
   return value.get<double>();
 }
 
 Vec3 point(const io::Input& input, std::size_t entry, const Json& value, const char* name) {
-  if (!value.is_array() || value.size() != 3) fail_at(input, entry, fmt::format("needs [x, y, z] in \"{}\"", name));
+  if (!value.is_array() || value.size() != 3)
+    fail_at_region(input, entry, fmt::format("needs [x, y, z] in \"{}\"", name));
   return {number(input, entry, value[0], name), number(input, entry, value[1], name),
           number(input, entry, value[2], name)};
 }
 
 void read_box(const io::Input& input, std::size_t entry, const Json& value, SizeRegion& r) {
-  if (!value.is_array() || value.size() != 2) fail_at(input, entry, "needs [[x, y, z], [x, y, z]] in \"box\"");
+  if (!value.is_array() || value.size() != 2) fail_at_region(input, entry, "needs [[x, y, z], [x, y, z]] in \"box\"");
   r.lo = point(input, entry, value[0], "box");
   r.hi = point(input, entry, value[1], "box");
   if (r.lo != min(r.lo, r.hi))
-    fail_at(input, entry, "has a \"box\" with corners swapped: first its least x, y and z, then its largest");
+    fail_at_region(input, entry, "has a \"box\" with corners swapped: first its least x, y and z, then its largest");
 }
 
 void check(const io::Input& input, std::size_t entry, const Json& json, const SizeRegion& r) {
   if (json.contains("box") + json.contains("sphere") + json.contains("point") != 1)
-    fail_at(input, entry, "needs exactly one of \"box\", \"sphere\" and \"point\"");
-  if (!json.contains("size")) fail_at(input, entry, "has no \"size\"");
-  if (r.size <= 0) fail_at(input, entry, fmt::format("has size {}: sizes must be above 0", r.size));
-  if (r.radius < 0) fail_at(input, entry, fmt::format("has radius {}", r.radius));
+    fail_at_region(input, entry, "needs exactly one of \"box\", \"sphere\" and \"point\"");
+  if (!json.contains("size")) fail_at_region(input, entry, "has no \"size\"");
+  if (r.size <= 0) fail_at_region(input, entry, fmt::format("has size {}: sizes must be above 0", r.size));
+  if (r.radius < 0) fail_at_region(input, entry, fmt::format("has radius {}", r.radius));
   if (json.contains("sphere") && r.radius == 0)
-    fail_at(input, entry, "is a sphere and needs a \"radius\" above 0; a place without extent is a \"point\"");
+    fail_at_region(input, entry, "is a sphere and needs a \"radius\" above 0; a place without extent is a \"point\"");
 }
 
 SizeRegion region(const io::Input& input, std::size_t entry, const Json& json) {
-  if (!json.is_object()) fail_at(input, entry, "is no object such as {\"point\": [0, 0, 0], \"size\": 1}");
+  if (!json.is_object()) fail_at_region(input, entry, "is no object such as {\"point\": [0, 0, 0], \"size\": 1}");
   SizeRegion r;
   for (const auto& [key, value] : json.items()) {
     if (key == "size") {
@@ -60,7 +61,7 @@ SizeRegion region(const io::Input& input, std::size_t entry, const Json& json) {
     } else if (key == "box") {
       read_box(input, entry, value, r);
     } else {
-      fail_at(input, entry, fmt::format("has the unknown key {}", io::in_quotes(key)));
+      fail_at_region(input, entry, fmt::format("has the unknown key {}", io::in_quotes(key)));
     }
   }
   check(input, entry, json, r);

@@ -15,17 +15,17 @@ namespace octafront {
 
 namespace {
 
-using Kind = ImageRegions::Kind;
+using RegionKind = ImageRegions::Kind;
 
 bool speaks_of_labels(const LabelOptions& labels) {
   return !labels.names.empty() || labels.ignore || !labels.merge.empty();
 }
 
-void check_options_of(Kind kind, const ImageRegions& regions) {
-  if (kind == Kind::kGrey && speaks_of_labels(regions.labels))
+void check_options_of(RegionKind kind, const ImageRegions& regions) {
+  if (kind == RegionKind::kGrey && speaks_of_labels(regions.labels))
     throw OptionError(
         "`labels`, `ignore` and `merge` are for images of labels, `iso` and `band` for grey ones; give one kind");
-  if (kind == Kind::kLabels && !regions.bands.empty())
+  if (kind == RegionKind::kLabels && !regions.bands.empty())
     throw OptionError(
         "`iso` and `band` are for grey images, and this one is taken as labels; say that it is a grey image, or leave "
         "them out");
@@ -41,7 +41,7 @@ std::vector<GreyBand> named(std::vector<GreyBand> bands, std::vector<std::string
   return bands;
 }
 
-std::pair<double, double> range_of(const Image& image) {
+std::pair<double, double> value_range_of(const Image& image) {
   return std::visit(
       [](const auto& values) -> std::pair<double, double> {
         const auto [least, largest] = std::minmax_element(values.begin(), values.end());
@@ -51,7 +51,7 @@ std::pair<double, double> range_of(const Image& image) {
 }
 
 [[noreturn]] void fail_without_bands(const Image& image) {
-  const auto [least, largest] = range_of(image);
+  const auto [least, largest] = value_range_of(image);
   throw InputError(
       fmt::format("is a grey image (values {:.6g} to {:.6g}): say which values are meant, `iso` V for what is V and "
                   "more, or `band` LO:HI; or that its values are labels. octafront info shows how often they occur",
@@ -119,17 +119,17 @@ Complex complex_of_segmentation(const Image& image, const ImageRegions& regions,
 
 }  // namespace
 
-Kind kind_of(const Image& image, const ImageRegions& regions) {
-  if (regions.kind != Kind::kAuto) return regions.kind;
-  if (!regions.bands.empty()) return Kind::kGrey;
-  return speaks_of_labels(regions.labels) || looks_like_labels(image) ? Kind::kLabels : Kind::kGrey;
+RegionKind kind_of(const Image& image, const ImageRegions& regions) {
+  if (regions.kind != RegionKind::kAuto) return regions.kind;
+  if (!regions.bands.empty()) return RegionKind::kGrey;
+  return speaks_of_labels(regions.labels) || looks_like_labels(image) ? RegionKind::kLabels : RegionKind::kGrey;
 }
 
 Complex complex_of_image(const Image& image, const ImageRegions& regions, const RunContext& context) {
-  const Kind kind = kind_of(image, regions);
+  const RegionKind kind = kind_of(image, regions);
   check_options_of(kind, regions);
-  return kind == Kind::kGrey ? complex_of_grey(image, regions, context)
-                             : complex_of_segmentation(image, regions, context);
+  return kind == RegionKind::kGrey ? complex_of_grey(image, regions, context)
+                                   : complex_of_segmentation(image, regions, context);
 }
 
 double smallest_spacing(const ImageGrid& grid) {

@@ -14,7 +14,7 @@ namespace octafront::curved {
 namespace {
 
 // A vertex on a curve of the input is there but for rounding; in parts of the model's diagonal.
-constexpr double kOnCurve = 1e-7;
+constexpr double kBendOnCurve = 1e-7;
 // An edge that wants to bend by more than this part of its length is not resolved by the mesh: half of a quarter turn.
 constexpr double kMostBend = 0.2;
 // Corners lie on the input's triangles, and go as far as those are from the smooth surface: where they are large, that
@@ -37,7 +37,7 @@ class Search {
       : mesh_(mesh), surface_(surface), faces_(mesh.boundary) {
     faces_.insert(faces_.end(), mesh.interfaces.begin(), mesh.interfaces.end());
     table_ = make_edge_table(mesh.points.size(), faces_);
-    tolerance_ = kOnCurve * bounding_box(mesh.points).diagonal();
+    tolerance_ = kBendOnCurve * bounding_box(mesh.points).diagonal();
     mark_curves(sharp);
     gather_vertices();
   }

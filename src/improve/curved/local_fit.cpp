@@ -17,7 +17,7 @@ constexpr double kTrust = 0.1;
 // polynomial can be anywhere. So that of degree two must say most of it.
 constexpr double kMostByHigher = 0.35;
 // Points of flat surfaces scatter by rounding: this part of their distance.
-constexpr double kFlat = 1e-9;
+constexpr double kFlatPatch = 1e-9;
 // Near points say more, for what the polynomial cannot follow grows with the fifth power of the distance. Where two
 // points are nearer than this, in parts of the (squared) distance of near ones, they say as much.
 constexpr double kNear = 0.2;
@@ -148,7 +148,7 @@ bool fit(std::span<const Sample<kTerms, kSides>> samples, const std::array<std::
   while (!carry(unknowns[degree])) --degree;
   double rounding = 0;
   for (const auto& s : samples) rounding += s.nearness * s.squared_distance;
-  rounding *= kFlat * kFlat;
+  rounding *= kFlatPatch * kFlatPatch;
   const double height = misfit(samples, solved(samples, unknowns[0]));
   if (misfit(samples, solved(samples, unknowns[1])) > kMostByHigher * kMostByHigher * height + rounding) return false;
   solution = solved(samples, unknowns[degree]);

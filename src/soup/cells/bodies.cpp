@@ -69,8 +69,8 @@ std::vector<std::string> names_of(const std::vector<std::uint32_t>& bodies, cons
 /// How often each body winds around each cell; bodies that do not are left out.
 using Windings = std::map<std::uint32_t, int>;
 
-std::vector<Windings> windings_of(const Arrangement& arranged, const Cells& cells,
-                                  const std::vector<std::uint32_t>& body) {
+std::vector<Windings> windings_of_bodies(const Arrangement& arranged, const Cells& cells,
+                                         const std::vector<std::uint32_t>& body) {
   std::vector<std::vector<std::uint32_t>> walls(cells.count());
   for (std::uint32_t t = 0; t < arranged.triangles.size(); ++t)
     for (const std::uint32_t c : cells.sides_of(t)) walls[c].push_back(t);
@@ -241,7 +241,7 @@ class Patches {
   std::vector<std::string> names_;
 };
 
-double tolerance_of(const ComplexOptions& options, const std::vector<Vec3>& points) {
+double tolerance_of_bodies(const ComplexOptions& options, const std::vector<Vec3>& points) {
   // Single precision keeps seven digits.
   constexpr double kOfDiagonal = 1e-6;
   Box3 box;
@@ -269,14 +269,14 @@ Joined joined_bodies(const std::vector<Body>& bodies, const ComplexOptions& opti
     throw OptionError(fmt::format("`tolerance` is {}; it must not be below 0", *options.tolerance));
   Complex before;
   Together all = put_together(bodies, before, context);
-  const double tolerance = tolerance_of(options, all.points);
+  const double tolerance = tolerance_of_bodies(options, all.points);
   ClosedGaps closed = close_gaps({all.points, all.triangles, all.body}, tolerance, context);
   const Arrangement arranged = arrange(closed.points, closed.triangles, context);
   const Cells cells(arranged.points, arranged.triangles, context);
 
   std::vector<std::uint32_t> body_of;
   for (const std::uint32_t t : closed.source) body_of.push_back(all.body[t]);
-  const std::vector<Windings> windings = windings_of(arranged, cells, body_of);
+  const std::vector<Windings> windings = windings_of_bodies(arranged, cells, body_of);
   Labelled labelled{arranged, cells, {}, {}};
   for (const Body& b : bodies) labelled.names.push_back(b.name);
   labelled.region = regions_of(windings, options.overlap, labelled.names);

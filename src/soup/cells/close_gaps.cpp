@@ -28,11 +28,11 @@ Box3 grown(Box3 box, double by) {
 
 /// Where two segments come nearest to each other, on the first one; nullopt if that is at an end of either, or they run
 /// side by side.
-struct Meeting {
+struct GapMeeting {
   Vec3 at;
   double distance;
 };
-std::optional<Meeting> inner_meeting(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
+std::optional<GapMeeting> inner_meeting(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
   const Vec3 u = b - a, v = d - c, w = a - c;
   const double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), uw = dot(u, w), vw = dot(v, w);
   const double det = uu * vv - uv * uv;
@@ -42,7 +42,7 @@ std::optional<Meeting> inner_meeting(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
   const double s = (uv * vw - vv * uw) / det, t = (uu * vw - uv * uw) / det;
   if (!(s > 0 && s < 1 && t > 0 && t < 1)) return std::nullopt;
   const Vec3 p = a + s * u, q = c + t * v;
-  return Meeting{p, distance(p, q)};
+  return GapMeeting{p, distance(p, q)};
 }
 
 /// Brings bodies together step by step.

@@ -15,7 +15,7 @@ namespace octafront::mend {
 namespace {
 
 /// One collapse may bring the next; dust that does not settle in so many passes stays.
-constexpr int kMostPasses = 30;
+constexpr int kMostDustPasses = 30;
 
 using Corners = std::array<Vec3, 3>;
 
@@ -195,7 +195,7 @@ class DustPass {
 
 std::uint64_t drop_dust(SurfaceMesh& surface, double reach) {
   std::uint64_t all = 0;
-  for (int pass = 0; pass < kMostPasses; ++pass) {
+  for (int pass = 0; pass < kMostDustPasses; ++pass) {
     const std::uint64_t done = DustPass(surface, reach).run();
     if (done == 0) break;
     all += done;

@@ -88,7 +88,7 @@ bool has_changed(const RepairedSurface& r) {
   return r.duplicate_faces + r.degenerate_faces + r.turned_faces + r.turned_shells > 0;
 }
 
-void clean_faces(Draft& draft) {
+void clean_draft(Draft& draft) {
   tidy::merge_vertices(draft);
   tidy::drop_degenerate(draft);
   tidy::drop_duplicates(draft);
@@ -213,13 +213,13 @@ class Mending {
   }
 
   void weld(double reach) {
-    clean_faces(draft_);
+    clean_draft(draft_);
     const Welded welded = weld_open_edges(draft_, reach);
     report_.joined_vertices = welded.joined;
     report_.divided_edges = welded.divided;
     report_.largest_move = std::max(report_.largest_move, welded.largest_move);
     for (const Vec3 p : welded.places) report_.changes.push_back({Kind::kJoined, p, welded.largest_move});
-    if (welded.joined + welded.divided > 0) clean_faces(draft_);
+    if (welded.joined + welded.divided > 0) clean_draft(draft_);
   }
 
   void orient() {
