@@ -428,4 +428,14 @@ bool improve_mesh(TetMesh& mesh, const BoundaryInput* input, const ImproveOption
   }
 }
 
+void relieve_mesh(TetMesh& mesh, const ImproveOptions& options, const Stage& stage) {
+  if (options.level == ImproveOptions::Level::kOff || mesh.tets.empty()) return;
+  EditMesh edit(TetMesh{mesh}, options.objective);
+  if (edit.floor().score >= kComfort) return;
+  Schedule run(edit, nullptr, options, stage);
+  run.rounds_for_worst(4, kWanted, 2, kPoorToInsert);
+  relieve(run);
+  mesh = edit.release();
+}
+
 }  // namespace octafront

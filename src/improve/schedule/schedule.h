@@ -30,4 +30,8 @@ void check_improve_options(const ImproveOptions& options);
 bool improve_mesh(TetMesh& mesh, const improve::BoundaryInput* input, const ImproveOptions& options, const Stage& stage,
                   Features* features = nullptr);
 
+/// After the boundary or interfaces of a valid mesh were moved: passes against poor elements, from the first one below
+/// a beta or dihedral angle of comfort on; what was moved stays. The mesh is untouched if there is no such element.
+void relieve_mesh(TetMesh& mesh, const ImproveOptions& options, const Stage& stage);
+
 }  // namespace octafront

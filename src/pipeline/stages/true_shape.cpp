@@ -4,6 +4,7 @@
 #include "base/geometry/measures.h"
 #include "base/mesh/complex.h"
 #include "improve/curved/curved.h"
+#include "improve/schedule/schedule.h"
 #include "pipeline/stages/kept_shape.h"
 #include "pipeline/stages/methods.h"
 
@@ -130,6 +131,7 @@ void place_on_geometry(const Prepared& input, Filled& filled, Run& run) {
     auto& [mesh, boundary] = filled;
     const SecondOrderSummary made = move_to_geometry(mesh, *input.geometry, stage.context());
     std::copy_n(mesh.points.begin(), boundary.surface.points.size(), boundary.surface.points.begin());
+    if (made.moved > 0) relieve_mesh(mesh, run.options.improve, stage);
     stage.count("vertices moved", static_cast<double>(made.moved));
     stage.count("vertices held", static_cast<double>(made.held));
     if (made.held > 0)

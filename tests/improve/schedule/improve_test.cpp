@@ -1,5 +1,6 @@
 #include <octafront/error.h>
 #include <octafront/quality.h>
+#include <octafront/validity.h>
 
 #include "base/core/thread_limit.h"
 #include "improve/schedule/schedule.h"
@@ -44,6 +45,32 @@ TEST(Improve, EveryLevelMakesBetterElementsOnTheSameBoundary) {
       EXPECT_LE(after.dihedral_max, before.dihedral_max);
     }
   }
+}
+
+TetMesh relieved(TetMesh mesh) {
+  StageReport report;
+  relieve_mesh(mesh, {}, {{}, report});
+  return mesh;
+}
+
+TEST(Relief, MendsWhatMovesOfTheBoundaryPressedFlatAndLeavesThese) {
+  TetMesh start = kuhn_cube(6);
+  const auto pressed = std::find(start.points.begin(), start.points.end(), Vec3{0.5, 0.5, 0});
+  ASSERT_NE(pressed, start.points.end());
+  pressed->z += 0.9 / 6;
+  ASSERT_EQ(first_defect(start), std::nullopt);
+  const TetMesh mesh = relieved(start);
+  EXPECT_EQ(first_defect(mesh), std::nullopt);
+  EXPECT_LT(summarize_quality(start).beta_min, 0.2);
+  EXPECT_GT(summarize_quality(mesh).beta_min, 0.4);
+  ASSERT_EQ(mesh.boundary, start.boundary);
+  for (const Triangle& t : mesh.boundary)
+    for (const VertexIndex v : t) EXPECT_EQ(mesh.points[v], start.points[v]);
+}
+
+TEST(Relief, LeavesWhatIsGoodAlone) {
+  const TetMesh mesh = kuhn_cube(4);
+  EXPECT_EQ(relieved(mesh), mesh);
 }
 
 double worst_score(const TetMesh& mesh, ImproveOptions::Objective objective) {
