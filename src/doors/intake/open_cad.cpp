@@ -38,8 +38,9 @@ constexpr std::array<std::array<double, 2>, 5> kLadder{{{1, 1}, {0.5, 1}, {2, 2}
 /// Triangles whose volume is off by more are tried finer.
 constexpr double kVolumeOff = 0.003;
 /// Chords of elements may lie so deep, in parts of the volume of a solid over its area: what they cut off then is well
-/// below a percent of it.
-constexpr double kDepthOfThickness = 0.025;
+/// below a percent of it. Flat faces lose nothing: where those that do have less than this part of the area, chords lie
+/// deeper by as much, but by no more than this factor.
+constexpr double kDepthOfThickness = 0.025, kMuchCurved = 0.6, kMostDeeper = 4;
 /// A part of its volume that a solid may lose where solids are joined by their triangles: these stray about as much.
 constexpr double kMostLost = 0.01;
 
@@ -318,12 +319,26 @@ std::vector<Body> bodies_of(const Triangulated& made) {
   return bodies;
 }
 
+/// The area of what is not flat of each solid.
+std::vector<double> curved_areas(const CadModel& model) {
+  std::vector<double> areas(model.solids.size(), 0);
+  for (const Face& face : model.faces) {
+    if (face.surface.kind == SurfaceRecord::Kind::kPlane) continue;
+    for (const std::uint32_t s : face.sides)
+      if (s != kNone) areas[s] += face.area;
+  }
+  return areas;
+}
+
 /// How near the surface stays to each solid: by what it is thick.
 std::vector<double> bounds_by_solid(const CadModel& model) {
   std::vector<double> bound;
-  for (const Solid& solid : model.solids) {
+  const std::vector<double> curved = curved_areas(model);
+  for (std::size_t s = 0; s < curved.size(); ++s) {
+    const Solid& solid = model.solids[s];
     const bool known = solid.area > 0 && solid.volume > 0;
-    bound.push_back(known ? kDepthOfThickness * solid.volume / solid.area : HUGE_VAL);
+    const double deeper = std::clamp(kMuchCurved * solid.area / curved[s], 1.0, kMostDeeper);
+    bound.push_back(known ? deeper * kDepthOfThickness * solid.volume / solid.area : HUGE_VAL);
   }
   return bound;
 }

@@ -21,7 +21,7 @@ namespace {
 constexpr double kAngleWithinFace = 80;
 /// What chords cut off falls with the bound: it is made smaller to come to this part of what may be lost, but to no
 /// less than this part of itself at once.
-constexpr double kAimOfBound = 0.4, kLeastOfBound = 0.05;
+constexpr double kAimOfBound = 0.65, kLeastOfBound = 0.05;
 
 /// From one numbering of patches to another, by their names; those that have no name there come behind it.
 std::vector<std::uint32_t> renumbering(const std::vector<std::string>& from, std::vector<std::string>& to) {
