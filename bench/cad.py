@@ -1,6 +1,6 @@
 """CAD files: meshed at parts of their diagonal? Is what comes out what the file says? Beside Gmsh and Netgen.
 
-Usage: bench/run.sh cad [--only PART] [--timeout SECONDS] [--fine] [--peers] [--page] [--models FOLDER] [--missing]
+Usage: bench/run.sh cad [--only PART] [--timeout SECONDS] [--fine] [--peers | --peers-alone] [--page] [--models FOLDER] [--missing]
 Files of cad-models/ (scripts/get-cad.sh). Each is read by `octafront info`, then meshed at a fortieth of its diagonal, linear, and with
 --fine at a hundredth, of second order. Volumes of ours are those of the report, solid by solid against OpenCASCADE's; areas, boxes, counts,
 nodes that are off the geometry and what the shape forces on poor elements are octafront_judge_cad's. --peers: the linear meshes that Gmsh
@@ -103,7 +103,7 @@ def ours(build, file, info, part, timeout, nodes):
         quality = report["quality"]
         return {"cpu": run.cpu_seconds, "tets": report["tets"], "off": worst((s["volume"], s.get("true_volume")) for s in solids),
                 "beta": quality["beta_mean"], "least": quality["beta_min"], "angle": quality["dihedral_min_degrees"],
-                "closed": cad_page.faces_closed(run.log), **against_the_file(judged_by_occ(build, run.mesh, file, nodes), info),
+                **cad_page.faces_left_out(run.log), **against_the_file(judged_by_occ(build, run.mesh, file, nodes), info),
                 **(names_that_arrive(program, run.mesh, file) if part == 40 else {})}
 
 
@@ -154,7 +154,8 @@ def campaign(a, kept, file, others):
     if "why" in info:
         print(cad_page.refused_row(file.name, info), flush=True)
         return
-    for part, who in [(40, "ours")] + [(100, "ours")] * a.fine + [(40, peer) for peer in PEERS] * a.peers:
+    own = [] if a.peers_alone else [(40, "ours")] + [(100, "ours")] * a.fine
+    for part, who in own + [(40, peer) for peer in PEERS] * (a.peers or a.peers_alone):
         key = f"{file.name}|{who}|{part}"
         if a.missing and key in kept.runs:
             continue
@@ -171,6 +172,7 @@ def main():
     parser.add_argument("--timeout", type=float, default=60)
     parser.add_argument("--fine", action="store_true")
     parser.add_argument("--peers", action="store_true")
+    parser.add_argument("--peers-alone", action="store_true")
     parser.add_argument("--models", type=pathlib.Path, default=MODELS)
     parser.add_argument("--missing", action="store_true")
     parser.add_argument("--page", action="store_true")

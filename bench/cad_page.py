@@ -14,10 +14,10 @@ COLUMNS = ("file", "solids, faces", "size, order", "mesher", "elements", "volume
            "least angle", "poor: what the shape forces", "CPU s")
 
 
-def faces_closed(log):
-    """How many faces were closed because they are tiny, by the notes of a run."""
-    said = re.search(r"(\d+) faces? and \d+ edges? that are tiny", log)
-    return int(said[1]) if said else 0
+def faces_left_out(log):
+    """How many faces have no elements of their own, by the notes of a run: closed because they are tiny, or of no solid."""
+    said = {"closed": r"(\d+) faces? and \d+ edges? that are tiny", "loose": r"(\d+) faces? of no solid left out"}
+    return {name: sum(int(n) for n in re.findall(pattern, log)) for name, pattern in said.items()}
 
 
 def without_folders(sentence):
@@ -47,13 +47,13 @@ def narrow(made):
 
 
 def counts(made, info):
-    """Solids and faces of the file; in brackets what came of them, where that differs, with the faces that were closed."""
+    """Solids and faces of the file; in brackets what came of them, where that differs, with the faces that were left out."""
     text = f"{len(info['solids'])}, {info['faces']}"
     if "patches" not in made:
         return text
     regions = f" ({made['regions']})" if made["regions"] != len(info["solids"]) else ""
-    closed = f" + {made['closed']} closed" if made["closed"] else ""
-    patches = f" ({made['patches']}{closed})" if made["patches"] != info["faces"] else ""
+    left = "".join(f" + {made[name]} {name}" for name in ("closed", "loose") if made[name])
+    patches = f" ({made['patches']}{left})" if made["patches"] != info["faces"] else ""
     return f"{len(info['solids'])}{regions}, {info['faces']}{patches}"
 
 
@@ -77,7 +77,8 @@ def within(values, most):
 
 
 def all_faces(made, info):
-    return made["patches"] + made["closed"] == info["faces"]
+    """Of no solid may be closed ones too."""
+    return made["patches"] + made["closed"] + made["loose"] >= info["faces"]
 
 
 def judged_in_words(done, files):
@@ -88,7 +89,7 @@ def judged_in_words(done, files):
     poor = [m for m in judged if m["poor"]["elements"]]
     return (f"; worst area within .2 % in {within([m['area'] for m in judged], .2)}; box within .1 % of the diagonal in "
             f"{within([m['box'] for m in judged], .1)}; a region for each solid in {sum(m['regions'] == len(i['solids']) for m, i in zip(judged, info))}, "
-            f"a group for each face, but for closed ones, in {sum(map(all_faces, judged, info))} of {len(judged)}; off the geometry are "
+            f"a group for each face that was not left out in {sum(map(all_faces, judged, info))} of {len(judged)}; off the geometry are "
             f"{sum(m['astray'] for m in judged):,} of {sum(m['nodes'] for m in judged):,} nodes of the boundary, in {sum(m['astray'] > 0 for m in judged)} "
             f"files; elements below beta .2 or 10 degrees in {len(poor)} files, in {sum(m['poor']['unforced'] == 0 for m in poor)} of them forced by "
             "the shape wherever they were looked at")

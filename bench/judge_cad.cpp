@@ -224,7 +224,7 @@ Json judged(const TetMesh& mesh, const TopoDS_Shape& file, const Asked& asked) {
   box.lo = unit * box.lo, box.hi = unit * box.hi;
   j["box"] = beside(box, measures.box) / measures.box.diagonal();
   j["patches"] = std::set<std::uint32_t>(skin.patches.begin(), skin.patches.end()).size();
-  j["poor"] = poor_elements_of(mesh, NarrowPlaces(file), unit);
+  j["poor"] = poor_elements_of(mesh, NarrowPlaces(sewn(file)), unit);
   return j;
 }
 

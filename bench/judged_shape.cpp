@@ -2,6 +2,7 @@
 
 #include <BRepBndLib.hxx>
 #include <BRepBuilderAPI_MakeVertex.hxx>
+#include <BRepBuilderAPI_Sewing.hxx>
 #include <BRepExtrema_ExtPC.hxx>
 #include <BRepExtrema_ExtPF.hxx>
 #include <BRepGProp.hxx>
@@ -12,8 +13,10 @@
 #include <GProp_GProps.hxx>
 #include <IGESControl_Reader.hxx>
 #include <Interface_Static.hxx>
+#include <Precision.hxx>
 #include <STEPControl_Controller.hxx>
 #include <STEPControl_Reader.hxx>
+#include <ShapeAnalysis_ShapeTolerance.hxx>
 #include <Standard_Failure.hxx>
 #include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
@@ -101,6 +104,14 @@ TopoDS_Shape shape_of(const std::string& file) {
   return transferred(reader, file);
 }
 
+TopoDS_Shape sewn(const TopoDS_Shape& shape) {
+  if (TopExp_Explorer(shape, TopAbs_SOLID).More()) return shape;
+  BRepBuilderAPI_Sewing sewing(std::max(Precision::Confusion(), ShapeAnalysis_ShapeTolerance().Tolerance(shape, 1)));
+  for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next()) sewing.Add(it.Current());
+  sewing.Perform();
+  return sewing.SewedShape();
+}
+
 ShapeMeasures measures_of(const TopoDS_Shape& shape) {
   const TopTools_IndexedMapOfShape solids = parts_of(shape, TopAbs_SOLID);
   ShapeMeasures sum;
@@ -112,7 +123,10 @@ ShapeMeasures measures_of(const TopoDS_Shape& shape) {
     sum.box.add(box_of(part, true));
   };
   for (int i = 1; i <= solids.Extent(); ++i) add(solids(i));
-  if (solids.IsEmpty()) add(shape);
+  if (solids.IsEmpty()) {
+    const TopTools_IndexedMapOfShape loose = parts_of(shape, TopAbs_FACE);
+    for (int i = 1; i <= loose.Extent(); ++i) add(loose(i));
+  }
   sum.faces = static_cast<std::size_t>(faces.Extent());
   return sum;
 }

@@ -16,6 +16,9 @@ namespace octafront {
 /// Reads STEP, IGES or BREP, by the ending; lengths in millimetres, of BREP as they are. Throws std::runtime_error.
 TopoDS_Shape shape_of(const std::string& file);
 
+/// The shape itself if it has solids, else its faces, sewn where they meet within its tolerance.
+TopoDS_Shape sewn(const TopoDS_Shape& shape);
+
 /// What OpenCASCADE says of the solids of a shape, or of all faces where there is none.
 struct ShapeMeasures {
   std::size_t solids = 0, faces = 0;  ///< each once; an instance elsewhere is another
