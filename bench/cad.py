@@ -146,6 +146,12 @@ def by_netgen(build, file, info, timeout):
 PEERS = {"Gmsh": by_gmsh("del3d"), "Gmsh's HXT": by_gmsh("hxt"), "Netgen": by_netgen}
 
 
+def peers_origin():
+    """Their versions and the day: what their rows depend on."""
+    told = subprocess.run(["dpkg-query", "-W", "-f", "${Package} ${Version}, ", "gmsh", "netgen"], capture_output=True, text=True, check=False)
+    return told.stdout + ORIGIN.split(", ", 1)[1]
+
+
 def campaign(a, kept, file, others):
     """Runs what is asked for of one file."""
     if not (a.missing and file.name in kept.files):
@@ -161,7 +167,7 @@ def campaign(a, kept, file, others):
             continue
         made = (ours(a.build, file, info, part, a.timeout, NODES_OF_OTHERS if others else 0) if who == "ours" else
                 PEERS[who](a.build, file, info, a.timeout))
-        kept.runs[key] = {"file": file.name, "who": who, "part": part, "origin": ORIGIN, **made}
+        kept.runs[key] = {"file": file.name, "who": who, "part": part, "origin": ORIGIN if who == "ours" else peers_origin(), **made}
         print(cad_page.row(kept.runs[key], info), flush=True)
 
 

@@ -4,10 +4,11 @@ import re
 
 STRING = r"'((?:[^']|'')*)'"
 ENTITY = r"#(\d+)\s*=\s*"
+TEXT = r"\s*(?:'(?:[^']|'')*'|\$)\s*,\s*"  # one that is not asked for
 PRODUCT = re.compile(ENTITY + r"PRODUCT\s*\(\s*" + STRING + r"\s*,\s*" + STRING)
-FORMATION = re.compile(ENTITY + r"PRODUCT_DEFINITION_FORMATION\w*\s*\(\s*(?:'(?:[^']|'')*'|\$)\s*,\s*(?:'(?:[^']|'')*'|\$)\s*,\s*#(\d+)")
-DEFINITION = re.compile(ENTITY + r"PRODUCT_DEFINITION(?:_WITH_ASSOCIATED_DOCUMENTS)?\s*\(\s*(?:'(?:[^']|'')*'|\$)\s*,\s*(?:'(?:[^']|'')*'|\$)\s*,\s*#(\d+)")
-USAGE = re.compile(r"NEXT_ASSEMBLY_USAGE_OCCURRENCE\s*\((?:\s*(?:'(?:[^']|'')*'|\$)\s*,){3}\s*#(\d+)")
+FORMATION = re.compile(ENTITY + r"PRODUCT_DEFINITION_FORMATION\w*\s*\(" + TEXT + TEXT + r"#(\d+)")
+DEFINITION = re.compile(ENTITY + r"PRODUCT_DEFINITION(?:_WITH_ASSOCIATED_DOCUMENTS)?\s*\(" + TEXT + TEXT + r"#(\d+)")
+USAGE = re.compile(r"NEXT_ASSEMBLY_USAGE_OCCURRENCE\s*\(" + TEXT * 3 + r"#(\d+)")
 KINDS = {
     "solids": re.compile(r"\b(?:MANIFOLD_SOLID_BREP|BREP_WITH_VOIDS|FACETED_BREP)\s*\(\s*" + STRING),
     "faces": re.compile(r"\b(?:ADVANCED_FACE|FACE_SURFACE)\s*\(\s*" + STRING),

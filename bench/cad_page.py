@@ -86,12 +86,14 @@ def judged_in_words(done, files):
     if not judged:
         return ""
     info = [files[m["file"]] for m in judged]
+    regions = sum(m["regions"] == len(i["solids"]) for m, i in zip(judged, info))
+    astray = sum(m["astray"] > 0 for m in judged)
     poor = [m for m in judged if m["poor"]["elements"]]
     return (f"; worst area within .2 % in {within([m['area'] for m in judged], .2)}; box within .1 % of the diagonal in "
-            f"{within([m['box'] for m in judged], .1)}; a region for each solid in {sum(m['regions'] == len(i['solids']) for m, i in zip(judged, info))}, "
+            f"{within([m['box'] for m in judged], .1)}; a region for each solid in {regions}, "
             f"a group for each face that was not left out in {sum(map(all_faces, judged, info))} of {len(judged)}; off the geometry are "
-            f"{sum(m['astray'] for m in judged):,} of {sum(m['nodes'] for m in judged):,} nodes of the boundary, in {sum(m['astray'] > 0 for m in judged)} "
-            f"files; elements below beta .2 or 10 degrees in {len(poor)} files, in {sum(m['poor']['unforced'] == 0 for m in poor)} of them forced by "
+            f"{sum(m['astray'] for m in judged):,} of {sum(m['nodes'] for m in judged):,} nodes of the boundary, in {astray} files; "
+            f"elements below beta .2 or 10 degrees in {len(poor)} files, in {sum(m['poor']['unforced'] == 0 for m in poor)} of them forced by "
             "the shape wherever they were looked at")
 
 
@@ -150,18 +152,26 @@ def refused(kept):
     return ["| file | why |", "| --- | --- |", *(refused_row(f, i) for f, i in sorted(kept.files.items()) if "why" in i)]
 
 
-def origins(*sets):
-    return {m["origin"] for kept in sets for m in kept.runs.values()}
+def origins(kept, whose):
+    return {m["origin"] for m in kept.runs.values() if m["who"] in whose}
 
 
 def write(debian, others, timeout):
     page = TEXT.read_text()
-    parts = {"written": written_by("bench/run.sh cad --fine --peers --page", origins(debian)),
-             "others_written": written_by(f"bench/run.sh cad --models FOLDER --fine --timeout {timeout:.0f} --page", origins(others)),
-             "timeout": f"{timeout:.0f}", "summaries": "\n".join(summaries(debian)), "rows": "\n".join(rows_of(debian)),
-             "names": "\n".join(names_table(debian)), "refused": "\n".join(refused(debian)),
-             "others_summaries": "\n".join(summaries(others)), "others_rows": "\n".join(rows_of(others)),
-             "others_names": names_in_words(others), "others_refused": "\n".join(refused(others))}
+    parts = {
+        "written": written_by("bench/run.sh cad --fine --peers --page", origins(debian, ["ours"])),
+        "others_written": written_by(f"bench/run.sh cad --models FOLDER --fine --timeout {timeout:.0f} --page", origins(others, ["ours"])),
+        "peers": "; ".join(sorted(origins(debian, MESHERS[1:]))),
+        "timeout": f"{timeout:.0f}",
+        "summaries": "\n".join(summaries(debian)),
+        "rows": "\n".join(rows_of(debian)),
+        "names": "\n".join(names_table(debian)),
+        "refused": "\n".join(refused(debian)),
+        "others_summaries": "\n".join(summaries(others)),
+        "others_rows": "\n".join(rows_of(others)),
+        "others_names": names_in_words(others),
+        "others_refused": "\n".join(refused(others)),
+    }
     for name, text in parts.items():
         page = page.replace("{{" + name + "}}", text)
     PAGE.write_text(page)
