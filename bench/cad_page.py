@@ -15,8 +15,9 @@ COLUMNS = ("file", "solids, faces", "size, order", "mesher", "elements", "volume
 
 
 def faces_left_out(log):
-    """How many faces have no elements of their own, by the notes of a run: closed because they are tiny, or of no solid."""
-    said = {"closed": r"(\d+) faces? and \d+ edges? that are tiny", "loose": r"(\d+) faces? of no solid left out"}
+    """How many faces have no elements of their own, by the notes of a run: closed because they are tiny, of no solid; all of them."""
+    said = {"closed": r"(\d+) faces? and \d+ edges? that are tiny", "loose": r"(\d+) faces? of no solid left out",
+            "without": r"(\d+) of \d+ faces have no elements of their own"}
     return {name: sum(int(n) for n in re.findall(pattern, log)) for name, pattern in said.items()}
 
 
@@ -52,7 +53,9 @@ def counts(made, info):
     if "patches" not in made:
         return text
     regions = f" ({made['regions']})" if made["regions"] != len(info["solids"]) else ""
-    left = "".join(f" + {made[name]} {name}" for name in ("closed", "loose") if made[name])
+    left = {name: made[name] for name in ("closed", "loose") if made[name]}
+    others = made["without"] - sum(left.values())
+    left = "".join(f" + {n} {name}" for name, n in (left | ({"narrow": others} if others > 0 else {})).items())
     patches = f" ({made['patches']}{left})" if made["patches"] != info["faces"] else ""
     return f"{len(info['solids'])}{regions}, {info['faces']}{patches}"
 
@@ -78,7 +81,7 @@ def within(values, most):
 
 def all_faces(made, info):
     """Of no solid may be closed ones too."""
-    return made["patches"] + made["closed"] + made["loose"] >= info["faces"]
+    return made["patches"] + max(made["closed"] + made["loose"], made["without"]) >= info["faces"]
 
 
 def judged_in_words(done, files):
