@@ -1,15 +1,18 @@
 #include "judged_shape.h"
 
+#include <BRepAdaptor_Surface.hxx>
 #include <BRepBndLib.hxx>
 #include <BRepBuilderAPI_MakeVertex.hxx>
 #include <BRepBuilderAPI_Sewing.hxx>
+#include <BRepClass_FaceClassifier.hxx>
 #include <BRepExtrema_ExtPC.hxx>
-#include <BRepExtrema_ExtPF.hxx>
 #include <BRepGProp.hxx>
 #include <BRepTools.hxx>
+#include <BRepTopAdaptor_FClass2d.hxx>
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
 #include <Bnd_Box.hxx>
+#include <Extrema_ExtPS.hxx>
 #include <GProp_GProps.hxx>
 #include <IGESControl_Reader.hxx>
 #include <Interface_Static.hxx>
@@ -23,6 +26,7 @@
 #include <TopTools_IndexedMapOfShape.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Face.hxx>
+#include <TopoDS_Vertex.hxx>
 #include <algorithm>
 #include <cctype>
 #include <set>
@@ -135,7 +139,7 @@ ShapeMeasures measures_of(const TopoDS_Shape& shape) {
 class JudgedShape::Face {
  public:
   explicit Face(const TopoDS_Face& face) : face_(face) {
-    to_face_.Initialize(face);
+    start_on_face();
     tolerance_ = BRep_Tool::Tolerance(face);
     box_ = box_of(face, false);
     std::set<const void*> seen;
@@ -158,25 +162,55 @@ class JudgedShape::Face {
   double distance(const gp_Pnt& p, double enough) {
     double best = HUGE_VAL;
     for (const gp_Pnt& corner : corners_) best = std::min(best, p.Distance(corner));
-    const TopoDS_Vertex vertex = BRepBuilderAPI_MakeVertex(p);
-    if (best > enough) best = std::min(best, least(vertex, to_face_, &face_));
-    for (std::size_t e = 0; e < to_edges_.size() && best > enough; ++e)
-      best = std::min(best, least(vertex, *to_edges_[e], nullptr));
+    if (best > enough) best = std::min(best, to_face(p, enough));
+    const TopoDS_Vertex vertex = best > enough ? TopoDS_Vertex(BRepBuilderAPI_MakeVertex(p)) : TopoDS_Vertex();
+    for (std::size_t k = 0; k < to_edges_.size() && best > enough; ++k) {
+      const std::size_t e = (last_edge_ + k) % to_edges_.size();
+      best = std::min(best, to_edge(vertex, *to_edges_[e]));
+      if (best <= enough) last_edge_ = e;
+    }
     return best;
   }
 
  private:
-  static void perform(BRepExtrema_ExtPF& extrema, const TopoDS_Vertex& v, const TopoDS_Face* f) {
-    extrema.Perform(v, *f);
+  /// As BRepExtrema_ExtPF does, but for the classifier, which is made once.
+  void start_on_face() {
+    surface_.Initialize(face_, false);
+    const double tolerance = std::min(BRep_Tool::Tolerance(face_), Precision::Confusion());
+    const double u_tolerance = std::max(surface_.UResolution(tolerance), Precision::PConfusion()),
+                 v_tolerance = std::max(surface_.VResolution(tolerance), Precision::PConfusion());
+    double u0, u1, v0, v1;
+    BRepTools::UVBounds(face_, u0, u1, v0, v1);
+    extrema_.Initialize(surface_, u0, u1, v0, v1, u_tolerance, v_tolerance);
+    inside_ = std::make_unique<BRepTopAdaptor_FClass2d>(face_, std::min(u_tolerance, v_tolerance));
   }
-  static void perform(BRepExtrema_ExtPC& extrema, const TopoDS_Vertex& v, const TopoDS_Face*) { extrema.Perform(v); }
 
   /// What OpenCASCADE cannot say is no distance.
-  template <class Extrema>
-  static double least(const TopoDS_Vertex& vertex, Extrema& extrema, const TopoDS_Face* face) {
+  double to_face(const gp_Pnt& p, double enough) {
     double found = HUGE_VAL;
     try {
-      perform(extrema, vertex, face);
+      extrema_.Perform(p);
+      for (int i = 1; extrema_.IsDone() && i <= extrema_.NbExt(); ++i) {
+        double u, v;
+        extrema_.Point(i).Parameter(u, v);
+        const double d = std::sqrt(extrema_.SquareDistance(i));
+        if (d < found && is_inside({u, v}, d <= std::max(enough, tolerance_))) found = d;
+      }
+    } catch (const Standard_Failure&) {
+    }
+    return found;
+  }
+
+  /// The quick classifier goes by polygons: what it has outside is looked at again where that decides.
+  bool is_inside(const gp_Pnt2d& uv, bool decides) const {
+    if (inside_->Perform(uv) != TopAbs_OUT) return true;
+    return decides && BRepClass_FaceClassifier(face_, uv, BRep_Tool::Tolerance(face_)).State() != TopAbs_OUT;
+  }
+
+  static double to_edge(const TopoDS_Vertex& vertex, BRepExtrema_ExtPC& extrema) {
+    double found = HUGE_VAL;
+    try {
+      extrema.Perform(vertex);
       for (int i = 1; extrema.IsDone() && i <= extrema.NbExt(); ++i)
         found = std::min(found, std::sqrt(extrema.SquareDistance(i)));
     } catch (const Standard_Failure&) {
@@ -185,8 +219,11 @@ class JudgedShape::Face {
   }
 
   TopoDS_Face face_;
-  BRepExtrema_ExtPF to_face_;
+  BRepAdaptor_Surface surface_;
+  Extrema_ExtPS extrema_;
+  std::unique_ptr<BRepTopAdaptor_FClass2d> inside_;
   std::vector<std::unique_ptr<BRepExtrema_ExtPC>> to_edges_;
+  std::size_t last_edge_ = 0;  ///< the next node is likely to be on it too
   std::vector<gp_Pnt> corners_;
   Box3 box_;
   double tolerance_ = 0;
