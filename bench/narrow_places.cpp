@@ -111,10 +111,10 @@ struct NarrowPlaces::Edge {
     return convex ? between : 360 - between;
   }
 
-  bool meets(const Edge& other) const {
+  bool meets_within(const Edge& other, Vec3 place, double reach) const {
     for (const TopoDS_Vertex& a : ends)
       for (const TopoDS_Vertex& b : other.ends)
-        if (!a.IsNull() && a.IsSame(b)) return true;
+        if (!a.IsNull() && a.IsSame(b) && distance(vec(BRep_Tool::Pnt(a).XYZ()), place) <= reach) return true;
     return false;
   }
 };
@@ -250,7 +250,7 @@ Narrow NarrowPlaces::at(Vec3 place, double reach) const {
     for (const Edge::Sample& s : a.samples)
       found.wedge = std::min(found.wedge, a.edge->wedge(s.t, a.solid->inside_out));
     for (const Near* b = &a + 1; b != near.data() + near.size(); ++b) {
-      if (a.solid == b->solid && a.edge->meets(*b->edge)) {
+      if (a.solid == b->solid && a.edge->meets_within(*b->edge, place, reach)) {
         if (share_a_face(*a.edge, *b->edge))
           found.corner = std::min(found.corner, corner_between(*a.edge, *b->edge, place, reach));
         continue;
