@@ -157,13 +157,16 @@ struct Triangulated {
   bool is_good() const { return defects.empty() && off <= kVolumeOff; }
   bool is_better_than(const Triangulated& other) const {
     if (defects.empty() != other.defects.empty()) return defects.empty();
+    // What is not clean is mended, and that takes the longer the more there is.
+    if (!defects.empty() && std::max(off, other.off) <= kVolumeOff)
+      return surface.triangles.size() < other.surface.triangles.size();
     return off < other.off;
   }
 };
 
 /// More pairs of triangles that cross than this part of all are no accident of the triangles: the solid passes through
 /// itself, and what could be mended of it is another solid.
-constexpr double kMostCrossings = 0.1;
+constexpr double kMostCrossings = 0.05;
 
 void refuse_crossing_solid(const Triangulated& made) {
   const SurfaceMesh& surface = made.surface;
@@ -216,17 +219,16 @@ class CadIn {
 
  private:
   Triangulated attempt(const std::array<double, 2>& by) {
-    const CadModel model = reader_.triangulate({deflection_ * by[0], kAngle * by[1]});
-    if (!options_.cad.keep_edges && !model.solids.empty()) {
-      CadModel simpler = model;
-      const Collapsed collapsed = collapse_tiny(simpler, kTinyOfSize * size_, faces_named(simpler, options_.cad.apart));
-      if (collapsed.edges + collapsed.faces.size() > 0)
-        if (Triangulated made = judged(std::move(simpler)); made.is_good()) {
-          made.collapsed = collapsed;
-          return made;
-        }
-    }
-    return judged(model);
+    CadModel model = reader_.triangulate({deflection_ * by[0], kAngle * by[1]});
+    if (options_.cad.keep_edges || model.solids.empty()) return judged(std::move(model));
+    CadModel simpler = model;
+    const Collapsed collapsed = collapse_tiny(simpler, kTinyOfSize * size_, faces_named(simpler, options_.cad.apart));
+    if (collapsed.edges + collapsed.faces.size() == 0) return judged(std::move(model));
+    Triangulated without = judged(std::move(simpler));
+    without.collapsed = collapsed;
+    if (without.is_good()) return without;
+    Triangulated with = judged(std::move(model));
+    return without.is_better_than(with) ? without : with;
   }
 
   Triangulated judged(CadModel model) const {
