@@ -120,6 +120,22 @@ def summaries(kept):
     return [summary(f"{who}, diagonal / {part}", runs_of(kept, who, part), kept.files) for who, part in asked if runs_of(kept, who, part)]
 
 
+def misses(kept, part=100):
+    """Which files miss what is asked for of second order at a hundredth: no mesh, volume, area, box, poor elements, nodes."""
+    runs = runs_of(kept, "ours", part)
+    done = [m for m in runs if "area" in m]
+    found = {
+        "no mesh": [m for m in runs if "error" in m],
+        "volume beyond .1 %": [m for m in done if abs(m["off"]) > .1],
+        "area beyond .2 %": [m for m in done if abs(m["area"]) > .2],
+        "box beyond .1 % of the diagonal": [m for m in done if m["box"] > .1],
+        "a face without a group that nothing said": [m for m in done if not all_faces(m, kept.files[m["file"]])],
+        "poor elements that the shape does not force": [m for m in done if m["poor"]["unforced"]],
+        "more than a thousandth of the boundary's nodes off the geometry": [m for m in done if m["astray"] > 1e-3 * m["nodes"]],
+    }
+    return [f"- {what}: {', '.join(m['file'] for m in sorted(runs, key=lambda m: m['file'])) or 'none'}." for what, runs in found.items()]
+
+
 def name_counts(made, kind):
     """How many names of a kind each format of a run has."""
     found = [arrived[kind] for arrived in made.get("names", {}).values() if kind in arrived]
@@ -167,10 +183,12 @@ def write(debian, others, timeout):
         "peers": "; ".join(sorted(origins(debian, MESHERS[1:]))),
         "timeout": f"{timeout:.0f}",
         "summaries": "\n".join(summaries(debian)),
+        "misses": "\n".join(misses(debian)),
         "rows": "\n".join(rows_of(debian)),
         "names": "\n".join(names_table(debian)),
         "refused": "\n".join(refused(debian)),
         "others_summaries": "\n".join(summaries(others)),
+        "others_misses": "\n".join(misses(others)),
         "others_rows": "\n".join(rows_of(others)),
         "others_names": names_in_words(others),
         "others_refused": "\n".join(refused(others)),
