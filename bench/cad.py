@@ -1,67 +1,113 @@
-"""CAD files: meshed at parts of their diagonal? Volumes of solids against the true ones, elements, time; beside Gmsh.
+"""CAD files: meshed at parts of their diagonal? Is what comes out what the file says? Beside Gmsh and Netgen.
 
-Usage: bench/run.sh cad [--only PART] [--timeout SECONDS] [--fine] [--peers] [--page] [--models FOLDER]
+Usage: bench/run.sh cad [--only PART] [--timeout SECONDS] [--fine] [--peers | --peers-alone] [--page] [--models FOLDER] [--missing]
 Files of cad-models/ (scripts/get-cad.sh). Each is read by `octafront info`, then meshed at a fortieth of its diagonal, linear, and with
---fine at a hundredth, of second order. Volumes of ours are those of the report, solid by solid against OpenCASCADE's; --peers: the
-linear meshes that Gmsh (Delaunay and HXT) and Netgen make of the same files at a fortieth, judged by octafront_evaluate. octafront_judge_cad looks whether nodes are on the geometry. CPU seconds of whole processes, octafront-cad among them, one
-thread. --page rewrites docs/measured/cad.md.
+--fine at a hundredth, of second order. Volumes of ours are those of the report, solid by solid against OpenCASCADE's; areas, boxes, counts,
+nodes that are off the geometry and what the shape forces on poor elements are octafront_judge_cad's. --peers: the linear meshes that Gmsh
+(Delaunay and HXT) and Netgen make of the same files at a fortieth, judged by octafront_evaluate. --models: other files, ours alone, with at
+most 20,000 nodes of each kind looked at. CPU seconds of whole processes, octafront-cad among them, one thread.
+What was found is kept in BUILD/experiments/cad-*.json, from which --page writes docs/measured/cad.md; --missing: only what is not there.
 """
 import argparse
 import json
 import math
 import pathlib
-import re
-import statistics
 import subprocess
 import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
-from origin import written_by  # noqa: E402
+import cad_names  # noqa: E402
+import cad_page  # noqa: E402
+from origin import ORIGIN  # noqa: E402
 from peers import netgen  # noqa: E402
 from peers.process import finish, run_measured  # noqa: E402
 
 MODELS = pathlib.Path("cad-models")
-PAGE = pathlib.Path("docs/measured/cad.md")
+NODES_OF_OTHERS = 20_000
+
+
+class Kept:
+    """What was found of a set of files, in a JSON file that is written after each."""
+
+    def __init__(self, path):
+        self.path = path
+        found = json.loads(path.read_text()) if path.is_file() else {}
+        self.files, self.runs = found.get("files", {}), found.get("runs", {})
+
+    def save(self):
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        self.path.write_text(json.dumps({"files": self.files, "runs": self.runs}, indent=1))
 
 
 def info_of(program, file, timeout):
-    """What the file holds as JSON, and why not."""
+    """What the file holds, or why it cannot be meshed."""
     with tempfile.TemporaryDirectory() as folder:
         told = run_measured([program, "info", file.resolve(), "--json", "info.json"], folder, timeout)
         report = pathlib.Path(folder, "info.json")
         found = json.loads(report.read_text()) if report.is_file() else {}
-        return found if found.get("solids") is not None else None, told.error or "no solids"
+    if not found.get("solids"):
+        return {"why": (told.error or "no solids").replace(str(file.resolve()), file.name)[:120]}
+    return {"solids": found["solids"], "faces": len(found["faces"]), "diagonal": math.dist(*found["box"])}
 
 
-def off_geometry(build, mesh, file, timeout):
-    """How many nodes of the boundary are off the file's geometry, of how many, and the largest distance in diagonals."""
-    done = subprocess.run([build / "bench/octafront_judge_cad", mesh, file], capture_output=True, text=True, timeout=timeout, check=False)
-    if done.returncode != 0:
+def judged_by_occ(build, mesh, file, nodes):
+    """See octafront_judge_cad; {} where OpenCASCADE finds no end."""
+    try:
+        done = subprocess.run([build / "bench/octafront_judge_cad", mesh, file, *(["--nodes", str(nodes)] if nodes else [])],
+                              capture_output=True, text=True, timeout=900, check=False)
+    except subprocess.TimeoutExpired:
         return {}
-    judged = json.loads(done.stdout).values()
-    return {"nodes": sum(j["nodes"] for j in judged), "astray": sum(j["off"] for j in judged), "farthest": max(j["largest"] for j in judged)}
+    return json.loads(done.stdout) if done.returncode == 0 else {}
 
 
-def ours(build, file, size, order, timeout, look):
+def worst(pairs):
+    """The largest deviation of what was made from what is true, in percent."""
+    off = [100 * (made / true - 1) for made, true in pairs if true]
+    return max(off, key=abs) if off else math.nan
+
+
+def against_the_file(judge, info):
+    """What of the judge's figures goes into tables. A file of other solids than the mesh has regions has no areas solid by solid."""
+    if not judge:
+        return {}
+    solids, areas = info["solids"], judge["areas"]
+    pairs = zip(areas, [s["area"] for s in solids]) if len(areas) == len(solids) else [(sum(areas), sum(s["area"] for s in solids))]
+    nodes = [judge["vertices"], judge["mid_side"]]
+    return {"area": worst(pairs), "box": 100 * judge["box"], "regions": len(areas), "patches": judge["patches"], "true": judge["true"],
+            "nodes": sum(n["nodes"] for n in nodes), "astray": sum(n["off"] for n in nodes),
+            "farthest": max(n["largest"] for n in nodes), "poor": judge["poor"]}
+
+
+def names_that_arrive(program, mesh, file):
+    """In files of Gmsh and of Abaqus."""
+    names = cad_names.names_in_step(file)
+    if not names:
+        return {}
+    msh, inp = mesh.with_name("names.msh"), mesh.with_name("names.inp")
+    subprocess.run([program, "convert", mesh, "-o", msh, "-o", inp], capture_output=True, check=True)
+    return {"names": {"msh": cad_names.arrived(names, cad_names.groups_in_gmsh(msh)),
+                      "inp": cad_names.arrived(names, cad_names.groups_in_abaqus(inp))}}
+
+
+def ours(build, file, info, part, timeout, nodes):
     program = (build / "cli/octafront").resolve()
     with tempfile.TemporaryDirectory() as folder:
-        run = run_measured([program, "mesh", file.resolve(), "-o", "out.vtu", "--json", "report.json", "--size", repr(size), "--order",
-                            order, "--threads", "1"], folder, timeout)
+        run = run_measured([program, "mesh", file.resolve(), "-o", "out.vtu", "--json", "report.json", "--size", repr(info["diagonal"] / part),
+                            "--order", 1 if part == 40 else 2, "--threads", "1"], folder, timeout)
         run = finish(run, pathlib.Path(folder, "out.vtu"))
         if run.error:
             return {"error": run.error, "cpu": run.cpu_seconds}
         report = json.loads(pathlib.Path(folder, "report.json").read_text())
         solids = report.get("regions") or [report]
-        off = [100 * (s["volume"] / s["true_volume"] - 1) for s in solids if s.get("true_volume")]
         quality = report["quality"]
-        return {"cpu": run.cpu_seconds, "tets": report["tets"], "off": max(off, key=abs) if off else math.nan,
+        return {"cpu": run.cpu_seconds, "tets": report["tets"], "off": worst((s["volume"], s.get("true_volume")) for s in solids),
                 "beta": quality["beta_mean"], "least": quality["beta_min"], "angle": quality["dihedral_min_degrees"],
-                **(off_geometry(build, run.mesh, file, 20 * timeout) if look else {}),
-                "held": next((s["counters"].get("vertices held", 0) for s in report["stages"] if s["name"] == "true geometry"), 0)}
+                **cad_page.faces_left_out(run.log), **against_the_file(judged_by_occ(build, run.mesh, file, nodes), info),
+                **(names_that_arrive(program, run.mesh, file) if part == 40 else {})}
 
 
-def judged(build, run, volume):
+def judged(build, run, info):
     if run.error:
         return {"error": run.error, "cpu": run.cpu_seconds}
     done = subprocess.run([build / "bench/octafront_evaluate", run.mesh], capture_output=True, text=True, check=False)
@@ -70,109 +116,83 @@ def judged(build, run, volume):
     found = json.loads(done.stdout)
     if found["defect"]:
         return {"error": "not a valid mesh: " + found["defect"][:80], "cpu": run.cpu_seconds}
-    return {"cpu": run.cpu_seconds, "tets": found["tets"], "off": 100 * (found["volume"] / volume - 1) if volume else math.nan,
+    return {"cpu": run.cpu_seconds, "tets": found["tets"], "off": worst([(found["volume"], sum(s["volume"] for s in info["solids"]))]),
             "beta": found["beta_mean"], "least": found["beta_min"], "angle": found["dihedral_min"]}
 
 
+def with_names(made, file, groups, mesh):
+    names = cad_names.names_in_step(file)
+    if names and mesh.is_file():
+        made["names"] = {"own": cad_names.arrived(names, groups(mesh))}
+    return made
+
+
 def by_gmsh(algorithm):
-    def mesh(build, file, size, volume, timeout):
+    def mesh(build, file, info, timeout):
         with tempfile.TemporaryDirectory() as folder:
-            run = run_measured(["gmsh", "-3", file.resolve(), "-o", "out.msh", "-format", "msh41", "-bin", "-clmax", repr(size), "-nt", "1",
-                                "-algo", algorithm], folder, timeout)
-            return judged(build, finish(run, pathlib.Path(folder, "out.msh")), volume)
+            out = pathlib.Path(folder, "out.msh")
+            run = run_measured(["gmsh", "-3", file.resolve(), "-o", "out.msh", "-format", "msh41", "-bin", "-clmax",
+                                repr(info["diagonal"] / 40), "-nt", "1", "-algo", algorithm], folder, timeout)
+            return with_names(judged(build, finish(run, out), info), file, cad_names.groups_in_gmsh, out)
     return mesh
 
 
-def by_netgen(build, file, size, volume, timeout):
+def by_netgen(build, file, info, timeout):
     with tempfile.TemporaryDirectory() as folder:
-        return judged(build, netgen.mesh_cad(file.resolve(), folder, timeout, repr(size)), volume)
+        run = netgen.mesh_cad(file.resolve(), folder, timeout, repr(info["diagonal"] / 40), cad_names.is_step(file))
+        return with_names(judged(build, run, info), file, cad_names.groups_in_netgen, pathlib.Path(folder, "out.vol"))
 
 
 PEERS = {"Gmsh": by_gmsh("del3d"), "Gmsh's HXT": by_gmsh("hxt"), "Netgen": by_netgen}
 
 
-def without_folders(sentence):
-    return re.sub(r"/\S*/", "", sentence)
+def peers_origin():
+    """Their versions and the day: what their rows depend on."""
+    told = subprocess.run(["dpkg-query", "-W", "-f", "${Package} ${Version}, ", "gmsh", "netgen"], capture_output=True, text=True, check=False)
+    return told.stdout + ORIGIN.split(", ", 1)[1]
 
 
-def cells(made):
-    if "error" in made:
-        return f"{without_folders(made['error'])[:90]} | | | | | {made['cpu']:.1f}"
-    astray = f"{made['astray']:,}" + (f" ({made['farthest']:.1g})" if made["astray"] else "") if "astray" in made else ""
-    return (f"{made['tets']:,} | {made['off']:+.3f} | {astray} | {made['beta']:.3f}, {made['least']:.3f} | {made['angle']:.1f} | "
-            f"{made['cpu']:.1f}")
-
-
-def nodes_in_words(done):
-    judged = [m for m in done if "astray" in m]
-    if not judged:
-        return ""
-    return (f"; off the geometry are {sum(m['astray'] for m in judged):,} of {sum(m['nodes'] for m in judged):,} nodes of the boundary, "
-            f"in {sum(m['astray'] > 0 for m in judged)} files")
-
-
-def summary(name, all_made):
-    done = [m for m in all_made if "error" not in m]
-    if not done:
-        return f"{name}: none of {len(all_made)}"
-    off = [abs(m["off"]) for m in done if not math.isnan(m["off"])]
-    return (f"{name}: {len(done)} of {len(all_made)} meshed; worst solid within .1 % in {sum(o <= .1 for o in off)}, within 1 % in "
-            f"{sum(o <= 1 for o in off)} of {len(off)}; smallest angle in the median {statistics.median(m['angle'] for m in done):.1f} "
-            f"degrees, below 10 in {sum(m['angle'] < 10 for m in done)}{nodes_in_words(done)}; mean beta {statistics.mean(m['beta'] for m in done):.3f}; "
-            f"{sum(m['tets'] for m in done):,} elements, {sum(m['cpu'] for m in all_made):.0f} CPU s")
+def campaign(a, kept, file, others):
+    """Runs what is asked for of one file."""
+    if not (a.missing and file.name in kept.files):
+        kept.files[file.name] = info_of((a.build / "cli/octafront").resolve(), file, a.timeout)
+    info = kept.files[file.name]
+    if "why" in info:
+        print(cad_page.refused_row(file.name, info), flush=True)
+        return
+    own = [] if a.peers_alone else [(40, "ours")] + [(100, "ours")] * a.fine
+    for part, who in own + [(40, peer) for peer in PEERS] * (a.peers or a.peers_alone):
+        key = f"{file.name}|{who}|{part}"
+        if a.missing and key in kept.runs:
+            continue
+        made = (ours(a.build, file, info, part, a.timeout, NODES_OF_OTHERS if others else 0) if who == "ours" else
+                PEERS[who](a.build, file, info, a.timeout))
+        kept.runs[key] = {"file": file.name, "who": who, "part": part, "origin": ORIGIN if who == "ours" else peers_origin(), **made}
+        print(cad_page.row(kept.runs[key], info), flush=True)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", type=pathlib.Path)
     parser.add_argument("--only", default="")
-    parser.add_argument("--timeout", type=float, default=120)
+    parser.add_argument("--timeout", type=float, default=60)
     parser.add_argument("--fine", action="store_true")
     parser.add_argument("--peers", action="store_true")
+    parser.add_argument("--peers-alone", action="store_true")
     parser.add_argument("--models", type=pathlib.Path, default=MODELS)
+    parser.add_argument("--missing", action="store_true")
     parser.add_argument("--page", action="store_true")
     a = parser.parse_args()
-    program = (a.build / "cli/octafront").resolve()
-    sizes = [(40, "1")] + ([(100, "2")] if a.fine else [])
-    rows, refused = [], []
-    made = {(part, who): [] for part, _ in sizes for who in ("ours", *PEERS)}
+    sets = {name: Kept(a.build / f"experiments/cad-{name}.json") for name in ("debian", "others")}
+    others = a.models != MODELS
+    kept = sets["others" if others else "debian"]
     for file in sorted(a.models.iterdir()):
-        if a.only not in file.name:
-            continue
-        info, why = info_of(program, file, a.timeout)
-        if not info or not info["solids"]:
-            refused.append(f"| {file.name} | {why.replace(str(file.resolve()), file.name)[:120]} |")
-            print(refused[-1], flush=True)
-            continue
-        lo, hi = info["box"]
-        diagonal = math.dist(lo, hi)
-        volume = sum(s["volume"] for s in info["solids"])
-        for part, order in sizes:
-            mesh = ours(a.build, file, diagonal / part, order, a.timeout, part == 40)
-            made[part, "ours"].append(mesh)
-            rows.append(f"| {file.name} | {len(info['solids'])}, {len(info['faces'])} | 1/{part}, {order} | ours | {cells(mesh)} |")
-            print(rows[-1], flush=True)
-        for who, peer in PEERS.items() if a.peers else ():
-            mesh = peer(a.build, file, diagonal / 40, volume, a.timeout)
-            made[40, who].append(mesh)
-            rows.append(f"| {file.name} | | 1/40, 1 | {who} | {cells(mesh)} |")
-            print(rows[-1], flush=True)
-    lines = ["- " + summary(f"{who}, diagonal / {part}", m) + "." for (part, who), m in made.items() if m]
-    print("\n".join(lines))
+        if a.only in file.name:
+            campaign(a, kept, file, others)
+            kept.save()
+    print("\n".join(cad_page.summaries(kept)))
     if a.page:
-        PAGE.write_text("\n".join([
-            "# CAD files", "",
-            f"{written_by('bench/run.sh cad' + ' --fine' * a.fine + ' --peers' * a.peers + ' --page')}, one thread; at most {a.timeout:.0f} s a run.",
-            "",
-            "Files of Debian's occt-misc, netgen-doc, gmsh-doc and freecad-common (`scripts/get-cad.sh`), meshed at a part of their diagonal. "
-            "*Volume*: the solid that is worst off, against OpenCASCADE's volume of it, in percent; of curved elements as they are curved. Of "
-            "Gmsh and Netgen the sum of all, linear. *Astray*: nodes of the boundary, corners and mid-side nodes, that OpenCASCADE, which reads the file once "
-            "more, finds farther from its nearest face or edge than 1e-9 of the diagonal and than the tolerance there; the farthest, in diagonals. "
-            "Solids that touch share faces here, and do not in theirs.", "",
-            *lines, "",
-            "| file | solids, faces | size, order | mesher | elements | volume, % | astray | beta mean, least | least angle | CPU s |",
-            "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |", *rows, "",
-            "## Not meshed", "", "Without solids, or refused as they were read:", "", "| file | why |", "| --- | --- |", *refused, ""]))
+        cad_page.write(sets["debian"], sets["others"], a.timeout)
 
 
 main()

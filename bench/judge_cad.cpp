@@ -1,39 +1,28 @@
-// Do the nodes of a mesh's boundary lie on the faces of the CAD file that it was made of? OpenCASCADE reads the file
-// and measures; nothing of octafront-cad or of the mesher has a part in it. Prints one JSON object.
-//   octafront_judge_cad MESH FILE [--millimetres N]     N: how many a unit of the mesh has
-// Distances are to the nearest face, edge or vertex of the file, whichever the node was meant to lie on.
+// Is a mesh of a CAD file what the file says? OpenCASCADE reads the file and measures; nothing of octafront-cad or of
+// the mesher has a part in it. Prints one JSON object:
+//   octafront_judge_cad MESH FILE [--millimetres N] [--nodes N]
+// millimetres: how many a unit of the mesh has; nodes: of more, so many at most are looked at, evenly taken;
+// whether corners and mid-side nodes of the boundary are on the geometry (distances are to the nearest face, edge or
+// vertex, whichever the node was meant to lie on), the area of each region and the box, patches, and of poor elements
+// what is narrow in the shape where they are.
 
 #include <octafront/io.h>
+#include <octafront/quality.h>
 
-#include <BRepAdaptor_Surface.hxx>
-#include <BRepBndLib.hxx>
-#include <BRepBuilderAPI_MakeVertex.hxx>
-#include <BRepExtrema_ExtPC.hxx>
-#include <BRepExtrema_ExtPF.hxx>
-#include <BRepTools.hxx>
-#include <BRep_Builder.hxx>
-#include <BRep_Tool.hxx>
-#include <Bnd_Box.hxx>
-#include <IGESControl_Reader.hxx>
-#include <Interface_Static.hxx>
+#include "base/geometry/measures.h"
+#include "judged_shape.h"
+#include "narrow_places.h"
+
 #include <Message.hxx>
 #include <Message_Messenger.hxx>
 #include <Message_Printer.hxx>
-#include <STEPControl_Controller.hxx>
-#include <STEPControl_Reader.hxx>
 #include <Standard_Failure.hxx>
-#include <TopExp.hxx>
-#include <TopExp_Explorer.hxx>
-#include <TopTools_IndexedMapOfShape.hxx>
-#include <TopoDS.hxx>
-#include <TopoDS_Face.hxx>
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
-#include <memory>
+#include <map>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -43,211 +32,216 @@
 
 namespace {
 
-using octafront::Box3;
-using octafront::TetMesh;
-using octafront::Vec3;
+using namespace octafront;
+using Json = nlohmann::ordered_json;
 
 /// A node is on the geometry if it is nearer to it than this part of the diagonal, or than the tolerance of the file
 /// there.
 constexpr double kOnGeometry = 1e-9;
 
-std::string ending_of(const std::string& file) {
-  std::string ending = file.substr(file.rfind('.') + 1);
-  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return std::tolower(c); });
-  return ending;
-}
+/// Elements below are poor; so many of them are looked at, the worst by beta.
+constexpr double kPoorBeta = 0.2, kPoorAngle = 10;
+constexpr std::size_t kMostPoor = 50;
 
-template <class Reader>
-TopoDS_Shape transferred(Reader& reader, const std::string& file) {
-  Interface_Static::SetCVal("xstep.cascade.unit", "MM");
-  if (reader.ReadFile(file.c_str()) != IFSelect_RetDone) throw std::runtime_error(file + " cannot be read");
-  reader.TransferRoots();
-  return reader.OneShape();
-}
+struct Asked {
+  double millimetres = 1;
+  std::size_t nodes = std::size_t{1} << 40;
 
-TopoDS_Shape shape_of(const std::string& file) {
-  const std::string ending = ending_of(file);
-  if (ending == "igs" || ending == "iges") {
-    IGESControl_Reader reader;
-    return transferred(reader, file);
+  /// False: not understood.
+  bool take(const std::string& option, const char* value) {
+    if (option == "--millimetres") return (millimetres = std::strtod(value, nullptr)) > 0;
+    if (option == "--nodes") return (nodes = std::strtoul(value, nullptr, 10)) > 0;
+    return false;
   }
-  if (ending == "brep" || ending == "brp") {
-    TopoDS_Shape shape;
-    if (!BRepTools::Read(shape, file.c_str(), BRep_Builder())) throw std::runtime_error(file + " cannot be read");
-    return shape;
-  }
-  STEPControl_Controller::Init();
-  STEPControl_Reader reader;
-  return transferred(reader, file);
-}
-
-double distance_to(const gp_Pnt& p, const Box3& box) {
-  const auto beyond = [](double x, double lo, double hi) { return std::max({0.0, lo - x, x - hi}); };
-  return std::hypot(beyond(p.X(), box.lo.x, box.hi.x), beyond(p.Y(), box.lo.y, box.hi.y),
-                    beyond(p.Z(), box.lo.z, box.hi.z));
-}
-
-/// A face that is asked for distances many times.
-class JudgedFace {
- public:
-  explicit JudgedFace(const TopoDS_Face& face) : face_(face) {
-    to_face_.Initialize(face);
-    tolerance_ = BRep_Tool::Tolerance(face);
-    Bnd_Box bounds;
-    BRepBndLib::Add(face, bounds, false);
-    bounds.Get(box_.lo.x, box_.lo.y, box_.lo.z, box_.hi.x, box_.hi.y, box_.hi.z);
-    std::set<const void*> seen;
-    for (TopExp_Explorer it(face, TopAbs_EDGE); it.More(); it.Next()) {
-      const TopoDS_Edge& edge = TopoDS::Edge(it.Current());
-      if (BRep_Tool::Degenerated(edge) || !seen.insert(edge.TShape().get()).second) continue;
-      tolerance_ = std::max(tolerance_, BRep_Tool::Tolerance(edge));
-      to_edges_.push_back(std::make_unique<BRepExtrema_ExtPC>());
-      to_edges_.back()->Initialize(edge);
-    }
-    for (TopExp_Explorer it(face, TopAbs_VERTEX); it.More(); it.Next()) {
-      tolerance_ = std::max(tolerance_, BRep_Tool::Tolerance(TopoDS::Vertex(it.Current())));
-      corners_.push_back(BRep_Tool::Pnt(TopoDS::Vertex(it.Current())));
-    }
-  }
-
-  const Box3& box() const { return box_; }
-  double tolerance() const { return tolerance_; }  ///< the largest of its own and its edges' and vertices'
-
-  /// Of what is nearer than `enough` no nearer place is looked for.
-  double distance(const gp_Pnt& p, double enough) {
-    double best = HUGE_VAL;
-    for (const gp_Pnt& corner : corners_) best = std::min(best, p.Distance(corner));
-    const TopoDS_Vertex vertex = BRepBuilderAPI_MakeVertex(p);
-    if (best > enough) best = std::min(best, least(vertex, to_face_, &face_));
-    for (std::size_t e = 0; e < to_edges_.size() && best > enough; ++e)
-      best = std::min(best, least(vertex, *to_edges_[e], nullptr));
-    return best;
-  }
-
- private:
-  static void perform(BRepExtrema_ExtPF& extrema, const TopoDS_Vertex& v, const TopoDS_Face* f) {
-    extrema.Perform(v, *f);
-  }
-  static void perform(BRepExtrema_ExtPC& extrema, const TopoDS_Vertex& v, const TopoDS_Face*) { extrema.Perform(v); }
-
-  /// What OpenCASCADE cannot say is no distance.
-  template <class Extrema>
-  static double least(const TopoDS_Vertex& vertex, Extrema& extrema, const TopoDS_Face* face) {
-    double found = HUGE_VAL;
-    try {
-      perform(extrema, vertex, face);
-      for (int i = 1; extrema.IsDone() && i <= extrema.NbExt(); ++i)
-        found = std::min(found, std::sqrt(extrema.SquareDistance(i)));
-    } catch (const Standard_Failure&) {
-    }
-    return found;
-  }
-
-  TopoDS_Face face_;
-  BRepExtrema_ExtPF to_face_;
-  std::vector<std::unique_ptr<BRepExtrema_ExtPC>> to_edges_;
-  std::vector<gp_Pnt> corners_;
-  Box3 box_;
-  double tolerance_ = 0;
 };
 
-struct Found {
-  double distance = HUGE_VAL, tolerance = 0;
+/// The faces of boundary and interfaces, with their mid-side nodes.
+struct Skin {
+  std::vector<Triangle> triangles;
+  std::vector<std::uint32_t> patches;            ///< one per triangle
+  std::vector<std::array<VertexIndex, 3>> mids;  ///< one per triangle: of its sides 01, 12, 20; or none at all
 };
 
-class Geometry {
- public:
-  explicit Geometry(const TopoDS_Shape& shape) {
-    TopTools_IndexedMapOfShape faces;
-    TopExp::MapShapes(shape, TopAbs_FACE, faces);
-    for (int i = 1; i <= faces.Extent(); ++i) faces_.push_back(std::make_unique<JudgedFace>(TopoDS::Face(faces(i))));
-  }
+Edge sorted(VertexIndex a, VertexIndex b) {
+  return {std::min(a, b), std::max(a, b)};
+}
 
-  Found nearest(const gp_Pnt& p, double enough) const {
-    std::vector<std::pair<double, std::size_t>> order;
-    for (std::size_t f = 0; f < faces_.size(); ++f) order.push_back({distance_to(p, faces_[f]->box()), f});
-    std::sort(order.begin(), order.end());
-    Found best;
-    for (const auto& [least, f] : order) {
-      if (least >= best.distance || best.distance <= enough) break;
-      const double d = faces_[f]->distance(p, enough);
-      if (d < best.distance) best = {d, faces_[f]->tolerance()};
-    }
-    return best;
-  }
-
- private:
-  std::vector<std::unique_ptr<JudgedFace>> faces_;
-};
-
-/// The corners and mid-side nodes of the faces of boundary and interfaces.
-struct Nodes {
-  std::vector<std::uint32_t> corners, mids;
-};
-
-Nodes nodes_of(const TetMesh& mesh) {
-  std::vector<char> is_corner(mesh.points.size(), 0), is_mid(mesh.points.size(), 0);
-  std::set<octafront::Edge> edges;
-  for (const auto* faces : {&mesh.boundary, &mesh.interfaces})
-    for (const octafront::Triangle& t : *faces)
-      for (std::size_t k = 0; k < 3; ++k) {
-        is_corner[t[k]] = 1;
-        edges.insert({std::min(t[k], t[(k + 1) % 3]), std::max(t[k], t[(k + 1) % 3])});
-      }
+std::map<Edge, VertexIndex> mids_at(const TetMesh& mesh, const std::vector<Triangle>& triangles) {
+  std::map<Edge, VertexIndex> mids;
+  for (const Triangle& t : triangles)
+    for (std::size_t k = 0; k < 3; ++k) mids[sorted(t[k], t[(k + 1) % 3])] = kNone;
   for (std::size_t t = 0; t < mesh.mid_nodes.size(); ++t)
     for (std::size_t e = 0; e < 6; ++e) {
-      const auto a = mesh.tets[t][static_cast<std::size_t>(octafront::kTetEdges[e][0])],
-                 b = mesh.tets[t][static_cast<std::size_t>(octafront::kTetEdges[e][1])];
-      if (edges.contains({std::min(a, b), std::max(a, b)})) is_mid[mesh.mid_nodes[t][e]] = 1;
+      const auto& [a, b] = kTetEdges[e];
+      const auto found =
+          mids.find(sorted(mesh.tets[t][static_cast<std::size_t>(a)], mesh.tets[t][static_cast<std::size_t>(b)]));
+      if (found != mids.end()) found->second = mesh.mid_nodes[t][e];
     }
-  Nodes nodes;
-  for (std::uint32_t v = 0; v < mesh.points.size(); ++v) {
-    if (is_corner[v]) nodes.corners.push_back(v);
-    if (is_mid[v]) nodes.mids.push_back(v);
-  }
+  return mids;
+}
+
+Skin skin_of(const TetMesh& mesh) {
+  Skin skin{mesh.boundary, mesh.patch, {}};
+  skin.patches.resize(skin.triangles.size(), 0);
+  skin.triangles.insert(skin.triangles.end(), mesh.interfaces.begin(), mesh.interfaces.end());
+  skin.patches.insert(skin.patches.end(), mesh.interface_patch.begin(), mesh.interface_patch.end());
+  skin.patches.resize(skin.triangles.size(), 0);
+  if (!mesh.is_second_order()) return skin;
+  const auto mids = mids_at(mesh, skin.triangles);
+  for (const Triangle& t : skin.triangles)
+    skin.mids.push_back({mids.at(sorted(t[0], t[1])), mids.at(sorted(t[1], t[2])), mids.at(sorted(t[2], t[0]))});
+  return skin;
+}
+
+/// Each node once, with the patch of a face that it is on; ordered by patch.
+std::vector<std::pair<std::uint32_t, VertexIndex>> nodes_of(const Skin& skin,
+                                                            const std::vector<std::array<VertexIndex, 3>>& of) {
+  std::map<VertexIndex, std::uint32_t> patch_of;
+  for (std::size_t t = 0; t < of.size(); ++t)
+    for (const VertexIndex v : of[t]) patch_of.insert({v, skin.patches[t]});
+  std::vector<std::pair<std::uint32_t, VertexIndex>> nodes;
+  for (const auto& [v, patch] : patch_of) nodes.push_back({patch, v});
+  std::sort(nodes.begin(), nodes.end());
   return nodes;
 }
 
-struct Summary {
-  std::size_t nodes = 0, off = 0;
-  double largest = 0;  ///< of the diagonal
-  Vec3 where;          ///< of the mesh
-};
-
-Summary judged(const TetMesh& mesh, const std::vector<std::uint32_t>& nodes, const Geometry& geometry, double unit) {
-  const double diagonal = unit * octafront::bounding_box(mesh.points).diagonal(), allowed = kOnGeometry * diagonal;
-  Summary sum;
-  for (const std::uint32_t v : nodes) {
-    const Vec3 p = unit * mesh.points[v];
-    const Found found = geometry.nearest({p.x, p.y, p.z}, allowed / 10);
+Json on_geometry(const TetMesh& mesh, const Skin& skin, const std::vector<std::array<VertexIndex, 3>>& of,
+                 const JudgedShape& shape, const Asked& asked) {
+  const double unit = asked.millimetres, diagonal = unit * bounding_box(mesh.points).diagonal(),
+               allowed = kOnGeometry * diagonal;
+  std::size_t nodes = 0, off = 0, last = 0;
+  double largest = 0;
+  Vec3 where;
+  const auto all = nodes_of(skin, of);
+  const std::size_t step = (all.size() + asked.nodes - 1) / asked.nodes;
+  for (std::size_t i = 0; i < all.size(); i += step) {
+    const VertexIndex v = all[i].second;
+    const JudgedShape::Found found = shape.nearest(unit * mesh.points[v], allowed / 10, last);
     if (!std::isfinite(found.distance)) throw std::runtime_error("the file has no face and no edge to measure to");
-    ++sum.nodes;
-    sum.off += found.distance > std::max(allowed, found.tolerance);
-    if (found.distance / diagonal > sum.largest) sum.largest = found.distance / diagonal, sum.where = mesh.points[v];
+    ++nodes, last = found.face;
+    off += found.distance > std::max(allowed, found.tolerance);
+    if (found.distance / diagonal > largest) largest = found.distance / diagonal, where = mesh.points[v];
   }
-  return sum;
+  return {{"nodes", nodes}, {"off", off}, {"largest", largest}, {"where", {where.x, where.y, where.z}}};
 }
 
-std::string json_of(const Summary& s) {
-  return fmt::format(R"({{"nodes": {}, "off": {}, "largest": {:.3g}, "where": [{:.9g}, {:.9g}, {:.9g}]}})", s.nodes,
-                     s.off, s.largest, s.where.x, s.where.y, s.where.z);
+/// Of the quadratic triangle, by Gauss's rule of degree 5 with seven points (G. R. Cowper, 1973).
+double curved_area(const std::array<Vec3, 3>& corner, const std::array<Vec3, 3>& mid) {
+  const double r = std::sqrt(15.0);
+  const double a = (6 - r) / 21, b = (6 + r) / 21, wa = (155 - r) / 1200, wb = (155 + r) / 1200;
+  const double rule[7][3] = {{1. / 3, 1. / 3, 9. / 40}, {a, a, wa}, {1 - 2 * a, a, wa},
+                             {a, 1 - 2 * a, wa},        {b, b, wb}, {1 - 2 * b, b, wb},
+                             {b, 1 - 2 * b, wb}};
+  double area = 0;
+  for (const auto& [u, v, weight] : rule) {
+    const double w = 1 - u - v;
+    const Vec3 du =
+        (4 * u - 1) * corner[1] - (4 * w - 1) * corner[0] + 4 * (w - u) * mid[0] + 4 * v * mid[1] - 4 * v * mid[2];
+    const Vec3 dv =
+        (4 * v - 1) * corner[2] - (4 * w - 1) * corner[0] - 4 * u * mid[0] + 4 * u * mid[1] + 4 * (w - v) * mid[2];
+    area += weight * length(cross(du, dv)) / 2;
+  }
+  return area;
+}
+
+double area_of(const TetMesh& mesh, const Skin& skin, std::size_t t) {
+  const auto at = [&](const std::array<VertexIndex, 3>& v) {
+    return std::array<Vec3, 3>{mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]]};
+  };
+  const auto corners = at(skin.triangles[t]);
+  return skin.mids.empty() ? triangle_area(corners[0], corners[1], corners[2]) : curved_area(corners, at(skin.mids[t]));
+}
+
+/// What bounds each region, by number: a face between two counts for both.
+std::vector<double> areas_of(const TetMesh& mesh, const Skin& skin) {
+  std::map<Triangle, double> area;
+  for (std::size_t t = 0; t < skin.triangles.size(); ++t) {
+    Triangle key = skin.triangles[t];
+    std::sort(key.begin(), key.end());
+    area[key] = area_of(mesh, skin, t);
+  }
+  std::vector<char> is_outer(mesh.points.size(), 0);
+  for (const Triangle& t : skin.triangles)
+    for (const VertexIndex v : t) is_outer[v] = 1;
+  std::vector<double> of_region;
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    const std::size_t r = mesh.region.empty() ? 0 : mesh.region[t];
+    if (r >= of_region.size()) of_region.resize(r + 1, 0);
+    for (const auto& f : kTetFaces) {
+      Triangle key;
+      for (std::size_t k = 0; k < 3; ++k) key[k] = mesh.tets[t][static_cast<std::size_t>(f[k])];
+      if (!is_outer[key[0]] || !is_outer[key[1]] || !is_outer[key[2]]) continue;
+      std::sort(key.begin(), key.end());
+      if (const auto found = area.find(key); found != area.end()) of_region[r] += found->second;
+    }
+  }
+  return of_region;
+}
+
+/// By how much a side of one box is beside that of the other at most.
+double beside(const Box3& a, const Box3& b) {
+  const Vec3 lo = a.lo - b.lo, hi = a.hi - b.hi;
+  return std::max({std::abs(lo.x), std::abs(lo.y), std::abs(lo.z), std::abs(hi.x), std::abs(hi.y), std::abs(hi.z)});
+}
+
+Json number(double x) {
+  return std::isfinite(x) ? Json(x) : Json(nullptr);
+}
+
+/// Elements that are poor, and how many of them the shape does not force; what is narrow at the worst.
+Json poor_elements_of(const TetMesh& mesh, const NarrowPlaces& narrow, double unit) {
+  std::vector<std::pair<double, TetIndex>> poor;
+  for (TetIndex t = 0; t < mesh.tets.size(); ++t) {
+    const auto& [a, b, c, d] = mesh.tets[t];
+    const double beta = tet_radius_ratio(mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]);
+    const auto angles = dihedral_angles(mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]);
+    if (beta < kPoorBeta || *std::min_element(angles.begin(), angles.end()) < kPoorAngle) poor.push_back({beta, t});
+  }
+  std::sort(poor.begin(), poor.end());
+  Json found{{"elements", poor.size()}, {"judged", std::min(poor.size(), kMostPoor)}, {"unforced", 0}};
+  for (std::size_t i = 0; i < std::min(poor.size(), kMostPoor); ++i) {
+    const auto& [a, b, c, d] = mesh.tets[poor[i].second];
+    const Vec3 p = mesh.points[a], q = mesh.points[b], r = mesh.points[c], s = mesh.points[d];
+    const Narrow at = narrow.at(unit * centroid(p, q, r, s), unit * std::sqrt(longest_squared_edge(p, q, r, s)));
+    if (i == 0)
+      found["wedge"] = number(at.wedge), found["corner"] = number(at.corner), found["edge"] = number(at.edge),
+      found["gap"] = number(at.gap);
+    if (!at.forces_poor_elements()) found["unforced"] = found["unforced"].get<int>() + 1;
+  }
+  return found;
+}
+
+Json judged(const TetMesh& mesh, const TopoDS_Shape& file, const Asked& asked) {
+  const double unit = asked.millimetres;
+  const Skin skin = skin_of(mesh);
+  const JudgedShape shape(file);
+  const ShapeMeasures measures = measures_of(file);
+  Json j{{"vertices", on_geometry(mesh, skin, skin.triangles, shape, asked)},
+         {"mid_side", on_geometry(mesh, skin, skin.mids, shape, asked)}};
+  j["areas"] = areas_of(mesh, skin);
+  j["true"] = {{"solids", measures.solids}, {"faces", measures.faces}, {"area", measures.area / (unit * unit)}};
+  Box3 box = bounding_box(mesh.points);
+  box.lo = unit * box.lo, box.hi = unit * box.hi;
+  j["box"] = beside(box, measures.box) / measures.box.diagonal();
+  j["patches"] = std::set<std::uint32_t>(skin.patches.begin(), skin.patches.end()).size();
+  j["poor"] = poor_elements_of(mesh, NarrowPlaces(sewn(file)), unit);
+  return j;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 3 && argc != 5) {
-    std::fputs("octafront_judge_cad MESH FILE [--millimetres N]\n", stderr);
+  Asked asked;
+  bool understood = argc >= 3 && argc % 2 == 1;
+  for (int i = 3; understood && i < argc; i += 2) understood = asked.take(argv[i], argv[i + 1]);
+  if (!understood) {
+    std::fputs("octafront_judge_cad MESH FILE [--millimetres N] [--nodes N]\n", stderr);
     return 2;
   }
   try {
     Message::DefaultMessenger()->ChangePrinters().Clear();
-    const double unit = argc == 5 ? std::strtod(argv[4], nullptr) : 1;
-    const TetMesh mesh = octafront::read_mesh(argv[1]);
-    const Geometry geometry(shape_of(argv[2]));
-    const Nodes nodes = nodes_of(mesh);
-    fmt::print("{{\"vertices\": {}, \"mid_side\": {}}}\n", json_of(judged(mesh, nodes.corners, geometry, unit)),
-               json_of(judged(mesh, nodes.mids, geometry, unit)));
+    const TetMesh mesh = read_mesh(argv[1]);
+    fmt::print("{}\n", judged(mesh, shape_of(argv[2]), asked).dump());
     return 0;
   } catch (const Standard_Failure& failure) {
     std::fprintf(stderr, "octafront_judge_cad: %s\n", failure.GetMessageString());

@@ -21,7 +21,8 @@
 #   bench/run.sh images      volumes of labels, each label judged; --peers: beside CGAL -> docs/measured/images-status.md
 #   bench/run.sh thin        plates, discs, tubes, shells 1:10 to 1:1e6, beside Gmsh and TetGen -> docs/measured/thin-bodies.md
 #   bench/run.sh budget      automatic sizes: budget said, elements made, time, what was given up -> docs/measured/budget-status.md
-#   bench/run.sh cad         CAD files at parts of their diagonal: volumes of solids, elements, time; --peers: beside Gmsh and Netgen -> docs/measured/cad.md
+#   bench/run.sh cad         CAD files at parts of their diagonal: volumes, areas, names, nodes on the geometry, time; --peers: beside Gmsh
+#                            and Netgen; --models FOLDER: other files  -> docs/measured/cad.md
 #   bench/run.sh dry_run     mesh --dry-run: elements, time and memory said and taken -> docs/use/command-line.md
 set -euo pipefail
 cd "$(dirname "$0")/.."

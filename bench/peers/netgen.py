@@ -1,6 +1,6 @@
 """Netgen (Debian: netgen), through its library: its front on a kept surface, and its STL mesher, which triangulates anew.
 
-As a program of its own, which these run:  python3 -m peers.netgen SURFACE.off|CAD MESH.mesh [SIZE]
+As a program of its own, which these run:  python3 -m peers.netgen SURFACE.off|CAD MESH.mesh [SIZE [--vol]]
 """
 import ctypes
 import pathlib
@@ -24,9 +24,9 @@ def remesh(surface, folder, timeout, size):
     return run(surface, folder, timeout, size)
 
 
-def mesh_cad(file, folder, timeout, size):
-    """Meshes a STEP, IGES or BREP file. The mesh is MEDIT."""
-    return run(file, folder, timeout, size)
+def mesh_cad(file, folder, timeout, size, own_format=False):
+    """Meshes a STEP, IGES or BREP file. The mesh is MEDIT; with `own_format` out.vol, which has names, lies beside it."""
+    return run(file, folder, timeout, size, *(["--vol"] if own_format else []))
 
 
 def run(surface, folder, timeout, *more):
@@ -159,6 +159,9 @@ def remesh_in_process(surface, out, size):
     fill_mesh(library, mesh, parameters, start)
     made = surface_triangles(library, mesh)
     save(library, mesh, made, out)
+    if "--vol" in sys.argv:
+        vol = str(pathlib.Path(out).with_suffix(".vol"))
+        function(library, "11Ng_SaveMeshEPPvPKc", None, ctypes.c_void_p, ctypes.c_char_p)(mesh, vol.encode())
 
 
 def save(library, mesh, triangles, out):

@@ -48,7 +48,7 @@ Result generate_once(const Domain& domain, const Options& asked, const RunContex
   place_on_geometry(input, filled, run);
   raise_order(input, filled, run);
   name_patches(input, filled);
-  name_parts(input, filled);
+  name_parts(input, filled, run);
   add_patch_curves(filled.mesh);
   check_result(filled.mesh, &filled.boundary.surface, run);
   describe(filled.mesh, run.report);

@@ -109,6 +109,24 @@ NamedSet elements_of(const PartGroup& group, const TetMesh& mesh) {
   return set;
 }
 
+/// A sentence for the parts that no face of the mesh lies in; empty if there are none.
+std::string parts_without_faces(const std::vector<std::string>& names, const TetMesh& mesh) {
+  constexpr std::size_t kFew = 5;
+  std::vector<char> is_there(names.size(), 0);
+  for (const auto* parts : {&mesh.patch, &mesh.interface_patch})
+    for (const std::uint32_t part : *parts)
+      if (part < names.size()) is_there[part] = 1;
+  std::size_t missing = 0;
+  std::string listed;
+  for (std::size_t part = 0; part < names.size(); ++part) {
+    if (is_there[part]) continue;
+    if (++missing <= kFew) listed += (missing > 1 ? ", " : "") + names[part];
+  }
+  if (missing == 0) return "";
+  return fmt::format("{} of {} faces have no elements of their own, for they are narrower, or of no solid ({}{})",
+                     missing, names.size(), listed, missing > kFew ? ", ..." : "");
+}
+
 }  // namespace
 
 Options options_for_geometry(const Domain& domain, Options options) {
@@ -140,13 +158,15 @@ void place_on_geometry(const Prepared& input, Filled& filled, Run& run) {
   });
 }
 
-void name_parts(const Prepared& input, Filled& filled) {
+void name_parts(const Prepared& input, Filled& filled, Run& run) {
   if (!input.geometry) return;
   auto& [mesh, boundary] = filled;
   name_parts_of(*input.geometry, mesh.points, mesh.boundary, mesh.patch);
   name_parts_of(*input.geometry, mesh.points, mesh.interfaces, mesh.interface_patch);
   name_parts_of(*input.geometry, mesh.points, boundary.surface.triangles, boundary.surface.patch);
   std::vector<std::string> names = input.geometry->part_names();
+  if (std::string missing = parts_without_faces(names, mesh); !missing.empty())
+    run.report.stages.back().notes.push_back(std::move(missing));
   const auto known = static_cast<std::ptrdiff_t>(input.geometry->patch_names().size());
   names.insert(names.end(), mesh.patch_names.begin() + known, mesh.patch_names.end());
   mesh.patch_names = boundary.surface.patch_names = std::move(names);

@@ -17,8 +17,9 @@ Options options_for_geometry(const Domain& domain, Options options);
 /// `filled.boundary` follows. Where the input's triangles are kept only the patches change.
 void place_on_geometry(const Prepared& input, Filled& filled, Run& run);
 
-/// Patches of the mesh become the named parts that its faces lie in; groups of parts and regions become sets.
-void name_parts(const Prepared& input, Filled& filled);
+/// Patches of the mesh become the named parts that its faces lie in; groups of parts and regions become sets. Parts
+/// without a face of the mesh are named in a note.
+void name_parts(const Prepared& input, Filled& filled, Run& run);
 
 /// Enters the true volumes into the report, beside those of the mesh, curved as it is.
 void describe_true_volumes(const TetMesh& mesh, const Domain& domain, Report& report);
