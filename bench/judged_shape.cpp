@@ -7,6 +7,7 @@
 #include <BRepClass_FaceClassifier.hxx>
 #include <BRepExtrema_ExtPC.hxx>
 #include <BRepGProp.hxx>
+#include <BRepMesh_IncrementalMesh.hxx>
 #include <BRepTools.hxx>
 #include <BRepTopAdaptor_FClass2d.hxx>
 #include <BRep_Builder.hxx>
@@ -16,6 +17,7 @@
 #include <GProp_GProps.hxx>
 #include <IGESControl_Reader.hxx>
 #include <Interface_Static.hxx>
+#include <Poly_Triangulation.hxx>
 #include <Precision.hxx>
 #include <STEPControl_Controller.hxx>
 #include <STEPControl_Reader.hxx>
@@ -23,6 +25,7 @@
 #include <Standard_Failure.hxx>
 #include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
+#include <TopLoc_Location.hxx>
 #include <TopTools_IndexedMapOfShape.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Face.hxx>
@@ -39,6 +42,8 @@ namespace {
 
 /// Error of areas, relative: as octafront-cad has them.
 constexpr double kIntegral = 1e-6;
+/// Of triangles for boxes: how far chords lie off, in diagonals, and how far neighbours turn, radians.
+constexpr double kChord = 1e-4, kTurn = 0.2;
 
 std::string ending_of(const std::string& file) {
   std::string ending = file.substr(file.rfind('.') + 1);
@@ -72,16 +77,26 @@ double area_of(const TopoDS_Shape& shape) {
   return properties.Mass();
 }
 
-Box3 box_of(const TopoDS_Shape& shape, bool close) {
+Box3 box_of(const TopoDS_Shape& shape) {
   Bnd_Box bounds;
-  if (close)
-    BRepBndLib::AddOptimal(shape, bounds, false, false);
-  else
-    BRepBndLib::Add(shape, bounds, false);
+  BRepBndLib::Add(shape, bounds, false);
   Box3 box;
-  if (bounds.IsVoid()) return box;
-  if (close) bounds.SetGap(0);
-  bounds.Get(box.lo.x, box.lo.y, box.lo.z, box.hi.x, box.hi.y, box.hi.z);
+  if (!bounds.IsVoid()) bounds.Get(box.lo.x, box.lo.y, box.lo.z, box.hi.x, box.hi.y, box.hi.z);
+  return box;
+}
+
+/// Of fine triangles, whose corners lie on the faces: BRepBndLib::AddOptimal() finds more than there is of some faces.
+Box3 close_box_of(const TopoDS_Shape& shape) {
+  BRepMesh_IncrementalMesh(shape, kChord * box_of(shape).diagonal(), false, kTurn);
+  Box3 box;
+  for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next()) {
+    TopLoc_Location place;
+    const auto triangles = BRep_Tool::Triangulation(TopoDS::Face(it.Current()), place);
+    for (int i = 1; !triangles.IsNull() && i <= triangles->NbNodes(); ++i) {
+      const gp_Pnt p = triangles->Node(i).Transformed(place.Transformation());
+      box.add(Vec3{p.X(), p.Y(), p.Z()});
+    }
+  }
   return box;
 }
 
@@ -124,7 +139,7 @@ ShapeMeasures measures_of(const TopoDS_Shape& shape) {
   const auto add = [&](const TopoDS_Shape& part) {
     TopExp::MapShapes(part, TopAbs_FACE, faces);
     sum.area += area_of(part);
-    sum.box.add(box_of(part, true));
+    sum.box.add(close_box_of(part));
   };
   for (int i = 1; i <= solids.Extent(); ++i) add(solids(i));
   if (solids.IsEmpty()) {
@@ -141,7 +156,7 @@ class JudgedShape::Face {
   explicit Face(const TopoDS_Face& face) : face_(face) {
     start_on_face();
     tolerance_ = BRep_Tool::Tolerance(face);
-    box_ = box_of(face, false);
+    box_ = box_of(face);
     std::set<const void*> seen;
     for (TopExp_Explorer it(face, TopAbs_EDGE); it.More(); it.Next()) {
       const TopoDS_Edge& edge = TopoDS::Edge(it.Current());

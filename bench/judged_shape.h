@@ -23,7 +23,7 @@ TopoDS_Shape sewn(const TopoDS_Shape& shape);
 struct ShapeMeasures {
   std::size_t solids = 0, faces = 0;  ///< each once; an instance elsewhere is another
   double area = 0;                    ///< of the faces of all solids: of one that two share twice
-  Box3 box;                           ///< near the smallest, without tolerances
+  Box3 box;                           ///< within a ten-thousandth of its diagonal
 };
 ShapeMeasures measures_of(const TopoDS_Shape& shape);
 
