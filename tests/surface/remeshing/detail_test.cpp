@@ -107,6 +107,16 @@ TEST(Unfold, KeepsPatchBorders) {
   EXPECT_EQ(unfolded->surface.patch.size(), unfolded->surface.triangles.size());
 }
 
+TEST(Unfold, KeepsTheNameAndLabelOfTheRegion) {
+  SurfaceMesh folded = folded_sphere();
+  folded.region_names = {"ball"};
+  folded.region_labels = {7};
+  const auto unfolded = unfold(folded, 0.3);
+  ASSERT_TRUE(unfolded.has_value());
+  EXPECT_EQ(unfolded->surface.region_names, folded.region_names);
+  EXPECT_EQ(unfolded->surface.region_labels, folded.region_labels);
+}
+
 /// A box of which one upright edge is cut off by a sliver of a face: two sharp lines that begin at one corner and end
 /// `width` apart, as a decimated model draws one line.
 SurfaceMesh box_with_needle(double width) {
