@@ -26,6 +26,11 @@ std::string utf8_of(const TCollection_ExtendedString& text) {
   return to_utf8(std::string_view(bytes.ToCString(), static_cast<std::size_t>(bytes.Length())));
 }
 
+/// OpenCASCADE's name of a component that the file gives none: such a one is no instance, but a piece of its product.
+bool is_made_up(const std::string& name) {
+  return name.rfind("=>[", 0) == 0;
+}
+
 class DocumentReader {
  public:
   DocumentReader(const Handle(TDocStd_Document) & document, const LabelsOfShapes& said, Part& part)
@@ -42,7 +47,7 @@ class DocumentReader {
   }
 
  private:
-  /// `outer`: what the assemblies around it say, where the shape itself says nothing.
+  /// `outer`: what the assemblies around it say, where the shape itself says nothing; the name is for pieces alone.
   void visit(const TDF_Label& label, const TopLoc_Location& place, Labels outer) {
     if (XCAFDoc_ShapeTool::IsReference(label)) {
       TDF_Label product;
@@ -51,15 +56,19 @@ class DocumentReader {
       const Labels own = labels_of(label);
       if (own.colour) outer.colour = own.colour;
       if (!own.layer.empty()) outer.layer = own.layer;
+      if (!is_made_up(own.name)) outer.name.clear();
       return visit(product, place * XCAFDoc_ShapeTool::GetLocation(label), outer);
     }
     if (XCAFDoc_ShapeTool::IsAssembly(label)) {
       TDF_LabelSequence components;
       XCAFDoc_ShapeTool::GetComponents(label, components);
+      if (const std::string name = told_name(label); !name.empty()) outer.name = name;
       for (const TDF_Label& component : components) visit(component, place, outer);
       return;
     }
-    take_product(label, place, merged(labels_of(label), outer));
+    Labels product = labels_of(label);
+    product.name = told_name(label);
+    take_product(label, place, merged(product, outer));
   }
 
   void take_product(const TDF_Label& label, const TopLoc_Location& place, const Labels& product) {
@@ -110,6 +119,12 @@ class DocumentReader {
       if (!shape.IsNull()) all[shape.TShape().get()] = labels_of(part);
     }
     return all;
+  }
+
+  /// Empty where it says nothing.
+  std::string told_name(const TDF_Label& label) const {
+    const std::string name = labels_of(label).name;
+    return says_nothing(name) ? std::string() : name;
   }
 
   Labels labels_of(const TDF_Label& label) const {

@@ -1,0 +1,87 @@
+// Names of a document as OpenCASCADE makes it of a file.
+
+#include "../../../cad/read.h"
+
+#include <BRepPrimAPI_MakeBox.hxx>
+#include <BRep_Builder.hxx>
+#include <TCollection_ExtendedString.hxx>
+#include <TDF_Label.hxx>
+#include <TDataStd_Name.hxx>
+#include <TopLoc_Location.hxx>
+#include <TopoDS_Compound.hxx>
+#include <XCAFApp_Application.hxx>
+#include <XCAFDoc_DocumentTool.hxx>
+#include <XCAFDoc_ShapeTool.hxx>
+#include <gp_Trsf.hxx>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace octafront::cad {
+namespace {
+
+TopoDS_Shape box(double at) {
+  return BRepPrimAPI_MakeBox(gp_Pnt(at, 0, 0), 1, 2, 3).Solid();
+}
+
+TopoDS_Shape compound_of(const std::vector<TopoDS_Shape>& parts) {
+  TopoDS_Compound all;
+  BRep_Builder builder;
+  builder.MakeCompound(all);
+  for (const TopoDS_Shape& part : parts) builder.Add(all, part);
+  return all;
+}
+
+class NamesOfDocument : public ::testing::Test {
+ protected:
+  NamesOfDocument() {
+    XCAFApp_Application::GetApplication()->NewDocument("MDTV-XCAF", document_);
+    shapes_ = XCAFDoc_DocumentTool::ShapeTool(document_->Main());
+  }
+
+  /// A product of several pieces: OpenCASCADE names its components "=>[0:1:1:2]", and the pieces by their kind.
+  TDF_Label product(const char* name, const std::vector<TopoDS_Shape>& pieces) {
+    const TDF_Label label = shapes_->AddShape(compound_of(pieces), true);
+    TDataStd_Name::Set(label, TCollection_ExtendedString(name));
+    return label;
+  }
+
+  std::vector<std::string> names() {
+    Part part;
+    take_document(document_, {}, part);
+    number_names(part);
+    std::vector<std::string> all;
+    for (const Body& body : part.solids) all.push_back(body.labels.name);
+    return all;
+  }
+
+  Handle(TDocStd_Document) document_;
+  Handle(XCAFDoc_ShapeTool) shapes_;
+};
+
+TEST_F(NamesOfDocument, PiecesOfAProductHaveItsName) {
+  product("PLATE", {box(0), box(2)});
+  EXPECT_EQ(names(), (std::vector<std::string>{"PLATE", "PLATE#2"}));
+}
+
+TEST_F(NamesOfDocument, AnInstanceWithoutANameHasNotThatOfItsAssembly) {
+  const TDF_Label assembly = shapes_->NewShape();
+  TDataStd_Name::Set(assembly, "ASSEMBLY");
+  const TDF_Label nameless = shapes_->AddShape(box(0), false);
+  TDataStd_Name::Set(shapes_->AddComponent(assembly, nameless, TopLoc_Location()), "instance 1");
+  shapes_->UpdateAssemblies();
+  EXPECT_EQ(names(), std::vector<std::string>{""});
+}
+
+TEST_F(NamesOfDocument, PiecesWithNamesKeepThem) {
+  const TopoDS_Shape named = box(0);
+  product("PLATE", {named, box(2)});
+  TDF_Label piece;
+  ASSERT_TRUE(shapes_->FindShape(named, piece));
+  TDataStd_Name::Set(piece, "RIB");
+  EXPECT_EQ(names(), (std::vector<std::string>{"RIB", "PLATE"}));
+}
+
+}  // namespace
+}  // namespace octafront::cad
