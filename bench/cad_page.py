@@ -123,6 +123,8 @@ def summaries(kept):
 def misses(kept, part=100):
     """Which files miss what is asked for of second order at a hundredth: no mesh, volume, area, box, poor elements, nodes."""
     runs = runs_of(kept, "ours", part)
+    if not runs:
+        return ["- not run."]
     done = [m for m in runs if "area" in m]
     found = {
         "no mesh": [m for m in runs if "error" in m],
@@ -177,9 +179,10 @@ def origins(kept, whose):
 
 def write(debian, others, timeout):
     page = TEXT.read_text()
+    fine = " --fine" if runs_of(others, "ours", 100) else ""
     parts = {
         "written": written_by("bench/run.sh cad --fine --peers --page", origins(debian, ["ours"])),
-        "others_written": written_by(f"bench/run.sh cad --models FOLDER --fine --timeout {timeout:.0f} --page", origins(others, ["ours"])),
+        "others_written": written_by(f"bench/run.sh cad --models FOLDER{fine} --timeout {timeout:.0f} --page", origins(others, ["ours"])),
         "peers": "; ".join(sorted(origins(debian, MESHERS[1:]))),
         "timeout": f"{timeout:.0f}",
         "summaries": "\n".join(summaries(debian)),
