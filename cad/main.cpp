@@ -73,6 +73,7 @@ std::optional<Arguments> arguments_of(int argc, char** argv) {
 Part opened_part(const Arguments& arguments) {
   Part part = read_part(arguments);
   sew(part);
+  if (arguments.heal) take_other_parts(part);
   turn_outward(part);
   if (arguments.heal) heal(part);
   if (part.solids.size() > 1) {

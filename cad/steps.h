@@ -6,6 +6,9 @@ namespace octafront::cad {
 
 /// Solids in which the library's check finds fault are healed; taken back where that changes volume or drops a face.
 void heal(Part& part);
+/// Faces that are more than half of a sphere, of solids that pass through themselves, become the other part of it where
+/// that ends the crossing: where a border runs through a pole the library may take the wrong one.
+void take_other_parts(Part& part);
 /// Solids that are inside out are turned.
 void turn_outward(Part& part);
 /// Where there is no solid: faces are sewn along edges that nearly coincide, and what is closed becomes solids.

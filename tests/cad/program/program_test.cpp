@@ -9,6 +9,7 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <numbers>
 #include <numeric>
 #include <regex>
 
@@ -245,6 +246,20 @@ TEST_F(CadProgram, ShellsInShellsOfSewnFacesAreCavities) {
       EXPECT_EQ(open_edges(m, s), 0);
     }
   }
+}
+
+TEST_F(CadProgram, APartOfASphereThatCrossesTheRestIsTheOtherPart) {
+  const std::string file = written("wrong part", ".brep");
+  const CadModel m = model_of_file(file);
+  ASSERT_EQ(m.solids.size(), 1u);
+  const double right = 1000 * std::numbers::pi / 3 + 2800;
+  EXPECT_NEAR(m.solids[0].volume, right, 1e-5 * right);
+  EXPECT_NEAR(volume_behind(m, 0), right, 1e-3 * right);
+  EXPECT_EQ(open_edges(m, 0), 0);
+  EXPECT_TRUE(std::ranges::any_of(m.notes, [](const std::string& note) {
+    return note.find("1 face of spheres taken as the other part") != std::string::npos;
+  }));
+  EXPECT_GT(std::abs(model_of_file(file, {"--no-heal"}).solids[0].volume - right), 100) << "as it is in the file";
 }
 
 TEST_F(CadProgram, BinaryBrepIsTheSame) {

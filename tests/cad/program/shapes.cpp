@@ -1,9 +1,13 @@
 #include "shapes.h"
 
+#include <BRepAdaptor_Surface.hxx>
 #include <BRepAlgoAPI_Cut.hxx>
+#include <BRepAlgoAPI_Fuse.hxx>
 #include <BRepBuilderAPI_MakeEdge.hxx>
 #include <BRepBuilderAPI_MakeFace.hxx>
+#include <BRepBuilderAPI_MakeSolid.hxx>
 #include <BRepBuilderAPI_MakeWire.hxx>
+#include <BRepBuilderAPI_Sewing.hxx>
 #include <BRepFilletAPI_MakeFillet.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCone.hxx>
@@ -17,6 +21,7 @@
 #include <BinTools.hxx>
 #include <GeomAPI_PointsToBSpline.hxx>
 #include <Geom_BSplineCurve.hxx>
+#include <Geom_SphericalSurface.hxx>
 #include <IGESControl_Controller.hxx>
 #include <IGESControl_Writer.hxx>
 #include <Interface_Static.hxx>
@@ -29,7 +34,9 @@
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
+#include <TopoDS_Shell.hxx>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 namespace octafront::testing {
@@ -84,6 +91,22 @@ TopoDS_Shape nested() {
   return all;
 }
 
+/// A quarter of a ball of 10 with a bar of 7 x 40 x 10 on it, but for its round face: that is the rest of the sphere.
+TopoDS_Shape wrong_part() {
+  const TopoDS_Shape right = BRepAlgoAPI_Fuse(BRepPrimAPI_MakeSphere(10, std::numbers::pi / 2).Shape(),
+                                              BRepPrimAPI_MakeBox(gp_Pnt(1, -40, -5), 7, 40, 10).Shape())
+                                 .Shape();
+  BRepBuilderAPI_Sewing sewing;
+  for (TopExp_Explorer it(right, TopAbs_FACE); it.More(); it.Next())
+    if (BRepAdaptor_Surface(TopoDS::Face(it.Current())).GetType() != GeomAbs_Sphere) sewing.Add(it.Current());
+  const Handle(Geom_Surface) sphere = new Geom_SphericalSurface(gp_Ax3(), 10);
+  constexpr double kQuarter = std::numbers::pi / 2;
+  sewing.Add(BRepBuilderAPI_MakeFace(sphere, kQuarter, 4 * kQuarter, -kQuarter, kQuarter, 1e-7).Face());
+  sewing.Perform();
+  TopExp_Explorer shell(sewing.SewedShape(), TopAbs_SHELL);
+  return BRepBuilderAPI_MakeSolid(TopoDS::Shell(shell.Current())).Shape();
+}
+
 /// One box in two places.
 TopoDS_Shape instances() {
   TopoDS_Compound both;
@@ -136,6 +159,7 @@ TopoDS_Shape shape_named(const std::string& name) {
   if (name == "three") return three();
   if (name == "instances") return instances();
   if (name == "nested faces") return faces_of(nested());
+  if (name == "wrong part") return wrong_part();
   if (name == "groove") return ball_in_groove();
   throw std::invalid_argument(name);
 }
