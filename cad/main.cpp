@@ -70,6 +70,14 @@ std::optional<Arguments> arguments_of(int argc, char** argv) {
   return a;
 }
 
+/// How much of all area the loose faces have.
+double part_of_area(const std::vector<TopoDS_Shape>& loose, const std::vector<Body>& solids) {
+  double area = 0, all = 0;
+  for (const TopoDS_Shape& face : loose) area += area_of(face);
+  for (const Body& body : solids) all += area_of(body.solid);
+  return area / (area + all);
+}
+
 Part opened_part(const Arguments& arguments) {
   Part part = read_part(arguments);
   sew(part);
@@ -83,7 +91,8 @@ Part opened_part(const Arguments& arguments) {
       part.fused = false;
   }
   if (!part.solids.empty() && !part.loose.empty())
-    part.notes.push_back(fmt::format("{} faces belong to no solid", part.loose.size()));
+    part.notes.push_back(fmt::format("{} faces, {:.0f} % of the area, belong to no solid", part.loose.size(),
+                                     100 * part_of_area(part.loose, part.solids)));
   return part;
 }
 

@@ -25,6 +25,8 @@ namespace {
 
 /// Edges nearer than this part of the diagonal are one.
 constexpr double kSewing = 1e-5;
+/// Where more of the area than this part stays open, what did close is not the model: all faces go to repair.
+constexpr double kMostOpen = 0.1;
 
 std::optional<TopoDS_Shape> solid_of(const TopoDS_Shape& shell) {
   if (!BRep_Tool::IsClosed(shell)) return std::nullopt;
@@ -111,6 +113,18 @@ void sew(Part& part) {
     }
   }
   for (TopExp_Explorer it(sewn, TopAbs_FACE, TopAbs_SHELL); it.More(); it.Next()) part.loose.push_back(it.Current());
+  double open_area = 0, area = 0;
+  for (const TopoDS_Shape& face : part.loose) open_area += area_of(face);
+  for (TopExp_Explorer it(sewn, TopAbs_FACE); it.More(); it.Next()) area += area_of(it.Current());
+  if (open_area > kMostOpen * area) {
+    part.loose.clear();
+    for (TopExp_Explorer it(sewn, TopAbs_FACE); it.More(); it.Next()) part.loose.push_back(it.Current());
+    part.notes.push_back(
+        fmt::format("the file has no solids, and {:.0f} % of the area of its faces bounds none when they "
+                    "are sewn where edges lie within {:g} of the diagonal: they are taken as triangles",
+                    100 * open_area / area, kSewing));
+    return;
+  }
   for (const TopoDS_Shape& solid : with_cavities(closed)) part.solids.push_back({solid, {}});
   std::string came = counted(part.solids.size(), "solid");
   if (const std::size_t cavities = closed.size() - part.solids.size(); cavities > 0)

@@ -248,6 +248,14 @@ TEST_F(CadProgram, ShellsInShellsOfSewnFacesAreCavities) {
   }
 }
 
+TEST_F(CadProgram, WhatClosesIsNoModelWhereMostStaysOpen) {
+  const CadModel m = model_of_file(written("mostly open", ".brep"));
+  EXPECT_EQ(m.solids.size(), 0u);
+  EXPECT_EQ(m.faces.size(), 11u);
+  ASSERT_FALSE(m.notes.empty());
+  EXPECT_NE(m.notes[0].find("95 % of the area of its faces bounds none"), std::string::npos) << m.notes[0];
+}
+
 TEST_F(CadProgram, APartOfASphereThatCrossesTheRestIsTheOtherPart) {
   const std::string file = written("wrong part", ".brep");
   const CadModel m = model_of_file(file);

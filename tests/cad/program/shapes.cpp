@@ -91,6 +91,17 @@ TopoDS_Shape nested() {
   return all;
 }
 
+/// The faces of a box of 2, and of a box of 10 but one.
+TopoDS_Shape mostly_open() {
+  TopoDS_Compound all;
+  BRep_Builder().MakeCompound(all);
+  TopExp_Explorer large(BRepPrimAPI_MakeBox(10, 10, 10).Shape(), TopAbs_FACE);
+  for (large.Next(); large.More(); large.Next()) BRep_Builder().Add(all, large.Current());
+  for (TopExp_Explorer it(BRepPrimAPI_MakeBox(gp_Pnt(20, 0, 0), 2, 2, 2).Shape(), TopAbs_FACE); it.More(); it.Next())
+    BRep_Builder().Add(all, it.Current());
+  return all;
+}
+
 /// A quarter of a ball of 10 with a bar of 7 x 40 x 10 on it, but for its round face: that is the rest of the sphere.
 TopoDS_Shape wrong_part() {
   const TopoDS_Shape right = BRepAlgoAPI_Fuse(BRepPrimAPI_MakeSphere(10, std::numbers::pi / 2).Shape(),
@@ -160,6 +171,7 @@ TopoDS_Shape shape_named(const std::string& name) {
   if (name == "instances") return instances();
   if (name == "nested faces") return faces_of(nested());
   if (name == "wrong part") return wrong_part();
+  if (name == "mostly open") return mostly_open();
   if (name == "groove") return ball_in_groove();
   throw std::invalid_argument(name);
 }
