@@ -6,6 +6,7 @@
 #include "soup/mend/based_cap.h"
 #include "soup/mend/cap.h"
 #include "soup/mend/fair.h"
+#include "soup/mend/fins.h"
 #include "soup/mend/loops.h"
 #include "soup/mend/shared_lids.h"
 
@@ -205,14 +206,15 @@ class PartsOfDraft {
     for (const Triangle& t : hole.cap) add(hole.rim_triangle, t, true);
   }
 
-  /// Requires that all caps are known.
-  void judge(double tolerance) {
+  /// Requires that all caps are known. Returns whether a part is closed, nearly.
+  bool judge(double tolerance) {
     bool any_closed = false;
     for (const Part& part : part_)
       any_closed = any_closed || (!part.is_thin(tolerance) && part.capped <= kNearlyClosed * part.area);
     for (Part& part : part_)
       part.is_sheet =
           part.is_thin(tolerance) || part.capped > (any_closed ? kMostCappedBeside : kMostCapped) * part.area;
+    return any_closed;
   }
 
   bool is_one_sheet() {
@@ -311,9 +313,11 @@ ClosedHoles close_holes(Draft& draft, double tolerance) {
     parts.replace_cap(all[i], flat);
     all[i] = std::move(flat);
   }
-  parts.judge(tolerance);
   ClosedHoles result;
-  for (std::uint32_t t = 0; t < draft.mesh.triangles.size(); ++t) result.is_sheet.push_back(parts.is_sheet(t));
+  if (parts.judge(tolerance)) result.is_sheet = triangles_of_fins(draft.mesh.triangles, table, loops);
+  result.is_sheet.resize(draft.mesh.triangles.size(), 0);
+  for (std::uint32_t t = 0; t < result.is_sheet.size(); ++t)
+    if (parts.is_sheet(t)) result.is_sheet[t] = 1;
   result.is_one_sheet = !draft.mesh.triangles.empty() && parts.is_one_sheet();
   const std::vector<char> is_shared = share_lids(draft, loops, result.is_sheet, tolerance, all);
   std::vector<char> is_outward;

@@ -26,9 +26,9 @@ struct ClosedHoles {
 
 /// Caps for the holes of all parts that nearly enclose something, and none for sheets: parts whose caps would be too
 /// large a share of themselves, or that would enclose a volume thinner than the tolerance. Where some parts are closed
-/// already, open ones must be nearly so too. Where the surface around a hole bends, its cap goes on so; where a lid
-/// would graze the surface, walls and a flat base close the hole. The points that this takes come behind those of the
-/// draft.
+/// already, open ones must be nearly so too, and fins (triangles_of_fins()) are sheets. Where the surface around a hole
+/// bends, its cap goes on so; where a lid would graze the surface, walls and a flat base close the hole. The points
+/// that this takes come behind those of the draft.
 ClosedHoles close_holes(tidy::Draft& draft, double tolerance);
 
 }  // namespace octafront::mend
