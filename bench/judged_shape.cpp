@@ -1,12 +1,13 @@
 #include "judged_shape.h"
 
+#include "cad/measure.h"
+
 #include <BRepAdaptor_Surface.hxx>
 #include <BRepBndLib.hxx>
 #include <BRepBuilderAPI_MakeVertex.hxx>
 #include <BRepBuilderAPI_Sewing.hxx>
 #include <BRepClass_FaceClassifier.hxx>
 #include <BRepExtrema_ExtPC.hxx>
-#include <BRepGProp.hxx>
 #include <BRepMesh_IncrementalMesh.hxx>
 #include <BRepTools.hxx>
 #include <BRepTopAdaptor_FClass2d.hxx>
@@ -14,7 +15,6 @@
 #include <BRep_Tool.hxx>
 #include <Bnd_Box.hxx>
 #include <Extrema_ExtPS.hxx>
-#include <GProp_GProps.hxx>
 #include <IGESControl_Reader.hxx>
 #include <Interface_Static.hxx>
 #include <Poly_Triangulation.hxx>
@@ -40,8 +40,6 @@ namespace octafront {
 
 namespace {
 
-/// Error of areas, relative: as octafront-cad has them.
-constexpr double kIntegral = 1e-6;
 /// Of triangles for boxes: how far chords lie off, in diagonals, and how far neighbours turn, radians.
 constexpr double kChord = 1e-4, kTurn = 0.2;
 
@@ -64,17 +62,6 @@ TopTools_IndexedMapOfShape parts_of(const TopoDS_Shape& shape, TopAbs_ShapeEnum 
   TopTools_IndexedMapOfShape parts;
   TopExp::MapShapes(shape, kind, parts);
   return parts;
-}
-
-double area_of(const TopoDS_Shape& shape) {
-  GProp_GProps properties;
-  try {
-    BRepGProp::SurfaceProperties(shape, properties, kIntegral);
-  } catch (const Standard_Failure&) {
-    properties = {};
-    BRepGProp::SurfaceProperties(shape, properties);
-  }
-  return properties.Mass();
 }
 
 Box3 box_of(const TopoDS_Shape& shape) {
@@ -138,7 +125,7 @@ ShapeMeasures measures_of(const TopoDS_Shape& shape) {
   TopTools_IndexedMapOfShape faces;
   const auto add = [&](const TopoDS_Shape& part) {
     TopExp::MapShapes(part, TopAbs_FACE, faces);
-    sum.area += area_of(part);
+    sum.area += cad::area_of(part);
     sum.box.add(close_box_of(part));
   };
   for (int i = 1; i <= solids.Extent(); ++i) add(solids(i));
