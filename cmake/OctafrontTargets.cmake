@@ -22,8 +22,8 @@ endif()
 # more). They are the standard library's, never ours or those of other libraries: good whatever we edit and link.
 function(octafront_precompile target owner)
   if(OCTAFRONT_PCH AND target STREQUAL owner)
-    target_precompile_headers(${target} PRIVATE <algorithm> <array> <atomic> <cmath> <cstdint> <filesystem> <functional> <limits> <map> <memory>
-                              <numeric> <optional> <set> <span> <string> <string_view> <tuple> <unordered_map> <utility> <vector> ${ARGN})
+    target_precompile_headers(${target} PRIVATE <algorithm> <array> <cmath> <cstdint> <functional> <limits> <memory>
+                              <numeric> <optional> <span> <string> <string_view> <tuple> <utility> <vector> ${ARGN})
   elseif(OCTAFRONT_PCH)
     target_precompile_headers(${target} REUSE_FROM ${owner})
   endif()
