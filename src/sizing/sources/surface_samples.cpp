@@ -25,10 +25,28 @@ constexpr std::size_t kFacesAtOnce = 4096;
 /// Few triangles are large ones, with many samples each: they are divided among threads too.
 constexpr std::size_t kLeastRanges = 64;
 
+/// Strips are sampled at longer steps where all samples, as far as the sizes of faces foretell them, would be more.
+constexpr double kManySamples = 1e5;
+constexpr double kLongestStep = 64;
+
+/// How many times as long as its size may be what one sample stands for, if it is as many times narrower.
+double step_on_strips(const SurfaceMesh& surface, const std::vector<double>& face_size, double spacing) {
+  double count = 0;
+  for (std::size_t f = 0; f < face_size.size(); ++f) {
+    const auto [i, j, k] = surface.triangles[f];
+    const Vec3 a = surface.points[i], b = surface.points[j], c = surface.points[k];
+    const double longest =
+        std::sqrt(std::max({squared_distance(a, b), squared_distance(b, c), squared_distance(c, a)}));
+    count += longest / std::min(face_size[f], spacing);
+  }
+  return std::clamp(count / kManySamples, 1.0, kLongestStep);
+}
+
 class Sampler {
  public:
-  Sampler(const std::vector<double>& face_size, const SizeAtPlace& size_at, std::vector<SizeSample>& samples)
-      : face_size_(face_size), size_at_(size_at), samples_(samples) {}
+  Sampler(const std::vector<double>& face_size, const SizeAtPlace& size_at, double step,
+          std::vector<SizeSample>& samples)
+      : face_size_(face_size), size_at_(size_at), step_(step), samples_(samples) {}
 
   void sample(Vec3 a, Vec3 b, Vec3 c, Vec3 n, std::uint32_t face) {
     const Vec3 p = centroid(a, b, c);
@@ -37,7 +55,7 @@ class Sampler {
     const double ab = squared_distance(a, b), bc = squared_distance(b, c), ca = squared_distance(c, a);
     const double longest = std::max({ab, bc, ca});
     const double most = std::min(h, size_at_.spacing);
-    if (longest <= most * most) {
+    if (longest <= most * most || is_short_strip(longest, triangle_area(a, b, c), most)) {
       if (samples_.size() == kMostSamples) {
         throw OptionError(fmt::format(
             "sizes as small as {:.4g} near ({:.6g}, {:.6g}, {:.6g}) are too small for this surface: its "
@@ -55,6 +73,11 @@ class Sampler {
   }
 
  private:
+  bool is_short_strip(double squared_length, double area, double size) const {
+    return step_ > 1 && squared_length <= step_ * step_ * size * size &&
+           2 * step_ * area <= size * std::sqrt(squared_length);
+  }
+
   void halve(Vec3 apex, Vec3 from, Vec3 to, Vec3 n, std::uint32_t face) {
     const Vec3 middle = 0.5 * (from + to);
     if (middle == from || middle == to)
@@ -68,6 +91,7 @@ class Sampler {
 
   const std::vector<double>& face_size_;
   const SizeAtPlace& size_at_;
+  double step_;
   std::vector<SizeSample>& samples_;
 };
 
@@ -116,14 +140,14 @@ void sample_faces(const SurfaceMesh& surface, Sampler sampler, std::size_t begin
 
 // Each round knows the sizes of one more level of halves.
 std::vector<SizeSample> sample_in_batches(const SurfaceMesh& surface, const std::vector<double>& face_size,
-                                          const SizeAtPlace& size_at, const RunContext& context) {
+                                          const SizeAtPlace& size_at, double step, const RunContext& context) {
   std::vector<SizeSample> samples;
   for (std::size_t begin = 0; begin < surface.triangles.size(); begin += kFacesAtOnce) {
     const std::size_t finished = samples.size(), end = std::min(surface.triangles.size(), begin + kFacesAtOnce);
     do {
       context.check();
       samples.erase(samples.begin() + static_cast<std::ptrdiff_t>(finished), samples.end());
-      sample_faces(surface, Sampler(face_size, size_at, samples), begin, end);
+      sample_faces(surface, Sampler(face_size, size_at, step, samples), begin, end);
     } while (size_at.batched->fetch());
   }
   return samples;
@@ -139,20 +163,21 @@ SizeAtPlace least_of(const SizeAtPlace& a, const SizeAtPlace& b) {
 
 std::vector<SizeSample> sample_surface(const SurfaceMesh& surface, const std::vector<double>& face_size,
                                        const SizeAtPlace& size_at, const RunContext& context) {
-  if (size_at.batched) return sample_in_batches(surface, face_size, size_at, context);
+  const double step = step_on_strips(surface, face_size, size_at.spacing);
+  if (size_at.batched) return sample_in_batches(surface, face_size, size_at, step, context);
   std::atomic<std::size_t> total{0};
   const std::size_t range = std::clamp<std::size_t>(surface.triangles.size() / kLeastRanges, 1, kFacesAtOnce);
   std::vector<SizeSample> samples = parallel_collect<SizeSample>(
       surface.triangles.size(), range, [&](std::size_t begin, std::size_t end, std::vector<SizeSample>& part) {
         context.check();
         if (total > kMostSamples) return;
-        sample_faces(surface, Sampler(face_size, size_at, part), begin, end);
+        sample_faces(surface, Sampler(face_size, size_at, step, part), begin, end);
         total += part.size();
       });
   if (total <= kMostSamples) return samples;
   // One after the other, so that the place named is the same on any number of threads.
   samples = {};
-  sample_faces(surface, Sampler(face_size, size_at, samples), 0, surface.triangles.size());
+  sample_faces(surface, Sampler(face_size, size_at, step, samples), 0, surface.triangles.size());
   return samples;
 }
 

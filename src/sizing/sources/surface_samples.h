@@ -61,7 +61,8 @@ SizeAtPlace least_of(const SizeAtPlace& a, const SizeAtPlace& b);
 
 /// Samples of a surface, dense enough for its sizes: triangles longer than the size at their centroid, or than
 /// `size_at.spacing`, are halved along their longest edge until they are not. `face_size` bounds the size on each
-/// triangle; `size_at`, which may be empty, may ask for less at a place. Throws OptionError if more than 50 million
+/// triangle; `size_at`, which may be empty, may ask for less at a place. Of surfaces with very many samples on long and
+/// narrow triangles, one stands for a longer part of these. Throws OptionError if more than 50 million
 /// samples were needed.
 std::vector<SizeSample> sample_surface(const SurfaceMesh& surface, const std::vector<double>& face_size,
                                        const SizeAtPlace& size_at, const RunContext& context);

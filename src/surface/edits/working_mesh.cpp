@@ -134,8 +134,18 @@ void WorkingMesh::split_edge(HalfEdge h, VertexIndex x) {
 
 bool WorkingMesh::can_turn(HalfEdge h) const {
   const VertexIndex c = apex(h), d = apex(twin[h]);
-  if (c == d || find(c, d) != kNone) return false;
-  return valence(start[h]) > 3 && valence(end(h)) > 3;
+  return c != d && has_more_than_three(start[h]) && has_more_than_three(end(h)) && !are_joined(c, d);
+}
+
+// Looks around both at once: one of them may be the hub of thousands of triangles.
+bool WorkingMesh::are_joined(VertexIndex a, VertexIndex b) const {
+  const HalfEdge first = outgoing[a], other = outgoing[b];
+  HalfEdge h = first, g = other;
+  do {
+    if (end(h) == b || end(g) == a) return true;
+    h = rotated(h), g = rotated(g);
+  } while (h != first && g != other);
+  return false;
 }
 
 //        c               c

@@ -100,6 +100,7 @@ struct WorkingMesh : HalfEdgeMesh {
   bool keeps_manifold(HalfEdge h) const;
   /// Whether more than three edges meet at v: tips of backs have as many as a seam is long.
   bool has_more_than_three(VertexIndex v) const;
+  bool are_joined(VertexIndex a, VertexIndex b) const;
   /// Moves the start of h to its end, where it vanishes with the two triangles beside h.
   void collapse(HalfEdge h);
 

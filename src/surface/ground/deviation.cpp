@@ -110,6 +110,43 @@ double longest_edge(const TriangleCorners& t) {
       std::max({squared_distance(t[0], t[1]), squared_distance(t[1], t[2]), squared_distance(t[2], t[0])}));
 }
 
+/// A triangle of the input so much longer than wide, and so much narrower than the triangles made there, is one of many
+/// side by side, as a finely divided cylinder has.
+constexpr double kStripLength = 16, kStripWidth = 8;
+/// Strips are looked at in places this part of a made triangle's edge apart, together: to look along each of them would
+/// take as long as thousands of triangles do.
+constexpr double kPlacesOnStrips = 1.0 / 8;
+
+/// Chooses places on strips, spread evenly over their area.
+class PlacesOnStrips {
+ public:
+  explicit PlacesOnStrips(const TriangleTree& made) : made_(made) {}
+
+  /// Whether the triangle is a strip; if so, samples of it.
+  bool sample(const TriangleCorners& corners, std::uint32_t t, std::vector<Sample>& found) {
+    const double area = triangle_area(corners[0], corners[1], corners[2]), longest = longest_edge(corners);
+    if (!(2 * kStripLength * area < longest * longest)) return false;
+    const Vec3 middle = centroid(corners[0], corners[1], corners[2]);
+    const double edge = longest_edge(made_.corners(made_.nearest(middle).triangle));
+    if (!(longest > kNoSmaller * edge && 2 * kStripWidth * area < longest * edge)) return false;
+    for (const Vec3 p : corners) found.push_back({p, t});
+    const double apart = kPlacesOnStrips * edge;
+    for (owed_ += area / (apart * apart); owed_ > 0; --owed_) found.push_back({place(corners, next_++), t, true});
+    return true;
+  }
+
+ private:
+  /// The k-th place of a triangle by the additive recurrence R2 (M. Roberts, The unreasonable effectiveness of
+  /// quasirandom sequences, 2018).
+  static Vec3 place(const TriangleCorners& t, double k) {
+    const double u = std::sqrt(std::fmod(k * 0.7548776662466927, 1.0)), v = std::fmod(k * 0.5698402909980532, 1.0);
+    return t[0] * (1 - u) + t[1] * (u * (1 - v)) + t[2] * (u * v);
+  }
+
+  const TriangleTree& made_;
+  double owed_ = 0, next_ = 1;
+};
+
 /// Samples of the input that may be far: of those triangles whose corners are not all well within the limit.
 /// `part_of`: a triangle's part of the limit and of `far`.
 template <class PartOf>
@@ -136,13 +173,14 @@ std::vector<Sample> suspects(double limit, double far, const PartOf& part_of, co
   constexpr std::size_t kRange = 256;
   const auto collect = [&](std::size_t begin, std::size_t end, std::vector<Sample>& found) {
     PartsOfInput look(made);
+    PlacesOnStrips strips(made);
     for (std::size_t i = begin; i < end; ++i) {
       const auto& [a, b, c] = input.triangles[triangles[i]];
       if (is_safe[a] && is_safe[b] && is_safe[c]) continue;
       const TriangleCorners corners{input.points[a], input.points[b], input.points[c]};
       const bool is_fine = fine == Fine::kCorners &&
                            longest_edge(corners) <= kNoSmaller * std::max({made_edge[a], made_edge[b], made_edge[c]});
-      if (is_fine) continue;
+      if (is_fine || strips.sample(corners, triangles[i], found)) continue;
       look.set_limits(part_of(triangles[i]) * limit, part_of(triangles[i]) * far);
       add_suspects(corners, triangles[i], look, found);
     }

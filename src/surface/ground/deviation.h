@@ -33,9 +33,10 @@ enum class Fine { kParts, kCorners };
 
 /// Looks for places where a surface that is being made lies farther from its input than `limit`, at the centroids, edge
 /// midpoints and vertices of the made one, and at the vertices and edge midpoints of the input and wherever else it may
-/// lie beyond the limit; no deeper where it is known to lie beyond `far`. Where nothing changed since the last look,
-/// what was found then stands. `input_tree` is over the triangles of `input`; both must outlive it. `bound`: per
-/// triangle of the input what `far` is there, if that is less; the limit shrinks alike. Empty: so nowhere.
+/// lie beyond the limit; no deeper where it is known to lie beyond `far`. Of triangles of the input that are long, and
+/// narrow beside those made there, only places an eighth of an edge apart are looked at. Where nothing changed since
+/// the last look, what was found then stands. `input_tree` is over the triangles of `input`; both must outlive it.
+/// `bound`: per triangle of the input what `far` is there, if that is less; the limit shrinks alike. Empty: so nowhere.
 class DeviationWatch {
  public:
   DeviationWatch(double limit, double far, const SurfaceMesh& input, const TriangleTree& input_tree,

@@ -4,6 +4,7 @@
 #include "sizing/size_cases.h"
 #include "sizing/sources/check_size_options.h"
 #include "sizing/sources/kept_surface.h"
+#include "sizing/sources/surface_samples.h"
 #include "support/named_surfaces.h"
 
 #include <algorithm>
@@ -36,6 +37,28 @@ TEST(SizeField, ACallbackIsAskedInBatches) {
   sizes_of(cube(1), o);
   EXPECT_GT(points, 1000u);
   EXPECT_LT(batches, points / 20);
+}
+
+TEST(SizeField, StripsSideBySideAreNotSampledOneByOne) {
+  constexpr VertexIndex kStrips = 20'000;
+  SurfaceMesh ribbon;
+  for (VertexIndex k = 0; k <= kStrips; ++k)
+    for (const double y : {0.0, 1.0}) ribbon.points.push_back({static_cast<double>(k) / kStrips, y, 0});
+  for (VertexIndex a = 0; a < 2 * kStrips; a += 2) {
+    ribbon.triangles.push_back({a, a + 2, a + 3});
+    ribbon.triangles.push_back({a, a + 3, a + 1});
+  }
+  const double h = 0.01;
+  const std::vector<SizeSample> samples =
+      sample_surface(ribbon, std::vector<double>(ribbon.triangles.size(), h), {}, RunContext{});
+  EXPECT_LT(samples.size(), 10 * ribbon.triangles.size());
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> in(0, 1);
+  for (int i = 0; i < 100; ++i) {
+    const Vec3 p{in(random), in(random), 0};
+    EXPECT_TRUE(
+        std::ranges::any_of(samples, [&](const SizeSample& s) { return s.h == h && distance(s.p, p) <= s.reach; }));
+  }
 }
 
 TEST(SizeField, KeepsWithinItsLimits) {

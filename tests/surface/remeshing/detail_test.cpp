@@ -302,6 +302,43 @@ TEST(DeviationWatch, LooksCloserAtTrianglesWithABoundOfTheirOwn) {
   }
 }
 
+/// A cylinder of radius 1 and height 2 whose sides are as long as it is high.
+SurfaceMesh cylinder_of_strips(VertexIndex sides) {
+  SurfaceMesh s;
+  for (VertexIndex k = 0; k < sides; ++k) {
+    const double turn = 2 * std::numbers::pi * k / sides;
+    for (const double z : {0.0, 2.0}) s.points.push_back({std::cos(turn), std::sin(turn), z});
+  }
+  s.points.push_back({0, 0, 0});
+  s.points.push_back({0, 0, 2});
+  for (VertexIndex k = 0; k < sides; ++k) {
+    const VertexIndex a = 2 * k, b = 2 * ((k + 1) % sides);
+    for (const Triangle& t :
+         {Triangle{a, b, b + 1}, {a, b + 1, a + 1}, {2 * sides, b, a}, {2 * sides + 1, a + 1, b + 1}})
+      s.triangles.push_back(t);
+  }
+  return s;
+}
+
+TEST(DeviationWatch, FindsWhatStraysFromStripsWithoutLookingAlongEachOfThem) {
+  const SurfaceMesh input = cylinder_of_strips(3000);
+  StageReport report;
+  SurfaceMesh made = remesh_within(input, 0.2, report).surface;
+  EXPECT_TRUE(places_beyond(0.02, made, input).empty());
+  EXPECT_LT(places_beyond(1e-5, made, input).size(), 20 * input.triangles.size());
+  const auto pulled = std::ranges::min_element(made.points, {}, [](Vec3 p) { return distance(p, {1, 0, 1}); });
+  pulled->x += 0.1;
+  const auto places = places_beyond(0.04, made, input);
+  EXPECT_TRUE(std::ranges::any_of(places, [](const remeshing::FarPlace& place) { return place.within; }));
+  for (const remeshing::FarPlace& place : places) EXPECT_LT(distance(place.at, *pulled), 0.3);
+}
+
+TEST(Coarsening, ComesToAnEndAtAHubOfThousandsOfTriangles) {
+  StageReport report;
+  const Remeshed made = remesh_within(cylinder_of_strips(60'000), 0.3, report);
+  EXPECT_GT(worst_shape(made.surface), 0.5);
+}
+
 TEST(DeviationWatch, FindsFromBothSides) {
   const SurfaceMesh smooth = icosphere(4), spiked = spiked_sphere(0.1);
   EXPECT_TRUE(places_beyond(0.11, smooth, spiked).empty());
