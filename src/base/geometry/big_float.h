@@ -36,6 +36,8 @@ class BigFloat {
   explicit BigFloat(double x);
 
   int sign() const { return limb_.empty() ? 0 : negative_ ? -1 : 1; }
+  /// Words of 64 bits of its integer.
+  std::size_t words() const { return limb_.size(); }
   bool is_zero() const { return limb_.empty(); }
   BigFloat operator-() const;
   friend BigFloat operator+(const BigFloat& a, const BigFloat& b) { return sum(a, b, b.negative_); }

@@ -14,7 +14,12 @@
 
 namespace octafront::recovery {
 
-/// More points than were allowed are needed with the choices made: other ones may need fewer.
+/// How many points may be made, and how long their coordinates may get: in words of 64 bits.
+struct PointLimits {
+  std::size_t points, words;
+};
+
+/// More points than were allowed are needed with the choices made, or longer ones: other ones may need fewer.
 struct TooManyPoints : MeshingError {
   TooManyPoints() : MeshingError("recovery of the surface needs more points than it may make") {}
 };
@@ -35,14 +40,14 @@ struct RecoveryCounts {
 /// docs/how/recovery.md.
 class BoundaryRecovery {
  public:
-  BoundaryRecovery(const RecoveryTask& task, SubdividedSurface& surface, std::size_t most_points)
+  BoundaryRecovery(const RecoveryTask& task, SubdividedSurface& surface, PointLimits most)
       : points_(task.points),
         mesh_(task.mesh),
         surface_(surface),
         flipper_(task.points, task.mesh, surface.edges()),
         frame_(task.frame),
         context_(task.context),
-        most_points_(most_points),
+        most_(most),
         random_(2463534242u + task.seed),
         longest_first_(task.seed % 2 == 1) {}
 
@@ -107,7 +112,7 @@ class BoundaryRecovery {
   Flipper flipper_;
   VertexIndex frame_;
   const RunContext& context_;
-  std::size_t most_points_;
+  PointLimits most_;
   RecoveryCounts counts_;
   std::vector<Carrier> carrier_;  ///< of vertex frame_ + kFrameVertices + i
   EdgeRing ring_;

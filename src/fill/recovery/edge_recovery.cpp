@@ -62,8 +62,9 @@ void BoundaryRecovery::recover_edges(const std::vector<Edge>& wanted) {
       ++counts_.edges_by_flips;
       continue;
     }
-    if (carrier_.size() > most_points_) throw TooManyPoints();
+    if (carrier_.size() > most_.points) throw TooManyPoints();
     const VertexIndex s = divide_edge(a, b, walk.crossings);
+    if (points_.words(s) > most_.words) throw TooManyPoints();
     surface_.split_edge(a, b, s);
     queue.push_front({s, b});
     queue.push_front({a, s});

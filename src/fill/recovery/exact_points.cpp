@@ -159,6 +159,13 @@ Homogeneous ExactPoints::homogeneous(VertexIndex v) const {
   return exact::homogeneous(point_[v]);
 }
 
+std::size_t ExactPoints::words(VertexIndex v) const {
+  std::size_t most = 1;
+  if (!is_double(v))
+    for (const BigFloat& x : steiner_[v - first_steiner_].coordinate) most = std::max(most, x.words());
+  return most;
+}
+
 VertexIndex ExactPoints::add_between(VertexIndex a, VertexIndex b, double t) {
   const Homogeneous p = homogeneous(a), q = homogeneous(b);
   const BigFloat wp = BigFloat(1 - t) * q[3], wq = BigFloat(t) * p[3];

@@ -47,6 +47,9 @@ class ExactPoints {
   Vec3 at(VertexIndex v) const { return point_[v]; }
   bool is_double(VertexIndex v) const { return v < first_steiner_ || steiner_[v - first_steiner_].coordinate.empty(); }
 
+  /// Words of 64 bits that its longest coordinate takes; 1 of a double point.
+  std::size_t words(VertexIndex v) const;
+
   /// The sign of orient3d (base/geometry/predicates.h) of four vertices.
   int orient(VertexIndex a, VertexIndex b, VertexIndex c, VertexIndex d) const {
     if (a < first_steiner_ && b < first_steiner_ && c < first_steiner_ && d < first_steiner_) {

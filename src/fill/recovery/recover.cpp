@@ -10,6 +10,7 @@
 #include "fill/recovery/steiner_lift.h"
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 
@@ -149,7 +150,19 @@ constexpr std::uint32_t kAttempts = 6;
 // need fewer; where they do not, each attempt may make more than the one before by this factor.
 constexpr std::size_t kMostPointsPerTriangle = 4, kMostPoints = 200, kMorePoints = 4;
 
-std::optional<TetMesh> recover(const SurfaceMesh& surface, std::uint32_t attempt, const Stage& stage) {
+// Words of a coordinate from which on a cavity is rather made larger. Those that are filled need 8 at most; where
+// needles lie in one plane but for rounding they double and double, and signs take ever longer.
+constexpr std::size_t kMostWordsOfCavity = 16;
+
+PointLimits limits_of(std::size_t triangles, std::uint32_t attempt, RecoveryPatience patience) {
+  std::size_t points = kMostPointsPerTriangle * triangles + kMostPoints;
+  for (std::uint32_t k = 0; k < attempt; ++k) points *= kMorePoints;
+  const bool is_cavity = patience == RecoveryPatience::kCavity;
+  return {points, is_cavity ? kMostWordsOfCavity : std::numeric_limits<std::size_t>::max()};
+}
+
+std::optional<TetMesh> recover(const SurfaceMesh& surface, std::uint32_t attempt, const Stage& stage,
+                               RecoveryPatience patience) {
   auto [points, used] = read_input(surface);
   TetComplex complex;
   std::vector<VertexIndex> same_as;
@@ -158,10 +171,8 @@ std::optional<TetMesh> recover(const SurfaceMesh& surface, std::uint32_t attempt
   validate(mesh);
   const std::vector<Triangle> triangles = merged(surface.triangles, same_as);
   SubdividedSurface subdivided(triangles);
-  std::size_t most_points = kMostPointsPerTriangle * triangles.size() + kMostPoints;
-  for (std::uint32_t k = 0; k < attempt; ++k) most_points *= kMorePoints;
   const RecoveryTask task{points, mesh, frame, attempt, stage.context()};
-  BoundaryRecovery recovery(task, subdivided, most_points);
+  BoundaryRecovery recovery(task, subdivided, limits_of(triangles.size(), attempt, patience));
   recovery.run();
   validate(mesh);
   carve(points, subdivided, surface, mesh);
@@ -185,7 +196,7 @@ TetMesh recover_volume(const SurfaceMesh& surface, const Stage& stage, RecoveryP
   try {
     for (std::uint32_t attempt = 0;; ++attempt) {
       try {
-        if (std::optional<TetMesh> mesh = recover(surface, attempt, stage)) return std::move(*mesh);
+        if (std::optional<TetMesh> mesh = recover(surface, attempt, stage, patience)) return std::move(*mesh);
       } catch (const TooManyPoints&) {
         if (patience == RecoveryPatience::kCavity || attempt + 1 == kAttempts) throw;
       }

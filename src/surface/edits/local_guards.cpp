@@ -9,8 +9,11 @@ namespace {
 
 /// Relative slack of the Delaunay test: four points on a circle do not flip to and fro.
 constexpr double kDelaunaySlack = 1e-9;
-/// Flips in space need not end as those in a plane do: this many per half-edge of the start at most, on average.
-constexpr std::uint64_t kFlipsPerEdge = 20;
+/// Flips in space need not end as those in a plane do: this many per half-edge of the start at most, on average. In a
+/// plane they end, but the fans on both sides of a long edge take the product of their numbers: so many count as one.
+constexpr std::uint64_t kFlipsPerEdge = 20, kFlatFlips = 100;
+/// Sine of the angle up to which two triangles lie in one plane: that of rounding, also where they are needles.
+constexpr double kFlatSine = 1e-6;
 
 constexpr double kHuge = 1e300;
 
@@ -51,17 +54,26 @@ bool flip_is_sound(const WorkingMesh& mesh, HalfEdge h, const TurnLimits& limits
 
 namespace {
 
+/// Whether the two triangles beside an edge lie in one plane.
+bool is_flat(const WorkingMesh& mesh, HalfEdge h) {
+  const Vec3 a = mesh.points[mesh.start[h]], b = mesh.points[mesh.end(h)];
+  const Vec3 u = cross(b - a, mesh.points[mesh.apex(h)] - a),
+             v = cross(mesh.points[mesh.apex(mesh.twin[h])] - a, b - a);
+  return dot(u, v) > 0 && length(cross(u, v)) <= kFlatSine * dot(u, v);
+}
+
 /// may_try(h): whether this edge and the two triangles beside it may be looked at.
 template <class MayTry>
 std::uint64_t flip_all(WorkingMesh& mesh, std::vector<HalfEdge>& edges, const TurnLimits& limits,
                        const MayTry& may_try) {
-  std::uint64_t flips = 0;
-  const std::uint64_t budget = kFlipsPerEdge * (edges.size() + 10);
-  while (!edges.empty() && flips < budget) {
+  std::uint64_t flips = 0, spent = 0;
+  const std::uint64_t budget = kFlatFlips * kFlipsPerEdge * (edges.size() + 10);
+  while (!edges.empty() && spent < budget) {
     const HalfEdge h = edges.back();
     edges.pop_back();
     if (mesh.start[h] == kNone || !may_try(h) || mesh.is_feature[h] || is_delaunay(mesh, h)) continue;
     if (!flip_is_sound(mesh, h, limits) || !mesh.may_flip(h)) continue;
+    spent += is_flat(mesh, h) ? 1 : kFlatFlips;
     const HalfEdge turned = mesh.flip(h), other = mesh.twin[turned];
     ++flips;
     edges.insert(edges.end(), {next_of(turned), previous_of(turned), next_of(other), previous_of(other)});

@@ -38,6 +38,9 @@ constexpr double kCrossingSteps[] = {0.5, 0.25, -0.25};
 constexpr std::size_t kOperationsPerPlace = 8;
 /// An edge longer than this many times the move allowed cannot collapse within it.
 constexpr double kLongestToCollapse = 20;
+/// Larger stars are left alone, for what judging a change of one takes grows with its square: tips of needles between
+/// kept triangles have hundreds of triangles, all of them bad, and no change helps there.
+constexpr std::size_t kLargestStar = 32;
 
 /// What may be done.
 struct Change {
@@ -93,7 +96,7 @@ class FoldMender {
   MendedFolds run(const RunContext& context) {
     for (std::uint32_t t = 0; t < mesh_.triangle_count(); ++t) push(t);
     const std::size_t most = kOperationsPerPlace * queue_.size() + 100;
-    while (!queue_.empty() && result_.operations < most) {
+    while (!queue_.empty() && result_.operations < most && result_.judged < limits_.most_judged) {
       context.check();
       const auto [badness, t] = queue_.top();
       queue_.pop();
@@ -277,6 +280,8 @@ class FoldMender {
   /// Remembers the change if it is better than any so far, moves the surface little, and makes crossings fewer, or none
   /// where there are none.
   void judge(Change change, VertexIndex merged) {
+    if (old_.size() > kLargestStar) return;
+    ++result_.judged;
     const auto after = badness_after(merged, mesh_.start[change.half_edge]);
     if (!after) return;
     const double to_beat = best_.kind == Change::Kind::kNone ? -kGainOfMending : best_.badness;

@@ -12,6 +12,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace octafront::remeshing {
@@ -32,10 +33,12 @@ struct FoldLimits {
   const std::vector<std::uint8_t>& is_fixed;  ///< by vertex: stays; those beyond its end need not
   /// Of a complex, by triangle of `onto`: vertices stay on their own patch. Its seams must be fixed.
   const std::vector<std::uint32_t>* patch_of = nullptr;
+  std::uint64_t most_judged = std::numeric_limits<std::uint64_t>::max();  ///< changes; no place is mended beyond that
 };
 
 struct MendedFolds {
   std::uint64_t operations = 0;  ///< flips, collapses and moves
+  std::uint64_t judged = 0;      ///< changes that were considered, most of them in vain
   std::uint64_t folds_left = 0;  ///< edges that are as sharp still
   double largest_move = 0;       ///< what the moves at one place add up to at most
   std::vector<double> moved;     ///< that, per triangle of the working mesh

@@ -174,26 +174,28 @@ bool CurvePoints::slide(VertexIndex v) {
   return false;
 }
 
-/// Least 2r/R of the triangles of the star with v at p; 0 if one turns too far.
-double CurvePoints::worst_shape(VertexIndex v, Vec3 p) const {
-  Quality quality;
-  if (!judge(v, p, quality)) return 0;
+/// Least 2r/R of the triangles of the star with v at p; 0 if one turns too far, or is no better than `enough`.
+double CurvePoints::worst_shape(VertexIndex v, Vec3 p, double enough) const {
   double worst = 1;
-  for (const Corner& c : ring_) worst = std::min(worst, triangle_radius_ratio(p, mesh_.points[c.a], mesh_.points[c.b]));
-  return worst;
+  for (const Corner& c : ring_) {
+    worst = std::min(worst, triangle_radius_ratio(p, mesh_.points[c.a], mesh_.points[c.b]));
+    if (!(worst > enough)) return 0;
+  }
+  Quality quality;
+  return judge(v, p, quality) ? worst : 0;
 }
 
 bool CurvePoints::relieve(VertexIndex v, double gain) {
   if (mesh_.place[v].curve == kNone || !gather(v) || !find_neighbours(v)) return false;
   const Curve& curve = curves_[mesh_.place[v].curve];
   const double now = mesh_.place[v].along, h = mesh_.size[v];
-  double best = std::max(kWorthIt, gain * worst_shape(v, mesh_.points[v]));
+  double best = std::max(kWorthIt, gain * worst_shape(v, mesh_.points[v], kWorthIt / gain));
   std::optional<CurvePoint> chosen;
   for (const double part : kReliefSteps) {
     const double along = now + part * (part > 0 ? neighbours_.to - now : now - neighbours_.from);
     const CurvePoint x = point_along(input_, curve, wrapped(curve, along));
     if (!lengths_within(x.p, kShortestRelief * h, kLongestRelief * h)) continue;
-    const double worst = worst_shape(v, x.p);
+    const double worst = worst_shape(v, x.p, best);
     if (!(worst > best)) continue;
     best = worst;
     chosen = x;

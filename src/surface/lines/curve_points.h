@@ -46,7 +46,7 @@ class CurvePoints {
   bool find_neighbours(VertexIndex v);
   double step_wanted(VertexIndex v) const;
   bool judge(VertexIndex v, Vec3 p, Quality& quality) const;
-  double worst_shape(VertexIndex v, Vec3 p) const;
+  double worst_shape(VertexIndex v, Vec3 p, double enough) const;
   double sagitta(const Curve& curve, double from, double to, Vec3 a, Vec3 b) const;
   double deviation(const Curve& curve, double along, Vec3 p) const;
   bool lengths_within(Vec3 p, double least, double most) const;

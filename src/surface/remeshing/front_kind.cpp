@@ -48,8 +48,11 @@ bool FrontKind::mend_places(WorkingMesh& mesh, const std::vector<std::uint8_t>& 
     const auto count = std::count(crossing.begin(), crossing.end(), 1);
     if (round > 0 && count == 0) return true;
     limits.crossing = count <= of.few_crossing ? &crossing : nullptr;
-    const std::uint64_t done = mend_folds(mesh, limits, work_.stage.context()).operations;
+    limits.most_judged = work_.counts.judged_left(mesh.triangle_count());
+    const MendedFolds mended = mend_folds(mesh, limits, work_.stage.context());
+    const std::uint64_t done = mended.operations;
     work_.counts.places_mended += done;
+    work_.counts.changes_judged += mended.judged;
     if (count == 0) return true;  // mending makes no crossings
     if (done == 0 || count > of.few_crossing) return false;
   }

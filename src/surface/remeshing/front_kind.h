@@ -59,6 +59,8 @@ class FrontKind {
   /// Smaller sizes where the surface strayed.
   virtual void cap_far(const Nearness&, RoundSizes&) const = 0;
   virtual bool is_stuck() const { return false; }
+  /// Whether the input's triangles are so long that none of them may move if all of them stay.
+  virtual bool has_needles_kept() const { return false; }
   virtual void finish(Remeshed& made, const Nearness& near) const = 0;
 
  protected:

@@ -25,6 +25,7 @@ void FrontCounts::report(const Stage& stage) const {
   if (divided_edges > 0) stage.count("edges divided between seams", static_cast<double>(divided_edges));
   stage.count("lines merged", static_cast<double>(merged_lines));
   stage.count("places mended", static_cast<double>(places_mended));
+  stage.count("changes judged", static_cast<double>(changes_judged));
   stage.count("points against deviation", static_cast<double>(approached));
   stage.count("input vertices left", static_cast<double>(coarsen.input_vertices_left));
   stage.count("crossing pairs mended", static_cast<double>(crossings));

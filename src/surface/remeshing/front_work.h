@@ -20,18 +20,25 @@
 namespace octafront::remeshing {
 
 struct FrontCounts {
+  static constexpr std::uint64_t kJudgedAnyway = 20'000, kJudgedPerTriangle = 2;
   std::uint64_t placed = 0, tried = 0;
   InsertionCounts insertion;
   CoarsenCounts coarsen;
   ImproveCounts improve;
   std::uint64_t divided_edges = 0, merged_lines = 0, places_mended = 0, approached = 0, kept_places = 0;
-  std::uint64_t crossings = 0, triangles = 0;  ///< of all rounds
+  std::uint64_t crossings = 0, triangles = 0, changes_judged = 0;  ///< of all rounds
   int rounds = 0, deviation_rounds = 0;
   std::size_t last_triangles = 0;  ///< of the last round
 
   /// Whether all rounds together have made more than so many times the triangles of the last one.
   bool exceed(double times) const {
     return static_cast<double>(triangles) > times * static_cast<double>(last_triangles);
+  }
+  /// How many changes may be judged still where a mesh of so many triangles is mended, so that mending all rounds takes
+  /// no more than a part of the time that the mesh takes. Tips of needles and sheets that touch would take all.
+  std::uint64_t judged_left(std::size_t mesh_triangles) const {
+    const std::uint64_t most = kJudgedAnyway + kJudgedPerTriangle * mesh_triangles;
+    return changes_judged < most ? most - changes_judged : 0;
   }
   /// What counts the last round alone is 0 again.
   void start_round(std::uint64_t points_placed, std::uint64_t places_tried);

@@ -24,6 +24,10 @@ constexpr int kMostStuck = 4;
 /// Where a user's size crosses, triangles of the input are what was asked if they are as large and no longer than so
 /// many sizes: smaller sizes take many times the elements between shells that nearly touch.
 constexpr double kAsLong = 4;
+/// Triangles of the input longer than so many sizes that stay get fans of as many needles around them, on which every
+/// search takes the square of their number: where they are this part of the surface, as the facets of a needle are, all
+/// of it stays.
+constexpr double kFarTooLong = 100, kMostlyTooLong = 0.25;
 /// Sizes where the new surface strays too far become this part of themselves, and for how many rounds; less at once
 /// where it strays so many times as far as it may.
 constexpr double kDeviationCap = 0.7, kMuchTooFar = 2, kDeviationCapFar = 0.5;
@@ -97,6 +101,7 @@ class PlainFront : public FrontKind {
           return KeptPlace{p, kKeptRadius * sizes.first().at(p)};
         });
     stuck_ = all_kept ? stuck_ + 1 : 0;
+    needles_kept_ = keeps_mostly_needles(sizes);
   }
 
   bool leaves_far(std::size_t, const Outcome&) const override {
@@ -109,7 +114,8 @@ class PlainFront : public FrontKind {
     if (!near.farther.empty()) sizes.cap(near.farther, kDeviationCapFar);
   }
 
-  bool is_stuck() const override { return stuck_ == kMostStuck; }
+  bool is_stuck() const override { return stuck_ == kMostStuck || needles_kept_; }
+  bool has_needles_kept() const override { return needles_kept_; }
 
   void finish(Remeshed& made, const Nearness& near) const override {
     if (near.approached.empty() || work_.budget.is_spent()) return;
@@ -223,9 +229,29 @@ class PlainFront : public FrontKind {
     return longest_edge_of(input_triangle_at(p)) <= kAsLong * first.at(p);
   }
 
+  /// Whether triangles that are far too long, and are to stay, are a large part of the surface. With a given size the
+  /// fans are as fine as was asked, and volumes need not be kept.
+  bool keeps_mostly_needles(const RoundSizes& sizes) {
+    if (sizes.kept_places().empty() || !work_.budget.is_limited()) return false;
+    const std::vector<std::uint8_t> is_fixed =
+        mark_kept_places(input_, work_.known.tree(), sizes.kept_places());  // the next round marks anew
+    const SurfaceMesh& surface = work_.surface();
+    double all = 0, needles = 0;
+    for (const auto& [a, b, c] : surface.triangles) {
+      const TriangleCorners t{surface.points[a], surface.points[b], surface.points[c]};
+      const double area = length(double_area_normal(t[0], t[1], t[2]));
+      all += area;
+      if (is_fixed[a] && is_fixed[b] && is_fixed[c] &&
+          longest_edge_of(t) > kFarTooLong * sizes.first().at(centroid(t[0], t[1], t[2])))
+        needles += area;
+    }
+    return needles > kMostlyTooLong * all;
+  }
+
   InputSurface input_;
   SurfaceKind kind_;
   int stuck_ = 0;  ///< rounds in a row
+  bool needles_kept_ = false;
 };
 
 }  // namespace

@@ -8,6 +8,8 @@
 #include "surface/ground/turning.h"
 #include "surface/remeshing/front_kind.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -39,6 +41,15 @@ std::vector<Vec3> centers_of(const SurfaceMesh& surface, const std::vector<std::
     centers.push_back((surface.points[a] + surface.points[b] + surface.points[c]) / 3);
   }
   return centers;
+}
+
+/// Whether all triangles of the input have returned, perhaps with other diagonals.
+bool is_input_again(const SurfaceMesh& made, const SurfaceMesh& input) {
+  const auto ordered = [](std::vector<Vec3> points) {
+    std::ranges::sort(points, {}, [](Vec3 p) { return std::array{p.x, p.y, p.z}; });
+    return points;
+  };
+  return made.triangles.size() == input.triangles.size() && ordered(made.points) == ordered(input.points);
 }
 
 /// Rounds with ever smaller sizes where the last one was not good enough.
@@ -177,7 +188,11 @@ class Remesher {
     return input_as_it_is(work_.known, sizes);
   }
 
-  Remeshed kept_in_crossings() { return kept(sizes_.first(), "every other triangulation tried crosses itself"); }
+  Remeshed kept_in_crossings() {
+    Remeshed made = kept(sizes_.first(), "every other triangulation tried crosses itself");
+    made.stays = kind_.has_needles_kept();
+    return made;
+  }
 
   Remeshed kept_for_budget() {
     return kept(sizes_.first(),
@@ -196,6 +211,7 @@ class Remesher {
     kind_.finish(made.result, made.nearness);
     const std::vector<KeptPlace>& kept = sizes_.kept_places();
     work_.counts.kept_places = kept.size();
+    made.result.stays = !kept.empty() && is_input_again(made.result.surface, work_.surface());
     if (!kept.empty())
       work_.stage.note(
           fmt::format("the input's own triangles stay in {} places, the first around ({:.6g}, {:.6g}, {:.6g}): "

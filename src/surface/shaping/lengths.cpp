@@ -176,7 +176,7 @@ class LengthAdjuster {
       const double l = length(d);
       SurfacePoint x;
       if (!(l > 0) || walk(input_, {p, mesh_.face[v]}, d / l, n, l, x) != WalkEnd::kArrived) continue;
-      if (!(worst_around(x.p, star) > kGainOfLengths * worst)) continue;
+      if (!gets_better(x.p, star, kGainOfLengths * worst)) continue;
       mesh_.points[v] = x.p;
       mesh_.face[v] = x.face;
       mesh_.normal[v] = input_.normal_at(x.face, x.p);
@@ -188,14 +188,12 @@ class LengthAdjuster {
     return false;
   }
 
-  /// Least squared quality of the ring's triangles with their apex at p; 0 if one turns too far.
-  double worst_around(Vec3 p, Vec3 star) const {
-    double worst = 1;
-    for (const auto& [a, b] : ring_) {
-      if (!turns_little(cross(a - p, b - p), star, kEdgeLimits.star)) return 0;
-      worst = std::min(worst, squared_quality(p, a, b));
-    }
-    return worst;
+  /// Whether each of the ring's triangles is better than `least` with its apex at p, and none turns too far.
+  bool gets_better(Vec3 p, Vec3 star, double least) const {
+    return std::ranges::all_of(ring_, [&](const auto& e) {
+      const auto& [a, b] = e;
+      return turns_little(cross(a - p, b - p), star, kEdgeLimits.star) && squared_quality(p, a, b) > least;
+    });
   }
 
   /// Whether a straight line of two segments or more ends at the corner: it would bend if the corner moved.

@@ -71,6 +71,26 @@ SurfaceMesh sharp_cone(int sides, double radius, double height) {
   return s;
 }
 
+/// A rod of length 1 that tapers to tips over `taper` at both ends.
+SurfaceMesh rod_with_tips(int sides, double radius, double taper) {
+  SurfaceMesh s;
+  for (const double z : {taper, 1 - taper})
+    for (int i = 0; i < sides; ++i) {
+      const double a = 2 * std::numbers::pi * i / sides;
+      s.points.push_back({radius * std::cos(a), radius * std::sin(a), z});
+    }
+  s.points.push_back({0, 0, 0});
+  s.points.push_back({0, 0, 1});
+  const auto n = static_cast<VertexIndex>(sides);
+  for (VertexIndex i = 0, k = 1; i < n; ++i, k = (i + 1) % n) {
+    s.triangles.push_back({k, i, 2 * n});
+    s.triangles.push_back({i, k, n + k});
+    s.triangles.push_back({i, n + k, n + i});
+    s.triangles.push_back({n + i, n + k, 2 * n + 1});
+  }
+  return s;
+}
+
 SurfaceMesh box(double x, double y, double z) {
   SurfaceMesh s = cube(1);
   for (Vec3& p : s.points) p = {p.x * x, p.y * y, p.z * z};
@@ -455,6 +475,23 @@ TEST(Remesh, TipsOfConesAreNoPlaceForThousandsOfPoints) {
   const Remeshed r = remesh_surface(cone, make_size_field(cone, {}, {{}, report}), {}, {{}, report});
   const std::map<std::string, double> counted(report.counters.begin(), report.counters.end());
   EXPECT_LT(counted.at("places tried"), 4.0 * static_cast<double>(r.surface.triangles.size()));
+}
+
+// Where the tips cross at every size their facets return, hundreds of sizes long: mending what crosses, and the needles
+// around them, took minutes.
+TEST(Remesh, FacetsOfANeedleThatCrossAtEverySizeAllStay) {
+  StageReport report;
+  const SurfaceMesh rod = rod_with_tips(16, 0.0024, 0.33);
+  const KnownSurface known(rod, 40);
+  SurfaceOptions options;
+  options.max_deviation = 1e-3;
+  const Remeshed r =
+      remesh_surface(known, SizeField::uniform(0.0025), options, {{}, report}, {}, FrontLimits{.budget = 1e6});
+  const std::map<std::string, double> counted(report.counters.begin(), report.counters.end());
+  EXPECT_GT(counted.at("changes judged"), 2e4);
+  EXPECT_LT(counted.at("changes judged"), 1e5);
+  EXPECT_TRUE(r.stays);
+  EXPECT_EQ(r.surface.triangles, rod.triangles);
 }
 
 // Points of one shell stood for those of the other, which came out as a few triangles across the whole body.
