@@ -170,9 +170,7 @@ def improve(mesh, *, surface=None, **keywords):
     >>> octafront.improve("of-another-tool.msh", improve="best").save("better.vtu")
     """
     settings = _Settings("improve", "improve", keywords)
-    old = Mesh.read(mesh) if _is_file(mesh) else _mesh_of(mesh)
-    if old is None:
-        raise OptionError(f"a Mesh, or the name of a file, not a {type(mesh).__name__}, which holds no tetrahedra")
+    old = Mesh.read(mesh) if _is_file(mesh) else Mesh.of(mesh)
     ground = Surface.read(surface) if _is_file(surface) else surface and _surface_of(surface, None)
     job = _Job("improve", old._handle, ground and ground._handle, settings.options, settings.threads,
                **settings.functions())

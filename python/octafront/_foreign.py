@@ -30,7 +30,7 @@ def surface_from(source):
 
 
 def mesh_from(source):
-    """The arguments of Mesh, as a dict; None if it holds no tetrahedra."""
+    """The arguments of Mesh, as a dict, and perhaps "sets" of elements by name; None if it holds no tetrahedra."""
     if _is_meshio(source):
         return _mesh_of_meshio(source)
     if _is_vtk(source) and hasattr(source, "GetCellTypesArray"):
@@ -74,14 +74,15 @@ def _is_meshio(source):
 
 
 def _surface_of_meshio(source):
-    if not any(block.type in _FACES for block in source.cells):
+    chosen = [i for i, block in enumerate(source.cells) if block.type in _FACES]
+    if not chosen:
         return None
-    triangles, patches, names = [], [], _names_of(source, 2)
-    for at, block in enumerate(source.cells):
-        corners = _FACES.get(block.type, ())
-        for chosen in corners:
-            triangles.append(np.asarray(block.data)[:, list(chosen)])
-            patches.append(_numbers_of(source, at, names, 2))
+    names, numbers, _ = _groups_of(source, chosen, 2)
+    triangles, patches = [], []
+    for at, number in zip(chosen, numbers):
+        for corners in _FACES[source.cells[at].type]:
+            triangles.append(np.asarray(source.cells[at].data)[:, list(corners)])
+            patches.append(number)
     return {"points": np.asarray(source.points), "triangles": np.concatenate(triangles),
             "patches": np.concatenate(patches), "patch_names": names}
 
@@ -89,44 +90,46 @@ def _surface_of_meshio(source):
 def _mesh_of_meshio(source):
     kinds = [block.type for block in source.cells]
     kind = "tetra10" if "tetra10" in kinds and "tetra" not in kinds else "tetra"
-    if kind not in kinds:
+    chosen = [i for i, found in enumerate(kinds) if found == kind]
+    if not chosen:
         return None
-    at = [i for i, found in enumerate(kinds) if found == kind]
-    names = _names_of(source, 3)
-    said = {"points": np.asarray(source.points), "tets": np.concatenate([np.asarray(source.cells[i].data) for i in at]),
-            "regions": np.concatenate([_numbers_of(source, i, names, 3) for i in at]), "region_names": names}
+    names, numbers, sets = _groups_of(source, chosen, 3)
+    said = {"points": np.asarray(source.points), "tets": np.concatenate([np.asarray(source.cells[i].data) for i in chosen]),
+            "regions": np.concatenate(numbers), "region_names": names, "sets": sets}
     if (faces := _surface_of_meshio(source)) is not None:
         said.update(faces=faces["triangles"], patches=faces["patches"], patch_names=faces["patch_names"])
     return said
 
 
-def _dimension(block):
-    return 3 if block.type.startswith("tetra") else 2 if block.type in _FACES else None
+def _groups_of(source, chosen, dimension):
+    """Names, the number of each cell of the chosen blocks, and further sets, {name: cells of all these blocks}: groups that
+    overlap no earlier one have numbers, as in files. Cells of no group have the number behind the last."""
+    names, sets = [], {}
+    numbers = [np.full(len(source.cells[i].data), 0xFFFFFFFF, np.uint32) for i in chosen]
+    for name, members in _members_of(source, chosen, dimension):
+        if any((of_block[at] != 0xFFFFFFFF).any() for of_block, at in zip(numbers, members)):
+            first = np.cumsum([0, *(len(of_block) for of_block in numbers)])
+            sets[name] = np.concatenate([at + begin for at, begin in zip(members, first)])
+        elif any(len(at) for at in members):
+            for of_block, at in zip(numbers, members):
+                of_block[at] = len(names)
+            names.append(name)
+    for of_block in numbers:
+        of_block[of_block == 0xFFFFFFFF] = len(names)
+    return names, numbers, sets
 
 
-def _names_of(source, dimension):
-    """Of the groups of cells of that dimension: sets, else what field_data calls tags; a last one, "", of the rest."""
-    blocks = [i for i, block in enumerate(source.cells) if _dimension(block) == dimension]
-    names = [name for name, members in (source.cell_sets or {}).items()
-             if not name.startswith("gmsh:") and any(members[i] is not None and len(members[i]) for i in blocks)]
-    if not names:
-        tags = {int(tag): name for name, (tag, of) in (source.field_data or {}).items() if of == dimension}
-        names = [tags[tag] for tag in sorted(tags)]
-    return names
-
-
-def _numbers_of(source, at, names, dimension):
-    """Of each cell of a block its place in the names; behind them all where it has none."""
-    numbers = np.full(len(source.cells[at].data), len(names), np.uint32)
-    sets = source.cell_sets or {}
-    for number, name in enumerate(names):
-        if name in sets and sets[name][at] is not None:
-            numbers[np.asarray(sets[name][at], np.int64)] = number
-    if not any(name in sets for name in names) and "gmsh:physical" in (source.cell_data or {}):
-        tags = np.asarray(source.cell_data["gmsh:physical"][at])
-        for number, name in enumerate(names):
-            numbers[tags == int(source.field_data[name][0])] = number
-    return numbers if len(names) else np.zeros_like(numbers)
+def _members_of(source, chosen, dimension):
+    """(name, cells in each chosen block), of sets, or where there are none of the tags that field_data names."""
+    sets = {name: members for name, members in (source.cell_sets or {}).items() if not name.startswith("gmsh:")}
+    for name, members in sets.items():
+        yield name, [np.asarray([] if members[i] is None else members[i], np.int64) for i in chosen]
+    tags = (source.cell_data or {}).get("gmsh:physical")
+    if sets or tags is None:
+        return
+    for name, (tag, of) in (source.field_data or {}).items():
+        if of == dimension:
+            yield name, [np.flatnonzero(np.asarray(tags[i]) == tag) for i in chosen]
 
 
 # ---- VTK, and PyVista, whose objects are VTK's ----

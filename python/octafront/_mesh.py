@@ -23,7 +23,13 @@ def mesh_of(source):
     if isinstance(source, Mesh):
         return source
     said = _foreign.mesh_from(source)
-    return None if said is None else Mesh(**said)
+    if said is None:
+        return None
+    sets = said.pop("sets", {})
+    mesh = Mesh(**said)
+    for name, members in sets.items():
+        mesh.add_set(name, members, kind="elements")
+    return mesh
 
 
 class Mesh:
@@ -80,6 +86,14 @@ class Mesh:
         job = Job("read_mesh", file_of(path))
         report = job.run()
         return cls._of(job.take("mesh"), report)
+
+    @classmethod
+    def of(cls, source):
+        """The Mesh of an object of meshio, PyVista or VTK that holds tetrahedra; named groups of meshio are regions and
+        patches. Raises OptionError."""
+        if (mesh := mesh_of(source)) is None:
+            raise errors.OptionError(f"a {type(source).__name__} holds no tetrahedra that are known here")
+        return mesh
 
     @property
     def points(self):

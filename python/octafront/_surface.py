@@ -104,6 +104,12 @@ class Surface:
         report = job.run()
         return cls._of(job.take("surface"), report)
 
+    @classmethod
+    def of(cls, source):
+        """The Surface of an object of trimesh, Open3D, PyVista, VTK or meshio (whose named groups are patches), of a Mesh
+        (with the walls between its regions), or of a shape of CadQuery, FreeCAD or build123d. Raises TypeError."""
+        return surface_of(source, None)
+
     @property
     def points(self):
         """(n, 3) float64, input units."""

@@ -135,7 +135,9 @@ class Libraries(unittest.TestCase):
         sphere_of_vtk.SetPhiResolution(12)
         sphere_of_vtk.Update()
         mesh = octafront.mesh(sphere_of_vtk.GetOutput(), size=0.2)
-        self.assertAlmostEqual(volume_of(mesh), 4 / 3 * np.pi * 0.125, delta=0.03)
+        whole = octafront.check(sphere_of_vtk.GetOutput()).volume
+        self.assertAlmostEqual(whole, np.pi / 6, delta=0.03)
+        self.assertAlmostEqual(volume_of(mesh), whole, delta=0.08 * whole)
         box = vtk.vtkCubeSource()  # quadrilaterals
         box.Update()
         self.assertAlmostEqual(volume_of(octafront.mesh(box.GetOutput(), size=0.3)), 1, places=9)
@@ -159,8 +161,11 @@ class Libraries(unittest.TestCase):
             mesh.save(folder + "/m.msh")
             file = meshio.read(folder + "/m.msh")
         for there in (mesh.to_meshio(), file):
-            back = octafront.improve(there)
+            back = octafront.Mesh.of(there)
             self.assertEqual(len(back), len(mesh))
+            self.assertTrue(octafront.check(there))
+            self.assertEqual(len(back.sets["some"][1]), 2)
+            self.assertEqual(len(octafront.improve(there).names["regions"]), 2)
             for name in ("low", "high"):
                 self.assertEqual(part_size(back.names["regions"], back.regions, name),
                                  part_size(mesh.names["regions"], mesh.regions, name))
