@@ -58,12 +58,12 @@ for part in /usr/lib/python3/dist-packages/numpy /usr/lib/python3/dist-packages/
 (cd "$work" && PYTHONPATH="$OLDPWD/tests/python" OCTAFRONT_SAMPLES="$OLDPWD/samples" venv/bin/python -W error -m unittest -q test_octafront)
 "$work/venv/bin/python" -c 'import time; t = time.perf_counter(); import octafront; t = time.perf_counter() - t; print(f"import octafront: {1e3 * t:.0f} ms"); assert t < 0.1'
 
-try_there() { # in the folder of another system
+try_there() { # in the folder of another system; without /proc programs do not find out where they lie
   rm -rf "$1/wheel"
   mkdir "$1/wheel"
   cp samples/bracket.stl "$1/wheel/"
   (cd "$1/wheel" && python3 -m zipfile -e "$wheel" . && chmod +x octafront/_bin/*)
-  chroot "$1" /bin/sh -c 'cd /wheel && ldd --version | head -1 && python3 --version && octafront/_bin/octafront mesh bracket.stl -o part.vtu --size 3 -q --json - | grep -o "\"hash\": *\"[0-9a-f]*\"" &&
+  chroot "$1" /bin/sh -c 'cd /wheel && ldd --version | head -1 && python3 --version && LD_LIBRARY_PATH=octafront/_bin octafront/_bin/octafront mesh bracket.stl -o part.vtu --size 3 -q --json - | grep -o "\"hash\": *\"[0-9a-f]*\"" &&
     python3 -W error -c "import octafront; m = octafront.mesh(\"bracket.stl\", size=3); print(m, m.points.mean(axis=0)); print(m.report[\"hash\"])"'
 }
 for option in "$@"; do
