@@ -4,8 +4,8 @@ import html
 
 # A notebook keeps what it shows: the page of so many elements takes 3 MB.
 _LARGEST = 300_000
-# From poor to good, told apart by colour-blind eyes too (cividis).
-_COLOURS = ["#00204d", "#31446b", "#666970", "#b9ac70", "#ffea46"]
+# From poor to good, as the page has them: told apart by colour-blind eyes too.
+_COLOURS = ["#8c2d04", "#d9650f", "#f5b26b", "#a9cce8", "#4f97d6"]
 
 
 def of_mesh(mesh):
