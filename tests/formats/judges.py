@@ -4,7 +4,7 @@ volumes by quadrature, groups with their sizes, and areas or volumes.
 
     judges.py FOLDER [FORMAT ...]
 
-Judges: gmsh (msh, msh22, unv, nastran, medit), meshio (abaqus, nastran, vtu, vtk, meditb, netgen, xdmf, tetgen; cells: the
+Judges: gmsh (msh, msh22, unv, nastran, medit), meshio (abaqus, nastran, vtu, vtk, meditb, netgen, xdmf, tetgen, exodus; cells: the
 tetrahedra alone, in what it reads), VTK (vtu, vtk, exodus), CalculiX (abaqus), python3-med (med), h5py (xdmf, cgns),
 cgnscheck (cgns), checkMesh (openfoam), ideasUnvToFoam (unv), gmshToFoam (msh22 as text), and for what nobody in Debian
 reads (ansys, lsdyna, febio, su2), readers of their own in second_readers.py, written from the manuals.
@@ -444,6 +444,7 @@ def judge_exodus(folder, expected):
         if text not in header:
             raise Difference(f"ncdump does not show {text}")
     yield "ncdump", 2
+    yield "meshio", from_meshio(with_meshio(folder / "exodus.exo"))[0].compare(expected, {})
 
 
 # ---- CalculiX: a stretched mesh has a known strain energy only for the right order of nodes
