@@ -112,7 +112,7 @@ int main(int argc, char** argv) {
     fs::create_directories(folder / name);
     const auto start = std::chrono::steady_clock::now();
     try {
-      write_mesh(folder / name / "mesh.x", mesh, {}, name);
+      write_mesh(folder / name / "mesh.x", mesh, {}, {.format = name});
     } catch (const OutputError& error) {
       fmt::print("| {} | {} |\n", name, error.what());
       continue;

@@ -33,6 +33,13 @@ std::string formats_that(bool FormatInfo::*can) {
   return all;
 }
 
+std::string formats_with_text() {
+  std::string names;
+  for (const FormatInfo& info : known_formats())
+    if (info.also_text) names += (names.empty() ? "" : ", ") + std::string(info.name);
+  return names;
+}
+
 std::string names_of_formats() {
   std::string all;
   for (const FormatInfo& info : known_formats())
@@ -254,6 +261,10 @@ void declare_mesh_output(CLI::App& command, Arguments& a) {
                   "Format by name, whatever the ending; for several outputs once for each: " + names_of_formats())
       ->type_name("NAME")
       ->allow_extra_args(false);
+  command.add_flag("--ascii", a.ascii, "As text, of formats that are binary else: " + formats_with_text());
+  command.add_flag(
+      "--cells-only", a.cells_only,
+      "Tetrahedra alone, with regions and sets: no faces and edges, which some programs refuse beside them");
   command
       .add_option_function<std::vector<std::string>>(
           "--group",

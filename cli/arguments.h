@@ -35,6 +35,8 @@ struct Arguments {
   std::filesystem::path defects;              ///< where the changes of repair are shown; empty: nowhere
   std::vector<std::filesystem::path> meshes;  ///< that are written; "-": to standard output
   std::vector<std::string> formats;           ///< of the meshes in turn; empty: by their endings
+  bool ascii = false;                         ///< of the meshes: as text
+  bool cells_only = false;                    ///< of the meshes: tetrahedra alone
   std::filesystem::path regions, point_sizes, size_field;  ///< files with sizes; empty: none
   Options options;
   std::optional<Solver> solver;      ///< whose limits a mesh is checked by

@@ -18,9 +18,9 @@ namespace octafront::cli {
 
 namespace {
 
-/// The format of the output of this number by name; empty: by its ending.
-std::string format_of(const Arguments& a, std::size_t i) {
-  return a.formats.empty() ? "" : a.formats[i];
+/// How the output of this number is written.
+WriteOptions options_of(const Arguments& a, std::size_t i) {
+  return {.format = a.formats.empty() ? "" : a.formats[i], .ascii = a.ascii, .cells_only = a.cells_only};
 }
 
 bool is_null(const std::filesystem::path& file) {
@@ -75,12 +75,12 @@ void copy_to_standard_output(const std::filesystem::path& file, const RunContext
 }
 
 /// Formats go back in their files, so that a pipe gets a file that is complete.
-std::vector<std::string> write_one(const std::filesystem::path& file, const TetMesh& mesh, const std::string& format,
+std::vector<std::string> write_one(const std::filesystem::path& file, const TetMesh& mesh, const WriteOptions& options,
                                    const RunContext& context) {
-  if (file != kStandardOutput && !is_null(file)) return write_mesh(file, mesh, context, format);
+  if (file != kStandardOutput && !is_null(file)) return write_mesh(file, mesh, context, options);
   const TemporaryFolder folder;
   const std::filesystem::path whole = folder.file("mesh");
-  std::vector<std::string> notes = write_mesh(whole, mesh, context, format);
+  std::vector<std::string> notes = write_mesh(whole, mesh, context, options);
   if (is_null(file)) return notes;
   clear_progress();
   copy_to_standard_output(whole, context);
@@ -95,13 +95,13 @@ void check_mesh_targets(const Arguments& a) {
     throw OptionError(fmt::format("--format is given {} and -o {} times: give each output its format, in turn",
                                   a.formats.size(), a.meshes.size()));
   for (std::size_t i = 0; i < a.meshes.size(); ++i) {
-    const std::string format = format_of(a, i);
+    const WriteOptions options = options_of(a, i);
     if (a.meshes[i] == kStandardOutput)
-      check_pipe(a.meshes[i], format);
+      check_pipe(a.meshes[i], options.format);
     else if (is_null(a.meshes[i]))
-      check_format(a.meshes[i], format);
+      check_format(a.meshes[i], options.format);
     else
-      check_mesh_target(a.meshes[i], format);
+      check_mesh_target(a.meshes[i], options);
   }
 }
 
@@ -113,7 +113,7 @@ void write_mesh_targets(Session& session, TetMesh mesh) {
   Json all = Json::array();
   for (std::size_t i = 0; i < a.meshes.size(); ++i) {
     session.context().report("writing", -1);
-    std::vector<std::string> notes = write_one(a.meshes[i], mesh, format_of(a, i), session.context());
+    std::vector<std::string> notes = write_one(a.meshes[i], mesh, options_of(a, i), session.context());
     session.warn("writing", group_notes);
     session.say_notes("writing", notes);
     notes.insert(notes.begin(), group_notes.begin(), group_notes.end());

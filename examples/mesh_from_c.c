@@ -54,7 +54,7 @@ int main(int argc, char** argv) {
   if (status == 0) {
     octafront_mesh_array(mesh, "tets", &tets);
     printf("%lu tetrahedra; %s\n", (unsigned long)tets.rows, octafront_mesh_summary(mesh));
-    job = octafront_write_mesh(mesh, argv[1], "");
+    job = octafront_write_mesh(mesh, argv[1], NULL);
     status = finish(job);
     octafront_job_free(job);
   }

@@ -45,13 +45,21 @@ bool holds_tetrahedra(const std::string& file, const RunContext& context = {});
 /// for unknown endings before any work.
 void write_surface(const std::string& file, const SurfaceMesh& surface, const RunContext& context = {});
 
-/// Writes a mesh in the format that the ending of the name tells, or that is asked for by its name in known_formats()
-/// ("abaqus", "msh22"; needed where endings clash). Regions, patches, curves and sets become the format's own; formats
-/// of surfaces get the boundary. Returns what a user should know: what the format cannot hold, and names that had to
-/// change. Streamed; written beside and renamed into place, formats of several files and folders too. Throws
-/// OutputError, and OptionError for an unknown format or ending before any work.
+/// How a mesh is written.
+struct WriteOptions {
+  std::string format = {};  ///< its name in known_formats() ("abaqus", "msh22"); empty: the ending of the file tells
+  bool ascii = false;       ///< as text; formats that are always text are so anyway
+  bool cells_only = false;  ///< the tetrahedra alone, with their regions and sets, and sets of nodes: no faces and
+                            ///< edges, which some programs refuse beside tetrahedra
+};
+
+/// Writes a mesh in the format that the ending of the name tells, or that is asked for. Regions, patches, curves and
+/// sets become the format's own; formats of surfaces get the boundary. Returns what a user should know: what the format
+/// cannot hold, and names that had to change. Streamed; written beside and renamed into place, formats of several files
+/// and folders too. Throws OutputError, and OptionError for an unknown format or ending, or what the format cannot do,
+/// before any work.
 std::vector<std::string> write_mesh(const std::string& file, const TetMesh& mesh, const RunContext& context = {},
-                                    const std::string& format = {});
+                                    const WriteOptions& options = {});
 
 /// Writes the background grid of a size field as .vtu: hexahedra with the size at their corners and their level.
 /// A field without a grid (uniform, from a function) has nothing to show: OutputError.
@@ -79,9 +87,9 @@ void write_text(const std::string& file, const std::string& text);
 /// Whether writing to one would change the other: the same name, or links to one file, which need not exist yet.
 bool same_file(const std::string& a, const std::string& b);
 
-/// Throws OptionError if the ending of `file` is none that write_mesh (or write_surface) knows, OutputError if its
-/// folder does not exist or cannot be written: to be called before long work.
-void check_mesh_target(const std::string& file, const std::string& format = {});
+/// Throws OptionError if write_mesh (or write_surface) would for this file and these options, OutputError if its folder
+/// does not exist or cannot be written: to be called before long work.
+void check_mesh_target(const std::string& file, const WriteOptions& options = {});
 void check_surface_target(const std::string& file);
 void check_size_field_target(const std::string& file);
 /// The same for files of any ending.
@@ -133,6 +141,7 @@ struct FormatInfo {
   FormatHolds holds;         ///< of meshes
   std::string_view carries;  ///< what survives in it, e.g. "double precision, no patches"
   bool one_file = true;      ///< one file holds a mesh: it can go through a pipe
+  bool also_text = false;    ///< meshes are binary, or text where WriteOptions::ascii asks for it
 };
 
 /// All formats, those of surfaces first.

@@ -189,7 +189,10 @@ typedef struct {
 octafront_job* octafront_read_surface(const char* file); /**< -> surface; of CAD a domain, as octafront_open_files() */
 octafront_job* octafront_write_surface(const octafront_surface* surface, const char* file);
 octafront_job* octafront_read_mesh(const char* file); /**< -> mesh */
-octafront_job* octafront_write_mesh(const octafront_mesh* mesh, const char* file, const char* format);
+/** `options`: null, or JSON, an object of any of format (a name of octafront_formats(); else by the ending of the
+ * file), ascii (true: as text), cells_only (true: tetrahedra alone): WriteOptions of octafront/io.h. The report has
+ * notes. */
+octafront_job* octafront_write_mesh(const octafront_mesh* mesh, const char* file, const char* options);
 octafront_job* octafront_read_sizes(const char* file, double gradation); /**< -> sizes */
 octafront_job* octafront_write_sizes(const octafront_sizes* sizes, const char* file);
 /** -> image: read_image() of octafront/image.h, a file, a folder or several files; `series` 0: the only one. */

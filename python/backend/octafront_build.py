@@ -3,6 +3,7 @@
 Settings, by pip's --config-settings KEY=VALUE:
     build-dir=DIR   a CMake build folder to use, made already or not; by default build/wheel
     jobs=N          compilers at the same time
+    cmake-args=...  more arguments of CMake, for a build folder that is new; scripts/wheel.sh has those of releases
 
 The wheel carries the libraries that ours need, but for those that every Linux has (EVERYWHERE), beside ours, where ours
 look first; and where OpenCASCADE was found octafront-cad, which reads CAD files by OpenCASCADE's libraries of the system.
@@ -15,6 +16,7 @@ import hashlib
 import io
 import pathlib
 import re
+import shlex
 import subprocess
 import sys
 import tarfile
@@ -52,7 +54,7 @@ def get_requires_for_build_sdist(config_settings=None):
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     settings = config_settings or {}
     build = pathlib.Path(settings.get("build-dir") or ROOT / "build" / "wheel").resolve()
-    compile_in(build, settings.get("jobs"))
+    compile_in(build, settings.get("jobs"), shlex.split(settings.get("cmake-args") or ""))
     binaries = collect(build / "python" / "octafront" / "_bin")
     tag = f"py3-none-manylinux_{'_'.join(map(str, glibc_of(binaries.values())))}_{machine()}"
     name = f"octafront-{version()}-{tag}.whl"
@@ -93,11 +95,10 @@ def build_sdist(sdist_directory, config_settings=None):
 
 # ---- compiling ----
 
-def compile_in(build, jobs):
+def compile_in(build, jobs, more):
     if not (build / "CMakeCache.txt").exists():
         run("cmake", "-S", ROOT, "-B", build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DOCTAFRONT_HDF5=OFF",
-            "-DOCTAFRONT_UNITY=ON",
-            "-DOCTAFRONT_BUILD_TESTS=OFF", "-DOCTAFRONT_BUILD_EXAMPLES=OFF")
+            "-DOCTAFRONT_UNITY=ON", "-DOCTAFRONT_BUILD_TESTS=OFF", "-DOCTAFRONT_BUILD_EXAMPLES=OFF", *more)
     run("cmake", "--build", build, *(["-j", str(jobs)] if jobs else []), "--target", *TARGETS)
 
 

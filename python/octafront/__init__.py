@@ -18,7 +18,7 @@ from ._images import is_file as _is_file, surface_of_image as _surface_of_image
 from ._intake import opened as _opened
 from ._jobs import Job as _Job
 from ._library import bytes_of as _bytes_of, call as _call
-from ._mesh import Checked, Mesh
+from ._mesh import Checked, Mesh, mesh_of as _mesh_of
 from ._options import Settings as _Settings, takes_options as _takes_options
 from ._sizes import SizeField
 from ._surface import OUTSIDE, Surface, surface_of as _surface_of
@@ -37,7 +37,8 @@ def mesh(points, triangles=None, **keywords):
 
     points: (n, 3) float64, any unit of length; triangles: (m, 3) indices. Or alone: a Surface, which may have patches,
     names, and several regions; a file (STL, OBJ, OFF, PLY, CAD, images of voxels, ..., recognised by content); a list of files,
-    or {name: Surface or file}, a region each.
+    or {name: Surface or file}, a region each; or an object of another library: of trimesh, Open3D, PyVista, VTK or meshio
+    (names of its groups are those of patches), or a shape of CadQuery, FreeCAD or build123d, which goes the way of CAD files.
 
     All of it goes the way of the command line, to the same mesh, bit for bit: walls and parts inside become regions, a
     soup is mended (repair="none": it is refused, InputError with `defects`). report["intake"] says what was found and
@@ -160,7 +161,7 @@ def size_field(points, triangles=None, **keywords):
 def improve(mesh, *, surface=None, **keywords):
     """The same mesh with better elements: a new Mesh. report["before"] is the quality of the old one.
 
-    mesh: a valid Mesh of any tool, or the name of its file. Regions, patches, names and sets stay. The boundary stays
+    mesh: a valid Mesh of any tool, the name of its file, or an object of meshio, PyVista or VTK. Regions, patches, names and sets stay. The boundary stays
     too, triangle for triangle, unless `surface` is given, the Surface on which it may slide (or the name of its file).
 
     No worse by least beta, smallest and largest dihedral angle. Raises OptionError, InputError (the first defect of the
@@ -169,8 +170,8 @@ def improve(mesh, *, surface=None, **keywords):
     >>> octafront.improve("of-another-tool.msh", improve="best").save("better.vtu")
     """
     settings = _Settings("improve", "improve", keywords)
-    old = mesh if isinstance(mesh, Mesh) else Mesh.read(mesh)
-    ground = surface if surface is None or isinstance(surface, Surface) else Surface.read(surface)
+    old = Mesh.read(mesh) if _is_file(mesh) else Mesh.of(mesh)
+    ground = Surface.read(surface) if _is_file(surface) else surface and _surface_of(surface, None)
     job = _Job("improve", old._handle, ground and ground._handle, settings.options, settings.threads,
                **settings.functions())
     report = job.run()
@@ -244,9 +245,11 @@ def check(what, triangles=None, *, solver=None):
 
     solver: "abaqus", "ansys", "nastran" or "calculix": list the elements of a mesh that it would warn of or refuse.
     """
-    if isinstance(what, (str, bytes)) or hasattr(what, "__fspath__"):
+    if _is_file(what):
         what = read(what)
-    if isinstance(what, Mesh):
+    mesh = _mesh_of(what) if triangles is None else None
+    if mesh is not None:
+        what = mesh
         report = _Job("check", what._handle, _bytes_of(solver or "")).run()
         return Checked(text=report["defect"] or "a valid mesh", **{"solver": None, "second_order": None, **report})
     if solver:

@@ -4,9 +4,10 @@ import ctypes
 import json
 
 from . import errors
+from ._images import is_file
 from ._jobs import Job
 from ._library import bytes_of
-from ._surface import Surface
+from ._surface import Surface, taken
 
 
 def of_walls(surface, regions, voids, cells, nested, threads, progress):
@@ -26,11 +27,18 @@ def of_bodies(bodies, regions, voids, cells, overlap, tolerance, threads, progre
 
 def arguments_of(bodies):
     """Addresses and names of {name: Surface or file}, and the surfaces, which must live as long."""
-    surfaces = {str(name): body if isinstance(body, Surface) else Surface.read(body) for name, body in bodies.items()}
+    surfaces = {str(name): Surface.read(body) if is_file(body) else _body(body, name) for name, body in bodies.items()}
     if not surfaces:
         raise errors.OptionError("bodies are {name: Surface or file, ...}, one at least")
     handles = (ctypes.c_void_p * len(surfaces))(*(body._handle.address for body in surfaces.values()))
     return handles, (ctypes.c_char_p * len(surfaces))(*(bytes_of(name) for name in surfaces)), surfaces
+
+
+def _body(body, name):
+    surface = taken(body)
+    if surface is None:
+        raise errors.OptionError(f"bodies are {{name: Surface or file, ...}}; {name!r} is a {type(body).__name__}")
+    return surface
 
 
 def mended(surface, tolerance, way, distance, threads, progress):

@@ -1,9 +1,11 @@
-"""A mesh in a notebook: a table and a histogram, as HTML that stands alone."""
+"""A mesh in a notebook: a table and a histogram, and the page that shows it in 3D, as HTML that stands alone."""
 
 import html
 
-# From poor to good, told apart by colour-blind eyes too (cividis).
-_COLOURS = ["#00204d", "#31446b", "#666970", "#b9ac70", "#ffea46"]
+# A notebook keeps what it shows: the page of so many elements takes 3 MB.
+_LARGEST = 300_000
+# From poor to good, as the page has them: told apart by colour-blind eyes too.
+_COLOURS = ["#8c2d04", "#d9650f", "#f5b26b", "#a9cce8", "#4f97d6"]
 
 
 def of_mesh(mesh):
@@ -18,7 +20,19 @@ def of_mesh(mesh):
     rows += [(kind, ", ".join(names)) for kind, names in mesh.names.items() if any(names)]
     cells = "".join(f"<tr><th style='text-align:left'>{html.escape(a)}</th><td style='text-align:left'>"
                     f"{html.escape(_shown(b))}</td></tr>" for a, b in rows)
-    return f"<div style='display:flex;gap:2em;align-items:center'><table>{cells}</table>{_histogram(q)}</div>"
+    return f"<div style='display:flex;gap:2em;align-items:center'><table>{cells}</table>{_histogram(q)}</div>{_page(mesh)}"
+
+
+def _page(mesh):
+    if len(mesh) > _LARGEST:
+        return f"<p>In 3D up to {_LARGEST:,} tetrahedra; this one by <code>mesh.save_page('mesh.html')</code>.</p>"
+    import tempfile
+    with tempfile.TemporaryDirectory() as folder:
+        mesh.save_page(folder + "/mesh.html")
+        with open(folder + "/mesh.html", encoding="utf-8") as file:
+            page = html.escape(file.read())
+    return (f"<iframe sandbox='allow-scripts allow-downloads allow-popups' style='width:100%;height:36em;border:0' "
+            f"title='the mesh in 3D' srcdoc=\"{page}\"></iframe>")
 
 
 def _shown(text):

@@ -3,15 +3,19 @@
 import ctypes
 from collections.abc import Mapping
 
-from . import _complexes, _images
+from . import _complexes, _foreign, _images
 from ._jobs import Job
 from ._library import file_of
 from ._surface import Surface, surface_of
 
 
 def opened(source, triangles, settings):
-    """source: points, with triangles; a Surface, a file, a list of files, or {name: Surface or file}. A Surface that the
-    library made is taken as it is, unless keywords ask for something on the way in."""
+    """source: points, with triangles; a Surface, a file, a list of files, {name: Surface or file}, or an object of another
+    library. A Surface that the library made is taken as it is, unless keywords ask for something on the way in."""
+    if triangles is None and _foreign.is_cad(source):
+        import tempfile
+        with tempfile.TemporaryDirectory() as folder:
+            return opened(_foreign.write_cad(source, folder), None, settings)
     keys, threads = _complexes.text_of_keys(_described(settings.intake)), settings.threads
     if triangles is None and (_images.is_file(source) or _images.are_files(source)):
         files = [source] if _images.is_file(source) else source

@@ -4,7 +4,7 @@ import ctypes
 import json
 import types
 
-from . import _html, _meshio, errors
+from . import _foreign, _html, _meshio, errors
 from ._jobs import Job
 from ._library import Array, Handle, _View, bytes_of, call, demand, file_of, pointer, spoken, text_of
 from ._numpy import np
@@ -16,6 +16,20 @@ _ARRAYS = ["points", "tets", "region", "boundary", "patch", "source", "interface
 _LISTS = ["region_names", "patch_names", "curve_names"]
 # Where the mid-side nodes of an element stand in VTK and meshio, as columns of `mid_nodes`.
 _VTK_MIDS = [0, 3, 1, 2, 4, 5]
+
+
+def mesh_of(source):
+    """A Mesh, or the one that an object of another library is; None if it holds no tetrahedra."""
+    if isinstance(source, Mesh):
+        return source
+    said = _foreign.mesh_from(source)
+    if said is None:
+        return None
+    sets = said.pop("sets", {})
+    mesh = Mesh(**said)
+    for name, members in sets.items():
+        mesh.add_set(name, members, kind="elements")
+    return mesh
 
 
 class Mesh:
@@ -72,6 +86,14 @@ class Mesh:
         job = Job("read_mesh", file_of(path))
         report = job.run()
         return cls._of(job.take("mesh"), report)
+
+    @classmethod
+    def of(cls, source):
+        """The Mesh of an object of meshio, PyVista or VTK that holds tetrahedra; named groups of meshio are regions and
+        patches. Raises OptionError."""
+        if (mesh := mesh_of(source)) is None:
+            raise errors.OptionError(f"a {type(source).__name__} holds no tetrahedra that are known here")
+        return mesh
 
     @property
     def points(self):
@@ -202,11 +224,13 @@ class Mesh:
             raise errors.InputError(text_of(note.value))
         return self
 
-    def save(self, path, *, format=None):
-        """Writes the mesh in the format that the ending tells, or by its name in octafront.formats(). Returns what a
-        user should know, as sentences: what the format cannot hold. An older file stays whole if that fails:
-        OutputError."""
-        job = Job("write_mesh", self._handle, file_of(path), bytes_of(format or ""))
+    def save(self, path, *, format=None, ascii=False, cells_only=False):
+        """Writes the mesh in the format that the ending tells, or by its name in octafront.formats(). `ascii`: as text, of
+        formats that are binary else; `cells_only`: the tetrahedra alone, with regions and sets, without faces and edges,
+        which some programs refuse beside them. Returns what a user should know, as sentences: what the format cannot
+        hold. An older file stays whole if that fails: OutputError; OptionError for what the format cannot do."""
+        options = {"format": format or "", "ascii": bool(ascii), "cells_only": bool(cells_only)}
+        job = Job("write_mesh", self._handle, file_of(path), json.dumps(options).encode())
         return job.run()["notes"]
 
     def save_page(self, path):

@@ -2,7 +2,7 @@
 
 import importlib
 
-from . import errors
+from . import _foreign, errors
 from ._jobs import Job
 from ._library import Handle, call, file_of
 from ._numpy import np
@@ -103,6 +103,12 @@ class Surface:
         job = Job("read_surface", file_of(path))
         report = job.run()
         return cls._of(job.take("surface"), report)
+
+    @classmethod
+    def of(cls, source):
+        """The Surface of an object of trimesh, Open3D, PyVista, VTK or meshio (whose named groups are patches), of a Mesh
+        (with the walls between its regions), or of a shape of CadQuery, FreeCAD or build123d. Raises TypeError."""
+        return surface_of(source, None)
 
     @property
     def points(self):
@@ -209,6 +215,29 @@ def surface_of(points, triangles):
         if triangles is not None:
             raise TypeError("give a Surface, or points and triangles, not both")
         return points
-    if triangles is None:
-        raise TypeError("give points (n, 3) and triangles (m, 3), or a Surface")
-    return Surface(points, triangles)
+    if triangles is not None:
+        return Surface(points, triangles)
+    if (surface := taken(points)) is None:
+        raise TypeError("give points (n, 3) and triangles (m, 3), a Surface, or an object of trimesh, PyVista, meshio or "
+                        f"a CAD library, not a {type(points).__name__}")
+    return surface
+
+
+def taken(source):
+    """The Surface of an object of another library, or of a Mesh; None if it is no such thing."""
+    from ._mesh import mesh_of
+    if isinstance(source, Surface):
+        return source
+    mesh, is_cad = mesh_of(source), _foreign.is_cad(source)
+    if mesh is not None or is_cad:
+        import tempfile
+        with tempfile.TemporaryDirectory() as folder:
+            # A file of a mesh is read with the walls between its regions.
+            files = _foreign.write_cad(source, folder) if is_cad else [folder + "/mesh.vtu"]
+            if mesh is not None:
+                mesh.save(files[0])
+            if len(files) > 1:
+                raise errors.OptionError("a body is one shape; mesh() takes several as they are")
+            return Surface.read(files[0])
+    said = _foreign.surface_from(source)
+    return None if said is None else Surface(**said)

@@ -224,7 +224,7 @@ def openfoam(folder):
     assert end == len(faces)
     for kind, file in (("elements", "cellZones"), ("faces", "faceZones")):
         for name, block in re.findall(r"(\S+)\s*\{([^}]*)\}", foam_body(folder / file)):
-            labels = [int(w) for w in re.search(r"Labels List<label> \d+\s*\(([^)]*)\)", block).group(1).split()]
+            labels = [int(w) for w in re.search(r"Labels\s+List<label>\s+\d+\s*\(([^)]*)\)", block).group(1).split()]
             parts[kind, name] = [faces[f] for f in labels] if kind == "faces" else labels
     return {"points": points, "tets": tets, "parts": parts}
 

@@ -322,7 +322,7 @@ constexpr const char* kXdmf = R"(<?xml version="1.0"?>
 
 std::string written_as(const std::string& format, const std::string& ending) {
   const TemporaryFolder folder;
-  write_mesh(folder / ("mesh" + ending), two_tets(), {}, format);
+  write_mesh(folder / ("mesh" + ending), two_tets(), {}, {.format = format});
   return file_bytes(folder / ("mesh" + ending));
 }
 

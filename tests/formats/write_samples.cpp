@@ -1,6 +1,7 @@
 // Writes a mesh that has everything, bent, in every format that this build has, linear and of second order:
 //   write_samples FOLDER
-// leaves FOLDER/linear/..., FOLDER/second/..., and beside them expected.json: what a judge must find.
+// leaves FOLDER/linear/..., FOLDER/second/..., what is text or binary also as text in FOLDER/linear_text/..., the
+// tetrahedra alone in FOLDER/linear_cells/..., and in each expected.json: what a judge must find.
 
 #include <octafront/io.h>
 
@@ -115,26 +116,35 @@ std::string expected(const TetMesh& mesh) {
   return out + "]}\n";
 }
 
-void write_all(const fs::path& folder, const TetMesh& mesh) {
+template <class Wanted>
+void write_those(const fs::path& folder, const TetMesh& mesh, WriteOptions options, const Wanted& wanted) {
   fs::create_directories(folder);
   write_text(folder / "expected.json", expected(mesh));
   for (const FormatInfo& info : known_formats()) {
-    if (!info.writes_mesh) continue;
+    if (!info.writes_mesh || !wanted(info)) continue;
     const std::string ending(info.endings.substr(0, info.endings.find(' ')));
     const fs::path file = info.name == "openfoam"
                               ? folder / "case" / "constant" / "polyMesh"
                               : folder / (std::string(info.name) + (ending.empty() ? ".msh" : ending));
     fs::create_directories(file.parent_path());
-    write_mesh(file, mesh, {}, std::string(info.name));
+    options.format = info.name;
+    write_mesh(file, mesh, {}, options);
   }
+}
+
+void write_all(const std::string& folder, const TetMesh& mesh) {
+  write_those(folder, mesh, {}, [](const FormatInfo&) { return true; });
+  write_those(folder + "_text", mesh, {.ascii = true}, [](const FormatInfo& info) { return info.also_text; });
+  write_those(folder + "_cells", mesh, {.cells_only = true},
+              [](const FormatInfo& info) { return info.name != "openfoam" && !info.writes_surface; });
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   if (argc != 2) return 2;
-  const fs::path folder = argv[1];
+  const std::string folder = argv[1];
   const TetMesh linear = octafront::testing::rich_mesh(4);
-  write_all(folder / "linear", bent(linear));
-  write_all(folder / "second", bent(octafront::testing::with_mid_nodes(linear)));
+  write_all(folder + "/linear", bent(linear));
+  write_all(folder + "/second", bent(octafront::testing::with_mid_nodes(linear)));
 }

@@ -11,6 +11,7 @@ configure() {
 configure -DBUILD_SHARED_LIBS=ON -DOCTAFRONT_CAIRO=OFF
 grep -q 'canvas.cpp' "$scratch/build.ninja"
 ! grep -q -i 'libcairo\|WITH_CAIRO' "$scratch/build.ninja" || { echo "cairo is linked"; exit 1; }
+grep -q 'version-script=.*exports.map' "$scratch/build.ninja" || { echo "a shared library shows all that it is made with"; exit 1; }
 grep -q '^Requires.private: .*fmt' "$scratch/octafront.pc"
 ! grep -q '^Libs: .*-lstdc++' "$scratch/octafront.pc" || { echo "a shared library names what it stands on"; exit 1; }
 ! grep -q 'std=c++' "$scratch/octafront.pc" || { echo "flags of C++ for programs in C"; exit 1; }

@@ -1,14 +1,16 @@
 #!/usr/bin/env python3
 """Is a wheel what it says? Needs readelf and nm.
 
-    look_into_wheel.py WHEEL SOURCE
+    look_into_wheel.py WHEEL SOURCE [--glibc 2.17] [--megabytes 8]
 
 - Everything that its binaries need is inside, or a part of glibc or of GCC's run time; but for OpenCASCADE, which octafront-cad needs.
 - No binary asks for a newer glibc than the name of the wheel says, nor for a newer libstdc++ than that system has.
 - The licence and version of each library inside is told, ours too, and py.typed and stubs are there.
 - The library shows its C interface and nothing of C++, its own or that of libraries inside.
+- It runs with a glibc as old as asked for, without a libstdc++ of the system then, and is no larger than asked for.
 - RECORD is right, and the version that of CMakeLists.txt.
 """
+import argparse
 import base64
 import hashlib
 import pathlib
@@ -31,7 +33,7 @@ def exported(file):
     return {line.split()[-1] for line in lines.splitlines()}
 
 
-def look(wheel, source):
+def look(wheel, source, oldest, most_bytes):
     names, wrong = wheel.namelist(), []
 
     def require(holds, what):
@@ -40,6 +42,8 @@ def look(wheel, source):
 
     tag = re.search(r"-py3-none-manylinux_(\d+)_(\d+)_", wheel.filename)
     require(tag, "the tag is not py3-none-manylinux")
+    require(pathlib.Path(wheel.filename).stat().st_size <= most_bytes, f"the wheel is larger than {most_bytes / 1e6:g} MB")
+    require(not oldest or (int(tag[1]), int(tag[2])) <= oldest, f"the wheel wants a newer glibc than {oldest}")
     binaries = {pathlib.Path(n).name: wheel.read(n) for n in names if "/_bin/" in n}
     require({"liboctafront.so", "octafront"} <= set(binaries), "the library or the tool is missing")
     with tempfile.TemporaryDirectory() as folder:
@@ -48,6 +52,7 @@ def look(wheel, source):
             file.write_bytes(data)
             dynamic = readelf("-d", file)
             for needed in re.findall(r"\(NEEDED\).*\[(.+)\]", dynamic):
+                require(not oldest or needed != "libstdc++.so.6", f"{name} needs the libstdc++ of the system")
                 of_cad = name == "octafront-cad" and needed.startswith("libTK")
                 require(of_cad or needed in EVERYWHERE or needed in binaries, f"{name} needs {needed}, which is not inside")
             path = re.findall(r"\((?:RPATH|RUNPATH)\).*\[(.+)\]", dynamic)
@@ -83,8 +88,14 @@ def look(wheel, source):
 
 
 def main():
-    with zipfile.ZipFile(sys.argv[1]) as wheel:
-        wrong = look(wheel, pathlib.Path(sys.argv[2]))
+    parser = argparse.ArgumentParser()
+    parser.add_argument("wheel")
+    parser.add_argument("source", type=pathlib.Path)
+    parser.add_argument("--glibc", type=lambda text: tuple(map(int, text.split("."))))
+    parser.add_argument("--megabytes", type=float, default=100)
+    asked = parser.parse_args()
+    with zipfile.ZipFile(asked.wheel) as wheel:
+        wrong = look(wheel, asked.source, asked.glibc, asked.megabytes * 1e6)
     print(*wrong, sep="\n")
     return 1 if wrong else 0
 

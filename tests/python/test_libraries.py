@@ -129,6 +129,66 @@ class Libraries(unittest.TestCase):
         self.assertEqual(there.cell_sets["b"][0].tolist(), [6, 7, 8, 9, 10, 11])
         self.assertEqual(there.field_data["b"].tolist(), [2, 2])
 
+    def test_vtk_surfaces_are_input(self):
+        sphere_of_vtk = vtk.vtkSphereSource()
+        sphere_of_vtk.SetThetaResolution(24)
+        sphere_of_vtk.SetPhiResolution(12)
+        sphere_of_vtk.Update()
+        mesh = octafront.mesh(sphere_of_vtk.GetOutput(), size=0.2)
+        whole = octafront.check(sphere_of_vtk.GetOutput()).volume
+        self.assertAlmostEqual(whole, np.pi / 6, delta=0.03)
+        self.assertAlmostEqual(volume_of(mesh), whole, delta=0.08 * whole)
+        box = vtk.vtkCubeSource()  # quadrilaterals
+        box.Update()
+        self.assertAlmostEqual(volume_of(octafront.mesh(box.GetOutput(), size=0.3)), 1, places=9)
+        self.assertTrue(octafront.check(octafront.mend(box.GetOutput())))
+        joined = octafront.join_bodies({"box": box.GetOutput(), "ball": sphere_of_vtk.GetOutput()})
+        self.assertEqual(joined.region_names, ["box", "ball"])
+
+    def test_vtk_meshes_are_input(self):
+        for order in (1, 2):
+            mesh = octafront.mesh(*cube(), size=0.4, order=order)
+            grid = mesh.to_pyvista().grid
+            self.assertTrue(octafront.check(grid))
+            better = octafront.improve(grid)
+            self.assertGreaterEqual(better.quality["beta_min"], mesh.quality["beta_min"])
+            # Its boundary, triangulated anew.
+            self.assertAlmostEqual(volume_of(octafront.mesh(grid, size=0.3)), 1, places=9)
+
+    def test_meshio_objects_are_input_with_their_names(self):
+        mesh = two_cubes()
+        with tempfile.TemporaryDirectory() as folder:
+            mesh.save(folder + "/m.msh")
+            file = meshio.read(folder + "/m.msh")
+        for there in (mesh.to_meshio(), file):
+            back = octafront.Mesh.of(there)
+            self.assertEqual(len(back), len(mesh))
+            self.assertTrue(octafront.check(there))
+            self.assertEqual(len(back.sets["some"][1]), 2)
+            self.assertEqual(len(octafront.improve(there).names["regions"]), 2)
+            for name in ("low", "high"):
+                self.assertEqual(part_size(back.names["regions"], back.regions, name),
+                                 part_size(mesh.names["regions"], mesh.regions, name))
+            for name in ("bottom", "side 3"):
+                self.assertEqual(part_size(back.names["patches"], back.patches, name),
+                                 part_size(mesh.names["patches"], mesh.patches, name))
+        faces = octafront.Surface(*cube(), patches=np.arange(12) // 6, patch_names=["a", "b"]).to_meshio()
+        again = octafront.mesh(faces, size=0.4)
+        self.assertEqual(again.names["patches"][:2], ["a", "b"])
+        self.assertAlmostEqual(volume_of(again), 1, places=9)
+        quads = meshio.Mesh(np.array(cube()[0]), [("quad", np.array([[0, 1, 3, 2], [4, 5, 7, 6], [0, 1, 5, 4], [2, 3, 7, 6],
+                                                                    [0, 2, 6, 4], [1, 3, 7, 5]]))])
+        self.assertAlmostEqual(volume_of(octafront.mesh(quads, size=0.4)), 1, places=9)
+
+
+def volume_of(mesh):
+    a, b, c, d = (mesh.points[mesh.tets[:, i]] for i in range(4))
+    return np.einsum("ij,ij->i", np.cross(b - a, c - a), d - a).sum() / 6
+
+
+def part_size(names, numbers, name):
+    return int((numbers == names.index(name)).sum())
+
 
 def two_cubes():
     """One on the other, with a patch for each of eleven sides, and sets of all kinds."""

@@ -2,18 +2,21 @@
 
 import copy
 import gc
+import html
 import inspect
 import json
 import multiprocessing
 import os
 import pathlib
 import pickle
+import shutil
 import signal
 import subprocess
 import sys
 import tempfile
 import threading
 import time
+import types
 import unittest
 
 import numpy as np
@@ -396,6 +399,24 @@ class Cad(BesideTheLine):
         self.assertGreater(mesh.report["true_volume"], 22000)
         self.assertEqual(octafront.mesh(surface, size=6, repair="auto").report["hash"], mesh.report["hash"])
 
+    def test_shapes_that_write_themselves_are_input(self):
+        class Shape:  # of CadQuery or FreeCAD
+            def exportStep(self, name):
+                shutil.copy(SAMPLES / "bracket.step", name)
+
+        class Workplane:
+            def vals(self):
+                return [Shape()]
+
+        wanted = octafront.mesh(SAMPLES / "bracket.step", size=8)
+        for source in (Shape(), Workplane()):
+            mesh = octafront.mesh(source, size=8)
+            self.assertEqual(mesh.report["hash"], wanted.report["hash"])
+            self.assertEqual(mesh.names, wanted.names)
+        self.assertEqual(octafront.join_bodies({"part": Shape()}).region_names, ["part"])
+        with self.assertRaisesRegex(octafront.InputError, "no shapes"):
+            octafront.mesh(types.SimpleNamespace(vals=lambda: []))
+
     def test_without_the_program_it_says_what_to_do(self):
         os.environ["OCTAFRONT_CAD"] = "/bin/false"
         self.addCleanup(os.environ.pop, "OCTAFRONT_CAD")
@@ -694,6 +715,29 @@ class Meshes(Case):
         with self.assertRaises(octafront.OptionError):
             octafront.check(better, solver="mine")
 
+    def test_objects_of_other_libraries_are_input(self):
+        points, triangles = cube()
+        of_trimesh = types.SimpleNamespace(vertices=points, faces=triangles)
+        of_open3d = types.SimpleNamespace(vertices=points.tolist(), triangles=triangles.tolist())
+        wanted = octafront.mesh(points, triangles, size=0.4)
+        for source in (of_trimesh, of_open3d):
+            self.assertEqual(octafront.mesh(source, size=0.4).report["hash"], wanted.report["hash"])
+            self.assertTrue(octafront.check(source))
+        self.assertEqual(octafront.mesh({"a": of_trimesh}, size=0.4).names["regions"], ["a"])
+        for function in (octafront.mesh, octafront.mend, octafront.improve):
+            with self.assertRaisesRegex((TypeError, octafront.OptionError), "SimpleNamespace"):
+                function(types.SimpleNamespace(corners=points))
+
+    def test_a_mesh_is_meshed_anew_with_its_regions(self):
+        points, triangles = cube()
+        walls = np.vstack([triangles, triangles[2:] + 8])
+        sides = np.array([[-1, 0]] * 12 + [[-1, 1]] * 10)
+        sides[[2, 3]] = [1, 0]
+        surface = octafront.Surface(np.vstack([points, points + [0, 0, 1]]), walls, sides=sides, region_names=["low", "high"])
+        mesh = octafront.mesh(octafront.mesh(surface, size=0.5), size=0.3)
+        self.assertEqual(mesh.names["regions"], ["low", "high"])
+        self.assertGreater(len(mesh.interfaces), 8)
+
     def test_quality_of_elements(self):
         mesh = octafront.mesh(*cube(), size=0.3)
         beta = mesh.element_quality()
@@ -739,6 +783,18 @@ class Meshes(Case):
             self.assertIsInstance(again, octafront.Mesh)
             self.assertEqual(len(again), len(mesh))
             self.assertTrue(octafront.check(again))
+        mesh.save(self.folder / "text.msh", ascii=True)
+        (self.folder / "text.msh").read_text("ascii")
+        np.testing.assert_array_equal(octafront.read(self.folder / "text.msh").points, mesh.points)
+        notes = mesh.save(self.folder / "cells.vtk", cells_only=True)
+        self.assertIn(f"cells only: {len(mesh.faces)} faces", " ".join(notes))
+        alone = octafront.read(self.folder / "cells.vtk")
+        np.testing.assert_array_equal(alone.tets, mesh.tets)
+        self.assertFalse(any(alone.names["patches"]))
+        with self.assertRaisesRegex(octafront.OptionError, "text"):
+            mesh.save(self.folder / "m.meshb", ascii=True)
+        with self.assertRaisesRegex(octafront.OptionError, "faces"):
+            mesh.save(self.folder / "m.stl", cells_only=True)
         again = octafront.read(self.folder / "m.inp")
         self.assertIn("held", [g["name"] for g in octafront.check(again).groups])
         self.assertTrue(mesh.save(self.folder / "m.stl"), "a surface cannot hold a mesh, and nothing was said")
@@ -781,7 +837,11 @@ class Meshes(Case):
     def test_repr(self):
         mesh = octafront.mesh(*cube(), size=0.4)
         self.assertIn(f"{len(mesh)} tetrahedra", repr(mesh))
-        self.assertIn("<svg", mesh._repr_html_())
+        shown = mesh._repr_html_()
+        self.assertIn("<svg", shown)
+        self.assertIn("<iframe", shown)
+        mesh.save_page(self.folder / "page.html")
+        self.assertIn(html.escape((self.folder / "page.html").read_text()), shown)
         self.assertIn("triangles", repr(octafront.Surface(*cube())))
 
 

@@ -11,10 +11,12 @@ volume: float = mesh.quality["beta_min"]
 field = octafront.size_field(surface, regions=[{"point": [0, 0, 0], "size": 1}])
 sizes: float = field(mesh.points).max()
 octafront.mesh("part.stl", size="2mm", unit="mm", max_deviation="0.1mm")
+octafront.mesh(mesh, size=1), octafront.Surface.of(mesh)
 octafront.improve("a.msh", surface=surface, improve="best").save("b.vtu")
 
 octafront.mesh(surface, sise=0.5)  # error: call-arg
 octafront.mesh(surface, elements="many")  # error: arg-type
 octafront.mesh(surface, method="best")  # error: arg-type
 octafront.surface(surface, core="none")  # error: call-arg
+octafront.improve(surface)  # error: arg-type
 mesh.points = np.zeros((3, 3))  # error: misc

@@ -42,6 +42,14 @@ Json json_of_repair(const RepairedSurface& r) {
           {"notes", r.notes}};
 }
 
+WriteOptions write_options_from(const Json& json) {
+  WriteOptions options;
+  with(json, "format", [&](const Json& value) { options.format = value.get<std::string>(); });
+  with(json, "ascii", [&](const Json& value) { options.ascii = value.get<bool>(); });
+  with(json, "cells_only", [&](const Json& value) { options.cells_only = value.get<bool>(); });
+  return options;
+}
+
 /// Runs a generator, by the options with their events; if it refuses the surface, the evidence goes along.
 template <class Generator>
 auto made_of(octafront_job& job, const octafront_surface& surface, const octafront_options* options,
@@ -182,11 +190,12 @@ octafront_job* octafront_read_mesh(const char* file) {
   });
 }
 
-octafront_job* octafront_write_mesh(const octafront_mesh* mesh, const char* file, const char* format) {
-  return started([mesh, file = std::string(file), format = std::string(format)](octafront_job& job) {
-    check_mesh_target(file, format);
+octafront_job* octafront_write_mesh(const octafront_mesh* mesh, const char* file, const char* options) {
+  return started([mesh, file = std::string(file), text = std::string(options ? options : "{}")](octafront_job& job) {
+    const WriteOptions asked = write_options_from(Json::parse(text));
+    check_mesh_target(file, asked);
     require_indices(mesh->mesh);
-    job.report["notes"] = write_mesh(file, mesh->mesh, job.context(), format);
+    job.report["notes"] = write_mesh(file, mesh->mesh, job.context(), asked);
   });
 }
 

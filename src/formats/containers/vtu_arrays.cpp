@@ -39,6 +39,11 @@ void VtuArrays::declare(std::string_view type, std::string_view name, int compon
   file_.write(fmt::format("\"0\"{:{}}/>\n", "", kOffsetWidth));
 }
 
+void VtuArrays::open_text(std::string_view type, std::string_view name, int components) {
+  file_.write(fmt::format("        <DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"ascii\">\n",
+                          type, name, components));
+}
+
 void VtuArrays::write_array(const Array& array) {
   const std::uint64_t values_per_block = kBlockBytes / array.bytes_per_value;
   const std::uint64_t blocks = (array.values + values_per_block - 1) / values_per_block;
@@ -74,6 +79,7 @@ void VtuArrays::write_array(const Array& array) {
 }
 
 void VtuArrays::write_data() {
+  if (arrays_.empty()) return;
   file_.write("  <AppendedData encoding=\"raw\">\n_");
   const std::uint64_t start = file_.position();
   for (const Array& array : arrays_) {

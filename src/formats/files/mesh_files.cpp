@@ -75,6 +75,25 @@ std::string all_names() {
   return names;
 }
 
+std::string names_with_text() {
+  std::string names;
+  for (const io::Format& format : io::formats())
+    if (format.info.also_text || (format.info.writes_mesh && !format.info.holds.binary))
+      names += (names.empty() ? "" : ", ") + std::string(format.info.name);
+  return names;
+}
+
+/// Throws OptionError for what the format cannot do.
+void check_options(const io::Format& format, const WriteOptions& options) {
+  const bool is_of_surfaces = format.write_mesh == nullptr;
+  if (options.ascii && (is_of_surfaces || format.info.holds.binary) && !format.info.also_text)
+    throw OptionError(
+        fmt::format("{} is not written as text; `ascii` is for {}", format.info.title, names_with_text()));
+  if (options.cells_only && (is_of_surfaces || format.is_folder))
+    throw OptionError(
+        fmt::format("{} needs the faces of the boundary, which `cells_only` leaves out", format.info.title));
+}
+
 const io::Format& mesh_format(const std::filesystem::path& file, const std::string& name) {
   const io::Format* format = name.empty() ? io::format_of(file) : io::format_named(name);
   if (format == nullptr && !name.empty())
@@ -112,18 +131,19 @@ TetMesh read_mesh(const std::string& file, const RunContext& context) {
   return read_mesh_file(file, context).mesh;
 }
 
-void check_mesh_target(const std::string& file, const std::string& name) {
-  const io::Format& format = mesh_format(file, name);
+void check_mesh_target(const std::string& file, const WriteOptions& options) {
+  const io::Format& format = mesh_format(file, options.format);
+  check_options(format, options);
   format.is_folder ? io::check_folder_writable(file) : io::check_writable(file);
 }
 
 std::vector<std::string> write_mesh(const std::string& file, const TetMesh& mesh, const RunContext& context,
-                                    const std::string& name) {
-  check_mesh_target(file, name);
+                                    const WriteOptions& options) {
+  check_mesh_target(file, options);
   const ThreadLimit limit(context.threads);
-  const io::Format& format = mesh_format(file, name);
-  const io::MeshParts parts(mesh, !format.info.holds.second_order);
-  io::MeshOutput out(file, context);
+  const io::Format& format = mesh_format(file, options.format);
+  const io::MeshParts parts(mesh, {.mid_nodes = !format.info.holds.second_order, .faces = options.cells_only});
+  io::MeshOutput out(file, context, options.ascii);
   if (format.write_mesh == nullptr) {
     format.write_surface(out.file(), boundary_surface(mesh));
     out.note(

@@ -15,13 +15,16 @@ namespace octafront::io {
 /// before, older ones stay as they were. What a writer has to tell the user goes into `notes`.
 class MeshOutput {
  public:
-  MeshOutput(std::filesystem::path target, RunContext context) : target_(std::move(target)), context_(context) {}
+  MeshOutput(std::filesystem::path target, RunContext context, bool as_text = false)
+      : target_(std::move(target)), context_(context), as_text_(as_text) {}
   ~MeshOutput();
   MeshOutput(const MeshOutput&) = delete;
   MeshOutput& operator=(const MeshOutput&) = delete;
 
   const std::filesystem::path& target() const { return target_; }
   const RunContext& context() const { return context_; }
+  /// Of formats that are binary or text.
+  bool as_text() const { return as_text_; }
   /// The file that was asked for.
   AtomicFile& file();
   /// Another one beside it, with this ending instead.
@@ -47,6 +50,7 @@ class MeshOutput {
 
   std::filesystem::path target_;
   RunContext context_;
+  bool as_text_;
   std::vector<std::unique_ptr<AtomicFile>> files_;
   std::vector<Pending> pending_;  ///< the folder, if there is one
   std::vector<std::string> notes_;

@@ -46,10 +46,11 @@ std::string default_name(Part::Origin origin, std::uint32_t number, bool only) {
   }
 }
 
-MeshParts::MeshParts(const TetMesh& mesh, bool linear)
+MeshParts::MeshParts(const TetMesh& mesh, Hidden hidden)
     : mesh_(mesh),
-      second_order_(mesh.is_second_order() && !linear),
-      points_(linear ? corner_points(mesh) : mesh.points.size()),
+      hidden_(hidden),
+      second_order_(mesh.is_second_order() && !hidden.mid_nodes),
+      points_(hidden.mid_nodes ? corner_points(mesh) : mesh.points.size()),
       mids_(second_order_ ? mesh : empty_mesh()) {
   const std::array<std::uint32_t, 3> counts{static_cast<std::uint32_t>(tets()), static_cast<std::uint32_t>(faces()),
                                             static_cast<std::uint32_t>(edges())};
@@ -65,6 +66,7 @@ MeshParts::MeshParts(const TetMesh& mesh, bool linear)
   }
   for (std::uint32_t s = 0; s < mesh.sets.size(); ++s) {
     const NamedSet& set = mesh.sets[s];
+    if (hidden.faces && (set.kind == NamedSet::Kind::kFaces || set.kind == NamedSet::Kind::kEdges)) continue;
     const bool is_named = !set.name.empty();
     std::string name = is_named ? set.name : default_name(Part::Origin::kSet, s, false);
     names_.clean(name);
@@ -229,7 +231,7 @@ std::vector<GroupInfo> groups_of(const TetMesh& mesh) {
   constexpr std::array kOrigins{"region", "patch", "curve"};
   constexpr std::array kKinds{"nodes", "edges", "faces", "elements"};
   std::vector<GroupInfo> all;
-  const io::MeshParts parts(mesh, true);
+  const io::MeshParts parts(mesh, {.mid_nodes = true});
   for (const io::Part& part : parts.parts()) {
     const bool is_set = part.origin == io::Part::Origin::kSet;
     all.push_back(

@@ -44,15 +44,22 @@ struct Side {
 /// one list of parts, which every format turns into sets of its own. Refers to the mesh. O(mesh).
 class MeshParts {
  public:
-  /// `linear`: mid-side nodes and the points that are nothing else are passed over.
-  explicit MeshParts(const TetMesh& mesh, bool linear = false);
+  /// What writers are not shown.
+  struct Hidden {
+    bool mid_nodes = false;  ///< and the points that are nothing else
+    bool faces = false;      ///< and edges, and all parts of them
+  };
+  explicit MeshParts(const TetMesh& mesh) : MeshParts(mesh, Hidden{}) {}
+  MeshParts(const TetMesh& mesh, Hidden hidden);
 
   const TetMesh& mesh() const { return mesh_; }
   /// Points that are to be written: the first ones of the mesh.
   std::size_t points() const { return points_; }
   std::size_t tets() const { return mesh_.tets.size(); }
-  std::size_t faces() const { return mesh_.boundary.size() + mesh_.interfaces.size(); }
-  std::size_t edges() const { return mesh_.curve_edges.size(); }
+  std::size_t faces() const { return hidden_.faces ? 0 : mesh_.boundary.size() + mesh_.interfaces.size(); }
+  std::size_t edges() const { return hidden_.faces ? 0 : mesh_.curve_edges.size(); }
+  /// Whether they have no faces and edges because none are wanted.
+  bool cells_only() const { return hidden_.faces; }
   bool second_order() const { return second_order_; }
 
   const Triangle& face(std::size_t f) const {
@@ -112,6 +119,7 @@ class MeshParts {
                     const std::vector<std::string>& names);
 
   const TetMesh& mesh_;
+  Hidden hidden_;
   bool second_order_;
   std::size_t points_;
   EdgeNodes mids_;

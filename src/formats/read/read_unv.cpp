@@ -196,8 +196,15 @@ class Unv {
           groups[static_cast<std::size_t>(found->second.kind)].members.push_back(found->second.index);
       }
       for (RawMesh::Group& group : groups)
-        if (!group.members.empty()) raw_.groups.push_back(std::move(group));
+        if (!group.members.empty() && !is_known(group)) raw_.groups.push_back(std::move(group));
     }
+  }
+
+  /// Files may list groups in two datasets, for readers of either.
+  bool is_known(const RawMesh::Group& group) const {
+    return std::any_of(raw_.groups.begin(), raw_.groups.end(), [&](const RawMesh::Group& known) {
+      return known.name == group.name && known.kind == group.kind && known.members == group.members;
+    });
   }
 
   const char* behind_line_end() {

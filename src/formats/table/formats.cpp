@@ -71,6 +71,10 @@ constexpr FormatHolds kAnsys = [] {
   holds.face_sets = false;
   return holds;
 }();
+constexpr Format or_text(Format format) {
+  format.info.also_text = true;
+  return format;
+}
 constexpr Format of_several_files(Format format) {
   format.info.one_file = false;
   return format;
@@ -99,11 +103,13 @@ constexpr std::array kFormats{
             {},
             "facets, with markers as patches, regions and holes; read only"},
            nullptr},
-    mesh("vtu", "VTU", ".vtu", kYes, binary(kAll),
-         "VTK unstructured grid, compressed: numbers, names and sets as arrays; beta per element", write_vtu),
-    mesh("msh", "Gmsh MSH 4.1", ".msh", kYes, binary(kAll), "all as physical groups", write_msh),
-    mesh("msh22", "Gmsh MSH 2.2", "", kYes, binary(without_sets(kAll)), "regions, patches, curves as physical groups",
-         write_msh2),
+    or_text(mesh("vtu", "VTU", ".vtu", kYes, binary(kAll),
+                 "VTK unstructured grid, compressed or text: numbers, names and sets as arrays; beta per element",
+                 write_vtu)),
+    or_text(
+        mesh("msh", "Gmsh MSH 4.1", ".msh", kYes, binary(kAll), "binary or text: all as physical groups", write_msh)),
+    or_text(mesh("msh22", "Gmsh MSH 2.2", "", kYes, binary(without_sets(kAll)),
+                 "binary or text: regions, patches, curves as physical groups", write_msh2)),
     mesh("abaqus", "Abaqus, CalculiX", ".inp", kYes, kSolver, "ELSET, NSET, SURFACE; numbers of at most 20 characters",
          write_abaqus),
     mesh("nastran", "Nastran", ".bdf .nas", kYes, kSolver,
@@ -127,7 +133,7 @@ constexpr std::array kFormats{
     }(),
     mesh("cgns", "CGNS", ".cgns", kNo, binary(without_edges(without_sets(kAll))),
          "sections and boundary conditions; needs HDF5", kWriteCgns),
-    mesh("vtk", "legacy VTK", ".vtk", kYes, binary(kAll), "as VTU, uncompressed", write_vtk),
+    or_text(mesh("vtk", "legacy VTK", ".vtk", kYes, binary(kAll), "as VTU, binary or text, uncompressed", write_vtk)),
     mesh("medit", "MEDIT", ".mesh", kYes, kNumbersOnly, "text: references", write_medit),
     mesh("meditb", "MEDIT binary", ".meshb", kYes, binary(kNumbersOnly), "references", write_medit_binary),
     mesh("netgen", "Netgen", ".vol", kYes, without_sets(kAll), "materials, bcnames, cd2names", write_netgen),

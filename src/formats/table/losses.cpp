@@ -24,7 +24,8 @@ class Losses {
     numbered("region", mesh_.parts(Origin::kRegion), holds.regions);
     numbered("patch", mesh_.parts(Origin::kPatch), holds.patches);
     numbered("curve", mesh_.parts(Origin::kCurve), holds.curves);
-    if (!holds.interfaces && !mesh_.mesh().interfaces.empty())
+    if (mesh_.cells_only()) leave_out_faces();
+    if (!holds.interfaces && !mesh_.cells_only() && !mesh_.mesh().interfaces.empty())
       lose(fmt::format("holds no faces inside: {} are left out", mesh_.mesh().interfaces.size()));
     sets("nodes", NamedSet::Kind::kNodes, holds.node_sets);
     sets("edges", NamedSet::Kind::kEdges, holds.edge_sets);
@@ -35,6 +36,12 @@ class Losses {
 
  private:
   void lose(const std::string& what) { notes_.push_back(fmt::format("{} {}", format_.title, what)); }
+
+  void leave_out_faces() {
+    const TetMesh& mesh = mesh_.mesh();
+    notes_.push_back(fmt::format("cells only: {} faces and {} edges are left out, and patches, curves and sets of them",
+                                 mesh.boundary.size() + mesh.interfaces.size(), mesh.curve_edges.size()));
+  }
 
   void numbered(std::string_view what, std::span<const Part> parts, Keeps keeps) {
     const auto named = std::count_if(parts.begin(), parts.end(), [](const Part& p) { return p.is_named; });

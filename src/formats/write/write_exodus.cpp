@@ -121,7 +121,7 @@ class ExodusWriter {
                        const std::uint64_t each = mesh_.nodes_per_tet();
                        return Value(static_cast<std::int32_t>(mesh_.tet_node(members[i / each], i % each) + 1));
                      },
-                     {{"elem_type", std::string(mesh_.second_order() ? "TETRA10" : "TETRA4")}});
+                     {{"elem_type", std::string(mesh_.second_order() ? "TETRA10" : "TETRA")}});
     }
     file_.variable("elem_num_map", Type::kInt, {elements},
                    [this](std::uint64_t i) { return Value(static_cast<std::int32_t>(order_[i] + 1)); });

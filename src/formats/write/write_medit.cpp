@@ -28,10 +28,11 @@ void for_each_section(const MeshParts& mesh, const Write& write) {
     write(
         kEdges, mesh.edges(), mesh.nodes_per_edge(), [&](std::size_t i, std::size_t k) { return mesh.edge_node(i, k); },
         [&](std::size_t i) { return mesh.curve_of(i) + 1; });
-  write(
-      kTriangles, mesh.faces(), mesh.nodes_per_face(),
-      [&](std::size_t i, std::size_t k) { return mesh.face_node(i, k); },
-      [&](std::size_t i) { return mesh.patch_of(i) + 1; });
+  if (mesh.faces() > 0)
+    write(
+        kTriangles, mesh.faces(), mesh.nodes_per_face(),
+        [&](std::size_t i, std::size_t k) { return mesh.face_node(i, k); },
+        [&](std::size_t i) { return mesh.patch_of(i) + 1; });
   write(
       kTetrahedra, mesh.tets(), mesh.nodes_per_tet(), [&](std::size_t i, std::size_t k) { return mesh.tet_node(i, k); },
       [&](std::size_t i) { return mesh.tag_of_region(mesh.region_of(i)); });

@@ -1,7 +1,7 @@
-// Gmsh MSH 4.1 and 2.2, binary. Regions, patches, curves and sets are physical groups of dimension 3, 2, 1 (of nodes:
-// 0); the first three have their number, counted from 1, as tag. Each combination of groups that elements are in is an
-// entity. A node belongs to the entity of the least dimension at it. Node and element tags are indices plus 1, elements
-// counting the points first, then edges, triangles, tetrahedra.
+// Gmsh MSH 4.1 and 2.2, binary or text. Regions, patches, curves and sets are physical groups of dimension 3, 2, 1 (of
+// nodes: 0); the first three have their number, counted from 1, as tag. Each combination of groups that elements are in
+// is an entity. A node belongs to the entity of the least dimension at it. Node and element tags are indices plus 1,
+// elements counting the points first, then edges, triangles, tetrahedra.
 
 #include <octafront/error.h>
 
@@ -62,6 +62,62 @@ class ElementNodes {
   std::array<VertexIndex, 3> edge_;
 };
 
+/// The numbers of a file in either encoding; a text has a line for each record.
+class MshNumbers {
+ public:
+  MshNumbers(AtomicFile& file, bool as_text) : file_(file), out_(file), as_text_(as_text) {}
+
+  bool as_text() const { return as_text_; }
+  template <class T>
+  void put(T value) {
+    if (!as_text_) return file_.write(&value, sizeof value);
+    if (!at_line_start_) out_ << ' ';
+    out_ << value;
+    at_line_start_ = false;
+  }
+  void put(const Vec3& p) {
+    for (int axis = 0; axis < 3; ++axis) put(p[axis]);
+  }
+  void end_record() {
+    if (!as_text_) return;
+    out_ << '\n';
+    at_line_start_ = true;
+  }
+  /// Ends the values of a section and writes the line that closes it.
+  void close(std::string_view section) { out_.line("{}$End{}", as_text_ ? "" : "\n", section); }
+
+  /// For each of `count` records what fill(i, put) puts, `bytes` of them in all.
+  template <class Fill>
+  void records(std::size_t count, std::size_t bytes, const Fill& fill) {
+    if (as_text_) return write_lines(count, fill);
+    file_.write_records(count, bytes, [&](std::size_t begin, std::size_t end, char* to) {
+      fill(begin, end, [&](auto value) {
+        std::memcpy(to, &value, sizeof value);
+        to += sizeof value;
+      });
+    });
+  }
+
+ private:
+  template <class Fill>
+  void write_lines(std::size_t count, const Fill& fill) {
+    for (std::size_t i = 0; i < count; ++i) {
+      fill(i, i + 1, [this](auto value) { put(value); });
+      end_record();
+    }
+  }
+
+  AtomicFile& file_;
+  TextWriter out_;
+  bool as_text_, at_line_start_ = true;
+};
+
+void write_format(TextWriter& out, MshNumbers& numbers, std::string_view version) {
+  out.line("$MeshFormat\n{} {} 8", version, numbers.as_text() ? 0 : 1);
+  if (!numbers.as_text()) numbers.put(std::int32_t{1});  // tells the order of bytes
+  numbers.close("MeshFormat");
+}
+
 /// Tags of physical groups: regions, patches and curves keep their numbers, regions of an image their labels; sets
 /// follow.
 std::vector<std::int32_t> physical_tags(const MeshParts& mesh) {
@@ -80,12 +136,18 @@ int dimension_of(Kind kind) {
   return static_cast<int>(std::find(kKindOfDimension.begin(), kKindOfDimension.end(), kind) - kKindOfDimension.begin());
 }
 
+/// Groups of nodes are groups of elements here, points.
+bool has_elements_here(const Part& part, const MeshParts& mesh) {
+  return part.kind != Kind::kNodes || !mesh.cells_only();
+}
+
 void write_physical_names(TextWriter& out, const MeshParts& mesh, const std::vector<std::int32_t>& tags,
                           bool with_sets) {
   std::vector<std::size_t> named;
   for (std::size_t p = 0; p < mesh.parts().size(); ++p) {
     const Part& part = mesh.parts()[p];
-    if (part.is_named && (with_sets || part.origin != Part::Origin::kSet)) named.push_back(p);
+    if (part.is_named && has_elements_here(part, mesh) && (with_sets || part.origin != Part::Origin::kSet))
+      named.push_back(p);
   }
   out.line("$PhysicalNames\n{}", named.size());
   for (const std::size_t p : named)
@@ -95,17 +157,15 @@ void write_physical_names(TextWriter& out, const MeshParts& mesh, const std::vec
 
 class Msh4Writer {
  public:
-  Msh4Writer(AtomicFile& file, const MeshParts& mesh)
-      : file_(file), text_(file), mesh_(mesh), physical_(physical_tags(mesh)) {
-    for (std::size_t d = 0; d < 4; ++d) by_[d] = combinations(mesh, kKindOfDimension[d]);
+  Msh4Writer(AtomicFile& file, const MeshParts& mesh, bool as_text)
+      : text_(file), out_(file, as_text), mesh_(mesh), physical_(physical_tags(mesh)) {
+    for (std::size_t d = mesh.cells_only() ? 3 : 0; d < 4; ++d) by_[d] = combinations(mesh, kKindOfDimension[d]);
     make_entities();
     assign_nodes();
   }
 
   void write() {
-    text_ << "$MeshFormat\n4.1 1 8\n";
-    put<std::int32_t>(1);
-    text_ << "\n$EndMeshFormat\n";
+    write_format(text_, out_, "4.1");
     write_physical_names(text_, mesh_, physical_, true);
     write_entities();
     write_nodes();
@@ -120,9 +180,10 @@ class Msh4Writer {
     Box3 box = {};
   };
 
-  template <class T>
-  void put(T value) {
-    file_.write(&value, sizeof value);
+  template <class... T>
+  void put_record(T... values) {
+    (out_.put(values), ...);
+    out_.end_record();
   }
 
   const std::vector<std::uint32_t>& groups_of(const Entity& e) const {
@@ -194,44 +255,43 @@ class Msh4Writer {
 
   void write_entities() {
     text_ << "$Entities\n";
-    for (std::size_t d = 0; d < 4; ++d) put(std::uint64_t{first_[d + 1] - first_[d]});
+    for (std::size_t d = 0; d < 4; ++d) out_.put(std::uint64_t{first_[d + 1] - first_[d]});
+    out_.end_record();
     const auto surfaces = bounding();
-    for (const Entity& e : entities_) {
-      put(e.tag);
-      for (const Vec3& corner : {e.box.lo, e.box.hi}) {
-        for (int axis = 0; axis < 3; ++axis) put(corner[axis]);
-        if (e.dimension == 0) break;
-      }
-      put(std::uint64_t{groups_of(e).size()});
-      for (const std::uint32_t p : groups_of(e)) put(physical_[p]);
-      if (e.dimension == 0) continue;
-      const bool is_volume = e.dimension == 3;
-      put(std::uint64_t{is_volume ? surfaces[e.slot].size() : 0});
-      for (std::size_t i = 0; is_volume && i < surfaces[e.slot].size(); ++i) put(surfaces[e.slot][i]);
+    for (const Entity& e : entities_)
+      write_entity(e, e.dimension == 3 ? surfaces[e.slot] : std::vector<std::int32_t>());
+    out_.close("Entities");
+  }
+
+  void write_entity(const Entity& e, const std::vector<std::int32_t>& bounded_by) {
+    out_.put(e.tag);
+    out_.put(e.box.lo);
+    if (e.dimension > 0) out_.put(e.box.hi);
+    out_.put(std::uint64_t{groups_of(e).size()});
+    for (const std::uint32_t p : groups_of(e)) out_.put(physical_[p]);
+    if (e.dimension > 0) {
+      out_.put(std::uint64_t{bounded_by.size()});
+      for (const std::int32_t tag : bounded_by) out_.put(tag);
     }
-    text_ << "\n$EndEntities\n";
+    out_.end_record();
   }
 
   void write_nodes() {
     text_ << "$Nodes\n";
     std::uint64_t blocks = 0;
     for (std::size_t e = 0; e < entities_.size(); ++e) blocks += !nodes_[e].empty();
-    for (const std::uint64_t n :
-         {blocks, std::uint64_t{nodes_.items().size()}, std::uint64_t{1}, std::uint64_t{mesh_.points()}})
-      put(n);
+    put_record(blocks, std::uint64_t{nodes_.items().size()}, std::uint64_t{1}, std::uint64_t{mesh_.points()});
     for (std::size_t e = 0; e < entities_.size(); ++e) {
       if (nodes_[e].empty()) continue;
-      put<std::int32_t>(entities_[e].dimension);
-      put(entities_[e].tag);
-      put<std::int32_t>(0);  // no parameters on the surface
-      put(std::uint64_t{nodes_[e].size()});
-      put_records(nodes_[e], [](VertexIndex v) { return std::array{std::uint64_t{v} + 1}; });
-      put_records(nodes_[e], [this](VertexIndex v) {
-        const Vec3 p = mesh_.mesh().points[v];
-        return std::array{p.x, p.y, p.z};
+      constexpr std::int32_t kNoParameters = 0;
+      put_record(std::int32_t{entities_[e].dimension}, entities_[e].tag, kNoParameters,
+                 std::uint64_t{nodes_[e].size()});
+      put_nodes(nodes_[e], 1, [](VertexIndex v, const auto& put) { put(std::uint64_t{v} + 1); });
+      put_nodes(nodes_[e], 3, [this](VertexIndex v, const auto& put) {
+        for (int axis = 0; axis < 3; ++axis) put(mesh_.mesh().points[v][axis]);
       });
     }
-    text_ << "\n$EndNodes\n";
+    out_.close("Nodes");
   }
 
   void write_elements() {
@@ -240,34 +300,27 @@ class Msh4Writer {
     const std::array<std::uint64_t, 4> counts{first[1], mesh_.edges(), mesh_.faces(), mesh_.tets()};
     for (std::size_t d = 1; d < 4; ++d) first[d + 1] = first[d] + counts[d];
     text_ << "$Elements\n";
-    for (const std::uint64_t n : {std::uint64_t{entities_.size()}, first[4], std::uint64_t{1}, first[4]}) put(n);
+    put_record(std::uint64_t{entities_.size()}, first[4], std::uint64_t{1}, first[4]);
     for (const Entity& e : entities_) {
-      put<std::int32_t>(e.dimension);
-      put(e.tag);
-      put(gmsh_type_of(e.dimension, mesh_.second_order()));
-      put(std::uint64_t{members_of(e).size()});
+      put_record(std::int32_t{e.dimension}, e.tag, gmsh_type_of(e.dimension, mesh_.second_order()),
+                 std::uint64_t{members_of(e).size()});
       write_members(e, first[static_cast<std::size_t>(e.dimension)]);
     }
-    text_ << "\n$EndElements\n";
+    out_.close("Elements");
   }
 
   /// The elements of an entity, `before` of which come before those of its dimension.
   void write_members(const Entity& e, std::uint64_t before) {
     const auto members = members_of(e);
     const std::uint64_t points = by_[0].members.first(e.dimension == 0 ? e.slot : 0);
-    const std::size_t nodes = nodes_per_element(e.dimension);
-    file_.write_records(members.size(), (1 + nodes) * sizeof(std::uint64_t),
-                        [&](std::size_t begin, std::size_t end, char* to) {
-                          ElementNodes nodes_of(mesh_);
-                          const auto put_tag = [&](std::uint64_t tag) {
-                            std::memcpy(to, &tag, sizeof tag);
-                            to += sizeof tag;
-                          };
-                          for (std::size_t i = begin; i < end; ++i) {
-                            put_tag((e.dimension == 0 ? points + i : before + members[i]) + 1);
-                            nodes_of.put<std::uint64_t>(e.dimension, members[i], put_tag);
-                          }
-                        });
+    out_.records(members.size(), (1 + nodes_per_element(e.dimension)) * sizeof(std::uint64_t),
+                 [&](std::size_t begin, std::size_t end, const auto& put) {
+                   ElementNodes nodes_of(mesh_);
+                   for (std::size_t i = begin; i < end; ++i) {
+                     put((e.dimension == 0 ? points + i : before + members[i]) + 1);
+                     nodes_of.put<std::uint64_t>(e.dimension, members[i], put);
+                   }
+                 });
   }
 
   std::size_t nodes_per_element(int dimension) const {
@@ -277,20 +330,17 @@ class Msh4Writer {
                             : mesh_.nodes_per_tet();
   }
 
-  /// For each of these nodes what record(v) returns, an array.
+  /// For each of these nodes what record(v, put) puts, so many values of 64 bits.
   template <class Record>
-  void put_records(std::span<const VertexIndex> nodes, const Record& record) {
-    constexpr std::size_t kSize = sizeof(record(VertexIndex{}));
-    file_.write_records(nodes.size(), kSize, [&](std::size_t begin, std::size_t end, char* to) {
-      for (std::size_t i = begin; i < end; ++i, to += kSize) {
-        const auto values = record(nodes[i]);
-        std::memcpy(to, values.data(), kSize);
-      }
-    });
+  void put_nodes(std::span<const VertexIndex> nodes, std::size_t values, const Record& record) {
+    out_.records(nodes.size(), values * sizeof(std::uint64_t),
+                 [&](std::size_t begin, std::size_t end, const auto& put) {
+                   for (std::size_t i = begin; i < end; ++i) record(nodes[i], put);
+                 });
   }
 
-  AtomicFile& file_;
   TextWriter text_;
+  MshNumbers out_;
   const MeshParts& mesh_;
   std::vector<std::int32_t> physical_;  ///< of each part
   std::array<Combinations, 4> by_;      ///< by dimension
@@ -302,45 +352,50 @@ class Msh4Writer {
 /// Elements with two tags each: their physical group, and the same as their entity.
 class Msh2Writer {
  public:
-  Msh2Writer(AtomicFile& file, const MeshParts& mesh) : file_(file), text_(file), mesh_(mesh), nodes_of_(mesh) {}
+  Msh2Writer(AtomicFile& file, const MeshParts& mesh, bool as_text)
+      : text_(file), out_(file, as_text), mesh_(mesh), nodes_of_(mesh) {}
 
   void write() {
-    text_ << "$MeshFormat\n2.2 1 8\n";
-    put(1);
-    text_ << "\n$EndMeshFormat\n";
+    write_format(text_, out_, "2.2");
     write_physical_names(text_, mesh_, physical_tags(mesh_), false);
     text_.line("$Nodes\n{}", mesh_.points());
     for (std::size_t v = 0; v < mesh_.points(); ++v) {
       put(static_cast<std::int32_t>(v) + 1);
-      const Vec3 p = mesh_.mesh().points[v];
-      const std::array<double, 3> xyz{p.x, p.y, p.z};
-      file_.write(xyz.data(), sizeof xyz);
+      out_.put(mesh_.mesh().points[v]);
+      out_.end_record();
     }
+    out_.close("Nodes");
     const std::array<std::size_t, 4> counts{0, mesh_.edges(), mesh_.faces(), mesh_.tets()};
-    text_.line("\n$EndNodes\n$Elements\n{}", counts[1] + counts[2] + counts[3]);
+    text_.line("$Elements\n{}", counts[1] + counts[2] + counts[3]);
     for (int d = 1; d < 4; ++d) write_elements(d, counts[static_cast<std::size_t>(d)]);
-    text_ << "\n$EndElements\n";
+    out_.close("Elements");
   }
 
  private:
-  void put(std::int32_t value) { file_.write(&value, sizeof value); }
+  void put(std::int32_t value) { out_.put(value); }
 
   void write_elements(int dimension, std::size_t count) {
     if (count == 0) return;
-    for (const std::int32_t n : {gmsh_type_of(dimension, mesh_.second_order()), static_cast<std::int32_t>(count), 2})
-      put(n);
+    constexpr std::int32_t kTags = 2;
+    const std::int32_t type = gmsh_type_of(dimension, mesh_.second_order());
+    // A binary file says once what a text says in every line.
+    if (!out_.as_text())
+      for (const std::int32_t n : {type, static_cast<std::int32_t>(count), kTags}) put(n);
     for (std::uint32_t i = 0; i < count; ++i) {
       put(++tag_);
+      if (out_.as_text())
+        for (const std::int32_t n : {type, kTags}) put(n);
       const std::uint32_t part_tag = dimension == 1   ? mesh_.curve_of(i) + 1
                                      : dimension == 2 ? mesh_.patch_of(i) + 1
                                                       : mesh_.tag_of_region(mesh_.region_of(i));
-      for (int k = 0; k < 2; ++k) put(static_cast<std::int32_t>(part_tag));
+      for (int k = 0; k < kTags; ++k) put(static_cast<std::int32_t>(part_tag));
       nodes_of_.put<std::int32_t>(dimension, i, [&](std::int32_t tag) { put(tag); });
+      out_.end_record();
     }
   }
 
-  AtomicFile& file_;
   TextWriter text_;
+  MshNumbers out_;
   const MeshParts& mesh_;
   ElementNodes nodes_of_;
   std::int32_t tag_ = 0;
@@ -349,14 +404,18 @@ class Msh2Writer {
 }  // namespace
 
 void write_msh(MeshOutput& out, const MeshParts& mesh) {
-  Msh4Writer(out.file(), mesh).write();
+  const bool leaves_nodes =
+      mesh.cells_only() &&
+      std::any_of(mesh.parts().begin(), mesh.parts().end(), [](const Part& part) { return part.kind == Kind::kNodes; });
+  if (leaves_nodes) out.note("Gmsh MSH 4.1 holds sets of nodes as elements: cells only leaves them out");
+  Msh4Writer(out.file(), mesh, out.as_text()).write();
 }
 
 void write_msh2(MeshOutput& out, const MeshParts& mesh) {
   constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
   if (mesh.points() > kMost || mesh.edges() + mesh.faces() + mesh.tets() > kMost)
     throw OutputError(out.target().string() + ": MSH 2.2 counts with 32 bits, too few for this mesh; write MSH 4.1");
-  Msh2Writer(out.file(), mesh).write();
+  Msh2Writer(out.file(), mesh, out.as_text()).write();
 }
 
 }  // namespace octafront::io

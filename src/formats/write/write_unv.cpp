@@ -1,6 +1,10 @@
-// I-deas universal file: datasets 2411 (nodes), 2412 (elements), 2477 (groups). Every part is a group of elements or of
-// nodes; the physical property of an element is its region, patch or curve, counted from 1. Mid-side nodes stand
-// between the corners.
+// I-deas universal file: datasets 2411 (nodes), 2412 (elements), 2467 and 2477 (groups). Every part is a group of
+// elements or of nodes; the physical property of an element is its region, patch or curve, counted from 1. Mid-side
+// nodes stand between the corners.
+//
+// All groups stand in 2477, which Gmsh reads; those that ideasUnvToFoam can make patches and zones of also in 2467,
+// which it reads. It ends at any others there, looks for the numbers of members in a list that ends with the last
+// tetrahedron (so these come last), and knows no beams (so edges are rods).
 
 #include "formats/containers/text_writer.h"
 #include "formats/write/writers.h"
@@ -42,7 +46,7 @@ class UnvWriter {
     open(2412);
     const bool second = mesh_.second_order();
     for (std::size_t e = 0; e < mesh_.edges(); ++e) {
-      head(first_edge() + e, second ? 24 : 21, mesh_.curve_of(e), mesh_.nodes_per_edge());
+      head(first_edge() + e, second ? 24 : 11, mesh_.curve_of(e), mesh_.nodes_per_edge());
       text_ << "         0         1         1\n";
       nodes(mesh_.edge_nodes(e, edge_), kBeam3);
     }
@@ -51,21 +55,20 @@ class UnvWriter {
       nodes(mesh_.face_nodes(f, face_), kTriangle6);
     }
     for (std::size_t t = 0; t < mesh_.tets(); ++t) {
-      head(t + 1, second ? 118 : 111, mesh_.region_of(t), mesh_.nodes_per_tet());
+      head(first_tet() + t, second ? 118 : 111, mesh_.region_of(t), mesh_.nodes_per_tet());
       nodes(mesh_.tet_nodes(t, tet_), kTet10);
     }
     text_ << kDelimiter;
-    open(2477);
-    std::uint64_t number = 0;
-    for (const Part& part : mesh_.parts()) write_group(part, ++number);
-    text_ << kDelimiter;
+    write_groups(2467, [this](const Part& part) { return is_patch_or_zone(part); });
+    write_groups(2477, [](const Part&) { return true; });
   }
 
  private:
   static constexpr std::uint64_t one = 1;
 
-  std::uint64_t first_face() const { return mesh_.tets() + 1; }
-  std::uint64_t first_edge() const { return first_face() + mesh_.faces(); }
+  std::uint64_t first_edge() const { return 1; }
+  std::uint64_t first_face() const { return first_edge() + mesh_.edges(); }
+  std::uint64_t first_tet() const { return first_face() + mesh_.faces(); }
 
   static std::string real(double value) {
     std::string text = fmt::format("{:25.16E}", value);
@@ -91,9 +94,31 @@ class UnvWriter {
     text_ << '\n';
   }
 
+  /// Zones of faces lie inside, patches outside, where each face has one.
+  bool is_patch_or_zone(const Part& part) const {
+    if (part.kind != Kind::kFaces || part.members.empty()) return part.kind == Kind::kElements;
+    const std::size_t boundary = mesh_.mesh().boundary.size();
+    return part.members.front() >= boundary || (part.origin == Part::Origin::kPatch && part.members.back() < boundary);
+  }
+
+  /// Those that are wanted, numbered as they stand in the list of all.
+  template <class Wanted>
+  void write_groups(int dataset, const Wanted& wanted) {
+    bool is_open = false;
+    for (std::size_t p = 0; p < mesh_.parts().size(); ++p) {
+      if (!wanted(mesh_.parts()[p])) continue;
+      if (!is_open) open(dataset);
+      is_open = true;
+      write_group(mesh_.parts()[p], p + 1);
+    }
+    if (is_open) text_ << kDelimiter;
+  }
+
   void write_group(const Part& part, std::uint64_t number) {
     const std::uint64_t type = part.kind == Kind::kNodes ? 7 : 8;
-    const std::uint64_t first = part.kind == Kind::kFaces ? first_face() : part.kind == Kind::kEdges ? first_edge() : 1;
+    const std::uint64_t first = part.kind == Kind::kFaces      ? first_face()
+                                : part.kind == Kind::kElements ? first_tet()
+                                                               : 1;
     text_.field(10, number) << "         0         0         0         0         0         0";
     text_.field(10, std::uint64_t{part.members.size()}) << '\n';
     text_ << names_[number - 1] << '\n';

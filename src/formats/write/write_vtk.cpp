@@ -1,5 +1,5 @@
-// Legacy VTK, version 3.0, binary (big-endian): the cells and data of formats/parts/vtk_cells.h, all data as fields.
-// Blanks and the like in names are %20, as VTK does it.
+// Legacy VTK, version 3.0, binary (big-endian) or text: the cells and data of formats/parts/vtk_cells.h, all data as
+// fields. Blanks and the like in names are %20, as VTK does it.
 
 #include <octafront/error.h>
 
@@ -28,29 +28,39 @@ std::string percent_encoded(std::string_view name) {
 
 class VtkWriter {
  public:
-  VtkWriter(AtomicFile& file, const MeshParts& parts) : file_(file), out_(file), parts_(parts), cells_(parts) {}
+  VtkWriter(AtomicFile& file, const MeshParts& parts, bool as_text)
+      : file_(file), out_(file), parts_(parts), cells_(parts), as_text_(as_text) {}
 
   void write() {
-    out_ << "# vtk DataFile Version 3.0\nmesh by octafront\nBINARY\nDATASET UNSTRUCTURED_GRID\n";
+    out_.line("# vtk DataFile Version 3.0\nmesh by octafront\n{}\nDATASET UNSTRUCTURED_GRID",
+              as_text_ ? "ASCII" : "BINARY");
     const auto names = cells_.names();
     if (!names.empty()) out_.line("FIELD FieldData {}", names.size());
     for (const auto& [name, number] : names) {
       out_.line("{} 1 1 int", percent_encoded(name));
       put(static_cast<std::int32_t>(number));
-      out_ << '\n';
+      end_values();
     }
     out_.line("POINTS {} double", parts_.points());
-    for (std::size_t v = 0; v < parts_.points(); ++v)
+    for (std::size_t v = 0; v < parts_.points(); ++v) {
       for (int axis = 0; axis < 3; ++axis) put(parts_.mesh().points[v][axis]);
-    out_.line("\nCELLS {} {}", cells_.size(), cells_.size() + cells_.nodes());
+      end_row();
+    }
+    end_values();
+    out_.line("CELLS {} {}", cells_.size(), cells_.size() + cells_.nodes());
     std::uint64_t at = 0;
     for (std::uint64_t c = 0; c < cells_.size(); ++c) {
       put(static_cast<std::int32_t>(cells_.nodes_of(c)));
       for (const std::uint64_t end = cells_.end_of(c); at < end; ++at) put(static_cast<std::int32_t>(cells_.node(at)));
+      end_row();
     }
-    out_.line("\nCELL_TYPES {}", cells_.size());
-    for (std::uint64_t c = 0; c < cells_.size(); ++c) put(std::int32_t{cells_.type(c)});
-    out_ << '\n';
+    end_values();
+    out_.line("CELL_TYPES {}", cells_.size());
+    for (std::uint64_t c = 0; c < cells_.size(); ++c) {
+      put(std::int32_t{cells_.type(c)});
+      end_row();
+    }
+    end_values();
     write_data("CELL_DATA", false, cells_.size());
     write_data("POINT_DATA", true, parts_.points());
   }
@@ -58,10 +68,30 @@ class VtkWriter {
  private:
   template <class T>
   void put(T value) {
+    if (as_text_) return put_text(value);
     std::array<char, sizeof(T)> bytes;
     std::memcpy(bytes.data(), &value, sizeof(T));
     std::reverse(bytes.begin(), bytes.end());
     file_.write(bytes.data(), bytes.size());
+  }
+
+  template <class T>
+  void put_text(T value) {
+    if (!at_line_start_) out_ << ' ';
+    // A letter is not meant where a value has one byte.
+    if constexpr (sizeof(T) == 1) out_ << std::uint32_t{value};
+    if constexpr (sizeof(T) > 1) out_ << value;
+    at_line_start_ = false;
+  }
+  /// Lines are for people: a text has one for each point and cell.
+  void end_row() {
+    if (!as_text_) return;
+    out_ << '\n';
+    at_line_start_ = true;
+  }
+  void end_values() {
+    if (!as_text_ || !at_line_start_) out_ << '\n';
+    at_line_start_ = true;
   }
 
   void write_data(std::string_view keyword, bool of_points, std::uint64_t count) {
@@ -73,9 +103,12 @@ class VtkWriter {
     for (std::size_t d = 0; d < all.size(); ++d) {
       if (!is_of(all[d])) continue;
       out_.line("{} 1 {} {}", percent_encoded(all[d].name), count, all[d].is_set ? "unsigned_char" : "int");
-      for (std::uint64_t i = 0; i < count; ++i)
+      constexpr std::uint64_t kInLine = 24;
+      for (std::uint64_t i = 0; i < count; ++i) {
         all[d].is_set ? put(static_cast<std::uint8_t>(cells_.value(d, i))) : put(cells_.value(d, i));
-      out_ << '\n';
+        if (i % kInLine == kInLine - 1) end_row();
+      }
+      end_values();
     }
   }
 
@@ -83,6 +116,7 @@ class VtkWriter {
   TextWriter out_;
   const MeshParts& parts_;
   VtkCells cells_;
+  bool as_text_, at_line_start_ = true;
 };
 
 }  // namespace
@@ -91,7 +125,7 @@ void write_vtk(MeshOutput& out, const MeshParts& mesh) {
   const std::uint64_t most = std::numeric_limits<std::int32_t>::max();
   if (mesh.points() + mesh.tets() * (mesh.nodes_per_tet() + 1) + mesh.faces() * 7 > most)
     throw OutputError(out.target().string() + ": legacy VTK counts with 32 bits, too few for this mesh; write .vtu");
-  VtkWriter(out.file(), mesh).write();
+  VtkWriter(out.file(), mesh, out.as_text()).write();
 }
 
 }  // namespace octafront::io

@@ -18,14 +18,15 @@ namespace {
 
 class VtuWriter {
  public:
-  VtuWriter(AtomicFile& file, const MeshParts& parts)
-      : parts_(parts), mesh_(parts.mesh()), out_(file), arrays_(file), cells_(parts) {}
+  VtuWriter(AtomicFile& file, const MeshParts& parts, bool as_text)
+      : parts_(parts), mesh_(parts.mesh()), out_(file), arrays_(file, as_text), cells_(parts), as_text_(as_text) {}
 
   void write() {
-    out_ << "<?xml version=\"1.0\"?>\n"
-            "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\" "
-            "compressor=\"vtkZLibDataCompressor\">\n"
-            "  <UnstructuredGrid>\n";
+    out_.line(
+        "<?xml version=\"1.0\"?>\n"
+        "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\"{}>\n"
+        "  <UnstructuredGrid>",
+        as_text_ ? "" : " compressor=\"vtkZLibDataCompressor\"");
     out_ << "    <FieldData>\n";
     for (const auto& [name, number] : cells_.names())
       out_.line("      <DataArray type=\"Int32\" Name=\"{}\" NumberOfTuples=\"1\" format=\"ascii\">{}</DataArray>",
@@ -105,12 +106,13 @@ class VtuWriter {
   TextWriter out_;
   VtuArrays arrays_;
   VtkCells cells_;
+  bool as_text_;
 };
 
 }  // namespace
 
 void write_vtu(MeshOutput& out, const MeshParts& mesh) {
-  VtuWriter(out.file(), mesh).write();
+  VtuWriter(out.file(), mesh, out.as_text()).write();
 }
 
 }  // namespace octafront::io

@@ -130,7 +130,7 @@ TEST(CApi, RefusalsCarryTheirKindAndEvidence) {
 
   const Surface cube = surface_of(testing::cube(1));
   const Mesh mesh = meshed(cube, R"({"size": 0.5})");
-  const Job lost(octafront_write_mesh(mesh.get(), "/nowhere/mesh.vtu", ""));
+  const Job lost(octafront_write_mesh(mesh.get(), "/nowhere/mesh.vtu", nullptr));
   EXPECT_EQ(status_at_end(lost), OCTAFRONT_OUTPUT);
   EXPECT_STRNE(octafront_job_message(lost.get()), "");
 
@@ -159,7 +159,7 @@ TEST(CApi, IndicesOutOfRangeAreRefusedBeforeAnybodyFollowsThem) {
   EXPECT_EQ(status_at_end(Job(octafront_order_mesh(mesh.get()))), OCTAFRONT_INPUT);
   EXPECT_EQ(status_at_end(Job(octafront_check(mesh.get(), nullptr))), OCTAFRONT_INPUT);
   EXPECT_EQ(status_at_end(Job(octafront_improve(mesh.get(), nullptr, nullptr, 1))), OCTAFRONT_INPUT);
-  EXPECT_EQ(status_at_end(Job(octafront_write_mesh(mesh.get(), "mesh.vtu", ""))), OCTAFRONT_INPUT);
+  EXPECT_EQ(status_at_end(Job(octafront_write_mesh(mesh.get(), "mesh.vtu", nullptr))), OCTAFRONT_INPUT);
   double beta[1];
   EXPECT_NE(octafront_mesh_quality(mesh.get(), beta, nullptr, nullptr), 0);
   EXPECT_EQ(octafront_mesh_summary(mesh.get()), nullptr);

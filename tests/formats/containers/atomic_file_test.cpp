@@ -154,7 +154,7 @@ TEST(AllFormats, AFullDiskLeavesTheOldFiles) {
     SCOPED_TRACE(info.name);
     const TemporaryFolder folder;
     const std::string name(info.name);
-    write_mesh(target_in(folder, info), testing::two_tets(), {}, name);
+    write_mesh(target_in(folder, info), testing::two_tets(), {}, {.format = name});
     const auto before = contents(folder.path());
     // A limit on the size of files fails like a full disk.
     rlimit limit{};
@@ -162,7 +162,7 @@ TEST(AllFormats, AFullDiskLeavesTheOldFiles) {
     rlimit small = limit;
     small.rlim_cur = 1000;
     setrlimit(RLIMIT_FSIZE, &small);
-    const std::string message = error_of([&] { write_mesh(target_in(folder, info), mesh, {}, name); });
+    const std::string message = error_of([&] { write_mesh(target_in(folder, info), mesh, {}, {.format = name}); });
     setrlimit(RLIMIT_FSIZE, &limit);
     EXPECT_NE(message.find("unchanged"), std::string::npos) << message;
     EXPECT_EQ(contents(folder.path()), before);
@@ -179,9 +179,9 @@ TEST(AllFormats, AnInterruptLeavesTheOldFiles) {
     SCOPED_TRACE(info.name);
     const TemporaryFolder folder;
     const std::string name(info.name);
-    write_mesh(target_in(folder, info), testing::two_tets(), {}, name);
+    write_mesh(target_in(folder, info), testing::two_tets(), {}, {.format = name});
     const auto before = contents(folder.path());
-    EXPECT_THROW(write_mesh(target_in(folder, info), mesh, context, name), Cancelled);
+    EXPECT_THROW(write_mesh(target_in(folder, info), mesh, context, {.format = name}), Cancelled);
     EXPECT_EQ(contents(folder.path()), before);
   }
 }

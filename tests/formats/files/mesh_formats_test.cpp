@@ -11,6 +11,9 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 
 #include <fmt/core.h>
 #include <gtest/gtest.h>
@@ -130,6 +133,100 @@ TetMesh crooked(TetMesh mesh) {
   return mesh;
 }
 
+/// Names that every format takes as they are.
+TetMesh with_plain_names(TetMesh mesh) {
+  const auto plain = [](std::string& name) {
+    for (char& c : name)
+      if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
+  };
+  for (auto* names : {&mesh.region_names, &mesh.patch_names, &mesh.curve_names})
+    for (std::string& name : *names) plain(name);
+  for (NamedSet& set : mesh.sets) plain(set.name);
+  return mesh;
+}
+
+std::string text_in(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+TEST(TextOfFormats, SaysTheSameAsTheirBytes) {
+  int formats = 0;
+  for (const FormatInfo& info : known_formats()) {
+    if (!info.also_text) continue;
+    ++formats;
+    for (const bool second : {false, true}) {
+      SCOPED_TRACE(std::string(info.name) + (second ? " of second order" : ""));
+      const TemporaryFolder folder;
+      TetMesh mesh = testing::rich_mesh(2);
+      if (second) mesh = testing::with_mid_nodes(std::move(mesh));
+      mesh = crooked(std::move(mesh));
+      const WriteOptions binary{.format = std::string(info.name)};
+      WriteOptions text = binary;
+      text.ascii = true;
+      write_mesh(folder / "binary.mesh", mesh, {}, binary);
+      write_mesh(folder / "text.mesh", mesh, {}, text);
+      const std::string bytes = text_in(folder / "text.mesh");
+      EXPECT_TRUE(std::all_of(bytes.begin(), bytes.end(),
+                              [](char c) { return c == '\n' || static_cast<unsigned char>(c) >= 0x20; }));
+      const TetMesh a = read_mesh(folder / "binary.mesh"), b = read_mesh(folder / "text.mesh");
+      EXPECT_EQ(a.points, b.points);
+      expect_equal(b, a, 0);
+      EXPECT_EQ(a.sets, b.sets);
+      EXPECT_EQ(placed_faces(a), placed_faces(b));
+    }
+  }
+  EXPECT_EQ(formats, 4);
+}
+
+TEST(TextOfFormats, IsRefusedWhereThereIsNone) {
+  const TemporaryFolder folder;
+  for (const char* name : {"a.stl", "a.meshb", "a.exo"})
+    EXPECT_THROW(check_mesh_target(folder / name, {.ascii = true}), OptionError) << name;
+  for (const char* name : {"a.inp", "a.mesh", "a.vtk"})
+    EXPECT_NO_THROW(check_mesh_target(folder / name, {.ascii = true})) << name;
+}
+
+TEST(CellsOnly, LeavesTetrahedraWithTheirRegions) {
+  int formats = 0;
+  for (const FormatInfo& info : known_formats()) {
+    if (!info.reads_mesh || !info.writes_mesh) continue;
+    ++formats;
+    for (const bool second : {false, true}) {
+      SCOPED_TRACE(std::string(info.name) + (second ? " of second order" : ""));
+      const TemporaryFolder folder;
+      TetMesh mesh = with_plain_names(testing::rich_mesh(2));
+      if (second) mesh = testing::with_mid_nodes(std::move(mesh));
+      const auto notes =
+          write_mesh(folder / file_name(info), mesh, {}, {.format = std::string(info.name), .cells_only = true});
+      const auto counts = fmt::format("cells only: {} faces and {} edges are left out",
+                                      mesh.boundary.size() + mesh.interfaces.size(), mesh.curve_edges.size());
+      EXPECT_TRUE(std::any_of(notes.begin(), notes.end(), [&](const auto& n) { return n.starts_with(counts); }));
+      const TetMesh back = read_mesh(folder / file_name(info));
+      EXPECT_EQ(back.tets, mesh.tets);
+      EXPECT_EQ(back.mid_nodes, mesh.mid_nodes);
+      EXPECT_EQ(back.region, mesh.region);
+      EXPECT_TRUE(back.interfaces.empty());
+      EXPECT_TRUE(back.curve_edges.empty());
+      // Readers make one patch of the boundary that a file lacks.
+      EXPECT_EQ(back.boundary.size(), mesh.boundary.size());
+      EXPECT_TRUE(std::all_of(back.patch.begin(), back.patch.end(), [](std::uint32_t p) { return p == 0; }));
+      for (const NamedSet& set : back.sets) EXPECT_TRUE(set.kind == Kind::kNodes || set.kind == Kind::kElements);
+      for (const NamedSet& set : mesh.sets)
+        if (set.kind == Kind::kElements && info.holds.element_sets) {
+          EXPECT_NE(std::find(back.sets.begin(), back.sets.end(), set), back.sets.end()) << set.name;
+        }
+    }
+  }
+  EXPECT_GE(formats, 11);
+}
+
+TEST(CellsOnly, IsRefusedWhereFacesAreNeeded) {
+  const TemporaryFolder folder;
+  for (const char* name : {"a.stl", "polyMesh"})
+    EXPECT_THROW(write_mesh(folder / name, testing::two_tets(), {}, {.cells_only = true}), OptionError) << name;
+}
+
 class EveryFormat : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(EveryFormat, KeepsWhatItHolds) {
@@ -144,7 +241,7 @@ TEST_P(EveryFormat, KeepsWhatItHolds) {
     TetMesh mesh = testing::rich_mesh(4);
     if (second) mesh = testing::with_mid_nodes(std::move(mesh));
     mesh = crooked(std::move(mesh));
-    write_mesh(folder / file_name(*info), mesh, {}, GetParam());
+    write_mesh(folder / file_name(*info), mesh, {}, {.format = GetParam()});
     MeshFile file = read_mesh_file(folder / file_name(*info));
     drop_curve_nodes(file.mesh, mesh);
     TetMesh wanted = kept(mesh, info->holds), back = with_sorted_sets(std::move(file.mesh));
@@ -166,18 +263,6 @@ TEST_P(EveryFormat, KeepsWhatItHolds) {
   }
 }
 
-/// Names that every format takes as they are.
-TetMesh with_plain_names(TetMesh mesh) {
-  const auto plain = [](std::string& name) {
-    for (char& c : name)
-      if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
-  };
-  for (auto* names : {&mesh.region_names, &mesh.patch_names, &mesh.curve_names})
-    for (std::string& name : *names) plain(name);
-  for (NamedSet& set : mesh.sets) plain(set.name);
-  return mesh;
-}
-
 /// Whether a format holds all that another one does.
 bool holds_as_much(const FormatHolds& a, const FormatHolds& b) {
   const auto as_much = [](Keeps x, Keeps y) { return x == y || x == Keeps::kNames; };
@@ -192,7 +277,7 @@ TEST(EveryPairOfFormats, ConvertsThereAndBack) {
     if (info.reads_mesh && info.writes_mesh) both.push_back(info);
   const TemporaryFolder folder;
   const auto through = [&](const TetMesh& mesh, const FormatInfo& info) {
-    write_mesh(folder / file_name(info), mesh, {}, std::string(info.name));
+    write_mesh(folder / file_name(info), mesh, {}, {.format = std::string(info.name)});
     return read_mesh(folder / file_name(info));
   };
   const auto order_free = [](TetMesh mesh) {

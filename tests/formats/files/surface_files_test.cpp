@@ -206,11 +206,11 @@ TEST(KnownFormats, CanDoWhatTheySay) {
     const std::string name(info.name);
     if (!info.writes_mesh) {
       // Known, but this build lacks what it needs.
-      EXPECT_THROW(check_mesh_target(file, name), OptionError);
+      EXPECT_THROW(check_mesh_target(file, {.format = name}), OptionError);
       continue;
     }
-    EXPECT_NO_THROW(check_mesh_target(file, name));
-    write_mesh(file, testing::two_tets(), {}, name);
+    EXPECT_NO_THROW(check_mesh_target(file, {.format = name}));
+    write_mesh(file, testing::two_tets(), {}, {.format = name});
     if (info.reads_mesh) {
       EXPECT_EQ(read_mesh(file).tets.size(), 2U);
     }

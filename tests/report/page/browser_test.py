@@ -189,6 +189,85 @@ class Browser(unittest.TestCase):
             return [...count.values()].filter(n => n % 2).length""")
         self.assertEqual(odd, 0)
 
+    def test_colours_span_what_the_elements_have(self):
+        view = self.open()
+        low, high = view.js("return octafront.inner.fittedEnds(octafront.mesh, 'beta')")
+        counts = view.js("return octafront.inner.countsOf(octafront.mesh.values.beta, 256)")
+        total = sum(counts)
+        self.assertLessEqual(sum(counts[:low]) + sum(counts[high + 1:]), 0.004 * total)
+        self.assertGreater(sum(counts[:low + 1]), 0.002 * total, "no colour is kept for values that next to none have")
+        self.assertEqual(view.js("return [octafront.inner.placeOf([10, 30], 5), octafront.inner.placeOf([10, 30], 10), octafront.inner.placeOf([10, 30], 30), octafront.inner.placeOf([10, 30], 99)]"),
+                         [0, 0, 255, 255])
+        legend = view.driver.find_element(By.ID, "legend").text
+        value = view.js("return octafront.inner.valueOf(octafront.mesh, 'beta', arguments[0])", low)
+        self.assertIn(f"{value:.2f}", legend)
+
+    def test_the_mesh_fills_the_picture(self):
+        view = self.open()
+        for button in range(1, 8):
+            view.click(f"#views button:nth-child({button})")
+            # Of the rectangle within the margins one side is full, none is crossed.
+            wide, high = view.js("""const project = octafront.inner.projector(octafront.camera, document.getElementById('canvas')), p = octafront.mesh.points;
+                let box = [1e9, 1e9, -1e9, -1e9];
+                for (let i = 0; i < p.length; i += 3) {
+                  const [x, y] = project([p[i], p[i + 1], p[i + 2]]);
+                  box = [Math.min(box[0], x), Math.min(box[1], y), Math.max(box[2], x), Math.max(box[3], y)];
+                }
+                const canvas = document.getElementById('canvas'), w = canvas.clientWidth, h = canvas.clientHeight;
+                return [[box[0], w - box[2]], [box[1], h - box[3]]]""")
+            self.assertGreater(min(wide), 23)
+            self.assertGreater(min(high), 51)
+            self.assertLess(min(max(wide) - 24, max(high) - 52), 6, button)
+
+    def test_a_smooth_cut_is_flat_and_as_large_as_it_should_be(self):
+        page = self.dir / "box.html"
+        box = self.dir / "box.obj"
+        box.write_text("".join(f"v {x} {y} {z}\n" for z in (0, 1) for y in (0, 2) for x in (0, 3)) +
+                       "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n")
+        run_cli("mesh", box, "-o", self.dir / "box.vtu", "--size", 0.4, "--report", page)
+        view = self.open(page)
+        view.click("#clip")
+        view.click("#clip-smooth")
+        for axis, area in (("x", 2), ("y", 3), ("z", 6)):
+            view.js("octafront.inner.setClipAxis(arguments[0]); octafront.inner.moveClip(0.37)", axis)
+            found, off, outside = view.js("""const { mesh, state } = octafront, { cross, dot } = octafront.inner, scale = mesh.radius * mesh.facts.step;
+                let area = 0, off = 0;
+                for (const { corners } of octafront.inner.slice(mesh, state)) {
+                  for (const c of corners) off = Math.max(off, Math.abs(dot(c.slice(0, 3), state.clip.normal) - state.clip.offset));
+                  for (let i = 2; i < corners.length; ++i) {
+                    const [a, b, c] = [corners[0], corners[i - 1], corners[i]].map(p => p.slice(0, 3));
+                    area += Math.abs(dot(cross(b.map((x, k) => x - a[k]), c.map((x, k) => x - a[k])), state.clip.normal)) / 2;
+                  }
+                }
+                return [area * scale * scale, off, octafront.inner.planeOf(state)[3] - state.clip.offset]""")
+            self.assertAlmostEqual(found, area, delta=1e-3 * area)
+            self.assertLess(off, 1e-6)
+            self.assertEqual(outside, 0)
+        smooth = view.picture()
+        view.click("#clip-smooth")
+        self.assertTrue(smooth != view.picture(), "whole elements look otherwise")
+
+    def test_lengths_and_directions_are_told(self):
+        view = self.open()
+        self.assertIn("extent x, y, z", view.js("return document.getElementById('numbers').textContent"))
+        pixels, length = view.js("return [document.getElementById('bar').getBoundingClientRect().width, Number(document.getElementById('bar-text').textContent)]")
+        self.assertTrue(30 < pixels < 130, pixels)
+        # As long as that on the screen, at the middle of the picture and across the view.
+        shown = view.js("""const m = octafront.mesh, c = octafront.camera, project = octafront.inner.projector(c, document.getElementById('canvas'));
+            const a = project(c.target), b = project(octafront.inner.along(c.target, c.axes[0], arguments[0] / (m.radius * m.facts.step)));
+            return Math.hypot(a[0] - b[0], a[1] - b[1])""", length)
+        self.assertAlmostEqual(shown, pixels, delta=1.5)
+        view.click("#views button:nth-child(1)")  # from +x: y to the right, z upward
+        ends = view.js("return ['x', 'y', 'z'].map(a => document.querySelector(`#triad-${a} path`).getAttribute('d'))")
+        self.assertEqual(ends[1:], ["M0 0L30.0 0.0", "M0 0L0.0 -30.0"])
+
+    def test_the_title_names_all_inputs_and_regions_have_the_first_colours(self):
+        page = self.dir / "several.html"
+        run_cli("mesh", SAMPLES / "bracket.stl", SAMPLES / "gear.obj", "-o", self.dir / "several.vtu", "--size", 4, "--report", page)
+        view = self.open(page)
+        self.assertEqual(view.driver.find_element(By.ID, "title").text, "bracket.stl + gear.obj")
+        self.assertEqual(view.js("return [document.getElementById('quantity').value, octafront.state.quantity]"), ["region"] * 2)
+
     def test_a_click_on_a_worst_element_flies_there(self):
         view = self.open()
         before = view.camera()

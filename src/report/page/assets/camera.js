@@ -8,6 +8,9 @@ const along = (a, b, s) => a.map((x, i) => x + s * b[i]);
 const VIEW_ANGLE = Math.PI / 7;
 const START = { back: unit([1.1, -1.5, 0.9]), up: [0, 0, 1] };
 
+/** Of half the angle from top to bottom. A narrow picture sees as much as a square one. */
+const tangentOf = (canvas) => Math.tan(VIEW_ANGLE / 2) / Math.min(1, canvas.clientWidth / Math.max(1, canvas.clientHeight));
+
 class Camera {
   constructor() {
     this.look(START.back, START.up);
@@ -40,6 +43,30 @@ class Camera {
   }
   zoom(factor) {
     this.distance = Math.min(40, Math.max(1e-5, this.distance * factor));
+  }
+  /**
+   * Looks from where it does at all these points, so near that they just lie between lines of sight of these slopes
+   * sideward and upward.
+   */
+  frame(points, slopes) {
+    const [r, u, b] = this.axes;
+    this.target = [0, 0, 0];
+    // The picture's middle is moved to that of what is seen, which changes as the camera comes nearer.
+    for (let round = 0; round < 3; ++round) {
+      // How far the lines of sight of the four sides have to go back for each point to lie between them.
+      const reach = [-Infinity, -Infinity, -Infinity, -Infinity], [t0, t1, t2] = this.target;
+      for (let i = 0; i < points.length; i += 3) {
+        const p0 = points[i] - t0, p1 = points[i + 1] - t1, p2 = points[i + 2] - t2;
+        const z = b[0] * p0 + b[1] * p1 + b[2] * p2;
+        const x = (r[0] * p0 + r[1] * p1 + r[2] * p2) / slopes[0], y = (u[0] * p0 + u[1] * p1 + u[2] * p2) / slopes[1];
+        if (z + x > reach[0]) reach[0] = z + x;
+        if (z - x > reach[1]) reach[1] = z - x;
+        if (z + y > reach[2]) reach[2] = z + y;
+        if (z - y > reach[3]) reach[3] = z - y;
+      }
+      this.target = along(along(this.target, r, ((reach[0] - reach[1]) / 2) * slopes[0]), u, ((reach[2] - reach[3]) / 2) * slopes[1]);
+      this.distance = Math.max((reach[0] + reach[1]) / 2, (reach[2] + reach[3]) / 2, 1e-3);
+    }
   }
   /** Column by column, for a picture `aspect` times as wide as high. A narrow picture sees as much as a square one. */
   matrices(aspect) {

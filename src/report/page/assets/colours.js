@@ -40,6 +40,35 @@ const QUANTITIES = {
   },
 };
 
+/**
+ * The bytes between which the colours of a quantity change: all but the outermost two in a thousand elements, for a few
+ * would leave the others one colour. Without a mesh the whole scale.
+ */
+function fittedEnds(mesh, quantity) {
+  if (!mesh?.values[quantity]) return [0, 255];
+  mesh.ends ??= {};
+  return (mesh.ends[quantity] ??= endsOf(countsOf(mesh.values[quantity], 256)));
+}
+function endsOf(counts) {
+  const few = 0.002 * counts.reduce((a, b) => a + b, 0);
+  const reach = (from, step) => {
+    let sum = 0, byte = from;
+    while ((sum += counts[byte]) <= few && byte + step >= 0 && byte + step <= 255) byte += step;
+    return byte;
+  };
+  const [low, high] = [reach(0, 1), reach(255, -1)];
+  const LEAST = 12; // a regular mesh is not to look like a poor one
+  return high - low >= LEAST ? [low, high] : high >= LEAST ? [high - LEAST, high] : [0, LEAST];
+}
+function countsOf(numbers, length) {
+  const counts = new Array(length).fill(0);
+  for (const n of numbers) if (n < length) ++counts[n];
+  return counts;
+}
+
+/** The place of a byte in the 256 colours. */
+const placeOf = ([low, high], byte) => Math.round(255 * Math.min(1, Math.max(0, (byte - low) / (high - low))));
+
 /** byte of a value -> value */
 function valueOf(mesh, quantity, byte) {
   const [low, high] = mesh.facts.scales[quantity];

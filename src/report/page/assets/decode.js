@@ -118,7 +118,25 @@ async function decodeMesh() {
     values: { beta: bytes.beta, min_dihedral: bytes.min_dihedral, max_dihedral: bytes.max_dihedral },
   };
   if (facts.has_sizes) mesh.values.size_ratio = bytes.size_ratio;
+  mesh.around = lengthsAround(mesh);
   return mesh;
+}
+
+/** Of each point the mean length of the edges that elements have there. */
+function lengthsAround({ tets, points }) {
+  const sums = new Float32Array(points.length / 3), counts = new Uint32Array(points.length / 3);
+  for (let t = 0; t < tets.length; t += 4) {
+    for (let e = 0; e < 12; e += 2) {
+      const a = tets[t + EDGES[e]], b = tets[t + EDGES[e + 1]];
+      const length = Math.hypot(points[3 * a] - points[3 * b], points[3 * a + 1] - points[3 * b + 1], points[3 * a + 2] - points[3 * b + 2]);
+      sums[a] += length;
+      sums[b] += length;
+      ++counts[a];
+      ++counts[b];
+    }
+  }
+  for (let v = 0; v < sums.length; ++v) sums[v] /= counts[v] || 1;
+  return sums;
 }
 
 /** From input units to the picture's, and back. */

@@ -11,7 +11,7 @@ function say(text) {
 /** What is shown, and how. */
 const state = {
   quantity: "beta",
-  clip: { on: false, normal: [1, 0, 0], offset: 0, axis: "x" }, // what lies beyond is taken away
+  clip: { on: false, smooth: false, normal: [1, 0, 0], offset: 0, axis: "x" }, // what lies beyond is taken away
   hiddenPatches: new Set(),
   hiddenRegions: new Set(),
   filter: null,
@@ -36,12 +36,12 @@ function drawNow() {
   if (facesWaiting) {
     facesWaiting = false;
     const faces = visibleFaces(mesh, state);
-    picture.fill(picture.solid, vertexData(mesh, faces.solid, state.quantity));
+    picture.fill(picture.solid, vertexData(mesh, faces.solid, state.quantity, isSmooth(state) ? slice(mesh, state) : null));
     picture.fill(picture.ghost, vertexData(mesh, faces.ghost, state.quantity));
     tellFilter(faces.passed);
   }
   picture.fit();
-  picture.draw(camera, { edges: state.edges, background: background() });
+  picture.draw(camera, { edges: state.edges, background: background(), plane: planeOf(state) });
   drawOverlay();
 }
 function rebuild() {
@@ -66,6 +66,30 @@ function drawOverlay() {
   byId("chosen").setAttribute("d", path);
   const at = state.marked && project(state.marked);
   byId("mark").setAttribute("transform", at ? `translate(${at[0].toFixed(1)} ${at[1].toFixed(1)})` : "translate(-100 -100)");
+  drawTriad();
+  drawScaleBar();
+}
+
+/** Which way x, y and z go; what points away from the viewer comes first. */
+function drawTriad() {
+  const LENGTH = 30;
+  const ends = ["x", "y", "z"].map((axis, i) => ({ axis, x: camera.axes[0][i], y: -camera.axes[1][i], depth: camera.axes[2][i] }));
+  for (const { axis, x, y } of ends) {
+    const group = byId("triad-" + axis), [line, text] = group.children;
+    line.setAttribute("d", `M0 0L${(LENGTH * x).toFixed(1)} ${(LENGTH * y).toFixed(1)}`);
+    text.setAttribute("x", ((LENGTH + 9) * x).toFixed(1));
+    text.setAttribute("y", ((LENGTH + 9) * y).toFixed(1));
+  }
+  for (const { axis } of ends.sort((a, b) => a.depth - b.depth)) byId("triad").append(byId("triad-" + axis));
+}
+
+/** A round length, where the camera looks at. */
+function drawScaleBar() {
+  const pixels = canvas.clientHeight / (2 * camera.distance * tangentOf(canvas)) / (mesh.radius * mesh.facts.step);
+  const most = 120 / pixels, power = 10 ** Math.floor(Math.log10(most));
+  const length = [5, 2, 1].map((n) => n * power).find((n) => n <= most) ?? power;
+  byId("bar").style.width = (length * pixels).toFixed(1) + "px";
+  byId("bar-text").textContent = `${digits(length)}${report.unit ? " " + shown(report.unit) : ""}`;
 }
 
 const pointOf = (v) => [mesh.points[3 * v], mesh.points[3 * v + 1], mesh.points[3 * v + 2]];
@@ -145,8 +169,10 @@ function showLegend() {
   const legend = byId("legend"), q = QUANTITIES[state.quantity];
   byId("filter-row").hidden = !q;
   if (!q) return legend.replaceChildren();
-  const [low, high] = mesh.facts.scales[state.quantity];
-  legend.replaceChildren(make("i", { style: `background:linear-gradient(to right, ${q.stops.join(", ")})` }), axis(q.text(low), q.text((low + high) / 2), q.text(high)));
+  const ends = fittedEnds(mesh, state.quantity), [low, high] = ends.map((byte) => valueOf(mesh, state.quantity, byte));
+  const counts = countsOf(mesh.values[state.quantity], 256), some = (bytes) => bytes.some((n) => n > 0);
+  legend.replaceChildren(make("i", { style: `background:linear-gradient(to right, ${q.stops.join(", ")})` }),
+    axis((some(counts.slice(0, ends[0])) ? "≤ " : "") + q.text(low), q.text((low + high) / 2), (some(counts.slice(ends[1] + 1)) ? "≥ " : "") + q.text(high)));
 }
 function setQuantity(quantity) {
   state.quantity = quantity;
@@ -244,11 +270,18 @@ function toggleClip(on) {
   rebuild();
 }
 
+/** From where it looks: so near that all of the mesh just fills the picture, but for what stands at its edges. */
+function frame() {
+  const SIDES = 24, TOP_AND_BOTTOM = 52, width = canvas.clientWidth, height = Math.max(1, canvas.clientHeight);
+  const room = (length, edge) => Math.max(0.5, 1 - (2 * edge) / length), tangent = tangentOf(canvas);
+  camera.frame(mesh.points, [((tangent * width) / height) * room(width, SIDES), tangent * room(height, TOP_AND_BOTTOM)]);
+}
+
 const VIEWS = { "+x": [[1, 0, 0], [0, 0, 1]], "−x": [[-1, 0, 0], [0, 0, 1]], "+y": [[0, 1, 0], [0, 0, 1]], "−y": [[0, -1, 0], [0, 0, 1]], "+z": [[0, 0, 1], [0, 1, 0]], "−z": [[0, 0, -1], [0, 1, 0]] };
 function lookFrom(view) {
   const [back, up] = VIEWS[view] ?? [START.back, START.up];
   camera.look(back, up);
-  Object.assign(camera, { target: [0, 0, 0], distance: new Camera().distance });
+  frame();
   redraw();
 }
 
@@ -274,19 +307,15 @@ function partsPanel(title, names, counts, hidden) {
   return panel(title, make("div", { class: "buttons" }, make("button", { type: "button", onclick: all(true) }, "all"), make("button", { type: "button", onclick: all(false) }, "none")),
     make("div", { class: "scroll" }, ...used.slice(0, MOST).map(row)), used.length > MOST ? make("p", { class: "hint" }, `${grouped(used.length - MOST)} more are not listed`) : null);
 }
-function countsOf(numbers, length) {
-  const counts = new Array(length).fill(0);
-  for (const n of numbers) if (n < length) ++counts[n];
-  return counts;
-}
-
 function listenToControls() {
   const choices = [...Object.keys(QUANTITIES).filter((q) => mesh.values[q]), ...(mesh.facts.regions.length > 1 ? ["region"] : []), ...(mesh.facts.patches.length > 1 ? ["patch"] : [])];
   const select = byId("quantity");
   select.replaceChildren(...choices.map((q) => make("option", { value: q }, QUANTITIES[q]?.title ?? q)));
+  select.value = state.quantity;
   select.addEventListener("change", () => setQuantity(select.value));
   byId("edges").addEventListener("change", (event) => ((state.edges = event.target.checked), redraw()));
   byId("clip").addEventListener("change", (event) => toggleClip(event.target.checked));
+  byId("clip-smooth").addEventListener("change", (event) => ((state.clip.smooth = event.target.checked), rebuild()));
   byId("clip-at").addEventListener("input", (event) => moveClip(event.target.value / 1000));
   byId("clip-flip").addEventListener("click", flipClip);
   for (const button of document.querySelectorAll("[data-axis]")) button.addEventListener("click", () => setClipAxis(button.dataset.axis));
@@ -347,7 +376,7 @@ function listenToKeys() {
   const others = {
     "+": () => camera.zoom(0.85), "=": () => camera.zoom(0.85), "-": () => camera.zoom(1 / 0.85), 0: () => lookFrom(""), Home: () => lookFrom(""),
     x: () => setClipAxis("x"), y: () => setClipAxis("y"), z: () => setClipAxis("z"), v: () => setClipAxis("view"), c: () => toggleClip(!state.clip.on), f: flipClip,
-    "[": () => nudgeClip(-1), "]": () => nudgeClip(1), e: () => byId("edges").click(), Escape: () => choose(-1),
+    "[": () => nudgeClip(-1), "]": () => nudgeClip(1), e: () => byId("edges").click(), s: () => byId("clip-smooth").click(), Escape: () => choose(-1),
   };
   const nudgeClip = (by) => {
     byId("clip-at").value = String(Number(byId("clip-at").value) + 10 * by);
@@ -379,11 +408,12 @@ function listenToTheme() {
 const report = json("report");
 
 function showNumbers() {
-  const title = String(report.input ?? "mesh");
-  document.title = "Octafront: " + brief(shown(title.split("/").pop()), 80);
-  byId("title").replaceChildren(name(title.split("/").pop()));
+  const inputs = report.inputs ?? [report.input ?? "mesh"];
+  const title = inputs.map((input) => String(input).split("/").pop()).join(" + ");
+  document.title = "Octafront: " + brief(shown(title), 80);
+  byId("title").replaceChildren(name(title));
   const facts = json("facts");
-  byId("numbers").append(...[summaryPanel(report, facts), solidsPanel(report), worstPanel(report, goToElement), qualityPanel(report.quality), sizesPanel(report, mesh), stagesPanel(report), repairPanel(report, goToPlace), notesPanel(report, goToPlace), repeatPanel(report)].filter(Boolean));
+  byId("numbers").append(...[summaryPanel(report, facts, mesh), solidsPanel(report), worstPanel(report, goToElement), qualityPanel(report.quality, mesh), sizesPanel(report, mesh), stagesPanel(report), repairPanel(report, goToPlace), notesPanel(report, goToPlace), repeatPanel(report)].filter(Boolean));
   if (facts.second_order) byId("numbers").append(make("p", { class: "hint" }, "Elements of second order are drawn with straight edges."));
 }
 
@@ -398,6 +428,8 @@ async function start() {
     return showNumbers();
   }
   picture.onRestored = rebuild;
+  if (mesh.facts.regions.length > 1) state.quantity = "region";
+  frame();
   firstClip();
   listenToControls();
   showLegend();
@@ -422,5 +454,6 @@ async function start() {
 window.octafront = {
   state, camera, get mesh() { return mesh; }, get vertices() { return picture ? picture.solid.vertices : 0; },
   draw: () => drawNow(), finish: () => picture.finish(), rebuild: () => (facesWaiting = true), visibleFaces: () => visibleFaces(mesh, state),
+  inner: { along, cross, countsOf, dot, fittedEnds, moveClip, placeOf, planeOf, projector, setClipAxis, slice, valueOf },
 };
 start();

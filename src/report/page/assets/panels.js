@@ -39,20 +39,23 @@ function table(rows, heads = null, kind = "") {
     make("tbody", {}, ...rows.map((r) => (r instanceof Node ? r : line(r, "td")))));
 }
 
-/** Bars side by side: [label, count, colour], with counts beneath the pointer and in the table for readers. */
-function histogram(id, bars, label) {
+/** Bars side by side: [label, count, colour], above an axis from the first to the last of `ends`; each count beneath the pointer. */
+function histogram(id, bars, label, ends) {
   const most = Math.max(1, ...bars.map((b) => b[1])), total = bars.reduce((sum, b) => sum + b[1], 0) || 1;
-  return make("div", { class: "histogram", id, role: "img", "aria-label": label + ": " + bars.map(([l, n]) => `${l}: ${n}`).join(", ") },
+  const plot = make("div", { class: "histogram", id, role: "img", "aria-label": label + ": " + bars.map(([l, n]) => `${l}: ${n}`).join(", ") },
     ...bars.map(([l, n, colour]) =>
       make("div", { class: "bar", title: `${l}: ${grouped(n)} (${percent(n / total)})`, "data-value": String(n) },
         make("i", { style: `height:${n > 0 ? Math.max(1.5, (100 * n) / most) : 0}%;background:${colour}` }))));
+  return make("div", { class: "plot" }, make("div", { class: "counts", "aria-hidden": "true" }, make("span", {}, grouped(most)), make("span", {}, "0")), plot, axis(...ends));
 }
 const axis = (...labels) => make("div", { class: "axis" }, ...labels.map((l) => make("span", {}, l)));
 
-const middleColour = (quantity, share) => {
-  const t = scaleOf(QUANTITIES[quantity].stops), i = 3 * Math.round(255 * share);
+/** The colour that the picture has for a value. */
+function colourOfValue(mesh, facts, quantity, value) {
+  const [low, high] = facts.scales[quantity];
+  const t = scaleOf(QUANTITIES[quantity].stops), i = 3 * placeOf(fittedEnds(mesh, quantity), (255 * (value - low)) / (high - low));
   return css([t[i], t[i + 1], t[i + 2]]);
-};
+}
 
 /** Places in a sentence, as "(1.5, 2, -3e-4)", become buttons that lead there. */
 function withPlaces(sentence, goTo) {
@@ -82,13 +85,14 @@ function solidsPanel(report) {
   return panel("CAD solids", make("div", { class: "scroll" }, table(solids.map(row), ["solid", "elements", "volume", "true volume"], "numbers list")));
 }
 
-function summaryPanel(report, facts) {
+function summaryPanel(report, facts, mesh) {
   const rows = [["elements", number(facts.tets, grouped(facts.tets))]];
   const add = (key, label, text) => key in report && report[key] !== 0 && rows.push([label, number(report[key], text(report[key]))]);
   add("points", "points", grouped);
   add("boundary_faces", "boundary faces", grouped);
   add("bodies", "bodies", grouped);
   add("volume", "volume", (v) => digits(v, 6) + (report.true_volume ? ` (CAD ${besideCad(v, report.true_volume)})` : report.input_volume ? ` (input ${digits(report.input_volume, 6)})` : ""));
+  if (mesh) rows.push(["extent x, y, z", extentOf(mesh).map((x) => digits(x)).join(" × ") + (report.unit ? " " + shown(report.unit) : "")]);
   add("unit", "lengths in", shown);
   add("wall_seconds", "made in", (s) => seconds(s) + " s");
   add("peak_memory_bytes", "peak memory", bytesInWords);
@@ -96,25 +100,42 @@ function summaryPanel(report, facts) {
   return panel("Mesh", table(rows, null, "pairs"));
 }
 
-function qualityPanel(quality) {
+function extentOf({ steps, facts }) {
+  const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
+  for (let i = 0; i < steps.length; ++i) {
+    low[i % 3] = Math.min(low[i % 3], steps[i]);
+    high[i % 3] = Math.max(high[i % 3], steps[i]);
+  }
+  return low.map((l, axis) => (high[axis] - l) * facts.step);
+}
+
+function betaHistogram(mesh, facts) {
+  const BARS = 40, counts = new Array(BARS).fill(0), values = mesh.values.beta;
+  for (let t = 0; t < values.length; ++t) ++counts[Math.min(BARS - 1, Math.floor((values[t] / 256) * BARS))];
+  const bars = counts.map((n, i) => [`${(i / BARS).toFixed(3)} – ${((i + 1) / BARS).toFixed(3)}`, n, colourOfValue(mesh, facts, "beta", (i + 0.5) / BARS)]);
+  return histogram("beta-histogram", bars, "elements by β", ["0", "¼", "½", "¾", "β = 1"]);
+}
+
+function qualityPanel(quality, mesh) {
   if (!quality) return null;
+  const facts = json("facts"), middleColour = (quantity, value) => colourOfValue(mesh, facts, quantity, value);
   const classes = quality.beta_classes, total = classes.reduce((a, b) => a + b, 0) || 1, bounds = quality.beta_class_bounds;
   const label = (i) => `${bounds[i].toFixed(1)} – ${bounds[i + 1].toFixed(1)}`;
-  const [low, high] = [0, 75];
   const angles = quality.dihedral_histogram.map((n, i) => {
     const degrees = 10 * i + 5;
-    const colour = degrees < 70 ? middleColour("min_dihedral", (degrees - low) / (high - low)) : middleColour("max_dihedral", (degrees - 60) / 120);
+    const colour = middleColour(degrees < 70 ? "min_dihedral" : "max_dihedral", degrees);
     return [`${10 * i}° – ${10 * i + 10}°`, n, colour];
   });
   return panel("Quality",
     make("h3", {}, "β = 3 r / R, radius inside over radius around; 1 is regular"),
-    table(classes.map((n, i) => [label(i), make("span", { class: "swatch", style: `background:${middleColour("beta", (i + 0.5) / 5)}` }),
+    mesh ? betaHistogram(mesh, facts) : null,
+    table(classes.map((n, i) => [label(i), make("span", { class: "swatch", style: `background:${middleColour("beta", (bounds[i] + bounds[i + 1]) / 2)}` }),
       number(n, grouped(n)), percent(n / total)]), null, "numbers classes"),
     table([["mean β", number(quality.beta_mean, quality.beta_mean.toFixed(4))], ["least β", number(quality.beta_min, quality.beta_min.toFixed(4))],
       ["dihedral angles", make("span", {}, number(quality.dihedral_min_degrees, quality.dihedral_min_degrees.toFixed(1) + "°"), " to ",
         number(quality.dihedral_max_degrees, quality.dihedral_max_degrees.toFixed(1) + "°"))]], null, "pairs"),
     make("h3", {}, "All dihedral angles, classes of 10°"),
-    histogram("dihedral-histogram", angles, "dihedral angles"), axis("0°", "45°", "90°", "135°", "180°"));
+    histogram("dihedral-histogram", angles, "dihedral angles", ["0°", "45°", "90°", "135°", "180°"]));
 }
 
 function sizeHistogram(mesh) {
@@ -122,7 +143,7 @@ function sizeHistogram(mesh) {
   for (let t = 0; t < values.length; ++t) ++counts[Math.min(23, Math.floor((values[t] / 256) * 24))];
   return counts.map((n, i) => {
     const from = 2 ** (-2 + i / 6), to = 2 ** (-2 + (i + 1) / 6);
-    return [`× ${from.toFixed(2)} – ${to.toFixed(2)}`, n, middleColour("size_ratio", (i + 0.5) / 24)];
+    return [`× ${from.toFixed(2)} – ${to.toFixed(2)}`, n, colourOfValue(mesh, mesh.facts, "size_ratio", -2 + (i + 0.5) / 6)];
   });
 }
 
@@ -137,7 +158,7 @@ function sizesPanel(report, mesh) {
   }
   if (rows.length === 0 && !mesh) return null;
   return panel("Sizes: asked and made", table(rows, null, "pairs"),
-    ...(mesh?.facts.has_sizes ? [make("h3", {}, "Elements by size made over asked"), histogram("size-histogram", sizeHistogram(mesh), "size made over asked"), axis("× ¼", "× ½", "× 1", "× 2", "× 4")] : []));
+    ...(mesh?.facts.has_sizes ? [make("h3", {}, "Elements by size made over asked"), histogram("size-histogram", sizeHistogram(mesh), "size made over asked", ["× ¼", "× ½", "× 1", "× 2", "× 4"])] : []));
 }
 
 function worstPanel(report, goToElement) {
@@ -164,8 +185,16 @@ function stagesPanel(report) {
 
 function repairPanel(report, goTo) {
   if (!report.repairs) return null;
-  const item = (r) => make("li", {}, `${shown(r.what)}: `, number(r.count, grouped(r.count)), r.places?.length ? make("div", { class: "places" }, ...r.places.map((p) => place(p, goTo)), r.count > r.places.length ? " …" : null) : null);
+  const item = (r) => make("li", {}, `${shown(r.what)}: `, number(r.count, grouped(r.count)), placesOf(r, goTo));
   return panel("What repair changed", report.repairs.length === 0 ? make("p", { class: "hint" }, "Nothing: the input was meshed as it is.") : make("ul", {}, ...report.repairs.map(item)));
+}
+
+/** A few at once, many when they are asked for. */
+function placesOf({ count, places = [] }, goTo) {
+  const FEW = 3, buttons = places.map((p) => place(p, goTo));
+  if (count > places.length && buttons.length > 0) buttons.push(" …");
+  if (places.length <= FEW) return buttons.length ? make("div", { class: "places" }, ...buttons) : null;
+  return make("details", {}, make("summary", {}, `${places.length} places`), make("div", { class: "places" }, ...buttons));
 }
 
 function notesPanel(report, goTo) {

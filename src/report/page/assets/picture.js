@@ -1,18 +1,24 @@
-// --- picture.js: WebGL 2. Light comes from the viewer; the edges of elements are drawn inside their faces.
+// --- picture.js: WebGL 2. Light comes from the viewer; the edges of elements are drawn inside their faces, and fade
+// where elements are small on the screen: by the lengths around each point, so that neighbours fade alike.
 
 const VERTEX_SHADER = `#version 300 es
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec4 colour;
 layout(location = 2) in uint element;
+layout(location = 3) in float around;
 uniform mat4 view, projection;
-out vec3 seen, corner;
+out vec3 seen, corner, place;
+out float length_around;
 flat out vec3 paint;
 flat out uint number;
 void main() {
   vec4 p = view * vec4(position, 1);
   seen = p.xyz;
-  int k = gl_VertexID % 3;
-  corner = vec3(k == 0, k == 1, k == 2);
+  place = position;
+  length_around = around;
+  int k = gl_VertexID % 3, hidden = int(colour.a * 255.0 + 0.5);
+  // Bit k: the side opposite to corner k is no edge of an element.
+  corner = max(vec3(k == 0, k == 1, k == 2), vec3(hidden & 1, hidden >> 1 & 1, hidden >> 2 & 1));
   paint = colour.rgb;
   number = element;
   gl_Position = projection * p;
@@ -20,13 +26,16 @@ void main() {
 
 const FRAGMENT_SHADER = `#version 300 es
 precision highp float;
-in vec3 seen, corner;
+in vec3 seen, corner, place;
+in float length_around;
 flat in vec3 paint;
 flat in uint number;
-uniform float edges, opacity;
+uniform float edges, opacity, pixels;
+uniform vec4 plane;
 uniform bool picking;
 out vec4 result;
 void main() {
+  if (dot(plane.xyz, place) > plane.w) discard;
   if (picking) {
     uint n = number + 1u;
     result = vec4(n & 255u, n >> 8 & 255u, n >> 16 & 255u, n >> 24) / 255.0;
@@ -39,7 +48,7 @@ void main() {
   vec3 near = smoothstep(width * 0.25, width * 1.15, corner);
   float line = 1.0 - min(near.x, min(near.y, near.z));
   // Where triangles are some pixels wide only, lines would hide all colour.
-  float room = 1.0 - smoothstep(0.06, 0.3, max(width.x, max(width.y, width.z)));
+  float room = smoothstep(4.0, 22.0, length_around * pixels / -seen.z);
   result = vec4(mix(tint * light, vec3(0.05, 0.06, 0.09), line * room * edges * 0.62), opacity);
 }`;
 
@@ -69,7 +78,7 @@ class Picture {
     gl.linkProgram(program);
     gl.useProgram(program);
     this.uniform = {};
-    for (const name of ["view", "projection", "edges", "opacity", "picking"]) this.uniform[name] = gl.getUniformLocation(program, name);
+    for (const name of ["view", "projection", "edges", "opacity", "picking", "pixels", "plane"]) this.uniform[name] = gl.getUniformLocation(program, name);
     this.solid = this.newLayer();
     this.ghost = this.newLayer();
     gl.enable(gl.DEPTH_TEST);
@@ -81,10 +90,11 @@ class Picture {
     const gl = this.gl, layer = { array: gl.createVertexArray(), buffer: gl.createBuffer(), vertices: 0 };
     gl.bindVertexArray(layer.array);
     gl.bindBuffer(gl.ARRAY_BUFFER, layer.buffer);
-    for (const place of [0, 1, 2]) gl.enableVertexAttribArray(place);
+    for (const place of [0, 1, 2, 3]) gl.enableVertexAttribArray(place);
     gl.vertexAttribPointer(0, 3, gl.FLOAT, false, BYTES_PER_VERTEX, 0);
     gl.vertexAttribPointer(1, 4, gl.UNSIGNED_BYTE, true, BYTES_PER_VERTEX, 12);
     gl.vertexAttribIPointer(2, 1, gl.UNSIGNED_INT, BYTES_PER_VERTEX, 16);
+    gl.vertexAttribPointer(3, 1, gl.FLOAT, false, BYTES_PER_VERTEX, 20);
     return layer;
   }
 
@@ -103,13 +113,17 @@ class Picture {
     if (this.canvas.width !== width || this.canvas.height !== height) Object.assign(this.canvas, { width, height });
   }
 
-  draw(camera, { edges, background, picking = false }) {
+  draw(camera, { edges, background, plane = this.plane, picking = false }) {
+    this.plane = plane;
     const gl = this.gl;
     const { view, projection } = camera.matrices(this.canvas.width / this.canvas.height);
     gl.viewport(0, 0, this.canvas.width, this.canvas.height);
     gl.uniformMatrix4fv(this.uniform.view, false, view);
     gl.uniformMatrix4fv(this.uniform.projection, false, projection);
     gl.uniform1f(this.uniform.edges, edges ? 1 : 0);
+    // Of the style sheet, for a length of one at a distance of one.
+    gl.uniform1f(this.uniform.pixels, 0.5 * this.canvas.clientHeight * projection[5]);
+    gl.uniform4f(this.uniform.plane, ...plane);
     gl.uniform1f(this.uniform.opacity, 1);
     gl.uniform1i(this.uniform.picking, picking ? 1 : 0);
     gl.disable(gl.BLEND);
