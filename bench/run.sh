@@ -23,14 +23,15 @@
 #   bench/run.sh budget      automatic sizes: budget said, elements made, time, what was given up -> docs/measured/budget-status.md
 #   bench/run.sh cad         CAD files at parts of their diagonal: volumes, areas, names, nodes on the geometry, time; --peers: beside Gmsh
 #                            and Netgen; --models FOLDER: other files  -> docs/measured/cad.md
+#   bench/run.sh layers      boundary layers on all clean models: coverage, validity, quality, speed -> docs/measured/layers.md
 #   bench/run.sh dry_run     mesh --dry-run: elements, time and memory said and taken -> docs/use/command-line.md
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/lib/apt.sh
 
 case ${1:-} in
-  status | derived | pipeline | surface | elements | gradation | volume | graded | peers | complexes | improve | formats | second_order | dry_run | repair | known_answers | damage | images | thin | budget | cad) ;;
-  *) sed -n '2,26s/^# \{0,1\}//p' "$0"; exit 2 ;;
+  status | derived | pipeline | surface | elements | gradation | volume | graded | peers | complexes | improve | formats | second_order | dry_run | repair | known_answers | damage | images | thin | budget | cad | layers) ;;
+  *) sed -n '2,27s/^# \{0,1\}//p' "$0"; exit 2 ;;
 esac
 need_packages "${build_packages[@]}" python3
 [ "$1" != surface ] || need_packages gmsh netgen libcgal-dev libgmp-dev libmpfr-dev

@@ -412,6 +412,36 @@ void declare_surface(CLI::App& command, Arguments& a) {
   a.names.add("patches_by_features", "--patches");
 }
 
+void declare_layers(CLI::App& command, Arguments& a) {
+  LayerOptions& o = a.options.layers;
+  auto* group = command.add_option_group("Boundary layers");
+  group->add_option("--layers", o.count, "Layers of thin elements along walls, as high as the options below say")
+      ->type_name("N");
+  add_length(*group, a, "--first", o.first, "Height of the first layer, at the wall")->type_name("H");
+  group->add_option("--first-part", o.first_part, "Height of the first layer as a part of the edge length there")
+      ->type_name("F");
+  group
+      ->add_option("--growth", o.growth,
+                   "Each layer over the one below, 1 to 3 [1.2, or what --first and --total need]")
+      ->type_name("G");
+  add_length(*group, a, "--total", o.total, "Height of all layers")->type_name("T");
+  group
+      ->add_option("--yplus", o.yplus,
+                   "Height of the first layer by its y+ in a turbulent flow along a flat plate, with --Re and --Lref")
+      ->type_name("Y");
+  group->add_option("--Re", o.reynolds, "Reynolds number of the flow, for --yplus")->type_name("RE");
+  add_length(*group, a, "--Lref", o.reference_length, "Length that the Reynolds number belongs to")->type_name("L");
+  group->add_option("--on", o.on, "Patches that are walls, by name, with commas between them [all]")
+      ->type_name("NAMES");
+  group
+      ->add_option("--require-coverage", o.require_coverage,
+                   "Percent of each wall's faces that must have all layers, or the run fails with status 4")
+      ->type_name("P");
+  a.names.add("count", "--layers");
+  a.names.add("reynolds", "--Re");
+  a.names.add("reference_length", "--Lref");
+}
+
 void declare_volume(CLI::App& command, Arguments& a) {
   using Core = VolumeOptions::Core;
   using Ranking = VolumeOptions::Ranking;

@@ -105,6 +105,7 @@ void Program::declare_makers() {
   declare_dry_run(*mesh, a);
   declare_sizes(*mesh, a);
   declare_surface(*mesh, a);
+  declare_layers(*mesh, a);
   declare_volume(*mesh, a);
   declare_improvement(*mesh, a);
   declare_order(*mesh, a);

@@ -14,7 +14,7 @@ struct IntakeOptions;
 
 /// What is known of one option, for programs that set options by name: bindings to other languages, forms, files.
 struct OptionInfo {
-  enum class Kind { kNumber, kWhole, kFlag, kChoice };
+  enum class Kind { kNumber, kWhole, kFlag, kChoice, kText };
   std::string_view name;   ///< as on the command line, with underscores: "keep_surface"
   std::string_view field;  ///< what messages of the library call it, in backquotes: "keep"
   std::string_view group;  ///< e.g. "Sizes"

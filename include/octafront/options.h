@@ -100,6 +100,23 @@ struct SurfaceOptions {
   bool keep_volumes = false;
 };
 
+/// Boundary layers: thin elements along walls, which grow from them.
+struct LayerOptions {
+  int count = 0;  ///< layers; 0: none
+  /// Height of the first layer, at the wall: input units, or a part of the local edge length; one of the two, `yplus`,
+  /// or `total` alone.
+  std::optional<double> first, first_part;
+  std::optional<double> growth;  ///< each layer over the one below, in [1, 3]; without a value 1.2, or what `first` and
+                                 ///< `total` make it
+  std::optional<double> total;   ///< height of all layers, input units
+  /// The first height by the wall distance y+ that it shall have in a turbulent flow along a flat plate, whose Reynolds
+  /// number belongs to a length: skin friction of .026 Re^(-1/7) (F. White, Fluid Mechanics).
+  std::optional<double> yplus, reynolds, reference_length;
+  std::string on;  ///< names of the patches that are walls, separated by commas; empty: all patches
+  /// Percent of the faces of each wall that must have all layers, as high as asked; MeshingError otherwise.
+  std::optional<double> require_coverage;
+};
+
 /// How the volume is filled.
 struct VolumeOptions {
   /// Distance of the ideal point from the face, as a multiple of the size there (the paper says 1; a regular
@@ -164,6 +181,7 @@ struct Options {
   Method method = Method::kOctreeAft;  ///< kRecover implies surface.keep
   SizeOptions size;
   SurfaceOptions surface;
+  LayerOptions layers;
   VolumeOptions volume;
   ImproveOptions improve;
   /// 1: linear elements. 2: elements of second order, curved to the surface that the input stands for; see

@@ -38,6 +38,19 @@ struct RegionSummary {
   QualitySummary quality;
 };
 
+/// The boundary layers of one wall.
+struct LayerSummary {
+  std::string patch;  ///< its name; may be empty
+  std::uint64_t faces = 0;
+  double full = 0;                                        ///< part of the faces with all layers as high as asked
+  double with_some = 0;                                   ///< part of the faces with at least one layer at each corner
+  double mean_count = 0, asked_count = 0;                 ///< layers at a corner of a face
+  double first_min = 0, first_median = 0, first_max = 0;  ///< heights of first layers at vertices, input units
+  double thickness = 0;                                   ///< mean height over that asked, at corners of faces
+  double min_scaled_jacobian = 0;                         ///< of whole prisms
+  std::vector<std::pair<std::string, double>> stopped = {};  ///< reasons, and the part of the faces that each stopped
+};
+
 /// What a whole run did and made.
 struct Report {
   std::vector<StageReport> stages;                         ///< in the order in which they ran
@@ -49,6 +62,7 @@ struct Report {
   double expected_tets = 0;            ///< predicted by the sizes before the volume is meshed
   QualitySummary quality;              ///< of the elements with straight edges
   std::vector<RegionSummary> regions;  ///< by number; empty if the mesh has only one
+  std::vector<LayerSummary> layers;    ///< by patch; empty: none were asked for
   SecondOrderSummary second_order;     ///< edges == 0: the mesh is linear
   SizeSummary surface_edges, volume_edges;
   double wall_seconds = 0, cpu_seconds = 0;

@@ -41,6 +41,8 @@ const char* name_of_kind(OptionInfo::Kind kind) {
       return "flag";
     case OptionInfo::Kind::kChoice:
       return "choice";
+    case OptionInfo::Kind::kText:
+      return "text";
   }
   return "";
 }

@@ -105,6 +105,43 @@ std::vector<Row<Options>> surface_rows() {
   };
 }
 
+std::vector<Row<Options>> layer_rows() {
+  const auto of = [](std::string_view name, std::string_view help, std::string_view field = {}) {
+    return about(name, field.empty() ? name : field, "Boundary layers", "mesh", help);
+  };
+  return {
+      row(
+          of("layers", "Layers of thin elements along walls; 0: none", "count"),
+          [](auto& o) -> auto& { return o.layers.count; }),
+      row(
+          of("first", "Height of the first layer, at the wall, in units of the input"),
+          [](auto& o) -> auto& { return o.layers.first; }),
+      row(
+          of("first_part", "Height of the first layer as a part of the edge length there"),
+          [](auto& o) -> auto& { return o.layers.first_part; }),
+      row(
+          of("growth", "Each layer over the one below, 1 to 3; without a value 1.2, or what `first` and `total` need"),
+          [](auto& o) -> auto& { return o.layers.growth; }),
+      row(
+          of("total", "Height of all layers, in units of the input"), [](auto& o) -> auto& { return o.layers.total; }),
+      row(
+          of("yplus", "Height of the first layer by its y+ in a flow along a flat plate, with `Re` and `Lref`"),
+          [](auto& o) -> auto& { return o.layers.yplus; }),
+      row(
+          of("Re", "Reynolds number of the flow, for `yplus`", "reynolds"),
+          [](auto& o) -> auto& { return o.layers.reynolds; }),
+      row(
+          of("Lref", "Length that the Reynolds number belongs to, in units of the input", "reference_length"),
+          [](auto& o) -> auto& { return o.layers.reference_length; }),
+      row(
+          of("on", "Names of the patches that are walls, separated by commas; without them all are"),
+          [](auto& o) -> auto& { return o.layers.on; }),
+      row(
+          of("require_coverage", "Percent of each wall's faces that must have all layers, or the run fails"),
+          [](auto& o) -> auto& { return o.layers.require_coverage; }),
+  };
+}
+
 std::vector<Row<Options>> volume_rows() {
   const auto of = [](std::string_view name, std::string_view help) {
     return about(name, name, "Volume", "mesh", help);
@@ -186,7 +223,7 @@ std::vector<Row<Options>> improve_rows() {
 const std::vector<Row<Options>>& rows() {
   static const std::vector<Row<Options>> all = [] {
     std::vector<Row<Options>> list;
-    for (const auto& part : {size_rows(), surface_rows(), volume_rows(), improve_rows()})
+    for (const auto& part : {size_rows(), surface_rows(), layer_rows(), volume_rows(), improve_rows()})
       list.insert(list.end(), part.begin(), part.end());
     return list;
   }();

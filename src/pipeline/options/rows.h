@@ -93,6 +93,16 @@ struct Conversion<bool> {
   static bool taken(std::string_view name, const OptionValue& value) { return flag_of(name, value); }
 };
 
+template <>
+struct Conversion<std::string> {
+  static constexpr Kind kKind = Kind::kText;
+  static OptionValue shown(const std::string& field) { return field; }
+  static std::string taken(std::string_view name, const OptionValue& value) {
+    if (const auto* text = std::get_if<std::string>(&value)) return *text;
+    refuse(name, "needs words");
+  }
+};
+
 template <class Value>
 struct Conversion<std::optional<Value>> {
   static constexpr Kind kKind = Conversion<Value>::kKind;

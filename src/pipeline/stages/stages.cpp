@@ -166,7 +166,7 @@ constexpr double kRaised = 0.5;
 
 /// What the boundary itself keeps poor: vertices of interfaces slide, and corners of flat elements leave the surface.
 void ease_boundary(const improve::BoundaryInput& on, Filled& filled, const Options& options, const Stage& stage) {
-  auto& [mesh, boundary] = filled;
+  auto& [mesh, boundary, grown] = filled;
   if (is_complex(on.surface))
     stage.count("interface vertices moved",
                 static_cast<double>(slide_interfaces(mesh, boundary.surface, boundary.features, on.surface, stage)));
@@ -371,6 +371,7 @@ Filled fill(const Prepared& input, const SizeField& sizes, Run& run) {
 
 Filled fill_surface(const Prepared& input, Remeshed boundary, Run& run) {
   const MethodTraits& method = traits_of(run.options.method);
+  std::optional<GrownLayers> layers = grow_layers(boundary, run);
   TetMesh mesh = run.stage(method.stage, [&](const Stage& stage) {
     TetMesh filled = method.fill(boundary, run.options.volume, stage);
     stage.count("tets", static_cast<double>(filled.tets.size()));
@@ -380,13 +381,14 @@ Filled fill_surface(const Prepared& input, Remeshed boundary, Run& run) {
   for (std::size_t t = 0; t < boundary.source.size(); ++t)
     if (boundary.surface.sides_of(t)[0] == kNone)
       mesh.source.push_back(input.surface.mesh().source_of(boundary.source[t]));
-  return {std::move(mesh), std::move(boundary)};
+  return {std::move(mesh), std::move(boundary), std::move(layers)};
 }
 
 void improve_elements(const Prepared& input, Filled& filled, Run& run, const ImproveOptions& options) {
   run.stage("improve", [&](const Stage& stage) {
-    auto& [mesh, boundary] = filled;
-    const bool is_ours = !keeps_surface(run.options) && input.defects == SurfaceDomain::Defects::kClean;
+    auto& [mesh, boundary, grown] = filled;
+    const bool is_ours =
+        !filled.layers && !keeps_surface(run.options) && input.defects == SurfaceDomain::Defects::kClean;
     std::optional<improve::BoundaryInput> on;
     if (is_ours)
       on.emplace(improve::BoundaryInput{
@@ -404,7 +406,7 @@ void improve_elements(const Prepared& input, Filled& filled, Run& run, const Imp
 void raise_order(const Prepared& input, Filled& filled, Run& run) {
   if (run.options.order < 2) return;
   run.stage("second order", [&](const Stage& stage) {
-    auto& [mesh, boundary] = filled;
+    auto& [mesh, boundary, grown] = filled;
     run.report.second_order = keeps_surface(run.options) ? add_straight_edges(mesh, stage.context())
                               : input.geometry
                                   ? curve_to_geometry(mesh, *input.geometry, stage.context())

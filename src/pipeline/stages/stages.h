@@ -16,9 +16,11 @@
 #include "base/mesh/known_surface.h"
 #include "fill/stuffing/implicit_domain.h"
 #include "pipeline/stages/closed_patch.h"
+#include "pipeline/stages/layered.h"
 #include "pipeline/stages/run.h"
 #include "surface/remeshing/remesh.h"
 
+#include <optional>
 #include <span>
 
 namespace octafront {
@@ -41,10 +43,12 @@ struct Prepared {
   std::span<const double> kept_bound() const { return geometry ? std::span<const double>() : bound; }
 };
 
-/// A mesh and the surface that it fills, triangle for triangle.
+/// A mesh and the surface that it fills, triangle for triangle. With layers, that is the surface on their tops, until
+/// add_layers().
 struct Filled {
   TetMesh mesh;
   Remeshed boundary;
+  std::optional<GrownLayers> layers = {};
 };
 
 /// Repairs the input, refuses what the method cannot mesh (InputError), takes off folds that the tolerance lets go

@@ -48,6 +48,25 @@ Json json_of(const SizeSummary& s) {
   return {{"edges", s.edges}, {"mean_ratio", s.mean_ratio}, {"share_within_0.7_1.4", s.share_within}};
 }
 
+Json json_of(const std::vector<LayerSummary>& walls) {
+  Json all = Json::array();
+  for (const LayerSummary& w : walls) {
+    Json stopped = Json::object();
+    for (const auto& [reason, part] : w.stopped) stopped[reason] = part;
+    all.push_back({{"patch", w.patch},
+                   {"faces", w.faces},
+                   {"share_full", w.full},
+                   {"share_with_some", w.with_some},
+                   {"mean_layers", w.mean_count},
+                   {"asked_layers", w.asked_count},
+                   {"first_height", {{"min", w.first_min}, {"median", w.first_median}, {"max", w.first_max}}},
+                   {"share_of_thickness", w.thickness},
+                   {"least_scaled_jacobian", w.min_scaled_jacobian},
+                   {"stopped", stopped}});
+  }
+  return all;
+}
+
 Json json_of(const SecondOrderSummary& s) {
   return {{"edges", s.edges},
           {"curved_edges", s.curved},
@@ -76,6 +95,7 @@ std::string to_json(const Report& report) {
   if (report.tets > 0) {
     j["quality"] = json_of(report.quality);
     if (!report.regions.empty()) j["regions"] = json_of(report.regions);
+    if (!report.layers.empty()) j["layers"] = json_of(report.layers);
     if (report.second_order.edges > 0) j["second_order"] = json_of(report.second_order);
     j["volume_edges"] = json_of(report.volume_edges);
     j["hash"] = fmt::format("{:016x}", report.hash);

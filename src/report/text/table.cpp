@@ -83,6 +83,21 @@ std::string quality_lines(const QualitySummary& q) {
   return out;
 }
 
+std::string layer_lines(const std::vector<LayerSummary>& walls) {
+  std::string out = fmt::format("{:<22} {:>9} {:>7} {:>7} {:>10} {:>10} {:>7} {:>6}\n", "boundary layers on", "faces",
+                                "full", "layers", "first min", "median", "height", "SJ");
+  for (const LayerSummary& w : walls) {
+    out += fmt::format("{:<22} {:>9} {:>5.1f} % {:>7.2f} {:>10.4g} {:>10.4g} {:>5.1f} % {:>6.3f}\n",
+                       w.patch.empty() ? "(no name)" : w.patch, grouped(w.faces), 100 * w.full, w.mean_count,
+                       w.first_min, w.first_median, 100 * w.thickness, w.min_scaled_jacobian);
+    std::string stopped;
+    for (const auto& [reason, part] : w.stopped)
+      stopped += fmt::format("{}{} {:.2g} %", stopped.empty() ? "" : ", ", reason, 100 * part);
+    if (!stopped.empty()) out += fmt::format("  stopped by: {}\n", stopped);
+  }
+  return out;
+}
+
 std::string second_order_lines(const SecondOrderSummary& s) {
   std::string out =
       fmt::format("second order, every element proven valid\n  edges {}: {} curved, {} eased, {} straight\n",
@@ -129,6 +144,7 @@ std::string to_table(const Report& report) {
   if (report.boundary_faces > 0) out += volume_line(report);
   if (report.tets > 0) out.append("\n").append(quality_lines(report.quality));
   if (report.regions.size() > 1) out += region_lines(report.regions);
+  if (!report.layers.empty()) out += layer_lines(report.layers);
   if (report.second_order.edges > 0) out += second_order_lines(report.second_order);
   if (report.surface_edges.edges > 0) out += "edge lengths\n" + size_line("surface", report.surface_edges);
   if (report.volume_edges.edges > 0) out += size_line("volume", report.volume_edges);

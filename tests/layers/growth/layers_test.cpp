@@ -1,0 +1,222 @@
+// Boundary layers: heights as asked where there is room, fewer or thinner ones where there is none, and a valid mesh in
+// any case.
+
+#include <octafront/error.h>
+#include <octafront/generate.h>
+#include <octafront/validity.h>
+
+#include "base/geometry/measures.h"
+#include "layers/columns/assemble.h"
+#include "layers/growth/grow.h"
+#include "support/named_surfaces.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <set>
+#include <string>
+
+#include <gtest/gtest.h>
+
+namespace octafront {
+namespace {
+
+using namespace octafront::testing;
+
+layers::Columns grown_on(const SurfaceMesh& surface, std::uint32_t count, double first, double growth = 1.2,
+                         std::vector<std::uint8_t> is_wall = {}) {
+  if (is_wall.empty()) is_wall.assign(surface.triangles.size(), 1);
+  StageReport report;
+  const RunContext context;
+  return layers::grow(surface, is_wall, {count, growth, std::vector<double>(surface.points.size(), first), 0.3},
+                      {context, report});
+}
+
+bool is_full(const layers::Columns& columns, VertexIndex v) {
+  return columns.reason[v] == layers::Reason::kNone && columns.count[v] == columns.asked && columns.part[v] == 1;
+}
+
+Result meshed(const SurfaceMesh& surface, const LayerOptions& layers, double size) {
+  Domain domain;
+  domain.surface = surface;
+  Options options;
+  options.size.size = size;
+  options.layers = layers;
+  return generate(domain, options, RunContext{});
+}
+
+double volume_of(const TetMesh& mesh, std::uint32_t region) {
+  double sum = 0;
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    const auto [a, b, c, d] = mesh.tets[t];
+    if (mesh.region[t] == region) sum += signed_volume(mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]);
+  }
+  return sum;
+}
+
+/// A pipe along z with flat ends, which are patches 1 and 2.
+SurfaceMesh pipe(int around, int along) {
+  SurfaceMesh s;
+  const auto at = [&](int i, int k) { return static_cast<VertexIndex>(k * around + (i % around + around) % around); };
+  for (int k = 0; k <= along; ++k)
+    for (int i = 0; i < around; ++i) {
+      const double turn = 2 * std::numbers::pi * i / around;
+      s.points.push_back({std::cos(turn), std::sin(turn), 4.0 * k / along});
+    }
+  const auto add = [&](Triangle t, std::uint32_t patch) { s.triangles.push_back(t), s.patch.push_back(patch); };
+  for (int k = 0; k < along; ++k)
+    for (int i = 0; i < around; ++i) {
+      add({at(i, k), at(i + 1, k), at(i + 1, k + 1)}, 0);
+      add({at(i, k), at(i + 1, k + 1), at(i, k + 1)}, 0);
+    }
+  const auto low = static_cast<VertexIndex>(s.points.size()), high = low + 1;
+  s.points.push_back({0, 0, 0});
+  s.points.push_back({0, 0, 4});
+  for (int i = 0; i < around; ++i)
+    add({low, at(i + 1, 0), at(i, 0)}, 1), add({high, at(i, along), at(i + 1, along)}, 2);
+  s.patch_names = {"wall", "inlet", "outlet"};
+  return s;
+}
+
+TEST(Layers, AreAsHighAsAskedOnSimpleBodies) {
+  for (const SurfaceMesh& surface : {cube(8), icosphere(3), torus(60, 24)}) {
+    const layers::Columns columns = grown_on(surface, 3, 0.01);
+    for (VertexIndex v = 0; v < surface.points.size(); ++v) EXPECT_TRUE(is_full(columns, v));
+  }
+}
+
+TEST(Layers, GrowByTheirFactor) {
+  const SurfaceMesh surface = icosphere(3);
+  const layers::Columns columns = grown_on(surface, 5, 0.01, 1.3);
+  for (VertexIndex v = 0; v < surface.points.size(); ++v)
+    for (std::uint32_t k = 1; k < 5; ++k) {
+      const Vec3 a = columns.place(surface, {v, k - 1}), b = columns.place(surface, {v, k}),
+                 c = columns.place(surface, {v, k + 1});
+      EXPECT_NEAR(distance(b, c) / distance(a, b), 1.3, 1e-9);
+    }
+}
+
+TEST(Layers, ReachTheHeightOnFlatFacesBesideEdges) {
+  const SurfaceMesh surface = cube(8);
+  const layers::Columns columns = grown_on(surface, 1, 0.02);
+  for (VertexIndex v = 0; v < surface.points.size(); ++v) {
+    const Vec3 p = surface.points[v], q = columns.top(surface, v);
+    for (int axis = 0; axis < 3; ++axis) EXPECT_TRUE(p[axis] != 0 || q[axis] > 0.011);  // smoothed directions lean
+  }
+}
+
+TEST(Layers, GiveWayInAGap) {
+  const SurfaceMesh plate = box(1, 1, 0.05, 8);
+  const layers::Columns columns = grown_on(plate, 3, 0.02);
+  for (VertexIndex v = 0; v < plate.points.size(); ++v) {
+    const double height = std::abs(columns.top(plate, v).z - plate.points[v].z);
+    EXPECT_LT(height, 0.025);
+  }
+  EXPECT_TRUE(std::ranges::any_of(columns.reason, [](layers::Reason r) { return r == layers::Reason::kGap; }));
+}
+
+TEST(Layers, AMeshOfBothIsValidAndKeepsTheVolume) {
+  LayerOptions asked;
+  asked.count = 3;
+  asked.first = 0.01;
+  for (const SurfaceMesh& surface : {cube(2), icosphere(3), torus(60, 24)}) {
+    const Result made = meshed(surface, asked, 0.15);
+    EXPECT_EQ(first_defect(made.mesh), std::nullopt);
+    ASSERT_EQ(made.mesh.region_names, (std::vector<std::string>{"volume", "layers"}));
+    const double height = 0.01 * (1 + 1.2 + 1.44);
+    double wall = 0;
+    for (const Triangle& t : made.mesh.boundary) wall += triangle_area(made.mesh.points, t);
+    EXPECT_NEAR(volume_of(made.mesh, 1) / (wall * height), 1, 0.12);
+    ASSERT_FALSE(made.report.layers.empty());
+    for (const LayerSummary& on : made.report.layers) {
+      EXPECT_EQ(on.full, 1);
+      EXPECT_EQ(on.mean_count, 3);
+      EXPECT_GT(on.min_scaled_jacobian, 0.3);
+    }
+  }
+}
+
+TEST(Layers, EndOnFlatPatchesWithout) {
+  LayerOptions asked;
+  asked.count = 4;
+  asked.first = 0.02;
+  asked.on = "wall";
+  const Result made = meshed(pipe(48, 20), asked, 0.25);
+  EXPECT_EQ(first_defect(made.mesh), std::nullopt);
+  ASSERT_EQ(made.report.layers.size(), 1u);
+  EXPECT_EQ(made.report.layers[0].patch, "wall");
+  EXPECT_EQ(made.report.layers[0].full, 1);
+  double inlet = 0, wall = 0;
+  for (std::size_t f = 0; f < made.mesh.boundary.size(); ++f) {
+    const Triangle& t = made.mesh.boundary[f];
+    const std::string& patch = made.mesh.patch_names[made.mesh.patch[f]];
+    (patch == "inlet" ? inlet : wall) += patch == "outlet" ? 0 : triangle_area(made.mesh.points, t);
+    for (const VertexIndex v : t) {
+      if (patch != "wall") {
+        EXPECT_NEAR(made.mesh.points[v].z, patch == "inlet" ? 0 : 4, 1e-12);
+      }
+    }
+  }
+  EXPECT_NEAR(inlet, std::numbers::pi, 0.05);
+  EXPECT_NEAR(wall, 8 * std::numbers::pi, 0.3);
+}
+
+TEST(Layers, HeightsByYplusAndByTotal) {
+  LayerOptions asked;
+  asked.count = 3;
+  asked.first = 0.01;
+  asked.total = 0.05;
+  const Result by_total = meshed(icosphere(3), asked, 0.2);
+  ASSERT_EQ(by_total.report.layers.size(), 1u);
+  EXPECT_NEAR(by_total.report.layers[0].first_median, 0.01, 1e-9);
+  EXPECT_NEAR(volume_of(by_total.mesh, 1) / (4 * std::numbers::pi * 0.05), 1, 0.1);
+  LayerOptions flow;
+  flow.count = 3;
+  flow.yplus = 30, flow.reynolds = 1e5, flow.reference_length = 2;
+  // u_tau / U = sqrt(.013 Re^(-1/7)), y = 30 nu / u_tau
+  const double y = 30 * 2 / (1e5 * std::sqrt(0.013 * std::pow(1e5, -1.0 / 7)));
+  EXPECT_NEAR(meshed(icosphere(3), flow, 0.2).report.layers.at(0).first_median, y, 1e-12);
+}
+
+TEST(Layers, ContradictionsAreRefused) {
+  const SurfaceMesh ball = icosphere(2);
+  const auto refused = [&](const LayerOptions& o) { EXPECT_THROW(meshed(ball, o, 0.3), OptionError); };
+  LayerOptions o;
+  o.first = 0.01;
+  refused(o);  // no count
+  o.count = 3, o.total = 0.1, o.growth = 1.2;
+  refused(o);
+  o.growth.reset(), o.total.reset(), o.on = "nowhere";
+  refused(o);
+  o.on = "", o.first.reset();
+  refused(o);
+  o.first = 0.01, o.yplus = 1;
+  refused(o);
+}
+
+TEST(Layers, CoverageMayBeRequired) {
+  LayerOptions asked;
+  asked.count = 3;
+  asked.first = 0.05;
+  asked.require_coverage = 95;
+  EXPECT_NO_THROW(meshed(icosphere(3), asked, 0.3));
+  EXPECT_THROW(meshed(box(1, 1, 0.1, 2), asked, 0.2), MeshingError);
+}
+
+TEST(Layers, SharpRidgesAreLeftOut) {
+  SurfaceMesh blade;  // an edge of .6 degrees
+  blade.points = {{0, 0, 0}, {1, -0.005, 0}, {1, 0.005, 0}, {0, 0, 1}, {1, -0.005, 1}, {1, 0.005, 1}};
+  blade.triangles = {{0, 2, 1}, {3, 4, 5}, {0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}, {2, 0, 3}, {2, 3, 5}};
+  LayerOptions asked;
+  asked.count = 2;
+  asked.first = 0.001;
+  const Result made = meshed(blade, asked, 0.05);
+  EXPECT_EQ(first_defect(made.mesh), std::nullopt);
+  ASSERT_EQ(made.report.layers.size(), 1u);
+  EXPECT_LT(made.report.layers[0].full, 1);
+  EXPECT_FALSE(made.report.layers[0].stopped.empty());
+}
+
+}  // namespace
+}  // namespace octafront
