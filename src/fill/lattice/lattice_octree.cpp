@@ -1,6 +1,8 @@
 #include "fill/lattice/lattice_octree.h"
 
 #include "base/core/parallel.h"
+#include "base/geometry/doubtful_parts.h"
+#include "base/geometry/triangle_box.h"
 #include "fill/lattice/graded_bcc.h"
 #include "sizing/prediction/expected_tets.h"
 
@@ -13,11 +15,30 @@ namespace {
 
 // Cells with fewer triangles are visited in one task.
 constexpr std::size_t kTrianglesForTasks = 1000;
+// The box about a longer triangle holds far more cells than come near to it: that of a needle askew is most of its
+// body's.
+constexpr double kLongInLeaves = 8;
+// Nor are parts smaller than this share of the body: leaves may be, at one place.
+constexpr double kLeastPartOfBody = 1.0 / 256;
 
 Box3 box_of(const RootCube& root, OctreeKey cell) {
   const Vec3 lo = root.corner_of(cell);
   const double side = root.side_of(cell);
   return {lo, lo + Vec3{side, side, side}};
+}
+
+/// Boxes about triangles, and about the parts of those of which corners are farther than `reach` from the middle.
+std::vector<Box3> boxes_of_parts(const SurfaceMesh& surface, double reach) {
+  std::vector<Box3> boxes;
+  boxes.reserve(surface.triangles.size());
+  const auto take = [&](const TriangleCorners& part, Vec3, double has) {
+    if (has > reach) return Part::kDivide;
+    boxes.push_back(box_of(part));
+    return Part::kWithin;
+  };
+  for (const auto& [a, b, c] : surface.triangles)
+    for_each_doubtful_part({surface.points[a], surface.points[b], surface.points[c]}, take, [](Vec3) { return true; });
+  return boxes;
 }
 
 /// What the sizes ask of cells.
@@ -172,12 +193,8 @@ LatticeOctree build_lattice_octree(const SurfaceMesh& surface, const TriangleTre
                                    const RunContext& context) {
   const double leaf_side = kLatticeSidePerEdge * lattice_cell_size(sizes, surface);
   const RootCube root = lattice_root(bounding_box(surface.points), leaf_side);
-  std::vector<Box3> boxes;
-  boxes.reserve(surface.triangles.size());
-  for (const Triangle& t : surface.triangles) {
-    Box3& box = boxes.emplace_back();
-    for (const VertexIndex v : t) box.add(surface.points[v]);
-  }
+  const std::vector<Box3> boxes = boxes_of_parts(
+      surface, std::max(kLongInLeaves * leaf_side, kLeastPartOfBody * bounding_box(surface.points).diagonal()));
   const auto side_of = [&](OctreeKey cell) {
     return hull.contains(box_of(root, cell).center()) ? CellSide::kInside : CellSide::kOutside;
   };

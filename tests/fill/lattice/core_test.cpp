@@ -7,6 +7,7 @@
 #include "base/geometry/triangle_intersection.h"
 #include "base/geometry/triangle_tree.h"
 #include "fill/lattice/clear_sites.h"
+#include "fill/lattice/lattice_octree.h"
 #include "support/named_surfaces.h"
 
 #include <algorithm>
@@ -140,6 +141,23 @@ TEST(LatticeCore, MeetsTheWantedSize) {
   for (const Tet& t : core.tets)
     for (const auto& [i, j] : kTetEdges) sum += distance(core.points[t[i]], core.points[t[j]]);
   EXPECT_NEAR(sum / (6.0 * static_cast<double>(core.tets.size())), 0.1, 0.005);
+}
+
+// The boxes about its triangles are the whole cube around it.
+TEST(LatticeOctree, OfANeedleAskewIsFineAtTheNeedleOnly) {
+  SurfaceMesh needle;
+  needle.points = {{0, 0, 0}, {0.02, 0, 0}, {0, 0.02, 0}, {1, 1, 1}};
+  needle.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+  const TriangleTree tree(needle.points, needle.triangles);
+  const LatticeOctree lattice = build_lattice_octree(needle, tree, SizeField::uniform(0.01), {});
+  EXPECT_LT(lattice.tree.size(), 1e5);
+  const auto is_fine = [&](Vec3 p) {
+    const Vec3 at = (p - lattice.root.corner_of(OctreeKey::root())) * (OctreeKey::kSide / lattice.root.side);
+    const auto leaf = lattice.tree.leaf(lattice.tree.find(OctreeKey::containing(
+        static_cast<std::uint32_t>(at.x), static_cast<std::uint32_t>(at.y), static_cast<std::uint32_t>(at.z))));
+    return lattice.root.side_of(leaf) < 0.02;
+  };
+  for (double x = 0.005; x < 1; x += 0.005) EXPECT_TRUE(is_fine({x, x, x}));
 }
 
 TEST(LatticeCore, IsEmptyWhereThereIsNoRoom) {
