@@ -221,7 +221,7 @@ OF_IMAGES = """\
     crop: Sequence[Sequence[int | None]] | None = None,
     resample: float | Sequence[float] | None = None,
     closed_at_box: bool = True"""
-KINDS = {"number": "float", "whole": "int", "flag": "bool"}
+KINDS = {"number": "float", "whole": "int", "flag": "bool", "text": "str"}
 
 
 def declared(row):

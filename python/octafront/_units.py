@@ -9,7 +9,7 @@ from ._images import are_files, is_file
 from ._library import call, file_of, text_of
 
 # Keywords that take them.
-LENGTHS = ("size", "min_size", "max_size", "max_deviation")
+LENGTHS = ("size", "min_size", "max_size", "max_deviation", "first", "total", "Lref")
 
 
 @functools.lru_cache(maxsize=None)

@@ -18,6 +18,8 @@ OptionValue another(const OptionInfo& info, const OptionValue& value) {
       return 0.375;
     case OptionInfo::Kind::kWhole:
       return std::int64_t{7};
+    case OptionInfo::Kind::kText:
+      return std::string("words");
     case OptionInfo::Kind::kChoice:
       for (const std::string_view choice : info.choices)
         if (std::string(choice) != std::get<std::string>(value)) return std::string(choice);
