@@ -48,8 +48,8 @@ compare samples/torus_knot.ply samples/gyroid.ply samples/bracket.stl --size 4
 compare samples/head_labels.nii.gz --size 12
 
 if [ "${1:-}" = --tests ]; then
-  build_static "$work" rapidcheck "$toolchain" -DRC_ENABLE_GTEST=ON
   build_static "$work" googletest "$toolchain"
+  build_static "$work" rapidcheck "$toolchain" -DRC_ENABLE_GTEST=ON
   # shellcheck disable=SC2086
   cmake -S . -B "$work/tests" -G Ninja -DCMAKE_BUILD_TYPE=Release -DOCTAFRONT_UNITY=ON -DOCTAFRONT_HDF5=OFF -DOCTAFRONT_BUILD_PYTHON=OFF $arguments >/dev/null
   for wing in base formats soup improve; do
