@@ -8,34 +8,16 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/lib/apt.sh
+source scripts/lib/static.sh
 glibc=2.17 megabytes=8 work=$PWD/build/portable
-inside=$work/inside wheels=$PWD/dist
+wheels=$PWD/dist
 need_packages "${build_packages[@]}" python3 python3-numpy python3-venv dpkg-dev binutils
 
-# Debian has no static libraries of these two: built from its sources, which it signs.
-build_static() {
-  local name=$1
-  shift
-  [ -e "$inside/$name.done" ] && return
-  mkdir -p "$work/lists/partial" "$work/sources"
-  echo "deb-src [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] http://deb.debian.org/debian bookworm main" >"$work/sources.list"
-  local apt=(apt-get -qq -o "Dir::Etc::sourcelist=$work/sources.list" -o Dir::Etc::sourceparts=- -o "Dir::State::lists=$work/lists" -o APT::Sandbox::User=root)
-  "${apt[@]}" update
-  rm -rf "$work/sources/$name"
-  mkdir -p "$work/sources/$name"
-  (cd "$work/sources/$name" && "${apt[@]}" source --download-only "$name" && dpkg-source -x ./*.dsc unpacked >/dev/null)
-  cmake -S "$work/sources/$name/unpacked" -B "$work/build-$name" -G Ninja -DCMAKE_BUILD_TYPE=Release -DBUILD_SHARED_LIBS=OFF \
-    -DCMAKE_POSITION_INDEPENDENT_CODE=ON -DCMAKE_INSTALL_PREFIX="$inside" "$@" >/dev/null
-  cmake --build "$work/build-$name" >/dev/null
-  cmake --install "$work/build-$name" >/dev/null
-  touch "$inside/$name.done"
-}
-build_static onetbb -DTBB_TEST=OFF -DTBB_STRICT=OFF -DTBBMALLOC_BUILD=OFF -DTBB_DISABLE_HWLOC_AUTOMATIC_SEARCH=ON -Wno-dev
-build_static fmtlib -DFMT_TEST=OFF -DFMT_DOC=OFF
+build_tbb_and_fmt "$work"
 
 rm -rf "$wheels"
 mkdir -p "$wheels"
-arguments="-DCMAKE_PREFIX_PATH=$inside -DZLIB_USE_STATIC_LIBS=ON -DOCTAFRONT_CAD=OFF -DOCTAFRONT_OLDEST_GLIBC=$glibc"
+arguments="-DCMAKE_PREFIX_PATH=$work/inside -DZLIB_USE_STATIC_LIBS=ON -DOCTAFRONT_CAD=OFF -DOCTAFRONT_OLDEST_GLIBC=$glibc"
 [ -z "${CMAKE_CXX_COMPILER_LAUNCHER:-}" ] || arguments+=" -DCMAKE_CXX_COMPILER_LAUNCHER=$CMAKE_CXX_COMPILER_LAUNCHER"
 make_wheel() { # of a source, in a build folder, into a folder
   PYTHONPATH=$1/python/backend python3 - "$2" "$3" "$arguments" <<'PYTHON'

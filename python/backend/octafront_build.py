@@ -3,6 +3,7 @@
 Settings, by pip's --config-settings KEY=VALUE:
     build-dir=DIR   a CMake build folder to use, made already or not; by default build/wheel
     jobs=N          compilers at the same time
+    machine=NAME    of a cross build, such as aarch64; by default this one's
     cmake-args=...  more arguments of CMake, for a build folder that is new; scripts/wheel.sh has those of releases
 
 The wheel carries the libraries that ours need, but for those that every Linux has (EVERYWHERE), beside ours, where ours
@@ -56,7 +57,7 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     build = pathlib.Path(settings.get("build-dir") or ROOT / "build" / "wheel").resolve()
     compile_in(build, settings.get("jobs"), shlex.split(settings.get("cmake-args") or ""))
     binaries = collect(build / "python" / "octafront" / "_bin")
-    tag = f"py3-none-manylinux_{'_'.join(map(str, glibc_of(binaries.values())))}_{machine()}"
+    tag = f"py3-none-manylinux_{'_'.join(map(str, glibc_of(binaries.values())))}_{settings.get('machine') or machine()}"
     name = f"octafront-{version()}-{tag}.whl"
     with Wheel(pathlib.Path(wheel_directory) / name) as wheel:
         for path in sorted((ROOT / "python" / "octafront").iterdir()):
@@ -126,7 +127,12 @@ def collect(folder):
     found = {name: folder / name for name in ("liboctafront.so", "octafront")}
     waiting = list(found.values())
     while waiting:
-        for line in output("ldd", waiting.pop()).splitlines():
+        file = waiting.pop()
+        needed = re.findall(r"\(NEEDED\).*\[(.+)\]", output("readelf", "--wide", "--dynamic", file))
+        # Then nobody has to find what a cross build needs.
+        if all(EVERYWHERE.fullmatch(name) or name in found for name in needed):
+            continue
+        for line in output("ldd", file).splitlines():
             match = re.match(r"\s*(\S+) => (\S+)", line)
             if not match or EVERYWHERE.fullmatch(match[1]) or match[1] in found:
                 continue

@@ -2,7 +2,7 @@
 """Makes libraries to link with that stand for an older glibc: what is linked with them runs wherever that one or a newer
 one is.
 
-    old_glibc.py 2.17 FOLDER
+    old_glibc.py 2.17 FOLDER [COMPILER]
 
 glibc keeps old versions of its functions for old programs, and programs get the newest ones of the machine where they are
 linked. The stand-ins have the functions of this machine's glibc, each in the newest version that the older glibc had, and
@@ -15,19 +15,22 @@ import sys
 
 # With the functions of libpthread, libdl and librt, which became parts of libc in 2.34, and are asked for by name, too.
 LIBRARIES = {"libc": "libc.so.6", "libm": "libm.so.6"}
+LOADERS = {"x86_64": "ld-linux-x86-64.so.2", "aarch64": "ld-linux-aarch64.so.1"}
 EMPTY = {"libpthread": "libpthread.so.0", "libdl": "libdl.so.2", "librt": "librt.so.1"}
 
 
 def main():
+    global compiler
     floor, folder = tuple(map(int, sys.argv[1].split("."))), pathlib.Path(sys.argv[2])
+    compiler = sys.argv[3] if len(sys.argv) > 3 else "gcc"
     folder.mkdir(parents=True, exist_ok=True)
     for name, file in LIBRARIES.items():
         make(folder, name, file, chosen(symbols_of(place_of(file)), floor))
     for name, file in EMPTY.items():
         make(folder, name, file, {})
     # As Debian's own libc.so: a few functions are linked in, and one is in the loader.
-    loader = [line.split()[0] for line in run("ldd", sys.executable).splitlines() if "ld-linux" in line][0]
-    nonshared = run("gcc", "-print-file-name=libc_nonshared.a").strip()
+    loader = place_of(LOADERS[run(compiler, "-dumpmachine").split("-")[0]])
+    nonshared = place_of("libc_nonshared.a")
     (folder / "libc.so").unlink()
     (folder / "libc.so").write_text(f"GROUP ( {folder / 'libc.so.6'} {nonshared} AS_NEEDED ( {loader} ) )\n")
 
@@ -37,7 +40,7 @@ def run(*command):
 
 
 def place_of(file):
-    return run("gcc", f"-print-file-name={file}").strip()
+    return run(compiler, f"-print-file-name={file}").strip()
 
 
 def symbols_of(file):
@@ -71,7 +74,7 @@ def make(folder, name, file, symbols):
                    f".symver {label}, {symbol}@@{tag(version)}, remove"]
     (folder / f"{name}.s").write_text("\n".join(source) + "\n")
     (folder / f"{name}.map").write_text("".join(f"{tag(v)} {{ }};\n" for v in sorted(versions)) or "{ local: *; };\n")
-    run("gcc", "-shared", "-nostdlib", f"-Wl,-soname,{file}", f"-Wl,--version-script={folder / (name + '.map')}",
+    run(compiler, "-shared", "-nostdlib", f"-Wl,-soname,{file}", f"-Wl,--version-script={folder / (name + '.map')}",
         str(folder / f"{name}.s"), "-o", str(folder / file))
     for link in (folder / f"{name}.so",):
         link.unlink(missing_ok=True)

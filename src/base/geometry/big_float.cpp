@@ -154,6 +154,24 @@ void BigFloat::leading_bits(std::uint64_t& mantissa, std::int64_t& exponent) con
   exponent = 64 * (static_cast<std::int64_t>(exponent_) + static_cast<std::int64_t>(n) - 1) - zeros;
 }
 
+namespace {
+
+/// n / d as mantissa * 2^exponent, to the nearest of 64 bits, ties to even; both have their highest bit set. By whole
+/// numbers: what long double has differs from machine to machine.
+std::uint64_t nearest_quotient(std::uint64_t n, std::uint64_t d, int& exponent) {
+  exponent = n >= d ? -63 : -64;
+  const Wide scaled = static_cast<Wide>(n) << -exponent;
+  auto q = static_cast<std::uint64_t>(scaled / d);
+  const auto rest = static_cast<std::uint64_t>(scaled % d);
+  const bool is_up = rest > d - rest || (rest == d - rest && q % 2 == 1);
+  if (!is_up) return q;
+  if (++q != 0) return q;
+  ++exponent;
+  return std::uint64_t{1} << 63;
+}
+
+}  // namespace
+
 double quotient(const BigFloat& numerator, const BigFloat& denominator) {
   if (numerator.is_zero()) return 0;
   std::uint64_t n = 0, d = 0;
@@ -161,7 +179,9 @@ double quotient(const BigFloat& numerator, const BigFloat& denominator) {
   numerator.leading_bits(n, en);
   denominator.leading_bits(d, ed);
   const auto exponent = static_cast<int>(std::clamp<std::int64_t>(en - ed, -5000, 5000));
-  const auto q = static_cast<double>(std::ldexp(static_cast<long double>(n) / static_cast<long double>(d), exponent));
+  int of_quotient = 0;
+  const auto mantissa = static_cast<double>(nearest_quotient(n, d, of_quotient));
+  const double q = std::ldexp(mantissa, exponent + of_quotient);
   return numerator.negative_ != denominator.negative_ ? -q : q;
 }
 

@@ -3,6 +3,7 @@
 
 #include "base/core/buckets.h"
 #include "base/core/parallel.h"
+#include "base/core/shared_value.h"
 #include "base/geometry/measures.h"
 #include "base/geometry/predicates.h"
 #include "base/mesh/complex.h"
@@ -11,7 +12,6 @@
 #include "base/mesh/quadratic_nodes.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -57,7 +57,7 @@ std::optional<std::string> point_defect(const TetMesh& mesh) {
   std::vector<char> used(n, 0);
   const auto use = [&](const auto& rows) {
     parallel_for(rows.size(), [&](std::size_t i) {
-      for (const VertexIndex v : rows[i]) std::atomic_ref(used[v]).store(1, std::memory_order_relaxed);
+      for (const VertexIndex v : rows[i]) SharedValue(used[v]).store(1);
     });
   };
   use(mesh.tets);

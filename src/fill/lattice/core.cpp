@@ -3,6 +3,7 @@
 #include <octafront/surface_mesh.h>
 
 #include "base/core/parallel.h"
+#include "base/core/shared_value.h"
 #include "base/geometry/triangle_tree.h"
 #include "base/mesh/complex.h"
 #include "base/mesh/face_table.h"
@@ -13,7 +14,6 @@
 #include "fill/lattice/site_table.h"
 
 #include <algorithm>
-#include <atomic>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -158,7 +158,7 @@ class CoreBuilder {
           if (is_hanging(s))
             hanging_is_used[c][s - kHanging] = 1;
           else
-            std::atomic_ref(vertex_[s]).store(0, std::memory_order_relaxed);
+            SharedValue(vertex_[s]).store(0);
     });
     VertexIndex next = 0;
     for (VertexIndex& v : vertex_)

@@ -19,7 +19,7 @@ bool is_tiny(std::string_view digits) {
 bool parse_number(std::string_view word, double& value) {
   if (word.starts_with('+')) word.remove_prefix(1);
   const char* const end = word.data() + word.size();
-  const auto [stop, error] = std::from_chars(word.data(), end, value);
+  const auto [stop, error] = double_from_chars(word.data(), end, value);
   if (stop != end || word.empty()) return false;
   if (error == std::errc()) return true;
   if (error != std::errc::result_out_of_range) return false;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "formats/containers/doubles.h"
 #include "formats/containers/input.h"
 
 #include <charconv>
@@ -79,7 +80,7 @@ class Scanner {
   double number(std::string_view what) {
     skip_blanks();
     double value = 0;
-    const auto [stop, error] = std::from_chars(at_, end_, value);
+    const auto [stop, error] = double_from_chars(at_, end_, value);
     if (error == std::errc() && (stop == end_ || is_blank(*stop)) && std::isfinite(value)) [[likely]] {
       at_ = stop;
       return value;

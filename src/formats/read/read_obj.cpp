@@ -96,7 +96,7 @@ class Obj {
     double value = 0;
     const std::string_view w = word();
     if (!w.empty()) {
-      const auto [stop, error] = std::from_chars(w.data(), w.data() + w.size(), value);
+      const auto [stop, error] = double_from_chars(w.data(), w.data() + w.size(), value);
       if ((error == std::errc() && stop == w.data() + w.size() && std::isfinite(value)) ||
           (parse_number(w, value) && std::isfinite(value)))
         return value;

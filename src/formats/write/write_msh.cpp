@@ -6,6 +6,7 @@
 #include <octafront/error.h>
 
 #include "base/core/parallel.h"
+#include "base/core/shared_value.h"
 #include "formats/containers/text_writer.h"
 #include "formats/parts/boundary.h"
 #include "formats/parts/msh_stream.h"
@@ -13,7 +14,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cstring>
 #include <limits>
 #include <string>
@@ -227,8 +227,8 @@ class Msh4Writer {
       ElementNodes nodes_of(mesh_);
       for (const std::uint32_t m : members.subspan(begin, end - begin))
         nodes_of.put<std::uint64_t>(entities_[e].dimension, m, [&](std::uint64_t tag) {
-          const std::atomic_ref of_node(entity[tag - 1]);
-          if (of_node.load(std::memory_order_relaxed) == kNone) of_node.store(e, std::memory_order_relaxed);
+          const SharedValue of_node(entity[tag - 1]);
+          if (of_node.load() == kNone) of_node.store(e);
           sum.box.add(mesh_.mesh().points[tag - 1]);
         });
       return sum;

@@ -3,10 +3,10 @@
 #include <octafront/run_context.h>
 
 #include "base/blocks/blocks.h"
+#include "base/core/shared_value.h"
 #include "improve/passes/passes.h"
 
 #include <algorithm>
-#include <atomic>
 #include <vector>
 
 namespace octafront::improve {
@@ -64,8 +64,8 @@ class VertexBlocks {
       const std::uint8_t mark = (needs_work(mesh.shape(t)) ? kWorked : 0) | (cells.holding(c) == kNoOwner ? kAtRim : 0);
       if (mark == 0) return;
       for (const VertexIndex v : c) {
-        const std::atomic_ref shared(marks[v]);
-        if ((shared.load(std::memory_order_relaxed) & mark) != mark) shared.fetch_or(mark, std::memory_order_relaxed);
+        const SharedValue shared(marks[v]);
+        if ((shared.load() & mark) != mark) shared.add_bits(mark);
       }
     });
     return marks;

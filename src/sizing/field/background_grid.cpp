@@ -3,11 +3,11 @@
 #include <octafront/surface_mesh.h>
 
 #include "base/core/parallel.h"
+#include "base/core/shared_value.h"
 #include "sizing/field/gradation.h"
 #include "sizing/field/inside_fraction.h"
 
 #include <algorithm>
-#include <atomic>
 #include <limits>
 #include <span>
 #include <utility>
@@ -98,7 +98,7 @@ class GridMaker {
   /// normal within the leaf, so that a surface of one size has that size, and rises at the gradation along the plane.
   std::vector<double> corner_caps() const {
     std::vector<double> caps(corners_.size(), kInfinity);
-    for_each_cap([&](std::uint32_t corner, double cap, const Sample&) { lower_to(caps[corner], cap); });
+    for_each_cap([&](std::uint32_t corner, double cap, const Sample&) { SharedValue(caps[corner]).lower_to(cap); });
     return caps;
   }
 
@@ -106,7 +106,7 @@ class GridMaker {
   std::vector<double> sizes_behind(const std::vector<double>& caps) const {
     std::vector<double> sizes(corners_.size(), kInfinity);
     for_each_cap([&](std::uint32_t corner, double cap, const Sample& s) {
-      if (cap == caps[corner]) lower_to(sizes[corner], s.h);
+      if (cap == caps[corner]) SharedValue(sizes[corner]).lower_to(s.h);
     });
     return sizes;
   }
@@ -128,14 +128,6 @@ class GridMaker {
           for (const auto& share : corners_.shares_of(corner)) lay_on(share.corner, s);
         }
     });
-  }
-
-  /// Several threads may lower the same value.
-  static void lower_to(double& value, double to) {
-    const std::atomic_ref shared(value);
-    double known = shared.load(std::memory_order_relaxed);
-    while (to < known && !shared.compare_exchange_weak(known, to, std::memory_order_relaxed)) {
-    }
   }
 
   std::span<const Sample> samples_in(std::size_t leaf) const {

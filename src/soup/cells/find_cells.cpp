@@ -4,6 +4,7 @@
 
 #include "base/core/disjoint_sets.h"
 #include "base/core/wording.h"
+#include "base/geometry/double_double.h"
 
 #include <algorithm>
 #include <queue>
@@ -73,25 +74,28 @@ Cells::Cells(std::span<const Vec3> points, std::span<const Triangle> triangles, 
 }
 
 std::vector<double> Cells::volumes() const {
-  std::vector<long double> six(count_, 0);
+  using exact::DoubleDouble, exact::two_product;
+  // By sums of two doubles: of long doubles each kind of machine has its own.
+  std::vector<DoubleDouble> six(count_);
   // Each cell is seen from a vertex of its own: far from it what a tiny one has would cancel.
   std::vector<VertexIndex> origin(count_, kNone);
   const auto six_volumes_from = [&](VertexIndex o, const Triangle& t) {
     const Vec3 p = points_[t[0]] - points_[o], q = points_[t[1]] - points_[o], r = points_[t[2]] - points_[o];
-    const auto det = [](double x, double y, double z, double w) {
-      return static_cast<long double>(x) * w - static_cast<long double>(y) * z;
+    const auto times_det = [](double factor, double x, double y, double z, double w) {
+      return DoubleDouble({factor, 0}) * (DoubleDouble(two_product(x, w)) - two_product(y, z));
     };
-    return p.x * det(q.y, q.z, r.y, r.z) + p.y * det(q.z, q.x, r.z, r.x) + p.z * det(q.x, q.y, r.x, r.y);
+    return times_det(p.x, q.y, q.z, r.y, r.z) + times_det(p.y, q.z, q.x, r.z, r.x) + times_det(p.z, q.x, q.y, r.x, r.y);
   };
   for (std::size_t t = 0; t < triangles_.size(); ++t)
     for (const bool is_behind : {false, true}) {
       const std::uint32_t cell = cell_[2 * t + (is_behind ? 1 : 0)];
       if (origin[cell] == kNone) origin[cell] = triangles_[t][0];
-      six[cell] += (is_behind ? 1 : -1) * six_volumes_from(origin[cell], triangles_[t]);
+      const DoubleDouble part = six_volumes_from(origin[cell], triangles_[t]);
+      six[cell] = is_behind ? six[cell] + part : six[cell] - part;
     }
   std::vector<double> volumes;
   // Enclosed cells have a volume; of slivers rounding may leave less than nothing.
-  for (const long double v : six) volumes.push_back(std::max(0.0, static_cast<double>(v / 6)));
+  for (const DoubleDouble& v : six) volumes.push_back(std::max(0.0, v.hi / 6));
   volumes[0] = 0;
   return volumes;
 }

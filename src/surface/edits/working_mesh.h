@@ -4,9 +4,8 @@
 // (star_collapse, coarsen), of lines too (line_edits), guarded (local_guards), in blocks of parallel work (blocks). A
 // closed manifold exists at every moment.
 
+#include "base/core/shared_value.h"
 #include "surface/ground/walk.h"
-
-#include <atomic>
 
 namespace octafront::remeshing {
 
@@ -59,9 +58,7 @@ struct WorkingMesh : HalfEdgeMesh {
   /// Marks for passes that skip what did not change since they last saw it.
   static constexpr std::uint8_t kForSmoothing = 1, kForFlips = 2;
   /// Vertices beside what a block changes may be marked by several threads.
-  void mark_changed(VertexIndex v) {
-    std::atomic_ref(changed[v]).store(kForSmoothing | kForFlips, std::memory_order_relaxed);
-  }
+  void mark_changed(VertexIndex v) { SharedValue(changed[v]).store(kForSmoothing | kForFlips); }
   void mark_star_changed(VertexIndex v) {
     mark_changed(v);
     for_each_outgoing(v, [&](HalfEdge h) { mark_changed(end(h)); });
