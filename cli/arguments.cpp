@@ -413,7 +413,7 @@ void declare_surface(CLI::App& command, Arguments& a) {
 }
 
 void declare_layers(CLI::App& command, Arguments& a) {
-  LayerOptions& o = a.options.layers;
+  LayersOptions& o = a.options.layers;
   auto* group = command.add_option_group("Boundary layers");
   group->add_option("--layers", o.count, "Layers of thin elements along walls, as high as the options below say")
       ->type_name("N");
@@ -437,7 +437,9 @@ void declare_layers(CLI::App& command, Arguments& a) {
       ->add_option("--require-coverage", o.require_coverage,
                    "Percent of each wall's faces that must have all layers, or the run fails with status 4")
       ->type_name("P");
+  group->add_flag("--layers-as-tets", o.as_tets, "Layers are tetrahedra also in formats that have wedges");
   a.names.add("count", "--layers");
+  a.names.add("as_tets", "--layers-as-tets");
   a.names.add("reynolds", "--Re");
   a.names.add("reference_length", "--Lref");
 }

@@ -101,7 +101,7 @@ struct SurfaceOptions {
 };
 
 /// Boundary layers: thin elements along walls, which grow from them.
-struct LayerOptions {
+struct LayersOptions {
   int count = 0;  ///< layers; 0: none
   /// Height of the first layer, at the wall: input units, or a part of the local edge length; one of the two, `yplus`,
   /// or `total` alone.
@@ -113,6 +113,8 @@ struct LayerOptions {
   /// number belongs to a length: skin friction of .026 Re^(-1/7) (F. White, Fluid Mechanics).
   std::optional<double> yplus, reynolds, reference_length;
   std::string on;  ///< names of the patches that are walls, separated by commas; empty: all patches
+  /// Layers are tetrahedra in every file, also where a format has wedges and pyramids (TetMesh::wide_cells).
+  bool as_tets = false;
   /// Percent of the faces of each wall that must have all layers, as high as asked; MeshingError otherwise.
   std::optional<double> require_coverage;
 };
@@ -181,7 +183,7 @@ struct Options {
   Method method = Method::kOctreeAft;  ///< kRecover implies surface.keep
   SizeOptions size;
   SurfaceOptions surface;
-  LayerOptions layers;
+  LayersOptions layers;
   VolumeOptions volume;
   ImproveOptions improve;
   /// 1: linear elements. 2: elements of second order, curved to the surface that the input stands for; see

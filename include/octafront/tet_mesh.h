@@ -43,6 +43,26 @@ struct NamedSet {
   friend bool operator==(const NamedSet&, const NamedSet&) = default;
 };
 
+/// A wedge or pyramid that consecutive tetrahedra of a mesh make up, as boundary layers do.
+struct WideCell {
+  TetIndex first = 0;           ///< of its tetrahedra
+  std::uint32_t tet_count = 0;  ///< 3: a wedge; 2: a pyramid
+  /// Wedge: a triangle, counter-clockwise seen from the other one, and that one above it. Pyramid: its base,
+  /// counter-clockwise seen from the apex, the apex, kNone.
+  std::array<VertexIndex, 6> nodes{};
+
+  friend bool operator==(const WideCell&, const WideCell&) = default;
+};
+
+/// A quadrilateral of wedges and pyramids that two consecutive boundary faces make up, counter-clockwise seen from
+/// outside.
+struct WideFace {
+  std::uint32_t first = 0;
+  std::array<VertexIndex, 4> nodes{};
+
+  friend bool operator==(const WideFace&, const WideFace&) = default;
+};
+
 /// A tetrahedral mesh as flat arrays: linear, or of second order.
 ///
 /// What leaves the library is *valid* (see first_defect): every tet is positive by exact sign, every face belongs to
@@ -69,6 +89,10 @@ struct TetMesh {
   /// points like others, behind all corners. Empty: the mesh is linear.
   std::vector<std::array<VertexIndex, 6>> mid_nodes;
   std::vector<NamedSet> sets;  ///< further named parts: what a user asked for, or a file had
+  /// Ascending. Files whose formats have wedges and pyramids get these in the place of their tetrahedra; each
+  /// quadrilateral between two of them or at the boundary is whole on both sides. Empty: tetrahedra only.
+  std::vector<WideCell> wide_cells;
+  std::vector<WideFace> wide_faces;  ///< the quadrilaterals of `boundary`; ascending
 
   bool is_second_order() const { return !mid_nodes.empty(); }
   /// How many there are of what sets of this kind are made of.

@@ -51,7 +51,7 @@ class Help(unittest.TestCase):
         return re.findall(r"^  (\w+) ", block, re.M)
 
     def options(self, command):
-        return set(re.findall(r"(--[a-z][a-z-]+)", self.run_cli(command, "--help").out.split("Examples:")[0]))
+        return set(re.findall(r"(--[A-Za-z][A-Za-z-]+)", self.run_cli(command, "--help").out.split("Examples:")[0]))
 
     def test_help_of_a_command_has_options_and_examples_that_run(self):
         for command in self.commands():

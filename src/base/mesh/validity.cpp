@@ -96,6 +96,40 @@ std::optional<std::string> set_defect(const TetMesh& mesh) {
   return std::nullopt;
 }
 
+/// The nodes of some elements or faces, each once.
+template <class Rows>
+std::vector<VertexIndex> nodes_of_rows(const Rows& rows, std::size_t first, std::size_t count) {
+  std::vector<VertexIndex> nodes;
+  for (std::size_t i = first; i < first + count; ++i) nodes.insert(nodes.end(), rows[i].begin(), rows[i].end());
+  std::sort(nodes.begin(), nodes.end());
+  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+  return nodes;
+}
+
+std::optional<std::string> wide_defect(const TetMesh& mesh) {
+  const auto differ = [](std::vector<VertexIndex> own, const std::vector<VertexIndex>& of_parts) {
+    std::sort(own.begin(), own.end());
+    return own != of_parts;
+  };
+  std::size_t end = 0;
+  for (const WideCell& cell : mesh.wide_cells) {
+    const std::size_t count = cell.tet_count, nodes = count + 3;
+    if ((count != 2 && count != 3) || cell.first < end || cell.first + count > mesh.tets.size() ||
+        differ({cell.nodes.begin(), cell.nodes.begin() + static_cast<std::ptrdiff_t>(nodes)},
+               nodes_of_rows(mesh.tets, cell.first, count)))
+      return fmt::format("the wedge or pyramid of tetrahedron {} is not made of it and those behind it", cell.first);
+    end = cell.first + count;
+  }
+  end = 0;
+  for (const WideFace& face : mesh.wide_faces) {
+    if (face.first < end || face.first + 2 > mesh.boundary.size() ||
+        differ({face.nodes.begin(), face.nodes.end()}, nodes_of_rows(mesh.boundary, face.first, 2)))
+      return fmt::format("the quadrilateral of boundary face {} is not made of it and the one behind it", face.first);
+    end = face.first + 2;
+  }
+  return std::nullopt;
+}
+
 Edge edge_of(const Tet& t, std::size_t e) {
   const VertexIndex a = t[static_cast<std::size_t>(kTetEdges[e][0])], b = t[static_cast<std::size_t>(kTetEdges[e][1])];
   return sorted_edge(a, b);
@@ -354,7 +388,7 @@ std::optional<std::string> boundary_difference(const TetMesh& mesh, const Surfac
 std::optional<std::string> first_defect(const TetMesh& mesh, const RunContext& context) {
   if (std::max(mesh.tets.size(), mesh.boundary.size() + mesh.interfaces.size()) >= FaceOwner::kMostOwners)
     return "a mesh of 2^30 tetrahedra or more cannot be checked";
-  for (const auto check : {point_defect, array_defect, set_defect, sign_defect, face_defect, curve_defect,
+  for (const auto check : {point_defect, array_defect, set_defect, wide_defect, sign_defect, face_defect, curve_defect,
                            mid_node_defect, jacobian_defect, volume_defect}) {
     context.check();
     if (auto defect = check(mesh)) return defect;

@@ -420,6 +420,48 @@ void RawMesh::add_face(std::span<const VertexIndex> nodes, std::int64_t ref) {
   triangle_ref.resize(triangles.size(), ref);
 }
 
+namespace {
+
+/// Whether the lower of the nodes a and c is below both others: the diagonal of a quadrilateral starts there.
+bool is_divided_from(std::span<const VertexIndex> nodes, std::span<const std::uint64_t> rank, std::size_t a,
+                     std::size_t c, std::size_t b, std::size_t d) {
+  const auto number = [&](std::size_t k) { return rank.empty() ? std::uint64_t{nodes[k]} : rank[nodes[k]]; };
+  return std::min(number(a), number(c)) < std::min(number(b), number(d));
+}
+
+}  // namespace
+
+void RawMesh::add_wide_cell(std::span<const VertexIndex> nodes, std::int64_t ref, std::span<const std::uint64_t> rank) {
+  const auto add = [&](std::array<std::size_t, 4> k) {
+    add_tet(std::array{nodes[k[0]], nodes[k[1]], nodes[k[2]], nodes[k[3]]}, ref);
+  };
+  if (nodes.size() == 5) {
+    const std::size_t k = is_divided_from(nodes, rank, 0, 2, 1, 3) ? 0 : 1;
+    add({k, k + 1, k + 2, 4}), add({k, k + 2, (k + 3) % 4, 4});
+    return;
+  }
+  // The lowest node and its neighbours in its triangle, counter-clockwise seen from the other one, then those there.
+  const auto low = static_cast<std::size_t>(
+      std::ranges::min_element(nodes, {}, [&](VertexIndex v) { return rank.empty() ? std::uint64_t{v} : rank[v]; }) -
+      nodes.begin());
+  const bool is_base = low < 3;
+  const std::size_t i = low % 3, j = (i + (is_base ? 1 : 2)) % 3, k = (i + (is_base ? 2 : 1)) % 3;
+  const std::size_t own = is_base ? 0 : 3, other = 3 - own;
+  const std::array<std::size_t, 6> v{own + i, own + j, own + k, other + i, other + j, other + k};
+  if (is_divided_from(nodes, rank, v[1], v[5], v[2], v[4]))
+    add({v[0], v[1], v[2], v[5]}), add({v[0], v[1], v[5], v[4]}), add({v[0], v[4], v[5], v[3]});
+  else
+    add({v[0], v[1], v[2], v[4]}), add({v[0], v[4], v[2], v[5]}), add({v[0], v[4], v[5], v[3]});
+}
+
+void RawMesh::add_side_of_wide_cell(std::span<const VertexIndex> nodes, std::int64_t ref,
+                                    std::span<const std::uint64_t> rank) {
+  const std::size_t k = is_divided_from(nodes, rank, 0, 2, 1, 3) ? 0 : 1;
+  triangles.push_back({nodes[k], nodes[k + 1], nodes[k + 2]});
+  triangles.push_back({nodes[k], nodes[k + 2], nodes[(k + 3) % 4]});
+  triangle_ref.resize(triangles.size(), ref);
+}
+
 MeshFile ordered_mesh(RawMesh raw, const Input& input) {
   return Ordering(std::move(raw), input).result();
 }

@@ -52,6 +52,14 @@ struct RawMesh {
   /// Adds a tetrahedron whose nodes are corners, then mid-side nodes in that order, if it has them. A file must not mix
   /// both kinds; ordered_mesh() refuses it.
   void add_tet(std::span<const VertexIndex> nodes, std::int64_t ref, const MidOrder& order = kVtkMids);
+  /// Adds the two or three tetrahedra of a pyramid (five nodes: its base, the apex) or wedge (six nodes: a triangle and
+  /// the one above it), in the order of WideCell. Their quadrilaterals are divided from the lowest node, so that
+  /// neighbours match (J. Dompierre et al., How to subdivide pyramids, prisms and hexahedra into tetrahedra, 1999).
+  /// `rank`: the numbers of points by which one is the lowest; empty: their indices.
+  void add_wide_cell(std::span<const VertexIndex> nodes, std::int64_t ref, std::span<const std::uint64_t> rank = {});
+  /// Adds the two triangles of a quadrilateral as those of wide cells are divided.
+  void add_side_of_wide_cell(std::span<const VertexIndex> nodes, std::int64_t ref,
+                             std::span<const std::uint64_t> rank = {});
   /// Adds a triangle, of three nodes or six, or the two of a quadrilateral, of four, eight or nine, along its shorter
   /// diagonal. The points must be known.
   void add_face(std::span<const VertexIndex> nodes, std::int64_t ref);

@@ -5,17 +5,17 @@
 namespace octafront::io {
 namespace {
 
-using Kind = NamedSet::Kind;
+using SetKind = NamedSet::Kind;
 
-constexpr std::array<std::array<std::uint8_t, 3>, 2> kVtkCells{{{10, 5, 3}, {24, 22, 21}}};
+constexpr std::array<std::array<std::uint8_t, 6>, 2> kVtkCells{{{10, 14, 13, 5, 9, 3}, {24, 14, 13, 22, 9, 21}}};
 
-std::string_view plural(Kind kind) {
+std::string_view plural(SetKind kind) {
   switch (kind) {
-    case Kind::kNodes:
+    case SetKind::kNodes:
       return "nodes ";
-    case Kind::kEdges:
+    case SetKind::kEdges:
       return "edges ";
-    case Kind::kFaces:
+    case SetKind::kFaces:
       return "faces ";
     default:
       return "elements ";
@@ -26,28 +26,42 @@ std::string_view plural(Kind kind) {
 
 VtkCells::VtkCells(const MeshParts& mesh)
     : mesh_(mesh),
-      ends_{mesh.tets(), mesh.tets() + mesh.faces(), mesh.tets() + mesh.faces() + mesh.edges()},
-      each_{mesh.nodes_per_tet(), mesh.nodes_per_face(), mesh.nodes_per_edge()},
+      cells_(mesh),
+      each_{mesh.nodes_per_tet(), 5, 6, mesh.nodes_per_face(), 4, mesh.nodes_per_edge()},
       types_(kVtkCells[mesh.second_order()]),
       data_{{"region", false, false}, {"patch", false, false}} {
+  for (const MixedCells::Kind k : {MixedCells::kTet, MixedCells::kPyramid, MixedCells::kWedge})
+    ends_[k] = cells_.end(k);
+  ends_[kTriangles] = first_face() + cells_.triangles();
+  ends_[kQuads] = first_face() + cells_.faces();
+  ends_[kEdges] = ends_[kQuads] + mesh.edges();
   if (!mesh.labels().empty()) data_.push_back({"label", false, false});
   if (mesh.edges() > 0) data_.push_back({"curve", false, false});
   const auto& source = mesh.mesh().source;
   if (!std::all_of(source.begin(), source.end(), [](std::uint32_t face) { return face == kNone; }))
     data_.push_back({"source", false, false});
   for (const Part& part : mesh.parts(Part::Origin::kSet)) {
-    const bool of_points = part.kind == Kind::kNodes;
+    const bool of_points = part.kind == SetKind::kNodes;
     data_.push_back({std::string(plural(part.kind)) + part.name, of_points, true});
-    const std::uint64_t first = part.kind == Kind::kFaces ? ends_[0] : part.kind == Kind::kEdges ? ends_[1] : 0;
     std::vector<bool>& is_in = sets_.emplace_back(of_points ? mesh.points() : size(), false);
-    for (const std::uint32_t m : part.members) is_in[first + m] = true;
+    for (const std::uint32_t m : part.members)
+      is_in[part.kind == SetKind::kFaces      ? first_face() + cells_.face_of(m)
+            : part.kind == SetKind::kElements ? cells_.cell_of(m)
+            : part.kind == SetKind::kEdges    ? ends_[kQuads] + m
+                                              : m] = true;
   }
   mesh.sides();
 }
 
+VtkCells::Kind VtkCells::kind(std::uint64_t cell) const {
+  std::size_t k = kTets;
+  while (cell >= ends_[k]) ++k;
+  return static_cast<Kind>(k);
+}
+
 std::uint64_t VtkCells::end_of(std::uint64_t cell) const {
   std::uint64_t end = 0, first = 0;
-  for (std::size_t k = 0; k < 3; ++k) {
+  for (std::size_t k = 0; k < kKinds; ++k) {
     end += each_[k] * (std::min(cell + 1, ends_[k]) - std::min(cell + 1, first));
     first = ends_[k];
   }
@@ -55,21 +69,32 @@ std::uint64_t VtkCells::end_of(std::uint64_t cell) const {
 }
 
 VertexIndex VtkCells::node(std::uint64_t at) const {
-  const std::uint64_t of_tets = each_[0] * ends_[0], of_faces = each_[1] * (ends_[1] - ends_[0]);
-  if (at < of_tets) return mesh_.tet_node(at / each_[0], at % each_[0]);
-  at -= of_tets;
-  if (at < of_faces) return mesh_.face_node(at / each_[1], at % each_[1]);
-  at -= of_faces;
-  return mesh_.edge_node(at / each_[2], at % each_[2]);
+  std::uint64_t first = 0;
+  std::size_t k = kTets;
+  for (;; ++k) {
+    const std::uint64_t values = each_[k] * (ends_[k] - first);
+    if (at < values) break;
+    at -= values;
+    first = ends_[k];
+  }
+  const std::uint64_t cell = first + at / each_[k], i = at % each_[k];
+  if (k == kTets) return mesh_.tet_node(cells_.first_tet(cell), i);
+  constexpr std::array<std::size_t, 6> kWedge{0, 2, 1, 3, 5, 4};  // the first triangle faces outward
+  if (k == kPyramids) return cells_.wide(cell).nodes[i];
+  if (k == kWedges) return cells_.wide(cell).nodes[kWedge[i]];
+  if (k == kEdges) return mesh_.edge_node(cell - ends_[kQuads], i);
+  if (k == kTriangles) return mesh_.face_node(cells_.first_face(cell - first_face()), i);
+  return mesh_.mesh().wide_faces[cell - ends_[kTriangles]].nodes[i];
 }
 
 TetIndex VtkCells::tet_of(std::uint64_t cell) const {
-  if (cell >= ends_[1]) return kNone;
-  return cell < ends_[0] ? static_cast<TetIndex>(cell) : mesh_.sides()[cell - ends_[0]].tet;
+  const Kind k = kind(cell);
+  if (k == kEdges) return kNone;
+  return is_face(k) ? mesh_.sides()[cells_.first_face(cell - first_face())].tet : cells_.first_tet(cell);
 }
 
 std::int32_t VtkCells::number(std::string_view name, std::uint64_t cell) const {
-  const std::size_t k = kind(cell);
+  const Kind k = kind(cell);
   if (name == "region") {
     const TetIndex t = tet_of(cell);
     return t == kNone ? 0 : static_cast<std::int32_t>(mesh_.region_of(t));
@@ -78,10 +103,12 @@ std::int32_t VtkCells::number(std::string_view name, std::uint64_t cell) const {
     const TetIndex t = tet_of(cell);
     return t == kNone ? 0 : mesh_.labels()[mesh_.region_of(t)];
   }
-  if (name == "patch") return k == 1 ? static_cast<std::int32_t>(mesh_.patch_of(cell - ends_[0])) : -1;
-  if (name == "curve") return k == 2 ? static_cast<std::int32_t>(mesh_.curve_of(cell - ends_[1])) : -1;
+  if (name == "curve") return k == kEdges ? static_cast<std::int32_t>(mesh_.curve_of(cell - ends_[kQuads])) : -1;
+  if (!is_face(k)) return -1;
+  const std::size_t face = cells_.first_face(cell - first_face());
+  if (name == "patch") return static_cast<std::int32_t>(mesh_.patch_of(face));
   const auto& source = mesh_.mesh().source;
-  return k == 1 && cell - ends_[0] < source.size() ? static_cast<std::int32_t>(source[cell - ends_[0]]) : -1;
+  return face < source.size() ? static_cast<std::int32_t>(source[face]) : -1;
 }
 
 std::int32_t VtkCells::value(std::size_t data, std::uint64_t at) const {

@@ -1,7 +1,9 @@
 #pragma once
 
 #include "formats/parts/mesh_parts.h"
+#include "formats/parts/mixed_cells.h"
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -9,7 +11,8 @@
 
 namespace octafront::io {
 
-/// A mesh as the cells of VTK: tetrahedra, then faces, then edges of curves; and the data on them. Of cells:
+/// A mesh as the cells of VTK: tetrahedra, pyramids, wedges, then triangles, quadrilaterals, then edges of curves; and
+/// the data on them. Of cells:
 ///   region  body of a tetrahedron; a face has that of its tetrahedron
 ///   label   of the image, of a region's elements and of their faces (only where regions are labels)
 ///   patch   of a face; -1 for others
@@ -21,7 +24,7 @@ class VtkCells {
  public:
   explicit VtkCells(const MeshParts& mesh);
 
-  std::uint64_t size() const { return ends_[2]; }
+  std::uint64_t size() const { return ends_.back(); }
   /// Nodes of all cells together.
   std::uint64_t nodes() const { return end_of(size() - 1); }
   std::uint8_t type(std::uint64_t cell) const { return types_[kind(cell)]; }
@@ -30,7 +33,7 @@ class VtkCells {
   std::uint64_t nodes_of(std::uint64_t cell) const { return each_[kind(cell)]; }
   /// One of all nodes.
   VertexIndex node(std::uint64_t at) const;
-  /// The tetrahedron that speaks for a cell; kNone for edges.
+  /// The tetrahedron that speaks for a cell, of pyramids and wedges the first one; kNone for edges.
   TetIndex tet_of(std::uint64_t cell) const;
 
   struct Data {
@@ -45,13 +48,17 @@ class VtkCells {
   std::vector<std::pair<std::string, std::uint32_t>> names() const;
 
  private:
-  std::size_t kind(std::uint64_t cell) const { return cell < ends_[0] ? 0 : cell < ends_[1] ? 1 : 2; }
+  enum Kind : std::size_t { kTets, kPyramids, kWedges, kTriangles, kQuads, kEdges, kKinds };
+  Kind kind(std::uint64_t cell) const;
+  bool is_face(Kind kind) const { return kind == kTriangles || kind == kQuads; }
+  std::uint64_t first_face() const { return ends_[kWedges]; }
   std::int32_t number(std::string_view name, std::uint64_t cell) const;
 
   const MeshParts& mesh_;
-  std::array<std::uint64_t, 3> ends_;  ///< of the cells of a kind
-  std::array<std::uint64_t, 3> each_;  ///< nodes of one
-  std::array<std::uint8_t, 3> types_;
+  MixedCells cells_;
+  std::array<std::uint64_t, kKinds> ends_;  ///< of the cells of a kind
+  std::array<std::uint64_t, kKinds> each_;  ///< nodes of one
+  std::array<std::uint8_t, kKinds> types_;
   std::vector<Data> data_;
   std::vector<std::vector<bool>> sets_;  ///< of the last data, by point or cell
 };

@@ -31,7 +31,7 @@ std::uint64_t nodes_of_type(std::int64_t type) {
 }
 
 /// What a TetMesh has of them: 0 for points to 3 for tetrahedra, linear or quadratic; -1 for others. Quadrilaterals
-/// become triangles.
+/// become triangles, linear wedges and pyramids tetrahedra.
 int kept_dimension(std::int64_t type) {
   switch (type) {
     case 15:
@@ -46,6 +46,8 @@ int kept_dimension(std::int64_t type) {
     case 16:
       return 2;
     case 4:
+    case 6:
+    case 7:
     case 11:
       return 3;
     default:
@@ -116,6 +118,7 @@ class Msh {
     if (!has_elements_)
       input_.fail("has no section $Elements; it is truncated or holds no mesh: copy or export it again");
     finish_groups();
+    divide_sides_of_wide_cells();
     sort_by_tags();
     raw_.format = version_ == 4 ? "Gmsh MSH 4.1" : "Gmsh MSH 2.2";
     return std::move(raw_);
@@ -246,10 +249,17 @@ class Msh {
     std::uint32_t index = nodes[0], parts = 1;
     if (dimension == 3) {
       index = static_cast<std::uint32_t>(raw_.tets.size());
-      raw_.add_tet(std::span(nodes).first(count), ref, kGmshMids);
+      const bool is_wide = count == 5 || count == 6;
+      if (is_wide)
+        raw_.add_wide_cell(std::span(nodes).first(count), ref, tags_.tags());
+      else
+        raw_.add_tet(std::span(nodes).first(count), ref, kGmshMids);
+      has_wide_cells_ |= is_wide;
+      parts = static_cast<std::uint32_t>(raw_.tets.size()) - index;
     } else if (dimension == 2) {
       index = static_cast<std::uint32_t>(raw_.triangles.size());
       raw_.add_face(std::span(nodes).first(count), ref);
+      if (count == 4) quads_.push_back({index, {nodes[0], nodes[1], nodes[2], nodes[3]}});
       parts = static_cast<std::uint32_t>(raw_.triangles.size()) - index;
     } else if (dimension == 1) {
       index = static_cast<std::uint32_t>(raw_.edges.size());
@@ -259,6 +269,17 @@ class Msh {
     if (dimension > 0) element_tags_[d].insert(element_tags_[d].end(), parts, tag);
     for (const std::int64_t group : groups.subspan(std::min<std::size_t>(dimension > 0, groups.size())))
       for (std::uint32_t k = 0; k < parts; ++k) members_[{dimension, group}].push_back(index + k);
+  }
+
+  /// Quadrilaterals come before the wedges and pyramids whose sides they are.
+  void divide_sides_of_wide_cells() {
+    if (!has_wide_cells_) return;
+    RawMesh sides;
+    for (const auto& [at, nodes] : quads_) {
+      sides.triangles.clear();
+      sides.add_side_of_wide_cell(nodes, 0, tags_.tags());
+      std::copy(sides.triangles.begin(), sides.triangles.end(), raw_.triangles.begin() + at);
+    }
   }
 
   std::string name_of(int dimension, std::int64_t group) const {
@@ -397,6 +418,8 @@ class Msh {
   const Input& input_;
   MshStream in_;
   int version_ = 0;
+  bool has_wide_cells_ = false;
+  std::vector<std::pair<std::uint32_t, std::array<VertexIndex, 4>>> quads_;  ///< and the first of their two triangles
   bool has_elements_ = false;
   NodeTags tags_;
   // By dimension and tag.

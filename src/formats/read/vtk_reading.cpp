@@ -1,5 +1,6 @@
 #include "formats/read/vtk_reading.h"
 
+#include <algorithm>
 #include <array>
 
 #include <fmt/core.h>
@@ -46,19 +47,44 @@ VertexIndex VtkCellTaker::node(std::uint64_t cell, std::int64_t index) const {
 }
 
 void VtkCellTaker::take(std::uint64_t cell, std::int64_t type, std::span<const std::int64_t> nodes) {
-  enum : std::int64_t { kLine = 3, kTriangle = 5, kTetra = 10, kLine3 = 21, kTriangle6 = 22, kTetra10 = 24 };
+  enum : std::int64_t {
+    kLine = 3,
+    kTriangle = 5,
+    kQuad = 9,
+    kTetra = 10,
+    kWedge = 13,
+    kPyramid = 14,
+    kLine3 = 21,
+    kTriangle6 = 22,
+    kTetra10 = 24
+  };
   const std::size_t count = nodes.size();
   std::array<VertexIndex, 10> all;
   const auto take_nodes = [&] {
     for (std::size_t k = 0; k < count; ++k) all[k] = node(cell, nodes[k]);
   };
   Kind kind;
-  std::size_t member = 0;
+  std::size_t member = 0, end = 0;
   if ((type == kTetra && count == 4) || (type == kTetra10 && count == 10)) {
     take_nodes();
     kind = Kind::kElements;
     member = raw_.tets.size();
     raw_.add_tet(std::span(all).first(count), at_or(data_.region, cell, 1));
+  } else if ((type == kWedge && count == 6) || (type == kPyramid && count == 5)) {
+    take_nodes();
+    kind = Kind::kElements;
+    member = raw_.tets.size();
+    if (type == kWedge) std::swap(all[1], all[2]), std::swap(all[4], all[5]);  // here the first triangle faces outward
+    raw_.add_wide_cell(std::span(all).first(count), at_or(data_.region, cell, 1));
+    end = raw_.tets.size();
+  } else if (type == kQuad && count == 4 && !data_.patch.empty() && data_.patch[cell] > 0) {
+    // Quadrilaterals that nobody calls a patch may be anything.
+    take_nodes();
+    kind = Kind::kFaces;
+    member = raw_.triangles.size();
+    raw_.add_side_of_wide_cell(std::span(all).first(count), at_or(data_.patch, cell, 1));
+    end = raw_.triangles.size();
+    if (!data_.source.empty()) raw_.triangle_source.resize(end, kNone);
   } else if ((type == kTriangle && count == 3) || (type == kTriangle6 && count == 6)) {
     take_nodes();
     kind = Kind::kFaces;
@@ -84,7 +110,8 @@ void VtkCellTaker::take(std::uint64_t cell, std::int64_t type, std::span<const s
   }
   for (std::size_t s = 0; s < groups_.size(); ++s)
     if (groups_[s].kind == kind && data_.sets[s].second[cell] != 0)
-      groups_[s].members.push_back(static_cast<std::uint32_t>(member));
+      for (std::size_t m = member; m < std::max(member + 1, end); ++m)
+        groups_[s].members.push_back(static_cast<std::uint32_t>(m));
 }
 
 void VtkCellTaker::finish() {

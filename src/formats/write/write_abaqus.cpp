@@ -3,8 +3,10 @@
 // sections and steps. CalculiX reads twenty characters of a number.
 
 #include "formats/containers/text_writer.h"
+#include "formats/parts/mixed_cells.h"
 #include "formats/write/writers.h"
 
+#include <algorithm>
 #include <array>
 #include <span>
 #include <string>
@@ -16,11 +18,28 @@ using Kind = NamedSet::Kind;
 
 /// Sides S1 = 123, S2 = 124, S3 = 234, S4 = 134, by the corner that they lack.
 constexpr std::array<char, 4> kSideName{'3', '4', '2', '1'};
+/// Corners of the sides S1, S2, ... of wedges (C3D6) and pyramids (C3D5).
+constexpr std::array<std::array<std::size_t, 4>, 5> kWedgeSides{
+    {{0, 1, 2, 2}, {3, 4, 5, 5}, {0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}}};
+constexpr std::array<std::array<std::size_t, 4>, 5> kPyramidSides{
+    {{0, 1, 2, 3}, {0, 1, 4, 4}, {1, 2, 4, 4}, {2, 3, 4, 4}, {3, 0, 4, 4}}};
+
+/// The side of a wedge or pyramid that has all these nodes.
+char side_of(const WideCell& cell, std::span<const VertexIndex> nodes) {
+  const auto& sides = cell.tet_count == 3 ? kWedgeSides : kPyramidSides;
+  for (std::size_t s = 0; s < sides.size(); ++s) {
+    const auto has = [&](VertexIndex v) {
+      return std::ranges::any_of(sides[s], [&](std::size_t k) { return cell.nodes[k] == v; });
+    };
+    if (std::ranges::all_of(nodes, has)) return static_cast<char>('1' + s);
+  }
+  return '1';
+}
 
 class AbaqusWriter {
  public:
   AbaqusWriter(MeshOutput& out, const MeshParts& mesh)
-      : text_(out.file()), mesh_(mesh), names_(legal_names(out, mesh, {.longest = 64})) {}
+      : text_(out.file()), mesh_(mesh), cells_(mesh), names_(legal_names(out, mesh, {.longest = 64})) {}
 
   void write() {
     text_ << "*HEADING\nMesh by octafront\n";
@@ -43,11 +62,16 @@ class AbaqusWriter {
 
  private:
   void write_elements(const Part& region, const std::string& name) {
-    text_.line("*ELEMENT, TYPE={}, ELSET={}", mesh_.second_order() ? "C3D10" : "C3D4", name);
+    const std::array<const char*, MixedCells::kKinds> types{mesh_.second_order() ? "C3D10" : "C3D4", "C3D5", "C3D6"};
     std::array<VertexIndex, 10> room;
-    for (const TetIndex t : region.members) {
-      text_ << t + 1;
-      for (const VertexIndex v : mesh_.tet_nodes(t, room)) text_ << ", " << v + 1;
+    std::size_t kind = MixedCells::kKinds;
+    for (const std::uint32_t cell : cells_.members(region)) {
+      if (cells_.kind(cell) != kind) {
+        kind = cells_.kind(cell);
+        text_.line("*ELEMENT, TYPE={}, ELSET={}", types[kind], name);
+      }
+      text_ << cell + 1;
+      for (const VertexIndex v : cells_.nodes(cell, room)) text_ << ", " << v + 1;
       text_ << '\n';
     }
   }
@@ -61,26 +85,38 @@ class AbaqusWriter {
   void write_set(const Part& part, const std::string& name) {
     if (part.kind == Kind::kElements) {
       text_.line("*ELSET, ELSET={}", name);
-      return write_ids(part.members);
+      return write_ids(cells_.members(part));
     }
     text_.line("*NSET, NSET={}", name);
     write_ids(mesh_.nodes_of(part));
     if (part.kind != Kind::kFaces) return;
     text_.line("*SURFACE, NAME={}, TYPE=ELEMENT", name);
-    for (const std::uint32_t f : part.members) {
-      const Side& side = mesh_.sides()[f];
-      text_ << side.tet + 1 << ", S" << kSideName[static_cast<std::size_t>(side.face)] << '\n';
+    std::array<VertexIndex, 6> room;
+    for (const std::uint32_t f : cells_.members(part)) {
+      const Side& side = mesh_.sides()[cells_.first_face(f)];
+      const std::size_t cell = cells_.cell_of(side.tet);
+      const bool is_tet = cells_.kind(cell) == MixedCells::kTet;
+      text_ << cell + 1 << ", S"
+            << (is_tet ? kSideName[static_cast<std::size_t>(side.face)]
+                       : side_of(cells_.wide(cell), cells_.face_nodes(f, room)))
+            << '\n';
     }
   }
 
   TextWriter text_;
   const MeshParts& mesh_;
+  MixedCells cells_;
   std::vector<std::string> names_;  ///< of the parts
 };
 
 }  // namespace
 
 void write_abaqus(MeshOutput& out, const MeshParts& mesh) {
+  const auto& wide = mesh.mesh().wide_cells;
+  if (std::ranges::any_of(wide, [](const WideCell& cell) { return cell.tet_count == 2; }))
+    out.note(
+        "layers that end have pyramids (C3D5), which CalculiX does not know: for it write them as tetrahedra, "
+        "`as_tets`");
   AbaqusWriter(out, mesh).write();
 }
 

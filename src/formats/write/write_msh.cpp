@@ -9,6 +9,7 @@
 #include "base/core/shared_value.h"
 #include "formats/containers/text_writer.h"
 #include "formats/parts/boundary.h"
+#include "formats/parts/mixed_cells.h"
 #include "formats/parts/msh_stream.h"
 #include "formats/write/writers.h"
 
@@ -24,10 +25,13 @@ namespace {
 
 using Kind = NamedSet::Kind;
 
-/// Gmsh's type of an element of that dimension.
-std::int32_t gmsh_type_of(int dimension, bool second_order) {
-  constexpr std::array<std::array<std::int32_t, 4>, 2> kTypes{{{15, 1, 2, 4}, {15, 8, 9, 11}}};
-  return kTypes[second_order][static_cast<std::size_t>(dimension)];
+/// Gmsh's type of an element of that dimension, and with so many nodes where they are pyramids, wedges, quadrilaterals.
+std::int32_t gmsh_type_of(int dimension, std::size_t nodes) {
+  constexpr std::int32_t kPoint = 15, kPyramid = 7, kWedge = 6, kQuad = 3;
+  if (dimension == 0) return kPoint;
+  if (dimension == 1) return nodes == 2 ? 1 : 8;
+  if (dimension == 2) return nodes == 4 ? kQuad : nodes == 3 ? 2 : 9;
+  return nodes == 5 ? kPyramid : nodes == 6 ? kWedge : nodes == 4 ? 4 : 11;
 }
 
 /// Names stand in quotes, which Gmsh does not escape.
@@ -37,10 +41,10 @@ std::string unquoted(std::string_view name) {
   return out;
 }
 
-/// Nodes of an element, tags counting from 1, in Gmsh's order.
+/// Nodes of an element, tags counting from 1, in Gmsh's order. Elements of dimensions 2 and 3 are those of MixedCells.
 class ElementNodes {
  public:
-  explicit ElementNodes(const MeshParts& mesh) : mesh_(mesh) {}
+  ElementNodes(const MeshParts& mesh, const MixedCells& cells) : mesh_(mesh), cells_(cells) {}
 
   template <class Tag, class Put>
   void put(int dimension, std::uint32_t element, const Put& put_tag) {
@@ -49,14 +53,15 @@ class ElementNodes {
     };
     if (dimension == 0) return put_tag(static_cast<Tag>(element + Tag{1}));
     if (dimension == 1) return all(mesh_.edge_nodes(element, edge_));
-    if (dimension == 2) return all(mesh_.face_nodes(element, face_));
-    const auto nodes = mesh_.tet_nodes(element, tet_);
-    if (mesh_.second_order()) std::swap(tet_[8], tet_[9]);  // 34 before 24
+    if (dimension == 2) return all(cells_.face_nodes(element, face_));
+    const auto nodes = cells_.nodes(element, tet_);
+    if (nodes.size() == 10) std::swap(tet_[8], tet_[9]);  // 34 before 24
     all(nodes);
   }
 
  private:
   const MeshParts& mesh_;
+  const MixedCells& cells_;
   std::array<VertexIndex, 10> tet_;
   std::array<VertexIndex, 6> face_;
   std::array<VertexIndex, 3> edge_;
@@ -158,7 +163,7 @@ void write_physical_names(TextWriter& out, const MeshParts& mesh, const std::vec
 class Msh4Writer {
  public:
   Msh4Writer(AtomicFile& file, const MeshParts& mesh, bool as_text)
-      : text_(file), out_(file, as_text), mesh_(mesh), physical_(physical_tags(mesh)) {
+      : text_(file), out_(file, as_text), mesh_(mesh), cells_(mesh), physical_(physical_tags(mesh)) {
     for (std::size_t d = mesh.cells_only() ? 3 : 0; d < 4; ++d) by_[d] = combinations(mesh, kKindOfDimension[d]);
     make_entities();
     assign_nodes();
@@ -224,9 +229,9 @@ class Msh4Writer {
     const auto members = members_of(entities_[e]);
     return parallel_sum(members.size(), [&](std::size_t begin, std::size_t end) {
       BoxSum sum;
-      ElementNodes nodes_of(mesh_);
+      ElementNodes nodes_of(mesh_, cells_);
       for (const std::uint32_t m : members.subspan(begin, end - begin))
-        nodes_of.put<std::uint64_t>(entities_[e].dimension, m, [&](std::uint64_t tag) {
+        nodes_of.put<std::uint64_t>(entities_[e].dimension, element(entities_[e].dimension, m), [&](std::uint64_t tag) {
           const SharedValue of_node(entity[tag - 1]);
           if (of_node.load() == kNone) of_node.store(e);
           sum.box.add(mesh_.mesh().points[tag - 1]);
@@ -297,37 +302,82 @@ class Msh4Writer {
   void write_elements() {
     // The points are those in sets of nodes.
     std::array<std::uint64_t, 5> first{0, by_[0].members.items().size()};
-    const std::array<std::uint64_t, 4> counts{first[1], mesh_.edges(), mesh_.faces(), mesh_.tets()};
+    const std::array<std::uint64_t, 4> counts{first[1], mesh_.edges(), cells_.faces(), cells_.cells()};
     for (std::size_t d = 1; d < 4; ++d) first[d + 1] = first[d] + counts[d];
+    const std::vector<Block> blocks = blocks_of_elements();
     text_ << "$Elements\n";
-    put_record(std::uint64_t{entities_.size()}, first[4], std::uint64_t{1}, first[4]);
-    for (const Entity& e : entities_) {
-      put_record(std::int32_t{e.dimension}, e.tag, gmsh_type_of(e.dimension, mesh_.second_order()),
-                 std::uint64_t{members_of(e).size()});
-      write_members(e, first[static_cast<std::size_t>(e.dimension)]);
+    put_record(std::uint64_t{blocks.size()}, first[4], std::uint64_t{1}, first[4]);
+    for (const Block& block : blocks) {
+      put_record(std::int32_t{block.entity->dimension}, block.entity->tag,
+                 gmsh_type_of(block.entity->dimension, block.nodes), std::uint64_t{block.members.size()});
+      write_members(block, first[static_cast<std::size_t>(block.entity->dimension)]);
     }
     out_.close("Elements");
   }
 
-  /// The elements of an entity, `before` of which come before those of its dimension.
-  void write_members(const Entity& e, std::uint64_t before) {
-    const auto members = members_of(e);
+  /// The elements of an entity that have the same type.
+  struct Block {
+    const Entity* entity;
+    std::size_t nodes;
+    std::span<const std::uint32_t> members;  ///< points: as in the entity; else elements
+    std::vector<std::uint32_t> own = {};     ///< behind `members`, where they are not those of the entity
+  };
+
+  /// The element that a member of an entity of that dimension is, or is part of.
+  std::uint32_t element(int dimension, std::uint32_t member) const {
+    return dimension == 3   ? static_cast<std::uint32_t>(cells_.cell_of(member))
+           : dimension == 2 ? static_cast<std::uint32_t>(cells_.face_of(member))
+                            : member;
+  }
+
+  std::size_t nodes_of_element(int dimension, std::uint32_t i) const {
+    if (dimension == 0) return 1;
+    if (dimension == 1) return mesh_.nodes_per_edge();
+    if (dimension == 2) return i < cells_.triangles() ? mesh_.nodes_per_face() : 4;
+    return cells_.kind(i) == MixedCells::kTet ? mesh_.nodes_per_tet() : cells_.wide(i).tet_count + 3;
+  }
+
+  std::vector<Block> blocks_of_elements() const {
+    std::vector<Block> blocks;
+    const bool is_mixed = !mesh_.mesh().wide_cells.empty();
+    for (const Entity& e : entities_) {
+      const auto members = members_of(e);
+      if (e.dimension < 2 || !is_mixed) {
+        blocks.push_back({&e, members.empty() ? 0 : nodes_of_element(e.dimension, members[0]), members});
+        continue;
+      }
+      std::size_t last = 0;  // elements of a kind follow each other
+      std::uint32_t before = kNone;
+      std::vector<std::uint32_t> sorted;
+      for (const std::uint32_t m : members) sorted.push_back(element(e.dimension, m));
+      std::sort(sorted.begin(), sorted.end());
+      for (const std::uint32_t i : sorted) {
+        if (i == before) continue;
+        before = i;
+        const std::size_t nodes = nodes_of_element(e.dimension, i);
+        if (nodes != last) blocks.push_back({&e, nodes, {}});
+        last = nodes;
+        blocks.back().own.push_back(i);
+      }
+    }
+    for (Block& block : blocks)
+      if (!block.own.empty()) block.members = block.own;
+    return blocks;
+  }
+
+  /// The elements of a block, `before` of which come before those of its dimension.
+  void write_members(const Block& block, std::uint64_t before) {
+    const Entity& e = *block.entity;
+    const auto members = block.members;
     const std::uint64_t points = by_[0].members.first(e.dimension == 0 ? e.slot : 0);
-    out_.records(members.size(), (1 + nodes_per_element(e.dimension)) * sizeof(std::uint64_t),
+    out_.records(members.size(), (1 + block.nodes) * sizeof(std::uint64_t),
                  [&](std::size_t begin, std::size_t end, const auto& put) {
-                   ElementNodes nodes_of(mesh_);
+                   ElementNodes nodes_of(mesh_, cells_);
                    for (std::size_t i = begin; i < end; ++i) {
                      put((e.dimension == 0 ? points + i : before + members[i]) + 1);
                      nodes_of.put<std::uint64_t>(e.dimension, members[i], put);
                    }
                  });
-  }
-
-  std::size_t nodes_per_element(int dimension) const {
-    return dimension == 0   ? 1
-           : dimension == 1 ? mesh_.nodes_per_edge()
-           : dimension == 2 ? mesh_.nodes_per_face()
-                            : mesh_.nodes_per_tet();
   }
 
   /// For each of these nodes what record(v, put) puts, so many values of 64 bits.
@@ -342,6 +392,7 @@ class Msh4Writer {
   TextWriter text_;
   MshNumbers out_;
   const MeshParts& mesh_;
+  MixedCells cells_;
   std::vector<std::int32_t> physical_;  ///< of each part
   std::array<Combinations, 4> by_;      ///< by dimension
   std::vector<Entity> entities_;        ///< by dimension
@@ -353,7 +404,7 @@ class Msh4Writer {
 class Msh2Writer {
  public:
   Msh2Writer(AtomicFile& file, const MeshParts& mesh, bool as_text)
-      : text_(file), out_(file, as_text), mesh_(mesh), nodes_of_(mesh) {}
+      : text_(file), out_(file, as_text), mesh_(mesh), cells_(mesh), nodes_of_(mesh, cells_) {}
 
   void write() {
     write_format(text_, out_, "2.2");
@@ -365,29 +416,35 @@ class Msh2Writer {
       out_.end_record();
     }
     out_.close("Nodes");
-    const std::array<std::size_t, 4> counts{0, mesh_.edges(), mesh_.faces(), mesh_.tets()};
-    text_.line("$Elements\n{}", counts[1] + counts[2] + counts[3]);
-    for (int d = 1; d < 4; ++d) write_elements(d, counts[static_cast<std::size_t>(d)]);
+    text_.line("$Elements\n{}", mesh_.edges() + cells_.faces() + cells_.cells());
+    write_elements(1, 0, mesh_.edges(), mesh_.nodes_per_edge());
+    write_elements(2, 0, cells_.triangles(), mesh_.nodes_per_face());
+    write_elements(2, cells_.triangles(), cells_.faces(), 4);
+    write_elements(3, 0, cells_.end(MixedCells::kTet), mesh_.nodes_per_tet());
+    for (const MixedCells::Kind kind : {MixedCells::kPyramid, MixedCells::kWedge})
+      write_elements(3, cells_.begin(kind), cells_.end(kind), kind == MixedCells::kPyramid ? 5 : 6);
     out_.close("Elements");
   }
 
  private:
   void put(std::int32_t value) { out_.put(value); }
 
-  void write_elements(int dimension, std::size_t count) {
-    if (count == 0) return;
+  /// The elements of a dimension from `begin` to `end`, which have so many nodes each.
+  void write_elements(int dimension, std::size_t begin, std::size_t end, std::size_t nodes) {
+    if (begin == end) return;
     constexpr std::int32_t kTags = 2;
-    const std::int32_t type = gmsh_type_of(dimension, mesh_.second_order());
+    const std::size_t count = end - begin;
+    const std::int32_t type = gmsh_type_of(dimension, nodes);
     // A binary file says once what a text says in every line.
     if (!out_.as_text())
       for (const std::int32_t n : {type, static_cast<std::int32_t>(count), kTags}) put(n);
-    for (std::uint32_t i = 0; i < count; ++i) {
+    for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i) {
       put(++tag_);
       if (out_.as_text())
         for (const std::int32_t n : {type, kTags}) put(n);
       const std::uint32_t part_tag = dimension == 1   ? mesh_.curve_of(i) + 1
-                                     : dimension == 2 ? mesh_.patch_of(i) + 1
-                                                      : mesh_.tag_of_region(mesh_.region_of(i));
+                                     : dimension == 2 ? mesh_.patch_of(cells_.first_face(i)) + 1
+                                                      : mesh_.tag_of_region(mesh_.region_of(cells_.first_tet(i)));
       for (int k = 0; k < kTags; ++k) put(static_cast<std::int32_t>(part_tag));
       nodes_of_.put<std::int32_t>(dimension, i, [&](std::int32_t tag) { put(tag); });
       out_.end_record();
@@ -397,6 +454,7 @@ class Msh2Writer {
   TextWriter text_;
   MshNumbers out_;
   const MeshParts& mesh_;
+  MixedCells cells_;
   ElementNodes nodes_of_;
   std::int32_t tag_ = 0;
 };

@@ -6,6 +6,7 @@
 
 #include "base/mesh/adjacency.h"
 #include "formats/containers/text_writer.h"
+#include "formats/parts/mixed_cells.h"
 #include "formats/write/writers.h"
 
 #include <algorithm>
@@ -13,10 +14,70 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
+#include <span>
 #include <string>
+#include <tuple>
+#include <vector>
 
 namespace octafront::io {
 namespace {
+
+/// Outward faces of wedges and pyramids, as corners of WideCell; the last of a triangle is repeated.
+constexpr std::array<std::array<std::size_t, 4>, 5> kWedgeFaces{
+    {{0, 2, 1, 1}, {3, 4, 5, 5}, {0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}}};
+constexpr std::array<std::array<std::size_t, 4>, 5> kPyramidFaces{
+    {{0, 3, 2, 1}, {0, 1, 4, 4}, {1, 2, 4, 4}, {2, 3, 4, 4}, {3, 0, 4, 4}}};
+
+/// The inner faces of a mesh with wedges and pyramids.
+class MixedFaces {
+ public:
+  struct Face {
+    std::array<VertexIndex, 4> nodes;  ///< outward of the owner; of a triangle the last one is repeated
+    std::uint32_t owner, neighbour;
+  };
+
+  explicit MixedFaces(const MixedCells& cells) {
+    struct Side {
+      std::array<VertexIndex, 4> key;
+      std::uint32_t cell;
+      std::array<VertexIndex, 4> nodes;
+    };
+    std::vector<Side> sides;
+    const auto add = [&](std::uint32_t cell, const std::array<VertexIndex, 4>& nodes) {
+      sides.push_back({nodes, cell, nodes});
+      std::sort(sides.back().key.begin(), sides.back().key.end());
+      if (nodes[2] == nodes[3]) {  // equal keys for equal triangles, whichever corner is repeated
+        auto& key = sides.back().key;
+        std::unique(key.begin(), key.end());
+        key[3] = kNone;
+      }
+    };
+    std::array<VertexIndex, 10> room;
+    for (std::uint32_t c = 0; c < cells.cells(); ++c) {
+      const auto nodes = cells.nodes(c, room);
+      if (cells.kind(c) == MixedCells::kTet)
+        for (const auto& [i, j, k] : kTetFaces)
+          add(c, {nodes[static_cast<std::size_t>(i)], nodes[static_cast<std::size_t>(j)],
+                  nodes[static_cast<std::size_t>(k)], nodes[static_cast<std::size_t>(k)]});
+      else
+        for (const auto& [i, j, k, l] : cells.kind(c) == MixedCells::kWedge ? kWedgeFaces : kPyramidFaces)
+          add(c, {nodes[i], nodes[j], nodes[k], nodes[l]});
+    }
+    std::sort(sides.begin(), sides.end(),
+              [](const Side& a, const Side& b) { return std::tie(a.key, a.cell) < std::tie(b.key, b.cell); });
+    for (std::size_t i = 0; i + 1 < sides.size(); ++i)
+      if (sides[i].key == sides[i + 1].key) faces_.push_back({sides[i].nodes, sides[i].cell, sides[i + 1].cell});
+    std::sort(faces_.begin(), faces_.end(), [](const Face& a, const Face& b) {
+      return std::tie(a.owner, a.neighbour) < std::tie(b.owner, b.neighbour);
+    });
+  }
+
+  const std::vector<Face>& inner() const { return faces_; }
+
+ private:
+  std::vector<Face> faces_;
+};
 
 class OpenFoamWriter {
  public:
@@ -24,10 +85,12 @@ class OpenFoamWriter {
       : folder_(out.folder()),
         context_(out.context()),
         mesh_(mesh),
+        cells_(mesh),
         across_(half_face_neighbors(mesh.mesh().tets, mesh.mesh().points.size())),
         names_(legal_names(out, mesh, {.also = "_-."}, std::array{Part::Origin::kRegion, Part::Origin::kPatch})) {
     for (std::size_t f = 0; f < mesh.faces(); ++f)
       if (f >= mesh.mesh().boundary.size()) interface_at_[half_face(f)] = f;
+    if (!mesh.mesh().wide_cells.empty()) mixed_.emplace(cells_);
   }
 
   void write() {
@@ -40,13 +103,15 @@ class OpenFoamWriter {
       out << ")\n";
     });
     // Each list goes over the faces again rather than keeping them.
-    list("faces", "faceList", all_faces(), [&](TextWriter& out, HalfFace h, HalfFace) {
-      const auto& [a, b, c] = face_of(mesh_.mesh().tets[h / 4], static_cast<int>(h % 4));
-      out << "3(" << a << ' ' << b << ' ' << c << ")\n";
+    list("faces", "faceList", all_faces(), [](TextWriter& out, std::span<const VertexIndex> nodes, auto, auto) {
+      out << std::uint64_t{nodes.size()};
+      for (std::size_t i = 0; i < nodes.size(); ++i) out << (i == 0 ? '(' : ' ') << nodes[i];
+      out << ")\n";
     });
-    list("owner", "labelList", all_faces(), [](TextWriter& out, HalfFace h, HalfFace) { out << h / 4 << '\n'; });
-    list("neighbour", "labelList", inner_faces(), [](TextWriter& out, HalfFace, HalfFace other) {
-      if (other != kNone) out << other / 4 << '\n';
+    list("owner", "labelList", all_faces(),
+         [](TextWriter& out, auto, std::uint32_t owner, auto) { out << owner << '\n'; });
+    list("neighbour", "labelList", inner_faces(), [](TextWriter& out, auto, auto, std::uint32_t neighbour) {
+      if (neighbour != kNone) out << neighbour << '\n';
     });
     write_boundary();
     write_cell_zones();
@@ -54,13 +119,16 @@ class OpenFoamWriter {
   }
 
  private:
-  using Put = std::function<void(TextWriter&, HalfFace, HalfFace)>;
+  using Put = std::function<void(TextWriter&, std::span<const VertexIndex> nodes, std::uint32_t owner,
+                                 std::uint32_t neighbour)>;
 
   HalfFace half_face(std::size_t f) const {
     return 4 * mesh_.sides()[f].tet + static_cast<HalfFace>(mesh_.sides()[f].face);
   }
-  std::size_t inner_faces() const { return (4 * mesh_.tets() - mesh_.mesh().boundary.size()) / 2; }
-  std::size_t all_faces() const { return inner_faces() + mesh_.mesh().boundary.size(); }
+  std::size_t inner_faces() const {
+    return mixed_ ? mixed_->inner().size() : (4 * mesh_.tets() - mesh_.mesh().boundary.size()) / 2;
+  }
+  std::size_t all_faces() const { return inner_faces() + mesh_.mesh().boundary.size() - cells_.quads(); }
 
   void file(const std::string& name, std::string_view type, const std::function<void(TextWriter&)>& write) {
     AtomicFile target(folder_ / name, context_);
@@ -76,9 +144,26 @@ class OpenFoamWriter {
   void list(const std::string& name, std::string_view type, std::size_t count, const Put& put) {
     file(name, type, [&](TextWriter& out) {
       out << std::uint64_t{count} << "\n(\n";
-      for_each_face([&](HalfFace h, HalfFace other) { put(out, h, other); });
+      if (mixed_)
+        put_mixed(out, put);
+      else
+        for_each_face([&](HalfFace h, HalfFace other) {
+          const Triangle nodes = face_of(mesh_.mesh().tets[h / 4], static_cast<int>(h % 4));
+          put(out, nodes, h / 4, other == kNone ? kNone : other / 4);
+        });
       out << ")\n";
     });
+  }
+
+  void put_mixed(TextWriter& out, const Put& put) const {
+    for (const MixedFaces::Face& face : mixed_->inner())
+      put(out, std::span(face.nodes).first(face.nodes[2] == face.nodes[3] ? 3 : 4), face.owner, face.neighbour);
+    std::array<VertexIndex, 6> room;
+    for (const Part& patch : mesh_.parts(Part::Origin::kPatch))
+      for (const std::uint32_t f : outside(patch)) {
+        const TetIndex tet = mesh_.sides()[cells_.first_face(f)].tet;
+        put(out, cells_.face_nodes(f, room), static_cast<std::uint32_t>(cells_.cell_of(tet)), kNone);
+      }
   }
 
   /// Inner faces by owner and neighbour, then the boundary patch by patch; visit(half-face of the owner, the other
@@ -97,22 +182,25 @@ class OpenFoamWriter {
         if (f < mesh_.mesh().boundary.size()) visit(half_face(f), kNone);
   }
 
-  std::size_t outside(const Part& patch) const {
-    return static_cast<std::size_t>(
-        std::lower_bound(patch.members.begin(), patch.members.end(), mesh_.mesh().boundary.size()) -
-        patch.members.begin());
+  /// The faces of a patch that belong to the boundary.
+  std::vector<std::uint32_t> outside(const Part& patch) const {
+    std::vector<std::uint32_t> faces = cells_.members(patch);
+    std::erase_if(faces, [&](std::uint32_t f) { return cells_.first_face(f) >= mesh_.mesh().boundary.size(); });
+    return faces;
   }
 
   void write_boundary() {
     file("boundary", "polyBoundaryMesh", [&](TextWriter& out) {
       const auto patches = mesh_.parts(Part::Origin::kPatch);
-      out.line("{}\n(", std::count_if(patches.begin(), patches.end(), [&](const Part& p) { return outside(p) > 0; }));
+      out.line("{}\n(",
+               std::count_if(patches.begin(), patches.end(), [&](const Part& p) { return !outside(p).empty(); }));
       std::size_t first = inner_faces();
       for (const Part& patch : patches) {
-        if (outside(patch) == 0) continue;
+        const std::size_t faces = outside(patch).size();
+        if (faces == 0) continue;
         out.line("    {}\n    {{\n        type patch;{}\n        nFaces {};\n        startFace {};\n    }}",
-                 name(patch), original(patch), outside(patch), first);
-        first += outside(patch);
+                 name(patch), original(patch), faces, first);
+        first += faces;
       }
       out << ")\n";
     });
@@ -146,7 +234,7 @@ class OpenFoamWriter {
       const auto is_zone = [&](const Part& p) { return is_of_cells(p) && p.origin == Part::Origin::kRegion; };
       out.line("{}\n(", std::count_if(parts.begin(), parts.end(), is_zone));
       for (const Part& part : parts)
-        if (is_zone(part)) zone(out, name(part), "cell", part.members);
+        if (is_zone(part)) zone(out, name(part), "cell", cells_.members(part));
       out << ")\n";
     });
   }
@@ -172,6 +260,8 @@ class OpenFoamWriter {
   std::filesystem::path folder_;
   RunContext context_;
   const MeshParts& mesh_;
+  MixedCells cells_;
+  std::optional<MixedFaces> mixed_;  ///< of a mesh with wedges and pyramids
   std::vector<HalfFace> across_;
   std::vector<std::string> names_;
   std::map<HalfFace, std::size_t> interface_at_;

@@ -1,5 +1,6 @@
 // VTK unstructured grid (XML): the cells and data of formats/parts/vtk_cells.h, and
-//   beta    quality of a tetrahedron; a face has that of its tetrahedron, so that face and tetrahedron, which a viewer
+//   beta    quality of a tetrahedron, of a pyramid or wedge that of its first one; a face has that of its tetrahedron,
+//   so that face and tetrahedron, which a viewer
 //           draws at the same place, have one colour
 
 #include <octafront/quality.h>

@@ -407,6 +407,8 @@ bool improve_mesh(TetMesh& mesh, const BoundaryInput* input, const ImproveOption
                   Features* features) {
   check_improve_options(options);
   if (options.level == ImproveOptions::Level::kOff || mesh.tets.empty()) return false;
+  mesh.wide_cells.clear();  // edits know of tetrahedra alone
+  mesh.wide_faces.clear();
   const bool moves = options.move_boundary && options.level != ImproveOptions::Level::kPaper;
   const BoundaryInput* boundary = moves ? input : nullptr;
   std::vector<VertexIndex> frozen;

@@ -3,6 +3,7 @@
 #include "base/mesh/edge_table.h"
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <utility>
 
@@ -36,38 +37,32 @@ std::vector<Rim> rims_of(const SurfaceMesh& wall, const Columns& columns) {
   return rims;
 }
 
-/// Numbers of nodes: those of the wall as they are, behind them those of columns at rims, then of the others.
+/// Numbers of nodes: those of the wall as they are, behind them those of columns, in their order: then the node with
+/// the smallest number of a quad is on the column with the smaller number, and divides it.
 class NodeNumbers {
  public:
-  NodeNumbers(const SurfaceMesh& wall, const Columns& columns, const std::vector<Rim>& rims)
-      : first_(wall.points.size(), 0), next_(static_cast<VertexIndex>(wall.points.size())) {
-    std::vector<std::uint8_t> is_rim(first_.size(), 0);
-    for (const Rim& rim : rims) is_rim[rim.a] = is_rim[rim.b] = 1;
-    for (const std::uint8_t at_rim : {1, 0}) {
-      for (VertexIndex v = 0; v < first_.size(); ++v) {
-        if (is_rim[v] != at_rim) continue;
-        first_[v] = next_;
-        next_ += columns.count[v];
-      }
-      if (at_rim) end_of_rims_ = next_;
+  explicit NodeNumbers(const Columns& columns) : first_(columns.count.size(), 0) {
+    end_ = static_cast<VertexIndex>(first_.size());
+    for (VertexIndex v = 0; v < first_.size(); ++v) {
+      first_[v] = end_;
+      end_ += columns.count[v];
     }
   }
 
   VertexIndex operator()(Node node) const {
     return node.level == 0 ? node.column : first_[node.column] + node.level - 1;
   }
-  VertexIndex end_of_rims() const { return end_of_rims_; }
-  VertexIndex end() const { return next_; }
+  VertexIndex end() const { return end_; }
 
  private:
   std::vector<VertexIndex> first_;
-  VertexIndex next_, end_of_rims_ = 0;
+  VertexIndex end_;
 };
 
 class Assembly {
  public:
   Assembly(const SurfaceMesh& wall, const Columns& columns)
-      : wall_(wall), columns_(columns), rims_(rims_of(wall, columns)), number_(wall, columns, rims_) {}
+      : wall_(wall), columns_(columns), rims_(rims_of(wall, columns)), number_(columns) {}
 
   Layered run(TetMesh inner) && {
     place_nodes(inner);
@@ -78,7 +73,8 @@ class Assembly {
     inner.points = std::move(points_);
     const SurfaceMesh& b = boundary_;
     inner.boundary = b.triangles, inner.patch = b.patch, inner.source = b.source;
-    boundary_.points.assign(inner.points.begin(), inner.points.begin() + number_.end_of_rims());
+    inner.wide_faces = std::move(wide_faces_);
+    boundary_.points.assign(inner.points.begin(), inner.points.begin() + number_.end());
     return {std::move(inner), std::move(boundary_)};
   }
 
@@ -106,6 +102,7 @@ class Assembly {
       if (!columns_.is_wall[f]) continue;
       for (std::uint32_t k = 0; k < columns_.asked; ++k) {
         const TetsOfLayer made = tets_of_layer(columns_, wall_.triangles[f], k);
+        if (made.count > 1) inner.wide_cells.push_back(wide_cell(static_cast<TetIndex>(inner.tets.size()), f, k));
         for (int i = 0; i < made.count; ++i) {
           const auto& [a, b, c, d] = made.tets[i];
           inner.tets.push_back({number_(a), number_(b), number_(c), number_(d)});
@@ -113,6 +110,19 @@ class Assembly {
       }
     }
     inner.region.resize(inner.tets.size(), last + 1);
+  }
+
+  /// The wedge of a layer over a triangle, or the pyramid where one of the columns has ended.
+  WideCell wide_cell(TetIndex first, std::size_t f, std::uint32_t k) const {
+    const auto [a, b, c] = wall_.triangles[f];
+    const auto at = [&](VertexIndex v, std::uint32_t level) {
+      return number_({v, std::min(level, columns_.count[v])});
+    };
+    // The triangle's normal points away from its layers.
+    for (const auto& [end, p, q] : {std::array{a, b, c}, {b, c, a}, {c, a, b}})
+      if (columns_.count[end] <= k)
+        return {first, 2, {at(q, k), at(q, k + 1), at(p, k + 1), at(p, k), at(end, k), kNone}};
+    return {first, 3, {at(a, k), at(c, k), at(b, k), at(a, k + 1), at(c, k + 1), at(b, k + 1)}};
   }
 
   void make_boundary() {
@@ -136,6 +146,7 @@ class Assembly {
   /// The side of a layer, which lies where the bare triangle was: that one runs from b to a.
   void add_strip(const Rim& rim, std::uint32_t k) {
     const VertexIndex x = std::min(rim.a, rim.b), y = std::max(rim.a, rim.b);
+    const auto first = static_cast<std::uint32_t>(boundary_.triangles.size());
     const auto low = [&](VertexIndex v) { return number_({v, std::min(k, columns_.count[v])}); };
     const auto high = [&](VertexIndex v) { return number_({v, std::min(k + 1, columns_.count[v])}); };
     const auto add_facing = [&](VertexIndex p, VertexIndex q, VertexIndex r) {
@@ -144,6 +155,8 @@ class Assembly {
     };
     add_facing(low(x), low(y), high(y));
     add_facing(low(x), high(y), high(x));
+    if (boundary_.triangles.size() == first + 2)
+      wide_faces_.push_back({first, {low(rim.b), low(rim.a), high(rim.a), high(rim.b)}});
   }
 
   void name(TetMesh& inner) const {
@@ -159,6 +172,7 @@ class Assembly {
   NodeNumbers number_;
   std::vector<Vec3> points_;
   SurfaceMesh boundary_;
+  std::vector<WideFace> wide_faces_;
 };
 
 }  // namespace

@@ -137,6 +137,9 @@ std::vector<Row<Options>> layer_rows() {
           of("on", "Names of the patches that are walls, separated by commas; without them all are"),
           [](auto& o) -> auto& { return o.layers.on; }),
       row(
+          of("layers_as_tets", "Layers are tetrahedra also in formats that have wedges", "as_tets"),
+          [](auto& o) -> auto& { return o.layers.as_tets; }),
+      row(
           of("require_coverage", "Percent of each wall's faces that must have all layers, or the run fails"),
           [](auto& o) -> auto& { return o.layers.require_coverage; }),
   };

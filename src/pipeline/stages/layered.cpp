@@ -58,22 +58,22 @@ double growth_to(double total, double first, int count) {
 }
 
 /// Height of a first layer whose far side is at this y+.
-double first_by_yplus(const LayerOptions& o) {
+double first_by_yplus(const LayersOptions& o) {
   const double friction = 0.026 / std::pow(*o.reynolds, 1.0 / 7);
   return *o.yplus * *o.reference_length / (*o.reynolds * std::sqrt(0.5 * friction));
 }
 
-std::optional<double> absolute_first(const LayerOptions& o) {
+std::optional<double> absolute_first(const LayersOptions& o) {
   return o.yplus ? first_by_yplus(o) : o.first;
 }
 
-double growth_of(const LayerOptions& o) {
+double growth_of(const LayersOptions& o) {
   if (o.growth) return *o.growth;
   const auto first = absolute_first(o);
   return first && o.total && o.count > 1 ? growth_to(*o.total, *first, o.count) : kDefaultGrowth;
 }
 
-layers::Asked asked_layers(const LayerOptions& o, const Remeshed& boundary) {
+layers::Asked asked_layers(const LayersOptions& o, const Remeshed& boundary) {
   layers::Asked asked;
   asked.count = static_cast<std::uint32_t>(o.count);
   asked.growth = growth_of(o);
@@ -167,12 +167,12 @@ void require_coverage(const std::vector<LayerSummary>& walls, double percent) {
 }  // namespace
 
 void check_layer_options(const Options& options) {
-  const LayerOptions& o = options.layers;
+  const LayersOptions& o = options.layers;
   const bool has_flow = o.yplus || o.reynolds || o.reference_length;
   if (o.count == 0) {
-    require_layers(
-        !o.first && !o.first_part && !o.growth && !o.total && !has_flow && o.on.empty() && !o.require_coverage,
-        "boundary layers are described, but none are asked for: give `count`");
+    require_layers(!o.first && !o.first_part && !o.growth && !o.total && !has_flow && o.on.empty() &&
+                       !o.require_coverage && !o.as_tets,
+                   "boundary layers are described, but none are asked for: give `count`");
     return;
   }
   require_layers(o.count > 0 && o.count <= kMostLayers, "the `count` of boundary layers is between 0 and 100");
@@ -205,7 +205,7 @@ void check_layer_options(const Options& options) {
 }
 
 std::optional<GrownLayers> grow_layers(Remeshed& boundary, Run& run) {
-  const LayerOptions& asked = run.options.layers;
+  const LayersOptions& asked = run.options.layers;
   if (asked.count == 0) return {};
   if (!boundary.surface.sides.empty())
     throw OptionError("boundary layers grow in one region so far, and this input has several regions or sheets");
@@ -225,6 +225,7 @@ void add_layers(Filled& filled, Run& run) {
   describe_sizes(filled.mesh, filled.boundary.sizes, run.report);
   auto [mesh, boundary] = layers::with_layers(filled.layers->wall, filled.layers->columns, std::move(filled.mesh));
   filled.mesh = std::move(mesh);
+  if (run.options.layers.as_tets) filled.mesh.wide_cells.clear(), filled.mesh.wide_faces.clear();
   filled.boundary.surface = std::move(boundary);
 }
 

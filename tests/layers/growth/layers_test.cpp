@@ -37,7 +37,7 @@ bool is_full(const layers::Columns& columns, VertexIndex v) {
   return columns.reason[v] == layers::Reason::kNone && columns.count[v] == columns.asked && columns.part[v] == 1;
 }
 
-Result meshed(const SurfaceMesh& surface, const LayerOptions& layers, double size) {
+Result meshed(const SurfaceMesh& surface, const LayersOptions& layers, double size) {
   Domain domain;
   domain.surface = surface;
   Options options;
@@ -117,7 +117,7 @@ TEST(Layers, GiveWayInAGap) {
 }
 
 TEST(Layers, AMeshOfBothIsValidAndKeepsTheVolume) {
-  LayerOptions asked;
+  LayersOptions asked;
   asked.count = 3;
   asked.first = 0.01;
   for (const SurfaceMesh& surface : {cube(2), icosphere(3), torus(60, 24)}) {
@@ -138,7 +138,7 @@ TEST(Layers, AMeshOfBothIsValidAndKeepsTheVolume) {
 }
 
 TEST(Layers, EndOnFlatPatchesWithout) {
-  LayerOptions asked;
+  LayersOptions asked;
   asked.count = 4;
   asked.first = 0.02;
   asked.on = "wall";
@@ -163,7 +163,7 @@ TEST(Layers, EndOnFlatPatchesWithout) {
 }
 
 TEST(Layers, HeightsByYplusAndByTotal) {
-  LayerOptions asked;
+  LayersOptions asked;
   asked.count = 3;
   asked.first = 0.01;
   asked.total = 0.05;
@@ -171,7 +171,7 @@ TEST(Layers, HeightsByYplusAndByTotal) {
   ASSERT_EQ(by_total.report.layers.size(), 1u);
   EXPECT_NEAR(by_total.report.layers[0].first_median, 0.01, 1e-9);
   EXPECT_NEAR(volume_of(by_total.mesh, 1) / (4 * std::numbers::pi * 0.05), 1, 0.1);
-  LayerOptions flow;
+  LayersOptions flow;
   flow.count = 3;
   flow.yplus = 30, flow.reynolds = 1e5, flow.reference_length = 2;
   // u_tau / U = sqrt(.013 Re^(-1/7)), y = 30 nu / u_tau
@@ -181,8 +181,8 @@ TEST(Layers, HeightsByYplusAndByTotal) {
 
 TEST(Layers, ContradictionsAreRefused) {
   const SurfaceMesh ball = icosphere(2);
-  const auto refused = [&](const LayerOptions& o) { EXPECT_THROW(meshed(ball, o, 0.3), OptionError); };
-  LayerOptions o;
+  const auto refused = [&](const LayersOptions& o) { EXPECT_THROW(meshed(ball, o, 0.3), OptionError); };
+  LayersOptions o;
   o.first = 0.01;
   refused(o);  // no count
   o.count = 3, o.total = 0.1, o.growth = 1.2;
@@ -196,7 +196,7 @@ TEST(Layers, ContradictionsAreRefused) {
 }
 
 TEST(Layers, CoverageMayBeRequired) {
-  LayerOptions asked;
+  LayersOptions asked;
   asked.count = 3;
   asked.first = 0.05;
   asked.require_coverage = 95;
@@ -208,7 +208,7 @@ TEST(Layers, SharpRidgesAreLeftOut) {
   SurfaceMesh blade;  // an edge of .6 degrees
   blade.points = {{0, 0, 0}, {1, -0.005, 0}, {1, 0.005, 0}, {0, 0, 1}, {1, -0.005, 1}, {1, 0.005, 1}};
   blade.triangles = {{0, 2, 1}, {3, 4, 5}, {0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}, {2, 0, 3}, {2, 3, 5}};
-  LayerOptions asked;
+  LayersOptions asked;
   asked.count = 2;
   asked.first = 0.001;
   const Result made = meshed(blade, asked, 0.05);
