@@ -15,7 +15,7 @@ need_packages "${build_packages[@]}" python3 python3-numpy python3-venv dpkg-dev
 
 build_tbb_and_fmt "$work"
 
-rm -rf "$wheels"
+rm -f "$wheels"/octafront-*"$(uname -m)".whl "$wheels"/octafront-*.tar.gz
 mkdir -p "$wheels"
 arguments="-DCMAKE_PREFIX_PATH=$work/inside -DZLIB_USE_STATIC_LIBS=ON -DOCTAFRONT_CAD=OFF -DOCTAFRONT_OLDEST_GLIBC=$glibc"
 [ -z "${CMAKE_CXX_COMPILER_LAUNCHER:-}" ] || arguments+=" -DCMAKE_CXX_COMPILER_LAUNCHER=$CMAKE_CXX_COMPILER_LAUNCHER"
@@ -28,7 +28,7 @@ PYTHON
 make_wheel "$PWD" "$work/wheel" "$wheels" 2>"$work/wheel.log" || { tail -30 "$work/wheel.log"; exit 1; }
 PYTHONPATH=python/backend python3 -c "import octafront_build; octafront_build.build_sdist('$wheels')"
 
-wheel=$(echo "$wheels"/octafront-*.whl)
+wheel=$(echo "$wheels"/octafront-*"$(uname -m)".whl)
 python3 tests/python/look_into_wheel.py "$wheel" . --glibc "$glibc" --megabytes "$megabytes"
 ls -l "$wheels" | awk 'NR > 1 { printf "%s %.2f MB\n", $9, $5 / 1e6 }'
 

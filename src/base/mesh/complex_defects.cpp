@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <tuple>
 
 #include <fmt/core.h>
 
@@ -21,7 +22,10 @@ struct PlacedWall {
   PlacedCorners corners;
   Sides sides;
 
-  friend auto operator<=>(const PlacedWall&, const PlacedWall&) = default;
+  friend bool operator==(const PlacedWall&, const PlacedWall&) = default;
+  friend bool operator<(const PlacedWall& a, const PlacedWall& b) {
+    return std::tie(a.corners, a.sides) < std::tie(b.corners, b.sides);
+  }
 };
 
 PlacedWall placed(const std::vector<Vec3>& points, Triangle t, Sides sides) {

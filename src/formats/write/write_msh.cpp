@@ -107,7 +107,7 @@ class MshNumbers {
   template <class Fill>
   void write_lines(std::size_t count, const Fill& fill) {
     for (std::size_t i = 0; i < count; ++i) {
-      fill(i, i + 1, [this](auto value) { put(value); });
+      fill(i, i + 1, [this](auto value) { this->put(value); });
       end_record();
     }
   }
