@@ -877,6 +877,17 @@ class Package(Case):
                                 if name not in ("points", "triangles", "mesh", "path")))
         self.assertIn("gradation: How fast sizes may change", octafront.mesh.__doc__)
 
+    def test_boundary_layers(self):
+        points, triangles = cube()
+        surface = octafront.Surface(points, triangles, patches=np.arange(12) // 2, patch_names=list("abcdef"))
+        mesh = octafront.mesh(surface, size=0.3, layers=3, first=0.01, on="a,b")
+        self.assertEqual(mesh.names["regions"], ["volume", "layers"])
+        walls = mesh.report["layers"]
+        self.assertEqual([w["patch"] for w in walls], ["a", "b"])
+        self.assertEqual({w["share_full"] for w in walls}, {1})
+        with self.assertRaisesRegex(octafront.OptionError, "no patch"):
+            octafront.mesh(surface, size=0.3, layers=3, first=0.01, on="z")
+
     def test_every_option_can_be_given(self):
         from octafront._library import option_table
         for row in option_table():

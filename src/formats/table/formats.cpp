@@ -75,6 +75,10 @@ constexpr Format or_text(Format format) {
   format.info.also_text = true;
   return format;
 }
+constexpr Format with_wedges(Format format) {
+  format.info.holds.wide_cells = true;
+  return format;
+}
 constexpr Format of_several_files(Format format) {
   format.info.one_file = false;
   return format;
@@ -103,15 +107,15 @@ constexpr std::array kFormats{
             {},
             "facets, with markers as patches, regions and holes; read only"},
            nullptr},
-    or_text(mesh("vtu", "VTU", ".vtu", kYes, binary(kAll),
-                 "VTK unstructured grid, compressed or text: numbers, names and sets as arrays; beta per element",
-                 write_vtu)),
-    or_text(
-        mesh("msh", "Gmsh MSH 4.1", ".msh", kYes, binary(kAll), "binary or text: all as physical groups", write_msh)),
-    or_text(mesh("msh22", "Gmsh MSH 2.2", "", kYes, binary(without_sets(kAll)),
-                 "binary or text: regions, patches, curves as physical groups", write_msh2)),
-    mesh("abaqus", "Abaqus, CalculiX", ".inp", kYes, kSolver, "ELSET, NSET, SURFACE; numbers of at most 20 characters",
-         write_abaqus),
+    with_wedges(or_text(mesh(
+        "vtu", "VTU", ".vtu", kYes, binary(kAll),
+        "VTK unstructured grid, compressed or text: numbers, names and sets as arrays; beta per element", write_vtu))),
+    with_wedges(or_text(
+        mesh("msh", "Gmsh MSH 4.1", ".msh", kYes, binary(kAll), "binary or text: all as physical groups", write_msh))),
+    with_wedges(or_text(mesh("msh22", "Gmsh MSH 2.2", "", kYes, binary(without_sets(kAll)),
+                             "binary or text: regions, patches, curves as physical groups", write_msh2))),
+    with_wedges(mesh("abaqus", "Abaqus, CalculiX", ".inp", kYes, kSolver,
+                     "ELSET, NSET, SURFACE; numbers of at most 20 characters", write_abaqus)),
     mesh("nastran", "Nastran", ".bdf .nas", kYes, kSolver,
          "PSOLID, PSHELL, SET; numbers of at most 16 characters (9 to 15 digits)", write_nastran),
     mesh("unv", "I-deas universal", ".unv", kYes, kAll, "groups (dataset 2477); 17 digits", write_unv),
@@ -124,16 +128,18 @@ constexpr std::array kFormats{
     mesh("lsdyna", "LS-DYNA", ".k .key", kNo, kSolver,
          "parts and sets; numbers of at most 16 characters (9 to 15 digits)", write_lsdyna),
     mesh("febio", "FEBio 4", ".feb", kNo, kAll, "Elements, Surface, Edge, NodeSet, ElementSet", write_febio),
-    mesh("su2", "SU2", ".su2", kNo, kSu2, "markers", write_su2),
+    with_wedges(mesh("su2", "SU2", ".su2", kNo, kSu2, "markers", write_su2)),
     [] {
       Format format = of_several_files(mesh("openfoam", "OpenFOAM polyMesh", "", kNo, kOpenFoam,
                                             "a folder, named polyMesh: patches, cellZones, faceZones", write_openfoam));
       format.is_folder = true;
+      format.info.holds.wide_cells = true;
       return format;
     }(),
     mesh("cgns", "CGNS", ".cgns", kNo, binary(without_edges(without_sets(kAll))),
          "sections and boundary conditions; needs HDF5", kWriteCgns),
-    or_text(mesh("vtk", "legacy VTK", ".vtk", kYes, binary(kAll), "as VTU, binary or text, uncompressed", write_vtk)),
+    with_wedges(or_text(
+        mesh("vtk", "legacy VTK", ".vtk", kYes, binary(kAll), "as VTU, binary or text, uncompressed", write_vtk))),
     mesh("medit", "MEDIT", ".mesh", kYes, kNumbersOnly, "text: references", write_medit),
     mesh("meditb", "MEDIT binary", ".meshb", kYes, binary(kNumbersOnly), "references", write_medit_binary),
     mesh("netgen", "Netgen", ".vol", kYes, without_sets(kAll), "materials, bcnames, cd2names", write_netgen),

@@ -9,6 +9,7 @@
 #include "layers/columns/assemble.h"
 #include "layers/growth/grow.h"
 #include "support/named_surfaces.h"
+#include "support/test_folder.h"
 
 #include <algorithm>
 #include <cmath>
@@ -160,6 +161,35 @@ TEST(Layers, EndOnFlatPatchesWithout) {
   }
   EXPECT_NEAR(inlet, std::numbers::pi, 0.05);
   EXPECT_NEAR(wall, 8 * std::numbers::pi, 0.3);
+}
+
+class LayerFiles : public InItsFolder {};
+
+TEST_F(LayerFiles, HaveWedgesWhereTheFormatDoes) {
+  LayersOptions asked;
+  asked.count = 6;
+  asked.first = 0.04;  // some are left out in the corners of the ends
+  asked.on = "wall";
+  const TetMesh mesh = meshed(pipe(24, 10), asked, 0.4).mesh;
+  ASSERT_FALSE(mesh.wide_cells.empty());
+  ASSERT_FALSE(mesh.wide_faces.empty());
+  for (const char* name : {"a.vtu", "a.vtk", "a.msh"}) {
+    const std::string file = folder_ / name;
+    EXPECT_TRUE(write_mesh(file, mesh).empty());
+    const MeshFile read = read_mesh_file(file);
+    EXPECT_TRUE(read.notes.empty()) << name << read.notes.front();  // none is inverted
+    EXPECT_EQ(first_defect(read.mesh), std::nullopt) << name;
+    EXPECT_EQ(read.mesh.tets.size(), mesh.tets.size());
+    EXPECT_EQ(read.mesh.boundary.size(), mesh.boundary.size());
+    EXPECT_EQ(read.mesh.region_names, mesh.region_names);
+    EXPECT_EQ(read.mesh.patch_names, mesh.patch_names);
+    EXPECT_EQ(std::ranges::count(read.mesh.patch, 1u), std::ranges::count(mesh.patch, 1u)) << name;
+  }
+  EXPECT_TRUE(std::ranges::any_of(write_mesh(folder_ / "a.bdf", mesh),
+                                  [](const std::string& note) { return note.find("tetrahedra") != note.npos; }));
+  TetMesh broken = mesh;
+  std::swap(broken.wide_cells[0].nodes, broken.wide_cells[1].nodes);
+  EXPECT_NE(first_defect(broken), std::nullopt);
 }
 
 TEST(Layers, HeightsByYplusAndByTotal) {
