@@ -208,7 +208,9 @@ std::optional<GrownLayers> grow_layers(Remeshed& boundary, Run& run) {
   const LayersOptions& asked = run.options.layers;
   if (asked.count == 0) return {};
   if (!boundary.surface.sides.empty())
-    throw OptionError("boundary layers grow in one region so far, and this input has several regions or sheets");
+    throw OptionError(
+        "boundary layers grow in one region so far, and this input has several regions or sheets. For a flow around a "
+        "body leave it empty: its inside is no region with `nested` cavity, or a `void` at a point in it");
   return run.stage("boundary layers", [&](const Stage& stage) {
     GrownLayers grown{boundary.surface, {}};
     grown.columns =
