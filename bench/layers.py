@@ -21,6 +21,7 @@ from origin import written_by  # noqa: E402
 PAGE = ROOT / "docs/measured/layers.md"
 CASES = [(3, 0.1), (8, 0.1), (3, 0.02), (8, 0.02)]
 GROWTH = 1.2
+END = "<!-- end -->"  # what stands behind it on the page stays
 
 
 def name_of(case):
@@ -107,7 +108,7 @@ def page(results):
         "layers, median model and worst. *Inside*: what lies between the layers.", "",
         "| layers x first height | total | valid | full, %: mean | median | worst | none, % | SJ | angles inside: median, worst | β inside | k prisms/CPU s |",
         "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |", *lines, "",
-        "The twenty with least:", "", "| model | layers | full | stopped by |", "| --- | --- | --- | --- |", *worst_lines(results), ""])
+        "The twenty with least:", "", "| model | layers | full | stopped by |", "| --- | --- | --- | --- |", *worst_lines(results), "", END])
 
 
 def main():
@@ -132,7 +133,8 @@ def main():
             row = results[key]
             print(key, row["status"], f"{row['cpu']:.1f} s", *([f"{100 * faces_weighted(row, 'share_full'):.1f} %", row["valid"]] if row["status"] == 0 else
                   [row["said"]]), flush=True)
-    PAGE.write_text(page(results))
+    kept_words = PAGE.read_text().partition(END)[2] if PAGE.exists() else "\n"
+    PAGE.write_text(page(results) + kept_words)
 
 
 main()
