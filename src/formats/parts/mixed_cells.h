@@ -9,6 +9,15 @@
 
 namespace octafront::io {
 
+/// Outward faces of wedges and pyramids, as corners of WideCell; the last one of a triangle is repeated. In the order
+/// of Abaqus's S1, S2, ...
+inline constexpr std::array<std::array<std::size_t, 4>, 5> kWedgeFaces{
+    {{0, 2, 1, 1}, {3, 4, 5, 5}, {0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}}};
+inline constexpr std::array<std::array<std::size_t, 4>, 5> kPyramidFaces{
+    {{0, 3, 2, 1}, {0, 1, 4, 4}, {1, 2, 4, 4}, {2, 3, 4, 4}, {3, 0, 4, 4}}};
+/// Corners of WideCell in the order of VTK's wedge, whose first triangle faces outward; and the other way.
+inline constexpr std::array<std::size_t, 6> kVtkWedge{0, 2, 1, 3, 5, 4};
+
 /// The elements and faces of a mesh for formats that have wedges, pyramids and quadrilaterals: tetrahedra that are
 /// part of none first, then pyramids, then wedges; triangles, then quadrilaterals. Without wide cells they are the
 /// tetrahedra and faces of the mesh, under their numbers. Refers to the mesh.

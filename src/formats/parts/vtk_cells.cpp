@@ -79,9 +79,8 @@ VertexIndex VtkCells::node(std::uint64_t at) const {
   }
   const std::uint64_t cell = first + at / each_[k], i = at % each_[k];
   if (k == kTets) return mesh_.tet_node(cells_.first_tet(cell), i);
-  constexpr std::array<std::size_t, 6> kWedge{0, 2, 1, 3, 5, 4};  // the first triangle faces outward
   if (k == kPyramids) return cells_.wide(cell).nodes[i];
-  if (k == kWedges) return cells_.wide(cell).nodes[kWedge[i]];
+  if (k == kWedges) return cells_.wide(cell).nodes[kVtkWedge[i]];
   if (k == kEdges) return mesh_.edge_node(cell - ends_[kQuads], i);
   if (k == kTriangles) return mesh_.face_node(cells_.first_face(cell - first_face()), i);
   return mesh_.mesh().wide_faces[cell - ends_[kTriangles]].nodes[i];

@@ -18,15 +18,9 @@ using Kind = NamedSet::Kind;
 
 /// Sides S1 = 123, S2 = 124, S3 = 234, S4 = 134, by the corner that they lack.
 constexpr std::array<char, 4> kSideName{'3', '4', '2', '1'};
-/// Corners of the sides S1, S2, ... of wedges (C3D6) and pyramids (C3D5).
-constexpr std::array<std::array<std::size_t, 4>, 5> kWedgeSides{
-    {{0, 1, 2, 2}, {3, 4, 5, 5}, {0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}}};
-constexpr std::array<std::array<std::size_t, 4>, 5> kPyramidSides{
-    {{0, 1, 2, 3}, {0, 1, 4, 4}, {1, 2, 4, 4}, {2, 3, 4, 4}, {3, 0, 4, 4}}};
-
 /// The side of a wedge or pyramid that has all these nodes.
 char side_of(const WideCell& cell, std::span<const VertexIndex> nodes) {
-  const auto& sides = cell.tet_count == 3 ? kWedgeSides : kPyramidSides;
+  const auto& sides = cell.tet_count == 3 ? kWedgeFaces : kPyramidFaces;
   for (std::size_t s = 0; s < sides.size(); ++s) {
     const auto has = [&](VertexIndex v) {
       return std::ranges::any_of(sides[s], [&](std::size_t k) { return cell.nodes[k] == v; });

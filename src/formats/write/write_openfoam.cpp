@@ -23,12 +23,6 @@
 namespace octafront::io {
 namespace {
 
-/// Outward faces of wedges and pyramids, as corners of WideCell; the last of a triangle is repeated.
-constexpr std::array<std::array<std::size_t, 4>, 5> kWedgeFaces{
-    {{0, 2, 1, 1}, {3, 4, 5, 5}, {0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}}};
-constexpr std::array<std::array<std::size_t, 4>, 5> kPyramidFaces{
-    {{0, 3, 2, 1}, {0, 1, 4, 4}, {1, 2, 4, 4}, {2, 3, 4, 4}, {3, 0, 4, 4}}};
-
 /// The inner faces of a mesh with wedges and pyramids.
 class MixedFaces {
  public:

@@ -15,14 +15,13 @@ void write_su2(MeshOutput& output, const MeshParts& mesh) {
   const std::vector<std::string> names = legal_names(output, mesh, {}, std::array{Part::Origin::kPatch});
   const MixedCells cells(mesh);
   constexpr std::array<const char*, MixedCells::kKinds> kTypes{"10", "14", "13"};
-  constexpr std::array<std::size_t, 6> kWedgeOrder{0, 2, 1, 3, 5, 4};  // the first triangle faces outward
   std::array<VertexIndex, 10> room;
   out.line("% Mesh by octafront\nNDIME= 3\nNELEM= {}", cells.cells());
   for (std::size_t c = 0; c < cells.cells(); ++c) {
     const auto nodes = cells.nodes(c, room);
     out << kTypes[cells.kind(c)];
     for (std::size_t k = 0; k < nodes.size(); ++k)
-      out << ' ' << nodes[cells.kind(c) == MixedCells::kWedge ? kWedgeOrder[k] : k];
+      out << ' ' << nodes[cells.kind(c) == MixedCells::kWedge ? kVtkWedge[k] : k];
     out << ' ' << std::uint64_t{c} << '\n';
   }
   out.line("NPOIN= {}", mesh.points());

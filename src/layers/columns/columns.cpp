@@ -5,7 +5,7 @@
 
 namespace octafront::layers {
 
-double Columns::height_of(std::uint32_t levels) const {
+double total_height(double growth, std::uint32_t levels) {
   double sum = 0, h = 1;
   for (std::uint32_t k = 0; k < levels; ++k, h *= growth) sum += h;
   return sum;

@@ -31,6 +31,9 @@ struct Node {
   std::uint32_t level;
 };
 
+/// Height of so many layers whose first one is 1.
+double total_height(double growth, std::uint32_t levels);
+
 /// Columns over the vertices of a surface. Vertices that no layers grow from have count 0.
 struct Columns {
   std::vector<std::uint8_t> is_wall;  ///< per triangle: whether layers grow from it
@@ -42,8 +45,7 @@ struct Columns {
   double growth = 1.2;                ///< each layer over the one below
   std::uint32_t asked = 0;            ///< layers
 
-  /// Height of so many layers whose first one is 1.
-  double height_of(std::uint32_t levels) const;
+  double height_of(std::uint32_t levels) const { return total_height(growth, levels); }
   Vec3 place(const SurfaceMesh& wall, Node node) const;
   Vec3 top(const SurfaceMesh& wall, VertexIndex v) const { return place(wall, {v, count[v]}); }
 };

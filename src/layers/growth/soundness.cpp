@@ -12,6 +12,7 @@ namespace octafront::layers {
 
 namespace {
 
+constexpr double kSineOf60 = 0.86602540378443865;
 /// A prism may be so much more distorted than its triangle of the wall.
 constexpr double kLeastJacobian = 0.1;
 /// The top of a triangle's layers faces at most 84 degrees away from the triangle.
@@ -26,7 +27,6 @@ double scaled(Vec3 u, Vec3 v, Vec3 w) {
 
 /// Of the corner of a triangle, 1 at 60 degrees.
 double sine_over_60(Vec3 u, Vec3 v) {
-  constexpr double kSineOf60 = 0.86602540378443865;
   const double lengths = length(u) * length(v);
   return lengths > 0 ? length(cross(u, v)) / (kSineOf60 * lengths) : 0;
 }
@@ -84,7 +84,6 @@ class Soundness {
 
 double least_scaled_jacobian(const SurfaceMesh& wall, const Columns& columns, const Triangle& triangle,
                              std::uint32_t layer) {
-  constexpr double kSineOf60 = 0.86602540378443865;
   std::array<Vec3, 3> low, high;
   for (int i = 0; i < 3; ++i)
     low[i] = columns.place(wall, {triangle[i], layer}), high[i] = columns.place(wall, {triangle[i], layer + 1});

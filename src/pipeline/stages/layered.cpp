@@ -41,18 +41,12 @@ bool is_positive(const std::optional<double>& value) {
   return !value || (std::isfinite(*value) && *value > 0);
 }
 
-double total_over_first(double growth, int count) {
-  double sum = 0, h = 1;
-  for (int k = 0; k < count; ++k, h *= growth) sum += h;
-  return sum;
-}
-
 /// The growth by which layers come from a first height to a total one.
-double growth_to(double total, double first, int count) {
+double growth_to(double total, double first, std::uint32_t count) {
   double low = kLeastGrowth, high = kMostGrowth;
   for (int step = 0; step < kGrowthSteps; ++step) {
     const double growth = 0.5 * (low + high);
-    (total_over_first(growth, count) < total / first ? low : high) = growth;
+    (layers::total_height(growth, count) < total / first ? low : high) = growth;
   }
   return 0.5 * (low + high);
 }
@@ -70,14 +64,15 @@ std::optional<double> absolute_first(const LayersOptions& o) {
 double growth_of(const LayersOptions& o) {
   if (o.growth) return *o.growth;
   const auto first = absolute_first(o);
-  return first && o.total && o.count > 1 ? growth_to(*o.total, *first, o.count) : kDefaultGrowth;
+  return first && o.total && o.count > 1 ? growth_to(*o.total, *first, static_cast<std::uint32_t>(o.count))
+                                         : kDefaultGrowth;
 }
 
 layers::Asked asked_layers(const LayersOptions& o, const Remeshed& boundary) {
   layers::Asked asked;
   asked.count = static_cast<std::uint32_t>(o.count);
   asked.growth = growth_of(o);
-  const double all = total_over_first(asked.growth, o.count);
+  const double all = layers::total_height(asked.growth, asked.count);
   const auto first = absolute_first(o);
   double heights = 0, sizes = 0;
   for (const Vec3 p : boundary.surface.points) {
@@ -193,7 +188,7 @@ void check_layer_options(const Options& options) {
                  "`growth` of layers is in [1, 3]");
   if (const auto first = absolute_first(o); first && o.total) {
     const double ratio = *o.total / *first;
-    require_layers(ratio >= o.count && ratio <= total_over_first(kMostGrowth, o.count),
+    require_layers(ratio >= o.count && ratio <= layers::total_height(kMostGrowth, static_cast<std::uint32_t>(o.count)),
                    "no `growth` in [1, 3] leads from the first height to `total` with so many layers");
   }
   require_layers(!o.require_coverage || (*o.require_coverage >= 0 && *o.require_coverage <= 100),
