@@ -24,14 +24,16 @@
 #   bench/run.sh cad         CAD files at parts of their diagonal: volumes, areas, names, nodes on the geometry, time; --peers: beside Gmsh
 #                            and Netgen; --models FOLDER: other files  -> docs/measured/cad.md
 #   bench/run.sh layers      boundary layers on all clean models: coverage, validity, quality, speed -> docs/measured/layers.md
+#   bench/run.sh layers_shapes   the same on bodies whose layers are known; layers_flows: around bodies, in vessels; layers_peers: beside snappyHexMesh
+#                            and Gmsh; layers_solved: a laminar pipe with and without -> docs/measured/layers.md
 #   bench/run.sh dry_run     mesh --dry-run: elements, time and memory said and taken -> docs/use/command-line.md
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/lib/apt.sh
 
 case ${1:-} in
-  status | derived | pipeline | surface | elements | gradation | volume | graded | peers | complexes | improve | formats | second_order | dry_run | repair | known_answers | damage | images | thin | budget | cad | layers) ;;
-  *) sed -n '2,27s/^# \{0,1\}//p' "$0"; exit 2 ;;
+  status | derived | pipeline | surface | elements | gradation | volume | graded | peers | complexes | improve | formats | second_order | dry_run | repair | known_answers | damage | images | thin | budget | cad | layers | layers_shapes | layers_flows | layers_peers | layers_solved) ;;
+  *) sed -n '2,29s/^# \{0,1\}//p' "$0"; exit 2 ;;
 esac
 need_packages "${build_packages[@]}" python3
 [ "$1" != surface ] || need_packages gmsh netgen libcgal-dev libgmp-dev libmpfr-dev
@@ -44,6 +46,8 @@ need_packages "${build_packages[@]}" python3
 [ "$1" != complexes ] || need_packages "${test_packages[@]}" tetgen gmsh python3-gmsh
 [ "$1" != known_answers ] || need_packages "${test_packages[@]}"
 { [ "$1" != repair ] && [ "$1" != damage ]; } || need_packages python3-numpy python3-meshio
+[[ $1 != layers_* ]] || need_packages python3-numpy python3-meshio openfoam
+[ "$1" != layers_peers ] || need_packages python3-gmsh
 [ "$1" != images ] || need_packages libcgal-dev libgmp-dev libmpfr-dev libboost-dev
 [ "$1" != images ] || [ -d volumes ] || scripts/get-volumes.sh
 [ "$1" = formats ] || [ "$1" = complexes ] || [ "$1" = images ] || [ "$1" = thin ] || [ "$1" = cad ] || [ -d models/clean ] || scripts/get-models.sh --ct
@@ -61,6 +65,8 @@ cmake --build --preset release --target octafront_cli octafront_evaluate octafro
 [ "$1" != repair ] || cmake --build --preset release --target octafront_judge_repair
 [ "$1" != peers ] || cmake --build --preset release --target peer_cgal_mesh || echo "without CGAL's mesher" >&2
 [ "$1" != images ] || cmake --build --preset release --target octafront_judge_image peer_cgal_labels
+[[ $1 != layers_* ]] || [ -d models/flows ] || scripts/get-flows.sh build/release/cli/octafront
 python=python3
 [ "$1" != repair ] && [ "$1" != known_answers ] && [ "$1" != damage ] || python=/usr/bin/python3  # Debian's, with its NumPy
+[[ $1 != layers_* ]] || python=/usr/bin/python3
 exec "$python" "bench/$1.py" build/release "${@:2}"
