@@ -172,13 +172,13 @@ void ease_boundary(const improve::BoundaryInput& on, Filled& filled, const Optio
                 static_cast<double>(slide_interfaces(mesh, boundary.surface, boundary.features, on.surface, stage)));
   if (const double limit = scale_of_detail(on.surface, options, 1) * kRaised; limit > 0) {
     improve::FlatWalls walls(on.surface, on.tree, on.features);
-    RaiseLimits limits{limit, nullptr, &walls, nullptr};
+    RaiseLimits limits{limit, nullptr, &walls, nullptr, nullptr, limit / kRaised};
     const Leeway leeway(on.surface, on.tree, on.bound);
     std::optional<improve::InputForce> force;
     // Between walls of a complex, as near to each other as one likes, there is no other way out.
     if (!is_complex(on.surface)) {
       force.emplace(on);
-      limits.leeway = &leeway, limits.force = &*force;
+      limits.leeway = &leeway, limits.force = &*force, limits.input = &on.tree;
     }
     const RaisedFlat raised = raise_flat(mesh, boundary.surface, limits, stage);
     stage.count("corners of flat elements moved", static_cast<double>(raised.vertices));

@@ -445,9 +445,17 @@ SurfaceMesh wrapped(const SurfaceMesh& soup, const MendOptions& options, const R
 /// Points of faces that were divided are rounded, and dust is taken out: what lies no farther from its face than this
 /// part of the tolerance was not moved.
 constexpr double kUnmoved = 0.01;
+/// Caps of crumples lie up to the tolerance from what they stand for: more than this part of it in all would ask for
+/// many more elements, and say no more of the body.
+constexpr double kLaidFlat = 1.5;
 
-/// For what was moved, by no more than the tolerance, the tolerance; what was invented nobody knows any nearer. Empty
-/// if nothing was moved.
+bool closes_hole(const SurfaceMesh& made, std::size_t t) {
+  const std::uint32_t patch = made.patch_of(t);
+  return patch < made.patch_names.size() && made.patch_names[patch] == kClosedByRepair;
+}
+
+/// For what was moved, by no more than the tolerance, the tolerance, and somewhat more for what was laid flat; what was
+/// invented nobody knows any nearer. Empty if nothing was moved.
 std::vector<double> bounds_of(const SurfaceMesh& soup, const SurfaceMesh& made, const MendReport& report) {
   if (report.tolerance == 0 || report.count(Kind::kRebuilt) > 0) return {};
   std::unordered_map<std::uint32_t, std::uint32_t> face_of;
@@ -463,8 +471,10 @@ std::vector<double> bounds_of(const SurfaceMesh& soup, const SurfaceMesh& made, 
       moved =
           std::max(moved, distance(p, closest_point_on_triangle(p, soup.points[a], soup.points[b], soup.points[c])));
     }
-    if (!(moved > kUnmoved * report.tolerance && moved <= report.tolerance)) continue;
-    bounds[t] = report.tolerance;
+    // Far from its face is what closes a hole, or a crumple that was laid flat.
+    const bool is_closed = moved > report.tolerance && closes_hole(made, t);
+    if (moved <= kUnmoved * report.tolerance || is_closed) continue;
+    bounds[t] = (moved > report.tolerance ? kLaidFlat : 1) * report.tolerance;
     any = true;
   }
   return any ? bounds : std::vector<double>{};
