@@ -1,9 +1,9 @@
 """Repairs and meshes the defective models of bench/models.csv and judges what came out; writes docs/measured/repair-status.md.
 
-Usage: bench/run.sh repair [--only SUBSTRING] [--jobs N] [--timeout SECONDS] [--lines FILE] [--near] [--second-reader]
-Each model: `octafront repair MODEL -o SURFACE.obj` and `octafront mesh MODEL -o MESH.vtu`, default options, one thread; with
---near another mesh with --max-deviation of a thousandth of the diagonal. All files are read back and measured by
-octafront_judge_repair. --lines keeps a JSON object for each model in FILE and leaves out those that are there. --second-reader has meshio read the meshes, too, and counts anew (python3-meshio).
+Usage: bench/run.sh repair [--only SUBSTRING] [--jobs N] [--timeout SECONDS] [--lines FILE] [--near FACES] [--second-reader]
+Each model: `octafront repair MODEL -o SURFACE.obj` and `octafront mesh MODEL -o MESH.vtu`, default options, one thread;
+of models of FACES at most another mesh with --max-deviation of a thousandth of the diagonal. All files are read back and
+measured by octafront_judge_repair. --lines keeps a JSON object for each model in FILE and leaves out those that are there. --second-reader has meshio read the meshes, too, and counts anew (python3-meshio).
 """
 import argparse
 import concurrent.futures
@@ -51,7 +51,7 @@ def measure(build, model, result):
 def do_model(build, row, a):
     model = pathlib.Path("models/dirty", row["file"])
     out = {"file": row["file"], "defects": row["defects"], "faces": row["faces"], "origin": ORIGIN}
-    steps = [("repair", "repair", "surface.obj"), ("mesh", "mesh", "mesh.vtu"), ("near", "mesh", "near.vtu")][:3 if a.near else 2]
+    steps = [("repair", "repair", "surface.obj"), ("mesh", "mesh", "mesh.vtu"), ("near", "mesh", "near.vtu")][:3 if int(row["faces"]) <= a.near else 2]
     with tempfile.TemporaryDirectory() as folder:
         for step, command, name in steps:
             result, report = pathlib.Path(folder, name), pathlib.Path(folder, step + ".json")
@@ -144,7 +144,8 @@ def summary(rows):
         return (f"median {statistics.median(distances):.2f} ‰, greatest {distances[-1]:.2f} ‰; above {1e3 * TOLERANCE:g} ‰: "
                 f"{sum(f > 1e3 * TOLERANCE * 1.0001 for f in distances)}")
     moved = sorted(1e3 * m["moved_from_input"]["distance"] for m in made if m["moved_from_input"]["distance"] > 0)
-    nearer = [r["near"] for r in rows if "tets" in r.get("near", {})]
+    both = [r for r in rows if "tets" in r.get("near", {})]
+    nearer = [r["near"] for r in both]
     worst = [f"{min(m['dihedral_min'] for m in made):.2f}", f"{max(m['dihedral_max'] for m in made):.2f}"]
     return [
         f"- **{len(made)} of {len(rows)} meshed**, {sum(verdict(r) == 'mesh' for r in rows)} valid and 2-manifold; "
@@ -155,7 +156,7 @@ def summary(rows):
         f"{counted(sorted(1e3 * m['boundary_from_input']['distance'] for m in made))}.",
         *([f"- With `--max-deviation` of a thousandth of the diagonal, {len(nearer)} meshed: {counted(far(nearer))}; "
            f"CPU s median {statistics.median(m['cpu_seconds'] for m in nearer):.1f}, greatest {max(m['cpu_seconds'] for m in nearer):.1f}; "
-           f"elements {sum(m['tets'] for m in nearer) / sum(m['tets'] for m in made):.1f} times in all."] if nearer else []),
+           f"elements {sum(m['tets'] for m in nearer) / sum(r['mesh']['tets'] for r in both):.1f} times in all."] if nearer else []),
         f"- Angles over all: {worst[0]}–{worst[1]}°; within {ANGLES[0]}–{ANGLES[1]}°: "
         f"{sum(m['dihedral_min'] >= ANGLES[0] and m['dihedral_max'] <= ANGLES[1] for m in made)} models. "
         f"Mean β: median {statistics.median(m['beta_mean'] for m in made):.3f}.",
@@ -188,7 +189,8 @@ def main():
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--timeout", type=float, default=120, help="processor seconds for each run")
     parser.add_argument("--lines", type=pathlib.Path)
-    parser.add_argument("--near", action="store_true", help="also with --max-deviation of a thousandth of the diagonal")
+    parser.add_argument("--near", type=int, default=0, metavar="FACES",
+                        help="models of so many faces at most also with --max-deviation of a thousandth of the diagonal")
     parser.add_argument("--second-reader", action="store_true")
     a = parser.parse_args()
     models = [r for r in csv.DictReader(open("bench/models.csv")) if r["set"] == "dirty" and a.only in r["file"]]
