@@ -47,7 +47,7 @@ class MixedFaces {
         key[3] = kNone;
       }
     };
-    std::array<VertexIndex, 10> room;
+    std::array<VertexIndex, 15> room;
     for (std::uint32_t c = 0; c < cells.cells(); ++c) {
       const auto nodes = cells.nodes(c, room);
       if (cells.kind(c) == MixedCells::kTet)
@@ -84,7 +84,7 @@ class OpenFoamWriter {
         names_(legal_names(out, mesh, {.also = "_-."}, std::array{Part::Origin::kRegion, Part::Origin::kPatch})) {
     for (std::size_t f = 0; f < mesh.faces(); ++f)
       if (f >= mesh.mesh().boundary.size()) interface_at_[half_face(f)] = f;
-    if (!mesh.mesh().wide_cells.empty()) mixed_.emplace(cells_);
+    if (!mesh.wide_cells().empty()) mixed_.emplace(cells_);
   }
 
   void write() {
@@ -152,7 +152,7 @@ class OpenFoamWriter {
   void put_mixed(TextWriter& out, const Put& put) const {
     for (const MixedFaces::Face& face : mixed_->inner())
       put(out, std::span(face.nodes).first(face.nodes[2] == face.nodes[3] ? 3 : 4), face.owner, face.neighbour);
-    std::array<VertexIndex, 6> room;
+    std::array<VertexIndex, 8> room;
     for (const Part& patch : mesh_.parts(Part::Origin::kPatch))
       for (const std::uint32_t f : outside(patch)) {
         const TetIndex tet = mesh_.sides()[cells_.first_face(f)].tet;
