@@ -371,7 +371,7 @@ Filled fill(const Prepared& input, const SizeField& sizes, Run& run) {
 
 Filled fill_surface(const Prepared& input, Remeshed boundary, Run& run) {
   const MethodTraits& method = traits_of(run.options.method);
-  std::optional<GrownLayers> layers = grow_layers(boundary, run);
+  std::optional<GrownLayers> layers = grow_layers(input, boundary, run);
   TetMesh mesh = run.stage(method.stage, [&](const Stage& stage) {
     TetMesh filled = method.fill(boundary, run.options.volume, stage);
     stage.count("tets", static_cast<double>(filled.tets.size()));
@@ -407,11 +407,13 @@ void raise_order(const Prepared& input, Filled& filled, Run& run) {
   if (run.options.order < 2) return;
   run.stage("second order", [&](const Stage& stage) {
     auto& [mesh, boundary, grown] = filled;
-    run.report.second_order = keeps_surface(run.options) ? add_straight_edges(mesh, stage.context())
-                              : input.geometry
-                                  ? curve_to_geometry(mesh, *input.geometry, stage.context())
-                                  : curve_to_surface(mesh, boundary.features.edges, input.surface,
-                                                     run.options.surface.angle_of_features(), stage.context());
+    const std::span<const VertexIndex> below = vertices_below(filled);
+    run.report.second_order = on_ground(filled, [&] {
+      if (keeps_surface(run.options)) return add_straight_edges(mesh, stage.context());
+      if (input.geometry) return curve_to_geometry(mesh, *input.geometry, below, stage.context());
+      return curve_to_surface(mesh, boundary.features.edges, input.surface, run.options.surface.angle_of_features(),
+                              below, stage.context());
+    });
     std::copy_n(mesh.points.begin(), boundary.surface.points.size(), boundary.surface.points.begin());
     count_edges(run.report.second_order, stage);
   });
