@@ -86,7 +86,8 @@ void check_tet_mesh(Session& session) {
   const TetMesh& mesh = file.mesh;
   const std::uint64_t refused = ask_solver(session, mesh);
   prove_jacobians(session, mesh);
-  auto defect = first_defect(mesh, session.context());
+  auto defect = first_wide_defect(mesh);
+  if (!defect) defect = first_defect(mesh, session.context());
   if (!defect) defect = inverted(file);
   if (!defect) defect = first_overlap(mesh, session.context());
   session.found({{"kind", "mesh"}, {"valid", !defect}});

@@ -26,6 +26,25 @@ void tell_groups(Session& session, const TetMesh& mesh) {
   if (!words.empty()) session.say("groups:\n" + words);
 }
 
+/// Wedges and pyramids, which are several tetrahedra each.
+void tell_wide_cells(Session& session, const TetMesh& mesh) {
+  const auto tell = [&](const char* kind, const WideSummary& found) {
+    if (found.count == 0) return;
+    session.say(fmt::format(
+        "{}s: {}, least scaled Jacobian {:.4f}, mean {:.4f}; the least one at ({:.6g}, {:.6g}, {:.6g})\n", kind,
+        found.count, found.least_scaled_jacobian, found.mean_scaled_jacobian, found.at.x, found.at.y, found.at.z));
+    session.found({{fmt::format("{}s", kind),
+                    {{"count", found.count},
+                     {"least_scaled_jacobian", found.least_scaled_jacobian},
+                     {"mean_scaled_jacobian", found.mean_scaled_jacobian},
+                     {"least_at", place(found.at)},
+                     {"turned", found.turned},
+                     {"torn", found.torn}}}});
+  };
+  tell("wedge", summarize_wedges(mesh));
+  tell("pyramid", summarize_pyramids(mesh));
+}
+
 }  // namespace
 
 Json place(Vec3 p) {
@@ -66,6 +85,7 @@ void tell_mesh(Session& session, const TetMesh& mesh, const std::string& what) {
   session.say(
       fmt::format("{}: {} of {}\n", session.arguments().input.string(), what, quality_in_words(report.quality)));
   if (!mesh.tets.empty()) tell_worst(session, mesh, report.quality);
+  tell_wide_cells(session, mesh);
   tell_groups(session, mesh);
 }
 

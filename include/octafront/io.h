@@ -130,7 +130,8 @@ struct FormatHolds {
   bool interfaces = false;                                                             ///< patches inside
   bool node_sets = false, edge_sets = false, face_sets = false, element_sets = false;  ///< further sets, overlapping
   bool second_order = false, doubles = true, binary = false;
-  bool wide_cells = false;  ///< wedges and pyramids; in others they are tetrahedra
+  bool wide_cells = false;         ///< wedges and pyramids; in others they are tetrahedra
+  bool curved_wide_cells = false;  ///< the same of second order
 };
 
 /// What is known of a file format, for help texts and --format.

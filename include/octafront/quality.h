@@ -33,6 +33,22 @@ struct QualitySummary {
 
 QualitySummary summarize_quality(const TetMesh& mesh);
 
+/// What the wedges or the pyramids of a mesh (TetMesh::wide_cells) are as elements of their own, by their corners: the
+/// four of a pyramid's base. The scaled Jacobian of a corner is the determinant of its three edges over their lengths,
+/// in parts of what it is in a right-angled wedge on an equilateral triangle, in a pyramid of equilateral triangles.
+struct WideSummary {
+  std::uint64_t count = 0;
+  double least_scaled_jacobian = 0, mean_scaled_jacobian = 0;  ///< of the least corner of each
+  std::uint32_t least = kNone;                                 ///< of these the least one: its place in wide_cells
+  Vec3 at;                                                     ///< the mean of its corners
+  std::uint64_t turned = 0;                                    ///< no corner is positive, by exact sign
+  std::uint64_t torn = 0;                                      ///< some are, some are not
+  std::uint32_t first_bad = kNone;                             ///< place of the first turned or torn one
+};
+
+WideSummary summarize_wedges(const TetMesh& mesh);
+WideSummary summarize_pyramids(const TetMesh& mesh);
+
 /// A poor element, and where to look for it.
 struct PoorElement {
   TetIndex tet = kNone;

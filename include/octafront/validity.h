@@ -27,4 +27,9 @@ std::optional<std::string> first_defect(const TetMesh& mesh, const RunContext& c
 std::optional<std::string> first_defect(const TetMesh& mesh, const SurfaceMesh& surface,
                                         const RunContext& context = no_context());
 
+/// The first wedge or pyramid (TetMesh::wide_cells) that is turned inside out or torn, as an element of its own and not
+/// as the tetrahedra that it is made of: first_defect() knows of these alone. nullopt: every corner of each wedge, and
+/// of each pyramid's base, has a positive Jacobian by exact sign.
+std::optional<std::string> first_wide_defect(const TetMesh& mesh);
+
 }  // namespace octafront

@@ -4,7 +4,7 @@ import ctypes
 import json
 import types
 
-from . import _foreign, _html, _meshio, errors
+from . import _cells, _foreign, _html, _meshio, errors
 from ._jobs import Job
 from ._library import Array, Handle, _View, bytes_of, call, demand, file_of, pointer, spoken, text_of
 from ._numpy import np
@@ -12,10 +12,8 @@ from ._surface import _or_zeros, array_of, column_of, points_of, rows_of, wanted
 
 _KINDS = ["nodes", "edges", "faces", "elements"]
 _ARRAYS = ["points", "tets", "region", "boundary", "patch", "source", "interfaces", "interface_patch", "curve_edges",
-           "curve", "mid_nodes"]
+           "curve", "mid_nodes", "wide_cells", "wide_faces"]
 _LISTS = ["region_names", "patch_names", "curve_names"]
-# Where the mid-side nodes of an element stand in VTK and meshio, as columns of `mid_nodes`.
-_VTK_MIDS = [0, 3, 1, 2, 4, 5]
 
 
 def mesh_of(source):
@@ -57,7 +55,7 @@ class Mesh:
         raw.set("tets", tets[:, :4])
         if second_order:
             mids = np.empty((len(tets), 6), np.uint32)
-            mids[:, _VTK_MIDS] = tets[:, 4:]
+            mids[:, _cells.VTK_MIDS] = tets[:, 4:]
             raw.set("mid_nodes", mids)
         for name, values in (("region", regions), ("patch", patches)):
             if values is not None:
@@ -110,6 +108,24 @@ class Mesh:
         """(m, 6) uint32, mid-side nodes on the edges 01 02 03 12 13 23 of each tet; None: the mesh is linear."""
         found = self._handle.view("mid_nodes")
         return found if len(found) else None
+
+    @property
+    def wedges(self):
+        """(w, 6) uint32, corners of the wedges that boundary layers are, three of `tets` each: a triangle, counter-clockwise
+        seen from the other one, and that one above it."""
+        return _cells.wide_nodes(self._handle.view("wide_cells"), 3)
+
+    @property
+    def pyramids(self):
+        """(p, 5) uint32, corners of the pyramids where layers end, two of `tets` each: the base, counter-clockwise seen from
+        the apex, and the apex."""
+        return _cells.wide_nodes(self._handle.view("wide_cells"), 2)
+
+    @property
+    def quads(self):
+        """(q, 4) uint32, the quadrilaterals of wedges and pyramids on the boundary, two of `faces` each, counter-clockwise
+        seen from outside."""
+        return self._handle.view("wide_faces")[:, 1:]
 
     @property
     def order(self):
@@ -247,38 +263,59 @@ class Mesh:
                        patch_names=self.names["patches"])
 
     def to_pyvista(self):
-        """A pyvista.UnstructuredGrid with the cell data "region" and "beta"."""
+        """A pyvista.UnstructuredGrid with the cell data "region" and "beta", of wedges and pyramids that of their first
+        tetrahedron."""
         pyvista = wanted("pyvista")
-        cells, kind = self._vtk_cells()
-        rows = np.hstack([np.full((len(cells), 1), cells.shape[1]), cells]).astype(np.int64)
-        grid = pyvista.UnstructuredGrid(rows.ravel(), np.full(len(cells), kind, np.uint8), np.array(self.points))
-        grid.cell_data["region"] = np.array(self.regions)
-        grid.cell_data["beta"] = self.element_quality()
+        rows, types = [], []
+        kinds, _ = _cells.elements(self, self._handle.view("wide_cells"))
+        for kind in kinds:
+            nodes = kind.nodes[:, _cells.VTK_ORDERS.get(kind.name, slice(None))]
+            rows.append(np.hstack([np.full((len(nodes), 1), nodes.shape[1]), nodes]).astype(np.int64).ravel())
+            types.append(np.full(len(nodes), _cells.VTK_TYPES[kind.name], np.uint8))
+        first = np.concatenate([kind.first for kind in kinds])
+        grid = pyvista.UnstructuredGrid(np.concatenate(rows), np.concatenate(types), np.array(self.points))
+        grid.cell_data["region"] = np.array(self.regions)[first]
+        grid.cell_data["beta"] = self.element_quality()[first]
         return grid
 
     def to_meshio(self):
-        """A meshio.Mesh of blocks: tetrahedra with the cell data "region"; triangles of the boundary, then those inside,
-        with "patch"; lines with "curve". Named parts and sets are cell_sets, of nodes point_sets; field_data and the cell
-        data "gmsh:physical" (number + 1) are as of a .msh file."""
-        names, cells = self.names, self._vtk_cells()[0]
-        blocks = [_meshio.Block("tetra" if self.order == 1 else "tetra10", cells, "region", 3, self.regions, names["regions"]),
-                  _meshio.Block("triangle", self.faces, "patch", 2, self.patches, names["patches"])]
+        """A meshio.Mesh of blocks: tetrahedra, pyramids and wedges with the cell data "region"; triangles and quadrilaterals
+        of the boundary, then triangles inside, with "patch"; lines with "curve". Named parts and sets are cell_sets, of nodes
+        point_sets; field_data and the cell data "gmsh:physical" (number + 1) are as of a .msh file. Elements of second order
+        are so but for faces and lines; points that none has, the middles of diagonals of wedges, are left out."""
+        names = self.names
+        of_elements, element_at = _cells.elements(self, self._handle.view("wide_cells"))
+        of_faces, face_at = _cells.faces(self.faces, self._handle.view("wide_faces"))
+        blocks = [_meshio.Block(kind.name, kind.nodes, "region", 3, self.regions[kind.first], names["regions"])
+                  for kind in of_elements]
+        blocks += [_meshio.Block(kind.name, kind.nodes, "patch", 2, self.patches[kind.first], names["patches"])
+                   for kind in of_faces]
         if len(self.interfaces):
             blocks.append(_meshio.Block("triangle", self.interfaces, "patch", 2, self.interface_patches, names["patches"]))
         if len(self.curve_edges):
             blocks.append(_meshio.Block("line", self.curve_edges, "curve", 1, self.curves, names["curves"]))
         point_sets = {name: members.astype(np.int64) for name, (kind, members) in self.sets.items() if kind == "nodes"}
-        return _meshio.mesh_of(self.points, blocks, self._sets_of_blocks(len(blocks) - 1), point_sets)
+        first = (0, len(of_elements), len(of_elements) + len(of_faces), len(blocks) - 1)
+        points = self.points
+        if self.order == 2 and len(of_elements) > 1:
+            points, number = _cells.used_points(points, [block.cells for block in blocks])
+            blocks = [block._replace(cells=number[block.cells]) for block in blocks]
+            point_sets = {name: number[found][number[found] >= 0] for name, found in point_sets.items()}
+        return _meshio.mesh_of(points, blocks, self._sets_of_blocks(first, element_at, face_at), point_sets)
 
-    def _sets_of_blocks(self, last):
-        """(name, which block, members) of the sets of cells, in the blocks of to_meshio()."""
+    def _sets_of_blocks(self, first, element_at, face_at):
+        """(name, which block, members) of the sets of cells, in the blocks of to_meshio(): elements, faces, faces inside and
+        edges begin at these."""
         for name, (kind, members) in self.sets.items():
-            if kind == "faces":
+            if kind == "elements":
+                parts = [(first[0] + block, part) for block, part in _cells.members(element_at, members)]
+            elif kind == "faces":
                 inside = np.searchsorted(members, len(self.faces))
-                parts = [(1, members[:inside]), (2, members[inside:] - len(self.faces))]
-                yield from ((name, block, part) for block, part in parts if len(part))
-            elif kind != "nodes":
-                yield name, 0 if kind == "elements" else last, members
+                parts = [(first[1] + block, part) for block, part in _cells.members(face_at, members[:inside])]
+                parts.append((first[2], members[inside:] - len(self.faces)))
+            else:
+                parts = [(first[3], members)] if kind == "edges" else []
+            yield from ((name, block, part) for block, part in parts if len(part))
 
     def plot(self, clip=(1, 0, 0), **keywords):
         """Shows the mesh by pyvista, coloured by beta and cut open by whole elements: those whose centres lie behind the
@@ -286,15 +323,10 @@ class Mesh:
         grid = self.to_pyvista()
         if clip is not None:
             middle = self.points.min(axis=0) / 2 + self.points.max(axis=0) / 2
-            centres = self.points[self.tets].mean(axis=1)
+            kinds, _ = _cells.elements(self, self._handle.view("wide_cells"))
+            centres = np.concatenate([self.points[kind.nodes].mean(axis=1) for kind in kinds])
             grid = grid.extract_cells(np.flatnonzero((centres - middle) @ np.asarray(clip, float) <= 0))
         return grid.plot(**{"scalars": "beta", "show_edges": True, **keywords})
-
-    def _vtk_cells(self):
-        """Connectivity and cell type in VTK's order."""
-        if self.order == 1:
-            return self.tets, 10
-        return np.hstack([self.tets, self.mid_nodes[:, _VTK_MIDS]]), 24
 
     def __getstate__(self):
         return {"arrays": {name: np.array(self._handle.view(name)) for name in _ARRAYS},

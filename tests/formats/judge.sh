@@ -1,6 +1,9 @@
 #!/bin/sh
-# Writes the samples and lets the judges of one format read them: judge.sh WRITE_SAMPLES FORMAT
+# Writes the samples and lets the judges of one format read them: judge.sh WRITE_SAMPLES FORMAT; without a format those
+# of wedges and pyramids, in all formats.
 folder=$(mktemp -d) || exit 1
 trap 'rm -rf "$folder"' EXIT
 "$1" "$folder" || exit 1
-/usr/bin/python3 "$(dirname "$0")/judges.py" "$folder" "$2"
+if [ $# -eq 1 ]; then /usr/bin/python3 "$(dirname "$0")/mixed_judges.py" "$folder"
+else /usr/bin/python3 "$(dirname "$0")/judges.py" "$folder" "$2"
+fi

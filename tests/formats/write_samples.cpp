@@ -1,11 +1,14 @@
 // Writes a mesh that has everything, bent, in every format that this build has, linear and of second order:
 //   write_samples FOLDER
 // leaves FOLDER/linear/..., FOLDER/second/..., what is text or binary also as text in FOLDER/linear_text/..., the
-// tetrahedra alone in FOLDER/linear_cells/..., and in each expected.json: what a judge must find.
+// tetrahedra alone in FOLDER/linear_cells/..., one with wedges and pyramids in FOLDER/mixed_linear/... and
+// FOLDER/mixed_second/..., and in each expected.json: what a judge must find.
 
 #include <octafront/io.h>
 
 #include "formats/parts/mesh_parts.h"
+#include "formats/parts/mixed_cells.h"
+#include "support/mixed_mesh.h"
 #include "support/rich_mesh.h"
 
 #include <cmath>
@@ -83,6 +86,17 @@ Vec3 vector_area(std::span<const VertexIndex> nodes, const std::vector<Vec3>& po
   return sum;
 }
 
+double area(std::span<const VertexIndex> nodes, const std::vector<Vec3>& points) {
+  double sum = 0;
+  for (const auto& [u, wu] : kGauss)
+    for (const auto& [v, wv] : kGauss) {
+      const double y = v * (1 - u);
+      const auto j = jacobian(shape({1 - u - y, u, y, 0}, 3, nodes.size() > 3), nodes, points);
+      sum += length(cross(j[0], j[1])) * (wu * wv * (1 - u));
+    }
+  return sum;
+}
+
 std::string quoted(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) out += c == '"' || c == '\\' ? std::string("\\") + c : std::string(1, c);
@@ -116,10 +130,39 @@ std::string expected(const TetMesh& mesh) {
   return out + "]}\n";
 }
 
+/// Of a mesh whose tetrahedra and wedges fill the same space exactly: their volumes and areas are those of the
+/// tetrahedra, their numbers those of wedges, pyramids and quadrilaterals.
+std::string expected_mixed(const TetMesh& mesh) {
+  const io::WithoutDiagonals without = io::without_diagonals(mesh);
+  const io::MeshParts parts(mesh);
+  const io::MixedCells cells(parts);
+  std::array<VertexIndex, 10> tet;
+  std::array<VertexIndex, 6> face;
+  const auto count = [&](io::MixedCells::Kind kind) { return cells.end(kind) - cells.begin(kind); };
+  std::string out = fmt::format(
+      "{{\"nodes\": {}, \"tetra\": {}, \"pyramid\": {}, \"wedge\": {}, \"triangle\": {}, \"quad\": {}, \"parts\": [\n",
+      mesh.points.size() - without.diagonals, count(io::MixedCells::kTet), count(io::MixedCells::kPyramid),
+      count(io::MixedCells::kWedge), cells.triangles(), cells.quads());
+  std::string comma;
+  for (const io::Part& part : parts.parts()) {
+    if (part.kind != NamedSet::Kind::kElements && part.kind != NamedSet::Kind::kFaces) continue;
+    double measure = 0;
+    for (const std::uint32_t m : part.members)
+      measure += part.kind == NamedSet::Kind::kElements ? volume(parts.tet_nodes(m, tet), mesh.points)
+                                                        : area(parts.face_nodes(m, face), mesh.points);
+    const bool is_set = part.origin == io::Part::Origin::kSet;
+    out += fmt::format("{}  {{\"kind\": \"{}\", \"set\": {}, \"name\": {}, \"size\": {}, \"measure\": {:.17g}}}", comma,
+                       part.kind == NamedSet::Kind::kElements ? "elements" : "faces", is_set, quoted(part.name),
+                       cells.members(part).size(), measure);
+    comma = ",\n";
+  }
+  return out + "\n]}\n";
+}
+
 template <class Wanted>
 void write_those(const fs::path& folder, const TetMesh& mesh, WriteOptions options, const Wanted& wanted) {
   fs::create_directories(folder);
-  write_text(folder / "expected.json", expected(mesh));
+  write_text(folder / "expected.json", mesh.wide_cells.empty() ? expected(mesh) : expected_mixed(mesh));
   for (const FormatInfo& info : known_formats()) {
     if (!info.writes_mesh || !wanted(info)) continue;
     const std::string ending(info.endings.substr(0, info.endings.find(' ')));
@@ -147,4 +190,13 @@ int main(int argc, char** argv) {
   const TetMesh linear = octafront::testing::rich_mesh(4);
   write_all(folder + "/linear", bent(linear));
   write_all(folder + "/second", bent(octafront::testing::with_mid_nodes(linear)));
+  const TetMesh mixed = octafront::testing::mixed_mesh(3);
+  const auto write_mixed = [&](const std::string& name, const TetMesh& mesh, bool FormatHolds::*kind) {
+    write_those(folder + name, mesh, {}, [&](const FormatInfo& info) { return info.holds.*kind; });
+    write_those(folder + name + "_text", mesh, {.ascii = true},
+                [&](const FormatInfo& info) { return info.holds.*kind && info.also_text; });
+  };
+  write_mixed("/mixed_linear", mixed, &FormatHolds::wide_cells);
+  write_mixed("/mixed_second", octafront::testing::bent_quadratically(octafront::testing::with_mid_nodes(mixed)),
+              &FormatHolds::curved_wide_cells);
 }

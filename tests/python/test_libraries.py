@@ -63,6 +63,16 @@ class Libraries(unittest.TestCase):
             self.assertAlmostEqual(grid.volume(), 1, places=9)
             self.assertAlmostEqual(grid.cell_data["beta"].mean(), mesh.quality["beta_mean"])
 
+    def test_vtk_finds_the_same_volume_in_wedges(self):
+        points, triangles = cube()
+        surface = octafront.Surface(points, triangles, patches=np.arange(12) // 2, patch_names=list("abcdef"))
+        mesh = octafront.mesh(surface, size=0.3, layers=3, first=0.01, on="a,c")
+        grid = mesh.to_pyvista()
+        alone = len(mesh) - 3 * len(mesh.wedges) - 2 * len(mesh.pyramids)
+        self.assertEqual(grid.grid.GetNumberOfCells(), alone + len(mesh.wedges) + len(mesh.pyramids))
+        self.assertEqual(len(grid.cell_data["region"]), grid.grid.GetNumberOfCells())
+        self.assertAlmostEqual(grid.volume(), 1, places=4)  # VTK divides bent sides its own way
+
     def test_plot_cuts_between_elements(self):
         mesh = octafront.mesh(*cube(), size=0.2)
         grid = mesh.to_pyvista()
@@ -115,6 +125,22 @@ class Libraries(unittest.TestCase):
                 self.assertEqual(np.bincount(tags).tolist(), np.bincount(file.get_cell_data("gmsh:physical", kind)).tolist())
         self.assertEqual(there.point_sets["held"].tolist(), sets["held"][1].tolist())
         self.assertEqual(len(there.cells[1].data), len(mesh.faces))
+
+    def test_meshio_has_wedges_and_quadrilaterals(self):
+        points, triangles = cube()
+        surface = octafront.Surface(points, triangles, patches=np.arange(12) // 2, patch_names=list("abcdef"))
+        mesh = octafront.mesh(surface, size=0.3, layers=3, first=0.01, on="a").add_set("all", range(3), kind="elements")
+        mesh.add_set("faces", np.arange(len(mesh.faces)), kind="faces")
+        with tempfile.TemporaryDirectory() as folder:
+            mesh.save(folder + "/m.msh")
+            file, there = meshio.read(folder + "/m.msh"), mesh.to_meshio()
+        for kind in ("tetra", "wedge", "triangle", "quad"):
+            self.assertEqual(len(there.get_cells_type(kind)), len(file.get_cells_type(kind)), kind)
+            self.assertGreater(len(there.get_cells_type(kind)), 0)
+        for name in [*"abcdef", "layers", "volume", "faces"]:
+            self.assertEqual(cells_of(there, name), cells_of(file, name), name)
+        a, b, c, d = (there.points[there.get_cells_type("wedge")[:, k]] for k in (0, 1, 2, 3))
+        self.assertGreater(np.einsum("ij,ij->i", np.cross(b - a, c - a), d - a).min(), 0)
 
     def test_meshio_loses_none_of_two_equal_names(self):
         mesh = two_cubes().add_set("bottom", [0], kind="faces").add_set("low", [5], kind="faces")

@@ -888,6 +888,31 @@ class Package(Case):
         with self.assertRaisesRegex(octafront.OptionError, "no patch"):
             octafront.mesh(surface, size=0.3, layers=3, first=0.01, on="z")
 
+    def test_wedges_and_pyramids(self):
+        points, triangles = cube()
+        surface = octafront.Surface(points, triangles, patches=np.arange(12) // 2, patch_names=list("abcdef"))
+        mesh = octafront.mesh(surface, size=0.3, layers=3, first=0.01, on="a")
+        self.assertEqual(mesh.wedges.shape[1], 6)
+        self.assertGreater(len(mesh.wedges), 0)
+        self.assertGreater(len(mesh.quads), 0)
+        self.assertEqual(3 * len(mesh.wedges) + 2 * len(mesh.pyramids), (mesh.regions == 1).sum())
+        a, b, c, d = (mesh.points[mesh.wedges[:, k]] for k in (0, 1, 2, 3))
+        self.assertGreater(np.einsum("ij,ij->i", np.cross(b - a, c - a), d - a).min(), 0)
+        again = pickle.loads(pickle.dumps(mesh))
+        np.testing.assert_array_equal(again.wedges, mesh.wedges)
+        np.testing.assert_array_equal(again.quads, mesh.quads)
+        with tempfile.TemporaryDirectory() as folder:
+            mesh.save(folder + "/m.inp")
+            read = octafront.Mesh.read(folder + "/m.inp")
+        self.assertEqual(len(read.wedges), len(mesh.wedges))
+        self.assertEqual(len(octafront.improve(mesh).wedges), len(mesh.wedges))
+        state = mesh.__getstate__()
+        state["arrays"]["wide_cells"][0, 0] = len(mesh.tets)
+        broken = octafront.Mesh.__new__(octafront.Mesh)
+        broken.__setstate__(state)
+        with self.assertRaisesRegex(octafront.InputError, "wide_cells"):
+            octafront.check(broken)
+
     def test_every_option_can_be_given(self):
         from octafront._library import option_table
         for row in option_table():

@@ -20,6 +20,11 @@ void renumber_vertices(TetMesh& mesh, const std::vector<VertexIndex>& number) {
   renumber(mesh.boundary, number);
   renumber(mesh.interfaces, number);
   renumber(mesh.curve_edges, number);
+  for (WideCell& cell : mesh.wide_cells)
+    for (VertexIndex& v : cell.nodes)
+      if (v != kNone) v = number[v];
+  for (WideFace& face : mesh.wide_faces)
+    for (VertexIndex& v : face.nodes) v = number[v];
   for (NamedSet& set : mesh.sets) {
     if (set.kind != NamedSet::Kind::kNodes) continue;
     for (std::uint32_t& v : set.members) v = number[v];

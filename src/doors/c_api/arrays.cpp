@@ -44,6 +44,8 @@ void visit_mesh_array(Mesh& mesh, std::string_view name, const Visit& visit) {
   if (name == "curve_edges") return visit(mesh.curve_edges);
   if (name == "curve") return visit(mesh.curve);
   if (name == "mid_nodes") return visit(mesh.mid_nodes);
+  if (name == "wide_cells") return visit(mesh.wide_cells);
+  if (name == "wide_faces") return visit(mesh.wide_faces);
   throw OptionError(fmt::format("a mesh has no array \"{}\"", name));
 }
 
@@ -83,6 +85,24 @@ void require_range(const std::vector<Element>& list, std::size_t points, const c
             fmt::format("{} {} names point {}, but there are {} points, counted from 0", what, i, v, points));
 }
 
+/// Wedges, pyramids and quadrilaterals name tetrahedra, faces and points that there are.
+void require_wide_range(const TetMesh& m) {
+  const auto require = [](bool is_there, const char* what, std::size_t i) {
+    if (!is_there) throw InputError(fmt::format("row {} of {} names what there is not", i, what));
+  };
+  for (std::size_t i = 0; i < m.wide_cells.size(); ++i) {
+    const WideCell& cell = m.wide_cells[i];
+    const std::size_t count = cell.tet_count;
+    require((count == 2 || count == 3) && count <= m.tets.size() && cell.first <= m.tets.size() - count, "wide_cells",
+            i);
+    for (std::size_t k = 0; k < count + 3; ++k) require(cell.nodes[k] < m.points.size(), "wide_cells", i);
+  }
+  for (std::size_t i = 0; i < m.wide_faces.size(); ++i) {
+    require(m.boundary.size() >= 2 && m.wide_faces[i].first <= m.boundary.size() - 2, "wide_faces", i);
+    for (const VertexIndex v : m.wide_faces[i].nodes) require(v < m.points.size(), "wide_faces", i);
+  }
+}
+
 void require_finite_points(const std::vector<Vec3>& points) {
   for (std::size_t i = 0; i < points.size(); ++i)
     if (!is_finite(points[i]))
@@ -107,6 +127,7 @@ void require_indices(const TetMesh& m) {
   require_range(m.interfaces, m.points.size(), "interface");
   require_range(m.curve_edges, m.points.size(), "curve edge");
   require_range(m.mid_nodes, m.points.size(), "row of mid_nodes");
+  require_wide_range(m);
   require_length(m.region.size(), m.tets.size(), "regions", "tets");
   require_length(m.mid_nodes.size(), m.tets.size(), "mid_nodes", "tets");
   require_length(m.patch.size(), m.boundary.size(), "patches", "faces");

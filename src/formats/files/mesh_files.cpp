@@ -4,6 +4,7 @@
 #include "base/core/thread_limit.h"
 #include "base/core/utf8.h"
 #include "base/mesh/renumber.h"
+#include "formats/parts/mixed_cells.h"
 #include "formats/parts/raw_mesh.h"
 #include "formats/read/readers.h"
 #include "formats/table/formats.h"
@@ -142,7 +143,14 @@ std::vector<std::string> write_mesh(const std::string& file, const TetMesh& mesh
   check_mesh_target(file, options);
   const ThreadLimit limit(context.threads);
   const io::Format& format = mesh_format(file, options.format);
-  const io::MeshParts parts(mesh, {.mid_nodes = !format.info.holds.second_order, .faces = options.cells_only});
+  const FormatHolds& holds = format.info.holds;
+  const bool is_wide = holds.second_order && mesh.is_second_order() ? holds.curved_wide_cells : holds.wide_cells;
+  const bool is_curved = is_wide && holds.second_order;
+  const io::WithoutDiagonals without = is_curved ? io::without_diagonals(mesh) : io::WithoutDiagonals{};
+  const io::MeshParts parts(without.mesh ? *without.mesh : mesh, {.mid_nodes = !holds.second_order,
+                                                                  .faces = options.cells_only,
+                                                                  .wide_cells = !is_wide,
+                                                                  .last_points = without.diagonals});
   io::MeshOutput out(file, context, options.ascii);
   if (format.write_mesh == nullptr) {
     format.write_surface(out.file(), boundary_surface(mesh));

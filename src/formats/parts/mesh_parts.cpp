@@ -50,7 +50,7 @@ MeshParts::MeshParts(const TetMesh& mesh, Hidden hidden)
     : mesh_(mesh),
       hidden_(hidden),
       second_order_(mesh.is_second_order() && !hidden.mid_nodes),
-      points_(hidden.mid_nodes ? corner_points(mesh) : mesh.points.size()),
+      points_(hidden.mid_nodes ? corner_points(mesh) : mesh.points.size() - hidden.last_points),
       mids_(second_order_ ? mesh : empty_mesh()) {
   const std::array<std::uint32_t, 3> counts{static_cast<std::uint32_t>(tets()), static_cast<std::uint32_t>(faces()),
                                             static_cast<std::uint32_t>(edges())};
@@ -196,7 +196,8 @@ Combinations combinations(const MeshParts& mesh, NamedSet::Kind kind) {
 std::vector<VertexIndex> MeshParts::nodes_of(const Part& part) const {
   std::vector<bool> is_of(points_, false);
   const auto mark = [&](std::span<const VertexIndex> nodes) {
-    for (const VertexIndex v : nodes) is_of[v] = true;
+    for (const VertexIndex v : nodes)
+      if (v < points_) is_of[v] = true;
   };
   std::array<VertexIndex, 10> tet;
   std::array<VertexIndex, 6> face_room;

@@ -48,6 +48,8 @@ class MeshParts {
   struct Hidden {
     bool mid_nodes = false;  ///< and the points that are nothing else
     bool faces = false;      ///< and edges, and all parts of them
+    bool wide_cells = false;
+    std::size_t last_points = 0;  ///< so many at the end, which are mid-side nodes
   };
   explicit MeshParts(const TetMesh& mesh) : MeshParts(mesh, Hidden{}) {}
   MeshParts(const TetMesh& mesh, Hidden hidden);
@@ -61,6 +63,12 @@ class MeshParts {
   /// Whether they have no faces and edges because none are wanted.
   bool cells_only() const { return hidden_.faces; }
   bool second_order() const { return second_order_; }
+  std::span<const WideCell> wide_cells() const {
+    return hidden_.wide_cells ? std::span<const WideCell>() : mesh_.wide_cells;
+  }
+  std::span<const WideFace> wide_faces() const {
+    return hidden_.wide_cells ? std::span<const WideFace>() : mesh_.wide_faces;
+  }
 
   const Triangle& face(std::size_t f) const {
     return f < mesh_.boundary.size() ? mesh_.boundary[f] : mesh_.interfaces[f - mesh_.boundary.size()];
@@ -97,6 +105,8 @@ class MeshParts {
     const Edge& edge = mesh_.curve_edges[e];
     return k < 2 ? edge[k] : mids_(edge[0], edge[1]);
   }
+  /// Of an edge between vertices of faces or curves.
+  VertexIndex mid_node(VertexIndex a, VertexIndex b) const { return mids_(a, b); }
   std::size_t nodes_per_tet() const { return second_order_ ? 10 : 4; }
   std::size_t nodes_per_face() const { return second_order_ ? 6 : 3; }
   std::size_t nodes_per_edge() const { return second_order_ ? 3 : 2; }

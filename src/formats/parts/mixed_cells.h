@@ -1,22 +1,15 @@
 #pragma once
 
 #include "formats/parts/mesh_parts.h"
+#include "formats/parts/wide_orders.h"
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 namespace octafront::io {
-
-/// Outward faces of wedges and pyramids, as corners of WideCell; the last one of a triangle is repeated. In the order
-/// of Abaqus's S1, S2, ...
-inline constexpr std::array<std::array<std::size_t, 4>, 5> kWedgeFaces{
-    {{0, 2, 1, 1}, {3, 4, 5, 5}, {0, 1, 4, 3}, {1, 2, 5, 4}, {2, 0, 3, 5}}};
-inline constexpr std::array<std::array<std::size_t, 4>, 5> kPyramidFaces{
-    {{0, 3, 2, 1}, {0, 1, 4, 4}, {1, 2, 4, 4}, {2, 3, 4, 4}, {3, 0, 4, 4}}};
-/// Corners of WideCell in the order of VTK's wedge, whose first triangle faces outward; and the other way.
-inline constexpr std::array<std::size_t, 6> kVtkWedge{0, 2, 1, 3, 5, 4};
 
 /// The elements and faces of a mesh for formats that have wedges, pyramids and quadrilaterals: tetrahedra that are
 /// part of none first, then pyramids, then wedges; triangles, then quadrilaterals. Without wide cells they are the
@@ -24,6 +17,7 @@ inline constexpr std::array<std::size_t, 6> kVtkWedge{0, 2, 1, 3, 5, 4};
 class MixedCells {
  public:
   enum Kind : std::size_t { kTet, kPyramid, kWedge, kKinds };
+  static constexpr std::array kAllKinds{kTet, kPyramid, kWedge};
 
   explicit MixedCells(const MeshParts& mesh);
 
@@ -32,22 +26,31 @@ class MixedCells {
   std::size_t begin(Kind kind) const { return kind == kTet ? 0 : end_[kind - 1]; }
   std::size_t end(Kind kind) const { return end_[kind]; }
   Kind kind(std::size_t cell) const { return cell < end_[kTet] ? kTet : cell < end_[kPyramid] ? kPyramid : kWedge; }
+  std::size_t nodes_per(Kind kind) const;
   /// The first tetrahedron of a cell.
   TetIndex first_tet(std::size_t cell) const;
   std::size_t cell_of(TetIndex tet) const { return cell_of_.empty() ? tet : cell_of_[tet]; }
-  /// Of a tetrahedron as MeshParts has them; of a pyramid or wedge as WideCell.
-  std::span<const VertexIndex> nodes(std::size_t cell, std::array<VertexIndex, 10>& room) const;
+  /// Of a tetrahedron as MeshParts has them; of a pyramid or wedge in the order of kPlainWide, or the one given.
+  std::span<const VertexIndex> nodes(std::size_t cell, std::array<VertexIndex, 15>& room,
+                                     const WideOrder& order = kPlainWide) const;
+  /// One of them.
+  VertexIndex node(std::size_t cell, std::size_t k, const WideOrder& order = kPlainWide) const;
   const WideCell& wide(std::size_t cell) const { return mesh_.mesh().wide_cells[wide_[cell - end_[kTet]]]; }
+  /// The side of a pyramid or wedge that a face is: its place in kPyramidFaces or kWedgeFaces.
+  std::size_t side_of(std::size_t cell, std::size_t face) const;
 
   std::size_t faces() const { return triangles() + quads(); }
   std::size_t triangles() const { return mesh_.faces() - 2 * quads(); }
-  std::size_t quads() const { return mesh_.faces() == 0 ? 0 : mesh_.mesh().wide_faces.size(); }
+  std::size_t quads() const { return mesh_.faces() == 0 ? 0 : mesh_.wide_faces().size(); }
+  std::size_t nodes_per_quad() const { return mesh_.second_order() ? 8 : 4; }
   /// The face of the mesh that a triangle is, or the first one of a quadrilateral.
   std::size_t first_face(std::size_t face) const;
   std::size_t face_of(std::size_t mesh_face) const { return face_of_.empty() ? mesh_face : face_of_[mesh_face]; }
-  std::span<const VertexIndex> face_nodes(std::size_t face, std::array<VertexIndex, 6>& room) const;
+  /// Corners, then mid-side nodes 12 23 31, of a quadrilateral 12 23 34 41.
+  std::span<const VertexIndex> face_nodes(std::size_t face, std::array<VertexIndex, 8>& room) const;
+  VertexIndex face_node(std::size_t face, std::size_t k) const;
 
-  /// Members of a part of elements or faces as cells or faces here, ascending, each once.
+  /// Members of a part of elements or faces as cells or faces here, ascending, each once; of others as they are.
   std::vector<std::uint32_t> members(const Part& part) const;
 
  private:
@@ -59,5 +62,13 @@ class MixedCells {
   std::vector<std::uint32_t> triangles_;  ///< that are faces; empty: all
   std::vector<std::uint32_t> face_of_;    ///< per face of the mesh
 };
+
+/// A mesh of second order as files with wedges and pyramids have it: these have no mid-side nodes on the diagonals of
+/// their quadrilaterals.
+struct WithoutDiagonals {
+  std::optional<TetMesh> mesh;  ///< with its points in another order, that they come last; empty: they do anyhow
+  std::size_t diagonals = 0;    ///< how many points that is
+};
+WithoutDiagonals without_diagonals(const TetMesh& mesh);
 
 }  // namespace octafront::io

@@ -5,6 +5,7 @@
 #include "base/mesh/renumber.h"
 #include "formats/parts/boundary.h"
 #include "formats/parts/mesh_parts.h"
+#include "formats/parts/wide_reading.h"
 
 #include <algorithm>
 #include <functional>
@@ -108,8 +109,9 @@ class Ordering {
 
   MeshFile result() {
     require_tets();
-    for (const auto step : {&Ordering::check_mid_nodes, &Ordering::number_points, &Ordering::take_tets,
-                            &Ordering::take_faces, &Ordering::take_edges, &Ordering::take_sets}) {
+    for (const auto step :
+         {&Ordering::match_wide_cells, &Ordering::check_mid_nodes, &Ordering::number_points, &Ordering::take_tets,
+          &Ordering::take_wide_cells, &Ordering::take_faces, &Ordering::take_edges, &Ordering::take_sets}) {
       input_.context.check();
       (this->*step)();
     }
@@ -125,6 +127,11 @@ class Ordering {
                     ? fmt::format("holds no tetrahedra, only {} triangles and {} elements of other kinds",
                                   raw_.triangles.size(), raw_.other_elements)
                     : "holds no tetrahedra");
+  }
+
+  void match_wide_cells() {
+    divide_like_wide_cells(raw_);
+    add_diagonals(raw_);
   }
 
   void check_mid_nodes() {
@@ -168,24 +175,25 @@ class Ordering {
     // Triangles and edges at dropped points bound no tetrahedron; they go with what does not match.
     renumber(raw_.triangles, number_);
     renumber(raw_.edges, number_);
+    renumber_wide(raw_, number_);
     std::vector<Vec3>().swap(raw_.points);
   }
 
   void take_tets() {
     mesh_.tets = std::move(raw_.tets);
     mesh_.mid_nodes = std::move(raw_.mid_nodes);
+    is_turned_.assign(mesh_.tets.size(), false);
     const auto& p = mesh_.points;
     for (std::size_t t = 0; t < mesh_.tets.size(); ++t) {
       auto& [a, b, c, d] = mesh_.tets[t];
       if (orient3d(p[a], p[b], p[c], p[d]) >= 0) continue;
-      ++turned_;
+      is_turned_[t] = true;
       std::swap(c, d);
       if (mesh_.mid_nodes.empty()) continue;
       auto& m = mesh_.mid_nodes[t];
       std::swap(m[1], m[2]);
       std::swap(m[3], m[4]);
     }
-    if (turned_ > 0) raw_.notes.push_back(fmt::format("{} inverted tetrahedra were turned", turned_));
     Numbered regions = raw_.tet_ref.empty() ? by_groups(raw_.groups, Kind::kElements, mesh_.tets.size())
                                             : by_reference(raw_.tet_ref, raw_.region_names);
     for (std::uint32_t& n : regions.numbers)
@@ -196,6 +204,17 @@ class Ordering {
     const bool only =
         std::adjacent_find(mesh_.region.begin(), mesh_.region.end(), std::not_equal_to<>()) == mesh_.region.end();
     forget_default_names(mesh_.region_names, Part::Origin::kRegion, only);
+  }
+
+  /// Programs differ in which way the triangles of a wedge face: a file whose wedges are all the other way round has
+  /// that convention, and nothing is inverted.
+  void take_wide_cells() {
+    mesh_.wide_cells = std::move(raw_.wide_cells);
+    const std::size_t wedges = turn_wide_cells(mesh_.wide_cells, is_turned_);
+    if (wedges > 0)
+      raw_.notes.push_back(fmt::format("{} wedges face the other way here, as all in this file: turned", wedges));
+    turned_ = static_cast<std::uint64_t>(std::count(is_turned_.begin(), is_turned_.end(), true));
+    if (turned_ > 0) raw_.notes.push_back(fmt::format("{} inverted tetrahedra were turned", turned_));
   }
 
   /// The triangles of the file where they are faces of the boundary, in their order, then what is missing; those
@@ -227,7 +246,9 @@ class Ordering {
     const std::uint32_t free = patches.next;
     face_of_.assign(raw_.triangles.size(), kNone);
     std::vector<std::uint32_t> inside;
-    take_boundary(patches, free, inside);
+    const SidesOfWideCells sides(mesh_);
+    take_boundary(patches, free, inside, sides);
+    take_wide_faces(sides);
     take_interfaces(patches, free, inside);
     forget_zeros(mesh_.patch);
     forget_zeros(mesh_.interface_patch);
@@ -235,7 +256,8 @@ class Ordering {
     forget_default_names(mesh_.patch_names, Part::Origin::kPatch, false);
   }
 
-  void take_boundary(const Numbered& patches, std::uint32_t free, std::vector<std::uint32_t>& inside) {
+  void take_boundary(const Numbered& patches, std::uint32_t free, std::vector<std::uint32_t>& inside,
+                     const SidesOfWideCells& sides) {
     // Sorted by vertices already.
     std::vector<Triangle> faces = boundary_of(mesh_.tets, mesh_.points.size());
     std::vector<std::uint32_t> taken_by(faces.size(), kNone);
@@ -261,15 +283,39 @@ class Ordering {
       if (!raw_.triangle_source.empty()) mesh_.source.push_back(raw_.triangle_source[i]);
     }
     const std::size_t given = mesh_.boundary.size();
-    for (std::size_t f = 0; f < faces.size(); ++f) {
-      if (taken_by[f] != kNone) continue;
+    const auto add = [&](std::size_t f) {
+      taken_by[f] = static_cast<std::uint32_t>(mesh_.boundary.size());
       mesh_.boundary.push_back(faces[f]);
       mesh_.patch.push_back(free);
       if (!raw_.triangle_source.empty()) mesh_.source.push_back(kNone);
+    };
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+      if (taken_by[f] != kNone) continue;
+      add(f);
+      const std::size_t other = sides.other_half(faces, f);
+      if (other >= faces.size() || taken_by[other] != kNone) continue;
+      mesh_.wide_faces.push_back({taken_by[f], sides.around(faces[f])});
+      add(other);
     }
     if (given > 0 && given < mesh_.boundary.size())
       raw_.notes.push_back(
           fmt::format("{} boundary faces that the file lacks were added", mesh_.boundary.size() - given));
+  }
+
+  /// Quadrilaterals of the file that are sides of wedges and pyramids, and whose triangles still follow each other.
+  void take_wide_faces(const SidesOfWideCells& sides) {
+    std::vector<WideFace> given;
+    for (const WideFace& face : raw_.wide_faces) {
+      const std::uint32_t first = face_of_[face.first], second = face_of_[face.first + 1];
+      if (first >= mesh_.boundary.size() || second != first + 1) continue;
+      if (const auto outward = sides.outward(face.nodes)) given.push_back({first, *outward});
+    }
+    mesh_.wide_faces.insert(mesh_.wide_faces.end(), given.begin(), given.end());
+    std::sort(mesh_.wide_faces.begin(), mesh_.wide_faces.end(),
+              [](const WideFace& a, const WideFace& b) { return a.first < b.first; });
+    const auto again = [](const WideFace& a, const WideFace& b) { return b.first < a.first + 2; };
+    mesh_.wide_faces.erase(std::unique(mesh_.wide_faces.begin(), mesh_.wide_faces.end(), again),
+                           mesh_.wide_faces.end());
   }
 
   void take_interfaces(const Numbered& patches, std::uint32_t free, const std::vector<std::uint32_t>& inside) {
@@ -386,6 +432,7 @@ class Ordering {
   const Input& input_;
   TetMesh mesh_;
   std::uint64_t turned_ = 0;
+  std::vector<bool> is_turned_;                   ///< per tetrahedron
   std::vector<VertexIndex> number_;               ///< of the points of the file
   std::vector<std::uint32_t> face_of_, edge_of_;  ///< of the triangles and edges of the file
 };
@@ -404,7 +451,7 @@ void RawMesh::add_tet(std::span<const VertexIndex> nodes, std::int64_t ref, cons
   mid_nodes.push_back(mids);
 }
 
-void RawMesh::add_face(std::span<const VertexIndex> nodes, std::int64_t ref) {
+std::uint32_t RawMesh::add_face(std::span<const VertexIndex> nodes, std::int64_t ref) {
   const bool is_triangle = nodes.size() == 3 || nodes.size() == 6;
   if (is_triangle) {
     triangles.push_back({nodes[0], nodes[1], nodes[2]});
@@ -414,52 +461,12 @@ void RawMesh::add_face(std::span<const VertexIndex> nodes, std::int64_t ref) {
     // Of equal ones that at the lowest node: whoever lists the face, and from wherever, divides it alike.
     const bool at_lowest = std::min(nodes[0], nodes[2]) < std::min(nodes[1], nodes[3]);
     const std::size_t k = first < second || (first == second && at_lowest) ? 0 : 1;
+    wide_faces.push_back({static_cast<std::uint32_t>(triangles.size()), {nodes[0], nodes[1], nodes[2], nodes[3]}});
     triangles.push_back({nodes[k], nodes[k + 1], nodes[k + 2]});
     triangles.push_back({nodes[k], nodes[k + 2], nodes[(k + 3) % 4]});
   }
   triangle_ref.resize(triangles.size(), ref);
-}
-
-namespace {
-
-/// Whether the lower of the nodes a and c is below both others: the diagonal of a quadrilateral starts there.
-bool is_divided_from(std::span<const VertexIndex> nodes, std::span<const std::uint64_t> rank, std::size_t a,
-                     std::size_t c, std::size_t b, std::size_t d) {
-  const auto number = [&](std::size_t k) { return rank.empty() ? std::uint64_t{nodes[k]} : rank[nodes[k]]; };
-  return std::min(number(a), number(c)) < std::min(number(b), number(d));
-}
-
-}  // namespace
-
-void RawMesh::add_wide_cell(std::span<const VertexIndex> nodes, std::int64_t ref, std::span<const std::uint64_t> rank) {
-  const auto add = [&](std::array<std::size_t, 4> k) {
-    add_tet(std::array{nodes[k[0]], nodes[k[1]], nodes[k[2]], nodes[k[3]]}, ref);
-  };
-  if (nodes.size() == 5) {
-    const std::size_t k = is_divided_from(nodes, rank, 0, 2, 1, 3) ? 0 : 1;
-    add({k, k + 1, k + 2, 4}), add({k, k + 2, (k + 3) % 4, 4});
-    return;
-  }
-  // The lowest node and its neighbours in its triangle, counter-clockwise seen from the other one, then those there.
-  const auto low = static_cast<std::size_t>(
-      std::ranges::min_element(nodes, {}, [&](VertexIndex v) { return rank.empty() ? std::uint64_t{v} : rank[v]; }) -
-      nodes.begin());
-  const bool is_base = low < 3;
-  const std::size_t i = low % 3, j = (i + (is_base ? 1 : 2)) % 3, k = (i + (is_base ? 2 : 1)) % 3;
-  const std::size_t own = is_base ? 0 : 3, other = 3 - own;
-  const std::array<std::size_t, 6> v{own + i, own + j, own + k, other + i, other + j, other + k};
-  if (is_divided_from(nodes, rank, v[1], v[5], v[2], v[4]))
-    add({v[0], v[1], v[2], v[5]}), add({v[0], v[1], v[5], v[4]}), add({v[0], v[4], v[5], v[3]});
-  else
-    add({v[0], v[1], v[2], v[4]}), add({v[0], v[4], v[2], v[5]}), add({v[0], v[4], v[5], v[3]});
-}
-
-void RawMesh::add_side_of_wide_cell(std::span<const VertexIndex> nodes, std::int64_t ref,
-                                    std::span<const std::uint64_t> rank) {
-  const std::size_t k = is_divided_from(nodes, rank, 0, 2, 1, 3) ? 0 : 1;
-  triangles.push_back({nodes[k], nodes[k + 1], nodes[k + 2]});
-  triangles.push_back({nodes[k], nodes[k + 2], nodes[(k + 3) % 4]});
-  triangle_ref.resize(triangles.size(), ref);
+  return is_triangle ? 1 : 2;
 }
 
 MeshFile ordered_mesh(RawMesh raw, const Input& input) {

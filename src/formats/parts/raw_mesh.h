@@ -43,7 +43,10 @@ struct RawMesh {
   std::vector<std::int64_t> triangle_ref;      ///< one per triangle; empty: patches come from groups
   std::vector<std::uint32_t> triangle_source;  ///< one per triangle, or empty
   std::vector<Edge> edges;
-  std::vector<std::int64_t> edge_ref;                                            ///< as of triangles
+  std::vector<std::int64_t> edge_ref;  ///< as of triangles
+  std::vector<WideCell> wide_cells;    ///< made by add_wide_cell(), ascending
+  /// Made by add_face() of quadrilaterals, linear or not; in the order of the triangles.
+  std::vector<WideFace> wide_faces;
   std::map<std::int64_t, std::string> region_names, surface_names, curve_names;  ///< by reference
   std::vector<Group> groups;
   std::uint64_t other_elements = 0;  ///< of kinds that a TetMesh does not hold
@@ -52,17 +55,17 @@ struct RawMesh {
   /// Adds a tetrahedron whose nodes are corners, then mid-side nodes in that order, if it has them. A file must not mix
   /// both kinds; ordered_mesh() refuses it.
   void add_tet(std::span<const VertexIndex> nodes, std::int64_t ref, const MidOrder& order = kVtkMids);
-  /// Adds the two or three tetrahedra of a pyramid (five nodes: its base, the apex) or wedge (six nodes: a triangle and
-  /// the one above it), in the order of WideCell. Their quadrilaterals are divided from the lowest node, so that
-  /// neighbours match (J. Dompierre et al., How to subdivide pyramids, prisms and hexahedra into tetrahedra, 1999).
-  /// `rank`: the numbers of points by which one is the lowest; empty: their indices.
-  void add_wide_cell(std::span<const VertexIndex> nodes, std::int64_t ref, std::span<const std::uint64_t> rank = {});
-  /// Adds the two triangles of a quadrilateral as those of wide cells are divided.
-  void add_side_of_wide_cell(std::span<const VertexIndex> nodes, std::int64_t ref,
-                             std::span<const std::uint64_t> rank = {});
+  /// Adds the two or three tetrahedra of a pyramid (5 or 13 nodes: its base, the apex) or wedge (6 or 15 nodes: a
+  /// triangle and the one above it), in the order of kPlainWide. Their quadrilaterals are divided from the lowest node,
+  /// so that neighbours match (J. Dompierre et al., How to subdivide pyramids, prisms and hexahedra into tetrahedra,
+  /// 1999). A wedge with an edge of no length between its triangles is a pyramid, with two a tetrahedron.
+  /// `rank`: the numbers of points by which one is the lowest; empty: their indices. Returns how many tetrahedra.
+  std::uint32_t add_wide_cell(std::span<const VertexIndex> nodes, std::int64_t ref,
+                              std::span<const std::uint64_t> rank = {});
   /// Adds a triangle, of three nodes or six, or the two of a quadrilateral, of four, eight or nine, along its shorter
-  /// diagonal. The points must be known.
-  void add_face(std::span<const VertexIndex> nodes, std::int64_t ref);
+  /// diagonal; beside wedges and pyramids ordered_mesh() divides it as they are. The points must be known. Returns how
+  /// many triangles.
+  std::uint32_t add_face(std::span<const VertexIndex> nodes, std::int64_t ref);
 };
 
 /// Turns inverted tetrahedra, drops unused vertices and triangles that bound nothing, adds boundary faces that are

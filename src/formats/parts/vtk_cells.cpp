@@ -7,7 +7,7 @@ namespace {
 
 using SetKind = NamedSet::Kind;
 
-constexpr std::array<std::array<std::uint8_t, 6>, 2> kVtkCells{{{10, 14, 13, 5, 9, 3}, {24, 14, 13, 22, 9, 21}}};
+constexpr std::array<std::array<std::uint8_t, 6>, 2> kVtkCells{{{10, 14, 13, 5, 9, 3}, {24, 27, 26, 22, 23, 21}}};
 
 std::string_view plural(SetKind kind) {
   switch (kind) {
@@ -27,11 +27,15 @@ std::string_view plural(SetKind kind) {
 VtkCells::VtkCells(const MeshParts& mesh)
     : mesh_(mesh),
       cells_(mesh),
-      each_{mesh.nodes_per_tet(), 5, 6, mesh.nodes_per_face(), 4, mesh.nodes_per_edge()},
+      each_{cells_.nodes_per(MixedCells::kTet),
+            cells_.nodes_per(MixedCells::kPyramid),
+            cells_.nodes_per(MixedCells::kWedge),
+            mesh.nodes_per_face(),
+            cells_.nodes_per_quad(),
+            mesh.nodes_per_edge()},
       types_(kVtkCells[mesh.second_order()]),
       data_{{"region", false, false}, {"patch", false, false}} {
-  for (const MixedCells::Kind k : {MixedCells::kTet, MixedCells::kPyramid, MixedCells::kWedge})
-    ends_[k] = cells_.end(k);
+  for (const MixedCells::Kind k : MixedCells::kAllKinds) ends_[k] = cells_.end(k);
   ends_[kTriangles] = first_face() + cells_.triangles();
   ends_[kQuads] = first_face() + cells_.faces();
   ends_[kEdges] = ends_[kQuads] + mesh.edges();
@@ -40,6 +44,7 @@ VtkCells::VtkCells(const MeshParts& mesh)
   const auto& source = mesh.mesh().source;
   if (!std::all_of(source.begin(), source.end(), [](std::uint32_t face) { return face == kNone; }))
     data_.push_back({"source", false, false});
+  if (!mesh.mesh().face_layers.empty()) data_.push_back({"layers", false, false});
   for (const Part& part : mesh.parts(Part::Origin::kSet)) {
     const bool of_points = part.kind == SetKind::kNodes;
     data_.push_back({std::string(plural(part.kind)) + part.name, of_points, true});
@@ -78,12 +83,8 @@ VertexIndex VtkCells::node(std::uint64_t at) const {
     first = ends_[k];
   }
   const std::uint64_t cell = first + at / each_[k], i = at % each_[k];
-  if (k == kTets) return mesh_.tet_node(cells_.first_tet(cell), i);
-  if (k == kPyramids) return cells_.wide(cell).nodes[i];
-  if (k == kWedges) return cells_.wide(cell).nodes[kVtkWedge[i]];
   if (k == kEdges) return mesh_.edge_node(cell - ends_[kQuads], i);
-  if (k == kTriangles) return mesh_.face_node(cells_.first_face(cell - first_face()), i);
-  return mesh_.mesh().wide_faces[cell - ends_[kTriangles]].nodes[i];
+  return is_face(static_cast<Kind>(k)) ? cells_.face_node(cell - first_face(), i) : cells_.node(cell, i, kVtkWide);
 }
 
 TetIndex VtkCells::tet_of(std::uint64_t cell) const {
@@ -106,6 +107,7 @@ std::int32_t VtkCells::number(std::string_view name, std::uint64_t cell) const {
   if (!is_face(k)) return -1;
   const std::size_t face = cells_.first_face(cell - first_face());
   if (name == "patch") return static_cast<std::int32_t>(mesh_.patch_of(face));
+  if (name == "layers") return static_cast<std::int32_t>(mesh_.mesh().face_layers[face]);
   const auto& source = mesh_.mesh().source;
   return face < source.size() ? static_cast<std::int32_t>(source[face]) : -1;
 }

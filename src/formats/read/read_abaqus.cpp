@@ -1,9 +1,11 @@
-// Abaqus and CalculiX input decks: nodes, tetrahedra and sets; all else is passed over. *ELEMENT ... ELSET and *ELSET
-// make groups of elements, *NSET of nodes, *SURFACE, TYPE=ELEMENT of faces. Sets may name sets; GENERATE, one instance
-// of a part. Triangles (shells, membranes) are faces, in the group of their set.
+// Abaqus and CalculiX input decks: nodes, tetrahedra, wedges, pyramids and sets; all else is passed over. *ELEMENT ...
+// ELSET and *ELSET make groups of elements, *NSET of nodes, *SURFACE, TYPE=ELEMENT of faces. Sets may name sets;
+// GENERATE, one instance of a part. Triangles and quadrilaterals (shells, membranes) are faces, in the group of their
+// set.
 
 #include "formats/containers/scanner.h"
 #include "formats/parts/raw_mesh.h"
+#include "formats/parts/wide_orders.h"
 #include "formats/read/id_map.h"
 #include "formats/read/readers.h"
 
@@ -194,7 +196,7 @@ class Abaqus {
     section_ = Section::kNone;
     if (keyword == "*NODE" || keyword == "*ELEMENT") {
       section_ = keyword == "*NODE" ? Section::kNodes : Section::kElements;
-      type_ = keyword == "*NODE" ? 0 : nodes_of(upper(parameter("TYPE")));
+      kind_ = keyword == "*NODE" ? ElementKind{} : kind_of(upper(parameter("TYPE")));
       set_name_ = parameter(keyword == "*NODE" ? "NSET" : "ELSET");
       pending_.clear();
     } else if (keyword == "*NSET" || keyword == "*ELSET") {
@@ -215,11 +217,29 @@ class Abaqus {
 
   Sets& sets() { return section_ == Section::kNodeSet || section_ == Section::kNodes ? node_sets_ : element_sets_; }
 
-  /// Nodes of an element of that type that is kept: tetrahedra and triangles. 0: not kept.
-  static std::size_t nodes_of(std::string_view type) {
+  /// Nodes of an element of that type that is kept, and whether it is a solid. 0: not kept.
+  struct ElementKind {
+    std::size_t nodes = 0;
+    bool is_solid = false;
+  };
+  static ElementKind kind_of(std::string_view type) {
+    if (const std::size_t solid = nodes_of_solid(type); solid > 0) return {solid, true};
+    return {nodes_of_shell(type), false};
+  }
+  static std::size_t nodes_of_solid(std::string_view type) {
     const auto is = [&](std::string_view head) { return type.starts_with(head); };
+    if (is("C3D15V")) return 0;
+    if (is("C3D15") || is("DC3D15") || is("AC3D15")) return 15;
+    if (is("C3D6") || is("DC3D6") || is("AC3D6")) return 6;
+    if (is("C3D5") || is("DC3D5") || is("AC3D5")) return 5;
     if (is("C3D10") || is("DC3D10") || is("AC3D10")) return 10;
-    if (type == "C3D4" || is("C3D4") || is("DC3D4") || is("AC3D4")) return 4;
+    if (is("C3D4") || is("DC3D4") || is("AC3D4")) return 4;
+    return 0;
+  }
+  static std::size_t nodes_of_shell(std::string_view type) {
+    const auto is = [&](std::string_view head) { return type.starts_with(head); };
+    if (is("S4") || is("M3D4") || is("SFM3D4") || type == "DS4") return 4;
+    if (is("S8R") || is("M3D8") || is("SFM3D8") || type == "DS8") return 8;
     if (type == "STRI65" || type == "M3D6" || type == "SFM3D6" || type == "S6" || type == "DS6" || type == "CPS6")
       return 6;
     if (type == "S3" || type == "S3R" || type == "STRI3" || type == "M3D3" || type == "SFM3D3" || type == "DS3" ||
@@ -256,26 +276,42 @@ class Abaqus {
   }
 
   void read_element(const std::vector<std::string_view>& fields) {
-    if (type_ == 0) {
+    if (kind_.nodes == 0) {
       // The lines of an element of another kind: counted by those that do not go on.
       raw_.other_elements += !deck_.line().ends_with(',');
       return;
     }
     for (const std::string_view field : fields) pending_.push_back(deck_.integer(field, "a number of an element"));
-    if (pending_.size() <= type_) return;
-    if (pending_.size() > type_ + 1) deck_.fail(fmt::format("element {} has more than {} nodes", pending_[0], type_));
-    std::array<VertexIndex, 10> nodes;
-    for (std::size_t k = 0; k < type_; ++k) nodes[k] = node(pending_[k + 1]);
+    const std::size_t count = kind_.nodes;
+    if (pending_.size() <= count) return;
+    if (pending_.size() > count + 1) deck_.fail(fmt::format("element {} has more than {} nodes", pending_[0], count));
+    std::array<VertexIndex, 15> nodes;
+    for (std::size_t k = 0; k < count; ++k) nodes[k] = node(pending_[k + 1]);
     const std::int64_t id = pending_[0];
     pending_.clear();
-    if (type_ == 10 || type_ == 4) {
-      if (!tet_ids_.add(id)) deck_.fail(fmt::format("a second element {}; the file is damaged", id));
-      raw_.add_tet(std::span(nodes).first(type_), 0);
-    } else {
-      triangle_ids_.add(id);
-      raw_.triangles.push_back({nodes[0], nodes[1], nodes[2]});
-    }
+    kind_.is_solid ? add_solid(id, std::span(nodes).first(count)) : add_shell(id, std::span(nodes).first(count));
     if (!set_name_.empty()) sets().at(set_name_).ids.push_back(id);
+  }
+
+  void add_solid(std::int64_t id, std::span<const VertexIndex> nodes) {
+    if (!solid_ids_.add(id)) deck_.fail(fmt::format("a second element {}; the file is damaged", id));
+    Place place{static_cast<std::uint32_t>(raw_.tets.size()), 0, kNone};
+    if (nodes.size() == 4 || nodes.size() == 10) {
+      raw_.add_tet(nodes, 0);
+    } else {
+      place.listed = static_cast<std::uint32_t>(listed_.size());
+      raw_.add_wide_cell(nodes, 0);
+      listed_.emplace_back(nodes.begin(), nodes.begin() + (nodes.size() == 5 ? 5 : 6));
+    }
+    place.last = static_cast<std::uint32_t>(raw_.tets.size());
+    solids_.push_back(place);
+  }
+
+  void add_shell(std::int64_t id, std::span<const VertexIndex> nodes) {
+    if (!shell_ids_.add(id)) return;
+    const auto first = static_cast<std::uint32_t>(raw_.triangles.size());
+    raw_.add_face(nodes, 0);
+    shells_.push_back({first, static_cast<std::uint32_t>(raw_.triangles.size()), kNone});
   }
 
   VertexIndex node(std::int64_t id) {
@@ -317,7 +353,7 @@ class Abaqus {
 
   void read_side(const std::vector<std::string_view>& fields) {
     if (fields.size() < 2 || fields[1].size() < 2 || (fields[1][0] != 'S' && fields[1][0] != 's')) return;
-    if (fields[1][1] < '1' || fields[1][1] > '4') return;
+    if (fields[1][1] < '1' || fields[1][1] > '5') return;
     surfaces_.back().sides.emplace_back(fields[0], fields[1][1] - '1');
   }
 
@@ -330,20 +366,26 @@ class Abaqus {
   void make_groups() {
     // No references: regions and patches come from the groups.
     raw_.tet_ref.clear();
-    const auto add = [&](const DeckSet& set, const Sets& of, Kind kind, const IdMap& ids) {
+    raw_.triangle_ref.clear();
+    const auto add = [&](const DeckSet& set, const Sets& of, Kind kind, const IdMap& ids,
+                         const std::vector<Place>* places) {
       const std::vector<std::int64_t> all = of.collect(set.name);
       spend(all.size());
       RawMesh::Group group{original(set.name), kind, {}};
       for (const std::int64_t id : all)
-        if (const std::uint32_t i = ids.find(id); i != kNone) group.members.push_back(i);
+        if (const std::uint32_t i = ids.find(id); i != kNone) {
+          const Place place = places ? (*places)[i] : Place{i, i + 1, kNone};
+          for (std::uint32_t m = place.first; m < place.last; ++m) group.members.push_back(m);
+        }
       if (!group.members.empty()) raw_.groups.push_back(std::move(group));
     };
     for (const DeckSet& set : element_sets_.all()) {
-      add(set, element_sets_, Kind::kElements, tet_ids_);
-      add(set, element_sets_, Kind::kFaces, triangle_ids_);
+      add(set, element_sets_, Kind::kElements, solid_ids_, &solids_);
+      add(set, element_sets_, Kind::kFaces, shell_ids_, &shells_);
     }
     for (const DeckSurface& surface : surfaces_) add_surface(surface);
-    for (const DeckSet& set : node_sets_.all()) add(set, node_sets_, Kind::kNodes, node_ids_);
+    for (const DeckSet& set : node_sets_.all()) add(set, node_sets_, Kind::kNodes, node_ids_, nullptr);
+    raw_.triangle_ref.clear();
   }
 
   void add_surface(const DeckSurface& surface) {
@@ -353,16 +395,36 @@ class Abaqus {
       const std::vector<std::int64_t> ids = one ? std::vector{*one} : element_sets_.collect(elements);
       spend(ids.size());
       for (const std::int64_t id : ids) {
-        const std::uint32_t t = tet_ids_.find(id);
-        if (t == kNone) continue;
-        const auto& f = kTetFaces[static_cast<std::size_t>(kLacks[static_cast<std::size_t>(side)])];
-        const Tet& tet = raw_.tets[t];
-        group.members.push_back(static_cast<std::uint32_t>(raw_.triangles.size()));
-        raw_.triangles.push_back({tet[static_cast<std::size_t>(f[0])], tet[static_cast<std::size_t>(f[1])],
-                                  tet[static_cast<std::size_t>(f[2])]});
+        const std::uint32_t s = solid_ids_.find(id);
+        if (s == kNone) continue;
+        const std::vector<VertexIndex> nodes = side_of(solids_[s], static_cast<std::size_t>(side));
+        if (nodes.size() < 3) continue;
+        for (std::uint32_t k = raw_.add_face(nodes, 0); k > 0; --k)
+          group.members.push_back(static_cast<std::uint32_t>(raw_.triangles.size()) - k);
       }
     }
     if (!group.members.empty()) raw_.groups.push_back(std::move(group));
+  }
+
+  /// Of an element: a range of tetrahedra or triangles; of a wedge or pyramid its nodes in `listed_`.
+  struct Place {
+    std::uint32_t first, last, listed;
+  };
+
+  /// The corners of a side; of a wedge that stands for a pyramid each once.
+  std::vector<VertexIndex> side_of(const Place& solid, std::size_t side) const {
+    std::vector<VertexIndex> nodes;
+    const auto add = [&](VertexIndex v) {
+      if (std::find(nodes.begin(), nodes.end(), v) == nodes.end()) nodes.push_back(v);
+    };
+    if (solid.listed != kNone) {
+      const std::vector<VertexIndex>& of = listed_[solid.listed];
+      for (const std::size_t k : (of.size() == 6 ? kWedgeFaces : kPyramidFaces)[side]) add(of[k]);
+    } else if (side < kLacks.size()) {
+      for (const int k : kTetFaces[static_cast<std::size_t>(kLacks[side])])
+        add(raw_.tets[solid.first][static_cast<std::size_t>(k)]);
+    }
+    return nodes;
   }
 
   Deck deck_;
@@ -372,10 +434,12 @@ class Abaqus {
   std::map<std::string, std::string> parameters_;  ///< of the keyword
   std::map<std::string, std::string> originals_;
   std::string set_name_;
-  std::size_t type_ = 0;  ///< nodes of the elements that are read
+  ElementKind kind_;  ///< of the elements that are read
   bool generate_ = false;
   std::vector<std::int64_t> pending_;  ///< numbers of the element so far
-  IdMap node_ids_, tet_ids_, triangle_ids_;
+  IdMap node_ids_, solid_ids_, shell_ids_;
+  std::vector<Place> solids_, shells_;
+  std::vector<std::vector<VertexIndex>> listed_;
   Sets node_sets_, element_sets_;
   std::vector<DeckSurface> surfaces_;
 };

@@ -1,14 +1,16 @@
-// MED 3 and 4: nodes, tetrahedra, triangles and edges of the first mesh at its first step; groups by their families.
-// See write_med.cpp for the order of nodes.
+// MED 3 and 4: nodes, tetrahedra, wedges, pyramids, faces and edges of the first mesh at its first step; groups by
+// their families. See write_med.cpp for the order of nodes.
 
 #include "formats/containers/hdf5_file.h"
 #include "formats/parts/raw_mesh.h"
+#include "formats/parts/wide_orders.h"
 #include "formats/read/readers.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -21,10 +23,21 @@ struct MedCell {
   std::string_view name;
   Kind kind;
   std::size_t nodes;
-  std::array<std::uint8_t, 10> order;  ///< places of our nodes in MED's list
+  std::array<std::uint8_t, 15> order;  ///< places of our nodes in MED's list
 };
+constexpr std::array<std::uint8_t, 15> of_pyramid() {
+  std::array<std::uint8_t, 15> order{};
+  for (std::size_t k = 0; k < kMedWide.pyramid.size(); ++k) order[k] = kMedWide.pyramid[k];
+  return order;
+}
 constexpr std::array kMedCells{MedCell{"TE4", Kind::kElements, 4, {0, 2, 1, 3}},
                                MedCell{"T10", Kind::kElements, 10, {0, 2, 1, 3, 6, 5, 4, 7, 9, 8}},
+                               MedCell{"PE6", Kind::kElements, 6, kMedWide.wedge},
+                               MedCell{"P15", Kind::kElements, 15, kMedWide.wedge},
+                               MedCell{"PY5", Kind::kElements, 5, of_pyramid()},
+                               MedCell{"P13", Kind::kElements, 13, of_pyramid()},
+                               MedCell{"QU4", Kind::kFaces, 4, {0, 1, 2, 3}},
+                               MedCell{"QU8", Kind::kFaces, 8, {0, 1, 2, 3, 4, 5, 6, 7}},
                                MedCell{"TR3", Kind::kFaces, 3, {0, 1, 2}},
                                MedCell{"TR6", Kind::kFaces, 6, {0, 1, 2, 3, 4, 5}},
                                MedCell{"SE2", Kind::kEdges, 2, {0, 1}},
@@ -112,7 +125,7 @@ class Med {
     if (nodes.size() % type->nodes != 0) file_.fail(fmt::format("{} is no multiple of {}", path, type->nodes));
     std::vector<std::int64_t> family;
     if (file_.has(path + "/FAM")) family = file_.integers(path + "/FAM");
-    std::array<VertexIndex, 10> all;
+    std::array<VertexIndex, 15> all;
     for (std::size_t i = 0; i < count; ++i) {
       for (std::size_t k = 0; k < type->nodes; ++k) {
         const std::int64_t v = nodes[k * count + i];
@@ -121,27 +134,36 @@ class Med {
                                  raw_.points.size()));
         all[type->order[k]] = static_cast<VertexIndex>(v - 1);
       }
-      const std::uint32_t member = add(type->kind, std::span(all).first(type->nodes));
-      if (i < family.size()) add_to_groups(family[i], type->kind, member);
+      const auto [first, last] = add(type->kind, std::span(all).first(type->nodes));
+      for (std::uint32_t member = first; i < family.size() && member < last; ++member)
+        add_to_groups(family[i], type->kind, member);
     }
   }
 
-  std::uint32_t add(Kind kind, std::span<const VertexIndex> nodes) {
-    if (kind == Kind::kElements) {
-      raw_.add_tet(nodes, 0);
-      return static_cast<std::uint32_t>(raw_.tets.size() - 1);
-    }
+  /// What a cell becomes: a range of tetrahedra, triangles or edges.
+  std::pair<std::uint32_t, std::uint32_t> add(Kind kind, std::span<const VertexIndex> nodes) {
+    const auto size = [&] {
+      return static_cast<std::uint32_t>(kind == Kind::kElements ? raw_.tets.size()
+                                        : kind == Kind::kFaces  ? raw_.triangles.size()
+                                                                : raw_.edges.size());
+    };
+    const std::uint32_t first = size();
     if (kind == Kind::kFaces) {
-      raw_.triangles.push_back({nodes[0], nodes[1], nodes[2]});
-      return static_cast<std::uint32_t>(raw_.triangles.size() - 1);
+      raw_.add_face(nodes, 0);
+    } else if (kind == Kind::kEdges) {
+      raw_.edges.push_back({nodes[0], nodes[1]});
+    } else if (nodes.size() == 4 || nodes.size() == 10) {
+      raw_.add_tet(nodes, 0);
+    } else {
+      raw_.add_wide_cell(nodes, 0);
     }
-    raw_.edges.push_back({nodes[0], nodes[1]});
-    return static_cast<std::uint32_t>(raw_.edges.size() - 1);
+    return {first, size()};
   }
 
   /// Groups are in the order in which families name them.
   void make_groups() {
     raw_.tet_ref.clear();
+    raw_.triangle_ref.clear();
     for (const std::string& name : order_)
       for (const Kind kind : {Kind::kElements, Kind::kFaces, Kind::kEdges, Kind::kNodes})
         if (const auto found = members_.find({name, kind}); found != members_.end())

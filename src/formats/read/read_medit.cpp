@@ -26,13 +26,19 @@ struct ReadSection {
   int dimension;      ///< 0 vertices, 1 edges, 2 triangles and quadrilaterals, 3 tetrahedra, -1: others
   std::size_t nodes;  ///< of an element
 };
-constexpr std::array kSections{ReadSection{"Vertices", 4, 0, 0},          ReadSection{"Edges", 5, 1, 2},
-                               ReadSection{"EdgesP2", 25, 1, 3},          ReadSection{"Triangles", 6, 2, 3},
-                               ReadSection{"TrianglesP2", 24, 2, 6},      ReadSection{"Tetrahedra", 8, 3, 4},
-                               ReadSection{"TetrahedraP2", 30, 3, 10},    ReadSection{"Quadrilaterals", 7, 2, 4},
-                               ReadSection{"Prisms", 9, -1, 6},           ReadSection{"Hexahedra", 10, -1, 8},
-                               ReadSection{"QuadrilateralsQ2", 27, 2, 9}, ReadSection{"HexahedraQ2", 33, -1, 27},
-                               ReadSection{"Pyramids", 49, -1, 5}};
+constexpr std::array kSections{ReadSection{"Vertices", 4, 0, 0},
+                               ReadSection{"Edges", 5, 1, 2},
+                               ReadSection{"EdgesP2", 25, 1, 3},
+                               ReadSection{"Triangles", 6, 2, 3},
+                               ReadSection{"TrianglesP2", 24, 2, 6},
+                               ReadSection{"Tetrahedra", 8, 3, 4},
+                               ReadSection{"TetrahedraP2", 30, 3, 10},
+                               ReadSection{"Quadrilaterals", 7, 2, 4},
+                               ReadSection{"Prisms", 9, 3, 6},
+                               ReadSection{"Hexahedra", 10, -1, 8},
+                               ReadSection{"QuadrilateralsQ2", 27, 2, 9},
+                               ReadSection{"HexahedraQ2", 33, -1, 27},
+                               ReadSection{"Pyramids", 49, 3, 5}};
 
 /// What both kinds of file share; `Source` yields numbers and knows how to complain.
 template <class Source>
@@ -67,7 +73,7 @@ class SectionReader {
       for (std::size_t k = 0; k < section.nodes; ++k) nodes[k] = vertex();
       const std::int64_t ref = source_.integer("a reference");
       if (section.dimension == 3) {
-        raw_.add_tet(std::span(nodes).first(section.nodes), ref);
+        add_solid(std::span(nodes).first(section.nodes), ref);
       } else if (section.dimension == 2) {
         raw_.add_face(std::span(nodes).first(section.nodes), ref);
       } else {
@@ -75,6 +81,11 @@ class SectionReader {
         raw_.edge_ref.push_back(ref);
       }
     }
+  }
+
+  void add_solid(std::span<const VertexIndex> nodes, std::int64_t ref) {
+    const bool is_tet = nodes.size() == 4 || nodes.size() == 10;
+    is_tet ? raw_.add_tet(nodes, ref) : static_cast<void>(raw_.add_wide_cell(nodes, ref));
   }
 
   VertexIndex vertex() {

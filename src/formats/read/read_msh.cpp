@@ -5,6 +5,8 @@
 #include "base/mesh/renumber.h"
 #include "formats/parts/msh_stream.h"
 #include "formats/parts/raw_mesh.h"
+#include "formats/parts/wide_orders.h"
+#include "formats/parts/wide_reading.h"
 #include "formats/read/readers.h"
 
 #include <algorithm>
@@ -31,7 +33,7 @@ std::uint64_t nodes_of_type(std::int64_t type) {
 }
 
 /// What a TetMesh has of them: 0 for points to 3 for tetrahedra, linear or quadratic; -1 for others. Quadrilaterals
-/// become triangles, linear wedges and pyramids tetrahedra.
+/// become triangles, wedges and pyramids tetrahedra.
 int kept_dimension(std::int64_t type) {
   switch (type) {
     case 15:
@@ -49,6 +51,8 @@ int kept_dimension(std::int64_t type) {
     case 6:
     case 7:
     case 11:
+    case 18:
+    case 19:
       return 3;
     default:
       return -1;
@@ -118,7 +122,6 @@ class Msh {
     if (!has_elements_)
       input_.fail("has no section $Elements; it is truncated or holds no mesh: copy or export it again");
     finish_groups();
-    divide_sides_of_wide_cells();
     sort_by_tags();
     raw_.format = version_ == 4 ? "Gmsh MSH 4.1" : "Gmsh MSH 2.2";
     return std::move(raw_);
@@ -241,26 +244,22 @@ class Msh {
   template <class Tag>
   void add_element(std::int64_t type, std::uint64_t tag, std::int64_t ref, std::span<const std::int64_t> groups,
                    const Tag& next_tag) {
-    std::array<VertexIndex, 10> nodes;
+    std::array<VertexIndex, 15> nodes, ours;
     const std::size_t count = nodes_of_type(type);
     for (std::size_t i = 0; i < count; ++i) nodes[i] = node(next_tag());
+    const std::span<const VertexIndex> all = std::span(nodes).first(count);
     const int dimension = kept_dimension(type);
     const auto d = static_cast<std::size_t>(dimension);
     std::uint32_t index = nodes[0], parts = 1;
     if (dimension == 3) {
       index = static_cast<std::uint32_t>(raw_.tets.size());
-      const bool is_wide = count == 5 || count == 6;
-      if (is_wide)
-        raw_.add_wide_cell(std::span(nodes).first(count), ref, tags_.tags());
+      if (type == 4 || type == 11)
+        raw_.add_tet(all, ref, kGmshMids);
       else
-        raw_.add_tet(std::span(nodes).first(count), ref, kGmshMids);
-      has_wide_cells_ |= is_wide;
-      parts = static_cast<std::uint32_t>(raw_.tets.size()) - index;
+        parts = raw_.add_wide_cell(in_our_order(all, kGmshWide, ours), ref, tags_.tags());
     } else if (dimension == 2) {
       index = static_cast<std::uint32_t>(raw_.triangles.size());
-      raw_.add_face(std::span(nodes).first(count), ref);
-      if (count == 4) quads_.push_back({index, {nodes[0], nodes[1], nodes[2], nodes[3]}});
-      parts = static_cast<std::uint32_t>(raw_.triangles.size()) - index;
+      parts = raw_.add_face(all, ref);
     } else if (dimension == 1) {
       index = static_cast<std::uint32_t>(raw_.edges.size());
       raw_.edges.push_back({nodes[0], nodes[1]});
@@ -269,17 +268,6 @@ class Msh {
     if (dimension > 0) element_tags_[d].insert(element_tags_[d].end(), parts, tag);
     for (const std::int64_t group : groups.subspan(std::min<std::size_t>(dimension > 0, groups.size())))
       for (std::uint32_t k = 0; k < parts; ++k) members_[{dimension, group}].push_back(index + k);
-  }
-
-  /// Quadrilaterals come before the wedges and pyramids whose sides they are.
-  void divide_sides_of_wide_cells() {
-    if (!has_wide_cells_) return;
-    RawMesh sides;
-    for (const auto& [at, nodes] : quads_) {
-      sides.triangles.clear();
-      sides.add_side_of_wide_cell(nodes, 0, tags_.tags());
-      std::copy(sides.triangles.begin(), sides.triangles.end(), raw_.triangles.begin() + at);
-    }
   }
 
   std::string name_of(int dimension, std::int64_t group) const {
@@ -327,7 +315,10 @@ class Msh {
       for (auto& mids : raw_.mid_nodes)
         for (VertexIndex& v : mids)
           if (v != kNone) v = place[0][v];
+      renumber_wide(raw_, place[0]);
     }
+    sort_wide(raw_.wide_cells, place[3]);
+    sort_wide(raw_.wide_faces, place[2]);
     permute(raw_.edges, place[1]);
     permute(raw_.edge_ref, place[1]);
     permute(raw_.triangles, place[2]);
@@ -340,6 +331,13 @@ class Msh {
       if (!to.empty())
         for (std::uint32_t& m : group.members) m = to[m];
     }
+  }
+  /// Of wide cells or faces, whose parts have one tag and stay together.
+  template <class Wide>
+  static void sort_wide(std::vector<Wide>& wide, const std::vector<std::uint32_t>& place) {
+    if (place.empty()) return;
+    for (Wide& w : wide) w.first = place[w.first];
+    std::sort(wide.begin(), wide.end(), [](const Wide& a, const Wide& b) { return a.first < b.first; });
   }
   static int dimension_of(NamedSet::Kind kind) {
     return static_cast<int>(std::find(kKindOfDimension.begin(), kKindOfDimension.end(), kind) -
@@ -418,8 +416,6 @@ class Msh {
   const Input& input_;
   MshStream in_;
   int version_ = 0;
-  bool has_wide_cells_ = false;
-  std::vector<std::pair<std::uint32_t, std::array<VertexIndex, 4>>> quads_;  ///< and the first of their two triangles
   bool has_elements_ = false;
   NodeTags tags_;
   // By dimension and tag.

@@ -1,8 +1,10 @@
-// Nastran bulk data in small fields (8 columns), large ones (16) or free ones (commas): GRID, CTETRA, CTRIA3, CTRIA6,
-// and SET of the case control. Properties are references; names are comments as write_nastran.cpp makes them.
+// Nastran bulk data in small fields (8 columns), large ones (16) or free ones (commas): GRID, CTETRA, CPENTA, CPYRAM,
+// CTRIA3, CTRIA6, CQUAD4, CQUAD8, and SET of the case control. Properties are references; names are comments as
+// write_nastran.cpp makes them.
 
 #include "formats/containers/scanner.h"
 #include "formats/parts/raw_mesh.h"
+#include "formats/parts/wide_orders.h"
 #include "formats/read/id_map.h"
 #include "formats/read/readers.h"
 
@@ -140,14 +142,22 @@ class Nastran {
       if (name == "GRID") {
         read_grid();
       } else if (name == "CTETRA") {
-        read_element(tets_, cards_.field(6).empty() ? 4 : 10);
+        read_element(solids_, cards_.field(6).empty() ? 4 : 10);
+      } else if (name == "CPENTA") {
+        read_element(solids_, cards_.field(8).empty() ? 6 : 15);
+      } else if (name == "CPYRAM" || name == "CPYRA") {
+        read_element(solids_, cards_.field(7).empty() ? 5 : 13);
       } else if (name == "CTRIA3") {
-        read_element(triangles_, 3);
+        read_element(shells_, 3);
       } else if (name == "CTRIA6") {
-        read_element(triangles_, 6);
+        read_element(shells_, 6);
+      } else if (name == "CQUAD4") {
+        read_element(shells_, 4);
+      } else if (name == "CQUAD8") {
+        read_element(shells_, 8);
       } else if (name.starts_with("SET ")) {
         read_set();
-      } else if (name == "CHEXA" || name == "CPENTA" || name == "CPYRAM" || name == "CQUAD4" || name == "CQUAD8") {
+      } else if (name == "CHEXA") {
         ++raw_.other_elements;
       } else if (name == "INCLUDE") {
         raw_.notes.emplace_back("INCLUDE is not followed: the file that it names was not read");
@@ -166,7 +176,7 @@ class Nastran {
   struct Element {
     std::int64_t id, property;
     std::uint8_t count;
-    std::array<std::int64_t, 10> nodes;
+    std::array<std::int64_t, 15> nodes;
   };
 
   std::int64_t integer(std::string_view field, std::string_view what) const {
@@ -253,24 +263,39 @@ class Nastran {
     return v;
   }
 
+  using Places = std::vector<std::pair<std::int64_t, std::uint32_t>>;
+
+  void add_solid(const Element& e, Places& place) {
+    std::array<VertexIndex, 15> nodes, ours;
+    for (std::size_t k = 0; k < e.count; ++k) nodes[k] = node(e, k);
+    const std::span<const VertexIndex> all = std::span(nodes).first(e.count);
+    const auto first = static_cast<std::uint32_t>(raw_.tets.size());
+    if (e.count == 4 || e.count == 10)
+      raw_.add_tet(all, e.property);
+    else
+      raw_.add_wide_cell(in_our_order(all, kCgnsWide, ours), e.property);
+    for (std::uint32_t t = first; t < raw_.tets.size(); ++t) place.emplace_back(e.id, t);
+  }
+
+  void add_shell(const Element& e, std::int64_t shift, Places& place) {
+    std::array<VertexIndex, 8> nodes;
+    for (std::size_t k = 0; k < e.count; ++k) nodes[k] = node(e, k);
+    const auto first = static_cast<std::uint32_t>(raw_.triangles.size());
+    raw_.add_face(std::span(nodes).first(e.count), e.property - shift);
+    for (std::uint32_t f = first; f < raw_.triangles.size(); ++f) place.emplace_back(e.id, f);
+  }
+
   void resolve() {
-    std::array<VertexIndex, 10> nodes;
     std::vector<std::pair<std::int64_t, std::uint32_t>> tet_of, triangle_of, node_of;
     std::int64_t last_solid = 0, first_shell = std::numeric_limits<std::int64_t>::max();
-    for (const Element& e : tets_) {
-      for (std::size_t k = 0; k < e.count; ++k) nodes[k] = node(e, k);
-      tet_of.emplace_back(e.id, static_cast<std::uint32_t>(raw_.tets.size()));
-      raw_.add_tet(std::span(nodes).first(e.count), e.property);
+    for (const Element& e : solids_) {
+      add_solid(e, tet_of);
       last_solid = std::max(last_solid, e.property);
     }
-    for (const Element& e : triangles_) first_shell = std::min(first_shell, e.property);
+    for (const Element& e : shells_) first_shell = std::min(first_shell, e.property);
     // Properties of shells that count on behind those of solids are counted from 1.
     const std::int64_t shift = first_shell > last_solid ? last_solid : 0;
-    for (const Element& e : triangles_) {
-      triangle_of.emplace_back(e.id, static_cast<std::uint32_t>(raw_.triangles.size()));
-      raw_.triangles.push_back({node(e, 0), node(e, 1), node(e, 2)});
-      raw_.triangle_ref.push_back(e.property - shift);
-    }
+    for (const Element& e : shells_) add_shell(e, shift, triangle_of);
     for (const auto& [property, name] : shell_names_) raw_.surface_names[property - shift] = name;
     for (const auto& [id, ranges] : sets_) {
       const auto found = set_names_.find(id);
@@ -307,7 +332,7 @@ class Nastran {
   RawMesh raw_;
   IdMap node_ids_;
   std::vector<std::int64_t> nodes_;  ///< their numbers
-  std::vector<Element> tets_, triangles_;
+  std::vector<Element> solids_, shells_;
   std::uint64_t other_systems_ = 0;
   std::map<std::int64_t, std::string> shell_names_;
   std::map<std::int64_t, std::pair<std::string, bool>> set_names_;  ///< and whether it is of nodes

@@ -3,6 +3,7 @@
 
 #include "formats/containers/scanner.h"
 #include "formats/parts/raw_mesh.h"
+#include "formats/parts/wide_orders.h"
 #include "formats/read/id_map.h"
 #include "formats/read/readers.h"
 
@@ -18,23 +19,29 @@ namespace {
 
 using Kind = NamedSet::Kind;
 
-/// What is kept of an element type: its kind, nodes, and the places of VTK's nodes in its list.
+/// What is kept of an element type: its kind, nodes, and the places of its list in ours.
 struct ElementType {
   Kind kind;
   std::size_t nodes;
-  std::array<std::uint8_t, 10> places;
+  std::array<std::uint8_t, 15> places;
 };
 
 const ElementType* kept_type(std::int64_t descriptor) {
   static constexpr ElementType kTet{Kind::kElements, 4, {0, 1, 2, 3}},
       kTet10{Kind::kElements, 10, {0, 4, 1, 5, 2, 6, 7, 8, 9, 3}}, kTriangle{Kind::kFaces, 3, {0, 1, 2}},
-      kTriangle6{Kind::kFaces, 6, {0, 3, 1, 4, 2, 5}}, kBeam{Kind::kEdges, 2, {0, 1}},
+      kTriangle6{Kind::kFaces, 6, {0, 3, 1, 4, 2, 5}}, kWedge{Kind::kElements, 6, {0, 1, 2, 3, 4, 5}},
+      kWedge15{Kind::kElements, 15, kUnvWide.wedge}, kQuad{Kind::kFaces, 4, {0, 1, 2, 3}},
+      kQuad8{Kind::kFaces, 8, {0, 4, 1, 5, 2, 6, 3, 7}}, kBeam{Kind::kEdges, 2, {0, 1}},
       kBeam3{Kind::kEdges, 3, {0, 2, 1}};
   switch (descriptor) {
     case 111:
       return &kTet;
     case 118:
       return &kTet10;
+    case 112:
+      return &kWedge;
+    case 113:
+      return &kWedge15;
     case 41:
     case 51:
     case 61:
@@ -49,6 +56,19 @@ const ElementType* kept_type(std::int64_t descriptor) {
     case 82:
     case 92:
       return &kTriangle6;
+    case 44:
+    case 54:
+    case 64:
+    case 71:
+    case 84:
+    case 94:
+      return &kQuad;
+    case 45:
+    case 55:
+    case 65:
+    case 85:
+    case 95:
+      return &kQuad8;
     case 11:
     case 21:
       return &kBeam;
@@ -88,9 +108,10 @@ class Unv {
   }
 
  private:
+  /// A range of tetrahedra, triangles or edges.
   struct Place {
     Kind kind;
-    std::uint32_t index;
+    std::uint32_t first, last;
   };
 
   bool at_delimiter() { return scan_.peek_word() == "-1" || scan_.at_end(); }
@@ -141,7 +162,7 @@ class Unv {
         for (std::int64_t i = 0; i < count; ++i) scan_.integer("a node");
         continue;
       }
-      std::array<VertexIndex, 10> nodes;
+      std::array<VertexIndex, 15> nodes;
       for (std::size_t i = 0; i < type->nodes; ++i) nodes[type->places[i]] = node(id);
       add(id, property, type->kind, std::span(nodes).first(type->nodes));
     }
@@ -158,21 +179,25 @@ class Unv {
     return v;
   }
 
+  std::uint32_t count_of(Kind kind) const {
+    return static_cast<std::uint32_t>(kind == Kind::kElements ? raw_.tets.size()
+                                      : kind == Kind::kFaces  ? raw_.triangles.size()
+                                                              : raw_.edges.size());
+  }
+
   void add(std::int64_t id, std::int64_t property, Kind kind, std::span<const VertexIndex> nodes) {
-    std::size_t index = 0;
-    if (kind == Kind::kElements) {
-      index = raw_.tets.size();
-      raw_.add_tet(nodes, property);
-    } else if (kind == Kind::kFaces) {
-      index = raw_.triangles.size();
-      raw_.triangles.push_back({nodes[0], nodes[1], nodes[2]});
-      raw_.triangle_ref.push_back(property);
-    } else {
-      index = raw_.edges.size();
+    const std::uint32_t first = count_of(kind);
+    if (kind == Kind::kFaces) {
+      raw_.add_face(nodes, property);
+    } else if (kind == Kind::kEdges) {
       raw_.edges.push_back({nodes[0], nodes[1]});
       raw_.edge_ref.push_back(property);
+    } else if (nodes.size() == 4 || nodes.size() == 10) {
+      raw_.add_tet(nodes, property);
+    } else {
+      raw_.add_wide_cell(nodes, property);
     }
-    place_[id] = {kind, static_cast<std::uint32_t>(index)};
+    place_[id] = {kind, first, count_of(kind)};
   }
 
   void read_groups() {
@@ -192,8 +217,9 @@ class Unv {
         const auto found = place_.find(id);
         if (type == kNode && node_ids_.find(id) != kNone)
           groups[static_cast<std::size_t>(Kind::kNodes)].members.push_back(node_ids_.find(id));
-        if (type == kElement && found != place_.end())
-          groups[static_cast<std::size_t>(found->second.kind)].members.push_back(found->second.index);
+        if (type != kElement || found == place_.end()) continue;
+        for (std::uint32_t m = found->second.first; m < found->second.last; ++m)
+          groups[static_cast<std::size_t>(found->second.kind)].members.push_back(m);
       }
       for (RawMesh::Group& group : groups)
         if (!group.members.empty() && !is_known(group)) raw_.groups.push_back(std::move(group));

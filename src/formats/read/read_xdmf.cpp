@@ -51,13 +51,23 @@ struct XdmfCell {
   std::int64_t vtk;
   std::size_t nodes;
 };
-constexpr std::array kXdmfCells{XdmfCell{"tetrahedron", 6, 10, 4},     XdmfCell{"tetrahedron_10", 38, 24, 10},
-                                XdmfCell{"tet_10", 38, 24, 10},        XdmfCell{"triangle", 4, 5, 3},
-                                XdmfCell{"triangle_6", 36, 22, 6},     XdmfCell{"tri_6", 36, 22, 6},
-                                XdmfCell{"polyline", 2, 3, 2},         XdmfCell{"edge_3", 34, 21, 3},
-                                XdmfCell{"quadrilateral", 5, 9, 4},    XdmfCell{"pyramid", 7, 14, 5},
-                                XdmfCell{"wedge", 8, 13, 6},           XdmfCell{"hexahedron", 9, 12, 8},
-                                XdmfCell{"hexahedron_20", 48, 25, 20}, XdmfCell{"polyvertex", 1, 1, 1}};
+constexpr std::array kXdmfCells{XdmfCell{"tetrahedron", 6, 10, 4},
+                                XdmfCell{"tetrahedron_10", 38, 24, 10},
+                                XdmfCell{"tet_10", 38, 24, 10},
+                                XdmfCell{"triangle", 4, 5, 3},
+                                XdmfCell{"triangle_6", 36, 22, 6},
+                                XdmfCell{"tri_6", 36, 22, 6},
+                                XdmfCell{"polyline", 2, 3, 2},
+                                XdmfCell{"edge_3", 34, 21, 3},
+                                XdmfCell{"quadrilateral", 5, 9, 4},
+                                XdmfCell{"pyramid", 7, 14, 5},
+                                XdmfCell{"wedge", 8, 13, 6},
+                                XdmfCell{"hexahedron", 9, 12, 8},
+                                XdmfCell{"quadrilateral_8", 37, 23, 8},
+                                XdmfCell{"pyramid_13", 39, 27, 13},
+                                XdmfCell{"wedge_15", 40, 26, 15},
+                                XdmfCell{"hexahedron_20", 48, 25, 20},
+                                XdmfCell{"polyvertex", 1, 1, 1}};
 
 /// The grids of one file.
 class XdmfFile {
@@ -207,7 +217,7 @@ class Xdmf {
     VtkCellData data;
     std::uint64_t count = count_cells(input, grid, cells);
     take_attributes(file, grid, count, data);
-    VtkCellTaker taker(input, raw_, data);
+    VtkCellTaker taker(input, raw_, data, kXdmfWide);
     for_each_cell(input, grid, cells, [&](std::uint64_t c, std::int64_t vtk, std::span<const std::int64_t> nodes) {
       taker.take(c, vtk, nodes);
     });

@@ -33,8 +33,8 @@ bool is_set_name(std::string_view array) {
   return !group_named(array).name.empty();
 }
 
-VtkCellTaker::VtkCellTaker(const Input& input, RawMesh& raw, const VtkCellData& data)
-    : input_(input), raw_(raw), data_(data) {
+VtkCellTaker::VtkCellTaker(const Input& input, RawMesh& raw, const VtkCellData& data, const WideOrder& order)
+    : input_(input), raw_(raw), data_(data), order_(order) {
   for (const auto& [name, values] : data.sets) groups_.push_back(group_named(name));
 }
 
@@ -56,10 +56,13 @@ void VtkCellTaker::take(std::uint64_t cell, std::int64_t type, std::span<const s
     kPyramid = 14,
     kLine3 = 21,
     kTriangle6 = 22,
-    kTetra10 = 24
+    kQuad8 = 23,
+    kTetra10 = 24,
+    kWedge15 = 26,
+    kPyramid13 = 27
   };
   const std::size_t count = nodes.size();
-  std::array<VertexIndex, 10> all;
+  std::array<VertexIndex, 15> all, ours;
   const auto take_nodes = [&] {
     for (std::size_t k = 0; k < count; ++k) all[k] = node(cell, nodes[k]);
   };
@@ -70,19 +73,21 @@ void VtkCellTaker::take(std::uint64_t cell, std::int64_t type, std::span<const s
     kind = Kind::kElements;
     member = raw_.tets.size();
     raw_.add_tet(std::span(all).first(count), at_or(data_.region, cell, 1));
-  } else if ((type == kWedge && count == 6) || (type == kPyramid && count == 5)) {
+  } else if ((type == kWedge && count == 6) || (type == kPyramid && count == 5) || (type == kWedge15 && count == 15) ||
+             (type == kPyramid13 && count == 13)) {
     take_nodes();
     kind = Kind::kElements;
     member = raw_.tets.size();
-    if (type == kWedge) std::swap(all[1], all[2]), std::swap(all[4], all[5]);  // here the first triangle faces outward
-    raw_.add_wide_cell(std::span(all).first(count), at_or(data_.region, cell, 1));
+    const auto in_order = in_our_order(std::span<const VertexIndex>(all).first(count), order_, ours);
+    if (raw_.add_wide_cell(in_order, at_or(data_.region, cell, 1)) == 0) return;
     end = raw_.tets.size();
-  } else if (type == kQuad && count == 4 && !data_.patch.empty() && data_.patch[cell] > 0) {
+  } else if (((type == kQuad && count == 4) || (type == kQuad8 && count == 8)) && !data_.patch.empty() &&
+             data_.patch[cell] > 0) {
     // Quadrilaterals that nobody calls a patch may be anything.
     take_nodes();
     kind = Kind::kFaces;
     member = raw_.triangles.size();
-    raw_.add_side_of_wide_cell(std::span(all).first(count), at_or(data_.patch, cell, 1));
+    raw_.add_face(std::span(all).first(count), at_or(data_.patch, cell, 1));
     end = raw_.triangles.size();
     if (!data_.source.empty()) raw_.triangle_source.resize(end, kNone);
   } else if ((type == kTriangle && count == 3) || (type == kTriangle6 && count == 6)) {

@@ -2,6 +2,7 @@
 
 #include "formats/containers/input.h"
 #include "formats/parts/raw_mesh.h"
+#include "formats/parts/wide_orders.h"
 
 #include <cstdint>
 #include <span>
@@ -24,7 +25,7 @@ bool is_set_name(std::string_view array);
 /// Takes the cells of a VTK file one by one: tetrahedra, triangles and lines, linear or quadratic.
 class VtkCellTaker {
  public:
-  VtkCellTaker(const Input& input, RawMesh& raw, const VtkCellData& data);
+  VtkCellTaker(const Input& input, RawMesh& raw, const VtkCellData& data, const WideOrder& order = kVtkWide);
   /// Throws InputError for nodes out of range.
   void take(std::uint64_t cell, std::int64_t type, std::span<const std::int64_t> nodes);
   /// Hands over the sets.
@@ -36,6 +37,7 @@ class VtkCellTaker {
   const Input& input_;
   RawMesh& raw_;
   const VtkCellData& data_;
+  const WideOrder& order_;
   std::vector<RawMesh::Group> groups_;
 };
 

@@ -75,8 +75,13 @@ constexpr Format or_text(Format format) {
   format.info.also_text = true;
   return format;
 }
-constexpr Format with_wedges(Format format) {
+constexpr Format with_linear_wedges(Format format) {
   format.info.holds.wide_cells = true;
+  return format;
+}
+constexpr Format with_wedges(Format format) {
+  format = with_linear_wedges(format);
+  format.info.holds.curved_wide_cells = format.info.holds.second_order;
   return format;
 }
 constexpr Format of_several_files(Format format) {
@@ -116,32 +121,33 @@ constexpr std::array kFormats{
                              "binary or text: regions, patches, curves as physical groups", write_msh2))),
     with_wedges(mesh("abaqus", "Abaqus, CalculiX", ".inp", kYes, kSolver,
                      "ELSET, NSET, SURFACE; numbers of at most 20 characters", write_abaqus)),
-    mesh("nastran", "Nastran", ".bdf .nas", kYes, kSolver,
-         "PSOLID, PSHELL, SET; numbers of at most 16 characters (9 to 15 digits)", write_nastran),
-    mesh("unv", "I-deas universal", ".unv", kYes, kAll, "groups (dataset 2477); 17 digits", write_unv),
-    mesh("med", "MED 4", ".med", kYes, binary(kAll), "families and groups; needs HDF5", kWriteMed),
-    of_several_files(
-        mesh("xdmf", "XDMF", ".xdmf", kYes, binary(kAll), "with values in files .h5 beside; needs HDF5", kWriteXdmf)),
-    mesh("exodus", "Exodus II", ".exo .e .ex2", kNo, binary(kSolver), "blocks, node, side and element sets",
-         write_exodus),
-    mesh("ansys", "Ansys archive", ".cdb", kNo, kAnsys, "components; 17 digits", write_ansys),
-    mesh("lsdyna", "LS-DYNA", ".k .key", kNo, kSolver,
-         "parts and sets; numbers of at most 16 characters (9 to 15 digits)", write_lsdyna),
-    mesh("febio", "FEBio 4", ".feb", kNo, kAll, "Elements, Surface, Edge, NodeSet, ElementSet", write_febio),
+    with_wedges(mesh("nastran", "Nastran", ".bdf .nas", kYes, kSolver,
+                     "PSOLID, PSHELL, SET; numbers of at most 16 characters (9 to 15 digits)", write_nastran)),
+    with_wedges(mesh("unv", "I-deas universal", ".unv", kYes, kAll, "groups (dataset 2477); 17 digits", write_unv)),
+    with_wedges(mesh("med", "MED 4", ".med", kYes, binary(kAll), "families and groups; needs HDF5", kWriteMed)),
+    with_wedges(of_several_files(
+        mesh("xdmf", "XDMF", ".xdmf", kYes, binary(kAll), "with values in files .h5 beside; needs HDF5", kWriteXdmf))),
+    with_wedges(mesh("exodus", "Exodus II", ".exo .e .ex2", kNo, binary(kSolver), "blocks, node, side and element sets",
+                     write_exodus)),
+    with_wedges(mesh("ansys", "Ansys archive", ".cdb", kNo, kAnsys, "components; 17 digits", write_ansys)),
+    with_linear_wedges(mesh("lsdyna", "LS-DYNA", ".k .key", kNo, kSolver,
+                            "parts and sets; numbers of at most 16 characters (9 to 15 digits)", write_lsdyna)),
+    with_wedges(
+        mesh("febio", "FEBio 4", ".feb", kNo, kAll, "Elements, Surface, Edge, NodeSet, ElementSet", write_febio)),
     with_wedges(mesh("su2", "SU2", ".su2", kNo, kSu2, "markers", write_su2)),
     [] {
       Format format = of_several_files(mesh("openfoam", "OpenFOAM polyMesh", "", kNo, kOpenFoam,
                                             "a folder, named polyMesh: patches, cellZones, faceZones", write_openfoam));
       format.is_folder = true;
-      format.info.holds.wide_cells = true;
-      return format;
+      return with_linear_wedges(format);
     }(),
-    mesh("cgns", "CGNS", ".cgns", kNo, binary(without_edges(without_sets(kAll))),
-         "sections and boundary conditions; needs HDF5", kWriteCgns),
+    with_wedges(mesh("cgns", "CGNS", ".cgns", kNo, binary(without_edges(without_sets(kAll))),
+                     "sections and boundary conditions; needs HDF5", kWriteCgns)),
     with_wedges(or_text(
         mesh("vtk", "legacy VTK", ".vtk", kYes, binary(kAll), "as VTU, binary or text, uncompressed", write_vtk))),
-    mesh("medit", "MEDIT", ".mesh", kYes, kNumbersOnly, "text: references", write_medit),
-    mesh("meditb", "MEDIT binary", ".meshb", kYes, binary(kNumbersOnly), "references", write_medit_binary),
+    with_linear_wedges(mesh("medit", "MEDIT", ".mesh", kYes, kNumbersOnly, "text: references", write_medit)),
+    with_linear_wedges(
+        mesh("meditb", "MEDIT binary", ".meshb", kYes, binary(kNumbersOnly), "references", write_medit_binary)),
     mesh("netgen", "Netgen", ".vol", kYes, without_sets(kAll), "materials, bcnames, cd2names", write_netgen),
     of_several_files(mesh("tetgen", "TetGen", ".ele .node", kYes, kNumbersOnly,
                           "NAME.node, .ele, .face, .edge with markers", write_tetgen)),

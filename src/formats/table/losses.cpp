@@ -20,8 +20,9 @@ class Losses {
     if (!holds.second_order && mesh_.mesh().is_second_order())
       lose(fmt::format("holds linear elements only: {} mid-side nodes are left out",
                        mesh_.mesh().points.size() - mesh_.points()));
-    if (const std::size_t wide = mesh_.mesh().wide_cells.size(); !holds.wide_cells && wide > 0)
-      lose(fmt::format("is given no wedges and pyramids here: {} are written as their tetrahedra", wide));
+    if (const std::size_t wide = mesh_.mesh().wide_cells.size(); mesh_.wide_cells().size() < wide)
+      lose(fmt::format("is given no wedges and pyramids{} here: {} are written as their tetrahedra",
+                       holds.wide_cells ? " of second order" : "", wide));
     if (!holds.doubles) lose("holds single precision: coordinates are rounded to seven digits");
     numbered("region", mesh_.parts(Origin::kRegion), holds.regions);
     numbered("patch", mesh_.parts(Origin::kPatch), holds.patches);

@@ -18,18 +18,6 @@ using Kind = NamedSet::Kind;
 
 /// Sides S1 = 123, S2 = 124, S3 = 234, S4 = 134, by the corner that they lack.
 constexpr std::array<char, 4> kSideName{'3', '4', '2', '1'};
-/// The side of a wedge or pyramid that has all these nodes.
-char side_of(const WideCell& cell, std::span<const VertexIndex> nodes) {
-  const auto& sides = cell.tet_count == 3 ? kWedgeFaces : kPyramidFaces;
-  for (std::size_t s = 0; s < sides.size(); ++s) {
-    const auto has = [&](VertexIndex v) {
-      return std::ranges::any_of(sides[s], [&](std::size_t k) { return cell.nodes[k] == v; });
-    };
-    if (std::ranges::all_of(nodes, has)) return static_cast<char>('1' + s);
-  }
-  return '1';
-}
-
 class AbaqusWriter {
  public:
   AbaqusWriter(MeshOutput& out, const MeshParts& mesh)
@@ -55,19 +43,35 @@ class AbaqusWriter {
   }
 
  private:
+  char side_name(std::size_t cell, std::uint32_t face, const Side& side) const {
+    if (cells_.kind(cell) == MixedCells::kTet) return kSideName[static_cast<std::size_t>(side.face)];
+    std::size_t s = cells_.side_of(cell, face);
+    if (mesh_.second_order() && cells_.kind(cell) == MixedCells::kPyramid) s = kPyramidSideOfWedge[s];
+    return static_cast<char>('1' + s);
+  }
+
   void write_elements(const Part& region, const std::string& name) {
-    const std::array<const char*, MixedCells::kKinds> types{mesh_.second_order() ? "C3D10" : "C3D4", "C3D5", "C3D6"};
-    std::array<VertexIndex, 10> room;
+    // There are no pyramids of second order.
+    const bool second = mesh_.second_order();
+    const std::array<const char*, MixedCells::kKinds> types{second ? "C3D10" : "C3D4", second ? "C3D15" : "C3D5",
+                                                            second ? "C3D15" : "C3D6"};
     std::size_t kind = MixedCells::kKinds;
     for (const std::uint32_t cell : cells_.members(region)) {
       if (cells_.kind(cell) != kind) {
         kind = cells_.kind(cell);
         text_.line("*ELEMENT, TYPE={}, ELSET={}", types[kind], name);
       }
-      text_ << cell + 1;
-      for (const VertexIndex v : cells_.nodes(cell, room)) text_ << ", " << v + 1;
-      text_ << '\n';
+      write_element(cell, second);
     }
+  }
+
+  void write_element(std::uint32_t cell, bool second) {
+    std::array<VertexIndex, 15> room, wedge;
+    auto nodes = cells_.nodes(cell, room);
+    if (second && cells_.kind(cell) == MixedCells::kPyramid) nodes = as_wedge(nodes, wedge);
+    text_ << cell + 1;
+    for (const VertexIndex v : nodes) text_ << ", " << v + 1;
+    text_ << '\n';
   }
 
   void write_ids(std::span<const std::uint32_t> ids) {
@@ -85,15 +89,10 @@ class AbaqusWriter {
     write_ids(mesh_.nodes_of(part));
     if (part.kind != Kind::kFaces) return;
     text_.line("*SURFACE, NAME={}, TYPE=ELEMENT", name);
-    std::array<VertexIndex, 6> room;
     for (const std::uint32_t f : cells_.members(part)) {
       const Side& side = mesh_.sides()[cells_.first_face(f)];
       const std::size_t cell = cells_.cell_of(side.tet);
-      const bool is_tet = cells_.kind(cell) == MixedCells::kTet;
-      text_ << cell + 1 << ", S"
-            << (is_tet ? kSideName[static_cast<std::size_t>(side.face)]
-                       : side_of(cells_.wide(cell), cells_.face_nodes(f, room)))
-            << '\n';
+      text_ << cell + 1 << ", S" << side_name(cell, f, side) << '\n';
     }
   }
 
@@ -106,11 +105,11 @@ class AbaqusWriter {
 }  // namespace
 
 void write_abaqus(MeshOutput& out, const MeshParts& mesh) {
-  const auto& wide = mesh.mesh().wide_cells;
-  if (std::ranges::any_of(wide, [](const WideCell& cell) { return cell.tet_count == 2; }))
-    out.note(
-        "layers that end have pyramids (C3D5), which CalculiX does not know: for it write them as tetrahedra, "
-        "`as_tets`");
+  if (std::ranges::any_of(mesh.wide_cells(), [](const WideCell& cell) { return cell.tet_count == 2; }))
+    out.note(mesh.second_order()
+                 ? "layers that end have pyramids, which are wedges (C3D15) here with one edge of no length"
+                 : "layers that end have pyramids (C3D5), which CalculiX does not know: for it write them as "
+                   "tetrahedra, `as_tets`");
   AbaqusWriter(out, mesh).write();
 }
 

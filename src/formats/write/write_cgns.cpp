@@ -1,10 +1,12 @@
 // CGNS in HDF5, by the mapping of the SIDS to HDF5 (every node is a group with the attributes name, label, type and
 // flags, and its values in " data"): one base, one unstructured zone, a section of elements per region, patch and
-// curve, and a boundary condition with a family for each patch. Numbers count from 1; names have 32 characters.
+// curve (and kind of element: wedges, pyramids and quadrilaterals are sections behind), and a boundary condition with a
+// family for each patch. Numbers count from 1; names have 32 characters.
 
 #include <octafront/error.h>
 
 #include "formats/containers/hdf5_file.h"
+#include "formats/parts/mixed_cells.h"
 #include "formats/write/writers.h"
 
 #include <algorithm>
@@ -28,6 +30,7 @@ class CgnsWriter {
   CgnsWriter(MeshOutput& out, const MeshParts& mesh)
       : file_(out.path_for_library(), out.target().string(), out.context(), true),
         mesh_(mesh),
+        cells_(mesh),
         names_(legal_names(out, mesh, {.longest = 32, .also = " _-.+#()[]{}<>=&%$!?*'\"", .letter_first = false},
                            std::array{Origin::kRegion, Origin::kPatch, Origin::kCurve})) {}
 
@@ -37,12 +40,12 @@ class CgnsWriter {
     const std::string zone = "/Base/Zone";
     node(zone, "Zone_t", "I4");
     data<std::int32_t>(zone, {3, 1}, [&](std::uint64_t i) {
-      return static_cast<std::int32_t>(i == 0 ? mesh_.points() : i == 1 ? mesh_.tets() : 0);
+      return static_cast<std::int32_t>(i == 0 ? mesh_.points() : i == 1 ? cells_.cells() : 0);
     });
     text(zone + "/ZoneType", "ZoneType_t", "Unstructured");
     write_coordinates(zone + "/GridCoordinates");
     for (std::size_t p = 0; p < names_.size(); ++p)
-      if (mesh_.parts()[p].origin != Origin::kSet) write_section(zone, p);
+      if (mesh_.parts()[p].origin != Origin::kSet) write_sections(zone, p);
     node(zone + "/ZoneBC", "ZoneBC_t", "MT");
     for (std::size_t p = 0; p < names_.size(); ++p)
       if (mesh_.parts()[p].origin == Origin::kPatch) write_condition(zone + "/ZoneBC/", p);
@@ -104,50 +107,79 @@ class CgnsWriter {
     }
   }
 
-  /// A section is a run of elements: the parts follow each other.
-  void write_section(const std::string& zone, std::size_t p) {
-    constexpr std::array<std::array<std::int32_t, 2>, 4> kTypes{{{2, 2}, {3, 4}, {5, 6}, {10, 11}}};
+  /// What CGNS calls a kind of element, linear and of second order, and what tells its sections apart.
+  struct SectionType {
+    std::array<std::int32_t, 2> number;
+    const char* suffix;
+  };
+
+  SectionType type_of(Kind kind, std::uint32_t element) const {
+    constexpr std::array<SectionType, MixedCells::kKinds> kSolids{
+        SectionType{{10, 11}, ""}, SectionType{{12, 21}, " pyramids"}, SectionType{{14, 15}, " wedges"}};
+    if (kind == Kind::kElements) return kSolids[cells_.kind(element)];
+    if (kind == Kind::kFaces)
+      return element < cells_.triangles() ? SectionType{{5, 6}, ""} : SectionType{{7, 8}, " quads"};
+    return {{3, 4}, ""};
+  }
+
+  std::size_t nodes_of(Kind kind, std::uint32_t element) const {
+    if (kind == Kind::kElements) return cells_.nodes_per(cells_.kind(element));
+    if (kind == Kind::kEdges) return mesh_.nodes_per_edge();
+    return element < cells_.triangles() ? mesh_.nodes_per_face() : cells_.nodes_per_quad();
+  }
+
+  /// The sections of a part: the parts follow each other.
+  void write_sections(const std::string& zone, std::size_t p) {
     const Part& part = mesh_.parts()[p];
-    const std::string prefix = part.kind == Kind::kElements ? "" : part.kind == Kind::kFaces ? "faces " : "edges ";
-    const std::string section = zone + "/" + (prefix + names_[p]).substr(0, kName - 1);
-    const std::int32_t type = kTypes[static_cast<std::size_t>(part.kind)][mesh_.second_order()];
-    const std::int32_t first = next_, last = first + static_cast<std::int32_t>(part.members.size()) - 1;
+    const std::vector<std::uint32_t> all = cells_.members(part);
+    ranges_.resize(names_.size());
+    ranges_[p][0] = next_;
+    for (std::size_t begin = 0, end = 0; begin < all.size(); begin = end) {
+      const SectionType type = type_of(part.kind, all[begin]);
+      while (end < all.size() && type_of(part.kind, all[end]).number == type.number) ++end;
+      const std::string prefix = part.kind == Kind::kElements ? "" : part.kind == Kind::kFaces ? "faces " : "edges ";
+      const std::string suffix = begin == 0 ? "" : type.suffix;
+      const std::string name = (prefix + names_[p]).substr(0, kName - 1 - suffix.size()) + suffix;
+      write_section(zone + "/" + name, part.kind, type, std::span(all).subspan(begin, end - begin));
+    }
+    ranges_[p][1] = next_ - 1;
+  }
+
+  /// Elements of one kind.
+  void write_section(const std::string& section, Kind kind, const SectionType& type,
+                     std::span<const std::uint32_t> elements) {
+    const std::int32_t first = next_, last = first + static_cast<std::int32_t>(elements.size()) - 1;
     next_ = last + 1;
-    if (first_of_.size() < names_.size()) first_of_.resize(names_.size());
-    first_of_[p] = first;
     node(section, "Elements_t", "I4");
-    data<std::int32_t>(section, {2}, [&](std::uint64_t i) { return i == 0 ? type : 0; });
+    data<std::int32_t>(section, {2}, [&](std::uint64_t i) { return i == 0 ? type.number[mesh_.second_order()] : 0; });
     node(section + "/ElementRange", "IndexRange_t", "I4");
     data<std::int32_t>(section + "/ElementRange", {2}, [&](std::uint64_t i) { return i == 0 ? first : last; });
     node(section + "/ElementConnectivity", "DataArray_t", "I4");
-    const std::uint64_t each = part.kind == Kind::kElements ? mesh_.nodes_per_tet()
-                               : part.kind == Kind::kFaces  ? mesh_.nodes_per_face()
-                                                            : mesh_.nodes_per_edge();
-    data<std::int32_t>(section + "/ElementConnectivity", {each * part.members.size()}, [&](std::uint64_t i) {
-      const std::uint32_t m = part.members[i / each];
+    const std::uint64_t each = nodes_of(kind, elements.front());
+    data<std::int32_t>(section + "/ElementConnectivity", {each * elements.size()}, [&](std::uint64_t i) {
+      const std::uint32_t m = elements[i / each];
       const std::uint64_t k = i % each;
-      return 1 + static_cast<std::int32_t>(part.kind == Kind::kElements ? mesh_.tet_node(m, k)
-                                           : part.kind == Kind::kFaces  ? mesh_.face_node(m, k)
-                                                                        : mesh_.edge_node(m, k));
+      return 1 + static_cast<std::int32_t>(kind == Kind::kElements ? cells_.node(m, k, kCgnsWide)
+                                           : kind == Kind::kFaces  ? cells_.face_node(m, k)
+                                                                   : mesh_.edge_node(m, k));
     });
   }
 
   void write_condition(const std::string& conditions, std::size_t p) {
     const std::string path = conditions + names_[p];
-    const auto size = static_cast<std::int32_t>(mesh_.parts()[p].members.size());
     text(path, "BC_t", "FamilySpecified");
     node(path + "/PointRange", "IndexRange_t", "I4");
-    data<std::int32_t>(path + "/PointRange", {2, 1},
-                       [&](std::uint64_t i) { return i == 0 ? first_of_[p] : first_of_[p] + size - 1; });
+    data<std::int32_t>(path + "/PointRange", {2, 1}, [&](std::uint64_t i) { return ranges_[p][i]; });
     text(path + "/FamilyName", "FamilyName_t", names_[p]);
     text(path + "/GridLocation", "GridLocation_t", "FaceCenter");
   }
 
   Hdf5Writer file_;
   const MeshParts& mesh_;
+  MixedCells cells_;
   std::vector<std::string> names_;
-  std::int32_t next_ = 1;               ///< the number of the next element
-  std::vector<std::int32_t> first_of_;  ///< of the parts
+  std::int32_t next_ = 1;                            ///< the number of the next element
+  std::vector<std::array<std::int32_t, 2>> ranges_;  ///< of the parts: their first and last elements
 };
 
 }  // namespace

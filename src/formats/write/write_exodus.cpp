@@ -1,9 +1,12 @@
-// Exodus II in netCDF classic: a block of elements per region, side sets for patches, node sets for sets of nodes and
-// for the nodes of curves, element sets. Elements stand block by block; the map tells their numbers in the mesh.
+// Exodus II in netCDF classic: a block of elements per region and kind of element, side sets for patches, node sets for
+// sets of nodes and for the nodes of curves, element sets. Elements stand block by block; the map tells their numbers
+// in the mesh. Blocks of pyramids and wedges behind others of their region have names of their own, "layers_wedges",
+// and numbers behind all.
 
 #include <octafront/error.h>
 
 #include "formats/containers/netcdf_writer.h"
+#include "formats/parts/mixed_cells.h"
 #include "formats/write/writers.h"
 
 #include <algorithm>
@@ -11,6 +14,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <numeric>
 #include <string>
 
 namespace octafront::io {
@@ -21,10 +25,13 @@ using Value = NetcdfWriter::Value;
 
 /// Sides 1 = 124, 2 = 234, 3 = 134, 4 = 123, by the corner that they lack.
 constexpr std::array<std::int32_t, 4> kSide{2, 3, 1, 4};
+/// The same of the sides of kWedgeFaces, 1 = 1254, 2 = 2365, 3 = 1463, 4 = 132, 5 = 456; and of kPyramidFaces, 1 = 125,
+/// 2 = 235, 3 = 345, 4 = 154, 5 = 1432.
+constexpr std::array<std::int32_t, 5> kSideOfWedge{4, 5, 1, 2, 3}, kSideOfPyramid{5, 1, 2, 3, 4};
 
 class ExodusWriter {
  public:
-  ExodusWriter(MeshOutput& out, const MeshParts& mesh) : file_(out.file()), mesh_(mesh) {
+  ExodusWriter(MeshOutput& out, const MeshParts& mesh) : file_(out.file()), mesh_(mesh), cells_(mesh) {
     constexpr std::size_t kLongest = 255, kUsual = 32;
     std::size_t longest = kUsual;
     LegalNames unique({.longest = kLongest, .also = " _-.:#+*/()[]{}%$&!?=<>~^@|;'\"", .letter_first = false});
@@ -86,56 +93,84 @@ class ExodusWriter {
   }
 
   /// Status, numbers and names of blocks or sets.
-  void declare_list(const std::string& prefix, std::uint32_t dimension, const std::vector<std::size_t>& parts,
+  void declare_list(const std::string& prefix, std::uint32_t dimension, std::vector<std::string> names,
                     std::vector<std::int32_t> numbers) {
     file_.variable(prefix + "_status", Type::kInt, {dimension}, [](std::uint64_t) { return Value(1); });
     file_.variable(prefix + "_prop1", Type::kInt, {dimension},
                    [numbers = std::move(numbers)](std::uint64_t i) { return Value(numbers[i]); },
                    {{"name", std::string("ID")}});
+    declare_texts(prefix + "_names", dimension, std::move(names));
+  }
+  /// Of sets, numbered from 1.
+  void declare_sets(const std::string& prefix, const char* dimension, const std::vector<std::size_t>& parts) {
     std::vector<std::string> names;
     for (const std::size_t p : parts) names.push_back(names_[p]);
-    declare_texts(prefix + "_names", dimension, std::move(names));
+    std::vector<std::int32_t> numbers(parts.size());
+    std::iota(numbers.begin(), numbers.end(), 1);
+    declare_list(prefix, file_.dimension(dimension, parts.size()), std::move(names), std::move(numbers));
+  }
+
+  /// Elements of one region and kind: a run of order_.
+  struct Block {
+    std::string name;
+    std::int32_t number;
+    MixedCells::Kind kind;
+    std::size_t begin, end;
+  };
+
+  std::vector<Block> make_blocks() {
+    constexpr std::array<const char*, MixedCells::kKinds> kSuffixes{"", "_pyramids", "_wedges"};
+    std::vector<Block> blocks;
+    const auto regions = mesh_.parts(Part::Origin::kRegion);
+    auto next = static_cast<std::int32_t>(regions.empty() ? 1 : regions.back().tag + 1);
+    for (const Part& region : regions) next = std::max(next, static_cast<std::int32_t>(region.tag + 1));
+    for (std::size_t r = 0; r < regions.size(); ++r) {
+      const std::size_t first = order_.size();
+      for (const std::uint32_t cell : cells_.members(regions[r])) {
+        const MixedCells::Kind kind = cells_.kind(cell);
+        if (order_.size() == first)
+          blocks.push_back({names_[r], static_cast<std::int32_t>(regions[r].tag), kind, first, first});
+        else if (blocks.back().kind != kind)
+          blocks.push_back({names_[r] + kSuffixes[kind], next++, kind, order_.size(), order_.size()});
+        order_.push_back(cell);
+        blocks.back().end = order_.size();
+      }
+    }
+    return blocks;
   }
 
   void declare_blocks() {
-    const auto regions = mesh_.parts(Part::Origin::kRegion);
-    const std::uint32_t elements = file_.dimension("num_elem", mesh_.tets()),
-                        blocks = file_.dimension("num_el_blk", regions.size());
-    std::vector<std::size_t> parts;
-    std::vector<std::int32_t> numbers;
-    for (std::size_t r = 0; r < regions.size(); ++r) {
-      parts.push_back(r);
-      numbers.push_back(static_cast<std::int32_t>(regions[r].tag));
-      order_.insert(order_.end(), regions[r].members.begin(), regions[r].members.end());
-    }
+    const std::vector<Block> blocks = make_blocks();
+    const std::uint32_t elements = file_.dimension("num_elem", cells_.cells()),
+                        block_count = file_.dimension("num_el_blk", blocks.size());
     place_.resize(order_.size());
     for (std::uint32_t i = 0; i < order_.size(); ++i) place_[order_[i]] = i;
-    declare_list("eb", blocks, parts, std::move(numbers));
-    for (std::size_t r = 0; r < regions.size(); ++r) {
-      const std::string n = std::to_string(r + 1);
-      const std::uint32_t count = file_.dimension("num_el_in_blk" + n, regions[r].members.size()),
-                          nodes = file_.dimension("num_nod_per_el" + n, mesh_.nodes_per_tet());
-      const auto members = regions[r].members;
-      file_.variable("connect" + n, Type::kInt, {count, nodes},
-                     [this, members](std::uint64_t i) {
-                       const std::uint64_t each = mesh_.nodes_per_tet();
-                       return Value(static_cast<std::int32_t>(mesh_.tet_node(members[i / each], i % each) + 1));
-                     },
-                     {{"elem_type", std::string(mesh_.second_order() ? "TETRA10" : "TETRA")}});
-    }
+    std::vector<std::string> names;
+    std::vector<std::int32_t> numbers;
+    for (const Block& block : blocks) names.push_back(block.name), numbers.push_back(block.number);
+    declare_list("eb", block_count, std::move(names), std::move(numbers));
+    for (std::size_t b = 0; b < blocks.size(); ++b) declare_block(std::to_string(b + 1), blocks[b]);
     file_.variable("elem_num_map", Type::kInt, {elements},
                    [this](std::uint64_t i) { return Value(static_cast<std::int32_t>(order_[i] + 1)); });
   }
 
-  static std::vector<std::int32_t> counted(std::size_t count) {
-    std::vector<std::int32_t> numbers;
-    for (std::size_t i = 0; i < count; ++i) numbers.push_back(static_cast<std::int32_t>(i) + 1);
-    return numbers;
+  void declare_block(const std::string& n, const Block& block) {
+    constexpr std::array<std::array<const char*, 2>, MixedCells::kKinds> kTypes{
+        {{"TETRA", "TETRA10"}, {"PYRAMID", "PYRAMID13"}, {"WEDGE", "WEDGE15"}}};
+    const std::uint64_t each = cells_.nodes_per(block.kind);
+    const std::uint32_t count = file_.dimension("num_el_in_blk" + n, block.end - block.begin),
+                        nodes = file_.dimension("num_nod_per_el" + n, each);
+    file_.variable(
+        "connect" + n, Type::kInt, {count, nodes},
+        [this, first = block.begin, each](std::uint64_t i) {
+          return Value(static_cast<std::int32_t>(cells_.node(order_[first + i / each], i % each, kCgnsWide) + 1));
+        },
+        {{"elem_type", std::string(kTypes[block.kind][mesh_.second_order()])}});
   }
 
   void declare_node_sets(const std::vector<std::size_t>& parts) {
     if (parts.empty()) return;
-    declare_list("ns", file_.dimension("num_node_sets", parts.size()), parts, counted(parts.size()));
+    declare_sets("ns", "num_node_sets", parts);
     for (std::size_t s = 0; s < parts.size(); ++s) {
       const std::string n = std::to_string(s + 1);
       auto nodes = mesh_.nodes_of(mesh_.parts()[parts[s]]);
@@ -146,28 +181,35 @@ class ExodusWriter {
     }
   }
 
+  std::size_t cell_at(std::uint32_t face) const { return cells_.cell_of(mesh_.sides()[cells_.first_face(face)].tet); }
+  std::int32_t side_at(std::uint32_t face) const {
+    const std::size_t cell = cell_at(face);
+    const MixedCells::Kind kind = cells_.kind(cell);
+    if (kind == MixedCells::kTet) return kSide[static_cast<std::size_t>(mesh_.sides()[cells_.first_face(face)].face)];
+    return (kind == MixedCells::kWedge ? kSideOfWedge : kSideOfPyramid)[cells_.side_of(cell, face)];
+  }
+
   void declare_side_sets(const std::vector<std::size_t>& parts) {
     if (parts.empty()) return;
-    declare_list("ss", file_.dimension("num_side_sets", parts.size()), parts, counted(parts.size()));
+    declare_sets("ss", "num_side_sets", parts);
     for (std::size_t s = 0; s < parts.size(); ++s) {
       const std::string n = std::to_string(s + 1);
-      const auto members = mesh_.parts()[parts[s]].members;
+      const std::vector<std::uint32_t> members = cells_.members(mesh_.parts()[parts[s]]);
       const std::uint32_t count = file_.dimension("num_side_ss" + n, members.size());
       file_.variable("elem_ss" + n, Type::kInt, {count}, [this, members](std::uint64_t i) {
-        return Value(static_cast<std::int32_t>(place_[mesh_.sides()[members[i]].tet]) + 1);
+        return Value(static_cast<std::int32_t>(place_[cell_at(members[i])]) + 1);
       });
-      file_.variable("side_ss" + n, Type::kInt, {count}, [this, members](std::uint64_t i) {
-        return Value(kSide[static_cast<std::size_t>(mesh_.sides()[members[i]].face)]);
-      });
+      file_.variable("side_ss" + n, Type::kInt, {count},
+                     [this, members](std::uint64_t i) { return Value(side_at(members[i])); });
     }
   }
 
   void declare_element_sets(const std::vector<std::size_t>& parts) {
     if (parts.empty()) return;
-    declare_list("els", file_.dimension("num_elem_sets", parts.size()), parts, counted(parts.size()));
+    declare_sets("els", "num_elem_sets", parts);
     for (std::size_t s = 0; s < parts.size(); ++s) {
       const std::string n = std::to_string(s + 1);
-      const auto members = mesh_.parts()[parts[s]].members;
+      const std::vector<std::uint32_t> members = cells_.members(mesh_.parts()[parts[s]]);
       const std::uint32_t count = file_.dimension("num_ele_els" + n, members.size());
       file_.variable("elem_els" + n, Type::kInt, {count}, [this, members](std::uint64_t i) {
         return Value(static_cast<std::int32_t>(place_[members[i]]) + 1);
@@ -177,10 +219,11 @@ class ExodusWriter {
 
   NetcdfWriter file_;
   const MeshParts& mesh_;
+  MixedCells cells_;
   std::vector<std::string> names_;  ///< of the parts
   std::size_t length_of_name_;
   std::uint32_t name_ = 0, time_ = 0;
-  std::vector<std::uint32_t> order_, place_;  ///< tetrahedra block by block, and where each one is there
+  std::vector<std::uint32_t> order_, place_;  ///< elements block by block, and where each one is there
 };
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include "formats/containers/text_writer.h"
 #include "formats/containers/vtk_xml.h"
+#include "formats/parts/mixed_cells.h"
 #include "formats/write/writers.h"
 
 #include <array>
@@ -17,7 +18,7 @@ using Kind = NamedSet::Kind;
 
 class FebioWriter {
  public:
-  FebioWriter(MeshOutput& out, const MeshParts& mesh) : text_(out.file()), mesh_(mesh) {
+  FebioWriter(MeshOutput& out, const MeshParts& mesh) : text_(out.file()), mesh_(mesh), cells_(mesh) {
     LegalNames unique({.longest = 1000, .also = " _-.()[]{}#+*/%$!?=~^@|:;'<>&\"", .letter_first = false});
     for (const Part& part : mesh.parts()) names_.push_back(escaped(unique.legal(part.name)));
     out.note(unique.note());
@@ -39,7 +40,9 @@ class FebioWriter {
     text_ << "  </Mesh>\n  <MeshDomains>\n";
     for (std::size_t p = 0; p < names_.size(); ++p)
       if (mesh_.parts()[p].origin == Part::Origin::kRegion)
-        text_.line("    <SolidDomain name=\"{0}\" mat=\"{0}\"/>", names_[p]);
+        for (const MixedCells::Kind kind : MixedCells::kAllKinds)
+          if (!cells_of(mesh_.parts()[p], kind).empty())
+            text_.line("    <SolidDomain name=\"{}\" mat=\"{}\"/>", domain_name(names_[p], kind), names_[p]);
     text_ << "  </MeshDomains>\n</febio_spec>\n";
   }
 
@@ -58,18 +61,40 @@ class FebioWriter {
     text_.line("    </{}>", tag);
   }
 
+  /// Elements of one kind are a list of their own.
+  static std::string domain_name(const std::string& name, MixedCells::Kind kind) {
+    constexpr std::array<const char*, MixedCells::kKinds> kSuffixes{"", " pyramids", " wedges"};
+    return name + kSuffixes[kind];
+  }
+  std::vector<std::uint32_t> cells_of(const Part& region, MixedCells::Kind kind) const {
+    std::vector<std::uint32_t> cells = cells_.members(region);
+    std::erase_if(cells, [&](std::uint32_t c) { return cells_.kind(c) != kind; });
+    return cells;
+  }
+
+  void write_domain(const Part& region, const std::string& name, MixedCells::Kind kind) {
+    constexpr std::array<const char*, MixedCells::kKinds> kTypes{"tet", "pyra", "penta"};
+    const std::vector<std::uint32_t> cells = cells_of(region, kind);
+    if (cells.empty()) return;
+    text_.line("    <Elements type=\"{}{}\" name=\"{}\">", kTypes[kind], cells_.nodes_per(kind),
+               domain_name(name, kind));
+    std::array<VertexIndex, 15> room;
+    for (const std::uint32_t c : cells) nodes("elem", c + 1, cells_.nodes(c, room));
+    text_ << "    </Elements>\n";
+  }
+
   void write_part(const Part& part, const std::string& name) {
     std::uint32_t id = 0;
     const bool second = mesh_.second_order();
     if (part.origin == Part::Origin::kRegion) {
-      text_.line("    <Elements type=\"{}\" name=\"{}\">", second ? "tet10" : "tet4", name);
-      std::array<VertexIndex, 10> room;
-      for (const TetIndex t : part.members) nodes("elem", t + 1, mesh_.tet_nodes(t, room));
-      text_ << "    </Elements>\n";
+      for (const MixedCells::Kind kind : MixedCells::kAllKinds) write_domain(part, name, kind);
     } else if (part.kind == Kind::kFaces) {
       text_.line("    <Surface name=\"{}\">", name);
-      std::array<VertexIndex, 6> room;
-      for (const std::uint32_t f : part.members) nodes(second ? "tri6" : "tri3", ++id, mesh_.face_nodes(f, room));
+      std::array<VertexIndex, 8> room;
+      for (const std::uint32_t f : cells_.members(part)) {
+        const auto all = cells_.face_nodes(f, room);
+        nodes(fmt::format("{}{}", f < cells_.triangles() ? "tri" : "quad", all.size()), ++id, all);
+      }
       text_ << "    </Surface>\n";
     } else if (part.kind == Kind::kEdges) {
       text_.line("    <Edge name=\"{}\">", name);
@@ -77,12 +102,13 @@ class FebioWriter {
       for (const std::uint32_t e : part.members) nodes(second ? "line3" : "line2", ++id, mesh_.edge_nodes(e, room));
       text_ << "    </Edge>\n";
     } else {
-      ids(part.kind == Kind::kNodes ? "NodeSet" : "ElementSet", name, part.members);
+      ids(part.kind == Kind::kNodes ? "NodeSet" : "ElementSet", name, cells_.members(part));
     }
   }
 
   TextWriter text_;
   const MeshParts& mesh_;
+  MixedCells cells_;
   std::vector<std::string> names_;  ///< of the parts, escaped
 };
 

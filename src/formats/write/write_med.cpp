@@ -1,11 +1,12 @@
 // MED 4.0 in HDF5. Each combination of groups that elements are in is a family (negative; of nodes: positive); every
 // region, patch, curve and set is a group of families. MED's tetrahedra turn the other way: their second and third
-// corner are exchanged, and with them the mid-side nodes 12 and 13, and 24 and 34. Values are stored component by
-// component.
+// corner are exchanged, and with them the mid-side nodes 12 and 13, and 24 and 34; so do pyramids and wedges. Values
+// are stored component by component.
 
 #include <octafront/error.h>
 
 #include "formats/containers/hdf5_file.h"
+#include "formats/parts/mixed_cells.h"
 #include "formats/write/writers.h"
 
 #include <array>
@@ -21,22 +22,22 @@ using Kind = NamedSet::Kind;
 
 constexpr std::size_t kLongestGroup = 80, kLongestFamily = 64;
 
-/// Of a kind of cell: MED's name and number, linear and of second order, and the places of our nodes in its list.
+/// Of a kind of cell: MED's name and number, linear and of second order.
 struct MedSection {
-  Kind kind;
   std::array<const char*, 2> name;
   std::array<std::int32_t, 2> number;
-  std::array<std::uint8_t, 10> order;
 };
-constexpr std::array kMedSections{
-    MedSection{Kind::kElements, {"TE4", "T10"}, {304, 310}, {0, 2, 1, 3, 6, 5, 4, 7, 9, 8}},
-    MedSection{Kind::kFaces, {"TR3", "TR6"}, {203, 206}, {0, 1, 2, 3, 4, 5}},
-    MedSection{Kind::kEdges, {"SE2", "SE3"}, {102, 103}, {0, 1, 2}}};
+constexpr std::array<MedSection, MixedCells::kKinds> kMedSolids{
+    MedSection{{"TE4", "T10"}, {304, 310}}, {{"PY5", "P13"}, {305, 313}}, {{"PE6", "P15"}, {306, 315}}};
+constexpr MedSection kMedTriangles{{"TR3", "TR6"}, {203, 206}}, kMedQuads{{"QU4", "QU8"}, {204, 208}},
+    kMedEdges{{"SE2", "SE3"}, {102, 103}};
+/// Places of our nodes in MED's list.
+constexpr std::array<std::uint8_t, 10> kMedTet{0, 2, 1, 3, 6, 5, 4, 7, 9, 8};
 
 class MedWriter {
  public:
   MedWriter(MeshOutput& out, const MeshParts& mesh)
-      : file_(out.path_for_library(), out.target().string(), out.context(), true), mesh_(mesh) {}
+      : file_(out.path_for_library(), out.target().string(), out.context(), true), mesh_(mesh), cells_(mesh) {}
 
   void write() {
     file_.group("/INFOS_GENERALES");
@@ -48,7 +49,9 @@ class MedWriter {
     file_.group(kStep + "/MAI");
     file_.attribute(kStep + "/MAI", "CGT", 1);
     write_families_head();
-    for (const MedSection& type : kMedSections) write_cells(type);
+    write_solids();
+    write_faces();
+    write_edges();
     file_.close();
   }
 
@@ -130,34 +133,69 @@ class MedWriter {
     file_.texts(family + "/GRO/NOM", names, kLongestGroup);
   }
 
-  void write_cells(const MedSection& type) {
-    const Combinations families = combinations(mesh_, type.kind);
-    const std::uint64_t count = families.of.size();
+  /// The families of a kind of element, and the number of the first one; they count downward.
+  struct Families {
+    Combinations of;
+    std::int32_t first;
+    std::int32_t at(std::size_t element) const { return first - static_cast<std::int32_t>(of.of[element]); }
+  };
+  Families families_of(Kind kind) {
+    Families families{combinations(mesh_, kind), next_family_};
+    for (const auto& parts : families.of.parts) write_family(kFamilies + "/ELEME", next_family_--, parts);
+    return families;
+  }
+
+  void write_solids() {
+    const Families families = families_of(Kind::kElements);
+    for (const MixedCells::Kind kind : MixedCells::kAllKinds) {
+      const std::size_t begin = cells_.begin(kind);
+      write_cells(
+          kMedSolids[kind], cells_.end(kind) - begin, cells_.nodes_per(kind),
+          [&](std::uint64_t i, std::uint64_t k) {
+            return kind == MixedCells::kTet ? cells_.node(i, kMedTet[k]) : cells_.node(begin + i, k, kMedWide);
+          },
+          [&](std::uint64_t i) { return families.at(cells_.first_tet(begin + i)); });
+    }
+  }
+
+  void write_faces() {
+    const Families families = families_of(Kind::kFaces);
+    const auto write_those = [&](const MedSection& type, std::size_t begin, std::size_t end, std::uint64_t nodes) {
+      write_cells(
+          type, end - begin, nodes, [&](std::uint64_t i, std::uint64_t k) { return cells_.face_node(begin + i, k); },
+          [&](std::uint64_t i) { return families.at(cells_.first_face(begin + i)); });
+    };
+    write_those(kMedTriangles, 0, cells_.triangles(), mesh_.nodes_per_face());
+    write_those(kMedQuads, cells_.triangles(), cells_.faces(), cells_.nodes_per_quad());
+  }
+
+  void write_edges() {
+    const Families families = families_of(Kind::kEdges);
+    write_cells(
+        kMedEdges, mesh_.edges(), mesh_.nodes_per_edge(),
+        [&](std::uint64_t i, std::uint64_t k) { return mesh_.edge_node(i, k); },
+        [&](std::uint64_t i) { return families.at(i); });
+  }
+
+  /// So many cells of a kind: their nodes, node_at(i, k), and their families.
+  template <class NodeAt, class FamilyOf>
+  void write_cells(const MedSection& type, std::uint64_t count, std::uint64_t nodes, const NodeAt& node_at,
+                   const FamilyOf& family_of) {
     if (count == 0) return;
-    const std::int32_t first = next_family_;
-    for (const auto& parts : families.parts) write_family(kFamilies + "/ELEME", next_family_--, parts);
     const std::string cells = kStep + "/MAI/" + type.name[mesh_.second_order()];
     file_.group(cells);
     file_.attribute(cells, "CGT", 1);
     file_.attribute(cells, "CGS", 1);
     file_.attribute(cells, "GEO", type.number[mesh_.second_order()]);
     file_.attribute(cells, "PFL", "MED_NO_PROFILE_INTERNAL");
-    const std::uint64_t nodes = type.kind == Kind::kElements ? mesh_.nodes_per_tet()
-                                : type.kind == Kind::kFaces  ? mesh_.nodes_per_face()
-                                                             : mesh_.nodes_per_edge();
-    values<std::int32_t>(cells + "/NOD", nodes, count, [&](std::uint64_t k, std::uint64_t i) {
-      const std::uint64_t at = type.order[k];
-      return 1 + (type.kind == Kind::kElements ? mesh_.tet_node(i, at)
-                  : type.kind == Kind::kFaces  ? mesh_.face_node(i, at)
-                                               : mesh_.edge_node(i, at));
-    });
-    values<std::int32_t>(cells + "/FAM", 1, count, [&](std::uint64_t, std::uint64_t i) {
-      return first - static_cast<std::int32_t>(families.of[i]);
-    });
+    values<std::int32_t>(cells + "/NOD", nodes, count,
+                         [&](std::uint64_t k, std::uint64_t i) { return 1 + node_at(i, k); });
+    values<std::int32_t>(cells + "/FAM", 1, count, [&](std::uint64_t, std::uint64_t i) { return family_of(i); });
   }
 
   Hdf5Writer file_;
   const MeshParts& mesh_;
+  MixedCells cells_;
   std::int32_t next_family_ = -1;
 };
 

@@ -4,6 +4,7 @@
 #include <octafront/error.h>
 
 #include "formats/containers/text_writer.h"
+#include "formats/parts/mixed_cells.h"
 #include "formats/write/writers.h"
 
 #include <array>
@@ -19,23 +20,35 @@ struct WrittenSection {
   std::int32_t code, code2;
 };
 constexpr WrittenSection kEdges{"Edges", "EdgesP2", 5, 25}, kTriangles{"Triangles", "TrianglesP2", 6, 24},
-    kTetrahedra{"Tetrahedra", "TetrahedraP2", 8, 30};
+    kQuadrilaterals{"Quadrilaterals", nullptr, 7, 0};
+constexpr std::array<WrittenSection, MixedCells::kKinds> kSolids{WrittenSection{"Tetrahedra", "TetrahedraP2", 8, 30},
+                                                                 WrittenSection{"Pyramids", nullptr, 49, 0},
+                                                                 WrittenSection{"Prisms", nullptr, 9, 0}};
 
 /// Calls write(section, count, nodes each, node_at(i, k), reference_at(i)) for each section.
 template <class Write>
 void for_each_section(const MeshParts& mesh, const Write& write) {
+  const MixedCells cells(mesh);
   if (mesh.edges() > 0)
     write(
         kEdges, mesh.edges(), mesh.nodes_per_edge(), [&](std::size_t i, std::size_t k) { return mesh.edge_node(i, k); },
         [&](std::size_t i) { return mesh.curve_of(i) + 1; });
-  if (mesh.faces() > 0)
+  const auto write_faces = [&](const WrittenSection& section, std::size_t begin, std::size_t end, std::size_t nodes) {
+    if (begin == end) return;
     write(
-        kTriangles, mesh.faces(), mesh.nodes_per_face(),
-        [&](std::size_t i, std::size_t k) { return mesh.face_node(i, k); },
-        [&](std::size_t i) { return mesh.patch_of(i) + 1; });
-  write(
-      kTetrahedra, mesh.tets(), mesh.nodes_per_tet(), [&](std::size_t i, std::size_t k) { return mesh.tet_node(i, k); },
-      [&](std::size_t i) { return mesh.tag_of_region(mesh.region_of(i)); });
+        section, end - begin, nodes, [&](std::size_t i, std::size_t k) { return cells.face_node(begin + i, k); },
+        [&](std::size_t i) { return mesh.patch_of(cells.first_face(begin + i)) + 1; });
+  };
+  write_faces(kTriangles, 0, cells.triangles(), mesh.nodes_per_face());
+  write_faces(kQuadrilaterals, cells.triangles(), cells.faces(), cells.nodes_per_quad());
+  for (const MixedCells::Kind kind : MixedCells::kAllKinds) {
+    const std::size_t begin = cells.begin(kind), end = cells.end(kind);
+    if (begin == end) continue;
+    write(
+        kSolids[kind], end - begin, cells.nodes_per(kind),
+        [&](std::size_t i, std::size_t k) { return cells.node(begin + i, k); },
+        [&](std::size_t i) { return mesh.tag_of_region(mesh.region_of(cells.first_tet(begin + i))); });
+  }
 }
 
 }  // namespace

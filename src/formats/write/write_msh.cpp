@@ -17,6 +17,7 @@
 #include <array>
 #include <cstring>
 #include <limits>
+#include <map>
 #include <string>
 #include <utility>
 
@@ -25,13 +26,13 @@ namespace {
 
 using Kind = NamedSet::Kind;
 
-/// Gmsh's type of an element of that dimension, and with so many nodes where they are pyramids, wedges, quadrilaterals.
+/// Gmsh's type of an element of that dimension with so many nodes.
 std::int32_t gmsh_type_of(int dimension, std::size_t nodes) {
-  constexpr std::int32_t kPoint = 15, kPyramid = 7, kWedge = 6, kQuad = 3;
-  if (dimension == 0) return kPoint;
-  if (dimension == 1) return nodes == 2 ? 1 : 8;
-  if (dimension == 2) return nodes == 4 ? kQuad : nodes == 3 ? 2 : 9;
-  return nodes == 5 ? kPyramid : nodes == 6 ? kWedge : nodes == 4 ? 4 : 11;
+  using Types = std::map<std::size_t, std::int32_t>;
+  static const std::array<Types, 4> kTypes{Types{{1, 15}}, Types{{2, 1}, {3, 8}},
+                                           Types{{3, 2}, {4, 3}, {6, 9}, {8, 16}},
+                                           Types{{4, 4}, {5, 7}, {6, 6}, {10, 11}, {13, 19}, {15, 18}}};
+  return kTypes[static_cast<std::size_t>(dimension)].at(nodes);
 }
 
 /// Names stand in quotes, which Gmsh does not escape.
@@ -54,7 +55,7 @@ class ElementNodes {
     if (dimension == 0) return put_tag(static_cast<Tag>(element + Tag{1}));
     if (dimension == 1) return all(mesh_.edge_nodes(element, edge_));
     if (dimension == 2) return all(cells_.face_nodes(element, face_));
-    const auto nodes = cells_.nodes(element, tet_);
+    const auto nodes = cells_.nodes(element, tet_, kGmshWide);
     if (nodes.size() == 10) std::swap(tet_[8], tet_[9]);  // 34 before 24
     all(nodes);
   }
@@ -62,8 +63,8 @@ class ElementNodes {
  private:
   const MeshParts& mesh_;
   const MixedCells& cells_;
-  std::array<VertexIndex, 10> tet_;
-  std::array<VertexIndex, 6> face_;
+  std::array<VertexIndex, 15> tet_;
+  std::array<VertexIndex, 8> face_;
   std::array<VertexIndex, 3> edge_;
 };
 
@@ -333,13 +334,13 @@ class Msh4Writer {
   std::size_t nodes_of_element(int dimension, std::uint32_t i) const {
     if (dimension == 0) return 1;
     if (dimension == 1) return mesh_.nodes_per_edge();
-    if (dimension == 2) return i < cells_.triangles() ? mesh_.nodes_per_face() : 4;
-    return cells_.kind(i) == MixedCells::kTet ? mesh_.nodes_per_tet() : cells_.wide(i).tet_count + 3;
+    if (dimension == 2) return i < cells_.triangles() ? mesh_.nodes_per_face() : cells_.nodes_per_quad();
+    return cells_.nodes_per(cells_.kind(i));
   }
 
   std::vector<Block> blocks_of_elements() const {
     std::vector<Block> blocks;
-    const bool is_mixed = !mesh_.mesh().wide_cells.empty();
+    const bool is_mixed = !mesh_.wide_cells().empty();
     for (const Entity& e : entities_) {
       const auto members = members_of(e);
       if (e.dimension < 2 || !is_mixed) {
@@ -419,10 +420,9 @@ class Msh2Writer {
     text_.line("$Elements\n{}", mesh_.edges() + cells_.faces() + cells_.cells());
     write_elements(1, 0, mesh_.edges(), mesh_.nodes_per_edge());
     write_elements(2, 0, cells_.triangles(), mesh_.nodes_per_face());
-    write_elements(2, cells_.triangles(), cells_.faces(), 4);
-    write_elements(3, 0, cells_.end(MixedCells::kTet), mesh_.nodes_per_tet());
-    for (const MixedCells::Kind kind : {MixedCells::kPyramid, MixedCells::kWedge})
-      write_elements(3, cells_.begin(kind), cells_.end(kind), kind == MixedCells::kPyramid ? 5 : 6);
+    write_elements(2, cells_.triangles(), cells_.faces(), cells_.nodes_per_quad());
+    for (const MixedCells::Kind kind : MixedCells::kAllKinds)
+      write_elements(3, cells_.begin(kind), cells_.end(kind), cells_.nodes_per(kind));
     out_.close("Elements");
   }
 

@@ -1,8 +1,9 @@
 // Nastran bulk data: GRID in large fields (16 columns), elements in small ones. A region is a PSOLID, a patch the
-// CTRIA3/CTRIA6 of a PSHELL without material, numbered behind the solids; curves, as their nodes, and sets are SETs of
-// the case control. Names are comments: "$ NAME PSOLID 1 "left part"".
+// CTRIA3/CTRIA6 (CQUAD4/CQUAD8) of a PSHELL without material, numbered behind the solids; curves, as their nodes, and
+// sets are SETs of the case control. Names are comments: "$ NAME PSOLID 1 "left part"".
 
 #include "formats/containers/text_writer.h"
+#include "formats/parts/mixed_cells.h"
 #include "formats/write/writers.h"
 
 #include <algorithm>
@@ -18,7 +19,7 @@ using Origin = Part::Origin;
 
 class NastranWriter {
  public:
-  NastranWriter(MeshOutput& out, const MeshParts& mesh) : text_(out.file()), mesh_(mesh) {
+  NastranWriter(MeshOutput& out, const MeshParts& mesh) : text_(out.file()), mesh_(mesh), cells_(mesh) {
     for (const Part& region : mesh.parts(Origin::kRegion)) first_shell_ = std::max(first_shell_, region.tag + 1);
   }
 
@@ -37,17 +38,28 @@ class NastranWriter {
       text_.field(16, p.x).field(16, p.y) << "\n*       ";
       text_.field(16, p.z) << '\n';
     }
-    std::array<VertexIndex, 6> triangle;
-    for (std::size_t f = 0; f < mesh_.faces(); ++f)
-      element(mesh_.second_order() ? "CTRIA6  " : "CTRIA3  ", mesh_.tets() + f + 1,
-              first_shell_ + std::uint64_t{mesh_.patch_of(f)}, mesh_.face_nodes(f, triangle));
-    std::array<VertexIndex, 10> tet;
-    for (std::size_t t = 0; t < mesh_.tets(); ++t)
-      element("CTETRA  ", t + 1, std::uint64_t{mesh_.tag_of_region(mesh_.region_of(t))}, mesh_.tet_nodes(t, tet));
+    write_faces();
+    write_solids();
     text_ << "ENDDATA\n";
   }
 
  private:
+  void write_faces() {
+    constexpr std::array<std::array<const char*, 2>, 2> kCards{{{"CTRIA3  ", "CTRIA6  "}, {"CQUAD4  ", "CQUAD8  "}}};
+    std::array<VertexIndex, 8> room;
+    for (std::size_t f = 0; f < cells_.faces(); ++f)
+      element(kCards[f >= cells_.triangles()][mesh_.second_order()], cells_.cells() + f + 1,
+              first_shell_ + std::uint64_t{mesh_.patch_of(cells_.first_face(f))}, cells_.face_nodes(f, room));
+  }
+
+  void write_solids() {
+    constexpr std::array<const char*, MixedCells::kKinds> kCards{"CTETRA  ", "CPYRAM  ", "CPENTA  "};
+    std::array<VertexIndex, 15> room;
+    for (std::size_t c = 0; c < cells_.cells(); ++c)
+      element(kCards[cells_.kind(c)], c + 1, std::uint64_t{mesh_.tag_of_region(mesh_.region_of(cells_.first_tet(c)))},
+              cells_.nodes(c, room, kCgnsWide));
+  }
+
   void name(std::string_view of, std::uint64_t number, const Part& part) {
     if (part.is_named) text_.line("$ NAME {} {} \"{}\"", of, number, one_line(part.name));
   }
@@ -69,8 +81,8 @@ class NastranWriter {
     if (part.kind == Kind::kNodes || part.kind == Kind::kEdges) {
       for (const VertexIndex v : mesh_.nodes_of(part)) ids.push_back(std::uint64_t{v} + 1);
     } else {
-      const std::uint64_t first = part.kind == Kind::kFaces ? mesh_.tets() : 0;
-      for (const std::uint32_t m : part.members) ids.push_back(first + m + 1);
+      const std::uint64_t first = part.kind == Kind::kFaces ? cells_.cells() : 0;
+      for (const std::uint32_t m : cells_.members(part)) ids.push_back(first + m + 1);
     }
     if (ids.empty()) return;
     text_ << "SET " << number << " = ";
@@ -107,6 +119,7 @@ class NastranWriter {
 
   TextWriter text_;
   const MeshParts& mesh_;
+  MixedCells cells_;
   std::uint32_t first_shell_ = 1;  ///< the property of patch 0
 };
 

@@ -47,7 +47,7 @@ class MixedFaces {
         key[3] = kNone;
       }
     };
-    std::array<VertexIndex, 10> room;
+    std::array<VertexIndex, 15> room;
     for (std::uint32_t c = 0; c < cells.cells(); ++c) {
       const auto nodes = cells.nodes(c, room);
       if (cells.kind(c) == MixedCells::kTet)
@@ -84,7 +84,7 @@ class OpenFoamWriter {
         names_(legal_names(out, mesh, {.also = "_-."}, std::array{Part::Origin::kRegion, Part::Origin::kPatch})) {
     for (std::size_t f = 0; f < mesh.faces(); ++f)
       if (f >= mesh.mesh().boundary.size()) interface_at_[half_face(f)] = f;
-    if (!mesh.mesh().wide_cells.empty()) mixed_.emplace(cells_);
+    if (!mesh.wide_cells().empty()) mixed_.emplace(cells_);
   }
 
   void write() {
@@ -152,7 +152,7 @@ class OpenFoamWriter {
   void put_mixed(TextWriter& out, const Put& put) const {
     for (const MixedFaces::Face& face : mixed_->inner())
       put(out, std::span(face.nodes).first(face.nodes[2] == face.nodes[3] ? 3 : 4), face.owner, face.neighbour);
-    std::array<VertexIndex, 6> room;
+    std::array<VertexIndex, 8> room;
     for (const Part& patch : mesh_.parts(Part::Origin::kPatch))
       for (const std::uint32_t f : outside(patch)) {
         const TetIndex tet = mesh_.sides()[cells_.first_face(f)].tet;
@@ -183,6 +183,12 @@ class OpenFoamWriter {
     return faces;
   }
 
+  /// Boundary layers stand on walls: wall functions and distances need to know.
+  bool is_wall(const Part& patch) const {
+    const std::vector<std::uint32_t>& layers = mesh_.mesh().face_layers;
+    return !layers.empty() && std::ranges::any_of(patch.members, [&](std::uint32_t f) { return layers[f] != kNone; });
+  }
+
   void write_boundary() {
     file("boundary", "polyBoundaryMesh", [&](TextWriter& out) {
       const auto patches = mesh_.parts(Part::Origin::kPatch);
@@ -192,8 +198,8 @@ class OpenFoamWriter {
       for (const Part& patch : patches) {
         const std::size_t faces = outside(patch).size();
         if (faces == 0) continue;
-        out.line("    {}\n    {{\n        type patch;{}\n        nFaces {};\n        startFace {};\n    }}",
-                 name(patch), original(patch), faces, first);
+        out.line("    {}\n    {{\n        type {};{}\n        nFaces {};\n        startFace {};\n    }}", name(patch),
+                 is_wall(patch) ? "wall" : "patch", original(patch), faces, first);
         first += faces;
       }
       out << ")\n";

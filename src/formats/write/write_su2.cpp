@@ -15,13 +15,11 @@ void write_su2(MeshOutput& output, const MeshParts& mesh) {
   const std::vector<std::string> names = legal_names(output, mesh, {}, std::array{Part::Origin::kPatch});
   const MixedCells cells(mesh);
   constexpr std::array<const char*, MixedCells::kKinds> kTypes{"10", "14", "13"};
-  std::array<VertexIndex, 10> room;
+  std::array<VertexIndex, 15> room;
   out.line("% Mesh by octafront\nNDIME= 3\nNELEM= {}", cells.cells());
   for (std::size_t c = 0; c < cells.cells(); ++c) {
-    const auto nodes = cells.nodes(c, room);
     out << kTypes[cells.kind(c)];
-    for (std::size_t k = 0; k < nodes.size(); ++k)
-      out << ' ' << nodes[cells.kind(c) == MixedCells::kWedge ? kVtkWedge[k] : k];
+    for (const VertexIndex v : cells.nodes(c, room, kVtkWide)) out << ' ' << v;
     out << ' ' << std::uint64_t{c} << '\n';
   }
   out.line("NPOIN= {}", mesh.points());
@@ -38,7 +36,7 @@ void write_su2(MeshOutput& output, const MeshParts& mesh) {
     return part.origin == Part::Origin::kPatch && !outside(part).empty();
   };
   out.line("NMARK= {}", std::count_if(mesh.parts().begin(), mesh.parts().end(), is_marker));
-  std::array<VertexIndex, 6> face_room;
+  std::array<VertexIndex, 8> face_room;
   for (std::size_t p = 0; p < names.size(); ++p) {
     const Part& part = mesh.parts()[p];
     if (!is_marker(part)) continue;

@@ -1,14 +1,16 @@
 // I-deas universal file: datasets 2411 (nodes), 2412 (elements), 2467 and 2477 (groups). Every part is a group of
 // elements or of nodes; the physical property of an element is its region, patch or curve, counted from 1. Mid-side
-// nodes stand between the corners.
+// nodes stand between the corners. There are no pyramids: they are wedges with one edge of no length.
 //
 // All groups stand in 2477, which Gmsh reads; those that ideasUnvToFoam can make patches and zones of also in 2467,
 // which it reads. It ends at any others there, looks for the numbers of members in a list that ends with the last
 // tetrahedron (so these come last), and knows no beams (so edges are rods).
 
 #include "formats/containers/text_writer.h"
+#include "formats/parts/mixed_cells.h"
 #include "formats/write/writers.h"
 
+#include <algorithm>
 #include <array>
 #include <span>
 #include <string>
@@ -23,6 +25,7 @@ constexpr std::string_view kDelimiter = "    -1\n";
 /// Places of VTK's nodes in a list of the format.
 constexpr std::array<std::uint8_t, 10> kTet10{0, 4, 1, 5, 2, 6, 7, 8, 9, 3};
 constexpr std::array<std::uint8_t, 6> kTriangle6{0, 3, 1, 4, 2, 5};
+constexpr std::array<std::uint8_t, 8> kQuad8{0, 4, 1, 5, 2, 6, 3, 7};
 constexpr std::array<std::uint8_t, 3> kBeam3{0, 2, 1};
 
 /// Others end a name at the first blank.
@@ -32,7 +35,7 @@ constexpr NameRules kNames{
 class UnvWriter {
  public:
   UnvWriter(MeshOutput& out, const MeshParts& mesh)
-      : text_(out.file()), mesh_(mesh), names_(legal_names(out, mesh, kNames)) {}
+      : text_(out.file()), mesh_(mesh), cells_(mesh), names_(legal_names(out, mesh, kNames)) {}
 
   void write() {
     open(2411);
@@ -50,14 +53,14 @@ class UnvWriter {
       text_ << "         0         1         1\n";
       nodes(mesh_.edge_nodes(e, edge_), kBeam3);
     }
-    for (std::size_t f = 0; f < mesh_.faces(); ++f) {
-      head(first_face() + f, second ? 92 : 91, mesh_.patch_of(f), mesh_.nodes_per_face());
-      nodes(mesh_.face_nodes(f, face_), kTriangle6);
+    for (std::size_t f = 0; f < cells_.faces(); ++f) {
+      const bool is_quad = f >= cells_.triangles();
+      const auto all = cells_.face_nodes(f, face_);
+      head(first_face() + f, std::uint64_t{is_quad ? 94U : 91U} + second, mesh_.patch_of(cells_.first_face(f)),
+           all.size());
+      is_quad ? nodes(all, kQuad8) : nodes(all, kTriangle6);
     }
-    for (std::size_t t = 0; t < mesh_.tets(); ++t) {
-      head(first_tet() + t, second ? 118 : 111, mesh_.region_of(t), mesh_.nodes_per_tet());
-      nodes(mesh_.tet_nodes(t, tet_), kTet10);
-    }
+    for (std::size_t c = 0; c < cells_.cells(); ++c) write_solid(c);
     text_ << kDelimiter;
     write_groups(2467, [this](const Part& part) { return is_patch_or_zone(part); });
     write_groups(2477, [](const Part&) { return true; });
@@ -66,9 +69,19 @@ class UnvWriter {
  private:
   static constexpr std::uint64_t one = 1;
 
+  void write_solid(std::size_t c) {
+    const bool is_tet = cells_.kind(c) == MixedCells::kTet, second = mesh_.second_order();
+    std::array<VertexIndex, 15> wedge;
+    auto all = cells_.nodes(c, solid_);
+    if (cells_.kind(c) == MixedCells::kPyramid) all = as_wedge(all, wedge);
+    const int type = is_tet ? (second ? 118 : 111) : second ? 113 : 112;
+    head(first_tet() + c, static_cast<std::uint64_t>(type), mesh_.region_of(cells_.first_tet(c)), all.size());
+    is_tet ? nodes(all, kTet10) : nodes(all, kUnvWide.wedge);
+  }
+
   std::uint64_t first_edge() const { return 1; }
   std::uint64_t first_face() const { return first_edge() + mesh_.edges(); }
-  std::uint64_t first_tet() const { return first_face() + mesh_.faces(); }
+  std::uint64_t first_tet() const { return first_face() + cells_.faces(); }
 
   static std::string real(double value) {
     std::string text = fmt::format("{:25.16E}", value);
@@ -120,25 +133,29 @@ class UnvWriter {
                                 : part.kind == Kind::kElements ? first_tet()
                                                                : 1;
     text_.field(10, number) << "         0         0         0         0         0         0";
-    text_.field(10, std::uint64_t{part.members.size()}) << '\n';
+    const std::vector<std::uint32_t> members = cells_.members(part);
+    text_.field(10, std::uint64_t{members.size()}) << '\n';
     text_ << names_[number - 1] << '\n';
-    for (std::size_t i = 0; i < part.members.size(); ++i) {
-      text_.field(10, type).field(10, first + part.members[i]) << "         0         0";
-      if (i % 2 == 1 || i + 1 == part.members.size()) text_ << '\n';
+    for (std::size_t i = 0; i < members.size(); ++i) {
+      text_.field(10, type).field(10, first + members[i]) << "         0         0";
+      if (i % 2 == 1 || i + 1 == members.size()) text_ << '\n';
     }
   }
 
   TextWriter text_;
   const MeshParts& mesh_;
+  MixedCells cells_;
   std::vector<std::string> names_;
-  std::array<VertexIndex, 10> tet_;
-  std::array<VertexIndex, 6> face_;
+  std::array<VertexIndex, 15> solid_;
+  std::array<VertexIndex, 8> face_;
   std::array<VertexIndex, 3> edge_;
 };
 
 }  // namespace
 
 void write_unv(MeshOutput& out, const MeshParts& mesh) {
+  if (std::ranges::any_of(mesh.wide_cells(), [](const WideCell& cell) { return cell.tet_count == 2; }))
+    out.note("I-deas has no pyramids: they are wedges here with one edge of no length");
   UnvWriter(out, mesh).write();
 }
 

@@ -1,4 +1,5 @@
-// XDMF 3 as FEniCSx, ParaView and meshio read it: NAME.xdmf with one grid of tetrahedra, NAME_patches.xdmf and
+// XDMF 3 as FEniCSx, ParaView and meshio read it: NAME.xdmf with one grid of tetrahedra (of mixed elements, where there
+// are wedges and pyramids), NAME_patches.xdmf and
 // NAME_curves.xdmf with those of faces and edges, each with its values in a file .h5 of the same stem, where FEniCSx
 // looks for them. Regions, patches and curves are attributes of
 // cells, counted from 1; sets are attributes that are 1 for members ("elements NAME", "nodes NAME" ...). Names stand
@@ -7,8 +8,10 @@
 #include "formats/containers/hdf5_file.h"
 #include "formats/containers/text_writer.h"
 #include "formats/containers/vtk_xml.h"
+#include "formats/parts/mixed_cells.h"
 #include "formats/write/writers.h"
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
@@ -37,7 +40,8 @@ constexpr WrittenGrid kMesh{"mesh",   Kind::kElements, Origin::kRegion,
 
 class XdmfWriter {
  public:
-  XdmfWriter(MeshOutput& out, const MeshParts& mesh) : out_(out), mesh_(mesh), stem_(out.target().stem().string()) {}
+  XdmfWriter(MeshOutput& out, const MeshParts& mesh)
+      : out_(out), mesh_(mesh), cells_(mesh), stem_(out.target().stem().string()) {}
 
   void write() {
     write_file(kMesh, stem_, out_.file());
@@ -50,12 +54,20 @@ class XdmfWriter {
 
  private:
   std::uint64_t count(const WrittenGrid& grid) const {
-    return grid.kind == Kind::kElements ? mesh_.tets() : grid.kind == Kind::kFaces ? mesh_.faces() : mesh_.edges();
+    return grid.kind == Kind::kElements ? cells_.cells() : grid.kind == Kind::kFaces ? cells_.faces() : mesh_.edges();
   }
-  std::uint64_t nodes(const WrittenGrid& grid) const {
-    return grid.kind == Kind::kElements ? mesh_.nodes_per_tet()
-           : grid.kind == Kind::kFaces  ? mesh_.nodes_per_face()
-                                        : mesh_.nodes_per_edge();
+  std::uint64_t nodes_of(const WrittenGrid& grid, std::uint64_t i) const {
+    if (grid.kind == Kind::kElements) return cells_.nodes_per(cells_.kind(i));
+    if (grid.kind == Kind::kEdges) return mesh_.nodes_per_edge();
+    return i < cells_.triangles() ? mesh_.nodes_per_face() : cells_.nodes_per_quad();
+  }
+  VertexIndex node(const WrittenGrid& grid, std::uint64_t i, std::uint64_t k) const {
+    return grid.kind == Kind::kElements ? cells_.node(i, k, kXdmfWide)
+           : grid.kind == Kind::kFaces  ? cells_.face_node(i, k)
+                                        : mesh_.edge_node(i, k);
+  }
+  bool is_mixed(const WrittenGrid& grid) const {
+    return grid.kind == Kind::kElements ? !mesh_.wide_cells().empty() : grid.kind == Kind::kFaces && cells_.quads() > 0;
   }
 
   void item(TextWriter& out, const std::string& shape, std::string_view type, std::size_t precision,
@@ -76,13 +88,11 @@ class XdmfWriter {
     TextWriter out(file);
     const std::string group = std::string("/Mesh/") + grid.name;
     values_->group(group);
-    const std::uint64_t n = count(grid), each = nodes(grid);
+    const std::uint64_t n = count(grid);
     out << "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n";
     out.line("    <Grid Name=\"{}\" GridType=\"Uniform\">", grid.name);
-    out.line("      <Topology TopologyType=\"{}\" NumberOfElements=\"{}\" NodesPerElement=\"{}\">",
-             grid.topology[mesh_.second_order()], n, each);
-    item(out, fmt::format("{} {}", n, each), "Int", 8, h5_, group + "/topology");
-    write_topology(grid, group + "/topology");
+    is_mixed(grid) ? write_mixed_topology(out, grid, group + "/topology")
+                   : write_topology(out, grid, group + "/topology");
     out << "      </Topology>\n      <Geometry GeometryType=\"XYZ\">\n";
     item(out, fmt::format("{} 3", mesh_.points()), "Float", 8, stem_ + ".h5", "/Mesh/mesh/geometry");
     if (grid.kind == Kind::kElements) write_points(group + "/geometry");
@@ -104,22 +114,42 @@ class XdmfWriter {
   }
 
   std::int32_t number(const WrittenGrid& grid, std::uint64_t i) const {
-    return static_cast<std::int32_t>(grid.kind == Kind::kElements ? mesh_.tag_of_region(mesh_.region_of(i))
-                                     : grid.kind == Kind::kFaces  ? 1 + mesh_.patch_of(i)
-                                                                  : 1 + mesh_.curve_of(i));
+    return static_cast<std::int32_t>(grid.kind == Kind::kElements
+                                         ? mesh_.tag_of_region(mesh_.region_of(cells_.first_tet(i)))
+                                     : grid.kind == Kind::kFaces ? 1 + mesh_.patch_of(cells_.first_face(i))
+                                                                 : 1 + mesh_.curve_of(i));
   }
 
-  void write_topology(const WrittenGrid& grid, const std::string& path) {
-    const std::uint64_t each = nodes(grid);
-    values_->dataset(path, {count(grid), each},
+  void write_topology(TextWriter& out, const WrittenGrid& grid, const std::string& path) {
+    const std::uint64_t n = count(grid), each = n == 0 ? 1 : nodes_of(grid, 0);
+    out.line("      <Topology TopologyType=\"{}\" NumberOfElements=\"{}\" NodesPerElement=\"{}\">",
+             grid.topology[mesh_.second_order()], n, each);
+    item(out, fmt::format("{} {}", n, each), "Int", 8, h5_, path);
+    values_->dataset(path, {n, each},
                      Hdf5Writer::Fill<std::int64_t>([&](std::uint64_t first, std::span<std::int64_t> to) {
-                       for (std::uint64_t k = 0; k < to.size(); ++k) {
-                         const std::uint64_t i = (first + k) / each, at = (first + k) % each;
-                         to[k] = grid.kind == Kind::kElements ? mesh_.tet_node(i, at)
-                                 : grid.kind == Kind::kFaces  ? mesh_.face_node(i, at)
-                                                              : mesh_.edge_node(i, at);
-                       }
+                       for (std::uint64_t k = 0; k < to.size(); ++k)
+                         to[k] = node(grid, (first + k) / each, (first + k) % each);
                      }));
+  }
+
+  /// Each element behind the number of its type.
+  void write_mixed_topology(TextWriter& out, const WrittenGrid& grid, const std::string& path) {
+    std::vector<std::int64_t> all;
+    for (std::uint64_t i = 0; i < count(grid); ++i) {
+      all.push_back(mixed_type(nodes_of(grid, i), grid.kind));
+      for (std::uint64_t k = 0; k < nodes_of(grid, i); ++k) all.push_back(node(grid, i, k));
+    }
+    out.line("      <Topology TopologyType=\"Mixed\" NumberOfElements=\"{}\">", count(grid));
+    item(out, std::to_string(all.size()), "Int", 8, h5_, path);
+    values_->dataset(path, {all.size()},
+                     Hdf5Writer::Fill<std::int64_t>([&](std::uint64_t first, std::span<std::int64_t> to) {
+                       std::copy_n(all.begin() + static_cast<std::ptrdiff_t>(first), to.size(), to.begin());
+                     }));
+  }
+
+  static std::int64_t mixed_type(std::uint64_t nodes, Kind kind) {
+    if (kind == Kind::kFaces) return nodes == 3 ? 4 : nodes == 4 ? 5 : nodes == 6 ? 36 : 37;
+    return nodes == 4 ? 6 : nodes == 5 ? 7 : nodes == 6 ? 8 : nodes == 10 ? 38 : nodes == 13 ? 39 : 40;
   }
 
   void write_points(const std::string& path) {
@@ -144,13 +174,14 @@ class XdmfWriter {
 
   void write_set(TextWriter& out, const std::string& name, const Part& part, std::uint64_t n, const std::string& path) {
     std::vector<bool> is_in(n, false);
-    for (const std::uint32_t m : part.members) is_in[m] = true;
+    for (const std::uint32_t m : cells_.members(part)) is_in[m] = true;
     write_attribute(out, escaped(name) + '"', part.kind == Kind::kNodes ? "Node" : "Cell", path, n,
                     [&](std::uint64_t i) { return std::int32_t{is_in[i]}; });
   }
 
   MeshOutput& out_;
   const MeshParts& mesh_;
+  MixedCells cells_;
   std::string stem_, h5_;             ///< of the target; and the file of values_
   std::optional<Hdf5Writer> values_;  ///< of the grid that is being written
 };

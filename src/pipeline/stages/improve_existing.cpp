@@ -8,6 +8,7 @@
 #include "improve/schedule/schedule.h"
 #include "pipeline/stages/follow_boundary.h"
 #include "pipeline/stages/stages.h"
+#include "pipeline/stages/without_wide_cells.h"
 #include "soup/defects/examine.h"
 #include "surface/check/surface_check.h"
 
@@ -88,11 +89,21 @@ TetMesh put_groups_aside(TetMesh& mesh) {
   return before;
 }
 
+/// Wedges and pyramids stay, and with them the boundary and their tetrahedra.
+void improve_beside_wide_cells(TetMesh& mesh, const ImproveOptions& options, const Stage& stage) {
+  stage.note(fmt::format("{} wedges and pyramids, and the boundary, stay as they are", mesh.wide_cells.size()));
+  const WithoutWideCells without(mesh);
+  TetMesh inner = without.inner();
+  if (inner.tets.empty()) return;
+  improve_mesh(inner, nullptr, options, stage);
+  mesh = without.joined(std::move(inner));
+}
+
 void raise_order(TetMesh& mesh, const Ground* ground, Run& run) {
   if (run.options.order < 2) return;
   run.stage("second order", [&](const Stage& stage) {
     run.report.second_order = ground ? curve_to_surface(mesh, ground->of_mesh.edges, ground->surface,
-                                                        run.options.surface.angle_of_features(), stage.context())
+                                                        run.options.surface.angle_of_features(), {}, stage.context())
                                      : add_straight_edges(mesh, stage.context());
     count_edges(run.report.second_order, stage);
   });
@@ -112,11 +123,13 @@ Improved improve_existing(const TetMesh& mesh, const Options& options, const Sur
   result.before = summarize_quality(mesh);
   run.report.input_volume = enclosed_volume(boundary_of(mesh));
   std::optional<Ground> ground;
-  if (surface)
+  const bool is_mixed = !result.mesh.wide_cells.empty();
+  if (surface && !is_mixed)
     run.stage("surface", [&](const Stage& stage) {
       ground.emplace(prepare_ground(mesh, *surface, options.surface.angle_of_features(), stage.context()));
     });
   run.stage("improve", [&](const Stage& stage) {
+    if (is_mixed) return improve_beside_wide_cells(result.mesh, options.improve, stage);
     std::optional<improve::BoundaryInput> on;
     if (ground)
       on.emplace(improve::BoundaryInput{ground->surface.mesh(), ground->surface.tree(), ground->surface.features(),

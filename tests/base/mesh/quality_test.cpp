@@ -1,4 +1,5 @@
 #include <octafront/quality.h>
+#include <octafront/validity.h>
 
 #include "support/lattice_points.h"
 
@@ -106,6 +107,42 @@ TEST(SummarizeQuality, OfAFlatElementSpansAllAngles) {
   const QualitySummary s = summarize_quality(mesh);
   EXPECT_EQ(s.dihedral_min, 0);
   EXPECT_EQ(s.dihedral_max, 180);
+}
+
+TetMesh regular_wedge() {
+  TetMesh mesh;
+  const double h = std::sqrt(0.75);
+  mesh.points = {{0, 0, 0}, {1, 0, 0}, {0.5, h, 0}, {0, 0, 2}, {1, 0, 2}, {0.5, h, 2}};
+  mesh.wide_cells = {{0, 3, {0, 1, 2, 3, 4, 5}}};
+  return mesh;
+}
+
+TEST(WideCells, ScaledJacobianIsOneWhereTheyAreRegular) {
+  const WideSummary wedge = summarize_wedges(regular_wedge());
+  EXPECT_EQ(wedge.count, 1u);
+  EXPECT_NEAR(wedge.least_scaled_jacobian, 1, 1e-12);
+  EXPECT_EQ(wedge.turned + wedge.torn, 0u);
+  TetMesh mesh;
+  mesh.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.5, 0.5, std::sqrt(0.5)}};
+  mesh.wide_cells = {{0, 2, {0, 1, 2, 3, 4, kNone}}};
+  EXPECT_NEAR(summarize_pyramids(mesh).least_scaled_jacobian, 1, 1e-12);
+  EXPECT_EQ(summarize_wedges(mesh).count, 0u);
+  EXPECT_EQ(first_wide_defect(mesh), std::nullopt);
+}
+
+TEST(WideCells, TurnedAndTornOnesAreTold) {
+  TetMesh mesh = regular_wedge();
+  mesh.wide_cells = {{0, 3, {0, 1, 2, 3, 4, 5}}, {3, 3, {0, 2, 1, 3, 5, 4}}, {6, 3, {0, 1, 2, 3, 5, 4}}};
+  const WideSummary found = summarize_wedges(mesh);
+  EXPECT_EQ(found.count, 3u);
+  EXPECT_EQ(found.turned, 1u);
+  EXPECT_EQ(found.torn, 1u);
+  EXPECT_EQ(found.first_bad, 1u);
+  EXPECT_LT(found.least_scaled_jacobian, 0);
+  const auto defect = first_wide_defect(mesh);
+  ASSERT_TRUE(defect);
+  EXPECT_NE(defect->find("tetrahedra 3 to 5"), std::string::npos);
+  EXPECT_NE(defect->find("turned"), std::string::npos);
 }
 
 }  // namespace

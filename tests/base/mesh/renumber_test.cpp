@@ -25,5 +25,14 @@ TEST(DropUnusedPoints, LeavesTheFirstWhereTheyAre) {
   EXPECT_EQ(mesh.tets, (std::vector<Tet>{{5, 2, 3, 4}}));
 }
 
+TEST(RenumberVertices, KnowsWedgesAndQuadrilaterals) {
+  TetMesh mesh;
+  mesh.wide_cells = {{0, 2, {0, 1, 2, 3, 4, kNone}}};
+  mesh.wide_faces = {{0, {3, 2, 1, 0}}};
+  renumber_vertices(mesh, {5, 6, 7, 8, 9});
+  EXPECT_EQ(mesh.wide_cells[0].nodes, (std::array<VertexIndex, 6>{5, 6, 7, 8, 9, kNone}));
+  EXPECT_EQ(mesh.wide_faces[0].nodes, (std::array<VertexIndex, 4>{8, 7, 6, 5}));
+}
+
 }  // namespace
 }  // namespace octafront

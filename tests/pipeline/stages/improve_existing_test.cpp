@@ -4,7 +4,12 @@
 #include <octafront/validity.h>
 
 #include "base/geometry/hausdorff.h"
+#include "support/mixed_mesh.h"
 #include "support/named_surfaces.h"
+
+#include <array>
+#include <cmath>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -70,6 +75,46 @@ TEST(ImproveExisting, RefusesWhatIsNotValid) {
   } catch (const InputError& e) {
     EXPECT_NE(std::string(e.what()).find("tetrahedron 3 is inverted"), std::string::npos) << e.what();
   }
+}
+
+/// The corners of each wedge or pyramid by their places, in its order.
+std::vector<std::vector<std::array<double, 3>>> placed_wide_cells(const TetMesh& mesh) {
+  std::vector<std::vector<std::array<double, 3>>> all;
+  for (const WideCell& cell : mesh.wide_cells) {
+    auto& corners = all.emplace_back();
+    for (TetIndex t = cell.first; t < cell.first + cell.tet_count; ++t)
+      for (const VertexIndex v : mesh.tets[t])
+        corners.push_back({mesh.points[v].x, mesh.points[v].y, mesh.points[v].z});
+    for (std::size_t k = 0; k < cell.tet_count + 3; ++k) {
+      const Vec3 p = mesh.points[cell.nodes[k]];
+      corners.push_back({p.x, p.y, p.z});
+    }
+  }
+  return all;
+}
+
+TEST(ImproveExisting, LeavesWedgesAndPyramidsAsTheyAre) {
+  TetMesh start = testing::mixed_mesh(4);
+  // Inside the cubes of tetrahedra.
+  for (std::size_t v = 0; v < start.points.size(); ++v) {
+    Vec3& p = start.points[v];
+    const bool is_inside = p.x > 0 && p.x < 4 && p.y > 0 && p.y < 4 && p.z > 0.5 && p.z < 4.5;
+    if (is_inside)
+      p = p + Vec3{0.2 * std::sin(7.0 * static_cast<double>(v)), 0.2 * std::cos(3.0 * static_cast<double>(v)), 0.1};
+  }
+  ASSERT_EQ(first_defect(start), std::nullopt);
+  const Improved better = improve_existing(start);
+  EXPECT_EQ(first_defect(better.mesh), std::nullopt);
+  EXPECT_EQ(first_wide_defect(better.mesh), std::nullopt);
+  EXPECT_GT(better.report.quality.beta_mean, better.before.beta_mean);
+  EXPECT_EQ(placed_wide_cells(better.mesh), placed_wide_cells(start));
+  EXPECT_EQ(better.mesh.wide_faces.size(), start.wide_faces.size());
+  EXPECT_EQ(first_defect(better.mesh, {start.points, start.boundary, {}, {}, {}}), std::nullopt);
+  EXPECT_EQ(better.mesh.patch, start.patch);
+  EXPECT_EQ(better.mesh.region_names, start.region_names);
+  EXPECT_EQ(better.mesh.interfaces.size(), start.interfaces.size());
+  const Improved again = improve_existing(start);
+  EXPECT_EQ(again.mesh, better.mesh);
 }
 
 }  // namespace
