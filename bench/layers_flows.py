@@ -97,13 +97,14 @@ def main():
                 results[key] = measure(program, make(folder), case, folder)
             kept.write_text(json.dumps(results))
             print(line(*key.split("|"), results[key]), flush=True)
+    order = [*FLOWS, *sorted({key.split("|")[0] for key in results} - {*FLOWS})]
     rewrite("flows", "bench/run.sh layers_flows --vessels FOLDER", [
         "Bodies in a box that reaches a diagonal farther on all sides, layers on the body; vessels with layers on their walls, none on their ends (edges of a "
         "hundredth of the diagonal). Growth 1.2, one thread. The wing is generated, the other bodies are those of OpenFOAM's examples, mended "
         "(`scripts/get-flows.sh`). The vessels are public test data of vmtk (aorta-surface, -open-ends, -segment-2) and vmtk4aneurysms (two models), open ends closed "
         "by repair. *n-o*: most non-orthogonality, degrees; *skewness*: the most, checkMesh wants at most 4.", "",
         "| body | layers x first height | faces | cells | full, % | stopped by | SJ | checkMesh | n-o (faces > 70) | skewness | CPU s |",
-        "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |", *(line(*key.split("|"), row) for key, row in results.items())])
+        "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |", *(line(*key.split("|"), results[key]) for key in sorted(results, key=lambda key: order.index(key.split("|")[0])))])
 
 
 main()
