@@ -1,8 +1,8 @@
 """Meshes the clean models and all surfaces derived from them, and writes docs/measured/derived-status.md: is every element as good
 as the input lets it be, is every run as fast as its size says?
 
-Usage: bench/run.sh derived [--only SUBSTRING] [--jobs N] [--timeout SECONDS] [--every N]
-Each model at automatic size and with --elements 100000. The Hausdorff distance is measured by octafront_evaluate, which
+Usage: bench/run.sh derived [--only SUBSTRING] [--jobs N] [--timeout SECONDS] [--every N] [--automatic]
+Each model at automatic size and, without --automatic, with --elements 100000. The Hausdorff distance is measured by octafront_evaluate, which
 reads the file back; forced elements are those that the report counts as forced by the input.
 """
 import argparse
@@ -68,18 +68,19 @@ def main():
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--timeout", type=float, default=600)
     parser.add_argument("--every", type=int, default=1, help="every Nth model, by size")
+    parser.add_argument("--automatic", action="store_true", help="automatic sizes only")
     a = parser.parse_args()
     models = sorted([*pathlib.Path("models/clean").iterdir(), *pathlib.Path("models/derived").iterdir()],
                     key=lambda p: (p.stat().st_size, p.name))
     models = [m for m in models if a.only in m.name][::a.every]
-    command = "bench/run.sh derived" + (f" --every {a.every}" if a.every > 1 else "")
+    command = "bench/run.sh derived" + (f" --every {a.every}" if a.every > 1 else "") + (" --automatic" if a.automatic else "")
     text = ["# The clean models and what is derived from them", "",
             f"{written_by(command)} over {len(models)} surfaces "
-            "(`scripts/get-models.sh`, `scripts/derive-models.sh`), two at a time on two cores. What forced means: "
+            f"(`scripts/get-models.sh`, `scripts/derive-models.sh`), {a.jobs} at a time. What forced means: "
             "`docs/how/sizes-and-surface.md`. The worst ten at automatic sizes, each around its worst element, forced or not "
             "(`scripts/pictures.sh`):", "", "![](../images/derived-worst.png)", ""]
     with concurrent.futures.ThreadPoolExecutor(a.jobs) as pool:
-        for name, options in RUNS.items():
+        for name, options in list(RUNS.items())[:1 if a.automatic else 2]:
             rows = list(pool.map(lambda m: mesh_and_judge(a.build, m, [*options, "--threads", "1"], a.timeout), models))
             made = [figures(m, r) for m, r in zip(models, rows) if r["status"] == 0]
             failed = [(m.name, r["message"][:200]) for m, r in zip(models, rows) if r["status"] != 0]

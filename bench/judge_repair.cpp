@@ -1,6 +1,6 @@
-// What became of a defective surface: octafront_judge_repair INPUT RESULT [CLOSED]. RESULT is a mesh or a surface
-// (.off, .obj); CLOSED the name of the patch that stands for holes, by default "closed by repair". Prints one JSON
-// object. Lengths are parts of the input's diagonal, areas of its area.
+// What became of a defective surface: octafront_judge_repair INPUT RESULT. RESULT is a mesh or a surface
+// (.off, .obj), made with default options. Prints one JSON object. Lengths are parts of the input's diagonal, areas of
+// its area.
 
 #include <octafront/octafront.h>
 
@@ -26,21 +26,34 @@ constexpr double kAway = 5e-3;     ///< points are asked for inside or outside i
 constexpr double kDoubt = 0.2;     ///< winding numbers this near to 0 say outside, to 1 or above: inside
 constexpr int kPoints = 10000;
 
-/// The boundary from the input, except what closes holes.
-Json boundary_from_input(const SurfaceMesh& made, const TriangleTree& input, const std::string& closed,
-                         double diagonal) {
-  Farthest farthest, farthest_closed;
+bool is_closed(const SurfaceMesh& repaired, std::size_t t) {
+  const std::uint32_t patch = repaired.patch_of(t);
+  return patch < repaired.patch_names.size() && repaired.patch_names[patch].starts_with(kClosedByRepair);
+}
+
+bool is_moved(const Domain& repaired, std::size_t t) {
+  return !repaired.bound.empty() && std::isfinite(repaired.bound[t]);
+}
+
+/// What was made from the input, by what of the repaired surface is nearest: what repair left as it was, what it moved,
+/// what closes holes. The patches of a mesh do not tell, for nothing keeps the rims of what was closed.
+Json boundary_from_input(const SurfaceMesh& made, const Domain& repaired, const TriangleTree& input, double diagonal) {
+  const TriangleTree tree(repaired.surface);
+  Farthest farthest, moved, closed;
   double closed_area = 0;
-  for (std::size_t i = 0; i < made.triangles.size(); ++i) {
-    const std::uint32_t patch = made.patch_of(i);
-    const bool closes = patch < made.patch_names.size() && made.patch_names[patch].starts_with(closed);
-    const TriangleCorners c = corners_of(made, made.triangles[i]);
-    if (closes) closed_area += triangle_area(c[0], c[1], c[2]);
-    sample(c, kSpacing * diagonal,
-           [&](Vec3 p) { (closes ? farthest_closed : farthest).add(std::sqrt(input.nearest(p).squared_distance), p); });
+  for (const Triangle& t : made.triangles) {
+    const TriangleCorners c = corners_of(made, t);
+    if (is_closed(repaired.surface, tree.nearest(centroid(c[0], c[1], c[2])).triangle))
+      closed_area += triangle_area(c[0], c[1], c[2]);
+    sample(c, kSpacing * diagonal, [&](Vec3 p) {
+      const std::uint32_t near = tree.nearest(p).triangle;
+      Farthest& to = is_closed(repaired.surface, near) ? closed : is_moved(repaired, near) ? moved : farthest;
+      to.add(std::sqrt(input.nearest(p).squared_distance), p);
+    });
   }
   return {{"boundary_from_input", farthest.json(diagonal)},
-          {"closed_from_input", farthest_closed.json(diagonal)},
+          {"moved_from_input", moved.json(diagonal)},
+          {"closed_from_input", closed.json(diagonal)},
           {"closed_area", closed_area / area(made)}};
 }
 
@@ -95,7 +108,7 @@ Json sides(const SurfaceMesh& input, const TriangleTree& input_tree, const Trian
           {"at", {at.x, at.y, at.z}}};
 }
 
-Json judge(const std::string& input_file, const std::string& result, const std::string& closed) {
+Json judge(const std::string& input_file, const std::string& result) {
   const SurfaceMesh input = repair_surface(read_surface(input_file).surface).surface;
   const MadeResult made = read_result(result);
   if (made.boundary.triangles.empty()) return {{"empty", true}};
@@ -103,7 +116,7 @@ Json judge(const std::string& input_file, const std::string& result, const std::
   const double diagonal = input_tree.box().diagonal();
   Json j = made.about;
   j["volume"] = enclosed_volume(made.boundary);
-  j.update(boundary_from_input(made.boundary, input_tree, closed, diagonal));
+  j.update(boundary_from_input(made.boundary, open_domain(input_file), input_tree, diagonal));
   j.update(input_from_boundary(input, made_tree, diagonal));
   j["sides"] = sides(input, input_tree, made_tree, diagonal);
   return j;
@@ -113,11 +126,11 @@ Json judge(const std::string& input_file, const std::string& result, const std::
 
 int main(int argc, char** argv) {
   if (argc < 3) {
-    std::fputs("octafront_judge_repair INPUT MESH|SURFACE [CLOSED]\n", stderr);
+    std::fputs("octafront_judge_repair INPUT MESH|SURFACE\n", stderr);
     return 2;
   }
   try {
-    fmt::print("{}\n", judge(argv[1], argv[2], argc > 3 ? argv[3] : "closed by repair").dump());
+    fmt::print("{}\n", judge(argv[1], argv[2]).dump());
   } catch (const std::exception& e) {
     fmt::print(stderr, "{}\n", e.what());
     return 3;

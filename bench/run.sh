@@ -15,7 +15,7 @@
 #   bench/run.sh improve     improvement against its targets, never worse, start meshes of others -> docs/measured/improve-bench.md
 #   bench/run.sh formats     how fast meshes are written, every format beside a plain write -> docs/measured/formats-bench.md
 #   bench/run.sh second_order   all clean models, balls, tori, cylinders: proven? how true? at what cost? -> docs/how/second-order.md
-#   bench/run.sh repair      the defective models, repaired and meshed                  -> docs/measured/repair-status.md
+#   bench/run.sh repair      the defective models, repaired and meshed; --near N: held to 1 ‰, too -> docs/measured/repair-status.md
 #   bench/run.sh known_answers   2,000 clean models damaged in known ways, repaired and judged -> docs/measured/repair-known.md
 #   bench/run.sh damage      clean models damaged in 24 ways beside the undamaged ones -> docs/measured/damage.md
 #   bench/run.sh images      volumes of labels, each label judged; --peers: beside CGAL -> docs/measured/images-status.md

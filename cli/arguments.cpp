@@ -433,12 +433,18 @@ void declare_layers(CLI::App& command, Arguments& a) {
   add_length(*group, a, "--Lref", o.reference_length, "Length that the Reynolds number belongs to")->type_name("L");
   group->add_option("--on", o.on, "Patches that are walls, by name, with commas between them [all]")
       ->type_name("NAMES");
+  group->add_option("--layers-in", o.in, "Regions that they grow in, by name, with commas between them [all]")
+      ->type_name("NAMES");
+  group->add_flag("--layers-outside", o.outside,
+                  "Layers grow on the outside, as a shell around the mesh and a region of its own");
   group
       ->add_option("--require-coverage", o.require_coverage,
                    "Percent of each wall's faces that must have all layers, or the run fails with status 4")
       ->type_name("P");
   group->add_flag("--layers-as-tets", o.as_tets, "Layers are tetrahedra also in formats that have wedges");
   a.names.add("count", "--layers");
+  a.names.add("in", "--layers-in");
+  a.names.add("outside", "--layers-outside");
   a.names.add("as_tets", "--layers-as-tets");
   a.names.add("reynolds", "--Re");
   a.names.add("reference_length", "--Lref");

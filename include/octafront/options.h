@@ -113,6 +113,9 @@ struct LayersOptions {
   /// number belongs to a length: skin friction of .026 Re^(-1/7) (F. White, Fluid Mechanics).
   std::optional<double> yplus, reynolds, reference_length;
   std::string on;  ///< names of the patches that are walls, separated by commas; empty: all patches
+  std::string in;  ///< names of the regions that they grow in, separated by commas; empty: all regions
+  /// They grow on the outside instead, where they make a shell around the mesh: a region of its own.
+  bool outside = false;
   /// Layers are tetrahedra in every file, also where a format has wedges and pyramids (TetMesh::wide_cells).
   bool as_tets = false;
   /// Percent of the faces of each wall that must have all layers, as high as asked; MeshingError otherwise.

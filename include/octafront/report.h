@@ -32,15 +32,17 @@ struct SizeSummary {
 
 /// One region of a mesh.
 struct RegionSummary {
-  std::string name;        ///< may be empty
-  double volume = 0;       ///< input unit cubed; of curved elements as they are curved, where `true_volume` is known
-  double true_volume = 0;  ///< of the CAD solid; 0: not known
+  std::string name;          ///< may be empty
+  double volume = 0;         ///< input unit cubed; of curved elements as they are curved, where `true_volume` is known
+  double layers_volume = 0;  ///< of the boundary layers in it, which are a region of their own
+  double true_volume = 0;    ///< of the CAD solid; 0: not known
   QualitySummary quality;
 };
 
 /// The boundary layers of one wall.
 struct LayerSummary {
-  std::string patch;  ///< its name; may be empty
+  std::string patch;   ///< its name; may be empty
+  std::string region;  ///< that they grow in; empty where there is one
   std::uint64_t faces = 0;
   double full = 0;                                        ///< part of the faces with all layers as high as asked
   double with_some = 0;                                   ///< part of the faces with at least one layer at each corner

@@ -93,6 +93,9 @@ struct TetMesh {
   /// quadrilateral between two of them or at the boundary is whole on both sides. Empty: tetrahedra only.
   std::vector<WideCell> wide_cells;
   std::vector<WideFace> wide_faces;  ///< the quadrilaterals of `boundary`; ascending
+  /// One per boundary face and, behind them, interface: how many boundary layers grow at each corner of it, at least;
+  /// kNone: it is no wall of any. Empty: not known.
+  std::vector<std::uint32_t> face_layers;
 
   bool is_second_order() const { return !mid_nodes.empty(); }
   /// How many there are of what sets of this kind are made of.

@@ -7,26 +7,19 @@
 
 namespace octafront {
 
-// Descends two trees against each other, or one against itself. A task is a pair of nodes whose triangles are to be
-// compared, or, in one tree, one node to be compared within. The list of tasks depends on the trees alone.
+// Descends a tree against itself. A task is a pair of nodes whose triangles are to be compared, or one node to be
+// compared within. The list of tasks depends on the tree alone.
 class SelfIntersectionSearch {
  public:
   using Pairs = std::vector<std::array<std::uint32_t, 2>>;
 
-  /// The triangles of a tree: triangle i of it is number numbers[i] of all, or i if there are no numbers.
-  struct Part {
-    const TriangleTree& tree;
-    std::span<const std::uint32_t> numbers;
-    std::uint32_t number(std::uint32_t i) const { return numbers.empty() ? i : numbers[i]; }
-  };
-
-  SelfIntersectionSearch(Part a, Part b, std::span<const Triangle> triangles, std::size_t limit,
-                         const RunContext& context)
-      : a_(a), b_(b), same_(&a.tree == &b.tree), triangles_(triangles), limit_(limit), context_(context) {}
+  /// Triangle i of the tree is number numbers[i] of all, or i if there are no numbers.
+  SelfIntersectionSearch(const TriangleTree& tree, std::span<const std::uint32_t> numbers,
+                         std::span<const Triangle> triangles, std::size_t limit, const RunContext& context)
+      : tree_(tree), numbers_(numbers), triangles_(triangles), limit_(limit), context_(context) {}
 
   void run(Pairs& all) const {
-    if (a_.tree.empty() || b_.tree.empty()) return;
-    if (!same_ && !a_.tree.box().overlaps(b_.tree.box())) return;
+    if (tree_.empty()) return;
     const std::vector<Task> tasks = split_tasks();
     std::vector<Pairs> found(tasks.size());
     parallel_for(tasks.size(), [&](std::size_t i) { work_off(tasks[i], found[i]); });
@@ -35,22 +28,21 @@ class SelfIntersectionSearch {
 
  private:
   struct Task {
-    std::uint32_t a, b;  // nodes of the two trees; equal, in one tree: within one node
+    std::uint32_t a, b;  // nodes; equal: within one
   };
 
-  const TriangleTree::Node& node_a(Task t) const { return a_.tree.nodes_[t.a]; }
-  const TriangleTree::Node& node_b(Task t) const { return b_.tree.nodes_[t.b]; }
-  bool is_within(Task t) const { return same_ && t.a == t.b; }
-  bool is_leaf_task(Task t) const { return node_a(t).count > 0 && node_b(t).count > 0; }
+  std::uint32_t number(std::uint32_t i) const { return numbers_.empty() ? i : numbers_[i]; }
+  const TriangleTree::Node& node(std::uint32_t n) const { return tree_.nodes_[n]; }
+  bool is_leaf_task(Task t) const { return node(t.a).count > 0 && node(t.b).count > 0; }
 
   // Calls next(task) for each part of a task that is not for leaves alone.
   template <class Next>
   void divide(Task t, Next&& next) const {
     const auto add = [&](Task part) {
-      if (is_within(part) || node_a(part).box.overlaps(node_b(part).box)) next(part);
+      if (part.a == part.b || node(part.a).box.overlaps(node(part.b).box)) next(part);
     };
-    const auto &a = node_a(t), &b = node_b(t);
-    if (is_within(t)) {
+    const auto &a = node(t.a), &b = node(t.b);
+    if (t.a == t.b) {
       add({a.first, a.first});
       add({a.first + 1, a.first + 1});
       add({a.first, a.first + 1});
@@ -92,24 +84,24 @@ class SelfIntersectionSearch {
   }
 
   void compare_leaves(Task t, Pairs& found) const {
-    const auto &a = node_a(t), &b = node_b(t);
+    const auto &a = node(t.a), &b = node(t.b);
     for (std::uint32_t i = a.first; i < a.first + a.count; ++i) {
-      const auto& s = a_.tree.items_[i];
+      const auto& s = tree_.items_[i];
       const Box3 s_box = box_of(s.corners);
       if (!s_box.overlaps(b.box)) continue;
-      const std::uint32_t s_number = a_.number(s.triangle);
-      for (std::uint32_t j = is_within(t) ? i + 1 : b.first; j < b.first + b.count; ++j) {
-        const auto& o = b_.tree.items_[j];
+      const std::uint32_t s_number = number(s.triangle);
+      for (std::uint32_t j = t.a == t.b ? i + 1 : b.first; j < b.first + b.count; ++j) {
+        const auto& o = tree_.items_[j];
         if (!s_box.overlaps(box_of(o.corners))) continue;
-        const std::uint32_t o_number = b_.number(o.triangle);
+        const std::uint32_t o_number = number(o.triangle);
         if (triangles_conflict(s.corners, triangles_[s_number], o.corners, triangles_[o_number]))
           found.push_back({std::min(s_number, o_number), std::max(s_number, o_number)});
       }
     }
   }
 
-  const Part a_, b_;
-  const bool same_;
+  const TriangleTree& tree_;
+  std::span<const std::uint32_t> numbers_;
   std::span<const Triangle> triangles_;
   std::size_t limit_;
   const RunContext& context_;
@@ -204,13 +196,80 @@ void search_fan(VertexIndex center, std::span<const std::uint32_t> fan, std::spa
   }
 }
 
+// Some triangles, their tree, and their numbers among all.
+struct Numbered {
+  const TriangleTree& tree;
+  std::span<const std::uint32_t> numbers;
+};
+
+// The triangles of two parts, one of them a fan. The boxes of a fan's triangles all meet at its centre, and those of
+// two fans on one axis all meet each other. So each triangle of one part is looked for in the tree of the other by
+// itself, not by its box; in which, a sample tells: sectors of a cone meet few boxes of the disc below, but its sectors
+// those of the whole cone.
+class SearchBetween {
+ public:
+  SearchBetween(std::span<const Vec3> points, std::span<const Triangle> triangles, std::size_t limit,
+                const RunContext& context)
+      : points_(points), triangles_(triangles), limit_(limit), context_(context) {}
+
+  void run(const Numbered& a, const Numbered& b, Pairs& found) const {
+    if (!a.tree.box().overlaps(b.tree.box())) return;
+    if (work(a, b) <= work(b, a))
+      search(a, b, found);
+    else
+      search(b, a, found);
+  }
+
+ private:
+  static constexpr std::size_t kSample = 64, kBlock = 256;
+
+  TriangleCorners corners(std::uint32_t t) const {
+    const auto [a, b, c] = triangles_[t];
+    return {points_[a], points_[b], points_[c]};
+  }
+
+  // Pairs to compare, as far as a sample tells.
+  double work(const Numbered& these, const Numbered& others) const {
+    const std::size_t step = 1 + these.numbers.size() / kSample;
+    std::size_t pairs = 0;
+    for (std::size_t i = 0; i < these.numbers.size(); i += step)
+      others.tree.for_each_near(corners(these.numbers[i]), [&](std::uint32_t, const TriangleCorners&) { ++pairs; });
+    return static_cast<double>(step * pairs);
+  }
+
+  void search(const Numbered& these, const Numbered& others, Pairs& found) const {
+    std::vector<Pairs> of_block((these.numbers.size() + kBlock - 1) / kBlock);
+    parallel_for(of_block.size(), [&](std::size_t block) {
+      const std::size_t end = std::min((block + 1) * kBlock, these.numbers.size());
+      for (std::size_t i = block * kBlock; i < end && of_block[block].size() < limit_; ++i)
+        search_for(these.numbers[i], others, of_block[block]);
+    });
+    for (const Pairs& pairs : of_block) found.insert(found.end(), pairs.begin(), pairs.end());
+  }
+
+  void search_for(std::uint32_t s, const Numbered& others, Pairs& pairs) const {
+    context_.check();
+    const TriangleCorners here = corners(s);
+    others.tree.for_each_near(here, [&](std::uint32_t i, const TriangleCorners& there) {
+      const std::uint32_t o = others.numbers[i];
+      if (triangles_conflict(here, triangles_[s], there, triangles_[o]))
+        pairs.push_back({std::min(s, o), std::max(s, o)});
+    });
+  }
+
+  std::span<const Vec3> points_;
+  std::span<const Triangle> triangles_;
+  std::size_t limit_;
+  const RunContext& context_;
+};
+
 Pairs sorted_up_to(Pairs pairs, std::size_t limit) {
   std::sort(pairs.begin(), pairs.end());
   if (pairs.size() > limit) pairs.resize(limit);
   return pairs;
 }
 
-// Each fan by the directions from its centre; everything else by trees, one for each fan and one for the rest.
+// Each fan by the directions from its centre; between them, and in the rest, by trees.
 Pairs search_with_fans(const Fans& fans, std::span<const Vec3> points, std::span<const Triangle> triangles,
                        std::size_t limit, const RunContext& context) {
   std::vector<TriangleTree> trees;
@@ -220,12 +279,12 @@ Pairs search_with_fans(const Fans& fans, std::span<const Vec3> points, std::span
     trees.emplace_back(points, own);
   }
   Pairs found;
-  for (std::size_t a = 0; a < trees.size(); ++a) {
+  SelfIntersectionSearch(trees[0], fans.parts[0], triangles, limit, context).run(found);
+  const SearchBetween between(points, triangles, limit, context);
+  for (std::size_t a = 1; a < trees.size(); ++a) {
     context.check();
-    if (a > 0) search_fan(fans.centers[a], fans.parts[a], points, triangles, limit, found);
-    for (std::size_t b = a == 0 ? 0 : a + 1; b < trees.size(); ++b)
-      SelfIntersectionSearch({trees[a], fans.parts[a]}, {trees[b], fans.parts[b]}, triangles, limit, context)
-          .run(found);
+    search_fan(fans.centers[a], fans.parts[a], points, triangles, limit, found);
+    for (std::size_t b = 0; b < a; ++b) between.run({trees[a], fans.parts[a]}, {trees[b], fans.parts[b]}, found);
   }
   return sorted_up_to(std::move(found), limit);
 }
@@ -244,7 +303,7 @@ std::vector<std::array<std::uint32_t, 2>> self_intersections(const TriangleTree&
                                                              std::span<const Triangle> triangles, std::size_t limit,
                                                              const RunContext& context) {
   Pairs found;
-  SelfIntersectionSearch({tree, {}}, {tree, {}}, triangles, limit, context).run(found);
+  SelfIntersectionSearch(tree, {}, triangles, limit, context).run(found);
   return sorted_up_to(std::move(found), limit);
 }
 

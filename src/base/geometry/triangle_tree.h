@@ -77,6 +77,14 @@ class TriangleTree {
                   });
   }
 
+  /// Calls visit(triangle, corners) for each triangle in a leaf whose box the triangle `t` meets; never misses one that
+  /// meets it.
+  template <class Visit>
+  void for_each_near(const TriangleCorners& t, Visit&& visit) const {
+    for_each_leaf([&](const Box3& b) { return triangle_overlaps_box(t, b); },
+                  [&](const Item& item) { visit(item.triangle, item.corners); });
+  }
+
   struct RayHit {
     double t = kFar;                 ///< the hit is origin + t * direction
     std::uint32_t triangle = kNone;  ///< kNone: no hit up to t_max

@@ -81,6 +81,8 @@ std::optional<std::string> array_defect(const TetMesh& mesh) {
   if (auto d = misfit("source", mesh.source.size(), mesh.boundary.size(), "boundary faces")) return d;
   if (auto d = misfit("interface_patch", mesh.interface_patch.size(), mesh.interfaces.size(), "interfaces")) return d;
   if (auto d = misfit("curve", mesh.curve.size(), mesh.curve_edges.size(), "curve edges")) return d;
+  if (auto d = misfit("face_layers", mesh.face_layers.size(), mesh.boundary.size() + mesh.interfaces.size(), "faces"))
+    return d;
   return misfit("mid_nodes", mesh.mid_nodes.size(), mesh.tets.size(), "tetrahedra");
 }
 

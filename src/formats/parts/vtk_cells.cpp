@@ -44,6 +44,7 @@ VtkCells::VtkCells(const MeshParts& mesh)
   const auto& source = mesh.mesh().source;
   if (!std::all_of(source.begin(), source.end(), [](std::uint32_t face) { return face == kNone; }))
     data_.push_back({"source", false, false});
+  if (!mesh.mesh().face_layers.empty()) data_.push_back({"layers", false, false});
   for (const Part& part : mesh.parts(Part::Origin::kSet)) {
     const bool of_points = part.kind == SetKind::kNodes;
     data_.push_back({std::string(plural(part.kind)) + part.name, of_points, true});
@@ -106,6 +107,7 @@ std::int32_t VtkCells::number(std::string_view name, std::uint64_t cell) const {
   if (!is_face(k)) return -1;
   const std::size_t face = cells_.first_face(cell - first_face());
   if (name == "patch") return static_cast<std::int32_t>(mesh_.patch_of(face));
+  if (name == "layers") return static_cast<std::int32_t>(mesh_.mesh().face_layers[face]);
   const auto& source = mesh_.mesh().source;
   return face < source.size() ? static_cast<std::int32_t>(source[face]) : -1;
 }

@@ -183,6 +183,12 @@ class OpenFoamWriter {
     return faces;
   }
 
+  /// Boundary layers stand on walls: wall functions and distances need to know.
+  bool is_wall(const Part& patch) const {
+    const std::vector<std::uint32_t>& layers = mesh_.mesh().face_layers;
+    return !layers.empty() && std::ranges::any_of(patch.members, [&](std::uint32_t f) { return layers[f] != kNone; });
+  }
+
   void write_boundary() {
     file("boundary", "polyBoundaryMesh", [&](TextWriter& out) {
       const auto patches = mesh_.parts(Part::Origin::kPatch);
@@ -192,8 +198,8 @@ class OpenFoamWriter {
       for (const Part& patch : patches) {
         const std::size_t faces = outside(patch).size();
         if (faces == 0) continue;
-        out.line("    {}\n    {{\n        type patch;{}\n        nFaces {};\n        startFace {};\n    }}",
-                 name(patch), original(patch), faces, first);
+        out.line("    {}\n    {{\n        type {};{}\n        nFaces {};\n        startFace {};\n    }}", name(patch),
+                 is_wall(patch) ? "wall" : "patch", original(patch), faces, first);
         first += faces;
       }
       out << ")\n";

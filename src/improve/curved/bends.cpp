@@ -164,4 +164,34 @@ Bends find_bends(const TetMesh& mesh, const std::vector<Edge>& sharp, SmoothSurf
   return Search(mesh, sharp, surface).run();
 }
 
+void add_corners_above(std::span<const VertexIndex> below, Bends& bends) {
+  if (below.empty()) return;
+  std::vector<Vec3> by(below.size());
+  for (const CornerMove& move : bends.corners) by[move.vertex] = move.by;
+  bends.corners.clear();
+  for (VertexIndex v = 0; v < below.size(); ++v)
+    if (by[below[v]] != Vec3{}) bends.corners.push_back({v, by[below[v]]});
+}
+
+void add_edges_above(std::span<const VertexIndex> below, const TetEdges& edges, Bends& bends) {
+  if (below.empty()) return;
+  const auto is_before = [](const EdgeBend& bend, const Edge& edge) { return bend.edge < edge; };
+  std::vector<EdgeBend> all;
+  for (std::uint32_t e = 0; e < edges.size(); ++e) {
+    const Edge edge{edges.low[e], edges.high[e]};
+    const VertexIndex a = below[edge[0]], b = below[edge[1]];
+    const Edge under{std::min(a, b), std::max(a, b)};
+    const auto found = std::lower_bound(bends.edges.begin(), bends.edges.end(), under, is_before);
+    if (found != bends.edges.end() && found->edge == under) all.push_back({edge, found->by});
+  }
+  // Those of the boundary that lie above others bend on their own.
+  const auto above = static_cast<std::ptrdiff_t>(all.size());
+  for (const EdgeBend& bend : bends.edges) {
+    const auto end = all.begin() + above, found = std::lower_bound(all.begin(), end, bend.edge, is_before);
+    if (found == end || found->edge != bend.edge) all.push_back(bend);
+  }
+  std::ranges::sort(all, {}, &EdgeBend::edge);
+  bends.edges = std::move(all);
+}
+
 }  // namespace octafront::curved

@@ -5,8 +5,10 @@
 #include <octafront/tet_mesh.h>
 
 #include "base/geometry/true_geometry.h"
+#include "improve/curved/mid_nodes.h"
 #include "improve/curved/smooth_surface.h"
 
+#include <span>
 #include <vector>
 
 namespace octafront::curved {
@@ -36,5 +38,10 @@ Bends find_bends(const TetMesh& mesh, const std::vector<Edge>& sharp, SmoothSurf
 /// The same where the true geometry is known; the patches of the mesh are its patches. Edges bend as they do once their
 /// corners are on it. In parallel.
 Bends find_bends(const TetMesh& mesh, const TrueGeometry& geometry);
+
+/// What lies over vertices of the boundary goes along with them, nodes of columns over a wall: `below` has for each
+/// vertex the one of the boundary under it, itself if there is none.
+void add_corners_above(std::span<const VertexIndex> below, Bends& bends);
+void add_edges_above(std::span<const VertexIndex> below, const TetEdges& edges, Bends& bends);
 
 }  // namespace octafront::curved

@@ -9,21 +9,28 @@
 #include "base/geometry/true_geometry.h"
 #include "base/mesh/known_surface.h"
 
+#include <span>
 #include <vector>
 
 namespace octafront {
 
+// `below`, where something grows on the boundary: per vertex the one of the boundary under it, or itself; columns go
+// along with their wall. Empty: nothing does.
+
 /// As make_second_order(), with what the pipeline knows already. `sharp`: feature edges of the boundary of the mesh,
 /// sorted, those between patches too.
 SecondOrderSummary curve_to_surface(TetMesh& mesh, const std::vector<Edge>& sharp, const KnownSurface& surface,
-                                    double feature_angle, const RunContext& context);
+                                    double feature_angle, std::span<const VertexIndex> below,
+                                    const RunContext& context);
 
 /// Moves the corners on the boundary and on interfaces of a linear mesh to the true geometry, as far as elements keep
 /// half of their volume; what did not go the whole way tries again, for a few rounds. Counts `moved` and `held`.
-SecondOrderSummary move_to_geometry(TetMesh& mesh, const TrueGeometry& geometry, const RunContext& context);
+SecondOrderSummary move_to_geometry(TetMesh& mesh, const TrueGeometry& geometry, std::span<const VertexIndex> below,
+                                    const RunContext& context);
 
 /// Gives a linear mesh whose corners are on the true geometry mid-side nodes on it.
-SecondOrderSummary curve_to_geometry(TetMesh& mesh, const TrueGeometry& geometry, const RunContext& context);
+SecondOrderSummary curve_to_geometry(TetMesh& mesh, const TrueGeometry& geometry, std::span<const VertexIndex> below,
+                                     const RunContext& context);
 
 /// Volume of a second-order mesh, curved as it is. Unit: input unit cubed.
 double curved_volume(const TetMesh& mesh);

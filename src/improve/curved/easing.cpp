@@ -118,7 +118,7 @@ std::vector<std::pair<VertexIndex, Way>> ways_with_followers(const TetMesh& mesh
       for (const VertexIndex v : t) outside[v] = 1;
   std::vector<Vec3> by(mesh.points.size());
   std::vector<std::uint32_t> seen(mesh.points.size(), 0);
-  for (const auto& [v, move] : moves) by[v] = move;
+  for (const auto& [v, move] : moves) by[v] = move, outside[v] = 1;
   for (const Tet& tet : mesh.tets)
     for (const VertexIndex v : tet)
       for (const VertexIndex u : tet)

@@ -96,24 +96,29 @@ SurfaceMesh boundary_of_mesh(const TetMesh& mesh) {
 }  // namespace
 
 SecondOrderSummary curve_to_surface(TetMesh& mesh, const std::vector<Edge>& sharp, const KnownSurface& surface,
-                                    double feature_angle, const RunContext& context) {
+                                    double feature_angle, std::span<const VertexIndex> below,
+                                    const RunContext& context) {
   refuse_mid_nodes(mesh);
   SecondOrderSummary summary;
   curved::SmoothSurface smooth(surface.mesh(), surface.edges(), surface.tree(), sharp_features(surface, feature_angle));
-  const curved::Bends bends = curved::find_bends(mesh, sharp, smooth);
+  curved::Bends bends = curved::find_bends(mesh, sharp, smooth);
+  curved::add_corners_above(below, bends);
   context.check();
   curved::move_corners(mesh, bends.corners, summary, context);
   const curved::TetEdges edges = curved::add_straight_mid_nodes(mesh);
+  curved::add_edges_above(below, edges, bends);
   curved::bend_edges(mesh, edges, bends.edges, summary, context);
   prove(mesh, summary, context);
   return summary;
 }
 
-SecondOrderSummary move_to_geometry(TetMesh& mesh, const TrueGeometry& geometry, const RunContext& context) {
+SecondOrderSummary move_to_geometry(TetMesh& mesh, const TrueGeometry& geometry, std::span<const VertexIndex> below,
+                                    const RunContext& context) {
   SecondOrderSummary summary;
   for (int round = 0; round < kRounds; ++round) {
     context.check();
-    const curved::Bends bends = curved::find_bends(mesh, geometry);
+    curved::Bends bends = curved::find_bends(mesh, geometry);
+    curved::add_corners_above(below, bends);
     SecondOrderSummary made;
     curved::move_corners(mesh, bends.corners, made, context);
     summary.moved += made.moved;
@@ -123,11 +128,13 @@ SecondOrderSummary move_to_geometry(TetMesh& mesh, const TrueGeometry& geometry,
   return summary;
 }
 
-SecondOrderSummary curve_to_geometry(TetMesh& mesh, const TrueGeometry& geometry, const RunContext& context) {
+SecondOrderSummary curve_to_geometry(TetMesh& mesh, const TrueGeometry& geometry, std::span<const VertexIndex> below,
+                                     const RunContext& context) {
   refuse_mid_nodes(mesh);
   SecondOrderSummary summary;
-  const curved::Bends bends = curved::find_bends(mesh, geometry);
+  curved::Bends bends = curved::find_bends(mesh, geometry);
   const curved::TetEdges edges = curved::add_straight_mid_nodes(mesh);
+  curved::add_edges_above(below, edges, bends);
   curved::bend_edges(mesh, edges, bends.edges, summary, context);
   prove(mesh, summary, context);
   return summary;
@@ -163,7 +170,7 @@ SecondOrderSummary make_second_order(TetMesh& mesh, const SurfaceMesh* surface, 
   const ThreadLimit limit(context.threads);
   if (!surface) return add_straight_edges(mesh, context);
   const KnownSurface known(*surface, feature_angle);
-  return curve_to_surface(mesh, detect_features(boundary_of_mesh(mesh), feature_angle).edges, known, feature_angle,
+  return curve_to_surface(mesh, detect_features(boundary_of_mesh(mesh), feature_angle).edges, known, feature_angle, {},
                           context);
 }
 

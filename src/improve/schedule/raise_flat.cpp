@@ -128,7 +128,11 @@ class FlatRaiser {
     const double reach = std::min(kReach * star_.mean_edge(from), around.empty() ? HUGE_VAL : allowed_at(home));
     star_.evaluate_star(from);
     const double had = lack_of(star_);
-    const auto allowed = [&](Vec3 to) { return distance(home, to) <= reach && star_.star_acceptable(to, positive_); };
+    const bool is_held = !around.empty() && limits_.input != nullptr;
+    const auto allowed = [&](Vec3 to) {
+      return distance(home, to) <= reach && star_.star_acceptable(to, positive_) &&
+             !(is_held && !limits_.input->is_within(to, limits_.from_input));
+    };
     descent_.descend(star_, best_around(home, reach, from, had, allowed), kStepsOfRaise, allowed);
     if (had - descent_.lack() < kLeastFallByRaise) return false;
     mesh_.points[v] = descent_.place();

@@ -23,6 +23,8 @@ struct RaiseLimits {
   const Leeway* leeway = nullptr;              ///< no farther than that either; null: whatever it is
   improve::FlatWalls* walls = nullptr;         ///< whose vertices stay; null: there are none
   const improve::InputForce* force = nullptr;  ///< elements of thin walls and wedges stay as they are; null: none are
+  const TriangleTree* input = nullptr;         ///< vertices of surfaces stay near these triangles; null: near none
+  double from_input = 0;                       ///< how near; input units
 };
 
 /// Moves corners of elements below beta .2 or 10 degrees, where those around lack less in sum then. Where sheets nearly

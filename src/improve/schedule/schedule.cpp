@@ -409,6 +409,7 @@ bool improve_mesh(TetMesh& mesh, const BoundaryInput* input, const ImproveOption
   if (options.level == ImproveOptions::Level::kOff || mesh.tets.empty()) return false;
   mesh.wide_cells.clear();  // edits know of tetrahedra alone
   mesh.wide_faces.clear();
+  mesh.face_layers.clear();
   const bool moves = options.move_boundary && options.level != ImproveOptions::Level::kPaper;
   const BoundaryInput* boundary = moves ? input : nullptr;
   std::vector<VertexIndex> frozen;

@@ -17,7 +17,7 @@ namespace octafront::layers {
 enum class Reason : std::uint8_t {
   kNone,       ///< all layers, as high as asked
   kDirection,  ///< nothing inside sees all triangles there: a sharp ridge or corner
-  kBare,       ///< the patch beside, which gets no layers, bends: they have nothing to end on
+  kBare,       ///< the patch beside, which gets no layers, bends or lies inside: they have nothing to end on
   kGap,        ///< another wall is near
   kShape,      ///< elements would be too distorted, or inside out
   kCrossing,   ///< layers would meet others, or a wall
@@ -36,14 +36,13 @@ double total_height(double growth, std::uint32_t levels);
 
 /// Columns over the vertices of a surface. Vertices that no layers grow from have count 0.
 struct Columns {
-  std::vector<std::uint8_t> is_wall;  ///< per triangle: whether layers grow from it
-  std::vector<Vec3> step;             ///< per vertex: the way for a height of 1, longer than 1 in corners
-  std::vector<double> first;          ///< per vertex: height of the first layer as asked
-  std::vector<double> part;           ///< per vertex: heights over those asked; at most 1
-  std::vector<std::uint32_t> count;   ///< per vertex: layers
-  std::vector<Reason> reason;         ///< per vertex
-  double growth = 1.2;                ///< each layer over the one below
-  std::uint32_t asked = 0;            ///< layers
+  std::vector<Vec3> step;            ///< per vertex: the way for a height of 1, longer than 1 in corners
+  std::vector<double> first;         ///< per vertex: height of the first layer as asked
+  std::vector<double> part;          ///< per vertex: heights over those asked; at most 1
+  std::vector<std::uint32_t> count;  ///< per vertex: layers
+  std::vector<Reason> reason;        ///< per vertex
+  double growth = 1.2;               ///< each layer over the one below
+  std::uint32_t asked = 0;           ///< layers
 
   double height_of(std::uint32_t levels) const { return total_height(growth, levels); }
   Vec3 place(const SurfaceMesh& wall, Node node) const;

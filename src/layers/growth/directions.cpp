@@ -1,6 +1,7 @@
 #include "layers/growth/directions.h"
 
 #include "base/core/parallel.h"
+#include "layers/growth/bare_patches.h"
 
 #include <algorithm>
 #include <span>
@@ -22,9 +23,9 @@ constexpr int kHalvings = 4;
 constexpr std::size_t kMostForTriples = 14;
 constexpr int kApproaches = 400;
 
-void add_distinct(std::vector<Vec3>& normals, Vec3 n) {
+void add_distinct(std::vector<Vec3>& normals, Vec3 n, double same = kSameNormal) {
   if (n == Vec3{}) return;
-  if (std::ranges::none_of(normals, [&](Vec3 m) { return dot(m, n) > kSameNormal; })) normals.push_back(n);
+  if (std::ranges::none_of(normals, [&](Vec3 m) { return dot(m, n) > same; })) normals.push_back(n);
 }
 
 double sight_of(std::span<const Vec3> normals, Vec3 d) {
@@ -67,7 +68,11 @@ Vec3 best_by_steps(std::span<const Vec3> normals) {
 class Corner {
  public:
   Corner(const Walls& walls, VertexIndex v) {
-    for (const std::uint32_t f : walls.faces[v]) add_distinct(walls.is_wall[f] ? normals_ : planes_, walls.inward[f]);
+    for (const std::uint32_t f : walls.faces[v])
+      if (walls.is_wall[f])
+        add_distinct(normals_, walls.inward[f]);
+      else
+        add_distinct(planes_, walls.inward[f], kSamePlane);
   }
 
   bool is_bound() const { return !planes_.empty(); }

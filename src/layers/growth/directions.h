@@ -17,6 +17,6 @@ struct Directions {
 /// it still sees all triangles nearly as well. Where a wall ends at flat patches without layers, it lies in their
 /// planes. Layers as thick as asked on flat faces need longer ways in corners: at most kMostStretch times.
 Directions choose_directions(const Walls& walls, int passes);
-inline constexpr double kMostStretch = 2;
+inline constexpr double kMostStretch = 1.8;
 
 }  // namespace octafront::layers

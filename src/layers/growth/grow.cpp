@@ -1,5 +1,6 @@
 #include "layers/growth/grow.h"
 
+#include "layers/growth/bare_patches.h"
 #include "layers/growth/directions.h"
 #include "layers/growth/heights.h"
 #include "layers/growth/soundness.h"
@@ -30,12 +31,10 @@ int sweeps_for(double over_size) {
 
 class Growth {
  public:
-  Growth(const SurfaceMesh& surface, std::vector<std::uint8_t> is_wall, const Asked& asked, const Stage& stage)
-      : walls_(surface, std::move(is_wall)), stage_(stage) {
-    const std::size_t n = surface.points.size();
+  Growth(RegionWall& wall, const Asked& asked, const Stage& stage) : wall_(wall), walls_(wall), stage_(stage) {
+    const std::size_t n = wall.surface.points.size();
     Directions directions = choose_directions(walls_, sweeps_for(asked.over_size));
-    columns_ = {walls_.is_wall,
-                std::move(directions.step),
+    columns_ = {std::move(directions.step),
                 asked.first,
                 std::vector<double>(n, 0),
                 std::vector<std::uint32_t>(n, 0),
@@ -45,17 +44,20 @@ class Growth {
     allowed_ = {std::vector<double>(n, 1), std::vector<Reason>(n, Reason::kNone)};
     cuts_.resize(n, 0);
     for (const VertexIndex v : walls_.wall_vertices)
-      if (directions.reason[v] != Reason::kNone) allowed_.limit(v, 0, directions.reason[v]);
+      if (walls_.held[v])
+        allowed_.limit(v, 0, Reason::kBare);
+      else if (directions.reason[v] != Reason::kNone)
+        allowed_.limit(v, 0, directions.reason[v]);
   }
 
   Columns run() && {
     limit_by_gaps(walls_, columns_, allowed_);
     settle_heights(walls_, allowed_, columns_);
+    make_room_on_bare(walls_, columns_, wall_);
     for (const double ahead : {kAhead, 1.0}) {
       do mend_shapes();
       while (cut(crossing_triangles(walls_, columns_, ahead, stage_.context()), Reason::kCrossing));
     }
-    stage_.count("rounds", rounds_);
     return std::move(columns_);
   }
 
@@ -99,7 +101,6 @@ class Growth {
       allowed_.limit(v, kept * height_part(v), why);
     }
     settle_heights(walls_, allowed_, columns_);
-    ++rounds_;
     return true;
   }
 
@@ -108,18 +109,18 @@ class Growth {
     return columns_.part[v] * columns_.height_of(columns_.count[v]) / columns_.height_of(columns_.asked);
   }
 
+  RegionWall& wall_;
   Walls walls_;
   const Stage& stage_;
   Columns columns_;
   Allowance allowed_;
   std::vector<int> cuts_;  ///< per vertex
-  int rounds_ = 0;
 };
 
 }  // namespace
 
-Columns grow(const SurfaceMesh& surface, std::vector<std::uint8_t> is_wall, const Asked& asked, const Stage& stage) {
-  return Growth(surface, std::move(is_wall), asked, stage).run();
+Columns grow(RegionWall& wall, const Asked& asked, const Stage& stage) {
+  return Growth(wall, asked, stage).run();
 }
 
 }  // namespace octafront::layers

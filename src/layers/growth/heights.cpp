@@ -14,10 +14,15 @@ namespace {
 constexpr double kOfGap = 0.4, kOfBareGap = 0.8;
 /// Rays start so many heights away from the wall: rounding must not let them hit their own triangles.
 constexpr double kStartOfRay = 0.01;
+/// Sine up to which a ray runs along a triangle without layers: one that its layers end on. So often it goes on.
+constexpr double kAlong = 1e-3;
+constexpr int kMostAlong = 16;
 /// Heights of neighbours.
 constexpr double kMostRatio = 2, kMostSlope = 1;
 /// Layers are made thinner down to this part before some are left out.
 constexpr double kThinnest = 0.5;
+/// From all layers to none over so many edges.
+constexpr std::uint32_t kStepsToNone = 2;
 
 double asked_height(const Columns& columns, VertexIndex v) {
   return columns.first[v] * columns.height_of(columns.asked);
@@ -59,7 +64,7 @@ std::uint32_t layers_within(const Columns& columns, double part) {
 }
 
 void drop_layers(const Walls& walls, const Allowance& allowed, Columns& columns) {
-  const std::uint32_t most_step = std::max(1u, (columns.asked + 1) / 2);
+  const std::uint32_t most_step = std::max(1u, (columns.asked + 1) / kStepsToNone);
   for (const VertexIndex v : walls.wall_vertices) columns.count[v] = layers_within(columns, allowed.part[v]);
   for (bool changes = true; changes;) {
     changes = false;
@@ -73,17 +78,38 @@ void drop_layers(const Walls& walls, const Allowance& allowed, Columns& columns)
 
 }  // namespace
 
+namespace {
+
+struct Opposite {
+  std::uint32_t triangle;
+  double part;  ///< of the way
+};
+
+/// What lies in the way of a column.
+Opposite opposite_of(const Walls& walls, const TriangleTree& tree, Vec3 from, Vec3 way) {
+  double start = kStartOfRay;
+  for (int i = 0; i < kMostAlong; ++i) {
+    const TriangleTree::RayHit hit = tree.first_hit(from + way * start, way, 1 / std::min(kOfGap, kOfBareGap));
+    if (hit.triangle == kNone) break;
+    const bool runs_along =
+        !walls.is_wall[hit.triangle] && std::abs(dot(walls.inward[hit.triangle], way)) <= kAlong * length(way);
+    if (!runs_along) return {hit.triangle, start + hit.t};
+    start += hit.t + kStartOfRay;
+  }
+  return {kNone, 0};
+}
+
+}  // namespace
+
 void limit_by_gaps(const Walls& walls, const Columns& columns, Allowance& allowed) {
   const TriangleTree tree(walls.surface);
   parallel_for(walls.wall_vertices.size(), [&](std::size_t i) {
     const VertexIndex v = walls.wall_vertices[i];
-    const double height = asked_height(columns, v);
-    const Vec3 way = columns.step[v] * height;
+    const Vec3 way = columns.step[v] * asked_height(columns, v);
     if (way == Vec3{}) return;
-    const Vec3 from = walls.surface.points[v] + way * kStartOfRay;
-    const TriangleTree::RayHit hit = tree.first_hit(from, way, 1 / std::min(kOfGap, kOfBareGap));
-    if (hit.triangle == kNone) return;
-    allowed.limit(v, (walls.is_wall[hit.triangle] ? kOfGap : kOfBareGap) * (hit.t + kStartOfRay), Reason::kGap);
+    const Opposite opposite = opposite_of(walls, tree, walls.surface.points[v], way);
+    if (opposite.triangle == kNone) return;
+    allowed.limit(v, (walls.is_wall[opposite.triangle] ? kOfGap : kOfBareGap) * opposite.part, Reason::kGap);
   });
 }
 

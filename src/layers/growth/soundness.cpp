@@ -15,6 +15,8 @@ namespace {
 constexpr double kSineOf60 = 0.86602540378443865;
 /// A prism may be so much more distorted than its triangle of the wall.
 constexpr double kLeastJacobian = 0.1;
+/// A prism's middle line leans away from its triangle's normal by at most 70 degrees: what finite volumes bear.
+constexpr double kLeastUpright = 0.342;
 /// The top of a triangle's layers faces at most 84 degrees away from the triangle.
 constexpr double kLeastFacing = 0.1;
 /// Triangles beside layers keep this part of their area.
@@ -47,8 +49,8 @@ class Soundness {
   bool is_sound(std::uint32_t f) const {
     const Triangle& t = wall_.triangles[f];
     if (columns_.count[t[0]] + columns_.count[t[1]] + columns_.count[t[2]] == 0) return true;
-    return walls_.is_wall[f] ? faces_alike(f, kLeastFacing, 0) && has_sound_layers(t)
-                             : faces_alike(f, kLeastFacing, kLeastBareArea);
+    if (walls_.is_wall[f]) return faces_alike(f, kLeastFacing, 0) && has_sound_layers(t);
+    return walls_.is_outside || faces_alike(f, kLeastFacing, kLeastBareArea);
   }
 
  private:
@@ -70,9 +72,19 @@ class Soundness {
         const auto& [a, b, c, d] = made.tets[i];
         if (orient3d(place(a), place(b), place(c), place(d)) <= 0) return false;
       }
-      if (made.count == 3 && !(least_scaled_jacobian(wall_, columns_, t, k) >= least)) return false;
+      if (made.count < 3) continue;
+      if (!is_upright(t, k) || !(least_scaled_jacobian(wall_, columns_, t, k) >= least)) return false;
     }
     return true;
+  }
+
+  bool is_upright(const Triangle& t, std::uint32_t layer) const {
+    const auto [a, b, c] = t;
+    Vec3 way;
+    for (const VertexIndex v : t) way += place({v, layer + 1}) - place({v, layer});
+    // The normal points away from the layers.
+    const Vec3 normal = double_area_normal(place({a, layer}), place({c, layer}), place({b, layer}));
+    return dot(way, normal) >= kLeastUpright * length(way) * length(normal);
   }
 
   const Walls& walls_;
@@ -108,29 +120,62 @@ std::vector<std::uint32_t> unsound_triangles(const Walls& walls, const Columns& 
                                          });
 }
 
+namespace {
+
+/// Walls with layers, their tops, what has none, and outside the sides of layers, which nothing else lies along.
+class Skins {
+ public:
+  Skins(const Walls& walls, const Columns& columns, double ahead)
+      : walls_(walls), columns_(columns), n_(static_cast<VertexIndex>(walls.surface.points.size())) {
+    points_ = walls.surface.points;
+    for (VertexIndex v = 0; v < n_; ++v)
+      points_.push_back(points_[v] + (columns.top(walls.surface, v) - points_[v]) * ahead);
+    for (std::uint32_t f = 0; f < walls.surface.triangles.size(); ++f) add(f);
+    if (walls.is_outside)
+      for (const Rim& rim : walls.rims) add_side(rim);
+  }
+
+  /// Triangles that have part in a conflict; ascending, each once.
+  std::vector<std::uint32_t> conflicts(const RunContext& context) const {
+    std::vector<std::uint32_t> found;
+    for (const auto& pair : self_intersections(points_, triangles_, std::numeric_limits<std::size_t>::max(), context))
+      for (const std::uint32_t i : pair) found.push_back(of_[i]);
+    std::ranges::sort(found);
+    found.erase(std::unique(found.begin(), found.end()), found.end());
+    return found;
+  }
+
+ private:
+  bool is_moved(VertexIndex v) const { return columns_.count[v] > 0; }
+  VertexIndex top(VertexIndex v) const { return is_moved(v) ? n_ + v : v; }
+  void put(const Triangle& t, std::uint32_t of) { triangles_.push_back(t), of_.push_back(of); }
+
+  void add(std::uint32_t f) {
+    const Triangle& t = walls_.surface.triangles[f];
+    const bool moves = is_moved(t[0]) || is_moved(t[1]) || is_moved(t[2]),
+               stays = walls_.is_outside && !walls_.is_wall[f];
+    if (stays || (moves && walls_.is_wall[f])) put(t, f);
+    if (!stays) put({top(t[0]), top(t[1]), top(t[2])}, f);
+  }
+
+  void add_side(const Rim& rim) {
+    if (is_moved(rim.b)) put({rim.a, rim.b, top(rim.b)}, rim.wall);
+    if (is_moved(rim.a)) put({rim.a, top(rim.b), top(rim.a)}, rim.wall);
+  }
+
+  const Walls& walls_;
+  const Columns& columns_;
+  VertexIndex n_;
+  std::vector<Vec3> points_;
+  std::vector<Triangle> triangles_;
+  std::vector<std::uint32_t> of_;
+};
+
+}  // namespace
+
 std::vector<std::uint32_t> crossing_triangles(const Walls& walls, const Columns& columns, double ahead,
                                               const RunContext& context) {
-  const SurfaceMesh& wall = walls.surface;
-  const auto n = static_cast<VertexIndex>(wall.points.size());
-  std::vector<Vec3> points = wall.points;
-  points.resize(2 * std::size_t{n});
-  for (VertexIndex v = 0; v < n; ++v) points[n + v] = wall.points[v] + (columns.top(wall, v) - wall.points[v]) * ahead;
-  const auto is_moved = [&](VertexIndex v) { return columns.count[v] > 0; };
-  std::vector<Triangle> triangles;
-  std::vector<std::uint32_t> of;
-  for (std::uint32_t f = 0; f < wall.triangles.size(); ++f) {
-    Triangle t = wall.triangles[f];
-    const bool moves = std::ranges::any_of(t, is_moved);
-    if (moves && walls.is_wall[f]) triangles.push_back(t), of.push_back(f);
-    for (VertexIndex& v : t) v = is_moved(v) ? n + v : v;
-    triangles.push_back(t), of.push_back(f);
-  }
-  std::vector<std::uint32_t> found;
-  for (const auto& pair : self_intersections(points, triangles, std::numeric_limits<std::size_t>::max(), context))
-    for (const std::uint32_t i : pair) found.push_back(of[i]);
-  std::ranges::sort(found);
-  found.erase(std::unique(found.begin(), found.end()), found.end());
-  return found;
+  return Skins(walls, columns, ahead).conflicts(context);
 }
 
 }  // namespace octafront::layers

@@ -3,6 +3,7 @@
 #include <octafront/error.h>
 
 #include "base/geometry/measures.h"
+#include "base/mesh/complex.h"
 
 #include <algorithm>
 #include <sstream>
@@ -14,33 +15,41 @@ namespace octafront::layers {
 
 namespace {
 
-/// The names themselves may hold commas: a patch that is called like the whole list comes first.
-std::vector<std::string> names_in(const SurfaceMesh& surface, const std::string& list) {
-  if (std::ranges::find(surface.patch_names, list) != surface.patch_names.end()) return {list};
-  std::vector<std::string> names;
+using Names = std::vector<std::string>;
+
+/// The names themselves may hold commas: one that is called like the whole list comes first.
+Names names_in(const Names& known, const std::string& list) {
+  if (std::ranges::find(known, list) != known.end()) return {list};
+  Names names;
   std::istringstream in(list);
   for (std::string name; std::getline(in, name, ',');) names.push_back(name);
   return names;
 }
 
-std::string patches_in_words(const SurfaceMesh& surface) {
+std::string in_words(const Names& known, const char* what) {
   std::string words;
-  for (const std::string& name : surface.patch_names)
+  for (const std::string& name : known)
     if (!name.empty()) words += fmt::format("{}\"{}\"", words.empty() ? "" : ", ", name);
-  return words.empty() ? "no patch of this surface has a name" : "there are " + words;
+  return words.empty() ? fmt::format("no {} of this surface has a name", what) : "there are " + words;
+}
+
+/// Per known name whether the list has it. `option` and `what`: for what is said of others.
+std::vector<std::uint8_t> chosen(const Names& known, const std::string& list, const char* option, const char* what) {
+  std::vector<std::uint8_t> is_chosen(known.size(), 0);
+  for (const std::string& name : names_in(known, list)) {
+    const auto found = std::ranges::find(known, name);
+    if (found == known.end())
+      throw OptionError(fmt::format("`{}`: there is no {} \"{}\": {}", option, what, name, in_words(known, what)));
+    is_chosen[static_cast<std::size_t>(found - known.begin())] = 1;
+  }
+  return is_chosen;
 }
 
 }  // namespace
 
 std::vector<std::uint8_t> walls_named(const SurfaceMesh& surface, const std::string& names) {
   if (names.empty()) return std::vector<std::uint8_t>(surface.triangles.size(), 1);
-  std::vector<std::uint8_t> is_chosen(surface.patch_names.size(), 0);
-  for (const std::string& name : names_in(surface, names)) {
-    const auto found = std::ranges::find(surface.patch_names, name);
-    if (found == surface.patch_names.end())
-      throw OptionError(fmt::format("`on`: there is no patch \"{}\": {}", name, patches_in_words(surface)));
-    is_chosen[static_cast<std::size_t>(found - surface.patch_names.begin())] = 1;
-  }
+  const std::vector<std::uint8_t> is_chosen = chosen(surface.patch_names, names, "on", "patch");
   std::vector<std::uint8_t> is_wall;
   for (std::size_t f = 0; f < surface.triangles.size(); ++f) {
     const std::uint32_t patch = surface.patch_of(f);
@@ -49,19 +58,33 @@ std::vector<std::uint8_t> walls_named(const SurfaceMesh& surface, const std::str
   return is_wall;
 }
 
-Walls::Walls(const SurfaceMesh& on, std::vector<std::uint8_t> chosen)
-    : surface(on),
-      is_wall(std::move(chosen)),
-      faces(on.points.size(),
+std::vector<std::uint32_t> regions_named(const SurfaceMesh& surface, const std::string& names) {
+  Names known;
+  for (std::uint32_t r = 0; r < region_count(surface); ++r) known.push_back(region_name(surface, r));
+  const std::vector<std::uint8_t> is_chosen =
+      names.empty() ? std::vector<std::uint8_t>(known.size(), 1) : chosen(known, names, "in", "region");
+  std::vector<std::uint32_t> regions;
+  for (std::uint32_t r = 0; r < known.size(); ++r)
+    if (is_chosen[r]) regions.push_back(r);
+  return regions;
+}
+
+Walls::Walls(const RegionWall& wall)
+    : surface(wall.surface),
+      is_wall(wall.is_wall),
+      held(wall.held),
+      faces(surface.points.size(),
             [&](const auto& add) {
-              for (std::uint32_t f = 0; f < on.triangles.size(); ++f)
-                for (const VertexIndex v : on.triangles[f]) add(v, f);
+              for (std::uint32_t f = 0; f < surface.triangles.size(); ++f)
+                for (const VertexIndex v : surface.triangles[f]) add(v, f);
             }),
-      grows(on.points.size(), 0) {
-  inward.reserve(on.triangles.size());
-  for (std::uint32_t f = 0; f < on.triangles.size(); ++f) {
-    const auto [a, b, c] = on.triangles[f];
-    inward.push_back(-unit_normal(on.points[a], on.points[b], on.points[c]));
+      grows(surface.points.size(), 0),
+      rims(rims_of(wall)),
+      is_outside(wall.region == kNone) {
+  inward.reserve(surface.triangles.size());
+  for (std::uint32_t f = 0; f < surface.triangles.size(); ++f) {
+    const auto [a, b, c] = surface.triangles[f];
+    inward.push_back(-unit_normal(surface.points[a], surface.points[b], surface.points[c]));
     if (!is_wall[f]) continue;
     wall_faces.push_back(f);
     grows[a] = grows[b] = grows[c] = 1;

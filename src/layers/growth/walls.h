@@ -3,6 +3,7 @@
 #include <octafront/surface_mesh.h>
 
 #include "base/core/groups.h"
+#include "layers/columns/regions.h"
 
 #include <cstdint>
 #include <string>
@@ -14,17 +15,25 @@ namespace octafront::layers {
 /// OptionError for names that no patch has.
 std::vector<std::uint8_t> walls_named(const SurfaceMesh& surface, const std::string& names);
 
-/// A surface of which some triangles are walls, and what meets at its vertices.
+/// The regions that have one of these names, separated by commas; all where `names` is empty. Throws OptionError for
+/// names that no region has.
+std::vector<std::uint32_t> regions_named(const SurfaceMesh& surface, const std::string& names);
+
+/// What bounds a region, and what meets at its vertices.
 struct Walls {
   const SurfaceMesh& surface;
-  std::vector<std::uint8_t> is_wall;       ///< per triangle
-  Groups<> faces;                          ///< per vertex
-  std::vector<Vec3> inward;                ///< per triangle: unit normal that points into the body
-  std::vector<std::uint8_t> grows;         ///< per vertex: a wall ends or lies there
-  std::vector<std::uint32_t> wall_faces;   ///< ascending
-  std::vector<VertexIndex> wall_vertices;  ///< ascending
+  const std::vector<std::uint8_t>& is_wall;  ///< per triangle
+  const std::vector<std::uint8_t>& held;     ///< per vertex
+  Groups<> faces;                            ///< per vertex
+  std::vector<Vec3> inward;                  ///< per triangle: unit normal that points into the body
+  std::vector<std::uint8_t> grows;           ///< per vertex: a wall ends or lies there
+  std::vector<std::uint32_t> wall_faces;     ///< ascending
+  std::vector<VertexIndex> wall_vertices;    ///< ascending
 
-  Walls(const SurfaceMesh& surface, std::vector<std::uint8_t> is_wall);
+  std::vector<Rim> rims;  ///< where walls end
+  bool is_outside;        ///< triangles without layers stay where they are
+
+  explicit Walls(const RegionWall& wall);
 
   /// Calls visit(w) for the vertices that share an edge of a wall with v, each twice inside.
   template <class Visit>

@@ -137,6 +137,13 @@ std::vector<Row<Options>> layer_rows() {
           of("on", "Names of the patches that are walls, separated by commas; without them all are"),
           [](auto& o) -> auto& { return o.layers.on; }),
       row(
+          of("layers_in", "Names of the regions that they grow in, separated by commas; without them all do", "in"),
+          [](auto& o) -> auto& { return o.layers.in; }),
+      row(
+          of("layers_outside", "Layers grow on the outside, as a shell around the mesh and a region of its own",
+             "outside"),
+          [](auto& o) -> auto& { return o.layers.outside; }),
+      row(
           of("layers_as_tets", "Layers are tetrahedra also in formats that have wedges", "as_tets"),
           [](auto& o) -> auto& { return o.layers.as_tets; }),
       row(

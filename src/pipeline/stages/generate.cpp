@@ -43,17 +43,18 @@ Result generate_once(const Domain& domain, const Options& asked, const RunContex
   const SizeField sizes = choose_sizes(input, domain, asked, run);
   Filled filled = fill_to_target(input, sizes, run);
   improve_in_shape(input, filled, run);
-  add_layers(filled, run);
+  if (!options.layers.outside) add_layers(input, filled, run);
   note_missed_elements(filled.mesh, run);
   check_shape(input, filled, run);
-  if (!filled.layers) place_on_geometry(input, filled, run);
+  place_on_geometry(input, filled, run);
+  if (options.layers.outside) add_layers(input, filled, run);
   raise_order(input, filled, run);
   name_patches(input, filled);
   name_parts(input, filled, run);
   add_patch_curves(filled.mesh);
   check_result(filled.mesh, &filled.boundary.surface, run);
   describe(filled.mesh, run.report);
-  describe_true_volumes(filled.mesh, domain, run.report);
+  describe_true_volumes(filled, domain, run.report);
   if (!filled.layers) describe_sizes(filled.mesh, filled.boundary.sizes, run.report);
   return {std::move(filled.mesh), filled.boundary.sizes, run.close()};
 }

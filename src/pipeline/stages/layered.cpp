@@ -3,6 +3,8 @@
 #include <octafront/error.h>
 
 #include "base/geometry/measures.h"
+#include "base/mesh/complex.h"
+#include "base/mesh/features.h"
 #include "layers/columns/assemble.h"
 #include "layers/growth/grow.h"
 #include "layers/growth/soundness.h"
@@ -68,15 +70,15 @@ double growth_of(const LayersOptions& o) {
                                          : kDefaultGrowth;
 }
 
-layers::Asked asked_layers(const LayersOptions& o, const Remeshed& boundary) {
+layers::Asked asked_layers(const LayersOptions& o, const SizeField& at, const std::vector<Vec3>& points) {
   layers::Asked asked;
   asked.count = static_cast<std::uint32_t>(o.count);
   asked.growth = growth_of(o);
   const double all = layers::total_height(asked.growth, asked.count);
   const auto first = absolute_first(o);
   double heights = 0, sizes = 0;
-  for (const Vec3 p : boundary.surface.points) {
-    const double h = boundary.sizes.at(p);
+  for (const Vec3 p : points) {
+    const double h = at.at(p);
     asked.first.push_back(o.first_part ? *o.first_part * h : first ? *first : *o.total / all);
     heights += asked.first.back() * all;
     sizes += h;
@@ -130,18 +132,23 @@ LayerSummary finished(WallCount count) {
   return s;
 }
 
-std::vector<LayerSummary> summarize_layers(const SurfaceMesh& wall, const layers::Columns& columns) {
-  std::map<std::uint32_t, WallCount> of_patch;
-  for (std::size_t f = 0; f < wall.triangles.size(); ++f) {
-    if (!columns.is_wall[f]) continue;
-    WallCount& count = of_patch[wall.patch_of(f)];
-    if (count.summary.faces == 0) count.summary.min_scaled_jacobian = 2, count.summary.asked_count = columns.asked;
-    add_face(wall, columns, wall.triangles[f], count);
-  }
+/// By region and patch.
+std::vector<LayerSummary> summarize_layers(const SurfaceMesh& whole,
+                                           const std::vector<layers::LayeredRegion>& regions) {
   std::vector<LayerSummary> all;
-  for (auto& [patch, count] : of_patch) {
-    if (patch < wall.patch_names.size()) count.summary.patch = wall.patch_names[patch];
-    all.push_back(finished(std::move(count)));
+  for (const auto& [wall, columns] : regions) {
+    std::map<std::uint32_t, WallCount> of_patch;
+    for (std::size_t f = 0; f < wall.is_wall.size(); ++f) {
+      if (!wall.is_wall[f]) continue;
+      WallCount& count = of_patch[wall.surface.patch_of(f)];
+      if (count.summary.faces == 0) count.summary.min_scaled_jacobian = 2, count.summary.asked_count = columns.asked;
+      add_face(wall.surface, columns, wall.surface.triangles[f], count);
+    }
+    for (auto& [patch, count] : of_patch) {
+      if (patch < whole.patch_names.size()) count.summary.patch = whole.patch_names[patch];
+      if (regions.size() > 1) count.summary.region = region_name(whole, wall.region);
+      all.push_back(finished(std::move(count)));
+    }
   }
   return all;
 }
@@ -153,10 +160,44 @@ void require_coverage(const std::vector<LayerSummary>& walls, double percent) {
     for (const auto& [reason, part] : wall.stopped)
       why += fmt::format("{}{} {:.2g} %", why.empty() ? "" : ", ", reason, 100 * part);
     throw MeshingError(fmt::format(
-        "{:.3g} % of the faces of wall \"{}\" have all {:.0f} layers as high as asked, and `require_coverage` is {:g}: "
+        "{:.3g} % of the faces of wall \"{}\"{} have all {:.0f} layers as high as asked, and `require_coverage` is "
+        "{:g}: "
         "stopped by {}. Ask for thinner layers, or smaller elements",
-        100 * wall.full, wall.patch, wall.asked_count, percent, why));
+        100 * wall.full, wall.patch, wall.region.empty() ? "" : " in " + wall.region, wall.asked_count, percent, why));
   }
+}
+
+std::vector<std::uint32_t> layered_regions(const SurfaceMesh& whole, const LayersOptions& asked) {
+  return asked.outside ? std::vector<std::uint32_t>{kNone} : layers::regions_named(whole, asked.in);
+}
+
+/// A wall with layers outside is the mesh's own boundary.
+GrownLayers grow_from(SurfaceMesh whole, const SizeField& sizes, Run& run) {
+  return run.stage("boundary layers", [&](const Stage& stage) {
+    const LayersOptions& asked = run.options.layers;
+    GrownLayers grown{std::move(whole), {}, {}};
+    const std::vector<std::uint8_t> is_wall = layers::walls_named(grown.whole, asked.on);
+    for (layers::RegionWall& wall :
+         layers::walls_of_regions(grown.whole, is_wall, layered_regions(grown.whole, asked))) {
+      if (std::ranges::find(wall.is_wall, 1) == wall.is_wall.end()) continue;
+      layers::Columns columns = layers::grow(wall, asked_layers(asked, sizes, wall.surface.points), stage);
+      for (VertexIndex v = 0; v < wall.vertex.size(); ++v) grown.whole.points[wall.vertex[v]] = wall.surface.points[v];
+      grown.regions.push_back({std::move(wall), std::move(columns)});
+    }
+    if (grown.regions.empty())
+      throw OptionError(fmt::format("no wall of \"{}\" bounds a region that layers are asked for in", asked.on));
+    run.report.layers = summarize_layers(grown.whole, grown.regions);
+    if (asked.require_coverage) require_coverage(run.report.layers, *asked.require_coverage);
+    grown.opened = layers::without_layers(grown.whole, grown.regions);
+    return grown;
+  });
+}
+
+/// The triangles of the input that the triangles of a new surface are nearest to.
+void take_sources(const Prepared& input, Remeshed& boundary) {
+  std::vector<std::uint32_t>& source = boundary.surface.source;
+  source.clear();
+  for (const std::uint32_t t : boundary.source) source.push_back(input.surface.mesh().source_of(t));
 }
 
 }  // namespace
@@ -165,8 +206,8 @@ void check_layer_options(const Options& options) {
   const LayersOptions& o = options.layers;
   const bool has_flow = o.yplus || o.reynolds || o.reference_length;
   if (o.count == 0) {
-    require_layers(!o.first && !o.first_part && !o.growth && !o.total && !has_flow && o.on.empty() &&
-                       !o.require_coverage && !o.as_tets,
+    require_layers(!o.first && !o.first_part && !o.growth && !o.total && !has_flow && o.on.empty() && o.in.empty() &&
+                       !o.outside && !o.require_coverage && !o.as_tets,
                    "boundary layers are described, but none are asked for: give `count`");
     return;
   }
@@ -191,39 +232,54 @@ void check_layer_options(const Options& options) {
     require_layers(ratio >= o.count && ratio <= layers::total_height(kMostGrowth, static_cast<std::uint32_t>(o.count)),
                    "no `growth` in [1, 3] leads from the first height to `total` with so many layers");
   }
+  require_layers(!o.outside || o.in.empty(), "`outside` layers lie in no region: leave out `in`");
   require_layers(!o.require_coverage || (*o.require_coverage >= 0 && *o.require_coverage <= 100),
                  "`require_coverage` is in percent");
   require_layers(
       !traits_of(options.method).makes_own_boundary(),
       "the octree method makes a boundary of its own: boundary layers need method octree-aft, aft or recover");
-  require_layers(options.order == 1, "boundary layers are of linear elements so far: choose `order` 1");
 }
 
-std::optional<GrownLayers> grow_layers(Remeshed& boundary, Run& run) {
+std::optional<GrownLayers> grow_layers(const Prepared& input, Remeshed& boundary, Run& run) {
   const LayersOptions& asked = run.options.layers;
-  if (asked.count == 0) return {};
-  if (!boundary.surface.sides.empty())
-    throw OptionError(
-        "boundary layers grow in one region so far, and this input has several regions or sheets. For a flow around a "
-        "body leave it empty: its inside is no region with `nested` cavity, or a `void` at a point in it");
-  return run.stage("boundary layers", [&](const Stage& stage) {
-    GrownLayers grown{boundary.surface, {}};
-    grown.columns =
-        layers::grow(grown.wall, layers::walls_named(grown.wall, asked.on), asked_layers(asked, boundary), stage);
-    run.report.layers = summarize_layers(grown.wall, grown.columns);
-    if (asked.require_coverage) require_coverage(run.report.layers, *asked.require_coverage);
-    boundary.surface = layers::top_of(grown.wall, grown.columns);
-    return grown;
-  });
+  if (asked.count == 0 || asked.outside) return {};
+  take_sources(input, boundary);
+  GrownLayers grown = grow_from(std::move(boundary.surface), boundary.sizes, run);
+  boundary.surface = grown.opened.surface;
+  boundary.source.clear();
+  return grown;
 }
 
-void add_layers(Filled& filled, Run& run) {
-  if (!filled.layers) return;
+void add_layers(const Prepared& input, Filled& filled, Run& run) {
+  const LayersOptions& asked = run.options.layers;
+  if (asked.count == 0) return;
   describe_sizes(filled.mesh, filled.boundary.sizes, run.report);
-  auto [mesh, boundary] = layers::with_layers(filled.layers->wall, filled.layers->columns, std::move(filled.mesh));
-  filled.mesh = std::move(mesh);
-  if (run.options.layers.as_tets) filled.mesh.wide_cells.clear(), filled.mesh.wide_faces.clear();
-  filled.boundary.surface = std::move(boundary);
+  if (asked.outside) {
+    take_sources(input, filled.boundary);
+    filled.layers = grow_from(std::move(filled.boundary.surface), filled.boundary.sizes, run);
+  }
+  GrownLayers& grown = *filled.layers;
+  layers::Layered made = layers::with_layers(grown.whole, grown.regions, grown.opened, std::move(filled.mesh));
+  filled.mesh = std::move(made.mesh);
+  grown.ground = std::move(made.ground), grown.below = std::move(made.below);
+  filled.boundary.features = detect_features(grown.ground, run.options.surface.angle_of_features());
+  if (asked.as_tets) filled.mesh.wide_cells.clear(), filled.mesh.wide_faces.clear();
+  filled.boundary.surface = std::move(made.boundary);
+}
+
+std::vector<double> layers_volumes(const Filled& filled, const std::vector<double>& volumes) {
+  std::vector<double> of_region(volumes.size(), 0);
+  if (!filled.layers) return of_region;
+  std::size_t layers = region_count(filled.layers->whole);
+  for (const layers::LayeredRegion& grown : filled.layers->regions) {
+    if (layers < volumes.size() && !grown.is_outside()) of_region[grown.wall.region] = volumes[layers];
+    ++layers;
+  }
+  return of_region;
+}
+
+std::span<const VertexIndex> vertices_below(const Filled& filled) {
+  return filled.layers ? std::span<const VertexIndex>(filled.layers->below) : std::span<const VertexIndex>();
 }
 
 }  // namespace octafront

@@ -172,13 +172,13 @@ void ease_boundary(const improve::BoundaryInput& on, Filled& filled, const Optio
                 static_cast<double>(slide_interfaces(mesh, boundary.surface, boundary.features, on.surface, stage)));
   if (const double limit = scale_of_detail(on.surface, options, 1) * kRaised; limit > 0) {
     improve::FlatWalls walls(on.surface, on.tree, on.features);
-    RaiseLimits limits{limit, nullptr, &walls, nullptr};
+    RaiseLimits limits{limit, nullptr, &walls, nullptr, nullptr, limit / kRaised};
     const Leeway leeway(on.surface, on.tree, on.bound);
     std::optional<improve::InputForce> force;
     // Between walls of a complex, as near to each other as one likes, there is no other way out.
     if (!is_complex(on.surface)) {
       force.emplace(on);
-      limits.leeway = &leeway, limits.force = &*force;
+      limits.leeway = &leeway, limits.force = &*force, limits.input = &on.tree;
     }
     const RaisedFlat raised = raise_flat(mesh, boundary.surface, limits, stage);
     stage.count("corners of flat elements moved", static_cast<double>(raised.vertices));
@@ -371,7 +371,7 @@ Filled fill(const Prepared& input, const SizeField& sizes, Run& run) {
 
 Filled fill_surface(const Prepared& input, Remeshed boundary, Run& run) {
   const MethodTraits& method = traits_of(run.options.method);
-  std::optional<GrownLayers> layers = grow_layers(boundary, run);
+  std::optional<GrownLayers> layers = grow_layers(input, boundary, run);
   TetMesh mesh = run.stage(method.stage, [&](const Stage& stage) {
     TetMesh filled = method.fill(boundary, run.options.volume, stage);
     stage.count("tets", static_cast<double>(filled.tets.size()));
@@ -407,11 +407,13 @@ void raise_order(const Prepared& input, Filled& filled, Run& run) {
   if (run.options.order < 2) return;
   run.stage("second order", [&](const Stage& stage) {
     auto& [mesh, boundary, grown] = filled;
-    run.report.second_order = keeps_surface(run.options) ? add_straight_edges(mesh, stage.context())
-                              : input.geometry
-                                  ? curve_to_geometry(mesh, *input.geometry, stage.context())
-                                  : curve_to_surface(mesh, boundary.features.edges, input.surface,
-                                                     run.options.surface.angle_of_features(), stage.context());
+    const std::span<const VertexIndex> below = vertices_below(filled);
+    run.report.second_order = on_ground(filled, [&] {
+      if (keeps_surface(run.options)) return add_straight_edges(mesh, stage.context());
+      if (input.geometry) return curve_to_geometry(mesh, *input.geometry, below, stage.context());
+      return curve_to_surface(mesh, boundary.features.edges, input.surface, run.options.surface.angle_of_features(),
+                              below, stage.context());
+    });
     std::copy_n(mesh.points.begin(), boundary.surface.points.size(), boundary.surface.points.begin());
     count_edges(run.report.second_order, stage);
   });

@@ -22,6 +22,7 @@
 
 #include <optional>
 #include <span>
+#include <utility>
 
 namespace octafront {
 
@@ -50,6 +51,23 @@ struct Filled {
   Remeshed boundary;
   std::optional<GrownLayers> layers = {};
 };
+
+/// Does something to the mesh as if its boundary were what follows the input: not the tops of layers.
+template <class Work>
+auto on_ground(Filled& filled, const Work& work) {
+  if (!filled.layers) return work();
+  TetMesh& mesh = filled.mesh;
+  TetMesh faces;
+  faces.boundary = filled.layers->ground.triangles, faces.patch = filled.layers->ground.patch;
+  const auto swap_faces = [&] {
+    std::swap(mesh.boundary, faces.boundary), std::swap(mesh.patch, faces.patch);
+    std::swap(mesh.interfaces, faces.interfaces), std::swap(mesh.interface_patch, faces.interface_patch);
+  };
+  swap_faces();
+  auto made = work();
+  swap_faces();
+  return made;
+}
 
 /// Repairs the input, refuses what the method cannot mesh (InputError), takes off folds that the tolerance lets go
 /// where the surface is made anew, finds the features. The bounds of a mended one hold where the sizes are automatic

@@ -48,6 +48,7 @@ void take_patches_of(const TrueGeometry& geometry, Filled& filled) {
   renumber(mesh.patch, mesh.boundary.size(), number);
   renumber(mesh.interface_patch, mesh.interfaces.size(), number);
   renumber(boundary.surface.patch, boundary.surface.triangles.size(), number);
+  if (grown) renumber(grown->ground.patch, grown->ground.triangles.size(), number);
   mesh.patch_names = boundary.surface.patch_names = std::move(names);
 }
 
@@ -147,9 +148,10 @@ void place_on_geometry(const Prepared& input, Filled& filled, Run& run) {
   if (keeps_surface(run.options)) return;
   run.stage("true geometry", [&](const Stage& stage) {
     auto& [mesh, boundary, grown] = filled;
-    const SecondOrderSummary made = move_to_geometry(mesh, *input.geometry, stage.context());
+    const SecondOrderSummary made = on_ground(
+        filled, [&] { return move_to_geometry(mesh, *input.geometry, vertices_below(filled), stage.context()); });
     std::copy_n(mesh.points.begin(), boundary.surface.points.size(), boundary.surface.points.begin());
-    if (made.moved > 0) relieve_mesh(mesh, run.options.improve, stage);
+    if (made.moved > 0 && !grown) relieve_mesh(mesh, run.options.improve, stage);
     stage.count("vertices moved", static_cast<double>(made.moved));
     stage.count("vertices held", static_cast<double>(made.held));
     if (made.held > 0)
@@ -164,6 +166,7 @@ void name_parts(const Prepared& input, Filled& filled, Run& run) {
   name_parts_of(*input.geometry, mesh.points, mesh.boundary, mesh.patch);
   name_parts_of(*input.geometry, mesh.points, mesh.interfaces, mesh.interface_patch);
   name_parts_of(*input.geometry, mesh.points, boundary.surface.triangles, boundary.surface.patch);
+  if (grown) name_parts_of(*input.geometry, mesh.points, grown->ground.triangles, grown->ground.patch);
   std::vector<std::string> names = input.geometry->part_names();
   if (std::string missing = parts_without_faces(names, mesh); !missing.empty())
     run.report.stages.back().notes.push_back(std::move(missing));
@@ -176,15 +179,17 @@ void name_parts(const Prepared& input, Filled& filled, Run& run) {
   }
 }
 
-void describe_true_volumes(const TetMesh& mesh, const Domain& domain, Report& report) {
+void describe_true_volumes(const Filled& filled, const Domain& domain, Report& report) {
   if (domain.true_volumes.empty()) return;
-  const std::vector<double> made = curved_volumes(mesh);
+  const std::vector<double> made = curved_volumes(filled.mesh);
+  const std::vector<double> of_layers = layers_volumes(filled, made);
   report.volume = report.true_volume = 0;
   for (std::size_t r = 0; r < domain.true_volumes.size() && r < made.size(); ++r) {
-    report.volume += made[r];
+    report.volume += made[r] + of_layers[r];
     report.true_volume += domain.true_volumes[r];
     if (report.regions.empty()) continue;
     report.regions[r].volume = made[r];
+    report.regions[r].layers_volume = of_layers[r];
     report.regions[r].true_volume = domain.true_volumes[r];
   }
 }
@@ -192,7 +197,8 @@ void describe_true_volumes(const TetMesh& mesh, const Domain& domain, Report& re
 std::vector<OffSolid> off_solids(const Domain& domain, const Report& report) {
   std::vector<OffSolid> off;
   for (std::uint32_t r = 0; r < domain.true_volumes.size(); ++r) {
-    const double made = report.regions.empty() ? report.volume : report.regions[r].volume;
+    const double made =
+        report.regions.empty() ? report.volume : report.regions[r].volume + report.regions[r].layers_volume;
     const double change = change_of_volume(made, domain.true_volumes[r]);
     if (!(std::abs(change) <= kVolumeKept)) off.push_back({r, change});
   }

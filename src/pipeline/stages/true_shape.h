@@ -22,7 +22,7 @@ void place_on_geometry(const Prepared& input, Filled& filled, Run& run);
 void name_parts(const Prepared& input, Filled& filled, Run& run);
 
 /// Enters the true volumes into the report, beside those of the mesh, curved as it is.
-void describe_true_volumes(const TetMesh& mesh, const Domain& domain, Report& report);
+void describe_true_volumes(const Filled& filled, const Domain& domain, Report& report);
 
 /// A solid whose volume is off.
 struct OffSolid {

@@ -120,6 +120,24 @@ std::vector<Face> boundary_faces(const TetMesh& mesh, const FaceTable& table) {
   return faces;
 }
 
+/// Per element at a wall its part of the most layers anywhere; others are full.
+Bytes layer_stream(const TetMesh& mesh, const FaceTable& table) {
+  std::vector<std::uint8_t> values(mesh.tets.size(), kLayersScale(1));
+  std::uint32_t most = 1;
+  for (const std::uint32_t n : mesh.face_layers)
+    if (n != kNone) most = std::max(most, n);
+  for (std::size_t f = 0; f < mesh.face_layers.size(); ++f) {
+    const bool is_outer = f < mesh.boundary.size();
+    const Triangle& face = is_outer ? mesh.boundary[f] : mesh.interfaces[f - mesh.boundary.size()];
+    if (mesh.face_layers[f] == kNone) continue;
+    for (const FaceTable::Entry& side : table.group_of(face))
+      values[side.face / 4] = kLayersScale(static_cast<double>(mesh.face_layers[f]) / most);
+  }
+  Bytes bytes;
+  for (const std::uint8_t value : values) bytes.byte(value);
+  return bytes;
+}
+
 std::vector<Face> walls(const TetMesh& mesh, const FaceTable& table) {
   std::vector<Face> faces;
   const auto region = [&](HalfFace h) { return mesh.region.empty() ? 0 : mesh.region[h / 4]; };
@@ -161,6 +179,7 @@ MeshStreams mesh_streams(const TetMesh& mesh, const SizeField* sizes, const RunC
   const Box3 box = bounding_box(mesh.points);
   streams.points = vertices.old.size();
   streams.has_sizes = sizes != nullptr;
+  streams.has_layers = !mesh.face_layers.empty();
   if (!mesh.points.empty()) {
     streams.origin = box.lo;
     const Vec3 extent = box.hi - box.lo;
@@ -172,6 +191,7 @@ MeshStreams mesh_streams(const TetMesh& mesh, const SizeField* sizes, const RunC
   streams.all.emplace_back("region", region_stream(mesh));
   const FaceTable table = half_face_table(mesh.tets, mesh.points.size());
   context.check();
+  if (streams.has_layers) streams.all.emplace_back("layers", layer_stream(mesh, table));
   std::vector<Face> faces = boundary_faces(mesh, table);
   streams.all.emplace_back("boundary", face_stream(faces, false));
   faces = walls(mesh, table);

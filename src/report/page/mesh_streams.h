@@ -21,6 +21,7 @@ struct ByteScale {
 };
 
 inline constexpr ByteScale kBetaScale{0, 1};
+inline constexpr ByteScale kLayersScale{0, 1};          // of the most layers
 inline constexpr ByteScale kMinDihedralScale{0, 75};    // degrees; the regular tetrahedron has 70.5
 inline constexpr ByteScale kMaxDihedralScale{60, 180};  // degrees
 inline constexpr ByteScale kSizeRatioScale{-2, 2};      // the logarithm to base 2 of edge length made over wanted
@@ -31,6 +32,7 @@ struct MeshStreams {
   Vec3 origin;      ///< point (i, j, k) lies at origin + step * (i, j, k)
   double step = 1;  ///< in input units
   bool has_sizes = false;
+  bool has_layers = false;
   /// By name:
   ///   tets      four numbers an element: how far its corner is behind the vertices met so far; 0 is a new vertex
   ///   points    the differences from vertex to vertex, all x, all y, all z

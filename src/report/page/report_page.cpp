@@ -59,8 +59,10 @@ Json facts_of(const TetMesh& mesh, const MeshStreams& streams) {
            {{"beta", scale(kBetaScale)},
             {"min_dihedral", scale(kMinDihedralScale)},
             {"max_dihedral", scale(kMaxDihedralScale)},
-            {"size_ratio", scale(kSizeRatioScale)}}},
-          {"has_sizes", streams.has_sizes}};
+            {"size_ratio", scale(kSizeRatioScale)},
+            {"layers", scale(kLayersScale)}}},
+          {"has_sizes", streams.has_sizes},
+          {"has_layers", streams.has_layers}};
 }
 
 Json list_of(const std::vector<PoorElement>& worst) {

@@ -39,6 +39,7 @@ Json json_of(const std::vector<RegionSummary>& regions) {
                    {"tets", regions[r].quality.elements},
                    {"volume", regions[r].volume},
                    {"quality", json_of(regions[r].quality)}});
+    if (regions[r].layers_volume > 0) all.back()["layers_volume"] = regions[r].layers_volume;
     if (regions[r].true_volume > 0) all.back()["true_volume"] = regions[r].true_volume;
   }
   return all;
@@ -54,6 +55,7 @@ Json json_of(const std::vector<LayerSummary>& walls) {
     Json stopped = Json::object();
     for (const auto& [reason, part] : w.stopped) stopped[reason] = part;
     all.push_back({{"patch", w.patch},
+                   {"region", w.region},
                    {"faces", w.faces},
                    {"share_full", w.full},
                    {"share_with_some", w.with_some},

@@ -83,13 +83,18 @@ std::string quality_lines(const QualitySummary& q) {
   return out;
 }
 
+std::string layered_wall(const LayerSummary& w) {
+  const std::string patch = w.patch.empty() ? "(no name)" : w.patch;
+  return w.region.empty() ? patch : patch + " in " + w.region;
+}
+
 std::string layer_lines(const std::vector<LayerSummary>& walls) {
   std::string out = fmt::format("{:<22} {:>9} {:>7} {:>7} {:>10} {:>10} {:>7} {:>6}\n", "boundary layers on", "faces",
                                 "full", "layers", "first min", "median", "height", "SJ");
   for (const LayerSummary& w : walls) {
-    out += fmt::format("{:<22} {:>9} {:>5.1f} % {:>7.2f} {:>10.4g} {:>10.4g} {:>5.1f} % {:>6.3f}\n",
-                       w.patch.empty() ? "(no name)" : w.patch, grouped(w.faces), 100 * w.full, w.mean_count,
-                       w.first_min, w.first_median, 100 * w.thickness, w.min_scaled_jacobian);
+    out += fmt::format("{:<22} {:>9} {:>5.1f} % {:>7.2f} {:>10.4g} {:>10.4g} {:>5.1f} % {:>6.3f}\n", layered_wall(w),
+                       grouped(w.faces), 100 * w.full, w.mean_count, w.first_min, w.first_median, 100 * w.thickness,
+                       w.min_scaled_jacobian);
     std::string stopped;
     for (const auto& [reason, part] : w.stopped)
       stopped += fmt::format("{}{} {:.2g} %", stopped.empty() ? "" : ", ", reason, 100 * part);
@@ -121,7 +126,7 @@ std::string region_lines(const std::vector<RegionSummary>& regions) {
                     grouped(region.quality.elements), region.volume, region.quality.beta_mean, region.quality.beta_min);
     if (region.true_volume > 0)
       out += fmt::format("  {:<30}{:>12}{:>14.6g} ({:+.3f} %)\n", "  of the CAD solid", "", region.true_volume,
-                         percent_off(region.volume, region.true_volume));
+                         percent_off(region.volume + region.layers_volume, region.true_volume));
   }
   if (regions.size() > kMostRegionLines)
     out += fmt::format("  ... and {} more: all of them are in the JSON report\n", regions.size() - kMostRegionLines);

@@ -90,6 +90,37 @@ TEST(SelfIntersections, OfLargeFansTakeLittleTime) {
   EXPECT_FALSE(self_intersections(drum.points, drum.triangles).empty());
 }
 
+/// Two cones on one rim, or a cone and a disc.
+SurfaceMesh bicone(int sides, double top, double bottom) {
+  SurfaceMesh s;
+  s.points = {{0, 0, top}, {0, 0, bottom}};
+  const auto rim = [&](int i) { return static_cast<VertexIndex>(2 + i % sides); };
+  for (int i = 0; i < sides; ++i) {
+    const double angle = 2 * std::numbers::pi * i / sides;
+    s.points.push_back({std::cos(angle), std::sin(angle), 0});
+    s.triangles.push_back({0, rim(i), rim(i + 1)});
+    s.triangles.push_back({1, rim(i + 1), rim(i)});
+  }
+  return s;
+}
+
+TEST(SelfIntersections, BetweenFansOnOneAxisAreThoseOfAllPairs) {
+  SurfaceMesh cone = bicone(300, 1, -0.01);
+  EXPECT_TRUE(self_intersections(cone.points, cone.triangles).empty());
+  cone.points[1] = {0.9, 0.05, 0.4};  // outside of the upper cone
+  const Pairs expected = all_pairs(cone);
+  ASSERT_GT(expected.size(), 20u);
+  EXPECT_EQ(self_intersections(cone.points, cone.triangles), expected);
+}
+
+TEST(SelfIntersections, BetweenFansOnOneAxisTakeLittleTime) {
+  // The box of a triangle of the one fan meets those of a quarter of the other: minutes of work if each is looked at.
+  for (const double bottom : {0.0, -1.0}) {
+    const SurfaceMesh cone = bicone(50'000, 1, bottom);
+    EXPECT_TRUE(self_intersections(cone.points, cone.triangles).empty());
+  }
+}
+
 RC_GTEST_PROP(SelfIntersections, AreThoseOfAllPairs, ()) {
   // One seed, so that RapidCheck shrinks a number and not hundreds of draws.
   std::mt19937_64 random(*rc::gen::resize(100, rc::gen::arbitrary<std::uint64_t>()));

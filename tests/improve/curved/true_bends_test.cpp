@@ -74,7 +74,7 @@ double highest(const TetMesh& mesh) {
 TEST(TrueBends, AWholeSideGoesTogetherFartherThanHalfAnEdge) {
   TetMesh mesh = testing::kuhn_cube(kCubes);
   const Sides6 geometry(mesh, [](Vec3) { return 0.9 * kEdge; });
-  const SecondOrderSummary made = move_to_geometry(mesh, geometry, no_context());
+  const SecondOrderSummary made = move_to_geometry(mesh, geometry, {}, no_context());
   EXPECT_EQ(made.held, 0u);
   EXPECT_EQ(first_defect(mesh), std::nullopt);
   EXPECT_NEAR(testing::volume(mesh), 1 + 0.9 * kEdge, 1e-12);
@@ -83,14 +83,14 @@ TEST(TrueBends, AWholeSideGoesTogetherFartherThanHalfAnEdge) {
 TEST(TrueBends, AVertexAloneStaysAndIsCounted) {
   TetMesh mesh = testing::kuhn_cube(kCubes);
   const Sides6 geometry(mesh, [](Vec3 p) { return std::hypot(p.x - 0.5, p.y - 0.5) < 0.01 ? 0.9 * kEdge : 0.0; });
-  EXPECT_EQ(move_to_geometry(mesh, geometry, no_context()).held, 1u);
+  EXPECT_EQ(move_to_geometry(mesh, geometry, {}, no_context()).held, 1u);
   EXPECT_EQ(highest(mesh), 1);
 }
 
 TEST(TrueBends, AVertexAloneGoesWhereItIsNear) {
   TetMesh mesh = testing::kuhn_cube(kCubes);
   const Sides6 geometry(mesh, [](Vec3 p) { return std::hypot(p.x - 0.5, p.y - 0.5) < 0.01 ? 0.4 * kEdge : 0.0; });
-  EXPECT_EQ(move_to_geometry(mesh, geometry, no_context()).held, 0u);
+  EXPECT_EQ(move_to_geometry(mesh, geometry, {}, no_context()).held, 0u);
   EXPECT_EQ(highest(mesh), 1 + 0.4 * kEdge);
 }
 

@@ -9,6 +9,7 @@
 #include "base/geometry/measures.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <gtest/gtest.h>
 
@@ -62,6 +63,28 @@ TEST(RaiseFlat, MovesNoFartherThanTheLimit) {
   EXPECT_GT(largest_move(before, mesh), 0);
   EXPECT_LE(largest_move(before, mesh), 0.01);
   EXPECT_EQ(first_defect(mesh), std::nullopt);
+}
+
+TEST(RaiseFlat, CornersThatStrayedBeforeGoNoFartherFromTheInput) {
+  const TetMesh before = with_flat_element(1e-9);
+  SurfaceMesh input = surface_of(before);
+  for (Vec3& p : input.points) p.z += 0.2;
+  const TriangleTree tree(input);
+  const auto farthest = [&](const TetMesh& mesh) {
+    double most = 0;
+    for (int v = 0; v < 4; ++v) most = std::max(most, tree.nearest(mesh.points[v]).squared_distance);
+    return std::sqrt(most);
+  };
+  const double had = farthest(before);
+  const auto after = [&](const TriangleTree* held) {
+    TetMesh mesh = before;
+    StageReport report;
+    RaiseLimits limits{0.25, nullptr, nullptr, nullptr, held, had};
+    raise_flat(mesh, surface_of(before), limits, {no_context(), report});
+    return farthest(mesh);
+  };
+  EXPECT_GT(after(nullptr), had);
+  EXPECT_LE(after(&tree), had);
 }
 
 TEST(RaiseFlat, LeavesGoodElementsAlone) {

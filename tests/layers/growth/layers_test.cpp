@@ -30,20 +30,21 @@ layers::Columns grown_on(const SurfaceMesh& surface, std::uint32_t count, double
   if (is_wall.empty()) is_wall.assign(surface.triangles.size(), 1);
   StageReport report;
   const RunContext context;
-  return layers::grow(surface, is_wall, {count, growth, std::vector<double>(surface.points.size(), first), 0.3},
-                      {context, report});
+  layers::RegionWall wall = layers::walls_of_regions(surface, is_wall, {0}).front();
+  return layers::grow(wall, {count, growth, std::vector<double>(surface.points.size(), first), 0.3}, {context, report});
 }
 
 bool is_full(const layers::Columns& columns, VertexIndex v) {
   return columns.reason[v] == layers::Reason::kNone && columns.count[v] == columns.asked && columns.part[v] == 1;
 }
 
-Result meshed(const SurfaceMesh& surface, const LayersOptions& layers, double size) {
+Result meshed(const SurfaceMesh& surface, const LayersOptions& layers, double size, int order = 1) {
   Domain domain;
   domain.surface = surface;
   Options options;
   options.size.size = size;
   options.layers = layers;
+  options.order = order;
   return generate(domain, options, RunContext{});
 }
 
@@ -235,6 +236,125 @@ TEST(Layers, CoverageMayBeRequired) {
   asked.require_coverage = 95;
   EXPECT_NO_THROW(meshed(icosphere(3), asked, 0.3));
   EXPECT_THROW(meshed(box(1, 1, 0.1, 2), asked, 0.2), MeshingError);
+}
+
+/// Two boxes side by side, or one ball in another: regions 0 and 1.
+SurfaceMesh ball_in_ball() {
+  SurfaceMesh s = icosphere(3);
+  const auto n = static_cast<VertexIndex>(s.points.size());
+  const std::vector<Triangle> outer = s.triangles;
+  for (VertexIndex v = 0; v < n; ++v) s.points.push_back(s.points[v] * 0.5);
+  s.sides.assign(outer.size(), {kNone, 0});
+  for (const auto& [a, b, c] : outer) s.triangles.push_back({a + n, b + n, c + n}), s.sides.push_back({0, 1});
+  s.patch.assign(outer.size(), 0);
+  s.patch.resize(s.triangles.size(), 1);
+  s.patch_names = {"skin", "core"};
+  s.region_names = {"flesh", "stone"};
+  return s;
+}
+
+TEST(Layers, GrowInTheRegionsThatAreNamed) {
+  LayersOptions asked;
+  asked.count = 3;
+  asked.first = 0.01;
+  const double height = 0.01 * (1 + 1.2 + 1.44);
+  const Result both = meshed(ball_in_ball(), asked, 0.15);
+  EXPECT_EQ(first_defect(both.mesh), std::nullopt);
+  EXPECT_EQ(both.mesh.region_names, (std::vector<std::string>{"flesh", "stone", "flesh layers", "stone layers"}));
+  EXPECT_NEAR(volume_of(both.mesh, 2) / (5 * std::numbers::pi * height), 1, 0.05);
+  EXPECT_NEAR(volume_of(both.mesh, 3) / (std::numbers::pi * height), 1, 0.1);
+  ASSERT_EQ(both.report.layers.size(), 3u);
+  asked.in = "flesh", asked.on = "core";
+  const Result one = meshed(ball_in_ball(), asked, 0.15);
+  EXPECT_EQ(first_defect(one.mesh), std::nullopt);
+  EXPECT_EQ(one.mesh.region_names, (std::vector<std::string>{"flesh", "stone", "flesh layers"}));
+  EXPECT_NEAR(volume_of(one.mesh, 1) / (4 * std::numbers::pi / 24), 1, 0.05);
+  ASSERT_EQ(one.report.layers.size(), 1u);
+  EXPECT_EQ(one.report.layers[0].full, 1);
+  asked.in = "bone";
+  EXPECT_THROW(meshed(ball_in_ball(), asked, 0.15), OptionError);
+}
+
+/// Between regions a wall that has no layers must stay.
+TEST(Layers, EndBesideInnerWalls) {
+  SurfaceMesh boxes;
+  for (int i = 0; i < 3; ++i)
+    for (const auto& [y, z] : {std::pair{0, 0}, {1, 0}, {1, 1}, {0, 1}})
+      boxes.points.push_back({double(i), double(y), double(z)});
+  const auto add = [&](VertexIndex a, VertexIndex b, VertexIndex c, VertexIndex d, std::uint32_t patch, Sides sides) {
+    for (const Triangle& t : {Triangle{a, b, c}, Triangle{a, c, d}})
+      boxes.triangles.push_back(t), boxes.patch.push_back(patch), boxes.sides.push_back(sides);
+  };
+  add(0, 3, 2, 1, 0, {kNone, 0}), add(8, 9, 10, 11, 0, {kNone, 1}), add(4, 5, 6, 7, 1, {1, 0});
+  for (VertexIndex i = 0; i < 2; ++i)
+    for (VertexIndex k = 0; k < 4; ++k) {
+      const VertexIndex a = 4 * i + k, b = 4 * i + (k + 1) % 4;
+      add(a, b, b + 4, a + 4, k == 0 ? 2 : 0, {kNone, i});
+    }
+  boxes.patch_names = {"rest", "between", "floor"};
+  boxes.region_names = {"left", "right"};
+  LayersOptions asked;
+  asked.count = 3;
+  asked.first = 0.01;
+  asked.on = "floor (left)";
+  const Result made = meshed(boxes, asked, 0.1);
+  EXPECT_EQ(first_defect(made.mesh), std::nullopt);
+  for (const Vec3 p : made.mesh.points) EXPECT_TRUE(p.y > -1e-12 && p.y < 1 + 1e-12);
+  ASSERT_EQ(made.report.layers.size(), 1u);
+  EXPECT_GT(made.report.layers[0].full, 0.5);
+  EXPECT_EQ(made.report.layers[0].stopped.front().first, "bent patch beside");
+}
+
+TEST(Layers, GrowOutsideAsAShell) {
+  LayersOptions asked;
+  asked.count = 2;
+  asked.total = 0.1;
+  asked.outside = true;
+  const double shell = 4 * std::numbers::pi / 3 * (1.1 * 1.1 * 1.1 - 1);
+  for (const int order : {1, 2}) {
+    const Result made = meshed(icosphere(3), asked, 0.15, order);
+    EXPECT_EQ(first_defect(made.mesh), std::nullopt);
+    EXPECT_EQ(made.mesh.region_names, (std::vector<std::string>{"volume", "layers"}));
+    EXPECT_NEAR(made.report.volume / (4 * std::numbers::pi / 3 + shell), 1, order == 1 ? 0.03 : 0.002);
+    ASSERT_EQ(made.report.layers.size(), 1u);
+    EXPECT_EQ(made.report.layers[0].full, 1);
+  }
+  asked.on = "wall";
+  const Result pipe_with_lagging = meshed(pipe(48, 20), asked, 0.25);
+  EXPECT_EQ(first_defect(pipe_with_lagging.mesh), std::nullopt);
+  EXPECT_EQ(pipe_with_lagging.report.layers.at(0).full, 1);
+  for (const Vec3 p : pipe_with_lagging.mesh.points) EXPECT_TRUE(p.z > -1e-12 && p.z < 4 + 1e-12);
+  EXPECT_NEAR(volume_of(pipe_with_lagging.mesh, 1) / (4 * std::numbers::pi * (1.1 * 1.1 - 1)), 1, 0.03);
+}
+
+/// Nodes over a curved edge of the wall curve with it: thin elements stay as good as they were.
+TEST(Layers, SecondOrderCurvesThemWithTheirWall) {
+  LayersOptions asked;
+  asked.count = 4;
+  asked.first = 0.001;  // the wall bends ten times as far
+  const Result made = meshed(icosphere(4), asked, 0.3, 2);
+  EXPECT_EQ(first_defect(made.mesh), std::nullopt);
+  EXPECT_EQ(made.report.second_order.eased, 0u);
+  EXPECT_GT(made.report.second_order.largest_bend, 0.01);
+  EXPECT_NEAR(made.report.volume / (4 * std::numbers::pi / 3), 1, 0.002);
+}
+
+/// Ends are hardly ever flat to the last bit.
+TEST(Layers, EndOnPatchesThatLieAskew) {
+  SurfaceMesh turned = pipe(48, 20);
+  for (Vec3& p : turned.points) {
+    const double a = 0.3, b = 0.7;
+    p = {std::cos(a) * p.x - std::sin(a) * p.z, p.y, std::sin(a) * p.x + std::cos(a) * p.z};
+    p = {std::cos(b) * p.x - std::sin(b) * p.y, std::sin(b) * p.x + std::cos(b) * p.y, p.z};
+    p = {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
+  }
+  LayersOptions asked;
+  asked.count = 3;
+  asked.first = 0.02;
+  asked.on = "wall";
+  const Result made = meshed(turned, asked, 0.25);
+  EXPECT_EQ(first_defect(made.mesh), std::nullopt);
+  EXPECT_EQ(made.report.layers.at(0).full, 1);
 }
 
 TEST(Layers, SharpRidgesAreLeftOut) {

@@ -74,6 +74,9 @@ TEST(MendSurface, BoundsHoldWhereSomethingMovedOnly) {
   const SurfaceMesh ball = testing::icosphere(3);
   EXPECT_TRUE(mended(without(ball, [](Vec3 p) { return p.z > 0.95; })).bound.empty());  // nothing moved
   EXPECT_TRUE(mended(testing::joined(ball, testing::transformed(ball, 1, {0.5, 0.1, 0}))).bound.empty());
+  MendOptions coarse;
+  coarse.tolerance = 0.05;  // what closes the hole lies within it
+  EXPECT_TRUE(mend_surface(without(ball, [](Vec3 p) { return p.z > 0.95; }), coarse).bound.empty());
 
   SurfaceMesh torn = ball;  // one triangle with corners of its own
   const Vec3 place = torn.points[torn.triangles[0][0]];
@@ -356,6 +359,9 @@ TEST(MendSurface, CrumplesWithinTheToleranceAreLaidFlat) {
   ASSERT_FALSE(find_defects(repair_surface(soup)).clean());
   const Mended result = mended(soup);
   EXPECT_EQ(result.report.count(Kind::kLaidFlat), 2u);
+  const auto near = std::ranges::count(result.bound, 1.5 * result.report.tolerance);
+  EXPECT_GE(near, 2);
+  EXPECT_LT(near, 10);
   EXPECT_EQ(result.surface.triangles.size(), clean.triangles.size());
   EXPECT_NEAR(enclosed_volume(result.surface), 1, 1e-14);
   EXPECT_NEAR(area(result.surface), 6, 1e-14);

@@ -38,6 +38,7 @@ const QUANTITIES = {
     worstIsHigh: true,
     text: (v) => "× " + (2 ** v).toFixed(2),
   },
+  layers: { title: "boundary layers at walls", stops: POOR_TO_GOOD, text: (v) => (100 * v).toFixed(0) + " %" },
 };
 
 /**

@@ -103,7 +103,7 @@ function normalized(steps) {
 /** The mesh with everything that is known of it. */
 async function decodeMesh() {
   const facts = json("facts");
-  const names = ["tets", "points", "region", "boundary", "walls", "beta", "min_dihedral", "max_dihedral", "size_ratio"];
+  const names = ["tets", "points", "region", "boundary", "walls", "beta", "min_dihedral", "max_dihedral", "size_ratio", "layers"];
   const bytes = Object.fromEntries(
     await Promise.all(names.map(async (name) => [name, await streamOf(name)])));
   const steps = decodePoints(bytes.points, facts.points);
@@ -118,6 +118,7 @@ async function decodeMesh() {
     values: { beta: bytes.beta, min_dihedral: bytes.min_dihedral, max_dihedral: bytes.max_dihedral },
   };
   if (facts.has_sizes) mesh.values.size_ratio = bytes.size_ratio;
+  if (facts.has_layers) mesh.values.layers = bytes.layers;
   mesh.around = lengthsAround(mesh);
   return mesh;
 }

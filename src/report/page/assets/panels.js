@@ -81,7 +81,7 @@ const besideCad = (made, sure) => `${digits(sure, 6)}, ${made < sure ? "\u2212" 
 function solidsPanel(report) {
   const solids = (report.regions ?? []).filter((r) => r.true_volume);
   if (solids.length === 0) return null;
-  const row = (r) => [name(r.name), number(r.tets, grouped(r.tets)), number(r.volume, digits(r.volume, 6)), number(r.true_volume, besideCad(r.volume, r.true_volume))];
+  const row = (r) => [name(r.name), number(r.tets, grouped(r.tets)), number(r.volume, digits(r.volume, 6)), number(r.true_volume, besideCad(r.volume + (r.layers_volume ?? 0), r.true_volume))];
   return panel("CAD solids", make("div", { class: "scroll" }, table(solids.map(row), ["solid", "elements", "volume", "true volume"], "numbers list")));
 }
 
