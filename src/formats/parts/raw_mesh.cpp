@@ -117,7 +117,7 @@ class Ordering {
     }
     if (raw_.other_elements > 0)
       raw_.notes.push_back(fmt::format("{} elements of other kinds were left out", raw_.other_elements));
-    return {std::move(mesh_), std::move(raw_.format), std::move(raw_.notes), turned_};
+    return {std::move(mesh_), std::move(raw_.format), std::move(raw_.notes), turned_, turned_wide_};
   }
 
  private:
@@ -210,7 +210,8 @@ class Ordering {
   /// that convention, and nothing is inverted.
   void take_wide_cells() {
     mesh_.wide_cells = std::move(raw_.wide_cells);
-    const std::size_t wedges = turn_wide_cells(mesh_.wide_cells, is_turned_);
+    std::size_t wedges = 0;
+    turned_wide_ = turn_wide_cells(mesh_.wide_cells, is_turned_, wedges);
     if (wedges > 0)
       raw_.notes.push_back(fmt::format("{} wedges face the other way here, as all in this file: turned", wedges));
     turned_ = static_cast<std::uint64_t>(std::count(is_turned_.begin(), is_turned_.end(), true));
@@ -431,7 +432,7 @@ class Ordering {
   RawMesh raw_;
   const Input& input_;
   TetMesh mesh_;
-  std::uint64_t turned_ = 0;
+  std::uint64_t turned_ = 0, turned_wide_ = 0;
   std::vector<bool> is_turned_;                   ///< per tetrahedron
   std::vector<VertexIndex> number_;               ///< of the points of the file
   std::vector<std::uint32_t> face_of_, edge_of_;  ///< of the triangles and edges of the file
