@@ -282,6 +282,7 @@ class Ordering {
       mesh_.boundary.push_back(outward);
       mesh_.patch.push_back(patch_of(i));
       if (!raw_.triangle_source.empty()) mesh_.source.push_back(raw_.triangle_source[i]);
+      if (!raw_.triangle_layers.empty()) mesh_.face_layers.push_back(raw_.triangle_layers[i]);
     }
     const std::size_t given = mesh_.boundary.size();
     const auto add = [&](std::size_t f) {
@@ -289,6 +290,7 @@ class Ordering {
       mesh_.boundary.push_back(faces[f]);
       mesh_.patch.push_back(free);
       if (!raw_.triangle_source.empty()) mesh_.source.push_back(kNone);
+      if (!raw_.triangle_layers.empty()) mesh_.face_layers.push_back(kNone);
     };
     for (std::size_t f = 0; f < faces.size(); ++f) {
       if (taken_by[f] != kNone) continue;
@@ -340,6 +342,7 @@ class Ordering {
       face_of_[i] = static_cast<std::uint32_t>(mesh_.boundary.size() + mesh_.interfaces.size());
       mesh_.interfaces.push_back(faces[k]);
       mesh_.interface_patch.push_back(patches.numbers[i] == kNone ? free : patches.numbers[i]);
+      if (!raw_.triangle_layers.empty()) mesh_.face_layers.push_back(raw_.triangle_layers[i]);
     }
     if (dropped > 0) raw_.notes.push_back(fmt::format("{} triangles that bound no tetrahedron were left out", dropped));
   }

@@ -122,6 +122,20 @@ std::vector<std::string> formats_with_wedges() {
 INSTANTIATE_TEST_SUITE_P(, WideCells, ::testing::ValuesIn(formats_with_wedges()),
                          [](const auto& test) { return test.param; });
 
+TEST(FaceLayers, AreKeptByVtk) {
+  TetMesh mesh = testing::mixed_mesh(2);
+  for (std::size_t f = 0; f < mesh.boundary.size() + mesh.interfaces.size(); ++f)
+    mesh.face_layers.push_back(f < mesh.boundary.size() && mesh.patch[f] == 0 ? 2 : kNone);
+  for (const auto& file : {"a.vtu", "a.vtk"}) {
+    const TemporaryFolder folder;
+    write_mesh(folder / file, mesh);
+    const TetMesh back = read_mesh(folder / file);
+    ASSERT_EQ(back.face_layers.size(), mesh.face_layers.size());
+    EXPECT_EQ(std::ranges::count(back.face_layers, 2u), std::ranges::count(mesh.face_layers, 2u));
+    for (std::size_t f = 0; f < back.boundary.size(); ++f) EXPECT_EQ(back.face_layers[f] == 2, back.patch[f] == 0);
+  }
+}
+
 TEST(CurvedWideCells, HaveNoNodesOnDiagonalsInFiles) {
   const TemporaryFolder folder;
   const TetMesh mesh = testing::with_mid_nodes(testing::mixed_mesh(2));
