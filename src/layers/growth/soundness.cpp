@@ -70,8 +70,21 @@ class Soundness {
         const auto& [a, b, c, d] = made.tets[i];
         if (orient3d(place(a), place(b), place(c), place(d)) <= 0) return false;
       }
+      if (made.count == 2 && !is_sound_pyramid(t, k)) return false;
       if (made.count == 3 && !(least_scaled_jacobian(wall_, columns_, t, k) >= least)) return false;
     }
+    return true;
+  }
+
+  /// Where one column has ended: each corner of the base must see the apex, whatever way that is divided.
+  bool is_sound_pyramid(const Triangle& t, std::uint32_t layer) const {
+    int end = 0;
+    while (columns_.count[t[end]] > layer) ++end;
+    const VertexIndex p = t[(end + 1) % 3], q = t[(end + 2) % 3];
+    const std::array base{place({q, layer}), place({q, layer + 1}), place({p, layer + 1}), place({p, layer})};
+    const Vec3 apex = place({t[end], columns_.count[t[end]]});
+    for (int i = 0; i < 4; ++i)
+      if (orient3d(base[i], base[(i + 1) % 4], base[(i + 3) % 4], apex) <= 0) return false;
     return true;
   }
 
