@@ -357,6 +357,16 @@ class CommandLine(unittest.TestCase):
             self.assertEqual(sum(r["quality"]["beta_classes"]), r["tets"])
             self.assertIn(f"a valid mesh of {r['tets']} tetrahedra", self.run_cli("check", out).stdout)
 
+    def test_the_mesh_does_not_hang_on_the_c_library(self):
+        """Its elementary functions have variants for processors, which differ in the last bit."""
+        hashes = set()
+        for tunables in ("", "glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2"):
+            for options in (["--elements", 20000], ["--order", 2], ["--layers", 3, "--first-part", 0.1]):
+                out = self.dir / "m.json"
+                self.run_cli("mesh", SAMPLES / "torus_knot.ply", "-o", self.dir / "m.vtu", "--json", out, *options, env={**os.environ, "GLIBC_TUNABLES": tunables})
+                hashes.add((str(options), json.loads(out.read_text())["hash"]))
+        self.assertEqual(len(hashes), 3, hashes)
+
     def test_same_input_same_file(self):
         a, b = self.dir / "a.vtu", self.dir / "b.vtu"
         self.run_cli("mesh", self.part, "-o", a, "--size", 0.15, "--threads", 1)

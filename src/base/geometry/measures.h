@@ -7,6 +7,8 @@
 
 #include <octafront/vec.h>
 
+#include "base/core/elementary.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -60,7 +62,7 @@ constexpr double squared_distance(Vec3 a, Vec3 b) {
 /// Angle at `apex` between the directions to b and c, radians, in [0, pi]; accurate for small and flat angles too.
 inline double angle_at(Vec3 apex, Vec3 b, Vec3 c) {
   const Vec3 u = b - apex, v = c - apex;
-  return std::atan2(length(cross(u, v)), dot(u, v));
+  return elementary::atan2(length(cross(u, v)), dot(u, v));
 }
 
 /// Solid angle at `apex` of the triangle (a, b, c), steradians; positive if (a, b, c, apex) is a negative tetrahedron,
@@ -69,7 +71,7 @@ inline double angle_at(Vec3 apex, Vec3 b, Vec3 c) {
 inline double solid_angle(Vec3 apex, Vec3 a, Vec3 b, Vec3 c) {
   const Vec3 u = a - apex, v = b - apex, w = c - apex;
   const double lu = length(u), lv = length(v), lw = length(w);
-  return 2 * std::atan2(dot(u, cross(v, w)), lu * lv * lw + dot(u, v) * lw + dot(v, w) * lu + dot(w, u) * lv);
+  return 2 * elementary::atan2(dot(u, cross(v, w)), lu * lv * lw + dot(u, v) * lw + dot(v, w) * lu + dot(w, u) * lv);
 }
 
 /// beta = 3 r / R of a tetrahedron: 1 if regular, 0 if flat, negative if inverted. Five square roots and a division.

@@ -2,6 +2,8 @@
 
 #include <octafront/surface_mesh.h>
 
+#include "base/core/elementary.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -163,7 +165,7 @@ Features detect_features(const SurfaceMesh& surface, double angle_degrees) {
 }
 
 Features detect_features(const SurfaceMesh& surface, const EdgeTable& table, double angle_degrees) {
-  const double cos_angle = std::cos(angle_degrees * std::numbers::pi / 180);
+  const double cos_angle = elementary::cos(angle_degrees * std::numbers::pi / 180);
   const std::vector<Vec3> direction = face_directions(surface, table);
   Features features;
   for (std::size_t e = 0; e < table.size(); ++e)

@@ -1,5 +1,6 @@
 #include <octafront/quality.h>
 
+#include "base/core/elementary.h"
 #include "base/core/groups.h"
 #include "base/core/parallel.h"
 #include "base/geometry/measures.h"
@@ -27,7 +28,7 @@ std::array<Vec3, 4> normalized_corners(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
 // An angle in [0, 180] degrees as a direction of any length: its order needs neither a root nor an arc tangent.
 struct Direction {
   double x, y;  // y >= 0, not both 0
-  double degrees() const { return std::atan2(y, x) * (180 / std::numbers::pi); }
+  double degrees() const { return elementary::atan2(y, x) * (180 / std::numbers::pi); }
   bool is_below(const Direction& other) const {
     const double turn = x * other.y - y * other.x;
     return turn > 0 || (turn == 0 && x > 0 && other.x < 0);
@@ -54,7 +55,7 @@ class AngleClasses {
   AngleClasses() {
     for (int i = 0; i < kClasses - 1; ++i) {
       const double angle = (i + 1) * std::numbers::pi / kClasses;
-      border_[i] = {std::cos(angle), std::sin(angle)};
+      border_[i] = {elementary::cos(angle), elementary::sin(angle)};
     }
     std::uint8_t next = 0;
     for (int step = 0; step <= kSteps; ++step) {

@@ -1,5 +1,6 @@
 #include "cad/shapes/nearest.h"
 
+#include "base/core/elementary.h"
 #include "cad/shapes/nurbs.h"
 
 #include <algorithm>
@@ -42,7 +43,7 @@ Vec3 on_cylinder(double radius, Vec3 q, Vec3 seed) {
 
 /// On the nappe of the seed; the apex where that is nearer than all of the nappe.
 Vec3 on_cone(const SurfaceRecord& s, Vec3 q, Vec3 seed) {
-  const double sine = std::sin(s.minor), cosine = std::cos(s.minor);
+  const double sine = elementary::sin(s.minor), cosine = elementary::cos(s.minor);
   const double apex = -s.radius * cosine / sine;  // its z
   const bool above = (seed.z - apex) * sine * cosine >= 0;
   const Across a = across(q, seed);
@@ -63,7 +64,8 @@ Vec3 on_sphere(double radius, Vec3 q, Vec3 seed) {
 bool is_inner(const SurfaceRecord& s, Vec3 seed) {
   if (s.minor <= s.radius) return false;
   const double r = across(seed, {}).length;
-  const double outer = std::hypot(r - s.radius, seed.z) - s.minor, inner = std::hypot(r + s.radius, seed.z) - s.minor;
+  const double outer = elementary::hypot(r - s.radius, seed.z) - s.minor,
+               inner = elementary::hypot(r + s.radius, seed.z) - s.minor;
   return std::abs(inner) < std::abs(outer);
 }
 

@@ -4,6 +4,7 @@
 #include <octafront/repair.h>
 #include <octafront/units.h>
 
+#include "base/core/elementary.h"
 #include "base/core/wording.h"
 #include "cad/reader/cad_reader.h"
 #include "cad/shapes/collapse.h"
@@ -94,7 +95,7 @@ std::optional<double> asked_size(const CadIntake& asked, const CadModel& model) 
   double volume = 0;
   for (const Solid& solid : model.solids) volume += std::max(0.0, solid.volume);
   if (volume == 0) return std::nullopt;
-  return std::cbrt(kTetsPerCube * volume / static_cast<double>(*asked.elements));
+  return elementary::cbrt(kTetsPerCube * volume / static_cast<double>(*asked.elements));
 }
 
 /// The thickness of the thinnest solid; infinite if there is none.

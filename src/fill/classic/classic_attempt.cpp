@@ -1,5 +1,6 @@
 #include "fill/classic/classic_attempt.h"
 
+#include "base/core/elementary.h"
 #include "base/geometry/measures.h"
 #include "base/geometry/predicates.h"
 #include "base/geometry/segment_distance.h"
@@ -26,7 +27,7 @@ constexpr double kLeastClassicSizePerEdge = 0.45, kMostClassicSizePerEdge = 2.0;
 double angle_between(Vec3 p, Vec3 q, Vec3 a, Vec3 b) {
   const Vec3 axis = normalized(q - p), u = a - p, v = b - p;
   const Vec3 x = u - axis * dot(u, axis), y = v - axis * dot(v, axis);
-  double angle = std::atan2(dot(axis, cross(x, y)), dot(x, y)) * 180 / std::numbers::pi;
+  double angle = elementary::atan2(dot(axis, cross(x, y)), dot(x, y)) * 180 / std::numbers::pi;
   return angle < 0 ? angle + 360 : angle;
 }
 
@@ -85,7 +86,8 @@ bool ClassicAttempt::has_volume(const Trial& trial, const ClassicLimits& limits)
 }
 
 bool ClassicAttempt::new_vertex_is_clear(Vec3 p, const ClassicLimits& limits) const {
-  const double v2 = std::pow(limits.vertex_clearance * size_, 2), f2 = std::pow(limits.face_clearance * size_, 2);
+  const double v2 = elementary::pow(limits.vertex_clearance * size_, 2),
+               f2 = elementary::pow(limits.face_clearance * size_, 2);
   for (const NearFace& f : near_) {
     for (const Vec3 q : f.at)
       if (squared_distance(p, q) < v2) return false;

@@ -2,6 +2,7 @@
 
 #include <octafront/quality.h>
 
+#include "base/core/elementary.h"
 #include "base/geometry/measures.h"
 #include "base/geometry/predicates.h"
 #include "base/geometry/segment_distance.h"
@@ -91,7 +92,7 @@ SearchRegion Attempt::region_to_search(double radius) const {
   const double height = distance(centroid, ideal_at_), top = height + radius;
   const double up = std::clamp((top * top - base_radius * base_radius) / (2 * top), 0.0, height);
   region.center = centroid + normal_ * up;
-  region.radius = std::max(std::hypot(base_radius, up), top - up);
+  region.radius = std::max(elementary::hypot(base_radius, up), top - up);
   region.normal = normal_;
   region.offset = dot(normal_, centroid);
   return region;

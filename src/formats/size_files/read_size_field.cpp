@@ -2,6 +2,7 @@
 
 #include <octafront/error.h>
 
+#include "base/core/elementary.h"
 #include "formats/containers/vtk_xml.h"
 #include "formats/size_files/readers.h"
 #include "sizing/field/gradation.h"
@@ -73,7 +74,7 @@ Octree tree_of(const io::Input& input, const GridFile& grid, const RootCube& roo
   std::vector<OctreeKey> leaves;
   for (std::size_t c = 0; c < grid.corners.size(); c += 8) {
     const Vec3 lo = grid.points[grid.corners[c + kLowCorner]], hi = grid.points[grid.corners[c + kHighCorner]];
-    const double level = std::round(std::log2(root.side / (hi.x - lo.x)));
+    const double level = std::round(elementary::log2(root.side / (hi.x - lo.x)));
     if (!(level >= 0 && level <= OctreeKey::kMaxLevel)) input.fail(fmt::format("cell {} is no octree cell", c / 8));
     leaves.push_back(root.cell(0.5 * (lo + hi)).ancestor(static_cast<int>(level)));
   }

@@ -1,5 +1,6 @@
 // INRIMAGE-4: a header of 256 bytes, or a multiple of it, in lines KEY=value, then voxels.
 
+#include "base/core/elementary.h"
 #include "formats/containers/scanner.h"
 #include "images/files/byte_source.h"
 #include "images/files/grids.h"
@@ -119,7 +120,7 @@ class Inr {
     if (!scale.starts_with("2**")) return 1;
     double power = 0;
     if (!io::parse_number(scale.substr(3), power) || !(std::abs(power) <= 64)) return 1;
-    return std::exp2(power);
+    return elementary::exp2(power);
   }
 
   const io::Input& input_;

@@ -1,5 +1,6 @@
 #include "images/nets/conflicts.h"
 
+#include "base/core/elementary.h"
 #include "base/core/parallel.h"
 #include "base/geometry/predicates.h"
 #include "base/geometry/radial_order.h"
@@ -62,7 +63,8 @@ Spoke spoke_of(const Net& net, std::span<const Vec3> world, bool is_mirrored, co
 }
 
 /// In what is sharper than this no element is good: its own dihedral angle there, or that of its face.
-const double kSharpWedge = std::cos(20 * std::numbers::pi / 180), kSharpCorner = std::cos(25 * std::numbers::pi / 180);
+const double kSharpWedge = elementary::cos(20 * std::numbers::pi / 180),
+             kSharpCorner = elementary::cos(25 * std::numbers::pi / 180);
 
 /// What is right or wrong around an edge.
 enum class Around { kGood, kSharp, kDisorder };

@@ -3,6 +3,7 @@
 #include <octafront/surface_mesh.h>
 
 #include "base/core/disjoint_sets.h"
+#include "base/core/elementary.h"
 #include "base/geometry/measures.h"
 #include "base/mesh/complex.h"
 
@@ -92,7 +93,7 @@ InputForce::Cause InputForce::cause_at(Vec3 center, double h) const {
     const Wall wall = wall_at(center + d * h, center, h);
     if (wall.distance > kFarWedge * h) continue;
     thin += wall.thickness < kThin * h && wall.distance < h;
-    wedge += wall.distance > kNearWedge * h && wall.thickness < std::tan(kNarrow) * wall.distance;
+    wedge += wall.distance > kNearWedge * h && wall.thickness < elementary::tan(kNarrow) * wall.distance;
   }
   if (wedge >= kPlaces) return Cause::kWedge;
   return thin >= kPlaces ? Cause::kThin : Cause::kNone;
@@ -115,7 +116,7 @@ InputForce::Wall InputForce::wall_at(Vec3 p, Vec3 center, double h) const {
   const auto is_behind = [&](const TriangleTree::RayHit& hit) {
     if (hit.triangle == kNone || hit.triangle == at.triangle) return false;
     const double facing = dot(normal_of(hit.triangle), inward);
-    return (is_complex_ ? std::abs(facing) : facing) > std::cos(kNarrow);
+    return (is_complex_ ? std::abs(facing) : facing) > elementary::cos(kNarrow);
   };
   const Vec3 from = at.point + inward * skin;
   if (const TriangleTree::RayHit hit = input_.tree.first_hit(from, inward, h); is_behind(hit)) wall.thickness = hit.t;
@@ -144,13 +145,14 @@ InputForce::Cause InputForce::between_near_curves(Vec3 center, double h) const {
       if (curve_[one.edge] == curve_[other.edge]) continue;
       const auto &p = segments_->corners(one.edge), &q = segments_->corners(other.edge);
       const Vec3 along = normalized(p[1] - p[0]);
-      if (std::abs(dot(along, normalized(q[1] - q[0]))) < std::cos(kNarrow)) continue;
+      if (std::abs(dot(along, normalized(q[1] - q[0]))) < elementary::cos(kNarrow)) continue;
       const Vec3 across = closest_point_on_segment(one.at, q[0], q[1]) - one.at;
       // One that goes on where the other ends is not beside it.
       const double gap = length(across);
-      if (gap == 0 || std::abs(dot(across, along)) > std::sin(kNarrow) * gap) continue;
+      if (gap == 0 || std::abs(dot(across, along)) > elementary::sin(kNarrow) * gap) continue;
       if (gap < kThin * h) return Cause::kThin;
-      if (gap < std::tan(kNarrow) * h && share_an_end(curve_[one.edge], curve_[other.edge])) return Cause::kCorner;
+      if (gap < elementary::tan(kNarrow) * h && share_an_end(curve_[one.edge], curve_[other.edge]))
+        return Cause::kCorner;
     }
   }
   return Cause::kNone;
@@ -173,7 +175,7 @@ bool InputForce::has_narrow_corner(Vec3 center, double h) const {
       for (std::size_t j = 0; j < i; ++j) {
         const double cosine = dot(directions[i], directions[j]);
         // Lines that never part at this scale are one line.
-        if (cosine > std::cos(kNarrow) && cosine < std::cos(0.5 * kThin)) return true;
+        if (cosine > elementary::cos(kNarrow) && cosine < elementary::cos(0.5 * kThin)) return true;
       }
     }
   }

@@ -1,6 +1,7 @@
 #include "improve/curved/smooth_surface.h"
 
 #include "base/core/disjoint_sets.h"
+#include "base/core/elementary.h"
 #include "base/core/parallel.h"
 #include "base/geometry/measures.h"
 
@@ -239,7 +240,7 @@ double SmoothSurface::sag(std::uint32_t t) const {
     if (neighbour_[h] == kNone) continue;
     const auto& [d, e, f] = tree_.corners(neighbour_[h]);
     const Vec3 other = double_area_normal(d, e, f);
-    const double turn = std::atan2(length(cross(normal, other)), dot(normal, other));
+    const double turn = elementary::atan2(length(cross(normal, other)), dot(normal, other));
     const double edge =
         distance(surface_.points[start_of(surface_.triangles, h)], surface_.points[end_of(surface_.triangles, h)]);
     if (edge > 0) most = std::max(most, turn * std::min(length(normal), kMostUneven * length(other)) / edge);
@@ -295,7 +296,7 @@ double SmoothSurface::sag_at(VertexIndex v, std::uint32_t edge) const {
     return surface_.points[sharp_.edges[i][sharp_.edges[i][0] == v]] - surface_.points[v];
   };
   const Vec3 here = along(edge), next = along(e == edge ? f : e);
-  const double turn = std::atan2(length(cross(here, next)), -dot(here, next));
+  const double turn = elementary::atan2(length(cross(here, next)), -dot(here, next));
   return turn * std::min(length(here), kMostUneven * length(next));
 }
 

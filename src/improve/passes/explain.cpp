@@ -1,5 +1,6 @@
 #include "improve/passes/explain.h"
 
+#include "base/core/elementary.h"
 #include "base/geometry/measures.h"
 #include "improve/boundary/input_force.h"
 #include "improve/passes/edit_block.h"
@@ -35,7 +36,7 @@ class Explainer {
       block_.edge_ring(t, i, j, ring_);
       if (ring_.closed) continue;
       const double angle = enclosed_angle(mesh_.point(mesh_.tet(t)[i]), mesh_.point(mesh_.tet(t)[j]));
-      if (std::sqrt(kSmallWeight * (1 - std::cos(std::min(angle, 1.0)))) < threshold_) return true;
+      if (std::sqrt(kSmallWeight * (1 - elementary::cos(std::min(angle, 1.0)))) < threshold_) return true;
     }
     return false;
   }
@@ -59,7 +60,7 @@ class Explainer {
     for (std::size_t k = 0; k + 1 < ring_.ring.size(); ++k) {
       const Vec3 p = mesh_.point(ring_.ring[k]) - a, q = mesh_.point(ring_.ring[k + 1]) - a;
       const Vec3 u = p - dot(p, axis) * axis, v = q - dot(q, axis) * axis;
-      sum += std::atan2(length(cross(u, v)), dot(u, v));
+      sum += elementary::atan2(length(cross(u, v)), dot(u, v));
     }
     return sum;
   }
@@ -96,7 +97,7 @@ bool is_poor(const EditMesh& mesh, TetIndex t) {
   const Vec3 p = mesh.point(a), q = mesh.point(b), r = mesh.point(c), s = mesh.point(d);
   const auto cosines = dihedral_cosines(p, q, r, s);
   return tet_radius_ratio(p, q, r, s) < kPoorBeta ||
-         *std::max_element(cosines.begin(), cosines.end()) > std::cos(kPoorAngle);
+         *std::max_element(cosines.begin(), cosines.end()) > elementary::cos(kPoorAngle);
 }
 
 Shortfall::Cause cause_by_input(const EditMesh& mesh, TetIndex t, const InputForce& force) {

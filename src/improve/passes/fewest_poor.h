@@ -3,6 +3,7 @@
 // The place of a vertex at which its star falls short of good elements the least, in sum. Where the boundary forces a
 // bad element, the worst of a star says nothing about the others; a sum does.
 
+#include "base/core/elementary.h"
 #include "improve/shape/shape.h"
 
 #include <algorithm>
@@ -21,7 +22,7 @@ inline double root_of_lack(double score) {
   if (score >= kComfort) return 0;
   // Inverted elements, which are met on the way to a place, go on with the slope at 0.
   const double inverted = std::min(score, 0.0) / kHopeless;
-  return std::log((kComfort + kHopeless) / (std::max(score, 0.0) + kHopeless)) - inverted;
+  return elementary::log((kComfort + kHopeless) / (std::max(score, 0.0) + kHopeless)) - inverted;
 }
 inline double lack_of(double score) {
   const double root = root_of_lack(score);

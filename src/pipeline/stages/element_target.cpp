@@ -1,3 +1,4 @@
+#include "base/core/elementary.h"
 #include "pipeline/stages/methods.h"
 #include "pipeline/stages/stages.h"
 #include "sizing/field/change_size_field.h"
@@ -81,7 +82,7 @@ void note_missed_target(double count, const char* counted, Run& run) {
 
 TriedSizes<Remeshed> surface_to_target(const Prepared& input, SizeField sizes, Run& run) {
   if (run.options.size.elements && !keeps_surface(run.options)) {
-    const double factor = std::cbrt(traits_of(run.options.method).tets_per_expected);
+    const double factor = elementary::cbrt(traits_of(run.options.method).tets_per_expected);
     if (factor != 1) sizes = scaled(sizes, factor, run.context());
   }
   return meet_target(

@@ -2,6 +2,7 @@
 
 #include <octafront/error.h>
 
+#include "base/core/elementary.h"
 #include "base/geometry/measures.h"
 #include "base/mesh/complex.h"
 #include "base/mesh/features.h"
@@ -55,7 +56,7 @@ double growth_to(double total, double first, std::uint32_t count) {
 
 /// Height of a first layer whose far side is at this y+.
 double first_by_yplus(const LayersOptions& o) {
-  const double friction = 0.026 / std::pow(*o.reynolds, 1.0 / 7);
+  const double friction = 0.026 / elementary::pow(*o.reynolds, 1.0 / 7);
   return *o.yplus * *o.reference_length / (*o.reynolds * std::sqrt(0.5 * friction));
 }
 

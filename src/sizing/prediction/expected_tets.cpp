@@ -8,6 +8,7 @@
 
 #include "sizing/prediction/expected_tets.h"
 
+#include "base/core/elementary.h"
 #include "base/core/parallel.h"
 #include "base/mesh/complex.h"
 #include "sizing/field/background_grid.h"
@@ -42,10 +43,10 @@ constexpr double kMissPerMixed = 0.2;
 constexpr double kWorthCounting = 0.05;
 
 double size_of_step(int step) {
-  return std::exp2((step - kStepsBelow + 0.5) / kStepsPerOctave);
+  return elementary::exp2((step - kStepsBelow + 0.5) / kStepsPerOctave);
 }
 std::size_t step_of_size(double h) {
-  const auto step = static_cast<int>(std::floor(std::log2(h) * kStepsPerOctave));
+  const auto step = static_cast<int>(std::floor(elementary::log2(h) * kStepsPerOctave));
   return static_cast<std::size_t>(std::clamp(step + kStepsBelow, 0, kSteps - 1));
 }
 
@@ -70,12 +71,12 @@ struct Demand {
 };
 
 double lattice_size(double h, double cell) {
-  return cell * std::exp2(std::floor(std::log2(kLatticeTooLong * h / cell)));
+  return cell * elementary::exp2(std::floor(elementary::log2(kLatticeTooLong * h / cell)));
 }
 
 double elements_inside(const Demand& demand, double cell) {
   double sum = 0;
-  demand.for_each_size([&](double h, double volume) { sum += volume / std::pow(lattice_size(h, cell), 3); });
+  demand.for_each_size([&](double h, double volume) { sum += volume / elementary::pow(lattice_size(h, cell), 3); });
   return sum;
 }
 
@@ -94,7 +95,7 @@ double largest_share(const Demand& demand, double cell) {
 
 double elements_asked_inside(const Demand& demand) {
   double sum = 0;
-  demand.for_each_size([&](double h, double volume) { sum += volume / std::pow(h, 3); });
+  demand.for_each_size([&](double h, double volume) { sum += volume / elementary::pow(h, 3); });
   return sum;
 }
 
@@ -103,8 +104,8 @@ double choose_cell(const Demand& demand) {
   const double asked = elements_asked_inside(demand);
   double best = demand.surface_size, least = HUGE_VAL;
   for (int i = -kStepsPerOctave / 2; i <= kStepsPerOctave / 2; ++i) {
-    const double octaves = double(i) / kStepsPerOctave, cell = demand.surface_size * std::exp2(octaves);
-    const double miss = asked > 0 ? std::abs(std::log(elements_inside(demand, cell) / asked)) : 0;
+    const double octaves = double(i) / kStepsPerOctave, cell = demand.surface_size * elementary::exp2(octaves);
+    const double miss = asked > 0 ? std::abs(elementary::log(elements_inside(demand, cell) / asked)) : 0;
     const double cost = miss + kMissPerOctave * std::abs(octaves) + kMissPerMixed * (1 - largest_share(demand, cell));
     if (cost < least) {
       least = cost;

@@ -1,5 +1,6 @@
 #include "sizing/search/budget.h"
 
+#include "base/core/elementary.h"
 #include "sizing/field/change_size_field.h"
 #include "sizing/prediction/affordable.h"
 #include "sizing/sources/source_grid.h"
@@ -44,7 +45,7 @@ double forced_by_largest(const SurfaceMesh& surface, const SizeOptions& options)
 
 /// A budget of the usual size, as the user's own factor changes it.
 double with_choices(double budget, const SurfaceMesh& surface, const SizeOptions& options) {
-  return budget / std::pow(options.automatic_factor, 3) + forced_by_largest(surface, options);
+  return budget / elementary::pow(options.automatic_factor, 3) + forced_by_largest(surface, options);
 }
 
 /// Raised to the least of some floors between `low` and `high` that leaves no more than `most` elements; to `high`
@@ -127,14 +128,14 @@ WithinCount within_count(const SizeField& finer, const SizeField& first, const T
   const double asked = expected_here(*grid);
   if (asked <= most) return {finer, asked, 0};
   const auto most_sizes = sizes_at_leaves(first, grid->root, grid->tree);
-  double low = std::log(grid->low), high = std::log(first.max_size() / grid->root.side);
+  double low = elementary::log(grid->low), high = elementary::log(first.max_size() / grid->root.side);
   for (int step = 0; step < kFloorSteps; ++step) {
     const double floor = 0.5 * (low + high);
-    (expected_here(raised_grid(*grid, most_sizes, std::exp(floor))) > most ? low : high) = floor;
+    (expected_here(raised_grid(*grid, most_sizes, elementary::exp(floor))) > most ? low : high) = floor;
   }
-  auto coarser = std::make_shared<OctreeField>(raised_grid(*grid, most_sizes, std::exp(high)));
+  auto coarser = std::make_shared<OctreeField>(raised_grid(*grid, most_sizes, elementary::exp(high)));
   grade_again(*coarser, context);
-  return {SizeField(SizeFunction::field(std::move(coarser))), asked, std::exp(high) * grid->root.side};
+  return {SizeField(SizeFunction::field(std::move(coarser))), asked, elementary::exp(high) * grid->root.side};
 }
 
 }  // namespace octafront

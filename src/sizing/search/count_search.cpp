@@ -1,5 +1,7 @@
 #include "sizing/search/count_search.h"
 
+#include "base/core/elementary.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -17,10 +19,10 @@ constexpr double kTellingStep = 0.1;
 }  // namespace
 
 CountSearch::CountSearch(double wanted, double scale)
-    : wanted_(std::log(wanted)), scale_(scale), slope_(kFirstSlope), least_miss_(HUGE_VAL) {}
+    : wanted_(elementary::log(wanted)), scale_(scale), slope_(kFirstSlope), least_miss_(HUGE_VAL) {}
 
 double CountSearch::factor() const {
-  return std::exp(scale_);
+  return elementary::exp(scale_);
 }
 
 double CountSearch::slope_between(double scale_change, double count_change) {
@@ -29,7 +31,7 @@ double CountSearch::slope_between(double scale_change, double count_change) {
 
 void CountSearch::came_out(double count) {
   before_ = last_;
-  last_ = {scale_, std::log(count), true};
+  last_ = {scale_, elementary::log(count), true};
   (is_above(last_) ? above_ : below_) = last_;
   if (before_.is_known && before_.scale != scale_)
     slope_ = slope_between(scale_ - before_.scale, last_.count - before_.count);

@@ -2,6 +2,7 @@
 
 #include <octafront/error.h>
 
+#include "base/core/elementary.h"
 #include "base/core/parallel.h"
 #include "sizing/field/change_size_field.h"
 #include "sizing/prediction/affordable.h"
@@ -66,10 +67,10 @@ double slope_of_sources(const SizeField& sizes, double more, const TetPrediction
   double slope = kMeanSlope;
   if (grid.source.empty() || more == 0) return slope;
   const auto expected_here = expected.on_leaves_of(grid);
-  const double here = std::log(expected_here(grid));
+  const double here = elementary::log(expected_here(grid));
   for (int i = 0; i < kForesteps; ++i) {
     const double step = more / slope;
-    const double there = std::log(expected_here(with_scaled_sources(grid, std::exp(step), options)));
+    const double there = elementary::log(expected_here(with_scaled_sources(grid, elementary::exp(step), options)));
     slope = CountSearch::slope_between(step, there - here);
   }
   return slope;
@@ -90,7 +91,7 @@ SizeField scaled_to_count(const SurfaceMesh& surface, const WantedSizes& wanted,
   parallel_invoke([&] { prediction.emplace(surface); },
                   [&] { first_look = source_grid(surface, wanted, options, stage.context(), kFirstLook); });
   const TetPrediction& expected = *prediction;
-  const double more = std::log(wanted_count) - std::log(expected(*first_look));
+  const double more = elementary::log(wanted_count) - elementary::log(expected(*first_look));
   CountSearch search(wanted_count, more / slope_of_sources(*first_look, more, expected, options));
   const auto grid_at_factor = [&] {
     return source_grid(surface, scaled(wanted, search.factor(), options), options, stage.context());
@@ -101,7 +102,7 @@ SizeField scaled_to_count(const SurfaceMesh& surface, const WantedSizes& wanted,
   for (; search.least_miss() > kCountTolerance && steps < kMostScalings && !search.stands_still(); ++steps) {
     const bool on_same_leaves = std::abs(search.missing()) < kOnSameLeaves && scales_as_a_whole(options);
     if (on_same_leaves) {
-      last = octafront::scaled(last, std::exp(search.missing() / kSlopeOfWhole), stage.context());
+      last = octafront::scaled(last, elementary::exp(search.missing() / kSlopeOfWhole), stage.context());
       search.step(kSlopeOfWhole);
     } else {
       search.step(slope_of_sources(last, search.missing(), expected, options));

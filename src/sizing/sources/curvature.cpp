@@ -2,6 +2,7 @@
 
 #include <octafront/surface_mesh.h>
 
+#include "base/core/elementary.h"
 #include "base/core/parallel.h"
 #include "base/geometry/measures.h"
 #include "sizing/field/octree.h"
@@ -44,9 +45,9 @@ double spectral_radius(const TensorSum& t) {
   const double p = std::sqrt((x * x + y * y + z * z + 2 * off) / 6);
   if (p == 0) return std::abs(mean);
   const double det = x * (y * z - t.yz * t.yz) - t.xy * (t.xy * z - t.yz * t.zx) + t.zx * (t.xy * t.yz - y * t.zx);
-  const double angle = std::acos(std::clamp(det / (2 * p * p * p), -1.0, 1.0)) / 3;
-  const double most = mean + 2 * p * std::cos(angle);
-  const double least = mean + 2 * p * std::cos(angle + 2 * std::numbers::pi / 3);
+  const double angle = elementary::acos(std::clamp(det / (2 * p * p * p), -1.0, 1.0)) / 3;
+  const double most = mean + 2 * p * elementary::cos(angle);
+  const double least = mean + 2 * p * elementary::cos(angle + 2 * std::numbers::pi / 3);
   return std::max(std::abs(most), std::abs(least));
 }
 
@@ -118,7 +119,7 @@ class CurvatureFinder {
       const double l = length(along);
       if (l == 0) continue;
       const Vec3 d = along / l;
-      const double turn = std::atan2(dot(cross(normal_[f], normal_[g]), d), dot(normal_[f], normal_[g]));
+      const double turn = elementary::atan2(dot(cross(normal_[f], normal_[g]), d), dot(normal_[f], normal_[g]));
       own_[f].add_line(d, 0.5 * turn * l);
     }
   }

@@ -2,6 +2,7 @@
 
 #include <octafront/surface_mesh.h>
 
+#include "base/core/elementary.h"
 #include "base/core/parallel.h"
 #include "base/geometry/measures.h"
 #include "sizing/prediction/thin_walls.h"
@@ -42,7 +43,7 @@ GapFinder::GapFinder(const KnownSurface& known, double nearest, double reach)
     normal_[f] = unit_normal(surface.points[a], surface.points[b], surface.points[c]);
   });
   const double shared = std::max(nearest, kSharedPart * reach);
-  level_ = std::clamp(static_cast<int>(std::ceil(std::log2(root_.side / shared))), 0, OctreeKey::kMaxLevel - 2);
+  level_ = std::clamp(static_cast<int>(std::ceil(elementary::log2(root_.side / shared))), 0, OctreeKey::kMaxLevel - 2);
   measure_middles(surface);
 }
 

@@ -2,6 +2,7 @@
 
 #include "sizing/sources/kept_surface.h"
 
+#include "base/core/elementary.h"
 #include "base/geometry/measures.h"
 #include "sizing/sources/check_size_options.h"
 #include "sizing/sources/curvature.h"
@@ -55,11 +56,11 @@ std::vector<double> face_sizes(const KnownSurface& known) {
   const FaceNeighbours across = smooth_face_neighbours(known.edges(), {});
   std::vector<double> smooth(own.size());
   for (std::size_t f = 0; f < own.size(); ++f) {
-    double sum = std::log(std::max(own[f], std::numeric_limits<double>::min())), n = 1;
+    double sum = elementary::log(std::max(own[f], std::numeric_limits<double>::min())), n = 1;
     for (const std::uint32_t g : across[f]) {
-      if (g != kNone && own[g] > 0) sum += std::log(own[g]), n += 1;
+      if (g != kNone && own[g] > 0) sum += elementary::log(own[g]), n += 1;
     }
-    smooth[f] = std::exp(sum / n);
+    smooth[f] = elementary::exp(sum / n);
   }
   return smooth;
 }
@@ -69,9 +70,10 @@ double mean_shortfall(const SurfaceMesh& surface, const std::vector<double>& fac
   double sum = 0;
   for (std::size_t f = 0; f < face.size(); ++f) {
     const Triangle& t = surface.triangles[f];
-    sum += std::log(face[f] / grid.at(centroid(surface.points[t[0]], surface.points[t[1]], surface.points[t[2]])));
+    sum +=
+        elementary::log(face[f] / grid.at(centroid(surface.points[t[0]], surface.points[t[1]], surface.points[t[2]])));
   }
-  return std::exp(sum / static_cast<double>(face.size()));
+  return elementary::exp(sum / static_cast<double>(face.size()));
 }
 
 /// Sizes that the longest edges of triangles have beyond two, in all: elements between a large triangle and small sizes

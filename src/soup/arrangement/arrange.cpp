@@ -3,6 +3,7 @@
 #include <octafront/error.h>
 #include <octafront/surface_mesh.h>
 
+#include "base/core/elementary.h"
 #include "base/core/wording.h"
 #include "base/geometry/predicates.h"
 #include "base/geometry/self_intersection.h"
@@ -188,7 +189,7 @@ class Arranger {
   }
 
   void bring_together(const std::vector<std::array<std::uint32_t, 2>>& pairs) {
-    const double reach = kReach * std::pow(kGrowth, result_.passes - kFirstSnap) * diagonal_;
+    const double reach = kReach * elementary::pow(kGrowth, result_.passes - kFirstSnap) * diagonal_;
     result_.largest_move = std::max(result_.largest_move, arrangement::snap(soup_, pairs, reach));
     tidy(soup_);
     merge_equal(soup_);

@@ -1,5 +1,6 @@
 #include "soup/mend/based_cap.h"
 
+#include "base/core/elementary.h"
 #include "soup/mend/flat_rim.h"
 
 #include <algorithm>
@@ -22,13 +23,13 @@ constexpr int kSimplifications = 3;
 constexpr double kSpacing = 4, kStraight = 2e-3;
 
 double distance(Flat a, Flat b) {
-  return std::hypot(a.x - b.x, a.y - b.y);
+  return elementary::hypot(a.x - b.x, a.y - b.y);
 }
 
 double distance_to_chord(Flat p, Flat a, Flat b) {
   const double ux = b.x - a.x, uy = b.y - a.y, square = ux * ux + uy * uy;
   const double along = square > 0 ? std::clamp(((p.x - a.x) * ux + (p.y - a.y) * uy) / square, 0.0, 1.0) : 0;
-  return std::hypot(p.x - a.x - along * ux, p.y - a.y - along * uy);
+  return elementary::hypot(p.x - a.x - along * ux, p.y - a.y - along * uy);
 }
 
 /// A rim seen along a direction.

@@ -1,5 +1,6 @@
 #include "surface/folds/mend_folds.h"
 
+#include "base/core/elementary.h"
 #include "base/geometry/measures.h"
 #include "base/geometry/predicates.h"
 #include "surface/edits/line_edits.h"
@@ -76,7 +77,7 @@ double farthest(const std::vector<TriangleCorners>& from, const std::vector<Tria
 
 /// Between two triangles at their common edge, from 0 (folded) to pi (flat), whichever way it bends.
 double opening(Vec3 n, Vec3 m) {
-  return std::numbers::pi - std::atan2(length(cross(n, m)), dot(n, m));
+  return std::numbers::pi - elementary::atan2(length(cross(n, m)), dot(n, m));
 }
 
 double folding(Vec3 n, Vec3 m) {

@@ -2,6 +2,7 @@
 
 #include <octafront/surface_mesh.h>
 
+#include "base/core/elementary.h"
 #include "base/core/parallel.h"
 #include "surface/sizes/point_grid.h"
 
@@ -81,7 +82,7 @@ class Front {
     double turn, x, y;
     std::uint32_t id;
 
-    double angle() const { return std::atan2(y, x); }
+    double angle() const { return elementary::atan2(y, x); }
   };
   /// Whether less than 90 degrees lie between a and b, which follows it or is the first after the last.
   static bool is_acute(const Neighbour& a, const Neighbour& b) {
@@ -219,7 +220,7 @@ class Front {
   }
 
   void leave(std::uint32_t id, const FrontPoint& point, Vec3 u, Vec3 v, double angle) {
-    const Vec3 d = u * std::cos(angle) + v * std::sin(angle);
+    const Vec3 d = u * elementary::cos(angle) + v * elementary::sin(angle);
     SurfacePoint x;
     if (walk(input_, {point.p, point.face}, d, point.normal, reach_towards(point, d), x) == WalkEnd::kArrived) {
       consider(x, id);
@@ -239,7 +240,7 @@ class Front {
       const Vec3 n = input_.face_normal[side / 3];
       const Vec3 u = normalized(mesh.points[mesh.end(side)] - mesh.points[mesh.start[side]]), v = cross(n, u);
       for (int k = 1; k < 3; ++k) {
-        const Vec3 d = u * std::cos(k * kSixtyDegrees) + v * std::sin(k * kSixtyDegrees);
+        const Vec3 d = u * elementary::cos(k * kSixtyDegrees) + v * elementary::sin(k * kSixtyDegrees);
         SurfacePoint x;
         if (walk(input_, {point.p, side / 3}, d, n, reach_towards(point, d), x) == WalkEnd::kArrived) consider(x, id);
       }
@@ -250,7 +251,7 @@ class Front {
     const HalfEdgeMesh& mesh = input_.mesh;
     const Vec3 a = mesh.points[mesh.start[corner]];
     const Vec3 u = mesh.points[mesh.end(corner)] - a, v = mesh.points[mesh.apex(corner)] - a;
-    return std::atan2(length(cross(u, v)), dot(u, v));
+    return elementary::atan2(length(cross(u, v)), dot(u, v));
   }
 
   void fill_vertex_sectors(std::uint32_t id, const FrontPoint& point) {
@@ -280,7 +281,7 @@ class Front {
         continue;
       }
       const Vec3 u = normalized(mesh.points[mesh.end(corner)] - point.p), v = cross(input_.face_normal[corner / 3], u);
-      const Vec3 d = u * std::cos(angle) + v * std::sin(angle);
+      const Vec3 d = u * elementary::cos(angle) + v * elementary::sin(angle);
       SurfacePoint x;
       if (walk_from_vertex(input_, corner, d, reach_towards(point, d), x) == WalkEnd::kArrived) consider(x, id);
       return;

@@ -2,6 +2,7 @@
 
 #include <octafront/surface_mesh.h>
 
+#include "base/core/elementary.h"
 #include "base/geometry/measures.h"
 
 #include <algorithm>
@@ -24,7 +25,7 @@ std::vector<PointSize> turned_places(double degrees, const SurfaceMesh& made, co
                                      const SizeField& sizes, const std::vector<std::uint32_t>& face,
                                      const std::vector<std::uint8_t>& is_inner,
                                      const std::vector<std::uint32_t>& source) {
-  const double limit = degrees * std::numbers::pi / 180, least = std::cos(limit);
+  const double limit = degrees * std::numbers::pi / 180, least = elementary::cos(limit);
   std::vector<PointSize> places;
   for (std::size_t t = 0; t < made.triangles.size(); ++t) {
     const auto [i, j, k] = made.triangles[t];
@@ -35,7 +36,7 @@ std::vector<PointSize> turned_places(double degrees, const SurfaceMesh& made, co
       if (is_inner[v]) cosine = std::min(cosine, cosine_to(input, normal, face[v], made.points[v]));
     }
     if (cosine >= least) continue;
-    const double turn = std::acos(std::clamp(cosine, -1.0, 1.0));
+    const double turn = elementary::acos(std::clamp(cosine, -1.0, 1.0));
     places.push_back(
         {middle, sizes.at(middle) * std::clamp(kSafety * limit / turn, kLeastTurnFactor, kMostTurnFactor)});
   }

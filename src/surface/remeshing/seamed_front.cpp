@@ -1,5 +1,6 @@
 // The steps of a complex, on its parts cut open along seams (seams.h).
 
+#include "base/core/elementary.h"
 #include "base/geometry/measures.h"
 #include "base/mesh/complex.h"
 #include "surface/folds/draw_to_input.h"
@@ -154,10 +155,10 @@ class SeamedFront : public FrontKind {
     const double asked = tolerance, first = budget.expected(foreseen);
     double count = first, slope = kFirstSlope;
     for (int step = 0; step < kMostRaises && count > kNearBudget * budget.most(); ++step) {
-      const double raise = std::clamp(std::pow(count / budget.most(), 1 / slope), kLeastRaise, kMostRaise);
+      const double raise = std::clamp(elementary::pow(count / budget.most(), 1 / slope), kLeastRaise, kMostRaise);
       foreseen = followed_within(tolerance *= raise, curves, sizes);
       const double now = budget.expected(foreseen);
-      slope = std::clamp(std::log(count / now) / std::log(raise), kFlattest, kSteepest);
+      slope = std::clamp(elementary::log(count / now) / elementary::log(raise), kFlattest, kSteepest);
       count = now;
     }
     if (tolerance == asked) return;

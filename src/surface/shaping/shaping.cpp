@@ -1,5 +1,6 @@
 #include "surface/shaping/shaping.h"
 
+#include "base/core/elementary.h"
 #include "base/core/parallel.h"
 #include "surface/edits/blocks.h"
 #include "surface/edits/local_guards.h"
@@ -197,7 +198,7 @@ class SurfaceImprover {
         continue;
       }
       const Vec3 p = mesh_.points[v], a = mesh_.points[mesh_.end(h)] - p, b = mesh_.points[mesh_.apex(h)] - p;
-      angle += std::atan2(length(cross(a, b)), dot(a, b));
+      angle += elementary::atan2(length(cross(a, b)), dot(a, b));
       h = mesh_.rotated(h);
     } while (h != first);
     close_sector();

@@ -2,6 +2,7 @@
 
 #include <octafront/error.h>
 
+#include "base/core/elementary.h"
 #include "base/core/parallel.h"
 #include "base/core/thread_limit.h"
 #include "base/core/wording.h"
@@ -248,7 +249,7 @@ class Stack {
   }
 
   void tell_tilt(Vec3 along, std::vector<std::string>& notes) const {
-    const double tilt = std::acos(std::clamp(1 / length(along), -1.0, 1.0)) * 180 / M_PI;
+    const double tilt = elementary::acos(std::clamp(1 / length(along), -1.0, 1.0)) * 180 / M_PI;
     constexpr double kSaid = 0.05;  // degrees
     if (tilt > kSaid)
       notes.push_back(fmt::format("slices are sheared by {:.4g} degrees (a tilted gantry); that is kept", tilt));
