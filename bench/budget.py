@@ -51,12 +51,12 @@ def given_up(row):
     return "strips or nearness" if row["spent"] else "details" if row["raised"] else ""
 
 
-def page(rows, failed):
+def page(rows, failed, command):
     over = [r for r in rows if r["budget"] and r["tets"] > OVER * r["budget"]]
     off = [r for r in rows if abs(r["said"] / r["tets"] - 1) > OVER - 1]
     lines = [
         "# The budget of automatic sizes", "",
-        f"{written_by('bench/run.sh budget')}, one model at a time on one thread; what the budget is: "
+        f"{written_by(command)}, one model at a time on one thread; what the budget is: "
         "`docs/how/sizes-and-surface.md`. *Said* is the prediction once the surface is made, which is what `--dry-run` "
         "says; *least β* and *least angle* (dihedral, degrees) are of the worst element, forced by the input or not; "
         "*work* is the triangles of all rounds of the surface front over those of the last.", "",
@@ -90,6 +90,7 @@ def main():
     parser.add_argument("--output", default="docs/measured/budget-status.md", type=pathlib.Path)
     options = parser.parse_args()
     paths = options.paths or [f for f in ("models/clean", "models/dirty", "models/derived") if pathlib.Path(f).is_dir()]
+    command = " ".join(["bench/run.sh budget", *options.paths])
     rows, failed = [], []
     for model in models(paths):
         if options.only not in model.name:
@@ -102,7 +103,7 @@ def main():
             rows.append(figures(model, report))
             print(f"{model.name:32} {rows[-1]['tets']:>10,} of {rows[-1]['budget']:>10,.0f} {rows[-1]['cpu']:6.1f} s "
                   f"{given_up(rows[-1])}", flush=True)
-        options.output.write_text(page(rows, failed) if rows else "")
+        options.output.write_text(page(rows, failed, command) if rows else "")
 
 
 if __name__ == "__main__":

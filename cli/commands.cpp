@@ -77,6 +77,8 @@ std::uint64_t ask_solver(Session& session, const TetMesh& mesh) {
 std::optional<std::string> inverted(const MeshFile& file) {
   const std::size_t all = file.mesh.tets.size();
   if (file.turned == 0 || file.turned == all) return std::nullopt;
+  if (file.turned_wide > 0)
+    return fmt::format("{} of its {} wedges and pyramids are inverted", file.turned_wide, file.mesh.wide_cells.size());
   return fmt::format("{} of its {} elements are inverted", file.turned, all);
 }
 

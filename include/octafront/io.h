@@ -100,14 +100,16 @@ struct MeshFile {
   TetMesh mesh;
   std::string format;              ///< e.g. "Gmsh MSH 4.1"
   std::vector<std::string> notes;  ///< what a user should know, e.g. "3 hexahedra were left out"
-  std::uint64_t turned = 0;        ///< tetrahedra that were inverted in the file
+  std::uint64_t turned = 0;        ///< tetrahedra that were inverted in the file, those of wedges and pyramids too
+  std::uint64_t turned_wide = 0;   ///< wedges and pyramids that were
 };
 
 /// Reads a tetrahedral mesh, linear or of second order, with its groups, in any format of known_formats() that
-/// reads_mesh; recognised by content, the name breaks ties. Inverted tetrahedra are turned, other kinds of elements and
-/// unused vertices are left out, a boundary face that the file lacks is added, and faces inside that the file has
-/// become interfaces. Groups of elements that overlap no earlier one become regions (of faces: patches, of edges:
-/// curves), others sets. Throws InputError; memory is bounded by a small multiple of the size of the file.
+/// reads_mesh; recognised by content, the name breaks ties. Inverted elements are turned, wedges and pyramids divided
+/// into tetrahedra (TetMesh::wide_cells), other kinds of elements and unused vertices left out, a boundary face that
+/// the file lacks is added, and faces inside that the file has become interfaces. Groups of elements that overlap no
+/// earlier one become regions (of faces: patches, of edges: curves), others sets. Throws InputError; memory is bounded
+/// by a small multiple of the size of the file.
 MeshFile read_mesh_file(const std::string& file, const RunContext& context = {});
 /// The mesh alone.
 TetMesh read_mesh(const std::string& file, const RunContext& context = {});

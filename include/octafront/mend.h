@@ -97,8 +97,7 @@ struct Mended {
   SurfaceMesh surface;  ///< clean; `source` refers to the input's faces
   MendReport report;
   /// Per triangle of `surface` how near a mesh of automatic sizes stays to it, where that is nearer than elsewhere
-  /// (input units, > 0): the tolerance, where repair moved something, half as much again, where it laid a crumple flat;
-  /// infinity: no nearer. Empty: so everywhere.
+  /// (input units, > 0): the tolerance, where repair moved something; infinity: no nearer. Empty: so everywhere.
   std::vector<double> bound = {};
 };
 

@@ -191,6 +191,40 @@ class CommandLine(unittest.TestCase):
         self.assertIn("cross or touch", check(corners[:4] + ["-.5 .1 .1", ".5 .1 .1", "-.5 .2 .1", "-.5 .1 .2"], ["1 2 3 4", "5 6 7 8"], 3))
         self.assertIn("inside of other elements", check(corners[:4] + inner, ["1 2 3 4", "5 6 7 8"], 3))
 
+    def test_check_judges_wedges(self):
+        corners = ["0 0 0", "1 0 0", "0 1 0", "0 0 1", "1 0 1", "0 1 1", "0 0 2", "1 0 2", "0 1 2"]
+
+        def check(prisms, status):
+            file = self.dir / "m.mesh"
+            file.write_text("MeshVersionFormatted 2\nDimension 3\nVertices {}\n{}\nPrisms {}\n{}\nEnd\n".format(
+                len(corners), "\n".join(p + " 0" for p in corners), len(prisms), "\n".join(p + " 1" for p in prisms)))
+            done = self.run_cli("check", file, "--json", self.dir / "found.json", status=status)
+            return done.stdout + done.stderr, json.loads((self.dir / "found.json").read_text())
+
+        said, found = check(["1 2 3 4 5 6", "4 5 6 7 8 9"], 0)
+        self.assertIn("wedges: 2, least scaled Jacobian 0.8165", said)  # sin 45 over sin 60
+        self.assertEqual(found["wedges"]["count"], 2)
+        self.assertEqual(found["wedges"]["torn"], 0)
+        said, _ = check(["1 2 3 4 5 6", "4 6 5 7 9 8"], 3)
+        self.assertIn("1 of its 2 wedges and pyramids are inverted", said)
+        said, _ = check(["1 2 3 4 5 6", "4 5 6 7 9 8"], 3)
+        self.assertIn("is torn: the Jacobian is not positive at 3 of its 6 corners", said)
+
+    def test_convert_and_improve_keep_wedges(self):
+        points = [(i, j, k) for k in (0, 1, 2) for j in (0, 1) for i in (0, 1)]
+        rows = [[1 + 4 * level + c for level in (k, k + 1) for c in half] for k in (0, 1) for half in ((0, 1, 3), (0, 3, 2))]
+        file = self.dir / "m.mesh"
+        file.write_text("MeshVersionFormatted 2\nDimension 3\nVertices {}\n{}\nPrisms {}\n{}\nEnd\n".format(
+            len(points), "\n".join("%g %g %g 0" % p for p in points), len(rows),
+            "\n".join(" ".join(map(str, row)) + " 1" for row in rows)))
+        self.run_cli("convert", file, "-o", self.dir / "m.bdf", "--order", 2)
+        self.assertEqual((self.dir / "m.bdf").read_text().count("CPENTA"), 4)
+        self.run_cli("convert", self.dir / "m.bdf", "-o", self.dir / "m.vtu")
+        self.run_cli("improve", self.dir / "m.vtu", "-o", self.dir / "m.inp")
+        self.assertIn("TYPE=C3D6", (self.dir / "m.inp").read_text())
+        done = self.run_cli("check", self.dir / "m.inp")
+        self.assertIn("wedges: 4", done.stdout + done.stderr)
+
     def test_meshes_of_all_formats_are_meshed_anew(self):
         bracket = SAMPLES / "bracket.stl"
         outputs = [self.dir / f"a.{ending}" for ending in ("vtu", "vtk", "inp", "bdf", "unv", "vol")]

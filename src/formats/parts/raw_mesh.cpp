@@ -117,7 +117,7 @@ class Ordering {
     }
     if (raw_.other_elements > 0)
       raw_.notes.push_back(fmt::format("{} elements of other kinds were left out", raw_.other_elements));
-    return {std::move(mesh_), std::move(raw_.format), std::move(raw_.notes), turned_};
+    return {std::move(mesh_), std::move(raw_.format), std::move(raw_.notes), turned_, turned_wide_};
   }
 
  private:
@@ -210,7 +210,8 @@ class Ordering {
   /// that convention, and nothing is inverted.
   void take_wide_cells() {
     mesh_.wide_cells = std::move(raw_.wide_cells);
-    const std::size_t wedges = turn_wide_cells(mesh_.wide_cells, is_turned_);
+    std::size_t wedges = 0;
+    turned_wide_ = turn_wide_cells(mesh_.wide_cells, is_turned_, wedges);
     if (wedges > 0)
       raw_.notes.push_back(fmt::format("{} wedges face the other way here, as all in this file: turned", wedges));
     turned_ = static_cast<std::uint64_t>(std::count(is_turned_.begin(), is_turned_.end(), true));
@@ -281,6 +282,7 @@ class Ordering {
       mesh_.boundary.push_back(outward);
       mesh_.patch.push_back(patch_of(i));
       if (!raw_.triangle_source.empty()) mesh_.source.push_back(raw_.triangle_source[i]);
+      if (!raw_.triangle_layers.empty()) mesh_.face_layers.push_back(raw_.triangle_layers[i]);
     }
     const std::size_t given = mesh_.boundary.size();
     const auto add = [&](std::size_t f) {
@@ -288,6 +290,7 @@ class Ordering {
       mesh_.boundary.push_back(faces[f]);
       mesh_.patch.push_back(free);
       if (!raw_.triangle_source.empty()) mesh_.source.push_back(kNone);
+      if (!raw_.triangle_layers.empty()) mesh_.face_layers.push_back(kNone);
     };
     for (std::size_t f = 0; f < faces.size(); ++f) {
       if (taken_by[f] != kNone) continue;
@@ -339,6 +342,7 @@ class Ordering {
       face_of_[i] = static_cast<std::uint32_t>(mesh_.boundary.size() + mesh_.interfaces.size());
       mesh_.interfaces.push_back(faces[k]);
       mesh_.interface_patch.push_back(patches.numbers[i] == kNone ? free : patches.numbers[i]);
+      if (!raw_.triangle_layers.empty()) mesh_.face_layers.push_back(raw_.triangle_layers[i]);
     }
     if (dropped > 0) raw_.notes.push_back(fmt::format("{} triangles that bound no tetrahedron were left out", dropped));
   }
@@ -431,7 +435,7 @@ class Ordering {
   RawMesh raw_;
   const Input& input_;
   TetMesh mesh_;
-  std::uint64_t turned_ = 0;
+  std::uint64_t turned_ = 0, turned_wide_ = 0;
   std::vector<bool> is_turned_;                   ///< per tetrahedron
   std::vector<VertexIndex> number_;               ///< of the points of the file
   std::vector<std::uint32_t> face_of_, edge_of_;  ///< of the triangles and edges of the file

@@ -42,6 +42,7 @@ struct RawMesh {
   std::vector<Triangle> triangles;
   std::vector<std::int64_t> triangle_ref;      ///< one per triangle; empty: patches come from groups
   std::vector<std::uint32_t> triangle_source;  ///< one per triangle, or empty
+  std::vector<std::uint32_t> triangle_layers;  ///< as TetMesh::face_layers: one per triangle, or empty
   std::vector<Edge> edges;
   std::vector<std::int64_t> edge_ref;  ///< as of triangles
   std::vector<WideCell> wide_cells;    ///< made by add_wide_cell(), ascending

@@ -202,24 +202,25 @@ void renumber_wide(RawMesh& raw, const std::vector<VertexIndex>& number) {
   for (WideFace& face : raw.wide_faces) renumber(face.nodes);
 }
 
-std::size_t turn_wide_cells(std::vector<WideCell>& cells, std::vector<bool>& is_turned) {
-  std::size_t wedges = 0, turned_wedges = 0;
-  const auto all_turned = [&](const WideCell& cell) {
-    const auto first = is_turned.begin() + cell.first;
-    return std::all_of(first, first + cell.tet_count, [](bool turned) { return turned; });
-  };
+std::size_t turn_wide_cells(std::vector<WideCell>& cells, std::vector<bool>& is_turned, std::size_t& wedges) {
+  std::size_t turned = 0, turned_wedges = 0, all_wedges = 0;
   for (WideCell& cell : cells) {
-    wedges += cell.tet_count == 3;
-    if (!all_turned(cell)) continue;
-    turned_wedges += cell.tet_count == 3;
+    const bool is_wedge = cell.tet_count == 3;
+    all_wedges += is_wedge;
+    const auto first = is_turned.begin() + cell.first;
+    if (!std::all_of(first, first + cell.tet_count, [](bool of_tet) { return of_tet; })) continue;
+    ++turned;
+    turned_wedges += is_wedge;
     const WideCell old = cell;
-    for (std::size_t k = 0; k < cell.tet_count + 3; ++k)
-      cell.nodes[k] = old.nodes[(cell.tet_count == 3 ? kVtkWide.of(true) : kMedWide.of(false))[k]];
+    const auto mirrored = is_wedge ? kVtkWide.of(true) : kMedWide.of(false);
+    for (std::size_t k = 0; k < cell.tet_count + 3; ++k) cell.nodes[k] = old.nodes[mirrored[k]];
   }
-  if (wedges == 0 || turned_wedges < wedges) return 0;
+  const bool is_whole_mesh = std::all_of(is_turned.begin(), is_turned.end(), [](bool of_tet) { return of_tet; });
+  if (turned_wedges == 0 || turned_wedges < all_wedges || is_whole_mesh) return turned;
   for (const WideCell& cell : cells)
     if (cell.tet_count == 3) std::fill_n(is_turned.begin() + cell.first, cell.tet_count, false);
-  return wedges;
+  wedges = all_wedges;
+  return turned - wedges;
 }
 
 SidesOfWideCells::SidesOfWideCells(const TetMesh& mesh) {

@@ -19,9 +19,10 @@ void add_diagonals(RawMesh& raw);
 
 void renumber_wide(RawMesh& raw, const std::vector<VertexIndex>& number);
 
-/// Mirrors cells all of whose tetrahedra were turned. If that is so of all wedges of the mesh, their tetrahedra count
-/// as turned no more, and it returns how many wedges there are; else 0.
-std::size_t turn_wide_cells(std::vector<WideCell>& cells, std::vector<bool>& is_turned);
+/// Mirrors cells all of whose tetrahedra were turned, and returns how many. If all wedges were, but not all of the
+/// mesh, that is what their file calls a wedge: their tetrahedra count as turned no more, and `wedges` is how many they
+/// are.
+std::size_t turn_wide_cells(std::vector<WideCell>& cells, std::vector<bool>& is_turned, std::size_t& wedges);
 
 /// The quadrilaterals of the wedges and pyramids of a mesh, by their corners.
 class SidesOfWideCells {

@@ -144,17 +144,15 @@ class Nastran {
       } else if (name == "CTETRA") {
         read_element(solids_, cards_.field(6).empty() ? 4 : 10);
       } else if (name == "CPENTA") {
-        read_element(solids_, cards_.field(8).empty() ? 6 : 15);
+        read_element(solids_, has_fields(8, 17) ? 15 : 6);
       } else if (name == "CPYRAM" || name == "CPYRA") {
-        read_element(solids_, cards_.field(7).empty() ? 5 : 13);
+        read_element(solids_, has_fields(7, 15) ? 13 : 5);
       } else if (name == "CTRIA3") {
         read_element(shells_, 3);
       } else if (name == "CTRIA6") {
         read_element(shells_, 6);
-      } else if (name == "CQUAD4") {
+      } else if (name == "CQUAD4" || name == "CQUAD8") {
         read_element(shells_, 4);
-      } else if (name == "CQUAD8") {
-        read_element(shells_, 8);
       } else if (name.starts_with("SET ")) {
         read_set();
       } else if (name == "CHEXA") {
@@ -197,6 +195,13 @@ class Nastran {
     if (!node_ids_.add(id)) cards_.fail(fmt::format("a second node {}; the file is damaged", id));
     raw_.points.push_back({xyz[0], xyz[1], xyz[2]});
     nodes_.push_back(id);
+  }
+
+  /// Whether none of these fields is empty: mid-side nodes may be left out.
+  bool has_fields(std::size_t begin, std::size_t end) const {
+    for (std::size_t i = begin; i < end; ++i)
+      if (cards_.field(i).empty()) return false;
+    return true;
   }
 
   void read_element(std::vector<Element>& to, std::uint8_t count) {

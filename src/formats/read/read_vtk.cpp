@@ -251,7 +251,7 @@ class Vtk {
 
   void take_array(const std::string& name, std::uint64_t n, const Type& of) {
     const bool is_wanted = is_set_name(name) || name == "region" || name == "patch" || name == "curve" ||
-                           name == "source" || of_ == Of::kField;
+                           name == "source" || name == "layers" || of_ == Of::kField;
     if (!is_wanted || of.name == "double" || of.name == "float") return values(n, of, [](double) {});
     std::vector<std::int64_t> all = integers(n, of);
     if (of_ == Of::kField) {
@@ -271,8 +271,8 @@ class Vtk {
       if (all.size() != types_.size()) continue;
       if (is_set_name(name)) {
         data.sets.emplace_back(name, std::move(all));
-      } else if (name == "source") {
-        data.source = std::move(all);
+      } else if (name == "source" || name == "layers") {
+        (name == "source" ? data.source : data.layers) = std::move(all);
       } else {
         for (std::int64_t& v : all) ++v;
         (name == "region" ? data.region : name == "patch" ? data.patch : data.curve) = std::move(all);

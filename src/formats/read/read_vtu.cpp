@@ -94,8 +94,9 @@ class Vtu {
     const std::vector<std::int64_t> offsets = vtk_integers(xml_, offsets_array, input_, xml_.cells);
     check_length(offsets_array, offsets.size(), xml_.cells);
     const std::vector<std::int64_t> connectivity = vtk_integers(xml_, connectivity_array, input_, most_corners());
-    VtkCellData data{references("region"), references("patch"), references("curve"), {}, {}};
+    VtkCellData data{references("region"), references("patch"), references("curve"), {}, {}, {}};
     if (auto sources = cell_integers("source", 0)) data.source = *std::move(sources);
+    if (auto layers = cell_integers("layers", 0)) data.layers = *std::move(layers);
     for (const VtkArray& array : xml_.arrays)
       if (array.section == "CellData" && is_set_name(array.name))
         if (auto values = cell_integers(array.name, 0)) data.sets.emplace_back(array.name, *std::move(values));

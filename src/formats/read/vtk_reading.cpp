@@ -46,6 +46,17 @@ VertexIndex VtkCellTaker::node(std::uint64_t cell, std::int64_t index) const {
   return static_cast<VertexIndex>(index);
 }
 
+void VtkCellTaker::take_face_data(std::uint64_t cell) {
+  const auto take_data = [&](const std::vector<std::int64_t>& from, std::vector<std::uint32_t>& to) {
+    if (from.empty()) return;
+    const std::int64_t value = from[cell];
+    to.resize(raw_.triangles.size(),
+              value >= 0 && value < std::int64_t{kNone} ? static_cast<std::uint32_t>(value) : kNone);
+  };
+  take_data(data_.source, raw_.triangle_source);
+  take_data(data_.layers, raw_.triangle_layers);
+}
+
 void VtkCellTaker::take(std::uint64_t cell, std::int64_t type, std::span<const std::int64_t> nodes) {
   enum : std::int64_t {
     kLine = 3,
@@ -89,18 +100,14 @@ void VtkCellTaker::take(std::uint64_t cell, std::int64_t type, std::span<const s
     member = raw_.triangles.size();
     raw_.add_face(std::span(all).first(count), at_or(data_.patch, cell, 1));
     end = raw_.triangles.size();
-    if (!data_.source.empty()) raw_.triangle_source.resize(end, kNone);
+    take_face_data(cell);
   } else if ((type == kTriangle && count == 3) || (type == kTriangle6 && count == 6)) {
     take_nodes();
     kind = Kind::kFaces;
     member = raw_.triangles.size();
     raw_.triangles.push_back({all[0], all[1], all[2]});
     raw_.triangle_ref.push_back(at_or(data_.patch, cell, 1));
-    if (!data_.source.empty()) {
-      const std::int64_t face = data_.source[cell];
-      raw_.triangle_source.push_back(face >= 0 && face < std::int64_t{kNone} ? static_cast<std::uint32_t>(face)
-                                                                             : kNone);
-    }
+    take_face_data(cell);
   } else if (((type == kLine && count == 2) || (type == kLine3 && count == 3)) && !data_.curve.empty() &&
              data_.curve[cell] > 0) {
     // Lines that nobody calls a curve may be anything, such as the bars of a frame.

@@ -15,7 +15,7 @@ namespace octafront::io {
 
 /// Data of the cells of a VTK file; each empty or one per cell. Numbers are references: counted from 1.
 struct VtkCellData {
-  std::vector<std::int64_t> region, patch, curve, source;
+  std::vector<std::int64_t> region, patch, curve, source, layers;
   std::vector<std::pair<std::string, std::vector<std::int64_t>>> sets;  ///< not 0: a member
 };
 
@@ -33,6 +33,8 @@ class VtkCellTaker {
 
  private:
   VertexIndex node(std::uint64_t cell, std::int64_t index) const;
+  /// Sources and layers of the triangles since the last call, which this cell is.
+  void take_face_data(std::uint64_t cell);
 
   const Input& input_;
   RawMesh& raw_;

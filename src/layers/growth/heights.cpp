@@ -21,8 +21,9 @@ constexpr int kMostAlong = 16;
 constexpr double kMostRatio = 2, kMostSlope = 1;
 /// Layers are made thinner down to this part before some are left out.
 constexpr double kThinnest = 0.5;
-/// From all layers to none over so many edges.
-constexpr std::uint32_t kStepsToNone = 2;
+/// From all layers to none over so many edges. Few layers are all there or none: elements where a stack ends lean far
+/// over the layer below, as finite volumes do not bear, and thin stacks are no loss.
+constexpr std::uint32_t kStepsToNone = 2, kFewLayers = 4;
 
 double asked_height(const Columns& columns, VertexIndex v) {
   return columns.first[v] * columns.height_of(columns.asked);
@@ -57,6 +58,7 @@ void relax(const Walls& walls, const Columns& columns, Allowance& allowed) {
 
 /// The most layers that may be had with at least kThinnest of their heights.
 std::uint32_t layers_within(const Columns& columns, double part) {
+  if (columns.asked <= kFewLayers) return part >= kThinnest ? columns.asked : 0;
   const double all = columns.height_of(columns.asked);
   std::uint32_t count = columns.asked;
   while (count > 0 && kThinnest * columns.height_of(count) > part * all) --count;
@@ -64,7 +66,7 @@ std::uint32_t layers_within(const Columns& columns, double part) {
 }
 
 void drop_layers(const Walls& walls, const Allowance& allowed, Columns& columns) {
-  const std::uint32_t most_step = std::max(1u, (columns.asked + 1) / kStepsToNone);
+  const std::uint32_t most_step = columns.asked <= kFewLayers ? columns.asked : (columns.asked + 1) / kStepsToNone;
   for (const VertexIndex v : walls.wall_vertices) columns.count[v] = layers_within(columns, allowed.part[v]);
   for (bool changes = true; changes;) {
     changes = false;

@@ -15,8 +15,6 @@ namespace {
 constexpr double kSineOf60 = 0.86602540378443865;
 /// A prism may be so much more distorted than its triangle of the wall.
 constexpr double kLeastJacobian = 0.1;
-/// A prism's middle line leans away from its triangle's normal by at most 70 degrees: what finite volumes bear.
-constexpr double kLeastUpright = 0.342;
 /// The top of a triangle's layers faces at most 84 degrees away from the triangle.
 constexpr double kLeastFacing = 0.1;
 /// Triangles beside layers keep this part of their area.
@@ -72,19 +70,22 @@ class Soundness {
         const auto& [a, b, c, d] = made.tets[i];
         if (orient3d(place(a), place(b), place(c), place(d)) <= 0) return false;
       }
-      if (made.count < 3) continue;
-      if (!is_upright(t, k) || !(least_scaled_jacobian(wall_, columns_, t, k) >= least)) return false;
+      if (made.count == 2 && !is_sound_pyramid(t, k)) return false;
+      if (made.count == 3 && !(least_scaled_jacobian(wall_, columns_, t, k) >= least)) return false;
     }
     return true;
   }
 
-  bool is_upright(const Triangle& t, std::uint32_t layer) const {
-    const auto [a, b, c] = t;
-    Vec3 way;
-    for (const VertexIndex v : t) way += place({v, layer + 1}) - place({v, layer});
-    // The normal points away from the layers.
-    const Vec3 normal = double_area_normal(place({a, layer}), place({c, layer}), place({b, layer}));
-    return dot(way, normal) >= kLeastUpright * length(way) * length(normal);
+  /// Where one column has ended: each corner of the base must see the apex, whatever way that is divided.
+  bool is_sound_pyramid(const Triangle& t, std::uint32_t layer) const {
+    int end = 0;
+    while (columns_.count[t[end]] > layer) ++end;
+    const VertexIndex p = t[(end + 1) % 3], q = t[(end + 2) % 3];
+    const std::array base{place({q, layer}), place({q, layer + 1}), place({p, layer + 1}), place({p, layer})};
+    const Vec3 apex = place({t[end], columns_.count[t[end]]});
+    for (int i = 0; i < 4; ++i)
+      if (orient3d(base[i], base[(i + 1) % 4], base[(i + 3) % 4], apex) <= 0) return false;
+    return true;
   }
 
   const Walls& walls_;

@@ -284,7 +284,6 @@ class Crumples {
     for (std::uint32_t t = 0; t < gone.size(); ++t)
       if (!gone[t]) old.push_back(t);
     old.insert(old.end(), like.begin(), like.end());
-    for (const std::uint32_t t : like) done.like.push_back(draft_.face[t]);
     std::vector<std::uint32_t> face, patch;
     for (const std::uint32_t t : old) {
       face.push_back(draft_.face[t]);
@@ -317,10 +316,8 @@ LaidFlat lay_crumples_flat(Draft& draft, double tolerance) {
     all.faces += done.faces;
     all.largest_move = std::max(all.largest_move, done.largest_move);
     all.places.insert(all.places.end(), done.places.begin(), done.places.end());
-    all.like.insert(all.like.end(), done.like.begin(), done.like.end());
   }
   if (all.faces > 0) tidy::drop_unused_vertices(draft);
-  std::ranges::sort(all.like);
   return all;
 }
 

@@ -13,7 +13,6 @@ struct LaidFlat {
   std::uint64_t faces = 0;  ///< taken away
   double largest_move = 0;
   std::vector<Vec3> places;
-  std::vector<std::uint32_t> like;  ///< faces of the input that caps stand for, sorted
 };
 
 /// Where a sheet crosses nothing but itself, and all that within the tolerance, its faces there give way to those over

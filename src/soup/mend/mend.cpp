@@ -24,7 +24,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <span>
 #include <unordered_map>
 #include <utility>
 
@@ -123,9 +122,6 @@ class Mending {
     }
     return std::nullopt;
   }
-
-  /// Faces of the input that stand for what was laid flat, sorted.
-  const std::vector<std::uint32_t>& laid_flat() const { return laid_flat_; }
 
   /// The last rung: by the winding number alone, on a lattice.
   SurfaceMesh rebuilt_result() {
@@ -233,9 +229,8 @@ class Mending {
   }
 
   void lay_flat() {
-    LaidFlat done = lay_crumples_flat(draft_, report_.tolerance);
+    const LaidFlat done = lay_crumples_flat(draft_, report_.tolerance);
     if (done.faces == 0) return;
-    laid_flat_ = std::move(done.like);
     report_.largest_move = std::max(report_.largest_move, done.largest_move);
     for (const Vec3 p : done.places) report_.changes.push_back({Kind::kLaidFlat, p, done.largest_move});
     const tidy::InputFaces turned = std::move(turned_);
@@ -406,25 +401,18 @@ class Mending {
   PieceOf pieces_;  ///< of the draft's triangles and of the caps behind them
   tidy::InputFaces turned_;
   std::vector<Hole> holes_;
-  std::vector<std::uint32_t> laid_flat_;
 };
 
 /// Of the tolerance, in turn: what was brought together may have been in the way, so each time less of it is.
 constexpr double kParts[] = {1.0, 0.05, 1e-3, 0.0};
 
-/// `laid_flat`: faces of the input that stand for what was laid flat.
-SurfaceMesh mended_soup(const SurfaceMesh& soup, const RunContext& context, MendReport& report,
-                        std::vector<std::uint32_t>& laid_flat) {
+SurfaceMesh mended_soup(const SurfaceMesh& soup, const RunContext& context, MendReport& report) {
   context.report("mending", -1);
   const MendReport before = report;
   std::optional<MendReport> failed;
   for (const double part : kParts) {
     report = before;
-    Mending mending(soup, context, report);
-    if (auto surface = mending.exact_result(part * report.tolerance)) {
-      laid_flat = mending.laid_flat();
-      return std::move(*surface);
-    }
+    if (auto surface = Mending(soup, context, report).exact_result(part * report.tolerance)) return std::move(*surface);
     if (!failed) failed = report;
     if (report.joined_vertices + report.divided_edges == 0) break;
   }
@@ -457,32 +445,26 @@ SurfaceMesh wrapped(const SurfaceMesh& soup, const MendOptions& options, const R
 /// Points of faces that were divided are rounded, and dust is taken out: what lies no farther from its face than this
 /// part of the tolerance was not moved.
 constexpr double kUnmoved = 0.01;
-/// Caps of crumples lie up to the tolerance from what they stand for: more than this part of it in all would ask for
-/// many more elements, and say no more of the body.
-constexpr double kLaidFlat = 1.5;
 
-/// For what was moved, by no more than the tolerance, the tolerance, and somewhat more for what was laid flat; what was
-/// invented nobody knows any nearer. Empty if nothing was moved.
-std::vector<double> bounds_of(const SurfaceMesh& soup, const SurfaceMesh& made, const MendReport& report,
-                              std::span<const std::uint32_t> laid_flat) {
+/// For what was moved, by no more than the tolerance, the tolerance; what was invented nobody knows any nearer. Empty
+/// if nothing was moved.
+std::vector<double> bounds_of(const SurfaceMesh& soup, const SurfaceMesh& made, const MendReport& report) {
   if (report.tolerance == 0 || report.count(Kind::kRebuilt) > 0) return {};
   std::unordered_map<std::uint32_t, std::uint32_t> face_of;
   for (std::uint32_t t = 0; t < soup.triangles.size() && !soup.source.empty(); ++t) face_of.emplace(soup.source[t], t);
   std::vector<double> bounds(made.triangles.size(), HUGE_VAL);
   bool any = false;
   for (std::size_t t = 0; t < bounds.size(); ++t) {
-    const std::uint32_t source = made.source_of(t), face = soup.source.empty() ? source : face_of.at(source);
-    const auto& [a, b, c] = soup.triangles[face];
+    const std::uint32_t source = made.source_of(t);
+    const auto& [a, b, c] = soup.triangles[soup.source.empty() ? source : face_of.at(source)];
     double moved = 0;
     for (const VertexIndex v : made.triangles[t]) {
       const Vec3 p = made.points[v];
       moved =
           std::max(moved, distance(p, closest_point_on_triangle(p, soup.points[a], soup.points[b], soup.points[c])));
     }
-    // Far from its face is what closes a hole, or a crumple that was laid flat.
-    const bool is_far = moved > report.tolerance;
-    if (moved <= kUnmoved * report.tolerance || (is_far && !std::ranges::binary_search(laid_flat, face))) continue;
-    bounds[t] = (is_far ? kLaidFlat : 1) * report.tolerance;
+    if (!(moved > kUnmoved * report.tolerance && moved <= report.tolerance)) continue;
+    bounds[t] = report.tolerance;
     any = true;
   }
   return any ? bounds : std::vector<double>{};
@@ -507,9 +489,8 @@ Mended mend_surface(const SurfaceMesh& soup, const MendOptions& options, const R
     const bool is_enough = find_defects(repaired, context).clean();
     report.clean = is_enough && !has_changed(repaired);
     if (!is_enough) {
-      std::vector<std::uint32_t> laid_flat;
-      mended.surface = mended_soup(soup, context, report, laid_flat);
-      mended.bound = bounds_of(soup, mended.surface, report, laid_flat);
+      mended.surface = mended_soup(soup, context, report);
+      mended.bound = bounds_of(soup, mended.surface, report);
     } else if (report.clean) {
       mended.surface = soup;
     } else {

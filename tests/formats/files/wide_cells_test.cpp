@@ -1,6 +1,7 @@
 // Wedges, pyramids and quadrilaterals in files: written and read again, linear and of second order, and as others
 // write them. What others make of the files is judged by tests/formats.
 
+#include <octafront/error.h>
 #include <octafront/io.h>
 #include <octafront/validity.h>
 
@@ -11,6 +12,7 @@
 
 #include <algorithm>
 #include <map>
+#include <random>
 #include <set>
 #include <string>
 
@@ -120,6 +122,20 @@ std::vector<std::string> formats_with_wedges() {
 INSTANTIATE_TEST_SUITE_P(, WideCells, ::testing::ValuesIn(formats_with_wedges()),
                          [](const auto& test) { return test.param; });
 
+TEST(FaceLayers, AreKeptByVtk) {
+  TetMesh mesh = testing::mixed_mesh(2);
+  for (std::size_t f = 0; f < mesh.boundary.size() + mesh.interfaces.size(); ++f)
+    mesh.face_layers.push_back(f < mesh.boundary.size() && mesh.patch[f] == 0 ? 2 : kNone);
+  for (const auto& file : {"a.vtu", "a.vtk"}) {
+    const TemporaryFolder folder;
+    write_mesh(folder / file, mesh);
+    const TetMesh back = read_mesh(folder / file);
+    ASSERT_EQ(back.face_layers.size(), mesh.face_layers.size());
+    EXPECT_EQ(std::ranges::count(back.face_layers, 2u), std::ranges::count(mesh.face_layers, 2u));
+    for (std::size_t f = 0; f < back.boundary.size(); ++f) EXPECT_EQ(back.face_layers[f] == 2, back.patch[f] == 0);
+  }
+}
+
 TEST(CurvedWideCells, HaveNoNodesOnDiagonalsInFiles) {
   const TemporaryFolder folder;
   const TetMesh mesh = testing::with_mid_nodes(testing::mixed_mesh(2));
@@ -196,6 +212,46 @@ TEST(ReadMesh, WedgesThatAllFaceTheOtherWayAreTurned) {
   const auto& p = file.mesh.points;
   EXPECT_GT(orient3d(p[w[0]], p[w[1]], p[w[2]], p[w[3]]), 0);
   EXPECT_EQ(file.notes.size(), 1u);
+}
+
+TEST(ReadMesh, OneInvertedWedgeIsADefect) {
+  const MeshFile file = io::read_mesh_bytes(
+      {"a.mesh",
+       "MeshVersionFormatted 2\nDimension 3\nVertices\n9\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\n1 0 1 0\n0 1 1 0\n"
+       "0 0 2 0\n1 0 2 0\n0 1 2 0\nPrisms\n2\n1 3 2 4 6 5 7\n4 5 6 7 8 9 7\nEnd\n"});
+  EXPECT_EQ(first_defect(file.mesh), std::nullopt);
+  EXPECT_EQ(first_wide_defect(file.mesh), std::nullopt);
+  EXPECT_EQ(file.turned, 3u);
+  EXPECT_EQ(file.turned_wide, 1u);
+}
+
+TEST(ReadMesh, DamagedFilesWithWedgesAreReadOrRefused) {
+  std::mt19937 random(7);
+  const TemporaryFolder folder;
+  int read = 0, refused = 0;
+  for (const FormatInfo& info : known_formats()) {
+    const bool is_hdf5 = info.name == "med" || info.name == "xdmf";
+    if (!info.reads_mesh || !info.holds.wide_cells || is_hdf5) continue;
+    TetMesh mesh = testing::mixed_mesh(1);
+    if (info.holds.curved_wide_cells) mesh = testing::with_mid_nodes(std::move(mesh));
+    write_mesh(folder / file_of(info), mesh, {}, {.format = std::string(info.name), .ascii = info.also_text});
+    const std::string whole = testing::file_bytes(folder / file_of(info));
+    for (int i = 0; i < 200; ++i) {
+      std::string bytes = whole;
+      for (int k = 0; k < 1 + i % 3; ++k) bytes[random() % bytes.size()] = "0123456789 -.\n"[random() % 14];
+      try {
+        const TetMesh found = mesh_of(bytes, file_of(info));
+        first_defect(found);
+        first_wide_defect(found);
+        write_mesh(folder / "again.vtu", found);
+        ++read;
+      } catch (const InputError&) {
+        ++refused;
+      }
+    }
+  }
+  EXPECT_GT(read, 100);
+  EXPECT_GT(refused, 100);
 }
 
 constexpr const char* kDeck = R"(*NODE

@@ -13,6 +13,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <map>
 #include <numbers>
 #include <set>
@@ -164,7 +166,13 @@ TEST(Layers, EndOnFlatPatchesWithout) {
   EXPECT_NEAR(wall, 8 * std::numbers::pi, 0.3);
 }
 
-class LayerFiles : public InItsFolder {};
+class LayerFiles : public InItsFolder {
+ protected:
+  std::string text_of(const char* name) const {
+    std::ifstream in(folder_ / name);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+};
 
 TEST_F(LayerFiles, HaveWedgesWhereTheFormatDoes) {
   LayersOptions asked;
@@ -194,6 +202,39 @@ TEST_F(LayerFiles, HaveWedgesWhereTheFormatDoes) {
   TetMesh broken = mesh;
   std::swap(broken.wide_cells[0].nodes, broken.wide_cells[1].nodes);
   EXPECT_NE(first_defect(broken), std::nullopt);
+}
+
+TEST_F(LayerFiles, SayHowManyLayersStandOnEachFace) {
+  LayersOptions asked;
+  asked.count = 3;
+  asked.first = 0.02;
+  asked.on = "wall";
+  const TetMesh mesh = meshed(pipe(24, 10), asked, 0.4).mesh;
+  ASSERT_EQ(mesh.face_layers.size(), mesh.boundary.size());
+  for (std::size_t f = 0; f < mesh.boundary.size(); ++f) EXPECT_EQ(mesh.face_layers[f], mesh.patch[f] == 0 ? 3 : kNone);
+  WriteOptions text;
+  text.ascii = true;
+  write_mesh(folder_ / "a.vtu", mesh, {}, text);
+  EXPECT_NE(text_of("a.vtu").find("Name=\"layers\""), std::string::npos);
+  write_mesh(folder_ / "polyMesh", mesh, {}, {.format = "openfoam"});
+  const std::string patches = text_of("polyMesh/boundary");
+  EXPECT_NE(patches.find("wall\n    {\n        type wall;"), std::string::npos);
+  EXPECT_NE(patches.find("inlet\n    {\n        type patch;"), std::string::npos);
+}
+
+/// Three quarters of an edge: the triangles of the ends must go along, or the first row of them has no area left.
+TEST(Layers, ThickOnesFindRoomOnFlatPatches) {
+  LayersOptions asked;
+  asked.count = 5;
+  asked.first = 0.025;
+  asked.on = "wall";
+  const Result made = meshed(pipe(48, 20), asked, 0.25);
+  EXPECT_EQ(first_defect(made.mesh), std::nullopt);
+  EXPECT_EQ(made.report.layers.at(0).full, 1);
+  for (std::size_t f = 0; f < made.mesh.boundary.size(); ++f)
+    for (const VertexIndex v : made.mesh.boundary[f]) {
+      EXPECT_TRUE(made.mesh.patch[f] == 0 || made.mesh.points[v].z == 0 || made.mesh.points[v].z == 4);
+    }
 }
 
 TEST(Layers, HeightsByYplusAndByTotal) {
