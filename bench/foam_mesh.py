@@ -36,7 +36,7 @@ def number_after(text, words):
     return float(found[1].rstrip(".")) if found else None
 
 
-def check_mesh(case, timeout=300):
+def check_mesh(case, timeout=1200):
     """Verdict and figures of checkMesh -allTopology; None where it says nothing of them."""
     if not pathlib.Path(case, "system/fvSchemes").exists():
         new_case(case)
@@ -51,7 +51,7 @@ def check_mesh(case, timeout=300):
 
 def verdict(foam):
     """OK, or what it finds wrong, in few words."""
-    words = [f"{foam['skew']} skew" if "highly skew" in fault else fault.rstrip(".,")[:60] for fault in foam["faults"]]
+    words = [f"{foam['skew']} skew" if "highly skew" in fault else re.split(r" *[(.,:]| detected| are ", fault)[0].lower() for fault in foam["faults"]]
     return "OK" if foam["ok"] else "; ".join(words) or "no"
 
 

@@ -9,7 +9,7 @@ import sys
 import numpy as np
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "scripts/lib"))
-from solids import Solid, grid, merged, read_off, sphere, together, torus, voxels, write_off  # noqa: E402
+from solids import grid, merged, read_off, sphere, together, torus, voxels, write_off  # noqa: E402
 
 
 def write_obj(path, body):

@@ -27,7 +27,8 @@ between half and twice what was asked. *All layers*: part of the wall's area tha
 Jacobian of these prisms (bases of three and four corners; 0: a corner of 180 degrees, below: inside out). *n-o*: most non-orthogonality, degrees.
 
 snappyHexMesh (OpenFOAM 1912): cubes as large as triangles are long, sharp edges extracted, `relativeSizes false`, `featureAngle 130`, `minThickness` half of the
-first height, 50 + 20 iterations, Debian's own quality controls; the rest as in its tutorials. Gmsh 4.8.4: `extrudeBoundaryLayer` on Octafront's triangles of the
+first height, 50 + 20 iterations, the quality controls of its `meshQualityDict.cfg` with `minTetQuality -1e30`, which their comment advises for layers;
+the rest as in its tutorials. Gmsh 4.8.4: `extrudeBoundaryLayer` on Octafront's triangles of the
 wall, whose making is not in its time (the pipe it meshes anew), HXT between; it checks nothing on the way."""
 
 

@@ -40,7 +40,8 @@ addLayersControls
   maxFaceThicknessRatio 0.5; maxThicknessToMedialRatio 0.3; minMedialAxisAngle 90; nBufferCellsNoExtrude 0; nLayerIter 50;
   nRelaxedIter 20;
 }}
-meshQualityControls {{ #includeEtc "caseDicts/mesh/generation/meshQualityDict.cfg" }}
+meshQualityControls {{ #includeEtc "caseDicts/mesh/generation/meshQualityDict.cfg"
+  minTetQuality -1e30; }}
 mergeTolerance 1e-6;
 """
 
