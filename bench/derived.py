@@ -2,8 +2,8 @@
 as the input lets it be, is every run as fast as its size says?
 
 Usage: bench/run.sh derived [--only SUBSTRING] [--jobs N] [--timeout SECONDS] [--every N] [--automatic]
-Each model at automatic size and, without --automatic, with --elements 100000. The Hausdorff distance is measured by octafront_evaluate, which
-reads the file back; forced elements are those that the report counts as forced by the input.
+Each model at automatic size and, without --automatic, with --elements 100000. The Hausdorff distance is measured by
+octafront_evaluate, which reads the file back; forced elements are those that the report counts as forced by the input.
 """
 import argparse
 import concurrent.futures

@@ -3,7 +3,8 @@
 Usage: bench/run.sh repair [--only SUBSTRING] [--jobs N] [--timeout SECONDS] [--lines FILE] [--near FACES] [--second-reader]
 Each model: `octafront repair MODEL -o SURFACE.obj` and `octafront mesh MODEL -o MESH.vtu`, default options, one thread;
 of models of FACES at most another mesh with --max-deviation of a thousandth of the diagonal. All files are read back and
-measured by octafront_judge_repair. --lines keeps a JSON object for each model in FILE and leaves out those that are there. --second-reader has meshio read the meshes, too, and counts anew (python3-meshio).
+measured by octafront_judge_repair. --lines keeps a JSON object for each model in FILE and leaves out those that are there.
+--second-reader has meshio read the meshes, too, and counts anew (python3-meshio).
 """
 import argparse
 import concurrent.futures
@@ -51,7 +52,9 @@ def measure(build, model, result):
 def do_model(build, row, a):
     model = pathlib.Path("models/dirty", row["file"])
     out = {"file": row["file"], "defects": row["defects"], "faces": row["faces"], "origin": ORIGIN}
-    steps = [("repair", "repair", "surface.obj"), ("mesh", "mesh", "mesh.vtu"), ("near", "mesh", "near.vtu")][:3 if int(row["faces"]) <= a.near else 2]
+    steps = [("repair", "repair", "surface.obj"), ("mesh", "mesh", "mesh.vtu")]
+    if int(row["faces"]) <= a.near:
+        steps.append(("near", "mesh", "near.vtu"))
     with tempfile.TemporaryDirectory() as folder:
         for step, command, name in steps:
             result, report = pathlib.Path(folder, name), pathlib.Path(folder, step + ".json")

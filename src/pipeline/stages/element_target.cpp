@@ -114,7 +114,9 @@ Filled fill_to_target(const Prepared& input, const SizeField& sizes, Run& run) {
     return fill_surface(input, std::move(boundary), run);
   };
   auto best = meet_target(surface ? surface->sizes : sizes, run, first_stage, kElementsAttempts, "in the mesh", make,
-                          [](const Filled& made) { return static_cast<double>(made.mesh.tets.size()); });
+                          [&](const Filled& made) {
+                            return static_cast<double>(made.mesh.tets.size()) + layer_tets(made, run.options.layers);
+                          });
   return std::move(best.made);
 }
 

@@ -241,6 +241,24 @@ void check_layer_options(const Options& options) {
       "the octree method makes a boundary of its own: boundary layers need method octree-aft, aft or recover");
 }
 
+double expected_layer_tets(const SurfaceMesh& surface, const LayersOptions& asked) {
+  if (asked.count == 0) return 0;
+  const std::vector<std::uint8_t> is_wall = layers::walls_named(surface, asked.on);
+  std::size_t faces = 0;
+  for (const layers::RegionWall& wall : layers::walls_of_regions(surface, is_wall, layered_regions(surface, asked)))
+    faces += static_cast<std::size_t>(std::ranges::count(wall.is_wall, 1));
+  return 3.0 * asked.count * static_cast<double>(faces);
+}
+
+double layer_tets(const Filled& filled, const LayersOptions& asked) {
+  if (!filled.layers) return expected_layer_tets(filled.boundary.surface, asked);
+  double tets = 0;
+  for (const auto& [wall, columns] : filled.layers->regions)
+    for (std::size_t t = 0; t < wall.is_wall.size(); ++t)
+      for (const VertexIndex v : wall.surface.triangles[t]) tets += wall.is_wall[t] ? columns.count[v] : 0;
+  return tets;
+}
+
 std::optional<GrownLayers> grow_layers(const Prepared& input, Remeshed& boundary, Run& run) {
   const LayersOptions& asked = run.options.layers;
   if (asked.count == 0 || asked.outside) return {};

@@ -31,6 +31,11 @@ struct GrownLayers {
 /// Throws OptionError for contradictions, values out of range, and what layers do not go with.
 void check_layer_options(const Options& options);
 
+/// How many tetrahedra the layers are if all of them can be. Throws OptionError for names that are not there.
+double expected_layer_tets(const SurfaceMesh& surface, const LayersOptions& asked);
+/// How many they will be; outside, where they are yet to grow, at most.
+double layer_tets(const Filled& filled, const LayersOptions& asked);
+
 /// Grows the layers that the run asks for from `boundary`, which becomes the surface without them. Layers outside wait
 /// for add_layers(). Throws OptionError for patches and regions that are not there, MeshingError if too little of a
 /// wall has layers.

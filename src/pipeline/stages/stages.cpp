@@ -338,7 +338,8 @@ SizeField choose_sizes(const Prepared& input, Run& run) {
   const MethodTraits& method = traits_of(run.options.method);
   const SurfaceMesh& surface = input.surface.mesh();
   if (keeps_surface(run.options))
-    run.report.expected_tets = method.tets_per_expected * expected_tets_within(sizes, surface);
+    run.report.expected_tets = method.tets_per_expected * expected_tets_within(sizes, surface) +
+                               expected_layer_tets(surface, run.options.layers);
   else if (method.makes_own_boundary())
     run.report.expected_tets = method.tets_per_expected * expected_tets(sizes, surface);
   return sizes;
@@ -359,7 +360,8 @@ Remeshed triangulate(const Prepared& input, const SizeField& sizes, Run& run) {
     stage.count("triangles", static_cast<double>(remeshed.surface.triangles.size()));
     // Strips between lines and the bounds on deviation have made sizes smaller since the first prediction.
     run.report.expected_tets =
-        traits_of(run.options.method).tets_per_expected * expected_tets_within(remeshed.sizes, remeshed.surface);
+        traits_of(run.options.method).tets_per_expected * expected_tets_within(remeshed.sizes, remeshed.surface) +
+        expected_layer_tets(remeshed.surface, run.options.layers);
     return remeshed;
   });
 }

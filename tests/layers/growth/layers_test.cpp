@@ -237,6 +237,17 @@ TEST(Layers, ThickOnesFindRoomOnFlatPatches) {
     }
 }
 
+TEST(Layers, CountAsElementsThatAreAskedFor) {
+  Domain domain;
+  domain.surface = icosphere(3);
+  Options options;
+  options.size.elements = 30'000;
+  options.layers.count = 3, options.layers.first_part = 0.1;
+  const Result made = generate(domain, options, RunContext{});
+  EXPECT_NEAR(static_cast<double>(made.report.tets) / 30'000, 1, 0.2);
+  EXPECT_NEAR(made.report.expected_tets / static_cast<double>(made.report.tets), 1, 0.3);
+}
+
 TEST(Layers, HeightsByYplusAndByTotal) {
   LayersOptions asked;
   asked.count = 3;
