@@ -1,6 +1,7 @@
 #include "base/core/elementary.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <limits>
 #include <numbers>
 
@@ -124,6 +125,12 @@ double log2(double x) {
 
 double pow(double x, double exponent) {
   return exp(exponent * log(x));
+}
+
+double pow(double x, int exponent) {
+  double product = 1;
+  for (int i = std::abs(exponent); i > 0; --i) product *= x;
+  return exponent < 0 ? 1 / product : product;
 }
 
 double cbrt(double x) {

@@ -19,6 +19,8 @@ double exp2(double x);
 double log2(double x);
 /// Of x > 0.
 double pow(double x, double exponent);
+/// By products.
+double pow(double x, int exponent);
 double cbrt(double x);
 /// Radians, up to 10^5 of them.
 double sin(double x);

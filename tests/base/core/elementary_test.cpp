@@ -65,6 +65,9 @@ TEST_F(Elementary, EndsAndExceptions) {
   EXPECT_EQ(elementary::acos(1), 0);
   EXPECT_EQ(elementary::cbrt(0), 0);
   EXPECT_EQ(elementary::pow(0, 3), 0);
+  EXPECT_EQ(elementary::pow(-2, 3), -8);
+  EXPECT_EQ(elementary::pow(2, -2), 0.25);
+  EXPECT_NEAR(elementary::pow(128, 1.0 / 7), 2, 1e-15);
   EXPECT_EQ(elementary::sin(0), 0);
   EXPECT_EQ(elementary::cos(0), 1);
 }
