@@ -86,7 +86,6 @@ Walls::Walls(const RegionWall& wall)
     const auto [a, b, c] = surface.triangles[f];
     inward.push_back(-unit_normal(surface.points[a], surface.points[b], surface.points[c]));
     if (!is_wall[f]) continue;
-    wall_faces.push_back(f);
     grows[a] = grows[b] = grows[c] = 1;
   }
   for (VertexIndex v = 0; v < grows.size(); ++v)

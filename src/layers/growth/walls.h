@@ -27,7 +27,6 @@ struct Walls {
   Groups<> faces;                            ///< per vertex
   std::vector<Vec3> inward;                  ///< per triangle: unit normal that points into the body
   std::vector<std::uint8_t> grows;           ///< per vertex: a wall ends or lies there
-  std::vector<std::uint32_t> wall_faces;     ///< ascending
   std::vector<VertexIndex> wall_vertices;    ///< ascending
 
   std::vector<Rim> rims;  ///< where walls end
