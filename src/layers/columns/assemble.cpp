@@ -36,10 +36,11 @@ class SidesOfFaces {
 
   /// Whether elements of layers lie on this side.
   bool has_layers(std::size_t f, int side) const {
-    const auto [i, t] = place_[f][side];
-    if (i == kNone || !grown_[i].wall.is_wall[t]) return false;
-    return std::ranges::any_of(grown_[i].wall.surface.triangles[t],
-                               [&](VertexIndex v) { return grown_[i].columns.count[v] > 0; });
+    const Place at = place_[f][side];
+    if (at.region == kNone || !grown_[at.region].wall.is_wall[at.triangle]) return false;
+    const auto [a, b, c] = grown_[at.region].wall.surface.triangles[at.triangle];
+    const std::vector<std::uint32_t>& count = grown_[at.region].columns.count;
+    return count[a] + count[b] + count[c] > 0;
   }
 
   /// Layers at the corner that has least; kNone if it is no wall.
@@ -323,7 +324,7 @@ class Assembly {
     boundary_.patch_names.push_back(region_names_[wall.region] + "|" + region_names_[layers_of(i)]);
     for (std::size_t t = 0; t < wall.is_wall.size(); ++t) {
       Triangle top = wall.surface.triangles[t];
-      if (!wall.is_wall[t] || std::ranges::none_of(top, [&](VertexIndex v) { return columns.count[v] > 0; })) continue;
+      if (!wall.is_wall[t] || columns.count[top[0]] + columns.count[top[1]] + columns.count[top[2]] == 0) continue;
       for (VertexIndex& v : top) v = number_.top(i, v);
       add(top, wall.face[t], {layers_of(i), wall.region});
       boundary_.patch.back() = patch;

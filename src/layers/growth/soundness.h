@@ -6,7 +6,7 @@
 #include <vector>
 
 namespace octafront {
-class RunContext;
+struct RunContext;
 }
 
 namespace octafront::layers {

@@ -408,7 +408,8 @@ void improve_elements(const Prepared& input, Filled& filled, Run& run, const Imp
 void raise_order(const Prepared& input, Filled& filled, Run& run) {
   if (run.options.order < 2) return;
   run.stage("second order", [&](const Stage& stage) {
-    auto& [mesh, boundary, grown] = filled;
+    TetMesh& mesh = filled.mesh;
+    Remeshed& boundary = filled.boundary;
     const std::span<const VertexIndex> below = vertices_below(filled);
     run.report.second_order = on_ground(filled, [&] {
       if (keeps_surface(run.options)) return add_straight_edges(mesh, stage.context());

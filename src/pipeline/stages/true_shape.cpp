@@ -147,11 +147,11 @@ void place_on_geometry(const Prepared& input, Filled& filled, Run& run) {
   take_patches_of(*input.geometry, filled);
   if (keeps_surface(run.options)) return;
   run.stage("true geometry", [&](const Stage& stage) {
-    auto& [mesh, boundary, grown] = filled;
+    TetMesh& mesh = filled.mesh;
     const SecondOrderSummary made = on_ground(
         filled, [&] { return move_to_geometry(mesh, *input.geometry, vertices_below(filled), stage.context()); });
-    std::copy_n(mesh.points.begin(), boundary.surface.points.size(), boundary.surface.points.begin());
-    if (made.moved > 0 && !grown) relieve_mesh(mesh, run.options.improve, stage);
+    std::copy_n(mesh.points.begin(), filled.boundary.surface.points.size(), filled.boundary.surface.points.begin());
+    if (made.moved > 0 && !filled.layers) relieve_mesh(mesh, run.options.improve, stage);
     stage.count("vertices moved", static_cast<double>(made.moved));
     stage.count("vertices held", static_cast<double>(made.held));
     if (made.held > 0)
