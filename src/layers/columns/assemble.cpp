@@ -221,7 +221,7 @@ class Assembly {
   void renumber(TetMesh& inner) const {
     const auto own = static_cast<VertexIndex>(opened_.surface.points.size());
     std::vector<VertexIndex> number(own);
-    for (VertexIndex v = 0; v < own; ++v) number[v] = v;
+    std::iota(number.begin(), number.end(), 0u);
     for (std::uint32_t i = 0; i < grown_.size(); ++i)
       if (!grown_[i].is_outside())
         for (VertexIndex v = 0; v < grown_[i].wall.vertex.size(); ++v) number[opened_.top[i][v]] = number_.top(i, v);

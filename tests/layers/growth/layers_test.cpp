@@ -290,7 +290,7 @@ TEST(Layers, CoverageMayBeRequired) {
   EXPECT_THROW(meshed(box(1, 1, 0.1, 2), asked, 0.2), MeshingError);
 }
 
-/// Two boxes side by side, or one ball in another: regions 0 and 1.
+/// Region 1 is the inner ball, region 0 what is around it.
 SurfaceMesh ball_in_ball() {
   SurfaceMesh s = icosphere(3);
   const auto n = static_cast<VertexIndex>(s.points.size());
