@@ -29,7 +29,10 @@ std::vector<std::vector<std::uint32_t>> faces_of(const SurfaceMesh& whole, const
 class WallOfRegion {
  public:
   WallOfRegion(const SurfaceMesh& whole, const std::vector<std::uint8_t>& is_wall)
-      : whole_(whole), is_wall_(is_wall), number_(whole.points.size(), kNone) {}
+      : whole_(whole), is_wall_(is_wall), number_(whole.points.size(), kNone), triangles_at_(whole.points.size(), 0) {
+    for (const Triangle& t : whole.triangles)
+      for (const VertexIndex v : t) ++triangles_at_[v];
+  }
 
   RegionWall operator()(std::uint32_t region, std::vector<std::uint32_t> faces) {
     RegionWall made;
@@ -38,6 +41,7 @@ class WallOfRegion {
     made.held.resize(made.vertex.size(), 0);
     made.surface.patch_names = whole_.patch_names;
     for (const std::uint32_t f : made.face) add(f, made);
+    find_shared(made);
     if (!whole_.sides.empty()) hold_touching(made);
     return made;
   }
@@ -70,6 +74,13 @@ class WallOfRegion {
     to.is_wall.push_back(is_wall);
   }
 
+  void find_shared(RegionWall& made) const {
+    std::vector<std::uint32_t> own(made.vertex.size(), 0);
+    for (const Triangle& t : made.surface.triangles)
+      for (const VertexIndex v : t) ++own[v];
+    for (VertexIndex v = 0; v < own.size(); ++v) made.shared.push_back(own[v] < triangles_at_[made.vertex[v]]);
+  }
+
   /// Where the region touches itself along an edge, layers have no one side.
   static void hold_touching(RegionWall& made) {
     const EdgeTable edges = make_edge_table(made.surface.points.size(), made.surface.triangles);
@@ -86,6 +97,7 @@ class WallOfRegion {
   const SurfaceMesh& whole_;
   const std::vector<std::uint8_t>& is_wall_;
   std::vector<VertexIndex> number_;
+  std::vector<std::uint32_t> triangles_at_;  ///< per vertex of the whole
 };
 
 }  // namespace

@@ -16,6 +16,7 @@ struct RegionWall {
   std::vector<VertexIndex> vertex;    ///< per vertex: in the whole; ascending
   std::vector<std::uint32_t> face;    ///< per triangle: in the whole; ascending. A sheet inside is there once
   std::vector<std::uint8_t> is_wall;  ///< per triangle
+  std::vector<std::uint8_t> shared;   ///< per vertex: triangles that do not bound the region meet there too
   std::vector<std::uint8_t> held;     ///< per vertex: nothing can grow there, for what is beside it cannot move
 };
 

@@ -51,7 +51,7 @@ class Room {
   /// Inside a flat part of one patch without layers.
   bool is_free(VertexIndex v) const {
     const auto faces = walls_.faces[v];
-    if (walls_.grows[v] || walls_.held[v] || faces.empty()) return false;
+    if (walls_.grows[v] || walls_.shared[v] || walls_.held[v] || faces.empty()) return false;
     return std::ranges::all_of(faces, [&](std::uint32_t f) {
       return walls_.surface.patch_of(f) == walls_.surface.patch_of(faces[0]) &&
              dot(walls_.inward[f], walls_.inward[faces[0]]) > kSamePlane;

@@ -72,6 +72,7 @@ std::vector<std::uint32_t> regions_named(const SurfaceMesh& surface, const std::
 Walls::Walls(const RegionWall& wall)
     : surface(wall.surface),
       is_wall(wall.is_wall),
+      shared(wall.shared),
       held(wall.held),
       faces(surface.points.size(),
             [&](const auto& add) {

@@ -23,6 +23,7 @@ std::vector<std::uint32_t> regions_named(const SurfaceMesh& surface, const std::
 struct Walls {
   const SurfaceMesh& surface;
   const std::vector<std::uint8_t>& is_wall;  ///< per triangle
+  const std::vector<std::uint8_t>& shared;   ///< per vertex
   const std::vector<std::uint8_t>& held;     ///< per vertex
   Groups<> faces;                            ///< per vertex
   std::vector<Vec3> inward;                  ///< per triangle: unit normal that points into the body

@@ -248,6 +248,30 @@ TEST(Layers, CountAsElementsThatAreAskedFor) {
   EXPECT_NEAR(made.report.expected_tets / static_cast<double>(made.report.tets), 1, 0.3);
 }
 
+/// What touches a flat end from outside stays where it is while the end makes room.
+TEST(Layers, LeaveWhatTouchesTheirEnds) {
+  SurfaceMesh both = pipe(48, 20);
+  both.sides.assign(both.triangles.size(), {kNone, 0});
+  const Vec3 touch{0.6, 0, 0};
+  const auto low = static_cast<VertexIndex>(both.points.size() - 2), first = low + 2;
+  both.points[low] = touch;
+  for (const Vec3 p : {Vec3{1.2, 0, -1}, {0, 0.6, -1}, {0, -0.6, -1}}) both.points.push_back(p);
+  for (const Triangle& t : {Triangle{low, first, first + 1},
+                            {low, first + 1, first + 2},
+                            {low, first + 2, first},
+                            {first, first + 2, first + 1}})
+    both.triangles.push_back(t), both.patch.push_back(3), both.sides.push_back({kNone, 1});
+  both.patch_names.push_back("tip");
+  LayersOptions asked;
+  asked.count = 3;
+  asked.first = 0.04;
+  asked.on = "wall";
+  const Result made = meshed(both, asked, 0.25);
+  EXPECT_EQ(first_defect(made.mesh), std::nullopt);
+  EXPECT_NE(std::ranges::find(made.mesh.points, touch), made.mesh.points.end());
+  EXPECT_NEAR(volume_of(made.mesh, 1), 0.24, 1e-9);
+}
+
 TEST(Layers, HeightsByYplusAndByTotal) {
   LayersOptions asked;
   asked.count = 3;
