@@ -201,6 +201,30 @@ void declare_complex(CLI::App& command, Arguments& a) {
       ->type_name("T");
 }
 
+void declare_inside(CLI::App& command, Arguments& a) {
+  InsideIntake& inside = a.intake.inside;
+  auto* group = command.add_option_group(
+      "Inside", "What lies in the bodies and is part of their mesh, by the names of its files");
+  const auto files = [&](const std::string& option, std::vector<std::string>& list, const std::string& help) {
+    group->add_option(option, list, help)->type_name("[NAME=]FILE")->allow_extra_args(false);
+  };
+  files(
+      "--sheet", inside.sheet_files,
+      "An open or closed surface whose triangles become faces inside: a crack, a fault; what lies outside is cut off");
+  files("--wire", inside.wire_files,
+        "Lines that become edges: OBJ, PLY, VTK, MSH, or a table of points, polygons end at empty lines");
+  files("--points", inside.point_files, "Points that become nodes: the same files");
+}
+
+void declare_split(CLI::App& command, Arguments& a) {
+  command
+      .add_option(
+          "--split", a.options.split,
+          "Open the mesh along these patches inside, sheets or walls between regions, commas between them: nodes "
+          "are doubled, the sides are the patches NAME_plus and NAME_minus")
+      ->type_name("NAME,...");
+}
+
 void declare_repair(CLI::App& command, Arguments& a) {
   auto* group = command.add_option_group("Repair", "Surfaces that cannot be meshed as they are");
   using Repair = IntakeOptions::Repair;
@@ -265,6 +289,8 @@ void declare_mesh_output(CLI::App& command, Arguments& a) {
   command.add_flag(
       "--cells-only", a.cells_only,
       "Tetrahedra alone, with regions and sets: no faces and edges, which some programs refuse beside them");
+  command.add_flag("--cohesive", a.cohesive,
+                   "Cohesive elements of no height between the sides of what --split opened (Abaqus: COH3D6)");
   command
       .add_option_function<std::vector<std::string>>(
           "--group",

@@ -37,6 +37,7 @@ struct Arguments {
   std::vector<std::string> formats;           ///< of the meshes in turn; empty: by their endings
   bool ascii = false;                         ///< of the meshes: as text
   bool cells_only = false;                    ///< of the meshes: tetrahedra alone
+  bool cohesive = false;                      ///< of the meshes: with cohesive elements where they are split
   std::filesystem::path regions, point_sizes, size_field;  ///< files with sizes; empty: none
   Options options;
   std::optional<Solver> solver;      ///< whose limits a mesh is checked by
@@ -59,6 +60,10 @@ void declare_mesh_input(CLI::App& command, Arguments& arguments);
 void declare_output(CLI::App& command, Arguments& arguments, const std::string& what, bool required);
 /// Several materials: how walls and bodies become regions.
 void declare_complex(CLI::App& command, Arguments& arguments);
+/// Sheets, lines and points inside.
+void declare_inside(CLI::App& command, Arguments& arguments);
+/// --split.
+void declare_split(CLI::App& command, Arguments& arguments);
 /// What is done about surfaces with defects.
 void declare_repair(CLI::App& command, Arguments& arguments);
 void declare_cad(CLI::App& command, Arguments& arguments);

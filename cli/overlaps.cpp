@@ -16,12 +16,54 @@ namespace octafront::cli {
 
 namespace {
 
+/// Whether a face lies on one of the two sides of what split_patches() opened.
+bool is_side(const TetMesh& mesh, std::size_t face) {
+  const std::uint32_t p = mesh.patch.empty() ? 0 : mesh.patch[face];
+  if (p >= mesh.patch_names.size()) return false;
+  return mesh.patch_names[p].ends_with("_plus") || mesh.patch_names[p].ends_with("_minus");
+}
+
+std::tuple<double, double, double> place_of(Vec3 p) {
+  p += Vec3{};  // -0 is 0
+  return {p.x, p.y, p.z};
+}
+
+/// A mesh is closed again where it was split: both sides go where they lie on each other, and their nodes are one.
+class Closed {
+ public:
+  explicit Closed(const TetMesh& mesh) : to_(mesh.points.size()), gone_(mesh.boundary.size(), 0) {
+    for (VertexIndex v = 0; v < to_.size(); ++v) to_[v] = v;
+    std::map<std::tuple<double, double, double>, VertexIndex> first;
+    std::map<Triangle, std::vector<std::size_t>> at;
+    for (std::size_t f = 0; f < gone_.size(); ++f) {
+      if (!is_side(mesh, f)) continue;
+      Triangle place = mesh.boundary[f];
+      for (VertexIndex& v : place) v = to_[v] = first.try_emplace(place_of(mesh.points[v]), v).first->second;
+      std::sort(place.begin(), place.end());
+      at[place].push_back(f);
+    }
+    for (const auto& [place, faces] : at)
+      if (faces.size() == 2)
+        for (const std::size_t f : faces) gone_[f] = 1;
+  }
+  bool is_gone(std::size_t face) const { return gone_[face]; }
+  VertexIndex operator()(VertexIndex v) const { return to_[v]; }
+
+ private:
+  std::vector<VertexIndex> to_;
+  std::vector<char> gone_;
+};
+
 /// The boundary, with its own vertices only, as a complex of one region: its edges may have any number of faces.
 RepairedSurface boundary_of(const TetMesh& mesh) {
   RepairedSurface boundary;
+  const Closed closed(mesh);
   std::vector<VertexIndex> number(mesh.points.size(), kNone);
-  for (Triangle t : mesh.boundary) {
+  for (std::size_t f = 0; f < mesh.boundary.size(); ++f) {
+    if (closed.is_gone(f)) continue;
+    Triangle t = mesh.boundary[f];
     for (VertexIndex& v : t) {
+      v = closed(v);
       if (number[v] == kNone) {
         number[v] = static_cast<VertexIndex>(boundary.surface.points.size());
         boundary.surface.points.push_back(mesh.points[v]);
@@ -41,13 +83,10 @@ struct Doubled {
 };
 
 Doubled doubled_faces(const SurfaceMesh& surface) {
-  const auto key = [&](VertexIndex v) {
-    const Vec3 p = surface.points[v] + Vec3{};  // -0 is 0
-    return std::tuple(p.x, p.y, p.z);
-  };
   std::map<std::tuple<double, double, double>, VertexIndex> first;
   std::vector<VertexIndex> place;
-  for (VertexIndex v = 0; v < surface.points.size(); ++v) place.push_back(first.try_emplace(key(v), v).first->second);
+  for (VertexIndex v = 0; v < surface.points.size(); ++v)
+    place.push_back(first.try_emplace(place_of(surface.points[v]), v).first->second);
   std::vector<Triangle> faces = surface.triangles;
   for (Triangle& t : faces) {
     for (VertexIndex& v : t) v = place[v];

@@ -97,6 +97,7 @@ void Program::declare_makers() {
           run_mesh);
   declare_input(*mesh, a);
   declare_complex(*mesh, a);
+  declare_inside(*mesh, a);
   declare_image(*mesh, a.intake.image);
   declare_repair(*mesh, a);
   declare_cad(*mesh, a);
@@ -109,6 +110,7 @@ void Program::declare_makers() {
   declare_volume(*mesh, a);
   declare_improvement(*mesh, a);
   declare_order(*mesh, a);
+  declare_split(*mesh, a);
   declare_page(*mesh, a);
   declare_report(*mesh, a);
   declare_run(*mesh, a);
@@ -117,6 +119,7 @@ void Program::declare_makers() {
                           "  octafront surface scan.ply -o even.stl --size 0.5\n", run_surface);
   declare_input(*surface, a);
   declare_complex(*surface, a);
+  declare_inside(*surface, a);
   declare_image(*surface, a.intake.image);
   declare_repair(*surface, a);
   declare_cad(*surface, a);

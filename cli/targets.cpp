@@ -20,7 +20,10 @@ namespace {
 
 /// How the output of this number is written.
 WriteOptions options_of(const Arguments& a, std::size_t i) {
-  return {.format = a.formats.empty() ? "" : a.formats[i], .ascii = a.ascii, .cells_only = a.cells_only};
+  return {.format = a.formats.empty() ? "" : a.formats[i],
+          .ascii = a.ascii,
+          .cells_only = a.cells_only,
+          .cohesive = a.cohesive};
 }
 
 bool is_null(const std::filesystem::path& file) {

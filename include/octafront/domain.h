@@ -3,6 +3,7 @@
 #include <octafront/complex.h>
 #include <octafront/image.h>
 #include <octafront/image_surface.h>
+#include <octafront/inside.h>
 #include <octafront/mend.h>
 #include <octafront/no_context.h>
 #include <octafront/surface_mesh.h>
@@ -63,6 +64,16 @@ struct CadIntake {
   double memory_gigabytes = 8;  ///< for the same, > 0
 };
 
+/// What lies inside of the input, from files or arrays. A file is FILE, whose stem is the name, or NAME=FILE.
+struct InsideIntake {
+  std::vector<std::string> sheet_files;  ///< surfaces that read_surface() knows
+  std::vector<std::string> wire_files;   ///< lines of read_lines(): octafront/io.h
+  std::vector<std::string> point_files;  ///< its points
+  std::vector<Sheet> sheets;             ///< these come behind those of files
+  std::vector<LineNet> wires;
+  std::vector<PointSet> points;
+};
+
 /// What is done with an input that cannot be meshed as it is, and how its parts become regions.
 struct IntakeOptions {
   /// Seeds, voids, cells, nested shells and overlaps: with anything but Overlap::kAuto each name of a patch of one
@@ -83,6 +94,7 @@ struct IntakeOptions {
   bool tidies = false;
   ImageIntake image;
   CadIntake cad;
+  InsideIntake inside;
   /// Called with each note as soon as there is one, so that notes are known even where open_domain() throws later.
   std::function<void(const IntakeNote&)> tell = {};
 };
@@ -118,6 +130,10 @@ struct Domain {
   /// fingerprint() of a surface that an exact search found clean, as open_domain() leaves it of images: generate() does
   /// not search this very surface again. 0: of none.
   std::uint64_t found_clean = 0;
+
+  /// Edges and nodes that the mesh will have inside: generate() makes them.
+  std::vector<LineNet> wires = {};
+  std::vector<PointSet> points = {};
 
   /// Of CAD: what the triangles stand for; the patches of the surface are its patches. Vertices of the mesh lie on it.
   std::shared_ptr<const TrueGeometry> geometry = {};

@@ -36,6 +36,19 @@ struct SurfaceFile {
 /// multiple of the size of the file, whatever its header claims.
 SurfaceFile read_surface(const std::string& file, const RunContext& context = {});
 
+/// Lines and points of a file.
+struct LinesFile {
+  std::vector<Vec3> points;
+  std::vector<Edge> edges;  ///< indices into points
+  std::string format;
+  std::vector<std::string> notes = {};
+};
+
+/// Reads the lines of OBJ (l), PLY (edges), of meshes of any format with line elements (VTK, VTU, MSH, MEDIT, ...), or
+/// a text with a point "x y z" (or "x, y, z") in each line, where lines are polygons that end at an empty line. All
+/// points of the file come along. Throws InputError with file, line or byte offset.
+LinesFile read_lines(const std::string& file, const RunContext& context = {});
+
 /// Whether a file of a format for meshes holds tetrahedra; false for what read_surface() alone reads. Throws
 /// InputError.
 bool holds_tetrahedra(const std::string& file, const RunContext& context = {});
@@ -51,6 +64,7 @@ struct WriteOptions {
   bool ascii = false;       ///< as text; formats that are always text are so anyway
   bool cells_only = false;  ///< the tetrahedra alone, with their regions and sets, and sets of nodes: no faces and
                             ///< edges, which some programs refuse beside tetrahedra
+  bool cohesive = false;    ///< elements of no height (COH3D6) between the two sides of faces that were split: Abaqus
 };
 
 /// Writes a mesh in the format that the ending of the name tells, or that is asked for. Regions, patches, curves and
@@ -134,6 +148,7 @@ struct FormatHolds {
   bool second_order = false, doubles = true, binary = false;
   bool wide_cells = false;         ///< wedges and pyramids; in others they are tetrahedra
   bool curved_wide_cells = false;  ///< the same of second order
+  bool cohesive = false;           ///< WriteOptions::cohesive
 };
 
 /// What is known of a file format, for help texts and --format.

@@ -189,6 +189,9 @@ struct Options {
   LayersOptions layers;
   VolumeOptions volume;
   ImproveOptions improve;
+  /// Names of patches inside (sheets, walls between regions), separated by commas, along which the mesh is opened:
+  /// split_patches() of octafront/split.h.
+  std::string split;
   /// 1: linear elements. 2: elements of second order, curved to the surface that the input stands for; see
   /// make_second_order(). Straight where the input's triangles are kept.
   int order = 1;

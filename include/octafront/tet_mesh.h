@@ -63,6 +63,16 @@ struct WideFace {
   friend bool operator==(const WideFace&, const WideFace&) = default;
 };
 
+/// A face inside whose nodes were doubled (split_patches()): what a cohesive element of no height connects.
+struct SplitFace {
+  /// The corners of the face of the element behind it, counter-clockwise seen from in front, and their partners in
+  /// front. At the end of a sheet they are the same.
+  std::array<VertexIndex, 6> nodes{};
+  std::uint32_t patch = 0;  ///< of its side in front, NAME_plus
+
+  friend bool operator==(const SplitFace&, const SplitFace&) = default;
+};
+
 /// A tetrahedral mesh as flat arrays: linear, or of second order.
 ///
 /// What leaves the library is *valid* (see first_defect): every tet is positive by exact sign, every face belongs to
@@ -77,7 +87,8 @@ struct TetMesh {
   std::vector<std::int64_t> region_labels;  ///< as in SurfaceMesh
   std::vector<Triangle> boundary;           ///< the boundary faces, counter-clockwise seen from outside
   std::vector<std::uint32_t> patch;         ///< one per boundary face: its patch; empty: all 0
-  std::vector<std::uint32_t> source;     ///< one per boundary face: the input face nearest to it, or it; may be empty
+  std::vector<std::uint32_t> source;     ///< one per boundary face: the input face nearest to it, or it; kNone: none,
+                                         ///< for it was split; may be empty
   std::vector<std::string> patch_names;  ///< as in SurfaceMesh; also of the patches of interfaces
   std::vector<Triangle> interfaces;      ///< faces inside that belong to a patch: between regions, or sheets; either
                                          ///< side may be in front
@@ -96,6 +107,7 @@ struct TetMesh {
   /// One per boundary face and, behind them, interface: how many boundary layers grow at each corner of it, at least;
   /// kNone: it is no wall of any. Empty: not known.
   std::vector<std::uint32_t> face_layers;
+  std::vector<SplitFace> split_faces;  ///< faces of the boundary that touch, where the mesh was split; by patch
 
   bool is_second_order() const { return !mid_nodes.empty(); }
   /// How many there are of what sets of this kind are made of.

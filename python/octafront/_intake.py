@@ -3,7 +3,7 @@
 import ctypes
 from collections.abc import Mapping
 
-from . import _complexes, _foreign, _images
+from . import _complexes, _foreign, _images, _inside
 from ._jobs import Job
 from ._library import file_of
 from ._surface import Surface, surface_of
@@ -37,4 +37,4 @@ def _described(given):
     given = dict(given)
     seeds, voids = given.pop("region", None), given.pop("void", None)
     return {"regions": _complexes.seeds_of(seeds) or None, "voids": _complexes.points_in(voids) or None,
-            **_images.described(given)}
+            **_inside.described(given), **_images.described(given)}

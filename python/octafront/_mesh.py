@@ -240,12 +240,14 @@ class Mesh:
             raise errors.InputError(text_of(note.value))
         return self
 
-    def save(self, path, *, format=None, ascii=False, cells_only=False):
+    def save(self, path, *, format=None, ascii=False, cells_only=False, cohesive=False):
         """Writes the mesh in the format that the ending tells, or by its name in octafront.formats(). `ascii`: as text, of
         formats that are binary else; `cells_only`: the tetrahedra alone, with regions and sets, without faces and edges,
-        which some programs refuse beside them. Returns what a user should know, as sentences: what the format cannot
+        which some programs refuse beside them; `cohesive`: cohesive elements between the sides of what was split (Abaqus).
+        Returns what a user should know, as sentences: what the format cannot
         hold. An older file stays whole if that fails: OutputError; OptionError for what the format cannot do."""
-        options = {"format": format or "", "ascii": bool(ascii), "cells_only": bool(cells_only)}
+        options = {"format": format or "", "ascii": bool(ascii), "cells_only": bool(cells_only),
+                   "cohesive": bool(cohesive)}
         job = Job("write_mesh", self._handle, file_of(path), json.dumps(options).encode())
         return job.run()["notes"]
 

@@ -20,6 +20,10 @@ from ._units import convert_lengths, is_cad, name_of_unit
 _OF_INTAKE = [
     ("region", "{name: point or points}: the cell around each point is a region of this name"),
     ("void", "Points whose cells stay empty"),
+    ("sheet", "Surfaces, open or closed, whose triangles become faces inside: a file, a list of files, or {name: file, Surface "
+              "or (points, triangles)}"),
+    ("wire", "Lines that become edges: a file, a list of files, or {name: file, (points, edges), or points of a polygon}"),
+    ("points", "Points that become nodes: a file, a list of files, or {name: file or points}"),
     ("labels", "Of an image: {3: \"liver\"}, or a file of names"),
     ("ignore", "Values of an image outside of all regions; () for none [0]"),
     ("merge", "{\"cortex\": (3, 4)}: these values of an image are one region"),

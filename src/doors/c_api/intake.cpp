@@ -25,6 +25,12 @@ Vec3 point_of(const Json& row) {
   return {row.at(0).get<double>(), row.at(1).get<double>(), row.at(2).get<double>()};
 }
 
+std::vector<Vec3> points_of(const Json& rows) {
+  std::vector<Vec3> points;
+  for (const Json& row : rows) points.push_back(point_of(row));
+  return points;
+}
+
 GreyBand band_of(const Json& row) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   return {row.at(1).is_null() ? -kInfinity : row.at(1).get<double>(),
@@ -51,6 +57,27 @@ const std::map<std::string, Take>& lists() {
       {"voids",
        [](IntakeOptions& o, const Json& v) {
          for (const Json& row : v) o.complex.voids.push_back(point_of(row));
+       }},
+      {"sheet_files",
+       [](IntakeOptions& o, const Json& v) { o.inside.sheet_files = v.get<std::vector<std::string>>(); }},
+      {"wire_files", [](IntakeOptions& o, const Json& v) { o.inside.wire_files = v.get<std::vector<std::string>>(); }},
+      {"point_files",
+       [](IntakeOptions& o, const Json& v) { o.inside.point_files = v.get<std::vector<std::string>>(); }},
+      {"inside_sheets",
+       [](IntakeOptions& o, const Json& v) {
+         for (const Json& row : v)
+           o.inside.sheets.push_back({row.at(0).get<std::string>(),
+                                      {points_of(row.at(1)), row.at(2).get<std::vector<Triangle>>(), {}, {}, {}}});
+       }},
+      {"inside_wires",
+       [](IntakeOptions& o, const Json& v) {
+         for (const Json& row : v)
+           o.inside.wires.push_back(
+               {row.at(0).get<std::string>(), points_of(row.at(1)), row.at(2).get<std::vector<Edge>>()});
+       }},
+      {"inside_points",
+       [](IntakeOptions& o, const Json& v) {
+         for (const Json& row : v) o.inside.points.push_back({row.at(0).get<std::string>(), points_of(row.at(1))});
        }},
       {"names_file", [](IntakeOptions& o, const Json& v) { o.image.names_file = v.get<std::string>(); }},
       {"names",

@@ -307,15 +307,16 @@ Domain open_domain(const std::vector<std::string>& files, const IntakeOptions& o
   if (files.empty()) throw OptionError("no file is given");
   if (is_image(files.front())) {
     const Image image = read_image(files, options.image.choice, context);
-    return Intake(options, context).image(image, files.front());
+    return with_inside(Intake(options, context).image(image, files.front()), options, context);
   }
   refuse_image_options(options.image, files.front());
   Intake intake(options, context);
   if (is_cad(files.front())) {
     if (files.size() > 1) throw OptionError(fmt::format("{}: give one CAD file; its solids are the regions", files[0]));
-    return intake.cad(files.front());
+    return with_inside(intake.cad(files.front()), options, context);
   }
-  return files.size() > 1 ? intake.bodies(files) : intake.surface(intake.read(files.front()));
+  return with_inside(files.size() > 1 ? intake.bodies(files) : intake.surface(intake.read(files.front())), options,
+                     context);
 }
 
 Domain open_domain(const std::string& file, const IntakeOptions& options, const RunContext& context) {
@@ -324,17 +325,17 @@ Domain open_domain(const std::string& file, const IntakeOptions& options, const 
 
 Domain open_domain(Domain input, const IntakeOptions& options, const RunContext& context) {
   refuse_image_options(options.image, "a surface");
-  if (input.geometry) return input;
-  return Intake(options, context).surface({"", std::move(input), {}, {}});
+  if (input.geometry) return with_inside(std::move(input), options, context);
+  return with_inside(Intake(options, context).surface({"", std::move(input), {}, {}}), options, context);
 }
 
 Domain open_domain(std::vector<Body> bodies, const IntakeOptions& options, const RunContext& context) {
   refuse_image_options(options.image, "a surface");
-  return Intake(options, context).bodies(std::move(bodies));
+  return with_inside(Intake(options, context).bodies(std::move(bodies)), options, context);
 }
 
 Domain open_domain(const Image& image, const IntakeOptions& options, const RunContext& context) {
-  return Intake(options, context).image(image, "");
+  return with_inside(Intake(options, context).image(image, ""), options, context);
 }
 
 }  // namespace octafront

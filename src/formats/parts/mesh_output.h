@@ -15,8 +15,8 @@ namespace octafront::io {
 /// before, older ones stay as they were. What a writer has to tell the user goes into `notes`.
 class MeshOutput {
  public:
-  MeshOutput(std::filesystem::path target, RunContext context, bool as_text = false)
-      : target_(std::move(target)), context_(context), as_text_(as_text) {}
+  MeshOutput(std::filesystem::path target, RunContext context, bool as_text = false, bool cohesive = false)
+      : target_(std::move(target)), context_(context), as_text_(as_text), cohesive_(cohesive) {}
   ~MeshOutput();
   MeshOutput(const MeshOutput&) = delete;
   MeshOutput& operator=(const MeshOutput&) = delete;
@@ -25,6 +25,8 @@ class MeshOutput {
   const RunContext& context() const { return context_; }
   /// Of formats that are binary or text.
   bool as_text() const { return as_text_; }
+  /// With elements between the sides of what is split, of formats that have them.
+  bool cohesive() const { return cohesive_; }
   /// The file that was asked for.
   AtomicFile& file();
   /// Another one beside it, with this ending instead.
@@ -50,7 +52,7 @@ class MeshOutput {
 
   std::filesystem::path target_;
   RunContext context_;
-  bool as_text_;
+  bool as_text_, cohesive_;
   std::vector<std::unique_ptr<AtomicFile>> files_;
   std::vector<Pending> pending_;  ///< the folder, if there is one
   std::vector<std::string> notes_;

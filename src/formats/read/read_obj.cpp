@@ -23,13 +23,15 @@ class Obj {
     builder_.reserve_faces(input.bytes.size() / 80);
   }
 
+  /// Vertices and lines alone.
+  LinesFile read_lines() {
+    lines_only_ = true;
+    read_all();
+    return {std::move(builder_.points), std::move(edges_), "OBJ", {}};
+  }
+
   SurfaceFile read() {
-    while (at_ != end_) {
-      line_start_ = at_;
-      progress_.reach(at_);
-      read_line();
-      skip_to_next_line();
-    }
+    read_all();
     if (free_form_ > 0)
       builder_.notes.push_back(fmt::format("{} free-form elements left out; only polygons are read", free_form_));
     SurfaceFile file = builder_.finish(input_, "OBJ", true, 1);
@@ -39,6 +41,15 @@ class Obj {
   }
 
  private:
+  void read_all() {
+    while (at_ != end_) {
+      line_start_ = at_;
+      progress_.reach(at_);
+      read_line();
+      skip_to_next_line();
+    }
+  }
+
   // A line goes on behind a backslash at its end. All words of a line are reached through these three functions.
 
   bool at_line_end() {
@@ -79,6 +90,8 @@ class Obj {
     if (keyword == "v") {
       const double x = coordinate(), y = coordinate(), z = coordinate();
       builder_.points.push_back({x, y, z});
+    } else if (lines_only_) {
+      if (keyword == "l") read_polygon();
     } else if (keyword == "f" || keyword == "fo") {
       read_face();
     } else if (keyword == "o") {
@@ -111,6 +124,15 @@ class Obj {
     for (std::string_view w = word(); !w.empty(); w = word()) corners_.push_back(corner(w));
     if (corners_.empty()) input_.fail_at_line(line_start_, "a face without corners; the file is damaged");
     builder_.add_face(corners_, line_start_, current_patch());
+  }
+
+  void read_polygon() {
+    std::uint32_t last = kNone;
+    for (std::string_view w = word(); !w.empty(); w = word()) {
+      const std::uint32_t next = corner(w);
+      if (last != kNone) edges_.push_back({last, next});
+      last = next;
+    }
   }
 
   /// "7", "7/1", "7//3", "7/1/3"; negative counts back from the vertex read last.
@@ -171,12 +193,18 @@ class Obj {
   std::uint32_t patch_ = 0;
   bool patch_is_current_ = false;
   std::uint64_t free_form_ = 0;
+  bool lines_only_ = false;
+  std::vector<Edge> edges_;
 };
 
 }  // namespace
 
 SurfaceFile read_obj(const Input& input) {
   return Obj(input).read();
+}
+
+LinesFile read_obj_lines(const Input& input) {
+  return Obj(input).read_lines();
 }
 
 }  // namespace octafront::io

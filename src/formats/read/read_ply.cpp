@@ -127,6 +127,24 @@ class PlyBody {
   PlyBody(const Input& input, const PlyHeader& header, Values values)
       : input_(input), header_(header), values_(std::move(values)) {}
 
+  /// Vertices and edges alone.
+  LinesFile read_lines() {
+    LinesFile file;
+    for (const PlyElement& element : header_.elements) {
+      check_element(element);
+      if (element.name == "vertex") {
+        read_vertices(element);
+      } else if (element.name == "edge") {
+        read_edges(element, file.edges);
+      } else {
+        skip_element(element);
+      }
+    }
+    file.points = std::move(builder_.points);
+    file.format = header_.format_name();
+    return file;
+  }
+
   SurfaceFile read() {
     builder_.patch_names = header_.patch_names;
     builder_.region_names = header_.region_names;
@@ -198,6 +216,30 @@ class PlyBody {
     }
   }
 
+  void read_edges(const PlyElement& element, std::vector<Edge>& edges) {
+    for (std::uint64_t i = 0; i < element.count; ++i) {
+      Edge edge{kNone, kNone};
+      for (const PlyProperty& p : element.properties) {
+        if (!p.is_list && (p.name == "vertex1" || p.name == "vertex2"))
+          edge[p.name == "vertex2"] = vertex_number(p, fmt::format("edge {}", i));
+        else
+          skip_property(p);
+      }
+      if (edge[0] == kNone || edge[1] == kNone)
+        input_.fail_at_line(element.declared_at,
+                            "the edges do not have the properties \"vertex1\" and \"vertex2\"; export the file again");
+      edges.push_back(edge);
+    }
+  }
+
+  std::uint32_t vertex_number(const PlyProperty& p, const std::string& of) {
+    const char* const at = values_.position();
+    const std::int64_t v = values_.integer(p.type, "the number of a vertex");
+    if (v < 0 || v >= std::int64_t{kNone})
+      input_.fail_at_byte(at, fmt::format("{} has the vertex {}; the file is damaged: export it again", of, v));
+    return static_cast<std::uint32_t>(v);
+  }
+
   void read_faces(const PlyElement& element) {
     const auto is_corners = [](const PlyProperty& p) {
       return p.is_list && (p.name == "vertex_indices" || p.name == "vertex_index");
@@ -267,13 +309,22 @@ class PlyBody {
   std::vector<std::uint32_t> corners_;
 };
 
+template <class Work>
+auto with_body(const Input& input, const Work& work) {
+  const PlyHeader header = read_ply_header(input);
+  if (header.format == PlyHeader::Format::kText) return work(PlyBody(input, header, TextValues(input, header.end)));
+  const bool swap = header.format == PlyHeader::Format::kBigEndian;
+  return work(PlyBody(input, header, BinaryValues(input, header.end, swap)));
+}
+
 }  // namespace
 
 SurfaceFile read_ply(const Input& input) {
-  const PlyHeader header = read_ply_header(input);
-  if (header.format == PlyHeader::Format::kText) return PlyBody(input, header, TextValues(input, header.end)).read();
-  const bool swap = header.format == PlyHeader::Format::kBigEndian;
-  return PlyBody(input, header, BinaryValues(input, header.end, swap)).read();
+  return with_body(input, [](auto&& body) { return body.read(); });
+}
+
+LinesFile read_ply_lines(const Input& input) {
+  return with_body(input, [](auto&& body) { return body.read_lines(); });
 }
 
 }  // namespace octafront::io

@@ -23,6 +23,12 @@ SurfaceFile read_poly(const Input& input, bool simple, const Input* nodes);
 /// By the ending, with the nodes beside it.
 SurfaceFile read_poly(const Input& input);
 
+/// The lines and points of these formats alone.
+LinesFile read_obj_lines(const Input& input);
+LinesFile read_ply_lines(const Input& input);
+/// A text with a point in each line; polygons end at empty lines.
+LinesFile read_line_table(const Input& input);
+
 RawMesh read_vtu(const Input& input);
 RawMesh read_vtk(const Input& input);
 RawMesh read_msh(const Input& input);

@@ -84,6 +84,10 @@ constexpr Format with_wedges(Format format) {
   format.info.holds.curved_wide_cells = format.info.holds.second_order;
   return format;
 }
+constexpr Format with_cohesive(Format format) {
+  format.info.holds.cohesive = true;
+  return format;
+}
 constexpr Format of_several_files(Format format) {
   format.info.one_file = false;
   return format;
@@ -119,8 +123,8 @@ constexpr std::array kFormats{
         mesh("msh", "Gmsh MSH 4.1", ".msh", kYes, binary(kAll), "binary or text: all as physical groups", write_msh))),
     with_wedges(or_text(mesh("msh22", "Gmsh MSH 2.2", "", kYes, binary(without_sets(kAll)),
                              "binary or text: regions, patches, curves as physical groups", write_msh2))),
-    with_wedges(mesh("abaqus", "Abaqus, CalculiX", ".inp", kYes, kSolver,
-                     "ELSET, NSET, SURFACE; numbers of at most 20 characters", write_abaqus)),
+    with_cohesive(with_wedges(mesh("abaqus", "Abaqus, CalculiX", ".inp", kYes, kSolver,
+                                   "ELSET, NSET, SURFACE; numbers of at most 20 characters", write_abaqus))),
     with_wedges(mesh("nastran", "Nastran", ".bdf .nas", kYes, kSolver,
                      "PSOLID, PSHELL, SET; numbers of at most 16 characters (9 to 15 digits)", write_nastran)),
     with_wedges(mesh("unv", "I-deas universal", ".unv", kYes, kAll, "groups (dataset 2477); 17 digits", write_unv)),

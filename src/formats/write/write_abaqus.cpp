@@ -1,6 +1,7 @@
 // Abaqus and CalculiX input: nodes, elements, sets. A region is the ELSET of its elements, a patch a SURFACE of element
-// sides and the NSET of its nodes, a curve the NSET of its nodes. To be included into a deck that has materials,
-// sections and steps. CalculiX reads twenty characters of a number.
+// sides and the NSET of its nodes, a curve the NSET of its nodes, what is split the ELSET NAME_cohesive of cohesive
+// elements, where they are asked for. To be included into a deck that has materials, sections and steps. CalculiX reads
+// twenty characters of a number.
 
 #include "formats/containers/text_writer.h"
 #include "formats/parts/mixed_cells.h"
@@ -40,6 +41,24 @@ class AbaqusWriter {
     }
     for (std::size_t p = 0; p < names_.size(); ++p)
       if (mesh_.parts()[p].origin != Part::Origin::kRegion) write_set(mesh_.parts()[p], names_[p]);
+  }
+
+  /// COH3D6: the triangle behind, the one in front, in the order in which wedges have theirs.
+  void write_cohesive() {
+    std::uint32_t patch = kNone;
+    std::size_t number = cells_.cells();
+    LegalNames legal({.longest = 64});
+    for (const SplitFace& f : mesh_.mesh().split_faces) {
+      if (f.patch != patch) {
+        patch = f.patch;
+        std::string name = mesh_.mesh().patch_names[patch];
+        name = name.substr(0, name.rfind("_plus")) + "_cohesive";
+        text_.line("*ELEMENT, TYPE=COH3D6, ELSET={}", legal.legal(name));
+      }
+      text_ << ++number;
+      for (const VertexIndex v : f.nodes) text_ << ", " << v + 1;
+      text_ << '\n';
+    }
   }
 
  private:
@@ -110,7 +129,12 @@ void write_abaqus(MeshOutput& out, const MeshParts& mesh) {
                  ? "layers that end have pyramids, which are wedges (C3D15) here with one edge of no length"
                  : "layers that end have pyramids (C3D5), which CalculiX does not know: for it write them as "
                    "tetrahedra, `as_tets`");
-  AbaqusWriter(out, mesh).write();
+  AbaqusWriter writer(out, mesh);
+  writer.write();
+  if (!out.cohesive()) return;
+  if (mesh.second_order())
+    out.note("cohesive elements are linear (COH3D6): the mid-side nodes of the two sides stay free of each other");
+  writer.write_cohesive();
 }
 
 }  // namespace octafront::io

@@ -227,6 +227,12 @@ std::vector<Row<Options>> improve_rows() {
                 "2: elements of second order, with mid-side nodes; those of the boundary on the smooth surface that "
                 "the input stands for, every element proven valid; 1: linear ones"),
           [](auto& o) -> auto& { return o.order; }),
+      row(
+          about(
+              "split", "split", "Elements", "mesh",
+              "Names of patches inside, sheets or walls between regions, separated by commas, along which the mesh is "
+              "opened: nodes are doubled, the sides are the patches NAME_plus and NAME_minus"),
+          [](auto& o) -> auto& { return o.split; }),
   };
 }
 

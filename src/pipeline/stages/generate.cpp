@@ -1,13 +1,17 @@
 #include <octafront/error.h>
 #include <octafront/generate.h>
+#include <octafront/inside.h>
 #include <octafront/named_groups.h>
+#include <octafront/split.h>
 
+#include "pipeline/inside/fins.h"
 #include "pipeline/stages/kept_shape.h"
 #include "pipeline/stages/measure.h"
 #include "pipeline/stages/methods.h"
 #include "pipeline/stages/stages.h"
 #include "pipeline/stages/true_shape.h"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -36,10 +40,41 @@ SizeField choose_sizes(const Prepared& input, const Domain& domain, const Option
 /// So often a mesh is made with smaller bounds where solids do not keep their volume.
 constexpr int kTriesOfBounds = 3;
 
-Result generate_once(const Domain& domain, const Options& asked, const RunContext& context) {
+/// Names in a list with commas.
+std::vector<std::string> listed(const std::string& names) {
+  std::vector<std::string> list;
+  for (std::size_t from = 0; from < names.size();) {
+    const std::size_t comma = std::min(names.find(',', from), names.size());
+    if (comma > from) list.push_back(names.substr(from, comma - from));
+    from = comma + 1;
+  }
+  return list;
+}
+
+/// Curves where patches meet, and what stands on fins in their place.
+void finish_curves(TetMesh& mesh, Fins* fins, Run& run) {
+  if (fins == nullptr) return add_patch_curves(mesh);
+  run.stage("lines and points", [&](const Stage& stage) {
+    fins->leave(mesh);
+    add_patch_curves(mesh);
+    for (std::string& note : fins->enter(mesh)) stage.note(std::move(note));
+  });
+}
+
+void split(TetMesh& mesh, Run& run) {
+  if (run.options.split.empty()) return;
+  run.stage("split", [&](const Stage& stage) {
+    for (std::string& note : split_patches(mesh, listed(run.options.split))) stage.note(std::move(note));
+  });
+  check_result(mesh, nullptr, run);
+}
+
+/// `fins`: of the domain's lines and points, which it has as sheets; null: it has none.
+Result generate_once(const Domain& domain, const Options& asked, const RunContext& context, Fins* fins) {
   const Options options = suited(domain, asked);
   Run run(options, context);
   const Prepared input = prepare(domain, run);
+  check_split(input.surface.mesh(), listed(options.split));
   const SizeField sizes = choose_sizes(input, domain, asked, run);
   Filled filled = fill_to_target(input, sizes, run);
   improve_in_shape(input, filled, run);
@@ -51,8 +86,9 @@ Result generate_once(const Domain& domain, const Options& asked, const RunContex
   raise_order(input, filled, run);
   name_patches(input, filled);
   name_parts(input, filled, run);
-  add_patch_curves(filled.mesh);
   check_result(filled.mesh, &filled.boundary.surface, run);
+  finish_curves(filled.mesh, fins, run);
+  split(filled.mesh, run);
   describe(filled.mesh, run.report);
   describe_true_volumes(filled, domain, run.report);
   if (!filled.layers) describe_sizes(filled.mesh, filled.boundary.sizes, run.report);
@@ -64,17 +100,39 @@ bool heeds_bounds(const Options& options) {
   return !keeps_surface(options) && !options.surface.max_deviation && traits_of(options.method).has_front;
 }
 
-}  // namespace
+/// Lines and points by the sizes that there would be without them, and those that are asked for them by name.
+Fins fins_of(const Domain& domain, const Options& asked, const RunContext& context) {
+  Options options = suited(domain, asked);
+  const auto is_inside = [&](const std::string& name) {
+    const auto has_name = [&](const auto& thing) { return thing.name == name; };
+    return std::any_of(domain.wires.begin(), domain.wires.end(), has_name) ||
+           std::any_of(domain.points.begin(), domain.points.end(), has_name);
+  };
+  std::erase_if(options.size.named, [&](const NamedSize& named) { return is_inside(named.name); });
+  Run run(options, context);
+  const Prepared input = prepare(domain, run);
+  return {domain.wires, domain.points, choose_sizes(input, run), asked.size.named, input.surface};
+}
 
-Result generate(const Domain& domain, const Options& asked, const RunContext& context) {
-  Result made = generate_once(domain, asked, context);
+Domain with_sheets(const Domain& domain, const Fins& fins, const RunContext& context) {
+  Domain with = domain;
+  with.surface = embed_sheets(domain.surface, fins.sheets(), {}, context).surface;
+  with.bound.clear();
+  with.geometry = nullptr;
+  with.true_volumes.clear();
+  return with;
+}
+
+/// generate() of a domain without lines and points, or with fins for them.
+Result generate_in(const Domain& domain, const Options& asked, const RunContext& context, Fins* fins) {
+  Result made = generate_once(domain, asked, context, fins);
   std::vector<OffSolid> off = off_solids(domain, made.report);
   if (off.empty()) return made;
   Domain nearer = domain;
   for (int k = 0; k < kTriesOfBounds && !off.empty() && heeds_bounds(asked); ++k) {
     std::string why = "volumes were off, so elements were made smaller there: " + in_words(domain, off);
     nearer.bound = tightened(nearer, off);
-    made = generate_once(nearer, asked, context);
+    made = generate_once(nearer, asked, context, fins);
     made.report.stages.front().notes.push_back(std::move(why));
     off = off_solids(domain, made.report);
   }
@@ -83,6 +141,16 @@ Result generate(const Domain& domain, const Options& asked, const RunContext& co
       fmt::format("the mesh does not keep the volumes of the CAD solids within {:g} %: {}. {}", 100 * kVolumeKept,
                   in_words(domain, off),
                   asked.size.elements ? "Ask for more elements" : "Give a smaller size, or a smaller `max_deviation`"));
+}
+
+}  // namespace
+
+Result generate(const Domain& domain, const Options& asked, const RunContext& context) {
+  if (domain.wires.empty() && domain.points.empty()) return generate_in(domain, asked, context, nullptr);
+  if (!traits_of(asked.method).fills_complexes)
+    throw OptionError("this method has no lines and points inside: choose method octree-aft");
+  Fins fins = fins_of(domain, asked, context);
+  return generate_in(with_sheets(domain, fins, context), asked, context, &fins);
 }
 
 SurfaceResult generate_surface(const Domain& domain, const Options& asked, const RunContext& context) {

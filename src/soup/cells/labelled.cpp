@@ -116,8 +116,9 @@ Complex complex_of(const Labelled& labelled, const std::function<Face(std::size_
     Sides sides{labelled.region[front], labelled.region[back]};
     for (std::uint32_t& r : sides)
       if (r != kNone) r = number[r];
-    const bool is_sheet = front == back && sides[0] != kNone;
-    vanished += sides[0] == sides[1] && !is_sheet;
+    const bool embedded = !labelled.embedded.empty() && labelled.embedded[t];
+    const bool is_sheet = (front == back || embedded) && sides[0] == sides[1] && sides[0] != kNone;
+    vanished += sides[0] == sides[1] && !is_sheet && !embedded;
     if (sides[0] == sides[1] && !is_sheet) continue;
     sheets += is_sheet;
     Triangle triangle = labelled.arranged.triangles[t];

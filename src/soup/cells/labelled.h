@@ -17,6 +17,8 @@ struct Labelled {
   const Cells& cells;
   std::vector<std::uint32_t> region;
   std::vector<std::string> names;  ///< of regions; empty where nobody gave one
+  /// Per triangle: it stays where one region is on both sides, too, whatever its cells. Empty: none does.
+  std::vector<char> embedded = {};
 };
 
 /// A place that means one cell. Throws InputError if it lies on a wall; `what` names it for messages.

@@ -1,0 +1,462 @@
+#include <octafront/error.h>
+#include <octafront/split.h>
+
+#include "base/core/disjoint_sets.h"
+#include "base/core/wording.h"
+#include "base/mesh/adjacency.h"
+#include "base/mesh/mesh.h"
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace octafront {
+namespace {
+
+using Kind = NamedSet::Kind;
+
+/// What is split under one name.
+struct Asked {
+  std::string name;
+  std::vector<std::uint32_t> patches;
+};
+
+std::string label_of(const std::vector<std::string>& names, std::size_t p) {
+  return p < names.size() && !names[p].empty() ? names[p] : fmt::format("{}", p + 1);
+}
+
+/// The patches of a name that have faces inside: a name may stand for one in each region, "fault (clay|clay)".
+/// `inside`: per patch. Throws OptionError.
+Asked inner_patches(const std::vector<char>& inside, const std::vector<std::string>& names, const std::string& name) {
+  Asked asked{name, {}};
+  std::string there;
+  for (std::uint32_t p = 0; p < inside.size(); ++p) {
+    if (!inside[p]) continue;
+    const std::string label = label_of(names, p);
+    there += (there.empty() ? "" : ", ") + label;
+    if (label == name || label.starts_with(name + " (") || fmt::format("{}", p + 1) == name) asked.patches.push_back(p);
+  }
+  if (!asked.patches.empty()) return asked;
+  throw OptionError(fmt::format("no patch \"{}\" has faces inside that could be split; {}", name,
+                                there.empty() ? "none has" : "those that have: " + there));
+}
+
+void note_inside(std::vector<char>& inside, std::uint32_t patch) {
+  if (patch >= inside.size()) inside.resize(patch + 1, 0);
+  inside[patch] = 1;
+}
+
+std::uint32_t patch_at(const std::vector<std::uint32_t>& patch, std::size_t face) {
+  return patch.empty() ? 0 : patch[face];
+}
+
+/// A node at an element around it, and which copy of the node that gets.
+struct NodeUse {
+  VertexIndex node;
+  TetIndex tet;
+  std::uint32_t copy = 0;  ///< 0: the node itself
+};
+
+/// Copies of nodes: those on faces that are split, one for each part into which the elements around them come apart.
+class NodeCopies {
+ public:
+  /// `is_split`: per half-face.
+  NodeCopies(const TetMesh& mesh, const std::vector<HalfFace>& across, const std::vector<char>& is_split) {
+    mark(mesh, is_split);
+    for (TetIndex t = 0; t < mesh.tets.size(); ++t)
+      for_each_node(mesh, t, [&](VertexIndex v) { uses_.push_back({v, t}); });
+    std::sort(uses_.begin(), uses_.end(),
+              [](const NodeUse& a, const NodeUse& b) { return std::pair(a.node, a.tet) < std::pair(b.node, b.tet); });
+    number(parts(mesh, across, is_split));
+    place(mesh);
+  }
+
+  bool is_marked(VertexIndex v) const { return marked_[v]; }
+  std::size_t count() const { return extra_.size(); }
+  /// The new number of a node where no element asks.
+  VertexIndex self(VertexIndex v) const { return v < corners_ ? v : v + extra_corners_; }
+  /// The new number of node v in an element around it.
+  VertexIndex at(TetIndex t, VertexIndex v) const { return marked_[v] ? copy_of(v, uses_[index(v, t)].copy) : self(v); }
+  /// All of them.
+  std::vector<VertexIndex> all(VertexIndex v) const {
+    std::vector<VertexIndex> list{self(v)};
+    for (auto e = first_extra(v); e < extra_.size() && extra_[e] == v; ++e) list.push_back(of_extra(e));
+    return list;
+  }
+  std::vector<Vec3> points(const std::vector<Vec3>& before) const {
+    std::vector<Vec3> after(before.size() + extra_.size());
+    for (VertexIndex v = 0; v < before.size(); ++v) after[self(v)] = before[v];
+    for (std::size_t e = 0; e < extra_.size(); ++e) after[of_extra(e)] = before[extra_[e]];
+    return after;
+  }
+
+ private:
+  void mark(const TetMesh& mesh, const std::vector<char>& is_split) {
+    marked_.assign(mesh.points.size(), 0);
+    for (HalfFace h = 0; h < is_split.size(); ++h)
+      if (is_split[h]) for_each_node_of_face(mesh, h, [&](VertexIndex v) { marked_[v] = 1; });
+  }
+
+  template <class Visit>
+  void for_each_node(const TetMesh& mesh, TetIndex t, const Visit& visit) const {
+    for (const VertexIndex v : mesh.tets[t])
+      if (marked_[v]) visit(v);
+    if (!mesh.is_second_order()) return;
+    for (const VertexIndex v : mesh.mid_nodes[t])
+      if (marked_[v]) visit(v);
+  }
+
+  template <class Visit>
+  static void for_each_node_of_face(const TetMesh& mesh, HalfFace h, const Visit& visit) {
+    const TetIndex t = h / 4;
+    const int lacks = static_cast<int>(h % 4);
+    for (int i = 0; i < 4; ++i)
+      if (i != lacks) visit(mesh.tets[t][static_cast<std::size_t>(i)]);
+    if (!mesh.is_second_order()) return;
+    for (std::size_t e = 0; e < 6; ++e)
+      if (kTetEdges[e][0] != lacks && kTetEdges[e][1] != lacks) visit(mesh.mid_nodes[t][e]);
+  }
+
+  /// Uses of one node are in one set where a way leads from one element to the other, over faces at the node that stay.
+  DisjointSets parts(const TetMesh& mesh, const std::vector<HalfFace>& across,
+                     const std::vector<char>& is_split) const {
+    DisjointSets sets(uses_.size());
+    for (HalfFace h = 0; h < across.size(); ++h) {
+      const HalfFace other = across[h];
+      if (other == kNone || other < h || is_split[h]) continue;
+      for_each_node_of_face(mesh, h, [&](VertexIndex v) {
+        if (marked_[v])
+          sets.join(static_cast<std::uint32_t>(index(v, h / 4)), static_cast<std::uint32_t>(index(v, other / 4)));
+      });
+    }
+    return sets;
+  }
+
+  /// The part with the first element keeps the node.
+  void number(DisjointSets parts) {
+    std::vector<std::uint32_t> copy(uses_.size(), 0);
+    std::uint32_t copies = 0;
+    for (std::uint32_t u = 0; u < uses_.size(); ++u) {
+      const bool is_first = u == 0 || uses_[u - 1].node != uses_[u].node;
+      if (is_first) copies = 0;
+      // The least use stands for a part, and comes first.
+      if (parts.find(u) == u && !is_first) {
+        copy[u] = ++copies;
+        extra_.push_back(uses_[u].node);
+      }
+      uses_[u].copy = copy[parts.find(u)];
+    }
+  }
+
+  /// Corners come before mid-side nodes, copies too.
+  void place(const TetMesh& mesh) {
+    corners_ = mesh.points.size();
+    for (const auto& mids : mesh.mid_nodes)
+      for (const VertexIndex v : mids) corners_ = std::min<std::size_t>(corners_, v);
+    points_ = mesh.points.size();
+    extra_corners_ = static_cast<VertexIndex>(
+        std::lower_bound(extra_.begin(), extra_.end(), static_cast<VertexIndex>(corners_)) - extra_.begin());
+  }
+
+  std::size_t first_extra(VertexIndex v) const {
+    return static_cast<std::size_t>(std::lower_bound(extra_.begin(), extra_.end(), v) - extra_.begin());
+  }
+  VertexIndex of_extra(std::size_t e) const {
+    return static_cast<VertexIndex>(e < extra_corners_ ? corners_ + e : points_ + e);
+  }
+  VertexIndex copy_of(VertexIndex v, std::uint32_t copy) const {
+    return copy == 0 ? self(v) : of_extra(first_extra(v) + copy - 1);
+  }
+  std::size_t index(VertexIndex v, TetIndex t) const {
+    const auto at = std::lower_bound(uses_.begin(), uses_.end(), std::pair(v, t),
+                                     [](const NodeUse& a, const auto& b) { return std::pair(a.node, a.tet) < b; });
+    return static_cast<std::size_t>(at - uses_.begin());
+  }
+
+  std::vector<char> marked_;        // per node
+  std::vector<NodeUse> uses_;       // of marked nodes, ascending
+  std::vector<VertexIndex> extra_;  // the nodes that further copies are of, ascending
+  std::size_t corners_ = 0, points_ = 0;
+  VertexIndex extra_corners_ = 0;
+};
+
+/// A face inside that is opened: the element in front of it, and the one behind.
+struct Opened {
+  std::uint32_t interface;
+  HalfFace plus, minus;
+};
+
+class Splitting {
+ public:
+  Splitting(TetMesh& mesh, const std::vector<Asked>& asked) : mesh_(mesh), asked_(asked) {
+    const std::vector<HalfFace> across = half_face_neighbors(mesh.tets, mesh.points.size());
+    std::vector<char> is_split(across.size(), 0);
+    const FaceTable table = half_face_table(mesh.tets, mesh.points.size());
+    for (std::uint32_t f = 0; f < mesh.interfaces.size(); ++f) {
+      if (place_of(patch_at(mesh.interface_patch, f)) == asked.size()) continue;
+      Opened opened{f, kNone, kNone};
+      for (const FaceTable::Entry& e : table.group_of(mesh.interfaces[f])) {
+        is_split[e.face] = 1;
+        // The element that looks out as the triangle does lies behind it.
+        const bool behind =
+            is_even(face_of(mesh.tets[e.face / 4], static_cast<int>(e.face % 4))) == is_even(mesh.interfaces[f]);
+        (behind ? opened.minus : opened.plus) = e.face;
+      }
+      opened_.push_back(opened);
+    }
+    copies_.emplace(mesh, across, is_split);
+    while (leave_closed(is_split)) copies_.emplace(mesh, across, is_split);
+    where_ = elements_at(table);
+  }
+
+  std::string apply() {
+    const TetMesh before = faces_of(mesh_);
+    mesh_.points = copies_->points(mesh_.points);
+    std::vector<std::vector<std::uint32_t>> edges = move_curves();
+    move_elements();
+    move_faces(before);
+    open_faces(before);
+    move_wide(before);
+    move_sets(before, edges);
+    std::string text =
+        fmt::format("{} inside opened, {} doubled", counted(opened_.size(), "face"), counted(copies_->count(), "node"));
+    if (closed_ > 0)
+      text += fmt::format("; {} with all corners at the end of a sheet {} closed", counted(closed_, "face"),
+                          closed_ == 1 ? "stays" : "stay");
+    return text;
+  }
+
+ private:
+  /// What is asked about after it has changed.
+  static TetMesh faces_of(const TetMesh& mesh) {
+    TetMesh faces;
+    faces.tets = mesh.tets;
+    faces.boundary = mesh.boundary;
+    faces.interfaces = mesh.interfaces;
+    faces.interface_patch = mesh.interface_patch;
+    faces.face_layers = mesh.face_layers;
+    return faces;
+  }
+
+  /// A face all of whose corners lie at the end of a sheet cannot open, and stays. Whether there was one.
+  bool leave_closed(std::vector<char>& is_split) {
+    const auto stays = [&](const Opened& o) {
+      for (const VertexIndex v : mesh_.interfaces[o.interface])
+        if (copies_->at(o.plus / 4, v) != copies_->at(o.minus / 4, v)) return false;
+      is_split[o.plus] = is_split[o.minus] = 0;
+      return true;
+    };
+    const std::size_t there = std::erase_if(opened_, stays);
+    closed_ += there;
+    return there > 0;
+  }
+
+  bool touches(const auto& nodes) const {
+    return std::any_of(nodes.begin(), nodes.end(), [&](VertexIndex v) { return copies_->is_marked(v); });
+  }
+
+  /// Per face of the boundary, and of the interfaces behind it, an element at it; kNone where no node is doubled.
+  std::vector<TetIndex> elements_at(const FaceTable& table) const {
+    std::vector<TetIndex> at;
+    for (const auto* faces : {&mesh_.boundary, &mesh_.interfaces})
+      for (const Triangle& f : *faces) at.push_back(touches(f) ? table.group_of(f).front().face / 4 : kNone);
+    return at;
+  }
+
+  void move_elements() {
+    for (TetIndex t = 0; t < mesh_.tets.size(); ++t) {
+      for (VertexIndex& v : mesh_.tets[t]) v = copies_->at(t, v);
+      if (!mesh_.is_second_order()) continue;
+      for (VertexIndex& v : mesh_.mid_nodes[t]) v = copies_->at(t, v);
+    }
+  }
+
+  void move_faces(const TetMesh& before) {
+    const auto move = [&](Triangle& face, TetIndex at) {
+      for (VertexIndex& v : face) v = at == kNone ? copies_->self(v) : copies_->at(at, v);
+    };
+    for (std::size_t f = 0; f < mesh_.boundary.size(); ++f) move(mesh_.boundary[f], where_[f]);
+    for (std::size_t f = 0; f < mesh_.interfaces.size(); ++f)
+      move(mesh_.interfaces[f], where_[before.boundary.size() + f]);
+  }
+
+  /// An edge of a curve has a copy wherever elements at it come apart. Returns the new edges of each.
+  std::vector<std::vector<std::uint32_t>> move_curves() {
+    std::map<Edge, std::vector<Edge>> copies;
+    for (const Edge& e : mesh_.curve_edges)
+      if (touches(e)) copies[sorted_edge(e[0], e[1])];
+    for (TetIndex t = 0; !copies.empty() && t < mesh_.tets.size(); ++t) {
+      if (!touches(mesh_.tets[t])) continue;
+      for (const auto& [i, j] : kTetEdges) {
+        const VertexIndex a = mesh_.tets[t][static_cast<std::size_t>(i)],
+                          b = mesh_.tets[t][static_cast<std::size_t>(j)];
+        const auto found = copies.find({std::min(a, b), std::max(a, b)});
+        if (found == copies.end()) continue;
+        const Edge copy{copies_->at(t, found->first[0]), copies_->at(t, found->first[1])};
+        if (std::find(found->second.begin(), found->second.end(), copy) == found->second.end())
+          found->second.push_back(copy);
+      }
+    }
+    return take_curves(copies);
+  }
+
+  std::vector<std::vector<std::uint32_t>> take_curves(const std::map<Edge, std::vector<Edge>>& copies) {
+    std::vector<std::vector<std::uint32_t>> of(mesh_.curve_edges.size());
+    std::vector<Edge> edges;
+    std::vector<std::uint32_t> curve;
+    for (std::size_t e = 0; e < mesh_.curve_edges.size(); ++e) {
+      const auto [a, b] = mesh_.curve_edges[e];
+      const auto found = copies.find({std::min(a, b), std::max(a, b)});
+      const std::vector<Edge> now =
+          found == copies.end() ? std::vector{Edge{copies_->self(a), copies_->self(b)}} : found->second;
+      for (const Edge& copy : now) {
+        of[e].push_back(static_cast<std::uint32_t>(edges.size()));
+        edges.push_back(copy);
+        if (!mesh_.curve.empty()) curve.push_back(mesh_.curve[e]);
+      }
+    }
+    mesh_.curve_edges = std::move(edges);
+    mesh_.curve = std::move(curve);
+    return of;
+  }
+
+  void move_wide(const TetMesh& before) {
+    for (WideCell& cell : mesh_.wide_cells)
+      for (VertexIndex& v : cell.nodes) {
+        if (v == kNone) continue;
+        TetIndex at = cell.first;
+        while (std::find(before.tets[at].begin(), before.tets[at].end(), v) == before.tets[at].end()) ++at;
+        v = copies_->at(at, v);
+      }
+    for (WideFace& face : mesh_.wide_faces)
+      for (VertexIndex& v : face.nodes) {
+        const bool in_first = std::find(before.boundary[face.first].begin(), before.boundary[face.first].end(), v) !=
+                              before.boundary[face.first].end();
+        const TetIndex at = where_[face.first + (in_first ? 0 : 1)];
+        v = at == kNone ? copies_->self(v) : copies_->at(at, v);
+      }
+  }
+
+  /// The faces become boundary, at its end: first those of the elements in front, then those behind.
+  void open_faces(const TetMesh& before) {
+    if (mesh_.patch.empty()) mesh_.patch.assign(mesh_.boundary.size(), 0);
+    const std::uint32_t first = name_sides();
+    const auto side = [&](const Opened& o, std::uint32_t of) {
+      const std::size_t place = place_of(patch_at(before.interface_patch, o.interface));
+      return first + 2 * static_cast<std::uint32_t>(place) + of;
+    };
+    const auto add = [&](HalfFace h, std::uint32_t patch) {
+      mesh_.boundary.push_back(face_of(mesh_.tets[h / 4], static_cast<int>(h % 4)));
+      mesh_.patch.push_back(patch);
+      if (!mesh_.source.empty()) mesh_.source.push_back(kNone);
+    };
+    for (const Opened& o : opened_) add(o.plus, side(o, 0));
+    for (const Opened& o : opened_) add(o.minus, side(o, 1));
+    for (const Opened& o : opened_) {
+      SplitFace pair{{}, side(o, 0)};
+      const Triangle& tri = before.interfaces[o.interface];
+      for (std::size_t i = 0; i < 3; ++i) {
+        pair.nodes[i] = copies_->at(o.minus / 4, tri[i]);
+        pair.nodes[3 + i] = copies_->at(o.plus / 4, tri[i]);
+      }
+      mesh_.split_faces.push_back(pair);
+    }
+    std::stable_sort(mesh_.split_faces.begin(), mesh_.split_faces.end(),
+                     [](const SplitFace& a, const SplitFace& b) { return a.patch < b.patch; });
+    drop_interfaces(before);
+  }
+
+  /// Which of those asked for a patch belongs to; their number: none.
+  std::size_t place_of(std::uint32_t patch) const {
+    const auto has = [&](const Asked& a) {
+      return std::find(a.patches.begin(), a.patches.end(), patch) != a.patches.end();
+    };
+    return static_cast<std::size_t>(std::find_if(asked_.begin(), asked_.end(), has) - asked_.begin());
+  }
+
+  /// Adds the names of both sides of each, the one in front first; returns the number of the first.
+  std::uint32_t name_sides() {
+    auto next = static_cast<std::uint32_t>(mesh_.patch_names.size());
+    for (const auto* patch : {&mesh_.patch, &mesh_.interface_patch})
+      for (const std::uint32_t p : *patch) next = std::max(next, p + 1);
+    mesh_.patch_names.resize(next);
+    for (const Asked& a : asked_)
+      for (const char* side : {"_plus", "_minus"}) mesh_.patch_names.push_back(a.name + side);
+    return next;
+  }
+
+  void drop_interfaces(const TetMesh& before) {
+    std::vector<char> gone(before.interfaces.size(), 0);
+    for (const Opened& o : opened_) gone[o.interface] = 1;
+    face_now_.assign(gone.size(), kNone);
+    std::uint32_t kept = 0;
+    for (std::size_t f = 0; f < gone.size(); ++f) {
+      if (gone[f]) continue;
+      mesh_.interfaces[kept] = mesh_.interfaces[f];
+      if (!mesh_.interface_patch.empty()) mesh_.interface_patch[kept] = mesh_.interface_patch[f];
+      face_now_[f] = kept++;
+    }
+    mesh_.interfaces.resize(kept);
+    if (!mesh_.interface_patch.empty()) mesh_.interface_patch.resize(kept);
+    if (before.face_layers.empty()) return;
+    mesh_.face_layers.resize(before.boundary.size());
+    mesh_.face_layers.resize(mesh_.boundary.size(), kNone);
+    for (std::size_t f = 0; f < gone.size(); ++f)
+      if (!gone[f]) mesh_.face_layers.push_back(before.face_layers[before.boundary.size() + f]);
+  }
+
+  void move_sets(const TetMesh& before, const std::vector<std::vector<std::uint32_t>>& edges) {
+    for (NamedSet& set : mesh_.sets) {
+      std::vector<std::uint32_t> members;
+      for (const std::uint32_t m : set.members) {
+        if (set.kind == Kind::kElements) members.push_back(m);
+        if (set.kind == Kind::kNodes)
+          for (const VertexIndex v : copies_->all(m)) members.push_back(v);
+        if (set.kind == Kind::kEdges) members.insert(members.end(), edges[m].begin(), edges[m].end());
+        if (set.kind != Kind::kFaces) continue;
+        const std::size_t f = m - before.boundary.size();
+        if (m < before.boundary.size())
+          members.push_back(m);
+        else if (face_now_[f] != kNone)
+          members.push_back(static_cast<std::uint32_t>(mesh_.boundary.size()) + face_now_[f]);
+      }
+      std::sort(members.begin(), members.end());
+      set.members = std::move(members);
+    }
+    std::erase_if(mesh_.sets, [](const NamedSet& set) { return set.members.empty(); });
+  }
+
+  TetMesh& mesh_;
+  const std::vector<Asked>& asked_;
+  std::vector<Opened> opened_;
+  std::size_t closed_ = 0;
+  std::optional<NodeCopies> copies_;
+  std::vector<TetIndex> where_;          // per face of the boundary and of the interfaces, as they were
+  std::vector<std::uint32_t> face_now_;  // per interface as it was
+};
+
+}  // namespace
+
+std::vector<std::string> split_patches(TetMesh& mesh, const std::vector<std::string>& names) {
+  std::vector<char> inside;
+  for (std::size_t f = 0; f < mesh.interfaces.size(); ++f) note_inside(inside, patch_at(mesh.interface_patch, f));
+  std::vector<Asked> asked;
+  for (const std::string& name : names) asked.push_back(inner_patches(inside, mesh.patch_names, name));
+  if (asked.empty()) return {};
+  return {Splitting(mesh, asked).apply()};
+}
+
+void check_split(const SurfaceMesh& complex, const std::vector<std::string>& names) {
+  std::vector<char> inside;
+  for (std::size_t t = 0; t < complex.triangles.size(); ++t) {
+    const Sides sides = complex.sides_of(t);
+    if (sides[0] != kNone && sides[1] != kNone) note_inside(inside, complex.patch_of(t));
+  }
+  for (const std::string& name : names) inner_patches(inside, complex.patch_names, name);
+}
+
+}  // namespace octafront

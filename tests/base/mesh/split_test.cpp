@@ -1,0 +1,153 @@
+#include <octafront/error.h>
+#include <octafront/split.h>
+#include <octafront/validity.h>
+
+#include "support/rich_mesh.h"
+
+#include <algorithm>
+#include <set>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace octafront {
+namespace {
+
+constexpr int kSize = 4;
+
+/// The rich mesh, with the wall inside for a part of its rows only, and a second wall across it.
+TetMesh with_walls(const std::vector<std::array<double, 4>>& walls) {
+  TetMesh mesh = testing::rich_mesh(kSize);
+  mesh.region.clear();
+  mesh.region_names = {"body"};
+  mesh.interfaces.clear();
+  mesh.interface_patch.clear();
+  mesh.sets.clear();
+  std::set<Triangle> seen;
+  for (std::uint32_t w = 0; w < walls.size(); ++w) {
+    const auto& [axis, at, lo, hi] = walls[w];
+    const int a = static_cast<int>(axis), other = (a + 1) % 3;
+    for (const Tet& t : mesh.tets)
+      for (const auto& f : kTetFaces) {
+        const Triangle face{t[static_cast<std::size_t>(f[0])], t[static_cast<std::size_t>(f[1])],
+                            t[static_cast<std::size_t>(f[2])]};
+        const bool on = std::all_of(face.begin(), face.end(), [&](VertexIndex v) {
+          const Vec3 p = mesh.points[v];
+          return p[a] == at && p[other] >= lo && p[other] <= hi;
+        });
+        Triangle key = face;
+        std::sort(key.begin(), key.end());
+        if (!on || !seen.insert(key).second) continue;
+        mesh.interfaces.push_back(face);
+        mesh.interface_patch.push_back(static_cast<std::uint32_t>(mesh.patch_names.size()));
+      }
+    mesh.patch_names.push_back("wall_" + std::to_string(w + 1));
+  }
+  return mesh;
+}
+
+std::size_t faces_of(const TetMesh& mesh, const std::string& patch) {
+  const auto at = std::find(mesh.patch_names.begin(), mesh.patch_names.end(), patch) - mesh.patch_names.begin();
+  return static_cast<std::size_t>(std::count(mesh.patch.begin(), mesh.patch.end(), static_cast<std::uint32_t>(at)));
+}
+
+double volume(const TetMesh& mesh) {
+  double sum = 0;
+  for (const auto& [a, b, c, d] : mesh.tets) {
+    const auto& p = mesh.points;
+    sum += dot(cross(p[b] - p[a], p[c] - p[a]), p[d] - p[a]) / 6;
+  }
+  return sum;
+}
+
+TEST(Split, AWallThroughDoublesAllItsNodes) {
+  TetMesh mesh = with_walls({{0, 2, 0, 4}});
+  const std::size_t before = mesh.points.size();
+  split_patches(mesh, {"wall_1"});
+  EXPECT_EQ(mesh.points.size(), before + 25);
+  EXPECT_EQ(faces_of(mesh, "wall_1_plus"), 32U);
+  EXPECT_EQ(faces_of(mesh, "wall_1_minus"), 32U);
+  EXPECT_TRUE(mesh.interfaces.empty());
+  EXPECT_EQ(first_defect(mesh), std::nullopt);
+  EXPECT_NEAR(volume(mesh), 64, 1e-9);
+}
+
+TEST(Split, TheTipOfACrackStaysOneNode) {
+  TetMesh mesh = with_walls({{0, 2, 1, 3}});  // 1 <= y <= 3, through in z
+  const std::size_t before = mesh.points.size();
+  split_patches(mesh, {"wall_1"});
+  EXPECT_EQ(mesh.points.size(), before + 5);  // y = 2
+  EXPECT_EQ(first_defect(mesh), std::nullopt);
+}
+
+TEST(Split, WhereWallsCrossThereAreFourNodes) {
+  TetMesh mesh = with_walls({{0, 2, 0, 4}, {1, 2, 0, 4}});
+  const std::size_t before = mesh.points.size();
+  split_patches(mesh, {"wall_1", "wall_2"});
+  EXPECT_EQ(mesh.points.size(), before + 2 * 20 + 3 * 5);
+  EXPECT_EQ(first_defect(mesh), std::nullopt);
+}
+
+TEST(Split, OneOfTwoThatCrossOpensAlone) {
+  TetMesh mesh = with_walls({{0, 2, 0, 4}, {1, 2, 0, 4}});
+  const std::size_t before = mesh.points.size(), faces = mesh.interfaces.size();
+  split_patches(mesh, {"wall_1"});
+  EXPECT_EQ(mesh.points.size(), before + 25);
+  EXPECT_EQ(mesh.interfaces.size(), faces - 32);
+  EXPECT_EQ(first_defect(mesh), std::nullopt);
+}
+
+TEST(Split, PairsLieOnEachOtherAndFaceEachOther) {
+  TetMesh mesh = with_walls({{0, 2, 0, 2}});
+  split_patches(mesh, {"wall_1"});
+  ASSERT_EQ(mesh.split_faces.size(), 16U);
+  std::size_t tips = 0;
+  for (const SplitFace& f : mesh.split_faces)
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_EQ(mesh.points[f.nodes[i]], mesh.points[f.nodes[3 + i]]);
+      tips += f.nodes[i] == f.nodes[3 + i];
+    }
+  EXPECT_GT(tips, 0U);
+}
+
+TEST(Split, MidSideNodesAreDoubledToo) {
+  TetMesh mesh = testing::with_mid_nodes(with_walls({{0, 2, 1, 3}}));
+  const std::size_t before = mesh.points.size();
+  split_patches(mesh, {"wall_1"});
+  // Of the strip of 2 by 4 squares: the line in the middle with 4 edges, and the edges that lead to it from the tips,
+  // 2 x 5 straight ones and 2 x 4 diagonals.
+  EXPECT_EQ(mesh.points.size(), before + 5 + 4 + 10 + 8);
+  EXPECT_EQ(first_defect(mesh), std::nullopt);
+}
+
+TEST(Split, SetsAndCurvesHaveTheCopies) {
+  TetMesh mesh = with_walls({{0, 2, 0, 4}});
+  NamedSet nodes{"wall", NamedSet::Kind::kNodes, {}};
+  for (VertexIndex v = 0; v < mesh.points.size(); ++v)
+    if (mesh.points[v].x == 2) nodes.members.push_back(v);
+  mesh.sets = {nodes, {"inside", NamedSet::Kind::kFaces, {static_cast<std::uint32_t>(mesh.boundary.size())}}};
+  mesh.curve_edges.clear();
+  mesh.curve.clear();
+  for (const Triangle& t : mesh.interfaces)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Edge edge{t[i], t[(i + 1) % 3]};
+      if (mesh.points[edge[0]].y == 0 && mesh.points[edge[1]].y == 0) mesh.curve_edges.push_back(edge);
+    }
+  const std::size_t edges = mesh.curve_edges.size();
+  ASSERT_GT(edges, 0U);
+  split_patches(mesh, {"wall_1"});
+  ASSERT_EQ(mesh.sets.size(), 1U);
+  EXPECT_EQ(mesh.sets[0].members.size(), 50U);
+  EXPECT_EQ(mesh.curve_edges.size(), 2 * edges);
+  EXPECT_EQ(first_defect(mesh), std::nullopt);
+}
+
+TEST(Split, WhatIsNotInsideIsRefusedBeforeAnyChange) {
+  TetMesh mesh = with_walls({{0, 2, 0, 4}});
+  const TetMesh before = mesh;
+  EXPECT_THROW(split_patches(mesh, {"wall_1", "lid"}), OptionError);
+  EXPECT_EQ(mesh, before);
+}
+
+}  // namespace
+}  // namespace octafront

@@ -1,0 +1,143 @@
+// Sheets, lines and points inside, end to end.
+
+#include <octafront/error.h>
+#include <octafront/generate.h>
+#include <octafront/inside.h>
+#include <octafront/validity.h>
+
+#include "support/named_surfaces.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace octafront {
+namespace {
+
+LineNet polygon(const std::string& name, std::vector<Vec3> points) {
+  LineNet net{name, std::move(points), {}};
+  for (VertexIndex i = 0; i + 1 < net.points.size(); ++i) net.edges.push_back({i, i + 1});
+  return net;
+}
+
+LineNet helix(int n) {
+  std::vector<Vec3> points;
+  for (int i = 0; i <= n; ++i) {
+    const double t = static_cast<double>(i) / n, angle = 4 * std::numbers::pi * t;
+    points.push_back({0.5 + 0.3 * std::cos(angle), 0.5 + 0.3 * std::sin(angle), 0.1 + 0.8 * t});
+  }
+  return polygon("helix", std::move(points));
+}
+
+Options at_size(double size) {
+  Options options;
+  options.size.size = size;
+  return options;
+}
+
+double length_of_curve(const TetMesh& mesh, const std::string& name) {
+  double sum = 0;
+  for (std::size_t e = 0; e < mesh.curve_edges.size(); ++e)
+    if (mesh.curve_names[mesh.curve[e]] == name)
+      sum += distance(mesh.points[mesh.curve_edges[e][0]], mesh.points[mesh.curve_edges[e][1]]);
+  return sum;
+}
+
+TEST(Inside, ALineIsEdgesOfTheMesh) {
+  Domain domain(testing::cube(2));
+  domain.wires = {polygon("wire", {{0.1, 0.1, 0.1}, {0.9, 0.9, 0.9}, {0.9, 0.1, 0.5}})};
+  const Result result = generate(domain, at_size(0.15));
+  EXPECT_NEAR(length_of_curve(result.mesh, "wire"), std::sqrt(3) * 0.8 + std::sqrt(0.8), 1e-12);
+  EXPECT_TRUE(result.mesh.interfaces.empty());
+  EXPECT_EQ(first_defect(result.mesh), std::nullopt);
+  EXPECT_GT(result.report.quality.dihedral_min, 15);
+}
+
+TEST(Inside, ACurvedLineCostsNoFurtherElements) {
+  Domain domain(testing::cube(2));
+  const Result plain = generate(domain, at_size(0.05));
+  domain.wires = {helix(200)};
+  const Result with = generate(domain, at_size(0.05));
+  double given = 0;
+  for (std::size_t i = 0; i < 200; ++i) given += distance(domain.wires[0].points[i], domain.wires[0].points[i + 1]);
+  EXPECT_NEAR(length_of_curve(with.mesh, "helix") / given, 1, 0.005);
+  EXPECT_LT(static_cast<double>(with.report.tets), 1.05 * static_cast<double>(plain.report.tets));
+  EXPECT_GT(with.report.quality.dihedral_min, 20);
+}
+
+TEST(Inside, WhatLiesOutsideIsCutOffAndSaid) {
+  Domain domain(testing::cube(2));
+  domain.wires = {polygon("rod", {{0.5, 0.5, -1}, {0.5, 0.5, 2}})};
+  domain.points = {{"probes", {{0.25, 0.25, 0.25}, {0.5, 0.25, 0.75}, {3, 3, 3}}}};
+  const Result result = generate(domain, at_size(0.2));
+  EXPECT_NEAR(length_of_curve(result.mesh, "rod"), 1, 1e-12);
+  ASSERT_EQ(result.mesh.sets.size(), 1U);
+  EXPECT_EQ(result.mesh.sets[0].name, "probes");
+  ASSERT_EQ(result.mesh.sets[0].members.size(), 2U);
+  for (const VertexIndex v : result.mesh.sets[0].members) {
+    const Vec3 p = result.mesh.points[v];
+    EXPECT_TRUE(p == domain.points[0].points[0] || p == domain.points[0].points[1]);
+  }
+  std::string notes;
+  for (const StageReport& stage : result.report.stages)
+    for (const std::string& note : stage.notes) notes += note + "\n";
+  EXPECT_NE(notes.find("2 of 3 are nodes"), std::string::npos) << notes;
+  EXPECT_NE(notes.find("length 1 in"), std::string::npos) << notes;
+}
+
+TEST(Inside, TheSameMeshForAnyNumberOfThreads) {
+  Domain domain(testing::cube(2));
+  domain.wires = {helix(50)};
+  RunContext one, three;
+  one.threads = 1, three.threads = 3;
+  EXPECT_EQ(generate(domain, at_size(0.1), one).mesh, generate(domain, at_size(0.1), three).mesh);
+}
+
+TEST(Inside, ALineThroughSeveralRegionsIsOneCurve) {
+  SurfaceMesh low = testing::box(1, 1, 0.5, 2), high = testing::transformed(low, 1, {0, 0, 0.5});
+  Domain domain(join_bodies({{"low", low}, {"high", high}}).surface);
+  domain.wires = {polygon("rod", {{0.5, 0.5, 0.1}, {0.5, 0.5, 0.9}})};
+  const Result result = generate(domain, at_size(0.2));
+  EXPECT_NEAR(length_of_curve(result.mesh, "rod"), 0.8, 1e-12);
+  EXPECT_EQ(first_defect(result.mesh), std::nullopt);
+}
+
+TEST(Inside, ASplitSheetHasTwoSides) {
+  SurfaceMesh crack;
+  crack.points = {{0.25, 0.25, 0.5}, {0.75, 0.25, 0.5}, {0.75, 0.75, 0.5}, {0.25, 0.75, 0.5}};
+  crack.triangles = {{0, 1, 2}, {0, 2, 3}};
+  Domain domain(embed_sheets(testing::cube(2), {{"crack", crack}}).surface);
+  Options options = at_size(0.1);
+  options.split = "crack";
+  for (const int order : {1, 2}) {
+    options.order = order;
+    const Result result = generate(domain, options);
+    EXPECT_EQ(first_defect(result.mesh), std::nullopt);
+    EXPECT_FALSE(result.mesh.split_faces.empty());
+    for (const char* side : {"crack_plus", "crack_minus"})
+      EXPECT_EQ(std::count(result.mesh.patch_names.begin(), result.mesh.patch_names.end(), side), 1);
+  }
+}
+
+TEST(Inside, NamesOfNothingToSplitAreRefusedBeforeWork) {
+  Options options = at_size(0.001);  // would take long
+  options.split = "lid";
+  EXPECT_THROW(generate(Domain(testing::cube(2)), options), OptionError);
+}
+
+TEST(Inside, LinesThatNoMeshCanHaveAreRefused) {
+  Domain domain(testing::cube(2));
+  domain.wires = {{"wire", {{0.1, 0.1, 0.1}}, {{0, 3}}}};
+  EXPECT_THROW(generate(domain, at_size(0.2)), InputError);
+  domain.wires = {{"wire", {{0.1, 0.1, 0.1}, {0.1, 0.1, 0.1}}, {{0, 1}}}};
+  EXPECT_THROW(generate(domain, at_size(0.2)), InputError);
+  domain.wires = {polygon("wire", {{0.1, 0.1, 0.1}, {NAN, 0.1, 0.1}})};
+  EXPECT_THROW(generate(domain, at_size(0.2)), InputError);
+}
+
+}  // namespace
+}  // namespace octafront
