@@ -11,11 +11,9 @@ from ._surface import array_of, taken
 
 def described(given):
     """Takes the keywords about what lies inside out of `given`; returns the library's own."""
-    rows = {"sheet": _sheet, "wire": _wire, "points": _points}
     keys = {}
-    for name, row_of in rows.items():
+    for name, kind, row_of in (("sheet", "sheet", _sheet), ("wire", "wire", _wire), ("inner_points", "point", _points)):
         files, rows = _parted(name, given.pop(name, None), row_of)
-        kind = name.rstrip("s")
         keys[f"{kind}_files"], keys[f"inside_{kind}s"] = files or None, rows or None
     return keys
 

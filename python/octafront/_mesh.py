@@ -12,7 +12,7 @@ from ._surface import _or_zeros, array_of, column_of, points_of, rows_of, wanted
 
 _KINDS = ["nodes", "edges", "faces", "elements"]
 _ARRAYS = ["points", "tets", "region", "boundary", "patch", "source", "interfaces", "interface_patch", "curve_edges",
-           "curve", "mid_nodes", "wide_cells", "wide_faces"]
+           "curve", "mid_nodes", "wide_cells", "wide_faces", "split_faces"]
 _LISTS = ["region_names", "patch_names", "curve_names"]
 
 
@@ -120,6 +120,12 @@ class Mesh:
         """(p, 5) uint32, corners of the pyramids where layers end, two of `tets` each: the base, counter-clockwise seen from
         the apex, and the apex."""
         return _cells.wide_nodes(self._handle.view("wide_cells"), 2)
+
+    @property
+    def split_faces(self):
+        """(s, 6) uint32, where the mesh was split: the corners of a face of the element behind it, counter-clockwise seen from
+        in front, and their partners in front, the same at the end of a sheet."""
+        return self._handle.view("split_faces")[:, :6]
 
     @property
     def quads(self):

@@ -23,7 +23,7 @@ _OF_INTAKE = [
     ("sheet", "Surfaces, open or closed, whose triangles become faces inside: a file, a list of files, or {name: file, Surface "
               "or (points, triangles)}"),
     ("wire", "Lines that become edges: a file, a list of files, or {name: file, (points, edges), or points of a polygon}"),
-    ("points", "Points that become nodes: a file, a list of files, or {name: file or points}"),
+    ("inner_points", "Points that become nodes: a file, a list of files, or {name: file or points}"),
     ("labels", "Of an image: {3: \"liver\"}, or a file of names"),
     ("ignore", "Values of an image outside of all regions; () for none [0]"),
     ("merge", "{\"cortex\": (3, 4)}: these values of an image are one region"),

@@ -119,6 +119,19 @@ class Meshing(Case):
         self.assertTrue((mesh.points[mesh.interfaces][..., 2] == 1).all())
         self.assertGreater(len(mesh.interfaces), 10)
 
+    def test_what_lies_inside(self):
+        points, triangles = cube()
+        sheet = ([[.25, .25, .5], [.75, .25, .5], [.75, .75, .5], [.25, .75, .5]], [[0, 1, 2], [0, 2, 3]])
+        mesh = octafront.mesh(points, triangles, size=.2, sheet={"crack": sheet}, split="crack",
+                              wire={"rod": [[.1, .1, .1], [.9, .1, .1]]}, inner_points={"gauges": np.array([[.5, .5, .8]])})
+        self.assertTrue({"crack_plus", "crack_minus"} <= set(mesh.names["patches"]))
+        behind, front = mesh.split_faces[:, :3], mesh.split_faces[:, 3:]
+        self.assertGreater(len(behind), 0)
+        np.testing.assert_array_equal(mesh.points[behind], mesh.points[front])
+        self.assertIn("rod", mesh.names["curves"])
+        with self.assertRaises(octafront.OptionError):
+            octafront.mesh(points, triangles, sheet={"crack": 3})
+
     def test_second_order(self):
         mesh = octafront.mesh(*sphere(), size=0.4, order=2)
         self.assertEqual((mesh.order, mesh.mid_nodes.shape), (2, (len(mesh.tets), 6)))

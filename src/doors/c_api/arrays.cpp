@@ -46,6 +46,7 @@ void visit_mesh_array(Mesh& mesh, std::string_view name, const Visit& visit) {
   if (name == "mid_nodes") return visit(mesh.mid_nodes);
   if (name == "wide_cells") return visit(mesh.wide_cells);
   if (name == "wide_faces") return visit(mesh.wide_faces);
+  if (name == "split_faces") return visit(mesh.split_faces);
   throw OptionError(fmt::format("a mesh has no array \"{}\"", name));
 }
 

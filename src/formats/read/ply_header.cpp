@@ -39,7 +39,7 @@ std::optional<PlyType> ply_type_of(std::string_view name) {
 
 class HeaderParser {
  public:
-  explicit HeaderParser(const Input& input) : input_(input), scan_(input) {}
+  HeaderParser(const Input& input, bool of_lines) : input_(input), of_lines_(of_lines), scan_(input) {}
 
   PlyHeader read() {
     scan_.word();  // "ply"
@@ -163,13 +163,14 @@ class HeaderParser {
     }
     if (vertices != 1)
       input_.fail(fmt::format("declares the element \"vertex\" {} times in its header, not once", vertices));
-    if (faces == 1) return;
+    if (faces == 1 || of_lines_) return;
     if (strips > 0) input_.fail("holds triangle strips, which are not read here; export it with faces");
     input_.fail(faces == 0 ? "declares no faces in its header: points alone are no surface; export the surface"
                            : "declares the element \"face\" more than once in its header");
   }
 
   const Input& input_;
+  bool of_lines_;  ///< no faces are wanted
   Scanner scan_;
   PlyHeader header_;
   bool has_format_ = false;
@@ -205,8 +206,8 @@ std::string_view PlyHeader::format_name() const {
   }
 }
 
-PlyHeader read_ply_header(const Input& input) {
-  return HeaderParser(input).read();
+PlyHeader read_ply_header(const Input& input, bool of_lines) {
+  return HeaderParser(input, of_lines).read();
 }
 
 }  // namespace octafront::io

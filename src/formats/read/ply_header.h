@@ -39,7 +39,7 @@ struct PlyHeader {
   std::string_view format_name() const;
 };
 
-/// Views point into the input. Throws InputError.
-PlyHeader read_ply_header(const Input& input);
+/// Views point into the input. `of_lines`: for who wants points and edges, and no faces. Throws InputError.
+PlyHeader read_ply_header(const Input& input, bool of_lines);
 
 }  // namespace octafront::io

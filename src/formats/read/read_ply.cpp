@@ -310,8 +310,8 @@ class PlyBody {
 };
 
 template <class Work>
-auto with_body(const Input& input, const Work& work) {
-  const PlyHeader header = read_ply_header(input);
+auto with_body(const Input& input, bool of_lines, const Work& work) {
+  const PlyHeader header = read_ply_header(input, of_lines);
   if (header.format == PlyHeader::Format::kText) return work(PlyBody(input, header, TextValues(input, header.end)));
   const bool swap = header.format == PlyHeader::Format::kBigEndian;
   return work(PlyBody(input, header, BinaryValues(input, header.end, swap)));
@@ -320,11 +320,11 @@ auto with_body(const Input& input, const Work& work) {
 }  // namespace
 
 SurfaceFile read_ply(const Input& input) {
-  return with_body(input, [](auto&& body) { return body.read(); });
+  return with_body(input, false, [](auto&& body) { return body.read(); });
 }
 
 LinesFile read_ply_lines(const Input& input) {
-  return with_body(input, [](auto&& body) { return body.read_lines(); });
+  return with_body(input, true, [](auto&& body) { return body.read_lines(); });
 }
 
 }  // namespace octafront::io

@@ -213,5 +213,52 @@ TEST(JoinedCad, KeepsThePatchesOfFacesThatMendingMade) {
   EXPECT_EQ(domain.surface.patch_names[domain.surface.patch_of(0)], "face 1");
 }
 
+TEST_F(Intake, WhatLiesInsideComesFromFiles) {
+  SurfaceMesh sheet;
+  sheet.points = {{-1, 0.25, 0.5}, {2, 0.25, 0.5}, {2, 0.75, 0.5}, {-1, 0.75, 0.5}};
+  sheet.triangles = {{0, 1, 2}, {0, 2, 3}};
+  write_surface("fault.off", sheet);
+  write_text("rod.txt", "x y z\n.1 .1 .1\n.2 .1 .1\n\n.5 .5 .1\n.5 .5 .9\n");
+  write_text("net.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\nl 1 2 3\n");
+  write_text("net.ply",
+             "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n"
+             "element edge 1\nproperty int vertex1\nproperty int vertex2\nend_header\n0 0 0\n1 0 0\n1 0\n");
+  IntakeOptions options;
+  options.inside.sheet_files = {"north=fault.off"};
+  options.inside.wire_files = {"rod.txt", "net.obj", "ply=net.ply"};
+  options.inside.point_files = {"gauges=rod.txt"};
+  const Domain domain = open_domain(cube(2), options);
+  EXPECT_TRUE(says(domain, "regions", "the sheet north: area 0.5 inside, 1 outside, cut off"));
+  EXPECT_EQ(domain.surface.patch_names.back(), "north");
+  ASSERT_EQ(domain.wires.size(), 3u);
+  EXPECT_EQ(domain.wires[0].name, "rod");
+  EXPECT_EQ(domain.wires[0].edges, (std::vector<Edge>{{0, 1}, {2, 3}}));
+  EXPECT_EQ(domain.wires[1].edges, (std::vector<Edge>{{0, 1}, {1, 2}}));
+  EXPECT_EQ(domain.wires[2].edges, (std::vector<Edge>{{1, 0}}));
+  ASSERT_EQ(domain.points.size(), 1u);
+  EXPECT_EQ(domain.points[0].points.size(), 4u);
+}
+
+TEST_F(Intake, FilesOfWhatLiesInsideAreRefusedWithThePlace) {
+  const auto message = [](const std::string& text, const std::string& name) {
+    write_text(name, text);
+    try {
+      read_lines(name);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_NE(message("1 2 3\n1 2\n", "short.txt").find("line 2"), std::string::npos);
+  EXPECT_NE(message("1 2 3\n1 2 nan\n", "nan.csv").find("line 2"), std::string::npos);
+  EXPECT_NE(message("v 0 0 0\nl 1 5\n", "far.obj").find("vertex 4"), std::string::npos);
+  EXPECT_NE(message("\n", "empty.txt").find("no points"), std::string::npos);
+  IntakeOptions twice;
+  write_text("rod.txt", "0 0 0\n1 1 1\n");
+  twice.inside.wire_files = {"rod.txt"};
+  twice.inside.point_files = {"rod.txt"};
+  EXPECT_THROW(open_domain(cube(2), twice), OptionError);
+}
+
 }  // namespace
 }  // namespace octafront
