@@ -202,6 +202,9 @@ def formats() -> list[dict[str, Any]]: ...
 '''
 
 FURTHER = {
+    "sheet": "Path | Sequence[Path] | Mapping[str, Any] | None = None",
+    "wire": "Path | Sequence[Path] | Mapping[str, Any] | None = None",
+    "inner_points": "Path | Sequence[Path] | Mapping[str, Any] | None = None",
     "region": "Mapping[str, npt.ArrayLike] | None = None", "void": "npt.ArrayLike | None = None",
     "labels": "Mapping[int, str] | Path | None = None", "ignore": "Sequence[int] | int | None = None",
     "merge": "Mapping[str, Sequence[int]] | None = None", "iso": "float | None = None",
