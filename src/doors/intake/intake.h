@@ -40,6 +40,9 @@ void finish_joined_cad(Domain& domain, const CadTaken& taken, ComplexOptions::Ov
 void take_image(Domain& domain, const IntakeOptions& options, const Image& image, const std::string& name,
                 const RunContext& context);
 
+/// Throws OptionError if something is asked of formulas, for an input `name` that is none.
+void refuse_formula_options(const FormulaIntake& formula, const std::string& name);
+
 /// Throws OptionError if something is asked of images, for an input `name` that is none.
 void refuse_image_options(const ImageIntake& image, const std::string& name);
 

@@ -144,6 +144,7 @@ SizeField make_size_field(const KnownSurface& known, const SizeOptions& options,
   SizeField field = options.elements   ? scaled_to_count(surface, wanted, options, stage)
                     : wanted.automatic ? within_budget(surface, wanted, options, budget, stage)
                                        : source_grid(surface, wanted, options, stage.context());
+  wanted.sources.tell(surface, wanted.face, field, options, stage);
   const OctreeField& grid = *as_octree_field(field);
   stage.count("leaves", static_cast<double>(grid.tree.size()));
   stage.count("levels", grid.tree.depth());
