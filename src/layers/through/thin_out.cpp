@@ -19,7 +19,7 @@ constexpr double kCollapseCosine = 0.97815, kMoveCosine = 0.9703;
 constexpr int kCollapseRounds = 4, kMoveRounds = 6;
 /// A node tries these parts of the ways to its neighbours, from the first on, halved where none serves.
 constexpr double kFirstStep = 0.25;
-constexpr int kMoveHalvings = 6;
+constexpr int kMoveHalvings = 6, kMostTries = 24;
 /// Better by less is no gain.
 constexpr double kGain = 1e-6;
 constexpr double kInverted = 2;
@@ -156,7 +156,7 @@ class Thinner {
     if (before < kMoveCosine) return false;
     const std::vector<VertexIndex> around = neighbours(v);
     double worst = before, step = kFirstStep;
-    for (int halving = 0; halving < kMoveHalvings;) {
+    for (int halvings = 0, tries = 0; halvings < kMoveHalvings && tries < kMostTries; ++tries) {
       const Vec3 from = mesh_.points[v];
       Vec3 best = from;
       for (const VertexIndex u : around) {
@@ -165,7 +165,7 @@ class Thinner {
         if (there < worst - kGain) worst = there, best = mesh_.points[v];
       }
       mesh_.points[v] = best;
-      if (best == from) step /= 2, ++halving;
+      if (best == from) step /= 2, ++halvings;
     }
     for (const TetIndex t : star_[v]) cosine_[t] = worst_cosine(corners(mesh_.tets[t]));
     return worst < before;

@@ -67,7 +67,8 @@ void SourceShares::add(std::string by, SizeAtPlace at) {
 }
 
 std::vector<double> SourceShares::part_of_each(const SurfaceMesh& surface, const std::vector<double>& face,
-                                               const SizeField& field, const SizeOptions& options) const {
+                                               const SizeField& field, const SizeOptions& options,
+                                               double factor) const {
   // What is asked in batches is asked for all triangles at once.
   const auto least_at = [&](std::size_t f, const PlaceOnSurface& place) {
     std::pair<double, std::uint8_t> least{face[f], of_face_[f]};
@@ -88,7 +89,7 @@ std::vector<double> SourceShares::part_of_each(const SurfaceMesh& surface, const
     const PlaceOnSurface place = place_of(f);
     const auto [asked, source] = least_at(f, place);
     const auto& [i, j, k] = surface.triangles[f];
-    const double came_out = field.at(place.p);
+    const double came_out = field.at(place.p) / factor;
     // Numbers of elements scale all sizes: then only who asks for the least is known.
     const bool is_lower = !options.elements && came_out < kNearby * asked;
     const std::size_t by = !is_lower                                  ? source
@@ -102,8 +103,8 @@ std::vector<double> SourceShares::part_of_each(const SurfaceMesh& surface, const
 }
 
 void SourceShares::tell(const SurfaceMesh& surface, const std::vector<double>& face, const SizeField& field,
-                        const SizeOptions& options, const Stage& stage) const {
-  const std::vector<double> part = part_of_each(surface, face, field, options);
+                        const SizeOptions& options, const Stage& stage, double factor) const {
+  const std::vector<double> part = part_of_each(surface, face, field, options, factor);
   std::vector<std::string> names = names_;
   names.emplace_back(kNearbyName);
   names.emplace_back("`regions`");

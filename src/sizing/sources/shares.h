@@ -27,9 +27,9 @@ class SourceShares {
   void add(std::string by, SizeAtPlace at);
 
   /// Counts "asked by SOURCE, % of the surface", and says so in a sentence where `options` name sources beyond one.
-  /// `face`: the sizes of the last call of changed(), `field`: what came out of all of them.
+  /// `face`: the sizes of the last call of changed(), `field`: what came out of all of them, times `factor`.
   void tell(const SurfaceMesh& surface, const std::vector<double>& face, const SizeField& field,
-            const SizeOptions& options, const Stage& stage) const;
+            const SizeOptions& options, const Stage& stage, double factor = 1) const;
 
  private:
   struct AtPlace {
@@ -38,7 +38,7 @@ class SourceShares {
   };
   std::uint8_t number_of(const std::string& name);
   std::vector<double> part_of_each(const SurfaceMesh& surface, const std::vector<double>& face, const SizeField& field,
-                                   const SizeOptions& options) const;
+                                   const SizeOptions& options, double factor) const;
 
   std::vector<std::string> names_;
   std::vector<double> last_;
