@@ -77,6 +77,18 @@ std::vector<double> numbers_of(const std::string& typed, const std::string& list
   return numbers;
 }
 
+/// A box as "x0,y0,z0,x1,y1,z1".
+Box3 box_of(const std::string& typed) {
+  std::vector<double> n;
+  for (const std::string& word : CLI::detail::split(typed, ',')) {
+    double value = 0;
+    if (CLI::detail::lexical_cast(word, value) && std::isfinite(value)) n.push_back(value);
+  }
+  if (n.size() != 6 || std::count(typed.begin(), typed.end(), ',') != 5)
+    throw CLI::ValidationError("--box", "\"" + typed + "\" is no box; write X0,Y0,Z0,X1,Y1,Z1");
+  return {{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
+}
+
 /// A point as "x,y,z".
 Vec3 point_of(const std::string& option, const std::string& typed, const std::string& list) {
   std::vector<double> numbers;
@@ -139,7 +151,7 @@ void declare_input(CLI::App& command, Arguments& a, const std::string& what) {
       ".mesh; -: from standard input; or several files, a body each. Or CAD: STEP, IGES, BREP. Or an image of labels "
       "or grey values: NIfTI, "
       "NRRD, "
-      "MetaImage, INR, raw with JSON, .inv3, DICOM (a folder or its files)";
+      "MetaImage, INR, raw with JSON, .inv3, DICOM (a folder or its files). Or a formula";
   command
       .add_option_function<std::vector<std::string>>(
           "input",
@@ -247,6 +259,25 @@ void declare_repair(CLI::App& command, Arguments& a) {
       ->type_name("FILE.ply");
 }
 
+void declare_formula(CLI::App& command, Arguments& a) {
+  FormulaIntake& o = a.intake.formula;
+  auto* group =
+      command.add_option_group("Formulas", "A body where a formula is below 0, such as 'gyroid(x,y,z) - 0.3'");
+  group
+      ->add_option_function<std::string>(
+          "--box", [&o](const std::string& typed) { o.box = box_of(typed); },
+          "The box that the body lies in, or is cut by [one cell of the surface, from the origin on]")
+      ->type_name("X0,Y0,Z0,X1,Y1,Z1");
+  group
+      ->add_option("--cell", o.cell,
+                   "Period of the named surfaces (gyroid, schwarz_p, diamond, iwp, neovius, lidinoid) [1]")
+      ->type_name("L");
+  group
+      ->add_option("--resolution", o.resolution,
+                   "Cells along the longest side of the box, between which the surface is sought [64, and 32 a period]")
+      ->type_name("N");
+}
+
 void declare_cad(CLI::App& command, Arguments& a) {
   CadIntake& cad = a.intake.cad;
   auto* group = command.add_option_group("CAD", "STEP, IGES, BREP");
@@ -351,6 +382,33 @@ NamedSize named_size(const std::string& text) {
   return {text.substr(0, at), size};
 }
 
+/// NAME=H:DISTANCE or X,Y,Z=H:DISTANCE.
+NearSize near_size(const std::string& text) {
+  const auto refuse = [&](const std::string& why) {
+    throw CLI::ValidationError("--size-near",
+                               "\"" + text + "\" " + why + "; write NAME=H:DISTANCE or X,Y,Z=H:DISTANCE");
+  };
+  const std::size_t equals = text.rfind('=');
+  if (equals == std::string::npos || equals == 0) refuse("names no place");
+  const std::vector<std::string> numbers = CLI::detail::split(text.substr(equals + 1), ':');
+  NearSize near;
+  if (numbers.size() != 2 || !CLI::detail::lexical_cast(numbers[0], near.size) ||
+      !CLI::detail::lexical_cast(numbers[1], near.distance))
+    refuse("does not end with a size and a distance");
+  const std::string place = text.substr(0, equals);
+  std::vector<double> coordinates;
+  for (const std::string& word : CLI::detail::split(place, ',')) {
+    double value = 0;
+    if (CLI::detail::lexical_cast(word, value)) coordinates.push_back(value);
+  }
+  const bool is_point = coordinates.size() == 3 && std::count(place.begin(), place.end(), ',') == 2;
+  if (is_point)
+    near.point = {coordinates[0], coordinates[1], coordinates[2]};
+  else
+    near.name = place;
+  return near;
+}
+
 void declare_sizes(CLI::App& command, Arguments& a) {
   SizeOptions& o = a.options.size;
   auto* group = command.add_option_group("Sizes", "None given: an automatic size. Several: the smallest wins");
@@ -362,6 +420,8 @@ void declare_sizes(CLI::App& command, Arguments& a) {
       ->type_name("N");
   group->add_option("--curvature", o.curvature, "Elements per full turn of a curved surface")->type_name("K");
   group->add_option("--gap", o.gap, "Elements across thin walls and narrow gaps [images with --size or --elements: 1]")
+      ->type_name("K");
+  group->add_option("--through", o.through, "Elements across thin walls at least, whatever the gaps between them")
       ->type_name("K");
   group->add_option("--feature-elements", o.feature_elements, "Elements along each feature curve at least")
       ->type_name("K");
@@ -378,14 +438,30 @@ void declare_sizes(CLI::App& command, Arguments& a) {
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   group
+      ->add_option_function<std::vector<std::string>>(
+          "--size-near",
+          [&o](const std::vector<std::string>& all) {
+            for (const std::string& text : all) o.near.push_back(near_size(text));
+          },
+          "Edge length H in a region, on a patch, along a curve or at a point, rising to nothing asked at the "
+          "distance; "
+          "may be repeated")
+      ->type_name("NAME|X,Y,Z=H:DISTANCE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  group
       ->add_option("--regions", a.regions, "Boxes, spheres and points with a size each: JSON, or a table x, y, z, size")
       ->type_name("FILE");
   group
       ->add_option("--point-sizes", a.point_sizes,
                    "Sizes at the vertices of the surface: VTU, VTP (array \"size\"), or a table x, y, z, size")
       ->type_name("FILE");
-  group->add_option("--size-field", a.size_field, "All sizes, as `octafront size -o` writes them, edited or not; alone")
-      ->type_name("FILE");
+  group
+      ->add_option("--size-field", a.size_field,
+                   "A mesh of tetrahedra or triangles with a field of sizes, at points or in elements, by its name "
+                   "(VTU, VTK, Gmsh, MEDIT .sol, TetGen .mtr, XDMF); or all sizes, as `octafront size -o` writes them, "
+                   "edited or not, alone")
+      ->type_name("FILE[:FIELD]");
   group
       ->add_option(
           "--unit", a.unit,
@@ -503,6 +579,11 @@ void declare_volume(CLI::App& command, Arguments& a) {
       *group, "--queue", o.order,
       {{"layers", Order::kLayers}, {"smallest", Order::kSmallest}, {"newest", Order::kNewest}},
       "Order of the front's faces: layer by layer, the smallest of each layer first, or the newest first");
+  group
+      ->add_option("--shell", o.shell,
+                   "Layers of flat elements through walls that are thinner than elements are wide; 0: as they come")
+      ->type_name("N")
+      ->capture_default_str();
 }
 
 void declare_improvement(CLI::App& command, Arguments& a) {

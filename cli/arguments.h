@@ -67,6 +67,8 @@ void declare_split(CLI::App& command, Arguments& arguments);
 /// What is done about surfaces with defects.
 void declare_repair(CLI::App& command, Arguments& arguments);
 void declare_cad(CLI::App& command, Arguments& arguments);
+/// Bodies by a formula.
+void declare_formula(CLI::App& command, Arguments& arguments);
 /// -o, --format and --group of commands that write a mesh.
 void declare_mesh_output(CLI::App& command, Arguments& arguments);
 /// --report: the web page.

@@ -27,8 +27,7 @@ Options checked_options_of(const Session& session) {
   Options options = with_preset(a);
   if (!a.regions.empty()) options.size.regions = read_size_regions(a.regions, session.context());
   if (!a.point_sizes.empty()) options.size.point_sizes = read_point_sizes(a.point_sizes, session.context());
-  if (!a.size_field.empty())
-    options.size.field = read_size_field(a.size_field, options.size.gradation, session.context());
+  if (!a.size_field.empty()) read_sizes_into(options.size, a.size_field.string(), session.context());
   check_options(options);
   return options;
 }

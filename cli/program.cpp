@@ -90,6 +90,7 @@ void Program::declare_makers() {
           "  octafront mesh part.step -o part.inp --size 2             CAD: solids, names, colours\n"
           "  octafront mesh plate.stl bolt.stl -o bolted.msh           a region each, faces shared\n"
           "  octafront mesh labels.nii.gz -o organs.msh --labels names.txt    a region per label\n"
+          "  octafront mesh 'gyroid(x,y,z) - 0.3' -o cell.msh --cell 10            a unit cell by a formula\n"
           "  octafront mesh head.nii.gz -o head.msh --band skin=-200:226 --band bone=226:\n"
           "  octafront mesh part.stl -o part.msh -o part.vtu --elements 1e5 --report part.html\n"
           "  octafront mesh part.stl --dry-run --size 0.5              elements, memory, time; nothing made\n"
@@ -99,6 +100,7 @@ void Program::declare_makers() {
   declare_complex(*mesh, a);
   declare_inside(*mesh, a);
   declare_image(*mesh, a.intake.image);
+  declare_formula(*mesh, a);
   declare_repair(*mesh, a);
   declare_cad(*mesh, a);
   declare_mesh_output(*mesh, a);
@@ -121,6 +123,7 @@ void Program::declare_makers() {
   declare_complex(*surface, a);
   declare_inside(*surface, a);
   declare_image(*surface, a.intake.image);
+  declare_formula(*surface, a);
   declare_repair(*surface, a);
   declare_cad(*surface, a);
   declare_output(*surface, a, "Surface: .stl, .obj, .off or .ply", true);
@@ -150,6 +153,7 @@ void Program::declare_makers() {
   declare_input(*size, a);
   declare_complex(*size, a);
   declare_image(*size, a.intake.image);
+  declare_formula(*size, a);
   declare_repair(*size, a);
   declare_cad(*size, a);
   declare_output(*size, a, "Background grid: .vtu", false);

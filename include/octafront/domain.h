@@ -74,6 +74,15 @@ struct InsideIntake {
   std::vector<PointSet> points;
 };
 
+/// How a formula, or samples of a function, become a domain (octafront/formula.h).
+struct FormulaIntake {
+  /// The body ends flat at the faces of this box: its least and largest corner. Without a value one cell of the named
+  /// surfaces, from the origin on.
+  std::optional<Box3> box = {};
+  std::optional<double> cell = {};               ///< the period of the named surfaces, > 0; without a value 1
+  std::optional<std::uint32_t> resolution = {};  ///< cells along the longest side of the box, >= 4
+};
+
 /// What is done with an input that cannot be meshed as it is, and how its parts become regions.
 struct IntakeOptions {
   /// Seeds, voids, cells, nested shells and overlaps: with anything but Overlap::kAuto each name of a patch of one
@@ -95,6 +104,7 @@ struct IntakeOptions {
   ImageIntake image;
   CadIntake cad;
   InsideIntake inside;
+  FormulaIntake formula;
   /// Called with each note as soon as there is one, so that notes are known even where open_domain() throws later.
   std::function<void(const IntakeNote&)> tell = {};
 };
@@ -156,7 +166,8 @@ struct Domain {
 std::string to_json(const Domain& domain);
 
 /// Opens a file, or several, a body each, whose regions get the names of the files. What read_surface() or read_image()
-/// knows, told by content; of images several files are the slices of one.
+/// knows, told by content; of images several files are the slices of one. What is_formula() of octafront/formula.h
+/// knows is the body that open_formula() makes of it.
 ///
 /// A surface with walls or parts inside becomes a complex of regions (complex_of_walls()); a plain one that is clean
 /// stays as it is, bit for bit; what has defects is mended as the options say (mend_surface()). Several bodies are

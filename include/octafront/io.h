@@ -7,6 +7,7 @@
 #include <octafront/surface_mesh.h>
 #include <octafront/tet_mesh.h>
 
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -94,6 +95,16 @@ std::vector<SizeRegion> read_size_regions(const std::string& file, const RunCont
 /// Reads sizes at points from such a table, or from the points of a VTU or VTP file with the sizes in its PointData
 /// ("size", or the only array there is). For SizeOptions::point_sizes. Throws InputError.
 std::vector<PointSize> read_point_sizes(const std::string& file, const RunContext& context = {});
+
+/// Reads a mesh of tetrahedra or triangles with a field of sizes, at its points or in its elements: the PointData and
+/// CellData of VTU and legacy VTK, $NodeData and $ElementData of Gmsh, the .sol beside a MEDIT mesh, the .mtr beside
+/// TetGen's files, attributes of XDMF. `field`: its name; empty: the only one there is. For SizeOptions::mesh. Throws
+/// InputError, which lists the fields that there are, and for sizes that are not above 0.
+std::shared_ptr<const SizeMesh> read_size_mesh(const std::string& file, const std::string& field = {},
+                                               const RunContext& context = {});
+/// What `--size-field` names: FILE or FILE:FIELD. A background grid without a field becomes SizeOptions::field, all
+/// else SizeOptions::mesh.
+void read_sizes_into(SizeOptions& options, const std::string& named, const RunContext& context = {});
 
 /// Writes text (a report) beside and renames it into place. Throws OutputError.
 void write_text(const std::string& file, const std::string& text);

@@ -6,6 +6,7 @@
 #include <octafront/complex.h>
 #include <octafront/domain.h>
 #include <octafront/error.h>
+#include <octafront/formula.h>
 #include <octafront/generate.h>
 #include <octafront/ids.h>
 #include <octafront/image.h>

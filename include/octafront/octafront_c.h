@@ -157,6 +157,15 @@ int octafront_options_regions_file(octafront_options* options, const char* file)
 int octafront_options_point_sizes_file(octafront_options* options, const char* file);
 /** SizeOptions::named: the size of the region, patch or curve of that name. */
 int octafront_options_size_of(octafront_options* options, const char* name, size_t length, double size);
+/** SizeOptions::near: by a name, or where it is null or empty by a point (3). */
+int octafront_options_size_near(octafront_options* options, const char* name, size_t length, const double* point,
+                                double size, double distance);
+/** read_sizes_into() of octafront/io.h: FILE or FILE:FIELD, a background grid or a mesh with a field of sizes. */
+int octafront_options_sizes_file(octafront_options* options, const char* named);
+/** SizeOptions::mesh: points (n x 3), elements of 4 or 3 corners each, sizes per point or, with `of_elements`, per
+ * element. Copied. */
+int octafront_options_size_mesh(octafront_options* options, const double* points, size_t n, const uint32_t* elements,
+                                size_t count, uint32_t corners, const double* sizes, int of_elements);
 /** SizeOptions::field. */
 int octafront_options_field(octafront_options* options, const octafront_sizes* sizes);
 /** options_for_voxels() of octafront/generate.h, after all other options; octafront_generate() does so by itself. */
@@ -212,7 +221,8 @@ octafront_job* octafront_read_image(const char* const* files, size_t count, uint
  * ...]), inside_wires ([["wire", points, edges], ...]), inside_points ([["probe", points], ...]); for images names
  * ([[3, "liver"], ...]), names_file, ignore
  * ([0, 7]), merge ([["cortex", [3, 4]], ...]), bands ([["bone", 226, null], ...]), crop ([[first, last], ...], null for
- * an end that stays), resample (one or three); for CAD apart (["fillet", ...]).
+ * an end that stays), resample (one or three); for CAD apart (["fillet", ...]); for formulas box ([x0, y0, z0, x1,
+ * y1, z1]).
  *
  * `options`: what octafront_generate() will be given, or null: files of CAD are triangulated for its sizes, as
  * intake_for() of octafront/domain.h says. */
@@ -222,6 +232,13 @@ octafront_job* octafront_open_surface(const octafront_surface* surface, const ch
 octafront_job* octafront_open_bodies(const octafront_surface* const* bodies, const char* const* names, size_t count,
                                      const char* json, int threads);
 octafront_job* octafront_image_surface(const octafront_image* image, const char* json, int threads);
+/** -> surface, a domain: open_samples() of octafront/formula.h. `size`: cells along x, y and z; `box`: its least and
+ * largest corner, 6 numbers; `values`: (size[0] + 2) x (size[1] + 2) x (size[2] + 2) of them, copied. Formulas are
+ * files to octafront_open_files(). */
+octafront_job* octafront_open_samples(const double* values, const uint32_t* size, const double* box, const char* json,
+                                      int threads);
+/** 1 if is_formula() of octafront/formula.h says so. */
+int octafront_is_formula(const char* input);
 /** -> mesh, sizes: generate(). A surface that was not opened is taken as it is, and refused if it has defects. */
 octafront_job* octafront_generate(const octafront_surface* surface, const octafront_options* options, int threads);
 /** -> surface, sizes: generate_surface(). */

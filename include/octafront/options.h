@@ -6,11 +6,14 @@
 // octree background grid (its section III.A), the surface front (III.B), the volume front with its queues Qc, Qn and Qh
 // (IV) and the weighted Laplacian (V) come.
 
+#include <octafront/ids.h>
 #include <octafront/size_field.h>
 #include <octafront/vec.h>
 
+#include <array>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -38,13 +41,36 @@ struct NamedSize {
   double size = 0;  ///< > 0, input units
 };
 
+/// A size near a place. Within the place it is `size`; at a distance s from it size / (1 - s / distance), which rises
+/// from there to no wish at all at `distance`. At half the distance it is twice the size, at nine tenths ten times. The
+/// gradation holds as everywhere.
+struct NearSize {
+  std::string name;  ///< of a region (all of its inside is within it), a patch or a curve; empty: `point` is the place
+  Vec3 point = {};   ///< input units
+  double size = 0;   ///< > 0, input units
+  double distance = 0;  ///< > 0, input units
+};
+
+/// Sizes on a mesh: of tetrahedra, or of triangles in space. Linear in the element that holds a place where they are
+/// given at points; elsewhere those of the nearest point of the mesh.
+struct SizeMesh {
+  std::vector<Vec3> points;                      ///< input units
+  std::vector<std::array<VertexIndex, 4>> tets;  ///< indices into `points`
+  std::vector<Triangle> triangles;               ///< counted only where there are no tetrahedra
+  std::vector<double> point_sizes;               ///< > 0, one per point; or empty
+  std::vector<double> element_sizes;  ///< > 0, one per tetrahedron, else per triangle; asked where point_sizes is empty
+  std::string name;                   ///< for messages: the file and its field
+};
+
 /// Where element sizes come from. Every source is optional; the smallest size wins. With none the size is automatic
-/// (make_size_field); `size`, `point_sizes` and `callback` switch that off: they decide alone, up to limits, gradation.
+/// (make_size_field); `size`, `point_sizes`, `mesh` and `callback` switch that off: they decide alone, up to limits,
+/// gradation.
 struct SizeOptions {
   std::optional<double> size;            ///< uniform edge length, input units, > 0
   std::optional<std::int64_t> elements;  ///< target number of tetrahedra, > 0; the sizes are scaled to meet it
   std::optional<double> curvature;       ///< elements per full turn of a curved surface, >= 3
   std::optional<double> gap;             ///< elements across thin walls and narrow gaps, > 0
+  std::optional<double> through;         ///< elements across thin walls alone, whatever the gaps between them, > 0
   std::optional<double>
       feature_elements;  ///< elements along each feature curve at least (closed curves: twice that), > 0
   /// Sizes by which triangles stay within this distance of a curved surface; input units, > 0. generate() sets it from
@@ -67,6 +93,9 @@ struct SizeOptions {
   /// the nearest point speaks for each place. A source like the others: the smallest wins, gradation holds.
   std::vector<PointSize> point_sizes;
   std::vector<NamedSize> named;  ///< sizes of regions, patches and curves by their names
+  std::vector<NearSize> near;    ///< sizes near regions, patches, curves and points
+  /// Sizes on a mesh, on the surface and inside of it, as read_size_mesh() returns them. May be null.
+  std::shared_ptr<const SizeMesh> mesh;
   /// All sizes, as read_size_field() returns them: no other source may be given with it, nor limits.
   std::optional<SizeField> field;
   /// A source on the whole surface, asked at many points at once: fills in a size > 0 for each. May be empty.
@@ -137,6 +166,9 @@ struct VolumeOptions {
   /// Order of the queue in a block: layer by layer as the faces come; each layer's smallest faces first; or always the
   /// newest face.
   Order order = Order::kLayers;
+  /// Walls that are thinner than so many elements are wide have so many layers of flat elements through them: 2 and
+  /// more; 0: as many as sizes make.
+  std::uint32_t shell = 0;
 };
 
 /// How the mesh is improved after it is complete.

@@ -157,7 +157,7 @@ class _Shape(Protocol):
 
 Tets = Mesh | _OfMeshio | _OfVtk
 Body = Surface | Tets | _OfTrimesh | _Workplane | _Shape
-Input = Body | Path | Sequence[Path] | Mapping[str, Body | Path]
+Input = Body | Path | Sequence[Path] | Mapping[str, Body | Path] | SizeFunction
 
 class Checked:
     text: str
@@ -210,8 +210,11 @@ FURTHER = {
     "merge": "Mapping[str, Sequence[int]] | None = None", "iso": "float | None = None",
     "bands": "Mapping[str, tuple[float | None, float | None]] | None = None",
     "crop": "Sequence[Sequence[int | None]] | None = None", "resample": "float | Sequence[float] | None = None",
+    "box": "npt.ArrayLike | None = None",
     "regions": "Places | None = None", "point_sizes": "npt.ArrayLike | Path | None = None",
-    "size_of": "Mapping[str, float] | None = None", "size_field": "SizeField | Path | None = None",
+    "size_of": "Mapping[str, float] | None = None", 
+    "size_near": "Mapping[str | tuple[float, float, float], tuple[float, float]] | None = None",
+    "size_field": "SizeField | Path | tuple[npt.ArrayLike, npt.ArrayLike, npt.ArrayLike] | None = None",
     "unit": "str | None = None", "after_pass": "Callable[[str, dict[str, Any]], object] | None = None", "progress": "Progress | None = None",
     "threads": "int = 0",
 }

@@ -39,6 +39,7 @@ def mesh(points, triangles=None, **keywords):
     names, and several regions; a file (STL, OBJ, OFF, PLY, CAD, images of voxels, ..., recognised by content); a list of files,
     or {name: Surface or file}, a region each; or an object of another library: of trimesh, Open3D, PyVista, VTK or meshio
     (names of its groups are those of patches), or a shape of CadQuery, FreeCAD or build123d, which goes the way of CAD files.
+    Or a body by a formula, "abs(gyroid) < 0.3", or by a function (n, 3) -> (n,) of places in a `box`: where it is below 0.
 
     All of it goes the way of the command line, to the same mesh, bit for bit: walls and parts inside become regions, a
     soup is mended (repair="none": it is refused, InputError with `defects`). report["intake"] says what was found and

@@ -3,7 +3,7 @@
 import ctypes
 from collections.abc import Mapping
 
-from . import _complexes, _foreign, _images, _inside
+from . import _complexes, _foreign, _functions, _images, _inside
 from ._jobs import Job
 from ._library import file_of
 from ._surface import Surface, surface_of
@@ -21,6 +21,8 @@ def opened(source, triangles, settings):
         files = [source] if _images.is_file(source) else source
         names = (ctypes.c_char_p * len(files))(*(file_of(file) for file in files))
         job = Job("open_files", names, len(files), keys, settings.options, threads, progress=settings.progress)
+    elif triangles is None and _functions.is_function(source):
+        job = _functions.open_job(source, settings)
     elif triangles is None and isinstance(source, Mapping):
         handles, names, surfaces = _complexes.arguments_of(source)
         job = Job("open_bodies", handles, names, len(surfaces), keys, threads, progress=settings.progress)

@@ -32,6 +32,7 @@ _OF_INTAKE = [
               "second; None: no limit"),
     ("crop", "Of an image: ((i0, i1), (j0, j1), (k0, k1)), counted from 0, the last ones too; None for an end that stays"),
     ("resample", "Spacing of the voxels to work with, one number or three"),
+    ("box", "Of a formula or function: ((x0, y0, z0), (x1, y1, z1)), which the body lies in or is cut by"),
 ]
 # Beside the table of options: name, which functions heed it, what it is.
 _FURTHER = [(name, "mesh surface size", text) for name, text in _OF_INTAKE] + [
@@ -43,7 +44,12 @@ _FURTHER = [(name, "mesh surface size", text) for name, text in _OF_INTAKE] + [
      "Sizes at the vertices of the surface: an array (n, 4) of points and sizes, or a file: VTU, VTP, a table"),
     ("size_of", "mesh surface size",
      "{name: edge length} of regions (their boundary and inside), patches and curves, by their names"),
-    ("size_field", "mesh surface size", "All sizes: a SizeField, or a file that one wrote; alone"),
+    ("size_near", "mesh surface size",
+     "{place: (edge length, distance)} in a region, on a patch, along a curve, by their names, or at a point (x, y, z): "
+     "rising from there to nothing asked at the distance"),
+    ("size_field", "mesh surface size",
+     "Sizes on a mesh: (points, tetrahedra or triangles, sizes at points or of elements), or a file \"old.vtu:h\" with "
+     "the name of its field. Or all sizes, alone: a SizeField, or a file that one wrote"),
     ("unit", "mesh surface size",
      "What the input's coordinates count, for lengths with a unit of their own, such as size=\"2mm\": um, mm, cm, m, in or "
      "ft; files may say it. Of CAD files the mesh counts it, too, and lengths without a unit [mm]"),
@@ -109,14 +115,54 @@ class Settings:
         if "size_field" in given:
             field = given.pop("size_field")
             if _is_file(field):
-                field = SizeField.read(field, gradation=given.get("gradation", 0.12))
-            demand("options_field", self.options, field._handle)
+                if "gradation" in given:
+                    demand("options_set", self.options, json.dumps({"gradation": _plain("gradation", given["gradation"])}).encode())
+                demand("options_sizes_file", self.options, file_of(field))
+            elif isinstance(field, SizeField):
+                demand("options_field", self.options, field._handle)
+            else:
+                self._set_size_mesh(field)
+        for place, size in dict(given.pop("size_near", {})).items():
+            self._set_near(place, size)
         for name, size in dict(given.pop("size_of", {})).items():
             raw = bytes_of(name)
             demand("options_size_of", self.options, raw, len(raw), float(size))
         for name in ("regions", "point_sizes"):
             if name in given:
                 self._set_places(name, given.pop(name))
+
+    def _set_near(self, place, size):
+        try:
+            h, distance = (float(number) for number in size)
+        except (TypeError, ValueError):
+            raise errors.OptionError(f"`size_near` of {place!r} is an edge length and a distance, not {size!r}") from None
+        if isinstance(place, (str, bytes)):
+            raw = bytes_of(place)
+            demand("options_size_near", self.options, raw, len(raw), None, h, distance)
+            return
+        point = np.ascontiguousarray(array_of(place, "a point of `size_near`", np.float64))
+        if point.shape != (3,):
+            raise errors.OptionError(f"`size_near` names a place by its name or as (x, y, z), not by {place!r}")
+        demand("options_size_near", self.options, None, 0, pointer(point), h, distance)
+
+    def _set_size_mesh(self, field):
+        try:
+            points, elements, sizes = field
+        except (TypeError, ValueError):
+            raise errors.OptionError("`size_field` is a SizeField, a file, or (points, elements, sizes)") from None
+        points = _numbers(points, 3, "size_field", "x, y, z")
+        elements = np.ascontiguousarray(array_of(elements, "elements of `size_field`", np.int64))
+        if elements.ndim != 2 or elements.shape[1] not in (3, 4):
+            raise errors.OptionError(f"elements of `size_field` have the shape (n, 3) or (n, 4), not {elements.shape}")
+        if elements.size and not 0 <= elements.min() <= elements.max() < len(points):
+            raise errors.OptionError("elements of `size_field` name points that there are not")
+        corners = elements.astype(np.uint32)
+        sizes = np.ascontiguousarray(array_of(sizes, "sizes of `size_field`", np.float64))
+        if sizes.shape not in ((len(points),), (len(elements),)):
+            raise errors.OptionError(f"`size_field` has {len(points)} points and {len(elements)} elements, but sizes of the "
+                                     f"shape {sizes.shape}")
+        demand("options_size_mesh", self.options, pointer(points), len(points), pointer(corners), len(corners),
+               corners.shape[1], pointer(sizes), int(len(sizes) != len(points)))
 
     def _set_places(self, name, value):
         if _is_file(value):

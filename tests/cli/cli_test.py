@@ -404,6 +404,60 @@ class CommandLine(unittest.TestCase):
         self.assertIn("tetrahedra expected", done.stdout)
         self.assertTrue((self.dir / "grid.vtu").stat().st_size > 0)
 
+    def test_a_mesh_with_a_field_gives_sizes(self):
+        self.write_box("box.off", (0, 0, 0), (1, 1, 1))
+        box, old = self.dir / "box.off", self.dir / "old.vtk"
+        self.run_cli("mesh", box, "-o", old, "--ascii", "--size", 0.3)
+        text = old.read_text()
+        count = int(text.split("POINTS ")[1].split()[0])
+        xs = [float(w) for w in text.split("POINTS ")[1].split()[2:2 + 3 * count]][0::3]
+        field = f"POINT_DATA {count}\nSCALARS h double 1\nLOOKUP_TABLE default\n" + "\n".join(str(0.05 + 0.1 * x) for x in xs)
+        old.write_text(text.partition("POINT_DATA")[0] + field + "\n")
+        report = self.dir / "report.json"
+        self.run_cli("mesh", box, "-o", self.dir / "new.vtu", "--size-field", f"{old}:h", "--json", report)
+        many = json.loads(report.read_text())["tets"]
+        self.run_cli("mesh", box, "-o", self.dir / "new.vtu", "--size", 0.1, "--json", report)
+        self.assertGreater(many, json.loads(report.read_text())["tets"])
+        wrong = self.run_cli("mesh", box, "-o", self.dir / "new.vtu", "--size-field", f"{old}:g", status=3)
+        self.assertIn('no field "g"', wrong.stderr)
+        self.assertIn('"h"', wrong.stderr)
+
+    def test_sizes_near_places_are_told(self):
+        self.write_box("box.off", (0, 0, 0), (1, 1, 1))
+        said = self.run_cli("mesh", self.dir / "box.off", "-o", self.dir / "box.vtu", "--size", 0.2, "--size-near",
+                            "0,0,0=0.05:0.4")
+        self.assertRegex(said.stdout, r"asked by --size over [\d.]+ %")
+        self.assertIn("--size-near (0, 0, 0)", said.stdout)
+        for wrong in ("0,0,0=0.05", "=1:2", "0,0,0=a:b"):
+            self.assertIn("--size-near", self.run_cli("mesh", self.dir / "box.off", "-o", self.dir / "box.vtu",
+                                                      "--size-near", wrong, status=2).stderr)
+        nobody = self.run_cli("mesh", self.dir / "box.off", "-o", self.dir / "box.vtu", "--size-near", "lid=1:2", status=2)
+        self.assertIn('"lid"', nobody.stderr)
+
+    def test_a_formula_is_a_body(self):
+        cell, report = self.dir / "cell.msh", self.dir / "report.json"
+        self.run_cli("mesh", "gyroid(x,y,z) - 0.3", "-o", cell, "--cell", 2, "--size", 0.2, "--json", report)
+        found = json.loads(report.read_text())
+        # The part of the cell that is below .3, by 200^3 samples, times its volume.
+        self.assertAlmostEqual(found["volume"], 8 * 0.59682, delta=0.05)
+        self.run_cli("check", cell)
+        self.assertIn("x_min", self.run_cli("info", cell).stdout)
+        self.assertIn("at character 8", self.run_cli("mesh", "gyroid+(", "-o", cell, status=2).stderr)
+        self.assertIn("--box", self.run_cli("mesh", "x - 0.5", "-o", cell, status=2).stderr)
+        self.assertIn("--cell", self.run_cli("mesh", self.part, "-o", cell, "--cell", 2, status=2).stderr)
+
+    def test_walls_get_layers(self):
+        self.write_box("plate.off", (0, 0, 0), (20, 20, 1))
+        plate, report = self.dir / "plate.off", self.dir / "report.json"
+        tets = []
+        for more in ((), ("--shell", 2)):
+            self.run_cli("mesh", plate, "-o", self.dir / "plate.vtu", "--size", 5, "--json", report, *more)
+            tets.append(json.loads(report.read_text())["tets"])
+            self.run_cli("check", self.dir / "plate.vtu")
+        self.assertGreater(tets[1], 1.5 * tets[0])
+        self.assertLess(tets[1], 4 * tets[0])
+        self.assertIn("--shell", self.run_cli("mesh", plate, "-o", self.dir / "plate.vtu", "--shell", 1, status=2).stderr)
+
     def test_an_edited_grid_is_passed_back(self):
         grid, out = self.dir / "grid.vtu", self.dir / "o.vtu"
         self.run_cli("size", self.part, "-o", grid, "--size", 0.2)

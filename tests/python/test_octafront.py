@@ -532,6 +532,37 @@ class Sizes(Case):
         self.assertGreater(len(octafront.mesh(surface, size=0.4, size_of={"b": 0.1})), 1.5 * plain)
         with self.assertRaises(octafront.OptionError):
             octafront.mesh(surface, size=0.4, size_of={"b": -1})
+        near = octafront.mesh(surface, size=0.4, size_near={"b": (0.1, 0.5), (0, 0, 0): (0.05, 0.2)})
+        self.assertGreater(len(near), 1.5 * plain)
+        for wrong in ({"b": 0.1}, {"b": (0.1, -1)}, {(0, 0): (0.1, 1)}):
+            with self.assertRaises(octafront.OptionError):
+                octafront.mesh(surface, size=0.4, size_near=wrong)
+
+    def test_sizes_on_a_mesh_and_by_a_function_alone(self):
+        old = octafront.mesh(*cube(), size=0.3)
+        sizes = 0.08 + 0.1 * old.points[:, 0]
+        by_points = octafront.mesh(*cube(), size_field=(old.points, old.tets, sizes))
+        by_function = octafront.mesh(*cube(), size=lambda p: 0.08 + 0.1 * p[:, 0])
+        self.assertAlmostEqual(len(by_points) / len(by_function), 1, delta=0.15)
+        by_elements = octafront.mesh(*cube(), size_field=(old.points, old.tets, np.full(len(old.tets), 0.1)))
+        self.assertAlmostEqual(len(by_elements) / len(octafront.mesh(*cube(), size=0.1)), 1, delta=0.15)
+        for wrong in ((old.points, old.tets), (old.points, old.tets + 10**6, sizes), (old.points, old.tets, sizes[1:])):
+            with self.assertRaises(octafront.OptionError):
+                octafront.mesh(*cube(), size_field=wrong)
+
+    def test_functions_and_formulas_are_bodies(self):
+        box = ((-1.2, -1.2, -1.2), (1.2, 1.2, 1.2))
+        ball = octafront.mesh(lambda p: np.linalg.norm(p, axis=1) - 1, box=box, resolution=32, size=0.2)
+        same = octafront.mesh("hypot(x, y, z) - 1", box=box, resolution=32, size=0.2)
+        for mesh in (ball, same):
+            self.assertAlmostEqual(mesh.report["volume"], 4 / 3 * np.pi, delta=0.06)
+            self.assertLess(abs(np.linalg.norm(mesh.points[np.unique(mesh.boundary)], axis=1) - 1).max(), 2e-3)
+        with self.assertRaises(octafront.OptionError):
+            octafront.mesh(lambda p: p[:, 0])
+        with self.assertRaises(octafront.OptionError):
+            octafront.mesh(lambda p: p, box=box)
+        with self.assertRaises(octafront.OptionError):
+            octafront.mesh("gyriod(x, y, z)")
 
     def test_number_of_elements(self):
         self.assertAlmostEqual(len(octafront.mesh(*sphere(), elements=20000)) / 20000, 1, delta=0.15)

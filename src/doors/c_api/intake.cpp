@@ -3,6 +3,7 @@
 #include <octafront/cad.h>
 #include <octafront/domain.h>
 #include <octafront/error.h>
+#include <octafront/formula.h>
 #include <octafront/options.h>
 
 #include "doors/c_api/c_api.h"
@@ -103,6 +104,12 @@ const std::map<std::string, Take>& lists() {
            o.image.crop[axis] = {voxel_of(v.at(axis).at(0)), voxel_of(v.at(axis).at(1))};
        }},
       {"apart", [](IntakeOptions& o, const Json& v) { o.cad.apart = v.get<std::vector<std::string>>(); }},
+      {"box",
+       [](IntakeOptions& o, const Json& v) {
+         if (v.size() != 6) throw OptionError(fmt::format("`box` has six coordinates, not {}", v.dump()));
+         const auto n = v.get<std::vector<double>>();
+         o.formula.box = Box3{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
+       }},
       {"resample",
        [](IntakeOptions& o, const Json& v) {
          o.image.resample = v.is_number() ? std::vector{v.get<double>()} : v.get<std::vector<double>>();
@@ -170,6 +177,24 @@ octafront_job* octafront_open_files(const char* const* files, size_t count, cons
 
 int octafront_is_cad(const char* file) {
   return is_cad(file) ? 1 : 0;
+}
+
+int octafront_is_formula(const char* input) {
+  return is_formula(input) ? 1 : 0;
+}
+
+octafront_job* octafront_open_samples(const double* values, const uint32_t* size, const double* box, const char* json,
+                                      int threads) {
+  SampledFunction samples{{{box[0], box[1], box[2]}, {box[3], box[4], box[5]}}, {size[0], size[1], size[2]}, {}};
+  std::size_t count = 1;
+  for (const std::uint32_t n : samples.size) count *= std::size_t{n} + 2;
+  if (guarded([&] { samples.values.assign(values, values + count); }) != 0) return nullptr;
+  return started(
+      [samples = std::move(samples), text = std::string(json)](octafront_job& job) {
+        open(job, intake_from(Json::parse(text)),
+             [&](const IntakeOptions& options) { return open_samples(samples, options, job.context()); });
+      },
+      threads);
 }
 
 octafront_job* octafront_open_surface(const octafront_surface* surface, const char* json, int threads) {

@@ -170,6 +170,39 @@ int octafront_options_size_of(octafront_options* options, const char* name, size
   return guarded([&] { options->options.size.named.push_back({std::string(name, length), size}); });
 }
 
+int octafront_options_size_near(octafront_options* options, const char* name, size_t length, const double* point,
+                                double size, double distance) {
+  return guarded([&] {
+    NearSize near{name == nullptr ? std::string() : std::string(name, length), {}, size, distance};
+    if (near.name.empty()) {
+      if (point == nullptr) throw OptionError("`size_near` needs a name or a point");
+      near.point = {point[0], point[1], point[2]};
+    }
+    options->options.size.near.push_back(std::move(near));
+  });
+}
+
+int octafront_options_sizes_file(octafront_options* options, const char* named) {
+  return guarded([&] { read_sizes_into(options->options.size, named); });
+}
+
+int octafront_options_size_mesh(octafront_options* options, const double* points, size_t n, const uint32_t* elements,
+                                size_t count, uint32_t corners, const double* sizes, int of_elements) {
+  return guarded([&] {
+    if (corners != 3 && corners != 4) throw OptionError(fmt::format("elements have 3 or 4 corners, not {}", corners));
+    SizeMesh mesh;
+    mesh.name = "an array";
+    for (std::size_t i = 0; i < n; ++i) mesh.points.push_back({points[3 * i], points[3 * i + 1], points[3 * i + 2]});
+    for (const uint32_t* e = elements; e != elements + corners * count; e += corners)
+      if (corners == 4)
+        mesh.tets.push_back({e[0], e[1], e[2], e[3]});
+      else
+        mesh.triangles.push_back({e[0], e[1], e[2]});
+    (of_elements != 0 ? mesh.element_sizes : mesh.point_sizes).assign(sizes, sizes + (of_elements != 0 ? count : n));
+    options->options.size.mesh = std::make_shared<const SizeMesh>(std::move(mesh));
+  });
+}
+
 int octafront_options_field(octafront_options* options, const octafront_sizes* sizes) {
   return guarded([&] { options->options.size.field = sizes->field; });
 }

@@ -43,6 +43,9 @@ void take_image(Domain& domain, const IntakeOptions& options, const Image& image
 /// The domain with the sheets, lines and points that the options want inside.
 Domain with_inside(Domain domain, const IntakeOptions& options, const RunContext& context);
 
+/// Throws OptionError if something is asked of formulas, for an input `name` that is none.
+void refuse_formula_options(const FormulaIntake& formula, const std::string& name);
+
 /// Throws OptionError if something is asked of images, for an input `name` that is none.
 void refuse_image_options(const ImageIntake& image, const std::string& name);
 

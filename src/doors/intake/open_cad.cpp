@@ -443,6 +443,8 @@ IntakeOptions intake_for(const Options& options, IntakeOptions intake) {
     if (!cad.elements) cad.size = options.size.size;
   }
   for (const NamedSize& named : options.size.named) cad.apart.push_back(named.name);
+  for (const NearSize& near : options.size.near)
+    if (!near.name.empty()) cad.apart.push_back(near.name);
   return intake;
 }
 

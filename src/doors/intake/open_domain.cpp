@@ -1,6 +1,7 @@
 #include <octafront/cad.h>
 #include <octafront/complex.h>
 #include <octafront/error.h>
+#include <octafront/formula.h>
 #include <octafront/io.h>
 #include <octafront/mend.h>
 #include <octafront/surface_mesh.h>
@@ -305,6 +306,8 @@ std::string region_name(const Domain& domain, std::size_t region) {
 
 Domain open_domain(const std::vector<std::string>& files, const IntakeOptions& options, const RunContext& context) {
   if (files.empty()) throw OptionError("no file is given");
+  if (files.size() == 1 && is_formula(files.front())) return with_inside(open_formula(files.front(), options, context), options, context);
+  refuse_formula_options(options.formula, files.front());
   if (is_image(files.front())) {
     const Image image = read_image(files, options.image.choice, context);
     return with_inside(Intake(options, context).image(image, files.front()), options, context);

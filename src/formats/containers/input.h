@@ -20,6 +20,9 @@ struct Input {
   std::string name;
   std::string_view bytes;
   RunContext context = {};
+  /// The name of a field of numbers that is read along with a mesh, into RawMesh::field; empty: of the only one there
+  /// is; null: none is.
+  const std::string* field = nullptr;
 
   /// Throws InputError "NAME: message".
   [[noreturn]] void fail(std::string_view message) const;

@@ -443,6 +443,17 @@ class Ordering {
 
 }  // namespace
 
+bool RawMesh::Field::offer(const Input& input, std::string_view name) {
+  if (input.field == nullptr) return false;
+  if (std::find(names.begin(), names.end(), name) == names.end()) names.emplace_back(name);
+  return input.field->empty() ? names.size() == 1 : *input.field == name;
+}
+
+void RawMesh::Field::take(double value, const RawMesh& raw) {
+  at_tets.resize(raw.tets.size(), value);
+  at_triangles.resize(raw.triangles.size(), value);
+}
+
 void RawMesh::add_tet(std::span<const VertexIndex> nodes, std::int64_t ref, const MidOrder& order) {
   tets.push_back({nodes[0], nodes[1], nodes[2], nodes[3]});
   tet_ref.push_back(ref);

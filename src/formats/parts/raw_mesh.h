@@ -34,6 +34,19 @@ struct RawMesh {
     std::vector<std::uint32_t> members = {};
   };
 
+  /// What Input::field asks for. A field has values at points or in elements.
+  struct Field {
+    std::vector<std::string> names;  ///< of all that could be asked for, as the file lists them
+    std::vector<double> at_points;   ///< one per point, or empty
+    /// One per element, or empty. Of triangles there may be fewer than there are beside tetrahedra.
+    std::vector<double> at_tets, at_triangles;
+
+    /// Enters the name of one that is there; whether its values are asked for.
+    bool offer(const Input& input, std::string_view name);
+    /// Enters the value of the tetrahedra and triangles that `raw` has more than values.
+    void take(double value, const RawMesh& raw);
+  };
+
   std::string format;  ///< for messages, e.g. "Gmsh MSH 4.1"
   std::vector<Vec3> points;
   std::vector<Tet> tets;
@@ -52,6 +65,7 @@ struct RawMesh {
   std::vector<Group> groups;
   std::uint64_t other_elements = 0;  ///< of kinds that a TetMesh does not hold
   std::vector<std::string> notes;
+  Field field;
 
   /// Adds a tetrahedron whose nodes are corners, then mid-side nodes in that order, if it has them. A file must not mix
   /// both kinds; ordered_mesh() refuses it.

@@ -113,6 +113,8 @@ class Msh {
         require_format();
         has_elements_ = true;
         version_ == 4 ? read_elements_4() : read_elements_2();
+      } else if (input_.field != nullptr && (name == "NodeData" || name == "ElementData")) {
+        read_data(name == "NodeData");
       } else {
         in_.skip_section(name);
         continue;
@@ -122,6 +124,7 @@ class Msh {
     if (!has_elements_)
       input_.fail("has no section $Elements; it is truncated or holds no mesh: copy or export it again");
     finish_groups();
+    finish_field();
     sort_by_tags();
     raw_.format = version_ == 4 ? "Gmsh MSH 4.1" : "Gmsh MSH 2.2";
     return std::move(raw_);
@@ -303,11 +306,72 @@ class Msh {
     items = std::move(ordered);
   }
 
+  /// Values at nodes or in elements by their tags. Names, times and counts are text also in binary files.
+  void read_data(bool of_nodes) {
+    Scanner& text = in_.text();
+    std::string name;
+    const std::int64_t names = text.integer("the number of names");
+    for (std::int64_t i = 0; i < names; ++i) {
+      text.at_end();
+      std::string_view line = text.rest_of_line();
+      if (line.size() >= 2 && line.front() == '"' && line.back() == '"') line = line.substr(1, line.size() - 2);
+      if (i == 0) name = line;
+    }
+    const std::int64_t times = text.integer("the number of times");
+    for (std::int64_t i = 0; i < times; ++i) text.number("a time");
+    const std::int64_t counts = text.integer("the number of counts");
+    std::array<std::int64_t, 3> known{0, 1, 0};
+    for (std::int64_t i = 0; i < counts; ++i) {
+      const std::int64_t value = text.integer("a count");
+      if (i < 3) known[static_cast<std::size_t>(i)] = value;
+    }
+    skip_line_end();
+    const auto components = static_cast<std::uint64_t>(known[1]), count = static_cast<std::uint64_t>(known[2]);
+    if (known[1] < 1 || known[1] > 9 || known[2] < 0) in_.fail("a field of no known kind; the file is damaged");
+    in_.check_count(count, components, 0, 1, "values");
+    // A later step of a field goes before the one before.
+    const bool is_wanted = components == 1 && raw_.field.offer(input_, name);
+    std::vector<std::pair<std::uint64_t, double>> values;
+    for (std::uint64_t i = 0; i < count; ++i) {
+      const auto tag = static_cast<std::uint64_t>(in_.int32("the tag of a value"));
+      for (std::uint64_t k = 0; k < components; ++k) {
+        const double value = in_.real("a value");
+        if (is_wanted) values.emplace_back(tag, value);
+      }
+    }
+    if (!is_wanted) return;
+    std::sort(values.begin(), values.end());
+    data_[of_nodes ? 0 : 1] = std::move(values);
+  }
+
+  /// The values of a field in the order of these tags; empty unless each has one.
+  std::vector<double> values_of(std::size_t of_elements, const std::vector<std::uint64_t>& tags) const {
+    const auto& known = data_[of_elements];
+    std::vector<double> values;
+    if (known.empty()) return values;
+    for (const std::uint64_t tag : tags) {
+      const auto at = std::lower_bound(known.begin(), known.end(), tag,
+                                       [](const auto& entry, std::uint64_t t) { return entry.first < t; });
+      if (at == known.end() || at->first != tag) return {};
+      values.push_back(at->second);
+    }
+    return values;
+  }
+
+  void finish_field() {
+    raw_.field.at_points = values_of(0, tags_.tags());
+    raw_.field.at_triangles = values_of(1, element_tags_[2]);
+    raw_.field.at_tets = values_of(1, element_tags_[3]);
+  }
+
   /// Files list by entity; tags tell the order in which things were made.
   void sort_by_tags() {
     std::array<std::vector<std::uint32_t>, 4> place{places_by_tag(tags_.tags())};
     for (std::size_t d = 1; d < 4; ++d) place[d] = places_by_tag(element_tags_[d]);
     permute(raw_.points, place[0]);
+    permute(raw_.field.at_points, place[0]);
+    permute(raw_.field.at_triangles, place[2]);
+    permute(raw_.field.at_tets, place[3]);
     if (!place[0].empty()) {
       renumber(raw_.tets, place[0]);
       renumber(raw_.triangles, place[0]);
@@ -423,6 +487,8 @@ class Msh {
   std::map<std::pair<int, std::int64_t>, std::string> names_;
   std::map<std::pair<int, std::int64_t>, std::vector<std::uint32_t>> members_;  ///< of groups that are sets
   std::array<std::vector<std::uint64_t>, 4> element_tags_;
+  /// Of the field that is asked for, by tags of nodes and elements.
+  std::array<std::vector<std::pair<std::uint64_t, double>>, 2> data_;
   RawMesh raw_;
 };
 

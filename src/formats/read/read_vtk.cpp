@@ -237,7 +237,7 @@ class Vtk {
         continue;
       }
       const std::uint64_t components = count("the number of components"), tuples = count("the number of tuples");
-      take_array(name, product(components, tuples), type());
+      take_array(name, product(components, tuples), components, type());
     }
   }
 
@@ -246,10 +246,12 @@ class Vtk {
     const Type& of = type();
     const std::uint64_t components = scan_.at_line_end() ? 1 : count("the number of components");
     if (next_word_is("LOOKUP_TABLE")) scan_.word();
-    take_array(name, product(data_count_, components), of);
+    take_array(name, product(data_count_, components), components, of);
   }
 
-  void take_array(const std::string& name, std::uint64_t n, const Type& of) {
+  void take_array(const std::string& name, std::uint64_t n, std::uint64_t components, const Type& of) {
+    if (of_ != Of::kField && components == 1 && !is_numbering(name) && raw_.field.offer(input_, name))
+      return take_field(n, of);
     const bool is_wanted = is_set_name(name) || name == "region" || name == "patch" || name == "curve" ||
                            name == "source" || name == "layers" || of_ == Of::kField;
     if (!is_wanted || of.name == "double" || of.name == "float") return values(n, of, [](double) {});
@@ -261,6 +263,12 @@ class Vtk {
     } else {
       cell_arrays_.emplace_back(name, std::move(all));
     }
+  }
+
+  void take_field(std::uint64_t n, const Type& of) {
+    std::vector<double> all;
+    values(n, of, [&](double v) { all.push_back(v); });
+    (of_ == Of::kPoints ? raw_.field.at_points : cell_field_) = std::move(all);
   }
 
   void take_cells() {
@@ -278,6 +286,7 @@ class Vtk {
         (name == "region" ? data.region : name == "patch" ? data.patch : data.curve) = std::move(all);
       }
     }
+    if (cell_field_.size() == types_.size()) data.field = std::move(cell_field_);
     VtkCellTaker taker(input_, raw_, data);
     std::int64_t begin = 0;
     for (std::uint64_t c = 0; c < types_.size(); ++c) {
@@ -299,6 +308,7 @@ class Vtk {
   Of of_ = Of::kField;
   std::uint64_t data_count_ = 0;
   std::vector<std::pair<std::string, std::vector<std::int64_t>>> cell_arrays_;
+  std::vector<double> cell_field_;
 };
 
 }  // namespace

@@ -264,6 +264,12 @@ class Xdmf {
                                             : name == "curve"                                ? &data.curve
                                             : name == "gmsh:physical" || name == "medit:ref" ? &data.region
                                                                                              : nullptr;
+      if (attribute.item.at != nullptr && !is_numbering(name) && raw_.field.offer(input_, name)) {
+        std::vector<double> values = file.reals(attribute.item, 0);
+        if (attribute.of_nodes && values.size() == raw_.points.size()) raw_.field.at_points = std::move(values);
+        if (!attribute.of_nodes && values.size() == count) data.field = std::move(values);
+        continue;
+      }
       if (attribute.item.at == nullptr || (to == nullptr && !is_set_name(name))) continue;
       std::vector<std::int64_t> values = file.integers(attribute.item);
       if (attribute.of_nodes) {

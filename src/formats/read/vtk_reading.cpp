@@ -33,6 +33,12 @@ bool is_set_name(std::string_view array) {
   return !group_named(array).name.empty();
 }
 
+bool is_numbering(std::string_view array) {
+  constexpr std::array<std::string_view, 9> kNumberings{
+      "region", "patch", "curve", "source", "layers", "label", "gmsh:physical", "gmsh:geometrical", "medit:ref"};
+  return is_set_name(array) || std::find(kNumberings.begin(), kNumberings.end(), array) != kNumberings.end();
+}
+
 VtkCellTaker::VtkCellTaker(const Input& input, RawMesh& raw, const VtkCellData& data, const WideOrder& order)
     : input_(input), raw_(raw), data_(data), order_(order) {
   for (const auto& [name, values] : data.sets) groups_.push_back(group_named(name));
@@ -120,6 +126,7 @@ void VtkCellTaker::take(std::uint64_t cell, std::int64_t type, std::span<const s
     ++raw_.other_elements;
     return;
   }
+  if (!data_.field.empty()) raw_.field.take(data_.field[cell], raw_);
   for (std::size_t s = 0; s < groups_.size(); ++s)
     if (groups_[s].kind == kind && data_.sets[s].second[cell] != 0)
       for (std::size_t m = member; m < std::max(member + 1, end); ++m)

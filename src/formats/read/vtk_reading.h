@@ -17,10 +17,14 @@ namespace octafront::io {
 struct VtkCellData {
   std::vector<std::int64_t> region, patch, curve, source, layers;
   std::vector<std::pair<std::string, std::vector<std::int64_t>>> sets;  ///< not 0: a member
+  std::vector<double> field = {};                                       ///< that Input::field asks for
 };
 
 /// Whether an array is a set as vtk_cells.h has them: "nodes NAME", "faces NAME".
 bool is_set_name(std::string_view array);
+
+/// Whether an array numbers things, as those of vtk_cells.h do, or those that meshio makes of other formats.
+bool is_numbering(std::string_view array);
 
 /// Takes the cells of a VTK file one by one: tetrahedra, triangles and lines, linear or quadratic.
 class VtkCellTaker {

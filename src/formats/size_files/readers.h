@@ -6,6 +6,7 @@
 
 #include "formats/containers/input.h"
 
+#include <string>
 #include <vector>
 
 namespace octafront {
@@ -17,6 +18,7 @@ std::vector<PointSize> read_point_table(const io::Input& input);
 /// Recognise and read: as the readers of files in octafront/io.h.
 std::vector<PointSize> read_point_sizes_bytes(const io::Input& input);
 std::vector<SizeRegion> read_size_regions_bytes(const io::Input& input);
+SizeMesh read_size_mesh_bytes(const io::Input& input, const std::string& field);
 SizeField read_size_field_bytes(const io::Input& input, double gradation);
 
 }  // namespace octafront

@@ -6,6 +6,7 @@
 #include "images/nets/assemble.h"
 #include "images/nets/cells.h"
 #include "images/nets/check_image.h"
+#include "images/nets/function_surface.h"
 #include "images/nets/grey_values.h"
 #include "images/nets/resolve_conflicts.h"
 #include "images/nets/stencils.h"
@@ -44,8 +45,9 @@ LabelImage labels_within(const Image& image, const std::vector<GreyBand>& bands,
 class Placement {
  public:
   Placement(const Net& net, const Groups<>& quads_at, const Lattice& lattice, const GreyValues& values,
-            const BandLimits& limits, const nets::VertexCells& cells)
-      : net_(net),
+            const BandLimits& limits, const nets::VertexCells& cells, const formulas::SpaceFunction* function = nullptr)
+      : function_(function),
+        net_(net),
         quads_at_(quads_at),
         lattice_(lattice),
         values_(values),
@@ -66,6 +68,7 @@ class Placement {
     constexpr int kSteps = 6;
     p = cells_.clamped(v, p);
     if (std::isnan(limit_[v])) return p;
+    if (function_ != nullptr) return on_zero(v, p);
     for (int step = 0; step < kSteps; ++step) {
       const GreyValues::Sample s = values_.near(net_.corner[v], p);
       const double steepness = squared_length(s.gradient);
@@ -77,6 +80,19 @@ class Placement {
 
  private:
   static constexpr double kSeveral = std::numeric_limits<double>::quiet_NaN();
+
+  /// The same of the function itself, on the faces of the box within them.
+  Vec3 on_zero(VertexIndex v, Vec3 p) const {
+    unsigned fixed = 0;
+    double reach = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      fixed |= lattice_.on_box(net_.corner[v], axis) ? 1u << axis : 0u;
+      reach += 2 * (lattice_.wall(axis, 1) - lattice_.wall(axis, 0));
+    }
+    if (fixed == 7) return p;
+    const Vec3 world = lattice_.to_world(p);
+    return cells_.clamped(v, p + (formulas::nearest_zero(*function_, world, fixed, reach) - world));
+  }
 
   /// Of the places where the lines between voxels pass limits, on the two sides of each face at the vertex.
   Vec3 mean_of_passes(VertexIndex v) {
@@ -102,6 +118,7 @@ class Placement {
     return passes == 0 ? net_.start[v] : sum / passes;
   }
 
+  const formulas::SpaceFunction* function_;  ///< null: the values are all that is known
   const Net& net_;
   const Groups<>& quads_at_;
   const Lattice& lattice_;
@@ -139,7 +156,10 @@ LabelImage labels_of_bands(const Image& image, const std::vector<GreyBand>& band
   throw InputError("no value of the image lies in a band: look at its histogram with octafront info");
 }
 
-Complex complex_of_bands(const Image& image, const std::vector<GreyBand>& bands, const RunContext& context) {
+namespace {
+
+Complex complex_of_values(const Image& image, const std::vector<GreyBand>& bands,
+                          const formulas::SpaceFunction* function, const RunContext& context) {
   const ThreadLimit thread_limit(context.threads);
   const BandLimits limits(bands);
   const LabelImage labels = labels_of_bands(image, bands);
@@ -150,11 +170,21 @@ Complex complex_of_bands(const Image& image, const std::vector<GreyBand>& bands,
   const nets::Stencils stencils(net, quads_at);
   const nets::VertexCells cells(lattice, net);
   const GreyValues values(image, lattice);
-  Placement placement(net, quads_at, lattice, values, limits, cells);
+  Placement placement(net, quads_at, lattice, values, limits, cells, function);
   std::vector<Vec3> x = placement.place();
   spread(stencils, placement, x, context);
   nets::ResolvedNet resolved = nets::resolve_conflicts(net, quads_at, lattice, x, context);
   return nets::assemble(net, lattice, std::move(resolved), x, labels.labels, false);
+}
+
+}  // namespace
+
+Complex complex_of_bands(const Image& image, const std::vector<GreyBand>& bands, const RunContext& context) {
+  return complex_of_values(image, bands, nullptr, context);
+}
+
+Complex complex_of_function(const Image& image, const formulas::SpaceFunction& function, const RunContext& context) {
+  return complex_of_values(image, {{-std::numeric_limits<double>::infinity(), 0, "body"}}, &function, context);
 }
 
 }  // namespace octafront

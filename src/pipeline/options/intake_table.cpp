@@ -159,10 +159,24 @@ std::vector<Row<IntakeOptions>> cad_rows() {
   };
 }
 
+std::vector<Row<IntakeOptions>> formula_rows() {
+  constexpr const char* kGroup = "Formulas";
+  return {
+      intake_row(
+          about_intake("cell", kGroup, "Period of the named surfaces (gyroid, schwarz_p, ...); without a value 1"),
+          [](auto& o) -> auto& { return o.formula.cell; }),
+      intake_row(
+          about_intake("resolution", kGroup,
+                       "Cells along the longest side of the box, between which the surface is sought; without a value "
+                       "64, and 32 a period"),
+          [](auto& o) -> auto& { return o.formula.resolution; }),
+  };
+}
+
 const std::vector<Row<IntakeOptions>>& intake_rows() {
   static const std::vector<Row<IntakeOptions>> all = [] {
     std::vector<Row<IntakeOptions>> list;
-    for (const auto& part : {material_rows(), repair_rows(), image_rows(), cad_rows()})
+    for (const auto& part : {material_rows(), repair_rows(), image_rows(), cad_rows(), formula_rows()})
       list.insert(list.end(), part.begin(), part.end());
     return list;
   }();

@@ -46,6 +46,9 @@ std::vector<Row<Options>> size_rows() {
       row(
           of("gap", "Elements across thin walls and narrow gaps"), [](auto& o) -> auto& { return o.size.gap; }),
       row(
+          of("through", "Elements across thin walls at least, whatever the gaps between them"),
+          [](auto& o) -> auto& { return o.size.through; }),
+      row(
           of("feature_elements", "Elements along each feature curve at least"),
           [](auto& o) -> auto& { return o.size.feature_elements; }),
       row(
@@ -183,6 +186,9 @@ std::vector<Row<Options>> volume_rows() {
              "Order of the front's faces: layer by layer, the smallest of each layer first, or the newest first"),
           [](auto& o) -> auto& { return o.volume.order; },
           {{"layers", Order::kLayers}, {"smallest", Order::kSmallest}, {"newest", Order::kNewest}}),
+      row(
+          of("shell", "Layers of flat elements through walls that are thinner than elements are wide; 0: as they come"),
+          [](auto& o) -> auto& { return o.volume.shell; }),
   };
 }
 

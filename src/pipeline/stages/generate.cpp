@@ -8,6 +8,7 @@
 #include "pipeline/stages/kept_shape.h"
 #include "pipeline/stages/measure.h"
 #include "pipeline/stages/methods.h"
+#include "pipeline/stages/shell.h"
 #include "pipeline/stages/stages.h"
 #include "pipeline/stages/true_shape.h"
 
@@ -81,6 +82,7 @@ Result generate_once(const Domain& domain, const Options& asked, const RunContex
   if (!options.layers.outside) add_layers(input, filled, run);
   note_missed_elements(filled.mesh, run);
   check_shape(input, filled, run);
+  layer_walls(filled, run);
   place_on_geometry(input, filled, run);
   if (options.layers.outside) add_layers(input, filled, run);
   raise_order(input, filled, run);

@@ -56,7 +56,7 @@ bool keeps_surface(const Options& options) {
 
 bool has_automatic_sizes(const Options& options) {
   const SizeOptions& size = options.size;
-  return !size.size && !size.elements && !size.callback && !size.field && size.point_sizes.empty();
+  return !size.size && !size.elements && !size.callback && !size.field && !size.mesh && size.point_sizes.empty();
 }
 
 }  // namespace octafront

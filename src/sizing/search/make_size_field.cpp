@@ -138,12 +138,14 @@ SizeField make_size_field(const KnownSurface& known, const SizeOptions& options,
   if (surface.triangles.empty()) throw InputError("the surface has no triangles: there is nothing to choose sizes for");
   if (options.field) return *options.field;
   WantedSizes wanted = wanted_sizes(known, options, stage, rules);
-  if (wanted.automatic && !options.elements && options.automatic_factor != 1)
-    wanted = scaled(wanted, options.automatic_factor, options);
+  const std::vector<double> asked = wanted.face;
+  const double factor = wanted.automatic && !options.elements ? options.automatic_factor : 1;
+  if (factor != 1) wanted = scaled(wanted, factor, options);
   if (!options.elements) refuse_huge_counts(surface, wanted);
   SizeField field = options.elements   ? scaled_to_count(surface, wanted, options, stage)
                     : wanted.automatic ? within_budget(surface, wanted, options, budget, stage)
                                        : source_grid(surface, wanted, options, stage.context());
+  wanted.sources.tell(surface, asked, field, options, stage, factor);
   const OctreeField& grid = *as_octree_field(field);
   stage.count("leaves", static_cast<double>(grid.tree.size()));
   stage.count("levels", grid.tree.depth());

@@ -5,6 +5,7 @@
 #include "base/core/wording.h"
 #include "base/mesh/index_range.h"
 #include "sizing/field/octree_field.h"
+#include "sizing/sources/sizes_in_space.h"
 
 #include <algorithm>
 #include <cmath>
@@ -92,9 +93,46 @@ void judge_cover(const SurfaceMesh& surface, const Box3& model, const SizeField&
 
 }  // namespace
 
+namespace {
+
+void check_near(const NearSize& near) {
+  const std::string what = near.name.empty() ? "the point" : fmt::format("\"{}\"", near.name);
+  require(near.name.empty() ? is_finite(near.point) : true, "`size_near` names a point at no finite place");
+  require(std::isfinite(near.size) && near.size > 0,
+          fmt::format("the size near {} must be a number above 0, but is {}", what, near.size));
+  require(std::isfinite(near.distance) && near.distance > 0,
+          fmt::format("the distance up to which the size near {} rises must be a number above 0, but is {}", what,
+                      near.distance));
+}
+
+template <class Elements>
+void require_points_of(const Elements& elements, std::size_t points) {
+  for (const auto& element : elements)
+    for (const VertexIndex v : element)
+      require(v < points,
+              fmt::format("the mesh with sizes has an element with the point {}, but {} points", v, points));
+}
+
+void check_mesh(const SizeMesh& mesh) {
+  const std::size_t elements = mesh.tets.empty() ? mesh.triangles.size() : mesh.tets.size();
+  require(elements > 0, "the mesh with sizes has no elements");
+  require_points_of(mesh.tets, mesh.points.size());
+  require_points_of(mesh.triangles, mesh.points.size());
+  for (const Vec3 p : mesh.points) require(is_finite(p), "the mesh with sizes has a point at no finite place");
+  const bool at_points = !mesh.point_sizes.empty();
+  require(at_points ? mesh.point_sizes.size() == mesh.points.size() : mesh.element_sizes.size() == elements,
+          fmt::format("the mesh with sizes has {} points and {} elements, but {} sizes", mesh.points.size(), elements,
+                      at_points ? mesh.point_sizes.size() : mesh.element_sizes.size()));
+  for (const double h : at_points ? mesh.point_sizes : mesh.element_sizes)
+    require(std::isfinite(h) && h > 0, fmt::format("the mesh with sizes has size {}: sizes must be above 0", h));
+}
+
+}  // namespace
+
 void check_size_options(const SizeOptions& o) {
   require_positive("size", o.size);
   require_positive("gap", o.gap);
+  require_positive("through", o.through);
   require_positive("max_deviation", o.chord_error);
   require_positive("feature_elements", o.feature_elements);
   require_positive("min_size", o.min_size);
@@ -114,12 +152,14 @@ void check_size_options(const SizeOptions& o) {
           fmt::format("`automatic_factor` must lie in [0.1, 10], but is {}", o.automatic_factor));
   const bool has_source = o.size || o.elements || o.curvature || o.gap || o.feature_elements || o.facets ||
                           o.min_size || o.max_size || !o.regions.empty() || !o.point_sizes.empty() ||
-                          !o.named.empty() || o.callback;
+                          !o.named.empty() || o.callback || o.through || !o.near.empty() || o.mesh;
   require(!(o.field && has_source),
           "a size grid is all there is to say about the sizes: no other source or limit of sizes can be given with it");
   for (const NamedSize& n : o.named)
     require(std::isfinite(n.size) && n.size > 0,
             fmt::format("the size of \"{}\" must be a number above 0, but is {}", n.name, n.size));
+  for (const NearSize& n : o.near) check_near(n);
+  if (o.mesh) check_mesh(*o.mesh);
   for (const PointSize& s : o.point_sizes) {
     require(is_finite(s.p) && std::isfinite(s.size) && s.size > 0,
             fmt::format("the size {} at the point ({}, {}, {}) must be above 0, at a finite place", s.size, s.p.x,
@@ -143,6 +183,7 @@ void note_misplaced_sizes(const SurfaceMesh& surface, const SizeOptions& options
   const Box3 model = bounding_box(surface.points);
   note_regions_outside(model, options.regions, stage);
   note_points_outside(model, options.point_sizes, stage);
+  note_outside_of_mesh(surface, options, stage);
   if (options.field) judge_cover(surface, model, *options.field, stage);
 }
 

@@ -29,8 +29,10 @@ std::uint64_t side_of_cube(Vec3 n) {
 
 }  // namespace
 
-GapFinder::GapFinder(const KnownSurface& known, double nearest, double reach)
-    : tree_(known.tree()),
+GapFinder::GapFinder(const KnownSurface& known, double nearest, double reach, Measured what)
+    : surface_(known.mesh()),
+      tree_(known.tree()),
+      what_(what),
       root_(RootCube::around(bounding_box(known.mesh().points), 0)),
       nearest_(nearest),
       reach_(reach) {
@@ -78,7 +80,11 @@ double GapFinder::width(const PlaceOnSurface& place) {
 }
 
 double GapFinder::measure(const PlaceOnSurface& place) const {
-  return std::min(distance_along(place, place.n), distance_along(place, -place.n));
+  const auto [front, behind] = surface_.sides_of(place.face);
+  double width = kOpen;
+  if (what_ == Measured::kWallsAndGaps || front != kNone) width = distance_along(place, place.n);
+  if (what_ == Measured::kWallsAndGaps || behind != kNone) width = std::min(width, distance_along(place, -place.n));
+  return width;
 }
 
 double GapFinder::distance_along(const PlaceOnSurface& place, Vec3 direction) const {

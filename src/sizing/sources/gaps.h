@@ -13,6 +13,9 @@ namespace octafront {
 
 struct SurfaceMesh;
 
+/// What is measured: walls and the gaps between them, or walls alone.
+enum class Measured { kWallsAndGaps, kWalls };
+
 /// Walls and gaps: how far it is from a place of the surface to the sheet that faces it, along the inward and the
 /// outward normal. Places that lie close together on one side share an answer where triangles are small, so that dense
 /// scans cost no more than coarse ones.
@@ -21,7 +24,7 @@ class GapFinder {
   static constexpr double kOpen = std::numeric_limits<double>::infinity();
 
   /// Looks as far as `reach`; nothing nearer than `nearest` is told apart from it.
-  GapFinder(const KnownSurface& surface, double nearest, double reach);
+  GapFinder(const KnownSurface& surface, double nearest, double reach, Measured what = Measured::kWallsAndGaps);
 
   /// Distance to the facing sheet; kOpen if there is none within reach. Sheets that meet at more than about 45 degrees
   /// do not face each other: an edge is no gap. The middle of the first triangle in a neighbourhood answers for it all;
@@ -36,7 +39,9 @@ class GapFinder {
   void measure_middles(const SurfaceMesh& surface);
   double distance_along(const PlaceOnSurface& place, Vec3 direction) const;
 
+  const SurfaceMesh& surface_;
   const TriangleTree& tree_;
+  Measured what_;
   std::vector<Vec3> normal_;
   RootCube root_;
   double nearest_, reach_;

@@ -9,6 +9,7 @@
 #include "sizing/sources/given_sizes.h"
 #include "sizing/sources/model_extent.h"
 #include "sizing/sources/named_sizes.h"
+#include "sizing/sources/sizes_in_space.h"
 #include "sizing/sources/source_grid.h"
 
 #include <algorithm>
@@ -96,6 +97,7 @@ void note_unused_sources(const SizeOptions& options, const Stage& stage) {
   };
   add(options.curvature.has_value(), "`curvature`");
   add(options.gap.has_value(), "`gap`");
+  add(options.through.has_value(), "`through`");
   add(options.feature_elements.has_value(), "`feature_elements`");
   add(options.facets, "`facets`");
   if (names.empty()) return;
@@ -115,10 +117,13 @@ SizeField size_field_of_surface(const KnownSurface& known, const SizeOptions& op
   const double floor = options.min_size.value_or(model_extent(surface) * kFloorOfExtent);
   std::vector<double> face = face_sizes(known);
   for (double& h : face) h = std::max(h, floor);
-  const SizeAtPlace at_place = given_sizes(surface, options);
+  const std::vector<SizeInSpace> in_space = sizes_in_space(known, options);
+  const SizeAtPlace at_place = least_of(given_sizes(surface, options), least_at_places(in_space, floor));
   std::vector<SizeSample> points = samples_of_points(options, floor);
   const NamedSizes named = named_sizes(known, options);
   points.insert(points.end(), named.points.begin(), named.points.end());
+  const std::vector<SizeSample> inside = samples_inside(known, in_space, floor, stage.context());
+  points.insert(points.end(), inside.begin(), inside.end());
   const auto samples_of = [&](const std::vector<double>& sizes) {
     std::vector<SizeSample> samples = sample_surface(surface, sizes, at_place, stage.context());
     samples.insert(samples.end(), points.begin(), points.end());

@@ -8,11 +8,14 @@
 #include "sizing/sources/given_sizes.h"
 #include "sizing/sources/model_extent.h"
 #include "sizing/sources/named_sizes.h"
+#include "sizing/sources/sizes_in_space.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <string>
+#include <utility>
 
 namespace octafront {
 
@@ -40,7 +43,20 @@ struct Choice {
 };
 
 bool has_automatic_base(const SizeOptions& o) {
-  return !o.size && !o.curvature && !o.gap && !o.feature_elements && !o.facets && !o.callback && o.point_sizes.empty();
+  return !o.size && !o.curvature && !o.gap && !o.feature_elements && !o.facets && !o.callback && !o.mesh &&
+         o.point_sizes.empty();
+}
+
+/// Who asks for the base size.
+std::string name_of_base(const SizeOptions& o, double base) {
+  if (o.max_size && base == *o.max_size && base != o.size.value_or(0)) return "`max_size`";
+  if (o.size) return "`size`";
+  if (o.min_size && base == *o.min_size) return "`min_size`";
+  return o.callback || o.mesh || !o.point_sizes.empty() ? "nobody" : "the automatic choice";
+}
+
+double largest_size(const SizeMesh& mesh) {
+  return std::ranges::max(mesh.point_sizes.empty() ? mesh.element_sizes : mesh.point_sizes);
 }
 
 Choice choose(const SurfaceMesh& surface, const SizeOptions& o) {
@@ -51,6 +67,7 @@ Choice choose(const SurfaceMesh& surface, const SizeOptions& o) {
   // Sizes at points and a function speak for the whole surface: there is no need of a size where nobody asks, and ours
   // would cut what they ask for.
   if (!o.size && o.callback) c.base = model_extent(surface);
+  if (!o.size && o.mesh) c.base = largest_size(*o.mesh);
   if (!o.size && !o.point_sizes.empty()) c.base = std::ranges::max_element(o.point_sizes, {}, &PointSize::size)->size;
   if (o.max_size) c.base = o.size || c.automatic ? std::min(c.base, *o.max_size) : *o.max_size;
   c.base = std::max(c.base, o.min_size.value_or(0));
@@ -115,19 +132,35 @@ double tets_in_gaps(const SurfaceMesh& surface, const GapFinder& gaps, double el
   });
 }
 
-/// The sources that are asked place by place, in one function; empty if there are none. A wall below a floor of our own
-/// choosing cannot be resolved: the thinner it is, the less small elements do for it, and the larger they may be.
+/// Elements across what is measured. A wall below a floor of our own choosing cannot be resolved: the thinner it is,
+/// the less small elements do for it, and the larger they may be.
+SizeAtPlace sizes_across(std::shared_ptr<GapFinder> gaps, double elements, double floor, bool is_ours) {
+  SizeAtPlace across;
+  across.at = [gaps = std::move(gaps), elements, floor, is_ours](const PlaceOnSurface& place) {
+    const double h = gaps->width(place) / elements;
+    if (h >= floor) return h;
+    return is_ours ? floor * (floor / h) : floor;
+  };
+  return across;
+}
+
+/// The sources that are asked place by place, in one function; empty if there are none. Each is entered by its name.
 SizeAtPlace sizes_at_places(const KnownSurface& surface, const Choice& choice, const SizeOptions& options,
-                            const Affordable& affordable) {
-  SizeAtPlace gap;
+                            const Affordable& affordable, const std::vector<SizeInSpace>& in_space,
+                            SourceShares& sources) {
+  SizeAtPlace gap, through;
   if (choice.gap > 0) {
     const auto gaps = std::make_shared<GapFinder>(surface, choice.gap_floor, choice.base * choice.gap);
     if (options.gap) affordable.require("gap", choice.gap, tets_in_gaps(surface.mesh(), *gaps, choice.gap, affordable));
-    gap.at = [gaps, choice, is_ours = !options.min_size](const PlaceOnSurface& place) {
-      const double h = gaps->width(place) / choice.gap, floor = choice.gap_floor;
-      if (h >= floor) return h;
-      return is_ours ? floor * (floor / h) : floor;
-    };
+    gap = sizes_across(gaps, choice.gap, choice.gap_floor, !options.min_size);
+    sources.add("`gap`", gap);
+  }
+  if (options.through) {
+    const double floor = options.min_size.value_or(choice.base * kChosenFloor);
+    const auto walls = std::make_shared<GapFinder>(surface, floor, choice.base * *options.through, Measured::kWalls);
+    affordable.require("through", *options.through, tets_in_gaps(surface.mesh(), *walls, *options.through, affordable));
+    through = sizes_across(walls, *options.through, floor, !options.min_size);
+    sources.add("`through`", through);
   }
   SizeAtPlace given = given_sizes(surface.mesh(), options);
   if (given && options.min_size) {
@@ -135,19 +168,23 @@ SizeAtPlace sizes_at_places(const KnownSurface& surface, const Choice& choice, c
       return std::max(floor, given(s));
     };
   }
-  return least_of(gap, given);
+  sources.add(options.callback ? "the function of sizes" : "`point_sizes`", given);
+  const double least = options.min_size.value_or(0);
+  for (const SizeInSpace& source : in_space) sources.add(source.name, least_at_places({source}, least));
+  return least_of(least_of(gap, through), least_of(given, least_at_places(in_space, least)));
 }
 
 /// What facets and curvature ask of faces. Returns what all sizes are to be multiplied by for the volume.
 double apply_shape(const KnownSurface& known, const Choice& choice, const SizeOptions& options, const FaceRules& rules,
                    const ShapeLines& lines, const Affordable& affordable, const RunContext& context,
-                   std::vector<double>& face) {
+                   std::vector<double>& face, SourceShares& sources) {
   const bool limits_chords = options.chord_error || !rules.chord_errors.empty();
   const bool needs_curvature = choice.curvature > 0 || limits_chords;
   if (!options.facets && !needs_curvature) return 1;
   const SurfaceMesh& surface = known.mesh();
   const FaceNeighbours across = smooth_face_neighbours(known.edges(), lines.borders);
   if (options.facets) apply_facets(surface, across, choice.floor, face);
+  sources.changed("`facets`", face);
   if (!needs_curvature) return 1;
   const SurfaceCurvature curvature = surface_curvature(surface, across, context);
   refuse_huge_curvature(affordable, options, curvature);
@@ -157,7 +194,9 @@ double apply_shape(const KnownSurface& known, const Choice& choice, const SizeOp
   };
   if (limits_chords)
     apply_chord_errors(curvature, error_of, rules.must_hold ? choice.chosen_floor : choice.floor, face);
+  sources.changed("`max_deviation`", face);
   if (choice.curvature > 0) apply_curvature(curvature, choice.curvature, choice.floor, face);
+  sources.changed("`curvature`", face);
   return choice.automatic ? automatic_scale(surface, curvature, face) : 1;
 }
 
@@ -182,7 +221,8 @@ void add_samples(std::vector<SizeSample>& samples, const std::vector<SizeSample>
 }  // namespace
 
 bool has_no_size_source(const SizeOptions& o) {
-  return has_automatic_base(o) && !o.elements && !o.field && !o.min_size && o.regions.empty() && o.named.empty();
+  return has_automatic_base(o) && !o.elements && !o.field && !o.min_size && o.regions.empty() && o.named.empty() &&
+         o.near.empty() && !o.through;
 }
 
 WantedSizes WantedSizes::with(const std::function<double(double)>& change) const {
@@ -203,14 +243,22 @@ WantedSizes wanted_sizes(const KnownSurface& known, const SizeOptions& options, 
   const ShapeLines lines = lines_of_shape(known, rules.is_invented);
   WantedSizes wanted;
   wanted.face.assign(surface.triangles.size(), choice.base);
-  const double scale = apply_shape(known, choice, options, rules, lines, affordable, stage.context(), wanted.face);
+  wanted.sources.begin(name_of_base(options, choice.base), wanted.face);
+  const double scale =
+      apply_shape(known, choice, options, rules, lines, affordable, stage.context(), wanted.face, wanted.sources);
   wanted.points = samples_of_features(surface, choice, options, lines.features, affordable);
   const NamedSizes named = named_sizes(known, options);
   for (std::size_t f = 0; f < named.face.size(); ++f) wanted.face[f] = std::min(wanted.face[f], named.face[f] / scale);
+  wanted.sources.changed("`size_of`", wanted.face);
   add_samples(wanted.points, named.points);
   add_samples(wanted.points, samples_of_points(options, least_size));
-  for (double& h : wanted.face) h = std::max(h * scale, least_size);
-  wanted.at_place = sizes_at_places(known, choice, options, affordable);
+  for (double& h : wanted.face) h *= scale;
+  wanted.sources.scaled(wanted.face);
+  for (double& h : wanted.face) h = std::max(h, least_size);
+  wanted.sources.changed("`min_size`", wanted.face);
+  const std::vector<SizeInSpace> in_space = sizes_in_space(known, options);
+  add_samples(wanted.points, samples_inside(known, in_space, least_size, stage.context()));
+  wanted.at_place = sizes_at_places(known, choice, options, affordable, in_space, wanted.sources);
   const bool is_graded = options.interior == SizeOptions::Interior::kGraded;
   wanted.ceiling = std::max(is_graded ? options.max_size.value_or(HUGE_VAL) : choice.base * scale, least_size);
   const auto [least, most] = std::minmax_element(wanted.face.begin(), wanted.face.end());

@@ -9,6 +9,7 @@
 #include "base/core/stage.h"
 #include "base/mesh/known_surface.h"
 #include "sizing/field/background_grid.h"
+#include "sizing/sources/shares.h"
 #include "sizing/sources/surface_samples.h"
 
 #include <cstdint>
@@ -35,6 +36,7 @@ struct WantedSizes {
   double ceiling = 0;              ///< no size inside rises above this
   bool even = false;               ///< one size everywhere
   bool automatic = false;          ///< the user left the choice to us
+  SourceShares sources;            ///< who asks for them
 
   /// The same with `change` applied to every size.
   WantedSizes with(const std::function<double(double)>& change) const;

@@ -1,0 +1,200 @@
+#include "sizing/sources/mesh_sizes.h"
+
+#include <octafront/tet_mesh.h>
+
+#include "base/geometry/measures.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <tuple>
+#include <utility>
+
+namespace octafront {
+
+namespace {
+
+constexpr std::uint32_t kLeafSize = 4;
+/// Places beyond a face by no more than this part of the height of an element are in it, for rounding's sake.
+constexpr double kRounding = 1e-9;
+
+/// Weights of the corners at p; none for a tetrahedron without volume.
+std::optional<std::array<double, 4>> weights_at(const std::array<Vec3, 4>& x, Vec3 p) {
+  const double whole = six_volumes(x[0], x[1], x[2], x[3]);
+  if (whole == 0) return std::nullopt;
+  return std::array{six_volumes(p, x[1], x[2], x[3]) / whole, six_volumes(x[0], p, x[2], x[3]) / whole,
+                    six_volumes(x[0], x[1], p, x[3]) / whole, six_volumes(x[0], x[1], x[2], p) / whole};
+}
+
+/// Faces of tetrahedra with their sorted corners, to find those that occur once.
+struct SortedFace {
+  Triangle key, face;
+  std::uint32_t tet;
+};
+
+std::vector<SortedFace> sorted_faces(const SizeMesh& mesh) {
+  std::vector<SortedFace> all;
+  all.reserve(4 * mesh.tets.size());
+  for (std::uint32_t t = 0; t < mesh.tets.size(); ++t)
+    for (const auto& corners : kTetFaces) {
+      const Triangle face{mesh.tets[t][static_cast<std::size_t>(corners[0])],
+                          mesh.tets[t][static_cast<std::size_t>(corners[1])],
+                          mesh.tets[t][static_cast<std::size_t>(corners[2])]};
+      Triangle key = face;
+      std::sort(key.begin(), key.end());
+      all.push_back({key, face, t});
+    }
+  std::sort(all.begin(), all.end(),
+            [](const SortedFace& a, const SortedFace& b) { return std::tie(a.key, a.tet) < std::tie(b.key, b.tet); });
+  return all;
+}
+
+}  // namespace
+
+MeshSizes::MeshSizes(std::shared_ptr<const SizeMesh> mesh) : mesh_(std::move(mesh)) {
+  const std::vector<double>& sizes = mesh_->point_sizes.empty() ? mesh_->element_sizes : mesh_->point_sizes;
+  largest_ = *std::max_element(sizes.begin(), sizes.end());
+  make_surface();
+  build();
+}
+
+void MeshSizes::make_surface() {
+  if (mesh_->tets.empty()) {
+    faces_ = mesh_->triangles;
+    for (std::uint32_t f = 0; f < faces_.size(); ++f) element_of_face_.push_back(f);
+  } else {
+    const std::vector<SortedFace> all = sorted_faces(*mesh_);
+    for (std::size_t i = 0; i < all.size();) {
+      std::size_t end = i + 1;
+      while (end < all.size() && all[end].key == all[i].key) ++end;
+      if (end == i + 1) faces_.push_back(all[i].face), element_of_face_.push_back(all[i].tet);
+      i = end;
+    }
+  }
+  surface_.emplace(mesh_->points, faces_);
+}
+
+double MeshSizes::size_at_corner(std::uint32_t element, VertexIndex v) const {
+  return mesh_->point_sizes.empty() ? mesh_->element_sizes[element] : mesh_->point_sizes[v];
+}
+
+MeshSizes::Element MeshSizes::element(std::uint32_t number) const {
+  Element made{{}, std::numeric_limits<double>::infinity(), number};
+  const auto add = [&](VertexIndex v) {
+    made.box.add(mesh_->points[v]);
+    made.least = std::min(made.least, size_at_corner(number, v));
+  };
+  if (mesh_->tets.empty())
+    std::ranges::for_each(mesh_->triangles[number], add);
+  else
+    std::ranges::for_each(mesh_->tets[number], add);
+  return made;
+}
+
+void MeshSizes::build() {
+  for (std::uint32_t e = 0; e < elements(); ++e) elements_.push_back(element(e));
+  nodes_.emplace_back();
+  divide(0, 0, static_cast<std::uint32_t>(elements_.size()));
+}
+
+void MeshSizes::divide(std::uint32_t node, std::uint32_t begin, std::uint32_t end) {
+  Node made{{}, std::numeric_limits<double>::infinity(), begin, end - begin};
+  for (std::uint32_t i = begin; i < end; ++i) {
+    made.box.add(elements_[i].box);
+    made.least = std::min(made.least, elements_[i].least);
+  }
+  if (end - begin > kLeafSize) {
+    const Vec3 extent = made.box.extent();
+    const int axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
+    const std::uint32_t middle = begin + (end - begin) / 2;
+    const auto key = [axis](const Element& e) { return std::pair(e.box.center()[axis], e.number); };
+    std::nth_element(elements_.begin() + begin, elements_.begin() + middle, elements_.begin() + end,
+                     [&](const Element& a, const Element& b) { return key(a) < key(b); });
+    made.first = static_cast<std::uint32_t>(nodes_.size());
+    made.count = 0;
+    nodes_.resize(nodes_.size() + 2);
+    divide(made.first, begin, middle);
+    divide(made.first + 1, middle, end);
+  }
+  nodes_[node] = made;
+}
+
+double MeshSizes::size_in_tet(std::uint32_t tet, const std::array<double, 4>& weights) const {
+  double size = 0, sum = 0;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const double weight = std::max(0.0, weights[k]);
+    size += weight * size_at_corner(tet, mesh_->tets[tet][k]);
+    sum += weight;
+  }
+  return size / sum;
+}
+
+double MeshSizes::size_inside(Vec3 p) const {
+  double size = 0, best = -kRounding;
+  std::array<std::uint32_t, 64> stack;
+  int depth = 0;
+  stack[depth++] = 0;
+  while (depth > 0) {
+    const Node& node = nodes_[stack[--depth]];
+    if (!node.box.contains(p)) continue;
+    if (node.count == 0) {
+      stack[depth++] = node.first + 1;
+      stack[depth++] = node.first;
+    }
+    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+      const std::uint32_t t = elements_[i].number;
+      if (!elements_[i].box.contains(p)) continue;
+      const auto& [a, b, c, d] = mesh_->tets[t];
+      const auto weights = weights_at({mesh_->points[a], mesh_->points[b], mesh_->points[c], mesh_->points[d]}, p);
+      if (!weights) continue;
+      const double least = *std::min_element(weights->begin(), weights->end());
+      if (least <= best) continue;
+      best = least;
+      size = size_in_tet(t, *weights);
+    }
+  }
+  return size;
+}
+
+double MeshSizes::size_on_triangle(std::uint32_t triangle, Vec3 p) const {
+  const auto [i, j, k] = faces_[triangle];
+  const Vec3 a = mesh_->points[i], b = mesh_->points[j], c = mesh_->points[k];
+  const double u = triangle_area(p, b, c), v = triangle_area(a, p, c), w = triangle_area(a, b, p);
+  const std::uint32_t e = element_of_face_[triangle];
+  const double of_i = size_at_corner(e, i), of_j = size_at_corner(e, j), of_k = size_at_corner(e, k);
+  const double sum = u + v + w;
+  return sum > 0 ? (u * of_i + v * of_j + w * of_k) / sum : std::min({of_i, of_j, of_k});
+}
+
+MeshSizes::Answer MeshSizes::at(Vec3 p) const {
+  if (!mesh_->tets.empty())
+    if (const double size = size_inside(p); size > 0) return {size, 0};
+  const TriangleTree::Nearest nearest = surface_->nearest(p);
+  return {size_on_triangle(nearest.triangle, nearest.point), std::sqrt(nearest.squared_distance)};
+}
+
+double MeshSizes::least_in(const Box3& box) const {
+  // The nearest points of all places of the box lie no farther from its middle than that of the middle, and twice half
+  // the diagonal.
+  const double around = at(box.center()).away + box.diagonal();
+  const Vec3 out{around, around, around};
+  const Box3 near{box.center() - out, box.center() + out};
+  double least = std::numeric_limits<double>::infinity();
+  std::array<std::uint32_t, 64> stack;
+  int depth = 0;
+  stack[depth++] = 0;
+  while (depth > 0) {
+    const Node& node = nodes_[stack[--depth]];
+    if (node.least >= least || !node.box.overlaps(near)) continue;
+    if (node.count == 0) {
+      stack[depth++] = node.first + 1;
+      stack[depth++] = node.first;
+    }
+    for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
+      if (elements_[i].box.overlaps(near)) least = std::min(least, elements_[i].least);
+  }
+  return least;
+}
+
+}  // namespace octafront

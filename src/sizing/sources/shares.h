@@ -1,0 +1,49 @@
+#pragma once
+
+#include <octafront/options.h>
+#include <octafront/size_field.h>
+
+#include "base/core/stage.h"
+#include "sizing/sources/surface_samples.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace octafront {
+
+struct SurfaceMesh;
+
+/// Which source asks for the smallest size on each triangle, for the report.
+class SourceShares {
+ public:
+  /// `face` as it is before any source but the base speaks.
+  void begin(std::string base, const std::vector<double>& face);
+  /// What changed in `face` since the last call was asked for by that source.
+  void changed(const std::string& by, const std::vector<double>& face);
+  /// `face` was scaled by all of one.
+  void scaled(const std::vector<double>& face) { last_ = face; }
+  /// A source that is asked place by place, after all others.
+  void add(std::string by, SizeAtPlace at);
+
+  /// Counts "asked by SOURCE, % of the surface", and says so in a sentence where `options` name sources beyond one.
+  /// `face`: the sizes of the last call of changed(), `field`: what came out of all of them, times `factor`.
+  void tell(const SurfaceMesh& surface, const std::vector<double>& face, const SizeField& field,
+            const SizeOptions& options, const Stage& stage, double factor = 1) const;
+
+ private:
+  struct AtPlace {
+    std::uint8_t number;
+    SizeAtPlace at;
+  };
+  std::uint8_t number_of(const std::string& name);
+  std::vector<double> part_of_each(const SurfaceMesh& surface, const std::vector<double>& face, const SizeField& field,
+                                   const SizeOptions& options, double factor) const;
+
+  std::vector<std::string> names_;
+  std::vector<double> last_;
+  std::vector<std::uint8_t> of_face_;
+  std::vector<AtPlace> places_;
+};
+
+}  // namespace octafront

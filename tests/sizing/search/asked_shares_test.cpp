@@ -1,0 +1,47 @@
+// Who is told to ask for what.
+
+#include "sizing/search/make_size_field.h"
+#include "support/named_surfaces.h"
+
+#include <string>
+
+#include <gtest/gtest.h>
+
+namespace octafront {
+namespace {
+
+using testing::box;
+
+StageReport report_of(const SurfaceMesh& surface, const SizeOptions& options) {
+  StageReport report;
+  make_size_field(KnownSurface(surface, 40), options, {RunContext{}, report});
+  return report;
+}
+
+TEST(SizeField, TellsWhoAsksForWhat) {
+  SizeOptions options;
+  options.size = 0.2;
+  options.near = {{"", {0, 0, 0}, 0.05, 0.4}};
+  const StageReport report = report_of(box(1, 1, 1, 10), options);
+  double all = 0, by_size = 0, by_point = 0;
+  for (const auto& [key, value] : report.counters) {
+    if (!key.starts_with("asked by ")) continue;
+    all += value;
+    if (key.find("`size`") != std::string::npos) by_size = value;
+    if (key.find("size_near") != std::string::npos) by_point = value;
+  }
+  EXPECT_NEAR(all, 100, 1e-9);
+  EXPECT_GT(by_size, 50);
+  EXPECT_GT(by_point, 1);
+  ASSERT_FALSE(report.notes.empty());
+  EXPECT_NE(report.notes.back().find("asked by"), std::string::npos);
+}
+
+TEST(SizeField, SaysNothingOfASingleSource) {
+  SizeOptions options;
+  options.size = 0.2;
+  EXPECT_TRUE(report_of(box(1, 1, 1), options).notes.empty());
+}
+
+}  // namespace
+}  // namespace octafront
