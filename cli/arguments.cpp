@@ -412,6 +412,25 @@ void declare_surface(CLI::App& command, Arguments& a) {
   a.names.add("patches_by_features", "--patches");
 }
 
+void declare_periodic(CLI::App& command, Arguments& a) {
+  auto* group = command.add_option_group("Periodic cell");
+  group
+      ->add_option("--periodic", a.options.periodic,
+                   "Axes along which the body is one cell of a periodic one, such as x or xyz: opposite faces of its "
+                   "bounding box get the same triangles, and their nodes are paired; bodies and images are repeated")
+      ->type_name("AXES");
+  group
+      ->add_option("--repeat", a.intake.repeat,
+                   "Axes along which several bodies, or an image, are repeated: what crosses a face of the cell comes "
+                   "in again at the opposite one [those of --periodic]")
+      ->type_name("AXES");
+  group
+      ->add_option("--box", a.intake.box,
+                   "The cell that several bodies lie in: they are cut by it, and the rest of it is a region, matrix "
+                   "[with --repeat the bounding box of the first body, which is the cell itself then]")
+      ->type_name("X0,Y0,Z0,X1,Y1,Z1");
+}
+
 void declare_layers(CLI::App& command, Arguments& a) {
   LayersOptions& o = a.options.layers;
   auto* group = command.add_option_group("Boundary layers");

@@ -72,6 +72,7 @@ void declare_report(CLI::App& command, Arguments& arguments);
 void declare_run(CLI::App& command, Arguments& arguments);
 void declare_sizes(CLI::App& command, Arguments& arguments);
 void declare_surface(CLI::App& command, Arguments& arguments);
+void declare_periodic(CLI::App& command, Arguments& arguments);
 void declare_layers(CLI::App& command, Arguments& arguments);
 void declare_volume(CLI::App& command, Arguments& arguments);
 void declare_improvement(CLI::App& command, Arguments& arguments);

@@ -443,6 +443,7 @@ IntakeOptions intake_for(const Options& options, IntakeOptions intake) {
     if (!cad.elements) cad.size = options.size.size;
   }
   for (const NamedSize& named : options.size.named) cad.apart.push_back(named.name);
+  if (!intake.repeat) intake.repeat = options.periodic;
   return intake;
 }
 

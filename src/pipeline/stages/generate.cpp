@@ -5,6 +5,7 @@
 #include "pipeline/stages/kept_shape.h"
 #include "pipeline/stages/measure.h"
 #include "pipeline/stages/methods.h"
+#include "pipeline/stages/periodic.h"
 #include "pipeline/stages/stages.h"
 #include "pipeline/stages/true_shape.h"
 
@@ -51,6 +52,7 @@ Result generate_once(const Domain& domain, const Options& asked, const RunContex
   raise_order(input, filled, run);
   name_patches(input, filled);
   name_parts(input, filled, run);
+  pair_nodes(input, filled.mesh, run);
   add_patch_curves(filled.mesh);
   check_result(filled.mesh, &filled.boundary.surface, run);
   describe(filled.mesh, run.report);

@@ -18,6 +18,7 @@
 #include "pipeline/stages/kept_shape.h"
 #include "pipeline/stages/measure.h"
 #include "pipeline/stages/methods.h"
+#include "pipeline/stages/periodic.h"
 #include "sizing/prediction/expected_tets.h"
 #include "sizing/search/budget.h"
 #include "sizing/search/make_size_field.h"
@@ -172,7 +173,7 @@ void ease_boundary(const improve::BoundaryInput& on, Filled& filled, const Optio
                 static_cast<double>(slide_interfaces(mesh, boundary.surface, boundary.features, on.surface, stage)));
   if (const double limit = scale_of_detail(on.surface, options, 1) * kRaised; limit > 0) {
     improve::FlatWalls walls(on.surface, on.tree, on.features);
-    RaiseLimits limits{limit, nullptr, &walls, nullptr, nullptr, limit / kRaised};
+    RaiseLimits limits{limit, nullptr, &walls, nullptr, nullptr, limit / kRaised, &on.frozen};
     const Leeway leeway(on.surface, on.tree, on.bound);
     std::optional<improve::InputForce> force;
     // Between walls of a complex, as near to each other as one likes, there is no other way out.
@@ -300,6 +301,16 @@ Prepared on_geometry(const Domain& domain, Prepared prepared) {
   return prepared;
 }
 
+/// prepare(), but for periods.
+Prepared prepare_aperiodic(const Domain& domain, Run& run) {
+  const bool are_bounds_asked = has_automatic_sizes(run.options) || domain.geometry;
+  if (domain.bound.empty() || run.options.surface.max_deviation || !are_bounds_asked)
+    return on_geometry(domain, prepare(domain.surface, nullptr, is_known_clean(domain), run));
+  SurfaceMesh numbered = domain.surface;
+  numbered.source.clear();
+  return on_geometry(domain, prepare(numbered, &domain, false, run));
+}
+
 }  // namespace
 
 SurfaceOptions true_to_input(const SurfaceMesh& input, const Options& options) {
@@ -313,12 +324,12 @@ SurfaceOptions true_to_input(const SurfaceMesh& input, const Options& options) {
 
 Prepared prepare(const Domain& domain, Run& run) {
   require_bounds(domain);
-  const bool are_bounds_asked = has_automatic_sizes(run.options) || domain.geometry;
-  if (domain.bound.empty() || run.options.surface.max_deviation || !are_bounds_asked)
-    return on_geometry(domain, prepare(domain.surface, nullptr, is_known_clean(domain), run));
-  SurfaceMesh numbered = domain.surface;
-  numbered.source.clear();
-  return on_geometry(domain, prepare(numbered, &domain, false, run));
+  if (std::optional<PeriodicDomain> periodic = made_periodic(domain, run)) {
+    Prepared prepared = prepare_aperiodic(periodic->domain, run);
+    prepared.cell = periodic->cell;
+    return prepared;
+  }
+  return prepare_aperiodic(domain, run);
 }
 
 SizeField choose_sizes(const Prepared& input, Run& run) {
@@ -354,7 +365,8 @@ Remeshed triangulate(const Prepared& input, const SizeField& sizes, Run& run) {
     Remeshed remeshed = remeshed_in_shape(
         input, sizes, run, stage,
         [&](const SizeField& by) {
-          return remesh_surface(input.surface, by, surface, stage, input.kept_bound(), {slack, budget});
+          return remesh_surface(input.surface, by, surface, stage, input.kept_bound(), {slack, budget},
+                                input.cell);
         },
         budget);
     stage.count("triangles", static_cast<double>(remeshed.surface.triangles.size()));
@@ -396,7 +408,7 @@ void improve_elements(const Prepared& input, Filled& filled, Run& run, const Imp
       on.emplace(improve::BoundaryInput{
           input.surface.mesh(), input.surface.tree(), input.surface.features(), boundary.features,
           detail_tolerance(input.surface.mesh(), run.options, input.unfolded ? 1 - kUnfolded : 1), boundary.near_limit,
-          input.kept_bound()});
+          input.kept_bound(), vertices_on_faces(boundary.surface.points, input.cell)});
     if (improve_mesh(mesh, on ? &*on : nullptr, options, stage, &boundary.features)) {
       if (on) renew_sources(mesh, hull_of(boundary.surface), on->surface, on->tree);
       follow_boundary(mesh, boundary.surface);
@@ -417,6 +429,7 @@ void raise_order(const Prepared& input, Filled& filled, Run& run) {
       return curve_to_surface(mesh, boundary.features.edges, input.surface, run.options.surface.angle_of_features(),
                               below, stage.context());
     });
+    pair_mid_nodes(mesh, input.cell, stage);
     std::copy_n(mesh.points.begin(), boundary.surface.points.size(), boundary.surface.points.begin());
     count_edges(run.report.second_order, stage);
   });
