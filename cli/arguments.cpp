@@ -421,13 +421,13 @@ void declare_periodic(CLI::App& command, Arguments& a) {
       ->type_name("AXES");
   group
       ->add_option("--repeat", a.intake.repeat,
-                   "Axes along which several bodies, or an image, are repeated: what crosses a face of the cell comes "
+                   "Axes along which bodies in a box, or an image, are repeated: what crosses a face of the cell comes "
                    "in again at the opposite one [those of --periodic]")
       ->type_name("AXES");
   group
       ->add_option("--box", a.intake.box,
-                   "The cell that several bodies lie in: they are cut by it, and the rest of it is a region, matrix "
-                   "[with --repeat the bounding box of the first body, which is the cell itself then]")
+                   "The cell that bodies lie in: they are cut by it, and the rest of it is a region, matrix; or first: "
+                   "the first body is the cell")
       ->type_name("X0,Y0,Z0,X1,Y1,Z1");
 }
 

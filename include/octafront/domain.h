@@ -81,11 +81,11 @@ struct IntakeOptions {
   /// Off: a surface that only has doubled or turned faces stays as it is, because generate() puts them in order itself
   /// and says so. On: open_domain() puts them in order, for a surface that something else than generate() will take.
   bool tidies = false;
-  /// Axes along which several bodies, or an image, are repeated, as of Options::periodic: what crosses a face of the
+  /// Axes along which bodies in a `box`, or an image, are repeated, as of Options::periodic: what crosses a face of the
   /// cell comes in again at the opposite one. Without a value as Options::periodic says, by intake_for().
   std::optional<std::string> repeat = {};
-  /// The cell of several bodies, "X0,Y0,Z0,X1,Y1,Z1": they are cut by it, and what they leave of it is a region,
-  /// "matrix". Empty: with `repeat` the bounding box of the first body, which then is the cell itself.
+  /// The cell that bodies lie in, "X0,Y0,Z0,X1,Y1,Z1": they are cut by it, and what they leave of it is a region,
+  /// "matrix". "first": the first body is the cell, and repeated by its bounding box. Empty: there is none.
   std::string box = {};
   ImageIntake image;
   CadIntake cad;

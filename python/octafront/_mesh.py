@@ -12,7 +12,7 @@ from ._surface import _or_zeros, array_of, column_of, points_of, rows_of, wanted
 
 _KINDS = ["nodes", "edges", "faces", "elements"]
 _ARRAYS = ["points", "tets", "region", "boundary", "patch", "source", "interfaces", "interface_patch", "curve_edges",
-           "curve", "mid_nodes", "wide_cells", "wide_faces"]
+           "curve", "mid_nodes", "wide_cells", "wide_faces", "periods", "periodic_nodes"]
 _LISTS = ["region_names", "patch_names", "curve_names"]
 
 
@@ -172,6 +172,17 @@ class Mesh:
     def curves(self):
         """(e,) uint32, the curve of each curve edge."""
         return _or_zeros(self._handle.view("curve"), len(self.curve_edges))
+
+    @property
+    def periods(self):
+        """(k, 3) float64, of a periodic cell the translations that lead from a face to the one that is its copy."""
+        return self._handle.view("periods")
+
+    @property
+    def periodic_nodes(self):
+        """(n, 3) uint32, of a periodic cell: the number of a period, a node that is a copy, and the node that it is a
+        copy of; mid-side nodes too. points[copy] == points[original] + periods[number], each coordinate in one rounding."""
+        return self._handle.view("periodic_nodes")
 
     @property
     def names(self):

@@ -84,6 +84,7 @@ class Settings:
         self.progress, self.after_pass = given.pop("progress", None), given.pop("after_pass", None)
         self.threads = _threads(given.pop("threads", 0))
         self.intake = {name: given.pop(name) for name in list(given) if name in _intake_keywords()}
+        self.repeat = {"repeat": given["periodic"]} if given.get("periodic") else {}
         self.options = Handle("options")
         self.size_at = None
         self._set_sizes(given)

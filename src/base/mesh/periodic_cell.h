@@ -21,7 +21,6 @@ std::array<bool, 3> axes_named(std::string_view option, std::string_view axes);
 
 inline constexpr std::array<char, 3> kAxisNames{'x', 'y', 'z'};
 
-
 struct PeriodicCell {
   Box3 box = {};
   std::array<bool, 3> along = {};  ///< the axes along which it is repeated; none: it is no periodic cell

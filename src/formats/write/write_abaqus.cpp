@@ -1,6 +1,9 @@
 // Abaqus and CalculiX input: nodes, elements, sets. A region is the ELSET of its elements, a patch a SURFACE of element
 // sides and the NSET of its nodes, a curve the NSET of its nodes. To be included into a deck that has materials,
 // sections and steps. CalculiX reads twenty characters of a number.
+//
+// Of a periodic cell, equations tie each copy to the node that it is a copy of, and to a node of no element for each
+// period: what moves that node stretches the cell.
 
 #include "formats/containers/text_writer.h"
 #include "formats/parts/mixed_cells.h"
@@ -8,8 +11,11 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace octafront::io {
 namespace {
@@ -29,20 +35,60 @@ class AbaqusWriter {
       if (names_[p] != mesh_.parts()[p].name)
         text_.line("** NAME {} IS \"{}\"", names_[p], one_line(mesh_.parts()[p].name));
     text_ << "*NODE\n";
-    for (std::uint32_t v = 0; v < mesh_.points(); ++v) {
-      text_ << v + 1;
-      for (int axis = 0; axis < 3; ++axis) (text_ << ", ").within(20, mesh_.mesh().points[v][axis]);
-      text_ << '\n';
-    }
+    for (std::uint32_t v = 0; v < mesh_.points(); ++v) write_node(v + 1, mesh_.mesh().points[v]);
     for (std::size_t p = 0; p < names_.size(); ++p) {
       const Part& part = mesh_.parts()[p];
       if (part.origin == Part::Origin::kRegion) write_elements(part, names_[p]);
     }
     for (std::size_t p = 0; p < names_.size(); ++p)
       if (mesh_.parts()[p].origin != Part::Origin::kRegion) write_set(mesh_.parts()[p], names_[p]);
+    if (!mesh_.mesh().periods.empty()) write_periods();
   }
 
  private:
+  void write_node(std::uint32_t number, Vec3 p) {
+    text_ << number;
+    for (int axis = 0; axis < 3; ++axis) (text_ << ", ").within(20, p[axis]);
+    text_ << '\n';
+  }
+
+  std::uint32_t node_of_period(std::uint32_t period) const {
+    return static_cast<std::uint32_t>(mesh_.points()) + period + 1;
+  }
+
+  void write_periods() {
+    const std::vector<Vec3>& periods = mesh_.mesh().periods;
+    text_ << "** PERIODIC: U(COPY) - U(ORIGINAL) = U(PERIOD_1) + ..., WHICH IS THE MEAN STRAIN TIMES THE PERIOD\n";
+    for (std::uint32_t k = 0; k < periods.size(); ++k) {
+      text_.line("*NODE, NSET=PERIOD_{}", k + 1);
+      write_node(node_of_period(k), periods[k]);
+    }
+    std::map<VertexIndex, std::pair<std::uint32_t, VertexIndex>> next;  // by the copy: a period and the original
+    for (const auto& [period, copy, original] : mesh_.mesh().periodic_nodes)
+      if (copy < mesh_.points()) next.try_emplace(copy, period, original);
+    text_ << "*EQUATION\n";
+    for (const auto& [copy, first] : next) {
+      std::vector<std::uint32_t> others{node_of_period(first.first)};
+      VertexIndex original = first.second;
+      for (auto at = next.find(original); at != next.end(); at = next.find(original)) {
+        others.push_back(node_of_period(at->second.first));
+        original = at->second.second;
+      }
+      others.insert(others.begin(), original + 1);
+      for (int direction = 1; direction <= 3; ++direction) write_equation(copy + 1, others, direction);
+    }
+  }
+
+  /// That a node moves as these others together.
+  void write_equation(std::uint32_t node, const std::vector<std::uint32_t>& others, int direction) {
+    constexpr std::size_t kMostInLine = 4;
+    text_.line("{}", others.size() + 1);
+    text_ << node << ", " << direction << ", 1.";
+    for (std::size_t i = 0; i < others.size(); ++i)
+      text_ << ((i + 1) % kMostInLine == 0 ? ",\n" : ", ") << others[i] << ", " << direction << ", -1.";
+    text_ << '\n';
+  }
+
   char side_name(std::size_t cell, std::uint32_t face, const Side& side) const {
     if (cells_.kind(cell) == MixedCells::kTet) return kSideName[static_cast<std::size_t>(side.face)];
     std::size_t s = cells_.side_of(cell, face);

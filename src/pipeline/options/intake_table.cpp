@@ -68,14 +68,13 @@ std::vector<Row<IntakeOptions>> cell_rows() {
   return {
       intake_row(
           about_intake("repeat", kGroup,
-                       "Axes along which several bodies, or an image, are repeated: what crosses a face of the cell "
+                       "Axes along which bodies in a box, or an image, are repeated: what crosses a face of the cell "
                        "comes in again at the opposite one; without a value those of `periodic`"),
           [](auto& o) -> auto& { return o.repeat; }),
       intake_row(
           about_intake("box", kGroup,
-                       "The cell that several bodies lie in, X0,Y0,Z0,X1,Y1,Z1: they are cut by it, and the rest of it "
-                       "is a region, matrix; without a value, with `repeat`, the bounding box of the first body, which "
-                       "is the cell itself then"),
+                       "The cell that bodies lie in, X0,Y0,Z0,X1,Y1,Z1: they are cut by it, and the rest of it is a "
+                       "region, matrix; or first: the first body is the cell"),
           [](auto& o) -> auto& { return o.box; }),
   };
 }

@@ -158,8 +158,8 @@ class MidNodes {
 /// The names that make_periodic() gives to one face: "x_min", "x_min_2", ...
 bool is_own_name(const std::string& name, CellFace face) {
   const std::string own = name_of_face(face);
-  return name == own || (name.starts_with(own + "_") &&
-                         name.find_first_not_of("0123456789", own.size() + 1) == std::string::npos);
+  return name == own ||
+         (name.starts_with(own + "_") && name.find_first_not_of("0123456789", own.size() + 1) == std::string::npos);
 }
 
 class Pairs {
@@ -280,13 +280,13 @@ std::optional<PeriodicDomain> made_periodic(const Domain& domain, Run& run) {
     if (!examined.defects.clean()) return std::nullopt;
     const Domain clean = tidied(domain, std::move(examined.repaired.surface));
     SurfaceMesh surface = clean.surface;
-    const MadePeriodic made =
-        make_periodic(surface, axes_named("periodic", run.options.periodic), stage.context());
+    const MadePeriodic made = make_periodic(surface, axes_named("periodic", run.options.periodic), stage.context());
     tell(made, stage);
     Domain periodic = with_surface(clean, std::move(surface), made.origin);
     if (periodic.geometry)
-      stage.note("faces of a periodic cell are copies of each other, so the mesh follows the triangles of the CAD file, "
-                 "not its geometry");
+      stage.note(
+          "faces of a periodic cell are copies of each other, so the mesh follows the triangles of the CAD file, "
+          "not its geometry");
     periodic.geometry.reset();
     return PeriodicDomain{std::move(periodic), made.cell};
   });

@@ -12,7 +12,6 @@
 
 namespace octafront {
 
-
 struct Prepared;
 struct TetMesh;
 

@@ -365,8 +365,7 @@ Remeshed triangulate(const Prepared& input, const SizeField& sizes, Run& run) {
     Remeshed remeshed = remeshed_in_shape(
         input, sizes, run, stage,
         [&](const SizeField& by) {
-          return remesh_surface(input.surface, by, surface, stage, input.kept_bound(), {slack, budget},
-                                input.cell);
+          return remesh_surface(input.surface, by, surface, stage, input.kept_bound(), {slack, budget}, input.cell);
         },
         budget);
     stage.count("triangles", static_cast<double>(remeshed.surface.triangles.size()));

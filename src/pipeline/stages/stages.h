@@ -72,8 +72,8 @@ auto on_ground(Filled& filled, const Work& work) {
 }
 
 /// Repairs the input, refuses what the method cannot mesh (InputError), takes off folds that the tolerance lets go
-/// where the surface is made anew, finds the features; of a periodic cell makes opposite faces the same first. The bounds of a mended one hold where the sizes are automatic
-/// and the user bounds nothing.
+/// where the surface is made anew, finds the features; of a periodic cell makes opposite faces the same first. The
+/// bounds of a mended one hold where the sizes are automatic and the user bounds nothing.
 Prepared prepare(const Domain& input, Run& run);
 
 /// The sizes that the options ask for; report.expected_tets says how many elements they promise, if no surface made to

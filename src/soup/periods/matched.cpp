@@ -37,10 +37,11 @@ struct Line {
 
 std::vector<Line> lines_of(const SurfaceMesh& surface, const PeriodicCell& cell, int axis, const FaceParts& face) {
   std::vector<Line> lines;
-  for (const auto& [edge, part] : face.borders)
-    lines.push_back({edge, part,
-                     {seen_at_low(surface.points[edge[0]], cell, axis),
-                      seen_at_low(surface.points[edge[1]], cell, axis)}});
+  for (const auto& [edge, part] : face.lines)
+    lines.push_back(
+        {edge,
+         part,
+         {seen_at_low(surface.points[edge[0]], cell, axis), seen_at_low(surface.points[edge[1]], cell, axis)}});
   return lines;
 }
 
@@ -87,14 +88,16 @@ class Divider {
   Divider(const PeriodicCell& cell, int axis, const std::array<std::vector<Line>, 2>& lines)
       : cell_(cell), axis_(axis), lines_(lines), mesh_(plane_of(cell, axis), axis, cell.box) {}
 
-  CommonDivision run(std::uint32_t parts_below) {
+  CommonDivision run(std::uint32_t parts_below, const std::vector<Vec3>& points) {
+    for (const Vec3 p : points) node_[key(p)] = mesh_.add_point({p});
     for (const auto& of_face : lines_)
       for (const Line& line : of_face)
         for (const Vec3 p : line.way) node_[key(p)] = mesh_.add_point({p});
     for (std::uint32_t side = 0; side < 2; ++side)
       for (const Line& line : lines_[side])
         for (std::size_t i = 0; i + 1 < line.way.size(); ++i)
-          add_segment(line.way[i], line.way[i + 1], side == 0 ? line.part : parts_below + line.part);
+          add_segment(line.way[i], line.way[i + 1],
+                      side == 0 || line.part == kNone ? line.part : parts_below + line.part);
     mesh_.improve();
     CommonDivision made;
     number_nodes(made);
@@ -136,8 +139,8 @@ class Divider {
       const double size = 0.5 * length(double_area_normal(p[0], p[1], p[2]));
       all += size;
       if (parts.size() == 2 && parts[0] < parts_below && parts[1] >= parts_below) {
-        made.pieces.push_back({{number(corners[0]), number(corners[1]), number(corners[2])},
-                               {parts[0], parts[1] - parts_below}});
+        made.pieces.push_back(
+            {{number(corners[0]), number(corners[1]), number(corners[2])}, {parts[0], parts[1] - parts_below}});
         continue;
       }
       alone += size;
@@ -197,18 +200,34 @@ FaceParts parts_of_face(const SurfaceMesh& surface, const PeriodicCell& cell, Ce
   FaceParts parts;
   std::map<std::pair<std::uint32_t, Sides>, std::uint32_t> number;
   std::map<std::pair<Edge, std::uint32_t>, int> uses;
+  const auto sorted_edge = [](VertexIndex a, VertexIndex b) { return Edge{std::min(a, b), std::max(a, b)}; };
+  const int axis = static_cast<int>(face / 2);
+  const double at_face = (face % 2 == 0 ? cell.box.lo : cell.box.hi)[axis];
+  const auto is_on = [&](VertexIndex v) { return surface.points[v][axis] == at_face; };
+  std::vector<Edge> walls;
   for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
     const auto [a, b, c] = surface.triangles[t];
-    if (face_of_cell(cell, surface.points[a], surface.points[b], surface.points[c]) != face) continue;
-    const auto [at, is_new] = number.try_emplace({surface.patch_of(t), surface.sides_of(t)},
-                                                 static_cast<std::uint32_t>(parts.first.size()));
+    if (!is_on(a) || !is_on(b) || !is_on(c)) {
+      for (const Edge& e : {Edge{a, b}, Edge{b, c}, Edge{c, a}})
+        if (is_on(e[0]) && is_on(e[1])) walls.push_back(sorted_edge(e[0], e[1]));
+      for (const VertexIndex v : {a, b, c})
+        if (is_on(v)) parts.touched.push_back(v);
+      continue;
+    }
+    const auto [at, is_new] =
+        number.try_emplace({surface.patch_of(t), surface.sides_of(t)}, static_cast<std::uint32_t>(parts.first.size()));
     if (is_new) parts.first.push_back(t);
     parts.triangles.push_back(t), parts.part.push_back(at->second);
-    for (const Edge& e : {Edge{a, b}, Edge{b, c}, Edge{c, a}})
-      ++uses[{Edge{std::min(e[0], e[1]), std::max(e[0], e[1])}, at->second}];
+    for (const Edge& e : {Edge{a, b}, Edge{b, c}, Edge{c, a}}) ++uses[{sorted_edge(e[0], e[1]), at->second}];
   }
-  for (const auto& [border, count] : uses)
-    if (count == 1) parts.borders.push_back(border);
+  std::sort(walls.begin(), walls.end());
+  for (const auto& [line, count] : uses) {
+    if (count == 1) parts.lines.push_back(line);
+    if (count > 1 && std::binary_search(walls.begin(), walls.end(), line.first))
+      parts.lines.emplace_back(line.first, kNone);
+  }
+  std::sort(parts.touched.begin(), parts.touched.end());
+  parts.touched.erase(std::unique(parts.touched.begin(), parts.touched.end()), parts.touched.end());
   return parts;
 }
 
@@ -218,7 +237,10 @@ CommonDivision divide_alike(const SurfaceMesh& surface, const PeriodicCell& cell
                                          lines_of(surface, cell, axis, faces[1])};
   const std::array ends{ends_of(lines[0]), ends_of(lines[1])};
   bend_over(lines[0], ends[1], tolerance), bend_over(lines[1], ends[0], tolerance);
-  return Divider(cell, axis, lines).run(static_cast<std::uint32_t>(faces[0].first.size()));
+  std::vector<Vec3> points;
+  for (const FaceParts& face : faces)
+    for (const VertexIndex v : face.touched) points.push_back(seen_at_low(surface.points[v], cell, axis));
+  return Divider(cell, axis, lines).run(static_cast<std::uint32_t>(faces[0].first.size()), points);
 }
 
 }  // namespace octafront::periods

@@ -31,10 +31,11 @@ inline constexpr double kSamePlace = 1e-6;
 /// Makes the surface one cell of a periodic one along the axes: triangles on opposite faces of its bounding box are the
 /// same. Where they are so already they stay; where their lines differ, both faces get the lines of both, and new
 /// triangles. Each face becomes a patch, or several: by the patches and regions on it and on the opposite one; the
-/// patch of a face is of no other. Names of patches that lie on one face alone stay; others become "x_min", "x_max", ...
+/// patch of a face is of no other. Names of patches that lie on one face alone stay; others become "x_min", "x_max",
+/// ...
 ///
-/// REQUIRES a clean surface or complex. Throws InputError, with a place, where opposite faces are not the same, or there
-/// is no flat face.
+/// REQUIRES a clean surface or complex. Throws InputError, with a place, where opposite faces are not the same, or
+/// there is no flat face.
 MadePeriodic make_periodic(SurfaceMesh& surface, const std::array<bool, 3>& along, const RunContext& context = {});
 
 }  // namespace octafront

@@ -23,7 +23,7 @@ using periods::FaceParts;
 constexpr int kMostRounds = 4;
 
 /// What a triangle of the surface is, beside its corners.
-struct Kind {
+struct FaceKind {
   std::uint32_t patch;
   Sides sides;
   std::uint32_t origin;
@@ -84,8 +84,7 @@ class PeriodMaker {
   bool match(int axis) {
     context_.check();
     const CellFace low = 2 * static_cast<CellFace>(axis);
-    std::array faces{periods::parts_of_face(surface_, cell(), low),
-                     periods::parts_of_face(surface_, cell(), low + 1)};
+    std::array faces{periods::parts_of_face(surface_, cell(), low), periods::parts_of_face(surface_, cell(), low + 1)};
     for (CellFace k = 0; k < 2; ++k)
       if (faces[k].triangles.empty())
         throw InputError(fmt::format(
@@ -100,12 +99,13 @@ class PeriodMaker {
     return true;
   }
 
-  /// Vertices of borders on the high face that nearly have a copy on the low one get its coordinates.
+  /// Vertices of lines on the high face that nearly have a copy on the low one get its coordinates.
   void bring_to_copies(int axis, const std::array<FaceParts, 2>& faces) {
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;
     std::array<std::vector<VertexIndex>, 2> ends;
     for (int k = 0; k < 2; ++k) {
-      for (const auto& [edge, part] : faces[k].borders) ends[k].insert(ends[k].end(), edge.begin(), edge.end());
+      for (const auto& [edge, part] : faces[k].lines) ends[k].insert(ends[k].end(), edge.begin(), edge.end());
+      ends[k].insert(ends[k].end(), faces[k].touched.begin(), faces[k].touched.end());
       std::sort(ends[k].begin(), ends[k].end(), [&](VertexIndex a, VertexIndex b) {
         const Vec3 p = surface_.points[a], q = surface_.points[b];
         return std::array{p[u], p[v]} < std::array{q[u], q[v]};
@@ -142,21 +142,20 @@ class PeriodMaker {
       for (const std::uint32_t t : faces[k].triangles) seen[k].push_back(corners_seen_low(t, axis));
       std::sort(seen[k].begin(), seen[k].end(), [](const auto& s, const auto& t) {
         for (int i = 0; i < 3; ++i)
-          if (s[i] != t[i])
-            return std::array{s[i].x, s[i].y, s[i].z} < std::array{t[i].x, t[i].y, t[i].z};
+          if (s[i] != t[i]) return std::array{s[i].x, s[i].y, s[i].z} < std::array{t[i].x, t[i].y, t[i].z};
         return false;
       });
     }
     return seen[0] == seen[1];
   }
 
-  Kind kind_of(std::uint32_t t) const { return {surface_.patch[t], surface_.sides[t], made_.origin[t]}; }
+  FaceKind kind_of(std::uint32_t t) const { return {surface_.patch[t], surface_.sides[t], made_.origin[t]}; }
 
   /// New triangles of the surface, of which nothing is read any more.
   struct Rebuilt {
     std::vector<Triangle> triangles;
-    std::vector<Kind> kinds;
-    void add(const Triangle& t, const Kind& kind) { triangles.push_back(t), kinds.push_back(kind); }
+    std::vector<FaceKind> kinds;
+    void add(const Triangle& t, const FaceKind& kind) { triangles.push_back(t), kinds.push_back(kind); }
   };
 
   void put_in(int axis, const std::array<FaceParts, 2>& faces, const CommonDivision& common) {
@@ -180,8 +179,9 @@ class PeriodMaker {
   /// Vertices of the surface where the nodes are on this face, new ones where there is none.
   std::vector<VertexIndex> vertices_of_nodes(int axis, int k, const FaceParts& face, const CommonDivision& common) {
     VerticesByPlace known;
-    for (const auto& [edge, part] : face.borders)
+    for (const auto& [edge, part] : face.lines)
       for (const VertexIndex v : edge) known.add(surface_.points[v], v);
+    for (const VertexIndex v : face.touched) known.add(surface_.points[v], v);
     std::vector<VertexIndex> vertex;
     for (Vec3 p : common.nodes) {
       p[axis] = (k == 0 ? cell().box.lo : cell().box.hi)[axis];
@@ -203,8 +203,8 @@ class PeriodMaker {
   };
 
   /// A triangle beside the face, divided where its edges are.
-  static void add_divided(const Triangle& t, const Kind& kind, const std::map<Edge, std::vector<VertexIndex>>& between,
-                          Rebuilt& to) {
+  static void add_divided(const Triangle& t, const FaceKind& kind,
+                          const std::map<Edge, std::vector<VertexIndex>>& between, Rebuilt& to) {
     Divided divided{t, {}};
     for (int i = 0; i < 3; ++i) {
       const VertexIndex a = t[i], b = t[(i + 1) % 3];
@@ -217,7 +217,7 @@ class PeriodMaker {
   }
 
   /// Two triangles on either side of the middle vertex of an edge, and so on.
-  static void halve(const Divided& d, const Kind& kind, Rebuilt& to) {
+  static void halve(const Divided& d, const FaceKind& kind, Rebuilt& to) {
     int i = 0;
     while (i < 3 && d.on[i].empty()) ++i;
     if (i == 3) return to.add(d.t, kind);
@@ -245,7 +245,7 @@ class PeriodMaker {
   void take(Rebuilt rebuilt) {
     std::vector<std::uint32_t> patch, origin;
     std::vector<Sides> sides;
-    for (const Kind& kind : rebuilt.kinds) {
+    for (const FaceKind& kind : rebuilt.kinds) {
       patch.push_back(kind.patch), sides.push_back(kind.sides), origin.push_back(kind.origin);
     }
     surface_.triangles = std::move(rebuilt.triangles);
@@ -277,8 +277,8 @@ class PeriodMaker {
     std::vector<std::string> added;
     const auto key_of = [&](std::uint32_t t) {
       const std::uint32_t u = faces.other[t];
-      return std::array{faces.face[t], s.patch[t], s.sides[t][0], s.sides[t][1], s.patch[u], s.sides[u][0],
-                        s.sides[u][1]};
+      return std::array{faces.face[t], s.patch[t],    s.sides[t][0], s.sides[t][1],
+                        s.patch[u],    s.sides[u][0], s.sides[u][1]};
     };
     const auto first_new = static_cast<std::uint32_t>(s.patch_names.size());
     for (std::uint32_t t = 0; t < s.triangles.size(); ++t) {
@@ -286,7 +286,9 @@ class PeriodMaker {
       const auto [at, is_new] = number.try_emplace(key_of(t), first_new + static_cast<std::uint32_t>(added.size()));
       if (is_new) {
         const std::string& given = s.patch_names[s.patch[t]];
-        added.push_back(lies_on_one[s.patch[t]] && !given.empty() && given != kClosedByRepair ? given : name_of_face(faces.face[t]));
+        added.push_back(lies_on_one[s.patch[t]] && !given.empty() && given != kClosedByRepair
+                            ? given
+                            : name_of_face(faces.face[t]));
       }
       patch[t] = at->second;
     }

@@ -210,7 +210,8 @@ void divide_curve(const InputSurface& input, const SizeField& sizes, const Measu
 
 /// The division of a curve, on a copy of it at another place.
 void copy_division(const HalfEdgeMesh& mesh, const Curve& of, Curve& copy) {
-  const Vec3 from = mesh.points[mesh.start[of.half_edges.front()]], to = mesh.points[mesh.start[copy.half_edges.front()]];
+  const Vec3 from = mesh.points[mesh.start[of.half_edges.front()]],
+             to = mesh.points[mesh.start[copy.half_edges.front()]];
   const auto copied = [&](CurvePoint c) {
     const auto edge = std::find(of.half_edges.begin(), of.half_edges.end(), c.half_edge) - of.half_edges.begin();
     const bool at_start = c.vertex != kNone && c.vertex == mesh.start[c.half_edge];

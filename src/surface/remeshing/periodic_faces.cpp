@@ -12,7 +12,7 @@ namespace octafront::remeshing {
 namespace {
 
 /// Sizes at copies that differ by less than this part are the same.
-constexpr double kSameSize = 0.01;
+constexpr double kSameAtCopies = 0.01;
 /// What is made smaller at one pair of faces may change what another one has; and again at most so often.
 constexpr int kSizeRounds = 3;
 /// Triangles of the input are divided for samples until they are as small as the sizes, so often at most.
@@ -63,7 +63,7 @@ std::vector<PointSize> wanted_by_copies(const SizeField& sizes, const SurfaceMes
       Vec3 copy = p;
       copy[axis] = (end == 0 ? box.hi : box.lo)[axis];
       const double h = sizes.at(p);
-      if (h < (1 - kSameSize) * sizes.at(copy)) wanted.push_back({copy, h});
+      if (h < (1 - kSameAtCopies) * sizes.at(copy)) wanted.push_back({copy, h});
     }
   }
   return wanted;

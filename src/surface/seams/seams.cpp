@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
 #include <unordered_map>
 #include <utility>
 
@@ -57,10 +58,29 @@ class Cutter {
     const auto uses = table_.uses(edge_of_[h]);
     return uses[0] == h ? uses[1] : uses[0];
   }
-  void find_fans() {
+  void find_cuts() {
     cut_.resize(table_.size());
+    for (std::size_t e = 0; e < table_.size(); ++e) cut_[e] = is_cut(complex_, table_, e) || bounds_periodic_face(e);
+    const PeriodicCell& cell = out_.periods.cell;
+    if (!cell.is_periodic()) return;
+    // Where one of the copies of an edge is cut, all are.
+    using Places = std::array<std::array<double, 3>, 2>;
+    const auto original = [&](std::size_t e) {
+      const auto [a, b] = table_.edges[e];
+      const auto [p, q] = cell.originals(std::array{complex_.points[a], complex_.points[b]});
+      Places places{{{p.x, p.y, p.z}, {q.x, q.y, q.z}}};
+      std::sort(places.begin(), places.end());
+      return places;
+    };
+    std::set<Places> cuts;
+    for (std::size_t e = 0; e < table_.size(); ++e)
+      if (cut_[e]) cuts.insert(original(e));
+    for (std::size_t e = 0; e < table_.size(); ++e) cut_[e] = cuts.contains(original(e));
+  }
+
+  void find_fans() {
+    find_cuts();
     for (std::size_t e = 0; e < table_.size(); ++e) {
-      cut_[e] = is_cut(complex_, table_, e) || bounds_periodic_face(e);
       if (cut_[e]) continue;
       const HalfEdge h = table_.uses(e)[0], g = table_.uses(e)[1];
       for (const VertexIndex v : table_.edges[e]) fans_.join(corner(h, v), corner(g, v));

@@ -60,7 +60,8 @@ void coarsen_seams(WorkingMesh& mesh, const PeriodicCell& cell, const RunContext
 void settle_seams(WorkingMesh& mesh, const SizeField& sizes);
 
 /// Turns or divides edges between vertices on seams that there are in other parts, or on the seams, too: once sewn,
-/// they would be one. Faces that are copies have the edges of those that they are copies of. New vertices lie on their own patch of `complex`. Returns how many.
+/// they would be one. Faces that are copies have the edges of those that they are copies of. New vertices lie on their
+/// own patch of `complex`. Returns how many.
 std::uint64_t divide_repeated_edges(WorkingMesh& mesh, const KnownSurface& complex, const PeriodicFaces& periods,
                                     const SizeField& sizes);
 
