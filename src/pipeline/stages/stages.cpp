@@ -277,7 +277,9 @@ Prepared prepare(const SurfaceMesh& soup, const Domain* mended, bool is_clean, R
   run.report.input_volume = enclosed_volume(found.repaired.surface);
   const bool is_plain = found.repaired.surface.sides.empty();
   std::vector<double> moved;
-  if (defects == SurfaceDomain::Defects::kClean && is_plain) moved = smooth_detail(found, run);
+  // Folds at faces of a periodic cell would come off one of them alone.
+  const bool may_unfold = is_plain && run.options.periodic.empty();
+  if (defects == SurfaceDomain::Defects::kClean && may_unfold) moved = smooth_detail(found, run);
   const bool unfolded = !moved.empty();
   SurfaceMesh& surface = found.repaired.surface;
   ClosedPatch closed = take_closed_patch(surface, found.edges);

@@ -336,7 +336,9 @@ class PeriodMaker {
 MadePeriodic make_periodic(SurfaceMesh& surface, const std::array<bool, 3>& along, const RunContext& context) {
   std::vector<std::uint32_t> source(surface.triangles.size());
   for (std::uint32_t t = 0; t < source.size(); ++t) source[t] = surface.source_of(t);
+  const bool is_plain = surface.sides.empty();
   MadePeriodic made = PeriodMaker(surface, along, context).run();
+  if (is_plain) surface.sides.clear();
   surface.source.clear();
   for (const std::uint32_t t : made.origin) surface.source.push_back(source[t]);
   return made;

@@ -241,6 +241,15 @@ Remeshed input_as_it_is(const KnownSurface& surface, const SizeField& sizes) {
 Remeshed remesh_surface(const KnownSurface& surface, const SizeField& sizes, const SurfaceOptions& options,
                         const Stage& stage, std::span<const double> bound, const FrontLimits& limits,
                         const PeriodicCell& cell) {
+  if (cell.is_periodic() && surface.mesh().sides.empty()) {
+    // The seams of a complex are what holds faces together.
+    SurfaceMesh with_sides = surface.mesh();
+    with_sides.sides.assign(with_sides.triangles.size(), {kNone, 0});
+    const KnownSurface complex(std::move(with_sides), surface.edges(), surface.features());
+    Remeshed made = remesh_surface(complex, sizes, options, stage, bound, limits, cell);
+    made.surface.sides.clear();
+    return made;
+  }
   FrontWork work(surface, options, stage, bound, limits, cell);
   const auto kind = surface.mesh().sides.empty() ? make_plain_front(work) : make_seamed_front(work);
   return Remesher(work, *kind, sizes).run();

