@@ -11,6 +11,7 @@
 #include "base/mesh/feature_patches.h"
 #include "fill/stuffing/stuff.h"
 #include "improve/boundary/slide_interfaces.h"
+#include "improve/boundary/slide_pairs.h"
 #include "improve/curved/curved.h"
 #include "improve/schedule/raise_flat.h"
 #include "improve/schedule/schedule.h"
@@ -186,6 +187,14 @@ void ease_boundary(const improve::BoundaryInput& on, Filled& filled, const Optio
     stage.count("largest move of such a corner", raised.largest_move);
   }
   std::copy_n(mesh.points.begin(), boundary.surface.points.size(), boundary.surface.points.begin());
+}
+
+/// Vertices inside periodic faces, which improvement leaves alone, with their copies.
+void slide_together(const PeriodicCell& cell, Filled& filled, const Stage& stage) {
+  const std::uint64_t moves = slide_pairs(filled.mesh, filled.boundary.surface, cell, stage);
+  stage.count("moves of pairs of vertices", static_cast<double>(moves));
+  std::copy_n(filled.mesh.points.begin(), filled.boundary.surface.points.size(),
+              filled.boundary.surface.points.begin());
 }
 
 // Folds, flaps and blades below the tolerance are taken away: no element could fill them. Returns how far that moved
@@ -410,10 +419,13 @@ void improve_elements(const Prepared& input, Filled& filled, Run& run, const Imp
           input.surface.mesh(), input.surface.tree(), input.surface.features(), boundary.features,
           detail_tolerance(input.surface.mesh(), run.options, input.unfolded ? 1 - kUnfolded : 1), boundary.near_limit,
           input.kept_bound(), vertices_on_faces(boundary.surface.points, input.cell)});
+    const bool slides_pairs = on && may_slide(options) && input.cell.is_periodic();
+    if (slides_pairs) slide_together(input.cell, filled, stage);
     if (improve_mesh(mesh, on ? &*on : nullptr, options, stage, &boundary.features)) {
       if (on) renew_sources(mesh, hull_of(boundary.surface), on->surface, on->tree);
       follow_boundary(mesh, boundary.surface);
     }
+    if (slides_pairs) slide_together(input.cell, filled, stage);
     if (on && may_slide(options)) ease_boundary(*on, filled, run.options, stage);
   });
 }
@@ -428,7 +440,7 @@ void raise_order(const Prepared& input, Filled& filled, Run& run) {
       if (keeps_surface(run.options)) return add_straight_edges(mesh, stage.context());
       if (input.geometry) return curve_to_geometry(mesh, *input.geometry, below, stage.context());
       return curve_to_surface(mesh, boundary.features.edges, input.surface, run.options.surface.angle_of_features(),
-                              below, stage.context());
+                              below, vertices_on_faces(boundary.surface.points, input.cell), stage.context());
     });
     pair_mid_nodes(mesh, input.cell, stage);
     std::copy_n(mesh.points.begin(), boundary.surface.points.size(), boundary.surface.points.begin());
