@@ -17,7 +17,7 @@ namespace {
 constexpr int kSlideSweeps = 6;
 /// Steps that are tried, in mean edges around the vertex, in eight directions.
 constexpr double kSteps[] = {0.12, 0.04};
-constexpr int kDirections = 8;
+constexpr int kWaysOfPairs = 8;
 constexpr double kDiagonal = 0.70710678118654752;
 /// What the mean of an element's beta must gain by a move, and below which beta no element gets worse.
 constexpr double kLeastGain = 2e-4, kPoor = 0.65;
@@ -113,14 +113,14 @@ class PairSlider {
   }
 
   bool slide(const Pair& pair) {
-    constexpr std::array<std::array<double, 2>, kDirections> kWays{{{1, 0},
-                                                                    {kDiagonal, kDiagonal},
-                                                                    {0, 1},
-                                                                    {-kDiagonal, kDiagonal},
-                                                                    {-1, 0},
-                                                                    {-kDiagonal, -kDiagonal},
-                                                                    {0, -1},
-                                                                    {kDiagonal, -kDiagonal}}};
+    constexpr std::array<std::array<double, 2>, kWaysOfPairs> kWays{{{1, 0},
+                                                                     {kDiagonal, kDiagonal},
+                                                                     {0, 1},
+                                                                     {-kDiagonal, kDiagonal},
+                                                                     {-1, 0},
+                                                                     {-kDiagonal, -kDiagonal},
+                                                                     {0, -1},
+                                                                     {kDiagonal, -kDiagonal}}};
     const Vec3 here = mesh_.points[pair.low];
     const double edge = mean_edge(pair.low);
     const Worth now = worth(pair, here);
