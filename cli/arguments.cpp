@@ -77,18 +77,6 @@ std::vector<double> numbers_of(const std::string& typed, const std::string& list
   return numbers;
 }
 
-/// A box as "x0,y0,z0,x1,y1,z1".
-Box3 box_of(const std::string& typed) {
-  std::vector<double> n;
-  for (const std::string& word : CLI::detail::split(typed, ',')) {
-    double value = 0;
-    if (CLI::detail::lexical_cast(word, value) && std::isfinite(value)) n.push_back(value);
-  }
-  if (n.size() != 6 || std::count(typed.begin(), typed.end(), ',') != 5)
-    throw CLI::ValidationError("--box", "\"" + typed + "\" is no box; write X0,Y0,Z0,X1,Y1,Z1");
-  return {{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
-}
-
 /// A point as "x,y,z".
 Vec3 point_of(const std::string& option, const std::string& typed, const std::string& list) {
   std::vector<double> numbers;
@@ -264,11 +252,6 @@ void declare_formula(CLI::App& command, Arguments& a) {
   auto* group =
       command.add_option_group("Formulas", "A body where a formula is below 0, such as 'gyroid(x,y,z) - 0.3'");
   group
-      ->add_option_function<std::string>(
-          "--box", [&o](const std::string& typed) { o.box = box_of(typed); },
-          "The box that the body lies in, or is cut by [one cell of the surface, from the origin on]")
-      ->type_name("X0,Y0,Z0,X1,Y1,Z1");
-  group
       ->add_option("--cell", o.cell,
                    "Period of the named surfaces (gyroid, schwarz_p, diamond, iwp, neovius, lidinoid) [1]")
       ->type_name("L");
@@ -322,6 +305,8 @@ void declare_mesh_output(CLI::App& command, Arguments& a) {
       "Tetrahedra alone, with regions and sets: no faces and edges, which some programs refuse beside them");
   command.add_flag("--cohesive", a.cohesive,
                    "Cohesive elements of no height between the sides of what --split opened (Abaqus: COH3D6)");
+  command.add_option("--beams", a.beams, "These curves are beams, too, such as those of --wire (Abaqus: B31, B32)")
+      ->type_name("NAME,...");
   command
       .add_option_function<std::vector<std::string>>(
           "--group",
@@ -512,6 +497,25 @@ void declare_surface(CLI::App& command, Arguments& a) {
                   "Regions of a complex keep the volumes that they have in the input; images do so unasked");
   a.names.add("keep", "--keep-surface");
   a.names.add("patches_by_features", "--patches");
+}
+
+void declare_periodic(CLI::App& command, Arguments& a) {
+  auto* group = command.add_option_group("Periodic cell");
+  group
+      ->add_option("--periodic", a.options.periodic,
+                   "Axes along which the body is one cell of a periodic one, such as x or xyz: opposite faces of its "
+                   "bounding box get the same triangles, and their nodes are paired; bodies and images are repeated")
+      ->type_name("AXES");
+  group
+      ->add_option("--repeat", a.intake.repeat,
+                   "Axes along which bodies in a box, or an image, are repeated: what crosses a face of the cell comes "
+                   "in again at the opposite one [those of --periodic]")
+      ->type_name("AXES");
+  group
+      ->add_option("--box", a.intake.box,
+                   "The cell that bodies lie in: they are cut by it, and the rest of it is a region, matrix; or first: "
+                   "the first body is the cell. Of a formula the box that cuts it [one cell from the origin on]")
+      ->type_name("X0,Y0,Z0,X1,Y1,Z1");
 }
 
 void declare_layers(CLI::App& command, Arguments& a) {

@@ -38,6 +38,7 @@ struct Arguments {
   bool ascii = false;                         ///< of the meshes: as text
   bool cells_only = false;                    ///< of the meshes: tetrahedra alone
   bool cohesive = false;                      ///< of the meshes: with cohesive elements where they are split
+  std::string beams;                          ///< of the meshes: curves that are beams, too
   std::filesystem::path regions, point_sizes, size_field;  ///< files with sizes; empty: none
   Options options;
   std::optional<Solver> solver;      ///< whose limits a mesh is checked by
@@ -79,6 +80,7 @@ void declare_report(CLI::App& command, Arguments& arguments);
 void declare_run(CLI::App& command, Arguments& arguments);
 void declare_sizes(CLI::App& command, Arguments& arguments);
 void declare_surface(CLI::App& command, Arguments& arguments);
+void declare_periodic(CLI::App& command, Arguments& arguments);
 void declare_layers(CLI::App& command, Arguments& arguments);
 void declare_volume(CLI::App& command, Arguments& arguments);
 void declare_improvement(CLI::App& command, Arguments& arguments);

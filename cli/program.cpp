@@ -108,6 +108,7 @@ void Program::declare_makers() {
   declare_dry_run(*mesh, a);
   declare_sizes(*mesh, a);
   declare_surface(*mesh, a);
+  declare_periodic(*mesh, a);
   declare_layers(*mesh, a);
   declare_volume(*mesh, a);
   declare_improvement(*mesh, a);
@@ -129,6 +130,7 @@ void Program::declare_makers() {
   declare_output(*surface, a, "Surface: .stl, .obj, .off or .ply", true);
   declare_sizes(*surface, a);
   declare_surface(*surface, a);
+  declare_periodic(*surface, a);
   declare_report(*surface, a);
   declare_run(*surface, a);
 
@@ -159,6 +161,7 @@ void Program::declare_makers() {
   declare_output(*size, a, "Background grid: .vtu", false);
   declare_sizes(*size, a);
   declare_surface(*size, a);
+  declare_periodic(*size, a);
   declare_report(*size, a);
   declare_run(*size, a);
 

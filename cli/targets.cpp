@@ -23,7 +23,8 @@ WriteOptions options_of(const Arguments& a, std::size_t i) {
   return {.format = a.formats.empty() ? "" : a.formats[i],
           .ascii = a.ascii,
           .cells_only = a.cells_only,
-          .cohesive = a.cohesive};
+          .cohesive = a.cohesive,
+          .beams = a.beams};
 }
 
 bool is_null(const std::filesystem::path& file) {

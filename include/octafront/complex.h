@@ -39,6 +39,8 @@ struct ComplexOptions {
   /// Of several bodies: what is nearer than this comes together; input units, >= 0. Without a value a millionth of the
   /// diagonal, which is what single precision leaves of equal coordinates. 0: exactly as they are.
   std::optional<double> tolerance;
+  /// Of several bodies: the first one is a cell, and what lies outside of it is left out.
+  bool within_first = false;
 };
 
 /// A complex and what was done to get it.

@@ -76,9 +76,6 @@ struct InsideIntake {
 
 /// How a formula, or samples of a function, become a domain (octafront/formula.h).
 struct FormulaIntake {
-  /// The body ends flat at the faces of this box: its least and largest corner. Without a value one cell of the named
-  /// surfaces, from the origin on.
-  std::optional<Box3> box = {};
   std::optional<double> cell = {};               ///< the period of the named surfaces, > 0; without a value 1
   std::optional<std::uint32_t> resolution = {};  ///< cells along the longest side of the box, >= 4
 };
@@ -101,6 +98,13 @@ struct IntakeOptions {
   /// Off: a surface that only has doubled or turned faces stays as it is, because generate() puts them in order itself
   /// and says so. On: open_domain() puts them in order, for a surface that something else than generate() will take.
   bool tidies = false;
+  /// Axes along which bodies in a `box`, or an image, are repeated, as of Options::periodic: what crosses a face of the
+  /// cell comes in again at the opposite one. Without a value as Options::periodic says, by intake_for().
+  std::optional<std::string> repeat = {};
+  /// The cell that bodies lie in, "X0,Y0,Z0,X1,Y1,Z1": they are cut by it, and what they leave of it is a region,
+  /// "matrix". "first": the first body is the cell, and repeated by its bounding box. Empty: there is none. A body by a
+  /// formula ends flat at its faces; empty: one cell of the named surfaces, from the origin on.
+  std::string box = {};
   ImageIntake image;
   CadIntake cad;
   InsideIntake inside;

@@ -66,6 +66,7 @@ struct WriteOptions {
   bool cells_only = false;  ///< the tetrahedra alone, with their regions and sets, and sets of nodes: no faces and
                             ///< edges, which some programs refuse beside tetrahedra
   bool cohesive = false;    ///< elements of no height (COH3D6) between the two sides of faces that were split: Abaqus
+  std::string beams = {};   ///< names of curves, separated by commas, that are beams, too (B31, B32): Abaqus
 };
 
 /// Writes a mesh in the format that the ending of the name tells, or that is asked for. Regions, patches, curves and
@@ -159,7 +160,7 @@ struct FormatHolds {
   bool second_order = false, doubles = true, binary = false;
   bool wide_cells = false;         ///< wedges and pyramids; in others they are tetrahedra
   bool curved_wide_cells = false;  ///< the same of second order
-  bool cohesive = false;           ///< WriteOptions::cohesive
+  bool cohesive = false;           ///< WriteOptions::cohesive and beams
 };
 
 /// What is known of a file format, for help texts and --format.

@@ -224,6 +224,11 @@ struct Options {
   /// Names of patches inside (sheets, walls between regions), separated by commas, along which the mesh is opened:
   /// split_patches() of octafront/split.h.
   std::string split;
+  /// Axes along which the body is one cell of a periodic one, of "x", "y" and "z": "xyz", "z", ...; empty: none. The
+  /// faces of its bounding box at both ends of such an axis are the same triangles, bit for bit, and
+  /// TetMesh::periodic_nodes pairs their nodes. What lies on opposite faces must be the same; where only triangles
+  /// differ, both faces get new ones.
+  std::string periodic;
   /// 1: linear elements. 2: elements of second order, curved to the surface that the input stands for; see
   /// make_second_order(). Straight where the input's triangles are kept.
   int order = 1;

@@ -104,6 +104,11 @@ struct TetMesh {
   /// quadrilateral between two of them or at the boundary is whole on both sides. Empty: tetrahedra only.
   std::vector<WideCell> wide_cells;
   std::vector<WideFace> wide_faces;  ///< the quadrilaterals of `boundary`; ascending
+  /// Translations that lead from a face of the mesh to the one that is its copy: of a periodic cell. Empty: of none.
+  std::vector<Vec3> periods;
+  /// Of a periodic cell: the number of the period, the node that is the copy, and the one that it is a copy of;
+  /// ascending, mid-side nodes too. points[copy] is points[original] + the period, each coordinate in one rounding.
+  std::vector<std::array<std::uint32_t, 3>> periodic_nodes;
   /// One per boundary face and, behind them, interface: how many boundary layers grow at each corner of it, at least;
   /// kNone: it is no wall of any. Empty: not known.
   std::vector<std::uint32_t> face_layers;

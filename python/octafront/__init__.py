@@ -112,7 +112,8 @@ def mesh_image(image, affine=None, **keywords):
     spacing = keywords.pop("spacing", None)
     settings = _Settings("mesh_image", "mesh", keywords, image)
     series = settings.intake.pop("series", 0)
-    made = _surface_of_image(image, affine, spacing, series, settings.intake, settings.threads, settings.progress)
+    made = _surface_of_image(image, affine, spacing, series, {**settings.repeat, **settings.intake}, settings.threads,
+                             settings.progress)
     settings.intake = {}
     mesh = _meshed(made, None, settings)
     mesh.report["image"] = made.report

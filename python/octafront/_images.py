@@ -14,7 +14,7 @@ _U8, _I16, _U16, _I32, _F32 = 3, 4, 5, 6, 7
 _WHOLE = (("uint8", _U8), ("int16", _I16), ("uint16", _U16), ("int32", _I32))
 
 # Keywords that the library takes in other words.
-_REWORDED = ("labels", "merge", "iso", "bands", "crop", "box")
+_REWORDED = ("labels", "merge", "iso", "bands", "crop")
 
 
 def surface_of_image(image, affine, spacing, series, regions, threads=0, progress=None):
@@ -122,18 +122,9 @@ def described(regions):
         bands.append([name, _finite(lo), _finite(hi)])
     if bands:
         said["bands"] = bands
-    if regions.get("box") is not None:
-        said["box"] = _box(regions["box"])
     if regions.get("crop") is not None:
         said["crop"] = [[_plain(end) for end in both] for both in regions["crop"]]
     return said
-
-
-def _box(box):
-    corners = array_of(box, "`box`", np.float64).reshape(-1)
-    if corners.shape != (6,):
-        raise errors.OptionError("`box` is its least and its largest corner: ((x0, y0, z0), (x1, y1, z1))")
-    return corners.tolist()
 
 
 def _names(labels):

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from . import _complexes, _foreign, _functions, _images, _inside
 from ._jobs import Job
 from ._library import file_of
+from ._numpy import np
 from ._surface import Surface, surface_of
 
 
@@ -25,6 +26,7 @@ def opened(source, triangles, settings):
         job = _functions.open_job(source, settings)
     elif triangles is None and isinstance(source, Mapping):
         handles, names, surfaces = _complexes.arguments_of(source)
+        keys = _complexes.text_of_keys(_described({**settings.repeat, **settings.intake}))
         job = Job("open_bodies", handles, names, len(surfaces), keys, threads, progress=settings.progress)
     else:
         surface = surface_of(source, triangles)
@@ -38,5 +40,7 @@ def opened(source, triangles, settings):
 def _described(given):
     given = dict(given)
     seeds, voids = given.pop("region", None), given.pop("void", None)
+    if not isinstance(given.get("box", ""), str):
+        given["box"] = ",".join(repr(float(number)) for number in np.ravel(given["box"]))
     return {"regions": _complexes.seeds_of(seeds) or None, "voids": _complexes.points_in(voids) or None,
             **_inside.described(given), **_images.described(given)}

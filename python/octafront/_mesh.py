@@ -12,7 +12,7 @@ from ._surface import _or_zeros, array_of, column_of, points_of, rows_of, wanted
 
 _KINDS = ["nodes", "edges", "faces", "elements"]
 _ARRAYS = ["points", "tets", "region", "boundary", "patch", "source", "interfaces", "interface_patch", "curve_edges",
-           "curve", "mid_nodes", "wide_cells", "wide_faces", "split_faces"]
+           "curve", "mid_nodes", "wide_cells", "wide_faces", "split_faces", "periods", "periodic_nodes"]
 _LISTS = ["region_names", "patch_names", "curve_names"]
 
 
@@ -180,6 +180,17 @@ class Mesh:
         return _or_zeros(self._handle.view("curve"), len(self.curve_edges))
 
     @property
+    def periods(self):
+        """(k, 3) float64, of a periodic cell the translations that lead from a face to the one that is its copy."""
+        return self._handle.view("periods")
+
+    @property
+    def periodic_nodes(self):
+        """(n, 3) uint32, of a periodic cell: the number of a period, a node that is a copy, and the node that it is a
+        copy of; mid-side nodes too. points[copy] == points[original] + periods[number], each coordinate in one rounding."""
+        return self._handle.view("periodic_nodes")
+
+    @property
     def names(self):
         """{"regions": [...], "patches": [...], "curves": [...]}: number r is called by the r-th name, if there is one."""
         return {name.split("_")[0] + ("es" if name.startswith("patch") else "s"): self._handle.names(name)
@@ -246,14 +257,14 @@ class Mesh:
             raise errors.InputError(text_of(note.value))
         return self
 
-    def save(self, path, *, format=None, ascii=False, cells_only=False, cohesive=False):
+    def save(self, path, *, format=None, ascii=False, cells_only=False, cohesive=False, beams=""):
         """Writes the mesh in the format that the ending tells, or by its name in octafront.formats(). `ascii`: as text, of
         formats that are binary else; `cells_only`: the tetrahedra alone, with regions and sets, without faces and edges,
-        which some programs refuse beside them; `cohesive`: cohesive elements between the sides of what was split (Abaqus).
-        Returns what a user should know, as sentences: what the format cannot
+        which some programs refuse beside them; `cohesive`: cohesive elements between the sides of what was split, `beams`:
+        curves that are beams, too, "rod,wire" (both Abaqus). Returns what a user should know, as sentences: what the format cannot
         hold. An older file stays whole if that fails: OutputError; OptionError for what the format cannot do."""
         options = {"format": format or "", "ascii": bool(ascii), "cells_only": bool(cells_only),
-                   "cohesive": bool(cohesive)}
+                   "cohesive": bool(cohesive), "beams": str(beams)}
         job = Job("write_mesh", self._handle, file_of(path), json.dumps(options).encode())
         return job.run()["notes"]
 

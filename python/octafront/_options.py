@@ -32,7 +32,6 @@ _OF_INTAKE = [
               "second; None: no limit"),
     ("crop", "Of an image: ((i0, i1), (j0, j1), (k0, k1)), counted from 0, the last ones too; None for an end that stays"),
     ("resample", "Spacing of the voxels to work with, one number or three"),
-    ("box", "Of a formula or function: ((x0, y0, z0), (x1, y1, z1)), which the body lies in or is cut by"),
 ]
 # Beside the table of options: name, which functions heed it, what it is.
 _FURTHER = [(name, "mesh surface size", text) for name, text in _OF_INTAKE] + [
@@ -94,6 +93,7 @@ class Settings:
         self.progress, self.after_pass = given.pop("progress", None), given.pop("after_pass", None)
         self.threads = _threads(given.pop("threads", 0))
         self.intake = {name: given.pop(name) for name in list(given) if name in _intake_keywords()}
+        self.repeat = {"repeat": given["periodic"]} if given.get("periodic") else {}
         self.options = Handle("options")
         self.size_at = None
         self._set_sizes(given)

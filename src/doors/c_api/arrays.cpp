@@ -47,6 +47,8 @@ void visit_mesh_array(Mesh& mesh, std::string_view name, const Visit& visit) {
   if (name == "wide_cells") return visit(mesh.wide_cells);
   if (name == "wide_faces") return visit(mesh.wide_faces);
   if (name == "split_faces") return visit(mesh.split_faces);
+  if (name == "periods") return visit(mesh.periods);
+  if (name == "periodic_nodes") return visit(mesh.periodic_nodes);
   throw OptionError(fmt::format("a mesh has no array \"{}\"", name));
 }
 
@@ -129,6 +131,9 @@ void require_indices(const TetMesh& m) {
   require_range(m.curve_edges, m.points.size(), "curve edge");
   require_range(m.mid_nodes, m.points.size(), "row of mid_nodes");
   require_wide_range(m);
+  for (const auto& [period, copy, original] : m.periodic_nodes)
+    if (period >= m.periods.size() || copy >= m.points.size() || original >= m.points.size())
+      throw InputError("periodic_nodes names a period or a point that there is not");
   require_length(m.region.size(), m.tets.size(), "regions", "tets");
   require_length(m.mid_nodes.size(), m.tets.size(), "mid_nodes", "tets");
   require_length(m.patch.size(), m.boundary.size(), "patches", "faces");

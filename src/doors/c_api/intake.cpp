@@ -104,12 +104,6 @@ const std::map<std::string, Take>& lists() {
            o.image.crop[axis] = {voxel_of(v.at(axis).at(0)), voxel_of(v.at(axis).at(1))};
        }},
       {"apart", [](IntakeOptions& o, const Json& v) { o.cad.apart = v.get<std::vector<std::string>>(); }},
-      {"box",
-       [](IntakeOptions& o, const Json& v) {
-         if (v.size() != 6) throw OptionError(fmt::format("`box` has six coordinates, not {}", v.dump()));
-         const auto n = v.get<std::vector<double>>();
-         o.formula.box = Box3{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
-       }},
       {"resample",
        [](IntakeOptions& o, const Json& v) {
          o.image.resample = v.is_number() ? std::vector{v.get<double>()} : v.get<std::vector<double>>();

@@ -47,6 +47,7 @@ WriteOptions write_options_from(const Json& json) {
   with(json, "format", [&](const Json& value) { options.format = value.get<std::string>(); });
   with(json, "ascii", [&](const Json& value) { options.ascii = value.get<bool>(); });
   with(json, "cells_only", [&](const Json& value) { options.cells_only = value.get<bool>(); });
+  with(json, "beams", [&](const Json& value) { options.beams = value.get<std::string>(); });
   with(json, "cohesive", [&](const Json& value) { options.cohesive = value.get<bool>(); });
   return options;
 }

@@ -445,6 +445,7 @@ IntakeOptions intake_for(const Options& options, IntakeOptions intake) {
   for (const NamedSize& named : options.size.named) cad.apart.push_back(named.name);
   for (const NearSize& near : options.size.near)
     if (!near.name.empty()) cad.apart.push_back(near.name);
+  if (!intake.repeat) intake.repeat = options.periodic;
   return intake;
 }
 

@@ -8,6 +8,7 @@
 
 #include "base/core/thread_limit.h"
 #include "base/core/wording.h"
+#include "doors/intake/cell.h"
 #include "doors/intake/intake.h"
 
 #include <algorithm>
@@ -93,7 +94,7 @@ class Intake {
   Domain surface(Input input) {
     if (input.read.surface.triangles.empty()) throw InputError("there is no triangle, and nothing to mesh");
     add_seeds(input);
-    if (complex_.overlap != Overlap::kAuto) return named_parts(std::move(input));
+    if (complex_.overlap != Overlap::kAuto || asks_for_cell(options_)) return named_parts(std::move(input));
     return plain(std::move(input));
   }
 
@@ -159,19 +160,32 @@ class Intake {
     naming(name, [&] { mend(body.surface, name); });
   }
 
-  Domain joined(const std::vector<Body>& bodies) {
+  Domain joined(std::vector<Body> bodies) {
     context_.report("joining", -1);
+    if (asks_for_cell(options_)) put_into_cell(bodies);
     take_complex(domain_, options_, join_bodies(bodies, complex_, context_));
     return std::move(domain_);
   }
 
-  /// Parts of one surface that have names of their own.
+  void put_into_cell(std::vector<Body>& bodies) {
+    if (complex_.overlap == Overlap::kNew)
+      throw OptionError(
+          "`overlap` new makes regions of what bodies share with the cell: with `box` give first or later");
+    // The cell has no body's way; what it comes before goes to others.
+    const auto first = bodies.begin() + (options_.box == "first" ? 1 : 0);
+    if (complex_.overlap == Overlap::kFirst) std::reverse(first, bodies.end());
+    complex_.overlap = Overlap::kLater;
+    complex_.within_first = true;
+    bodies = bodies_in_cell(std::move(bodies), options_);
+  }
+
+  /// Parts of one surface that have names of their own; in a cell also one part alone.
   Domain named_parts(Input input) {
     const std::string prefix = input.name.empty() ? "" : input.name + ": ";
     const SurfaceMesh& surface = input.read.surface;
     if (!surface.sides.empty()) throw InputError(prefix + "has regions already; leave out `overlap`");
     std::vector<Body> bodies = bodies_by_name(surface);
-    if (bodies.size() < 2)
+    if (bodies.size() < 2 && !asks_for_cell(options_))
       throw InputError(
           fmt::format("{}`overlap` needs parts with names of their own (solids, groups); all of it is \"{}\"", prefix,
                       bodies.empty() ? "" : bodies[0].name));
@@ -306,7 +320,8 @@ std::string region_name(const Domain& domain, std::size_t region) {
 
 Domain open_domain(const std::vector<std::string>& files, const IntakeOptions& options, const RunContext& context) {
   if (files.empty()) throw OptionError("no file is given");
-  if (files.size() == 1 && is_formula(files.front())) return with_inside(open_formula(files.front(), options, context), options, context);
+  if (files.size() == 1 && is_formula(files.front()))
+    return with_inside(open_formula(files.front(), options, context), options, context);
   refuse_formula_options(options.formula, files.front());
   if (is_image(files.front())) {
     const Image image = read_image(files, options.image.choice, context);

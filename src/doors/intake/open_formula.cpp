@@ -3,6 +3,7 @@
 
 #include "base/core/parallel.h"
 #include "base/core/thread_limit.h"
+#include "doors/intake/cell.h"
 #include "doors/intake/intake.h"
 #include "images/formulas/geometry.h"
 #include "images/nets/function_surface.h"
@@ -55,12 +56,13 @@ void check_box(const Box3& box) {
                   box.lo.x, box.lo.y, box.lo.z, box.hi.x, box.hi.y, box.hi.z));
 }
 
-Cells cells_of(const FormulaIntake& asked, bool is_periodic, double period) {
-  if (!asked.box && !is_periodic)
+Cells cells_of(const IntakeOptions& options, bool is_periodic, double period) {
+  const FormulaIntake& asked = options.formula;
+  if (options.box.empty() && !is_periodic)
     throw OptionError(
         "a formula needs the box that the body lies in or is cut by: `box` with the coordinates of its least and its "
         "largest corner; only surfaces that repeat themselves (gyroid, schwarz_p, ...) have one of their own");
-  Cells cells{asked.box.value_or(Box3{{0, 0, 0}, {period, period, period}})};
+  Cells cells{options.box.empty() ? Box3{{0, 0, 0}, {period, period, period}} : intake::box_of_option(options.box)};
   check_box(cells.box);
   const Vec3 e = cells.box.extent();
   const double longest = std::max({e.x, e.y, e.z});
@@ -156,8 +158,7 @@ Domain opened(const std::shared_ptr<const SpaceFunction>& function, const Cells&
 namespace intake {
 
 void refuse_formula_options(const FormulaIntake& formula, const std::string& name) {
-  const std::pair<bool, const char*> given[] = {{formula.box.has_value(), "box"},
-                                                {formula.cell.has_value(), "cell"},
+  const std::pair<bool, const char*> given[] = {{formula.cell.has_value(), "cell"},
                                                 {formula.resolution.has_value(), "resolution"}};
   for (const auto& [is_given, option] : given)
     if (is_given)
@@ -170,7 +171,7 @@ void refuse_formula_options(const FormulaIntake& formula, const std::string& nam
 Domain open_formula(const std::string& formula, const IntakeOptions& options, const RunContext& context) {
   const double period = options.formula.cell.value_or(1);
   Formula read(formula, period);
-  const Cells cells = cells_of(options.formula, read.is_periodic(), period);
+  const Cells cells = cells_of(options, read.is_periodic(), period);
   intake::refuse_image_options(options.image, "a formula");
   return opened(std::make_shared<formulas::FormulaFunction>(std::move(read), kStepOfCell * cells.largest()), cells,
                 "a formula", options, context);

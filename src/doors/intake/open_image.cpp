@@ -2,6 +2,7 @@
 #include <octafront/image.h>
 #include <octafront/image_surface.h>
 
+#include "doors/intake/cell.h"
 #include "doors/intake/intake.h"
 
 #include <algorithm>
@@ -100,7 +101,12 @@ void take_image(Domain& domain, const IntakeOptions& options, const Image& image
   domain.voxel_spacing = smallest_spacing(used.grid);
   domain.voxels = used.grid.size;
   try {
-    take_complex(domain, options, complex_of_image(used, regions, context));
+    const std::array<bool, 3> repeated = axes_named("repeat", options.repeat.value_or(""));
+    const bool repeats = std::ranges::any_of(repeated, [](bool along) { return along; });
+    take_complex(domain, options,
+                 repeats ? complex_of_periodic_image(used, regions, repeated, context)
+                         : complex_of_image(used, regions, context));
+    if (repeats) return;
     domain.found_clean = fingerprint(domain.surface);
   } catch (const InputError& error) {
     throw InputError(name.empty() ? error.what() : fmt::format("{}: {}", name, error.what()));

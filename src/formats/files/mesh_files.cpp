@@ -151,7 +151,7 @@ std::vector<std::string> write_mesh(const std::string& file, const TetMesh& mesh
                                                                   .faces = options.cells_only,
                                                                   .wide_cells = !is_wide,
                                                                   .last_points = without.diagonals});
-  io::MeshOutput out(file, context, options.ascii, options.cohesive);
+  io::MeshOutput out(file, context, options);
   if (format.write_mesh == nullptr) {
     format.write_surface(out.file(), boundary_surface(mesh));
     out.note(
@@ -159,8 +159,8 @@ std::vector<std::string> write_mesh(const std::string& file, const TetMesh& mesh
   } else {
     out.note(parts.note_on_names());
     for (std::string& note : io::losses(format.info, parts)) out.note(std::move(note));
-    if (options.cohesive && !holds.cohesive)
-      out.note(fmt::format("{} is given no cohesive elements: they are for Abaqus", format.info.title));
+    if ((options.cohesive || !options.beams.empty()) && !holds.cohesive)
+      out.note(fmt::format("{} is given no cohesive elements and beams: they are for Abaqus", format.info.title));
     format.write_mesh(out, parts);
   }
   out.commit();

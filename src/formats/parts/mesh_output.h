@@ -1,5 +1,7 @@
 #pragma once
 
+#include <octafront/io.h>
+
 #include "formats/containers/atomic_file.h"
 #include "formats/parts/legal_names.h"
 
@@ -15,8 +17,8 @@ namespace octafront::io {
 /// before, older ones stay as they were. What a writer has to tell the user goes into `notes`.
 class MeshOutput {
  public:
-  MeshOutput(std::filesystem::path target, RunContext context, bool as_text = false, bool cohesive = false)
-      : target_(std::move(target)), context_(context), as_text_(as_text), cohesive_(cohesive) {}
+  MeshOutput(std::filesystem::path target, RunContext context, WriteOptions options = {})
+      : target_(std::move(target)), context_(context), options_(std::move(options)) {}
   ~MeshOutput();
   MeshOutput(const MeshOutput&) = delete;
   MeshOutput& operator=(const MeshOutput&) = delete;
@@ -24,9 +26,8 @@ class MeshOutput {
   const std::filesystem::path& target() const { return target_; }
   const RunContext& context() const { return context_; }
   /// Of formats that are binary or text.
-  bool as_text() const { return as_text_; }
-  /// With elements between the sides of what is split, of formats that have them.
-  bool cohesive() const { return cohesive_; }
+  bool as_text() const { return options_.ascii; }
+  const WriteOptions& options() const { return options_; }
   /// The file that was asked for.
   AtomicFile& file();
   /// Another one beside it, with this ending instead.
@@ -52,7 +53,7 @@ class MeshOutput {
 
   std::filesystem::path target_;
   RunContext context_;
-  bool as_text_, cohesive_;
+  WriteOptions options_;
   std::vector<std::unique_ptr<AtomicFile>> files_;
   std::vector<Pending> pending_;  ///< the folder, if there is one
   std::vector<std::string> notes_;

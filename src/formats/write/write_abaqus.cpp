@@ -2,6 +2,11 @@
 // sides and the NSET of its nodes, a curve the NSET of its nodes, what is split the ELSET NAME_cohesive of cohesive
 // elements, where they are asked for. To be included into a deck that has materials, sections and steps. CalculiX reads
 // twenty characters of a number.
+//
+// Of a periodic cell, equations tie each copy to the node that it is a copy of, and to a node of no element for each
+// period: what moves that node stretches the cell.
+
+#include <octafront/error.h>
 
 #include "formats/containers/text_writer.h"
 #include "formats/parts/mixed_cells.h"
@@ -9,8 +14,11 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace octafront::io {
 namespace {
@@ -22,7 +30,11 @@ constexpr std::array<char, 4> kSideName{'3', '4', '2', '1'};
 class AbaqusWriter {
  public:
   AbaqusWriter(MeshOutput& out, const MeshParts& mesh)
-      : text_(out.file()), mesh_(mesh), cells_(mesh), names_(legal_names(out, mesh, {.longest = 64})) {}
+      : text_(out.file()),
+        mesh_(mesh),
+        cells_(mesh),
+        names_(legal_names(out, mesh, {.longest = 64})),
+        number_(cells_.cells()) {}
 
   void write() {
     text_ << "*HEADING\nMesh by octafront\n";
@@ -30,38 +42,99 @@ class AbaqusWriter {
       if (names_[p] != mesh_.parts()[p].name)
         text_.line("** NAME {} IS \"{}\"", names_[p], one_line(mesh_.parts()[p].name));
     text_ << "*NODE\n";
-    for (std::uint32_t v = 0; v < mesh_.points(); ++v) {
-      text_ << v + 1;
-      for (int axis = 0; axis < 3; ++axis) (text_ << ", ").within(20, mesh_.mesh().points[v][axis]);
-      text_ << '\n';
-    }
+    for (std::uint32_t v = 0; v < mesh_.points(); ++v) write_node(v + 1, mesh_.mesh().points[v]);
     for (std::size_t p = 0; p < names_.size(); ++p) {
       const Part& part = mesh_.parts()[p];
       if (part.origin == Part::Origin::kRegion) write_elements(part, names_[p]);
     }
     for (std::size_t p = 0; p < names_.size(); ++p)
       if (mesh_.parts()[p].origin != Part::Origin::kRegion) write_set(mesh_.parts()[p], names_[p]);
+    if (!mesh_.mesh().periods.empty()) write_periods();
+  }
+
+  /// Of the curves in a list with commas. Throws OptionError.
+  void write_beams(const std::string& names) {
+    for (std::size_t from = 0; from < names.size();) {
+      const std::size_t comma = std::min(names.find(',', from), names.size());
+      write_beams_of(names.substr(from, comma - from));
+      from = comma + 1;
+    }
   }
 
   /// COH3D6: the triangle behind, the one in front, in the order in which wedges have theirs.
   void write_cohesive() {
     std::uint32_t patch = kNone;
-    std::size_t number = cells_.cells();
-    LegalNames legal({.longest = 64});
     for (const SplitFace& f : mesh_.mesh().split_faces) {
       if (f.patch != patch) {
         patch = f.patch;
         std::string name = mesh_.mesh().patch_names[patch];
         name = name.substr(0, name.rfind("_plus")) + "_cohesive";
-        text_.line("*ELEMENT, TYPE=COH3D6, ELSET={}", legal.legal(name));
+        text_.line("*ELEMENT, TYPE=COH3D6, ELSET={}", further_.legal(name));
       }
-      text_ << ++number;
+      text_ << ++number_;
       for (const VertexIndex v : f.nodes) text_ << ", " << v + 1;
       text_ << '\n';
     }
   }
 
  private:
+  void write_beams_of(const std::string& name) {
+    const auto parts = mesh_.parts(Part::Origin::kCurve);
+    const auto curve = std::find_if(parts.begin(), parts.end(), [&](const Part& p) { return p.name == name; });
+    if (curve == parts.end()) throw OptionError(fmt::format("no curve \"{}\" could be beams", name));
+    text_.line("*ELEMENT, TYPE={}, ELSET={}", mesh_.second_order() ? "B32" : "B31", further_.legal(name + "_beams"));
+    for (const std::uint32_t e : curve->members) {
+      std::array<VertexIndex, 3> room;
+      const auto nodes = mesh_.edge_nodes(e, room);
+      text_ << ++number_ << ", " << nodes[0] + 1;
+      if (nodes.size() == 3) text_ << ", " << nodes[2] + 1;
+      text_ << ", " << nodes[1] + 1 << '\n';
+    }
+  }
+
+  void write_node(std::uint32_t number, Vec3 p) {
+    text_ << number;
+    for (int axis = 0; axis < 3; ++axis) (text_ << ", ").within(20, p[axis]);
+    text_ << '\n';
+  }
+
+  std::uint32_t node_of_period(std::uint32_t period) const {
+    return static_cast<std::uint32_t>(mesh_.points()) + period + 1;
+  }
+
+  void write_periods() {
+    const std::vector<Vec3>& periods = mesh_.mesh().periods;
+    text_ << "** PERIODIC: U(COPY) - U(ORIGINAL) = U(PERIOD_1) + ..., WHICH IS THE MEAN STRAIN TIMES THE PERIOD\n";
+    for (std::uint32_t k = 0; k < periods.size(); ++k) {
+      text_.line("*NODE, NSET=PERIOD_{}", k + 1);
+      write_node(node_of_period(k), periods[k]);
+    }
+    std::map<VertexIndex, std::pair<std::uint32_t, VertexIndex>> next;  // by the copy: a period and the original
+    for (const auto& [period, copy, original] : mesh_.mesh().periodic_nodes)
+      if (copy < mesh_.points()) next.try_emplace(copy, period, original);
+    text_ << "*EQUATION\n";
+    for (const auto& [copy, first] : next) {
+      std::vector<std::uint32_t> others{node_of_period(first.first)};
+      VertexIndex original = first.second;
+      for (auto at = next.find(original); at != next.end(); at = next.find(original)) {
+        others.push_back(node_of_period(at->second.first));
+        original = at->second.second;
+      }
+      others.insert(others.begin(), original + 1);
+      for (int direction = 1; direction <= 3; ++direction) write_equation(copy + 1, others, direction);
+    }
+  }
+
+  /// That a node moves as these others together.
+  void write_equation(std::uint32_t node, const std::vector<std::uint32_t>& others, int direction) {
+    constexpr std::size_t kMostInLine = 4;
+    text_.line("{}", others.size() + 1);
+    text_ << node << ", " << direction << ", 1.";
+    for (std::size_t i = 0; i < others.size(); ++i)
+      text_ << ((i + 1) % kMostInLine == 0 ? ",\n" : ", ") << others[i] << ", " << direction << ", -1.";
+    text_ << '\n';
+  }
+
   char side_name(std::size_t cell, std::uint32_t face, const Side& side) const {
     if (cells_.kind(cell) == MixedCells::kTet) return kSideName[static_cast<std::size_t>(side.face)];
     std::size_t s = cells_.side_of(cell, face);
@@ -119,6 +192,8 @@ class AbaqusWriter {
   const MeshParts& mesh_;
   MixedCells cells_;
   std::vector<std::string> names_;  ///< of the parts
+  std::size_t number_;              ///< of the last element
+  LegalNames further_{{.longest = 64}};
 };
 
 }  // namespace
@@ -131,7 +206,8 @@ void write_abaqus(MeshOutput& out, const MeshParts& mesh) {
                    "tetrahedra, `as_tets`");
   AbaqusWriter writer(out, mesh);
   writer.write();
-  if (!out.cohesive()) return;
+  writer.write_beams(out.options().beams);
+  if (!out.options().cohesive) return;
   if (mesh.second_order())
     out.note("cohesive elements are linear (COH3D6): the mid-side nodes of the two sides stay free of each other");
   writer.write_cohesive();

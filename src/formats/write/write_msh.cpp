@@ -2,6 +2,8 @@
 // nodes: 0); the first three have their number, counted from 1, as tag. Each combination of groups that elements are in
 // is an entity. A node belongs to the entity of the least dimension at it. Node and element tags are indices plus 1,
 // elements counting the points first, then edges, triangles, tetrahedra.
+//
+// Of a periodic cell, $Periodic pairs the nodes of each entity of triangles that is a copy with those of its original.
 
 #include <octafront/error.h>
 
@@ -161,6 +163,68 @@ void write_physical_names(TextWriter& out, const MeshParts& mesh, const std::vec
   out << "$EndPhysicalNames\n";
 }
 
+/// The pairs of nodes of entities of triangles, in the form that both versions share.
+class PeriodicLinks {
+ public:
+  /// `entity_of`: per face the tag of its entity.
+  template <class EntityOf>
+  PeriodicLinks(const MeshParts& mesh, const EntityOf& entity_of) : mesh_(mesh.mesh()) {
+    const std::vector<std::map<VertexIndex, VertexIndex>> originals = originals_by_period();
+    for (std::uint32_t period = 0; period < originals.size(); ++period) {
+      const auto& original_of = originals[period];
+      std::map<Triangle, std::int32_t> entity_at;
+      for (std::size_t f = 0; f < mesh_.boundary.size(); ++f) entity_at[sorted(mesh_.boundary[f])] = entity_of(f);
+      std::array<VertexIndex, 6> room;
+      for (std::size_t f = 0; f < mesh_.boundary.size(); ++f) {
+        Triangle original{};
+        if (!copied(mesh_.boundary[f], original_of, original)) continue;
+        const auto at = entity_at.find(sorted(original));
+        if (at == entity_at.end()) continue;
+        auto& pairs = links_[{static_cast<std::int32_t>(period), entity_of(f), at->second}];
+        for (const VertexIndex v : mesh.face_nodes(f, room))
+          if (const auto o = original_of.find(v); o != original_of.end()) pairs.insert(*o);
+      }
+    }
+  }
+
+  bool empty() const { return links_.empty(); }
+  std::size_t size() const { return links_.size(); }
+
+  /// Calls visit(tag, tag of the original, period, pairs {copy, original}) for each.
+  template <class Visit>
+  void for_each(const Visit& visit) const {
+    for (const auto& [link, pairs] : links_)
+      visit(link[1], link[2], mesh_.periods[static_cast<std::size_t>(link[0])], pairs);
+  }
+
+ private:
+  std::vector<std::map<VertexIndex, VertexIndex>> originals_by_period() const {
+    std::vector<std::map<VertexIndex, VertexIndex>> all(mesh_.periods.size());
+    for (const auto& [period, copy, original] : mesh_.periodic_nodes) all[period][copy] = original;
+    return all;
+  }
+  static Triangle sorted(Triangle t) {
+    std::sort(t.begin(), t.end());
+    return t;
+  }
+  static bool copied(const Triangle& t, const std::map<VertexIndex, VertexIndex>& original_of, Triangle& original) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto at = original_of.find(t[i]);
+      if (at == original_of.end()) return false;
+      original[i] = at->second;
+    }
+    return true;
+  }
+
+  const TetMesh& mesh_;
+  std::map<std::array<std::int32_t, 3>, std::map<VertexIndex, VertexIndex>> links_;
+};
+
+/// A translation as the sixteen numbers of a matrix.
+std::array<double, 16> matrix_of(Vec3 shift) {
+  return {1, 0, 0, shift.x, 0, 1, 0, shift.y, 0, 0, 1, shift.z, 0, 0, 0, 1};
+}
+
 class Msh4Writer {
  public:
   Msh4Writer(AtomicFile& file, const MeshParts& mesh, bool as_text)
@@ -176,6 +240,7 @@ class Msh4Writer {
     write_entities();
     write_nodes();
     write_elements();
+    if (!mesh_.mesh().periods.empty() && !mesh_.cells_only()) write_periodic();
   }
 
  private:
@@ -316,6 +381,21 @@ class Msh4Writer {
     out_.close("Elements");
   }
 
+  void write_periodic() {
+    const PeriodicLinks links(mesh_, [&](std::size_t f) { return entities_[first_[2] + by_[2].of[f]].tag; });
+    text_ << "$Periodic\n";
+    put_record(std::uint64_t{links.size()});
+    links.for_each([&](std::int32_t tag, std::int32_t of, Vec3 period, const auto& pairs) {
+      put_record(std::int32_t{2}, tag, of);
+      out_.put(std::uint64_t{16});
+      for (const double value : matrix_of(period)) out_.put(value);
+      out_.end_record();
+      put_record(std::uint64_t{pairs.size()});
+      for (const auto& [copy, original] : pairs) put_record(std::uint64_t{copy} + 1, std::uint64_t{original} + 1);
+    });
+    out_.close("Periodic");
+  }
+
   /// The elements of an entity that have the same type.
   struct Block {
     const Entity* entity;
@@ -424,10 +504,25 @@ class Msh2Writer {
     for (const MixedCells::Kind kind : MixedCells::kAllKinds)
       write_elements(3, cells_.begin(kind), cells_.end(kind), cells_.nodes_per(kind));
     out_.close("Elements");
+    if (!mesh_.mesh().periods.empty() && !mesh_.cells_only()) write_periodic();
   }
 
  private:
   void put(std::int32_t value) { out_.put(value); }
+
+  /// Always text, also in binary files.
+  void write_periodic() {
+    const PeriodicLinks links(mesh_, [&](std::size_t f) { return static_cast<std::int32_t>(mesh_.patch_of(f)) + 1; });
+    text_.line("$Periodic\n{}", links.size());
+    links.for_each([&](std::int32_t tag, std::int32_t of, Vec3 period, const auto& pairs) {
+      text_.line("2 {} {}", tag, of);
+      text_ << "Affine";
+      for (const double value : matrix_of(period)) text_ << ' ' << value;
+      text_.line("\n{}", pairs.size());
+      for (const auto& [copy, original] : pairs) text_.line("{} {}", copy + 1, original + 1);
+    });
+    text_ << "$EndPeriodic\n";
+  }
 
   /// The elements of a dimension from `begin` to `end`, which have so many nodes each.
   void write_elements(int dimension, std::size_t begin, std::size_t end, std::size_t nodes) {

@@ -58,6 +58,7 @@ BoundaryGuide::BoundaryGuide(const EditMesh& mesh, const BoundaryInput& input, c
     if (valence[v] != 0) kind_[v] = valence[v] == 2 ? Kind::kCurve : Kind::kFixed;
   for (const VertexIndex v : input.of_mesh.corners) kind_[here[v]] = Kind::kFixed;
   for (const VertexIndex v : frozen) frozen_[here[v]] = 1;
+  for (const VertexIndex v : input.frozen) frozen_[here[v]] = 1;
   for (const VertexIndex v : input.pinned) pinned_[here[v]] = 1;
   freeze_where_regions_meet(mesh);
   if (!input.surface.sides.empty()) freeze_where_boundary_touches_itself(mesh);

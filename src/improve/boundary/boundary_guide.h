@@ -32,6 +32,8 @@ struct BoundaryInput {
   std::vector<VertexIndex> pinned = {};
   /// Per triangle of `surface` how far the boundary may stray there, where that is less; empty: so nowhere.
   std::span<const double> bound = {};
+  /// Vertices of the mesh that stay where they are, as do the edges around them.
+  std::vector<VertexIndex> frozen = {};
 };
 
 class BoundaryGuide {

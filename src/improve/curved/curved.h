@@ -18,10 +18,10 @@ namespace octafront {
 // along with their wall. Empty: nothing does.
 
 /// As make_second_order(), with what the pipeline knows already. `sharp`: feature edges of the boundary of the mesh,
-/// sorted, those between patches too.
+/// sorted, those between patches too. `fixed`: corners that stay where they are, ascending.
 SecondOrderSummary curve_to_surface(TetMesh& mesh, const std::vector<Edge>& sharp, const KnownSurface& surface,
                                     double feature_angle, std::span<const VertexIndex> below,
-                                    const RunContext& context);
+                                    std::span<const VertexIndex> fixed, const RunContext& context);
 
 /// Moves the corners on the boundary and on interfaces of a linear mesh to the true geometry, as far as elements keep
 /// half of their volume; what did not go the whole way tries again, for a few rounds. Counts `moved` and `held`.

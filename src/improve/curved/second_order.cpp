@@ -97,11 +97,13 @@ SurfaceMesh boundary_of_mesh(const TetMesh& mesh) {
 
 SecondOrderSummary curve_to_surface(TetMesh& mesh, const std::vector<Edge>& sharp, const KnownSurface& surface,
                                     double feature_angle, std::span<const VertexIndex> below,
-                                    const RunContext& context) {
+                                    std::span<const VertexIndex> fixed, const RunContext& context) {
   refuse_mid_nodes(mesh);
   SecondOrderSummary summary;
   curved::SmoothSurface smooth(surface.mesh(), surface.edges(), surface.tree(), sharp_features(surface, feature_angle));
   curved::Bends bends = curved::find_bends(mesh, sharp, smooth);
+  std::erase_if(bends.corners,
+                [&](const curved::CornerMove& move) { return std::ranges::binary_search(fixed, move.vertex); });
   curved::add_corners_above(below, bends);
   context.check();
   curved::move_corners(mesh, bends.corners, summary, context);
@@ -171,7 +173,7 @@ SecondOrderSummary make_second_order(TetMesh& mesh, const SurfaceMesh* surface, 
   if (!surface) return add_straight_edges(mesh, context);
   const KnownSurface known(*surface, feature_angle);
   return curve_to_surface(mesh, detect_features(boundary_of_mesh(mesh), feature_angle).edges, known, feature_angle, {},
-                          context);
+                          {}, context);
 }
 
 void make_linear(TetMesh& mesh) {

@@ -44,7 +44,11 @@ struct MovingSurface {
 class FlatRaiser {
  public:
   FlatRaiser(TetMesh& mesh, const SurfaceMesh& filled, const RaiseLimits& limits)
-      : mesh_(mesh), filled_(filled), limits_(limits), surface_{mesh.points, filled.triangles}, live_(surface_) {}
+      : mesh_(mesh), filled_(filled), limits_(limits), surface_{mesh.points, filled.triangles}, live_(surface_) {
+    is_fixed_.resize(mesh.points.size(), 0);
+    if (limits.fixed)
+      for (const VertexIndex v : *limits.fixed) is_fixed_[v] = 1;
+  }
 
   RaisedFlat run(const Stage& stage) {
     for (int round = 0; round < kRaiseRounds; ++round) {
@@ -122,7 +126,7 @@ class FlatRaiser {
   bool move(VertexIndex v) {
     const auto star = tets_[number_[v]];
     const auto around = triangles_[number_[v]];
-    if (star.size() > ShapeBatch::kBatch || lies_on_flat(around)) return false;
+    if (is_fixed_[v] || star.size() > ShapeBatch::kBatch || lies_on_flat(around)) return false;
     load(v, star);
     const Vec3 from = mesh_.points[v], home = home_of(v);
     const double reach = std::min(kReach * star_.mean_edge(from), around.empty() ? HUGE_VAL : allowed_at(home));
@@ -197,6 +201,7 @@ class FlatRaiser {
   const RaiseLimits limits_;
   const MovingSurface surface_;
   LiveTriangles<MovingSurface> live_;
+  std::vector<std::uint8_t> is_fixed_;
   std::vector<std::uint32_t> number_;  ///< of each vertex whose star was gathered
   Groups<> tets_, triangles_;          ///< by that number
   std::map<VertexIndex, Vec3> homes_;  ///< where vertices of surfaces that moved were

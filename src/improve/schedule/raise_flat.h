@@ -25,6 +25,7 @@ struct RaiseLimits {
   const improve::InputForce* force = nullptr;  ///< elements of thin walls and wedges stay as they are; null: none are
   const TriangleTree* input = nullptr;         ///< vertices of surfaces stay near these triangles; null: near none
   double from_input = 0;                       ///< how near; input units
+  const std::vector<VertexIndex>* fixed = nullptr;  ///< vertices that stay; null: there are none
 };
 
 /// Moves corners of elements below beta .2 or 10 degrees, where those around lack less in sum then. Where sheets nearly

@@ -63,6 +63,23 @@ std::vector<Row<IntakeOptions>> material_rows() {
   };
 }
 
+std::vector<Row<IntakeOptions>> cell_rows() {
+  constexpr const char* kGroup = "Periodic cell";
+  return {
+      intake_row(
+          about_intake("repeat", kGroup,
+                       "Axes along which bodies in a box, or an image, are repeated: what crosses a face of the cell "
+                       "comes in again at the opposite one; without a value those of `periodic`"),
+          [](auto& o) -> auto& { return o.repeat; }),
+      intake_row(
+          about_intake("box", kGroup,
+                       "The cell that bodies lie in, X0,Y0,Z0,X1,Y1,Z1: they are cut by it, and the rest of it is a "
+                       "region, matrix; or first: the first body is the cell. Of a formula the box that cuts it, "
+                       "without a value one cell of the surface from the origin on"),
+          [](auto& o) -> auto& { return o.box; }),
+  };
+}
+
 std::vector<Row<IntakeOptions>> repair_rows() {
   using Repair = IntakeOptions::Repair;
   using Sheets = IntakeOptions::Sheets;
@@ -176,7 +193,7 @@ std::vector<Row<IntakeOptions>> formula_rows() {
 const std::vector<Row<IntakeOptions>>& intake_rows() {
   static const std::vector<Row<IntakeOptions>> all = [] {
     std::vector<Row<IntakeOptions>> list;
-    for (const auto& part : {material_rows(), repair_rows(), image_rows(), cad_rows(), formula_rows()})
+    for (const auto& part : {material_rows(), cell_rows(), repair_rows(), image_rows(), cad_rows(), formula_rows()})
       list.insert(list.end(), part.begin(), part.end());
     return list;
   }();

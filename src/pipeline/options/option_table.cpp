@@ -105,6 +105,11 @@ std::vector<Row<Options>> surface_rows() {
           of("keep_volumes", "Regions of a complex keep the volumes that they have in the input; images do so unasked",
              {}, "mesh surface"),
           [](auto& o) -> auto& { return o.surface.keep_volumes; }),
+      row(
+          of("periodic",
+             "Axes along which the body is one cell of a periodic one, such as x or xyz: opposite faces of its "
+             "bounding box get the same triangles, and their nodes are paired"),
+          [](auto& o) -> auto& { return o.periodic; }),
   };
 }
 

@@ -4,6 +4,7 @@
 #include "improve/schedule/schedule.h"
 #include "pipeline/stages/layered.h"
 #include "pipeline/stages/methods.h"
+#include "pipeline/stages/periodic.h"
 #include "pipeline/stages/shell.h"
 #include "sizing/sources/check_size_options.h"
 
@@ -34,6 +35,7 @@ void check_options(const Options& options) {
           "`ideal_distance` is a multiple of the element size, between 0.3 and 1.5");
   check_layer_options(options);
   check_shell_options(options);
+  check_periodic_options(options);
   check_improve_options(options.improve);
   require(options.order == 1 || options.order == 2, "`order` is 1 for linear elements or 2 for those of second order");
   require(!(surface.keep && traits_of(options.method).makes_own_boundary()),

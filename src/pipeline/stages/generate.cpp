@@ -8,6 +8,7 @@
 #include "pipeline/stages/kept_shape.h"
 #include "pipeline/stages/measure.h"
 #include "pipeline/stages/methods.h"
+#include "pipeline/stages/periodic.h"
 #include "pipeline/stages/shell.h"
 #include "pipeline/stages/stages.h"
 #include "pipeline/stages/true_shape.h"
@@ -88,6 +89,7 @@ Result generate_once(const Domain& domain, const Options& asked, const RunContex
   raise_order(input, filled, run);
   name_patches(input, filled);
   name_parts(input, filled, run);
+  pair_nodes(input, filled.mesh, run);
   check_result(filled.mesh, &filled.boundary.surface, run);
   finish_curves(filled.mesh, fins, run);
   split(filled.mesh, run);

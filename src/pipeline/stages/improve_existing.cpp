@@ -102,9 +102,10 @@ void improve_beside_wide_cells(TetMesh& mesh, const ImproveOptions& options, con
 void raise_order(TetMesh& mesh, const Ground* ground, Run& run) {
   if (run.options.order < 2) return;
   run.stage("second order", [&](const Stage& stage) {
-    run.report.second_order = ground ? curve_to_surface(mesh, ground->of_mesh.edges, ground->surface,
-                                                        run.options.surface.angle_of_features(), {}, stage.context())
-                                     : add_straight_edges(mesh, stage.context());
+    run.report.second_order = ground
+                                  ? curve_to_surface(mesh, ground->of_mesh.edges, ground->surface,
+                                                     run.options.surface.angle_of_features(), {}, {}, stage.context())
+                                  : add_straight_edges(mesh, stage.context());
     count_edges(run.report.second_order, stage);
   });
 }

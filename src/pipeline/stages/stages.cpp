@@ -11,6 +11,7 @@
 #include "base/mesh/feature_patches.h"
 #include "fill/stuffing/stuff.h"
 #include "improve/boundary/slide_interfaces.h"
+#include "improve/boundary/slide_pairs.h"
 #include "improve/curved/curved.h"
 #include "improve/schedule/raise_flat.h"
 #include "improve/schedule/schedule.h"
@@ -18,6 +19,7 @@
 #include "pipeline/stages/kept_shape.h"
 #include "pipeline/stages/measure.h"
 #include "pipeline/stages/methods.h"
+#include "pipeline/stages/periodic.h"
 #include "sizing/prediction/expected_tets.h"
 #include "sizing/search/budget.h"
 #include "sizing/search/make_size_field.h"
@@ -172,7 +174,7 @@ void ease_boundary(const improve::BoundaryInput& on, Filled& filled, const Optio
                 static_cast<double>(slide_interfaces(mesh, boundary.surface, boundary.features, on.surface, stage)));
   if (const double limit = scale_of_detail(on.surface, options, 1) * kRaised; limit > 0) {
     improve::FlatWalls walls(on.surface, on.tree, on.features);
-    RaiseLimits limits{limit, nullptr, &walls, nullptr, nullptr, limit / kRaised};
+    RaiseLimits limits{limit, nullptr, &walls, nullptr, nullptr, limit / kRaised, &on.frozen};
     const Leeway leeway(on.surface, on.tree, on.bound);
     std::optional<improve::InputForce> force;
     // Between walls of a complex, as near to each other as one likes, there is no other way out.
@@ -185,6 +187,14 @@ void ease_boundary(const improve::BoundaryInput& on, Filled& filled, const Optio
     stage.count("largest move of such a corner", raised.largest_move);
   }
   std::copy_n(mesh.points.begin(), boundary.surface.points.size(), boundary.surface.points.begin());
+}
+
+/// Vertices inside periodic faces, which improvement leaves alone, with their copies.
+void slide_together(const PeriodicCell& cell, Filled& filled, const Stage& stage) {
+  const std::uint64_t moves = slide_pairs(filled.mesh, filled.boundary.surface, cell, stage);
+  stage.count("moves of pairs of vertices", static_cast<double>(moves));
+  std::copy_n(filled.mesh.points.begin(), filled.boundary.surface.points.size(),
+              filled.boundary.surface.points.begin());
 }
 
 // Folds, flaps and blades below the tolerance are taken away: no element could fill them. Returns how far that moved
@@ -276,7 +286,9 @@ Prepared prepare(const SurfaceMesh& soup, const Domain* mended, bool is_clean, R
   run.report.input_volume = enclosed_volume(found.repaired.surface);
   const bool is_plain = found.repaired.surface.sides.empty();
   std::vector<double> moved;
-  if (defects == SurfaceDomain::Defects::kClean && is_plain) moved = smooth_detail(found, run);
+  // Folds at faces of a periodic cell would come off one of them alone.
+  const bool may_unfold = is_plain && run.options.periodic.empty();
+  if (defects == SurfaceDomain::Defects::kClean && may_unfold) moved = smooth_detail(found, run);
   const bool unfolded = !moved.empty();
   SurfaceMesh& surface = found.repaired.surface;
   ClosedPatch closed = take_closed_patch(surface, found.edges);
@@ -300,6 +312,16 @@ Prepared on_geometry(const Domain& domain, Prepared prepared) {
   return prepared;
 }
 
+/// prepare(), but for periods.
+Prepared prepare_aperiodic(const Domain& domain, Run& run) {
+  const bool are_bounds_asked = has_automatic_sizes(run.options) || domain.geometry;
+  if (domain.bound.empty() || run.options.surface.max_deviation || !are_bounds_asked)
+    return on_geometry(domain, prepare(domain.surface, nullptr, is_known_clean(domain), run));
+  SurfaceMesh numbered = domain.surface;
+  numbered.source.clear();
+  return on_geometry(domain, prepare(numbered, &domain, false, run));
+}
+
 }  // namespace
 
 SurfaceOptions true_to_input(const SurfaceMesh& input, const Options& options) {
@@ -313,12 +335,12 @@ SurfaceOptions true_to_input(const SurfaceMesh& input, const Options& options) {
 
 Prepared prepare(const Domain& domain, Run& run) {
   require_bounds(domain);
-  const bool are_bounds_asked = has_automatic_sizes(run.options) || domain.geometry;
-  if (domain.bound.empty() || run.options.surface.max_deviation || !are_bounds_asked)
-    return on_geometry(domain, prepare(domain.surface, nullptr, is_known_clean(domain), run));
-  SurfaceMesh numbered = domain.surface;
-  numbered.source.clear();
-  return on_geometry(domain, prepare(numbered, &domain, false, run));
+  if (std::optional<PeriodicDomain> periodic = made_periodic(domain, run)) {
+    Prepared prepared = prepare_aperiodic(periodic->domain, run);
+    prepared.cell = periodic->cell;
+    return prepared;
+  }
+  return prepare_aperiodic(domain, run);
 }
 
 SizeField choose_sizes(const Prepared& input, Run& run) {
@@ -354,7 +376,7 @@ Remeshed triangulate(const Prepared& input, const SizeField& sizes, Run& run) {
     Remeshed remeshed = remeshed_in_shape(
         input, sizes, run, stage,
         [&](const SizeField& by) {
-          return remesh_surface(input.surface, by, surface, stage, input.kept_bound(), {slack, budget});
+          return remesh_surface(input.surface, by, surface, stage, input.kept_bound(), {slack, budget}, input.cell);
         },
         budget);
     stage.count("triangles", static_cast<double>(remeshed.surface.triangles.size()));
@@ -396,11 +418,14 @@ void improve_elements(const Prepared& input, Filled& filled, Run& run, const Imp
       on.emplace(improve::BoundaryInput{
           input.surface.mesh(), input.surface.tree(), input.surface.features(), boundary.features,
           detail_tolerance(input.surface.mesh(), run.options, input.unfolded ? 1 - kUnfolded : 1), boundary.near_limit,
-          input.kept_bound()});
+          input.kept_bound(), vertices_on_faces(boundary.surface.points, input.cell)});
+    const bool slides_pairs = on && may_slide(options) && input.cell.is_periodic();
+    if (slides_pairs) slide_together(input.cell, filled, stage);
     if (improve_mesh(mesh, on ? &*on : nullptr, options, stage, &boundary.features)) {
       if (on) renew_sources(mesh, hull_of(boundary.surface), on->surface, on->tree);
       follow_boundary(mesh, boundary.surface);
     }
+    if (slides_pairs) slide_together(input.cell, filled, stage);
     if (on && may_slide(options)) ease_boundary(*on, filled, run.options, stage);
   });
 }
@@ -415,8 +440,9 @@ void raise_order(const Prepared& input, Filled& filled, Run& run) {
       if (keeps_surface(run.options)) return add_straight_edges(mesh, stage.context());
       if (input.geometry) return curve_to_geometry(mesh, *input.geometry, below, stage.context());
       return curve_to_surface(mesh, boundary.features.edges, input.surface, run.options.surface.angle_of_features(),
-                              below, stage.context());
+                              below, vertices_on_faces(boundary.surface.points, input.cell), stage.context());
     });
+    pair_mid_nodes(mesh, input.cell, stage);
     std::copy_n(mesh.points.begin(), boundary.surface.points.size(), boundary.surface.points.begin());
     count_edges(run.report.second_order, stage);
   });

@@ -14,6 +14,7 @@
 
 #include "base/geometry/true_geometry.h"
 #include "base/mesh/known_surface.h"
+#include "base/mesh/periodic_cell.h"
 #include "fill/stuffing/implicit_domain.h"
 #include "pipeline/stages/closed_patch.h"
 #include "pipeline/stages/layered.h"
@@ -38,6 +39,7 @@ struct Prepared {
   bool unfolded = false;  ///< folds were taken off
   ClosedPatch closed = {};
   const TrueGeometry* geometry = nullptr;  ///< null: not known
+  PeriodicCell cell = {};                  ///< whose opposite faces are the same
 
   /// The bounds that new triangles must keep by their places. Where vertices go to the true geometry afterwards, bounds
   /// choose sizes and no more.
@@ -70,8 +72,8 @@ auto on_ground(Filled& filled, const Work& work) {
 }
 
 /// Repairs the input, refuses what the method cannot mesh (InputError), takes off folds that the tolerance lets go
-/// where the surface is made anew, finds the features. The bounds of a mended one hold where the sizes are automatic
-/// and the user bounds nothing.
+/// where the surface is made anew, finds the features; of a periodic cell makes opposite faces the same first. The
+/// bounds of a mended one hold where the sizes are automatic and the user bounds nothing.
 Prepared prepare(const Domain& input, Run& run);
 
 /// The sizes that the options ask for; report.expected_tets says how many elements they promise, if no surface made to

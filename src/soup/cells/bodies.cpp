@@ -150,10 +150,26 @@ std::uint64_t fill_gaps(Labelled& labelled, double tolerance) {
   return filled;
 }
 
+/// Only what lies in the first body stays.
+void empty_outside_first(const std::vector<Windings>& windings, const std::vector<Body>& bodies, Labelled& labelled) {
+  for (std::size_t c = 0; c < windings.size(); ++c) {
+    const auto first = windings[c].find(0);
+    if (first == windings[c].end() || first->second <= 0) labelled.region[c] = kNone;
+  }
+  for (std::uint32_t b = 1; b < bodies.size(); ++b) {
+    const bool is_in = std::any_of(windings.begin(), windings.end(),
+                                   [&](const Windings& w) { return w.contains(0) && w.contains(b); });
+    if (!is_in)
+      throw InputError(
+          fmt::format("{}: lies outside of {}, and nothing of it is left", bodies[b].name, bodies[0].name));
+  }
+}
+
+/// From body `first` on.
 void refuse_covered_bodies(const Labelled& labelled, const std::vector<Body>& bodies,
-                           const std::vector<Windings>& windings, bool earlier) {
+                           const std::vector<Windings>& windings, bool earlier, std::uint32_t first) {
   const char* others = earlier ? "earlier" : "later";
-  for (std::uint32_t b = 0; b < bodies.size(); ++b) {
+  for (std::uint32_t b = first; b < bodies.size(); ++b) {
     if (std::find(labelled.region.begin(), labelled.region.end(), b) != labelled.region.end()) continue;
     std::uint32_t by = kNone;
     for (std::size_t c = 0; c < windings.size(); ++c)
@@ -281,9 +297,11 @@ Joined joined_bodies(const std::vector<Body>& bodies, const ComplexOptions& opti
   for (const Body& b : bodies) labelled.names.push_back(b.name);
   labelled.region = regions_of(windings, options.overlap, labelled.names);
   const std::size_t end_of_common = labelled.names.size();
+  if (options.within_first) empty_outside_first(windings, bodies, labelled);
   const std::uint64_t filled = fill_gaps(labelled, tolerance);
   const bool earlier = options.overlap == Overlap::kFirst;
-  if (options.overlap != Overlap::kNew) refuse_covered_bodies(labelled, bodies, windings, earlier);
+  if (options.overlap != Overlap::kNew)
+    refuse_covered_bodies(labelled, bodies, windings, earlier, options.within_first ? 1 : 0);
   apply_seeds(labelled, options);
   if (options.cells == ComplexOptions::Cells::kMerge)
     for (std::uint32_t& r : labelled.region)

@@ -208,6 +208,24 @@ void divide_curve(const InputSurface& input, const SizeField& sizes, const Measu
   }
 }
 
+/// The division of a curve, on a copy of it at another place.
+void copy_division(const HalfEdgeMesh& mesh, const Curve& of, Curve& copy) {
+  const Vec3 from = mesh.points[mesh.start[of.half_edges.front()]],
+             to = mesh.points[mesh.start[copy.half_edges.front()]];
+  const auto copied = [&](CurvePoint c) {
+    const auto edge = std::find(of.half_edges.begin(), of.half_edges.end(), c.half_edge) - of.half_edges.begin();
+    const bool at_start = c.vertex != kNone && c.vertex == mesh.start[c.half_edge];
+    c.half_edge = copy.half_edges[static_cast<std::size_t>(edge)];
+    if (c.vertex != kNone) c.vertex = at_start ? mesh.start[c.half_edge] : mesh.end(c.half_edge);
+    for (int axis = 0; axis < 3; ++axis)
+      if (from[axis] != to[axis]) c.p[axis] = to[axis];
+    return c;
+  };
+  copy.samples.clear(), copy.middles.clear();
+  for (const CurvePoint& c : of.samples) copy.samples.push_back(copied(c));
+  for (const CurvePoint& c : of.middles) copy.middles.push_back(copied(c));
+}
+
 }  // namespace
 
 std::vector<Curve> chain_curves(const InputSurface& input, const std::vector<VertexIndex>& corners,
@@ -259,15 +277,25 @@ void divide_curves(const InputSurface& input, const SizeField& sizes, std::vecto
     const VertexIndex a = place(mesh.start[c.half_edges.front()]), b = place(mesh.end(c.half_edges.back()));
     return Edge{std::min(a, b), std::max(a, b)};
   };
+  const auto twin = [&](std::size_t i) { return shared.twin.empty() ? i : std::size_t{shared.twin[i]}; };
+  const auto is_elsewhere = [&](std::size_t i) { return twin(i) != i && shared.group[i] != shared.group[twin(i)]; };
   for (std::size_t i = 0; i < curves.size(); ++i) {
     measures.push_back(measure(input, sizes, curves[i]));
     const Edge e = ends(curves[i]);
     const int least = e[0] == e[1] ? 3 : 1;
     segments.push_back(std::max(least, static_cast<int>(std::lround(std::min(measures.back().total, 1e9)))));
+    if (is_elsewhere(i)) segments[i] = segments[twin(i)];
     if (segments.back() == 1 && is_first(i)) ++single[e];
   }
+  std::vector<std::uint8_t> is_halved(curves.size(), 0);
+  for (std::size_t i = 0; i < curves.size(); ++i)
+    if (segments[i] == 1 && single[ends(curves[i])] > 1) is_halved[twin(i)] = 1;
   for (std::size_t i = 0; i < curves.size(); ++i) {
-    if (segments[i] == 1 && single[ends(curves[i])] > 1) segments[i] = 2;
+    if (is_elsewhere(i)) {
+      copy_division(mesh, curves[twin(i)], curves[i]);
+      continue;
+    }
+    if (is_halved[twin(i)]) segments[i] = 2;
     curves[i].samples.clear();
     curves[i].middles.clear();
     divide_curve(input, sizes, measures[i], segments[i], curves[i]);

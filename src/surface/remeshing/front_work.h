@@ -7,6 +7,7 @@
 #include "base/core/stage.h"
 #include "base/geometry/leeway.h"
 #include "base/mesh/known_surface.h"
+#include "base/mesh/periodic_cell.h"
 #include "surface/edits/coarsen.h"
 #include "surface/front/insertion.h"
 #include "surface/lines/curves.h"
@@ -48,7 +49,7 @@ struct FrontCounts {
 /// What is given, but for the sizes, and what was done and spent. Refers to what it is made of.
 struct FrontWork {
   FrontWork(const KnownSurface& surface, const SurfaceOptions& given, const Stage& by, std::span<const double> bounds,
-            const FrontLimits& limited)
+            const FrontLimits& limited, const PeriodicCell& cell)
       : known(surface),
         options(given),
         stage(by),
@@ -56,7 +57,8 @@ struct FrontWork {
         limits(limited),
         leeway(surface.mesh(), surface.tree(), bounds),
         tolerance(given.max_deviation.value_or(HUGE_VAL)),
-        budget(surface.mesh(), limited.budget, by) {}
+        budget(surface.mesh(), limited.budget, by),
+        periods(find_periodic_faces(surface.mesh(), cell)) {}
 
   bool limits_deviation() const { return options.max_deviation.value_or(0) > 0; }
   const SurfaceMesh& surface() const { return known.mesh(); }
@@ -71,6 +73,7 @@ struct FrontWork {
   Leeway leeway;
   double tolerance;  ///< for details of the input: none moves farther
   ElementBudget budget;
+  PeriodicFaces periods;
   FrontCounts counts;
 };
 

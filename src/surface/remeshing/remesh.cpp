@@ -7,6 +7,7 @@
 #include "surface/ground/source_triangles.h"
 #include "surface/ground/turning.h"
 #include "surface/remeshing/front_kind.h"
+#include "surface/remeshing/periodic_faces.h"
 
 #include <algorithm>
 #include <array>
@@ -91,7 +92,9 @@ class Remesher {
       work_.counts.coarsen.input_vertices_left = work_.surface().points.size();
     work_.progress(0.9);
     validate(draft.mesh);
-    return outcome_of(std::move(draft), work_.surface());
+    Outcome made = outcome_of(std::move(draft), work_.surface());
+    copy_periodic_faces(work_.surface(), work_.periods, made);
+    return made;
   }
 
   /// The input with the points of the front in it.
@@ -236,8 +239,18 @@ Remeshed input_as_it_is(const KnownSurface& surface, const SizeField& sizes) {
 }
 
 Remeshed remesh_surface(const KnownSurface& surface, const SizeField& sizes, const SurfaceOptions& options,
-                        const Stage& stage, std::span<const double> bound, const FrontLimits& limits) {
-  FrontWork work(surface, options, stage, bound, limits);
+                        const Stage& stage, std::span<const double> bound, const FrontLimits& limits,
+                        const PeriodicCell& cell) {
+  if (cell.is_periodic() && surface.mesh().sides.empty()) {
+    // The seams of a complex are what holds faces together.
+    SurfaceMesh with_sides = surface.mesh();
+    with_sides.sides.assign(with_sides.triangles.size(), {kNone, 0});
+    const KnownSurface complex(std::move(with_sides), surface.edges(), surface.features());
+    Remeshed made = remesh_surface(complex, sizes, options, stage, bound, limits, cell);
+    made.surface.sides.clear();
+    return made;
+  }
+  FrontWork work(surface, options, stage, bound, limits, cell);
   const auto kind = surface.mesh().sides.empty() ? make_plain_front(work) : make_seamed_front(work);
   return Remesher(work, *kind, sizes).run();
 }

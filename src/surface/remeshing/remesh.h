@@ -6,6 +6,7 @@
 
 #include "base/core/stage.h"
 #include "base/mesh/known_surface.h"
+#include "base/mesh/periodic_cell.h"
 
 #include <cmath>
 #include <cstdint>
@@ -35,9 +36,11 @@ struct FrontLimits {
 
 /// The surface front. Requires a clean surface (see surface_mesh.h). The result is checked: closed, manifold, same
 /// components and genus, no self-intersection, features present; throws MeshingError if no attempt passes. `bound`: per
-/// triangle of the surface what options.max_deviation is there, if that is less; empty: so nowhere.
+/// triangle of the surface what options.max_deviation is there, if that is less; empty: so nowhere. `cell`: of a
+/// complex that make_periodic() has made; triangles on opposite faces are then the same in the result, bit for bit.
 Remeshed remesh_surface(const KnownSurface& surface, const SizeField& sizes, const SurfaceOptions& options,
-                        const Stage& stage, std::span<const double> bound = {}, const FrontLimits& limits = {});
+                        const Stage& stage, std::span<const double> bound = {}, const FrontLimits& limits = {},
+                        const PeriodicCell& cell = {});
 
 /// The input's own triangles in the place of new ones.
 Remeshed input_as_it_is(const KnownSurface& surface, const SizeField& sizes);

@@ -8,6 +8,7 @@
 #include "surface/remeshing/front_kind.h"
 #include "surface/remeshing/keep_volumes.h"
 #include "surface/remeshing/nearness.h"
+#include "surface/remeshing/periodic_faces.h"
 #include "surface/sizes/corner_sizes.h"
 #include "surface/sizes/flat_sizes.h"
 
@@ -63,7 +64,7 @@ std::vector<std::uint8_t> on_lines(const WorkingMesh& mesh) {
 
 class SeamedFront : public FrontKind {
  public:
-  explicit SeamedFront(FrontWork& work) : FrontKind(work), seamed_(cut_along_seams(work.known)) {}
+  explicit SeamedFront(FrontWork& work) : FrontKind(work), seamed_(cut_along_seams(work.known, work.periods)) {}
 
   InputSurface& input() override { return seamed_.input; }
   const Features& features() const override { return seamed_.features; }
@@ -81,9 +82,11 @@ class SeamedFront : public FrontKind {
     sizes.start_with(work_.budget.affordable(foreseen, sizes.first(), work_.counts.rounds));
   }
 
-  /// Smaller where corners of seams are nearer together.
+  /// Smaller where corners of seams are nearer together; the same on opposite faces of a cell.
   SizeField fitted(const SizeField& in_strips, const std::vector<std::uint8_t>& is_fixed) const override {
-    return fitted_to_corners(seamed_.input, seamed_, is_fixed, in_strips, work_.stage.context());
+    const RunContext& context = work_.stage.context();
+    return periodic_sizes(fitted_to_corners(seamed_.input, seamed_, is_fixed, in_strips, context), work_.surface(),
+                          work_.periods, context);
   }
 
   std::vector<Curve> curves(const SizeField& sizes, std::vector<std::uint8_t>& is_fixed) override {
@@ -174,19 +177,19 @@ class SeamedFront : public FrontKind {
   void change_between_seams(Draft& draft) {
     const RunContext& context = work_.stage.context();
     WorkingMesh& mesh = draft.mesh;
-    coarsen_seams(mesh, context, work_.counts.coarsen);
+    coarsen_seams(mesh, work_.periods.cell, context, work_.counts.coarsen);
     remove_input_vertices(mesh, draft.sizes, context, work_.counts.coarsen);
-    coarsen_seams(mesh, context, work_.counts.coarsen);
+    coarsen_seams(mesh, work_.periods.cell, context, work_.counts.coarsen);
     settle_seams(mesh, draft.sizes);
     work_.progress(0.6);
-    work_.counts.divided_edges = divide_repeated_edges(mesh, work_.known, draft.sizes);
+    work_.counts.divided_edges = divide_repeated_edges(mesh, work_.known, work_.periods, draft.sizes);
     improve_surface(mesh, input(), draft.curves, draft.sizes, context, work_.counts.improve);
     divide_repeated(draft);
   }
 
   void divide_repeated(Draft& draft) {
-    work_.counts.divided_edges += divide_repeated_edges(draft.mesh, work_.known, draft.sizes);
-    work_.counts.divided_edges += divide_repeated_triangles(draft.mesh, work_.known, draft.sizes);
+    work_.counts.divided_edges += divide_repeated_edges(draft.mesh, work_.known, work_.periods, draft.sizes);
+    work_.counts.divided_edges += divide_repeated_triangles(draft.mesh, work_.known, work_.periods, draft.sizes);
   }
 
   bool mend_between_lines(WorkingMesh& mesh, double tolerance) {

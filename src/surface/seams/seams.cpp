@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
 #include <unordered_map>
 #include <utility>
 
@@ -25,13 +26,15 @@ bool is_cut(const SurfaceMesh& complex, const EdgeTable& table, std::size_t e) {
 
 class Cutter {
  public:
-  explicit Cutter(const KnownSurface& complex)
+  Cutter(const KnownSurface& complex, PeriodicFaces periods)
       : known_(complex),
         complex_(complex.mesh()),
         table_(complex.edges()),
         faces_(static_cast<std::uint32_t>(complex_.triangles.size())),
         edge_of_(table_.edge_of_half_edge()),
-        fans_(3 * faces_) {}
+        fans_(3 * faces_) {
+    out_.periods = std::move(periods);
+  }
 
   SeamedSurface run() {
     find_fans();
@@ -39,6 +42,7 @@ class Cutter {
     connect_fronts();
     add_backs();
     find_normals();
+    find_originals();
     find_pinned();
     carry_features();
     return std::move(out_);
@@ -54,10 +58,29 @@ class Cutter {
     const auto uses = table_.uses(edge_of_[h]);
     return uses[0] == h ? uses[1] : uses[0];
   }
-  void find_fans() {
+  void find_cuts() {
     cut_.resize(table_.size());
+    for (std::size_t e = 0; e < table_.size(); ++e) cut_[e] = is_cut(complex_, table_, e) || bounds_periodic_face(e);
+    const PeriodicCell& cell = out_.periods.cell;
+    if (!cell.is_periodic()) return;
+    // Where one of the copies of an edge is cut, all are.
+    using Places = std::array<std::array<double, 3>, 2>;
+    const auto original = [&](std::size_t e) {
+      const auto [a, b] = table_.edges[e];
+      const auto [p, q] = cell.originals(std::array{complex_.points[a], complex_.points[b]});
+      Places places{{{p.x, p.y, p.z}, {q.x, q.y, q.z}}};
+      std::sort(places.begin(), places.end());
+      return places;
+    };
+    std::set<Places> cuts;
+    for (std::size_t e = 0; e < table_.size(); ++e)
+      if (cut_[e]) cuts.insert(original(e));
+    for (std::size_t e = 0; e < table_.size(); ++e) cut_[e] = cuts.contains(original(e));
+  }
+
+  void find_fans() {
+    find_cuts();
     for (std::size_t e = 0; e < table_.size(); ++e) {
-      cut_[e] = is_cut(complex_, table_, e);
       if (cut_[e]) continue;
       const HalfEdge h = table_.uses(e)[0], g = table_.uses(e)[1];
       for (const VertexIndex v : table_.edges[e]) fans_.join(corner(h, v), corner(g, v));
@@ -65,6 +88,25 @@ class Cutter {
     fan_is_open_.assign(3 * faces_, 0);
     for (HalfEdge h = 0; h < 3 * faces_; ++h)
       if (cut(h)) fan_is_open_[fans_.find(h)] = fan_is_open_[fans_.find(next_of(h))] = 1;
+  }
+
+  /// Whether a part of a periodic face ends at an edge of two triangles.
+  bool bounds_periodic_face(std::size_t e) const {
+    const std::vector<CellFace>& face = out_.periods.face;
+    if (face.empty()) return false;
+    const std::uint32_t s = table_.uses(e)[0] / 3, t = table_.uses(e)[1] / 3;
+    return face[s] != face[t] || (face[s] != kNone && complex_.patch_of(s) != complex_.patch_of(t));
+  }
+
+  void find_originals() {
+    out_.original = out_.place;
+    const PeriodicCell& cell = out_.periods.cell;
+    if (!cell.is_periodic()) return;
+    for (VertexIndex v = 0; v < complex_.points.size(); ++v) out_.vertex_at.add(complex_.points[v], v);
+    for (VertexIndex c = 0; c < out_.first_tip; ++c) {
+      const VertexIndex v = out_.vertex_at.find(cell.original(mesh().points[c]));
+      if (v != kNone) out_.original[c] = v;
+    }
   }
 
   VertexIndex add_vertex(Vec3 p, std::size_t place) {
@@ -171,6 +213,10 @@ class Cutter {
       const bool is_plain = seams[v] == 0 ? fans[v] == 1 : seams[v] == 2 && closed[v] == 0 && !is_odd[v];
       out_.pinned[c] = !is_plain;
     }
+    if (!out_.periods.cell.is_periodic()) return;
+    std::vector<std::uint8_t> is_pinned(complex_.points.size(), 0);
+    for (VertexIndex c = 0; c < out_.first_tip; ++c) is_pinned[out_.original[c]] |= out_.pinned[c];
+    for (VertexIndex c = 0; c < out_.first_tip; ++c) out_.pinned[c] = is_pinned[out_.original[c]];
   }
 
   void carry_features() {
@@ -230,38 +276,47 @@ Curve follow_seam(const InputSurface& input, const std::vector<std::uint8_t>& is
 /// The seams as curves, each in all of its copies, which run the same way from the same vertex.
 class SeamCurves {
  public:
-  SeamCurves(const InputSurface& input, const std::vector<VertexIndex>& place,
-             const std::vector<std::uint8_t>& is_corner)
-      : input_(input), mesh_(input.mesh), place_(place), is_corner_(is_corner), visited_(mesh_.start.size(), 0) {
+  SeamCurves(const InputSurface& input, const SeamedSurface& seamed, const std::vector<std::uint8_t>& is_corner)
+      : input_(input), mesh_(input.mesh), seamed_(seamed), is_corner_(is_corner), visited_(mesh_.start.size(), 0) {
     for (HalfEdge h = 0; h < mesh_.start.size(); ++h)
-      if (input.is_seam(h)) copies_[places(h)].push_back(h);
+      if (input.is_seam(h)) copies_[original(h)].push_back(h);
   }
 
-  void add_to(std::vector<Curve>& curves, std::vector<std::uint32_t>& group) {
+  void add_to(SeamedCurves& to) {
     for (const bool from_corners : {true, false})
       for (HalfEdge h = 0; h < mesh_.start.size(); ++h)
-        if (input_.is_seam(h) && !visited_[h] && (is_corner_[mesh_.start[h]] != 0) == from_corners)
-          add_all(h, curves, group);
+        if (input_.is_seam(h) && !visited_[h] && (is_corner_[mesh_.start[h]] != 0) == from_corners) add_all(h, to);
   }
 
  private:
-  Edge places(HalfEdge h) const { return {place_[mesh_.start[h]], place_[mesh_.end(h)]}; }
+  Edge places(HalfEdge h) const { return {seamed_.place[mesh_.start[h]], seamed_.place[mesh_.end(h)]}; }
 
-  void add_all(HalfEdge first, std::vector<Curve>& curves, std::vector<std::uint32_t>& group) {
-    const auto number = static_cast<std::uint32_t>(curves.size());
+  /// The places of its ends; of a copy by a period those that it is a copy of.
+  Edge original(HalfEdge h) const {
+    const PeriodicCell& cell = seamed_.periods.cell;
+    if (!cell.is_periodic()) return places(h);
+    const auto ends = cell.originals(std::array{mesh_.points[mesh_.start[h]], mesh_.points[mesh_.end(h)]});
+    const Edge found{seamed_.vertex_at.find(ends[0]), seamed_.vertex_at.find(ends[1])};
+    return found[0] == kNone || found[1] == kNone ? places(h) : found;
+  }
+
+  void add_all(HalfEdge first, SeamedCurves& to) {
+    const auto number = static_cast<std::uint32_t>(to.curves.size());
+    std::map<Edge, std::uint32_t> first_at;
     std::size_t most = kNone;
-    for (const HalfEdge h : copies_[places(first)]) {
+    for (const HalfEdge h : copies_[original(first)]) {
       Curve curve = follow_seam(input_, is_corner_, h, most);
       most = curve.half_edges.size();
       for (const HalfEdge g : curve.half_edges) visited_[g] = visited_[mesh_.twin[g]] = 1;
-      curves.push_back(std::move(curve));
-      group.push_back(number);
+      to.group.push_back(first_at.try_emplace(places(h), static_cast<std::uint32_t>(to.curves.size())).first->second);
+      to.curves.push_back(std::move(curve));
+      to.twin.push_back(number);
     }
   }
 
   const InputSurface& input_;
   const HalfEdgeMesh& mesh_;
-  const std::vector<VertexIndex>& place_;
+  const SeamedSurface& seamed_;
   const std::vector<std::uint8_t>& is_corner_;
   std::vector<std::uint8_t> visited_;
   std::map<Edge, std::vector<HalfEdge>> copies_;  ///< half-edges along seams by the places of their ends
@@ -314,9 +369,9 @@ constexpr int kMostSeamRepeats = 60;
 
 class SeamCoarsener {
  public:
-  SeamCoarsener(WorkingMesh& mesh, const RunContext& context, CoarsenCounts& counts)
+  SeamCoarsener(WorkingMesh& mesh, const PeriodicCell& cell, const RunContext& context, CoarsenCounts& counts)
       : mesh_(mesh), context_(context), counts_(counts) {
-    for (auto& [place, copies] : copies_on_seams(mesh)) {
+    for (auto& [place, copies] : by_originals(copies_on_seams(mesh), cell)) {
       const bool is_input = std::all_of(copies.begin(), copies.end(), [&](VertexIndex v) {
         return mesh.kind[v] == VertexKind::kRemovableCurve && mesh.on_seam(v);
       });
@@ -339,6 +394,29 @@ class SeamCoarsener {
   }
 
  private:
+  using Copies = std::map<Place, std::vector<VertexIndex>>;
+
+  /// Those at places that are copies of each other together.
+  static Copies by_originals(Copies copies, const PeriodicCell& cell) {
+    if (!cell.is_periodic()) return copies;
+    Copies all;
+    for (const auto& [place, here] : copies) {
+      auto& to = all[place_of(cell.original({place[0], place[1], place[2]}))];
+      to.insert(to.end(), here.begin(), here.end());
+    }
+    return all;
+  }
+
+  /// The place at `v` that is the copy of one at `first`, as v is of first. Between copies by a period the curve that
+  /// both lie on lies in a plane.
+  Place copied(Place target, VertexIndex first, VertexIndex v) const {
+    for (int axis = 0; axis < 3; ++axis) {
+      const double from = mesh_.points[first][axis], to = mesh_.points[v][axis];
+      if (from != to) target[axis] = target[axis] == from ? to : HUGE_VAL;
+    }
+    return target;
+  }
+
   /// The seam's half-edge from v to the place, or kNone.
   HalfEdge towards(VertexIndex v, const Place& place) const {
     HalfEdge found = kNone;
@@ -386,7 +464,7 @@ class SeamCoarsener {
       double worst = 1;
       here.clear();
       for (const VertexIndex v : copies) {
-        const HalfEdge h = towards(v, target);
+        const HalfEdge h = towards(v, copied(target, copies[0], v));
         worst = h == kNone ? 0 : std::min(worst, quality_after(h, limits));
         if (!(worst > best)) break;
         here.push_back(h);
@@ -417,8 +495,8 @@ class SeamCoarsener {
 
 }  // namespace
 
-SeamedSurface cut_along_seams(const KnownSurface& complex) {
-  return Cutter(complex).run();
+SeamedSurface cut_along_seams(const KnownSurface& complex, PeriodicFaces periods) {
+  return Cutter(complex, std::move(periods)).run();
 }
 
 SeamedCurves chained_curves(const InputSurface& input, const SeamedSurface& seamed, const SizeField& sizes,
@@ -426,29 +504,29 @@ SeamedCurves chained_curves(const InputSurface& input, const SeamedSurface& seam
   const std::vector<std::uint8_t> is_corner = corner_marks(input, seamed.features.corners, is_fixed, sizes);
   std::vector<std::uint8_t> place_is_corner(input.mesh.points.size(), 0);  // there are no more places than copies
   for (VertexIndex c = 0; c < is_corner.size(); ++c)
-    if (is_corner[c] || is_fixed[c] || seamed.pinned[c]) place_is_corner[seamed.place[c]] = 1;
+    if (is_corner[c] || is_fixed[c] || seamed.pinned[c]) place_is_corner[seamed.original[c]] = 1;
   std::vector<std::uint8_t> copy_is_corner(is_fixed.size());
   for (VertexIndex c = 0; c < is_fixed.size(); ++c) {
-    copy_is_corner[c] = place_is_corner[seamed.place[c]];
+    copy_is_corner[c] = place_is_corner[seamed.original[c]];
     is_fixed[c] = is_fixed[c] || seamed.pinned[c] || (copy_is_corner[c] && input.on_seam(c));
   }
-  std::vector<Curve> curves = chain_curves(input, seamed.features.corners, is_fixed, sizes);
-  std::erase_if(curves, [&](const Curve& c) { return input.is_seam(c.half_edges.front()); });
-  std::vector<std::uint32_t> group;
-  for (std::uint32_t c = 0; c < curves.size(); ++c) group.push_back(c);
-  SeamCurves(input, seamed.place, copy_is_corner).add_to(curves, group);
-  return {std::move(curves), std::move(group)};
+  SeamedCurves chained{chain_curves(input, seamed.features.corners, is_fixed, sizes), {}, {}};
+  std::erase_if(chained.curves, [&](const Curve& c) { return input.is_seam(c.half_edges.front()); });
+  for (std::uint32_t c = 0; c < chained.curves.size(); ++c) chained.group.push_back(c);
+  chained.twin = chained.group;
+  SeamCurves(input, seamed, copy_is_corner).add_to(chained);
+  return chained;
 }
 
 std::vector<Curve> divided_curves(const InputSurface& input, const SeamedSurface& seamed, const SizeField& sizes,
                                   std::vector<std::uint8_t>& is_fixed) {
   SeamedCurves chained = chained_curves(input, seamed, sizes, is_fixed);
-  divide_curves(input, sizes, chained.curves, {chained.group, seamed.place});
+  divide_curves(input, sizes, chained.curves, {chained.group, chained.twin, seamed.place});
   return std::move(chained.curves);
 }
 
-void coarsen_seams(WorkingMesh& mesh, const RunContext& context, CoarsenCounts& counts) {
-  SeamCoarsener(mesh, context, counts).run();
+void coarsen_seams(WorkingMesh& mesh, const PeriodicCell& cell, const RunContext& context, CoarsenCounts& counts) {
+  SeamCoarsener(mesh, cell, context, counts).run();
 }
 
 void settle_seams(WorkingMesh& mesh, const SizeField& sizes) {
@@ -487,18 +565,58 @@ void divide_edge(WorkingMesh& mesh, HalfEdge h, const KnownSurface& complex, con
 
 }  // namespace
 
-std::uint64_t divide_repeated_edges(WorkingMesh& mesh, const KnownSurface& complex, const SizeField& sizes) {
-  const std::vector<VertexIndex> sewn = sewn_vertices(mesh);
+namespace {
+
+/// Names for what sewn vertices make up: the same for copies by a period.
+class SewnNames {
+ public:
+  SewnNames(const WorkingMesh& mesh, const PeriodicFaces& periods)
+      : mesh_(mesh), periods_(periods), sewn_(sewn_vertices(mesh)) {
+    if (!periods.cell.is_periodic()) return;
+    for (VertexIndex v = 0; v < sewn_.size(); ++v)
+      if (mesh.outgoing[v] != kNone && mesh.is_sewn(v)) at_.add(mesh.points[v], sewn_[v]);
+  }
+
+  /// Sorted.
+  template <std::size_t N>
+  std::array<VertexIndex, N> name_of(const std::array<VertexIndex, N>& vertices) const {
+    std::array<VertexIndex, N> name{};
+    std::array<Vec3, N> places{};
+    for (std::size_t i = 0; i < N; ++i) name[i] = sewn_[vertices[i]], places[i] = mesh_.points[vertices[i]];
+    if (periods_.cell.is_periodic()) {
+      places = periods_.cell.originals(places);
+      for (std::size_t i = 0; i < N; ++i)
+        if (const VertexIndex v = at_.find(places[i]); v != kNone) name[i] = v;
+    }
+    std::sort(name.begin(), name.end());
+    return name;
+  }
+
+  /// Whether the triangle gives way to a copy of another one.
+  bool is_replaced(std::uint32_t t) const { return periods_.is_copy(mesh_.patch[t]); }
+
+ private:
+  const WorkingMesh& mesh_;
+  const PeriodicFaces& periods_;
+  const std::vector<VertexIndex> sewn_;
+  VerticesByPlace at_;
+};
+
+}  // namespace
+
+std::uint64_t divide_repeated_edges(WorkingMesh& mesh, const KnownSurface& complex, const PeriodicFaces& periods,
+                                    const SizeField& sizes) {
+  const SewnNames names(mesh, periods);
   std::map<Edge, HalfEdge> first;
   std::vector<HalfEdge> repeated;
   // Seams first: they stay.
   for (const bool seams : {true, false})
     for (HalfEdge h = 0; h < mesh.start.size(); ++h) {
       if (mesh.start[h] == kNone || h > mesh.twin[h] || mesh.is_seam(h) != seams) continue;
-      if (!seams && mesh.is_back(h / 3)) continue;
+      if (!seams && (mesh.is_back(h / 3) || names.is_replaced(h / 3))) continue;
       const VertexIndex a = mesh.start[h], b = mesh.end(h);
       if (!mesh.is_sewn(a) || !mesh.is_sewn(b)) continue;
-      const Edge key{std::min(sewn[a], sewn[b]), std::max(sewn[a], sewn[b])};
+      const Edge key = names.name_of(Edge{a, b});
       if (!first.try_emplace(key, h).second && !seams) repeated.push_back(h);
     }
   for (const HalfEdge h : repeated)
@@ -506,15 +624,15 @@ std::uint64_t divide_repeated_edges(WorkingMesh& mesh, const KnownSurface& compl
   return repeated.size();
 }
 
-std::uint64_t divide_repeated_triangles(WorkingMesh& mesh, const KnownSurface& complex, const SizeField& sizes) {
-  const std::vector<VertexIndex> sewn = sewn_vertices(mesh);
+std::uint64_t divide_repeated_triangles(WorkingMesh& mesh, const KnownSurface& complex, const PeriodicFaces& periods,
+                                        const SizeField& sizes) {
+  const SewnNames names(mesh, periods);
   std::map<Triangle, std::vector<std::uint32_t>> alike;
   for (const std::uint32_t t : front_triangles(mesh)) {
-    Triangle key = mesh.triangle(t);
-    if (!std::all_of(key.begin(), key.end(), [&](VertexIndex v) { return mesh.is_sewn(v); })) continue;
-    for (VertexIndex& v : key) v = sewn[v];
-    std::sort(key.begin(), key.end());
-    alike[key].push_back(t);
+    const Triangle corners = mesh.triangle(t);
+    if (names.is_replaced(t)) continue;
+    if (!std::all_of(corners.begin(), corners.end(), [&](VertexIndex v) { return mesh.is_sewn(v); })) continue;
+    alike[names.name_of(corners)].push_back(t);
   }
   std::uint64_t divided = 0;
   for (const auto& [key, triangles] : alike) {

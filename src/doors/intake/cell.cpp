@@ -1,0 +1,138 @@
+#include "doors/intake/cell.h"
+
+#include <octafront/error.h>
+
+#include "formats/containers/doubles.h"
+
+#include <algorithm>
+#include <cmath>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace octafront::intake {
+
+namespace {
+
+/// A body is copied so many times along an axis at most: one that is longer is no part of a cell of this size.
+constexpr double kMostCopies = 16;
+
+std::array<bool, 3> repeated_axes(const IntakeOptions& options) {
+  return axes_named("repeat", options.repeat.value_or(""));
+}
+
+/// How many periods a body is moved along an axis, from the least to the most, so that it may reach into the cell.
+std::array<std::array<int, 2>, 3> moves_of(const Body& body, const PeriodicCell& cell) {
+  const Box3 own = bounding_box(body.surface.points);
+  std::array<std::array<int, 2>, 3> moves{};
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!cell.along[axis]) continue;
+    const double period = cell.period(axis);
+    const double least = std::ceil((cell.box.lo[axis] - own.hi[axis]) / period);
+    const double most = std::floor((cell.box.hi[axis] - own.lo[axis]) / period);
+    if (most - least > kMostCopies || std::abs(least) > 1e6)
+      throw InputError(fmt::format("{}: lies over more than {} cells along {}, or far from all of them", body.name,
+                                   kMostCopies, kAxisNames[axis]));
+    moves[axis] = {static_cast<int>(least), static_cast<int>(most)};
+  }
+  return moves;
+}
+
+bool reaches_into(const Box3& box, const Box3& cell) {
+  bool reaches = true;
+  for (int axis = 0; axis < 3; ++axis)
+    reaches = reaches && box.lo[axis] < cell.hi[axis] && box.hi[axis] > cell.lo[axis];
+  return reaches;
+}
+
+/// Adds the body moved by so many periods, if it reaches into the cell.
+void add_copy(const SurfaceMesh& body, const PeriodicCell& cell, const std::array<int, 3>& by, SurfaceMesh& to) {
+  std::vector<Vec3> points = body.points;
+  for (Vec3& p : points)
+    for (int axis = 0; axis < 3; ++axis)
+      if (by[axis] != 0) p[axis] += by[axis] * cell.period(axis);
+  if (!reaches_into(bounding_box(points), cell.box)) return;
+  const auto first = static_cast<VertexIndex>(to.points.size());
+  to.points.insert(to.points.end(), points.begin(), points.end());
+  for (std::size_t t = 0; t < body.triangles.size(); ++t) {
+    const auto [a, b, c] = body.triangles[t];
+    to.triangles.push_back({first + a, first + b, first + c});
+    if (!body.patch.empty()) to.patch.push_back(body.patch[t]);
+    to.source.push_back(body.source_of(t));
+  }
+}
+
+Body with_copies(Body body, const PeriodicCell& cell) {
+  const auto moves = moves_of(body, cell);
+  SurfaceMesh all;
+  all.patch_names = body.surface.patch_names;
+  std::array<int, 3> by{};
+  for (by[0] = moves[0][0]; by[0] <= moves[0][1]; ++by[0])
+    for (by[1] = moves[1][0]; by[1] <= moves[1][1]; ++by[1])
+      for (by[2] = moves[2][0]; by[2] <= moves[2][1]; ++by[2]) add_copy(body.surface, cell, by, all);
+  if (all.triangles.empty())
+    throw InputError(fmt::format("{}: lies outside of the cell, and so do all its copies", body.name));
+  body.surface = std::move(all);
+  return body;
+}
+
+}  // namespace
+
+bool asks_for_cell(const IntakeOptions& options) {
+  return !options.box.empty();
+}
+
+Box3 box_of_option(const std::string& text) {
+  std::vector<double> numbers;
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  while (at < end) {
+    while (at < end && *at == ' ') ++at;
+    double value = 0;
+    const auto [next, error] = io::double_from_chars(at, end, value);
+    if (error != std::errc() || !std::isfinite(value)) break;
+    numbers.push_back(value);
+    at = next;
+    while (at < end && *at == ' ') ++at;
+    if (at < end && *at == ',') ++at;
+  }
+  Box3 box;
+  if (at == end && numbers.size() == 6)
+    box = {{numbers[0], numbers[1], numbers[2]}, {numbers[3], numbers[4], numbers[5]}};
+  if (!(box.lo.x < box.hi.x && box.lo.y < box.hi.y && box.lo.z < box.hi.z))
+    throw OptionError(
+        fmt::format("`box` is \"{}\": write X0,Y0,Z0,X1,Y1,Z1, the low corner and the high one, or first", text));
+  return box;
+}
+
+Body box_body(const std::string& name, const Box3& box) {
+  Body body{name, {}};
+  for (int i = 0; i < 8; ++i)
+    body.surface.points.push_back(
+        {(i & 1 ? box.hi : box.lo).x, (i & 2 ? box.hi : box.lo).y, (i & 4 ? box.hi : box.lo).z});
+  body.surface.triangles = {{0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}, {0, 1, 5}, {0, 5, 4},
+                            {2, 6, 7}, {2, 7, 3}, {0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}};
+  return body;
+}
+
+std::vector<Body> bodies_in_cell(std::vector<Body> bodies, const IntakeOptions& options) {
+  const std::array<bool, 3> along = repeated_axes(options);
+  std::vector<Body> all;
+  PeriodicCell cell;
+  if (options.box == "first") {
+    all.push_back(std::move(bodies.front()));
+    bodies.erase(bodies.begin());
+    cell = cell_of(bounding_box(all.front().surface.points), along);
+  } else {
+    cell = cell_of(box_of_option(options.box), along);
+    all.push_back(box_body(kMatrixName, cell.box));
+  }
+  for (Body& body : bodies) {
+    if (body.name == all.front().name) body.name += "_2";
+    all.push_back(with_copies(std::move(body), cell));
+  }
+  return all;
+}
+
+}  // namespace octafront::intake

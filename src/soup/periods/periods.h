@@ -1,0 +1,41 @@
+#pragma once
+
+// soup/periods: opposite faces of a box made the same. Takes a clean surface or complex, leaves one whose flat faces at
+// both ends of an axis are the same triangles, the one moved onto the other bit for bit: matched.cpp finds what each
+// face is divided into by the lines of both, same_faces.cpp puts it into the surface.
+
+#include <octafront/run_context.h>
+#include <octafront/surface_mesh.h>
+
+#include "base/mesh/periodic_cell.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace octafront {
+
+/// What make_periodic() did.
+struct MadePeriodic {
+  PeriodicCell cell;
+  std::vector<std::uint32_t> origin;  ///< per triangle of the result: one of the input that it is a part of
+  std::uint64_t moved = 0;            ///< vertices that were brought onto a face, or to their copies
+  double largest_move = 0;            ///< input units
+  std::uint64_t imprinted = 0;        ///< triangles of faces that are new
+};
+
+/// Vertices this near to a face of the bounding box, as a part of its diagonal, lie on it, and lines of opposite faces
+/// this near to each other are one: single precision keeps seven digits.
+inline constexpr double kSamePlace = 1e-6;
+
+/// Makes the surface one cell of a periodic one along the axes: triangles on opposite faces of its bounding box are the
+/// same. Where they are so already they stay; where their lines differ, both faces get the lines of both, and new
+/// triangles. Each face becomes a patch, or several: by the patches and regions on it and on the opposite one; the
+/// patch of a face is of no other. Names of patches that lie on one face alone stay; others become "x_min", "x_max",
+/// ...
+///
+/// REQUIRES a clean surface or complex. Throws InputError, with a place, where opposite faces are not the same, or
+/// there is no flat face.
+MadePeriodic make_periodic(SurfaceMesh& surface, const std::array<bool, 3>& along, const RunContext& context = {});
+
+}  // namespace octafront

@@ -1,0 +1,82 @@
+// Cohesive elements and beams in Abaqus files.
+
+#include <octafront/error.h>
+#include <octafront/io.h>
+#include <octafront/split.h>
+
+#include "formats/small_files.h"
+#include "support/rich_mesh.h"
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace octafront {
+namespace {
+
+/// The lines under a keyword, up to the next one.
+std::vector<std::string> lines_under(const std::string& file, const std::string& keyword) {
+  std::ifstream in(file);
+  std::vector<std::string> lines;
+  bool on = false;
+  for (std::string line; std::getline(in, line);) {
+    if (line.starts_with('*'))
+      on = line == keyword;
+    else if (on)
+      lines.push_back(line);
+  }
+  return lines;
+}
+
+std::vector<std::size_t> numbers_of(const std::string& line) {
+  std::vector<std::size_t> numbers;
+  std::istringstream in(line);
+  for (std::string word; std::getline(in, word, ',');) numbers.push_back(std::stoul(word));
+  return numbers;
+}
+
+TEST(SplitFiles, CohesiveElementsJoinTheTwoSides) {
+  const testing::TemporaryFolder folder;
+  TetMesh mesh = testing::rich_mesh(2);
+  mesh.sets.clear();
+  split_patches(mesh, {"glue"});
+  const std::string file = (folder / "split.inp").string();
+  write_mesh(file, mesh, {}, {.cohesive = true});
+  const auto lines = lines_under(file, "*ELEMENT, TYPE=COH3D6, ELSET=glue_cohesive");
+  ASSERT_EQ(lines.size(), 8u);
+  for (const std::string& line : lines) {
+    const auto n = numbers_of(line);
+    ASSERT_EQ(n.size(), 7u);
+    EXPECT_GT(n[0], mesh.tets.size());
+    for (std::size_t i = 1; i <= 3; ++i) {
+      EXPECT_NE(n[i], n[i + 3]);
+      EXPECT_EQ(mesh.points[n[i] - 1], mesh.points[n[i + 3] - 1]);
+    }
+  }
+  write_mesh((folder / "plain.inp").string(), mesh);
+  EXPECT_TRUE(lines_under((folder / "plain.inp").string(), "*ELEMENT, TYPE=COH3D6, ELSET=glue_cohesive").empty());
+  EXPECT_EQ(write_mesh((folder / "split.msh").string(), mesh, {}, {.cohesive = true}).back(),
+            "Gmsh MSH 4.1 is given no cohesive elements and beams: they are for Abaqus");
+}
+
+TEST(SplitFiles, CurvesAreBeamsWhereAsked) {
+  const testing::TemporaryFolder folder;
+  TetMesh mesh = testing::rich_mesh(2);
+  mesh.curve_names.assign(12, "");
+  mesh.curve_names[0] = "rod";
+  const std::string file = (folder / "beams.inp").string();
+  write_mesh(file, mesh, {}, {.beams = "rod"});
+  EXPECT_EQ(lines_under(file, "*ELEMENT, TYPE=B31, ELSET=rod_beams").size(), 2u);
+  write_mesh(file, testing::with_mid_nodes(mesh), {}, {.beams = "rod"});
+  const auto curved = lines_under(file, "*ELEMENT, TYPE=B32, ELSET=rod_beams");
+  ASSERT_EQ(curved.size(), 2u);
+  EXPECT_EQ(numbers_of(curved[0]).size(), 4u);
+  EXPECT_THROW(write_mesh(file, mesh, {}, {.beams = "rope"}), OptionError);
+}
+
+}  // namespace
+}  // namespace octafront
