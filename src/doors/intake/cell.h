@@ -7,6 +7,10 @@
 
 #include "base/mesh/periodic_cell.h"
 
+#include <array>
+#include <functional>
+#include <optional>
+#include <string>
 #include <vector>
 
 namespace octafront::intake {
@@ -26,6 +30,14 @@ Body box_body(const std::string& name, const Box3& box);
 /// The cell, then the bodies, each with all its copies that reach into the cell. `bodies`: mended. Throws OptionError,
 /// InputError for a body that does not reach into it.
 std::vector<Body> bodies_in_cell(std::vector<Body> bodies, const IntakeOptions& options);
+
+/// Makes surfaces of an image.
+using SurfacesOf = std::function<Complex(const Image&)>;
+
+/// complex_of_periodic_image() by another way to make surfaces. `box`: another cell of the same periods, no farther
+/// from the one of the image than a voxel.
+Complex complex_of_periodic_values(const Image& image, const SurfacesOf& surfaces_of, const std::array<bool, 3>& along,
+                                   const std::optional<Box3>& box, const RunContext& context);
 
 /// The complex of an image that goes on periodically along axes of the world: the surfaces of the image with voxels
 /// from its other ends added, cut by the cell, which goes from the middles of the first voxels to those of their next

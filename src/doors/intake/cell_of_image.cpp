@@ -20,6 +20,10 @@ namespace {
 /// Voxels that are added at each end of a period: what lies between the middles of the first and the last voxel then
 /// looks like the inside of an image.
 constexpr std::uint32_t kAdded = 4;
+/// Of values, where vertices spread along the surface: what a sweep does reaches a voxel farther, and there are twelve.
+constexpr std::uint32_t kAddedToValues = 16;
+/// Vertices of faces that reach into the cell lie within so many voxels of it.
+constexpr double kNearCell = 3;
 /// The name of what the cell has beside labels, which is left empty.
 constexpr const char* kEmptyName = "outside of all labels";
 
@@ -41,7 +45,7 @@ std::array<int, 3> world_axes(const ImageGrid& grid) {
 }
 
 /// The image with voxels from its other end added at both ends of these axes of its own.
-Image with_wrapped_ends(const Image& image, const std::array<bool, 3>& wraps) {
+Image with_wrapped_ends(const Image& image, const std::array<bool, 3>& wraps, std::uint32_t added_each) {
   const ImageGrid& grid = image.grid;
   if (wraps[2] && !grid.slices.empty())
     throw InputError(
@@ -49,7 +53,7 @@ Image with_wrapped_ends(const Image& image, const std::array<bool, 3>& wraps) {
   Image out = image;
   std::array<std::uint32_t, 3> added{};
   for (int i = 0; i < 3; ++i) {
-    added[i] = wraps[i] ? kAdded : 0;
+    added[i] = wraps[i] ? added_each : 0;
     out.grid.size[i] += 2 * added[i];
   }
   out.grid.origin = grid.to_world({-double(added[0]), -double(added[1]), wraps[2] ? -double(added[2]) : grid.slice(0)});
@@ -57,7 +61,7 @@ Image with_wrapped_ends(const Image& image, const std::array<bool, 3>& wraps) {
       [&](const auto& values) -> Image::Values {
         std::decay_t<decltype(values)> all;
         all.reserve(out.grid.voxels());
-        // kAdded and a multiple of the size that is no less: no index falls below 0.
+        // What is added and a multiple of the size that is no less: no index falls below 0.
         const auto at = [&](std::uint32_t index, int i) {
           const std::uint32_t n = grid.size[i];
           return (index + (added[i] + n - 1) / n * n - added[i]) % n;
@@ -102,6 +106,7 @@ class SamePlaces {
       if (const auto [cell, moves] = canonical(points[v]); moves == std::array<std::int64_t, 3>{})
         first[cell].push_back(v);
     for (Vec3& p : points) {
+      if (!is_near(p)) continue;
       const auto [cell, moves] = canonical(p);
       const auto at = first.find(cell);
       if (moves == std::array<std::int64_t, 3>{} || at == first.end()) continue;
@@ -122,6 +127,15 @@ class SamePlaces {
   struct Canonical {
     std::array<std::int64_t, 3> cell, moves;  ///< moved by so many periods
   };
+
+  /// Whether the cell may cut a face at p: farther out copies need not be alike, for the image ends there.
+  bool is_near(Vec3 p) const {
+    for (int i = 0; i < 3; ++i) {
+      const double index = (p[world_[i]] - grid_.origin[world_[i]]) / grid_.axes[i][world_[i]];
+      if (wraps_[i] && (index < -kNearCell || index > grid_.size[i] + kNearCell)) return false;
+    }
+    return true;
+  }
 
   /// The dual cell, between the middles of voxels, that p lies in, as one of those of the image itself.
   Canonical canonical(Vec3 p) const {
@@ -185,13 +199,13 @@ void name_regions(const SurfaceMesh& image, Complex& cut) {
 
 }  // namespace
 
-Complex complex_of_periodic_image(const Image& image, const ImageRegions& regions, const std::array<bool, 3>& along,
-                                  const RunContext& context) {
+Complex complex_of_periodic_values(const Image& image, const SurfacesOf& surfaces_of, const std::array<bool, 3>& along,
+                                   const std::optional<Box3>& box, const RunContext& context) {
   const std::array<int, 3> world = world_axes(image.grid);
   std::array<bool, 3> wraps{};
   for (int i = 0; i < 3; ++i) wraps[i] = along[world[i]];
-  Complex whole = complex_of_image(with_wrapped_ends(image, wraps), regions, context);
-  const PeriodicCell cell = cell_of_grid(image.grid, world, wraps);
+  Complex whole = surfaces_of(with_wrapped_ends(image, wraps, box ? kAddedToValues : kAdded));
+  const PeriodicCell cell = box ? cell_of(*box, along) : cell_of_grid(image.grid, world, wraps);
   SamePlaces(image.grid, world, wraps, cell).run(whole.surface.points);
   std::vector<Body> bodies = bodies_of_regions(whole.surface);
   bodies.insert(bodies.begin(), box_body(kEmptyName, cell.box));
@@ -200,6 +214,13 @@ Complex complex_of_periodic_image(const Image& image, const ImageRegions& region
   Complex cut = join_bodies(bodies, options, context);
   name_regions(whole.surface, cut);
   cut.notes = std::move(whole.notes);
+  return cut;
+}
+
+Complex complex_of_periodic_image(const Image& image, const ImageRegions& regions, const std::array<bool, 3>& along,
+                                  const RunContext& context) {
+  const auto surfaces_of = [&](const Image& wrapped) { return complex_of_image(wrapped, regions, context); };
+  Complex cut = complex_of_periodic_values(image, surfaces_of, along, std::nullopt, context);
   cut.notes.push_back(
       "the image is taken as periodic: its cell goes from the middle of the first voxels to that of their "
       "next copies");

@@ -3,12 +3,15 @@
 
 #include "base/core/parallel.h"
 #include "base/core/thread_limit.h"
+#include "base/core/wording.h"
+#include "base/mesh/periodic_cell.h"
 #include "doors/intake/cell.h"
 #include "doors/intake/intake.h"
 #include "images/formulas/geometry.h"
 #include "images/nets/function_surface.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -91,7 +94,8 @@ float rounded(double value) {
   return static_cast<float>(std::clamp(value, -kMost, -kLeast));
 }
 
-Image image_of_function(const SpaceFunction& function, const Cells& cells) {
+/// Its values at the middles of the cells, moved by `shift`.
+Image image_of_function(const SpaceFunction& function, const Cells& cells, Vec3 shift = {}) {
   Image image;
   image.grid.size = cells.size;
   for (int axis = 0; axis < 3; ++axis) {
@@ -99,10 +103,10 @@ Image image_of_function(const SpaceFunction& function, const Cells& cells) {
     step = {};
     step[axis] = cells.side(axis);
   }
-  image.grid.origin = cells.middle(0);
+  image.grid.origin = cells.middle(0) + shift;
   std::vector<float> values(cells.count());
   parallel_for(values.size(), [&](std::size_t i) {
-    const double value = function.at(cells.middle(i));
+    const double value = function.at(cells.middle(i) + shift);
     values[i] = std::isnan(value) ? std::numeric_limits<float>::quiet_NaN() : rounded(value);
   });
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -130,16 +134,58 @@ void lay_on_faces(SurfaceMesh& surface, const Cells& cells) {
         if (std::abs(p[axis] - face) <= kOnFace * cells.side(axis)) p[axis] = face;
 }
 
+/// Throws InputError unless the values at both ends of the box are the same along these axes.
+void check_periods(const SpaceFunction& function, const Cells& cells, const std::array<bool, 3>& along) {
+  constexpr double kSame = 1e-6;  // of the largest value: sums of sines agree to about 1e-13
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!along[static_cast<std::size_t>(axis)]) continue;
+    double largest = 0, off = 0;
+    Vec3 worst;
+    for (std::size_t i = 0; i < cells.count(); ++i) {
+      Vec3 p = cells.middle(i);
+      if (p[axis] - cells.box.lo[axis] > cells.side(axis)) continue;
+      p[axis] = cells.box.lo[axis];
+      Vec3 q = p;
+      q[axis] = cells.box.hi[axis];
+      const double a = function.at(p), b = function.at(q);
+      largest = std::max({largest, std::abs(a), std::abs(b)});
+      if (std::abs(a - b) > off) off = std::abs(a - b), worst = p;
+    }
+    if (off > kSame * largest)
+      throw InputError(fmt::format(
+          "the function does not repeat itself along {} by the length of the box, {:.6g}: at {} and that far "
+          "on its values differ by {:.3g}. Choose a box of whole periods, or no period along {}",
+          "xyz"[axis], cells.box.extent()[axis], at_point(worst), off, "xyz"[axis]));
+  }
+}
+
+/// One cell of a body that goes on along these axes. Values are taken at places that no symmetry of the surface knows:
+/// at others they are 0 up to rounding, which would choose one side here and the other one at copies.
+Complex periodic_body(const SpaceFunction& function, const Cells& cells, const std::array<bool, 3>& along,
+                      const RunContext& context) {
+  check_periods(function, cells, along);
+  constexpr std::array<double, 3> kApart{0.137, 0.291, 0.373};  // of a cell
+  Vec3 shift{};
+  for (int axis = 0; axis < 3; ++axis)
+    if (along[static_cast<std::size_t>(axis)])
+      shift[axis] = (kApart[static_cast<std::size_t>(axis)] - 0.5) * cells.side(axis);
+  const Image image = image_of_function(function, cells, shift);
+  const auto surfaces_of = [&](const Image& wrapped) { return complex_of_function(wrapped, function, context); };
+  return intake::complex_of_periodic_values(image, surfaces_of, along, cells.box, context);
+}
+
 Domain opened(const std::shared_ptr<const SpaceFunction>& function, const Cells& cells, std::string format,
               const IntakeOptions& options, const RunContext& context) {
   const ThreadLimit limit(context.threads);
   context.report("reading", -1);
-  const Image image = image_of_function(*function, cells);
-  context.check();
+  const std::array<bool, 3> along = axes_named("repeat", options.repeat.value_or(""));
+  const bool repeats = along[0] || along[1] || along[2];
   Domain domain;
   domain.format = std::move(format);
   domain.voxels = cells.size;
-  intake::take_complex(domain, options, complex_of_function(image, *function, context));
+  intake::take_complex(domain, options,
+                       repeats ? periodic_body(*function, cells, along, context)
+                               : complex_of_function(image_of_function(*function, cells), *function, context));
   lay_on_faces(domain.surface, cells);
   auto geometry = std::make_shared<const FunctionGeometry>(function, cells.box, 2 * cells.largest());
   SurfaceMesh& surface = domain.surface;
@@ -149,7 +195,8 @@ Domain opened(const std::shared_ptr<const SpaceFunction>& function, const Cells&
     const auto& [a, b, c] = surface.triangles[t];
     surface.patch[t] = geometry->patch_of({surface.points[a], surface.points[b], surface.points[c]});
   });
-  domain.geometry = std::move(geometry);
+  // Copies of nodes on the faces stay copies, bit for bit, where nothing moves them.
+  if (!repeats) domain.geometry = std::move(geometry);
   return domain;
 }
 

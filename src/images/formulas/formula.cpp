@@ -30,6 +30,10 @@ constexpr std::size_t kDeepest = 64;      ///< of the stack
 constexpr int kMostNesting = 100;         ///< of parentheses
 constexpr double kWholePowers = 1 << 20;  ///< whole exponents up to this are products
 
+}  // namespace
+
+namespace formulas {
+
 enum class Code : std::uint8_t {
   kNumber,
   kX,
@@ -61,6 +65,13 @@ struct Command {
   double number = 0;
   NamedSurface surface = nullptr;
 };
+
+}  // namespace formulas
+
+namespace {
+
+using formulas::Code;
+using formulas::Command;
 
 /// A function by its name; arguments from the least to the most number. More than two are taken pair by pair.
 struct Function {
@@ -400,7 +411,7 @@ bool ends_like_a_file(std::string_view text) {
 }  // namespace
 
 struct Formula::Program {
-  std::vector<Command> commands;
+  std::vector<formulas::Command> commands;
   bool is_periodic = false;
 };
 

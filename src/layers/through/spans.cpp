@@ -26,9 +26,9 @@ struct WallCorner {
 };
 
 /// The faces that bound regions, by their corners.
-class Walls {
+class FacingWalls {
  public:
-  explicit Walls(const TetMesh& mesh) : mesh_(mesh) {
+  explicit FacingWalls(const TetMesh& mesh) : mesh_(mesh) {
     std::vector<Triangle> keys;
     for (const auto* list : {&mesh.boundary, &mesh.interfaces})
       for (const Triangle& t : *list) keys.push_back(face_key(t));
@@ -80,7 +80,7 @@ class Walls {
 };
 
 /// The edges between vertices on walls, with the regions of their elements; each pair once.
-std::vector<std::pair<Edge, std::uint32_t>> edges_between_walls(const TetMesh& mesh, const Walls& walls) {
+std::vector<std::pair<Edge, std::uint32_t>> edges_between_walls(const TetMesh& mesh, const FacingWalls& walls) {
   std::vector<std::pair<Edge, std::uint32_t>> edges;
   for (TetIndex t = 0; t < mesh.tets.size(); ++t)
     for (const auto& [i, j] : kTetEdges) {
@@ -120,7 +120,7 @@ std::vector<std::uint8_t> sides_of(std::size_t vertices, const std::vector<Edge>
 }  // namespace
 
 std::vector<Span> spans_through_walls(const TetMesh& mesh, const RunContext& context) {
-  const Walls walls(mesh);
+  const FacingWalls walls(mesh);
   context.check();
   const auto edges = edges_between_walls(mesh, walls);
   std::vector<std::uint8_t> is_span(edges.size(), 0);
