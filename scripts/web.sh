@@ -35,6 +35,7 @@ cmake --preset release >/dev/null
 cmake --build --preset release --target octafront_cli >/dev/null
 export OCTAFRONT_PACKAGE=$work/package OCTAFRONT_PROGRAM=$PWD/build/release/cli/octafront OCTAFRONT_SAMPLES=$PWD/samples
 case ${1:-} in
+  --times) node tests/web/times.mjs ;;&
   --times | --pictures) exec python3 tests/web/page_test.py "$work/octafront.html" "$OCTAFRONT_PROGRAM" "$OCTAFRONT_SAMPLES" "$@" ;;
 esac
 node --test tests/web/package_test.mjs

@@ -287,14 +287,15 @@ function foresee() {
   const mine = ++foreseeing;
   const box = byId("estimate");
   if (!now.part || now.shape.triangles.length / 3 > MOST_FORESEEN) return (box.textContent = "");
+  const { part } = now;
   setTimeout(async () => {
-    if (mine !== foreseeing || now.work || !now.part) return;
+    if (mine !== foreseeing || now.work || now.part !== part) return;
     let report;
     try {
       box.textContent = "…";
-      report = await now.part.estimate(chosenOptions());
+      report = await part.estimate(chosenOptions());
     } catch (error) {
-      if (mine === foreseeing) box.textContent = shown(error.message);
+      if (mine === foreseeing && now.part === part) box.textContent = shown(error.message);
       return;
     }
     if (mine !== foreseeing) return;
@@ -383,8 +384,10 @@ function showTab(tab) {
 }
 function passTheme() {
   const root = byId("report").contentDocument?.documentElement, { theme } = document.documentElement.dataset;
-  if (root && theme) root.dataset.theme = theme;
-  byId("report").contentWindow?.dispatchEvent(new Event("resize"));
+  if (!root || !theme) return;
+  root.dataset.theme = theme;
+  const inside = byId("report").contentWindow.octafront;
+  if (inside?.mesh) inside.draw();
 }
 function listenToTheme() {
   const root = document.documentElement;
