@@ -1,5 +1,11 @@
 # Flags that every one of our targets shares, and the helpers that declare a wing, its rooms and its tests.
 
+# All may become part of shared libraries, but where there are none: WebAssembly pays for each address.
+set(OCTAFRONT_PIC ON)
+if(EMSCRIPTEN)
+  set(OCTAFRONT_PIC OFF)
+endif()
+
 add_library(octafront_flags INTERFACE)
 target_compile_features(octafront_flags INTERFACE cxx_std_20)
 # Contraction to fused multiply-add breaks the floating-point filters of the exact predicates.
@@ -8,6 +14,9 @@ target_compile_options(octafront_flags INTERFACE -ffp-contract=off -Wall -Wextra
 # Many sources at a time are gigabytes of trees to GCC, which by its defaults tidies them over and over: an eighth of its time.
 if(OCTAFRONT_UNITY AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   target_compile_options(octafront_flags INTERFACE --param=ggc-min-expand=400 --param=ggc-min-heapsize=1000000)
+endif()
+if(EMSCRIPTEN)
+  target_compile_options(octafront_flags INTERFACE -include ${PROJECT_SOURCE_DIR}/web/old_libcxx.h)
 endif()
 if(OCTAFRONT_VALIDATE)
   target_compile_definitions(octafront_flags INTERFACE OCTAFRONT_VALIDATION)
@@ -32,7 +41,7 @@ endfunction()
 if(OCTAFRONT_PCH)
   file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/octafront_pch.cpp CONTENT "")
   add_library(octafront_pch OBJECT ${PROJECT_BINARY_DIR}/octafront_pch.cpp)
-  set_target_properties(octafront_pch PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  set_target_properties(octafront_pch PROPERTIES POSITION_INDEPENDENT_CODE ${OCTAFRONT_PIC})
   target_link_libraries(octafront_pch PRIVATE octafront_flags)
   octafront_precompile(octafront_pch octafront_pch)
 endif()
@@ -50,7 +59,7 @@ function(octafront_wing name)
   cmake_parse_arguments(WING "" "" "WINGS;LIBS" ${ARGN})
   set(target octafront_${name})
   add_library(${target} STATIC)
-  set_target_properties(${target} PROPERTIES LINKER_LANGUAGE CXX POSITION_INDEPENDENT_CODE ON)
+  set_target_properties(${target} PROPERTIES LINKER_LANGUAGE CXX POSITION_INDEPENDENT_CODE ${OCTAFRONT_PIC})
   target_include_directories(${target} PUBLIC ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src)
   target_link_libraries(${target} PRIVATE octafront_flags PUBLIC ${WING_LIBS})
   foreach(wing IN LISTS WING_WINGS)

@@ -2,6 +2,7 @@
 # Meshes and solves the examples of examples/solve, and compares them with theory (docs/measured/solved.md). Installs what it needs.
 #   scripts/solve.sh [CASE ...]      with CalculiX: cantilever, pipe, patch, heat, plate, bar, sphere; by default all
 #   scripts/solve.sh --fenicsx       the pipe with FEniCSx (a gigabyte of packages)
+#   scripts/solve.sh --others        the bar with FreeFEM, GetFEM, sfepy and deal.II (two gigabytes of packages)
 #   scripts/solve.sh --picture       all, and docs/images/solved.png anew
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -15,6 +16,10 @@ case ${1:-} in
   --fenicsx)
     need_packages python3-dolfinx
     exec /usr/bin/python3 examples/solve/fenicsx.py "$octafront" "$work"
+    ;;
+  --others)
+    need_packages freefem++ python3-getfem python3-sfepy libdeal.ii-dev
+    exec /usr/bin/python3 examples/solve/others.py "$octafront" "$work"
     ;;
   --picture)
     need_packages python3-vtk9 xvfb xauth

@@ -7,7 +7,8 @@
  * - Objects belong to the caller and are freed by him; what they point to is theirs. Null may be freed.
  * - Work is a *job*: it runs on a thread of its own, and the caller waits for events. So no code of the caller is ever
  *   called by ours: no callbacks, no foreign threads, and a wait can end at any time to look whether somebody pressed
- *   Ctrl-C. Objects that a job was given must live, unchanged, until it is freed; freeing cancels it and waits.
+ *   Ctrl-C. (Of builds without threads octafront_job_watch() says more.) Objects that a job was given must live,
+ *   unchanged, until it is freed; freeing cancels it and waits.
  * - Texts end with 0 and are UTF-8 as far as files and callers gave UTF-8; JSON is always UTF-8.
  * - Functions that can fail return 0 for success, and octafront_last_error() says, per thread, what was wrong.
  *
@@ -276,6 +277,14 @@ octafront_job* octafront_write_page(const octafront_mesh* mesh, const octafront_
 
 /** Waits for the next event, `seconds` at most, below 0: as long as it takes. Returns its kind. */
 int octafront_job_wait(octafront_job* job, double seconds, octafront_event* event);
+/** 1, or 0 of a library that was built without threads (OCTAFRONT_THREADS=OFF), as for web pages. There a job does all
+ * its work in the first octafront_job_wait(), whatever the seconds, and tells of it as it goes on by the watcher. */
+int octafront_has_threads(void);
+typedef void (*octafront_watcher)(void* data, const octafront_event* event);
+/** Of a library without threads: calls `watcher` with each event but the end, inside octafront_job_wait(), which then
+ * returns the end alone. It may cancel the job, and has filled in the sizes asked for when it returns; nothing else is
+ * allowed to it. A library with threads never calls it. */
+void octafront_job_watch(octafront_job* job, octafront_watcher watcher, void* data);
 /** The sizes of the last OCTAFRONT_EVENT_SIZES are filled in. */
 void octafront_job_answer(octafront_job* job);
 /** The job ends soon, with OCTAFRONT_CANCELLED, and writes nothing; still wait for its end. */

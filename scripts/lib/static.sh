@@ -41,7 +41,7 @@ build_static_zlib() {
   [ -e "$work/inside/zlib.done" ] && return
   {
     unpack "$work" zlib &&
-      (cd "$work/sources/zlib/unpacked" && CHOST=$2 CFLAGS="-O3 -fPIC" ./configure --static --prefix="$work/inside" && make && make install)
+      (cd "$work/sources/zlib/unpacked" && CHOST=$2 CFLAGS="-O3 -fPIC" ./configure --static --prefix="$work/inside" && make install)
   } >"$work.zlib.log" 2>&1 || { tail -20 "$work.zlib.log" >&2; return 1; }
   touch "$work/inside/zlib.done"
 }

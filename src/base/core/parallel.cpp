@@ -18,6 +18,10 @@ void parallel_ranges(std::size_t n, Split split, FunctionRef<void(std::size_t be
     tbb::parallel_for(Range(0, n), run);
 }
 
+bool has_threads() {
+  return true;
+}
+
 std::size_t thread_count() {
   return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
 }

@@ -90,7 +90,7 @@ std::vector<VertexIndex> same_places(const TetMesh& from, const TetMesh& to) {
         hash = (hash ^ bits) * 0x9e3779b97f4a7c15ull;
         hash ^= hash >> 32;
       }
-      return hash;
+      return static_cast<std::size_t>(hash);
     }
   };
   // -0 and 0 are one place.

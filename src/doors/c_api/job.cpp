@@ -3,6 +3,8 @@
 #include <octafront/error.h>
 #include <octafront/open_cavity_error.h>
 
+#include "base/core/thread_limit.h"
+
 #include <chrono>
 #include <new>
 #include <utility>
@@ -13,12 +15,15 @@ octafront_job::octafront_job(const Work& work, int threads) {
   context_.cancel = &cancelled_;
   context_.threads = threads;
   context_.progress = [this](std::string_view stage, double fraction) { post_progress(stage, fraction); };
-  worker_ = std::thread([this, work] { run(work); });
+  if (has_threads())
+    worker_ = std::thread([this, work] { run(work); });
+  else
+    put_off_ = work;
 }
 
 octafront_job::~octafront_job() {
   cancel();
-  worker_.join();
+  if (worker_.joinable()) worker_.join();
 }
 
 void octafront_job::run(const Work& work) {
@@ -53,7 +58,27 @@ void octafront_job::close(int status, std::string message) {
   for_caller_.notify_all();
 }
 
+// Without the lock: what the watcher does is to call us.
+void octafront_job::run_here() {
+  const Work work = std::exchange(put_off_, nullptr);
+  if (work) run(work);
+}
+
+void octafront_job::show(const Event& event) {
+  octafront_event shown{};
+  shown.kind = event.kind;
+  shown.text = event.text.c_str();
+  std::copy(event.values.begin(), event.values.end(), shown.values);
+  watcher_(watcher_data_, &shown);
+}
+
+void octafront_job::watch(octafront_watcher watcher, void* data) {
+  watcher_ = watcher;
+  watcher_data_ = data;
+}
+
 void octafront_job::post(Event event) {
+  if (!has_threads() && watcher_ != nullptr) return show(event);
   const std::lock_guard lock(mutex_);
   events_.push_back(std::move(event));
   for_caller_.notify_all();
@@ -61,13 +86,27 @@ void octafront_job::post(Event event) {
 
 // Of a stage only the latest word counts, and nobody is woken for it: the caller looks often enough.
 void octafront_job::post_progress(std::string_view stage, double fraction) {
+  if (!has_threads() && watcher_ != nullptr) return show({OCTAFRONT_EVENT_PROGRESS, std::string(stage), {fraction}});
   const std::lock_guard lock(mutex_);
   if (events_.empty() || events_.back().kind != OCTAFRONT_EVENT_PROGRESS || events_.back().text != stage)
     events_.push_back({OCTAFRONT_EVENT_PROGRESS, std::string(stage), {}});
   events_.back().values[0] = fraction;
 }
 
+void octafront_job::ask_here(std::span<const Vec3> points, std::span<double> sizes_wanted) {
+  if (watcher_ == nullptr)
+    throw OptionError("sizes of the caller want a watcher where the library has no threads: octafront_job_watch()");
+  octafront_event event{};
+  event.kind = OCTAFRONT_EVENT_SIZES;
+  event.points = &points.front().x;
+  event.sizes = sizes_wanted.data();
+  event.count = points.size();
+  watcher_(watcher_data_, &event);
+  if (cancelled_.load()) throw Cancelled();
+}
+
 void octafront_job::ask(std::span<const Vec3> points, std::span<double> sizes_wanted) {
+  if (!has_threads()) return ask_here(points, sizes_wanted);
   std::unique_lock lock(mutex_);
   asked_ = points;
   answers_ = sizes_wanted;
@@ -115,6 +154,7 @@ bool octafront_job::take_event(octafront_event& event) {
 }
 
 int octafront_job::wait(double seconds, octafront_event& event) {
+  if (!has_threads()) run_here();
   std::unique_lock lock(mutex_);
   const auto something = [&] { return take_event(event); };
   if (seconds < 0)
@@ -144,6 +184,14 @@ const char* octafront_job::report_text() {
 
 int octafront_job_wait(octafront_job* job, double seconds, octafront_event* event) {
   return job->wait(seconds, *event);
+}
+
+int octafront_has_threads() {
+  return has_threads() ? 1 : 0;
+}
+
+void octafront_job_watch(octafront_job* job, octafront_watcher watcher, void* data) {
+  job->watch(watcher, data);
 }
 
 void octafront_job_answer(octafront_job* job) {

@@ -19,7 +19,8 @@
 #include <vector>
 
 /// Work on a thread of its own, and what its caller waits for. The worker posts events, the caller takes them; only to
-/// a question about sizes does the worker wait for an answer.
+/// a question about sizes does the worker wait for an answer. Where there are no threads, the work is done in the first
+/// wait, and a watcher is told of events as they happen.
 struct octafront_job {
  public:
   using Json = nlohmann::ordered_json;
@@ -43,6 +44,7 @@ struct octafront_job {
 
   // For the caller.
   int wait(double seconds, octafront_event& event);
+  void watch(octafront_watcher watcher, void* data);
   void answer();
   void cancel();
   int status() const { return status_; }
@@ -57,12 +59,18 @@ struct octafront_job {
   };
 
   void run(const Work& work);
+  void run_here();
+  void show(const Event& event);
   void close(int status, std::string message);
   void post(Event event);
   void post_progress(std::string_view stage, double fraction);
   void ask(std::span<const octafront::Vec3> points, std::span<double> sizes);
+  void ask_here(std::span<const octafront::Vec3> points, std::span<double> sizes);
   bool take_event(octafront_event& event);
 
+  Work put_off_;  ///< until somebody waits, where there are no threads
+  octafront_watcher watcher_ = nullptr;
+  void* watcher_data_ = nullptr;
   octafront::RunContext context_;
   std::atomic<bool> cancelled_{false};
   std::mutex mutex_;

@@ -40,7 +40,7 @@ TextWriter& TextWriter::field(std::size_t width, double value) {
   return *this << kBlanks.substr(0, width - std::min(width, text.size())) << text;
 }
 
-TextWriter& TextWriter::field(std::size_t width, std::uint64_t value) {
+TextWriter& TextWriter::whole_field(std::size_t width, std::uint64_t value) {
   std::array<char, 24> room;
   const auto [end, error] = std::to_chars(room.data(), room.data() + room.size(), value);
   static_cast<void>(error);  // 20 digits at most

@@ -3,6 +3,7 @@
 #include "formats/containers/atomic_file.h"
 
 #include <charconv>
+#include <concepts>
 #include <cstdint>
 #include <iterator>
 #include <string_view>
@@ -26,16 +27,19 @@ class TextWriter {
     return *this;
   }
   TextWriter& operator<<(double value) { return number(value); }
-  TextWriter& operator<<(std::uint64_t value) { return number(value); }
-  TextWriter& operator<<(std::uint32_t value) { return number(value); }
-  TextWriter& operator<<(std::int32_t value) { return number(value); }
-  TextWriter& operator<<(std::int64_t value) { return number(value); }
+  template <std::integral Whole>
+  TextWriter& operator<<(Whole value) {
+    return number(value);
+  }
   /// The most digits of a number that fit into so many characters; at least 13 for 20, 9 for 16. With a point or an
   /// exponent, as Fortran wants reals.
   TextWriter& within(std::size_t width, double value);
   /// The same, or a whole number, at the right of a field of that width.
   TextWriter& field(std::size_t width, double value);
-  TextWriter& field(std::size_t width, std::uint64_t value);
+  template <std::integral Whole>
+  TextWriter& field(std::size_t width, Whole value) {
+    return whole_field(width, static_cast<std::uint64_t>(value));
+  }
   /// Any other text that fmt can make.
   template <class... Args>
   void line(fmt::format_string<Args...> format, Args&&... args) {
@@ -46,6 +50,7 @@ class TextWriter {
   }
 
  private:
+  TextWriter& whole_field(std::size_t width, std::uint64_t value);
   template <class T>
   TextWriter& number(T value) {
     char digits[32];

@@ -134,7 +134,7 @@ class ArrayReader {
     for (std::uint64_t b = 0; b < blocks; ++b) {
       input_.context.check();
       const std::uint64_t size = header_value(header, 3 + b);
-      append_block({packed.data() + at, size}, block_size(header, b), b, bytes);
+      append_block({packed.data() + at, static_cast<std::size_t>(size)}, block_size(header, b), b, bytes);
       at += size;
     }
     return bytes;

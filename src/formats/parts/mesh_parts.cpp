@@ -110,7 +110,9 @@ void MeshParts::add_numbered(Part::Origin origin, const Groups<>& members, const
 std::span<const Part> MeshParts::parts(Part::Origin origin) const {
   const auto is_of = [&](const Part& p) { return p.origin == origin; };
   const auto first = std::find_if(parts_.begin(), parts_.end(), is_of);
-  return {first, std::find_if_not(first, parts_.end(), is_of)};
+  const auto last = std::find_if_not(first, parts_.end(), is_of);
+  return std::span(parts_).subspan(static_cast<std::size_t>(first - parts_.begin()),
+                                   static_cast<std::size_t>(last - first));
 }
 
 std::span<const VertexIndex> MeshParts::tet_nodes(std::size_t t, std::array<VertexIndex, 10>& room) const {

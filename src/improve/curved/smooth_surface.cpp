@@ -224,7 +224,7 @@ SurfaceFit SmoothSurface::make_fit(Wedge wedge) const {
   std::vector<Vec3> points;
   points.reserve(vertices.size());
   for (const VertexIndex v : vertices.list()) points.push_back(surface_.points[v]);
-  const std::span<const Vec3> around(points.begin() + 1, points.end());
+  const std::span<const Vec3> around = std::span<const Vec3>(points).subspan(1);
   SurfaceFit fit = fit_surface(points.front(), normal, around);
   if (fit.trusted && stays_near(fit, wedge)) return fit;
   fit = fit_surface(points.front(), normal, around.first(nearer - 1));

@@ -98,10 +98,10 @@ class Sampler {
 }  // namespace
 
 std::size_t BatchedSizes::Hash::operator()(const Vec3& p) const {
-  std::size_t hash = 0;
+  std::uint64_t hash = 0;
   for (int axis = 0; axis < 3; ++axis)
     hash = (hash ^ std::bit_cast<std::uint64_t>(p[axis])) * 0x9e3779b97f4a7c15u, hash ^= hash >> 32;
-  return hash;
+  return static_cast<std::size_t>(hash);
 }
 
 double BatchedSizes::at(Vec3 p) {

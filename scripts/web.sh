@@ -1,0 +1,42 @@
+#!/usr/bin/env bash
+# Builds the library as WebAssembly (Debian's emscripten), puts together the npm package and the page that meshes by itself, and
+# tries both: in Node, whose meshes must be those of this machine, bit for bit, and in Chromium. In build/web: package/,
+# octafront-VERSION.tgz, octafront.html. Installs what it needs.
+#   scripts/web.sh                   builds, packs, tests
+#   scripts/web.sh --build           builds and packs only
+#   scripts/web.sh --times           prints the table of docs/use/web.md instead of testing
+#   scripts/web.sh --pictures        takes the pictures of docs/use/web.md instead of testing
+set -euo pipefail
+cd "$(dirname "$0")/.."
+source scripts/lib/apt.sh
+source scripts/lib/static.sh
+work=$PWD/build/web
+need_packages "${build_packages[@]}" "${browser_packages[@]}" python3 dpkg-dev make nodejs emscripten
+# Where Debian's emscripten finds what it needs of Node, whosever Node that is.
+export NODE_PATH=/usr/share/nodejs
+toolchain=-DCMAKE_TOOLCHAIN_FILE=$(dirname "$(readlink -f "$(command -v emcc)")")/cmake/Modules/Platform/Emscripten.cmake
+# Exceptions of WebAssembly itself: those made with JavaScript cost every call that may throw.
+exceptions=-fwasm-exceptions
+
+build_static "$work" fmtlib -DFMT_TEST=OFF -DFMT_DOC=OFF "$toolchain" "-DCMAKE_CXX_FLAGS=$exceptions"
+CC=emcc AR=emar RANLIB=emranlib build_static_zlib "$work" ""
+# Headers alone, which Debian has among all others.
+mkdir -p "$work/inside/include"
+ln -sfn /usr/include/nlohmann "$work/inside/include/nlohmann"
+cmake -S . -B "$work/all" -G Ninja -DCMAKE_BUILD_TYPE=Release "$toolchain" "-DCMAKE_CXX_FLAGS=$exceptions" -DCMAKE_FIND_ROOT_PATH="$work/inside" \
+  -DCMAKE_CXX_FLAGS_RELEASE="-O3 -DNDEBUG" -DZLIB_INCLUDE_DIR="$work/inside/include" -DZLIB_LIBRARY="$work/inside/lib/libz.a" \
+  -DOCTAFRONT_THREADS=OFF -DOCTAFRONT_HDF5=OFF -DOCTAFRONT_PCH=OFF -DOCTAFRONT_UNITY=ON -DOCTAFRONT_BUILD_CLI=OFF \
+  -DOCTAFRONT_BUILD_TESTS=OFF -DOCTAFRONT_BUILD_PYTHON=OFF -DOCTAFRONT_BUILD_EXAMPLES=OFF -DOCTAFRONT_INSTALL=OFF >/dev/null
+cmake --build "$work/all" --target octafront_web
+python3 web/assemble.py "$work/all/web" "$work"
+[ "${1:-}" != --build ] || exit 0
+
+cmake --preset release >/dev/null
+cmake --build --preset release --target octafront_cli >/dev/null
+export OCTAFRONT_PACKAGE=$work/package OCTAFRONT_PROGRAM=$PWD/build/release/cli/octafront OCTAFRONT_SAMPLES=$PWD/samples
+case ${1:-} in
+  --times) node tests/web/times.mjs ;;&
+  --times | --pictures) exec python3 tests/web/page_test.py "$work/octafront.html" "$OCTAFRONT_PROGRAM" "$OCTAFRONT_SAMPLES" "$@" ;;
+esac
+node --test tests/web/package_test.mjs
+/usr/bin/python3 tests/web/page_test.py "$work/octafront.html" "$OCTAFRONT_PROGRAM" "$OCTAFRONT_SAMPLES"

@@ -1,0 +1,119 @@
+#pragma once
+
+// What the C++20 library lacks in libc++ 13, which Debian's emscripten comes with: algorithms on ranges, std::bit_cast,
+// std::to_chars of doubles. Included before all else when building for WebAssembly (cmake/OctafrontTargets.cmake);
+// nothing where libc++ is newer.
+#include <version>
+
+#if defined(_LIBCPP_VERSION) && _LIBCPP_VERSION < 14000
+
+#include <algorithm>
+#include <charconv>
+#include <cstdio>
+#include <functional>
+#include <iterator>
+#include <type_traits>
+
+namespace std {
+
+template <class To, class From>
+requires(sizeof(To) == sizeof(From) && is_trivially_copyable_v<To> && is_trivially_copyable_v<From>) constexpr To
+    bit_cast(const From& from) noexcept {
+  return __builtin_bit_cast(To, from);
+}
+
+/// Those digits that read back as the same number, 17 at most.
+inline to_chars_result to_chars(char* first, char* last, double value, chars_format, int digits) {
+  char text[32];
+  const int length = snprintf(text, sizeof text, "%.*g", digits, value);
+  if (length >= last - first) return {last, errc::value_too_large};
+  return {copy(text, text + length, first), errc()};
+}
+inline to_chars_result to_chars(char* first, char* last, double value) {
+  for (int digits = 15; digits < 17; ++digits) {
+    const to_chars_result tried = to_chars(first, last, value, chars_format::general, digits);
+    if (tried.ec != errc()) return tried;
+    *tried.ptr = 0;
+    if (strtod(first, nullptr) == value) return tried;
+  }
+  return to_chars(first, last, value, chars_format::general, 17);
+}
+
+namespace ranges {
+
+struct octafront_identity {
+  template <class T>
+  constexpr T&& operator()(T&& t) const noexcept {
+    return static_cast<T&&>(t);
+  }
+};
+struct octafront_less {
+  template <class A, class B>
+  constexpr bool operator()(const A& a, const B& b) const {
+    return a < b;
+  }
+};
+
+/// Compares what the projection says of two items.
+template <class Compare, class Projection>
+auto octafront_compared(Compare& compare, Projection& of) {
+  return [&compare, &of](const auto& a, const auto& b) { return invoke(compare, invoke(of, a), invoke(of, b)); };
+}
+
+#define OCTAFRONT_TEST(name)                                                                          \
+  template <class Range, class Test, class Projection = octafront_identity>                           \
+  constexpr auto name(Range&& range, Test test, Projection of = {}) {                                 \
+    return std::name(begin(range), end(range),                                                        \
+                     [&](auto&& item) { return static_cast<bool>(invoke(test, invoke(of, item))); }); \
+  }
+OCTAFRONT_TEST(any_of)
+OCTAFRONT_TEST(all_of)
+OCTAFRONT_TEST(none_of)
+OCTAFRONT_TEST(count_if)
+OCTAFRONT_TEST(find_if)
+#undef OCTAFRONT_TEST
+
+#define OCTAFRONT_ORDER(name)                                                                   \
+  template <class Range, class Compare = octafront_less, class Projection = octafront_identity> \
+  constexpr auto name(Range&& range, Compare compare = {}, Projection of = {}) {                \
+    return std::name(begin(range), end(range), octafront_compared(compare, of));                \
+  }
+OCTAFRONT_ORDER(sort)
+OCTAFRONT_ORDER(stable_sort)
+OCTAFRONT_ORDER(min_element)
+OCTAFRONT_ORDER(max_element)
+#undef OCTAFRONT_ORDER
+
+template <class Range, class T, class Projection = octafront_identity>
+constexpr auto find(Range&& range, const T& value, Projection of = {}) {
+  return std::find_if(begin(range), end(range), [&](const auto& item) { return invoke(of, item) == value; });
+}
+template <class Range, class T>
+constexpr auto count(Range&& range, const T& value) {
+  return std::count(begin(range), end(range), value);
+}
+template <class Range, class T>
+constexpr void fill(Range&& range, const T& value) {
+  std::fill(begin(range), end(range), value);
+}
+template <class Range, class T>
+constexpr void replace(Range&& range, const T& old, const T& now) {
+  std::replace(begin(range), end(range), old, now);
+}
+template <class Range, class T>
+constexpr bool binary_search(Range&& range, const T& value) {
+  return std::binary_search(begin(range), end(range), value);
+}
+template <class Range, class T>
+constexpr auto lower_bound(Range&& range, const T& value) {
+  return std::lower_bound(begin(range), end(range), value);
+}
+template <class A, class B, class Out>
+constexpr Out set_intersection(A&& a, B&& b, Out out) {
+  return std::set_intersection(begin(a), end(a), begin(b), end(b), out);
+}
+
+}  // namespace ranges
+}  // namespace std
+
+#endif
