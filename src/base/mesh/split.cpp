@@ -10,6 +10,7 @@
 #include <charconv>
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -77,6 +78,7 @@ class NodeCopies {
 
   bool is_marked(VertexIndex v) const { return marked_[v]; }
   std::size_t count() const { return extra_.size(); }
+  std::size_t old_points() const { return points_; }
   /// The new number of a node where no element asks.
   VertexIndex self(VertexIndex v) const { return v < corners_ ? v : v + extra_corners_; }
   /// The new number of node v in an element around it.
@@ -221,6 +223,7 @@ class Splitting {
     move_faces(before);
     open_faces(before);
     move_wide(before);
+    move_periodic(before);
     move_sets(before, edges);
     std::string text =
         fmt::format("{} inside opened, {} doubled", counted(opened_.size(), "face"), counted(copies_->count(), "node"));
@@ -235,6 +238,7 @@ class Splitting {
   static TetMesh faces_of(const TetMesh& mesh) {
     TetMesh faces;
     faces.tets = mesh.tets;
+    faces.mid_nodes = mesh.mid_nodes;
     faces.boundary = mesh.boundary;
     faces.interfaces = mesh.interfaces;
     faces.interface_patch = mesh.interface_patch;
@@ -407,6 +411,56 @@ class Splitting {
     mesh_.face_layers.resize(mesh_.boundary.size(), kNone);
     for (std::size_t f = 0; f < gone.size(); ++f)
       if (!gone[f]) mesh_.face_layers.push_back(before.face_layers[before.boundary.size() + f]);
+  }
+
+  /// Of nodes that are doubled those copies are a pair that faces at both ends of the period have at one place.
+  void move_periodic(const TetMesh& before) {
+    if (mesh_.periodic_nodes.empty()) return;
+    std::set<std::array<std::uint32_t, 3>> pairs;
+    std::vector<std::map<VertexIndex, VertexIndex>> original(mesh_.periods.size());
+    for (const auto& [period, copy, of] : mesh_.periodic_nodes) {
+      original[period][copy] = of;
+      if (!copies_->is_marked(copy) && !copies_->is_marked(of))
+        pairs.insert({period, copies_->self(copy), copies_->self(of)});
+    }
+    const FaceTable faces = face_table(copies_->old_points(), before.boundary);
+    for (std::uint32_t k = 0; k < original.size(); ++k)
+      for (std::uint32_t f = 0; f < before.boundary.size(); ++f)
+        if (where_[f] != kNone) pair_face(before, faces, f, k, original[k], pairs);
+    mesh_.periodic_nodes.assign(pairs.begin(), pairs.end());
+  }
+
+  void pair_face(const TetMesh& before, const FaceTable& faces, std::uint32_t f, std::uint32_t period,
+                 const std::map<VertexIndex, VertexIndex>& original,
+                 std::set<std::array<std::uint32_t, 3>>& pairs) const {
+    Triangle of{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto found = original.find(before.boundary[f][i]);
+      if (found == original.end()) return;
+      of[i] = found->second;
+    }
+    const auto group = faces.group_of(of);
+    if (group.empty()) return;
+    const TetIndex here = where_[f], there = where_[group.front().face];
+    const auto pair = [&](VertexIndex copy, VertexIndex first) {
+      pairs.insert(
+          {period, copies_->at(here, copy), there == kNone ? copies_->self(first) : copies_->at(there, first)});
+    };
+    for (std::size_t i = 0; i < 3; ++i) pair(before.boundary[f][i], of[i]);
+    if (before.mid_nodes.empty() || there == kNone) return;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::size_t j = (i + 1) % 3;
+      pair(mid_node(before, here, before.boundary[f][i], before.boundary[f][j]), mid_node(before, there, of[i], of[j]));
+    }
+  }
+
+  static VertexIndex mid_node(const TetMesh& mesh, TetIndex t, VertexIndex a, VertexIndex b) {
+    for (std::size_t e = 0; e < 6; ++e) {
+      const VertexIndex p = mesh.tets[t][static_cast<std::size_t>(kTetEdges[e][0])],
+                        q = mesh.tets[t][static_cast<std::size_t>(kTetEdges[e][1])];
+      if ((p == a && q == b) || (p == b && q == a)) return mesh.mid_nodes[t][e];
+    }
+    return kNone;
   }
 
   void move_sets(const TetMesh& before, const std::vector<std::vector<std::uint32_t>>& edges) {

@@ -9,11 +9,13 @@
 #include "base/geometry/measures.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <set>
 #include <string>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 namespace octafront {
@@ -21,7 +23,8 @@ namespace {
 
 IntakeOptions in_box(Box3 box, std::uint32_t resolution, double cell = 1) {
   IntakeOptions options;
-  options.formula = {box, cell, resolution};
+  options.box = fmt::format("{},{},{},{},{},{}", box.lo.x, box.lo.y, box.lo.z, box.hi.x, box.hi.y, box.hi.z);
+  options.formula = {cell, resolution};
   return options;
 }
 
@@ -117,6 +120,36 @@ TEST(OpenFormula, IsMeshedWithItsNodesOnTheSurface) {
   EXPECT_LT(off, on / 200);
 }
 
+TEST(OpenFormula, OnePeriodOfEachNamedSurfaceMeshesPeriodically) {
+  IntakeOptions options;
+  options.formula.resolution = 24;
+  options.repeat = "xyz";
+  Options how;
+  how.size.size = 0.12;
+  how.periodic = "xyz";
+  for (const char* formula : {"gyroid", "abs(gyroid) < 0.5", "schwarz_p", "diamond", "iwp(x,y,z) - 0.5", "neovius"}) {
+    SCOPED_TRACE(formula);
+    const TetMesh mesh = generate(open_formula(formula, options), how).mesh;
+    EXPECT_EQ(first_defect(mesh), std::nullopt);
+    ASSERT_EQ(mesh.periods.size(), 3u);
+    std::array<std::size_t, 3> pairs{};
+    for (const auto& [period, copy, original] : mesh.periodic_nodes) {
+      EXPECT_EQ(mesh.points[copy], mesh.points[original] + mesh.periods[period]);
+      ++pairs[period];
+    }
+    for (int axis = 0; axis < 3; ++axis)
+      EXPECT_EQ(pairs[static_cast<std::size_t>(axis)],
+                static_cast<std::size_t>(
+                    std::count_if(mesh.points.begin(), mesh.points.end(), [&](Vec3 p) { return p[axis] == 1; })));
+  }
+}
+
+TEST(OpenFormula, APeriodThatTheFormulaHasNotIsRefused) {
+  IntakeOptions options = in_box({{0, 0, 0}, {1, 1.5, 1}}, 24);
+  options.repeat = "y";
+  EXPECT_THROW(open_formula("gyroid", options), InputError);
+}
+
 TEST(OpenFormula, RefusesWhatIsNoBody) {
   const Box3 unit{{0, 0, 0}, {1, 1, 1}};
   const auto message = [](const auto& work) -> std::string {
@@ -132,7 +165,7 @@ TEST(OpenFormula, RefusesWhatIsNoBody) {
   EXPECT_NE(message([&] { open_formula("x - .5"); }).find("`box`"), std::string::npos);
   EXPECT_NE(message([&] {
               open_formula("x - .5", in_box({{0, 0, 0}, {1, 0, 1}}, 16));
-            }).find("no box"),
+            }).find("`box`"),
             std::string::npos);
   EXPECT_NE(message([&] {
               open_formula("gyroid", in_box({{0, 0, 0}, {1, 1, 1}}, 2));
@@ -142,7 +175,7 @@ TEST(OpenFormula, RefusesWhatIsNoBody) {
               open_formula("gyroid", in_box({{0, 0, 0}, {1, 1, 1}}, 100'000));
             }).find("`resolution`"),
             std::string::npos);
-  EXPECT_NE(message([&] { open_domain("no_such.stl", in_box(unit, 16)); }).find("`box`"), std::string::npos);
+  EXPECT_NE(message([&] { open_domain("no_such.stl", in_box(unit, 16)); }).find("`cell`"), std::string::npos);
   SampledFunction few{unit, {8, 8, 8}, std::vector<double>(7)};
   EXPECT_NE(message([&] { open_samples(few); }).find("samples"), std::string::npos);
 }

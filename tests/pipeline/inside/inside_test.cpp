@@ -123,6 +123,31 @@ TEST(Inside, ASplitSheetHasTwoSides) {
   }
 }
 
+TEST(Inside, ASplitSheetThroughAPeriodicCellKeepsItsPairs) {
+  SurfaceMesh wall;
+  wall.points = {{-1, -1, 0.5}, {2, -1, 0.5}, {2, 2, 0.5}, {-1, 2, 0.5}};
+  wall.triangles = {{0, 1, 2}, {0, 2, 3}};
+  Domain domain(embed_sheets(testing::cube(2), {{"wall", wall}}).surface);
+  Options options = at_size(0.2);
+  options.periodic = "xy";
+  for (const int order : {1, 2}) {
+    options.order = order;
+    options.split = "";
+    const TetMesh whole = generate(domain, options).mesh;
+    options.split = "wall";
+    const TetMesh mesh = generate(domain, options).mesh;
+    EXPECT_EQ(first_defect(mesh), std::nullopt);
+    for (const auto& [period, copy, original] : mesh.periodic_nodes)
+      EXPECT_EQ(mesh.points[copy], mesh.points[original] + mesh.periods[period]);
+    const auto on_wall = [](const TetMesh& m) {
+      return std::count_if(m.periodic_nodes.begin(), m.periodic_nodes.end(),
+                           [&](const auto& pair) { return m.points[pair[1]].z == 0.5; });
+    };
+    EXPECT_GT(on_wall(whole), 5);
+    EXPECT_EQ(on_wall(mesh), 2 * on_wall(whole));
+  }
+}
+
 TEST(Inside, NamesOfNothingToSplitAreRefusedBeforeWork) {
   Options options = at_size(0.001);  // would take long
   options.split = "lid";
