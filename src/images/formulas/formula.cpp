@@ -21,14 +21,7 @@
 
 namespace octafront {
 
-namespace {
-
-using formulas::NamedSurface;
-
-constexpr std::size_t kMostCommands = 10'000;
-constexpr std::size_t kDeepest = 64;      ///< of the stack
-constexpr int kMostNesting = 100;         ///< of parentheses
-constexpr double kWholePowers = 1 << 20;  ///< whole exponents up to this are products
+namespace formulas {
 
 enum class Code : std::uint8_t {
   kNumber,
@@ -61,6 +54,19 @@ struct Command {
   double number = 0;
   NamedSurface surface = nullptr;
 };
+
+}  // namespace formulas
+
+namespace {
+
+using formulas::Code;
+using formulas::Command;
+using formulas::NamedSurface;
+
+constexpr std::size_t kMostCommands = 10'000;
+constexpr std::size_t kDeepest = 64;      ///< of the stack
+constexpr int kMostNesting = 100;         ///< of parentheses
+constexpr double kWholePowers = 1 << 20;  ///< whole exponents up to this are products
 
 /// A function by its name; arguments from the least to the most number. More than two are taken pair by pair.
 struct Function {
@@ -400,7 +406,7 @@ bool ends_like_a_file(std::string_view text) {
 }  // namespace
 
 struct Formula::Program {
-  std::vector<Command> commands;
+  std::vector<formulas::Command> commands;
   bool is_periodic = false;
 };
 
