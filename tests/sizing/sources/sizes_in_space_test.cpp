@@ -66,7 +66,8 @@ TEST(MeshSizes, KnowAnUnderBoundInEveryBox) {
     const double least = sizes.least_in(in);
     for (int k = 0; k < 20; ++k) {
       const Vec3 e = in.extent();
-      EXPECT_GE(sizes.at(in.lo + Vec3{part(random) * e.x, part(random) * e.y, part(random) * e.z}).size, least - kRounding);
+      EXPECT_GE(sizes.at(in.lo + Vec3{part(random) * e.x, part(random) * e.y, part(random) * e.z}).size,
+                least - kRounding);
     }
   }
 }
