@@ -52,9 +52,9 @@ struct SampledFunction {
 };
 
 /// The body where a formula is below 0, in the box of `options.formula`: one region "body", whose surface is smooth
-/// between the cells of the box and has its vertices where the formula is 0, as nearly as doubles say; edges that min
-/// and max make are rounded within a cell. The faces of the box are exactly flat. Throws OptionError, InputError where
-/// there is nothing or no surface; Cancelled.
+/// between the cells of the box and lies where the formula is 0, up to rounding at most vertices and within half a cell
+/// at others; generate() puts nodes there again. Edges that min and max make are rounded within a cell. The faces of
+/// the box are exactly flat. Throws OptionError, InputError where there is nothing or no surface; Cancelled.
 Domain open_formula(const std::string& formula, const IntakeOptions& options = {},
                     const RunContext& context = no_context());
 /// The same of samples: what is between them follows from cubics through them. `options.formula` is not asked.

@@ -442,7 +442,7 @@ class CommandLine(unittest.TestCase):
         self.assertAlmostEqual(found["volume"], 8 * 0.59682, delta=0.05)
         self.run_cli("check", cell)
         self.assertIn("x_min", self.run_cli("info", cell).stdout)
-        self.assertIn("at character 8", self.run_cli("mesh", "gyroid+(", "-o", cell, status=2).stderr)
+        self.assertIn("at character 9", self.run_cli("mesh", "gyroid+(", "-o", cell, status=2).stderr)
         self.assertIn("--box", self.run_cli("mesh", "x - 0.5", "-o", cell, status=2).stderr)
         self.assertIn("--cell", self.run_cli("mesh", self.part, "-o", cell, "--cell", 2, status=2).stderr)
 

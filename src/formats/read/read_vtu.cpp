@@ -101,7 +101,7 @@ class Vtu {
       if (array.section == "CellData" && is_set_name(array.name))
         if (auto values = cell_integers(array.name, 0)) data.sets.emplace_back(array.name, *std::move(values));
     data.field = field_of("CellData", xml_.cells);
-    if (data.field.empty()) raw_.field.at_points = field_of("PointData", xml_.points);
+    raw_.field.at_points = field_of("PointData", xml_.points);
     VtkCellTaker taker(input_, raw_, data);
     std::int64_t begin = 0;
     for (std::uint64_t c = 0; c < xml_.cells; ++c) {
@@ -124,6 +124,7 @@ class Vtu {
     std::vector<double> values;
     for (const VtkArray& array : xml_.arrays) {
       if (array.section != section || array.components != 1 || is_numbering(array.name)) continue;
+      if (!array.type.starts_with("Float")) continue;
       if (!raw_.field.offer(input_, array.name)) continue;
       values = vtk_reals(xml_, array, input_, count);
       check_length(array, values.size(), count);

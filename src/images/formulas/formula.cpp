@@ -21,17 +21,6 @@
 
 namespace octafront {
 
-namespace {
-
-using formulas::NamedSurface;
-
-constexpr std::size_t kMostCommands = 10'000;
-constexpr std::size_t kDeepest = 64;      ///< of the stack
-constexpr int kMostNesting = 100;         ///< of parentheses
-constexpr double kWholePowers = 1 << 20;  ///< whole exponents up to this are products
-
-}  // namespace
-
 namespace formulas {
 
 enum class Code : std::uint8_t {
@@ -72,6 +61,12 @@ namespace {
 
 using formulas::Code;
 using formulas::Command;
+using formulas::NamedSurface;
+
+constexpr std::size_t kMostCommands = 10'000;
+constexpr std::size_t kDeepest = 64;      ///< of the stack
+constexpr int kMostNesting = 100;         ///< of parentheses
+constexpr double kWholePowers = 1 << 20;  ///< whole exponents up to this are products
 
 /// A function by its name; arguments from the least to the most number. More than two are taken pair by pair.
 struct Function {

@@ -174,7 +174,7 @@ class InsideSampler {
     }
     const double h = at(box.center());
     if (h == kNothing || (meets_surface && !tree_.contains(box.center()))) return;
-    samples.push_back({box.center(), {}, h});
+    samples.push_back({box.center(), {}, h, box.diagonal() / 2});
     if (samples.size() > kMostInPart)
       throw OptionError(fmt::format(
           "sizes as small as {:.4g} near ({:.6g}, {:.6g}, {:.6g}) are too small for this body; ask for larger sizes or "

@@ -31,7 +31,7 @@ TEST(SizeField, TellsWhoAsksForWhat) {
     if (key.find("size_near") != std::string::npos) by_point = value;
   }
   EXPECT_NEAR(all, 100, 1e-9);
-  EXPECT_GT(by_size, 50);
+  EXPECT_GT(by_size, 30);
   EXPECT_GT(by_point, 1);
   ASSERT_FALSE(report.notes.empty());
   EXPECT_NE(report.notes.back().find("asked by"), std::string::npos);
