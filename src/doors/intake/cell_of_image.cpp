@@ -20,6 +20,8 @@ namespace {
 /// Voxels that are added at each end of a period: what lies between the middles of the first and the last voxel then
 /// looks like the inside of an image.
 constexpr std::uint32_t kAdded = 4;
+/// Vertices of smoothed surfaces this near to a face of the cell, in voxels, go onto it.
+constexpr double kNearFace = 0.1;
 /// The name of what the cell has beside labels, which is left empty.
 constexpr const char* kEmptyName = "outside of all labels";
 
@@ -187,6 +189,8 @@ void name_regions(const SurfaceMesh& image, Complex& cut) {
 
 Complex complex_of_periodic_image(const Image& image, const ImageRegions& regions, const std::array<bool, 3>& along,
                                   const RunContext& context) {
+  if (kind_of(image, regions) != ImageRegions::Kind::kLabels)
+    throw OptionError("`periodic` takes images of labels, not of grey values: make labels of them first");
   const std::array<int, 3> world = world_axes(image.grid);
   std::array<bool, 3> wraps{};
   for (int i = 0; i < 3; ++i) wraps[i] = along[world[i]];
@@ -197,6 +201,8 @@ Complex complex_of_periodic_image(const Image& image, const ImageRegions& region
   bodies.insert(bodies.begin(), box_body(kEmptyName, cell.box));
   ComplexOptions options;
   options.within_first = true;
+  // What nearly lies on a face of the cell lies on it, or elements there would have no room.
+  options.tolerance = kNearFace * smallest_spacing(image.grid);
   Complex cut = join_bodies(bodies, options, context);
   name_regions(whole.surface, cut);
   cut.notes = std::move(whole.notes);
