@@ -39,10 +39,10 @@ using SurfacesOf = std::function<Complex(const Image&)>;
 Complex complex_of_periodic_values(const Image& image, const SurfacesOf& surfaces_of, const std::array<bool, 3>& along,
                                    const std::optional<Box3>& box, const RunContext& context);
 
-/// The complex of an image that goes on periodically along axes of the world: the surfaces of the image with voxels
-/// from its other ends added, cut by the cell, which goes from the middles of the first voxels to those of their next
-/// copies. Vertices of the surfaces lie alike at copies of a place. Throws as complex_of_image(), and InputError for an
-/// image whose axes are not those of the world.
+/// The complex of an image of labels that goes on periodically along axes of the world: the surfaces of the image with
+/// voxels from its other ends added, cut by the cell, which goes from the middles of the first voxels to those of their
+/// next copies. Vertices of the surfaces lie alike at copies of a place. Throws as complex_of_image(), OptionError for
+/// grey values, and InputError for an image whose axes are not those of the world.
 Complex complex_of_periodic_image(const Image& image, const ImageRegions& regions, const std::array<bool, 3>& along,
                                   const RunContext& context);
 

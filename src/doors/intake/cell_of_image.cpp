@@ -24,6 +24,8 @@ constexpr std::uint32_t kAdded = 4;
 constexpr std::uint32_t kAddedToValues = 16;
 /// Vertices of faces that reach into the cell lie within so many voxels of it.
 constexpr double kNearCell = 3;
+/// Vertices of smoothed surfaces this near to a face of the cell, in voxels, go onto it.
+constexpr double kNearFace = 0.1;
 /// The name of what the cell has beside labels, which is left empty.
 constexpr const char* kEmptyName = "outside of all labels";
 
@@ -211,6 +213,8 @@ Complex complex_of_periodic_values(const Image& image, const SurfacesOf& surface
   bodies.insert(bodies.begin(), box_body(kEmptyName, cell.box));
   ComplexOptions options;
   options.within_first = true;
+  // What nearly lies on a face of the cell lies on it, or elements there would have no room.
+  if (!box) options.tolerance = kNearFace * smallest_spacing(image.grid);
   Complex cut = join_bodies(bodies, options, context);
   name_regions(whole.surface, cut);
   cut.notes = std::move(whole.notes);
@@ -219,6 +223,8 @@ Complex complex_of_periodic_values(const Image& image, const SurfacesOf& surface
 
 Complex complex_of_periodic_image(const Image& image, const ImageRegions& regions, const std::array<bool, 3>& along,
                                   const RunContext& context) {
+  if (kind_of(image, regions) != ImageRegions::Kind::kLabels)
+    throw OptionError("`periodic` takes images of labels, not of grey values: make labels of them first");
   const auto surfaces_of = [&](const Image& wrapped) { return complex_of_image(wrapped, regions, context); };
   Complex cut = complex_of_periodic_values(image, surfaces_of, along, std::nullopt, context);
   cut.notes.push_back(

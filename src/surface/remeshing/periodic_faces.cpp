@@ -106,11 +106,8 @@ class FaceCopier {
   }
 
   void find_vertices() {
-    std::vector<std::uint8_t> is_used(surface_.points.size(), 0);
-    for (const Triangle& t : surface_.triangles)
-      for (const VertexIndex v : t) is_used[v] = 1;
-    for (VertexIndex v = 0; v < is_used.size(); ++v)
-      if (is_used[v]) at_.add(surface_.points[v], v);
+    // Also those of dropped triangles alone: at lines between two faces that are copies they have features.
+    for (VertexIndex v = 0; v < surface_.points.size(); ++v) at_.add(surface_.points[v], v);
   }
 
   int axis_of(std::uint32_t patch) {
