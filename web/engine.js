@@ -91,11 +91,21 @@ export function createEngine({ compiled, start }) {
       this.#room = room;
       this.report = report;
     }
-    /** Its worker; after a run has taken or a cancel has ended it, a new one that reads the files again. */
-    async #opened(given = {}) {
+    /** Its worker, which a run takes for itself alone; after that, or when a cancel has ended it, a new one that reads the files again. */
+    async #opened(given = {}, forItself = false) {
       if (!this.#files) throw new Error("this part is closed");
-      if (!this.#room || this.#room.closed) this.#room = (await openedRoom(this.#files, this.#intake, {}, given)).room;
-      return this.#room;
+      const known = this.#room;
+      if (known && !known.closed) {
+        if (forItself) this.#room = null;
+        return known;
+      }
+      const { room } = await openedRoom(this.#files, this.#intake, {}, given);
+      if (!forItself) this.#keep(room);
+      return room;
+    }
+    /** One is enough. */
+    #keep(room) {
+      if (this.#files && !room.closed && (!this.#room || this.#room.closed)) this.#room = room;
     }
     async array(name) {
       return (await this.#opened()).call("array", { of: "part", name });
@@ -108,17 +118,17 @@ export function createEngine({ compiled, start }) {
     }
     /** A new mesh, which takes the worker along. */
     async mesh(options = {}, given = {}) {
-      const room = await this.#opened(given);
-      this.#room = null;
+      const room = await this.#opened(given, true);
+      const inputs = this.#files?.map((file) => file.name) ?? [];
       let report;
       try {
         report = await room.call("generate", { options }, given);
       } catch (error) {
-        if (room.closed || this.#room) room.close();
-        else this.#room = room;
+        this.#keep(room);
+        if (this.#room !== room) room.close();
         throw error;
       }
-      report.inputs = this.#files.map((file) => file.name);
+      report.inputs = inputs;
       return new Mesh(room, report);
     }
     close() {

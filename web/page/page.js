@@ -93,7 +93,7 @@ async function showPart() {
   const { low, high } = boundsOf(points), extent = low.map((l, i) => high[i] - l);
   now.shape = { points, triangles, low, high, extent };
   const { report } = part, unit = report.unit ? " " + shown(report.unit) : "";
-  const rows = [[ "size", extent.map((x) => digits(x)).join(" × ") + unit], ["triangles", grouped(triangles.length / 3)]];
+  const rows = [["extent", extent.map((x) => digits(x)).join(" × ") + unit], ["triangles", grouped(triangles.length / 3)]];
   const volume = (report.regions ?? []).reduce((sum, region) => sum + (region.volume ?? 0), 0) || volumeOf(points, triangles);
   if (volume > 0) rows.push(["volume", digits(volume, 5)]);
   if (report.regions?.length > 1) rows.push(["regions", String(report.regions.length)]);
@@ -323,6 +323,7 @@ async function makeMesh() {
     return complain(error);
   }
   ++foreseeing;
+  byId("estimate").textContent = "";
   const begun = performance.now();
   const result = await work("meshing", async (given) => {
     const mesh = await now.part.mesh(options, given);
@@ -366,8 +367,12 @@ function download(name, parts, type = "application/octet-stream") {
 }
 const stem = () => (now.names[0] ?? "mesh").replace(/(\.nii)?\.[^.]*$/, "");
 
+/** Gmsh's older format is known by its content; OpenFOAM has a folder. */
+const endingOf = ({ name, endings }) => (name === "msh22" ? ".msh" : endings.split(" ")[0]);
+const BOUNDARY = new Set(["stl", "obj", "off", "ply"]);
+
 async function save() {
-  const format = now.info.formats.find((f) => f.name === byId("format").value), name = stem() + format.endings[0];
+  const format = now.info.formats.find((f) => f.name === byId("format").value), name = stem() + endingOf(format);
   const written = await work("writing", (given) => now.mesh.write(name, { format: format.name, ascii: byId("ascii").checked, cells_only: byId("cells").checked }, given));
   if (!written) return;
   byId("notes").replaceChildren(...written.notes.map((note) => make("li", {}, shown(note))));
@@ -384,6 +389,7 @@ function showTab(tab) {
 }
 function passTheme() {
   const root = byId("report").contentDocument?.documentElement, { theme } = document.documentElement.dataset;
+  root?.querySelector("#theme")?.setAttribute("hidden", ""); // one is enough
   if (!root || !theme) return;
   root.dataset.theme = theme;
   const inside = byId("report").contentWindow.octafront;
@@ -444,8 +450,10 @@ async function start() {
   }
   byId("version").textContent = now.info.version;
   listOptions(now.info.options);
-  const writable = now.info.formats.filter((format) => format.writes_mesh);
-  byId("format").replaceChildren(...writable.map((format) => make("option", { value: format.name }, `${format.title} (${format.endings[0]})`)));
+  const writable = now.info.formats.filter((format) => format.writes_mesh), of = (wanted) => writable.filter((format) => BOUNDARY.has(format.name) === wanted);
+  const option = (format) => make("option", { value: format.name }, `${format.title} (${endingOf(format) || "folder"})`);
+  byId("format").replaceChildren(make("optgroup", { label: "elements" }, ...of(false).map(option)), make("optgroup", { label: "the boundary alone" }, ...of(true).map(option)));
+  byId("format").value = "msh";
   performance.measure("ready", { start: 0, end: performance.now() });
 }
 
