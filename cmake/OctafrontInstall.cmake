@@ -1,14 +1,14 @@
 # `cmake --install`, what find_package(octafront) and pkg-config find, and `cpack -G DEB`. Components: what one runs,
 # what programs of others are built with, and what reads CAD, where that was built; of shared libraries also these
-# themselves, and with OCTAFRONT_SYSTEM_PYTHON the Python package that stands on them, and the pages.
+# themselves, and with OCTAFRONT_DEBIAN_PYTHON the Python package that stands on them, and the pages.
 include(CMakePackageConfigHelpers)
 find_program(OCTAFRONT_GZIP gzip)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/octafront)
 set(doc_dir ${CMAKE_INSTALL_DATADIR}/doc)
-option(OCTAFRONT_SYSTEM_PYTHON "Install the Python package for the system's Python, beside shared libraries, and the pages" OFF)
-if(OCTAFRONT_SYSTEM_PYTHON AND NOT BUILD_SHARED_LIBS)
-  message(FATAL_ERROR "OCTAFRONT_SYSTEM_PYTHON stands on shared libraries: add -DBUILD_SHARED_LIBS=ON")
+option(OCTAFRONT_DEBIAN_PYTHON "Install the Python package for the system's Python, beside shared libraries, and the pages" OFF)
+if(OCTAFRONT_DEBIAN_PYTHON AND NOT BUILD_SHARED_LIBS)
+  message(FATAL_ERROR "OCTAFRONT_DEBIAN_PYTHON stands on shared libraries: add -DBUILD_SHARED_LIBS=ON")
 endif()
 set(library_component runtime)
 if(BUILD_SHARED_LIBS)

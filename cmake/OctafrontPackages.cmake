@@ -1,6 +1,6 @@
 # cpack -G DEB: octafront_*.deb with the tool, liboctafront-dev_*.deb with what programs of others are built with,
 # octafront-cad_*.deb with what reads CAD, which brings OpenCASCADE along. Of shared libraries also liboctafront0_*.deb, and with
-# OCTAFRONT_SYSTEM_PYTHON python3-octafront_*.deb and octafront-doc_*.deb: scripts/packages.sh.
+# OCTAFRONT_DEBIAN_PYTHON python3-octafront_*.deb and octafront-doc_*.deb: scripts/packages.sh.
 set(components runtime development)
 set(packages octafront liboctafront-dev)
 if(TARGET octafront_cad_program)
@@ -14,7 +14,7 @@ if(BUILD_SHARED_LIBS)
   list(APPEND packages ${library_package})
 endif()
 
-if(OCTAFRONT_SYSTEM_PYTHON)
+if(OCTAFRONT_DEBIAN_PYTHON)
   list(APPEND components python doc)
   list(APPEND packages python3-octafront octafront-doc)
   # What the wheel has inside are links to what the system has.
@@ -77,7 +77,7 @@ if(BUILD_SHARED_LIBS)
 endif()
 list(JOIN dev_depends ", " CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS)
 
-if(OCTAFRONT_SYSTEM_PYTHON)
+if(OCTAFRONT_DEBIAN_PYTHON)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-octafront)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "${library_package} ${same}, python3:any, python3-numpy")
