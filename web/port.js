@@ -233,7 +233,7 @@
 
   /** What went wrong in words that can be sent; what is no failure of ours is one of the machine or a bug. */
   function described(error) {
-    if (error instanceof Failure) return { message: error.message, status: error.status, report: error.report };
+    if (error instanceof Failure) return { message: error.message.replace(/\/in\/\d+\//g, ""), status: error.status, report: error.report };
     const isMemory = error instanceof RangeError || /memory|allocat/i.test(String(error?.message));
     return { message: isMemory ? "out of memory; ask for fewer elements (`elements`, `size`)" : `unexpected error, which is a bug of ours: ${error?.message ?? error}`, status: isMemory ? 6 : INTERNAL, report: {} };
   }

@@ -408,7 +408,11 @@ function listenToTheme() {
 
 /** Files are taken wherever they are dropped. */
 function listenToFiles() {
-  byId("files").addEventListener("change", (event) => openPart([...event.target.files]));
+  byId("files").addEventListener("change", (event) => {
+    const files = [...event.target.files];
+    event.target.value = ""; // the same file may be chosen again
+    openPart(files);
+  });
   const over = (on) => (event) => {
     event.preventDefault();
     document.body.classList.toggle("over", on);
