@@ -10,7 +10,7 @@ import re
 import subprocess
 import sys
 
-MORE_THAN_ONE_VALUE = {"regions", "point_sizes", "named", "field", "callback", "after_pass"}
+MORE_THAN_ONE_VALUE = {"regions", "point_sizes", "named", "near", "mesh", "field", "callback", "after_pass"}
 NOT_ON_THE_LINE = {"chord_error", "sweeps", "kind"}  # kind: --image
 
 

@@ -555,7 +555,8 @@ class Sizes(Case):
         ball = octafront.mesh(lambda p: np.linalg.norm(p, axis=1) - 1, box=box, resolution=32, size=0.2)
         same = octafront.mesh("hypot(x, y, z) - 1", box=box, resolution=32, size=0.2)
         for mesh in (ball, same):
-            self.assertAlmostEqual(mesh.report["volume"], 4 / 3 * np.pi, delta=0.06)
+            # Chords of .2 cut 1.5 % off.
+            self.assertAlmostEqual(mesh.report["volume"], 4 / 3 * np.pi, delta=0.08)
             self.assertLess(abs(np.linalg.norm(mesh.points[np.unique(mesh.boundary)], axis=1) - 1).max(), 2e-3)
         with self.assertRaises(octafront.OptionError):
             octafront.mesh(lambda p: p[:, 0])
