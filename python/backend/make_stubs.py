@@ -216,7 +216,7 @@ FURTHER = {
     "merge": "Mapping[str, Sequence[int]] | None = None", "iso": "float | None = None",
     "bands": "Mapping[str, tuple[float | None, float | None]] | None = None",
     "crop": "Sequence[Sequence[int | None]] | None = None", "resample": "float | Sequence[float] | None = None",
-    "box": "npt.ArrayLike | None = None",
+    "box": "str | npt.ArrayLike = ''",
     "regions": "Places | None = None", "point_sizes": "npt.ArrayLike | Path | None = None",
     "size_of": "Mapping[str, float] | None = None", 
     "size_near": "Mapping[str | tuple[float, float, float], tuple[float, float]] | None = None",
@@ -253,7 +253,7 @@ def declared(row):
 
 def keywords(task):
     table = {row["name"]: declared(row) for row in option_table() + intake_table()}
-    lines = [f"    {name}: {table.get(name) or FURTHER[name]}" for name in keywords_of(task)]
+    lines = [f"    {name}: {FURTHER.get(name) or table[name]}" for name in keywords_of(task)]
     return ",\n".join(lines)
 
 
