@@ -27,14 +27,15 @@
 #   bench/run.sh layers_shapes   the same on bodies whose layers are known; layers_flows: around bodies, in vessels; layers_peers: beside snappyHexMesh
 #                            and Gmsh; layers_solved: a laminar pipe with and without -> docs/measured/layers.md
 #   bench/run.sh inside      sheets, lines and points in a block, beside Gmsh                -> docs/measured/inside.md
+#   bench/run.sh periodic    periodic cells with and without periods, beside Gmsh, solved    -> docs/measured/periodic.md
 #   bench/run.sh dry_run     mesh --dry-run: elements, time and memory said and taken -> docs/use/command-line.md
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/lib/apt.sh
 
 case ${1:-} in
-  status | derived | pipeline | surface | elements | gradation | volume | graded | peers | complexes | improve | formats | second_order | dry_run | repair | known_answers | damage | images | thin | budget | cad | layers | layers_shapes | layers_flows | layers_peers | layers_solved | inside) ;;
-  *) sed -n '2,30s/^# \{0,1\}//p' "$0"; exit 2 ;;
+  status | derived | pipeline | surface | elements | gradation | volume | graded | peers | complexes | improve | formats | second_order | dry_run | repair | known_answers | damage | images | thin | budget | cad | layers | layers_shapes | layers_flows | layers_peers | layers_solved | inside | periodic) ;;
+  *) sed -n '2,31s/^# \{0,1\}//p' "$0"; exit 2 ;;
 esac
 need_packages "${build_packages[@]}" python3
 [ "$1" != surface ] || need_packages gmsh netgen libcgal-dev libgmp-dev libmpfr-dev
@@ -48,7 +49,8 @@ need_packages "${build_packages[@]}" python3
 [ "$1" != known_answers ] || need_packages "${test_packages[@]}"
 { [ "$1" != repair ] && [ "$1" != damage ]; } || need_packages python3-numpy python3-meshio
 [[ $1 != layers_* ]] || need_packages python3-numpy python3-meshio openfoam
-[ "$1" != inside ] || need_packages python3-numpy python3-meshio python3-gmsh
+[ "$1" != periodic ] || need_packages calculix-ccx
+{ [ "$1" != inside ] && [ "$1" != periodic ]; } || need_packages python3-numpy python3-meshio python3-gmsh
 [ "$1" != layers_peers ] || need_packages python3-gmsh
 [ "$1" != images ] || need_packages libcgal-dev libgmp-dev libmpfr-dev libboost-dev
 [ "$1" != images ] || [ -d volumes ] || scripts/get-volumes.sh
@@ -70,5 +72,5 @@ cmake --build --preset release --target octafront_cli octafront_evaluate octafro
 [[ $1 != layers_* ]] || [ -d models/flows ] || scripts/get-flows.sh build/release/cli/octafront
 python=python3
 [ "$1" != repair ] && [ "$1" != known_answers ] && [ "$1" != damage ] || python=/usr/bin/python3  # Debian's, with its NumPy
-[[ $1 != layers_* ]] && [ "$1" != inside ] || python=/usr/bin/python3
+[[ $1 != layers_* ]] && [ "$1" != inside ] && [ "$1" != periodic ] || python=/usr/bin/python3
 exec "$python" "bench/$1.py" build/release "${@:2}"
