@@ -12,7 +12,7 @@ launcher=()
 [ -z "${CMAKE_CXX_COMPILER_LAUNCHER:-}" ] || launcher=("-DCMAKE_CXX_COMPILER_LAUNCHER=$CMAKE_CXX_COMPILER_LAUNCHER")
 cmake -S . -B "$work" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_INSTALL_PREFIX=/usr -DCMAKE_INSTALL_LIBDIR="lib/$(dpkg-architecture -qDEB_HOST_MULTIARCH)" \
   -DBUILD_SHARED_LIBS=ON -DOCTAFRONT_DEBIAN_PYTHON=ON -DOCTAFRONT_CAD=OFF -DOCTAFRONT_BUILD_PYTHON=OFF -DOCTAFRONT_BUILD_TESTS=OFF \
-  -DOCTAFRONT_BUILD_EXAMPLES=OFF "${launcher[@]}" >/dev/null
+  -DOCTAFRONT_BUILD_EXAMPLES=OFF -DOCTAFRONT_UNITY=ON "${launcher[@]}" >/dev/null
 cmake --build "$work"
 rm -f "$work"/*.deb
 cpack --config "$work/CPackConfig.cmake" -G DEB -B "$work" >/dev/null
