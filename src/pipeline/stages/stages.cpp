@@ -348,6 +348,10 @@ SizeField choose_sizes(const Prepared& input, Run& run) {
     SizeOptions size = run.options.size;
     const double budget = budget_of(input.surface.mesh(), run.options);
     if (std::isfinite(budget)) stage.count("budget of elements", budget);
+    if (run.options.volume.shell > 1)
+      stage.note(
+          "the layers of `shell` are not among the elements expected: two make about twice as many of those that "
+          "reach through walls, three six times");
     if (const auto asked = asked_deviation(run.options); !size.field && asked != 0.0) size.chord_error = asked;
     if (const auto degrees = run.options.surface.normal_deviation)
       refuse_huge_turning(input.surface, size, *degrees, run.context());

@@ -142,6 +142,7 @@ void label_by_walls(Labelled& labelled, const SurfaceMesh& surface, const Parts&
 /// Areas of what became of the faces of one sheet.
 struct Fate {
   double inside = 0, on_walls = 0, outside = 0;
+  double on_others = 0;  ///< on earlier sheets, which name it
 };
 
 std::vector<Fate> fates_of(const Labelled& labelled, const SheetSoup& all, const Parts& parts, std::size_t sheets) {
@@ -149,27 +150,33 @@ std::vector<Fate> fates_of(const Labelled& labelled, const SheetSoup& all, const
   for (std::size_t t = 0; t < labelled.arranged.triangles.size(); ++t) {
     const Origin* sheet = parts.sheet(t);
     if (sheet == nullptr) continue;
+    const std::uint32_t first = all.body[parts.soup_triangle(*sheet)];
     const auto [a, b, c] = labelled.arranged.triangles[t];
     const auto& p = labelled.arranged.points;
     const double area = length(cross(p[b] - p[a], p[c] - p[a])) / 2;
     const auto [front, back] = labelled.cells.sides_of(t);
-    Fate& fate = fates[all.body[parts.soup_triangle(*sheet)] - 1];
+    Fate& fate = fates[first - 1];
     const bool outside = labelled.region[front] == kNone && labelled.region[back] == kNone;
     (parts.wall(t) != nullptr ? fate.on_walls : outside ? fate.outside : fate.inside) += area;
+    for (const Origin& o : labelled.arranged.origins_of(t)) {
+      const std::uint32_t body = all.body[parts.soup_triangle(o)];
+      if (body > first) fates[body - 1].on_others += area;
+    }
   }
   return fates;
 }
 
 void tell_fates(const std::vector<Fate>& fates, const std::vector<Sheet>& sheets, std::vector<std::string>& notes) {
   for (std::size_t s = 0; s < sheets.size(); ++s) {
-    const auto& [inside, on_walls, outside] = fates[s];
-    if (inside + on_walls == 0)
+    const auto& [inside, on_walls, outside, on_others] = fates[s];
+    if (inside + on_walls + on_others == 0)
       throw InputError(
           fmt::format("the sheet {} lies outside of everything: no part of it would be in the mesh; look "
                       "at its coordinates, or leave it out",
                       sheets[s].name));
     std::string text = fmt::format("the sheet {}: area {:.6g} inside", sheets[s].name, inside);
     if (on_walls > 0) text += fmt::format(", {:.4g} on walls, which get its name", on_walls);
+    if (on_others > 0) text += fmt::format(", {:.4g} on earlier sheets, whose names it has", on_others);
     if (outside > 0) text += fmt::format(", {:.4g} outside, cut off", outside);
     notes.push_back(std::move(text));
   }

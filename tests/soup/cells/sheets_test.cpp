@@ -83,6 +83,13 @@ TEST(EmbedSheets, OneThatLiesOnAWallNamesIt) {
   EXPECT_TRUE(find_defects(repair_surface(made.surface)).clean());
 }
 
+TEST(EmbedSheets, OneThatLiesOnAnotherIsSaid) {
+  const SurfaceMesh wall = parallelogram({0.25, 0.25, 0.5}, {0.5, 0, 0}, {0, 0.5, 0});
+  const Complex made = embed_sheets(testing::cube(1), {{"first", wall}, {"second", wall}});
+  EXPECT_NEAR(area_of_patch(made.surface, "first"), 0.25, 1e-12);
+  EXPECT_TRUE(tells(made, "the sheet second: area 0 inside, 0.25 on earlier sheets"));
+}
+
 TEST(EmbedSheets, WithinTheToleranceAnEdgeComesOntoTheWall) {
   const Complex made =
       embed_sheets(testing::cube(1), {{"rib", parallelogram({0.5, 1e-7, 0.25}, {0, 0.5, 0}, {0, 0, 0.5})}});
