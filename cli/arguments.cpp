@@ -304,9 +304,8 @@ void declare_mesh_output(CLI::App& command, Arguments& a) {
       "--cells-only", a.cells_only,
       "Tetrahedra alone, with regions and sets: no faces and edges, which some programs refuse beside them");
   command.add_flag("--cohesive", a.cohesive,
-                   "Cohesive elements of no height between the sides of what --split opened (Abaqus: COH3D6)");
-  command.add_option("--beams", a.beams, "These curves are beams, too, such as those of --wire (Abaqus: B31, B32)")
-      ->type_name("NAME,...");
+                   "Cohesive elements of no height between the two sides of what was split (Abaqus: COH3D6)");
+  command.add_option("--beams", a.beams, "These curves are beams, too (Abaqus: B31, B32)")->type_name("NAME,...");
   command
       .add_option_function<std::vector<std::string>>(
           "--group",

@@ -86,9 +86,9 @@ MeshSizes::Element MeshSizes::element(std::uint32_t number) const {
     made.least = std::min(made.least, size_at_corner(number, v));
   };
   if (mesh_->tets.empty())
-    std::ranges::for_each(mesh_->triangles[number], add);
+    for (const VertexIndex v : mesh_->triangles[number]) add(v);
   else
-    std::ranges::for_each(mesh_->tets[number], add);
+    for (const VertexIndex v : mesh_->tets[number]) add(v);
   return made;
 }
 

@@ -56,7 +56,7 @@ std::string name_of_base(const SizeOptions& o, double base) {
 }
 
 double largest_size(const SizeMesh& mesh) {
-  return std::ranges::max(mesh.point_sizes.empty() ? mesh.element_sizes : mesh.point_sizes);
+  return *std::ranges::max_element(mesh.point_sizes.empty() ? mesh.element_sizes : mesh.point_sizes);
 }
 
 Choice choose(const SurfaceMesh& surface, const SizeOptions& o) {
