@@ -4,6 +4,7 @@
 #include <octafront/formula.h>
 
 #include "base/core/elementary.h"
+#include "formats/containers/doubles.h"
 #include "images/formulas/named_surfaces.h"
 
 #include <algorithm>
@@ -294,7 +295,7 @@ class Parser {
 
   void number() {
     double value = 0;
-    const auto [end, error] = std::from_chars(text_.data() + at_, text_.data() + text_.size(), value);
+    const auto [end, error] = io::double_from_chars(text_.data() + at_, text_.data() + text_.size(), value);
     if (error != std::errc()) fail(at_, "this is no number");
     at_ = static_cast<std::size_t>(end - text_.data());
     emit(Code::kNumber, value);
