@@ -557,7 +557,7 @@ class Sizes(Case):
         for mesh in (ball, same):
             # Chords of .2 cut 1.5 % off.
             self.assertAlmostEqual(mesh.report["volume"], 4 / 3 * np.pi, delta=0.08)
-            self.assertLess(abs(np.linalg.norm(mesh.points[np.unique(mesh.boundary)], axis=1) - 1).max(), 2e-3)
+            self.assertLess(abs(np.linalg.norm(mesh.points[np.unique(mesh.faces)], axis=1) - 1).max(), 2e-3)
         with self.assertRaises(octafront.OptionError):
             octafront.mesh(lambda p: p[:, 0])
         with self.assertRaises(octafront.OptionError):
