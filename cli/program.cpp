@@ -67,6 +67,7 @@ Program::Program() {
       "Exit status: 0 done, 2 usage, 3 input refused, 4 no valid mesh, 5 output not written, 6 out of memory, "
       "130 interrupted (also by a hang-up), 1 a bug of ours");
   declare_makers();
+  declare_surfaces();
   declare_lookers();
   declare_helpers();
 }
@@ -117,7 +118,10 @@ void Program::declare_makers() {
   declare_page(*mesh, a);
   declare_report(*mesh, a);
   declare_run(*mesh, a);
+}
 
+void Program::declare_surfaces() {
+  Arguments& a = arguments_;
   CLI::App* surface = add("surface", "Triangulate the surface anew and stop there",
                           "  octafront surface scan.ply -o even.stl --size 0.5\n", run_surface);
   declare_input(*surface, a);

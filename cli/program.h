@@ -24,6 +24,7 @@ class Program {
   CLI::App* add(const std::string& name, const std::string& help, const std::string& examples,
                 std::function<void(Session&)> run);
   void declare_makers();
+  void declare_surfaces();
   void declare_lookers();
   void declare_helpers();
   void help(Session& session) const;

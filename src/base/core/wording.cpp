@@ -28,6 +28,17 @@ std::string in_faces(std::span<const std::uint32_t> faces) {
   return fmt::format(" ({}face{} {})", shown < faces.size() ? "first: " : "", shown == 1 ? "" : "s", list);
 }
 
+std::vector<std::string> names_listed(const std::string& list, std::span<const std::string> known) {
+  if (std::find(known.begin(), known.end(), list) != known.end()) return {list};
+  std::vector<std::string> names;
+  for (std::size_t from = 0; from < list.size();) {
+    const std::size_t comma = std::min(list.find(',', from), list.size());
+    if (comma > from) names.push_back(list.substr(from, comma - from));
+    from = comma + 1;
+  }
+  return names;
+}
+
 std::string at_point(Vec3 p) {
   // Adding 0 keeps "-0" out of messages.
   return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x + 0.0, p.y + 0.0, p.z + 0.0);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace octafront {
 
@@ -16,6 +17,10 @@ std::string counted(std::uint64_t n, const std::string& one, const std::string& 
 
 /// " (face 17)", " (faces 3, 8 and 12)", " (first: faces 3, 8, 12, 14 and 20)"; empty for no faces.
 std::string in_faces(std::span<const std::uint32_t> faces);
+
+/// The names in a list with commas. Names themselves may hold commas: one of `known` that is called like the whole list
+/// comes first.
+std::vector<std::string> names_listed(const std::string& list, std::span<const std::string> known);
 
 /// "(0.31, 2, 0.5)"
 std::string at_point(Vec3 p);

@@ -1,5 +1,6 @@
 #include "formats/containers/scanner.h"
 
+#include <algorithm>
 #include <limits>
 
 #include <fmt/core.h>
@@ -64,6 +65,17 @@ void Scanner::fail_expected(std::string_view what) {
   if (at_end())
     fail(fmt::format("expected {}, but the file ends here; it is truncated: copy or export it again", what));
   fail(fmt::format("expected {}, found {}; the file is damaged: export it again", what, in_quotes(peek_word())));
+}
+
+std::vector<std::string_view> table_words(std::string_view line) {
+  constexpr std::string_view kBetween = " \t,;\r";
+  std::vector<std::string_view> words;
+  for (std::size_t at = line.find_first_not_of(kBetween); at != std::string_view::npos;) {
+    const std::size_t end = std::min(line.size(), line.find_first_of(kBetween, at));
+    words.push_back(line.substr(at, end - at));
+    at = line.find_first_not_of(kBetween, end);
+  }
+  return words;
 }
 
 }  // namespace octafront::io

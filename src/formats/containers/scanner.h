@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <string_view>
+#include <vector>
 
 namespace octafront::io {
 
@@ -123,5 +124,8 @@ class Scanner {
 
 /// A word as a number: a sign of either kind, infinities and not-a-number allowed; true on success.
 bool parse_number(std::string_view word, double& value);
+
+/// The words of a line of a table, by commas, semicolons or blanks.
+std::vector<std::string_view> table_words(std::string_view line);
 
 }  // namespace octafront::io

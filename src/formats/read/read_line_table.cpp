@@ -14,17 +14,6 @@
 namespace octafront::io {
 namespace {
 
-std::vector<std::string_view> values_of(std::string_view line) {
-  constexpr std::string_view kBetween = " \t,;\r";
-  std::vector<std::string_view> words;
-  for (std::size_t at = line.find_first_not_of(kBetween); at != std::string_view::npos;) {
-    const std::size_t end = std::min(line.size(), line.find_first_of(kBetween, at));
-    words.push_back(line.substr(at, end - at));
-    at = line.find_first_not_of(kBetween, end);
-  }
-  return words;
-}
-
 bool is_number(std::string_view word) {
   double value = 0;
   return parse_number(word, value);
@@ -42,7 +31,7 @@ LinesFile read_line_table(const Input& input) {
     const std::string_view line = rest.substr(0, end);
     rest.remove_prefix(std::min(rest.size(), end + 1));
     if (line.starts_with('#')) continue;
-    const std::vector<std::string_view> words = values_of(line);
+    const std::vector<std::string_view> words = table_words(line);
     const bool are_titles = is_first && std::none_of(words.begin(), words.end(), is_number);
     is_first = is_first && words.empty();
     if (words.empty() || are_titles) {

@@ -17,19 +17,6 @@ namespace octafront {
 
 namespace {
 
-constexpr std::string_view kSeparators = " \t,;\r";
-
-/// The words of a line, by commas, semicolons or blanks.
-std::vector<std::string_view> words_of(std::string_view line) {
-  std::vector<std::string_view> words;
-  for (std::size_t at = line.find_first_not_of(kSeparators); at != std::string_view::npos;) {
-    const std::size_t end = std::min(line.size(), line.find_first_of(kSeparators, at));
-    words.push_back(line.substr(at, end - at));
-    at = line.find_first_not_of(kSeparators, end);
-  }
-  return words;
-}
-
 /// Four finite numbers, the last one above 0; throws InputError with the line.
 PointSize row(const io::Input& input, std::string_view line, const std::vector<std::string_view>& words) {
   if (words.size() != 4)
@@ -96,7 +83,7 @@ std::vector<PointSize> read_point_table(const io::Input& input) {
     const std::string_view line = rest.substr(0, rest.find('\n'));
     progress.reach(line.data());
     rest.remove_prefix(std::min(rest.size(), line.size() + 1));
-    const std::vector<std::string_view> words = words_of(line);
+    const std::vector<std::string_view> words = io::table_words(line);
     if (words.empty()) continue;
     if (!is_first || !are_titles(words)) points.push_back(row(input, line, words));
     is_first = false;

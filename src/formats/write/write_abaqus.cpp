@@ -8,6 +8,7 @@
 
 #include <octafront/error.h>
 
+#include "base/core/wording.h"
 #include "formats/containers/text_writer.h"
 #include "formats/parts/mixed_cells.h"
 #include "formats/write/writers.h"
@@ -53,12 +54,8 @@ class AbaqusWriter {
   }
 
   /// Of the curves in a list with commas. Throws OptionError.
-  void write_beams(const std::string& names) {
-    for (std::size_t from = 0; from < names.size();) {
-      const std::size_t comma = std::min(names.find(',', from), names.size());
-      write_beams_of(names.substr(from, comma - from));
-      from = comma + 1;
-    }
+  void write_beams(const std::string& list) {
+    for (const std::string& name : names_listed(list, mesh_.mesh().curve_names)) write_beams_of(name);
   }
 
   /// COH3D6: the triangle behind, the one in front, in the order in which wedges have theirs.

@@ -2,11 +2,11 @@
 
 #include <octafront/error.h>
 
+#include "base/core/wording.h"
 #include "base/geometry/measures.h"
 #include "base/mesh/complex.h"
 
 #include <algorithm>
-#include <sstream>
 #include <utility>
 
 #include <fmt/core.h>
@@ -16,15 +16,6 @@ namespace octafront::layers {
 namespace {
 
 using Names = std::vector<std::string>;
-
-/// The names themselves may hold commas: one that is called like the whole list comes first.
-Names names_in(const Names& known, const std::string& list) {
-  if (std::ranges::find(known, list) != known.end()) return {list};
-  Names names;
-  std::istringstream in(list);
-  for (std::string name; std::getline(in, name, ',');) names.push_back(name);
-  return names;
-}
 
 std::string in_words(const Names& known, const char* what) {
   std::string words;
@@ -36,7 +27,7 @@ std::string in_words(const Names& known, const char* what) {
 /// Per known name whether the list has it. `option` and `what`: for what is said of others.
 std::vector<std::uint8_t> chosen(const Names& known, const std::string& list, const char* option, const char* what) {
   std::vector<std::uint8_t> is_chosen(known.size(), 0);
-  for (const std::string& name : names_in(known, list)) {
+  for (const std::string& name : names_listed(list, known)) {
     const auto found = std::ranges::find(known, name);
     if (found == known.end())
       throw OptionError(fmt::format("`{}`: there is no {} \"{}\": {}", option, what, name, in_words(known, what)));

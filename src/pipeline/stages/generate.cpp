@@ -4,6 +4,7 @@
 #include <octafront/named_groups.h>
 #include <octafront/split.h>
 
+#include "base/core/wording.h"
 #include "pipeline/inside/fins.h"
 #include "pipeline/stages/kept_shape.h"
 #include "pipeline/stages/measure.h"
@@ -42,17 +43,6 @@ SizeField choose_sizes(const Prepared& input, const Domain& domain, const Option
 /// So often a mesh is made with smaller bounds where solids do not keep their volume.
 constexpr int kTriesOfBounds = 3;
 
-/// Names in a list with commas.
-std::vector<std::string> listed(const std::string& names) {
-  std::vector<std::string> list;
-  for (std::size_t from = 0; from < names.size();) {
-    const std::size_t comma = std::min(names.find(',', from), names.size());
-    if (comma > from) list.push_back(names.substr(from, comma - from));
-    from = comma + 1;
-  }
-  return list;
-}
-
 /// Curves where patches meet, and what stands on fins in their place.
 void finish_curves(TetMesh& mesh, Fins* fins, Run& run) {
   if (fins == nullptr) return add_patch_curves(mesh);
@@ -66,7 +56,8 @@ void finish_curves(TetMesh& mesh, Fins* fins, Run& run) {
 void split(TetMesh& mesh, Run& run) {
   if (run.options.split.empty()) return;
   run.stage("split", [&](const Stage& stage) {
-    for (std::string& note : split_patches(mesh, listed(run.options.split))) stage.note(std::move(note));
+    for (std::string& note : split_patches(mesh, names_listed(run.options.split, mesh.patch_names)))
+      stage.note(std::move(note));
   });
   check_result(mesh, nullptr, run);
 }
@@ -76,7 +67,7 @@ Result generate_once(const Domain& domain, const Options& asked, const RunContex
   const Options options = suited(domain, asked);
   Run run(options, context);
   const Prepared input = prepare(domain, run);
-  check_split(input.surface.mesh(), listed(options.split));
+  check_split(input.surface.mesh(), names_listed(options.split, input.surface.mesh().patch_names));
   const SizeField sizes = choose_sizes(input, domain, asked, run);
   Filled filled = fill_to_target(input, sizes, run);
   improve_in_shape(input, filled, run);
