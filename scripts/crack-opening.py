@@ -11,6 +11,9 @@ import subprocess
 import sys
 import tempfile
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent / "examples" / "solve"))
+import ccx  # noqa: E402
+
 YOUNG, POISSON = 1000.0, 0.3
 HALF = 8.0
 # Corners of the sides of C3D10: S1 = 123, S2 = 124, S3 = 234, S4 = 134.
@@ -32,26 +35,8 @@ def write_bodies(folder):
     write_off(folder / "crack.off", [(0.0, 0.0, 0.0), *rim], [(0, 1 + i, 1 + (i + 1) % count) for i in range(count)])
 
 
-def read_deck(path):
-    """Nodes, elements and sets of nodes of an Abaqus file."""
-    points, elements, sets, rows, name = {}, {}, {}, None, None
-    for line in path.read_text().splitlines():
-        if line.startswith("*"):
-            word = line.split(",")[0].upper()
-            rows = {"*NODE": points, "*ELEMENT": elements, "*NSET": sets}.get(word)
-            name = line.split("=")[-1].strip()
-            continue
-        values = [w for w in line.split(",") if w.strip()]
-        if rows is points:
-            points[int(values[0])] = tuple(map(float, values[1:]))
-        elif rows is elements:
-            elements[int(values[0])] = tuple(map(int, values[1:]))
-        elif rows is sets:
-            sets.setdefault(name, []).extend(map(int, values))
-    return points, elements, sets
-
-
-def write_deck(folder, points, elements):
+def write_deck(folder, mesh):
+    points, elements = mesh.nodes, mesh.elements
     top = {n for n, p in points.items() if p[2] == HALF}
     bottom = [n for n, p in points.items() if p[2] == -HALF]
     corner = {p: n for n, p in points.items() if abs(p[0]) == abs(p[1]) == HALF and p[2] == -HALF}
@@ -65,15 +50,6 @@ def write_deck(folder, points, elements):
     (folder / "deck.inp").write_text("\n".join(lines) + "\n")
 
 
-def displacements(folder):
-    found = {}
-    for line in (folder / "deck.dat").read_text().splitlines():
-        words = line.split()
-        if len(words) == 4 and words[0].isdigit():
-            found[int(words[0])] = float(words[3])
-    return found
-
-
 def main():
     size = float(sys.argv[1]) if len(sys.argv) > 1 else 0.2
     program = pathlib.Path(sys.argv[2] if len(sys.argv) > 2 else "build/release/cli/octafront").resolve()
@@ -82,13 +58,14 @@ def main():
         write_bodies(folder)
         subprocess.run([program, "mesh", "block.off", "--sheet", "crack.off", "--split", "crack", "--size", "2.5", "--size-of",
                         f"crack={size}", "--order", "2", "-o", "mesh.inp", "-q"], cwd=folder, check=True)
-        points, elements, sets = read_deck(folder / "mesh.inp")
-        write_deck(folder, points, elements)
-        subprocess.run(["ccx", "deck"], cwd=folder, check=True, stdout=subprocess.DEVNULL)
-        moved = displacements(folder)
-        behind = {points[n]: n for n in sets["crack_minus"]}
-        opening = sorted((math.hypot(*points[n][:2]), moved[n] - moved[behind[points[n]]]) for n in sets["crack_plus"])
-    print(f"{len(elements)} elements, {len(points)} nodes")
+        mesh = ccx.Mesh(folder / "mesh.inp")
+        write_deck(folder, mesh)
+        ccx.run(folder / "deck.inp")
+        moved = {int(row[0]): row[3] for row in ccx.dat_rows(folder / "deck.dat", "displacements")}
+        points = mesh.nodes
+        behind = {points[n]: n for n in mesh.node_sets["crack_minus"]}
+        opening = sorted((math.hypot(*points[n][:2]), moved[n] - moved[behind[points[n]]]) for n in mesh.node_sets["crack_plus"])
+    print(f"{len(mesh.elements)} elements, {len(points)} nodes")
     for r, found in (opening[0], opening[len(opening) // 2]):
         theory = 8 * (1 - POISSON**2) * math.sqrt(1 - r * r) / (math.pi * YOUNG)
         print(f"at r = {r:.3f} it opens by {found:.6f}, in an infinite body by {theory:.6f}: {found / theory:.4f}")
