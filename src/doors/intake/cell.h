@@ -31,13 +31,18 @@ Body box_body(const std::string& name, const Box3& box);
 /// InputError for a body that does not reach into it.
 std::vector<Body> bodies_in_cell(std::vector<Body> bodies, const IntakeOptions& options);
 
-/// Makes surfaces of an image.
-using SurfacesOf = std::function<Complex(const Image&)>;
+/// How surfaces are made of an image that goes on periodically.
+struct PeriodicSurfaces {
+  std::function<Complex(const Image&)> of;  ///< of the image with voxels added at its ends
+  std::uint32_t margin = 0;                 ///< voxels that are added at each end of a period
+  std::optional<double> tolerance = {};     ///< ComplexOptions::tolerance where the cell is cut out
+  /// A cell of the same periods, no farther from the one of the image than a voxel. Without a value that one.
+  std::optional<Box3> cell = {};
+};
 
-/// complex_of_periodic_image() by another way to make surfaces. `box`: another cell of the same periods, no farther
-/// from the one of the image than a voxel.
-Complex complex_of_periodic_values(const Image& image, const SurfacesOf& surfaces_of, const std::array<bool, 3>& along,
-                                   const std::optional<Box3>& box, const RunContext& context);
+/// complex_of_periodic_image() by another way to make surfaces.
+Complex complex_of_periodic_values(const Image& image, const PeriodicSurfaces& surfaces,
+                                   const std::array<bool, 3>& along, const RunContext& context);
 
 /// The complex of an image of labels that goes on periodically along axes of the world: the surfaces of the image with
 /// voxels from its other ends added, cut by the cell, which goes from the middles of the first voxels to those of their

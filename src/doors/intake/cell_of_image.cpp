@@ -20,8 +20,6 @@ namespace {
 /// Voxels that are added at each end of a period: what lies between the middles of the first and the last voxel then
 /// looks like the inside of an image.
 constexpr std::uint32_t kAdded = 4;
-/// Of values, where vertices spread along the surface: what a sweep does reaches a voxel farther, and there are twelve.
-constexpr std::uint32_t kAddedToValues = 16;
 /// Vertices of faces that reach into the cell lie within so many voxels of it.
 constexpr double kNearCell = 3;
 /// Vertices of smoothed surfaces this near to a face of the cell, in voxels, go onto it.
@@ -201,20 +199,20 @@ void name_regions(const SurfaceMesh& image, Complex& cut) {
 
 }  // namespace
 
-Complex complex_of_periodic_values(const Image& image, const SurfacesOf& surfaces_of, const std::array<bool, 3>& along,
-                                   const std::optional<Box3>& box, const RunContext& context) {
+Complex complex_of_periodic_values(const Image& image, const PeriodicSurfaces& surfaces,
+                                   const std::array<bool, 3>& along, const RunContext& context) {
   const std::array<int, 3> world = world_axes(image.grid);
   std::array<bool, 3> wraps{};
   for (int i = 0; i < 3; ++i) wraps[i] = along[world[i]];
-  Complex whole = surfaces_of(with_wrapped_ends(image, wraps, box ? kAddedToValues : kAdded));
-  const PeriodicCell cell = box ? cell_of(*box, along) : cell_of_grid(image.grid, world, wraps);
+  Complex whole = surfaces.of(with_wrapped_ends(image, wraps, surfaces.margin));
+  const PeriodicCell cell = surfaces.cell ? cell_of(*surfaces.cell, along) : cell_of_grid(image.grid, world, wraps);
   SamePlaces(image.grid, world, wraps, cell).run(whole.surface.points);
   std::vector<Body> bodies = bodies_of_regions(whole.surface);
   bodies.insert(bodies.begin(), box_body(kEmptyName, cell.box));
   ComplexOptions options;
   options.within_first = true;
   // What nearly lies on a face of the cell lies on it, or elements there would have no room.
-  if (!box) options.tolerance = kNearFace * smallest_spacing(image.grid);
+  options.tolerance = surfaces.tolerance;
   Complex cut = join_bodies(bodies, options, context);
   name_regions(whole.surface, cut);
   cut.notes = std::move(whole.notes);
@@ -225,8 +223,9 @@ Complex complex_of_periodic_image(const Image& image, const ImageRegions& region
                                   const RunContext& context) {
   if (kind_of(image, regions) != ImageRegions::Kind::kLabels)
     throw OptionError("`periodic` takes images of labels, not of grey values: make labels of them first");
-  const auto surfaces_of = [&](const Image& wrapped) { return complex_of_image(wrapped, regions, context); };
-  Complex cut = complex_of_periodic_values(image, surfaces_of, along, std::nullopt, context);
+  const PeriodicSurfaces surfaces{[&](const Image& wrapped) { return complex_of_image(wrapped, regions, context); },
+                                  kAdded, kNearFace * smallest_spacing(image.grid)};
+  Complex cut = complex_of_periodic_values(image, surfaces, along, context);
   cut.notes.push_back(
       "the image is taken as periodic: its cell goes from the middle of the first voxels to that of their "
       "next copies");

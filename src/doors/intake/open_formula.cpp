@@ -170,8 +170,11 @@ Complex periodic_body(const SpaceFunction& function, const Cells& cells, const s
     if (along[static_cast<std::size_t>(axis)])
       shift[axis] = (kApart[static_cast<std::size_t>(axis)] - 0.5) * cells.side(axis);
   const Image image = image_of_function(function, cells, shift);
-  const auto surfaces_of = [&](const Image& wrapped) { return complex_of_function(wrapped, function, context); };
-  return intake::complex_of_periodic_values(image, surfaces_of, along, cells.box, context);
+  // Vertices spread along the surface: what a sweep does reaches a voxel farther, and there are twelve.
+  constexpr std::uint32_t kMargin = 16;
+  const intake::PeriodicSurfaces surfaces{
+      [&](const Image& wrapped) { return complex_of_function(wrapped, function, context); }, kMargin, {}, cells.box};
+  return intake::complex_of_periodic_values(image, surfaces, along, context);
 }
 
 Domain opened(const std::shared_ptr<const SpaceFunction>& function, const Cells& cells, std::string format,
