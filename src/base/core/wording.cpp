@@ -29,8 +29,9 @@ std::string in_faces(std::span<const std::uint32_t> faces) {
 }
 
 std::vector<std::string> names_listed(const std::string& list, std::span<const std::string> known) {
-  if (std::find(known.begin(), known.end(), list) != known.end()) return {list};
   std::vector<std::string> names;
+  if (list.empty()) return names;  // patches without a name are called "" as well
+  if (std::find(known.begin(), known.end(), list) != known.end()) return {list};
   for (std::size_t from = 0; from < list.size();) {
     const std::size_t comma = std::min(list.find(',', from), list.size());
     if (comma > from) names.push_back(list.substr(from, comma - from));

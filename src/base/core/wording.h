@@ -19,7 +19,7 @@ std::string counted(std::uint64_t n, const std::string& one, const std::string& 
 std::string in_faces(std::span<const std::uint32_t> faces);
 
 /// The names in a list with commas. Names themselves may hold commas: one of `known` that is called like the whole list
-/// comes first.
+/// comes first. None of an empty list.
 std::vector<std::string> names_listed(const std::string& list, std::span<const std::string> known);
 
 /// "(0.31, 2, 0.5)"
