@@ -69,8 +69,10 @@ if(BUILD_SHARED_LIBS)
   set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME ${library_package})
   set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)
   set(CPACK_DEBIAN_LIBRARY_PACKAGE_SHLIBDEPS ON)
-  set(CPACK_DEBIAN_LIBRARY_PACKAGE_GENERATE_SHLIBS ON)
-  set(CPACK_DEBIAN_LIBRARY_PACKAGE_GENERATE_SHLIBS_POLICY "=")
+  # What packages of others that link it depend on; there is no such variable of a component.
+  set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
+  set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS_POLICY "=")
+  set(CPACK_POST_BUILD_SCRIPTS ${PROJECT_SOURCE_DIR}/cmake/debian/triggers.cmake)
   set(CPACK_COMPONENT_LIBRARY_DESCRIPTION "Tetrahedral finite element meshes from closed surfaces: shared libraries")
   set(CPACK_DEBIAN_RUNTIME_PACKAGE_DEPENDS "${library_package} ${same}")
   set(CPACK_DEBIAN_CAD_PACKAGE_RECOMMENDS "octafront ${same}")
@@ -98,7 +100,7 @@ if command -v py3clean >/dev/null; then py3clean -p python3-octafront; fi
   set(CPACK_DEBIAN_DOC_PACKAGE_NAME octafront-doc)
   set(CPACK_DEBIAN_DOC_PACKAGE_SECTION doc)
   set(CPACK_DEBIAN_DOC_PACKAGE_ARCHITECTURE all)
-  set(CPACK_COMPONENT_DOC_DESCRIPTION "Tetrahedral finite element meshes from closed surfaces: pages, examples, samples")
+  set(CPACK_COMPONENT_DOC_DESCRIPTION "Tetrahedral finite element meshes: pages, examples and samples")
 endif()
 
 # What a Debian package has to say of itself.

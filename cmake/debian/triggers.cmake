@@ -1,0 +1,15 @@
+# After `cpack -G DEB`: a package of shared libraries asks for ldconfig by a trigger, once for all that is installed with it, as Debian
+# wants it. CPack writes scripts that call it.
+foreach(package IN LISTS CPACK_PACKAGE_FILES)
+  cmake_path(GET package FILENAME name)
+  if(NOT name MATCHES "^liboctafront[0-9]")
+    continue()
+  endif()
+  set(unpacked ${package}.unpacked)
+  file(REMOVE_RECURSE ${unpacked})
+  execute_process(COMMAND dpkg-deb --raw-extract ${package} ${unpacked} COMMAND_ERROR_IS_FATAL ANY)
+  file(REMOVE ${unpacked}/DEBIAN/postinst ${unpacked}/DEBIAN/postrm)
+  file(WRITE ${unpacked}/DEBIAN/triggers "activate-noawait ldconfig\n")
+  execute_process(COMMAND dpkg-deb --root-owner-group --build ${unpacked} ${package} OUTPUT_QUIET COMMAND_ERROR_IS_FATAL ANY)
+  file(REMOVE_RECURSE ${unpacked})
+endforeach()
