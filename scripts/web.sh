@@ -11,7 +11,7 @@ cd "$(dirname "$0")/.."
 source scripts/lib/apt.sh
 source scripts/lib/static.sh
 work=$PWD/build/web
-need_packages "${build_packages[@]}" "${browser_packages[@]}" python3 dpkg-dev make nodejs emscripten
+need_packages "${build_packages[@]}" "${browser_packages[@]}" python3 dpkg-dev make nodejs node-typescript emscripten
 # Where Debian's emscripten finds what it needs of Node, whosever Node that is.
 export NODE_PATH=/usr/share/nodejs
 toolchain=-DCMAKE_TOOLCHAIN_FILE=$(dirname "$(readlink -f "$(command -v emcc)")")/cmake/Modules/Platform/Emscripten.cmake
@@ -38,5 +38,13 @@ case ${1:-} in
   --times) node tests/web/times.mjs ;;&
   --times | --pictures) exec python3 tests/web/page_test.py "$work/octafront.html" "$OCTAFRONT_PROGRAM" "$OCTAFRONT_SAMPLES" "$@" ;;
 esac
+# The types, as a program in TypeScript sees them, which finds the package beside itself.
+mkdir -p "$work/types/node_modules"
+ln -sfn "$work/package" "$work/types/node_modules/octafront"
+cp tests/web/types.mts "$work/types/"
+for resolution in node16 node; do
+  (cd "$work/types" && tsc --noEmit --strict --target es2022 --module es2022 --moduleResolution "$resolution" --lib es2022,dom types.mts)
+done
+echo "types: what they promise and what they refuse"
 node --test tests/web/package_test.mjs
 /usr/bin/python3 tests/web/page_test.py "$work/octafront.html" "$OCTAFRONT_PROGRAM" "$OCTAFRONT_SAMPLES"

@@ -26,6 +26,8 @@ export interface IntakeOptions {
 export interface Report {
   hash?: string;
   tets?: number;
+  /** Of `estimate()`. */
+  expected_tets?: number;
   points?: number;
   volume?: number;
   wall_seconds?: number;

@@ -66,6 +66,21 @@ test("arrays are the mesh: volumes add up to the input's", async () => {
   part.close();
 });
 
+test("arrays and names that the types promise are there", async () => {
+  const types = readFileSync(join(OCTAFRONT_PACKAGE, "octafront.d.ts"), "utf8");
+  const part = await open(sample("bracket.stl")), mesh = await part.mesh({ size: 6, order: 2 });
+  for (const [kind, thing] of [["Part", part], ["Mesh", mesh]]) {
+    const declared = types.match(new RegExp(`export interface ${kind} {[^}]*(?:{[^}]*}[^}]*)*\n}`))[0];
+    for (const [, list, type] of declared.matchAll(/array\(\s*name: ([^)]*?),?\s*\): Promise<(\w+)>/g)) {
+      for (const [, name] of list.matchAll(/"(\w+)"/g)) assert.equal((await thing.array(name)).constructor.name, type, `${kind}: ${name}`);
+    }
+    const lists = [...declared.match(/names\(list: ([^)]*)\)/)[1].matchAll(/"(\w+)"/g)];
+    assert.ok(lists.length >= 2);
+    for (const [, list] of lists) assert.ok(Array.isArray(await thing.names(list)), `${kind}: ${list}`);
+    thing.close();
+  }
+});
+
 test("every format that can be written is, and read again by the native program where it reads it", async () => {
   const { formats } = await info();
   const part = await open(sample("bracket.stl")), mesh = await part.mesh({ size: 6 });

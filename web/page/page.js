@@ -142,7 +142,7 @@ function partVertices({ points, triangles, low, high, extent }) {
   const data = new VertexData(triangles.length / 3);
   for (let i = 0; i < triangles.length; ++i) {
     const v = triangles[i];
-    data.add(placed[3 * v], placed[3 * v + 1], placed[3 * v + 2], sums[v] / (counts[v] || 1), colour, 0);
+    data.add(placed[3 * v], placed[3 * v + 1], placed[3 * v + 2], sums[v] / (counts[v] || 1), ...SHARES_OF_CORNER[i % 3], colour, 0);
   }
   return { placed, buffer: data.buffer };
 }

@@ -58,6 +58,27 @@ Bytes point_stream(const TetMesh& mesh, const std::vector<VertexIndex>& old, Vec
   return bytes;
 }
 
+/// Edges that leave their straight line by half a step or more.
+Bytes bend_stream(const TetMesh& mesh, double step) {
+  Bytes bytes;
+  std::vector<bool> seen(mesh.points.size(), false);
+  std::uint64_t last = 0;
+  for (std::size_t t = 0; t < mesh.mid_nodes.size(); ++t)
+    for (std::size_t e = 0; e < 6; ++e) {
+      const VertexIndex mid = mesh.mid_nodes[t][e];
+      if (seen[mid]) continue;
+      seen[mid] = true;
+      const auto& [i, j] = kTetEdges[e];
+      const Vec3 bend = (mesh.points[mid] - 0.5 * (mesh.points[mesh.tets[t][i]] + mesh.points[mesh.tets[t][j]])) / step;
+      const std::array<std::int64_t, 3> steps{std::llround(bend.x), std::llround(bend.y), std::llround(bend.z)};
+      if (steps == std::array<std::int64_t, 3>{}) continue;
+      bytes.number(6 * t + e - last);
+      last = 6 * t + e;
+      for (const std::int64_t n : steps) bytes.difference(n);
+    }
+  return bytes;
+}
+
 struct Shape {
   double beta, min_dihedral, max_dihedral, size_ratio;
 };
@@ -187,6 +208,7 @@ MeshStreams mesh_streams(const TetMesh& mesh, const SizeField* sizes, const RunC
   }
   streams.all.emplace_back("tets", std::move(vertices.tets));
   streams.all.emplace_back("points", point_stream(mesh, vertices.old, streams.origin, streams.step));
+  if (mesh.is_second_order()) streams.all.emplace_back("bends", bend_stream(mesh, streams.step));
   add_shapes(mesh, sizes, context, streams);
   streams.all.emplace_back("region", region_stream(mesh));
   const FaceTable table = half_face_table(mesh.tets, mesh.points.size());

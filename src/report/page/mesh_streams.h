@@ -26,7 +26,8 @@ inline constexpr ByteScale kMinDihedralScale{0, 75};    // degrees; the regular 
 inline constexpr ByteScale kMaxDihedralScale{60, 180};  // degrees
 inline constexpr ByteScale kSizeRatioScale{-2, 2};      // the logarithm to base 2 of edge length made over wanted
 
-/// A mesh in few bytes. Vertices are numbered as the elements meet them; mid-side nodes are left out.
+/// A mesh in few bytes. Vertices are numbered as the elements meet them; of mid-side nodes only those are kept that are
+/// not where the middle of a straight edge is.
 struct MeshStreams {
   std::uint64_t points = 0;
   Vec3 origin;      ///< point (i, j, k) lies at origin + step * (i, j, k)
@@ -41,6 +42,8 @@ struct MeshStreams {
   ///   boundary  a face each: the difference of its half-face (4 t + i) to the one before, its patch
   ///   walls     a face inside each, between two regions or on an interface: the difference of its lower half-face to
   ///             the one before, the other half-face less that, and 0, or its patch + 1
+  ///   bends     a curved edge each, once: the difference of 6 t + its place in kTetEdges to the one before, how far
+  ///             its mid-side node is from the middle of its ends along x, y, z; only of second order
   std::vector<std::pair<const char*, Bytes>> all;
 };
 

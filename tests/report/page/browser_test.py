@@ -247,6 +247,79 @@ class Browser(unittest.TestCase):
         view.click("#clip-smooth")
         self.assertTrue(smooth != view.picture(), "whole elements look otherwise")
 
+    def test_a_smooth_cut_has_no_holes(self):
+        page = self.dir / "cut.html"
+        run_cli("mesh", SAMPLES / "bracket.stl", "-o", self.dir / "cut.vtu", "--size", 4, "--report", page)
+        view = self.open(page)
+        view.click("#views button:nth-child(3)")  # from +y
+        for button in ("#clip", "#clip-smooth", "#edges"):
+            view.click(button)
+        # Without a quantity for elements that are inside all of the cut has one colour, seen straight on; so it must be as large
+        # in pixels as its triangles are.
+        view.js("octafront.state.quantity = 'patch'")
+        for share in (0.31, 0.5, 0.62):  # the middle is a plane of the lattice
+            view.js("octafront.inner.setClipAxis('y'); octafront.inner.moveClip(arguments[0])", share)
+            view.settle()
+            seen, drawn = view.js("""const o = octafront, canvas = document.getElementById('canvas'), copy = document.createElement('canvas');
+                copy.width = canvas.width; copy.height = canvas.height;
+                o.draw();
+                const c = copy.getContext('2d');
+                c.drawImage(canvas, 0, 0);
+                const data = c.getImageData(0, 0, copy.width, copy.height).data, counts = new Map();
+                for (let i = 0; i < data.length; i += 4) {
+                  const colour = data[i] * 65536 + data[i + 1] * 256 + data[i + 2];
+                  counts.set(colour, (counts.get(colour) ?? 0) + 1);
+                }
+                const background = data[0] * 65536 + data[1] * 256 + data[2];
+                counts.delete(background);
+                const project = o.inner.projector(o.camera, canvas), scale = (copy.width / canvas.clientWidth) ** 2;
+                let area = 0;
+                for (const { corners } of o.inner.slice(o.mesh, o.state)) {
+                  const at = corners.map(p => project(p));
+                  for (let i = 2; i < at.length; ++i) area += Math.abs((at[i - 1][0] - at[0][0]) * (at[i][1] - at[0][1]) - (at[i - 1][1] - at[0][1]) * (at[i][0] - at[0][0])) / 2;
+                }
+                return [Math.max(...counts.values()), area * scale]""")
+            self.assertGreater(drawn, 20000)
+            self.assertAlmostEqual(seen, drawn, delta=0.04 * drawn)
+
+    def test_second_order_is_drawn_as_it_bends(self):
+        ball, page = self.dir / "ball.obj", self.dir / "ball.html"
+        RADIUS, N = 3.0, 24
+        grid = [(math.sin(math.pi * i / N) * math.cos(math.pi * k / N), math.sin(math.pi * i / N) * math.sin(math.pi * k / N),
+                 math.cos(math.pi * i / N)) for i in range(1, N) for k in range(2 * N)]
+        at = lambda i, k: 1 + (i - 1) * 2 * N + k % (2 * N)
+        poles = len(grid) + 1, len(grid) + 2
+        faces = [f"f {poles[0]} {at(1, k)} {at(1, k + 1)}\nf {poles[1]} {at(N - 1, k + 1)} {at(N - 1, k)}\n" for k in range(2 * N)]
+        faces += [f"f {at(i, k)} {at(i + 1, k)} {at(i + 1, k + 1)} {at(i, k + 1)}\n" for i in range(1, N - 1) for k in range(2 * N)]
+        ball.write_text("".join(f"v {RADIUS * x} {RADIUS * y} {RADIUS * z}\n" for x, y, z in [*grid, (0, 0, 1), (0, 0, -1)]) + "".join(faces))
+        run_cli("mesh", ball, "-o", self.dir / "ball.vtu", "--size", 2, "--order", 2, "--report", page)
+        view = self.open(page)
+        faces, parts = view.js("return [octafront.mesh.boundary.low.length, octafront.mesh.bends.parts]")
+        self.assertEqual(view.js("return octafront.vertices"), 3 * faces * parts ** 2, "every face bends")
+        least, most = view.js("""const { mesh, inner } = octafront, data = inner.vertexData(mesh, octafront.visibleFaces().solid, 'beta');
+            const floats = new Float32Array(data), radii = [], scale = mesh.radius * mesh.facts.step;
+            for (let i = 0; i < floats.length; i += 8) radii.push(scale * Math.hypot(floats[i], floats[i + 1], floats[i + 2]));
+            return [Math.min(...radii), Math.max(...radii)]""")
+        self.assertGreater(least, 0.98 * RADIUS, "faces that were flat would be at .85 of the radius")
+        self.assertLess(most, 1.02 * RADIUS)
+        view.click("#clip")
+        view.click("#clip-smooth")
+        for share, reach in ((0.5, 1), (0.8, 0.8)):  # of the diameter; of the radius
+            area = view.js("""const { mesh, state, inner } = octafront, { cross, dot } = inner, scale = mesh.radius * mesh.facts.step;
+                inner.setClipAxis('z'); inner.moveClip(arguments[0]);
+                let area = 0;
+                for (const { corners } of inner.slice(mesh, state))
+                  for (let i = 2; i < corners.length; ++i) {
+                    const [a, b, c] = [corners[0], corners[i - 1], corners[i]];
+                    area += Math.abs(dot(cross([0, 1, 2].map(k => b[k] - a[k]), [0, 1, 2].map(k => c[k] - a[k])), state.clip.normal)) / 2;
+                  }
+                return area * scale * scale""", share)
+            self.assertAlmostEqual(area, math.pi * (RADIUS * reach) ** 2, delta=0.03 * area)
+        view.js("octafront.state.selected = octafront.mesh.boundary.low[0] >>> 2; octafront.draw()")
+        self.assertEqual(view.js("return document.getElementById('chosen').getAttribute('d').split('Q').length - 1"), 3, "the edges of its face")
+        extent = view.js("return document.getElementById('numbers').textContent").split("extent x, y, z")[1][:20]
+        self.assertAlmostEqual(float(extent.split(" × ")[0]), 2 * RADIUS, delta=0.02 * RADIUS)
+
     def test_lengths_and_directions_are_told(self):
         view = self.open()
         self.assertIn("extent x, y, z", view.js("return document.getElementById('numbers').textContent"))

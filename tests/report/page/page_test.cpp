@@ -108,6 +108,27 @@ TEST(MeshStreams, HoldEveryElementAndFace) {
   for (const std::uint32_t r : mesh.region) EXPECT_EQ(regions.next(), r);
 }
 
+TEST(MeshStreams, OfMidSideNodesThoseOffTheMiddleAreKept) {
+  TetMesh mesh = testing::with_mid_nodes(testing::rich_mesh(2));
+  EXPECT_TRUE(stream(mesh_streams(mesh, nullptr, {}), "bends").all().empty());
+  EXPECT_THROW(stream(mesh_streams(testing::rich_mesh(2), nullptr, {}), "bends"), std::out_of_range);
+
+  const VertexIndex moved = mesh.mid_nodes[5][3];
+  const auto at = [&](VertexIndex mid) {
+    for (std::size_t i = 0;; ++i)
+      if (mesh.mid_nodes[i / 6][i % 6] == mid) return i;
+  };
+  const double step = mesh_streams(mesh, nullptr, {}).step;
+  mesh.points[moved] += step * Vec3{7, -300, 0.2};
+  const MeshStreams streams = mesh_streams(mesh, nullptr, {});
+  Numbers bends(stream(streams, "bends"));
+  EXPECT_EQ(bends.next(), at(moved)) << "at the first element that has it, once";
+  EXPECT_EQ(bends.difference(), 7);
+  EXPECT_EQ(bends.difference(), -300);
+  EXPECT_EQ(bends.difference(), 0);
+  EXPECT_FALSE(bends.more());
+}
+
 TEST(MeshStreams, SizesAreComparedWithThoseMade) {
   const TetMesh mesh = testing::rich_mesh(2);
   const SizeField sizes = SizeField::uniform(1);

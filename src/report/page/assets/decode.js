@@ -103,7 +103,7 @@ function normalized(steps) {
 /** The mesh with everything that is known of it. */
 async function decodeMesh() {
   const facts = json("facts");
-  const names = ["tets", "points", "region", "boundary", "walls", "beta", "min_dihedral", "max_dihedral", "size_ratio", "layers"];
+  const names = ["tets", "points", "bends", "region", "boundary", "walls", "beta", "min_dihedral", "max_dihedral", "size_ratio", "layers"];
   const bytes = Object.fromEntries(
     await Promise.all(names.map(async (name) => [name, await streamOf(name)])));
   const steps = decodePoints(bytes.points, facts.points);
@@ -120,6 +120,8 @@ async function decodeMesh() {
   if (facts.has_sizes) mesh.values.size_ratio = bytes.size_ratio;
   if (facts.has_layers) mesh.values.layers = bytes.layers;
   mesh.around = lengthsAround(mesh);
+  mesh.bends = decodeBends(bytes.bends, mesh);
+  mesh.outline = withMiddles(mesh);
   return mesh;
 }
 

@@ -55,12 +55,18 @@ function background() {
 /** The element that was chosen, and a place that was asked for. */
 function drawOverlay() {
   const project = projector(camera, canvas);
+  const written = (at) => at.map((x) => x.toFixed(1));
+  // Of edges that bend, on the canvas.
+  const middleOfEdge = (t, e) => {
+    const [a, b] = [mesh.tets[4 * t + EDGES[e]], mesh.tets[4 * t + EDGES[e + 1]]], bend = bendOf(mesh, a, b);
+    return bend && project(middleOf([pointOf(a), pointOf(b)]).map((x, i) => x + bend[i]));
+  };
   let path = "";
   if (state.selected >= 0) {
     const corners = [0, 1, 2, 3].map((i) => project(pointOf(mesh.tets[4 * state.selected + i])));
     for (let e = 0; e < 12; e += 2) {
-      const [a, b] = [corners[EDGES[e]], corners[EDGES[e + 1]]];
-      if (a && b) path += `M${a.map((x) => x.toFixed(1))}L${b.map((x) => x.toFixed(1))}`;
+      const [a, b] = [corners[EDGES[e]], corners[EDGES[e + 1]]], middle = middleOfEdge(state.selected, e);
+      if (a && b) path += `M${written(a)}${middle ? `Q${written(a.map((x, i) => 2 * middle[i] - (x + b[i]) / 2))} ` : "L"}${written(b)}`;
     }
   }
   byId("chosen").setAttribute("d", path);
@@ -274,7 +280,7 @@ function toggleClip(on) {
 function frame() {
   const SIDES = 24, TOP_AND_BOTTOM = 52, width = canvas.clientWidth, height = Math.max(1, canvas.clientHeight);
   const room = (length, edge) => Math.max(0.5, 1 - (2 * edge) / length), tangent = tangentOf(canvas);
-  camera.frame(mesh.points, [((tangent * width) / height) * room(width, SIDES), tangent * room(height, TOP_AND_BOTTOM)]);
+  camera.frame(mesh.outline, [((tangent * width) / height) * room(width, SIDES), tangent * room(height, TOP_AND_BOTTOM)]);
 }
 
 const VIEWS = { "+x": [[1, 0, 0], [0, 0, 1]], "−x": [[-1, 0, 0], [0, 0, 1]], "+y": [[0, 1, 0], [0, 0, 1]], "−y": [[0, -1, 0], [0, 0, 1]], "+z": [[0, 0, 1], [0, 1, 0]], "−z": [[0, 0, -1], [0, 1, 0]] };
@@ -414,7 +420,6 @@ function showNumbers() {
   byId("title").replaceChildren(name(title));
   const facts = json("facts");
   byId("numbers").append(...[summaryPanel(report, facts, mesh), solidsPanel(report), worstPanel(report, goToElement), qualityPanel(report.quality, mesh), sizesPanel(report, mesh), stagesPanel(report), repairPanel(report, goToPlace), notesPanel(report, goToPlace), repeatPanel(report)].filter(Boolean));
-  if (facts.second_order) byId("numbers").append(make("p", { class: "hint" }, "Elements of second order are drawn with straight edges."));
 }
 
 async function start() {
@@ -454,6 +459,6 @@ async function start() {
 window.octafront = {
   state, camera, get mesh() { return mesh; }, get vertices() { return picture ? picture.solid.vertices : 0; },
   draw: () => drawNow(), finish: () => picture.finish(), rebuild: () => (facesWaiting = true), visibleFaces: () => visibleFaces(mesh, state),
-  inner: { along, cross, countsOf, dot, fittedEnds, moveClip, placeOf, planeOf, projector, setClipAxis, slice, valueOf },
+  inner: { along, countsOf, cross, dot, fittedEnds, moveClip, placeOf, planeOf, projector, setClipAxis, slice, valueOf, vertexData },
 };
 start();

@@ -100,13 +100,13 @@ function summaryPanel(report, facts, mesh) {
   return panel("Mesh", table(rows, null, "pairs"));
 }
 
-function extentOf({ steps, facts }) {
+function extentOf({ outline, radius, facts }) {
   const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
-  for (let i = 0; i < steps.length; ++i) {
-    low[i % 3] = Math.min(low[i % 3], steps[i]);
-    high[i % 3] = Math.max(high[i % 3], steps[i]);
+  for (let i = 0; i < outline.length; ++i) {
+    low[i % 3] = Math.min(low[i % 3], outline[i]);
+    high[i % 3] = Math.max(high[i % 3], outline[i]);
   }
-  return low.map((l, axis) => (high[axis] - l) * facts.step);
+  return low.map((l, axis) => (high[axis] - l) * radius * facts.step);
 }
 
 function betaHistogram(mesh, facts) {

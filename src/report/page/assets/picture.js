@@ -6,19 +6,20 @@ layout(location = 0) in vec3 position;
 layout(location = 1) in vec4 colour;
 layout(location = 2) in uint element;
 layout(location = 3) in float around;
+layout(location = 4) in vec4 shares;
 uniform mat4 view, projection;
-out vec3 seen, corner, place;
+out vec3 seen, place;
+out vec4 corner;
 out float length_around;
 flat out vec3 paint;
-flat out uint number;
+flat out uint number, in_slice;
 void main() {
   vec4 p = view * vec4(position, 1);
   seen = p.xyz;
   place = position;
   length_around = around;
-  int k = gl_VertexID % 3, hidden = int(colour.a * 255.0 + 0.5);
-  // Bit k: the side opposite to corner k is no edge of an element.
-  corner = max(vec3(k == 0, k == 1, k == 2), vec3(hidden & 1, hidden >> 1 & 1, hidden >> 2 & 1));
+  corner = shares;
+  in_slice = uint(colour.a * 255.0 + 0.5);
   paint = colour.rgb;
   number = element;
   gl_Position = projection * p;
@@ -26,16 +27,17 @@ void main() {
 
 const FRAGMENT_SHADER = `#version 300 es
 precision highp float;
-in vec3 seen, corner, place;
+in vec3 seen, place;
+in vec4 corner;
 in float length_around;
 flat in vec3 paint;
-flat in uint number;
+flat in uint number, in_slice;
 uniform float edges, opacity, pixels;
 uniform vec4 plane;
 uniform bool picking;
 out vec4 result;
 void main() {
-  if (dot(plane.xyz, place) > plane.w) discard;
+  if (in_slice == 0u && dot(plane.xyz, place) > plane.w) discard;
   if (picking) {
     uint n = number + 1u;
     result = vec4(n & 255u, n >> 8 & 255u, n >> 16 & 255u, n >> 24) / 255.0;
@@ -43,10 +45,11 @@ void main() {
   }
   vec3 normal = normalize(cross(dFdx(seen), dFdy(seen)));
   float light = 0.5 + 0.44 * abs(normal.z) + 0.1 * normal.y - 0.04 * normal.x;
-  vec3 tint = gl_FrontFacing ? paint : mix(paint, vec3(0.5), 0.35) * 0.75;
-  vec3 width = fwidth(corner);
-  vec3 near = smoothstep(width * 0.25, width * 1.15, corner);
-  float line = 1.0 - min(near.x, min(near.y, near.z));
+  vec3 tint = gl_FrontFacing || in_slice == 1u ? paint : mix(paint, vec3(0.5), 0.35) * 0.75;
+  // Where a share is nothing, an edge is; what is everywhere the same is none.
+  vec4 width = max(fwidth(corner), 1e-6);
+  vec4 near = smoothstep(width * 0.25, width * 1.15, corner);
+  float line = 1.0 - min(min(near.x, near.y), min(near.z, near.w));
   // Where triangles are some pixels wide only, lines would hide all colour.
   float room = smoothstep(4.0, 22.0, length_around * pixels / -seen.z);
   result = vec4(mix(tint * light, vec3(0.05, 0.06, 0.09), line * room * edges * 0.62), opacity);
@@ -90,11 +93,12 @@ class Picture {
     const gl = this.gl, layer = { array: gl.createVertexArray(), buffer: gl.createBuffer(), vertices: 0 };
     gl.bindVertexArray(layer.array);
     gl.bindBuffer(gl.ARRAY_BUFFER, layer.buffer);
-    for (const place of [0, 1, 2, 3]) gl.enableVertexAttribArray(place);
+    for (const place of [0, 1, 2, 3, 4]) gl.enableVertexAttribArray(place);
     gl.vertexAttribPointer(0, 3, gl.FLOAT, false, BYTES_PER_VERTEX, 0);
     gl.vertexAttribPointer(1, 4, gl.UNSIGNED_BYTE, true, BYTES_PER_VERTEX, 12);
     gl.vertexAttribIPointer(2, 1, gl.UNSIGNED_INT, BYTES_PER_VERTEX, 16);
     gl.vertexAttribPointer(3, 1, gl.FLOAT, false, BYTES_PER_VERTEX, 20);
+    gl.vertexAttribPointer(4, 4, gl.UNSIGNED_SHORT, true, BYTES_PER_VERTEX, 24);
     return layer;
   }
 
