@@ -1,4 +1,4 @@
-"""Builds the wheel (PEP 517): CMake compiles, this packs. Needs nothing but Python 3.11, CMake, and readelf.
+"""Builds the wheel (PEP 517): CMake compiles, this packs. Needs nothing but Python 3.11, CMake, and readelf or otool.
 
 Settings, by pip's --config-settings KEY=VALUE:
     build-dir=DIR   a CMake build folder to use, made already or not; by default build/wheel
@@ -9,7 +9,8 @@ Settings, by pip's --config-settings KEY=VALUE:
 The wheel carries the libraries that ours need, but for those that every Linux has (EVERYWHERE), beside ours, where ours
 look first; and where OpenCASCADE was found octafront-cad, which reads CAD files by OpenCASCADE's libraries of the system.
 It is tagged with the oldest glibc that all of them can run with, and for every Python 3: no compiled part
-knows of Python.
+knows of Python. On macOS our binaries stand on nothing but the system (scripts/wheel-macos.sh has the libraries compiled in),
+and the tag says for which system they were compiled (MACOSX_DEPLOYMENT_TARGET).
 """
 
 import base64
@@ -56,8 +57,8 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     settings = config_settings or {}
     build = pathlib.Path(settings.get("build-dir") or ROOT / "build" / "wheel").resolve()
     compile_in(build, settings.get("jobs"), shlex.split(settings.get("cmake-args") or ""))
-    binaries = collect(build / "python" / "octafront" / "_bin")
-    tag = f"py3-none-manylinux_{'_'.join(map(str, glibc_of(binaries.values())))}_{settings.get('machine') or machine()}"
+    binaries, system = (collect_macos if sys.platform == "darwin" else collect)(build / "python" / "octafront" / "_bin")
+    tag = f"py3-none-{system}_{settings.get('machine') or machine()}"
     name = f"octafront-{version()}-{tag}.whl"
     with Wheel(pathlib.Path(wheel_directory) / name) as wheel:
         for path in sorted((ROOT / "python" / "octafront").iterdir()):
@@ -123,7 +124,7 @@ def machine():
 # ---- what the binaries need ----
 
 def collect(folder):
-    """{name: file} of our binaries and all libraries that they need but for those that are everywhere."""
+    """{name: file} of our binaries and all libraries that they need but for those that are everywhere; the system of the tag."""
     found = {name: folder / name for name in ("liboctafront.so", "octafront")}
     waiting = list(found.values())
     while waiting:
@@ -142,7 +143,22 @@ def collect(folder):
             waiting.append(found[match[1]])
     if (folder / "octafront-cad").exists():
         found["octafront-cad"] = folder / "octafront-cad"
-    return found
+    return found, "manylinux_{}_{}".format(*glibc_of(found.values()))
+
+
+def collect_macos(folder):
+    """The same, where nothing of others may be needed."""
+    found = {name: folder / name for name in ("liboctafront.so", "octafront")}
+    systems = set()
+    for file in found.values():
+        for needed in re.findall(r"^\t(\S+) \(", output("otool", "-L", file), re.M):
+            if not needed.startswith(("/usr/lib/", "/System/", "@rpath/liboctafront.so")):
+                raise SystemExit(f"{file.name} needs {needed}, which other machines have not")
+        systems.update(re.findall(r"^ *minos (\d+)\.(\d+)", output("otool", "-l", file), re.M))
+    # Installers know systems by their first number.
+    if len(systems) != 1 or (system := systems.pop())[1] != "0":
+        raise SystemExit(f"compiled for {sorted(systems)}: set MACOSX_DEPLOYMENT_TARGET to one system, such as 14.0")
+    return found, f"macosx_{system[0]}_0"
 
 
 def glibc_of(files):

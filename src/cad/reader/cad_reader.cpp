@@ -16,7 +16,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#ifdef __APPLE__
+#include <crt_externs.h>
+#else
 extern char** environ;
+#endif
 
 namespace octafront::cad {
 
@@ -34,12 +38,47 @@ void close_end(int& fd) {
   fd = -1;
 }
 
+/// What programs that are started are told of this one's; libraries of macOS see it by a function alone.
+char** environment() {
+#ifdef __APPLE__
+  return *_NSGetEnviron();
+#else
+  return environ;
+#endif
+}
+
+int open_pipe(std::array<int, 2>& ends) {
+#ifdef __APPLE__
+  // There is no pipe2().
+  if (pipe(ends.data()) != 0) return -1;
+  for (const int fd : ends) fcntl(fd, F_SETFD, FD_CLOEXEC);
+  return 0;
+#else
+  return pipe2(ends.data(), O_CLOEXEC);
+#endif
+}
+
 /// A pipe whose ends no other program that is started meanwhile inherits.
 std::array<int, 2> make_pipe() {
   std::array<int, 2> ends{-1, -1};
-  if (pipe2(ends.data(), O_CLOEXEC) != 0)
+  if (open_pipe(ends) != 0)
     throw InputError(fmt::format("no pipe to the CAD reader: {}", std::strerror(errno)));
   return ends;
+}
+
+/// Signals that are blocked in this thread, and came meanwhile, are had.
+void take_pending(const sigset_t& signals) {
+#ifdef __APPLE__
+  // There is no sigtimedwait(). SIGPIPE goes to the thread that wrote, so nobody else takes what is seen here.
+  for (sigset_t pending; sigpending(&pending) == 0 && sigismember(&pending, SIGPIPE) == 1;) {
+    int taken = 0;
+    sigwait(&signals, &taken);
+  }
+#else
+  const timespec now{};
+  while (sigtimedwait(&signals, nullptr, &now) > 0) {
+  }
+#endif
 }
 
 std::string place_of(const Where& where) {
@@ -72,7 +111,7 @@ class CadReader::Process {
     std::vector<char*> argv;
     for (std::string& a : arguments) argv.push_back(a.data());
     argv.push_back(nullptr);
-    const int failed = posix_spawn(&pid_, program.c_str(), &actions, nullptr, argv.data(), environ);
+    const int failed = posix_spawn(&pid_, program.c_str(), &actions, nullptr, argv.data(), environment());
     posix_spawn_file_actions_destroy(&actions);
     close_end(to[0]), close_end(from[1]);
     to_ = to[1], from_ = from[0];
@@ -99,9 +138,7 @@ class CadReader::Process {
       if (n <= 0) break;  // it is dead: reading will tell
       sent += static_cast<std::size_t>(n);
     }
-    const timespec now{};
-    while (sigtimedwait(&pipe, nullptr, &now) > 0) {
-    }
+    take_pending(pipe);
     pthread_sigmask(SIG_SETMASK, &before, nullptr);
   }
 

@@ -118,7 +118,12 @@ std::uint64_t mesh_hash(const TetMesh& mesh) {
 std::uint64_t peak_memory_bytes() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+#ifdef __APPLE__
+  constexpr std::uint64_t kBytesEach = 1;
+#else
+  constexpr std::uint64_t kBytesEach = 1024;
+#endif
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * kBytesEach;
 }
 
 }  // namespace octafront
