@@ -25,8 +25,8 @@ namespace {
 Options checked_options_of(const Session& session) {
   const Arguments& a = session.arguments();
   Options options = with_preset(a);
-  if (!a.regions.empty()) options.size.regions = read_size_regions(a.regions, session.context());
-  if (!a.point_sizes.empty()) options.size.point_sizes = read_point_sizes(a.point_sizes, session.context());
+  if (!a.regions.empty()) options.size.regions = read_size_regions(a.regions.string(), session.context());
+  if (!a.point_sizes.empty()) options.size.point_sizes = read_point_sizes(a.point_sizes.string(), session.context());
   if (!a.size_field.empty()) read_sizes_into(options.size, a.size_field.string(), session.context());
   check_options(options);
   return options;
@@ -173,30 +173,30 @@ void run_mesh(Session& session) {
 
 void run_surface(Session& session) {
   const Arguments& a = session.arguments();
-  check_surface_target(a.output);
+  check_surface_target(a.output.string());
   const SurfaceResult result = run_on_input(session, generate_surface);
   session.context().report("writing", -1);
-  write_surface(a.output, result.surface, session.context());
+  write_surface(a.output.string(), result.surface, session.context());
   session.tell(result.report);
   say_written(session);
 }
 
 void run_repair(Session& session) {
   const Arguments& a = session.arguments();
-  check_surface_target(a.output);
+  check_surface_target(a.output.string());
   IntakeOptions options = a.intake;
   options.tidies = true;
   const Domain domain = open_input(session, options);
   session.context().report("writing", -1);
-  write_surface(a.output, domain.surface, session.context());
+  write_surface(a.output.string(), domain.surface, session.context());
   say_written(session);
 }
 
 void run_size(Session& session) {
   const Arguments& a = session.arguments();
-  if (!a.output.empty()) check_size_field_target(a.output);
+  if (!a.output.empty()) check_size_field_target(a.output.string());
   const SizeResult result = run_on_input(session, generate_sizes);
-  if (!a.output.empty()) write_size_field(a.output, result.sizes, session.context());
+  if (!a.output.empty()) write_size_field(a.output.string(), result.sizes, session.context());
   session.tell(result.report);
   if (!a.output.empty()) say_written(session);
 }
@@ -208,7 +208,7 @@ void run_improve(Session& session) {
   check_options(a.options);
   const TetMesh mesh = read_mesh_input(session);
   SurfaceMesh surface;
-  if (!a.surface.empty()) surface = read_surface(a.surface, session.context()).surface;
+  if (!a.surface.empty()) surface = read_surface(a.surface.string(), session.context()).surface;
   const auto improved = [&] {
     try {
       return improve_existing(mesh, a.options, a.surface.empty() ? nullptr : &surface, session.context());
@@ -240,7 +240,8 @@ void run_convert(Session& session) {
 
 void run_check(Session& session) {
   const Arguments& a = session.arguments();
-  if (a.bodies.size() == 1 && is_tet_mesh_file(a.input) && holds_tetrahedra(a.input)) return check_tet_mesh(session);
+  if (a.bodies.size() == 1 && is_tet_mesh_file(a.input.string()) && holds_tetrahedra(a.input.string()))
+    return check_tet_mesh(session);
   if (session.arguments().solver) throw OptionError("--solver looks at tetrahedral meshes; this is a surface");
   check_surface(session);
 }

@@ -46,10 +46,10 @@ std::vector<Options> options_to_compare(const CompareArguments& a) {
 void check_outputs(const CompareArguments& a) {
   for (const std::filesystem::path& output : comparison_files(a.common.output))
     for (const std::filesystem::path& input : a.inputs)
-      if (same_file(input, output))
+      if (same_file(input.string(), output.string()))
         throw OptionError(
             fmt::format("{}: an input that the comparison would overwrite; give another folder", input.string()));
-  check_text_target(comparison_files(a.common.output).front());
+  check_text_target(comparison_files(a.common.output).front().string());
 }
 
 }  // namespace
@@ -91,7 +91,7 @@ void run_compare(const CompareArguments& a, Session& session) {
   check_outputs(a);
   std::vector<Comparison> all;
   for (const std::filesystem::path& input : a.inputs) {
-    const SurfaceFile file = read_surface(input, session.context());
+    const SurfaceFile file = read_surface(input.string(), session.context());
     for (const Options& options : runs) {
       for (const Method method : a.methods) {
         all.push_back(run_one(input, file, method, options, session.context()));

@@ -221,8 +221,9 @@ std::vector<std::filesystem::path> comparison_files(const std::filesystem::path&
 }
 
 void write_comparison(const std::filesystem::path& folder, const std::vector<Comparison>& all) {
-  write_text(folder / "compare.csv", csv_of(all));
-  write_text(folder / "compare.json", json_of_runs(all).dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  write_text((folder / "compare.csv").string(), csv_of(all));
+  write_text((folder / "compare.json").string(),
+             json_of_runs(all).dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
   if (!can_draw()) return;
   draw_beta(folder, all);
   draw_times(folder, all);

@@ -3,6 +3,8 @@
 #include <octafront/error.h>
 #include <octafront/io.h>
 
+#include "text.h"
+
 #include <string>
 #include <vector>
 
@@ -45,7 +47,7 @@ SurfaceMesh marks_of(const std::vector<IntakeRepair>& repairs) {
   session.found({{"leak", way}});
   const std::filesystem::path beside = cavity_neighbour(session.arguments());
   if (beside.empty() || leak.way.size() < 2) throw leak;
-  write_surface(leak_file(beside), tube_along(leak.way));
+  write_surface(leak_file(beside).string(), tube_along(leak.way));
   throw InputError(fmt::format("{}\nThe way through the hole is in {}", leak.what(), leak_file(beside).string()));
 }
 
@@ -62,10 +64,10 @@ Domain open_input(Session& session, const IntakeOptions& options) {
     note.stage.empty() ? session.say(note.text + "\n") : session.say_notes(note.stage, {note.text});
   };
   try {
-    Domain domain = open_domain(std::vector<std::string>(a.bodies.begin(), a.bodies.end()), told, session.context());
+    Domain domain = open_domain(in_utf8(a.bodies), told, session.context());
     session.found(Json::parse(to_json(domain)));
     if (!a.defects.empty() && !domain.repairs.empty())
-      write_surface(a.defects, marks_of(domain.repairs), session.context());
+      write_surface(a.defects.string(), marks_of(domain.repairs), session.context());
     return domain;
   } catch (const LeakError& leak) {
     fail_with_way(session, leak);

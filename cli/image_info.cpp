@@ -3,6 +3,7 @@
 #include <octafront/image.h>
 
 #include "mesh_in_words.h"
+#include "text.h"
 
 #include <algorithm>
 #include <array>
@@ -144,8 +145,7 @@ void tell_values(Session& session, const Image& image) {
 
 void tell_image_info(Session& session) {
   const Arguments& a = session.arguments();
-  const std::vector<std::string> files(a.bodies.begin(), a.bodies.end());
-  const Image image = read_image(files, a.intake.image.choice, session.context());
+  const Image image = read_image(in_utf8(a.bodies), a.intake.image.choice, session.context());
   session.say(fmt::format("{}: {}, {}\n", a.input.string(), image.format, in_words(image.grid)));
   session.say_notes("reading", image.notes);
   tell_grid(session, image);

@@ -108,8 +108,8 @@ bool tell_size_field_info(Session& session) {
 
 void run_info(Session& session) {
   const std::filesystem::path& file = session.arguments().input;
-  if (is_image(file)) return tell_image_info(session);
-  if (is_cad(file)) return tell_cad_info(session);
+  if (is_image(file.string())) return tell_image_info(session);
+  if (is_cad(file.string())) return tell_cad_info(session);
   if (session.arguments().intake.image.choice.series > 0)
     throw OptionError(fmt::format("--series is for images, and {} is none that is known here", file.string()));
   if (session.arguments().bodies.size() > 1) throw OptionError("info tells of one file at a time");

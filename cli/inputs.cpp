@@ -10,7 +10,7 @@ namespace octafront::cli {
 
 SurfaceFile read_input(const Session& session) {
   const Arguments& a = session.arguments();
-  SurfaceFile file = read_surface(a.input, session.context());
+  SurfaceFile file = read_surface(a.input.string(), session.context());
   session.say(
       fmt::format("{}: {}, {}\n", a.input.string(), file.format, counted(file.surface.triangles.size(), "triangle")));
   session.say_notes("reading", file.notes);
@@ -31,7 +31,7 @@ TetMesh read_mesh_input(const Session& session) {
 
 MeshFile read_mesh_file_input(const Session& session) {
   const Arguments& a = session.arguments();
-  MeshFile file = read_mesh_file(a.input, session.context());
+  MeshFile file = read_mesh_file(a.input.string(), session.context());
   session.say(fmt::format("{}: {}, {} tetrahedra{}\n", a.input.string(), file.format, file.mesh.tets.size(),
                           file.mesh.is_second_order() ? " of second order" : ""));
   session.say_notes("reading", file.notes);

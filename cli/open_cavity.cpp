@@ -12,7 +12,7 @@ std::filesystem::path cavity_file(std::filesystem::path output) {
 
 MeshingError with_cavity_written(const OpenCavityError& error, const std::filesystem::path& output) {
   const std::filesystem::path file = cavity_file(output);
-  write_surface(file, error.cavity);
+  write_surface(file.string(), error.cavity);
   return MeshingError(
       fmt::format("{}\nThe open cavity is in {}. This is a bug of ours: please report it with that file "
                   "(or the input) and the command line; meanwhile another `size` may succeed.",

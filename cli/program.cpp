@@ -66,6 +66,8 @@ Program::Program() {
       "octafront help mesh: options and examples of a command\n"
       "Exit status: 0 done, 2 usage, 3 input refused, 4 no valid mesh, 5 output not written, 6 out of memory, "
       "130 interrupted (also by a hang-up), 1 a bug of ours");
+  // Else names that begin with a slash would be options on Windows.
+  app_.allow_windows_style_options(false);
   declare_makers();
   declare_surfaces();
   declare_lookers();

@@ -11,9 +11,11 @@
 #include <string_view>
 
 #include <fmt/core.h>
+#ifndef _WIN32
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#endif
 
 namespace octafront::cli {
 
@@ -31,6 +33,10 @@ bool needs_hdf5(const std::filesystem::path& file) {
          file.extension() == ".xmf";
 }
 
+#ifdef _WIN32
+// Processes cannot be copied.
+void rehearse_reading(const std::filesystem::path&) {}
+#else
 [[noreturn]] void read_and_exit(const std::filesystem::path& file) {
   const rlimit none{0, 0};
   setrlimit(RLIMIT_CORE, &none);
@@ -54,6 +60,7 @@ void rehearse_reading(const std::filesystem::path& file) {
     throw InputError(
         fmt::format("{}: the file is damaged: the HDF5 library crashes on it; export it again", file.string()));
 }
+#endif
 
 }  // namespace
 

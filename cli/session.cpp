@@ -113,7 +113,7 @@ void Session::write_json(const Json& error) const {
     clear_progress();
     std::fputs(text.c_str(), stdout);
   } else {
-    write_text(arguments_.json, text);
+    write_text(arguments_.json.string(), text);
   }
 }
 
@@ -129,7 +129,7 @@ void check_files(const Arguments& a) {
   const std::vector<NamedFile> inputs = inputs_of(a), outputs = outputs_of(a);
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     const auto refuse_same = [&](const NamedFile& other) {
-      if (same_file(outputs[i].path, other.path))
+      if (same_file(outputs[i].path.string(), other.path.string()))
         throw OptionError(fmt::format("{}: {} and {} are the same file: it would be overwritten; give another name",
                                       outputs[i].path.string(), outputs[i].name, other.name));
     };
@@ -137,7 +137,7 @@ void check_files(const Arguments& a) {
     for (std::size_t k = 0; k < i; ++k) refuse_same(outputs[k]);
   }
   for (const std::filesystem::path& text : {a.json, a.page})
-    if (!text.empty() && text != kStandardOutput) check_text_target(text);
+    if (!text.empty() && text != kStandardOutput) check_text_target(text.string());
 }
 
 }  // namespace octafront::cli

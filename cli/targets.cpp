@@ -13,6 +13,9 @@
 
 #include <fmt/core.h>
 #include <unistd.h>
+#ifdef _WIN32
+#include <random>
+#endif
 
 namespace octafront::cli {
 
@@ -45,6 +48,21 @@ void check_pipe(const std::filesystem::path& file, const std::string& format) {
   if (isatty(STDOUT_FILENO))
     throw OptionError("-o -: standard output is a terminal; send it to a file or a pipe: octafront ... > FILE");
 }
+
+#ifdef _WIN32
+/// As POSIX has it: a folder of a name that nobody has; its last six characters are chosen.
+char* mkdtemp(char* name) {
+  constexpr int kTries = 100;
+  std::random_device number;
+  std::error_code error;
+  const std::string_view text(name);
+  for (int tries = 0; tries < kTries && !error; ++tries) {
+    for (std::size_t i = text.size() - 6; i < text.size(); ++i) name[i] = static_cast<char>('a' + number() % 26);
+    if (std::filesystem::create_directory(name, error)) return name;
+  }
+  return nullptr;
+}
+#endif
 
 /// A folder of our own for as long as it lives.
 class TemporaryFolder {
@@ -81,10 +99,10 @@ void copy_to_standard_output(const std::filesystem::path& file, const RunContext
 /// Formats go back in their files, so that a pipe gets a file that is complete.
 std::vector<std::string> write_one(const std::filesystem::path& file, const TetMesh& mesh, const WriteOptions& options,
                                    const RunContext& context) {
-  if (file != kStandardOutput && !is_null(file)) return write_mesh(file, mesh, context, options);
+  if (file != kStandardOutput && !is_null(file)) return write_mesh(file.string(), mesh, context, options);
   const TemporaryFolder folder;
   const std::filesystem::path whole = folder.file("mesh");
-  std::vector<std::string> notes = write_mesh(whole, mesh, context, options);
+  std::vector<std::string> notes = write_mesh(whole.string(), mesh, context, options);
   if (is_null(file)) return notes;
   clear_progress();
   copy_to_standard_output(whole, context);
@@ -105,7 +123,7 @@ void check_mesh_targets(const Arguments& a) {
     else if (is_null(a.meshes[i]))
       check_format(a.meshes[i], options.format);
     else
-      check_mesh_target(a.meshes[i], options);
+      check_mesh_target(a.meshes[i].string(), options);
   }
 }
 
@@ -129,7 +147,7 @@ void write_mesh_targets(Session& session, TetMesh mesh) {
 }
 
 void write_text_target(const std::filesystem::path& file, const std::string& text) {
-  if (file != kStandardOutput) return write_text(file, text);
+  if (file != kStandardOutput) return write_text(file.string(), text);
   clear_progress();
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size())
     throw OutputError("standard output cannot be written");

@@ -16,6 +16,14 @@
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif
+#ifdef _WIN32
+#define WIN32_LEAN_AND_MEAN
+#ifndef NOMINMAX
+#define NOMINMAX
+#endif
+#include <io.h>
+#include <windows.h>
+#endif
 
 namespace octafront::cli {
 
@@ -76,12 +84,22 @@ void prepare_process() {
   mallopt(M_MMAP_THRESHOLD, kLeastMapped);
   mallopt(M_TRIM_THRESHOLD, 4 * kLeastMapped);
 #endif
+#ifdef _WIN32
+  // Files that go to standard output are bytes, and names in messages UTF-8.
+  _setmode(STDOUT_FILENO, _O_BINARY);
+  SetConsoleOutputCP(CP_UTF8);
+#else
   std::signal(SIGXFSZ, SIG_IGN);
   int fd = STDIN_FILENO;
   while (fd >= 0 && fd <= STDERR_FILENO) fd = fcntl(fd, F_GETFD) < 0 ? open("/dev/null", O_RDWR) : fd + 1;
+#endif
 }
 
 const std::atomic<bool>& install_interrupt_handler() {
+#ifdef _WIN32
+  // Each is forgotten when it comes: a second Ctrl-C ends the program at once.
+  for (const int signal : {SIGINT, SIGTERM, SIGBREAK}) std::signal(signal, on_signal);
+#else
   struct sigaction action {};
   action.sa_handler = on_signal;
   // A second Ctrl-C ends the program at once.
@@ -92,6 +110,7 @@ const std::atomic<bool>& install_interrupt_handler() {
   struct sigaction hangup {};
   sigaction(SIGHUP, nullptr, &hangup);
   if (hangup.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);
+#endif
   return interrupted;
 }
 

@@ -89,4 +89,10 @@ std::string counted(std::size_t n, const std::string& one) {
   return fmt::format("{} {}{}", n, one, n == 1 ? "" : "s");
 }
 
+std::vector<std::string> in_utf8(const std::vector<std::filesystem::path>& files) {
+  std::vector<std::string> names;
+  for (const std::filesystem::path& file : files) names.push_back(file.string());
+  return names;
+}
+
 }  // namespace octafront::cli

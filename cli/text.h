@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,6 +18,9 @@ std::string quoted_for_shell(const std::string& text);
 
 /// The word among `words` that `typed` is a slip of the finger away from, or empty.
 std::string nearest_word(std::string_view typed, const std::vector<std::string>& words);
+
+/// As the library wants them: in UTF-8 everywhere.
+std::vector<std::string> in_utf8(const std::vector<std::filesystem::path>& files);
 
 /// "1 triangle", "2 triangles".
 std::string counted(std::size_t n, const std::string& one);

@@ -7,7 +7,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/lib/apt.sh
 work=$PWD/build/packages
-need_packages "${build_packages[@]}" python3 python3-numpy python3-yaml dpkg-dev lintian file
+need_packages "${build_packages[@]}" python3 python3-numpy python3-yaml dpkg-dev lintian file ruby nix-bin
 launcher=()
 [ -z "${CMAKE_CXX_COMPILER_LAUNCHER:-}" ] || launcher=("-DCMAKE_CXX_COMPILER_LAUNCHER=$CMAKE_CXX_COMPILER_LAUNCHER")
 cmake -S . -B "$work" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_INSTALL_PREFIX=/usr -DCMAKE_INSTALL_LIBDIR="lib/$(dpkg-architecture -qDEB_HOST_MULTIARCH)" \

@@ -18,6 +18,7 @@ build_static() {
   local work=$1 name=$2
   shift 2
   [ -e "$work/inside/$name.done" ] && return
+  mkdir -p "$work"
   {
     unpack "$work" "$name" &&
       cmake -S "$work/sources/$name/unpacked" -B "$work/build-$name" -G Ninja -DCMAKE_BUILD_TYPE=Release -DBUILD_SHARED_LIBS=OFF \
@@ -39,6 +40,7 @@ build_tbb_and_fmt() {
 build_static_zlib() {
   local work=$1
   [ -e "$work/inside/zlib.done" ] && return
+  mkdir -p "$work"
   {
     unpack "$work" zlib &&
       (cd "$work/sources/zlib/unpacked" && CHOST=$2 CFLAGS="-O3 -fPIC" ./configure --static --prefix="$work/inside" && make install)

@@ -61,8 +61,7 @@ int open_pipe(std::array<int, 2>& ends) {
 /// A pipe whose ends no other program that is started meanwhile inherits.
 std::array<int, 2> make_pipe() {
   std::array<int, 2> ends{-1, -1};
-  if (open_pipe(ends) != 0)
-    throw InputError(fmt::format("no pipe to the CAD reader: {}", std::strerror(errno)));
+  if (open_pipe(ends) != 0) throw InputError(fmt::format("no pipe to the CAD reader: {}", std::strerror(errno)));
   return ends;
 }
 

@@ -2,6 +2,7 @@
 
 #include <octafront/error.h>
 
+#include "base/core/files_of_windows.h"
 #include "base/core/parallel.h"
 
 #include <algorithm>
@@ -181,6 +182,7 @@ fs::path AtomicFile::path_for_library() const {
   return temporary_.empty() ? fs::path(fmt::format("/proc/self/fd/{}", fd_)) : temporary_;
 }
 
+#ifdef O_TMPFILE
 void AtomicFile::give_name() {
   const fs::path name = temporary_beside(target_);
   const std::string self = fmt::format("/proc/self/fd/{}", fd_);
@@ -214,6 +216,7 @@ void AtomicFile::copy_to_named() {
   ::close(nameless);
   if (::fsync(fd_) != 0) fail("cannot be written to the disk", errno);
 }
+#endif
 
 void AtomicFile::flush_to_disk() {
   flush();
@@ -225,7 +228,9 @@ void AtomicFile::commit() {
   // A new file has the mode that the user's mask leaves; an old one keeps its own, which the mask must not touch.
   struct stat status {};
   if (::stat(target_.c_str(), &status) == 0) ::fchmod(fd_, status.st_mode & 07777);
+#ifdef O_TMPFILE
   if (temporary_.empty()) give_name();
+#endif
   const int closing = fd_;
   fd_ = -1;
   if (::close(closing) != 0) fail("cannot be closed", errno);

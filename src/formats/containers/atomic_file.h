@@ -49,7 +49,7 @@ class AtomicFile {
   void open_named();
   void flush();
   void write_out(const char* bytes, std::size_t size);
-  void give_name();
+  void give_name();  // where there are nameless files
   void copy_to_named();
   [[noreturn]] void fail(std::string_view what, int error) const;
 

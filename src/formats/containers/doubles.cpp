@@ -23,7 +23,12 @@ std::string without_what_only_c_reads(const char* first, const char* last) {
 }  // namespace
 
 std::from_chars_result double_by_c_library(const char* first, const char* last, double& value) {
+#ifdef _WIN32
+  static const _locale_t kPlain = _create_locale(LC_ALL, "C");
+  const auto strtod_l = _strtod_l;
+#else
   static const locale_t kPlain = newlocale(LC_ALL_MASK, "C", nullptr);
+#endif
   const std::string text = without_what_only_c_reads(first, last);
   char* end = nullptr;
   errno = 0;

@@ -2,6 +2,8 @@
 
 #include <octafront/error.h>
 
+#include "base/core/files_of_windows.h"
+
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
@@ -11,9 +13,11 @@
 
 #include <fcntl.h>
 #include <fmt/core.h>
-#include <poll.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#ifndef _WIN32
+#include <poll.h>
+#endif
 
 namespace octafront::io {
 namespace {
@@ -37,12 +41,16 @@ std::string system_reason(int error) {
 }
 
 /// Until there is something to read, or the writer of a pipe has gone.
-void wait_for_bytes(int fd, const RunContext& context) {
+void wait_for_bytes([[maybe_unused]] int fd, const RunContext& context) {
+#ifdef _WIN32
+  context.check();  // reading waits, where nothing can be asked beforehand
+#else
   constexpr int kMilliseconds = 20;
   pollfd waiting{fd, POLLIN, 0};
   do {
     context.check();
   } while (::poll(&waiting, 1, kMilliseconds) <= 0);
+#endif
 }
 
 /// Bytes read, at most `size`; fewer only at the end of the file.

@@ -9,7 +9,13 @@
 #include <bit>
 #include <span>
 
+#ifdef _WIN32
+#include "base/core/files_of_windows.h"
+
+#include <psapi.h>
+#else
 #include <sys/resource.h>
+#endif
 
 namespace octafront {
 
@@ -116,6 +122,11 @@ std::uint64_t mesh_hash(const TetMesh& mesh) {
 }
 
 std::uint64_t peak_memory_bytes() {
+#ifdef _WIN32
+  PROCESS_MEMORY_COUNTERS counters{};
+  GetProcessMemoryInfo(GetCurrentProcess(), &counters, sizeof counters);
+  return counters.PeakWorkingSetSize;
+#else
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
 #ifdef __APPLE__
@@ -124,6 +135,7 @@ std::uint64_t peak_memory_bytes() {
   constexpr std::uint64_t kBytesEach = 1024;
 #endif
   return static_cast<std::uint64_t>(usage.ru_maxrss) * kBytesEach;
+#endif
 }
 
 }  // namespace octafront
