@@ -503,8 +503,11 @@ void declare_periodic(CLI::App& command, Arguments& a) {
   group
       ->add_option("--periodic", a.options.periodic,
                    "Axes along which the body is one cell of a periodic one, such as x or xyz: opposite faces of its "
-                   "bounding box get the same triangles, and their nodes are paired; bodies and images are repeated")
-      ->type_name("AXES");
+                   "bounding box get the same triangles, and their nodes are paired; bodies and images are repeated. "
+                   "Or what leads from a face to its copy: X,Y,Z (a translation), DEGREES@z or "
+                   "DEGREES@PX,PY,PZ,DX,DY,DZ (a rotation about an axis), several with semicolons between, each with "
+                   "LOW:HIGH= before it where names of patches are to say what it leads to what")
+      ->type_name("AXES|MAP");
   group
       ->add_option("--repeat", a.intake.repeat,
                    "Axes along which bodies in a box, or an image, are repeated: what crosses a face of the cell comes "

@@ -228,6 +228,11 @@ struct Options {
   /// faces of its bounding box at both ends of such an axis are the same triangles, bit for bit, and
   /// TetMesh::periodic_nodes pairs their nodes. What lies on opposite faces must be the same; where only triangles
   /// differ, both faces get new ones.
+  ///
+  /// Or maps, with semicolons between: "1,0,0" (a translation), "30@z" or "360/7@PX,PY,PZ,DX,DY,DZ" (a rotation by
+  /// degrees about an axis of space, or about that through a point along a direction; it goes with no other map). Each
+  /// leads part of the surface to another part that looks the other way; with "LOW:HIGH=" before it the patch LOW to
+  /// the patch HIGH, which may be curved and triangulated in another way inside.
   std::string periodic;
   /// 1: linear elements. 2: elements of second order, curved to the surface that the input stands for; see
   /// make_second_order(). Straight where the input's triangles are kept.

@@ -106,8 +106,11 @@ struct TetMesh {
   std::vector<WideFace> wide_faces;  ///< the quadrilaterals of `boundary`; ascending
   /// Translations that lead from a face of the mesh to the one that is its copy: of a periodic cell. Empty: of none.
   std::vector<Vec3> periods;
+  /// One per period, the rows of a matrix R: it is a rotation, and x goes to R x + the translation. Empty: none is.
+  std::vector<std::array<Vec3, 3>> period_rotations;
   /// Of a periodic cell: the number of the period, the node that is the copy, and the one that it is a copy of;
-  /// ascending, mid-side nodes too. points[copy] is points[original] + the period, each coordinate in one rounding.
+  /// ascending, mid-side nodes too. points[copy] is points[original] + the period, each coordinate in one rounding; by
+  /// a rotation each coordinate is ((R0 x + R1 y) + R2 z) + t, rounded at each step.
   std::vector<std::array<std::uint32_t, 3>> periodic_nodes;
   /// One per boundary face and, behind them, interface: how many boundary layers grow at each corner of it, at least;
   /// kNone: it is no wall of any. Empty: not known.

@@ -12,7 +12,8 @@ from ._surface import _or_zeros, array_of, column_of, points_of, rows_of, wanted
 
 _KINDS = ["nodes", "edges", "faces", "elements"]
 _ARRAYS = ["points", "tets", "region", "boundary", "patch", "source", "interfaces", "interface_patch", "curve_edges",
-           "curve", "mid_nodes", "wide_cells", "wide_faces", "split_faces", "periods", "periodic_nodes"]
+           "curve", "mid_nodes", "wide_cells", "wide_faces", "split_faces", "periods", "period_rotations",
+           "periodic_nodes"]
 _LISTS = ["region_names", "patch_names", "curve_names"]
 
 
@@ -185,9 +186,16 @@ class Mesh:
         return self._handle.view("periods")
 
     @property
+    def period_rotations(self):
+        """(k, 3, 3) float64, of each period the matrix R if it is a rotation: x goes to R x + periods[number]. Empty if
+        all periods are translations."""
+        return self._handle.view("period_rotations").reshape(-1, 3, 3)
+
+    @property
     def periodic_nodes(self):
         """(n, 3) uint32, of a periodic cell: the number of a period, a node that is a copy, and the node that it is a
-        copy of; mid-side nodes too. points[copy] == points[original] + periods[number], each coordinate in one rounding."""
+        copy of; mid-side nodes too. points[copy] == points[original] + periods[number], each coordinate in one rounding;
+        by a rotation ((R[:, 0] * x + R[:, 1] * y) + R[:, 2] * z) + periods[number]."""
         return self._handle.view("periodic_nodes")
 
     @property

@@ -48,6 +48,7 @@ void visit_mesh_array(Mesh& mesh, std::string_view name, const Visit& visit) {
   if (name == "wide_faces") return visit(mesh.wide_faces);
   if (name == "split_faces") return visit(mesh.split_faces);
   if (name == "periods") return visit(mesh.periods);
+  if (name == "period_rotations") return visit(mesh.period_rotations);
   if (name == "periodic_nodes") return visit(mesh.periodic_nodes);
   throw OptionError(fmt::format("a mesh has no array \"{}\"", name));
 }
@@ -134,6 +135,7 @@ void require_indices(const TetMesh& m) {
   for (const auto& [period, copy, original] : m.periodic_nodes)
     if (period >= m.periods.size() || copy >= m.points.size() || original >= m.points.size())
       throw InputError("periodic_nodes names a period or a point that there is not");
+  require_length(m.period_rotations.size(), m.periods.size(), "period_rotations", "periods");
   require_length(m.region.size(), m.tets.size(), "regions", "tets");
   require_length(m.mid_nodes.size(), m.tets.size(), "mid_nodes", "tets");
   require_length(m.patch.size(), m.boundary.size(), "patches", "faces");

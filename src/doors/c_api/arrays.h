@@ -23,6 +23,11 @@ struct Layout<Vec3> {
   static constexpr std::uint32_t kType = OCTAFRONT_F64, kColumns = 3;
 };
 template <>
+struct Layout<std::array<Vec3, 3>> {
+  static_assert(sizeof(std::array<Vec3, 3>) == 9 * sizeof(double));
+  static constexpr std::uint32_t kType = OCTAFRONT_F64, kColumns = 9;
+};
+template <>
 struct Layout<double> {
   static constexpr std::uint32_t kType = OCTAFRONT_F64, kColumns = 1;
 };

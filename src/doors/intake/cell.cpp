@@ -2,7 +2,7 @@
 
 #include <octafront/error.h>
 
-#include "formats/containers/doubles.h"
+#include "base/core/doubles.h"
 
 #include <algorithm>
 #include <cmath>

@@ -445,7 +445,8 @@ IntakeOptions intake_for(const Options& options, IntakeOptions intake) {
   for (const NamedSize& named : options.size.named) cad.apart.push_back(named.name);
   for (const NearSize& near : options.size.near)
     if (!near.name.empty()) cad.apart.push_back(near.name);
-  if (!intake.repeat) intake.repeat = options.periodic;
+  // Other maps repeat no bodies; what is no list of axes is refused later, by the name of the option.
+  if (!intake.repeat && options.periodic.find_first_of(",@=;") == std::string::npos) intake.repeat = options.periodic;
   return intake;
 }
 

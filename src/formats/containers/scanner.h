@@ -1,6 +1,6 @@
 #pragma once
 
-#include "formats/containers/doubles.h"
+#include "base/core/doubles.h"
 #include "formats/containers/input.h"
 
 #include <charconv>

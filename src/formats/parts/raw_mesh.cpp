@@ -109,9 +109,9 @@ class Ordering {
 
   MeshFile result() {
     require_tets();
-    for (const auto step :
-         {&Ordering::match_wide_cells, &Ordering::check_mid_nodes, &Ordering::number_points, &Ordering::take_tets,
-          &Ordering::take_wide_cells, &Ordering::take_faces, &Ordering::take_edges, &Ordering::take_sets}) {
+    for (const auto step : {&Ordering::match_wide_cells, &Ordering::check_mid_nodes, &Ordering::number_points,
+                            &Ordering::take_tets, &Ordering::take_wide_cells, &Ordering::take_faces,
+                            &Ordering::take_edges, &Ordering::take_sets, &Ordering::take_periods}) {
       input_.context.check();
       (this->*step)();
     }
@@ -407,6 +407,27 @@ class Ordering {
     const MeshParts parts(mesh_);
     for (RawMesh::Group& group : raw_.groups)
       if (is_of_nodes(group)) take_set(group, &parts);
+  }
+
+  /// Pairs of nodes that are left; periods without any go.
+  void take_periods() {
+    bool turns = false;
+    const std::array<Vec3, 3> unit{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    for (const RawMesh::Period& period : raw_.periods) {
+      const auto number = static_cast<std::uint32_t>(mesh_.periods.size());
+      const std::size_t before = mesh_.periodic_nodes.size();
+      for (const auto& [copy, original] : period.pairs)
+        if (const VertexIndex a = number_[copy], b = number_[original]; a != kNone && b != kNone && a != b)
+          mesh_.periodic_nodes.push_back({number, a, b});
+      if (mesh_.periodic_nodes.size() == before) continue;
+      mesh_.periods.push_back(period.shift);
+      mesh_.period_rotations.push_back(period.rotation);
+      turns = turns || period.rotation != unit;
+    }
+    if (!turns) mesh_.period_rotations.clear();
+    auto& pairs = mesh_.periodic_nodes;
+    std::sort(pairs.begin(), pairs.end());
+    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   }
 
   void take_set(RawMesh::Group& group, const MeshParts* parts = nullptr) {

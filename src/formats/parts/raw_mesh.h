@@ -34,6 +34,13 @@ struct RawMesh {
     std::vector<std::uint32_t> members = {};
   };
 
+  /// A map x' = R x + shift that leads nodes to others, and these: {copy, original}.
+  struct Period {
+    std::array<Vec3, 3> rotation{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    Vec3 shift;
+    std::vector<std::array<VertexIndex, 2>> pairs = {};
+  };
+
   /// What Input::field asks for. A field has values at points or in elements.
   struct Field {
     std::vector<std::string> names;  ///< of all that could be asked for, as the file lists them
@@ -63,6 +70,7 @@ struct RawMesh {
   std::vector<WideFace> wide_faces;
   std::map<std::int64_t, std::string> region_names, surface_names, curve_names;  ///< by reference
   std::vector<Group> groups;
+  std::vector<Period> periods;
   std::uint64_t other_elements = 0;  ///< of kinds that a TetMesh does not hold
   std::vector<std::string> notes;
   Field field;

@@ -113,6 +113,8 @@ class Msh {
         require_format();
         has_elements_ = true;
         version_ == 4 ? read_elements_4() : read_elements_2();
+      } else if (name == "Periodic" && !tags_.empty()) {
+        version_ == 4 ? read_periodic_4() : read_periodic_2();
       } else if (input_.field != nullptr && (name == "NodeData" || name == "ElementData")) {
         read_data(name == "NodeData");
       } else {
@@ -306,6 +308,61 @@ class Msh {
     items = std::move(ordered);
   }
 
+  /// The period with this matrix of four rows; those of points and curves, which surfaces have too, are none.
+  RawMesh::Period* period_of(std::int64_t dimension, const std::vector<double>& affine) {
+    if (dimension != 2 || affine.size() != 16) return nullptr;
+    const double* const m = affine.data();
+    const std::array<Vec3, 3> rotation{{{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}}};
+    const Vec3 shift{m[3], m[7], m[11]};
+    for (RawMesh::Period& known : raw_.periods)
+      if (known.rotation == rotation && known.shift == shift) return &known;
+    raw_.periods.push_back({rotation, shift});
+    return &raw_.periods.back();
+  }
+
+  void add_pair(RawMesh::Period* period, std::uint64_t copy, std::uint64_t original) {
+    const VertexIndex a = tags_.index_of(copy), b = tags_.index_of(original);
+    if (period && a != kNone && b != kNone) period->pairs.push_back({a, b});
+  }
+
+  void read_periodic_4() {
+    for (std::uint64_t left = in_.size("the number of periodic entities"); left > 0; --left) {
+      const std::int64_t dimension = in_.int32("the dimension of an entity");
+      in_.skip_int32(2);
+      const std::uint64_t numbers = in_.size("the number of values of a matrix");
+      in_.check_count(numbers, 1, 0, 0, "values of a matrix");
+      std::vector<double> affine;
+      for (std::uint64_t i = 0; i < numbers; ++i) affine.push_back(in_.real("a value of a matrix"));
+      RawMesh::Period* const period = period_of(dimension, affine);
+      const std::uint64_t count = in_.size("the number of pairs of nodes");
+      in_.check_count(count, 0, 2, 0, "pairs of nodes");
+      for (std::uint64_t i = 0; i < count; ++i) {
+        const std::uint64_t copy = in_.size("the tag of a node");
+        add_pair(period, copy, in_.size("the tag of a node"));
+      }
+    }
+  }
+
+  /// Text also in binary files.
+  void read_periodic_2() {
+    Scanner& text = in_.text();
+    for (std::int64_t left = text.integer("the number of periodic entities"); left > 0; --left) {
+      const std::int64_t dimension = text.integer("the dimension of an entity");
+      text.integer("the tag of an entity"), text.integer("the tag of an entity");
+      std::vector<double> affine;
+      if (text.peek_word() == "Affine") {
+        text.word();
+        while (!text.at_line_end()) affine.push_back(text.number("a value of a matrix"));
+      }
+      RawMesh::Period* const period = period_of(dimension, affine);
+      for (std::int64_t count = text.integer("the number of pairs of nodes"); count > 0; --count) {
+        const std::int64_t copy = text.integer("the tag of a node");
+        add_pair(period, static_cast<std::uint64_t>(copy),
+                 static_cast<std::uint64_t>(text.integer("the tag of a node")));
+      }
+    }
+  }
+
   /// Values at nodes or in elements by their tags. Names, times and counts are text also in binary files.
   void read_data(bool of_nodes) {
     Scanner& text = in_.text();
@@ -390,6 +447,10 @@ class Msh {
     permute(raw_.tets, place[3]);
     permute(raw_.mid_nodes, place[3]);
     permute(raw_.tet_ref, place[3]);
+    if (!place[0].empty())
+      for (RawMesh::Period& period : raw_.periods)
+        for (auto& pair : period.pairs)
+          for (VertexIndex& v : pair) v = place[0][v];
     for (RawMesh::Group& group : raw_.groups) {
       const auto& to = place[static_cast<std::size_t>(dimension_of(group.kind))];
       if (!to.empty())

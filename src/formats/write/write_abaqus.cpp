@@ -4,7 +4,7 @@
 // twenty characters of a number.
 //
 // Of a periodic cell, equations tie each copy to the node that it is a copy of, and to a node of no element for each
-// period: what moves that node stretches the cell.
+// period: what moves that node stretches the cell. By a rotation the copy's displacement is the original's, turned.
 
 #include <octafront/error.h>
 
@@ -28,6 +28,7 @@ using Kind = NamedSet::Kind;
 
 /// Sides S1 = 123, S2 = 124, S3 = 234, S4 = 134, by the corner that they lack.
 constexpr std::array<char, 4> kSideName{'3', '4', '2', '1'};
+constexpr std::array<int, 3> kDirections{0, 1, 2};
 class AbaqusWriter {
  public:
   AbaqusWriter(MeshOutput& out, const MeshParts& mesh)
@@ -100,6 +101,7 @@ class AbaqusWriter {
   }
 
   void write_periods() {
+    if (!mesh_.mesh().period_rotations.empty()) return write_rotations();
     const std::vector<Vec3>& periods = mesh_.mesh().periods;
     text_ << "** PERIODIC: U(COPY) - U(ORIGINAL) = U(PERIOD_1) + ..., WHICH IS THE MEAN STRAIN TIMES THE PERIOD\n";
     for (std::uint32_t k = 0; k < periods.size(); ++k) {
@@ -119,6 +121,22 @@ class AbaqusWriter {
       }
       others.insert(others.begin(), original + 1);
       for (int direction = 1; direction <= 3; ++direction) write_equation(copy + 1, others, direction);
+    }
+  }
+
+  void write_rotations() {
+    text_ << "** CYCLIC: U(COPY) = R U(ORIGINAL)\n*EQUATION\n";
+    for (const auto& [period, copy, original] : mesh_.mesh().periodic_nodes) {
+      if (copy >= mesh_.points()) continue;
+      for (int direction = 0; direction < 3; ++direction) {
+        const Vec3 row = mesh_.mesh().period_rotations[period][static_cast<std::size_t>(direction)];
+        const auto terms = std::count_if(kDirections.begin(), kDirections.end(), [&](int i) { return row[i] != 0; });
+        text_.line("{}", terms + 1);
+        text_ << copy + 1 << ", " << direction + 1 << ", 1.";
+        for (const int i : kDirections)
+          if (row[i] != 0) text_ << ", " << original + 1 << ", " << i + 1 << ", " << -row[i];
+        text_ << '\n';
+      }
     }
   }
 

@@ -183,6 +183,8 @@ class PeriodicLinks {
         auto& pairs = links_[{static_cast<std::int32_t>(period), entity_of(f), at->second}];
         for (const VertexIndex v : mesh.face_nodes(f, room))
           if (const auto o = original_of.find(v); o != original_of.end()) pairs.insert(*o);
+        if (mesh_.period_rotations.empty()) continue;
+        for (const VertexIndex v : mesh.face_nodes(f, room)) pairs.try_emplace(v, v);
       }
     }
   }
@@ -190,11 +192,11 @@ class PeriodicLinks {
   bool empty() const { return links_.empty(); }
   std::size_t size() const { return links_.size(); }
 
-  /// Calls visit(tag, tag of the original, period, pairs {copy, original}) for each.
+  /// Calls visit(tag, tag of the original, matrix of the period, pairs {copy, original}) for each.
   template <class Visit>
   void for_each(const Visit& visit) const {
     for (const auto& [link, pairs] : links_)
-      visit(link[1], link[2], mesh_.periods[static_cast<std::size_t>(link[0])], pairs);
+      visit(link[1], link[2], matrix_of(static_cast<std::size_t>(link[0])), pairs);
   }
 
  private:
@@ -207,23 +209,27 @@ class PeriodicLinks {
     std::sort(t.begin(), t.end());
     return t;
   }
-  static bool copied(const Triangle& t, const std::map<VertexIndex, VertexIndex>& original_of, Triangle& original) {
+  /// Nodes on the axis of a rotation are copies of themselves.
+  bool copied(const Triangle& t, const std::map<VertexIndex, VertexIndex>& original_of, Triangle& original) const {
     for (std::size_t i = 0; i < 3; ++i) {
       const auto at = original_of.find(t[i]);
-      if (at == original_of.end()) return false;
-      original[i] = at->second;
+      if (at == original_of.end() && mesh_.period_rotations.empty()) return false;
+      original[i] = at == original_of.end() ? t[i] : at->second;
     }
-    return true;
+    return original != t;
+  }
+
+  /// A period as the sixteen numbers of a matrix.
+  std::array<double, 16> matrix_of(std::size_t period) const {
+    const Vec3 t = mesh_.periods[period];
+    std::array<Vec3, 3> r{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+    if (!mesh_.period_rotations.empty()) r = mesh_.period_rotations[period];
+    return {r[0].x, r[0].y, r[0].z, t.x, r[1].x, r[1].y, r[1].z, t.y, r[2].x, r[2].y, r[2].z, t.z, 0, 0, 0, 1};
   }
 
   const TetMesh& mesh_;
   std::map<std::array<std::int32_t, 3>, std::map<VertexIndex, VertexIndex>> links_;
 };
-
-/// A translation as the sixteen numbers of a matrix.
-std::array<double, 16> matrix_of(Vec3 shift) {
-  return {1, 0, 0, shift.x, 0, 1, 0, shift.y, 0, 0, 1, shift.z, 0, 0, 0, 1};
-}
 
 class Msh4Writer {
  public:
@@ -385,10 +391,10 @@ class Msh4Writer {
     const PeriodicLinks links(mesh_, [&](std::size_t f) { return entities_[first_[2] + by_[2].of[f]].tag; });
     text_ << "$Periodic\n";
     put_record(std::uint64_t{links.size()});
-    links.for_each([&](std::int32_t tag, std::int32_t of, Vec3 period, const auto& pairs) {
+    links.for_each([&](std::int32_t tag, std::int32_t of, const std::array<double, 16>& matrix, const auto& pairs) {
       put_record(std::int32_t{2}, tag, of);
       out_.put(std::uint64_t{16});
-      for (const double value : matrix_of(period)) out_.put(value);
+      for (const double value : matrix) out_.put(value);
       out_.end_record();
       put_record(std::uint64_t{pairs.size()});
       for (const auto& [copy, original] : pairs) put_record(std::uint64_t{copy} + 1, std::uint64_t{original} + 1);
@@ -514,10 +520,10 @@ class Msh2Writer {
   void write_periodic() {
     const PeriodicLinks links(mesh_, [&](std::size_t f) { return static_cast<std::int32_t>(mesh_.patch_of(f)) + 1; });
     text_.line("$Periodic\n{}", links.size());
-    links.for_each([&](std::int32_t tag, std::int32_t of, Vec3 period, const auto& pairs) {
+    links.for_each([&](std::int32_t tag, std::int32_t of, const std::array<double, 16>& matrix, const auto& pairs) {
       text_.line("2 {} {}", tag, of);
       text_ << "Affine";
-      for (const double value : matrix_of(period)) text_ << ' ' << value;
+      for (const double value : matrix) text_ << ' ' << value;
       text_.line("\n{}", pairs.size());
       for (const auto& [copy, original] : pairs) text_.line("{} {}", copy + 1, original + 1);
     });

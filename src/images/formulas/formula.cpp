@@ -3,8 +3,8 @@
 #include <octafront/error.h>
 #include <octafront/formula.h>
 
+#include "base/core/doubles.h"
 #include "base/core/elementary.h"
-#include "formats/containers/doubles.h"
 #include "images/formulas/named_surfaces.h"
 
 #include <algorithm>

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <vector>
 
 namespace octafront {
@@ -48,7 +49,7 @@ class PairSlider {
 
  private:
   struct Pair {
-    int axis;
+    int period;
     VertexIndex low, high;
   };
   struct Worth {
@@ -63,7 +64,7 @@ class PairSlider {
     std::vector<std::uint8_t> is_inside(filled.points.size(), 1);
     for (std::size_t t = 0; t < filled.triangles.size(); ++t) {
       const auto [a, b, c] = filled.triangles[t];
-      const CellFace of = face_of_cell(cell_, mesh_.points[a], mesh_.points[b], mesh_.points[c]);
+      const CellFace of = face_of_cell(cell_, filled.patch_of(t), mesh_.points[a], mesh_.points[b], mesh_.points[c]);
       for (const VertexIndex v : {a, b, c}) {
         if (of == kNone || (face[v] != kNone && (face[v] != of || patch[v] != filled.patch_of(t)))) is_inside[v] = 0;
         face[v] = of, patch[v] = filled.patch_of(t);
@@ -74,19 +75,31 @@ class PairSlider {
       if (is_inside[v] && face[v] != kNone && face[v] % 2 == 1) high.add(mesh_.points[v], v);
     for (VertexIndex v = 0; v < face.size(); ++v) {
       if (!is_inside[v] || face[v] == kNone || face[v] % 2 == 1) continue;
-      const auto axis = static_cast<int>(face[v] / 2);
-      const VertexIndex copy = high.find(moved(mesh_.points[v], axis));
-      if (copy != kNone) pairs_.push_back({axis, v, copy});
+      const auto period = static_cast<int>(face[v] / 2);
+      if (!is_flat(period)) continue;
+      const VertexIndex copy = high.find(cell_.to_high(mesh_.points[v], period));
+      if (copy != kNone) pairs_.push_back({period, v, copy});
     }
   }
 
-  Vec3 moved(Vec3 p, int axis) const {
-    p[axis] = cell_.box.hi[axis];
-    return p;
-  }
+  bool is_flat(int period) const { return cell_.is_box() || cell_.mapped[static_cast<std::size_t>(period)].is_flat; }
 
   Vec3 at(VertexIndex v, const Pair& pair, Vec3 place) const {
-    return v == pair.low ? place : v == pair.high ? moved(place, pair.axis) : mesh_.points[v];
+    return v == pair.low ? place : v == pair.high ? cell_.to_high(place, pair.period) : mesh_.points[v];
+  }
+
+  /// Two directions in the low face, at right angles.
+  std::array<Vec3, 2> directions(int period) const {
+    std::array<Vec3, 2> along{};
+    if (cell_.is_box()) {
+      along[0][(period + 1) % 3] = 1, along[1][(period + 2) % 3] = 1;
+      return along;
+    }
+    const Vec3 n = cell_.mapped[static_cast<std::size_t>(period)].normal;
+    const Vec3 aside = std::abs(n.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+    along[0] = normalized(cross(n, aside));
+    along[1] = cross(n, along[0]);
+    return along;
   }
 
   /// The elements around both with the vertex at the place; count 0 if one is not positive there.
@@ -126,16 +139,15 @@ class PairSlider {
     const Worth now = worth(pair, here);
     Worth best = now;
     Vec3 chosen = here;
+    const std::array<Vec3, 2> along = directions(pair.period);
     for (const double step : kSteps)
       for (const auto& way : kWays) {
-        Vec3 place = here;
-        place[(pair.axis + 1) % 3] += step * edge * way[0];
-        place[(pair.axis + 2) % 3] += step * edge * way[1];
+        const Vec3 place = cell_.on_grid(here + along[0] * (step * edge * way[0]) + along[1] * (step * edge * way[1]));
         const Worth w = worth(pair, place);
         if (w.count > 0 && w.sum > best.sum && w.worst >= std::min(now.worst, kPoor)) best = w, chosen = place;
       }
     if (best.sum - now.sum < kLeastGain * static_cast<double>(now.count)) return false;
-    mesh_.points[pair.low] = chosen, mesh_.points[pair.high] = moved(chosen, pair.axis);
+    mesh_.points[pair.low] = chosen, mesh_.points[pair.high] = cell_.to_high(chosen, pair.period);
     return true;
   }
 

@@ -182,6 +182,7 @@ void make_linear(TetMesh& mesh) {
   for (const Tet& t : mesh.tets) corners = std::max(corners, 1 + *std::max_element(t.begin(), t.end()));
   mesh.points.resize(corners);
   mesh.mid_nodes.clear();
+  std::erase_if(mesh.periodic_nodes, [&](const auto& pair) { return pair[1] >= corners || pair[2] >= corners; });
   for (NamedSet& set : mesh.sets)
     if (set.kind == NamedSet::Kind::kNodes) std::erase_if(set.members, [&](std::uint32_t v) { return v >= corners; });
 }

@@ -108,7 +108,10 @@ std::vector<Row<Options>> surface_rows() {
       row(
           of("periodic",
              "Axes along which the body is one cell of a periodic one, such as x or xyz: opposite faces of its "
-             "bounding box get the same triangles, and their nodes are paired"),
+             "bounding box get the same triangles, and their nodes are paired. Or what leads from a face to its copy: "
+             "X,Y,Z (a translation), DEGREES@z or DEGREES@PX,PY,PZ,DX,DY,DZ (a rotation about an axis), several with "
+             "semicolons between, each with LOW:HIGH= before it where names of patches are to say what it leads to "
+             "what"),
           [](auto& o) -> auto& { return o.periodic; }),
   };
 }

@@ -7,6 +7,7 @@
 #include "improve/curved/curved.h"
 #include "improve/schedule/schedule.h"
 #include "pipeline/stages/follow_boundary.h"
+#include "pipeline/stages/kept_pairs.h"
 #include "pipeline/stages/stages.h"
 #include "pipeline/stages/without_wide_cells.h"
 #include "soup/defects/examine.h"
@@ -86,6 +87,7 @@ TetMesh put_groups_aside(TetMesh& mesh) {
   mesh.curve_edges.clear();
   mesh.curve.clear();
   mesh.sets.clear();
+  mesh.periodic_nodes.clear();
   return before;
 }
 
@@ -99,13 +101,13 @@ void improve_beside_wide_cells(TetMesh& mesh, const ImproveOptions& options, con
   mesh = without.joined(std::move(inner));
 }
 
-void raise_order(TetMesh& mesh, const Ground* ground, Run& run) {
+void raise_order(TetMesh& mesh, const Ground* ground, const std::vector<VertexIndex>& paired, Run& run) {
   if (run.options.order < 2) return;
   run.stage("second order", [&](const Stage& stage) {
-    run.report.second_order = ground
-                                  ? curve_to_surface(mesh, ground->of_mesh.edges, ground->surface,
-                                                     run.options.surface.angle_of_features(), {}, {}, stage.context())
-                                  : add_straight_edges(mesh, stage.context());
+    run.report.second_order =
+        ground ? curve_to_surface(mesh, ground->of_mesh.edges, ground->surface, run.options.surface.angle_of_features(),
+                                  {}, paired, stage.context())
+               : add_straight_edges(mesh, stage.context());
     count_edges(run.report.second_order, stage);
   });
 }
@@ -121,6 +123,7 @@ Improved improve_existing(const TetMesh& mesh, const Options& options, const Sur
   make_linear(result.mesh);
   // What improvement does not know of goes, and comes back as far as it is still there.
   const TetMesh before = put_groups_aside(result.mesh);
+  const std::vector<VertexIndex> paired = paired_vertices(before);
   result.before = summarize_quality(mesh);
   run.report.input_volume = enclosed_volume(boundary_of(mesh));
   std::optional<Ground> ground;
@@ -133,15 +136,22 @@ Improved improve_existing(const TetMesh& mesh, const Options& options, const Sur
     if (is_mixed) return improve_beside_wide_cells(result.mesh, options.improve, stage);
     std::optional<improve::BoundaryInput> on;
     if (ground)
-      on.emplace(improve::BoundaryInput{ground->surface.mesh(), ground->surface.tree(), ground->surface.features(),
-                                        ground->of_mesh});
+      on.emplace(improve::BoundaryInput{ground->surface.mesh(),
+                                        ground->surface.tree(),
+                                        ground->surface.features(),
+                                        ground->of_mesh,
+                                        0,
+                                        {},
+                                        {},
+                                        paired});
     if (improve_mesh(result.mesh, on ? &*on : nullptr, options.improve, stage) && on)
       renew_sources(result.mesh, boundary_of(mesh), on->surface, on->tree);
   });
   run.stage("groups", [&](const Stage& stage) {
     for (const std::string& note : carry_groups(before, result.mesh)) stage.note(note);
   });
-  raise_order(result.mesh, ground ? &*ground : nullptr, run);
+  raise_order(result.mesh, ground ? &*ground : nullptr, paired_now(before, result.mesh), run);
+  keep_pairs(before, result.mesh, run);
   check_result(result.mesh, nullptr, run);
   describe(result.mesh, run.report);
   result.report = run.close();

@@ -3,6 +3,7 @@
 #include <octafront/error.h>
 #include <octafront/tet_mesh.h>
 
+#include "base/core/disjoint_sets.h"
 #include "base/core/wording.h"
 #include "base/geometry/quadratic_tet.h"
 #include "base/mesh/edge_nodes.h"
@@ -47,171 +48,85 @@ void tell(const MadePeriodic& made, const Stage& stage) {
   stage.count("vertices moved", static_cast<double>(made.moved));
   stage.count("largest move", made.largest_move);
   if (made.imprinted > 0)
-    stage.note(fmt::format("opposite faces carried different triangles: both got {} new ones, by the lines of both",
-                           made.imprinted / 2));
+    stage.note(
+        made.cell.is_box()
+            ? fmt::format("opposite faces carried different triangles: both got {} new ones, by the lines of both",
+                          made.imprinted / 2)
+            : fmt::format("faces got {} triangles of those that they are copies of", made.imprinted));
   if (made.moved > 0)
     stage.note(fmt::format("{} moved onto periodic faces, or to their copies, by {:.3g} at most",
                            counted(made.moved, "vertex", "vertices"), made.largest_move));
 }
 
-/// The edges of periodic faces by the places of their ends, as those that they are copies of.
-struct PairedEdge {
-  VertexIndex node = kNone;      ///< on the lowest faces
-  std::vector<VertexIndex> all;  ///< of all copies, `node` too
-};
+/// Which node is the copy of which, per period: {copy, original}, ascending.
+using NodeLinks = std::vector<std::vector<std::array<VertexIndex, 2>>>;
 
-using EdgePlace = std::array<std::array<double, 3>, 2>;
-
-EdgePlace place_of_edge(const std::array<Vec3, 2>& ends) {
-  EdgePlace place{{{ends[0].x, ends[0].y, ends[0].z}, {ends[1].x, ends[1].y, ends[1].z}}};
-  std::sort(place.begin(), place.end());
-  return place;
-}
-
-class MidNodes {
+class LinkFinder {
  public:
-  MidNodes(TetMesh& mesh, const PeriodicCell& cell) : mesh_(mesh), cell_(cell) { find_edges(); }
+  LinkFinder(const TetMesh& mesh, const PeriodicCell& cell) : mesh_(mesh), cell_(cell), node_of_(mesh) {}
 
-  void run(const Stage& stage) {
-    for (auto& [place, edge] : edges_) unite(edge);
-    std::uint64_t straightened = 0;
-    for (;;) {
-      const std::vector<std::uint8_t> bad = corners_of_bad();
-      std::uint64_t now = 0;
-      for (auto& [place, edge] : edges_)
-        if (std::any_of(edge.all.begin(), edge.all.end(), [&](VertexIndex v) { return bad[v] != 0; }))
-          now += straighten(place, edge);
-      if (now == 0) break;
-      straightened += now;
-    }
-    stage.count("edges of periodic faces straightened", static_cast<double>(straightened));
+  NodeLinks run() const {
+    NodeLinks links(static_cast<std::size_t>(cell_.periods()));
+    for (int k = 0; k < cell_.periods(); ++k)
+      if (cell_.has(k)) links[static_cast<std::size_t>(k)] = links_of(k);
+    return links;
+  }
+
+  /// Throws MeshingError unless copies lie where their originals lead, bit for bit.
+  void check(const NodeLinks& links) const {
+    for (int k = 0; k < cell_.periods(); ++k)
+      for (const auto& [copy, original] : links[static_cast<std::size_t>(k)])
+        if (copied(original, k) != mesh_.points[copy]) refuse(copy, k);
   }
 
  private:
-  void find_edges() {
-    const EdgeNodes node_of(mesh_);
-    for (const Triangle& t : mesh_.boundary) {
-      if (face_of_cell(cell_, mesh_.points[t[0]], mesh_.points[t[1]], mesh_.points[t[2]]) == kNone) continue;
-      for (int i = 0; i < 3; ++i) {
-        const VertexIndex a = t[i], b = t[(i + 1) % 3];
-        const std::array ends{mesh_.points[a], mesh_.points[b]}, low = cell_.originals(ends);
-        PairedEdge& edge = edges_[place_of_edge(low)];
-        const VertexIndex node = node_of(a, b);
-        if (std::find(edge.all.begin(), edge.all.end(), node) != edge.all.end()) continue;
-        edge.all.push_back(node);
-        if (ends == low) edge.node = node;
-        ends_[node] = {a, b};
-      }
-    }
+  Vec3 copied(VertexIndex v, int k) const {
+    return cell_.is_box() ? low(mesh_.points[v], k) : cell_.to_high(mesh_.points[v], k);
   }
-
-  /// The coordinates of a copy: those of its face, and all others of the original.
-  Vec3 copied(Vec3 p, VertexIndex node) const {
-    const auto [a, b] = ends_.at(node);
-    for (int axis = 0; axis < 3; ++axis)
-      for (const double end : {cell_.box.lo[axis], cell_.box.hi[axis]})
-        if (cell_.along[axis] && mesh_.points[a][axis] == end && mesh_.points[b][axis] == end) p[axis] = end;
+  Vec3 low(Vec3 p, int axis) const {
+    p[axis] += cell_.period(axis);
     return p;
   }
 
-  void unite(PairedEdge& edge) {
-    if (edge.node == kNone) edge.node = edge.all.front();
-    const Vec3 p = mesh_.points[edge.node];
-    for (const VertexIndex node : edge.all) mesh_.points[node] = copied(p, node);
-  }
-
-  bool straighten(const EdgePlace& place, const PairedEdge& edge) {
-    const Vec3 middle{(place[0][0] + place[1][0]) * 0.5, (place[0][1] + place[1][1]) * 0.5,
-                      (place[0][2] + place[1][2]) * 0.5};
-    bool changed = false;
-    for (const VertexIndex node : edge.all) {
-      const Vec3 to = copied(middle, node);
-      changed = changed || mesh_.points[node] != to;
-      mesh_.points[node] = to;
-    }
-    return changed;
-  }
-
-  /// Per node whether an element that is not valid has it.
-  std::vector<std::uint8_t> corners_of_bad() const {
-    std::vector<std::uint8_t> on_face(mesh_.points.size(), 0), bad(mesh_.points.size(), 0);
-    for (const auto& [place, edge] : edges_)
-      for (const VertexIndex node : edge.all) on_face[node] = 1;
-    for (TetIndex t = 0; t < mesh_.tets.size(); ++t) {
-      const auto& mid = mesh_.mid_nodes[t];
-      if (std::none_of(mid.begin(), mid.end(), [&](VertexIndex v) { return on_face[v] != 0; })) continue;
-      QuadraticTet nodes;
-      for (int i = 0; i < 4; ++i) nodes[i] = mesh_.points[mesh_.tets[t][i]];
-      for (int i = 0; i < 6; ++i) nodes[4 + i] = mesh_.points[mid[i]];
-      if (has_positive_jacobian(nodes)) continue;
-      for (const VertexIndex v : mid) bad[v] = 1;
-    }
-    return bad;
-  }
-
-  TetMesh& mesh_;
-  const PeriodicCell& cell_;
-  std::map<EdgePlace, PairedEdge> edges_;
-  std::map<VertexIndex, Edge> ends_;  ///< of nodes
-};
-
-/// The names that make_periodic() gives to one face: "x_min", "x_min_2", ...
-bool is_own_name(const std::string& name, CellFace face) {
-  const std::string own = name_of_face(face);
-  return name == own ||
-         (name.starts_with(own + "_") && name.find_first_not_of("0123456789", own.size() + 1) == std::string::npos);
-}
-
-class Pairs {
- public:
-  Pairs(TetMesh& mesh, const PeriodicCell& cell) : mesh_(mesh), cell_(cell) {}
-
-  std::array<std::uint64_t, 3> run() {
-    const EdgeNodes node_of(mesh_);
-    for (int axis = 0; axis < 3; ++axis)
-      if (cell_.along[axis]) pair_axis(axis, node_of);
-    return counts_;
-  }
-
- private:
-  /// The nodes of boundary faces in a face of the cell: corners, then mid-side nodes.
   std::vector<Triangle> triangles_on(CellFace face) const {
     std::vector<Triangle> all;
-    for (const Triangle& t : mesh_.boundary)
-      if (face_of_cell(cell_, mesh_.points[t[0]], mesh_.points[t[1]], mesh_.points[t[2]]) == face) all.push_back(t);
+    for (std::size_t f = 0; f < mesh_.boundary.size(); ++f) {
+      const auto& [a, b, c] = mesh_.boundary[f];
+      const std::uint32_t patch = mesh_.patch.empty() ? 0 : mesh_.patch[f];
+      if (face_of_cell(cell_, patch, mesh_.points[a], mesh_.points[b], mesh_.points[c]) == face)
+        all.push_back(mesh_.boundary[f]);
+    }
     return all;
   }
 
-  void pair_axis(int axis, const EdgeNodes& node_of) {
-    const CellFace low = 2 * static_cast<CellFace>(axis);
-    const std::vector<Triangle> originals = triangles_on(low), copies = triangles_on(low + 1);
+  std::vector<std::array<VertexIndex, 2>> links_of(int k) const {
+    const CellFace face = 2 * static_cast<CellFace>(k);
+    const std::vector<Triangle> originals = triangles_on(face), copies = triangles_on(face + 1);
     VerticesByPlace at;
-    std::vector<std::array<VertexIndex, 3>> known;
-    for (const Triangle& t : originals) {
-      for (const VertexIndex v : nodes_of(t, node_of)) at.add(mesh_.points[v], v);
+    std::vector<Triangle> known;
+    for (const Triangle& t : copies) {
+      for (const VertexIndex v : t) at.add(mesh_.points[v], v);
       known.push_back(sorted(t));
     }
     std::sort(known.begin(), known.end());
     std::map<VertexIndex, VertexIndex> original_of;
-    for (const Triangle& t : copies) {
-      for (const VertexIndex v : nodes_of(t, node_of)) original_of[v] = original_at(v, axis, at);
-      const Triangle original{original_of.at(t[0]), original_of.at(t[1]), original_of.at(t[2])};
-      if (!std::binary_search(known.begin(), known.end(), sorted(original))) refuse(t[0], axis);
+    for (const Triangle& t : originals) {
+      Triangle copy{};
+      for (int i = 0; i < 3; ++i) copy[i] = at.find(copied(t[i], k));
+      for (int i = 0; i < 3; ++i) {
+        if (copy[i] == kNone) refuse(t[i], k);
+        original_of[copy[i]] = t[i];
+      }
+      if (!std::binary_search(known.begin(), known.end(), sorted(copy))) refuse(t[0], k);
+      if (!mesh_.is_second_order()) continue;
+      const Triangle nodes = node_of_.of(t), their = node_of_.of(copy);
+      for (int i = 0; i < 3; ++i) original_of[their[i]] = nodes[i];
     }
-    if (originals.size() != copies.size()) refuse(originals.empty() ? copies[0][0] : originals[0][0], axis);
-    const auto number = static_cast<std::uint32_t>(mesh_.periods.size());
-    Vec3 period;
-    period[axis] = cell_.period(axis);
-    mesh_.periods.push_back(period);
-    for (const auto& [copy, original] : original_of) mesh_.periodic_nodes.push_back({number, copy, original});
-    counts_[axis] = original_of.size();
-  }
-
-  std::vector<VertexIndex> nodes_of(const Triangle& t, const EdgeNodes& node_of) const {
-    std::vector<VertexIndex> nodes(t.begin(), t.end());
-    if (!mesh_.is_second_order()) return nodes;
-    for (const VertexIndex v : node_of.of(t)) nodes.push_back(v);
-    return nodes;
+    if (originals.size() != copies.size()) refuse(originals.empty() ? copies[0][0] : originals[0][0], k);
+    std::vector<std::array<VertexIndex, 2>> links;
+    for (const auto& [copy, original] : original_of)
+      if (copy != original) links.push_back({copy, original});  // on the axis of a rotation they are the same
+    return links;
   }
 
   static Triangle sorted(Triangle t) {
@@ -219,36 +134,145 @@ class Pairs {
     return t;
   }
 
-  VertexIndex original_at(VertexIndex copy, int axis, const VerticesByPlace& at) const {
-    Vec3 p = mesh_.points[copy];
-    p[axis] = cell_.box.lo[axis];
-    const VertexIndex original = at.find(p);
-    if (original == kNone || p[axis] + cell_.period(axis) != mesh_.points[copy][axis]) refuse(copy, axis);
-    return original;
+  [[noreturn]] void refuse(VertexIndex v, int k) const {
+    throw MeshingError(fmt::format("opposite faces along {} did not become the same around {}: a smaller size may help",
+                                   cell_.name_of_period(k), at_point(mesh_.points[v])));
   }
 
-  [[noreturn]] void refuse(VertexIndex v, int axis) const {
-    const Vec3 p = mesh_.points[v];
-    throw MeshingError(fmt::format(
-        "opposite faces along {} did not become the same around ({:.6g}, {:.6g}, {:.6g}): a smaller size may help",
-        kAxisNames[axis], p.x, p.y, p.z));
+  const TetMesh& mesh_;
+  const PeriodicCell& cell_;
+  const EdgeNodes node_of_;
+};
+
+/// Mid-side nodes of faces where their originals lead.
+class MidNodes {
+ public:
+  MidNodes(TetMesh& mesh, const PeriodicCell& cell)
+      : mesh_(mesh), cell_(cell), set_(mesh.points.size()), ends_(mesh.points.size(), Edge{kNone, kNone}) {
+    find_ends();
+    const NodeLinks links = LinkFinder(mesh, cell).run();
+    std::vector<std::uint8_t> is_copy(mesh.points.size(), 0);
+    for (std::size_t k = 0; k < links.size(); ++k)
+      for (const auto& [copy, original] : links[k]) {
+        if (ends_[copy][0] == kNone) continue;
+        set_.join(copy, original);
+        links_.push_back({static_cast<int>(k), copy, original});
+        is_copy[copy] = 1;
+      }
+    for (const Link& link : links_)
+      if (!is_copy[link.original]) first_[set_.find(link.original)] = link.original;
+  }
+
+  void run(const Stage& stage) {
+    for (const auto& [set, node] : first_) mesh_.points[node] = settled(mesh_.points[node], node);
+    follow();
+    std::uint64_t straightened = 0;
+    for (;;) {
+      const std::uint64_t now = straighten_bad();
+      if (now == 0) break;
+      straightened += now;
+      follow();
+    }
+    stage.count("edges of periodic faces straightened", static_cast<double>(straightened));
+  }
+
+ private:
+  struct Link {
+    int period;
+    VertexIndex copy, original;
+  };
+
+  /// The corners that each mid-side node lies between.
+  void find_ends() {
+    for (TetIndex t = 0; t < mesh_.tets.size(); ++t)
+      for (std::size_t e = 0; e < 6; ++e) {
+        const auto& [i, j] = kTetEdges[e];
+        ends_[mesh_.mid_nodes[t][e]] = {mesh_.tets[t][static_cast<std::size_t>(i)],
+                                        mesh_.tets[t][static_cast<std::size_t>(j)]};
+      }
+  }
+
+  /// Where an original near p lies: in the low faces that both ends of its edge are in.
+  Vec3 settled(Vec3 p, VertexIndex node) const {
+    if (!cell_.is_box()) return cell_.on_grid(p);
+    const Vec3 a = mesh_.points[ends_[node][0]], b = mesh_.points[ends_[node][1]];
+    for (int k = 0; k < cell_.periods(); ++k)
+      if (cell_.is_low(a, k) && cell_.is_low(b, k)) p = cell_.to_low(p, k);
+    return p;
+  }
+
+  /// Copies come to where their originals lead: after as many rounds as there are periods all are there.
+  void follow() {
+    for (int k = 0; k < cell_.periods(); ++k)
+      for (const Link& link : links_) mesh_.points[link.copy] = cell_.to_high(mesh_.points[link.original], link.period);
+  }
+
+  std::uint64_t straighten_bad() {
+    std::vector<std::uint8_t> is_on_face(mesh_.points.size(), 0), is_bad(mesh_.points.size(), 0);
+    for (const Link& link : links_) is_on_face[link.copy] = is_on_face[link.original] = 1;
+    for (TetIndex t = 0; t < mesh_.tets.size(); ++t) {
+      const auto& mid = mesh_.mid_nodes[t];
+      if (std::none_of(mid.begin(), mid.end(), [&](VertexIndex v) { return is_on_face[v] != 0; })) continue;
+      QuadraticTet nodes;
+      for (int i = 0; i < 4; ++i) nodes[i] = mesh_.points[mesh_.tets[t][i]];
+      for (int i = 0; i < 6; ++i) nodes[4 + i] = mesh_.points[mid[i]];
+      if (has_positive_jacobian(nodes)) continue;
+      for (const VertexIndex v : mid)
+        if (is_on_face[v]) is_bad[set_.find(v)] = 1;
+    }
+    std::uint64_t changed = 0;
+    for (const auto& [set, node] : first_) {
+      if (!is_bad[set]) continue;
+      const Vec3 to = settled((mesh_.points[ends_[node][0]] + mesh_.points[ends_[node][1]]) * 0.5, node);
+      changed += mesh_.points[node] != to;
+      mesh_.points[node] = to;
+    }
+    return changed;
   }
 
   TetMesh& mesh_;
   const PeriodicCell& cell_;
-  std::array<std::uint64_t, 3> counts_{};
+  DisjointSets set_;                            ///< of mid-side nodes that are copies
+  std::vector<Edge> ends_;                      ///< per node
+  std::vector<Link> links_;                     ///< of mid-side nodes
+  std::map<std::uint32_t, VertexIndex> first_;  ///< per set the node that is no copy
 };
+
+/// The names that make_periodic() gives to one face: "x_min", "x_min_2", ...
+bool is_own_name(const std::string& name, const PeriodicCell& cell, CellFace face) {
+  const std::string own = name_of_face(cell, face);
+  return name == own ||
+         (name.starts_with(own + "_") && name.find_first_not_of("0123456789", own.size() + 1) == std::string::npos);
+}
+
+/// Leaves periods and pairs in the mesh.
+void take_links(const NodeLinks& links, const PeriodicCell& cell, TetMesh& mesh) {
+  bool turns = false;
+  for (const MappedFaces& faces : cell.mapped) turns = turns || faces.map.turns();
+  for (std::size_t k = 0; k < links.size(); ++k) {
+    if (!cell.has(static_cast<int>(k))) continue;
+    const auto number = static_cast<std::uint32_t>(mesh.periods.size());
+    Vec3 period;
+    if (cell.is_box())
+      period[static_cast<int>(k)] = cell.period(static_cast<int>(k));
+    else
+      period = cell.mapped[k].map.shift();
+    mesh.periods.push_back(period);
+    if (turns) mesh.period_rotations.push_back(cell.mapped[k].map.matrix());
+    for (const auto& [copy, original] : links[k]) mesh.periodic_nodes.push_back({number, copy, original});
+  }
+}
 
 /// Patches that make_periodic() made of one face become one again.
 void unite_patches(TetMesh& mesh, const PeriodicCell& cell) {
   std::vector<std::uint32_t> becomes(mesh.patch_names.size());
   for (std::uint32_t p = 0; p < becomes.size(); ++p) becomes[p] = p;
-  for (CellFace face = 0; face < 6; ++face) {
-    if (!cell.along[face / 2]) continue;
+  for (CellFace face = 0; face < 2 * static_cast<CellFace>(cell.periods()); ++face) {
+    if (!cell.has(static_cast<int>(face / 2))) continue;
     std::uint32_t first = kNone;
     for (std::uint32_t p = 0; p < becomes.size(); ++p)
-      if (is_own_name(mesh.patch_names[p], face)) becomes[p] = first = std::min(first, p);
-    if (first != kNone) mesh.patch_names[first] = name_of_face(face);
+      if (is_own_name(mesh.patch_names[p], cell, face)) becomes[p] = first = std::min(first, p);
+    if (first != kNone) mesh.patch_names[first] = name_of_face(cell, face);
   }
   std::vector<std::uint32_t> number(becomes.size());
   std::vector<std::string> names;
@@ -265,7 +289,7 @@ void unite_patches(TetMesh& mesh, const PeriodicCell& cell) {
 
 void check_periodic_options(const Options& options) {
   if (options.periodic.empty()) return;
-  axes_named("periodic", options.periodic);
+  periods_asked("periodic", options.periodic);
   if (!traits_of(options.method).fills_complexes)
     throw OptionError("`periodic` goes with the methods octree-aft and recover only");
   if (options.layers.count > 0) throw OptionError("`periodic` and `layers` do not go together yet: leave out one");
@@ -280,7 +304,9 @@ std::optional<PeriodicDomain> made_periodic(const Domain& domain, Run& run) {
     if (!examined.defects.clean()) return std::nullopt;
     const Domain clean = tidied(domain, std::move(examined.repaired.surface));
     SurfaceMesh surface = clean.surface;
-    const MadePeriodic made = make_periodic(surface, axes_named("periodic", run.options.periodic), stage.context());
+    const AskedPeriods asked = periods_asked("periodic", run.options.periodic);
+    const MadePeriodic made = asked.maps.empty() ? make_periodic(surface, asked.along, stage.context())
+                                                 : make_periodic(surface, asked.maps, stage.context());
     tell(made, stage);
     Domain periodic = with_surface(clean, std::move(surface), made.origin);
     if (periodic.geometry)
@@ -292,14 +318,16 @@ std::optional<PeriodicDomain> made_periodic(const Domain& domain, Run& run) {
   });
 }
 
-std::vector<VertexIndex> vertices_on_faces(const std::vector<Vec3>& points, const PeriodicCell& cell) {
+std::vector<VertexIndex> vertices_on_faces(const SurfaceMesh& surface, const PeriodicCell& cell) {
   std::vector<VertexIndex> found;
-  for (VertexIndex v = 0; v < points.size(); ++v)
-    for (int axis = 0; axis < 3; ++axis)
-      if (cell.is_low(points[v], axis) || cell.is_high(points[v], axis)) {
-        found.push_back(v);
-        break;
-      }
+  if (!cell.is_periodic()) return found;
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    const auto& [a, b, c] = surface.triangles[t];
+    const Vec3 p = surface.points[a], q = surface.points[b], r = surface.points[c];
+    if (face_of_cell(cell, surface.patch_of(t), p, q, r) != kNone) found.insert(found.end(), {a, b, c});
+  }
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
   return found;
 }
 
@@ -308,13 +336,18 @@ void pair_mid_nodes(TetMesh& mesh, const PeriodicCell& cell, const Stage& stage)
 }
 
 void pair_nodes(const Prepared& input, TetMesh& mesh, Run& run) {
-  if (!input.cell.is_periodic()) return;
+  const PeriodicCell& cell = input.cell;
+  if (!cell.is_periodic()) return;
   run.stage("pairs", [&](const Stage& stage) {
-    const std::array<std::uint64_t, 3> counts = Pairs(mesh, input.cell).run();
-    for (int axis = 0; axis < 3; ++axis)
-      if (input.cell.along[axis])
-        stage.count(fmt::format("pairs of nodes along {}", kAxisNames[axis]), static_cast<double>(counts[axis]));
-    unite_patches(mesh, input.cell);
+    const LinkFinder finder(mesh, cell);
+    const NodeLinks links = finder.run();
+    finder.check(links);
+    take_links(links, cell, mesh);
+    for (int k = 0; k < cell.periods(); ++k)
+      if (cell.has(k))
+        stage.count(fmt::format("pairs of nodes along {}", cell.name_of_period(k)),
+                    static_cast<double>(links[static_cast<std::size_t>(k)].size()));
+    unite_patches(mesh, cell);
   });
 }
 

@@ -28,8 +28,8 @@ struct PeriodicDomain {
 /// Throws InputError where opposite faces differ.
 std::optional<PeriodicDomain> made_periodic(const Domain& domain, Run& run);
 
-/// The points on periodic faces.
-std::vector<VertexIndex> vertices_on_faces(const std::vector<Vec3>& points, const PeriodicCell& cell);
+/// The vertices of a surface of the cell that lie on periodic faces, ascending.
+std::vector<VertexIndex> vertices_on_faces(const SurfaceMesh& surface, const PeriodicCell& cell);
 
 /// Mid-side nodes on periodic faces lie in them, and those of copies where their originals do; where an element would
 /// not be valid then, the edges are straight. Nothing for linear meshes.

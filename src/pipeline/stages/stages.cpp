@@ -337,7 +337,8 @@ Prepared prepare(const Domain& domain, Run& run) {
   require_bounds(domain);
   if (std::optional<PeriodicDomain> periodic = made_periodic(domain, run)) {
     Prepared prepared = prepare_aperiodic(periodic->domain, run);
-    prepared.cell = periodic->cell;
+    prepared.cell = std::move(periodic->cell);
+    find_faces_of_patches(prepared.surface.mesh(), prepared.cell);
     return prepared;
   }
   return prepare_aperiodic(domain, run);
@@ -422,7 +423,7 @@ void improve_elements(const Prepared& input, Filled& filled, Run& run, const Imp
       on.emplace(improve::BoundaryInput{
           input.surface.mesh(), input.surface.tree(), input.surface.features(), boundary.features,
           detail_tolerance(input.surface.mesh(), run.options, input.unfolded ? 1 - kUnfolded : 1), boundary.near_limit,
-          input.kept_bound(), vertices_on_faces(boundary.surface.points, input.cell)});
+          input.kept_bound(), vertices_on_faces(boundary.surface, input.cell)});
     const bool slides_pairs = on && may_slide(options) && input.cell.is_periodic();
     if (slides_pairs) slide_together(input.cell, filled, stage);
     if (improve_mesh(mesh, on ? &*on : nullptr, options, stage, &boundary.features)) {
@@ -444,7 +445,7 @@ void raise_order(const Prepared& input, Filled& filled, Run& run) {
       if (keeps_surface(run.options)) return add_straight_edges(mesh, stage.context());
       if (input.geometry) return curve_to_geometry(mesh, *input.geometry, below, stage.context());
       return curve_to_surface(mesh, boundary.features.edges, input.surface, run.options.surface.angle_of_features(),
-                              below, vertices_on_faces(boundary.surface.points, input.cell), stage.context());
+                              below, vertices_on_faces(boundary.surface, input.cell), stage.context());
     });
     pair_mid_nodes(mesh, input.cell, stage);
     std::copy_n(mesh.points.begin(), boundary.surface.points.size(), boundary.surface.points.begin());

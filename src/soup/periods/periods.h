@@ -1,13 +1,15 @@
 #pragma once
 
-// soup/periods: opposite faces of a box made the same. Takes a clean surface or complex, leaves one whose flat faces at
-// both ends of an axis are the same triangles, the one moved onto the other bit for bit: matched.cpp finds what each
-// face is divided into by the lines of both, same_faces.cpp puts it into the surface.
+// soup/periods: opposite faces made the same. Takes a clean surface or complex, leaves one whose flat faces at both
+// ends of an axis are the same triangles, the one moved onto the other bit for bit: matched.cpp finds what each face is
+// divided into by the lines of both, same_faces.cpp puts it into the surface. By other maps mapped_faces.cpp: it finds
+// the faces (map_finder.cpp), brings their lines together and copies what is between them.
 
 #include <octafront/run_context.h>
 #include <octafront/surface_mesh.h>
 
 #include "base/mesh/periodic_cell.h"
+#include "base/mesh/periods_asked.h"
 
 #include <cstdint>
 #include <string>
@@ -37,5 +39,15 @@ inline constexpr double kSamePlace = 1e-6;
 /// REQUIRES a clean surface or complex. Throws InputError, with a place, where opposite faces are not the same, or
 /// there is no flat face.
 MadePeriodic make_periodic(SurfaceMesh& surface, const std::array<bool, 3>& along, const RunContext& context = {});
+
+/// The same by maps other than those along the axes of a box. What a map leads onto another part of the surface that
+/// looks the other way are its faces, or the patches that are named. The high face gets the triangles of the low one;
+/// where lines end on one of them only (within kSamePlace of the diagonal), the other gets a vertex. Vertices of low
+/// faces come to the grid of the cell (2^-44 of the largest coordinate), those of high ones are what the map makes of
+/// them. Faces are called "periodic_1_low", ... where they have no names of their own.
+///
+/// Throws InputError, with a place, where a map leads nothing onto the surface, or lines of faces are not the same;
+/// OptionError for names that there are not.
+MadePeriodic make_periodic(SurfaceMesh& surface, const std::vector<AskedMap>& maps, const RunContext& context = {});
 
 }  // namespace octafront

@@ -1,10 +1,10 @@
 #include <octafront/error.h>
-#include <octafront/mend.h>
 
 #include "base/geometry/exact_point.h"
 #include "base/geometry/measures.h"
 #include "soup/periods/matched.h"
 #include "soup/periods/periods.h"
+#include "soup/periods/rebuilt.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,17 +17,12 @@ namespace octafront {
 namespace {
 
 using periods::CommonDivision;
+using periods::FaceKind;
 using periods::FaceParts;
+using periods::Rebuilt;
 
 /// A new vertex on the edge between two faces comes to the others with the next round.
 constexpr int kMostRounds = 4;
-
-/// What a triangle of the surface is, beside its corners.
-struct FaceKind {
-  std::uint32_t patch;
-  Sides sides;
-  std::uint32_t origin;
-};
 
 class PeriodMaker {
  public:
@@ -36,7 +31,7 @@ class PeriodMaker {
     made_.cell = cell_of(bounding_box(surface.points), along);
     made_.origin.resize(surface.triangles.size());
     for (std::uint32_t t = 0; t < made_.origin.size(); ++t) made_.origin[t] = t;
-    fill_in(surface);
+    periods::fill_in(surface);
   }
 
   MadePeriodic run() {
@@ -47,18 +42,12 @@ class PeriodMaker {
         if (made_.cell.along[axis]) changed = match(axis) || changed;
       if (!changed) break;
     }
-    name_faces();
+    periods::name_faces(surface_, cell());
     return std::move(made_);
   }
 
  private:
   const PeriodicCell& cell() const { return made_.cell; }
-
-  /// Patches and sides for all triangles, where there are none.
-  static void fill_in(SurfaceMesh& surface) {
-    if (surface.patch.empty()) surface.patch.assign(surface.triangles.size(), 0);
-    if (surface.sides.empty()) surface.sides.assign(surface.triangles.size(), {kNone, 0});
-  }
 
   void move(Vec3& p, Vec3 to) {
     if (p == to) return;
@@ -149,14 +138,7 @@ class PeriodMaker {
     return seen[0] == seen[1];
   }
 
-  FaceKind kind_of(std::uint32_t t) const { return {surface_.patch[t], surface_.sides[t], made_.origin[t]}; }
-
-  /// New triangles of the surface, of which nothing is read any more.
-  struct Rebuilt {
-    std::vector<Triangle> triangles;
-    std::vector<FaceKind> kinds;
-    void add(const Triangle& t, const FaceKind& kind) { triangles.push_back(t), kinds.push_back(kind); }
-  };
+  FaceKind kind_of(std::uint32_t t) const { return {surface_.patch[t], surface_.sides[t], made_.origin[t], kNone}; }
 
   void put_in(int axis, const std::array<FaceParts, 2>& faces, const CommonDivision& common) {
     std::array<std::vector<VertexIndex>, 2> vertex;
@@ -170,7 +152,7 @@ class PeriodMaker {
     for (const FaceParts& face : faces)
       for (const std::uint32_t t : face.triangles) on_face[t] = 1;
     for (std::uint32_t t = 0; t < surface_.triangles.size(); ++t)
-      if (!on_face[t]) add_divided(surface_.triangles[t], kind_of(t), between, to);
+      if (!on_face[t]) periods::add_divided(surface_.triangles[t], kind_of(t), between, to);
     for (int k = 0; k < 2; ++k) add_pieces(axis, k, faces[k], common, vertex[k], to);
     made_.imprinted += 2 * common.pieces.size();
     take(std::move(to));
@@ -196,38 +178,6 @@ class PeriodMaker {
     return vertex;
   }
 
-  /// A triangle with vertices on its edges: on[i] from corner i to the next one.
-  struct Divided {
-    Triangle t;
-    std::array<std::vector<VertexIndex>, 3> on;
-  };
-
-  /// A triangle beside the face, divided where its edges are.
-  static void add_divided(const Triangle& t, const FaceKind& kind,
-                          const std::map<Edge, std::vector<VertexIndex>>& between, Rebuilt& to) {
-    Divided divided{t, {}};
-    for (int i = 0; i < 3; ++i) {
-      const VertexIndex a = t[i], b = t[(i + 1) % 3];
-      const auto at = between.find({std::min(a, b), std::max(a, b)});
-      if (at == between.end()) continue;
-      divided.on[i] = at->second;
-      if (a > b) std::reverse(divided.on[i].begin(), divided.on[i].end());
-    }
-    halve(divided, kind, to);
-  }
-
-  /// Two triangles on either side of the middle vertex of an edge, and so on.
-  static void halve(const Divided& d, const FaceKind& kind, Rebuilt& to) {
-    int i = 0;
-    while (i < 3 && d.on[i].empty()) ++i;
-    if (i == 3) return to.add(d.t, kind);
-    const std::vector<VertexIndex>& on = d.on[i];
-    const auto middle = on.begin() + static_cast<std::ptrdiff_t>(on.size() / 2);
-    const int j = (i + 1) % 3, k = (i + 2) % 3;
-    halve({{d.t[i], *middle, d.t[k]}, {std::vector(on.begin(), middle), {}, d.on[k]}}, kind, to);
-    halve({{*middle, d.t[j], d.t[k]}, {std::vector(middle + 1, on.end()), d.on[j], {}}}, kind, to);
-  }
-
   void add_pieces(int axis, int k, const FaceParts& face, const CommonDivision& common,
                   const std::vector<VertexIndex>& vertex, Rebuilt& to) const {
     for (const periods::CommonPiece& piece : common.pieces) {
@@ -243,86 +193,9 @@ class PeriodMaker {
   }
 
   void take(Rebuilt rebuilt) {
-    std::vector<std::uint32_t> patch, origin;
-    std::vector<Sides> sides;
-    for (const FaceKind& kind : rebuilt.kinds) {
-      patch.push_back(kind.patch), sides.push_back(kind.sides), origin.push_back(kind.origin);
-    }
-    surface_.triangles = std::move(rebuilt.triangles);
-    surface_.patch = std::move(patch), surface_.sides = std::move(sides), made_.origin = std::move(origin);
-    drop_unused_points();
-  }
-
-  void drop_unused_points() {
-    std::vector<VertexIndex> number(surface_.points.size(), kNone);
-    for (const Triangle& t : surface_.triangles)
-      for (const VertexIndex v : t) number[v] = 0;
-    VertexIndex used = 0;
-    for (VertexIndex v = 0; v < number.size(); ++v)
-      if (number[v] != kNone) surface_.points[used] = surface_.points[v], number[v] = used++;
-    surface_.points.resize(used);
-    for (Triangle& t : surface_.triangles)
-      for (VertexIndex& v : t) v = number[v];
-  }
-
-  /// Each face gets patches of its own, and each of these one copy.
-  void name_faces() {
-    SurfaceMesh& s = surface_;
-    s.patch_names.resize(*std::max_element(s.patch.begin(), s.patch.end()) + 1);
-    const std::vector<std::uint8_t> lies_on_one = patches_on_one_face();
-    const PeriodicFaces faces = find_periodic_faces(s, cell());
-    std::map<std::array<std::uint32_t, 7>, std::uint32_t> number;
-    std::map<std::string, int> names;
-    std::vector<std::uint32_t> patch = s.patch;
-    std::vector<std::string> added;
-    const auto key_of = [&](std::uint32_t t) {
-      const std::uint32_t u = faces.other[t];
-      return std::array{faces.face[t], s.patch[t],    s.sides[t][0], s.sides[t][1],
-                        s.patch[u],    s.sides[u][0], s.sides[u][1]};
-    };
-    const auto first_new = static_cast<std::uint32_t>(s.patch_names.size());
-    for (std::uint32_t t = 0; t < s.triangles.size(); ++t) {
-      if (faces.face[t] == kNone) continue;
-      const auto [at, is_new] = number.try_emplace(key_of(t), first_new + static_cast<std::uint32_t>(added.size()));
-      if (is_new) {
-        const std::string& given = s.patch_names[s.patch[t]];
-        added.push_back(lies_on_one[s.patch[t]] && !given.empty() && given != kClosedByRepair
-                            ? given
-                            : name_of_face(faces.face[t]));
-      }
-      patch[t] = at->second;
-    }
-    for (std::string& name : added)
-      if (const int n = ++names[name]; n > 1) name += fmt::format("_{}", n);
-    s.patch = std::move(patch);
-    s.patch_names.insert(s.patch_names.end(), added.begin(), added.end());
-    drop_unused_patches();
-  }
-
-  std::vector<std::uint8_t> patches_on_one_face() const {
-    std::vector<CellFace> face(surface_.patch_names.size(), kNone);
-    std::vector<std::uint8_t> on_one(face.size(), 1);
-    for (std::size_t t = 0; t < surface_.triangles.size(); ++t) {
-      const auto [a, b, c] = surface_.triangles[t];
-      const CellFace f = face_of_cell(cell(), surface_.points[a], surface_.points[b], surface_.points[c]);
-      const std::uint32_t p = surface_.patch[t];
-      if (f == kNone || (face[p] != kNone && face[p] != f)) on_one[p] = 0;
-      face[p] = f;
-    }
-    return on_one;
-  }
-
-  void drop_unused_patches() {
-    std::vector<std::uint32_t> number(surface_.patch_names.size(), kNone);
-    for (const std::uint32_t p : surface_.patch) number[p] = 0;
-    std::vector<std::string> names;
-    for (std::size_t p = 0; p < number.size(); ++p) {
-      if (number[p] == kNone) continue;
-      number[p] = static_cast<std::uint32_t>(names.size());
-      names.push_back(std::move(surface_.patch_names[p]));
-    }
-    for (std::uint32_t& p : surface_.patch) p = number[p];
-    surface_.patch_names = std::move(names);
+    made_.origin.clear();
+    for (const FaceKind& kind : rebuilt.kinds) made_.origin.push_back(kind.origin);
+    periods::take(std::move(rebuilt), surface_);
   }
 
   SurfaceMesh& surface_;
@@ -334,14 +207,7 @@ class PeriodMaker {
 }  // namespace
 
 MadePeriodic make_periodic(SurfaceMesh& surface, const std::array<bool, 3>& along, const RunContext& context) {
-  std::vector<std::uint32_t> source(surface.triangles.size());
-  for (std::uint32_t t = 0; t < source.size(); ++t) source[t] = surface.source_of(t);
-  const bool is_plain = surface.sides.empty();
-  MadePeriodic made = PeriodMaker(surface, along, context).run();
-  if (is_plain) surface.sides.clear();
-  surface.source.clear();
-  for (const std::uint32_t t : made.origin) surface.source.push_back(source[t]);
-  return made;
+  return periods::made_of(surface, [&] { return PeriodMaker(surface, along, context).run(); });
 }
 
 }  // namespace octafront

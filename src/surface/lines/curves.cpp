@@ -208,17 +208,29 @@ void divide_curve(const InputSurface& input, const SizeField& sizes, const Measu
   }
 }
 
+/// Brings the points of a curve to where they have copies.
+void settle(const HalfEdgeMesh& mesh, const PeriodicCell& cell, Curve& curve) {
+  if (cell.is_box()) return;
+  const auto settled = [&](CurvePoint& c) {
+    if (c.vertex == kNone)
+      c.p = cell.settled(c.p, mesh.points[mesh.start[c.half_edge]], mesh.points[mesh.end(c.half_edge)]);
+  };
+  for (CurvePoint& c : curve.samples) settled(c);
+  for (CurvePoint& c : curve.middles) settled(c);
+}
+
 /// The division of a curve, on a copy of it at another place.
-void copy_division(const HalfEdgeMesh& mesh, const Curve& of, Curve& copy) {
-  const Vec3 from = mesh.points[mesh.start[of.half_edges.front()]],
-             to = mesh.points[mesh.start[copy.half_edges.front()]];
+void copy_division(const HalfEdgeMesh& mesh, const PeriodicCell& cell, const Curve& of, Curve& copy) {
+  Vec3 from = mesh.points[mesh.start[of.half_edges.front()]], to = mesh.points[mesh.start[copy.half_edges.front()]];
+  // What lies on the axis of a rotation stays.
+  if (from == to)
+    from = mesh.points[mesh.end(of.half_edges.front())], to = mesh.points[mesh.end(copy.half_edges.front())];
   const auto copied = [&](CurvePoint c) {
     const auto edge = std::find(of.half_edges.begin(), of.half_edges.end(), c.half_edge) - of.half_edges.begin();
     const bool at_start = c.vertex != kNone && c.vertex == mesh.start[c.half_edge];
     c.half_edge = copy.half_edges[static_cast<std::size_t>(edge)];
     if (c.vertex != kNone) c.vertex = at_start ? mesh.start[c.half_edge] : mesh.end(c.half_edge);
-    for (int axis = 0; axis < 3; ++axis)
-      if (from[axis] != to[axis]) c.p[axis] = to[axis];
+    c.p = cell.carried(c.p, from, to);
     return c;
   };
   copy.samples.clear(), copy.middles.clear();
@@ -292,13 +304,14 @@ void divide_curves(const InputSurface& input, const SizeField& sizes, std::vecto
     if (segments[i] == 1 && single[ends(curves[i])] > 1) is_halved[twin(i)] = 1;
   for (std::size_t i = 0; i < curves.size(); ++i) {
     if (is_elsewhere(i)) {
-      copy_division(mesh, curves[twin(i)], curves[i]);
+      copy_division(mesh, *shared.cell, curves[twin(i)], curves[i]);
       continue;
     }
     if (is_halved[twin(i)]) segments[i] = 2;
     curves[i].samples.clear();
     curves[i].middles.clear();
     divide_curve(input, sizes, measures[i], segments[i], curves[i]);
+    if (shared.cell) settle(mesh, *shared.cell, curves[i]);
   }
 }
 

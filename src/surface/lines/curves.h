@@ -6,6 +6,7 @@
 
 #include <octafront/size_field.h>
 
+#include "base/mesh/periodic_cell.h"
 #include "surface/ground/walk.h"
 
 #include <vector>
@@ -48,13 +49,14 @@ std::vector<std::uint8_t> corner_marks(const InputSurface& input, const std::vec
 /// Curves that are copies of each other, and vertices that are.
 struct SharedCurves {
   std::vector<std::uint32_t> group = {};  ///< per curve: the first of its copies; empty: none has others
-  std::vector<std::uint32_t> twin = {};   ///< the same by copies at other places, moved along axes; may be empty
+  std::vector<std::uint32_t> twin = {};   ///< the same by copies at other places, moved by periods; may be empty
   std::vector<VertexIndex> place = {};    ///< per vertex: the same for copies; empty: there are none
+  const PeriodicCell* cell = nullptr;     ///< whose periods they are; needed with twins
 };
 
 /// Divides the curves: integral of ds / h rounded to a whole number of segments, spread evenly. Closed curves, and
 /// loops at one corner, get at least three segments, two curves between the same corners never one each. Copies are
-/// divided alike, and points of copies at other places differ by the same coordinates as their curves.
+/// divided alike, and points of copies at other places are copies of each other, bit for bit.
 void divide_curves(const InputSurface& input, const SizeField& sizes, std::vector<Curve>& curves,
                    const SharedCurves& shared = {});
 

@@ -53,15 +53,14 @@ std::vector<Vec3> samples_of_face(const SurfaceMesh& input, const PeriodicFaces&
   return samples;
 }
 
-/// Sizes wanted at places of both faces of an axis, where the opposite ones are smaller.
+/// Sizes wanted at places of both faces of a period, where the opposite ones are smaller.
 std::vector<PointSize> wanted_by_copies(const SizeField& sizes, const SurfaceMesh& input, const PeriodicFaces& periods,
-                                        int axis) {
+                                        int period) {
   std::vector<PointSize> wanted;
   for (CellFace end = 0; end < 2; ++end) {
-    const Box3& box = periods.cell.box;
-    for (const Vec3 p : samples_of_face(input, periods, 2 * static_cast<CellFace>(axis) + end, sizes)) {
-      Vec3 copy = p;
-      copy[axis] = (end == 0 ? box.hi : box.lo)[axis];
+    const PeriodicCell& cell = periods.cell;
+    for (const Vec3 p : samples_of_face(input, periods, 2 * static_cast<CellFace>(period) + end, sizes)) {
+      const Vec3 copy = end == 0 ? cell.to_high(p, period) : cell.to_low(p, period);
       const double h = sizes.at(p);
       if (h < (1 - kSameAtCopies) * sizes.at(copy)) wanted.push_back({copy, h});
     }
@@ -77,8 +76,10 @@ class FaceCopier {
 
   void run() {
     drop_copies();
+    settle();
     find_vertices();
     for (const std::uint32_t t : low_) copy(t);
+    if (!periods_.cell.is_box()) copy_features();
     compact();
     made_.is_clear = false;
   }
@@ -105,22 +106,28 @@ class FaceCopier {
     surface_.triangles.resize(kept), surface_.patch.resize(kept), surface_.sides.resize(kept);
   }
 
+  /// Vertices of low faces come to where they have copies.
+  void settle() {
+    if (periods_.cell.is_box()) return;
+    for (const std::uint32_t t : low_)
+      for (const VertexIndex v : surface_.triangles[t]) surface_.points[v] = periods_.cell.on_grid(surface_.points[v]);
+  }
+
   void find_vertices() {
     // Also those of dropped triangles alone: at lines between two faces that are copies they have features.
     for (VertexIndex v = 0; v < surface_.points.size(); ++v) at_.add(surface_.points[v], v);
   }
 
-  int axis_of(std::uint32_t patch) {
-    const auto [at, is_new] = axis_of_patch_.try_emplace(patch, -1);
+  int period_of(std::uint32_t patch) {
+    const auto [at, is_new] = period_of_patch_.try_emplace(patch, -1);
     if (is_new)
       for (std::size_t t = 0; t < input_.triangles.size() && at->second < 0; ++t)
         if (input_.patch_of(t) == patch) at->second = static_cast<int>(periods_.face[t] / 2);
     return at->second;
   }
 
-  VertexIndex copy_of_vertex(VertexIndex v, int axis) {
-    Vec3 p = surface_.points[v];
-    p[axis] = periods_.cell.box.hi[axis];
+  VertexIndex copy_of_vertex(VertexIndex v, int period) {
+    const Vec3 p = periods_.cell.to_high(surface_.points[v], period);
     if (const VertexIndex known = at_.find(p); known != kNone) return known;
     const auto added = static_cast<VertexIndex>(surface_.points.size());
     surface_.points.push_back(p);
@@ -134,16 +141,42 @@ class FaceCopier {
 
   void copy(std::uint32_t t) {
     const std::uint32_t patch = surface_.patch[t], to = copy_of(patch);
-    const int axis = axis_of(patch);
+    const int period = period_of(patch);
     const Triangle own = surface_.triangles[t];
     Triangle copied{};
-    for (int i = 0; i < 3; ++i) copied[i] = copy_of_vertex(own[i], axis);
+    for (int i = 0; i < 3; ++i) copied[i] = copy_of_vertex(own[i], period);
     const Sides sides = sides_of_patch_.at(to), low = surface_.sides[t];
     // Both face outward, or both inward, but for parts of which one has the outside in front and one behind.
     if ((sides[0] == kNone) == (low[0] == kNone)) std::swap(copied[1], copied[2]);
     surface_.triangles.push_back(copied);
     surface_.patch.push_back(to);
     surface_.sides.push_back(sides);
+  }
+
+  /// Features within faces, which those of boxes have not: as they are on low faces, and none of what was dropped.
+  void copy_features() {
+    std::vector<Edge>& features = made_.result.features.edges;
+    std::vector<Edge> all, copies;
+    const auto add = [](std::vector<Edge>& to, const Triangle& t) {
+      for (int i = 0; i < 3; ++i) to.push_back({std::min(t[i], t[(i + 1) % 3]), std::max(t[i], t[(i + 1) % 3])});
+    };
+    for (const Triangle& t : surface_.triangles) add(all, t);
+    std::sort(all.begin(), all.end());
+    std::erase_if(features, [&](const Edge& e) { return !std::binary_search(all.begin(), all.end(), e); });
+    std::sort(features.begin(), features.end());
+    for (const std::uint32_t t : low_) {
+      std::vector<Edge> of;
+      add(of, surface_.triangles[t]);
+      const int period = period_of(surface_.patch[t]);
+      for (const Edge& e : of) {
+        if (!std::binary_search(features.begin(), features.end(), e)) continue;
+        const VertexIndex a = copy_of_vertex(e[0], period), b = copy_of_vertex(e[1], period);
+        copies.push_back({std::min(a, b), std::max(a, b)});
+      }
+    }
+    features.insert(features.end(), copies.begin(), copies.end());
+    std::sort(features.begin(), features.end());
+    features.erase(std::unique(features.begin(), features.end()), features.end());
   }
 
   /// Vertices without triangles go.
@@ -180,7 +213,7 @@ class FaceCopier {
   SurfaceMesh& surface_;
   std::vector<std::uint32_t> low_;  ///< triangles of faces at low ends
   std::map<std::uint32_t, Sides> sides_of_patch_;
-  std::map<std::uint32_t, int> axis_of_patch_;
+  std::map<std::uint32_t, int> period_of_patch_;
   VerticesByPlace at_;
 };
 
@@ -192,9 +225,9 @@ SizeField periodic_sizes(const SizeField& sizes, const SurfaceMesh& input, const
   SizeField now = sizes;
   for (int round = 0; round < kSizeRounds; ++round) {
     bool changed = false;
-    for (int axis = 0; axis < 3; ++axis) {
-      if (!periods.cell.along[axis]) continue;
-      const std::vector<PointSize> wanted = wanted_by_copies(now, input, periods, axis);
+    for (int k = 0; k < periods.cell.periods(); ++k) {
+      if (!periods.cell.has(k)) continue;
+      const std::vector<PointSize> wanted = wanted_by_copies(now, input, periods, k);
       if (wanted.empty()) continue;
       now = capped_at(now, wanted, context, {.reach = 0.5});
       changed = true;

@@ -370,7 +370,7 @@ constexpr int kMostSeamRepeats = 60;
 class SeamCoarsener {
  public:
   SeamCoarsener(WorkingMesh& mesh, const PeriodicCell& cell, const RunContext& context, CoarsenCounts& counts)
-      : mesh_(mesh), context_(context), counts_(counts) {
+      : mesh_(mesh), cell_(cell), context_(context), counts_(counts) {
     for (auto& [place, copies] : by_originals(copies_on_seams(mesh), cell)) {
       const bool is_input = std::all_of(copies.begin(), copies.end(), [&](VertexIndex v) {
         return mesh.kind[v] == VertexKind::kRemovableCurve && mesh.on_seam(v);
@@ -407,14 +407,10 @@ class SeamCoarsener {
     return all;
   }
 
-  /// The place at `v` that is the copy of one at `first`, as v is of first. Between copies by a period the curve that
-  /// both lie on lies in a plane.
-  Place copied(Place target, VertexIndex first, VertexIndex v) const {
-    for (int axis = 0; axis < 3; ++axis) {
-      const double from = mesh_.points[first][axis], to = mesh_.points[v][axis];
-      if (from != to) target[axis] = target[axis] == from ? to : HUGE_VAL;
-    }
-    return target;
+  /// The place at `v` that is the copy of one at `first`, as v is of first.
+  Place copied(const Place& target, VertexIndex first, VertexIndex v) const {
+    if (mesh_.points[first] == mesh_.points[v]) return target;
+    return place_of(cell_.carried({target[0], target[1], target[2]}, mesh_.points[first], mesh_.points[v]));
   }
 
   /// The seam's half-edge from v to the place, or kNone.
@@ -487,6 +483,7 @@ class SeamCoarsener {
   }
 
   WorkingMesh& mesh_;
+  const PeriodicCell& cell_;
   const RunContext& context_;
   CoarsenCounts& counts_;
   std::vector<std::vector<VertexIndex>> left_;
@@ -521,7 +518,7 @@ SeamedCurves chained_curves(const InputSurface& input, const SeamedSurface& seam
 std::vector<Curve> divided_curves(const InputSurface& input, const SeamedSurface& seamed, const SizeField& sizes,
                                   std::vector<std::uint8_t>& is_fixed) {
   SeamedCurves chained = chained_curves(input, seamed, sizes, is_fixed);
-  divide_curves(input, sizes, chained.curves, {chained.group, chained.twin, seamed.place});
+  divide_curves(input, sizes, chained.curves, {chained.group, chained.twin, seamed.place, &seamed.periods.cell});
   return std::move(chained.curves);
 }
 

@@ -86,10 +86,51 @@ TEST(PeriodicFiles, MshPairsNodesOfEachPatch) {
     EXPECT_EQ(links.size(), 3u);
     EXPECT_EQ(links.at({2, 1}), (std::set<std::array<int, 2>>{{2, 1}, {4, 3}, {6, 5}, {8, 7}}));
     EXPECT_EQ(links.at({6, 5}), (std::set<std::array<int, 2>>{{5, 1}, {6, 2}, {7, 3}, {8, 4}}));
-    EXPECT_EQ(read_mesh(file).tets.size(), 6u);
-    write_mesh(file, mesh, {}, {.format = format});
-    EXPECT_EQ(read_mesh(file).points, mesh.points);
+    for (const bool ascii : {true, false}) {
+      write_mesh(file, mesh, {}, {.format = format, .ascii = ascii});
+      const TetMesh read = read_mesh(file);
+      EXPECT_EQ(read.points, mesh.points);
+      EXPECT_EQ(read.periods, mesh.periods);
+      EXPECT_EQ(read.periodic_nodes, mesh.periodic_nodes);
+      EXPECT_TRUE(read.period_rotations.empty());
+    }
   }
+}
+
+/// A quarter turn about the z axis leads y_min to x_min; nodes 1 and 5 lie on the axis.
+TetMesh quarter() {
+  TetMesh mesh = kuhn_cube();
+  mesh.periods = {{0, 0, 0}};
+  mesh.period_rotations = {{{{0, -1, 0}, {1, 0, 0}, {0, 0, 1}}}};
+  mesh.periodic_nodes = {{0, 2, 1}, {0, 6, 5}};
+  return mesh;
+}
+
+TEST(PeriodicFiles, MshPairsNodesOfRotations) {
+  const TetMesh mesh = quarter();
+  const TemporaryFolder folder;
+  for (const char* format : {"msh", "msh22"}) {
+    SCOPED_TRACE(format);
+    const std::string file = (folder / (std::string(format) + ".msh")).string();
+    write_mesh(file, mesh, {}, {.format = format, .ascii = true});
+    const Links links = links_of(words_between(file, "$Periodic", "$EndPeriodic"));
+    EXPECT_EQ(links.size(), 1u);
+    EXPECT_EQ(links.at({1, 3}), (std::set<std::array<int, 2>>{{1, 1}, {3, 2}, {5, 5}, {7, 6}}));
+    const TetMesh read = read_mesh(file);
+    EXPECT_EQ(read.period_rotations, mesh.period_rotations);
+    EXPECT_EQ(read.periodic_nodes, mesh.periodic_nodes);
+  }
+}
+
+TEST(PeriodicFiles, AbaqusTurnsDisplacements) {
+  const TemporaryFolder folder;
+  const std::string file = (folder / "sector.inp").string();
+  write_mesh(file, quarter());
+  const std::vector<std::string> words = words_between(file, "*EQUATION", "");
+  // u1(3) + u2(2) = 0, u2(3) - u1(2) = 0, u3(3) - u3(2) = 0.
+  const std::vector<std::string> first(words.begin(), words.begin() + 21);
+  EXPECT_EQ(first, (std::vector<std::string>{"2", "3,", "1,", "1.,", "2,", "2,", "1.", "2", "3,", "2,", "1.,", "2,", "1,",
+                                             "-1.", "2", "3,", "3,", "1.,", "2,", "3,", "-1."}));
 }
 
 TEST(PeriodicFiles, AbaqusTiesEachCopyOnceToTheLowEnds) {

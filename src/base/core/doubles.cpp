@@ -1,4 +1,4 @@
-#include "formats/containers/doubles.h"
+#include "base/core/doubles.h"
 
 #include <algorithm>
 #include <cerrno>
