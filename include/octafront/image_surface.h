@@ -4,6 +4,8 @@
 #include <octafront/image.h>
 #include <octafront/no_context.h>
 
+#include <array>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -12,12 +14,20 @@ namespace octafront {
 // From images to the complex that their labels or grey values bound: one net of surfaces for all regions, which share
 // their faces.
 
+/// An image that goes on periodically, as one of a cell and so many layers around it at both ends of each axis; 0: it
+/// does not go on along that axis. The cell goes from the middle of a layer of voxels to that of its next copy; so of n
+/// layers there are n + 1 in it, the first and the last of which are halves of one, and so are those beside them in the
+/// margin. `origin` of its grid is in the middle of the first voxel of the cell. What is made of it is the cell, flat
+/// at its ends, with vertices that are the same at opposite ones.
+using PeriodicMargin = std::array<std::uint32_t, 3>;
+
 /// How the surfaces of labels are made from the steps between voxels.
 struct LabelSurfaceOptions {
   /// Off: the faces of the voxels, as they are.
   bool smooth = true;
   /// Regions have the volume of their voxels after smoothing too, up to what their voxels' surroundings allow.
   bool keep_volumes = true;
+  PeriodicMargin margin = {0, 0, 0};
 };
 
 /// The surfaces between the labels of an image and around them, as a clean complex in world coordinates.
@@ -51,6 +61,8 @@ struct GreyBand {
 /// Throws InputError for bands that overlap or are empty, or if no value lies in one; Cancelled.
 Complex complex_of_bands(const Image& image, const std::vector<GreyBand>& bands,
                          const RunContext& context = no_context());
+Complex complex_of_bands(const Image& image, const std::vector<GreyBand>& bands, const PeriodicMargin& margin,
+                         const RunContext& context = no_context());
 
 /// The voxels of bands as labels: label b for bands[b], whose `value` is b. Throws InputError as complex_of_bands.
 LabelImage labels_of_bands(const Image& image, const std::vector<GreyBand>& bands);
@@ -64,6 +76,7 @@ struct ImageRegions {
   std::vector<GreyBand> bands;  ///< one without a name is "body", several "band 1" and so on
   CleanOptions clean;
   bool closed_at_box = true;  ///< off: regions that reach the edge of the image are refused
+  PeriodicMargin margin = {0, 0, 0};
 };
 
 /// kLabels or kGrey.

@@ -35,19 +35,17 @@ std::vector<Body> bodies_in_cell(std::vector<Body> bodies, const IntakeOptions& 
 struct PeriodicSurfaces {
   std::function<Complex(const Image&)> of;  ///< of the image with voxels added at its ends
   std::uint32_t margin = 0;                 ///< voxels that are added at each end of a period
-  std::optional<double> tolerance = {};     ///< ComplexOptions::tolerance where the cell is cut out
-  /// A cell of the same periods, no farther from the one of the image than a voxel. Without a value that one.
-  std::optional<Box3> cell = {};
+  Box3 cell = {};                           ///< of the image's periods, no farther from its box than a voxel
 };
 
-/// complex_of_periodic_image() by another way to make surfaces.
+/// The complex of values that go on periodically along axes of the world: surfaces cut by the cell. Vertices of the
+/// surfaces lie alike at copies of a place. Throws InputError for an image whose axes are not those of the world.
 Complex complex_of_periodic_values(const Image& image, const PeriodicSurfaces& surfaces,
                                    const std::array<bool, 3>& along, const RunContext& context);
 
-/// The complex of an image of labels that goes on periodically along axes of the world: the surfaces of the image with
-/// voxels from its other ends added, cut by the cell, which goes from the middles of the first voxels to those of their
-/// next copies. Vertices of the surfaces lie alike at copies of a place. Throws as complex_of_image(), OptionError for
-/// grey values, and InputError for an image whose axes are not those of the world.
+/// The complex of an image that goes on periodically along axes of the world: its cell goes from the middles of the
+/// first voxels to those of their next copies, and its faces are part of the net of surfaces. Throws as
+/// complex_of_image(), and InputError for an image whose axes are not those of the world.
 Complex complex_of_periodic_image(const Image& image, const ImageRegions& regions, const std::array<bool, 3>& along,
                                   const RunContext& context);
 

@@ -17,13 +17,12 @@ namespace octafront::intake {
 
 namespace {
 
-/// Voxels that are added at each end of a period: what lies between the middles of the first and the last voxel then
-/// looks like the inside of an image.
-constexpr std::uint32_t kAdded = 4;
+/// Layers of voxels around the cell of an image: what becomes of its faces is told by no more.
+constexpr std::uint32_t kAround = 2;
 /// Vertices of faces that reach into the cell lie within so many voxels of it.
 constexpr double kNearCell = 3;
-/// Vertices of smoothed surfaces this near to a face of the cell, in voxels, go onto it.
-constexpr double kNearFace = 0.1;
+/// Vertices on the faces of the cell are there up to rounding, in voxels; then exactly.
+constexpr double kOnFace = 1e-6;
 /// The name of what the cell has beside labels, which is left empty.
 constexpr const char* kEmptyName = "outside of all labels";
 
@@ -158,6 +157,45 @@ class SamePlaces {
   const PeriodicCell& cell_;
 };
 
+/// The image as one of a cell and its margin, as PeriodicMargin says.
+Image with_halves(const Image& image, const PeriodicMargin& margin) {
+  const ImageGrid& grid = image.grid;
+  if (margin[2] > 0 && !grid.slices.empty())
+    throw InputError(
+        "the slices of the image do not lie evenly, so that it is not periodic along them: resample it first");
+  Image out = image;
+  std::array<std::vector<std::size_t>, 3> voxel;  // of each layer
+  for (std::size_t a = 0; a < 3; ++a) {
+    const auto n = static_cast<std::int64_t>(grid.size[a]), m = static_cast<std::int64_t>(margin[a]);
+    const std::int64_t layers = m > 0 ? n + 1 + 2 * m : n;
+    for (std::int64_t layer = 0; layer < layers; ++layer) {
+      const std::int64_t in_cell = layer - m;
+      const std::int64_t from = in_cell < 0 ? in_cell + 1 : in_cell > n ? in_cell - 1 : in_cell;
+      voxel[a].push_back(static_cast<std::size_t>((from % n + n) % n));
+    }
+    out.grid.size[a] = static_cast<std::uint32_t>(layers);
+  }
+  out.values = std::visit(
+      [&](const auto& values) -> Image::Values {
+        std::decay_t<decltype(values)> all;
+        all.reserve(out.grid.voxels());
+        for (const std::size_t k : voxel[2])
+          for (const std::size_t j : voxel[1])
+            for (const std::size_t i : voxel[0]) all.push_back(values[i + grid.size[0] * (j + grid.size[1] * k)]);
+        return all;
+      },
+      image.values);
+  return out;
+}
+
+/// Puts what lies on the faces of the cell up to rounding exactly there.
+void lay_flat(const PeriodicCell& cell, double voxel, std::vector<Vec3>& points) {
+  for (Vec3& p : points)
+    for (int axis = 0; axis < 3; ++axis)
+      for (const double face : {cell.box.lo[axis], cell.box.hi[axis]})
+        if (cell.along[axis] && std::abs(p[axis] - face) <= kOnFace * voxel) p[axis] = face;
+}
+
 /// The regions of the complex as bodies, by their numbers.
 std::vector<Body> bodies_of_regions(const SurfaceMesh& complex) {
   std::vector<Body> bodies;
@@ -205,14 +243,12 @@ Complex complex_of_periodic_values(const Image& image, const PeriodicSurfaces& s
   std::array<bool, 3> wraps{};
   for (int i = 0; i < 3; ++i) wraps[i] = along[world[i]];
   Complex whole = surfaces.of(with_wrapped_ends(image, wraps, surfaces.margin));
-  const PeriodicCell cell = surfaces.cell ? cell_of(*surfaces.cell, along) : cell_of_grid(image.grid, world, wraps);
+  const PeriodicCell cell = cell_of(surfaces.cell, along);
   SamePlaces(image.grid, world, wraps, cell).run(whole.surface.points);
   std::vector<Body> bodies = bodies_of_regions(whole.surface);
   bodies.insert(bodies.begin(), box_body(kEmptyName, cell.box));
   ComplexOptions options;
   options.within_first = true;
-  // What nearly lies on a face of the cell lies on it, or elements there would have no room.
-  options.tolerance = surfaces.tolerance;
   Complex cut = join_bodies(bodies, options, context);
   name_regions(whole.surface, cut);
   cut.notes = std::move(whole.notes);
@@ -221,15 +257,19 @@ Complex complex_of_periodic_values(const Image& image, const PeriodicSurfaces& s
 
 Complex complex_of_periodic_image(const Image& image, const ImageRegions& regions, const std::array<bool, 3>& along,
                                   const RunContext& context) {
-  if (kind_of(image, regions) != ImageRegions::Kind::kLabels)
-    throw OptionError("`periodic` takes images of labels, not of grey values: make labels of them first");
-  const PeriodicSurfaces surfaces{[&](const Image& wrapped) { return complex_of_image(wrapped, regions, context); },
-                                  kAdded, kNearFace * smallest_spacing(image.grid)};
-  Complex cut = complex_of_periodic_values(image, surfaces, along, context);
-  cut.notes.push_back(
+  const std::array<int, 3> world = world_axes(image.grid);
+  std::array<bool, 3> wraps{};
+  ImageRegions in_cell = regions;
+  for (int i = 0; i < 3; ++i) {
+    wraps[i] = along[world[i]];
+    in_cell.margin[i] = wraps[i] ? kAround : 0;
+  }
+  Complex complex = complex_of_image(with_halves(image, in_cell.margin), in_cell, context);
+  lay_flat(cell_of_grid(image.grid, world, wraps), smallest_spacing(image.grid), complex.surface.points);
+  complex.notes.push_back(
       "the image is taken as periodic: its cell goes from the middle of the first voxels to that of their "
       "next copies");
-  return cut;
+  return complex;
 }
 
 }  // namespace octafront::intake

@@ -173,7 +173,8 @@ Complex periodic_body(const SpaceFunction& function, const Cells& cells, const s
   // Vertices spread along the surface: what a sweep does reaches a voxel farther, and there are twelve.
   constexpr std::uint32_t kMargin = 16;
   const intake::PeriodicSurfaces surfaces{
-      [&](const Image& wrapped) { return complex_of_function(wrapped, function, context); }, kMargin, {}, cells.box};
+      [&](const Image& wrapped) { return complex_of_function(wrapped, function, context, cells.box); }, kMargin,
+      cells.box};
   return intake::complex_of_periodic_values(image, surfaces, along, context);
 }
 

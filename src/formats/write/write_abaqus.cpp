@@ -134,7 +134,7 @@ class AbaqusWriter {
         text_.line("{}", terms + 1);
         text_ << copy + 1 << ", " << direction + 1 << ", 1.";
         for (const int i : kDirections)
-          if (row[i] != 0) text_ << ", " << original + 1 << ", " << i + 1 << ", " << -row[i];
+          if (row[i] != 0) (text_ << ", " << original + 1 << ", " << i + 1 << ", ").within(20, -row[i]);
         text_ << '\n';
       }
     }

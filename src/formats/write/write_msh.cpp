@@ -9,6 +9,7 @@
 
 #include "base/core/parallel.h"
 #include "base/core/shared_value.h"
+#include "base/mesh/periodic_nodes.h"
 #include "formats/containers/text_writer.h"
 #include "formats/parts/boundary.h"
 #include "formats/parts/mixed_cells.h"
@@ -177,14 +178,14 @@ class PeriodicLinks {
       std::array<VertexIndex, 6> room;
       for (std::size_t f = 0; f < mesh_.boundary.size(); ++f) {
         Triangle original{};
-        if (!copied(mesh_.boundary[f], original_of, original)) continue;
+        if (!copied(period, mesh_.boundary[f], original_of, original)) continue;
         const auto at = entity_at.find(sorted(original));
         if (at == entity_at.end()) continue;
         auto& pairs = links_[{static_cast<std::int32_t>(period), entity_of(f), at->second}];
         for (const VertexIndex v : mesh.face_nodes(f, room))
           if (const auto o = original_of.find(v); o != original_of.end()) pairs.insert(*o);
-        if (mesh_.period_rotations.empty()) continue;
-        for (const VertexIndex v : mesh.face_nodes(f, room)) pairs.try_emplace(v, v);
+        for (const VertexIndex v : mesh.face_nodes(f, room))
+          if (is_own_copy(mesh_, period, v)) pairs.try_emplace(v, v);
       }
     }
   }
@@ -210,10 +211,11 @@ class PeriodicLinks {
     return t;
   }
   /// Nodes on the axis of a rotation are copies of themselves.
-  bool copied(const Triangle& t, const std::map<VertexIndex, VertexIndex>& original_of, Triangle& original) const {
+  bool copied(std::uint32_t period, const Triangle& t, const std::map<VertexIndex, VertexIndex>& original_of,
+              Triangle& original) const {
     for (std::size_t i = 0; i < 3; ++i) {
       const auto at = original_of.find(t[i]);
-      if (at == original_of.end() && mesh_.period_rotations.empty()) return false;
+      if (at == original_of.end() && !is_own_copy(mesh_, period, t[i])) return false;
       original[i] = at == original_of.end() ? t[i] : at->second;
     }
     return original != t;

@@ -47,7 +47,7 @@ class SampledSpace : public SpaceFunction {
 
 /// The place near p where the function is 0, moving along the axes that are not `fixed` (a bit each, x first): Newton's
 /// steps along the gradient, each no farther than `reach` from p in all, then bisection where they swing. p itself
-/// where there is none.
-Vec3 nearest_zero(const SpaceFunction& function, Vec3 p, unsigned fixed, double reach);
+/// where there is none. After a step no longer than `near_enough` it is as near as was asked; 0: up to rounding.
+Vec3 nearest_zero(const SpaceFunction& function, Vec3 p, unsigned fixed, double reach, double near_enough = 0);
 
 }  // namespace octafront::formulas

@@ -96,7 +96,7 @@ double SampledSpace::value(Vec3 p, int derived) const {
   return derived < 0 ? sum : sum / cell_[derived];
 }
 
-Vec3 nearest_zero(const SpaceFunction& function, Vec3 p, unsigned fixed, double reach) {
+Vec3 nearest_zero(const SpaceFunction& function, Vec3 p, unsigned fixed, double reach, double near_enough) {
   Vec3 x = p, below = p, above = p;
   double least = -HUGE_VAL, most = HUGE_VAL;
   double value = function.at(x);
@@ -111,7 +111,9 @@ Vec3 nearest_zero(const SpaceFunction& function, Vec3 p, unsigned fixed, double 
     const double there = function.at(next);
     // Doubles end here: no step comes nearer.
     if (std::abs(there) >= std::abs(value)) break;
+    const bool is_near = squared_distance(next, x) <= near_enough * near_enough;
     x = next, value = there;
+    if (is_near) return x;
   }
   if (std::isfinite(least) && std::isfinite(most)) {
     const Vec3 between = bisected(function, below, above);

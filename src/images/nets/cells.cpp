@@ -60,8 +60,9 @@ VertexCells::VertexCells(const Lattice& lattice, const Net& net)
       walls_[a].push_back({at, below, above, 0.5 / below, 0.5 / above});
     }
   // Flat on the image's box.
-  for (std::vector<Wall>& walls : walls_)
-    for (Wall* wall : {&walls.front(), &walls.back()}) wall->to_below = wall->to_above = 0;
+  for (int a = 0; a < 3; ++a)
+    for (std::int32_t i = 0; i <= lattice.size(a); ++i)
+      if (Corner c{}; c[a] = i, lattice.on_box(c, a)) walls_[a][i].to_below = walls_[a][i].to_above = 0;
   parallel_for(net.corner.size(), [&](std::size_t v) { keep_layers_apart(lattice, static_cast<VertexIndex>(v)); });
 }
 

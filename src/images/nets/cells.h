@@ -9,7 +9,8 @@
 
 namespace octafront::nets {
 
-/// How much room a vertex has: a box around its corner, up to the middles of the voxels there, flat on the image's box.
+/// How much room a vertex has: a box around its corner, up to the middles of the voxels there, flat on the image's box
+/// and that of a cell.
 /// Less at labels of few voxels, which smoothing would pull together to points, and toward voxels that are a layer by
 /// themselves, whose two sides would come together.
 class VertexCells {

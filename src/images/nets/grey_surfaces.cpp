@@ -4,6 +4,7 @@
 #include "base/core/parallel.h"
 #include "base/core/thread_limit.h"
 #include "images/nets/assemble.h"
+#include "images/nets/cell_labels.h"
 #include "images/nets/cells.h"
 #include "images/nets/check_image.h"
 #include "images/nets/function_surface.h"
@@ -63,12 +64,13 @@ class Placement {
     return x;
   }
 
-  /// The nearest place to p, about, where the values pass the vertex's limit, if it has just one.
-  Vec3 on_limit(VertexIndex v, Vec3 p) const {
+  /// The nearest place to p, about, where the values pass the vertex's limit, if it has just one. Of a function it is
+  /// one step of Newton's from there, or as near as doubles come.
+  Vec3 on_limit(VertexIndex v, Vec3 p, bool exactly = false) const {
     constexpr int kSteps = 6;
     p = cells_.clamped(v, p);
     if (std::isnan(limit_[v])) return p;
-    if (function_ != nullptr) return on_zero(v, p);
+    if (function_ != nullptr) return on_zero(v, p, exactly);
     for (int step = 0; step < kSteps; ++step) {
       const GreyValues::Sample s = values_.near(net_.corner[v], p);
       const double steepness = squared_length(s.gradient);
@@ -80,9 +82,12 @@ class Placement {
 
  private:
   static constexpr double kSeveral = std::numeric_limits<double>::quiet_NaN();
+  /// What is not looked at again before all have moved lies on a zero after a step no longer than this part of six
+  /// voxels; the next step would be about its square.
+  static constexpr double kNearZero = 0.005;
 
   /// The same of the function itself, on the faces of the box within them.
-  Vec3 on_zero(VertexIndex v, Vec3 p) const {
+  Vec3 on_zero(VertexIndex v, Vec3 p, bool exactly) const {
     unsigned fixed = 0;
     double reach = 0;
     for (int axis = 0; axis < 3; ++axis) {
@@ -91,7 +96,8 @@ class Placement {
     }
     if (fixed == 7) return p;
     const Vec3 world = lattice_.to_world(p);
-    return cells_.clamped(v, p + (formulas::nearest_zero(*function_, world, fixed, reach) - world));
+    return cells_.clamped(
+        v, p + (formulas::nearest_zero(*function_, world, fixed, reach, exactly ? 0 : kNearZero * reach) - world));
   }
 
   /// Of the places where the lines between voxels pass limits, on the two sides of each face at the vertex.
@@ -132,14 +138,37 @@ class Placement {
 constexpr int kSpreadingSweeps = 12;
 constexpr double kSpreadingStep = 0.5;
 
-void spread(const nets::Stencils& stencils, const Placement& placement, std::vector<Vec3>& x,
+/// How many sweeps ago a place may have been right for what is in the box: with each sweep a vertex hears of those a
+/// voxel farther off, some of which lie two voxels away.
+class Needed {
+ public:
+  Needed(const Lattice& lattice, const Box3& box) : lattice_(lattice), box_(box) {}
+  bool by(Vec3 straight, int sweeps_left) const {
+    if (box_.empty()) return true;
+    const Vec3 p = lattice_.to_world(straight);
+    for (int axis = 0; axis < 3; ++axis) {
+      const double reach = (2 + 1.5 * sweeps_left) * (lattice_.wall(axis, 1) - lattice_.wall(axis, 0));
+      if (p[axis] < box_.lo[axis] - reach || p[axis] > box_.hi[axis] + reach) return false;
+    }
+    return true;
+  }
+
+ private:
+  const Lattice& lattice_;
+  const Box3& box_;
+};
+
+void spread(const nets::Stencils& stencils, const Placement& placement, const Needed& needed, std::vector<Vec3>& x,
             const RunContext& context) {
   std::vector<Vec3> next(x.size());
   for (int sweep = 0; sweep < kSpreadingSweeps; ++sweep) {
     context.check();
     parallel_for(x.size(), [&](std::size_t i) {
       const auto v = static_cast<VertexIndex>(i);
-      next[i] = placement.on_limit(v, x[i] + stencils.difference(x, v) * kSpreadingStep);
+      const int left = kSpreadingSweeps - 1 - sweep;
+      next[i] = needed.by(x[i], left)
+                    ? placement.on_limit(v, x[i] + stencils.difference(x, v) * kSpreadingStep, left == 0)
+                    : x[i];
     });
     x.swap(next);
   }
@@ -159,32 +188,44 @@ LabelImage labels_of_bands(const Image& image, const std::vector<GreyBand>& band
 namespace {
 
 Complex complex_of_values(const Image& image, const std::vector<GreyBand>& bands,
-                          const formulas::SpaceFunction* function, const RunContext& context) {
+                          const formulas::SpaceFunction* function, const PeriodicMargin& margin, const Box3& needed,
+                          const RunContext& context) {
   const ThreadLimit thread_limit(context.threads);
   const BandLimits limits(bands);
   const LabelImage labels = labels_of_bands(image, bands);
-  const Lattice lattice(labels.grid, labels.regions);
+  const nets::CellLabels in_cell(labels.grid, labels.regions, labels.labels.size(), margin);
+  const Lattice& lattice = in_cell.lattice();
   Net net = nets::make_net(lattice);
   context.check();
   const Groups<> quads_at = nets::quads_at_vertices(net);
   const nets::Stencils stencils(net, quads_at);
+  const nets::Mates mates(lattice, net);
   const nets::VertexCells cells(lattice, net);
   const GreyValues values(image, lattice);
   Placement placement(net, quads_at, lattice, values, limits, cells, function);
   std::vector<Vec3> x = placement.place();
-  spread(stencils, placement, x, context);
-  nets::ResolvedNet resolved = nets::resolve_conflicts(net, quads_at, lattice, x, context);
+  spread(stencils, placement, Needed(lattice, needed), x, context);
+  mates.bring_together(lattice, net, x);
+  nets::ResolvedNet resolved = nets::resolve_conflicts(net, quads_at, lattice, x, context, mates);
+  in_cell.cut_out_cell(net);
   return nets::assemble(net, lattice, std::move(resolved), x, labels.labels, false);
 }
 
 }  // namespace
 
 Complex complex_of_bands(const Image& image, const std::vector<GreyBand>& bands, const RunContext& context) {
-  return complex_of_values(image, bands, nullptr, context);
+  return complex_of_bands(image, bands, {0, 0, 0}, context);
 }
 
-Complex complex_of_function(const Image& image, const formulas::SpaceFunction& function, const RunContext& context) {
-  return complex_of_values(image, {{-std::numeric_limits<double>::infinity(), 0, "body"}}, &function, context);
+Complex complex_of_bands(const Image& image, const std::vector<GreyBand>& bands, const PeriodicMargin& margin,
+                         const RunContext& context) {
+  return complex_of_values(image, bands, nullptr, margin, {}, context);
+}
+
+Complex complex_of_function(const Image& image, const formulas::SpaceFunction& function, const RunContext& context,
+                            const Box3& needed) {
+  return complex_of_values(image, {{-std::numeric_limits<double>::infinity(), 0, "body"}}, &function, {0, 0, 0}, needed,
+                           context);
 }
 
 }  // namespace octafront

@@ -82,6 +82,11 @@ std::vector<std::string> ends_at_edge(const LabelImage& labels, bool closed_at_b
   return {fmt::format("closed flat at the edge of the image: {}", words)};
 }
 
+/// Whether the image ends nowhere.
+bool goes_on(const PeriodicMargin& margin) {
+  return margin[0] > 0 && margin[1] > 0 && margin[2] > 0;
+}
+
 void add(std::vector<std::string>& all, std::vector<std::string> more) {
   all.insert(all.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
 }
@@ -100,9 +105,9 @@ Complex complex_of_grey(const Image& image, const ImageRegions& regions, const R
   if (regions.clean.any()) cleaned = nets::cleaned_bands(image, bands, regions.clean, context);
   const Image& used = regions.clean.any() ? cleaned : image;
   add(notes, cleaned.notes);
-  add(notes, ends_at_edge(labels_of_bands(used, bands), regions.closed_at_box));
+  if (!goes_on(regions.margin)) add(notes, ends_at_edge(labels_of_bands(used, bands), regions.closed_at_box));
   context.report("surfaces", -1);
-  return with_notes(complex_of_bands(used, bands, context), std::move(notes));
+  return with_notes(complex_of_bands(used, bands, regions.margin, context), std::move(notes));
 }
 
 Complex complex_of_segmentation(const Image& image, const ImageRegions& regions, const RunContext& context) {
@@ -112,9 +117,9 @@ Complex complex_of_segmentation(const Image& image, const ImageRegions& regions,
     labels = cleaned(labels, regions.clean, context);
     add(notes, labels.notes);
   }
-  add(notes, ends_at_edge(labels, regions.closed_at_box));
+  if (!goes_on(regions.margin)) add(notes, ends_at_edge(labels, regions.closed_at_box));
   context.report("surfaces", -1);
-  return with_notes(complex_of_labels(labels, {}, context), std::move(notes));
+  return with_notes(complex_of_labels(labels, {.margin = regions.margin}, context), std::move(notes));
 }
 
 }  // namespace

@@ -26,11 +26,15 @@ LabelSizes::LabelSizes(const Lattice& lattice, std::size_t labels) : voxels(labe
       for (std::int32_t j = 0; j < lattice.size(1); ++j) {
         const Label* row = lattice.row(j, z);
         for (std::int32_t i = 0; i < lattice.size(0); ++i)
-          if (row[i] != LabelImage::kNoRegion) ++in_slice[row[i]];
+          if (row[i] != LabelImage::kNoRegion) {
+            ++in_slice[row[i]];
+            if (lattice.is_periodic()) slab.volume[row[i]] += lattice.volume(i, j, z);
+          }
       }
       for (std::size_t l = 0; l < labels; ++l) {
         slab.voxels[l] += in_slice[l];
-        slab.volume[l] += static_cast<double>(in_slice[l]) * lattice.volume(0, 0, z);
+        // Where the image goes on, some layers are halves.
+        if (!lattice.is_periodic()) slab.volume[l] += static_cast<double>(in_slice[l]) * lattice.volume(0, 0, z);
       }
     }
   });

@@ -3,6 +3,7 @@
 #include "base/core/thread_limit.h"
 #include "base/core/wording.h"
 #include "images/nets/assemble.h"
+#include "images/nets/cell_labels.h"
 #include "images/nets/check_image.h"
 #include "images/nets/fairing.h"
 #include "images/nets/label_sizes.h"
@@ -50,19 +51,24 @@ Complex complex_of_labels(const LabelImage& image, const LabelSurfaceOptions& op
   nets::check_grid(image.grid, image.regions.size());
   nets::check_labels(image);
   context.check();
-  const Lattice lattice(image.grid, image.regions);
+  const nets::CellLabels labels(image.grid, image.regions, image.labels.size(), options.margin);
+  const Lattice& lattice = labels.lattice();
   nets::Net net = nets::make_net(lattice);
   context.check();
   const Groups<> quads_at = nets::quads_at_vertices(net);
   const nets::Stencils stencils(net, quads_at);
-  const nets::LabelSizes sizes(lattice, image.labels.size());
+  const nets::Mates mates(lattice, net);
+  nets::LabelSizes sizes(lattice, labels.count());
+  labels.forget_margin(sizes);
   std::vector<Vec3> x = net.start;
   if (options.smooth) {
     const nets::VertexCells cells(lattice, net, sizes.voxels);
     nets::fair(stencils, cells, x, context);
     if (options.keep_volumes) nets::keep_volumes(net, quads_at, cells, lattice, sizes.volume, x, context);
   }
-  nets::ResolvedNet resolved = nets::resolve_conflicts(net, quads_at, lattice, x, context);
+  mates.bring_together(lattice, net, x);
+  nets::ResolvedNet resolved = nets::resolve_conflicts(net, quads_at, lattice, x, context, mates);
+  labels.cut_out_cell(net);
   Complex complex = nets::assemble(net, lattice, std::move(resolved), x, image.labels, true);
   if (options.keep_volumes) note_lost_volumes(image, sizes, lattice.volume_scale(), complex);
   return complex;

@@ -19,7 +19,8 @@ using Label = std::uint16_t;
 /// angles to each other whatever the image's axes are.
 class Lattice {
  public:
-  Lattice(const ImageGrid& grid, std::span<const Label> labels);
+  /// `margin`: see PeriodicMargin.
+  Lattice(const ImageGrid& grid, std::span<const Label> labels, const std::array<std::uint32_t, 3>& margin = {0, 0, 0});
 
   const ImageGrid& grid() const { return grid_; }
   std::int32_t size(int axis) const { return size_[axis]; }
@@ -45,7 +46,19 @@ class Lattice {
   double volume(std::int32_t i, std::int32_t j, std::int32_t k) const {
     return (wall(0, i + 1) - wall(0, i)) * (wall(1, j + 1) - wall(1, j)) * (wall(2, k + 1) - wall(2, k));
   }
-  bool on_box(const Corner& c, int axis) const { return c[axis] == 0 || c[axis] == size_[axis]; }
+  /// On the image's box, or on that of a cell.
+  bool on_box(const Corner& c, int axis) const {
+    return c[axis] == 0 || c[axis] == size_[axis] || is_low(c, axis) || is_high(c, axis);
+  }
+  /// Of a cell of an image that goes on periodically, which is this one without its margin.
+  bool is_periodic() const { return margin_ != std::array<std::int32_t, 3>{}; }
+  bool is_low(const Corner& c, int axis) const { return margin_[axis] > 0 && c[axis] == margin_[axis]; }
+  bool is_high(const Corner& c, int axis) const { return margin_[axis] > 0 && c[axis] == size_[axis] - margin_[axis]; }
+  bool is_in_cell(const Corner& voxel) const {
+    for (int a = 0; a < 3; ++a)
+      if (voxel[a] < margin_[a] || voxel[a] >= size_[a] - margin_[a]) return false;
+    return true;
+  }
 
   Vec3 to_world(Vec3 straight) const;
   /// Whether the way to the world turns right into left.
@@ -54,9 +67,11 @@ class Lattice {
   double volume_scale() const;
 
  private:
+  void place_halves(int axis);
+
   const ImageGrid& grid_;
   std::span<const Label> labels_;
-  std::array<std::int32_t, 3> size_;
+  std::array<std::int32_t, 3> size_, margin_;
   Vec3 step_;  ///< lengths of the axes
   std::array<std::vector<double>, 3> wall_, middle_;
 };

@@ -16,12 +16,14 @@ constexpr int kJoin = 5;      // then one vertex for the corner
 
 class Settling {
  public:
-  Settling(Net& net, const Groups<>& quads_at, const Lattice& lattice, std::vector<Vec3>& x, const RunContext& context)
+  Settling(Net& net, const Groups<>& quads_at, const Lattice& lattice, std::vector<Vec3>& x, const RunContext& context,
+           const Mates& mates)
       : net_(net),
         quads_at_(quads_at),
         lattice_(lattice),
         x_(x),
         context_(context),
+        mates_(mates),
         level_(x.size(), 0),
         may_yield_(x.size(), 1) {
     for (VertexIndex v = 0; v < x.size(); ++v)
@@ -61,6 +63,7 @@ class Settling {
     std::erase_if(vertices, [&](VertexIndex v) { return !may_yield_[v]; });
     const std::vector<VertexIndex> must = vertices_of(found.invalid);
     vertices.insert(vertices.end(), must.begin(), must.end());
+    mates_.add_to(vertices);
     std::sort(vertices.begin(), vertices.end());
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
     for (const VertexIndex v : vertices) step_back(v, moved);
@@ -101,6 +104,7 @@ class Settling {
   const Lattice& lattice_;
   std::vector<Vec3>& x_;
   const RunContext& context_;
+  const Mates& mates_;
   std::vector<std::uint8_t> level_, may_yield_;
   std::map<Corner, std::vector<VertexIndex>> copies_;
   ResolvedNet resolved_;
@@ -109,8 +113,8 @@ class Settling {
 }  // namespace
 
 ResolvedNet resolve_conflicts(Net& net, const Groups<>& quads_at, const Lattice& lattice, std::vector<Vec3>& x,
-                              const RunContext& context) {
-  return Settling(net, quads_at, lattice, x, context).run();
+                              const RunContext& context, const Mates& mates) {
+  return Settling(net, quads_at, lattice, x, context, mates).run();
 }
 
 }  // namespace octafront::nets

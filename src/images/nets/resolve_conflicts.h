@@ -3,6 +3,7 @@
 #include <octafront/run_context.h>
 
 #include "base/core/groups.h"
+#include "images/nets/mates.h"
 #include "images/nets/net.h"
 
 #include <vector>
@@ -21,8 +22,9 @@ struct ResolvedNet {
 /// Makes a complex of a net whose vertices were moved to x (straight space). The vertices of quads at fault go halfway
 /// back to where they started, again and again, and then all the way. Where a quad is at fault even then, and not only
 /// sharp, all vertices of a corner of the lattice become one vertex at that corner. Between such vertices quads are
-/// faces of voxels, which do not cross, so the function always ends with a complex.
+/// faces of voxels, which do not cross, so the function always ends with a complex. `mates`: what is done to one vertex
+/// is done to these, too.
 ResolvedNet resolve_conflicts(Net& net, const Groups<>& quads_at, const Lattice& lattice, std::vector<Vec3>& x,
-                              const RunContext& context);
+                              const RunContext& context, const Mates& mates = {});
 
 }  // namespace octafront::nets

@@ -6,6 +6,7 @@
 #include "base/geometry/quadratic_tet.h"
 #include "base/mesh/edge_nodes.h"
 #include "base/mesh/periodic_cell.h"
+#include "base/mesh/periodic_nodes.h"
 
 #include <algorithm>
 #include <map>
@@ -51,19 +52,19 @@ class MidPairs {
     std::vector<std::map<VertexIndex, VertexIndex>> original(mesh_.periods.size());
     for (const auto& [period, copy, of] : mesh_.periodic_nodes) original[period][copy] = of;
     std::set<std::array<std::uint32_t, 2>> known;
-    std::set<Triangle> faces;
-    for (Triangle t : mesh_.boundary) std::sort(t.begin(), t.end()), faces.insert(t);
     for (std::uint32_t k = 0; k < original.size(); ++k)
       for (const Triangle& t : mesh_.boundary) {
-        Triangle of_t{}, sorted{};
-        for (int i = 0; i < 3; ++i) {
-          // Vertices on the axis of a rotation are copies of themselves.
-          const auto at = original[k].find(t[i]);
-          of_t[i] = sorted[i] = at == original[k].end() ? t[i] : at->second;
-        }
-        std::sort(sorted.begin(), sorted.end());
         // Edges beside a face may lie between its vertices, too, without being copies of any.
-        if (of_t == t || !faces.contains(sorted)) continue;
+        Triangle of_t = t;
+        bool are_copies = true;
+        for (int i = 0; i < 3; ++i) {
+          const auto at = original[k].find(t[i]);
+          if (at != original[k].end())
+            of_t[i] = at->second;
+          else
+            are_copies = are_copies && is_own_copy(mesh_, k, t[i]);
+        }
+        if (!are_copies || of_t == t) continue;
         for (int i = 0; i < 3; ++i) {
           const VertexIndex a = t[i], b = t[(i + 1) % 3], c = of_t[i], d = of_t[(i + 1) % 3];
           const VertexIndex copy = node_of_(a, b), of = node_of_(c, d);
@@ -73,17 +74,10 @@ class MidPairs {
       }
   }
 
-  Vec3 led(Vec3 p, std::uint32_t period) const {
-    const Vec3 t = mesh_.periods[period];
-    if (mesh_.period_rotations.empty()) return p + t;
-    const auto& r = mesh_.period_rotations[period];
-    return Vec3{dot(r[0], p), dot(r[1], p), dot(r[2], p)} + t;
-  }
-
   /// Copies of copies come there in as many rounds as there are periods.
   void follow() {
     for (std::size_t k = 0; k < mesh_.periods.size(); ++k)
-      for (const Pair& p : pairs_) mesh_.points[p.copy] = led(mesh_.points[p.original], p.period);
+      for (const Pair& p : pairs_) mesh_.points[p.copy] = led_by_period(mesh_, p.period, mesh_.points[p.original]);
   }
 
   bool straighten_bad() {

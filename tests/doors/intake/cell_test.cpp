@@ -152,7 +152,58 @@ TEST(Cell, ImagesGoOnAtTheOtherSide) {
     const Result r = generate(domain, with_periods(2, "xyz"));
     EXPECT_EQ(first_defect(r.mesh), std::nullopt);
     expect_all_paired(r.mesh);
+    // Surfaces leave the faces of the cell at no narrow angles.
+    EXPECT_GT(r.report.quality.dihedral_min, 15);
+    EXPECT_GT(r.report.quality.beta_min, 0.3);
   }
+}
+
+TEST(Cell, VoxelsByChanceTouchThemselvesAndLeaveHoles) {
+  Image image;
+  image.grid.size = {9, 8, 7};
+  std::vector<std::uint8_t> values;
+  unsigned state = 7;
+  for (int i = 0; i < 9 * 8 * 7; ++i) {
+    state = state * 1664525u + 1013904223u;
+    const unsigned r = state >> 16 & 0xff;
+    values.push_back(r < 120 ? 0 : r < 190 ? 1 : 2);
+  }
+  image.values = values;
+  for (const char* axes : {"xyz", "y"}) {
+    SCOPED_TRACE(axes);
+    IntakeOptions intake;
+    intake.repeat = axes;
+    intake.image.regions.kind = ImageRegions::Kind::kLabels;
+    const Domain domain = open_domain(image, intake);
+    const Result r = generate(domain, with_periods(1.5, axes));
+    EXPECT_EQ(first_defect(r.mesh), std::nullopt);
+    expect_all_paired(r.mesh);
+  }
+}
+
+TEST(Cell, GreyValuesGoOnAtTheOtherSide) {
+  constexpr int n = 16;
+  Image image;
+  image.grid.size = {n, n, n};
+  image.grid.axes = {{{0.5, 0, 0}, {0, 0.5, 0}, {0, 0, 0.5}}};
+  std::vector<float> values;
+  const auto angle = [](int i) { return 2 * 3.14159265358979 * i / n; };
+  for (int k = 0; k < n; ++k)
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < n; ++i)
+        values.push_back(static_cast<float>(std::sin(angle(i)) * std::cos(angle(j)) +
+                                            std::sin(angle(j)) * std::cos(angle(k)) +
+                                            std::sin(angle(k)) * std::cos(angle(i))));
+  image.values = values;
+  IntakeOptions intake;
+  intake.repeat = "xyz";
+  intake.image.regions.bands = {{-0.2, HUGE_VAL, "body"}};
+  const Domain domain = open_domain(image, intake);
+  const Result r = generate(domain, with_periods(0.8, "xyz"));
+  EXPECT_EQ(first_defect(r.mesh), std::nullopt);
+  expect_all_paired(r.mesh);
+  // What is above -0.2 of a Gyroid: half of space and .2 of its slope there.
+  EXPECT_NEAR(r.report.volume / 512, 0.567, 0.02);
 }
 
 }  // namespace

@@ -129,8 +129,8 @@ TEST(PeriodicFiles, AbaqusTurnsDisplacements) {
   const std::vector<std::string> words = words_between(file, "*EQUATION", "");
   // u1(3) + u2(2) = 0, u2(3) - u1(2) = 0, u3(3) - u3(2) = 0.
   const std::vector<std::string> first(words.begin(), words.begin() + 21);
-  EXPECT_EQ(first, (std::vector<std::string>{"2", "3,", "1,", "1.,", "2,", "2,", "1.", "2", "3,", "2,", "1.,", "2,", "1,",
-                                             "-1.", "2", "3,", "3,", "1.,", "2,", "3,", "-1."}));
+  EXPECT_EQ(first, (std::vector<std::string>{"2",  "3,", "1,",  "1.,", "2,", "2,", "1.",  "2",  "3,", "2,", "1.,",
+                                             "2,", "1,", "-1.", "2",   "3,", "3,", "1.,", "2,", "3,", "-1."}));
 }
 
 TEST(PeriodicFiles, AbaqusTiesEachCopyOnceToTheLowEnds) {

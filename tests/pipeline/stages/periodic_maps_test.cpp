@@ -2,6 +2,7 @@
 
 #include <octafront/error.h>
 #include <octafront/generate.h>
+#include <octafront/improve_existing.h>
 #include <octafront/quality.h>
 #include <octafront/validity.h>
 
@@ -238,6 +239,20 @@ TEST(PeriodicMaps, HexagonsGoOnInThreeDirections) {
                          {"periodic_2_low", "periodic_2_high"},
                          {"periodic_3_low", "periodic_3_high"},
                          {"periodic_4_low", "periodic_4_high"}});
+}
+
+TEST(PeriodicMaps, ImprovementKeepsPairs) {
+  const SurfaceMesh surface = sector(30, 0, straight, false);
+  const Result r = generate(surface, by(0.3, "30@z"));
+  for (const int order : {1, 2})
+    for (const SurfaceMesh* on : {static_cast<const SurfaceMesh*>(nullptr), &surface}) {
+      SCOPED_TRACE(::testing::Message() << order << " " << (on != nullptr));
+      Options o;
+      o.order = order;
+      const Improved better = improve_existing(r.mesh, o, on);
+      expect_copies(better.mesh, {{"left", "right"}});
+      EXPECT_GE(better.mesh.periodic_nodes.size(), order * r.mesh.periodic_nodes.size());
+    }
 }
 
 TEST(PeriodicMaps, WhatIsNotTheSameIsRefusedWithAPlace) {
