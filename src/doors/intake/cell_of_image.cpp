@@ -22,7 +22,7 @@ constexpr std::uint32_t kAround = 2;
 /// Vertices of faces that reach into the cell lie within so many voxels of it.
 constexpr double kNearCell = 3;
 /// Vertices on the faces of the cell are there up to rounding, in voxels; then exactly.
-constexpr double kOnFace = 1e-6;
+constexpr double kOnFaceOfCell = 1e-6;
 /// The name of what the cell has beside labels, which is left empty.
 constexpr const char* kEmptyName = "outside of all labels";
 
@@ -193,7 +193,7 @@ void lay_flat(const PeriodicCell& cell, double voxel, std::vector<Vec3>& points)
   for (Vec3& p : points)
     for (int axis = 0; axis < 3; ++axis)
       for (const double face : {cell.box.lo[axis], cell.box.hi[axis]})
-        if (cell.along[axis] && std::abs(p[axis] - face) <= kOnFace * voxel) p[axis] = face;
+        if (cell.along[axis] && std::abs(p[axis] - face) <= kOnFaceOfCell * voxel) p[axis] = face;
 }
 
 /// The regions of the complex as bodies, by their numbers.
