@@ -2,7 +2,7 @@
 # Meshes and solves the examples of examples/solve, and compares them with theory (docs/measured/solved.md). Installs what it needs.
 #   scripts/solve.sh [CASE ...]      with CalculiX: cantilever, pipe, patch, heat, plate, bar, sphere; by default all
 #   scripts/solve.sh --fenicsx       the pipe with FEniCSx (a gigabyte of packages)
-#   scripts/solve.sh --others        the bar with FreeFEM, GetFEM, sfepy and deal.II (two gigabytes of packages)
+#   scripts/solve.sh --others        the bar with FreeFEM, GetFEM, sfepy, deal.II, FEniCSx and OpenFOAM (three gigabytes of packages)
 #   scripts/solve.sh --picture       all, and docs/images/solved.png anew
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -18,7 +18,7 @@ case ${1:-} in
     exec /usr/bin/python3 examples/solve/fenicsx.py "$octafront" "$work"
     ;;
   --others)
-    need_packages freefem++ python3-getfem python3-sfepy libdeal.ii-dev
+    need_packages freefem++ python3-getfem python3-sfepy libdeal.ii-dev python3-dolfinx openfoam
     exec /usr/bin/python3 examples/solve/others.py "$octafront" "$work"
     ;;
   --picture)
