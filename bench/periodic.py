@@ -12,6 +12,7 @@ import tempfile
 import meshio
 import numpy as np
 
+import sector
 from inside import block, quality, write_off
 from origin import written_by
 from peers.process import run_measured
@@ -93,7 +94,8 @@ def fifty_places(radius):
     return places
 
 
-def ours(folder, program, timeout, name, source, *options):
+def ours(folder, program, timeout, name, source, *options, pairs=None):
+    pairs = pairs or pairs_in_words
     report = folder / "report.json"
     outcome = run_measured([program, "mesh", source, *options, "--threads", 1, "-q", "-o", folder / "ours.msh", "-o", folder / "ours.inp",
                             "--json", report], folder, timeout)
@@ -102,7 +104,7 @@ def ours(folder, program, timeout, name, source, *options):
     found = quality(tets_of(folder / "ours.msh"))
     tets = json.loads(report.read_text())["tets"]
     return (f"| {name} | {tets:,} | {found['beta']:.4f} | {found['least']:.1f} - {found['most']:.1f} | {outcome.cpu_seconds:.2f} | "
-            f"{pairs_in_words(folder / 'ours.msh')} |")
+            f"{pairs(folder / 'ours.msh')} |")
 
 
 def tets_of(file):
@@ -129,15 +131,16 @@ def pairs_in_words(file):
     return f"{' + '.join(words)}, {lonely} without, off by {worst:.1g}"
 
 
-def gmsh(folder, timeout, name, size):
-    (folder / "by_gmsh.py").write_text(GMSH)
-    outcome = run_measured(["/usr/bin/python3", folder / "by_gmsh.py", folder, size, BALL], folder, timeout)
+def gmsh(folder, timeout, name, program, *arguments, pairs=None):
+    pairs = pairs or pairs_in_words
+    (folder / "by_gmsh.py").write_text(program)
+    outcome = run_measured(["/usr/bin/python3", folder / "by_gmsh.py", folder, *arguments], folder, timeout)
     if outcome.error:
         return f"| {name} | {outcome.error} | | | | |"
     tets = tets_of(folder / "gmsh.msh")
     found = quality(tets)
     return (f"| {name} | {len(tets):,} | {found['beta']:.4f} | {found['least']:.1f} - {found['most']:.1f} | "
-            f"{outcome.cpu_seconds:.2f} | {pairs_in_words(folder / 'gmsh.msh')} |")
+            f"{outcome.cpu_seconds:.2f} | {pairs(folder / 'gmsh.msh')} |")
 
 
 class Deck:
@@ -227,12 +230,49 @@ def moduli(folder):
             f"{k_high:.4f}; shear moduli {', '.join(f'{g:.4f}' for g in shears)}, bounds {g_low:.4f} and {g_high:.4f}.")
 
 
+def voronoi(path, n=40, seeds=12):
+    """A label image that goes on at its other side."""
+    places = np.random.default_rng(5).uniform(0, n, (seeds, 3))
+    at = np.stack(np.meshgrid(*[np.arange(n)] * 3, indexing="ij"), -1).astype(float)
+    away = [at - place for place in places]
+    labels = np.argmin([((v - n * np.round(v / n)) ** 2).sum(-1) for v in away], 0).astype(np.uint8) + 1
+    with open(path, "wb") as out:
+        out.write(f"NRRD0004\ntype: uint8\ndimension: 3\nsizes: {n} {n} {n}\nspacings: 1 1 1\nencoding: raw\n\n".encode())
+        out.write(labels.astype(np.uint8).transpose(2, 1, 0).tobytes())
+
+
+def file_pairs_in_words(deck):
+    """By the equations of an Abaqus file, for what lies on no straight faces."""
+    copies = set()
+    lines = iter(deck.read_text().splitlines())
+    for line in lines:
+        if line == "*EQUATION":
+            break
+    for line in lines:
+        words = line.split(",")
+        if len(words) > 2 and words[2].strip() == "1.":
+            copies.add(int(words[0]))
+    return f"{len(copies)} in the file" if copies else ""
+
+
+def turned_ring(folder, program):
+    done = run_measured([program, "mesh", folder / "sector.obj", "--periodic", f"{sector.DEGREES:g}@z", "--size", 0.05, "--order", 2, "-q", "-o",
+                         folder / "turned.inp"], folder, 600)
+    if done.error:
+        return done.error
+    inner, outer = sector.solved(folder, "turned.inp")
+    return (f"12 sectors of 30 degrees, radius 1 to 2, .1 thick, second order at size .05, by CalculiX with the equations of the file "
+            f"(u(copy) = R u(original)). It grows by {100 * inner:.2f} % of what theory says at the inner rim, by {100 * outer:.2f} % at the outer "
+            "one (plane stress: S. Timoshenko, J. N. Goodier, Theory of Elasticity).")
+
+
 ABOUT = """# Periodic cells
 
 {written}: a unit cell, one thread, CPU seconds of whole processes; meshes are read by meshio.
 *Pairs*: nodes at the high end along x, y and z, how many of them have no partner at the low end within 1e-9, and the largest difference of the coordinates that
 should be equal. *with*, *without*: `--periodic xyz` or not. The ball of radius .3 sits at a corner of the cell: eight pieces of one region. Gmsh 4.8.4 cuts its spheres by OpenCASCADE
-and pairs its faces with `setPeriodic`.
+and pairs its faces with `setPeriodic`. A sector of 30 degrees of a ring of radius 1 to 2, .1 thick, is paired by `--periodic 30@z`: nodes on the side that is turned; the one with curved sides is 1 high, its
+nodes and those of images are counted by the equations of the file.
 
 | case | elements | mean β | dihedral angles | CPU s | pairs |
 | --- | --- | --- | --- | --- | --- |
@@ -266,18 +306,37 @@ def main():
             for word, more in (("with", ("--periodic", "xyz")), ("without", ("--repeat", "xyz"))):
                 add(ours(folder, program, options.timeout, f"ball at a corner, size {size}, {word}", folder / "corner.obj", *cell, "--size", size,
                          *more))
-            add(gmsh(folder, options.timeout, f"the same, Gmsh, size {size}", size))
+            add(gmsh(folder, options.timeout, f"the same, Gmsh, size {size}", GMSH, size, BALL))
         add(ours(folder, program, options.timeout, "abs(gyroid) < .4, size .05, with", "abs(gyroid) < 0.4", "--size", 0.05, "--periodic", "xyz"))
         for word, more in (("without", ("--repeat", "xyz")), ("with", ("--periodic", "xyz"))):
             add(ours(folder, program, options.timeout, f"50 balls, size .05, {word}", folder / "fifty.obj", *cell, "--size", 0.05, *more))
         solved = "" if options.no_solver else moduli(folder)
         print(solved)
+        sector.write_sector(folder / "sector.obj")
+        for size in (0.05, 0.025):
+            for word, more in (("with", ("--periodic", f"{sector.DEGREES:g}@z")), ("without", ())):
+                add(ours(folder, program, options.timeout, f"sector of a ring, size {size}, {word}", folder / "sector.obj", "--size", size, *more,
+                         pairs=sector.pairs_in_words))
+            add(gmsh(folder, options.timeout, f"the same, Gmsh, size {size}", sector.GMSH, size, sector.INNER, sector.OUTER, sector.HIGH,
+                     sector.DEGREES, pairs=sector.pairs_in_words))
+        sector.write_sector(folder / "blade.obj", twist=0.4, high=1.0, around=60)
+        for word, more in (("with", ("--periodic", f"{sector.DEGREES:g}@z")), ("without", ())):
+            add(ours(folder, program, options.timeout, f"sector with curved sides, size .05, {word}", folder / "blade.obj", "--size", 0.05, *more,
+                     pairs=lambda file: file_pairs_in_words(file.with_suffix(".inp"))))
+        voronoi(folder / "cells.nrrd")
+        for word, more in (("with", ("--periodic", "xyz")), ("without", ())):
+            add(ours(folder, program, options.timeout, f"image of 12 labels, 40³ voxels, size 2, {word}", folder / "cells.nrrd", "--image", "labels",
+                     "--size", 2, *more, pairs=lambda file: file_pairs_in_words(file.with_suffix(".inp"))))
+        ring = "" if options.no_solver else turned_ring(folder, program)
+        print(ring)
     page = ROOT / "docs" / "measured" / "periodic.md"
     said = page.read_text().split("\n## What it says", 1)[1:] if page.exists() else []
     text = ABOUT.format(written=written_by("bench/run.sh periodic")) + "\n".join(rows) + "\n"
     if solved:
         text += ("\n**Moduli of the cell with 50 balls**, matrix and balls with Young's moduli 1 and 10, Poisson's ratios .3 and .2, by CalculiX with the "
                  f"equations of the file, stretched four ways; bounds of Hashin and Shtrikman: {solved}\n")
+    if ring:
+        text += f"\n**A ring that turns**, by a sector of it: {ring}\n"
     page.write_text(text + "".join("\n## What it says" + rest for rest in said))
 
 
