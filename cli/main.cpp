@@ -1,7 +1,6 @@
 #include "command_line.h"
 
 #ifdef _WIN32
-#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -13,24 +12,26 @@
 // Beneath it, which it needs.
 #include <shellapi.h>
 
-// What main() is given there is in some code page, which names of files may not survive; and libstdc++ takes names byte
-// by byte (path(std::string)), which only those in ASCII do.
+namespace {
+
+std::string in_utf8(const wchar_t* wide) {
+  const auto converted = [&](char* to, int room) {
+    return WideCharToMultiByte(CP_UTF8, 0, wide, -1, to, room, nullptr, nullptr);
+  };
+  std::string text(static_cast<std::size_t>(converted(nullptr, 0)), '\0');
+  converted(text.data(), static_cast<int>(text.size()));
+  text.pop_back();  // the zero at the end
+  return text;
+}
+
+}  // namespace
+
+// What main() is given there is in some code page, which names of files may not survive.
 int main() {
-  constexpr int kBadOptions = 2;
   int count = 0;
   wchar_t** const wide = CommandLineToArgvW(GetCommandLineW(), &count);
   std::vector<std::string> words;
-  for (int i = 0; i < count; ++i) {
-    words.emplace_back();
-    for (const wchar_t* c = wide[i]; *c != 0; ++c) {
-      // How the program itself is called does not matter.
-      if (*c >= 0x80 && i > 0) {
-        std::fputs("octafront: letters beyond ASCII, in names of files too, are not taken on Windows yet\n", stderr);
-        return kBadOptions;
-      }
-      words.back() += *c < 0x80 ? static_cast<char>(*c) : '?';
-    }
-  }
+  for (int i = 0; i < count; ++i) words.push_back(in_utf8(wide[i]));
   LocalFree(wide);
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());

@@ -33,7 +33,7 @@ bool is_cad(const std::string& file) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) return false;
   std::string head(kLooked, '\0');
-  std::ifstream in(file, std::ios::binary);
+  std::ifstream in(std::filesystem::path(file), std::ios::binary);
   in.read(head.data(), kLooked);
   head.resize(static_cast<std::size_t>(in.gcount()));
   const auto has = [&](std::string_view text) { return head.find(text) != std::string::npos; };

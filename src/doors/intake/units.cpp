@@ -30,7 +30,7 @@ std::string unit_of_image(const std::string& file) {
 std::string beginning_of(const std::string& file) {
   constexpr std::size_t kBeginning = 4096;
   std::string text(kBeginning, '\0');
-  std::ifstream in(file, std::ios::binary);
+  std::ifstream in(std::filesystem::path(file), std::ios::binary);
   in.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>(in.gcount()));
   std::transform(text.begin(), text.end(), text.begin(), io::to_lower);
