@@ -1,4 +1,4 @@
-"""Sheets, lines and points inside of a block, beside Gmsh: is every part of them in the mesh, at what cost, how good are the elements?
+"""Sheets, lines and points inside of a block, beside Gmsh and TetGen: is every part of them in the mesh, at what cost, how good are the elements?
 
 Usage: bench/run.sh inside [--only SUBSTRING] [--program OCTAFRONT] [--timeout SECONDS]
 All at one size, one thread; meshes are read by meshio and judged alike. Writes docs/measured/inside.md.
@@ -170,6 +170,53 @@ def run_gmsh(case, folder, timeout):
     return run_measured(["/usr/bin/python3", folder / "by_gmsh.py", folder, case.size], folder, timeout), folder / "gmsh.msh"
 
 
+def fitting_walls(case, program, folder):
+    """What TetGen wants: facets that fit together. Fractures cross, so theirs are the triangles that we make of them and of the cube."""
+    if not case.sheets:
+        points, faces = block()
+        return np.array(points, dtype=float), faces
+    command = [program, "surface", folder / "block.off", "--size", case.size, "-q", "-o", folder / "walls.off"]
+    for i in range(len(case.sheets)):
+        command += ["--sheet", folder / f"sheet{i}.off"]
+    run_measured(command, folder, 300)
+    mesh = meshio.read(folder / "walls.off")
+    return mesh.points, mesh.cells_dict["triangle"]
+
+
+def run_tetgen(case, program, folder, timeout):
+    points, faces = fitting_walls(case, program, folder)
+    facets = [list(face) for face in faces]
+    points = list(points)
+    for line in case.lines:
+        first = len(points)
+        points += list(line)
+        facets += [[first + i, first + i + 1] for i in range(len(line) - 1)]
+    points += list(case.points)
+    rows = [f"{len(points)} 3 0 0"] + ["%d %.17g %.17g %.17g" % (i, *p) for i, p in enumerate(points)] + [f"{len(facets)} 0"]
+    for facet in facets:
+        rows += ["1", f"{len(facet)} {' '.join(map(str, facet))}"]
+    (folder / "case.poly").write_text("\n".join([*rows, "0", "0"]) + "\n")
+    # No element is larger than 1.5 regular ones of that edge (peers/tetgen.py); -Y: the walls of fractures stay as they are.
+    outcome = run_measured(["tetgen", f"-pq1.2/10a{1.5 * case.size**3 / 72**0.5:.6g}efQ" + ("Y" if case.sheets else ""), folder / "case.poly"],
+                           folder, timeout)
+    file = folder / "tetgen.vtu"
+    if not outcome.error and (folder / "case.1.ele").exists():
+        nodes, *cells = (np.loadtxt(folder / f"case.1.{end}", skiprows=1, comments="#") for end in ("node", "ele", "face", "edge"))
+        tets, triangles, edges = (c[:, 1:1 + n].astype(int) for c, n in zip(cells, (4, 3, 2)))
+        on = nodes[:, 1:4]
+        kept = {"tetra": tets, "triangle": triangles[marked(folder / "case.1.face", 3)]}
+        if case.lines:
+            kept["line"] = edges[marked(folder / "case.1.edge", 2)]
+        meshio.write_points_cells(file, on, kept)
+    return outcome, file
+
+
+def marked(file, corners):
+    """Which rows of a file of TetGen's are of what was given: they have a marker."""
+    rows = np.loadtxt(file, skiprows=1, comments="#")
+    return rows[:, 1 + corners] != 0
+
+
 def judged(file, case):
     """Elements, least dihedral angle, mean beta, area and length found, points that are nodes."""
     mesh = meshio.read(file)
@@ -238,9 +285,10 @@ def row(case, name, outcome, file):
 ABOUT = """# Sheets, lines and points inside
 
 {written}: a unit cube at size .05, one thread, CPU seconds of whole processes. Gmsh 4.8.4
-cuts the cube by OpenCASCADE (`fragment`), meshes with HXT and optimises, through its Python interface. Both meshes are read by meshio. *Found*: area of the
+cuts the cube by OpenCASCADE (`fragment`), meshes with HXT and optimises, through its Python interface. All meshes are read by meshio. *Found*: area of the
 faces that are no sides of the cube, length of the edges inside, points that are nodes at their place. The area of fractures is that inside of the cube, by
-clipping each polygon. TetGen is given facets that fit together already, so it is not here: fractures cross.
+clipping each polygon. TetGen 1.5.0 wants facets that fit together, and fractures cross: it gets the triangles that Octafront makes of them and of the cube, whose making is not in its time, and keeps them (`-pqYa`);
+lines are its segments, points its nodes.
 
 | case | mesher | found | volume off | elements | mean β | dihedral angles | CPU s | elements / CPU s |
 | --- | --- | --- | --- | --- | --- | --- | --- | --- |
@@ -262,7 +310,8 @@ def main():
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
             for mesher, made in (("Octafront", run_ours(case, program, folder, options.timeout)),
-                                 ("Gmsh", run_gmsh(case, folder, options.timeout))):
+                                 ("Gmsh", run_gmsh(case, folder, options.timeout)),
+                                 ("TetGen", run_tetgen(case, program, folder, options.timeout))):
                 rows.append(row(case, mesher, *made))
                 print(rows[-1], flush=True)
     if options.only:

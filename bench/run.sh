@@ -26,7 +26,7 @@
 #   bench/run.sh layers      boundary layers on all clean models: coverage, validity, quality, speed -> docs/measured/layers.md
 #   bench/run.sh layers_shapes   the same on bodies whose layers are known; layers_flows: around bodies, in vessels; layers_peers: beside snappyHexMesh
 #                            and Gmsh; layers_solved: a laminar pipe with and without -> docs/measured/layers.md
-#   bench/run.sh inside      sheets, lines and points in a block, beside Gmsh                -> docs/measured/inside.md
+#   bench/run.sh inside      sheets, lines and points in a block, beside Gmsh and TetGen     -> docs/measured/inside.md
 #   bench/run.sh periodic    periodic cells with and without periods, beside Gmsh, solved    -> docs/measured/periodic.md
 #   bench/run.sh dry_run     mesh --dry-run: elements, time and memory said and taken -> docs/use/command-line.md
 set -euo pipefail
@@ -50,7 +50,7 @@ need_packages "${build_packages[@]}" python3
 { [ "$1" != repair ] && [ "$1" != damage ]; } || need_packages python3-numpy python3-meshio
 [[ $1 != layers_* ]] || need_packages python3-numpy python3-meshio openfoam
 [ "$1" != periodic ] || need_packages calculix-ccx
-{ [ "$1" != inside ] && [ "$1" != periodic ]; } || need_packages python3-numpy python3-meshio python3-gmsh
+{ [ "$1" != inside ] && [ "$1" != periodic ]; } || need_packages python3-numpy python3-meshio python3-gmsh tetgen
 [ "$1" != layers_peers ] || need_packages python3-gmsh
 [ "$1" != images ] || need_packages libcgal-dev libgmp-dev libmpfr-dev libboost-dev
 [ "$1" != images ] || [ -d volumes ] || scripts/get-volumes.sh
