@@ -160,6 +160,29 @@ void TetComplex::part(std::size_t vertices, std::span<const Triangle> triangles,
     if (!is_outside(across[h]) && !table.group_of(face(h)).empty()) across[h] = outside;
 }
 
+void TetRim::keep_sides(const Triangle& face, HalfFace across) {
+  const Triangle key = face_key(face);
+  const auto other =
+      std::find_if(outer_.rbegin(), outer_.rend(), [&](const OuterFace& f) { return face_key(f.corners) == key; });
+  if (other != outer_.rend()) parted_.insert(parted_.end(), {*other, {face, across}});
+}
+
+HalfFace TetRim::take_side(const Triangle& face) {
+  const auto is_same = [&](const OuterFace& f) {
+    Triangle turned = f.corners;
+    for (int i = 0; i < 3; ++i) {
+      if (turned == face) return true;
+      std::rotate(turned.begin(), turned.begin() + 1, turned.end());
+    }
+    return false;
+  };
+  const auto found = std::find_if(parted_.begin(), parted_.end(), is_same);
+  if (found == parted_.end()) return kNone;
+  const HalfFace across = found->across;
+  parted_.erase(found);
+  return across;
+}
+
 TetIndex TetComplex::create(const Tet& corners) {
   TetIndex t = slots();
   if (free.empty()) {

@@ -41,23 +41,41 @@ class TetRim {
   /// Makes room for `faces`, and forgets all others.
   void reset(std::size_t faces) {
     across_.reset(faces);
+    outer_.clear(), parted_.clear();
     open_ = 0;
   }
   /// Adds the faces of a tet that goes; those between two of them vanish.
   void open(const TetComplex& complex, TetIndex t);
   /// Ties the faces of a new tet to what lies across, or leaves them for the new tets to come.
   void tie(TetComplex& complex, TetIndex t);
-  /// Adds a face with what lies across it; one that is there already goes. Returns what lay across that, or kNone.
+  /// Adds a face with what lies across it; one that is there already goes. Returns what lay across that, or kNone. Both
+  /// sides of a face that parts the tets stay, each for the new tet on its side: around the rim of a sheet tets of both
+  /// sides may go.
   HalfFace toggle(const Triangle& face, HalfFace across) {
     HalfFace& there = across_.find_or_add(face_key(face), kNone);
     open_ += there == kNone ? 1 : -1;
+    if (is_outer(across)) {
+      if (is_outer(there)) keep_sides(face, across);
+      outer_.push_back({face, across});
+    }
     return std::exchange(there, there == kNone ? across : kNone);
   }
   /// Whether the new tets fill the space of the old ones.
   bool closed() const { return open_ == 0; }
 
  private:
+  struct OuterFace {
+    Triangle corners;  ///< counter-clockwise seen from outside the tet
+    HalfFace across;
+  };
+
+  static bool is_outer(HalfFace across) { return across != kNone && is_outside(across); }
+  void keep_sides(const Triangle& face, HalfFace across);
+  /// What lies across a face of which both sides are kept; kNone of others.
+  HalfFace take_side(const Triangle& face);
+
   FlatMap<Triangle, HalfFace> across_;  ///< kNone: of a face that is no longer on the rim
+  std::vector<OuterFace> outer_, parted_;
   std::ptrdiff_t open_ = 0;
 };
 
@@ -183,7 +201,11 @@ inline void TetRim::open(const TetComplex& complex, TetIndex t) {
 }
 
 inline void TetRim::tie(TetComplex& complex, TetIndex t) {
-  for (HalfFace h = 4 * t; h < 4 * t + 4; ++h) complex.join(h, toggle(complex.face(h), h));
+  for (HalfFace h = 4 * t; h < 4 * t + 4; ++h) {
+    const Triangle face = complex.face(h);
+    const HalfFace side = parted_.empty() ? kNone : take_side(face);
+    complex.join(h, side != kNone ? side : toggle(face, h));
+  }
 }
 
 }  // namespace octafront

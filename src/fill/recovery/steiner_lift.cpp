@@ -85,6 +85,7 @@ std::vector<SteinerLift::Fan> SteinerLift::fans_around(VertexIndex s) {
       spokes.push_back({f[1], f[2], mesh_.across[h] - kFirstOutside});
     }
   }
+  if (spokes.empty()) throw std::logic_error("there is no boundary around a point of it");
   // In turn, starting where the parent changes.
   std::size_t first = 0;
   for (std::size_t i = 0; i < spokes.size(); ++i) {

@@ -1,6 +1,9 @@
 #include "improve/passes/edit_block.h"
 
 #include "base/core/validate.h"
+#include "base/mesh/face_table.h"
+
+#include <algorithm>
 
 namespace octafront::improve {
 
@@ -67,9 +70,21 @@ TetIndex EditBlock::slot() {
   return t;
 }
 
+/// Whether an interface lies between two of the tets, which come together around its rim: it would go with them.
+bool EditBlock::have_both_sides(std::span<const TetIndex> tets) {
+  parted_.clear();
+  for (const TetIndex t : tets)
+    for (HalfFace h = 4 * t; h < 4 * t + 4; ++h)
+      if (complex_.across[h] == kBetweenRegions) parted_.push_back(face_key(complex_.face(h)));
+  if (parted_.size() < 2) return false;
+  std::sort(parted_.begin(), parted_.end());
+  return std::adjacent_find(parted_.begin(), parted_.end()) != parted_.end();
+}
+
 bool EditBlock::replace(std::span<const TetIndex> old_tets, std::span<const Tet> new_tets,
                         std::span<const Shape> shapes, std::vector<TetIndex>& created, const BoundaryChange* change) {
   if (new_tets.size() > old_tets.size() && !has_room(new_tets.size() - old_tets.size())) return false;
+  if (have_both_sides(old_tets)) return false;
   rim_.reset(4 * (old_tets.size() + new_tets.size()));
   for (const TetIndex t : old_tets) rim_.open(complex_, t);
   const bool has_regions = mesh_.had_regions_;

@@ -63,7 +63,8 @@ class EditBlock {
   };
 
   /// Puts new tets in place of old ones of the block that fill the same space. Returns where they are: `created` in
-  /// order. False, and nothing done, if there are too few slots left. Requires: same outer faces, or those that differ
+  /// order. False, and nothing done, if there are too few slots left, or an interface lies between two of the old ones.
+  /// Requires: same outer faces, or those that differ
   /// named in `change`; shapes as of the new ones; one region.
   bool replace(std::span<const TetIndex> old_tets, std::span<const Tet> new_tets, std::span<const Shape> shapes,
                std::vector<TetIndex>& created, const BoundaryChange* change = nullptr);
@@ -82,6 +83,7 @@ class EditBlock {
   }
   std::uint32_t next_mark() { return whole_ ? complex_.new_mark() : ++mark_; }
   std::vector<TetIndex>& free_tets() { return whole_ ? complex_.free : free_tets_; }
+  bool have_both_sides(std::span<const TetIndex> tets);
   bool has_room(std::size_t tets) { return whole_ || free_tets_.size() >= tets; }
   TetIndex slot();
   void change_boundary(const BoundaryChange& change);
@@ -89,6 +91,7 @@ class EditBlock {
   EditMesh& mesh_;
   TetComplex& complex_;
   TetRim rim_;
+  std::vector<Triangle> parted_;
   bool whole_ = false, cut_ = false;
   const Cells* cells_ = nullptr;
   std::uint32_t cell_ = 0;

@@ -123,6 +123,38 @@ TEST(Inside, ASplitSheetHasTwoSides) {
   }
 }
 
+/// Hexagons of radius .3 by chance, some of which stick out.
+SurfaceMesh fractures(unsigned state, VertexIndex count) {
+  const auto next = [&] { return (state = state * 1664525u + 1013904223u) / 4294967296.0; };
+  SurfaceMesh sheets;
+  for (VertexIndex n = 0; n < count; ++n) {
+    Vec3 center;
+    for (int axis = 0; axis < 3; ++axis) center[axis] = next();
+    const double angle = 2 * std::numbers::pi * next(), z = 2 * next() - 1, r = std::sqrt(1 - z * z);
+    const Vec3 normal{r * std::cos(angle), r * std::sin(angle), z};
+    const Vec3 u = normalized(cross(normal, std::abs(normal.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}));
+    const Vec3 v = cross(normal, u);
+    for (int k = 0; k < 6; ++k) {
+      const double a = std::numbers::pi / 3 * k;
+      sheets.points.push_back(center + (u * std::cos(a) + v * std::sin(a)) * 0.3);
+    }
+    for (VertexIndex k = 1; k + 1 < 6; ++k) sheets.triangles.push_back({6 * n, 6 * n + k, 6 * n + k + 1});
+  }
+  return sheets;
+}
+
+TEST(Inside, AroundTheRimsOfFracturesNoFaceIsLost) {
+  Options options = at_size(0.1);
+  options.surface.max_deviation = 0.01;
+  for (const unsigned seed : {1u, 13u, 22u, 24u}) {
+    SCOPED_TRACE(seed);
+    const Domain domain(embed_sheets(testing::cube(1), {{"fractures", fractures(seed, 12)}}).surface);
+    const Result result = generate(domain, options);
+    EXPECT_EQ(first_defect(result.mesh), std::nullopt);
+    EXPECT_NEAR(result.report.volume, 1, 1e-9);
+  }
+}
+
 TEST(Inside, ASplitSheetThroughAPeriodicCellKeepsItsPairs) {
   SurfaceMesh wall;
   wall.points = {{-1, -1, 0.5}, {2, -1, 0.5}, {2, 2, 0.5}, {-1, 2, 0.5}};
