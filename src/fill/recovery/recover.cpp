@@ -142,6 +142,21 @@ void count(const Stage& stage, const RecoveryCounts& c, const LiftCounts& l) {
       open.size(), p.x, p.y, p.z));
 }
 
+// Whether each of the triangles lies across a face of the mesh that has its corners. Where a sheet ends, merging points
+// of its rim may leave two elements of different sides one face.
+bool has_all_faces(const TetComplex& mesh, const std::vector<Triangle>& triangles) {
+  std::vector<std::uint8_t> is_there(triangles.size(), 0);
+  for (TetIndex t = 0; t < mesh.slots(); ++t) {
+    if (!mesh.alive(t)) continue;
+    for (HalfFace h = 4 * t; h < 4 * t + 4; ++h) {
+      if (!is_outside(mesh.across[h])) continue;
+      const std::uint32_t n = mesh.across[h] - kFirstOutside;
+      if (n < triangles.size() && face_key(mesh.face(h)) == face_key(triangles[n])) is_there[n] = 1;
+    }
+  }
+  return std::find(is_there.begin(), is_there.end(), 0) == is_there.end();
+}
+
 // Steiner points that have no place inside may not be needed after other choices. The last attempt throws.
 constexpr std::uint32_t kAttempts = 6;
 
@@ -180,6 +195,10 @@ std::optional<TetMesh> recover(const SurfaceMesh& surface, std::uint32_t attempt
   SteinerLift lift(task, seen);
   if (const std::vector<VertexIndex> open = lift.run(); !open.empty()) {
     if (attempt + 1 == kAttempts) throw_no_place(points, open);
+    return std::nullopt;
+  }
+  if (!has_all_faces(mesh, seen)) {
+    if (attempt + 1 == kAttempts) throw MeshingError("triangles of the surface are no faces of what fills it");
     return std::nullopt;
   }
   validate<TetComplex>(mesh);
