@@ -95,9 +95,17 @@ std::vector<SteinerLift::Fan> SteinerLift::fans_around(VertexIndex s) {
   }
   std::vector<Fan> fans;
   VertexIndex at = spokes[first].from;
+  std::vector<std::uint8_t> is_used(spokes.size(), 0);
   for (std::size_t n = 0; n < spokes.size(); ++n) {
-    const auto next = std::ranges::find(spokes, at, &Spoke::from);
+    // Around the rim of a sheet two spokes begin at a vertex, one on each side: those of one side follow each other.
+    auto next = spokes.end();
+    for (auto spoke = spokes.begin(); spoke != spokes.end(); ++spoke) {
+      if (spoke->from != at || is_used[static_cast<std::size_t>(spoke - spokes.begin())]) continue;
+      const bool goes_on = !fans.empty() && spoke->parent == fans.back().parent;
+      if (next == spokes.end() || goes_on) next = spoke;
+    }
     if (next == spokes.end()) throw std::logic_error("the boundary around a point is no disc");
+    is_used[static_cast<std::size_t>(next - spokes.begin())] = 1;
     if (fans.empty() || fans.back().parent != next->parent) fans.push_back({next->parent, {at}, false});
     fans.back().chain.push_back(next->to);
     at = next->to;
