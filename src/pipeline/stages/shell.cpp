@@ -2,9 +2,11 @@
 
 #include <octafront/error.h>
 
+#include "base/core/elementary.h"
 #include "layers/through/through.h"
 #include "pipeline/stages/methods.h"
 #include "pipeline/stages/stages.h"
+#include "sizing/prediction/expected_tets.h"
 
 #include <utility>
 #include <vector>
@@ -16,6 +18,8 @@ namespace octafront {
 namespace {
 
 constexpr std::uint32_t kMostShellLayers = 100;
+/// Two layers make so many elements of one; more of them by this power of their number.
+constexpr double kTimesOfTwo = 2.1, kPowerOfLayers = 2.55;
 
 void require_for_shell(bool holds, const char* sentence) {
   if (!holds) throw OptionError(sentence);
@@ -43,6 +47,12 @@ void check_shell_options(const Options& options) {
   require_for_shell(
       !traits_of(options.method).makes_own_boundary(),
       "`shell` needs elements that reach from one side of a wall to the other, which the octree method does not make");
+}
+
+double expected_shell_tets(const Remeshed& made, std::uint32_t layers) {
+  if (layers < 2) return 0;
+  const double times = kTimesOfTwo * elementary::pow(layers / 2.0, kPowerOfLayers);
+  return (times - 1) * expected_tets_through_walls(made.sizes, made.surface);
 }
 
 void layer_walls(Filled& filled, Run& run) {

@@ -8,9 +8,14 @@
 namespace octafront {
 
 struct Filled;
+struct Remeshed;
 
 /// Throws OptionError for what layers through walls do not go with.
 void check_shell_options(const Options& options);
+
+/// How many elements more so many layers make of the surface, once it is filled: as measured on plates, tubes and
+/// brackets, where it is a third off at worst.
+double expected_shell_tets(const Remeshed& made, std::uint32_t layers);
 
 /// Puts as many layers as the run asks for through walls that have fewer; nothing if it asks for none.
 void layer_walls(Filled& filled, Run& run);

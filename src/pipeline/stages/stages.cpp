@@ -20,6 +20,7 @@
 #include "pipeline/stages/measure.h"
 #include "pipeline/stages/methods.h"
 #include "pipeline/stages/periodic.h"
+#include "pipeline/stages/shell.h"
 #include "sizing/prediction/expected_tets.h"
 #include "sizing/search/budget.h"
 #include "sizing/search/make_size_field.h"
@@ -349,10 +350,6 @@ SizeField choose_sizes(const Prepared& input, Run& run) {
     SizeOptions size = run.options.size;
     const double budget = budget_of(input.surface.mesh(), run.options);
     if (std::isfinite(budget)) stage.count("budget of elements", budget);
-    if (run.options.volume.shell > 1)
-      stage.note(
-          "the layers of `shell` are not among the elements expected: two make about twice as many of those that "
-          "reach through walls, three six times");
     if (const auto asked = asked_deviation(run.options); !size.field && asked != 0.0) size.chord_error = asked;
     if (const auto degrees = run.options.surface.normal_deviation)
       refuse_huge_turning(input.surface, size, *degrees, run.context());
@@ -388,7 +385,8 @@ Remeshed triangulate(const Prepared& input, const SizeField& sizes, Run& run) {
     // Strips between lines and the bounds on deviation have made sizes smaller since the first prediction.
     run.report.expected_tets =
         traits_of(run.options.method).tets_per_expected * expected_tets_within(remeshed.sizes, remeshed.surface) +
-        expected_layer_tets(remeshed.surface, run.options.layers);
+        expected_layer_tets(remeshed.surface, run.options.layers) +
+        expected_shell_tets(remeshed, run.options.volume.shell);
     return remeshed;
   });
 }

@@ -246,6 +246,12 @@ double TetPrediction::operator()(const SizeField& sizes, std::optional<std::size
   return count_by(*grid, surface_, DividedSurface(*grid, surface_), *walls_, triangles);
 }
 
+double TetPrediction::through_walls(const SizeField& sizes, std::optional<std::size_t> triangles) const {
+  const auto grid = grid_of(sizes, surface_);
+  const DividedSurface divided(*grid, surface_);
+  return walls_->tets_through(divided.pieces, sizes_at(divided.pieces, *grid), triangles);
+}
+
 std::function<double(const OctreeField&)> TetPrediction::on_leaves_of(const OctreeField& grid) const {
   return [this, divided = DividedSurface(grid, surface_)](const OctreeField& other) {
     return count_by(other, surface_, divided, *walls_, {});
@@ -259,6 +265,11 @@ double expected_tets(const SizeField& sizes, const SurfaceMesh& surface) {
 double expected_tets_within(const SizeField& sizes, const SurfaceMesh& made) {
   const TetPrediction predicted(made);
   return predicted(sizes, predicted.triangles());
+}
+
+double expected_tets_through_walls(const SizeField& sizes, const SurfaceMesh& made) {
+  const TetPrediction predicted(made);
+  return predicted.through_walls(sizes, predicted.triangles());
 }
 
 double lattice_cell_size(const SizeField& sizes, const SurfaceMesh& surface) {

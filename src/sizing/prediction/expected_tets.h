@@ -27,6 +27,9 @@ class TetPrediction {
   /// `triangles`: how many the surface has, if it is made by these sizes already.
   double operator()(const SizeField& sizes, std::optional<std::size_t> triangles = {}) const;
 
+  /// Those of them that reach through thin walls.
+  double through_walls(const SizeField& sizes, std::optional<std::size_t> triangles = {}) const;
+
   /// The same for other sizes on the leaves of `grid`. Both `grid` and this prediction must outlive what is returned.
   std::function<double(const OctreeField&)> on_leaves_of(const OctreeField& grid) const;
 
@@ -43,6 +46,9 @@ class TetPrediction {
 double expected_tets(const SizeField& sizes, const SurfaceMesh& surface);
 /// The prediction within a surface that was made by these sizes, or is kept: its triangles are known.
 double expected_tets_within(const SizeField& sizes, const SurfaceMesh& made);
+
+/// Of those the ones that reach from one side of a wall to the other.
+double expected_tets_through_walls(const SizeField& sizes, const SurfaceMesh& made);
 
 /// The mean edge length of one level of a lattice whose cells come in powers of two of this length. A cell is divided
 /// while its edges are longer than kLatticeTooLong times the wanted ones. The length is chosen so that the lattice

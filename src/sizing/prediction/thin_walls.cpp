@@ -44,38 +44,49 @@ constexpr double kSkipped = 1e-7;
 
 }  // namespace
 
-double ThinWalls::excess_tets(const std::vector<SurfacePiece>& pieces, const std::vector<double>& sizes,
-                              std::optional<std::size_t> triangles) const {
+ThinWalls::Look ThinWalls::look(const std::vector<SurfacePiece>& pieces, const std::vector<double>& sizes,
+                                std::optional<std::size_t> triangles) const {
   const auto squares = [&](std::size_t piece) { return length(pieces[piece].n) / (sizes[piece] * sizes[piece]); };
   double all = 0;
   for (std::size_t i = 0; i < pieces.size(); ++i) all += squares(i);
-  const double triangles_per_square = triangles ? static_cast<double>(*triangles) / all : kTrianglesPerSquare;
+  Look seen{{}, triangles ? static_cast<double>(*triangles) / all : kTrianglesPerSquare};
   const double step = all / kPlacesOfWalls;
-  struct Place {
-    std::size_t piece;
-    double places, walls = 0;  ///< thickness, in sizes
-  };
-  std::vector<Place> looked_at;
+  std::vector<Place>& looked_at = seen.places;
   double passed = 0, next = 0.5 * step;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     passed += squares(i);
-    const auto places = std::ceil((passed - next) / step);
-    if (!(places > 0)) continue;
-    next += places * step;
-    looked_at.push_back({i, places});
+    const auto count = std::ceil((passed - next) / step);
+    if (!(count > 0)) continue;
+    next += count * step;
+    looked_at.push_back({i, count * step});
   }
   parallel_for(looked_at.size(), [&](std::size_t i) {
     const std::size_t k = looked_at[i].piece;
     looked_at[i].walls = thickness(pieces[k].p, normalized(pieces[k].n), kThickest * sizes[k]) / sizes[k];
   });
-  const bool are_coarse = triangles_per_square < kCoarse * kTrianglesPerSquare;
+  return seen;
+}
+
+double ThinWalls::excess_tets(const std::vector<SurfacePiece>& pieces, const std::vector<double>& sizes,
+                              std::optional<std::size_t> triangles) const {
+  const Look seen = look(pieces, sizes, triangles);
+  const bool are_coarse = seen.triangles_per_square < kCoarse * kTrianglesPerSquare;
   double excess = 0;
-  for (const Place& p : looked_at) {
+  for (const Place& p : seen.places) {
     if (p.walls >= kThickest || (are_coarse && p.walls > kOneLayer)) continue;
     // The elements of one side of the wall, less those that its half of the volume stands for.
-    excess += p.places * step * (triangles_per_square * tets_per_triangle(p.walls) - kTetsPerCube * p.walls / 2);
+    excess += p.squares * (seen.triangles_per_square * tets_per_triangle(p.walls) - kTetsPerCube * p.walls / 2);
   }
   return excess;
+}
+
+double ThinWalls::tets_through(const std::vector<SurfacePiece>& pieces, const std::vector<double>& sizes,
+                               std::optional<std::size_t> triangles) const {
+  const Look seen = look(pieces, sizes, triangles);
+  double through = 0;
+  for (const Place& p : seen.places)
+    if (p.walls <= kOneLayer) through += p.squares * seen.triangles_per_square * tets_per_triangle(p.walls);
+  return through;
 }
 
 /// Way to the sheet that faces p from behind; infinite if there is none within reach.

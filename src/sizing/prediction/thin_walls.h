@@ -28,8 +28,22 @@ class ThinWalls {
   /// many the surface has, if it is made by these sizes already. Looks at some thousand places.
   double excess_tets(const std::vector<SurfacePiece>& pieces, const std::vector<double>& sizes,
                      std::optional<std::size_t> triangles) const;
+  /// How many elements reach from one side of a wall to the other.
+  double tets_through(const std::vector<SurfacePiece>& pieces, const std::vector<double>& sizes,
+                      std::optional<std::size_t> triangles) const;
 
  private:
+  /// A place that was looked at, and what of the surface it stands for.
+  struct Place {
+    std::size_t piece;
+    double squares, walls = 0;  ///< area in squares of the size; thickness in sizes
+  };
+  struct Look {
+    std::vector<Place> places;
+    double triangles_per_square;
+  };
+  Look look(const std::vector<SurfacePiece>& pieces, const std::vector<double>& sizes,
+            std::optional<std::size_t> triangles) const;
   double thickness(Vec3 p, Vec3 normal, double reach) const;
 
   TriangleTree tree_;
