@@ -634,6 +634,16 @@ void declare_ground(CLI::App& command, Arguments& a) {
       ->type_name("DEG");
 }
 
+void declare_adaptation(CLI::App& command, Arguments& a) {
+  auto* group = command.add_option_group("Adaptation", "The boundary stays on the smooth surface that it stands for");
+  group->add_option("--sizes", a.size_field, "Another name of --size-field")->type_name("FILE[:FIELD]");
+  add_length(*group, a, "--max-deviation", a.options.surface.max_deviation,
+             "How far the boundary may stray from it [.4 % of the diagonal]")
+      ->type_name("D");
+  group->add_option("--feature-angle", a.options.surface.feature_angle, "Edges that bend by more degrees are kept [40]")
+      ->type_name("DEG");
+}
+
 void declare_order(CLI::App& command, Arguments& a) {
   add_choice<int>(
       command, "--order", a.options.order, {{"1", 1}, {"2", 2}},

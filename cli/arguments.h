@@ -85,6 +85,8 @@ void declare_layers(CLI::App& command, Arguments& arguments);
 void declare_volume(CLI::App& command, Arguments& arguments);
 void declare_improvement(CLI::App& command, Arguments& arguments);
 void declare_ground(CLI::App& command, Arguments& arguments);
+/// How a mesh is adapted.
+void declare_adaptation(CLI::App& command, Arguments& arguments);
 void declare_order(CLI::App& command, Arguments& arguments);
 void declare_conversion(CLI::App& command, Arguments& arguments);
 void declare_solver(CLI::App& command, Arguments& arguments);

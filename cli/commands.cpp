@@ -225,6 +225,34 @@ void run_improve(Session& session) {
   finish_run(session, result.mesh, nullptr);
 }
 
+void run_adapt(Session& session) {
+  const Arguments& a = session.arguments();
+  check_mesh_targets(a);
+  check_page_target(a.page);
+  const Options options = checked_options_of(session);
+  const TetMesh mesh = read_mesh_input(session);
+  const auto adapted = [&] {
+    try {
+      return adapt_existing(mesh, options, session.context());
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("{}: {}", a.input.string(), error.what()));
+    }
+  };
+  const AdaptedMesh result = adapted();
+  write_mesh_targets(session, result.mesh);
+  session.found({{"fit",
+                  {{"edges", result.after.edges},
+                   {"fitting", result.after.fitting},
+                   {"shortest", result.after.shortest},
+                   {"longest", result.after.longest},
+                   {"quality_min", result.after.quality_min},
+                   {"quality_mean", result.after.quality_mean},
+                   {"complexity", result.after.complexity}}}});
+  session.tell(result.report);
+  tell_worst(session, result.mesh, result.report.quality);
+  finish_run(session, result.mesh, nullptr);
+}
+
 void run_convert(Session& session) {
   const Arguments& a = session.arguments();
   check_mesh_targets(a);

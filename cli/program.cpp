@@ -184,6 +184,19 @@ void Program::declare_surfaces() {
   declare_report(*better, a);
   declare_run(*better, a);
 
+  CLI::App* adapted =
+      add("adapt", "Change a mesh until it fits other sizes: octafront adapt in.msh --sizes new.vtu:h -o out.msh",
+          "  octafront adapt in.msh --sizes new.vtu:h -o out.msh       a field on a mesh, this or another\n"
+          "  octafront adapt in.msh --size-near 0,0,0=0.1:2 --size 1 -o out.vtu\n",
+          run_adapt);
+  declare_mesh_input(*adapted, a);
+  declare_mesh_output(*adapted, a);
+  declare_sizes(*adapted, a);
+  declare_adaptation(*adapted, a);
+  declare_page(*adapted, a);
+  declare_report(*adapted, a);
+  declare_run(*adapted, a);
+
   CLI::App* convert = add("convert", "Another format, with all names and sets that it holds: in.msh -o out.inp",
                           "  octafront convert in.med -o out.inp\n"
                           "  octafront convert in.msh -o out.bdf --group load=box:0,0,0,1,1,0\n"

@@ -2,6 +2,7 @@
 
 // Everything that users of the library include.
 
+#include <octafront/adapt.h>
 #include <octafront/cad.h>
 #include <octafront/complex.h>
 #include <octafront/domain.h>

@@ -41,8 +41,8 @@ struct FlatKeys<std::array<std::uint32_t, 3>> {
   }
 };
 
-/// A hash map in one array: open addressing with linear steps, at most half full. Its order cannot be seen, so it
-/// cannot change a result. References stay valid until the next find_or_add(), erase(), reserve() or reset().
+/// A hash map in one array: open addressing with linear steps, at most half full. Its order is seen by for_each()
+/// alone, so it cannot change a result. References stay valid until the next find_or_add(), erase(), reserve() or reset().
 template <class Key, class Value, class Keys = FlatKeys<Key>>
 class FlatMap {
  public:
@@ -87,6 +87,13 @@ class FlatMap {
     }
     slots_[hole].key = Keys::kEmpty;
     return true;
+  }
+
+  /// Calls visit(key, value) for all, in an order that tells of nothing: whoever shows what comes of it sorts it.
+  template <class Visit>
+  void for_each(const Visit& visit) const {
+    for (const Slot& s : slots_)
+      if (s.key != Keys::kEmpty) visit(s.key, s.value);
   }
 
   /// Makes room for `expected` keys in all.

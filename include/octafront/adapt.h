@@ -1,0 +1,55 @@
+#pragma once
+
+#include <octafront/options.h>
+#include <octafront/report.h>
+#include <octafront/run_context.h>
+#include <octafront/tet_mesh.h>
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace octafront {
+
+/// The metric wanted at a point: a symmetric positive definite 3 x 3 tensor M in 1 / (input unit)^2. An edge e has the
+/// wanted length where e^T M e = 1. Asked from several threads.
+using MetricFunction = std::function<std::array<std::array<double, 3>, 3>(Vec3)>;
+
+/// How a mesh fits the sizes or the metric that it was adapted to. Lengths of edges in the metric are (a - b) / ln(a /
+/// b) of those at their ends; the quality of an element is its volume there to the power 2/3 over its mean squared
+/// edge, 1 if regular, in the metric of its corner of greatest density (the measures of the Unstructured Grid
+/// Adaptation Working Group).
+struct MetricSummary {
+  std::uint64_t edges = 0, fitting = 0;  ///< all edges, and those of lengths from sqrt(1/2) to sqrt 2
+  double shortest = 0, longest = 0;
+  double quality_min = 0, quality_mean = 0;
+  double complexity = 0;  ///< the integral of sqrt(det M) over the mesh
+};
+
+/// A mesh that was adapted, and what was done.
+struct AdaptedMesh {
+  TetMesh mesh;
+  Report report;
+  MetricSummary before, after;
+  std::vector<VertexIndex> old_of_new;  ///< per vertex its number in the mesh that was given; kNone: new
+};
+
+/// Changes a valid mesh by splits, collapses, swaps and moves until its edges are as long as `options.size` wants them
+/// (make_size_field, asked about the mesh's own boundary). Vertices of the boundary and of interfaces stay on the
+/// smooth surface that the given ones stand for, within SurfaceOptions::max_deviation of it, by default .4 % of the
+/// diagonal; patches, regions, sheets, curves, sets of faces, edges and elements keep their places, corners their
+/// points. Features are found by options.surface.feature_angle. A mesh of second order is taken as a linear one.
+///
+/// Example: Options o; o.size.size = 2; adapt_existing(read_mesh("part.msh"), o).mesh.
+///
+/// The result is valid (first_defect), the same for any number of threads. Throws InputError if `mesh` is not valid
+/// (the first defect, with ids and coordinates), or has wedges, pyramids, periods or faces that were split;
+/// OptionError, MeshingError, Cancelled.
+AdaptedMesh adapt_existing(const TetMesh& mesh, const Options& options, const RunContext& context = {});
+
+/// The same by a metric, which may want other lengths in other directions; `options.size` has no say.
+AdaptedMesh adapt_to_metric(const TetMesh& mesh, const MetricFunction& metric, const Options& options = {},
+                            const RunContext& context = {});
+
+}  // namespace octafront

@@ -1,0 +1,113 @@
+#include "adapt/metric/metric.h"
+
+#include "base/core/elementary.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace octafront::adapt {
+namespace {
+
+/// Jacobi's method squares what is off the diagonal with each sweep.
+constexpr int kMostSweeps = 30;
+
+using Matrix = std::array<std::array<double, 3>, 3>;
+
+/// One rotation that makes a[p][q] vanish; the columns of `v` turn along.
+void rotate(Matrix& a, Matrix& v, int p, int q) {
+  if (a[p][q] == 0) return;
+  const double theta = (a[q][q] - a[p][p]) / (2 * a[p][q]);
+  const double t = std::isfinite(theta * theta)
+                       ? (theta < 0 ? -1.0 : 1.0) / (std::abs(theta) + std::sqrt(theta * theta + 1))
+                       : 0.5 / theta;
+  const double c = 1 / std::sqrt(t * t + 1), s = t * c;
+  const int r = 3 - p - q;
+  const double apq = a[p][q], arp = a[r][p], arq = a[r][q];
+  a[p][p] -= t * apq, a[q][q] += t * apq;
+  a[p][q] = a[q][p] = 0;
+  a[r][p] = a[p][r] = c * arp - s * arq;
+  a[r][q] = a[q][r] = s * arp + c * arq;
+  for (auto& row : v) {
+    const double vp = row[p], vq = row[q];
+    row[p] = c * vp - s * vq, row[q] = s * vp + c * vq;
+  }
+}
+
+template <class Function>
+Metric with_values(const Metric& m, const Function& function) {
+  Eigen e = eigen(m);
+  for (double& value : e.value) value = function(value);
+  return e.tensor();
+}
+
+}  // namespace
+
+Metric inverse(const Metric& m) {
+  const double d = 1 / m.determinant();
+  return {d * (m.yy * m.zz - m.yz * m.yz), d * (m.xz * m.yz - m.xy * m.zz), d * (m.xy * m.yz - m.xz * m.yy),
+          d * (m.xx * m.zz - m.xz * m.xz), d * (m.xy * m.xz - m.xx * m.yz), d * (m.xx * m.yy - m.xy * m.xy)};
+}
+
+Metric Eigen::tensor() const {
+  Metric m{0, 0, 0, 0, 0, 0};
+  for (int i = 0; i < 3; ++i) {
+    const Vec3 v = vector[i];
+    m = m + value[i] * Metric{v.x * v.x, v.x * v.y, v.x * v.z, v.y * v.y, v.y * v.z, v.z * v.z};
+  }
+  return m;
+}
+
+Eigen eigen(const Metric& m) {
+  Matrix a{{{m.xx, m.xy, m.xz}, {m.xy, m.yy, m.yz}, {m.xz, m.yz, m.zz}}};
+  Matrix v{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  for (int sweep = 0; sweep < kMostSweeps && (a[0][1] != 0 || a[0][2] != 0 || a[1][2] != 0); ++sweep)
+    for (const auto& [p, q] : {std::array{0, 1}, std::array{0, 2}, std::array{1, 2}}) {
+      // What is less than the rounding of both values does not count.
+      if (std::abs(a[p][q]) <= 1e-17 * std::sqrt(std::abs(a[p][p] * a[q][q]))) a[p][q] = a[q][p] = 0;
+      rotate(a, v, p, q);
+    }
+  Eigen e;
+  for (int i = 0; i < 3; ++i) e.value[i] = a[i][i], e.vector[i] = {v[0][i], v[1][i], v[2][i]};
+  return e;
+}
+
+Metric log_of(const Metric& m) {
+  return with_values(m, [](double x) { return elementary::log(std::max(x, 1e-300)); });
+}
+Metric exp_of(const Metric& log) {
+  return with_values(log, [](double x) { return elementary::exp(x); });
+}
+
+double log_mean(double a, double b) {
+  const double sum = a + b;
+  if (!(sum > 0)) return 0;
+  const double u = (a - b) / sum, s = u * u;
+  // ln(a / b) = 2 artanh(u).
+  if (s < 0.03) {
+    const double series =
+        1 + s * (1.0 / 3 + s * (1.0 / 5 + s * (1.0 / 7 + s * (1.0 / 9 + s * (1.0 / 11 + s * (1.0 / 13 + s / 15))))));
+    return 0.5 * sum / series;
+  }
+  if (a == 0 || b == 0) return 0;
+  return (a - b) / elementary::log(a / b);
+}
+
+double density_of(const Metric& m) {
+  return std::sqrt(std::max(m.determinant(), 0.0));
+}
+
+double metric_score(double six_volumes, const Metric& m, double density, Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
+  // 1 for six edges of length 1 and six volumes of 1 / sqrt 2: 6^(3/2) sqrt 2.
+  constexpr double kRegular = 20.784609690826528;
+  const double sum =
+      m.squared(b - a) + m.squared(c - a) + m.squared(d - a) + m.squared(c - b) + m.squared(d - b) + m.squared(d - c);
+  return kRegular * six_volumes * density / (sum * std::sqrt(sum) + 1e-300);
+}
+
+double quality_of_score(double score) {
+  if (!(score > 0)) return 0;
+  const double root = elementary::cbrt(score);
+  return root * root;
+}
+
+}  // namespace octafront::adapt

@@ -1,0 +1,100 @@
+#pragma once
+
+// adapt/metric: metric tensors as a language for wanted elements: lengths, worth, means, products of them. Takes
+// numbers and points, leaves numbers; knows nothing of how a mesh is changed.
+//
+// A metric M asks for elements whose edges e have e^T M e = 1: its eigenvectors are directions, its eigenvalues
+// 1 / h^2 of the lengths wanted along them. A size is the metric I / h^2.
+
+#include <octafront/size_field.h>
+#include <octafront/vec.h>
+
+#include <array>
+#include <cstdint>
+
+namespace octafront::adapt {
+
+/// A symmetric 3 x 3 tensor; as a metric positive definite, in 1 / (input unit)^2.
+struct Metric {
+  double xx = 1, xy = 0, xz = 0, yy = 1, yz = 0, zz = 1;
+
+  static constexpr Metric of_size(double h) { return {1 / (h * h), 0, 0, 1 / (h * h), 0, 1 / (h * h)}; }
+  constexpr Vec3 times(Vec3 e) const {
+    return {xx * e.x + xy * e.y + xz * e.z, xy * e.x + yy * e.y + yz * e.z, xz * e.x + yz * e.y + zz * e.z};
+  }
+  /// e^T M e: the squared length of e in this metric.
+  constexpr double squared(Vec3 e) const { return dot(e, times(e)); }
+  constexpr double determinant() const {
+    return xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
+  }
+  friend constexpr bool operator==(const Metric&, const Metric&) = default;
+};
+constexpr Metric operator+(const Metric& a, const Metric& b) {
+  return {a.xx + b.xx, a.xy + b.xy, a.xz + b.xz, a.yy + b.yy, a.yz + b.yz, a.zz + b.zz};
+}
+constexpr Metric operator*(double s, const Metric& a) {
+  return {s * a.xx, s * a.xy, s * a.xz, s * a.yy, s * a.yz, s * a.zz};
+}
+
+/// Requires a determinant that is not 0.
+Metric inverse(const Metric& m);
+
+/// Eigenvalues, and unit eigenvectors that belong to them; in no order. By Jacobi's rotations: the same bits anywhere.
+struct Eigen {
+  std::array<double, 3> value;
+  std::array<Vec3, 3> vector;
+
+  /// The tensor with these values along the vectors.
+  Metric tensor() const;
+};
+Eigen eigen(const Metric& m);
+
+/// The matrix logarithm of a metric, and back: means of metrics are means of their logarithms (V. Arsigny, P. Fillard,
+/// X. Pennec, N. Ayache, "Log-Euclidean metrics for fast and simple calculus on diffusion tensors", 2006).
+Metric log_of(const Metric& m);
+Metric exp_of(const Metric& log);
+
+/// (a - b) / ln(a / b), what lies between a and b > 0 as the length of an edge does whose ends ask for a and b; a if
+/// they are equal. To 1e-12.
+double log_mean(double a, double b);
+
+/// The length of the edge e in the metrics of its two ends, after the measures of the Unstructured Grid Adaptation
+/// Working Group: 1 is what is wanted.
+inline double metric_length(Vec3 e, const Metric& a, const Metric& b) {
+  return log_mean(std::sqrt(a.squared(e)), std::sqrt(b.squared(e)));
+}
+
+/// Edges within these lengths fit the metric; longer ones are split, shorter ones collapsed.
+inline constexpr double kLongest = 1.4142135623730951, kShortest = 0.70710678118654757;
+
+/// What the density of a metric, sqrt(det M), makes of a volume of 1: elements of volume sqrt(2) / 12 / density are
+/// wanted.
+double density_of(const Metric& m);
+
+/// The quality of a tetrahedron to the power 3/2: volume over (mean squared edge)^(3/2), both in this metric, 1 for one
+/// that is regular there, not positive where it is flat or inverted. The Working Group takes the metric of the corner
+/// of greatest density. `six_volumes`: the determinant of its edges.
+double metric_score(double six_volumes, const Metric& m, double density, Vec3 a, Vec3 b, Vec3 c, Vec3 d);
+/// The quality itself, from that score.
+double quality_of_score(double score);
+
+/// Whoever knows the metric everywhere.
+class MetricField {
+ public:
+  virtual ~MetricField() = default;
+  /// The metric at p. `hint` tells where a search begins, and is told where this one ended: of a point nearby, or 0.
+  /// Safe on any number of threads; depends on the place alone, to rounding.
+  virtual Metric at(Vec3 p, std::uint32_t& hint) const = 0;
+};
+
+/// A size field as metrics.
+class SizeMetric : public MetricField {
+ public:
+  explicit SizeMetric(SizeField sizes) : sizes_(std::move(sizes)) {}
+  Metric at(Vec3 p, std::uint32_t&) const override { return Metric::of_size(sizes_.at(p)); }
+
+ private:
+  SizeField sizes_;
+};
+
+}  // namespace octafront::adapt

@@ -1,0 +1,59 @@
+#pragma once
+
+// adapt/passes: the single passes that bring a piece nearer to a metric: edges that are too long are split, those too
+// short collapsed, poor places connected anew, vertices moved. Each leaves every tet positive by exact sign, walls on
+// the ground as near as they were or as is allowed, and what lies on the rim of the piece as it was.
+
+#include <octafront/run_context.h>
+
+#include "adapt/ground/ground.h"
+#include "adapt/piece/piece.h"
+
+#include <cstddef>
+#include <cstdint>
+
+namespace octafront::adapt {
+
+/// What the passes go by.
+struct Guide {
+  const MetricField& metric;
+  const Ground& ground;
+  double tolerance = 0;  ///< how far walls may stray from the smooth surface; input units
+  const RunContext& context;
+
+  /// Sets metric and density of a vertex from its place.
+  void ask(Vertex& v) const {
+    v.metric = metric.at(v.at, v.hint);
+    v.density = density_of(v.metric);
+  }
+};
+
+struct PassCount {
+  std::uint64_t tried = 0, done = 0;
+  PassCount& operator+=(const PassCount& o) {
+    tried += o.tried, done += o.done;
+    return *this;
+  }
+};
+
+/// Splits edges longer than kLongest, the longest ones first by powers of sqrt 2, until none is left or the piece has
+/// so many vertices. New vertices of walls and lines go to the ground, as far as the tets around allow.
+PassCount split_long_edges(Piece& piece, const Guide& guide, std::size_t most_vertices);
+
+/// Collapses edges shorter than kShortest, the shortest ones first, where that leaves no edge that is too long and no
+/// element too poor, and walls true.
+PassCount collapse_short_edges(Piece& piece, const Guide& guide);
+
+/// Removes edges (of rings of up to seven tets) and faces of elements with a score below `threshold`, where the worst
+/// element of the place gets better; edges inside walls turn, where the wall stays true.
+PassCount swap_edges(Piece& piece, const Guide& guide, float threshold);
+
+/// Moves each vertex of elements with a score below `threshold` towards where its elements would be regular, of unit
+/// edges, if that makes them better; those on walls and lines along these.
+PassCount smooth_vertices(Piece& piece, const Guide& guide, float threshold);
+
+/// What a pass over walls has to ask: whether triangles may take the place of others of the same part.
+bool keeps_walls_true(const Guide& guide, std::span<const TriangleCorners> before,
+                      std::span<const TriangleCorners> after, Wall wall);
+
+}  // namespace octafront::adapt

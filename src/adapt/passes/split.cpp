@@ -1,0 +1,208 @@
+// Splits of edges, each with all tets around it in two.
+
+#include "adapt/passes/passes.h"
+#include "base/core/elementary.h"
+#include "base/geometry/measures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace octafront::adapt {
+namespace {
+
+/// How far new vertices look for the ground, in edge lengths: the sagitta of half a circle.
+constexpr double kReachOfSplit = 0.5;
+/// The worst new element keeps this part of the worst old one's score.
+constexpr float kLeastOfSplit = 0.1f;
+/// Between ends whose lengths differ by less the middle is the middle.
+constexpr double kEven = 0.2;
+/// New vertices stay this far from the ends, in parts of the edge.
+constexpr double kLeastPart = 0.2;
+constexpr int kCheckEvery = 256;
+
+class Splitter {
+ public:
+  Splitter(Piece& piece, const Guide& guide) : piece_(piece), guide_(guide) {}
+
+  PassCount run(std::size_t most_vertices) {
+    PassCount count;
+    for (double limit = first_limit(); limit > 0; limit = next_limit(limit)) {
+      std::vector<TetIndex> queue = waiting(limit);
+      for (std::size_t k = 0; k < queue.size(); ++k) {
+        if (piece_.vertices.size() >= most_vertices) return count;
+        if (++steps_ % kCheckEvery == 0) guide_.context.check();
+        const TetIndex t = queue[k];
+        if (!piece_.complex.alive(t)) continue;
+        const auto edge = longest_edge(t, limit);
+        if (!edge) continue;
+        ++count.tried;
+        if (!split(t, (*edge)[0], (*edge)[1])) {
+          refused_.insert(sorted_edge((*edge)[0], (*edge)[1]));
+          queue.push_back(t);
+          continue;
+        }
+        ++count.done;
+        queue.insert(queue.end(), piece_.created().begin(), piece_.created().end());
+      }
+    }
+    return count;
+  }
+
+ private:
+  static constexpr double kStep = 1.4142135623730951;
+
+  double first_limit() const {
+    double longest = 0;
+    for (TetIndex t = 0; t < piece_.complex.slots(); ++t) {
+      if (!piece_.complex.alive(t)) continue;
+      for (const auto& [i, j] : kTetEdges)
+        longest = std::max(longest, piece_.edge_length(piece_.tet(t)[i], piece_.tet(t)[j]));
+    }
+    double limit = kLongest;
+    while (limit * kStep < longest) limit *= kStep;
+    return longest > kLongest ? limit : 0;
+  }
+  static double next_limit(double limit) {
+    if (limit <= kLongest) return 0;
+    return std::max(limit / kStep, kLongest);
+  }
+
+  std::vector<TetIndex> waiting(double limit) {
+    std::vector<TetIndex> found;
+    for (TetIndex t = 0; t < piece_.complex.slots(); ++t)
+      if (piece_.complex.alive(t) && longest_edge(t, limit)) found.push_back(t);
+    return found;
+  }
+
+  bool may_split(VertexIndex a, VertexIndex b) const {
+    const Vertex &p = piece_.vertices[a], &q = piece_.vertices[b];
+    if (p.frozen && q.frozen) return false;
+    return (p.active || q.active) && !refused_.contains(sorted_edge(a, b));
+  }
+
+  std::optional<Edge> longest_edge(TetIndex t, double limit) const {
+    std::optional<Edge> best;
+    const Tet& c = piece_.tet(t);
+    for (const auto& [i, j] : kTetEdges) {
+      const double l = piece_.edge_length(c[i], c[j]);
+      if (l > limit && may_split(c[i], c[j])) limit = l, best = {c[i], c[j]};
+    }
+    return best;
+  }
+
+  /// The place on the edge that halves its length, if lengths change by a constant factor along it.
+  double middle(VertexIndex a, VertexIndex b) const {
+    const Vertex &p = piece_.vertices[a], &q = piece_.vertices[b];
+    const Vec3 e = q.at - p.at;
+    const double ratio = std::sqrt(q.metric.squared(e) / p.metric.squared(e));
+    if (!(std::abs(ratio - 1) > kEven)) return 0.5;
+    return std::clamp(elementary::log((ratio + 1) / 2) / elementary::log(ratio), kLeastPart, 1 - kLeastPart);
+  }
+
+  /// The walls that the edge lies on: each as the ring's vertex that it leads to, with its label.
+  struct WallAt {
+    VertexIndex tip;
+    Wall wall;
+  };
+  void find_walls() {
+    walls_.clear();
+    const auto add = [&](TetIndex t, VertexIndex opposite, VertexIndex tip) {
+      const Wall w = piece_.wall[piece_.complex.opposite(t, opposite)];
+      if (w != 0) walls_.push_back({tip, w});
+    };
+    for (std::size_t k = 0; k < ring_.tets.size(); ++k) {
+      const VertexIndex to = ring_.ring[(k + 1) % ring_.ring.size()];
+      add(ring_.tets[k], to, ring_.ring[k]);
+      if (!ring_.closed && k + 1 == ring_.tets.size()) add(ring_.tets[k], ring_.ring[k], to);
+    }
+  }
+
+  /// Where the ground wants the new vertex; `straight` if it does not say.
+  Vec3 home_of(VertexIndex a, VertexIndex b, Vec3 straight, const std::uint32_t* path) const {
+    const double reach = kReachOfSplit * distance(piece_.point(a), piece_.point(b));
+    if (path) return guide_.ground.on_line(straight, *path, reach).value_or(straight);
+    if (walls_.empty()) return straight;
+    Vec3 normal{};
+    const bool outer = (walls_[0].wall & kOuter) != 0;
+    for (const WallAt& w : walls_) {
+      Vec3 n = double_area_normal(piece_.point(a), piece_.point(b), piece_.point(w.tip));
+      // Seen along the edge the ring turns from the first wall to the last: outward is behind the first.
+      if (outer && w.tip == ring_.ring.front()) n = -n;
+      if (!outer && dot(n, normal) < 0) n = -n;
+      normal += normalized(n);
+    }
+    return guide_.ground.on_surface(straight, (walls_[0].wall & ~kOuter) - 1, outer, normal, reach).value_or(straight);
+  }
+
+  bool split(TetIndex t, VertexIndex a, VertexIndex b) {
+    const std::uint32_t* path = piece_.line(a, b);
+    if (path && *path == Parts::kStays) return false;
+    if (!piece_.ring(t, a, b, ring_)) return false;
+    find_walls();
+    const double part = middle(a, b);
+    const Vec3 p = piece_.point(a), q = piece_.point(b), straight = p + part * (q - p);
+    const Vec3 home = home_of(a, b, straight, path);
+    Vertex made;
+    made.hint = piece_.vertices[a].hint;
+    made.kind = path ? Kind::kCurve : walls_.empty() ? Kind::kInner : Kind::kSurface;
+    for (const double share : {1.0, 0.5, 0.0}) {
+      if (share != 0 && home == straight) continue;
+      made.at = straight + share * (home - straight);
+      guide_.ask(made);
+      if (plan(a, b, made)) return apply(a, b, made, path);
+    }
+    return false;
+  }
+
+  bool plan(VertexIndex a, VertexIndex b, const Vertex& made) {
+    float worst = 1;
+    for (const TetIndex t : ring_.tets) worst = std::min(worst, piece_.score[t]);
+    fresh_.clear();
+    const auto next = static_cast<VertexIndex>(piece_.vertices.size());
+    for (const TetIndex t : ring_.tets)
+      for (const VertexIndex gone : {b, a}) {
+        Tet c = piece_.tet(t);
+        const float s = piece_.score_with(c, gone, made);
+        if (!(s > kLeastOfSplit * worst)) return false;
+        std::replace(c.begin(), c.end(), gone, next);
+        fresh_.push_back({c, piece_.region[t], s});
+      }
+    return true;
+  }
+
+  bool apply(VertexIndex a, VertexIndex b, const Vertex& made, const std::uint32_t* path) {
+    const auto v = static_cast<VertexIndex>(piece_.vertices.size());
+    piece_.vertices.push_back(made);
+    piece_.complex.tet_at.push_back(kNone);
+    if (path) {
+      const std::uint32_t number = *path;
+      piece_.drop_line(a, b);
+      piece_.set_line(a, v, number), piece_.set_line(v, b, number);
+    }
+    new_walls_.clear();
+    for (const WallAt& w : walls_) {
+      new_walls_.push_back({{a, v, w.tip}, w.wall});
+      new_walls_.push_back({{v, b, w.tip}, w.wall});
+    }
+    piece_.replace(ring_.tets, fresh_, new_walls_);
+    return true;
+  }
+
+  Piece& piece_;
+  const Guide& guide_;
+  FlatSet<Edge> refused_;
+  EdgeRing ring_;
+  std::vector<WallAt> walls_;
+  std::vector<Piece::NewTet> fresh_;
+  std::vector<Piece::NewWall> new_walls_;
+  int steps_ = 0;
+};
+
+}  // namespace
+
+PassCount split_long_edges(Piece& piece, const Guide& guide, std::size_t most_vertices) {
+  return Splitter(piece, guide).run(most_vertices);
+}
+
+}  // namespace octafront::adapt

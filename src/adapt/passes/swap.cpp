@@ -1,0 +1,223 @@
+// Other connections between the same vertices: an edge goes, its ring is triangulated anew by dynamic programming
+// (Klincsek 1980; Shewchuk, "Two discrete optimization algorithms for the topological improvement of tetrahedral
+// meshes", 2002), or a face goes (2-3 flip). An edge inside a wall turns to the other diagonal of its two triangles.
+
+#include "adapt/passes/passes.h"
+
+#include <algorithm>
+#include <array>
+
+namespace octafront::adapt {
+namespace {
+
+/// A swap must gain at least this in the worst score, so that equal fillings do not replace each other for ever.
+constexpr float kLeastGainOfSwap = 1e-4f;
+constexpr int kLongestRingOfSwap = 7;
+/// Swaps make no edge longer than this, unless they take a longer one away.
+constexpr double kLongestOfSwap = kLongest;
+constexpr int kCheckSwapEvery = 512;
+constexpr float kImpossible = -1;
+
+class Swapper {
+ public:
+  Swapper(Piece& piece, const Guide& guide) : piece_(piece), guide_(guide) {}
+
+  PassCount run(float threshold) {
+    PassCount count;
+    std::vector<TetIndex> queue;
+    for (TetIndex t = 0; t < piece_.complex.slots(); ++t)
+      if (piece_.complex.alive(t) && is_active(t)) queue.push_back(t);
+    for (std::size_t k = 0; k < queue.size(); ++k) {
+      if (++steps_ % kCheckSwapEvery == 0) guide_.context.check();
+      const TetIndex t = queue[k];
+      if (!piece_.complex.alive(t) || piece_.score[t] >= threshold) continue;
+      ++count.tried;
+      if (!improve(t)) continue;
+      ++count.done;
+      for (const TetIndex made : piece_.created())
+        if (piece_.score[made] < threshold) queue.push_back(made);
+    }
+    return count;
+  }
+
+ private:
+  bool is_active(TetIndex t) const {
+    for (const VertexIndex v : piece_.tet(t))
+      if (piece_.vertices[v].active) return true;
+    return false;
+  }
+
+  bool improve(TetIndex t) {
+    gain_ = kLeastGainOfSwap;
+    old_.clear();
+    const Tet c = piece_.tet(t);
+    for (const auto& [i, j] : kTetEdges) try_edge(t, c[i], c[j]);
+    for (int i = 0; i < 4; ++i) try_face(t, i);
+    if (old_.empty()) return false;
+    piece_.replace(old_, fresh_, walls_);
+    return true;
+  }
+
+  bool are_frozen(VertexIndex a, VertexIndex b) const { return piece_.vertices[a].frozen && piece_.vertices[b].frozen; }
+
+  void try_edge(TetIndex t, VertexIndex a, VertexIndex b) {
+    if (are_frozen(a, b) || piece_.line(a, b)) return;
+    if (!piece_.ring(t, a, b, ring_) || ring_.tets.size() > kLongestRingOfSwap) return;
+    had_ = 1;
+    for (const TetIndex r : ring_.tets) had_ = std::min(had_, piece_.score[r]);
+    if (had_ + gain_ >= 1) return;
+    find_walls();
+    if (wall_at_.empty() && ring_.closed) return fill_ring(t, a, b);
+    if (wall_at_.size() == 2) turn_in_wall(t, a, b);
+  }
+
+  /// Places in the ring that walls at the edge lead to.
+  void find_walls() {
+    wall_at_.clear();
+    const std::size_t n = ring_.tets.size();
+    for (std::size_t k = 0; k < n; ++k) {
+      const VertexIndex to = ring_.ring[(k + 1) % ring_.ring.size()];
+      if (piece_.wall[piece_.complex.opposite(ring_.tets[k], to)] != 0) wall_at_.push_back(k);
+      if (!ring_.closed && k + 1 == n && piece_.wall[piece_.complex.opposite(ring_.tets[k], ring_.ring[k])] != 0)
+        wall_at_.push_back(k + 1);
+    }
+  }
+
+  void fill_ring(TetIndex t, VertexIndex a, VertexIndex b) {
+    if (ring_.ring.size() < 3) return;
+    poly_.assign(ring_.ring.begin(), ring_.ring.end());
+    const float worst = triangulate(a, b, std::max(kLongestOfSwap, piece_.edge_length(a, b)));
+    if (worst - had_ <= gain_) return;
+    take_old(worst);
+    emit(0, static_cast<int>(poly_.size()) - 1, a, b, piece_.region[t]);
+  }
+
+  /// The edge inside a wall goes: on each side of the wall the ring is triangulated for itself, with the new diagonal
+  /// as an edge.
+  void turn_in_wall(TetIndex, VertexIndex a, VertexIndex b) {
+    const std::size_t n = ring_.ring.size(), i = wall_at_[0], j = wall_at_[1];
+    const VertexIndex p = ring_.ring[i], q = ring_.ring[j];
+    const Wall label = piece_.wall[piece_.complex.opposite(ring_.tets[i], ring_.ring[(i + 1) % n])];
+    if (are_frozen(p, q) || (piece_.vertices[p].rim && piece_.vertices[q].rim)) return;
+    const bool outer = !ring_.closed;
+    if (outer != ((label & kOuter) != 0) || (outer && (i != 0 || j + 1 != n))) return;
+    const Wall other = outer ? piece_.wall[piece_.complex.opposite(ring_.tets.back(), ring_.ring[j - 1])]
+                             : piece_.wall[piece_.complex.opposite(ring_.tets[j], ring_.ring[(j + 1) % n])];
+    if (other != label || (outer && ring_.tets.size() < 2)) return;
+    if (piece_.tet_with(piece_.vertices[p].rim ? q : p, piece_.vertices[p].rim ? p : q, kNone) != kNone) return;
+    const double longest = std::max(kLongestOfSwap, piece_.edge_length(a, b));
+    if (piece_.edge_length(p, q) > longest) return;
+    if (!wall_stays_true(a, b, p, q, label)) return;
+    // Polygons on the two sides: from p on to q, and from q on to p.
+    std::vector<Piece::NewTet> made;
+    float worst = 1;
+    for (int side = 0; side < (outer ? 1 : 2); ++side) {
+      poly_.clear();
+      const std::size_t from = side == 0 ? i : j, to = side == 0 ? j : i;
+      for (std::size_t k = from;; k = (k + 1) % n) {
+        poly_.push_back(ring_.ring[k]);
+        if (k == to) break;
+      }
+      if (poly_.size() < 3) return;
+      worst = std::min(worst, triangulate(a, b, longest));
+      if (worst - had_ <= gain_) return;
+      std::swap(fresh_, made);
+      emit(0, static_cast<int>(poly_.size()) - 1, a, b, piece_.region[ring_.tets[from]]);
+      std::swap(fresh_, made);
+    }
+    take_old(worst);
+    fresh_ = std::move(made);
+    walls_.push_back({{a, p, q}, label}), walls_.push_back({{b, p, q}, label});
+  }
+
+  bool wall_stays_true(VertexIndex a, VertexIndex b, VertexIndex p, VertexIndex q, Wall label) const {
+    const auto corners = [&](VertexIndex u, VertexIndex v, VertexIndex w) {
+      return TriangleCorners{piece_.point(u), piece_.point(v), piece_.point(w)};
+    };
+    // Outward: behind the first wall of the ring, (a, b, p).
+    const std::array before{corners(b, a, p), corners(a, b, q)}, after{corners(a, p, q), corners(b, q, p)};
+    return keeps_walls_true(guide_, before, after, label);
+  }
+
+  void take_old(float worst) {
+    gain_ = worst - had_;
+    old_.assign(ring_.tets.begin(), ring_.tets.end());
+    fresh_.clear(), walls_.clear();
+  }
+
+  /// The best worst score of triangles of the polygon, each with a and b; its choices in mid_.
+  float triangulate(VertexIndex a, VertexIndex b, double longest) {
+    const int n = static_cast<int>(poly_.size());
+    for (int len = 1; len < n; ++len)
+      for (int i = 0; i + len < n; ++i) {
+        const int j = i + len;
+        best_[i][j] = len == 1 ? 1 : kImpossible;
+        const bool is_new = len > 1 && len < n - 1;
+        if (len == 1 ||
+            (is_new && (are_frozen(poly_[i], poly_[j]) || piece_.edge_length(poly_[i], poly_[j]) > longest)))
+          continue;
+        for (int k = i + 1; k < j; ++k) {
+          float worst = std::min(best_[i][k], best_[k][j]);
+          if (worst <= best_[i][j] || worst <= had_ + gain_) continue;
+          worst = std::min(worst, piece_.score_of({a, poly_[i], poly_[k], poly_[j]}));
+          if (worst <= best_[i][j] || worst <= had_ + gain_) continue;
+          worst = std::min(worst, piece_.score_of({b, poly_[i], poly_[j], poly_[k]}));
+          if (worst > best_[i][j]) best_[i][j] = worst, mid_[i][j] = k;
+        }
+      }
+    return best_[0][n - 1];
+  }
+
+  void emit(int i, int j, VertexIndex a, VertexIndex b, std::uint32_t region) {
+    if (j - i < 2) return;
+    const int k = mid_[i][j];
+    for (const Tet& c : {Tet{a, poly_[i], poly_[k], poly_[j]}, Tet{b, poly_[i], poly_[j], poly_[k]}})
+      fresh_.push_back({c, region, piece_.score_of(c)});
+    emit(i, k, a, b, region), emit(k, j, a, b, region);
+  }
+
+  void try_face(TetIndex t, int i) {
+    const HalfFace h = 4 * t + static_cast<HalfFace>(i), o = piece_.complex.across[h];
+    if (is_outside(o) || piece_.wall[h] != 0) return;
+    const VertexIndex u = piece_.complex.apex(h), w = piece_.complex.apex(o);
+    const Triangle f = piece_.complex.face(h);
+    if (are_frozen(u, w) || (are_frozen(f[0], f[1]) && are_frozen(f[1], f[2]))) return;
+    const float had = std::min(piece_.score[t], piece_.score[o / 4]);
+    float worst = 1;
+    std::array<Piece::NewTet, 3> made;
+    for (int k = 0; k < 3; ++k) {
+      // The face runs counter-clockwise seen from w: a ring around (u, w).
+      const Tet c{u, w, f[k], f[(k + 1) % 3]};
+      const float s = piece_.score_of(c);
+      worst = std::min(worst, s);
+      if (worst - had <= gain_) return;
+      made[static_cast<std::size_t>(k)] = {c, piece_.region[t], s};
+    }
+    if (piece_.edge_length(u, w) > kLongestOfSwap) return;
+    gain_ = worst - had;
+    old_ = {t, o / 4};
+    fresh_.assign(made.begin(), made.end());
+    walls_.clear();
+  }
+
+  Piece& piece_;
+  const Guide& guide_;
+  EdgeRing ring_;
+  std::vector<std::size_t> wall_at_;
+  std::vector<VertexIndex> poly_;
+  std::array<std::array<float, kLongestRingOfSwap + 2>, kLongestRingOfSwap + 2> best_;
+  std::array<std::array<int, kLongestRingOfSwap + 2>, kLongestRingOfSwap + 2> mid_;
+  float gain_ = 0, had_ = 0;
+  std::vector<TetIndex> old_;
+  std::vector<Piece::NewTet> fresh_;
+  std::vector<Piece::NewWall> walls_;
+  int steps_ = 0;
+};
+
+}  // namespace
+
+PassCount swap_edges(Piece& piece, const Guide& guide, float threshold) {
+  return Swapper(piece, guide).run(threshold);
+}
+
+}  // namespace octafront::adapt

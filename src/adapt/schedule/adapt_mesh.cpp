@@ -1,0 +1,283 @@
+#include "adapt/schedule/adapt_mesh.h"
+
+#include "adapt/passes/passes.h"
+#include "adapt/schedule/parts.h"
+#include "base/blocks/blocks.h"
+#include "base/core/parallel.h"
+#include "base/core/validate.h"
+#include "base/geometry/measures.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace octafront::adapt {
+namespace {
+
+/// Fewer vertices would have more of their elements at rims, more share less well among threads.
+constexpr std::size_t kMostVerticesOfPiece = 8192;
+/// A piece that has grown by so much is divided anew.
+constexpr std::size_t kGrowth = 4, kRoomOfPiece = 4096;
+constexpr int kMostRoundsOfAdapt = 40;
+/// Cycles of passes within one piece.
+constexpr int kCycles = 4;
+/// Elements of a better score are not looked at: quality .93 and up.
+constexpr float kGoodScore = 0.9f;
+/// Rounds once no piece has grown so far that it had to be divided anew: each place is inside a piece several times.
+constexpr int kLastRounds = 2 * kCellStages;
+
+struct Counts {
+  PassCount split, collapse, swap, move;
+  bool grown = false;
+
+  Counts& operator+=(const Counts& o) {
+    split += o.split, collapse += o.collapse, swap += o.swap, move += o.move;
+    grown |= o.grown;
+    return *this;
+  }
+  std::uint64_t changes() const { return split.done + collapse.done + swap.done + move.done; }
+};
+
+/// The passes on one piece, until sizes fit.
+Counts work_on(Piece& piece, const Guide& guide) {
+  Counts sum;
+  const std::size_t most = kGrowth * piece.vertices.size() + kRoomOfPiece;
+  for (int cycle = 0; cycle < kCycles; ++cycle) {
+    Counts c;
+    c.split = split_long_edges(piece, guide, most);
+    validate(piece);
+    c.collapse = collapse_short_edges(piece, guide);
+    validate(piece);
+    c.swap = swap_edges(piece, guide, kGoodScore);
+    validate(piece);
+    c.move = smooth_vertices(piece, guide, kGoodScore);
+    validate(piece);
+    sum += c;
+    if (piece.vertices.size() >= most) sum.grown = true;
+    if (sum.grown || c.changes() == 0) break;
+  }
+  return sum;
+}
+
+class Adapter {
+ public:
+  Adapter(Parts& mesh, const Guide& guide, const Stage& stage) : mesh_(mesh), guide_(guide), stage_(stage) {}
+
+  Counts run() {
+    Counts sum;
+    for (int round = 0, since_growth = 0; round < kMostRoundsOfAdapt && since_growth < kLastRounds; ++round) {
+      const Counts c = this->round(round % kCellStages);
+      sum += c;
+      stage_.progress(-1);
+      since_growth = c.grown ? 0 : since_growth + 1;
+      if (c.changes() == 0 && !c.grown && round + 1 >= kCellStages) break;
+    }
+    stage_.count("splits", static_cast<double>(sum.split.done));
+    stage_.count("collapses", static_cast<double>(sum.collapse.done));
+    stage_.count("swaps", static_cast<double>(sum.swap.done));
+    stage_.count("moves", static_cast<double>(sum.move.done));
+    return sum;
+  }
+
+ private:
+  /// A piece that was worked on, as it goes back into the mesh.
+  struct Done {
+    std::vector<Vertex> fresh;  ///< new vertices
+    std::vector<std::pair<VertexIndex, Vertex>> changed;
+    std::vector<Tet> tets;  ///< new vertices: counted on behind kFresh
+    std::vector<std::uint32_t> region;
+    std::vector<std::array<Wall, 4>> wall;
+    std::vector<Parts::Line> lines;
+    Counts counts;
+  };
+  static constexpr VertexIndex kFresh = 0x80000000u;
+
+  Counts round(int stage) {
+    std::vector<Vec3> points;
+    Box3 box;
+    for (const Vertex& v : mesh_.vertices) points.push_back(v.at), box.add(v.at);
+    const Cells cells = cells_of(points, cube_of_stage(box, stage), kMostVerticesOfPiece);
+    std::vector<TetIndex> all(mesh_.tets.size());
+    for (TetIndex t = 0; t < all.size(); ++t) all[t] = t;
+    const ItemsByCell<TetIndex> tets(std::span<const TetIndex>(all), cells.count,
+                                     [&](TetIndex t) { return cells.holding(mesh_.tets[t]); });
+    const ItemsByCell<Parts::Line> lines(std::span<const Parts::Line>(mesh_.lines), cells.count,
+                                         [&](const Parts::Line& l) { return cells.holding(l.edge); });
+    std::vector<Done> done(cells.count);
+    PerThread<std::vector<VertexIndex>> scratch;
+    parallel_for(
+        cells.count,
+        [&](std::size_t c) {
+          const auto cell = static_cast<std::uint32_t>(c);
+          stage_.check();
+          std::vector<VertexIndex>& here =
+              scratch.local([&] { return std::vector<VertexIndex>(points.size(), kNone); });
+          done[c] = work_in(tets[cell], lines[cell], here);
+        },
+        Split::kSingly);
+    return merge(done, tets.left(), lines.left());
+  }
+
+  Done work_in(std::span<const TetIndex> tets, std::span<const Parts::Line> lines, std::vector<VertexIndex>& here) {
+    Done done;
+    const auto is_active = [&](VertexIndex v) { return mesh_.vertices[v].active; };
+    if (std::none_of(tets.begin(), tets.end(), [&](TetIndex t) {
+          return std::any_of(mesh_.tets[t].begin(), mesh_.tets[t].end(), is_active);
+        })) {
+      for (const TetIndex t : tets) {
+        done.tets.push_back(mesh_.tets[t]);
+        done.region.push_back(mesh_.region[t]);
+        done.wall.push_back(mesh_.wall[t]);
+      }
+      done.lines.assign(lines.begin(), lines.end());
+      return done;
+    }
+    std::vector<VertexIndex> number;  // in the mesh, of each vertex of the piece
+    Piece piece(mesh_, tets, lines, here);
+    for (const TetIndex t : tets)
+      for (const VertexIndex v : mesh_.tets[t])
+        if (here[v] == kNone) here[v] = static_cast<VertexIndex>(number.size()), number.push_back(v);
+    for (const VertexIndex v : number) here[v] = kNone;
+    done.counts = work_on(piece, guide_);
+    settle(piece);
+    const auto known = static_cast<VertexIndex>(number.size());
+    const auto global = [&](VertexIndex v) { return v < known ? number[v] : kFresh + (v - known); };
+    for (VertexIndex v = 0; v < piece.vertices.size(); ++v) {
+      Vertex out = piece.vertices[v];
+      if (v >= known)
+        done.fresh.push_back(out);
+      else
+        done.changed.emplace_back(number[v], out);
+    }
+    for (TetIndex t = 0; t < piece.complex.slots(); ++t) {
+      if (!piece.complex.alive(t)) continue;
+      Tet c = piece.tet(t);
+      for (VertexIndex& v : c) v = global(v);
+      done.tets.push_back(c);
+      done.region.push_back(piece.region[t]);
+      done.wall.push_back({piece.wall[4 * t], piece.wall[4 * t + 1], piece.wall[4 * t + 2], piece.wall[4 * t + 3]});
+    }
+    done.lines = piece.lines();
+    for (Parts::Line& l : done.lines) l.edge = {global(l.edge[0]), global(l.edge[1])};
+    return done;
+  }
+
+  /// What is left to do lies where passes did not come to an end, and around the rim.
+  static void settle(Piece& piece) {
+    std::vector<std::uint8_t> beside_rim(piece.vertices.size(), 0);
+    for (TetIndex t = 0; t < piece.complex.slots(); ++t) {
+      if (!piece.complex.alive(t)) continue;
+      const Tet& c = piece.tet(t);
+      if (std::any_of(c.begin(), c.end(), [&](VertexIndex v) { return piece.vertices[v].rim; }))
+        for (const VertexIndex v : c) beside_rim[v] = 1;
+    }
+    for (VertexIndex v = 0; v < beside_rim.size(); ++v) {
+      // What was active before this round may be so because of its other side.
+      if (beside_rim[v]) piece.vertices[v].active = true;
+      piece.vertices[v].rim = false;
+    }
+  }
+
+  Counts merge(std::vector<Done>& done, std::span<const TetIndex> left, std::span<const Parts::Line> left_lines) {
+    Parts next;
+    Counts sum;
+    next.vertices = std::move(mesh_.vertices);
+    std::vector<VertexIndex> first_fresh;
+    for (const Done& d : done) {
+      for (const auto& [v, vertex] : d.changed) next.vertices[v] = vertex;
+      first_fresh.push_back(static_cast<VertexIndex>(next.vertices.size()));
+      next.vertices.insert(next.vertices.end(), d.fresh.begin(), d.fresh.end());
+      sum += d.counts;
+    }
+    for (std::size_t k = 0; k < done.size(); ++k) {
+      const auto global = [&](VertexIndex v) { return v < kFresh ? v : v - kFresh + first_fresh[k]; };
+      for (Tet c : done[k].tets) {
+        for (VertexIndex& v : c) v = global(v);
+        next.tets.push_back(c);
+      }
+      next.region.insert(next.region.end(), done[k].region.begin(), done[k].region.end());
+      next.wall.insert(next.wall.end(), done[k].wall.begin(), done[k].wall.end());
+      for (const Parts::Line& l : done[k].lines)
+        next.lines.push_back({sorted_edge(global(l.edge[0]), global(l.edge[1])), l.path});
+      done[k] = {};
+    }
+    for (const TetIndex t : left) {
+      next.tets.push_back(mesh_.tets[t]);
+      next.region.push_back(mesh_.region[t]);
+      next.wall.push_back(mesh_.wall[t]);
+    }
+    next.lines.insert(next.lines.end(), left_lines.begin(), left_lines.end());
+    mesh_ = compacted(std::move(next));
+    return sum;
+  }
+
+  /// Without the vertices that no tet has.
+  static Parts compacted(Parts mesh) {
+    std::vector<VertexIndex> number(mesh.vertices.size(), kNone);
+    for (const Tet& t : mesh.tets)
+      for (const VertexIndex v : t) number[v] = 0;
+    VertexIndex next = 0;
+    for (VertexIndex v = 0; v < number.size(); ++v)
+      if (number[v] != kNone) {
+        mesh.vertices[next] = mesh.vertices[v];
+        number[v] = next++;
+      }
+    mesh.vertices.resize(next);
+    for (Tet& t : mesh.tets)
+      for (VertexIndex& v : t) v = number[v];
+    for (Parts::Line& l : mesh.lines) l.edge = sorted_edge(number[l.edge[0]], number[l.edge[1]]);
+    return mesh;
+  }
+
+  Parts& mesh_;
+  const Guide& guide_;
+  const Stage& stage_;
+};
+
+}  // namespace
+
+MetricFit fit_of(const TetMesh& mesh, const MetricField& metric) {
+  MetricFit fit;
+  std::vector<Vertex> at(mesh.points.size());
+  parallel_for(at.size(), [&](std::size_t v) {
+    at[v].at = mesh.points[v];
+    at[v].metric = metric.at(at[v].at, at[v].hint);
+    at[v].density = density_of(at[v].metric);
+  });
+  FlatSet<Edge> seen(8 * mesh.points.size());
+  fit.quality_min = 1, fit.shortest = HUGE_VAL;
+  double sum = 0;
+  for (const Tet& t : mesh.tets) {
+    const Vertex* densest = &at[t[0]];
+    double densities = 0;
+    for (const VertexIndex v : t) {
+      if (at[v].density > densest->density) densest = &at[v];
+      densities += at[v].density;
+    }
+    const Vec3 a = at[t[0]].at, b = at[t[1]].at, c = at[t[2]].at, d = at[t[3]].at;
+    const double six = dot(cross(b - a, c - a), d - a);
+    const double quality = quality_of_score(metric_score(six, densest->metric, densest->density, a, b, c, d));
+    fit.quality_min = std::min(fit.quality_min, quality), sum += quality;
+    fit.complexity += six / 24 * densities;
+    for (const auto& [i, j] : kTetEdges) {
+      if (!seen.insert(sorted_edge(t[i], t[j]))) continue;
+      const double l = metric_length(at[t[j]].at - at[t[i]].at, at[t[i]].metric, at[t[j]].metric);
+      ++fit.edges, fit.fitting += l >= kShortest && l <= kLongest;
+      fit.shortest = std::min(fit.shortest, l), fit.longest = std::max(fit.longest, l);
+    }
+  }
+  fit.quality_mean = mesh.tets.empty() ? 0 : sum / static_cast<double>(mesh.tets.size());
+  return fit;
+}
+
+Adapted adapt_mesh(const TetMesh& mesh, const MetricField& metric, const AdaptRules& rules, const Stage& stage) {
+  TakenApart taken = take_apart(mesh, rules.feature_angle);
+  const Ground ground(std::move(taken.walls));
+  const Guide guide{metric, ground, rules.tolerance, stage.context()};
+  parallel_for(taken.parts.vertices.size(), [&](std::size_t v) { guide.ask(taken.parts.vertices[v]); });
+  Adapter(taken.parts, guide, stage).run();
+  Adapted out;
+  out.mesh = put_together(taken.parts, taken.labels, mesh, out.old_of_new);
+  return out;
+}
+
+}  // namespace octafront::adapt

@@ -1,0 +1,40 @@
+#pragma once
+
+// adapt/schedule: a mesh brought to a metric. Takes a valid linear mesh and who knows the metric, leaves a valid mesh
+// of the same body with the same patches, regions, curves, sheets and sets. Rounds: cells of space, a piece each, with
+// the passes of adapt/passes; then other cells, until nothing is left to do.
+
+#include <octafront/tet_mesh.h>
+
+#include "adapt/metric/metric.h"
+#include "base/core/stage.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace octafront::adapt {
+
+struct AdaptRules {
+  double feature_angle = 40;  ///< degrees
+  double tolerance = 0;       ///< how far walls may stray from the smooth surface of the input; input units
+};
+
+/// How a mesh fits a metric, by the measures of the Unstructured Grid Adaptation Working Group.
+struct MetricFit {
+  std::uint64_t edges = 0, fitting = 0;  ///< edges, and those from kShortest to kLongest
+  double shortest = 0, longest = 0;
+  double quality_min = 0, quality_mean = 0;
+  double complexity = 0;  ///< the integral of sqrt(det M) over the mesh
+};
+MetricFit fit_of(const TetMesh& mesh, const MetricField& metric);
+
+struct Adapted {
+  TetMesh mesh;
+  std::vector<VertexIndex> old_of_new;  ///< per vertex the one of the input that it is; kNone: new
+};
+
+/// Requires a valid linear mesh without wedges, pyramids, periods and split faces. The same bits for any number of
+/// threads. Throws Cancelled, MeshingError.
+Adapted adapt_mesh(const TetMesh& mesh, const MetricField& metric, const AdaptRules& rules, const Stage& stage);
+
+}  // namespace octafront::adapt

@@ -1,0 +1,294 @@
+#include "adapt/schedule/parts.h"
+
+#include "base/core/disjoint_sets.h"
+#include "base/core/groups.h"
+#include "base/mesh/adjacency.h"
+
+#include <algorithm>
+#include <map>
+
+namespace octafront::adapt {
+namespace {
+
+/// Numbers of labels, in the order in which they come.
+class Numbering {
+ public:
+  std::uint32_t of(const Labels::Label& label) {
+    const auto [at, is_new] = number_.try_emplace(label, static_cast<std::uint32_t>(all_.size()));
+    if (is_new) all_.push_back(label);
+    return at->second;
+  }
+  std::vector<Labels::Label> all() && { return std::move(all_); }
+
+ private:
+  std::map<Labels::Label, std::uint32_t> number_;
+  std::vector<Labels::Label> all_;
+};
+
+/// A label of each item of a kind: `own` numbers, then the sets of that kind that it is in.
+std::vector<Labels::Label> labels_of(const TetMesh& mesh, NamedSet::Kind kind, std::vector<std::uint32_t> own) {
+  own.resize(mesh.count(kind), 0);
+  std::vector<Labels::Label> labels(own.size());
+  for (std::size_t i = 0; i < own.size(); ++i) labels[i] = {own[i]};
+  for (std::uint32_t s = 0; s < mesh.sets.size(); ++s)
+    if (mesh.sets[s].kind == kind)
+      for (const std::uint32_t i : mesh.sets[s].members) labels[i].push_back(s);
+  return labels;
+}
+
+class TakerApart {
+ public:
+  TakerApart(const TetMesh& mesh, double feature_angle) : mesh_(mesh), feature_angle_(feature_angle) {}
+
+  TakenApart run() {
+    Parts& parts = out_.parts;
+    parts.vertices.resize(mesh_.points.size());
+    for (VertexIndex v = 0; v < mesh_.points.size(); ++v)
+      parts.vertices[v].at = mesh_.points[v], parts.vertices[v].id = v;
+    parts.tets = mesh_.tets;
+    Numbering regions;
+    for (const Labels::Label& label : labels_of(mesh_, NamedSet::Kind::kElements, mesh_.region))
+      parts.region.push_back(regions.of(label));
+    out_.labels.regions = std::move(regions).all();
+    find_walls();
+    turn_walls();
+    find_lines();
+    set_kinds();
+    return std::move(out_);
+  }
+
+ private:
+  void find_walls() {
+    std::vector<std::uint32_t> own = mesh_.patch;
+    own.resize(mesh_.boundary.size(), 0);
+    own.insert(own.end(), mesh_.interface_patch.begin(), mesh_.interface_patch.end());
+    const auto labels = labels_of(mesh_, NamedSet::Kind::kFaces, std::move(own));
+    const std::size_t outer = mesh_.boundary.size();
+    FlatMap<Triangle, std::uint32_t> listed(labels.size());
+    for (std::uint32_t f = 0; f < labels.size(); ++f)
+      listed.find_or_add(face_key(f < outer ? mesh_.boundary[f] : mesh_.interfaces[f - outer])) = f;
+    const std::vector<HalfFace> across = half_face_neighbors(mesh_.tets, mesh_.points.size());
+    Numbering numbers;
+    SurfaceMesh& surface = out_.walls.surface;
+    surface.points = mesh_.points;
+    out_.parts.wall.assign(mesh_.tets.size(), {});
+    for (HalfFace h = 0; h < across.size(); ++h) {
+      const Triangle corners = corners_of(mesh_.tets, h);
+      const std::uint32_t* f = listed.find(face_key(corners));
+      const HalfFace o = across[h];
+      const bool divides = o == kNone || out_.parts.region[o / 4] != out_.parts.region[h / 4];
+      if (!f && !divides) continue;
+      const std::uint32_t part = numbers.of(f ? labels[*f] : Labels::Label{kNone});
+      out_.parts.wall[h / 4][h % 4] = (part + 1) | (o == kNone ? kOuter : 0);
+      if (o != kNone && h > o) continue;
+      surface.triangles.push_back(corners);
+      surface.patch.push_back(part);
+      out_.walls.outer.push_back(o == kNone);
+    }
+    out_.labels.walls = std::move(numbers).all();
+  }
+
+  /// Turns inner walls such that neighbours within a part look the same way, where they can.
+  void turn_walls() {
+    SurfaceMesh& surface = out_.walls.surface;
+    EdgeTable table = make_edge_table(surface.points.size(), surface.triangles);
+    const std::vector<std::uint32_t> edge_of = table.edge_of_half_edge();
+    std::vector<std::uint8_t> seen(out_.walls.outer);
+    std::vector<std::uint32_t> queue;
+    for (std::uint32_t first = 0; first < seen.size(); ++first) {
+      if (seen[first]) continue;
+      seen[first] = 1;
+      queue.assign(1, first);
+      for (std::size_t k = 0; k < queue.size(); ++k)
+        for (std::uint32_t h = 3 * queue[k]; h < 3 * queue[k] + 3; ++h) {
+          const auto uses = table.uses(edge_of[h]);
+          if (uses.size() != 2) continue;
+          const std::uint32_t o = (uses[0] / 3 == queue[k] ? uses[1] : uses[0]) / 3;
+          if (seen[o] || surface.patch[o] != surface.patch[queue[k]]) continue;
+          seen[o] = 1;
+          queue.push_back(o);
+          if (run_alike(surface.triangles[queue[k]], surface.triangles[o]))
+            std::swap(surface.triangles[o][1], surface.triangles[o][2]);
+        }
+    }
+    out_.walls.edges = make_edge_table(surface.points.size(), surface.triangles);
+  }
+  /// Whether both triangles run the same way through the edge that they share.
+  static bool run_alike(const Triangle& a, const Triangle& b) {
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        if (a[i] == b[j] && a[(i + 1) % 3] == b[(j + 1) % 3]) return true;
+    return false;
+  }
+
+  void find_lines() {
+    Features& lines = out_.walls.lines;
+    lines = detect_features(out_.walls.surface, out_.walls.edges, feature_angle_);
+    std::map<Edge, Labels::Label> named;
+    const auto labels = labels_of(mesh_, NamedSet::Kind::kEdges, mesh_.curve);
+    for (std::size_t e = 0; e < labels.size(); ++e)
+      named[sorted_edge(mesh_.curve_edges[e][0], mesh_.curve_edges[e][1])] = labels[e];
+    for (const auto& [edge, label] : named) lines.edges.push_back(edge);
+    std::sort(lines.edges.begin(), lines.edges.end());
+    lines.edges.erase(std::unique(lines.edges.begin(), lines.edges.end()), lines.edges.end());
+    std::vector<Labels::Label> label(lines.edges.size(), Labels::Label{kNone});
+    for (std::size_t e = 0; e < label.size(); ++e)
+      if (const auto at = named.find(lines.edges[e]); at != named.end()) label[e] = at->second;
+    find_paths(label);
+    mark_touching_edges();
+  }
+
+  /// Lines of edges of one label between vertices where lines end, meet or bend.
+  void find_paths(const std::vector<Labels::Label>& label) {
+    Features& lines = out_.walls.lines;
+    const Groups<> at = rows_at_vertices(mesh_.points.size(), lines.edges);
+    std::vector<std::uint8_t> is_corner(mesh_.points.size(), 0);
+    for (const VertexIndex v : lines.corners) is_corner[v] = 1;
+    DisjointSets sets(lines.edges.size());
+    for (VertexIndex v = 0; v < mesh_.points.size(); ++v) {
+      if (at[v].empty()) continue;
+      if (at[v].size() != 2 || label[at[v][0]] != label[at[v][1]]) is_corner[v] = 1;
+      if (!is_corner[v]) sets.join(at[v][0], at[v][1]);
+    }
+    lines.corners.clear();
+    for (VertexIndex v = 0; v < is_corner.size(); ++v)
+      if (is_corner[v]) lines.corners.push_back(v);
+    std::map<std::uint32_t, std::uint32_t> number;
+    for (std::uint32_t e = 0; e < lines.edges.size(); ++e) {
+      const auto [path, is_new] = number.try_emplace(sets.find(e), static_cast<std::uint32_t>(number.size()));
+      if (is_new) out_.labels.paths.push_back(label[e]);
+      out_.walls.path.push_back(path->second);
+      out_.parts.lines.push_back({lines.edges[e], path->second});
+    }
+  }
+
+  /// Edges where the boundary touches itself have tets on several sides that do not know each other.
+  void mark_touching_edges() {
+    const EdgeTable table = make_edge_table(mesh_.points.size(), mesh_.boundary);
+    const auto triangles = static_cast<std::uint32_t>(mesh_.boundary.size());
+    DisjointSets fans(3 * std::size_t{triangles});
+    for (std::size_t e = 0; e < table.size(); ++e) {
+      const auto uses = table.uses(e);
+      if (uses.size() == 2) {
+        fans.join(uses[0], next_of(uses[1])), fans.join(next_of(uses[0]), uses[1]);
+        continue;
+      }
+      for (const VertexIndex v : table.edges[e]) touching_.push_back(v);
+      for (Parts::Line& l : out_.parts.lines)
+        if (l.edge == table.edges[e]) l.path = Parts::kStays;
+    }
+    std::vector<std::uint32_t> fan(mesh_.points.size(), kNone);
+    for (std::uint32_t c = 0; c < 3 * triangles; ++c) {
+      std::uint32_t& known = fan[mesh_.boundary[c / 3][c % 3]];
+      if (known == kNone) known = fans.find(c);
+      if (known != fans.find(c)) touching_.push_back(mesh_.boundary[c / 3][c % 3]);
+    }
+  }
+
+  void set_kinds() {
+    std::vector<Vertex>& vertices = out_.parts.vertices;
+    for (const Triangle& t : out_.walls.surface.triangles)
+      for (const VertexIndex v : t) vertices[v].kind = Kind::kSurface;
+    for (const Edge& e : out_.walls.lines.edges)
+      for (const VertexIndex v : e) vertices[v].kind = Kind::kCurve;
+    for (const VertexIndex v : out_.walls.lines.corners) vertices[v].kind = Kind::kFixed;
+    for (const VertexIndex v : touching_) vertices[v].kind = Kind::kFixed;
+  }
+
+  const TetMesh& mesh_;
+  double feature_angle_;
+  TakenApart out_;
+  std::vector<VertexIndex> touching_;
+};
+
+/// Puts what belongs to an item, by its label, into the sets of a kind.
+void add_to_sets(std::vector<NamedSet>& sets, const Labels::Label& label, std::uint32_t item) {
+  for (std::size_t k = 1; k < label.size(); ++k) sets[label[k]].members.push_back(item);
+}
+
+}  // namespace
+
+TakenApart take_apart(const TetMesh& mesh, double feature_angle) {
+  return TakerApart(mesh, feature_angle).run();
+}
+
+TetMesh put_together(const Parts& parts, const Labels& labels, const TetMesh& before,
+                     std::vector<VertexIndex>& old_of_new) {
+  TetMesh mesh;
+  mesh.region_names = before.region_names, mesh.region_labels = before.region_labels;
+  mesh.patch_names = before.patch_names, mesh.curve_names = before.curve_names;
+  mesh.sets = before.sets;
+  for (NamedSet& s : mesh.sets) s.members.clear();
+  // Vertices: those that were there in their order, then new ones.
+  std::vector<VertexIndex> order, number(parts.vertices.size(), kNone);
+  std::vector<std::uint8_t> used(parts.vertices.size(), 0);
+  for (const Tet& t : parts.tets)
+    for (const VertexIndex v : t) used[v] = 1;
+  for (VertexIndex v = 0; v < used.size(); ++v)
+    if (used[v]) order.push_back(v);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](VertexIndex a, VertexIndex b) { return parts.vertices[a].id < parts.vertices[b].id; });
+  std::vector<VertexIndex> now(before.points.size(), kNone);
+  old_of_new.clear();
+  for (VertexIndex k = 0; k < order.size(); ++k) {
+    const Vertex& v = parts.vertices[order[k]];
+    number[order[k]] = k;
+    mesh.points.push_back(v.at);
+    old_of_new.push_back(v.id);
+    if (v.id != kNone) now[v.id] = k;
+  }
+  const bool has_regions = !before.region.empty();
+  const bool has_patches = !before.patch.empty();
+  struct Face {
+    Triangle corners;
+    std::uint32_t part;
+  };
+  std::vector<Face> inner;
+  for (TetIndex t = 0; t < parts.tets.size(); ++t) {
+    Tet c = parts.tets[t];
+    for (VertexIndex& v : c) v = number[v];
+    mesh.tets.push_back(c);
+    const Labels::Label& region = labels.regions[parts.region[t]];
+    if (has_regions) mesh.region.push_back(region[0]);
+    add_to_sets(mesh.sets, region, t);
+    for (int i = 0; i < 4; ++i) {
+      const Wall w = parts.wall[t][i];
+      if (w == 0) continue;
+      const std::uint32_t part = (w & ~kOuter) - 1;
+      if ((w & kOuter) != 0) {
+        add_to_sets(mesh.sets, labels.walls[part], static_cast<std::uint32_t>(mesh.boundary.size()));
+        mesh.boundary.push_back(face_of(c, i));
+        if (has_patches) mesh.patch.push_back(labels.walls[part][0]);
+      } else if (labels.walls[part][0] != kNone) {
+        inner.push_back({face_of(c, i), part});
+      }
+    }
+  }
+  // Each inner wall comes twice, once from each side: the first one is listed.
+  FlatSet<Triangle> listed(inner.size());
+  for (const Face& f : inner) {
+    if (!listed.insert(face_key(f.corners))) continue;
+    add_to_sets(mesh.sets, labels.walls[f.part],
+                static_cast<std::uint32_t>(mesh.boundary.size() + mesh.interfaces.size()));
+    mesh.interfaces.push_back(f.corners);
+    if (!before.interface_patch.empty()) mesh.interface_patch.push_back(labels.walls[f.part][0]);
+  }
+  std::vector<Parts::Line> lines = parts.lines;
+  for (Parts::Line& l : lines) l.edge = sorted_edge(number[l.edge[0]], number[l.edge[1]]);
+  std::sort(lines.begin(), lines.end(), [](const auto& a, const auto& b) { return a.edge < b.edge; });
+  for (const Parts::Line& l : lines) {
+    if (l.path == Parts::kStays || labels.paths[l.path][0] == kNone) continue;
+    add_to_sets(mesh.sets, labels.paths[l.path], static_cast<std::uint32_t>(mesh.curve_edges.size()));
+    mesh.curve_edges.push_back(l.edge);
+    if (!before.curve.empty()) mesh.curve.push_back(labels.paths[l.path][0]);
+  }
+  for (std::size_t s = 0; s < mesh.sets.size(); ++s) {
+    if (mesh.sets[s].kind == NamedSet::Kind::kNodes)
+      for (const std::uint32_t v : before.sets[s].members)
+        if (v < now.size() && now[v] != kNone) mesh.sets[s].members.push_back(now[v]);
+    std::sort(mesh.sets[s].members.begin(), mesh.sets[s].members.end());
+  }
+  return mesh;
+}
+
+}  // namespace octafront::adapt

@@ -1,0 +1,39 @@
+#pragma once
+
+// A mesh as parts with numbers, and back: patches, regions, curves and sets become labels that go along with what is
+// made of them.
+
+#include <octafront/tet_mesh.h>
+
+#include "adapt/ground/ground.h"
+#include "adapt/piece/piece.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace octafront::adapt {
+
+/// What the numbers of parts stand for. Each is a list: its number in the mesh, then the sets that it is in.
+struct Labels {
+  using Label = std::vector<std::uint32_t>;
+  std::vector<Label> walls;    ///< patch first; kNone: between regions and not listed
+  std::vector<Label> regions;  ///< region first
+  std::vector<Label> paths;    ///< of each line: curve first; kNone: a feature alone
+};
+
+struct TakenApart {
+  Parts parts;  ///< vertices without metrics
+  Walls walls;
+  Labels labels;
+};
+
+/// Requires a valid linear mesh. Lines are where walls bend by `feature_angle` (degrees), end, or meet others, and the
+/// mesh's curves; vertices where the boundary touches itself stay.
+TakenApart take_apart(const TetMesh& mesh, double feature_angle);
+
+/// The mesh again, with the names of `before`: vertices that were there in their order, new ones behind. `old_of_new`
+/// gets the number in `before` of each vertex; kNone: new.
+TetMesh put_together(const Parts& parts, const Labels& labels, const TetMesh& before,
+                     std::vector<VertexIndex>& old_of_new);
+
+}  // namespace octafront::adapt

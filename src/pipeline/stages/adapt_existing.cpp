@@ -1,0 +1,113 @@
+#include <octafront/adapt.h>
+#include <octafront/error.h>
+#include <octafront/named_groups.h>
+#include <octafront/second_order.h>
+#include <octafront/validity.h>
+
+#include "adapt/schedule/adapt_mesh.h"
+#include "base/mesh/known_surface.h"
+#include "pipeline/stages/stages.h"
+#include "sizing/search/make_size_field.h"
+#include "sizing/sources/check_size_options.h"
+
+#include <cmath>
+#include <memory>
+
+#include <fmt/core.h>
+
+namespace octafront {
+namespace {
+
+/// How far walls may stray where nothing is said, in parts of the diagonal: as for automatic sizes.
+constexpr double kStrayOfAdapt = 0.004;
+
+class MetricOfFunction : public adapt::MetricField {
+ public:
+  explicit MetricOfFunction(const MetricFunction& function) : function_(function) {}
+  adapt::Metric at(Vec3 p, std::uint32_t&) const override {
+    const auto m = function_(p);
+    const adapt::Metric metric{m[0][0], m[0][1], m[0][2], m[1][1], m[1][2], m[2][2]};
+    const bool positive =
+        metric.xx > 0 && metric.xx * metric.yy - metric.xy * metric.xy > 0 && metric.determinant() > 0;
+    if (!positive || !std::isfinite(metric.determinant()))
+      throw InputError(fmt::format("the metric at ({:.6g}, {:.6g}, {:.6g}) is not positive definite", p.x, p.y, p.z));
+    return metric;
+  }
+
+ private:
+  const MetricFunction& function_;
+};
+
+void require_adaptable(const TetMesh& mesh, const RunContext& context) {
+  if (const auto defect = first_defect(mesh, context)) throw InputError("not a valid mesh: " + *defect);
+  const char* what = !mesh.wide_cells.empty()       ? "wedges or pyramids (boundary layers)"
+                     : !mesh.periodic_nodes.empty() ? "periodic faces"
+                     : !mesh.split_faces.empty()    ? "faces whose nodes were doubled"
+                                                    : nullptr;
+  if (what) throw InputError(fmt::format("the mesh has {}; meshes with those cannot be adapted: mesh anew", what));
+}
+
+MetricSummary summary_of(const adapt::MetricFit& fit) {
+  return {fit.edges, fit.fitting, fit.shortest, fit.longest, fit.quality_min, fit.quality_mean, fit.complexity};
+}
+
+void tell_fit(const MetricSummary& fit, const Stage& stage) {
+  stage.note(
+      fmt::format("{:.2f} % of the edges fit (longest {:.2f}, shortest {:.2f} of what is wanted); quality in the "
+                  "metric: least {:.3f}, mean {:.3f}",
+                  100.0 * static_cast<double>(fit.fitting) / static_cast<double>(std::max<std::uint64_t>(fit.edges, 1)),
+                  fit.longest, fit.shortest, fit.quality_min, fit.quality_mean));
+}
+
+AdaptedMesh adapt_by(const TetMesh& given, const adapt::MetricField& metric, Run& run) {
+  AdaptedMesh result;
+  const double diagonal = bounding_box(given.points).diagonal();
+  const SurfaceOptions& surface = run.options.surface;
+  const adapt::AdaptRules rules{surface.angle_of_features(), surface.max_deviation.value_or(kStrayOfAdapt * diagonal)};
+  run.report.input_volume = enclosed_volume(boundary_of(given));
+  run.stage("adapt", [&](const Stage& stage) {
+    result.before = summary_of(adapt::fit_of(given, metric));
+    adapt::Adapted made = adapt::adapt_mesh(given, metric, rules, stage);
+    result.mesh = std::move(made.mesh);
+    result.old_of_new = std::move(made.old_of_new);
+    result.after = summary_of(adapt::fit_of(result.mesh, metric));
+    tell_fit(result.after, stage);
+  });
+  check_result(result.mesh, nullptr, run);
+  describe(result.mesh, run.report);
+  result.report = run.close();
+  return result;
+}
+
+/// The sizes that the options want, asked about the boundary of the mesh.
+SizeField sizes_for(const TetMesh& mesh, Run& run) {
+  return run.stage("size field", [&](const Stage& stage) {
+    SurfaceMesh boundary = boundary_of(mesh);
+    boundary.source.clear();
+    note_misplaced_sizes(boundary, run.options.size, stage);
+    const KnownSurface known(std::move(boundary), run.options.surface.angle_of_features());
+    return make_size_field(known, run.options.size, stage);
+  });
+}
+
+}  // namespace
+
+AdaptedMesh adapt_existing(const TetMesh& mesh, const Options& options, const RunContext& context) {
+  Run run(options, context);
+  TetMesh given = mesh;
+  make_linear(given);
+  run.stage("check of the input", [&](const Stage& stage) { require_adaptable(given, stage.context()); });
+  const adapt::SizeMetric metric(sizes_for(given, run));
+  return adapt_by(given, metric, run);
+}
+
+AdaptedMesh adapt_to_metric(const TetMesh& mesh, const MetricFunction& metric, const Options& options,
+                            const RunContext& context) {
+  Run run(options, context);
+  TetMesh given = mesh;
+  make_linear(given);
+  run.stage("check of the input", [&](const Stage& stage) { require_adaptable(given, stage.context()); });
+  return adapt_by(given, MetricOfFunction(metric), run);
+}
+
+}  // namespace octafront

@@ -1,0 +1,149 @@
+#include <octafront/adapt.h>
+#include <octafront/error.h>
+#include <octafront/validity.h>
+
+#include "improve/start_meshes.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace octafront {
+namespace {
+
+using namespace testing;
+
+AdaptedMesh adapted(const TetMesh& mesh, double size, int threads = 0) {
+  Options options;
+  options.size.size = size;
+  RunContext context;
+  context.threads = threads;
+  return adapt_existing(mesh, options, context);
+}
+
+double part_fitting(const MetricSummary& s) {
+  return static_cast<double>(s.fitting) / static_cast<double>(s.edges);
+}
+
+TEST(Adapt, CubeBecomesFinerAndCoarserAgain) {
+  const TetMesh start = kuhn_cube(3);
+  const AdaptedMesh fine = adapted(start, 0.08);
+  EXPECT_GT(fine.mesh.tets.size(), 8 * start.tets.size());
+  EXPECT_GE(part_fitting(fine.after), 0.97);
+  EXPECT_LE(fine.after.longest, 2);
+  EXPECT_GE(fine.after.quality_min, 0.3);
+  EXPECT_NEAR(volume(fine.mesh), 1, 1e-12);
+  const AdaptedMesh coarse = adapted(fine.mesh, 0.4);
+  EXPECT_LT(20 * coarse.mesh.tets.size(), fine.mesh.tets.size());
+  EXPECT_NEAR(volume(coarse.mesh), 1, 1e-12);
+  EXPECT_EQ(first_defect(coarse.mesh), std::nullopt);
+}
+
+TEST(Adapt, SamePatchesOnTheSamePlanes) {
+  const TetMesh start = kuhn_cube(3);
+  const auto areas = [](const TetMesh& mesh) {
+    std::vector<double> sum;
+    for (std::size_t f = 0; f < mesh.boundary.size(); ++f) {
+      const Triangle& t = mesh.boundary[f];
+      sum.resize(std::max<std::size_t>(sum.size(), mesh.patch[f] + 1), 0);
+      const Vec3 n = cross(mesh.points[t[1]] - mesh.points[t[0]], mesh.points[t[2]] - mesh.points[t[0]]);
+      sum[mesh.patch[f]] += 0.5 * length(n);
+    }
+    return sum;
+  };
+  const AdaptedMesh fine = adapted(start, 0.1);
+  const auto had = areas(start), has = areas(fine.mesh);
+  ASSERT_EQ(had.size(), has.size());
+  for (std::size_t p = 0; p < had.size(); ++p) EXPECT_NEAR(had[p], has[p], 1e-12);
+}
+
+TEST(Adapt, SameBitsForAnyNumberOfThreads) {
+  const TetMesh start = kuhn_cube(4);
+  EXPECT_EQ(adapted(start, 0.04, 1).mesh, adapted(start, 0.04, 2).mesh);
+}
+
+TEST(Adapt, RegionsAndSetsStayWhereTheyAre) {
+  TetMesh start = kuhn_cube(4);
+  start.region.clear();
+  NamedSet low{"low", NamedSet::Kind::kElements, {}};
+  for (TetIndex t = 0; t < start.tets.size(); ++t) {
+    double x = 0, z = 0;
+    for (const VertexIndex v : start.tets[t]) x += start.points[v].x / 4, z += start.points[v].z / 4;
+    start.region.push_back(x > 0.5);
+    if (z < 0.25) low.members.push_back(t);
+  }
+  start.region_names = {"left", "right"};
+  start.sets.push_back(low);
+  const AdaptedMesh fine = adapted(start, 0.1);
+  EXPECT_EQ(fine.mesh.region_names, start.region_names);
+  ASSERT_EQ(fine.mesh.sets.size(), 1u);
+  std::array<double, 2> volumes{};
+  double of_set = 0;
+  const auto volume_of = [&](TetIndex t) {
+    const auto& [a, b, c, d] = fine.mesh.tets[t];
+    const auto& p = fine.mesh.points;
+    return dot(cross(p[b] - p[a], p[c] - p[a]), p[d] - p[a]) / 6;
+  };
+  for (TetIndex t = 0; t < fine.mesh.tets.size(); ++t) volumes[fine.mesh.region[t]] += volume_of(t);
+  for (const TetIndex t : fine.mesh.sets[0].members) of_set += volume_of(t);
+  EXPECT_NEAR(volumes[0], 0.5, 1e-12);
+  EXPECT_NEAR(volumes[1], 0.5, 1e-12);
+  EXPECT_NEAR(of_set, 0.25, 1e-12);
+}
+
+/// The linear metric of the Unstructured Grid Adaptation Working Group, less steep: sizes .1, .1, .01 + .18 |z - .5|.
+std::array<std::array<double, 3>, 3> layer_metric(Vec3 p) {
+  const double h = 0.01 + 0.18 * std::abs(p.z - 0.5);
+  return {{{100, 0, 0}, {0, 100, 0}, {0, 0, 1 / (h * h)}}};
+}
+
+TEST(Adapt, ElementsBecomeAsFlatAsAMetricWants) {
+  const AdaptedMesh flat = adapt_to_metric(kuhn_cube(2), layer_metric);
+  EXPECT_GE(part_fitting(flat.after), 0.95);
+  EXPECT_LE(flat.after.longest, 2);
+  EXPECT_GE(flat.after.quality_min, 0.2);
+  EXPECT_GE(flat.after.quality_mean, 0.75);
+  EXPECT_NEAR(volume(flat.mesh), 1, 1e-12);
+}
+
+TEST(Adapt, OldVerticesAreNamed) {
+  const TetMesh start = kuhn_cube(3);
+  const AdaptedMesh fine = adapted(start, 0.1);
+  ASSERT_EQ(fine.old_of_new.size(), fine.mesh.points.size());
+  std::size_t corners = 0;
+  for (VertexIndex v = 0; v < fine.old_of_new.size(); ++v) {
+    if (v > 0 && fine.old_of_new[v] != kNone) {
+      EXPECT_LT(fine.old_of_new[v - 1], fine.old_of_new[v]);
+    }
+    if (fine.old_of_new[v] == kNone) continue;
+    const Vec3 p = start.points[fine.old_of_new[v]];
+    const bool corner = (p.x == 0 || p.x == 1) && (p.y == 0 || p.y == 1) && (p.z == 0 || p.z == 1);
+    if (!corner) continue;
+    ++corners;
+    EXPECT_EQ(fine.mesh.points[v], p);
+  }
+  EXPECT_EQ(corners, 8u);
+}
+
+TEST(Adapt, WhatIsNoMeshOrNoMetricIsRefused) {
+  TetMesh broken = kuhn_cube(2);
+  std::swap(broken.tets[0][0], broken.tets[0][1]);
+  EXPECT_THROW(adapted(broken, 0.2), InputError);
+  const auto flat = [](Vec3) { return std::array<std::array<double, 3>, 3>{{{1, 0, 0}, {0, 0, 0}, {0, 0, 1}}}; };
+  EXPECT_THROW(adapt_to_metric(kuhn_cube(2), flat), InputError);
+  TetMesh periodic = kuhn_cube(2);
+  periodic.periodic_nodes.push_back({0, 1, 0});
+  EXPECT_THROW(adapted(periodic, 0.2), InputError);
+}
+
+TEST(Adapt, StopsWhenAsked) {
+  const std::atomic<bool> stop{true};
+  RunContext context;
+  context.cancel = &stop;
+  Options options;
+  options.size.size = 0.1;
+  EXPECT_THROW(adapt_existing(kuhn_cube(2), options, context), Cancelled);
+}
+
+}  // namespace
+}  // namespace octafront
