@@ -383,6 +383,18 @@ class CommandLine(unittest.TestCase):
             self.assertGreater(json.loads(report.read_text())["quality"]["beta_mean"], 0.7)
             self.assertIn("a valid mesh", self.run_cli("check", out).stdout)
 
+    def test_adapts_a_mesh_to_other_sizes(self):
+        start, out, report = self.dir / "a.msh", self.dir / "b.vtu", self.dir / "r.json"
+        self.run_cli("mesh", SAMPLES / "bracket.stl", "-o", start, "--size", 8, "--patches")
+        done = self.run_cli("adapt", start, "--size", 4, "-o", out, "--json", report)
+        self.assertIn("of the edges fit", done.stdout)
+        fit = json.loads(report.read_text())["fit"]
+        self.assertGreater(fit["fitting"], 0.9 * fit["edges"])
+        self.assertLess(fit["longest"], 2)
+        self.assertIn("a valid mesh", self.run_cli("check", out).stdout)
+        refused = self.run_cli("adapt", SAMPLES / "bracket.stl", "--size", 4, "-o", out, status=3)
+        self.assertIn("bracket.stl", refused.stderr)
+
     def test_a_broken_mesh_is_not_improved(self):
         broken = self.dir / "broken.mesh"
         broken.write_text("MeshVersionFormatted 2\nDimension 3\nVertices 5\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\n"

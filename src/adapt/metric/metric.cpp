@@ -78,15 +78,12 @@ Metric exp_of(const Metric& log) {
   return with_values(log, [](double x) { return elementary::exp(x); });
 }
 
-double log_mean(double a, double b) {
-  const double sum = a + b;
-  if (!(sum > 0)) return 0;
-  const double u = (a - b) / sum, s = u * u;
-  // ln(a / b) = 2 artanh(u).
+double lengths::far_log_mean(double a, double b) {
+  const double u = (a - b) / (a + b), s = u * u;
   if (s < 0.03) {
     const double series =
         1 + s * (1.0 / 3 + s * (1.0 / 5 + s * (1.0 / 7 + s * (1.0 / 9 + s * (1.0 / 11 + s * (1.0 / 13 + s / 15))))));
-    return 0.5 * sum / series;
+    return 0.5 * (a + b) / series;
   }
   if (a == 0 || b == 0) return 0;
   return (a - b) / elementary::log(a / b);
@@ -94,14 +91,6 @@ double log_mean(double a, double b) {
 
 double density_of(const Metric& m) {
   return std::sqrt(std::max(m.determinant(), 0.0));
-}
-
-double metric_score(double six_volumes, const Metric& m, double density, Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
-  // 1 for six edges of length 1 and six volumes of 1 / sqrt 2: 6^(3/2) sqrt 2.
-  constexpr double kRegular = 20.784609690826528;
-  const double sum =
-      m.squared(b - a) + m.squared(c - a) + m.squared(d - a) + m.squared(c - b) + m.squared(d - b) + m.squared(d - c);
-  return kRegular * six_volumes * density / (sum * std::sqrt(sum) + 1e-300);
 }
 
 double quality_of_score(double score) {

@@ -54,9 +54,19 @@ Eigen eigen(const Metric& m);
 Metric log_of(const Metric& m);
 Metric exp_of(const Metric& log);
 
+namespace lengths {
+double far_log_mean(double a, double b);
+}
 /// (a - b) / ln(a / b), what lies between a and b > 0 as the length of an edge does whose ends ask for a and b; a if
 /// they are equal. To 1e-12.
-double log_mean(double a, double b);
+inline double log_mean(double a, double b) {
+  const double sum = a + b, difference = a - b, s = difference * difference;
+  // ln(a / b) = 2 artanh((a - b) / (a + b)).
+  if (s > 1e-4 * sum * sum) return lengths::far_log_mean(a, b);
+  if (sum == 0) return 0;
+  const double u = s / (sum * sum);
+  return 0.5 * sum * (1 - u * (1.0 / 3 + u * (4.0 / 45 + u * (44.0 / 945))));
+}
 
 /// The length of the edge e in the metrics of its two ends, after the measures of the Unstructured Grid Adaptation
 /// Working Group: 1 is what is wanted.
@@ -74,7 +84,13 @@ double density_of(const Metric& m);
 /// The quality of a tetrahedron to the power 3/2: volume over (mean squared edge)^(3/2), both in this metric, 1 for one
 /// that is regular there, not positive where it is flat or inverted. The Working Group takes the metric of the corner
 /// of greatest density. `six_volumes`: the determinant of its edges.
-double metric_score(double six_volumes, const Metric& m, double density, Vec3 a, Vec3 b, Vec3 c, Vec3 d);
+inline double metric_score(double six_volumes, const Metric& m, double density, Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
+  // 1 for six edges of length 1 and six volumes of 1 / sqrt 2: 6^(3/2) sqrt 2.
+  constexpr double kRegular = 20.784609690826528;
+  const double sum =
+      m.squared(b - a) + m.squared(c - a) + m.squared(d - a) + m.squared(c - b) + m.squared(d - b) + m.squared(d - c);
+  return kRegular * six_volumes * density / (sum * std::sqrt(sum) + 1e-300);
+}
 /// The quality itself, from that score.
 double quality_of_score(double score);
 

@@ -20,8 +20,8 @@ constexpr std::size_t kGrowth = 4, kRoomOfPiece = 4096;
 constexpr int kMostRoundsOfAdapt = 40;
 /// Cycles of passes within one piece.
 constexpr int kCycles = 4;
-/// Elements of a better score are not looked at: quality .93 and up.
-constexpr float kGoodScore = 0.9f;
+/// Elements of a better score are not connected anew, or moved: qualities of .86 and .93.
+constexpr float kGoodForSwaps = 0.8f, kGoodScore = 0.9f;
 /// Rounds once no piece has grown so far that it had to be divided anew: each place is inside a piece several times.
 constexpr int kLastRounds = 2 * kCellStages;
 
@@ -47,7 +47,7 @@ Counts work_on(Piece& piece, const Guide& guide) {
     validate(piece);
     c.collapse = collapse_short_edges(piece, guide);
     validate(piece);
-    c.swap = swap_edges(piece, guide, kGoodScore);
+    c.swap = swap_edges(piece, guide, kGoodForSwaps);
     validate(piece);
     c.move = smooth_vertices(piece, guide, kGoodScore);
     validate(piece);
@@ -120,9 +120,8 @@ class Adapter {
   Done work_in(std::span<const TetIndex> tets, std::span<const Parts::Line> lines, std::vector<VertexIndex>& here) {
     Done done;
     const auto is_active = [&](VertexIndex v) { return mesh_.vertices[v].active; };
-    if (std::none_of(tets.begin(), tets.end(), [&](TetIndex t) {
-          return std::any_of(mesh_.tets[t].begin(), mesh_.tets[t].end(), is_active);
-        })) {
+    if (std::none_of(tets.begin(), tets.end(),
+                     [&](TetIndex t) { return std::any_of(mesh_.tets[t].begin(), mesh_.tets[t].end(), is_active); })) {
       for (const TetIndex t : tets) {
         done.tets.push_back(mesh_.tets[t]);
         done.region.push_back(mesh_.region[t]);

@@ -42,7 +42,8 @@ struct FlatKeys<std::array<std::uint32_t, 3>> {
 };
 
 /// A hash map in one array: open addressing with linear steps, at most half full. Its order is seen by for_each()
-/// alone, so it cannot change a result. References stay valid until the next find_or_add(), erase(), reserve() or reset().
+/// alone, so it cannot change a result. References stay valid until the next find_or_add(), erase(), reserve() or
+/// reset().
 template <class Key, class Value, class Keys = FlatKeys<Key>>
 class FlatMap {
  public:
