@@ -185,9 +185,9 @@ void Program::declare_surfaces() {
   declare_run(*better, a);
 
   CLI::App* adapted =
-      add("adapt", "Change a mesh until it fits other sizes: octafront adapt in.msh --sizes new.vtu:h -o out.msh",
-          "  octafront adapt in.msh --sizes new.vtu:h -o out.msh       a field on a mesh, this or another\n"
-          "  octafront adapt in.msh --size-near 0,0,0=0.1:2 --size 1 -o out.vtu\n",
+      add("adapt", "Change a mesh until it fits other sizes: octafront adapt in.msh --sizes new.vtk:h -o out.msh",
+          "  octafront adapt in.msh --sizes new.vtk:h -o out.msh       a field on a mesh, this or another\n"
+          "  octafront adapt in.msh --size 1 --size-near 0,0,0=0.5:2 -o out.vtu\n",
           run_adapt);
   declare_mesh_input(*adapted, a);
   declare_mesh_output(*adapted, a);

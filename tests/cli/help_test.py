@@ -72,6 +72,11 @@ class Help(unittest.TestCase):
         self.run_cli("mesh", self.dir / "part.stl", "-o", self.dir / "in.msh", "--size", 1.5)
         for to in ("in.vtu", "part.msh", "part.inp", "in.med"):
             self.run_cli("convert", self.dir / "in.msh", "-o", self.dir / to)
+        self.run_cli("convert", self.dir / "in.msh", "-o", self.dir / "new.vtk", "--ascii")
+        with open(self.dir / "new.vtk") as mesh:
+            points = int(mesh.read().split("POINTS ")[1].split()[0])
+        with open(self.dir / "new.vtk", "a") as mesh:
+            mesh.write(f"POINT_DATA {points}\nSCALARS h double 1\nLOOKUP_TABLE default\n" + "1\n" * points)
         for command in self.commands():
             examples = self.run_cli("help", command).out.split("Examples:\n")[1]
             for line in examples.splitlines():
