@@ -1,7 +1,7 @@
 #include "images/nets/mates.h"
 
 #include <algorithm>
-#include <cmath>
+#include <iterator>
 #include <map>
 
 namespace octafront::nets {
