@@ -45,7 +45,9 @@ Mates::Mates(const Lattice& lattice, Net& net) : set_of_(net.corner.size(), kNon
   std::map<Corner, std::map<Corner, std::vector<VertexIndex>>> copies;
   for (VertexIndex v = 0; v < net.corner.size(); ++v)
     if (is_on_cell(lattice, net.corner[v])) copies[low_corner(lattice, net.corner[v])][net.corner[v]].push_back(v);
-  for (const auto& [low, by_corner] : copies) {
+  for (const auto& entry : copies) {
+    const Corner& low = entry.first;  // clang 14 catches no part of a structured binding
+    const auto& by_corner = entry.second;
     const auto first = static_cast<std::uint32_t>(sets_.size());
     for (const VertexIndex v : by_corner.begin()->second) {
       set_of_[v] = static_cast<std::uint32_t>(sets_.size());
