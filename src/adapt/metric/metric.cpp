@@ -40,6 +40,13 @@ Metric with_values(const Metric& m, const Function& function) {
   return e.tensor();
 }
 
+/// s t s, for symmetric s and t.
+Metric between(const Metric& s, const Metric& t) {
+  const std::array<Vec3, 3> columns{{{s.xx, s.xy, s.xz}, {s.xy, s.yy, s.yz}, {s.xz, s.yz, s.zz}}};
+  const auto entry = [&](int i, int j) { return dot(columns[i], t.times(columns[j])); };
+  return {entry(0, 0), entry(0, 1), entry(0, 2), entry(1, 1), entry(1, 2), entry(2, 2)};
+}
+
 }  // namespace
 
 Metric inverse(const Metric& m) {
@@ -87,6 +94,28 @@ double lengths::far_log_mean(double a, double b) {
   }
   if (a == 0 || b == 0) return 0;
   return (a - b) / elementary::log(a / b);
+}
+
+Metric implied_metric(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
+  const Vec3 u = b - a, v = c - a, w = d - a;
+  const double volume = dot(cross(u, v), w);
+  const Vec3 p = cross(v, w) / volume, q = cross(w, u) / volume, r = cross(u, v) / volume, sum = p + q + r;
+  // Edges of the regular tetrahedron at one corner have products of 1 and of 1/2.
+  const auto entry = [&](int i, int j) { return 0.5 * (p[i] * p[j] + q[i] * q[j] + r[i] * r[j] + sum[i] * sum[j]); };
+  return {entry(0, 0), entry(0, 1), entry(0, 2), entry(1, 1), entry(1, 2), entry(2, 2)};
+}
+
+Metric step_towards(const Metric& from, const Metric& to, double ratio, bool& arrived) {
+  const Metric root = with_values(from, [](double x) { return std::sqrt(std::max(x, 1e-300)); });
+  Eigen change = eigen(between(inverse(root), to));
+  const double most = ratio * ratio;
+  arrived = true;
+  for (double& value : change.value) {
+    const double within = std::clamp(value, 1 / most, most);
+    arrived &= within == value;
+    value = within;
+  }
+  return arrived ? to : between(root, change.tensor());
 }
 
 double density_of(const Metric& m) {

@@ -94,6 +94,13 @@ inline double metric_score(double six_volumes, const Metric& m, double density, 
 /// The quality itself, from that score.
 double quality_of_score(double score);
 
+/// The metric in which all six edges of a positive tetrahedron are 1.
+Metric implied_metric(Vec3 a, Vec3 b, Vec3 c, Vec3 d);
+
+/// The metric nearest to `to` whose lengths are, in every direction, at most `ratio` times those of `from`, and at
+/// least 1 / ratio of them. `arrived` becomes true if that is `to` itself.
+Metric step_towards(const Metric& from, const Metric& to, double ratio, bool& arrived);
+
 /// Whoever knows the metric everywhere.
 class MetricField {
  public:
@@ -101,6 +108,8 @@ class MetricField {
   /// The metric at p. `hint` tells where a search begins, and is told where this one ended: of a point nearby, or 0.
   /// Safe on any number of threads; depends on the place alone, to rounding.
   virtual Metric at(Vec3 p, std::uint32_t& hint) const = 0;
+  /// Whether it asks for the same length in all directions, everywhere.
+  virtual bool is_isotropic() const { return false; }
 };
 
 /// A size field as metrics.
@@ -108,6 +117,7 @@ class SizeMetric : public MetricField {
  public:
   explicit SizeMetric(SizeField sizes) : sizes_(std::move(sizes)) {}
   Metric at(Vec3 p, std::uint32_t&) const override { return Metric::of_size(sizes_.at(p)); }
+  bool is_isotropic() const override { return true; }
 
  private:
   SizeField sizes_;

@@ -21,8 +21,9 @@ struct Guide {
   double tolerance = 0;  ///< how far walls may stray from the smooth surface; input units
   const RunContext& context;
 
-  /// Sets metric and density of a vertex from its place.
+  /// Sets metric and density of a vertex from its place; one that is on the way keeps its own.
   void ask(Vertex& v) const {
+    if (!v.exact) return;
     v.metric = metric.at(v.at, v.hint);
     v.density = density_of(v.metric);
   }

@@ -15,6 +15,9 @@ namespace {
 constexpr double kReachOfSplit = 0.5;
 /// The worst new element keeps this part of the worst old one's score.
 constexpr float kLeastOfSplit = 0.1f;
+/// A split that makes shorter edges than this waits until the place is connected better: otherwise elements that lie
+/// across the directions of the metric are divided without end.
+constexpr double kShortestOfSplit = 0.55;
 /// Between ends whose lengths differ by less the middle is the middle.
 constexpr double kEven = 0.2;
 /// New vertices stay this far from the ends, in parts of the edge.
@@ -144,7 +147,13 @@ class Splitter {
     const Vec3 p = piece_.point(a), q = piece_.point(b), straight = p + part * (q - p);
     const Vec3 home = home_of(a, b, straight, path);
     Vertex made;
-    made.hint = piece_.vertices[a].hint;
+    const Vertex &from = piece_.vertices[a], &to = piece_.vertices[b];
+    made.hint = from.hint;
+    made.exact = from.exact && to.exact;
+    if (!made.exact) {
+      made.metric = exp_of((1 - part) * log_of(from.metric) + part * log_of(to.metric));
+      made.density = density_of(made.metric);
+    }
     made.kind = path ? Kind::kCurve : walls_.empty() ? Kind::kInner : Kind::kSurface;
     for (const double share : {1.0, 0.5, 0.0}) {
       if (share != 0 && home == straight) continue;
@@ -158,6 +167,10 @@ class Splitter {
   bool plan(VertexIndex a, VertexIndex b, const Vertex& made) {
     float worst = 1;
     for (const TetIndex t : ring_.tets) worst = std::min(worst, piece_.score[t]);
+    for (const VertexIndex r : ring_.ring) {
+      const Vertex& v = piece_.vertices[r];
+      if (metric_length(made.at - v.at, made.metric, v.metric) < kShortestOfSplit) return false;
+    }
     fresh_.clear();
     const auto next = static_cast<VertexIndex>(piece_.vertices.size());
     for (const TetIndex t : ring_.tets)

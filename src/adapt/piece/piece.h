@@ -30,6 +30,7 @@ struct Vertex {
   Kind kind = Kind::kInner;
   bool rim = false;     ///< of a piece: some of its tets are not there, so it stays
   bool active = true;   ///< something may be left to do around it
+  bool exact = true;    ///< the metric is that of the place, not one on the way to it
   bool frozen = false;  ///< asked to stay as it is, with all that is between vertices that are
 };
 

@@ -53,5 +53,32 @@ TEST(Metric, RegularElementIsWorthOneInItsMetric) {
   EXPECT_LT(metric_score(-six, m, density_of(m), a, c, b, d), 0);
 }
 
+TEST(Metric, ImpliedMetricMakesAllEdgesOne) {
+  const std::array<Vec3, 4> p{Vec3{0, 0, 0}, Vec3{3, 0.2, 0}, Vec3{0.5, 0.01, 0.3}, Vec3{1, 7, 0.2}};
+  const bool positive = dot(cross(p[1] - p[0], p[2] - p[0]), p[3] - p[0]) > 0;
+  const Metric m = implied_metric(p[0], p[positive ? 1 : 2], p[positive ? 2 : 1], p[3]);
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < i; ++j) EXPECT_NEAR(m.squared(p[i] - p[j]), 1, 1e-9);
+}
+
+TEST(Metric, StepsComeNearerAndArrive) {
+  const Metric to = turned();
+  Metric at;
+  bool arrived = false;
+  int steps = 0;
+  for (; !arrived; ++steps) {
+    ASSERT_LT(steps, 12);
+    const Metric before = at;
+    at = step_towards(before, to, 2, arrived);
+    for (const Vec3 e : {Vec3{1, 0, 0}, Vec3{0, 1, 2}, Vec3{-1, 2, 3}}) {
+      const double ratio = std::sqrt(at.squared(e) / before.squared(e));
+      EXPECT_LE(ratio, 2.0001);
+      EXPECT_GE(ratio, 0.4999);
+    }
+  }
+  EXPECT_EQ(at, to);
+  EXPECT_EQ(steps, 10);  // of 1000 times the length
+}
+
 }  // namespace
 }  // namespace octafront::adapt
