@@ -111,7 +111,7 @@ Metric step_towards(const Metric& from, const Metric& to, double ratio, bool& ar
   const double most = ratio * ratio;
   arrived = true;
   for (double& value : change.value) {
-    const double within = std::clamp(value, 1 / most, most);
+    const double within = std::min(value, most);
     arrived &= within == value;
     value = within;
   }

@@ -97,8 +97,9 @@ double quality_of_score(double score);
 /// The metric in which all six edges of a positive tetrahedron are 1.
 Metric implied_metric(Vec3 a, Vec3 b, Vec3 c, Vec3 d);
 
-/// The metric nearest to `to` whose lengths are, in every direction, at most `ratio` times those of `from`, and at
-/// least 1 / ratio of them. `arrived` becomes true if that is `to` itself.
+/// The metric nearest to `to` whose lengths are, in every direction, at most `ratio` times those of `from`; where they
+/// are less there is no limit, for what is flat by chance must not ask for small elements. `arrived` becomes true if
+/// that is `to` itself.
 Metric step_towards(const Metric& from, const Metric& to, double ratio, bool& arrived);
 
 /// Whoever knows the metric everywhere.

@@ -107,6 +107,24 @@ TEST(Adapt, ElementsBecomeAsFlatAsAMetricWants) {
   EXPECT_NEAR(volume(flat.mesh), 1, 1e-12);
 }
 
+/// The Working Group's polar-2 on a quarter of a ring: .001 + .198 |r - .5| along the radius, .025 around at r = .5.
+std::array<std::array<double, 3>, 3> ring_metric(Vec3 p) {
+  const double r = std::hypot(p.x, p.y), c = p.x / r, s = p.y / r, d = std::min(10 * (0.6 - r), 1.0);
+  const double along = 0.001 + 0.198 * std::abs(r - 0.5), around = d < 0 ? 0.1 : d / 40 + (1 - d) * 0.1;
+  const double a = 1 / (along * along), b = 1 / (around * around);
+  return {{{a * c * c + b * s * s, (a - b) * c * s, 0}, {(a - b) * c * s, a * s * s + b * c * c, 0}, {0, 0, 100}}};
+}
+
+TEST(Adapt, MetricOfTurningDirectionsDoesNotExplode) {
+  const TetMesh start = transformed(kuhn_cube(8), 1, {0.3, 0.3, 0});
+  const AdaptedMesh made = adapt_to_metric(start, ring_metric);
+  EXPECT_GE(part_fitting(made.after), 0.95);
+  EXPECT_LE(made.after.longest, 2.5);
+  EXPECT_GE(made.after.quality_min, 0.15);
+  EXPECT_GE(made.after.quality_mean, 0.84);
+  EXPECT_LE(static_cast<double>(made.mesh.tets.size()), 12 * made.after.complexity);
+}
+
 TEST(Adapt, OldVerticesAreNamed) {
   const TetMesh start = kuhn_cube(3);
   const AdaptedMesh fine = adapted(start, 0.1);
