@@ -319,6 +319,8 @@ Adapted adapt_mesh(const TetMesh& mesh, const MetricField& metric, const AdaptRu
   const Ground ground(std::move(taken.walls));
   const Guide guide{metric, ground, rules.tolerance, stage.context()};
   parallel_for(taken.parts.vertices.size(), [&](std::size_t v) { guide.ask(taken.parts.vertices[v]); });
+  if (rules.keep_walls)
+    for (Vertex& v : taken.parts.vertices) v.frozen = v.kind != Kind::kInner;
   Adapter(taken.parts, guide, stage).run();
   Adapted out;
   out.mesh = put_together(taken.parts, taken.labels, mesh, out.old_of_new);

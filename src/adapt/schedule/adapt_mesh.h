@@ -17,6 +17,7 @@ namespace octafront::adapt {
 struct AdaptRules {
   double feature_angle = 40;  ///< degrees
   double tolerance = 0;       ///< how far walls may stray from the smooth surface of the input; input units
+  bool keep_walls = false;    ///< vertices on walls, and all edges between them, stay as they are
 };
 
 /// How a mesh fits a metric, by the measures of the Unstructured Grid Adaptation Working Group.

@@ -5,6 +5,7 @@
 #include <octafront/validity.h>
 
 #include "adapt/schedule/adapt_mesh.h"
+#include "base/geometry/self_intersection.h"
 #include "base/mesh/known_surface.h"
 #include "pipeline/stages/stages.h"
 #include "sizing/search/make_size_field.h"
@@ -59,6 +60,21 @@ void tell_fit(const MetricSummary& fit, const Stage& stage) {
                   fit.longest, fit.shortest, fit.quality_min, fit.quality_mean));
 }
 
+/// Walls go where the smooth surface is, each by itself: where a gap is narrower than that moves them they could meet.
+adapt::Adapted adapted_without_crossings(const TetMesh& given, const adapt::MetricField& metric,
+                                         adapt::AdaptRules rules, const Stage& stage) {
+  adapt::Adapted made = adapt::adapt_mesh(given, metric, rules, stage);
+  const auto crossing = self_intersections(made.mesh.points, made.mesh.boundary, 1, stage.context());
+  if (crossing.empty()) return made;
+  const Vec3 p = made.mesh.points[made.mesh.boundary[crossing[0][0]][0]];
+  stage.note(
+      fmt::format("the boundary would have crossed itself at ({:.6g}, {:.6g}, {:.6g}), where it is near to itself: "
+                  "it stays as it was, everywhere; a smaller --max-deviation may help",
+                  p.x, p.y, p.z));
+  rules.keep_walls = true;
+  return adapt::adapt_mesh(given, metric, rules, stage);
+}
+
 AdaptedMesh adapt_by(const TetMesh& given, const adapt::MetricField& metric, Run& run) {
   AdaptedMesh result;
   const double diagonal = bounding_box(given.points).diagonal();
@@ -67,7 +83,7 @@ AdaptedMesh adapt_by(const TetMesh& given, const adapt::MetricField& metric, Run
   run.report.input_volume = enclosed_volume(boundary_of(given));
   run.stage("adapt", [&](const Stage& stage) {
     result.before = summary_of(adapt::fit_of(given, metric));
-    adapt::Adapted made = adapt::adapt_mesh(given, metric, rules, stage);
+    adapt::Adapted made = adapted_without_crossings(given, metric, rules, stage);
     result.mesh = std::move(made.mesh);
     result.old_of_new = std::move(made.old_of_new);
     result.after = summary_of(adapt::fit_of(result.mesh, metric));

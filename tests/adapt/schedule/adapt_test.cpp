@@ -2,8 +2,11 @@
 #include <octafront/error.h>
 #include <octafront/validity.h>
 
+#include "adapt/schedule/adapt_mesh.h"
 #include "improve/start_meshes.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -123,6 +126,32 @@ TEST(Adapt, MetricOfTurningDirectionsDoesNotExplode) {
   EXPECT_GE(made.after.quality_min, 0.15);
   EXPECT_GE(made.after.quality_mean, 0.84);
   EXPECT_LE(static_cast<double>(made.mesh.tets.size()), 12 * made.after.complexity);
+}
+
+TEST(Adapt, WallsStayWhereTheyAreAskedTo) {
+  const TetMesh start = kuhn_cube(6);
+  StageReport report;
+  const adapt::SizeMetric metric(SizeField::uniform(0.06));
+  const adapt::AdaptRules rules{.feature_angle = 40, .tolerance = 0.01, .keep_walls = true};
+  const TetMesh mesh = adapt::adapt_mesh(start, metric, rules, {{}, report}).mesh;
+  EXPECT_GT(mesh.tets.size(), 2 * start.tets.size());
+  EXPECT_EQ(first_defect(mesh), std::nullopt);
+  const auto corners = [](const TetMesh& m) {
+    std::vector<std::array<double, 9>> all;
+    for (Triangle t : m.boundary) {
+      const auto before = [&](VertexIndex a, VertexIndex b) {
+        const Vec3 p = m.points[a], q = m.points[b];
+        return std::array{p.x, p.y, p.z} < std::array{q.x, q.y, q.z};
+      };
+      std::sort(t.begin(), t.end(), before);
+      std::array<double, 9> c;
+      for (int i = 0; i < 9; ++i) c[i] = m.points[t[i / 3]][i % 3];
+      all.push_back(c);
+    }
+    std::sort(all.begin(), all.end());
+    return all;
+  };
+  EXPECT_EQ(corners(mesh), corners(start));
 }
 
 TEST(Adapt, OldVerticesAreNamed) {
