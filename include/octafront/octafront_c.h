@@ -250,6 +250,8 @@ octafront_job* octafront_generate_surface(const octafront_surface* surface, cons
 /** -> sizes: generate_sizes(). */
 octafront_job* octafront_generate_sizes(const octafront_surface* surface, const octafront_options* options,
                                         int threads);
+/** -> mesh: adapt_existing(), by the options' sizes. The report has "fit" and, of the old mesh, "fit_before". */
+octafront_job* octafront_adapt(const octafront_mesh* mesh, const octafront_options* options, int threads);
 /** -> mesh: improve_existing(); `ground`, which may be null: the surface that the boundary slides on. */
 octafront_job* octafront_improve(const octafront_mesh* mesh, const octafront_surface* ground,
                                  const octafront_options* options, int threads);

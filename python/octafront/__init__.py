@@ -26,7 +26,7 @@ from .errors import (Cancelled, Error, InputError, InternalError, MeshingError, 
 
 __version__ = _call("version").decode()
 __all__ = ["Cancelled", "Checked", "Error", "InputError", "InternalError", "Mesh", "MeshingError", "OUTSIDE",
-           "OpenCavityError", "OptionError", "OutputError", "SizeField", "Surface", "check", "complex_of_walls",
+           "OpenCavityError", "OptionError", "OutputError", "SizeField", "Surface", "adapt", "check", "complex_of_walls",
            "errors", "formats", "image_surface", "improve", "join_bodies", "mend", "mesh", "mesh_file", "mesh_image", "read",
            "repair", "size_field", "surface"]
 
@@ -176,6 +176,30 @@ def improve(mesh, *, surface=None, **keywords):
     ground = Surface.read(surface) if _is_file(surface) else surface and _surface_of(surface, None)
     job = _Job("improve", old._handle, ground and ground._handle, settings.options, settings.threads,
                **settings.functions())
+    report = job.run()
+    return Mesh._of(job.take("mesh"), report)
+
+
+@_takes_options("size")
+def adapt(mesh, *, sizes=None, **keywords):
+    """The mesh changed until its edges are as long as the sizes want: a new Mesh. report["fit"] says how well it fits.
+
+    mesh: a valid Mesh of any tool, the name of its file, or an object of meshio, PyVista or VTK. Its boundary stays on the smooth surface that it stands
+    for; patches, regions, sheets, curves and sets stay.
+    sizes: edge lengths wanted at its own points, (n,); else what the keywords ask for, as for mesh().
+
+    Raises OptionError, InputError (the first defect of the mesh; wedges, pyramids, periodic faces), MeshingError,
+    Cancelled.
+
+    >>> octafront.adapt(mesh, sizes=0.5 * wanted).save("next.vtu")
+    """
+    old = Mesh.read(mesh) if _is_file(mesh) else Mesh.of(mesh)
+    if sizes is not None:
+        if "size_field" in keywords:
+            raise OptionError("`sizes` and `size_field` are two fields of sizes; give one")
+        keywords["size_field"] = (old.points, old.tets, sizes)
+    settings = _Settings("adapt", "size", keywords)
+    job = _Job("adapt", old._handle, settings.options, settings.threads, **settings.functions())
     report = job.run()
     return Mesh._of(job.take("mesh"), report)
 

@@ -91,6 +91,7 @@ _PROTOTYPES = {
     "read_sizes": (_handle, _text, _number), "write_sizes": (_handle, _handle, _text),
     "generate": (_handle, _handle, _handle, _whole), "generate_surface": (_handle, _handle, _handle, _whole),
     "generate_sizes": (_handle, _handle, _handle, _whole), "improve": (_handle, _handle, _handle, _handle, _whole),
+    "adapt": (_handle, _handle, _handle, _whole),
     "repair": (_handle, _handle), "check": (_handle, _handle, _text), "order_mesh": (_handle, _handle),
     "write_page": (_handle, _handle, _handle, _text, _text),
     "job_wait": (_whole, _handle, _number, ctypes.POINTER(Event)), "job_answer": (None, _handle),

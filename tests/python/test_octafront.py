@@ -749,6 +749,20 @@ class Running(Case):
 
 
 class Meshes(Case):
+    def test_adapt_follows_sizes_at_its_own_points(self):
+        old = octafront.mesh(*cube(), size=0.3)
+        wanted = 0.08 + 0.3 * np.linalg.norm(old.points, axis=1)
+        new = octafront.adapt(old, sizes=wanted)
+        self.assertGreater(len(new.tets), 3 * len(old.tets))
+        fit = new.report["fit"]
+        self.assertGreater(fit["fitting"], 0.93 * fit["edges"])
+        self.assertLess(fit["longest"], 2)
+        self.assertAlmostEqual(new.report["volume"], 1, 9)
+        with self.assertRaises(octafront.OptionError):
+            octafront.adapt(old, sizes=wanted, size_field=(old.points, old.tets, wanted))
+        with self.assertRaises(octafront.OptionError):
+            octafront.adapt(old, sizes=-wanted)
+
     def test_improve_and_check(self):
         mesh = octafront.mesh(*sphere(), size=0.3, improve="none")
         better = octafront.improve(mesh, surface=octafront.Surface(*sphere()))

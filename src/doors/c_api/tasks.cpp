@@ -1,5 +1,6 @@
 // What jobs do: each task is one call of the library.
 
+#include <octafront/adapt.h>
 #include <octafront/cad.h>
 #include <octafront/error.h>
 #include <octafront/generate.h>
@@ -133,6 +134,12 @@ void order_mesh(octafront_job& job, const TetMesh& mesh) {
   give(job, std::move(ordered.mesh));
 }
 
+Json fit_in_json(const MetricSummary& fit) {
+  return {{"edges", fit.edges},          {"fitting", fit.fitting},         {"shortest", fit.shortest},
+          {"longest", fit.longest},      {"quality_min", fit.quality_min}, {"quality_mean", fit.quality_mean},
+          {"complexity", fit.complexity}};
+}
+
 }  // namespace
 
 octafront_job* started(const octafront_job::Work& work, int threads) {
@@ -256,6 +263,18 @@ octafront_job* octafront_improve(const octafront_mesh* mesh, const octafront_sur
         job.report = Json::parse(to_json(improved.report));
         job.report["before"] = Json::parse(to_json(before))["quality"];
         give(job, std::move(improved.mesh));
+      },
+      threads);
+}
+
+octafront_job* octafront_adapt(const octafront_mesh* mesh, const octafront_options* options, int threads) {
+  return started(
+      [mesh, options](octafront_job& job) {
+        require_indices(mesh->mesh);
+        AdaptedMesh adapted = adapt_existing(mesh->mesh, job.options_of(options), job.context());
+        job.report = Json::parse(to_json(adapted.report));
+        job.report["fit"] = fit_in_json(adapted.after), job.report["fit_before"] = fit_in_json(adapted.before);
+        give(job, std::move(adapted.mesh));
       },
       threads);
 }
