@@ -81,6 +81,8 @@ InputForce::InputForce(const BoundaryInput& input) : input_(input), is_complex_(
     lines_.push_back({e[1], e[0]});
   }
   std::sort(lines_.begin(), lines_.end());
+  for (const VertexIndex v : input.features.corners) corners_.emplace_back(input.surface.points[v].x, v);
+  std::sort(corners_.begin(), corners_.end());
 }
 
 InputForce::Cause InputForce::cause_at(Vec3 center, double h) const {
@@ -165,9 +167,12 @@ bool InputForce::share_an_end(std::uint32_t curve, std::uint32_t other) const {
 }
 
 bool InputForce::has_narrow_corner(Vec3 center, double h) const {
-  for (const VertexIndex v : input_.features.corners) {
+  std::vector<Vec3> directions;
+  for (auto corner = std::lower_bound(corners_.begin(), corners_.end(), std::pair(center.x - h, VertexIndex{0}));
+       corner != corners_.end() && corner->first <= center.x + h; ++corner) {
+    const VertexIndex v = corner->second;
     if (distance(input_.surface.points[v], center) > h) continue;
-    std::vector<Vec3> directions;
+    directions.clear();
     for (auto it = std::lower_bound(lines_.begin(), lines_.end(), Edge{v, 0}); it != lines_.end() && (*it)[0] == v;
          ++it)
       directions.push_back(direction_at_scale(v, (*it)[1], h));

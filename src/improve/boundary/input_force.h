@@ -5,6 +5,7 @@
 #include "improve/boundary/boundary_guide.h"
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace octafront::improve {
@@ -36,7 +37,8 @@ class InputForce {
 
   const BoundaryInput& input_;
   const bool is_complex_;
-  std::vector<Edge> lines_;  ///< both directions of every feature edge, sorted
+  std::vector<Edge> lines_;                              ///< both directions of every feature edge, sorted
+  std::vector<std::pair<double, VertexIndex>> corners_;  ///< corners of the input by their x
   /// Of a complex, in which lines that are near cannot merge: its feature edges, and the curve that each belongs to.
   std::optional<TriangleTree> segments_;
   std::vector<std::uint32_t> curve_;
