@@ -25,8 +25,10 @@ TetMesh with_walls(const std::vector<std::array<double, 4>>& walls) {
   mesh.sets.clear();
   std::set<Triangle> seen;
   for (std::uint32_t w = 0; w < walls.size(); ++w) {
-    const auto& [axis, at, lo, hi] = walls[w];
-    const int a = static_cast<int>(axis), other = (a + 1) % 3;
+    // No structured binding: Clang 14 cannot capture them.
+    const auto& wall = walls[w];
+    const double at = wall[1], lo = wall[2], hi = wall[3];
+    const int a = static_cast<int>(wall[0]), other = (a + 1) % 3;
     for (const Tet& t : mesh.tets)
       for (const auto& f : kTetFaces) {
         const Triangle face{t[static_cast<std::size_t>(f[0])], t[static_cast<std::size_t>(f[1])],
