@@ -5,8 +5,8 @@
 namespace octafront {
 namespace {
 
-using testing::ElementsAre;
-using testing::IsEmpty;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
 
 TEST(Wording, TakesListsOfNamesApart) {
   const std::vector<std::string> known = {"", "wall", "left, upper", "right"};
