@@ -9,6 +9,7 @@
 #include <octafront/surface_mesh.h>
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -43,6 +44,9 @@ struct ImageIntake {
   std::string names_file;             ///< for read_label_names(): go before the names in `regions`; empty: none
   std::array<VoxelRange, 3> crop;     ///< only these voxels along i, j and k
   std::vector<double> resample = {};  ///< spacing of the voxels to work with, > 0, the unit of the file: one, or three
+  /// Without `resample`: bands of grey values are taken from coarser voxels, if much of them is a voxel thick and their
+  /// surfaces alone make so many elements: then no other triangles follow them.
+  double most_elements = HUGE_VAL;
 };
 
 /// How a CAD file becomes a domain.

@@ -13,6 +13,7 @@
 #include "cad/shapes/shapes.h"
 #include "doors/intake/intake.h"
 #include "sizing/prediction/affordable.h"
+#include "sizing/search/budget.h"
 
 #include <algorithm>
 #include <array>
@@ -445,6 +446,8 @@ IntakeOptions intake_for(const Options& options, IntakeOptions intake) {
   for (const NamedSize& named : options.size.named) cad.apart.push_back(named.name);
   for (const NearSize& near : options.size.near)
     if (!near.name.empty()) cad.apart.push_back(near.name);
+  if (!options.surface.max_deviation)
+    intake.image.most_elements = std::min(intake.image.most_elements, most_automatic_budget(options.size));
   // Other maps repeat no bodies; what is no list of axes is refused later, by the name of the option.
   if (!intake.repeat && options.periodic.find_first_of(",@=;") == std::string::npos) intake.repeat = options.periodic;
   return intake;

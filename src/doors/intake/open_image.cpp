@@ -3,6 +3,7 @@
 #include <octafront/image_surface.h>
 
 #include "doors/intake/cell.h"
+#include "doors/intake/coarser_voxels.h"
 #include "doors/intake/intake.h"
 
 #include <algorithm>
@@ -46,6 +47,9 @@ std::optional<Image> taken(Domain& domain, const IntakeOptions& options, const I
     made.notes.erase(made.notes.begin(), made.notes.begin() + static_cast<std::ptrdiff_t>(from.notes.size()));
     note_all(domain, options, "resampling", made.notes);
     part = std::move(made);
+  } else if (std::optional<Image> coarser = coarsened_for_budget(part ? *part : image, asked, regions, context)) {
+    note_all(domain, options, "resampling", {coarser->notes.back()});
+    part = std::move(coarser);
   }
   if (part) note(domain, options, "", fmt::format("  taken: {}", in_words(part->grid)));
   return part;

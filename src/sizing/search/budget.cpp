@@ -90,6 +90,10 @@ double automatic_budget(const SurfaceMesh& surface, const SizeOptions& options) 
   return with_choices(std::min(budget, kMostBudget), surface, options);
 }
 
+double most_automatic_budget(const SizeOptions& options) {
+  return has_no_size_source(options) ? kMostBudget / elementary::pow(options.automatic_factor, 3) : HUGE_VAL;
+}
+
 SizeField within_budget(const SurfaceMesh& surface, const WantedSizes& wanted, const SizeOptions& options,
                         double budget, const Stage& stage) {
   const TetPrediction expected(surface);

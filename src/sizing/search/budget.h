@@ -16,6 +16,9 @@ struct SurfaceMesh;
 /// the user chose sizes.
 double automatic_budget(const SurfaceMesh& surface, const SizeOptions& options);
 
+/// The most that it may be, whatever the surface.
+double most_automatic_budget(const SizeOptions& options);
+
 /// A background grid of sizes of our own choice, which must not make a large mesh that nobody asked for, as the noise
 /// of a scan does, or a thousand small holes: then the smallest sizes are raised until the number of elements is within
 /// the budget.

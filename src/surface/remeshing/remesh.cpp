@@ -62,6 +62,7 @@ class Remesher {
   Remeshed run() {
     FrontCounts& counts = work_.counts;
     kind_.foresee(sizes_);
+    if (kind_.is_noise()) return kept_as_noise();
     for (counts.rounds = 1; counts.rounds <= kMostRounds && !counts.exceed(kWornOut) && !kind_.is_stuck();
          ++counts.rounds) {
       Outcome made = attempt(Effort::kFull);

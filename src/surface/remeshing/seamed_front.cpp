@@ -54,6 +54,9 @@ constexpr int kLastMendings = 3;
 constexpr int kMostRaises = 6;
 constexpr double kLeastRaise = 1.2, kMostRaise = 4, kNearBudget = 1.1;
 constexpr double kFirstSlope = 0.7, kFlattest = 0.3, kSteepest = 1.5;
+/// A raise by less than whose power the number falls is in vain: the input turns within its own triangles, so it is
+/// noise, or as coarse as it may be.
+constexpr double kVainSlope = 0.1;
 
 /// Per vertex whether it is on a seam or another line.
 std::vector<std::uint8_t> on_lines(const WorkingMesh& mesh) {
@@ -159,9 +162,17 @@ class SeamedFront : public FrontKind {
     double count = first, slope = kFirstSlope;
     for (int step = 0; step < kMostRaises && count > kNearBudget * budget.most(); ++step) {
       const double raise = std::clamp(elementary::pow(count / budget.most(), 1 / slope), kLeastRaise, kMostRaise);
-      foreseen = followed_within(tolerance *= raise, curves, sizes);
-      const double now = budget.expected(foreseen);
-      slope = std::clamp(elementary::log(count / now) / elementary::log(raise), kFlattest, kSteepest);
+      SizeField followed = followed_within(tolerance * raise, curves, sizes);
+      const double now = budget.expected(followed);
+      slope = elementary::log(count / now) / elementary::log(raise);
+      is_noise_ = slope < kVainSlope;
+      if (is_noise_) {
+        tolerance = asked;
+        return;
+      }
+      foreseen = std::move(followed);
+      tolerance *= raise;
+      slope = std::clamp(slope, kFlattest, kSteepest);
       count = now;
     }
     if (tolerance == asked) return;

@@ -4,6 +4,7 @@
 
 #include <octafront/domain.h>
 #include <octafront/error.h>
+#include <octafront/generate.h>
 #include <octafront/io.h>
 #include <octafront/option_table.h>
 #include <octafront/options.h>
@@ -11,9 +12,11 @@
 #include <octafront/units.h>
 
 #include "support/named_surfaces.h"
+#include "support/random.h"
 #include "support/test_folder.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <string>
 
@@ -136,6 +139,60 @@ TEST_F(Intake, AnImageIsOneOfItsRegionsAndKnowsItsVoxels) {
   EXPECT_EQ(part.volumes.size(), 1u);
   options.image.resample = {1, 2};
   EXPECT_THROW(open_domain(image, options), OptionError);
+}
+
+/// Values from 0 to 99 that say nothing of their neighbours; or a ramp along i.
+Image grey_cube(std::uint32_t n, bool is_noise) {
+  Image image;
+  image.grid.size = {n, n, n};
+  std::vector<float> values;
+  testing::Random random(7);
+  for (std::uint32_t v = 0; v < n * n * n; ++v)
+    values.push_back(static_cast<float>(is_noise ? 100 * random.unit() : 100.0 * (v % n) / n));
+  image.values = values;
+  return image;
+}
+
+TEST_F(Intake, BandsOfNoiseThatNoBudgetHoldsComeFromCoarserVoxels) {
+  IntakeOptions options;
+  options.image.regions.bands = {{0, 40, "low"}, {40, HUGE_VAL, "high"}};
+  options.image.most_elements = 20000;
+  const Domain domain = open_domain(grey_cube(24, true), options);
+  EXPECT_LT(domain.voxels[0], 24u);
+  EXPECT_LT(domain.surface.triangles.size(), 8000u);
+  EXPECT_TRUE(says(domain, "resampling", "a voxel thick")) << "with the volume that changed most";
+  EXPECT_TRUE(says(domain, "resampling", "That changes the volume of \"low\" by -"));
+  EXPECT_EQ(open_domain(grey_cube(24, false), options).voxels[0], 24u) << "not thin";
+  options.image.resample = {1};
+  EXPECT_EQ(open_domain(grey_cube(24, true), options).voxels[0], 24u) << "asked for";
+}
+
+TEST_F(Intake, ANetOfNoiseIsKeptBeforeAnyRoundWhereTheBudgetIsSpent) {
+  Options options;
+  options.size.automatic_factor = 4;
+  IntakeOptions all;
+  all.image.regions.bands = {{40, HUGE_VAL, "high"}};
+  all.image.resample = {1};
+  const Domain domain = open_domain(grey_cube(24, true), intake_for(options, all));
+  const SurfaceResult result = generate_surface(domain, options);
+  const std::vector<std::string>& notes = result.report.stages.back().notes;
+  EXPECT_TRUE(std::any_of(notes.begin(), notes.end(), [](const std::string& n) {
+    return n.find("no triangles but its own follow such noise") != std::string::npos;
+  }));
+  EXPECT_EQ(result.surface.triangles.size(), domain.surface.triangles.size());
+  const auto& counters = result.report.stages.back().counters;
+  EXPECT_TRUE(std::none_of(counters.begin(), counters.end(),
+                           [](const auto& c) { return c.first == "rounds" && c.second > 0; }));
+}
+
+TEST_F(Intake, OnlyAutomaticSizesHaveABudgetForVoxels) {
+  Options options;
+  EXPECT_EQ(intake_for(options).image.most_elements, 3e6);
+  options.surface.max_deviation = 0.1;
+  EXPECT_EQ(intake_for(options).image.most_elements, HUGE_VAL);
+  options.surface.max_deviation.reset();
+  options.size.size = 1;
+  EXPECT_EQ(intake_for(options).image.most_elements, HUGE_VAL);
 }
 
 TEST_F(Intake, RefusalsSayWhatAndWhere) {

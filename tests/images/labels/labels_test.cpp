@@ -2,6 +2,7 @@
 #include <octafront/image.h>
 
 #include "images/files/label_names.h"
+#include "images/labels/thinness.h"
 #include "images/small_images.h"
 
 #include <algorithm>
@@ -65,6 +66,18 @@ TEST(Labels, IgnoredAndMergedValues) {
   EXPECT_THROW(labels_of(image, options), InputError);
   EXPECT_THROW(labels_of(image_of<float>({1, 1, 1}, {0.5F})), InputError);
   EXPECT_EQ(labels_of(image_of<float>({2, 1, 1}, {3.0F, 1e6F})).labels[1].value, 1000000);
+}
+
+TEST(Labels, ThinIsWhatLiesBetweenTwoFacesOfAnAxis) {
+  LabelImage image;
+  image.grid.size = {6, 3, 3};
+  image.regions.assign(54, 0);
+  for (std::size_t row = 0; row < 9; ++row) image.regions[6 * row + 2] = 1;  // a layer across i
+  EXPECT_EQ(image::thinness_of(image).faces, 18u);
+  EXPECT_EQ(image::thinness_of(image).thin, 9u);
+  for (std::size_t row = 0; row < 9; ++row) image.regions[6 * row + 3] = 1;
+  EXPECT_EQ(image::thinness_of(image).faces, 18u);
+  EXPECT_EQ(image::thinness_of(image).thin, 0u);
 }
 
 TEST(Labels, NoiseIsGreyAndBlocksAreLabels) {
