@@ -118,13 +118,14 @@ Shortfall::Cause cause_by_input(const EditMesh& mesh, TetIndex t, const InputFor
 
 }  // namespace
 
-Shortfall explain_shortfall(EditMesh& mesh, float threshold, const BoundaryInput* input) {
+Shortfall explain_shortfall(EditMesh& mesh, float threshold, const BoundaryInput* input, const RunContext& context) {
   Shortfall s;
   Explainer explainer(mesh, threshold);
   std::optional<InputForce> force;
   if (input) force.emplace(*input);
   for (TetIndex t = 0; t < mesh.slots(); ++t) {
     if (!mesh.alive(t) || mesh.shape(t).score >= threshold) continue;
+    context.check();
     const Shortfall::Cause cause = force ? cause_by_input(mesh, t, *force) : explainer.cause_by_boundary(t);
     ++s.elements;
     Shortfall::Class& c = s.by_cause[cause];

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <octafront/run_context.h>
+
 #include "improve/boundary/boundary_guide.h"
 #include "improve/shape/edit_mesh.h"
 
@@ -21,7 +23,7 @@ struct Shortfall {
   std::uint64_t poor = 0, poor_not_forced = 0;  ///< beta below .2, or a dihedral angle below 10 degrees
 };
 
-/// `input`: what the boundary was made from; null if the boundary is as the user gave it.
-Shortfall explain_shortfall(EditMesh& mesh, float threshold, const BoundaryInput* input);
+/// `input`: what the boundary was made from; null if the boundary is as the user gave it. Throws Cancelled.
+Shortfall explain_shortfall(EditMesh& mesh, float threshold, const BoundaryInput* input, const RunContext& context);
 
 }  // namespace octafront::improve

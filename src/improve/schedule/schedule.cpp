@@ -150,7 +150,7 @@ class Schedule {
 
   /// Says what stays poor and why, and where the worst of each kind are.
   void explain(const BoundaryInput* input) {
-    const Shortfall s = explain_shortfall(mesh_, kReported, input);
+    const Shortfall s = explain_shortfall(mesh_, kReported, input, stage_.context());
     stage_.count(fmt::format("elements below {:.1f}", kReported), static_cast<double>(s.elements));
     for (int cause = 0; cause < Shortfall::kCauses; ++cause)
       stage_.count(kCauseNames[cause].counter, static_cast<double>(s.by_cause[cause].elements));

@@ -1,5 +1,7 @@
 #include "improve/passes/passes.h"
 
+#include <octafront/no_context.h>
+
 #include "base/core/thread_limit.h"
 #include "base/geometry/measures.h"
 #include "base/geometry/predicates.h"
@@ -337,7 +339,7 @@ TEST(FewestPoor, MovesAreTheSameForAnyNumberOfThreads) {
 
 Shortfall shortfall_of(TetMesh mesh) {
   EditMesh edit(std::move(mesh));
-  return explain_shortfall(edit, 0.4f, nullptr);
+  return explain_shortfall(edit, 0.4f, nullptr, no_context());
 }
 
 TEST(Explain, NamesWhatTheBoundaryForces) {
