@@ -10,6 +10,7 @@
 #include <octafront/vec.h>
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 namespace octafront::adapt {
@@ -81,15 +82,24 @@ inline constexpr double kLongest = 1.4142135623730951, kShortest = 0.70710678118
 /// wanted.
 double density_of(const Metric& m);
 
+/// metric_score() by six volumes and the sum of the squared edges.
+inline double score_of_sums(double six_volumes, double sum) {
+  // 1 for six edges of length 1 and six volumes of 1 / sqrt 2: 6^(3/2) sqrt 2.
+  constexpr double kRegular = 20.784609690826528;
+  return kRegular * six_volumes / (sum * std::sqrt(sum) + 1e-300);
+}
 /// The quality of a tetrahedron to the power 3/2: volume over (mean squared edge)^(3/2), both in this metric, 1 for one
 /// that is regular there, not positive where it is flat or inverted. The Working Group takes the metric of the corner
 /// of greatest density. `six_volumes`: the determinant of its edges.
 inline double metric_score(double six_volumes, const Metric& m, double density, Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
-  // 1 for six edges of length 1 and six volumes of 1 / sqrt 2: 6^(3/2) sqrt 2.
-  constexpr double kRegular = 20.784609690826528;
-  const double sum =
-      m.squared(b - a) + m.squared(c - a) + m.squared(d - a) + m.squared(c - b) + m.squared(d - b) + m.squared(d - c);
-  return kRegular * six_volumes * density / (sum * std::sqrt(sum) + 1e-300);
+  return score_of_sums(six_volumes * density, m.squared(b - a) + m.squared(c - a) + m.squared(d - a) +
+                                                  m.squared(c - b) + m.squared(d - b) + m.squared(d - c));
+}
+/// The same in a metric of size, which has no say.
+inline double metric_score(double six_volumes, Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
+  const auto squared = [](Vec3 e) { return dot(e, e); };
+  return score_of_sums(
+      six_volumes, squared(b - a) + squared(c - a) + squared(d - a) + squared(c - b) + squared(d - b) + squared(d - c));
 }
 /// The quality itself, from that score.
 double quality_of_score(double score);

@@ -8,8 +8,9 @@
 namespace octafront::adapt {
 namespace {
 
-/// An element that collapse makes has at least this score, or the worst one of those before.
-constexpr float kLeastOfCollapse = 0.2f;
+/// An element that collapse makes has at least this score, or the worst one of those before: where a metric turns,
+/// what is short goes by way of poor elements, or not at all.
+constexpr float kLeastOfCollapse = 0.3f, kLeastOfCollapseInMetric = 0.1f;
 /// No edge that collapse makes is longer than this.
 constexpr double kLongestOfCollapse = kLongest;
 constexpr int kMostRounds = 3;
@@ -28,7 +29,7 @@ class EdgeCollapser {
   PassCount run() {
     PassCount sum;
     for (int round = 0; round < kMostRounds; ++round) {
-      const PassCount count = sweep();
+      const PassCount count = sweep(round);
       sum += count;
       if (count.done == 0) break;
     }
@@ -50,27 +51,34 @@ class EdgeCollapser {
     std::vector<Piece::NewWall> walls;
   };
 
-  PassCount sweep() {
+  PassCount sweep(int round) {
     PassCount count;
-    std::vector<Short> edges = short_edges();
+    const std::vector<Short> edges = short_edges(round);
     for (const Short& s : edges) {
       if (++steps_ % kCheckCollapseEvery == 0) guide_.context.check();
       const TetIndex t = piece_.tet_with(s.edge[0], s.edge[1], s.tet);
       if (t == kNone) continue;
       ++count.tried;
-      count.done += collapse(t, s.edge[0], s.edge[1]);
+      if (!collapse(t, s.edge[0], s.edge[1])) continue;
+      ++count.done;
+      for (const TetIndex made : piece_.created())
+        for (const VertexIndex v : piece_.tet(made)) changed_[v] = round + 1;
     }
     return count;
   }
 
-  std::vector<Short> short_edges() const {
+  /// Edges that are too short; in later rounds those where the round before changed something.
+  std::vector<Short> short_edges(int round) {
     std::vector<Short> found;
+    changed_.resize(piece_.vertices.size(), 0);
+    seen_.resize(piece_.vertices.size(), 0);
+    const auto waits = [&](VertexIndex v) { return round == 0 ? piece_.vertices[v].active : changed_[v] == round; };
     for (TetIndex t = 0; t < piece_.complex.slots(); ++t) {
       if (!piece_.complex.alive(t)) continue;
       const Tet& c = piece_.tet(t);
       for (const auto& [i, j] : kTetEdges) {
         const Vertex &p = piece_.vertices[c[i]], &q = piece_.vertices[c[j]];
-        if (!(p.active || q.active) || (!may_go(p) && !may_go(q))) continue;
+        if (!(waits(c[i]) || waits(c[j])) || (!may_go(p) && !may_go(q))) continue;
         const double l = piece_.edge_length(c[i], c[j]);
         if (l < kShortest) found.push_back({l, sorted_edge(c[i], c[j]), t});
       }
@@ -138,27 +146,39 @@ class EdgeCollapser {
   bool plan_tets(Plan& out) {
     const std::vector<TetIndex>& star = piece_.star(out.gone);
     out.old.assign(star.begin(), star.end());
-    float worst = 1, had = 1;
-    double longest_had = 0;
+    float had = 1;
     for (const TetIndex t : out.old) had = std::min(had, piece_.score[t]);
-    const float least = std::min(had, kLeastOfCollapse);
-    for (const TetIndex t : out.old)
-      for (const VertexIndex v : piece_.tet(t))
-        if (v != out.gone) longest_had = std::max(longest_had, piece_.edge_length(out.gone, v));
-    const double limit = std::max(kLongestOfCollapse, longest_had);
+    if (!lengths_allow(out)) return false;
+    const float least = std::min(had, piece_.isotropic ? kLeastOfCollapse : kLeastOfCollapseInMetric);
+    out.worst = 1;
     for (const TetIndex t : out.old) {
       if (piece_.complex.has(t, out.onto)) continue;
       Tet c = piece_.tet(t);
       std::replace(c.begin(), c.end(), out.gone, out.onto);
-      for (const VertexIndex v : c)
-        if (v != out.onto && piece_.edge_length(out.onto, v) > limit) return false;
       const float s = piece_.score_of(c);
       if (!(s >= least) || !(s > 0)) return false;
-      worst = std::min(worst, s);
+      out.worst = std::min(out.worst, s);
       out.fresh.push_back({c, piece_.region[t], s});
     }
-    out.worst = worst;
     return !out.fresh.empty();
+  }
+
+  /// Whether no new edge is longer than the longest there was, or than is wanted.
+  bool lengths_allow(const Plan& plan) {
+    around_.clear();
+    ++stamp_;
+    for (const TetIndex t : plan.old)
+      for (const VertexIndex v : piece_.tet(t))
+        if (v != plan.gone && v != plan.onto && seen_[v] != stamp_) seen_[v] = stamp_, around_.push_back(v);
+    double longest_had = -1;
+    for (const VertexIndex v : around_) {
+      const double l = piece_.edge_length(plan.onto, v);
+      if (l <= kLongestOfCollapse) continue;
+      if (longest_had < 0)
+        for (const VertexIndex u : around_) longest_had = std::max(longest_had, piece_.edge_length(plan.gone, u));
+      if (l > longest_had) return false;
+    }
+    return true;
   }
 
   /// The walls at the vertex that goes, with it at its new place; false if they would not be true, or lines would
@@ -281,7 +301,10 @@ class EdgeCollapser {
   const Guide& guide_;
   EdgeRing ring_;
   Link link_, other_link_;
-  std::vector<VertexIndex> edge_link_, edge_walls_;
+  std::vector<VertexIndex> edge_link_, edge_walls_, around_;
+  std::vector<int> changed_;         ///< per vertex: one more than the last round that changed something around it
+  std::vector<std::uint32_t> seen_;  ///< per vertex: the last stamp it got
+  std::uint32_t stamp_ = 0;
   int steps_ = 0;
 };
 

@@ -45,12 +45,12 @@ PassCount split_long_edges(Piece& piece, const Guide& guide, std::size_t most_ve
 /// element too poor, and walls true.
 PassCount collapse_short_edges(Piece& piece, const Guide& guide);
 
-/// Removes edges (of rings of up to seven tets) and faces of elements with a score below `threshold`, where the worst
-/// element of the place gets better; edges inside walls turn, where the wall stays true.
+/// Removes edges (of rings of up to seven tets) and faces of elements with a score below `threshold`, where the
+/// elements of the place lack less together and none gets poor; edges inside walls turn, where the wall stays true.
 PassCount swap_edges(Piece& piece, const Guide& guide, float threshold);
 
-/// Moves each vertex of elements with a score below `threshold` towards where its elements would be regular, of unit
-/// edges, if that makes them better; those on walls and lines along these.
+/// Moves each vertex of elements with a score below `threshold` towards where its elements lack the least together;
+/// those on walls and lines along these.
 PassCount smooth_vertices(Piece& piece, const Guide& guide, float threshold);
 
 /// What a pass over walls has to ask: whether triangles may take the place of others of the same part.

@@ -1,9 +1,7 @@
-// Vertices that move. Each tet around a vertex wants it where the tet would be regular with edges of length 1; the mean
-// of these places, the poorer tets counting more, is tried, and less and less of the way to it (the weighted ideal
-// points of M. Park's "refine").
+// Vertices that move to where the sum of what their elements lack is least, 1 / score - 1 of each: Newton's method, a
+// step for each visit, less and less of it as long as that is no gain.
 
 #include "adapt/passes/passes.h"
-#include "base/core/elementary.h"
 #include "base/geometry/measures.h"
 
 #include <algorithm>
@@ -13,12 +11,10 @@
 namespace octafront::adapt {
 namespace {
 
-constexpr int kTriesOfMove = 5;
-/// Height of the regular tetrahedron of edges 1.
-constexpr double kHeight = 0.81649658092772603;
-/// Poorer tets than this pull no more than it does.
-constexpr double kLeastWeightScore = 0.05;
-/// Scores may fall to this where the sum over the star gets better.
+constexpr int kTriesOfMove = 3;
+/// What S^(3/2) / D is for a regular element: see Slope.
+constexpr double kScale = 20.784609690826528;
+/// No score falls below this, or below the least one there was.
 constexpr float kGuardOfMove = 0.55f;
 constexpr double kReachOfMove = 0.5;
 constexpr double kLeastGainOfMove = 0.01;
@@ -36,9 +32,10 @@ class VertexMover {
         for (const VertexIndex v : piece_.tet(t)) wanted[v] = 1;
     for (VertexIndex v = 0; v < wanted.size(); ++v) {
       Vertex& at = piece_.vertices[v];
-      if (!at.active) continue;
       // Who comes here has been asked by all passes; what changes around it wakes it up again.
-      at.active = at.rim;
+      at.active &= at.rim;
+      if (!at.loose) continue;
+      at.loose = at.rim;
       if (wanted[v] == 0 || at.rim || at.frozen || at.kind == Kind::kFixed) continue;
       if (++steps_ % kCheckMoveEvery == 0) guide_.context.check();
       ++count.tried;
@@ -54,69 +51,126 @@ class VertexMover {
   };
 
   bool move(VertexIndex v) {
-    star_ = piece_.star(v);
+    const std::vector<TetIndex>& star = piece_.star(v);
+    star_.assign(star.begin(), star.end());
     const Vertex from = piece_.vertices[v];
     std::optional<std::uint32_t> path;
     if (from.kind != Kind::kInner && !find_walls(v, path)) return false;
-    Vec3 step = ideal(v) - from.at;
-    if (from.kind == Kind::kSurface) {
-      const Vec3 n = wall_normal();
-      step = step - dot(step, n) * n;
-    } else if (from.kind == Kind::kCurve) {
-      const Vec3 d = normalized(piece_.point(line_ends_[1]) - piece_.point(line_ends_[0]));
-      step = dot(step, d) * d;
-    }
+    take_cells(v);
     float had = 1;
     double lack = 0;
     for (const TetIndex t : star_) had = std::min(had, piece_.score[t]), lack += lack_of(piece_.score[t]);
+    Slope slope = slope_at(v, from);
+    Vec3 step = newton_step(slope, from);
+    // Half of the slope along the step is what a parabola would gain.
+    if (!(-0.5 * dot(slope.gradient, step) > kLeastGainOfMove * kScale * lack)) return false;
     for (int k = 0; k < kTriesOfMove; ++k, step *= 0.5) {
       Vertex to = from;
       to.at = from.at + step;
       if (from.kind != Kind::kInner && !snap(to, path)) continue;
       guide_.ask(to);
-      if (!is_better(v, to, had, lack) || !walls_stay_true(to)) continue;
+      if (!is_better(to, had, lack) || !walls_stay_true(to)) continue;
       piece_.move(v, to, star_, scores_);
       return true;
     }
     return false;
   }
 
-  static double lack_of(float score) {
-    const double miss = 1 - static_cast<double>(score);
-    return miss * miss;
+  static double lack_of(float score) { return 1 / static_cast<double>(score) - 1; }
+
+  /// An element of the star; the corner `at` is the vertex that moves.
+  struct Cell {
+    std::array<const Vertex*, 4> corners;
+    int at;
+  };
+  void take_cells(VertexIndex v) {
+    cells_.clear();
+    for (const TetIndex t : star_) {
+      const Tet& c = piece_.tet(t);
+      Cell cell{};
+      for (int i = 0; i < 4; ++i) {
+        cell.corners[i] = &piece_.vertices[c[i]];
+        if (c[i] == v) cell.at = i;
+      }
+      cells_.push_back(cell);
+    }
   }
 
-  bool is_better(VertexIndex v, const Vertex& to, float had, double lack) {
+  bool is_better(const Vertex& to, float had, double lack) {
     scores_.clear();
-    float worst = 1;
+    const double most = lack * (1 - kLeastGainOfMove);
     double sum = 0;
     const float floor = std::min(had, kGuardOfMove);
-    for (const TetIndex t : star_) {
-      const float s = piece_.score_with(piece_.tet(t), v, to);
+    for (Cell& cell : cells_) {
+      cell.corners[cell.at] = &to;
+      const float s = piece_.score_of_corners(cell.corners);
       if (!(s > 0) || s < floor) return false;
-      worst = std::min(worst, s), sum += lack_of(s);
+      sum += lack_of(s);
+      if (!(sum < most)) return false;
       scores_.push_back(s);
     }
-    return sum < lack * (1 - kLeastGainOfMove) || worst > had * 1.02f;
+    return true;
   }
 
-  /// The mean of the places at which the tets around would be as wanted.
-  Vec3 ideal(VertexIndex v) const {
-    Vec3 sum{};
-    double weights = 0;
-    for (const TetIndex t : star_) {
-      const Triangle f = piece_.complex.face(piece_.complex.opposite(t, v));
-      const Vec3 a = piece_.point(f[0]), b = piece_.point(f[1]), c = piece_.point(f[2]);
-      const Metric& m = piece_.vertices[v].metric;
-      // At right angles to the face, as the metric has it: M^-1 times the plane's normal.
-      const Vec3 n = -double_area_normal(a, b, c), along = inverse(m).times(n);
-      const double unit = std::sqrt(dot(n, along));
-      if (!(unit > 0)) continue;
-      const double weight = 1 / std::max(static_cast<double>(piece_.score[t]), kLeastWeightScore);
-      sum += weight * (centroid(a, b, c) + (kHeight / unit) * along);
-      weights += weight;
+  /// Slope and curvature of the lack as the vertex moves. With S the sum of squared edges and D the six volumes, both
+  /// in the metric, 1 / score is S^(3/2) / D times a constant; D is linear.
+  struct Slope {
+    Vec3 gradient{};
+    Metric hessian{0, 0, 0, 0, 0, 0};
+
+    void add(const Metric& m, double density, Vec3 x, const std::array<Vec3, 3>& face) {
+      const auto& [a, b, c] = face;
+      const double sum = m.squared(x - a) + m.squared(x - b) + m.squared(x - c) + m.squared(b - a) + m.squared(c - a) +
+                         m.squared(c - b);
+      const Vec3 n = -density * double_area_normal(a, b, c), g = 2.0 * m.times(3.0 * x - (a + b + c));
+      const double d = 1 / dot(n, x - a), root = std::sqrt(sum), f = sum * root * d;
+      // f' = f (3/2 g / S - n / D), f'' = f (9 M / S + 3/4 g g' / S^2 - 3/2 (g n' + n g') / (S D) + 2 n n' / D^2).
+      const Vec3 u = (1 / sum) * g, w = d * n;
+      gradient += f * (1.5 * u - w);
+      const Vec3 p = 0.75 * u - 1.5 * w;  // of the products with u
+      const auto entry = [&](int i, int j) {
+        return 0.5 * (u[i] * p[j] + p[i] * u[j]) - 0.75 * (u[i] * w[j] + w[i] * u[j]) + 2 * w[i] * w[j];
+      };
+      hessian = hessian + f * ((9 / sum) * m +
+                               Metric{entry(0, 0), entry(0, 1), entry(0, 2), entry(1, 1), entry(1, 2), entry(2, 2)});
     }
-    return weights > 0 ? sum / weights : piece_.point(v);
+  };
+
+  Slope slope_at(VertexIndex v, const Vertex& from) const {
+    Slope slope;
+    for (std::size_t k = 0; k < cells_.size(); ++k) {
+      const Triangle f = piece_.complex.face(piece_.complex.opposite(star_[k], v));
+      const std::array face{piece_.point(f[0]), piece_.point(f[1]), piece_.point(f[2])};
+      if (piece_.isotropic) {
+        slope.add(Metric{}, 1, from.at, face);
+      } else {
+        const Vertex& d = densest_of(cells_[k].corners);
+        slope.add(d.metric, d.density, from.at, face);
+      }
+    }
+    return slope;
+  }
+
+  Vec3 newton_step(const Slope& slope, const Vertex& from) const {
+    const Vec3 g = slope.gradient;
+    if (from.kind == Kind::kCurve)
+      return step_along(slope, normalized(piece_.point(line_ends_[1]) - piece_.point(line_ends_[0])));
+    if (from.kind == Kind::kSurface) return step_in_plane(slope, wall_normal());
+    const Metric& h = slope.hessian;
+    if (!(h.xx > 0 && h.xx * h.yy > h.xy * h.xy && h.determinant() > 0)) return -1.0 / (h.xx + h.yy + h.zz) * g;
+    return -inverse(h).times(g);
+  }
+  static Vec3 step_along(const Slope& s, Vec3 d) {
+    const double curvature = s.hessian.squared(d);
+    return curvature > 0 ? -dot(s.gradient, d) / curvature * d : Vec3{};
+  }
+  static Vec3 step_in_plane(const Slope& s, Vec3 n) {
+    const Vec3 e = std::abs(n.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+    const Vec3 u = normalized(e - dot(e, n) * n), w = cross(n, u);
+    const double uu = s.hessian.squared(u), ww = s.hessian.squared(w), uw = dot(u, s.hessian.times(w));
+    const double gu = dot(s.gradient, u), gw = dot(s.gradient, w), det = uu * ww - uw * uw;
+    if (!(uu > 0 && det > 0)) return uu + ww > 0 ? -1 / (uu + ww) * (gu * u + gw * w) : Vec3{};
+    return -1 / det * ((ww * gu - uw * gw) * u + (uu * gw - uw * gu) * w);
   }
 
   /// The walls at the vertex, and its line; false if it is not where it can move along them.
@@ -177,6 +231,7 @@ class VertexMover {
   Piece& piece_;
   const Guide& guide_;
   std::vector<TetIndex> star_;
+  std::vector<Cell> cells_;
   std::vector<float> scores_;
   std::vector<WallAt> walls_;
   std::vector<VertexIndex> line_ends_;

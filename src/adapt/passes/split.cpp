@@ -5,6 +5,7 @@
 #include "base/geometry/measures.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -15,6 +16,9 @@ namespace {
 constexpr double kReachOfSplit = 0.5;
 /// The worst new element keeps this part of the worst old one's score.
 constexpr float kLeastOfSplit = 0.1f;
+/// What is poor already stays about as good: where the longest edge may not be split, splits of all others would draw
+/// nearer and nearer to it.
+constexpr float kLeastScoreOfSplit = 0.03f, kKeptOfPoor = 0.9f;
 /// A split that makes shorter edges than this waits until the place is connected better: otherwise elements that lie
 /// across the directions of the metric are divided without end.
 constexpr double kShortestOfSplit = 0.55;
@@ -30,52 +34,54 @@ class Splitter {
 
   PassCount run(std::size_t most_vertices) {
     PassCount count;
-    for (double limit = first_limit(); limit > 0; limit = next_limit(limit)) {
-      std::vector<TetIndex> queue = waiting(limit);
-      for (std::size_t k = 0; k < queue.size(); ++k) {
+    for (TetIndex t = 0; t < piece_.complex.slots(); ++t)
+      if (piece_.complex.alive(t) && is_active(t)) enqueue(t);
+    for (int level = kLevels - 1; level >= 0; --level) {
+      // What comes of these may wait in the same list.
+      for (std::size_t k = 0; k < waiting_[level].size(); ++k) {
         if (piece_.vertices.size() >= most_vertices) return count;
         if (++steps_ % kCheckEvery == 0) guide_.context.check();
-        const TetIndex t = queue[k];
+        const TetIndex t = waiting_[level][k];
         if (!piece_.complex.alive(t)) continue;
-        const auto edge = longest_edge(t, limit);
-        if (!edge) continue;
+        const auto edge = longest_edge(t);
+        if (!edge || level_of(edge->length) < level) continue;
         ++count.tried;
-        if (!split(t, (*edge)[0], (*edge)[1])) {
-          refused_.insert(sorted_edge((*edge)[0], (*edge)[1]));
-          queue.push_back(t);
+        if (!split(t, edge->ends[0], edge->ends[1])) {
+          refused_.insert(sorted_edge(edge->ends[0], edge->ends[1]));
+          enqueue(t);
           continue;
         }
         ++count.done;
-        queue.insert(queue.end(), piece_.created().begin(), piece_.created().end());
+        for (const TetIndex made : piece_.created()) enqueue(made);
       }
+      waiting_[level] = {};
     }
     return count;
   }
 
  private:
-  static constexpr double kStep = 1.4142135623730951;
+  /// Lists of tets by the longest edge that may be split: from kLongest times 2^(level / 2) on.
+  static constexpr int kLevels = 128;
 
-  double first_limit() const {
-    double longest = 0;
-    for (TetIndex t = 0; t < piece_.complex.slots(); ++t) {
-      if (!piece_.complex.alive(t)) continue;
-      for (const auto& [i, j] : kTetEdges)
-        longest = std::max(longest, piece_.edge_length(piece_.tet(t)[i], piece_.tet(t)[j]));
-    }
-    double limit = kLongest;
-    while (limit * kStep < longest) limit *= kStep;
-    return longest > kLongest ? limit : 0;
-  }
-  static double next_limit(double limit) {
-    if (limit <= kLongest) return 0;
-    return std::max(limit / kStep, kLongest);
+  struct LongEdge {
+    Edge ends;
+    double length;
+  };
+
+  static int level_of(double length) {
+    int level = 0;
+    for (double limit = 2; limit < length && level + 1 < kLevels; limit *= kLongest) ++level;
+    return level;
   }
 
-  std::vector<TetIndex> waiting(double limit) {
-    std::vector<TetIndex> found;
-    for (TetIndex t = 0; t < piece_.complex.slots(); ++t)
-      if (piece_.complex.alive(t) && longest_edge(t, limit)) found.push_back(t);
-    return found;
+  void enqueue(TetIndex t) {
+    if (const auto edge = longest_edge(t)) waiting_[level_of(edge->length)].push_back(t);
+  }
+
+  bool is_active(TetIndex t) const {
+    for (const VertexIndex v : piece_.tet(t))
+      if (piece_.vertices[v].active) return true;
+    return false;
   }
 
   bool may_split(VertexIndex a, VertexIndex b) const {
@@ -84,12 +90,14 @@ class Splitter {
     return (p.active || q.active) && !refused_.contains(sorted_edge(a, b));
   }
 
-  std::optional<Edge> longest_edge(TetIndex t, double limit) const {
-    std::optional<Edge> best;
+  /// The longest edge that is too long and may be split.
+  std::optional<LongEdge> longest_edge(TetIndex t) const {
+    std::optional<LongEdge> best;
+    double limit = kLongest;
     const Tet& c = piece_.tet(t);
     for (const auto& [i, j] : kTetEdges) {
       const double l = piece_.edge_length(c[i], c[j]);
-      if (l > limit && may_split(c[i], c[j])) limit = l, best = {c[i], c[j]};
+      if (l > limit && may_split(c[i], c[j])) limit = l, best = {{c[i], c[j]}, l};
     }
     return best;
   }
@@ -167,6 +175,7 @@ class Splitter {
   bool plan(VertexIndex a, VertexIndex b, const Vertex& made) {
     float worst = 1;
     for (const TetIndex t : ring_.tets) worst = std::min(worst, piece_.score[t]);
+    const float least = std::max(kLeastOfSplit * worst, std::min(kLeastScoreOfSplit, kKeptOfPoor * worst));
     for (const VertexIndex r : ring_.ring) {
       const Vertex& v = piece_.vertices[r];
       if (metric_length(made.at - v.at, made.metric, v.metric) < kShortestOfSplit) return false;
@@ -177,7 +186,7 @@ class Splitter {
       for (const VertexIndex gone : {b, a}) {
         Tet c = piece_.tet(t);
         const float s = piece_.score_with(c, gone, made);
-        if (!(s > kLeastOfSplit * worst)) return false;
+        if (!(s > least)) return false;
         std::replace(c.begin(), c.end(), gone, next);
         fresh_.push_back({c, piece_.region[t], s});
       }
@@ -204,6 +213,7 @@ class Splitter {
 
   Piece& piece_;
   const Guide& guide_;
+  std::array<std::vector<TetIndex>, kLevels> waiting_;
   FlatSet<Edge> refused_;
   EdgeRing ring_;
   std::vector<WallAt> walls_;

@@ -1,22 +1,27 @@
-// Other connections between the same vertices: an edge goes, its ring is triangulated anew by dynamic programming
-// (Klincsek 1980; Shewchuk, "Two discrete optimization algorithms for the topological improvement of tetrahedral
-// meshes", 2002), or a face goes (2-3 flip). An edge inside a wall turns to the other diagonal of its two triangles.
+// Other connections between the same vertices: an edge goes, its ring is triangulated anew by dynamic programming, for
+// the least sum of what its elements lack (Klincsek 1980; Shewchuk, "Two discrete optimization algorithms for the
+// topological improvement of tetrahedral meshes", 2002), or a face goes (2-3 flip). An edge inside a wall turns to the
+// other diagonal of its two triangles.
 
 #include "adapt/passes/passes.h"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace octafront::adapt {
 namespace {
 
-/// A swap must gain at least this in the worst score, so that equal fillings do not replace each other for ever.
-constexpr float kLeastGainOfSwap = 1e-4f;
+/// A swap must gain at least this in the sum of what elements lack, so that equal fillings do not replace each other
+/// for ever.
+constexpr float kLeastGainOfSwap = 0.01f;
+/// It makes no element of a lower score than this, or than the poorest one that it takes away.
+constexpr float kGuardOfSwap = 0.5f;
 constexpr int kLongestRingOfSwap = 7;
 /// Swaps make no edge longer than this, unless they take a longer one away.
 constexpr double kLongestOfSwap = kLongest;
 constexpr int kCheckSwapEvery = 512;
-constexpr float kImpossible = -1;
+constexpr float kImpossible = HUGE_VALF;
 
 class Swapper {
  public:
@@ -62,10 +67,12 @@ class Swapper {
 
   void try_edge(TetIndex t, VertexIndex a, VertexIndex b) {
     if (are_frozen(a, b) || piece_.line(a, b)) return;
-    if (!piece_.ring(t, a, b, ring_) || ring_.tets.size() > kLongestRingOfSwap) return;
-    had_ = 1;
-    for (const TetIndex r : ring_.tets) had_ = std::min(had_, piece_.score[r]);
-    if (had_ + gain_ >= 1) return;
+    // The poorest tet of a ring is the one that asks for all.
+    if (!piece_.ring(t, a, b, ring_, piece_.score[t]) || ring_.tets.size() > kLongestRingOfSwap) return;
+    had_ = 0;
+    for (const TetIndex r : ring_.tets) had_ += lack_of(piece_.score[r]);
+    if (!(had_ > gain_)) return;
+    guard_ = std::min(piece_.score[t], kGuardOfSwap);
     find_walls();
     if (wall_at_.empty() && ring_.closed) return fill_ring(t, a, b);
     if (wall_at_.size() == 2) turn_in_wall(t, a, b);
@@ -86,9 +93,9 @@ class Swapper {
   void fill_ring(TetIndex t, VertexIndex a, VertexIndex b) {
     if (ring_.ring.size() < 3) return;
     poly_.assign(ring_.ring.begin(), ring_.ring.end());
-    const float worst = triangulate(a, b, std::max(kLongestOfSwap, piece_.edge_length(a, b)));
-    if (worst - had_ <= gain_) return;
-    take_old(worst);
+    const float lack = triangulate(a, b, std::max(kLongestOfSwap, piece_.edge_length(a, b)), had_ - gain_);
+    if (!(lack < had_ - gain_)) return;
+    take_old(lack);
     emit(0, static_cast<int>(poly_.size()) - 1, a, b, piece_.region[t]);
   }
 
@@ -110,7 +117,7 @@ class Swapper {
     if (!wall_stays_true(a, b, p, q, label)) return;
     // Polygons on the two sides: from p on to q, and from q on to p.
     std::vector<Piece::NewTet> made;
-    float worst = 1;
+    float lack = 0;
     for (int side = 0; side < (outer ? 1 : 2); ++side) {
       poly_.clear();
       const std::size_t from = side == 0 ? i : j, to = side == 0 ? j : i;
@@ -119,13 +126,13 @@ class Swapper {
         if (k == to) break;
       }
       if (poly_.size() < 3) return;
-      worst = std::min(worst, triangulate(a, b, longest));
-      if (worst - had_ <= gain_) return;
+      lack += triangulate(a, b, longest, had_ - gain_ - lack);
+      if (!(lack < had_ - gain_)) return;
       std::swap(fresh_, made);
       emit(0, static_cast<int>(poly_.size()) - 1, a, b, piece_.region[ring_.tets[from]]);
       std::swap(fresh_, made);
     }
-    take_old(worst);
+    take_old(lack);
     fresh_ = std::move(made);
     walls_.push_back({{a, p, q}, label}), walls_.push_back({{b, p, q}, label});
   }
@@ -139,33 +146,47 @@ class Swapper {
     return keeps_walls_true(guide_, before, after, label);
   }
 
-  void take_old(float worst) {
-    gain_ = worst - had_;
+  /// What an element lacks to be regular.
+  static float lack_of(float score) {
+    const float lack = 1 / score - 1;
+    return lack * (1 + 0.5f * lack);
+  }
+
+  void take_old(float lack) {
+    gain_ = had_ - lack;
     old_.assign(ring_.tets.begin(), ring_.tets.end());
     fresh_.clear(), walls_.clear();
   }
 
-  /// The best worst score of triangles of the polygon, each with a and b; its choices in mid_.
-  float triangulate(VertexIndex a, VertexIndex b, double longest) {
+  /// The least that triangles of the polygon, each with a and b, lack together, if that is below `most`; its choices in
+  /// mid_.
+  float triangulate(VertexIndex a, VertexIndex b, double longest, float most) {
     const int n = static_cast<int>(poly_.size());
     for (int len = 1; len < n; ++len)
       for (int i = 0; i + len < n; ++i) {
         const int j = i + len;
-        best_[i][j] = len == 1 ? 1 : kImpossible;
-        const bool is_new = len > 1 && len < n - 1;
-        if (len == 1 ||
-            (is_new && (are_frozen(poly_[i], poly_[j]) || piece_.edge_length(poly_[i], poly_[j]) > longest)))
-          continue;
+        float& best = best_[i][j];
+        best = len == 1 ? 0 : kImpossible;
         for (int k = i + 1; k < j; ++k) {
-          float worst = std::min(best_[i][k], best_[k][j]);
-          if (worst <= best_[i][j] || worst <= had_ + gain_) continue;
-          worst = std::min(worst, piece_.score_of({a, poly_[i], poly_[k], poly_[j]}));
-          if (worst <= best_[i][j] || worst <= had_ + gain_) continue;
-          worst = std::min(worst, piece_.score_of({b, poly_[i], poly_[j], poly_[k]}));
-          if (worst > best_[i][j]) best_[i][j] = worst, mid_[i][j] = k;
+          float sum = best_[i][k] + best_[k][j];
+          if (!(sum < std::min(best, most)) || !add_lack(sum, {a, poly_[i], poly_[k], poly_[j]}) ||
+              !(sum < std::min(best, most)) || !add_lack(sum, {b, poly_[i], poly_[j], poly_[k]}))
+            continue;
+          if (sum < std::min(best, most)) best = sum, mid_[i][j] = k;
         }
+        const bool is_new = len > 1 && len < n - 1 && best != kImpossible;
+        if (is_new && (are_frozen(poly_[i], poly_[j]) || piece_.edge_length(poly_[i], poly_[j]) > longest))
+          best = kImpossible;
       }
     return best_[0][n - 1];
+  }
+
+  /// False if the tet must not be.
+  bool add_lack(float& sum, const Tet& c) const {
+    const float s = piece_.score_of(c);
+    if (!(s > 0) || s < guard_) return false;
+    sum += lack_of(s);
+    return true;
   }
 
   void emit(int i, int j, VertexIndex a, VertexIndex b, std::uint32_t region) {
@@ -182,19 +203,22 @@ class Swapper {
     const VertexIndex u = piece_.complex.apex(h), w = piece_.complex.apex(o);
     const Triangle f = piece_.complex.face(h);
     if (are_frozen(u, w) || (are_frozen(f[0], f[1]) && are_frozen(f[1], f[2]))) return;
-    const float had = std::min(piece_.score[t], piece_.score[o / 4]);
-    float worst = 1;
+    const float poorest = piece_.score[t];
+    if (piece_.score[o / 4] < poorest) return;  // it asks itself
+    const float had = lack_of(poorest) + lack_of(piece_.score[o / 4]), guard = std::min(poorest, kGuardOfSwap);
+    float lack = 0;
     std::array<Piece::NewTet, 3> made;
     for (int k = 0; k < 3; ++k) {
       // The face runs counter-clockwise seen from w: a ring around (u, w).
       const Tet c{u, w, f[k], f[(k + 1) % 3]};
       const float s = piece_.score_of(c);
-      worst = std::min(worst, s);
-      if (worst - had <= gain_) return;
+      if (!(s > 0) || s < guard) return;
+      lack += lack_of(s);
+      if (!(lack < had - gain_)) return;
       made[static_cast<std::size_t>(k)] = {c, piece_.region[t], s};
     }
     if (piece_.edge_length(u, w) > kLongestOfSwap) return;
-    gain_ = worst - had;
+    gain_ = had - lack;
     old_ = {t, o / 4};
     fresh_.assign(made.begin(), made.end());
     walls_.clear();
@@ -207,7 +231,7 @@ class Swapper {
   std::vector<VertexIndex> poly_;
   std::array<std::array<float, kLongestRingOfSwap + 2>, kLongestRingOfSwap + 2> best_;
   std::array<std::array<int, kLongestRingOfSwap + 2>, kLongestRingOfSwap + 2> mid_;
-  float gain_ = 0, had_ = 0;
+  float gain_ = 0, had_ = 0, guard_ = 0;
   std::vector<TetIndex> old_;
   std::vector<Piece::NewTet> fresh_;
   std::vector<Piece::NewWall> walls_;

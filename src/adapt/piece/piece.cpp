@@ -4,12 +4,19 @@
 #include "base/geometry/predicates.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace octafront::adapt {
+namespace {
+
+/// Moves that change no score by more do not ask for other connections.
+constexpr float kLittleChange = 0.04f;
+
+}  // namespace
 
 Piece::Piece(const Parts& mesh, std::span<const TetIndex> tets, std::span<const Parts::Line> lines,
              std::vector<VertexIndex>& here)
-    : lines_(lines.size()) {
+    : isotropic(mesh.isotropic), lines_(lines.size()) {
   std::vector<VertexIndex> taken;
   complex.tets.reserve(tets.size() + tets.size() / 2);
   region.reserve(tets.size());
@@ -20,6 +27,7 @@ Piece::Piece(const Parts& mesh, std::span<const TetIndex> tets, std::span<const 
       if (here[v] == kNone) {
         here[v] = static_cast<VertexIndex>(vertices.size());
         vertices.push_back(mesh.vertices[v]);
+        vertices.back().touched = vertices.back().active;
         taken.push_back(v);
       }
       v = here[v];
@@ -46,23 +54,26 @@ void Piece::connect() {
   for (TetIndex t = 0; t < score.size(); ++t) score[t] = score_of(tet(t));
 }
 
-float Piece::score_with(const Tet& t, VertexIndex v, const Vertex& as) const {
-  std::array<const Vertex*, 4> c;
-  for (int i = 0; i < 4; ++i) c[i] = t[i] == v ? &as : &vertices[t[i]];
-  const Vertex* densest = c[0];
-  for (int i = 1; i < 4; ++i)
-    if (c[i]->density > densest->density) densest = c[i];
-  const auto estimate = detail::orient3d_estimate(c[0]->at, c[1]->at, c[2]->at, c[3]->at);
-  const float s = static_cast<float>(
-      metric_score(estimate.det, densest->metric, densest->density, c[0]->at, c[1]->at, c[2]->at, c[3]->at));
-  if (estimate.certain_sign() > 0) return std::max(s, 1e-30f);
-  const int sign = estimate.certain_sign() < 0 ? -1 : orient3d(c[0]->at, c[1]->at, c[2]->at, c[3]->at);
-  return sign > 0 ? std::max(s, 1e-30f) : std::min(s, 0.0f);
+float Piece::score_of_corners(const std::array<const Vertex*, 4>& c) const {
+  const Vec3 p = c[0]->at, q = c[1]->at, r = c[2]->at, s = c[3]->at;
+  const auto estimate = detail::orient3d_estimate(p, q, r, s);
+  const int certain = estimate.certain_sign();
+  if (certain < 0 || (certain == 0 && orient3d(p, q, r, s) <= 0)) return 0;
+  double worth = 0;
+  if (isotropic) {  // a size makes all lengths longer alike: the shape alone counts
+    worth = metric_score(estimate.det, p, q, r, s);
+  } else {
+    const Vertex& d = densest_of(c);
+    worth = metric_score(estimate.det, d.metric, d.density, p, q, r, s);
+  }
+  return std::max(static_cast<float>(worth), 1e-30f);
 }
 
-bool Piece::ring(TetIndex t, VertexIndex a, VertexIndex b, EdgeRing& out) const {
+bool Piece::ring(TetIndex t, VertexIndex a, VertexIndex b, EdgeRing& out, float least) const {
   const int i = complex.corner_of(t, a), j = complex.corner_of(t, b);
-  if (complex.turn_around(t, i, j, out, [](TetIndex) { return true; }) == TetComplex::Turn::kClosed) return true;
+  const auto is_fair = [&](TetIndex next) { return score[next] >= least; };
+  const TetComplex::Turn turn = complex.turn_around(t, i, j, out, is_fair);
+  if (turn != TetComplex::Turn::kOpen) return turn == TetComplex::Turn::kClosed;
   if (complex.across[complex.opposite(out.tets.back(), out.ring[out.ring.size() - 2])] != kOutside) return false;
   // What lies on the other side of t goes before it.
   TetIndex at = t;
@@ -71,6 +82,7 @@ bool Piece::ring(TetIndex t, VertexIndex a, VertexIndex b, EdgeRing& out) const 
     const HalfFace o = complex.across[complex.opposite(at, to)];
     if (is_outside(o)) return o == kOutside;
     at = o / 4;
+    if (!is_fair(at)) return false;
     to = from;
     from = complex.apex(o);
     out.tets.insert(out.tets.begin(), at);
@@ -156,7 +168,7 @@ void Piece::replace(std::span<const TetIndex> old, std::span<const NewTet> fresh
     created_.push_back(t);
   }
   for (const TetIndex t : created_) {
-    for (const VertexIndex v : tet(t)) complex.tet_at[v] = t, vertices[v].active = true;
+    for (const VertexIndex v : tet(t)) complex.tet_at[v] = t, touch(v);
     tie(t);
   }
   for (const NewWall& w : walls) {
@@ -170,9 +182,11 @@ void Piece::replace(std::span<const TetIndex> old, std::span<const NewTet> fresh
 
 void Piece::move(VertexIndex v, const Vertex& to, std::span<const TetIndex> star, std::span<const float> scores) {
   vertices[v] = to;
+  bool far = false;
+  for (std::size_t k = 0; k < star.size(); ++k) far |= std::abs(score[star[k]] - scores[k]) > kLittleChange;
   for (std::size_t k = 0; k < star.size(); ++k) {
     score[star[k]] = scores[k];
-    for (const VertexIndex u : tet(star[k])) vertices[u].active = true;
+    for (const VertexIndex u : tet(star[k])) far ? touch(u) : loosen(u);
   }
 }
 

@@ -25,10 +25,12 @@ constexpr int kCycles = 4, kCyclesOnTheWay = 2;
 constexpr double kStepOfMetric = 2;
 /// So many steps at most, and none more once less than one change for so many elements is made.
 constexpr int kMostSteps = 20, kQuiet = 50;
+/// Less than one change for so many elements is not worth another round.
+constexpr int kDone = 200;
 /// Elements more than a million times as long as they are high are flat by rounding: of squared lengths.
 constexpr double kMostRatioOfMetric = 1e12;
-/// Elements of a better score are not connected anew, or moved: qualities of .86 and .93.
-constexpr float kGoodForSwaps = 0.8f, kGoodScore = 0.9f;
+/// Elements of a better score are not connected anew, or moved: qualities of .86 and .93; and not while a piece grows.
+constexpr float kGoodForSwaps = 0.8f, kGoodScore = 0.9f, kGoodOnTheWay = 0.3f;
 /// Rounds once no piece has grown so far that it had to be divided anew: each place is inside a piece several times.
 constexpr int kLastRounds = 2 * kCellStages;
 
@@ -52,6 +54,11 @@ Counts work_on(Piece& piece, const Guide& guide, int cycles) {
     Counts c;
     c.split = split_long_edges(piece, guide, most);
     validate(piece);
+    if (piece.vertices.size() >= most) {  // it goes on in smaller pieces: what is here is good enough for that
+      c.swap = swap_edges(piece, guide, kGoodOnTheWay);
+      sum += c, sum.grown = true;
+      break;
+    }
     c.collapse = collapse_short_edges(piece, guide);
     validate(piece);
     c.swap = swap_edges(piece, guide, kGoodForSwaps);
@@ -59,8 +66,7 @@ Counts work_on(Piece& piece, const Guide& guide, int cycles) {
     c.move = smooth_vertices(piece, guide, kGoodScore);
     validate(piece);
     sum += c;
-    if (piece.vertices.size() >= most) sum.grown = true;
-    if (sum.grown || c.changes() == 0) break;
+    if (c.changes() == 0) break;
   }
   return sum;
 }
@@ -81,6 +87,7 @@ class Adapter {
       stage_.progress(-1);
       since_growth = c.grown || on_the_way_ ? 0 : since_growth + 1;
       if (c.changes() == 0 && !c.grown && !on_the_way_ && round + 1 >= kCellStages) break;
+      if (since_growth >= kCellStages && c.changes() * kDone < mesh_.tets.size()) break;
     }
     stage_.count("splits", static_cast<double>(sum.split.done));
     stage_.count("collapses", static_cast<double>(sum.collapse.done));
@@ -120,7 +127,7 @@ class Adapter {
     std::vector<std::uint8_t> arrived(vertices, 1);
     parallel_for(vertices, [&](std::size_t v) {
       Vertex& vertex = mesh_.vertices[v];
-      vertex.exact = true, vertex.active = true;
+      vertex.exact = true, vertex.active = vertex.loose = true;
       guide_.ask(vertex);
       if (last) return;
       Metric sum{0, 0, 0, 0, 0, 0};
@@ -164,7 +171,7 @@ class Adapter {
 
   Done work_in(std::span<const TetIndex> tets, std::span<const Parts::Line> lines, std::vector<VertexIndex>& here) {
     Done done;
-    const auto is_active = [&](VertexIndex v) { return mesh_.vertices[v].active; };
+    const auto is_active = [&](VertexIndex v) { return mesh_.vertices[v].active || mesh_.vertices[v].loose; };
     if (std::none_of(tets.begin(), tets.end(),
                      [&](TetIndex t) { return std::any_of(mesh_.tets[t].begin(), mesh_.tets[t].end(), is_active); })) {
       for (const TetIndex t : tets) {
@@ -216,13 +223,14 @@ class Adapter {
     }
     for (VertexIndex v = 0; v < beside_rim.size(); ++v) {
       // What was active before this round may be so because of its other side.
-      if (beside_rim[v]) piece.vertices[v].active = true;
+      if (beside_rim[v]) piece.vertices[v].active = piece.vertices[v].loose = piece.vertices[v].touched;
       piece.vertices[v].rim = false;
     }
   }
 
   Counts merge(std::vector<Done>& done, std::span<const TetIndex> left, std::span<const Parts::Line> left_lines) {
     Parts next;
+    next.isotropic = mesh_.isotropic;
     Counts sum;
     next.vertices = std::move(mesh_.vertices);
     std::vector<VertexIndex> first_fresh;
@@ -318,6 +326,7 @@ Adapted adapt_mesh(const TetMesh& mesh, const MetricField& metric, const AdaptRu
   TakenApart taken = take_apart(mesh, rules.feature_angle);
   const Ground ground(std::move(taken.walls));
   const Guide guide{metric, ground, rules.tolerance, stage.context()};
+  taken.parts.isotropic = metric.is_isotropic();
   parallel_for(taken.parts.vertices.size(), [&](std::size_t v) { guide.ask(taken.parts.vertices[v]); });
   if (rules.keep_walls)
     for (Vertex& v : taken.parts.vertices) v.frozen = v.kind != Kind::kInner;
