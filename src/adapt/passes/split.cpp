@@ -22,6 +22,8 @@ constexpr float kLeastScoreOfSplit = 0.03f, kKeptOfPoor = 0.9f;
 /// A split that makes shorter edges than this waits until the place is connected better: otherwise elements that lie
 /// across the directions of the metric are divided without end.
 constexpr double kShortestOfSplit = 0.55;
+/// Edges longer than this do not wait so much.
+constexpr double kMuchTooLong = 1.5;
 /// Between ends whose lengths differ by less the middle is the middle.
 constexpr double kEven = 0.2;
 /// New vertices stay this far from the ends, in parts of the edge.
@@ -176,9 +178,14 @@ class Splitter {
     float worst = 1;
     for (const TetIndex t : ring_.tets) worst = std::min(worst, piece_.score[t]);
     const float least = std::max(kLeastOfSplit * worst, std::min(kLeastScoreOfSplit, kKeptOfPoor * worst));
+    double shortest = kShortestOfSplit;
+    if (made.exact) {
+      const double excess = std::max(piece_.edge_length(a, b) / kMuchTooLong, 1.0);
+      shortest /= excess * excess;
+    }
     for (const VertexIndex r : ring_.ring) {
       const Vertex& v = piece_.vertices[r];
-      if (metric_length(made.at - v.at, made.metric, v.metric) < kShortestOfSplit) return false;
+      if (piece_.length_between(made, v) < shortest) return false;
     }
     fresh_.clear();
     const auto next = static_cast<VertexIndex>(piece_.vertices.size());
