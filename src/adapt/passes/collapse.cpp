@@ -14,7 +14,7 @@ constexpr float kLeastOfCollapse = 0.3f, kLeastOfCollapseInMetric = 0.1f;
 /// No edge that collapse makes is longer than this.
 constexpr double kLongestOfCollapse = kLongest;
 /// Edges of elements of a lower score go too, where that makes the place better by so much.
-constexpr float kPoorForCollapse = 0.4f, kGainOfPoor = 1.1f;
+constexpr float kPoorForCollapse = 0.3f, kPoorInMetric = 0.55f, kGainOfPoor = 1.1f;
 constexpr int kMostRounds = 3;
 constexpr int kCheckCollapseEvery = 256;
 
@@ -78,7 +78,7 @@ class EdgeCollapser {
     for (TetIndex t = 0; t < piece_.complex.slots(); ++t) {
       if (!piece_.complex.alive(t)) continue;
       const Tet& c = piece_.tet(t);
-      const bool is_poor = piece_.score[t] < kPoorForCollapse;
+      const bool is_poor = piece_.score[t] < (piece_.isotropic ? kPoorForCollapse : kPoorInMetric);
       for (const auto& [i, j] : kTetEdges) {
         const Vertex &p = piece_.vertices[c[i]], &q = piece_.vertices[c[j]];
         if (!(waits(c[i]) || waits(c[j])) || (!may_go(p) && !may_go(q))) continue;
@@ -153,8 +153,8 @@ class EdgeCollapser {
     for (const TetIndex t : out.old) had = std::min(had, piece_.score[t]);
     if (!lengths_allow(out)) return false;
     const bool is_short = piece_.edge_length(out.gone, out.onto) < kShortest;
-    const float least = is_short ? std::min(had, piece_.isotropic ? kLeastOfCollapse : kLeastOfCollapseInMetric)
-                                 : kGainOfPoor * had;
+    const float least =
+        is_short ? std::min(had, piece_.isotropic ? kLeastOfCollapse : kLeastOfCollapseInMetric) : kGainOfPoor * had;
     out.worst = 1;
     for (const TetIndex t : out.old) {
       if (piece_.complex.has(t, out.onto)) continue;

@@ -12,6 +12,9 @@ namespace octafront::adapt {
 namespace {
 
 constexpr int kTriesOfMove = 3;
+/// What a volume is worth that is not as wanted, D + 1 / D - 2 of it: edges come nearer to their lengths. It says where
+/// to go only; what is gained is judged by shapes.
+constexpr double kPullOfSize = 0.1, kPullInMetric = 0.3, kSqrt2 = 1.4142135623730951;
 /// What S^(3/2) / D is for a regular element: see Slope.
 constexpr double kScale = 20.784609690826528;
 /// No score falls below this, or below the least one there was.
@@ -115,10 +118,11 @@ class VertexMover {
   /// Slope and curvature of the lack as the vertex moves. With S the sum of squared edges and D the six volumes, both
   /// in the metric, 1 / score is S^(3/2) / D times a constant; D is linear.
   struct Slope {
+    double pull_of_size;
     Vec3 gradient{};
     Metric hessian{0, 0, 0, 0, 0, 0};
 
-    void add(const Metric& m, double density, Vec3 x, const std::array<Vec3, 3>& face) {
+    void add(const Metric& m, double density, double wanted, Vec3 x, const std::array<Vec3, 3>& face) {
       const auto& [a, b, c] = face;
       const double sum = m.squared(x - a) + m.squared(x - b) + m.squared(x - c) + m.squared(b - a) + m.squared(c - a) +
                          m.squared(c - b);
@@ -126,26 +130,28 @@ class VertexMover {
       const double d = 1 / dot(n, x - a), root = std::sqrt(sum), f = sum * root * d;
       // f' = f (3/2 g / S - n / D), f'' = f (9 M / S + 3/4 g g' / S^2 - 3/2 (g n' + n g') / (S D) + 2 n n' / D^2).
       const Vec3 u = (1 / sum) * g, w = d * n;
-      gradient += f * (1.5 * u - w);
-      const Vec3 p = 0.75 * u - 1.5 * w;  // of the products with u
+      // Of D + 1 / D, with D = 1 as is wanted: f' = (D - 1 / D) w, f'' = 2 / D w w'.
+      const double size = kSqrt2 * wanted / d, pull = pull_of_size * kScale;
+      gradient += f * (1.5 * u - w) + pull * (size - 1 / size) * w;
+      const double ww = 2 * (f + pull / size);
       const auto entry = [&](int i, int j) {
-        return 0.5 * (u[i] * p[j] + p[i] * u[j]) - 0.75 * (u[i] * w[j] + w[i] * u[j]) + 2 * w[i] * w[j];
+        return f * (0.75 * u[i] * u[j] - 1.5 * (u[i] * w[j] + w[i] * u[j])) + ww * w[i] * w[j];
       };
-      hessian = hessian + f * ((9 / sum) * m +
-                               Metric{entry(0, 0), entry(0, 1), entry(0, 2), entry(1, 1), entry(1, 2), entry(2, 2)});
+      hessian = hessian + (9 * f / sum) * m +
+                Metric{entry(0, 0), entry(0, 1), entry(0, 2), entry(1, 1), entry(1, 2), entry(2, 2)};
     }
   };
 
   Slope slope_at(VertexIndex v, const Vertex& from) const {
-    Slope slope;
+    Slope slope{piece_.isotropic ? kPullOfSize : kPullInMetric};
     for (std::size_t k = 0; k < cells_.size(); ++k) {
       const Triangle f = piece_.complex.face(piece_.complex.opposite(star_[k], v));
       const std::array face{piece_.point(f[0]), piece_.point(f[1]), piece_.point(f[2])};
       if (piece_.isotropic) {
-        slope.add(Metric{}, 1, from.at, face);
+        slope.add(Metric{}, 1, from.density, from.at, face);
       } else {
         const Vertex& d = densest_of(cells_[k].corners);
-        slope.add(d.metric, d.density, from.at, face);
+        slope.add(d.metric, d.density, 1, from.at, face);
       }
     }
     return slope;
