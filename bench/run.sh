@@ -13,6 +13,7 @@
 #   bench/run.sh peers       surfaces kept and made anew, against TetGen, Gmsh, Netgen and CGAL -> build/release/experiments/peers.json
 #   bench/run.sh complexes   several regions in one mesh, against TetGen and Gmsh       -> docs/use/complex.md
 #   bench/run.sh improve     improvement against its targets, never worse, start meshes of others -> docs/measured/improve-bench.md
+#   bench/run.sh adapt_loops  meshes adapted to small and large sizes in turn, ten times -> docs/measured/adapt-isotropic.md
 #   bench/run.sh formats     how fast meshes are written, every format beside a plain write -> docs/measured/formats-bench.md
 #   bench/run.sh second_order   all clean models, balls, tori, cylinders: proven? how true? at what cost? -> docs/how/second-order.md
 #   bench/run.sh repair      the defective models, repaired and meshed; --near N: held to 1 ‰, too -> docs/measured/repair-status.md
@@ -34,8 +35,8 @@ cd "$(dirname "$0")/.."
 source scripts/lib/apt.sh
 
 case ${1:-} in
-  status | derived | pipeline | surface | elements | gradation | volume | graded | peers | complexes | improve | formats | second_order | dry_run | repair | known_answers | damage | images | thin | budget | cad | layers | layers_shapes | layers_flows | layers_peers | layers_solved | inside | periodic) ;;
-  *) sed -n '2,31s/^# \{0,1\}//p' "$0"; exit 2 ;;
+  status | derived | pipeline | surface | elements | gradation | volume | graded | peers | complexes | improve | adapt_loops | formats | second_order | dry_run | repair | known_answers | damage | images | thin | budget | cad | layers | layers_shapes | layers_flows | layers_peers | layers_solved | inside | periodic) ;;
+  *) sed -n '2,32s/^# \{0,1\}//p' "$0"; exit 2 ;;
 esac
 need_packages "${build_packages[@]}" python3
 [ "$1" != surface ] || need_packages gmsh netgen libcgal-dev libgmp-dev libmpfr-dev
@@ -61,6 +62,7 @@ cmake --preset release -DOCTAFRONT_BUILD_TESTS=$tests >/dev/null
 cmake --build --preset release --target octafront_cli octafront_evaluate octafront_judge_surface
 [ "$1" != cad ] || cmake --build --preset release --target octafront_cad_program octafront_judge_cad
 [ "$1" != derived ] || [ -d models/derived ] || scripts/derive-models.sh build/release/cli/octafront
+[ "$1" != adapt_loops ] || cmake --build --preset release --target octafront_adapt_loops
 [ "$1" != improve ] || cmake --build --preset release --target octafront_never_worse
 [ "$1" != formats ] || { cmake --build --preset release --target octafront_write_formats; exec python3 bench/formats.py build/release "${@:2}"; }
 [ "$1" != second_order ] || cmake --build --preset release --target octafront_second_order

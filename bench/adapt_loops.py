@@ -1,0 +1,72 @@
+"""Adapts meshes of real models to a small size and to a large one in turn, ten times, and writes docs/measured/adapt-isotropic.md: how
+fast, how good, and what is left of the body.
+
+Usage: bench/run.sh adapt_loops [--loops N] [--only SUBSTRING]
+On one thread; times are CPU seconds of a whole call, with the checks before and after.
+"""
+import argparse
+import json
+import pathlib
+import subprocess
+import tempfile
+
+from origin import written_by
+
+# name, surface, small and large size in parts of the diagonal of its box
+MODELS = [("bunny", "models/clean/bunny00.off", 1 / 60, 1 / 30), ("armadillo", "models/clean/armadillo.off", 1 / 80, 1 / 40),
+          ("pinion", "models/clean/pinion.off", 1 / 60, 1 / 30), ("bracket", "samples/bracket.stl", 1 / 80, 1 / 30),
+          ("knot", "samples/torus_knot.ply", 1 / 70, 1 / 45)]
+
+
+def rows_of(build, surface, small, large, loops):
+    """The volume of the mesh that all begins with, and a record for each adaptation; `before`: elements that came."""
+    with tempfile.TemporaryDirectory() as folder:
+        mesh = pathlib.Path(folder, "mesh.msh")
+        subprocess.run([build / "cli/octafront", "mesh", surface, "-o", mesh, "--elements", "20000", "-q"], check=True)
+        told = subprocess.run([build / "bench/octafront_adapt_loops", mesh, str(small), str(large), str(loops)],
+                              capture_output=True, text=True, check=True)
+    lines = [json.loads(line) for line in told.stdout.splitlines()]
+    for before, record in zip(lines, lines[1:]):
+        record["before"] = before["tets"]
+    return lines[0]["volume"], lines[1:]
+
+
+def row(name, which, record, volume):
+    return (f"| {name} | {which} | {record['tets']:,} | {max(record['tets'], record['before']) / record['cpu'] / 1000:.0f} | "
+            f"{100 * record['fitting'] / record['edges']:.1f} % | {record['longest']:.2f} | {record['beta_mean']:.3f} | {record['beta_min']:.3f} | "
+            f"{record['poor']} | {100 * (record['volume'] / volume - 1):+.2f} % |")
+
+
+def page(results, loops):
+    lines = ["# Adaptation to sizes, and ten times in turn", "",
+             f"{written_by('bench/run.sh adapt_loops')}, on one thread: a mesh of about 20,000 elements is adapted to a small uniform size, what comes of it to a large "
+             f"one, and so on, {loops} loops, each from the mesh that the one before made and nothing else. *k/s*: thousand elements for each CPU second of a whole call, checks "
+             "before and after included; those that were made, or those that came if they were more. *fit*, *longest*: edges from √½ to √2 times as long as is wanted, and the longest, in parts of what is wanted. "
+             "*poor*: elements with β < .3, forced or not. *volume* against that of the mesh that all began with.", "",
+             "| model | adaptation | elements | k/s | fit | longest | mean β | least β | poor | volume |", "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |"]
+    for name, volume, records in results:
+        lines += [row(name, "first, small", records[0], volume), row(name, "first, large", records[1], volume),
+                  row(name, "last, small", records[-2], volume), row(name, "last, large", records[-1], volume)]
+    return "\n".join(lines) + "\n"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("build", type=pathlib.Path)
+    parser.add_argument("--loops", type=int, default=10)
+    parser.add_argument("--only", default="")
+    parser.add_argument("--output", default="docs/measured/adapt-isotropic.md", type=pathlib.Path)
+    options = parser.parse_args()
+    results = []
+    for name, surface, small, large in MODELS:
+        if options.only not in name:
+            continue
+        volume, records = rows_of(options.build, surface, small, large, options.loops)
+        results.append((name, volume, records))
+        for record in records:
+            print(row(name, f"{record['size']:.3g}", record, volume), flush=True)
+    options.output.write_text(page(results, options.loops))
+
+
+if __name__ == "__main__":
+    main()
