@@ -31,14 +31,16 @@ struct Guide {
 
 struct PassCount {
   std::uint64_t tried = 0, done = 0;
+  bool unfinished = false;  ///< what is left to do waits for other pieces
   PassCount& operator+=(const PassCount& o) {
-    tried += o.tried, done += o.done;
+    tried += o.tried, done += o.done, unfinished |= o.unfinished;
     return *this;
   }
 };
 
-/// Splits edges longer than kLongest, the longest ones first by powers of sqrt 2, until none is left or the piece has
-/// so many vertices. New vertices of walls and lines go to the ground, as far as the tets around allow.
+/// Splits edges longer than kLongest, the longest ones first by powers of sqrt 2, until none is left, the piece has so
+/// many vertices, or what is left is much shorter than edges of the rim. New vertices of walls and lines go to the
+/// ground, as far as the tets around allow.
 PassCount split_long_edges(Piece& piece, const Guide& guide, std::size_t most_vertices);
 
 /// Collapses edges shorter than kShortest, the shortest ones first, where that leaves no edge that is too long and no

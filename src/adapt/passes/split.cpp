@@ -28,6 +28,8 @@ constexpr double kMuchTooLong = 1.5;
 constexpr double kEven = 0.2;
 /// New vertices stay this far from the ends, in parts of the edge.
 constexpr double kLeastPart = 0.2;
+/// Edges inside become so many times as short as those of the rim: more would leave poor elements between them.
+constexpr double kFinerThanRim = 2.5;
 constexpr int kCheckEvery = 256;
 
 class Splitter {
@@ -38,10 +40,18 @@ class Splitter {
     PassCount count;
     for (TetIndex t = 0; t < piece_.complex.slots(); ++t)
       if (piece_.complex.alive(t) && is_active(t)) enqueue(t);
+    const int least = least_level();
     for (int level = kLevels - 1; level >= 0; --level) {
+      if (level < least && count.done > 0) {
+        count.unfinished = true;
+        return count;
+      }
       // What comes of these may wait in the same list.
       for (std::size_t k = 0; k < waiting_[level].size(); ++k) {
-        if (piece_.vertices.size() >= most_vertices) return count;
+        if (piece_.vertices.size() >= most_vertices) {
+          count.unfinished = true;
+          return count;
+        }
         if (++steps_ % kCheckEvery == 0) guide_.context.check();
         const TetIndex t = waiting_[level][k];
         if (!piece_.complex.alive(t)) continue;
@@ -74,6 +84,18 @@ class Splitter {
     int level = 0;
     for (double limit = 2; limit < length && level + 1 < kLevels; limit *= kLongest) ++level;
     return level;
+  }
+
+  /// Edges of the rim wait for another piece: what is much shorter than they are does so, too.
+  int least_level() const {
+    double longest = 0;
+    for (HalfFace h = 0; h < piece_.complex.across.size(); ++h) {
+      if (piece_.complex.across[h] != kBeyondRim || !piece_.complex.alive(h / 4)) continue;
+      const Triangle f = piece_.complex.face(h);
+      for (int i = 0; i < 3; ++i)
+        if (may_split(f[i], f[(i + 1) % 3])) longest = std::max(longest, piece_.edge_length(f[i], f[(i + 1) % 3]));
+    }
+    return level_of(longest / kFinerThanRim);
   }
 
   void enqueue(TetIndex t) {

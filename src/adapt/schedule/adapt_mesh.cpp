@@ -54,8 +54,10 @@ Counts work_on(Piece& piece, const Guide& guide, int cycles) {
     Counts c;
     c.split = split_long_edges(piece, guide, most);
     validate(piece);
-    if (piece.vertices.size() >= most) {  // it goes on in smaller pieces: what is here is good enough for that
+    if (c.split.unfinished) {  // it goes on in smaller pieces: what is here is good enough for that
       c.swap = swap_edges(piece, guide, kGoodOnTheWay);
+      c.move = smooth_vertices(piece, guide, kGoodOnTheWay);
+      for (Vertex& v : piece.vertices) v.active = v.loose = true;
       sum += c, sum.grown = true;
       break;
     }
