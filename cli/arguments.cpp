@@ -642,6 +642,17 @@ void declare_adaptation(CLI::App& command, Arguments& a) {
       ->type_name("D");
   group->add_option("--feature-angle", a.options.surface.feature_angle, "Edges that bend by more degrees are kept [40]")
       ->type_name("DEG");
+  group
+      ->add_option("--only", a.only,
+                   "What may change, all else stays: box:X0,Y0,Z0,X1,Y1,Z1, sphere:X,Y,Z,R, or a region, patch, curve "
+                   "or set by its name; several times if wanted")
+      ->type_name("PLACE");
+  group->add_option("--halo", a.options.adapt.halo, "Layers of elements around --only that may change, too [2]")
+      ->type_name("N");
+  group
+      ->add_option("--map", a.map_file,
+                   "Where old vertices and elements are now: .json (two arrays) or .csv, by numbers from 0; -1: gone")
+      ->type_name("FILE");
 }
 
 void declare_order(CLI::App& command, Arguments& a) {

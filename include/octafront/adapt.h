@@ -32,7 +32,8 @@ struct AdaptedMesh {
   TetMesh mesh;
   Report report;
   MetricSummary before, after;
-  std::vector<VertexIndex> old_of_new;  ///< per vertex its number in the mesh that was given; kNone: new
+  std::vector<VertexIndex> old_of_new;   ///< per vertex its number in the mesh that was given; kNone: new
+  std::vector<TetIndex> old_tet_of_new;  ///< per tet the one that it was, with all corners at their places; kNone: new
 };
 
 /// Changes a valid mesh by splits, collapses, swaps and moves until its edges are as long as `options.size` wants them
@@ -40,6 +41,12 @@ struct AdaptedMesh {
 /// smooth surface that the given ones stand for, within SurfaceOptions::max_deviation of it, by default .4 % of the
 /// diagonal; patches, regions, sheets, curves, sets of faces, edges and elements keep their places, corners their
 /// points. Features are found by options.surface.feature_angle. A mesh of second order is taken as a linear one.
+///
+/// Where options.adapt.only names places, only their elements and those of a halo of options.adapt.halo layers around
+/// them may change. All others, their vertices, faces and edges keep their bits and numbers; so does what stays the
+/// same inside. New items get the numbers of those that went, then come behind all; only if fewer are new than went,
+/// the last ones of those that stay get the numbers left over. `before`, `after` and the checks are of the elements
+/// that may change; what else there is need not even be valid.
 ///
 /// Example: Options o; o.size.size = 2; adapt_existing(read_mesh("part.msh"), o).mesh.
 ///

@@ -18,7 +18,7 @@ struct OptionInfo {
   std::string_view name;   ///< as on the command line, with underscores: "keep_surface"
   std::string_view field;  ///< what messages of the library call it, in backquotes: "keep"
   std::string_view group;  ///< e.g. "Sizes"
-  std::string_view tasks;  ///< which of "mesh", "surface", "size", "improve" heed it, separated by blanks
+  std::string_view tasks;  ///< which of "mesh", "surface", "size", "improve", "adapt" heed it, separated by blanks
   Kind kind = Kind::kNumber;
   std::vector<std::string_view> choices;  ///< the values of a kChoice
   std::string_view help;                  ///< a sentence, with units

@@ -213,6 +213,15 @@ enum class Method {
   kRecover,  ///< the input's triangles kept and filled with as few inner points as possible: coarse, exact, of no size
 };
 
+/// How a mesh that is there is changed (octafront/adapt.h).
+struct AdaptOptions {
+  /// The places that may change, with semicolons between: "box:X0,Y0,Z0,X1,Y1,Z1", "sphere:X,Y,Z,R" (elements whose own
+  /// boxes reach into it), or a name: of a region or set of elements, or of a patch, curve or other set, which stands
+  /// for the elements that touch it. Empty: all may change.
+  std::string only;
+  int halo = 2;  ///< layers of elements around these places that may change, too; 0 to 100
+};
+
 /// Everything that steers generate().
 struct Options {
   Method method = Method::kOctreeAft;  ///< kRecover implies surface.keep
@@ -221,6 +230,7 @@ struct Options {
   LayersOptions layers;
   VolumeOptions volume;
   ImproveOptions improve;
+  AdaptOptions adapt;
   /// Names of patches inside (sheets, walls between regions), separated by commas, along which the mesh is opened:
   /// split_patches() of octafront/split.h.
   std::string split;

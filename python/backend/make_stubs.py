@@ -190,7 +190,7 @@ def size_field(points: npt.ArrayLike | Input, triangles: npt.ArrayLike | None = 
 def improve(mesh: Tets | Path, *, surface: Body | Path | None = None,
 {improve}) -> Mesh: ...
 def adapt(mesh: Tets | Path, *, sizes: npt.ArrayLike | None = None,
-{size}) -> Mesh: ...
+{adapt}) -> Mesh: ...
 def repair(points: npt.ArrayLike | Body, triangles: npt.ArrayLike | None = None) -> Surface: ...
 def mend(points: npt.ArrayLike | Body, triangles: npt.ArrayLike | None = None, *,
          tolerance: float | None = None, way: Literal["auto", "wrap"] = "auto", distance: float | None = None,
@@ -263,7 +263,7 @@ def keywords(task):
 
 def stubs():
     text = TEMPLATE.replace("{of_images}", OF_IMAGES)
-    for task in ("mesh", "surface", "size", "improve"):
+    for task in ("mesh", "surface", "size", "improve", "adapt"):
         text = text.replace("{" + task + "}", keywords(task))
     return text
 

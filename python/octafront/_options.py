@@ -35,28 +35,28 @@ _OF_INTAKE = [
 ]
 # Beside the table of options: name, which functions heed it, what it is.
 _FURTHER = [(name, "mesh surface size", text) for name, text in _OF_INTAKE] + [
-    ("regions", "mesh surface size",
+    ("regions", "mesh surface size adapt",
      "Places with a size of their own: a list of {\"box\": [[x, y, z], [x, y, z]], \"size\": h}, {\"sphere\": [x, y, "
      "z], \"radius\": r, \"size\": h}, {\"point\": [x, y, z], \"size\": h}, or an array (n, 4) of points and sizes, or "
      "a file with either"),
-    ("point_sizes", "mesh surface size",
+    ("point_sizes", "mesh surface size adapt",
      "Sizes at the vertices of the surface: an array (n, 4) of points and sizes, or a file: VTU, VTP, a table"),
-    ("size_of", "mesh surface size",
+    ("size_of", "mesh surface size adapt",
      "{name: edge length} of regions (their boundary and inside), patches and curves, by their names"),
-    ("size_near", "mesh surface size",
+    ("size_near", "mesh surface size adapt",
      "{place: (edge length, distance)} in a region, on a patch, along a curve, by their names, or at a point (x, y, z): "
      "rising from there to nothing asked at the distance"),
-    ("size_field", "mesh surface size",
+    ("size_field", "mesh surface size adapt",
      "Sizes on a mesh: (points, tetrahedra or triangles, sizes at points or of elements), or a file \"old.vtu:h\" with "
      "the name of its field. Or all sizes, alone: a SizeField, or a file that one wrote"),
-    ("unit", "mesh surface size",
+    ("unit", "mesh surface size adapt",
      "What the input's coordinates count, for lengths with a unit of their own, such as size=\"2mm\": um, mm, cm, m, in or "
      "ft; files may say it. Of CAD files the mesh counts it, too, and lengths without a unit [mm]"),
     ("after_pass", "mesh improve", "after_pass(name, worst), told of every pass of improvement"),
-    ("progress", "mesh surface size improve",
+    ("progress", "mesh surface size improve adapt",
      "progress(phase, fraction), told how far the run is; fraction is None where it is unknown. What returns False ends "
      "the run with Cancelled"),
-    ("threads", "mesh surface size improve", "Threads at most; 0: all. The result is the same"),
+    ("threads", "mesh surface size improve adapt", "Threads at most; 0: all. The result is the same"),
 ]
 
 
@@ -75,7 +75,7 @@ def _further(task):
 
 @functools.lru_cache(maxsize=None)
 def keywords_of(task):
-    """All keywords of a task: "mesh", "surface", "size" or "improve"."""
+    """All keywords of a task: "mesh", "surface", "size", "improve" or "adapt"."""
     return [row["name"] for row in _rows(task)] + [name for name, _ in _further(task)]
 
 
@@ -179,7 +179,7 @@ def _is_file(value):
 def _is_known(function, task, name):
     if name in keywords_of(task):
         return True
-    others = [other for other in ("mesh", "surface", "size", "improve") if name in keywords_of(other)]
+    others = [other for other in ("mesh", "surface", "size", "improve", "adapt") if name in keywords_of(other)]
     near = difflib.get_close_matches(name, keywords_of(task), n=1, cutoff=0.6)
     hint = f"; did you mean '{near[0]}'?" if near else ""
     if others:

@@ -26,7 +26,7 @@ def fields(header):
         body = re.sub(r"///?.*", "", body)
         for statement in body.split(";"):
             match = re.match(r"\s*[\w:<>, ()*&]+[\s>](\w+)\s*(=.*)?$", statement.replace("\n", " "))
-            if match and not re.fullmatch(r"size|surface|layers|volume|improve", match[1]) or match and prefix:
+            if match and not re.fullmatch(r"size|surface|layers|volume|improve|adapt", match[1]) or match and prefix:
                 found.add(prefix + match[1])
     return found
 
@@ -42,7 +42,8 @@ def main():
                 for f in sorted(declared - reached) if f.split(".")[-1] not in MORE_THAN_ONE_VALUE]
     if len(declared) < 30:
         breaches.append(f"only {len(declared)} fields found in options.h: this check no longer reads it")
-    usage = subprocess.run([program, "mesh", "--help"], check=True, capture_output=True, text=True).stdout
+    usage = "".join(subprocess.run([program, command, "--help"], check=True, capture_output=True, text=True).stdout
+                    for command in ("mesh", "adapt"))
     typed = set(re.findall(r"--([\w-]+)", usage))
     for name in sorted(names - NOT_ON_THE_LINE):
         if name.replace("_", "-") not in typed:

@@ -324,14 +324,35 @@ MetricFit fit_of(const TetMesh& mesh, const MetricField& metric) {
   return fit;
 }
 
+namespace {
+
+/// Freezes the vertices, and leaves out the tets, and the lines between vertices of no other, that cannot change.
+void freeze(Parts& parts, std::span<const std::uint8_t> frozen) {
+  for (VertexIndex v = 0; v < frozen.size(); ++v) parts.vertices[v].frozen = frozen[v] != 0;
+  std::vector<std::uint8_t> used(parts.vertices.size(), 0);
+  std::size_t count = 0;
+  for (TetIndex t = 0; t < parts.tets.size(); ++t) {
+    const Tet& c = parts.tets[t];
+    if (std::all_of(c.begin(), c.end(), [&](VertexIndex v) { return frozen[v] != 0; })) continue;
+    for (const VertexIndex v : c) used[v] = 1;
+    parts.tets[count] = c, parts.region[count] = parts.region[t], parts.wall[count] = parts.wall[t];
+    ++count;
+  }
+  parts.tets.resize(count), parts.region.resize(count), parts.wall.resize(count);
+  std::erase_if(parts.lines, [&](const Parts::Line& l) { return !used[l.edge[0]] || !used[l.edge[1]]; });
+}
+
+}  // namespace
+
 Adapted adapt_mesh(const TetMesh& mesh, const MetricField& metric, const AdaptRules& rules, const Stage& stage) {
   TakenApart taken = take_apart(mesh, rules.feature_angle);
+  if (!rules.frozen.empty()) freeze(taken.parts, rules.frozen);
   const Ground ground(std::move(taken.walls));
   const Guide guide{metric, ground, rules.tolerance, stage.context()};
   taken.parts.isotropic = metric.is_isotropic();
   parallel_for(taken.parts.vertices.size(), [&](std::size_t v) { guide.ask(taken.parts.vertices[v]); });
   if (rules.keep_walls)
-    for (Vertex& v : taken.parts.vertices) v.frozen = v.kind != Kind::kInner;
+    for (Vertex& v : taken.parts.vertices) v.frozen |= v.kind != Kind::kInner;
   Adapter(taken.parts, guide, stage).run();
   Adapted out;
   out.mesh = put_together(taken.parts, taken.labels, mesh, out.old_of_new);

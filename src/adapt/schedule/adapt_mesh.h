@@ -10,6 +10,7 @@
 #include "base/core/stage.h"
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace octafront::adapt {
@@ -18,6 +19,10 @@ struct AdaptRules {
   double feature_angle = 40;  ///< degrees
   double tolerance = 0;       ///< how far walls may stray from the smooth surface of the input; input units
   bool keep_walls = false;    ///< vertices on walls, and all edges between them, stay as they are
+  /// Per vertex: it stays, and so does what lies between vertices that do; elements with none but such vertices are not
+  /// in the result. Empty: all may change. The faces of the mesh that are no walls of it are where it was cut out of
+  /// another: their vertices must be frozen.
+  std::span<const std::uint8_t> frozen = {};
 };
 
 /// How a mesh fits a metric, by the measures of the Unstructured Grid Adaptation Working Group.

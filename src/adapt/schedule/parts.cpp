@@ -76,7 +76,8 @@ class TakerApart {
       const Triangle corners = corners_of(mesh_.tets, h);
       const std::uint32_t* f = listed.find(face_key(corners));
       const HalfFace o = across[h];
-      const bool divides = o == kNone || out_.parts.region[o / 4] != out_.parts.region[h / 4];
+      // What lies across a cut is not here, and not outside either.
+      const bool divides = o != kNone && out_.parts.region[o / 4] != out_.parts.region[h / 4];
       if (!f && !divides) continue;
       const std::uint32_t part = numbers.of(f ? labels[*f] : Labels::Label{kNone});
       out_.parts.wall[h / 4][h % 4] = (part + 1) | (o == kNone ? kOuter : 0);
@@ -174,8 +175,12 @@ class TakerApart {
         continue;
       }
       for (const VertexIndex v : table.edges[e]) touching_.push_back(v);
-      for (Parts::Line& l : out_.parts.lines)
-        if (l.edge == table.edges[e]) l.path = Parts::kStays;
+      std::vector<Parts::Line>& lines = out_.parts.lines;
+      const auto line = std::lower_bound(lines.begin(), lines.end(), table.edges[e],
+                                         [](const Parts::Line& l, const Edge& edge) { return l.edge < edge; });
+      if (line == lines.end() || line->edge != table.edges[e] || line->path == Parts::kStays) continue;
+      out_.labels.staying[line->edge] = out_.labels.paths[line->path];
+      line->path = Parts::kStays;
     }
     std::vector<std::uint32_t> fan(mesh_.points.size(), kNone);
     for (std::uint32_t c = 0; c < 3 * triangles; ++c) {
@@ -277,10 +282,13 @@ TetMesh put_together(const Parts& parts, const Labels& labels, const TetMesh& be
   for (Parts::Line& l : lines) l.edge = sorted_edge(number[l.edge[0]], number[l.edge[1]]);
   std::sort(lines.begin(), lines.end(), [](const auto& a, const auto& b) { return a.edge < b.edge; });
   for (const Parts::Line& l : lines) {
-    if (l.path == Parts::kStays || labels.paths[l.path][0] == kNone) continue;
-    add_to_sets(mesh.sets, labels.paths[l.path], static_cast<std::uint32_t>(mesh.curve_edges.size()));
+    const Labels::Label& label = l.path == Parts::kStays
+                                     ? labels.staying.at(sorted_edge(old_of_new[l.edge[0]], old_of_new[l.edge[1]]))
+                                     : labels.paths[l.path];
+    if (label[0] == kNone) continue;
+    add_to_sets(mesh.sets, label, static_cast<std::uint32_t>(mesh.curve_edges.size()));
     mesh.curve_edges.push_back(l.edge);
-    if (!before.curve.empty()) mesh.curve.push_back(labels.paths[l.path][0]);
+    if (!before.curve.empty()) mesh.curve.push_back(label[0]);
   }
   for (std::size_t s = 0; s < mesh.sets.size(); ++s) {
     if (mesh.sets[s].kind == NamedSet::Kind::kNodes)

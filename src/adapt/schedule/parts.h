@@ -9,6 +9,7 @@
 #include "adapt/piece/piece.h"
 
 #include <cstdint>
+#include <map>
 #include <vector>
 
 namespace octafront::adapt {
@@ -16,9 +17,10 @@ namespace octafront::adapt {
 /// What the numbers of parts stand for. Each is a list: its number in the mesh, then the sets that it is in.
 struct Labels {
   using Label = std::vector<std::uint32_t>;
-  std::vector<Label> walls;    ///< patch first; kNone: between regions and not listed
-  std::vector<Label> regions;  ///< region first
-  std::vector<Label> paths;    ///< of each line: curve first; kNone: a feature alone
+  std::vector<Label> walls;       ///< patch first; kNone: between regions and not listed
+  std::vector<Label> regions;     ///< region first
+  std::vector<Label> paths;       ///< of each line: curve first; kNone: a feature alone
+  std::map<Edge, Label> staying;  ///< of edges that must not be divided (Parts::kStays), as the mesh numbers them
 };
 
 struct TakenApart {
@@ -28,7 +30,8 @@ struct TakenApart {
 };
 
 /// Requires a valid linear mesh. Lines are where walls bend by `feature_angle` (degrees), end, or meet others, and the
-/// mesh's curves; vertices where the boundary touches itself stay.
+/// mesh's curves; vertices where the boundary touches itself stay. Faces of one tet that the boundary does not list are
+/// no walls: the mesh was cut out of another there.
 TakenApart take_apart(const TetMesh& mesh, double feature_angle);
 
 /// The mesh again, with the names of `before`: vertices that were there in their order, new ones behind. `old_of_new`

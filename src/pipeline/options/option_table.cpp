@@ -31,7 +31,7 @@ OptionInfo about(std::string_view name, std::string_view field, std::string_view
 
 std::vector<Row<Options>> size_rows() {
   const auto of = [](std::string_view name, std::string_view help) {
-    return about(name, name, "Sizes", "mesh surface size", help);
+    return about(name, name, "Sizes", "mesh surface size adapt", help);
   };
   using Interior = SizeOptions::Interior;
   return {
@@ -86,13 +86,14 @@ std::vector<Row<Options>> surface_rows() {
           [](auto& o) -> auto& { return o.surface.keep; }),
       row(
           of("feature_angle", "Edges that bend by more degrees than this are kept; without a value 40, of images 85",
-             {}, "mesh surface size improve"),
+             {}, "mesh surface size improve adapt"),
           [](auto& o) -> auto& { return o.surface.feature_angle; }),
       row(
           of("max_deviation",
              "Smaller elements where the surface would stray farther from the input, in units of the input, and how "
              "far folds and needles of it give way; 0: not at all; without a value .4 % of the diagonal with automatic "
-             "sizes, else none"),
+             "sizes, else none; in adaptation how far it may stray from the smooth surface",
+             {}, "mesh surface size adapt"),
           [](auto& o) -> auto& { return o.surface.max_deviation; }),
       row(
           of("normal_deviation",
@@ -250,10 +251,26 @@ std::vector<Row<Options>> improve_rows() {
   };
 }
 
+std::vector<Row<Options>> adapt_rows() {
+  const auto of = [](std::string_view name, std::string_view help) {
+    return about(name, name, "Adaptation", "adapt", help);
+  };
+  return {
+      row(
+          of("only",
+             "Places that may change, with semicolons between: box:X0,Y0,Z0,X1,Y1,Z1, sphere:X,Y,Z,R, or names of "
+             "regions, patches, curves and sets; all else keeps its bits and numbers"),
+          [](auto& o) -> auto& { return o.adapt.only; }),
+      row(
+          of("halo", "Layers of elements around the places of `only` that may change, too"),
+          [](auto& o) -> auto& { return o.adapt.halo; }),
+  };
+}
+
 const std::vector<Row<Options>>& rows() {
   static const std::vector<Row<Options>> all = [] {
     std::vector<Row<Options>> list;
-    for (const auto& part : {size_rows(), surface_rows(), layer_rows(), volume_rows(), improve_rows()})
+    for (const auto& part : {size_rows(), surface_rows(), layer_rows(), volume_rows(), improve_rows(), adapt_rows()})
       list.insert(list.end(), part.begin(), part.end());
     return list;
   }();

@@ -5,8 +5,10 @@
 #include <octafront/validity.h>
 
 #include "adapt/schedule/adapt_mesh.h"
+#include "adapt/schedule/section.h"
 #include "base/geometry/self_intersection.h"
 #include "base/mesh/known_surface.h"
+#include "pipeline/stages/adapt_section.h"
 #include "pipeline/stages/stages.h"
 #include "sizing/search/make_size_field.h"
 #include "sizing/sources/check_size_options.h"
@@ -39,17 +41,15 @@ class MetricOfFunction : public adapt::MetricField {
   const MetricFunction& function_;
 };
 
-void require_adaptable(const TetMesh& mesh, const RunContext& context) {
-  if (const auto defect = first_defect(mesh, context)) throw InputError("not a valid mesh: " + *defect);
+/// Refuses what is not valid; where only parts may change these are looked at when they are known.
+void require_adaptable(const TetMesh& mesh, const Run& run) {
+  if (run.options.adapt.only.empty())
+    if (const auto defect = first_defect(mesh, run.context())) throw InputError("not a valid mesh: " + *defect);
   const char* what = !mesh.wide_cells.empty()       ? "wedges or pyramids (boundary layers)"
                      : !mesh.periodic_nodes.empty() ? "periodic faces"
                      : !mesh.split_faces.empty()    ? "faces whose nodes were doubled"
                                                     : nullptr;
   if (what) throw InputError(fmt::format("the mesh has {}; meshes with those cannot be adapted: mesh anew", what));
-}
-
-MetricSummary summary_of(const adapt::MetricFit& fit) {
-  return {fit.edges, fit.fitting, fit.shortest, fit.longest, fit.quality_min, fit.quality_mean, fit.complexity};
 }
 
 void tell_fit(const MetricSummary& fit, const Stage& stage) {
@@ -75,22 +75,33 @@ adapt::Adapted adapted_without_crossings(const TetMesh& given, const adapt::Metr
   return adapt::adapt_mesh(given, metric, rules, stage);
 }
 
-AdaptedMesh adapt_by(const TetMesh& given, const adapt::MetricField& metric, Run& run) {
-  AdaptedMesh result;
-  const double diagonal = bounding_box(given.points).diagonal();
-  const SurfaceOptions& surface = run.options.surface;
-  const adapt::AdaptRules rules{surface.angle_of_features(), surface.max_deviation.value_or(kStrayOfAdapt * diagonal)};
-  run.report.input_volume = enclosed_volume(boundary_of(given));
+void adapt_whole(const TetMesh& given, const adapt::MetricField& metric, const adapt::AdaptRules& rules,
+                 AdaptedMesh& result, Run& run) {
   run.stage("adapt", [&](const Stage& stage) {
     result.before = summary_of(adapt::fit_of(given, metric));
     adapt::Adapted made = adapted_without_crossings(given, metric, rules, stage);
     result.mesh = std::move(made.mesh);
     result.old_of_new = std::move(made.old_of_new);
+    result.old_tet_of_new = adapt::same_tets(given, result.mesh, result.old_of_new);
     result.after = summary_of(adapt::fit_of(result.mesh, metric));
-    tell_fit(result.after, stage);
   });
   check_result(result.mesh, nullptr, run);
-  describe(result.mesh, run.report);
+}
+
+AdaptedMesh adapt_by(const TetMesh& given, const adapt::MetricField& metric, Run& run) {
+  AdaptedMesh result;
+  const double diagonal = bounding_box(given.points).diagonal();
+  const SurfaceOptions& surface = run.options.surface;
+  adapt::AdaptRules rules;
+  rules.feature_angle = surface.angle_of_features();
+  rules.tolerance = surface.max_deviation.value_or(kStrayOfAdapt * diagonal);
+  run.report.input_volume = enclosed_volume(boundary_of(given));
+  const bool all = run.options.adapt.only.empty();
+  (all ? adapt_whole : adapt_section)(given, metric, rules, result, run);
+  run.stage("summary", [&](const Stage& stage) {
+    tell_fit(result.after, stage);
+    describe(result.mesh, run.report);
+  });
   result.report = run.close();
   return result;
 }
@@ -112,7 +123,7 @@ AdaptedMesh adapt_existing(const TetMesh& mesh, const Options& options, const Ru
   Run run(options, context);
   TetMesh given = mesh;
   make_linear(given);
-  run.stage("check of the input", [&](const Stage& stage) { require_adaptable(given, stage.context()); });
+  run.stage("check of the input", [&](const Stage&) { require_adaptable(given, run); });
   const adapt::SizeMetric metric(sizes_for(given, run));
   return adapt_by(given, metric, run);
 }
@@ -122,7 +133,7 @@ AdaptedMesh adapt_to_metric(const TetMesh& mesh, const MetricFunction& metric, c
   Run run(options, context);
   TetMesh given = mesh;
   make_linear(given);
-  run.stage("check of the input", [&](const Stage& stage) { require_adaptable(given, stage.context()); });
+  run.stage("check of the input", [&](const Stage&) { require_adaptable(given, run); });
   return adapt_by(given, MetricOfFunction(metric), run);
 }
 

@@ -37,6 +37,7 @@ void check_options(const Options& options) {
   check_shell_options(options);
   check_periodic_options(options);
   check_improve_options(options.improve);
+  require(options.adapt.halo >= 0 && options.adapt.halo <= 100, "`halo` is a number of layers, from 0 to 100");
   require(options.order == 1 || options.order == 2, "`order` is 1 for linear elements or 2 for those of second order");
   require(!(surface.keep && traits_of(options.method).makes_own_boundary()),
           "the octree method makes a boundary of its own: it cannot keep the input's triangles");

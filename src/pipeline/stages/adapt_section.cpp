@@ -1,0 +1,111 @@
+#include "pipeline/stages/adapt_section.h"
+
+#include <octafront/error.h>
+#include <octafront/validity.h>
+
+#include "adapt/schedule/section.h"
+#include "base/geometry/self_intersection.h"
+#include "pipeline/stages/chosen_tets.h"
+
+#include <algorithm>
+
+#include <fmt/core.h>
+
+namespace octafront {
+namespace {
+
+std::size_t count_of(const std::vector<std::uint8_t>& marks) {
+  return static_cast<std::size_t>(std::count(marks.begin(), marks.end(), 1));
+}
+
+void require_valid_section(const TetMesh& whole, const adapt::Section& section, const Stage& stage) {
+  const auto defect = first_defect(adapt::closed_part(section.mesh, section.loose), stage.context());
+  if (!defect) return;
+  // The whole mesh has numbers that its owner knows.
+  throw InputError("not a valid mesh: " + first_defect(whole, stage.context()).value_or(*defect));
+}
+
+/// A place where the boundary crosses itself, among the triangles in the box of what was changed.
+std::optional<Vec3> crossing_near(const TetMesh& mesh, const std::vector<Vec3>& changed, const Stage& stage) {
+  const Box3 box = bounding_box(changed);
+  std::vector<Triangle> near;
+  for (const Triangle& t : mesh.boundary) {
+    Box3 own;
+    for (const VertexIndex v : t) own.add(mesh.points[v]);
+    if (own.overlaps(box)) near.push_back(t);
+  }
+  const auto crossing = self_intersections(mesh.points, near, 1, stage.context());
+  if (crossing.empty()) return std::nullopt;
+  return mesh.points[near[crossing[0][0]][0]];
+}
+
+struct Changed {
+  adapt::Adapted part;
+  TetMesh whole;
+  adapt::SplicedIds ids;
+};
+
+Changed changed_by(const TetMesh& given, const adapt::Section& section, const adapt::MetricField& metric,
+                   const adapt::AdaptRules& rules, const Stage& stage) {
+  Changed made{adapt::adapt_mesh(section.mesh, metric, rules, stage), given, {}};
+  made.ids = adapt::splice(made.whole, section, made.part.mesh, made.part.old_of_new);
+  return made;
+}
+
+void tell_section(const TetMesh& given, std::size_t chosen, std::size_t may_change, const Changed& made,
+                  const AdaptOptions& asked, const Stage& stage) {
+  const auto same = std::count_if(made.ids.old_tet_of_new.begin(), made.ids.old_tet_of_new.end(),
+                                  [](TetIndex t) { return t != kNone; });
+  const auto gone = static_cast<std::int64_t>(given.tets.size()) - same;
+  stage.count("elements chosen", static_cast<double>(chosen));
+  stage.count("elements of the halo", static_cast<double>(may_change - chosen));
+  stage.count("elements replaced", static_cast<double>(gone));
+  std::string text =
+      fmt::format("{} elements chosen, {} more in a halo of {} layers: {} were replaced, the other {} are as they were",
+                  chosen, may_change - chosen, asked.halo, gone, same);
+  if (made.ids.moved_vertices + made.ids.moved_tets != 0)
+    text += fmt::format(
+        "; the mesh has fewer vertices or elements than before, so {} vertices and {} elements outside, the last ones, "
+        "got numbers that had become free",
+        made.ids.moved_vertices, made.ids.moved_tets);
+  stage.note(text);
+}
+
+}  // namespace
+
+MetricSummary summary_of(const adapt::MetricFit& fit) {
+  return {fit.edges, fit.fitting, fit.shortest, fit.longest, fit.quality_min, fit.quality_mean, fit.complexity};
+}
+
+void adapt_section(const TetMesh& given, const adapt::MetricField& metric, const adapt::AdaptRules& asked,
+                   AdaptedMesh& result, Run& run) {
+  run.stage("adapt", [&](const Stage& stage) {
+    std::vector<std::uint8_t> chosen = chosen_tets(given, run.options.adapt.only);
+    const std::size_t count = count_of(chosen);
+    const adapt::Section section = adapt::section_of(given, chosen, run.options.adapt.halo);
+    require_valid_section(given, section, stage);
+    const TetMesh part = adapt::closed_part(section.mesh, section.loose);
+    result.before = summary_of(adapt::fit_of(part, metric));
+    adapt::AdaptRules rules = asked;
+    rules.frozen = section.frozen;
+    Changed made = changed_by(given, section, metric, rules, stage);
+    if (const auto place = crossing_near(made.whole, made.part.mesh.points, stage)) {
+      stage.note(
+          fmt::format("the boundary would have crossed itself at ({:.6g}, {:.6g}, {:.6g}), where it is near to itself: "
+                      "it stays as it was; a smaller --max-deviation may help",
+                      place->x, place->y, place->z));
+      rules.keep_walls = true;
+      made = changed_by(given, section, metric, rules, stage);
+    }
+    if (const auto defect = first_defect(adapt::closed_part(made.part.mesh, {}), stage.context()))
+      throw MeshingError("the mesh made is not valid, which is a bug of ours; please report it with the input. " +
+                         *defect);
+    tell_section(given, count, count_of(chosen), made, run.options.adapt, stage);
+    result.after = summary_of(adapt::fit_of(made.part.mesh, metric));
+    result.mesh = std::move(made.whole);
+    result.old_of_new = std::move(made.ids.old_of_new);
+    result.old_tet_of_new = std::move(made.ids.old_tet_of_new);
+  });
+}
+
+}  // namespace octafront
