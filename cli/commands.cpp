@@ -4,6 +4,7 @@
 
 #include "domain.h"
 #include "estimate.h"
+#include "id_map.h"
 #include "inputs.h"
 #include "mesh_in_words.h"
 #include "open_cavity.h"
@@ -27,6 +28,7 @@ Options checked_options_of(const Session& session) {
   Options options = with_preset(a);
   if (!a.regions.empty()) options.size.regions = read_size_regions(a.regions.string(), session.context());
   if (!a.point_sizes.empty()) options.size.point_sizes = read_point_sizes(a.point_sizes.string(), session.context());
+  for (const std::string& place : a.only) options.adapt.only += (options.adapt.only.empty() ? "" : ";") + place;
   if (!a.size_field.empty()) read_sizes_into(options.size, a.size_field.string(), session.context());
   check_options(options);
   return options;
@@ -228,6 +230,7 @@ void run_improve(Session& session) {
 void run_adapt(Session& session) {
   const Arguments& a = session.arguments();
   check_mesh_targets(a);
+  check_map_target(a.map_file);
   check_page_target(a.page);
   const Options options = checked_options_of(session);
   const TetMesh mesh = read_mesh_input(session);
@@ -240,6 +243,7 @@ void run_adapt(Session& session) {
   };
   const AdaptedMesh result = adapted();
   write_mesh_targets(session, result.mesh);
+  if (!a.map_file.empty()) write_map(a.map_file, mesh, result);
   session.found({{"fit",
                   {{"edges", result.after.edges},
                    {"fitting", result.after.fitting},

@@ -42,7 +42,7 @@ std::vector<NamedFile> inputs_of(const Arguments& a) {
 }
 
 std::vector<NamedFile> outputs_of(const Arguments& a) {
-  std::vector<NamedFile> all{{"--output", a.output}, {"--json", a.json}, {"--report", a.page}};
+  std::vector<NamedFile> all{{"--output", a.output}, {"--json", a.json}, {"--report", a.page}, {"--map", a.map_file}};
   for (const std::filesystem::path& mesh : a.meshes) all.push_back({"--output", mesh});
   if (const std::filesystem::path beside = cavity_neighbour(a); !beside.empty()) {
     all.push_back({"the file for a cavity that stays open", cavity_file(beside)});

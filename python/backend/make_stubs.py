@@ -107,6 +107,10 @@ class Mesh:
     @property
     def order(self) -> int: ...
     @property
+    def old_points(self) -> npt.NDArray[np.int64]: ...
+    @property
+    def old_tets(self) -> npt.NDArray[np.int64]: ...
+    @property
     def regions(self) -> Indices: ...
     @property
     def faces(self) -> Indices: ...
@@ -226,7 +230,7 @@ FURTHER = {
     "size_near": "Mapping[str | tuple[float, float, float], tuple[float, float]] | None = None",
     "size_field": "SizeField | Path | tuple[npt.ArrayLike, npt.ArrayLike, npt.ArrayLike] | None = None",
     "unit": "str | None = None", "after_pass": "Callable[[str, dict[str, Any]], object] | None = None", "progress": "Progress | None = None",
-    "threads": "int = 0",
+    "threads": "int = 0", "only": "str | Sequence[str] = ''",
 }
 OF_IMAGES = """\
     spacing: npt.ArrayLike | None = None,

@@ -180,13 +180,17 @@ def improve(mesh, *, surface=None, **keywords):
     return Mesh._of(job.take("mesh"), report)
 
 
-@_takes_options("size")
+@_takes_options("adapt")
 def adapt(mesh, *, sizes=None, **keywords):
     """The mesh changed until its edges are as long as the sizes want: a new Mesh. report["fit"] says how well it fits.
 
     mesh: a valid Mesh of any tool, the name of its file, or an object of meshio, PyVista or VTK. Its boundary stays on the smooth surface that it stands
     for; patches, regions, sheets, curves and sets stay.
     sizes: edge lengths wanted at its own points, (n,); else what the keywords ask for, as for mesh().
+    only: what may change, a place or several: "box:X0,Y0,Z0,X1,Y1,Z1", "sphere:X,Y,Z,R", or a region, patch, curve or set
+    by its name; all but it and a `halo` of layers around keeps its bits and numbers.
+
+    The mesh made tells by old_points and old_tets what its points and tetrahedra were in the old one.
 
     Raises OptionError, InputError (the first defect of the mesh; wedges, pyramids, periodic faces), MeshingError,
     Cancelled.
@@ -198,7 +202,9 @@ def adapt(mesh, *, sizes=None, **keywords):
         if "size_field" in keywords:
             raise OptionError("`sizes` and `size_field` are two fields of sizes; give one")
         keywords["size_field"] = (old.points, old.tets, sizes)
-    settings = _Settings("adapt", "size", keywords)
+    if not isinstance(keywords.get("only", ""), str):
+        keywords["only"] = ";".join(keywords["only"])
+    settings = _Settings("adapt", "adapt", keywords)
     job = _Job("adapt", old._handle, settings.options, settings.threads, **settings.functions())
     report = job.run()
     return Mesh._of(job.take("mesh"), report)

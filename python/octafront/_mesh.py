@@ -31,6 +31,10 @@ def mesh_of(source):
     return mesh
 
 
+def _signed(numbers):
+    return np.asarray(numbers, np.uint32).view(np.int32).astype(np.int64)
+
+
 class Mesh:
     """A mesh of tetrahedra, linear or of second order, with its named parts.
 
@@ -138,6 +142,17 @@ class Mesh:
     def order(self):
         """1: linear elements; 2: of second order."""
         return 1 if self.mid_nodes is None else 2
+
+    @property
+    def old_points(self):
+        """Of a mesh that adapt() made: (n,) int64, the number in the old mesh of each point; -1: a new one."""
+        return _signed(self._handle.view("old_of_new"))
+
+    @property
+    def old_tets(self):
+        """Of a mesh that adapt() made: (m,) int64, the number in the old mesh of each tetrahedron, if it is the same
+        with all corners at the same places; -1: a new one."""
+        return _signed(self._handle.view("old_tet_of_new"))
 
     @property
     def regions(self):

@@ -395,6 +395,24 @@ class CommandLine(unittest.TestCase):
         refused = self.run_cli("adapt", SAMPLES / "bracket.stl", "--size", 4, "-o", out, status=3)
         self.assertIn("bracket.stl", refused.stderr)
 
+    def test_adapts_only_what_is_asked(self):
+        start, out, table, report = (self.dir / name for name in ("a.msh", "b.msh", "map.json", "r.json"))
+        self.run_cli("mesh", SAMPLES / "bracket.stl", "-o", start, "--size", 5, "--patches")
+        done = self.run_cli("adapt", start, "--size", 2, "--only", "sphere:10,10,5,6", "--halo", 1, "-o", out, "--map", table,
+                            "--json", report)
+        self.assertIn("in a halo of 1 layers", done.stdout)
+        self.assertIn("a valid mesh", self.run_cli("check", out).stdout)
+        moved = json.loads(table.read_text())
+        for kind in ("vertices", "elements"):
+            self.assertIn(-1 if kind == "elements" else 0, moved[kind])
+            self.assertTrue(all(new in (-1, old) for old, new in enumerate(moved[kind])), kind)
+        self.assertGreater(json.loads(report.read_text())["tets"], len(moved["elements"]))
+        for wrong, says in (("nobody", "no region, patch, curve or set"), ("box:1,2,3", "6 numbers")):
+            refused = self.run_cli("adapt", start, "--size", 2, "--only", wrong, "-o", self.dir / "c.msh", status=2)
+            self.assertIn(says, refused.stderr)
+        self.run_cli("adapt", start, "--size", 2, "-o", self.dir / "c.msh", "--map", self.dir / "map.txt", status=2)
+        self.assertFalse((self.dir / "c.msh").exists())
+
     def test_a_broken_mesh_is_not_improved(self):
         broken = self.dir / "broken.mesh"
         broken.write_text("MeshVersionFormatted 2\nDimension 3\nVertices 5\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\n"

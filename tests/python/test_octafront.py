@@ -763,6 +763,20 @@ class Meshes(Case):
         with self.assertRaises(octafront.OptionError):
             octafront.adapt(old, sizes=-wanted)
 
+    def test_adapt_changes_only_what_is_asked(self):
+        old = octafront.mesh(*cube(), size=0.12)
+        new = octafront.adapt(old, size=0.05, only=["sphere:0,0,0,0.2", "box:0,0,0,0.1,0.1,0.1"], halo=1)
+        self.assertGreater(len(new.tets), len(old.tets))
+        kept = new.old_tets >= 0
+        self.assertTrue(0.3 * len(old.tets) < kept.sum() < len(old.tets))
+        self.assertTrue((new.old_tets[kept] == np.flatnonzero(kept)).all())
+        self.assertTrue((new.tets[kept] == old.tets[new.old_tets[kept]]).all())
+        far = np.linalg.norm(old.points, axis=1) > 0.7
+        self.assertTrue((new.points[:len(old.points)][far] == old.points[far]).all())
+        self.assertTrue((new.old_points[:len(old.points)][far] == np.flatnonzero(far)).all())
+        with self.assertRaises(octafront.OptionError):
+            octafront.adapt(old, size=0.05, only="nobody")
+
     def test_improve_and_check(self):
         mesh = octafront.mesh(*sphere(), size=0.3, improve="none")
         better = octafront.improve(mesh, surface=octafront.Surface(*sphere()))

@@ -118,6 +118,19 @@ Metric step_towards(const Metric& from, const Metric& to, double ratio, bool& ar
   return arrived ? to : between(root, change.tensor());
 }
 
+Metric within(const Metric& from, const Metric& to, double least, double most) {
+  const Metric root = with_values(from, [](double x) { return std::sqrt(std::max(x, 1e-300)); });
+  Eigen change = eigen(between(inverse(root), to));
+  bool same = true;
+  for (double& value : change.value) {
+    // Squared lengths of `from` over those of `to`.
+    const double limited = std::clamp(value, 1 / (most * most), least > 0 ? 1 / (least * least) : HUGE_VAL);
+    same &= limited == value;
+    value = limited;
+  }
+  return same ? to : between(root, change.tensor());
+}
+
 double density_of(const Metric& m) {
   return std::sqrt(std::max(m.determinant(), 0.0));
 }

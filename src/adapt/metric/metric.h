@@ -112,6 +112,10 @@ Metric implied_metric(Vec3 a, Vec3 b, Vec3 c, Vec3 d);
 /// that is `to` itself.
 Metric step_towards(const Metric& from, const Metric& to, double ratio, bool& arrived);
 
+/// The metric nearest to `to` whose lengths are, in every direction, from `least` to `most` times those of `from`;
+/// 0 <= least <= 1 <= most.
+Metric within(const Metric& from, const Metric& to, double least, double most);
+
 /// Whoever knows the metric everywhere.
 class MetricField {
  public:

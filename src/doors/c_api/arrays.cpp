@@ -190,7 +190,13 @@ void octafront_mesh_free(octafront_mesh* mesh) {
 }
 
 int octafront_mesh_array(const octafront_mesh* mesh, const char* name, octafront_array* out) {
-  return guarded([&] { visit_mesh_array(mesh->mesh, name, [&](const auto& list) { *out = array_of(list); }); });
+  return guarded([&] {
+    const std::string_view asked(name);
+    if (asked == "old_of_new" || asked == "old_tet_of_new")
+      *out = array_of(asked == "old_of_new" ? mesh->old_of_new : mesh->old_tet_of_new);
+    else
+      visit_mesh_array(mesh->mesh, asked, [&](const auto& list) { *out = array_of(list); });
+  });
 }
 
 int octafront_mesh_set_array(octafront_mesh* mesh, const char* name, const void* data, size_t rows) {

@@ -12,8 +12,10 @@
 #include <octafront/surface_mesh.h>
 #include <octafront/tet_mesh.h>
 
+#include <cstdint>
 #include <string>
 #include <utility>
+#include <vector>
 
 struct octafront_surface {
   octafront::Domain domain;
@@ -21,6 +23,8 @@ struct octafront_surface {
 
 struct octafront_mesh {
   octafront::TetMesh mesh;
+  /// Of a mesh that was adapted: AdaptedMesh::old_of_new and old_tet_of_new.
+  std::vector<std::uint32_t> old_of_new = {}, old_tet_of_new = {};
 };
 
 struct octafront_sizes {

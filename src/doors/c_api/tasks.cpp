@@ -275,6 +275,8 @@ octafront_job* octafront_adapt(const octafront_mesh* mesh, const octafront_optio
         job.report = Json::parse(to_json(adapted.report));
         job.report["fit"] = fit_in_json(adapted.after), job.report["fit_before"] = fit_in_json(adapted.before);
         give(job, std::move(adapted.mesh));
+        job.mesh->old_of_new = std::move(adapted.old_of_new);
+        job.mesh->old_tet_of_new = std::move(adapted.old_tet_of_new);
       },
       threads);
 }

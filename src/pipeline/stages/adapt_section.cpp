@@ -3,6 +3,7 @@
 #include <octafront/error.h>
 #include <octafront/validity.h>
 
+#include "adapt/schedule/rim_metric.h"
 #include "adapt/schedule/section.h"
 #include "base/geometry/self_intersection.h"
 #include "pipeline/stages/chosen_tets.h"
@@ -18,8 +19,13 @@ std::size_t count_of(const std::vector<std::uint8_t>& marks) {
   return static_cast<std::size_t>(std::count(marks.begin(), marks.end(), 1));
 }
 
+std::optional<std::string> defect_of(const TetMesh& part, const Stage& stage) {
+  if (part.tets.empty()) return std::nullopt;
+  return first_defect(adapt::closed_part(part, {}), stage.context());
+}
+
 void require_valid_section(const TetMesh& whole, const adapt::Section& section, const Stage& stage) {
-  const auto defect = first_defect(adapt::closed_part(section.mesh, section.loose), stage.context());
+  const auto defect = defect_of(adapt::closed_part(section.mesh, section.loose), stage);
   if (!defect) return;
   // The whole mesh has numbers that its owner knows.
   throw InputError("not a valid mesh: " + first_defect(whole, stage.context()).value_or(*defect));
@@ -77,7 +83,7 @@ MetricSummary summary_of(const adapt::MetricFit& fit) {
   return {fit.edges, fit.fitting, fit.shortest, fit.longest, fit.quality_min, fit.quality_mean, fit.complexity};
 }
 
-void adapt_section(const TetMesh& given, const adapt::MetricField& metric, const adapt::AdaptRules& asked,
+void adapt_section(const TetMesh& given, const adapt::MetricField& wanted, const adapt::AdaptRules& asked,
                    AdaptedMesh& result, Run& run) {
   run.stage("adapt", [&](const Stage& stage) {
     std::vector<std::uint8_t> chosen = chosen_tets(given, run.options.adapt.only);
@@ -85,6 +91,7 @@ void adapt_section(const TetMesh& given, const adapt::MetricField& metric, const
     const adapt::Section section = adapt::section_of(given, chosen, run.options.adapt.halo);
     require_valid_section(given, section, stage);
     const TetMesh part = adapt::closed_part(section.mesh, section.loose);
+    const adapt::RimMetric metric(section.mesh, section.frozen, wanted);
     result.before = summary_of(adapt::fit_of(part, metric));
     adapt::AdaptRules rules = asked;
     rules.frozen = section.frozen;
@@ -97,7 +104,7 @@ void adapt_section(const TetMesh& given, const adapt::MetricField& metric, const
       rules.keep_walls = true;
       made = changed_by(given, section, metric, rules, stage);
     }
-    if (const auto defect = first_defect(adapt::closed_part(made.part.mesh, {}), stage.context()))
+    if (const auto defect = defect_of(made.part.mesh, stage))
       throw MeshingError("the mesh made is not valid, which is a bug of ours; please report it with the input. " +
                          *defect);
     tell_section(given, count, count_of(chosen), made, run.options.adapt, stage);
