@@ -39,8 +39,8 @@ struct Arguments {
   bool cells_only = false;                    ///< of the meshes: tetrahedra alone
   bool cohesive = false;                      ///< of the meshes: with cohesive elements where they are split
   std::string beams;                          ///< of the meshes: curves that are beams, too
-  std::vector<std::string> only;   ///< places that may change
-  std::filesystem::path map_file;  ///< where old vertices and elements are now; empty: none
+  std::vector<std::string> only;              ///< places that may change
+  std::filesystem::path map_file;             ///< where old vertices and elements are now; empty: none
   std::filesystem::path regions, point_sizes, size_field;  ///< files with sizes; empty: none
   Options options;
   std::optional<Solver> solver;      ///< whose limits a mesh is checked by

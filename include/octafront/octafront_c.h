@@ -94,8 +94,9 @@ void octafront_surface_set_voxel(octafront_surface* surface, double spacing);
  * their quadrilaterals the first face, four nodes), split_faces (U32 x 7: three corners behind, their partners in
  * front, the patch in front), periods (F64 x 3: of a periodic cell the translations), period_rotations (F64 x 9: the
  * matrices of periods, row by row; none if all are translations), periodic_nodes (U32 x 3: the number of a period, a
- * node that is a copy, the node that it is a copy of). Of what octafront_adapt() left also old_of_new and old_tet_of_new
- * (U32 x 1: the number in the old mesh of each point and tet, 0xffffffff: new), to be read. Its lists of names: region_names, patch_names, curve_names. */
+ * node that is a copy, the node that it is a copy of). Of what octafront_adapt() left also old_of_new and
+ * old_tet_of_new (U32 x 1: the number in the old mesh of each point and tet, 0xffffffff: new), to be read. Its lists of
+ * names: region_names, patch_names, curve_names. */
 octafront_mesh* octafront_mesh_new(void);
 void octafront_mesh_free(octafront_mesh* mesh);
 int octafront_mesh_array(const octafront_mesh* mesh, const char* name, octafront_array* out);
