@@ -6,8 +6,11 @@
 #include <octafront/tet_mesh.h>
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <span>
+#include <string>
 #include <vector>
 
 namespace octafront {
@@ -58,5 +61,24 @@ AdaptedMesh adapt_existing(const TetMesh& mesh, const Options& options, const Ru
 /// The same by a metric, which may want other lengths in other directions; `options.size` has no say.
 AdaptedMesh adapt_to_metric(const TetMesh& mesh, const MetricFunction& metric, const Options& options = {},
                             const RunContext& context = {});
+
+/// Numbers on a mesh, at its vertices or of its elements.
+struct MeshField {
+  std::string name;
+  bool of_elements = false;
+  std::size_t components = 1;  ///< numbers for each, > 0
+  std::vector<double> values;  ///< those of the first vertex or element, then those of the second, ...
+};
+
+/// The field on the mesh that was made of `before`. At vertices: linear in the old element that holds the new vertex
+/// (exact for linear functions); where a vertex is where it was, its bits. Of elements: the mean over what the new
+/// element shares with old ones of its region; in each region the sum of values times volumes stays, to rounding, and
+/// unchanged elements keep their bits. Looks only at what changed. `before`: a mesh of second order is taken as a
+/// linear one, values at mid-side nodes have no say. The same for any number of threads. Throws InputError for a field
+/// of another length, or with values that are not finite.
+MeshField carried(const MeshField& field, const TetMesh& before, const AdaptedMesh& adapted);
+/// The same with the parts of an AdaptedMesh.
+MeshField carried(const MeshField& field, const TetMesh& before, const TetMesh& now,
+                  std::span<const VertexIndex> old_of_new, std::span<const TetIndex> old_tet_of_new);
 
 }  // namespace octafront

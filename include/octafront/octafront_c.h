@@ -106,6 +106,11 @@ const char* octafront_mesh_name(const octafront_mesh* mesh, const char* list, si
 
 enum { OCTAFRONT_NODES = 0, OCTAFRONT_EDGES = 1, OCTAFRONT_FACES = 2, OCTAFRONT_ELEMENTS = 3 };
 
+/** carried() of octafront/adapt.h: values of `before`, at its points or of its elements, on what octafront_adapt() made
+ * of it. `components` numbers for each; `out` has room for those of `adapted`. */
+int octafront_carry_field(const octafront_mesh* before, const octafront_mesh* adapted, int of_elements,
+                          size_t components, const double* values, double* out);
+
 /** The further sets of a mesh (NamedSet). */
 size_t octafront_mesh_sets(const octafront_mesh* mesh);
 int octafront_mesh_set(const octafront_mesh* mesh, size_t i, int* kind, const char** name, size_t* length,

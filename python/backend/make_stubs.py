@@ -83,6 +83,7 @@ class SizeField:
 
 class Mesh:
     report: Report
+    fields: dict[str, Floats]
     def __init__(self, points: npt.ArrayLike, tets: npt.ArrayLike, *, regions: npt.ArrayLike | None = None,
                  region_names: Sequence[str] = (), faces: npt.ArrayLike | None = None,
                  patches: npt.ArrayLike | None = None, patch_names: Sequence[str] = ()) -> None: ...
@@ -194,6 +195,7 @@ def size_field(points: npt.ArrayLike | Input, triangles: npt.ArrayLike | None = 
 def improve(mesh: Tets | Path, *, surface: Body | Path | None = None,
 {improve}) -> Mesh: ...
 def adapt(mesh: Tets | Path, *, sizes: npt.ArrayLike | None = None,
+    fields: Mapping[str, npt.ArrayLike] | None = None,
 {adapt}) -> Mesh: ...
 def repair(points: npt.ArrayLike | Body, triangles: npt.ArrayLike | None = None) -> Surface: ...
 def mend(points: npt.ArrayLike | Body, triangles: npt.ArrayLike | None = None, *,

@@ -13,7 +13,7 @@ import inspect as _inspect
 import json as _json
 import os as _os
 
-from . import _complexes, errors
+from . import _complexes, _fields, errors
 from ._images import is_file as _is_file, surface_of_image as _surface_of_image
 from ._intake import opened as _opened
 from ._jobs import Job as _Job
@@ -181,7 +181,7 @@ def improve(mesh, *, surface=None, **keywords):
 
 
 @_takes_options("adapt")
-def adapt(mesh, *, sizes=None, **keywords):
+def adapt(mesh, *, sizes=None, fields=None, **keywords):
     """The mesh changed until its edges are as long as the sizes want: a new Mesh. report["fit"] says how well it fits.
 
     mesh: a valid Mesh of any tool, the name of its file, or an object of meshio, PyVista or VTK. Its boundary stays on the smooth surface that it stands
@@ -189,6 +189,10 @@ def adapt(mesh, *, sizes=None, **keywords):
     sizes: edge lengths wanted at its own points, (n,); else what the keywords ask for, as for mesh().
     only: what may change, a place or several: "box:X0,Y0,Z0,X1,Y1,Z1", "sphere:X,Y,Z,R", or a region, patch, curve or set
     by its name; all but it and a `halo` of layers around keeps its bits and numbers.
+
+    fields: {name: array}, values at the points, (n,) or (n, k), or of the tetrahedra, (m,) or (m, k): mesh.fields of the
+    new mesh has them there. At points linear in the old elements, bit for bit where a point stays; of elements such that
+    the sum of value times volume in each region stays.
 
     The mesh made tells by old_points and old_tets what its points and tetrahedra were in the old one.
 
@@ -205,9 +209,12 @@ def adapt(mesh, *, sizes=None, **keywords):
     if not isinstance(keywords.get("only", ""), str):
         keywords["only"] = ";".join(keywords["only"])
     settings = _Settings("adapt", "adapt", keywords)
+    values = {name: _fields.field_on(old, name, array) for name, array in dict(fields or {}).items()}
     job = _Job("adapt", old._handle, settings.options, settings.threads, **settings.functions())
     report = job.run()
-    return Mesh._of(job.take("mesh"), report)
+    new = Mesh._of(job.take("mesh"), report)
+    new.fields = {name: _fields.carried(old, new, array) for name, array in values.items()}
+    return new
 
 
 def repair(points, triangles=None):

@@ -69,6 +69,7 @@ class SizeField:
 
 class Mesh:
     report: Report
+    fields: dict[str, Floats]
     def __init__(self, points: npt.ArrayLike, tets: npt.ArrayLike, *, regions: npt.ArrayLike | None = None,
                  region_names: Sequence[str] = (), faces: npt.ArrayLike | None = None,
                  patches: npt.ArrayLike | None = None, patch_names: Sequence[str] = ()) -> None: ...
@@ -606,6 +607,7 @@ def improve(mesh: Tets | Path, *, surface: Body | Path | None = None,
     progress: Progress | None = None,
     threads: int = 0) -> Mesh: ...
 def adapt(mesh: Tets | Path, *, sizes: npt.ArrayLike | None = None,
+    fields: Mapping[str, npt.ArrayLike] | None = None,
     size: float | str | SizeFunction | SizeField | None = None,
     elements: int | None = None,
     curvature: float | None = None,

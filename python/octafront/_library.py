@@ -92,6 +92,7 @@ _PROTOTYPES = {
     "generate": (_handle, _handle, _handle, _whole), "generate_surface": (_handle, _handle, _handle, _whole),
     "generate_sizes": (_handle, _handle, _handle, _whole), "improve": (_handle, _handle, _handle, _handle, _whole),
     "adapt": (_handle, _handle, _handle, _whole),
+    "carry_field": (_whole, _handle, _handle, _whole, _size, _pointer, _pointer),
     "repair": (_handle, _handle), "check": (_handle, _handle, _text), "order_mesh": (_handle, _handle),
     "write_page": (_handle, _handle, _handle, _text, _text),
     "job_wait": (_whole, _handle, _number, ctypes.POINTER(Event)), "job_answer": (None, _handle),

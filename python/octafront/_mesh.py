@@ -76,6 +76,7 @@ class Mesh:
     def _take(self, handle, report, sizes=None):
         self._handle, self._quality, self._sizes = handle, report.get("quality"), sizes
         self.report = report
+        self.fields = {}  # of adapt()
 
     @classmethod
     def _of(cls, address, report, sizes=None):

@@ -777,6 +777,23 @@ class Meshes(Case):
         with self.assertRaises(octafront.OptionError):
             octafront.adapt(old, size=0.05, only="nobody")
 
+    def test_adapt_carries_fields(self):
+        old = octafront.mesh(*cube(), size=0.2)
+        linear = 2 * old.points - 1
+        density = np.linspace(-1, 3, len(old.tets))
+        new = octafront.adapt(old, size=0.1, fields={"u": linear, "p": linear[:, 0], "rho": density})
+        self.assertLess(np.abs(new.fields["u"] - (2 * new.points - 1)).max(), 1e-12)
+        self.assertEqual(new.fields["p"].shape, (len(new.points),))
+
+        def volumes(mesh):
+            a, b, c, d = (mesh.points[mesh.tets[:, k]] for k in range(4))
+            return np.einsum("ij,ij->i", np.cross(b - a, c - a), d - a) / 6
+        had, has = density * volumes(old), new.fields["rho"] * volumes(new)
+        self.assertLess(abs(had.sum() - has.sum()), 1e-12 * np.abs(had).sum())
+        for wrong in (linear[:-1], np.full(len(old.points), np.nan), 3.0):
+            with self.assertRaises(octafront.OptionError):
+                octafront.adapt(old, size=0.1, fields={"u": wrong})
+
     def test_improve_and_check(self):
         mesh = octafront.mesh(*sphere(), size=0.3, improve="none")
         better = octafront.improve(mesh, surface=octafront.Surface(*sphere()))

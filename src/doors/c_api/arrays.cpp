@@ -1,5 +1,6 @@
 #include "doors/c_api/arrays.h"
 
+#include <octafront/adapt.h>
 #include <octafront/error.h>
 #include <octafront/named_groups.h>
 #include <octafront/quality.h>
@@ -272,6 +273,21 @@ int octafront_mesh_quality(const octafront_mesh* mesh, double* beta, double* lea
       if (least != nullptr) least[i] = *std::min_element(angles.begin(), angles.end());
       if (largest != nullptr) largest[i] = *std::max_element(angles.begin(), angles.end());
     }
+  });
+}
+
+int octafront_carry_field(const octafront_mesh* before, const octafront_mesh* adapted, int of_elements,
+                          size_t components, const double* values, double* out) {
+  return guarded([&] {
+    require_indices(before->mesh);
+    if (adapted->old_of_new.size() != adapted->mesh.points.size() ||
+        adapted->old_tet_of_new.size() != adapted->mesh.tets.size())
+      throw InputError("fields are carried to meshes that octafront_adapt() made");
+    const std::size_t count = of_elements != 0 ? before->mesh.tets.size() : before->mesh.points.size();
+    MeshField field{"values", of_elements != 0, components, {}};
+    field.values.assign(values, values + count * components);
+    const MeshField made = carried(field, before->mesh, adapted->mesh, adapted->old_of_new, adapted->old_tet_of_new);
+    std::copy(made.values.begin(), made.values.end(), out);
   });
 }
 
