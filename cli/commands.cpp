@@ -244,14 +244,23 @@ void run_adapt(Session& session) {
   const AdaptedMesh result = adapted();
   write_mesh_targets(session, result.mesh);
   if (!a.map_file.empty()) write_map(a.map_file, mesh, result);
-  session.found({{"fit",
-                  {{"edges", result.after.edges},
-                   {"fitting", result.after.fitting},
-                   {"shortest", result.after.shortest},
-                   {"longest", result.after.longest},
-                   {"quality_min", result.after.quality_min},
-                   {"quality_mean", result.after.quality_mean},
-                   {"complexity", result.after.complexity}}}});
+  session.found(
+      {{"fit",
+        {{"edges", result.after.edges},
+         {"fitting", result.after.fitting},
+         {"shortest", result.after.shortest},
+         {"longest", result.after.longest},
+         {"quality_min", result.after.quality_min},
+         {"quality_mean", result.after.quality_mean},
+         {"far", result.after.far},
+         {"shortest_at", {result.after.shortest_at.x, result.after.shortest_at.y, result.after.shortest_at.z}},
+         {"longest_at", {result.after.longest_at.x, result.after.longest_at.y, result.after.longest_at.z}},
+         {"complexity", result.after.complexity}}},
+       {"deviation",
+        {{"bound", result.deviation.bound},
+         {"lower", result.deviation.lower},
+         {"upper", result.deviation.upper},
+         {"at", {result.deviation.place.x, result.deviation.place.y, result.deviation.place.z}}}}});
   session.tell(result.report);
   tell_worst(session, result.mesh, result.report.quality);
   finish_run(session, result.mesh, nullptr);

@@ -26,8 +26,19 @@ using MetricFunction = std::function<std::array<std::array<double, 3>, 3>(Vec3)>
 struct MetricSummary {
   std::uint64_t edges = 0, fitting = 0;  ///< all edges, and those of lengths from sqrt(1/2) to sqrt 2
   double shortest = 0, longest = 0;
+  std::uint64_t far = 0;         ///< edges shorter than half, or longer than twice of what is wanted
+  Vec3 shortest_at, longest_at;  ///< middles of those edges; input units
   double quality_min = 0, quality_mean = 0;
   double complexity = 0;  ///< the integral of sqrt(det M) over the mesh
+};
+
+/// How far the walls of a mesh that was adapted (boundary, interfaces, sheets) are from the smooth surface that the old
+/// ones stand for: the greater of both one-sided distances. lower <= distance <= upper, up to a tenth of the tolerance
+/// for how the smooth surface is measured; input units.
+struct WallDeviation {
+  double bound = 0;  ///< what was to be kept: max_deviation, or without one .4 % of the diagonal or what old walls had
+  double lower = 0, upper = 0;
+  Vec3 place;  ///< `lower` away from the other surface
 };
 
 /// A mesh that was adapted, and what was done.
@@ -35,6 +46,7 @@ struct AdaptedMesh {
   TetMesh mesh;
   Report report;
   MetricSummary before, after;
+  WallDeviation deviation;
   std::vector<VertexIndex> old_of_new;   ///< per vertex its number in the mesh that was given; kNone: new
   std::vector<TetIndex> old_tet_of_new;  ///< per tet the one that it was, with all corners at their places; kNone: new
 };

@@ -386,8 +386,15 @@ class CommandLine(unittest.TestCase):
     def test_adapts_a_mesh_to_other_sizes(self):
         start, out, report = self.dir / "a.msh", self.dir / "b.vtu", self.dir / "r.json"
         self.run_cli("mesh", SAMPLES / "bracket.stl", "-o", start, "--size", 8, "--patches")
+        done = self.run_cli("adapt", start, "--size", 4, "-o", out, "--json", report, "--max-deviation", 0.1)
+        deviation = json.loads(report.read_text())["deviation"]
+        self.assertEqual(deviation["bound"], 0.1)
+        self.assertTrue(0 < deviation["lower"] <= deviation["upper"] < 0.4, deviation)
+        self.assertEqual(deviation["upper"] > 0.1, "beyond the bound" in done.stdout)
         done = self.run_cli("adapt", start, "--size", 4, "-o", out, "--json", report)
         self.assertIn("of the edges fit", done.stdout)
+        deviation = json.loads(report.read_text())["deviation"]
+        self.assertLess(deviation["upper"], deviation["bound"])
         fit = json.loads(report.read_text())["fit"]
         self.assertGreater(fit["fitting"], 0.9 * fit["edges"])
         self.assertLess(fit["longest"], 2)

@@ -758,6 +758,7 @@ class Meshes(Case):
         self.assertGreater(fit["fitting"], 0.93 * fit["edges"])
         self.assertLess(fit["longest"], 2)
         self.assertAlmostEqual(new.report["volume"], 1, 9)
+        self.assertLess(new.report["deviation"]["upper"], new.report["deviation"]["bound"])
         with self.assertRaises(octafront.OptionError):
             octafront.adapt(old, sizes=wanted, size_field=(old.points, old.tets, wanted))
         with self.assertRaises(octafront.OptionError):

@@ -10,6 +10,8 @@ namespace {
 
 /// A foot is not on the other side of a thin wall, nor around a sharp edge.
 constexpr double kLeastCosineOfFoot = 0.5;
+/// Triangles are divided into four so many times at most.
+constexpr int kMostDivisionsOfGround = 5;
 
 }  // namespace
 
@@ -19,6 +21,7 @@ Ground::Ground(Walls walls)
   for (std::uint32_t t = 0; t < on_surface.size(); ++t) on_surface[t].on = t;
   for (std::uint32_t e = 0; e < on_lines.size(); ++e) on_lines[e].on = e;
   smooth_.prepare(on_surface, on_lines);
+  for (std::uint32_t e = 0; e < on_lines.size(); ++e) line_at_.find_or_add(walls_.lines.edges[e]) = e;
 }
 
 std::optional<curved::Foot> Ground::foot(Vec3 p, std::uint32_t part, bool outer, Vec3 normal, double reach) const {
@@ -56,6 +59,53 @@ std::optional<Vec3> Ground::on_line(Vec3 p, std::uint32_t path, double reach) co
   const auto at = smooth_.curve_foot(p, reach);
   if (!at || walls_.path[at->on] != path) return std::nullopt;
   return smooth_.curve_point(*at);
+}
+
+Vec3 Ground::smooth_at(std::uint32_t triangle, Vec3 weights) const {
+  const auto& corners = tree_.corners(triangle);
+  const auto flat = [&](Vec3 w) { return w.x * corners[0] + w.y * corners[1] + w.z * corners[2]; };
+  Vec3 at = smooth_.surface_point({flat(weights), triangle});
+  // Where a side lies on a line the surface goes along with it: patches end at smooth lines, not at their chords.
+  const Triangle& t = walls_.surface.triangles[triangle];
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    const double share = weights[j] + weights[k];
+    const std::uint32_t* line =
+        line_at_.find(sorted_edge(t[static_cast<std::size_t>(j)], t[static_cast<std::size_t>(k)]));
+    if (!line || share <= 0) continue;
+    Vec3 beside{};
+    beside[j] = weights[j] / share, beside[k] = weights[k] / share;
+    const Vec3 foot = flat(beside);
+    at += share * share * (smooth_.curve_point({foot, *line}) - smooth_.surface_point({foot, triangle}));
+  }
+  return at;
+}
+
+std::vector<TriangleCorners> Ground::divided(std::uint32_t triangle, double tolerance) const {
+  struct Part {
+    TriangleCorners weights;  ///< barycentric, of the corners
+    int depth;
+  };
+  std::vector<Part> stack{{{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}, 0}};
+  std::vector<TriangleCorners> made;
+  while (!stack.empty()) {
+    const Part part = stack.back();
+    stack.pop_back();
+    const auto& [a, b, c] = part.weights;
+    const Vec3 ab = 0.5 * (a + b), bc = 0.5 * (b + c), ca = 0.5 * (c + a);
+    const TriangleCorners on{smooth_at(triangle, a), smooth_at(triangle, b), smooth_at(triangle, c)};
+    const auto strays = [&](Vec3 at, Vec3 chord) { return distance(smooth_at(triangle, at), chord) > tolerance; };
+    if (part.depth < kMostDivisionsOfGround &&
+        (strays(ab, 0.5 * (on[0] + on[1])) || strays(bc, 0.5 * (on[1] + on[2])) || strays(ca, 0.5 * (on[2] + on[0])) ||
+         strays(centroid(a, b, c), centroid(on[0], on[1], on[2])))) {
+      for (const TriangleCorners& quarter : {TriangleCorners{a, ab, ca}, TriangleCorners{ab, b, bc},
+                                             TriangleCorners{ca, bc, c}, TriangleCorners{ab, bc, ca}})
+        stack.push_back({quarter, part.depth + 1});
+    } else {
+      made.push_back(on);
+    }
+  }
+  return made;
 }
 
 Ground::Truth Ground::truth_of(const TriangleCorners& t, std::uint32_t part, bool outer, double reach) const {

@@ -5,6 +5,7 @@
 
 #include <octafront/surface_mesh.h>
 
+#include "base/core/flat_map.h"
 #include "base/geometry/triangle_tree.h"
 #include "base/mesh/edge_table.h"
 #include "base/mesh/features.h"
@@ -45,13 +46,21 @@ class Ground {
   };
   Truth truth_of(const TriangleCorners& t, std::uint32_t part, bool outer, double reach) const;
 
+  /// The smooth surface of a triangle of the walls, as triangles whose middles, and those of their edges, are within
+  /// `tolerance` of it, or which are a thousandth of the whole.
+  std::vector<TriangleCorners> divided(std::uint32_t triangle, double tolerance) const;
+
   const Walls& walls() const { return walls_; }
   const TriangleTree& tree() const { return tree_; }
 
  private:
   std::optional<curved::Foot> foot(Vec3 p, std::uint32_t part, bool outer, Vec3 normal, double reach) const;
 
+  /// The smooth surface over a place of a triangle, by its barycentric weights.
+  Vec3 smooth_at(std::uint32_t triangle, Vec3 weights) const;
+
   Walls walls_;
+  FlatMap<Edge, std::uint32_t> line_at_;  ///< per sorted edge of a line its number
   TriangleTree tree_;
   curved::SmoothSurface smooth_;
 };

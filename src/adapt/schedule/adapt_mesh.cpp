@@ -31,6 +31,21 @@ constexpr int kDone = 200;
 constexpr double kMostRatioOfMetric = 1e12;
 /// Elements of a better score are not connected anew, or moved: qualities of .86 and .93; and not while a piece grows.
 constexpr float kGoodForSwaps = 0.8f, kGoodScore = 0.9f, kGoodOnTheWay = 0.3f;
+/// Edges of other lengths do not come near to what is wanted.
+constexpr double kFarShort = 0.5, kFarLong = 2;
+/// Times that elements are made smaller where walls stray too far, and how long their longest edges are made to be:
+/// so that they are divided.
+constexpr int kMostMendings = 6;
+constexpr double kLengthOfStray = 1.6;
+/// Triangles with no edge longer than so many times the bound do not stray because they are large.
+constexpr double kLeastEdgeOfStray = 8;
+/// Less gain than this is none; and no more elements than so many times those before.
+constexpr double kLeastGainOfMending = 0.7;
+constexpr std::size_t kGrowthOfMending = 2;
+/// Around them lengths grow by this part of the way, both counted in lengths; what changes less is let be.
+constexpr double kGradationOfStrays = 0.5, kLeastChangeOfDensity = 1.02;
+/// Places nearer than this part of the bound are near enough, however they are measured.
+constexpr double kShareOfBound = 0.85;
 /// Rounds once no piece has grown so far that it had to be divided anew: each place is inside a piece several times.
 constexpr int kLastRounds = 2 * kCellStages;
 
@@ -317,7 +332,10 @@ MetricFit fit_of(const TetMesh& mesh, const MetricField& metric) {
       if (!seen.insert(sorted_edge(t[i], t[j]))) continue;
       const double l = metric_length(at[t[j]].at - at[t[i]].at, at[t[i]].metric, at[t[j]].metric);
       ++fit.edges, fit.fitting += l >= kShortest && l <= kLongest;
-      fit.shortest = std::min(fit.shortest, l), fit.longest = std::max(fit.longest, l);
+      fit.far += l < kFarShort || l > kFarLong;
+      const Vec3 middle = 0.5 * (at[t[i]].at + at[t[j]].at);
+      if (l < fit.shortest) fit.shortest = l, fit.shortest_at = middle;
+      if (l > fit.longest) fit.longest = l, fit.longest_at = middle;
     }
   }
   fit.quality_mean = mesh.tets.empty() ? 0 : sum / static_cast<double>(mesh.tets.size());
@@ -344,6 +362,89 @@ void freeze(Parts& parts, std::span<const std::uint8_t> frozen) {
 
 }  // namespace
 
+namespace {
+
+void ask_for(Vertex& vertex, const Metric& metric) {
+  vertex.metric = metric;
+  vertex.density = density_of(metric);
+  vertex.exact = false, vertex.active = true;
+}
+
+/// Lengths grow no faster than by a part of the way from these vertices on.
+void grade_from(Parts& parts, std::vector<VertexIndex> queue) {
+  const Groups<> corners = group_by_owner(static_cast<std::uint32_t>(parts.vertices.size()),
+                                          static_cast<std::uint32_t>(4 * parts.tets.size()),
+                                          [&](std::uint32_t c) { return parts.tets[c / 4][c % 4]; });
+  for (std::size_t k = 0; k < queue.size(); ++k) {
+    const Vertex from = parts.vertices[queue[k]];
+    for (const std::uint32_t c : corners[queue[k]])
+      for (const VertexIndex u : parts.tets[c / 4]) {
+        Vertex& to = parts.vertices[u];
+        const double most = 1 + kGradationOfStrays * std::sqrt(from.metric.squared(to.at - from.at));
+        if (u == queue[k] || to.density >= from.density) continue;
+        const Metric limited = within(from.metric, to.metric, 0, most);
+        if (density_of(limited) <= kLeastChangeOfDensity * to.density) continue;
+        ask_for(to, limited);
+        queue.push_back(u);
+      }
+  }
+}
+
+/// Asks for smaller elements at these triangles, whatever the metric wants: such that the longest edge of each is
+/// divided.
+void ask_for_smaller(Parts& parts, const std::vector<Triangle>& triangles) {
+  std::vector<double> factor(parts.vertices.size(), 1);
+  for (const Triangle& t : triangles) {
+    double longest = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vertex &a = parts.vertices[t[i]], &b = parts.vertices[t[(i + 1) % 3]];
+      longest = std::max(longest, metric_length(b.at - a.at, a.metric, b.metric));
+    }
+    if (longest > 0)
+      for (const VertexIndex v : t) factor[v] = std::max(factor[v], kLengthOfStray / longest);
+  }
+  std::vector<VertexIndex> asked;
+  for (VertexIndex v = 0; v < factor.size(); ++v) {
+    if (factor[v] <= 1) continue;
+    asked.push_back(v);
+    ask_for(parts.vertices[v], factor[v] * factor[v] * parts.vertices[v].metric);
+  }
+  grade_from(parts, std::move(asked));
+}
+
+/// Brings walls that stray too far nearer to the ground.
+void mend_walls(Parts& parts, const Ground& ground, const AdaptRules& rules, Adapter& adapter, Adapted& out,
+                const Stage& stage) {
+  if (rules.tolerance <= 0) return;
+  const SmoothWalls smooth(ground, rules.frozen, rules.tolerance);
+  out.bound = rules.strict ? rules.tolerance : std::max(rules.tolerance, smooth.of_old().upper);
+  out.deviation = smooth.of(parts);
+  if (rules.keep_walls || out.deviation.upper <= out.bound) return;
+  const Parts first = parts;
+  Parts best = parts;
+  Deviation nearest = out.deviation;
+  for (int k = 0; k < kMostMendings && nearest.upper > out.bound; ++k) {
+    stage.check();
+    std::vector<Triangle> strays = smooth.strays(parts, kShareOfBound * out.bound);
+    std::erase_if(strays, [&](const Triangle& t) {
+      const auto at = [&](std::size_t i) { return parts.vertices[t[i]].at; };
+      return longest_squared_edge(at(0), at(1), at(2)) < kLeastEdgeOfStray * kLeastEdgeOfStray * out.bound * out.bound;
+    });
+    if (strays.empty() || parts.tets.size() > kGrowthOfMending * first.tets.size() + kRoomOfPiece) break;
+    stage.count("wall triangles that strayed", static_cast<double>(strays.size()));
+    ask_for_smaller(parts, strays);
+    adapter.run();
+    const Deviation now = smooth.of(parts);
+    if (now.upper < nearest.upper) nearest = now, best = parts;
+  }
+  // Smaller elements are no use where the ground itself has a step.
+  const bool helped = nearest.upper <= out.bound || nearest.upper < kLeastGainOfMending * out.deviation.upper;
+  if (helped) out.deviation = nearest;
+  parts = helped ? std::move(best) : first;
+}
+
+}  // namespace
+
 Adapted adapt_mesh(const TetMesh& mesh, const MetricField& metric, const AdaptRules& rules, const Stage& stage) {
   TakenApart taken = take_apart(mesh, rules.feature_angle);
   if (!rules.frozen.empty()) freeze(taken.parts, rules.frozen);
@@ -353,8 +454,10 @@ Adapted adapt_mesh(const TetMesh& mesh, const MetricField& metric, const AdaptRu
   parallel_for(taken.parts.vertices.size(), [&](std::size_t v) { guide.ask(taken.parts.vertices[v]); });
   if (rules.keep_walls)
     for (Vertex& v : taken.parts.vertices) v.frozen |= v.kind != Kind::kInner;
-  Adapter(taken.parts, guide, stage).run();
+  Adapter adapter(taken.parts, guide, stage);
+  adapter.run();
   Adapted out;
+  mend_walls(taken.parts, ground, rules, adapter, out, stage);
   out.mesh = put_together(taken.parts, taken.labels, mesh, out.old_of_new);
   return out;
 }

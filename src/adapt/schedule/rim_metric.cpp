@@ -68,4 +68,12 @@ Metric RimMetric::at(Vec3 p, std::uint32_t& hint) const {
   return within(rim, to, std::max(0.0, 1 - change), 1 + change);
 }
 
+std::vector<std::uint8_t> on_walls(const TetMesh& mesh) {
+  std::vector<std::uint8_t> marked(mesh.points.size(), 0);
+  for (const auto* faces : {&mesh.boundary, &mesh.interfaces})
+    for (const Triangle& t : *faces)
+      for (const VertexIndex v : t) marked[v] = 1;
+  return marked;
+}
+
 }  // namespace octafront::adapt

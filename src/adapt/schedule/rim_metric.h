@@ -33,4 +33,7 @@ class RimMetric : public MetricField {
   TriangleTree tree_;
 };
 
+/// Per vertex 1 if it lies on the boundary or an interface.
+std::vector<std::uint8_t> on_walls(const TetMesh& mesh);
+
 }  // namespace octafront::adapt

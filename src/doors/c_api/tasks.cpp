@@ -135,9 +135,20 @@ void order_mesh(octafront_job& job, const TetMesh& mesh) {
 }
 
 Json fit_in_json(const MetricSummary& fit) {
-  return {{"edges", fit.edges},          {"fitting", fit.fitting},         {"shortest", fit.shortest},
-          {"longest", fit.longest},      {"quality_min", fit.quality_min}, {"quality_mean", fit.quality_mean},
+  return {{"edges", fit.edges},
+          {"fitting", fit.fitting},
+          {"shortest", fit.shortest},
+          {"longest", fit.longest},
+          {"quality_min", fit.quality_min},
+          {"quality_mean", fit.quality_mean},
+          {"far", fit.far},
+          {"shortest_at", {fit.shortest_at.x, fit.shortest_at.y, fit.shortest_at.z}},
+          {"longest_at", {fit.longest_at.x, fit.longest_at.y, fit.longest_at.z}},
           {"complexity", fit.complexity}};
+}
+
+Json deviation_in_json(const WallDeviation& d) {
+  return {{"bound", d.bound}, {"lower", d.lower}, {"upper", d.upper}, {"at", {d.place.x, d.place.y, d.place.z}}};
 }
 
 }  // namespace
@@ -274,6 +285,7 @@ octafront_job* octafront_adapt(const octafront_mesh* mesh, const octafront_optio
         AdaptedMesh adapted = adapt_existing(mesh->mesh, job.options_of(options), job.context());
         job.report = Json::parse(to_json(adapted.report));
         job.report["fit"] = fit_in_json(adapted.after), job.report["fit_before"] = fit_in_json(adapted.before);
+        job.report["deviation"] = deviation_in_json(adapted.deviation);
         give(job, std::move(adapted.mesh));
         job.mesh->old_of_new = std::move(adapted.old_of_new);
         job.mesh->old_tet_of_new = std::move(adapted.old_tet_of_new);

@@ -5,6 +5,7 @@
 #include <octafront/validity.h>
 
 #include "adapt/schedule/adapt_mesh.h"
+#include "adapt/schedule/rim_metric.h"
 #include "adapt/schedule/section.h"
 #include "base/geometry/self_intersection.h"
 #include "base/mesh/known_surface.h"
@@ -60,6 +61,31 @@ void tell_fit(const MetricSummary& fit, const Stage& stage) {
                   fit.longest, fit.shortest, fit.quality_min, fit.quality_mean));
 }
 
+std::string in_words(Vec3 p) {
+  return fmt::format("({:.6g}, {:.6g}, {:.6g})", p.x, p.y, p.z);
+}
+
+/// What could not be met, with the worst places.
+void tell_unmet(const AdaptedMesh& result, const Stage& stage) {
+  const MetricSummary& fit = result.after;
+  if (fit.far > 0) {
+    std::string text =
+        fmt::format("{} of {} edges are not within half and twice of what is wanted", fit.far, fit.edges);
+    if (fit.longest > 2) text += fmt::format("; the longest, {:.2f}, at {}", fit.longest, in_words(fit.longest_at));
+    if (fit.shortest < 0.5)
+      text += fmt::format("; the shortest, {:.2f}, at {}", fit.shortest, in_words(fit.shortest_at));
+    stage.note(text +
+               ": faces, curves and corners that must stay, and walls that curve more than the sizes follow, "
+               "keep elements from them");
+  }
+  const WallDeviation& deviation = result.deviation;
+  if (deviation.upper > deviation.bound)
+    stage.note(
+        fmt::format("walls are up to {:.3g} from the smooth surface of the old ones at {}, beyond the bound of "
+                    "{:.3g}: elements there could not be made smaller",
+                    deviation.upper, in_words(deviation.place), deviation.bound));
+}
+
 /// Walls go where the smooth surface is, each by itself: where a gap is narrower than that moves them they could meet.
 adapt::Adapted adapted_without_crossings(const TetMesh& given, const adapt::MetricField& metric,
                                          adapt::AdaptRules rules, const Stage& stage) {
@@ -72,7 +98,8 @@ adapt::Adapted adapted_without_crossings(const TetMesh& given, const adapt::Metr
                   "it stays as it was, everywhere; a smaller --max-deviation may help",
                   p.x, p.y, p.z));
   rules.keep_walls = true;
-  return adapt::adapt_mesh(given, metric, rules, stage);
+  const std::vector<std::uint8_t> walls = adapt::on_walls(given);
+  return adapt::adapt_mesh(given, adapt::RimMetric(given, walls, metric), rules, stage);
 }
 
 void adapt_whole(const TetMesh& given, const adapt::MetricField& metric, const adapt::AdaptRules& rules,
@@ -80,6 +107,7 @@ void adapt_whole(const TetMesh& given, const adapt::MetricField& metric, const a
   run.stage("adapt", [&](const Stage& stage) {
     result.before = summary_of(adapt::fit_of(given, metric));
     adapt::Adapted made = adapted_without_crossings(given, metric, rules, stage);
+    result.deviation = deviation_of(made);
     result.mesh = std::move(made.mesh);
     result.old_of_new = std::move(made.old_of_new);
     result.old_tet_of_new = adapt::same_tets(given, result.mesh, result.old_of_new);
@@ -94,12 +122,14 @@ AdaptedMesh adapt_by(const TetMesh& given, const adapt::MetricField& metric, Run
   const SurfaceOptions& surface = run.options.surface;
   adapt::AdaptRules rules;
   rules.feature_angle = surface.angle_of_features();
+  rules.strict = surface.max_deviation.has_value();
   rules.tolerance = surface.max_deviation.value_or(kStrayOfAdapt * diagonal);
   run.report.input_volume = enclosed_volume(boundary_of(given));
   const bool all = run.options.adapt.only.empty();
   (all ? adapt_whole : adapt_section)(given, metric, rules, result, run);
   run.stage("summary", [&](const Stage& stage) {
     tell_fit(result.after, stage);
+    tell_unmet(result, stage);
     describe(result.mesh, run.report);
   });
   result.report = run.close();
@@ -113,7 +143,11 @@ SizeField sizes_for(const TetMesh& mesh, Run& run) {
     boundary.source.clear();
     note_misplaced_sizes(boundary, run.options.size, stage);
     const KnownSurface known(std::move(boundary), run.options.surface.angle_of_features());
-    return make_size_field(known, run.options.size, stage);
+    SizeOptions sizes = run.options.size;
+    // What is to stay near to a curved surface needs elements as small as its curvature says, as in generate().
+    if (const auto bound = run.options.surface.max_deviation; bound && *bound > 0 && !sizes.chord_error && !sizes.field)
+      sizes.chord_error = *bound;
+    return make_size_field(known, sizes, stage);
   });
 }
 

@@ -80,7 +80,12 @@ void tell_section(const TetMesh& given, std::size_t chosen, std::size_t may_chan
 }  // namespace
 
 MetricSummary summary_of(const adapt::MetricFit& fit) {
-  return {fit.edges, fit.fitting, fit.shortest, fit.longest, fit.quality_min, fit.quality_mean, fit.complexity};
+  return {fit.edges,       fit.fitting,    fit.shortest,    fit.longest,      fit.far,
+          fit.shortest_at, fit.longest_at, fit.quality_min, fit.quality_mean, fit.complexity};
+}
+
+WallDeviation deviation_of(const adapt::Adapted& made) {
+  return {made.bound, made.deviation.lower, made.deviation.upper, made.deviation.place};
 }
 
 void adapt_section(const TetMesh& given, const adapt::MetricField& wanted, const adapt::AdaptRules& asked,
@@ -102,13 +107,16 @@ void adapt_section(const TetMesh& given, const adapt::MetricField& wanted, const
                       "it stays as it was; a smaller --max-deviation may help",
                       place->x, place->y, place->z));
       rules.keep_walls = true;
-      made = changed_by(given, section, metric, rules, stage);
+      std::vector<std::uint8_t> stays = adapt::on_walls(section.mesh);
+      for (VertexIndex v = 0; v < stays.size(); ++v) stays[v] |= section.frozen[v];
+      made = changed_by(given, section, adapt::RimMetric(section.mesh, stays, wanted), rules, stage);
     }
     if (const auto defect = defect_of(made.part.mesh, stage))
       throw MeshingError("the mesh made is not valid, which is a bug of ours; please report it with the input. " +
                          *defect);
     tell_section(given, count, count_of(chosen), made, run.options.adapt, stage);
     result.after = summary_of(adapt::fit_of(made.part.mesh, metric));
+    result.deviation = deviation_of(made.part);
     result.mesh = std::move(made.whole);
     result.old_of_new = std::move(made.ids.old_of_new);
     result.old_tet_of_new = std::move(made.ids.old_tet_of_new);

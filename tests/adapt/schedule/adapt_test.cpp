@@ -3,6 +3,7 @@
 #include <octafront/validity.h>
 
 #include "adapt/schedule/adapt_mesh.h"
+#include "adapt/schedule/rim_metric.h"
 #include "improve/start_meshes.h"
 
 #include <algorithm>
@@ -133,7 +134,8 @@ TEST(Adapt, WallsStayWhereTheyAreAskedTo) {
   StageReport report;
   const adapt::SizeMetric metric(SizeField::uniform(0.06));
   const adapt::AdaptRules rules{.feature_angle = 40, .tolerance = 0.01, .keep_walls = true};
-  const TetMesh mesh = adapt::adapt_mesh(start, metric, rules, {{}, report}).mesh;
+  const std::vector<std::uint8_t> walls = adapt::on_walls(start);
+  const TetMesh mesh = adapt::adapt_mesh(start, adapt::RimMetric(start, walls, metric), rules, {{}, report}).mesh;
   EXPECT_GT(mesh.tets.size(), 2 * start.tets.size());
   EXPECT_EQ(first_defect(mesh), std::nullopt);
   const auto corners = [](const TetMesh& m) {
