@@ -1,5 +1,6 @@
 #pragma once
 
+#include <octafront/metric.h>
 #include <octafront/options.h>
 #include <octafront/report.h>
 #include <octafront/run_context.h>
@@ -72,6 +73,11 @@ AdaptedMesh adapt_existing(const TetMesh& mesh, const Options& options, const Ru
 
 /// The same by a metric, which may want other lengths in other directions; `options.size` has no say.
 AdaptedMesh adapt_to_metric(const TetMesh& mesh, const MetricFunction& metric, const Options& options = {},
+                            const RunContext& context = {});
+
+/// The same by metrics on a background mesh, which may be the mesh itself. Throws InputError where its numbers do not
+/// match or a tensor is not positive definite, with the first places.
+AdaptedMesh adapt_to_metric(const TetMesh& mesh, const MetricMesh& metric, const Options& options = {},
                             const RunContext& context = {});
 
 /// Numbers on a mesh, at its vertices or of its elements.

@@ -15,6 +15,7 @@
 #include <octafront/improve_existing.h>
 #include <octafront/io.h>
 #include <octafront/mend.h>
+#include <octafront/metric.h>
 #include <octafront/named_groups.h>
 #include <octafront/open_cavity_error.h>
 #include <octafront/option_table.h>

@@ -85,6 +85,24 @@ Metric exp_of(const Metric& log) {
   return with_values(log, [](double x) { return elementary::exp(x); });
 }
 
+Metric intersection(const Metric& a, const Metric& b) {
+  const Metric root = with_values(a, [](double x) { return std::sqrt(std::max(x, 1e-300)); });
+  Eigen change = eigen(between(inverse(root), b));
+  bool is_within = true, is_finer = true;
+  for (double& value : change.value) {
+    is_within &= value <= 1;
+    is_finer &= value >= 1;
+    value = std::max(value, 1.0);
+  }
+  // Exactly one of them where it is finer everywhere: what is done twice changes nothing then.
+  return is_within ? a : is_finer ? b : between(root, change.tensor());
+}
+
+bool is_metric(const Metric& m) {
+  const bool is_positive = m.xx > 0 && m.xx * m.yy - m.xy * m.xy > 0 && m.determinant() > 0;
+  return is_positive && std::isfinite(m.determinant()) && std::isfinite(m.xx + m.yy + m.zz + m.xy + m.xz + m.yz);
+}
+
 double lengths::far_log_mean(double a, double b) {
   const double u = (a - b) / (a + b), s = u * u;
   if (s < 0.03) {

@@ -6,6 +6,7 @@
 // A metric M asks for elements whose edges e have e^T M e = 1: its eigenvectors are directions, its eigenvalues
 // 1 / h^2 of the lengths wanted along them. A size is the metric I / h^2.
 
+#include <octafront/metric.h>
 #include <octafront/size_field.h>
 #include <octafront/vec.h>
 
@@ -15,27 +16,7 @@
 
 namespace octafront::adapt {
 
-/// A symmetric 3 x 3 tensor; as a metric positive definite, in 1 / (input unit)^2.
-struct Metric {
-  double xx = 1, xy = 0, xz = 0, yy = 1, yz = 0, zz = 1;
-
-  static constexpr Metric of_size(double h) { return {1 / (h * h), 0, 0, 1 / (h * h), 0, 1 / (h * h)}; }
-  constexpr Vec3 times(Vec3 e) const {
-    return {xx * e.x + xy * e.y + xz * e.z, xy * e.x + yy * e.y + yz * e.z, xz * e.x + yz * e.y + zz * e.z};
-  }
-  /// e^T M e: the squared length of e in this metric.
-  constexpr double squared(Vec3 e) const { return dot(e, times(e)); }
-  constexpr double determinant() const {
-    return xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
-  }
-  friend constexpr bool operator==(const Metric&, const Metric&) = default;
-};
-constexpr Metric operator+(const Metric& a, const Metric& b) {
-  return {a.xx + b.xx, a.xy + b.xy, a.xz + b.xz, a.yy + b.yy, a.yz + b.yz, a.zz + b.zz};
-}
-constexpr Metric operator*(double s, const Metric& a) {
-  return {s * a.xx, s * a.xy, s * a.xz, s * a.yy, s * a.yz, s * a.zz};
-}
+using octafront::Metric;
 
 /// Requires a determinant that is not 0.
 Metric inverse(const Metric& m);
@@ -54,6 +35,12 @@ Eigen eigen(const Metric& m);
 /// X. Pennec, N. Ayache, "Log-Euclidean metrics for fast and simple calculus on diffusion tensors", 2006).
 Metric log_of(const Metric& m);
 Metric exp_of(const Metric& log);
+
+/// What asks for no longer elements than both, in the directions in which both are diagonal.
+Metric intersection(const Metric& a, const Metric& b);
+
+/// Finite, and positive definite.
+bool is_metric(const Metric& m);
 
 namespace lengths {
 double far_log_mean(double a, double b);

@@ -4,6 +4,7 @@
 #include <octafront/second_order.h>
 #include <octafront/validity.h>
 
+#include "adapt/metric/background.h"
 #include "adapt/schedule/adapt_mesh.h"
 #include "adapt/schedule/rim_metric.h"
 #include "adapt/schedule/section.h"
@@ -31,9 +32,7 @@ class MetricOfFunction : public adapt::MetricField {
   adapt::Metric at(Vec3 p, std::uint32_t&) const override {
     const auto m = function_(p);
     const adapt::Metric metric{m[0][0], m[0][1], m[0][2], m[1][1], m[1][2], m[2][2]};
-    const bool positive =
-        metric.xx > 0 && metric.xx * metric.yy - metric.xy * metric.xy > 0 && metric.determinant() > 0;
-    if (!positive || !std::isfinite(metric.determinant()))
+    if (!adapt::is_metric(metric))
       throw InputError(fmt::format("the metric at ({:.6g}, {:.6g}, {:.6g}) is not positive definite", p.x, p.y, p.z));
     return metric;
   }
@@ -51,6 +50,13 @@ void require_adaptable(const TetMesh& mesh, const Run& run) {
                      : !mesh.split_faces.empty()    ? "faces whose nodes were doubled"
                                                     : nullptr;
   if (what) throw InputError(fmt::format("the mesh has {}; meshes with those cannot be adapted: mesh anew", what));
+}
+
+TetMesh linear_and_adaptable(const TetMesh& mesh, Run& run) {
+  TetMesh given = mesh;
+  make_linear(given);
+  run.stage("check of the input", [&](const Stage&) { require_adaptable(given, run); });
+  return given;
 }
 
 void tell_fit(const MetricSummary& fit, const Stage& stage) {
@@ -155,9 +161,7 @@ SizeField sizes_for(const TetMesh& mesh, Run& run) {
 
 AdaptedMesh adapt_existing(const TetMesh& mesh, const Options& options, const RunContext& context) {
   Run run(options, context);
-  TetMesh given = mesh;
-  make_linear(given);
-  run.stage("check of the input", [&](const Stage&) { require_adaptable(given, run); });
+  const TetMesh given = linear_and_adaptable(mesh, run);
   const adapt::SizeMetric metric(sizes_for(given, run));
   return adapt_by(given, metric, run);
 }
@@ -165,10 +169,16 @@ AdaptedMesh adapt_existing(const TetMesh& mesh, const Options& options, const Ru
 AdaptedMesh adapt_to_metric(const TetMesh& mesh, const MetricFunction& metric, const Options& options,
                             const RunContext& context) {
   Run run(options, context);
-  TetMesh given = mesh;
-  make_linear(given);
-  run.stage("check of the input", [&](const Stage&) { require_adaptable(given, run); });
+  const TetMesh given = linear_and_adaptable(mesh, run);
   return adapt_by(given, MetricOfFunction(metric), run);
+}
+
+AdaptedMesh adapt_to_metric(const TetMesh& mesh, const MetricMesh& metric, const Options& options,
+                            const RunContext& context) {
+  Run run(options, context);
+  const adapt::BackgroundMetric field(metric);
+  const TetMesh given = linear_and_adaptable(mesh, run);
+  return adapt_by(given, field, run);
 }
 
 }  // namespace octafront

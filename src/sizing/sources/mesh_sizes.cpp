@@ -120,18 +120,9 @@ void MeshSizes::divide(std::uint32_t node, std::uint32_t begin, std::uint32_t en
   nodes_[node] = made;
 }
 
-double MeshSizes::size_in_tet(std::uint32_t tet, const std::array<double, 4>& weights) const {
-  double size = 0, sum = 0;
-  for (std::size_t k = 0; k < 4; ++k) {
-    const double weight = std::max(0.0, weights[k]);
-    size += weight * size_at_corner(tet, mesh_->tets[tet][k]);
-    sum += weight;
-  }
-  return size / sum;
-}
-
-double MeshSizes::size_inside(Vec3 p) const {
-  double size = 0, best = -kRounding;
+std::optional<MeshSizes::Place> MeshSizes::place_inside(Vec3 p) const {
+  std::optional<Place> place;
+  double best = -kRounding;
   std::array<std::uint32_t, 64> stack;
   int depth = 0;
   stack[depth++] = 0;
@@ -151,27 +142,53 @@ double MeshSizes::size_inside(Vec3 p) const {
       const double least = *std::min_element(weights->begin(), weights->end());
       if (least <= best) continue;
       best = least;
-      size = size_in_tet(t, *weights);
+      place = Place{t, mesh_->tets[t], *weights};
     }
   }
+  if (!place) return place;
+  double sum = 0;
+  for (double& weight : place->weights) sum += weight = std::max(0.0, weight);
+  for (double& weight : place->weights) weight /= sum;
+  return place;
+}
+
+MeshSizes::Place MeshSizes::place_on_triangle(std::uint32_t triangle, Vec3 p) const {
+  const auto [i, j, k] = faces_[triangle];
+  const Vec3 a = mesh_->points[i], b = mesh_->points[j], c = mesh_->points[k];
+  const double u = triangle_area(p, b, c), v = triangle_area(a, p, c), w = triangle_area(a, b, p), sum = u + v + w;
+  Place place{element_of_face_[triangle], {i, j, k, kNone}, {1, 0, 0, 0}};
+  if (sum > 0) {
+    place.weights = {u / sum, v / sum, w / sum, 0};
+  } else {
+    // Of a triangle without area its least size.
+    const std::uint32_t e = place.element;
+    const VertexIndex least =
+        std::min({i, j, k}, [&](VertexIndex x, VertexIndex y) { return size_at_corner(e, x) < size_at_corner(e, y); });
+    place.weights = {least == i ? 1.0 : 0.0, least == j && least != i ? 1.0 : 0.0,
+                     least == k && least != i && least != j ? 1.0 : 0.0, 0};
+  }
+  return place;
+}
+
+double MeshSizes::size_of(const Place& place) const {
+  double size = 0;
+  for (std::size_t k = 0; k < 4; ++k)
+    if (place.weights[k] > 0) size += place.weights[k] * size_at_corner(place.element, place.corners[k]);
   return size;
 }
 
-double MeshSizes::size_on_triangle(std::uint32_t triangle, Vec3 p) const {
-  const auto [i, j, k] = faces_[triangle];
-  const Vec3 a = mesh_->points[i], b = mesh_->points[j], c = mesh_->points[k];
-  const double u = triangle_area(p, b, c), v = triangle_area(a, p, c), w = triangle_area(a, b, p);
-  const std::uint32_t e = element_of_face_[triangle];
-  const double of_i = size_at_corner(e, i), of_j = size_at_corner(e, j), of_k = size_at_corner(e, k);
-  const double sum = u + v + w;
-  return sum > 0 ? (u * of_i + v * of_j + w * of_k) / sum : std::min({of_i, of_j, of_k});
+MeshSizes::Place MeshSizes::place(Vec3 p) const {
+  if (!mesh_->tets.empty())
+    if (const auto inside = place_inside(p)) return *inside;
+  const TriangleTree::Nearest nearest = surface_->nearest(p);
+  return place_on_triangle(nearest.triangle, nearest.point);
 }
 
 MeshSizes::Answer MeshSizes::at(Vec3 p) const {
   if (!mesh_->tets.empty())
-    if (const double size = size_inside(p); size > 0) return {size, 0};
+    if (const auto inside = place_inside(p)) return {size_of(*inside), 0};
   const TriangleTree::Nearest nearest = surface_->nearest(p);
-  return {size_on_triangle(nearest.triangle, nearest.point), std::sqrt(nearest.squared_distance)};
+  return {size_of(place_on_triangle(nearest.triangle, nearest.point)), std::sqrt(nearest.squared_distance)};
 }
 
 double MeshSizes::least_in(const Box3& box) const {

@@ -24,6 +24,13 @@ class MeshSizes {
   };
   /// Linear in the element that holds p, or that of the nearest point of the mesh.
   Answer at(Vec3 p) const;
+  /// The same with the weights: those of the corners, none below 0, together 1. Of a triangle the last one is kNone.
+  struct Place {
+    std::uint32_t element;
+    std::array<VertexIndex, 4> corners;
+    std::array<double, 4> weights;
+  };
+  Place place(Vec3 p) const;
   /// No more than the size at any place of the box.
   double least_in(const Box3& box) const;
   double largest() const { return largest_; }
@@ -47,10 +54,10 @@ class MeshSizes {
   std::size_t elements() const { return mesh_->tets.empty() ? mesh_->triangles.size() : mesh_->tets.size(); }
   Element element(std::uint32_t number) const;
   double size_at_corner(std::uint32_t element, VertexIndex v) const;
-  /// Of the tetrahedron that holds p; 0 if none does.
-  double size_inside(Vec3 p) const;
-  double size_in_tet(std::uint32_t tet, const std::array<double, 4>& weights) const;
-  double size_on_triangle(std::uint32_t triangle, Vec3 p) const;
+  /// In the tetrahedron that holds p, if one does.
+  std::optional<Place> place_inside(Vec3 p) const;
+  Place place_on_triangle(std::uint32_t triangle, Vec3 p) const;
+  double size_of(const Place& place) const;
   /// The triangles that bound it: those of the mesh, or faces of one tetrahedron, whose numbers are in tet_of_.
   void make_surface();
 
