@@ -637,6 +637,21 @@ void declare_ground(CLI::App& command, Arguments& a) {
 void declare_adaptation(CLI::App& command, Arguments& a) {
   auto* group = command.add_option_group("Adaptation", "The boundary stays on the smooth surface that it stands for");
   group->add_option("--sizes", a.size_field, "Another name of --size-field")->type_name("FILE[:FIELD]");
+  group
+      ->add_option("--metric", a.metric,
+                   "Other lengths in other directions: MEDIT's .sol or .solb, or tensors at the points of a VTU or VTK "
+                   "mesh; with --elements scaled to that number, with --gradation, --min-size, --max-size changed so")
+      ->type_name("FILE[:FIELD]");
+  group
+      ->add_option("--from", a.field,
+                   "A metric made of a field at the points of the input, for --elements elements: its second "
+                   "derivatives say where and in which direction they must be short")
+      ->type_name("FIELD");
+  group->add_option("--norm", a.norm, "The error of --from is least in the norm of L^P; 1 or more")
+      ->type_name("P")
+      ->capture_default_str();
+  group->add_option("--save-metric", a.metric_out, "Where that metric is written, to look at: .vtu, or MEDIT's .sol")
+      ->type_name("FILE");
   add_length(*group, a, "--max-deviation", a.options.surface.max_deviation,
              "How far the boundary may stray from it [.4 % of the diagonal]")
       ->type_name("D");

@@ -42,6 +42,10 @@ struct Arguments {
   std::vector<std::string> only;              ///< places that may change
   std::filesystem::path map_file;             ///< where old vertices and elements are now; empty: none
   std::filesystem::path regions, point_sizes, size_field;  ///< files with sizes; empty: none
+  std::string metric;                                      ///< FILE[:FIELD] with a metric; empty: none
+  std::string field;                                       ///< of the input, of which a metric is made; empty: none
+  double norm = 2;                                         ///< p of L^p, in which that metric makes its error least
+  std::filesystem::path metric_out;                        ///< where the metric is written; empty: nowhere
   Options options;
   std::optional<Solver> solver;      ///< whose limits a mesh is checked by
   std::string unit;                  ///< of the input's coordinates; empty: what the file says

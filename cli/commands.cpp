@@ -7,6 +7,7 @@
 #include "id_map.h"
 #include "inputs.h"
 #include "mesh_in_words.h"
+#include "metric_input.h"
 #include "open_cavity.h"
 #include "overlaps.h"
 #include "page.h"
@@ -232,10 +233,13 @@ void run_adapt(Session& session) {
   check_mesh_targets(a);
   check_map_target(a.map_file);
   check_page_target(a.page);
+  check_metric_options(a);
   const Options options = checked_options_of(session);
   const TetMesh mesh = read_mesh_input(session);
+  const std::optional<MetricMesh> metric = metric_asked_for(session, mesh);
   const auto adapted = [&] {
     try {
+      if (metric) return adapt_to_metric(mesh, *metric, options, session.context());
       return adapt_existing(mesh, options, session.context());
     } catch (const InputError& error) {
       throw InputError(fmt::format("{}: {}", a.input.string(), error.what()));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <octafront/complex.h>
+#include <octafront/metric.h>
 #include <octafront/options.h>
 #include <octafront/run_context.h>
 #include <octafront/size_field.h>
@@ -107,6 +108,19 @@ std::shared_ptr<const SizeMesh> read_size_mesh(const std::string& file, const st
 /// else SizeOptions::mesh.
 void read_sizes_into(SizeOptions& options, const std::string& named, const RunContext& context = {});
 
+/// Reads a metric at the vertices of a mesh: MEDIT's .sol or .solb (tensors xx xy yy xz yz zz, or sizes; the mesh is
+/// the .mesh or .meshb of the same name, else `mesh_file`), or FILE:FIELD of a VTU or VTK mesh with tensors at its
+/// points (9 numbers by rows, or 6 as VTK has them: xx yy zz xy yz xz; where it is named also single numbers, which are
+/// sizes). Whether they are positive definite is for adapt_to_metric() to say. Throws InputError.
+MetricMesh read_metric(const std::string& named, const std::string& mesh_file = {}, const RunContext& context = {});
+/// Writes it as tensors at the points of a .vtu, or as a .sol without the mesh. Throws OutputError, OptionError.
+void write_metric(const std::string& file, const MetricMesh& metric, const RunContext& context = {});
+
+/// Reads a field of single numbers at the points of a mesh that was read from `file` or has the same points; `field`:
+/// its name, empty: the only one. Throws InputError.
+std::vector<double> read_point_values(const std::string& file, const std::string& field, const TetMesh& mesh,
+                                      const RunContext& context = {});
+
 /// Writes text (a report) beside and renames it into place. Throws OutputError.
 void write_text(const std::string& file, const std::string& text);
 
@@ -118,6 +132,7 @@ bool same_file(const std::string& a, const std::string& b);
 void check_mesh_target(const std::string& file, const WriteOptions& options = {});
 void check_surface_target(const std::string& file);
 void check_size_field_target(const std::string& file);
+void check_metric_target(const std::string& file);
 /// The same for files of any ending.
 void check_text_target(const std::string& file);
 

@@ -259,6 +259,18 @@ octafront_job* octafront_generate_sizes(const octafront_surface* surface, const 
                                         int threads);
 /** -> mesh: adapt_existing(), by the options' sizes. The report has "fit" and, of the old mesh, "fit_before". */
 octafront_job* octafront_adapt(const octafront_mesh* mesh, const octafront_options* options, int threads);
+/** -> mesh: adapt_to_metric(), by `n` symmetric matrices of 3 x 3, one for each point of the mesh, which must live
+ * until the job has ended. The report as of octafront_adapt(). */
+octafront_job* octafront_adapt_to_metric(const octafront_mesh* mesh, const double* metric, size_t n,
+                                         const octafront_options* options, int threads);
+/** The functions of octafront/metric.h: {"task": "implied"}, {"task": "hessians"}, {"task": "of_field", "elements":
+ * 1e5, "norm": 2, "gradation": 0.4, "min_size": 0, "max_size": 1}, {"task": "graded", "gradation": 0.4}, {"task":
+ * "intersected"}, {"task": "bounded", "min_size": ...}, {"task": "with_complexity", "complexity": 1e4, ...}, {"task":
+ * "complexity"}, which the report has. `values`: n matrices of 3 x 3, or of hessians and of_field n numbers; of
+ * implied, null. `others`: the second metric that is intersected, or null. `out`: n matrices (implied: as many as the
+ * mesh has points), or null. The mesh may be null where the task needs none. All must live until the job has ended. */
+octafront_job* octafront_metrics(const octafront_mesh* mesh, const char* json, const double* values,
+                                 const double* others, size_t n, double* out, int threads);
 /** -> mesh: improve_existing(); `ground`, which may be null: the surface that the boundary slides on. */
 octafront_job* octafront_improve(const octafront_mesh* mesh, const octafront_surface* ground,
                                  const octafront_options* options, int threads);

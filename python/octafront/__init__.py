@@ -13,7 +13,7 @@ import inspect as _inspect
 import json as _json
 import os as _os
 
-from . import _complexes, _fields, errors
+from . import _complexes, _fields, errors, metrics
 from ._images import is_file as _is_file, surface_of_image as _surface_of_image
 from ._intake import opened as _opened
 from ._jobs import Job as _Job
@@ -27,7 +27,7 @@ from .errors import (Cancelled, Error, InputError, InternalError, MeshingError, 
 __version__ = _call("version").decode()
 __all__ = ["Cancelled", "Checked", "Error", "InputError", "InternalError", "Mesh", "MeshingError", "OUTSIDE",
            "OpenCavityError", "OptionError", "OutputError", "SizeField", "Surface", "adapt", "check", "complex_of_walls",
-           "errors", "formats", "image_surface", "improve", "join_bodies", "mend", "mesh", "mesh_file", "mesh_image", "read",
+           "errors", "formats", "image_surface", "improve", "join_bodies", "mend", "mesh", "mesh_file", "mesh_image", "metrics", "read",
            "repair", "size_field", "surface"]
 
 
@@ -181,12 +181,14 @@ def improve(mesh, *, surface=None, **keywords):
 
 
 @_takes_options("adapt")
-def adapt(mesh, *, sizes=None, fields=None, **keywords):
+def adapt(mesh, *, sizes=None, metric=None, fields=None, **keywords):
     """The mesh changed until its edges are as long as the sizes want: a new Mesh. report["fit"] says how well it fits.
 
     mesh: a valid Mesh of any tool, the name of its file, or an object of meshio, PyVista or VTK. Its boundary stays on the smooth surface that it stands
     for; patches, regions, sheets, curves and sets stay.
     sizes: edge lengths wanted at its own points, (n,); else what the keywords ask for, as for mesh().
+    metric: at its own points, (n, 3, 3), or (n, 6) as xx, xy, xz, yy, yz, zz: other lengths in other directions, see
+        octafront.metrics. Sizes have no say beside it.
     only: what may change, a place or several: "box:X0,Y0,Z0,X1,Y1,Z1", "sphere:X,Y,Z,R", or a region, patch, curve or set
     by its name; all but it and a `halo` of layers around keeps its bits and numbers.
 
@@ -200,6 +202,7 @@ def adapt(mesh, *, sizes=None, fields=None, **keywords):
     Cancelled.
 
     >>> octafront.adapt(mesh, sizes=0.5 * wanted).save("next.vtu")
+    >>> octafront.adapt(mesh, metric=octafront.metrics.of_field(mesh, u, elements=100_000))
     """
     old = Mesh.read(mesh) if _is_file(mesh) else Mesh.of(mesh)
     if sizes is not None:
@@ -210,7 +213,10 @@ def adapt(mesh, *, sizes=None, fields=None, **keywords):
         keywords["only"] = ";".join(keywords["only"])
     settings = _Settings("adapt", "adapt", keywords)
     values = {name: _fields.field_on(old, name, array) for name, array in dict(fields or {}).items()}
-    job = _Job("adapt", old._handle, settings.options, settings.threads, **settings.functions())
+    if metric is None:
+        job = _Job("adapt", old._handle, settings.options, settings.threads, **settings.functions())
+    else:
+        job = metrics._adapting(old, metric, sizes, settings)
     report = job.run()
     new = Mesh._of(job.take("mesh"), report)
     new.fields = {name: _fields.carried(old, new, array) for name, array in values.items()}

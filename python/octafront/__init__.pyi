@@ -6,7 +6,7 @@ from typing import Any, Literal, Protocol, TypedDict
 import numpy as np
 import numpy.typing as npt
 
-from . import errors as errors
+from . import errors as errors, metrics as metrics
 from .errors import (Cancelled as Cancelled, Error as Error, InputError as InputError, InternalError as InternalError,
                      MeshingError as MeshingError, OpenCavityError as OpenCavityError, OptionError as OptionError,
                      OutputError as OutputError)
@@ -132,6 +132,8 @@ class Mesh:
                 patches: Sequence[str | int] | None = None) -> Mesh: ...
     def save(self, path: Path, *, format: str | None = None, ascii: bool = False,
              cells_only: bool = False, cohesive: bool = False, beams: str = "") -> list[str]: ...
+    def adapt(self, *, sizes: npt.ArrayLike | None = None, metric: npt.ArrayLike | None = None,
+              **keywords: Any) -> Mesh: ...
     def save_page(self, path: Path) -> None: ...
     def boundary(self) -> Surface: ...
     def to_pyvista(self) -> Any: ...
@@ -606,7 +608,7 @@ def improve(mesh: Tets | Path, *, surface: Body | Path | None = None,
     after_pass: Callable[[str, dict[str, Any]], object] | None = None,
     progress: Progress | None = None,
     threads: int = 0) -> Mesh: ...
-def adapt(mesh: Tets | Path, *, sizes: npt.ArrayLike | None = None,
+def adapt(mesh: Tets | Path, *, sizes: npt.ArrayLike | None = None, metric: npt.ArrayLike | None = None,
     fields: Mapping[str, npt.ArrayLike] | None = None,
     size: float | str | SizeFunction | SizeField | None = None,
     elements: int | None = None,

@@ -93,6 +93,8 @@ _PROTOTYPES = {
     "generate_sizes": (_handle, _handle, _handle, _whole), "improve": (_handle, _handle, _handle, _handle, _whole),
     "adapt": (_handle, _handle, _handle, _whole),
     "carry_field": (_whole, _handle, _handle, _whole, _size, _pointer, _pointer),
+    "adapt_to_metric": (_handle, _handle, _pointer, _size, _handle, _whole),
+    "metrics": (_handle, _handle, _text, _pointer, _pointer, _size, _pointer, _whole),
     "repair": (_handle, _handle), "check": (_handle, _handle, _text), "order_mesh": (_handle, _handle),
     "write_page": (_handle, _handle, _handle, _text, _text),
     "job_wait": (_whole, _handle, _number, ctypes.POINTER(Event)), "job_answer": (None, _handle),

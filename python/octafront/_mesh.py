@@ -292,6 +292,11 @@ class Mesh:
         job = Job("write_mesh", self._handle, file_of(path), json.dumps(options).encode())
         return job.run()["notes"]
 
+    def adapt(self, *, sizes=None, metric=None, **keywords):
+        """octafront.adapt() of this mesh: a new Mesh that fits other sizes, or a metric."""
+        import octafront
+        return octafront.adapt(self, sizes=sizes, metric=metric, **keywords)
+
     def save_page(self, path):
         """Writes a web page that shows the mesh in 3D and its report: one file, which opens without a network. Elements can
         be coloured by their size against the one wanted if mesh() made it. Raises OutputError."""

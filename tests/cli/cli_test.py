@@ -420,6 +420,33 @@ class CommandLine(unittest.TestCase):
         self.run_cli("adapt", start, "--size", 2, "-o", self.dir / "c.msh", "--map", self.dir / "map.txt", status=2)
         self.assertFalse((self.dir / "c.msh").exists())
 
+    def test_adapts_a_mesh_to_a_metric_of_a_file_or_a_field(self):
+        start, out, report = self.dir / "a.mesh", self.dir / "b.vtu", self.dir / "r.json"
+        self.run_cli("mesh", SAMPLES / "bracket.stl", "-o", start, "--size", 10)
+        words = start.read_text().split()
+        count = int(words[words.index("Vertices") + 1])
+        sol = "MeshVersionFormatted 2\nDimension 3\nSolAtVertices\n%d\n1 3\n" % count
+        (self.dir / "m.sol").write_text(sol + "0.04 0 0.01 0 0 0.01\n" * count + "End\n")
+        self.run_cli("adapt", start, "--metric", self.dir / "m.sol", "-o", out, "--json", report,
+                     "--save-metric", self.dir / "m.vtu")
+        fit = json.loads(report.read_text())["fit"]
+        self.assertGreater(fit["fitting"], 0.85 * fit["edges"])
+        self.assertIn("a valid mesh", self.run_cli("check", out).stdout)
+        # What was written is the same metric.
+        again = self.dir / "c.vtu"
+        self.run_cli("adapt", start, "--metric", self.dir / "m.vtu", "-o", again)
+        self.assertEqual(again.read_bytes(), out.read_bytes())
+        (self.dir / "m.sol").write_text(sol + "0.04 0 0.01 0 0 0.01\n" * (count - 1) + "1 0 -1 0 0 1\nEnd\n")
+        refused = self.run_cli("adapt", start, "--metric", self.dir / "m.sol", "-o", self.dir / "d.vtu", status=3)
+        self.assertIn("not positive definite: point %d" % (count - 1), refused.stderr)
+        self.assertFalse((self.dir / "d.vtu").exists())
+        self.run_cli("adapt", start, "--metric", self.dir / "m.sol", "--size", 3, "-o", out, status=2)
+        values = "".join("%r\n" % (float(words[words.index("Vertices") + 2 + 4 * v]) ** 2) for v in range(count))
+        (self.dir / "a.sol").write_text("MeshVersionFormatted 2\nDimension 3\nSolAtVertices\n%d\n1 1\n" % count + values + "End\n")
+        self.run_cli("adapt", start, "--from", "solution_1", "--elements", 6000, "-o", out, "--json", report)
+        self.assertAlmostEqual(json.loads(report.read_text())["mesh"]["tets"], 6000, delta=1800)
+        self.run_cli("adapt", start, "--from", "solution_1", "-o", out, status=2)
+
     def test_a_broken_mesh_is_not_improved(self):
         broken = self.dir / "broken.mesh"
         broken.write_text("MeshVersionFormatted 2\nDimension 3\nVertices 5\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\n"

@@ -795,6 +795,35 @@ class Meshes(Case):
             with self.assertRaises(octafront.OptionError):
                 octafront.adapt(old, size=0.1, fields={"u": wrong})
 
+    def test_adapt_follows_a_metric_of_a_field(self):
+        mesh = octafront.mesh(*cube(), size=0.2)
+        field = mesh.points[:, 0] ** 2 + 0.1 * mesh.points[:, 1] ** 2
+        hessian = octafront.metrics.hessians(mesh, field)
+        np.testing.assert_allclose(hessian, np.broadcast_to(np.diag([2, 0.2, 0]), hessian.shape), atol=1e-6)
+        metric = octafront.metrics.of_field(mesh, field, elements=4000, max_size=0.3)
+        self.assertAlmostEqual(octafront.metrics.complexity(mesh, metric), 4000 / 10.2, delta=40)
+        new = mesh.adapt(metric=metric)
+        self.assertGreater(new.report["fit"]["fitting"], 0.8 * new.report["fit"]["edges"])
+        six = metric[:, [0, 0, 0, 1, 1, 2], [0, 1, 2, 1, 2, 2]]
+        np.testing.assert_array_equal(octafront.adapt(mesh, metric=six, threads=1).points, new.points)
+        both = octafront.metrics.intersected(metric, octafront.metrics.of_sizes(np.full(len(metric), 0.1)))
+        self.assertGreaterEqual(np.linalg.eigvalsh(both).min(), 100 * (1 - 1e-9))
+        bounded = octafront.metrics.bounded(metric, min_size=0.1, max_size=0.2)
+        self.assertGreaterEqual(np.linalg.eigvalsh(bounded).min(), 25 * (1 - 1e-9))
+        graded = octafront.metrics.graded(mesh, both, gradation=0.2)
+        self.assertGreaterEqual(octafront.metrics.complexity(mesh, graded), octafront.metrics.complexity(mesh, both))
+        self.assertEqual(octafront.metrics.implied(mesh).shape, metric.shape)
+        scaled = octafront.metrics.with_complexity(mesh, metric, 100)
+        self.assertAlmostEqual(octafront.metrics.complexity(mesh, scaled), 100, 6)
+        with self.assertRaises(octafront.InputError):
+            octafront.adapt(mesh, metric=-metric)
+        with self.assertRaises(octafront.InputError):
+            octafront.adapt(mesh, metric=metric[:-1])
+        with self.assertRaises(octafront.OptionError):
+            octafront.adapt(mesh, metric=metric, sizes=field)
+        with self.assertRaises(octafront.OptionError):
+            octafront.adapt(mesh, metric=metric[:, 0])
+
     def test_improve_and_check(self):
         mesh = octafront.mesh(*sphere(), size=0.3, improve="none")
         better = octafront.improve(mesh, surface=octafront.Surface(*sphere()))

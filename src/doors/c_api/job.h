@@ -1,5 +1,6 @@
 #pragma once
 
+#include <octafront/adapt.h>
 #include <octafront/error.h>
 #include <octafront/octafront_c.h>
 #include <octafront/run_context.h>
@@ -89,6 +90,9 @@ namespace octafront::c_api {
 
 /// A job, or null where there is no memory or thread for one.
 octafront_job* started(const octafront_job::Work& work, int threads = 0);
+
+/// Hands over the mesh, with how it fits in the report.
+void give_adapted(octafront_job& job, AdaptedMesh adapted);
 
 /// A leak leaves the way through it in the report.
 template <class Work>

@@ -153,6 +153,15 @@ Json deviation_in_json(const WallDeviation& d) {
 
 }  // namespace
 
+void give_adapted(octafront_job& job, AdaptedMesh adapted) {
+  job.report = Json::parse(to_json(adapted.report));
+  job.report["fit"] = fit_in_json(adapted.after), job.report["fit_before"] = fit_in_json(adapted.before);
+  job.report["deviation"] = deviation_in_json(adapted.deviation);
+  give(job, std::move(adapted.mesh));
+  job.mesh->old_of_new = std::move(adapted.old_of_new);
+  job.mesh->old_tet_of_new = std::move(adapted.old_tet_of_new);
+}
+
 octafront_job* started(const octafront_job::Work& work, int threads) {
   octafront_job* job = nullptr;
   guarded([&] { job = new octafront_job(work, threads); });
@@ -282,13 +291,7 @@ octafront_job* octafront_adapt(const octafront_mesh* mesh, const octafront_optio
   return started(
       [mesh, options](octafront_job& job) {
         require_indices(mesh->mesh);
-        AdaptedMesh adapted = adapt_existing(mesh->mesh, job.options_of(options), job.context());
-        job.report = Json::parse(to_json(adapted.report));
-        job.report["fit"] = fit_in_json(adapted.after), job.report["fit_before"] = fit_in_json(adapted.before);
-        job.report["deviation"] = deviation_in_json(adapted.deviation);
-        give(job, std::move(adapted.mesh));
-        job.mesh->old_of_new = std::move(adapted.old_of_new);
-        job.mesh->old_tet_of_new = std::move(adapted.old_tet_of_new);
+        give_adapted(job, adapt_existing(mesh->mesh, job.options_of(options), job.context()));
       },
       threads);
 }

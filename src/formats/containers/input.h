@@ -23,6 +23,8 @@ struct Input {
   /// The name of a field of numbers that is read along with a mesh, into RawMesh::field; empty: of the only one there
   /// is; null: none is.
   const std::string* field = nullptr;
+  /// Fields of tensors at points are asked for: of 6 or 9 numbers; of single numbers those that are named.
+  bool wants_tensors = false;
 
   /// Throws InputError "NAME: message".
   [[noreturn]] void fail(std::string_view message) const;

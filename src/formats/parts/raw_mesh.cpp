@@ -464,10 +464,15 @@ class Ordering {
 
 }  // namespace
 
-bool RawMesh::Field::offer(const Input& input, std::string_view name) {
+bool RawMesh::Field::offer(const Input& input, std::string_view name, std::uint64_t of_components) {
   if (input.field == nullptr) return false;
+  const bool is_tensor = of_components == 6 || of_components == 9;
+  const bool is_single = of_components == 1 && (!input.wants_tensors || !input.field->empty());
+  if (!is_single && !(is_tensor && input.wants_tensors)) return false;
   if (std::find(names.begin(), names.end(), name) == names.end()) names.emplace_back(name);
-  return input.field->empty() ? names.size() == 1 : *input.field == name;
+  const bool is_wanted = input.field->empty() ? names.size() == 1 : *input.field == name;
+  if (is_wanted) components = of_components;
+  return is_wanted;
 }
 
 void RawMesh::Field::take(double value, const RawMesh& raw) {

@@ -44,12 +44,13 @@ struct RawMesh {
   /// What Input::field asks for. A field has values at points or in elements.
   struct Field {
     std::vector<std::string> names;  ///< of all that could be asked for, as the file lists them
-    std::vector<double> at_points;   ///< one per point, or empty
+    std::vector<double> at_points;   ///< one per point, or empty; of tensors `components` per point
+    std::uint64_t components = 1;
     /// One per element, or empty. Of triangles there may be fewer than there are beside tetrahedra.
     std::vector<double> at_tets, at_triangles;
 
     /// Enters the name of one that is there; whether its values are asked for.
-    bool offer(const Input& input, std::string_view name);
+    bool offer(const Input& input, std::string_view name, std::uint64_t of_components = 1);
     /// Enters the value of the tetrahedra and triangles that `raw` has more than values.
     void take(double value, const RawMesh& raw);
   };

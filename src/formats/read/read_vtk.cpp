@@ -172,9 +172,9 @@ class Vtk {
     } else if (word == "SCALARS") {
       read_scalars();
     } else if (word == "VECTORS" || word == "NORMALS" || word == "TENSORS") {
-      scan_.word();
-      const Type& of = type();
-      values(product(data_count_, word == "TENSORS" ? 9 : 3), of, [](double) {});
+      const std::string name = percent_decoded(scan_.word());
+      const std::uint64_t components = word == "TENSORS" ? 9 : 3;
+      take_array(name, product(data_count_, components), components, type());
     } else if (word == "METADATA") {
       // Up to an empty line.
       next_line();
@@ -250,8 +250,8 @@ class Vtk {
   }
 
   void take_array(const std::string& name, std::uint64_t n, std::uint64_t components, const Type& of) {
-    if (of_ != Of::kField && components == 1 && !is_numbering(name) && raw_.field.offer(input_, name))
-      return take_field(n, of);
+    const bool is_asked = components == 1 ? of_ != Of::kField : of_ == Of::kPoints;
+    if (is_asked && !is_numbering(name) && raw_.field.offer(input_, name, components)) return take_field(n, of);
     const bool is_wanted = is_set_name(name) || name == "region" || name == "patch" || name == "curve" ||
                            name == "source" || name == "layers" || of_ == Of::kField;
     if (!is_wanted || of.name == "double" || of.name == "float") return values(n, of, [](double) {});

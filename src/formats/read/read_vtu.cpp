@@ -123,11 +123,12 @@ class Vtu {
   std::vector<double> field_of(std::string_view section, std::uint64_t count) {
     std::vector<double> values;
     for (const VtkArray& array : xml_.arrays) {
-      if (array.section != section || array.components != 1 || is_numbering(array.name)) continue;
-      if (!array.type.starts_with("Float")) continue;
-      if (!raw_.field.offer(input_, array.name)) continue;
-      values = vtk_reals(xml_, array, input_, count);
-      check_length(array, values.size(), count);
+      if (array.section != section || is_numbering(array.name) || !array.type.starts_with("Float")) continue;
+      if (array.components != 1 && section != "PointData") continue;
+      const auto components = static_cast<std::uint64_t>(array.components);
+      if (!raw_.field.offer(input_, array.name, components)) continue;
+      values = vtk_reals(xml_, array, input_, components * count);
+      check_length(array, values.size(), components * count);
     }
     return values;
   }

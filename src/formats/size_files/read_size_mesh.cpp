@@ -142,18 +142,18 @@ SizeMesh size_mesh_of(const io::Input& input, io::RawMesh raw) {
   return mesh;
 }
 
-io::RawMesh read_with_field(const io::Input& input) {
-  io::RawMesh raw = io::read_raw_mesh(input);
-  read_beside(input, raw);
-  return raw;
-}
-
 /// Cells that are none of ours: a background grid's.
 bool looks_like_grid(const io::RawMesh& raw) {
   return raw.format == "VTU" && raw.tets.empty() && raw.triangles.empty() && raw.other_elements > 0;
 }
 
 }  // namespace
+
+io::RawMesh read_with_field(const io::Input& input) {
+  io::RawMesh raw = io::read_raw_mesh(input);
+  read_beside(input, raw);
+  return raw;
+}
 
 SizeMesh read_size_mesh_bytes(const io::Input& input, const std::string& field) {
   io::Input asked = input;

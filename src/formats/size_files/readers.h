@@ -5,6 +5,7 @@
 #include <octafront/io.h>
 
 #include "formats/containers/input.h"
+#include "formats/parts/raw_mesh.h"
 
 #include <string>
 #include <vector>
@@ -19,6 +20,8 @@ std::vector<PointSize> read_point_table(const io::Input& input);
 std::vector<PointSize> read_point_sizes_bytes(const io::Input& input);
 std::vector<SizeRegion> read_size_regions_bytes(const io::Input& input);
 SizeMesh read_size_mesh_bytes(const io::Input& input, const std::string& field);
+/// The mesh with the field that Input::field asks for, also where that stands in a file beside.
+io::RawMesh read_with_field(const io::Input& input);
 SizeField read_size_field_bytes(const io::Input& input, double gradation);
 
 }  // namespace octafront
