@@ -29,7 +29,7 @@ MetricMesh metric_from_field(const Session& session, const TetMesh& mesh) {
   metrics::FromField from;
   from.elements = static_cast<double>(a.options.size.elements.value_or(0));
   from.norm = a.norm;
-  if (was_typed(a, "--gradation")) from.gradation = a.options.size.gradation;
+  if (was_typed(a, "gradation")) from.gradation = a.options.size.gradation;
   from.bounds = bounds_of(a.options);
   const std::vector<double> values = read_point_values(a.input.string(), a.field, mesh, session.context());
   return {mesh.points, mesh.tets, {}, metrics::of_field(mesh, values, from, session.context()), a.field};
@@ -41,13 +41,13 @@ MetricMesh metric_from_file(const Session& session) {
   MetricMesh metric = read_metric(a.metric, a.input.string(), session.context());
   const metrics::Bounds bounds = bounds_of(a.options);
   const bool is_bounded = a.options.size.min_size || a.options.size.max_size;
-  const bool needs_mesh = was_typed(a, "--gradation") || a.options.size.elements;
+  const bool needs_mesh = was_typed(a, "gradation") || a.options.size.elements;
   if (needs_mesh && metric.tets.empty())
     throw OptionError("--gradation and --elements of a metric need a mesh of tetrahedra that it stands on");
   TetMesh ground;
   ground.points = metric.points, ground.tets = metric.tets;
   if (is_bounded) metric.metrics = metrics::bounded(metric.metrics, bounds);
-  if (was_typed(a, "--gradation"))
+  if (was_typed(a, "gradation"))
     metric.metrics = metrics::graded(ground, metric.metrics, a.options.size.gradation, session.context());
   if (a.options.size.elements) {
     const double target = static_cast<double>(*a.options.size.elements) / metrics::kElementsPerComplexity;
@@ -68,12 +68,11 @@ void check_metric_options(const Arguments& a) {
   if (!a.field.empty() && !a.options.size.elements)
     throw OptionError("--from needs a number of elements, as --elements 100000");
   constexpr std::array<std::string_view, 15> kSizes{
-      "--size",        "--sizes", "--size-field", "--size-of", "--size-near",        "--regions",  "--point-sizes",
-      "--curvature",   "--gap",   "--through",    "--facets",  "--automatic-factor", "--interior", "--feature-elements",
-      "--max-elements"};
+      "size", "sizes",   "size-field", "size-of",          "size-near", "regions",     "point-sizes",     "curvature",
+      "gap",  "through", "facets",     "automatic-factor", "interior",  "chord-error", "feature-elements"};
   for (const std::string_view option : kSizes)
     if (was_typed(a, option))
-      throw OptionError(fmt::format("{} asks for sizes, and {} says all of them: leave one out", option,
+      throw OptionError(fmt::format("--{} asks for sizes, and {} says all of them: leave one out", option,
                                     a.metric.empty() ? "--from" : "--metric"));
   if (!a.metric_out.empty()) check_metric_target(a.metric_out.string());
 }

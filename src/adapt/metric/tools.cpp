@@ -38,7 +38,7 @@ constexpr double kNearEnough = 1e-9;
 constexpr int kRoundsOfTarget = 4;
 constexpr double kNearTarget = 0.01;
 /// Eigenvalues of hessians below this part of the largest at the place, and of the largest of all, count as that.
-constexpr double kFlatHere = 1e-6, kFlatAnywhere = 1e-10;
+constexpr double kFlatHere = 1e-4, kFlatAnywhere = 1e-10;
 
 void require_points(const TetMesh& mesh, std::span<const Metric> metrics) {
   adapt::require_linear(mesh);
