@@ -13,6 +13,7 @@
 #   bench/run.sh peers       surfaces kept and made anew, against TetGen, Gmsh, Netgen and CGAL -> build/release/experiments/peers.json
 #   bench/run.sh complexes   several regions in one mesh, against TetGen and Gmsh       -> docs/use/complex.md
 #   bench/run.sh improve     improvement against its targets, never worse, start meshes of others -> docs/measured/improve-bench.md
+#   bench/run.sh adapt       the Working Group's cases of metrics, a loop with FEniCSx -> docs/measured/adapt.md
 #   bench/run.sh adapt_loops  meshes adapted to small and large sizes in turn, ten times -> docs/measured/adapt-isotropic.md
 #   bench/run.sh formats     how fast meshes are written, every format beside a plain write -> docs/measured/formats-bench.md
 #   bench/run.sh second_order   all clean models, balls, tori, cylinders: proven? how true? at what cost? -> docs/how/second-order.md
@@ -35,8 +36,8 @@ cd "$(dirname "$0")/.."
 source scripts/lib/apt.sh
 
 case ${1:-} in
-  status | derived | pipeline | surface | elements | gradation | volume | graded | peers | complexes | improve | adapt_loops | formats | second_order | dry_run | repair | known_answers | damage | images | thin | budget | cad | layers | layers_shapes | layers_flows | layers_peers | layers_solved | inside | periodic) ;;
-  *) sed -n '2,32s/^# \{0,1\}//p' "$0"; exit 2 ;;
+  status | derived | pipeline | surface | elements | gradation | volume | graded | peers | complexes | improve | adapt | adapt_loops | formats | second_order | dry_run | repair | known_answers | damage | images | thin | budget | cad | layers | layers_shapes | layers_flows | layers_peers | layers_solved | inside | periodic) ;;
+  *) sed -n '2,33s/^# \{0,1\}//p' "$0"; exit 2 ;;
 esac
 need_packages "${build_packages[@]}" python3
 [ "$1" != surface ] || need_packages gmsh netgen libcgal-dev libgmp-dev libmpfr-dev
@@ -50,18 +51,20 @@ need_packages "${build_packages[@]}" python3
 [ "$1" != known_answers ] || need_packages "${test_packages[@]}"
 { [ "$1" != repair ] && [ "$1" != damage ]; } || need_packages python3-numpy python3-meshio
 [[ $1 != layers_* ]] || need_packages python3-numpy python3-meshio openfoam
+[ "$1" != adapt ] || need_packages python3-numpy python3-dolfinx
 [ "$1" != periodic ] || need_packages calculix-ccx
 { [ "$1" != inside ] && [ "$1" != periodic ]; } || need_packages python3-numpy python3-meshio python3-gmsh tetgen
 [ "$1" != layers_peers ] || need_packages python3-gmsh
 [ "$1" != images ] || need_packages libcgal-dev libgmp-dev libmpfr-dev libboost-dev
 [ "$1" != images ] || [ -d volumes ] || scripts/get-volumes.sh
-[ "$1" = formats ] || [ "$1" = complexes ] || [ "$1" = images ] || [ "$1" = thin ] || [ "$1" = cad ] || [ -d models/clean ] || scripts/get-models.sh --ct
+[ "$1" = formats ] || [ "$1" = adapt ] || [ "$1" = complexes ] || [ "$1" = images ] || [ "$1" = thin ] || [ "$1" = cad ] || [ -d models/clean ] || scripts/get-models.sh --ct
 tests=OFF
 [ "$1" != complexes ] && [ "$1" != known_answers ] || tests=ON  # what makes complexes is theirs, and a judge
 cmake --preset release -DOCTAFRONT_BUILD_TESTS=$tests >/dev/null
 cmake --build --preset release --target octafront_cli octafront_evaluate octafront_judge_surface
 [ "$1" != cad ] || cmake --build --preset release --target octafront_cad_program octafront_judge_cad
 [ "$1" != derived ] || [ -d models/derived ] || scripts/derive-models.sh build/release/cli/octafront
+[ "$1" != adapt ] || cmake --build --preset release --target octafront_adapt_cases octafront_python
 [ "$1" != adapt_loops ] || cmake --build --preset release --target octafront_adapt_loops
 [ "$1" != improve ] || cmake --build --preset release --target octafront_never_worse
 [ "$1" != formats ] || { cmake --build --preset release --target octafront_write_formats; exec python3 bench/formats.py build/release "${@:2}"; }

@@ -1,0 +1,91 @@
+#!/usr/bin/python3
+"""Mesh, solve, adapt, solve again: Laplace's equation on an L-shaped solid with FEniCSx (Debian: python3-dolfinx). Prints the
+error of the gradient beside the number of unknowns; --json: as bench/adapt.py reads it.
+"""
+import json
+import sys
+
+import numpy
+import octafront
+import ufl
+from dolfinx import fem, mesh as grids
+from mpi4py import MPI
+from petsc4py.PETSc import ScalarType
+
+
+def l_shaped_solid(height=0.5):
+    """The square from -1 to 1 without its fourth quadrant, extruded."""
+    outline = [(0, 0), (1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1)]
+    caps = [(0, 1, 2), (0, 2, 3), (0, 3, 4), (0, 4, 5), (0, 5, 6), (0, 6, 7)]
+    n = len(outline)
+    points = [(x, y, z) for z in (0, height) for x, y in outline]
+    triangles = [(a, c, b) for a, b, c in caps] + [(a + n, b + n, c + n) for a, b, c in caps]
+    for a in range(n):
+        b = (a + 1) % n
+        triangles += [(a, b, b + n), (a, b + n, a + n)]
+    return numpy.array(points, float), numpy.array(triangles)
+
+
+def exact(x):
+    """r^(2/3) sin(2/3 angle), which is 0 on the two faces of the edge."""
+    angle = numpy.arctan2(x[1], x[0])
+    angle = numpy.where(angle < -1e-12, angle + 2 * numpy.pi, angle)
+    return numpy.hypot(x[0], x[1]) ** (2 / 3) * numpy.sin(2 / 3 * angle)
+
+
+def solved(mesh):
+    """The solution at the points of the mesh, and the error of its gradient in L^2."""
+    element = ufl.VectorElement("Lagrange", ufl.tetrahedron, 1)
+    grid = grids.create_mesh(MPI.COMM_SELF, mesh.tets.astype(numpy.int64), mesh.points, ufl.Mesh(element))
+    space = fem.FunctionSpace(grid, ("CG", 1))
+    u, v = ufl.TrialFunction(space), ufl.TestFunction(space)
+    grid.topology.create_connectivity(2, 3)
+    wall = fem.Function(space)
+    wall.interpolate(exact)
+    dofs = fem.locate_dofs_topological(space, 2, grids.exterior_facet_indices(grid.topology))
+    zero = fem.Constant(grid, ScalarType(0))
+    problem = fem.petsc.LinearProblem(ufl.inner(ufl.grad(u), ufl.grad(v)) * ufl.dx, zero * v * ufl.dx, [fem.dirichletbc(wall, dofs)],
+                                      petsc_options={"ksp_type": "cg", "pc_type": "gamg", "ksp_rtol": 1e-9})
+    found = problem.solve()
+    x = ufl.SpatialCoordinate(grid)
+    angle = ufl.atan_2(x[1], x[0])
+    angle = ufl.conditional(ufl.lt(angle, 0), angle + 2 * ufl.pi, angle)
+    r = ufl.sqrt(x[0] ** 2 + x[1] ** 2)
+    slope = 2 / 3 * r ** (-1 / 3)
+    gradient = ufl.as_vector((-slope * ufl.sin(angle / 3), slope * ufl.cos(angle / 3), 0))
+    off = ufl.grad(found) - gradient
+    error = numpy.sqrt(fem.assemble_scalar(fem.form(ufl.inner(off, off) * ufl.dx(metadata={"quadrature_degree": 5}))))
+    # FEniCSx has an order of its own: values go back to the points by the corners of each cell.
+    values = numpy.empty(len(mesh.points))
+    corners = grid.geometry.dofmap.array.reshape(-1, 4)
+    values[numpy.asarray(grid.geometry.input_global_indices)[corners]] = found.x.array[space.dofmap.list.array.reshape(-1, 4)]
+    return values, float(error)
+
+
+def row(mesh, error):
+    return {"elements": len(mesh.tets), "unknowns": len(mesh.points), "error": error}
+
+
+def main():
+    body = l_shaped_solid()
+    uniform = []
+    for size in (0.2, 0.14, 0.1, 0.07):
+        mesh = octafront.mesh(*body, size=size)
+        uniform.append(row(mesh, solved(mesh)[1]))
+    mesh, adapted, elements = octafront.mesh(*body, size=0.2), [], 8000
+    u, _ = solved(mesh)
+    while elements <= 128_000:
+        for _ in range(2):
+            mesh = octafront.adapt(mesh, metric=octafront.metrics.of_field(mesh, u, elements=elements))
+            u, error = solved(mesh)
+        adapted.append(row(mesh, error))
+        elements *= 2
+    if "--json" in sys.argv:
+        print(json.dumps({"uniform": uniform, "adapted": adapted}))
+        return
+    for name, rows in (("uniform", uniform), ("adapted", adapted)):
+        for r in rows:
+            print(f"{name}: {r['elements']} elements, {r['unknowns']} unknowns, error {r['error']:.4f}")
+
+
+main()
