@@ -94,7 +94,7 @@ def main():
     if loops is None:
         lines.append(f"Not run: {' '.join(why)}")
     else:
-        lines += ["`examples/solve/fenicsx_loop.py`: Laplace's equation on an L-shaped solid whose solution r^⅔ sin ⅔θ is singular at the edge, linear elements of FEniCSx; the metric of the solution in L² for twice as many elements in each "
+        lines += ["`examples/solve/fenicsx_loop.py`: Poisson's equation on an L-shaped solid with the solution r^⅔ sin ⅔θ cos πz, whose gradient is infinite at the edge, linear elements of FEniCSx; the metric of the solution in L² for twice as many elements in each "
                   "step. The error is that of the gradient in L²; theory: unknowns to the power -⅓ where meshes are adapted, -²⁄₉ where they are uniform.", "",
                   "| mesh | elements | unknowns | error |", "| --- | --- | --- | --- |"]
         for kind in ("uniform", "adapted"):
