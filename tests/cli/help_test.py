@@ -77,6 +77,14 @@ class Help(unittest.TestCase):
             points = int(mesh.read().split("POINTS ")[1].split()[0])
         with open(self.dir / "new.vtk", "a") as mesh:
             mesh.write(f"POINT_DATA {points}\nSCALARS h double 1\nLOOKUP_TABLE default\n" + "1\n" * points)
+        self.run_cli("convert", self.dir / "in.msh", "-o", self.dir / "in.mesh")
+        (self.dir / "in.sol").write_text("MeshVersionFormatted 2\nDimension 3\nSolAtVertices\n"
+                                         f"{points}\n1 3\n" + "1 0 1 0 0 2\n" * points + "End\n")
+        self.run_cli("convert", self.dir / "in.msh", "-o", self.dir / "in.vtu", "--ascii")
+        values = " ".join(str(0.01 * v * v) for v in range(points))
+        text = (self.dir / "in.vtu").read_text()
+        (self.dir / "in.vtu").write_text(text.replace(
+            "<PointData>", f'<PointData><DataArray type="Float64" Name="u" format="ascii">{values}</DataArray>', 1))
         for command in self.commands():
             examples = self.run_cli("help", command).out.split("Examples:\n")[1]
             for line in examples.splitlines():
