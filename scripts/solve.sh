@@ -2,6 +2,7 @@
 # Meshes and solves the examples of examples/solve, and compares them with theory (docs/measured/solved.md). Installs what it needs.
 #   scripts/solve.sh [CASE ...]      with CalculiX: cantilever, pipe, patch, heat, plate, bar, sphere; by default all
 #   scripts/solve.sh --fenicsx       the pipe with FEniCSx (a gigabyte of packages)
+#   scripts/solve.sh --loop          mesh, solve, adapt, solve again with FEniCSx (docs/use/adapt.md)
 #   scripts/solve.sh --others        the bar with FreeFEM, GetFEM, sfepy, deal.II, FEniCSx and OpenFOAM (three gigabytes of packages)
 #   scripts/solve.sh --picture       all, and docs/images/solved.png anew
 set -euo pipefail
@@ -16,6 +17,11 @@ case ${1:-} in
   --fenicsx)
     need_packages python3-dolfinx
     exec /usr/bin/python3 examples/solve/fenicsx.py "$octafront" "$work"
+    ;;
+  --loop)
+    need_packages python3-numpy python3-dolfinx
+    cmake --build --preset release --target octafront_python
+    PYTHONPATH=python OCTAFRONT_BIN=build/release/python/octafront/_bin exec /usr/bin/python3 examples/solve/fenicsx_loop.py
     ;;
   --others)
     need_packages freefem++ python3-getfem python3-sfepy libdeal.ii-dev python3-dolfinx openfoam
