@@ -66,14 +66,15 @@ def row(mesh, error):
     return {"elements": len(mesh.tets), "unknowns": len(mesh.points), "error": error}
 
 
-def loop(body, most):
-    """Twice as many elements in each step, and two solutions for each number of them."""
+def loop(body, most, is_round):
+    """Twice as many elements in each step, and two solutions for each number of them. `is_round`: as long in all directions."""
     mesh, steps, elements = octafront.mesh(*body, size=0.2), [], 16_000
     u, error = solved(mesh)
     while elements <= most:
         for again in range(2):
             metric = octafront.metrics.of_field(mesh, u, elements=elements)
-            mesh = octafront.adapt(mesh, metric=metric)
+            wanted = {"sizes": numpy.linalg.det(metric) ** (-1 / 6)} if is_round else {"metric": metric}
+            mesh = octafront.adapt(mesh, **wanted)
             u, error = solved(mesh)
         steps.append(row(mesh, error))
         elements *= 2
@@ -86,11 +87,12 @@ def main():
     for size in (0.2, 0.1) if is_short else (0.2, 0.14, 0.1, 0.07):
         mesh = octafront.mesh(*body, size=size)
         uniform.append(row(mesh, solved(mesh)[1]))
-    adapted = loop(body, 32_000 if is_short else 128_000)
+    most = 32_000 if is_short else 128_000
+    rounds, adapted = loop(body, most, True), loop(body, most, False)
     if "--json" in sys.argv:
-        print(json.dumps({"uniform": uniform, "adapted": adapted}))
+        print(json.dumps({"uniform": uniform, "sizes": rounds, "metric": adapted}))
         return
-    for name, rows in (("uniform", uniform), ("adapted", adapted)):
+    for name, rows in (("uniform", uniform), ("sizes", rounds), ("metric", adapted)):
         for r in rows:
             print(f"{name}: {r['elements']} elements, {r['unknowns']} unknowns, error {r['error']:.4f}")
 

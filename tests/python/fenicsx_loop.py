@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """The loop of docs/use/adapt.md: its lines are those of examples/solve/fenicsx_loop.py, which runs, and whose adapted meshes have
-less than half the error of uniform ones of as many unknowns. Skipped (77) without DOLFINx."""
+six tenths of the error of uniform ones of as many unknowns. Skipped (77) without DOLFINx."""
 import importlib.util
 import json
 import math
@@ -28,13 +28,14 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         done = subprocess.run([sys.executable, EXAMPLE, "--json", "--short"], cwd=folder, check=True, stdout=subprocess.PIPE, text=True)
     found = json.loads(done.stdout.strip().splitlines()[-1])
-    uniform, adapted = found["uniform"], found["adapted"]
+    uniform, adapted = found["uniform"], found["metric"]
     print(uniform, adapted)
     assert slope(adapted) < -0.3, slope(adapted)
+    assert slope(found["sizes"]) < -0.25, slope(found["sizes"])
     last, first = uniform[-1], adapted[0]
     # By their theory a uniform mesh of as many unknowns as the first adapted one has this error.
     as_many = last["error"] * (last["unknowns"] / first["unknowns"]) ** (2 / 9)
-    assert first["error"] < 0.5 * as_many, (first, as_many)
+    assert first["error"] < 0.6 * as_many, (first, as_many)
     return 0
 
 
