@@ -100,7 +100,7 @@ def main():
         for kind in ("uniform", "sizes", "metric"):
             lines += [f"| {kind} | {r['elements']:,} | {r['unknowns']:,} | {r['error']:.4f} |" for r in loops[kind]]
         lines += ["", f"Slopes of the lines that fit best: uniform {slope(loops['uniform']):.3f}, sizes {slope(loops['sizes']):.3f}, metric {slope(loops['metric']):.3f}. By theory they end at -²⁄₉, -⅓ and -⅓: the "
-                  "uniform meshes have not yet come to where the edge alone counts; elements that are long along the edge go on as in a plane (-½) until they are as long as the solution bends there."]
+                  "uniform meshes have not yet come to where the edge alone counts; elements that are long along the edge have a slope between that of a plane (-½) and that of a body, probably because they may still grow longer. Round elements of the density that the metric has gain nothing over uniform ones here; the directions do."]
     options.output.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
