@@ -85,8 +85,8 @@ std::array<double, 2> values_of(const Bounds& b) {
 
 std::vector<Metric> scaled_and_cut(std::span<const Metric> metrics, double factor, const Bounds& bounds) {
   std::vector<Metric> out(metrics.size());
-  const auto [most, least] = values_of(bounds);
-  parallel_for(out.size(), [&](std::size_t v) { out[v] = cut(factor * metrics[v], most, least); });
+  const std::array<double, 2> values = values_of(bounds);
+  parallel_for(out.size(), [&](std::size_t v) { out[v] = cut(factor * metrics[v], values[0], values[1]); });
   return out;
 }
 
