@@ -124,7 +124,8 @@ struct IntakeRepair {
 };
 
 /// The way in to a mesh by these options: where `intake` does not say it, a CAD file is triangulated for the size or
-/// the number of elements that they ask for, and faces with a size of their own stay apart.
+/// the number of elements that they ask for, and faces with a size of their own stay apart; an image has the budget of
+/// automatic sizes if they are.
 ///
 /// Example: generate(open_domain("part.step", intake_for(options)), options) is what `octafront mesh` does.
 IntakeOptions intake_for(const Options& options, IntakeOptions intake = {});

@@ -13,7 +13,6 @@
 #include "cad/shapes/shapes.h"
 #include "doors/intake/intake.h"
 #include "sizing/prediction/affordable.h"
-#include "sizing/search/budget.h"
 
 #include <algorithm>
 #include <array>
@@ -436,22 +435,6 @@ void finish_joined_cad(Domain& domain, const CadTaken& taken, ComplexOptions::Ov
 }  // namespace octafront::intake
 
 namespace octafront {
-
-IntakeOptions intake_for(const Options& options, IntakeOptions intake) {
-  CadIntake& cad = intake.cad;
-  if (!cad.size && !cad.elements) {
-    cad.elements = options.size.elements;
-    if (!cad.elements) cad.size = options.size.size;
-  }
-  for (const NamedSize& named : options.size.named) cad.apart.push_back(named.name);
-  for (const NearSize& near : options.size.near)
-    if (!near.name.empty()) cad.apart.push_back(near.name);
-  if (!options.surface.max_deviation)
-    intake.image.most_elements = std::min(intake.image.most_elements, most_automatic_budget(options.size));
-  // Other maps repeat no bodies; what is no list of axes is refused later, by the name of the option.
-  if (!intake.repeat && options.periodic.find_first_of(",@=;") == std::string::npos) intake.repeat = options.periodic;
-  return intake;
-}
 
 CadInfo read_cad_info(const std::string& file, const IntakeOptions& options, const RunContext& context) {
   intake::check_cad_intake(options.cad);

@@ -4,12 +4,14 @@
 #include <octafront/formula.h>
 #include <octafront/io.h>
 #include <octafront/mend.h>
+#include <octafront/options.h>
 #include <octafront/surface_mesh.h>
 
 #include "base/core/thread_limit.h"
 #include "base/core/wording.h"
 #include "doors/intake/cell.h"
 #include "doors/intake/intake.h"
+#include "sizing/search/budget.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -19,6 +21,22 @@
 #include <fmt/format.h>
 
 namespace octafront {
+
+IntakeOptions intake_for(const Options& options, IntakeOptions intake) {
+  CadIntake& cad = intake.cad;
+  if (!cad.size && !cad.elements) {
+    cad.elements = options.size.elements;
+    if (!cad.elements) cad.size = options.size.size;
+  }
+  for (const NamedSize& named : options.size.named) cad.apart.push_back(named.name);
+  for (const NearSize& near : options.size.near)
+    if (!near.name.empty()) cad.apart.push_back(near.name);
+  if (!options.surface.max_deviation)
+    intake.image.most_elements = std::min(intake.image.most_elements, most_automatic_budget(options.size));
+  // Other maps repeat no bodies; what is no list of axes is refused later, by the name of the option.
+  if (!intake.repeat && options.periodic.find_first_of(",@=;") == std::string::npos) intake.repeat = options.periodic;
+  return intake;
+}
 
 namespace {
 

@@ -2,6 +2,7 @@
 // little-endian, each section with the place of the next one. What is not needed is passed over.
 
 #include "formats/containers/scanner.h"
+#include "formats/parts/medit_sections.h"
 #include "formats/parts/raw_mesh.h"
 #include "formats/parts/surface_builder.h"
 #include "formats/read/readers.h"
@@ -9,7 +10,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 
 #include <fmt/core.h>
 
@@ -150,69 +150,47 @@ class MeditText {
 
 class MeditBinary {
  public:
-  explicit MeditBinary(const Input& input) : input_(input), progress_(input), at_(input.bytes.data()) {}
+  explicit MeditBinary(const Input& input) : input_(input), file_(input) {}
 
   RawMesh read() {
     RawMesh raw;
     raw.format = "MEDIT binary";
     SectionReader<MeditBinary> sections(*this, raw);
-    if (get<std::int32_t>() != 1) fail("big-endian files are not read here; save it on a little-endian machine");
-    version_ = get<std::int32_t>();
-    if (version_ < 1 || version_ > 4)
-      fail(fmt::format("version {} of binary MEDIT is not read here (1 to 4 are)", version_));
-    constexpr int kDimension = 3, kEnd = 54;
-    for (int code = get<std::int32_t>(); code != kEnd; code = get<std::int32_t>()) {
-      const std::uint64_t next = version_ < 3 ? static_cast<std::uint32_t>(get<std::int32_t>()) : get<std::uint64_t>();
-      const char* const begin = at_;
+    file_.for_each([&](std::int32_t code) {
       const auto section =
           std::find_if(kSections.begin(), kSections.end(), [&](const ReadSection& s) { return s.code == code; });
-      if (code == kDimension && get<std::int32_t>() != 3) fail("the mesh is of another dimension than 3");
       if (section != kSections.end()) sections.read(*section, count(*section));
-      // Sections only follow each other, so that reading ends.
-      if (next <= static_cast<std::uint64_t>(begin - input_.bytes.data()) || next > input_.bytes.size())
-        fail(fmt::format("the next section is said to begin at byte {}; the file is truncated or damaged", next));
-      at_ = input_.bytes.data() + next;
-    }
+      return true;
+    });
     return raw;
   }
 
   double real() {
-    const double value = version_ == 1 ? get<float>() : get<double>();
+    const double value = file_.real();
     if (!std::isfinite(value))
       fail(fmt::format("expected a coordinate, found {}, which is not a finite number", value));
     return value;
   }
-  std::int64_t integer(std::string_view) { return version_ < 4 ? get<std::int32_t>() : get<std::int64_t>(); }
+  std::int64_t integer(std::string_view) {
+    return file_.version() < 4 ? file_.get<std::int32_t>() : file_.get<std::int64_t>();
+  }
   void vertex_reference() { integer({}); }
-  [[noreturn]] void fail(std::string_view message) const { input_.fail_at_byte(at_, message); }
+  [[noreturn]] void fail(std::string_view message) const { file_.fail(message); }
 
  private:
-  template <class T>
-  T get() {
-    progress_.reach(at_);
-    if (static_cast<std::size_t>(input_.bytes.data() + input_.bytes.size() - at_) < sizeof(T))
-      fail("the file ends here; it is truncated: copy or export it again");
-    T value;
-    std::memcpy(&value, at_, sizeof(T));
-    at_ += sizeof(T);
-    return value;
-  }
-
   std::uint64_t count(const ReadSection& section) {
-    const char* const at = at_;
+    const char* const at = file_.position();
     const std::int64_t n = integer({});
-    const std::uint64_t word = version_ < 4 ? 4 : 8;
-    const std::uint64_t each = section.dimension == 0 ? 3 * (version_ == 1 ? 4 : 8) + word : (section.nodes + 1) * word;
+    const int version = file_.version();
+    const std::uint64_t word = version < 4 ? 4 : 8;
+    const std::uint64_t each = section.dimension == 0 ? 3 * (version == 1 ? 4 : 8) + word : (section.nodes + 1) * word;
     if (n < 0) fail(fmt::format("{} {}; the file is damaged: export it again", n, section.name));
-    check_claim(input_, at, {static_cast<std::uint64_t>(n), each, section.name},
-                static_cast<std::size_t>(input_.bytes.data() + input_.bytes.size() - at_));
+    check_claim(input_, at, {static_cast<std::uint64_t>(n), each, section.name}, file_.bytes_left());
     return static_cast<std::uint64_t>(n);
   }
 
   const Input& input_;
-  ReadingProgress progress_;
-  const char* at_;
-  int version_ = 0;
+  MeditSections file_;
 };
 
 }  // namespace

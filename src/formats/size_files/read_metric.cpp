@@ -6,15 +6,16 @@
 
 #include "formats/containers/input.h"
 #include "formats/containers/scanner.h"
+#include "formats/parts/medit_sections.h"
 #include "formats/read/readers.h"
 #include "formats/size_files/readers.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -87,50 +88,32 @@ class SolText {
   io::Scanner scan_;
 };
 
-/// A .solb: sections by codes, each with the place of the next one.
+/// A .solb.
 class SolBinary {
  public:
-  explicit SolBinary(const io::Input& input) : input_(input), progress_(input), at_(input.bytes.data()) {}
+  explicit SolBinary(const io::Input& input) : input_(input), file_(input) {}
 
   std::vector<Metric> read() {
-    constexpr int kDimension = 3, kSolAtVertices = 62, kEnd = 54;
-    if (get<std::int32_t>() != 1) fail("big-endian files are not read here; save it on a little-endian machine");
-    version_ = get<std::int32_t>();
-    if (version_ < 1 || version_ > 4) fail(fmt::format("version {} of .solb is not read here (1 to 4 are)", version_));
-    for (int code = get<std::int32_t>(); code != kEnd; code = get<std::int32_t>()) {
-      const std::uint64_t next = version_ < 3 ? get<std::uint32_t>() : get<std::uint64_t>();
-      const char* const begin = at_;
-      if (code == kDimension && get<std::int32_t>() != 3) fail("values of another dimension than 3");
-      if (code == kSolAtVertices) return metrics_in_section(*this);
-      if (next <= static_cast<std::uint64_t>(begin - input_.bytes.data()) || next > input_.bytes.size())
-        fail(fmt::format("the next section is said to begin at byte {}; the file is truncated or damaged", next));
-      at_ = input_.bytes.data() + next;
-    }
-    input_.fail("has no section SolAtVertices: a metric has its values at vertices");
+    constexpr std::int32_t kSolAtVertices = 62;
+    std::optional<std::vector<Metric>> metrics;
+    file_.for_each([&](std::int32_t code) {
+      if (code == kSolAtVertices) metrics = metrics_in_section(*this);
+      return !metrics;
+    });
+    if (!metrics) input_.fail("has no section SolAtVertices: a metric has its values at vertices");
+    return std::move(*metrics);
   }
   std::int64_t integer(std::string_view what) {
     // The count of values has the words of the version, all else has four bytes.
-    return version_ < 4 || what != "the number of values" ? get<std::int32_t>() : get<std::int64_t>();
+    return file_.version() < 4 || what != "the number of values" ? file_.get<std::int32_t>()
+                                                                 : file_.get<std::int64_t>();
   }
-  double real() { return version_ == 1 ? get<float>() : get<double>(); }
-  [[noreturn]] void fail(const std::string& message) const { input_.fail_at_byte(at_, message); }
+  double real() { return file_.real(); }
+  [[noreturn]] void fail(const std::string& message) const { file_.fail(message); }
 
  private:
-  template <class T>
-  T get() {
-    progress_.reach(at_);
-    if (static_cast<std::size_t>(input_.bytes.data() + input_.bytes.size() - at_) < sizeof(T))
-      fail("the file ends here; it is truncated: copy or export it again");
-    T value;
-    std::memcpy(&value, at_, sizeof(T));
-    at_ += sizeof(T);
-    return value;
-  }
-
   const io::Input& input_;
-  io::ReadingProgress progress_;
-  const char* at_;
-  int version_ = 0;
+  io::MeditSections file_;
 };
 
 bool is_solution(const fs::path& file) {
@@ -171,7 +154,7 @@ MetricMesh metric_of_solution(const io::Input& input, const std::string& mesh_fi
   return mesh;
 }
 
-std::string names_listed(const std::vector<std::string>& names) {
+std::string names_in_quotes(const std::vector<std::string>& names) {
   std::string list;
   for (const std::string& name : names) list += (list.empty() ? "" : ", ") + io::in_quotes(name);
   return list;
@@ -183,10 +166,10 @@ std::string names_listed(const std::vector<std::string>& names) {
         "has no tensors of 6 or 9 numbers at its points; of VTU and VTK such are read, and MEDIT's .sol (a field of "
         "sizes must be named, as FILE:FIELD)");
   if (input.field->empty())
-    input.fail(fmt::format("has the fields {}: say which one is the metric, as {}:{}", names_listed(field.names),
+    input.fail(fmt::format("has the fields {}: say which one is the metric, as {}:{}", names_in_quotes(field.names),
                            input.name, field.names.front()));
   input.fail(fmt::format("has no field {} of 1, 6 or 9 numbers at all its points; there are {}",
-                         io::in_quotes(*input.field), names_listed(field.names)));
+                         io::in_quotes(*input.field), names_in_quotes(field.names)));
 }
 
 /// Of 6 numbers VTK says xx yy zz xy yz xz, of 9 rows.
@@ -245,7 +228,7 @@ std::vector<double> read_point_values(const std::string& file, const std::string
   if (raw.field.at_points.size() != raw.points.size()) {
     asked.fail(raw.field.names.empty() ? std::string("has no field of single numbers at its points")
                                        : fmt::format("has no field {} of single numbers at its points; there are {}",
-                                                     io::in_quotes(field), names_listed(raw.field.names)));
+                                                     io::in_quotes(field), names_in_quotes(raw.field.names)));
   }
   if (raw.points != mesh.points)
     asked.fail(
