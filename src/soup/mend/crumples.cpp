@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <set>
@@ -35,6 +36,9 @@ constexpr std::size_t kMostPairs = 1'000'000;
 using Pairs = std::vector<std::array<std::uint32_t, 2>>;
 using Patch = std::set<std::uint32_t>;
 
+/// Which triangles around a patch come to it: at sharp edges of the body those beyond them must not.
+enum class Ring { kAll, kFlat };
+
 struct Crumple {
   Triangles faces;
   std::vector<Triangle> cap;
@@ -44,8 +48,12 @@ struct Crumple {
 
 class Crumples {
  public:
-  Crumples(Draft& draft, double tolerance)
-      : draft_(draft), tolerance_(tolerance), edges_(draft.edges()), edge_of_(edges_.edge_of_half_edge()) {}
+  Crumples(Draft& draft, double tolerance, Ring ring)
+      : draft_(draft),
+        tolerance_(tolerance),
+        ring_(ring),
+        edges_(draft.edges()),
+        edge_of_(edges_.edge_of_half_edge()) {}
 
   LaidFlat run() {
     pairs_ = self_intersections(draft_.mesh.points, triangles(), kMostPairs, draft_.context);
@@ -132,7 +140,20 @@ class Crumples {
 
   void add_ring(Patch& patch) const {
     const Triangles before(patch.begin(), patch.end());
-    for (const std::uint32_t t : before) for_each_neighbour(t, [&](std::uint32_t s) { patch.insert(s); });
+    const std::uint32_t base = *std::ranges::max_element(
+        before, {}, [&](std::uint32_t t) { return triangle_area(draft_.mesh.points, triangles()[t]); });
+    for (const std::uint32_t t : before)
+      for_each_neighbour(t, [&](std::uint32_t s) {
+        if (ring_ == Ring::kAll || lies_in_plane_of(base, s)) patch.insert(s);
+      });
+  }
+
+  /// As far as the tolerance tells.
+  bool lies_in_plane_of(std::uint32_t base, std::uint32_t t) const {
+    const auto& [a, b, c] = triangles()[base];
+    const Vec3 normal = unit_normal(at(a), at(b), at(c));
+    return std::ranges::all_of(triangles()[t],
+                               [&](VertexIndex v) { return std::abs(dot(at(v) - at(a), normal)) <= tolerance_; });
   }
 
   /// Neighbours that have no corner of their own.
@@ -298,6 +319,7 @@ class Crumples {
 
   Draft& draft_;
   double tolerance_;
+  Ring ring_;
   const EdgeTable edges_;
   const std::vector<std::uint32_t> edge_of_;
   Pairs pairs_;                                            ///< that cross
@@ -311,7 +333,8 @@ class Crumples {
 LaidFlat lay_crumples_flat(Draft& draft, double tolerance) {
   LaidFlat all;
   for (int pass = 0; pass < kMostPassesOverCrumples && tolerance > 0; ++pass) {
-    const LaidFlat done = Crumples(draft, tolerance).run();
+    LaidFlat done = Crumples(draft, tolerance, Ring::kAll).run();
+    if (done.faces == 0) done = Crumples(draft, tolerance, Ring::kFlat).run();
     if (done.faces == 0) break;
     all.faces += done.faces;
     all.largest_move = std::max(all.largest_move, done.largest_move);

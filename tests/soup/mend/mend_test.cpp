@@ -366,6 +366,26 @@ TEST(MendSurface, CrumplesWithinTheToleranceAreLaidFlat) {
   EXPECT_LT(result.report.largest_move, result.report.tolerance);
 }
 
+TEST(MendSurface, CrumplesBesideSharpEdgesAreLaidFlatWithoutThem) {
+  SurfaceMesh soup = with_a_crumple(box_at({}, {1, 1, 1}, 1), 8, 0);
+  const auto first = soup.points.size() - 3;
+  const auto [a, b, c] = box_at({}, {1, 1, 1}, 1).triangles[8];
+  const std::array<Vec3, 3> corners{soup.points[a], soup.points[b], soup.points[c]};
+  const Vec3 middle = (corners[0] + corners[1] + corners[2]) / 3;
+  const Vec3 normal = normalized(cross(corners[1] - corners[0], corners[2] - corners[0]));
+  // Turned by less than half: of the triangle's own faces only some cross, and more lie beyond sharp edges.
+  const std::array<double, 3> heights{-4e-5, -2.2e-4, 2.9e-4};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3 arm = corners[k] - middle;
+    soup.points[first + k] = middle + (arm * -0.17 + cross(normal, arm) * 0.98) * 0.45 + normal * heights[k];
+  }
+  ASSERT_FALSE(find_defects(repair_surface(soup)).clean());
+  const Mended result = mended(soup);
+  EXPECT_EQ(result.report.count(Kind::kLaidFlat), 1u);
+  EXPECT_EQ(result.surface.triangles.size(), 12u);
+  EXPECT_NEAR(area(result.surface), 6, 1e-14);
+}
+
 TEST(MendSurface, CrumplesBeyondTheToleranceStay) {
   const SurfaceMesh soup = with_a_crumple(box_at({}, {1, 1, 1}, 4), 3, 0.01);
   const Mended result = mended(soup);
