@@ -57,6 +57,9 @@ constexpr double kFirstSlope = 0.7, kFlattest = 0.3, kSteepest = 1.5;
 /// A raise by less than whose power the number falls is in vain: the input turns within its own triangles, so it is
 /// noise, or as coarse as it may be.
 constexpr double kVainSlope = 0.1;
+/// Sizes that are given may meet noise, too: where the input takes so many times the elements that they ask for, and so
+/// many for each of its own triangles, raises of the bound from twice to four times it tell whether they are in vain.
+constexpr double kManyTimes = 3, kManyForEach = 8, kDoubled = 2, kFourfold = 4;
 
 /// Per vertex whether it is on a seam or another line.
 std::vector<std::uint8_t> on_lines(const WorkingMesh& mesh) {
@@ -81,7 +84,10 @@ class SeamedFront : public FrontKind {
     std::vector<std::uint8_t> is_fixed(input().mesh.points.size(), 0);
     const std::vector<Curve> curves = chained_curves(input(), seamed_, sizes.now(), is_fixed).curves;
     SizeField foreseen = followed_within(work_.tolerance, curves, sizes.now());
-    if (work_.budget.is_limited()) stray_within_budget(curves, sizes.now(), foreseen);
+    if (work_.budget.is_limited())
+      stray_within_budget(curves, sizes.now(), foreseen);
+    else if (follows_in_vain(curves, sizes.now(), foreseen))
+      return void(is_noise_ = true);
     sizes.start_with(work_.budget.affordable(foreseen, sizes.first(), work_.counts.rounds));
   }
 
@@ -152,6 +158,16 @@ class SeamedFront : public FrontKind {
     const RunContext& context = work_.stage.context();
     const std::vector<PointSize> wanted = sizes_by_flatness(seamed_.input, curves, sizes, tolerance, context);
     return capped_at(sizes, wanted, context, {.gradation = kSteep});
+  }
+
+  bool follows_in_vain(const std::vector<Curve>& curves, const SizeField& sizes, const SizeField& foreseen) {
+    ElementBudget& budget = work_.budget;
+    const double count = budget.expected(foreseen);
+    const double many = kManyForEach * static_cast<double>(work_.surface().triangles.size());
+    if (count < many || count < kManyTimes * budget.expected(sizes)) return false;
+    const double doubled = budget.expected(followed_within(kDoubled * work_.tolerance, curves, sizes));
+    const double fourfold = budget.expected(followed_within(kFourfold * work_.tolerance, curves, sizes));
+    return elementary::log(doubled / fourfold) < kVainSlope * elementary::log(kFourfold / kDoubled);
   }
 
   /// The surface may stray farther if following it would take more elements than the budget has.
