@@ -1,9 +1,9 @@
 """Does damage cost more than its place? Clean models, each damaged in every way that scripts/lib/damages.py knows, are
 meshed with default options, and compared with the undamaged model: elements, CPU time, volume, angles.
 
-Usage: bench/run.sh damage [--models N] [--only SUBSTRING] [--kinds A,B] [--faces MOST] [--timeout SECONDS] [--lines FILE]
+Usage: bench/run.sh damage [--models N] [--after N] [--only SUBSTRING] [--kinds A,B] [--faces MOST] [--timeout SECONDS] [--lines FILE]
                            [--program OCTAFRONT]
-The N smallest clean models of models/clean with 100 faces and more (by default 40, of 8,000 faces at most). Writes
+The N smallest clean models of models/clean with 100 faces and more (by default 40, of 8,000 faces at most), but for the smallest that --after leaves out. Writes
 docs/measured/damage.md. --lines appends a JSON object for each run to FILE and leaves out those that are there, so that a campaign may stop and go on.
 """
 import argparse
@@ -158,13 +158,15 @@ def page(rows, command, version):
 
 
 def command(a):
-    return f"bench/run.sh damage --models {a.models}" + (f" --kinds {a.kinds}" if a.kinds != ",".join(KINDS) else "")
+    after = f" --after {a.after}" if a.after else ""
+    return f"bench/run.sh damage --models {a.models}{after}" + (f" --kinds {a.kinds}" if a.kinds != ",".join(KINDS) else "")
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", type=pathlib.Path)
     parser.add_argument("--models", type=int, default=40)
+    parser.add_argument("--after", type=int, default=0, help="leave out so many of the smallest")
     parser.add_argument("--only", default="", help="models whose name has this")
     parser.add_argument("--kinds", default=",".join(KINDS))
     parser.add_argument("--faces", type=int, default=8000, help="of a model, at most")
@@ -175,7 +177,7 @@ def main():
     a.program = a.program or a.build / "cli/octafront"
     old = [json.loads(text) for text in a.lines.open()] if a.lines and a.lines.exists() else []
     rows, done = list(old), {(r["model"], r["kind"]) for r in old}
-    for name, solid in models(a.faces, a.only)[:a.models]:
+    for name, solid in models(a.faces, a.only)[a.after:a.models]:
         for row in rows_of(a, name, solid, done):
             rows.append(row)
             if a.lines:
