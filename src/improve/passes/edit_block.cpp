@@ -35,6 +35,7 @@ bool EditBlock::star(VertexIndex v, std::vector<HalfFace>& faces) {
       faces.push_back(4 * (o / 4) + mesh_.corner_of(o / 4, v));
     }
   }
+  mesh_.sort_star(faces);
   return true;
 }
 

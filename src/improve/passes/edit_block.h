@@ -40,15 +40,15 @@ class EditBlock {
     return is_outside(o) || !allowed(o / 4) ? kNone : o / 4;
   }
 
-  /// The half-faces opposite v of the tets around it; boundary faces at v are not among them. False if one of the tets
-  /// is not the block's.
+  /// The half-faces opposite v of the tets around it, by the names of these unless they are too many to be worked on
+  /// (EditMesh::sort_star); boundary faces at v are not among them. False if one of the tets is not the block's.
   bool star(VertexIndex v, std::vector<HalfFace>& faces);
 
   /// The tets around the edge between corners i and j of t, from t on. False if one of them is not the block's.
   bool edge_ring(TetIndex t, int i, int j, EdgeRing& out);
 
   /// The same, but gives up, false, once the ring is known to be open, to have more than `longest` tets, or to have a
-  /// tet with a lower score than t (of equals, the one with the lower number counts as lower).
+  /// tet that is worse than t.
   bool edge_ring_where_worst(TetIndex t, int i, int j, std::size_t longest, EdgeRing& out);
 
   /// Boundary triangles that take the place of others: numbers as across() gives them, corners counter-clockwise seen

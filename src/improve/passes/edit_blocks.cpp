@@ -3,6 +3,7 @@
 #include "base/core/parallel.h"
 
 #include <algorithm>
+#include <functional>
 
 namespace octafront::improve {
 namespace {
@@ -23,14 +24,19 @@ std::vector<Index> take_last(std::vector<Index>& from, std::size_t count) {
 }  // namespace
 
 EditBlocks::EditBlocks(EditMesh& mesh, std::vector<TetIndex> tets, int stage, bool adds_vertices) : mesh_(mesh) {
+  // A slot without a tet may get another one: it must not be taken for what was to be worked on.
+  std::erase_if(tets, [&](TetIndex t) { return !mesh_.alive(t); });
+  // New vertices get the lowest numbers that are free, block by block.
+  std::sort(mesh_.free_points_.begin(), mesh_.free_points_.end(), std::greater<>());
   if (stage == kCellStages || mesh.cells(stage).count <= 1)
     shares_.push_back({EditBlock(mesh), std::move(tets), {}, {}});
   else
     divide(std::move(tets), mesh.cells(stage), adds_vertices);
+  parallel_for(
+      shares_.size(), [&](std::size_t k) { mesh_.sort_by_name(shares_[k].tets); }, Split::kSingly);
 }
 
 void EditBlocks::divide(std::vector<TetIndex> tets, const Cells& cells, bool adds_vertices) {
-  std::erase_if(tets, [&](TetIndex t) { return !mesh_.alive(t); });
   const ItemsByCell<TetIndex> by_cell(std::span<const TetIndex>(tets), cells.count,
                                       [&](TetIndex t) { return cells.holding(mesh_.tet(t)); });
   left_.assign(by_cell.left().begin(), by_cell.left().end());
@@ -58,7 +64,6 @@ std::vector<TetIndex> EditBlocks::finish() {
     mesh_.complex_.free.insert(mesh_.complex_.free.end(), block.free_tets_.begin(), block.free_tets_.end());
     mesh_.free_points_.insert(mesh_.free_points_.end(), block.free_points_.begin(), block.free_points_.end());
   }
-  std::sort(left_.begin(), left_.end());
   return std::move(left_);
 }
 

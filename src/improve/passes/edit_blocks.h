@@ -17,7 +17,7 @@ class EditBlocks {
  public:
   struct Share {
     EditBlock block;
-    std::vector<TetIndex> tets;  ///< to be worked on, ascending
+    std::vector<TetIndex> tets;  ///< to be worked on, by their names
     std::vector<TetIndex> left;  ///< those for which the block was too small
     PassResult result;
   };
@@ -28,7 +28,7 @@ class EditBlocks {
   static constexpr int kStages = kCellStages + 1;
 
   std::vector<Share>& shares() { return shares_; }
-  /// What no block could do, ascending; gives unused slots back.
+  /// What no block could do; gives unused slots back.
   std::vector<TetIndex> finish();
 
  private:
@@ -81,7 +81,7 @@ PassResult improve_each(Editor& editor, EditBlock& block, std::vector<TetIndex> 
   return result;
 }
 
-/// The tets with a score below the threshold, ascending.
+/// The tets with a score below the threshold, by slot.
 std::vector<TetIndex> tets_below(const EditMesh& mesh, float threshold);
 
 }  // namespace octafront::improve

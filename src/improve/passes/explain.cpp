@@ -130,7 +130,7 @@ Shortfall explain_shortfall(EditMesh& mesh, float threshold, const BoundaryInput
     ++s.elements;
     Shortfall::Class& c = s.by_cause[cause];
     ++c.elements;
-    if (c.worst == kNone || mesh.shape(t).score < mesh.shape(c.worst).score) c.worst = t;
+    if (c.worst == kNone || mesh.worse(t, c.worst)) c.worst = t;
     if (!is_poor(mesh, t)) continue;
     ++s.poor;
     s.poor_not_forced += cause == Shortfall::kNotForced;

@@ -31,12 +31,10 @@ class Inserter {
   /// Worst first; elements for which the block was too small go to `left`.
   PassResult work_on(const std::vector<TetIndex>& tets, float threshold, std::vector<TetIndex>& left) {
     PassResult result;
-    std::vector<std::pair<float, TetIndex>> bad;
-    for (const TetIndex t : tets)
-      if (mesh_.alive(t)) bad.push_back({mesh_.shape(t).score, t});
-    std::sort(bad.begin(), bad.end());
+    std::vector<TetIndex> bad = tets;  // by their names
+    std::ranges::stable_sort(bad, {}, [&](TetIndex t) { return mesh_.shape(t).score; });
     int in_vain = 0;
-    for (const auto& [score, t] : bad) {
+    for (const TetIndex t : bad) {
       if (in_vain == kHopeless) break;
       if (!mesh_.alive(t) || mesh_.shape(t).score >= threshold) continue;
       ++result.tried;

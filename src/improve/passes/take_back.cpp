@@ -60,10 +60,16 @@ TakenBack take_back_crossings(EditMesh& mesh, std::span<const Vec3> taken, const
     result.clear = std::find(near.begin(), near.end(), 1) == near.end();
     if (result.clear || round == kTakeBackRounds) return result;
     const auto home = [&](VertexIndex v) { return taken[mesh.number_taken(v)]; };
-    for (VertexIndex v = 0; v < near.size(); ++v) near[v] = near[v] && guide.may_slide(v) && mesh.point(v) != home(v);
-    std::vector<TetIndex> tets;
-    for (VertexIndex v = 0; v < near.size(); ++v)
-      if (near[v]) tets.push_back(mesh.tet_of(v));
+    // Each vertex by the first of its tets, by name.
+    std::vector<TetIndex> first(near.size(), kNone), tets;
+    EditBlock whole(mesh);
+    std::vector<HalfFace> around;
+    for (VertexIndex v = 0; v < near.size(); ++v) {
+      if (!near[v] || !guide.may_slide(v) || mesh.point(v) == home(v)) continue;
+      whole.star(v, around);
+      first[v] = around[0] / 4;
+      tets.push_back(first[v]);
+    }
     std::sort(tets.begin(), tets.end());
     tets.erase(std::unique(tets.begin(), tets.end()), tets.end());
     const Floor floor = mesh.floor();
@@ -75,7 +81,7 @@ TakenBack take_back_crossings(EditMesh& mesh, std::span<const Vec3> taken, const
           for (const TetIndex t : of_block) {
             block.take_cut();
             for (const VertexIndex v : mesh.tet(t)) {
-              if (!near[v] || mesh.tet_of(v) != t) continue;
+              if (first[v] != t) continue;
               ++done.tried;
               done.done += take_back(block, star, v, home(v), floor, walked);
             }

@@ -15,6 +15,7 @@ VertexBlocks::VertexBlocks(const EditMesh& mesh, const BoundaryGuide* guide, std
     const VertexIndex v = mesh.tet(h / 4)[h % 4];
     return mesh.alive(h / 4) && (marks[v] & kWorked) ? v : kNoOwner;
   });
+  parallel_for(n, [&](std::size_t v) { mesh.sort_star(stars_[v]); });
   std::vector<std::uint8_t> waits(n, 0);
   for (const VertexIndex v : waiting) waits[v] = 1;
   for (int stage = 1; stage < kCellStages && !waiting.empty(); ++stage) divide(mesh, stage, waiting, waits);

@@ -25,7 +25,7 @@ class VertexBlocks {
   VertexBlocks(const EditMesh& mesh, const BoundaryGuide* guide, const NeedsWork& needs_work)
       : VertexBlocks(mesh, guide, marks(mesh, needs_work)) {}
 
-  /// The half-faces opposite v of the tets around it, in order of the tets; v must be one of the vertices.
+  /// The half-faces opposite v of the tets around it, as from EditBlock::star(); v must be one of the vertices.
   std::span<const HalfFace> star(VertexIndex v) const { return stars_[v]; }
 
   /// Calls `work(vertices)` for each block, which returns what it did; blocks of one stage run in parallel.

@@ -2,6 +2,7 @@
 
 #include <octafront/quality.h>
 
+#include "base/core/fixed_point.h"
 #include "base/core/parallel.h"
 #include "base/core/stage_timer.h"
 #include "base/core/validate.h"
@@ -52,8 +53,14 @@ ImproveOptions::Worst worst_of(const EditMesh& mesh) {
 /// Runs passes and notes what each one did.
 class Schedule {
  public:
-  Schedule(EditMesh& mesh, BoundaryGuide* guide, const ImproveOptions& options, const Stage& stage)
-      : mesh_(mesh), guide_(guide), options_(options), stage_(stage), started_(process_cpu_seconds()) {
+  Schedule(EditMesh& mesh, BoundaryGuide* guide, const ImproveOptions& options, const Stage& stage,
+           const BeforePass& before_pass = {})
+      : mesh_(mesh),
+        guide_(guide),
+        options_(options),
+        stage_(stage),
+        before_pass_(before_pass),
+        started_(process_cpu_seconds()) {
     if (options_.after_pass) options_.after_pass("start", worst_of(mesh_));
   }
 
@@ -129,6 +136,7 @@ class Schedule {
   /// Where the boundary crosses itself it goes back. True if it is known that nothing crosses then.
   bool uncross(std::span<const Vec3> taken) {
     if (!guide_) return false;
+    if (before_pass_) before_pass_(mesh_);
     const TakenBack back = take_back_crossings(mesh_, taken, *guide_, stage_.context());
     if (back.pass.tried > 0) note("slides taken back", back.pass);
     validate(mesh_);
@@ -137,16 +145,16 @@ class Schedule {
 
   /// What the elements lack, in sum.
   double lack() const {
-    return parallel_sum(mesh_.slots(), [this](std::size_t begin, std::size_t end) {
-      double sum = 0;
+    return from_fixed(parallel_sum(mesh_.slots(), [this](std::size_t begin, std::size_t end) {
+      Fixed sum = 0;
       for (auto t = static_cast<TetIndex>(begin); t < end; ++t)
-        if (mesh_.alive(t)) sum += lack_of(mesh_.shape(t).score);
+        if (mesh_.alive(t)) sum += to_fixed(lack_of(mesh_.shape(t).score));
       return sum;
-    });
+    }));
   }
 
   Floor floor() const { return mesh_.floor(); }
-  double mean_beta() const { return mesh_.beta_sum() / static_cast<double>(mesh_.live_tets()); }
+  double mean_beta() const { return mesh_.mean_beta(); }
 
   /// Says what stays poor and why, and where the worst of each kind are.
   void explain(const BoundaryInput* input) {
@@ -191,6 +199,7 @@ class Schedule {
   template <typename Run>
   void pass(const char* what, Run&& run) {
     if (late_) return;
+    if (before_pass_) before_pass_(mesh_);
     note(what, run());
     validate(mesh_);
     if (!options_.seconds || !(clock_.seconds() > *options_.seconds)) return;
@@ -217,6 +226,7 @@ class Schedule {
   BoundaryGuide* guide_;
   const ImproveOptions& options_;
   const Stage& stage_;
+  const BeforePass before_pass_;
   double started_;
   Stopwatch clock_;
   bool late_ = false;
@@ -368,11 +378,12 @@ Features renumbered(std::vector<Edge> edges, std::vector<VertexIndex> corners, c
 
 /// One run of the schedule; vertices in `frozen`, and those around them, stay on the boundary where they are.
 Better improved(const TetMesh& mesh, const BoundaryInput* boundary, const BoundaryInput* input,
-                const std::vector<VertexIndex>& frozen, const ImproveOptions& options, const Stage& stage) {
+                const std::vector<VertexIndex>& frozen, const ImproveOptions& options, const Stage& stage,
+                const BeforePass& before_pass) {
   EditMesh edit(TetMesh{mesh}, options.objective);
   std::optional<BoundaryGuide> guide;
   if (boundary) guide.emplace(edit, *boundary, frozen);
-  Schedule run(edit, guide ? &*guide : nullptr, options, stage);
+  Schedule run(edit, guide ? &*guide : nullptr, options, stage, before_pass);
   run_schedule(run, options);
   const bool is_clear = run.uncross(mesh.points);
   run.explain(input);
@@ -404,7 +415,7 @@ std::vector<VertexIndex> where_boundary_crosses(const TetMesh& mesh) {
 }  // namespace
 
 bool improve_mesh(TetMesh& mesh, const BoundaryInput* input, const ImproveOptions& options, const Stage& stage,
-                  Features* features) {
+                  Features* features, const BeforePass& before_pass) {
   check_improve_options(options);
   if (options.level == ImproveOptions::Level::kOff || mesh.tets.empty()) return false;
   mesh.wide_cells.clear();  // edits know of tetrahedra alone
@@ -415,8 +426,8 @@ bool improve_mesh(TetMesh& mesh, const BoundaryInput* input, const ImproveOption
   std::vector<VertexIndex> frozen;
   for (int retry = 0;; ++retry) {
     StageReport attempt = stage.report();
-    auto [better, taken, of_better, is_clear] =
-        improved(mesh, retry < kMostRetries ? boundary : nullptr, input, frozen, options, {stage.context(), attempt});
+    auto [better, taken, of_better, is_clear] = improved(mesh, retry < kMostRetries ? boundary : nullptr, input, frozen,
+                                                         options, {stage.context(), attempt}, before_pass);
     const bool moved = !same_boundary(mesh, better);
     const std::vector<VertexIndex> crossing =
         moved && !is_clear ? where_boundary_crosses(better) : std::vector<VertexIndex>{};

@@ -12,10 +12,15 @@
 #include "base/core/stage.h"
 #include "improve/boundary/boundary_guide.h"
 
+#include <functional>
+
 namespace octafront {
 
 /// Throws OptionError for values out of their range.
 void check_improve_options(const ImproveOptions& options);
+
+/// Sees the mesh before each pass.
+using BeforePass = std::function<void(improve::EditMesh&)>;
 
 /// Makes the elements of a valid mesh better, by the schedule of options.level. Without `input` the boundary does
 /// not change, and is the user's own. With it, and unless options.move_boundary is off, vertices of the boundary slide
@@ -26,9 +31,9 @@ void check_improve_options(const ImproveOptions& options);
 /// the mesh is as it was. Throws OptionError, Cancelled, and MeshingError if the faces of the mesh do not match. The
 /// report gets, for each pass, the places looked at, those changed, and CPU time per element. Returns true if the
 /// boundary changed; `features`, where given, then become those of the new boundary, in its numbering (they may be
-/// input->of_mesh).
+/// input->of_mesh). `before_pass` is for tests: where the elements are kept changes nothing.
 bool improve_mesh(TetMesh& mesh, const improve::BoundaryInput* input, const ImproveOptions& options, const Stage& stage,
-                  Features* features = nullptr);
+                  Features* features = nullptr, const BeforePass& before_pass = {});
 
 /// After the boundary or interfaces of a valid mesh were moved: passes against poor elements, from the first one below
 /// a beta or dihedral angle of comfort on; what was moved stays. The mesh is untouched if there is no such element.

@@ -2,6 +2,7 @@
 
 #include <octafront/error.h>
 
+#include "base/core/fixed_point.h"
 #include "base/core/groups.h"
 #include "base/core/parallel.h"
 #include "base/core/validate.h"
@@ -30,11 +31,16 @@ void renumber_faces(TetMesh& mesh, const std::vector<VertexIndex>& new_of_old) {
       for (VertexIndex& v : t) v = new_of_old[v];
 }
 
-/// The tets by their least corner.
-Groups<> group_by_least_corner(const std::vector<Tet>& tets, std::size_t vertices) {
-  return group_by_owner(vertices, static_cast<TetIndex>(tets.size()), [&](TetIndex t) {
+/// The numbers of the tets in ascending order of their keys; free slots, whose corners are kNone, are none.
+Groups<> order_by_key(const std::vector<Tet>& tets, std::size_t vertices) {
+  static_assert(kNone == kNoOwner);
+  Groups<> by_corner = group_by_owner(vertices, static_cast<TetIndex>(tets.size()), [&](TetIndex t) {
     return std::min({tets[t][0], tets[t][1], tets[t][2], tets[t][3]});
   });
+  parallel_for(by_corner.size(), [&](std::size_t v) {
+    std::ranges::sort(by_corner[v], [&](TetIndex s, TetIndex t) { return tet_key(tets[s]) < tet_key(tets[t]); });
+  });
+  return by_corner;
 }
 
 }  // namespace
@@ -67,11 +73,13 @@ void EditMesh::take(TetMesh& mesh) {
   complex_.marks.reserve(room);
   shapes_.reserve(room);
   if (had_regions_) region_.reserve(room);
-  const Groups<> by_corner = group_by_least_corner(mesh.tets, points_.size());
-  for (const TetIndex t : by_corner.items()) {
-    complex_.tets.push_back(mesh.tets[t]);
-    if (had_regions_) region_.push_back(mesh.region[t]);
-  }
+  const Groups<> order = order_by_key(mesh.tets, points_.size());
+  complex_.tets.resize(mesh.tets.size());
+  region_.resize(mesh.region.size());
+  parallel_for(mesh.tets.size(), [&](std::size_t k) {
+    complex_.tets[k] = mesh.tets[order.items()[k]];
+    if (had_regions_) region_[k] = mesh.region[order.items()[k]];
+  });
   mesh.tets = std::vector<Tet>();
   mesh.points = std::vector<Vec3>();
 }
@@ -146,19 +154,19 @@ TetMesh EditMesh::release() {
       new_of_old[v] = static_cast<VertexIndex>(mesh.points.size());
       mesh.points.push_back(points_[v]);
     }
-  std::size_t kept = 0;
-  for (TetIndex t = 0; t < complex_.tets.size(); ++t) {
-    if (!alive(t)) continue;
-    if (had_regions_) region_[kept] = region_[t];
-    for (int i = 0; i < 4; ++i) complex_.tets[kept][i] = new_of_old[complex_.tets[t][i]];
-    ++kept;
-  }
-  complex_.tets.resize(kept);
-  if (had_regions_) region_.resize(kept);
+  complex_.across = std::vector<HalfFace>();
+  shapes_ = std::vector<Shape>();
+  const Groups<> order = order_by_key(complex_.tets, points_.size());
+  const std::vector<TetIndex>& kept = order.items();
+  mesh.tets.resize(kept.size());
+  if (had_regions_) mesh.region.resize(kept.size());
+  parallel_for(kept.size(), [&](std::size_t k) {
+    for (int i = 0; i < 4; ++i) mesh.tets[k][i] = new_of_old[complex_.tets[kept[k]][i]];
+    if (had_regions_) mesh.region[k] = region_[kept[k]];
+  });
+  complex_.tets = std::vector<Tet>();
   drop_removed_triangles(mesh);
   renumber_faces(mesh, new_of_old);
-  mesh.tets = std::move(complex_.tets);
-  if (had_regions_) mesh.region = std::move(region_);
   return mesh;
 }
 
@@ -246,13 +254,42 @@ Floor EditMesh::floor() const {
   });
 }
 
-double EditMesh::beta_sum() const {
-  return parallel_sum(shapes_.size(), [this](std::size_t begin, std::size_t end) {
-    double sum = 0;
+double EditMesh::mean_beta() const {
+  const Fixed sum = parallel_sum(shapes_.size(), [this](std::size_t begin, std::size_t end) {
+    Fixed part = 0;
     for (std::size_t t = begin; t < end; ++t)
-      if (complex_.alive(static_cast<TetIndex>(t))) sum += shapes_[t].beta;
-    return sum;
+      if (complex_.alive(static_cast<TetIndex>(t))) part += to_fixed(shapes_[t].beta);
+    return part;
   });
+  return from_fixed(sum) / static_cast<double>(live_tets());
+}
+
+void EditMesh::sort_by_name(std::span<TetIndex> tets) const {
+  std::vector<std::pair<Tet, TetIndex>> named(tets.size());
+  for (std::size_t k = 0; k < tets.size(); ++k) named[k] = {tet_key(tet(tets[k])), tets[k]};
+  std::sort(named.begin(), named.end());
+  for (std::size_t k = 0; k < tets.size(); ++k) tets[k] = named[k].second;
+}
+
+void EditMesh::sort_star(std::span<HalfFace> star) const {
+  // Without the corner that all have in common names keep their order.
+  struct Named {
+    std::uint64_t low;
+    VertexIndex high;
+    HalfFace face;
+    bool operator<(const Named& o) const { return low != o.low ? low < o.low : high < o.high; }
+  };
+  constexpr std::size_t kMost = ShapeBatch::kBatch;  // others are not worked on
+  if (star.size() > kMost) return;
+  std::array<Named, kMost> named;
+  for (std::size_t k = 0; k < star.size(); ++k) {
+    const Triangle key = face_key(complex_.face(star[k]));
+    named[k] = {std::uint64_t{key[0]} << 32 | key[1], key[2], star[k]};
+  }
+  const auto end = named.begin() + static_cast<std::ptrdiff_t>(star.size());
+  if (std::is_sorted(named.begin(), end)) return;
+  std::sort(named.begin(), end);
+  for (std::size_t k = 0; k < star.size(); ++k) star[k] = named[k].face;
 }
 
 }  // namespace octafront::improve

@@ -9,6 +9,7 @@
 
 #include "base/blocks/blocks.h"
 #include "base/mesh/tet_complex.h"
+#include "base/mesh/tet_key.h"
 #include "improve/shape/shape.h"
 
 #include <array>
@@ -30,7 +31,7 @@ class EditMesh {
   explicit EditMesh(TetMesh&& mesh, ImproveOptions::Objective objective = ImproveOptions::Objective::kBalanced);
 
   /// The mesh back, compacted: vertices in the order they came in, without unused ones, new ones behind; tets in order
-  /// of space; boundary triangles by their numbers, the last ones in the place of those that went.
+  /// of space, by their names; boundary triangles by their numbers, the last ones in the place of those that went.
   TetMesh release();
   /// For each vertex of the mesh that release() is to give, its number in the mesh that was taken, or kNone if new.
   std::vector<VertexIndex> numbers_taken() const;
@@ -46,8 +47,6 @@ class EditMesh {
   const Shape& shape(TetIndex t) const { return shapes_[t]; }
   HalfFace across(HalfFace h) const { return complex_.across[h]; }
   bool on_boundary(VertexIndex v) const { return on_boundary_[v] != 0; }
-  /// Any tet at v; kNone if v is no longer used.
-  TetIndex tet_of(VertexIndex v) const { return complex_.tet_at[v]; }
 
   /// Patch of the boundary triangle that lies across (see across()).
   std::uint32_t boundary_patch(HalfFace across) const {
@@ -82,18 +81,24 @@ class EditMesh {
 
   /// Worst of each measure over the mesh.
   Floor floor() const;
-  /// Sum of beta over the mesh, in a fixed order.
-  double beta_sum() const;
+  double mean_beta() const;
 
-  /// t is worse than `than`; of equals, the one with the lower number.
+  /// t is worse than `than`; of equals, the one whose name comes first.
   bool worse(TetIndex t, TetIndex than) const {
     const float a = shapes_[t].score, b = shapes_[than].score;
-    return a != b ? a < b : t < than;
+    return a != b ? a < b : tet_key(tet(t)) < tet_key(tet(than));
   }
+
+  /// In ascending order of their names. Whatever is worked on one after the other, or added up, is so in this order:
+  /// slots are places, which tet lies in which says nothing.
+  void sort_by_name(std::span<TetIndex> tets) const;
+  /// The same for half-faces opposite one vertex.
+  void sort_star(std::span<HalfFace> star) const;
 
  private:
   friend class EditBlock;
   friend class EditBlocks;
+  friend class EditMeshShuffle;  ///< of the tests
 
   /// More slots, on top of the free lists, the first ones uppermost.
   void reserve_tets(std::size_t more);
