@@ -8,12 +8,54 @@
 #include "fill/cavity/open_edge.h"
 
 #include <algorithm>
+#include <bit>
 #include <utility>
 
 namespace octafront {
 
 namespace {
+
 constexpr std::size_t kTetsPerTask = 1 << 16;
+
+/// The cells of a coarse grid that boxes reach into, however many these are: counted at the corners of each box, and
+/// summed up along the axes.
+class CoveredCells {
+ public:
+  CoveredCells(const std::vector<Vec3>& points, const std::vector<Box3>& boxes) : count_(kSide * kSide * kSide, 0) {
+    for (const Vec3& p : points) domain_.add(p);
+    for (const Box3& box : boxes) add(box);
+    for (const std::size_t step : {std::size_t{1}, kSide, kSide * kSide})
+      for (std::size_t i = step; i < count_.size(); ++i)
+        if (i / step % kSide != 0) count_[i] += count_[i - step];
+  }
+
+  bool contain(Vec3 p) const { return count_[place(cell(p.x, 0), cell(p.y, 1), cell(p.z, 2))] != 0; }
+
+ private:
+  static constexpr std::size_t kSide = 64;
+
+  static std::size_t place(std::size_t x, std::size_t y, std::size_t z) { return (z * kSide + y) * kSide + x; }
+
+  std::size_t cell(double at, int axis) const {
+    const double extent = domain_.extent()[axis];
+    const double part = extent > 0 ? (at - domain_.lo[axis]) / extent : 0;
+    return static_cast<std::size_t>(std::clamp(part * kSide, 0.0, kSide - 1.0));
+  }
+
+  void add(const Box3& box) {
+    std::array<std::array<std::size_t, 2>, 3> range;  // from the first cell to behind the last one
+    for (int axis = 0; axis < 3; ++axis) range[axis] = {cell(box.lo[axis], axis), cell(box.hi[axis], axis) + 1};
+    for (int corner = 0; corner < 8; ++corner) {
+      const std::size_t x = range[0][corner & 1], y = range[1][corner >> 1 & 1], z = range[2][corner >> 2];
+      if (x == kSide || y == kSide || z == kSide) continue;
+      count_[place(x, y, z)] += std::popcount(static_cast<unsigned>(corner)) % 2 == 0 ? 1 : -1;
+    }
+  }
+
+  Box3 domain_;
+  std::vector<std::int32_t> count_;
+};
+
 }  // namespace
 
 WorkMesh::WorkMesh(std::vector<Vec3> points, std::vector<Tet> tets, const std::vector<Box3>& focus,
@@ -23,10 +65,10 @@ WorkMesh::WorkMesh(std::vector<Vec3> points, std::vector<Tet> tets, const std::v
       original_tets_(tets_.size()),
       alive_(tets_.size(), true),
       indexed_(points_.size(), 1) {
-  if (!focus.empty())
-    parallel_for(points_.size(), [&](std::size_t v) {
-      indexed_[v] = std::any_of(focus.begin(), focus.end(), [&](const Box3& box) { return box.contains(points_[v]); });
-    });
+  if (!focus.empty()) {
+    const CoveredCells covered(points_, focus);
+    parallel_for(points_.size(), [&](std::size_t v) { indexed_[v] = covered.contain(points_[v]); });
+  }
   for (const Triangle& t : two_sided) two_sided_.insert(face_key(t));
   index_tets();
 }

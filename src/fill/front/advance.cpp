@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <utility>
 
 namespace octafront {
@@ -63,7 +62,8 @@ class Phases {
     bool stuck = false;
     while (!front_.queue.empty() && !over_budget()) {
       task_.stage.check();
-      if (std::isfinite(budget_.volume)) task_.stage.progress(front_.work.volume / budget_.volume);
+      if (budget_.volume != kNoLimit)
+        task_.stage.progress(static_cast<double>(front_.work.volume) / static_cast<double>(budget_.volume));
       const std::size_t queued = front_.queue.size();
       const bool small = queued <= kSmallQueue;
       const std::size_t deferred = phase(small || stuck, small ? kAllLayers : kLayersPerPhase);
@@ -84,7 +84,7 @@ class Phases {
     parallel_for(
         blocks.size(),
         [&](std::size_t b) {
-          results[b] = advance_block(phase, blocks[b], scratch_.local());
+          results[b] = advance_block(phase, blocks[b]);
           blocks[b] = {};
         },
         Split::kSingly);
@@ -154,7 +154,6 @@ class Phases {
   const FrontTask& task_;
   const AdvanceBudget budget_;
   FrontCounters& counters_;
-  PerThread<BlockScratch> scratch_;
 };
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "fill/front/block_run.h"
 
+#include "base/core/flat_map.h"
 #include "base/core/validate.h"
 #include "fill/front/attempt.h"
 #include "fill/front/front.h"
@@ -16,13 +17,13 @@ constexpr std::size_t kFacesBetweenChecks = 512;
 
 class BlockRun {
  public:
-  BlockRun(const FrontPhase& phase, const FrontBlock& block, BlockScratch& scratch)
+  BlockRun(const FrontPhase& phase, const FrontBlock& block)
       : phase_(phase),
         state_(phase.front),
         block_(block),
         front_(state_.domain, state_.finest_size),
         attempt_(front_, phase.task, block.territory, result_.counters) {
-    fill_front(scratch.local_number);
+    fill_front();
   }
 
   BlockResult run() {
@@ -38,14 +39,13 @@ class BlockRun {
     std::uint8_t level;
   };
 
-  void fill_front(std::vector<std::uint32_t>& local) {
-    if (local.size() < state_.points.size()) local.resize(state_.points.size());
+  void fill_front() {
+    FlatMap<VertexIndex, VertexIndex> local(block_.members.size());
     const auto number = [&](VertexIndex v) {
-      std::vector<VertexIndex>& found = result_.found;
-      if (local[v] < found.size() && found[local[v]] == v) return local[v];
-      local[v] = front_.add_vertex(state_.points[v], state_.sizes[v]);
-      found.push_back(v);
-      return local[v];
+      VertexIndex& here = local.find_or_add(v, kNone);
+      if (here != kNone) return here;
+      result_.found.push_back(v);
+      return here = front_.add_vertex(state_.points[v], state_.sizes[v]);
     };
     for (const FrontBlock::Member m : block_.members) {
       const auto& [t, region] = state_.face(m.face);
@@ -124,7 +124,9 @@ class BlockRun {
     }
   }
 
-  FrontWork work() const { return {front_.tets().size(), front_.filled_volume(), attempt_.face_tests()}; }
+  FrontWork work() const {
+    return {front_.tets().size(), volume_part(front_.filled_volume(), state_.domain), attempt_.face_tests()};
+  }
   bool over_budget() const { return phase_.budget.exceeded_by(work()); }
 
   void collect() {
@@ -162,8 +164,8 @@ class BlockRun {
 
 }  // namespace
 
-BlockResult advance_block(const FrontPhase& phase, const FrontBlock& block, BlockScratch& scratch) {
-  return BlockRun(phase, block, scratch).run();
+BlockResult advance_block(const FrontPhase& phase, const FrontBlock& block) {
+  return BlockRun(phase, block).run();
 }
 
 }  // namespace octafront

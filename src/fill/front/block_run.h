@@ -33,14 +33,9 @@ struct BlockResult {
   FrontCounters counters;
 };
 
-/// Scratch that a thread keeps from block to block.
-struct BlockScratch {
-  std::vector<std::uint32_t> local_number;  ///< per vertex of the front: a hint, true if `found` agrees
-};
-
 /// Works off the owned faces of the queue that do not reach beyond the block, in order, and for more than one layer
 /// also the layers that they leave. Takes the faces that it owns out of the front; gives back what remains of them, and
 /// new ones.
-BlockResult advance_block(const FrontPhase& phase, const FrontBlock& block, BlockScratch& scratch);
+BlockResult advance_block(const FrontPhase& phase, const FrontBlock& block);
 
 }  // namespace octafront

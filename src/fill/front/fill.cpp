@@ -155,7 +155,7 @@ TetMesh fill_by_front(const SurfaceMesh& surface, const SizeField& sizes, const 
     }
     set_sizes(front, sizes);
     const AdvanceBudget budget{.tets = front.work.tets + tet_budget(surface, sizes),
-                               .volume = kVolumeSlack * enclosed_volume(surface)};
+                               .volume = volume_part(kVolumeSlack * enclosed_volume(surface), front.domain)};
     FrontCounters counters;
     const double start = process_cpu_seconds();
     const bool within_budget = advance_front(front, task, budget, counters);
@@ -169,7 +169,7 @@ TetMesh fill_by_front(const SurfaceMesh& surface, const SizeField& sizes, const 
     mesh.points = std::move(front.points);
     mesh.tets = joined(front.filled);
   }
-  close_cavities(mesh, walls, surface, task);
+  close_cavities(mesh, std::move(walls), surface, task);
   return mesh;
 }
 

@@ -2,9 +2,11 @@
 
 #include <octafront/options.h>
 #include <octafront/size_field.h>
+#include <octafront/vec.h>
 
 #include "base/core/stage.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -18,11 +20,18 @@ struct FrontTask {
   const Stage& stage;
 };
 
+/// A volume as a whole number of 2^-50 of that of a box: a sum of such hangs on no order.
+inline std::int64_t volume_part(double volume, const Box3& box) {
+  const Vec3 e = box.extent();
+  const double whole = e.x * e.y * e.z;
+  return whole > 0 ? static_cast<std::int64_t>(std::min(volume / whole, 2.0) * 0x1p50) : 0;
+}
+
 /// What a front has done: it decides when a run stops, and is counted in work, not in time, so that the result never
 /// depends on the machine.
 struct FrontWork {
   std::size_t tets = 0;          ///< made
-  double volume = 0;             ///< filled
+  std::int64_t volume = 0;       ///< filled, as volume_part() of the front's domain
   std::uint64_t face_tests = 0;  ///< candidates times the faces around them
 
   FrontWork& operator+=(const FrontWork& more) {
@@ -33,10 +42,12 @@ struct FrontWork {
   }
 };
 
+inline constexpr std::int64_t kNoLimit = std::numeric_limits<std::int64_t>::max();
+
 /// Where a run stops, whatever remains.
 struct AdvanceBudget {
   std::size_t tets = 0;
-  double volume = std::numeric_limits<double>::infinity();  ///< more means that the front leaks
+  std::int64_t volume = kNoLimit;  ///< more means that the front leaks
   std::uint64_t face_tests = std::numeric_limits<std::uint64_t>::max();
 
   bool exceeded_by(const FrontWork& work) const {
@@ -44,7 +55,7 @@ struct AdvanceBudget {
   }
   /// What is left after work that has not exceeded it.
   AdvanceBudget after(const FrontWork& work) const {
-    return {tets - work.tets, volume - work.volume, face_tests - work.face_tests};
+    return {tets - work.tets, volume == kNoLimit ? kNoLimit : volume - work.volume, face_tests - work.face_tests};
   }
 };
 

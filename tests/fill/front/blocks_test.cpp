@@ -136,10 +136,9 @@ TEST(BlockRun, StaysStrictlyInsideItsTerritory) {
   const Stage stage{context, report};
   const FrontTask task{sizes, options, stage};
   const FrontPhase phase{front, task, {.tets = 100'000}, 3};
-  BlockScratch scratch;
   std::size_t tets = 0;
   for (const FrontBlock& block : partition_front(front, {1500, 0.5})) {
-    const BlockResult result = advance_block(phase, block, scratch);
+    const BlockResult result = advance_block(phase, block);
     tets += result.tets.size();
     EXPECT_GT(result.deferred, 0u);
     for (const Tet& t : result.tets)
