@@ -18,11 +18,12 @@ void EditMeshShuffle::operator()(EditMesh& mesh) {
   const TetComplex was = complex;
   const std::vector<Shape> shapes = mesh.shapes_;
   const std::vector<std::uint32_t> region = mesh.region_;
+  const std::vector<std::uint8_t> is_there = mesh.taken_ ? mesh.taken_->is_there : std::vector<std::uint8_t>{};
   for (TetIndex t = 0; t < to.size(); ++t) {
     complex.tets[to[t]] = was.tets[t];
-    complex.marks[to[t]] = was.marks[t];
     mesh.shapes_[to[t]] = shapes[t];
     if (!region.empty()) mesh.region_[to[t]] = region[t];
+    if (mesh.taken_) mesh.taken_->is_there[to[t]] = is_there[t];
     for (HalfFace i = 0; i < 4; ++i) {
       const HalfFace o = was.across[4 * t + i];
       complex.across[4 * to[t] + i] = is_outside(o) ? o : 4 * to[o / 4] + o % 4;

@@ -6,6 +6,11 @@
 #include <algorithm>
 
 namespace octafront::improve {
+namespace {
+
+constexpr std::size_t kUsualStar = 32;  ///< tets: room for them at first
+
+}  // namespace
 
 EditBlock::EditBlock(EditMesh& mesh, const Cells& cells, std::uint32_t cell, std::vector<TetIndex> free_tets,
                      std::vector<VertexIndex> free_points)
@@ -13,25 +18,24 @@ EditBlock::EditBlock(EditMesh& mesh, const Cells& cells, std::uint32_t cell, std
       complex_(mesh.complex_),
       cells_(&cells),
       cell_(cell),
-      mark_(mesh.complex_.last_mark),
       free_tets_(std::move(free_tets)),
       free_points_(std::move(free_points)) {}
 
 bool EditBlock::star(VertexIndex v, std::vector<HalfFace>& faces) {
   faces.clear();
-  const std::uint32_t mark = next_mark();
+  seen_.reset(kUsualStar);
   const TetIndex first = complex_.tet_at[v];
   if (!allowed(first)) return false;
-  complex_.marks[first] = mark;
+  seen_.insert(first);
   faces.push_back(4 * first + mesh_.corner_of(first, v));
   for (std::size_t k = 0; k < faces.size(); ++k) {
     const TetIndex t = faces[k] / 4;
     const int i = static_cast<int>(faces[k] % 4);
     for (int j = 1; j < 4; ++j) {
       const HalfFace o = complex_.across[4 * t + ((i + j) & 3)];
-      if (is_outside(o) || complex_.marks[o / 4] == mark) continue;
+      if (is_outside(o) || seen_.contains(o / 4)) continue;
       if (!allowed(o / 4)) return false;
-      complex_.marks[o / 4] = mark;
+      seen_.insert(o / 4);
       faces.push_back(4 * (o / 4) + mesh_.corner_of(o / 4, v));
     }
   }
@@ -90,8 +94,10 @@ bool EditBlock::replace(std::span<const TetIndex> old_tets, std::span<const Tet>
   for (const TetIndex t : old_tets) rim_.open(complex_, t);
   const bool has_regions = mesh_.had_regions_;
   const std::uint32_t region = has_regions ? mesh_.region_[old_tets[0]] : 0;
-  for (const TetIndex t : old_tets)
+  for (const TetIndex t : old_tets) {
     for (const VertexIndex v : complex_.tets[t]) complex_.tet_at[v] = kNone;
+    if (mesh_.taken_) note_gone(t);
+  }
   if (change) change_boundary(*change);
   created.clear();
   for (std::size_t k = 0; k < new_tets.size(); ++k) {
@@ -112,6 +118,13 @@ bool EditBlock::replace(std::span<const TetIndex> old_tets, std::span<const Tet>
   }
   validate(mesh_, created);
   return true;
+}
+
+void EditBlock::note_gone(TetIndex t) {
+  EditMesh::Taken& taken = *mesh_.taken_;
+  if (!std::exchange(taken.is_there[t], std::uint8_t{0})) return;
+  (whole_ ? taken.gone : gone_).push_back(complex_.tets[t]);
+  if (mesh_.had_regions_) (whole_ ? taken.region_of_gone : region_of_gone_).push_back(mesh_.region_[t]);
 }
 
 void EditBlock::change_boundary(const BoundaryChange& change) {

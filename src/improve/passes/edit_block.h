@@ -5,6 +5,7 @@
 // or the corners of one. A search that leaves the block gives up and says so; slots for new tets and vertices are
 // reserved beforehand. A block may also be the whole mesh; then nothing is refused, and the mesh grows as it must.
 
+#include "base/core/flat_map.h"
 #include "improve/shape/edit_mesh.h"
 
 #include <span>
@@ -81,7 +82,7 @@ class EditBlock {
     cut_ = true;
     return false;
   }
-  std::uint32_t next_mark() { return whole_ ? complex_.new_mark() : ++mark_; }
+  void note_gone(TetIndex t);
   std::vector<TetIndex>& free_tets() { return whole_ ? complex_.free : free_tets_; }
   bool have_both_sides(std::span<const TetIndex> tets);
   bool has_room(std::size_t tets) { return whole_ || free_tets_.size() >= tets; }
@@ -95,7 +96,9 @@ class EditBlock {
   bool whole_ = false, cut_ = false;
   const Cells* cells_ = nullptr;
   std::uint32_t cell_ = 0;
-  std::uint32_t mark_ = 0;
+  FlatSet<TetIndex> seen_;
+  std::vector<Tet> gone_;  ///< what EditMesh::remember() asks for
+  std::vector<std::uint32_t> region_of_gone_;
   std::vector<TetIndex> free_tets_;
   std::vector<VertexIndex> free_points_;
 };

@@ -60,9 +60,12 @@ std::vector<TetIndex> EditBlocks::finish() {
     EditBlock& block = shares_[k].block;
     left_.insert(left_.end(), shares_[k].left.begin(), shares_[k].left.end());
     if (block.whole_) continue;
-    mesh_.complex_.last_mark = std::max(mesh_.complex_.last_mark, block.mark_);
-    mesh_.complex_.free.insert(mesh_.complex_.free.end(), block.free_tets_.begin(), block.free_tets_.end());
-    mesh_.free_points_.insert(mesh_.free_points_.end(), block.free_points_.begin(), block.free_points_.end());
+    const auto give_back = [](const auto& from, auto& to) { to.insert(to.end(), from.begin(), from.end()); };
+    give_back(block.free_tets_, mesh_.complex_.free);
+    give_back(block.free_points_, mesh_.free_points_);
+    if (!mesh_.taken_) continue;
+    give_back(block.gone_, mesh_.taken_->gone);
+    give_back(block.region_of_gone_, mesh_.taken_->region_of_gone);
   }
   return std::move(left_);
 }

@@ -13,6 +13,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace octafront::improve {
 
@@ -85,11 +86,13 @@ PassResult relieve_vertices(EditMesh& mesh, float threshold, const RunContext& c
 
 struct TakenBack {
   PassResult pass;
-  bool clear = false;  ///< no triangles of the boundary cross
+  std::vector<VertexIndex> crossing;  ///< vertices of triangles of the boundary
+                                      ///< that still cross, and of those around
 };
 /// Where triangles of the boundary have come to cross, their vertices and those around go back to where they were when
-/// the mesh was taken, in `taken`, or part of the way, as long as that makes no element worse than the worst.
-TakenBack take_back_crossings(EditMesh& mesh, std::span<const Vec3> taken, const BoundaryGuide& guide,
+/// the mesh was taken, `home` by their numbers, or part of the way, as long as that makes no element worse than the
+/// worst.
+TakenBack take_back_crossings(EditMesh& mesh, std::span<const Vec3> home, const BoundaryGuide& guide,
                               const RunContext& context);
 
 struct BoundaryEdits {

@@ -52,20 +52,19 @@ bool take_back(EditBlock& block, StarEdit& star, VertexIndex v, Vec3 home, const
 
 }  // namespace
 
-TakenBack take_back_crossings(EditMesh& mesh, std::span<const Vec3> taken, const BoundaryGuide& guide,
+TakenBack take_back_crossings(EditMesh& mesh, std::span<const Vec3> home, const BoundaryGuide& guide,
                               const RunContext& context) {
   TakenBack result;
   for (int round = 0; round <= kTakeBackRounds; ++round) {
     std::vector<std::uint8_t> near = beside_crossings(mesh, round);
-    result.clear = std::find(near.begin(), near.end(), 1) == near.end();
-    if (result.clear || round == kTakeBackRounds) return result;
-    const auto home = [&](VertexIndex v) { return taken[mesh.number_taken(v)]; };
+    if (std::find(near.begin(), near.end(), 1) == near.end()) return result;
+    if (round == kTakeBackRounds) break;
     // Each vertex by the first of its tets, by name.
     std::vector<TetIndex> first(near.size(), kNone), tets;
     EditBlock whole(mesh);
     std::vector<HalfFace> around;
     for (VertexIndex v = 0; v < near.size(); ++v) {
-      if (!near[v] || !guide.may_slide(v) || mesh.point(v) == home(v)) continue;
+      if (!near[v] || !guide.may_slide(v) || mesh.point(v) == home[v]) continue;
       whole.star(v, around);
       first[v] = around[0] / 4;
       tets.push_back(first[v]);
@@ -83,13 +82,16 @@ TakenBack take_back_crossings(EditMesh& mesh, std::span<const Vec3> taken, const
             for (const VertexIndex v : mesh.tet(t)) {
               if (first[v] != t) continue;
               ++done.tried;
-              done.done += take_back(block, star, v, home(v), floor, walked);
+              done.done += take_back(block, star, v, home[v], floor, walked);
             }
             if (block.take_cut()) left.push_back(t);
           }
           return done;
         });
   }
+  const std::vector<std::uint8_t> near = beside_crossings(mesh, 1);
+  for (VertexIndex v = 0; v < near.size(); ++v)
+    if (near[v]) result.crossing.push_back(v);
   return result;
 }
 

@@ -1,25 +1,42 @@
 #include "improve/passes/vertex_blocks.h"
 
+#include <algorithm>
+
 namespace octafront::improve {
 
 VertexBlocks::VertexBlocks(const EditMesh& mesh, const BoundaryGuide* guide, std::vector<std::uint8_t> marks) {
-  const auto n = static_cast<VertexIndex>(mesh.vertices());
-  std::vector<std::vector<VertexIndex>> blocks(mesh.cells(0).count);
-  std::vector<VertexIndex> waiting;
-  for (VertexIndex v = 0; v < n; ++v) {
-    if (mesh.on_boundary(v) && !(guide && guide->may_slide(v))) marks[v] &= ~kWorked;
-    if (marks[v] & kWorked) (marks[v] & kAtRim ? waiting : blocks[mesh.cells(0).of[v]]).push_back(v);
-  }
-  stages_.push_back(std::move(blocks));
-  stars_ = group_by_owner(n, static_cast<HalfFace>(4 * mesh.slots()), [&](HalfFace h) {
+  std::vector<VertexIndex> waiting = start(mesh, guide, marks);
+  stars_ = group_by_owner(marks.size(), static_cast<HalfFace>(4 * mesh.slots()), [&](HalfFace h) {
     const VertexIndex v = mesh.tet(h / 4)[h % 4];
     return mesh.alive(h / 4) && (marks[v] & kWorked) ? v : kNoOwner;
   });
-  parallel_for(n, [&](std::size_t v) { mesh.sort_star(stars_[v]); });
-  std::vector<std::uint8_t> waits(n, 0);
-  for (const VertexIndex v : waiting) waits[v] = 1;
+  parallel_for(marks.size(), [&](std::size_t v) { mesh.sort_star(stars_[v]); });
+  std::vector<std::uint8_t> waits(marks.size(), 0);
+  parallel_for(waiting.size(), [&](std::size_t k) { waits[waiting[k]] = 1; });
   for (int stage = 1; stage < kCellStages && !waiting.empty(); ++stage) divide(mesh, stage, waiting, waits);
   stages_.push_back({std::move(waiting)});
+}
+
+std::vector<VertexIndex> VertexBlocks::start(const EditMesh& mesh, const BoundaryGuide* guide,
+                                             std::vector<std::uint8_t>& marks) {
+  const Cells& cells = mesh.cells(0);
+  std::vector<std::vector<VertexIndex>> blocks(cells.count), at_rim(cells.count);
+  const auto add = [&](VertexIndex v) {
+    if (mesh.on_boundary(v) && !(guide && guide->may_slide(v))) marks[v] &= ~kWorked;
+    if (marks[v] & kWorked) (marks[v] & kAtRim ? at_rim : blocks)[cells.of[v]].push_back(v);
+  };
+  const auto taken = std::span(cells.of).first(mesh.vertices_taken());
+  const auto first = [&](std::size_t cell) {
+    return static_cast<VertexIndex>(std::ranges::lower_bound(taken, cell) - taken.begin());
+  };
+  parallel_for(cells.count, [&](std::size_t c) {
+    for (VertexIndex v = first(c), end = first(c + 1); v < end; ++v) add(v);
+  });
+  for (auto v = static_cast<VertexIndex>(taken.size()); v < mesh.vertices(); ++v) add(v);
+  stages_.push_back(std::move(blocks));
+  std::vector<VertexIndex> waiting;
+  for (const std::vector<VertexIndex>& some : at_rim) waiting.insert(waiting.end(), some.begin(), some.end());
+  return waiting;
 }
 
 void VertexBlocks::divide(const EditMesh& mesh, int stage, std::vector<VertexIndex>& waiting,
@@ -33,10 +50,11 @@ void VertexBlocks::divide(const EditMesh& mesh, int stage, std::vector<VertexInd
     return at_rim ? kNoOwner : cells.of[v];
   });
   std::vector<std::vector<VertexIndex>> blocks(cells.count);
-  for (std::uint32_t c = 0; c < cells.count; ++c) {
-    blocks[c].assign(by_cell[c].begin(), by_cell[c].end());
-    for (const VertexIndex v : blocks[c]) waits[v] = 0;
-  }
+  parallel_for(cells.count, [&](std::size_t c) {
+    const std::span<const VertexIndex> block = by_cell[static_cast<std::uint32_t>(c)];
+    blocks[c].assign(block.begin(), block.end());
+    for (const VertexIndex v : block) waits[v] = 0;
+  });
   stages_.push_back(std::move(blocks));
   waiting.assign(by_cell.left().begin(), by_cell.left().end());
 }

@@ -49,6 +49,8 @@ class VertexBlocks {
  private:
   static constexpr std::uint8_t kWorked = 1, kAtRim = 2;  ///< in the marks; kAtRim: of a block of the first stage
 
+  /// Makes the blocks of the first stage, of the vertices that may move; gives those at rims.
+  std::vector<VertexIndex> start(const EditMesh& mesh, const BoundaryGuide* guide, std::vector<std::uint8_t>& marks);
   /// Makes blocks of the stage, of those that wait and have no neighbour in another cell that does; they wait no more.
   void divide(const EditMesh& mesh, int stage, std::vector<VertexIndex>& waiting, std::vector<std::uint8_t>& waits);
 

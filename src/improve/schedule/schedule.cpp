@@ -7,7 +7,6 @@
 #include "base/core/stage_timer.h"
 #include "base/core/validate.h"
 #include "base/geometry/predicates.h"
-#include "base/geometry/self_intersection.h"
 #include "improve/passes/explain.h"
 #include "improve/passes/fewest_poor.h"
 #include "improve/passes/passes.h"
@@ -133,14 +132,14 @@ class Schedule {
     pass("flat elements opened", [&] { return open_flat_elements(mesh_, stage_.context()); });
   }
 
-  /// Where the boundary crosses itself it goes back. True if it is known that nothing crosses then.
-  bool uncross(std::span<const Vec3> taken) {
-    if (!guide_) return false;
+  /// Where the boundary crosses itself it goes back. Returns where that does not help.
+  std::vector<VertexIndex> uncross() {
+    if (!guide_) return {};
     if (before_pass_) before_pass_(mesh_);
-    const TakenBack back = take_back_crossings(mesh_, taken, *guide_, stage_.context());
+    TakenBack back = take_back_crossings(mesh_, mesh_.points_taken(), *guide_, stage_.context());
     if (back.pass.tried > 0) note("slides taken back", back.pass);
     validate(mesh_);
-    return back.clear;
+    return std::move(back.crossing);
   }
 
   /// What the elements lack, in sum.
@@ -350,14 +349,6 @@ void run_schedule(Schedule& run, const ImproveOptions& options) {
 /// How often a boundary that came to cross itself is tried again with the places frozen, before all of it is.
 constexpr int kMostRetries = 3;
 
-/// A mesh that came out of the schedule, what its vertices were (EditMesh::numbers_taken), and its features.
-struct Better {
-  TetMesh mesh;
-  std::vector<VertexIndex> taken;
-  Features features;
-  bool is_clear = false;  ///< it is known that its boundary does not cross itself
-};
-
 /// The features in the numbering of the result; `edges` and `corners` are in that of the mesh that was taken.
 Features renumbered(std::vector<Edge> edges, std::vector<VertexIndex> corners, const std::vector<VertexIndex>& taken) {
   std::vector<VertexIndex> result;
@@ -376,42 +367,6 @@ Features renumbered(std::vector<Edge> edges, std::vector<VertexIndex> corners, c
   return {std::move(edges), std::move(corners)};
 }
 
-/// One run of the schedule; vertices in `frozen`, and those around them, stay on the boundary where they are.
-Better improved(const TetMesh& mesh, const BoundaryInput* boundary, const BoundaryInput* input,
-                const std::vector<VertexIndex>& frozen, const ImproveOptions& options, const Stage& stage,
-                const BeforePass& before_pass) {
-  EditMesh edit(TetMesh{mesh}, options.objective);
-  std::optional<BoundaryGuide> guide;
-  if (boundary) guide.emplace(edit, *boundary, frozen);
-  Schedule run(edit, guide ? &*guide : nullptr, options, stage, before_pass);
-  run_schedule(run, options);
-  const bool is_clear = run.uncross(mesh.points);
-  run.explain(input);
-  std::vector<VertexIndex> taken = edit.numbers_taken();
-  Features features;
-  if (guide) features = renumbered(guide->feature_edges_taken(edit), boundary->of_mesh.corners, taken);
-  return {edit.release(), std::move(taken), std::move(features), is_clear};
-}
-
-bool same_boundary(const TetMesh& a, const TetMesh& b) {
-  return a.boundary == b.boundary && std::all_of(a.boundary.begin(), a.boundary.end(), [&](const Triangle& t) {
-           return std::all_of(t.begin(), t.end(), [&](VertexIndex v) { return a.points[v] == b.points[v]; });
-         });
-}
-
-/// The corners of triangles of the boundary that cross, and of their neighbours. Since all elements are positive, the
-/// mesh is an embedding just if there are none.
-std::vector<VertexIndex> where_boundary_crosses(const TetMesh& mesh) {
-  std::vector<std::uint8_t> near(mesh.points.size(), 0);
-  for (const auto& pair : self_intersections(mesh.points, mesh.boundary))
-    for (const std::uint32_t t : pair)
-      for (const VertexIndex v : mesh.boundary[t]) near[v] = 1;
-  std::vector<VertexIndex> found;
-  for (const Triangle& t : mesh.boundary)
-    if (near[t[0]] || near[t[1]] || near[t[2]]) found.insert(found.end(), t.begin(), t.end());
-  return found;
-}
-
 }  // namespace
 
 bool improve_mesh(TetMesh& mesh, const BoundaryInput* input, const ImproveOptions& options, const Stage& stage,
@@ -421,31 +376,40 @@ bool improve_mesh(TetMesh& mesh, const BoundaryInput* input, const ImproveOption
   mesh.wide_cells.clear();  // edits know of tetrahedra alone
   mesh.wide_faces.clear();
   mesh.face_layers.clear();
-  const bool moves = options.move_boundary && options.level != ImproveOptions::Level::kPaper;
-  const BoundaryInput* boundary = moves ? input : nullptr;
-  std::vector<VertexIndex> frozen;
+  const bool moves = input && options.move_boundary && options.level != ImproveOptions::Level::kPaper;
+  std::vector<VertexIndex> frozen;  // they, and those around them, stay where they are
   for (int retry = 0;; ++retry) {
     StageReport attempt = stage.report();
-    auto [better, taken, of_better, is_clear] = improved(mesh, retry < kMostRetries ? boundary : nullptr, input, frozen,
-                                                         options, {stage.context(), attempt}, before_pass);
-    const bool moved = !same_boundary(mesh, better);
-    const std::vector<VertexIndex> crossing =
-        moved && !is_clear ? where_boundary_crosses(better) : std::vector<VertexIndex>{};
-    if (crossing.empty()) {
-      stage.report() = std::move(attempt);
-      stage.count("runs with places of the boundary frozen", retry);
-      mesh = std::move(better);
-      if (moved && features) *features = std::move(of_better);
-      return moved;
+    EditMesh edit(std::move(mesh), options.objective);
+    std::optional<BoundaryGuide> guide;
+    if (moves && retry < kMostRetries) {
+      guide.emplace(edit, *input, frozen);
+      edit.remember();
     }
-    for (const VertexIndex v : crossing) frozen.push_back(taken[v]);
+    const Stage tried{stage.context(), attempt};
+    Schedule run(edit, guide ? &*guide : nullptr, options, tried, before_pass);
+    run_schedule(run, options);
+    const std::vector<VertexIndex> crossing = run.uncross();
+    const bool moved = guide && edit.moved_boundary();
+    if (moved && !crossing.empty()) {
+      for (const VertexIndex v : crossing) frozen.push_back(edit.number_taken(v));
+      mesh = edit.taken();
+      continue;
+    }
+    run.explain(input);
+    if (moved && features)
+      *features = renumbered(guide->feature_edges_taken(edit), input->of_mesh.corners, edit.numbers_taken());
+    mesh = edit.release();
+    stage.report() = std::move(attempt);
+    stage.count("runs with places of the boundary frozen", retry);
+    return moved;
   }
 }
 
 void relieve_mesh(TetMesh& mesh, const ImproveOptions& options, const Stage& stage) {
   if (options.level == ImproveOptions::Level::kOff || mesh.tets.empty()) return;
-  EditMesh edit(TetMesh{mesh}, options.objective);
-  if (edit.floor().score >= kComfort) return;
+  if (worst_score(mesh, options.objective) >= kComfort) return;
+  EditMesh edit(std::move(mesh), options.objective);
   Schedule run(edit, nullptr, options, stage);
   run.rounds_for_worst(4, kWanted, 2, kPoorToInsert);
   relieve(run);

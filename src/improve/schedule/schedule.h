@@ -28,7 +28,7 @@ using BeforePass = std::function<void(improve::EditMesh&)>;
 /// near to the input as it was (see BoundaryGuide::keeps_truth), free of self-intersections (exactly), with the same
 /// number of triangles, each of the same patch, unless the input has a tolerance: see edit_boundary(). Regions stay
 /// with what they belong to. No pass makes the worst element worse, and none inverts one (exact signs). On an exception
-/// the mesh is as it was. Throws OptionError, Cancelled, and MeshingError if the faces of the mesh do not match. The
+/// the mesh is lost. Throws OptionError, Cancelled, and MeshingError if the faces of the mesh do not match. The
 /// report gets, for each pass, the places looked at, those changed, and CPU time per element. Returns true if the
 /// boundary changed; `features`, where given, then become those of the new boundary, in its numbering (they may be
 /// input->of_mesh). `before_pass` is for tests: where the elements are kept changes nothing.

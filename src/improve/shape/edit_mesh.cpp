@@ -31,6 +31,22 @@ void renumber_faces(TetMesh& mesh, const std::vector<VertexIndex>& new_of_old) {
       for (VertexIndex& v : t) v = new_of_old[v];
 }
 
+/// Calls visit(t, shape) for the tets begin ... end - 1.
+template <class Visit>
+void for_each_shape(const std::vector<Vec3>& points, const std::vector<Tet>& tets, ImproveOptions::Objective objective,
+                    std::size_t begin, std::size_t end, const Visit& visit) {
+  ShapeBatch batch(objective);
+  for (std::size_t first = begin; first < end; first += ShapeBatch::kBatch) {
+    batch.size = 0;
+    for (std::size_t t = first; t < std::min<std::size_t>(end, first + ShapeBatch::kBatch); ++t) {
+      const Tet& c = tets[t];
+      batch.add(points[c[0]], points[c[1]], points[c[2]], points[c[3]]);
+    }
+    batch.evaluate();
+    for (int i = 0; i < batch.size; ++i) visit(first + static_cast<std::size_t>(i), batch.shape(i));
+  }
+}
+
 /// The numbers of the tets in ascending order of their keys; free slots, whose corners are kNone, are none.
 Groups<> order_by_key(const std::vector<Tet>& tets, std::size_t vertices) {
   static_assert(kNone == kNoOwner);
@@ -70,7 +86,6 @@ void EditMesh::take(TetMesh& mesh) {
   const std::size_t room = mesh.tets.size() + mesh.tets.size() / kMeshRoomPart + kLeastRoom;
   complex_.tets.reserve(room);
   complex_.across.reserve(4 * room);
-  complex_.marks.reserve(room);
   shapes_.reserve(room);
   if (had_regions_) region_.reserve(room);
   const Groups<> order = order_by_key(mesh.tets, points_.size());
@@ -94,6 +109,7 @@ void EditMesh::divide_in_cells() {
 void EditMesh::connect() {
   complex_.connect(points_.size(), rest_.boundary);
   complex_.part(points_.size(), rest_.interfaces, kBetweenRegions);
+  complex_.marks = std::vector<std::uint32_t>();
   on_boundary_.assign(points_.size(), 0);
   for (const Triangle& t : rest_.boundary)
     for (const VertexIndex v : t) on_boundary_[v] = 1;
@@ -122,16 +138,8 @@ void EditMesh::part(HalfFace h, HalfFace other) {
 void EditMesh::compute_shapes() {
   shapes_.resize(complex_.tets.size());
   parallel_ranges(shapes_.size(), Split::kAdaptive, [this](std::size_t begin, std::size_t end) {
-    ShapeBatch batch(objective_);
-    for (std::size_t first = begin; first < end; first += ShapeBatch::kBatch) {
-      batch.size = 0;
-      for (std::size_t t = first; t < std::min<std::size_t>(end, first + ShapeBatch::kBatch); ++t) {
-        const Tet& c = complex_.tets[t];
-        batch.add(points_[c[0]], points_[c[1]], points_[c[2]], points_[c[3]]);
-      }
-      batch.evaluate();
-      for (int i = 0; i < batch.size; ++i) shapes_[first + static_cast<std::size_t>(i)] = batch.shape(i);
-    }
+    for_each_shape(points_, complex_.tets, objective_, begin, end,
+                   [this](std::size_t t, const Shape& shape) { shapes_[t] = shape; });
   });
 }
 
@@ -143,7 +151,41 @@ std::vector<VertexIndex> EditMesh::numbers_taken() const {
   return taken;
 }
 
+void EditMesh::remember() {
+  taken_.emplace(Taken{points_, std::vector<std::uint8_t>(slots(), 1), {}, {}, rest_});
+}
+
+TetMesh EditMesh::taken() {
+  TetMesh mesh = std::move(taken_->rest);
+  mesh.points.resize(original_.size());
+  for (VertexIndex v = 0; v < original_.size(); ++v) mesh.points[original_[v]] = taken_->points[v];
+  std::vector<Tet> tets = std::move(taken_->gone);
+  std::vector<std::uint32_t> region = std::move(taken_->region_of_gone);
+  for (TetIndex t = 0; t < slots(); ++t) {
+    if (!taken_->is_there[t]) continue;
+    tets.push_back(complex_.tets[t]);
+    if (had_regions_) region.push_back(region_[t]);
+  }
+  const Groups<> order = order_by_key(tets, points_.size());
+  mesh.tets.resize(tets.size());
+  mesh.region.resize(region.size());
+  parallel_for(tets.size(), [&](std::size_t k) {
+    for (int i = 0; i < 4; ++i) mesh.tets[k][i] = original_[tets[order.items()[k]][i]];
+    if (had_regions_) mesh.region[k] = region[order.items()[k]];
+  });
+  renumber_faces(mesh, original_);
+  return mesh;
+}
+
+bool EditMesh::moved_boundary() const {
+  const std::vector<Triangle>& was = taken_->rest.boundary;
+  return rest_.boundary != was || std::any_of(was.begin(), was.end(), [&](const Triangle& t) {
+           return std::any_of(t.begin(), t.end(), [&](VertexIndex v) { return points_[v] != taken_->points[v]; });
+         });
+}
+
 TetMesh EditMesh::release() {
+  taken_.reset();
   TetMesh mesh = std::move(rest_);
   // Vertices go back to where they were; those that improvement added follow.
   std::vector<VertexIndex> here = numbers_here();
@@ -202,7 +244,7 @@ void EditMesh::reserve_tets(std::size_t more) {
   complex_.across.resize(4 * last);
   shapes_.resize(last, kNoShape);
   if (had_regions_) region_.resize(last);
-  complex_.marks.resize(last, 0);
+  if (taken_) taken_->is_there.resize(last, 0);
   for (std::size_t t = last; t-- > first;) complex_.free.push_back(static_cast<TetIndex>(t));
 }
 
@@ -290,6 +332,16 @@ void EditMesh::sort_star(std::span<HalfFace> star) const {
   if (std::is_sorted(named.begin(), end)) return;
   std::sort(named.begin(), end);
   for (std::size_t k = 0; k < star.size(); ++k) star[k] = named[k].face;
+}
+
+float worst_score(const TetMesh& mesh, ImproveOptions::Objective objective) {
+  const Floor floor = parallel_sum(mesh.tets.size(), [&](std::size_t begin, std::size_t end) {
+    Floor part;
+    for_each_shape(mesh.points, mesh.tets, objective, begin, end,
+                   [&](std::size_t, const Shape& shape) { part.add(shape); });
+    return part;
+  });
+  return floor.score;
 }
 
 }  // namespace octafront::improve

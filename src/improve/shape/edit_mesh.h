@@ -30,6 +30,15 @@ class EditMesh {
   /// (with their corners).
   explicit EditMesh(TetMesh&& mesh, ImproveOptions::Objective objective = ImproveOptions::Objective::kBalanced);
 
+  /// From here on what edits replace is written down, so that taken() can give the mesh back as it was.
+  void remember();
+  /// The mesh as remember() found it, tets by their names; this one is of no use any more.
+  TetMesh taken();
+  /// Where vertices were then.
+  std::span<const Vec3> points_taken() const { return taken_->points; }
+  /// Whether the boundary is another one than then.
+  bool moved_boundary() const;
+
   /// The mesh back, compacted: vertices in the order they came in, without unused ones, new ones behind; tets in order
   /// of space, by their names; boundary triangles by their numbers, the last ones in the place of those that went.
   TetMesh release();
@@ -60,6 +69,8 @@ class EditMesh {
   Vec3 corner(std::size_t t, int i) const { return points_[rest_.boundary[t][i]]; }
   /// The number that a vertex had in the mesh that was taken. Requires that it was there.
   VertexIndex number_taken(VertexIndex v) const { return original_[v]; }
+  /// Vertices from here on are new; the others are numbered along the curve of the first stage's cells.
+  std::size_t vertices_taken() const { return original_.size(); }
   /// For each vertex of the mesh that was taken, its number here.
   std::vector<VertexIndex> numbers_here() const;
 
@@ -112,8 +123,17 @@ class EditMesh {
   static void drop_removed_triangles(TetMesh& mesh);
   void compute_shapes();
 
+  /// What edits have replaced, and where vertices were.
+  struct Taken {
+    std::vector<Vec3> points;
+    std::vector<std::uint8_t> is_there;  ///< per slot: whether its tet was there
+    std::vector<Tet> gone;
+    std::vector<std::uint32_t> region_of_gone;
+    TetMesh rest;
+  };
+
   ImproveOptions::Objective objective_;
-  TetComplex complex_;
+  TetComplex complex_;  ///< without marks
   std::vector<Vec3> points_;
   std::vector<Shape> shapes_;
   std::vector<std::uint32_t> region_;  ///< per slot; empty if there were none
@@ -123,6 +143,10 @@ class EditMesh {
   std::vector<VertexIndex> original_;  ///< the number of each vertex in the mesh that was taken
   TetMesh rest_;                       ///< boundary, patches, sources, names: carried through; no tets, no points
   bool had_regions_ = false;
+  std::optional<Taken> taken_;
 };
+
+/// Of its elements.
+float worst_score(const TetMesh& mesh, ImproveOptions::Objective objective);
 
 }  // namespace octafront::improve

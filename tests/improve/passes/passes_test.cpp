@@ -59,6 +59,27 @@ TEST(EditMesh, GivesBackWhatItTook) {
   EXPECT_EQ(back, mesh);
 }
 
+TEST(EditMesh, RemembersWhatItTook) {
+  TetMesh start = perturbed(kuhn_cube(12), 0.6, 2);
+  for (const Tet& t : start.tets) start.region.push_back(start.points[t[0]].x > 0.4);
+  EditMesh mesh{TetMesh{start}};
+  mesh.remember();
+  EXPECT_GT(reconnect(mesh, 0.6f, Goal::kWorst, {}).done, 100u);
+  EXPECT_GT(smooth_mean(mesh, 1, {}).done, 100u);
+  EXPECT_GT(insert_vertices(mesh, 0.5f, Goal::kFewestPoor, {}).done, 0u);
+  EXPECT_FALSE(mesh.moved_boundary());
+  const TetMesh back = mesh.taken();
+  EXPECT_EQ(back.points, start.points);
+  EXPECT_EQ(back.boundary, start.boundary);
+  EXPECT_EQ(back.patch, start.patch);
+  const auto by_region = [](const TetMesh& m) {
+    std::set<std::pair<Tet, std::uint32_t>> all;
+    for (TetIndex t = 0; t < m.tets.size(); ++t) all.insert({m.tets[t], m.region[t]});
+    return all;
+  };
+  EXPECT_EQ(by_region(back), by_region(start));
+}
+
 TEST(EditMesh, RefusesFacesThatDoNotMatch) {
   TetMesh mesh = kuhn_cube(2);
   mesh.tets.pop_back();

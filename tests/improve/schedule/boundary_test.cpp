@@ -237,8 +237,10 @@ TEST(Boundary, WhatCrossesGoesBackToWhereItWas) {
   const TriangleTree tree(surface);
   EditMesh edit{TetMesh{crossing}};
   const BoundaryGuide guide(edit, {surface, tree, features, features}, {});
-  const TakenBack back = take_back_crossings(edit, start.points, guide, {});
-  EXPECT_TRUE(back.clear);
+  std::vector<Vec3> home;
+  for (VertexIndex v = 0; v < edit.vertices(); ++v) home.push_back(start.points[edit.number_taken(v)]);
+  const TakenBack back = take_back_crossings(edit, home, guide, {});
+  EXPECT_TRUE(back.crossing.empty());
   EXPECT_EQ(back.pass.done, 1u);
   const TetMesh made = edit.release();
   EXPECT_EQ(first_defect(made), std::nullopt);
@@ -247,7 +249,7 @@ TEST(Boundary, WhatCrossesGoesBackToWhereItWas) {
   // Frozen, it cannot.
   EditMesh again{TetMesh{crossing}};
   const BoundaryGuide frozen(again, {surface, tree, features, features}, {static_cast<VertexIndex>(moved)});
-  EXPECT_FALSE(take_back_crossings(again, start.points, frozen, {}).clear);
+  EXPECT_FALSE(take_back_crossings(again, home, frozen, {}).crossing.empty());
 }
 
 TEST(FeatureCurves, AreWalkedToTheirEndsAndNoFarther) {
