@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <type_traits>
 
 #include <fmt/core.h>
 
@@ -24,6 +25,13 @@ constexpr std::size_t kMostVerticesOfCell = 8192;
 
 /// Room for the slots that blocks will ask for: otherwise the first to ask has the whole mesh copied.
 constexpr std::size_t kMeshRoomPart = 16, kLeastRoom = 1024;
+
+/// To `size`, with room for some more: by itself a vector would double.
+template <class Item>
+void grow(std::vector<Item>& items, std::size_t size, const std::type_identity_t<Item>& fresh) {
+  if (size > items.capacity()) items.reserve(size + size / kMeshRoomPart);
+  items.resize(size, fresh);
+}
 
 void renumber_faces(TetMesh& mesh, const std::vector<VertexIndex>& new_of_old) {
   for (std::vector<Triangle>* faces : {&mesh.boundary, &mesh.interfaces})
@@ -240,11 +248,11 @@ std::vector<VertexIndex> EditMesh::numbers_here() const {
 
 void EditMesh::reserve_tets(std::size_t more) {
   const std::size_t first = complex_.tets.size(), last = first + more;
-  complex_.tets.resize(last, {kNone, kNone, kNone, kNone});
-  complex_.across.resize(4 * last);
-  shapes_.resize(last, kNoShape);
-  if (had_regions_) region_.resize(last);
-  if (taken_) taken_->is_there.resize(last, 0);
+  grow(complex_.tets, last, {kNone, kNone, kNone, kNone});
+  grow(complex_.across, 4 * last, kNone);
+  grow(shapes_, last, kNoShape);
+  if (had_regions_) grow(region_, last, 0);
+  if (taken_) grow(taken_->is_there, last, 0);
   for (std::size_t t = last; t-- > first;) complex_.free.push_back(static_cast<TetIndex>(t));
 }
 
