@@ -232,19 +232,29 @@ SurfaceFit SmoothSurface::make_fit(Wedge wedge) const {
   return fit;
 }
 
+double SmoothSurface::sag_over(std::uint32_t h) const {
+  const auto& [a, b, c] = tree_.corners(h / 3);
+  const auto& [d, e, f] = tree_.corners(neighbour_[h]);
+  const Vec3 normal = double_area_normal(a, b, c), other = double_area_normal(d, e, f);
+  const double turn = elementary::atan2(length(cross(normal, other)), dot(normal, other));
+  const double edge =
+      distance(surface_.points[start_of(surface_.triangles, h)], surface_.points[end_of(surface_.triangles, h)]);
+  return edge > 0 ? turn * std::min(length(normal), kMostUneven * length(other)) / edge : 0;
+}
+
 double SmoothSurface::sag(std::uint32_t t) const {
-  const auto& [a, b, c] = tree_.corners(t);
-  const Vec3 normal = double_area_normal(a, b, c);
-  double most = 0;
-  for (std::uint32_t h = 3 * t; h < 3 * t + 3; ++h) {
-    if (neighbour_[h] == kNone) continue;
-    const auto& [d, e, f] = tree_.corners(neighbour_[h]);
-    const Vec3 other = double_area_normal(d, e, f);
-    const double turn = elementary::atan2(length(cross(normal, other)), dot(normal, other));
-    const double edge =
-        distance(surface_.points[start_of(surface_.triangles, h)], surface_.points[end_of(surface_.triangles, h)]);
-    if (edge > 0) most = std::max(most, turn * std::min(length(normal), kMostUneven * length(other)) / edge);
-  }
+  const auto sag_over_edges = [&](std::uint32_t u) {
+    double most = 0;
+    for (std::uint32_t h = 3 * u; h < 3 * u + 3; ++h)
+      if (neighbour_[h] != kNone) most = std::max(most, sag_over(h));
+    return most;
+  };
+  double most = sag_over_edges(t);
+  const auto first = neighbour_.begin() + 3 * t;
+  if (std::find(first, first + 3, kNone) == first + 3) return most;
+  // The strip of triangles along the end of a rolled sheet is flat: how the sheet turns only those behind it can tell.
+  for (auto beside = first; beside != first + 3; ++beside)
+    if (*beside != kNone) most = std::max(most, sag_over_edges(*beside));
   return most;
 }
 

@@ -57,8 +57,10 @@ class SmoothSurface {
   void find_wedges(const EdgeTable& edges);
   SurfaceFit make_fit(Wedge wedge) const;
   /// Height of the triangle times the angle by which the surface turns there, over the edge where that is most; not
-  /// over sharp ones.
+  /// over sharp ones: beside these its neighbours tell.
   double sag(std::uint32_t triangle) const;
+  /// The same over one edge, which is not sharp.
+  double sag_over(std::uint32_t half_edge) const;
   /// Whether a fit leaves the triangles at its vertex no farther than their neighbours let them expect.
   bool stays_near(const SurfaceFit& fit, Wedge wedge) const;
   CurveFit make_curve_fit(std::uint32_t end) const;
