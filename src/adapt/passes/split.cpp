@@ -22,6 +22,9 @@ constexpr float kLeastScoreOfSplit = 0.03f, kKeptOfPoor = 0.9f;
 /// A split that makes shorter edges than this waits until the place is connected better: otherwise elements that lie
 /// across the directions of the metric are divided without end.
 constexpr double kShortestOfSplit = 0.55;
+/// Rather than that walls stay off the ground by more than this, in lengths of the metric, they come so near to
+/// vertices, which can go then.
+constexpr double kFarFromHome = 0.1, kShortestAtHome = 0.2;
 /// Edges longer than this do not wait so much.
 constexpr double kMuchTooLong = 1.5;
 /// Between ends whose lengths differ by less the middle is the middle.
@@ -191,16 +194,16 @@ class Splitter {
       if (share != 0 && home == straight) continue;
       made.at = straight + share * (home - straight);
       guide_.ask(made);
-      if (plan(a, b, made)) return apply(a, b, made, path);
+      const bool is_needed = share == 1 && made.metric.squared(home - straight) > kFarFromHome * kFarFromHome;
+      if (plan(a, b, made, is_needed ? kShortestAtHome : kShortestOfSplit)) return apply(a, b, made, path);
     }
     return false;
   }
 
-  bool plan(VertexIndex a, VertexIndex b, const Vertex& made) {
+  bool plan(VertexIndex a, VertexIndex b, const Vertex& made, double shortest) {
     float worst = 1;
     for (const TetIndex t : ring_.tets) worst = std::min(worst, piece_.score[t]);
     const float least = std::max(kLeastOfSplit * worst, std::min(kLeastScoreOfSplit, kKeptOfPoor * worst));
-    double shortest = kShortestOfSplit;
     if (made.exact) {
       const double excess = std::max(piece_.edge_length(a, b) / kMuchTooLong, 1.0);
       shortest /= excess * excess;

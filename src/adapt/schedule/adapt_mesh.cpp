@@ -1,6 +1,7 @@
 #include "adapt/schedule/adapt_mesh.h"
 
 #include "adapt/passes/passes.h"
+#include "adapt/schedule/metric_steps.h"
 #include "adapt/schedule/parts.h"
 #include "base/blocks/blocks.h"
 #include "base/core/groups.h"
@@ -21,14 +22,10 @@ constexpr std::size_t kGrowth = 4, kRoomOfPiece = 4096;
 constexpr int kMostRoundsOfAdapt = 60;
 /// Cycles of passes within one piece; on the way.
 constexpr int kCycles = 4, kCyclesOnTheWay = 2;
-/// A metric of other directions is come to in steps: each makes lengths so many times as long or as short at most.
-constexpr double kStepOfMetric = 2;
-/// So many steps at most, and none more once less than one change for so many elements is made.
+/// So many steps at most on the way to a metric, and none more once less than one change for so many elements is made.
 constexpr int kMostSteps = 20, kQuiet = 50;
 /// Less than one change for so many elements is not worth another round.
 constexpr int kDone = 200;
-/// Elements more than a million times as long as they are high are flat by rounding: of squared lengths.
-constexpr double kMostRatioOfMetric = 1e12;
 /// Elements of a better score are not connected anew, or moved: qualities of .86 and .93; and not while a piece grows.
 constexpr float kGoodForSwaps = 0.8f, kGoodScore = 0.9f, kGoodOnTheWay = 0.3f;
 /// Edges of other lengths do not come near to what is wanted.
@@ -97,7 +94,7 @@ class Adapter {
     Counts sum;
     bool is_quiet = false;
     for (int round = 0, since_growth = 0; round < kMostRoundsOfAdapt && since_growth < kLastRounds; ++round) {
-      if (on_the_way_) on_the_way_ = take_step(round >= kMostSteps || is_quiet);
+      if (on_the_way_) on_the_way_ = take_step(mesh_, guide_, round >= kMostSteps || is_quiet);
       const Counts c = this->round(round % kCellStages);
       sum += c;
       is_quiet = c.changes() * kQuiet < mesh_.tets.size();
@@ -125,40 +122,6 @@ class Adapter {
     Counts counts;
   };
   static constexpr VertexIndex kFresh = 0x80000000u;
-
-  /// Gives each vertex the metric of its place, or one on the way from what the mesh is like there, unless this is the
-  /// `last` step; false if none is on the way.
-  bool take_step(bool last) {
-    const auto vertices = static_cast<VertexIndex>(mesh_.vertices.size());
-    std::vector<Metric> logs(mesh_.tets.size());
-    std::vector<std::uint8_t> speaks(mesh_.tets.size());  // what is flat to rounding says nothing
-    parallel_for(logs.size(), [&](std::size_t t) {
-      const auto point = [&](int i) { return mesh_.vertices[mesh_.tets[t][i]].at; };
-      const Eigen implied = eigen(implied_metric(point(0), point(1), point(2), point(3)));
-      const auto [least, most] = std::minmax_element(implied.value.begin(), implied.value.end());
-      speaks[t] = *least > 0 && *most < kMostRatioOfMetric * *least;
-      if (speaks[t]) logs[t] = log_of(implied.tensor());
-    });
-    const Groups<> corners = group_by_owner(vertices, static_cast<std::uint32_t>(4 * mesh_.tets.size()),
-                                            [&](std::uint32_t c) { return mesh_.tets[c / 4][c % 4]; });
-    std::vector<std::uint8_t> arrived(vertices, 1);
-    parallel_for(vertices, [&](std::size_t v) {
-      Vertex& vertex = mesh_.vertices[v];
-      vertex.exact = true, vertex.active = vertex.loose = true;
-      guide_.ask(vertex);
-      if (last) return;
-      Metric sum{0, 0, 0, 0, 0, 0};
-      int count = 0;
-      for (const std::uint32_t c : corners[v])
-        if (speaks[c / 4]) sum = sum + logs[c / 4], ++count;
-      if (count == 0) return;
-      const Metric is = exp_of((1.0 / count) * sum);
-      vertex.metric = step_towards(is, vertex.metric, kStepOfMetric, vertex.exact);
-      vertex.density = density_of(vertex.metric);
-      arrived[v] = vertex.exact;
-    });
-    return std::find(arrived.begin(), arrived.end(), 0) != arrived.end();
-  }
 
   Counts round(int stage) {
     std::vector<Vec3> points;

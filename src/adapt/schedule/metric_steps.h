@@ -1,0 +1,16 @@
+#pragma once
+
+// A metric of other directions is come to in steps: elements that lie across its directions would be divided without
+// end.
+
+#include "adapt/passes/passes.h"
+#include "adapt/piece/piece.h"
+
+namespace octafront::adapt {
+
+/// Gives each vertex the metric of its place, or one on the way to it from what the mesh is like there, unless this is
+/// the `last` step; false if none is on the way. Walls go ahead: as long as elements are not yet flat they can follow
+/// the ground as near as the metric will want.
+bool take_step(Parts& mesh, const Guide& guide, bool last);
+
+}  // namespace octafront::adapt
