@@ -33,6 +33,9 @@ constexpr double kEven = 0.2;
 constexpr double kLeastPart = 0.2;
 /// Edges inside become so many times as short as those of the rim: more would leave poor elements between them.
 constexpr double kFinerThanRim = 2.5;
+/// Less than one split for so many vertices does not make the inside finer: an edge of the rim that none of its pieces
+/// may split must not keep them waiting for ever.
+constexpr std::size_t kFewSplits = 16;
 constexpr int kCheckEvery = 256;
 
 class Splitter {
@@ -44,8 +47,9 @@ class Splitter {
     for (TetIndex t = 0; t < piece_.complex.slots(); ++t)
       if (piece_.complex.alive(t) && is_active(t)) enqueue(t);
     const int least = least_level();
+    const std::size_t few = piece_.vertices.size() / kFewSplits;
     for (int level = kLevels - 1; level >= 0; --level) {
-      if (level < least && count.done > 0) {
+      if (level < least && count.done > few) {
         count.unfinished = true;
         return count;
       }
@@ -203,7 +207,9 @@ class Splitter {
   bool plan(VertexIndex a, VertexIndex b, const Vertex& made, double shortest) {
     float worst = 1;
     for (const TetIndex t : ring_.tets) worst = std::min(worst, piece_.score[t]);
-    const float least = std::max(kLeastOfSplit * worst, std::min(kLeastScoreOfSplit, kKeptOfPoor * worst));
+    float least = kLeastOfSplit * worst;
+    if (least < kLeastScoreOfSplit && !is_longest_around(a, b))
+      least = std::max(least, std::min(kLeastScoreOfSplit, kKeptOfPoor * worst));
     if (made.exact) {
       const double excess = std::max(piece_.edge_length(a, b) / kMuchTooLong, 1.0);
       shortest /= excess * excess;
@@ -223,6 +229,16 @@ class Splitter {
         fresh_.push_back({c, piece_.region[t], s});
       }
     return true;
+  }
+
+  /// Whether no tet around the edge has a longer one.
+  bool is_longest_around(VertexIndex a, VertexIndex b) const {
+    const double l = piece_.edge_length(a, b);
+    return std::all_of(ring_.tets.begin(), ring_.tets.end(), [&](TetIndex t) {
+      const Tet& c = piece_.tet(t);
+      return std::all_of(kTetEdges.begin(), kTetEdges.end(),
+                         [&](const auto& e) { return piece_.edge_length(c[e[0]], c[e[1]]) <= l; });
+    });
   }
 
   bool apply(VertexIndex a, VertexIndex b, const Vertex& made, const std::uint32_t* path) {
