@@ -1,6 +1,7 @@
 // Collapses of edges: one end goes to the other, the tets around the edge vanish.
 
 #include "adapt/passes/passes.h"
+#include "adapt/passes/worth.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +15,7 @@ constexpr float kLeastOfCollapse = 0.3f, kLeastOfCollapseInMetric = 0.1f;
 /// No edge that collapse makes is longer than this.
 constexpr double kLongestOfCollapse = kLongest;
 /// Edges of elements of a lower score go too, where that makes the place better by so much.
-constexpr float kPoorForCollapse = 0.3f, kPoorInMetric = 0.55f, kGainOfPoor = 1.1f;
+constexpr float kPoorForCollapse = 0.3f, kPoorForCollapseInMetric = 0.55f, kGainOfPoor = 1.1f;
 constexpr int kMostRounds = 3;
 constexpr int kCheckCollapseEvery = 256;
 
@@ -26,7 +27,7 @@ void make_set(std::vector<T>& items) {
 
 class EdgeCollapser {
  public:
-  EdgeCollapser(Piece& piece, const Guide& guide) : piece_(piece), guide_(guide) {}
+  EdgeCollapser(Piece& piece, const Guide& guide, bool mends) : piece_(piece), guide_(guide), mends_(mends) {}
 
   PassCount run() {
     PassCount sum;
@@ -74,16 +75,20 @@ class EdgeCollapser {
     std::vector<Short> found;
     changed_.resize(piece_.vertices.size(), 0);
     seen_.resize(piece_.vertices.size(), 0);
-    const auto waits = [&](VertexIndex v) { return round == 0 ? piece_.vertices[v].active : changed_[v] == round; };
+    const auto waits = [&](VertexIndex v) {
+      return round == 0 ? mends_ || piece_.vertices[v].active : changed_[v] == round;
+    };
     for (TetIndex t = 0; t < piece_.complex.slots(); ++t) {
       if (!piece_.complex.alive(t)) continue;
       const Tet& c = piece_.tet(t);
-      const bool is_poor = piece_.score[t] < (piece_.isotropic ? kPoorForCollapse : kPoorInMetric);
+      const bool goes = mends_ ? is_poor(piece_, t)
+                               : piece_.score[t] < (piece_.isotropic ? kPoorForCollapse : kPoorForCollapseInMetric);
+      if (mends_ && !goes) continue;
       for (const auto& [i, j] : kTetEdges) {
         const Vertex &p = piece_.vertices[c[i]], &q = piece_.vertices[c[j]];
         if (!(waits(c[i]) || waits(c[j])) || (!may_go(p) && !may_go(q))) continue;
         const double l = piece_.edge_length(c[i], c[j]);
-        if (l < kShortest || is_poor) found.push_back({l, sorted_edge(c[i], c[j]), t});
+        if (l < kShortest || goes) found.push_back({l, sorted_edge(c[i], c[j]), t});
       }
     }
     const auto before = [](const Short& a, const Short& b) {
@@ -150,9 +155,9 @@ class EdgeCollapser {
     const std::vector<TetIndex>& star = piece_.star(out.gone);
     out.old.assign(star.begin(), star.end());
     float had = 1;
-    for (const TetIndex t : out.old) had = std::min(had, piece_.score[t]);
-    if (!lengths_allow(out)) return false;
-    const bool is_short = piece_.edge_length(out.gone, out.onto) < kShortest;
+    for (const TetIndex t : out.old) had = std::min(had, mends_ ? worth_of(piece_, piece_.tet(t)) : piece_.score[t]);
+    if (!mends_ && !lengths_allow(out)) return false;
+    const bool is_short = !mends_ && piece_.edge_length(out.gone, out.onto) < kShortest;
     const float least =
         is_short ? std::min(had, piece_.isotropic ? kLeastOfCollapse : kLeastOfCollapseInMetric) : kGainOfPoor * had;
     out.worst = 1;
@@ -161,8 +166,9 @@ class EdgeCollapser {
       Tet c = piece_.tet(t);
       std::replace(c.begin(), c.end(), out.gone, out.onto);
       const float s = piece_.score_of(c);
-      if (!(s >= least) || !(s > 0)) return false;
-      out.worst = std::min(out.worst, s);
+      const float value = mends_ && s > 0 ? worth_of(piece_, c) : s;
+      if (!(value >= least) || !(s > 0)) return false;
+      out.worst = std::min(out.worst, value);
       out.fresh.push_back({c, piece_.region[t], s});
     }
     return !out.fresh.empty();
@@ -304,6 +310,7 @@ class EdgeCollapser {
 
   Piece& piece_;
   const Guide& guide_;
+  bool mends_;
   EdgeRing ring_;
   Link link_, other_link_;
   std::vector<VertexIndex> edge_link_, edge_walls_, around_;
@@ -316,7 +323,11 @@ class EdgeCollapser {
 }  // namespace
 
 PassCount collapse_short_edges(Piece& piece, const Guide& guide) {
-  return EdgeCollapser(piece, guide).run();
+  return EdgeCollapser(piece, guide, false).run();
+}
+
+PassCount collapse_poor(Piece& piece, const Guide& guide) {
+  return EdgeCollapser(piece, guide, true).run();
 }
 
 }  // namespace octafront::adapt

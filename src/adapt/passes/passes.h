@@ -55,6 +55,14 @@ PassCount swap_edges(Piece& piece, const Guide& guide, float threshold);
 /// those on walls and lines along these.
 PassCount smooth_vertices(Piece& piece, const Guide& guide, float threshold);
 
+/// Makes poor elements (worth.h) better, one place at a time, as the worst element of the place goes: by other
+/// connections than those that serve the sum, collapses, moves, and new vertices inside.
+PassCount mend_poor(Piece& piece, const Guide& guide);
+PassCount swap_poor(Piece& piece, const Guide& guide);
+PassCount collapse_poor(Piece& piece, const Guide& guide);
+PassCount move_poor(Piece& piece, const Guide& guide);
+PassCount insert_at_poor(Piece& piece, const Guide& guide);
+
 /// What a pass over walls has to ask: whether triangles may take the place of others of the same part.
 bool keeps_walls_true(const Guide& guide, std::span<const TriangleCorners> before,
                       std::span<const TriangleCorners> after, Wall wall);

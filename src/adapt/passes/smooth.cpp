@@ -2,6 +2,7 @@
 // step for each visit, less and less of it as long as that is no gain.
 
 #include "adapt/passes/passes.h"
+#include "adapt/passes/worth.h"
 #include "base/geometry/measures.h"
 
 #include <algorithm>
@@ -22,6 +23,8 @@ constexpr float kGuardOfMove = 0.55f;
 constexpr double kReachOfMove = 0.5;
 constexpr double kLeastGainOfMove = 0.01;
 constexpr int kCheckMoveEvery = 512;
+/// Steps of moves that mend, in lengths of the metric: each way along its axes.
+constexpr std::array<double, 3> kStepsOfMending{0.3, 0.1, 0.03};
 
 class VertexMover {
  public:
@@ -44,6 +47,21 @@ class VertexMover {
       ++count.tried;
       count.done += move(v);
     }
+    return count;
+  }
+
+  /// Moves the vertices of poor elements to where the worst element is better.
+  PassCount mend() {
+    PassCount count;
+    for (TetIndex t = 0; t < piece_.complex.slots(); ++t)
+      for (int i = 0; i < 4 && piece_.complex.alive(t) && is_poor(piece_, t); ++i) {
+        if (++steps_ % kCheckMoveEvery == 0) guide_.context.check();
+        const VertexIndex v = piece_.tet(t)[i];
+        const Vertex& at = piece_.vertices[v];
+        if (at.rim || at.frozen || at.kind == Kind::kFixed) continue;
+        ++count.tried;
+        count.done += move_by_trial(v);
+      }
     return count;
   }
 
@@ -77,6 +95,62 @@ class VertexMover {
       return true;
     }
     return false;
+  }
+
+  bool move_by_trial(VertexIndex v) {
+    const std::vector<TetIndex>& star = piece_.star(v);
+    star_.assign(star.begin(), star.end());
+    const Vertex from = piece_.vertices[v];
+    std::optional<std::uint32_t> path;
+    if (from.kind != Kind::kInner && !find_walls(v, path)) return false;
+    take_cells(v);
+    Vertex best = from;
+    const float had = worst_with(from, 0);
+    float worst = had;
+    for (const double length : kStepsOfMending)
+      for (const Vec3 step : steps_of(from, length)) {
+        Vertex to = best;
+        to.at = best.at + step;
+        if (from.kind != Kind::kInner && !snap(to, path)) continue;
+        guide_.ask(to);
+        const float s = worst_with(to, worst);
+        if (s > worst && walls_stay_true(to)) best = to, worst = s;
+      }
+    if (!(worst > kGainOfMending * had)) return false;
+    scores_.clear();
+    for (Cell& cell : cells_) {
+      cell.corners[cell.at] = &best;
+      scores_.push_back(piece_.score_of_corners(cell.corners));
+    }
+    piece_.move(v, best, star_, scores_);
+    return true;
+  }
+
+  /// The worth of the worst element with the vertex there; 0 if that is not above `least`.
+  float worst_with(const Vertex& to, float least) {
+    float worst = HUGE_VALF;
+    for (Cell& cell : cells_) {
+      cell.corners[cell.at] = &to;
+      worst = std::min(worst, worth_of_corners(cell.corners, piece_.isotropic));
+      if (!(worst > least)) return 0;
+    }
+    return worst;
+  }
+
+  /// Both ways along the axes of the metric, or along the line.
+  std::vector<Vec3> steps_of(const Vertex& from, double length) const {
+    std::vector<Vec3> steps;
+    const auto add = [&](Vec3 d) {
+      const double is = std::sqrt(from.metric.squared(d));
+      if (is > 0) steps.push_back((length / is) * d), steps.push_back((-length / is) * d);
+    };
+    if (from.kind == Kind::kCurve) {
+      add(piece_.point(line_ends_[1]) - piece_.point(line_ends_[0]));
+      return steps;
+    }
+    const Vec3 n = from.kind == Kind::kSurface ? wall_normal() : Vec3{};
+    for (const Vec3 axis : eigen(from.metric).vector) add(axis - dot(axis, n) * n);
+    return steps;
   }
 
   static double lack_of(float score) { return 1 / static_cast<double>(score) - 1; }
@@ -271,6 +345,10 @@ bool keeps_walls_true(const Guide& guide, std::span<const TriangleCorners> befor
 
 PassCount smooth_vertices(Piece& piece, const Guide& guide, float threshold) {
   return VertexMover(piece, guide).run(threshold);
+}
+
+PassCount move_poor(Piece& piece, const Guide& guide) {
+  return VertexMover(piece, guide).mend();
 }
 
 }  // namespace octafront::adapt

@@ -4,6 +4,7 @@
 // other diagonal of its two triangles.
 
 #include "adapt/passes/passes.h"
+#include "adapt/passes/worth.h"
 
 #include <algorithm>
 #include <array>
@@ -17,7 +18,7 @@ namespace {
 constexpr float kLeastGainOfSwap = 0.01f;
 /// It makes no element of a lower score than this, or than the poorest one that it takes away.
 constexpr float kGuardOfSwap = 0.5f;
-constexpr int kLongestRingOfSwap = 7;
+constexpr std::size_t kLongestRingOfSwap = 7, kLongestRingOfMending = 10;
 /// Swaps make no edge longer than this, unless they take a longer one away.
 constexpr double kLongestOfSwap = kLongest;
 constexpr int kCheckSwapEvery = 512;
@@ -25,27 +26,34 @@ constexpr float kImpossible = HUGE_VALF;
 
 class Swapper {
  public:
-  Swapper(Piece& piece, const Guide& guide) : piece_(piece), guide_(guide) {}
+  Swapper(Piece& piece, const Guide& guide, bool mends) : piece_(piece), guide_(guide), mends_(mends) {}
 
   PassCount run(float threshold) {
     PassCount count;
     std::vector<TetIndex> queue;
     for (TetIndex t = 0; t < piece_.complex.slots(); ++t)
-      if (piece_.complex.alive(t) && is_active(t)) queue.push_back(t);
+      if (piece_.complex.alive(t) && (mends_ || is_active(t))) queue.push_back(t);
     for (std::size_t k = 0; k < queue.size(); ++k) {
       if (++steps_ % kCheckSwapEvery == 0) guide_.context.check();
       const TetIndex t = queue[k];
-      if (!piece_.complex.alive(t) || piece_.score[t] >= threshold) continue;
+      if (!piece_.complex.alive(t) || value_of(t) >= threshold) continue;
       ++count.tried;
       if (!improve(t)) continue;
       ++count.done;
       for (const TetIndex made : piece_.created())
-        if (piece_.score[made] < threshold) queue.push_back(made);
+        if (value_of(made) < threshold) queue.push_back(made);
     }
     return count;
   }
 
  private:
+  /// What is to become better: the score, or what is mended.
+  float value_of(TetIndex t) const { return mends_ ? worth_of(piece_, piece_.tet(t)) : piece_.score[t]; }
+  float value_of(const Tet& c) const { return mends_ ? worth_of(piece_, c) : piece_.score_of(c); }
+  double longest_beside(VertexIndex a, VertexIndex b) const {
+    return mends_ ? HUGE_VAL : std::max(kLongestOfSwap, piece_.edge_length(a, b));
+  }
+
   bool is_active(TetIndex t) const {
     for (const VertexIndex v : piece_.tet(t))
       if (piece_.vertices[v].active) return true;
@@ -68,11 +76,12 @@ class Swapper {
   void try_edge(TetIndex t, VertexIndex a, VertexIndex b) {
     if (are_frozen(a, b) || piece_.line(a, b)) return;
     // The poorest tet of a ring is the one that asks for all.
-    if (!piece_.ring(t, a, b, ring_, piece_.score[t]) || ring_.tets.size() > kLongestRingOfSwap) return;
+    if (!piece_.ring(t, a, b, ring_, mends_ ? 0 : piece_.score[t])) return;
+    if (ring_.tets.size() > (mends_ ? kLongestRingOfMending : kLongestRingOfSwap)) return;
     had_ = 0;
-    for (const TetIndex r : ring_.tets) had_ += lack_of(piece_.score[r]);
+    for (const TetIndex r : ring_.tets) had_ += lack_of(value_of(r));
     if (!(had_ > gain_)) return;
-    guard_ = std::min(piece_.score[t], kGuardOfSwap);
+    guard_ = std::min(value_of(t), kGuardOfSwap);
     find_walls();
     if (wall_at_.empty() && ring_.closed) return fill_ring(t, a, b);
     if (wall_at_.size() == 2) turn_in_wall(t, a, b);
@@ -93,7 +102,7 @@ class Swapper {
   void fill_ring(TetIndex t, VertexIndex a, VertexIndex b) {
     if (ring_.ring.size() < 3) return;
     poly_.assign(ring_.ring.begin(), ring_.ring.end());
-    const float lack = triangulate(a, b, std::max(kLongestOfSwap, piece_.edge_length(a, b)), had_ - gain_);
+    const float lack = triangulate(a, b, longest_beside(a, b), had_ - gain_);
     if (!(lack < had_ - gain_)) return;
     take_old(lack);
     emit(0, static_cast<int>(poly_.size()) - 1, a, b, piece_.region[t]);
@@ -112,7 +121,7 @@ class Swapper {
                              : piece_.wall[piece_.complex.opposite(ring_.tets[j], ring_.ring[(j + 1) % n])];
     if (other != label || (outer && ring_.tets.size() < 2)) return;
     if (piece_.tet_with(piece_.vertices[p].rim ? q : p, piece_.vertices[p].rim ? p : q, kNone) != kNone) return;
-    const double longest = std::max(kLongestOfSwap, piece_.edge_length(a, b));
+    const double longest = longest_beside(a, b);
     if (piece_.edge_length(p, q) > longest) return;
     if (!wall_stays_true(a, b, p, q, label)) return;
     // Polygons on the two sides: from p on to q, and from q on to p.
@@ -147,7 +156,8 @@ class Swapper {
   }
 
   /// What an element lacks to be regular.
-  static float lack_of(float score) {
+  float lack_of(float score) const {
+    if (mends_) return 1 / (score * score * score);  // the worst one counts
     const float lack = 1 / score - 1;
     return lack * (1 + 0.5f * lack);
   }
@@ -183,7 +193,7 @@ class Swapper {
 
   /// False if the tet must not be.
   bool add_lack(float& sum, const Tet& c) const {
-    const float s = piece_.score_of(c);
+    const float s = value_of(c);
     if (!(s > 0) || s < guard_) return false;
     sum += lack_of(s);
     return true;
@@ -203,21 +213,21 @@ class Swapper {
     const VertexIndex u = piece_.complex.apex(h), w = piece_.complex.apex(o);
     const Triangle f = piece_.complex.face(h);
     if (are_frozen(u, w) || (are_frozen(f[0], f[1]) && are_frozen(f[1], f[2]))) return;
-    const float poorest = piece_.score[t];
-    if (piece_.score[o / 4] < poorest) return;  // it asks itself
-    const float had = lack_of(poorest) + lack_of(piece_.score[o / 4]), guard = std::min(poorest, kGuardOfSwap);
+    const float poorest = value_of(t), other = value_of(o / 4);
+    if (other < poorest) return;  // it asks itself
+    const float had = lack_of(poorest) + lack_of(other), guard = std::min(poorest, kGuardOfSwap);
     float lack = 0;
     std::array<Piece::NewTet, 3> made;
     for (int k = 0; k < 3; ++k) {
       // The face runs counter-clockwise seen from w: a ring around (u, w).
       const Tet c{u, w, f[k], f[(k + 1) % 3]};
-      const float s = piece_.score_of(c);
+      const float s = value_of(c);
       if (!(s > 0) || s < guard) return;
       lack += lack_of(s);
       if (!(lack < had - gain_)) return;
-      made[static_cast<std::size_t>(k)] = {c, piece_.region[t], s};
+      made[static_cast<std::size_t>(k)] = {c, piece_.region[t], mends_ ? piece_.score_of(c) : s};
     }
-    if (piece_.edge_length(u, w) > kLongestOfSwap) return;
+    if (!mends_ && piece_.edge_length(u, w) > kLongestOfSwap) return;
     gain_ = had - lack;
     old_ = {t, o / 4};
     fresh_.assign(made.begin(), made.end());
@@ -226,11 +236,12 @@ class Swapper {
 
   Piece& piece_;
   const Guide& guide_;
+  bool mends_;
   EdgeRing ring_;
   std::vector<std::size_t> wall_at_;
   std::vector<VertexIndex> poly_;
-  std::array<std::array<float, kLongestRingOfSwap + 2>, kLongestRingOfSwap + 2> best_;
-  std::array<std::array<int, kLongestRingOfSwap + 2>, kLongestRingOfSwap + 2> mid_;
+  std::array<std::array<float, kLongestRingOfMending + 2>, kLongestRingOfMending + 2> best_;
+  std::array<std::array<int, kLongestRingOfMending + 2>, kLongestRingOfMending + 2> mid_;
   float gain_ = 0, had_ = 0, guard_ = 0;
   std::vector<TetIndex> old_;
   std::vector<Piece::NewTet> fresh_;
@@ -241,7 +252,11 @@ class Swapper {
 }  // namespace
 
 PassCount swap_edges(Piece& piece, const Guide& guide, float threshold) {
-  return Swapper(piece, guide).run(threshold);
+  return Swapper(piece, guide, false).run(threshold);
+}
+
+PassCount swap_poor(Piece& piece, const Guide& guide) {
+  return Swapper(piece, guide, true).run(1);
 }
 
 }  // namespace octafront::adapt

@@ -54,7 +54,7 @@ void Piece::connect() {
   for (TetIndex t = 0; t < score.size(); ++t) score[t] = score_of(tet(t));
 }
 
-float Piece::score_of_corners(const std::array<const Vertex*, 4>& c) const {
+float score_of_corners(const std::array<const Vertex*, 4>& c, bool isotropic) {
   const Vec3 p = c[0]->at, q = c[1]->at, r = c[2]->at, s = c[3]->at;
   const auto estimate = detail::orient3d_estimate(p, q, r, s);
   const int certain = estimate.certain_sign();

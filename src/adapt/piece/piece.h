@@ -53,6 +53,16 @@ inline const Vertex& densest_of(const std::array<const Vertex*, 4>& corners) {
   return *densest;
 }
 
+/// The length of an edge; in metrics of size without the tensors.
+inline double length_between(const Vertex& p, const Vertex& q, bool isotropic) {
+  const Vec3 e = q.at - p.at;
+  if (!isotropic) return metric_length(e, p.metric, q.metric);
+  const double squared = dot(e, e);
+  return log_mean(std::sqrt(p.metric.xx * squared), std::sqrt(q.metric.xx * squared));
+}
+/// The score of a tet with these corners, 0 if it is not positive by exact sign.
+float score_of_corners(const std::array<const Vertex*, 4>& c, bool isotropic);
+
 /// A mesh whose every part carries a number: tets, half-faces on walls, edges on lines. Flat arrays.
 struct Parts {
   std::vector<Vertex> vertices;
@@ -93,12 +103,7 @@ class Piece {
   void drop_line(VertexIndex a, VertexIndex b) { lines_.erase(sorted_edge(a, b)); }
 
   double edge_length(VertexIndex a, VertexIndex b) const { return length_between(vertices[a], vertices[b]); }
-  double length_between(const Vertex& p, const Vertex& q) const {
-    const Vec3 e = q.at - p.at;
-    if (!isotropic) return metric_length(e, p.metric, q.metric);
-    const double squared = dot(e, e);
-    return log_mean(std::sqrt(p.metric.xx * squared), std::sqrt(q.metric.xx * squared));
-  }
+  double length_between(const Vertex& p, const Vertex& q) const { return adapt::length_between(p, q, isotropic); }
   /// The score of a tet on these vertices, 0 if it is not positive by exact sign.
   float score_of(const Tet& t) const { return score_with(t, kNone, Vertex{}); }
   /// The same with another place and metric of vertex v.
@@ -107,7 +112,7 @@ class Piece {
     for (int i = 0; i < 4; ++i) c[i] = t[i] == v ? &as : &vertices[t[i]];
     return score_of_corners(c);
   }
-  float score_of_corners(const std::array<const Vertex*, 4>& c) const;
+  float score_of_corners(const std::array<const Vertex*, 4>& c) const { return adapt::score_of_corners(c, isotropic); }
 
   /// The tets around v, of those in the piece. Valid until the next call.
   const std::vector<TetIndex>& star(VertexIndex v) { return complex.star(v); }

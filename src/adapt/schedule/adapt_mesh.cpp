@@ -1,9 +1,11 @@
 #include "adapt/schedule/adapt_mesh.h"
 
 #include "adapt/passes/passes.h"
+#include "adapt/passes/worth.h"
 #include "adapt/schedule/metric_steps.h"
 #include "adapt/schedule/parts.h"
 #include "base/blocks/blocks.h"
+#include "base/core/disjoint_sets.h"
 #include "base/core/groups.h"
 #include "base/core/parallel.h"
 #include "base/core/validate.h"
@@ -43,19 +45,21 @@ constexpr std::size_t kGrowthOfMending = 2;
 constexpr double kGradationOfStrays = 0.5, kLeastChangeOfDensity = 1.02;
 /// Places nearer than this part of the bound are near enough, however they are measured.
 constexpr double kShareOfBound = 0.85;
+/// Layers of elements around those that are mended, and how often they are looked for.
+constexpr int kLayersOfMending = 3, kMostRoundsOfMending = 4;
 /// Rounds once no piece has grown so far that it had to be divided anew: each place is inside a piece several times.
 constexpr int kLastRounds = 2 * kCellStages;
 
 struct Counts {
-  PassCount split, collapse, swap, move;
+  PassCount split, collapse, swap, move, mend;
   bool grown = false;
 
   Counts& operator+=(const Counts& o) {
-    split += o.split, collapse += o.collapse, swap += o.swap, move += o.move;
+    split += o.split, collapse += o.collapse, swap += o.swap, move += o.move, mend += o.mend;
     grown |= o.grown;
     return *this;
   }
-  std::uint64_t changes() const { return split.done + collapse.done + swap.done + move.done; }
+  std::uint64_t changes() const { return split.done + collapse.done + swap.done + move.done + mend.done; }
 };
 
 /// The passes on one piece, until sizes fit.
@@ -95,7 +99,7 @@ class Adapter {
     bool is_quiet = false;
     for (int round = 0, since_growth = 0; round < kMostRoundsOfAdapt && since_growth < kLastRounds; ++round) {
       if (on_the_way_) on_the_way_ = take_step(mesh_, guide_, round >= kMostSteps || is_quiet);
-      const Counts c = this->round(round % kCellStages);
+      const Counts c = this->round(cells_of_stage(round % kCellStages));
       sum += c;
       is_quiet = c.changes() * kQuiet < mesh_.tets.size();
       stage_.progress(-1);
@@ -103,14 +107,60 @@ class Adapter {
       if (c.changes() == 0 && !c.grown && !on_the_way_ && round + 1 >= kCellStages) break;
       if (since_growth >= kCellStages && c.changes() * kDone < mesh_.tets.size()) break;
     }
+    mend(sum);
     stage_.count("splits", static_cast<double>(sum.split.done));
     stage_.count("collapses", static_cast<double>(sum.collapse.done));
     stage_.count("swaps", static_cast<double>(sum.swap.done));
     stage_.count("moves", static_cast<double>(sum.move.done));
+    stage_.count("mended places", static_cast<double>(sum.mend.done));
     return sum;
   }
 
  private:
+  /// What is still poor, each place by itself: what is so long that it was at the rim of all its pieces, too.
+  void mend(Counts& sum) {
+    mends_ = true;
+    for (int k = 0; k < kMostRoundsOfMending; ++k) {
+      const Cells places = poor_places();
+      if (places.count == 0) break;
+      const Counts c = round(places);
+      sum += c;
+      if (c.mend.done == 0 && !c.grown) break;
+    }
+    mends_ = false;
+  }
+
+  /// A cell for each lot of poor elements and some layers around, numbered by their least vertices; other vertices are
+  /// in none. Those inside are awake then, all others asleep.
+  Cells poor_places() {
+    std::vector<std::uint8_t> poor(mesh_.tets.size()), near(mesh_.vertices.size(), 0);
+    parallel_for(poor.size(), [&](std::size_t t) { poor[t] = worth_of(mesh_, mesh_.tets[t]) < 1; });
+    for (int layer = 0; layer <= kLayersOfMending; ++layer) {
+      for (std::size_t t = 0; t < poor.size(); ++t)
+        if (poor[t])
+          for (const VertexIndex v : mesh_.tets[t]) near[v] = 1;
+      if (layer < kLayersOfMending)
+        parallel_for(poor.size(), [&](std::size_t t) {
+          for (const VertexIndex v : mesh_.tets[t]) poor[t] |= near[v];
+        });
+    }
+    DisjointSets lots(mesh_.vertices.size());
+    for (std::size_t t = 0; t < poor.size(); ++t)
+      if (poor[t])
+        for (int i = 1; i < 4; ++i) lots.join(mesh_.tets[t][0], mesh_.tets[t][i]);
+    Cells places;
+    places.of.assign(mesh_.vertices.size(), kNoOwner);
+    std::vector<std::uint32_t> number(mesh_.vertices.size(), kNoOwner);
+    for (VertexIndex v = 0; v < near.size(); ++v) {
+      mesh_.vertices[v].active = mesh_.vertices[v].loose = near[v] != 0;
+      if (!near[v]) continue;
+      std::uint32_t& place = number[lots.find(v)];
+      if (place == kNoOwner) place = places.count++;
+      places.of[v] = place;
+    }
+    return places;
+  }
+
   /// A piece that was worked on, as it goes back into the mesh.
   struct Done {
     std::vector<Vertex> fresh;  ///< new vertices
@@ -123,11 +173,14 @@ class Adapter {
   };
   static constexpr VertexIndex kFresh = 0x80000000u;
 
-  Counts round(int stage) {
+  Cells cells_of_stage(int stage) const {
     std::vector<Vec3> points;
     Box3 box;
     for (const Vertex& v : mesh_.vertices) points.push_back(v.at), box.add(v.at);
-    const Cells cells = cells_of(points, cube_of_stage(box, stage), kMostVerticesOfPiece);
+    return cells_of(points, cube_of_stage(box, stage), kMostVerticesOfPiece);
+  }
+
+  Counts round(const Cells& cells) {
     std::vector<TetIndex> all(mesh_.tets.size());
     for (TetIndex t = 0; t < all.size(); ++t) all[t] = t;
     const ItemsByCell<TetIndex> tets(std::span<const TetIndex>(all), cells.count,
@@ -142,7 +195,7 @@ class Adapter {
           const auto cell = static_cast<std::uint32_t>(c);
           stage_.check();
           std::vector<VertexIndex>& here =
-              scratch.local([&] { return std::vector<VertexIndex>(points.size(), kNone); });
+              scratch.local([&] { return std::vector<VertexIndex>(mesh_.vertices.size(), kNone); });
           done[c] = work_in(tets[cell], lines[cell], here);
         },
         Split::kSingly);
@@ -169,6 +222,8 @@ class Adapter {
         if (here[v] == kNone) here[v] = static_cast<VertexIndex>(number.size()), number.push_back(v);
     for (const VertexIndex v : number) here[v] = kNone;
     done.counts = work_on(piece, guide_, on_the_way_ ? kCyclesOnTheWay : kCycles);
+    if (mends_) done.counts.mend = mend_poor(piece, guide_);
+    validate(piece);
     settle(piece);
     const auto known = static_cast<VertexIndex>(number.size());
     const auto global = [&](VertexIndex v) { return v < known ? number[v] : kFresh + (v - known); };
@@ -263,7 +318,7 @@ class Adapter {
   Parts& mesh_;
   const Guide& guide_;
   const Stage& stage_;
-  bool on_the_way_;
+  bool on_the_way_, mends_ = false;
 };
 
 }  // namespace

@@ -93,9 +93,9 @@ class HighArcs {
     const Vec3 a = at(e.ends[0]), b = at(e.ends[1]), middle = 0.5 * (a + b);
     const double reach = kReachOfArc * distance(a, b);
     const auto offset = [&](Vec3 p) {
-      const auto home = path ? guide_.ground.on_line(p, *path, reach)
-                             : guide_.ground.on_surface(p, (e.wall & ~kOuter) - 1, (e.wall & kOuter) != 0, e.normal,
-                                                        reach);
+      const auto home =
+          path ? guide_.ground.on_line(p, *path, reach)
+               : guide_.ground.on_surface(p, (e.wall & ~kOuter) - 1, (e.wall & kOuter) != 0, e.normal, reach);
       return home ? *home - p : Vec3{};
     };
     std::uint32_t hint = mesh_.vertices[e.ends[0]].hint;
@@ -122,8 +122,7 @@ void ask_along(Vertex& vertex, Vec3 e, double length) {
   if (!(had > 0) || had >= length * length) return;
   const Vec3 g = m.times(e);
   const double more = (length * length / had - 1) / had;
-  vertex.metric =
-      m + more * Metric{g.x * g.x, g.x * g.y, g.x * g.z, g.y * g.y, g.y * g.z, g.z * g.z};
+  vertex.metric = m + more * Metric{g.x * g.x, g.x * g.y, g.x * g.z, g.y * g.y, g.y * g.z, g.z * g.z};
   vertex.density = density_of(vertex.metric);
   vertex.exact = false;
 }

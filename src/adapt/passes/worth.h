@@ -1,0 +1,36 @@
+#pragma once
+
+#include "adapt/piece/piece.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace octafront::adapt {
+
+/// What is mended: elements of a lower score (qualities of .34 and, in metrics of size, .54), or with a longer edge.
+inline constexpr float kPoorInMetric = 0.2f, kPoorOfSize = 0.4f;
+inline constexpr double kLongOfPoor = 1.8;
+/// What mends makes the worst element of its place better by so much.
+inline constexpr float kGainOfMending = 1.1f;
+
+/// How far an element is from poor, at 1: by its score, or by the volume that its longest edge is too much for.
+inline float worth_of_corners(const std::array<const Vertex*, 4>& c, bool isotropic) {
+  const float score = score_of_corners(c, isotropic) / (isotropic ? kPoorOfSize : kPoorInMetric);
+  if (!(score > 0)) return 0;
+  double longest = 0;
+  for (const auto& [i, j] : kTetEdges) longest = std::max(longest, length_between(*c[i], *c[j], isotropic));
+  const double excess = kLongOfPoor / longest;
+  return std::min(score, static_cast<float>(excess * excess * excess));
+}
+/// `mesh`: a Piece, or Parts.
+template <class Mesh>
+float worth_of(const Mesh& mesh, const Tet& t) {
+  const auto corner = [&](std::size_t i) { return &mesh.vertices[t[i]]; };
+  return worth_of_corners({corner(0), corner(1), corner(2), corner(3)}, mesh.isotropic);
+}
+inline bool is_poor(const Piece& piece, TetIndex t) {
+  return worth_of(piece, piece.tet(t)) < 1;
+}
+
+}  // namespace octafront::adapt
