@@ -436,7 +436,7 @@ void mend_walls(Parts& parts, const Ground& ground, const AdaptRules& rules, Ada
   if (rules.tolerance <= 0) return;
   const SmoothWalls smooth(ground, rules.frozen, rules.tolerance);
   out.bound = rules.strict ? rules.tolerance : std::max(rules.tolerance, smooth.of_old().upper);
-  out.deviation = smooth.of(parts);
+  out.deviation = rules.keep_walls ? smooth.of_old() : smooth.of(parts);
   if (rules.keep_walls || out.deviation.upper <= out.bound) return;
   const Parts first = parts;
   Parts best = parts;
