@@ -91,14 +91,18 @@ Counts work_on(Piece& piece, const Guide& guide, int cycles) {
 
 class Adapter {
  public:
-  Adapter(Parts& mesh, const Guide& guide, const Stage& stage)
-      : mesh_(mesh), guide_(guide), stage_(stage), on_the_way_(!guide.metric.is_isotropic()) {}
+  Adapter(Parts& mesh, const Guide& guide, bool walls_ahead, const Stage& stage)
+      : mesh_(mesh),
+        guide_(guide),
+        stage_(stage),
+        walls_ahead_(walls_ahead),
+        on_the_way_(!guide.metric.is_isotropic()) {}
 
   Counts run() {
     Counts sum;
     bool is_quiet = false;
     for (int round = 0, since_growth = 0; round < kMostRoundsOfAdapt && since_growth < kLastRounds; ++round) {
-      if (on_the_way_) on_the_way_ = take_step(mesh_, guide_, round >= kMostSteps || is_quiet);
+      if (on_the_way_) on_the_way_ = take_step(mesh_, guide_, round >= kMostSteps || is_quiet, walls_ahead_);
       const Counts c = this->round(cells_of_stage(round % kCellStages));
       sum += c;
       is_quiet = c.changes() * kQuiet < mesh_.tets.size();
@@ -318,7 +322,7 @@ class Adapter {
   Parts& mesh_;
   const Guide& guide_;
   const Stage& stage_;
-  bool on_the_way_, mends_ = false;
+  bool walls_ahead_, on_the_way_, mends_ = false;
 };
 
 }  // namespace
@@ -472,7 +476,7 @@ Adapted adapt_mesh(const TetMesh& mesh, const MetricField& metric, const AdaptRu
   parallel_for(taken.parts.vertices.size(), [&](std::size_t v) { guide.ask(taken.parts.vertices[v]); });
   if (rules.keep_walls)
     for (Vertex& v : taken.parts.vertices) v.frozen |= v.kind != Kind::kInner;
-  Adapter adapter(taken.parts, guide, stage);
+  Adapter adapter(taken.parts, guide, rules.walls_ahead, stage);
   adapter.run();
   Adapted out;
   mend_walls(taken.parts, ground, rules, adapter, out, stage);

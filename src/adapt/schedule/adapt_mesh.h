@@ -21,6 +21,7 @@ struct AdaptRules {
   double tolerance = 0;       ///< how far walls may stray from the smooth surface of the input; input units
   /// Elements become smaller than wanted where walls that stray farther came so; else these are let be.
   bool strict = false;
+  bool walls_ahead = true;  ///< as of take_step()
   bool keep_walls = false;  ///< vertices on walls, and all edges between them, stay as they are
   /// Per vertex: it stays, and so does what lies between vertices that do; elements with none but such vertices are not
   /// in the result. Empty: all may change. The faces of the mesh that are no walls of it are where it was cut out of

@@ -129,7 +129,7 @@ void ask_along(Vertex& vertex, Vec3 e, double length) {
 
 }  // namespace
 
-bool take_step(Parts& mesh, const Guide& guide, bool last) {
+bool take_step(Parts& mesh, const Guide& guide, bool last, bool walls_ahead) {
   const auto vertices = static_cast<std::uint32_t>(mesh.vertices.size());
   const ImpliedMetrics implied(mesh);
   const Groups<> corners = group_by_owner(vertices, static_cast<std::uint32_t>(4 * mesh.tets.size()),
@@ -144,10 +144,12 @@ bool take_step(Parts& mesh, const Guide& guide, bool last) {
     vertex.density = density_of(vertex.metric);
   });
   if (last) return false;
-  const HighArcs arcs(mesh, guide);
-  for (const Edge& e : arcs.found())
-    for (const VertexIndex v : e)
-      ask_along(mesh.vertices[v], mesh.vertices[e[1]].at - mesh.vertices[e[0]].at, kLengthOfChord);
+  if (walls_ahead) {
+    const HighArcs arcs(mesh, guide);
+    for (const Edge& e : arcs.found())
+      for (const VertexIndex v : e)
+        ask_along(mesh.vertices[v], mesh.vertices[e[1]].at - mesh.vertices[e[0]].at, kLengthOfChord);
+  }
   return std::any_of(mesh.vertices.begin(), mesh.vertices.end(), [](const Vertex& v) { return !v.exact; });
 }
 

@@ -96,7 +96,13 @@ void tell_unmet(const AdaptedMesh& result, const Stage& stage) {
 adapt::Adapted adapted_without_crossings(const TetMesh& given, const adapt::MetricField& metric,
                                          adapt::AdaptRules rules, const Stage& stage) {
   adapt::Adapted made = adapt::adapt_mesh(given, metric, rules, stage);
-  const auto crossing = self_intersections(made.mesh.points, made.mesh.boundary, 1, stage.context());
+  const auto crossings = [&] { return self_intersections(made.mesh.points, made.mesh.boundary, 1, stage.context()); };
+  auto crossing = crossings();
+  if (!crossing.empty() && !metric.is_isotropic()) {  // with walls less near to the ground they may not meet
+    rules.walls_ahead = false;
+    made = adapt::adapt_mesh(given, metric, rules, stage);
+    crossing = crossings();
+  }
   if (crossing.empty()) return made;
   const Vec3 p = made.mesh.points[made.mesh.boundary[crossing[0][0]][0]];
   stage.note(

@@ -101,7 +101,13 @@ void adapt_section(const TetMesh& given, const adapt::MetricField& wanted, const
     adapt::AdaptRules rules = asked;
     rules.frozen = section.frozen;
     Changed made = changed_by(given, section, metric, rules, stage);
-    if (const auto place = crossing_near(made.whole, made.part.mesh.points, stage)) {
+    auto place = crossing_near(made.whole, made.part.mesh.points, stage);
+    if (place && !wanted.is_isotropic()) {  // with walls less near to the ground they may not meet
+      rules.walls_ahead = false;
+      made = changed_by(given, section, metric, rules, stage);
+      place = crossing_near(made.whole, made.part.mesh.points, stage);
+    }
+    if (place) {
       stage.note(
           fmt::format("the boundary would have crossed itself at ({:.6g}, {:.6g}, {:.6g}), where it is near to itself: "
                       "it stays as it was; a smaller --max-deviation may help",
