@@ -1,5 +1,6 @@
 #pragma once
 
+#include <octafront/mesh_field.h>
 #include <octafront/metric.h>
 #include <octafront/options.h>
 #include <octafront/report.h>
@@ -7,7 +8,6 @@
 #include <octafront/tet_mesh.h>
 
 #include <array>
-#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -79,14 +79,6 @@ AdaptedMesh adapt_to_metric(const TetMesh& mesh, const MetricFunction& metric, c
 /// match or a tensor is not positive definite, with the first places.
 AdaptedMesh adapt_to_metric(const TetMesh& mesh, const MetricMesh& metric, const Options& options = {},
                             const RunContext& context = {});
-
-/// Numbers on a mesh, at its vertices or of its elements.
-struct MeshField {
-  std::string name;
-  bool of_elements = false;
-  std::size_t components = 1;  ///< numbers for each, > 0
-  std::vector<double> values;  ///< those of the first vertex or element, then those of the second, ...
-};
 
 /// The field on the mesh that was made of `before`. At vertices: linear in the old element that holds the new vertex
 /// (exact for linear functions); where a vertex is where it was, its bits. Of elements: the mean over what the new

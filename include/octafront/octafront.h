@@ -7,6 +7,7 @@
 #include <octafront/complex.h>
 #include <octafront/domain.h>
 #include <octafront/error.h>
+#include <octafront/field_files.h>
 #include <octafront/formula.h>
 #include <octafront/generate.h>
 #include <octafront/ids.h>
@@ -15,6 +16,7 @@
 #include <octafront/improve_existing.h>
 #include <octafront/io.h>
 #include <octafront/mend.h>
+#include <octafront/mesh_field.h>
 #include <octafront/metric.h>
 #include <octafront/named_groups.h>
 #include <octafront/open_cavity_error.h>

@@ -1,4 +1,5 @@
 #include <octafront/error.h>
+#include <octafront/field_files.h>
 #include <octafront/io.h>
 
 #include "base/core/thread_limit.h"
@@ -10,6 +11,9 @@
 #include "formats/table/formats.h"
 #include "formats/table/recognize.h"
 
+#include <algorithm>
+#include <array>
+#include <string_view>
 #include <utility>
 
 #include <fmt/core.h>
@@ -111,6 +115,22 @@ const io::Format& mesh_format(const std::filesystem::path& file, const std::stri
   return *format;
 }
 
+/// The formats whose writers write fields.
+bool has_room_for_fields(const io::Format& format) {
+  constexpr std::array<std::string_view, 4> kNames{"vtu", "vtk", "msh", "msh22"};
+  return std::find(kNames.begin(), kNames.end(), format.info.name) != kNames.end();
+}
+
+void require_fitting(const std::string& file, const TetMesh& mesh, std::span<const MeshField> fields) {
+  for (const MeshField& field : fields) {
+    const std::size_t items = field.of_elements ? mesh.tets.size() : mesh.points.size();
+    if (field.values.size() != items * field.components)
+      throw OutputError(fmt::format("{}: the field {} has {} values, not {} for each of {} {}", file,
+                                    io::in_quotes(field.name), field.values.size(), field.components, items,
+                                    field.of_elements ? "elements" : "points"));
+  }
+}
+
 /// Of a format of surfaces only.
 SurfaceMesh boundary_surface(const TetMesh& mesh) {
   SurfaceMesh surface;
@@ -138,9 +158,19 @@ void check_mesh_target(const std::string& file, const WriteOptions& options) {
   format.is_folder ? io::check_folder_writable(file) : io::check_writable(file);
 }
 
+bool holds_fields(const std::string& file, const WriteOptions& options) {
+  return has_room_for_fields(mesh_format(file, options.format));
+}
+
 std::vector<std::string> write_mesh(const std::string& file, const TetMesh& mesh, const RunContext& context,
                                     const WriteOptions& options) {
+  return write_mesh(file, mesh, {}, context, options);
+}
+
+std::vector<std::string> write_mesh(const std::string& file, const TetMesh& mesh, std::span<const MeshField> fields,
+                                    const RunContext& context, const WriteOptions& options) {
   check_mesh_target(file, options);
+  require_fitting(file, mesh, fields);
   const ThreadLimit limit(context.threads);
   const io::Format& format = mesh_format(file, options.format);
   const FormatHolds& holds = format.info.holds;
@@ -151,11 +181,14 @@ std::vector<std::string> write_mesh(const std::string& file, const TetMesh& mesh
                                                                   .faces = options.cells_only,
                                                                   .wide_cells = !is_wide,
                                                                   .last_points = without.diagonals});
-  io::MeshOutput out(file, context, options);
+  io::MeshOutput out(file, context, options, fields);
+  if (!fields.empty() && !has_room_for_fields(format))
+    out.note(fmt::format("{} is written without the fields: VTU, VTK and MSH hold them", format.info.title));
   if (format.write_mesh == nullptr) {
     format.write_surface(out.file(), boundary_surface(mesh));
-    out.note(
-        fmt::format("{} holds the boundary alone: {} tetrahedra are left out", format.info.title, mesh.tets.size()));
+    if (!mesh.tets.empty())
+      out.note(
+          fmt::format("{} holds the boundary alone: {} tetrahedra are left out", format.info.title, mesh.tets.size()));
   } else {
     out.note(parts.note_on_names());
     for (std::string& note : io::losses(format.info, parts)) out.note(std::move(note));

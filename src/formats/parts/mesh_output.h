@@ -1,12 +1,14 @@
 #pragma once
 
 #include <octafront/io.h>
+#include <octafront/mesh_field.h>
 
 #include "formats/containers/atomic_file.h"
 #include "formats/parts/legal_names.h"
 
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,8 +19,9 @@ namespace octafront::io {
 /// before, older ones stay as they were. What a writer has to tell the user goes into `notes`.
 class MeshOutput {
  public:
-  MeshOutput(std::filesystem::path target, RunContext context, WriteOptions options = {})
-      : target_(std::move(target)), context_(context), options_(std::move(options)) {}
+  MeshOutput(std::filesystem::path target, RunContext context, WriteOptions options = {},
+             std::span<const MeshField> fields = {})
+      : target_(std::move(target)), context_(context), options_(std::move(options)), fields_(fields) {}
   ~MeshOutput();
   MeshOutput(const MeshOutput&) = delete;
   MeshOutput& operator=(const MeshOutput&) = delete;
@@ -28,6 +31,8 @@ class MeshOutput {
   /// Of formats that are binary or text.
   bool as_text() const { return options_.ascii; }
   const WriteOptions& options() const { return options_; }
+  /// Fields that go with the mesh, by formats that hold them.
+  std::span<const MeshField> fields() const { return fields_; }
   /// The file that was asked for.
   AtomicFile& file();
   /// Another one beside it, with this ending instead.
@@ -54,6 +59,7 @@ class MeshOutput {
   std::filesystem::path target_;
   RunContext context_;
   WriteOptions options_;
+  std::span<const MeshField> fields_;
   std::vector<std::unique_ptr<AtomicFile>> files_;
   std::vector<Pending> pending_;  ///< the folder, if there is one
   std::vector<std::string> notes_;

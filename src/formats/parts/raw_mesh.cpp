@@ -467,8 +467,10 @@ class Ordering {
 bool RawMesh::Field::offer(const Input& input, std::string_view name, std::uint64_t of_components) {
   if (input.field == nullptr) return false;
   const bool is_tensor = of_components == 6 || of_components == 9;
-  const bool is_single = of_components == 1 && (!input.wants_tensors || !input.field->empty());
-  if (!is_single && !(is_tensor && input.wants_tensors)) return false;
+  const bool is_known = !input.wants_tensors   ? of_components == 1
+                        : input.field->empty() ? is_tensor
+                                               : of_components >= 1 && of_components <= 9;
+  if (!is_known) return false;
   if (std::find(names.begin(), names.end(), name) == names.end()) names.emplace_back(name);
   const bool is_wanted = input.field->empty() ? names.size() == 1 : *input.field == name;
   if (is_wanted) components = of_components;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <octafront/mesh_field.h>
+
 #include "formats/parts/mesh_parts.h"
 #include "formats/parts/mixed_cells.h"
 
@@ -44,6 +46,11 @@ class VtkCells {
   /// All arrays but beta.
   const std::vector<Data>& data() const { return data_; }
   std::int32_t value(std::size_t data, std::uint64_t at) const;
+  /// Of a field the number `component` of a point, or of the element of a cell; 0 where there is none.
+  double value_of(const MeshField& field, std::uint64_t at, std::uint64_t component) const {
+    const std::uint64_t item = field.of_elements ? tet_of(at) : at;
+    return item == kNone ? 0 : field.values[item * field.components + component];
+  }
   /// "patch NAME" and its number, for all names.
   std::vector<std::pair<std::string, std::uint32_t>> names() const;
 

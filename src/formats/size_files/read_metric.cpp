@@ -190,7 +190,9 @@ MetricMesh metric_of_arrays(const io::Input& input) {
   io::RawMesh raw = io::read_raw_mesh(input);
   const bool is_ambiguous = input.field->empty() && raw.field.names.size() != 1;
   const std::uint64_t n = raw.field.components;
-  if (is_ambiguous || raw.field.at_points.size() != n * raw.points.size()) refuse_tensors(input, raw.field);
+  const bool is_metric = n == 1 || n == 6 || n == 9;
+  if (is_ambiguous || !is_metric || raw.field.at_points.size() != n * raw.points.size())
+    refuse_tensors(input, raw.field);
   const std::vector<double> values = std::move(raw.field.at_points);
   MetricMesh mesh = on_mesh(std::move(raw), input);
   for (std::size_t v = 0; v < mesh.points.size(); ++v)

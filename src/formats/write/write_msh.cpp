@@ -127,6 +127,34 @@ void write_format(TextWriter& out, MshNumbers& numbers, std::string_view version
   numbers.close("MeshFormat");
 }
 
+/// Numbers of fields that Gmsh takes: scalars, vectors, tensors.
+bool is_of_gmsh(const MeshField& field) {
+  return field.components == 1 || field.components == 3 || field.components == 9;
+}
+
+/// $NodeData and $ElementData; tets have the tags behind `before_tets`. Their heads are text in binary files, too.
+void write_fields(TextWriter& text, MshNumbers& out, std::span<const MeshField> fields, std::uint64_t before_tets) {
+  for (const MeshField& field : fields) {
+    if (!is_of_gmsh(field)) continue;
+    const std::string_view section = field.of_elements ? "ElementData" : "NodeData";
+    const std::size_t n = field.components, count = field.values.size() / n;
+    text.line("${}\n1\n\"{}\"\n1\n0\n3\n0\n{}\n{}", section, unquoted(field.name), n, count);
+    for (std::size_t i = 0; i < count; ++i) {
+      out.put(static_cast<std::int32_t>((field.of_elements ? before_tets : 0) + i + 1));
+      for (std::size_t k = 0; k < n; ++k) out.put(field.values[i * n + k]);
+      out.end_record();
+    }
+    out.close(section);
+  }
+}
+
+void note_fields_left_out(MeshOutput& out) {
+  for (const MeshField& field : out.fields())
+    if (!is_of_gmsh(field))
+      out.note(fmt::format("Gmsh's fields have 1, 3 or 9 numbers: {}, which has {}, is left out", in_quotes(field.name),
+                           field.components));
+}
+
 /// Tags of physical groups: regions, patches and curves keep their numbers, regions of an image their labels; sets
 /// follow.
 std::vector<std::int32_t> physical_tags(const MeshParts& mesh) {
@@ -235,8 +263,8 @@ class PeriodicLinks {
 
 class Msh4Writer {
  public:
-  Msh4Writer(AtomicFile& file, const MeshParts& mesh, bool as_text)
-      : text_(file), out_(file, as_text), mesh_(mesh), cells_(mesh), physical_(physical_tags(mesh)) {
+  Msh4Writer(AtomicFile& file, const MeshParts& mesh, std::span<const MeshField> fields, bool as_text)
+      : text_(file), out_(file, as_text), mesh_(mesh), fields_(fields), cells_(mesh), physical_(physical_tags(mesh)) {
     for (std::size_t d = mesh.cells_only() ? 3 : 0; d < 4; ++d) by_[d] = combinations(mesh, kKindOfDimension[d]);
     make_entities();
     assign_nodes();
@@ -249,6 +277,7 @@ class Msh4Writer {
     write_nodes();
     write_elements();
     if (!mesh_.mesh().periods.empty() && !mesh_.cells_only()) write_periodic();
+    write_fields(text_, out_, fields_, by_[0].members.items().size() + mesh_.edges() + cells_.faces());
   }
 
  private:
@@ -481,6 +510,7 @@ class Msh4Writer {
   TextWriter text_;
   MshNumbers out_;
   const MeshParts& mesh_;
+  std::span<const MeshField> fields_;
   MixedCells cells_;
   std::vector<std::int32_t> physical_;  ///< of each part
   std::array<Combinations, 4> by_;      ///< by dimension
@@ -492,8 +522,8 @@ class Msh4Writer {
 /// Elements with two tags each: their physical group, and the same as their entity.
 class Msh2Writer {
  public:
-  Msh2Writer(AtomicFile& file, const MeshParts& mesh, bool as_text)
-      : text_(file), out_(file, as_text), mesh_(mesh), cells_(mesh), nodes_of_(mesh, cells_) {}
+  Msh2Writer(AtomicFile& file, const MeshParts& mesh, std::span<const MeshField> fields, bool as_text)
+      : text_(file), out_(file, as_text), mesh_(mesh), fields_(fields), cells_(mesh), nodes_of_(mesh, cells_) {}
 
   void write() {
     write_format(text_, out_, "2.2");
@@ -513,6 +543,7 @@ class Msh2Writer {
       write_elements(3, cells_.begin(kind), cells_.end(kind), cells_.nodes_per(kind));
     out_.close("Elements");
     if (!mesh_.mesh().periods.empty() && !mesh_.cells_only()) write_periodic();
+    write_fields(text_, out_, fields_, mesh_.edges() + cells_.faces());
   }
 
  private:
@@ -557,6 +588,7 @@ class Msh2Writer {
   TextWriter text_;
   MshNumbers out_;
   const MeshParts& mesh_;
+  std::span<const MeshField> fields_;
   MixedCells cells_;
   ElementNodes nodes_of_;
   std::int32_t tag_ = 0;
@@ -569,14 +601,16 @@ void write_msh(MeshOutput& out, const MeshParts& mesh) {
       mesh.cells_only() &&
       std::any_of(mesh.parts().begin(), mesh.parts().end(), [](const Part& part) { return part.kind == Kind::kNodes; });
   if (leaves_nodes) out.note("Gmsh MSH 4.1 holds sets of nodes as elements: cells only leaves them out");
-  Msh4Writer(out.file(), mesh, out.as_text()).write();
+  note_fields_left_out(out);
+  Msh4Writer(out.file(), mesh, out.fields(), out.as_text()).write();
 }
 
 void write_msh2(MeshOutput& out, const MeshParts& mesh) {
   constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
   if (mesh.points() > kMost || mesh.edges() + mesh.faces() + mesh.tets() > kMost)
     throw OutputError(out.target().string() + ": MSH 2.2 counts with 32 bits, too few for this mesh; write MSH 4.1");
-  Msh2Writer(out.file(), mesh, out.as_text()).write();
+  note_fields_left_out(out);
+  Msh2Writer(out.file(), mesh, out.fields(), out.as_text()).write();
 }
 
 }  // namespace octafront::io

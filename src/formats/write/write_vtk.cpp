@@ -28,8 +28,8 @@ std::string percent_encoded(std::string_view name) {
 
 class VtkWriter {
  public:
-  VtkWriter(AtomicFile& file, const MeshParts& parts, bool as_text)
-      : file_(file), out_(file), parts_(parts), cells_(parts), as_text_(as_text) {}
+  VtkWriter(AtomicFile& file, const MeshParts& parts, std::span<const MeshField> fields, bool as_text)
+      : file_(file), out_(file), parts_(parts), fields_(fields), cells_(parts), as_text_(as_text) {}
 
   void write() {
     out_.line("# vtk DataFile Version 3.0\nmesh by octafront\n{}\nDATASET UNSTRUCTURED_GRID",
@@ -97,7 +97,9 @@ class VtkWriter {
   void write_data(std::string_view keyword, bool of_points, std::uint64_t count) {
     const auto is_of = [&](const VtkCells::Data& data) { return data.of_points == of_points; };
     const auto& all = cells_.data();
-    const auto arrays = std::count_if(all.begin(), all.end(), is_of);
+    const auto is_field_of = [&](const MeshField& field) { return field.of_elements != of_points; };
+    const auto arrays =
+        std::count_if(all.begin(), all.end(), is_of) + std::count_if(fields_.begin(), fields_.end(), is_field_of);
     if (arrays == 0) return;
     out_.line("{} {}\nFIELD FieldData {}", keyword, count, arrays);
     for (std::size_t d = 0; d < all.size(); ++d) {
@@ -110,11 +112,23 @@ class VtkWriter {
       }
       end_values();
     }
+    for (const MeshField& field : fields_)
+      if (is_field_of(field)) write_field(field, count);
+  }
+
+  void write_field(const MeshField& field, std::uint64_t count) {
+    out_.line("{} {} {} double", percent_encoded(field.name), field.components, count);
+    for (std::uint64_t i = 0; i < count; ++i) {
+      for (std::uint64_t k = 0; k < field.components; ++k) put(cells_.value_of(field, i, k));
+      end_row();
+    }
+    end_values();
   }
 
   AtomicFile& file_;
   TextWriter out_;
   const MeshParts& parts_;
+  std::span<const MeshField> fields_;
   VtkCells cells_;
   bool as_text_, at_line_start_ = true;
 };
@@ -125,7 +139,7 @@ void write_vtk(MeshOutput& out, const MeshParts& mesh) {
   const std::uint64_t most = std::numeric_limits<std::int32_t>::max();
   if (mesh.points() + mesh.tets() * (mesh.nodes_per_tet() + 1) + mesh.faces() * 7 > most)
     throw OutputError(out.target().string() + ": legacy VTK counts with 32 bits, too few for this mesh; write .vtu");
-  VtkWriter(out.file(), mesh, out.as_text()).write();
+  VtkWriter(out.file(), mesh, out.fields(), out.as_text()).write();
 }
 
 }  // namespace octafront::io

@@ -19,8 +19,14 @@ namespace {
 
 class VtuWriter {
  public:
-  VtuWriter(AtomicFile& file, const MeshParts& parts, bool as_text)
-      : parts_(parts), mesh_(parts.mesh()), out_(file), arrays_(file, as_text), cells_(parts), as_text_(as_text) {}
+  VtuWriter(AtomicFile& file, const MeshParts& parts, std::span<const MeshField> fields, bool as_text)
+      : parts_(parts),
+        mesh_(parts.mesh()),
+        fields_(fields),
+        out_(file),
+        arrays_(file, as_text),
+        cells_(parts),
+        as_text_(as_text) {}
 
   void write() {
     out_.line(
@@ -88,11 +94,22 @@ class VtuWriter {
     }
   }
 
+  void declare_fields(bool of_points) {
+    for (const MeshField& field : fields_) {
+      if (field.of_elements == of_points) continue;
+      const std::uint64_t n = field.components, count = of_points ? parts_.points() : cells_.size();
+      arrays_.declare<double>("Float64", escaped(field.name), n, n * count,
+                              [this, &field, n](std::uint64_t i) { return cells_.value_of(field, i / n, i % n); });
+    }
+  }
+
   void declare_data() {
     out_ << "      <PointData>\n";
     declare_arrays(true);
+    declare_fields(true);
     out_ << "      </PointData>\n      <CellData Scalars=\"beta\">\n";
     declare_arrays(false);
+    declare_fields(false);
     arrays_.declare<float>("Float32", "beta", 1, cells_.size(), [this](std::uint64_t i) {
       const TetIndex t = cells_.tet_of(i);
       if (t == kNone) return 0.0F;
@@ -104,6 +121,7 @@ class VtuWriter {
 
   const MeshParts& parts_;
   const TetMesh& mesh_;
+  std::span<const MeshField> fields_;
   TextWriter out_;
   VtuArrays arrays_;
   VtkCells cells_;
@@ -113,7 +131,7 @@ class VtuWriter {
 }  // namespace
 
 void write_vtu(MeshOutput& out, const MeshParts& mesh) {
-  VtuWriter(out.file(), mesh, out.as_text()).write();
+  VtuWriter(out.file(), mesh, out.fields(), out.as_text()).write();
 }
 
 }  // namespace octafront::io
