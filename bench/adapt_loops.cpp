@@ -1,8 +1,9 @@
 // A mesh adapted to a small size and to a large one in turn, many times: how fast, how good, and what is left of the
-// body. Usage: octafront_adapt_loops MESH SMALL LARGE LOOPS, sizes in parts of the diagonal; a line of JSON for each
-// adaptation.
+// body. Usage: octafront_adapt_loops MESH SMALL LARGE LOOPS [SURFACE], sizes in parts of the diagonal, SURFACE what
+// walls lie on; a line of JSON for each adaptation.
 
 #include <octafront/adapt.h>
+#include <octafront/domain.h>
 #include <octafront/error.h>
 #include <octafront/io.h>
 #include <octafront/quality.h>
@@ -11,6 +12,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
+#include <optional>
 
 #include <fmt/core.h>
 
@@ -40,20 +42,22 @@ std::size_t poor_ones(const TetMesh& mesh) {
   return count;
 }
 
-TetMesh adapted(const TetMesh& mesh, double size) {
+TetMesh adapted(const TetMesh& mesh, double size, const Domain* surface) {
   Options options;
   options.size.size = size;
   RunContext context;
   context.threads = 1;
   const double start = cpu_seconds();
-  AdaptedMesh made = adapt_existing(mesh, options, context);
+  AdaptedMesh made = adapt_existing(mesh, options, context, surface);
   const double seconds = cpu_seconds() - start;
   const QualitySummary quality = summarize_quality(made.mesh);
   fmt::print(
       "{{\"size\": {:.17g}, \"tets\": {}, \"cpu\": {:.4f}, \"edges\": {}, \"fitting\": {}, \"longest\": {:.4f}, "
-      "\"beta_mean\": {:.5f}, \"beta_min\": {:.5f}, \"poor\": {}, \"volume\": {:.17g}}}\n",
+      "\"beta_mean\": {:.5f}, \"beta_min\": {:.5f}, \"poor\": {}, \"deviation\": {:.4g}, \"bound\": {:.4g}, "
+      "\"volume\": "
+      "{:.17g}}}\n",
       size, made.mesh.tets.size(), seconds, made.after.edges, made.after.fitting, made.after.longest, quality.beta_mean,
-      quality.beta_min, poor_ones(made.mesh), volume_of(made.mesh));
+      quality.beta_min, poor_ones(made.mesh), made.deviation.upper, made.deviation.bound, volume_of(made.mesh));
   std::fflush(stdout);
   return std::move(made.mesh);
 }
@@ -61,15 +65,22 @@ TetMesh adapted(const TetMesh& mesh, double size) {
 }  // namespace
 
 int main(int count, char** words) try {
-  if (count != 5) return std::fputs("usage: octafront_adapt_loops MESH SMALL LARGE LOOPS\n", stderr), 2;
+  if (count != 5 && count != 6)
+    return std::fputs("usage: octafront_adapt_loops MESH SMALL LARGE LOOPS [SURFACE]\n", stderr), 2;
   TetMesh mesh = read_mesh(words[1]);
   Vec3 low = mesh.points.at(0), high = low;
   for (const Vec3 p : mesh.points)
     for (int i = 0; i < 3; ++i) low[i] = std::min(low[i], p[i]), high[i] = std::max(high[i], p[i]);
   const double diagonal = length(high - low);
-  fmt::print("{{\"volume\": {:.17g}, \"tets\": {}}}\n", volume_of(mesh), mesh.tets.size());
+  std::optional<Domain> surface;
+  if (count == 6) surface = open_domain(words[5]);
+  const Domain* ground = surface ? &*surface : nullptr;
+  const double whole = !surface                        ? volume_of(mesh)
+                       : surface->true_volumes.empty() ? enclosed_volume(surface->surface)
+                                                       : surface->true_volumes[0];
+  fmt::print("{{\"volume\": {:.17g}, \"tets\": {}}}\n", whole, mesh.tets.size());
   for (int loop = 0; loop < std::atoi(words[4]); ++loop)
-    mesh = adapted(adapted(mesh, diagonal * std::atof(words[2])), diagonal * std::atof(words[3]));
+    mesh = adapted(adapted(mesh, diagonal * std::atof(words[2]), ground), diagonal * std::atof(words[3]), ground);
   return 0;
 } catch (const Error& e) {
   std::fprintf(stderr, "%s\n", e.what());

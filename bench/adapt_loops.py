@@ -18,12 +18,13 @@ MODELS = [("bunny", "models/clean/bunny00.off", 1 / 60, 1 / 30), ("armadillo", "
           ("knot", "samples/torus_knot.ply", 1 / 70, 1 / 45)]
 
 
-def rows_of(build, surface, small, large, loops):
-    """The volume of the mesh that all begins with, and a record for each adaptation; `before`: elements that came."""
+def rows_of(build, surface, small, large, loops, is_given):
+    """The volume of the mesh that all begins with, or of the surface where that is given, and a record for each adaptation; `before`:
+    elements that came."""
     with tempfile.TemporaryDirectory() as folder:
         mesh = pathlib.Path(folder, "mesh.msh")
         subprocess.run([build / "cli/octafront", "mesh", surface, "-o", mesh, "--elements", "20000", "-q"], check=True)
-        told = subprocess.run([build / "bench/octafront_adapt_loops", mesh, str(small), str(large), str(loops)],
+        told = subprocess.run([build / "bench/octafront_adapt_loops", mesh, str(small), str(large), str(loops), *([surface] if is_given else [])],
                               capture_output=True, text=True, check=True)
     lines = [json.loads(line) for line in told.stdout.splitlines()]
     for before, record in zip(lines, lines[1:]):
@@ -34,7 +35,7 @@ def rows_of(build, surface, small, large, loops):
 def row(name, which, record, volume):
     return (f"| {name} | {which} | {record['tets']:,} | {max(record['tets'], record['before']) / record['cpu'] / 1000:.0f} | "
             f"{100 * record['fitting'] / record['edges']:.1f} % | {record['longest']:.2f} | {record['beta_mean']:.3f} | {record['beta_min']:.3f} | "
-            f"{record['poor']} | {100 * (record['volume'] / volume - 1):+.2f} % |")
+            f"{record['poor']} | {100 * (record['volume'] / volume - 1):+.2f} % | {record['deviation'] / record['bound']:.2f} |")
 
 
 def page(results, loops):
@@ -42,8 +43,10 @@ def page(results, loops):
              f"{written_by('bench/run.sh adapt_loops')}, on one thread: a mesh of about 20,000 elements is adapted to a small uniform size, what comes of it to a large "
              f"one, and so on, {loops} loops, each from the mesh that the one before made and nothing else. *k/s*: thousand elements for each CPU second of a whole call, checks "
              "before and after included; those that were made, or those that came if they were more. *fit*, *longest*: edges from √½ to √2 times as long as is wanted, and the longest, in parts of what is wanted. "
-             "*poor*: elements with β < .3, forced or not. *volume* against that of the mesh that all began with.", "",
-             "| model | adaptation | elements | k/s | fit | longest | mean β | least β | poor | volume |", "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |"]
+             "*poor*: elements with β < .3, forced or not. *volume* against that of the mesh that all began with. *on its surface*: with `--surface`, the surface "
+             "that was meshed: volumes against that of the surface. *off*: the distance of walls and their ground, both ways, in parts of the bound (the larger of .4 % of the "
+             "diagonal and what the walls that came had).", "",
+             "| model | adaptation | elements | k/s | fit | longest | mean β | least β | poor | volume | off |", "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |"]
     for name, volume, records in results:
         lines += [row(name, "first, small", records[0], volume), row(name, "first, large", records[1], volume),
                   row(name, "last, small", records[-2], volume), row(name, "last, large", records[-1], volume)]
@@ -61,10 +64,12 @@ def main():
     for name, surface, small, large in MODELS:
         if options.only not in name:
             continue
-        volume, records = rows_of(options.build, surface, small, large, options.loops)
-        results.append((name, volume, records))
-        for record in records:
-            print(row(name, f"{record['size']:.3g}", record, volume), flush=True)
+        for is_given in (False, True):
+            volume, records = rows_of(options.build, surface, small, large, options.loops, is_given)
+            title = name + (", on its surface" if is_given else "")
+            results.append((title, volume, records))
+            for record in records:
+                print(row(title, f"{record['size']:.3g}", record, volume), flush=True)
     options.output.write_text(page(results, options.loops))
 
 

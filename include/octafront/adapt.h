@@ -1,5 +1,6 @@
 #pragma once
 
+#include <octafront/domain.h>
 #include <octafront/mesh_field.h>
 #include <octafront/metric.h>
 #include <octafront/options.h>
@@ -34,8 +35,8 @@ struct MetricSummary {
 };
 
 /// How far the walls of a mesh that was adapted (boundary, interfaces, sheets) are from the smooth surface that the old
-/// ones stand for: the greater of both one-sided distances. lower <= distance <= upper, up to a tenth of the tolerance
-/// for how the smooth surface is measured; input units.
+/// ones stand for, or from the surface that was given: the greater of both one-sided distances. lower <= distance <=
+/// upper, up to a tenth of the tolerance for how the smooth surface is measured; input units.
 struct WallDeviation {
   double bound = 0;  ///< what was to be kept: max_deviation, or without one .4 % of the diagonal or what old walls had
   double lower = 0, upper = 0;
@@ -66,19 +67,28 @@ struct AdaptedMesh {
 ///
 /// Example: Options o; o.size.size = 2; adapt_existing(read_mesh("part.msh"), o).mesh.
 ///
+/// `surface`, where it is not null: what walls stand for instead, its triangles as they are, or the true geometry of
+/// CAD and formulas (open_domain(), IntakeOptions::Repair::kOff for what need not be closed). Walls are drawn to it:
+/// faces to its faces, curves to its feature lines where it has some beside them, corners to its corners. Walls whose
+/// corners or middle are farther from it than kReachOfSurface of the diagonal and half of their longest edge, or turned
+/// away from it by more than 60 degrees, or nearer to another wall there, keep their own smooth surface; notes count
+/// them, and vertices that could not go because elements would turn inside out.
+///
 /// The result is valid (first_defect), the same for any number of threads. Throws InputError if `mesh` is not valid
-/// (the first defect, with ids and coordinates), or has wedges, pyramids, periods or faces that were split;
-/// OptionError, MeshingError, Cancelled.
-AdaptedMesh adapt_existing(const TetMesh& mesh, const Options& options, const RunContext& context = {});
+/// (the first defect, with ids and coordinates), or has wedges, pyramids, periods or faces that were split, or if
+/// `surface` is near none of its walls; OptionError, MeshingError, Cancelled.
+AdaptedMesh adapt_existing(const TetMesh& mesh, const Options& options, const RunContext& context = {},
+                           const Domain* surface = nullptr);
+inline constexpr double kReachOfSurface = 0.01;
 
 /// The same by a metric, which may want other lengths in other directions; `options.size` has no say.
 AdaptedMesh adapt_to_metric(const TetMesh& mesh, const MetricFunction& metric, const Options& options = {},
-                            const RunContext& context = {});
+                            const RunContext& context = {}, const Domain* surface = nullptr);
 
 /// The same by metrics on a background mesh, which may be the mesh itself. Throws InputError where its numbers do not
 /// match or a tensor is not positive definite, with the first places.
 AdaptedMesh adapt_to_metric(const TetMesh& mesh, const MetricMesh& metric, const Options& options = {},
-                            const RunContext& context = {});
+                            const RunContext& context = {}, const Domain* surface = nullptr);
 
 /// The field on the mesh that was made of `before`. At vertices: linear in the old element that holds the new vertex
 /// (exact for linear functions); where a vertex is where it was, its bits. Of elements: the mean over what the new

@@ -1,10 +1,12 @@
 #pragma once
 
-// adapt/ground: what the walls of a mesh stand for when it comes: the smooth surface and the smooth lines through them.
-// Tells where new vertices of walls and lines belong, and how far new triangles are from it.
+// adapt/ground: what the walls of a mesh stand for when it comes: the smooth surface and the smooth lines through them,
+// or a surface that is given. Tells where new vertices of walls and lines belong, and how far new triangles are from
+// it.
 
 #include <octafront/surface_mesh.h>
 
+#include "adapt/ground/given.h"
 #include "base/core/flat_map.h"
 #include "base/geometry/triangle_tree.h"
 #include "base/mesh/edge_table.h"
@@ -12,9 +14,11 @@
 #include "improve/curved/smooth_surface.h"
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace octafront::adapt {
@@ -28,10 +32,23 @@ struct Walls {
   std::vector<std::uint32_t> path;  ///< per line edge: the line it belongs to
 };
 
+/// Per line edge the number of its path: edges that are `alike` between vertices where lines end, meet or bend, which
+/// become `lines.corners`. Paths are numbered in the order of their first edges.
+std::vector<std::uint32_t> find_paths(std::size_t vertices, Features& lines,
+                                      const std::function<bool(std::uint32_t, std::uint32_t)>& alike);
+
 /// Const and safe on any number of threads.
 class Ground {
  public:
-  explicit Ground(Walls walls);
+  /// Walls and lines that `given`, which may be null and must outlive this, has near them lie there.
+  explicit Ground(Walls walls, const GivenSurface* given = nullptr);
+
+  /// The surface that was given; null: none.
+  const GivenSurface* given() const { return given_; }
+  /// Whether a triangle of the walls stands for the given surface; others for their own smooth one.
+  bool is_covered(std::uint32_t triangle) const { return given_ && covered_[triangle] != 0; }
+  /// The corner of the given surface where a corner of the walls belongs.
+  std::optional<Vec3> corner(VertexIndex v) const;
 
   /// The place of the smooth surface of a part that belongs to p, if that part is within reach of p and not turned away
   /// from `normal`: for outer walls outward, of others either way.
@@ -49,6 +66,14 @@ class Ground {
   /// The smooth surface of a triangle of the walls, as triangles whose middles, and those of their edges, are within
   /// `tolerance` of it, or which are a thousandth of the whole.
   std::vector<TriangleCorners> divided(std::uint32_t triangle, double tolerance) const;
+  /// The same of a triangle of the given surface, and which of them `stands` for walls of the mesh, by their corners
+  /// and middles.
+  struct GivenPieces {
+    std::vector<TriangleCorners> standing, others;
+  };
+  GivenPieces divided_given(std::uint32_t triangle, double tolerance, const std::function<bool(Vec3)>& stands) const;
+  /// The triangle of the walls nearest to a place of the given surface, if that is within reach of it; kNone.
+  std::uint32_t wall_at(Vec3 on_given) const;
 
   const Walls& walls() const { return walls_; }
   const TriangleTree& tree() const { return tree_; }
@@ -58,11 +83,28 @@ class Ground {
 
   /// The smooth surface over a place of a triangle, by its barycentric weights.
   Vec3 smooth_at(std::uint32_t triangle, Vec3 weights) const;
+  /// The place of the smooth or the given surface that belongs to p.
+  struct Home {
+    Vec3 at;
+    Vec3 normal;  ///< of any length
+  };
+  std::optional<Home> home(Vec3 p, std::uint32_t part, bool outer, Vec3 normal, double reach) const;
+  /// For a place of a line that the given surface does not have: on its surface, where a side of the line has it.
+  Vec3 beside_line(Vec3 p, std::uint32_t edge) const;
+
+  /// How far the given surface may be from a place of an edge or a triangle with an edge so long.
+  double reach_of(double longest_edge) const;
+  void find_covered();
+  void find_corners();
 
   Walls walls_;
   FlatMap<Edge, std::uint32_t> line_at_;  ///< per sorted edge of a line its number
   TriangleTree tree_;
   curved::SmoothSurface smooth_;
+  const GivenSurface* given_;
+  std::vector<std::uint8_t> covered_, line_covered_;       ///< per triangle, per line edge; empty: nothing was given
+  std::vector<std::pair<VertexIndex, Vec3>> corner_home_;  ///< ascending
+  double farthest_ = 0;  ///< walls that are covered may be so far from where they belong
 };
 
 }  // namespace octafront::adapt

@@ -63,6 +63,10 @@ PassCount collapse_poor(Piece& piece, const Guide& guide);
 PassCount move_poor(Piece& piece, const Guide& guide);
 PassCount insert_at_poor(Piece& piece, const Guide& guide);
 
+/// Moves vertices of walls, lines and corners that are beside the surface that was given to it, as far as their
+/// elements allow.
+PassCount settle_on_ground(Piece& piece, const Guide& guide);
+
 /// What a pass over walls has to ask: whether triangles may take the place of others of the same part.
 bool keeps_walls_true(const Guide& guide, std::span<const TriangleCorners> before,
                       std::span<const TriangleCorners> after, Wall wall);

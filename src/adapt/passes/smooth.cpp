@@ -25,6 +25,10 @@ constexpr double kLeastGainOfMove = 0.01;
 constexpr int kCheckMoveEvery = 512;
 /// Steps of moves that mend, in lengths of the metric: each way along its axes.
 constexpr std::array<double, 3> kStepsOfMending{0.3, 0.1, 0.03};
+/// Vertices that go to a given surface leave no score below this, or below this part of the least one there was, and
+/// turn no wall by more (cosine); what is nearer than this part of the tolerance is there.
+constexpr float kLeastOfSettle = 0.05f, kKeptOfSettle = 0.5f;
+constexpr double kLeastTurnOfSettle = 0.5, kThere = 1e-3;
 
 class VertexMover {
  public:
@@ -65,6 +69,18 @@ class VertexMover {
     return count;
   }
 
+  PassCount settle() {
+    PassCount count;
+    for (VertexIndex v = 0; v < piece_.vertices.size(); ++v) {
+      const Vertex& at = piece_.vertices[v];
+      if (!at.off || piece_.complex.tet_at[v] == kNone || at.rim || at.frozen || !(at.active || at.loose)) continue;
+      if (++steps_ % kCheckMoveEvery == 0) guide_.context.check();
+      ++count.tried;
+      count.done += settle(v);
+    }
+    return count;
+  }
+
  private:
   struct WallAt {
     Triangle corners;  ///< the vertex first
@@ -89,6 +105,7 @@ class VertexMover {
       Vertex to = from;
       to.at = from.at + step;
       if (from.kind != Kind::kInner && !snap(to, path)) continue;
+      to.off = false;
       guide_.ask(to);
       if (!is_better(to, had, lack) || !walls_stay_true(to)) continue;
       piece_.move(v, to, star_, scores_);
@@ -151,6 +168,61 @@ class VertexMover {
     const Vec3 n = from.kind == Kind::kSurface ? wall_normal() : Vec3{};
     for (const Vec3 axis : eigen(from.metric).vector) add(axis - dot(axis, n) * n);
     return steps;
+  }
+
+  /// A step towards the given surface; false if there is none.
+  bool settle(VertexIndex v) {
+    const std::vector<TetIndex>& star = piece_.star(v);
+    star_.assign(star.begin(), star.end());
+    const Vertex from = piece_.vertices[v];
+    const auto home = home_of(v);
+    if (!home || distance(*home, from.at) <= kThere * guide_.tolerance) {
+      piece_.vertices[v].off = false;
+      return false;
+    }
+    take_cells(v);
+    float least = 1;
+    for (const TetIndex t : star_) least = std::min(least, piece_.score[t]);
+    least = std::min(kLeastOfSettle, kKeptOfSettle * least);
+    for (const double share : {1.0, 0.5, 0.25}) {
+      Vertex to = from;
+      to.at = from.at + share * (*home - from.at);
+      to.off = share != 1;
+      guide_.ask(to);
+      if (!all_score(to, least) || !walls_turn_little(to)) continue;
+      piece_.move(v, to, star_, scores_);
+      return true;
+    }
+    return false;
+  }
+
+  std::optional<Vec3> home_of(VertexIndex v) {
+    const Vertex& from = piece_.vertices[v];
+    std::optional<std::uint32_t> path;
+    const bool found = find_walls(v, path);
+    if (from.kind == Kind::kFixed) return guide_.ground.corner(from.id);
+    Vertex to = from;
+    if (!found || !snap(to, path)) return std::nullopt;
+    return to.at;
+  }
+
+  bool all_score(const Vertex& to, float least) {
+    scores_.clear();
+    for (Cell& cell : cells_) {
+      cell.corners[cell.at] = &to;
+      scores_.push_back(piece_.score_of_corners(cell.corners));
+      if (!(scores_.back() > least)) return false;
+    }
+    return true;
+  }
+
+  bool walls_turn_little(const Vertex& to) const {
+    for (const WallAt& w : walls_) {
+      const Vec3 a = piece_.point(w.corners[0]), b = piece_.point(w.corners[1]), c = piece_.point(w.corners[2]);
+      const Vec3 had = double_area_normal(a, b, c), has = double_area_normal(to.at, b, c);
+      if (!(dot(had, has) >= kLeastTurnOfSettle * length(had) * length(has))) return false;
+    }
+    return true;
   }
 
   static double lack_of(float score) { return 1 / static_cast<double>(score) - 1; }
@@ -341,6 +413,11 @@ bool keeps_walls_true(const Guide& guide, std::span<const TriangleCorners> befor
   const Ground::Truth had = worst_of(before);
   return std::isfinite(has.distance) && has.distance <= std::max(guide.tolerance, had.distance) &&
          has.cosine >= std::min(kLeastCosineOfWall, had.cosine);
+}
+
+PassCount settle_on_ground(Piece& piece, const Guide& guide) {
+  if (!guide.ground.given()) return {};
+  return VertexMover(piece, guide).settle();
 }
 
 PassCount smooth_vertices(Piece& piece, const Guide& guide, float threshold) {

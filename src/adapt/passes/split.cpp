@@ -197,6 +197,7 @@ class Splitter {
     for (const double share : {1.0, 0.5, 0.0}) {
       if (share != 0 && home == straight) continue;
       made.at = straight + share * (home - straight);
+      made.off = guide_.ground.given() && share != 1 && home != straight;
       guide_.ask(made);
       const bool is_needed = share == 1 && made.metric.squared(home - straight) > kFarFromHome * kFarFromHome;
       if (plan(a, b, made, is_needed ? kShortestAtHome : kShortestOfSplit)) return apply(a, b, made, path);

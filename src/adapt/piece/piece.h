@@ -35,6 +35,7 @@ struct Vertex {
   bool touched = true;  ///< of a piece: it was active when that was taken, or something around it changed since
   bool exact = true;    ///< the metric is that of the place, not one on the way to it
   bool frozen = false;  ///< asked to stay as it is, with all that is between vertices that are
+  bool off = false;     ///< on a wall, beside the surface that was given: it is to go there
 };
 
 /// The label of a half-face that lies on a wall, else 0: one more than the number of the part, and kOuter where nothing

@@ -81,7 +81,8 @@ Counts work_on(Piece& piece, const Guide& guide, int cycles) {
     validate(piece);
     c.swap = swap_edges(piece, guide, kGoodForSwaps);
     validate(piece);
-    c.move = smooth_vertices(piece, guide, kGoodScore);
+    c.move = settle_on_ground(piece, guide);
+    c.move += smooth_vertices(piece, guide, kGoodScore);
     validate(piece);
     sum += c;
     if (c.changes() == 0) break;
@@ -440,6 +441,7 @@ void mend_walls(Parts& parts, const Ground& ground, const AdaptRules& rules, Ada
   if (rules.tolerance <= 0) return;
   const SmoothWalls smooth(ground, rules.frozen, rules.tolerance);
   out.bound = rules.strict ? rules.tolerance : std::max(rules.tolerance, smooth.of_old().upper);
+  // Walls that stay are frozen, and those are not looked at.
   out.deviation = rules.keep_walls ? smooth.of_old() : smooth.of(parts);
   if (rules.keep_walls || out.deviation.upper <= out.bound) return;
   const Parts first = parts;
@@ -467,10 +469,25 @@ void mend_walls(Parts& parts, const Ground& ground, const AdaptRules& rules, Ada
 
 }  // namespace
 
+GivenFit given_fit(const Ground& ground, std::span<const Vertex> vertices) {
+  GivenFit fit;
+  if (!ground.given()) return fit;
+  const SurfaceMesh& walls = ground.walls().surface;
+  fit.walls = walls.triangles.size();
+  for (std::uint32_t t = 0; t < walls.triangles.size(); ++t) {
+    if (ground.is_covered(t)) continue;
+    const auto& [a, b, c] = walls.triangles[t];
+    if (fit.own_walls++ == 0) fit.own_wall_at = centroid(walls.points[a], walls.points[b], walls.points[c]);
+  }
+  for (const Vertex& v : vertices)
+    if (v.off && !v.frozen && fit.held++ == 0) fit.held_at = v.at;
+  return fit;
+}
+
 Adapted adapt_mesh(const TetMesh& mesh, const MetricField& metric, const AdaptRules& rules, const Stage& stage) {
   TakenApart taken = take_apart(mesh, rules.feature_angle);
   if (!rules.frozen.empty()) freeze(taken.parts, rules.frozen);
-  const Ground ground(std::move(taken.walls));
+  const Ground ground(std::move(taken.walls), rules.given);
   const Guide guide{metric, ground, rules.tolerance, stage.context()};
   taken.parts.isotropic = metric.is_isotropic();
   parallel_for(taken.parts.vertices.size(), [&](std::size_t v) { guide.ask(taken.parts.vertices[v]); });
@@ -480,6 +497,7 @@ Adapted adapt_mesh(const TetMesh& mesh, const MetricField& metric, const AdaptRu
   adapter.run();
   Adapted out;
   mend_walls(taken.parts, ground, rules, adapter, out, stage);
+  out.given = given_fit(ground, taken.parts.vertices);
   out.mesh = put_together(taken.parts, taken.labels, mesh, out.old_of_new);
   return out;
 }

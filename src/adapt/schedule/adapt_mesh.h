@@ -6,7 +6,9 @@
 
 #include <octafront/tet_mesh.h>
 
+#include "adapt/ground/given.h"
 #include "adapt/metric/metric.h"
+#include "adapt/piece/piece.h"
 #include "adapt/schedule/nearness.h"
 #include "base/core/stage.h"
 
@@ -22,6 +24,8 @@ struct AdaptRules {
   /// Elements become smaller than wanted where walls that stray farther came so; else these are let be.
   bool strict = false;
   bool walls_ahead = true;  ///< as of take_step()
+  /// Where walls lie instead of on their own smooth surface, as far as it is near them; null: nowhere.
+  const GivenSurface* given = nullptr;
   bool keep_walls = false;  ///< vertices on walls, and all edges between them, stay as they are
   /// Per vertex: it stays, and so does what lies between vertices that do; elements with none but such vertices are not
   /// in the result. Empty: all may change. The faces of the mesh that are no walls of it are where it was cut out of
@@ -40,11 +44,23 @@ struct MetricFit {
 };
 MetricFit fit_of(const TetMesh& mesh, const MetricField& metric);
 
+/// What became of walls where a surface was given; nothing where none was.
+struct GivenFit {
+  std::uint64_t walls = 0, own_walls = 0;  ///< triangles of old walls; those that it is not near
+  Vec3 own_wall_at;                        ///< the middle of the first of these
+  /// Vertices that did not come to it, for elements would be poor or inside out, and the first one.
+  std::uint64_t held = 0;
+  Vec3 held_at;
+};
+GivenFit given_fit(const Ground& ground, std::span<const Vertex> vertices);
+
 struct Adapted {
   TetMesh mesh;
   std::vector<VertexIndex> old_of_new;  ///< per vertex the one of the input that it is; kNone: new
   Deviation deviation;                  ///< of the walls that could change from the smooth surface of the input
   double bound = 0;                     ///< what was to be kept: the tolerance, or the deviation of walls as they came
+
+  GivenFit given;
 };
 
 /// Requires a valid linear mesh without wedges, pyramids, periods and split faces. The same bits for any number of

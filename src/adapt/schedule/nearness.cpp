@@ -50,6 +50,14 @@ void visit_places(const TriangleCorners& t, const Visit& visit) {
     }
 }
 
+void add_triangles(const std::vector<TriangleCorners>& list, SurfaceMesh& surface) {
+  for (const TriangleCorners& t : list) {
+    const auto first = static_cast<VertexIndex>(surface.points.size());
+    surface.points.insert(surface.points.end(), t.begin(), t.end());
+    surface.triangles.push_back({first, first + 1, first + 2});
+  }
+}
+
 TriangleCorners corners_on(const SurfaceMesh& surface, const Triangle& t) {
   return {surface.points[t[0]], surface.points[t[1]], surface.points[t[2]]};
 }
@@ -65,19 +73,32 @@ SmoothWalls::SmoothWalls(const Ground& ground, std::span<const std::uint8_t> fro
   for (std::uint32_t t = 0; t < walls.triangles.size(); ++t) {
     Triangle corners = walls.triangles[t];
     if (all_frozen(corners, frozen)) continue;
-    free.push_back(t);
+    if (!ground.is_covered(t)) free.push_back(t);
     for (VertexIndex& v : corners) v = used.add(v, old_, vertex, [&](VertexIndex u) { return walls.points[u]; });
     old_.triangles.push_back(corners);
   }
   std::vector<std::vector<TriangleCorners>> made(free.size());
   parallel_for(free.size(), [&](std::size_t k) { made[k] = ground.divided(free[k], tolerance_); });
-  for (const auto& list : made)
-    for (const TriangleCorners& t : list) {
-      const auto first = static_cast<VertexIndex>(smooth_.points.size());
-      smooth_.points.insert(smooth_.points.end(), t.begin(), t.end());
-      smooth_.triangles.push_back({first, first + 1, first + 2});
-    }
-  tree_ = TriangleTree(smooth_);
+  for (const auto& list : made) add_triangles(list, smooth_);
+  SurfaceMesh all;
+  if (ground.given()) add_given(ground, frozen, all);
+  tree_ = TriangleTree(ground.given() ? all : smooth_);
+}
+
+/// Of what was given, that is looked for among the new walls whose nearest old ones are covered and may change.
+void SmoothWalls::add_given(const Ground& ground, std::span<const std::uint8_t> frozen, SurfaceMesh& all) {
+  const SurfaceMesh& walls = ground.walls().surface;
+  const auto stands = [&](Vec3 p) {
+    const std::uint32_t t = ground.wall_at(p);
+    return t != kNone && ground.is_covered(t) && !all_frozen(walls.triangles[t], frozen);
+  };
+  std::vector<Ground::GivenPieces> made(ground.given()->size());
+  parallel_for(made.size(), [&](std::size_t t) {
+    made[t] = ground.divided_given(static_cast<std::uint32_t>(t), tolerance_, stands);
+  });
+  for (const Ground::GivenPieces& pieces : made) add_triangles(pieces.standing, smooth_);
+  all = smooth_;
+  for (const Ground::GivenPieces& pieces : made) add_triangles(pieces.others, all);
 }
 
 SmoothWalls::WallsOfParts SmoothWalls::walls_of(const Parts& mesh) {
@@ -108,7 +129,13 @@ Deviation SmoothWalls::distance_of(const SurfaceMesh& walls) const {
 
 std::vector<Triangle> SmoothWalls::strays(const Parts& mesh, double bound) const {
   const WallsOfParts walls = walls_of(mesh);
-  const SurfaceMesh& surface = walls.surface;
+  std::vector<Triangle> found = strays(walls.surface, bound);
+  for (Triangle& t : found)
+    for (VertexIndex& v : t) v = walls.vertex[v];
+  return found;
+}
+
+std::vector<Triangle> SmoothWalls::strays(const SurfaceMesh& surface, double bound) const {
   const TriangleTree tree(surface);
   std::vector<std::uint8_t> far(surface.triangles.size(), 0);
   parallel_for(far.size(), [&](std::size_t t) {
@@ -125,11 +152,8 @@ std::vector<Triangle> SmoothWalls::strays(const Parts& mesh, double bound) const
   for (const std::uint32_t t : nearest)
     if (t != kNone) far[t] = 1;
   std::vector<Triangle> found;
-  for (std::size_t t = 0; t < far.size(); ++t) {
-    if (!far[t]) continue;
-    const auto& [a, b, c] = surface.triangles[t];
-    found.push_back({walls.vertex[a], walls.vertex[b], walls.vertex[c]});
-  }
+  for (std::size_t t = 0; t < far.size(); ++t)
+    if (far[t]) found.push_back(surface.triangles[t]);
   return found;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
-// How far walls that were changed are from the smooth surface that they stand for, both ways, and where too far.
+// How far walls that were changed are from the smooth surface that they stand for, or from the one that was given, both
+// ways, and where too far.
 
 #include <octafront/surface_mesh.h>
 
@@ -21,8 +22,8 @@ struct Deviation {
   Vec3 place;  ///< `lower` away from the other surface
 };
 
-/// The smooth surface of the walls that may change, as triangles that are far nearer to it than `tolerance`. Const and
-/// safe on any number of threads.
+/// The surface that the walls that may change stand for, smooth or given, as triangles that are far nearer to it than
+/// `tolerance`. Const and safe on any number of threads.
 class SmoothWalls {
  public:
   /// `frozen`: as of AdaptRules; walls between frozen vertices are not looked at. Requires tolerance > 0.
@@ -32,9 +33,11 @@ class SmoothWalls {
   Deviation of_old() const { return distance_of(old_); }
   /// Of the walls of a mesh made of them. They include what the triangles here differ from the smooth surface.
   Deviation of(const Parts& mesh) const { return distance_of(walls_of(mesh).surface); }
+  Deviation of(const SurfaceMesh& walls) const { return distance_of(walls); }
   /// The wall triangles with places farther than `bound` from here, and those that are nearest to places here that are
   /// farther than it from any.
   std::vector<Triangle> strays(const Parts& mesh, double bound) const;
+  std::vector<Triangle> strays(const SurfaceMesh& walls, double bound) const;
 
  private:
   struct WallsOfParts {
@@ -42,11 +45,12 @@ class SmoothWalls {
     std::vector<VertexIndex> vertex;
   };
   static WallsOfParts walls_of(const Parts& mesh);
+  void add_given(const Ground& ground, std::span<const std::uint8_t> frozen, SurfaceMesh& all);
   Deviation distance_of(const SurfaceMesh& walls) const;
 
   double tolerance_;
   SurfaceMesh old_, smooth_;
-  TriangleTree tree_;
+  TriangleTree tree_;  ///< of smooth_, and of what was given and stands for no wall that may change
 };
 
 }  // namespace octafront::adapt

@@ -135,31 +135,19 @@ class TakerApart {
     std::vector<Labels::Label> label(lines.edges.size(), Labels::Label{kNone});
     for (std::size_t e = 0; e < label.size(); ++e)
       if (const auto at = named.find(lines.edges[e]); at != named.end()) label[e] = at->second;
-    find_paths(label);
+    name_paths(label);
     mark_touching_edges();
   }
 
-  /// Lines of edges of one label between vertices where lines end, meet or bend.
-  void find_paths(const std::vector<Labels::Label>& label) {
+  /// Lines of edges of one label.
+  void name_paths(const std::vector<Labels::Label>& label) {
     Features& lines = out_.walls.lines;
-    const Groups<> at = rows_at_vertices(mesh_.points.size(), lines.edges);
-    std::vector<std::uint8_t> is_corner(mesh_.points.size(), 0);
-    for (const VertexIndex v : lines.corners) is_corner[v] = 1;
-    DisjointSets sets(lines.edges.size());
-    for (VertexIndex v = 0; v < mesh_.points.size(); ++v) {
-      if (at[v].empty()) continue;
-      if (at[v].size() != 2 || label[at[v][0]] != label[at[v][1]]) is_corner[v] = 1;
-      if (!is_corner[v]) sets.join(at[v][0], at[v][1]);
-    }
-    lines.corners.clear();
-    for (VertexIndex v = 0; v < is_corner.size(); ++v)
-      if (is_corner[v]) lines.corners.push_back(v);
-    std::map<std::uint32_t, std::uint32_t> number;
+    out_.walls.path =
+        find_paths(mesh_.points.size(), lines, [&](std::uint32_t e, std::uint32_t f) { return label[e] == label[f]; });
     for (std::uint32_t e = 0; e < lines.edges.size(); ++e) {
-      const auto [path, is_new] = number.try_emplace(sets.find(e), static_cast<std::uint32_t>(number.size()));
-      if (is_new) out_.labels.paths.push_back(label[e]);
-      out_.walls.path.push_back(path->second);
-      out_.parts.lines.push_back({lines.edges[e], path->second});
+      const std::uint32_t path = out_.walls.path[e];
+      if (path == out_.labels.paths.size()) out_.labels.paths.push_back(label[e]);
+      out_.parts.lines.push_back({lines.edges[e], path});
     }
   }
 
@@ -197,7 +185,8 @@ class TakerApart {
     for (const Edge& e : out_.walls.lines.edges)
       for (const VertexIndex v : e) vertices[v].kind = Kind::kCurve;
     for (const VertexIndex v : out_.walls.lines.corners) vertices[v].kind = Kind::kFixed;
-    for (const VertexIndex v : touching_) vertices[v].kind = Kind::kFixed;
+    for (Vertex& v : vertices) v.off = v.kind != Kind::kInner;
+    for (const VertexIndex v : touching_) vertices[v].kind = Kind::kFixed, vertices[v].off = false;
   }
 
   const TetMesh& mesh_;

@@ -30,8 +30,8 @@ struct TakenApart {
 };
 
 /// Requires a valid linear mesh. Lines are where walls bend by `feature_angle` (degrees), end, or meet others, and the
-/// mesh's curves; vertices where the boundary touches itself stay. Faces of one tet that the boundary does not list are
-/// no walls: the mesh was cut out of another there.
+/// mesh's curves; vertices where the boundary touches itself stay, all others of walls are `off`. Faces of one tet that
+/// the boundary does not list are no walls: the mesh was cut out of another there.
 TakenApart take_apart(const TetMesh& mesh, double feature_angle);
 
 /// The mesh again, with the names of `before`: vertices that were there in their order, new ones behind. `old_of_new`

@@ -6,6 +6,7 @@
 #include "adapt/schedule/rim_metric.h"
 #include "adapt/schedule/section.h"
 #include "base/geometry/self_intersection.h"
+#include "pipeline/stages/adapting.h"
 #include "pipeline/stages/chosen_tets.h"
 
 #include <algorithm>
@@ -79,11 +80,6 @@ void tell_section(const TetMesh& given, std::size_t chosen, std::size_t may_chan
 
 }  // namespace
 
-MetricSummary summary_of(const adapt::MetricFit& fit) {
-  return {fit.edges,       fit.fitting,    fit.shortest,    fit.longest,      fit.far,
-          fit.shortest_at, fit.longest_at, fit.quality_min, fit.quality_mean, fit.complexity};
-}
-
 WallDeviation deviation_of(const adapt::Adapted& made) {
   return {made.bound, made.deviation.lower, made.deviation.upper, made.deviation.place};
 }
@@ -120,6 +116,7 @@ void adapt_section(const TetMesh& given, const adapt::MetricField& wanted, const
     if (const auto defect = defect_of(made.part.mesh, stage))
       throw MeshingError("the mesh made is not valid, which is a bug of ours; please report it with the input. " +
                          *defect);
+    tell_given(made.part.given, stage);
     tell_section(given, count, count_of(chosen), made, run.options.adapt, stage);
     result.after = summary_of(adapt::fit_of(made.part.mesh, metric));
     result.deviation = deviation_of(made.part);

@@ -7,7 +7,6 @@
 
 namespace octafront {
 
-MetricSummary summary_of(const adapt::MetricFit& fit);
 WallDeviation deviation_of(const adapt::Adapted& made);
 
 /// Changes those elements of a mesh that Options::adapt says, all without looking at the others more than is needed to

@@ -1,0 +1,40 @@
+#pragma once
+
+// The nearest point of those triangles of a tree that fit; trees over points.
+
+#include "base/geometry/measures.h"
+#include "base/geometry/triangle_tree.h"
+
+#include <span>
+#include <vector>
+
+namespace octafront::adapt {
+
+/// The nearest point within reach of p on a triangle for which fits(triangle, corners); the triangle is kNone if there
+/// is none.
+template <class Fits>
+TriangleTree::Nearest nearest_that(const TriangleTree& tree, Vec3 p, double reach, const Fits& fits) {
+  const TriangleTree::Nearest first = tree.nearest(p, reach * reach);
+  if (first.triangle == kNone || fits(first.triangle, tree.corners(first.triangle))) return first;
+  TriangleTree::Nearest best;
+  best.squared_distance = reach * reach;
+  const Vec3 r{reach, reach, reach};
+  tree.for_each_box_near({p - r, p + r}, [&](std::uint32_t t, const TriangleCorners& c) {
+    if (!fits(t, c)) return true;
+    const Vec3 q = closest_point_on_triangle(p, c[0], c[1], c[2]);
+    const double d = squared_distance(p, q);
+    const bool nearer = d < best.squared_distance || (d == best.squared_distance && t < best.triangle);
+    if (nearer) best = {q, t, d};
+    return true;
+  });
+  return best;
+}
+
+/// A tree over points: its triangles have one of them as all corners, in the order of the list.
+inline TriangleTree tree_of_points(std::span<const Vec3> points, std::span<const VertexIndex> list) {
+  std::vector<Triangle> all;
+  for (const VertexIndex v : list) all.push_back({v, v, v});
+  return {points, all};
+}
+
+}  // namespace octafront::adapt
