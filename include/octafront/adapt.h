@@ -6,6 +6,7 @@
 #include <octafront/options.h>
 #include <octafront/report.h>
 #include <octafront/run_context.h>
+#include <octafront/surface_mesh.h>
 #include <octafront/tet_mesh.h>
 
 #include <array>
@@ -89,6 +90,26 @@ AdaptedMesh adapt_to_metric(const TetMesh& mesh, const MetricFunction& metric, c
 /// match or a tensor is not positive definite, with the first places.
 AdaptedMesh adapt_to_metric(const TetMesh& mesh, const MetricMesh& metric, const Options& options = {},
                             const RunContext& context = {}, const Domain* surface = nullptr);
+
+/// A surface that was adapted, and what was done. The measures are those of triangles: quality is 4 sqrt 3 times the
+/// area over the sum of the squared edges, 1 if regular, in the metric of the corner of greatest density; complexity
+/// the integral of the metric's density within the surface.
+struct AdaptedSurface {
+  SurfaceMesh surface;
+  Report report;
+  MetricSummary before, after;
+  WallDeviation deviation;
+  std::vector<VertexIndex> old_of_new;  ///< per vertex its number in the surface that was given; kNone: new
+};
+
+/// The same of triangles alone, open or closed, any number of them at an edge; repair_surface() tidies them first, so
+/// that vertices at one place are one. Patches, the regions on both sides, lines where the surface bends, ends or meets
+/// others, and corners stay; `source` does not. `options.adapt.only` is refused. Passes run on one thread. Throws
+/// InputError for indices out of range, coordinates that are not finite, no triangles; OptionError, Cancelled.
+AdaptedSurface adapt_surface(const SurfaceMesh& mesh, const Options& options, const RunContext& context = {},
+                             const Domain* surface = nullptr);
+AdaptedSurface adapt_surface_to_metric(const SurfaceMesh& mesh, const MetricMesh& metric, const Options& options = {},
+                                       const RunContext& context = {}, const Domain* surface = nullptr);
 
 /// The field on the mesh that was made of `before`. At vertices: linear in the old element that holds the new vertex
 /// (exact for linear functions); where a vertex is where it was, its bits. Of elements: the mean over what the new

@@ -1,0 +1,122 @@
+// A surface alone, adapted.
+
+#include <octafront/adapt.h>
+#include <octafront/error.h>
+#include <octafront/repair.h>
+
+#include "adapt/metric/background.h"
+#include "adapt/sheet/adapt_sheet.h"
+#include "base/geometry/self_intersection.h"
+#include "base/mesh/edge_table.h"
+#include "base/mesh/known_surface.h"
+#include "pipeline/stages/adapt_section.h"
+#include "pipeline/stages/adapting.h"
+#include "pipeline/stages/stages.h"
+#include "sizing/search/make_size_field.h"
+#include "sizing/sources/check_size_options.h"
+
+#include <array>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/core.h>
+
+namespace octafront {
+namespace {
+
+/// The surface with vertices at one place made one, and its faces turned alike: files of triangles know neither.
+SurfaceMesh tidied_input(const SurfaceMesh& given, Run& run) {
+  if (!run.options.adapt.only.empty())
+    throw OptionError("`only` is for meshes of tetrahedra: a surface alone is adapted as a whole");
+  return run.stage("check of the input", [&](const Stage& stage) {
+    RepairedSurface tidy = repair_surface(given, stage.context());
+    if (tidy.surface.triangles.empty()) throw InputError("the surface has no triangles");
+    for (const std::string& note : tidy.notes)
+      if (!has_vertices_of_each_triangle(given)) stage.note(note);
+    return std::move(tidy.surface);
+  });
+}
+
+/// From numbers in a surface to those of the first vertices that were at the same places.
+void renumber_as_given(std::vector<VertexIndex>& numbers, const SurfaceMesh& tidy, const SurfaceMesh& given) {
+  const auto key = [](Vec3 p) { return std::array{p.x, p.y, p.z}; };
+  std::map<std::array<double, 3>, VertexIndex> first;
+  if (tidy.points != given.points)
+    for (VertexIndex v = 0; v < given.points.size(); ++v) first.try_emplace(key(given.points[v]), v);
+  for (VertexIndex& v : numbers)
+    if (v != kNone && !first.empty()) v = first.at(key(tidy.points[v]));
+}
+
+bool is_closed(const SurfaceMesh& surface) {
+  const EdgeTable edges = make_edge_table(surface.points.size(), surface.triangles);
+  for (std::size_t e = 0; e < edges.size(); ++e)
+    if (edges.uses(e).size() != 2) return false;
+  return true;
+}
+
+/// Triangles go where the ground is, each by itself: where a gap is narrower than that moves them they could meet.
+void tell_crossings(const SurfaceMesh& before, const SurfaceMesh& after, const Stage& stage) {
+  const auto crossing = self_intersections(after.points, after.triangles, 1, stage.context());
+  if (crossing.empty() || !self_intersections(before.points, before.triangles, 1, stage.context()).empty()) return;
+  const Vec3 p = after.points[after.triangles[crossing[0][0]][0]];
+  stage.note(fmt::format(
+      "the surface crosses itself at ({:.6g}, {:.6g}, {:.6g}), which it did not before: it is near to itself "
+      "there; a smaller --max-deviation may help",
+      p.x, p.y, p.z));
+}
+
+AdaptedSurface adapt_surface_by(const SurfaceMesh& given, const adapt::MetricField& metric, const Domain* home,
+                                Run& run) {
+  AdaptedSurface result;
+  const double diagonal = bounding_box(given.points).diagonal();
+  const auto on = given_surface(home, diagonal, run);
+  const adapt::AdaptRules rules = rules_of(run.options, diagonal, on ? &*on : nullptr);
+  const bool closed = is_closed(given);
+  if (closed) run.report.input_volume = enclosed_volume(given);
+  run.stage("adapt", [&](const Stage& stage) {
+    result.before = summary_of(adapt::fit_of(given, metric));
+    adapt::AdaptedSheet made = adapt::adapt_sheet(given, metric, rules, stage);
+    require_near(made.given);
+    tell_given(made.given, stage);
+    result.deviation = {made.bound, made.deviation.lower, made.deviation.upper, made.deviation.place};
+    result.after = summary_of(adapt::fit_of(made.surface, metric));
+    tell_crossings(given, made.surface, stage);
+    result.surface = std::move(made.surface);
+    result.old_of_new = std::move(made.old_of_new);
+  });
+  run.stage("summary", [&](const Stage& stage) {
+    tell_fit(result.after, stage);
+    tell_unmet(result.after, result.deviation, home != nullptr, stage);
+    run.report.points = result.surface.points.size();
+    run.report.boundary_faces = result.surface.triangles.size();
+    if (closed) run.report.volume = enclosed_volume(result.surface);
+  });
+  result.report = run.close();
+  return result;
+}
+
+}  // namespace
+
+AdaptedSurface adapt_surface(const SurfaceMesh& surface, const Options& options, const RunContext& context,
+                             const Domain* home) {
+  Run run(options, context);
+  const SurfaceMesh tidy = tidied_input(surface, run);
+  const adapt::SizeMetric metric(sizes_for(tidy, run));
+  AdaptedSurface made = adapt_surface_by(tidy, metric, home, run);
+  renumber_as_given(made.old_of_new, tidy, surface);
+  return made;
+}
+
+AdaptedSurface adapt_surface_to_metric(const SurfaceMesh& surface, const MetricMesh& metric, const Options& options,
+                                       const RunContext& context, const Domain* home) {
+  Run run(options, context);
+  const adapt::BackgroundMetric field(metric);
+  const SurfaceMesh tidy = tidied_input(surface, run);
+  AdaptedSurface made = adapt_surface_by(tidy, field, home, run);
+  renumber_as_given(made.old_of_new, tidy, surface);
+  return made;
+}
+
+}  // namespace octafront
