@@ -257,12 +257,18 @@ octafront_job* octafront_generate_surface(const octafront_surface* surface, cons
 /** -> sizes: generate_sizes(). */
 octafront_job* octafront_generate_sizes(const octafront_surface* surface, const octafront_options* options,
                                         int threads);
-/** -> mesh: adapt_existing(), by the options' sizes. The report has "fit" and, of the old mesh, "fit_before". */
-octafront_job* octafront_adapt(const octafront_mesh* mesh, const octafront_options* options, int threads);
+/** -> mesh: adapt_existing(), by the options' sizes. The report has "fit" and, of the old mesh, "fit_before". `ground`,
+ * which may be null: the surface or domain that walls stand for. */
+octafront_job* octafront_adapt(const octafront_mesh* mesh, const octafront_surface* ground,
+                               const octafront_options* options, int threads);
 /** -> mesh: adapt_to_metric(), by `n` symmetric matrices of 3 x 3, one for each point of the mesh, which must live
  * until the job has ended. The report as of octafront_adapt(). */
-octafront_job* octafront_adapt_to_metric(const octafront_mesh* mesh, const double* metric, size_t n,
-                                         const octafront_options* options, int threads);
+octafront_job* octafront_adapt_to_metric(const octafront_mesh* mesh, const octafront_surface* ground,
+                                         const double* metric, size_t n, const octafront_options* options, int threads);
+/** -> surface: adapt_surface(), or by `n` matrices, one for each of its points, adapt_surface_to_metric(); `metric` may
+ * be null. The report as of octafront_adapt(). */
+octafront_job* octafront_adapt_surface(const octafront_surface* surface, const octafront_surface* ground,
+                                       const double* metric, size_t n, const octafront_options* options, int threads);
 /** The functions of octafront/metric.h: {"task": "implied"}, {"task": "hessians"}, {"task": "of_field", "elements":
  * 1e5, "norm": 2, "gradation": 0.4, "min_size": 0, "max_size": 1}, {"task": "graded", "gradation": 0.4}, {"task":
  * "intersected"}, {"task": "bounded", "min_size": ...}, {"task": "with_complexity", "complexity": 1e4, ...}, {"task":

@@ -15,7 +15,7 @@ TEMPLATE = '''\
 # Made by python/backend/make_stubs.py: edit that.
 import os
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, Literal, Protocol, TypedDict
+from typing import Any, Literal, Protocol, TypedDict, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -196,9 +196,14 @@ def size_field(points: npt.ArrayLike | Input, triangles: npt.ArrayLike | None = 
 {size}) -> SizeField: ...
 def improve(mesh: Tets | Path, *, surface: Body | Path | None = None,
 {improve}) -> Mesh: ...
+@overload
 def adapt(mesh: Tets | Path, *, sizes: npt.ArrayLike | None = None, metric: npt.ArrayLike | None = None,
     fields: Mapping[str, npt.ArrayLike] | None = None,
+    surface: Body | Path | tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
 {adapt}) -> Mesh: ...
+@overload
+def adapt(mesh: Surface, *, sizes: npt.ArrayLike | None = None, metric: npt.ArrayLike | None = None,
+    surface: Body | Path | tuple[npt.ArrayLike, npt.ArrayLike] | None = None, **keywords: Any) -> Surface: ...
 def repair(points: npt.ArrayLike | Body, triangles: npt.ArrayLike | None = None) -> Surface: ...
 def mend(points: npt.ArrayLike | Body, triangles: npt.ArrayLike | None = None, *,
          tolerance: float | None = None, way: Literal["auto", "wrap"] = "auto", distance: float | None = None,

@@ -181,17 +181,19 @@ def improve(mesh, *, surface=None, **keywords):
 
 
 @_takes_options("adapt")
-def adapt(mesh, *, sizes=None, metric=None, fields=None, **keywords):
+def adapt(mesh, *, sizes=None, metric=None, fields=None, surface=None, **keywords):
     """The mesh changed until its edges are as long as the sizes want: a new Mesh. report["fit"] says how well it fits.
 
     mesh: a valid Mesh of any tool, the name of its file, or an object of meshio, PyVista or VTK. Its boundary stays on the smooth surface that it stands
-    for; patches, regions, sheets, curves and sets stay.
+    for; patches, regions, sheets, curves and sets stay. A Surface, or the file of one, is adapted alone: a new Surface.
     sizes: edge lengths wanted at its own points, (n,); else what the keywords ask for, as for mesh().
     metric: at its own points, (n, 3, 3), or (n, 6) as xx, xy, xz, yy, yz, zz: other lengths in other directions, see
         octafront.metrics. Sizes have no say beside it.
     only: what may change, a place or several: "box:X0,Y0,Z0,X1,Y1,Z1", "sphere:X,Y,Z,R", or a region, patch, curve or set
     by its name; all but it and a `halo` of layers around keeps its bits and numbers.
 
+    surface: what walls stand for instead, where it is near them: a Surface, the name of its file, of a CAD file, whose true
+        geometry they go to, or (points, triangles). It need not be closed.
     fields: {name: array}, values at the points, (n,) or (n, k), or of the tetrahedra, (m,) or (m, k): mesh.fields of the
     new mesh has them there. At points linear in the old elements, bit for bit where a point stays; of elements such that
     the sum of value times volume in each region stays.
@@ -204,19 +206,30 @@ def adapt(mesh, *, sizes=None, metric=None, fields=None, **keywords):
     >>> octafront.adapt(mesh, sizes=0.5 * wanted).save("next.vtu")
     >>> octafront.adapt(mesh, metric=octafront.metrics.of_field(mesh, u, elements=100_000))
     """
-    old = Mesh.read(mesh) if _is_file(mesh) else Mesh.of(mesh)
+    old = read(mesh) if _is_file(mesh) else mesh if isinstance(mesh, Surface) else Mesh.of(mesh)
+    is_surface = isinstance(old, Surface)
     if sizes is not None:
         if "size_field" in keywords:
             raise OptionError("`sizes` and `size_field` are two fields of sizes; give one")
-        keywords["size_field"] = (old.points, old.tets, sizes)
+        keywords["size_field"] = (old.points, old.triangles if is_surface else old.tets, sizes)
+    if is_surface and fields:
+        raise OptionError("`fields` go along with meshes of tetrahedra; this is a surface alone")
     if not isinstance(keywords.get("only", ""), str):
         keywords["only"] = ";".join(keywords["only"])
     settings = _Settings("adapt", "adapt", keywords)
     values = {name: _fields.field_on(old, name, array) for name, array in dict(fields or {}).items()}
+    if isinstance(surface, tuple):
+        surface = _surface_of(*surface)
+    ground = Surface.read(surface) if _is_file(surface) else None if surface is None else _surface_of(surface, None)
+    ground = ground and ground._handle
+    if is_surface:
+        job = metrics._adapting("adapt_surface", old, ground, metric, sizes, settings)
+        report = job.run()
+        return Surface._of(job.take("surface"), report)
     if metric is None:
-        job = _Job("adapt", old._handle, settings.options, settings.threads, **settings.functions())
+        job = _Job("adapt", old._handle, ground, settings.options, settings.threads, **settings.functions())
     else:
-        job = metrics._adapting(old, metric, sizes, settings)
+        job = metrics._adapting("adapt_to_metric", old, ground, metric, sizes, settings)
     report = job.run()
     new = Mesh._of(job.take("mesh"), report)
     new.fields = {name: _fields.carried(old, new, array) for name, array in values.items()}

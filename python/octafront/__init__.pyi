@@ -1,7 +1,7 @@
 # Made by python/backend/make_stubs.py: edit that.
 import os
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, Literal, Protocol, TypedDict
+from typing import Any, Literal, Protocol, TypedDict, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -608,8 +608,10 @@ def improve(mesh: Tets | Path, *, surface: Body | Path | None = None,
     after_pass: Callable[[str, dict[str, Any]], object] | None = None,
     progress: Progress | None = None,
     threads: int = 0) -> Mesh: ...
+@overload
 def adapt(mesh: Tets | Path, *, sizes: npt.ArrayLike | None = None, metric: npt.ArrayLike | None = None,
     fields: Mapping[str, npt.ArrayLike] | None = None,
+    surface: Body | Path | tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
     size: float | str | SizeFunction | SizeField | None = None,
     elements: int | None = None,
     curvature: float | None = None,
@@ -635,6 +637,9 @@ def adapt(mesh: Tets | Path, *, sizes: npt.ArrayLike | None = None, metric: npt.
     unit: str | None = None,
     progress: Progress | None = None,
     threads: int = 0) -> Mesh: ...
+@overload
+def adapt(mesh: Surface, *, sizes: npt.ArrayLike | None = None, metric: npt.ArrayLike | None = None,
+    surface: Body | Path | tuple[npt.ArrayLike, npt.ArrayLike] | None = None, **keywords: Any) -> Surface: ...
 def repair(points: npt.ArrayLike | Body, triangles: npt.ArrayLike | None = None) -> Surface: ...
 def mend(points: npt.ArrayLike | Body, triangles: npt.ArrayLike | None = None, *,
          tolerance: float | None = None, way: Literal["auto", "wrap"] = "auto", distance: float | None = None,

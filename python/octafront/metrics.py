@@ -40,18 +40,18 @@ def _values(values):
 
 
 class _Adapting(_Job):
-    """The job of adapt() by a metric, which lives as long as it."""
+    """The job of adapt() by a metric, which lives as long as it; of surfaces also without one."""
 
-    def __init__(self, mesh, metric, settings):
-        self._metric = _tensors(metric)
-        super().__init__("adapt_to_metric", mesh._handle, _pointer(self._metric), len(self._metric), settings.options,
-                         settings.threads, **settings.functions())
+    def __init__(self, how, old, ground, metric, settings):
+        self._metric = None if metric is None else _tensors(metric)
+        values, count = (None, 0) if self._metric is None else (_pointer(self._metric), len(self._metric))
+        super().__init__(how, old._handle, ground, values, count, settings.options, settings.threads, **settings.functions())
 
 
-def _adapting(mesh, metric, sizes, settings):
-    if sizes is not None:
+def _adapting(how, old, ground, metric, sizes, settings):
+    if sizes is not None and metric is not None:
         raise _errors.OptionError("`sizes` and `metric` both say all lengths; give one")
-    return _Adapting(mesh, metric, settings)
+    return _Adapting(how, old, ground, metric, settings)
 
 
 def _run(task, mesh, values=None, others=None, count=None, threads=0, progress=None, **options):

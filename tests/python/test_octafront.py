@@ -764,6 +764,34 @@ class Meshes(Case):
         with self.assertRaises(octafront.OptionError):
             octafront.adapt(old, sizes=-wanted)
 
+    def test_adapt_goes_to_the_surface_that_is_given(self):
+        fine = sphere(48, 96)
+        old = octafront.mesh(*sphere(10, 20), size=0.6)
+        points = np.asarray(fine[0])
+        new = octafront.adapt(old, size=0.25, surface=fine)
+        whole = octafront.Surface(*fine)
+        on = new.points[np.unique(new.faces)]
+        self.assertLess(np.abs(np.linalg.norm(on, axis=1) - 1).max(), 0.005)
+        self.assertLess(new.report["deviation"]["upper"], new.report["deviation"]["bound"])
+        np.testing.assert_array_equal(octafront.adapt(old, size=0.25, surface=whole).points, new.points)
+        metric = np.tile(np.eye(3) / 0.09, (len(old.points), 1, 1))
+        self.assertGreater(len(old.adapt(metric=metric, surface=whole).tets), 0)
+        with self.assertRaises(octafront.InputError):
+            octafront.adapt(old, size=0.25, surface=(points + 9, fine[1]))
+
+    def test_adapt_of_a_surface_alone(self):
+        ball = octafront.Surface(*sphere())
+        wanted = 0.1 + 0.1 * np.abs(ball.points[:, 2])
+        new = octafront.adapt(ball, sizes=wanted)
+        self.assertIsInstance(new, octafront.Surface)
+        self.assertGreater(new.report["fit"]["fitting"], 0.9 * new.report["fit"]["edges"])
+        metric = np.tile(np.diag([100.0, 25.0, 25.0]), (len(ball.points), 1, 1))
+        self.assertGreater(octafront.adapt(ball, metric=metric).report["fit"]["quality_mean"], 0.7)
+        with self.assertRaises(octafront.OptionError):
+            octafront.adapt(ball, size=0.2, fields={"u": wanted})
+        with self.assertRaises(octafront.OptionError):
+            octafront.adapt(ball, size=0.2, only="box:0,0,0,1,1,1")
+
     def test_adapt_changes_only_what_is_asked(self):
         old = octafront.mesh(*cube(), size=0.12)
         new = octafront.adapt(old, size=0.05, only=["sphere:0,0,0,0.2", "box:0,0,0,0.1,0.1,0.1"], halo=1)

@@ -91,8 +91,12 @@ namespace octafront::c_api {
 /// A job, or null where there is no memory or thread for one.
 octafront_job* started(const octafront_job::Work& work, int threads = 0);
 
+/// What walls stand for; null: nothing is given. Throws InputError for indices out of range.
+const Domain* domain_of(const octafront_surface* ground);
+
 /// Hands over the mesh, with how it fits in the report.
 void give_adapted(octafront_job& job, AdaptedMesh adapted);
+void give_adapted(octafront_job& job, AdaptedSurface adapted);
 
 /// A leak leaves the way through it in the report.
 template <class Work>

@@ -103,14 +103,28 @@ octafront_job* octafront_metrics(const octafront_mesh* mesh, const char* json, c
       threads);
 }
 
-octafront_job* octafront_adapt_to_metric(const octafront_mesh* mesh, const double* metric, size_t n,
-                                         const octafront_options* options, int threads) {
+octafront_job* octafront_adapt_to_metric(const octafront_mesh* mesh, const octafront_surface* ground,
+                                         const double* metric, size_t n, const octafront_options* options,
+                                         int threads) {
   return started(
       [=](octafront_job& job) {
         require_indices(mesh->mesh);
-        const TetMesh& ground = mesh->mesh;
-        const MetricMesh wanted{ground.points, ground.tets, {}, tensors_from(metric, n), "the metric"};
-        give_adapted(job, adapt_to_metric(ground, wanted, job.options_of(options), job.context()));
+        const TetMesh& old = mesh->mesh;
+        const MetricMesh wanted{old.points, old.tets, {}, tensors_from(metric, n), "the metric"};
+        give_adapted(job, adapt_to_metric(old, wanted, job.options_of(options), job.context(), domain_of(ground)));
+      },
+      threads);
+}
+
+octafront_job* octafront_adapt_surface(const octafront_surface* surface, const octafront_surface* ground,
+                                       const double* metric, size_t n, const octafront_options* options, int threads) {
+  return started(
+      [=](octafront_job& job) {
+        const SurfaceMesh& old = domain_of(surface)->surface;
+        const Options asked = job.options_of(options);
+        if (metric == nullptr) return give_adapted(job, adapt_surface(old, asked, job.context(), domain_of(ground)));
+        const MetricMesh wanted{old.points, {}, old.triangles, tensors_from(metric, n), "the metric"};
+        give_adapted(job, adapt_surface_to_metric(old, wanted, asked, job.context(), domain_of(ground)));
       },
       threads);
 }

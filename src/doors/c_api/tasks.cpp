@@ -153,6 +153,12 @@ Json deviation_in_json(const WallDeviation& d) {
 
 }  // namespace
 
+const Domain* domain_of(const octafront_surface* ground) {
+  if (ground == nullptr) return nullptr;
+  require_indices(ground->domain.surface);
+  return &ground->domain;
+}
+
 void give_adapted(octafront_job& job, AdaptedMesh adapted) {
   job.report = Json::parse(to_json(adapted.report));
   job.report["fit"] = fit_in_json(adapted.after), job.report["fit_before"] = fit_in_json(adapted.before);
@@ -160,6 +166,13 @@ void give_adapted(octafront_job& job, AdaptedMesh adapted) {
   give(job, std::move(adapted.mesh));
   job.mesh->old_of_new = std::move(adapted.old_of_new);
   job.mesh->old_tet_of_new = std::move(adapted.old_tet_of_new);
+}
+
+void give_adapted(octafront_job& job, AdaptedSurface adapted) {
+  job.report = Json::parse(to_json(adapted.report));
+  job.report["fit"] = fit_in_json(adapted.after), job.report["fit_before"] = fit_in_json(adapted.before);
+  job.report["deviation"] = deviation_in_json(adapted.deviation);
+  give(job, std::move(adapted.surface));
 }
 
 octafront_job* started(const octafront_job::Work& work, int threads) {
@@ -287,11 +300,12 @@ octafront_job* octafront_improve(const octafront_mesh* mesh, const octafront_sur
       threads);
 }
 
-octafront_job* octafront_adapt(const octafront_mesh* mesh, const octafront_options* options, int threads) {
+octafront_job* octafront_adapt(const octafront_mesh* mesh, const octafront_surface* ground,
+                               const octafront_options* options, int threads) {
   return started(
-      [mesh, options](octafront_job& job) {
+      [mesh, ground, options](octafront_job& job) {
         require_indices(mesh->mesh);
-        give_adapted(job, adapt_existing(mesh->mesh, job.options_of(options), job.context()));
+        give_adapted(job, adapt_existing(mesh->mesh, job.options_of(options), job.context(), domain_of(ground)));
       },
       threads);
 }

@@ -159,7 +159,7 @@ TEST(CApi, IndicesOutOfRangeAreRefusedBeforeAnybodyFollowsThem) {
   EXPECT_EQ(status_at_end(Job(octafront_order_mesh(mesh.get()))), OCTAFRONT_INPUT);
   EXPECT_EQ(status_at_end(Job(octafront_check(mesh.get(), nullptr))), OCTAFRONT_INPUT);
   EXPECT_EQ(status_at_end(Job(octafront_improve(mesh.get(), nullptr, nullptr, 1))), OCTAFRONT_INPUT);
-  EXPECT_EQ(status_at_end(Job(octafront_adapt(mesh.get(), nullptr, 1))), OCTAFRONT_INPUT);
+  EXPECT_EQ(status_at_end(Job(octafront_adapt(mesh.get(), nullptr, nullptr, 1))), OCTAFRONT_INPUT);
   EXPECT_EQ(status_at_end(Job(octafront_write_mesh(mesh.get(), "mesh.vtu", nullptr))), OCTAFRONT_INPUT);
   double beta[1];
   EXPECT_NE(octafront_mesh_quality(mesh.get(), beta, nullptr, nullptr), 0);
