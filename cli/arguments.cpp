@@ -650,7 +650,18 @@ void declare_adaptation(CLI::App& command, Arguments& a) {
   group->add_option("--norm", a.norm, "The error of --from is least in the norm of L^P; 1 or more")
       ->type_name("P")
       ->capture_default_str();
+  group
+      ->add_option("--carry", a.carry,
+                   "Fields of the input that go along, by name and with commas between, or none: linear at points, "
+                   "conservative in elements; into VTU, VTK and MSH [all]")
+      ->delimiter(',')
+      ->type_name("FIELD");
   group->add_option("--save-metric", a.metric_out, "Where that metric is written, to look at: .vtu, or MEDIT's .sol")
+      ->type_name("FILE");
+  group
+      ->add_option("--surface", a.surface,
+                   "What walls stand for instead, where it is near them: the surface that was meshed, or the CAD file, "
+                   "whose true geometry they go to")
       ->type_name("FILE");
   add_length(*group, a, "--max-deviation", a.options.surface.max_deviation,
              "How far the boundary may stray from it [.4 % of the diagonal]")

@@ -40,6 +40,7 @@ struct Arguments {
   bool cohesive = false;                      ///< of the meshes: with cohesive elements where they are split
   std::string beams;                          ///< of the meshes: curves that are beams, too
   std::vector<std::string> only;              ///< places that may change
+  std::vector<std::string> carry;             ///< fields of the input that go along; empty: all, "none": none
   std::filesystem::path map_file;             ///< where old vertices and elements are now; empty: none
   std::filesystem::path regions, point_sizes, size_field;  ///< files with sizes; empty: none
   std::string metric;                                      ///< FILE[:FIELD] with a metric; empty: none

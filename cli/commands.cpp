@@ -228,44 +228,133 @@ void run_improve(Session& session) {
   finish_run(session, result.mesh, nullptr);
 }
 
+namespace {
+
+Json fit_in_json(const MetricSummary& fit) {
+  return {{"edges", fit.edges},
+          {"fitting", fit.fitting},
+          {"shortest", fit.shortest},
+          {"longest", fit.longest},
+          {"quality_min", fit.quality_min},
+          {"quality_mean", fit.quality_mean},
+          {"far", fit.far},
+          {"shortest_at", {fit.shortest_at.x, fit.shortest_at.y, fit.shortest_at.z}},
+          {"longest_at", {fit.longest_at.x, fit.longest_at.y, fit.longest_at.z}},
+          {"complexity", fit.complexity}};
+}
+
+/// Of a mesh or a surface.
+template <class Adapted>
+void tell_adapted(Session& session, const Adapted& result) {
+  const WallDeviation& d = result.deviation;
+  session.found(
+      {{"fit", fit_in_json(result.after)},
+       {"deviation",
+        {{"bound", d.bound}, {"lower", d.lower}, {"upper", d.upper}, {"at", {d.place.x, d.place.y, d.place.z}}}}});
+  session.tell(result.report);
+}
+
+/// Runs work(); its refusals name the input.
+template <class Work>
+auto on_adapted_input(const Session& session, const Work& work) {
+  try {
+    return work();
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {}", session.arguments().input.string(), error.what()));
+  }
+}
+
+/// Fields of the input that are to go along.
+std::vector<MeshField> fields_to_carry(Session& session, const TetMesh& mesh) {
+  const Arguments& a = session.arguments();
+  const bool is_default = a.carry.empty() || (a.carry.size() == 1 && a.carry[0] == "all");
+  if (a.carry.size() == 1 && a.carry[0] == "none") return {};
+  if (!some_target_holds_fields(a)) {
+    if (is_default) return {};
+    throw OptionError("--carry: no output holds fields; write .vtu, .vtk or .msh");
+  }
+  // What was not asked for is no reason to fail.
+  if (is_default && mesh.is_second_order()) return {};
+  try {
+    FieldsOfFile found =
+        read_fields(a.input.string(), mesh, is_default ? std::vector<std::string>{} : a.carry, session.context());
+    session.say_notes("fields", found.notes);
+    return std::move(found.fields);
+  } catch (const InputError& error) {
+    if (!is_default) throw;
+    session.say_notes("fields", {fmt::format("no field goes along: {}", error.what())});
+    return {};
+  }
+}
+
+std::vector<MeshField> carried_fields(Session& session, const std::vector<MeshField>& fields, const TetMesh& before,
+                                      const AdaptedMesh& adapted) {
+  std::vector<MeshField> all;
+  Json told = Json::array();
+  for (const MeshField& field : fields) {
+    session.context().report("fields", -1);
+    all.push_back(carried(field, before, adapted));
+    told.push_back(
+        {{"name", field.name}, {"of", field.of_elements ? "elements" : "points"}, {"components", field.components}});
+  }
+  if (!all.empty()) session.found({{"carried", told}});
+  return all;
+}
+
+/// Options that mean something for tetrahedra alone.
+void refuse_for_surfaces(const Arguments& a) {
+  const auto refuse = [](bool given, const char* option) {
+    if (given)
+      throw OptionError(fmt::format("{} is for meshes of tetrahedra, and the input is a surface alone", option));
+  };
+  refuse(!a.only.empty(), "--only"), refuse(!a.map_file.empty(), "--map"), refuse(!a.field.empty(), "--from");
+  refuse(!a.carry.empty(), "--carry"), refuse(!a.page.empty(), "--report"), refuse(!a.groups.empty(), "--group");
+}
+
+void adapt_surface_input(Session& session) {
+  const Arguments& a = session.arguments();
+  refuse_for_surfaces(a);
+  check_surface_targets(a);
+  const Options options = checked_options_of(session);
+  const SurfaceMesh surface = read_input(session).surface;
+  const std::optional<MetricMesh> metric = metric_asked_for(session, TetMesh{});
+  const std::optional<Domain> ground = open_ground(session);
+  const Domain* home = ground ? &*ground : nullptr;
+  AdaptedSurface result = on_adapted_input(session, [&] {
+    return metric ? adapt_surface_to_metric(surface, *metric, options, session.context(), home)
+                  : adapt_surface(surface, options, session.context(), home);
+  });
+  TetMesh triangles;
+  triangles.points = std::move(result.surface.points), triangles.boundary = std::move(result.surface.triangles);
+  triangles.patch = std::move(result.surface.patch), triangles.patch_names = std::move(result.surface.patch_names);
+  write_mesh_targets(session, std::move(triangles));
+  tell_adapted(session, result);
+  say_written(session);
+}
+
+}  // namespace
+
 void run_adapt(Session& session) {
   const Arguments& a = session.arguments();
   check_mesh_targets(a);
   check_map_target(a.map_file);
   check_page_target(a.page);
   check_metric_options(a);
+  if (!is_tet_mesh_file(a.input.string()) || !holds_tetrahedra(a.input.string(), session.context()))
+    return adapt_surface_input(session);
   const Options options = checked_options_of(session);
   const TetMesh mesh = read_mesh_input(session);
   const std::optional<MetricMesh> metric = metric_asked_for(session, mesh);
-  const auto adapted = [&] {
-    try {
-      if (metric) return adapt_to_metric(mesh, *metric, options, session.context());
-      return adapt_existing(mesh, options, session.context());
-    } catch (const InputError& error) {
-      throw InputError(fmt::format("{}: {}", a.input.string(), error.what()));
-    }
-  };
-  const AdaptedMesh result = adapted();
-  write_mesh_targets(session, result.mesh);
+  const std::vector<MeshField> fields = fields_to_carry(session, mesh);
+  const std::optional<Domain> ground = open_ground(session);
+  const Domain* home = ground ? &*ground : nullptr;
+  const AdaptedMesh result = on_adapted_input(session, [&] {
+    return metric ? adapt_to_metric(mesh, *metric, options, session.context(), home)
+                  : adapt_existing(mesh, options, session.context(), home);
+  });
+  write_mesh_targets(session, result.mesh, carried_fields(session, fields, mesh, result));
   if (!a.map_file.empty()) write_map(a.map_file, mesh, result);
-  session.found(
-      {{"fit",
-        {{"edges", result.after.edges},
-         {"fitting", result.after.fitting},
-         {"shortest", result.after.shortest},
-         {"longest", result.after.longest},
-         {"quality_min", result.after.quality_min},
-         {"quality_mean", result.after.quality_mean},
-         {"far", result.after.far},
-         {"shortest_at", {result.after.shortest_at.x, result.after.shortest_at.y, result.after.shortest_at.z}},
-         {"longest_at", {result.after.longest_at.x, result.after.longest_at.y, result.after.longest_at.z}},
-         {"complexity", result.after.complexity}}},
-       {"deviation",
-        {{"bound", result.deviation.bound},
-         {"lower", result.deviation.lower},
-         {"upper", result.deviation.upper},
-         {"at", {result.deviation.place.x, result.deviation.place.y, result.deviation.place.z}}}}});
-  session.tell(result.report);
+  tell_adapted(session, result);
   tell_worst(session, result.mesh, result.report.quality);
   finish_run(session, result.mesh, nullptr);
 }

@@ -74,4 +74,16 @@ Domain open_input(Session& session, const IntakeOptions& options) {
   }
 }
 
+std::optional<Domain> open_ground(Session& session) {
+  const Arguments& a = session.arguments();
+  if (a.surface.empty()) return std::nullopt;
+  IntakeOptions as_it_is = a.intake;
+  as_it_is.repair = IntakeOptions::Repair::kOff;
+  as_it_is.cad.keep_edges = true;
+  as_it_is.tell = [&](const IntakeNote& note) {
+    if (!note.stage.empty()) session.say_notes(note.stage, {note.text});
+  };
+  return open_domain(in_utf8({a.surface}), as_it_is, session.context());
+}
+
 }  // namespace octafront::cli

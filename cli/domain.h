@@ -5,6 +5,7 @@
 #include "session.h"
 
 #include <filesystem>
+#include <optional>
 
 namespace octafront::cli {
 
@@ -14,5 +15,8 @@ std::filesystem::path leak_file(std::filesystem::path output);
 /// Opens the input or inputs of a command; what is found and done is said, and shown where a file for that is wanted.
 /// Throws InputError, OptionError; for leaks with the way written to leak_file(), if there is an output.
 Domain open_input(Session& session, const IntakeOptions& options);
+
+/// The surface of --surface, or what a CAD file stands for, as it is: it need not be closed. None if it is not given.
+std::optional<Domain> open_ground(Session& session);
 
 }  // namespace octafront::cli

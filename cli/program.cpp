@@ -189,7 +189,9 @@ void Program::declare_surfaces() {
           "  octafront adapt in.msh --sizes new.vtk:h -o out.msh       a field on a mesh, this or another\n"
           "  octafront adapt in.msh --size 1 --size-near 0,0,0=0.5:2 -o out.vtu\n"
           "  octafront adapt in.mesh --metric in.sol -o out.mesh       other lengths in other directions\n"
-          "  octafront adapt in.vtu --from u --elements 1e5 -o out.vtu    where a field bends\n",
+          "  octafront adapt in.vtu --from u --elements 1e5 -o out.vtu    where a field bends\n"
+          "  octafront adapt in.msh --size 1 --surface part.step -o out.msh    on the geometry that was meshed\n"
+          "  octafront adapt part.stl --size 1 -o finer.ply            a surface alone\n",
           run_adapt);
   declare_mesh_input(*adapted, a);
   declare_mesh_output(*adapted, a);

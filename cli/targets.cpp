@@ -1,11 +1,13 @@
 #include "targets.h"
 
 #include <octafront/error.h>
+#include <octafront/field_files.h>
 #include <octafront/io.h>
 #include <octafront/named_groups.h>
 
 #include "terminal.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <cstdlib>
@@ -97,12 +99,13 @@ void copy_to_standard_output(const std::filesystem::path& file, const RunContext
 }
 
 /// Formats go back in their files, so that a pipe gets a file that is complete.
-std::vector<std::string> write_one(const std::filesystem::path& file, const TetMesh& mesh, const WriteOptions& options,
+std::vector<std::string> write_one(const std::filesystem::path& file, const TetMesh& mesh,
+                                   std::span<const MeshField> fields, const WriteOptions& options,
                                    const RunContext& context) {
-  if (file != kStandardOutput && !is_null(file)) return write_mesh(file.string(), mesh, context, options);
+  if (file != kStandardOutput && !is_null(file)) return write_mesh(file.string(), mesh, fields, context, options);
   const TemporaryFolder folder;
   const std::filesystem::path whole = folder.file("mesh");
-  std::vector<std::string> notes = write_mesh(whole.string(), mesh, context, options);
+  std::vector<std::string> notes = write_mesh(whole.string(), mesh, fields, context, options);
   if (is_null(file)) return notes;
   clear_progress();
   copy_to_standard_output(whole, context);
@@ -127,7 +130,34 @@ void check_mesh_targets(const Arguments& a) {
   }
 }
 
-void write_mesh_targets(Session& session, TetMesh mesh) {
+bool some_target_holds_fields(const Arguments& a) {
+  for (std::size_t i = 0; i < a.meshes.size(); ++i)
+    if (holds_fields(a.meshes[i].string(), options_of(a, i))) return true;
+  return false;
+}
+
+void check_surface_targets(const Arguments& a) {
+  constexpr std::array<std::string_view, 6> kMeshes{"vtu", "vtk", "msh", "msh22", "medit", "meshb"};
+  const auto takes = [&](const FormatInfo& info) {
+    return info.writes_surface || std::find(kMeshes.begin(), kMeshes.end(), info.name) != kMeshes.end();
+  };
+  for (std::size_t i = 0; i < a.meshes.size(); ++i) {
+    const std::string format = a.formats.empty() ? "" : a.formats[i];
+    const std::string ending = CLI::detail::to_lower(a.meshes[i].extension().string());
+    const auto is_asked = [&](const FormatInfo& info) {
+      const std::vector<std::string> endings = CLI::detail::split(std::string(info.endings), ' ');
+      return format.empty() ? std::find(endings.begin(), endings.end(), ending) != endings.end() : info.name == format;
+    };
+    for (const FormatInfo& info : known_formats())
+      if (is_asked(info) && !takes(info))
+        throw OptionError(
+            fmt::format("-o {}: the input is a surface alone, and {} holds meshes of tetrahedra; write "
+                        ".ply, .stl, .obj, .off, .vtu, .vtk, .msh or .mesh",
+                        a.meshes[i].string(), info.title));
+  }
+}
+
+void write_mesh_targets(Session& session, TetMesh mesh, std::span<const MeshField> fields) {
   const Arguments& a = session.arguments();
   std::vector<std::string> group_notes;
   for (const GroupRule& rule : a.groups)
@@ -135,7 +165,7 @@ void write_mesh_targets(Session& session, TetMesh mesh) {
   Json all = Json::array();
   for (std::size_t i = 0; i < a.meshes.size(); ++i) {
     session.context().report("writing", -1);
-    std::vector<std::string> notes = write_one(a.meshes[i], mesh, options_of(a, i), session.context());
+    std::vector<std::string> notes = write_one(a.meshes[i], mesh, fields, options_of(a, i), session.context());
     session.warn("writing", group_notes);
     session.say_notes("writing", notes);
     notes.insert(notes.begin(), group_notes.begin(), group_notes.end());

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <octafront/mesh_field.h>
 #include <octafront/tet_mesh.h>
 
 #include "session.h"
 
+#include <span>
 #include <string>
 
 namespace octafront::cli {
@@ -11,8 +13,14 @@ namespace octafront::cli {
 /// Refuses outputs of meshes that cannot be written, before any work. Throws OptionError, OutputError.
 void check_mesh_targets(const Arguments& arguments);
 
-/// Adds the groups that were asked for, writes the mesh to all outputs, and says what was lost on the way.
-void write_mesh_targets(Session& session, TetMesh mesh);
+/// Adds the groups that were asked for, writes the mesh to all outputs, with fields to those that hold some, and says
+/// what was lost on the way.
+void write_mesh_targets(Session& session, TetMesh mesh, std::span<const MeshField> fields = {});
+
+/// Whether an output holds fields on the mesh.
+bool some_target_holds_fields(const Arguments& arguments);
+/// Refuses outputs that surfaces alone are not written to. Throws OptionError.
+void check_surface_targets(const Arguments& arguments);
 
 /// To a file, or to standard output if it is called "-". Throws OutputError.
 void write_text_target(const std::filesystem::path& file, const std::string& text);

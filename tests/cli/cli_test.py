@@ -399,8 +399,58 @@ class CommandLine(unittest.TestCase):
         self.assertGreater(fit["fitting"], 0.9 * fit["edges"])
         self.assertLess(fit["longest"], 2)
         self.assertIn("a valid mesh", self.run_cli("check", out).stdout)
-        refused = self.run_cli("adapt", SAMPLES / "bracket.stl", "--size", 4, "-o", out, status=3)
-        self.assertIn("bracket.stl", refused.stderr)
+
+    def test_adapts_on_the_surface_that_is_given(self):
+        start, out, report = self.dir / "a.msh", self.dir / "b.msh", self.dir / "r.json"
+        self.run_cli("mesh", SAMPLES / "bracket.stl", "-o", start, "--size", 12)
+        self.run_cli("adapt", start, "--size", 4, "-o", out, "--surface", SAMPLES / "bracket.stl", "--json", report)
+        made = json.loads(report.read_text())
+        self.assertLess(made["deviation"]["upper"], made["deviation"]["bound"])
+        self.assertIn("a valid mesh", self.run_cli("check", out).stdout)
+        (self.dir / "away.obj").write_text("v 900 0 0\nv 901 0 0\nv 900 1 0\nf 1 2 3\n")
+        away = self.run_cli("adapt", start, "--size", 4, "-o", self.dir / "c.msh", "--surface", self.dir / "away.obj", status=3)
+        self.assertIn("near no wall", away.stderr)
+        self.assertFalse((self.dir / "c.msh").exists())
+
+    def test_adapts_a_surface_alone(self):
+        report = self.dir / "r.json"
+        for name in ("a.ply", "b.vtu", "c.msh", "d.vtk", "e.mesh"):
+            out = self.dir / name
+            self.run_cli("adapt", SAMPLES / "bracket.stl", "--size", 2, "-o", out, "--json", report)
+            made = json.loads(report.read_text())
+            self.assertGreater(made["fit"]["fitting"], 0.95 * made["fit"]["edges"])
+            again = self.run_cli("adapt", out, "--size", 5, "-o", self.dir / "again.ply", "--json", report)
+            self.assertIn("of the edges fit", again.stdout)
+        for option in (("--only", "box:0,0,0,1,1,1"), ("--map", self.dir / "m.csv"), ("--carry", "u")):
+            refused = self.run_cli("adapt", SAMPLES / "bracket.stl", "--size", 5, "-o", self.dir / "x.ply", *option, status=2)
+            self.assertIn("a surface alone", refused.stderr)
+        self.assertIn("holds meshes of tetrahedra",
+                      self.run_cli("adapt", SAMPLES / "bracket.stl", "--size", 5, "-o", self.dir / "x.inp", status=2).stderr)
+
+    def test_fields_of_the_input_go_along(self):
+        start, with_field, report = self.dir / "a.vtk", self.dir / "in.vtk", self.dir / "r.json"
+        self.run_cli("mesh", SAMPLES / "bracket.stl", "-o", start, "--size", 8, "--ascii")
+        text = start.read_text()
+        count = int(text.split("POINTS ")[1].split()[0])
+        xs = [float(w) for w in text.split("POINTS ")[1].split()[2:2 + 3 * count]][0::3]
+        field = "POINT_DATA %d\nSCALARS T double 1\nLOOKUP_TABLE default\n" % count + "\n".join(map(repr, xs)) + "\n"
+        with_field.write_text(text.partition("POINT_DATA")[0] + field)
+        out = self.dir / "b.vtk"
+        self.run_cli("adapt", with_field, "--size", 5, "-o", out, "--ascii", "--json", report)
+        self.assertEqual(json.loads(report.read_text())["carried"], [{"name": "T", "of": "points", "components": 1}])
+        made = out.read_text()
+        count = int(made.split("POINTS ")[1].split()[0])
+        xs = [float(w) for w in made.split("POINTS ")[1].split()[2:2 + 3 * count]][0::3]
+        values = [float(w) for w in made.split("T 1 %d double" % count)[1].split()[:count]]
+        self.assertLess(max(abs(x - t) for x, t in zip(xs, values)), 1)  # walls move off the old ones by little
+        self.assertLess(sorted(abs(x - t) for x, t in zip(xs, values))[count // 2], 1e-9)
+        # And again from that file, without one, and where it is not.
+        self.run_cli("adapt", out, "--size", 8, "-o", self.dir / "c.msh", "--json", report)
+        self.assertEqual(json.loads(report.read_text())["carried"], [{"name": "T", "of": "points", "components": 1}])
+        self.run_cli("adapt", out, "--size", 8, "-o", self.dir / "c.vtu", "--carry", "none", "--json", report)
+        self.assertNotIn("carried", json.loads(report.read_text()))
+        self.assertIn("no field", self.run_cli("adapt", out, "--size", 8, "-o", self.dir / "d.vtu", "--carry", "u", status=3).stderr)
+        self.run_cli("adapt", out, "--size", 8, "-o", self.dir / "d.inp", "--carry", "T", status=2)
 
     def test_adapts_only_what_is_asked(self):
         start, out, table, report = (self.dir / name for name in ("a.msh", "b.msh", "map.json", "r.json"))

@@ -79,6 +79,10 @@ bool holds_tetrahedra(const std::string& file, const RunContext& context) {
       return !io::read_medit(input).tets.empty();
     case io::MeshKind::kMeditBinary:
       return !io::read_medit_binary(input).tets.empty();
+    case io::MeshKind::kVtu:
+      return !io::read_vtu(input).tets.empty();
+    case io::MeshKind::kVtk:
+      return !io::read_vtk(input).tets.empty();
     default:
       // Of the other formats only meshes are read.
       return true;
