@@ -19,7 +19,7 @@ struct Cost {
   double per_tet, per_face;
   double of(const Estimate& e) const { return per_tet * e.tets + per_face * e.boundary_faces; }
 };
-constexpr Cost kFillSeconds{2e-6, 12e-6}, kImproveSeconds{0.6e-6, 9e-6}, kBytes{115, 900};
+constexpr Cost kFillSeconds{2e-6, 12e-6}, kImproveSeconds{0.6e-6, 9e-6}, kBytes{68, 900};
 // The same of triangles that are kept and longer than the sizes: for each size along their longest edges beyond two.
 constexpr double kFillPerSizeOfEdge = 0.1e-3, kImprovePerSizeOfEdge = 0.25e-3;
 constexpr double kBytesOfProgram = 20e6, kFileBytesPerTet = 14;

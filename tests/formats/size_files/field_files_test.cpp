@@ -12,7 +12,7 @@ namespace octafront {
 namespace {
 
 /// Two tetrahedra on both sides of a triangle, in two regions.
-TetMesh two_tets() {
+TetMesh pair_of_tets() {
   TetMesh mesh;
   mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}};
   mesh.tets = {{0, 1, 2, 3}, {1, 2, 3, 4}};
@@ -53,7 +53,7 @@ TEST_F(FieldFiles, WhatIsWrittenIsReadAgain) {
                         Case{"b.msh", "msh22", false, 2}, Case{"c.msh", "msh22", true, 2}}) {
     SCOPED_TRACE(c.name + " " + c.format);
     const std::vector<MeshField> fields = some_fields();
-    write_mesh(path_of(c.name), two_tets(), fields, {}, {.format = c.format, .ascii = c.ascii});
+    write_mesh(path_of(c.name), pair_of_tets(), fields, {}, {.format = c.format, .ascii = c.ascii});
     const TetMesh mesh = read_mesh(path_of(c.name));
     const FieldsOfFile read = read_fields(path_of(c.name), mesh);
     EXPECT_TRUE(read.notes.empty());
@@ -73,7 +73,7 @@ TEST_F(FieldFiles, WhatIsWrittenIsReadAgain) {
 }
 
 TEST_F(FieldFiles, NamedOnesAlone) {
-  write_mesh(path_of("a.vtu"), two_tets(), some_fields());
+  write_mesh(path_of("a.vtu"), pair_of_tets(), some_fields());
   const TetMesh mesh = read_mesh(path_of("a.vtu"));
   const FieldsOfFile read = read_fields(path_of("a.vtu"), mesh, {"rho"});
   ASSERT_EQ(read.fields.size(), 1u);
@@ -89,7 +89,7 @@ TEST_F(FieldFiles, NamedOnesAlone) {
 TEST_F(FieldFiles, WhatIsNotFiniteIsLeftOutOrRefused) {
   std::vector<MeshField> fields = some_fields();
   fields[0].values[2] = std::nan("");
-  write_mesh(path_of("a.vtu"), two_tets(), fields);
+  write_mesh(path_of("a.vtu"), pair_of_tets(), fields);
   const TetMesh mesh = read_mesh(path_of("a.vtu"));
   const FieldsOfFile read = read_fields(path_of("a.vtu"), mesh);
   EXPECT_EQ(read.fields.size(), 2u);
@@ -102,21 +102,21 @@ TEST_F(FieldFiles, WhatAFormatCannotHoldIsSaid) {
   const std::vector<MeshField> fields = some_fields();
   EXPECT_TRUE(holds_fields("a.vtu"));
   EXPECT_FALSE(holds_fields("a.inp"));
-  const auto notes = write_mesh(path_of("a.inp"), two_tets(), fields);
+  const auto notes = write_mesh(path_of("a.inp"), pair_of_tets(), fields);
   ASSERT_FALSE(notes.empty());
   EXPECT_NE(notes[0].find("without the fields"), std::string::npos) << notes[0];
   const std::vector<MeshField> pair{{"pair", false, 2, std::vector<double>(10, 1)}};
-  const auto of_gmsh = write_mesh(path_of("a.msh"), two_tets(), pair);
+  const auto of_gmsh = write_mesh(path_of("a.msh"), pair_of_tets(), pair);
   ASSERT_FALSE(of_gmsh.empty());
   EXPECT_NE(of_gmsh[0].find("1, 3 or 9 numbers"), std::string::npos) << of_gmsh[0];
   const std::vector<MeshField> few{{"few", false, 1, {1, 2}}};
-  EXPECT_THROW(write_mesh(path_of("few.vtu"), two_tets(), few), OutputError);
+  EXPECT_THROW(write_mesh(path_of("few.vtu"), pair_of_tets(), few), OutputError);
   EXPECT_FALSE(std::filesystem::exists(path_of("few.vtu")));
 }
 
 TEST_F(FieldFiles, FieldsOfAnotherMeshAreRefused) {
-  write_mesh(path_of("a.vtu"), two_tets(), some_fields());
-  TetMesh moved = two_tets();
+  write_mesh(path_of("a.vtu"), pair_of_tets(), some_fields());
+  TetMesh moved = pair_of_tets();
   moved.points[4].x = 2;
   EXPECT_THROW(read_fields(path_of("a.vtu"), moved), InputError);
 }
