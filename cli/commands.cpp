@@ -230,27 +230,10 @@ void run_improve(Session& session) {
 
 namespace {
 
-Json fit_in_json(const MetricSummary& fit) {
-  return {{"edges", fit.edges},
-          {"fitting", fit.fitting},
-          {"shortest", fit.shortest},
-          {"longest", fit.longest},
-          {"quality_min", fit.quality_min},
-          {"quality_mean", fit.quality_mean},
-          {"far", fit.far},
-          {"shortest_at", {fit.shortest_at.x, fit.shortest_at.y, fit.shortest_at.z}},
-          {"longest_at", {fit.longest_at.x, fit.longest_at.y, fit.longest_at.z}},
-          {"complexity", fit.complexity}};
-}
-
 /// Of a mesh or a surface.
 template <class Adapted>
 void tell_adapted(Session& session, const Adapted& result) {
-  const WallDeviation& d = result.deviation;
-  session.found(
-      {{"fit", fit_in_json(result.after)},
-       {"deviation",
-        {{"bound", d.bound}, {"lower", d.lower}, {"upper", d.upper}, {"at", {d.place.x, d.place.y, d.place.z}}}}});
+  session.found({{"fit", Json::parse(to_json(result.after))}, {"deviation", Json::parse(to_json(result.deviation))}});
   session.tell(result.report);
 }
 

@@ -44,6 +44,10 @@ struct WallDeviation {
   Vec3 place;  ///< `lower` away from the other surface
 };
 
+/// As JSON objects, keys as the fields above; deviation's place is "at".
+std::string to_json(const MetricSummary& fit);
+std::string to_json(const WallDeviation& deviation);
+
 /// A mesh that was adapted, and what was done.
 struct AdaptedMesh {
   TetMesh mesh;

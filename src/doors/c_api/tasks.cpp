@@ -134,21 +134,13 @@ void order_mesh(octafront_job& job, const TetMesh& mesh) {
   give(job, std::move(ordered.mesh));
 }
 
-Json fit_in_json(const MetricSummary& fit) {
-  return {{"edges", fit.edges},
-          {"fitting", fit.fitting},
-          {"shortest", fit.shortest},
-          {"longest", fit.longest},
-          {"quality_min", fit.quality_min},
-          {"quality_mean", fit.quality_mean},
-          {"far", fit.far},
-          {"shortest_at", {fit.shortest_at.x, fit.shortest_at.y, fit.shortest_at.z}},
-          {"longest_at", {fit.longest_at.x, fit.longest_at.y, fit.longest_at.z}},
-          {"complexity", fit.complexity}};
-}
-
-Json deviation_in_json(const WallDeviation& d) {
-  return {{"bound", d.bound}, {"lower", d.lower}, {"upper", d.upper}, {"at", {d.place.x, d.place.y, d.place.z}}};
+/// What is told of a mesh or a surface that was adapted.
+template <class Adapted>
+Json report_of(const Adapted& adapted) {
+  Json report = Json::parse(to_json(adapted.report));
+  report["fit"] = Json::parse(to_json(adapted.after)), report["fit_before"] = Json::parse(to_json(adapted.before));
+  report["deviation"] = Json::parse(to_json(adapted.deviation));
+  return report;
 }
 
 }  // namespace
@@ -160,18 +152,14 @@ const Domain* domain_of(const octafront_surface* ground) {
 }
 
 void give_adapted(octafront_job& job, AdaptedMesh adapted) {
-  job.report = Json::parse(to_json(adapted.report));
-  job.report["fit"] = fit_in_json(adapted.after), job.report["fit_before"] = fit_in_json(adapted.before);
-  job.report["deviation"] = deviation_in_json(adapted.deviation);
+  job.report = report_of(adapted);
   give(job, std::move(adapted.mesh));
   job.mesh->old_of_new = std::move(adapted.old_of_new);
   job.mesh->old_tet_of_new = std::move(adapted.old_tet_of_new);
 }
 
 void give_adapted(octafront_job& job, AdaptedSurface adapted) {
-  job.report = Json::parse(to_json(adapted.report));
-  job.report["fit"] = fit_in_json(adapted.after), job.report["fit_before"] = fit_in_json(adapted.before);
-  job.report["deviation"] = deviation_in_json(adapted.deviation);
+  job.report = report_of(adapted);
   give(job, std::move(adapted.surface));
 }
 

@@ -1,3 +1,4 @@
+#include <octafront/adapt.h>
 #include <octafront/report.h>
 
 #include <nlohmann/json.hpp>
@@ -42,6 +43,24 @@ std::string to_json(const JacobianSummary& found) {
               {"invalid", found.invalid},
               {"first", first}}
       .dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string to_json(const MetricSummary& fit) {
+  return Json{{"edges", fit.edges},
+              {"fitting", fit.fitting},
+              {"shortest", fit.shortest},
+              {"longest", fit.longest},
+              {"quality_min", fit.quality_min},
+              {"quality_mean", fit.quality_mean},
+              {"far", fit.far},
+              {"shortest_at", place(fit.shortest_at)},
+              {"longest_at", place(fit.longest_at)},
+              {"complexity", fit.complexity}}
+      .dump();
+}
+
+std::string to_json(const WallDeviation& d) {
+  return Json{{"bound", d.bound}, {"lower", d.lower}, {"upper", d.upper}, {"at", place(d.place)}}.dump();
 }
 
 std::string to_json(const std::vector<SolverFinding>& findings) {
