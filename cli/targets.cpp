@@ -7,7 +7,6 @@
 
 #include "terminal.h"
 
-#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <cstdlib>
@@ -132,28 +131,18 @@ void check_mesh_targets(const Arguments& a) {
 
 bool some_target_holds_fields(const Arguments& a) {
   for (std::size_t i = 0; i < a.meshes.size(); ++i)
-    if (holds_fields(a.meshes[i].string(), options_of(a, i))) return true;
+    if (format_for(a.meshes[i].string(), options_of(a, i)).holds.fields) return true;
   return false;
 }
 
 void check_surface_targets(const Arguments& a) {
-  constexpr std::array<std::string_view, 6> kMeshes{"vtu", "vtk", "msh", "msh22", "medit", "meshb"};
-  const auto takes = [&](const FormatInfo& info) {
-    return info.writes_surface || std::find(kMeshes.begin(), kMeshes.end(), info.name) != kMeshes.end();
-  };
   for (std::size_t i = 0; i < a.meshes.size(); ++i) {
-    const std::string format = a.formats.empty() ? "" : a.formats[i];
-    const std::string ending = CLI::detail::to_lower(a.meshes[i].extension().string());
-    const auto is_asked = [&](const FormatInfo& info) {
-      const std::vector<std::string> endings = CLI::detail::split(std::string(info.endings), ' ');
-      return format.empty() ? std::find(endings.begin(), endings.end(), ending) != endings.end() : info.name == format;
-    };
-    for (const FormatInfo& info : known_formats())
-      if (is_asked(info) && !takes(info))
-        throw OptionError(
-            fmt::format("-o {}: the input is a surface alone, and {} holds meshes of tetrahedra; write "
-                        ".ply, .stl, .obj, .off, .vtu, .vtk, .msh or .mesh",
-                        a.meshes[i].string(), info.title));
+    const FormatInfo& format = format_for(a.meshes[i].string(), options_of(a, i));
+    if (!format.holds.surfaces_alone)
+      throw OptionError(
+          fmt::format("-o {}: the input is a surface alone, and {} holds meshes of tetrahedra; write .ply, .stl, .obj, "
+                      ".off, .vtu, .vtk, .msh, .mesh or .meshb",
+                      a.meshes[i].string(), format.title));
   }
 }
 

@@ -22,12 +22,9 @@ struct FieldsOfFile {
 FieldsOfFile read_fields(const std::string& file, const TetMesh& mesh, const std::vector<std::string>& names = {},
                          const RunContext& context = {});
 
-/// Whether write_mesh() can put fields into this file: VTU, legacy VTK, Gmsh MSH 4.1 and 2.2.
-bool holds_fields(const std::string& file, const WriteOptions& options = {});
-
 /// write_mesh(), with fields on the mesh, which is linear and has no wedges and pyramids. A note says what a format
-/// cannot hold. Faces have the value of the element that they look out of, edges 0. Throws OutputError for a field of
-/// another length.
+/// cannot hold (FormatHolds::fields). Faces have the value of the element that they look out of, edges 0. Throws
+/// OutputError for a field of another length.
 std::vector<std::string> write_mesh(const std::string& file, const TetMesh& mesh, std::span<const MeshField> fields,
                                     const RunContext& context = {}, const WriteOptions& options = {});
 

@@ -176,6 +176,8 @@ struct FormatHolds {
   bool wide_cells = false;         ///< wedges and pyramids; in others they are tetrahedra
   bool curved_wide_cells = false;  ///< the same of second order
   bool cohesive = false;           ///< WriteOptions::cohesive and beams
+  bool fields = false;             ///< MeshField
+  bool surfaces_alone = false;     ///< a mesh of triangles without tetrahedra
 };
 
 /// What is known of a file format, for help texts and --format.
@@ -192,5 +194,8 @@ struct FormatInfo {
 
 /// All formats, those of surfaces first.
 std::vector<FormatInfo> known_formats();
+
+/// The one that write_mesh() would write to this file. Throws OptionError if there is none.
+const FormatInfo& format_for(const std::string& file, const WriteOptions& options = {});
 
 }  // namespace octafront

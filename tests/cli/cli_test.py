@@ -414,7 +414,7 @@ class CommandLine(unittest.TestCase):
 
     def test_adapts_a_surface_alone(self):
         report = self.dir / "r.json"
-        for name in ("a.ply", "b.vtu", "c.msh", "d.vtk", "e.mesh"):
+        for name in ("a.ply", "b.vtu", "c.msh", "d.vtk", "e.mesh", "f.meshb"):
             out = self.dir / name
             self.run_cli("adapt", SAMPLES / "bracket.stl", "--size", 2, "-o", out, "--json", report)
             made = json.loads(report.read_text())

@@ -11,9 +11,6 @@
 #include "formats/table/formats.h"
 #include "formats/table/recognize.h"
 
-#include <algorithm>
-#include <array>
-#include <string_view>
 #include <utility>
 
 #include <fmt/core.h>
@@ -115,12 +112,6 @@ const io::Format& mesh_format(const std::filesystem::path& file, const std::stri
   return *format;
 }
 
-/// The formats whose writers write fields.
-bool has_room_for_fields(const io::Format& format) {
-  constexpr std::array<std::string_view, 4> kNames{"vtu", "vtk", "msh", "msh22"};
-  return std::find(kNames.begin(), kNames.end(), format.info.name) != kNames.end();
-}
-
 void require_fitting(const std::string& file, const TetMesh& mesh, std::span<const MeshField> fields) {
   for (const MeshField& field : fields) {
     const std::size_t items = field.of_elements ? mesh.tets.size() : mesh.points.size();
@@ -158,8 +149,8 @@ void check_mesh_target(const std::string& file, const WriteOptions& options) {
   format.is_folder ? io::check_folder_writable(file) : io::check_writable(file);
 }
 
-bool holds_fields(const std::string& file, const WriteOptions& options) {
-  return has_room_for_fields(mesh_format(file, options.format));
+const FormatInfo& format_for(const std::string& file, const WriteOptions& options) {
+  return mesh_format(file, options.format).info;
 }
 
 std::vector<std::string> write_mesh(const std::string& file, const TetMesh& mesh, const RunContext& context,
@@ -182,7 +173,7 @@ std::vector<std::string> write_mesh(const std::string& file, const TetMesh& mesh
                                                                   .wide_cells = !is_wide,
                                                                   .last_points = without.diagonals});
   io::MeshOutput out(file, context, options, fields);
-  if (!fields.empty() && !has_room_for_fields(format))
+  if (!fields.empty() && !holds.fields)
     out.note(fmt::format("{} is written without the fields: VTU, VTK and MSH hold them", format.info.title));
   if (format.write_mesh == nullptr) {
     format.write_surface(out.file(), boundary_surface(mesh));

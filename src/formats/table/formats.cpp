@@ -17,10 +17,11 @@ constexpr void (*kWriteMed)(MeshOutput&, const MeshParts&) = nullptr;
 constexpr auto kWriteXdmf = kWriteMed, kWriteCgns = kWriteMed;
 #endif
 
+constexpr FormatHolds kBoundary{.surfaces_alone = true};
 /// A format of surfaces; of a mesh it takes the boundary.
 constexpr Format surface(std::string_view name, std::string_view title, std::string_view endings,
                          std::string_view carries, void (*write)(AtomicFile&, const SurfaceMesh&)) {
-  return {{name, title, endings, kYes, kYes, kNo, kYes, {}, carries, true}, write};
+  return {{name, title, endings, kYes, kYes, kNo, kYes, kBoundary, carries, true}, write};
 }
 
 constexpr Format mesh(std::string_view name, std::string_view title, std::string_view endings, bool reads,
@@ -71,6 +72,15 @@ constexpr FormatHolds kAnsys = [] {
   holds.face_sets = false;
   return holds;
 }();
+constexpr Format with_surfaces_alone(Format format) {
+  format.info.holds.surfaces_alone = true;
+  return format;
+}
+constexpr Format with_fields(Format format) {
+  format = with_surfaces_alone(format);
+  format.info.holds.fields = true;
+  return format;
+}
 constexpr Format or_text(Format format) {
   format.info.also_text = true;
   return format;
@@ -116,13 +126,13 @@ constexpr std::array kFormats{
             {},
             "facets, with markers as patches, regions and holes; read only"},
            nullptr},
-    with_wedges(or_text(mesh(
+    with_fields(with_wedges(or_text(mesh(
         "vtu", "VTU", ".vtu", kYes, binary(kAll),
-        "VTK unstructured grid, compressed or text: numbers, names and sets as arrays; beta per element", write_vtu))),
-    with_wedges(or_text(
-        mesh("msh", "Gmsh MSH 4.1", ".msh", kYes, binary(kAll), "binary or text: all as physical groups", write_msh))),
-    with_wedges(or_text(mesh("msh22", "Gmsh MSH 2.2", "", kYes, binary(without_sets(kAll)),
-                             "binary or text: regions, patches, curves as physical groups", write_msh2))),
+        "VTK unstructured grid, compressed or text: numbers, names and sets as arrays; beta per element", write_vtu)))),
+    with_fields(with_wedges(or_text(
+        mesh("msh", "Gmsh MSH 4.1", ".msh", kYes, binary(kAll), "binary or text: all as physical groups", write_msh)))),
+    with_fields(with_wedges(or_text(mesh("msh22", "Gmsh MSH 2.2", "", kYes, binary(without_sets(kAll)),
+                                         "binary or text: regions, patches, curves as physical groups", write_msh2)))),
     with_cohesive(with_wedges(mesh("abaqus", "Abaqus, CalculiX", ".inp", kYes, kSolver,
                                    "ELSET, NSET, SURFACE; numbers of at most 20 characters", write_abaqus))),
     with_wedges(mesh("nastran", "Nastran", ".bdf .nas", kYes, kSolver,
@@ -147,11 +157,12 @@ constexpr std::array kFormats{
     }(),
     with_wedges(mesh("cgns", "CGNS", ".cgns", kNo, binary(without_edges(without_sets(kAll))),
                      "sections and boundary conditions; needs HDF5", kWriteCgns)),
-    with_wedges(or_text(
-        mesh("vtk", "legacy VTK", ".vtk", kYes, binary(kAll), "as VTU, binary or text, uncompressed", write_vtk))),
-    with_linear_wedges(mesh("medit", "MEDIT", ".mesh", kYes, kNumbersOnly, "text: references", write_medit)),
-    with_linear_wedges(
-        mesh("meditb", "MEDIT binary", ".meshb", kYes, binary(kNumbersOnly), "references", write_medit_binary)),
+    with_fields(with_wedges(or_text(
+        mesh("vtk", "legacy VTK", ".vtk", kYes, binary(kAll), "as VTU, binary or text, uncompressed", write_vtk)))),
+    with_surfaces_alone(
+        with_linear_wedges(mesh("medit", "MEDIT", ".mesh", kYes, kNumbersOnly, "text: references", write_medit))),
+    with_surfaces_alone(with_linear_wedges(
+        mesh("meditb", "MEDIT binary", ".meshb", kYes, binary(kNumbersOnly), "references", write_medit_binary))),
     mesh("netgen", "Netgen", ".vol", kYes, without_sets(kAll), "materials, bcnames, cd2names", write_netgen),
     of_several_files(mesh("tetgen", "TetGen", ".ele .node", kYes, kNumbersOnly,
                           "NAME.node, .ele, .face, .edge with markers", write_tetgen)),

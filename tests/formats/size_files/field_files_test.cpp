@@ -100,8 +100,8 @@ TEST_F(FieldFiles, WhatIsNotFiniteIsLeftOutOrRefused) {
 
 TEST_F(FieldFiles, WhatAFormatCannotHoldIsSaid) {
   const std::vector<MeshField> fields = some_fields();
-  EXPECT_TRUE(holds_fields("a.vtu"));
-  EXPECT_FALSE(holds_fields("a.inp"));
+  EXPECT_TRUE(format_for("a.vtu").holds.fields);
+  EXPECT_FALSE(format_for("a.inp").holds.fields);
   const auto notes = write_mesh(path_of("a.inp"), pair_of_tets(), fields);
   ASSERT_FALSE(notes.empty());
   EXPECT_NE(notes[0].find("without the fields"), std::string::npos) << notes[0];
