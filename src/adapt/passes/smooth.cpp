@@ -87,13 +87,27 @@ class VertexMover {
     Wall wall;
   };
 
-  bool move(VertexIndex v) {
+  /// What is around a vertex; false if it may not move.
+  bool take_star(VertexIndex v, std::optional<std::uint32_t>& path) {
     const std::vector<TetIndex>& star = piece_.star(v);
     star_.assign(star.begin(), star.end());
-    const Vertex from = piece_.vertices[v];
-    std::optional<std::uint32_t> path;
-    if (from.kind != Kind::kInner && !find_walls(v, path)) return false;
+    if (piece_.vertices[v].kind != Kind::kInner && !find_walls(v, path)) return false;
     take_cells(v);
+    return true;
+  }
+
+  /// Of walls on the ground; asks for the metric there.
+  bool put(Vertex& to, const std::optional<std::uint32_t>& path) {
+    if (to.kind != Kind::kInner && !snap(to, path)) return false;
+    to.off = false;
+    guide_.ask(to);
+    return true;
+  }
+
+  bool move(VertexIndex v) {
+    std::optional<std::uint32_t> path;
+    if (!take_star(v, path)) return false;
+    const Vertex from = piece_.vertices[v];
     float had = 1;
     double lack = 0;
     for (const TetIndex t : star_) had = std::min(had, piece_.score[t]), lack += lack_of(piece_.score[t]);
@@ -104,10 +118,7 @@ class VertexMover {
     for (int k = 0; k < kTriesOfMove; ++k, step *= 0.5) {
       Vertex to = from;
       to.at = from.at + step;
-      if (from.kind != Kind::kInner && !snap(to, path)) continue;
-      to.off = false;
-      guide_.ask(to);
-      if (!is_better(to, had, lack) || !walls_stay_true(to)) continue;
+      if (!put(to, path) || !is_better(to, had, lack) || !walls_stay_true(to)) continue;
       piece_.move(v, to, star_, scores_);
       return true;
     }
@@ -115,12 +126,9 @@ class VertexMover {
   }
 
   bool move_by_trial(VertexIndex v) {
-    const std::vector<TetIndex>& star = piece_.star(v);
-    star_.assign(star.begin(), star.end());
-    const Vertex from = piece_.vertices[v];
     std::optional<std::uint32_t> path;
-    if (from.kind != Kind::kInner && !find_walls(v, path)) return false;
-    take_cells(v);
+    if (!take_star(v, path)) return false;
+    const Vertex from = piece_.vertices[v];
     Vertex best = from;
     const float had = worst_with(from, 0);
     float worst = had;
@@ -128,8 +136,7 @@ class VertexMover {
       for (const Vec3 step : steps_of(from, length)) {
         Vertex to = best;
         to.at = best.at + step;
-        if (from.kind != Kind::kInner && !snap(to, path)) continue;
-        guide_.ask(to);
+        if (!put(to, path)) continue;
         const float s = worst_with(to, worst);
         if (s > worst && walls_stay_true(to)) best = to, worst = s;
       }
