@@ -1,10 +1,11 @@
 """Does damage cost more than its place? Clean models, each damaged in every way that scripts/lib/damages.py knows, are
 meshed with default options, and compared with the undamaged model: elements, CPU time, volume, angles.
 
-Usage: bench/run.sh damage [--models N] [--after N] [--only SUBSTRING] [--kinds A,B] [--faces MOST] [--timeout SECONDS] [--lines FILE]
-                           [--program OCTAFRONT]
-The N smallest clean models of models/clean with 100 faces and more (by default 40, of 8,000 faces at most), but for the smallest that --after leaves out. Writes
-docs/measured/damage.md. --lines appends a JSON object for each run to FILE and leaves out those that are there, so that a campaign may stop and go on.
+Usage: bench/run.sh damage [--models N] [--after N] [--only SUBSTRING] [--kinds A,B] [--faces MOST] [--timeout SECONDS]
+                           [--lines FILE] [--program OCTAFRONT]
+The N smallest clean models of models/clean with 100 faces and more (by default 40, of 8,000 faces at most), but for the
+smallest that --after leaves out. Writes docs/measured/damage.md. --lines appends a JSON object for each run to FILE and
+leaves out those that are there, so that a campaign may stop and go on.
 """
 import argparse
 import json

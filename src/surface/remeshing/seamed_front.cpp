@@ -84,10 +84,12 @@ class SeamedFront : public FrontKind {
     std::vector<std::uint8_t> is_fixed(input().mesh.points.size(), 0);
     const std::vector<Curve> curves = chained_curves(input(), seamed_, sizes.now(), is_fixed).curves;
     SizeField foreseen = followed_within(work_.tolerance, curves, sizes.now());
-    if (work_.budget.is_limited())
+    if (work_.budget.is_limited()) {
       stray_within_budget(curves, sizes.now(), foreseen);
-    else if (follows_in_vain(curves, sizes.now(), foreseen))
-      return void(is_noise_ = true);
+    } else {
+      is_noise_ = follows_in_vain(curves, sizes.now(), foreseen);
+      if (is_noise_) return;
+    }
     sizes.start_with(work_.budget.affordable(foreseen, sizes.first(), work_.counts.rounds));
   }
 
