@@ -2,9 +2,8 @@
 
 #include <octafront/validity.h>
 
-#include "fill/front/fill.h"
+#include "fill/front/filled_sphere.h"
 #include "fill/front/recover_cavity.h"
-#include "support/named_surfaces.h"
 
 #include <algorithm>
 
@@ -14,34 +13,8 @@ namespace octafront {
 namespace {
 
 /// A filled sphere with a hole punched into it: the tetrahedra around one inner vertex are gone.
-struct Punctured {
-  SurfaceMesh surface = testing::icosphere(2);
-  SizeField sizes = SizeField::uniform(0.3);
-  VolumeOptions options;
-  RunContext context;
-  StageReport report;
-  Stage stage{context, report};
-  FrontTask task{sizes, options, stage};
-  TetMesh mesh;
-  std::vector<Wall> walls;
-
-  Punctured() {
-    options.core = VolumeOptions::Core::kOff;
-    mesh = fill_volume(surface, sizes, options, stage);
-    const auto center = static_cast<VertexIndex>(surface.points.size());
-    std::vector<Tet> kept;
-    for (const Tet& t : mesh.tets) {
-      const auto it = std::find(t.begin(), t.end(), center);
-      if (it == t.end()) {
-        kept.push_back(t);
-        continue;
-      }
-      // The face opposite the vertex, seen from it.
-      const auto& f = kTetFaces[static_cast<std::size_t>(it - t.begin())];
-      walls.push_back({t[f[0]], t[f[2]], t[f[1]]});
-    }
-    mesh.tets = kept;
-  }
+struct Punctured : testing::FilledSphere {
+  Punctured() : FilledSphere(2, 0.3) { punch(static_cast<VertexIndex>(surface.points.size())); }
 
   void expect_whole(WorkMesh& work) {
     TetMesh result = mesh;

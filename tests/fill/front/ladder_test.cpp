@@ -4,8 +4,7 @@
 
 #include "base/core/random.h"
 #include "base/mesh/tet_key.h"
-#include "fill/front/fill.h"
-#include "support/named_surfaces.h"
+#include "fill/front/filled_sphere.h"
 
 #include <algorithm>
 #include <utility>
@@ -22,44 +21,20 @@ void shuffle(std::vector<Item>& items, Random& random) {
 
 /// A filled sphere with holes: the tetrahedra around some inner vertices, no two of which have a common neighbour, are
 /// gone.
-struct Sieve {
-  SurfaceMesh surface = testing::icosphere(3);
-  SizeField sizes = SizeField::uniform(0.15);
-  VolumeOptions options;
-  RunContext context;
-  StageReport report;
-  Stage stage{context, report};
-  FrontTask task{sizes, options, stage};
-  TetMesh mesh;
-  std::vector<Wall> walls;
+struct Sieve : testing::FilledSphere {
   int holes = 0;
 
-  Sieve() {
-    options.core = VolumeOptions::Core::kOff;
-    mesh = fill_volume(surface, sizes, options, stage);
-    std::vector<VertexIndex> hole(mesh.points.size(), kNone);  // whose star a vertex is in
-    std::vector<std::vector<TetIndex>> star(mesh.points.size());
-    for (TetIndex t = 0; t < mesh.tets.size(); ++t)
-      for (const VertexIndex v : mesh.tets[t]) star[v].push_back(t);
-    std::vector<bool> gone(mesh.tets.size(), false);
+  Sieve() : FilledSphere(3, 0.15) {
+    std::vector<std::vector<VertexIndex>> around(mesh.points.size());
+    for (const Tet& t : mesh.tets)
+      for (const VertexIndex v : t) around[v].insert(around[v].end(), t.begin(), t.end());
+    std::vector<bool> is_used(mesh.points.size(), false);
     for (auto v = static_cast<VertexIndex>(surface.points.size()); v < mesh.points.size(); ++v) {
-      const bool is_free = std::ranges::all_of(star[v], [&](TetIndex t) {
-        return std::ranges::all_of(mesh.tets[t], [&](VertexIndex u) { return hole[u] == kNone; });
-      });
-      if (!is_free) continue;
+      if (std::ranges::any_of(around[v], [&](VertexIndex u) { return is_used[u]; })) continue;
+      for (const VertexIndex u : around[v]) is_used[u] = true;
+      punch(v);
       ++holes;
-      for (const TetIndex t : star[v]) {
-        gone[t] = true;
-        const Tet& c = mesh.tets[t];
-        for (const VertexIndex u : c) hole[u] = v;
-        const auto& f = kTetFaces[static_cast<std::size_t>(std::ranges::find(c, v) - c.begin())];
-        walls.push_back({c[f[0]], c[f[2]], c[f[1]]});
-      }
     }
-    std::vector<Tet> kept;
-    for (TetIndex t = 0; t < mesh.tets.size(); ++t)
-      if (!gone[t]) kept.push_back(mesh.tets[t]);
-    mesh.tets = std::move(kept);
   }
 
   /// Points, and tetrahedra by their names.
