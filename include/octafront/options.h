@@ -195,12 +195,13 @@ struct ImproveOptions {
   /// short is valid, but no longer the same on every machine; the report says so. Without a value the schedule runs to
   /// its end.
   std::optional<double> seconds;
-  /// What is looked at after every pass; see after_pass.
+  /// What is looked at now and then; see after_pass.
   struct Worst {
     double beta = 0, dihedral_min = 0, dihedral_max = 0;  ///< degrees; over all elements, from their coordinates
     bool positive = false;                                ///< every element, by exact sign
   };
-  /// Called before the first pass and after each one, with its name; costs about a microsecond per element each time.
+  /// Called at the start, and each time when passes have been over all pieces of the mesh (pieces), or over the places
+  /// around elements that are still poor (places), with that name; costs about a microsecond per element each time.
   std::function<void(const std::string& pass, const Worst&)> after_pass;
 };
 

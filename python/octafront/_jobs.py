@@ -18,7 +18,7 @@ class Job:
 
     progress(phase, fraction): fraction in [0, 1], or None where it is unknown; False ends the job.
     size_at(points): sizes (n,) at points (n, 3).
-    after_pass(name, worst): told of each pass of improvement.
+    after_pass(name, worst): told of the worst element each time when passes have been over the mesh.
     """
 
     def __init__(self, start, *arguments, progress=None, size_at=None, after_pass=None):

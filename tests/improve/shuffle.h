@@ -3,21 +3,17 @@
 // The same mesh, kept otherwise: what improvement makes of it must not hang on where it keeps its elements.
 
 #include "base/core/random.h"
-#include "improve/shape/edit_mesh.h"
+#include "improve/pieces/pieces.h"
 
 namespace octafront::improve {
 
-/// Changes what an EditMesh may choose freely: in which slots the tets lie, in which order free slots and numbers of
-/// new vertices are taken, which tet is named at a vertex.
-class EditMeshShuffle {
+/// Changes what a MeshOfPieces may choose freely: in which slots the tets lie, with free ones among them.
+class SlotShuffle {
  public:
-  explicit EditMeshShuffle(std::uint64_t seed) : random_(seed) {}
-  void operator()(EditMesh& mesh);
+  explicit SlotShuffle(std::uint64_t seed) : random_(seed) {}
+  void operator()(MeshOfPieces& mesh);
 
  private:
-  template <class Item>
-  void shuffle(std::vector<Item>& items);
-
   Random random_;
 };
 

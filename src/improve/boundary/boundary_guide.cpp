@@ -37,29 +37,28 @@ Edge sorted_edge(VertexIndex a, VertexIndex b) {
 
 }  // namespace
 
-BoundaryGuide::BoundaryGuide(const EditMesh& mesh, const BoundaryInput& input, const std::vector<VertexIndex>& frozen)
+BoundaryGuide::BoundaryGuide(const EditMesh& mesh, const BoundaryInput& input, const std::vector<VertexIndex>& frozen,
+                             std::shared_ptr<const BoundaryGround> ground)
     : kind_(mesh.vertices(), Kind::kInner),
       frozen_(mesh.vertices(), 0),
       pinned_(mesh.vertices(), 0),
       input_(input),
-      leeway_(input.surface, input.tree, input.bound),
-      curves_(input.surface, input.features) {
-  const std::vector<VertexIndex> here = mesh.numbers_here();
+      ground_(ground ? std::move(ground) : std::make_shared<const BoundaryGround>(input)) {
   for (VertexIndex v = 0; v < kind_.size(); ++v)
     if (mesh.on_boundary(v)) kind_[v] = Kind::kSurface;
   std::vector<std::uint8_t> valence(kind_.size(), 0);
   for (const auto& [a, b] : input.of_mesh.edges) {
-    feature_edges_.push_back(sorted_edge(here[a], here[b]));
-    for (const VertexIndex v : {here[a], here[b]})
+    feature_edges_.push_back(sorted_edge(a, b));
+    for (const VertexIndex v : {a, b})
       if (valence[v] < 3) ++valence[v];
   }
   std::sort(feature_edges_.begin(), feature_edges_.end());
   for (VertexIndex v = 0; v < kind_.size(); ++v)
     if (valence[v] != 0) kind_[v] = valence[v] == 2 ? Kind::kCurve : Kind::kFixed;
-  for (const VertexIndex v : input.of_mesh.corners) kind_[here[v]] = Kind::kFixed;
-  for (const VertexIndex v : frozen) frozen_[here[v]] = 1;
-  for (const VertexIndex v : input.frozen) frozen_[here[v]] = 1;
-  for (const VertexIndex v : input.pinned) pinned_[here[v]] = 1;
+  for (const VertexIndex v : input.of_mesh.corners) kind_[v] = Kind::kFixed;
+  for (const VertexIndex v : frozen) frozen_[v] = 1;
+  for (const VertexIndex v : input.frozen) frozen_[v] = 1;
+  for (const VertexIndex v : input.pinned) pinned_[v] = 1;
   freeze_where_regions_meet(mesh);
   if (!input.surface.sides.empty()) freeze_where_boundary_touches_itself(mesh);
   for (VertexIndex v = 0; v < kind_.size(); ++v)
@@ -70,7 +69,7 @@ BoundaryGuide::BoundaryGuide(const EditMesh& mesh, const BoundaryInput& input, c
 
 bool BoundaryGuide::is_near_home(VertexIndex v, Vec3 place, double limit) const {
   if (kind(v) == Kind::kSurface) return tree().is_within(place, limit);
-  if (kind(v) == Kind::kCurve) return curves_.nearest(place, limit).has_value();
+  if (kind(v) == Kind::kCurve) return curves().nearest(place, limit).has_value();
   const auto home = std::lower_bound(fixed_.begin(), fixed_.end(), v,
                                      [](const auto& entry, VertexIndex key) { return entry.first < key; });
   return home != fixed_.end() && home->first == v && distance(home->second, place) <= limit;
@@ -119,12 +118,6 @@ bool BoundaryGuide::is_feature_edge(VertexIndex a, VertexIndex b) const {
   return std::binary_search(feature_edges_.begin(), feature_edges_.end(), sorted_edge(a, b));
 }
 
-std::vector<Edge> BoundaryGuide::feature_edges_taken(const EditMesh& mesh) const {
-  std::vector<Edge> edges;
-  for (const auto& [a, b] : feature_edges_) edges.push_back({mesh.number_taken(a), mesh.number_taken(b)});
-  return edges;
-}
-
 void BoundaryGuide::merge_curve(VertexIndex gone, VertexIndex onto) {
   for (auto& [a, b] : feature_edges_) {
     if (a != gone && b != gone) continue;
@@ -151,7 +144,7 @@ BoundaryGuide::Truth BoundaryGuide::truth_of(std::span<const TriangleCorners> tr
 }
 
 double BoundaryGuide::near_at(Vec3 p, double edge) const {
-  return leeway_.at(p, kTrueToInput * edge);
+  return ground_->leeway.at(p, kTrueToInput * edge);
 }
 
 bool BoundaryGuide::is_true(const Truth& truth, double near) {

@@ -8,11 +8,12 @@
 // feature curves along their curve, corners nowhere. Every change is judged by how true to the input it leaves the
 // boundary.
 
-#include "base/geometry/leeway.h"
 #include "base/geometry/nearby_triangles.h"
-#include "improve/boundary/feature_curves.h"
+#include "improve/boundary/boundary_ground.h"
+#include "improve/boundary/boundary_input.h"
 #include "improve/shape/edit_mesh.h"
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <utility>
@@ -20,26 +21,12 @@
 
 namespace octafront::improve {
 
-/// The surface that the boundary of a mesh stands for; the boundary is a 2-manifold, but for edges and vertices where
-/// that of a complex touches itself: there it stays. Everything must outlive the guide.
-struct BoundaryInput {
-  const SurfaceMesh& surface;  ///< clean
-  const TriangleTree& tree;    ///< over its triangles
-  const Features& features;    ///< of it
-  const Features& of_mesh;     ///< of the boundary of the mesh, in the mesh's numbering
-  double tolerance = 0;        ///< the boundary may stray so far where that rids it of what keeps elements poor
-  /// Vertices of the mesh whose triangles stray nearly as far as they may: they do not slide, nor do their edges turn.
-  std::vector<VertexIndex> pinned = {};
-  /// Per triangle of `surface` how far the boundary may stray there, where that is less; empty: so nowhere.
-  std::span<const double> bound = {};
-  /// Vertices of the mesh that stay where they are, as do the edges around them.
-  std::vector<VertexIndex> frozen = {};
-};
-
 class BoundaryGuide {
  public:
-  /// Vertices listed in `frozen` (numbers of the mesh that was taken) stay where they are.
-  BoundaryGuide(const EditMesh& mesh, const BoundaryInput& input, const std::vector<VertexIndex>& frozen);
+  /// Vertices listed in `frozen` stay where they are, too. `ground`: of the same
+  /// surface; null: made here.
+  BoundaryGuide(const EditMesh& mesh, const BoundaryInput& input, const std::vector<VertexIndex>& frozen,
+                std::shared_ptr<const BoundaryGround> ground = nullptr);
 
   enum class Kind : std::uint8_t { kInner, kSurface, kCurve, kFixed };
   Kind kind(VertexIndex v) const { return v < kind_.size() ? kind_[v] : Kind::kInner; }
@@ -51,13 +38,13 @@ class BoundaryGuide {
   /// True if the boundary edge may turn as far as features and patches go.
   bool may_turn(VertexIndex a, VertexIndex b) const;
   bool is_feature_edge(VertexIndex a, VertexIndex b) const;
-  /// All of them, in the numbering of the mesh that `mesh` was made from.
-  std::vector<Edge> feature_edges_taken(const EditMesh& mesh) const;
+  /// All of them, smaller index first, sorted.
+  const std::vector<Edge>& feature_edges() const { return feature_edges_; }
   /// A vertex of a curve has gone to another of that curve.
   void merge_curve(VertexIndex gone, VertexIndex onto);
   double tolerance() const { return input_.tolerance; }
   /// How far the boundary may stray around p: by the tolerance, and by the leeway there.
-  double tolerance_at(Vec3 p) const { return leeway_.at(p, input_.tolerance); }
+  double tolerance_at(Vec3 p) const { return ground_->leeway.at(p, input_.tolerance); }
   /// Whether a place for a vertex of the boundary lies within `limit` of the surface or curve that the vertex is on; of
   /// a corner, of where it was.
   bool is_near_home(VertexIndex v, Vec3 place, double limit) const;
@@ -65,7 +52,8 @@ class BoundaryGuide {
 
   const SurfaceMesh& surface() const { return input_.surface; }
   const TriangleTree& tree() const { return input_.tree; }
-  const FeatureCurves& curves() const { return curves_; }
+  const FeatureCurves& curves() const { return ground_->curves; }
+  const BoundaryGround& ground() const { return *ground_; }
 
   /// How triangles of the boundary lie to the input, at the worst of them.
   struct Truth {
@@ -89,10 +77,9 @@ class BoundaryGuide {
   std::vector<Kind> kind_;
   std::vector<std::uint8_t> frozen_, pinned_;
   std::vector<std::pair<VertexIndex, Vec3>> fixed_;  ///< vertices that do not slide, and where they were; sorted
-  std::vector<Edge> feature_edges_;                  ///< in the numbering of the EditMesh, sorted
+  std::vector<Edge> feature_edges_;                  ///< smaller index first, sorted
   BoundaryInput input_;
-  Leeway leeway_;
-  FeatureCurves curves_;
+  std::shared_ptr<const BoundaryGround> ground_;
 };
 
 /// The boundary triangles around one vertex, and the vertex's freedom to move. One for each worker.

@@ -23,8 +23,8 @@ bool in_one_plane(Vec3 n, Vec3 m) {
 
 }  // namespace
 
-bool FlatWalls::hold(std::span<const TriangleCorners> around) {
-  if (!is_found_) find();
+bool FlatWalls::hold(std::span<const TriangleCorners> around) const {
+  std::call_once(is_found_, [this] { find(); });
   return std::any_of(around.begin(), around.end(), [&](const TriangleCorners& t) {
     const std::uint32_t below = tree_.nearest(centroid(t[0], t[1], t[2])).triangle;
     if (below == kNone || is_wall_[below] == 0) return false;
@@ -33,8 +33,7 @@ bool FlatWalls::hold(std::span<const TriangleCorners> around) {
   });
 }
 
-void FlatWalls::find() {
-  is_found_ = true;
+void FlatWalls::find() const {
   const EdgeTable table = make_edge_table(input_.points.size(), input_.triangles);
   const auto normal = [&](HalfEdge h) {
     const auto& [a, b, c] = input_.triangles[h / 3];

@@ -6,6 +6,7 @@
 #include "base/core/elementary.h"
 #include "base/geometry/measures.h"
 #include "base/mesh/complex.h"
+#include "improve/boundary/feature_curves.h"
 
 #include <algorithm>
 #include <cmath>

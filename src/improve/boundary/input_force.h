@@ -2,7 +2,7 @@
 
 // What of the input itself keeps elements poor, at their own scale.
 
-#include "improve/boundary/boundary_guide.h"
+#include "improve/boundary/boundary_input.h"
 
 #include <optional>
 #include <utility>

@@ -8,9 +8,9 @@
 #include "base/geometry/predicates.h"
 #include "improve/boundary/flat_walls.h"
 #include "improve/boundary/input_force.h"
-#include "improve/passes/edit_blocks.h"
 #include "improve/passes/fewest_poor.h"
 #include "improve/passes/passes.h"
+#include "improve/passes/poor_tets.h"
 #include "improve/passes/star_edit.h"
 
 #include <algorithm>
@@ -59,12 +59,12 @@ struct Link {
 class BoundaryEditor {
  public:
   BoundaryEditor(EditMesh& mesh, BoundaryGuide& guide)
-      : block_(mesh),
+      : editor_(mesh),
         mesh_(mesh),
         guide_(guide),
         live_(mesh),
-        force_(guide.input()),
-        walls_(guide.surface(), guide.tree(), guide.input().features),
+        force_(guide.ground().force),
+        walls_(guide.ground().walls),
         floor_(mesh.floor()),
         batch_(mesh.objective()),
         star_edit_(mesh) {}
@@ -93,7 +93,7 @@ class BoundaryEditor {
     std::vector<TetIndex> old_tets;
     std::vector<Tet> new_tets;
     std::vector<Shape> shapes;
-    EditBlock::BoundaryChange change;
+    MeshEditor::BoundaryChange change;
   };
 
   /// What the input itself forces stays: a wedge is not to be opened.
@@ -109,7 +109,7 @@ class BoundaryEditor {
     const Tet corners = mesh_.tet(t);
     for (const VertexIndex u : corners) {
       if (!mesh_.on_boundary(u) || !guide_.may_slide(u)) continue;
-      block_.star(u, star_);
+      editor_.star(u, star_);
       link_ = link_of(star_);
       for (const VertexIndex w : corners)
         if (w != u && mesh_.on_boundary(w)) consider(u, w);
@@ -118,7 +118,7 @@ class BoundaryEditor {
       const bool on_features = mesh_.shape(t).score < kPoorAtFeature;
       return std::any_of(corners.begin(), corners.end(), [&](VertexIndex v) { return move(v, on_features); });
     }
-    if (!block_.replace(best_.old_tets, best_.new_tets, best_.shapes, created_, &best_.change)) return false;
+    if (!editor_.replace(best_.old_tets, best_.new_tets, best_.shapes, created_, &best_.change)) return false;
     if (guide_.kind(best_.gone) == BoundaryGuide::Kind::kCurve) guide_.merge_curve(best_.gone, best_.onto);
     numbers_.clear();
     for (const HalfFace across : best_.change.gone) numbers_.push_back(across - kFirstOutside);
@@ -133,7 +133,9 @@ class BoundaryEditor {
 
   /// Moves a vertex of the boundary to where the elements around it lack least, off the input if need be.
   bool move(VertexIndex v, bool on_features) {
-    if (!may_move(v, on_features) || !block_.star(v, star_) || !star_edit_.load(v, star_)) return false;
+    if (!may_move(v, on_features)) return false;
+    editor_.star(v, star_);
+    if (!star_edit_.load(v, star_)) return false;
     link_ = link_of(star_);
     const Vec3 from = mesh_.point(v);
     take_old();
@@ -239,7 +241,7 @@ class BoundaryEditor {
           of_edge.boundary_vertices.push_back(v);
     }
     sort_out(of_edge.vertices), sort_out(of_edge.edges), sort_out(of_edge.boundary_vertices);
-    block_.star(w, star_of_other_);
+    editor_.star(w, star_of_other_);
     const Link other = link_of(star_of_other_);
     return !meet_beyond(link_.vertices, other.vertices, of_edge.vertices) &&
            !meet_beyond(link_.edges, other.edges, of_edge.edges) &&
@@ -385,12 +387,12 @@ class BoundaryEditor {
     return live_.crossings_among(new_, numbers_, 1) == 0;
   }
 
-  EditBlock block_;
+  MeshEditor editor_;
   EditMesh& mesh_;
   BoundaryGuide& guide_;
   LiveTriangles<EditMesh> live_;
-  InputForce force_;
-  FlatWalls walls_;
+  const InputForce& force_;
+  const FlatWalls& walls_;
   Floor floor_;
   ShapeBatch batch_;
   std::vector<HalfFace> star_, star_of_other_;

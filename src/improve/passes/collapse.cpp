@@ -1,9 +1,9 @@
 // Removal of a vertex by the collapse of an edge: the vertex goes to a neighbour, the elements around that edge vanish.
 // Mends what stands too close: meshes of other tools have more of it than ours.
 
-#include "improve/passes/edit_blocks.h"
 #include "improve/passes/fewest_poor.h"
 #include "improve/passes/passes.h"
+#include "improve/passes/poor_tets.h"
 #include "improve/passes/star_edit.h"
 
 #include <algorithm>
@@ -23,32 +23,30 @@ constexpr double kNever = 1e9;
 
 class Collapser {
  public:
-  Collapser(EditBlock& block, const Floor& floor, Goal goal)
-      : block_(block), mesh_(block.mesh()), floor_(floor), goal_(goal), star_(block.mesh()) {}
+  Collapser(EditMesh& mesh, Goal goal) : editor_(mesh), mesh_(mesh), floor_(mesh.floor()), goal_(goal), star_(mesh) {}
 
-  /// Each vertex of these elements once; `seen` is shared by all blocks, none of which looks at another's vertices.
-  /// Elements for which the block was too small go to `left`.
-  PassResult work_on(const std::vector<TetIndex>& tets, float threshold, std::vector<std::uint8_t>& seen,
-                     std::vector<TetIndex>& left) {
+  /// Each vertex of the elements once.
+  PassResult run(float threshold, const RunContext& context) {
     PassResult result;
+    std::vector<std::uint8_t> seen(mesh_.vertices(), 0);
     std::vector<HalfFace> star;
-    for (const TetIndex t : tets) {
-      block_.take_cut();
+    for (const TetIndex t : tets_below(mesh_, threshold)) {
+      context.check();
       for (int i = 0; i < 4; ++i) {
         if (!mesh_.alive(t) || mesh_.shape(t).score >= threshold) break;
         const VertexIndex v = mesh_.tet(t)[i];
-        if (mesh_.on_boundary(v) || seen[v] || !block_.star(v, star)) continue;
+        if (mesh_.on_boundary(v) || seen[v]) continue;
         seen[v] = 1;
         ++result.tried;
+        editor_.star(v, star);
         result.done += improve(v, star);
       }
-      if (block_.take_cut()) left.push_back(t);
     }
     return result;
   }
 
  private:
-  /// True if vertex v is gone; its star must lie in the block.
+  /// True if vertex v is gone.
   bool improve(VertexIndex v, std::span<const HalfFace> faces) {
     if (!star_.load(v, faces)) return false;
     old_worst_ = star_.current_worst();
@@ -112,10 +110,10 @@ class Collapser {
       new_tets_.push_back(t);
       shapes_.push_back(star_.batch().shape(static_cast<int>(k)));
     }
-    return block_.replace(old_tets_, new_tets_, shapes_, created_);
+    return editor_.replace(old_tets_, new_tets_, shapes_, created_);
   }
 
-  EditBlock& block_;
+  MeshEditor editor_;
   EditMesh& mesh_;
   Floor floor_;
   Goal goal_;
@@ -131,12 +129,7 @@ class Collapser {
 }  // namespace
 
 PassResult collapse_vertices(EditMesh& mesh, float threshold, Goal goal, const RunContext& context) {
-  std::vector<std::uint8_t> seen(mesh.vertices(), 0);
-  const Floor floor = mesh.floor();
-  return for_each_block(mesh, tets_below(mesh, threshold), context,
-                        [&](EditBlock& block, const std::vector<TetIndex>& tets, std::vector<TetIndex>& left) {
-                          return Collapser(block, floor, goal).work_on(tets, threshold, seen, left);
-                        });
+  return Collapser(mesh, goal).run(threshold, context);
 }
 
 }  // namespace octafront::improve

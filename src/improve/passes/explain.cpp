@@ -2,14 +2,12 @@
 
 #include "base/core/elementary.h"
 #include "base/geometry/measures.h"
-#include "improve/boundary/input_force.h"
-#include "improve/passes/edit_block.h"
+#include "improve/passes/mesh_editor.h"
 #include "improve/shape/maximize_worst.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <optional>
 
 namespace octafront::improve {
 namespace {
@@ -21,7 +19,7 @@ bool spans_boundary(const EditMesh& mesh, TetIndex t) {
 class Explainer {
  public:
   Explainer(EditMesh& mesh, float threshold)
-      : block_(mesh), mesh_(mesh), threshold_(threshold), batch_(mesh.objective()) {}
+      : editor_(mesh), mesh_(mesh), threshold_(threshold), batch_(mesh.objective()) {}
 
   Shortfall::Cause cause_by_boundary(TetIndex t) {
     if (forced_by_angle(t)) return Shortfall::kWedge;
@@ -33,7 +31,7 @@ class Explainer {
   /// Some boundary edge of t encloses an angle that alone keeps every element there below the threshold.
   bool forced_by_angle(TetIndex t) {
     for (const auto& [i, j] : kTetEdges) {
-      block_.edge_ring(t, i, j, ring_);
+      editor_.edge_ring(t, i, j, ring_);
       if (ring_.closed) continue;
       const double angle = enclosed_angle(mesh_.point(mesh_.tet(t)[i]), mesh_.point(mesh_.tet(t)[j]));
       if (std::sqrt(kSmallWeight * (1 - elementary::cos(std::min(angle, 1.0)))) < threshold_) return true;
@@ -45,7 +43,7 @@ class Explainer {
   /// apex: the short edge of a needle spoils all elements around it.
   bool forced_by_triangle(TetIndex t) {
     for (const auto& [i, j] : kTetEdges) {
-      block_.edge_ring(t, i, j, ring_);
+      editor_.edge_ring(t, i, j, ring_);
       if (ring_.closed) continue;
       const std::size_t n = ring_.tets.size();
       if (poor_behind(ring_.tets.front(), ring_.ring[1]) || poor_behind(ring_.tets.back(), ring_.ring[n - 1]))
@@ -81,7 +79,7 @@ class Explainer {
     return maximizer_.worst();
   }
 
-  EditBlock block_;
+  MeshEditor editor_;
   const EditMesh& mesh_;
   float threshold_;
   EdgeRing ring_;
@@ -118,11 +116,9 @@ Shortfall::Cause cause_by_input(const EditMesh& mesh, TetIndex t, const InputFor
 
 }  // namespace
 
-Shortfall explain_shortfall(EditMesh& mesh, float threshold, const BoundaryInput* input, const RunContext& context) {
+Shortfall explain_shortfall(EditMesh& mesh, float threshold, const InputForce* force, const RunContext& context) {
   Shortfall s;
   Explainer explainer(mesh, threshold);
-  std::optional<InputForce> force;
-  if (input) force.emplace(*input);
   for (TetIndex t = 0; t < mesh.slots(); ++t) {
     if (!mesh.alive(t) || mesh.shape(t).score >= threshold) continue;
     context.check();

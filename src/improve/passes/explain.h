@@ -2,7 +2,7 @@
 
 #include <octafront/run_context.h>
 
-#include "improve/boundary/boundary_guide.h"
+#include "improve/boundary/input_force.h"
 #include "improve/shape/edit_mesh.h"
 
 #include <array>
@@ -23,7 +23,7 @@ struct Shortfall {
   std::uint64_t poor = 0, poor_not_forced = 0;  ///< beta below .2, or a dihedral angle below 10 degrees
 };
 
-/// `input`: what the boundary was made from; null if the boundary is as the user gave it. Throws Cancelled.
-Shortfall explain_shortfall(EditMesh& mesh, float threshold, const BoundaryInput* input, const RunContext& context);
+/// `force`: of what the boundary was made from; null if the boundary is as the user gave it. Throws Cancelled.
+Shortfall explain_shortfall(EditMesh& mesh, float threshold, const InputForce* force, const RunContext& context);
 
 }  // namespace octafront::improve

@@ -2,7 +2,7 @@
 
 #include "improve/passes/passes.h"
 #include "improve/passes/star_edit.h"
-#include "improve/passes/vertex_blocks.h"
+#include "improve/passes/vertex_stars.h"
 
 #include <algorithm>
 
@@ -87,18 +87,12 @@ Vec3 LackDescent::damped_step() const {
 }
 
 PassResult relieve_vertices(EditMesh& mesh, float threshold, const RunContext& context) {
-  const VertexBlocks blocks(mesh, nullptr, [&](const Shape& s) { return s.score < threshold; });
-  const Floor floor = mesh.floor();
-  return blocks.run(context, [&](std::span<const VertexIndex> vertices) {
-    PassResult block;
-    Reliever reliever(mesh, floor);
-    for (const VertexIndex v : vertices) {
-      const auto is_poor = [&](HalfFace h) { return mesh.shape(h / 4).score < threshold; };
-      if (!std::ranges::any_of(blocks.star(v), is_poor)) continue;
-      ++block.tried;
-      block.done += reliever.run(v, blocks.star(v));
-    }
-    return block;
+  const VertexStars stars(mesh, nullptr, [&](const Shape& s) { return s.score < threshold; });
+  Reliever reliever(mesh, mesh.floor());
+  return stars.run(context, [&](VertexIndex v, std::span<const HalfFace> star) {
+    const auto is_poor = [&](HalfFace h) { return mesh.shape(h / 4).score < threshold; };
+    if (!std::ranges::any_of(star, is_poor)) return PassResult{};
+    return PassResult{1, reliever.run(v, star)};
   });
 }
 

@@ -3,9 +3,9 @@
 // whose new element is worst. (In the spirit of the insertion of Klingner & Shewchuk, "Aggressive tetrahedral mesh
 // improvement", 2007.) Vertices that end up inside the cavity go: the same step removes vertices that are in the way.
 
-#include "improve/passes/edit_blocks.h"
 #include "improve/passes/fewest_poor.h"
 #include "improve/passes/passes.h"
+#include "improve/passes/poor_tets.h"
 #include "improve/shape/maximize_worst.h"
 
 #include <algorithm>
@@ -25,24 +25,23 @@ constexpr int kHopeless = 256;
 
 class Inserter {
  public:
-  Inserter(EditBlock& block, const Floor& floor, Goal goal)
-      : block_(block), mesh_(block.mesh()), floor_(floor), goal_(goal), star_(mesh_.objective()) {}
+  Inserter(EditMesh& mesh, Goal goal)
+      : editor_(mesh), mesh_(mesh), floor_(mesh.floor()), goal_(goal), star_(mesh.objective()) {}
 
-  /// Worst first; elements for which the block was too small go to `left`.
-  PassResult work_on(const std::vector<TetIndex>& tets, float threshold, std::vector<TetIndex>& left) {
+  /// Worst first.
+  PassResult run(float threshold, const RunContext& context) {
     PassResult result;
-    std::vector<TetIndex> bad = tets;  // by their names
+    std::vector<TetIndex> bad = tets_below(mesh_, threshold);
     std::ranges::stable_sort(bad, {}, [&](TetIndex t) { return mesh_.shape(t).score; });
     int in_vain = 0;
     for (const TetIndex t : bad) {
+      context.check();
       if (in_vain == kHopeless) break;
       if (!mesh_.alive(t) || mesh_.shape(t).score >= threshold) continue;
       ++result.tried;
-      block_.take_cut();
       const bool done = improve(t);
       result.done += done;
       in_vain = done ? 0 : in_vain + 1;
-      if (!done && block_.take_cut()) left.push_back(t);
     }
     return result;
   }
@@ -129,14 +128,13 @@ class Inserter {
     int worst = -1;
     for (int i = 0; i < star_.size; ++i)
       if (!is_outside(mesh_.across(faces_[i])) && (worst < 0 || star_.quality[i] < star_.quality[worst])) worst = i;
-    const TetIndex behind = worst < 0 ? kNone : block_.behind(faces_[worst]);
+    const TetIndex behind = worst < 0 ? kNone : editor_.behind(faces_[worst]);
     if (behind != kNone) tets_.push_back(behind);
     return behind != kNone;
   }
 
   bool commit(Vec3 p) {
-    const VertexIndex v = block_.add_vertex(p, mesh_.tet(tets_[0])[0], faces_.size());
-    if (v == kNone) return false;
+    const VertexIndex v = editor_.add_vertex(p);
     new_tets_.clear();
     shapes_.clear();
     for (std::size_t k = 0; k < faces_.size(); ++k) {
@@ -145,10 +143,10 @@ class Inserter {
       new_tets_.push_back({v, c[f[0]], c[f[1]], c[f[2]]});
       shapes_.push_back(star_.shape(static_cast<int>(k)));
     }
-    return block_.replace(tets_, new_tets_, shapes_, created_);
+    return editor_.replace(tets_, new_tets_, shapes_, created_);
   }
 
-  EditBlock& block_;
+  MeshEditor editor_;
   EditMesh& mesh_;
   Floor floor_;
   Goal goal_;
@@ -167,13 +165,7 @@ class Inserter {
 }  // namespace
 
 PassResult insert_vertices(EditMesh& mesh, float threshold, Goal goal, const RunContext& context) {
-  const Floor floor = mesh.floor();
-  return for_each_block(
-      mesh, tets_below(mesh, threshold), context,
-      [&](EditBlock& block, const std::vector<TetIndex>& tets, std::vector<TetIndex>& left) {
-        return Inserter(block, floor, goal).work_on(tets, threshold, left);
-      },
-      true);
+  return Inserter(mesh, goal).run(threshold, context);
 }
 
 }  // namespace octafront::improve

@@ -1,6 +1,6 @@
 #include "improve/passes/passes.h"
 #include "improve/passes/star_edit.h"
-#include "improve/passes/vertex_blocks.h"
+#include "improve/passes/vertex_stars.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,7 @@
 namespace octafront::improve {
 namespace {
 
-/// Mean of the neighbours of a vertex, each counted once, weighted by the length of the edge to it. Blocks of vertices
-/// may use it in parallel: what it marks are a vertex's neighbours, which lie in its block.
+/// Mean of the neighbours of a vertex, each counted once, weighted by the length of the edge to it.
 class NeighbourMean {
  public:
   explicit NeighbourMean(const EditMesh& mesh) : mesh_(mesh), seen_(mesh.vertices(), kNone) {}
@@ -60,24 +59,19 @@ bool allowed(const EditMesh& mesh, const StarEdit& star, MoveRule rule) {
 PassResult laplacian_sweeps(EditMesh& mesh, int sweeps, double relaxation, MoveRule rule, const RunContext& context) {
   PassResult result;
   const bool all = rule == MoveRule::kWorstRises;
-  const VertexBlocks blocks(mesh, nullptr, [all](const Shape& s) { return all || s.beta <= kGoodEnough; });
+  const VertexStars stars(mesh, nullptr, [all](const Shape& s) { return all || s.beta <= kGoodEnough; });
   const Floor floor = mesh.floor();
+  StarEdit edit(mesh);
   for (int sweep = 0; sweep < sweeps; ++sweep) {
     NeighbourMean mean(mesh);  // anew each time: it knows the last vertex that asked, not the sweep
-    result += blocks.run(context, [&](std::span<const VertexIndex> vertices) {
-      PassResult block;
-      StarEdit star(mesh);
-      for (const VertexIndex v : vertices) {
-        if (!all && is_good_enough(mesh, blocks.star(v))) continue;
-        if (!star.load(v, blocks.star(v))) continue;
-        ++block.tried;
-        const Vec3 p = mesh.point(v);
-        star.evaluate(p + relaxation * (mean(v, star.faces()) - p));
-        if (!allowed(mesh, star, rule) || !star.acceptable(floor)) continue;
-        star.commit();
-        ++block.done;
-      }
-      return block;
+    result += stars.run(context, [&](VertexIndex v, std::span<const HalfFace> star) -> PassResult {
+      if (!all && is_good_enough(mesh, star)) return {};
+      if (!edit.load(v, star)) return {};
+      const Vec3 p = mesh.point(v);
+      edit.evaluate(p + relaxation * (mean(v, star) - p));
+      if (!allowed(mesh, edit, rule) || !edit.acceptable(floor)) return {1, 0};
+      edit.commit();
+      return {1, 1};
     });
   }
   return result;

@@ -5,7 +5,7 @@
 
 #include "improve/passes/passes.h"
 #include "improve/passes/star_edit.h"
-#include "improve/passes/vertex_blocks.h"
+#include "improve/passes/vertex_stars.h"
 
 #include <algorithm>
 #include <array>
@@ -108,17 +108,11 @@ class MeanSmoother {
 
 PassResult smooth_mean(EditMesh& mesh, int sweeps, const RunContext& context, const BoundaryGuide* guide) {
   PassResult result;
-  const VertexBlocks blocks(mesh, guide, [](const Shape& s) { return s.beta <= kGoodEnough; });
-  const Floor floor = mesh.floor();
+  const VertexStars stars(mesh, guide, [](const Shape& s) { return s.beta <= kGoodEnough; });
+  MeanSmoother smoother(mesh, mesh.floor(), guide);
   for (int sweep = 0; sweep < sweeps; ++sweep)
-    result += blocks.run(context, [&](std::span<const VertexIndex> vertices) {
-      PassResult block;
-      MeanSmoother smoother(mesh, floor, guide);
-      for (const VertexIndex v : vertices) {
-        ++block.tried;
-        block.done += smoother.run(v, blocks.star(v));
-      }
-      return block;
+    result += stars.run(context, [&](VertexIndex v, std::span<const HalfFace> star) {
+      return PassResult{1, smoother.run(v, star)};
     });
   return result;
 }

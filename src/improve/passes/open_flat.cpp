@@ -4,8 +4,8 @@
 // inside the prism does. In walls so thin scores are near 0 everywhere; so what counts is by how much they differ.
 
 #include "base/geometry/measures.h"
-#include "improve/passes/edit_blocks.h"
 #include "improve/passes/passes.h"
+#include "improve/passes/poor_tets.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,8 +23,7 @@ constexpr float kTimesBetter = 4;
 
 class FlatOpener {
  public:
-  FlatOpener(EditBlock& block, const Floor& floor)
-      : block_(block), mesh_(block.mesh()), floor_(floor), star_(mesh_.objective()) {}
+  explicit FlatOpener(EditMesh& mesh) : editor_(mesh), mesh_(mesh), floor_(mesh.floor()), star_(mesh.objective()) {}
 
   /// True if tet t is flat, and it and others around one of its edges were replaced by the star of a new vertex.
   bool improve(TetIndex t) {
@@ -51,7 +50,7 @@ class FlatOpener {
   bool is_flat(TetIndex t) {
     double most = 0;
     for (HalfFace i = 0; i < 4; ++i)
-      if (const TetIndex behind = block_.behind(4 * t + i); behind != kNone) most = std::max(most, volume(behind));
+      if (const TetIndex behind = editor_.behind(4 * t + i); behind != kNone) most = std::max(most, volume(behind));
     return volume(t) < kFlatPart * most;
   }
 
@@ -59,7 +58,8 @@ class FlatOpener {
   /// the boundary.
   bool load_star(TetIndex t, int edge) {
     const auto [i, j] = kTetEdges[edge];
-    if (!block_.edge_ring(t, i, j, ring_) || !ring_.closed || ring_.ring.size() > kLongestRing) return false;
+    editor_.edge_ring(t, i, j, ring_);
+    if (!ring_.closed || ring_.ring.size() > kLongestRing) return false;
     const VertexIndex a = mesh_.tet(t)[i], b = mesh_.tet(t)[j];
     apex_ = mesh_.point(a) + mesh_.point(b);
     for (const VertexIndex v : ring_.ring) apex_ += mesh_.point(v);
@@ -85,18 +85,17 @@ class FlatOpener {
   }
 
   bool commit() {
-    const VertexIndex v = block_.add_vertex(apex_, faces_[0][0], faces_.size());
-    if (v == kNone) return false;
+    const VertexIndex v = editor_.add_vertex(apex_);
     new_tets_.clear();
     shapes_.clear();
     for (std::size_t k = 0; k < faces_.size(); ++k) {
       new_tets_.push_back({v, faces_[k][0], faces_[k][1], faces_[k][2]});
       shapes_.push_back(star_.shape(static_cast<int>(k)));
     }
-    return block_.replace(ring_.tets, new_tets_, shapes_, created_);
+    return editor_.replace(ring_.tets, new_tets_, shapes_, created_);
   }
 
-  EditBlock& block_;
+  MeshEditor editor_;
   EditMesh& mesh_;
   Floor floor_;
   ShapeBatch star_;
@@ -111,14 +110,8 @@ class FlatOpener {
 }  // namespace
 
 PassResult open_flat_elements(EditMesh& mesh, const RunContext& context) {
-  const Floor floor = mesh.floor();
-  return for_each_block(
-      mesh, tets_below(mesh, kFlatScore), context,
-      [&](EditBlock& block, const std::vector<TetIndex>& tets, std::vector<TetIndex>& left) {
-        FlatOpener opener(block, floor);
-        return improve_each(opener, block, tets, kFlatScore, left);
-      },
-      true);
+  FlatOpener opener(mesh);
+  return improve_each(opener, mesh, kFlatScore, context);
 }
 
 }  // namespace octafront::improve

@@ -1,5 +1,5 @@
-#include "improve/passes/edit_blocks.h"
 #include "improve/passes/passes.h"
+#include "improve/passes/poor_tets.h"
 #include "improve/passes/star_edit.h"
 #include "improve/shape/maximize_worst.h"
 
@@ -16,25 +16,25 @@ constexpr double kPrice = 0.1;
 
 class WorstOptimizer {
  public:
-  /// `seen`: vertices that were looked at, by any block: none looks at another's.
-  WorstOptimizer(EditBlock& block, const BoundaryGuide* guide, float threshold, const Floor& floor,
-                 std::vector<std::uint8_t>& seen)
-      : block_(block),
-        mesh_(block.mesh()),
+  WorstOptimizer(EditMesh& mesh, const BoundaryGuide* guide, float threshold)
+      : editor_(mesh),
+        mesh_(mesh),
         guide_(guide),
         threshold_(threshold),
-        floor_(floor),
-        star_(block.mesh()),
-        seen_(seen) {
+        floor_(mesh.floor()),
+        star_(mesh),
+        seen_(mesh.vertices(), 0) {
     if (guide) sliding_.emplace(mesh_, *guide);
   }
 
+  /// Each vertex once.
   PassResult around(TetIndex t) {
     PassResult result;
     for (const VertexIndex v : mesh_.tet(t)) {
       const bool slides = mesh_.on_boundary(v);
-      if (seen_[v] || (slides && !(guide_ && guide_->may_slide(v))) || !block_.star(v, walked_)) continue;
+      if (seen_[v] || (slides && !(guide_ && guide_->may_slide(v)))) continue;
       seen_[v] = 1;
+      editor_.star(v, walked_);
       if (!star_.load(v, walked_) || star_.current_worst() >= threshold_) continue;
       ++result.tried;
       result.done += slides ? slide(v) : move(v);
@@ -66,7 +66,7 @@ class WorstOptimizer {
     return true;
   }
 
-  EditBlock& block_;
+  MeshEditor editor_;
   EditMesh& mesh_;
   const BoundaryGuide* guide_;
   float threshold_;
@@ -75,26 +75,19 @@ class WorstOptimizer {
   std::optional<SlidingVertex> sliding_;
   WorstMaximizer maximizer_;
   std::vector<HalfFace> walked_;
-  std::vector<std::uint8_t>& seen_;
+  std::vector<std::uint8_t> seen_;  ///< vertices that were looked at
 };
 
 }  // namespace
 
 PassResult optimize_vertices(EditMesh& mesh, float threshold, const RunContext& context, const BoundaryGuide* guide) {
-  std::vector<std::uint8_t> seen(mesh.vertices(), 0);
-  const Floor floor = mesh.floor();
-  return for_each_block(mesh, tets_below(mesh, threshold), context,
-                        [&](EditBlock& block, const std::vector<TetIndex>& tets, std::vector<TetIndex>& left) {
-                          PassResult result;
-                          WorstOptimizer optimizer(block, guide, threshold, floor, seen);
-                          for (const TetIndex t : tets) {
-                            if (mesh.shape(t).score >= threshold) continue;
-                            block.take_cut();
-                            result += optimizer.around(t);
-                            if (block.take_cut()) left.push_back(t);
-                          }
-                          return result;
-                        });
+  PassResult result;
+  WorstOptimizer optimizer(mesh, guide, threshold);
+  for (const TetIndex t : tets_below(mesh, threshold)) {
+    context.check();
+    if (mesh.shape(t).score < threshold) result += optimizer.around(t);
+  }
+  return result;
 }
 
 }  // namespace octafront::improve

@@ -28,6 +28,9 @@ struct PassResult {
   }
 };
 
+/// Passes ask whether to stop after so many places.
+inline constexpr std::size_t kBetweenChecks = 64;
+
 /// When a vertex may go to where the Laplacian wants it.
 enum class MoveRule {
   kWorstRises,  ///< the worst beta around the vertex must rise (the paper's smoothing)

@@ -5,9 +5,9 @@
 
 #include "base/geometry/measures.h"
 #include "base/geometry/predicates.h"
-#include "improve/passes/edit_blocks.h"
 #include "improve/passes/fewest_poor.h"
 #include "improve/passes/passes.h"
+#include "improve/passes/poor_tets.h"
 
 #include <algorithm>
 #include <array>
@@ -22,7 +22,7 @@ struct Refill {
   std::vector<Tet> new_tets;
   std::vector<Shape> shapes;
   float gain = 0;
-  std::optional<EditBlock::BoundaryChange> turn;  ///< where the removed edge lies on the boundary
+  std::optional<MeshEditor::BoundaryChange> turn;  ///< where the removed edge lies on the boundary
 
   void clear() {
     old_tets.clear();
@@ -44,8 +44,8 @@ constexpr float kWorthOfNothing = 0.6f;
 
 class Reconnector {
  public:
-  Reconnector(EditBlock& block, const Floor& floor, Goal goal, const BoundaryGuide* guide)
-      : block_(block), mesh_(block.mesh()), floor_(floor), goal_(goal), guide_(guide), batch_(mesh_.objective()) {}
+  Reconnector(EditMesh& mesh, Goal goal, const BoundaryGuide* guide)
+      : editor_(mesh), mesh_(mesh), floor_(mesh.floor()), goal_(goal), guide_(guide), batch_(mesh.objective()) {}
 
   /// Makes the best change there is at tet t, of those where t is the worst element concerned; the tets made are in
   /// created(). False if none is better.
@@ -60,7 +60,7 @@ class Reconnector {
     if (guide_ && goal_ == Goal::kWorst)
       for (const auto& [i, j] : kTetEdges) try_boundary_edge(t, i, j);
     if (best_.old_tets.empty()) return false;
-    return block_.replace(best_.old_tets, best_.new_tets, best_.shapes, created_, best_.turn ? &*best_.turn : nullptr);
+    return editor_.replace(best_.old_tets, best_.new_tets, best_.shapes, created_, best_.turn ? &*best_.turn : nullptr);
   }
 
   const std::vector<TetIndex>& created() const { return created_; }
@@ -104,7 +104,7 @@ class Reconnector {
 
   void try_edge(TetIndex t, int i, int j) {
     const VertexIndex a = mesh_.tet(t)[i], b = mesh_.tet(t)[j];
-    if (!block_.edge_ring_where_worst(t, i, j, longest_, ring_)) return;
+    if (!editor_.edge_ring_where_worst(t, i, j, longest_, ring_)) return;
     remove_edge(a, b);
   }
 
@@ -142,7 +142,8 @@ class Reconnector {
   void try_boundary_edge(TetIndex t, int i, int j) {
     const VertexIndex a = mesh_.tet(t)[i], b = mesh_.tet(t)[j];
     if (!mesh_.on_boundary(a) || !mesh_.on_boundary(b) || !guide_->may_turn(a, b)) return;
-    if (!block_.edge_ring(t, i, j, ring_) || ring_.closed || ring_.ring.size() > kLongestRing) return;
+    editor_.edge_ring(t, i, j, ring_);
+    if (ring_.closed || ring_.ring.size() > kLongestRing) return;
     for (const TetIndex r : ring_.tets)
       if (mesh_.worse(r, t)) return;
     const auto turn = turn_of(a, b);
@@ -161,7 +162,7 @@ class Reconnector {
   }
 
   /// The boundary after the removal of its edge ab; nullopt if the mesh would not stay valid, or the boundary true.
-  std::optional<EditBlock::BoundaryChange> turn_of(VertexIndex a, VertexIndex b) {
+  std::optional<MeshEditor::BoundaryChange> turn_of(VertexIndex a, VertexIndex b) {
     const VertexIndex c = ring_.ring.front(), d = ring_.ring.back();
     if (guide_->is_frozen(c) || guide_->is_frozen(d)) return std::nullopt;
     const HalfFace first = boundary_behind(ring_.tets.front(), ring_.ring[1]);
@@ -174,7 +175,7 @@ class Reconnector {
       for (const TriangleCorners& y : after)
         if (!faces_alike(x, y)) return std::nullopt;
     if (!guide_->keeps_truth(before, after)) return std::nullopt;
-    return EditBlock::BoundaryChange{{first, second}, {{first, {c, d, a}}, {second, {d, c, b}}}};
+    return MeshEditor::BoundaryChange{{first, second}, {{first, {c, d, a}}, {second, {d, c, b}}}};
   }
 
   HalfFace boundary_behind(TetIndex t, VertexIndex opposite) const {
@@ -192,7 +193,7 @@ class Reconnector {
   /// True if c and d are joined by an edge that would get a second fan of elements, or of boundary triangles: one that
   /// is there already, or, where a single tet goes and leaves its edge cd behind, one that lies on the boundary.
   bool is_edge_beyond_ring(VertexIndex c, VertexIndex d) {
-    if (!block_.star(c, star_)) return true;
+    editor_.star(c, star_);
     for (const HalfFace h : star_) {
       const TetIndex t = h / 4;
       const Tet& corners = mesh_.tet(t);
@@ -255,7 +256,7 @@ class Reconnector {
   }
 
   void try_face(TetIndex t, int i) {
-    const TetIndex behind = block_.behind(4 * t + i);
+    const TetIndex behind = editor_.behind(4 * t + i);
     if (behind == kNone || mesh_.worse(behind, t)) return;
     const VertexIndex a = mesh_.tet(t)[i], b = mesh_.tet(behind)[mesh_.across(4 * t + i) % 4];
     const auto& f = kTetFaces[i];
@@ -276,7 +277,7 @@ class Reconnector {
     best_.gain = after - before;
   }
 
-  EditBlock& block_;
+  MeshEditor editor_;
   EditMesh& mesh_;
   Floor floor_;
   Goal goal_;
@@ -297,12 +298,8 @@ class Reconnector {
 
 PassResult reconnect(EditMesh& mesh, float threshold, Goal goal, const RunContext& context,
                      const BoundaryGuide* guide) {
-  const Floor floor = mesh.floor();
-  return for_each_block(mesh, tets_below(mesh, threshold), context,
-                        [&](EditBlock& block, const std::vector<TetIndex>& tets, std::vector<TetIndex>& left) {
-                          Reconnector reconnector(block, floor, goal, guide);
-                          return improve_each(reconnector, block, tets, threshold, left);
-                        });
+  Reconnector reconnector(mesh, goal, guide);
+  return improve_each(reconnector, mesh, threshold, context);
 }
 
 }  // namespace octafront::improve

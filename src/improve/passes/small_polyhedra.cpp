@@ -2,8 +2,8 @@
 // from the same vertices as well as a search can. It finds changes that no row of flips reaches without getting worse
 // on the way.
 
-#include "improve/passes/edit_blocks.h"
 #include "improve/passes/passes.h"
+#include "improve/passes/poor_tets.h"
 #include "improve/shape/polyhedron_search.h"
 
 #include <algorithm>
@@ -19,8 +19,8 @@ constexpr std::array<std::size_t, 2> kCorners{8, PolyhedronSearch::kMostCorners}
 
 class PolyhedronReconnector {
  public:
-  PolyhedronReconnector(EditBlock& block, const Floor& floor)
-      : block_(block), mesh_(block.mesh()), floor_(floor), search_(mesh_.objective()) {}
+  explicit PolyhedronReconnector(EditMesh& mesh)
+      : editor_(mesh), mesh_(mesh), floor_(mesh.floor()), search_(mesh.objective()) {}
 
   /// True if tet t and others around it were replaced by better ones; those are in created().
   bool improve(TetIndex t) {
@@ -54,7 +54,7 @@ class PolyhedronReconnector {
           if (is_outside(across) || holds(across / 4)) continue;
           const bool free = is_corner(mesh_.tet(across / 4)[across % 4]);
           if (!free && (next_is_free || corners_.size() >= most_corners)) continue;
-          const TetIndex behind = block_.behind(4 * t + i);
+          const TetIndex behind = editor_.behind(4 * t + i);
           if (behind == kNone) continue;
           if (next == kNone || free > next_is_free || mesh_.worse(behind, next)) next = behind, next_is_free = free;
         }
@@ -94,12 +94,12 @@ class PolyhedronReconnector {
       for (int k = 0; k < 4; ++k) t[k] = corners_[m.corners[k]];
       shapes_.push_back(m.shape);
     }
-    return block_.replace(tets_, new_tets_, shapes_, created_);
+    return editor_.replace(tets_, new_tets_, shapes_, created_);
   }
 
   static constexpr std::size_t kMostTets = 24;
 
-  EditBlock& block_;
+  MeshEditor editor_;
   EditMesh& mesh_;
   Floor floor_;
   PolyhedronSearch search_;
@@ -114,12 +114,8 @@ class PolyhedronReconnector {
 }  // namespace
 
 PassResult reconnect_small_polyhedra(EditMesh& mesh, float threshold, const RunContext& context) {
-  const Floor floor = mesh.floor();
-  return for_each_block(mesh, tets_below(mesh, threshold), context,
-                        [&](EditBlock& block, const std::vector<TetIndex>& tets, std::vector<TetIndex>& left) {
-                          PolyhedronReconnector reconnector(block, floor);
-                          return improve_each(reconnector, block, tets, threshold, left);
-                        });
+  PolyhedronReconnector reconnector(mesh);
+  return improve_each(reconnector, mesh, threshold, context);
 }
 
 }  // namespace octafront::improve

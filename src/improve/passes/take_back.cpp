@@ -1,5 +1,5 @@
 #include "base/geometry/self_intersection.h"
-#include "improve/passes/edit_blocks.h"
+#include "improve/passes/mesh_editor.h"
 #include "improve/passes/passes.h"
 #include "improve/passes/star_edit.h"
 
@@ -35,11 +35,11 @@ std::vector<std::uint8_t> beside_crossings(const EditMesh& mesh, int around) {
 }
 
 /// Takes a vertex back as far as the elements around it allow.
-bool take_back(EditBlock& block, StarEdit& star, VertexIndex v, Vec3 home, const Floor& floor,
-               std::vector<HalfFace>& walked) {
-  EditMesh& mesh = block.mesh();
-  if (!block.star(v, walked) || !star.load(v, walked)) return false;
-  const Vec3 p = mesh.point(v);
+bool take_back(MeshEditor& editor, StarEdit& star, VertexIndex v, Vec3 home, const Floor& floor) {
+  std::vector<HalfFace> walked;
+  editor.star(v, walked);
+  if (!star.load(v, walked)) return false;
+  const Vec3 p = editor.mesh().point(v);
   for (const double step : kPartsOfWayBack) {
     const Vec3 to = step == 1 ? home : p + (home - p) * step;
     star.evaluate(to);
@@ -59,35 +59,15 @@ TakenBack take_back_crossings(EditMesh& mesh, std::span<const Vec3> home, const 
     std::vector<std::uint8_t> near = beside_crossings(mesh, round);
     if (std::find(near.begin(), near.end(), 1) == near.end()) return result;
     if (round == kTakeBackRounds) break;
-    // Each vertex by the first of its tets, by name.
-    std::vector<TetIndex> first(near.size(), kNone), tets;
-    EditBlock whole(mesh);
-    std::vector<HalfFace> around;
+    context.check();
+    const Floor floor = mesh.floor();
+    MeshEditor editor(mesh);
+    StarEdit star(mesh);
     for (VertexIndex v = 0; v < near.size(); ++v) {
       if (!near[v] || !guide.may_slide(v) || mesh.point(v) == home[v]) continue;
-      whole.star(v, around);
-      first[v] = around[0] / 4;
-      tets.push_back(first[v]);
+      ++result.pass.tried;
+      result.pass.done += take_back(editor, star, v, home[v], floor);
     }
-    std::sort(tets.begin(), tets.end());
-    tets.erase(std::unique(tets.begin(), tets.end()), tets.end());
-    const Floor floor = mesh.floor();
-    result.pass += for_each_block(
-        mesh, tets, context, [&](EditBlock& block, const std::vector<TetIndex>& of_block, std::vector<TetIndex>& left) {
-          PassResult done;
-          StarEdit star(mesh);
-          std::vector<HalfFace> walked;
-          for (const TetIndex t : of_block) {
-            block.take_cut();
-            for (const VertexIndex v : mesh.tet(t)) {
-              if (first[v] != t) continue;
-              ++done.tried;
-              done.done += take_back(block, star, v, home[v], floor, walked);
-            }
-            if (block.take_cut()) left.push_back(t);
-          }
-          return done;
-        });
   }
   const std::vector<std::uint8_t> near = beside_crossings(mesh, 1);
   for (VertexIndex v = 0; v < near.size(); ++v)

@@ -2,19 +2,25 @@
 
 #include <octafront/quality.h>
 
+#include "base/core/elementary.h"
 #include "base/core/fixed_point.h"
+#include "base/core/function_ref.h"
 #include "base/core/parallel.h"
-#include "base/core/stage_timer.h"
 #include "base/core/validate.h"
 #include "base/geometry/predicates.h"
 #include "improve/passes/explain.h"
 #include "improve/passes/fewest_poor.h"
 #include "improve/passes/passes.h"
+#include "improve/pieces/pieces.h"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
+#include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <thread>
 #include <utility>
 
 #include <fmt/core.h>
@@ -33,63 +39,89 @@ class Stopwatch {
 };
 
 /// From the coordinates, so that it checks what the passes believe of the elements.
-ImproveOptions::Worst worst_of(const EditMesh& mesh) {
+ImproveOptions::Worst worst_of(const MeshOfPieces& mesh) {
   ImproveOptions::Worst worst{2, 180, 0, true};
-  for (TetIndex t = 0; t < mesh.slots(); ++t) {
-    if (!mesh.alive(t)) continue;
-    const Tet& c = mesh.tet(t);
-    const Vec3 a = mesh.point(c[0]), b = mesh.point(c[1]), p = mesh.point(c[2]), q = mesh.point(c[3]);
+  mesh.for_each_tet([&](const Tet& c) {
+    const auto points = mesh.points();
+    const Vec3 a = points[c[0]], b = points[c[1]], p = points[c[2]], q = points[c[3]];
     worst.positive &= orient3d(a, b, p, q) > 0;
     worst.beta = std::min(worst.beta, radius_ratio(a, b, p, q));
     for (const double angle : dihedral_angles(a, b, p, q)) {
       worst.dihedral_min = std::min(worst.dihedral_min, angle);
       worst.dihedral_max = std::max(worst.dihedral_max, angle);
     }
-  }
+  });
   return worst;
 }
 
-/// Runs passes and notes what each one did.
+/// What passes of one name did, in all pieces.
+struct PassTally {
+  const char* what;
+  PassResult result;
+};
+
+/// What was done to one piece, or to all.
+struct Tally {
+  std::vector<PassTally> passes;  ///< in the order in which their names came up
+  std::uint64_t boundary_edits = 0;
+  double largest_move = 0;
+
+  void add(const char* what, const PassResult& result) {
+    const auto found = std::ranges::find(passes, std::string_view(what), &PassTally::what);
+    if (found == passes.end())
+      passes.push_back({what, result});
+    else
+      found->result += result;
+  }
+  Tally& operator+=(const Tally& o) {
+    for (const PassTally& pass : o.passes) add(pass.what, pass.result);
+    boundary_edits += o.boundary_edits;
+    largest_move = std::max(largest_move, o.largest_move);
+    return *this;
+  }
+};
+
+/// What all workers have in common.
+struct Setting {
+  const ImproveOptions& options;
+  const RunContext& context;
+  const Stopwatch clock{};
+  std::atomic<bool> late{false};
+};
+
+/// Runs passes on a piece and notes what each one did.
 class Schedule {
  public:
-  Schedule(EditMesh& mesh, BoundaryGuide* guide, const ImproveOptions& options, const Stage& stage,
-           const BeforePass& before_pass = {})
-      : mesh_(mesh),
-        guide_(guide),
-        options_(options),
-        stage_(stage),
-        before_pass_(before_pass),
-        started_(process_cpu_seconds()) {
-    if (options_.after_pass) options_.after_pass("start", worst_of(mesh_));
-  }
+  Schedule(EditMesh& mesh, BoundaryGuide* guide, Setting& setting, Tally& tally)
+      : mesh_(mesh), guide_(guide), setting_(setting), tally_(tally) {}
 
   void laplacian(int sweeps, double relaxation, MoveRule rule) {
-    pass("laplacian moves", [&] { return laplacian_sweeps(mesh_, sweeps, relaxation, rule, stage_.context()); });
+    pass("laplacian moves", [&] { return laplacian_sweeps(mesh_, sweeps, relaxation, rule, setting_.context); });
   }
   void smooth_mean(int sweeps) {
-    pass("moves for the mean", [&] { return improve::smooth_mean(mesh_, sweeps, stage_.context()); });
+    pass("moves for the mean", [&] { return improve::smooth_mean(mesh_, sweeps, setting_.context); });
   }
   /// The boundary too.
   void slide_mean() {
-    pass("moves and slides for the mean", [&] { return improve::smooth_mean(mesh_, 1, stage_.context(), guide_); });
+    pass("moves and slides for the mean", [&] { return improve::smooth_mean(mesh_, 1, setting_.context, guide_); });
   }
   void mean_flips(float threshold, Goal goal = Goal::kMean) {
-    pass("reconnections for the mean", [&] { return reconnect(mesh_, threshold, goal, stage_.context()); });
+    pass("reconnections for the mean", [&] { return reconnect(mesh_, threshold, goal, setting_.context); });
   }
   void flips(float threshold) {
-    pass("reconnections", [&] { return reconnect(mesh_, threshold, Goal::kWorst, stage_.context(), guide_); });
+    pass("reconnections", [&] { return reconnect(mesh_, threshold, Goal::kWorst, setting_.context, guide_); });
   }
   void collapse(float threshold) {
-    pass("collapsed vertices", [&] { return collapse_vertices(mesh_, threshold, Goal::kMean, stage_.context()); });
+    pass("collapsed vertices", [&] { return collapse_vertices(mesh_, threshold, Goal::kMean, setting_.context); });
   }
   void insert(float threshold) {
-    pass("inserted vertices", [&] { return insert_vertices(mesh_, threshold, Goal::kWorst, stage_.context()); });
+    pass("inserted vertices", [&] { return insert_vertices(mesh_, threshold, Goal::kWorst, setting_.context); });
   }
   void small_polyhedra(float threshold) {
-    pass("small polyhedra", [&] { return reconnect_small_polyhedra(mesh_, threshold, stage_.context()); });
+    pass("small polyhedra", [&] { return reconnect_small_polyhedra(mesh_, threshold, setting_.context); });
   }
   void optimize(float threshold) {
-    pass("optimised vertices", [&] { return optimize_vertices(mesh_, threshold, stage_.context(), guide_); });
+    pass("optimised vertices", [&] { return optimize_vertices(mesh_, threshold, setting_.context, guide_); });
   }
 
   /// Rounds for the worst, until one changes nothing or nothing is left; insertion from round `insert_from` on, below
@@ -106,40 +138,30 @@ class Schedule {
 
   /// Against elements that worse ones around them hide from the passes for the worst.
   void relieve(float threshold) {
-    pass("moves against poor elements", [&] { return relieve_vertices(mesh_, threshold, stage_.context()); });
+    pass("moves against poor elements", [&] { return relieve_vertices(mesh_, threshold, setting_.context); });
     pass("reconnections against poor elements",
-         [&] { return reconnect(mesh_, threshold, Goal::kFewestPoor, stage_.context()); });
+         [&] { return reconnect(mesh_, threshold, Goal::kFewestPoor, setting_.context); });
     pass("collapses against poor elements",
-         [&] { return collapse_vertices(mesh_, threshold, Goal::kFewestPoor, stage_.context()); });
+         [&] { return collapse_vertices(mesh_, threshold, Goal::kFewestPoor, setting_.context); });
   }
 
   void edit_boundary(float threshold) {
     if (!guide_ || guide_->tolerance() == 0) return;
     pass("edits of the boundary", [&] {
-      const BoundaryEdits edits = improve::edit_boundary(mesh_, threshold, *guide_, stage_.context());
-      boundary_edits_ += edits.result.done;
-      largest_move_ = std::max(largest_move_, edits.largest_move);
+      const BoundaryEdits edits = improve::edit_boundary(mesh_, threshold, *guide_, setting_.context);
+      tally_.boundary_edits += edits.result.done;
+      tally_.largest_move = std::max(tally_.largest_move, edits.largest_move);
       return edits.result;
     });
   }
 
   void insert_against_poor(float threshold) {
     pass("insertions against poor elements",
-         [&] { return insert_vertices(mesh_, threshold, Goal::kFewestPoor, stage_.context()); });
+         [&] { return insert_vertices(mesh_, threshold, Goal::kFewestPoor, setting_.context); });
   }
 
   void open_flat() {
-    pass("flat elements opened", [&] { return open_flat_elements(mesh_, stage_.context()); });
-  }
-
-  /// Where the boundary crosses itself it goes back. Returns where that does not help.
-  std::vector<VertexIndex> uncross() {
-    if (!guide_) return {};
-    if (before_pass_) before_pass_(mesh_);
-    TakenBack back = take_back_crossings(mesh_, mesh_.points_taken(), *guide_, stage_.context());
-    if (back.pass.tried > 0) note("slides taken back", back.pass);
-    validate(mesh_);
-    return std::move(back.crossing);
+    pass("flat elements opened", [&] { return open_flat_elements(mesh_, setting_.context); });
   }
 
   /// What the elements lack, in sum.
@@ -155,83 +177,23 @@ class Schedule {
   Floor floor() const { return mesh_.floor(); }
   double mean_beta() const { return mesh_.mean_beta(); }
 
-  /// Says what stays poor and why, and where the worst of each kind are.
-  void explain(const BoundaryInput* input) {
-    const Shortfall s = explain_shortfall(mesh_, kReported, input, stage_.context());
-    stage_.count(fmt::format("elements below {:.1f}", kReported), static_cast<double>(s.elements));
-    for (int cause = 0; cause < Shortfall::kCauses; ++cause)
-      stage_.count(kCauseNames[cause].counter, static_cast<double>(s.by_cause[cause].elements));
-    stage_.count("edits of the boundary", static_cast<double>(boundary_edits_));
-    stage_.count("largest move of the boundary", largest_move_);
-    stage_.count("elements below 0.2 or 10 degrees", static_cast<double>(s.poor));
-    stage_.count("elements below 0.2 or 10 degrees, not forced", static_cast<double>(s.poor_not_forced));
-    if (s.elements == 0) return;
-    std::string note = fmt::format(
-        "{} below {:.1f} {}:", s.elements == 1 ? "1 element stays" : fmt::format("{} elements stay", s.elements),
-        kReported,
-        options_.objective == ImproveOptions::Objective::kBalanced ? "by beta or by its dihedral angles"
-                                                                   : "by the objective");
-    const char* separator = " ";
-    for (int cause = 0; cause < Shortfall::kCauses; ++cause) {
-      const Shortfall::Class& c = s.by_cause[cause];
-      if (c.elements == 0) continue;
-      const Vec3 p = mesh_.point(mesh_.tet(c.worst)[0]);
-      note += fmt::format("{}{} {} (the worst, {:.3f}, near ({:.6g}, {:.6g}, {:.6g}))", separator, c.elements,
-                          kCauseNames[cause].words, mesh_.shape(c.worst).score, p.x, p.y, p.z);
-      separator = ", ";
-    }
-    stage_.note(std::move(note));
-  }
-
  private:
-  static constexpr float kReported = 0.4f;
-  struct CauseName {
-    const char *counter, *words;
-  };
-  static constexpr CauseName kCauseNames[Shortfall::kCauses] = {
-      {"forced by a wedge", "in wedges of less than 20 degrees"},
-      {"forced by a corner", "at corners between curves less than 20 degrees apart"},
-      {"forced by thin walls", "between sheets or curves nearer than a tenth of their size"},
-      {"forced by kept triangles", "on or beside triangles that were kept"},
-      {"not forced", "not forced by the input"}};
-
   template <typename Run>
   void pass(const char* what, Run&& run) {
-    if (late_) return;
-    if (before_pass_) before_pass_(mesh_);
-    note(what, run());
-    validate(mesh_);
-    if (!options_.seconds || !(clock_.seconds() > *options_.seconds)) return;
-    late_ = true;
-    stage_.note(fmt::format("the {} s for improvement were over after pass {}", *options_.seconds, passes_));
-  }
-
-  void note(const char* what, const PassResult& result) {
-    const double now = process_cpu_seconds();
-    stage_.count(fmt::format("pass {}: {}", ++passes_, what), static_cast<double>(result.done));
+    if (setting_.late.load(std::memory_order_relaxed)) return;
+    const PassResult result = run();
+    tally_.add(what, result);
     changes_ += result.done;
-    stage_.count(fmt::format("pass {}: tried", passes_), static_cast<double>(result.tried));
-    stage_.count(fmt::format("pass {}: us per element", passes_),
-                 1e6 * (now - started_) / static_cast<double>(mesh_.live_tets()));
-    started_ = process_cpu_seconds();
-    // Rounds go on while they gain something: how many there will be, nobody knows before.
-    stage_.progress(passes_ / (passes_ + kUsualPasses));
-    if (options_.after_pass) options_.after_pass(what, worst_of(mesh_));
+    validate(mesh_);
+    const std::optional<double>& seconds = setting_.options.seconds;
+    if (seconds && setting_.clock.seconds() > *seconds) setting_.late = true;
   }
-
-  static constexpr double kUsualPasses = 10;
 
   EditMesh& mesh_;
   BoundaryGuide* guide_;
-  const ImproveOptions& options_;
-  const Stage& stage_;
-  const BeforePass before_pass_;
-  double started_;
-  Stopwatch clock_;
-  bool late_ = false;
-  int passes_ = 0;
-  std::uint64_t changes_ = 0, boundary_edits_ = 0;
-  double largest_move_ = 0;
+  Setting& setting_;
+  Tally& tally_;
+  std::uint64_t changes_ = 0;
 };
 
 /// Scores below which elements are worked on. The reference elements of shape.h have .45; .6 is about 30 degrees.
@@ -348,72 +310,212 @@ void run_schedule(Schedule& run, const ImproveOptions& options) {
 
 /// How often a boundary that came to cross itself is tried again with the places frozen, before all of it is.
 constexpr int kMostRetries = 3;
+/// Around triangles that cross, so many rings of elements are looked at.
+constexpr int kRingsAtCrossings = 6;
+/// Around vertices that were at the rim of a piece, these move again, too.
+constexpr int kRingsAtRim = 1;
+/// Around elements that are still poor once pieces have been worked on.
+constexpr int kRingsAtPoor = 3;
 
-/// The features in the numbering of the result; `edges` and `corners` are in that of the mesh that was taken.
-Features renumbered(std::vector<Edge> edges, std::vector<VertexIndex> corners, const std::vector<VertexIndex>& taken) {
-  std::vector<VertexIndex> result;
-  for (VertexIndex v = 0; v < taken.size(); ++v) {
-    if (taken[v] == kNone) continue;
-    result.resize(std::max<std::size_t>(result.size(), taken[v] + 1), kNone);
-    result[taken[v]] = v;
+/// A whole mesh, piece by piece.
+class Improvement {
+ public:
+  /// `moves`: whether the boundary may.
+  Improvement(TetMesh&& mesh, const BoundaryInput* input, bool moves, const ImproveOptions& options, const Stage& stage)
+      : input_(input),
+        stage_(stage),
+        setting_{options, stage.context()},
+        mesh_(std::move(mesh), options.objective, moves ? input : nullptr),
+        moves_(moves) {
+    if (input) ground_ = std::make_shared<const BoundaryGround>(*input);
+    tell("start");
   }
-  for (auto& [a, b] : edges) {
-    const Edge e{result[a], result[b]};
-    a = std::min(e[0], e[1]), b = std::max(e[0], e[1]);
+
+  MeshOfPieces& mesh() { return mesh_; }
+  /// From now on the boundary stays.
+  void hold_boundary() { moves_ = false; }
+
+  using Passes = FunctionRef<void(Schedule&)>;
+
+  /// Runs passes on all pieces, or on those around the vertices that are marked.
+  void run(const char* what, const std::vector<std::uint8_t>& waiting, int rings, Passes passes) {
+    if (waiting.empty() || setting_.late) return;
+    std::vector<Tally> tallies;
+    std::atomic<std::size_t> done{0};
+    const auto watch = [&](std::size_t pieces) {
+      for (const Tally& of_piece : std::exchange(tallies, std::vector<Tally>(pieces))) tally_ += of_piece;
+      done = 0;
+      if (pieces != 0) return;
+      ++stages_;
+      tell(what);
+    };
+    const std::thread::id caller = std::this_thread::get_id();
+    mesh_.work(waiting, rings, watch, [&](MeshPiece& piece, std::size_t number) {
+      work_on(piece, [&](BoundaryGuide* guide) {
+        Schedule schedule(*piece.mesh, guide, setting_, tallies[number]);
+        passes(schedule);
+      });
+      ++done;
+      if (std::this_thread::get_id() == caller)
+        progress(static_cast<double>(done) / static_cast<double>(tallies.size()));
+    });
   }
-  for (VertexIndex& v : corners) v = result[v];
-  std::sort(edges.begin(), edges.end());
-  std::sort(corners.begin(), corners.end());
-  return {std::move(edges), std::move(corners)};
+
+  /// Where the boundary crosses itself it goes back. Returns where that does not help.
+  std::vector<VertexIndex> uncross() {
+    std::vector<VertexIndex> crossing;
+    const std::vector<std::uint8_t> marks = mesh_.corners_of_crossings();
+    if (marks.empty()) return crossing;
+    mesh_.work_on_one(marks, kRingsAtCrossings, [&](MeshPiece& piece, std::size_t) {
+      work_on(piece, [&](BoundaryGuide* guide) {
+        std::vector<Vec3> home;
+        for (VertexIndex v = 0; v < piece.vertices.size(); ++v)
+          home.push_back(piece.vertices[v] < mesh_.home().size() ? mesh_.home()[piece.vertices[v]]
+                                                                 : piece.mesh->point(v));
+        TakenBack back = take_back_crossings(*piece.mesh, home, *guide, setting_.context);
+        tally_.add("slides taken back", back.pass);
+        for (const VertexIndex v : back.crossing) crossing.push_back(piece.vertices[v]);
+      });
+    });
+    return crossing;
+  }
+
+  /// Says what stays poor and why, and where the worst of each kind are.
+  void explain() {
+    Shortfall shortfall;
+    std::string note;
+    if (const std::vector<std::uint8_t> poor = mesh_.corners_below(kReported); !poor.empty())
+      mesh_.work_on_one(poor, 0, [&](MeshPiece& piece, std::size_t) {
+        shortfall = explain_shortfall(*piece.mesh, kReported, input_ ? &ground_->force : nullptr, setting_.context);
+        note = in_words(shortfall, *piece.mesh);
+      });
+    for (const PassTally& pass : tally_.passes) {
+      stage_.count(pass.what, static_cast<double>(pass.result.done));
+      stage_.count(fmt::format("{}: tried", pass.what), static_cast<double>(pass.result.tried));
+    }
+    stage_.count(fmt::format("elements below {:.1f}", kReported), static_cast<double>(shortfall.elements));
+    for (int cause = 0; cause < Shortfall::kCauses; ++cause)
+      stage_.count(kCauseNames[cause].counter, static_cast<double>(shortfall.by_cause[cause].elements));
+    stage_.count("edits of the boundary", static_cast<double>(tally_.boundary_edits));
+    stage_.count("largest move of the boundary", tally_.largest_move);
+    stage_.count("elements below 0.2 or 10 degrees", static_cast<double>(shortfall.poor));
+    stage_.count("elements below 0.2 or 10 degrees, not forced", static_cast<double>(shortfall.poor_not_forced));
+    if (!note.empty()) stage_.note(std::move(note));
+    if (setting_.late) stage_.note(fmt::format("the {} s for improvement were over", *setting_.options.seconds));
+  }
+
+  void forget_tally() { tally_ = {}; }
+
+ private:
+  static constexpr float kReported = 0.4f;
+  struct CauseName {
+    const char *counter, *words;
+  };
+  static constexpr CauseName kCauseNames[Shortfall::kCauses] = {
+      {"forced by a wedge", "in wedges of less than 20 degrees"},
+      {"forced by a corner", "at corners between curves less than 20 degrees apart"},
+      {"forced by thin walls", "between sheets or curves nearer than a tenth of their size"},
+      {"forced by kept triangles", "on or beside triangles that were kept"},
+      {"not forced", "not forced by the input"}};
+
+  /// Each stage has less to do than the one before; how many there will be, nobody knows.
+  void progress(double part_of_stage) const {
+    constexpr double kLeft = 0.3;
+    stage_.progress(1 - elementary::pow(kLeft, stages_ + part_of_stage));
+  }
+
+  void tell(const char* what) const {
+    if (setting_.options.after_pass) setting_.options.after_pass(what, worst_of(mesh_));
+  }
+
+  template <class Work>
+  void work_on(MeshPiece& piece, const Work& work) {
+    EditMesh& mesh = *piece.mesh;
+    if (!moves_) return work(nullptr);
+    const Features features = piece.features;
+    const BoundaryInput input{input_->surface,   input_->tree, input_->features, features,
+                              input_->tolerance, piece.pinned, input_->bound,    piece.frozen};
+    BoundaryGuide guide(mesh, input, piece.at_rim, ground_);
+    work(&guide);
+    piece.features.edges = guide.feature_edges();
+  }
+
+  std::string in_words(const Shortfall& s, const EditMesh& mesh) const {
+    const bool is_balanced = setting_.options.objective == ImproveOptions::Objective::kBalanced;
+    std::string note = fmt::format(
+        "{} below {:.1f} {}:", s.elements == 1 ? "1 element stays" : fmt::format("{} elements stay", s.elements),
+        kReported, is_balanced ? "by beta or by its dihedral angles" : "by the objective");
+    const char* separator = " ";
+    for (int cause = 0; cause < Shortfall::kCauses; ++cause) {
+      const Shortfall::Class& c = s.by_cause[cause];
+      if (c.elements == 0) continue;
+      const Vec3 p = mesh.point(mesh.tet(c.worst)[0]);
+      note += fmt::format("{}{} {} (the worst, {:.3f}, near ({:.6g}, {:.6g}, {:.6g}))", separator, c.elements,
+                          kCauseNames[cause].words, mesh.shape(c.worst).score, p.x, p.y, p.z);
+      separator = ", ";
+    }
+    return note;
+  }
+
+  const BoundaryInput* input_;
+  const Stage& stage_;
+  Setting setting_;
+  std::shared_ptr<const BoundaryGround> ground_;
+  MeshOfPieces mesh_;
+  Tally tally_;
+  int stages_ = 0;
+  bool moves_;
+};
+
+void relieve_places(Improvement& improvement) {
+  improvement.run("places", improvement.mesh().corners_below(kWanted), kRingsAtPoor, [](Schedule& run) {
+    run.rounds_for_worst(4, kWanted, 2, kPoorToInsert);
+    relieve(run);
+  });
+}
+
+bool uses_places(ImproveOptions::Level level) {
+  return level == ImproveOptions::Level::kDefault || level == ImproveOptions::Level::kBest;
 }
 
 }  // namespace
 
 bool improve_mesh(TetMesh& mesh, const BoundaryInput* input, const ImproveOptions& options, const Stage& stage,
-                  Features* features, const BeforePass& before_pass) {
+                  Features* features, const MeshOfPieces::BeforeStage& before_stage) {
   check_improve_options(options);
   if (options.level == ImproveOptions::Level::kOff || mesh.tets.empty()) return false;
   mesh.wide_cells.clear();  // edits know of tetrahedra alone
   mesh.wide_faces.clear();
   mesh.face_layers.clear();
   const bool moves = input && options.move_boundary && options.level != ImproveOptions::Level::kPaper;
-  std::vector<VertexIndex> frozen;  // they, and those around them, stay where they are
-  for (int retry = 0;; ++retry) {
-    StageReport attempt = stage.report();
-    EditMesh edit(std::move(mesh), options.objective);
-    std::optional<BoundaryGuide> guide;
-    if (moves && retry < kMostRetries) {
-      guide.emplace(edit, *input, frozen);
-      edit.remember();
-    }
-    const Stage tried{stage.context(), attempt};
-    Schedule run(edit, guide ? &*guide : nullptr, options, tried, before_pass);
-    run_schedule(run, options);
-    const std::vector<VertexIndex> crossing = run.uncross();
-    const bool moved = guide && edit.moved_boundary();
-    if (moved && !crossing.empty()) {
-      for (const VertexIndex v : crossing) frozen.push_back(edit.number_taken(v));
-      mesh = edit.taken();
-      continue;
-    }
-    run.explain(input);
-    if (moved && features)
-      *features = renumbered(guide->feature_edges_taken(edit), input->of_mesh.corners, edit.numbers_taken());
-    mesh = edit.release();
-    stage.report() = std::move(attempt);
-    stage.count("runs with places of the boundary frozen", retry);
-    return moved;
+  Improvement improvement(std::move(mesh), input, moves, options, stage);
+  MeshOfPieces& pieces = improvement.mesh();
+  pieces.call_before_stages(before_stage);
+  int retries = 0;
+  for (;;) {
+    improvement.run("pieces", pieces.all(), kRingsAtRim, [&](Schedule& run) { run_schedule(run, options); });
+    if (uses_places(options.level)) relieve_places(improvement);
+    if (!moves || retries == kMostRetries) break;
+    const std::vector<VertexIndex> crossing = improvement.uncross();
+    if (crossing.empty()) break;
+    pieces.freeze(crossing);
+    pieces.rewind();
+    improvement.forget_tally();
+    if (++retries == kMostRetries) improvement.hold_boundary();
   }
+  improvement.explain();
+  stage.count("runs with places of the boundary frozen", retries);
+  const bool moved = moves && retries < kMostRetries && pieces.moved_boundary();
+  mesh = pieces.release(moved ? features : nullptr);
+  return moved;
 }
 
 void relieve_mesh(TetMesh& mesh, const ImproveOptions& options, const Stage& stage) {
   if (options.level == ImproveOptions::Level::kOff || mesh.tets.empty()) return;
   if (worst_score(mesh, options.objective) >= kComfort) return;
-  EditMesh edit(std::move(mesh), options.objective);
-  Schedule run(edit, nullptr, options, stage);
-  run.rounds_for_worst(4, kWanted, 2, kPoorToInsert);
-  relieve(run);
-  mesh = edit.release();
+  Improvement improvement(std::move(mesh), nullptr, false, options, stage);
+  relieve_places(improvement);
+  mesh = improvement.mesh().release(nullptr);
 }
 
 }  // namespace octafront

@@ -3,24 +3,22 @@
 // improve/schedule: better elements in the same body. Takes a valid tetrahedral mesh, leaves a valid one: vertices
 // have moved, edges and faces have been exchanged; those of the boundary only where the surface is given on which
 // they may. Single passes are in passes.h, their order in schedule.cpp, what an element is worth in shape.h, the mesh
-// they work on in edit_mesh.h. What is flat even then gets room off the surface, at the very end: raise_flat.h.
+// they work on in edit_mesh.h, how a mesh is
+// divided among those who work on it in pieces.h. What is flat even then gets room off the surface, at the very end:
+// raise_flat.h.
 
 #include <octafront/options.h>
 #include <octafront/size_field.h>
 #include <octafront/tet_mesh.h>
 
 #include "base/core/stage.h"
-#include "improve/boundary/boundary_guide.h"
-
-#include <functional>
+#include "improve/boundary/boundary_input.h"
+#include "improve/pieces/pieces.h"
 
 namespace octafront {
 
 /// Throws OptionError for values out of their range.
 void check_improve_options(const ImproveOptions& options);
-
-/// Sees the mesh before each pass.
-using BeforePass = std::function<void(improve::EditMesh&)>;
 
 /// Makes the elements of a valid mesh better, by the schedule of options.level. Without `input` the boundary does
 /// not change, and is the user's own. With it, and unless options.move_boundary is off, vertices of the boundary slide
@@ -29,11 +27,11 @@ using BeforePass = std::function<void(improve::EditMesh&)>;
 /// number of triangles, each of the same patch, unless the input has a tolerance: see edit_boundary(). Regions stay
 /// with what they belong to. No pass makes the worst element worse, and none inverts one (exact signs). On an exception
 /// the mesh is lost. Throws OptionError, Cancelled, and MeshingError if the faces of the mesh do not match. The
-/// report gets, for each pass, the places looked at, those changed, and CPU time per element. Returns true if the
+/// report gets, for each kind of pass, the places looked at and those changed, in all pieces. Returns true if the
 /// boundary changed; `features`, where given, then become those of the new boundary, in its numbering (they may be
-/// input->of_mesh). `before_pass` is for tests: where the elements are kept changes nothing.
+/// input->of_mesh). `before_stage` is for tests: where the elements are kept changes nothing.
 bool improve_mesh(TetMesh& mesh, const improve::BoundaryInput* input, const ImproveOptions& options, const Stage& stage,
-                  Features* features = nullptr, const BeforePass& before_pass = {});
+                  Features* features = nullptr, const improve::MeshOfPieces::BeforeStage& before_stage = {});
 
 /// After the boundary or interfaces of a valid mesh were moved: passes against poor elements, from the first one below
 /// a beta or dihedral angle of comfort on; what was moved stays. The mesh is untouched if there is no such element.

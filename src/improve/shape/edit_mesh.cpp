@@ -7,12 +7,13 @@
 #include "base/core/parallel.h"
 #include "base/core/validate.h"
 #include "base/geometry/predicates.h"
-#include "base/geometry/spatial_order.h"
 #include "base/mesh/index_range.h"
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <type_traits>
+#include <utility>
 
 #include <fmt/core.h>
 
@@ -20,10 +21,7 @@ namespace octafront::improve {
 
 namespace {
 
-/// Fewer would have more of their elements at rims, more share less well among threads.
-constexpr std::size_t kMostVerticesOfCell = 8192;
-
-/// Room for the slots that blocks will ask for: otherwise the first to ask has the whole mesh copied.
+/// Room for slots: otherwise the first to ask has all of them copied.
 constexpr std::size_t kMeshRoomPart = 16, kLeastRoom = 1024;
 
 /// To `size`, with room for some more: by itself a vector would double.
@@ -33,29 +31,14 @@ void grow(std::vector<Item>& items, std::size_t size, const std::type_identity_t
   items.resize(size, fresh);
 }
 
+}  // namespace
+
 void renumber_faces(TetMesh& mesh, const std::vector<VertexIndex>& new_of_old) {
   for (std::vector<Triangle>* faces : {&mesh.boundary, &mesh.interfaces})
     for (Triangle& t : *faces)
       for (VertexIndex& v : t) v = new_of_old[v];
 }
 
-/// Calls visit(t, shape) for the tets begin ... end - 1.
-template <class Visit>
-void for_each_shape(const std::vector<Vec3>& points, const std::vector<Tet>& tets, ImproveOptions::Objective objective,
-                    std::size_t begin, std::size_t end, const Visit& visit) {
-  ShapeBatch batch(objective);
-  for (std::size_t first = begin; first < end; first += ShapeBatch::kBatch) {
-    batch.size = 0;
-    for (std::size_t t = first; t < std::min<std::size_t>(end, first + ShapeBatch::kBatch); ++t) {
-      const Tet& c = tets[t];
-      batch.add(points[c[0]], points[c[1]], points[c[2]], points[c[3]]);
-    }
-    batch.evaluate();
-    for (int i = 0; i < batch.size; ++i) visit(first + static_cast<std::size_t>(i), batch.shape(i));
-  }
-}
-
-/// The numbers of the tets in ascending order of their keys; free slots, whose corners are kNone, are none.
 Groups<> order_by_key(const std::vector<Tet>& tets, std::size_t vertices) {
   static_assert(kNone == kNoOwner);
   Groups<> by_corner = group_by_owner(vertices, static_cast<TetIndex>(tets.size()), [&](TetIndex t) {
@@ -67,9 +50,7 @@ Groups<> order_by_key(const std::vector<Tet>& tets, std::size_t vertices) {
   return by_corner;
 }
 
-}  // namespace
-
-EditMesh::EditMesh(TetMesh&& mesh, ImproveOptions::Objective objective) : objective_(objective) {
+EditMesh::EditMesh(TetMesh&& mesh, ImproveOptions::Objective objective, Rim rim) : objective_(objective), rim_(rim) {
   require_in_range(mesh.tets.size(), kMostTetsToImprove, "tetrahedra to improve");
   take(mesh);
   rest_ = std::move(mesh);
@@ -77,19 +58,9 @@ EditMesh::EditMesh(TetMesh&& mesh, ImproveOptions::Objective objective) : object
   compute_shapes();
 }
 
+/// Tets in order of their keys: what comes of the mesh must not hang on the order in which they came.
 void EditMesh::take(TetMesh& mesh) {
-  original_ = spatial_order(mesh.points);
-  std::vector<VertexIndex> new_of_old(mesh.points.size());
-  points_.reserve(mesh.points.size());
-  for (VertexIndex v = 0; v < original_.size(); ++v) {
-    new_of_old[original_[v]] = v;
-    points_.push_back(mesh.points[original_[v]]);
-  }
-  divide_in_cells();
-  parallel_for(mesh.tets.size(), [&](std::size_t t) {
-    for (VertexIndex& v : mesh.tets[t]) v = new_of_old[v];
-  });
-  renumber_faces(mesh, new_of_old);
+  points_ = std::exchange(mesh.points, {});
   had_regions_ = !mesh.region.empty();
   const std::size_t room = mesh.tets.size() + mesh.tets.size() / kMeshRoomPart + kLeastRoom;
   complex_.tets.reserve(room);
@@ -103,15 +74,8 @@ void EditMesh::take(TetMesh& mesh) {
     complex_.tets[k] = mesh.tets[order.items()[k]];
     if (had_regions_) region_[k] = mesh.region[order.items()[k]];
   });
+  numbers_ = order.items();
   mesh.tets = std::vector<Tet>();
-  mesh.points = std::vector<Vec3>();
-}
-
-void EditMesh::divide_in_cells() {
-  Box3 box;
-  for (const Vec3& p : points_) box.add(p);
-  for (int stage = 0; stage < kCellStages; ++stage)
-    cells_[stage] = cells_of(points_, cube_of_stage(box, stage), kMostVerticesOfCell);
 }
 
 void EditMesh::connect() {
@@ -123,7 +87,9 @@ void EditMesh::connect() {
     for (const VertexIndex v : t) on_boundary_[v] = 1;
   for (const Triangle& t : rest_.interfaces)
     for (const VertexIndex v : t) on_boundary_[v] = 1;
-  const auto& across = complex_.across;
+  auto& across = complex_.across;
+  for (HalfFace h = 0; rim_ == Rim::kHeld && h < across.size(); ++h)
+    if (across[h] == kNone) part(h, h);
   if (const std::size_t h = parallel_find(across.size(), [&](std::size_t i) { return across[i] == kNone; });
       h < across.size())
     throw_unmatched(static_cast<HalfFace>(h));
@@ -151,55 +117,45 @@ void EditMesh::compute_shapes() {
   });
 }
 
-std::vector<VertexIndex> EditMesh::numbers_taken() const {
-  const std::vector<VertexIndex> here = numbers_here();
-  std::vector<VertexIndex> taken;
-  for (VertexIndex v = 0; v < points_.size(); ++v)
-    if (complex_.tet_at[v < here.size() ? here[v] : v] != kNone) taken.push_back(v < here.size() ? v : kNone);
-  return taken;
-}
-
 void EditMesh::remember() {
-  taken_.emplace(Taken{points_, std::vector<std::uint8_t>(slots(), 1), {}, {}, rest_});
+  taken_.emplace(Taken{points_, numbers_, {}, rest_.boundary});
 }
 
-TetMesh EditMesh::taken() {
-  TetMesh mesh = std::move(taken_->rest);
-  mesh.points.resize(original_.size());
-  for (VertexIndex v = 0; v < original_.size(); ++v) mesh.points[original_[v]] = taken_->points[v];
-  std::vector<Tet> tets = std::move(taken_->gone);
-  std::vector<std::uint32_t> region = std::move(taken_->region_of_gone);
-  for (TetIndex t = 0; t < slots(); ++t) {
-    if (!taken_->is_there[t]) continue;
-    tets.push_back(complex_.tets[t]);
-    if (had_regions_) region.push_back(region_[t]);
+EditMesh::Change EditMesh::change() const {
+  Change change;
+  const auto taken = static_cast<VertexIndex>(taken_->points.size());
+  for (VertexIndex v = 0; v < taken; ++v)
+    if (points_[v] != taken_->points[v]) change.moved.emplace_back(v, points_[v]);
+  std::vector<VertexIndex> number(points_.size(), kNone);
+  std::iota(number.begin(), number.begin() + taken, VertexIndex{0});
+  for (VertexIndex v = taken; v < points_.size(); ++v) {
+    if (complex_.tet_at[v] == kNone) continue;
+    number[v] = taken + static_cast<VertexIndex>(change.added.size());
+    change.added.push_back(points_[v]);
   }
-  const Groups<> order = order_by_key(tets, points_.size());
-  mesh.tets.resize(tets.size());
-  mesh.region.resize(region.size());
-  parallel_for(tets.size(), [&](std::size_t k) {
-    for (int i = 0; i < 4; ++i) mesh.tets[k][i] = original_[tets[order.items()[k]][i]];
-    if (had_regions_) mesh.region[k] = region[order.items()[k]];
-  });
-  renumber_faces(mesh, original_);
-  return mesh;
-}
-
-bool EditMesh::moved_boundary() const {
-  const std::vector<Triangle>& was = taken_->rest.boundary;
-  return rest_.boundary != was || std::any_of(was.begin(), was.end(), [&](const Triangle& t) {
-           return std::any_of(t.begin(), t.end(), [&](VertexIndex v) { return points_[v] != taken_->points[v]; });
-         });
+  const auto numbered = [&](auto corners) {
+    for (VertexIndex& v : corners)
+      if (v != kNone) v = number[v];
+    return corners;
+  };
+  change.gone = taken_->gone;
+  std::vector<TetIndex> made;
+  for (TetIndex t = 0; t < slots(); ++t)
+    if (alive(t) && taken_->number[t] == kNone) made.push_back(t);
+  for (const TetIndex t : made) {
+    change.made.push_back(numbered(tet(t)));
+    if (had_regions_) change.region_of_made.push_back(region_[t]);
+  }
+  for (std::uint32_t t = 0; t < rest_.boundary.size(); ++t)
+    if (rest_.boundary[t] != taken_->boundary[t]) change.boundary.emplace_back(t, numbered(rest_.boundary[t]));
+  return change;
 }
 
 TetMesh EditMesh::release() {
   taken_.reset();
   TetMesh mesh = std::move(rest_);
-  // Vertices go back to where they were; those that improvement added follow.
-  std::vector<VertexIndex> here = numbers_here();
-  for (auto v = static_cast<VertexIndex>(here.size()); v < points_.size(); ++v) here.push_back(v);
   std::vector<VertexIndex> new_of_old(points_.size(), kNone);
-  for (const VertexIndex v : here)
+  for (VertexIndex v = 0; v < points_.size(); ++v)
     if (complex_.tet_at[v] != kNone) {
       new_of_old[v] = static_cast<VertexIndex>(mesh.points.size());
       mesh.points.push_back(points_[v]);
@@ -220,7 +176,7 @@ TetMesh EditMesh::release() {
   return mesh;
 }
 
-void EditMesh::drop_removed_triangles(TetMesh& mesh) {
+void drop_removed_triangles(TetMesh& mesh) {
   const auto last_into = [](auto& list, std::size_t t) {
     if (list.empty()) return;
     list[t] = list.back();
@@ -240,19 +196,13 @@ void EditMesh::move(VertexIndex v, Vec3 to, std::span<const HalfFace> star_faces
   for (std::size_t k = 0; kValidate && k < star_faces.size(); ++k) validate(*this, std::array{star_faces[k] / 4});
 }
 
-std::vector<VertexIndex> EditMesh::numbers_here() const {
-  std::vector<VertexIndex> here(original_.size());
-  for (VertexIndex v = 0; v < original_.size(); ++v) here[original_[v]] = v;
-  return here;
-}
-
 void EditMesh::reserve_tets(std::size_t more) {
   const std::size_t first = complex_.tets.size(), last = first + more;
   grow(complex_.tets, last, {kNone, kNone, kNone, kNone});
   grow(complex_.across, 4 * last, kNone);
   grow(shapes_, last, kNoShape);
   if (had_regions_) grow(region_, last, 0);
-  if (taken_) grow(taken_->is_there, last, 0);
+  if (taken_) grow(taken_->number, last, kNone);
   for (std::size_t t = last; t-- > first;) complex_.free.push_back(static_cast<TetIndex>(t));
 }
 
@@ -261,7 +211,6 @@ void EditMesh::reserve_points(std::size_t more) {
   points_.resize(last);
   complex_.tet_at.resize(last, kNone);
   on_boundary_.resize(last, 0);
-  for (Cells& cells : cells_) cells.of.resize(last, 0);
   for (std::size_t v = last; v-- > first;) free_points_.push_back(static_cast<VertexIndex>(v));
 }
 
@@ -312,34 +261,6 @@ double EditMesh::mean_beta() const {
     return part;
   });
   return from_fixed(sum) / static_cast<double>(live_tets());
-}
-
-void EditMesh::sort_by_name(std::span<TetIndex> tets) const {
-  std::vector<std::pair<Tet, TetIndex>> named(tets.size());
-  for (std::size_t k = 0; k < tets.size(); ++k) named[k] = {tet_key(tet(tets[k])), tets[k]};
-  std::sort(named.begin(), named.end());
-  for (std::size_t k = 0; k < tets.size(); ++k) tets[k] = named[k].second;
-}
-
-void EditMesh::sort_star(std::span<HalfFace> star) const {
-  // Without the corner that all have in common names keep their order.
-  struct Named {
-    std::uint64_t low;
-    VertexIndex high;
-    HalfFace face;
-    bool operator<(const Named& o) const { return low != o.low ? low < o.low : high < o.high; }
-  };
-  constexpr std::size_t kMost = ShapeBatch::kBatch;  // others are not worked on
-  if (star.size() > kMost) return;
-  std::array<Named, kMost> named;
-  for (std::size_t k = 0; k < star.size(); ++k) {
-    const Triangle key = face_key(complex_.face(star[k]));
-    named[k] = {std::uint64_t{key[0]} << 32 | key[1], key[2], star[k]};
-  }
-  const auto end = named.begin() + static_cast<std::ptrdiff_t>(star.size());
-  if (std::is_sorted(named.begin(), end)) return;
-  std::sort(named.begin(), end);
-  for (std::size_t k = 0; k < star.size(); ++k) star[k] = named[k].face;
 }
 
 float worst_score(const TetMesh& mesh, ImproveOptions::Objective objective) {

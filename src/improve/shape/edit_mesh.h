@@ -3,11 +3,11 @@
 // A tetrahedral mesh that can be changed in place: a TetComplex, with the places of the vertices and what its elements
 // are worth. Taken from a TetMesh and given back to it; boundary triangles keep their number, patch and source
 // throughout, as long as they are there. Inside, vertices and tets are numbered along a space-filling curve, for the
-// cache. Vertices move here; connections are walked and changed by way of an EditBlock (edit_block.h).
+// cache. Vertices move here; connections are walked and changed by way of an MeshEditor (mesh_editor.h).
 
 #include <octafront/tet_mesh.h>
 
-#include "base/blocks/blocks.h"
+#include "base/core/groups.h"
 #include "base/mesh/tet_complex.h"
 #include "base/mesh/tet_key.h"
 #include "improve/shape/shape.h"
@@ -26,25 +26,30 @@ inline constexpr HalfFace kBetweenRegions = kNone - 1;
 
 class EditMesh {
  public:
+  /// Whether faces may be neither shared nor on the boundary: of a part of a mesh, kept like those between regions.
+  enum class Rim { kNone, kHeld };
+
   /// Requires a valid mesh. Throws MeshingError if there are more than kMostTetsToImprove, or if faces do not match
   /// (with their corners).
-  explicit EditMesh(TetMesh&& mesh, ImproveOptions::Objective objective = ImproveOptions::Objective::kBalanced);
+  explicit EditMesh(TetMesh&& mesh, ImproveOptions::Objective objective = ImproveOptions::Objective::kBalanced,
+                    Rim rim = Rim::kNone);
 
-  /// From here on what edits replace is written down, so that taken() can give the mesh back as it was.
+  /// From here on what edits replace is written down, for change().
   void remember();
-  /// The mesh as remember() found it, tets by their names; this one is of no use any more.
-  TetMesh taken();
-  /// Where vertices were then.
-  std::span<const Vec3> points_taken() const { return taken_->points; }
-  /// Whether the boundary is another one than then.
-  bool moved_boundary() const;
+  /// What became of the mesh since remember(), in the numbers of what was taken; new vertices follow those.
+  struct Change {
+    std::vector<std::pair<VertexIndex, Vec3>> moved;  ///< vertices that were taken
+    std::vector<Vec3> added;                          ///< vertices
+    std::vector<TetIndex> gone;
+    std::vector<Tet> made;  ///< by their names
+    std::vector<std::uint32_t> region_of_made;
+    std::vector<std::pair<std::uint32_t, Triangle>> boundary;  ///< triangles that changed; kNone: gone
+  };
+  Change change() const;
 
   /// The mesh back, compacted: vertices in the order they came in, without unused ones, new ones behind; tets in order
   /// of space, by their names; boundary triangles by their numbers, the last ones in the place of those that went.
   TetMesh release();
-  /// For each vertex of the mesh that release() is to give, its number in the mesh that was taken, or kNone if new.
-  std::vector<VertexIndex> numbers_taken() const;
-
   /// What the scores of the shapes say.
   ImproveOptions::Objective objective() const { return objective_; }
   std::size_t slots() const { return complex_.tets.size(); }
@@ -67,15 +72,6 @@ class EditMesh {
   bool is_removed(std::size_t triangle) const { return rest_.boundary[triangle][0] == kNone; }
   Triangle triangle(std::size_t t) const { return rest_.boundary[t]; }
   Vec3 corner(std::size_t t, int i) const { return points_[rest_.boundary[t][i]]; }
-  /// The number that a vertex had in the mesh that was taken. Requires that it was there.
-  VertexIndex number_taken(VertexIndex v) const { return original_[v]; }
-  /// Vertices from here on are new; the others are numbered along the curve of the first stage's cells.
-  std::size_t vertices_taken() const { return original_.size(); }
-  /// For each vertex of the mesh that was taken, its number here.
-  std::vector<VertexIndex> numbers_here() const;
-
-  /// The vertices by cells, from where they were at the beginning; a new one is in those of one beside it.
-  const Cells& cells(int stage) const { return cells_[stage]; }
 
   bool has(TetIndex t, VertexIndex v) const { return complex_.has(t, v); }
   /// Corner of t at which v lies. Requires that it does.
@@ -94,57 +90,76 @@ class EditMesh {
   Floor floor() const;
   double mean_beta() const;
 
-  /// t is worse than `than`; of equals, the one whose name comes first.
+  /// t is worse than `than`; of equals, the one whose corners come first.
   bool worse(TetIndex t, TetIndex than) const {
     const float a = shapes_[t].score, b = shapes_[than].score;
     return a != b ? a < b : tet_key(tet(t)) < tet_key(tet(than));
   }
 
-  /// In ascending order of their names. Whatever is worked on one after the other, or added up, is so in this order:
-  /// slots are places, which tet lies in which says nothing.
-  void sort_by_name(std::span<TetIndex> tets) const;
-  /// The same for half-faces opposite one vertex.
-  void sort_star(std::span<HalfFace> star) const;
-
  private:
-  friend class EditBlock;
-  friend class EditBlocks;
+  friend class MeshEditor;
   friend class EditMeshShuffle;  ///< of the tests
 
   /// More slots, on top of the free lists, the first ones uppermost.
   void reserve_tets(std::size_t more);
   void reserve_points(std::size_t more);
   void take(TetMesh& mesh);
-  void divide_in_cells();
   std::optional<std::string> wrong_at_tet(TetIndex t) const;
   [[noreturn]] void throw_unmatched(HalfFace h) const;
   void part(HalfFace h, HalfFace other);
   void connect();
-  static void drop_removed_triangles(TetMesh& mesh);
   void compute_shapes();
 
   /// What edits have replaced, and where vertices were.
   struct Taken {
     std::vector<Vec3> points;
-    std::vector<std::uint8_t> is_there;  ///< per slot: whether its tet was there
-    std::vector<Tet> gone;
-    std::vector<std::uint32_t> region_of_gone;
-    TetMesh rest;
+    std::vector<TetIndex> number;  ///< per slot: of its tet in the mesh that was taken; kNone: it was not there
+    std::vector<TetIndex> gone;    ///< numbers
+    std::vector<Triangle> boundary;
   };
 
   ImproveOptions::Objective objective_;
+  Rim rim_;
   TetComplex complex_;  ///< without marks
   std::vector<Vec3> points_;
   std::vector<Shape> shapes_;
   std::vector<std::uint32_t> region_;  ///< per slot; empty if there were none
   std::vector<std::uint8_t> on_boundary_;
   std::vector<VertexIndex> free_points_;  ///< numbers of no vertex, behind those that were taken
-  std::array<Cells, kCellStages> cells_;
-  std::vector<VertexIndex> original_;  ///< the number of each vertex in the mesh that was taken
-  TetMesh rest_;                       ///< boundary, patches, sources, names: carried through; no tets, no points
+  std::vector<TetIndex> numbers_;         ///< of the tets there
+  TetMesh rest_;                          ///< boundary, patches, sources, names: carried through; no tets, no points
   bool had_regions_ = false;
   std::optional<Taken> taken_;
 };
+
+/// Calls visit(t, shape) for the tets begin ... end - 1 that are there (first corner not kNone).
+template <class Visit>
+void for_each_shape(std::span<const Vec3> points, std::span<const Tet> tets, ImproveOptions::Objective objective,
+                    std::size_t begin, std::size_t end, const Visit& visit) {
+  ShapeBatch batch(objective);
+  std::array<std::size_t, ShapeBatch::kBatch> number;
+  const auto flush = [&] {
+    batch.evaluate();
+    for (int i = 0; i < batch.size; ++i) visit(number[i], batch.shape(i));
+    batch.size = 0;
+  };
+  batch.size = 0;
+  for (std::size_t t = begin; t < end; ++t) {
+    const Tet& c = tets[t];
+    if (c[0] == kNone) continue;
+    number[batch.size] = t;
+    batch.add(points[c[0]], points[c[1]], points[c[2]], points[c[3]]);
+    if (batch.size == ShapeBatch::kBatch) flush();
+  }
+  flush();
+}
+
+/// The numbers of the tets that are there in ascending order of their keys.
+Groups<> order_by_key(const std::vector<Tet>& tets, std::size_t vertices);
+/// Of boundary and interfaces.
+void renumber_faces(TetMesh& mesh, const std::vector<VertexIndex>& new_of_old);
+/// Boundary triangles whose first corner is kNone; the last ones come in their place.
+void drop_removed_triangles(TetMesh& mesh);
 
 /// Of its elements.
 float worst_score(const TetMesh& mesh, ImproveOptions::Objective objective);

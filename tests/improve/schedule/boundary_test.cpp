@@ -112,8 +112,7 @@ TEST(Boundary, StaysWhereItTouchesItself) {
   const TriangleTree tree(complex);
   const EditMesh edit{TetMesh{mesh}};
   const BoundaryGuide guide(edit, {complex, tree, none, none}, {});
-  for (VertexIndex v = 0; v < mesh.points.size(); ++v)
-    EXPECT_EQ(guide.is_frozen(edit.numbers_here()[v]), v == 0 || v == 1 || v == 6) << v;
+  for (VertexIndex v = 0; v < mesh.points.size(); ++v) EXPECT_EQ(guide.is_frozen(v), v == 0 || v == 1 || v == 6) << v;
 }
 
 TEST(Boundary, StaysWhenTold) {
@@ -237,9 +236,7 @@ TEST(Boundary, WhatCrossesGoesBackToWhereItWas) {
   const TriangleTree tree(surface);
   EditMesh edit{TetMesh{crossing}};
   const BoundaryGuide guide(edit, {surface, tree, features, features}, {});
-  std::vector<Vec3> home;
-  for (VertexIndex v = 0; v < edit.vertices(); ++v) home.push_back(start.points[edit.number_taken(v)]);
-  const TakenBack back = take_back_crossings(edit, home, guide, {});
+  const TakenBack back = take_back_crossings(edit, start.points, guide, {});
   EXPECT_TRUE(back.crossing.empty());
   EXPECT_EQ(back.pass.done, 1u);
   const TetMesh made = edit.release();
@@ -249,7 +246,7 @@ TEST(Boundary, WhatCrossesGoesBackToWhereItWas) {
   // Frozen, it cannot.
   EditMesh again{TetMesh{crossing}};
   const BoundaryGuide frozen(again, {surface, tree, features, features}, {static_cast<VertexIndex>(moved)});
-  EXPECT_FALSE(take_back_crossings(again, home, frozen, {}).crossing.empty());
+  EXPECT_FALSE(take_back_crossings(again, start.points, frozen, {}).crossing.empty());
 }
 
 TEST(FeatureCurves, AreWalkedToTheirEndsAndNoFarther) {

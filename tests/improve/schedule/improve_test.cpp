@@ -108,7 +108,7 @@ TEST(Improve, IsDeterministic) {
 }
 
 TEST(Improve, GivesTheSameOnAnyNumberOfThreads) {
-  const TetMesh start = perturbed(kuhn_cube(22), 0.5, 7);  // several blocks of vertices
+  const TetMesh start = perturbed(kuhn_cube(26), 0.5, 7);  // several pieces
   const TetMesh once = improved(start, Level::kDefault, 1);
   for (const int threads : {2, 3, 8}) EXPECT_EQ(improved(start, Level::kDefault, threads), once);
 }

@@ -1,4 +1,4 @@
-#include "improve/passes/edit_block.h"
+#include "improve/passes/mesh_editor.h"
 
 #include "base/core/validate.h"
 #include "base/mesh/face_table.h"
@@ -12,20 +12,10 @@ constexpr std::size_t kUsualStar = 32;  ///< tets: room for them at first
 
 }  // namespace
 
-EditBlock::EditBlock(EditMesh& mesh, const Cells& cells, std::uint32_t cell, std::vector<TetIndex> free_tets,
-                     std::vector<VertexIndex> free_points)
-    : mesh_(mesh),
-      complex_(mesh.complex_),
-      cells_(&cells),
-      cell_(cell),
-      free_tets_(std::move(free_tets)),
-      free_points_(std::move(free_points)) {}
-
-bool EditBlock::star(VertexIndex v, std::vector<HalfFace>& faces) {
+void MeshEditor::star(VertexIndex v, std::vector<HalfFace>& faces) {
   faces.clear();
   seen_.reset(kUsualStar);
   const TetIndex first = complex_.tet_at[v];
-  if (!allowed(first)) return false;
   seen_.insert(first);
   faces.push_back(4 * first + mesh_.corner_of(first, v));
   for (std::size_t k = 0; k < faces.size(); ++k) {
@@ -34,25 +24,20 @@ bool EditBlock::star(VertexIndex v, std::vector<HalfFace>& faces) {
     for (int j = 1; j < 4; ++j) {
       const HalfFace o = complex_.across[4 * t + ((i + j) & 3)];
       if (is_outside(o) || seen_.contains(o / 4)) continue;
-      if (!allowed(o / 4)) return false;
       seen_.insert(o / 4);
       faces.push_back(4 * (o / 4) + mesh_.corner_of(o / 4, v));
     }
   }
-  mesh_.sort_star(faces);
-  return true;
 }
 
-bool EditBlock::edge_ring(TetIndex t, int i, int j, EdgeRing& out) {
-  const TetComplex::Turn turn = complex_.turn_around(t, i, j, out, [&](TetIndex next) { return allowed(next); });
-  if (turn != TetComplex::Turn::kOpen) return turn == TetComplex::Turn::kClosed;
+void MeshEditor::edge_ring(TetIndex t, int i, int j, EdgeRing& out) {
+  if (complex_.turn_around(t, i, j, out, [](TetIndex) { return true; }) == TetComplex::Turn::kClosed) return;
   // An open fan: what lies on the other side of t goes before it.
   TetIndex at = t;
   VertexIndex from = out.ring[0], to = out.ring[1];
   for (;;) {
     const HalfFace o = complex_.across[4 * at + mesh_.corner_of(at, to)];
-    if (is_outside(o)) return true;
-    if (!allowed(o / 4)) return false;
+    if (is_outside(o)) return;
     at = o / 4;
     to = from;
     from = complex_.tets[at][o % 4];
@@ -61,22 +46,21 @@ bool EditBlock::edge_ring(TetIndex t, int i, int j, EdgeRing& out) {
   }
 }
 
-bool EditBlock::edge_ring_where_worst(TetIndex t, int i, int j, std::size_t longest, EdgeRing& out) {
+bool MeshEditor::edge_ring_where_worst(TetIndex t, int i, int j, std::size_t longest, EdgeRing& out) {
   return complex_.turn_around(t, i, j, out, [&](TetIndex next) {
-    return out.tets.size() < longest && allowed(next) && !mesh_.worse(next, t);
+    return out.tets.size() < longest && !mesh_.worse(next, t);
   }) == TetComplex::Turn::kClosed;
 }
 
-TetIndex EditBlock::slot() {
-  if (whole_ && complex_.free.empty()) mesh_.reserve_tets(1);
-  std::vector<TetIndex>& free = free_tets();
-  const TetIndex t = free.back();
-  free.pop_back();
+TetIndex MeshEditor::slot() {
+  if (complex_.free.empty()) mesh_.reserve_tets(1);
+  const TetIndex t = complex_.free.back();
+  complex_.free.pop_back();
   return t;
 }
 
 /// Whether an interface lies between two of the tets, which come together around its rim: it would go with them.
-bool EditBlock::have_both_sides(std::span<const TetIndex> tets) {
+bool MeshEditor::have_both_sides(std::span<const TetIndex> tets) {
   parted_.clear();
   for (const TetIndex t : tets)
     for (HalfFace h = 4 * t; h < 4 * t + 4; ++h)
@@ -86,9 +70,8 @@ bool EditBlock::have_both_sides(std::span<const TetIndex> tets) {
   return std::adjacent_find(parted_.begin(), parted_.end()) != parted_.end();
 }
 
-bool EditBlock::replace(std::span<const TetIndex> old_tets, std::span<const Tet> new_tets,
-                        std::span<const Shape> shapes, std::vector<TetIndex>& created, const BoundaryChange* change) {
-  if (new_tets.size() > old_tets.size() && !has_room(new_tets.size() - old_tets.size())) return false;
+bool MeshEditor::replace(std::span<const TetIndex> old_tets, std::span<const Tet> new_tets,
+                         std::span<const Shape> shapes, std::vector<TetIndex>& created, const BoundaryChange* change) {
   if (have_both_sides(old_tets)) return false;
   rim_.reset(4 * (old_tets.size() + new_tets.size()));
   for (const TetIndex t : old_tets) rim_.open(complex_, t);
@@ -110,7 +93,7 @@ bool EditBlock::replace(std::span<const TetIndex> old_tets, std::span<const Tet>
   for (std::size_t k = new_tets.size(); k < old_tets.size(); ++k) {
     complex_.tets[old_tets[k]] = {kNone, kNone, kNone, kNone};
     mesh_.shapes_[old_tets[k]] = kNoShape;
-    free_tets().push_back(old_tets[k]);
+    complex_.free.push_back(old_tets[k]);
   }
   for (const TetIndex t : created) {
     for (const VertexIndex v : complex_.tets[t]) complex_.tet_at[v] = t;
@@ -120,14 +103,14 @@ bool EditBlock::replace(std::span<const TetIndex> old_tets, std::span<const Tet>
   return true;
 }
 
-void EditBlock::note_gone(TetIndex t) {
+void MeshEditor::note_gone(TetIndex t) {
   EditMesh::Taken& taken = *mesh_.taken_;
-  if (!std::exchange(taken.is_there[t], std::uint8_t{0})) return;
-  (whole_ ? taken.gone : gone_).push_back(complex_.tets[t]);
-  if (mesh_.had_regions_) (whole_ ? taken.region_of_gone : region_of_gone_).push_back(mesh_.region_[t]);
+  const TetIndex number = std::exchange(taken.number[t], kNone);
+  if (number == kNone) return;
+  taken.gone.push_back(number);
 }
 
-void EditBlock::change_boundary(const BoundaryChange& change) {
+void MeshEditor::change_boundary(const BoundaryChange& change) {
   std::vector<Triangle>& boundary = mesh_.rest_.boundary;
   for (const HalfFace b : change.gone) {
     rim_.toggle(boundary[b - kFirstOutside], kNone);
@@ -143,15 +126,11 @@ void EditBlock::change_boundary(const BoundaryChange& change) {
   }
 }
 
-VertexIndex EditBlock::add_vertex(Vec3 p, VertexIndex beside, std::size_t tets) {
-  if (!has_room(tets)) return kNone;
-  std::vector<VertexIndex>& free = whole_ ? mesh_.free_points_ : free_points_;
-  if (whole_ && free.empty()) mesh_.reserve_points(1);
-  if (free.empty()) return kNone;
-  const VertexIndex v = free.back();
-  free.pop_back();
+VertexIndex MeshEditor::add_vertex(Vec3 p) {
+  if (mesh_.free_points_.empty()) mesh_.reserve_points(1);
+  const VertexIndex v = mesh_.free_points_.back();
+  mesh_.free_points_.pop_back();
   mesh_.points_[v] = p;
-  for (Cells& cells : mesh_.cells_) cells.of[v] = cells.of[beside];
   return v;
 }
 

@@ -1,0 +1,134 @@
+#pragma once
+
+// improve/pieces: a mesh that is worked on piece by piece. The whole is kept in flat arrays; what edits need beside
+// them lives as long as a piece is worked on. In each stage a piece is what lies wholly in one cell of space
+// (base/blocks); what lies at its rim is held fast, and lies inside a cell of a later stage. What the cells of all
+// stages cut is one piece at the end. Pieces are pure: what comes of one hangs on it alone, so who works on which, and
+// when, never matters. Takes a valid TetMesh and leaves one.
+
+#include <octafront/tet_mesh.h>
+
+#include "base/blocks/blocks.h"
+#include "base/core/function_ref.h"
+#include "base/mesh/features.h"
+#include "improve/boundary/boundary_guide.h"
+#include "improve/shape/edit_mesh.h"
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace octafront::improve {
+
+/// A part of a mesh, which one worker may change.
+struct MeshPiece {
+  std::optional<EditMesh> mesh;         ///< of the part; the k-th vertex taken is vertices[k] of the whole
+  std::vector<VertexIndex> vertices;    ///< ascending
+  std::vector<std::uint32_t> boundary;  ///< the numbers in the whole of its boundary triangles, ascending
+  /// In the numbers of the vertices taken: those that have elements elsewhere, and of what is known of the boundary.
+  std::vector<VertexIndex> at_rim, pinned, frozen;
+  Features features;  ///< whoever changes the boundary leaves those of what he made
+};
+
+class MeshOfPieces {
+ public:
+  /// Fewer vertices would have more elements at rims; more would not fit the cache, and share less well among threads.
+  static constexpr std::size_t kMostVertices = 16384;
+
+  /// `input`: what the boundary was made from, null if it stays; it must outlive this. With it, what changes is written
+  /// down, for rewind(). Pieces have `most` vertices or fewer as they begin. Throws MeshingError if there are more tets
+  /// than kMostTetsToImprove.
+  MeshOfPieces(TetMesh&& mesh, ImproveOptions::Objective objective, const BoundaryInput* input,
+               std::size_t most = kMostVertices);
+
+  /// Called from several threads, for a piece each; `number` < count of pieces. May change the piece.
+  using Work = FunctionRef<void(MeshPiece& piece, std::size_t number)>;
+  /// Called before each stage with how many pieces it has, and after it with 0.
+  using Watch = FunctionRef<void(std::size_t pieces)>;
+
+  /// Called before each stage: for tests, which may change where elements are kept.
+  using BeforeStage = std::function<void(MeshOfPieces&)>;
+  void call_before_stages(BeforeStage call) { before_stage_ = std::move(call); }
+
+  /// Has pieces worked on, stage by stage, until no vertex waits: one waits (`waiting` has a mark for each) until it
+  /// was in a piece with all elements around it. Pieces hold what lies within `rings` rings of those that wait.
+  void work(std::vector<std::uint8_t> waiting, int rings, const Watch& watch, const Work& work);
+  /// The same in one piece: for few vertices that must be seen together.
+  void work_on_one(const std::vector<std::uint8_t>& waiting, int rings, const Work& work);
+
+  std::vector<std::uint8_t> all() const { return std::vector<std::uint8_t>(points_.size(), 1); }
+  /// Marks the corners of elements with a score below the threshold; empty if there are none.
+  std::vector<std::uint8_t> corners_below(float threshold) const;
+  /// Marks the vertices of triangles of the boundary that cross; empty if none do.
+  std::vector<std::uint8_t> corners_of_crossings() const;
+
+  std::size_t tets() const { return live_; }
+  std::span<const Vec3> points() const { return points_; }
+  /// Where the vertices were that the mesh came with; only with an input.
+  std::span<const Vec3> home() const { return home_; }
+  /// Calls visit(corners) for each element.
+  template <class Visit>
+  void for_each_tet(const Visit& visit) const {
+    for (const Tet& t : tets_)
+      if (t[0] != kNone) visit(t);
+  }
+
+  /// These vertices that came, and edges around them, stay from now on.
+  void freeze(std::span<const VertexIndex> vertices);
+  /// Whether the boundary is another one than it came with; only with an input.
+  bool moved_boundary() const;
+  /// The mesh as it came; only with an input.
+  void rewind();
+
+  /// The mesh, compacted: vertices in the order they came in, without unused ones, new ones behind; tets in order of
+  /// space; boundary triangles by their numbers, the last ones in the place of those that went. Features, if asked for,
+  /// get the numbers of this mesh.
+  TetMesh release(Features* features);
+
+ private:
+  friend class SlotShuffle;  ///< of the tests
+
+  struct Division;
+  struct Change;
+
+  std::vector<TetIndex> touching(const std::vector<std::uint8_t>& marks, std::span<const TetIndex> among) const;
+  std::vector<std::uint8_t> spread(std::vector<std::uint8_t> marks, int rings, std::span<const TetIndex> among) const;
+  Division divide(const std::vector<std::uint8_t>& near, std::span<const TetIndex> tets, int stage) const;
+  void run(const Division& division, const Work& work);
+  MeshPiece extract(const Division& division, std::uint32_t cell);
+  Change change_of(const MeshPiece& piece, std::span<const TetIndex> tets, const std::vector<Edge>& edges) const;
+  void apply(std::vector<Change>& changes);
+  void put(Change& change);
+  void note_gone(TetIndex t);
+  Features renumbered(const std::vector<VertexIndex>& number) const;
+
+  ImproveOptions::Objective objective_;
+  const BoundaryInput* input_;
+  std::size_t most_;
+  std::vector<Vec3> points_;
+  std::vector<Tet> tets_;  ///< [0] == kNone: none
+  std::vector<std::uint32_t> region_;
+  std::size_t live_ = 0;
+  Box3 box_;                                    ///< of the vertices as they came
+  TetMesh rest_;                                ///< all else
+  std::vector<Edge> edges_;                     ///< features, sorted
+  std::vector<std::uint8_t> pinned_, frozen_;   ///< per vertex that came
+  std::vector<std::uint32_t> number_in_piece_;  ///< per vertex, while its piece is made; kNone
+
+  /// What rewind() needs: elements that came and are gone, and what of the others came.
+  struct Origin {
+    TetMesh rest;
+    std::vector<Edge> edges;
+    std::vector<std::uint8_t> came;  ///< per slot
+    std::vector<Tet> gone;
+    std::vector<std::uint32_t> region_of_gone;
+  };
+  std::vector<Vec3> home_;
+  Origin origin_;
+  BeforeStage before_stage_;
+};
+
+}  // namespace octafront::improve

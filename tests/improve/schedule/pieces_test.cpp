@@ -1,0 +1,140 @@
+#include "improve/pieces/pieces.h"
+
+#include <octafront/validity.h>
+
+#include "base/mesh/features.h"
+#include "base/mesh/tet_key.h"
+#include "improve/passes/passes.h"
+#include "improve/start_meshes.h"
+
+#include <algorithm>
+#include <mutex>
+#include <set>
+
+#include <gtest/gtest.h>
+
+namespace octafront::improve {
+namespace {
+
+using namespace octafront::testing;
+
+constexpr auto kBalanced = ImproveOptions::Objective::kBalanced;
+
+const auto no_watch = [](std::size_t) {};
+
+/// Several pieces of up to kMost vertices.
+const TetMesh& many_pieces() {
+  static const TetMesh mesh = perturbed(kuhn_cube(14), 0.5, 1);
+  return mesh;
+}
+constexpr std::size_t kMost = 600;
+
+TEST(Pieces, OfOneStageShareNoVertexAndAllAreOnceInOneWithAllAround) {
+  const TetMesh& start = many_pieces();
+  std::vector<int> star(start.points.size(), 0), seen_inside(start.points.size(), 0), of_piece;
+  for (const Tet& t : start.tets)
+    for (const VertexIndex v : t) ++star[v];
+  MeshOfPieces mesh(TetMesh{start}, kBalanced, nullptr, kMost);
+  std::vector<std::size_t> counts;
+  std::mutex mutex;
+  const auto watch = [&](std::size_t pieces) {
+    if (pieces == 0) return;
+    counts.push_back(pieces);
+    of_piece.assign(start.points.size(), -1);
+  };
+  mesh.work(mesh.all(), 1, watch, [&](MeshPiece& piece, std::size_t number) {
+    const std::scoped_lock lock(mutex);
+    EXPECT_EQ(piece.mesh->first_inconsistency(), std::nullopt);
+    std::vector<int> here(piece.vertices.size(), 0);
+    for (TetIndex t = 0; t < piece.mesh->slots(); ++t)
+      for (const VertexIndex v : piece.mesh->tet(t)) ++here[v];
+    for (VertexIndex v = 0; v < here.size(); ++v) {
+      int& owner = of_piece[piece.vertices[v]];
+      EXPECT_EQ(owner, -1);
+      owner = static_cast<int>(number);
+      const bool at_rim = std::ranges::binary_search(piece.at_rim, v);
+      EXPECT_TRUE(here[v] == star[piece.vertices[v]] || (at_rim && piece.mesh->on_boundary(v)));
+      seen_inside[piece.vertices[v]] += !at_rim;
+    }
+  });
+  ASSERT_GE(counts.size(), 3u);
+  EXPECT_GT(counts[0], 2u);
+  EXPECT_GT(counts[1], 1u);
+  EXPECT_EQ(std::ranges::count(seen_inside, 0), 0);
+}
+
+TEST(Pieces, LookedAtAloneGiveTheMeshBack) {
+  const TetMesh& start = many_pieces();
+  MeshOfPieces mesh(TetMesh{start}, kBalanced, nullptr, kMost);
+  mesh.work(mesh.all(), 0, no_watch, [](MeshPiece&, std::size_t) {});
+  TetMesh back = mesh.release(nullptr);
+  const auto keys = [](const TetMesh& m) {
+    std::vector<Tet> all;
+    for (const Tet& t : m.tets) all.push_back(tet_key(t));
+    std::sort(all.begin(), all.end());
+    return all;
+  };
+  EXPECT_EQ(keys(back), keys(start));
+  back.tets = start.tets;
+  EXPECT_EQ(back, start);
+}
+
+TEST(Pieces, AreMendedAcrossTheirRims) {
+  TetMesh start = many_pieces();
+  for (const Tet& t : start.tets) start.region.push_back(start.points[t[0]].x > 0.4);
+  MeshOfPieces mesh(TetMesh{start}, kBalanced, nullptr, kMost);
+  mesh.work(mesh.all(), 1, no_watch, [](MeshPiece& piece, std::size_t) {
+    insert_vertices(*piece.mesh, 0.3f, Goal::kWorst, {});
+    while (reconnect(*piece.mesh, 0.3f, Goal::kWorst, {}).done != 0) {
+    }
+  });
+  EXPECT_NE(mesh.tets(), start.tets.size());
+  const TetMesh made = mesh.release(nullptr);
+  EXPECT_EQ(first_defect(made), std::nullopt);
+  EXPECT_EQ(made.region.size(), made.tets.size());
+  // What a pass over the whole finds to do is next to nothing of what it found before.
+  EditMesh before{TetMesh{start}}, after{TetMesh{made}};
+  EXPECT_LT(50 * reconnect(after, 0.3f, Goal::kWorst, {}).done, reconnect(before, 0.3f, Goal::kWorst, {}).done);
+}
+
+TEST(Pieces, FindThePoorAndThoseThatCross) {
+  const TetMesh& start = many_pieces();
+  MeshOfPieces mesh(TetMesh{start}, kBalanced, nullptr, kMost);
+  EXPECT_TRUE(mesh.corners_of_crossings().empty());
+  EXPECT_TRUE(mesh.corners_below(-1).empty());
+  const float threshold = 0.1f;
+  std::vector<std::uint8_t> expected(start.points.size(), 0);
+  for (const auto& [a, b, c, d] : start.tets)
+    if (shape_of(start.points[a], start.points[b], start.points[c], start.points[d]).score < threshold)
+      expected[a] = expected[b] = expected[c] = expected[d] = 1;
+  EXPECT_GT(std::ranges::count(expected, 1), 0);
+  EXPECT_EQ(mesh.corners_below(threshold), expected);
+}
+
+TEST(Pieces, WithAnInputCanBeTakenBack) {
+  const TetMesh start = perturbed(kuhn_cube(8), 0.6, 3);
+  const SurfaceMesh surface{start.points, start.boundary, start.patch, {}, {}};
+  const Features features = detect_features(surface, 40);
+  const TriangleTree tree(surface);
+  const BoundaryInput input{surface, tree, features, features};
+  MeshOfPieces mesh(TetMesh{start}, kBalanced, &input);
+  EXPECT_FALSE(mesh.moved_boundary());
+  const auto change = [](MeshPiece& piece, std::size_t) {
+    reconnect(*piece.mesh, 0.6f, Goal::kWorst, {});
+    insert_vertices(*piece.mesh, 0.5f, Goal::kWorst, {});
+    smooth_mean(*piece.mesh, 1, {});
+  };
+  for (int round = 0; round < 2; ++round) {
+    mesh.work(mesh.all(), 1, no_watch, change);
+    EXPECT_NE(mesh.tets(), start.tets.size());
+    mesh.rewind();
+    EXPECT_EQ(mesh.tets(), start.tets.size());
+  }
+  TetMesh back = mesh.release(nullptr);
+  EXPECT_EQ(std::set(back.tets.begin(), back.tets.end()), std::set(start.tets.begin(), start.tets.end()));
+  back.tets = start.tets;
+  EXPECT_EQ(back, start);
+}
+
+}  // namespace
+}  // namespace octafront::improve
