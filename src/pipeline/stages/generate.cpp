@@ -6,6 +6,7 @@
 
 #include "base/core/wording.h"
 #include "pipeline/inside/fins.h"
+#include "pipeline/stages/agreement.h"
 #include "pipeline/stages/kept_shape.h"
 #include "pipeline/stages/measure.h"
 #include "pipeline/stages/methods.h"
@@ -66,11 +67,17 @@ void split(TetMesh& mesh, Run& run) {
 Result generate_once(const Domain& domain, const Options& asked, const RunContext& context, Fins* fins) {
   const Options options = suited(domain, asked);
   Run run(options, context);
+  refuse_for_ranks(options, context);
+  agree_on(domain.surface, "input", context);
   const Prepared input = prepare(domain, run);
+  agree_on(input.surface.mesh(), "repaired input", context);
   check_split(input.surface.mesh(), names_listed(options.split, input.surface.mesh().patch_names));
   const SizeField sizes = choose_sizes(input, domain, asked, run);
+  agree_on(sizes, input.surface.mesh().points, "size field", context);
   Filled filled = fill_to_target(input, sizes, run);
+  agree_on(filled, "mesh as it was filled", context);
   improve_in_shape(input, filled, run);
+  agree_on(filled, "improved mesh", context);
   if (!options.layers.outside) add_layers(input, filled, run);
   note_missed_elements(filled.mesh, run);
   check_shape(input, filled, run);
@@ -78,6 +85,7 @@ Result generate_once(const Domain& domain, const Options& asked, const RunContex
   place_on_geometry(input, filled, run);
   if (options.layers.outside) add_layers(input, filled, run);
   raise_order(input, filled, run);
+  agree_on(filled, "mesh", context);
   name_patches(input, filled);
   name_parts(input, filled, run);
   pair_nodes(input, filled.mesh, run);
@@ -85,6 +93,7 @@ Result generate_once(const Domain& domain, const Options& asked, const RunContex
   finish_curves(filled.mesh, fins, run);
   split(filled.mesh, run);
   describe(filled.mesh, run.report);
+  run.comm().agree(run.report.hash, "mesh at the end");
   describe_true_volumes(filled, domain, run.report);
   if (!filled.layers) describe_sizes(filled.mesh, filled.boundary.sizes, run.report);
   return {std::move(filled.mesh), filled.boundary.sizes, run.close()};
