@@ -15,7 +15,11 @@ if(BUILD_SHARED_LIBS)
   set(library_component library)
 endif()
 # Who asks for the mesher alone need not have what the rest stands on: an export of its own.
-foreach(library octafront_mesher octafront)
+set(installed_libraries octafront_mesher octafront)
+if(OCTAFRONT_MPI)
+  list(APPEND installed_libraries octafront_mpi)
+endif()
+foreach(library IN LISTS installed_libraries)
   install(TARGETS ${library} EXPORT ${library}Targets
           ARCHIVE COMPONENT development
           LIBRARY COMPONENT ${library_component} NAMELINK_COMPONENT development)
