@@ -45,12 +45,9 @@ int fail_with_json(const Session& session, const Failure& failure) {
   return status;
 }
 
-int run_session(const Program& program, Arguments& arguments, const Launch& launch, Ranks* ranks) {
+int run_session(const Program& program, const Arguments& arguments, Ranks* ranks) {
   Session session(arguments, ranks);
   try {
-    together(ranks, "start", [&] {
-      if (launch.is_first()) check_files(arguments);
-    });
     together(ranks, arguments.command, [&] {
       if (ranks == nullptr) rehearse_reading(arguments);
       program.chosen()(session);
@@ -71,7 +68,11 @@ int run(Program& program, int argc, char** argv, const Launch& launch) {
       mpi = start_mpi(launch);
       adapt_to_ranks(arguments, launch, mpi->ranks_here());
     }
-    return run_session(program, arguments, launch, mpi ? &mpi->ranks() : nullptr);
+    Ranks* const ranks = mpi ? &mpi->ranks() : nullptr;
+    together(ranks, "start", [&] {
+      if (launch.is_first()) check_files(arguments);
+    });
+    return run_session(program, arguments, ranks);
   } catch (const std::exception&) {
     const Failure failure = current_failure();
     return fail(failure.status, failure.message);

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdlib>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <fmt/core.h>
@@ -33,11 +34,42 @@ int threads_of_rank(int ranks_here) {
   return allowed < machine ? allowed : std::max(1, allowed / ranks_here);
 }
 
-/// What each rank tells the first at the end.
+/// What each rank tells the first at the end: of the run, and of each stage.
 struct Taken {
-  std::uint64_t peak_memory = 0, messages = 0, bytes_sent = 0, bytes_taken = 0;
-  double seconds_talking = 0, seconds_shared = 0;
+  std::uint64_t peak_memory = 0;
+  double messages = 0, bytes_sent = 0, bytes_taken = 0, seconds_talking = 0, seconds_shared = 0;
 };
+
+double counter(const StageReport& stage, std::string_view key) {
+  const auto found = std::ranges::find(stage.counters, key, &std::pair<std::string, double>::first);
+  return found == stage.counters.end() ? 0 : found->second;
+}
+
+Taken taken_by(const StageReport& stage) {
+  return {0,
+          counter(stage, "rounds of talk"),
+          counter(stage, "bytes sent"),
+          counter(stage, "bytes taken"),
+          counter(stage, "talking seconds"),
+          counter(stage, "shared seconds")};
+}
+
+Json as_json(const Taken& t) {
+  return {{"rounds_of_talk", t.messages},
+          {"bytes_sent", t.bytes_sent},
+          {"bytes_taken", t.bytes_taken},
+          {"talking_seconds", t.seconds_talking},
+          {"shared_seconds", t.seconds_shared}};
+}
+
+/// The rows of all ranks, one rank's behind the other's.
+std::vector<Taken> gathered(Ranks& ranks, const std::vector<Taken>& mine) {
+  const auto count = static_cast<std::size_t>(ranks.size());
+  std::vector<Taken> all(count * mine.size());
+  ranks.gather(std::as_bytes(std::span(mine)), std::vector<std::size_t>(count, mine.size() * sizeof(Taken)),
+               reinterpret_cast<std::byte*>(all.data()));
+  return all;
+}
 
 }  // namespace
 
@@ -69,23 +101,24 @@ void tell_ranks(Session& session, const Report& report) {
   Ranks* const ranks = session.context().ranks;
   if (ranks == nullptr) return;
   const RankUse& use = ranks->use;
-  const Taken mine{report.peak_memory_bytes, use.messages,        use.bytes_sent,
-                   use.bytes_taken,          use.seconds_talking, use.seconds_shared};
-  std::vector<Taken> all(static_cast<std::size_t>(ranks->size()));
-  ranks->gather(std::as_bytes(std::span(&mine, 1)), std::vector<std::size_t>(all.size(), sizeof(Taken)),
-                reinterpret_cast<std::byte*>(all.data()));
+  std::vector<Taken> mine{{report.peak_memory_bytes, static_cast<double>(use.messages),
+                           static_cast<double>(use.bytes_sent), static_cast<double>(use.bytes_taken),
+                           use.seconds_talking, use.seconds_shared}};
+  for (const StageReport& stage : report.stages) mine.push_back(taken_by(stage));
+  const std::vector<Taken> all = gathered(*ranks, mine);
   Json rows = Json::array();
-  for (const Taken& t : all)
-    rows.push_back({{"peak_memory_bytes", t.peak_memory},
-                    {"rounds_of_talk", t.messages},
-                    {"bytes_sent", t.bytes_sent},
-                    {"bytes_taken", t.bytes_taken},
-                    {"talking_seconds", t.seconds_talking},
-                    {"shared_seconds", t.seconds_shared}});
+  std::uint64_t least = mine[0].peak_memory, most = 0;
+  for (std::size_t first = 0; first < all.size(); first += mine.size()) {
+    Json row{{"peak_memory_bytes", all[first].peak_memory}};
+    row.update(as_json(all[first]));
+    for (std::size_t s = 0; s < report.stages.size(); ++s)
+      row["stages"].push_back(as_json(all[first + 1 + s])), row["stages"].back()["name"] = report.stages[s].name;
+    least = std::min(least, all[first].peak_memory), most = std::max(most, all[first].peak_memory);
+    rows.push_back(row);
+  }
   session.found({{"ranks", rows}});
-  const auto [least, most] = std::ranges::minmax(all, {}, &Taken::peak_memory);
-  session.say(fmt::format("{} ranks: peak memory {:.2f} to {:.2f} GB each\n", all.size(),
-                          1e-9 * static_cast<double>(least.peak_memory), 1e-9 * static_cast<double>(most.peak_memory)));
+  session.say(fmt::format("{} ranks: peak memory {:.2f} to {:.2f} GB each\n", ranks->size(),
+                          1e-9 * static_cast<double>(least), 1e-9 * static_cast<double>(most)));
 }
 
 }  // namespace octafront::cli
