@@ -357,6 +357,17 @@ void declare_run(CLI::App& command, Arguments& a) {
   group->add_flag("-q,--quiet", a.quiet, "Print nothing but errors");
 }
 
+void declare_checkpoint(CLI::App& command, Arguments& a) {
+  auto* group = command.add_option_group("Going on");
+  group->add_option("--checkpoint", a.checkpoint, "Keep what long stages make in a folder, to go on from there")
+      ->type_name("DIR");
+  group
+      ->add_option("--resume", a.resume,
+                   "Go on with what --checkpoint has kept of the same input and options, and keep on keeping")
+      ->type_name("DIR")
+      ->excludes("--checkpoint");
+}
+
 /// NAME=H, where the name may have signs of equality of its own.
 NamedSize named_size(const std::string& text) {
   const std::size_t at = text.rfind('=');

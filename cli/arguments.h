@@ -56,6 +56,7 @@ struct Arguments {
   std::vector<GroupRule> groups;  ///< that are added to it
   int new_order = 0;              ///< of a converted mesh; 0: as it is
   int threads = 0;
+  std::filesystem::path checkpoint, resume;  ///< folders; empty: none
   bool quiet = false;
   OptionNames names;
   std::vector<std::pair<std::string, std::string>> given;  ///< options and values as typed; flags are "true"
@@ -85,6 +86,8 @@ void declare_preset(CLI::App& command, Arguments& arguments);
 void declare_dry_run(CLI::App& command, Arguments& arguments);
 void declare_report(CLI::App& command, Arguments& arguments);
 void declare_run(CLI::App& command, Arguments& arguments);
+/// --checkpoint and --resume.
+void declare_checkpoint(CLI::App& command, Arguments& arguments);
 void declare_sizes(CLI::App& command, Arguments& arguments);
 void declare_surface(CLI::App& command, Arguments& arguments);
 void declare_periodic(CLI::App& command, Arguments& arguments);

@@ -173,7 +173,12 @@ void run_mesh(Session& session) {
     check_mesh_targets(a);
     check_page_target(a.page);
   });
-  const Result result = run_on_input(session, generate);
+  const bool resumes = !a.resume.empty();
+  const Checkpoints checkpoints{(resumes ? a.resume : a.checkpoint).string(), resumes};
+  const Result result =
+      run_on_input(session, [&](const Domain& domain, const Options& options, const RunContext& context) {
+        return generate_with(checkpoints, domain, options, context);
+      });
   tell_ranks(session, result.report);
   if (!session.is_first()) return;
   write_mesh_targets(session, result.mesh);

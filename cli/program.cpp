@@ -119,6 +119,7 @@ void Program::declare_makers() {
   declare_split(*mesh, a);
   declare_page(*mesh, a);
   declare_report(*mesh, a);
+  declare_checkpoint(*mesh, a);
   declare_run(*mesh, a);
 }
 

@@ -14,6 +14,8 @@
 
 namespace octafront {
 
+class Checkpoint;
+
 /// Enters into the report what the ranks have said to each other until its end, if there are several.
 class StageUse {
  public:
@@ -54,6 +56,8 @@ class Run {
   }
 
   Comm comm() const { return Comm(context_.ranks); }
+  /// What earlier runs have kept of the stages that are yet to come; null: nothing is.
+  Checkpoint* checkpoint = nullptr;
 
   const RunContext& context() const { return context_; }
   /// The report, with the sums over its stages and the peak of memory: the end of the run.
