@@ -25,6 +25,8 @@ struct FilledPiece {
   static constexpr int kEveryRank = -1;
   std::vector<Tet> tets;  ///< empty on ranks that do not have it
   int rank = kEveryRank;  ///< that has it
+
+  friend bool operator==(const FilledPiece&, const FilledPiece&) = default;
 };
 
 /// The whole front between two phases, and what has been made so far: plain lists, in an order that is part of the
