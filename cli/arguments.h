@@ -1,6 +1,7 @@
 #pragma once
 
 #include <octafront/domain.h>
+#include <octafront/io.h>
 #include <octafront/named_groups.h>
 #include <octafront/options.h>
 #include <octafront/solver_checks.h>
@@ -39,9 +40,12 @@ struct Arguments {
   bool cells_only = false;                    ///< of the meshes: tetrahedra alone
   bool cohesive = false;                      ///< of the meshes: with cohesive elements where they are split
   std::string beams;                          ///< of the meshes: curves that are beams, too
-  std::vector<std::string> only;              ///< places that may change
-  std::vector<std::string> carry;             ///< fields of the input that go along; empty: all, "none": none
-  std::filesystem::path map_file;             ///< where old vertices and elements are now; empty: none
+  int parts = 0;                              ///< of the meshes: divided into so many; 0: whole
+  Partitioner partitioner = Partitioner::kCurve;
+  bool split_files = false;        ///< of the meshes: a file for each part
+  std::vector<std::string> only;   ///< places that may change
+  std::vector<std::string> carry;  ///< fields of the input that go along; empty: all, "none": none
+  std::filesystem::path map_file;  ///< where old vertices and elements are now; empty: none
   std::filesystem::path regions, point_sizes, size_field;  ///< files with sizes; empty: none
   std::string metric;                                      ///< FILE[:FIELD] with a metric; empty: none
   std::string field;                                       ///< of the input, of which a metric is made; empty: none
