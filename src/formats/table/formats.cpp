@@ -139,8 +139,9 @@ constexpr std::array kFormats{
     with_fields(with_wedges(or_text(mesh(
         "vtu", "VTU", ".vtu", kYes, binary(kAll),
         "VTK unstructured grid, compressed or text: numbers, names and sets as arrays; beta per element", write_vtu)))),
-    with_fields(with_wedges(or_text(
-        mesh("msh", "Gmsh MSH 4.1", ".msh", kYes, binary(kAll), "binary or text: all as physical groups", write_msh)))),
+    with_parts(with_fields(with_wedges(or_text(mesh("msh", "Gmsh MSH 4.1", ".msh", kYes, binary(kAll),
+                                                    "binary or text: all as physical groups", write_msh)))),
+               write_msh_parts),
     with_fields(with_wedges(or_text(mesh("msh22", "Gmsh MSH 2.2", "", kYes, binary(without_sets(kAll)),
                                          "binary or text: regions, patches, curves as physical groups", write_msh2)))),
     with_cohesive(with_wedges(mesh("abaqus", "Abaqus, CalculiX", ".inp", kYes, kSolver,

@@ -45,6 +45,7 @@ void write_exodus(MeshOutput& out, const MeshParts& mesh);
 
 // Meshes in parts, a piece at a time.
 void write_pvtu(MeshOutput& out, Pieces& pieces);
+void write_msh_parts(MeshOutput& out, Pieces& pieces);
 void write_openfoam_parts(MeshOutput& out, Pieces& pieces);
 
 /// "STEM_0007.vtu".

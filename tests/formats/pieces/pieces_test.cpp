@@ -229,6 +229,40 @@ TEST(FilesInParts, AreTheSameForAnyNumberOfThreads) {
     }
 }
 
+TEST(FilesInParts, OfGmshHoldTheWholeMesh) {
+  for (const TetMesh& mesh : meshes_to_divide()) {
+    const TemporaryFolder folder;
+    write_mesh(folder / "one.msh", mesh);
+    write_mesh(folder / "parts.msh", mesh, {}, {.parts = 3});
+    write_mesh(folder / "split.msh", mesh, {}, {.parts = 3, .split_files = true});
+    EXPECT_FALSE(fs::exists(folder / "split.msh"));
+    const TetMesh one = read_mesh(folder / "one.msh"), parts = read_mesh(folder / "parts.msh");
+    EXPECT_EQ(parts.points.size(), one.points.size());
+    EXPECT_EQ(parts.tets.size(), one.tets.size());
+    EXPECT_EQ(parts.wide_cells.size(), one.wide_cells.size());
+    EXPECT_EQ(parts.region_names, one.region_names);
+    EXPECT_EQ(parts.patch_names, one.patch_names);
+    EXPECT_EQ(parts.boundary.size(), one.boundary.size());
+    EXPECT_EQ(parts.interfaces.size(), one.interfaces.size());
+    EXPECT_EQ(parts.curve_edges.size(), one.curve_edges.size());
+    ASSERT_EQ(parts.sets.size(), one.sets.size());
+    for (std::size_t s = 0; s < one.sets.size(); ++s) {
+      EXPECT_EQ(parts.sets[s].name, one.sets[s].name);
+      EXPECT_EQ(parts.sets[s].members.size(), one.sets[s].members.size());
+    }
+    std::size_t elements = 0;
+    const MeshParts whole(mesh);
+    Pieces pieces(whole, io::divide(mesh, 3, Partitioner::kCurve));
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const TetMesh alone = read_mesh(folder / ("split_" + std::to_string(k + 1) + ".msh"));
+      elements += alone.tets.size();
+      EXPECT_GT(alone.tets.size(), pieces.own_tets(k).size());
+      EXPECT_EQ(alone.tets.size(), pieces.own_tets(k).size() + pieces.ghosts_of(k).size());
+    }
+    EXPECT_GT(elements, mesh.tets.size());
+  }
+}
+
 TEST(FilesInParts, ReplaceAnEarlierSetAsAWhole) {
   const TemporaryFolder folder;
   const TetMesh mesh = testing::rich_mesh(2);
