@@ -16,6 +16,7 @@
 #   bench/run.sh adapt       the Working Group's cases of metrics, a loop with FEniCSx -> docs/measured/adapt.md
 #   bench/run.sh adapt_loops  meshes adapted to small and large sizes in turn, ten times -> docs/measured/adapt-isotropic.md
 #   bench/run.sh formats     how fast meshes are written, every format beside a plain write -> docs/measured/formats-bench.md
+#   bench/run.sh parts       meshes in parts: what divisions are worth, time and memory beside one file -> docs/measured/parts.md
 #   bench/run.sh second_order   all clean models, balls, tori, cylinders: proven? how true? at what cost? -> docs/how/second-order.md
 #   bench/run.sh repair      the defective models, repaired and meshed; --near N: held to 1 ‰, too -> docs/measured/repair-status.md
 #   bench/run.sh known_answers   2,000 clean models damaged in known ways, repaired and judged -> docs/measured/repair-known.md
@@ -36,8 +37,8 @@ cd "$(dirname "$0")/.."
 source scripts/lib/apt.sh
 
 case ${1:-} in
-  status | derived | pipeline | surface | elements | gradation | volume | graded | peers | complexes | improve | adapt | adapt_loops | formats | second_order | dry_run | repair | known_answers | damage | images | thin | budget | cad | layers | layers_shapes | layers_flows | layers_peers | layers_solved | inside | periodic) ;;
-  *) sed -n '2,33s/^# \{0,1\}//p' "$0"; exit 2 ;;
+  status | derived | pipeline | surface | elements | gradation | volume | graded | peers | complexes | improve | adapt | adapt_loops | formats | parts | second_order | dry_run | repair | known_answers | damage | images | thin | budget | cad | layers | layers_shapes | layers_flows | layers_peers | layers_solved | inside | periodic) ;;
+  *) sed -n '2,34s/^# \{0,1\}//p' "$0"; exit 2 ;;
 esac
 need_packages "${build_packages[@]}" python3
 [ "$1" != surface ] || need_packages gmsh netgen libcgal-dev libgmp-dev libmpfr-dev
@@ -68,6 +69,7 @@ cmake --build --preset release --target octafront_cli octafront_evaluate octafro
 [ "$1" != adapt_loops ] || cmake --build --preset release --target octafront_adapt_loops
 [ "$1" != improve ] || cmake --build --preset release --target octafront_never_worse
 [ "$1" != formats ] || { cmake --build --preset release --target octafront_write_formats; exec python3 bench/formats.py build/release "${@:2}"; }
+[ "$1" != parts ] || { cmake --build --preset release --target octafront_write_parts; exec python3 bench/parts.py build/release "${@:2}"; }
 [ "$1" != second_order ] || cmake --build --preset release --target octafront_second_order
 [ "$1" != complexes ] || cmake --build --preset release --target make_complexes
 [ "$1" != known_answers ] || cmake --build --preset release --target octafront_judge_answer

@@ -192,8 +192,12 @@ class MshPiece {
   void for_each_ghost_elsewhere(const Visit& visit) const {
     const auto& tets = mesh_.mesh().tets;
     std::vector<std::pair<VertexIndex, std::uint32_t>> others;  // parts at corners
+    std::vector<bool> is_at_rim(mesh_.mesh().points.size(), false);
     for (std::size_t t = piece_.own_tets; t < tets.size(); ++t)
-      for (const VertexIndex v : tets[t]) others.emplace_back(v, piece_.tet_part[t]);
+      for (const VertexIndex v : tets[t]) {
+        others.emplace_back(v, piece_.tet_part[t]);
+        is_at_rim[v] = true;
+      }
     std::sort(others.begin(), others.end());
     others.erase(std::unique(others.begin(), others.end()), others.end());
     std::array<VertexIndex, 15> room;
@@ -202,7 +206,7 @@ class MshPiece {
       if (!is_own(c)) continue;
       parts.clear();
       for (const VertexIndex v : cells_.nodes(c, room))
-        for (auto at = std::lower_bound(others.begin(), others.end(), std::pair(v, 0U));
+        for (auto at = !is_at_rim[v] ? others.end() : std::lower_bound(others.begin(), others.end(), std::pair(v, 0U));
              at != others.end() && at->first == v; ++at)
           parts.push_back(at->second);
       std::sort(parts.begin(), parts.end());
