@@ -703,6 +703,20 @@ class CommandLine(unittest.TestCase):
     def test_output_that_cannot_be_written_is_status_5(self):
         self.run_cli("mesh", self.part, "-o", self.dir / "absent" / "o.vtu", status=5)
 
+    def test_meshes_are_written_in_parts(self):
+        mesh = self.dir / "m.vtu"
+        self.run_cli("mesh", SAMPLES / "bracket.stl", "-o", mesh, "--size", "8", "-q")
+        self.run_cli("convert", mesh, "-o", self.dir / "w.vtu", "-o", self.dir / "p.pvtu", "--parts", "3", "-q")
+        self.assertEqual(len(list((self.dir / "p").iterdir())), 3)
+        self.assertTrue((self.dir / "w.vtu").exists())
+        for wrong, words in ((["--parts", "0"], "range"), (["--parts", "-2"], "range"), (["--parts", "2"], "not written in parts"),
+                             (["--parts", "two"], "two")):
+            done = self.run_cli("convert", mesh, "-o", self.dir / "x.vtu", *wrong, status=2)
+            self.assertIn(words, done.stderr)
+        done = self.run_cli("convert", mesh, "-o", self.dir / "x.pvtu", "--parts", "999999", status=2)
+        self.assertIn("more than the", done.stderr)
+        self.assertFalse(list(self.dir.glob("x*")))
+
     def test_targets_are_checked_before_the_work(self):
         out = self.dir / "o.vtu"
         self.run_cli("mesh", self.part, "-o", out, "--json", self.dir / "absent" / "r.json", status=5)
