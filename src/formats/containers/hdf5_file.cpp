@@ -34,6 +34,13 @@ class Handle {
   herr_t (*close_)(hid_t);
 };
 
+/// How datasets are made: without the time, so that the same mesh gives the same bytes.
+Handle timeless_dataset() {
+  const hid_t creation = H5Pcreate(H5P_DATASET_CREATE);
+  H5Pset_obj_track_times(creation, 0);
+  return {creation, H5Pclose};
+}
+
 template <class T>
 hid_t native_type() {
   if constexpr (std::is_same_v<T, double>) return H5T_NATIVE_DOUBLE;
@@ -135,11 +142,12 @@ void Hdf5Writer::rows(const std::string& path, const std::vector<std::uint64_t>&
                       const Fill<T>& fill) {
   const std::vector<hsize_t> dimensions(shape.begin(), shape.end());
   const Handle space(H5Screate_simple(static_cast<int>(dimensions.size()), dimensions.data(), nullptr), H5Sclose);
+  const Handle timeless = timeless_dataset();
   const bool is_there = H5Lexists(file_, path.c_str(), H5P_DEFAULT) > 0;
-  const Handle set(
-      is_there ? H5Dopen2(file_, path.c_str(), H5P_DEFAULT)
-               : H5Dcreate2(file_, path.c_str(), native_type<T>(), space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
-      H5Dclose);
+  const Handle set(is_there ? H5Dopen2(file_, path.c_str(), H5P_DEFAULT)
+                            : H5Dcreate2(file_, path.c_str(), native_type<T>(), space.get(), H5P_DEFAULT,
+                                         timeless.get(), H5P_DEFAULT),
+                   H5Dclose);
   check(set.get(), "cannot be written");
   // Whole rows at a time.
   std::uint64_t per_row = 1;
@@ -202,7 +210,8 @@ void Hdf5Writer::texts(const std::string& path, const std::vector<std::string>& 
   const hsize_t size = length, count = rows.size();
   const Handle type(H5Tarray_create2(H5T_NATIVE_INT8, 1, &size), H5Tclose);
   const Handle space(H5Screate_simple(1, &count, nullptr), H5Sclose);
-  const Handle set(H5Dcreate2(file_, path.c_str(), type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+  const Handle timeless = timeless_dataset();
+  const Handle set(H5Dcreate2(file_, path.c_str(), type.get(), space.get(), H5P_DEFAULT, timeless.get(), H5P_DEFAULT),
                    H5Dclose);
   check(set.get(), "cannot be written");
   if (H5Dwrite(set.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, all.data()) < 0) fail("cannot be written");

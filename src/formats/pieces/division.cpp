@@ -106,7 +106,15 @@ std::vector<std::uint32_t> by_graph(const TetMesh& mesh, const Elements& element
     next.erase(std::unique(next.begin() + first.back(), next.end()), next.end());
     first.push_back(static_cast<std::int32_t>(next.size()));
   }
-  return divide_graph(std::move(first), std::move(next), parts);
+  std::vector<std::uint32_t> part = divide_graph(std::move(first), std::move(next), parts);
+  std::vector<bool> has_some(parts, false);
+  for (const std::uint32_t p : part) has_some[p] = true;
+  if (const auto empty = std::count(has_some.begin(), has_some.end(), false); empty > 0)
+    throw OptionError(
+        fmt::format("METIS leaves {} of {} parts empty, where parts have so few elements; ask for fewer, or "
+                    "divide along the curve",
+                    empty, parts));
+  return part;
 }
 
 }  // namespace

@@ -19,8 +19,8 @@ struct Division {
 /// Each element in one of the parts, 0 < parts <= elements. The curve: consecutive stretches of a Hilbert curve through
 /// the elements' centres, which differ by one element at most; O(n log n), 16 bytes an element, the same for every
 /// number of threads. METIS: fewer faces between the parts (G. Karypis, V. Kumar, A fast and high quality multilevel
-/// scheme for partitioning irregular graphs, 1998), parts that differ by 3 %; some 100 bytes an element. Throws
-/// OptionError if there are more parts than elements, or METIS is not in this build.
+/// scheme for partitioning irregular graphs, 1998), parts that differ by 3 %; some 180 bytes an element. Throws
+/// OptionError if there are more parts than elements, if METIS leaves parts empty, or is not in this build.
 Division divide(const TetMesh& mesh, std::uint32_t parts, Partitioner partitioner);
 
 /// Elements of a mesh with wedges and pyramids counted as one each.

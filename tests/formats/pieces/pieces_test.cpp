@@ -14,6 +14,7 @@
 #include "support/rich_mesh.h"
 
 #include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -21,6 +22,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <thread>
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -90,6 +92,19 @@ TEST(Division, RefusesMorePartsThanElements) {
   EXPECT_THROW(io::divide(mesh, 0, Partitioner::kCurve), OptionError);
   for (const Partitioner by : partitioners())
     EXPECT_EQ(io::divide(mesh, 1, by).part, (std::vector<std::uint32_t>{0, 0}));
+}
+
+TEST(Division, HasNoEmptyParts) {
+  const TetMesh mesh = testing::rich_mesh(4);
+  for (const std::uint32_t parts : {30U, 100U, 300U, 383U, 384U})
+    for (const Partitioner by : partitioners()) {
+      try {
+        EXPECT_GT(io::cost_of(mesh, io::divide(mesh, parts, by)).least, 0U) << parts;
+      } catch (const OptionError& refused) {
+        EXPECT_EQ(by, Partitioner::kMetis) << refused.what();  // which has its limits
+        EXPECT_GT(parts, 30U);
+      }
+    }
 }
 
 /// Elements of other parts that share a corner, by looking at all.
@@ -227,6 +242,23 @@ TEST(FilesInParts, AreTheSameForAnyNumberOfThreads) {
       EXPECT_FALSE(one.empty());
       EXPECT_EQ(one, with(2));
     }
+}
+
+TEST(FilesInParts, KnowNoTime) {
+  // HDF5 would write down the second in which a dataset was made.
+  const auto file = [](const std::string& name) {
+    const TemporaryFolder folder;
+    write_mesh(folder / name, testing::rich_mesh(2), {}, {});
+    return all_files(folder / "");
+  };
+  const std::vector<FormatInfo> all = known_formats();
+  for (const std::string name : {"vtkhdf", "med", "xdmf", "cgns"}) {
+    const auto info = std::ranges::find_if(all, [&](const FormatInfo& i) { return i.name == name; });
+    if (!info->writes_mesh) continue;
+    const auto before = file("m." + name);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1100));
+    EXPECT_EQ(before, file("m." + name)) << name;
+  }
 }
 
 TEST(FilesInParts, OfGmshHoldTheWholeMesh) {
