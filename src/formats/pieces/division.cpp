@@ -119,12 +119,6 @@ std::vector<std::uint32_t> by_graph(const TetMesh& mesh, const Elements& element
 
 }  // namespace
 
-std::size_t count_elements(const TetMesh& mesh) {
-  std::size_t count = mesh.tets.size();
-  for (const WideCell& cell : mesh.wide_cells) count -= cell.tet_count - 1;
-  return count;
-}
-
 Division divide(const TetMesh& mesh, std::uint32_t parts, Partitioner partitioner) {
   if (parts == 0) throw OptionError("a mesh is divided into 1 part or more, not 0");
   const Elements elements(mesh);

@@ -23,9 +23,6 @@ struct Division {
 /// OptionError if there are more parts than elements, if METIS leaves parts empty, or is not in this build.
 Division divide(const TetMesh& mesh, std::uint32_t parts, Partitioner partitioner);
 
-/// Elements of a mesh with wedges and pyramids counted as one each.
-std::size_t count_elements(const TetMesh& mesh);
-
 /// What a division is worth.
 struct DivisionCost {
   std::size_t least = 0, most = 0;  ///< elements in a part

@@ -32,8 +32,6 @@ struct Piece {
   std::vector<GlobalId> point_ids, cell_ids, face_ids, edge_ids;  ///< cells: per tetrahedron
   std::vector<std::uint32_t> tet_part, point_part, edge_part;     ///< points: the lowest part that has it
   std::vector<MeshField> fields;
-
-  std::uint32_t part_of_tet(TetIndex t) const { return tet_part[t]; }
 };
 
 /// How many cells, faces and edges a whole mesh has, by MixedCells.
