@@ -456,7 +456,7 @@ void ask_for_smaller(Parts& parts, const std::vector<Triangle>& triangles) {
 void mend_walls(Parts& parts, const Ground& ground, const AdaptRules& rules, Adapter& adapter, Adapted& out,
                 const Stage& stage) {
   if (rules.tolerance <= 0) return;
-  const SmoothWalls smooth(ground, rules.frozen, rules.tolerance);
+  const SmoothWalls smooth(ground, rules.kept.empty() ? rules.frozen : rules.kept, rules.tolerance);
   out.bound = rules.strict ? rules.tolerance : std::max(rules.tolerance, smooth.of_old().upper);
   // Walls that stay are frozen, and those are not looked at.
   out.deviation = rules.keep_walls ? smooth.of_old() : smooth.of(parts);
@@ -511,6 +511,7 @@ Adapted adapt_mesh(const TetMesh& mesh, const MetricField& metric, const AdaptRu
   parallel_for(taken.parts.vertices.size(), [&](std::size_t v) { guide.ask(taken.parts.vertices[v]); });
   if (rules.keep_walls)
     for (Vertex& v : taken.parts.vertices) v.frozen |= v.kind != Kind::kInner;
+  for (VertexIndex v = 0; v < rules.kept.size(); ++v) taken.parts.vertices[v].frozen |= rules.kept[v] != 0;
   Adapter adapter(taken.parts, guide, rules.walls_ahead, stage);
   adapter.run();
   Adapted out;
