@@ -37,13 +37,15 @@ constexpr float kGoodForSwaps = 0.8f, kGoodScore = 0.9f, kGoodOnTheWay = 0.3f;
 constexpr double kFarShort = 0.5, kFarLong = 2;
 /// Times that elements are made smaller where walls stray too far, those of them in a row that may be in vain, and how
 /// long their longest edges are made to be: so that they are divided.
-constexpr int kMostMendings = 6, kMostInVain = 2;
+constexpr int kMostMendings = 10, kMostInVain = 3;
 constexpr double kLengthOfStray = 1.6;
 /// Triangles with no edge longer than so many times the bound do not stray because they are large.
 constexpr double kLeastEdgeOfStray = 8;
 /// Less gain than this is none, in all and of one time; and no more elements than so many times those before.
 constexpr double kLeastGainOfMending = 0.7, kLeastProgress = 0.98;
 constexpr std::size_t kGrowthOfMending = 2;
+/// Where edges would cut off more than this part of the bound from a bend of the ground, it is a line.
+constexpr double kShareOfKink = 0.5;
 /// Around them lengths grow by this part of the way, both counted in lengths; what changes less is let be.
 constexpr double kGradationOfStrays = 0.5, kLeastChangeOfDensity = 1.02;
 /// Places nearer than this part of the bound are near enough, however they are measured.
@@ -502,8 +504,24 @@ GivenFit given_fit(const Ground& ground, std::span<const Vertex> vertices) {
   return fit;
 }
 
-Adapted adapt_mesh(const TetMesh& mesh, const MetricField& metric, const AdaptRules& rules, const Stage& stage) {
+namespace {
+
+/// Where a bound is asked for, edges at which the ground bends too much for the sizes wanted are lines, too.
+TakenApart taken_apart(const TetMesh& mesh, const MetricField& metric, const AdaptRules& rules) {
   TakenApart taken = take_apart(mesh, rules.feature_angle);
+  if (!rules.strict || rules.tolerance <= 0) return taken;
+  const Ground ground(std::move(taken.walls), rules.given);
+  const auto wanted = [&](Vec3 p, Vec3 direction) {
+    std::uint32_t hint = 0;
+    return 1 / std::sqrt(metric.at(p, hint).squared(direction));
+  };
+  return take_apart(mesh, rules.feature_angle, ground.kinks(wanted, kShareOfKink * rules.tolerance));
+}
+
+}  // namespace
+
+Adapted adapt_mesh(const TetMesh& mesh, const MetricField& metric, const AdaptRules& rules, const Stage& stage) {
+  TakenApart taken = taken_apart(mesh, metric, rules);
   if (!rules.frozen.empty()) freeze(taken.parts, rules.frozen);
   const Ground ground(std::move(taken.walls), rules.given);
   const Guide guide{metric, ground, rules.tolerance, stage.context()};
