@@ -29,6 +29,8 @@ constexpr int kMostSteps = 20, kQuiet = 50;
 /// None more either once few vertices are on the way, one of so many, and a step brings less than a part of them there:
 /// the others are where walls keep elements from the metric.
 constexpr std::size_t kFewOnTheWay = 20, kPartOfStep = 10;
+/// A piece has the elements that are awake and layers around them, so many in all: what passes look at.
+constexpr int kLayersAwake = 3;
 /// Less than one change for so many elements is not worth another round.
 constexpr int kDone = 200;
 /// Elements of a better score are not connected anew, or moved: qualities of .86 and .93; and not while a piece grows.
@@ -224,22 +226,48 @@ class Adapter {
     return merge(done, tets.left(), lines.left());
   }
 
+  /// The tets that are to be a piece: those where something may be left to do, and some layers around. All others are
+  /// done as they are, and so are lines that the piece does not know.
+  std::vector<TetIndex> take_awake(std::span<const TetIndex> tets, std::span<const Parts::Line> lines,
+                                   std::vector<VertexIndex>& here, Done& done) const {
+    const auto is_awake = [&](VertexIndex v) {
+      return here[v] != kNone || mesh_.vertices[v].active || mesh_.vertices[v].loose;
+    };
+    std::vector<std::uint8_t> taken(tets.size(), 0);
+    for (int layer = 0; layer < kLayersAwake; ++layer) {
+      for (std::size_t k = 0; k < tets.size(); ++k) {
+        const Tet& c = mesh_.tets[tets[k]];
+        taken[k] = taken[k] || std::any_of(c.begin(), c.end(), is_awake);
+      }
+      for (std::size_t k = 0; k < tets.size(); ++k)
+        if (taken[k])
+          for (const VertexIndex v : mesh_.tets[tets[k]]) here[v] = 0;
+    }
+    std::vector<TetIndex> awake;
+    for (std::size_t k = 0; k < tets.size(); ++k) {
+      const TetIndex t = tets[k];
+      if (taken[k]) {
+        awake.push_back(t);
+        continue;
+      }
+      done.tets.push_back(mesh_.tets[t]);
+      done.region.push_back(mesh_.region[t]);
+      done.wall.push_back(mesh_.wall[t]);
+    }
+    for (const Parts::Line& l : lines)
+      if (here[l.edge[0]] == kNone || here[l.edge[1]] == kNone) done.lines.push_back(l);
+    for (const TetIndex t : awake)
+      for (const VertexIndex v : mesh_.tets[t]) here[v] = kNone;
+    return awake;
+  }
+
   Done work_in(std::span<const TetIndex> tets, std::span<const Parts::Line> lines, std::vector<VertexIndex>& here) {
     Done done;
-    const auto is_active = [&](VertexIndex v) { return mesh_.vertices[v].active || mesh_.vertices[v].loose; };
-    if (std::none_of(tets.begin(), tets.end(),
-                     [&](TetIndex t) { return std::any_of(mesh_.tets[t].begin(), mesh_.tets[t].end(), is_active); })) {
-      for (const TetIndex t : tets) {
-        done.tets.push_back(mesh_.tets[t]);
-        done.region.push_back(mesh_.region[t]);
-        done.wall.push_back(mesh_.wall[t]);
-      }
-      done.lines.assign(lines.begin(), lines.end());
-      return done;
-    }
+    const std::vector<TetIndex> awake = take_awake(tets, lines, here, done);
+    if (awake.empty()) return done;
     std::vector<VertexIndex> number;  // in the mesh, of each vertex of the piece
-    Piece piece(mesh_, tets, lines, here);
-    for (const TetIndex t : tets)
+    Piece piece(mesh_, awake, lines, here);
+    for (const TetIndex t : awake)
       for (const VertexIndex v : mesh_.tets[t])
         if (here[v] == kNone) here[v] = static_cast<VertexIndex>(number.size()), number.push_back(v);
     for (const VertexIndex v : number) here[v] = kNone;
@@ -264,8 +292,7 @@ class Adapter {
       done.region.push_back(piece.region[t]);
       done.wall.push_back({piece.wall[4 * t], piece.wall[4 * t + 1], piece.wall[4 * t + 2], piece.wall[4 * t + 3]});
     }
-    done.lines = piece.lines();
-    for (Parts::Line& l : done.lines) l.edge = {global(l.edge[0]), global(l.edge[1])};
+    for (const Parts::Line& l : piece.lines()) done.lines.push_back({{global(l.edge[0]), global(l.edge[1])}, l.path});
     return done;
   }
 
