@@ -92,9 +92,9 @@ class Splitter {
       const auto edge = longest_edge(t);
       if (!edge || edge->length <= kLongOfPoor) continue;
       ++count.tried;
-      const auto [a, b] = edge->ends;
+      const Edge ends = edge->ends;
       count.done += std::any_of(kPartsOfMending.begin(), kPartsOfMending.end(),
-                                [&](double part) { return split(t, a, b, part); });
+                                [&](double part) { return split(t, ends[0], ends[1], part); });
     }
     return count;
   }
