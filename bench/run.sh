@@ -16,6 +16,7 @@
 #   bench/run.sh adapt       the Working Group's cases of metrics, a loop with FEniCSx -> docs/measured/adapt.md
 #   bench/run.sh adapt_loops  meshes adapted to small and large sizes in turn, ten times -> docs/measured/adapt-isotropic.md
 #   bench/run.sh formats     how fast meshes are written, every format beside a plain write -> docs/measured/formats-bench.md
+#   bench/run.sh parts       meshes in parts: what divisions are worth, time and memory beside one file -> docs/measured/parts.md
 #   bench/run.sh second_order   all clean models, balls, tori, cylinders: proven? how true? at what cost? -> docs/how/second-order.md
 #   bench/run.sh repair      the defective models, repaired and meshed; --near N: held to 1 ‰, too -> docs/measured/repair-status.md
 #   bench/run.sh known_answers   2,000 clean models damaged in known ways, repaired and judged -> docs/measured/repair-known.md
@@ -30,14 +31,15 @@
 #                            and Gmsh; layers_solved: a laminar pipe with and without -> docs/measured/layers.md
 #   bench/run.sh inside      sheets, lines and points in a block, beside Gmsh and TetGen     -> docs/measured/inside.md
 #   bench/run.sh periodic    periodic cells with and without periods, beside Gmsh, solved    -> docs/measured/periodic.md
+#   bench/run.sh ranks       one mesh by 1, 2, 4 and 8 processes: memory, bytes, imbalance, what all do alike -> docs/measured/ranks.md
 #   bench/run.sh dry_run     mesh --dry-run: elements, time and memory said and taken -> docs/use/command-line.md
 set -euo pipefail
 cd "$(dirname "$0")/.."
 source scripts/lib/apt.sh
 
 case ${1:-} in
-  status | derived | pipeline | surface | elements | gradation | volume | graded | peers | complexes | improve | adapt | adapt_loops | formats | second_order | dry_run | repair | known_answers | damage | images | thin | budget | cad | layers | layers_shapes | layers_flows | layers_peers | layers_solved | inside | periodic) ;;
-  *) sed -n '2,33s/^# \{0,1\}//p' "$0"; exit 2 ;;
+  status | derived | pipeline | surface | elements | gradation | volume | graded | peers | complexes | improve | adapt | adapt_loops | formats | parts | second_order | dry_run | repair | known_answers | damage | images | thin | budget | cad | layers | layers_shapes | layers_flows | layers_peers | layers_solved | inside | periodic | ranks) ;;
+  *) sed -n '2,34s/^# \{0,1\}//p' "$0"; exit 2 ;;
 esac
 need_packages "${build_packages[@]}" python3
 [ "$1" != surface ] || need_packages gmsh netgen libcgal-dev libgmp-dev libmpfr-dev
@@ -47,6 +49,7 @@ need_packages "${build_packages[@]}" python3
 [ "$1" != cad ] || need_packages gmsh netgen "${cad_packages[@]}"
 [ "$1" != cad ] || [ -d cad-models ] || scripts/get-cad.sh
 [ "$1" != peers ] || need_packages "${peer_packages[@]}" libcgal-dev libgmp-dev libmpfr-dev libboost-dev
+[ "$1" != ranks ] || need_packages "${mpi_packages[@]}"
 [ "$1" != complexes ] || need_packages "${test_packages[@]}" tetgen gmsh python3-gmsh
 [ "$1" != known_answers ] || need_packages "${test_packages[@]}"
 { [ "$1" != repair ] && [ "$1" != damage ]; } || need_packages python3-numpy python3-meshio
@@ -57,10 +60,12 @@ need_packages "${build_packages[@]}" python3
 [ "$1" != layers_peers ] || need_packages python3-gmsh
 [ "$1" != images ] || need_packages libcgal-dev libgmp-dev libmpfr-dev libboost-dev
 [ "$1" != images ] || [ -d volumes ] || scripts/get-volumes.sh
-[ "$1" = formats ] || [ "$1" = adapt ] || [ "$1" = complexes ] || [ "$1" = images ] || [ "$1" = thin ] || [ "$1" = cad ] || [ -d models/clean ] || scripts/get-models.sh --ct
+[ "$1" = formats ] || [ "$1" = ranks ] || [ "$1" = adapt ] || [ "$1" = complexes ] || [ "$1" = images ] || [ "$1" = thin ] || [ "$1" = cad ] || [ -d models/clean ] || scripts/get-models.sh --ct
 tests=OFF
 [ "$1" != complexes ] && [ "$1" != known_answers ] || tests=ON  # what makes complexes is theirs, and a judge
-cmake --preset release -DOCTAFRONT_BUILD_TESTS=$tests >/dev/null
+mpi=()
+[ "$1" != ranks ] || mpi=(-DOCTAFRONT_MPI=ON)
+cmake --preset release -DOCTAFRONT_BUILD_TESTS=$tests "${mpi[@]}" >/dev/null
 cmake --build --preset release --target octafront_cli octafront_evaluate octafront_judge_surface
 [ "$1" != cad ] || cmake --build --preset release --target octafront_cad_program octafront_judge_cad
 [ "$1" != derived ] || [ -d models/derived ] || scripts/derive-models.sh build/release/cli/octafront
@@ -68,6 +73,7 @@ cmake --build --preset release --target octafront_cli octafront_evaluate octafro
 [ "$1" != adapt_loops ] || cmake --build --preset release --target octafront_adapt_loops
 [ "$1" != improve ] || cmake --build --preset release --target octafront_never_worse
 [ "$1" != formats ] || { cmake --build --preset release --target octafront_write_formats; exec python3 bench/formats.py build/release "${@:2}"; }
+[ "$1" != parts ] || { cmake --build --preset release --target octafront_write_parts; exec python3 bench/parts.py build/release "${@:2}"; }
 [ "$1" != second_order ] || cmake --build --preset release --target octafront_second_order
 [ "$1" != complexes ] || cmake --build --preset release --target make_complexes
 [ "$1" != known_answers ] || cmake --build --preset release --target octafront_judge_answer

@@ -285,6 +285,34 @@ void declare_output(CLI::App& command, Arguments& a, const std::string& what, bo
   if (required) option->required();
 }
 
+namespace {
+
+std::string formats_in_parts() {
+  std::string names;
+  for (const FormatInfo& info : known_formats())
+    if (info.holds.parts) names += (names.empty() ? "" : ", ") + std::string(info.name);
+  return names;
+}
+
+/// More parts than any machine has processes are a slip of the hand.
+constexpr int kMostParts = 1'000'000;
+
+void declare_parts(CLI::App& command, Arguments& a) {
+  command
+      .add_option("--parts", a.parts,
+                  "Divide the mesh into N parts, for programs on several processes: " + formats_in_parts())
+      ->type_name("N")
+      ->check(CLI::Range(1, kMostParts));
+  add_choice<Partitioner>(command, "--partitioner", a.partitioner,
+                          {{"curve", Partitioner::kCurve}, {"metis", Partitioner::kMetis}},
+                          "curve: parts that differ by one element at most, the same everywhere; metis: fewer faces "
+                          "between them");
+  command.add_flag("--split-files", a.split_files,
+                   "Of Gmsh MSH 4.1 in parts: NAME_1.msh and so on, in the place of one file");
+}
+
+}  // namespace
+
 void declare_mesh_output(CLI::App& command, Arguments& a) {
   command
       .add_option("-o,--output", a.meshes,
@@ -305,6 +333,7 @@ void declare_mesh_output(CLI::App& command, Arguments& a) {
       "Tetrahedra alone, with regions and sets: no faces and edges, which some programs refuse beside them");
   command.add_flag("--cohesive", a.cohesive,
                    "Cohesive elements of no height between the two sides of what was split (Abaqus: COH3D6)");
+  declare_parts(command, a);
   command.add_option("--beams", a.beams, "These curves are beams, too (Abaqus: B31, B32)")->type_name("NAME,...");
   command
       .add_option_function<std::vector<std::string>>(
@@ -355,6 +384,17 @@ void declare_run(CLI::App& command, Arguments& a) {
       ->check(CLI::Range(0, 1024).description(""))
       ->type_name("N");
   group->add_flag("-q,--quiet", a.quiet, "Print nothing but errors");
+}
+
+void declare_checkpoint(CLI::App& command, Arguments& a) {
+  auto* group = command.add_option_group("Going on");
+  group->add_option("--checkpoint", a.checkpoint, "Keep what long stages make in a folder, to go on from there")
+      ->type_name("DIR");
+  group
+      ->add_option("--resume", a.resume,
+                   "Go on with what --checkpoint has kept of the same input and options, and keep on keeping")
+      ->type_name("DIR")
+      ->excludes("--checkpoint");
 }
 
 /// NAME=H, where the name may have signs of equality of its own.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <octafront/domain.h>
+#include <octafront/io.h>
 #include <octafront/named_groups.h>
 #include <octafront/options.h>
 #include <octafront/solver_checks.h>
@@ -39,9 +40,12 @@ struct Arguments {
   bool cells_only = false;                    ///< of the meshes: tetrahedra alone
   bool cohesive = false;                      ///< of the meshes: with cohesive elements where they are split
   std::string beams;                          ///< of the meshes: curves that are beams, too
-  std::vector<std::string> only;              ///< places that may change
-  std::vector<std::string> carry;             ///< fields of the input that go along; empty: all, "none": none
-  std::filesystem::path map_file;             ///< where old vertices and elements are now; empty: none
+  int parts = 0;                              ///< of the meshes: divided into so many; 0: whole
+  Partitioner partitioner = Partitioner::kCurve;
+  bool split_files = false;        ///< of the meshes: a file for each part
+  std::vector<std::string> only;   ///< places that may change
+  std::vector<std::string> carry;  ///< fields of the input that go along; empty: all, "none": none
+  std::filesystem::path map_file;  ///< where old vertices and elements are now; empty: none
   std::filesystem::path regions, point_sizes, size_field;  ///< files with sizes; empty: none
   std::string metric;                                      ///< FILE[:FIELD] with a metric; empty: none
   std::string field;                                       ///< of the input, of which a metric is made; empty: none
@@ -56,6 +60,7 @@ struct Arguments {
   std::vector<GroupRule> groups;  ///< that are added to it
   int new_order = 0;              ///< of a converted mesh; 0: as it is
   int threads = 0;
+  std::filesystem::path checkpoint, resume;  ///< folders; empty: none
   bool quiet = false;
   OptionNames names;
   std::vector<std::pair<std::string, std::string>> given;  ///< options and values as typed; flags are "true"
@@ -85,6 +90,8 @@ void declare_preset(CLI::App& command, Arguments& arguments);
 void declare_dry_run(CLI::App& command, Arguments& arguments);
 void declare_report(CLI::App& command, Arguments& arguments);
 void declare_run(CLI::App& command, Arguments& arguments);
+/// --checkpoint and --resume.
+void declare_checkpoint(CLI::App& command, Arguments& arguments);
 void declare_sizes(CLI::App& command, Arguments& arguments);
 void declare_surface(CLI::App& command, Arguments& arguments);
 void declare_periodic(CLI::App& command, Arguments& arguments);

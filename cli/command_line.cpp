@@ -2,12 +2,14 @@
 
 #include "failure.h"
 #include "program.h"
+#include "ranks.h"
 #include "rehearsal.h"
 #include "session.h"
 #include "terminal.h"
 #include "text.h"
 
 #include <cstdio>
+#include <memory>
 
 #include <fmt/core.h>
 
@@ -16,7 +18,11 @@ namespace {
 using namespace octafront;
 using namespace octafront::cli;
 
+/// Of several ranks, which fail alike, the first speaks for all.
+bool speaks = true;
+
 int fail(Status status, const std::string& message) {
+  if (!speaks) return status;
   clear_progress();
   fmt::print(stderr, "octafront: {}\n", printable(message));
   return status;
@@ -39,23 +45,37 @@ int fail_with_json(const Session& session, const Failure& failure) {
   return status;
 }
 
-int run(Program& program, int argc, char** argv) {
-  const Arguments* arguments = nullptr;
+int run_session(const Program& program, const Arguments& arguments, Ranks* ranks) {
+  Session session(arguments, ranks);
   try {
-    arguments = &program.arguments(argc, argv);
-    check_files(*arguments);
-  } catch (const std::exception&) {
-    const Failure failure = current_failure();
-    return fail(failure.status, failure.message);
-  }
-  Session session(*arguments);
-  try {
-    rehearse_reading(*arguments);
-    program.chosen()(session);
-    session.write_json(nullptr);
+    together(ranks, arguments.command, [&] {
+      if (ranks == nullptr) rehearse_reading(arguments);
+      program.chosen()(session);
+      session.write_json(nullptr);
+    });
     return finished(kDone);
   } catch (const std::exception&) {
     return fail_with_json(session, current_failure());
+  }
+}
+
+int run(Program& program, int argc, char** argv, const Launch& launch) {
+  std::unique_ptr<MpiSession> mpi;
+  try {
+    Arguments& arguments = program.arguments(argc, argv);
+    if (launch.size > 1 && !shares_work(arguments) && !launch.is_first()) return kDone;
+    if (launch.size > 1 && shares_work(arguments)) {
+      mpi = start_mpi(launch);
+      adapt_to_ranks(arguments, launch, mpi->ranks_here());
+    }
+    Ranks* const ranks = mpi ? &mpi->ranks() : nullptr;
+    together(ranks, "start", [&] {
+      if (launch.is_first()) check_files(arguments);
+    });
+    return run_session(program, arguments, ranks);
+  } catch (const std::exception&) {
+    const Failure failure = current_failure();
+    return fail(failure.status, failure.message);
   }
 }
 
@@ -79,6 +99,8 @@ bool has_empty_argument(int argc, char** argv, std::string& before) {
 
 int octafront_command_line(int argc, char** argv) {
   prepare_process();
+  const Launch launch = launch_of_environment();
+  speaks = launch.is_first();
   Program program;
   CLI::App& app = program.app();
   std::string before;
@@ -87,7 +109,8 @@ int octafront_command_line(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
-    return e.get_exit_code() == 0 ? finished(app.exit(e)) : refuse_usage(app, e);
+    if (e.get_exit_code() != 0) return refuse_usage(app, e);
+    return launch.is_first() ? finished(app.exit(e)) : kDone;
   }
-  return run(program, argc, argv);
+  return run(program, argc, argv, launch);
 }

@@ -12,6 +12,7 @@
 #include "overlaps.h"
 #include "page.h"
 #include "presets.h"
+#include "ranks.h"
 #include "targets.h"
 #include "text.h"
 
@@ -128,11 +129,13 @@ template <class Generator>
 auto run_on_input(Session& session, const Generator& generator) {
   const Arguments& a = session.arguments();
   const Options options = checked_options_of(session);
-  const Domain domain = open_input(session, intake_for(options, a.intake));
+  Domain domain;
+  together(session.context().ranks, "input", [&] { domain = open_input(session, intake_for(options, a.intake)); });
   try {
     if (!a.page.empty()) find_repairs(session, domain.surface);
     return generator(domain, options, session.context());
   } catch (const OpenCavityError& error) {
+    if (!session.is_first()) throw;
     const std::filesystem::path beside = cavity_neighbour(a);
     throw with_cavity_written(error, beside.empty() ? "octafront" : beside);
   } catch (const InputError& error) {
@@ -165,9 +168,19 @@ std::filesystem::path file_at_fault(const Arguments& a, const SurfaceMesh& surfa
 void run_mesh(Session& session) {
   const Arguments& a = session.arguments();
   if (a.dry_run) return tell_estimate(session, run_on_input(session, generate_sizes));
-  check_mesh_targets(a);
-  check_page_target(a.page);
-  const Result result = run_on_input(session, generate);
+  together(session.context().ranks, "output", [&] {
+    if (!session.is_first()) return;
+    check_mesh_targets(a);
+    check_page_target(a.page);
+  });
+  const bool resumes = !a.resume.empty();
+  const Checkpoints checkpoints{(resumes ? a.resume : a.checkpoint).string(), resumes};
+  const Result result =
+      run_on_input(session, [&](const Domain& domain, const Options& options, const RunContext& context) {
+        return generate_with(checkpoints, domain, options, context);
+      });
+  tell_ranks(session, result.report);
+  if (!session.is_first()) return;
   write_mesh_targets(session, result.mesh);
   session.tell(result.report);
   tell_worst(session, result.mesh, result.report.quality);

@@ -46,7 +46,7 @@ SurfaceMesh marks_of(const std::vector<IntakeRepair>& repairs) {
   for (const Vec3 p : leak.way) way.push_back({p.x, p.y, p.z});
   session.found({{"leak", way}});
   const std::filesystem::path beside = cavity_neighbour(session.arguments());
-  if (beside.empty() || leak.way.size() < 2) throw leak;
+  if (!session.is_first() || beside.empty() || leak.way.size() < 2) throw leak;
   write_surface(leak_file(beside).string(), tube_along(leak.way));
   throw InputError(fmt::format("{}\nThe way through the hole is in {}", leak.what(), leak_file(beside).string()));
 }

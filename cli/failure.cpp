@@ -1,11 +1,36 @@
 #include "failure.h"
 
 #include <octafront/error.h>
+#include <octafront/ranks.h>
 
 #include <exception>
 #include <new>
 
 namespace octafront::cli {
+
+namespace {
+
+Failure failure_of(const RankFailure& e) {
+  using Kind = RankFailure::Kind;
+  switch (e.kind) {
+    case Kind::kOption:
+      return {kUsage, "usage", e.what()};
+    case Kind::kInput:
+      return {kInputRefused, "input", e.what()};
+    case Kind::kMeshing:
+      return {kNoMesh, "meshing", e.what()};
+    case Kind::kOutput:
+      return {kNotWritten, "output", e.what()};
+    case Kind::kCancelled:
+      return {kInterrupted, "interrupted", e.what()};
+    case Kind::kMemory:
+      return {kOutOfMemory, "memory", std::string(e.what()) + "; ask for fewer elements (`elements`, `size`)"};
+    default:
+      return {kInternal, "ranks", e.what()};
+  }
+}
+
+}  // namespace
 
 Failure current_failure() {
   try {
@@ -20,6 +45,8 @@ Failure current_failure() {
     return {kNotWritten, "output", e.what()};
   } catch (const Cancelled&) {
     return {kInterrupted, "interrupted", "interrupted; no result was written"};
+  } catch (const RankFailure& e) {
+    return failure_of(e);
   } catch (const std::bad_alloc&) {
     return {kOutOfMemory, "memory", "out of memory; ask for fewer elements (`elements`, `size`)"};
   } catch (const std::exception& e) {

@@ -119,6 +119,7 @@ void Program::declare_makers() {
   declare_split(*mesh, a);
   declare_page(*mesh, a);
   declare_report(*mesh, a);
+  declare_checkpoint(*mesh, a);
   declare_run(*mesh, a);
 }
 
@@ -204,6 +205,7 @@ void Program::declare_surfaces() {
   CLI::App* convert = add("convert", "Another format, with all names and sets that it holds: in.msh -o out.inp",
                           "  octafront convert in.med -o out.inp\n"
                           "  octafront convert in.msh -o out.bdf --group load=box:0,0,0,1,1,0\n"
+                          "  octafront convert in.vtu -o out.pvtu --parts 8    # a piece for each of 8 processes\n"
                           "  octafront convert in.vtu -o - --format abaqus > out.inp\n",
                           run_convert);
   declare_mesh_input(*convert, a);

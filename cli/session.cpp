@@ -2,6 +2,7 @@
 
 #include <octafront/error.h>
 #include <octafront/io.h>
+#include <octafront/ranks.h>
 
 #include "domain.h"
 #include "open_cavity.h"
@@ -59,8 +60,14 @@ int uses_of_standard_output(const Arguments& a) {
 
 }  // namespace
 
-Session::Session(const Arguments& arguments)
-    : arguments_(arguments), context_(terminal_context(arguments.threads, arguments.quiet)) {}
+Session::Session(const Arguments& arguments, Ranks* ranks)
+    : arguments_(arguments), context_(terminal_context(arguments.threads, arguments.quiet)) {
+  context_.ranks = ranks;
+}
+
+bool Session::is_first() const {
+  return context_.ranks == nullptr || context_.ranks->rank() == 0;
+}
 
 void Session::say(const std::string& text) const {
   clear_progress();

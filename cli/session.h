@@ -19,10 +19,14 @@ using Json = nlohmann::ordered_json;
 /// One run of a command: what was asked for, whom to tell, and what will stand in the JSON file.
 class Session {
  public:
-  explicit Session(const Arguments& arguments);
+  /// `ranks`: that make the mesh together; null: this process is alone.
+  explicit Session(const Arguments& arguments, Ranks* ranks = nullptr);
 
   const Arguments& arguments() const { return arguments_; }
   const RunContext& context() const { return context_; }
+
+  /// Of several ranks only the first writes and speaks; who is alone is the first.
+  bool is_first() const;
 
   /// To stdout, with fields of Options as the command line names them; nothing if the user wants none, or JSON there.
   void say(const std::string& text) const;

@@ -22,13 +22,30 @@ namespace octafront::cli {
 
 namespace {
 
+bool holds_parts(const Arguments& a, std::size_t i) {
+  return format_for(a.meshes[i].string(), {.format = a.formats.empty() ? "" : a.formats[i]}).holds.parts;
+}
+
+/// Among several outputs those are divided that hold parts, if some do.
+bool takes_parts(const Arguments& a, std::size_t i) {
+  if (a.parts == 0 || a.meshes.size() == 1 || holds_parts(a, i)) return true;
+  for (std::size_t other = 0; other < a.meshes.size(); ++other)
+    if (holds_parts(a, other)) return false;
+  return true;
+}
+
 /// How the output of this number is written.
 WriteOptions options_of(const Arguments& a, std::size_t i) {
-  return {.format = a.formats.empty() ? "" : a.formats[i],
-          .ascii = a.ascii,
-          .cells_only = a.cells_only,
-          .cohesive = a.cohesive,
-          .beams = a.beams};
+  WriteOptions options{.format = a.formats.empty() ? "" : a.formats[i],
+                       .ascii = a.ascii,
+                       .cells_only = a.cells_only,
+                       .cohesive = a.cohesive,
+                       .beams = a.beams};
+  if (!takes_parts(a, i)) return options;
+  options.parts = static_cast<std::uint32_t>(a.parts);
+  options.partitioner = a.partitioner;
+  options.split_files = a.split_files;
+  return options;
 }
 
 bool is_null(const std::filesystem::path& file) {
@@ -41,8 +58,10 @@ void check_format(const std::filesystem::path& file, const std::string& format) 
     throw OptionError(fmt::format("-o {} has no ending: say which format is written, with --format", file.string()));
 }
 
-void check_pipe(const std::filesystem::path& file, const std::string& format) {
+void check_pipe(const std::filesystem::path& file, const WriteOptions& options) {
+  const std::string& format = options.format;
   check_format(file, format);
+  if (options.split_files) throw OptionError("--split-files makes several files: they cannot go to standard output");
   for (const FormatInfo& info : known_formats())
     if (info.writes_mesh && info.name == format && !info.one_file)
       throw OptionError(fmt::format("{} is written to several files: it cannot go to standard output", info.title));
@@ -121,7 +140,7 @@ void check_mesh_targets(const Arguments& a) {
   for (std::size_t i = 0; i < a.meshes.size(); ++i) {
     const WriteOptions options = options_of(a, i);
     if (a.meshes[i] == kStandardOutput)
-      check_pipe(a.meshes[i], options.format);
+      check_pipe(a.meshes[i], options);
     else if (is_null(a.meshes[i]))
       check_format(a.meshes[i], options.format);
     else

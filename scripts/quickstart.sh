@@ -1,12 +1,21 @@
 #!/usr/bin/env bash
 # Builds Octafront and meshes a surface. Installs what is missing (Debian 12).
-#   scripts/quickstart.sh [INPUT] [octafront mesh options ...]
+#   scripts/quickstart.sh [--mpi] [INPUT] [octafront mesh options ...]
 # Writes out/NAME.vtu and out/NAME.json, and prints the quality table. INPUT is a model of samples/ by default.
+# --mpi: also installs Open MPI and builds with it; two processes make the mesh then (docs/use/ranks.md).
 set -euo pipefail
 caller=$PWD
 cd "$(dirname "$0")/.."
 source scripts/lib/apt.sh
 
+mpi=OFF launch=()
+if [ "${1:-}" = --mpi ]; then
+  shift
+  mpi=ON launch=(mpirun --oversubscribe -n 2)
+  # As in most containers.
+  [ "$(id -u)" -ne 0 ] || launch+=(--allow-run-as-root)
+  need_packages "${mpi_packages[@]}"
+fi
 input=${1:-samples/bracket.stl}
 [ $# -gt 0 ] && shift
 if [ ! -e "$input" ] && [ -e "$caller/$input" ]; then input=$caller/$input; fi
@@ -20,10 +29,10 @@ case ${input,,} in
     targets+=(octafront_cad_program) ;;
 esac
 cmake --preset release -DOCTAFRONT_UNITY=ON -DOCTAFRONT_BUILD_TESTS=OFF -DOCTAFRONT_BUILD_BENCH=OFF -DOCTAFRONT_BUILD_EXAMPLES=OFF \
-  -B build/quickstart >/dev/null
+  -DOCTAFRONT_MPI=$mpi -B build/quickstart >/dev/null
 cmake --build build/quickstart --target "${targets[@]}"
 
 name=$(basename "${input%.*}")
 mkdir -p out
-build/quickstart/cli/octafront mesh "$input" -o "out/$name.vtu" --json "out/$name.json" "$@"
+"${launch[@]}" build/quickstart/cli/octafront mesh "$input" -o "out/$name.vtu" --json "out/$name.json" "$@"
 echo "open out/$name.vtu in ParaView; the report is out/$name.json"

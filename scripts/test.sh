@@ -21,12 +21,13 @@ if [ $# -gt 0 ] && [[ $1 != -* ]]; then preset=$1 && shift; fi
 need_packages "${build_packages[@]}" "${test_packages[@]}"
 [ ${#which[@]} -gt 0 ] ||
   need_packages "${format_packages[@]}" "${doc_packages[@]}" "${browser_packages[@]}" "${shell_packages[@]}" "${image_packages[@]}" \
-    "${cad_packages[@]}"
+    "${cad_packages[@]}" "${mpi_packages[@]}"
 [ ${#which[@]} -gt 0 ] || [ -d volumes/nibabel ] || scripts/get-volumes.sh --readers ||
   echo "the test volumes cannot be fetched here: tests that need them are skipped"
 # A new folder is built whole: by many sources at a time. One that is there stays as it is.
 fresh=()
 [ -f "build/$preset/CMakeCache.txt" ] || fresh=(-DOCTAFRONT_UNITY=ON)
+[ ${#which[@]} -gt 0 ] || fresh+=(-DOCTAFRONT_MPI=ON)
 cmake --preset "$preset" "${fresh[@]}" -DOCTAFRONT_BUILD_BENCH=OFF -DOCTAFRONT_WERROR=ON >/dev/null
 cmake --build --preset "$preset" "${targets[@]}"
 failed=build/$preset/Testing/Temporary/LastTestsFailed.log

@@ -9,6 +9,8 @@
 #include <octafront/surface_mesh.h>
 #include <octafront/tet_mesh.h>
 
+#include <string>
+
 namespace octafront {
 
 /// A tetrahedral mesh, the sizes it was made to, and what was done.
@@ -30,6 +32,18 @@ struct Result {
 /// The result keeps every law of first_defect(), and depends on nothing but `domain` and `options`.
 /// Throws OptionError, InputError (defects, listed), MeshingError, Cancelled.
 Result generate(const Domain& domain, const Options& options = {}, const RunContext& context = {});
+
+/// Where a run keeps what its long stages make, so that it can go on if it was ended.
+struct Checkpoints {
+  std::string folder;  ///< that is made if it is not there; empty: nothing is kept
+  /// Goes on with what is kept there, by any number of ranks and threads. InputError if it was made of another input,
+  /// by other options or another version.
+  bool resume = false;
+};
+
+/// generate() with a folder to go on from: the same mesh. Throws OutputError, too.
+Result generate_with(const Checkpoints& checkpoints, const Domain& domain, const Options& options = {},
+                     const RunContext& context = {});
 
 /// The run up to the surface front: what the boundary of the mesh will be.
 struct SurfaceResult {

@@ -8,6 +8,7 @@
 #include <octafront/surface_mesh.h>
 #include <octafront/tet_mesh.h>
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -60,6 +61,12 @@ bool holds_tetrahedra(const std::string& file, const RunContext& context = {});
 /// for unknown endings before any work.
 void write_surface(const std::string& file, const SurfaceMesh& surface, const RunContext& context = {});
 
+/// What divides a mesh into parts.
+enum class Partitioner {
+  kCurve,  ///< consecutive stretches of a Hilbert curve: the same everywhere, sizes that differ by one element at most
+  kMetis   ///< METIS, where it was there when this was built: fewer faces between the parts
+};
+
 /// How a mesh is written.
 struct WriteOptions {
   std::string format = {};  ///< its name in known_formats() ("abaqus", "msh22"); empty: the ending of the file tells
@@ -68,6 +75,10 @@ struct WriteOptions {
                             ///< edges, which some programs refuse beside tetrahedra
   bool cohesive = false;    ///< elements of no height (COH3D6) between the two sides of faces that were split: Abaqus
   std::string beams = {};   ///< names of curves, separated by commas, that are beams, too (B31, B32): Abaqus
+  std::uint32_t parts = 0;  ///< so many parts, as programs on several processes want them: formats that hold them; each
+                            ///< with one layer of elements around it where the format has that. 0: the mesh as one
+  Partitioner partitioner = Partitioner::kCurve;
+  bool split_files = false;  ///< MSH: NAME_1.msh and so on, one for each part, in the place of NAME.msh
 };
 
 /// Writes a mesh in the format that the ending of the name tells, or that is asked for. Regions, patches, curves and
@@ -178,6 +189,7 @@ struct FormatHolds {
   bool cohesive = false;           ///< WriteOptions::cohesive and beams
   bool fields = false;             ///< MeshField
   bool surfaces_alone = false;     ///< a mesh of triangles without tetrahedra
+  bool parts = false;              ///< WriteOptions::parts
 };
 
 /// What is known of a file format, for help texts and --format.
@@ -194,6 +206,9 @@ struct FormatInfo {
 
 /// All formats, those of surfaces first.
 std::vector<FormatInfo> known_formats();
+
+/// Whether this build has METIS, for Partitioner::kMetis.
+bool has_metis();
 
 /// The one that write_mesh() would write to this file. Throws OptionError if there is none.
 const FormatInfo& format_for(const std::string& file, const WriteOptions& options = {});

@@ -23,6 +23,7 @@
 #include <octafront/option_table.h>
 #include <octafront/options.h>
 #include <octafront/quality.h>
+#include <octafront/ranks.h>
 #include <octafront/repair.h>
 #include <octafront/report.h>
 #include <octafront/report_page.h>

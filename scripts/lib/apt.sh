@@ -22,11 +22,13 @@ need_packages() {
 
 # What building needs, and what the tests need beyond it.
 build_packages=(g++ cmake ninja-build pkg-config libtbb-dev zlib1g-dev libfmt-dev libcli11-dev nlohmann-json3-dev libcairo2-dev libhdf5-dev)
-test_packages=(libgtest-dev librapidcheck-dev python3 python3-numpy python3-venv dpkg-dev file)
+test_packages=(libgtest-dev librapidcheck-dev libmetis-dev python3 python3-numpy python3-venv dpkg-dev file)
 # What octafront-cad stands on, which reads STEP, IGES and BREP; without it the rest is built.
 cad_packages=(libocct-data-exchange-dev libocct-ocaf-dev libocct-modeling-algorithms-dev libocct-modeling-data-dev libocct-foundation-dev)
+# What shares the work among processes (OCTAFRONT_MPI); without it the rest is built.
+mpi_packages=(libopenmpi-dev openmpi-bin)
 # What judges our files (tests/formats) and packages (tests/install) and solves with them (tests/solved): those of --all.
-format_packages=(gmsh python3-gmsh calculix-ccx python3-meshio python3-netcdf4 python3-vtk9 python3-h5py python3-med netcdf-bin cgns-convert openfoam tetgen lintian)
+format_packages=(gmsh python3-gmsh calculix-ccx python3-meshio python3-netcdf4 python3-vtk9 python3-h5py python3-med netcdf-bin cgns-convert openfoam openmpi-bin tetgen lintian)
 # Pages of docstrings, and what checks types: those of --all.
 doc_packages=(doxygen python3-sphinx mypy)
 # What opens the report page (tests/report/page): also of --all.

@@ -69,6 +69,16 @@ class CommandLine(unittest.TestCase):
         subprocess.run([OCTAFRONT, "check", *map(str, arguments), "--json", report], capture_output=True, timeout=120)
         return {r["name"]: r["volume"] for r in json.loads(report.read_text()).get("input_regions", [])}
 
+    def test_copies_that_mpi_does_not_know_of_are_refused(self):
+        """With MPI or without: nobody starts them here."""
+        for rank, said in ("0", 1), ("1", 0):
+            launched = {**os.environ, "OMPI_COMM_WORLD_RANK": rank, "OMPI_COMM_WORLD_SIZE": "3"}
+            done = self.run_cli("mesh", self.part, "-o", self.dir / "part.vtu", status=2, env=launched)
+            self.assertEqual(done.stderr.count("3 copies were started"), said)
+            info = self.run_cli("info", self.part, env=launched)
+            self.assertEqual(info.stdout.count("triangles"), said)
+        self.assertEqual(self.files(), ["part.off"])
+
     def test_several_files_are_several_bodies(self):
         plate = self.write_box("plate.off", (0, 0, 0), (2, 2, 1))
         bolt = self.write_box("bolt.off", (0.5, 0.5, 0.5), (1, 1, 2))
@@ -702,6 +712,20 @@ class CommandLine(unittest.TestCase):
 
     def test_output_that_cannot_be_written_is_status_5(self):
         self.run_cli("mesh", self.part, "-o", self.dir / "absent" / "o.vtu", status=5)
+
+    def test_meshes_are_written_in_parts(self):
+        mesh = self.dir / "m.vtu"
+        self.run_cli("mesh", SAMPLES / "bracket.stl", "-o", mesh, "--size", "8", "-q")
+        self.run_cli("convert", mesh, "-o", self.dir / "w.vtu", "-o", self.dir / "p.pvtu", "--parts", "3", "-q")
+        self.assertEqual(len(list((self.dir / "p").iterdir())), 3)
+        self.assertTrue((self.dir / "w.vtu").exists())
+        for wrong, words in ((["--parts", "0"], "range"), (["--parts", "-2"], "range"), (["--parts", "2"], "not written in parts"),
+                             (["--parts", "two"], "two")):
+            done = self.run_cli("convert", mesh, "-o", self.dir / "x.vtu", *wrong, status=2)
+            self.assertIn(words, done.stderr)
+        done = self.run_cli("convert", mesh, "-o", self.dir / "x.pvtu", "--parts", "999999", status=2)
+        self.assertIn("more than the", done.stderr)
+        self.assertFalse(list(self.dir.glob("x*")))
 
     def test_targets_are_checked_before_the_work(self):
         out = self.dir / "o.vtu"

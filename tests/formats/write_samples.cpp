@@ -182,6 +182,13 @@ void write_all(const std::string& folder, const TetMesh& mesh) {
               [](const FormatInfo& info) { return info.name != "openfoam" && !info.writes_surface; });
 }
 
+/// In five parts, for parts_judges.py.
+void write_parts(const std::string& folder, const TetMesh& mesh) {
+  write_those(folder + "_parts", mesh, {.parts = 5}, [](const FormatInfo& info) { return info.holds.parts; });
+  write_those(folder + "_split", mesh, {.parts = 5, .split_files = true},
+              [](const FormatInfo& info) { return info.name == "msh"; });
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -190,6 +197,8 @@ int main(int argc, char** argv) {
   const TetMesh linear = octafront::testing::rich_mesh(4);
   write_all(folder + "/linear", bent(linear));
   write_all(folder + "/second", bent(octafront::testing::with_mid_nodes(linear)));
+  write_parts(folder + "/linear", bent(linear));
+  write_parts(folder + "/second", bent(octafront::testing::with_mid_nodes(linear)));
   const TetMesh mixed = octafront::testing::mixed_mesh(3);
   const auto write_mixed = [&](const std::string& name, const TetMesh& mesh, bool FormatHolds::*kind) {
     write_those(folder + name, mesh, {}, [&](const FormatInfo& info) { return info.holds.*kind; });
@@ -197,6 +206,9 @@ int main(int argc, char** argv) {
                 [&](const FormatInfo& info) { return info.holds.*kind && info.also_text; });
   };
   write_mixed("/mixed_linear", mixed, &FormatHolds::wide_cells);
+  write_parts(folder + "/mixed_linear", mixed);
+  write_parts(folder + "/mixed_second",
+              octafront::testing::bent_quadratically(octafront::testing::with_mid_nodes(mixed)));
   write_mixed("/mixed_second", octafront::testing::bent_quadratically(octafront::testing::with_mid_nodes(mixed)),
               &FormatHolds::curved_wide_cells);
 }

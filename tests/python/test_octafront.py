@@ -951,6 +951,22 @@ class Meshes(Case):
         with self.assertRaises(octafront.OptionError):
             mesh.add_set("far", [len(mesh.points)])
 
+    def test_meshes_are_written_in_parts(self):
+        mesh = octafront.mesh(*cube(), size=0.3)
+        mesh.save(self.folder / "m.pvtu", parts=3)
+        self.assertEqual(sorted(p.name for p in (self.folder / "m").iterdir()), [f"m_000{k}.vtu" for k in range(3)])
+        pieces = [octafront.read(p) for p in (self.folder / "m").iterdir()]
+        self.assertGreater(sum(len(p) for p in pieces), len(mesh))
+        mesh.save(self.folder / "s.msh", parts=np.int64(2), split_files=True)
+        self.assertTrue((self.folder / "s_1.msh").exists() and (self.folder / "s_2.msh").exists())
+        mesh.save(self.folder / "w.msh", parts=2)
+        self.assertEqual(len(octafront.read(self.folder / "w.msh")), len(mesh))
+        for wrong in ({"parts": -1}, {"parts": 10 ** 7}, {"parts": len(mesh) + 1}, {"parts": 2, "partitioner": "luck"}):
+            with self.assertRaises(octafront.OptionError):
+                mesh.save(self.folder / "m.pvtu", **wrong)
+        with self.assertRaisesRegex(octafront.OptionError, "not written in parts"):
+            mesh.save(self.folder / "m.vtu", parts=2)
+
     def test_pickle_and_copy(self):
         mesh = octafront.mesh(*cube(), size=0.4).add_set("s", [0, 1])
         for again in (pickle.loads(pickle.dumps(mesh)), copy.deepcopy(mesh)):

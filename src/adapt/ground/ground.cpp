@@ -26,6 +26,9 @@ constexpr double kSurelyOn = 0.01, kNearerWall = 0.5;
 /// Places between vertices may be so many times as far from the given surface as these are.
 constexpr double kFartherBetween = 2;
 
+/// How far from an edge the ground is looked at for the way that it goes there, in parts of the triangle.
+constexpr double kStepFromEdge = 1e-3;
+
 /// A triangle by the barycentric weights of its corners, and how often it was divided.
 struct Division {
   TriangleCorners weights;
@@ -87,6 +90,10 @@ Ground::Ground(Walls walls, const GivenSurface* given)
   for (std::uint32_t e = 0; e < on_lines.size(); ++e) on_lines[e].on = e;
   smooth_.prepare(on_surface, on_lines);
   for (std::uint32_t e = 0; e < on_lines.size(); ++e) line_at_.find_or_add(walls_.lines.edges[e]) = e;
+  has_line_.assign(on_surface.size(), 0);
+  for (std::size_t e = 0; e < walls_.edges.size(); ++e)
+    if (line_at_.find(walls_.edges.edges[e]))
+      for (const HalfEdge h : walls_.edges.uses(e)) has_line_[h / 3] = 1;
   if (given_) find_covered();
 }
 
@@ -167,7 +174,7 @@ std::optional<Ground::Home> Ground::home(Vec3 p, std::uint32_t part, bool outer,
   const auto at = foot(p, part, outer, normal, reach);
   if (!at) return std::nullopt;
   const auto& [a, b, c] = tree_.corners(at->on);
-  if (!is_covered(at->on)) return Home{smooth_.surface_point(*at), double_area_normal(a, b, c)};
+  if (!is_covered(at->on)) return Home{smooth_over(*at), double_area_normal(a, b, c)};
   const auto on = given_->on_surface(p, normal, outer, reach_of(std::sqrt(longest_squared_edge(a, b, c))));
   if (!on) return std::nullopt;
   return Home{on->at, on->normal};
@@ -211,6 +218,17 @@ std::uint32_t Ground::wall_at(Vec3 on_given) const {
   const auto& [a, b, c] = tree_.corners(nearest.triangle);
   const double reach = reach_of(std::sqrt(longest_squared_edge(a, b, c)));
   return nearest.squared_distance <= reach * reach ? nearest.triangle : kNone;
+}
+
+Vec3 Ground::smooth_over(const curved::Foot& foot) const {
+  if (!has_line_[foot.on]) return smooth_.surface_point(foot);
+  const auto& [a, b, c] = tree_.corners(foot.on);
+  const Vec3 n = double_area_normal(a, b, c);
+  const double area = squared_length(n);
+  if (area == 0) return smooth_.surface_point(foot);
+  const double in_b = dot(double_area_normal(a, foot.at, c), n) / area;
+  const double in_c = dot(double_area_normal(a, b, foot.at), n) / area;
+  return smooth_at(foot.on, {1 - in_b - in_c, in_b, in_c});
 }
 
 Vec3 Ground::smooth_at(std::uint32_t triangle, Vec3 weights) const {
@@ -268,6 +286,47 @@ Ground::GivenPieces Ground::divided_given(std::uint32_t triangle, double toleran
       (standing == 4 ? made.standing : made.others).push_back({at(a), at(b), at(c)});
   }
   return made;
+}
+
+Vec3 Ground::way_from(HalfEdge h) const {
+  const std::uint32_t t = h / 3;
+  const int i = static_cast<int>(h % 3), j = (i + 1) % 3, k = (i + 2) % 3;
+  Vec3 middle{}, inside{};
+  middle[i] = middle[j] = 0.5;
+  inside[k] = kStepFromEdge, inside[i] = inside[j] = 0.5 * (1 - kStepFromEdge);
+  const auto& corners = tree_.corners(t);
+  const Vec3 along = normalized(corners[static_cast<std::size_t>(j)] - corners[static_cast<std::size_t>(i)]);
+  const Vec3 way = smooth_at(t, inside) - smooth_at(t, middle);
+  return normalized(way - dot(way, along) * along);
+}
+
+double Ground::cut_off(std::size_t edge, double length) const {
+  const auto uses = walls_.edges.uses(edge);
+  for (const HalfEdge h : uses) {
+    const auto& [a, b, c] = tree_.corners(h / 3);
+    length = std::min(length, octafront::length(double_area_normal(a, b, c)) /
+                                  distance(walls_.surface.points[walls_.edges.edges[edge][0]],
+                                           walls_.surface.points[walls_.edges.edges[edge][1]]));
+  }
+  // Both halves of the edge go these ways; it cuts off half of the difference.
+  return 0.25 * length * octafront::length(way_from(uses[0]) + way_from(uses[1]));
+}
+
+std::vector<Edge> Ground::kinks(const std::function<double(Vec3, Vec3)>& wanted, double tolerance) const {
+  const auto& all = walls_.edges.edges;
+  std::vector<std::uint8_t> is_kink(all.size(), 0);
+  parallel_for(all.size(), [&](std::size_t e) {
+    const auto uses = walls_.edges.uses(e);
+    if (uses.size() != 2 || line_at_.find(all[e])) return;
+    const std::uint32_t t = uses[0] / 3, u = uses[1] / 3;
+    if (walls_.surface.patch[t] != walls_.surface.patch[u] || is_covered(t) || is_covered(u)) return;
+    const Vec3 a = walls_.surface.points[all[e][0]], b = walls_.surface.points[all[e][1]];
+    is_kink[e] = cut_off(e, wanted(0.5 * (a + b), way_from(uses[0]))) > tolerance;
+  });
+  std::vector<Edge> found;
+  for (std::size_t e = 0; e < all.size(); ++e)
+    if (is_kink[e]) found.push_back(all[e]);
+  return found;
 }
 
 Ground::Truth Ground::truth_of(const TriangleCorners& t, std::uint32_t part, bool outer, double reach) const {

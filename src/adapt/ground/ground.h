@@ -56,6 +56,11 @@ class Ground {
   /// The place of the smooth line that belongs to p, if it is within reach.
   std::optional<Vec3> on_line(Vec3 p, std::uint32_t path, double reach) const;
 
+  /// Edges of walls, within one part and on no line, where the ground bends such that edges across them of the length
+  /// wanted(place, direction) would cut off more than `tolerance`: where no smooth surface goes through the vertices
+  /// the old triangles are the ground. Ascending.
+  std::vector<Edge> kinks(const std::function<double(Vec3, Vec3)>& wanted, double tolerance) const;
+
   /// How triangles of a part lie to it, at the worst of the places looked at: middles of triangles and of edges.
   struct Truth {
     double distance = 0;  ///< input units; infinite where the part is not within reach
@@ -81,7 +86,12 @@ class Ground {
  private:
   std::optional<curved::Foot> foot(Vec3 p, std::uint32_t part, bool outer, Vec3 normal, double reach) const;
 
-  /// The smooth surface over a place of a triangle, by its barycentric weights.
+  /// How far from the ground edges so long can be that have their ends to both sides of this edge.
+  double cut_off(std::size_t edge, double length) const;
+  /// The way (unit) from the middle of an edge into one of its triangles along the ground, across the edge.
+  Vec3 way_from(HalfEdge h) const;
+  /// The smooth surface over a place of the walls, and over one of a triangle by its barycentric weights.
+  Vec3 smooth_over(const curved::Foot& foot) const;
   Vec3 smooth_at(std::uint32_t triangle, Vec3 weights) const;
   /// The place of the smooth or the given surface that belongs to p.
   struct Home {
@@ -99,6 +109,7 @@ class Ground {
 
   Walls walls_;
   FlatMap<Edge, std::uint32_t> line_at_;  ///< per sorted edge of a line its number
+  std::vector<std::uint8_t> has_line_;    ///< per triangle: one of its sides lies on a line
   TriangleTree tree_;
   curved::SmoothSurface smooth_;
   const GivenSurface* given_;

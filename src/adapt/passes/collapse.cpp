@@ -81,7 +81,7 @@ class EdgeCollapser {
     for (TetIndex t = 0; t < piece_.complex.slots(); ++t) {
       if (!piece_.complex.alive(t)) continue;
       const Tet& c = piece_.tet(t);
-      const bool goes = mends_ ? is_poor(piece_, t)
+      const bool goes = mends_ ? is_to_mend(piece_, t)
                                : piece_.score[t] < (piece_.isotropic ? kPoorForCollapse : kPoorForCollapseInMetric);
       if (mends_ && !goes) continue;
       for (const auto& [i, j] : kTetEdges) {
@@ -145,10 +145,9 @@ class EdgeCollapser {
   void plan(VertexIndex u, VertexIndex w, Plan& out) {
     if (!kinds_allow(u, w)) return;
     const Kind kind = piece_.vertices[u].kind;
-    if (kind != Kind::kInner && !keeps_manifold(u, w)) return;
     out.gone = u, out.onto = w;
     if (!plan_tets(out)) return out.worst = 0, void();
-    if (kind != Kind::kInner && !plan_walls(out)) out.worst = 0;
+    if (kind != Kind::kInner && (!keeps_manifold(u, w) || !plan_walls(out))) out.worst = 0;
   }
 
   bool plan_tets(Plan& out) {

@@ -26,7 +26,7 @@ class Inserter {
     PassCount count;
     const TetIndex slots = piece_.complex.slots();
     for (TetIndex t = 0; t < slots; ++t) {
-      if (!piece_.complex.alive(t) || !is_poor(piece_, t)) continue;
+      if (!piece_.complex.alive(t) || !is_to_mend(piece_, t)) continue;
       if (++steps_ % kCheckMendEvery == 0) guide_.context.check();
       ++count.tried;
       count.done += insert_in(t);
@@ -174,11 +174,18 @@ PassCount insert_at_poor(Piece& piece, const Guide& guide) {
 
 PassCount mend_poor(Piece& piece, const Guide& guide) {
   PassCount sum;
+  const auto replace = [&](Vertex::Calmness from, Vertex::Calmness to) {
+    for (Vertex& v : piece.vertices)
+      if (v.calmness == from) v.calmness = to;
+  };
   for (int cycle = 0; cycle < kMostMendingCycles; ++cycle) {
+    replace(Vertex::kStirred, Vertex::kSettling);
     PassCount count = swap_poor(piece, guide);
     count += move_poor(piece, guide);
     count += collapse_poor(piece, guide);
+    count += split_poor(piece, guide);
     count += insert_at_poor(piece, guide);
+    replace(Vertex::kSettling, Vertex::kCalm);
     sum += count;
     if (count.done == 0) break;
   }

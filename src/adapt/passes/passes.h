@@ -61,6 +61,7 @@ PassCount mend_poor(Piece& piece, const Guide& guide);
 PassCount swap_poor(Piece& piece, const Guide& guide);
 PassCount collapse_poor(Piece& piece, const Guide& guide);
 PassCount move_poor(Piece& piece, const Guide& guide);
+PassCount split_poor(Piece& piece, const Guide& guide);
 PassCount insert_at_poor(Piece& piece, const Guide& guide);
 
 /// Moves vertices of walls, lines and corners that are beside the surface that was given to it, as far as their

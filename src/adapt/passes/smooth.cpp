@@ -58,7 +58,7 @@ class VertexMover {
   PassCount mend() {
     PassCount count;
     for (TetIndex t = 0; t < piece_.complex.slots(); ++t)
-      for (int i = 0; i < 4 && piece_.complex.alive(t) && is_poor(piece_, t); ++i) {
+      for (int i = 0; i < 4 && piece_.complex.alive(t) && is_to_mend(piece_, t); ++i) {
         if (++steps_ % kCheckMoveEvery == 0) guide_.context.check();
         const VertexIndex v = piece_.tet(t)[i];
         const Vertex& at = piece_.vertices[v];

@@ -1,6 +1,7 @@
 // Splits of edges, each with all tets around it in two.
 
 #include "adapt/passes/passes.h"
+#include "adapt/passes/worth.h"
 #include "base/core/elementary.h"
 #include "base/geometry/measures.h"
 
@@ -36,11 +37,13 @@ constexpr double kFinerThanRim = 2.5;
 /// Less than one split for so many vertices does not make the inside finer: an edge of the rim that none of its pieces
 /// may split must not keep them waiting for ever.
 constexpr std::size_t kFewSplits = 16;
+/// Where what mends divides edges.
+constexpr std::array<double, 3> kPartsOfMending{0.5, 0.3, 0.7};
 constexpr int kCheckEvery = 256;
 
 class Splitter {
  public:
-  Splitter(Piece& piece, const Guide& guide) : piece_(piece), guide_(guide) {}
+  Splitter(Piece& piece, const Guide& guide, bool mends) : piece_(piece), guide_(guide), mends_(mends) {}
 
   PassCount run(std::size_t most_vertices) {
     PassCount count;
@@ -65,8 +68,9 @@ class Splitter {
         const auto edge = longest_edge(t);
         if (!edge || level_of(edge->length) < level) continue;
         ++count.tried;
-        if (!split(t, edge->ends[0], edge->ends[1])) {
-          refused_.insert(sorted_edge(edge->ends[0], edge->ends[1]));
+        const auto [a, b] = edge->ends;
+        if (!split(t, a, b, middle(a, b))) {
+          refused_.insert(sorted_edge(a, b));
           enqueue(t);
           continue;
         }
@@ -74,6 +78,23 @@ class Splitter {
         for (const TetIndex made : piece_.created()) enqueue(made);
       }
       waiting_[level] = {};
+    }
+    return count;
+  }
+
+  /// Splits the longest edges of elements that are poor because of them.
+  PassCount mend() {
+    PassCount count;
+    const TetIndex slots = piece_.complex.slots();
+    for (TetIndex t = 0; t < slots; ++t) {
+      if (!piece_.complex.alive(t) || !is_to_mend(piece_, t)) continue;
+      if (++steps_ % kCheckEvery == 0) guide_.context.check();
+      const auto edge = longest_edge(t);
+      if (!edge || edge->length <= kLongOfPoor) continue;
+      ++count.tried;
+      const Edge ends = edge->ends;
+      count.done += std::any_of(kPartsOfMending.begin(), kPartsOfMending.end(),
+                                [&](double part) { return split(t, ends[0], ends[1], part); });
     }
     return count;
   }
@@ -118,7 +139,7 @@ class Splitter {
   bool may_split(VertexIndex a, VertexIndex b) const {
     const Vertex &p = piece_.vertices[a], &q = piece_.vertices[b];
     if (p.frozen && q.frozen) return false;
-    return (p.active || q.active) && !refused_.contains(sorted_edge(a, b));
+    return (mends_ || p.active || q.active) && !refused_.contains(sorted_edge(a, b));
   }
 
   /// The longest edge that is too long and may be split.
@@ -177,12 +198,11 @@ class Splitter {
     return guide_.ground.on_surface(straight, (walls_[0].wall & ~kOuter) - 1, outer, normal, reach).value_or(straight);
   }
 
-  bool split(TetIndex t, VertexIndex a, VertexIndex b) {
+  bool split(TetIndex t, VertexIndex a, VertexIndex b, double part) {
     const std::uint32_t* path = piece_.line(a, b);
     if (path && *path == Parts::kStays) return false;
     if (!piece_.ring(t, a, b, ring_)) return false;
     find_walls();
-    const double part = middle(a, b);
     const Vec3 p = piece_.point(a), q = piece_.point(b), straight = p + part * (q - p);
     const Vec3 home = home_of(a, b, straight, path);
     Vertex made;
@@ -200,7 +220,8 @@ class Splitter {
       made.off = guide_.ground.given() && share != 1 && home != straight;
       guide_.ask(made);
       const bool is_needed = share == 1 && made.metric.squared(home - straight) > kFarFromHome * kFarFromHome;
-      if (plan(a, b, made, is_needed ? kShortestAtHome : kShortestOfSplit)) return apply(a, b, made, path);
+      if (mends_ ? plan_mending(a, b, made) : plan(a, b, made, is_needed ? kShortestAtHome : kShortestOfSplit))
+        return apply(a, b, made, path);
     }
     return false;
   }
@@ -219,13 +240,29 @@ class Splitter {
       const Vertex& v = piece_.vertices[r];
       if (piece_.length_between(made, v) < shortest) return false;
     }
+    return plan_tets(a, b, made, least, [&](const auto&, float score) { return score; });
+  }
+
+  /// Whether the worst element becomes better.
+  bool plan_mending(VertexIndex a, VertexIndex b, const Vertex& made) {
+    float worst = HUGE_VALF;
+    for (const TetIndex t : ring_.tets) worst = std::min(worst, worth_of(piece_, piece_.tet(t)));
+    return plan_tets(a, b, made, kGainOfMending * worst,
+                     [&](const auto& corners, float) { return worth_of_corners(corners, piece_.isotropic); });
+  }
+
+  /// The new tets, if all are of more value(corners, score) than `least`.
+  template <class Value>
+  bool plan_tets(VertexIndex a, VertexIndex b, const Vertex& made, float least, const Value& value) {
     fresh_.clear();
     const auto next = static_cast<VertexIndex>(piece_.vertices.size());
     for (const TetIndex t : ring_.tets)
       for (const VertexIndex gone : {b, a}) {
         Tet c = piece_.tet(t);
-        const float s = piece_.score_with(c, gone, made);
-        if (!(s > least)) return false;
+        std::array<const Vertex*, 4> corners;
+        for (std::size_t i = 0; i < 4; ++i) corners[i] = c[i] == gone ? &made : &piece_.vertices[c[i]];
+        const float s = piece_.score_of_corners(corners);
+        if (!(s > 0) || !(value(corners, s) > least)) return false;
         std::replace(c.begin(), c.end(), gone, next);
         fresh_.push_back({c, piece_.region[t], s});
       }
@@ -262,6 +299,7 @@ class Splitter {
 
   Piece& piece_;
   const Guide& guide_;
+  bool mends_;
   std::array<std::vector<TetIndex>, kLevels> waiting_;
   FlatSet<Edge> refused_;
   EdgeRing ring_;
@@ -274,7 +312,11 @@ class Splitter {
 }  // namespace
 
 PassCount split_long_edges(Piece& piece, const Guide& guide, std::size_t most_vertices) {
-  return Splitter(piece, guide).run(most_vertices);
+  return Splitter(piece, guide, false).run(most_vertices);
+}
+
+PassCount split_poor(Piece& piece, const Guide& guide) {
+  return Splitter(piece, guide, true).mend();
 }
 
 }  // namespace octafront::adapt

@@ -32,7 +32,7 @@ class Swapper {
     PassCount count;
     std::vector<TetIndex> queue;
     for (TetIndex t = 0; t < piece_.complex.slots(); ++t)
-      if (piece_.complex.alive(t) && (mends_ || is_active(t))) queue.push_back(t);
+      if (piece_.complex.alive(t) && (mends_ ? is_to_mend(piece_, t) : is_active(t))) queue.push_back(t);
     for (std::size_t k = 0; k < queue.size(); ++k) {
       if (++steps_ % kCheckSwapEvery == 0) guide_.context.check();
       const TetIndex t = queue[k];

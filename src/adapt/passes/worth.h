@@ -10,7 +10,7 @@ namespace octafront::adapt {
 
 /// What is mended: elements of a lower score (qualities of .34 and, in metrics of size, .54), or with a longer edge.
 inline constexpr float kPoorInMetric = 0.2f, kPoorOfSize = 0.4f;
-inline constexpr double kLongOfPoor = 1.8;
+inline constexpr double kLongOfPoor = 1.6;
 /// What mends makes the worst element of its place better by so much.
 inline constexpr float kGainOfMending = 1.1f;
 
@@ -29,8 +29,14 @@ float worth_of(const Mesh& mesh, const Tet& t) {
   const auto corner = [&](std::size_t i) { return &mesh.vertices[t[i]]; };
   return worth_of_corners({corner(0), corner(1), corner(2), corner(3)}, mesh.isotropic);
 }
-inline bool is_poor(const Piece& piece, TetIndex t) {
-  return worth_of(piece, piece.tet(t)) < 1;
+/// Whether an element is poor, and something around it has changed since all was tried to mend it.
+template <class Mesh>
+bool is_to_mend(const Mesh& mesh, const Tet& t) {
+  return std::any_of(t.begin(), t.end(), [&](VertexIndex v) { return mesh.vertices[v].calmness != Vertex::kCalm; }) &&
+         worth_of(mesh, t) < 1;
+}
+inline bool is_to_mend(const Piece& piece, TetIndex t) {
+  return is_to_mend(piece, piece.tet(t));
 }
 
 }  // namespace octafront::adapt

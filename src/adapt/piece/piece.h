@@ -36,6 +36,9 @@ struct Vertex {
   bool exact = true;    ///< the metric is that of the place, not one on the way to it
   bool frozen = false;  ///< asked to stay as it is, with all that is between vertices that are
   bool off = false;     ///< on a wall, beside the surface that was given: it is to go there
+  /// For what mends: kStirred, something around it changed; kSettling, just before the cycle that is under way; kCalm,
+  /// all that could be tried around it has been, in vain.
+  enum Calmness : std::uint8_t { kCalm, kSettling, kStirred } calmness = kStirred;
 };
 
 /// The label of a half-face that lies on a wall, else 0: one more than the number of the part, and kOuter where nothing
@@ -142,9 +145,15 @@ class Piece {
   void move(VertexIndex v, const Vertex& to, std::span<const TetIndex> star, std::span<const float> scores);
 
   /// Something around the vertex changed.
-  void touch(VertexIndex v) { vertices[v].active = vertices[v].loose = vertices[v].touched = true; }
+  void touch(VertexIndex v) {
+    loosen(v);
+    vertices[v].active = true;
+  }
   /// Something moved a little around it.
-  void loosen(VertexIndex v) { vertices[v].loose = vertices[v].touched = true; }
+  void loosen(VertexIndex v) {
+    vertices[v].loose = vertices[v].touched = true;
+    vertices[v].calmness = Vertex::kStirred;
+  }
 
   std::vector<Parts::Line> lines() const;
 

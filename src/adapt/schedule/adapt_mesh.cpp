@@ -26,27 +26,34 @@ constexpr int kMostRoundsOfAdapt = 60;
 constexpr int kCycles = 4, kCyclesOnTheWay = 2;
 /// So many steps at most on the way to a metric, and none more once less than one change for so many elements is made.
 constexpr int kMostSteps = 20, kQuiet = 50;
+/// None more either once few vertices are on the way, one of so many, and a step brings less than a part of them there:
+/// the others are where walls keep elements from the metric.
+constexpr std::size_t kFewOnTheWay = 20, kPartOfStep = 10;
+/// A piece has the elements that are awake and layers around them, so many in all: what passes look at.
+constexpr int kLayersAwake = 3;
 /// Less than one change for so many elements is not worth another round.
 constexpr int kDone = 200;
 /// Elements of a better score are not connected anew, or moved: qualities of .86 and .93; and not while a piece grows.
 constexpr float kGoodForSwaps = 0.8f, kGoodScore = 0.9f, kGoodOnTheWay = 0.3f;
 /// Edges of other lengths do not come near to what is wanted.
 constexpr double kFarShort = 0.5, kFarLong = 2;
-/// Times that elements are made smaller where walls stray too far, and how long their longest edges are made to be:
-/// so that they are divided.
-constexpr int kMostMendings = 6;
+/// Times that elements are made smaller where walls stray too far, those of them in a row that may be in vain, and how
+/// long their longest edges are made to be: so that they are divided.
+constexpr int kMostMendings = 10, kMostInVain = 3;
 constexpr double kLengthOfStray = 1.6;
 /// Triangles with no edge longer than so many times the bound do not stray because they are large.
 constexpr double kLeastEdgeOfStray = 8;
-/// Less gain than this is none; and no more elements than so many times those before.
-constexpr double kLeastGainOfMending = 0.7;
+/// Less gain than this is none, in all and of one time; and no more elements than so many times those before.
+constexpr double kLeastGainOfMending = 0.7, kLeastProgress = 0.98;
 constexpr std::size_t kGrowthOfMending = 2;
+/// Where edges would cut off more than this part of the bound from a bend of the ground, it is a line.
+constexpr double kShareOfKink = 0.5;
 /// Around them lengths grow by this part of the way, both counted in lengths; what changes less is let be.
 constexpr double kGradationOfStrays = 0.5, kLeastChangeOfDensity = 1.02;
 /// Places nearer than this part of the bound are near enough, however they are measured.
 constexpr double kShareOfBound = 0.85;
 /// Layers of elements around those that are mended, and how often they are looked for.
-constexpr int kLayersOfMending = 3, kMostRoundsOfMending = 4;
+constexpr int kLayersOfMending = 3, kMostRoundsOfMending = 6;
 /// Rounds once no piece has grown so far that it had to be divided anew: each place is inside a piece several times.
 constexpr int kLastRounds = 2 * kCellStages;
 
@@ -103,7 +110,7 @@ class Adapter {
     Counts sum;
     bool is_quiet = false;
     for (int round = 0, since_growth = 0; round < kMostRoundsOfAdapt && since_growth < kLastRounds; ++round) {
-      if (on_the_way_) on_the_way_ = take_step(mesh_, guide_, round >= kMostSteps || is_quiet, walls_ahead_);
+      if (on_the_way_) step(round >= kMostSteps || is_quiet);
       const Counts c = this->round(cells_of_stage(round % kCellStages));
       sum += c;
       is_quiet = c.changes() * kQuiet < mesh_.tets.size();
@@ -122,11 +129,18 @@ class Adapter {
   }
 
  private:
+  void step(bool last) {
+    const std::size_t before = steps_left_;
+    steps_left_ = take_step(mesh_, guide_, last || is_stuck_, walls_ahead_);
+    on_the_way_ = steps_left_ > 0;
+    is_stuck_ = steps_left_ * kFewOnTheWay < mesh_.vertices.size() && steps_left_ + before / kPartOfStep > before;
+  }
+
   /// What is still poor, each place by itself: what is so long that it was at the rim of all its pieces, too.
   void mend(Counts& sum) {
     mends_ = true;
     for (int k = 0; k < kMostRoundsOfMending; ++k) {
-      const Cells places = poor_places();
+      const Cells places = poor_places(k > 0);
       if (places.count == 0) break;
       const Counts c = round(places);
       sum += c;
@@ -136,10 +150,15 @@ class Adapter {
   }
 
   /// A cell for each lot of poor elements and some layers around, numbered by their least vertices; other vertices are
-  /// in none. Those inside are awake then, all others asleep.
-  Cells poor_places() {
+  /// in none. Those inside are awake then, all others asleep. `again`: what mending has changed counts as poor, too,
+  /// for lengths may have changed.
+  Cells poor_places(bool again) {
+    const auto is_active = [&](VertexIndex v) { return mesh_.vertices[v].active; };
     std::vector<std::uint8_t> poor(mesh_.tets.size()), near(mesh_.vertices.size(), 0);
-    parallel_for(poor.size(), [&](std::size_t t) { poor[t] = worth_of(mesh_, mesh_.tets[t]) < 1; });
+    parallel_for(poor.size(), [&](std::size_t t) {
+      const Tet& c = mesh_.tets[t];
+      poor[t] = is_to_mend(mesh_, c) || (again && std::any_of(c.begin(), c.end(), is_active));
+    });
     for (int layer = 0; layer <= kLayersOfMending; ++layer) {
       for (std::size_t t = 0; t < poor.size(); ++t)
         if (poor[t])
@@ -207,22 +226,48 @@ class Adapter {
     return merge(done, tets.left(), lines.left());
   }
 
+  /// The tets that are to be a piece: those where something may be left to do, and some layers around. All others are
+  /// done as they are, and so are lines that the piece does not know.
+  std::vector<TetIndex> take_awake(std::span<const TetIndex> tets, std::span<const Parts::Line> lines,
+                                   std::vector<VertexIndex>& here, Done& done) const {
+    const auto is_awake = [&](VertexIndex v) {
+      return here[v] != kNone || mesh_.vertices[v].active || mesh_.vertices[v].loose;
+    };
+    std::vector<std::uint8_t> taken(tets.size(), 0);
+    for (int layer = 0; layer < kLayersAwake; ++layer) {
+      for (std::size_t k = 0; k < tets.size(); ++k) {
+        const Tet& c = mesh_.tets[tets[k]];
+        taken[k] = taken[k] || std::any_of(c.begin(), c.end(), is_awake);
+      }
+      for (std::size_t k = 0; k < tets.size(); ++k)
+        if (taken[k])
+          for (const VertexIndex v : mesh_.tets[tets[k]]) here[v] = 0;
+    }
+    std::vector<TetIndex> awake;
+    for (std::size_t k = 0; k < tets.size(); ++k) {
+      const TetIndex t = tets[k];
+      if (taken[k]) {
+        awake.push_back(t);
+        continue;
+      }
+      done.tets.push_back(mesh_.tets[t]);
+      done.region.push_back(mesh_.region[t]);
+      done.wall.push_back(mesh_.wall[t]);
+    }
+    for (const Parts::Line& l : lines)
+      if (here[l.edge[0]] == kNone || here[l.edge[1]] == kNone) done.lines.push_back(l);
+    for (const TetIndex t : awake)
+      for (const VertexIndex v : mesh_.tets[t]) here[v] = kNone;
+    return awake;
+  }
+
   Done work_in(std::span<const TetIndex> tets, std::span<const Parts::Line> lines, std::vector<VertexIndex>& here) {
     Done done;
-    const auto is_active = [&](VertexIndex v) { return mesh_.vertices[v].active || mesh_.vertices[v].loose; };
-    if (std::none_of(tets.begin(), tets.end(),
-                     [&](TetIndex t) { return std::any_of(mesh_.tets[t].begin(), mesh_.tets[t].end(), is_active); })) {
-      for (const TetIndex t : tets) {
-        done.tets.push_back(mesh_.tets[t]);
-        done.region.push_back(mesh_.region[t]);
-        done.wall.push_back(mesh_.wall[t]);
-      }
-      done.lines.assign(lines.begin(), lines.end());
-      return done;
-    }
+    const std::vector<TetIndex> awake = take_awake(tets, lines, here, done);
+    if (awake.empty()) return done;
     std::vector<VertexIndex> number;  // in the mesh, of each vertex of the piece
-    Piece piece(mesh_, tets, lines, here);
-    for (const TetIndex t : tets)
+    Piece piece(mesh_, awake, lines, here);
+    for (const TetIndex t : awake)
       for (const VertexIndex v : mesh_.tets[t])
         if (here[v] == kNone) here[v] = static_cast<VertexIndex>(number.size()), number.push_back(v);
     for (const VertexIndex v : number) here[v] = kNone;
@@ -247,8 +292,7 @@ class Adapter {
       done.region.push_back(piece.region[t]);
       done.wall.push_back({piece.wall[4 * t], piece.wall[4 * t + 1], piece.wall[4 * t + 2], piece.wall[4 * t + 3]});
     }
-    done.lines = piece.lines();
-    for (Parts::Line& l : done.lines) l.edge = {global(l.edge[0]), global(l.edge[1])};
+    for (const Parts::Line& l : piece.lines()) done.lines.push_back({{global(l.edge[0]), global(l.edge[1])}, l.path});
     return done;
   }
 
@@ -324,6 +368,8 @@ class Adapter {
   const Guide& guide_;
   const Stage& stage_;
   bool walls_ahead_, on_the_way_, mends_ = false;
+  std::size_t steps_left_ = kNone;  ///< vertices that are on the way
+  bool is_stuck_ = false;
 };
 
 }  // namespace
@@ -390,7 +436,7 @@ namespace {
 void ask_for(Vertex& vertex, const Metric& metric) {
   vertex.metric = metric;
   vertex.density = density_of(metric);
-  vertex.exact = false, vertex.active = true;
+  vertex.exact = false, vertex.active = true, vertex.calmness = Vertex::kStirred;
 }
 
 /// Lengths grow no faster than by a part of the way from these vertices on.
@@ -439,7 +485,7 @@ void ask_for_smaller(Parts& parts, const std::vector<Triangle>& triangles) {
 void mend_walls(Parts& parts, const Ground& ground, const AdaptRules& rules, Adapter& adapter, Adapted& out,
                 const Stage& stage) {
   if (rules.tolerance <= 0) return;
-  const SmoothWalls smooth(ground, rules.frozen, rules.tolerance);
+  const SmoothWalls smooth(ground, rules.kept.empty() ? rules.frozen : rules.kept, rules.tolerance);
   out.bound = rules.strict ? rules.tolerance : std::max(rules.tolerance, smooth.of_old().upper);
   // Walls that stay are frozen, and those are not looked at.
   out.deviation = rules.keep_walls ? smooth.of_old() : smooth.of(parts);
@@ -447,7 +493,7 @@ void mend_walls(Parts& parts, const Ground& ground, const AdaptRules& rules, Ada
   const Parts first = parts;
   Parts best = parts;
   Deviation nearest = out.deviation;
-  for (int k = 0; k < kMostMendings && nearest.upper > out.bound; ++k) {
+  for (int k = 0, in_vain = 0; k < kMostMendings && in_vain < kMostInVain && nearest.upper > out.bound; ++k) {
     stage.check();
     std::vector<Triangle> strays = smooth.strays(parts, kShareOfBound * out.bound);
     std::erase_if(strays, [&](const Triangle& t) {
@@ -459,6 +505,7 @@ void mend_walls(Parts& parts, const Ground& ground, const AdaptRules& rules, Ada
     ask_for_smaller(parts, strays);
     adapter.run();
     const Deviation now = smooth.of(parts);
+    in_vain = now.upper < kLeastProgress * nearest.upper ? 0 : in_vain + 1;
     if (now.upper < nearest.upper) nearest = now, best = parts;
   }
   // Smaller elements are no use where the ground itself has a step.
@@ -484,8 +531,24 @@ GivenFit given_fit(const Ground& ground, std::span<const Vertex> vertices) {
   return fit;
 }
 
-Adapted adapt_mesh(const TetMesh& mesh, const MetricField& metric, const AdaptRules& rules, const Stage& stage) {
+namespace {
+
+/// Where a bound is asked for, edges at which the ground bends too much for the sizes wanted are lines, too.
+TakenApart taken_apart(const TetMesh& mesh, const MetricField& metric, const AdaptRules& rules) {
   TakenApart taken = take_apart(mesh, rules.feature_angle);
+  if (!rules.strict || rules.tolerance <= 0) return taken;
+  const Ground ground(std::move(taken.walls), rules.given);
+  const auto wanted = [&](Vec3 p, Vec3 direction) {
+    std::uint32_t hint = 0;
+    return 1 / std::sqrt(metric.at(p, hint).squared(direction));
+  };
+  return take_apart(mesh, rules.feature_angle, ground.kinks(wanted, kShareOfKink * rules.tolerance));
+}
+
+}  // namespace
+
+Adapted adapt_mesh(const TetMesh& mesh, const MetricField& metric, const AdaptRules& rules, const Stage& stage) {
+  TakenApart taken = taken_apart(mesh, metric, rules);
   if (!rules.frozen.empty()) freeze(taken.parts, rules.frozen);
   const Ground ground(std::move(taken.walls), rules.given);
   const Guide guide{metric, ground, rules.tolerance, stage.context()};
@@ -493,6 +556,7 @@ Adapted adapt_mesh(const TetMesh& mesh, const MetricField& metric, const AdaptRu
   parallel_for(taken.parts.vertices.size(), [&](std::size_t v) { guide.ask(taken.parts.vertices[v]); });
   if (rules.keep_walls)
     for (Vertex& v : taken.parts.vertices) v.frozen |= v.kind != Kind::kInner;
+  for (VertexIndex v = 0; v < rules.kept.size(); ++v) taken.parts.vertices[v].frozen |= rules.kept[v] != 0;
   Adapter adapter(taken.parts, guide, rules.walls_ahead, stage);
   adapter.run();
   Adapted out;

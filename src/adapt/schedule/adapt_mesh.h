@@ -26,7 +26,8 @@ struct AdaptRules {
   bool walls_ahead = true;  ///< as of take_step()
   /// Where walls lie instead of on their own smooth surface, as far as it is near them; null: nowhere.
   const GivenSurface* given = nullptr;
-  bool keep_walls = false;  ///< vertices on walls, and all edges between them, stay as they are
+  bool keep_walls = false;                  ///< vertices on walls, and all edges between them, stay as they are
+  std::span<const std::uint8_t> kept = {};  ///< per vertex: it stays, and so does what lies between such; empty: none
   /// Per vertex: it stays, and so does what lies between vertices that do; elements with none but such vertices are not
   /// in the result. Empty: all may change. The faces of the mesh that are no walls of it are where it was cut out of
   /// another: their vertices must be frozen.

@@ -100,6 +100,8 @@ class HighArcs {
     };
     std::uint32_t hint = mesh_.vertices[e.ends[0]].hint;
     const Metric metric = guide_.metric.at(middle, hint);
+    // Divided for the height alone it would be collapsed again.
+    if (metric_length(b - a, guide_.metric.at(a, hint), guide_.metric.at(b, hint)) <= kLongest) return false;
     const auto is_long = [&](Vec3 d) { return metric.squared(d) > kMostHeightOfArc * kMostHeightOfArc; };
     const Vec3 height = offset(middle);
     // Where its ends could not come to the ground its halves could not either.
@@ -129,28 +131,29 @@ void ask_along(Vertex& vertex, Vec3 e, double length) {
 
 }  // namespace
 
-bool take_step(Parts& mesh, const Guide& guide, bool last, bool walls_ahead) {
+std::size_t take_step(Parts& mesh, const Guide& guide, bool last, bool walls_ahead) {
   const auto vertices = static_cast<std::uint32_t>(mesh.vertices.size());
   const ImpliedMetrics implied(mesh);
   const Groups<> corners = group_by_owner(vertices, static_cast<std::uint32_t>(4 * mesh.tets.size()),
                                           [&](std::uint32_t c) { return mesh.tets[c / 4][c % 4]; });
   parallel_for(vertices, [&](std::size_t v) {
     Vertex& vertex = mesh.vertices[v];
-    vertex.exact = true, vertex.active = vertex.loose = true;
+    vertex.exact = true, vertex.active = vertex.loose = true, vertex.calmness = Vertex::kStirred;
     guide.ask(vertex);
     Metric is;
     if (last || !implied.mean(corners[v], is)) return;
     vertex.metric = step_towards(is, vertex.metric, kStepOfMetric, vertex.exact);
     vertex.density = density_of(vertex.metric);
   });
-  if (last) return false;
+  if (last) return 0;
   if (walls_ahead) {
     const HighArcs arcs(mesh, guide);
     for (const Edge& e : arcs.found())
       for (const VertexIndex v : e)
         ask_along(mesh.vertices[v], mesh.vertices[e[1]].at - mesh.vertices[e[0]].at, kLengthOfChord);
   }
-  return std::any_of(mesh.vertices.begin(), mesh.vertices.end(), [](const Vertex& v) { return !v.exact; });
+  const auto is_on_the_way = [](const Vertex& v) { return !v.exact; };
+  return static_cast<std::size_t>(std::count_if(mesh.vertices.begin(), mesh.vertices.end(), is_on_the_way));
 }
 
 }  // namespace octafront::adapt

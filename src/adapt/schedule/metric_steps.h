@@ -6,11 +6,13 @@
 #include "adapt/passes/passes.h"
 #include "adapt/piece/piece.h"
 
+#include <cstddef>
+
 namespace octafront::adapt {
 
 /// Gives each vertex the metric of its place, or one on the way to it from what the mesh is like there, unless this is
-/// the `last` step; false if none is on the way. With `walls_ahead`, walls are divided first where the metric will find
-/// them too bent: as long as elements are not yet flat they can follow the ground as near as that.
-bool take_step(Parts& mesh, const Guide& guide, bool last, bool walls_ahead);
+/// the `last` step; how many are on the way. With `walls_ahead`, walls are divided first where the metric will find
+/// them too long and too bent: as long as elements are not yet flat they can follow the ground as near as that.
+std::size_t take_step(Parts& mesh, const Guide& guide, bool last, bool walls_ahead);
 
 }  // namespace octafront::adapt

@@ -38,7 +38,8 @@ std::vector<Labels::Label> labels_of(const TetMesh& mesh, NamedSet::Kind kind, s
 
 class TakerApart {
  public:
-  TakerApart(const TetMesh& mesh, double feature_angle) : mesh_(mesh), feature_angle_(feature_angle) {}
+  TakerApart(const TetMesh& mesh, double feature_angle, std::span<const Edge> kinks)
+      : mesh_(mesh), feature_angle_(feature_angle), kinks_(kinks) {}
 
   TakenApart run() {
     Parts& parts = out_.parts;
@@ -130,6 +131,7 @@ class TakerApart {
     for (std::size_t e = 0; e < labels.size(); ++e)
       named[sorted_edge(mesh_.curve_edges[e][0], mesh_.curve_edges[e][1])] = labels[e];
     for (const auto& [edge, label] : named) lines.edges.push_back(edge);
+    lines.edges.insert(lines.edges.end(), kinks_.begin(), kinks_.end());
     std::sort(lines.edges.begin(), lines.edges.end());
     lines.edges.erase(std::unique(lines.edges.begin(), lines.edges.end()), lines.edges.end());
     std::vector<Labels::Label> label(lines.edges.size(), Labels::Label{kNone});
@@ -142,8 +144,13 @@ class TakerApart {
   /// Lines of edges of one label.
   void name_paths(const std::vector<Labels::Label>& label) {
     Features& lines = out_.walls.lines;
-    out_.walls.path =
-        find_paths(mesh_.points.size(), lines, [&](std::uint32_t e, std::uint32_t f) { return label[e] == label[f]; });
+    // Of kinks nothing is known but where they are: each is straight by itself.
+    const auto is_kink = [&](std::uint32_t e) {
+      return std::binary_search(kinks_.begin(), kinks_.end(), lines.edges[e]);
+    };
+    out_.walls.path = find_paths(mesh_.points.size(), lines, [&](std::uint32_t e, std::uint32_t f) {
+      return label[e] == label[f] && !is_kink(e) && !is_kink(f);
+    });
     for (std::uint32_t e = 0; e < lines.edges.size(); ++e) {
       const std::uint32_t path = out_.walls.path[e];
       if (path == out_.labels.paths.size()) out_.labels.paths.push_back(label[e]);
@@ -191,6 +198,7 @@ class TakerApart {
 
   const TetMesh& mesh_;
   double feature_angle_;
+  std::span<const Edge> kinks_;
   TakenApart out_;
   std::vector<VertexIndex> touching_;
 };
@@ -202,8 +210,8 @@ void add_to_sets(std::vector<NamedSet>& sets, const Labels::Label& label, std::u
 
 }  // namespace
 
-TakenApart take_apart(const TetMesh& mesh, double feature_angle) {
-  return TakerApart(mesh, feature_angle).run();
+TakenApart take_apart(const TetMesh& mesh, double feature_angle, std::span<const Edge> kinks) {
+  return TakerApart(mesh, feature_angle, kinks).run();
 }
 
 TetMesh put_together(const Parts& parts, const Labels& labels, const TetMesh& before,

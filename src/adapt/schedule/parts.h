@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <map>
+#include <span>
 #include <vector>
 
 namespace octafront::adapt {
@@ -29,10 +30,11 @@ struct TakenApart {
   Labels labels;
 };
 
-/// Requires a valid linear mesh. Lines are where walls bend by `feature_angle` (degrees), end, or meet others, and the
-/// mesh's curves; vertices where the boundary touches itself stay, all others of walls are `off`. Faces of one tet that
-/// the boundary does not list are no walls: the mesh was cut out of another there.
-TakenApart take_apart(const TetMesh& mesh, double feature_angle);
+/// Requires a valid linear mesh. Lines are where walls bend by `feature_angle` (degrees), end, or meet others, the
+/// mesh's curves, and `kinks` (ascending), whose ends all stay; vertices where the boundary touches itself stay, all
+/// others of walls are `off`. Faces of one tet that the boundary does not list are no walls: the mesh was cut out of
+/// another there.
+TakenApart take_apart(const TetMesh& mesh, double feature_angle, std::span<const Edge> kinks = {});
 
 /// The mesh again, with the names of `before`: vertices that were there in their order, new ones behind. `old_of_new`
 /// gets the number in `before` of each vertex; kNone: new.

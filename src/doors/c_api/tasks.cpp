@@ -43,11 +43,25 @@ Json json_of_repair(const RepairedSurface& r) {
           {"notes", r.notes}};
 }
 
+/// 0: the mesh as one.
+std::uint32_t number_of_parts(const Json& value) {
+  constexpr std::int64_t kMost = 1'000'000;
+  if (!value.is_number_integer() || value.get<std::int64_t>() < 0 || value.get<std::int64_t>() > kMost)
+    throw OptionError(fmt::format("`parts` is a whole number from 1 to {}, not {}", kMost, value.dump()));
+  return value.get<std::uint32_t>();
+}
+
 WriteOptions write_options_from(const Json& json) {
   WriteOptions options;
   with(json, "format", [&](const Json& value) { options.format = value.get<std::string>(); });
   with(json, "ascii", [&](const Json& value) { options.ascii = value.get<bool>(); });
   with(json, "cells_only", [&](const Json& value) { options.cells_only = value.get<bool>(); });
+  with(json, "parts", [&](const Json& value) { options.parts = number_of_parts(value); });
+  with(json, "partitioner", [&](const Json& value) {
+    options.partitioner = one_of<Partitioner>({{"curve", Partitioner::kCurve}, {"metis", Partitioner::kMetis}},
+                                              value.get<std::string>(), "partitioner");
+  });
+  with(json, "split_files", [&](const Json& value) { options.split_files = value.get<bool>(); });
   with(json, "beams", [&](const Json& value) { options.beams = value.get<std::string>(); });
   with(json, "cohesive", [&](const Json& value) { options.cohesive = value.get<bool>(); });
   return options;

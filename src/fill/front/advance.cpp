@@ -1,5 +1,6 @@
 #include "fill/front/advance.h"
 
+#include "base/comm/shares.h"
 #include "base/core/parallel.h"
 #include "base/core/validate.h"
 #include "base/mesh/index_range.h"
@@ -27,6 +28,33 @@ constexpr int kLayersPerPhase = 4;
 constexpr std::array<double, 4> kQuantiles{0.5, 0.36, 0.64, 0.43};
 /// A phase that settles less than this share of its queue is followed by one without blocks.
 constexpr double kLeastSettled = 0.2;
+
+/// What ranks must know of each other's blocks before vertices have numbers.
+struct BlockTotals {
+  std::uint64_t points = 0, deferred = 0;
+  FrontWork work;
+  FrontCounters counters;
+};
+
+/// What a block gives the front, in the front's numbers.
+void pack_front(const BlockResult& r, Packer& to) {
+  to.add(r.points), to.add(r.sizes), to.add(r.queue), to.add(r.held), to.add(r.passive);
+}
+void unpack_front(BlockResult& r, Unpacker& from) {
+  from.take(r.points), from.take(r.sizes), from.take(r.queue), from.take(r.held), from.take(r.passive);
+}
+
+/// Gives the vertices of a block the front's numbers; its own ones begin at `first_own`.
+void renumber(BlockResult& r, VertexIndex first_own) {
+  const auto own = static_cast<VertexIndex>(r.found.size());
+  const auto take = [&](auto& corners) {
+    for (VertexIndex& v : corners) v = v < own ? r.found[v] : first_own + (v - own);
+  };
+  for (Tet& t : r.tets) take(t);
+  for (WaitingFace& w : r.queue) take(w.face.corners);
+  for (FrontFace& f : r.held) take(f.corners);
+  for (FrontFace& f : r.passive) take(f.corners);
+}
 
 class Phases {
  public:
@@ -80,44 +108,83 @@ class Phases {
     else
       blocks = partition_front(front_, {kFacesPerBlock, kQuantiles[front_.phases % kQuantiles.size()]});
     const FrontPhase phase{front_, task_, budget_.after(front_.work), layers};
+    const Comm comm = comm_for(blocks.size());
+    const Shares shares = shares_of(blocks, comm);
     std::vector<BlockResult> results(blocks.size());
-    parallel_for(
-        blocks.size(),
-        [&](std::size_t b) {
-          results[b] = advance_block(phase, blocks[b]);
-          blocks[b] = {};
-        },
-        Split::kSingly);
+    do_share(comm, shares, "front", [&](std::size_t b) {
+      results[b] = advance_block(phase, blocks[b]);
+      blocks[b] = {};
+    });
+    blocks.clear();
     ++front_.phases;
-    const std::size_t deferred = join(results);
+    const std::size_t deferred = join(results, comm, shares);
     if (!over_budget()) validate(front_);  // a run that was stopped has dropped faces
     return deferred;
   }
 
+  /// What is a single block, every rank does by itself.
+  Comm comm_for(std::size_t blocks) const { return Comm(blocks > 1 ? task_.ranks : nullptr); }
+
+  static Shares shares_of(const std::vector<FrontBlock>& blocks, const Comm& comm) {
+    std::vector<std::uint64_t> work;
+    work.reserve(blocks.size());
+    for (const FrontBlock& block : blocks) work.push_back(1 + block.queued);
+    return {work, comm.size()};
+  }
+
   /// Numbers what the blocks made in their order, and makes their results the front. Returns how
   /// many turns they deferred.
-  std::size_t join(std::vector<BlockResult>& results) {
+  std::size_t join(std::vector<BlockResult>& results, const Comm& comm, const Shares& shares) {
+    std::size_t deferred = 0;
+    const std::vector<std::size_t> first_point = number_points(results, comm, shares, deferred);
+    parallel_for(shares.end(comm.rank()) - shares.begin(comm.rank()), [&](std::size_t i) {
+      const std::size_t b = shares.begin(comm.rank()) + i;
+      renumber(results[b], static_cast<VertexIndex>(first_point[b]));
+    });
+    gather_results(comm, shares, "front", results, pack_front, unpack_front);
+    put(results, first_point, comm, shares);
+    return deferred;
+  }
+
+  /// The front's number of each block's first own point, and of the one behind the last; adds up the totals.
+  std::vector<std::size_t> number_points(const std::vector<BlockResult>& results, const Comm& comm,
+                                         const Shares& shares, std::size_t& deferred) {
+    std::vector<BlockTotals> totals;
+    totals.reserve(results.size());
+    for (const BlockResult& r : results) totals.push_back({r.points.size(), r.deferred, r.work, r.counters});
+    gather_results(
+        comm, shares, "front", totals, [](const BlockTotals& t, Packer& to) { to.add(t); },
+        [](BlockTotals& t, Unpacker& from) { t = from.take<BlockTotals>(); });
+    std::vector<std::size_t> first{front_.points.size()};
+    first.reserve(totals.size() + 1);
+    for (const BlockTotals& t : totals) {
+      first.push_back(first.back() + t.points);
+      deferred += t.deferred;
+      front_.work += t.work;
+      counters_ += t.counters;
+    }
+    require_in_range(first.back(), kMostVertices, "vertices");
+    require_in_range(front_.work.tets, kMostTets, "tetrahedra");
+    return first;
+  }
+
+  /// Puts the results, in the front's numbers, one behind the other. Tetrahedra stay with the rank that made them.
+  void put(std::vector<BlockResult>& results, const std::vector<std::size_t>& first_point, const Comm& comm,
+           const Shares& shares) {
     struct Offsets {
-      std::size_t point, queue, held, passive;
+      std::size_t queue, held, passive;
     };
     std::vector<Offsets> first;
     first.reserve(results.size());
-    Offsets end{front_.points.size(), 0, 0, 0};
-    std::size_t deferred = 0;
+    Offsets end{0, 0, 0};
     for (const BlockResult& r : results) {
       first.push_back(end);
-      end.point += r.points.size();
       end.queue += r.queue.size();
       end.held += r.held.size();
       end.passive += r.passive.size();
-      deferred += r.deferred;
-      front_.work += r.work;
-      counters_ += r.counters;
     }
-    require_in_range(end.point, kMostVertices, "vertices");
-    require_in_range(front_.work.tets, kMostTets, "tetrahedra");
-    front_.points.resize(end.point);
-    front_.sizes.resize(end.point);
+    front_.points.resize(first_point.back());
+    front_.sizes.resize(first_point.back());
     front_.queue.resize(end.queue);
     front_.held.resize(end.held);
     front_.passive.resize(end.passive);
@@ -125,27 +192,20 @@ class Phases {
     front_.filled.resize(pieces + results.size());
     parallel_for(results.size(), [&](std::size_t b) {
       BlockResult r = std::move(results[b]);
-      const auto own = static_cast<VertexIndex>(r.found.size());
-      const auto first_own = static_cast<VertexIndex>(first[b].point);
-      const auto renumber = [&](auto& corners) {
-        for (VertexIndex& v : corners) v = v < own ? r.found[v] : first_own + (v - own);
-      };
-      for (Tet& t : r.tets) renumber(t);
-      for (WaitingFace& w : r.queue) renumber(w.face.corners);
-      for (FrontFace& f : r.held) renumber(f.corners);
-      for (FrontFace& f : r.passive) renumber(f.corners);
-      const auto put = [](const auto& from, auto& to, std::size_t at) {
+      const auto copy = [](const auto& from, auto& to, std::size_t at) {
         std::copy(from.begin(), from.end(), to.begin() + static_cast<std::ptrdiff_t>(at));
       };
-      put(r.points, front_.points, first[b].point);
-      put(r.sizes, front_.sizes, first[b].point);
-      put(r.queue, front_.queue, first[b].queue);
-      put(r.held, front_.held, first[b].held);
-      put(r.passive, front_.passive, first[b].passive);
+      copy(r.points, front_.points, first_point[b]);
+      copy(r.sizes, front_.sizes, first_point[b]);
+      copy(r.queue, front_.queue, first[b].queue);
+      copy(r.held, front_.held, first[b].held);
+      copy(r.passive, front_.passive, first[b].passive);
       r.tets.shrink_to_fit();
-      front_.filled[pieces + b] = std::move(r.tets);
+      front_.filled[pieces + b].tets = std::move(r.tets);
     });
-    return deferred;
+    if (comm.alone()) return;
+    for (int rank = 0; rank < comm.size(); ++rank)
+      for (std::size_t b = shares.begin(rank); b < shares.end(rank); ++b) front_.filled[pieces + b].rank = rank;
   }
 
   bool over_budget() const { return budget_.exceeded_by(front_.work); }

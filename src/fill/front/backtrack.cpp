@@ -62,8 +62,8 @@ bool close_by_front(const OpenCavity& cavity, const BacktrackVariant& variant, c
   if (!within_budget || !front.held.empty()) return false;
   for (std::size_t v = global.size(); v < front.points.size(); ++v)
     global.push_back(cavity.mesh.add_point(front.points[v]));
-  for (const std::vector<Tet>& piece : front.filled)
-    for (const Tet& t : piece) cavity.mesh.add({global[t[0]], global[t[1]], global[t[2]], global[t[3]]});
+  for (const FilledPiece& piece : front.filled)
+    for (const Tet& t : piece.tets) cavity.mesh.add({global[t[0]], global[t[1]], global[t[2]], global[t[3]]});
   excavation.commit();
   return true;
 }

@@ -2,6 +2,7 @@
 
 #include <octafront/error.h>
 
+#include "base/comm/packing.h"
 #include "base/core/disjoint_sets.h"
 #include "base/core/morton.h"
 #include "base/core/parallel.h"
@@ -92,7 +93,7 @@ void add_core(FrontState& front, LatticeCore core, const SurfaceMesh& surface) {
   front.passive.reserve(core.skin.size());
   for (const auto& [a, b, c] : core.skin) front.passive.push_back({{a + first, c + first, b + first}, region[a]});
   front.work.tets = core.tets.size();
-  front.filled.push_back(std::move(core.tets));
+  front.filled.push_back({std::move(core.tets)});
 }
 
 void set_sizes(FrontState& front, const SizeField& sizes) {
@@ -101,14 +102,28 @@ void set_sizes(FrontState& front, const SizeField& sizes) {
                [&](std::size_t v) { front.sizes[v] = static_cast<float>(sizes.at(front.points[v])); });
 }
 
+/// Brings the pieces of all ranks to every rank.
+void gather_pieces(std::vector<FilledPiece>& pieces, const Comm& comm) {
+  if (comm.alone()) return;
+  Packer mine;
+  for (FilledPiece& piece : pieces)
+    if (piece.rank == comm.rank()) mine.add(piece.tets);
+  comm.gather(mine.bytes(), "tetrahedra of the front").for_each([&](int rank, std::span<const std::byte> bytes) {
+    Unpacker in(bytes);
+    for (FilledPiece& piece : pieces)
+      if (piece.rank == rank) in.take(piece.tets);
+  });
+}
+
 /// The pieces one after the other, in one array.
-std::vector<Tet> joined(std::vector<std::vector<Tet>>& pieces) {
-  if (pieces.size() == 1) return std::move(pieces[0]);
+std::vector<Tet> joined(std::vector<FilledPiece>& pieces, const Comm& comm) {
+  gather_pieces(pieces, comm);
+  if (pieces.size() == 1) return std::move(pieces[0].tets);
   std::vector<std::size_t> first(pieces.size() + 1, 0);
-  for (std::size_t i = 0; i < pieces.size(); ++i) first[i + 1] = first[i] + pieces[i].size();
+  for (std::size_t i = 0; i < pieces.size(); ++i) first[i + 1] = first[i] + pieces[i].tets.size();
   std::vector<Tet> tets(first.back());
   parallel_for(pieces.size(), [&](std::size_t i) {
-    const std::vector<Tet> piece = std::move(pieces[i]);
+    const std::vector<Tet> piece = std::move(pieces[i].tets);
     std::copy(piece.begin(), piece.end(), tets.begin() + static_cast<std::ptrdiff_t>(first[i]));
   });
   return tets;
@@ -141,7 +156,7 @@ void report_front(const Stage& stage, const FrontState& front, const FrontCounte
 
 TetMesh fill_by_front(const SurfaceMesh& surface, const SizeField& sizes, const VolumeOptions& options,
                       const Stage& stage) {
-  const FrontTask task{sizes, options, stage};
+  const FrontTask task{sizes, options, stage, stage.context().ranks};
   TetMesh mesh;
   std::vector<Wall> walls;
   {
@@ -167,7 +182,7 @@ TetMesh fill_by_front(const SurfaceMesh& surface, const SizeField& sizes, const 
                          "element size");
     for (const FrontFace& f : front.held) walls.push_back(f.corners);
     mesh.points = std::move(front.points);
-    mesh.tets = joined(front.filled);
+    mesh.tets = joined(front.filled, Comm(task.ranks));
   }
   close_cavities(mesh, std::move(walls), surface, task);
   return mesh;

@@ -9,8 +9,12 @@ namespace octafront {
 std::optional<std::string> FrontState::first_inconsistency() const {
   if (sizes.size() != points.size()) return "the front has not one size for each point";
   std::size_t made = 0;
-  for (const std::vector<Tet>& piece : filled) made += piece.size();
-  if (made != work.tets) return "the front has not as many tetrahedra as it says";
+  bool is_whole = true;
+  for (const FilledPiece& piece : filled) {
+    made += piece.tets.size();
+    is_whole = is_whole && piece.rank == FilledPiece::kEveryRank;
+  }
+  if (is_whole ? made != work.tets : made > work.tets) return "the front has not as many tetrahedra as it says";
   std::vector<Triangle> all;
   all.reserve(faces());
   for (std::size_t i = 0; i < faces(); ++i) {

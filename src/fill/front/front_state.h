@@ -20,6 +20,15 @@ struct WaitingFace {
   bool deferred = false;   ///< its last turn came to nothing because it reached beyond its block
 };
 
+/// Tetrahedra that are done with. Those of a block stay with the rank that made them, until the front is done.
+struct FilledPiece {
+  static constexpr int kEveryRank = -1;
+  std::vector<Tet> tets;  ///< empty on ranks that do not have it
+  int rank = kEveryRank;  ///< that has it
+
+  friend bool operator==(const FilledPiece&, const FilledPiece&) = default;
+};
+
 /// The whole front between two phases, and what has been made so far: plain lists, in an order that is part of the
 /// result. What the next phase does depends on nothing else. While a phase runs, each block has a Front of its own.
 struct FrontState {
@@ -27,13 +36,13 @@ struct FrontState {
   double finest_size = 1;     ///< > 0
   std::uint32_t regions = 1;  ///< those of faces are below it, or kNone
   std::vector<Vec3> points;
-  std::vector<float> sizes;              ///< wanted edge length, per point
-  std::vector<WaitingFace> queue;        ///< will try next (the paper's Qc and Qn)
-  std::vector<FrontFace> held;           ///< found no tetrahedron at the level of the last try (Qh)
-  std::vector<FrontFace> passive;        ///< only met by others so far
-  std::vector<std::vector<Tet>> filled;  ///< tetrahedra in order, in pieces
-  FrontWork work;                        ///< of all pieces together
-  std::size_t phases = 0;                ///< that it has gone through
+  std::vector<float> sizes;         ///< wanted edge length, per point
+  std::vector<WaitingFace> queue;   ///< will try next (the paper's Qc and Qn)
+  std::vector<FrontFace> held;      ///< found no tetrahedron at the level of the last try (Qh)
+  std::vector<FrontFace> passive;   ///< only met by others so far
+  std::vector<FilledPiece> filled;  ///< tetrahedra in order
+  FrontWork work;                   ///< of all pieces together
+  std::size_t phases = 0;           ///< that it has gone through
 
   std::size_t faces() const { return queue.size() + held.size() + passive.size(); }
   /// Face i of all: those of the queue come first, then the held ones, then the passive ones.

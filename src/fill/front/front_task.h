@@ -18,6 +18,7 @@ struct FrontTask {
   const SizeField& sizes;
   const VolumeOptions& options;
   const Stage& stage;
+  Ranks* ranks = nullptr;  ///< that share its blocks; null: none
 };
 
 /// A volume as a whole number of 2^-50 of that of a box: a sum of such hangs on no order.

@@ -53,38 +53,60 @@ ClearSites::ClearSites(const LatticeOctree& lattice, const TriangleTree& triangl
                        const RunContext& context)
     : lattice_(lattice), triangles_(triangles), hull_(hull), space_(lattice.tree.size()) {
   distance_.resize(2 * space_.size());
-  measure_centers(context);
+  for_each_leaf(context, [&](std::size_t leaf, std::uint32_t& near_by) { measure_center(leaf, near_by); });
   find_inside();
-  measure_corners(context);
+  for_each_leaf(context, [&](std::size_t leaf, std::uint32_t& near_by) { measure_corner(leaf, near_by); });
 }
 
-void ClearSites::measure_centers(const RunContext& context) {
-  parallel_ranges(space_.size(), Split::kAdaptive, [&](std::size_t begin, std::size_t end) {
+template <class Measure>
+void ClearSites::for_each_leaf(const RunContext& context, const Measure& measure) {
+  const Comm comm(context.ranks);
+  const std::size_t leaves = space_.size();
+  const std::vector<std::uint64_t> work((leaves + kLeavesBetweenChecks - 1) / kLeavesBetweenChecks, 1);
+  const Shares shares(work, comm.size());
+  do_share(comm, shares, "sites of the lattice", [&](std::size_t stretch) {
+    context.check();
     std::uint32_t near_by = kNone;
-    for (std::size_t i = begin; i < end; ++i) {
-      if (i % kLeavesBetweenChecks == 0) context.check();
-      const double side = lattice_.root.side_of(lattice_.tree.leaf(i)), all_far = (kFarthest + kHalfDiagonal) * side;
-      const auto center = static_cast<SiteNumber>(2 * i);
-      const double distance = distance_within(all_far, position_of(center), kCoreClearance * side, near_by);
-      space_[i] = distance >= all_far ? Space::kFar : distance >= kHalfDiagonal * side ? Space::kClear : Space::kNear;
-      distance_[center] = kept(distance, side);
-    }
+    const std::size_t first = stretch * kLeavesBetweenChecks;
+    for (std::size_t i = first; i < std::min(first + kLeavesBetweenChecks, leaves); ++i) measure(i, near_by);
   });
+  gather_leaves(comm, shares);
+}
+
+/// Every rank gets what the others have measured.
+void ClearSites::gather_leaves(const Comm& comm, const Shares& shares) {
+  if (comm.alone()) return;
+  const auto leaf = [&](std::size_t stretch) { return std::min(stretch * kLeavesBetweenChecks, space_.size()); };
+  const auto stretch_of = [&](int rank, const auto& visit) {
+    const std::size_t first = leaf(shares.begin(rank)), count = leaf(shares.end(rank)) - first;
+    visit(std::as_writable_bytes(std::span(space_).subspan(first, count)));
+    visit(std::as_writable_bytes(std::span(distance_).subspan(2 * first, 2 * count)));
+  };
+  Bytes mine;
+  stretch_of(comm.rank(), [&](std::span<const std::byte> part) { mine.insert(mine.end(), part.begin(), part.end()); });
+  comm.gather(mine, "sites of the lattice").for_each([&](int rank, std::span<const std::byte> bytes) {
+    stretch_of(rank, [&](std::span<std::byte> part) {
+      std::copy_n(bytes.begin(), part.size(), part.begin());
+      bytes = bytes.subspan(part.size());
+    });
+  });
+}
+
+void ClearSites::measure_center(std::size_t i, std::uint32_t& near_by) {
+  const double side = lattice_.root.side_of(lattice_.tree.leaf(i)), all_far = (kFarthest + kHalfDiagonal) * side;
+  const auto center = static_cast<SiteNumber>(2 * i);
+  const double distance = distance_within(all_far, position_of(center), kCoreClearance * side, near_by);
+  space_[i] = distance >= all_far ? Space::kFar : distance >= kHalfDiagonal * side ? Space::kClear : Space::kNear;
+  distance_[center] = kept(distance, side);
 }
 
 /// No tetrahedron of the core has a corner in a leaf that lies outside with all of its cell.
-void ClearSites::measure_corners(const RunContext& context) {
-  parallel_ranges(space_.size(), Split::kAdaptive, [&](std::size_t begin, std::size_t end) {
-    std::uint32_t near_by = kNone;
-    for (std::size_t i = begin; i < end; ++i) {
-      if (i % kLeavesBetweenChecks == 0) context.check();
-      const auto center = static_cast<SiteNumber>(2 * i), corner = center + 1;
-      if (space_[i] == Space::kFar)
-        distance_[corner] = distance_[center];
-      else if (space_[i] == Space::kNear || inside_[i])
-        distance_[corner] = measured(position_of(corner), lattice_.root.side_of(lattice_.tree.leaf(i)), near_by);
-    }
-  });
+void ClearSites::measure_corner(std::size_t i, std::uint32_t& near_by) {
+  const auto center = static_cast<SiteNumber>(2 * i), corner = center + 1;
+  if (space_[i] == Space::kFar)
+    distance_[corner] = distance_[center];
+  else if (space_[i] == Space::kNear || inside_[i])
+    distance_[corner] = measured(position_of(corner), lattice_.root.side_of(lattice_.tree.leaf(i)), near_by);
 }
 
 /// To the surface from p, if that is less than `farthest`; of what is less than `enough`, any. `near_by`: a triangle

@@ -4,6 +4,7 @@
 #include <octafront/size_field.h>
 #include <octafront/tet_mesh.h>
 
+#include "base/comm/shares.h"
 #include "base/geometry/triangle_tree.h"
 #include "fill/lattice/graded_bcc.h"
 #include "fill/lattice/lattice_octree.h"
@@ -65,8 +66,12 @@ class ClearSites {
   /// How near the surface comes to a leaf: kClear, not into its cell; kFar, not even near to it.
   enum class Space : std::uint8_t { kNear, kClear, kFar };
 
-  void measure_centers(const RunContext& context);
-  void measure_corners(const RunContext& context);
+  void measure_center(std::size_t leaf, std::uint32_t& near_by);
+  void measure_corner(std::size_t leaf, std::uint32_t& near_by);
+  /// measure(leaf, near_by) of all leaves; ranks share them.
+  template <class Measure>
+  void for_each_leaf(const RunContext& context, const Measure& measure);
+  void gather_leaves(const Comm& comm, const Shares& shares);
   double distance_within(double farthest, Vec3 p, double enough, std::uint32_t& near_by) const;
   static float kept(double distance, double side);
   float measured(Vec3 p, double side, std::uint32_t& near_by) const;

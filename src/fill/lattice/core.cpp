@@ -2,6 +2,7 @@
 
 #include <octafront/surface_mesh.h>
 
+#include "base/comm/shares.h"
 #include "base/core/parallel.h"
 #include "base/core/shared_value.h"
 #include "base/geometry/triangle_tree.h"
@@ -237,10 +238,16 @@ LatticeCore build_lattice_core(const SurfaceMesh& surface, const SizeField& size
   const ClearSites sites(lattice, triangles, hull ? *hull : triangles, context);
   const std::size_t leaves = lattice.tree.size();
   std::vector<CoreChunk> chunks((leaves + kLeavesPerChunk - 1) / kLeavesPerChunk);
-  parallel_for(chunks.size(), [&](std::size_t c) {
+  const Comm comm(context.ranks);
+  const Shares shares(std::vector<std::uint64_t>(chunks.size(), 1), comm.size());
+  do_share(comm, shares, "lattice", [&](std::size_t c) {
     context.check();
     chunks[c].collect(sites, c * kLeavesPerChunk, std::min((c + 1) * kLeavesPerChunk, leaves));
   });
+  gather_results(
+      comm, shares, "lattice", chunks,
+      [](const CoreChunk& c, Packer& to) { to.add(c.tets), to.add(c.candidates), to.add(c.hanging); },
+      [](CoreChunk& c, Unpacker& from) { from.take(c.tets), from.take(c.candidates), from.take(c.hanging); });
   return CoreBuilder(sites, chunks).build();
 }
 

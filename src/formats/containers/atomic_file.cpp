@@ -76,6 +76,24 @@ void check_folder_writable(const fs::path& target) {
     throw OutputError(name + ": cannot be written: the folder has other files, which would be lost; give another name");
 }
 
+void check_folder_of_pieces(const fs::path& target, const std::string& stem, const std::string& extension) {
+  std::error_code error;
+  if (!fs::exists(target, error)) return check_writable(target);
+  if (!fs::is_directory(target, error))
+    throw OutputError(target.string() + ": cannot be written: it is no folder, which the pieces need");
+  for (const fs::directory_entry& entry : fs::directory_iterator(target)) {
+    const fs::path file = entry.path();
+    const std::string name = file.stem().string();
+    const bool is_piece = file.extension() == extension && name.size() > stem.size() + 1 &&
+                          name.compare(0, stem.size() + 1, stem + '_') == 0 &&
+                          name.find_first_not_of("0123456789", stem.size() + 1) == std::string::npos;
+    if (!is_piece)
+      throw OutputError(target.string() +
+                        ": the pieces cannot be written: the folder has other files, which would be lost, such as " +
+                        file.filename().string() + "; give another name");
+  }
+}
+
 AtomicFile::AtomicFile(const fs::path& target, const RunContext& context)
     : context_(context), name_(target.string()), target_(links_followed(target)) {
   check_writable(target);

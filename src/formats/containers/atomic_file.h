@@ -79,5 +79,7 @@ std::filesystem::path temporary_beside(const std::filesystem::path& target);
 void check_writable(const std::filesystem::path& target);
 /// The same for a folder that is written anew as a whole: what is there must be empty, or one of OpenFOAM's polyMesh.
 void check_folder_writable(const std::filesystem::path& target);
+/// The same for a folder of pieces: what is there must be files STEM_0000.EXTENSION and the like alone.
+void check_folder_of_pieces(const std::filesystem::path& target, const std::string& stem, const std::string& extension);
 
 }  // namespace octafront::io

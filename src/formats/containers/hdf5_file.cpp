@@ -34,6 +34,13 @@ class Handle {
   herr_t (*close_)(hid_t);
 };
 
+/// How datasets are made: without the time, so that the same mesh gives the same bytes.
+Handle timeless_dataset() {
+  const hid_t creation = H5Pcreate(H5P_DATASET_CREATE);
+  H5Pset_obj_track_times(creation, 0);
+  return {creation, H5Pclose};
+}
+
 template <class T>
 hid_t native_type() {
   if constexpr (std::is_same_v<T, double>) return H5T_NATIVE_DOUBLE;
@@ -41,6 +48,7 @@ hid_t native_type() {
   if constexpr (std::is_same_v<T, std::int32_t>) return H5T_NATIVE_INT32;
   if constexpr (std::is_same_v<T, std::int64_t>) return H5T_NATIVE_INT64;
   if constexpr (std::is_same_v<T, std::int8_t>) return H5T_NATIVE_INT8;
+  if constexpr (std::is_same_v<T, std::uint8_t>) return H5T_NATIVE_UINT8;
 }
 
 /// Our own messages say what is wrong. And the library must not clean up when the program ends: it would try once more
@@ -130,23 +138,28 @@ void Hdf5Writer::attribute(const std::string& of, const std::string& name, std::
 }
 
 template <class T>
-void Hdf5Writer::write(const std::string& path, const std::vector<std::uint64_t>& shape, const Fill<T>& fill) {
+void Hdf5Writer::rows(const std::string& path, const std::vector<std::uint64_t>& shape, Stretch stretch,
+                      const Fill<T>& fill) {
   const std::vector<hsize_t> dimensions(shape.begin(), shape.end());
   const Handle space(H5Screate_simple(static_cast<int>(dimensions.size()), dimensions.data(), nullptr), H5Sclose);
-  const Handle set(
-      H5Dcreate2(file_, path.c_str(), native_type<T>(), space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
+  const Handle timeless = timeless_dataset();
+  const bool is_there = H5Lexists(file_, path.c_str(), H5P_DEFAULT) > 0;
+  const Handle set(is_there ? H5Dopen2(file_, path.c_str(), H5P_DEFAULT)
+                            : H5Dcreate2(file_, path.c_str(), native_type<T>(), space.get(), H5P_DEFAULT,
+                                         timeless.get(), H5P_DEFAULT),
+                   H5Dclose);
   check(set.get(), "cannot be written");
   // Whole rows at a time.
   std::uint64_t per_row = 1;
   for (std::size_t d = 1; d < shape.size(); ++d) per_row *= shape[d];
   constexpr std::uint64_t kBlock = std::uint64_t{1} << 17;
-  const std::uint64_t rows = std::max<std::uint64_t>(1, kBlock / std::max<std::uint64_t>(1, per_row));
+  const std::uint64_t at_once = std::max<std::uint64_t>(1, kBlock / std::max<std::uint64_t>(1, per_row));
   std::vector<T> block;
   std::vector<hsize_t> start(shape.size(), 0), count(dimensions);
-  for (std::uint64_t row = 0; row < shape[0] && per_row > 0; row += rows) {
+  for (std::uint64_t row = 0; row < stretch.rows && per_row > 0; row += at_once) {
     context_.check();
-    start[0] = row;
-    count[0] = std::min(rows, shape[0] - row);
+    start[0] = stretch.begin + row;
+    count[0] = std::min(at_once, stretch.rows - row);
     block.resize(count[0] * per_row);
     fill(row * per_row, block);
     const Handle memory(H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr), H5Sclose);
@@ -156,23 +169,36 @@ void Hdf5Writer::write(const std::string& path, const std::vector<std::uint64_t>
   }
 }
 
+template void Hdf5Writer::rows(const std::string&, const std::vector<std::uint64_t>&, Stretch, const Fill<double>&);
+template void Hdf5Writer::rows(const std::string&, const std::vector<std::uint64_t>&, Stretch, const Fill<float>&);
+template void Hdf5Writer::rows(const std::string&, const std::vector<std::uint64_t>&, Stretch,
+                               const Fill<std::int32_t>&);
+template void Hdf5Writer::rows(const std::string&, const std::vector<std::uint64_t>&, Stretch,
+                               const Fill<std::int64_t>&);
+template void Hdf5Writer::rows(const std::string&, const std::vector<std::uint64_t>&, Stretch,
+                               const Fill<std::uint8_t>&);
+
 void Hdf5Writer::dataset(const std::string& path, const std::vector<std::uint64_t>& shape, const Fill<double>& fill) {
-  write(path, shape, fill);
+  rows(path, shape, {0, shape[0]}, fill);
 }
 void Hdf5Writer::dataset(const std::string& path, const std::vector<std::uint64_t>& shape,
                          const Fill<std::int32_t>& fill) {
-  write(path, shape, fill);
+  rows(path, shape, {0, shape[0]}, fill);
 }
 void Hdf5Writer::dataset(const std::string& path, const std::vector<std::uint64_t>& shape,
                          const Fill<std::int64_t>& fill) {
-  write(path, shape, fill);
+  rows(path, shape, {0, shape[0]}, fill);
 }
 void Hdf5Writer::dataset(const std::string& path, const std::vector<std::uint64_t>& shape, const Fill<float>& fill) {
-  write(path, shape, fill);
+  rows(path, shape, {0, shape[0]}, fill);
 }
 void Hdf5Writer::dataset(const std::string& path, const std::vector<std::uint64_t>& shape,
                          const Fill<std::int8_t>& fill) {
-  write(path, shape, fill);
+  rows(path, shape, {0, shape[0]}, fill);
+}
+void Hdf5Writer::dataset(const std::string& path, const std::vector<std::uint64_t>& shape,
+                         const Fill<std::uint8_t>& fill) {
+  rows(path, shape, {0, shape[0]}, fill);
 }
 
 void Hdf5Writer::texts(const std::string& path, const std::vector<std::string>& rows, std::size_t length) {
@@ -184,7 +210,8 @@ void Hdf5Writer::texts(const std::string& path, const std::vector<std::string>& 
   const hsize_t size = length, count = rows.size();
   const Handle type(H5Tarray_create2(H5T_NATIVE_INT8, 1, &size), H5Tclose);
   const Handle space(H5Screate_simple(1, &count, nullptr), H5Sclose);
-  const Handle set(H5Dcreate2(file_, path.c_str(), type.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+  const Handle timeless = timeless_dataset();
+  const Handle set(H5Dcreate2(file_, path.c_str(), type.get(), space.get(), H5P_DEFAULT, timeless.get(), H5P_DEFAULT),
                    H5Dclose);
   check(set.get(), "cannot be written");
   if (H5Dwrite(set.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, all.data()) < 0) fail("cannot be written");

@@ -42,6 +42,14 @@ class Hdf5Writer {
   void dataset(const std::string& path, const std::vector<std::uint64_t>& shape, const Fill<std::int64_t>& fill);
   void dataset(const std::string& path, const std::vector<std::uint64_t>& shape, const Fill<float>& fill);
   void dataset(const std::string& path, const std::vector<std::uint64_t>& shape, const Fill<std::int8_t>& fill);
+  void dataset(const std::string& path, const std::vector<std::uint64_t>& shape, const Fill<std::uint8_t>& fill);
+  /// A stretch of rows of a dataset of this shape, which is made at the first one: whoever has only a piece at a time
+  /// need not know the others. `first` counts from the beginning of the stretch.
+  struct Stretch {
+    std::uint64_t begin, rows;
+  };
+  template <class T>
+  void rows(const std::string& path, const std::vector<std::uint64_t>& shape, Stretch stretch, const Fill<T>& fill);
   /// Rows of texts, each an array of so many bytes filled up with 0: one value of that array type each.
   void texts(const std::string& path, const std::vector<std::string>& rows, std::size_t length);
 
@@ -49,8 +57,6 @@ class Hdf5Writer {
   void close();
 
  private:
-  template <class T>
-  void write(const std::string& path, const std::vector<std::uint64_t>& shape, const Fill<T>& fill);
   template <class T>
   void put_attribute(const std::string& of, const std::string& name, std::int64_t type, const T* values,
                      std::size_t count);

@@ -55,8 +55,9 @@ class VtkXmlReader {
     const std::string_view type = tag.attribute("type");
     const bool may_be_polygons = kind_ == VtkKind::kAnyMesh;
     if (type != "UnstructuredGrid" && !(may_be_polygons && type == "PolyData"))
-      input_.fail(fmt::format("is a VTK file of type {}; expected an UnstructuredGrid (.vtu){}", in_quotes(type),
-                              may_be_polygons ? " or PolyData (.vtp)" : ""));
+      input_.fail(fmt::format("is a VTK file of type {}; expected an UnstructuredGrid (.vtu){}{}", in_quotes(type),
+                              may_be_polygons ? " or PolyData (.vtp)" : "",
+                              type == "PUnstructuredGrid" ? ": it names pieces, which are read one by one" : ""));
     if (tag.attribute("byte_order", "LittleEndian") != "LittleEndian")
       input_.fail("has its values in big-endian order, which is not read here; save it on a little-endian machine");
     xml_.long_headers = tag.attribute("header_type", "UInt32") == "UInt64";

@@ -7,10 +7,13 @@
 #include "base/mesh/renumber.h"
 #include "formats/parts/mixed_cells.h"
 #include "formats/parts/raw_mesh.h"
+#include "formats/pieces/division.h"
+#include "formats/pieces/pieces.h"
 #include "formats/read/readers.h"
 #include "formats/table/formats.h"
 #include "formats/table/recognize.h"
 
+#include <algorithm>
 #include <utility>
 
 #include <fmt/core.h>
@@ -85,9 +88,34 @@ std::string names_with_text() {
   return names;
 }
 
+std::string names_with_parts() {
+  std::string names;
+  for (const io::Format& format : io::formats())
+    if (format.write_parts != nullptr) names += (names.empty() ? "" : ", ") + std::string(format.info.name);
+  return names;
+}
+
+/// Whether the mesh is written in parts, by options or because the format knows nothing else.
+bool in_parts(const io::Format& format, const WriteOptions& options) {
+  return options.parts > 0 || (format.write_mesh == nullptr && format.write_parts != nullptr);
+}
+
+/// Throws OptionError for what the format cannot do in parts, or this build.
+void check_parts(const io::Format& format, const WriteOptions& options) {
+  if (options.parts > 0 && format.write_parts == nullptr)
+    throw OptionError(
+        fmt::format("{} is not written in parts; `parts` is for {}", format.info.title, names_with_parts()));
+  if (options.split_files && (format.info.name != "msh" || options.parts == 0))
+    throw OptionError("`split_files` is for MSH 4.1 in parts: a file for each");
+  if (options.parts > 0 && options.partitioner == Partitioner::kMetis && !has_metis())
+    throw OptionError(
+        "this octafront was built without METIS; build it with libmetis-dev installed, or divide along the curve");
+}
+
 /// Throws OptionError for what the format cannot do.
 void check_options(const io::Format& format, const WriteOptions& options) {
-  const bool is_of_surfaces = format.write_mesh == nullptr;
+  check_parts(format, options);
+  const bool is_of_surfaces = format.write_mesh == nullptr && format.write_parts == nullptr;
   if (options.ascii && (is_of_surfaces || format.info.holds.binary) && !format.info.also_text)
     throw OptionError(
         fmt::format("{} is not written as text; `ascii` is for {}", format.info.title, names_with_text()));
@@ -104,7 +132,7 @@ const io::Format& mesh_format(const std::filesystem::path& file, const std::stri
     throw OptionError(fmt::format("{}: the ending \"{}\" names no mesh format; use one of {}, or `format`",
                                   file.string(), file.extension().string(),
                                   io::endings_that(&FormatInfo::writes_mesh)));
-  if (format->write_mesh == nullptr && format->write_surface == nullptr)
+  if (format->write_mesh == nullptr && format->write_surface == nullptr && format->write_parts == nullptr)
     throw OptionError(
         fmt::format("{}: this octafront was built without HDF5, which {} needs; build it with libhdf5-dev "
                     "installed, or write another format",
@@ -146,6 +174,8 @@ TetMesh read_mesh(const std::string& file, const RunContext& context) {
 void check_mesh_target(const std::string& file, const WriteOptions& options) {
   const io::Format& format = mesh_format(file, options.format);
   check_options(format, options);
+  if (in_parts(format, options) && format.check_parts != nullptr)
+    return format.check_parts(file, std::max(options.parts, 1U));
   format.is_folder ? io::check_folder_writable(file) : io::check_writable(file);
 }
 
@@ -172,10 +202,12 @@ std::vector<std::string> write_mesh(const std::string& file, const TetMesh& mesh
                                                                   .faces = options.cells_only,
                                                                   .wide_cells = !is_wide,
                                                                   .last_points = without.diagonals});
+  if (in_parts(format, options) && mesh.tets.empty())
+    throw OptionError(fmt::format("{}: a mesh without volume elements is not written in parts", file));
   io::MeshOutput out(file, context, options, fields);
   if (!fields.empty() && !holds.fields)
     out.note(fmt::format("{} is written without the fields: VTU, VTK and MSH hold them", format.info.title));
-  if (format.write_mesh == nullptr) {
+  if (format.write_surface != nullptr) {
     format.write_surface(out.file(), boundary_surface(mesh));
     if (!mesh.tets.empty())
       out.note(
@@ -185,7 +217,12 @@ std::vector<std::string> write_mesh(const std::string& file, const TetMesh& mesh
     for (std::string& note : io::losses(format.info, parts)) out.note(std::move(note));
     if ((options.cohesive || !options.beams.empty()) && !holds.cohesive)
       out.note(fmt::format("{} is given no cohesive elements and beams: they are for Abaqus", format.info.title));
-    format.write_mesh(out, parts);
+    if (in_parts(format, options)) {
+      io::Pieces pieces(parts, io::divide(parts.mesh(), std::max(options.parts, 1U), options.partitioner), fields);
+      format.write_parts(out, pieces);
+    } else {
+      format.write_mesh(out, parts);
+    }
   }
   out.commit();
   return std::move(out.notes());

@@ -16,9 +16,15 @@ namespace fs = std::filesystem;
       fmt::format("{}: {}: {}; an older one of this name is unchanged", file.string(), what, error.message()));
 }
 
-/// The folder takes the place of an older one, which goes only then.
+/// A file or folder takes the place of an older one, which goes only then.
 void put_in_place(const fs::path& temporary, const fs::path& final) {
   std::error_code error;
+  if (!fs::is_directory(temporary, error)) {
+    fs::rename(temporary, final, error);
+    if (error) fail(final, "cannot be renamed into place", error);
+    return;
+  }
+  if (final.has_parent_path()) fs::create_directories(final.parent_path(), error);
   const fs::path old = temporary.string() + ".old";
   if (fs::exists(final)) fs::rename(final, old, error);
   if (error) fail(final, "cannot be replaced", error);
@@ -37,6 +43,7 @@ MeshOutput::~MeshOutput() {
   std::error_code ignored;
   for (const Pending& p : pending_)
     if (!p.temporary.empty()) fs::remove_all(p.temporary, ignored);
+  if (!scratch_.empty()) fs::remove_all(scratch_, ignored);
 }
 
 AtomicFile& MeshOutput::file() {
@@ -55,13 +62,28 @@ fs::path MeshOutput::path_for_library(const std::string& name) {
   return (name.empty() ? file() : beside(name)).path_for_library();
 }
 
-fs::path MeshOutput::folder() {
-  const fs::path temporary = temporary_beside(target_);
+fs::path MeshOutput::folder(const fs::path& final) {
+  // On the disk where it will be, in a folder that is there.
+  fs::path at = final;
   std::error_code error;
+  while (at.has_parent_path() && !fs::exists(at.parent_path(), error)) at = at.parent_path();
+  const fs::path temporary = temporary_beside(at);
   fs::create_directory(temporary, error);
-  if (error) fail(target_, "cannot be created", error);
-  pending_.push_back({temporary, target_});
+  if (error) fail(final, "cannot be created", error);
+  pending_.push_back({temporary, final});
   return temporary;
+}
+
+fs::path MeshOutput::piece_file(const std::string& name) {
+  if (scratch_.empty()) {
+    const fs::path temporary = temporary_beside(target_);
+    std::error_code error;
+    fs::create_directory(temporary, error);
+    if (error) fail(target_, "cannot be created", error);
+    scratch_ = temporary;
+  }
+  pending_.push_back({scratch_ / name, target_.parent_path() / name});
+  return pending_.back().temporary;
 }
 
 void MeshOutput::commit() {

@@ -42,7 +42,11 @@ class MeshOutput {
   /// A place for a library that writes a file by itself: of the target's name in the end, or of this name beside it.
   std::filesystem::path path_for_library(const std::string& name = {});
   /// A new folder that takes the target's place in the end.
-  std::filesystem::path folder();
+  std::filesystem::path folder() { return folder(target_); }
+  /// The same of another name. The folders around it that are not there yet are made in the end, too.
+  std::filesystem::path folder(const std::filesystem::path& final);
+  /// Where one of many files is written that gets this name beside the target in the end: none of them is kept open.
+  std::filesystem::path piece_file(const std::string& name);
   void note(std::string text) {
     if (!text.empty()) notes_.push_back(std::move(text));
   }
@@ -61,7 +65,8 @@ class MeshOutput {
   WriteOptions options_;
   std::span<const MeshField> fields_;
   std::vector<std::unique_ptr<AtomicFile>> files_;
-  std::vector<Pending> pending_;  ///< the folder, if there is one
+  std::vector<Pending> pending_;   ///< folders, and files of scratch_
+  std::filesystem::path scratch_;  ///< a folder that goes in the end; empty: none
   std::vector<std::string> notes_;
 };
 

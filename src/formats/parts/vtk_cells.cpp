@@ -24,7 +24,26 @@ std::string_view plural(SetKind kind) {
 
 }  // namespace
 
-VtkCells::VtkCells(const MeshParts& mesh)
+VtkCells::Shown VtkCells::Shown::of(const MeshParts& mesh) {
+  const auto& source = mesh.mesh().source;
+  return {.label = !mesh.labels().empty(),
+          .curve = mesh.edges() > 0,
+          .source = !std::all_of(source.begin(), source.end(), [](std::uint32_t face) { return face == kNone; }),
+          .layers = !mesh.mesh().face_layers.empty()};
+}
+
+std::vector<VtkCells::Data> VtkCells::data_of(const MeshParts& mesh, const Shown& shown) {
+  std::vector<Data> data{{"region", false, false}, {"patch", false, false}};
+  if (shown.label) data.push_back({"label", false, false});
+  if (shown.curve) data.push_back({"curve", false, false});
+  if (shown.source) data.push_back({"source", false, false});
+  if (shown.layers) data.push_back({"layers", false, false});
+  for (const Part& part : mesh.parts(Part::Origin::kSet))
+    data.push_back({std::string(plural(part.kind)) + part.name, part.kind == SetKind::kNodes, true});
+  return data;
+}
+
+VtkCells::VtkCells(const MeshParts& mesh, const Shown& shown)
     : mesh_(mesh),
       cells_(mesh),
       each_{cells_.nodes_per(MixedCells::kTet),
@@ -34,20 +53,13 @@ VtkCells::VtkCells(const MeshParts& mesh)
             cells_.nodes_per_quad(),
             mesh.nodes_per_edge()},
       types_(kVtkCells[mesh.second_order()]),
-      data_{{"region", false, false}, {"patch", false, false}} {
+      data_(data_of(mesh, shown)) {
   for (const MixedCells::Kind k : MixedCells::kAllKinds) ends_[k] = cells_.end(k);
   ends_[kTriangles] = first_face() + cells_.triangles();
   ends_[kQuads] = first_face() + cells_.faces();
   ends_[kEdges] = ends_[kQuads] + mesh.edges();
-  if (!mesh.labels().empty()) data_.push_back({"label", false, false});
-  if (mesh.edges() > 0) data_.push_back({"curve", false, false});
-  const auto& source = mesh.mesh().source;
-  if (!std::all_of(source.begin(), source.end(), [](std::uint32_t face) { return face == kNone; }))
-    data_.push_back({"source", false, false});
-  if (!mesh.mesh().face_layers.empty()) data_.push_back({"layers", false, false});
   for (const Part& part : mesh.parts(Part::Origin::kSet)) {
     const bool of_points = part.kind == SetKind::kNodes;
-    data_.push_back({std::string(plural(part.kind)) + part.name, of_points, true});
     std::vector<bool>& is_in = sets_.emplace_back(of_points ? mesh.points() : size(), false);
     for (const std::uint32_t m : part.members)
       is_in[part.kind == SetKind::kFaces      ? first_face() + cells_.face_of(m)
@@ -117,9 +129,9 @@ std::int32_t VtkCells::value(std::size_t data, std::uint64_t at) const {
   return sets_[data - (data_.size() - sets_.size())][at];
 }
 
-std::vector<std::pair<std::string, std::uint32_t>> VtkCells::names() const {
-  std::vector<std::pair<std::string, std::uint32_t>> all;
-  for (const Part& part : mesh_.parts()) {
+VtkCells::Names VtkCells::names_of(const MeshParts& mesh) {
+  Names all;
+  for (const Part& part : mesh.parts()) {
     if (!part.is_named || part.origin == Part::Origin::kSet) continue;
     const std::string_view of = part.origin == Part::Origin::kRegion  ? "region "
                                 : part.origin == Part::Origin::kPatch ? "patch "

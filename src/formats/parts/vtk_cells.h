@@ -24,7 +24,23 @@ namespace octafront::io {
 /// Names of regions, patches and curves are field data: an array "patch NAME" that holds the number of the patch.
 class VtkCells {
  public:
-  explicit VtkCells(const MeshParts& mesh);
+  /// Arrays that only some meshes have.
+  struct Shown {
+    bool label = false, curve = false, source = false, layers = false;
+    static Shown of(const MeshParts& mesh);
+  };
+  struct Data {
+    std::string name;
+    bool of_points;
+    bool is_set;  ///< 0 or 1
+  };
+
+  explicit VtkCells(const MeshParts& mesh) : VtkCells(mesh, Shown::of(mesh)) {}
+  /// With these arrays: those of the whole, of a piece of it.
+  VtkCells(const MeshParts& mesh, const Shown& shown);
+
+  /// All arrays of such a mesh but beta.
+  static std::vector<Data> data_of(const MeshParts& mesh, const Shown& shown);
 
   std::uint64_t size() const { return ends_.back(); }
   /// Nodes of all cells together.
@@ -37,12 +53,11 @@ class VtkCells {
   VertexIndex node(std::uint64_t at) const;
   /// The tetrahedron that speaks for a cell, of pyramids and wedges the first one; kNone for edges.
   TetIndex tet_of(std::uint64_t cell) const;
+  /// Where faces and edges begin among the cells.
+  std::uint64_t first_face() const { return ends_[kWedges]; }
+  std::uint64_t first_edge() const { return ends_[kQuads]; }
+  const MixedCells& elements() const { return cells_; }
 
-  struct Data {
-    std::string name;
-    bool of_points;
-    bool is_set;  ///< 0 or 1
-  };
   /// All arrays but beta.
   const std::vector<Data>& data() const { return data_; }
   std::int32_t value(std::size_t data, std::uint64_t at) const;
@@ -51,14 +66,15 @@ class VtkCells {
     const std::uint64_t item = field.of_elements ? tet_of(at) : at;
     return item == kNone ? 0 : field.values[item * field.components + component];
   }
+  using Names = std::vector<std::pair<std::string, std::uint32_t>>;
   /// "patch NAME" and its number, for all names.
-  std::vector<std::pair<std::string, std::uint32_t>> names() const;
+  static Names names_of(const MeshParts& mesh);
+  Names names() const { return names_of(mesh_); }
 
  private:
   enum Kind : std::size_t { kTets, kPyramids, kWedges, kTriangles, kQuads, kEdges, kKinds };
   Kind kind(std::uint64_t cell) const;
   bool is_face(Kind kind) const { return kind == kTriangles || kind == kQuads; }
-  std::uint64_t first_face() const { return ends_[kWedges]; }
   std::int32_t number(std::string_view name, std::uint64_t cell) const;
 
   const MeshParts& mesh_;

@@ -102,6 +102,8 @@ class Msh {
         read_format();
       } else if (name == "PhysicalNames") {
         read_names();
+      } else if (name == "PartitionedEntities" && version_ == 4) {
+        read_partitioned_entities();
       } else if (name == "Entities" && version_ == 4) {
         read_entities();
       } else if (name == "Nodes") {
@@ -167,7 +169,16 @@ class Msh {
     }
   }
 
-  void read_entities() {
+  /// What parts have of entities is named by them, too.
+  void read_partitioned_entities() {
+    in_.size("the number of partitions");
+    const std::uint64_t ghosts = in_.size("the number of ghost entities");
+    in_.check_count(ghosts, 0, 0, 2, "ghost entities");
+    in_.skip_int32(2 * ghosts);
+    read_entities(true);
+  }
+
+  void read_entities(bool of_parts = false) {
     std::array<std::uint64_t, 4> counts;
     for (std::uint64_t& n : counts) n = in_.size("a number of entities");
     for (int dimension = 0; dimension < 4; ++dimension) {
@@ -175,6 +186,14 @@ class Msh {
       in_.check_count(counts[static_cast<std::size_t>(dimension)], reals, dimension == 0 ? 1 : 2, 1, "entities");
       for (std::uint64_t i = 0; i < counts[static_cast<std::size_t>(dimension)]; ++i) {
         const std::int64_t tag = in_.int32("the tag of an entity");
+        if (of_parts) {
+          const std::int64_t parent_dimension = in_.int32("the dimension of a parent");
+          const std::int64_t parent = in_.int32("the tag of a parent");
+          if (parent_dimension == dimension) parent_[{dimension, tag}] = parent;
+          const std::uint64_t partitions = in_.size("the number of partitions of an entity");
+          in_.check_count(partitions, 0, 0, 1, "partitions");
+          in_.skip_int32(partitions);
+        }
         in_.skip_real(reals);
         const std::uint64_t groups = in_.size("the number of physical groups");
         if (groups > 0) {
@@ -488,7 +507,8 @@ class Msh {
       const auto physical = physical_.find({static_cast<int>(dimension), entity});
       const std::span<const std::int64_t> groups =
           physical == physical_.end() ? std::span<const std::int64_t>() : physical->second;
-      const std::int64_t ref = groups.empty() ? entity : groups[0];
+      const auto parent = parent_.find({static_cast<int>(dimension), entity});
+      const std::int64_t ref = !groups.empty() ? groups[0] : parent == parent_.end() ? entity : parent->second;
       if (kept_dimension(type) < 0) {
         raw_.other_elements += count;
         in_.skip_size(count * (nodes + 1));
@@ -545,6 +565,7 @@ class Msh {
   NodeTags tags_;
   // By dimension and tag.
   std::map<std::pair<int, std::int64_t>, std::vector<std::int64_t>> physical_;  ///< of entities
+  std::map<std::pair<int, std::int64_t>, std::int64_t> parent_;                 ///< of entities of parts
   std::map<std::pair<int, std::int64_t>, std::string> names_;
   std::map<std::pair<int, std::int64_t>, std::vector<std::uint32_t>> members_;  ///< of groups that are sets
   std::array<std::vector<std::uint64_t>, 4> element_tags_;

@@ -11,10 +11,12 @@ namespace {
 constexpr bool kYes = true, kNo = false;
 
 #ifdef OCTAFRONT_WITH_HDF5
-constexpr auto kWriteMed = write_med, kWriteXdmf = write_xdmf, kWriteCgns = write_cgns;
+constexpr auto kWriteMed = write_med, kWriteXdmf = write_xdmf, kWriteCgns = write_cgns, kWriteVtkHdf = write_vtkhdf;
+constexpr void (*kWriteVtkHdfParts)(MeshOutput&, Pieces&) = write_vtkhdf_parts;
 #else
 constexpr void (*kWriteMed)(MeshOutput&, const MeshParts&) = nullptr;
-constexpr auto kWriteXdmf = kWriteMed, kWriteCgns = kWriteMed;
+constexpr auto kWriteXdmf = kWriteMed, kWriteCgns = kWriteMed, kWriteVtkHdf = kWriteMed;
+constexpr void (*kWriteVtkHdfParts)(MeshOutput&, Pieces&) = nullptr;
 #endif
 
 constexpr FormatHolds kBoundary{.surfaces_alone = true};
@@ -77,7 +79,7 @@ constexpr Format with_surfaces_alone(Format format) {
   return format;
 }
 constexpr Format with_fields(Format format) {
-  format = with_surfaces_alone(format);
+  format.info.holds.surfaces_alone = format.write_mesh != nullptr;  // parts are of volumes
   format.info.holds.fields = true;
   return format;
 }
@@ -96,6 +98,14 @@ constexpr Format with_wedges(Format format) {
 }
 constexpr Format with_cohesive(Format format) {
   format.info.holds.cohesive = true;
+  return format;
+}
+constexpr Format with_parts(Format format, void (*write)(MeshOutput&, Pieces&),
+                            void (*check)(const std::filesystem::path&, std::uint32_t) = nullptr) {
+  format.info.holds.parts = write != nullptr;
+  format.info.writes_mesh = format.info.writes_mesh || write != nullptr;
+  format.write_parts = write;
+  format.check_parts = check;
   return format;
 }
 constexpr Format of_several_files(Format format) {
@@ -129,8 +139,9 @@ constexpr std::array kFormats{
     with_fields(with_wedges(or_text(mesh(
         "vtu", "VTU", ".vtu", kYes, binary(kAll),
         "VTK unstructured grid, compressed or text: numbers, names and sets as arrays; beta per element", write_vtu)))),
-    with_fields(with_wedges(or_text(
-        mesh("msh", "Gmsh MSH 4.1", ".msh", kYes, binary(kAll), "binary or text: all as physical groups", write_msh)))),
+    with_parts(with_fields(with_wedges(or_text(mesh("msh", "Gmsh MSH 4.1", ".msh", kYes, binary(kAll),
+                                                    "binary or text: all as physical groups", write_msh)))),
+               write_msh_parts),
     with_fields(with_wedges(or_text(mesh("msh22", "Gmsh MSH 2.2", "", kYes, binary(without_sets(kAll)),
                                          "binary or text: regions, patches, curves as physical groups", write_msh2)))),
     with_cohesive(with_wedges(mesh("abaqus", "Abaqus, CalculiX", ".inp", kYes, kSolver,
@@ -153,12 +164,19 @@ constexpr std::array kFormats{
       Format format = of_several_files(mesh("openfoam", "OpenFOAM polyMesh", "", kNo, kOpenFoam,
                                             "a folder, named polyMesh: patches, cellZones, faceZones", write_openfoam));
       format.is_folder = true;
-      return with_linear_wedges(format);
+      return with_parts(with_linear_wedges(format), write_openfoam_parts, check_openfoam_parts);
     }(),
     with_wedges(mesh("cgns", "CGNS", ".cgns", kNo, binary(without_edges(without_sets(kAll))),
                      "sections and boundary conditions; needs HDF5", kWriteCgns)),
     with_fields(with_wedges(or_text(
         mesh("vtk", "legacy VTK", ".vtk", kYes, binary(kAll), "as VTU, binary or text, uncompressed", write_vtk)))),
+    with_parts(of_several_files(with_fields(with_wedges(or_text(mesh(
+                   "pvtu", "parallel VTU", ".pvtu", kNo, binary(kAll),
+                   "as VTU, a piece for each part in a folder beside, with ghosts and global numbers", nullptr))))),
+               write_pvtu, check_pvtu_target),
+    with_parts(with_fields(with_wedges(mesh("vtkhdf", "VTKHDF", ".vtkhdf", kNo, binary(kAll),
+                                            "as VTU, in one file also in parts; needs HDF5", kWriteVtkHdf))),
+               kWriteVtkHdfParts),
     with_surfaces_alone(
         with_linear_wedges(mesh("medit", "MEDIT", ".mesh", kYes, kNumbersOnly, "text: references", write_medit))),
     with_surfaces_alone(with_linear_wedges(

@@ -8,6 +8,7 @@
 #include "formats/containers/atomic_file.h"
 #include "formats/parts/mesh_output.h"
 #include "formats/parts/mesh_parts.h"
+#include "formats/pieces/pieces.h"
 
 #include <filesystem>
 #include <span>
@@ -22,6 +23,9 @@ struct Format {
   void (*write_surface)(AtomicFile&, const SurfaceMesh&);       ///< null: it cannot
   void (*write_mesh)(MeshOutput&, const MeshParts&) = nullptr;  ///< null: it cannot, or not in this build
   bool is_folder = false;
+  void (*write_parts)(MeshOutput&, Pieces&) = nullptr;  ///< null: it cannot; alone: always in parts
+  /// Instead of looking whether the one file, or the folder, can be written.
+  void (*check_parts)(const std::filesystem::path&, std::uint32_t parts) = nullptr;
 };
 
 /// All formats, surfaces first.

@@ -8,17 +8,15 @@
 #include <octafront/error.h>
 
 #include "base/core/parallel.h"
-#include "base/core/shared_value.h"
 #include "base/mesh/periodic_nodes.h"
 #include "formats/containers/text_writer.h"
 #include "formats/parts/boundary.h"
 #include "formats/parts/mixed_cells.h"
-#include "formats/parts/msh_stream.h"
+#include "formats/write/msh_writing.h"
 #include "formats/write/writers.h"
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <limits>
 #include <map>
 #include <string>
@@ -28,169 +26,6 @@ namespace octafront::io {
 namespace {
 
 using Kind = NamedSet::Kind;
-
-/// Gmsh's type of an element of that dimension with so many nodes.
-std::int32_t gmsh_type_of(int dimension, std::size_t nodes) {
-  using Types = std::map<std::size_t, std::int32_t>;
-  static const std::array<Types, 4> kTypes{Types{{1, 15}}, Types{{2, 1}, {3, 8}},
-                                           Types{{3, 2}, {4, 3}, {6, 9}, {8, 16}},
-                                           Types{{4, 4}, {5, 7}, {6, 6}, {10, 11}, {13, 19}, {15, 18}}};
-  return kTypes[static_cast<std::size_t>(dimension)].at(nodes);
-}
-
-/// Names stand in quotes, which Gmsh does not escape.
-std::string unquoted(std::string_view name) {
-  std::string out = one_line(name);
-  std::replace(out.begin(), out.end(), '"', '_');
-  return out;
-}
-
-/// Nodes of an element, tags counting from 1, in Gmsh's order. Elements of dimensions 2 and 3 are those of MixedCells.
-class ElementNodes {
- public:
-  ElementNodes(const MeshParts& mesh, const MixedCells& cells) : mesh_(mesh), cells_(cells) {}
-
-  template <class Tag, class Put>
-  void put(int dimension, std::uint32_t element, const Put& put_tag) {
-    const auto all = [&](std::span<const VertexIndex> nodes) {
-      for (const VertexIndex v : nodes) put_tag(static_cast<Tag>(v + Tag{1}));
-    };
-    if (dimension == 0) return put_tag(static_cast<Tag>(element + Tag{1}));
-    if (dimension == 1) return all(mesh_.edge_nodes(element, edge_));
-    if (dimension == 2) return all(cells_.face_nodes(element, face_));
-    const auto nodes = cells_.nodes(element, tet_, kGmshWide);
-    if (nodes.size() == 10) std::swap(tet_[8], tet_[9]);  // 34 before 24
-    all(nodes);
-  }
-
- private:
-  const MeshParts& mesh_;
-  const MixedCells& cells_;
-  std::array<VertexIndex, 15> tet_;
-  std::array<VertexIndex, 8> face_;
-  std::array<VertexIndex, 3> edge_;
-};
-
-/// The numbers of a file in either encoding; a text has a line for each record.
-class MshNumbers {
- public:
-  MshNumbers(AtomicFile& file, bool as_text) : file_(file), out_(file), as_text_(as_text) {}
-
-  bool as_text() const { return as_text_; }
-  template <class T>
-  void put(T value) {
-    if (!as_text_) return file_.write(&value, sizeof value);
-    if (!at_line_start_) out_ << ' ';
-    out_ << value;
-    at_line_start_ = false;
-  }
-  void put(const Vec3& p) {
-    for (int axis = 0; axis < 3; ++axis) put(p[axis]);
-  }
-  void end_record() {
-    if (!as_text_) return;
-    out_ << '\n';
-    at_line_start_ = true;
-  }
-  /// Ends the values of a section and writes the line that closes it.
-  void close(std::string_view section) { out_.line("{}$End{}", as_text_ ? "" : "\n", section); }
-
-  /// For each of `count` records what fill(i, put) puts, `bytes` of them in all.
-  template <class Fill>
-  void records(std::size_t count, std::size_t bytes, const Fill& fill) {
-    if (as_text_) return write_lines(count, fill);
-    file_.write_records(count, bytes, [&](std::size_t begin, std::size_t end, char* to) {
-      fill(begin, end, [&](auto value) {
-        std::memcpy(to, &value, sizeof value);
-        to += sizeof value;
-      });
-    });
-  }
-
- private:
-  template <class Fill>
-  void write_lines(std::size_t count, const Fill& fill) {
-    for (std::size_t i = 0; i < count; ++i) {
-      fill(i, i + 1, [this](auto value) { this->put(value); });
-      end_record();
-    }
-  }
-
-  AtomicFile& file_;
-  TextWriter out_;
-  bool as_text_, at_line_start_ = true;
-};
-
-void write_format(TextWriter& out, MshNumbers& numbers, std::string_view version) {
-  out.line("$MeshFormat\n{} {} 8", version, numbers.as_text() ? 0 : 1);
-  if (!numbers.as_text()) numbers.put(std::int32_t{1});  // tells the order of bytes
-  numbers.close("MeshFormat");
-}
-
-/// Numbers of fields that Gmsh takes: scalars, vectors, tensors.
-bool is_of_gmsh(const MeshField& field) {
-  return field.components == 1 || field.components == 3 || field.components == 9;
-}
-
-/// $NodeData and $ElementData; tets have the tags behind `before_tets`. Their heads are text in binary files, too.
-void write_fields(TextWriter& text, MshNumbers& out, std::span<const MeshField> fields, std::uint64_t before_tets) {
-  for (const MeshField& field : fields) {
-    if (!is_of_gmsh(field)) continue;
-    const std::string_view section = field.of_elements ? "ElementData" : "NodeData";
-    const std::size_t n = field.components, count = field.values.size() / n;
-    text.line("${}\n1\n\"{}\"\n1\n0\n3\n0\n{}\n{}", section, unquoted(field.name), n, count);
-    for (std::size_t i = 0; i < count; ++i) {
-      out.put(static_cast<std::int32_t>((field.of_elements ? before_tets : 0) + i + 1));
-      for (std::size_t k = 0; k < n; ++k) out.put(field.values[i * n + k]);
-      out.end_record();
-    }
-    out.close(section);
-  }
-}
-
-void note_fields_left_out(MeshOutput& out) {
-  for (const MeshField& field : out.fields())
-    if (!is_of_gmsh(field))
-      out.note(fmt::format("Gmsh's fields have 1, 3 or 9 numbers: {}, which has {}, is left out", in_quotes(field.name),
-                           field.components));
-}
-
-/// Tags of physical groups: regions, patches and curves keep their numbers, regions of an image their labels; sets
-/// follow.
-std::vector<std::int32_t> physical_tags(const MeshParts& mesh) {
-  std::vector<std::int32_t> tags;
-  std::array<std::int32_t, 4> last{};
-  for (const Part& part : mesh.parts()) {
-    std::int32_t& of_kind = last[static_cast<std::size_t>(part.kind)];
-    const std::int32_t tag = part.origin == Part::Origin::kSet ? of_kind + 1 : static_cast<std::int32_t>(part.tag);
-    of_kind = std::max(of_kind, tag);
-    tags.push_back(tag);
-  }
-  return tags;
-}
-
-int dimension_of(Kind kind) {
-  return static_cast<int>(std::find(kKindOfDimension.begin(), kKindOfDimension.end(), kind) - kKindOfDimension.begin());
-}
-
-/// Groups of nodes are groups of elements here, points.
-bool has_elements_here(const Part& part, const MeshParts& mesh) {
-  return part.kind != Kind::kNodes || !mesh.cells_only();
-}
-
-void write_physical_names(TextWriter& out, const MeshParts& mesh, const std::vector<std::int32_t>& tags,
-                          bool with_sets) {
-  std::vector<std::size_t> named;
-  for (std::size_t p = 0; p < mesh.parts().size(); ++p) {
-    const Part& part = mesh.parts()[p];
-    if (part.is_named && has_elements_here(part, mesh) && (with_sets || part.origin != Part::Origin::kSet))
-      named.push_back(p);
-  }
-  out.line("$PhysicalNames\n{}", named.size());
-  for (const std::size_t p : named)
-    out.line("{} {} \"{}\"", dimension_of(mesh.parts()[p].kind), tags[p], unquoted(mesh.parts()[p].name));
-  out << "$EndPhysicalNames\n";
-}
 
 /// The pairs of nodes of entities of triangles, in the form that both versions share.
 class PeriodicLinks {
@@ -264,29 +99,26 @@ class PeriodicLinks {
 class Msh4Writer {
  public:
   Msh4Writer(AtomicFile& file, const MeshParts& mesh, std::span<const MeshField> fields, bool as_text)
-      : text_(file), out_(file, as_text), mesh_(mesh), fields_(fields), cells_(mesh), physical_(physical_tags(mesh)) {
-    for (std::size_t d = mesh.cells_only() ? 3 : 0; d < 4; ++d) by_[d] = combinations(mesh, kKindOfDimension[d]);
-    make_entities();
-    assign_nodes();
+      : text_(file), out_(file, as_text), mesh_(mesh), fields_(fields), cells_(mesh), entities_(mesh, cells_) {
+    const std::vector<std::uint32_t> entity = entities_.take_entities_of_nodes();
+    nodes_ = group_by_owner(entities_.all().size(), static_cast<std::uint32_t>(entity.size()),
+                            [&](std::uint32_t v) { return entity[v]; });
   }
 
   void write() {
     write_format(text_, out_, "4.1");
-    write_physical_names(text_, mesh_, physical_, true);
-    write_entities();
+    write_physical_names(text_, mesh_, entities_.physical(), true);
+    entities_.write(text_, out_);
     write_nodes();
     write_elements();
     if (!mesh_.mesh().periods.empty() && !mesh_.cells_only()) write_periodic();
-    write_fields(text_, out_, fields_, by_[0].members.items().size() + mesh_.edges() + cells_.faces());
+    const std::size_t before = points().members.items().size() + mesh_.edges() + cells_.faces();
+    write_fields(text_, out_, fields_,
+                 [&](const MeshField& field, std::size_t i) { return (field.of_elements ? before : 0) + i + 1; });
   }
 
  private:
-  struct Entity {
-    int dimension;
-    std::uint32_t slot;  ///< its combination
-    std::int32_t tag;
-    Box3 box = {};
-  };
+  using Entity = MshEntities::Entity;
 
   template <class... T>
   void put_record(T... values) {
@@ -294,105 +126,18 @@ class Msh4Writer {
     out_.end_record();
   }
 
-  const std::vector<std::uint32_t>& groups_of(const Entity& e) const {
-    return by_[static_cast<std::size_t>(e.dimension)].parts[e.slot];
-  }
-  std::span<const std::uint32_t> members_of(const Entity& e) const {
-    return by_[static_cast<std::size_t>(e.dimension)].members[e.slot];
-  }
-
-  /// An entity in one group has its tag, others follow behind all.
-  void make_entities() {
-    for (int d = 0; d < 4; ++d) {
-      const auto& parts = by_[static_cast<std::size_t>(d)].parts;
-      first_[static_cast<std::size_t>(d)] = entities_.size();
-      std::int32_t next = 1;
-      for (const auto& groups : parts)
-        if (groups.size() == 1) next = std::max(next, physical_[groups[0]] + 1);
-      for (std::uint32_t c = 0; c < parts.size(); ++c)
-        entities_.push_back({d, c, parts[c].size() == 1 ? physical_[parts[c][0]] : next++});
-    }
-    first_[4] = entities_.size();
-  }
-
-  void assign_nodes() {
-    std::vector<std::uint32_t> entity(mesh_.points(), kNone);
-    for (std::uint32_t e = 0; e < entities_.size(); ++e) entities_[e].box = take_nodes(e, entity).box;
-    nodes_ = group_by_owner(entities_.size(), static_cast<std::uint32_t>(entity.size()),
-                            [&](std::uint32_t v) { return entity[v]; });
-  }
-
-  struct BoxSum {
-    Box3 box;
-    void operator+=(const BoxSum& other) { box.add(other.box); }
-  };
-
-  /// Gives the nodes of an entity to it that no entity before it has. Returns where they all are.
-  BoxSum take_nodes(std::uint32_t e, std::vector<std::uint32_t>& entity) const {
-    const auto members = members_of(entities_[e]);
-    return parallel_sum(members.size(), [&](std::size_t begin, std::size_t end) {
-      BoxSum sum;
-      ElementNodes nodes_of(mesh_, cells_);
-      for (const std::uint32_t m : members.subspan(begin, end - begin))
-        nodes_of.put<std::uint64_t>(entities_[e].dimension, element(entities_[e].dimension, m), [&](std::uint64_t tag) {
-          const SharedValue of_node(entity[tag - 1]);
-          if (of_node.load() == kNone) of_node.store(e);
-          sum.box.add(mesh_.mesh().points[tag - 1]);
-        });
-      return sum;
-    });
-  }
-
-  /// The tags of the entities of faces that bound each of tetrahedra.
-  std::vector<std::vector<std::int32_t>> bounding() const {
-    std::vector<std::vector<std::int32_t>> of(by_[3].parts.size());
-    if (mesh_.faces() == 0) return of;
-    for (std::size_t f = 0; f < mesh_.faces(); ++f) {
-      const TetIndex t = mesh_.sides()[f].tet;
-      if (t == kNone) continue;
-      const std::int32_t tag = entities_[first_[2] + by_[2].of[f]].tag;
-      auto& list = of[by_[3].of[t]];
-      if (list.empty() || list.back() != tag) list.push_back(tag);
-    }
-    for (auto& list : of) {
-      std::sort(list.begin(), list.end());
-      list.erase(std::unique(list.begin(), list.end()), list.end());
-    }
-    return of;
-  }
-
-  void write_entities() {
-    text_ << "$Entities\n";
-    for (std::size_t d = 0; d < 4; ++d) out_.put(std::uint64_t{first_[d + 1] - first_[d]});
-    out_.end_record();
-    const auto surfaces = bounding();
-    for (const Entity& e : entities_)
-      write_entity(e, e.dimension == 3 ? surfaces[e.slot] : std::vector<std::int32_t>());
-    out_.close("Entities");
-  }
-
-  void write_entity(const Entity& e, const std::vector<std::int32_t>& bounded_by) {
-    out_.put(e.tag);
-    out_.put(e.box.lo);
-    if (e.dimension > 0) out_.put(e.box.hi);
-    out_.put(std::uint64_t{groups_of(e).size()});
-    for (const std::uint32_t p : groups_of(e)) out_.put(physical_[p]);
-    if (e.dimension > 0) {
-      out_.put(std::uint64_t{bounded_by.size()});
-      for (const std::int32_t tag : bounded_by) out_.put(tag);
-    }
-    out_.end_record();
-  }
+  /// Sets of nodes are elements, points.
+  const Combinations& points() const { return entities_.of_dimension(0); }
 
   void write_nodes() {
     text_ << "$Nodes\n";
     std::uint64_t blocks = 0;
-    for (std::size_t e = 0; e < entities_.size(); ++e) blocks += !nodes_[e].empty();
+    for (std::size_t e = 0; e < entities_.all().size(); ++e) blocks += !nodes_[e].empty();
     put_record(blocks, std::uint64_t{nodes_.items().size()}, std::uint64_t{1}, std::uint64_t{mesh_.points()});
-    for (std::size_t e = 0; e < entities_.size(); ++e) {
+    for (std::size_t e = 0; e < entities_.all().size(); ++e) {
       if (nodes_[e].empty()) continue;
       constexpr std::int32_t kNoParameters = 0;
-      put_record(std::int32_t{entities_[e].dimension}, entities_[e].tag, kNoParameters,
+      put_record(std::int32_t{entities_.all()[e].dimension}, entities_.all()[e].tag, kNoParameters,
                  std::uint64_t{nodes_[e].size()});
       put_nodes(nodes_[e], 1, [](VertexIndex v, const auto& put) { put(std::uint64_t{v} + 1); });
       put_nodes(nodes_[e], 3, [this](VertexIndex v, const auto& put) {
@@ -404,7 +149,7 @@ class Msh4Writer {
 
   void write_elements() {
     // The points are those in sets of nodes.
-    std::array<std::uint64_t, 5> first{0, by_[0].members.items().size()};
+    std::array<std::uint64_t, 5> first{0, points().members.items().size()};
     const std::array<std::uint64_t, 4> counts{first[1], mesh_.edges(), cells_.faces(), cells_.cells()};
     for (std::size_t d = 1; d < 4; ++d) first[d + 1] = first[d] + counts[d];
     const std::vector<Block> blocks = blocks_of_elements();
@@ -419,7 +164,9 @@ class Msh4Writer {
   }
 
   void write_periodic() {
-    const PeriodicLinks links(mesh_, [&](std::size_t f) { return entities_[first_[2] + by_[2].of[f]].tag; });
+    const PeriodicLinks links(mesh_, [&](std::size_t f) {
+      return entities_.all()[entities_.first(2) + entities_.of_dimension(2).of[f]].tag;
+    });
     text_ << "$Periodic\n";
     put_record(std::uint64_t{links.size()});
     links.for_each([&](std::int32_t tag, std::int32_t of, const std::array<double, 16>& matrix, const auto& pairs) {
@@ -441,38 +188,24 @@ class Msh4Writer {
     std::vector<std::uint32_t> own = {};     ///< behind `members`, where they are not those of the entity
   };
 
-  /// The element that a member of an entity of that dimension is, or is part of.
-  std::uint32_t element(int dimension, std::uint32_t member) const {
-    return dimension == 3   ? static_cast<std::uint32_t>(cells_.cell_of(member))
-           : dimension == 2 ? static_cast<std::uint32_t>(cells_.face_of(member))
-                            : member;
-  }
-
-  std::size_t nodes_of_element(int dimension, std::uint32_t i) const {
-    if (dimension == 0) return 1;
-    if (dimension == 1) return mesh_.nodes_per_edge();
-    if (dimension == 2) return i < cells_.triangles() ? mesh_.nodes_per_face() : cells_.nodes_per_quad();
-    return cells_.nodes_per(cells_.kind(i));
-  }
-
   std::vector<Block> blocks_of_elements() const {
     std::vector<Block> blocks;
     const bool is_mixed = !mesh_.wide_cells().empty();
-    for (const Entity& e : entities_) {
-      const auto members = members_of(e);
+    for (const Entity& e : entities_.all()) {
+      const auto members = entities_.members_of(e);
       if (e.dimension < 2 || !is_mixed) {
-        blocks.push_back({&e, members.empty() ? 0 : nodes_of_element(e.dimension, members[0]), members});
+        blocks.push_back({&e, members.empty() ? 0 : nodes_of_element(mesh_, cells_, e.dimension, members[0]), members});
         continue;
       }
       std::size_t last = 0;  // elements of a kind follow each other
       std::uint32_t before = kNone;
       std::vector<std::uint32_t> sorted;
-      for (const std::uint32_t m : members) sorted.push_back(element(e.dimension, m));
+      for (const std::uint32_t m : members) sorted.push_back(entities_.element(e.dimension, m));
       std::sort(sorted.begin(), sorted.end());
       for (const std::uint32_t i : sorted) {
         if (i == before) continue;
         before = i;
-        const std::size_t nodes = nodes_of_element(e.dimension, i);
+        const std::size_t nodes = nodes_of_element(mesh_, cells_, e.dimension, i);
         if (nodes != last) blocks.push_back({&e, nodes, {}});
         last = nodes;
         blocks.back().own.push_back(i);
@@ -487,12 +220,12 @@ class Msh4Writer {
   void write_members(const Block& block, std::uint64_t before) {
     const Entity& e = *block.entity;
     const auto members = block.members;
-    const std::uint64_t points = by_[0].members.first(e.dimension == 0 ? e.slot : 0);
+    const std::uint64_t points_before = points().members.first(e.dimension == 0 ? e.slot : 0);
     out_.records(members.size(), (1 + block.nodes) * sizeof(std::uint64_t),
                  [&](std::size_t begin, std::size_t end, const auto& put) {
                    ElementNodes nodes_of(mesh_, cells_);
                    for (std::size_t i = begin; i < end; ++i) {
-                     put((e.dimension == 0 ? points + i : before + members[i]) + 1);
+                     put((e.dimension == 0 ? points_before + i : before + members[i]) + 1);
                      nodes_of.put<std::uint64_t>(e.dimension, members[i], put);
                    }
                  });
@@ -512,10 +245,7 @@ class Msh4Writer {
   const MeshParts& mesh_;
   std::span<const MeshField> fields_;
   MixedCells cells_;
-  std::vector<std::int32_t> physical_;  ///< of each part
-  std::array<Combinations, 4> by_;      ///< by dimension
-  std::vector<Entity> entities_;        ///< by dimension
-  std::array<std::size_t, 5> first_{};
+  MshEntities entities_;
   Groups<> nodes_;  ///< of each entity
 };
 
@@ -543,7 +273,9 @@ class Msh2Writer {
       write_elements(3, cells_.begin(kind), cells_.end(kind), cells_.nodes_per(kind));
     out_.close("Elements");
     if (!mesh_.mesh().periods.empty() && !mesh_.cells_only()) write_periodic();
-    write_fields(text_, out_, fields_, mesh_.edges() + cells_.faces());
+    const std::size_t before = mesh_.edges() + cells_.faces();
+    write_fields(text_, out_, fields_,
+                 [&](const MeshField& field, std::size_t i) { return (field.of_elements ? before : 0) + i + 1; });
   }
 
  private:

@@ -2,6 +2,7 @@
 //   beta    quality of a tetrahedron, of a pyramid or wedge that of its first one; a face has that of its tetrahedron,
 //   so that face and tetrahedron, which a viewer
 //           draws at the same place, have one colour
+// A piece of a mesh (.pvtu) has what formats/write/vtk_pieces.h says, too.
 
 #include <octafront/quality.h>
 
@@ -9,6 +10,7 @@
 #include "formats/containers/vtk_xml.h"
 #include "formats/containers/vtu_arrays.h"
 #include "formats/parts/vtk_cells.h"
+#include "formats/write/vtk_pieces.h"
 #include "formats/write/writers.h"
 
 #include <limits>
@@ -19,13 +21,16 @@ namespace {
 
 class VtuWriter {
  public:
-  VtuWriter(AtomicFile& file, const MeshParts& parts, std::span<const MeshField> fields, bool as_text)
+  /// `piece`: what the mesh is a piece of; null: nothing.
+  VtuWriter(AtomicFile& file, const MeshParts& parts, std::span<const MeshField> fields, bool as_text,
+            const VtkPiece* piece = nullptr)
       : parts_(parts),
         mesh_(parts.mesh()),
         fields_(fields),
         out_(file),
         arrays_(file, as_text),
-        cells_(parts),
+        cells_(parts, piece == nullptr ? VtkCells::Shown::of(parts) : piece->whole.shown),
+        piece_(piece),
         as_text_(as_text) {}
 
   void write() {
@@ -35,7 +40,7 @@ class VtuWriter {
         "  <UnstructuredGrid>",
         as_text_ ? "" : " compressor=\"vtkZLibDataCompressor\"");
     out_ << "    <FieldData>\n";
-    for (const auto& [name, number] : cells_.names())
+    for (const auto& [name, number] : piece_ == nullptr ? cells_.names() : piece_->whole.names)
       out_.line("      <DataArray type=\"Int32\" Name=\"{}\" NumberOfTuples=\"1\" format=\"ascii\">{}</DataArray>",
                 escaped(name), number);
     out_ << "    </FieldData>\n";
@@ -104,10 +109,12 @@ class VtuWriter {
   }
 
   void declare_data() {
-    out_ << "      <PointData>\n";
+    out_.line("      <PointData{}>", piece_ == nullptr ? "" : kGlobalPointIds);
+    if (piece_ != nullptr) declare_place_of_points();
     declare_arrays(true);
     declare_fields(true);
-    out_ << "      </PointData>\n      <CellData Scalars=\"beta\">\n";
+    out_.line("      </PointData>\n      <CellData Scalars=\"beta\"{}>", piece_ == nullptr ? "" : kGlobalCellIds);
+    if (piece_ != nullptr) declare_place_of_cells();
     declare_arrays(false);
     declare_fields(false);
     arrays_.declare<float>("Float32", "beta", 1, cells_.size(), [this](std::uint64_t i) {
@@ -119,12 +126,30 @@ class VtuWriter {
     out_ << "      </CellData>\n";
   }
 
+  void declare_place_of_points() {
+    arrays_.declare<std::uint8_t>("UInt8", kGhostType, 1, parts_.points(),
+                                  [this](std::uint64_t v) { return piece_->ghost_type_of_point(v); });
+    arrays_.declare<std::int64_t>(kIdType, "GlobalPointIds", 1, parts_.points(),
+                                  [this](std::uint64_t v) { return piece_->id_of_point(v); });
+  }
+
+  void declare_place_of_cells() {
+    arrays_.declare<std::uint8_t>("UInt8", kGhostType, 1, cells_.size(),
+                                  [this](std::uint64_t c) { return piece_->ghost_type_of_cell(cells_, c); });
+    arrays_.declare<std::int64_t>(kIdType, "GlobalCellIds", 1, cells_.size(),
+                                  [this](std::uint64_t c) { return piece_->id_of_cell(cells_, c); });
+    arrays_.declare<std::int32_t>("Int32", "part", 1, cells_.size(), [this](std::uint64_t c) {
+      return static_cast<std::int32_t>(piece_->part_of_cell(cells_, c));
+    });
+  }
+
   const MeshParts& parts_;
   const TetMesh& mesh_;
   std::span<const MeshField> fields_;
   TextWriter out_;
   VtuArrays arrays_;
   VtkCells cells_;
+  const VtkPiece* piece_;
   bool as_text_;
 };
 
@@ -132,6 +157,10 @@ class VtuWriter {
 
 void write_vtu(MeshOutput& out, const MeshParts& mesh) {
   VtuWriter(out.file(), mesh, out.fields(), out.as_text()).write();
+}
+
+void write_vtu_piece(AtomicFile& file, const VtkPiece& piece, bool as_text) {
+  VtuWriter(file, piece.mesh, piece.piece.fields, as_text, &piece).write();
 }
 
 }  // namespace octafront::io

@@ -7,6 +7,12 @@
 #include "formats/containers/atomic_file.h"
 #include "formats/parts/mesh_output.h"
 #include "formats/parts/mesh_parts.h"
+#include "formats/pieces/pieces.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
 
 namespace octafront {
 struct SurfaceMesh;
@@ -37,9 +43,22 @@ void write_tetgen(MeshOutput& out, const MeshParts& mesh);
 void write_openfoam(MeshOutput& out, const MeshParts& mesh);
 void write_exodus(MeshOutput& out, const MeshParts& mesh);
 
+// Meshes in parts, a piece at a time.
+void write_pvtu(MeshOutput& out, Pieces& pieces);
+void write_msh_parts(MeshOutput& out, Pieces& pieces);
+void write_openfoam_parts(MeshOutput& out, Pieces& pieces);
+
+/// "STEM_0007.vtu".
+std::string piece_name(std::string_view stem, std::uint32_t piece, std::string_view ending);
+/// Throws OutputError if the files that these make cannot be written, or would replace what is not theirs.
+void check_pvtu_target(const std::filesystem::path& target, std::uint32_t parts);
+void check_openfoam_parts(const std::filesystem::path& target, std::uint32_t parts);
+
 // With HDF5 only.
 void write_med(MeshOutput& out, const MeshParts& mesh);
 void write_xdmf(MeshOutput& out, const MeshParts& mesh);
 void write_cgns(MeshOutput& out, const MeshParts& mesh);
+void write_vtkhdf(MeshOutput& out, const MeshParts& mesh);
+void write_vtkhdf_parts(MeshOutput& out, Pieces& pieces);
 
 }  // namespace octafront::io

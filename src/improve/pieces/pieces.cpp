@@ -1,5 +1,6 @@
 #include "improve/pieces/pieces.h"
 
+#include "base/comm/shares.h"
 #include "base/core/groups.h"
 #include "base/core/parallel.h"
 #include "base/core/shared_value.h"
@@ -9,6 +10,8 @@
 #include "base/mesh/tet_key.h"
 
 #include <algorithm>
+#include <atomic>
+#include <thread>
 #include <utility>
 
 namespace octafront::improve {
@@ -55,19 +58,26 @@ struct MeshOfPieces::Division {
 /// What was done to a piece, in the numbers of the whole; vertices that it made are kNewVertex + their place in
 /// `added`.
 struct MeshOfPieces::Change {
-  std::vector<std::pair<VertexIndex, Vec3>> moved;
+  std::vector<EditMesh::Moved> moved;
   std::vector<Vec3> added;
   std::vector<TetIndex> gone;
   std::vector<Tet> made;
-  std::uint32_t region = 0;
   std::vector<std::uint32_t> region_of_made;
-  std::vector<std::pair<std::uint32_t, Triangle>> boundary;
+  std::vector<EditMesh::ChangedTriangle> boundary;
   std::vector<Edge> edges_gone, edges_made;
+  Bytes notes;
+
+  /// visit(list) for each.
+  template <class Self, class Visit>
+  static void for_each_list(Self& self, const Visit& visit) {
+    visit(self.moved), visit(self.added), visit(self.gone), visit(self.made), visit(self.region_of_made);
+    visit(self.boundary), visit(self.edges_gone), visit(self.edges_made), visit(self.notes);
+  }
 };
 
 MeshOfPieces::MeshOfPieces(TetMesh&& mesh, ImproveOptions::Objective objective, const BoundaryInput* input,
-                           std::size_t most)
-    : objective_(objective), input_(input), most_(most) {
+                           const Comm& comm, std::size_t most)
+    : objective_(objective), input_(input), comm_(comm), most_(most) {
   require_in_range(mesh.tets.size(), kMostTetsToImprove, "tetrahedra to improve");
   points_ = std::exchange(mesh.points, {});
   tets_ = std::exchange(mesh.tets, {});
@@ -88,7 +98,8 @@ void MeshOfPieces::freeze(std::span<const VertexIndex> vertices) {
   for (const VertexIndex v : vertices) frozen_[v] = 1;
 }
 
-void MeshOfPieces::work(std::vector<std::uint8_t> waiting, int rings, const Watch& watch, const Work& work) {
+void MeshOfPieces::work(std::vector<std::uint8_t> waiting, int rings, const Work& work, const Notes& notes,
+                        const Progress& progress) {
   std::vector<TetIndex> around;  // those that wait; all of them at first
   for (int stage = 0; stage <= kCellStages; ++stage) {
     if (std::ranges::find(waiting, 1) == waiting.end()) return;
@@ -98,18 +109,27 @@ void MeshOfPieces::work(std::vector<std::uint8_t> waiting, int rings, const Watc
     const std::vector<std::uint8_t> near = all ? waiting : spread(waiting, rings, around);
     around = touching(near, around);
     const Division division = divide(near, around, stage);
-    watch(division.cells.count);
-    run(division, work);
-    watch(0);
+    std::vector<Change> changes = work_on(division, work, progress);
+    apply(changes);
+    std::vector<Bytes> of_pieces;
+    for (Change& change : changes) of_pieces.push_back(std::move(change.notes));
+    notes(of_pieces);
     for (std::size_t t = slots; t < tets_.size(); ++t) around.push_back(static_cast<TetIndex>(t));
     parallel_for(waiting.size(), [&](std::size_t v) { waiting[v] &= division.at_rim[v]; });
     waiting.resize(points_.size(), 0);
   }
 }
 
-void MeshOfPieces::work_on_one(const std::vector<std::uint8_t>& waiting, int rings, const Work& work) {
+void MeshOfPieces::work_on_one(const std::vector<std::uint8_t>& waiting, int rings,
+                               FunctionRef<void(MeshPiece&)> work) {
   const std::vector<std::uint8_t> near = spread(waiting, rings, {});
-  run(divide(near, touching(near, {}), kCellStages), work);
+  const Division division = divide(near, touching(near, {}), kCellStages);
+  number_in_piece_.assign(points_.size(), kNone);
+  MeshPiece piece = extract(division, 0);
+  const std::vector<Edge> edges = piece.features.edges;
+  work(piece);
+  std::vector<Change> changes{change_of(piece, division.tets[0], edges)};
+  apply(changes);
 }
 
 /// Of some elements, or all if none are given, those that touch a vertex that is marked.
@@ -173,21 +193,31 @@ MeshOfPieces::Division MeshOfPieces::divide(const std::vector<std::uint8_t>& nea
           std::move(interfaces), std::move(edges),  std::move(vertices)};
 }
 
-void MeshOfPieces::run(const Division& division, const Work& work) {
+/// What this rank's threads do to its share of the pieces, and what others do to theirs.
+std::vector<MeshOfPieces::Change> MeshOfPieces::work_on(const Division& division, const Work& work,
+                                                        const Progress& progress) {
   number_in_piece_.assign(points_.size(), kNone);
   std::vector<Change> changes(division.cells.count);
-  parallel_for(
-      changes.size(),
-      [&](std::size_t c) {
-        const auto cell = static_cast<std::uint32_t>(c);
-        if (division.tets[c].empty()) return;
-        MeshPiece piece = extract(division, cell);
-        const std::vector<Edge> edges = piece.features.edges;
-        work(piece, c);
-        changes[c] = change_of(piece, division.tets[c], edges);
-      },
-      Split::kSingly);
-  apply(changes);
+  std::vector<std::uint64_t> sizes;
+  for (std::size_t c = 0; c < changes.size(); ++c) sizes.push_back(1 + division.tets[c].size());
+  const Shares shares(sizes, comm_.size());
+  const std::thread::id caller = std::this_thread::get_id();
+  std::atomic<std::size_t> done{0};
+  do_share(comm_, shares, "improve", [&](std::size_t c) {
+    if (division.tets[c].empty()) return;
+    MeshPiece piece = extract(division, static_cast<std::uint32_t>(c));
+    const std::vector<Edge> edges = piece.features.edges;
+    Bytes notes = work(piece);
+    changes[c] = change_of(piece, division.tets[c], edges);
+    changes[c].notes = std::move(notes);
+    const double part = static_cast<double>(++done) * comm_.size() / static_cast<double>(changes.size());
+    if (std::this_thread::get_id() == caller) progress(std::min(part, 1.0));
+  });
+  gather_results(
+      comm_, shares, "improve", changes,
+      [](const Change& change, Packer& to) { Change::for_each_list(change, [&](const auto& list) { to.add(list); }); },
+      [](Change& change, Unpacker& from) { Change::for_each_list(change, [&](auto& list) { from.take(list); }); });
+  return changes;
 }
 
 MeshPiece MeshOfPieces::extract(const Division& division, std::uint32_t cell) {
@@ -247,14 +277,14 @@ MeshOfPieces::Change MeshOfPieces::change_of(const MeshPiece& piece, std::span<c
     return corners;
   };
   Change change;
-  for (const auto& [v, at] : of_piece.moved) change.moved.emplace_back(piece.vertices[v], at);
+  for (const auto& [v, at] : of_piece.moved) change.moved.push_back({piece.vertices[v], at});
   change.added = std::move(of_piece.added);
   for (const TetIndex t : of_piece.gone) change.gone.push_back(tets[t]);
   std::sort(change.gone.begin(), change.gone.end());
   for (const Tet& t : of_piece.made) change.made.push_back(in_whole(t));
   change.region_of_made = std::move(of_piece.region_of_made);
   for (const auto& [number, corners] : of_piece.boundary)
-    change.boundary.emplace_back(piece.boundary[number], in_whole(corners));
+    change.boundary.push_back({piece.boundary[number], in_whole(corners)});
   if (piece.features.edges == edges) return change;
   for (const Edge& e : edges) change.edges_gone.push_back(in_whole(e));
   for (const Edge& e : piece.features.edges) change.edges_made.push_back(in_whole(e));

@@ -9,6 +9,7 @@
 #include <octafront/tet_mesh.h>
 
 #include "base/blocks/blocks.h"
+#include "base/comm/comm.h"
 #include "base/core/function_ref.h"
 #include "base/mesh/features.h"
 #include "improve/boundary/boundary_guide.h"
@@ -42,12 +43,14 @@ class MeshOfPieces {
   /// down, for rewind(). Pieces have `most` vertices or fewer as they begin. Throws MeshingError if there are more tets
   /// than kMostTetsToImprove.
   MeshOfPieces(TetMesh&& mesh, ImproveOptions::Objective objective, const BoundaryInput* input,
-               std::size_t most = kMostVertices);
+               const Comm& comm = Comm(nullptr), std::size_t most = kMostVertices);
 
-  /// Called from several threads, for a piece each; `number` < count of pieces. May change the piece.
-  using Work = FunctionRef<void(MeshPiece& piece, std::size_t number)>;
-  /// Called before each stage with how many pieces it has, and after it with 0.
-  using Watch = FunctionRef<void(std::size_t pieces)>;
+  /// Called from several threads, on some rank, for a piece each; may change it. Returns what is to be known of it.
+  using Work = FunctionRef<Bytes(MeshPiece& piece)>;
+  /// Called after each stage with what was returned, piece by piece.
+  using Notes = FunctionRef<void(std::span<const Bytes>)>;
+  /// Called now and then by the caller's thread: the part of the pieces of a stage that are done.
+  using Progress = FunctionRef<void(double)>;
 
   /// Called before each stage: for tests, which may change where elements are kept.
   using BeforeStage = std::function<void(MeshOfPieces&)>;
@@ -55,9 +58,10 @@ class MeshOfPieces {
 
   /// Has pieces worked on, stage by stage, until no vertex waits: one waits (`waiting` has a mark for each) until it
   /// was in a piece with all elements around it. Pieces hold what lies within `rings` rings of those that wait.
-  void work(std::vector<std::uint8_t> waiting, int rings, const Watch& watch, const Work& work);
-  /// The same in one piece: for few vertices that must be seen together.
-  void work_on_one(const std::vector<std::uint8_t>& waiting, int rings, const Work& work);
+  void work(std::vector<std::uint8_t> waiting, int rings, const Work& work, const Notes& notes,
+            const Progress& progress);
+  /// The same in one piece, by every rank: for few vertices that must be seen together.
+  void work_on_one(const std::vector<std::uint8_t>& waiting, int rings, FunctionRef<void(MeshPiece&)> work);
 
   std::vector<std::uint8_t> all() const { return std::vector<std::uint8_t>(points_.size(), 1); }
   /// Marks the corners of elements with a score below the threshold; empty if there are none.
@@ -97,7 +101,7 @@ class MeshOfPieces {
   std::vector<TetIndex> touching(const std::vector<std::uint8_t>& marks, std::span<const TetIndex> among) const;
   std::vector<std::uint8_t> spread(std::vector<std::uint8_t> marks, int rings, std::span<const TetIndex> among) const;
   Division divide(const std::vector<std::uint8_t>& near, std::span<const TetIndex> tets, int stage) const;
-  void run(const Division& division, const Work& work);
+  std::vector<Change> work_on(const Division& division, const Work& work, const Progress& progress);
   MeshPiece extract(const Division& division, std::uint32_t cell);
   Change change_of(const MeshPiece& piece, std::span<const TetIndex> tets, const std::vector<Edge>& edges) const;
   void apply(std::vector<Change>& changes);
@@ -107,6 +111,7 @@ class MeshOfPieces {
 
   ImproveOptions::Objective objective_;
   const BoundaryInput* input_;
+  Comm comm_;
   std::size_t most_;
   std::vector<Vec3> points_;
   std::vector<Tet> tets_;  ///< [0] == kNone: none

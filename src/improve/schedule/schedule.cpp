@@ -2,6 +2,7 @@
 
 #include <octafront/quality.h>
 
+#include "base/comm/packing.h"
 #include "base/core/elementary.h"
 #include "base/core/fixed_point.h"
 #include "base/core/function_ref.h"
@@ -18,9 +19,9 @@
 #include <chrono>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
-#include <thread>
 #include <utility>
 
 #include <fmt/core.h>
@@ -56,7 +57,7 @@ ImproveOptions::Worst worst_of(const MeshOfPieces& mesh) {
 
 /// What passes of one name did, in all pieces.
 struct PassTally {
-  const char* what;
+  std::string what;
   PassResult result;
 };
 
@@ -66,10 +67,10 @@ struct Tally {
   std::uint64_t boundary_edits = 0;
   double largest_move = 0;
 
-  void add(const char* what, const PassResult& result) {
-    const auto found = std::ranges::find(passes, std::string_view(what), &PassTally::what);
+  void add(std::string_view what, const PassResult& result) {
+    const auto found = std::ranges::find(passes, what, &PassTally::what);
     if (found == passes.end())
-      passes.push_back({what, result});
+      passes.push_back({std::string(what), result});
     else
       found->result += result;
   }
@@ -78,6 +79,30 @@ struct Tally {
     boundary_edits += o.boundary_edits;
     largest_move = std::max(largest_move, o.largest_move);
     return *this;
+  }
+
+  Bytes packed() const {
+    Packer to;
+    to.add(passes.size()), to.add(boundary_edits), to.add(largest_move);
+    for (const PassTally& pass : passes) {
+      to.add(std::vector<char>(pass.what.begin(), pass.what.end()));
+      to.add(pass.result);
+    }
+    return std::move(to.bytes());
+  }
+  static Tally unpacked(const Bytes& bytes) {
+    Tally tally;
+    if (bytes.empty()) return tally;  // of a piece without elements
+    Unpacker from(bytes);
+    const auto passes = from.take<std::size_t>();
+    tally.boundary_edits = from.take<std::uint64_t>();
+    tally.largest_move = from.take<double>();
+    for (std::size_t k = 0; k < passes; ++k) {
+      std::vector<char> what;
+      from.take(what);
+      tally.passes.push_back({std::string(what.begin(), what.end()), from.take<PassResult>()});
+    }
+    return tally;
   }
 };
 
@@ -325,7 +350,7 @@ class Improvement {
       : input_(input),
         stage_(stage),
         setting_{options, stage.context()},
-        mesh_(std::move(mesh), options.objective, moves ? input : nullptr),
+        mesh_(std::move(mesh), options.objective, moves ? input : nullptr, Comm(stage.context().ranks)),
         moves_(moves) {
     if (input) ground_ = std::make_shared<const BoundaryGround>(*input);
     tell("start");
@@ -340,25 +365,22 @@ class Improvement {
   /// Runs passes on all pieces, or on those around the vertices that are marked.
   void run(const char* what, const std::vector<std::uint8_t>& waiting, int rings, Passes passes) {
     if (waiting.empty() || setting_.late) return;
-    std::vector<Tally> tallies;
-    std::atomic<std::size_t> done{0};
-    const auto watch = [&](std::size_t pieces) {
-      for (const Tally& of_piece : std::exchange(tallies, std::vector<Tally>(pieces))) tally_ += of_piece;
-      done = 0;
-      if (pieces != 0) return;
-      ++stages_;
-      tell(what);
-    };
-    const std::thread::id caller = std::this_thread::get_id();
-    mesh_.work(waiting, rings, watch, [&](MeshPiece& piece, std::size_t number) {
-      work_on(piece, [&](BoundaryGuide* guide) {
-        Schedule schedule(*piece.mesh, guide, setting_, tallies[number]);
-        passes(schedule);
-      });
-      ++done;
-      if (std::this_thread::get_id() == caller)
-        progress(static_cast<double>(done) / static_cast<double>(tallies.size()));
-    });
+    mesh_.work(
+        waiting, rings,
+        [&](MeshPiece& piece) {
+          Tally tally;
+          work_on(piece, [&](BoundaryGuide* guide) {
+            Schedule schedule(*piece.mesh, guide, setting_, tally);
+            passes(schedule);
+          });
+          return tally.packed();
+        },
+        [&](std::span<const Bytes> of_pieces) {
+          for (const Bytes& bytes : of_pieces) tally_ += Tally::unpacked(bytes);
+          ++stages_;
+          tell(what);
+        },
+        [&](double part) { progress(part); });
   }
 
   /// Where the boundary crosses itself it goes back. Returns where that does not help.
@@ -366,7 +388,7 @@ class Improvement {
     std::vector<VertexIndex> crossing;
     const std::vector<std::uint8_t> marks = mesh_.corners_of_crossings();
     if (marks.empty()) return crossing;
-    mesh_.work_on_one(marks, kRingsAtCrossings, [&](MeshPiece& piece, std::size_t) {
+    mesh_.work_on_one(marks, kRingsAtCrossings, [&](MeshPiece& piece) {
       work_on(piece, [&](BoundaryGuide* guide) {
         std::vector<Vec3> home;
         for (VertexIndex v = 0; v < piece.vertices.size(); ++v)
@@ -385,7 +407,7 @@ class Improvement {
     Shortfall shortfall;
     std::string note;
     if (const std::vector<std::uint8_t> poor = mesh_.corners_below(kReported); !poor.empty())
-      mesh_.work_on_one(poor, 0, [&](MeshPiece& piece, std::size_t) {
+      mesh_.work_on_one(poor, 0, [&](MeshPiece& piece) {
         shortfall = explain_shortfall(*piece.mesh, kReported, input_ ? &ground_->force : nullptr, setting_.context);
         note = in_words(shortfall, *piece.mesh);
       });

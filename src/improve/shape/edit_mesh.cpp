@@ -125,7 +125,7 @@ EditMesh::Change EditMesh::change() const {
   Change change;
   const auto taken = static_cast<VertexIndex>(taken_->points.size());
   for (VertexIndex v = 0; v < taken; ++v)
-    if (points_[v] != taken_->points[v]) change.moved.emplace_back(v, points_[v]);
+    if (points_[v] != taken_->points[v]) change.moved.push_back({v, points_[v]});
   std::vector<VertexIndex> number(points_.size(), kNone);
   std::iota(number.begin(), number.begin() + taken, VertexIndex{0});
   for (VertexIndex v = taken; v < points_.size(); ++v) {
@@ -147,7 +147,7 @@ EditMesh::Change EditMesh::change() const {
     if (had_regions_) change.region_of_made.push_back(region_[t]);
   }
   for (std::uint32_t t = 0; t < rest_.boundary.size(); ++t)
-    if (rest_.boundary[t] != taken_->boundary[t]) change.boundary.emplace_back(t, numbered(rest_.boundary[t]));
+    if (rest_.boundary[t] != taken_->boundary[t]) change.boundary.push_back({t, numbered(rest_.boundary[t])});
   return change;
 }
 

@@ -36,14 +36,22 @@ class EditMesh {
 
   /// From here on what edits replace is written down, for change().
   void remember();
+  struct Moved {
+    VertexIndex vertex;
+    Vec3 to;
+  };
+  struct ChangedTriangle {
+    std::uint32_t number;
+    Triangle corners;  ///< kNone: it is gone
+  };
   /// What became of the mesh since remember(), in the numbers of what was taken; new vertices follow those.
   struct Change {
-    std::vector<std::pair<VertexIndex, Vec3>> moved;  ///< vertices that were taken
-    std::vector<Vec3> added;                          ///< vertices
+    std::vector<Moved> moved;  ///< vertices that were taken
+    std::vector<Vec3> added;   ///< vertices
     std::vector<TetIndex> gone;
     std::vector<Tet> made;  ///< by their names
     std::vector<std::uint32_t> region_of_made;
-    std::vector<std::pair<std::uint32_t, Triangle>> boundary;  ///< triangles that changed; kNone: gone
+    std::vector<ChangedTriangle> boundary;
   };
   Change change() const;
 

@@ -6,12 +6,11 @@
 
 #include "adapt/metric/background.h"
 #include "adapt/schedule/adapt_mesh.h"
-#include "adapt/schedule/rim_metric.h"
 #include "adapt/schedule/section.h"
-#include "base/geometry/self_intersection.h"
 #include "pipeline/stages/adapt_section.h"
 #include "pipeline/stages/adapting.h"
 #include "pipeline/stages/stages.h"
+#include "pipeline/stages/walls_apart.h"
 
 #include <cmath>
 #include <memory>
@@ -54,44 +53,11 @@ TetMesh linear_and_adaptable(const TetMesh& mesh, Run& run) {
   return given;
 }
 
-/// Walls go where the smooth surface is, each by itself: where a gap is narrower than that moves them they could meet.
-adapt::Adapted adapted_without_crossings(const TetMesh& given, const adapt::MetricField& metric,
-                                         adapt::AdaptRules rules, const Stage& stage) {
-  adapt::Adapted made = adapt::adapt_mesh(given, metric, rules, stage);
-  const auto crossings = [&] { return self_intersections(made.mesh.points, made.mesh.boundary, 1, stage.context()); };
-  auto crossing = crossings();
-  const auto place = [&] { return made.mesh.points[made.mesh.boundary[crossing[0][0]][0]]; };
-  if (!crossing.empty() && rules.given) {
-    const Vec3 p = place();
-    rules.given = nullptr;
-    made = adapt::adapt_mesh(given, metric, rules, stage);
-    stage.note(
-        fmt::format("on the surface given the boundary would have crossed itself at ({:.6g}, {:.6g}, {:.6g}), where it "
-                    "is near to itself: it is on its own smooth surface instead, everywhere",
-                    p.x, p.y, p.z));
-    crossing = crossings();
-  }
-  if (!crossing.empty() && !metric.is_isotropic()) {  // with walls less near to the ground they may not meet
-    rules.walls_ahead = false;
-    made = adapt::adapt_mesh(given, metric, rules, stage);
-    crossing = crossings();
-  }
-  if (crossing.empty()) return made;
-  const Vec3 p = place();
-  stage.note(
-      fmt::format("the boundary would have crossed itself at ({:.6g}, {:.6g}, {:.6g}), where it is near to itself: "
-                  "it stays as it was, everywhere; a smaller --max-deviation may help",
-                  p.x, p.y, p.z));
-  rules.keep_walls = true;
-  const std::vector<std::uint8_t> walls = adapt::on_walls(given);
-  return adapt::adapt_mesh(given, adapt::RimMetric(given, walls, metric), rules, stage);
-}
-
 void adapt_whole(const TetMesh& given, const adapt::MetricField& metric, const adapt::AdaptRules& rules,
                  AdaptedMesh& result, Run& run) {
   run.stage("adapt", [&](const Stage& stage) {
     result.before = summary_of(adapt::fit_of(given, metric));
-    adapt::Adapted made = adapted_without_crossings(given, metric, rules, stage);
+    adapt::Adapted made = adapted_with_walls_apart(given, metric, rules, stage);
     result.deviation = deviation_of(made);
     require_near(made.given);
     tell_given(made.given, stage);

@@ -6,6 +6,8 @@
 
 #include "base/core/wording.h"
 #include "pipeline/inside/fins.h"
+#include "pipeline/stages/agreement.h"
+#include "pipeline/stages/checkpoint.h"
 #include "pipeline/stages/kept_shape.h"
 #include "pipeline/stages/measure.h"
 #include "pipeline/stages/methods.h"
@@ -62,15 +64,33 @@ void split(TetMesh& mesh, Run& run) {
   check_result(mesh, nullptr, run);
 }
 
+/// improve_in_shape(), or what is kept of it.
+void improve_or_read(const Prepared& input, Filled& filled, Run& run) {
+  ImprovedMesh improved = run.checkpoint->kept<ImprovedMesh>("improved", [&] {
+    improve_in_shape(input, filled, run);
+    return ImprovedMesh{std::move(filled.mesh), std::move(filled.boundary)};
+  });
+  filled.mesh = std::move(improved.mesh), filled.boundary = std::move(improved.boundary);
+}
+
 /// `fins`: of the domain's lines and points, which it has as sheets; null: it has none.
-Result generate_once(const Domain& domain, const Options& asked, const RunContext& context, Fins* fins) {
+Result generate_once(const Domain& domain, const Options& asked, const RunContext& context, Fins* fins,
+                     const Checkpoints& checkpoints) {
   const Options options = suited(domain, asked);
   Run run(options, context);
+  refuse_for_ranks(options, context);
+  agree_on(domain.surface, "input", context);
   const Prepared input = prepare(domain, run);
+  agree_on(input.surface.mesh(), "repaired input", context);
   check_split(input.surface.mesh(), names_listed(options.split, input.surface.mesh().patch_names));
   const SizeField sizes = choose_sizes(input, domain, asked, run);
+  agree_on(sizes, input.surface.mesh().points, "size field", context);
+  Checkpoint checkpoint(checkpoints, input, sizes, run);
+  run.checkpoint = &checkpoint;
   Filled filled = fill_to_target(input, sizes, run);
-  improve_in_shape(input, filled, run);
+  agree_on(filled, "mesh as it was filled", context);
+  improve_or_read(input, filled, run);
+  agree_on(filled, "improved mesh", context);
   if (!options.layers.outside) add_layers(input, filled, run);
   note_missed_elements(filled.mesh, run);
   check_shape(input, filled, run);
@@ -78,6 +98,7 @@ Result generate_once(const Domain& domain, const Options& asked, const RunContex
   place_on_geometry(input, filled, run);
   if (options.layers.outside) add_layers(input, filled, run);
   raise_order(input, filled, run);
+  agree_on(filled, "mesh", context);
   name_patches(input, filled);
   name_parts(input, filled, run);
   pair_nodes(input, filled.mesh, run);
@@ -85,6 +106,7 @@ Result generate_once(const Domain& domain, const Options& asked, const RunContex
   finish_curves(filled.mesh, fins, run);
   split(filled.mesh, run);
   describe(filled.mesh, run.report);
+  run.comm().agree(run.report.hash, "mesh at the end");
   describe_true_volumes(filled, domain, run.report);
   if (!filled.layers) describe_sizes(filled.mesh, filled.boundary.sizes, run.report);
   return {std::move(filled.mesh), filled.boundary.sizes, run.close()};
@@ -119,15 +141,16 @@ Domain with_sheets(const Domain& domain, const Fins& fins, const RunContext& con
 }
 
 /// generate() of a domain without lines and points, or with fins for them.
-Result generate_in(const Domain& domain, const Options& asked, const RunContext& context, Fins* fins) {
-  Result made = generate_once(domain, asked, context, fins);
+Result generate_in(const Domain& domain, const Options& asked, const RunContext& context, Fins* fins,
+                   const Checkpoints& checkpoints) {
+  Result made = generate_once(domain, asked, context, fins, checkpoints);
   std::vector<OffSolid> off = off_solids(domain, made.report);
   if (off.empty()) return made;
   Domain nearer = domain;
   for (int k = 0; k < kTriesOfBounds && !off.empty() && heeds_bounds(asked); ++k) {
     std::string why = "volumes were off, so elements were made smaller there: " + in_words(domain, off);
     nearer.bound = tightened(nearer, off);
-    made = generate_once(nearer, asked, context, fins);
+    made = generate_once(nearer, asked, context, fins, checkpoints);
     made.report.stages.front().notes.push_back(std::move(why));
     off = off_solids(domain, made.report);
   }
@@ -141,11 +164,17 @@ Result generate_in(const Domain& domain, const Options& asked, const RunContext&
 }  // namespace
 
 Result generate(const Domain& domain, const Options& asked, const RunContext& context) {
-  if (domain.wires.empty() && domain.points.empty()) return generate_in(domain, asked, context, nullptr);
+  return generate_with({}, domain, asked, context);
+}
+
+Result generate_with(const Checkpoints& checkpoints, const Domain& domain, const Options& asked,
+                     const RunContext& context) {
+  open_checkpoint(checkpoints, domain, asked, context);
+  if (domain.wires.empty() && domain.points.empty()) return generate_in(domain, asked, context, nullptr, checkpoints);
   if (!traits_of(asked.method).fills_complexes)
     throw OptionError("this method has no lines and points inside: choose method octree-aft");
   Fins fins = fins_of(domain, asked, context);
-  return generate_in(with_sheets(domain, fins, context), asked, context, &fins);
+  return generate_in(with_sheets(domain, fins, context), asked, context, &fins, checkpoints);
 }
 
 SurfaceResult generate_surface(const Domain& domain, const Options& asked, const RunContext& context) {

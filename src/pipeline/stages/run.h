@@ -4,13 +4,32 @@
 #include <octafront/report.h>
 #include <octafront/run_context.h>
 
+#include "base/comm/comm.h"
 #include "base/core/stage.h"
 #include "base/core/stage_timer.h"
 #include "base/core/thread_limit.h"
 
+#include <exception>
 #include <utility>
 
 namespace octafront {
+
+class Checkpoint;
+
+/// Enters into the report what the ranks have said to each other until its end, if there are several.
+class StageUse {
+ public:
+  StageUse(const RunContext& context, StageReport& report);
+  ~StageUse();
+  StageUse(const StageUse&) = delete;
+  StageUse& operator=(const StageUse&) = delete;
+
+ private:
+  const Ranks* ranks_;  ///< null: alone
+  StageReport& report_;
+  RankUse before_;
+  int exceptions_ = std::uncaught_exceptions();
+};
 
 /// One run of the pipeline: what was asked for, whom to tell, and what gets written down. Holds the limit on threads
 /// as long as it lives.
@@ -25,13 +44,20 @@ class Run {
   /// Runs one stage, work(const Stage&): times it, gives it a place in the report, tells the caller about it.
   template <class Work>
   auto stage(const char* name, Work&& work) {
-    context_.check();
-    context_.report(name, -1);
     StageReport& entry = report.stages.emplace_back();
     entry.name = name;
     const StageTimer timer(entry);
-    return std::forward<Work>(work)(Stage(context_, entry));
+    const StageUse use(context_, entry);
+    return comm().attempt(name, Comm::Telling::kNamesRank, [&] {
+      context_.check();
+      context_.report(name, -1);
+      return std::forward<Work>(work)(Stage(context_, entry));
+    });
   }
+
+  Comm comm() const { return Comm(context_.ranks); }
+  /// What earlier runs have kept of the stages that are yet to come; null: nothing is.
+  Checkpoint* checkpoint = nullptr;
 
   const RunContext& context() const { return context_; }
   /// The report, with the sums over its stages and the peak of memory: the end of the run.

@@ -15,6 +15,7 @@
 #include "improve/curved/curved.h"
 #include "improve/schedule/raise_flat.h"
 #include "improve/schedule/schedule.h"
+#include "pipeline/stages/checkpoint.h"
 #include "pipeline/stages/follow_boundary.h"
 #include "pipeline/stages/kept_shape.h"
 #include "pipeline/stages/measure.h"
@@ -39,6 +40,12 @@
 namespace octafront {
 
 namespace {
+
+/// make(), or what is kept of it.
+template <class Result, class Make>
+Result kept(Run& run, const char* name, const Make& make) {
+  return run.checkpoint != nullptr ? run.checkpoint->kept<Result>(name, make) : make();
+}
 
 // Doubles that lie too few steps apart leave no room for vertices between them.
 constexpr double kLeastExtent = 1e-12;  // diagonal over the largest coordinate
@@ -371,23 +378,25 @@ SizeField choose_sizes(const Prepared& input, Run& run) {
 
 Remeshed triangulate(const Prepared& input, const SizeField& sizes, Run& run) {
   if (keeps_surface(run.options)) return input_as_it_is(input.surface, sizes);
-  return run.stage("surface front", [&](const Stage& stage) {
-    const SurfaceOptions surface = true_to_input(input.surface.mesh(), run.options);
-    const double slack = surface.max_deviation == run.options.surface.max_deviation ? 1 : kAutomaticSlack;
-    const double budget = budget_of(input.surface.mesh(), run.options);
-    Remeshed remeshed = remeshed_in_shape(
-        input, sizes, run, stage,
-        [&](const SizeField& by) {
-          return remesh_surface(input.surface, by, surface, stage, input.kept_bound(), {slack, budget}, input.cell);
-        },
-        budget);
-    stage.count("triangles", static_cast<double>(remeshed.surface.triangles.size()));
-    // Strips between lines and the bounds on deviation have made sizes smaller since the first prediction.
-    run.report.expected_tets =
-        traits_of(run.options.method).tets_per_expected * expected_tets_within(remeshed.sizes, remeshed.surface) +
-        expected_layer_tets(remeshed.surface, run.options.layers) +
-        expected_shell_tets(remeshed, run.options.volume.shell);
-    return remeshed;
+  return kept<Remeshed>(run, "surface", [&] {
+    return run.stage("surface front", [&](const Stage& stage) {
+      const SurfaceOptions surface = true_to_input(input.surface.mesh(), run.options);
+      const double slack = surface.max_deviation == run.options.surface.max_deviation ? 1 : kAutomaticSlack;
+      const double budget = budget_of(input.surface.mesh(), run.options);
+      Remeshed remeshed = remeshed_in_shape(
+          input, sizes, run, stage,
+          [&](const SizeField& by) {
+            return remesh_surface(input.surface, by, surface, stage, input.kept_bound(), {slack, budget}, input.cell);
+          },
+          budget);
+      stage.count("triangles", static_cast<double>(remeshed.surface.triangles.size()));
+      // Strips between lines and the bounds on deviation have made sizes smaller since the first prediction.
+      run.report.expected_tets =
+          traits_of(run.options.method).tets_per_expected * expected_tets_within(remeshed.sizes, remeshed.surface) +
+          expected_layer_tets(remeshed.surface, run.options.layers) +
+          expected_shell_tets(remeshed, run.options.volume.shell);
+      return remeshed;
+    });
   });
 }
 
@@ -399,10 +408,12 @@ Filled fill(const Prepared& input, const SizeField& sizes, Run& run) {
 Filled fill_surface(const Prepared& input, Remeshed boundary, Run& run) {
   const MethodTraits& method = traits_of(run.options.method);
   std::optional<GrownLayers> layers = grow_layers(input, boundary, run);
-  TetMesh mesh = run.stage(method.stage, [&](const Stage& stage) {
-    TetMesh filled = method.fill(boundary, run.options.volume, stage);
-    stage.count("tets", static_cast<double>(filled.tets.size()));
-    return filled;
+  TetMesh mesh = kept<TetMesh>(run, "volume", [&] {
+    return run.stage(method.stage, [&](const Stage& stage) {
+      TetMesh filled = method.fill(boundary, run.options.volume, stage);
+      stage.count("tets", static_cast<double>(filled.tets.size()));
+      return filled;
+    });
   });
   mesh.source.reserve(mesh.boundary.size());
   for (std::size_t t = 0; t < boundary.source.size(); ++t)

@@ -74,6 +74,28 @@ TEST(AdaptNearness, WallsThatCameTooCoarseAreDividedWhereABoundIsAsked) {
   EXPECT_GT(bound.mesh.boundary.size(), 2 * free.mesh.boundary.size());
 }
 
+TEST(AdaptNearness, BendsThatNoSmoothSurfaceFollowsStayWhereABoundIsAsked) {
+  // A roof: its ridge bends by 28 degrees between flat faces.
+  TetMesh start = kuhn_cube(4);
+  const auto roof = [](Vec3 p) { return 0.25 * std::min(p.x, 1 - p.x); };
+  for (Vec3& p : start.points) p.z += p.z * roof(p);
+  const AdaptedMesh bound = adapted_within(start, 0.2, 0.002);
+  const auto farthest = [&](const TetMesh& mesh) {
+    double most = 0;
+    for (const Triangle& t : mesh.boundary)
+      for (std::size_t i = 0; i < 3; ++i) {
+        const Vec3 p = 0.5 * (mesh.points[t[i]] + mesh.points[t[(i + 1) % 3]]);
+        if (p.z > 0.9)
+          most = std::max(most, std::min(std::abs(p.z - 1 - roof(p)), std::min({p.x, p.y, 1 - p.x, 1 - p.y})));
+      }
+    return most;
+  };
+  EXPECT_LE(farthest(bound.mesh), 0.002);
+  EXPECT_LE(bound.deviation.upper, 0.002);
+  EXPECT_GT(bound.after.fitting, 0.95 * static_cast<double>(bound.after.edges));
+  EXPECT_EQ(first_defect(bound.mesh), std::nullopt);
+}
+
 /// A block with a slit that is `gap` high at its narrowest: its floor is a hill, an arc of pieces of 15 degrees, below
 /// a flat ceiling. Three layers of cells, of the middle one only the first column is there.
 TetMesh slit_block(double gap) {
@@ -120,15 +142,17 @@ bool has_note(const Report& report, const std::string& text) {
   return false;
 }
 
-TEST(AdaptNearness, BoundaryThatWouldCrossItselfStays) {
+TEST(AdaptNearness, BoundaryThatWouldCrossItselfStaysThere) {
   const TetMesh wide = slit_block(0.2), narrow = slit_block(0.003);
   ASSERT_EQ(first_defect(narrow), std::nullopt);
   const AdaptedMesh free = adapted_within(wide, 0.2, 0.05), kept = adapted_within(narrow, 0.2, 0.05);
   EXPECT_FALSE(has_note(free.report, "would have crossed itself"));
   EXPECT_TRUE(has_note(kept.report, "would have crossed itself"));
+  EXPECT_TRUE(has_note(kept.report, "of its 284 triangles stay as they were there"));
   EXPECT_EQ(first_defect(kept.mesh), std::nullopt);
-  EXPECT_NEAR(volume(kept.mesh), volume(narrow), 1e-12);
-  EXPECT_EQ(kept.mesh.boundary.size(), narrow.boundary.size());
+  EXPECT_NEAR(volume(kept.mesh), volume(narrow), 2e-3);
+  // Outside the slit walls are divided.
+  EXPECT_GT(kept.mesh.boundary.size(), 2 * narrow.boundary.size());
   EXPECT_GT(volume(free.mesh), volume(wide) + 1e-4);
 }
 

@@ -116,7 +116,7 @@ TEST(FrontState, FindsWhatIsWrongWithIt) {
   FrontState open = whole, turned = whole, more = whole, sizeless = whole;
   open.held.pop_back();
   std::swap(turned.passive[3].corners[0], turned.passive[3].corners[1]);
-  more.filled.push_back({{0, 1, 2, 3}});
+  more.filled.push_back({{{0, 1, 2, 3}}});
   sizeless.sizes.pop_back();
   for (const FrontState& broken : {open, turned, more, sizeless}) EXPECT_NE(broken.first_inconsistency(), std::nullopt);
 }

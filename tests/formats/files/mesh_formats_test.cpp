@@ -153,7 +153,7 @@ std::string text_in(const std::filesystem::path& file) {
 TEST(TextOfFormats, SaysTheSameAsTheirBytes) {
   int formats = 0;
   for (const FormatInfo& info : known_formats()) {
-    if (!info.also_text) continue;
+    if (!info.also_text || !info.reads_mesh) continue;
     ++formats;
     for (const bool second : {false, true}) {
       SCOPED_TRACE(std::string(info.name) + (second ? " of second order" : ""));

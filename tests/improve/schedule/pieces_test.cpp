@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <mutex>
 #include <set>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -20,7 +21,8 @@ using namespace octafront::testing;
 
 constexpr auto kBalanced = ImproveOptions::Objective::kBalanced;
 
-const auto no_watch = [](std::size_t) {};
+const auto no_notes = [](std::span<const Bytes>) {};
+const auto no_progress = [](double) {};
 
 /// Several pieces of up to kMost vertices.
 const TetMesh& many_pieces() {
@@ -34,16 +36,14 @@ TEST(Pieces, OfOneStageShareNoVertexAndAllAreOnceInOneWithAllAround) {
   std::vector<int> star(start.points.size(), 0), seen_inside(start.points.size(), 0), of_piece;
   for (const Tet& t : start.tets)
     for (const VertexIndex v : t) ++star[v];
-  MeshOfPieces mesh(TetMesh{start}, kBalanced, nullptr, kMost);
+  MeshOfPieces mesh(TetMesh{start}, kBalanced, nullptr, Comm(nullptr), kMost);
   std::vector<std::size_t> counts;
   std::mutex mutex;
-  const auto watch = [&](std::size_t pieces) {
-    if (pieces == 0) return;
-    counts.push_back(pieces);
-    of_piece.assign(start.points.size(), -1);
-  };
-  mesh.work(mesh.all(), 1, watch, [&](MeshPiece& piece, std::size_t number) {
+  int pieces = 0;
+  of_piece.assign(start.points.size(), -1);
+  const auto look = [&](MeshPiece& piece) {
     const std::scoped_lock lock(mutex);
+    ++pieces;
     EXPECT_EQ(piece.mesh->first_inconsistency(), std::nullopt);
     std::vector<int> here(piece.vertices.size(), 0);
     for (TetIndex t = 0; t < piece.mesh->slots(); ++t)
@@ -51,12 +51,19 @@ TEST(Pieces, OfOneStageShareNoVertexAndAllAreOnceInOneWithAllAround) {
     for (VertexIndex v = 0; v < here.size(); ++v) {
       int& owner = of_piece[piece.vertices[v]];
       EXPECT_EQ(owner, -1);
-      owner = static_cast<int>(number);
+      owner = pieces;
       const bool at_rim = std::ranges::binary_search(piece.at_rim, v);
       EXPECT_TRUE(here[v] == star[piece.vertices[v]] || (at_rim && piece.mesh->on_boundary(v)));
       seen_inside[piece.vertices[v]] += !at_rim;
     }
-  });
+    return Bytes(1);
+  };
+  const auto notes = [&](std::span<const Bytes> of_pieces) {
+    EXPECT_EQ(std::ranges::count(of_pieces, Bytes(1)), pieces);
+    counts.push_back(static_cast<std::size_t>(std::exchange(pieces, 0)));
+    of_piece.assign(start.points.size(), -1);
+  };
+  mesh.work(mesh.all(), 1, look, notes, no_progress);
   ASSERT_GE(counts.size(), 3u);
   EXPECT_GT(counts[0], 2u);
   EXPECT_GT(counts[1], 1u);
@@ -65,8 +72,9 @@ TEST(Pieces, OfOneStageShareNoVertexAndAllAreOnceInOneWithAllAround) {
 
 TEST(Pieces, LookedAtAloneGiveTheMeshBack) {
   const TetMesh& start = many_pieces();
-  MeshOfPieces mesh(TetMesh{start}, kBalanced, nullptr, kMost);
-  mesh.work(mesh.all(), 0, no_watch, [](MeshPiece&, std::size_t) {});
+  MeshOfPieces mesh(TetMesh{start}, kBalanced, nullptr, Comm(nullptr), kMost);
+  mesh.work(
+      mesh.all(), 0, [](MeshPiece&) { return Bytes(); }, no_notes, no_progress);
   TetMesh back = mesh.release(nullptr);
   const auto keys = [](const TetMesh& m) {
     std::vector<Tet> all;
@@ -82,12 +90,14 @@ TEST(Pieces, LookedAtAloneGiveTheMeshBack) {
 TEST(Pieces, AreMendedAcrossTheirRims) {
   TetMesh start = many_pieces();
   for (const Tet& t : start.tets) start.region.push_back(start.points[t[0]].x > 0.4);
-  MeshOfPieces mesh(TetMesh{start}, kBalanced, nullptr, kMost);
-  mesh.work(mesh.all(), 1, no_watch, [](MeshPiece& piece, std::size_t) {
+  MeshOfPieces mesh(TetMesh{start}, kBalanced, nullptr, Comm(nullptr), kMost);
+  const auto mend = [](MeshPiece& piece) {
     insert_vertices(*piece.mesh, 0.3f, Goal::kWorst, {});
     while (reconnect(*piece.mesh, 0.3f, Goal::kWorst, {}).done != 0) {
     }
-  });
+    return Bytes();
+  };
+  mesh.work(mesh.all(), 1, mend, no_notes, no_progress);
   EXPECT_NE(mesh.tets(), start.tets.size());
   const TetMesh made = mesh.release(nullptr);
   EXPECT_EQ(first_defect(made), std::nullopt);
@@ -99,7 +109,7 @@ TEST(Pieces, AreMendedAcrossTheirRims) {
 
 TEST(Pieces, FindThePoorAndThoseThatCross) {
   const TetMesh& start = many_pieces();
-  MeshOfPieces mesh(TetMesh{start}, kBalanced, nullptr, kMost);
+  MeshOfPieces mesh(TetMesh{start}, kBalanced, nullptr, Comm(nullptr), kMost);
   EXPECT_TRUE(mesh.corners_of_crossings().empty());
   EXPECT_TRUE(mesh.corners_below(-1).empty());
   const float threshold = 0.1f;
@@ -119,13 +129,14 @@ TEST(Pieces, WithAnInputCanBeTakenBack) {
   const BoundaryInput input{surface, tree, features, features};
   MeshOfPieces mesh(TetMesh{start}, kBalanced, &input);
   EXPECT_FALSE(mesh.moved_boundary());
-  const auto change = [](MeshPiece& piece, std::size_t) {
+  const auto change = [](MeshPiece& piece) {
     reconnect(*piece.mesh, 0.6f, Goal::kWorst, {});
     insert_vertices(*piece.mesh, 0.5f, Goal::kWorst, {});
     smooth_mean(*piece.mesh, 1, {});
+    return Bytes();
   };
   for (int round = 0; round < 2; ++round) {
-    mesh.work(mesh.all(), 1, no_watch, change);
+    mesh.work(mesh.all(), 1, change, no_notes, no_progress);
     EXPECT_NE(mesh.tets(), start.tets.size());
     mesh.rewind();
     EXPECT_EQ(mesh.tets(), start.tets.size());

@@ -1,0 +1,55 @@
+#pragma once
+
+#include "base/comm/comm.h"
+
+#include <cstring>
+#include <type_traits>
+
+namespace octafront {
+
+/// Numbers and lists of plain things as bytes, for processes of one program on like machines.
+class Packer {
+ public:
+  template <class T>
+  void add(const T& value) requires std::is_trivially_copyable_v<T> {
+    append(std::as_bytes(std::span<const T, 1>(&value, 1)));
+  }
+  template <class T>
+  void add(const std::vector<T>& list) requires std::is_trivially_copyable_v<T> {
+    add(static_cast<std::uint64_t>(list.size()));
+    append(std::as_bytes(std::span(list)));
+  }
+  Bytes& bytes() { return bytes_; }
+
+ private:
+  void append(std::span<const std::byte> more) { bytes_.insert(bytes_.end(), more.begin(), more.end()); }
+  Bytes bytes_;
+};
+
+/// Gives back in the same order what a Packer took.
+class Unpacker {
+ public:
+  explicit Unpacker(std::span<const std::byte> bytes) : bytes_(bytes) {}
+
+  template <class T>
+  T take() requires std::is_trivially_copyable_v<T> {
+    T value;
+    std::memcpy(&value, bytes_.data(), sizeof value);
+    bytes_ = bytes_.subspan(sizeof value);
+    return value;
+  }
+  template <class T>
+  void take(std::vector<T>& list) requires std::is_trivially_copyable_v<T> {
+    const auto size = static_cast<std::size_t>(take<std::uint64_t>());
+    list.resize(size);
+    if (size == 0) return;
+    std::memcpy(list.data(), bytes_.data(), size * sizeof(T));
+    bytes_ = bytes_.subspan(size * sizeof(T));
+  }
+  bool is_empty() const { return bytes_.empty(); }
+
+ private:
+  std::span<const std::byte> bytes_;
+};
+
+}  // namespace octafront

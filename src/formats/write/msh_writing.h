@@ -1,0 +1,190 @@
+#pragma once
+
+// What writers of Gmsh's files share, whole ones and those of parts.
+
+#include <octafront/mesh_field.h>
+
+#include "base/core/shared_value.h"
+#include "formats/containers/text_writer.h"
+#include "formats/parts/mesh_output.h"
+#include "formats/parts/mesh_parts.h"
+#include "formats/parts/mixed_cells.h"
+#include "formats/parts/msh_stream.h"
+
+#include <array>
+#include <cstring>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace octafront::io {
+
+/// Gmsh's type of an element of that dimension with so many nodes.
+std::int32_t gmsh_type_of(int dimension, std::size_t nodes);
+
+/// Nodes of an element, tags counting from 1, in Gmsh's order. Elements of dimensions 2 and 3 are those of MixedCells.
+class ElementNodes {
+ public:
+  ElementNodes(const MeshParts& mesh, const MixedCells& cells) : mesh_(mesh), cells_(cells) {}
+
+  template <class Tag, class Put>
+  void put(int dimension, std::uint32_t element, const Put& put_tag) {
+    const auto all = [&](std::span<const VertexIndex> nodes) {
+      for (const VertexIndex v : nodes) put_tag(static_cast<Tag>(v + Tag{1}));
+    };
+    if (dimension == 0) return put_tag(static_cast<Tag>(element + Tag{1}));
+    if (dimension == 1) return all(mesh_.edge_nodes(element, edge_));
+    if (dimension == 2) return all(cells_.face_nodes(element, face_));
+    const auto nodes = cells_.nodes(element, tet_, kGmshWide);
+    if (nodes.size() == 10) std::swap(tet_[8], tet_[9]);  // 34 before 24
+    all(nodes);
+  }
+
+ private:
+  const MeshParts& mesh_;
+  const MixedCells& cells_;
+  std::array<VertexIndex, 15> tet_;
+  std::array<VertexIndex, 8> face_;
+  std::array<VertexIndex, 3> edge_;
+};
+
+/// The numbers of a file in either encoding; a text has a line for each record.
+class MshNumbers {
+ public:
+  MshNumbers(AtomicFile& file, bool as_text) : file_(file), out_(file), as_text_(as_text) {}
+
+  bool as_text() const { return as_text_; }
+  template <class T>
+  void put(T value) {
+    if (!as_text_) return file_.write(&value, sizeof value);
+    if (!at_line_start_) out_ << ' ';
+    out_ << value;
+    at_line_start_ = false;
+  }
+  void put(const Vec3& p) {
+    for (int axis = 0; axis < 3; ++axis) put(p[axis]);
+  }
+  void end_record() {
+    if (!as_text_) return;
+    out_ << '\n';
+    at_line_start_ = true;
+  }
+  /// Ends the values of a section and writes the line that closes it.
+  void close(std::string_view section) { out_.line("{}$End{}", as_text_ ? "" : "\n", section); }
+
+  /// For each of `count` records what fill(i, put) puts, `bytes` of them in all.
+  template <class Fill>
+  void records(std::size_t count, std::size_t bytes, const Fill& fill) {
+    if (as_text_) return write_lines(count, fill);
+    file_.write_records(count, bytes, [&](std::size_t begin, std::size_t end, char* to) {
+      fill(begin, end, [&](auto value) {
+        std::memcpy(to, &value, sizeof value);
+        to += sizeof value;
+      });
+    });
+  }
+
+ private:
+  template <class Fill>
+  void write_lines(std::size_t count, const Fill& fill) {
+    for (std::size_t i = 0; i < count; ++i) {
+      fill(i, i + 1, [this](auto value) { this->put(value); });
+      end_record();
+    }
+  }
+
+  AtomicFile& file_;
+  TextWriter out_;
+  bool as_text_, at_line_start_ = true;
+};
+
+void write_format(TextWriter& out, MshNumbers& numbers, std::string_view version);
+
+/// Names stand in quotes, which Gmsh does not escape.
+std::string unquoted(std::string_view name);
+/// Numbers of fields that Gmsh takes: scalars, vectors, tensors.
+bool is_of_gmsh(const MeshField& field);
+void note_fields_left_out(MeshOutput& out);
+
+/// $NodeData and $ElementData; tag_of(field, i) is the tag of point or tetrahedron i. Their heads are text in binary
+/// files, too.
+template <class TagOf>
+void write_fields(TextWriter& text, MshNumbers& out, std::span<const MeshField> fields, const TagOf& tag_of) {
+  for (const MeshField& field : fields) {
+    if (!is_of_gmsh(field)) continue;
+    const std::string_view section = field.of_elements ? "ElementData" : "NodeData";
+    const std::size_t n = field.components, count = field.values.size() / n;
+    text.line("${}\n1\n\"{}\"\n1\n0\n3\n0\n{}\n{}", section, unquoted(field.name), n, count);
+    for (std::size_t i = 0; i < count; ++i) {
+      out.put(static_cast<std::int32_t>(tag_of(field, i)));
+      for (std::size_t k = 0; k < n; ++k) out.put(field.values[i * n + k]);
+      out.end_record();
+    }
+    out.close(section);
+  }
+}
+
+/// Tags of physical groups: regions, patches and curves keep their numbers, regions of an image their labels; sets
+/// follow.
+std::vector<std::int32_t> physical_tags(const MeshParts& mesh);
+int dimension_of(NamedSet::Kind kind);
+void write_physical_names(TextWriter& out, const MeshParts& mesh, const std::vector<std::int32_t>& tags,
+                          bool with_sets);
+
+/// Each combination of groups that elements are in, as an entity of Gmsh.
+class MshEntities {
+ public:
+  struct Entity {
+    int dimension;
+    std::uint32_t slot;  ///< its combination
+    std::int32_t tag;
+    Box3 box = {};
+  };
+
+  MshEntities(const MeshParts& mesh, const MixedCells& cells);
+
+  const std::vector<Entity>& all() const { return entities_; }  ///< by dimension
+  /// Where those of a dimension begin.
+  std::size_t first(std::size_t dimension) const { return first_[dimension]; }
+  const Combinations& of_dimension(std::size_t dimension) const { return by_[dimension]; }
+  std::span<const std::uint32_t> members_of(const Entity& e) const {
+    return by_[static_cast<std::size_t>(e.dimension)].members[e.slot];
+  }
+  /// Tags of the physical groups that it is in.
+  std::vector<std::int32_t> physical_of(const Entity& e) const;
+  /// The entity of least dimension at each point.
+  std::vector<std::uint32_t> take_entities_of_nodes() { return std::move(of_node_); }
+  const std::vector<std::int32_t>& physical() const { return physical_; }
+  /// $Entities.
+  void write(TextWriter& text, MshNumbers& out) const;
+  /// The element that a member of an entity of that dimension is, or is part of.
+  std::uint32_t element(int dimension, std::uint32_t member) const {
+    return dimension == 3   ? static_cast<std::uint32_t>(cells_.cell_of(member))
+           : dimension == 2 ? static_cast<std::uint32_t>(cells_.face_of(member))
+                            : member;
+  }
+
+ private:
+  struct BoxSum {
+    Box3 box;
+    void operator+=(const BoxSum& other) { box.add(other.box); }
+  };
+
+  void make();
+  BoxSum take_nodes(std::uint32_t e);
+  std::vector<std::vector<std::int32_t>> bounding() const;
+
+  const MeshParts& mesh_;
+  const MixedCells& cells_;
+  std::vector<std::int32_t> physical_;  ///< of each part
+  std::array<Combinations, 4> by_;      ///< by dimension
+  std::vector<Entity> entities_;
+  std::array<std::size_t, 5> first_{};
+  std::vector<std::uint32_t> of_node_;
+};
+
+/// Nodes of an element of that dimension, by MixedCells.
+std::size_t nodes_of_element(const MeshParts& mesh, const MixedCells& cells, int dimension, std::uint32_t i);
+
+}  // namespace octafront::io

@@ -1,0 +1,150 @@
+"""The tool as several processes: mpirun_test.py MPIRUN OCTAFRONT PROGRAM SAMPLES_DIR."""
+import json
+import os
+import pathlib
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+MPIRUN, OCTAFRONT, PROGRAM, SAMPLES = sys.argv[1], sys.argv[2], sys.argv[3], pathlib.Path(sys.argv[4])
+BRACKET = SAMPLES / "bracket.stl"
+
+# More processes than cores, as root in a container, where memory cannot be bound; processes that wait let others work.
+LAUNCH = [MPIRUN, "--allow-run-as-root", "--oversubscribe", "--bind-to", "none", "--mca", "hwloc_base_mem_bind_failure_action",
+          "silent", "--mca", "mpi_yield_when_idle", "1"]
+
+
+class Mpirun(unittest.TestCase):
+    def setUp(self):
+        self.scratch = tempfile.TemporaryDirectory()
+        self.dir = pathlib.Path(self.scratch.name)
+        self.out = self.dir / "out.vtu"
+
+    def tearDown(self):
+        self.scratch.cleanup()
+
+    def launch(self, ranks, *command, check=None):
+        done = subprocess.run([*LAUNCH, "-n", str(ranks), *map(str, command)], text=True, timeout=300, capture_output=True)
+        if check is not None:
+            self.assertEqual(done.returncode, check, f"{done.stdout}{done.stderr}")
+        return done
+
+    def mesh(self, ranks, *options, source=BRACKET, check=0):
+        return self.launch(ranks, OCTAFRONT, "mesh", source, "-o", self.out, "--json", self.dir / "out.json", *options, check=check)
+
+    def nothing_left(self):
+        self.assertEqual([p.name for p in self.dir.iterdir() if p.suffix != ".json"], [])
+
+    def test_one_mesh_for_any_number_of_ranks(self):
+        cube = self.dir / "cube.off"
+        corners = [[n >> axis & 1 for axis in range(3)] for n in range(8)]
+        faces = [(0, 2, 3), (0, 3, 1), (4, 5, 7), (4, 7, 6), (0, 1, 5), (0, 5, 4), (2, 6, 7), (2, 7, 3), (0, 4, 6), (0, 6, 2),
+                 (1, 3, 7), (1, 7, 5)]
+        cube.write_text("\n".join(["OFF", "8 12 0", *(" ".join(map(str, c)) for c in corners),
+                                   *("3 %d %d %d" % f for f in faces)]) + "\n")
+        for source, options in ((BRACKET, ["--elements", "60000"]), (cube, ["--size", "0.07", "--order", "2"]),
+                                ("gyroid(x,y,z) - 0.3", ["--cell", "10", "--size", "1"])):
+            subprocess.run([OCTAFRONT, "mesh", source, "-o", self.out, "-q", *options], check=True)
+            alone = self.out.read_bytes()
+            for ranks in (1, 2, 3, 5, 8):
+                for threads in (1, 2):
+                    self.out.unlink()
+                    done = self.mesh(ranks, *options, "--threads", threads, source=source)
+                    self.assertEqual(self.out.read_bytes(), alone, f"{source}: {ranks} ranks, {threads} threads")
+                    self.assertEqual(done.stdout.count("written:"), 1)
+                    told = json.loads((self.dir / "out.json").read_text())
+                    self.assertEqual(len(told.get("ranks", [0])), ranks)
+                    self.assertTrue(all(row["rounds_of_talk"] > 20 and row["shared_seconds"] > 0 for row in told.get("ranks", [])))
+
+    def test_long_messages_go_in_parts(self):
+        for ranks in (1, 2, 5):
+            self.launch(ranks, PROGRAM, "messages", check=0)
+
+    def stages(self):
+        done = self.launch(2, PROGRAM, "kill", "none", "0", BRACKET, self.out, check=0)
+        self.out.unlink()
+        return list(dict.fromkeys(done.stdout.splitlines()))
+
+    def test_a_rank_killed_in_any_stage_ends_all_and_leaves_nothing(self):
+        stages = self.stages()
+        self.assertIn("writing", stages)
+        self.assertGreater(len(stages), 6)
+        for stage in stages:
+            for rank in (0, 2):
+                begin = time.time()
+                done = self.launch(3, PROGRAM, "kill", stage, rank, BRACKET, self.out)
+                self.assertNotEqual(done.returncode, 0, stage)
+                self.assertIn("signal 9", done.stderr, stage)
+                self.assertLess(time.time() - begin, 60)
+                if stage == "writing" and rank != 0 and self.out.exists():  # The first rank was done, and it is all there.
+                    subprocess.run([OCTAFRONT, "check", self.out], check=True, capture_output=True)
+                    self.out.unlink()
+                self.nothing_left()
+
+    def test_a_killed_tool_leaves_nothing(self):
+        run = subprocess.Popen([*LAUNCH, "-n", "3", OCTAFRONT, "mesh", str(BRACKET), "-o", str(self.out), "--elements", "2e6"],
+                               stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        ranks = []
+        while len(ranks) < 3:
+            time.sleep(0.2)
+            listed = subprocess.run(["ps", "-o", "pid=,args=", "--ppid", str(run.pid)], capture_output=True, text=True).stdout
+            ranks = [int(line.split()[0]) for line in listed.splitlines() if OCTAFRONT in line]
+        time.sleep(2)
+        os.kill(ranks[1], signal.SIGKILL)
+        self.assertIn("signal 9", run.communicate(timeout=60)[1])
+        self.assertNotEqual(run.returncode, 0)
+        self.nothing_left()
+
+    def test_a_killed_run_goes_on_with_other_ranks(self):
+        options, kept = ["--elements", "60000"], self.dir / "kept"
+        self.mesh(1, *options)
+        whole = self.out.read_bytes()
+        self.out.unlink()
+        run = subprocess.Popen([*LAUNCH, "-n", "3", OCTAFRONT, "mesh", str(BRACKET), "-o", str(self.out), *options,
+                                "--checkpoint", str(kept)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        while run.poll() is None and not any("volume" in p.name for p in kept.glob("*.octafront")):
+            time.sleep(0.01)
+        listed = subprocess.run(["ps", "-o", "pid=", "--ppid", str(run.pid)], capture_output=True, text=True).stdout
+        for pid in listed.split()[-1:]:
+            os.kill(int(pid), signal.SIGKILL)
+        run.wait(timeout=60)
+        for ranks in (2, 1):
+            self.out.unlink(missing_ok=True)
+            self.mesh(ranks, *options, "--resume", kept)
+            self.assertEqual(self.out.read_bytes(), whole)
+        self.assertIn("other options", self.mesh(2, "--size", "3", "--resume", kept, check=3).stderr)
+
+    def test_no_memory_on_one_rank_is_one_message(self):
+        limited = ["sh", "-c", 'ulimit -v $1; shift; exec "$@"', "sh", "500000"]
+        command = [OCTAFRONT, "mesh", BRACKET, "-o", self.out, "--elements", "3e6", "--threads", "1"]
+        done = self.launch(1, *command, ":", "-n", "1", *limited, *command)
+        self.assertEqual(done.returncode, 6, done.stderr)
+        self.assertEqual(len(re.findall(r"octafront: rank 1 of 2, in stage .*out of memory", done.stderr)), 1, done.stderr)
+        self.nothing_left()
+
+    def test_refusals_are_said_once(self):
+        missing = self.dir / "missing.stl"
+        for command, status, words in ((["mesh", missing, "-o", self.out], 3, "missing.stl"),
+                                       (["mesh", BRACKET, "-o", self.out, "--size", "-1"], 2, "--size"),
+                                       (["mesh", BRACKET, "-o", self.out, "--improve-time", "1"], 2, "--improve-time"),
+                                       (["mesh", "-", "-o", self.out], 2, "standard input"),
+                                       (["mesh", BRACKET, "-o", self.dir / "no" / "out.vtu"], 5, "no")):
+            done = self.launch(3, OCTAFRONT, *command, check=status)
+            said = [line for line in done.stderr.splitlines() if line.startswith("octafront:")]
+            self.assertEqual(len(said), 1, done.stderr)
+            self.assertIn(words, said[0])
+            self.nothing_left()
+
+    def test_other_commands_are_done_by_the_first(self):
+        for command in (["info", BRACKET], ["mesh", BRACKET, "--dry-run", "--size", "5"], ["help"]):
+            alone = subprocess.run([OCTAFRONT, *command], capture_output=True, text=True, check=True).stdout
+            done = self.launch(3, OCTAFRONT, *command, check=0)
+            self.assertEqual(len(done.stdout.splitlines()), len(alone.splitlines()))
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=2)
