@@ -43,7 +43,7 @@ row "functions with six or more parameters" "$(ctags -R -x --languages=C++ --kin
          if (n >= 6) ++many } END { print many + 0 }')"
 
 echo "files with the marks of a structure"
-row "  editable tetrahedral mesh" "$(files_with '^(class|struct) (TetComplex|WorkMesh|EditMesh|EditBlock|TetEditor)\b')"
+row "  editable tetrahedral mesh" "$(files_with '^(class|struct) (TetComplex|WorkMesh|EditMesh|MeshOfPieces|TetEditor)\b')"
 row "  sorted face as a key" "$(files_with '(TriangleKey|FaceKey|SortedFace|sorted_face)\b *[({=]|std::sort\((t|key|corners|face|f)\.begin')"
 row "  edges grouped by a map or sorted pairs" "$(files_with 'map<Edge|pair<Edge,|vector<Edge> sorted')"
 row "  counting sort" "$(files_with '\+\+\w*\[[^;]* \+ 1\];')"

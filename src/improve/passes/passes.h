@@ -1,10 +1,9 @@
 #pragma once
 
 // improve/passes: the single passes of improvement. Each takes a mesh and a guide of its boundary, looks at places
-// that are bad, and changes them for the better, block by block; schedule/ decides their order.
-
-// The single passes of improvement, each of which leaves the mesh valid by exact signs and the worst element of the
-// mesh, by beta, by smallest and by largest dihedral angle, no worse than it was. schedule.cpp strings them together.
+// that are bad, and changes them for the better. It leaves the mesh valid by exact signs and the worst element, by
+// beta, by smallest and by largest dihedral angle, no worse than it was. One thread works on a mesh, which may be a
+// piece of a larger one (pieces/); schedule/ decides their order.
 
 #include <octafront/run_context.h>
 
@@ -42,13 +41,13 @@ inline constexpr float kMeanRisesGuard = 0.6f;
 /// in a lattice.
 inline constexpr float kGoodEnough = 0.93f;
 
-/// Sweeps over the inner vertices, block by block (vertex_blocks.h), in parallel: each goes the part `relaxation` of
-/// the way to the mean of its neighbours, weighted by the length of the edges to them, if the rule allows.
+/// Sweeps over the inner vertices: each goes the part `relaxation` of the way to the mean of its neighbours, weighted by
+/// the length of the edges to them, if the rule allows.
 PassResult laplacian_sweeps(EditMesh& mesh, int sweeps, double relaxation, MoveRule rule, const RunContext& context);
 
-/// Sweeps over the vertices, block by block, in parallel: each goes towards where the sum of (1 - beta)^2 around it is
-/// least, if that falls and the worst score around it rises or stays above kMeanRisesGuard. Here and below, vertices of
-/// the boundary move as the guide says; without one they stay.
+/// Sweeps over the vertices: each goes towards where the sum of (1 - beta)^2 around it is least, if that falls and the
+/// worst score around it rises or stays above kMeanRisesGuard. Here and below, vertices of the boundary move as the
+/// guide says; without one they stay.
 PassResult smooth_mean(EditMesh& mesh, int sweeps, const RunContext& context, const BoundaryGuide* guide = nullptr);
 
 /// What a reconnection must make better.

@@ -2,8 +2,8 @@
 
 // A tetrahedral mesh that can be changed in place: a TetComplex, with the places of the vertices and what its elements
 // are worth. Taken from a TetMesh and given back to it; boundary triangles keep their number, patch and source
-// throughout, as long as they are there. Inside, vertices and tets are numbered along a space-filling curve, for the
-// cache. Vertices move here; connections are walked and changed by way of an MeshEditor (mesh_editor.h).
+// throughout, as long as they are there, vertices theirs. Vertices move here; connections are walked and changed by way
+// of a MeshEditor (mesh_editor.h).
 
 #include <octafront/tet_mesh.h>
 
@@ -106,7 +106,6 @@ class EditMesh {
 
  private:
   friend class MeshEditor;
-  friend class EditMeshShuffle;  ///< of the tests
 
   /// More slots, on top of the free lists, the first ones uppermost.
   void reserve_tets(std::size_t more);
