@@ -41,8 +41,8 @@ inline constexpr float kMeanRisesGuard = 0.6f;
 /// in a lattice.
 inline constexpr float kGoodEnough = 0.93f;
 
-/// Sweeps over the inner vertices: each goes the part `relaxation` of the way to the mean of its neighbours, weighted by
-/// the length of the edges to them, if the rule allows.
+/// Sweeps over the inner vertices: each goes the part `relaxation` of the way to the mean of its neighbours, weighted
+/// by the length of the edges to them, if the rule allows.
 PassResult laplacian_sweeps(EditMesh& mesh, int sweeps, double relaxation, MoveRule rule, const RunContext& context);
 
 /// Sweeps over the vertices: each goes towards where the sum of (1 - beta)^2 around it is least, if that falls and the
