@@ -19,10 +19,10 @@ struct Cost {
   double per_tet, per_face;
   double of(const Estimate& e) const { return per_tet * e.tets + per_face * e.boundary_faces; }
 };
-constexpr Cost kFillSeconds{2e-6, 12e-6}, kImproveSeconds{0.6e-6, 9e-6}, kBytes{68, 900};
+constexpr Cost kFillSeconds{2e-6, 12e-6}, kImproveSeconds{0.6e-6, 9e-6}, kBytes{49, 400}, kFileBytes{8.4, 35};
 // The same of triangles that are kept and longer than the sizes: for each size along their longest edges beyond two.
 constexpr double kFillPerSizeOfEdge = 0.1e-3, kImprovePerSizeOfEdge = 0.25e-3;
-constexpr double kBytesOfProgram = 20e6, kFileBytesPerTet = 14;
+constexpr double kBytesOfProgram = 33e6;
 /// Twice as many threads take about 1 / 1.7 of the time.
 constexpr double kThreadPower = 0.75;
 
@@ -75,7 +75,7 @@ Estimate estimate_run(const Report& sizes, const Options& options, int threads) 
   // Of the processor, not the clock: what else the machine does now is not this run's.
   if (options.method == Method::kOctreeAft) e.seconds = (sizes.cpu_seconds + work) / std::pow(used, kThreadPower);
   e.memory_bytes = std::max(static_cast<double>(sizes.peak_memory_bytes), kBytesOfProgram + kBytes.of(e));
-  e.file_bytes = kFileBytesPerTet * e.tets;
+  e.file_bytes = kFileBytes.of(e);
   return e;
 }
 
