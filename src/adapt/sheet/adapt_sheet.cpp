@@ -1,7 +1,9 @@
 #include "adapt/sheet/adapt_sheet.h"
 
 #include "adapt/sheet/sheet.h"
+#include "adapt/sheet/sheet_cells.h"
 #include "adapt/sheet/sheet_passes.h"
+#include "base/blocks/blocks.h"
 #include "base/core/disjoint_sets.h"
 #include "base/core/parallel.h"
 #include "base/core/validate.h"
@@ -129,27 +131,20 @@ class SheetAdapter {
   }
 
   static void cycles(Sheet& sheet, const SheetGuide& guide, const Stage& stage) {
-    PassCount split, collapse, swap, move;
+    SheetCounts sum;
     for (int cycle = 0; cycle < kMostCyclesOfSheet; ++cycle) {
       stage.check();
-      for (Vertex& v : sheet.vertices) v.touched = false;
-      PassCount now[4];
-      now[0] = split_long_edges(sheet, guide);
-      now[2] = swap_edges(sheet, guide);
-      now[1] = collapse_short_edges(sheet, guide);
-      now[2] += swap_edges(sheet, guide);
-      now[3] = smooth_vertices(sheet, guide);
+      const SheetCounts now = cycle_in_cells(sheet, guide, cycle);
       validate(sheet);
-      for (Vertex& v : sheet.vertices) v.active = v.touched;
-      split += now[0], collapse += now[1], swap += now[2], move += now[3];
-      const std::uint64_t changes = now[0].done + now[1].done + now[2].done + now[3].done;
+      sum += now;
       stage.progress(-1);
-      if (changes * kDoneOfSheet < triangles_of(sheet)) break;
+      // Before all stages have been, much may be left across cells.
+      if (cycle + 1 >= kCellStages && now.changes() * kDoneOfSheet < triangles_of(sheet)) break;
     }
-    stage.count("splits", static_cast<double>(split.done));
-    stage.count("collapses", static_cast<double>(collapse.done));
-    stage.count("swaps", static_cast<double>(swap.done));
-    stage.count("moves", static_cast<double>(move.done));
+    stage.count("splits", static_cast<double>(sum.split.done));
+    stage.count("collapses", static_cast<double>(sum.collapse.done));
+    stage.count("swaps", static_cast<double>(sum.swap.done));
+    stage.count("moves", static_cast<double>(sum.move.done));
   }
 
   /// The triangles, numbered as the vertices of the sheet.

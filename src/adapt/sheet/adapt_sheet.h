@@ -25,8 +25,8 @@ struct AdaptedSheet {
   GivenFit given;
 };
 
-/// Requires indices in range, finite coordinates, three corners for each triangle. `rules.frozen` has no say. On one
-/// thread, but for what measures distances. Throws Cancelled.
+/// Requires indices in range, finite coordinates, three corners for each triangle. `rules.frozen` has no say. The
+/// same for any number of threads. Throws Cancelled.
 AdaptedSheet adapt_sheet(const SurfaceMesh& surface, const MetricField& metric, const AdaptRules& rules,
                          const Stage& stage);
 

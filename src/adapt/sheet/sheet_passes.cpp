@@ -226,7 +226,8 @@ class SheetCollapser : SheetPass {
  private:
   bool may_go(VertexIndex u, VertexIndex w) const {
     const Vertex &from = sheet_.vertices[u], &to = sheet_.vertices[w];
-    if (from.frozen || from.kind == Kind::kFixed) return false;
+    // Beyond a rim there may be an edge or a triangle as one that would come.
+    if (from.frozen || from.kind == Kind::kFixed || to.rim) return false;
     if (from.kind == Kind::kCurve) return to.kind >= Kind::kCurve && sheet_.line(u, w);
     return true;
   }
@@ -326,6 +327,7 @@ class SheetSwapper : SheetPass {
       return false;
     if (sheet_.edge_length(p, q) > std::max(kLongest, sheet_.edge_length(a, b)) || !sheet_.around(p, q).empty())
       return false;
+    if (sheet_.vertices[p].rim && sheet_.vertices[q].rim) return false;  // they may share an edge beyond it
     for (const Sheet::Face& f : fresh)
       for (const Triangle& t : {first, second})
         if (!turns_little(sheet_.places(t), sheet_.places(f.corners))) return false;

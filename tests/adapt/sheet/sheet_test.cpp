@@ -55,10 +55,12 @@ SurfaceMesh unit_square(int n) {
   return surface;
 }
 
-AdaptedSurface adapted_sheet(const SurfaceMesh& surface, double size) {
+AdaptedSurface adapted_sheet(const SurfaceMesh& surface, double size, int threads = 0) {
   Options options;
   options.size.size = size;
-  return adapt_surface(surface, options);
+  RunContext context;
+  context.threads = threads;
+  return adapt_surface(surface, options, context);
 }
 
 double part_that_fits(const AdaptedSurface& made) {
@@ -112,6 +114,32 @@ TEST(AdaptSheet, BallFitsFineAndCoarseSizes) {
   EXPECT_NEAR(enclosed_volume(fine.surface), 4.18879, 0.04);
   EXPECT_LT(2 * coarse.surface.triangles.size(), ball.triangles.size());
   EXPECT_LE(coarse.deviation.upper, coarse.deviation.bound);
+}
+
+TEST(AdaptSheet, SameBitsForAnyNumberOfThreads) {
+  const SurfaceMesh ball = round_surface(12);
+  const auto both = [&](int threads) {
+    std::vector<AdaptedSurface> made{adapted_sheet(ball, 0.04, threads)};
+    made.push_back(adapted_sheet(made[0].surface, 0.08, threads));
+    return made;
+  };
+  const auto one = both(1);
+  // Of many cells, whose rims are no worse than what lies inside.
+  EXPECT_GT(one[0].surface.points.size(), 8192u);
+  for (const AdaptedSurface& made : one) {
+    EXPECT_EQ(edges_by_triangles(made.surface), (std::map<std::size_t, std::size_t>{{2, made.after.edges}}));
+    EXPECT_GT(part_that_fits(made), 0.95);
+    EXPECT_LT(made.after.longest, 2);
+    EXPECT_GT(made.after.quality_min, 0.4);
+  }
+  for (const int threads : {2, 3}) {
+    const auto more = both(threads);
+    for (std::size_t k = 0; k < 2; ++k) {
+      EXPECT_EQ(more[k].surface.points, one[k].surface.points);
+      EXPECT_EQ(more[k].surface.triangles, one[k].surface.triangles);
+      EXPECT_EQ(more[k].old_of_new, one[k].old_of_new);
+    }
+  }
 }
 
 TEST(AdaptSheet, OpenSurfaceKeepsItsRim) {
