@@ -55,14 +55,20 @@ function visibleFaces(mesh, state) {
   const stays = (t) => !state.hiddenRegions.has(region[t]) && (numberBeyond(t) < 4 || isBent(t));
   const solid = new FaceList(), ghost = new FaceList();
   const shell = state.filter ? ghost : solid;
+  const cutsAgain = beyond && !state.filter && !isSmooth(state);
+  const drawn = new Set(); // of the faces that the cut would draw again
+  const show = (list, half, patch) => {
+    if (cutsAgain && numberBeyond(half >>> 2) === 3) drawn.add(half);
+    list.add(half, patch);
+  };
   for (let f = 0; f < boundary.low.length; ++f) {
     const h = boundary.low[f], patch = boundary.number[f];
-    if (!state.hiddenPatches.has(patch) && stays(h >>> 2)) shell.add(h, patch + 1);
+    if (!state.hiddenPatches.has(patch) && stays(h >>> 2)) show(shell, h, patch + 1);
   }
   for (let f = 0; f < walls.low.length; ++f) {
     const a = walls.low[f], b = walls.high[f], patch = walls.number[f];
     const first = stays(a >>> 2);
-    if (first !== stays(b >>> 2) && !(patch > 0 && state.hiddenPatches.has(patch - 1))) shell.add(first ? a : b, patch);
+    if (first !== stays(b >>> 2) && !(patch > 0 && state.hiddenPatches.has(patch - 1))) show(shell, first ? a : b, patch);
   }
   let passed = 0;
   const count = tets.length / 4;
@@ -72,11 +78,12 @@ function visibleFaces(mesh, state) {
       if (values[t] < low || values[t] > high || !stays(t) || ++passed > MOST_FILTERED) continue;
       for (let i = 0; i < 4; ++i) solid.add(4 * t + i, 0);
     }
-  } else if (beyond && !isSmooth(state)) {
+  } else if (cutsAgain) {
     for (let t = 0; t < count; ++t) {
       const a = beyond[tets[4 * t]], b = beyond[tets[4 * t + 1]], c = beyond[tets[4 * t + 2]], d = beyond[tets[4 * t + 3]];
       if (a + b + c + d !== 3 || state.hiddenRegions.has(region[t])) continue;
-      solid.add(4 * t + (a ? (b ? (c ? 3 : 2) : 1) : 0), 0);
+      const half = 4 * t + (a ? (b ? (c ? 3 : 2) : 1) : 0);
+      if (!drawn.has(half)) solid.add(half, 0);
     }
   }
   return { solid, ghost, passed };
