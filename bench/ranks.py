@@ -56,7 +56,7 @@ def rows_of_stages(told, ranks):
 def seconds_alone(alone):
     """CPU seconds of one process: of all stages, and of what ranks share."""
     counters = {key: value for stage in alone["stages"] for key, value in stage["counters"].items()}
-    return alone["cpu_seconds"], counters["core CPU seconds"] + counters["advance CPU seconds"]
+    return alone["cpu_seconds"], sum(counters[f"{what} CPU seconds"] for what in ("core", "advance", "pieces"))
 
 
 def page(told, model, elements, args):
@@ -75,8 +75,8 @@ def page(told, model, elements, args):
              "waiting included; the whole.", "",
              "| ranks | stage | MB taken | imbalance | s shared | s talk | s |", "| --: | --- | --: | --: | --: | --: | --: |",
              *(row for n in sorted(told) if n > 1 for row in rows_of_stages(told[n], n)), "",
-             f"Of the {whole:.1f} CPU seconds of a process alone, lattice and front, which ranks share, take {shared:.1f}: "
-             f"{100 * serial:.0f} % are done by every rank. Without any cost of talk, that bounds what ranks gain (Amdahl):", "",
+             f"Of the {whole:.1f} CPU seconds of a process alone, lattice, front and pieces of improvement, which ranks share, take "
+             f"{shared:.1f}: {100 * serial:.0f} % are done by every rank. Without any cost of talk, that bounds what ranks gain (Amdahl):", "",
              "| ranks | times as fast, at most |", "| --: | --: |",
              *(f"| {p:,} | {1 / (serial + (1 - serial) / p):.2f} |" for p in (2, 4, 16, 64, 1024)), ""]
     return "\n".join(lines)

@@ -4,6 +4,7 @@
 #include "base/core/groups.h"
 #include "base/core/parallel.h"
 #include "base/core/shared_value.h"
+#include "base/core/stage_timer.h"
 #include "base/geometry/self_intersection.h"
 #include "base/geometry/spatial_order.h"
 #include "base/mesh/index_range.h"
@@ -203,6 +204,7 @@ std::vector<MeshOfPieces::Change> MeshOfPieces::work_on(const Division& division
   const Shares shares(sizes, comm_.size());
   const std::thread::id caller = std::this_thread::get_id();
   std::atomic<std::size_t> done{0};
+  const double start = process_cpu_seconds();
   do_share(comm_, shares, "improve", [&](std::size_t c) {
     if (division.tets[c].empty()) return;
     MeshPiece piece = extract(division, static_cast<std::uint32_t>(c));
@@ -213,6 +215,7 @@ std::vector<MeshOfPieces::Change> MeshOfPieces::work_on(const Division& division
     const double part = static_cast<double>(++done) * comm_.size() / static_cast<double>(changes.size());
     if (std::this_thread::get_id() == caller) progress(std::min(part, 1.0));
   });
+  piece_seconds_ += process_cpu_seconds() - start;
   gather_results(
       comm_, shares, "improve", changes,
       [](const Change& change, Packer& to) { Change::for_each_list(change, [&](const auto& list) { to.add(list); }); },

@@ -70,6 +70,8 @@ class MeshOfPieces {
   std::vector<std::uint8_t> corners_of_crossings() const;
 
   std::size_t tets() const { return live_; }
+  /// CPU seconds that this process's threads have spent on pieces.
+  double piece_seconds() const { return piece_seconds_; }
   std::span<const Vec3> points() const { return points_; }
   /// Where the vertices were that the mesh came with; only with an input.
   std::span<const Vec3> home() const { return home_; }
@@ -117,6 +119,7 @@ class MeshOfPieces {
   std::vector<Tet> tets_;  ///< [0] == kNone: none
   std::vector<std::uint32_t> region_;
   std::size_t live_ = 0;
+  double piece_seconds_ = 0;
   Box3 box_;                                    ///< of the vertices as they came
   TetMesh rest_;                                ///< all else
   std::vector<Edge> edges_;                     ///< features, sorted

@@ -415,6 +415,7 @@ class Improvement {
       stage_.count(pass.what, static_cast<double>(pass.result.done));
       stage_.count(fmt::format("{}: tried", pass.what), static_cast<double>(pass.result.tried));
     }
+    stage_.count("pieces CPU seconds", mesh_.piece_seconds());
     stage_.count(fmt::format("elements below {:.1f}", kReported), static_cast<double>(shortfall.elements));
     for (int cause = 0; cause < Shortfall::kCauses; ++cause)
       stage_.count(kCauseNames[cause].counter, static_cast<double>(shortfall.by_cause[cause].elements));
