@@ -88,7 +88,8 @@ MeshOfPieces::MeshOfPieces(TetMesh&& mesh, ImproveOptions::Objective objective, 
   for (const Vec3& p : points_) box_.add(p);
   if (!input) return;
   edges_ = input->of_mesh.edges;
-  pinned_.assign(points_.size(), 0), frozen_.assign(points_.size(), 0);
+  pinned_.assign(points_.size(), 0), frozen_ = is_corner_ = pinned_;
+  for (const VertexIndex v : input->of_mesh.corners) is_corner_[v] = 1;
   for (const VertexIndex v : input->pinned) pinned_[v] = 1;
   for (const VertexIndex v : input->frozen) frozen_[v] = 1;
   home_ = points_;
@@ -238,6 +239,7 @@ MeshPiece MeshOfPieces::extract(const Division& division, std::uint32_t cell) {
     if (division.at_rim[v] != 0) piece.at_rim.push_back(here);
     if (v < pinned_.size() && pinned_[v] != 0) piece.pinned.push_back(here);
     if (v < frozen_.size() && frozen_[v] != 0) piece.frozen.push_back(here);
+    if (v < is_corner_.size() && is_corner_[v] != 0) piece.features.corners.push_back(here);
   }
   const auto numbered = [&](auto corners) {
     for (VertexIndex& v : corners) v = number_in_piece_[v];
@@ -260,10 +262,6 @@ MeshPiece MeshOfPieces::extract(const Division& division, std::uint32_t cell) {
     if (is_in(rest_.interfaces[t])) part.interfaces.push_back(numbered(rest_.interfaces[t]));
   for (const std::uint32_t e : division.edges[cell])
     if (is_in(edges_[e])) piece.features.edges.push_back(numbered(edges_[e]));
-  if (input_)
-    for (const VertexIndex v : input_->of_mesh.corners)
-      if (division.cells.of[v] == cell && number_in_piece_[v] != kNone)
-        piece.features.corners.push_back(number_in_piece_[v]);
   for (const VertexIndex v : piece.vertices) number_in_piece_[v] = kNone;
   piece.mesh.emplace(std::move(part), objective_, EditMesh::Rim::kHeld);
   piece.mesh->remember();
@@ -303,19 +301,27 @@ void MeshOfPieces::apply(std::vector<Change>& changes) {
         if (v >= kNewVertex) v = first_new + (v - kNewVertex);
     for (const auto& [v, at] : change.moved) points_[v] = at;
     for (const auto& [number, corners] : change.boundary) rest_.boundary[number] = corners;
-    if (change.edges_gone.empty()) continue;
-    std::sort(change.edges_gone.begin(), change.edges_gone.end());
-    std::erase_if(edges_, [&](const Edge& e) {
-      return std::binary_search(change.edges_gone.begin(), change.edges_gone.end(), e);
-    });
-    for (const auto& [a, b] : change.edges_made) edges_.push_back({std::min(a, b), std::max(a, b)});
-    std::sort(edges_.begin(), edges_.end());
+    put(change);
   }
-  for (Change& change : changes) put(change);
+  apply_edges(changes);
+}
+
+/// All at once: each edge is of one piece.
+void MeshOfPieces::apply_edges(const std::vector<Change>& changes) {
+  std::vector<Edge> gone, made;
+  for (const Change& change : changes) {
+    gone.insert(gone.end(), change.edges_gone.begin(), change.edges_gone.end());
+    for (const auto& [a, b] : change.edges_made) made.push_back({std::min(a, b), std::max(a, b)});
+  }
+  if (gone.empty()) return;
+  std::sort(gone.begin(), gone.end());
+  std::erase_if(edges_, [&](const Edge& e) { return std::binary_search(gone.begin(), gone.end(), e); });
+  edges_.insert(edges_.end(), made.begin(), made.end());
+  std::sort(edges_.begin(), edges_.end());
 }
 
 /// New elements take the places of those that went, as far as these go.
-void MeshOfPieces::put(Change& change) {
+void MeshOfPieces::put(const Change& change) {
   for (const TetIndex t : change.gone) note_gone(t);
   for (std::size_t k = 0; k < change.made.size(); ++k) {
     const std::size_t t = k < change.gone.size() ? change.gone[k] : tets_.size();

@@ -107,7 +107,8 @@ class MeshOfPieces {
   MeshPiece extract(const Division& division, std::uint32_t cell);
   Change change_of(const MeshPiece& piece, std::span<const TetIndex> tets, const std::vector<Edge>& edges) const;
   void apply(std::vector<Change>& changes);
-  void put(Change& change);
+  void apply_edges(const std::vector<Change>& changes);
+  void put(const Change& change);
   void note_gone(TetIndex t);
   Features renumbered(const std::vector<VertexIndex>& number) const;
 
@@ -120,11 +121,11 @@ class MeshOfPieces {
   std::vector<std::uint32_t> region_;
   std::size_t live_ = 0;
   double piece_seconds_ = 0;
-  Box3 box_;                                    ///< of the vertices as they came
-  TetMesh rest_;                                ///< all else
-  std::vector<Edge> edges_;                     ///< features, sorted
-  std::vector<std::uint8_t> pinned_, frozen_;   ///< per vertex that came
-  std::vector<std::uint32_t> number_in_piece_;  ///< per vertex, while its piece is made; kNone
+  Box3 box_;                                               ///< of the vertices as they came
+  TetMesh rest_;                                           ///< all else
+  std::vector<Edge> edges_;                                ///< features, sorted
+  std::vector<std::uint8_t> pinned_, frozen_, is_corner_;  ///< per vertex that came
+  std::vector<std::uint32_t> number_in_piece_;             ///< per vertex, while its piece is made; kNone
 
   /// What rewind() needs: elements that came and are gone, and what of the others came.
   struct Origin {

@@ -139,10 +139,8 @@ EditMesh::Change EditMesh::change() const {
     return corners;
   };
   change.gone = taken_->gone;
-  std::vector<TetIndex> made;
-  for (TetIndex t = 0; t < slots(); ++t)
-    if (alive(t) && taken_->number[t] == kNone) made.push_back(t);
-  for (const TetIndex t : made) {
+  for (TetIndex t = 0; t < slots(); ++t) {
+    if (!alive(t) || taken_->number[t] != kNone) continue;
     change.made.push_back(numbered(tet(t)));
     if (had_regions_) change.region_of_made.push_back(region_[t]);
   }

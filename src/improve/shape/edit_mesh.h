@@ -49,15 +49,16 @@ class EditMesh {
     std::vector<Moved> moved;  ///< vertices that were taken
     std::vector<Vec3> added;   ///< vertices
     std::vector<TetIndex> gone;
-    std::vector<Tet> made;  ///< by their names
+    std::vector<Tet> made;
     std::vector<std::uint32_t> region_of_made;
     std::vector<ChangedTriangle> boundary;
   };
   Change change() const;
 
-  /// The mesh back, compacted: vertices in the order they came in, without unused ones, new ones behind; tets in order
-  /// of space, by their names; boundary triangles by their numbers, the last ones in the place of those that went.
+  /// The mesh back, compacted: vertices in the order they came in, without unused ones, new ones behind; tets by
+  /// their keys; boundary triangles by their numbers, the last ones in the place of those that went.
   TetMesh release();
+
   /// What the scores of the shapes say.
   ImproveOptions::Objective objective() const { return objective_; }
   std::size_t slots() const { return complex_.tets.size(); }
