@@ -175,10 +175,11 @@ void run_mesh(Session& session) {
   });
   const bool resumes = !a.resume.empty();
   const Checkpoints checkpoints{(resumes ? a.resume : a.checkpoint).string(), resumes};
-  const Result result =
-      run_on_input(session, [&](const Domain& domain, const Options& options, const RunContext& context) {
-        return generate_with(checkpoints, domain, options, context);
-      });
+  Result result = run_on_input(session, [&](const Domain& domain, const Options& options, const RunContext& context) {
+    if (context.ranks != nullptr) context.ranks->shares_tets = true;
+    return generate_with(checkpoints, domain, options, context);
+  });
+  gather_at_first(result, session.context());
   tell_ranks(session, result.report);
   if (!session.is_first()) return;
   write_mesh_targets(session, result.mesh);

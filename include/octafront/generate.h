@@ -18,7 +18,12 @@ struct Result {
   TetMesh mesh;
   SizeField sizes;
   Report report;
+  bool is_share = false;  ///< the mesh has a rank's share of the tetrahedra (Ranks::shares_tets)
 };
+
+/// Where ranks have shares, the first one gets all tetrahedra, and no other any. Called by all ranks; does nothing
+/// where the result is no share. Bytes that travel: those of the tetrahedra.
+void gather_at_first(Result& result, const RunContext& context);
 
 /// From a domain (octafront/domain.h) to a valid tetrahedral mesh: repair, features, size field, surface front, volume
 /// front, improvement, check. A SurfaceMesh is a domain as it stands: repair_surface() tidies it, and what has defects

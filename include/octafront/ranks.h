@@ -22,7 +22,7 @@ struct RankUse {
 
 /// One of several processes that make one mesh together. Each calls generate() with the same domain and the same
 /// options, and a Ranks of its own in RunContext::ranks; each gets the same mesh, the one that a process alone gets,
-/// bit for bit. octafront/mpi.h has the ranks of an MPI communicator.
+/// bit for bit (or its share of that: shares_tets). octafront/mpi.h has the ranks of an MPI communicator.
 ///
 /// A back end does two things, both at the same time on all ranks, from one thread of each. It must not fail: where a
 /// rank is lost it ends the process, as MPI does. Who has no such back end needs nothing of this.
@@ -46,6 +46,10 @@ class Ranks {
                         std::span<const std::size_t> in_sizes) = 0;
 
   RankUse use;
+  /// True: of the mesh made each rank may get the tetrahedra, and their regions, that it has in the end: a stretch,
+  /// those of rank 0 first; points, faces and names are whole. Result::is_share says whether that is so. False: each
+  /// gets all.
+  bool shares_tets = false;
 
  private:
   friend class Comm;

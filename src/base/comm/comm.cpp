@@ -215,8 +215,8 @@ Gathered Comm::gather(const Bytes& mine, std::string_view what) const {
   return {std::move(all), std::move(sizes)};
 }
 
-std::vector<Bytes> Comm::exchange(const std::vector<Bytes>& out, std::string_view what) const {
-  if (alone()) return out;
+Gathered Comm::exchange(std::vector<Bytes> out, std::string_view what) const {
+  if (alone()) return {out[0], {out[0].size()}};
   const auto count = static_cast<std::size_t>(size());
   std::vector<std::size_t> out_sizes(count), in_sizes(count);
   Bytes sizes(count * sizeof(std::uint64_t));
@@ -230,26 +230,18 @@ std::vector<Bytes> Comm::exchange(const std::vector<Bytes>& out, std::string_vie
     in_sizes[static_cast<std::size_t>(r)] = bytes;
   });
   const std::size_t sent = std::accumulate(out_sizes.begin(), out_sizes.end(), std::size_t{0});
-  const std::size_t kept = std::accumulate(in_sizes.begin(), in_sizes.end(), std::size_t{0});
-  Bytes room = room_for(sent + 2 * kept, what);  // in one piece each, and taken apart
+  const std::size_t taken = std::accumulate(in_sizes.begin(), in_sizes.end(), std::size_t{0});
+  Bytes all_out = room_for(sent, what), all_in = room_for(taken, what);
   std::size_t at = 0;
-  for (const Bytes& part : out) {
-    std::copy(part.begin(), part.end(), room.begin() + static_cast<std::ptrdiff_t>(at));
+  for (Bytes& part : out) {
+    std::copy(part.begin(), part.end(), all_out.begin() + static_cast<std::ptrdiff_t>(at));
     at += part.size();
+    part = Bytes();
   }
-  std::byte* const in = room.data() + sent;
-  {
-    const TalkTimer timer(use());
-    ranks_->exchange(room.data(), out_sizes, in, in_sizes);
-  }
-  use().bytes_sent += sent, use().bytes_taken += kept;
-  std::vector<Bytes> parts(count);
-  at = 0;
-  for (std::size_t r = 0; r < count; ++r) {
-    parts[r].assign(in + at, in + at + in_sizes[r]);
-    at += in_sizes[r];
-  }
-  return parts;
+  const TalkTimer timer(use());
+  ranks_->exchange(all_out.data(), out_sizes, all_in.data(), in_sizes);
+  use().bytes_sent += sent, use().bytes_taken += taken;
+  return {std::move(all_in), std::move(in_sizes)};
 }
 
 namespace {

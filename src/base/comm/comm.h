@@ -61,8 +61,8 @@ class Comm {
   /// The sum of what the ranks before this one give.
   std::int64_t before(std::int64_t mine, std::string_view what) const;
   Gathered gather(const Bytes& mine, std::string_view what) const;
-  /// out[r] goes to rank r; what rank r sent comes back at r.
-  std::vector<Bytes> exchange(const std::vector<Bytes>& out, std::string_view what) const;
+  /// out[r] goes to rank r; comes back what the ranks have sent here.
+  Gathered exchange(std::vector<Bytes> out, std::string_view what) const;
   void agree(std::uint64_t hash, std::string_view what) const;
 
   /// How a failure is told.

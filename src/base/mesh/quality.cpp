@@ -4,6 +4,7 @@
 #include "base/core/groups.h"
 #include "base/core/parallel.h"
 #include "base/geometry/measures.h"
+#include "base/mesh/quality_sum.h"
 
 #include <algorithm>
 #include <cmath>
@@ -88,16 +89,16 @@ std::size_t class_of(const Direction& angle) {
   return classes.of(angle);
 }
 
-// The summary of a stretch of elements; beta_mean holds the sum, and the extreme angles wait to be converted.
+// The sum over a stretch of elements; the extreme angles wait to be converted.
 struct Part {
-  QualitySummary summary;
+  QualitySum sum;
   Direction least{-1, 0}, most{1, 0};
 
   void add_tet(TetIndex tet, const std::array<Vec3, 4>& q) {
-    QualitySummary& s = summary;
+    QualitySummary& s = sum.summary;
     const double beta = std::min(1.0, tet_radius_ratio(q[0], q[1], q[2], q[3]));
     ++s.elements;
-    s.beta_mean += beta;
+    sum.beta += std::llround(beta / QualitySum::kBetaUnit);
     ++s.beta_classes[static_cast<std::size_t>(std::clamp(static_cast<int>(beta * 5), 0, 4))];
     if (s.beta_min_tet == kNone || beta < s.beta_min) {
       s.beta_min = beta;
@@ -110,46 +111,27 @@ struct Part {
     }
   }
   void convert_angles() {
-    summary.dihedral_min = least.degrees();
-    summary.dihedral_max = most.degrees();
+    sum.summary.dihedral_min = least.degrees();
+    sum.summary.dihedral_max = most.degrees();
   }
 };
 
-// beta_mean holds the sum until the end; `part` follows `whole` in the order of elements.
-void add_summary(QualitySummary& whole, const QualitySummary& part) {
-  whole.elements += part.elements;
-  whole.beta_mean += part.beta_mean;
-  for (std::size_t i = 0; i < whole.beta_classes.size(); ++i) whole.beta_classes[i] += part.beta_classes[i];
-  for (std::size_t i = 0; i < whole.dihedral_histogram.size(); ++i)
-    whole.dihedral_histogram[i] += part.dihedral_histogram[i];
-  if (whole.beta_min_tet == kNone || part.beta_min < whole.beta_min) {
-    whole.beta_min = part.beta_min;
-    whole.beta_min_tet = part.beta_min_tet;
-  }
-  whole.dihedral_min = std::min(whole.dihedral_min, part.dihedral_min);
-  whole.dihedral_max = std::max(whole.dihedral_max, part.dihedral_max);
-}
-
-/// Of n tets; tet_at(i) is the number of the i-th.
+/// Of n tets; tet_at(i) is the number of the i-th, which is first_tet + that in the whole.
 template <class TetAt>
-QualitySummary summarize(const TetMesh& mesh, std::size_t n, const TetAt& tet_at) {
-  // Blocks of fixed size, added in order: the sums do not depend on the number of threads.
+QualitySum summed(const TetMesh& mesh, std::size_t n, std::uint64_t first_tet, const TetAt& tet_at) {
   constexpr std::size_t kBlock = 8192;
-  if (n == 0) return {};
   std::vector<Part> parts((n + kBlock - 1) / kBlock);
   parallel_for(parts.size(), [&](std::size_t block) {
     for (std::size_t i = block * kBlock; i < std::min(n, (block + 1) * kBlock); ++i) {
       const TetIndex t = tet_at(i);
       const auto& [a, b, c, d] = mesh.tets[t];
       const auto& p = mesh.points;
-      parts[block].add_tet(t, normalized_corners(p[a], p[b], p[c], p[d]));
+      parts[block].add_tet(static_cast<TetIndex>(first_tet + t), normalized_corners(p[a], p[b], p[c], p[d]));
     }
     parts[block].convert_angles();
   });
-  QualitySummary whole;
-  whole.dihedral_min = 180;
-  for (const Part& part : parts) add_summary(whole, part.summary);
-  whole.beta_mean /= static_cast<double>(n);
+  QualitySum whole;
+  for (const Part& part : parts) whole.add(part.sum);
   return whole;
 }
 
@@ -172,20 +154,58 @@ std::array<double, 6> dihedral_angles(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
   return degrees;
 }
 
+void QualitySum::add(const QualitySum& more) {
+  if (more.summary.elements == 0) return;
+  if (summary.elements == 0) {
+    *this = more;
+    return;
+  }
+  beta += more.beta;
+  const QualitySummary& part = more.summary;
+  summary.elements += part.elements;
+  for (std::size_t i = 0; i < summary.beta_classes.size(); ++i) summary.beta_classes[i] += part.beta_classes[i];
+  for (std::size_t i = 0; i < summary.dihedral_histogram.size(); ++i)
+    summary.dihedral_histogram[i] += part.dihedral_histogram[i];
+  if (std::pair(part.beta_min, part.beta_min_tet) < std::pair(summary.beta_min, summary.beta_min_tet)) {
+    summary.beta_min = part.beta_min;
+    summary.beta_min_tet = part.beta_min_tet;
+  }
+  summary.dihedral_min = std::min(summary.dihedral_min, part.dihedral_min);
+  summary.dihedral_max = std::max(summary.dihedral_max, part.dihedral_max);
+}
+
+QualitySummary QualitySum::finished() const {
+  QualitySummary whole = summary;
+  if (whole.elements > 0) whole.beta_mean = static_cast<double>(beta) * kBetaUnit / static_cast<double>(whole.elements);
+  return whole;
+}
+
+QualitySum sum_of_quality(const TetMesh& mesh, std::uint64_t first_tet) {
+  return summed(mesh, mesh.tets.size(), first_tet, [](std::size_t i) { return static_cast<TetIndex>(i); });
+}
+
+std::vector<QualitySum> sums_of_regions(const TetMesh& mesh, std::uint64_t first_tet, std::uint32_t regions) {
+  const Groups<> tets = group_by_owner(regions, static_cast<std::uint32_t>(mesh.tets.size()),
+                                       [&](std::uint32_t t) { return mesh.region[t]; });
+  std::vector<QualitySum> found(regions);
+  parallel_for(
+      regions,
+      [&](std::size_t r) {
+        found[r] = summed(mesh, tets[r].size(), first_tet, [&](std::size_t i) { return tets[r][i]; });
+      },
+      Split::kSingly);
+  return found;
+}
+
 QualitySummary summarize_quality(const TetMesh& mesh) {
-  return summarize(mesh, mesh.tets.size(), [](std::size_t i) { return static_cast<TetIndex>(i); });
+  return sum_of_quality(mesh, 0).finished();
 }
 
 std::vector<QualitySummary> quality_of_regions(const TetMesh& mesh) {
   if (mesh.region.empty()) return {summarize_quality(mesh)};
   const std::uint32_t regions = mesh.tets.empty() ? 0 : 1 + *std::max_element(mesh.region.begin(), mesh.region.end());
-  const Groups<> tets = group_by_owner(regions, static_cast<std::uint32_t>(mesh.tets.size()),
-                                       [&](std::uint32_t t) { return mesh.region[t]; });
-  std::vector<QualitySummary> found(regions);
-  parallel_for(
-      regions,
-      [&](std::size_t r) { found[r] = summarize(mesh, tets[r].size(), [&](std::size_t i) { return tets[r][i]; }); },
-      Split::kSingly);
+  std::vector<QualitySummary> found;
+  for (const QualitySum& sum : sums_of_regions(mesh, 0, regions)) found.push_back(sum.finished());
   return found;
 }
 

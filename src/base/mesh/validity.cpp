@@ -9,11 +9,13 @@
 #include "base/mesh/complex.h"
 #include "base/mesh/complex_defects.h"
 #include "base/mesh/face_table.h"
+#include "base/mesh/mesh_share.h"
 #include "base/mesh/quadratic_nodes.h"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <initializer_list>
 #include <limits>
 #include <span>
 
@@ -44,8 +46,14 @@ std::optional<std::string> range_defect(const Rows& rows, std::size_t n, const c
   return fmt::format("{} {} refers to vertex {}, but there are only {}", what, i, v, n);
 }
 
+std::optional<std::string> unused_defect(const TetMesh& mesh, const std::vector<std::uint8_t>& is_used) {
+  const auto unused = std::find(is_used.begin(), is_used.end(), 0);
+  if (unused == is_used.end()) return std::nullopt;
+  const auto v = static_cast<std::size_t>(unused - is_used.begin());
+  return fmt::format("vertex {} {} belongs to no tetrahedron", v, place(mesh.points[v]));
+}
+
 std::optional<std::string> point_defect(const TetMesh& mesh) {
-  if (mesh.tets.empty()) return "the mesh has no tetrahedra";
   const std::size_t n = mesh.points.size();
   if (const std::size_t v = parallel_find(n, [&](std::size_t i) { return !is_finite(mesh.points[i]); }); v < n)
     return fmt::format("vertex {} {} is not finite", v, place(mesh.points[v]));
@@ -54,20 +62,12 @@ std::optional<std::string> point_defect(const TetMesh& mesh) {
   if (auto d = range_defect(mesh.boundary, n, "boundary face")) return d;
   if (auto d = range_defect(mesh.interfaces, n, "interface")) return d;
   if (auto d = range_defect(mesh.curve_edges, n, "curve edge")) return d;
-  std::vector<char> used(n, 0);
-  const auto use = [&](const auto& rows) {
-    parallel_for(rows.size(), [&](std::size_t i) {
-      for (const VertexIndex v : rows[i]) SharedValue(used[v]).store(1);
-    });
-  };
-  use(mesh.tets);
-  use(mesh.mid_nodes);
-  const auto unused = std::find(used.begin(), used.end(), 0);
-  if (unused != used.end()) {
-    const auto v = static_cast<std::size_t>(unused - used.begin());
-    return fmt::format("vertex {} {} belongs to no tetrahedron", v, place(mesh.points[v]));
-  }
   return std::nullopt;
+}
+
+std::optional<std::string> use_defect(const TetMesh& mesh) {
+  if (mesh.tets.empty()) return "the mesh has no tetrahedra";
+  return unused_defect(mesh, vertices_in_use(mesh));
 }
 
 std::optional<std::string> array_defect(const TetMesh& mesh) {
@@ -185,7 +185,8 @@ std::optional<std::string> mid_node_defect(const TetMesh& mesh) {
   return fmt::format("the edge {} {} has several mid-side nodes", (*twice)[0], (*twice)[1]);
 }
 
-std::optional<std::string> sign_defect(const TetMesh& mesh) {
+/// `first`: of the first tetrahedron the number in the whole, where this is a share.
+std::optional<std::string> sign_defect(const TetMesh& mesh, std::uint64_t first) {
   const auto& p = mesh.points;
   const auto sign_of = [&](std::size_t t) {
     const auto& [a, b, c, d] = mesh.tets[t];
@@ -194,7 +195,7 @@ std::optional<std::string> sign_defect(const TetMesh& mesh) {
   const std::size_t t = parallel_find(mesh.tets.size(), [&](std::size_t i) { return sign_of(i) != 1; });
   if (t == mesh.tets.size()) return std::nullopt;
   const auto& [a, b, c, d] = mesh.tets[t];
-  return fmt::format("tetrahedron {} is {}, volume {:.3g}: vertices {} {} {} {} at {} {} {} {}", t,
+  return fmt::format("tetrahedron {} is {}, volume {:.3g}: vertices {} {} {} {} at {} {} {} {}", first + t,
                      sign_of(t) == 0 ? "flat" : "inverted", signed_volume(p[a], p[b], p[c], p[d]), a, b, c, d,
                      place(p[a]), place(p[b]), place(p[c]), place(p[d]));
 }
@@ -226,19 +227,41 @@ struct FaceOwner {
   static constexpr std::uint32_t kMostOwners = 1u << 30;
 };
 
+/// Interfaces count on behind the boundary.
+const Triangle& listed_face(const TetMesh& mesh, std::size_t f) {
+  return f < mesh.boundary.size() ? mesh.boundary[f] : mesh.interfaces[f - mesh.boundary.size()];
+}
+
+/// All faces are looked at.
+struct AllFaces {
+  static bool has_face(const Triangle&) { return true; }
+  static bool has_listed(const Triangle&) { return true; }
+};
+
+/// Those that no other share can have a tetrahedron at.
+struct FacesOfShare {
+  const MeshShare& share;
+  bool has_face(const Triangle& t) const { return !share.is_at_rim(t); }
+  bool has_listed(const Triangle& t) const { return share.is_here_alone(t); }
+};
+
 /// The faces of the tets and the listed ones, by ranges of their least vertices: a range at a time is looked at.
 class FacesInRanges {
  public:
-  explicit FacesInRanges(const TetMesh& mesh)
+  template <class Faces>
+  FacesInRanges(const TetMesh& mesh, const Faces& faces)
       : mesh_(mesh),
         ranges_(mesh.points.size()),
         half_faces_(mesh.tets.size(), ranges_.count(),
                     [&](std::size_t t, const auto& add) {
                       for (int i = 0; i < 4; ++i)
-                        add(range_of(face_of(mesh.tets[t], i)), static_cast<std::uint32_t>(4 * t) + i);
+                        if (const Triangle face = face_of(mesh.tets[t], i); faces.has_face(face))
+                          add(range_of(face), static_cast<std::uint32_t>(4 * t) + i);
                     }),
-        listed_(mesh.boundary.size() + mesh.interfaces.size(), ranges_.count(),
-                [&](std::size_t f, const auto& add) { add(range_of(listed(f)), static_cast<std::uint32_t>(f)); }) {}
+        listed_(mesh.boundary.size() + mesh.interfaces.size(), ranges_.count(), [&](std::size_t f, const auto& add) {
+          if (faces.has_listed(listed_face(mesh, f)))
+            add(range_of(listed_face(mesh, f)), static_cast<std::uint32_t>(f));
+        }) {}
 
   std::size_t ranges() const { return ranges_.count(); }
   /// The faces of one range, numbered by their owners.
@@ -249,16 +272,15 @@ class FacesInRanges {
                 const Triangle corners = face_of(mesh_.tets[h / 4], static_cast<int>(h % 4));
                 add(corners, FaceOwner(h / 4, false, corners).number);
               }
-              for (const std::uint32_t f : listed_[range]) add(listed(f), FaceOwner(f, true, listed(f)).number);
+              for (const std::uint32_t f : listed_[range]) {
+                const Triangle& corners = listed_face(mesh_, f);
+                add(corners, FaceOwner(f, true, corners).number);
+              }
             }};
   }
 
  private:
   std::size_t range_of(const Triangle& t) const { return ranges_.of(face_key(t)[0]); }
-  /// Interfaces count on behind the boundary.
-  const Triangle& listed(std::size_t f) const {
-    return f < mesh_.boundary.size() ? mesh_.boundary[f] : mesh_.interfaces[f - mesh_.boundary.size()];
-  }
 
   const TetMesh& mesh_;
   RangeBuckets ranges_;
@@ -269,9 +291,10 @@ bool is_interface(const TetMesh& mesh, FaceOwner f) {
   return f.listed() && f.of() >= mesh.boundary.size();
 }
 
-std::string name(const TetMesh& mesh, FaceOwner f) {
+/// `first`: as for sign_defect().
+std::string name(const TetMesh& mesh, FaceOwner f, std::uint64_t first) {
   if (is_interface(mesh, f)) return fmt::format("interface {}", f.of() - mesh.boundary.size());
-  return fmt::format("{} {}", f.listed() ? "boundary face" : "tetrahedron", f.of());
+  return f.listed() ? fmt::format("boundary face {}", f.of()) : fmt::format("tetrahedron {}", first + f.of());
 }
 
 // The common cases: two tets from opposite sides, with an interface or without; a tet and its listed face.
@@ -284,12 +307,12 @@ bool is_good(const TetMesh& mesh, std::span<const FaceTable::Entry> group) {
 
 // Faces with the same corners: one or two tets, or one tet and one face of the boundary list.
 std::optional<std::string> face_group_defect(const TetMesh& mesh, const Triangle& corners,
-                                             std::span<const FaceTable::Entry> group) {
-  const auto name_of = [&](FaceOwner f) { return name(mesh, f); };
+                                             std::span<const FaceTable::Entry> group, std::uint64_t first) {
+  const auto name_of = [&](FaceOwner f) { return name(mesh, f, first); };
   const std::string where = "face " + described(mesh.points, corners);
   const FaceOwner a(group[0].face);
   if (a.listed()) return fmt::format("{} is {} but belongs to no tetrahedron", where, name_of(a));
-  if (group.size() == 1) return fmt::format("{} of tetrahedron {} is open but not listed as boundary", where, a.of());
+  if (group.size() == 1) return fmt::format("{} of {} is open but not listed as boundary", where, name_of(a));
   const FaceOwner b(group[1].face);
   if (group.size() > 2)
     return fmt::format("{} belongs to {}, {} and {}", where, name_of(a), name_of(b),
@@ -299,58 +322,20 @@ std::optional<std::string> face_group_defect(const TetMesh& mesh, const Triangle
   return fmt::format("{}: {} faces inward", where, name_of(b));
 }
 
-std::optional<std::string> face_defect(const TetMesh& mesh) {
-  const FacesInRanges faces(mesh);
-  const auto defect_in = [&](std::size_t range) {
-    std::optional<std::string> defect;
-    faces.table(range).for_each_group([&](const Triangle& key, std::span<const FaceTable::Entry> group) {
-      if (!defect && !is_good(mesh, group)) defect = face_group_defect(mesh, key, group);
-    });
-    return defect;
-  };
-  const std::size_t range = parallel_find(faces.ranges(), [&](std::size_t r) { return defect_in(r).has_value(); });
-  return range < faces.ranges() ? defect_in(range) : std::nullopt;
+std::optional<std::string> defect_in_table(const TetMesh& mesh, const FaceTable& faces, std::uint64_t first) {
+  std::optional<std::string> defect;
+  faces.for_each_group([&](const Triangle& key, std::span<const FaceTable::Entry> group) {
+    if (!defect && !is_good(mesh, group)) defect = face_group_defect(mesh, key, group, first);
+  });
+  return defect;
 }
 
-// The sum of six volumes of the tetrahedra (a, b, c, o), with what rounding may do to it: little of the sum where they
-// are large, but much where they are flat.
-struct RoundedSum {
-  double six_volumes = 0, magnitude = 0, products = 0;
-  void add(Vec3 a, Vec3 b, Vec3 c) {
-    const double term = dot(a, cross(b, c));
-    six_volumes += term;
-    magnitude += std::abs(term);
-    products += std::sqrt(squared_length(a) * squared_length(b) * squared_length(c));
-  }
-  RoundedSum& operator+=(const RoundedSum& other) {
-    six_volumes += other.six_volumes;
-    magnitude += other.magnitude;
-    products += other.products;
-    return *this;
-  }
-};
-
-// Follows from the other laws, so it guards the checks themselves: equal but for rounding.
-std::optional<std::string> volume_defect(const TetMesh& mesh) {
-  const auto& p = mesh.points;
-  const Vec3 o = bounding_box(p).center();
-  const auto tets = parallel_sum(mesh.tets.size(), [&](std::size_t begin, std::size_t end) {
-    RoundedSum sum;
-    for (std::size_t t = begin; t < end; ++t) {
-      const auto& [a, b, c, d] = mesh.tets[t];
-      sum.add(p[b] - p[a], p[c] - p[a], p[d] - p[a]);
-    }
-    return sum;
-  });
-  RoundedSum enclosed;
-  for (const auto& [a, b, c] : mesh.boundary) enclosed.add(p[a] - o, p[b] - o, p[c] - o);
-  constexpr double kRoundingsPerTerm = 16, epsilon = std::numeric_limits<double>::epsilon();
-  const auto terms = static_cast<double>(mesh.tets.size() + mesh.boundary.size());
-  const double rounding = epsilon * (terms * (tets.magnitude + enclosed.magnitude) +
-                                     kRoundingsPerTerm * (tets.products + enclosed.products));
-  if (std::abs(tets.six_volumes - enclosed.six_volumes) <= rounding) return std::nullopt;
-  return fmt::format("the tetrahedra have a volume of {:.17g}, their boundary encloses {:.17g}", tets.six_volumes / 6,
-                     enclosed.six_volumes / 6);
+template <class Faces>
+std::optional<std::string> face_defect(const TetMesh& mesh, const Faces& which, std::uint64_t first) {
+  const FacesInRanges faces(mesh, which);
+  const auto defect_in = [&](std::size_t range) { return defect_in_table(mesh, faces.table(range), first); };
+  const std::size_t range = parallel_find(faces.ranges(), [&](std::size_t r) { return defect_in(r).has_value(); });
+  return range < faces.ranges() ? defect_in(range) : std::nullopt;
 }
 
 // A triangle by its coordinates, rotated so that the least corner comes first.
@@ -385,25 +370,121 @@ std::optional<std::string> boundary_difference(const TetMesh& mesh, const Surfac
   return std::nullopt;
 }
 
-}  // namespace
+using Check = std::optional<std::string> (*)(const TetMesh&);
 
-std::optional<std::string> first_defect(const TetMesh& mesh, const RunContext& context) {
-  if (std::max(mesh.tets.size(), mesh.boundary.size() + mesh.interfaces.size()) >= FaceOwner::kMostOwners)
-    return "a mesh of 2^30 tetrahedra or more cannot be checked";
-  for (const auto check : {point_defect, array_defect, set_defect, wide_defect, sign_defect, face_defect, curve_defect,
-                           mid_node_defect, jacobian_defect, volume_defect}) {
+std::optional<std::string> first_of(std::initializer_list<Check> checks, const TetMesh& mesh,
+                                    const RunContext& context) {
+  for (const Check check : checks) {
     context.check();
     if (auto defect = check(mesh)) return defect;
   }
   return std::nullopt;
 }
 
-std::optional<std::string> first_defect(const TetMesh& mesh, const SurfaceMesh& surface, const RunContext& context) {
-  if (auto defect = first_defect(mesh, context)) return defect;
+std::optional<std::string> count_defect(const TetMesh& mesh) {
+  if (std::max(mesh.tets.size(), mesh.boundary.size() + mesh.interfaces.size()) >= FaceOwner::kMostOwners)
+    return "a mesh of 2^30 tetrahedra or more cannot be checked";
+  return std::nullopt;
+}
+
+std::optional<std::string> volume_defect(const TetMesh& mesh) {
+  return volume_defect(mesh, volume_of_tets(mesh));
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> vertices_in_use(const TetMesh& mesh) {
+  std::vector<std::uint8_t> is_used(mesh.points.size(), 0);
+  const auto use = [&](const auto& rows) {
+    parallel_for(rows.size(), [&](std::size_t i) {
+      for (const VertexIndex v : rows[i]) SharedValue(is_used[v]).store(1);
+    });
+  };
+  use(mesh.tets);
+  use(mesh.mid_nodes);
+  return is_used;
+}
+
+RoundedSum volume_of_tets(const TetMesh& mesh) {
+  const auto& p = mesh.points;
+  RoundedSum sum = parallel_sum(mesh.tets.size(), [&](std::size_t begin, std::size_t end) {
+    RoundedSum part;
+    for (std::size_t t = begin; t < end; ++t) {
+      const auto& [a, b, c, d] = mesh.tets[t];
+      part.add(p[b] - p[a], p[c] - p[a], p[d] - p[a]);
+    }
+    return part;
+  });
+  return sum;
+}
+
+std::optional<std::string> volume_defect(const TetMesh& mesh, const RoundedSum& tets) {
+  const auto& p = mesh.points;
+  const Vec3 o = bounding_box(p).center();
+  RoundedSum enclosed;
+  for (const auto& [a, b, c] : mesh.boundary) enclosed.add(p[a] - o, p[b] - o, p[c] - o);
+  constexpr double kRoundingsPerTerm = 16, epsilon = std::numeric_limits<double>::epsilon();
+  const double rounding = epsilon * ((tets.terms + enclosed.terms) * (tets.magnitude + enclosed.magnitude) +
+                                     kRoundingsPerTerm * (tets.products + enclosed.products));
+  if (std::abs(tets.six_volumes - enclosed.six_volumes) <= rounding) return std::nullopt;
+  return fmt::format("the tetrahedra have a volume of {:.17g}, their boundary encloses {:.17g}", tets.six_volumes / 6,
+                     enclosed.six_volumes / 6);
+}
+
+std::optional<std::string> indices_defect(const TetMesh& mesh) {
+  return first_of({count_defect, point_defect}, mesh, {});
+}
+
+std::optional<std::string> share_defect(const TetMesh& mesh, const MeshShare& share, const RunContext& context) {
+  if (auto defect = unused_defect(mesh, share.used_by_any)) return defect;
+  if (auto defect = first_of({array_defect, set_defect, wide_defect}, mesh, context)) return defect;
+  if (auto defect = sign_defect(mesh, share.first_tet)) return defect;
+  return face_defect(mesh, FacesOfShare{share}, share.first_tet);
+}
+
+std::vector<RimFace> rim_faces(const TetMesh& mesh, const MeshShare& share) {
+  std::vector<RimFace> faces;
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+    for (int i = 0; i < 4; ++i)
+      if (const Triangle face = face_of(mesh.tets[t], i); share.is_at_rim(face))
+        faces.push_back({face, static_cast<std::uint32_t>(share.first_tet + t)});
+  return faces;
+}
+
+std::optional<std::string> rim_defect(const TetMesh& mesh, const MeshShare& share, std::span<const RimFace> faces,
+                                      VertexIndex begin, VertexIndex end) {
+  const FaceTable table(begin, end - begin, [&](const auto& add) {
+    for (const RimFace& f : faces) add(f.corners, FaceOwner(f.tet, false, f.corners).number);
+    for (std::size_t f = 0; f < mesh.boundary.size() + mesh.interfaces.size(); ++f) {
+      const Triangle& corners = listed_face(mesh, f);
+      const VertexIndex least = face_key(corners)[0];
+      if (share.is_at_rim(corners) && least >= begin && least < end)
+        add(corners, FaceOwner(static_cast<std::uint32_t>(f), true, corners).number);
+    }
+  });
+  return defect_in_table(mesh, table, 0);
+}
+
+std::optional<std::string> difference_to(const TetMesh& mesh, const SurfaceMesh& surface) {
   for (const Triangle& t : surface.triangles)
     for (const VertexIndex v : t)
       if (v >= surface.points.size()) return fmt::format("the surface has no vertex {} for one of its triangles", v);
   return is_complex(surface) ? difference_to_complex(mesh, surface) : boundary_difference(mesh, surface);
+}
+
+std::optional<std::string> first_defect(const TetMesh& mesh, const RunContext& context) {
+  if (auto defect =
+          first_of({count_defect, point_defect, use_defect, array_defect, set_defect, wide_defect}, mesh, context))
+    return defect;
+  if (auto defect = sign_defect(mesh, 0)) return defect;
+  context.check();
+  if (auto defect = face_defect(mesh, AllFaces(), 0)) return defect;
+  return first_of({curve_defect, mid_node_defect, jacobian_defect, volume_defect}, mesh, context);
+}
+
+std::optional<std::string> first_defect(const TetMesh& mesh, const SurfaceMesh& surface, const RunContext& context) {
+  if (auto defect = first_defect(mesh, context)) return defect;
+  return difference_to(mesh, surface);
 }
 
 }  // namespace octafront

@@ -58,17 +58,22 @@ class CoveredCells {
 
 }  // namespace
 
+std::vector<std::uint8_t> near_boxes(const std::vector<Vec3>& points, const std::vector<Box3>& boxes) {
+  std::vector<std::uint8_t> is_near(points.size());
+  const CoveredCells covered(points, boxes);
+  parallel_for(points.size(), [&](std::size_t v) { is_near[v] = covered.contain(points[v]); });
+  return is_near;
+}
+
 WorkMesh::WorkMesh(std::vector<Vec3> points, std::vector<Tet> tets, const std::vector<Box3>& focus,
-                   const std::vector<Triangle>& two_sided)
+                   const std::vector<Triangle>& two_sided, Holds holds)
     : points_(std::move(points)),
       tets_(std::move(tets)),
       original_tets_(tets_.size()),
+      holds_(holds),
       alive_(tets_.size(), true),
       indexed_(points_.size(), 1) {
-  if (!focus.empty()) {
-    const CoveredCells covered(points_, focus);
-    parallel_for(points_.size(), [&](std::size_t v) { indexed_[v] = covered.contain(points_[v]); });
-  }
+  if (!focus.empty()) indexed_ = near_boxes(points_, focus);
   for (const Triangle& t : two_sided) two_sided_.insert(face_key(t));
   index_tets();
 }
@@ -105,6 +110,7 @@ std::vector<TetIndex> WorkMesh::around(VertexIndex v) const {
   std::vector<TetIndex> found;
   if (v < indexed_.size()) {
     if (!indexed_[v]) {
+      if (holds_ == Holds::kFocus) throw BeyondPart{};
       std::fill(indexed_.begin(), indexed_.end(), std::uint8_t{1});
       index_tets();
     }

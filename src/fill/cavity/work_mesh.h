@@ -21,14 +21,23 @@ namespace octafront {
 /// A wall of a cavity: (a, b, c) such that (a, b, c, p) is positive for a point p of the cavity next to it.
 using Wall = Triangle;
 
+/// Per point, whether a cell of a coarse grid that holds it reaches into one of the boxes.
+std::vector<std::uint8_t> near_boxes(const std::vector<Vec3>& points, const std::vector<Box3>& boxes);
+
+/// A repair wants to know of tetrahedra that a WorkMesh of a part was not given.
+struct BeyondPart {};
+
 /// A tetrahedral mesh under repair: tetrahedra come and go, and know their vertices' other tetrahedra.
 class WorkMesh {
  public:
+  enum class Holds { kAll, kFocus };
   /// Takes the mesh over; vertex numbers and tetrahedron numbers stay as they are. Repairs will mostly stay within the
   /// boxes of `focus`, if there are any: only what lies there is indexed beforehand.
   /// `two_sided`: triangles with something to fill on both sides; no cavity grows through them.
+  /// `holds`: what of the tetrahedra are given; those of the focus alone are all that touch points near_boxes(), and
+  /// around() throws BeyondPart for others.
   WorkMesh(std::vector<Vec3> points, std::vector<Tet> tets, const std::vector<Box3>& focus = {},
-           const std::vector<Triangle>& two_sided = {});
+           const std::vector<Triangle>& two_sided = {}, Holds holds = Holds::kAll);
 
   const std::vector<Vec3>& points() const { return points_; }
   Vec3 at(VertexIndex v) const { return points_[v]; }
@@ -59,6 +68,7 @@ class WorkMesh {
   std::vector<Vec3> points_;
   std::vector<Tet> tets_;
   std::size_t original_tets_;
+  Holds holds_;
   std::vector<bool> alive_;
   mutable std::vector<std::uint8_t> indexed_;                     ///< per original vertex
   mutable Groups<TetIndex, std::uint64_t> incident_;              ///< tetrahedra of each original vertex

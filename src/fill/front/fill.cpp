@@ -65,10 +65,11 @@ FrontState start_front(const SurfaceMesh& surface, const SizeField& sizes) {
 
 /// The region around each point of the core of a complex. The core touches no wall, so each part of it that hangs
 /// together lies in one, which a line of sight finds.
-std::vector<std::uint32_t> regions_of_core(const LatticeCore& core, const SurfaceMesh& surface) {
+std::vector<std::uint32_t> regions_of_core(const LatticeCore& core, const SurfaceMesh& surface, const Comm& comm) {
   DisjointSets parts(core.points.size());
   for (const Tet& t : core.tets)
     for (int i = 1; i < 4; ++i) parts.join(t[0], t[i]);
+  join_sets(parts, core.points.size(), comm);
   const SightLines lines(surface.points, surface.triangles);
   std::vector<std::uint32_t> region(core.points.size(), kNone);
   for (VertexIndex v = 0; v < region.size(); ++v) {
@@ -83,17 +84,21 @@ std::vector<std::uint32_t> regions_of_core(const LatticeCore& core, const Surfac
 }
 
 /// Puts the core's tetrahedra in place, and its skin, which the front has to meet.
-void add_core(FrontState& front, LatticeCore core, const SurfaceMesh& surface) {
+void add_core(FrontState& front, LatticeCore core, const SurfaceMesh& surface, const Comm& comm) {
   const std::vector<std::uint32_t> region =
-      front.regions > 1 ? regions_of_core(core, surface) : std::vector<std::uint32_t>(core.points.size(), 0);
+      front.regions > 1 ? regions_of_core(core, surface, comm) : std::vector<std::uint32_t>(core.points.size(), 0);
   const auto first = static_cast<VertexIndex>(front.points.size());
   front.points.insert(front.points.end(), core.points.begin(), core.points.end());
   for (Tet& t : core.tets)
     for (VertexIndex& v : t) v += first;
   front.passive.reserve(core.skin.size());
   for (const auto& [a, b, c] : core.skin) front.passive.push_back({{a + first, c + first, b + first}, region[a]});
-  front.work.tets = core.tets.size();
-  front.filled.push_back({std::move(core.tets)});
+  std::array<std::int64_t, 1> tets{static_cast<std::int64_t>(core.tets.size())};
+  comm.sum(tets, "core");
+  front.work.tets = static_cast<std::size_t>(tets[0]);
+  if (comm.alone()) return front.filled.push_back({std::move(core.tets)});
+  for (int rank = 0; rank < comm.size(); ++rank) front.filled.push_back({{}, rank});
+  front.filled[static_cast<std::size_t>(comm.rank())].tets = std::move(core.tets);
 }
 
 void set_sizes(FrontState& front, const SizeField& sizes) {
@@ -102,30 +107,41 @@ void set_sizes(FrontState& front, const SizeField& sizes) {
                [&](std::size_t v) { front.sizes[v] = static_cast<float>(sizes.at(front.points[v])); });
 }
 
-/// Brings the pieces of all ranks to every rank.
-void gather_pieces(std::vector<FilledPiece>& pieces, const Comm& comm) {
-  if (comm.alone()) return;
-  Packer mine;
-  for (FilledPiece& piece : pieces)
-    if (piece.rank == comm.rank()) mine.add(piece.tets);
-  comm.gather(mine.bytes(), "tetrahedra of the front").for_each([&](int rank, std::span<const std::byte> bytes) {
-    Unpacker in(bytes);
-    for (FilledPiece& piece : pieces)
-      if (piece.rank == rank) in.take(piece.tets);
-  });
-}
-
-/// The pieces one after the other, in one array.
-std::vector<Tet> joined(std::vector<FilledPiece>& pieces, const Comm& comm) {
-  gather_pieces(pieces, comm);
-  if (pieces.size() == 1) return std::move(pieces[0].tets);
+/// The pieces one after the other, in one array: those of this rank. What every rank made is the first one's.
+FrontTets joined(std::vector<FilledPiece>& pieces, const Comm& comm) {
+  std::vector<std::int64_t> size;
+  for (FilledPiece& piece : pieces) {
+    if (comm.rank() != 0 && piece.rank == FilledPiece::kEveryRank) piece.tets = {};
+    size.push_back(static_cast<std::int64_t>(piece.tets.size()));
+  }
+  FrontTets share;
   std::vector<std::size_t> first(pieces.size() + 1, 0);
   for (std::size_t i = 0; i < pieces.size(); ++i) first[i + 1] = first[i] + pieces[i].tets.size();
-  std::vector<Tet> tets(first.back());
+  comm.sum(size, "tetrahedra of the front");
+  std::uint64_t number = 0;
+  for (std::size_t i = 0; i < pieces.size(); number += static_cast<std::uint64_t>(size[i++]))
+    if (!pieces[i].tets.empty()) share.stretches.push_back({first[i], number});
+  if (pieces.size() == 1) {
+    share.tets = std::move(pieces[0].tets);
+    return share;
+  }
+  share.tets.resize(first.back());
   parallel_for(pieces.size(), [&](std::size_t i) {
     const std::vector<Tet> piece = std::move(pieces[i].tets);
-    std::copy(piece.begin(), piece.end(), tets.begin() + static_cast<std::ptrdiff_t>(first[i]));
+    std::copy(piece.begin(), piece.end(), share.tets.begin() + static_cast<std::ptrdiff_t>(first[i]));
   });
+  return share;
+}
+
+/// All tetrahedra of all ranks, in the order in which a process alone leaves them.
+std::vector<Tet> gathered(FrontTets share, const Comm& comm) {
+  if (comm.alone()) return std::move(share.tets);
+  std::vector<NumberedTet> all;
+  for (std::size_t t = 0; t < share.tets.size(); ++t) all.push_back({share.number(t), share.tets[t]});
+  share = {};
+  all = gathered_lists(comm, all, "tetrahedra of the front");
+  std::vector<Tet> tets(all.size());
+  parallel_for(all.size(), [&](std::size_t i) { tets[all[i].number] = all[i].tet; });
   return tets;
 }
 
@@ -155,17 +171,19 @@ void report_front(const Stage& stage, const FrontState& front, const FrontCounte
 }
 
 TetMesh fill_by_front(const SurfaceMesh& surface, const SizeField& sizes, const VolumeOptions& options,
-                      const Stage& stage) {
+                      const Stage& stage, Tets tets) {
   const FrontTask task{sizes, options, stage, stage.context().ranks};
+  const Comm comm(task.ranks);
   TetMesh mesh;
+  FrontTets share;
   std::vector<Wall> walls;
   {
     FrontState front = start_front(surface, sizes);
     if (options.core == VolumeOptions::Core::kLattice) {
       const double start = process_cpu_seconds();
       LatticeCore core = build_lattice_core(surface, sizes, stage.context());
-      stage.count("core tetrahedra", static_cast<double>(core.tets.size()));
-      add_core(front, std::move(core), surface);
+      add_core(front, std::move(core), surface, comm);
+      stage.count("core tetrahedra", static_cast<double>(front.work.tets));
       stage.count("core CPU seconds", process_cpu_seconds() - start);
     }
     set_sizes(front, sizes);
@@ -182,9 +200,17 @@ TetMesh fill_by_front(const SurfaceMesh& surface, const SizeField& sizes, const 
                          "element size");
     for (const FrontFace& f : front.held) walls.push_back(f.corners);
     mesh.points = std::move(front.points);
-    mesh.tets = joined(front.filled, Comm(task.ranks));
+    share = joined(front.filled, comm);
   }
-  close_cavities(mesh, std::move(walls), surface, task);
+  if (comm.alone() || tets == Tets::kAll) {
+    mesh.tets = gathered(std::move(share), comm);
+    close_cavities(mesh, std::move(walls), surface, task);
+    return mesh;
+  }
+  const bool is_closed = walls.empty();
+  close_cavities_of_shares(mesh.points, share, std::move(walls), surface, task);
+  mesh.tets = std::move(share.tets);
+  if (!is_closed) drop_unused_points(mesh, surface.points.size(), comm);
   return mesh;
 }
 
@@ -208,20 +234,25 @@ TetMesh fill_without_front(const SurfaceMesh& surface, const SizeField& sizes, c
 }  // namespace
 
 TetMesh fill_volume(const SurfaceMesh& surface, const SizeField& sizes, const VolumeOptions& options,
-                    const Stage& stage) {
+                    const Stage& stage, Tets tets) {
   if (surface.triangles.empty()) throw InputError("the surface has no triangles: nothing to fill");
   TetMesh mesh;
   std::exception_ptr front_error;
   try {
-    mesh = fill_by_front(surface, sizes, options, stage);
+    mesh = fill_by_front(surface, sizes, options, stage, tets);
   } catch (const MeshingError& error) {
     front_error = std::current_exception();
     stage.note(std::string("the whole volume was filled by recovery, for ") + error.what());
   }
   stage.count("filled by recovery of the whole surface", front_error != nullptr);
-  if (front_error) mesh = fill_without_front(surface, sizes, front_error, stage);
-  stage.count("tetrahedra", static_cast<double>(mesh.tets.size()));
-  bind_to_surface(mesh, surface);
+  const Comm comm(stage.context().ranks);
+  if (front_error) {
+    mesh = fill_without_front(surface, sizes, front_error, stage);
+    if (tets == Tets::kShare) keep_share(mesh, comm);
+  }
+  const std::uint64_t made = tets == Tets::kShare ? count_tets(mesh, comm).all : mesh.tets.size();
+  stage.count("tetrahedra", static_cast<double>(made));
+  bind_to_surface(mesh, surface, tets == Tets::kShare ? comm : Comm(nullptr));
   return mesh;
 }
 

@@ -5,6 +5,7 @@
 #include <octafront/tet_mesh.h>
 
 #include "base/core/stage.h"
+#include "base/shared/shared_tets.h"
 
 namespace octafront {
 
@@ -16,7 +17,8 @@ struct SurfaceMesh;
 /// are numbered by body (outer shell and its cavities) in order of the first triangle.
 /// Where the front leaks or a cavity stays open, recovery of the whole surface takes its place (a note in `report` says
 /// so), with points added inside by the sizes. Throws MeshingError if that fails too.
+/// `tets`: what of them each of several ranks gets. Shares are in no order.
 TetMesh fill_volume(const SurfaceMesh& surface, const SizeField& sizes, const VolumeOptions& options,
-                    const Stage& stage);
+                    const Stage& stage, Tets tets = Tets::kAll);
 
 }  // namespace octafront

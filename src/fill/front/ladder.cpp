@@ -3,6 +3,7 @@
 #include <octafront/error.h>
 #include <octafront/open_cavity_error.h>
 
+#include "base/comm/packing.h"
 #include "base/core/stage_timer.h"
 #include "base/core/validate.h"
 #include "base/mesh/renumber.h"
@@ -132,25 +133,90 @@ class Ladder {
   double front_seconds_ = 0, star_seconds_ = 0, recovery_seconds_ = 0;  // CPU, closed or not
 };
 
+/// Closes all, of a mesh whose tetrahedra are all given, or those of the focus alone.
+void close_all(TetMesh& mesh, const std::vector<Wall>& walls, const SurfaceMesh& surface, const FrontTask& task,
+               WorkMesh::Holds holds) {
+  const double start = process_cpu_seconds();
+  Ladder ladder(task, surface.triangles.size());
+  Cavities cavities(walls);
+  const std::vector<Box3> focus = surroundings(mesh.points, cavities);
+  WorkMesh work(std::move(mesh.points), std::move(mesh.tets), focus, two_sided_triangles(surface), holds);
+  for (std::uint32_t c = 0; c < cavities.size(); ++c)
+    if (!cavities.walls(c).empty()) ladder.close({work, cavities, c});
+  if (holds == WorkMesh::Holds::kAll) validate(work);
+  mesh.points = work.take_points();
+  mesh.tets = work.take_tets();
+  ladder.report_to(task.stage);
+  task.stage.count("closing CPU seconds", process_cpu_seconds() - start);
+}
+
+/// One cavity after the other, in the order of their names: of their least walls.
+std::vector<Wall> in_order(std::vector<Wall> walls) {
+  std::ranges::sort(walls, {}, wall_key);
+  return walls;
+}
+
+/// The tetrahedra of all ranks that touch a marked point, in order of their numbers.
+std::vector<NumberedTet> gathered_near(const FrontTets& share, const std::vector<std::uint8_t>& marks,
+                                       const Comm& comm) {
+  std::vector<NumberedTet> near;
+  for (std::size_t t = 0; t < share.tets.size(); ++t)
+    if (std::ranges::any_of(share.tets[t], [&](VertexIndex v) { return marks[v] != 0; }))
+      near.push_back({share.number(t), share.tets[t]});
+  near = gathered_lists(comm, near, "tetrahedra around cavities");
+  std::ranges::sort(near, {}, &NumberedTet::number);
+  return near;
+}
+
+/// Closing took some of `before`, and put others behind what it left: does the same to a share. The first rank gets the
+/// new ones.
+void follow(const std::vector<NumberedTet>& before, const std::vector<Tet>& after, FrontTets& share, const Comm& comm) {
+  std::vector<std::uint64_t> gone;
+  std::size_t left = 0;
+  for (const NumberedTet& t : before) {
+    if (left < after.size() && after[left] == t.tet)
+      ++left;
+    else
+      gone.push_back(t.number);
+  }
+  std::size_t kept = 0;
+  for (std::size_t t = 0; t < share.tets.size(); ++t)
+    if (!std::ranges::binary_search(gone, share.number(t))) share.tets[kept++] = share.tets[t];
+  share.tets.resize(kept);
+  share.stretches.clear();
+  if (comm.rank() == 0)
+    share.tets.insert(share.tets.end(), after.begin() + static_cast<std::ptrdiff_t>(left), after.end());
+}
+
 }  // namespace
 
 void close_cavities(TetMesh& mesh, std::vector<Wall> walls, const SurfaceMesh& surface, const FrontTask& task) {
   if (walls.empty()) return;
-  const double start = process_cpu_seconds();
-  Ladder ladder(task, surface.triangles.size());
-  // One cavity after the other, in the order of their names: of their least walls.
-  std::ranges::sort(walls, {}, wall_key);
-  Cavities cavities(walls);
-  const std::vector<Box3> focus = surroundings(mesh.points, cavities);
-  WorkMesh work(std::move(mesh.points), std::move(mesh.tets), focus, two_sided_triangles(surface));
-  for (std::uint32_t c = 0; c < cavities.size(); ++c)
-    if (!cavities.walls(c).empty()) ladder.close({work, cavities, c});
-  validate(work);
-  mesh.points = work.take_points();
-  mesh.tets = work.take_tets();
+  close_all(mesh, in_order(std::move(walls)), surface, task, WorkMesh::Holds::kAll);
   drop_unused_points(mesh, surface.points.size());
-  ladder.report_to(task.stage);
-  task.stage.count("closing CPU seconds", process_cpu_seconds() - start);
+}
+
+void close_cavities_of_shares(std::vector<Vec3>& points, FrontTets& share, std::vector<Wall> walls,
+                              const SurfaceMesh& surface, const FrontTask& task) {
+  if (walls.empty()) return;
+  const Comm comm(task.ranks);
+  walls = in_order(std::move(walls));
+  std::vector<std::uint8_t> marks = near_boxes(points, surroundings(points, Cavities(walls)));
+  for (WorkMesh::Holds holds = WorkMesh::Holds::kFocus;;) {
+    const std::vector<NumberedTet> near = gathered_near(share, marks, comm);
+    TetMesh part;
+    part.points = points;
+    for (const NumberedTet& t : near) part.tets.push_back(t.tet);
+    try {
+      close_all(part, walls, surface, task, holds);
+    } catch (const BeyondPart&) {
+      holds = WorkMesh::Holds::kAll;
+      marks.assign(points.size(), 1);
+      continue;
+    }
+    points = std::move(part.points);
+    return follow(near, part.tets, share, comm);
+  }
 }
 
 }  // namespace octafront

@@ -5,6 +5,9 @@
 #include "fill/cavity/work_mesh.h"
 #include "fill/front/front_task.h"
 
+#include <algorithm>
+#include <cstdint>
+#include <iterator>
 #include <vector>
 
 namespace octafront {
@@ -16,5 +19,32 @@ namespace octafront {
 /// with the first cavity that stays open, or has more walls than the surface has triangles: then recovery of the whole
 /// surface is less work.
 void close_cavities(TetMesh& mesh, std::vector<Wall> walls, const SurfaceMesh& surface, const FrontTask& task);
+
+/// A tetrahedron by its place in the order in which a front alone would have left it.
+struct NumberedTet {
+  std::uint64_t number = 0;
+  Tet tet{};
+};
+
+/// What a rank has of a front's tetrahedra.
+struct FrontTets {
+  /// From tets[first] on, numbers count up from `number`.
+  struct Stretch {
+    std::size_t first = 0;
+    std::uint64_t number = 0;
+  };
+  std::vector<Tet> tets;
+  std::vector<Stretch> stretches;  ///< ascending
+
+  std::uint64_t number(std::size_t t) const {
+    const auto after = std::ranges::upper_bound(stretches, t, {}, &Stretch::first);
+    return std::prev(after)->number + (t - std::prev(after)->first);
+  }
+};
+
+/// close_cavities(), where each of several ranks has a share of the tetrahedra: what is around cavities is brought to
+/// all. No points are dropped.
+void close_cavities_of_shares(std::vector<Vec3>& points, FrontTets& share, std::vector<Wall> walls,
+                              const SurfaceMesh& surface, const FrontTask& task);
 
 }  // namespace octafront

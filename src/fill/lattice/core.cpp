@@ -2,6 +2,8 @@
 
 #include <octafront/surface_mesh.h>
 
+#include "base/comm/marks.h"
+#include "base/comm/packing.h"
 #include "base/comm/shares.h"
 #include "base/core/parallel.h"
 #include "base/core/shared_value.h"
@@ -17,6 +19,7 @@
 #include <algorithm>
 #include <limits>
 #include <optional>
+#include <span>
 #include <utility>
 
 namespace octafront {
@@ -135,11 +138,12 @@ class CoreChunk {
   };
 };
 
-/// Joins the chunks in their order: vertices are numbered by leaf, those that hang come last.
+/// Joins the chunks in their order: vertices are numbered by leaf, those that hang come last. Of the chunks of other
+/// ranks only their vertices and faces are asked for.
 class CoreBuilder {
  public:
-  CoreBuilder(const ClearSites& sites, std::vector<CoreChunk>& chunks)
-      : sites_(sites), chunks_(chunks), vertex_(2 * sites.lattice().tree.size(), kNone) {}
+  CoreBuilder(const ClearSites& sites, std::span<CoreChunk> chunks, const Comm& comm)
+      : sites_(sites), chunks_(chunks), comm_(comm) {}
 
   LatticeCore build() {
     number_vertices();
@@ -151,6 +155,7 @@ class CoreBuilder {
  private:
   /// Sites of the core's tetrahedra; the skin has no others.
   void number_vertices() {
+    std::vector<std::uint8_t> is_used(2 * sites_.lattice().tree.size(), 0);
     std::vector<std::vector<char>> hanging_is_used(chunks_.size());
     parallel_for(chunks_.size(), [&](std::size_t c) {
       hanging_is_used[c].resize(chunks_[c].hanging.size());
@@ -159,15 +164,16 @@ class CoreBuilder {
           if (is_hanging(s))
             hanging_is_used[c][s - kHanging] = 1;
           else
-            SharedValue(vertex_[s]).store(0);
+            SharedValue(is_used[s]).store(1);
     });
-    VertexIndex next = 0;
-    for (VertexIndex& v : vertex_)
-      if (v != kNone) v = next++;
-    first_hanging_ = next;
+    join_marks(comm_, is_used, "sites of the lattice");
+    vertex_.assign(is_used.size(), kNone);
+    for (std::size_t s = 0; s < is_used.size(); ++s)
+      if (is_used[s] != 0) vertex_[s] = first_hanging_++;
     for (std::size_t c = 0; c < chunks_.size(); ++c)
       for (std::size_t i = 0; i < chunks_[c].hanging.size(); ++i)
         if (hanging_is_used[c][i]) hanging_.push_back(chunks_[c].hanging[i]);
+    hanging_ = gathered_lists(comm_, hanging_, "sites of the lattice");
     std::sort(hanging_.begin(), hanging_.end());
     hanging_.erase(std::unique(hanging_.begin(), hanging_.end()), hanging_.end());
     core_.points.resize(first_hanging_ + hanging_.size());
@@ -209,6 +215,7 @@ class CoreBuilder {
         const Triangle face{vertex(chunk, t[0]), vertex(chunk, t[1]), vertex(chunk, t[2])};
         if (face[0] != kNone && face[1] != kNone && face[2] != kNone) faces.push_back(face);
       }
+    faces = gathered_lists(comm_, faces, "skin of the lattice");
     std::vector<char> single(faces.size(), 0);
     face_table(core_.points.size(), faces)
         .for_each_group([&](const Triangle&, std::span<const FaceTable::Entry> on_face) {
@@ -219,7 +226,8 @@ class CoreBuilder {
   }
 
   const ClearSites& sites_;
-  std::vector<CoreChunk>& chunks_;
+  const std::span<CoreChunk> chunks_;
+  const Comm& comm_;
   std::vector<VertexIndex> vertex_;  ///< per site that does not hang
   std::vector<LatticeSite> hanging_;
   VertexIndex first_hanging_ = 0;
@@ -244,11 +252,8 @@ LatticeCore build_lattice_core(const SurfaceMesh& surface, const SizeField& size
     context.check();
     chunks[c].collect(sites, c * kLeavesPerChunk, std::min((c + 1) * kLeavesPerChunk, leaves));
   });
-  gather_results(
-      comm, shares, "lattice", chunks,
-      [](const CoreChunk& c, Packer& to) { to.add(c.tets), to.add(c.candidates), to.add(c.hanging); },
-      [](CoreChunk& c, Unpacker& from) { from.take(c.tets), from.take(c.candidates), from.take(c.hanging); });
-  return CoreBuilder(sites, chunks).build();
+  const std::size_t begin = shares.begin(comm.rank());
+  return CoreBuilder(sites, std::span(chunks).subspan(begin, shares.end(comm.rank()) - begin), comm).build();
 }
 
 }  // namespace octafront

@@ -14,8 +14,8 @@ struct SurfaceMesh;
 /// The tetrahedra of the lattice that lie deep inside a surface.
 struct LatticeCore {
   std::vector<Vec3> points;
-  std::vector<Tet> tets;  ///< positive
-  /// The boundary of `tets`, each triangle counter-clockwise seen from within the core: joined to the surrounding
+  std::vector<Tet> tets;  ///< positive; of several ranks each has some, those of rank 0 come first
+  /// The boundary of all tets, each triangle counter-clockwise seen from within the core: joined to the surrounding
   /// surface, the skin bounds the shell that is left to fill. It may touch itself in edges and points, never cross.
   std::vector<Triangle> skin;
 };

@@ -5,13 +5,18 @@
 // (base/blocks); what lies at its rim is held fast, and lies inside a cell of a later stage. What the cells of all
 // stages cut is one piece at the end. Pieces are pure: what comes of one hangs on it alone, so who works on which, and
 // when, never matters. Takes a valid TetMesh and leaves one.
+//
+// Several ranks hold the tetrahedra in shares: those of a piece go to the rank that works on it, and stay there.
+// All else is the same on all of them, and calls are made by all.
 
 #include <octafront/tet_mesh.h>
 
 #include "base/blocks/blocks.h"
 #include "base/comm/comm.h"
+#include "base/comm/shares.h"
 #include "base/core/function_ref.h"
 #include "base/mesh/features.h"
+#include "base/shared/shared_tets.h"
 #include "improve/boundary/boundary_guide.h"
 #include "improve/shape/edit_mesh.h"
 
@@ -40,10 +45,10 @@ class MeshOfPieces {
   static constexpr std::size_t kMostVertices = 16384;
 
   /// `input`: what the boundary was made from, null if it stays; it must outlive this. With it, what changes is written
-  /// down, for rewind(). Pieces have `most` vertices or fewer as they begin. Throws MeshingError if there are more tets
-  /// than kMostTetsToImprove.
+  /// down, for rewind(). `tets`: what of the tetrahedra each rank gives, and gets back. Pieces have `most` vertices or
+  /// fewer as they begin. Throws MeshingError if there are more tets than kMostTetsToImprove.
   MeshOfPieces(TetMesh&& mesh, ImproveOptions::Objective objective, const BoundaryInput* input,
-               const Comm& comm = Comm(nullptr), std::size_t most = kMostVertices);
+               const Comm& comm = Comm(nullptr), Tets tets = Tets::kAll, std::size_t most = kMostVertices);
 
   /// Called from several threads, on some rank, for a piece each; may change it. Returns what is to be known of it.
   using Work = FunctionRef<Bytes(MeshPiece& piece)>;
@@ -60,8 +65,8 @@ class MeshOfPieces {
   /// was in a piece with all elements around it. Pieces hold what lies within `rings` rings of those that wait.
   void work(std::vector<std::uint8_t> waiting, int rings, const Work& work, const Notes& notes,
             const Progress& progress);
-  /// The same in one piece, by every rank: for few vertices that must be seen together.
-  void work_on_one(const std::vector<std::uint8_t>& waiting, int rings, FunctionRef<void(MeshPiece&)> work);
+  /// The same in one piece, for few vertices that must be seen together. All ranks get what work() returns.
+  Bytes work_on_one(const std::vector<std::uint8_t>& waiting, int rings, const Work& work);
 
   std::vector<std::uint8_t> all() const { return std::vector<std::uint8_t>(points_.size(), 1); }
   /// Marks the corners of elements with a score below the threshold; empty if there are none.
@@ -69,13 +74,14 @@ class MeshOfPieces {
   /// Marks the vertices of triangles of the boundary that cross; empty if none do.
   std::vector<std::uint8_t> corners_of_crossings() const;
 
-  std::size_t tets() const { return live_; }
+  std::size_t tets() const { return live_; }  ///< of all ranks
+  const Comm& comm() const { return comm_; }
   /// CPU seconds that this process's threads have spent on pieces.
   double piece_seconds() const { return piece_seconds_; }
   std::span<const Vec3> points() const { return points_; }
   /// Where the vertices were that the mesh came with; only with an input.
   std::span<const Vec3> home() const { return home_; }
-  /// Calls visit(corners) for each element.
+  /// Calls visit(corners) for each element of this rank.
   template <class Visit>
   void for_each_tet(const Visit& visit) const {
     for (const Tet& t : tets_)
@@ -91,7 +97,7 @@ class MeshOfPieces {
 
   /// The mesh, compacted: vertices in the order they came in, without unused ones, new ones behind; tets in order of
   /// space; boundary triangles by their numbers, the last ones in the place of those that went. Features, if asked for,
-  /// get the numbers of this mesh.
+  /// get the numbers of this mesh. A share is a stretch of the tets, those of rank 0 first.
   TetMesh release(Features* features);
 
  private:
@@ -99,27 +105,40 @@ class MeshOfPieces {
 
   struct Division;
   struct Change;
+  struct Traveller;
 
-  std::vector<TetIndex> touching(const std::vector<std::uint8_t>& marks, std::span<const TetIndex> among) const;
-  std::vector<std::uint8_t> spread(std::vector<std::uint8_t> marks, int rings, std::span<const TetIndex> among) const;
-  Division divide(const std::vector<std::uint8_t>& near, std::span<const TetIndex> tets, int stage) const;
+  /// Of some elements of this rank, or of all.
+  using Among = const std::vector<TetIndex>*;
+  std::vector<TetIndex> touching(const std::vector<std::uint8_t>& marks, Among among) const;
+  std::vector<std::uint8_t> spread(std::vector<std::uint8_t> marks, int rings, Among among) const;
+  Division divide(const std::vector<std::uint8_t>& near, std::vector<TetIndex>& tets, int stage);
+  Cells cells_of_points(std::span<const VertexIndex> held, int stage) const;
+  Shares shared_cells(const Cells& cells, std::span<const TetIndex> tets) const;
+  void deal(const Cells& cells, const Shares& shares, std::vector<TetIndex>& tets);
+  Traveller traveller(TetIndex t) const;
+  void take_in(const Traveller& tet, TetIndex slot);
+  TetIndex add_slot();
   std::vector<Change> work_on(const Division& division, const Work& work, const Progress& progress);
   MeshPiece extract(const Division& division, std::uint32_t cell);
   Change change_of(const MeshPiece& piece, std::span<const TetIndex> tets, const std::vector<Edge>& edges) const;
-  void apply(std::vector<Change>& changes);
-  void apply_edges(const std::vector<Change>& changes);
+  std::vector<Bytes> apply(std::vector<Change>& changes, const Shares& shares);
+  std::vector<VertexIndex> number_new(std::span<const Change> changes);
+  void apply_edges(std::vector<Edge> gone, const std::vector<Edge>& made);
   void put(const Change& change);
   void note_gone(TetIndex t);
+  void sort_among_ranks(std::size_t vertices);
   Features renumbered(const std::vector<VertexIndex>& number) const;
 
   ImproveOptions::Objective objective_;
   const BoundaryInput* input_;
   Comm comm_;
+  Tets shares_;
   std::size_t most_;
+  bool has_regions_ = false;
   std::vector<Vec3> points_;
   std::vector<Tet> tets_;  ///< [0] == kNone: none
   std::vector<std::uint32_t> region_;
-  std::size_t live_ = 0;
+  std::size_t live_ = 0, came_ = 0;  ///< elements now and at first, of all ranks
   double piece_seconds_ = 0;
   Box3 box_;                                               ///< of the vertices as they came
   TetMesh rest_;                                           ///< all else
@@ -137,6 +156,7 @@ class MeshOfPieces {
   };
   std::vector<Vec3> home_;
   Origin origin_;
+  bool remembers_ = false;
   BeforeStage before_stage_;
 };
 

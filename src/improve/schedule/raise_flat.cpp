@@ -1,7 +1,10 @@
 #include "improve/schedule/raise_flat.h"
 
+#include "base/comm/marks.h"
+#include "base/comm/packing.h"
 #include "base/core/groups.h"
 #include "base/core/parallel.h"
+#include "base/core/shared_value.h"
 #include "base/geometry/live_triangles.h"
 #include "base/geometry/measures.h"
 #include "improve/passes/fewest_poor.h"
@@ -43,8 +46,13 @@ struct MovingSurface {
 
 class FlatRaiser {
  public:
-  FlatRaiser(TetMesh& mesh, const SurfaceMesh& filled, const RaiseLimits& limits)
-      : mesh_(mesh), filled_(filled), limits_(limits), surface_{mesh.points, filled.triangles}, live_(surface_) {
+  FlatRaiser(TetMesh& mesh, const SurfaceMesh& filled, const RaiseLimits& limits, const Comm& comm)
+      : mesh_(mesh),
+        filled_(filled),
+        limits_(limits),
+        comm_(comm),
+        surface_{mesh.points, filled.triangles},
+        live_(surface_) {
     is_fixed_.resize(mesh.points.size(), 0);
     if (limits.fixed)
       for (const VertexIndex v : *limits.fixed) is_fixed_[v] = 1;
@@ -53,6 +61,7 @@ class FlatRaiser {
   RaisedFlat run(const Stage& stage) {
     for (int round = 0; round < kRaiseRounds; ++round) {
       stage.check();
+      find_near();
       const std::vector<TetIndex> poor = find_poor();
       if (poor.empty()) break;
       gather(poor);
@@ -65,15 +74,29 @@ class FlatRaiser {
   }
 
  private:
-  Shape shape_of(TetIndex t) const {
-    const auto& [a, b, c, d] = mesh_.tets[t];
+  Shape shape_of(const Tet& t) const {
+    const auto& [a, b, c, d] = t;
     return improve::shape_of(mesh_.points[a], mesh_.points[b], mesh_.points[c], mesh_.points[d]);
+  }
+
+  /// All elements around corners of poor ones, of all ranks.
+  void find_near() {
+    std::vector<std::uint8_t> marks(mesh_.points.size(), 0);
+    parallel_for(mesh_.tets.size(), [&](std::size_t t) {
+      if (shape_of(mesh_.tets[t]).score >= kPoorToRaise) return;
+      for (const VertexIndex v : mesh_.tets[t]) SharedValue(marks[v]).store(1);
+    });
+    join_marks(comm_, marks, "flat elements");
+    near_.clear();
+    for (const Tet& t : mesh_.tets)
+      if (std::ranges::any_of(t, [&](VertexIndex v) { return marks[v] != 0; })) near_.push_back(t);
+    near_ = gathered_lists(comm_, near_, "flat elements");
   }
 
   /// Worst first.
   std::vector<TetIndex> find_poor() const {
-    std::vector<float> score(mesh_.tets.size());
-    parallel_for(score.size(), [&](std::size_t t) { score[t] = shape_of(static_cast<TetIndex>(t)).score; });
+    std::vector<float> score(near_.size());
+    parallel_for(score.size(), [&](std::size_t t) { score[t] = shape_of(near_[t]).score; });
     std::vector<TetIndex> poor;
     for (TetIndex t = 0; t < score.size(); ++t)
       if (score[t] < kPoorToRaise) poor.push_back(t);
@@ -87,11 +110,11 @@ class FlatRaiser {
     number_.assign(mesh_.points.size(), kNone);
     std::uint32_t count = 0;
     for (const TetIndex t : poor)
-      for (const VertexIndex v : mesh_.tets[t])
+      for (const VertexIndex v : near_[t])
         if (number_[v] == kNone) number_[v] = count++;
     tets_ = Groups<>(count, [&](const auto& add) {
-      for (TetIndex t = 0; t < mesh_.tets.size(); ++t)
-        for (const VertexIndex v : mesh_.tets[t])
+      for (TetIndex t = 0; t < near_.size(); ++t)
+        for (const VertexIndex v : near_[t])
           if (number_[v] != kNone) add(number_[v], t);
     });
     triangles_ = Groups<>(count, [&](const auto& add) {
@@ -103,16 +126,16 @@ class FlatRaiser {
 
   /// Moves one corner of the element, if one may and that helps.
   bool raise(TetIndex t) {
-    if (shape_of(t).score >= kPoorToRaise || is_forced(t)) return false;
-    const Tet corners = mesh_.tets[t];
+    const Tet& corners = near_[t];
+    if (shape_of(corners).score >= kPoorToRaise || is_forced(corners)) return false;
     return std::any_of(corners.begin(), corners.end(), [&](VertexIndex v) { return move(v); });
   }
 
   /// Narrow corners of curves are no reason: where nothing but noise makes them, a move within the limits opens them,
   /// and the corners of flat faces stay anyway.
-  bool is_forced(TetIndex t) const {
+  bool is_forced(const Tet& t) const {
     if (limits_.force == nullptr) return false;
-    const auto& [a, b, c, d] = mesh_.tets[t];
+    const auto& [a, b, c, d] = t;
     const Vec3 p = mesh_.points[a], q = mesh_.points[b], r = mesh_.points[c], s = mesh_.points[d];
     using Cause = improve::InputForce::Cause;
     const Cause cause = limits_.force->cause_at(centroid(p, q, r, s), std::sqrt(longest_squared_edge(p, q, r, s)));
@@ -182,7 +205,7 @@ class FlatRaiser {
   void load(VertexIndex v, std::span<const TetIndex> star) {
     star_.size = 0;
     for (const TetIndex t : star) {
-      const Tet& c = mesh_.tets[t];
+      const Tet& c = near_[t];
       const auto corner = std::find(c.begin(), c.end(), v) - c.begin();
       const auto& f = kTetFaces[corner];
       star_.add(mesh_.points[c[f[0]]], mesh_.points[c[f[1]]], mesh_.points[c[f[2]]]);
@@ -199,9 +222,11 @@ class FlatRaiser {
   TetMesh& mesh_;
   const SurfaceMesh& filled_;
   const RaiseLimits limits_;
+  const Comm comm_;
   const MovingSurface surface_;
   LiveTriangles<MovingSurface> live_;
   std::vector<std::uint8_t> is_fixed_;
+  std::vector<Tet> near_;              ///< elements, those around corners of poor ones
   std::vector<std::uint32_t> number_;  ///< of each vertex whose star was gathered
   Groups<> tets_, triangles_;          ///< by that number
   std::map<VertexIndex, Vec3> homes_;  ///< where vertices of surfaces that moved were
@@ -213,8 +238,10 @@ class FlatRaiser {
 
 }  // namespace
 
-RaisedFlat raise_flat(TetMesh& mesh, const SurfaceMesh& filled, const RaiseLimits& limits, const Stage& stage) {
-  return FlatRaiser(mesh, filled, limits).run(stage);
+RaisedFlat raise_flat(TetMesh& mesh, const SurfaceMesh& filled, const RaiseLimits& limits, const Stage& stage,
+                      Tets tets) {
+  const Comm comm(tets == Tets::kShare ? stage.context().ranks : nullptr);
+  return FlatRaiser(mesh, filled, limits, comm).run(stage);
 }
 
 }  // namespace octafront

@@ -4,6 +4,7 @@
 
 #include "base/core/stage.h"
 #include "base/geometry/leeway.h"
+#include "base/shared/shared_tets.h"
 #include "improve/boundary/flat_walls.h"
 #include "improve/boundary/input_force.h"
 
@@ -32,7 +33,8 @@ struct RaiseLimits {
 /// touch, all four corners lie on surfaces, along which no place is better; they leave them, within the limits and by
 /// .3 of the edges around at most. No element is inverted and no triangle
 /// crosses another (exact signs). `filled`: the surface or complex that the mesh fills, whose vertices are the mesh's
-/// first ones.
-RaisedFlat raise_flat(TetMesh& mesh, const SurfaceMesh& filled, const RaiseLimits& limits, const Stage& stage);
+/// first ones. `tets`: what of them each of several ranks has, in stretches.
+RaisedFlat raise_flat(TetMesh& mesh, const SurfaceMesh& filled, const RaiseLimits& limits, const Stage& stage,
+                      Tets tets = Tets::kAll);
 
 }  // namespace octafront

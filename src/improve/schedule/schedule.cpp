@@ -52,7 +52,9 @@ ImproveOptions::Worst worst_of(const MeshOfPieces& mesh) {
       worst.dihedral_max = std::max(worst.dihedral_max, angle);
     }
   });
-  return worst;
+  std::array<double, 4> least{worst.beta, worst.dihedral_min, -worst.dihedral_max, worst.positive ? 1.0 : 0.0};
+  mesh.comm().least(least, "worst elements");
+  return {least[0], least[1], -least[2], least[3] == 1};
 }
 
 /// What passes of one name did, in all pieces.
@@ -85,8 +87,7 @@ struct Tally {
     Packer to;
     to.add(passes.size()), to.add(boundary_edits), to.add(largest_move);
     for (const PassTally& pass : passes) {
-      to.add(std::vector<char>(pass.what.begin(), pass.what.end()));
-      to.add(pass.result);
+      to.add_text(pass.what), to.add(pass.result);
     }
     return std::move(to.bytes());
   }
@@ -98,9 +99,8 @@ struct Tally {
     tally.boundary_edits = from.take<std::uint64_t>();
     tally.largest_move = from.take<double>();
     for (std::size_t k = 0; k < passes; ++k) {
-      std::vector<char> what;
-      from.take(what);
-      tally.passes.push_back({std::string(what.begin(), what.end()), from.take<PassResult>()});
+      std::string what = from.take_text();
+      tally.passes.push_back({std::move(what), from.take<PassResult>()});
     }
     return tally;
   }
@@ -346,11 +346,12 @@ constexpr int kRingsAtPoor = 3;
 class Improvement {
  public:
   /// `moves`: whether the boundary may.
-  Improvement(TetMesh&& mesh, const BoundaryInput* input, bool moves, const ImproveOptions& options, const Stage& stage)
+  Improvement(TetMesh&& mesh, const BoundaryInput* input, bool moves, const ImproveOptions& options, const Stage& stage,
+              Tets tets = Tets::kAll)
       : input_(input),
         stage_(stage),
         setting_{options, stage.context()},
-        mesh_(std::move(mesh), options.objective, moves ? input : nullptr, Comm(stage.context().ranks)),
+        mesh_(std::move(mesh), options.objective, moves ? input : nullptr, Comm(stage.context().ranks), tets),
         moves_(moves) {
     if (input) ground_ = std::make_shared<const BoundaryGround>(*input);
     tell("start");
@@ -388,17 +389,22 @@ class Improvement {
     std::vector<VertexIndex> crossing;
     const std::vector<std::uint8_t> marks = mesh_.corners_of_crossings();
     if (marks.empty()) return crossing;
-    mesh_.work_on_one(marks, kRingsAtCrossings, [&](MeshPiece& piece) {
+    const Bytes found = mesh_.work_on_one(marks, kRingsAtCrossings, [&](MeshPiece& piece) {
+      Packer to;
       work_on(piece, [&](BoundaryGuide* guide) {
         std::vector<Vec3> home;
         for (VertexIndex v = 0; v < piece.vertices.size(); ++v)
           home.push_back(piece.vertices[v] < mesh_.home().size() ? mesh_.home()[piece.vertices[v]]
                                                                  : piece.mesh->point(v));
         TakenBack back = take_back_crossings(*piece.mesh, home, *guide, setting_.context);
-        tally_.add("slides taken back", back.pass);
-        for (const VertexIndex v : back.crossing) crossing.push_back(piece.vertices[v]);
+        for (VertexIndex& v : back.crossing) v = piece.vertices[v];
+        to.add(back.pass), to.add(back.crossing);
       });
+      return std::move(to.bytes());
     });
+    Unpacker from(found);
+    tally_.add("slides taken back", from.take<PassResult>());
+    from.take(crossing);
     return crossing;
   }
 
@@ -406,11 +412,17 @@ class Improvement {
   void explain() {
     Shortfall shortfall;
     std::string note;
-    if (const std::vector<std::uint8_t> poor = mesh_.corners_below(kReported); !poor.empty())
-      mesh_.work_on_one(poor, 0, [&](MeshPiece& piece) {
-        shortfall = explain_shortfall(*piece.mesh, kReported, input_ ? &ground_->force : nullptr, setting_.context);
-        note = in_words(shortfall, *piece.mesh);
+    if (const std::vector<std::uint8_t> poor = mesh_.corners_below(kReported); !poor.empty()) {
+      const Bytes found = mesh_.work_on_one(poor, 0, [&](MeshPiece& piece) {
+        const Shortfall here =
+            explain_shortfall(*piece.mesh, kReported, input_ ? &ground_->force : nullptr, setting_.context);
+        Packer to;
+        to.add(here), to.add_text(in_words(here, *piece.mesh));
+        return std::move(to.bytes());
       });
+      Unpacker from(found);
+      shortfall = from.take<Shortfall>(), note = from.take_text();
+    }
     for (const PassTally& pass : tally_.passes) {
       stage_.count(pass.what, static_cast<double>(pass.result.done));
       stage_.count(fmt::format("{}: tried", pass.what), static_cast<double>(pass.result.tried));
@@ -504,14 +516,15 @@ bool uses_places(ImproveOptions::Level level) {
 }  // namespace
 
 bool improve_mesh(TetMesh& mesh, const BoundaryInput* input, const ImproveOptions& options, const Stage& stage,
-                  Features* features, const MeshOfPieces::BeforeStage& before_stage) {
+                  Features* features, Tets tets, const MeshOfPieces::BeforeStage& before_stage) {
   check_improve_options(options);
-  if (options.level == ImproveOptions::Level::kOff || mesh.tets.empty()) return false;
+  const bool is_empty = tets == Tets::kAll && mesh.tets.empty();
+  if (options.level == ImproveOptions::Level::kOff || is_empty) return false;
   mesh.wide_cells.clear();  // edits know of tetrahedra alone
   mesh.wide_faces.clear();
   mesh.face_layers.clear();
   const bool moves = input && options.move_boundary && options.level != ImproveOptions::Level::kPaper;
-  Improvement improvement(std::move(mesh), input, moves, options, stage);
+  Improvement improvement(std::move(mesh), input, moves, options, stage, tets);
   MeshOfPieces& pieces = improvement.mesh();
   pieces.call_before_stages(before_stage);
   int retries = 0;

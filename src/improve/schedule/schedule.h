@@ -29,9 +29,11 @@ void check_improve_options(const ImproveOptions& options);
 /// the mesh is lost. Throws OptionError, Cancelled, and MeshingError if the faces of the mesh do not match. The
 /// report gets, for each kind of pass, the places looked at and those changed, in all pieces. Returns true if the
 /// boundary changed; `features`, where given, then become those of the new boundary, in its numbering (they may be
-/// input->of_mesh). `before_stage` is for tests: where the elements are kept changes nothing.
+/// input->of_mesh). `tets`: what of them each of several ranks gives, and gets back. `before_stage` is for tests: where
+/// the elements are kept changes nothing.
 bool improve_mesh(TetMesh& mesh, const improve::BoundaryInput* input, const ImproveOptions& options, const Stage& stage,
-                  Features* features = nullptr, const improve::MeshOfPieces::BeforeStage& before_stage = {});
+                  Features* features = nullptr, Tets tets = Tets::kAll,
+                  const improve::MeshOfPieces::BeforeStage& before_stage = {});
 
 /// After the boundary or interfaces of a valid mesh were moved: passes against poor elements, from the first one below
 /// a beta or dihedral angle of comfort on; what was moved stays. The mesh is untouched if there is no such element.

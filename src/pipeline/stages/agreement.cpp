@@ -20,8 +20,9 @@ void hash_into(BytesHash& hash, const SizeField& sizes, const std::vector<Vec3>&
   hash.add(sizes.min_size()), hash.add(sizes.max_size());
 }
 
-void hash_into(BytesHash& hash, const TetMesh& mesh) {
-  hash.add(mesh.points), hash.add(mesh.tets), hash.add(mesh.region), hash.add(mesh.boundary), hash.add(mesh.patch);
+void hash_into(BytesHash& hash, const TetMesh& mesh, Tets tets) {
+  if (tets == Tets::kAll) hash.add(mesh.tets), hash.add(mesh.region);
+  hash.add(mesh.points), hash.add(mesh.boundary), hash.add(mesh.patch);
   hash.add(mesh.interfaces), hash.add(mesh.interface_patch), hash.add(mesh.mid_nodes);
 }
 
@@ -53,7 +54,7 @@ void agree_on(const SizeField& sizes, const std::vector<Vec3>& points, const cha
 
 void agree_on(const Filled& filled, const char* what, const RunContext& context) {
   agree_by(context, what, [&](BytesHash& hash) {
-    hash_into(hash, filled.mesh), hash_into(hash, filled.boundary.surface);
+    hash_into(hash, filled.mesh, filled.tets), hash_into(hash, filled.boundary.surface);
     hash_into(hash, filled.boundary.sizes, filled.boundary.surface.points);
   });
 }

@@ -28,6 +28,8 @@ class Checkpoint {
   /// What is kept hangs on all of these.
   Checkpoint(const Checkpoints& where, const Prepared& input, const SizeField& sizes, Run& run);
 
+  bool keeps() const { return !where_.folder.empty(); }
+
   /// make(), or what an earlier run has kept of it, with what that told in its report. Makes and results come up in the
   /// same order in each run.
   template <class Result, class Make>

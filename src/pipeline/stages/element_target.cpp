@@ -115,13 +115,13 @@ Filled fill_to_target(const Prepared& input, const SizeField& sizes, Run& run) {
   };
   auto best = meet_target(surface ? surface->sizes : sizes, run, first_stage, kElementsAttempts, "in the mesh", make,
                           [&](const Filled& made) {
-                            return static_cast<double>(made.mesh.tets.size()) + layer_tets(made, run.options.layers);
+                            return static_cast<double>(element_count(made, run)) + layer_tets(made, run.options.layers);
                           });
   return std::move(best.made);
 }
 
-void note_missed_elements(const TetMesh& mesh, Run& run) {
-  note_missed_target(static_cast<double>(mesh.tets.size()), "made", run);
+void note_missed_elements(const Filled& filled, Run& run) {
+  note_missed_target(static_cast<double>(element_count(filled, run)), "made", run);
 }
 
 }  // namespace octafront

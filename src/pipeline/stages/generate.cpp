@@ -73,6 +73,12 @@ void improve_or_read(const Prepared& input, Filled& filled, Run& run) {
   filled.mesh = std::move(improved.mesh), filled.boundary = std::move(improved.boundary);
 }
 
+/// Whether what follows improvement looks at elements of all ranks together.
+bool wants_all(const Domain& domain, const Options& options, const Fins* fins) {
+  return domain.geometry || !domain.true_volumes.empty() || fins != nullptr || options.order > 1 ||
+         options.volume.shell != 0 || !options.split.empty();
+}
+
 /// `fins`: of the domain's lines and points, which it has as sheets; null: it has none.
 Result generate_once(const Domain& domain, const Options& asked, const RunContext& context, Fins* fins,
                      const Checkpoints& checkpoints) {
@@ -91,8 +97,9 @@ Result generate_once(const Domain& domain, const Options& asked, const RunContex
   agree_on(filled, "mesh as it was filled", context);
   improve_or_read(input, filled, run);
   agree_on(filled, "improved mesh", context);
+  if (wants_all(domain, options, fins)) make_whole(filled, run);
   if (!options.layers.outside) add_layers(input, filled, run);
-  note_missed_elements(filled.mesh, run);
+  note_missed_elements(filled, run);
   check_shape(input, filled, run);
   layer_walls(filled, run);
   place_on_geometry(input, filled, run);
@@ -102,14 +109,15 @@ Result generate_once(const Domain& domain, const Options& asked, const RunContex
   name_patches(input, filled);
   name_parts(input, filled, run);
   pair_nodes(input, filled.mesh, run);
-  check_result(filled.mesh, &filled.boundary.surface, run);
+  check_result(filled, run);
   finish_curves(filled.mesh, fins, run);
   split(filled.mesh, run);
-  describe(filled.mesh, run.report);
+  describe(filled.mesh, run.report, comm_of(filled, run));
   run.comm().agree(run.report.hash, "mesh at the end");
   describe_true_volumes(filled, domain, run.report);
-  if (!filled.layers) describe_sizes(filled.mesh, filled.boundary.sizes, run.report);
-  return {std::move(filled.mesh), filled.boundary.sizes, run.close()};
+  if (!filled.layers) describe_sizes(filled.mesh, filled.boundary.sizes, run.report, comm_of(filled, run));
+  if (context.ranks == nullptr || !context.ranks->shares_tets) make_whole(filled, run);
+  return {std::move(filled.mesh), filled.boundary.sizes, run.close(), filled.tets == Tets::kShare};
 }
 
 /// Whether smaller bounds would be heard: they are not where the user bounds the deviation, or keeps the triangles.
@@ -162,6 +170,10 @@ Result generate_in(const Domain& domain, const Options& asked, const RunContext&
 }
 
 }  // namespace
+
+void gather_at_first(Result& result, const RunContext& context) {
+  if (std::exchange(result.is_share, false)) gather_tets_at_first(result.mesh, Comm(context.ranks));
+}
 
 Result generate(const Domain& domain, const Options& asked, const RunContext& context) {
   return generate_with({}, domain, asked, context);

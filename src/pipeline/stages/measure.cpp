@@ -2,8 +2,11 @@
 
 #include <octafront/tet_mesh.h>
 
+#include "base/comm/packing.h"
 #include "base/core/parallel.h"
 #include "base/core/utf8.h"
+#include "base/mesh/quality_sum.h"
+#include "base/shared/shared_tets.h"
 
 #include <algorithm>
 #include <bit>
@@ -71,47 +74,91 @@ SizeSummary summarize_surface_edges(const std::vector<Vec3>& points, const std::
   return summarize(keys, points, sizes);
 }
 
-SizeSummary summarize_volume_edges(const TetMesh& mesh, const SizeField& sizes) {
+SizeSummary summarize_volume_edges(const TetMesh& mesh, const SizeField& sizes, const Comm& comm) {
   std::vector<std::uint64_t> keys;
   // Sorting every edge of a large mesh would cost a tenth of making it: an evenly spread part of the tets gives the
   // same shares to a third digit.
   constexpr std::size_t kSample = 100'000;
-  const std::size_t step = std::max<std::size_t>(1, mesh.tets.size() / kSample);
-  for (std::size_t t = 0; t < mesh.tets.size(); t += step)
+  const TetCounts counts = count_tets(mesh, comm);
+  const std::size_t step = std::max<std::size_t>(1, counts.all / kSample);
+  for (std::size_t t = (step - counts.before % step) % step; t < mesh.tets.size(); t += step)
     for (const auto& [i, j] : kTetEdges) keys.push_back(edge_key(mesh.tets[t][i], mesh.tets[t][j]));
+  keys = gathered_lists(comm, keys, "edges");
   return summarize(keys, mesh.points, sizes);
 }
 
-void describe_sizes(const TetMesh& mesh, const SizeField& sizes, Report& report) {
+void describe_sizes(const TetMesh& mesh, const SizeField& sizes, Report& report, const Comm& comm) {
   report.surface_edges = summarize_surface_edges(mesh.points, mesh.boundary, sizes);
-  report.volume_edges = summarize_volume_edges(mesh, sizes);
+  report.volume_edges = summarize_volume_edges(mesh, sizes, comm);
 }
 
-void describe_regions(const TetMesh& mesh, Report& report) {
-  if (mesh.region.empty()) return;
-  const std::vector<QualitySummary> quality = quality_of_regions(mesh);
-  report.regions.assign(quality.size(), {});
+void describe_quality(const TetMesh& mesh, Report& report, const Comm& comm) {
+  const std::vector<QualitySum> mine{sum_of_quality(mesh, count_tets(mesh, comm).before)};
+  QualitySum all;
+  for (const QualitySum& of_rank : gathered_lists(comm, mine, "quality")) all.add(of_rank);
+  report.quality = all.finished();
+  report.tets = report.quality.elements;
+}
+
+void describe_regions(const TetMesh& mesh, Report& report, const Comm& comm) {
+  const std::uint32_t here = mesh.region.empty() ? 0 : 1 + *std::ranges::max_element(mesh.region);
+  std::uint32_t regions = 0;
+  for (const std::uint32_t count : gathered_lists(comm, std::vector<std::uint32_t>{here}, "regions"))
+    regions = std::max(regions, count);
+  if (regions == 0) return;
+  struct OfRegion {
+    QualitySum quality;
+    double volume = 0;
+  };
+  std::vector<OfRegion> mine(regions);
+  const std::vector<QualitySum> quality = sums_of_regions(mesh, count_tets(mesh, comm).before, regions);
+  for (std::uint32_t r = 0; r < regions; ++r) mine[r].quality = quality[r];
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
     const auto& [a, b, c, d] = mesh.tets[t];
     const Vec3 p = mesh.points[a];
-    report.regions[mesh.region[t]].volume += dot(cross(mesh.points[b] - p, mesh.points[c] - p), mesh.points[d] - p) / 6;
+    mine[mesh.region[t]].volume += dot(cross(mesh.points[b] - p, mesh.points[c] - p), mesh.points[d] - p) / 6;
   }
-  for (std::uint32_t r = 0; r < quality.size(); ++r) {
+  std::vector<OfRegion> all(regions);
+  const std::vector<OfRegion> of_ranks = gathered_lists(comm, mine, "regions");
+  for (std::size_t i = 0; i < of_ranks.size(); ++i) {
+    all[i % regions].quality.add(of_ranks[i].quality);
+    all[i % regions].volume += of_ranks[i].volume;
+  }
+  report.regions.assign(regions, {});
+  for (std::uint32_t r = 0; r < regions; ++r) {
+    report.regions[r].volume = all[r].volume;
     report.regions[r].name = r < mesh.region_names.size() ? mesh.region_names[r] : std::string();
     NameCleaning().clean(report.regions[r].name);
-    report.regions[r].quality = quality[r];
+    report.regions[r].quality = all[r].quality.finished();
   }
 }
 
-std::uint64_t mesh_hash(const TetMesh& mesh) {
+namespace {
+
+/// add(hash) of one rank after the other.
+template <class Add>
+void add_by_ranks(Fnv& hash, const Comm& comm, const Add& add) {
+  for (int rank = 0; rank < comm.size(); ++rank) {
+    if (rank == comm.rank()) add(hash);
+    hash = gathered_lists(comm, std::vector<Fnv>{hash}, "hash")[static_cast<std::size_t>(rank)];
+  }
+}
+
+}  // namespace
+
+std::uint64_t mesh_hash(const TetMesh& mesh, const Comm& comm) {
   Fnv hash;
   for (const Vec3& p : mesh.points)
     for (int axis = 0; axis < 3; ++axis) hash.add(p[axis]);
-  for (const Tet& tet : mesh.tets)
-    for (const VertexIndex v : tet) hash.add(v);
+  add_by_ranks(hash, comm, [&](Fnv& h) {
+    for (const Tet& tet : mesh.tets)
+      for (const VertexIndex v : tet) h.add(v);
+  });
   for (const Triangle& face : mesh.boundary)
     for (const VertexIndex v : face) hash.add(v);
-  for (const std::uint32_t region : mesh.region) hash.add(region);
+  add_by_ranks(hash, comm, [&](Fnv& h) {
+    for (const std::uint32_t region : mesh.region) h.add(region);
+  });
   for (const std::uint32_t patch : mesh.patch) hash.add(patch);
   for (const auto& mids : mesh.mid_nodes)
     for (const VertexIndex v : mids) hash.add(v);

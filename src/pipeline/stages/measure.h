@@ -4,22 +4,26 @@
 #include <octafront/size_field.h>
 #include <octafront/tet_mesh.h>
 
+#include "base/comm/comm.h"
+
 namespace octafront {
 
 /// Edge lengths over wanted lengths: of the boundary's edges, and of all edges of the mesh.
 SizeSummary summarize_surface_edges(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
                                     const SizeField& sizes);
-SizeSummary summarize_volume_edges(const TetMesh& mesh, const SizeField& sizes);
+/// `comm`, here and below: of ranks whose tetrahedra are shares, numbered by rank; all get the same answer.
+SizeSummary summarize_volume_edges(const TetMesh& mesh, const SizeField& sizes, const Comm& comm = Comm(nullptr));
 
 /// Fills in what the report says of sizes: asked for against made.
-void describe_sizes(const TetMesh& mesh, const SizeField& sizes, Report& report);
+void describe_sizes(const TetMesh& mesh, const SizeField& sizes, Report& report, const Comm& comm = Comm(nullptr));
 
-/// Fills in what the report says of each region.
-void describe_regions(const TetMesh& mesh, Report& report);
+/// Fills in what the report says of the elements, and of each region.
+void describe_quality(const TetMesh& mesh, Report& report, const Comm& comm = Comm(nullptr));
+void describe_regions(const TetMesh& mesh, Report& report, const Comm& comm = Comm(nullptr));
 
 /// A fingerprint of coordinates (bits), tets, regions, boundary, interfaces, patches and mid-side nodes: equal meshes,
 /// equal hash (FNV-1a, 64 bits).
-std::uint64_t mesh_hash(const TetMesh& mesh);
+std::uint64_t mesh_hash(const TetMesh& mesh, const Comm& comm = Comm(nullptr));
 
 /// Largest resident memory of this process so far.
 std::uint64_t peak_memory_bytes();

@@ -11,15 +11,15 @@ namespace octafront {
 
 namespace {
 
-TetMesh fill_by_front(const Remeshed& boundary, const VolumeOptions& options, const Stage& stage) {
-  return fill_volume(boundary.surface, boundary.sizes, options, stage);
+TetMesh fill_by_front(const Remeshed& boundary, const VolumeOptions& options, const Stage& stage, Tets tets) {
+  return fill_volume(boundary.surface, boundary.sizes, options, stage, tets);
 }
 
-TetMesh fill_by_classic_front(const Remeshed& boundary, const VolumeOptions& options, const Stage& stage) {
+TetMesh fill_by_classic_front(const Remeshed& boundary, const VolumeOptions& options, const Stage& stage, Tets) {
   return fill_volume_classic(boundary.surface, options, stage);
 }
 
-TetMesh fill_by_recovery(const Remeshed& boundary, const VolumeOptions&, const Stage& stage) {
+TetMesh fill_by_recovery(const Remeshed& boundary, const VolumeOptions&, const Stage& stage, Tets) {
   TetMesh mesh = recover_volume(boundary.surface, stage);
   bind_to_surface(mesh, boundary.surface);
   return mesh;
@@ -28,7 +28,8 @@ TetMesh fill_by_recovery(const Remeshed& boundary, const VolumeOptions&, const S
 /// The classical front makes 1.1 to 1.4 times the elements that the sizes promise.
 constexpr double kClassicTets = 1.225;
 
-constexpr MethodTraits kOctreeAft{.stage = "volume front", .fills_complexes = true, .fill = fill_by_front};
+constexpr MethodTraits kOctreeAft{
+    .stage = "volume front", .fills_complexes = true, .shares_tets = true, .fill = fill_by_front};
 constexpr MethodTraits kAft{.stage = "volume front", .tets_per_expected = kClassicTets, .fill = fill_by_classic_front};
 constexpr MethodTraits kOctree{.stage = "stuffing", .needs_clean = false, .has_front = false};
 constexpr MethodTraits kRecover{

@@ -3,6 +3,7 @@
 #include <octafront/options.h>
 
 #include "base/core/stage.h"
+#include "base/shared/shared_tets.h"
 #include "surface/remeshing/remesh.h"
 
 namespace octafront {
@@ -14,9 +15,11 @@ struct MethodTraits {
   bool has_front = true;         ///< the surface is triangulated anew to the sizes, unless it is kept
   bool fills_complexes = false;  ///< several regions, sheets
   bool always_keeps = false;     ///< the input's triangles become the boundary, asked for or not
+  bool shares_tets = false;      ///< several ranks may have shares of what it makes
   double tets_per_expected = 1;  ///< makes so many times the elements that the sizes promise
-  /// Fills the surface and keeps its triangles; null for the method that makes a boundary of its own.
-  TetMesh (*fill)(const Remeshed& boundary, const VolumeOptions& options, const Stage& stage) = nullptr;
+  /// Fills the surface and keeps its triangles; null for the method that makes a boundary of its own. `tets` are
+  /// shares only where they may be.
+  TetMesh (*fill)(const Remeshed& boundary, const VolumeOptions& options, const Stage& stage, Tets tets) = nullptr;
 
   bool makes_own_boundary() const { return fill == nullptr; }
 };

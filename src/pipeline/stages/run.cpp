@@ -15,7 +15,9 @@ StageUse::StageUse(const RunContext& context, StageReport& report)
 
 StageUse::~StageUse() {
   const bool is_unwinding = std::uncaught_exceptions() > exceptions_;
-  if (ranks_ == nullptr || is_unwinding || ranks_->use.messages == before_.messages) return;
+  if (ranks_ == nullptr || is_unwinding) return;
+  report_.count("peak memory bytes so far", static_cast<double>(peak_memory_bytes()));
+  if (ranks_->use.messages == before_.messages) return;
   const RankUse& now = ranks_->use;
   report_.count("rounds of talk", static_cast<double>(now.messages - before_.messages));
   report_.count("bytes sent", static_cast<double>(now.bytes_sent - before_.bytes_sent));

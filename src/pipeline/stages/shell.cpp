@@ -59,7 +59,7 @@ void layer_walls(Filled& filled, Run& run) {
   const std::uint32_t shell = run.options.volume.shell;
   if (shell == 0) return;
   run.stage("layers through walls", [&](const Stage& stage) {
-    auto& [mesh, boundary, grown] = filled;
+    auto& [mesh, boundary, grown, tets] = filled;
     std::vector<layers::Span> spans = layers::spans_through_walls(mesh, stage.context());
     stage.count("edges through walls", static_cast<double>(spans.size()));
     if (spans.empty()) {

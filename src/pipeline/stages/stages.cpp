@@ -9,6 +9,7 @@
 #include "base/mesh/complex.h"
 #include "base/mesh/complex_patches.h"
 #include "base/mesh/feature_patches.h"
+#include "base/shared/shared_defects.h"
 #include "fill/stuffing/stuff.h"
 #include "improve/boundary/slide_interfaces.h"
 #include "improve/boundary/slide_pairs.h"
@@ -176,7 +177,7 @@ constexpr double kRaised = 0.5;
 
 /// What the boundary itself keeps poor: vertices of interfaces slide, and corners of flat elements leave the surface.
 void ease_boundary(const improve::BoundaryInput& on, Filled& filled, const Options& options, const Stage& stage) {
-  auto& [mesh, boundary, grown] = filled;
+  auto& [mesh, boundary, grown, tets] = filled;
   if (is_complex(on.surface))
     stage.count("interface vertices moved",
                 static_cast<double>(slide_interfaces(mesh, boundary.surface, boundary.features, on.surface, stage)));
@@ -190,11 +191,20 @@ void ease_boundary(const improve::BoundaryInput& on, Filled& filled, const Optio
       force.emplace(on);
       limits.leeway = &leeway, limits.force = &*force, limits.input = &on.tree;
     }
-    const RaisedFlat raised = raise_flat(mesh, boundary.surface, limits, stage);
+    const RaisedFlat raised = raise_flat(mesh, boundary.surface, limits, stage, tets);
     stage.count("corners of flat elements moved", static_cast<double>(raised.vertices));
     stage.count("largest move of such a corner", raised.largest_move);
   }
   std::copy_n(mesh.points.begin(), boundary.surface.points.size(), boundary.surface.points.begin());
+}
+
+/// Whether ranks have shares of the elements from filling to improvement, which puts them in order. What else is done
+/// to them in between wants them all.
+bool may_share(const Prepared& input, const Run& run) {
+  const bool is_improved = run.options.improve.level != ImproveOptions::Level::kOff;
+  return !run.comm().alone() && traits_of(run.options.method).shares_tets && is_improved &&
+         !is_complex(input.surface.mesh()) && !input.cell.is_periodic() && run.options.layers.count == 0 &&
+         (run.checkpoint == nullptr || !run.checkpoint->keeps());
 }
 
 /// Vertices inside periodic faces, which improvement leaves alone, with their copies.
@@ -405,13 +415,27 @@ Filled fill(const Prepared& input, const SizeField& sizes, Run& run) {
   return fill_surface(input, triangulate(input, sizes, run), run);
 }
 
+Comm comm_of(const Filled& filled, const Run& run) {
+  return filled.tets == Tets::kShare ? run.comm() : Comm(nullptr);
+}
+
+std::uint64_t element_count(const Filled& filled, const Run& run) {
+  return count_tets(filled.mesh, comm_of(filled, run)).all;
+}
+
+void make_whole(Filled& filled, const Run& run) {
+  if (std::exchange(filled.tets, Tets::kAll) == Tets::kShare) gather_tets(filled.mesh, run.comm());
+}
+
 Filled fill_surface(const Prepared& input, Remeshed boundary, Run& run) {
   const MethodTraits& method = traits_of(run.options.method);
   std::optional<GrownLayers> layers = grow_layers(input, boundary, run);
+  const Tets tets = may_share(input, run) ? Tets::kShare : Tets::kAll;
   TetMesh mesh = kept<TetMesh>(run, "volume", [&] {
     return run.stage(method.stage, [&](const Stage& stage) {
-      TetMesh filled = method.fill(boundary, run.options.volume, stage);
-      stage.count("tets", static_cast<double>(filled.tets.size()));
+      TetMesh filled = method.fill(boundary, run.options.volume, stage, tets);
+      const std::uint64_t made = tets == Tets::kShare ? count_tets(filled, run.comm()).all : filled.tets.size();
+      stage.count("tets", static_cast<double>(made));
       return filled;
     });
   });
@@ -419,12 +443,12 @@ Filled fill_surface(const Prepared& input, Remeshed boundary, Run& run) {
   for (std::size_t t = 0; t < boundary.source.size(); ++t)
     if (boundary.surface.sides_of(t)[0] == kNone)
       mesh.source.push_back(input.surface.mesh().source_of(boundary.source[t]));
-  return {std::move(mesh), std::move(boundary), std::move(layers)};
+  return {std::move(mesh), std::move(boundary), std::move(layers), tets};
 }
 
 void improve_elements(const Prepared& input, Filled& filled, Run& run, const ImproveOptions& options) {
   run.stage("improve", [&](const Stage& stage) {
-    auto& [mesh, boundary, grown] = filled;
+    auto& [mesh, boundary, grown, tets] = filled;
     const bool is_ours =
         !filled.layers && !keeps_surface(run.options) && input.defects == SurfaceDomain::Defects::kClean;
     std::optional<improve::BoundaryInput> on;
@@ -435,7 +459,7 @@ void improve_elements(const Prepared& input, Filled& filled, Run& run, const Imp
           input.kept_bound(), vertices_on_faces(boundary.surface, input.cell)});
     const bool slides_pairs = on && may_slide(options) && input.cell.is_periodic();
     if (slides_pairs) slide_together(input.cell, filled, stage);
-    if (improve_mesh(mesh, on ? &*on : nullptr, options, stage, &boundary.features)) {
+    if (improve_mesh(mesh, on ? &*on : nullptr, options, stage, &boundary.features, tets)) {
       if (on) renew_sources(mesh, hull_of(boundary.surface), on->surface, on->tree);
       follow_boundary(mesh, boundary.surface);
     }
@@ -474,12 +498,27 @@ void count_edges(const SecondOrderSummary& made, const Stage& stage) {
   stage.count("straight edges", static_cast<double>(made.straight));
 }
 
+namespace {
+
+void require_none(const std::optional<std::string>& defect) {
+  if (defect)
+    throw MeshingError("the mesh made is not valid, which is a bug of ours; please report it with the input. " +
+                       *defect);
+}
+
+}  // namespace
+
 void check_result(const TetMesh& mesh, const SurfaceMesh* surface, Run& run) {
   run.stage("check", [&](const Stage& stage) {
-    const auto defect = surface ? first_defect(mesh, *surface, stage.context()) : first_defect(mesh, stage.context());
-    if (defect)
-      throw MeshingError("the mesh made is not valid, which is a bug of ours; please report it with the input. " +
-                         *defect);
+    require_none(surface ? first_defect(mesh, *surface, stage.context()) : first_defect(mesh, stage.context()));
+  });
+}
+
+void check_result(const Filled& filled, Run& run) {
+  const SurfaceMesh& surface = filled.boundary.surface;
+  if (filled.tets == Tets::kAll) return check_result(filled.mesh, &surface, run);
+  run.stage("check", [&](const Stage& stage) {
+    require_none(first_defect_of_shares(filled.mesh, surface, stage.context(), run.comm()));
   });
 }
 
@@ -487,13 +526,17 @@ SurfaceMesh boundary_of(const TetMesh& mesh) {
   return {mesh.points, mesh.boundary, mesh.patch, {}, {}};
 }
 
-void describe(const TetMesh& mesh, Report& report) {
+void describe(const TetMesh& mesh, Report& report, const Comm& comm) {
   report.points = mesh.points.size();
-  report.tets = mesh.tets.size();
   report.boundary_faces = mesh.boundary.size();
   report.volume = mesh.is_second_order() ? curved_volume(mesh) : enclosed_volume(boundary_of(mesh));
-  parallel_invoke([&] { report.quality = summarize_quality(mesh); }, [&] { report.hash = mesh_hash(mesh); });
-  describe_regions(mesh, report);
+  if (comm.alone()) {
+    parallel_invoke([&] { describe_quality(mesh, report); }, [&] { report.hash = mesh_hash(mesh); });
+  } else {
+    describe_quality(mesh, report, comm);
+    report.hash = mesh_hash(mesh, comm);
+  }
+  describe_regions(mesh, report, comm);
 }
 
 }  // namespace octafront

@@ -15,6 +15,7 @@
 #include "base/geometry/true_geometry.h"
 #include "base/mesh/known_surface.h"
 #include "base/mesh/periodic_cell.h"
+#include "base/shared/shared_tets.h"
 #include "fill/stuffing/implicit_domain.h"
 #include "pipeline/stages/closed_patch.h"
 #include "pipeline/stages/layered.h"
@@ -52,7 +53,15 @@ struct Filled {
   TetMesh mesh;
   Remeshed boundary;
   std::optional<GrownLayers> layers = {};
+  Tets tets = Tets::kAll;  ///< what of them each rank has; all other arrays are whole
 };
+
+/// Of the ranks that have shares of it; alone if all have all.
+Comm comm_of(const Filled& filled, const Run& run);
+/// The elements of all ranks.
+std::uint64_t element_count(const Filled& filled, const Run& run);
+/// All ranks get them all.
+void make_whole(Filled& filled, const Run& run);
 
 /// Does something to the mesh as if its boundary were what follows the input: not the tops of layers.
 template <class Work>
@@ -98,7 +107,7 @@ Filled fill_surface(const Prepared& input, Remeshed boundary, Run& run);
 Filled fill_to_target(const Prepared& input, const SizeField& sizes, Run& run);
 
 /// Says so if a mesh that is done misses the number of elements that was asked for by more than 15 %.
-void note_missed_elements(const TetMesh& mesh, Run& run);
+void note_missed_elements(const Filled& filled, Run& run);
 
 /// Better elements by these options; `filled.boundary` follows what became of the boundary.
 void improve_elements(const Prepared& input, Filled& filled, Run& run, const ImproveOptions& options);
@@ -115,11 +124,13 @@ void count_edges(const SecondOrderSummary& made, const Stage& stage);
 
 /// Throws MeshingError if the mesh breaks a law of first_defect(), or its boundary is not `surface` where one is given.
 void check_result(const TetMesh& mesh, const SurfaceMesh* surface, Run& run);
+/// The same of what was made, and its boundary.
+void check_result(const Filled& filled, Run& run);
 
 /// The boundary with the mesh's points and patches.
 SurfaceMesh boundary_of(const TetMesh& mesh);
 
-/// Fills in what the report says of every mesh: counts, volume, quality, hash.
-void describe(const TetMesh& mesh, Report& report);
+/// Fills in what the report says of every mesh: counts, volume, quality, hash. `comm`: as in measure.h.
+void describe(const TetMesh& mesh, Report& report, const Comm& comm = Comm(nullptr));
 
 }  // namespace octafront

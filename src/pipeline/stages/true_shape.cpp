@@ -42,7 +42,7 @@ void renumber(std::vector<std::uint32_t>& patch, std::size_t faces, const std::v
 }
 
 void take_patches_of(const TrueGeometry& geometry, Filled& filled) {
-  auto& [mesh, boundary, grown] = filled;
+  auto& [mesh, boundary, grown, tets] = filled;
   std::vector<std::string> names = geometry.patch_names();
   const std::vector<std::uint32_t> number = renumbering(mesh.patch_names, names);
   renumber(mesh.patch, mesh.boundary.size(), number);
@@ -162,7 +162,7 @@ void place_on_geometry(const Prepared& input, Filled& filled, Run& run) {
 
 void name_parts(const Prepared& input, Filled& filled, Run& run) {
   if (!input.geometry) return;
-  auto& [mesh, boundary, grown] = filled;
+  auto& [mesh, boundary, grown, tets] = filled;
   name_parts_of(*input.geometry, mesh.points, mesh.boundary, mesh.patch);
   name_parts_of(*input.geometry, mesh.points, mesh.interfaces, mesh.interface_patch);
   name_parts_of(*input.geometry, mesh.points, boundary.surface.triangles, boundary.surface.patch);

@@ -1,6 +1,7 @@
 #include <octafront/quality.h>
 #include <octafront/validity.h>
 
+#include "base/mesh/quality_sum.h"
 #include "support/lattice_points.h"
 
 #include <algorithm>
@@ -71,7 +72,8 @@ TEST(SummarizeQuality, CountsEveryElementOnce) {
   EXPECT_EQ(s.beta_classes[0], 1u);
   EXPECT_EQ(s.beta_min_tet, 12345u);
   EXPECT_EQ(s.beta_min, radius_ratio(mesh.points[0], mesh.points[1], mesh.points[2], mesh.points[4]));
-  EXPECT_NEAR(s.beta_mean, (19999 * radius_ratio(kUnit[0], kUnit[1], kUnit[2], kUnit[3]) + s.beta_min) / 20000, 1e-12);
+  const double sum = 19999 * radius_ratio(kUnit[0], kUnit[1], kUnit[2], kUnit[3]) + s.beta_min;
+  EXPECT_NEAR(s.beta_mean, sum / 20000, QualitySum::kBetaUnit);
   EXPECT_GT(s.dihedral_max, 170);
 }
 

@@ -2,8 +2,10 @@
 
 #include <octafront/validity.h>
 
+#include "base/comm/virtual_ranks.h"
 #include "base/core/random.h"
 #include "base/mesh/tet_key.h"
+#include "base/shared/shared_tets.h"
 #include "fill/front/filled_sphere.h"
 
 #include <algorithm>
@@ -61,6 +63,29 @@ TEST(Ladder, HangsOnNoOrder) {
     shuffle(walls, random);
     EXPECT_TRUE(sieve.closed(std::move(tets), std::move(walls)) == plain);
   }
+}
+
+TEST(Ladder, ClosesTheSameOfShares) {
+  const Sieve sieve;
+  const auto plain = sieve.closed(sieve.mesh.tets, sieve.walls);
+  for (const int ranks : {2, 3})
+    run_virtual_ranks(ranks, [&](Ranks& here) {
+      const Comm comm(&here);
+      StageReport report;
+      RunContext context;
+      context.ranks = &here;
+      const FrontTask task{sieve.sizes, sieve.options, {context, report}, &here};
+      TetMesh mesh = sieve.mesh;
+      keep_share(mesh, comm);
+      FrontTets share{mesh.tets, {{0, count_tets(mesh, comm).before}}};
+      close_cavities_of_shares(mesh.points, share, sieve.walls, sieve.surface, task);
+      mesh.tets = share.tets;
+      drop_unused_points(mesh, sieve.surface.points.size(), comm);
+      gather_tets(mesh, comm);
+      std::ranges::sort(mesh.tets, {}, tet_key);
+      EXPECT_TRUE(mesh.points == plain.first);
+      EXPECT_TRUE(mesh.tets == plain.second);
+    });
 }
 
 }  // namespace

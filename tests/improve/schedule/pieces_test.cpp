@@ -2,6 +2,7 @@
 
 #include <octafront/validity.h>
 
+#include "base/comm/virtual_ranks.h"
 #include "base/mesh/features.h"
 #include "base/mesh/tet_key.h"
 #include "improve/passes/passes.h"
@@ -36,7 +37,7 @@ TEST(Pieces, OfOneStageShareNoVertexAndAllAreOnceInOneWithAllAround) {
   std::vector<int> star(start.points.size(), 0), seen_inside(start.points.size(), 0), of_piece;
   for (const Tet& t : start.tets)
     for (const VertexIndex v : t) ++star[v];
-  MeshOfPieces mesh(TetMesh{start}, kBalanced, nullptr, Comm(nullptr), kMost);
+  MeshOfPieces mesh(TetMesh{start}, kBalanced, nullptr, Comm(nullptr), Tets::kAll, kMost);
   std::vector<std::size_t> counts;
   std::mutex mutex;
   int pieces = 0;
@@ -72,7 +73,7 @@ TEST(Pieces, OfOneStageShareNoVertexAndAllAreOnceInOneWithAllAround) {
 
 TEST(Pieces, LookedAtAloneGiveTheMeshBack) {
   const TetMesh& start = many_pieces();
-  MeshOfPieces mesh(TetMesh{start}, kBalanced, nullptr, Comm(nullptr), kMost);
+  MeshOfPieces mesh(TetMesh{start}, kBalanced, nullptr, Comm(nullptr), Tets::kAll, kMost);
   mesh.work(
       mesh.all(), 0, [](MeshPiece&) { return Bytes(); }, no_notes, no_progress);
   TetMesh back = mesh.release(nullptr);
@@ -90,7 +91,7 @@ TEST(Pieces, LookedAtAloneGiveTheMeshBack) {
 TEST(Pieces, AreMendedAcrossTheirRims) {
   TetMesh start = many_pieces();
   for (const Tet& t : start.tets) start.region.push_back(start.points[t[0]].x > 0.4);
-  MeshOfPieces mesh(TetMesh{start}, kBalanced, nullptr, Comm(nullptr), kMost);
+  MeshOfPieces mesh(TetMesh{start}, kBalanced, nullptr, Comm(nullptr), Tets::kAll, kMost);
   const auto mend = [](MeshPiece& piece) {
     insert_vertices(*piece.mesh, 0.3f, Goal::kWorst, {});
     while (reconnect(*piece.mesh, 0.3f, Goal::kWorst, {}).done != 0) {
@@ -107,9 +108,57 @@ TEST(Pieces, AreMendedAcrossTheirRims) {
   EXPECT_LT(50 * reconnect(after, 0.3f, Goal::kWorst, {}).done, reconnect(before, 0.3f, Goal::kWorst, {}).done);
 }
 
+/// Two rounds of changes, the first one taken back.
+TetMesh mended_by(const TetMesh& start, const BoundaryInput& input, Ranks* ranks, Tets tets) {
+  const Comm comm(ranks);
+  TetMesh mine = start;
+  if (tets == Tets::kShare) keep_share(mine, comm);
+  MeshOfPieces mesh(std::move(mine), kBalanced, &input, comm, tets, kMost);
+  const auto change = [](MeshPiece& piece) {
+    insert_vertices(*piece.mesh, 0.4f, Goal::kWorst, {});
+    reconnect(*piece.mesh, 0.6f, Goal::kWorst, {});
+    smooth_mean(*piece.mesh, 1, {});
+    return Bytes(piece.vertices.size());
+  };
+  for (int round = 0; round < 2; ++round) {
+    std::size_t noted = 0;
+    mesh.work(
+        mesh.all(), 1, change,
+        [&](std::span<const Bytes> notes) {
+          for (const Bytes& of_piece : notes) noted += of_piece.size();
+        },
+        no_progress);
+    EXPECT_GE(noted, start.points.size());
+    const Bytes of_one = mesh.work_on_one(mesh.corners_below(0.5f), 1, change);
+    EXPECT_GT(of_one.size(), 0u);
+    if (round == 1) break;
+    mesh.rewind();
+    EXPECT_EQ(mesh.tets(), start.tets.size());
+  }
+  TetMesh made = mesh.release(nullptr);
+  if (tets == Tets::kShare) gather_tets(made, comm);
+  return made;
+}
+
+TEST(Pieces, AreTheSameOfSharesOfRanks) {
+  TetMesh start = perturbed(kuhn_cube(14), 0.6, 5);
+  for (const Tet& t : start.tets) start.region.push_back(start.points[t[0]].x > 0.4);
+  const SurfaceMesh surface{start.points, start.boundary, start.patch, {}, {}};
+  const Features features = detect_features(surface, 40);
+  const TriangleTree tree(surface);
+  const BoundaryInput input{surface, tree, features, features};
+  const TetMesh alone = mended_by(start, input, nullptr, Tets::kAll);
+  EXPECT_EQ(first_defect(alone), std::nullopt);
+  for (const int count : {2, 3, 5})
+    run_virtual_ranks(count, [&](Ranks& ranks) {
+      EXPECT_EQ(mended_by(start, input, &ranks, Tets::kShare), alone);
+      EXPECT_EQ(mended_by(start, input, &ranks, Tets::kAll), alone);
+    });
+}
+
 TEST(Pieces, FindThePoorAndThoseThatCross) {
   const TetMesh& start = many_pieces();
-  MeshOfPieces mesh(TetMesh{start}, kBalanced, nullptr, Comm(nullptr), kMost);
+  MeshOfPieces mesh(TetMesh{start}, kBalanced, nullptr, Comm(nullptr), Tets::kAll, kMost);
   EXPECT_TRUE(mesh.corners_of_crossings().empty());
   EXPECT_TRUE(mesh.corners_below(-1).empty());
   const float threshold = 0.1f;

@@ -36,7 +36,7 @@ ShuffledResult improve_shuffled(TetMesh mesh, const BoundaryInput* input, const 
     ++result.stages;
     if (seed) shuffle(pieces);
   };
-  improve_mesh(mesh, input, options, {{}, report}, nullptr, before_stage);
+  improve_mesh(mesh, input, options, {{}, report}, nullptr, Tets::kAll, before_stage);
   result.mesh = std::move(mesh);
   return result;
 }

@@ -64,6 +64,65 @@ TEST(Ranks, MeetTheSameNumberOfElements) {
   expect_same_mesh(testing::icosphere(4), options, {2});
 }
 
+/// That the shares of so many ranks are the stretches of what a process alone makes, and all reports the same.
+void expect_same_shares(const SurfaceMesh& surface, const Options& options, int count) {
+  const Result alone = generate(surface, options);
+  std::vector<TetMesh> shares(static_cast<std::size_t>(count));
+  run_virtual_ranks(count, [&](Ranks& ranks) {
+    RunContext context;
+    context.ranks = &ranks;
+    ranks.shares_tets = true;
+    Result made = generate(surface, options, context);
+    EXPECT_TRUE(made.is_share);
+    const Report &here = made.report, &there = alone.report;
+    EXPECT_EQ(here.hash, there.hash);
+    EXPECT_EQ(here.tets, there.tets);
+    EXPECT_EQ(here.quality.beta_mean, there.quality.beta_mean);
+    EXPECT_EQ(here.quality.beta_min_tet, there.quality.beta_min_tet);
+    EXPECT_EQ(here.quality.dihedral_histogram, there.quality.dihedral_histogram);
+    EXPECT_EQ(here.volume_edges.mean_ratio, there.volume_edges.mean_ratio);
+    ASSERT_EQ(here.regions.size(), there.regions.size());
+    for (std::size_t r = 0; r < here.regions.size(); ++r) {
+      EXPECT_EQ(here.regions[r].quality.elements, there.regions[r].quality.elements);
+      EXPECT_NEAR(here.regions[r].volume, there.regions[r].volume, 1e-12 * there.regions[r].volume);
+    }
+    shares[static_cast<std::size_t>(ranks.rank())] = std::move(made.mesh);
+  });
+  TetMesh all = shares[0];
+  all.tets.clear(), all.region.clear();
+  for (const TetMesh& share : shares) {
+    EXPECT_LT(share.tets.size(), 3 * alone.mesh.tets.size() / static_cast<std::size_t>(count));
+    all.tets.insert(all.tets.end(), share.tets.begin(), share.tets.end());
+    all.region.insert(all.region.end(), share.region.begin(), share.region.end());
+  }
+  EXPECT_EQ(all, alone.mesh);
+}
+
+TEST(Ranks, GetSharesOfTheMesh) {
+  for (const int count : {2, 5}) expect_same_shares(testing::torus(80, 40), ranks_options(0.07), count);
+}
+
+TEST(Ranks, GetSharesOfSeveralBodies) {
+  const SurfaceMesh body = testing::icosphere(3);
+  const SurfaceMesh two = testing::joined(body, testing::transformed(body, 1, {3, 0, 0}));
+  expect_same_shares(two, ranks_options(0.12), 3);
+}
+
+/// Sheets that nearly touch: cavities stay open, flat elements are raised.
+TEST(Ranks, GetSharesWhereTheFrontStaysOpen) {
+  Options options = ranks_options(0.15);
+  options.surface.keep = true;
+  SurfaceMesh ball = testing::icosphere(4);
+  for (Vec3& p : ball.points) p.z *= p.z > 0 ? 0.02 : 1;
+  const Result alone = generate(ball, options);
+  double cavities = 0;
+  for (const StageReport& stage : alone.report.stages)
+    for (const auto& [name, count] : stage.counters)
+      if (name == "cavities") cavities += count;
+  EXPECT_GT(cavities, 0);
+  expect_same_shares(ball, options, 3);
+}
+
 std::vector<std::string> stages_of(const SurfaceMesh& surface, const Options& options) {
   std::vector<std::string> stages;
   RunContext context;
