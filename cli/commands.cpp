@@ -179,12 +179,14 @@ void run_mesh(Session& session) {
     if (context.ranks != nullptr) context.ranks->shares_tets = true;
     return generate_with(checkpoints, domain, options, context);
   });
-  gather_at_first(result, session.context());
+  if (result.is_share && !takes_shares(a)) gather_at_first(result, session.context());
+  const std::vector<PoorElement> worst = worst_elements(result, kWorstListed, session.context());
   tell_ranks(session, result.report);
+  if (result.is_share) write_share_targets(session, result.mesh);
   if (!session.is_first()) return;
-  write_mesh_targets(session, result.mesh);
+  if (!result.is_share) write_mesh_targets(session, result.mesh);
   session.tell(result.report);
-  tell_worst(session, result.mesh, result.report.quality);
+  tell_worst(session, worst);
   finish_run(session, result.mesh, &result.sizes);
 }
 
@@ -238,7 +240,7 @@ void run_improve(Session& session) {
   session.say(fmt::format("{}: {}\n", a.input.string(), quality_in_words(result.before)));
   session.say(fmt::format("improved: {}\n", quality_in_words(result.report.quality)));
   session.tell(result.report);
-  tell_worst(session, result.mesh, result.report.quality);
+  tell_worst(session, worst_elements(result.mesh, kWorstListed));
   finish_run(session, result.mesh, nullptr);
 }
 
@@ -352,7 +354,7 @@ void run_adapt(Session& session) {
   write_mesh_targets(session, result.mesh, carried_fields(session, fields, mesh, result));
   if (!a.map_file.empty()) write_map(a.map_file, mesh, result);
   tell_adapted(session, result);
-  tell_worst(session, result.mesh, result.report.quality);
+  tell_worst(session, worst_elements(result.mesh, kWorstListed));
   finish_run(session, result.mesh, nullptr);
 }
 

@@ -9,11 +9,6 @@ namespace octafront::cli {
 
 namespace {
 
-Vec3 middle(const TetMesh& mesh, TetIndex tet) {
-  const auto& [a, b, c, d] = mesh.tets[tet];
-  return (mesh.points[a] + mesh.points[b] + mesh.points[c] + mesh.points[d]) / 4;
-}
-
 /// The groups of a mesh and their sizes, in words and for programs.
 void tell_groups(Session& session, const TetMesh& mesh) {
   Json all = Json::array();
@@ -52,20 +47,19 @@ Json place(Vec3 p) {
 }
 
 // A number alone is hard to find in a viewer.
-void tell_worst(Session& session, const TetMesh& mesh, const QualitySummary& quality) {
-  const Vec3 p = middle(mesh, quality.beta_min_tet);
-  session.say(fmt::format("worst element: number {} at ({:.6g}, {:.6g}, {:.6g}), beta {:.4f}\n", quality.beta_min_tet,
-                          p.x, p.y, p.z, quality.beta_min));
-  session.found({{"worst_element", {{"number", quality.beta_min_tet}, {"at", place(p)}, {"beta", quality.beta_min}}}});
-  constexpr std::size_t kListed = 20;
-  Json worst = Json::array();
-  for (const PoorElement& e : worst_elements(mesh, kListed))
-    worst.push_back({{"number", e.tet},
-                     {"at", place(e.at)},
-                     {"beta", e.beta},
-                     {"dihedral_min_degrees", e.dihedral_min},
-                     {"dihedral_max_degrees", e.dihedral_max}});
-  session.found({{"worst_elements", worst}});
+void tell_worst(Session& session, const std::vector<PoorElement>& worst) {
+  const PoorElement& least = worst.front();
+  session.say(fmt::format("worst element: number {} at ({:.6g}, {:.6g}, {:.6g}), beta {:.4f}\n", least.tet, least.at.x,
+                          least.at.y, least.at.z, least.beta));
+  session.found({{"worst_element", {{"number", least.tet}, {"at", place(least.at)}, {"beta", least.beta}}}});
+  Json all = Json::array();
+  for (const PoorElement& e : worst)
+    all.push_back({{"number", e.tet},
+                   {"at", place(e.at)},
+                   {"beta", e.beta},
+                   {"dihedral_min_degrees", e.dihedral_min},
+                   {"dihedral_max_degrees", e.dihedral_max}});
+  session.found({{"worst_elements", all}});
 }
 
 std::string quality_in_words(const QualitySummary& q) {
@@ -84,7 +78,7 @@ void tell_mesh(Session& session, const TetMesh& mesh, const std::string& what) {
   session.found({{"quality", Json::parse(to_json(report))["quality"]}});
   session.say(
       fmt::format("{}: {} of {}\n", session.arguments().input.string(), what, quality_in_words(report.quality)));
-  if (!mesh.tets.empty()) tell_worst(session, mesh, report.quality);
+  if (!mesh.tets.empty()) tell_worst(session, worst_elements(mesh, kWorstListed));
   tell_wide_cells(session, mesh);
   tell_groups(session, mesh);
 }

@@ -94,7 +94,7 @@ void adapt_to_ranks(Arguments& a, const Launch& launch, int ranks_here) {
   if (a.threads == 0) a.threads = threads_of_rank(ranks_here);
   if (launch.is_first()) return;
   a.quiet = true;
-  a.json.clear(), a.page.clear(), a.defects.clear();
+  a.json.clear(), a.defects.clear();
 }
 
 void tell_ranks(Session& session, const Report& report) {

@@ -4,6 +4,7 @@
 #include <octafront/field_files.h>
 #include <octafront/io.h>
 #include <octafront/named_groups.h>
+#include <octafront/share_files.h>
 
 #include "terminal.h"
 
@@ -179,6 +180,25 @@ void write_mesh_targets(Session& session, TetMesh mesh, std::span<const MeshFiel
     notes.insert(notes.begin(), group_notes.begin(), group_notes.end());
     all.push_back({{"file", a.meshes[i].string()}, {"notes", notes}});
     group_notes.clear();
+  }
+  session.found({{"output", all[0]}});
+  if (all.size() > 1) session.found({{"outputs", all}});
+}
+
+bool takes_shares(const Arguments& a) {
+  const auto is_pvtu = [&](std::size_t i) { return format_for(a.meshes[i].string(), options_of(a, i)).name == "pvtu"; };
+  for (std::size_t i = 0; i < a.meshes.size(); ++i)
+    if (!is_pvtu(i)) return false;
+  return a.parts == 0 && a.page.empty() && a.groups.empty() && !a.ascii && !a.cells_only;
+}
+
+void write_share_targets(Session& session, const TetMesh& share) {
+  Json all = Json::array();
+  for (const std::filesystem::path& file : session.arguments().meshes) {
+    session.context().report("writing", -1);
+    const std::vector<std::string> notes = write_shares(file.string(), share, session.context());
+    session.say_notes("writing", notes);
+    all.push_back({{"file", file.string()}, {"notes", notes}});
   }
   session.found({{"output", all[0]}});
   if (all.size() > 1) session.found({{"outputs", all}});

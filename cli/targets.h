@@ -17,6 +17,11 @@ void check_mesh_targets(const Arguments& arguments);
 /// what was lost on the way.
 void write_mesh_targets(Session& session, TetMesh mesh, std::span<const MeshField> fields = {});
 
+/// Whether ranks write their shares of a mesh by themselves: all outputs are .pvtu, and nothing asks for more.
+bool takes_shares(const Arguments& arguments);
+/// Writes them; called by all ranks.
+void write_share_targets(Session& session, const TetMesh& share);
+
 /// Whether an output holds fields on the mesh.
 bool some_target_holds_fields(const Arguments& arguments);
 /// Refuses outputs that surfaces alone are not written to. Throws OptionError.

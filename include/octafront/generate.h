@@ -3,6 +3,7 @@
 #include <octafront/domain.h>
 #include <octafront/options.h>
 #include <octafront/repair.h>
+#include <octafront/quality.h>
 #include <octafront/report.h>
 #include <octafront/run_context.h>
 #include <octafront/size_field.h>
@@ -24,6 +25,9 @@ struct Result {
 /// Where ranks have shares, the first one gets all tetrahedra, and no other any. Called by all ranks; does nothing
 /// where the result is no share. Bytes that travel: those of the tetrahedra.
 void gather_at_first(Result& result, const RunContext& context);
+
+/// The elements of least beta, the worst first: of all ranks' together, where they have shares; called by all then.
+std::vector<PoorElement> worst_elements(const Result& result, std::size_t count, const RunContext& context);
 
 /// From a domain (octafront/domain.h) to a valid tetrahedral mesh: repair, features, size field, surface front, volume
 /// front, improvement, check. A SurfaceMesh is a domain as it stands: repair_surface() tidies it, and what has defects

@@ -29,6 +29,7 @@
 #include <octafront/report_page.h>
 #include <octafront/run_context.h>
 #include <octafront/second_order.h>
+#include <octafront/share_files.h>
 #include <octafront/size_field.h>
 #include <octafront/solver_checks.h>
 #include <octafront/surface_mesh.h>

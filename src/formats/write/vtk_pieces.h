@@ -10,11 +10,14 @@
 #include "formats/pieces/pieces.h"
 
 #include <cstdint>
+#include <filesystem>
+#include <span>
 #include <string_view>
 
 namespace octafront::io {
 
 class AtomicFile;
+class MeshOutput;
 
 inline constexpr std::string_view kGhostType = "vtkGhostType", kGlobalPointIds = " GlobalIds=\"GlobalPointIds\"",
                                   kGlobalCellIds = " GlobalIds=\"GlobalCellIds\"";
@@ -60,5 +63,13 @@ struct VtkPiece {
 
 /// One piece as a file of its own, which a .pvtu names.
 void write_vtu_piece(AtomicFile& file, const VtkPiece& piece, bool as_text);
+
+/// A .pvtu by several hands: the folder for its pieces is begun, each is written into it, and the file that names them
+/// ends it. `target`: of the .pvtu.
+std::filesystem::path begin_pvtu(MeshOutput& out);
+void write_pvtu_piece(const std::filesystem::path& folder, const std::filesystem::path& target, const Piece& piece,
+                      const VtkWhole& whole, const RunContext& context, bool as_text);
+void end_pvtu(MeshOutput& output, const MeshParts& mesh, std::span<const MeshField> fields, const VtkWhole& whole,
+              std::uint32_t parts);
 
 }  // namespace octafront::io

@@ -24,32 +24,16 @@ void index_array(TextWriter& out, std::string_view type, std::string_view name, 
 }
 
 /// The arrays that VtuWriter declares, in its order.
-void index_arrays(TextWriter& out, const Pieces& pieces, const VtkWhole& whole, bool of_points) {
+void index_arrays(TextWriter& out, const MeshParts& mesh, std::span<const MeshField> fields, const VtkWhole& whole,
+                  bool of_points) {
   index_array(out, "UInt8", kGhostType);
   index_array(out, kIdType, of_points ? "GlobalPointIds" : "GlobalCellIds");
   if (!of_points) index_array(out, "Int32", "part");
-  for (const VtkCells::Data& data : VtkCells::data_of(pieces.whole(), whole.shown))
+  for (const VtkCells::Data& data : VtkCells::data_of(mesh, whole.shown))
     if (data.of_points == of_points) index_array(out, data.is_set ? "UInt8" : "Int32", escaped(data.name));
-  for (const MeshField& field : pieces.fields())
+  for (const MeshField& field : fields)
     if (field.of_elements != of_points) index_array(out, "Float64", escaped(field.name), field.components);
   if (!of_points) index_array(out, "Float32", "beta");
-}
-
-void write_index(TextWriter& out, const Pieces& pieces, const VtkWhole& whole, const std::filesystem::path& target) {
-  out << "<?xml version=\"1.0\"?>\n"
-         "<VTKFile type=\"PUnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"
-         "  <PUnstructuredGrid GhostLevel=\"1\">\n";
-  out.line("    <PPointData{}>", kGlobalPointIds);
-  index_arrays(out, pieces, whole, true);
-  out.line("    </PPointData>\n    <PCellData Scalars=\"beta\"{}>", kGlobalCellIds);
-  index_arrays(out, pieces, whole, false);
-  out << "    </PCellData>\n    <PPoints>\n";
-  index_array(out, "Float64", "Points", 3);
-  out << "    </PPoints>\n";
-  const std::string folder = folder_of_pieces(target).filename().string();
-  for (std::uint32_t k = 0; k < pieces.count(); ++k)
-    out.line("    <Piece Source=\"{}/{}\"/>", escaped(folder), escaped(piece_name(target.stem().string(), k, ".vtu")));
-  out << "  </PUnstructuredGrid>\n</VTKFile>\n";
 }
 
 }  // namespace
@@ -58,18 +42,43 @@ std::string piece_name(std::string_view stem, std::uint32_t piece, std::string_v
   return fmt::format("{}_{:04}{}", stem, piece, ending);
 }
 
+std::filesystem::path begin_pvtu(MeshOutput& out) {
+  return out.folder(folder_of_pieces(out.target()));
+}
+
+void write_pvtu_piece(const std::filesystem::path& folder, const std::filesystem::path& target, const Piece& piece,
+                      const VtkWhole& whole, const RunContext& context, bool as_text) {
+  AtomicFile file(folder / piece_name(target.stem().string(), piece.number, ".vtu"), context);
+  write_vtu_piece(file, VtkPiece(piece, whole), as_text);
+  file.commit();
+}
+
+void end_pvtu(MeshOutput& output, const MeshParts& mesh, std::span<const MeshField> fields, const VtkWhole& whole,
+              std::uint32_t parts) {
+  const std::filesystem::path& target = output.target();
+  TextWriter out(output.file());
+  out << "<?xml version=\"1.0\"?>\n"
+         "<VTKFile type=\"PUnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n"
+         "  <PUnstructuredGrid GhostLevel=\"1\">\n";
+  out.line("    <PPointData{}>", kGlobalPointIds);
+  index_arrays(out, mesh, fields, whole, true);
+  out.line("    </PPointData>\n    <PCellData Scalars=\"beta\"{}>", kGlobalCellIds);
+  index_arrays(out, mesh, fields, whole, false);
+  out << "    </PCellData>\n    <PPoints>\n";
+  index_array(out, "Float64", "Points", 3);
+  out << "    </PPoints>\n";
+  const std::string folder = folder_of_pieces(target).filename().string();
+  for (std::uint32_t k = 0; k < parts; ++k)
+    out.line("    <Piece Source=\"{}/{}\"/>", escaped(folder), escaped(piece_name(target.stem().string(), k, ".vtu")));
+  out << "  </PUnstructuredGrid>\n</VTKFile>\n";
+}
+
 void write_pvtu(MeshOutput& out, Pieces& pieces) {
-  const std::string stem = out.target().stem().string();
   const VtkWhole whole = VtkWhole::of(pieces);
-  const std::filesystem::path folder = out.folder(folder_of_pieces(out.target()));
-  for (std::uint32_t k = 0; k < pieces.count(); ++k) {
-    const Piece piece = pieces.piece(k);
-    AtomicFile file(folder / piece_name(stem, k, ".vtu"), out.context());
-    write_vtu_piece(file, VtkPiece(piece, whole), out.as_text());
-    file.commit();
-  }
-  TextWriter index(out.file());
-  write_index(index, pieces, whole, out.target());
+  const std::filesystem::path folder = begin_pvtu(out);
+  for (std::uint32_t k = 0; k < pieces.count(); ++k)
+    write_pvtu_piece(folder, out.target(), pieces.piece(k), whole, out.context(), out.as_text());
+  end_pvtu(out, pieces.whole(), pieces.fields(), whole, pieces.count());
 }
 
 void check_pvtu_target(const std::filesystem::path& target, std::uint32_t) {

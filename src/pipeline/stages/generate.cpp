@@ -4,7 +4,9 @@
 #include <octafront/named_groups.h>
 #include <octafront/split.h>
 
+#include "base/comm/packing.h"
 #include "base/core/wording.h"
+#include "base/shared/shared_tets.h"
 #include "pipeline/inside/fins.h"
 #include "pipeline/stages/agreement.h"
 #include "pipeline/stages/checkpoint.h"
@@ -173,6 +175,17 @@ Result generate_in(const Domain& domain, const Options& asked, const RunContext&
 
 void gather_at_first(Result& result, const RunContext& context) {
   if (std::exchange(result.is_share, false)) gather_tets_at_first(result.mesh, Comm(context.ranks));
+}
+
+std::vector<PoorElement> worst_elements(const Result& result, std::size_t count, const RunContext& context) {
+  const Comm comm(result.is_share ? context.ranks : nullptr);
+  std::vector<PoorElement> worst = worst_elements(result.mesh, count);
+  const std::uint64_t first = count_tets(result.mesh, comm).before;
+  for (PoorElement& element : worst) element.tet += static_cast<TetIndex>(first);
+  worst = gathered_lists(comm, worst, "worst elements");
+  std::ranges::sort(worst, {}, [](const PoorElement& e) { return std::pair(e.beta, e.tet); });
+  worst.resize(std::min(count, worst.size()));
+  return worst;
 }
 
 Result generate(const Domain& domain, const Options& asked, const RunContext& context) {

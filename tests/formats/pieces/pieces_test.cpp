@@ -5,10 +5,14 @@
 
 #include <octafront/error.h>
 #include <octafront/io.h>
+#include <octafront/share_files.h>
 
+#include "base/comm/virtual_ranks.h"
 #include "base/core/thread_limit.h"
+#include "base/shared/shared_tets.h"
 #include "formats/parts/mesh_parts.h"
 #include "formats/pieces/division.h"
+#include "formats/pieces/share_piece.h"
 #include "formats/small_files.h"
 #include "support/mixed_mesh.h"
 #include "support/rich_mesh.h"
@@ -20,6 +24,7 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <ranges>
 #include <set>
 #include <string>
 #include <thread>
@@ -366,6 +371,65 @@ TEST(FilesInParts, KeepProcessorsOfALargerDivision) {
   EXPECT_TRUE(fs::exists(folder / "processor1/field"));
   EXPECT_THROW(write_mesh(folder / "constant/polyMesh", mesh, {}, {.parts = 2}), OutputError);
   EXPECT_TRUE(fs::exists(folder / "processor3/constant/polyMesh/faces"));
+}
+
+/// A mesh with regions, patches, interfaces and curves, without sets.
+TetMesh mesh_of_shares() {
+  TetMesh mesh = testing::rich_mesh(4);
+  mesh.sets.clear();
+  return mesh;
+}
+
+TEST(Pieces, OfSharesAreThoseOfTheWhole) {
+  const TetMesh mesh = mesh_of_shares();
+  for (const int ranks : {1, 2, 5}) {
+    io::Division division{static_cast<std::uint32_t>(ranks), {}};
+    for (const std::size_t t : std::views::iota(std::size_t{0}, mesh.tets.size()))
+      division.part.push_back(static_cast<std::uint32_t>(t * static_cast<std::size_t>(ranks) / mesh.tets.size()));
+    const MeshParts parts(mesh);
+    Pieces pieces(parts, division);
+    std::vector<Piece> whole;
+    for (std::uint32_t k = 0; k < pieces.count(); ++k) whole.push_back(pieces.piece(k));
+    run_virtual_ranks(ranks, [&](Ranks& here) {
+      TetMesh share = mesh;
+      const auto rank = static_cast<std::uint32_t>(here.rank());
+      const auto is_other = [&](std::size_t t) { return division.part[t] != rank; };
+      share.tets.clear(), share.region.clear();
+      for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+        if (is_other(t)) continue;
+        share.tets.push_back(mesh.tets[t]);
+        if (!mesh.region.empty()) share.region.push_back(mesh.region[t]);
+      }
+      const Piece made = io::piece_of_share(share, Comm(&here));
+      const Piece& there = whole[rank];
+      EXPECT_EQ(made.mesh, there.mesh);
+      EXPECT_EQ(made.own_tets, there.own_tets);
+      EXPECT_EQ(made.point_ids, there.point_ids);
+      EXPECT_EQ(made.cell_ids, there.cell_ids);
+      EXPECT_EQ(made.face_ids, there.face_ids);
+      EXPECT_EQ(made.edge_ids, there.edge_ids);
+      EXPECT_EQ(made.tet_part, there.tet_part);
+      for (std::size_t v = 0; v < made.point_part.size(); ++v)
+        EXPECT_EQ(made.point_part[v] == rank, there.point_part[v] == rank);
+    });
+  }
+}
+
+TEST(Pieces, OfSharesAreWrittenByTheirRanksOrNotAtAll) {
+  const TetMesh mesh = mesh_of_shares();
+  const TemporaryFolder folder;
+  run_virtual_ranks(3, [&](Ranks& here) {
+    TetMesh share = mesh;
+    keep_share(share, Comm(&here));
+    RunContext context;
+    context.ranks = &here;
+    write_shares((folder / "mesh.pvtu").string(), share, context);
+    EXPECT_EQ(read_mesh((folder / ("mesh/mesh_000" + std::to_string(here.rank()) + ".vtu")).string()).points.size(),
+              io::piece_of_share(share, Comm(&here)).mesh.points.size());
+    EXPECT_THROW(write_shares((folder / "no/folder/mesh.pvtu").string(), share, context), OutputError);
+  });
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.file("mesh")), {}), 3);
+  EXPECT_FALSE(fs::exists(folder / "no"));
 }
 
 }  // namespace

@@ -1,0 +1,62 @@
+#include <octafront/share_files.h>
+
+#include "base/comm/packing.h"
+#include "base/core/thread_limit.h"
+#include "formats/containers/atomic_file.h"
+#include "formats/parts/mesh_output.h"
+#include "formats/pieces/share_piece.h"
+#include "formats/write/vtk_pieces.h"
+#include "formats/write/writers.h"
+
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace octafront {
+
+namespace {
+
+/// The first rank's, for all.
+std::string from_first(const Comm& comm, const std::string& text) {
+  Packer to;
+  to.add_text(text);
+  std::string first;
+  comm.gather(to.bytes(), "output").for_each([&](int rank, std::span<const std::byte> bytes) {
+    if (rank == 0) first = Unpacker(bytes).take_text();
+  });
+  return first;
+}
+
+}  // namespace
+
+std::vector<std::string> write_shares(const std::string& file, const TetMesh& share, const RunContext& context) {
+  const Comm comm(context.ranks);
+  const ThreadLimit limit(context.threads);
+  const auto together = [&](const auto& work) { comm.together("output", Comm::Telling::kAsIfAlone, work); };
+  const bool is_first = comm.rank() == 0;
+  const io::MeshParts parts(share);
+  // The first rank makes the folder, and names everything in the end.
+  std::optional<io::MeshOutput> out;
+  std::string folder;
+  together([&] {
+    if (!is_first) return;
+    io::check_pvtu_target(file, static_cast<std::uint32_t>(comm.size()));
+    out.emplace(file, context);
+    folder = io::begin_pvtu(*out).string();
+  });
+  folder = from_first(comm, folder);
+  const io::VtkWhole whole{io::VtkCells::Shown::of(parts), io::VtkCells::names_of(parts),
+                           io::counts_of_shares(share, comm)};
+  const io::Piece piece =
+      comm.attempt("output", Comm::Telling::kNamesRank, [&] { return io::piece_of_share(share, comm); });
+  together([&] { io::write_pvtu_piece(folder, file, piece, whole, context, false); });
+  together([&] {
+    if (!is_first) return;
+    io::end_pvtu(*out, parts, {}, whole, piece.parts);
+    out->note(parts.note_on_names());
+    out->commit();
+  });
+  return out ? std::move(out->notes()) : std::vector<std::string>();
+}
+
+}  // namespace octafront
