@@ -2,8 +2,8 @@
 
 #include <octafront/domain.h>
 #include <octafront/options.h>
-#include <octafront/repair.h>
 #include <octafront/quality.h>
+#include <octafront/repair.h>
 #include <octafront/report.h>
 #include <octafront/run_context.h>
 #include <octafront/size_field.h>
