@@ -32,6 +32,7 @@ struct MetricSummary {
   std::uint64_t far = 0;         ///< edges shorter than half, or longer than twice of what is wanted
   Vec3 shortest_at, longest_at;  ///< middles of those edges; input units
   double quality_min = 0, quality_mean = 0;
+  Vec3 quality_min_at;    ///< the middle of the worst element; input units
   double complexity = 0;  ///< the integral of sqrt(det M) over the mesh
 };
 

@@ -395,7 +395,8 @@ MetricFit fit_of(const TetMesh& mesh, const MetricField& metric) {
     const Vec3 a = at[t[0]].at, b = at[t[1]].at, c = at[t[2]].at, d = at[t[3]].at;
     const double six = dot(cross(b - a, c - a), d - a);
     const double quality = quality_of_score(metric_score(six, densest->metric, densest->density, a, b, c, d));
-    fit.quality_min = std::min(fit.quality_min, quality), sum += quality;
+    if (quality < fit.quality_min) fit.quality_min = quality, fit.quality_min_at = 0.25 * (a + b + c + d);
+    sum += quality;
     fit.complexity += six / 24 * densities;
     for (const auto& [i, j] : kTetEdges) {
       if (!seen.insert(sorted_edge(t[i], t[j]))) continue;

@@ -241,7 +241,9 @@ MetricFit fit_of(const SurfaceMesh& surface, const MetricField& metric) {
   FlatSet<Edge> seen(3 * surface.points.size());
   for (const Triangle& t : surface.triangles) {
     const double quality = Sheet::score_of({&at[t[0]], &at[t[1]], &at[t[2]]});
-    fit.quality_min = std::min(fit.quality_min, quality), sum += quality;
+    if (quality < fit.quality_min)
+      fit.quality_min = quality, fit.quality_min_at = centroid(at[t[0]].at, at[t[1]].at, at[t[2]].at);
+    sum += quality;
     const Vec3 u = at[t[1]].at - at[t[0]].at, w = at[t[2]].at - at[t[0]].at;
     for (const VertexIndex v : t) {
       const Metric& m = at[v].metric;
