@@ -12,9 +12,9 @@
 namespace octafront::adapt {
 namespace {
 
-/// The triangles that stand for the smooth surface are this much nearer to it than what is asked for, and distances
-/// are known as well.
-constexpr double kPartOfTolerance = 0.1;
+/// The triangles that stand for the smooth surface are this much nearer to it than what is asked for, and their
+/// distances are known to this part of that: what keeps the bound must be seen to.
+constexpr double kPartOfTolerance = 0.1, kPartOfKnown = 0.2;
 /// Each side of a triangle is divided into so many where strays are looked for.
 constexpr int kDivisions = 4;
 
@@ -121,8 +121,9 @@ SmoothWalls::WallsOfParts SmoothWalls::walls_of(const Parts& mesh) {
 
 Deviation SmoothWalls::distance_of(const SurfaceMesh& walls) const {
   if (walls.triangles.empty() && smooth_.triangles.empty()) return {};
-  const HausdorffBounds there = one_sided_hausdorff(walls, tree_, tolerance_);
-  const HausdorffBounds back = one_sided_hausdorff(smooth_, TriangleTree(walls), tolerance_);
+  const double resolution = kPartOfKnown * tolerance_;
+  const HausdorffBounds there = one_sided_hausdorff(walls, tree_, resolution);
+  const HausdorffBounds back = one_sided_hausdorff(smooth_, TriangleTree(walls), resolution);
   const HausdorffBounds& farther = there.lower >= back.lower ? there : back;
   return {farther.lower, std::max(there.upper, back.upper), farther.place};
 }
