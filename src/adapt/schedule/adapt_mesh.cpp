@@ -494,7 +494,7 @@ void mend_walls(Parts& parts, const Ground& ground, const AdaptRules& rules, Ada
   const SmoothWalls smooth(ground, rules.kept.empty() ? rules.frozen : rules.kept, rules.tolerance);
   out.bound = rules.strict ? rules.tolerance : std::max(rules.tolerance, smooth.of_old().upper);
   // Walls that stay are frozen, and those are not looked at.
-  out.deviation = rules.keep_walls ? smooth.of_old() : smooth.of(parts);
+  out.deviation = rules.keep_walls ? smooth.of_old() : smooth.of(parts, out.bound);
   if (rules.keep_walls || out.deviation.upper <= out.bound) return;
   const Parts first = parts;
   Parts best = parts;
@@ -510,7 +510,7 @@ void mend_walls(Parts& parts, const Ground& ground, const AdaptRules& rules, Ada
     stage.count("wall triangles that strayed", static_cast<double>(strays.size()));
     ask_for_smaller(parts, strays);
     adapter.run();
-    const Deviation now = smooth.of(parts);
+    const Deviation now = smooth.of(parts, out.bound);
     in_vain = now.upper < kLeastProgress * nearest.upper ? 0 : in_vain + 1;
     if (now.upper < nearest.upper) nearest = now, best = parts;
   }

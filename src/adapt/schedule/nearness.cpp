@@ -12,9 +12,9 @@
 namespace octafront::adapt {
 namespace {
 
-/// The triangles that stand for the smooth surface are this much nearer to it than what is asked for, and their
-/// distances are known to this part of that: what keeps the bound must be seen to.
-constexpr double kPartOfTolerance = 0.1, kPartOfKnown = 0.2;
+/// The triangles that stand for the smooth surface are this much nearer to it than what is asked for, and distances
+/// are known as well.
+constexpr double kPartOfTolerance = 0.1;
 /// Each side of a triangle is divided into so many where strays are looked for.
 constexpr int kDivisions = 4;
 
@@ -119,11 +119,15 @@ SmoothWalls::WallsOfParts SmoothWalls::walls_of(const Parts& mesh) {
   return walls;
 }
 
-Deviation SmoothWalls::distance_of(const SurfaceMesh& walls) const {
+Deviation SmoothWalls::of(const SurfaceMesh& walls, double bound) const {
+  const Deviation known = distance_of(walls, kResolution);
+  return known.lower <= bound && bound < known.upper ? distance_of(walls, kFineResolution) : known;
+}
+
+Deviation SmoothWalls::distance_of(const SurfaceMesh& walls, double resolution) const {
   if (walls.triangles.empty() && smooth_.triangles.empty()) return {};
-  const double resolution = kPartOfKnown * tolerance_;
-  const HausdorffBounds there = one_sided_hausdorff(walls, tree_, resolution);
-  const HausdorffBounds back = one_sided_hausdorff(smooth_, TriangleTree(walls), resolution);
+  const HausdorffBounds there = one_sided_hausdorff(walls, tree_, resolution * tolerance_);
+  const HausdorffBounds back = one_sided_hausdorff(smooth_, TriangleTree(walls), resolution * tolerance_);
   const HausdorffBounds& farther = there.lower >= back.lower ? there : back;
   return {farther.lower, std::max(there.upper, back.upper), farther.place};
 }

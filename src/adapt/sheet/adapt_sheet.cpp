@@ -179,7 +179,7 @@ class SheetAdapter {
     if (rules.tolerance <= 0) return;
     const SmoothWalls smooth(guide.guide.ground, {}, rules.tolerance);
     out.bound = rules.strict ? rules.tolerance : std::max(rules.tolerance, smooth.of_old().upper);
-    out.deviation = smooth.of(walls_of(sheet));
+    out.deviation = smooth.of(walls_of(sheet), out.bound);
     Sheet best = sheet;
     for (int k = 0; k < kMostMendingsOfSheet && out.deviation.upper > out.bound; ++k) {
       std::vector<Triangle> strays = smooth.strays(walls_of(sheet), kShareOfSheetBound * out.bound);
@@ -191,7 +191,7 @@ class SheetAdapter {
       stage.count("triangles that strayed", static_cast<double>(strays.size()));
       ask_for_smaller(sheet, strays);
       cycles(sheet, guide, stage);
-      const Deviation now = smooth.of(walls_of(sheet));
+      const Deviation now = smooth.of(walls_of(sheet), out.bound);
       if (now.upper < out.deviation.upper) out.deviation = now, best = sheet;
     }
     sheet = std::move(best);
