@@ -184,6 +184,19 @@ TEST(AdaptNearness, BoundaryThatWouldCrossItselfStaysThere) {
   EXPECT_GT(volume(free.mesh), volume(wide) + 1e-4);
 }
 
+TEST(AdaptNearness, OfOnePlaceOnlyTooBoundaryStaysJustWhereItWouldCrossItself) {
+  const TetMesh narrow = slit_block(0.003);
+  Options options;
+  options.size.size = 0.2;
+  options.surface.max_deviation = 0.05;
+  options.adapt.only = "box:-2,-1,-1,2,1,2";
+  const AdaptedMesh made = adapt_existing(narrow, options);
+  EXPECT_TRUE(has_note(made.report, "of its 284 triangles stay as they were there"));
+  EXPECT_EQ(first_defect(made.mesh), std::nullopt);
+  EXPECT_NEAR(volume(made.mesh), volume(narrow), 2e-3);
+  EXPECT_GT(made.mesh.boundary.size(), 2 * narrow.boundary.size());
+}
+
 TEST(AdaptNearness, EdgesThatCannotFitAreNamed) {
   // The curve's corners stay a hundredth apart whatever is wanted.
   TetMesh start = kuhn_cube(3);
