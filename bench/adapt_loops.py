@@ -1,7 +1,7 @@
 """Adapts meshes of real models to a small size and to a large one in turn, ten times, and writes docs/measured/adapt-isotropic.md: how
 fast, how good, and what is left of the body.
 
-Usage: bench/run.sh adapt_loops [--loops N] [--only SUBSTRING]
+Usage: bench/run.sh adapt_loops [--loops N] [--only SUBSTRING] [--no-surface]
 On one thread; times are CPU seconds of a whole call, with the checks before and after.
 """
 import argparse
@@ -58,13 +58,14 @@ def main():
     parser.add_argument("build", type=pathlib.Path)
     parser.add_argument("--loops", type=int, default=10)
     parser.add_argument("--only", default="")
+    parser.add_argument("--no-surface", action="store_true", help="not on the surfaces that were meshed")
     parser.add_argument("--output", default="docs/measured/adapt-isotropic.md", type=pathlib.Path)
     options = parser.parse_args()
     results = []
     for name, surface, small, large in MODELS:
         if options.only not in name:
             continue
-        for is_given in (False, True):
+        for is_given in (False,) if options.no_surface else (False, True):
             volume, records = rows_of(options.build, surface, small, large, options.loops, is_given)
             title = name + (", on its surface" if is_given else "")
             results.append((title, volume, records))

@@ -32,6 +32,7 @@ struct MetricSummary {
   std::uint64_t far = 0;         ///< edges shorter than half, or longer than twice of what is wanted
   Vec3 shortest_at, longest_at;  ///< middles of those edges; input units
   double quality_min = 0, quality_mean = 0;
+  Vec3 quality_min_at;    ///< the middle of the worst element; input units
   double complexity = 0;  ///< the integral of sqrt(det M) over the mesh
 };
 
@@ -61,8 +62,10 @@ struct AdaptedMesh {
 /// Changes a valid mesh by splits, collapses, swaps and moves until its edges are as long as `options.size` wants them
 /// (make_size_field, asked about the mesh's own boundary). Vertices of the boundary and of interfaces stay on the
 /// smooth surface that the given ones stand for, within SurfaceOptions::max_deviation of it, by default .4 % of the
-/// diagonal; patches, regions, sheets, curves, sets of faces, edges and elements keep their places, corners their
-/// points. Features are found by options.surface.feature_angle. A mesh of second order is taken as a linear one.
+/// diagonal, or beside it where the mesh is too coarse for a smooth surface of its own: such that as much of the body
+/// is lost as is won, place by place. Patches, regions, sheets, curves, sets of faces, edges and elements keep their
+/// places, corners their points. Features are found by options.surface.feature_angle. A mesh of second order is taken
+/// as a linear one.
 ///
 /// Where options.adapt.only names places, only their elements and those of a halo of options.adapt.halo layers around
 /// them may change. All others, their vertices, faces and edges keep their bits and numbers; so does what stays the

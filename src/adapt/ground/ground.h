@@ -32,6 +32,9 @@ struct Walls {
   std::vector<std::uint32_t> path;  ///< per line edge: the line it belongs to
 };
 
+/// Turns inner walls such that neighbours within a part look the same way, where they can, and makes the edges.
+void turn_alike(Walls& walls);
+
 /// Per line edge the number of its path: edges that are `alike` between vertices where lines end, meet or bend, which
 /// become `lines.corners`. Paths are numbered in the order of their first edges.
 std::vector<std::uint32_t> find_paths(std::size_t vertices, Features& lines,

@@ -12,7 +12,7 @@ namespace octafront::adapt {
 inline constexpr float kPoorInMetric = 0.2f, kPoorOfSize = 0.4f;
 inline constexpr double kLongOfPoor = 1.6;
 /// What mends makes the worst element of its place better by so much.
-inline constexpr float kGainOfMending = 1.1f;
+inline constexpr float kGainOfMending = 1.03f;
 
 /// How far an element is from poor, at 1: by its score, or by the volume that its longest edge is too much for.
 inline float worth_of_corners(const std::array<const Vertex*, 4>& c, bool isotropic) {

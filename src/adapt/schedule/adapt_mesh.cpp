@@ -2,6 +2,7 @@
 
 #include "adapt/passes/passes.h"
 #include "adapt/passes/worth.h"
+#include "adapt/schedule/balance.h"
 #include "adapt/schedule/metric_steps.h"
 #include "adapt/schedule/parts.h"
 #include "base/blocks/blocks.h"
@@ -42,9 +43,10 @@ constexpr double kFarShort = 0.5, kFarLong = 2;
 constexpr int kMostMendings = 10, kMostInVain = 3;
 constexpr double kLengthOfStray = 1.6;
 /// Triangles with no edge longer than so many times the bound do not stray because they are large.
-constexpr double kLeastEdgeOfStray = 8;
-/// Less gain than this is none, in all and of one time; and no more elements than so many times those before.
-constexpr double kLeastGainOfMending = 0.7, kLeastProgress = 0.98;
+constexpr double kLeastEdgeOfStray = 2;
+/// Less gain than this is none, in all and of one time, for all that some gain is taken that costs so few elements; and
+/// no more elements than so many times those before.
+constexpr double kLeastGainOfMending = 0.7, kLeastProgress = 0.98, kFewMore = 1.1;
 constexpr std::size_t kGrowthOfMending = 2;
 /// Where edges would cut off more than this part of the bound from a bend of the ground, it is a line.
 constexpr double kShareOfKink = 0.5;
@@ -99,11 +101,12 @@ Counts work_on(Piece& piece, const Guide& guide, int cycles) {
 
 class Adapter {
  public:
-  Adapter(Parts& mesh, const Guide& guide, bool walls_ahead, const Stage& stage)
+  Adapter(Parts& mesh, const Guide& guide, const AdaptRules& rules, const Stage& stage)
       : mesh_(mesh),
         guide_(guide),
         stage_(stage),
-        walls_ahead_(walls_ahead),
+        feature_angle_(rules.feature_angle),
+        walls_ahead_(rules.walls_ahead),
         on_the_way_(!guide.metric.is_isotropic()) {}
 
   Counts run() {
@@ -119,6 +122,7 @@ class Adapter {
       if (c.changes() == 0 && !c.grown && !on_the_way_ && round + 1 >= kCellStages) break;
       if (since_growth >= kCellStages && c.changes() * kDone < mesh_.tets.size()) break;
     }
+    stage_.count("balanced vertices", static_cast<double>(balance_walls(mesh_, guide_, feature_angle_)));
     mend(sum);
     stage_.count("splits", static_cast<double>(sum.split.done));
     stage_.count("collapses", static_cast<double>(sum.collapse.done));
@@ -367,6 +371,7 @@ class Adapter {
   Parts& mesh_;
   const Guide& guide_;
   const Stage& stage_;
+  double feature_angle_;
   bool walls_ahead_, on_the_way_, mends_ = false;
   std::size_t steps_left_ = kNone;  ///< vertices that are on the way
   bool is_stuck_ = false;
@@ -395,7 +400,8 @@ MetricFit fit_of(const TetMesh& mesh, const MetricField& metric) {
     const Vec3 a = at[t[0]].at, b = at[t[1]].at, c = at[t[2]].at, d = at[t[3]].at;
     const double six = dot(cross(b - a, c - a), d - a);
     const double quality = quality_of_score(metric_score(six, densest->metric, densest->density, a, b, c, d));
-    fit.quality_min = std::min(fit.quality_min, quality), sum += quality;
+    if (quality < fit.quality_min) fit.quality_min = quality, fit.quality_min_at = 0.25 * (a + b + c + d);
+    sum += quality;
     fit.complexity += six / 24 * densities;
     for (const auto& [i, j] : kTetEdges) {
       if (!seen.insert(sorted_edge(t[i], t[j]))) continue;
@@ -488,7 +494,7 @@ void mend_walls(Parts& parts, const Ground& ground, const AdaptRules& rules, Ada
   const SmoothWalls smooth(ground, rules.kept.empty() ? rules.frozen : rules.kept, rules.tolerance);
   out.bound = rules.strict ? rules.tolerance : std::max(rules.tolerance, smooth.of_old().upper);
   // Walls that stay are frozen, and those are not looked at.
-  out.deviation = rules.keep_walls ? smooth.of_old() : smooth.of(parts);
+  out.deviation = rules.keep_walls ? smooth.of_old() : smooth.of(parts, out.bound);
   if (rules.keep_walls || out.deviation.upper <= out.bound) return;
   const Parts first = parts;
   Parts best = parts;
@@ -504,12 +510,14 @@ void mend_walls(Parts& parts, const Ground& ground, const AdaptRules& rules, Ada
     stage.count("wall triangles that strayed", static_cast<double>(strays.size()));
     ask_for_smaller(parts, strays);
     adapter.run();
-    const Deviation now = smooth.of(parts);
+    const Deviation now = smooth.of(parts, out.bound);
     in_vain = now.upper < kLeastProgress * nearest.upper ? 0 : in_vain + 1;
     if (now.upper < nearest.upper) nearest = now, best = parts;
   }
   // Smaller elements are no use where the ground itself has a step.
-  const bool helped = nearest.upper <= out.bound || nearest.upper < kLeastGainOfMending * out.deviation.upper;
+  const bool is_cheap = static_cast<double>(best.tets.size()) < kFewMore * static_cast<double>(first.tets.size());
+  const double gain = is_cheap ? kLeastProgress : kLeastGainOfMending;
+  const bool helped = nearest.upper <= out.bound || nearest.upper < gain * out.deviation.upper;
   if (helped) out.deviation = nearest;
   parts = helped ? std::move(best) : first;
 }
@@ -557,7 +565,7 @@ Adapted adapt_mesh(const TetMesh& mesh, const MetricField& metric, const AdaptRu
   if (rules.keep_walls)
     for (Vertex& v : taken.parts.vertices) v.frozen |= v.kind != Kind::kInner;
   for (VertexIndex v = 0; v < rules.kept.size(); ++v) taken.parts.vertices[v].frozen |= rules.kept[v] != 0;
-  Adapter adapter(taken.parts, guide, rules.walls_ahead, stage);
+  Adapter adapter(taken.parts, guide, rules, stage);
   adapter.run();
   Adapted out;
   mend_walls(taken.parts, ground, rules, adapter, out, stage);

@@ -41,6 +41,7 @@ struct MetricFit {
   std::uint64_t far = 0;         ///< edges beyond half and twice of what is wanted
   Vec3 shortest_at, longest_at;  ///< middles of these edges
   double quality_min = 0, quality_mean = 0;
+  Vec3 quality_min_at;    ///< the middle of the worst element
   double complexity = 0;  ///< the integral of sqrt(det M) over the mesh
 };
 MetricFit fit_of(const TetMesh& mesh, const MetricField& metric);

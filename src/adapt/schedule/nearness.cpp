@@ -119,10 +119,15 @@ SmoothWalls::WallsOfParts SmoothWalls::walls_of(const Parts& mesh) {
   return walls;
 }
 
-Deviation SmoothWalls::distance_of(const SurfaceMesh& walls) const {
+Deviation SmoothWalls::of(const SurfaceMesh& walls, double bound) const {
+  const Deviation known = distance_of(walls, kResolution);
+  return known.lower <= bound && bound < known.upper ? distance_of(walls, kFineResolution) : known;
+}
+
+Deviation SmoothWalls::distance_of(const SurfaceMesh& walls, double resolution) const {
   if (walls.triangles.empty() && smooth_.triangles.empty()) return {};
-  const HausdorffBounds there = one_sided_hausdorff(walls, tree_, tolerance_);
-  const HausdorffBounds back = one_sided_hausdorff(smooth_, TriangleTree(walls), tolerance_);
+  const HausdorffBounds there = one_sided_hausdorff(walls, tree_, resolution * tolerance_);
+  const HausdorffBounds back = one_sided_hausdorff(smooth_, TriangleTree(walls), resolution * tolerance_);
   const HausdorffBounds& farther = there.lower >= back.lower ? there : back;
   return {farther.lower, std::max(there.upper, back.upper), farther.place};
 }

@@ -30,23 +30,26 @@ class SmoothWalls {
   SmoothWalls(const Ground& ground, std::span<const std::uint8_t> frozen, double tolerance);
 
   /// Of the walls that came.
-  Deviation of_old() const { return distance_of(old_); }
-  /// Of the walls of a mesh made of them. They include what the triangles here differ from the smooth surface.
-  Deviation of(const Parts& mesh) const { return distance_of(walls_of(mesh).surface); }
-  Deviation of(const SurfaceMesh& walls) const { return distance_of(walls); }
+  Deviation of_old() const { return distance_of(old_, kResolution); }
+  /// Of the walls of a mesh made of them, more exactly where it is not clear whether they keep the bound. They include
+  /// what the triangles here differ from the smooth surface.
+  Deviation of(const Parts& mesh, double bound) const { return of(walls_of(mesh).surface, bound); }
+  Deviation of(const SurfaceMesh& walls, double bound) const;
   /// The wall triangles with places farther than `bound` from here, and those that are nearest to places here that are
   /// farther than it from any.
   std::vector<Triangle> strays(const Parts& mesh, double bound) const;
   std::vector<Triangle> strays(const SurfaceMesh& walls, double bound) const;
 
  private:
+  /// How well distances are known, in parts of tolerance_: at first, and where that decides.
+  static constexpr double kResolution = 1, kFineResolution = 0.2;
   struct WallsOfParts {
     SurfaceMesh surface;  ///< without unused points
     std::vector<VertexIndex> vertex;
   };
   static WallsOfParts walls_of(const Parts& mesh);
   void add_given(const Ground& ground, std::span<const std::uint8_t> frozen, SurfaceMesh& all);
-  Deviation distance_of(const SurfaceMesh& walls) const;
+  Deviation distance_of(const SurfaceMesh& walls, double resolution) const;
 
   double tolerance_;
   SurfaceMesh old_, smooth_;

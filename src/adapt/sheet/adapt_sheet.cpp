@@ -179,7 +179,7 @@ class SheetAdapter {
     if (rules.tolerance <= 0) return;
     const SmoothWalls smooth(guide.guide.ground, {}, rules.tolerance);
     out.bound = rules.strict ? rules.tolerance : std::max(rules.tolerance, smooth.of_old().upper);
-    out.deviation = smooth.of(walls_of(sheet));
+    out.deviation = smooth.of(walls_of(sheet), out.bound);
     Sheet best = sheet;
     for (int k = 0; k < kMostMendingsOfSheet && out.deviation.upper > out.bound; ++k) {
       std::vector<Triangle> strays = smooth.strays(walls_of(sheet), kShareOfSheetBound * out.bound);
@@ -191,7 +191,7 @@ class SheetAdapter {
       stage.count("triangles that strayed", static_cast<double>(strays.size()));
       ask_for_smaller(sheet, strays);
       cycles(sheet, guide, stage);
-      const Deviation now = smooth.of(walls_of(sheet));
+      const Deviation now = smooth.of(walls_of(sheet), out.bound);
       if (now.upper < out.deviation.upper) out.deviation = now, best = sheet;
     }
     sheet = std::move(best);
@@ -241,7 +241,9 @@ MetricFit fit_of(const SurfaceMesh& surface, const MetricField& metric) {
   FlatSet<Edge> seen(3 * surface.points.size());
   for (const Triangle& t : surface.triangles) {
     const double quality = Sheet::score_of({&at[t[0]], &at[t[1]], &at[t[2]]});
-    fit.quality_min = std::min(fit.quality_min, quality), sum += quality;
+    if (quality < fit.quality_min)
+      fit.quality_min = quality, fit.quality_min_at = centroid(at[t[0]].at, at[t[1]].at, at[t[2]].at);
+    sum += quality;
     const Vec3 u = at[t[1]].at - at[t[0]].at, w = at[t[2]].at - at[t[0]].at;
     for (const VertexIndex v : t) {
       const Metric& m = at[v].metric;

@@ -5,9 +5,9 @@
 
 #include "adapt/schedule/rim_metric.h"
 #include "adapt/schedule/section.h"
-#include "base/geometry/self_intersection.h"
 #include "pipeline/stages/adapting.h"
 #include "pipeline/stages/chosen_tets.h"
+#include "pipeline/stages/walls_apart.h"
 
 #include <algorithm>
 
@@ -32,8 +32,8 @@ void require_valid_section(const TetMesh& whole, const adapt::Section& section, 
   throw InputError("not a valid mesh: " + first_defect(whole, stage.context()).value_or(*defect));
 }
 
-/// A place where the boundary crosses itself, among the triangles in the box of what was changed.
-std::optional<Vec3> crossing_near(const TetMesh& mesh, const std::vector<Vec3>& changed, const Stage& stage) {
+/// Where the boundary crosses itself, among the triangles in the box of what was changed.
+std::vector<TriangleCorners> crossings_near(const TetMesh& mesh, const std::vector<Vec3>& changed, const Stage& stage) {
   const Box3 box = bounding_box(changed);
   std::vector<Triangle> near;
   for (const Triangle& t : mesh.boundary) {
@@ -41,9 +41,7 @@ std::optional<Vec3> crossing_near(const TetMesh& mesh, const std::vector<Vec3>& 
     for (const VertexIndex v : t) own.add(mesh.points[v]);
     if (own.overlaps(box)) near.push_back(t);
   }
-  const auto crossing = self_intersections(mesh.points, near, 1, stage.context());
-  if (crossing.empty()) return std::nullopt;
-  return mesh.points[near[crossing[0][0]][0]];
+  return crossing_triangles(mesh.points, near, stage);
 }
 
 struct Changed {
@@ -96,23 +94,12 @@ void adapt_section(const TetMesh& given, const adapt::MetricField& wanted, const
     result.before = summary_of(adapt::fit_of(part, metric));
     adapt::AdaptRules rules = asked;
     rules.frozen = section.frozen;
-    Changed made = changed_by(given, section, metric, rules, stage);
-    auto place = crossing_near(made.whole, made.part.mesh.points, stage);
-    if (place && !wanted.is_isotropic()) {  // with walls less near to the ground they may not meet
-      rules.walls_ahead = false;
-      made = changed_by(given, section, metric, rules, stage);
-      place = crossing_near(made.whole, made.part.mesh.points, stage);
-    }
-    if (place) {
-      stage.note(
-          fmt::format("the boundary would have crossed itself at ({:.6g}, {:.6g}, {:.6g}), where it is near to itself: "
-                      "it stays as it was; a smaller --max-deviation may help",
-                      place->x, place->y, place->z));
-      rules.keep_walls = true;
-      std::vector<std::uint8_t> stays = adapt::on_walls(section.mesh);
-      for (VertexIndex v = 0; v < stays.size(); ++v) stays[v] |= section.frozen[v];
-      made = changed_by(given, section, adapt::RimMetric(section.mesh, stays, wanted), rules, stage);
-    }
+    Changed made;
+    const TryWalls attempt = [&](const adapt::MetricField& now, const adapt::AdaptRules& by) {
+      made = changed_by(given, section, now, by, stage);
+      return crossings_near(made.whole, made.part.mesh.points, stage);
+    };
+    keep_walls_apart(section.mesh, metric, rules, attempt, stage);
     if (const auto defect = defect_of(made.part.mesh, stage))
       throw MeshingError("the mesh made is not valid, which is a bug of ours; please report it with the input. " +
                          *defect);

@@ -27,8 +27,8 @@ std::string words_of(Vec3 p) {
 }  // namespace
 
 MetricSummary summary_of(const adapt::MetricFit& fit) {
-  return {fit.edges,       fit.fitting,    fit.shortest,    fit.longest,      fit.far,
-          fit.shortest_at, fit.longest_at, fit.quality_min, fit.quality_mean, fit.complexity};
+  return {fit.edges,      fit.fitting,     fit.shortest,     fit.longest,        fit.far,       fit.shortest_at,
+          fit.longest_at, fit.quality_min, fit.quality_mean, fit.quality_min_at, fit.complexity};
 }
 
 std::optional<adapt::GivenSurface> given_surface(const Domain* surface, double diagonal, Run& run) {
@@ -91,9 +91,9 @@ void tell_given(const adapt::GivenFit& made, const Stage& stage) {
 void tell_fit(const MetricSummary& fit, const Stage& stage) {
   stage.note(
       fmt::format("{:.2f} % of the edges fit (longest {:.2f}, shortest {:.2f} of what is wanted); quality in the "
-                  "metric: least {:.3f}, mean {:.3f}",
+                  "metric: least {:.3f} at {}, mean {:.3f}",
                   100.0 * static_cast<double>(fit.fitting) / static_cast<double>(std::max<std::uint64_t>(fit.edges, 1)),
-                  fit.longest, fit.shortest, fit.quality_min, fit.quality_mean));
+                  fit.longest, fit.shortest, fit.quality_min, words_of(fit.quality_min_at), fit.quality_mean));
 }
 
 void tell_unmet(const MetricSummary& fit, const WallDeviation& deviation, bool has_surface, const Stage& stage) {

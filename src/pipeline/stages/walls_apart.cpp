@@ -25,14 +25,20 @@ std::string place_of(Vec3 p) {
 
 class WallsApart {
  public:
-  WallsApart(const TetMesh& given, const adapt::MetricField& metric, adapt::AdaptRules rules, const Stage& stage)
-      : given_(given), metric_(metric), rules_(rules), stage_(stage), tree_(given.points, given.boundary) {}
+  WallsApart(const TetMesh& given, const adapt::MetricField& metric, adapt::AdaptRules rules, const TryWalls& attempt,
+             const Stage& stage)
+      : given_(given),
+        metric_(metric),
+        rules_(rules),
+        attempt_(attempt),
+        stage_(stage),
+        tree_(given.points, given.boundary) {}
 
-  adapt::Adapted run() {
+  void run() {
     adapt(metric_);
-    if (crossings_.empty()) return std::move(made_);
+    if (crossings_.empty()) return;
     keep_where_it_crosses();
-    if (crossings_.empty()) return std::move(made_);
+    if (crossings_.empty()) return;
     if (rules_.given) {
       const Vec3 p = place();
       rules_.given = nullptr;
@@ -42,19 +48,15 @@ class WallsApart {
           "its own smooth surface instead, everywhere",
           place_of(p)));
       keep_where_it_crosses();
-      if (crossings_.empty()) return std::move(made_);
+      if (crossings_.empty()) return;
     }
     keep_all();
-    return std::move(made_);
   }
 
  private:
-  void adapt(const adapt::MetricField& metric) {
-    made_ = adapt::adapt_mesh(given_, metric, rules_, stage_);
-    crossings_ = self_intersections(made_.mesh.points, made_.mesh.boundary, kMostCrossings, stage_.context());
-  }
+  void adapt(const adapt::MetricField& metric) { crossings_ = attempt_(metric, rules_); }
 
-  Vec3 place() const { return made_.mesh.points[made_.mesh.boundary[crossings_[0][0]][0]]; }
+  Vec3 place() const { return crossings_[0][0]; }
 
   void keep_where_it_crosses() {
     if (!crossings_.empty() && !metric_.is_isotropic()) {  // with walls less near to the ground they may not meet
@@ -67,8 +69,9 @@ class WallsApart {
     for (int layers = 1; layers <= kMostKeptLayers && !crossings_.empty(); ++layers) {
       mark_crossings(kept);
       for (int k = 0; k < layers; ++k) add_layer(kept);
-      rules_.kept = kept;
-      adapt(adapt::RimMetric(given_, kept, metric_));
+      const std::vector<std::uint8_t> stays = with_frozen(kept);
+      rules_.kept = stays;
+      adapt(adapt::RimMetric(given_, stays, metric_));
     }
     rules_.kept = {};
     if (!crossings_.empty()) return;
@@ -82,10 +85,15 @@ class WallsApart {
 
   /// The old triangles that are nearest to the corners of those that cross.
   void mark_crossings(std::vector<std::uint8_t>& kept) const {
-    for (const auto& pair : crossings_)
-      for (const std::uint32_t f : pair)
-        for (const VertexIndex v : made_.mesh.boundary[f])
-          for (const VertexIndex old : given_.boundary[tree_.nearest(made_.mesh.points[v]).triangle]) kept[old] = 1;
+    for (const TriangleCorners& corners : crossings_)
+      for (const Vec3 p : corners)
+        if (const std::uint32_t t = tree_.nearest(p).triangle; t != kNone)
+          for (const VertexIndex old : given_.boundary[t]) kept[old] = 1;
+  }
+
+  std::vector<std::uint8_t> with_frozen(std::vector<std::uint8_t> kept) const {
+    for (VertexIndex v = 0; v < rules_.frozen.size(); ++v) kept[v] |= rules_.frozen[v];
+    return kept;
   }
 
   void add_layer(std::vector<std::uint8_t>& kept) const {
@@ -101,26 +109,48 @@ class WallsApart {
                     "was, everywhere; a smaller --max-deviation may help",
                     place_of(place())));
     rules_.keep_walls = true;
-    made_ = adapt::adapt_mesh(given_, adapt::RimMetric(given_, adapt::on_walls(given_), metric_), rules_, stage_);
+    adapt(adapt::RimMetric(given_, with_frozen(adapt::on_walls(given_)), metric_));
   }
-
-  /// More of them say no more about where.
-  static constexpr std::size_t kMostCrossings = 100'000;
 
   const TetMesh& given_;
   const adapt::MetricField& metric_;
   adapt::AdaptRules rules_;
+  const TryWalls& attempt_;
   const Stage& stage_;
   TriangleTree tree_;
-  adapt::Adapted made_;
-  std::vector<std::array<std::uint32_t, 2>> crossings_;
+  std::vector<TriangleCorners> crossings_;
 };
+
+/// More of them say no more about where.
+constexpr std::size_t kMostCrossings = 100'000;
 
 }  // namespace
 
+std::vector<TriangleCorners> crossing_triangles(const std::vector<Vec3>& points, const std::vector<Triangle>& boundary,
+                                                const Stage& stage) {
+  std::vector<TriangleCorners> found;
+  for (const auto& pair : self_intersections(points, boundary, kMostCrossings, stage.context()))
+    for (const std::uint32_t f : pair) {
+      const auto& [a, b, c] = boundary[f];
+      found.push_back({points[a], points[b], points[c]});
+    }
+  return found;
+}
+
+void keep_walls_apart(const TetMesh& given, const adapt::MetricField& metric, adapt::AdaptRules rules,
+                      const TryWalls& attempt, const Stage& stage) {
+  WallsApart(given, metric, rules, attempt, stage).run();
+}
+
 adapt::Adapted adapted_with_walls_apart(const TetMesh& given, const adapt::MetricField& metric, adapt::AdaptRules rules,
                                         const Stage& stage) {
-  return WallsApart(given, metric, rules, stage).run();
+  adapt::Adapted made;
+  const TryWalls attempt = [&](const adapt::MetricField& wanted, const adapt::AdaptRules& now) {
+    made = adapt::adapt_mesh(given, wanted, now, stage);
+    return crossing_triangles(made.mesh.points, made.mesh.boundary, stage);
+  };
+  keep_walls_apart(given, metric, rules, attempt, stage);
+  return made;
 }
 
 }  // namespace octafront

@@ -4,11 +4,25 @@
 // they stay as they were.
 
 #include "adapt/schedule/adapt_mesh.h"
+#include "base/geometry/triangle_tree.h"
+
+#include <functional>
+#include <vector>
 
 namespace octafront {
 
-/// adapt_mesh() such that the boundary does not cross itself. Where it would, walls stay, and what is around grows into
-/// their sizes; where that is not enough all stay. Notes say so.
+/// The triangles of a boundary that cross others, two for each crossing.
+std::vector<TriangleCorners> crossing_triangles(const std::vector<Vec3>& points, const std::vector<Triangle>& boundary,
+                                                const Stage& stage);
+
+/// Adapts by a metric and rules; returns the triangles that cross others then.
+using TryWalls = std::function<std::vector<TriangleCorners>(const adapt::MetricField&, const adapt::AdaptRules&)>;
+/// Tries until the boundary does not cross itself: where it would, walls of `given` stay, and what is around grows into
+/// their sizes; where that is not enough all stay. Notes say so. The last try is the one that counts.
+void keep_walls_apart(const TetMesh& given, const adapt::MetricField& metric, adapt::AdaptRules rules,
+                      const TryWalls& attempt, const Stage& stage);
+
+/// adapt_mesh() such that the boundary does not cross itself, by keep_walls_apart().
 adapt::Adapted adapted_with_walls_apart(const TetMesh& given, const adapt::MetricField& metric, adapt::AdaptRules rules,
                                         const Stage& stage);
 

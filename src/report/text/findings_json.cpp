@@ -51,6 +51,7 @@ std::string to_json(const MetricSummary& fit) {
               {"shortest", fit.shortest},
               {"longest", fit.longest},
               {"quality_min", fit.quality_min},
+              {"quality_min_at", place(fit.quality_min_at)},
               {"quality_mean", fit.quality_mean},
               {"far", fit.far},
               {"shortest_at", place(fit.shortest_at)},

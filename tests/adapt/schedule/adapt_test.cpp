@@ -156,6 +156,24 @@ TEST(Adapt, WallsStayWhereTheyAreAskedTo) {
   EXPECT_EQ(corners(mesh), corners(start));
 }
 
+TEST(Adapt, WorstElementIsSaidWithItsPlace) {
+  const TetMesh start = perturbed(kuhn_cube(4), 0.2, 7);
+  // Where sizes are the same everywhere the measure is 12 (3 V)^(2/3) over the sum of the squared edges.
+  double worst = 1;
+  Vec3 middle;
+  for (const auto& [a, b, c, d] : start.tets) {
+    const std::array<Vec3, 4> p{start.points[a], start.points[b], start.points[c], start.points[d]};
+    double sum = 0;
+    for (int i = 0; i < 4; ++i)
+      for (int j = i + 1; j < 4; ++j) sum += dot(p[j] - p[i], p[j] - p[i]);
+    const double quality = 12 * std::pow(dot(cross(p[1] - p[0], p[2] - p[0]), p[3] - p[0]) / 2, 2.0 / 3) / sum;
+    if (quality < worst) worst = quality, middle = 0.25 * (p[0] + p[1] + p[2] + p[3]);
+  }
+  const MetricSummary fit = adapted(start, 0.3).before;
+  EXPECT_NEAR(fit.quality_min, worst, 1e-6);
+  EXPECT_LT(length(fit.quality_min_at - middle), 1e-12);
+}
+
 TEST(Adapt, OldVerticesAreNamed) {
   const TetMesh start = kuhn_cube(3);
   const AdaptedMesh fine = adapted(start, 0.1);

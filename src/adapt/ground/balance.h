@@ -1,0 +1,21 @@
+#pragma once
+
+// Steps by which walls that were made anew stand for as much as the ground: where they are too coarse for a smooth
+// surface through them, all their triangles lie to one side of it, and a loop of such meshes would wear the body.
+
+#include "adapt/ground/ground.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace octafront::adapt {
+
+/// Per point of walls of a mesh on the ground: the step along its normal such that as much lies between the ground and
+/// what the walls stand for themselves (their own smooth surface, flat where there is none) on one side as on the
+/// other, weighted by the point's share of places; zero where that is next to nothing. Points that may not move leave
+/// their shares to the others of their triangles. Requires tolerance > 0.
+std::vector<Vec3> steps_to_balance(const Walls& walls, std::span<const std::uint8_t> may_move, const Ground& ground,
+                                   double tolerance);
+
+}  // namespace octafront::adapt
