@@ -1,4 +1,4 @@
-"""The tool as several processes: mpirun_test.py MPIRUN OCTAFRONT PROGRAM SAMPLES_DIR."""
+"""The tool, and programs of users, as several processes: mpirun_test.py MPIRUN OCTAFRONT PROGRAM C_PROGRAM SAMPLES_DIR [TEST ...]."""
 import json
 import os
 import pathlib
@@ -10,12 +10,29 @@ import tempfile
 import time
 import unittest
 
-MPIRUN, OCTAFRONT, PROGRAM, SAMPLES = sys.argv[1], sys.argv[2], sys.argv[3], pathlib.Path(sys.argv[4])
+MPIRUN, OCTAFRONT, PROGRAM, C_PROGRAM = sys.argv[1:5]
+SAMPLES = pathlib.Path(sys.argv[5])
 BRACKET = SAMPLES / "bracket.stl"
 
 # More processes than cores, as root in a container, where memory cannot be bound; processes that wait let others work.
 LAUNCH = [MPIRUN, "--allow-run-as-root", "--oversubscribe", "--bind-to", "none", "--mca", "hwloc_base_mem_bind_failure_action",
           "silent", "--mca", "mpi_yield_when_idle", "1"]
+
+# All ranks have the same mesh, or the same error.
+PYTHON_PROGRAM = """
+import sys
+import octafront
+from mpi4py import MPI
+world = MPI.COMM_WORLD
+try:
+    mesh = octafront.mesh(sys.argv[1], elements=20000, comm=world)
+except octafront.InputError as error:
+    sys.exit(7 if set(world.allgather(str(error))) == {str(error)} and not print(error, file=sys.stderr) else 8)
+hashes = world.allgather(mesh.report["hash"])
+assert len(set(hashes)) == 1, hashes
+if world.rank == 0:
+    mesh.save(sys.argv[2])
+"""
 
 
 class Mpirun(unittest.TestCase):
@@ -65,6 +82,36 @@ class Mpirun(unittest.TestCase):
     def test_long_messages_go_in_parts(self):
         for ranks in (1, 2, 5):
             self.launch(ranks, PROGRAM, "messages", check=0)
+
+    def test_programs_in_c(self):
+        missing = self.dir / "missing.stl"
+        subprocess.run([OCTAFRONT, "mesh", BRACKET, "-o", self.out, "-q", "--elements", "20000"], check=True)
+        alone = self.out.read_bytes()
+        for ranks in (1, 2, 3):
+            self.out.unlink()
+            done = self.launch(ranks, C_PROGRAM, BRACKET, self.out, "20000", check=0)
+            self.assertEqual(self.out.read_bytes(), alone)
+            self.assertEqual(done.stdout.count("tetrahedra"), 1)
+            self.out.unlink()
+            done = self.launch(ranks, C_PROGRAM, missing, self.out, check=3)
+            self.assertEqual(len([line for line in done.stderr.splitlines() if "missing.stl" in line]), 1, done.stderr)
+            self.nothing_left()
+            self.out.touch()
+
+    def test_programs_in_python(self):
+        program = self.dir / "program.json"  # by its ending one of those that may be left
+        program.write_text(PYTHON_PROGRAM)
+        subprocess.run([OCTAFRONT, "mesh", BRACKET, "-o", self.out, "-q", "--elements", "20000"], check=True)
+        alone = self.out.read_bytes()
+        for ranks in (1, 2, 3):
+            self.out.unlink()
+            self.launch(ranks, "/usr/bin/python3", "-m", "mpi4py", program, BRACKET, self.out, check=0)
+            self.assertEqual(self.out.read_bytes(), alone)
+            self.out.unlink()
+            done = self.launch(ranks, "/usr/bin/python3", "-m", "mpi4py", program, self.dir / "missing.stl", self.out, check=7)
+            self.assertIn("missing.stl", done.stderr)
+            self.nothing_left()
+            self.out.touch()
 
     def stages(self):
         done = self.launch(2, PROGRAM, "kill", "none", "0", BRACKET, self.out, check=0)
@@ -149,4 +196,4 @@ class Mpirun(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1], verbosity=2)
+    unittest.main(argv=[sys.argv[0], *sys.argv[6:]], verbosity=2)
