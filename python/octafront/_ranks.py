@@ -3,7 +3,6 @@ who waits for a job: neither this package nor the library needs MPI or mpi4py.""
 
 import ctypes
 import os
-import platform
 
 from . import errors
 from ._library import demand
@@ -53,6 +52,7 @@ class Ranks:
 
     def join(self, settings):
         demand("options_ranks", settings.options, self.rank, self.size)
+        import platform
         here = self._comm.allgather(platform.node()).count(platform.node())
         settings.threads = settings.threads or _share_of_threads(here)
         return {"ranks": self}
