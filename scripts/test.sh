@@ -3,7 +3,7 @@
 #   scripts/test.sh [--all | --low | --ranks] [PRESET] [CTEST OPTION ...]
 #     --all     with the long tests: large models, a campaign of nasty surfaces, solved examples
 #     --low     only what all others stand on: base, soup, surface
-#     --ranks   only what several processes do together, as virtual ranks of one
+#     --ranks   only what several processes do together, on small models, as virtual ranks of one: for tsan
 #     PRESET    a configure preset, by default release; also: dev (validators), asan-ubsan, tsan
 #     CTEST OPTION   e.g. -L fill (the tests of one wing), --stop-on-failure
 # What failed is listed at the end, the lowest wing first, with the command that repeats it.
@@ -15,7 +15,7 @@ which=(-LE long) targets=()
 case ${1:-} in
   --all) which=() && shift ;;
   --low) which=(-L '^(base|soup|surface)$') targets=(--target test_base test_soup test_surface) && shift ;;
-  --ranks) which=(-LE long -R '(Comm|Shares|Ranks)\.') targets=(--target test_base test_pipeline test_doors) && shift ;;
+  --ranks) which=(-R '(Comm|Shares)\.|Ranks\.(MakeASmallMesh|MakeTheSameMeshByAllOptions|MeetTheSame)') targets=(--target test_base test_pipeline) && shift ;;
 esac
 preset=release
 if [ $# -gt 0 ] && [[ $1 != -* ]]; then preset=$1 && shift; fi
