@@ -89,16 +89,25 @@ def bytes_taken(told):
     return max(row["bytes_taken"] for row in told["ranks"]) / told["tets"]
 
 
+def memory_of(told):
+    """Bytes an element, of the rank that has most."""
+    rows = told.get("ranks", []) or [told]
+    return max(row["peak_memory_bytes"] for row in rows) / told["tets"]
+
+
 class Model:
     """One core a rank. Each part of each stage grows as between two runs of a process alone; what is shared is divided,
     the slowest of the ranks has `imbalance` times the mean, and each rank takes the same bytes an element."""
 
-    def __init__(self, small, large, many, ranks):
+    def __init__(self, small, large, by_ranks, many, ranks):
         self.small, self.large, self.ratio = small, large, large["tets"] / small["tets"]
         self.bytes = bytes_taken(many) / (1 - 1 / ranks)
         shared = [sum(s["shared_seconds"] for s in row["stages"]) for row in many["ranks"]]
         by_stage = [of_stage(many, name, "shared_seconds") for name in SHARED]
         self.imbalance = sum(map(max, by_stage)) * len(shared) / sum(shared)
+        alone, each, parts = memory_of(large), memory_of(by_ranks), RANKS_OF_LARGER
+        self.held_by_all = min(alone, max(0, (parts * each - alone) / (parts - 1)))
+        self.held_in_shares = alone - self.held_by_all
 
     def seconds(self, elements):
         """What every rank does, what ranks share."""
@@ -107,9 +116,8 @@ class Model:
             sums[shared] += grown(small.get((name, shared), 0), seconds, self.ratio, elements / self.large["tets"])
         return sums
 
-    def memory(self, elements):
-        # By then a program's own megabytes are nothing: as many bytes an element as at the larger size.
-        return float(f"{self.large['peak_memory_bytes'] / self.large['tets'] * elements:.2g}")
+    def memory(self, elements, ranks):
+        return elements * (self.held_by_all + self.held_in_shares / ranks)
 
     def wall(self, elements, ranks):
         alike, shared = self.seconds(elements)
@@ -119,14 +127,15 @@ class Model:
 def rows_of_prediction(model):
     for elements in (1e8, 1e9, 1e10):
         alike, shared = model.seconds(elements)
-        cells = [f"{model.wall(elements, p):,.0f} s, {(alike + shared) / model.wall(elements, p):.1f} times" for p in (16, 64, 1024)]
+        cells = [f"{model.wall(elements, p):,.0f} s, {(alike + shared) / model.wall(elements, p):.1f} times; "
+                 f"{float(f'{model.memory(elements, p) / 1e9:.2g}'):,g} GB" for p in (16, 64, 1024)]
         yield (f"| {elements / 1e6:,.0f} M | {alike + shared:,.0f} | {alike:,.0f} | {elements * model.bytes / 1e9:,.1f} | "
-               f"{' | '.join(cells)} | {model.memory(elements) / 1e9:,g} |")
+               f"{' | '.join(cells)} |")
 
 
 def prediction(told, larger, larger_ranks, by):
     small, large, most = told[min(told)], larger, max(told)
-    model = Model(small, large, told[most], most)
+    model = Model(small, large, larger_ranks, told[most], most)
     million = large["tets"] / 1e6
     in_parts = [parts_of(t) for t in (small, large)]
 
@@ -139,20 +148,20 @@ def prediction(told, larger, larger_ranks, by):
             f"{small['tets'] / 1e6:.1f} M and {million:.1f} M elements:", "",
             "| stage | every rank does, s | ranks share, s |", "| --- | --: | --: |",
             *(f"| {name} | {both(name, False)} | {both(name, True)} |" for name in STAGES), "",
-            f"Memory is {small['peak_memory_bytes'] / small['tets']:.0f} and {large['peak_memory_bytes'] / large['tets']:.0f} bytes an element, with {by} "
-            f"ranks {max(row['peak_memory_bytes'] for row in larger_ranks['ranks']) / larger_ranks['tets']:.0f} on each; a rank of {by} takes "
+            f"Memory is {memory_of(small):.0f} and {memory_of(large):.0f} bytes an element, with {by} ranks {memory_of(larger_ranks):.0f} on each: so "
+            f"{model.held_by_all:.0f} of them are on every rank, and {model.held_in_shares:.0f} are shared. A rank of {by} takes "
             f"{bytes_taken(told[by]):.1f} and {bytes_taken(larger_ranks):.1f}, hashes are one: `{larger['hash']}`.", "",
             "The model: one core a rank; each figure of the table grows on as between its two sizes; what is shared is divided by the ranks, of whom the "
             f"slowest has {model.imbalance:.2f} times the mean, as with {most} of them; each takes {model.bytes:.0f} bytes an element times (1 - 1/ranks), by an "
-            "assumed 1 GB/s; memory is as many bytes an element as at the larger size, on each rank. Rounds of talk cost nothing beside that: there are "
+            "assumed 1 GB/s; memory is what is on every rank at the larger size, and the share of the rest, bytes an element. Rounds of talk cost nothing beside that: there are "
             f"{max(row['rounds_of_talk'] for row in larger_ranks['ranks']):.0f}.", "",
             "Measured elsewhere, of another model and by one process: 100 M elements in 428 CPU seconds with writing the file, 62 bytes an element "
             "([volume](volume-bench.md)).", "",
-            "| elements | one core, s | of that every rank does, s | GB taken by each | 16 ranks | 64 ranks | 1,024 ranks | GB on each rank |",
-            "| --: | --: | --: | --: | --: | --: | --: | --: |", *rows_of_prediction(model), "",
+            "| elements | one core, s | of that every rank does, s | GB taken by each | 16 ranks | 64 ranks | 1,024 ranks |",
+            "| --: | --: | --: | --: | --: | --: | --: |", *rows_of_prediction(model), "",
             "So what is replicated decides, twice. In time: sizes, surface, check and what improvement does of the whole mesh are done by every rank, and its "
-            "bytes come to every rank; from 16 ranks on hardly anything is gained. In memory: the mesh, the surface, the octree of sizes and the input are on every "
-            "rank, so no more is made than one machine holds, and numbers of elements end at 536,870,912 today: the lower two rows are what it would take.", ""]
+            "bytes come to every rank; from 16 ranks on hardly anything is gained. In memory: what every rank holds has to fit on one machine. Numbers of elements "
+            "end at 536,870,912 today: the lower two rows are what it would take.", ""]
 
 
 def page(told, larger, larger_ranks, model, elements, args):
@@ -165,8 +174,6 @@ def page(told, larger, larger_ranks, model, elements, args):
              "| ranks | elements | hash | peak memory of a rank, GB | B/element | MB taken by a rank | B/element | rounds of talk | s |",
              "| --: | --: | --- | --: | --: | --: | --: | --: | --: |",
              *(row_of_run(told[n], n) for n in sorted(told)), "",
-             "Memory does not fall as the number of ranks grows: but for the tetrahedra of the front until it is done, every rank "
-             "holds the whole mesh.", "",
              "Of each stage: bytes that a rank takes; the longest share over the mean one; the mean time in shared work and in talk, "
              "waiting included; the whole.", "",
              "| ranks | stage | MB taken | imbalance | s shared | s talk | s |", "| --: | --- | --: | --: | --: | --: | --: |",
