@@ -102,9 +102,8 @@ class Model:
     def __init__(self, small, large, by_ranks, many, ranks):
         self.small, self.large, self.ratio = small, large, large["tets"] / small["tets"]
         self.bytes = bytes_taken(many) / (1 - 1 / ranks)
-        shared = [sum(s["shared_seconds"] for s in row["stages"]) for row in many["ranks"]]
-        by_stage = [of_stage(many, name, "shared_seconds") for name in SHARED]
-        self.imbalance = sum(map(max, by_stage)) * len(shared) / sum(shared)
+        by_stage = [of_stage(many, name, "shared_seconds") for name in STAGES]
+        self.imbalance = sum(map(max, by_stage)) * ranks / sum(map(sum, by_stage))
         alone, each, parts = memory_of(large), memory_of(by_ranks), RANKS_OF_LARGER
         self.held_by_all = min(alone, max(0, (parts * each - alone) / (parts - 1)))
         self.held_in_shares = alone - self.held_by_all
