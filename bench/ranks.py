@@ -1,10 +1,13 @@
 #!/usr/bin/env python3
 """Several processes make one mesh: memory of each, bytes, who waits, what all do alike -> docs/measured/ranks.md.
 
-    bench/ranks.py BUILD [--model FILE] [--elements 2e6] [--ranks 1,2,4,8] [--page]
+    bench/ranks.py BUILD [--model FILE] [--elements 1e6] [--larger 1e7] [--ranks 1,2,4,8] [--page]
+
+--larger: a process alone also makes so many, and 4 ranks do: what grows how, for the prediction of many ranks.
 """
 import argparse
 import json
+import math
 import os
 import pathlib
 import subprocess
@@ -12,6 +15,7 @@ import tempfile
 
 from origin import ROOT, written_by
 
+RANKS_OF_LARGER = 4
 STAGES = ["size field", "surface front", "volume front", "improve", "check"]
 LAUNCH = ["mpirun", "--oversubscribe", "--bind-to", "none", "--mca", "mpi_yield_when_idle", "1"]
 if os.geteuid() == 0:
@@ -59,7 +63,107 @@ def seconds_alone(alone):
     return alone["cpu_seconds"], sum(counters[f"{what} CPU seconds"] for what in ("core", "advance", "pieces"))
 
 
-def page(told, model, elements, args):
+# What ranks share of a stage, by the counters of its CPU seconds.
+SHARED = {"volume front": ("core", "advance"), "improve": ("pieces",)}
+# Assumed for the prediction: of a network of 10 Gbit/s.
+BYTES_PER_SECOND = 1e9
+
+
+def parts_of(alone):
+    """{(stage, whether ranks share it): CPU seconds} of a process alone."""
+    parts = {}
+    for stage in alone["stages"]:
+        name = next((n for n in STAGES if stage["name"].startswith(n)), "rest")
+        shared = sum(stage["counters"].get(f"{what} CPU seconds", 0) for what in SHARED.get(name, ()))
+        for kind, seconds in ((True, shared), (False, max(0, stage["cpu_seconds"] - shared))):
+            parts[name, kind] = parts.get((name, kind), 0) + seconds
+    return parts
+
+
+def grown(small, large, ratio, times):
+    """A figure measured at two sizes, `ratio` apart, of one that is `times` the larger."""
+    return large * times ** (math.log(large / small) / math.log(ratio)) if small > 0 and large > 0 else large
+
+
+def bytes_taken(told):
+    return max(row["bytes_taken"] for row in told["ranks"]) / told["tets"]
+
+
+def memory_of(told):
+    """Bytes an element, of the rank that has most."""
+    rows = told.get("ranks", []) or [told]
+    return max(row["peak_memory_bytes"] for row in rows) / told["tets"]
+
+
+class Model:
+    """One core a rank. Each part of each stage grows as between two runs of a process alone; what is shared is divided,
+    the slowest of the ranks has `imbalance` times the mean, and each rank takes the same bytes an element."""
+
+    def __init__(self, small, large, by_ranks, many, ranks):
+        self.small, self.large, self.ratio = small, large, large["tets"] / small["tets"]
+        self.bytes = bytes_taken(many) / (1 - 1 / ranks)
+        by_stage = [of_stage(many, name, "shared_seconds") for name in STAGES]
+        self.imbalance = sum(map(max, by_stage)) * ranks / sum(map(sum, by_stage))
+        alone, each, parts = memory_of(large), memory_of(by_ranks), RANKS_OF_LARGER
+        self.held_by_all = min(alone, max(0, (parts * each - alone) / (parts - 1)))
+        self.held_in_shares = alone - self.held_by_all
+
+    def seconds(self, elements):
+        """What every rank does, what ranks share."""
+        small, large, sums = parts_of(self.small), parts_of(self.large), [0, 0]
+        for (name, shared), seconds in large.items():
+            sums[shared] += grown(small.get((name, shared), 0), seconds, self.ratio, elements / self.large["tets"])
+        return sums
+
+    def memory(self, elements, ranks):
+        return elements * (self.held_by_all + self.held_in_shares / ranks)
+
+    def wall(self, elements, ranks):
+        alike, shared = self.seconds(elements)
+        return alike + shared * self.imbalance / ranks + elements * self.bytes * (1 - 1 / ranks) / BYTES_PER_SECOND
+
+
+def rows_of_prediction(model):
+    for elements in (1e8, 1e9, 1e10):
+        alike, shared = model.seconds(elements)
+        cells = [f"{model.wall(elements, p):,.0f} s, {(alike + shared) / model.wall(elements, p):.1f} times; "
+                 f"{float(f'{model.memory(elements, p) / 1e9:.2g}'):,g} GB" for p in (16, 64, 1024)]
+        yield (f"| {elements / 1e6:,.0f} M | {alike + shared:,.0f} | {alike:,.0f} | {elements * model.bytes / 1e9:,.1f} | "
+               f"{' | '.join(cells)} |")
+
+
+def prediction(told, larger, larger_ranks, by):
+    small, large, most = told[min(told)], larger, max(told)
+    model = Model(small, large, larger_ranks, told[most], most)
+    million = large["tets"] / 1e6
+    in_parts = [parts_of(t) for t in (small, large)]
+
+    def both(name, shared):
+        a, b = (parts.get((name, shared), 0) for parts in in_parts)
+        return f"{a:.2f}, {b:.2f}" if b >= 0.005 else "-"
+
+    return ["## What many ranks would gain", "",
+            f"From the runs above, and {million:.1f} M elements by a process alone and by {by} ranks. CPU seconds of a process alone, at "
+            f"{small['tets'] / 1e6:.1f} M and {million:.1f} M elements:", "",
+            "| stage | every rank does, s | ranks share, s |", "| --- | --: | --: |",
+            *(f"| {name} | {both(name, False)} | {both(name, True)} |" for name in STAGES), "",
+            f"Memory is {memory_of(small):.0f} and {memory_of(large):.0f} bytes an element, with {by} ranks {memory_of(larger_ranks):.0f} on each: so "
+            f"{model.held_by_all:.0f} of them are on every rank, and {model.held_in_shares:.0f} are shared. A rank of {by} takes "
+            f"{bytes_taken(told[by]):.1f} and {bytes_taken(larger_ranks):.1f}, hashes are one: `{larger['hash']}`.", "",
+            "The model: one core a rank; each figure of the table grows on as between its two sizes; what is shared is divided by the ranks, of whom the "
+            f"slowest has {model.imbalance:.2f} times the mean, as with {most} of them; each takes {model.bytes:.0f} bytes an element times (1 - 1/ranks), by an "
+            "assumed 1 GB/s; memory is what is on every rank at the larger size, and the share of the rest, bytes an element. Rounds of talk cost nothing beside that: there are "
+            f"{max(row['rounds_of_talk'] for row in larger_ranks['ranks']):.0f}.", "",
+            "Measured elsewhere, of another model and by one process: 100 M elements in 428 CPU seconds with writing the file, 62 bytes an element "
+            "([volume](volume-bench.md)).", "",
+            "| elements | one core, s | of that every rank does, s | GB taken by each | 16 ranks | 64 ranks | 1,024 ranks |",
+            "| --: | --: | --: | --: | --: | --: | --: |", *rows_of_prediction(model), "",
+            "So what is replicated decides, twice. In time: sizes, surface, check and what improvement does of the whole mesh are done by every rank, and its "
+            "bytes come to every rank; from 16 ranks on hardly anything is gained. In memory: what every rank holds has to fit on one machine. Numbers of elements "
+            "end at 536,870,912 today: the lower two rows are what it would take.", ""]
+
+
+def page(told, larger, larger_ranks, model, elements, args):
     alone = told[min(told)]
     whole, shared = seconds_alone(alone)
     serial = 1 - shared / whole
@@ -69,8 +173,6 @@ def page(told, model, elements, args):
              "| ranks | elements | hash | peak memory of a rank, GB | B/element | MB taken by a rank | B/element | rounds of talk | s |",
              "| --: | --: | --- | --: | --: | --: | --: | --: | --: |",
              *(row_of_run(told[n], n) for n in sorted(told)), "",
-             "Memory does not fall as the number of ranks grows: but for the tetrahedra of the front until it is done, every rank "
-             "holds the whole mesh.", "",
              "Of each stage: bytes that a rank takes; the longest share over the mean one; the mean time in shared work and in talk, "
              "waiting included; the whole.", "",
              "| ranks | stage | MB taken | imbalance | s shared | s talk | s |", "| --: | --- | --: | --: | --: | --: | --: |",
@@ -79,6 +181,8 @@ def page(told, model, elements, args):
              f"{shared:.1f}: {100 * serial:.0f} % are done by every rank. Without any cost of talk, that bounds what ranks gain (Amdahl):", "",
              "| ranks | times as fast, at most |", "| --: | --: |",
              *(f"| {p:,} | {1 / (serial + (1 - serial) / p):.2f} |" for p in (2, 4, 16, 64, 1024)), ""]
+    if larger:
+        lines += prediction(told, larger, larger_ranks, RANKS_OF_LARGER)
     return "\n".join(lines)
 
 
@@ -86,7 +190,8 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("build", type=pathlib.Path)
     parser.add_argument("--model", default="samples/bracket.stl")
-    parser.add_argument("--elements", type=float, default=2e6)
+    parser.add_argument("--elements", type=float, default=1e6)
+    parser.add_argument("--larger", type=float, default=0)
     parser.add_argument("--ranks", default="1,2,4,8")
     parser.add_argument("--page", action="store_true")
     a = parser.parse_args()
@@ -95,8 +200,13 @@ def main():
         for ranks in map(int, a.ranks.split(",")):
             told[ranks] = run(a.build / "cli/octafront", a.model, a.elements, ranks, pathlib.Path(folder))
             print(row_of_run(told[ranks], ranks), flush=True)
+        larger = larger_ranks = None
+        if a.larger:
+            larger, larger_ranks = (run(a.build / "cli/octafront", a.model, a.larger, ranks, pathlib.Path(folder))
+                                    for ranks in (1, RANKS_OF_LARGER))
+            assert larger["hash"] == larger_ranks["hash"]
     hashes = {t["hash"] for t in told.values()}
-    text = page(told, pathlib.Path(a.model).name, a.elements, "bench/run.sh ranks")
+    text = page(told, larger, larger_ranks, pathlib.Path(a.model).name, a.elements, "bench/run.sh ranks")
     print(text)
     if a.page:
         (ROOT / "docs/measured/ranks.md").write_text(text)

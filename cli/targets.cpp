@@ -6,6 +6,7 @@
 #include <octafront/named_groups.h>
 #include <octafront/share_files.h>
 
+#include "ranks.h"
 #include "terminal.h"
 
 #include <array>
@@ -66,6 +67,9 @@ void check_pipe(const std::filesystem::path& file, const WriteOptions& options) 
   for (const FormatInfo& info : known_formats())
     if (info.writes_mesh && info.name == format && !info.one_file)
       throw OptionError(fmt::format("{} is written to several files: it cannot go to standard output", info.title));
+  // A terminal of mpirun's own, which would change bytes.
+  if (isatty(STDOUT_FILENO) && launch_of_environment().size > 1)
+    throw OptionError("-o -: mpirun takes what processes print for text; give a file");
   if (isatty(STDOUT_FILENO))
     throw OptionError("-o -: standard output is a terminal; send it to a file or a pipe: octafront ... > FILE");
 }

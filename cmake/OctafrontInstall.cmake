@@ -103,6 +103,10 @@ function(octafront_pc pc_name pc_brought pc_requires pc_libs)
 endfunction()
 octafront_pc(octafront_mesher "" "${pc_tbb}fmt" "${pc_stands_on}")
 octafront_pc(octafront "octafront_mesher" "fmt zlib" "${pc_hdf5} ${pc_metis} ${pc_stands_on}")
+if(OCTAFRONT_MPI)
+  # For mpicxx, which knows where its MPI is.
+  octafront_pc(octafront_mpi "octafront_mesher" "" "${pc_stands_on}")
+endif()
 
 if(TARGET octafront_cad_program)
   install(FILES LICENSE NOTICE DESTINATION ${doc_dir}/octafront-cad COMPONENT cad)

@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # Builds everything and runs the tests, the lowest wings first. Installs what is missing (Debian 12).
-#   scripts/test.sh [--all | --low] [PRESET] [CTEST OPTION ...]
+#   scripts/test.sh [--all | --low | --ranks] [PRESET] [CTEST OPTION ...]
 #     --all     with the long tests: large models, a campaign of nasty surfaces, solved examples
 #     --low     only what all others stand on: base, soup, surface
+#     --ranks   only what several processes do together, on small models, as virtual ranks of one: for tsan
 #     PRESET    a configure preset, by default release; also: dev (validators), asan-ubsan, tsan
 #     CTEST OPTION   e.g. -L fill (the tests of one wing), --stop-on-failure
 # What failed is listed at the end, the lowest wing first, with the command that repeats it.
@@ -14,6 +15,7 @@ which=(-LE long) targets=()
 case ${1:-} in
   --all) which=() && shift ;;
   --low) which=(-L '^(base|soup|surface)$') targets=(--target test_base test_soup test_surface) && shift ;;
+  --ranks) which=(-R '(Comm|Shares)\.|Ranks\.(MakeASmallMesh|MakeTheSameMeshByAllOptions|MeetTheSame)') targets=(--target test_base test_pipeline) && shift ;;
 esac
 preset=release
 if [ $# -gt 0 ] && [[ $1 != -* ]]; then preset=$1 && shift; fi
@@ -21,7 +23,7 @@ if [ $# -gt 0 ] && [[ $1 != -* ]]; then preset=$1 && shift; fi
 need_packages "${build_packages[@]}" "${test_packages[@]}"
 [ ${#which[@]} -gt 0 ] ||
   need_packages "${format_packages[@]}" "${doc_packages[@]}" "${browser_packages[@]}" "${shell_packages[@]}" "${image_packages[@]}" \
-    "${cad_packages[@]}" "${mpi_packages[@]}"
+    "${cad_packages[@]}" "${mpi_packages[@]}" "${mpi_test_packages[@]}"
 [ ${#which[@]} -gt 0 ] || [ -d volumes/nibabel ] || scripts/get-volumes.sh --readers ||
   echo "the test volumes cannot be fetched here: tests that need them are skipped"
 # A new folder is built whole: by many sources at a time. One that is there stays as it is.

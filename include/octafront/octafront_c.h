@@ -180,6 +180,12 @@ int octafront_options_size_mesh(octafront_options* options, const double* points
 int octafront_options_field(octafront_options* options, const octafront_sizes* sizes);
 /** options_for_voxels() of octafront/generate.h, after all other options; octafront_generate() does so by itself. */
 void octafront_options_for_voxels(octafront_options* options, double spacing);
+/** Jobs with these options are done by `size` processes together, of which this one is number `rank`, from 0 on; all
+ * give the same arguments but for these two numbers and `threads`. octafront_generate() shares its work, and all get
+ * the same mesh, the one that a process alone gets; octafront_open_files() does all on each, and ends alike on all.
+ * What processes say to each other goes by events, talk, which octafront/octafront_c_mpi.h serves by MPI; until the end
+ * of the job, also once it is cancelled: a process that is missing is waited for by the others. */
+int octafront_options_ranks(octafront_options* options, int rank, int size);
 /** Jobs with these options ask for sizes, or tell of passes, by events. */
 void octafront_options_ask_sizes(octafront_options* options);
 void octafront_options_tell_passes(octafront_options* options);
@@ -191,8 +197,12 @@ enum {
   OCTAFRONT_EVENT_END,      /**< the job has ended */
   OCTAFRONT_EVENT_PROGRESS, /**< text, value: the stage, its fraction in [0, 1], or below 0 where it is unknown */
   OCTAFRONT_EVENT_SIZES,    /**< points, count, sizes: fill in the sizes, then octafront_job_answer() */
-  OCTAFRONT_EVENT_PASS      /**< text, values: a pass of improvement, then worst beta, least and largest dihedral angle,
+  OCTAFRONT_EVENT_PASS,     /**< text, values: a pass of improvement, then worst beta, least and largest dihedral angle,
                                1 if all elements are positive */
+  OCTAFRONT_EVENT_GATHER,   /**< talk: in_sizes[r] bytes that process r has in its `out` go into `in` of all, in the
+                               order of processes */
+  OCTAFRONT_EVENT_EXCHANGE  /**< talk: out_sizes[r] bytes of `out` go to process r, in_sizes[r] bytes from it into `in`,
+                               each in the order of processes */
 };
 
 /** What it points to is valid until the next wait. */
@@ -203,6 +213,12 @@ typedef struct {
   const double* points; /**< count x 3 */
   double* sizes;        /**< count, to be filled in */
   size_t count;
+  /** Of talk: all processes get the same event at the same time; octafront_job_answer() once `in` is filled. All sizes
+   * together are less than 2^31. */
+  const void* out;
+  void* in;
+  const size_t* out_sizes; /**< null if the kind has none */
+  const size_t* in_sizes;
 } octafront_event;
 
 /** `threads`: at most so many; 0: all. A job begins at once; these return null only if there is no memory or thread.
@@ -313,7 +329,7 @@ typedef void (*octafront_watcher)(void* data, const octafront_event* event);
  * returns the end alone. It may cancel the job, and has filled in the sizes asked for when it returns; nothing else is
  * allowed to it. A library with threads never calls it. */
 void octafront_job_watch(octafront_job* job, octafront_watcher watcher, void* data);
-/** The sizes of the last OCTAFRONT_EVENT_SIZES are filled in. */
+/** What the last OCTAFRONT_EVENT_SIZES, _GATHER or _EXCHANGE asked for is filled in. */
 void octafront_job_answer(octafront_job* job);
 /** The job ends soon, with OCTAFRONT_CANCELLED, and writes nothing; still wait for its end. */
 void octafront_job_cancel(octafront_job* job);

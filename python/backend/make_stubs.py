@@ -240,7 +240,7 @@ FURTHER = {
     "size_near": "Mapping[str | tuple[float, float, float], tuple[float, float]] | None = None",
     "size_field": "SizeField | Path | tuple[npt.ArrayLike, npt.ArrayLike, npt.ArrayLike] | None = None",
     "unit": "str | None = None", "after_pass": "Callable[[str, dict[str, Any]], object] | None = None", "progress": "Progress | None = None",
-    "threads": "int = 0", "only": "str | Sequence[str] = ''",
+    "threads": "int = 0", "comm": "Any = None", "only": "str | Sequence[str] = ''",
 }
 OF_IMAGES = """\
     spacing: npt.ArrayLike | None = None,

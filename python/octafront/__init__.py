@@ -20,6 +20,7 @@ from ._jobs import Job as _Job
 from ._library import bytes_of as _bytes_of, call as _call
 from ._mesh import Checked, Mesh, mesh_of as _mesh_of
 from ._options import Settings as _Settings, takes_options as _takes_options
+from ._ranks import ranks_of as _ranks_of
 from ._sizes import SizeField
 from ._surface import OUTSIDE, Surface, surface_of as _surface_of
 from .errors import (Cancelled, Error, InputError, InternalError, MeshingError, OpenCavityError, OptionError, OutputError)
@@ -55,7 +56,7 @@ def mesh(points, triangles=None, **keywords):
     >>> octafront.mesh("scan.stl", elements=200_000).save("scan.inp")
     >>> octafront.mesh("part.step", size=2, size_of={"color #ff8000": 0.5}).save("part.inp")
     """
-    return _meshed(points, triangles, _Settings("mesh", "mesh", keywords, points))
+    return _meshed("mesh", points, triangles, keywords)
 
 
 @_takes_options("mesh")
@@ -64,7 +65,7 @@ def mesh_file(path, **keywords):
 
     >>> octafront.mesh_file("part.stl", elements=200_000).save("part.inp")
     """
-    return _meshed(path, None, _Settings("mesh_file", "mesh", keywords, path))
+    return _meshed("mesh_file", path, None, keywords)
 
 
 def image_surface(image, affine=None, *, spacing=None, series=0, kind="auto", labels=None, ignore=None, merge=None,
@@ -109,31 +110,46 @@ def mesh_image(image, affine=None, **keywords):
     >>> octafront.mesh_image("head.nii.gz", labels={1: "skin", 2: "skull"}, size=4).save("head.msh")
     >>> octafront.mesh_image(nibabel_image.get_fdata(), nibabel_image.affine, elements=500_000)
     """
-    spacing = keywords.pop("spacing", None)
-    settings = _Settings("mesh_image", "mesh", keywords, image)
-    series = settings.intake.pop("series", 0)
-    made = _surface_of_image(image, affine, spacing, series, {**settings.repeat, **settings.intake}, settings.threads,
-                             settings.progress)
-    settings.intake = {}
-    mesh = _meshed(made, None, settings)
-    mesh.report["image"] = made.report
+    spacing, ranks = keywords.pop("spacing", None), _ranks_of(keywords.get("comm"))
+
+    def way_in():
+        settings = _Settings("mesh_image", "mesh", keywords, image)
+        series = settings.intake.pop("series", 0)
+        made = _surface_of_image(image, affine, spacing, series, {**settings.repeat, **settings.intake}, settings.threads,
+                                 settings.progress)
+        settings.intake = {}
+        return _opened(made, None, settings), settings, made.report
+
+    domain, settings, report = ranks.together(way_in)
+    mesh = _filled(domain, made_of=image, settings=settings, ranks=ranks)
+    mesh.report["image"] = report
     return mesh
 
 
-def _meshed(points, triangles, settings):
-    job, report = _generated("generate", points, triangles, settings)
+def _meshed(function, points, triangles, keywords):
+    ranks = _ranks_of(keywords.get("comm"))
+
+    def way_in():
+        settings = _Settings(function, "mesh", keywords, points)
+        return _opened(points, triangles, settings), settings
+
+    domain, settings = ranks.together(way_in)
+    return _filled(domain, points, settings, ranks)
+
+
+def _filled(domain, made_of, settings, ranks):
+    job, report = _generated("generate", domain, made_of, settings, **ranks.join(settings))
     return Mesh._of(job.take("mesh"), report, job.take("sizes"))
 
 
-def _generated(how, points, triangles, settings):
+def _generated(how, domain, made_of, settings, **ranks):
     """A job that has ended, and its report with that of the way in. What is wrong with a file is said with its name."""
-    domain = _opened(points, triangles, settings)
-    job = _Job(how, domain._handle, settings.options, settings.threads, **settings.functions())
+    job = _Job(how, domain._handle, settings.options, settings.threads, **settings.functions(), **ranks)
     try:
         report = job.run()
     except InputError as error:
-        if _is_file(points):
-            error.args = (f"{_os.fsdecode(points)}: {error}",)
+        if _is_file(made_of):
+            error.args = (f"{_os.fsdecode(made_of)}: {error}",)
         raise
     report["intake"] = domain.report
     return job, report
@@ -145,7 +161,8 @@ def surface(points, triangles=None, **keywords):
 
     points, triangles: as for mesh(). Raises OptionError, InputError, MeshingError, Cancelled.
     """
-    job, report = _generated("generate_surface", points, triangles, _Settings("surface", "surface", keywords, points))
+    settings = _Settings("surface", "surface", keywords, points)
+    job, report = _generated("generate_surface", _opened(points, triangles, settings), points, settings)
     return Surface._of(job.take("surface"), report, opened=True)
 
 
@@ -155,7 +172,8 @@ def size_field(points, triangles=None, **keywords):
 
     points, triangles: as for mesh(). Raises OptionError, InputError, MeshingError, Cancelled.
     """
-    job, report = _generated("generate_sizes", points, triangles, _Settings("size_field", "size", keywords, points))
+    settings = _Settings("size_field", "size", keywords, points)
+    job, report = _generated("generate_sizes", _opened(points, triangles, settings), points, settings)
     return SizeField._of(job.take("sizes"), report)
 
 

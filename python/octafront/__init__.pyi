@@ -259,7 +259,8 @@ def mesh(points: npt.ArrayLike | Input, triangles: npt.ArrayLike | None = None, 
     unit: str | None = None,
     after_pass: Callable[[str, dict[str, Any]], object] | None = None,
     progress: Progress | None = None,
-    threads: int = 0) -> Mesh: ...
+    threads: int = 0,
+    comm: Any = None) -> Mesh: ...
 def mesh_file(path: Path, *,
     size: float | str | SizeFunction | SizeField | None = None,
     elements: int | None = None,
@@ -353,7 +354,8 @@ def mesh_file(path: Path, *,
     unit: str | None = None,
     after_pass: Callable[[str, dict[str, Any]], object] | None = None,
     progress: Progress | None = None,
-    threads: int = 0) -> Mesh: ...
+    threads: int = 0,
+    comm: Any = None) -> Mesh: ...
 def mesh_image(image: npt.ArrayLike | Path | Sequence[Path], affine: npt.ArrayLike | None = None, *,
     spacing: npt.ArrayLike | None = None,
     size: float | str | SizeFunction | SizeField | None = None,
@@ -448,7 +450,8 @@ def mesh_image(image: npt.ArrayLike | Path | Sequence[Path], affine: npt.ArrayLi
     unit: str | None = None,
     after_pass: Callable[[str, dict[str, Any]], object] | None = None,
     progress: Progress | None = None,
-    threads: int = 0) -> Mesh: ...
+    threads: int = 0,
+    comm: Any = None) -> Mesh: ...
 def image_surface(image: npt.ArrayLike | Path | Sequence[Path], affine: npt.ArrayLike | None = None, *,
     spacing: npt.ArrayLike | None = None,
     series: int = 0,

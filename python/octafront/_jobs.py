@@ -10,7 +10,7 @@ from ._numpy import np
 
 # Often enough for a hand on Ctrl-C, seldom enough to cost nothing.
 _LOOK_EVERY = 0.05
-_END, _PROGRESS, _SIZES, _PASS = 1, 2, 3, 4
+_END, _PROGRESS, _SIZES, _PASS, _GATHER, _EXCHANGE = 1, 2, 3, 4, 5, 6
 
 
 class Job:
@@ -19,10 +19,11 @@ class Job:
     progress(phase, fraction): fraction in [0, 1], or None where it is unknown; False ends the job.
     size_at(points): sizes (n,) at points (n, 3).
     after_pass(name, worst): told of the worst element each time when passes have been over the mesh.
+    ranks: the Ranks whose processes do the job together.
     """
 
-    def __init__(self, start, *arguments, progress=None, size_at=None, after_pass=None):
-        self._keep = arguments
+    def __init__(self, start, *arguments, progress=None, size_at=None, after_pass=None, ranks=None):
+        self._keep, self._ranks = arguments, ranks
         self._calls = {_PROGRESS: progress, _SIZES: size_at, _PASS: after_pass}
         self.stopped = False
         self._address = call(start, *arguments)
@@ -45,7 +46,7 @@ class Job:
                 self._serve(event)
         except BaseException:
             # Also KeyboardInterrupt: the job ends first, in milliseconds.
-            self._free()
+            self._end(event)
             raise
         report = json.loads(call("job_report", self._address), object_hook=_with_spoken_notes)
         status = call("job_status", self._address)
@@ -53,11 +54,19 @@ class Job:
             raise self._failure(status, spoken(text_of(call("job_message", self._address))), report)
         return report
 
+    def _end(self, event):
+        # Other processes wait to hear of it.
+        call("job_cancel", self._address)
+        while self._ranks and call("job_wait", self._address, _LOOK_EVERY, ctypes.byref(event)) != _END:
+            self._serve_talk(event)
+        self._free()
+
     def take(self, kind):
         """The address of the surface, mesh or sizes that the job made, or None."""
         return call("job_take_" + kind, self._address)
 
     def _serve(self, event):
+        self._serve_talk(event)
         if event.kind == _SIZES:
             self._serve_sizes(event)
         elif event.kind == _PROGRESS and self._calls[_PROGRESS]:
@@ -69,6 +78,17 @@ class Job:
             beta, least, largest, positive = event.values
             self._calls[_PASS](text_of(event.text), {"beta": beta, "dihedral_min": least, "dihedral_max": largest,
                                                      "positive": positive != 0})
+
+    def _serve_talk(self, event):
+        if event.kind not in (_GATHER, _EXCHANGE):
+            return
+        try:
+            self._ranks.talk(event, event.kind == _GATHER)
+        except BaseException:
+            # Nobody knows what was said: this process is lost to the others.
+            self._ranks = None
+            raise
+        call("job_answer", self._address)
 
     def _serve_sizes(self, event):
         points = np.ctypeslib.as_array(event.points, (event.count, 3)).copy()

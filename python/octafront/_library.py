@@ -23,7 +23,8 @@ class Array(ctypes.Structure):
 class Event(ctypes.Structure):
     _fields_ = [("kind", ctypes.c_int), ("text", ctypes.c_char_p), ("values", ctypes.c_double * 4),
                 ("points", ctypes.POINTER(ctypes.c_double)), ("sizes", ctypes.POINTER(ctypes.c_double)),
-                ("count", ctypes.c_size_t)]
+                ("count", ctypes.c_size_t), ("out", ctypes.c_void_p), ("into", ctypes.c_void_p),
+                ("out_sizes", ctypes.POINTER(ctypes.c_size_t)), ("in_sizes", ctypes.POINTER(ctypes.c_size_t))]
 
 
 def _load():
@@ -76,7 +77,7 @@ _PROTOTYPES = {
     "options_sizes_file": (_whole, _handle, _text),
     "options_size_mesh": (_whole, _handle, _pointer, _size, _pointer, _size, ctypes.c_uint32, _pointer, _whole),
     "options_field": (_whole, _handle, _handle), "options_ask_sizes": (None, _handle),
-    "options_tell_passes": (None, _handle),
+    "options_tell_passes": (None, _handle), "options_ranks": (_whole, _handle, _whole, _whole),
     "is_cad": (_whole, _text), "read_surface": (_handle, _text), "write_surface": (_handle, _handle, _text),
     "read_mesh": (_handle, _text), "write_mesh": (_handle, _handle, _text, _text),
     "read_image": (_handle, ctypes.POINTER(_text), _size, ctypes.c_uint32),

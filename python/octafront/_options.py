@@ -57,6 +57,8 @@ _FURTHER = [(name, "mesh surface size", text) for name, text in _OF_INTAKE] + [
      "progress(phase, fraction), told how far the run is; fraction is None where it is unknown. What returns False ends "
      "the run with Cancelled"),
     ("threads", "mesh surface size improve adapt", "Threads at most; 0: all. The result is the same"),
+    ("comm", "mesh", "A communicator of mpi4py, such as MPI.COMM_WORLD: its processes make the mesh together, all call "
+     "this with the same arguments, and all get the same mesh, the one that a process alone gets"),
 ]
 
 
@@ -92,6 +94,7 @@ class Settings:
             given.setdefault("cad_unit", name_of_unit(unit))
         self.progress, self.after_pass = given.pop("progress", None), given.pop("after_pass", None)
         self.threads = _threads(given.pop("threads", 0))
+        given.pop("comm", None)
         self.intake = {name: given.pop(name) for name in list(given) if name in _intake_keywords()}
         self.repeat = {"repeat": given["periodic"]} if given.get("periodic") else {}
         self.options = Handle("options")

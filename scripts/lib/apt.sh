@@ -27,6 +27,8 @@ test_packages=(libgtest-dev librapidcheck-dev libmetis-dev python3 python3-numpy
 cad_packages=(libocct-data-exchange-dev libocct-ocaf-dev libocct-modeling-algorithms-dev libocct-modeling-data-dev libocct-foundation-dev)
 # What shares the work among processes (OCTAFRONT_MPI); without it the rest is built.
 mpi_packages=(libopenmpi-dev openmpi-bin)
+# And what Python programs speak with: of --all.
+mpi_test_packages=(python3-mpi4py)
 # What judges our files (tests/formats) and packages (tests/install) and solves with them (tests/solved): those of --all.
 format_packages=(gmsh python3-gmsh calculix-ccx python3-meshio python3-netcdf4 python3-vtk9 python3-h5py python3-med netcdf-bin cgns-convert openfoam openmpi-bin tetgen lintian)
 # Pages of docstrings, and what checks types: those of --all.

@@ -16,6 +16,17 @@ LD_LIBRARY_PATH=$(dirname "$PKG_CONFIG_PATH") "$scratch/sphere" "$scratch/sphere
 LD_LIBRARY_PATH=$(dirname "$PKG_CONFIG_PATH") "$scratch/cube" "$scratch/cube.vtu"
 test -s "$scratch/sphere.vtu" && test -s "$scratch/cube.vtu"
 
+# Of several processes, where they were built: in C and in C++.
+if pkg-config --exists octafront_mpi; then
+  mpicc -std=c99 -Wall -Wextra -Wpedantic -Werror "$examples/mesh_with_mpi.c" -o "$scratch/from_c" $($pkg_config)
+  mpicxx -std=c++20 "$examples/../tests/install/ranks/ranks.cpp" -o "$scratch/ranks" $(pkg-config --cflags --libs octafront_mpi)
+  export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+  for program in ranks "from_c $examples/../samples/bracket.stl $scratch/by_ranks.vtu"; do
+    LD_LIBRARY_PATH=$(dirname "$PKG_CONFIG_PATH") mpirun --oversubscribe --bind-to none -n 2 "$scratch/"$program
+  done
+  test -s "$scratch/by_ranks.vtu"
+fi
+
 # The example of the README.
 code=$(awk '/^```cpp/ { on = 1; next } /^```/ { on = 0 } on' "$examples/../README.md")
 [ -n "$code" ] || { echo "no C++ in README.md"; exit 1; }

@@ -35,11 +35,138 @@ def meshed_hash(_):
     return octafront.mesh(*sphere(), size=0.2).report["hash"]
 
 
+class VirtualRank:
+    """A communicator as mpi4py has them, among threads."""
+
+    def __init__(self, rank, places, barrier):
+        self.rank, self.places, self.barrier = rank, places, barrier
+
+    def Get_rank(self):
+        return self.rank
+
+    def Get_size(self):
+        return len(self.places)
+
+    def Is_inter(self):
+        return False
+
+    def _of_all(self, mine, take):
+        self.places[self.rank] = mine
+        self.barrier.wait()
+        got = take(list(self.places))
+        self.barrier.wait()
+        return got
+
+    def allgather(self, mine):
+        return self._of_all(mine, lambda places: places)
+
+    def Allgatherv(self, mine, into):
+        self._put(into, self._of_all(mine, np.concatenate))
+
+    def Alltoallv(self, mine, into):
+        def take(places):
+            firsts = [sum(counts[:self.rank]) for _, counts in places]
+            return np.concatenate([data[first:first + counts[self.rank]] for (data, counts), first in zip(places, firsts)])
+
+        self._put(into, self._of_all(mine, take))
+
+    @staticmethod
+    def _put(into, got):
+        data, counts = into
+        assert len(data) == sum(counts) == len(got)
+        data[:] = got
+
+
+def on_ranks(count, work):
+    """What work(comm) returns or raises on each of so many ranks."""
+    places, barrier, ends = [None] * count, threading.Barrier(count, timeout=120), [None] * count
+
+    def run(rank):
+        try:
+            ends[rank] = work(VirtualRank(rank, places, barrier))
+        except BaseException as error:
+            ends[rank] = error
+
+    threads = [threading.Thread(target=run, args=(rank,)) for rank in range(count)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    return ends
+
+
 class Case(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
+
+
+class SharedByRanks(Case):
+    def test_the_mesh_of_a_process_alone_on_each(self):
+        alone = octafront.mesh(*sphere(), size=0.1)
+        for count in (1, 2, 3):
+            for mesh in on_ranks(count, lambda comm: octafront.mesh(*sphere(), size=0.1, comm=comm)):
+                self.assertEqual(mesh.report["hash"], alone.report["hash"])
+                self.assertTrue(np.array_equal(mesh.tets, alone.tets))
+                talk = [stage for stage in mesh.report["stages"] if "rounds of talk" in json.dumps(stage)]
+                self.assertEqual(bool(talk), count > 1)
+
+    def test_functions_and_images(self):
+        asked = [0, 0]
+
+        def by_function(comm):
+            def size(points):
+                asked[comm.rank] += len(points)
+                return 0.1 + 0.1 * np.abs(points[:, 0])
+
+            return octafront.mesh(*sphere(), size=size, comm=comm).report["hash"]
+
+        alone = octafront.mesh(*sphere(), size=lambda points: 0.1 + 0.1 * np.abs(points[:, 0])).report["hash"]
+        self.assertEqual(on_ranks(2, by_function), [alone, alone])
+        self.assertTrue(all(asked))
+        labels = np.zeros((12, 12, 12), np.uint8)
+        labels[3:9, 3:9, 3:6], labels[3:9, 3:9, 6:9] = 1, 2
+        alone = octafront.mesh_image(labels, size=1).report["hash"]
+        self.assertEqual(on_ranks(2, lambda comm: octafront.mesh_image(labels, size=1, comm=comm).report["hash"]), [alone] * 2)
+
+    def test_what_fails_on_one_ends_all(self):
+        def of_file(comm):
+            return octafront.mesh("missing.stl" if comm.rank == 1 else SAMPLES / "bracket.stl", size=5, comm=comm)
+
+        ends = on_ranks(3, of_file)
+        self.assertEqual([type(end) for end in ends], [octafront.InputError] * 3)
+        self.assertTrue(str(ends[0]).startswith("rank 1 of 3: "), ends[0])
+        self.assertIn("missing.stl", str(ends[2]))
+        ends = on_ranks(2, lambda comm: octafront.mesh(*sphere(), size=-1 if comm.rank == 0 else 1, comm=comm))
+        self.assertEqual([type(end) for end in ends], [octafront.OptionError] * 2)
+        ends = on_ranks(2, lambda comm: octafront.mesh(*sphere(), size=0.1 if comm.rank == 0 else 0.2, comm=comm))
+        for end in ends:
+            self.assertIsInstance(end, octafront.InternalError)
+            self.assertIn("rank 1 of 2", str(end))
+
+    def test_one_that_stops_ends_all(self):
+        def stopped(comm):
+            return octafront.mesh(*sphere(), size=0.1, comm=comm,
+                                  progress=lambda phase, fraction: comm.rank == 0 or phase != "volume front")
+
+        self.assertEqual([type(end) for end in on_ranks(3, stopped)], [octafront.Cancelled] * 3)
+
+        def broken(comm):
+            def tell(phase, fraction):
+                if comm.rank == 1 and phase == "improve":
+                    raise KeyError("mine")
+
+            return octafront.mesh(*sphere(), size=0.1, comm=comm, progress=tell)
+
+        self.assertEqual([type(end) for end in on_ranks(3, broken)], [octafront.Cancelled, KeyError, octafront.Cancelled])
+
+    def test_what_is_no_communicator(self):
+        for wrong in (2, "MPI.COMM_WORLD", object()):
+            with self.assertRaisesRegex(octafront.OptionError, "mpi4py"):
+                octafront.mesh(*sphere(), size=1, comm=wrong)
+        with self.assertRaisesRegex(TypeError, "option of mesh"):
+            octafront.surface(*sphere(), size=1, comm=None)
 
 
 class Meshing(Case):

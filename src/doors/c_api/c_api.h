@@ -38,6 +38,7 @@ struct octafront_image {
 struct octafront_options {
   octafront::Options options;
   bool asks_sizes = false, tells_passes = false;
+  int rank = 0, ranks = 1;
 };
 
 namespace octafront::c_api {

@@ -161,10 +161,12 @@ using namespace octafront::c_api;
 octafront_job* octafront_open_files(const char* const* files, size_t count, const char* json,
                                     const octafront_options* options, int threads) {
   return started(
-      [names = std::vector<std::string>(files, files + count), text = std::string(json),
+      [names = std::vector<std::string>(files, files + count), text = std::string(json), options,
        meant = options == nullptr ? Options{} : options->options](octafront_job& job) {
-        open(job, intake_for(meant, intake_from(Json::parse(text))),
-             [&](const IntakeOptions& intake) { return open_domain(names, intake, job.context()); });
+        job.on_ranks(options, "open", [&](const RunContext&) {
+          open(job, intake_for(meant, intake_from(Json::parse(text))),
+               [&](const IntakeOptions& intake) { return open_domain(names, intake, job.context()); });
+        });
       },
       threads);
 }

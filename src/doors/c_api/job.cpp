@@ -10,6 +10,31 @@
 #include <utility>
 
 using namespace octafront;
+using c_api::JobRanks;
+
+namespace {
+
+int status_of(const RankFailure& failure) {
+  using Kind = RankFailure::Kind;
+  switch (failure.kind) {
+    case Kind::kOption:
+      return OCTAFRONT_USAGE;
+    case Kind::kInput:
+      return OCTAFRONT_INPUT;
+    case Kind::kMeshing:
+      return OCTAFRONT_MESHING;
+    case Kind::kOutput:
+      return OCTAFRONT_OUTPUT;
+    case Kind::kCancelled:
+      return OCTAFRONT_CANCELLED;
+    case Kind::kMemory:
+      return OCTAFRONT_MEMORY;
+    default:
+      return OCTAFRONT_INTERNAL;
+  }
+}
+
+}  // namespace
 
 octafront_job::octafront_job(const Work& work, int threads) {
   context_.cancel = &cancelled_;
@@ -22,6 +47,7 @@ octafront_job::octafront_job(const Work& work, int threads) {
 }
 
 octafront_job::~octafront_job() {
+  freed_.store(true);
   cancel();
   if (worker_.joinable()) worker_.join();
 }
@@ -43,6 +69,8 @@ void octafront_job::run(const Work& work) {
     close(OCTAFRONT_OUTPUT, e.what());
   } catch (const Cancelled& e) {
     close(OCTAFRONT_CANCELLED, e.what());
+  } catch (const RankFailure& e) {
+    close(status_of(e), e.what());
   } catch (const std::bad_alloc&) {
     close(OCTAFRONT_MEMORY, "out of memory; ask for fewer elements (`elements`, `size`)");
   } catch (const std::exception& e) {
@@ -93,35 +121,46 @@ void octafront_job::post_progress(std::string_view stage, double fraction) {
   events_.back().values[0] = fraction;
 }
 
-void octafront_job::ask_here(std::span<const Vec3> points, std::span<double> sizes_wanted) {
-  if (watcher_ == nullptr)
-    throw OptionError("sizes of the caller want a watcher where the library has no threads: octafront_job_watch()");
-  octafront_event event{};
-  event.kind = OCTAFRONT_EVENT_SIZES;
-  event.points = &points.front().x;
-  event.sizes = sizes_wanted.data();
-  event.count = points.size();
-  watcher_(watcher_data_, &event);
-  if (cancelled_.load()) throw Cancelled();
+void octafront_job::ask_sizes(std::span<const Vec3> points, std::span<double> sizes_wanted) {
+  octafront_event question{};
+  question.kind = OCTAFRONT_EVENT_SIZES;
+  question.points = &points.front().x;
+  question.sizes = sizes_wanted.data();
+  question.count = points.size();
+  ask(question, cancelled_);
 }
 
-void octafront_job::ask(std::span<const Vec3> points, std::span<double> sizes_wanted) {
-  if (!has_threads()) return ask_here(points, sizes_wanted);
-  std::unique_lock lock(mutex_);
-  asked_ = points;
-  answers_ = sizes_wanted;
-  is_asked_ = true;
-  for_caller_.notify_all();
-  for_worker_.wait(lock, [&] { return !is_asked_ || cancelled_.load(); });
-  is_asked_ = is_shown_ = false;
-  if (cancelled_.load()) throw Cancelled();
+void octafront_job::ask(const octafront_event& question, const std::atomic<bool>& may_go) {
+  if (!has_threads()) {
+    if (watcher_ == nullptr)
+      throw OptionError("what asks the caller wants a watcher where the library has no threads: octafront_job_watch()");
+    watcher_(watcher_data_, &question);
+  } else {
+    std::unique_lock lock(mutex_);
+    question_ = question;
+    is_asked_ = true, is_shown_ = false;
+    for_caller_.notify_all();
+    for_worker_.wait(lock, [&] { return !is_asked_ || may_go.load(); });
+    is_asked_ = is_shown_ = false;
+  }
+  if (may_go.load()) throw Cancelled();
+}
+
+// Who is cancelled still tells the others; only one that is freed is gone.
+Ranks* octafront_job::ranks_of(const octafront_options* options) {
+  if (options == nullptr || options->ranks < 2) return nullptr;
+  ranks_ = std::make_unique<JobRanks>(options->rank, options->ranks,
+                                      [this](const octafront_event& talk) { ask(talk, freed_); });
+  return ranks_.get();
 }
 
 Options octafront_job::options_of(const octafront_options* given) {
   if (given == nullptr) return {};
   Options options = given->options;
   if (given->asks_sizes)
-    options.size.callback = [this](std::span<const Vec3> points, std::span<double> answers) { ask(points, answers); };
+    options.size.callback = [this](std::span<const Vec3> points, std::span<double> answers) {
+      ask_sizes(points, answers);
+    };
   if (given->tells_passes) {
     options.improve.after_pass = [this](const std::string& pass, const ImproveOptions::Worst& worst) {
       post(
@@ -143,10 +182,7 @@ bool octafront_job::take_event(octafront_event& event) {
   }
   if (is_asked_ && !is_shown_) {
     is_shown_ = true;
-    event.kind = OCTAFRONT_EVENT_SIZES;
-    event.points = &asked_.front().x;
-    event.sizes = answers_.data();
-    event.count = asked_.size();
+    event = question_;
     return true;
   }
   if (ended_) event.kind = OCTAFRONT_EVENT_END;
@@ -164,9 +200,10 @@ int octafront_job::wait(double seconds, octafront_event& event) {
   return event.kind;
 }
 
+// An answer to a question that was taken back, as the job was cancelled, is none to the next.
 void octafront_job::answer() {
   const std::lock_guard lock(mutex_);
-  is_asked_ = false;
+  if (is_shown_) is_asked_ = false;
   for_worker_.notify_all();
 }
 

@@ -6,6 +6,7 @@
 #include <octafront/run_context.h>
 
 #include "doors/c_api/c_api.h"
+#include "doors/c_api/job_ranks.h"
 
 #include <atomic>
 #include <condition_variable>
@@ -37,6 +38,13 @@ struct octafront_job {
   const octafront::RunContext& context() const { return context_; }
   /// The options with their callbacks, if they want events.
   octafront::Options options_of(const octafront_options* options);
+  /// work(context) by the processes that the options name, whose context it is; where it fails on one, it does on all.
+  template <class WorkInContext>
+  void on_ranks(const octafront_options* options, const char* stage, const WorkInContext& work) {
+    octafront::RunContext context = context_;
+    context.ranks = ranks_of(options);
+    octafront::together(context.ranks, stage, [&] { work(context); });
+  }
   Json report = Json::object();
   std::unique_ptr<octafront_surface> surface;
   std::unique_ptr<octafront_mesh> mesh;
@@ -65,21 +73,23 @@ struct octafront_job {
   void close(int status, std::string message);
   void post(Event event);
   void post_progress(std::string_view stage, double fraction);
-  void ask(std::span<const octafront::Vec3> points, std::span<double> sizes);
-  void ask_here(std::span<const octafront::Vec3> points, std::span<double> sizes);
+  void ask_sizes(std::span<const octafront::Vec3> points, std::span<double> sizes);
+  /// Waits for the answer; `may_go` ends the wait before.
+  void ask(const octafront_event& question, const std::atomic<bool>& may_go);
+  octafront::Ranks* ranks_of(const octafront_options* options);
   bool take_event(octafront_event& event);
 
   Work put_off_;  ///< until somebody waits, where there are no threads
   octafront_watcher watcher_ = nullptr;
   void* watcher_data_ = nullptr;
   octafront::RunContext context_;
-  std::atomic<bool> cancelled_{false};
+  std::atomic<bool> cancelled_{false}, freed_{false};
   std::mutex mutex_;
   std::condition_variable for_caller_, for_worker_;
   std::deque<Event> events_;
   Event current_{};  ///< what the caller looks at
-  std::span<const octafront::Vec3> asked_;
-  std::span<double> answers_;
+  octafront_event question_{};
+  std::unique_ptr<octafront::c_api::JobRanks> ranks_;
   bool is_asked_ = false, is_shown_ = false, ended_ = false;
   int status_ = OCTAFRONT_INTERNAL;
   std::string message_, report_text_;

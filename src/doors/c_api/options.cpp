@@ -211,6 +211,13 @@ void octafront_options_for_voxels(octafront_options* options, double spacing) {
   options->options = options_for_voxels(std::move(options->options), spacing);
 }
 
+int octafront_options_ranks(octafront_options* options, int rank, int size) {
+  return guarded([&] {
+    if (rank < 0 || rank >= size) throw OptionError(fmt::format("there is no rank {} of {}", rank, size));
+    options->rank = rank, options->ranks = size;
+  });
+}
+
 void octafront_options_ask_sizes(octafront_options* options) {
   options->asks_sizes = true;
 }

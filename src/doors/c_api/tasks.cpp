@@ -17,6 +17,7 @@
 #include "formats/parts/raw_mesh.h"
 
 #include <map>
+#include <optional>
 #include <utility>
 
 #include <fmt/core.h>
@@ -70,11 +71,11 @@ WriteOptions write_options_from(const Json& json) {
 /// Runs a generator, by the options with their events; if it refuses the surface, the evidence goes along.
 template <class Generator>
 auto made_of(octafront_job& job, const octafront_surface& surface, const octafront_options* options,
-             const Generator& generator) {
+             const RunContext& context, const Generator& generator) {
   const Domain& domain = surface.domain;
   require_indices(domain.surface);
   try {
-    auto result = generator(domain, job.options_of(options), job.context());
+    auto result = generator(domain, job.options_of(options), context);
     job.report = Json::parse(to_json(result.report));
     return result;
   } catch (const InputError&) {
@@ -259,9 +260,11 @@ octafront_job* octafront_write_sizes(const octafront_sizes* sizes, const char* f
 octafront_job* octafront_generate(const octafront_surface* surface, const octafront_options* options, int threads) {
   return started(
       [surface, options](octafront_job& job) {
-        Result result = made_of(job, *surface, options, generate);
-        give(job, std::move(result.mesh));
-        give(job, result.sizes);
+        std::optional<Result> result;
+        job.on_ranks(options, "mesh",
+                     [&](const RunContext& context) { result = made_of(job, *surface, options, context, generate); });
+        give(job, std::move(result->mesh));
+        give(job, result->sizes);
       },
       threads);
 }
@@ -270,7 +273,7 @@ octafront_job* octafront_generate_surface(const octafront_surface* surface, cons
                                           int threads) {
   return started(
       [surface, options](octafront_job& job) {
-        SurfaceResult result = made_of(job, *surface, options, generate_surface);
+        SurfaceResult result = made_of(job, *surface, options, job.context(), generate_surface);
         give(job, std::move(result.surface));
         give(job, result.sizes);
       },
@@ -280,7 +283,9 @@ octafront_job* octafront_generate_surface(const octafront_surface* surface, cons
 octafront_job* octafront_generate_sizes(const octafront_surface* surface, const octafront_options* options,
                                         int threads) {
   return started(
-      [surface, options](octafront_job& job) { give(job, made_of(job, *surface, options, generate_sizes).sizes); },
+      [surface, options](octafront_job& job) {
+        give(job, made_of(job, *surface, options, job.context(), generate_sizes).sizes);
+      },
       threads);
 }
 

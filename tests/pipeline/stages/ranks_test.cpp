@@ -47,14 +47,60 @@ TEST(Ranks, MakeTheMeshOfAProcessAlone) {
   expect_same_mesh(testing::torus(80, 40), ranks_options(0.09), {1, 2, 3, 5, 8});
 }
 
+/// Small, for sanitizers: all stages, ranks and threads at the same time.
+TEST(Ranks, MakeASmallMeshByThreadsOfEach) {
+  const SurfaceMesh torus = testing::torus(24, 12);
+  const std::uint64_t alone = generate(torus, ranks_options(0.15)).report.hash;
+  run_virtual_ranks(3, [&](Ranks& ranks) {
+    RunContext context;
+    context.ranks = &ranks;
+    context.threads = 2;
+    EXPECT_EQ(generate(torus, ranks_options(0.15), context).report.hash, alone);
+    EXPECT_GT(ranks.use.seconds_shared, 0);
+  });
+}
+
 TEST(Ranks, MakeTheSameComplex) {
-  expect_same_mesh(testing::packed_spheres(2, 1).surface, ranks_options(0.08), {2, 5});
+  expect_same_mesh(testing::packed_spheres(2, 1).surface, ranks_options(0.1), {1, 2, 3, 5, 8});
 }
 
 TEST(Ranks, FillTheSameKeptSurface) {
-  Options options = ranks_options(0.1);
+  Options options = ranks_options(0.13);
   options.surface.keep = true;
-  expect_same_mesh(testing::icosphere(4), options, {3});
+  expect_same_mesh(testing::icosphere(4), options, {1, 2, 3, 5, 8});
+}
+
+/// Not all that they do is shared, yet all is the same.
+TEST(Ranks, MakeTheSameMeshByAllOptions) {
+  struct Case {
+    std::string name;
+    SurfaceMesh surface;
+    Options options;
+  };
+  std::vector<Case> cases;
+  const auto add = [&](const char* name, SurfaceMesh surface, double size) -> Options& {
+    return cases.emplace_back(Case{name, std::move(surface), ranks_options(size)}).options;
+  };
+  add("classical front", testing::icosphere(2), 0.3).method = Method::kAft;
+  add("stuffing", testing::torus(24, 12), 0.2).method = Method::kOctree;
+  add("recovery", testing::torus(16, 8), 0.5).method = Method::kRecover;
+  Options& layers = add("layers", testing::cube(1), 0.15);
+  layers.layers.count = 2, layers.layers.first_part = 0.2;
+  add("shell", testing::box(1, 1, 0.02), 0.12).volume.shell = 2;
+  add("graded", testing::cube(1), 0.06).size.interior = SizeOptions::Interior::kGraded;
+  add("no improvement", testing::torus(24, 12), 0.12).improve.level = ImproveOptions::Level::kOff;
+  add("most improvement", testing::torus(24, 12), 0.2).improve.level = ImproveOptions::Level::kBest;
+  add("no lattice", testing::icosphere(3), 0.2).volume.core = VolumeOptions::Core::kOff;
+  for (const Case& c : cases) {
+    SCOPED_TRACE(c.name);
+    const Result alone = generate(c.surface, c.options);
+    run_virtual_ranks(3, [&](Ranks& ranks) {
+      RunContext context;
+      context.ranks = &ranks;
+      context.threads = 1;
+      EXPECT_EQ(generate(c.surface, c.options, context).mesh, alone.mesh) << "rank " << ranks.rank();
+    });
+  }
 }
 
 TEST(Ranks, MeetTheSameNumberOfElements) {
