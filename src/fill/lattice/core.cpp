@@ -29,6 +29,14 @@ namespace {
 using Sites = std::array<LatticeSite, 4>;
 
 constexpr std::size_t kLeavesPerChunk = 4096;
+/// Of a chunk without leaves of other sizes, and more: arrays of a megabyte and more go back to the system once they
+/// are freed, and room that is not used costs nothing.
+constexpr std::size_t kRoomOfChunk = 17 * kLeavesPerChunk;
+/// Chunks that are joined at a time, .8 million tetrahedra: so many are there twice.
+constexpr std::size_t kChunksAtOnce = 16;
+/// What the front makes comes behind the core, in the same array where there is room: as address space it costs
+/// nothing. At a million elements a quarter is the front's, and ever less where there are more.
+constexpr double kRoomForFront = 1.5;
 
 /// The tetrahedra of a stretch of leaves that belong to the core, and the faces between them and the rest.
 class CoreChunk {
@@ -52,6 +60,7 @@ class CoreChunk {
 
     void run(std::size_t first, std::size_t last) {
       const Octree& tree = sites_.lattice().tree;
+      chunk_.tets.reserve(kRoomOfChunk);
       for (std::size_t i = first; i < last; ++i)
         if (!sites_.is_far_outside(i)) for_each_lattice_tet_of(tree, i, [&](const Sites& tet) { add(tet); });
       chunk_.hanging = table_.sites();
@@ -193,18 +202,31 @@ class CoreBuilder {
     return first_hanging_ + static_cast<VertexIndex>(at - hanging_.begin());
   }
 
+  /// Some chunks at a time, which are freed then: not all are there twice.
   void take_tets() {
-    std::vector<std::size_t> first(chunks_.size() + 1, 0);
-    for (std::size_t c = 0; c < chunks_.size(); ++c) first[c + 1] = first[c] + chunks_[c].tets.size();
-    require_in_range(first.back(), kMostTets, "tetrahedra");
-    core_.tets.resize(first.back());
-    parallel_for(chunks_.size(), [&](std::size_t c) {
-      Tet* out = core_.tets.data() + first[c];
-      for (const Tet& t : chunks_[c].tets)
-        *out++ = {vertex(chunks_[c], t[0]), vertex(chunks_[c], t[1]), vertex(chunks_[c], t[2]),
-                  vertex(chunks_[c], t[3])};
-      chunks_[c].tets = std::vector<Tet>();
-    });
+    std::size_t all = 0;
+    for (const CoreChunk& chunk : chunks_) all += chunk.tets.size();
+    require_in_range(all, kMostTets, "tetrahedra");
+    core_.tets.reserve(static_cast<std::size_t>(kRoomForFront * static_cast<double>(all)));
+    for (std::size_t first = 0; first < chunks_.size(); first += kChunksAtOnce)
+      take_tets_of(first, std::min(first + kChunksAtOnce, chunks_.size()));
+  }
+
+  void take_tets_of(std::size_t first, std::size_t last) {
+    std::vector<std::size_t> to;
+    std::size_t end = core_.tets.size();
+    for (std::size_t c = first; c < last; ++c) to.push_back(std::exchange(end, end + chunks_[c].tets.size()));
+    core_.tets.resize(end);
+    parallel_for(
+        last - first,
+        [&](std::size_t i) {
+          CoreChunk& chunk = chunks_[first + i];
+          Tet* out = core_.tets.data() + to[i];
+          for (const Tet& t : chunk.tets)
+            *out++ = {vertex(chunk, t[0]), vertex(chunk, t[1]), vertex(chunk, t[2]), vertex(chunk, t[3])};
+          chunk.tets = std::vector<Tet>();
+        },
+        Split::kSingly);
   }
 
   /// A clear face between two tetrahedra that do not belong to the core is found twice and bounds nothing.
