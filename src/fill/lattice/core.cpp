@@ -5,6 +5,7 @@
 #include "base/comm/marks.h"
 #include "base/comm/packing.h"
 #include "base/comm/shares.h"
+#include "base/core/buckets.h"
 #include "base/core/parallel.h"
 #include "base/core/shared_value.h"
 #include "base/geometry/triangle_tree.h"
@@ -37,6 +38,7 @@ constexpr std::size_t kChunksAtOnce = 16;
 /// What the front makes comes behind the core, in the same array where there is room: as address space it costs
 /// nothing. At a million elements a quarter is the front's, and ever less where there are more.
 constexpr double kRoomForFront = 1.5;
+constexpr std::size_t kFacesAtOnce = 8192;
 
 /// The tetrahedra of a stretch of leaves that belong to the core, and the faces between them and the rest.
 class CoreChunk {
@@ -189,8 +191,9 @@ class CoreBuilder {
     parallel_for(vertex_.size(), [&](std::size_t s) {
       if (vertex_[s] != kNone) core_.points[vertex_[s]] = sites_.position_of(static_cast<SiteNumber>(s));
     });
-    for (std::size_t i = 0; i < hanging_.size(); ++i)
+    parallel_for(hanging_.size(), [&](std::size_t i) {
       core_.points[first_hanging_ + i] = position(sites_.lattice().root, hanging_[i]);
+    });
   }
 
   /// kNone if no tetrahedron of the core has this corner.
@@ -231,20 +234,36 @@ class CoreBuilder {
 
   /// A clear face between two tetrahedra that do not belong to the core is found twice and bounds nothing.
   void take_skin() {
-    std::vector<Triangle> faces;
-    for (const CoreChunk& chunk : chunks_)
-      for (const Triangle& t : chunk.candidates) {
-        const Triangle face{vertex(chunk, t[0]), vertex(chunk, t[1]), vertex(chunk, t[2])};
-        if (face[0] != kNone && face[1] != kNone && face[2] != kNone) faces.push_back(face);
-      }
-    faces = gathered_lists(comm_, faces, "skin of the lattice");
-    std::vector<char> single(faces.size(), 0);
-    face_table(core_.points.size(), faces)
-        .for_each_group([&](const Triangle&, std::span<const FaceTable::Entry> on_face) {
-          if (on_face.size() == 1) single[on_face[0].face] = 1;
+    const std::vector<Triangle> faces = gathered_lists(comm_, candidates(), "skin of the lattice");
+    std::vector<std::uint8_t> single(faces.size(), 0);
+    const RangeBuckets ranges(core_.points.size());
+    const Buckets<> of_range(faces.size(), ranges.count(), [&](std::size_t i, const auto& add) {
+      add(ranges.of(face_key(faces[i])[0]), static_cast<std::uint32_t>(i));
+    });
+    parallel_for(ranges.count(), [&](std::size_t r) {
+      FaceTable(static_cast<VertexIndex>(ranges.begin(r)), ranges.end(r) - ranges.begin(r), [&](const auto& add) {
+        for (const std::uint32_t i : of_range[r]) add(faces[i], i);
+      }).for_each_group([&](const Triangle&, std::span<const FaceTable::Entry> on_face) {
+        if (on_face.size() == 1) single[on_face[0].face] = 1;
+      });
+    });
+    core_.skin = parallel_collect<Triangle>(faces.size(), kFacesAtOnce,
+                                            [&](std::size_t begin, std::size_t end, std::vector<Triangle>& skin) {
+                                              for (std::size_t i = begin; i < end; ++i)
+                                                if (single[i]) skin.push_back(faces[i]);
+                                            });
+  }
+
+  /// Those of all chunks of which the core has the corners.
+  std::vector<Triangle> candidates() const {
+    return parallel_collect<Triangle>(
+        chunks_.size(), 1, [&](std::size_t begin, std::size_t end, std::vector<Triangle>& faces) {
+          for (std::size_t c = begin; c < end; ++c)
+            for (const Triangle& t : chunks_[c].candidates) {
+              const Triangle face{vertex(chunks_[c], t[0]), vertex(chunks_[c], t[1]), vertex(chunks_[c], t[2])};
+              if (face[0] != kNone && face[1] != kNone && face[2] != kNone) faces.push_back(face);
+            }
         });
-    for (std::size_t i = 0; i < faces.size(); ++i)
-      if (single[i]) core_.skin.push_back(faces[i]);
   }
 
   const ClearSites& sites_;
