@@ -18,11 +18,9 @@ namespace {
 constexpr int kMostRounds = 8;
 /// A queue of no more faces than this is worked off to its end in one block: no thread can help with it.
 constexpr std::size_t kSmallQueue = 500;
-/// So many blocks are enough for many threads, and the more faces are in one the fewer are gathered for its rim ...
-constexpr std::size_t kBlocks = 64;
-/// ... but its front is to fit the second-level cache. From 500 to 4000, time and quality change by less than what two
-/// runs differ by.
-constexpr std::size_t kLeastFacesPerBlock = 500, kMostFacesPerBlock = 1500;
+/// Queued faces in a block: its front fits the second-level cache. From 500 to 4000, time and quality change by less
+/// than what two runs differ by; fewer faces share better among many threads.
+constexpr std::size_t kFacesPerBlock = 500;
 /// Layers that a block works off in one phase. Its neighbours then meet a step of as many layers in the front, which
 /// costs no quality (1 to 100 layers: mean beta .8237 to .8250, below .2 .049 to .058 %); 1 costs a tenth more time.
 constexpr int kLayersPerPhase = 4;
@@ -108,7 +106,7 @@ class Phases {
     if (undivided)
       blocks.push_back(FrontBlock::whole(front_));
     else
-      blocks = partition_front(front_, {faces_per_block(), kQuantiles[front_.phases % kQuantiles.size()]});
+      blocks = partition_front(front_, {kFacesPerBlock, kQuantiles[front_.phases % kQuantiles.size()]});
     const FrontPhase phase{front_, task_, budget_.after(front_.work), layers};
     const Comm comm = comm_for(blocks.size());
     const Shares shares = shares_of(blocks, comm);
@@ -122,11 +120,6 @@ class Phases {
     const std::size_t deferred = join(results, comm, shares);
     if (!over_budget()) validate(front_);  // a run that was stopped has dropped faces
     return deferred;
-  }
-
-  /// Hangs on no number of threads, as all that decides.
-  std::size_t faces_per_block() const {
-    return std::clamp(front_.queue.size() / kBlocks, kLeastFacesPerBlock, kMostFacesPerBlock);
   }
 
   /// What is a single block, every rank does by itself.
